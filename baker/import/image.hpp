@@ -1,0 +1,27 @@
+// Decoded texture images for passes that look texels up (alpha masks now, textured albedo with the bounces).
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <glm/vec2.hpp>
+#include <glm/vec4.hpp>
+
+#include "baker/import/scene.hpp"
+#include "runtime/base/result.hpp"
+
+namespace lambent::baker {
+
+// Four channels of 8 bits as stored (colour sRGB-coded, alpha linear), row 0 at the top (v = 0).
+struct DecodedImage {
+  std::uint32_t width = 0, height = 0;
+  std::vector<std::uint8_t> rgba;
+};
+
+// By OpenImageIO. Errors name the image.
+Result<DecodedImage> decodeImage(const SceneImage& image);
+
+// Bilinear look-up at uv under the sampler's wrap modes: linear RGB, alpha, each 0..1.
+glm::vec4 sampleImage(const DecodedImage& image, const gltf::Sampler& sampler, glm::vec2 uv);
+
+}  // namespace lambent::baker

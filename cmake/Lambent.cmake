@@ -1,0 +1,79 @@
+# What every room's CMakeLists.txt uses: one library per room, one arrow per link line, the same warnings everywhere.
+
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+set(CMAKE_RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/bin")
+if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+  set(CMAKE_BUILD_TYPE Release CACHE STRING "" FORCE)
+endif()
+
+find_program(LAMBENT_CCACHE ccache)
+if(LAMBENT_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  set(CMAKE_CXX_COMPILER_LAUNCHER "${LAMBENT_CCACHE}")
+endif()
+
+add_library(lambent_flags INTERFACE)
+target_include_directories(lambent_flags INTERFACE "${PROJECT_SOURCE_DIR}")
+target_compile_options(lambent_flags INTERFACE -Wall -Wextra -Wpedantic -Wconversion -Wshadow)
+if(LAMBENT_WERROR)
+  target_compile_options(lambent_flags INTERFACE -Werror)
+endif()
+# Vector math comes from -march and plain loops. No -ffast-math: a bake is reproducible to the byte.
+if(LAMBENT_ISA AND CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+  target_compile_options(lambent_flags INTERFACE "-march=${LAMBENT_ISA}")
+  target_compile_definitions(lambent_flags INTERFACE "LAMBENT_ISA=\"${LAMBENT_ISA}\"")
+else()
+  target_compile_definitions(lambent_flags INTERFACE "LAMBENT_ISA=\"${CMAKE_SYSTEM_PROCESSOR}\"")
+endif()
+target_compile_definitions(lambent_flags INTERFACE "LAMBENT_VERSION=\"${PROJECT_VERSION}\"")
+if(LAMBENT_SANITIZE)
+  target_compile_options(lambent_flags INTERFACE -fsanitize=${LAMBENT_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+  target_link_options(lambent_flags INTERFACE -fsanitize=${LAMBENT_SANITIZE})
+endif()
+
+# lambent_room(NAME SOURCES file... [LINK target...] [LINK_PRIVATE target...])
+# The library lambent_NAME. LINK lists what the room's headers show, LINK_PRIVATE what only its .cpp files use.
+function(lambent_room name)
+  cmake_parse_arguments(ROOM "" "" "SOURCES;LINK;LINK_PRIVATE" ${ARGN})
+  add_library(lambent_${name} STATIC ${ROOM_SOURCES})
+  target_link_libraries(lambent_${name} PUBLIC lambent_flags ${ROOM_LINK} PRIVATE ${ROOM_LINK_PRIVATE})
+endfunction()
+
+# lambent_program(NAME SOURCES file... LINK target...): an executable in bin/.
+function(lambent_program name)
+  cmake_parse_arguments(PROGRAM "" "" "SOURCES;LINK" ${ARGN})
+  add_executable(${name} ${PROGRAM_SOURCES})
+  target_link_libraries(${name} PRIVATE lambent_flags ${PROGRAM_LINK})
+endfunction()
+
+# lambent_embed(TARGET file...): the files' text in the binary, found by name with
+# `std::string_view lambent::embedded::TARGET::find(name)` from "TARGET_embedded.hpp".
+function(lambent_embed target)
+  set(header "${CMAKE_CURRENT_BINARY_DIR}/embedded/${target}_embedded.hpp")
+  set(inputs "")
+  foreach(file ${ARGN})
+    list(APPEND inputs "${CMAKE_CURRENT_SOURCE_DIR}/${file}")
+  endforeach()
+  add_custom_command(OUTPUT "${header}"
+    COMMAND "${CMAKE_COMMAND}" "-DOUT=${header}" "-DNAME=${target}" "-DFILES=${inputs}"
+            -P "${PROJECT_SOURCE_DIR}/cmake/Embed.cmake"
+    DEPENDS ${inputs} "${PROJECT_SOURCE_DIR}/cmake/Embed.cmake" VERBATIM)
+  target_sources(${target} PRIVATE "${header}")
+  target_include_directories(${target} PRIVATE "${CMAKE_CURRENT_BINARY_DIR}/embedded")
+endfunction()
+
+# lambent_test(NAME SOURCES file... LINK target... [LABELS label...] [TIMEOUT seconds])
+function(lambent_test name)
+  cmake_parse_arguments(TEST "" "TIMEOUT" "SOURCES;LINK;LABELS" ${ARGN})
+  if(NOT TEST_TIMEOUT)
+    set(TEST_TIMEOUT 300)
+  endif()
+  add_executable(${name} ${TEST_SOURCES})
+  target_link_libraries(${name} PRIVATE lambent_flags ${TEST_LINK} GTest::gtest_main)
+  # Tests find the shared data beside the checkout, if it is there; LAMBENT_SHARED_DATA overrides.
+  target_compile_definitions(${name} PRIVATE "LAMBENT_SOURCE_DIR=\"${PROJECT_SOURCE_DIR}\"" "LAMBENT_BINARY_DIR=\"${CMAKE_BINARY_DIR}\"")
+  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT ${TEST_TIMEOUT} LABELS "${TEST_LABELS}")
+endfunction()

@@ -1,0 +1,147 @@
+// What stands in the JSON part of a bundle, as values: the glTF scene, where each byte range lies, and the extension
+// LAMBENT_radiance_transfer that says what was baked. docs/format.md is the same in words, with units and the schema.
+//
+// Sizes: a group has samples, numbered through all its cells; a transfer vector has columns() = order² + light_columns
+// entries per channel. Every index is checked when a file is read: code past the reader need not check again.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "runtime/bundle/gltf_types.hpp"
+
+namespace lambent::bundle {
+
+inline constexpr std::string_view kExtensionName = "LAMBENT_radiance_transfer";
+// Format versions, newest last; code asks for these names, never for a bare number.
+inline constexpr std::uint32_t kVersionFirstLight = 1;
+inline constexpr std::uint32_t kVersionCurrent = kVersionFirstLight;
+
+// A byte range of the GLB's binary chunk.
+struct View {
+  std::uint64_t offset = 0;    // from the start of the binary chunk, a multiple of 8
+  std::uint64_t length = 0;    // bytes, without padding
+  std::uint64_t checksum = 0;  // XXH3-64 of the bytes and the zero padding up to the next multiple of 8
+};
+
+// Attributes of a Draco mesh: the unique id of each, -1 where absent.
+struct DracoAttributes {
+  std::int32_t position = -1, normal = -1, texcoord0 = -1, texcoord1 = -1, color0 = -1;
+};
+
+struct Primitive {
+  std::uint32_t view = 0;  // the Draco buffer
+  DracoAttributes attributes;
+  std::int32_t material = -1;
+  std::uint32_t vertex_count = 0;  // after decoding
+  std::uint32_t index_count = 0;
+  glm::vec3 bounds_min{0.0f}, bounds_max{0.0f};  // of the decoded positions, in mesh space
+  std::uint64_t digest = 0;                      // meshDigest() of the decoded mesh
+};
+
+struct Mesh {
+  std::string name;
+  std::vector<Primitive> primitives;
+};
+
+struct Image {
+  std::string name;
+  std::string mime_type;  // image/png or image/jpeg
+  std::uint32_t view = 0;
+};
+
+// What a payload's bytes mean; see docs/format.md for the byte tables.
+enum class PayloadType : std::uint8_t {
+  VertexRows,     // per vertex: which samples, with what weights
+  TransferBasis,  // mean and basis vectors of a cell, binary16
+  WeightPlane,    // one quantized weight per sample
+};
+
+enum class PayloadCodec : std::uint8_t { Raw, Zstd };
+
+struct Payload {
+  PayloadType type = PayloadType::VertexRows;
+  PayloadCodec codec = PayloadCodec::Raw;
+  std::uint32_t view = 0;
+  std::uint64_t raw_length = 0;  // bytes after decompression
+  std::uint32_t priority = 0;    // streaming order: lower is wanted earlier
+};
+
+// One quantized weight per sample: weight = offset + scale * q, q an unsigned integer of `bits` bits.
+struct WeightPlane {
+  std::uint32_t payload = 0;
+  std::uint32_t bits = 8;  // 8 or 16
+  float offset = 0.0f, scale = 0.0f;
+  float variance = 0.0f;  // share of the cell's weighted transfer energy that this plane carries
+};
+
+// Which light a transfer vector carries. Parts add up and can be switched apart (--transfer).
+enum class TransferPart : std::uint8_t { Direct };
+
+// The diffuse transfer of one cell: t_p = mean + sum_j weight_j(p) * basis_j, (order² + light_columns) x channels.
+struct DiffuseTransfer {
+  TransferPart part = TransferPart::Direct;
+  std::uint32_t order = 5;          // bands 0..order-1
+  std::uint32_t light_columns = 0;  // K: lights that belong to the group
+  std::uint32_t channels = 1;       // 1: the same for R, G and B; 3: RGB
+  std::uint32_t basis = 0;          // payload: (1 + planes.size()) vectors, mean first
+  std::vector<WeightPlane> planes;  // by falling variance; any prefix renders
+  float error_bound = 0.0f;  // relative RMS of shaded radiance over real lights that was asked for
+  float error = 0.0f;        // and what the coded form reached
+
+  std::uint32_t columns() const { return order * order + light_columns; }
+};
+
+// The unit of storage: at most 64 Ki samples.
+struct Cell {
+  std::uint32_t first_sample = 0, sample_count = 0;
+  glm::vec3 bounds_min{0.0f}, bounds_max{0.0f};  // group frame
+  std::vector<DiffuseTransfer> diffuse;
+};
+
+// The unit of transport: nodes that never move relative to each other. Transfer is stored in the group's frame: the
+// rotation and place of its root node at rest, without scale.
+struct Group {
+  std::string name;
+  std::int32_t node = -1;  // root; -1: the scene
+  glm::vec3 rest_translation{0.0f};
+  glm::quat rest_rotation{1.0f, 0.0f, 0.0f, 0.0f};  // world_from_group at rest
+  glm::vec3 bounds_min{0.0f}, bounds_max{0.0f};     // group frame
+  std::uint32_t sample_count = 0;
+  std::vector<Cell> cells;
+};
+
+// One primitive at one node: what is drawn, with transfer of its own.
+struct Draw {
+  std::uint32_t node = 0, mesh = 0, primitive = 0, group = 0;
+  std::uint32_t rows = 0;  // payload: vertex rows into the group's samples
+};
+
+struct Generator {
+  std::string program, version, isa;
+  std::map<std::string, std::string> settings;  // option name -> value, as baked
+};
+
+struct Description {
+  std::uint32_t version = kVersionCurrent;
+  Generator generator;
+
+  std::vector<gltf::Node> nodes;
+  std::vector<std::int32_t> roots;
+  std::vector<Mesh> meshes;
+  std::vector<gltf::Material> materials;
+  std::vector<gltf::Texture> textures;
+  std::vector<Image> images;
+  std::vector<gltf::Camera> cameras;
+
+  std::vector<View> views;
+  std::vector<Payload> payloads;
+  std::vector<Group> groups;
+  std::vector<Draw> draws;
+};
+
+}  // namespace lambent::bundle

@@ -1,0 +1,46 @@
+// Reads bundles: the JSON once, then only the byte ranges that are asked for. Owns the open file; every call is safe
+// from any thread. What comes out has been checked: lengths against the file, checksums against the bytes, every
+// index and count of the description against the lists that it points into. No GL, no baker.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <vector>
+
+#include "runtime/base/result.hpp"
+#include "runtime/bundle/description.hpp"
+#include "runtime/bundle/mesh.hpp"
+
+namespace lambent::bundle {
+
+class Reader {
+ public:
+  // Errors: missing file, not a GLB, truncated, not a bundle, too new, damaged JSON, indices out of range.
+  static Result<Reader> open(const std::filesystem::path& path);
+
+  Reader(Reader&&) noexcept;
+  Reader& operator=(Reader&&) noexcept;
+  ~Reader();
+
+  const std::filesystem::path& path() const;
+  const Description& description() const;
+  std::uint64_t fileBytes() const;
+
+  // The bytes of a view, without padding; the checksum is compared.
+  Result<std::vector<std::byte>> readView(std::uint32_t view) const;
+  // The bytes of a payload, decompressed to raw_length.
+  Result<std::vector<std::byte>> readPayload(std::uint32_t payload) const;
+  // Decodes a primitive and compares its digest.
+  Result<MeshData> readMesh(std::uint32_t mesh, std::uint32_t primitive) const;
+  // Reads and compares everything in the file.
+  Result<void> checkAll() const;
+
+ private:
+  struct File;
+  explicit Reader(std::unique_ptr<File> file);
+  std::unique_ptr<File> file_;
+};
+
+}  // namespace lambent::bundle
