@@ -1,0 +1,73 @@
+// Brings a bundle into memory in the order in which it is wanted, on worker threads: reads ranges, checks them,
+// decodes Draco, images and entropy coding. No GL: the render thread takes what is ready and uploads it within its
+// budget (residency.hpp). Order of delivery is the order of priority, whatever the number of threads.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <variant>
+#include <vector>
+
+#include "runtime/base/result.hpp"
+#include "runtime/bundle/mesh.hpp"
+#include "runtime/bundle/reader.hpp"
+#include "runtime/bundle/transfer_codec.hpp"
+
+namespace lambent::streaming {
+
+struct MeshReady {
+  std::uint32_t mesh = 0, primitive = 0;
+  bundle::MeshData data;
+};
+
+struct ImageReady {
+  std::uint32_t image = 0;
+  std::uint32_t width = 0, height = 0;
+  std::vector<std::uint8_t> rgba;  // row 0 at the top; colour sRGB-coded
+};
+
+struct RowsReady {
+  std::uint32_t draw = 0;
+  bundle::VertexRows rows;
+};
+
+struct BasisReady {
+  std::uint32_t group = 0, cell = 0, transfer = 0;  // transfer: index into Cell::diffuse
+  std::vector<float> vectors;                       // (1 + planes) x channels x columns
+};
+
+struct PlaneReady {
+  std::uint32_t group = 0, cell = 0, transfer = 0, plane = 0;
+  std::vector<std::byte> codes;  // as the GPU reads them: bits per sample, little endian
+};
+
+using Ready = std::variant<MeshReady, ImageReady, RowsReady, BasisReady, PlaneReady>;
+
+class Loader {
+ public:
+  // Starts `threads` workers (at least 1) on everything in the bundle: meshes and rows first, then images, then per
+  // cell bases and planes by priority.
+  Loader(std::shared_ptr<const bundle::Reader> reader, unsigned threads);
+  ~Loader();  // stops the workers after the item in hand
+  Loader(Loader&&) noexcept;
+  Loader& operator=(Loader&&) noexcept;
+
+  // What is ready, in order, up to about max_bytes (at least one item if any is ready). Never waits.
+  std::vector<Ready> take(std::size_t max_bytes);
+  // Waits until something is ready or nothing more will come.
+  void waitForMore();
+  // True once every item has been taken, or loading stopped at an error.
+  bool finished() const;
+  // The first error; loading stops there.
+  std::optional<Error> error() const;
+
+  std::uint64_t bytesRead() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace lambent::streaming
