@@ -1,0 +1,49 @@
+// The words for lights, the same in every program (docs/conventions.md): a probe file (.hdr, .exr),
+// constant:R,G,B and sun:AZ,EL,ANGLE,R[,G,B]. Comes in: the text of one --light option. Goes out: a Light,
+// every number finite and in its range. Radiance is linear Rec.709 in W/(m² sr) up to one global scale;
+// angles are degrees, azimuth and elevation say where the light stands (azimuth 0 on +Z, 90 on +X). Errors
+// quote the word and show the form that was expected. No file is opened here: probe.hpp does that.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string_view>
+#include <variant>
+
+#include <glm/vec3.hpp>
+
+#include "runtime/base/result.hpp"
+#include "runtime/sh/image_layout.hpp"
+
+namespace lambent::spec {
+
+// Light from all directions at infinity, as a picture of the sphere.
+struct ProbeLight {
+  std::filesystem::path file;
+  std::optional<sh::ImageLayout> layout;  // --light-layout; otherwise recognised by the picture's shape
+};
+
+// The same radiance from every direction.
+struct ConstantLight {
+  glm::vec3 radiance{1.0f};
+};
+
+// A disc of uniform radiance at infinity.
+struct SunLight {
+  float azimuth_deg = 0.0f;
+  float elevation_deg = 0.0f;  // -90..90
+  float angle_deg = 0.0f;      // angular radius, 0 < angle <= 180 (half the sky at 90)
+  glm::vec3 radiance{1.0f};
+};
+
+using Light = std::variant<ProbeLight, ConstantLight, SunLight>;
+
+Result<Light> parseLight(std::string_view word);
+
+// --light-layout: latlong, angular or cross.
+Result<sh::ImageLayout> parseLightLayout(std::string_view word);
+
+// Unit direction towards (azimuth, elevation): (0, 0) is +Z, (90, 0) is +X, (any, 90) is +Y.
+glm::vec3 directionFromAzimuthElevation(float azimuth_deg, float elevation_deg);
+
+}  // namespace lambent::spec

@@ -1,0 +1,31 @@
+// A light probe in memory: a picture of the whole sphere, its layout, and a look-up by direction. Comes in: a
+// ProbeLight. Goes out: radiance towards any direction, filtered bilinearly on the sphere: lat-long pictures
+// wrap and go over the poles, crosses go from face to face and never take from their unused squares, angular
+// maps stay in their circle. Texels that are not finite count as black; how many there were is kept.
+#pragma once
+
+#include <cstdint>
+
+#include <glm/vec3.hpp>
+
+#include "runtime/base/result.hpp"
+#include "runtime/sh/image_layout.hpp"
+#include "runtime/spec/image.hpp"
+#include "runtime/spec/light.hpp"
+
+namespace lambent::spec {
+
+struct Probe {
+  RgbImage image;  // every value finite
+  sh::ImageLayout layout = sh::ImageLayout::LatLong;
+  std::uint64_t texels_not_finite = 0;  // replaced by 0 when loaded
+};
+
+// Errors: those of readLightImage; a shape that is no known layout, or that does not fit the layout asked
+// for.
+Result<Probe> loadProbe(const ProbeLight& light);
+
+// What arrives from the unit direction dir (light frame), bilinear.
+glm::vec3 radiance(const Probe& probe, glm::vec3 dir);
+
+}  // namespace lambent::spec
