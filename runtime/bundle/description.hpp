@@ -1,8 +1,10 @@
-// What stands in the JSON part of a bundle, as values: the glTF scene, where each byte range lies, and the extension
-// LAMBENT_radiance_transfer that says what was baked. docs/format.md is the same in words, with units and the schema.
+// What stands in the JSON part of a bundle, as values: the glTF scene, where each byte range lies, and the
+// extension LAMBENT_radiance_transfer that says what was baked. docs/format.md is the same in words, with
+// units and the schema.
 //
-// Sizes: a group has samples, numbered through all its cells; a transfer vector has columns() = order² + light_columns
-// entries per channel. Every index is checked when a file is read: code past the reader need not check again.
+// Sizes: a group has samples, numbered through all its cells; a transfer vector has columns() = order² +
+// light_columns entries per channel. Every index is checked when a file is read: code past the reader need
+// not check again.
 #pragma once
 
 #include <array>
@@ -82,7 +84,8 @@ struct WeightPlane {
 // Which light a transfer vector carries. Parts add up and can be switched apart (--transfer).
 enum class TransferPart : std::uint8_t { Direct };
 
-// The diffuse transfer of one cell: t_p = mean + sum_j weight_j(p) * basis_j, (order² + light_columns) x channels.
+// The diffuse transfer of one cell: t_p = mean + sum_j weight_j(p) * basis_j, (order² + light_columns) x
+// channels.
 struct DiffuseTransfer {
   TransferPart part = TransferPart::Direct;
   std::uint32_t order = 5;          // bands 0..order-1
@@ -90,8 +93,8 @@ struct DiffuseTransfer {
   std::uint32_t channels = 1;       // 1: the same for R, G and B; 3: RGB
   std::uint32_t basis = 0;          // payload: (1 + planes.size()) vectors, mean first
   std::vector<WeightPlane> planes;  // by falling variance; any prefix renders
-  float error_bound = 0.0f;  // relative RMS of shaded radiance over real lights that was asked for
-  float error = 0.0f;        // and what the coded form reached
+  float error_bound = 0.0f;         // relative RMS of shaded radiance over real lights that was asked for
+  float error = 0.0f;               // and what the coded form reached
 
   std::uint32_t columns() const { return order * order + light_columns; }
 };
@@ -103,8 +106,8 @@ struct Cell {
   std::vector<DiffuseTransfer> diffuse;
 };
 
-// The unit of transport: nodes that never move relative to each other. Transfer is stored in the group's frame: the
-// rotation and place of its root node at rest, without scale.
+// The unit of transport: nodes that never move relative to each other. Transfer is stored in the group's
+// frame: the rotation and place of its root node at rest, without scale.
 struct Group {
   std::string name;
   std::int32_t node = -1;  // root; -1: the scene

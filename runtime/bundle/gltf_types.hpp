@@ -1,6 +1,7 @@
-// The part of a glTF file that Lambent keeps: nodes, materials, textures, cameras. Both sides share these types: the
-// importer fills them from any glTF file, the bundle carries them through, the runtime draws from them.
-// Units and axes are glTF's: metres, +Y up, right-handed, colours linear Rec.709. Indices are -1 where there is none.
+// The part of a glTF file that Lambent keeps: nodes, materials, textures, cameras. Both sides share these
+// types: the importer fills them from any glTF file, the bundle carries them through, the runtime draws from
+// them. Units and axes are glTF's: metres, +Y up, right-handed, colours linear Rec.709. Indices are -1 where
+// there is none.
 #pragma once
 
 #include <cstdint>
@@ -28,8 +29,8 @@ struct Node {
 
 // glTF 2.0 sampler enums as they stand in the file (GL constants).
 struct Sampler {
-  std::uint32_t wrap_s = 10497, wrap_t = 10497;           // REPEAT
-  std::uint32_t mag_filter = 9729, min_filter = 9987;     // LINEAR, LINEAR_MIPMAP_LINEAR
+  std::uint32_t wrap_s = 10497, wrap_t = 10497;        // REPEAT
+  std::uint32_t mag_filter = 9729, min_filter = 9987;  // LINEAR, LINEAR_MIPMAP_LINEAR
   bool operator==(const Sampler&) const = default;
 };
 
@@ -48,7 +49,7 @@ enum class AlphaMode : std::uint8_t { Opaque, Mask, Blend };
 // Every material is Lambert with albedo = base colour until the glossy effect lands (docs/conventions.md).
 struct Material {
   std::string name;
-  glm::vec4 base_color{1.0f};  // linear
+  glm::vec4 base_color{1.0f};     // linear
   TextureRef base_color_texture;  // sRGB colour, linear alpha; multiplies base_color
   float metallic = 1.0f, roughness = 1.0f;
   glm::vec3 emissive{0.0f};
@@ -61,7 +62,7 @@ struct Camera {
   std::string name;
   bool perspective = true;
   float yfov_rad = 0.8f;
-  float aspect = 0.0f;           // 0: the viewport's
+  float aspect = 0.0f;             // 0: the viewport's
   float xmag = 1.0f, ymag = 1.0f;  // orthographic half sizes
   float znear = 0.01f;
   float zfar = 0.0f;  // 0: infinite

@@ -1,5 +1,5 @@
-// A mesh as the runtime draws it and as the baker bakes it: what Draco gives back, never what went in ("bake what
-// ships"). One float array per attribute; empty where the mesh has none.
+// A mesh as the runtime draws it and as the baker bakes it: what Draco gives back, never what went in ("bake
+// what ships"). One float array per attribute; empty where the mesh has none.
 #pragma once
 
 #include <cstddef>
@@ -17,17 +17,18 @@
 namespace lambent::bundle {
 
 struct MeshData {
-  std::vector<glm::vec3> positions;   // mesh space
-  std::vector<glm::vec3> normals;     // unit length
-  std::vector<glm::vec2> texcoords0;  // may be empty
-  std::vector<glm::vec2> texcoords1;  // may be empty
-  std::vector<glm::vec4> colors;      // linear, 0..1; may be empty
+  std::vector<glm::vec3> positions;    // mesh space
+  std::vector<glm::vec3> normals;      // unit length
+  std::vector<glm::vec2> texcoords0;   // may be empty
+  std::vector<glm::vec2> texcoords1;   // may be empty
+  std::vector<glm::vec4> colors;       // linear, 0..1; may be empty
   std::vector<std::uint32_t> indices;  // triangles, counter-clockwise seen from outside
 };
 
-// Decodes a Draco buffer. Errors name `subject`: not Draco, not a mesh, an attribute missing, counts that differ from
-// the primitive's, indices out of range, values that are not finite.
-Result<MeshData> decodeDraco(std::span<const std::byte> bytes, const Primitive& primitive, const std::string& subject);
+// Decodes a Draco buffer. Errors name `subject`: not Draco, not a mesh, an attribute missing, counts that
+// differ from the primitive's, indices out of range, values that are not finite.
+Result<MeshData> decodeDraco(std::span<const std::byte> bytes, const Primitive& primitive,
+                             const std::string& subject);
 
 // XXH3-64 over positions and indices: transfer belongs to exactly this mesh.
 std::uint64_t meshDigest(const MeshData& mesh);

@@ -1,4 +1,5 @@
-// Writes bundles: a valid GLB 2.0 whose binary chunk holds the views in the order given. The counterpart of reader.hpp.
+// Writes bundles: a valid GLB 2.0 whose binary chunk holds the views in the order given. The counterpart of
+// reader.hpp.
 #pragma once
 
 #include <cstddef>
@@ -14,6 +15,7 @@ using Blob = std::vector<std::byte>;
 
 // `description.views` is filled here: blobs[i] becomes view i. The file appears whole or not at all.
 // The same description and blobs give the same bytes.
-Result<void> write(const std::filesystem::path& path, Description description, const std::vector<Blob>& blobs);
+Result<void> write(const std::filesystem::path& path, Description description,
+                   const std::vector<Blob>& blobs);
 
 }  // namespace lambent::bundle

@@ -1,0 +1,316 @@
+// The glTF 2.0 part of a bundle's JSON: what any viewer reads.
+#include <algorithm>
+#include <array>
+
+#include "runtime/bundle/description.hpp"
+#include "runtime/bundle/description_json.hpp"
+#include "runtime/bundle/json_fields.hpp"
+
+namespace lambent::bundle {
+
+namespace {
+
+constexpr std::uint64_t kLargestCount = 0xffffffffu;
+constexpr std::array kAlphaModes = {"OPAQUE", "MASK", "BLEND"};
+
+// --- meshes
+// ----------------------------------------------------------------------------------------------------
+
+// Accessors of a Draco primitive have no bufferView: they only say what the decoder gives back.
+Json accessorJson(int component_type, const char* type, std::uint32_t count) {
+  return {{"componentType", component_type}, {"type", type}, {"count", count}};
+}
+
+struct AttributeName {
+  const char* name;
+  std::int32_t DracoAttributes::*id;
+  int component_type;
+  const char* type;
+};
+constexpr std::array kAttributes = {
+    AttributeName{"POSITION", &DracoAttributes::position, 5126, "VEC3"},
+    AttributeName{"NORMAL", &DracoAttributes::normal, 5126, "VEC3"},
+    AttributeName{"TEXCOORD_0", &DracoAttributes::texcoord0, 5126, "VEC2"},
+    AttributeName{"TEXCOORD_1", &DracoAttributes::texcoord1, 5126, "VEC2"},
+    AttributeName{"COLOR_0", &DracoAttributes::color0, 5123, "VEC4"},
+};
+
+Json primitiveJson(const Primitive& primitive, Json& accessors) {
+  Json attributes = Json::object(), draco = Json::object();
+  for (const AttributeName& attribute : kAttributes) {
+    const std::int32_t id = primitive.attributes.*attribute.id;
+    if (id < 0) continue;
+    Json accessor = accessorJson(attribute.component_type, attribute.type, primitive.vertex_count);
+    if (attribute.id == &DracoAttributes::position) {
+      accessor["min"] = vectorJson(primitive.bounds_min);
+      accessor["max"] = vectorJson(primitive.bounds_max);
+    }
+    if (attribute.component_type == 5123) accessor["normalized"] = true;
+    attributes[attribute.name] = accessors.size();
+    draco[attribute.name] = id;
+    accessors.push_back(std::move(accessor));
+  }
+  Json json = {{"attributes", attributes}, {"indices", accessors.size()}, {"mode", 4}};
+  accessors.push_back(accessorJson(5125, "SCALAR", primitive.index_count));
+  if (primitive.material >= 0) json["material"] = primitive.material;
+  json["extensions"]["KHR_draco_mesh_compression"] = {{"bufferView", primitive.view}, {"attributes", draco}};
+  json["extensions"][std::string(kExtensionName)] = {{"digest", hexJson(primitive.digest)}};
+  return json;
+}
+
+Primitive readPrimitive(const Field& field, const std::vector<Field>& accessors, const Description& d) {
+  Primitive primitive;
+  const Field draco = field["extensions"]["KHR_draco_mesh_compression"];
+  primitive.view = draco["bufferView"].index(d.views.size());
+  for (const AttributeName& attribute : kAttributes)
+    if (draco["attributes"].has(attribute.name))
+      primitive.attributes.*attribute.id =
+          static_cast<std::int32_t>(draco["attributes"][attribute.name].count(255));
+  if (field.has("material"))
+    primitive.material = static_cast<std::int32_t>(field["material"].index(d.materials.size()));
+  const Field& position = accessors[field["attributes"]["POSITION"].index(accessors.size())];
+  primitive.vertex_count = static_cast<std::uint32_t>(position["count"].count(kLargestCount));
+  primitive.bounds_min = position["min"].vector<glm::vec3>();
+  primitive.bounds_max = position["max"].vector<glm::vec3>();
+  const Field& indices = accessors[field["indices"].index(accessors.size())];
+  primitive.index_count = static_cast<std::uint32_t>(indices["count"].count(kLargestCount));
+  primitive.digest = field["extensions"][std::string(kExtensionName).c_str()]["digest"].hex64();
+  return primitive;
+}
+
+// --- nodes
+// -----------------------------------------------------------------------------------------------------
+
+Json nodeJson(const gltf::Node& node) {
+  Json json = Json::object();
+  if (!node.name.empty()) json["name"] = node.name;
+  if (!node.children.empty()) json["children"] = node.children;
+  if (node.parent_from_node != glm::mat4(1.0f)) {
+    Json matrix = Json::array();
+    for (int i = 0; i < 16; ++i) matrix.push_back(glm::value_ptr(node.parent_from_node)[i]);
+    json["matrix"] = std::move(matrix);
+  }
+  if (node.mesh >= 0) json["mesh"] = node.mesh;
+  if (node.camera >= 0) json["camera"] = node.camera;
+  if (node.movable) json["extras"]["lambent"]["movable"] = true;
+  return json;
+}
+
+gltf::Node readNode(const Field& field, const Description& d, std::size_t node_count) {
+  gltf::Node node;
+  if (field.has("name")) node.name = field["name"].text();
+  for (const Field& child : field.list("children"))
+    node.children.push_back(static_cast<std::int32_t>(child.index(node_count)));
+  if (field.has("matrix")) {
+    const auto entries = field["matrix"].items();
+    if (entries.size() != 16) field["matrix"].fault("is not 16 numbers");
+    for (std::size_t i = 0; i < 16; ++i) glm::value_ptr(node.parent_from_node)[i] = entries[i].number();
+  }
+  if (field.has("mesh")) node.mesh = static_cast<std::int32_t>(field["mesh"].index(d.meshes.size()));
+  if (field.has("camera")) node.camera = static_cast<std::int32_t>(field["camera"].index(d.cameras.size()));
+  node.movable = field.has("extras") && field["extras"].has("lambent") &&
+                 field["extras"]["lambent"].has("movable") && field["extras"]["lambent"]["movable"].flag();
+  return node;
+}
+
+// Sets parents from children and refuses what is not a forest: transforms are chained without further checks.
+void linkParents(const Field& document, std::vector<gltf::Node>& nodes) {
+  for (std::size_t i = 0; i < nodes.size(); ++i)
+    for (const std::int32_t child : nodes[i].children) {
+      gltf::Node& node = nodes[static_cast<std::size_t>(child)];
+      if (node.parent >= 0) document["nodes"].fault(fmt::format("give node {} two parents", child));
+      node.parent = static_cast<std::int32_t>(i);
+    }
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    std::size_t steps = 0;
+    for (std::int32_t at = static_cast<std::int32_t>(i); at >= 0;
+         at = nodes[static_cast<std::size_t>(at)].parent)
+      if (++steps > nodes.size()) document["nodes"].fault("form a ring");
+  }
+}
+
+// --- materials, textures, cameras
+// --------------------------------------------------------------------------------
+
+Json materialJson(const gltf::Material& material) {
+  Json json = Json::object();
+  if (!material.name.empty()) json["name"] = material.name;
+  Json& pbr = json["pbrMetallicRoughness"];
+  pbr = {{"baseColorFactor", vectorJson(material.base_color)},
+         {"metallicFactor", material.metallic},
+         {"roughnessFactor", material.roughness}};
+  if (material.base_color_texture.texture >= 0)
+    pbr["baseColorTexture"] = {{"index", material.base_color_texture.texture},
+                               {"texCoord", material.base_color_texture.texcoord}};
+  if (material.emissive != glm::vec3(0.0f)) json["emissiveFactor"] = vectorJson(material.emissive);
+  if (material.alpha_mode != gltf::AlphaMode::Opaque)
+    json["alphaMode"] = kAlphaModes[static_cast<std::size_t>(material.alpha_mode)];
+  if (material.alpha_mode == gltf::AlphaMode::Mask) json["alphaCutoff"] = material.alpha_cutoff;
+  if (material.double_sided) json["doubleSided"] = true;
+  return json;
+}
+
+gltf::Material readMaterial(const Field& field, std::size_t texture_count) {
+  gltf::Material material;
+  if (field.has("name")) material.name = field["name"].text();
+  const Field pbr = field["pbrMetallicRoughness"];
+  material.base_color = pbr["baseColorFactor"].vector<glm::vec4>();
+  material.metallic = pbr["metallicFactor"].number();
+  material.roughness = pbr["roughnessFactor"].number();
+  if (pbr.has("baseColorTexture")) {
+    const Field texture = pbr["baseColorTexture"];
+    material.base_color_texture.texture = static_cast<std::int32_t>(texture["index"].index(texture_count));
+    material.base_color_texture.texcoord = static_cast<std::uint32_t>(texture["texCoord"].count(1));
+  }
+  if (field.has("emissiveFactor")) material.emissive = field["emissiveFactor"].vector<glm::vec3>();
+  if (field.has("alphaMode")) {
+    const std::string mode = field["alphaMode"].text();
+    const auto found = std::find(kAlphaModes.begin(), kAlphaModes.end(), mode);
+    if (found == kAlphaModes.end()) field["alphaMode"].fault("is not OPAQUE, MASK or BLEND");
+    material.alpha_mode = static_cast<gltf::AlphaMode>(found - kAlphaModes.begin());
+  }
+  if (field.has("alphaCutoff")) material.alpha_cutoff = field["alphaCutoff"].number();
+  if (field.has("doubleSided")) material.double_sided = field["doubleSided"].flag();
+  return material;
+}
+
+Json cameraJson(const gltf::Camera& camera) {
+  Json json = Json::object();
+  if (!camera.name.empty()) json["name"] = camera.name;
+  json["type"] = camera.perspective ? "perspective" : "orthographic";
+  Json& lens = json[camera.perspective ? "perspective" : "orthographic"];
+  lens["znear"] = camera.znear;
+  if (camera.zfar > 0.0f) lens["zfar"] = camera.zfar;
+  if (camera.perspective) {
+    lens["yfov"] = camera.yfov_rad;
+    if (camera.aspect > 0.0f) lens["aspectRatio"] = camera.aspect;
+  } else {
+    lens["xmag"] = camera.xmag;
+    lens["ymag"] = camera.ymag;
+  }
+  return json;
+}
+
+gltf::Camera readCamera(const Field& field) {
+  gltf::Camera camera;
+  if (field.has("name")) camera.name = field["name"].text();
+  camera.perspective = field["type"].text() == "perspective";
+  const Field lens = field[camera.perspective ? "perspective" : "orthographic"];
+  camera.znear = lens["znear"].number();
+  if (lens.has("zfar")) camera.zfar = lens["zfar"].number();
+  if (camera.perspective) {
+    camera.yfov_rad = lens["yfov"].number();
+    if (lens.has("aspectRatio")) camera.aspect = lens["aspectRatio"].number();
+  } else {
+    camera.xmag = lens["xmag"].number();
+    camera.ymag = lens["ymag"].number();
+  }
+  return camera;
+}
+
+// glTF keeps samplers apart from textures; equal ones share an entry.
+std::size_t samplerIndex(const gltf::Sampler& sampler, std::vector<gltf::Sampler>& samplers) {
+  const auto found = std::find(samplers.begin(), samplers.end(), sampler);
+  if (found == samplers.end()) samplers.push_back(sampler);
+  return static_cast<std::size_t>(std::find(samplers.begin(), samplers.end(), sampler) - samplers.begin());
+}
+
+template <typename List, typename ToJson>
+void writeList(Json& document, const char* key, const List& list, ToJson to_json) {
+  for (const auto& item : list) document[key].push_back(to_json(item));  // glTF forbids empty lists
+}
+
+}  // namespace
+
+void writeGltf(const Description& d, std::uint64_t binary_bytes, Json& document) {
+  document["asset"] = {{"version", "2.0"}, {"generator", d.generator.program + " " + d.generator.version}};
+  document["buffers"] = Json::array({{{"byteLength", binary_bytes}}});
+  for (const View& view : d.views)
+    document["bufferViews"].push_back(
+        {{"buffer", 0}, {"byteOffset", view.offset}, {"byteLength", view.length}});
+  document["bufferViews"].push_back({{"buffer", 0}, {"byteOffset", 0}, {"byteLength", kIntegrityBytes}});
+
+  Json accessors = Json::array();
+  writeList(document, "meshes", d.meshes, [&](const Mesh& mesh) {
+    Json json = Json::object();
+    if (!mesh.name.empty()) json["name"] = mesh.name;
+    for (const Primitive& primitive : mesh.primitives)
+      json["primitives"].push_back(primitiveJson(primitive, accessors));
+    return json;
+  });
+  if (!accessors.empty()) document["accessors"] = std::move(accessors);
+
+  std::vector<gltf::Sampler> samplers;
+  writeList(document, "textures", d.textures, [&](const gltf::Texture& texture) {
+    return Json{{"source", texture.image}, {"sampler", samplerIndex(texture.sampler, samplers)}};
+  });
+  writeList(document, "samplers", samplers, [](const gltf::Sampler& sampler) {
+    return Json{{"wrapS", sampler.wrap_s},
+                {"wrapT", sampler.wrap_t},
+                {"magFilter", sampler.mag_filter},
+                {"minFilter", sampler.min_filter}};
+  });
+  writeList(document, "images", d.images, [](const Image& image) {
+    Json json = {{"bufferView", image.view}, {"mimeType", image.mime_type}};
+    if (!image.name.empty()) json["name"] = image.name;
+    return json;
+  });
+  writeList(document, "materials", d.materials, materialJson);
+  writeList(document, "cameras", d.cameras, cameraJson);
+  writeList(document, "nodes", d.nodes, nodeJson);
+  if (!d.roots.empty()) {
+    document["scenes"] = Json::array({{{"nodes", d.roots}}});
+    document["scene"] = 0;
+  }
+  document["extensionsUsed"] = {std::string(kExtensionName)};
+  if (!d.meshes.empty()) {
+    document["extensionsUsed"].push_back("KHR_draco_mesh_compression");
+    document["extensionsRequired"] = {"KHR_draco_mesh_compression"};
+  }
+}
+
+void readGltf(const Field& document, std::uint64_t binary_bytes, Description& d) {
+  const auto views = document["bufferViews"].items();
+  if (views.empty()) document["bufferViews"].fault("is empty");
+  for (std::size_t i = 0; i + 1 < views.size(); ++i) {
+    View view;
+    view.offset = views[i]["byteOffset"].count(binary_bytes);
+    view.length = views[i]["byteLength"].count(binary_bytes - view.offset);
+    if (view.offset % 8 != 0 || (view.length + 7) / 8 * 8 > binary_bytes - view.offset)
+      views[i].fault("does not lie on multiples of 8 bytes");
+    d.views.push_back(view);
+  }
+
+  const auto samplers = document.list("samplers");
+  const auto images = document.list("images");
+  for (const Field& image : images)
+    d.images.push_back({image.has("name") ? image["name"].text() : "", image["mimeType"].text(),
+                        image["bufferView"].index(d.views.size())});
+  for (const Field& texture : document.list("textures")) {
+    const Field& sampler = samplers[texture["sampler"].index(samplers.size())];
+    const auto mode = [&](const char* key) { return static_cast<std::uint32_t>(sampler[key].count(65535)); };
+    d.textures.push_back({static_cast<std::int32_t>(texture["source"].index(images.size())),
+                          {mode("wrapS"), mode("wrapT"), mode("magFilter"), mode("minFilter")}});
+  }
+  for (const Field& material : document.list("materials"))
+    d.materials.push_back(readMaterial(material, d.textures.size()));
+  for (const Field& camera : document.list("cameras")) d.cameras.push_back(readCamera(camera));
+
+  const auto accessors = document.list("accessors");
+  for (const Field& field : document.list("meshes")) {
+    Mesh mesh;
+    if (field.has("name")) mesh.name = field["name"].text();
+    for (const Field& primitive : field["primitives"].items())
+      mesh.primitives.push_back(readPrimitive(primitive, accessors, d));
+    d.meshes.push_back(std::move(mesh));
+  }
+
+  const auto nodes = document.list("nodes");
+  for (const Field& node : nodes) d.nodes.push_back(readNode(node, d, nodes.size()));
+  linkParents(document, d.nodes);
+  if (document.has("scenes"))
+    for (const Field& root : document["scenes"].items().at(0).list("nodes"))
+      d.roots.push_back(static_cast<std::int32_t>(root.index(d.nodes.size())));
+}
+
+}  // namespace lambent::bundle

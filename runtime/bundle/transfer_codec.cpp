@@ -1,0 +1,206 @@
+#include "runtime/bundle/transfer_codec.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <cstring>
+
+#include <fmt/format.h>
+#include <glm/gtc/packing.hpp>
+#include <zstd.h>
+
+namespace lambent::bundle {
+
+namespace {
+
+constexpr const char* kMend = "copy it again or bake it again";
+constexpr std::uint32_t kSingleRows = 0, kSparseRows = 1;  // first word of a rows payload
+constexpr std::uint32_t kWeightOne = 65535;
+
+template <typename T>
+void append(std::vector<std::byte>& out, std::span<const T> values) {
+  const auto bytes = std::as_bytes(values);
+  out.insert(out.end(), bytes.begin(), bytes.end());
+}
+
+// Takes `count` values off the front of `bytes`; the caller has checked the length.
+template <typename T>
+std::vector<T> takeFront(std::span<const std::byte>& bytes, std::size_t count) {
+  std::vector<T> values(count);
+  std::memcpy(values.data(), bytes.data(), count * sizeof(T));
+  bytes = bytes.subspan(count * sizeof(T));
+  return values;
+}
+
+// Integer weights of one row that sum to exactly 65535: what rounding left over goes to the largest.
+void quantizeRow(std::span<const float> weights, std::vector<std::uint16_t>& out) {
+  const std::size_t first = out.size();
+  std::uint32_t sum = 0;
+  for (const float weight : weights) {
+    const auto q =
+        static_cast<std::uint32_t>(std::lround(std::clamp(weight, 0.0f, 1.0f) * float{kWeightOne}));
+    out.push_back(static_cast<std::uint16_t>(q));
+    sum += q;
+  }
+  if (weights.empty()) return;
+  const auto largest = std::max_element(out.begin() + static_cast<std::ptrdiff_t>(first), out.end());
+  *largest = static_cast<std::uint16_t>(*largest + kWeightOne - sum);
+}
+
+}  // namespace
+
+// --- vertex rows
+// -----------------------------------------------------------------------------------------------
+
+std::vector<std::byte> encodeRows(const VertexRows& rows) {
+  const std::size_t vertex_count = rows.offsets.size() - 1;
+  const bool single =
+      rows.samples.size() == vertex_count &&
+      std::all_of(rows.weights.begin(), rows.weights.end(), [](float w) { return w == 1.0f; });
+  std::vector<std::byte> out;
+  const std::uint32_t head[] = {single ? kSingleRows : kSparseRows,
+                                static_cast<std::uint32_t>(rows.samples.size())};
+  append<std::uint32_t>(out, head);
+  if (!single) append<std::uint32_t>(out, rows.offsets);
+  append<std::uint32_t>(out, rows.samples);
+  if (!single) {
+    std::vector<std::uint16_t> weights;
+    for (std::size_t v = 0; v < vertex_count; ++v)
+      quantizeRow(std::span(rows.weights).subspan(rows.offsets[v], rows.offsets[v + 1] - rows.offsets[v]),
+                  weights);
+    append<std::uint16_t>(out, weights);
+  }
+  return out;
+}
+
+Result<VertexRows> decodeRows(std::span<const std::byte> bytes, std::uint32_t vertex_count,
+                              std::uint32_t sample_count, const std::string& subject) {
+  const auto damaged = [&](const char* why) {
+    return fail(subject, fmt::format("has damaged vertex rows: {}", why), kMend);
+  };
+  if (bytes.size() < 8) return damaged("too short");
+  const auto head = takeFront<std::uint32_t>(bytes, 2);
+  const std::size_t entries = head[1];
+  const bool single = head[0] == kSingleRows;
+  const std::size_t vertices = vertex_count;
+  const std::size_t expected = single ? entries * 4 : (vertices + 1) * 4 + entries * 6;
+  if (head[0] > kSparseRows || bytes.size() != expected || (single && entries != vertices))
+    return damaged("sizes do not add up");
+
+  VertexRows rows;
+  if (single) {
+    rows.offsets.resize(vertices + 1);
+    for (std::uint32_t v = 0; v <= vertex_count; ++v) rows.offsets[v] = v;
+  } else {
+    rows.offsets = takeFront<std::uint32_t>(bytes, vertices + 1);
+    if (rows.offsets.front() != 0 || rows.offsets.back() != entries ||
+        !std::is_sorted(rows.offsets.begin(), rows.offsets.end()))
+      return damaged("offsets do not rise from 0 to the number of entries");
+  }
+  rows.samples = takeFront<std::uint32_t>(bytes, entries);
+  for (const std::uint32_t sample : rows.samples)
+    if (sample >= sample_count) return damaged("a sample that the group does not have");
+  rows.weights.assign(entries, 1.0f);
+  if (!single) {
+    const auto weights = takeFront<std::uint16_t>(bytes, entries);
+    for (std::size_t e = 0; e < entries; ++e)
+      rows.weights[e] = static_cast<float>(weights[e]) / float{kWeightOne};
+  }
+  return rows;
+}
+
+// --- basis
+// -----------------------------------------------------------------------------------------------------
+
+std::vector<std::byte> encodeBasis(std::span<const float> vectors) {
+  std::vector<std::byte> out;
+  for (const float value : vectors) {
+    const std::uint16_t half = glm::packHalf1x16(value);
+    append<std::uint16_t>(out, std::span(&half, 1));
+  }
+  return out;
+}
+
+Result<std::vector<float>> decodeBasis(std::span<const std::byte> bytes, std::size_t value_count,
+                                       const std::string& subject) {
+  if (bytes.size() != value_count * 2)
+    return fail(subject, "has a damaged transfer basis: wrong size", kMend);
+  const auto halves = takeFront<std::uint16_t>(bytes, value_count);
+  std::vector<float> values(value_count);
+  std::transform(halves.begin(), halves.end(), values.begin(),
+                 [](std::uint16_t half) { return glm::unpackHalf1x16(half); });
+  if (!std::all_of(values.begin(), values.end(), [](float v) { return std::isfinite(v); }))
+    return fail(subject, "has a damaged transfer basis: a value is not finite", kMend);
+  return values;
+}
+
+// --- weight planes
+// ---------------------------------------------------------------------------------------------
+
+std::vector<std::byte> encodePlane(std::span<const std::uint32_t> codes, std::uint32_t bits) {
+  assert(bits == 8 || bits == 16);
+  std::vector<std::byte> out(codes.size() * bits / 8);
+  for (std::size_t i = 0; i < codes.size(); ++i) {
+    assert(codes[i] < (1u << bits));
+    std::memcpy(out.data() + i * bits / 8, &codes[i], bits / 8);
+  }
+  return out;
+}
+
+Result<std::vector<std::uint32_t>> decodePlane(std::span<const std::byte> bytes, std::uint32_t bits,
+                                               std::uint32_t sample_count, const std::string& subject) {
+  assert(bits == 8 || bits == 16);
+  if (bytes.size() != std::size_t{sample_count} * bits / 8)
+    return fail(subject, "has a damaged weight plane: wrong size", kMend);
+  std::vector<std::uint32_t> codes(sample_count, 0);
+  for (std::size_t i = 0; i < codes.size(); ++i)
+    std::memcpy(&codes[i], bytes.data() + i * bits / 8, bits / 8);
+  return codes;
+}
+
+// --- whole cells
+// -----------------------------------------------------------------------------------------------
+
+std::vector<float> decodeTransfer(const DiffuseTransfer& transfer, std::uint32_t sample_count,
+                                  std::span<const float> basis,
+                                  std::span<const std::vector<std::uint32_t>> planes) {
+  const std::size_t values = std::size_t{transfer.channels} * transfer.columns();
+  assert(basis.size() >= (1 + planes.size()) * values && planes.size() <= transfer.planes.size());
+  std::vector<float> out(sample_count * values);
+  for (std::size_t s = 0; s < sample_count; ++s) {
+    const std::span<float> vector(out.data() + s * values, values);
+    std::copy_n(basis.begin(), values, vector.begin());
+    for (std::size_t j = 0; j < planes.size(); ++j) {
+      const float weight =
+          transfer.planes[j].offset + transfer.planes[j].scale * static_cast<float>(planes[j][s]);
+      const auto axis = basis.subspan((1 + j) * values, values);
+      for (std::size_t i = 0; i < values; ++i) vector[i] += weight * axis[i];
+    }
+  }
+  return out;
+}
+
+// --- entropy coding
+// --------------------------------------------------------------------------------------------
+
+std::vector<std::byte> compressZstd(std::span<const std::byte> bytes, int level) {
+  std::vector<std::byte> out(ZSTD_compressBound(bytes.size()));
+  const std::size_t size = ZSTD_compress(out.data(), out.size(), bytes.data(), bytes.size(), level);
+  assert(!ZSTD_isError(size) && "the destination is as large as ZSTD_compressBound asks");
+  out.resize(size);
+  return out;
+}
+
+Result<std::vector<std::byte>> decompressZstd(std::span<const std::byte> bytes, std::size_t raw_length,
+                                              const std::string& subject) {
+  // The frame says how much it holds: a false raw_length cannot make us allocate what is not there.
+  if (ZSTD_getFrameContentSize(bytes.data(), bytes.size()) != raw_length)
+    return fail(subject, "has a damaged payload: it does not hold as many bytes as it says", kMend);
+  std::vector<std::byte> out(raw_length);
+  const std::size_t size = ZSTD_decompress(out.data(), out.size(), bytes.data(), bytes.size());
+  if (ZSTD_isError(size) || size != raw_length)
+    return fail(subject, "has a damaged payload: it cannot be decompressed", kMend);
+  return out;
+}
+
+}  // namespace lambent::bundle

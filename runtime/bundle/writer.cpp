@@ -1,0 +1,73 @@
+#include "runtime/bundle/writer.hpp"
+
+#include <array>
+#include <cassert>
+
+#include <fmt/format.h>
+
+#include "runtime/base/atomic_file.hpp"
+#include "runtime/bundle/checksum.hpp"
+#include "runtime/bundle/description_json.hpp"
+#include "runtime/bundle/glb.hpp"
+
+namespace lambent::bundle {
+
+namespace {
+
+constexpr std::uint64_t padded8(std::uint64_t bytes) {
+  return (bytes + 7) / 8 * 8;
+}
+
+// Views lie in the order of the blobs, each on a multiple of 8, after the integrity view.
+std::uint64_t placeViews(const std::vector<Blob>& blobs, std::vector<View>& views) {
+  std::uint64_t offset = kIntegrityBytes;
+  views.clear();
+  for (const Blob& blob : blobs) {
+    Blob with_padding = blob;
+    with_padding.resize(padded8(blob.size()));
+    views.push_back({offset, blob.size(), checksum(with_padding)});
+    offset += with_padding.size();
+  }
+  return offset;
+}
+
+template <typename T>
+std::span<const std::byte> bytesOf(const T& words) {
+  return std::as_bytes(std::span(words));
+}
+
+}  // namespace
+
+Result<void> write(const std::filesystem::path& path, Description description,
+                   const std::vector<Blob>& blobs) {
+  for (const Blob& blob : blobs) assert(!blob.empty() && "glTF has no empty bufferViews");
+  const std::uint64_t binary_bytes = placeViews(blobs, description.views);
+  std::string json = toJson(description, binary_bytes);
+  json.resize((json.size() + 7) / 8 * 8 + 4,
+              ' ');  // so that the binary chunk's data begin on a multiple of 8
+
+  const std::uint64_t file_bytes = kGlbHeaderBytes + 2 * kGlbChunkHeaderBytes + json.size() + binary_bytes;
+  if (file_bytes > 0xffffffffu)
+    return fail(path.string(), fmt::format("would be {} bytes; a GLB holds at most 4 GiB", file_bytes),
+                "bake the scene in parts");
+
+  auto file = AtomicFile::open(path);
+  if (!file) return failAgain(file.error());
+  const auto word = [](std::uint64_t value) { return static_cast<std::uint32_t>(value); };
+  const std::array head = {kGlbMagic, 2u, word(file_bytes), word(json.size()), kGlbJsonChunk};
+  const std::array bin_head = {word(binary_bytes), kGlbBinChunk};
+  const std::uint64_t json_checksum = checksum(bytesOf(json));
+  const std::array integrity = {json_checksum, ~json_checksum};
+  for (const auto part : {bytesOf(head), bytesOf(json), bytesOf(bin_head), bytesOf(integrity)})
+    if (auto written = file->write(part); !written) return written;
+
+  constexpr std::array<std::byte, 8> kZeros{};
+  for (const Blob& blob : blobs) {
+    if (auto written = file->write(blob); !written) return written;
+    const auto padding = std::span(kZeros).first(padded8(blob.size()) - blob.size());
+    if (auto written = file->write(padding); !written) return written;
+  }
+  return file->commit();
+}
+
+}  // namespace lambent::bundle
