@@ -1,0 +1,82 @@
+// A component says once what its fields are; inspector, undo, world files and scripts go by that list:
+//
+//   struct Lamp {
+//     float power_cd = 1.0f;
+//     static constexpr std::string_view kComponentName = "Lamp";
+//     static constexpr auto fields() {
+//       return std::tuple{ecs::Field{"power", &Lamp::power_cd, 1.0f, "cd", ecs::Range{0.0f, 1000.0f}}};
+//     }
+//   };
+//
+// Fields that a system derives (matrices, caches) are not declared. Units are words as in "m", "deg"; "" for
+// none.
+#pragma once
+
+#include <concepts>
+#include <optional>
+#include <string_view>
+#include <tuple>
+#include <type_traits>
+#include <utility>
+
+namespace lambent::ecs {
+
+// Least and greatest sensible value, both included.
+template <class T>
+struct Range {
+  T least, greatest;
+};
+
+template <class Owner, class T>
+struct Field {
+  using Value = T;
+
+  std::string_view name;  // in files and scripts: lower_snake_case, never changed
+  T Owner::*member;
+  T default_value{};
+  std::string_view unit{};
+  std::optional<Range<T>> range{};
+
+  constexpr Field(std::string_view field_name, T Owner::*field_member, std::type_identity_t<T> field_default,
+                  std::string_view field_unit = {},
+                  std::optional<Range<std::type_identity_t<T>>> field_range = {})
+      : name(field_name),
+        member(field_member),
+        default_value(std::move(field_default)),
+        unit(field_unit),
+        range(field_range) {}
+
+  constexpr T& of(Owner& owner) const { return owner.*member; }
+  constexpr const T& of(const Owner& owner) const { return owner.*member; }
+};
+
+template <class T>
+concept Described = requires {
+  { T::kComponentName } -> std::convertible_to<std::string_view>;
+  T::fields();
+};
+
+// Calls visitor(field, value) for each field in the order of declaration; value is const where the component
+// is.
+template <class Component, class Visitor>
+requires Described<std::remove_const_t<Component>>
+constexpr void forEachField(Component& component, Visitor&& visitor) {
+  std::apply([&](const auto&... field) { (visitor(field, field.of(component)), ...); }, component.fields());
+}
+
+template <Described Component>
+constexpr void resetFields(Component& component) {
+  forEachField(component, [](const auto& field, auto& value) { value = field.default_value; });
+}
+
+// Inside its range, if it declares one. NaN is outside of every range.
+template <class Owner, class T>
+constexpr bool withinRange(const Field<Owner, T>& field, const T& value) {
+  if constexpr (std::totally_ordered<T>) {
+    return !field.range || (value >= field.range->least && value <= field.range->greatest);
+  } else {
+    return true;
+  }
+}
+
+}  // namespace lambent::ecs

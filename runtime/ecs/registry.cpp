@@ -1,0 +1,46 @@
+#include "runtime/ecs/registry.hpp"
+
+#include <limits>
+
+namespace lambent::ecs {
+
+Entity Registry::create() {
+  std::uint32_t index = 0;
+  if (free_.empty()) {
+    assert(generations_.size() < Entity::kNoIndex && "out of entity indices");
+    index = static_cast<std::uint32_t>(generations_.size());
+    generations_.push_back(0);
+  } else {
+    index = free_.back();
+    free_.pop_back();
+  }
+  ++alive_count_;
+  return Entity{index, ++generations_[index]};
+}
+
+bool Registry::destroy(Entity entity) {
+  if (!alive(entity)) return false;
+  for (auto& [type, set] : sets_) set->remove(entity);
+  // An index whose generations are used up is not given out again: its first handles would come alive.
+  const bool used_up = entity.generation == std::numeric_limits<std::uint32_t>::max();
+  ++generations_[entity.index];
+  if (!used_up) free_.push_back(entity.index);
+  --alive_count_;
+  return true;
+}
+
+bool Registry::alive(Entity entity) const {
+  return entity.index < generations_.size() && entity.generation % 2 == 1 &&
+         generations_[entity.index] == entity.generation;
+}
+
+std::vector<Entity> Registry::entities() const {
+  std::vector<Entity> all;
+  all.reserve(alive_count_);
+  for (std::uint32_t index = 0; index < generations_.size(); ++index) {
+    if (generations_[index] % 2 == 1) all.push_back(Entity{index, generations_[index]});
+  }
+  return all;
+}
+
+}  // namespace lambent::ecs
