@@ -1,0 +1,69 @@
+#include "runtime/sh/basis.hpp"
+
+#include <cassert>
+
+namespace lambent::sh {
+
+namespace {
+
+template <int Order, typename T>
+void evaluateOne(T x, T y, T z, T* out) {
+  evaluateFixed<Order>(x, y, z, [out](int i, T value) { out[i] = value; });
+}
+
+// One direction per vector lane. ivdep is the caller's promise that outputs do not overlap inputs.
+template <int Order, typename T>
+void evaluateMany(const T* xs, const T* ys, const T* zs, std::size_t count, T* out, std::size_t stride) {
+#pragma GCC ivdep
+  for (std::size_t k = 0; k < count; ++k)
+    evaluateFixed<Order>(xs[k], ys[k], zs[k],
+                         [=](int i, T value) { out[static_cast<std::size_t>(i) * stride + k] = value; });
+}
+
+// Calls f with std::integral_constant<int, order>.
+template <typename F>
+void withOrder(int order, F&& f) {
+  assert(order >= 1 && order <= kMaxOrder);
+  switch (order) {
+    case 1:
+      return f(std::integral_constant<int, 1>{});
+    case 2:
+      return f(std::integral_constant<int, 2>{});
+    case 3:
+      return f(std::integral_constant<int, 3>{});
+    case 4:
+      return f(std::integral_constant<int, 4>{});
+    case 5:
+      return f(std::integral_constant<int, 5>{});
+    case 6:
+      return f(std::integral_constant<int, 6>{});
+    case 7:
+      return f(std::integral_constant<int, 7>{});
+    case 8:
+      return f(std::integral_constant<int, 8>{});
+  }
+}
+
+}  // namespace
+
+template <std::floating_point T>
+void evaluate(int order, T x, T y, T z, std::type_identity_t<std::span<T>> out) {
+  assert(out.size() >= static_cast<std::size_t>(coefficientCount(order)));
+  withOrder(order, [&](auto fixed) { evaluateOne<fixed>(x, y, z, out.data()); });
+}
+
+template <std::floating_point T>
+void evaluateBatch(int order, const T* xs, const T* ys, const T* zs, std::size_t count, T* out,
+                   std::size_t stride) {
+  assert(stride >= count);
+  withOrder(order, [&](auto fixed) { evaluateMany<fixed>(xs, ys, zs, count, out, stride); });
+}
+
+template void evaluate<float>(int, float, float, float, std::span<float>);
+template void evaluate<double>(int, double, double, double, std::span<double>);
+template void evaluateBatch<float>(int, const float*, const float*, const float*, std::size_t, float*,
+                                   std::size_t);
+template void evaluateBatch<double>(int, const double*, const double*, const double*, std::size_t, double*,
+                                    std::size_t);
+
+}  // namespace lambent::sh

@@ -1,0 +1,36 @@
+// Windows against ringing: a truncated expansion of a bright, small light swings below zero, and the shaded
+// picture shows dark rings. A window scales band l of the LIGHT by w_l <= 1, once per frame, and never
+// touches transfer. Hann: w_l = (1 + cos(pi l / n)) / 2, always on, broad. Auto: w_l = 1 / (1 + lambda
+// l²(l+1)²) (Sloan 2008, eq. for the squared Laplacian) with one lambda for all channels: the least that
+// leaves no negative irradiance in any channel for any normal; lights that do not ring pass unchanged.
+// Irradiance, not radiance, is held non-negative: that is what an unshadowed diffuse surface shows, and it
+// asks for far less blur. Lambda depends on the light's shape only, not on its scale or its rotation (up to
+// the search's tolerance, about 1e-4 of the mean irradiance).
+#pragma once
+
+#include <array>
+
+#include "runtime/sh/light_vector.hpp"
+
+namespace lambent::sh {
+
+enum class Window { Off, Hann, Auto };
+
+using BandWeights = std::array<float, kMaxOrder>;
+
+BandWeights hannWeights(int order);
+BandWeights laplacianWeights(int order, double lambda);
+
+// The lambda of Auto: 0 when no channel rings. How it is found: irradiance of each channel at a fixed set of
+// 1024 directions, lambda by doubling from 2^-12 until no value is negative and then by bisection, then the
+// minima over the whole sphere by descent from the lowest of those directions; directions found negative join
+// the set, until none is. The search aims at a minimum of 1e-5 of the channel's mean, as a guard for
+// rounding. Channels whose mean is not positive are left out, since no window can help them; with non-finite
+// coefficients the answer is 0.
+double deringingLambda(const LightVector& light);
+
+BandWeights windowWeights(const LightVector& light, Window window);
+LightVector applyWindow(const LightVector& light, Window window);
+LightVector applyWeights(const LightVector& light, const BandWeights& weights);
+
+}  // namespace lambent::sh
