@@ -40,7 +40,7 @@ using Light = std::variant<ProbeLight, ConstantLight, SunLight>;
 
 Result<Light> parseLight(std::string_view word);
 
-// --light-layout: latlong, angular or cross.
+// --light-layout: lat-long, angular-map or vertical-cross.
 Result<sh::ImageLayout> parseLightLayout(std::string_view word);
 
 // Unit direction towards (azimuth, elevation): (0, 0) is +Z, (90, 0) is +X, (any, 90) is +Y.

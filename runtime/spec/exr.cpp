@@ -1,0 +1,156 @@
+// OpenEXR in and out. The library throws; nothing that it throws leaves this file.
+#include <cstring>
+#include <exception>
+
+#include <Imath/ImathBox.h>
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfIO.h>
+#include <OpenEXR/ImfInputFile.h>
+#include <OpenEXR/ImfOutputFile.h>
+
+#include "runtime/spec/file_bytes.hpp"
+#include "runtime/spec/image.hpp"
+
+namespace lambent::spec {
+
+namespace {
+
+// A file in memory, so that the real one is written whole or not at all.
+class MemoryStream : public Imf::OStream {
+ public:
+  MemoryStream() : Imf::OStream("memory") {}
+  void write(const char bytes[], int count) override {
+    const std::size_t size = static_cast<std::size_t>(count);
+    if (at_ + size > bytes_.size()) bytes_.resize(at_ + size);
+    std::memcpy(bytes_.data() + at_, bytes, size);
+    at_ += size;
+  }
+  std::uint64_t tellp() override { return at_; }
+  void seekp(std::uint64_t position) override { at_ = position; }
+  const std::string& bytes() const { return bytes_; }
+
+ private:
+  std::string bytes_;
+  std::size_t at_ = 0;
+};
+
+std::uint64_t extent(int low, int high) {
+  return high < low ? 0 : static_cast<std::uint64_t>(std::int64_t{high} - low + 1);
+}
+
+std::string channelNames(const Imf::ChannelList& channels) {
+  std::string names;
+  for (auto it = channels.begin(); it != channels.end(); ++it)
+    names += (names.empty() ? "" : ", ") + std::string(it.name());
+  return names.empty() ? "none" : names;
+}
+
+bool isWholeChannel(const Imf::ChannelList& channels, const char* name) {
+  const Imf::Channel* channel = channels.findChannel(name);
+  return channel && channel->xSampling == 1 && channel->ySampling == 1;
+}
+
+// The display window is the picture; the data window, where values are stored, may be smaller or larger.
+RgbaImage toDisplayWindow(const std::vector<glm::vec4>& data, const Imath::Box2i& from,
+                          const Imath::Box2i& to) {
+  RgbaImage image{static_cast<std::uint32_t>(extent(to.min.x, to.max.x)),
+                  static_cast<std::uint32_t>(extent(to.min.y, to.max.y)),
+                  {}};
+  image.texels.assign(std::size_t{image.width} * image.height, glm::vec4(0.0f));
+  const std::size_t data_width = extent(from.min.x, from.max.x);
+  for (int y = std::max(from.min.y, to.min.y); y <= std::min(from.max.y, to.max.y); ++y)
+    for (int x = std::max(from.min.x, to.min.x); x <= std::min(from.max.x, to.max.x); ++x)
+      image.texels[static_cast<std::size_t>(y - to.min.y) * image.width +
+                   static_cast<std::size_t>(x - to.min.x)] =
+          data[static_cast<std::size_t>(y - from.min.y) * data_width +
+               static_cast<std::size_t>(x - from.min.x)];
+  return image;
+}
+
+Result<RgbaImage> readOpened(Imf::InputFile& file, const std::filesystem::path& path,
+                             std::uint64_t file_bytes) {
+  const Imath::Box2i data = file.header().dataWindow(), display = file.header().displayWindow();
+  constexpr std::uint64_t kTexelsPerByte = 4096;  // far above what any of its compressions reaches
+  for (const Imath::Box2i& window : {data, display})
+    if (const auto checked = checkImageSize(path, extent(window.min.x, window.max.x),
+                                            extent(window.min.y, window.max.y), file_bytes, kTexelsPerByte);
+        !checked)
+      return failAgain(checked.error());
+
+  const Imf::ChannelList& channels = file.header().channels();
+  const bool rgb =
+      isWholeChannel(channels, "R") && isWholeChannel(channels, "G") && isWholeChannel(channels, "B");
+  const bool grey = !rgb && isWholeChannel(channels, "Y") && !channels.findChannel("RY");
+  if (!rgb && !grey)
+    return fail(path.string(), "has no channels R, G and B (it has " + channelNames(channels) + ")",
+                "save it as RGB at full resolution");
+
+  std::vector<glm::vec4> texels(extent(data.min.x, data.max.x) * extent(data.min.y, data.max.y));
+  Imf::FrameBuffer target;
+  const auto slice = [&](const char* name, int component, double where_missing) {
+    target.insert(name, Imf::Slice::Make(Imf::FLOAT, reinterpret_cast<float*>(texels.data()) + component,
+                                         data, sizeof(glm::vec4), 0, 1, 1, where_missing));
+  };
+  if (rgb) {
+    slice("R", 0, 0.0);
+    slice("G", 1, 0.0);
+    slice("B", 2, 0.0);
+  } else {
+    slice("Y", 0, 0.0);
+  }
+  slice("A", 3, 1.0);
+  file.setFrameBuffer(target);
+  file.readPixels(data.min.y, data.max.y);
+  if (grey)
+    for (glm::vec4& texel : texels) texel.y = texel.z = texel.x;
+  if (data == display)
+    return RgbaImage{static_cast<std::uint32_t>(extent(data.min.x, data.max.x)),
+                     static_cast<std::uint32_t>(extent(data.min.y, data.max.y)), std::move(texels)};
+  return toDisplayWindow(texels, data, display);
+}
+
+}  // namespace
+
+Result<RgbaImage> readExr(const std::filesystem::path& path) {
+  std::error_code code;
+  const std::filesystem::file_status status = std::filesystem::status(path, code);
+  if (!std::filesystem::exists(status)) return fail(path.string(), "no such file", "check the path");
+  if (std::filesystem::is_directory(status)) return fail(path.string(), "is a folder", "name an .exr file");
+  const std::uint64_t file_bytes = std::filesystem::file_size(path, code);
+  if (code) return fail(path.string(), "cannot be read", "check its permissions");
+  try {
+    Imf::InputFile file(path.c_str(), /*numThreads=*/0);
+    return readOpened(file, path, file_bytes);
+  } catch (const std::exception& error) {
+    std::string what = error.what();
+    if (const std::size_t newline = what.find('\n'); newline != std::string::npos) what.resize(newline);
+    return fail(path.string(), "is not a readable OpenEXR picture: " + what,
+                "copy, download or export it again");
+  }
+}
+
+Result<void> writeExr(const std::filesystem::path& path, const RgbaImage& image) {
+  MemoryStream stream;
+  try {
+    Imf::Header header(static_cast<int>(image.width), static_cast<int>(image.height));
+    header.compression() = Imf::ZIP_COMPRESSION;
+    Imf::FrameBuffer source;
+    const Imath::Box2i window = header.dataWindow();
+    for (int component = 0; component < 4; ++component) {
+      const char name[] = {"RGBA"[component], '\0'};
+      header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+      const float* base = reinterpret_cast<const float*>(image.texels.data()) + component;
+      source.insert(name, Imf::Slice::Make(Imf::FLOAT, base, window, sizeof(glm::vec4)));
+    }
+    Imf::OutputFile file(stream, header, /*numThreads=*/0);
+    file.setFrameBuffer(source);
+    file.writePixels(static_cast<int>(image.height));
+  } catch (const std::exception& error) {
+    return fail(path.string(), std::string("cannot be coded: ") + error.what());
+  }
+  return writeWholeFile(path, std::as_bytes(std::span(stream.bytes())));
+}
+
+}  // namespace lambent::spec

@@ -1,0 +1,25 @@
+// Whole files in and out, for the picture formats of this room.
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+
+#include "runtime/base/atomic_file.hpp"
+#include "runtime/base/result.hpp"
+
+namespace lambent::spec {
+
+// Fails if width x height is 0, more than kMaxImageTexels, or more than `file_bytes` could hold at
+// `texels_per_byte`: a header must not make us reserve gigabytes for a file of a few bytes.
+Result<void> checkImageSize(const std::filesystem::path& path, std::uint64_t width, std::uint64_t height,
+                            std::uint64_t file_bytes, std::uint64_t texels_per_byte);
+
+inline Result<void> writeWholeFile(const std::filesystem::path& path, std::span<const std::byte> bytes) {
+  Result<AtomicFile> file = AtomicFile::open(path);
+  if (!file) return failAgain(std::move(file.error()));
+  if (Result<void> written = file->write(bytes); !written) return written;
+  return file->commit();
+}
+
+}  // namespace lambent::spec

@@ -1,0 +1,65 @@
+// PNG by stb, whose code is compiled here and nowhere else.
+#include <algorithm>
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <string>
+
+#define STB_IMAGE_STATIC
+#define STB_IMAGE_IMPLEMENTATION
+#define STBI_ONLY_PNG
+#define STBI_NO_STDIO
+#include <stb/stb_image.h>
+#define STB_IMAGE_WRITE_STATIC
+#define STB_IMAGE_WRITE_IMPLEMENTATION
+#define STBI_WRITE_NO_STDIO
+#include <stb/stb_image_write.h>
+
+#include "runtime/spec/file_bytes.hpp"
+#include "runtime/spec/image.hpp"
+
+namespace lambent::spec {
+
+Result<Rgba8Image> readPng(const std::filesystem::path& path) {
+  const Result<std::string> bytes = readTextFile(path);
+  if (!bytes) return failAgain(bytes.error());
+  const auto* data = reinterpret_cast<const stbi_uc*>(bytes->data());
+  const int length = static_cast<int>(std::min<std::size_t>(bytes->size(), 1u << 30));
+  int width = 0, height = 0, channels = 0;
+  if (!stbi_info_from_memory(data, length, &width, &height, &channels))
+    return fail(path.string(), "is not a PNG picture", "name a .png file");
+  // Deflate reaches about 1000 to 1.
+  if (const auto checked =
+          checkImageSize(path, static_cast<std::uint64_t>(width), static_cast<std::uint64_t>(height),
+                         bytes->size(), /*texels_per_byte=*/8200);
+      !checked)
+    return failAgain(checked.error());
+  const std::unique_ptr<stbi_uc, void (*)(void*)> texels(
+      stbi_load_from_memory(data, length, &width, &height, &channels, 4), stbi_image_free);
+  if (!texels)
+    return fail(path.string(), std::string("is a damaged PNG: ") + stbi_failure_reason(), "copy it again");
+  Rgba8Image image{static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height), {}};
+  image.texels.assign(texels.get(), texels.get() + std::size_t{4} * image.width * image.height);
+  return image;
+}
+
+std::vector<std::uint8_t> encodePng(const Rgba8Image& image) {
+  std::vector<std::uint8_t> bytes;
+  const auto append = [](void* context, void* data, int size) {
+    const auto* first = static_cast<const std::uint8_t*>(data);
+    static_cast<std::vector<std::uint8_t>*>(context)->insert(
+        static_cast<std::vector<std::uint8_t>*>(context)->end(), first, first + size);
+  };
+  const int width = static_cast<int>(image.width);
+  stbi_write_png_to_func(append, &bytes, width, static_cast<int>(image.height), 4, image.texels.data(),
+                         4 * width);
+  return bytes;
+}
+
+Result<void> writePng(const std::filesystem::path& path, const Rgba8Image& image) {
+  const std::vector<std::uint8_t> bytes = encodePng(image);
+  if (bytes.empty()) return fail(path.string(), "cannot be coded as PNG", "make the picture smaller");
+  return writeWholeFile(path, std::as_bytes(std::span(bytes)));
+}
+
+}  // namespace lambent::spec

@@ -1,0 +1,212 @@
+// Radiance RGBE pictures: encoder and decoder side by side. Layout: text lines up to an empty one, the line
+// "-Y height +X width", then scanlines, each flat (4 bytes a texel), old run-length (1 1 1 n repeats) or new
+// run-length coded (2 2 width, then the four components apart). G. Ward, "Real Pixels", Graphics Gems II,
+// 1991.
+//
+// A component is m * 2^(e - 136). Ward's own reader adds half a step (m + 0.5); every reader that probes are
+// commonly looked at with does not, and the encoder below rounds to nearest to suit.
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+
+#include "runtime/spec/file_bytes.hpp"
+#include "runtime/spec/image.hpp"
+
+namespace lambent::spec {
+
+namespace {
+
+using Rgbe = std::array<std::uint8_t, 4>;
+
+constexpr std::size_t kMinRunWidth = 8, kMaxRunWidth = 0x7fff;  // widths that new run-length coding can have
+
+glm::vec3 decode(Rgbe rgbe) {
+  if (rgbe[3] == 0) return glm::vec3(0.0f);
+  const float scale = std::ldexp(1.0f, int{rgbe[3]} - 136);
+  return glm::vec3(rgbe[0], rgbe[1], rgbe[2]) * scale;
+}
+
+Rgbe encode(glm::vec3 colour) {
+  const float largest = std::max({colour.r, colour.g, colour.b});
+  int exponent = 0;
+  if (largest <= 0.0f || (std::frexp(largest, &exponent), exponent < -127)) return {0, 0, 0, 0};
+  float scale = std::ldexp(1.0f, 8 - exponent);
+  if (std::lround(largest * scale) > 255) scale = std::ldexp(1.0f, 8 - ++exponent);
+  const auto mantissa = [&](float value) { return static_cast<std::uint8_t>(std::lround(value * scale)); };
+  return {mantissa(colour.r), mantissa(colour.g), mantissa(colour.b),
+          static_cast<std::uint8_t>(exponent + 128)};
+}
+
+// The bytes of the file in order; `short_` tells whether more were asked for than there are.
+class Bytes {
+ public:
+  explicit Bytes(std::string_view text) : text_(text) {}
+
+  std::uint8_t next() {
+    if (at_ < text_.size()) return static_cast<std::uint8_t>(text_[at_++]);
+    short_ = true;
+    return 0;
+  }
+  Rgbe nextTexel() {
+    Rgbe texel;
+    for (std::uint8_t& component : texel) component = next();
+    return texel;
+  }
+  // Up to the newline, without it.
+  std::string_view line() {
+    const std::size_t end = text_.find('\n', at_);
+    if (end == std::string_view::npos) {
+      short_ = true;
+      return {};
+    }
+    const std::string_view found = text_.substr(at_, end - at_);
+    at_ = end + 1;
+    return found;
+  }
+  bool ranOut() const { return short_; }
+  std::string_view rest() const { return text_.substr(at_); }
+
+ private:
+  std::string_view text_;
+  std::size_t at_ = 0;
+  bool short_ = false;
+};
+
+// The four components apart: a count over 128 repeats one byte count - 128 times, others copy that many.
+bool readRuns(Bytes& in, std::vector<Rgbe>& scanline) {
+  for (std::size_t component = 0; component < 4; ++component) {
+    for (std::size_t x = 0; x < scanline.size();) {
+      const std::uint8_t code = in.next();
+      const bool run = code > 128;
+      const std::size_t count = run ? code - 128u : code;
+      if (count == 0 || x + count > scanline.size()) return false;
+      std::uint8_t value = run ? in.next() : std::uint8_t{0};
+      for (std::size_t i = 0; i < count; ++i) {
+        if (!run) value = in.next();
+        scanline[x++][component] = value;
+      }
+    }
+  }
+  return !in.ranOut();
+}
+
+bool readScanline(Bytes& in, std::vector<Rgbe>& scanline) {
+  const std::size_t width = scanline.size();
+  std::size_t x = 0;
+  unsigned repeat_shift = 0;
+  while (x < width) {
+    const Rgbe texel = in.nextTexel();
+    if (in.ranOut()) return false;
+    const bool new_runs = texel[0] == 2 && texel[1] == 2 && texel[2] < 128;
+    if (x == 0 && new_runs && width >= kMinRunWidth && width <= kMaxRunWidth)
+      return texel[2] * std::size_t{256} + texel[3] == width && readRuns(in, scanline);
+    if (texel[0] == 1 && texel[1] == 1 && texel[2] == 1) {  // old runs; several in a row make larger counts
+      const std::size_t count = std::size_t{texel[3]} << repeat_shift;
+      if (x == 0 || repeat_shift > 16 || count > width - x) return false;
+      std::fill_n(scanline.begin() + static_cast<std::ptrdiff_t>(x), count, scanline[x - 1]);
+      x += count;
+      repeat_shift += 8;
+    } else {
+      scanline[x++] = texel;
+      repeat_shift = 0;
+    }
+  }
+  return true;
+}
+
+bool parseCount(std::string_view& text, std::uint64_t& value) {
+  const auto [stop, code] = std::from_chars(text.data(), text.data() + text.size(), value);
+  text.remove_prefix(static_cast<std::size_t>(stop - text.data()));
+  return code == std::errc{};
+}
+
+void appendRuns(const std::vector<Rgbe>& scanline, std::size_t component, std::string& out) {
+  constexpr std::size_t kLongest = 127, kWorthARun = 4;
+  const std::size_t width = scanline.size();
+  const auto runAt = [&](std::size_t x) {
+    std::size_t end = x + 1;
+    while (end < width && end - x < kLongest && scanline[end][component] == scanline[x][component]) ++end;
+    return end - x;
+  };
+  for (std::size_t x = 0; x < width;) {
+    if (const std::size_t run = runAt(x); run >= kWorthARun) {
+      out += {static_cast<char>(128 + run), static_cast<char>(scanline[x][component])};
+      x += run;
+      continue;
+    }
+    std::size_t end = x + 1;
+    while (end < width && end - x < kLongest && runAt(end) < kWorthARun) ++end;
+    out += static_cast<char>(end - x);
+    for (; x < end; ++x) out += static_cast<char>(scanline[x][component]);
+  }
+}
+
+}  // namespace
+
+Result<RgbImage> readHdr(const std::filesystem::path& path) {
+  const Result<std::string> text = readTextFile(path);
+  if (!text) return failAgain(text.error());
+  Bytes in(*text);
+  if (!in.line().starts_with("#?"))
+    return fail(path.string(), "is not a Radiance picture", "name a .hdr file");
+  bool rgbe = true;
+  for (std::string_view line = in.line(); !line.empty() && line != "\r"; line = in.line())
+    if (line.starts_with("FORMAT=")) rgbe = line.starts_with("FORMAT=32-bit_rle_rgbe");
+  if (!rgbe) return fail(path.string(), "is not in RGB (FORMAT is not 32-bit_rle_rgbe)", "convert it to RGB");
+
+  std::string_view size = in.line();
+  std::uint64_t width = 0, height = 0;
+  const auto skip = [&](std::string_view word) {
+    const bool there = size.starts_with(word);
+    if (there) size.remove_prefix(word.size());
+    return there;
+  };
+  if (!(skip("-Y ") && parseCount(size, height) && skip(" +X ") && parseCount(size, width)) || in.ranOut())
+    return fail(path.string(), "its size line is not \"-Y height +X width\"",
+                "save it upright, from top to bottom, left to right");
+  // New runs need at least 2 bytes for 127 values of each of 4 components, old ones 4 bytes for 255 << 16
+  // texels; those nobody writes any more, so that 4096 texels a byte is generous.
+  if (const auto checked = checkImageSize(path, width, height, in.rest().size(), /*texels_per_byte=*/4096);
+      !checked)
+    return failAgain(checked.error());
+
+  RgbImage image{static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height), {}};
+  image.texels.reserve(width * height);
+  std::vector<Rgbe> scanline(width);
+  for (std::uint64_t y = 0; y < height; ++y) {
+    if (!readScanline(in, scanline))
+      return fail(path.string(),
+                  std::string(in.ranOut() ? "is truncated" : "is damaged") + " in row " + std::to_string(y) +
+                      " of " + std::to_string(height),
+                  "copy or download it again");
+    for (const Rgbe texel : scanline) image.texels.push_back(decode(texel));
+  }
+  return image;
+}
+
+Result<void> writeHdr(const std::filesystem::path& path, const RgbImage& image) {
+  constexpr float kLargest = 1e38f;
+  for (const glm::vec3 texel : image.texels)
+    for (int channel = 0; channel < 3; ++channel)
+      if (!(texel[channel] >= 0.0f && texel[channel] < kLargest))
+        return fail(path.string(), "a texel is negative or not finite, which RGBE cannot hold",
+                    "write an .exr");
+  std::string out = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y " + std::to_string(image.height) + " +X " +
+                    std::to_string(image.width) + "\n";
+  std::vector<Rgbe> scanline(image.width);
+  const bool runs = image.width >= kMinRunWidth && image.width <= kMaxRunWidth;
+  for (std::size_t y = 0; y < image.height; ++y) {
+    for (std::size_t x = 0; x < image.width; ++x) scanline[x] = encode(image.texels[y * image.width + x]);
+    if (runs) {
+      out += {2, 2, static_cast<char>(image.width >> 8), static_cast<char>(image.width & 255)};
+      for (std::size_t component = 0; component < 4; ++component) appendRuns(scanline, component, out);
+    } else {
+      for (const Rgbe texel : scanline)
+        for (const std::uint8_t component : texel) out += static_cast<char>(component);
+    }
+  }
+  return writeWholeFile(path, std::as_bytes(std::span(out)));
+}
+
+}  // namespace lambent::spec
