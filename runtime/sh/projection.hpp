@@ -6,6 +6,7 @@
 // of pictures run from the top.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -53,7 +54,7 @@ class CubeProjector {
   int order_;
   int size_;
   std::size_t folded_count_;  // texels of one parity sum, padded to whole vectors
-  std::vector<ParityClass> classes_;
+  std::array<ParityClass, 8> classes_;
   std::vector<float> weights_;
 };
 

@@ -45,7 +45,7 @@ class Rotation {
   void apply(std::span<const double> in, std::span<double> out) const;
   void apply(std::span<const glm::vec3> in, std::span<glm::vec3> out) const;
 
-  // Bands above this rotation's order would stay unrotated: light.order must not exceed order().
+  // light.order must not exceed order().
   LightVector apply(const LightVector& light) const;
 
  private:

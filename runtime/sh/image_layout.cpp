@@ -1,0 +1,172 @@
+#include "runtime/sh/image_layout.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <numbers>
+
+#include <glm/geometric.hpp>
+
+#include "runtime/sh/cube_map.hpp"
+
+namespace lambent::sh {
+
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+// Squares of the cross by column and row. Upright squares show the cube from inside with +Y up; the bottom
+// one hangs below -Y and so shows +Z turned by 180 degrees.
+enum class Square { None, PlusX, MinusX, PlusY, MinusY, PlusZ, MinusZ };
+constexpr Square kSquares[4][3] = {{Square::None, Square::PlusY, Square::None},
+                                   {Square::MinusX, Square::MinusZ, Square::PlusX},
+                                   {Square::None, Square::MinusY, Square::None},
+                                   {Square::None, Square::PlusZ, Square::None}};
+
+// u to the right, v up, both in [-1, 1].
+glm::dvec3 squareDirection(Square square, double u, double v) {
+  switch (square) {
+    case Square::PlusX:
+      return {1, v, u};
+    case Square::MinusX:
+      return {-1, v, -u};
+    case Square::PlusY:
+      return {u, 1, v};
+    case Square::MinusY:
+      return {u, -1, -v};
+    case Square::PlusZ:
+      return {u, -v, 1};
+    case Square::MinusZ:
+      return {u, v, -1};
+    case Square::None:
+      break;
+  }
+  return glm::dvec3(0);
+}
+
+struct CrossTexel {
+  Square square;
+  double u0, v0;  // lower left corner
+  double edge;
+};
+
+CrossTexel crossTexel(int width, int x, int y) {
+  const int size = width / 3;
+  const int column = x / size, row = y / size;
+  const double edge = 2.0 / size;
+  return {kSquares[row][column], -1 + (x - column * size) * edge, 1 - (y - row * size + 1) * edge, edge};
+}
+
+glm::dvec2 crossCoordinates(int width, const glm::dvec3& dir) {
+  const glm::dvec3 size = glm::abs(dir);
+  int column = 1, row = 1;
+  double u = 0, v = 0;
+  if (size.x >= size.y && size.x >= size.z) {
+    column = dir.x > 0 ? 2 : 0;
+    u = dir.z / dir.x;
+    v = dir.y / size.x;
+  } else if (size.y >= size.z) {
+    row = dir.y > 0 ? 0 : 2;
+    u = dir.x / size.y;
+    v = dir.z / dir.y;
+  } else if (dir.z < 0) {
+    u = dir.x / size.z;
+    v = dir.y / size.z;
+  } else {
+    row = 3;
+    u = dir.x / size.z;
+    v = -dir.y / size.z;
+  }
+  const double edge = width / 3;
+  return {(column + 0.5 * (u + 1)) * edge, (row + 0.5 * (1 - v)) * edge};
+}
+
+}  // namespace
+
+std::string_view name(ImageLayout layout) {
+  switch (layout) {
+    case ImageLayout::LatLong:
+      return "lat-long";
+    case ImageLayout::AngularMap:
+      return "angular-map";
+    case ImageLayout::VerticalCross:
+      return "vertical-cross";
+  }
+  return {};
+}
+
+std::optional<ImageLayout> layoutOfShape(int width, int height) {
+  if (width <= 0 || height <= 0) return std::nullopt;
+  if (width % 2 == 0 && width / 2 == height) return ImageLayout::LatLong;
+  if (width == height) return ImageLayout::AngularMap;
+  if (width % 3 == 0 && height % 4 == 0 && width / 3 == height / 4) return ImageLayout::VerticalCross;
+  return std::nullopt;
+}
+
+glm::dvec3 texelDirection(ImageLayout layout, int width, int height, int x, int y) {
+  assert(x >= 0 && x < width && y >= 0 && y < height);
+  switch (layout) {
+    case ImageLayout::LatLong: {
+      const double azimuth = 2 * kPi * ((x + 0.5) / width - 0.5);
+      const double polar = kPi * (y + 0.5) / height;
+      return {std::cos(azimuth) * std::sin(polar), std::cos(polar), std::sin(azimuth) * std::sin(polar)};
+    }
+    case ImageLayout::AngularMap: {
+      const double u = 2 * (x + 0.5) / width - 1, v = 1 - 2 * (y + 0.5) / height;
+      const double r = std::hypot(u, v);
+      if (r > 1) return glm::dvec3(0);
+      const double scale = r > 0 ? std::sin(kPi * r) / r : kPi;
+      return {scale * u, scale * v, -std::cos(kPi * r)};
+    }
+    case ImageLayout::VerticalCross: {
+      const CrossTexel texel = crossTexel(width, x, y);
+      if (texel.square == Square::None) return glm::dvec3(0);
+      return glm::normalize(
+          squareDirection(texel.square, texel.u0 + texel.edge / 2, texel.v0 + texel.edge / 2));
+    }
+  }
+  return glm::dvec3(0);
+}
+
+double texelSolidAngle(ImageLayout layout, int width, int height, int x, int y) {
+  assert(x >= 0 && x < width && y >= 0 && y < height);
+  switch (layout) {
+    case ImageLayout::LatLong:
+      // cos(a) - cos(b) = 2 sin(middle) sin(half the difference)
+      return 2 * kPi / width * 2 * std::sin(kPi * (y + 0.5) / height) * std::sin(kPi / 2 / height);
+    case ImageLayout::AngularMap: {
+      const double r = std::hypot(2 * (x + 0.5) / width - 1, 1 - 2 * (y + 0.5) / height);
+      if (r > 1) return 0;
+      const double density = r > 0 ? kPi * std::sin(kPi * r) / r : kPi * kPi;
+      return density * (2.0 / width) * (2.0 / height);
+    }
+    case ImageLayout::VerticalCross: {
+      const CrossTexel texel = crossTexel(width, x, y);
+      if (texel.square == Square::None) return 0;
+      return rectangleSolidAngle(texel.u0, texel.u0 + texel.edge, texel.v0, texel.v0 + texel.edge);
+    }
+  }
+  return 0;
+}
+
+glm::dvec2 imageCoordinates(ImageLayout layout, int width, int height, const glm::dvec3& dir) {
+  switch (layout) {
+    case ImageLayout::LatLong: {
+      const double azimuth = std::atan2(dir.z, dir.x);
+      const double polar = std::atan2(std::hypot(dir.x, dir.z), dir.y);  // acos would lose the poles
+      return {(0.5 + azimuth / (2 * kPi)) * width, polar / kPi * height};
+    }
+    case ImageLayout::AngularMap: {
+      const double side = std::hypot(dir.x, dir.y);
+      const double r = std::atan2(side, -dir.z) / kPi;
+      // Straight back (+Z) is the whole rim; take its right end.
+      const double u = side > 0 ? r * dir.x / side : r, v = side > 0 ? r * dir.y / side : 0;
+      return {0.5 * (u + 1) * width, 0.5 * (1 - v) * height};
+    }
+    case ImageLayout::VerticalCross:
+      return crossCoordinates(width, dir);
+  }
+  return {};
+}
+
+}  // namespace lambent::sh
