@@ -1,6 +1,7 @@
 #include "runtime/spec/probe.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <string>
 
@@ -45,6 +46,21 @@ Texel besideAngularMap(Texel texel, int width, int height) {
     texel = {static_cast<int>(std::floor(at.x)), static_cast<int>(std::floor(at.y))};
   }
   return texel;
+}
+
+// Column and row of the square. A direction right on an edge may land on the far side of its square's right
+// or lower border, where the picture may be blank.
+Texel faceOfCross(glm::dvec2 at, int width, int height) {
+  const int side = width / 3;
+  for (const glm::dvec2 nudge :
+       {glm::dvec2(0.0, 0.0), glm::dvec2(0.5, 0.0), glm::dvec2(0.0, 0.5), glm::dvec2(0.5)}) {
+    const glm::dvec2 texel = glm::floor(at - nudge);
+    if (showsDirection(ImageLayout::VerticalCross, {static_cast<int>(texel.x), static_cast<int>(texel.y)},
+                       width, height))
+      return {static_cast<int>(texel.x) / side, static_cast<int>(texel.y) / side};
+  }
+  assert(false && "imageCoordinates points into a blank square");
+  return {1, 1};
 }
 
 // On the cube itself, not its unit sphere: there texels of a face are equal steps apart, also beyond its
@@ -113,9 +129,8 @@ glm::vec3 radiance(const Probe& probe, glm::vec3 dir) {
   const int width = static_cast<int>(probe.image.width), height = static_cast<int>(probe.image.height);
   const glm::dvec2 at = sh::imageCoordinates(probe.layout, width, height, glm::dvec3(dir));
   const double left = std::floor(at.x - 0.5), top = std::floor(at.y - 0.5);
-  const int side = std::max(width / 3, 1);
-  const Texel face{std::clamp(static_cast<int>(at.x) / side, 0, 2),
-                   std::clamp(static_cast<int>(at.y) / side, 0, 3)};
+  const Texel face =
+      probe.layout == ImageLayout::VerticalCross ? faceOfCross(at, width, height) : Texel{0, 0};
   glm::dvec3 sum(0.0);
   for (int corner = 0; corner < 4; ++corner) {
     const int right = corner & 1, below = corner >> 1;

@@ -1,0 +1,264 @@
+// Pictures survive a round trip; broken ones give one clear error and never more memory than their bytes
+// warrant.
+#include "runtime/spec/image.hpp"
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <random>
+
+#include <Imath/ImathBox.h>
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfOutputFile.h>
+#include <OpenEXR/ImfTiledOutputFile.h>
+#include <gtest/gtest.h>
+
+#include "tests/support/shared_data.hpp"
+
+namespace lambent::spec {
+namespace {
+
+namespace fs = std::filesystem;
+
+class SpecImage : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
+    folder_ =
+        fs::path(::testing::TempDir()) / ("lambent spec " + std::string(test->name()));  // paths have spaces
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  fs::path write(const std::string& name, const std::string& bytes) const {
+    std::ofstream(folder_ / name, std::ios::binary) << bytes;
+    return folder_ / name;
+  }
+  static std::string read(const fs::path& path) {
+    std::ifstream in(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
+
+  fs::path folder_;
+};
+
+RgbImage noise(std::uint32_t width, std::uint32_t height, unsigned seed) {
+  std::mt19937 random(seed);
+  RgbImage image{width, height, {}};
+  for (std::uint32_t i = 0; i < width * height; ++i) {
+    const float scale = std::ldexp(1.0f, static_cast<int>(random() % 40) - 20);
+    const auto unit = [&] { return static_cast<float>(random() % 100000) / 100000.0f; };
+    // Half of the texels repeat, so that there are runs to code.
+    if (i > 0 && random() % 2)
+      image.texels.push_back(image.texels.back());
+    else
+      image.texels.push_back(scale * glm::vec3(unit(), unit(), unit()));
+  }
+  return image;
+}
+
+TEST_F(SpecImage, HdrRoundTripStaysWithinHalfAStepOfTheLargestChannel) {
+  for (const auto& [width, height] : {std::pair{1u, 1u}, {7u, 3u}, {8u, 2u}, {300u, 5u}, {33000u, 1u}}) {
+    const RgbImage image = noise(width, height, width);
+    const fs::path path = folder_ / "noise.hdr";
+    ASSERT_TRUE(writeHdr(path, image));
+    const Result<RgbImage> back = readHdr(path);
+    ASSERT_TRUE(back) << back.error().line();
+    ASSERT_EQ(back->width, width);
+    ASSERT_EQ(back->texels.size(), image.texels.size());
+    for (std::size_t i = 0; i < image.texels.size(); ++i) {
+      const glm::vec3 a = image.texels[i], b = back->texels[i];
+      const float largest = std::max({a.x, a.y, a.z});
+      for (int c = 0; c < 3; ++c) ASSERT_LE(std::abs(a[c] - b[c]), largest / 255.0f) << i;
+    }
+  }
+}
+
+TEST_F(SpecImage, HdrWritesTheSameBytesTwiceAndIsStableUnderRewriting) {
+  const fs::path a = folder_ / "a.hdr", b = folder_ / "b.hdr";
+  ASSERT_TRUE(writeHdr(a, noise(64, 32, 1)));
+  ASSERT_TRUE(writeHdr(b, readHdr(a).value()));
+  EXPECT_EQ(read(a), read(b));
+}
+
+TEST_F(SpecImage, HdrReadsOldRunsFlatTexelsAndCommentLines) {
+  std::string bytes = "#?RGBE\n# made by hand\nEXPOSURE=1\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 9\n";
+  bytes += std::string("\x80\x40\x20\x81", 4);  // 1, 0.5, 0.25
+  bytes += std::string("\x01\x01\x01\x07", 4);  // seven times more
+  bytes += std::string("\x00\x00\x00\x00", 4);  // black
+  const Result<RgbImage> image = readHdr(write("old.hdr", bytes));
+  ASSERT_TRUE(image) << image.error().line();
+  for (std::size_t x = 0; x < 8; ++x) EXPECT_EQ(image->texels[x], glm::vec3(1.0f, 0.5f, 0.25f)) << x;
+  EXPECT_EQ(image->texels[8], glm::vec3(0.0f));
+}
+
+TEST_F(SpecImage, HdrRefusesWhatItCannotHold) {
+  RgbImage image{1, 1, {glm::vec3(-1.0f, 0.0f, 0.0f)}};
+  EXPECT_FALSE(writeHdr(folder_ / "negative.hdr", image));
+  image.texels[0] = glm::vec3(std::numeric_limits<float>::infinity());
+  EXPECT_FALSE(writeHdr(folder_ / "infinite.hdr", image));
+  EXPECT_FALSE(fs::exists(folder_ / "negative.hdr"));
+}
+
+TEST_F(SpecImage, ExrRoundTripIsExactAndKeepsNonFiniteValues) {
+  RgbaImage image{5, 3, {}};
+  std::mt19937 random(3);
+  for (int i = 0; i < 15; ++i)
+    image.texels.push_back(glm::vec4(random() % 1000, random() % 1000, -1.0f, 1.0f) / 7.0f);
+  image.texels[4].x = std::numeric_limits<float>::infinity();
+  const fs::path path = folder_ / "picture.exr";
+  ASSERT_TRUE(writeExr(path, image));
+  const Result<RgbaImage> back = readExr(path);
+  ASSERT_TRUE(back) << back.error().line();
+  EXPECT_EQ(back->width, 5u);
+  EXPECT_EQ(back->height, 3u);
+  EXPECT_EQ(back->texels, image.texels);
+  const Result<RgbImage> light = readLightImage(path);
+  ASSERT_TRUE(light) << light.error().line();
+  EXPECT_EQ(light->texels[7], glm::vec3(image.texels[7]));
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 1);  // no part file left behind
+}
+
+// A tiled half-float picture with a data window that reaches over the display window on one side and stops
+// short on the other.
+TEST_F(SpecImage, ExrReadsTiledHalfFloatsAndOffsetDataWindows) {
+  const fs::path path = folder_ / "tiled.exr";
+  const Imath::Box2i display({0, 0}, {7, 7}), data({-2, 2}, {5, 9});
+  std::vector<half> grey(64);
+  for (int y = 0; y < 8; ++y)
+    for (int x = 0; x < 8; ++x)
+      grey[static_cast<std::size_t>(8 * y + x)] = half(static_cast<float>(10 * (y + 2) + x - 2));
+  Imf::Header header(display, data);
+  header.compression() = Imf::PIZ_COMPRESSION;
+  header.setTileDescription(Imf::TileDescription(4, 4));
+  Imf::FrameBuffer source;
+  for (const char* name : {"R", "G", "B"}) {
+    header.channels().insert(name, Imf::Channel(Imf::HALF));
+    source.insert(name, Imf::Slice::Make(Imf::HALF, grey.data(), data));
+  }
+  {
+    Imf::TiledOutputFile file(path.c_str(), header);
+    file.setFrameBuffer(source);
+    file.writeTiles(0, 1, 0, 1);
+  }
+  const Result<RgbaImage> image = readExr(path);
+  ASSERT_TRUE(image) << image.error().line();
+  ASSERT_EQ(image->width, 8u);
+  EXPECT_EQ(image->texels[8 * 3 + 4], glm::vec4(34, 34, 34, 1));  // row 3, column 4
+  EXPECT_EQ(image->texels[8 * 1 + 4], glm::vec4(0));              // above the data window
+  EXPECT_EQ(image->texels[8 * 3 + 6], glm::vec4(0));              // right of it
+}
+
+TEST_F(SpecImage, ExrTakesGreyAndNamesTheChannelsOfOthers) {
+  const auto writeChannel = [&](const char* name) {
+    const float value = 2.5f;
+    Imf::Header header(1, 1);
+    header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+    Imf::FrameBuffer source;
+    source.insert(name, Imf::Slice::Make(Imf::FLOAT, &value, header.dataWindow()));
+    Imf::OutputFile file((folder_ / "one.exr").c_str(), header);
+    file.setFrameBuffer(source);
+    file.writePixels(1);
+  };
+  writeChannel("Y");
+  EXPECT_EQ(readExr(folder_ / "one.exr").value().texels[0], glm::vec4(2.5f, 2.5f, 2.5f, 1.0f));
+  writeChannel("depth.Z");
+  const Result<RgbaImage> depth = readExr(folder_ / "one.exr");
+  ASSERT_FALSE(depth);
+  EXPECT_NE(depth.error().line().find("it has depth.Z"), std::string::npos) << depth.error().line();
+}
+
+TEST_F(SpecImage, PngRoundTripIsExact) {
+  std::mt19937 random(5);
+  Rgba8Image image{13, 9, {}};
+  for (int i = 0; i < 13 * 9 * 4; ++i) image.texels.push_back(static_cast<std::uint8_t>(random()));
+  const fs::path path = folder_ / "picture.png";
+  ASSERT_TRUE(writePng(path, image));
+  const Result<Rgba8Image> back = readPng(path);
+  ASSERT_TRUE(back) << back.error().line();
+  EXPECT_EQ(back->width, 13u);
+  EXPECT_EQ(back->texels, image.texels);
+  EXPECT_FALSE(readPng(write("not.png", "GIF89a")));
+}
+
+TEST_F(SpecImage, MissingAndForeignFilesAreToldApart) {
+  const auto problem = [](const Result<RgbImage>& result) {
+    return result ? std::string("read") : result.error().problem;
+  };
+  EXPECT_EQ(problem(readLightImage(folder_ / "none.hdr")), "no such file");
+  EXPECT_EQ(problem(readLightImage(folder_)), "is a folder");
+  EXPECT_EQ(problem(readLightImage(write("empty.hdr", ""))), "is empty");
+  EXPECT_EQ(problem(readLightImage(write("text.hdr", "hello world"))),
+            "is neither Radiance (.hdr) nor OpenEXR (.exr)");
+  EXPECT_NE(problem(readLightImage(write("turned.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n+X 4 -Y 4\n")))
+                .find("size line"),
+            std::string::npos);
+  EXPECT_NE(problem(readLightImage(write("xyz.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_xyze\n\n-Y 1 +X 1\n")))
+                .find("RGB"),
+            std::string::npos);
+  EXPECT_FALSE(writeExr(folder_ / "no such folder" / "a.exr", {1, 1, {glm::vec4(1.0f)}}));
+}
+
+TEST_F(SpecImage, AbsurdSizesAreRefusedBeforeMemoryIsAsked) {
+  const std::string head = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n";
+  for (const char* size :
+       {"-Y 100000 +X 100000\n", "-Y 0 +X 5\n", "-Y 16384 +X 8192\nabc", "-Y 18446744073709551615 +X 2\n",
+        "-Y 99999999999999999999999 +X 2\n", "-Y -5 +X 5\n"})
+    EXPECT_FALSE(readLightImage(write("absurd.hdr", head + size))) << size;
+}
+
+// Every truncation must fail; every flipped byte must give a picture or an error, within the bounds of memory
+// (the sanitizer run checks those).
+void breakInEveryWay(const fs::path& path, const std::string& whole, std::size_t step) {
+  for (std::size_t length = 0; length < whole.size(); length += step) {
+    std::ofstream(path, std::ios::binary) << whole.substr(0, length);
+    EXPECT_FALSE(readLightImage(path)) << length << " of " << whole.size();
+  }
+  std::mt19937 random(11);
+  for (int i = 0; i < 300; ++i) {
+    std::string broken = whole;
+    broken[random() % broken.size()] = static_cast<char>(random());
+    std::ofstream(path, std::ios::binary) << broken;
+    const Result<RgbImage> image = readLightImage(path);
+    if (image) {
+      EXPECT_EQ(image->texels.size(), std::size_t{image->width} * image->height);
+    }
+  }
+}
+
+TEST_F(SpecImage, BrokenHdrFilesGiveErrors) {
+  const fs::path path = folder_ / "whole.hdr";
+  ASSERT_TRUE(writeHdr(path, noise(32, 8, 2)));
+  breakInEveryWay(folder_ / "broken.hdr", read(path), 1);
+}
+
+TEST_F(SpecImage, BrokenExrFilesGiveErrors) {
+  const fs::path path = folder_ / "whole.exr";
+  RgbaImage image{32, 8, {}};
+  for (const glm::vec3 texel : noise(32, 8, 2).texels) image.texels.emplace_back(texel, 1.0f);
+  ASSERT_TRUE(writeExr(path, image));
+  breakInEveryWay(folder_ / "broken.exr", read(path), 7);
+}
+
+TEST_F(SpecImage, SharedProbesHaveTheirKnownExtremes) {
+  // Luminance maxima from the data's own table, printed to four digits.
+  for (const auto& [name, maximum] : {std::pair{"probes/grace_probe.hdr", 520.6f},
+                                      {"probes/uffizi_latlong_small.hdr", 13.8f},
+                                      {"probes/grace_latlong.exr", 14.82f}}) {
+    const fs::path path = testing::sharedFile(name);
+    LAMBENT_NEEDS_SHARED(path);
+    const Result<RgbImage> image = readLightImage(path);
+    ASSERT_TRUE(image) << image.error().line();
+    float largest = 0.0f;
+    for (const glm::vec3 t : image->texels)
+      largest = std::max(largest, 0.2126f * t.x + 0.7152f * t.y + 0.0722f * t.z);
+    EXPECT_NEAR(largest, maximum, 0.005f * maximum) << name;
+  }
+}
+
+}  // namespace
+}  // namespace lambent::spec

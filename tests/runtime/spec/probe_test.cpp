@@ -1,0 +1,169 @@
+// Looking a direction up gives the same environment whatever the picture's layout, without seams.
+#include "runtime/spec/probe.hpp"
+
+#include <filesystem>
+#include <limits>
+#include <random>
+
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+
+#include "tests/support/shared_data.hpp"
+
+namespace lambent::spec {
+namespace {
+
+using sh::ImageLayout;
+
+struct Shape {
+  ImageLayout layout;
+  std::uint32_t width, height;
+};
+constexpr Shape kShapes[] = {{ImageLayout::LatLong, 128, 64},
+                             {ImageLayout::AngularMap, 128, 128},
+                             {ImageLayout::VerticalCross, 96, 128}};
+
+// A picture of f; texels that show no direction hold a value that no look-up may return.
+template <typename Function>
+Probe picture(const Shape& shape, const Function& f) {
+  constexpr float kPoison = 1e6f;
+  Probe probe{{shape.width, shape.height, {}}, shape.layout, 0};
+  for (int y = 0; y < static_cast<int>(shape.height); ++y)
+    for (int x = 0; x < static_cast<int>(shape.width); ++x) {
+      const glm::dvec3 dir = sh::texelDirection(shape.layout, static_cast<int>(shape.width),
+                                                static_cast<int>(shape.height), x, y);
+      probe.image.texels.push_back(dir == glm::dvec3(0.0) ? glm::vec3(kPoison) : f(glm::vec3(dir)));
+    }
+  return probe;
+}
+
+std::vector<glm::vec3> directions(int count) {
+  std::vector<glm::vec3> dirs;
+  // Axes, edges and corners of the cube: poles, seams and the back of every layout.
+  for (int x = -1; x <= 1; ++x)
+    for (int y = -1; y <= 1; ++y)
+      for (int z = -1; z <= 1; ++z)
+        if (x || y || z) dirs.push_back(glm::normalize(glm::vec3(x, y, z)));
+  std::mt19937 random(1);
+  std::normal_distribution<float> normal;
+  while (static_cast<int>(dirs.size()) < count)
+    dirs.push_back(glm::normalize(glm::vec3(normal(random), normal(random), normal(random))));
+  return dirs;
+}
+
+TEST(SpecProbe, ASmoothEnvironmentComesBackFromEveryLayout) {
+  const auto f = [](glm::vec3 d) { return glm::vec3(2.0f + d.x, 2.0f + d.y * d.z, 2.0f + d.z); };
+  for (const Shape& shape : kShapes) {
+    const Probe probe = picture(shape, f);
+    for (const glm::vec3 dir : directions(4000)) {
+      // Texels are about 2.8 degrees wide; at the back of the angular map they are pulled by up to one more.
+      const float tolerance = shape.layout == ImageLayout::AngularMap && dir.z > 0.99f ? 0.06f : 0.008f;
+      EXPECT_LT(glm::length(radiance(probe, dir) - f(dir)), tolerance)
+          << sh::name(shape.layout) << " " << dir.x << " " << dir.y << " " << dir.z;
+    }
+  }
+}
+
+TEST(SpecProbe, HasNoSeams) {
+  // Grey noise: an error in choosing a neighbour is as large as the noise itself.
+  for (const Shape& shape : kShapes) {
+    std::mt19937 random(2);
+    const Probe probe =
+        picture(shape, [&](glm::vec3) { return glm::vec3(static_cast<float>(random() % 1000) / 1000.0f); });
+    for (const glm::vec3 dir : directions(2000)) {
+      if (shape.layout == ImageLayout::AngularMap && dir.z > 0.99f) continue;  // its rim is one direction
+      if (shape.layout == ImageLayout::LatLong && std::abs(dir.y) > 0.99f) continue;  // so are its poles
+      const glm::vec3 beside = glm::normalize(dir + 2e-6f * glm::vec3(dir.y, dir.z, -dir.x));
+      // The steepest texel slope: 1 over a texel of 0.02 rad (cross, corners); at a corner of the cube four
+      // texels are only three, which leaves a step of up to a quarter.
+      const glm::vec3 size = glm::abs(dir);
+      const bool corner =
+          shape.layout == ImageLayout::VerticalCross && std::min({size.x, size.y, size.z}) > 0.55f;
+      EXPECT_LT(std::abs(radiance(probe, dir).x - radiance(probe, beside).x), corner ? 0.3f : 2e-3f)
+          << sh::name(shape.layout) << " " << dir.x << " " << dir.y << " " << dir.z;
+    }
+  }
+}
+
+TEST(SpecProbe, TexelCentresGiveTheTexelItself) {
+  for (const Shape& shape : kShapes) {
+    float next = 0.0f;
+    const Probe probe = picture(shape, [&](glm::vec3) { return glm::vec3(next += 1.0f); });
+    for (int y = 0; y < static_cast<int>(shape.height); y += 3)
+      for (int x = 0; x < static_cast<int>(shape.width); ++x) {
+        const glm::dvec3 dir = sh::texelDirection(shape.layout, static_cast<int>(shape.width),
+                                                  static_cast<int>(shape.height), x, y);
+        if (dir == glm::dvec3(0.0)) continue;
+        const float texel =
+            probe.image.texels[static_cast<std::size_t>(y) * shape.width + static_cast<std::size_t>(x)].x;
+        // A float direction lies up to 1e-6 rad off; texels differ by up to a row (128) or more over a seam.
+        EXPECT_NEAR(radiance(probe, glm::vec3(dir)).x, texel, 0.5f)
+            << sh::name(shape.layout) << " " << x << " " << y;
+      }
+  }
+}
+
+TEST(SpecProbe, TinyPicturesAreLookedUpToo) {
+  for (const Shape& shape : {Shape{ImageLayout::LatLong, 2, 1}, Shape{ImageLayout::AngularMap, 1, 1},
+                             Shape{ImageLayout::VerticalCross, 3, 4}}) {
+    const Probe probe = picture(shape, [](glm::vec3) { return glm::vec3(1.0f); });
+    for (const glm::vec3 dir : directions(200))
+      EXPECT_NEAR(radiance(probe, dir).x, 1.0f, 1e-6f) << sh::name(shape.layout);
+  }
+}
+
+TEST(SpecProbe, TexelsThatAreNotFiniteAreBlackAndCounted) {
+  const auto path = std::filesystem::path(::testing::TempDir()) / "lambent_spec_not_finite.exr";
+  RgbaImage image{4, 2, std::vector<glm::vec4>(8, glm::vec4(1.0f))};
+  image.texels[1].x = std::numeric_limits<float>::quiet_NaN();
+  image.texels[6].z = -std::numeric_limits<float>::infinity();
+  ASSERT_TRUE(writeExr(path, image));
+  const Result<Probe> probe = loadProbe({path, {}});
+  ASSERT_TRUE(probe) << probe.error().line();
+  EXPECT_EQ(probe->texels_not_finite, 2u);
+  EXPECT_EQ(probe->image.texels[1], glm::vec3(0.0f));
+  EXPECT_EQ(probe->image.texels[2], glm::vec3(1.0f));
+  std::filesystem::remove(path);
+}
+
+TEST(SpecProbe, ShapesChooseTheLayoutAndWrongOnesAreExplained) {
+  const auto path = std::filesystem::path(::testing::TempDir()) / "lambent_spec_shape.exr";
+  ASSERT_TRUE(writeExr(path, {5, 3, std::vector<glm::vec4>(15, glm::vec4(1.0f))}));
+  const Result<Probe> unknown = loadProbe({path, {}});
+  ASSERT_FALSE(unknown);
+  EXPECT_NE(unknown.error().line().find("--light-layout"), std::string::npos) << unknown.error().line();
+  EXPECT_EQ(loadProbe({path, ImageLayout::LatLong}).value().layout, ImageLayout::LatLong);
+  EXPECT_FALSE(loadProbe({path, ImageLayout::VerticalCross}));
+  EXPECT_FALSE(loadProbe({path, ImageLayout::AngularMap}));
+  std::filesystem::remove(path);
+}
+
+TEST(SpecProbe, EucalyptusGroveIsTheSameAsAngularMapAndAsCross) {
+  const auto angular_file = testing::sharedFile("probes/rnl_probe.hdr");
+  const auto cross_file = testing::sharedFile("probes/rnl_cross.hdr");
+  LAMBENT_NEEDS_SHARED(angular_file);
+  LAMBENT_NEEDS_SHARED(cross_file);
+  const Result<Probe> angular = loadProbe({angular_file, {}}), cross = loadProbe({cross_file, {}});
+  ASSERT_TRUE(angular && cross);
+  EXPECT_EQ(angular->layout, ImageLayout::AngularMap);
+  EXPECT_EQ(cross->layout, ImageLayout::VerticalCross);
+  // Mean log-ratio of small blurred spots: single texels of leaves against sky differ by the resampling.
+  double difference = 0.0, sum = 0.0;
+  std::mt19937 random(3);
+  std::normal_distribution<float> normal;
+  for (const glm::vec3 dir : directions(1000)) {
+    glm::vec3 a(0.0f), b(0.0f);
+    for (int i = 0; i < 200; ++i) {
+      const glm::vec3 near =
+          glm::normalize(dir + 0.1f * glm::vec3(normal(random), normal(random), normal(random)));
+      a += radiance(*angular, near);
+      b += radiance(*cross, near);
+    }
+    difference += glm::length(a - b);
+    sum += glm::length(a);
+  }
+  EXPECT_LT(difference, 0.03 * sum);
+}
+
+}  // namespace
+}  // namespace lambent::spec

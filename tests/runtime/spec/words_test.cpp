@@ -1,0 +1,139 @@
+// Every word parses to what the documentation says, and nothing else parses.
+#include <random>
+#include <string>
+
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+
+#include "runtime/spec/light.hpp"
+#include "runtime/spec/numbers.hpp"
+#include "runtime/spec/rotate.hpp"
+#include "runtime/spec/size.hpp"
+
+namespace lambent::spec {
+namespace {
+
+TEST(SpecNumbers, TakeOnlyWholeFiniteNumbers) {
+  EXPECT_EQ(parseNumber("-1.5e2"), -150.0f);
+  EXPECT_EQ(parseNumber(".25"), 0.25f);
+  for (const char* wrong :
+       {"", " 1", "1 ", "1x", "0x10", "nan", "inf", "-inf", "1e999", "1,2", "--1", "+1", "1..2"})
+    EXPECT_FALSE(parseNumber(wrong)) << wrong;
+  EXPECT_EQ(parseNumbers("1,2,3")->size(), 3u);
+  for (const char* wrong : {"", ",", "1,", ",1", "1,,2", "1, 2", "1;2"})
+    EXPECT_FALSE(parseNumbers(wrong)) << wrong;
+}
+
+TEST(SpecLight, ParsesConstantSunAndProbe) {
+  const Result<Light> constant = parseLight("constant:1,0.5,0");
+  ASSERT_TRUE(constant) << constant.error().line();
+  EXPECT_EQ(std::get<ConstantLight>(*constant).radiance, glm::vec3(1.0f, 0.5f, 0.0f));
+
+  const Result<Light> sun = parseLight("sun:-45,30,2.5,10,9,8");
+  ASSERT_TRUE(sun) << sun.error().line();
+  EXPECT_EQ(std::get<SunLight>(*sun).azimuth_deg, -45.0f);
+  EXPECT_EQ(std::get<SunLight>(*sun).elevation_deg, 30.0f);
+  EXPECT_EQ(std::get<SunLight>(*sun).angle_deg, 2.5f);
+  EXPECT_EQ(std::get<SunLight>(*sun).radiance, glm::vec3(10.0f, 9.0f, 8.0f));
+
+  const Result<Light> grey = parseLight("sun:0,90,180,3");
+  ASSERT_TRUE(grey) << grey.error().line();
+  EXPECT_EQ(std::get<SunLight>(*grey).radiance, glm::vec3(3.0f));
+
+  const Result<Light> probe = parseLight("some folder/Grace.HDR");
+  ASSERT_TRUE(probe) << probe.error().line();
+  EXPECT_EQ(std::get<ProbeLight>(*probe).file, "some folder/Grace.HDR");
+  EXPECT_FALSE(std::get<ProbeLight>(*probe).layout);
+}
+
+TEST(SpecLight, RefusesEverythingElseAndShowsTheForm) {
+  for (const char* wrong : {"constant:", "constant:1", "constant:1,2", "constant:1,2,3,4", "constant:1,2,-3",
+                            "constant:1,2,nan", "constant:1,2,3 "}) {
+    const Result<Light> light = parseLight(wrong);
+    ASSERT_FALSE(light) << wrong;
+    EXPECT_NE(light.error().line().find("constant:R,G,B"), std::string::npos) << light.error().line();
+  }
+  for (const char* wrong :
+       {"sun:", "sun:1,2,3", "sun:1,2,3,4,5", "sun:1,2,3,4,5,6,7", "sun:0,91,1,1", "sun:0,-91,1,1",
+        "sun:0,0,0,1", "sun:0,0,181,1", "sun:0,0,1,-1", "sun:0,0,1,1x", "sun:inf,0,1,1"}) {
+    const Result<Light> light = parseLight(wrong);
+    ASSERT_FALSE(light) << wrong;
+    EXPECT_NE(light.error().line().find("sun:AZ,EL,ANGLE,R[,G,B]"), std::string::npos)
+        << light.error().line();
+  }
+  for (const char* wrong : {"", "sunn:1,2,3,4", "Sun:1,2,3,4", "probe.png", "hdr", "constant"}) {
+    const Result<Light> light = parseLight(wrong);
+    ASSERT_FALSE(light) << wrong;
+    EXPECT_NE(light.error().line().find("probe file (.hdr or .exr)"), std::string::npos)
+        << light.error().line();
+  }
+}
+
+TEST(SpecLight, SaysThatSphereLightsAreNotYetThere) {
+  const Result<Light> light = parseLight("sphere:0,1,0,0.1,5,5,5");
+  ASSERT_FALSE(light);
+  EXPECT_NE(light.error().line().find("not yet supported; give a probe file"), std::string::npos);
+}
+
+TEST(SpecLight, NoGarbageCrashesOrSlipsThrough) {
+  std::mt19937 random(7);
+  const std::string alphabet = "0123456789.,-+eE:x nanifsucophdr/";
+  int accepted = 0;
+  for (int i = 0; i < 20000; ++i) {
+    std::string word = i % 3 == 0 ? "sun:" : i % 3 == 1 ? "constant:" : "";
+    for (std::size_t length = random() % 16; length > 0; --length)
+      word += alphabet[random() % alphabet.size()];
+    const Result<Light> light = parseLight(word);
+    static_cast<void>(parseSize(word));
+    if (!light) continue;
+    ++accepted;
+    if (const auto* sun = std::get_if<SunLight>(&*light)) {
+      EXPECT_TRUE(sun->angle_deg > 0.0f && sun->angle_deg <= 180.0f) << word;
+      EXPECT_GE(sun->radiance.x, 0.0f) << word;
+    }
+  }
+  EXPECT_LT(accepted, 1000);
+}
+
+TEST(SpecLight, LayoutsAreCalledAsTheShRoomCallsThem) {
+  for (const auto layout :
+       {sh::ImageLayout::LatLong, sh::ImageLayout::AngularMap, sh::ImageLayout::VerticalCross})
+    EXPECT_EQ(parseLightLayout(sh::name(layout)).value(), layout);
+  EXPECT_FALSE(parseLightLayout("cube"));
+}
+
+TEST(SpecLight, AzimuthZeroIsFrontAndNinetyIsRight) {
+  constexpr float kTolerance = 1e-7f;  // float rounding of unit vectors
+  const auto near = [&](glm::vec3 a, glm::vec3 b) { return glm::length(a - b) < kTolerance; };
+  EXPECT_TRUE(near(directionFromAzimuthElevation(0, 0), {0, 0, 1}));
+  EXPECT_TRUE(near(directionFromAzimuthElevation(90, 0), {1, 0, 0}));
+  EXPECT_TRUE(near(directionFromAzimuthElevation(180, 0), {0, 0, -1}));
+  EXPECT_TRUE(near(directionFromAzimuthElevation(123, 90), {0, 1, 0}));
+  EXPECT_TRUE(near(directionFromAzimuthElevation(0, -90), {0, -1, 0}));
+}
+
+TEST(SpecRotate, PositiveTurnsTakeFrontToRightAndAddToAzimuths) {
+  constexpr float kTolerance = 2e-7f;
+  EXPECT_LT(glm::length(lightRotation(90) * glm::vec3(0, 0, 1) - glm::vec3(1, 0, 0)), kTolerance);
+  EXPECT_LT(glm::length(lightRotation(40) * directionFromAzimuthElevation(25, 10) -
+                        directionFromAzimuthElevation(65, 10)),
+            kTolerance);
+  EXPECT_LT(glm::length(lightRotation(-725) * glm::vec3(0, 0, 1) - directionFromAzimuthElevation(-5, 0)),
+            kTolerance);
+  EXPECT_EQ(parseDegrees("-22.5").value(), -22.5f);
+  EXPECT_FALSE(parseDegrees("90deg"));
+}
+
+TEST(SpecSize, ParsesAndRefuses) {
+  EXPECT_EQ(parseSize("1920x1080").value(), (Size{1920, 1080}));
+  EXPECT_EQ(parseSize("1x16384").value(), (Size{1, 16384}));
+  for (const char* wrong : {"", "x", "10", "10x", "x10", "10X10", "10x10x10", "0x10", "10x0", "-1x5",
+                            "10 x 10", "16385x1", "99999999999x1", "1e2x5", " 1x1"}) {
+    const Result<Size> size = parseSize(wrong);
+    ASSERT_FALSE(size) << wrong;
+    EXPECT_NE(size.error().line().find("WIDTHxHEIGHT"), std::string::npos) << size.error().line();
+  }
+}
+
+}  // namespace
+}  // namespace lambent::spec
