@@ -131,7 +131,7 @@ TEST(Registry, DoesWhatMapsDoOverRandomOperations) {
   const auto pick = [&](const std::vector<Entity>& from) { return from[random() % from.size()]; };
 
   for (int step = 0; step < 40000; ++step) {
-    const std::uint32_t what = random() % 8;
+    const auto what = random() % 8;
     if (what <= 1 || alive.empty()) {
       alive.push_back(registry.create());
     } else if (what == 2) {

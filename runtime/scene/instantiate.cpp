@@ -1,0 +1,164 @@
+#include "runtime/scene/instantiate.hpp"
+
+#include <cstddef>
+#include <map>
+#include <string_view>
+#include <tuple>
+
+#include "runtime/scene/affine.hpp"
+#include "runtime/scene/components.hpp"
+#include "runtime/scene/stable_id.hpp"
+#include "runtime/scene/transforms.hpp"
+
+namespace lambent::scene {
+namespace {
+
+class Instantiation {
+ public:
+  Instantiation(ecs::Registry& registry, const bundle::Description& description,
+                const InstantiateOptions& options)
+      : registry_(registry), description_(description), options_(options) {}
+
+  SceneInstance run() {
+    makeRoot();
+    makeNodes();
+    updateTransforms(registry_);  // groups need their root's matrix at rest
+    makeGroups();
+    makeDraws();
+    return std::move(instance_);
+  }
+
+ private:
+  void makeRoot() {
+    instance_.root = registry_.create();
+    registry_.emplace<Name>(instance_.root, options_.bundle_id);
+    registry_.emplace<StableId>(instance_.root, instanceId(options_.bundle_id, options_.instance));
+    registry_.emplace<Transform>(instance_.root);
+  }
+
+  void makeNodes() {
+    const auto& nodes = description_.nodes;
+    instance_.nodes.reserve(nodes.size());
+    for (std::size_t i = 0; i < nodes.size(); ++i) instance_.nodes.push_back(registry_.create());
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      const gltf::Node& node = nodes[i];
+      registry_.emplace<Name>(instance_.nodes[i], node.name);
+      Transform transform;
+      transform.parent = nodeOrRoot(node.parent);
+      setLocalMatrix(transform, node.parent_from_node);
+      registry_.emplace<Transform>(instance_.nodes[i], transform);
+      if (node.camera >= 0) makeCamera(instance_.nodes[i], static_cast<std::uint32_t>(node.camera));
+    }
+    // Ids chain from parent to child: parents first. Roots and children keep the file's order, by which
+    // siblings of the same name are told apart.
+    std::vector<std::int32_t> open;
+    for (std::size_t i = nodes.size(); i-- > 0;) {
+      if (nodes[i].parent < 0) open.push_back(static_cast<std::int32_t>(i));
+    }
+    while (!open.empty()) {
+      const gltf::Node& node = nodes[static_cast<std::size_t>(open.back())];
+      const ecs::Entity entity = instance_.nodes[static_cast<std::size_t>(open.back())];
+      open.pop_back();
+      giveId(entity, nodeOrRoot(node.parent), StableKind::Node, node.name);
+      open.insert(open.end(), node.children.rbegin(), node.children.rend());
+    }
+  }
+
+  void makeCamera(ecs::Entity entity, std::uint32_t index) {
+    const gltf::Camera& camera = description_.cameras[index];
+    registry_.emplace<CameraComponent>(entity, CameraComponent{.bundle = options_.bundle_index,
+                                                               .camera = index,
+                                                               .perspective = camera.perspective,
+                                                               .yfov_rad = camera.yfov_rad,
+                                                               .aspect = camera.aspect,
+                                                               .xmag = camera.xmag,
+                                                               .ymag = camera.ymag,
+                                                               .znear = camera.znear,
+                                                               .zfar = camera.zfar});
+  }
+
+  void makeGroups() {
+    for (std::size_t i = 0; i < description_.groups.size(); ++i) {
+      const bundle::Group& group = description_.groups[i];
+      const ecs::Entity entity = registry_.create();
+      instance_.groups.push_back(entity);
+      RigidGroupComponent component;
+      component.bundle = options_.bundle_index;
+      component.group = static_cast<std::uint32_t>(i);
+      component.node = nodeOrRoot(group.node);
+      component.bounds = {group.bounds_min, group.bounds_max};
+      component.rest_rotation = component.rotation = group.rest_rotation;
+      component.rest_translation = component.translation = group.rest_translation;
+      const glm::dmat4 world_from_node(registry_.get<WorldTransform>(component.node).world_from_node);
+      // A root that is flat at rest (scale 0) has no inverse and shows nothing: its group stays where it is.
+      if (glm::determinant(world_from_node) != 0.0) {
+        component.node_from_world_at_rest = glm::inverse(world_from_node);
+        component.seen_node = registry_.version<WorldTransform>(component.node);
+      } else {
+        component.node = {};
+      }
+      registry_.emplace<RigidGroupComponent>(entity, component);
+      registry_.emplace<Name>(entity, group.name);
+      giveId(entity, nodeOrRoot(group.node), StableKind::Group, {});
+    }
+  }
+
+  void makeDraws() {
+    for (std::size_t i = 0; i < description_.draws.size(); ++i) {
+      const bundle::Draw& draw = description_.draws[i];
+      const bundle::Primitive& primitive = description_.meshes[draw.mesh].primitives[draw.primitive];
+      const ecs::Entity entity = registry_.create();
+      instance_.draws.push_back(entity);
+      const ecs::Entity node = instance_.nodes[draw.node];
+      registry_.emplace<DrawItem>(entity, DrawItem{.bundle = options_.bundle_index,
+                                                   .draw = static_cast<std::uint32_t>(i),
+                                                   .mesh = draw.mesh,
+                                                   .primitive = draw.primitive,
+                                                   .material = primitive.material,
+                                                   .node = node,
+                                                   .group = instance_.groups[draw.group],
+                                                   .bounds = {primitive.bounds_min, primitive.bounds_max}});
+      registry_.emplace<StableId>(
+          entity, childId(registry_.get<StableId>(node), StableKind::Draw, {}, draw.primitive));
+    }
+  }
+
+  ecs::Entity nodeOrRoot(std::int32_t node) const {
+    return node < 0 ? instance_.root : instance_.nodes[static_cast<std::size_t>(node)];
+  }
+
+  void giveId(ecs::Entity entity, ecs::Entity parent, StableKind kind, std::string_view name) {
+    const StableId parent_id = registry_.get<StableId>(parent);
+    const std::uint32_t ordinal = given_[{parent_id, kind, name}]++;
+    registry_.emplace<StableId>(entity, childId(parent_id, kind, name, ordinal));
+  }
+
+  ecs::Registry& registry_;
+  const bundle::Description& description_;
+  const InstantiateOptions& options_;
+  SceneInstance instance_;
+  std::map<std::tuple<StableId, StableKind, std::string_view>, std::uint32_t> given_;
+};
+
+}  // namespace
+
+Result<SceneInstance> instantiate(ecs::Registry& registry, const bundle::Description& description,
+                                  const InstantiateOptions& options) {
+  const StableId root_id = instanceId(options.bundle_id, options.instance);
+  for (auto [entity, id] : registry.view<const StableId>()) {
+    if (id == root_id)
+      return fail(options.bundle_id,
+                  "stands in the scene already as instance " + std::to_string(options.instance),
+                  "give it another instance number");
+  }
+  return Instantiation(registry, description, options).run();
+}
+
+void destroyInstance(ecs::Registry& registry, const SceneInstance& instance) {
+  for (const auto* list : {&instance.draws, &instance.groups, &instance.nodes}) {
+    for (const ecs::Entity entity : *list) registry.destroy(entity);
+  }
+  registry.destroy(instance.root);
+}
+
+}  // namespace lambent::scene
