@@ -20,9 +20,9 @@ std::vector<glm::mat4> worldTransforms(const std::vector<Node>& nodes) {
       const std::size_t i = chain.back();
       chain.pop_back();
       const std::int32_t parent = nodes[i].parent;
-      world_from_node[i] = parent < 0
-                               ? nodes[i].parent_from_node
-                               : world_from_node[static_cast<std::size_t>(parent)] * nodes[i].parent_from_node;
+      world_from_node[i] =
+          parent < 0 ? nodes[i].parent_from_node
+                     : world_from_node[static_cast<std::size_t>(parent)] * nodes[i].parent_from_node;
     }
   }
   return world_from_node;
