@@ -1,0 +1,194 @@
+#include "baker/compress/draco_encode.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <exception>
+#include <memory>
+#include <span>
+#include <utility>
+
+#include <draco/compression/expert_encode.h>
+#include <draco/mesh/mesh.h>
+#include <fmt/format.h>
+
+namespace lambent::baker {
+namespace {
+
+using Lattice = glm::vec<3, std::int64_t>;
+
+// Of 0 (smallest) to 10 (fastest). SPEEDNOTE
+constexpr int kSpeed = 5;
+
+bool isPowerOfTwo(float value) {
+  int exponent = 0;
+  return std::isnormal(value) && value > 0.0f && std::frexp(value, &exponent) == 0.5f;
+}
+
+// Positions on the lattice, and the box of lattice points that they span.
+struct Snapped {
+  std::vector<glm::vec3> positions;
+  Lattice low{0}, high{0};
+};
+
+Result<Snapped> snap(std::span<const glm::vec3> positions, float step, const std::string& subject) {
+  constexpr double kFarthest = 1 << kMaxPositionBits;
+  Snapped snapped;
+  snapped.positions.reserve(positions.size());
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    const glm::dvec3 k = glm::round(glm::dvec3(positions[i]) / static_cast<double>(step));
+    if (!(std::abs(k.x) <= kFarthest && std::abs(k.y) <= kFarthest && std::abs(k.z) <= kFarthest))
+      return fail(subject,
+                  fmt::format("vertex {} lies more than 2^{} quantization steps of {} from the origin", i,
+                              kMaxPositionBits, step),
+                  "move the mesh nearer to the origin of its node or split it");
+    const Lattice point(k);
+    snapped.low = i == 0 ? point : glm::min(snapped.low, point);
+    snapped.high = i == 0 ? point : glm::max(snapped.high, point);
+    snapped.positions.emplace_back(glm::vec3(glm::dvec3(point) * static_cast<double>(step)));
+  }
+  return snapped;
+}
+
+// One value per vertex; returns the attribute's index in the mesh, which is its unique id too.
+template <typename Value, glm::length_t N>
+std::int32_t addAttribute(draco::Mesh& mesh, draco::GeometryAttribute::Type type, draco::DataType data_type,
+                          bool normalized, const std::vector<glm::vec<N, Value>>& values) {
+  draco::GeometryAttribute layout;
+  layout.Init(type, nullptr, static_cast<std::int8_t>(N), data_type, normalized, sizeof(values[0]), 0);
+  const int id =
+      mesh.AddAttribute(layout, /*identity_mapping=*/true, static_cast<std::uint32_t>(values.size()));
+  mesh.attribute(id)->buffer()->Write(0, values.data(), values.size() * sizeof(values[0]));
+  return static_cast<std::int32_t>(mesh.attribute(id)->unique_id());
+}
+
+std::vector<glm::u16vec4> quantizeColors(std::span<const glm::vec4> colors) {
+  std::vector<glm::u16vec4> quantized(colors.size());
+  for (std::size_t i = 0; i < colors.size(); ++i)
+    quantized[i] = glm::u16vec4(glm::round(glm::clamp(colors[i], 0.0f, 1.0f) * 65535.0f));
+  return quantized;
+}
+
+bundle::DracoAttributes addAttributes(draco::Mesh& out, const bundle::MeshData& mesh,
+                                      const std::vector<glm::vec3>& positions) {
+  using Attribute = draco::GeometryAttribute;
+  bundle::DracoAttributes ids;
+  ids.position = addAttribute(out, Attribute::POSITION, draco::DT_FLOAT32, false, positions);
+  if (!mesh.normals.empty())
+    ids.normal = addAttribute(out, Attribute::NORMAL, draco::DT_FLOAT32, false, mesh.normals);
+  if (!mesh.texcoords0.empty())
+    ids.texcoord0 = addAttribute(out, Attribute::TEX_COORD, draco::DT_FLOAT32, false, mesh.texcoords0);
+  if (!mesh.texcoords1.empty())
+    ids.texcoord1 = addAttribute(out, Attribute::TEX_COORD, draco::DT_FLOAT32, false, mesh.texcoords1);
+  if (!mesh.colors.empty())
+    ids.color0 = addAttribute(out, Attribute::COLOR, draco::DT_UINT16, true, quantizeColors(mesh.colors));
+  return ids;
+}
+
+std::unique_ptr<draco::Mesh> toDraco(const bundle::MeshData& mesh, const std::vector<glm::vec3>& positions,
+                                     bundle::DracoAttributes& ids) {
+  auto out = std::make_unique<draco::Mesh>();
+  out->set_num_points(static_cast<std::uint32_t>(positions.size()));
+  // Triangles that collapse on the lattice carry nothing, and Draco's connectivity coder trips over meshes of
+  // them.
+  for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+    const std::array<std::uint32_t, 3> v{mesh.indices[i], mesh.indices[i + 1], mesh.indices[i + 2]};
+    assert(v[0] < positions.size() && v[1] < positions.size() && v[2] < positions.size());
+    if (positions[v[0]] == positions[v[1]] || positions[v[1]] == positions[v[2]] ||
+        positions[v[2]] == positions[v[0]])
+      continue;
+    out->AddFace({draco::PointIndex(v[0]), draco::PointIndex(v[1]), draco::PointIndex(v[2])});
+  }
+  ids = addAttributes(*out, mesh, positions);
+  // Seams of normals or texture coordinates must not look like borders to the connectivity coder.
+  out->DeduplicateAttributeValues();
+  out->DeduplicatePointIds();
+  return out;
+}
+
+void setQuantization(draco::ExpertEncoder& encoder, const draco::Mesh& mesh, const Snapped& snapped,
+                     float step) {
+  const Lattice extent = snapped.high - snapped.low;
+  int bits = 1;
+  while ((std::int64_t{1} << bits) - 1 < std::max({extent.x, extent.y, extent.z})) ++bits;
+  const glm::vec3 origin(glm::dvec3(snapped.low) * static_cast<double>(step));
+  const float range = step * static_cast<float>((1 << bits) - 1);
+  for (int i = 0; i < mesh.num_attributes(); ++i) {
+    switch (mesh.attribute(i)->attribute_type()) {
+      case draco::GeometryAttribute::POSITION:
+        encoder.SetAttributeExplicitQuantization(i, bits, 3, &origin[0], range);
+        break;
+      case draco::GeometryAttribute::NORMAL:
+        encoder.SetAttributeQuantization(i, kNormalBits);
+        break;
+      case draco::GeometryAttribute::TEX_COORD:
+        encoder.SetAttributeQuantization(i, kTexcoordBits);
+        break;
+      default:
+        break;
+    }
+  }
+}
+
+bool liesOnLattice(std::span<const glm::vec3> positions, float step) {
+  return std::all_of(positions.begin(), positions.end(), [&](const glm::vec3& p) {
+    const glm::vec3 k = p / step;  // exact: step is a power of two
+    return k == glm::round(k);
+  });
+}
+
+}  // namespace
+
+float latticeStep(float extent, int bits) {
+  assert(extent > 0.0f && std::isfinite(extent) && bits >= 1 && bits <= kMaxPositionBits);
+  int exponent = 0;
+  const float mantissa = std::frexp(extent, &exponent);
+  return std::ldexp(1.0f, (mantissa == 0.5f ? exponent - 1 : exponent) - bits);
+}
+
+Result<EncodedMesh> encodeDraco(const bundle::MeshData& mesh, float step, const std::string& subject) {
+  if (!isPowerOfTwo(step))
+    return fail(subject, fmt::format("quantization step {} is not a power of two", step));
+  auto snapped = snap(mesh.positions, step, subject);
+  if (!snapped) return failAgain(std::move(snapped.error()));
+  const Lattice extent = snapped->high - snapped->low;
+  if (std::max({extent.x, extent.y, extent.z}) >= std::int64_t{1} << kMaxPositionBits)
+    return fail(subject, fmt::format("spans 2^{} quantization steps of {} or more", kMaxPositionBits, step),
+                "split the mesh or use a coarser step");
+  try {
+    EncodedMesh encoded;
+    const auto source = toDraco(mesh, snapped->positions, encoded.attributes);
+    if (source->num_faces() == 0)
+      return fail(subject, fmt::format("has no triangle larger than the quantization step {}", step),
+                  "remove the mesh or scale it up");
+    draco::ExpertEncoder encoder(*source);
+    encoder.SetEncodingMethod(draco::MESH_EDGEBREAKER_ENCODING);
+    encoder.SetSpeedOptions(kSpeed, kSpeed);
+    encoder.SetTrackEncodedProperties(true);
+    setQuantization(encoder, *source, *snapped, step);
+    draco::EncoderBuffer buffer;
+    if (const draco::Status status = encoder.EncodeToBuffer(&buffer); !status.ok())
+      return fail(subject, fmt::format("cannot be encoded by Draco ({})", status.error_msg()),
+                  "clean the mesh (non-manifold or overlapping triangles)");
+    const auto bytes = std::as_bytes(std::span(buffer.data(), buffer.size()));
+    encoded.bytes.assign(bytes.begin(), bytes.end());
+
+    bundle::Primitive announced;
+    announced.attributes = encoded.attributes;
+    announced.vertex_count = static_cast<std::uint32_t>(encoder.num_encoded_points());
+    announced.index_count = static_cast<std::uint32_t>(encoder.num_encoded_faces() * 3);
+    auto decoded = bundle::decodeDraco(encoded.bytes, announced, subject);
+    if (!decoded) return failAgain(std::move(decoded.error()));
+    if (!liesOnLattice(decoded->positions, step))
+      return fail(subject, fmt::format("does not decode to multiples of the quantization step {}", step));
+    encoded.decoded = std::move(*decoded);
+    return encoded;
+  } catch (const std::exception& exception) {
+    return fail(subject, fmt::format("cannot be encoded by Draco ({})", exception.what()));
+  }
+}
+
+}  // namespace lambent::baker

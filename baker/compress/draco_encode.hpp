@@ -1,0 +1,39 @@
+// Encodes meshes with Draco so that what ships is known before anything is baked on it. Positions lie on the
+// lattice { k * step }, step a power of two: all meshes with the same step share one lattice, so vertices
+// that coincide in two primitives still coincide, to the bit, after decoding, and no seam opens. Comes in: a
+// mesh; goes out: the Draco buffer, the attribute ids for KHR_draco_mesh_compression, and the mesh that the
+// buffer decodes to (vertices are reordered, identical ones merged, triangles that collapse on the lattice
+// dropped). Errors of the lossy attributes: position step/2 per axis; normals under 0.05 degrees (octahedral,
+// kNormalBits); texture coordinates half of 1/65535 of their larger range; colours 1/131070 (16-bit
+// normalised, RGBA; as in the glTF accessor: COLOR_0 has componentType 5123, normalized; the other attributes
+// are FLOAT).
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "runtime/base/result.hpp"
+#include "runtime/bundle/mesh.hpp"
+
+namespace lambent::baker {
+
+inline constexpr int kNormalBits = 12;
+inline constexpr int kTexcoordBits = 16;
+inline constexpr int kMaxPositionBits =
+    24;  // float holds every integer up to 2^24: lattice points stay exact
+
+struct EncodedMesh {
+  std::vector<std::byte> bytes;
+  bundle::DracoAttributes attributes;
+  bundle::MeshData decoded;
+};
+
+// The largest power of two with extent / step <= 2^bits: `bits` bits per axis for a group of that size.
+// extent > 0 finite, 1 <= bits <= kMaxPositionBits.
+float latticeStep(float extent, int bits);
+
+// Errors name `subject`: step not a power of two, lattice too fine for where the mesh lies, no triangle left.
+Result<EncodedMesh> encodeDraco(const bundle::MeshData& mesh, float step, const std::string& subject);
+
+}  // namespace lambent::baker
