@@ -1,5 +1,5 @@
-// Import of .gltf and .glb by tinygltf. Everything that the file claims is checked before use: a broken file gives one
-// error that names the object in it (accessor 3, image "bark"), never a crash.
+// Import of .gltf and .glb by tinygltf. Everything that the file claims is checked before use: a broken file
+// gives one error that names the object in it (accessor 3, image "bark"), never a crash.
 #pragma once
 
 #include <filesystem>

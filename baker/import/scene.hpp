@@ -1,5 +1,6 @@
-// The scene as the baker sees it: any glTF file brought to triangles with normals, in mesh space, linear colours.
-// Images stay encoded (they travel to the bundle as they are); decodeImage() gives texels where a pass needs them.
+// The scene as the baker sees it: any glTF file brought to triangles with normals, in mesh space, linear
+// colours. Images stay encoded (they travel to the bundle as they are); decodeImage() gives texels where a
+// pass needs them.
 #pragma once
 
 #include <cstddef>
@@ -26,7 +27,7 @@ struct SceneMesh {
 
 struct SceneImage {
   std::string name;
-  std::string mime_type;             // image/png or image/jpeg
+  std::string mime_type;              // image/png or image/jpeg
   std::vector<std::byte> file_bytes;  // as it stands in the source
 };
 

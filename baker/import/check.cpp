@@ -1,0 +1,120 @@
+#include "baker/import/check.hpp"
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+#include "baker/import/check_fields.hpp"
+
+namespace lambent::baker {
+namespace {
+
+void checkAsset(const Root& root) {
+  const auto asset = root.object.object("asset");
+  const std::string version = asset ? asset->text("version") : std::string();
+  if (version.empty()) throw BrokenField{"is not glTF: no asset.version"};
+  const std::string minimum = asset->text("minVersion");
+  if (!version.starts_with("2.") || !(minimum.empty() || minimum == "2.0"))
+    throw BrokenField{
+        fmt::format("needs glTF {}, this program reads 2.0", minimum.empty() ? version : minimum),
+        "export the scene as glTF 2.0"};
+}
+
+void checkExtensions(const Root& root) {
+  for (const nlohmann::json& entry : root.object.list("extensionsRequired")) {
+    const std::string name = entry.is_string() ? entry.get<std::string>() : entry.dump();
+    if (std::find(kExtensions.begin(), kExtensions.end(), name) == kExtensions.end())
+      throw BrokenField{fmt::format("requires the extension {}, which this program does not know", name),
+                        "export the scene without it"};
+  }
+}
+
+void checkDraco(const Object& draco, const Root& root) {
+  if (!draco.index("bufferView", root.size("bufferViews"), "bufferViews"))
+    throw BrokenField{fmt::format("{} has no bufferView", draco.name)};
+  const auto attributes = draco.object("attributes");
+  if (!attributes) throw BrokenField{fmt::format("{} has no attributes", draco.name)};
+  for (const auto& [key, value] : attributes->json.items())
+    if (attributes->toNumber(value, key) > 0xffff)
+      throw BrokenField{fmt::format("{}: {} has a wild attribute id", draco.name, key)};
+}
+
+void checkPrimitive(const Object& primitive, const Root& root) {
+  const std::size_t accessors = root.size("accessors");
+  const auto attributes = primitive.object("attributes");
+  if (!attributes) throw BrokenField{fmt::format("{} has no attributes", primitive.name)};
+  for (const auto& item : attributes->json.items())
+    attributes->index(item.key().c_str(), accessors, "accessors");
+  const auto indices = primitive.index("indices", accessors, "accessors");
+  primitive.index("material", root.size("materials"), "materials");
+  if (primitive.number("mode").value_or(4) > 6)
+    throw BrokenField{fmt::format("{} has an unknown mode", primitive.name)};
+  const auto extensions = primitive.object("extensions");
+  const auto draco = extensions ? extensions->object("KHR_draco_mesh_compression") : std::nullopt;
+  if (draco) checkDraco(*draco, root);
+  if (indices && !draco && !root.object.list("accessors")[*indices].contains("bufferView"))
+    throw BrokenField{fmt::format("accessor {} holds indices but has no bufferView", *indices)};
+}
+
+void checkTextureInfo(const Object& owner, const char* key, const Root& root) {
+  const auto info = owner.object(key);
+  if (!info) return;
+  if (!info->index("index", root.size("textures"), "textures"))
+    throw BrokenField{fmt::format("{} has no index", info->name)};
+  info->number("texCoord");
+}
+
+void checkMaterials(const Root& root) {
+  root.forEach("images", "image", [&](const Object& image) {
+    const bool in_view = image.index("bufferView", root.size("bufferViews"), "bufferViews").has_value();
+    if (in_view != image.text("uri").empty())
+      throw BrokenField{fmt::format("{} has neither or both of uri and bufferView", image.name)};
+    image.text("mimeType");
+  });
+  root.forEach("samplers", "sampler", [](const Object& sampler) {
+    for (const char* key : {"wrapS", "wrapT", "magFilter", "minFilter"})
+      if (sampler.number(key).value_or(0) > 0xffff)
+        throw BrokenField{fmt::format("{}: {} is no GL constant", sampler.name, key)};
+  });
+  root.forEach("textures", "texture", [&](const Object& texture) {
+    texture.index("source", root.size("images"), "images");
+    texture.index("sampler", root.size("samplers"), "samplers");
+  });
+  root.forEach("materials", "material", [&](const Object& material) {
+    if (const auto pbr = material.object("pbrMetallicRoughness")) {
+      checkTextureInfo(*pbr, "baseColorTexture", root);
+      checkTextureInfo(*pbr, "metallicRoughnessTexture", root);
+    }
+    for (const char* key : {"normalTexture", "occlusionTexture", "emissiveTexture"})
+      checkTextureInfo(material, key, root);
+  });
+}
+
+void checkMeshes(const Root& root) {
+  root.forEach("meshes", "mesh", [&](const Object& mesh) {
+    std::size_t i = 0;
+    for (const nlohmann::json& primitive : mesh.list("primitives"))
+      checkPrimitive({primitive, fmt::format("{}, primitive {}", mesh.name, i++)}, root);
+  });
+}
+
+}  // namespace
+
+Result<void> checkDocument(const nlohmann::json& document, const std::string& file) {
+  try {
+    const Root root{{document, "the document"}};
+    checkAsset(root);
+    checkExtensions(root);
+    checkBuffers(root);
+    checkMaterials(root);
+    checkMeshes(root);
+    checkNodes(root);
+    return {};
+  } catch (const BrokenField& broken) {
+    return fail(file, broken.problem, broken.mend);
+  } catch (const nlohmann::json::exception& exception) {
+    return fail(file, fmt::format("is not glTF 2.0 ({})", exception.what()), BrokenField{}.mend);
+  }
+}
+
+}  // namespace lambent::baker

@@ -1,0 +1,102 @@
+// Typed, ranged access to the fields of a glTF document, for the checks only. A wrong field throws
+// BrokenField, which checkDocument() catches and turns into an Error; nothing else in the room throws.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace lambent::baker {
+
+struct BrokenField {
+  std::string problem;
+  std::string mend = "export the scene again, or look at it with a glTF validator";
+};
+
+// One object of the document with the name that errors call it by.
+struct Object {
+  const nlohmann::json& json;
+  std::string name;  // "accessor 3"
+
+  const nlohmann::json* find(const char* key) const {
+    if (!json.is_object()) throw BrokenField{fmt::format("{} is not an object", name)};
+    const auto it = json.find(key);
+    return it == json.end() ? nullptr : &*it;
+  }
+
+  std::optional<Object> object(const char* key) const {
+    const nlohmann::json* value = find(key);
+    if (value == nullptr) return std::nullopt;
+    if (!value->is_object()) throw BrokenField{fmt::format("{}: {} is not an object", name, key)};
+    return Object{*value, fmt::format("{}: {}", name, key)};
+  }
+
+  // A count, offset or index: an integer from 0 to 2^53.
+  std::optional<std::uint64_t> number(const char* key) const {
+    const nlohmann::json* value = find(key);
+    if (value == nullptr) return std::nullopt;
+    return toNumber(*value, key);
+  }
+
+  std::uint64_t required(const char* key) const {
+    const auto value = number(key);
+    if (!value) throw BrokenField{fmt::format("{} has no {}", name, key)};
+    return *value;
+  }
+
+  // An index into the top-level list that holds `size` objects.
+  std::optional<std::uint64_t> index(const char* key, std::size_t size, const char* list) const {
+    const auto value = number(key);
+    if (value && *value >= size)
+      throw BrokenField{
+          fmt::format("{}: {} {} does not exist (there are {} {})", name, key, *value, size, list)};
+    return value;
+  }
+
+  std::string text(const char* key) const {
+    const nlohmann::json* value = find(key);
+    if (value == nullptr) return {};
+    if (!value->is_string()) throw BrokenField{fmt::format("{}: {} is not a string", name, key)};
+    return value->get<std::string>();
+  }
+
+  // Elements of an array, empty where absent.
+  const nlohmann::json& list(const char* key) const {
+    static const nlohmann::json kEmpty = nlohmann::json::array();
+    const nlohmann::json* value = find(key);
+    if (value == nullptr) return kEmpty;
+    if (!value->is_array()) throw BrokenField{fmt::format("{}: {} is not an array", name, key)};
+    return *value;
+  }
+
+  std::uint64_t toNumber(const nlohmann::json& value, const std::string& key) const {
+    constexpr std::uint64_t kLargest = std::uint64_t{1} << 53;
+    if (!value.is_number_unsigned() || value.get<std::uint64_t>() > kLargest)
+      throw BrokenField{fmt::format("{}: {} is not a whole number from 0 up", name, key)};
+    return value.get<std::uint64_t>();
+  }
+};
+
+// The top level of the document, and how many objects each list has.
+struct Root {
+  Object object;
+
+  std::size_t size(const char* key) const { return object.list(key).size(); }
+  template <typename Check>
+  void forEach(const char* key, const char* name, Check check) const {
+    std::size_t i = 0;
+    for (const nlohmann::json& item : object.list(key)) {
+      const Object entry{item, fmt::format("{} {}", name, i++)};
+      if (!item.is_object()) throw BrokenField{fmt::format("{} is not an object", entry.name)};
+      check(entry);
+    }
+  }
+};
+
+void checkBuffers(const Root& root);  // buffers, views, accessors: every byte extent
+void checkNodes(const Root& root);    // nodes, scenes, animations: one tree, all references
+
+}  // namespace lambent::baker

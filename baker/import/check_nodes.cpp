@@ -1,0 +1,82 @@
+#include <cmath>
+#include <vector>
+
+#include "baker/import/check_fields.hpp"
+
+namespace lambent::baker {
+namespace {
+
+void checkNumbers(const Object& object, const char* key, std::size_t count) {
+  const nlohmann::json* values = object.find(key);
+  if (values == nullptr) return;
+  bool good = values->is_array() && values->size() == count;
+  for (std::size_t i = 0; good && i < count; ++i)
+    good = (*values)[i].is_number() && std::isfinite((*values)[i].get<float>());
+  if (!good) throw BrokenField{fmt::format("{}: {} is not {} finite numbers", object.name, key, count)};
+}
+
+void checkIndices(const Object& object, const char* key, std::size_t size) {
+  for (const nlohmann::json& entry : object.list(key))
+    if (object.toNumber(entry, key) >= size)
+      throw BrokenField{
+          fmt::format("{}: node {} does not exist (there are {})", object.name, entry.dump(), size)};
+}
+
+// Every node has one parent at most and climbing ends: a forest.
+void checkForest(const Root& root) {
+  const std::size_t size = root.size("nodes");
+  std::vector<std::size_t> parent(size, size);
+  std::size_t n = 0;
+  root.forEach("nodes", "node", [&](const Object& node) {
+    for (const nlohmann::json& entry : node.list("children")) {
+      const auto child = entry.get<std::size_t>();
+      if (parent[child] != size)
+        throw BrokenField{
+            fmt::format("node {} is a child of node {} and of node {}", child, parent[child], n),
+            "give each node one parent"};
+      parent[child] = n;
+    }
+    ++n;
+  });
+  // 0: not seen, 1: on the way up from the current start, 2: known to end at a root.
+  std::vector<std::uint8_t> state(size, 0);
+  for (std::size_t start = 0; start < size; ++start) {
+    std::size_t i = start;
+    while (i != size && state[i] == 0) {
+      state[i] = 1;
+      i = parent[i];
+    }
+    if (i != size && state[i] == 1)
+      throw BrokenField{fmt::format("node {} is its own ancestor", i), "break the circle of nodes"};
+    for (i = start; i != size && state[i] == 1; i = parent[i]) state[i] = 2;
+  }
+}
+
+void checkAnimation(const Object& animation, std::size_t nodes) {
+  for (const nlohmann::json& entry : animation.list("channels")) {
+    const auto target = Object{entry, animation.name + ": a channel"}.object("target");
+    if (target) target->index("node", nodes, "nodes");
+  }
+}
+
+}  // namespace
+
+void checkNodes(const Root& root) {
+  const std::size_t nodes = root.size("nodes");
+  root.forEach("nodes", "node", [&](const Object& node) {
+    node.index("mesh", root.size("meshes"), "meshes");
+    node.index("camera", root.size("cameras"), "cameras");
+    node.text("name");
+    checkIndices(node, "children", nodes);
+    checkNumbers(node, "matrix", 16);
+    checkNumbers(node, "translation", 3);
+    checkNumbers(node, "rotation", 4);
+    checkNumbers(node, "scale", 3);
+  });
+  checkForest(root);
+  root.forEach("scenes", "scene", [&](const Object& scene) { checkIndices(scene, "nodes", nodes); });
+  root.object.index("scene", root.size("scenes"), "scenes");
+  root.forEach("animations", "animation", [&](const Object& animation) { checkAnimation(animation, nodes); });
+}
+
+}  // namespace lambent::baker

@@ -1,0 +1,99 @@
+#include "baker/import/container.hpp"
+
+#include <cstdint>
+#include <cstring>
+#include <fstream>
+#include <span>
+#include <system_error>
+
+#include <fmt/format.h>
+
+namespace lambent::baker {
+namespace {
+
+constexpr std::size_t kHeaderBytes = 12, kChunkHeaderBytes = 8;
+constexpr std::uint32_t kMagic = 0x46546C67;   // "glTF"
+constexpr std::uint32_t kJson = 0x4E4F534A;    // "JSON"
+constexpr std::uint32_t kBinary = 0x004E4942;  // "BIN\0"
+
+const char* kExport = "export the scene again";
+
+std::uint32_t readU32(std::span<const std::byte> bytes, std::size_t at) {
+  std::uint32_t value = 0;
+  for (std::size_t i = 0; i < 4; ++i) value |= std::to_integer<std::uint32_t>(bytes[at + i]) << (8 * i);
+  return value;
+}
+
+// The chunk at `at`, which moves past it.
+struct Chunk {
+  std::uint32_t type = 0;
+  std::span<const std::byte> bytes;
+};
+
+Result<Chunk> readChunk(std::span<const std::byte> glb, std::size_t& at, const std::string& file) {
+  if (glb.size() - at < kChunkHeaderBytes)
+    return fail(file, fmt::format("GLB chunk at byte {} has no header", at), kExport);
+  const std::uint32_t length = readU32(glb, at);
+  const std::uint32_t type = readU32(glb, at + 4);
+  at += kChunkHeaderBytes;
+  if (length > glb.size() - at)
+    return fail(file, fmt::format("GLB chunk at byte {} claims {} bytes of {}", at, length, glb.size() - at),
+                kExport);
+  const Chunk chunk{type, glb.subspan(at, length)};
+  at += length;
+  return chunk;
+}
+
+Result<Container> takeApart(std::span<const std::byte> glb, const std::string& file) {
+  if (glb.size() < kHeaderBytes) return fail(file, "GLB is truncated", kExport);
+  if (readU32(glb, 4) != 2)
+    return fail(file, fmt::format("GLB has version {}, not 2", readU32(glb, 4)),
+                "convert the scene to glTF 2.0");
+  const std::uint32_t length = readU32(glb, 8);
+  if (length > glb.size() || length < kHeaderBytes)
+    return fail(file, fmt::format("GLB is truncated: {} bytes of {}", glb.size(), length), kExport);
+  glb = glb.first(length);
+
+  std::size_t at = kHeaderBytes;
+  auto json = readChunk(glb, at, file);
+  if (!json) return failAgain(std::move(json.error()));
+  if (json->type != kJson) return fail(file, "GLB does not start with a JSON chunk", kExport);
+  Container container;
+  container.json.assign(reinterpret_cast<const char*>(json->bytes.data()), json->bytes.size());
+  if (at < glb.size()) {
+    auto binary = readChunk(glb, at, file);
+    if (!binary) return failAgain(std::move(binary.error()));
+    // Chunks of unknown type must be ignored; the binary chunk, if any, is the second.
+    if (binary->type == kBinary) container.binary.assign(binary->bytes.begin(), binary->bytes.end());
+  }
+  return container;
+}
+
+}  // namespace
+
+Result<std::vector<std::byte>> readBytes(const std::filesystem::path& path, const std::string& subject) {
+  std::error_code error;
+  if (!std::filesystem::exists(path, error)) return fail(subject, "no such file", "check the path");
+  if (!std::filesystem::is_regular_file(path, error)) return fail(subject, "is not a file", "name a file");
+  const auto size = std::filesystem::file_size(path, error);
+  std::ifstream in(path, std::ios::binary);
+  if (error || !in) return fail(subject, "cannot be opened", "check its permissions");
+  std::vector<std::byte> bytes(size);
+  in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
+  if (static_cast<std::uintmax_t>(in.gcount()) != size)
+    return fail(subject, "cannot be read to its end", "try again");
+  return bytes;
+}
+
+Result<Container> openContainer(const std::filesystem::path& path) {
+  const std::string file = path.string();
+  auto bytes = readBytes(path, file);
+  if (!bytes) return failAgain(std::move(bytes.error()));
+  if (bytes->size() >= 4 && readU32(*bytes, 0) == kMagic) return takeApart(*bytes, file);
+  if (bytes->empty()) return fail(file, "is empty", kExport);
+  Container container;
+  container.json.assign(reinterpret_cast<const char*>(bytes->data()), bytes->size());
+  return container;
+}
+
+}  // namespace lambent::baker

@@ -1,0 +1,199 @@
+#include "baker/import/document.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cstdint>
+#include <exception>
+#include <limits>
+#include <utility>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "baker/import/check.hpp"
+#include "baker/import/container.hpp"
+#include "baker/import/tinygltf.hpp"
+#include "baker/import/uri.hpp"
+
+namespace lambent::baker {
+namespace {
+
+using nlohmann::json;
+
+// tinygltf walks `extras` by recursion: a file must not choose how deep.
+constexpr int kMaxDepth = 64;
+
+Result<json> parseJson(const std::string& text, const std::string& file) {
+  bool too_deep = false;
+  try {
+    json document = json::parse(text, [&](int depth, json::parse_event_t, json&) {
+      too_deep = too_deep || depth > kMaxDepth;
+      return !too_deep;
+    });
+    if (too_deep)
+      return fail(file, fmt::format("nests JSON deeper than {} levels", kMaxDepth), "simplify its extras");
+    return document;
+  } catch (const json::exception& exception) {
+    return fail(file, fmt::format("is neither glTF nor GLB ({})", exception.what()),
+                "export the scene again");
+  }
+}
+
+// Gives tinygltf the buffers by number; they are found, bounded and read here, never by tinygltf.
+class BufferSource {
+ public:
+  BufferSource(json& document, std::vector<std::byte> binary, const std::filesystem::path& path)
+      : binary_(std::move(binary)), path_(path) {
+    std::size_t i = 0;
+    if (!document.contains("buffers")) return;
+    for (json& buffer : document["buffers"]) {
+      const std::string uri = buffer.value("uri", std::string());
+      wanted_.push_back({uri, buffer["byteLength"].get<std::size_t>()});
+      if (!uri.starts_with("data:")) buffer["uri"] = std::to_string(i);
+      ++i;
+    }
+  }
+
+  // A data: URI that tinygltf would not recognize, or that is not as long as announced, is named before it
+  // tries.
+  Result<void> checkEmbedded() const {
+    for (std::size_t i = 0; i < wanted_.size(); ++i) {
+      const auto& [uri, length] = wanted_[i];
+      if (!uri.starts_with("data:")) continue;
+      std::vector<unsigned char> bytes;
+      std::string mime_type;
+      if (!tinygltf::IsDataURI(uri) ||
+          !tinygltf::DecodeDataURI(&bytes, mime_type, uri, length, /*checkSize=*/true))
+        return fail(path_.string(),
+                    fmt::format("buffer {}: its data URI does not hold {} bytes in base64", i, length),
+                    "export the scene again");
+    }
+    return {};
+  }
+
+  const std::optional<Error>& error() const { return error_; }
+
+  tinygltf::FsCallbacks callbacks() {
+    return {.FileExists = [](const std::string&, void*) { return true; },
+            .ExpandFilePath = [](const std::string& name, void*) { return name; },
+            .ReadWholeFile = [](std::vector<unsigned char>* out, std::string*, const std::string& name,
+                                void* self) { return static_cast<BufferSource*>(self)->read(*out, name); },
+            .WriteWholeFile = nullptr,
+            .user_data = this};
+  }
+
+ private:
+  struct Wanted {
+    std::string uri;
+    std::size_t length = 0;
+  };
+
+  bool read(std::vector<unsigned char>& out, const std::string& name) {
+    std::size_t i = 0;
+    std::from_chars(name.data(), name.data() + name.size(), i);
+    if (i >= wanted_.size()) return false;
+    auto bytes = load(i);
+    if (!bytes) {
+      error_ = std::move(bytes.error());
+      return false;
+    }
+    const auto* first = reinterpret_cast<const unsigned char*>(bytes->data());
+    out.assign(first, first + wanted_[i].length);
+    return true;
+  }
+
+  Result<std::vector<std::byte>> load(std::size_t i) {
+    const auto& [uri, length] = wanted_[i];
+    const std::string object = fmt::format("buffer {}", i);
+    std::vector<std::byte> bytes;
+    if (uri.empty()) {
+      if (i != 0 || binary_.empty())
+        return fail(path_.string(), object + " has neither a URI nor a binary chunk",
+                    "export the scene again");
+      bytes = std::move(binary_);
+    } else {
+      auto file = resolveUri(path_.parent_path(), uri, path_.string(), object);
+      if (!file) return failAgain(std::move(file.error()));
+      auto read =
+          readBytes(*file, fmt::format("{}: {} ({})", path_.string(), object, file->filename().string()));
+      if (!read) return failAgain(std::move(read.error()));
+      bytes = std::move(*read);
+    }
+    if (bytes.size() < length)
+      return fail(path_.string(), fmt::format("{} has {} bytes of {}", object, bytes.size(), length),
+                  "the file is truncated; copy or export it again");
+    return bytes;
+  }
+
+  std::vector<Wanted> wanted_;
+  std::vector<std::byte> binary_;
+  const std::filesystem::path& path_;
+  std::optional<Error> error_;
+};
+
+void setDracoIndicesAside(json& document) {
+  for (json& mesh : document.value("meshes", json::array()).empty() ? json::array() : document["meshes"]) {
+    if (!mesh.contains("primitives")) continue;
+    for (json& primitive : mesh["primitives"]) {
+      if (!primitive.contains("extensions")) continue;
+      const auto draco = primitive["extensions"].find("KHR_draco_mesh_compression");
+      if (draco == primitive["extensions"].end() || !primitive.contains("indices")) continue;
+      (*draco)[kDracoIndices] = primitive["indices"];
+      primitive.erase("indices");
+    }
+  }
+}
+
+bool keepEncoded(tinygltf::Image* image, const int, std::string*, std::string*, int, int,
+                 const unsigned char* bytes, int size, void*) {
+  image->image.assign(bytes, bytes + size);
+  image->as_is = true;
+  return true;
+}
+
+// What tinygltf says, cut to one short line.
+std::string firstLine(const std::string& text) {
+  return text.substr(0, std::min<std::size_t>(text.find('\n'), 160));
+}
+
+}  // namespace
+
+Document::Document(std::filesystem::path path, std::unique_ptr<tinygltf::Model> model)
+    : path_(std::move(path)), model_(std::move(model)) {}
+Document::Document(Document&&) noexcept = default;
+Document& Document::operator=(Document&&) noexcept = default;
+Document::~Document() = default;
+
+Result<Document> Document::open(const std::filesystem::path& path) {
+  const std::string file = path.string();
+  auto container = openContainer(path);
+  if (!container) return failAgain(std::move(container.error()));
+  auto document = parseJson(container->json, file);
+  if (!document) return failAgain(std::move(document.error()));
+  if (auto checked = checkDocument(*document, file); !checked) return failAgain(std::move(checked.error()));
+  try {
+    setDracoIndicesAside(*document);
+    BufferSource buffers(*document, std::move(container->binary), path);
+    if (auto embedded = buffers.checkEmbedded(); !embedded) return failAgain(std::move(embedded.error()));
+    const std::string text = document->dump();
+    if (text.size() > std::numeric_limits<unsigned>::max())
+      return fail(file, "has more than 4 GiB of JSON", "keep buffers in files of their own");
+
+    auto model = std::make_unique<tinygltf::Model>();
+    tinygltf::TinyGLTF loader;
+    loader.SetFsCallbacks(buffers.callbacks());
+    loader.SetImageLoader(keepEncoded, nullptr);
+    std::string error, warning;
+    const bool loaded =
+        loader.LoadASCIIFromString(model.get(), &error, &warning, text.data(),
+                                   static_cast<unsigned>(text.size()), /*base_dir=*/"", tinygltf::NO_REQUIRE);
+    if (buffers.error()) return failAgain(*buffers.error());
+    if (!loaded)
+      return fail(file, fmt::format("is not valid glTF ({})", firstLine(error)), "export the scene again");
+    return Document(path, std::move(model));
+  } catch (const std::exception& exception) {
+    return fail(file, fmt::format("cannot be read ({})", exception.what()), "export the scene again");
+  }
+}
+
+}  // namespace lambent::baker

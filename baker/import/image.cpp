@@ -1,0 +1,107 @@
+#include "baker/import/image.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <exception>
+
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+#include <fmt/format.h>
+
+namespace lambent::baker {
+namespace {
+
+constexpr int kLargestSide = 1 << 15;
+constexpr std::uint32_t kClampToEdge = 33071, kMirroredRepeat = 33648, kNearest = 9728;
+
+// IEC 61966-2-1.
+float linearFromSrgb(float c) {
+  return c <= 0.04045f ? c / 12.92f : std::pow((c + 0.055f) / 1.055f, 2.4f);
+}
+
+const std::array<float, 256>& srgbTable() {
+  static const std::array<float, 256> kTable = [] {
+    std::array<float, 256> table{};
+    for (std::size_t i = 0; i < table.size(); ++i) table[i] = linearFromSrgb(static_cast<float>(i) / 255.0f);
+    return table;
+  }();
+  return kTable;
+}
+
+std::uint32_t wrap(std::int64_t texel, std::uint32_t size, std::uint32_t mode) {
+  const auto n = static_cast<std::int64_t>(size);
+  if (mode == kClampToEdge) return static_cast<std::uint32_t>(std::clamp<std::int64_t>(texel, 0, n - 1));
+  const std::int64_t period = mode == kMirroredRepeat ? 2 * n : n;
+  std::int64_t t = texel % period;
+  if (t < 0) t += period;
+  return static_cast<std::uint32_t>(t < n ? t : period - 1 - t);
+}
+
+glm::vec4 texel(const DecodedImage& image, const gltf::Sampler& sampler, std::int64_t x, std::int64_t y) {
+  const std::size_t column = wrap(x, image.width, sampler.wrap_s),
+                    row = wrap(y, image.height, sampler.wrap_t);
+  const std::uint8_t* p = &image.rgba[(row * image.width + column) * 4];
+  return {srgbTable()[p[0]], srgbTable()[p[1]], srgbTable()[p[2]], static_cast<float>(p[3]) / 255.0f};
+}
+
+Result<DecodedImage> decode(const SceneImage& image) {
+  const std::string subject = fmt::format("image \"{}\"", image.name);
+  OIIO::Filesystem::IOMemReader memory(const_cast<std::byte*>(image.file_bytes.data()),
+                                       image.file_bytes.size());
+  OIIO::ImageSpec wanted;
+  wanted.attribute("oiio:UnassociatedAlpha", 1);  // glTF colours are not multiplied by alpha
+  const char* name = image.mime_type == "image/png" ? "memory.png" : "memory.jpg";
+  const auto input = OIIO::ImageInput::open(name, &wanted, &memory);
+  if (!input)
+    return fail(subject, fmt::format("cannot be decoded ({})", OIIO::geterror()),
+                "save it again as PNG or JPEG");
+
+  const OIIO::ImageSpec& spec = input->spec();
+  if (spec.width <= 0 || spec.height <= 0 || spec.width > kLargestSide || spec.height > kLargestSide ||
+      spec.nchannels < 1)
+    return fail(subject, fmt::format("has {} x {} pixels", spec.width, spec.height),
+                "save it again in a usual size");
+  const auto width = static_cast<std::size_t>(spec.width), height = static_cast<std::size_t>(spec.height);
+  const auto channels = static_cast<std::size_t>(spec.nchannels);
+  std::vector<std::uint8_t> stored(width * height * channels);
+  if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::UINT8, stored.data()))
+    return fail(subject, fmt::format("is damaged ({})", input->geterror()), "save it again");
+
+  DecodedImage out{
+      .width = static_cast<std::uint32_t>(width), .height = static_cast<std::uint32_t>(height), .rgba = {}};
+  out.rgba.resize(width * height * 4);
+  const bool gray = channels < 3, alpha = channels == 2 || channels >= 4;
+  for (std::size_t i = 0; i < width * height; ++i) {
+    const std::uint8_t* p = &stored[i * channels];
+    for (std::size_t c = 0; c < 3; ++c) out.rgba[i * 4 + c] = gray ? p[0] : p[c];
+    out.rgba[i * 4 + 3] = alpha ? p[channels == 2 ? 1 : 3] : std::uint8_t{255};
+  }
+  return out;
+}
+
+}  // namespace
+
+Result<DecodedImage> decodeImage(const SceneImage& image) {
+  try {
+    return decode(image);
+  } catch (const std::exception& exception) {
+    return fail(fmt::format("image \"{}\"", image.name),
+                fmt::format("cannot be decoded ({})", exception.what()), "save it again as PNG or JPEG");
+  }
+}
+
+glm::vec4 sampleImage(const DecodedImage& image, const gltf::Sampler& sampler, glm::vec2 uv) {
+  // Texel centres lie at half-integers; coordinates are cut so that wild ones stay in integer range.
+  const glm::dvec2 size(image.width, image.height);
+  const glm::dvec2 at =
+      glm::clamp(glm::dvec2(uv) * size, -1e15, 1e15) - (sampler.mag_filter == kNearest ? 0.0 : 0.5);
+  const glm::dvec2 base = glm::floor(at);
+  const auto x = static_cast<std::int64_t>(base.x), y = static_cast<std::int64_t>(base.y);
+  if (sampler.mag_filter == kNearest) return texel(image, sampler, x, y);
+  const glm::vec2 f(at - base);
+  return glm::mix(glm::mix(texel(image, sampler, x, y), texel(image, sampler, x + 1, y), f.x),
+                  glm::mix(texel(image, sampler, x, y + 1), texel(image, sampler, x + 1, y + 1), f.x), f.y);
+}
+
+}  // namespace lambent::baker

@@ -1,0 +1,142 @@
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <set>
+
+#include <fmt/format.h>
+#include <glm/gtc/matrix_transform.hpp>
+#include <glm/gtc/type_ptr.hpp>
+
+#include "baker/import/convert.hpp"
+#include "baker/import/tinygltf.hpp"
+
+namespace lambent::baker {
+namespace {
+
+glm::mat4 localMatrix(const tinygltf::Node& node) {
+  if (node.matrix.size() == 16) return glm::mat4(glm::make_mat4(node.matrix.data()));
+  glm::dmat4 matrix(1.0);
+  if (node.translation.size() == 3) matrix = glm::translate(matrix, glm::make_vec3(node.translation.data()));
+  if (node.rotation.size() == 4) {
+    const auto& r = node.rotation;
+    const glm::dquat rotation(r[3], r[0], r[1], r[2]);
+    // A quaternion of length zero turns nothing.
+    if (glm::length(rotation) > 0.0) matrix *= glm::mat4_cast(glm::normalize(rotation));
+  }
+  if (node.scale.size() == 3) matrix = glm::scale(matrix, glm::make_vec3(node.scale.data()));
+  return glm::mat4(matrix);
+}
+
+bool isMovable(const tinygltf::Node& node) {
+  if (!node.extras.IsObject() || !node.extras.Has("lambent")) return false;
+  const tinygltf::Value& lambent = node.extras.Get("lambent");
+  return lambent.IsObject() && lambent.Has("movable") && lambent.Get("movable").IsBool() &&
+         lambent.Get("movable").Get<bool>();
+}
+
+std::set<int> animatedNodes(const tinygltf::Model& model) {
+  std::set<int> nodes;
+  for (const tinygltf::Animation& animation : model.animations)
+    for (const tinygltf::AnimationChannel& channel : animation.channels)
+      if (channel.target_path != "weights") nodes.insert(channel.target_node);
+  return nodes;
+}
+
+// Roots of the default scene, of the first one, or, in a file without scenes, all nodes without a parent.
+std::vector<int> rootsOf(const tinygltf::Model& model) {
+  std::vector<int> roots;
+  if (!model.scenes.empty()) {
+    roots = model.scenes[static_cast<std::size_t>(std::max(model.defaultScene, 0))].nodes;
+  } else {
+    std::vector<bool> has_parent(model.nodes.size(), false);
+    for (const tinygltf::Node& node : model.nodes)
+      for (int child : node.children) has_parent[static_cast<std::size_t>(child)] = true;
+    for (std::size_t i = 0; i < has_parent.size(); ++i)
+      if (!has_parent[i]) roots.push_back(static_cast<int>(i));
+  }
+  return roots;
+}
+
+Result<gltf::Camera> convertCamera(const tinygltf::Camera& camera, const std::string& file,
+                                   std::size_t index) {
+  gltf::Camera out;
+  out.name = camera.name;
+  out.perspective = camera.type == "perspective";
+  if (out.perspective) {
+    out.yfov_rad = static_cast<float>(camera.perspective.yfov);
+    out.aspect = static_cast<float>(camera.perspective.aspectRatio);
+    out.znear = static_cast<float>(camera.perspective.znear);
+    out.zfar = static_cast<float>(camera.perspective.zfar);
+  } else {
+    out.xmag = static_cast<float>(camera.orthographic.xmag);
+    out.ymag = static_cast<float>(camera.orthographic.ymag);
+    out.znear = static_cast<float>(camera.orthographic.znear);
+    out.zfar = static_cast<float>(camera.orthographic.zfar);
+  }
+  const bool finite = std::isfinite(out.aspect) && std::isfinite(out.znear) && std::isfinite(out.zfar) &&
+                      std::isfinite(out.xmag) && std::isfinite(out.ymag);
+  const bool lens = out.perspective
+                        ? out.yfov_rad > 0.0f && out.yfov_rad < std::numbers::pi_v<float> && out.znear > 0.0f
+                        : out.xmag != 0.0f && out.ymag != 0.0f && out.znear >= 0.0f;
+  if (!finite || !lens || out.aspect < 0.0f || (out.zfar != 0.0f && out.zfar <= out.znear))
+    return fail(file, fmt::format("camera {} has impossible values", index),
+                "correct its field of view and planes");
+  return out;
+}
+
+}  // namespace
+
+Result<void> convertNodes(const Document& document, Scene& scene) {
+  const tinygltf::Model& model = document.model();
+  for (std::size_t i = 0; i < model.cameras.size(); ++i) {
+    auto camera = convertCamera(model.cameras[i], document.file(), i);
+    if (!camera) return failAgain(std::move(camera.error()));
+    scene.cameras.push_back(std::move(*camera));
+  }
+
+  // Parents first, in the order of the file; nodes of other scenes are left out.
+  const std::set<int> animated = animatedNodes(model);
+  std::vector<std::pair<int, std::int32_t>> pending;  // node of the file, new parent
+  const std::vector<int> roots = rootsOf(model);
+  for (auto it = roots.rbegin(); it != roots.rend(); ++it) pending.emplace_back(*it, -1);
+  std::vector<bool> taken(model.nodes.size(), false);
+  while (!pending.empty()) {
+    const auto [index, parent] = pending.back();
+    pending.pop_back();
+    if (taken[static_cast<std::size_t>(index)])
+      return fail(document.file(), fmt::format("node {} stands twice in the scene", index),
+                  "list each root node once");
+    taken[static_cast<std::size_t>(index)] = true;
+
+    const tinygltf::Node& source = model.nodes[static_cast<std::size_t>(index)];
+    gltf::Node node;
+    node.name = source.name;
+    node.parent = parent;
+    node.parent_from_node = localMatrix(source);
+    for (int c = 0; c < 4; ++c)
+      for (int r = 0; r < 4; ++r)
+        if (!std::isfinite(node.parent_from_node[c][r]))
+          return fail(document.file(), fmt::format("node {} has a transform that is not finite", index),
+                      "reset its transform");
+    node.mesh = source.mesh;
+    node.camera = source.camera;
+    node.animated = animated.contains(index);
+    node.movable = isMovable(source);
+    if (source.skin >= 0)
+      scene.warnings.push_back(
+          fmt::format("node {} is skinned: taken as it stands, the skin is left out", index));
+
+    const auto added = static_cast<std::int32_t>(scene.nodes.size());
+    if (parent < 0) {
+      scene.roots.push_back(added);
+    } else {
+      scene.nodes[static_cast<std::size_t>(parent)].children.push_back(added);
+    }
+    scene.nodes.push_back(std::move(node));
+    for (auto child = source.children.rbegin(); child != source.children.rend(); ++child)
+      pending.emplace_back(*child, added);
+  }
+  return {};
+}
+
+}  // namespace lambent::baker

@@ -1,0 +1,148 @@
+#include "baker/import/subdivide.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cstdint>
+#include <tuple>
+#include <unordered_map>
+#include <utility>
+
+namespace lambent::baker {
+namespace {
+
+using bundle::MeshData;
+using Corners = std::array<std::uint32_t, 3>;
+
+// The same number from either end: differences only change sign.
+double squaredLength(const glm::vec3& a, const glm::vec3& b) {
+  const glm::dvec3 d = glm::dvec3(a) - glm::dvec3(b);
+  return glm::dot(d, d);
+}
+
+// a + b is the same to the bit from either end, so vertices that are doubled at a seam get the same midpoint.
+template <typename Vector>
+void pushMidpoint(std::vector<Vector>& values, std::uint32_t a, std::uint32_t b) {
+  if (values.empty()) return;
+  const Vector middle = (values[a] + values[b]) * 0.5f;
+  values.push_back(middle);
+}
+
+class Splitter {
+ public:
+  Splitter(MeshData& mesh, double limit) : mesh_(mesh), limit_(limit) {}
+
+  // How many triangles one pass would leave; as many as now if no edge is too long.
+  std::size_t countAfter() const {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < mesh_.indices.size(); i += 3) {
+      const Corners v = corners(i);
+      count += 1u + isLong(v[0], v[1]) + isLong(v[1], v[2]) + isLong(v[2], v[0]);
+    }
+    return count;
+  }
+
+  void pass(std::size_t triangles_after) {
+    midpoints_.clear();
+    out_.clear();
+    out_.reserve(triangles_after * 3);
+    for (std::size_t i = 0; i < mesh_.indices.size(); i += 3) split(corners(i));
+    mesh_.indices.swap(out_);
+  }
+
+ private:
+  Corners corners(std::size_t i) const {
+    return {mesh_.indices[i], mesh_.indices[i + 1], mesh_.indices[i + 2]};
+  }
+
+  bool isLong(std::uint32_t a, std::uint32_t b) const {
+    return squaredLength(mesh_.positions[a], mesh_.positions[b]) > limit_;
+  }
+
+  void split(Corners v) {
+    const std::array<bool, 3> marked{isLong(v[0], v[1]), isLong(v[1], v[2]), isLong(v[2], v[0])};
+    const int count = marked[0] + marked[1] + marked[2];
+    if (count == 0) return emit(v[0], v[1], v[2]);
+    // Turned so that the odd edge out has a fixed place: the only marked one first, the only unmarked one
+    // last.
+    std::size_t turn = 0;
+    if (count == 1) turn = marked[0] ? 0 : marked[1] ? 1 : 2;
+    if (count == 2) turn = !marked[2] ? 0 : !marked[0] ? 1 : 2;
+    v = {v[turn], v[(turn + 1) % 3], v[(turn + 2) % 3]};
+
+    const std::uint32_t m01 = midpoint(v[0], v[1]);
+    if (count == 1) {
+      emit(v[0], m01, v[2]);
+      return emit(m01, v[1], v[2]);
+    }
+    const std::uint32_t m12 = midpoint(v[1], v[2]);
+    emit(m01, v[1], m12);
+    if (count == 2) return emitQuad(v[0], m01, m12, v[2]);
+    const std::uint32_t m20 = midpoint(v[2], v[0]);
+    emit(v[0], m01, m20);
+    emit(m20, m12, v[2]);
+    emit(m01, m12, m20);
+  }
+
+  void emit(std::uint32_t a, std::uint32_t b, std::uint32_t c) { out_.insert(out_.end(), {a, b, c}); }
+
+  // Along the shorter diagonal; equal ones are told apart by position, so that copies of a triangle split
+  // alike.
+  void emitQuad(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
+    const auto key = [&](std::uint32_t p, std::uint32_t q) {
+      const glm::vec3& from = mesh_.positions[p];
+      const glm::vec3& to = mesh_.positions[q];
+      const glm::vec3 middle = from + to;
+      return std::tuple(squaredLength(from, to), middle.x, middle.y, middle.z);
+    };
+    if (key(a, c) <= key(b, d)) {
+      emit(a, b, c);
+      emit(a, c, d);
+    } else {
+      emit(a, b, d);
+      emit(b, c, d);
+    }
+  }
+
+  std::uint32_t midpoint(std::uint32_t a, std::uint32_t b) {
+    const auto [low, high] = std::minmax(a, b);
+    const auto next = static_cast<std::uint32_t>(mesh_.positions.size());
+    const auto [entry, added] = midpoints_.try_emplace((std::uint64_t{low} << 32) | high, next);
+    if (!added) return entry->second;
+    pushMidpoint(mesh_.positions, low, high);
+    pushMidpoint(mesh_.texcoords0, low, high);
+    pushMidpoint(mesh_.texcoords1, low, high);
+    pushMidpoint(mesh_.colors, low, high);
+    if (!mesh_.normals.empty()) {
+      const glm::vec3 sum = mesh_.normals[low] + mesh_.normals[high];
+      const float length = glm::length(sum);
+      const glm::vec3 normal =
+          length > 1e-6f ? sum / length : mesh_.normals[low];  // opposite normals have no mean
+      mesh_.normals.push_back(normal);
+    }
+    return next;
+  }
+
+  MeshData& mesh_;
+  double limit_;
+  std::vector<std::uint32_t> out_;
+  std::unordered_map<std::uint64_t, std::uint32_t> midpoints_;
+};
+
+}  // namespace
+
+bool splitLongEdges(bundle::MeshData& mesh, float max_edge, std::size_t max_triangles) {
+  assert(max_edge > 0.0f);
+  MeshData refined = mesh;
+  Splitter splitter(refined, static_cast<double>(max_edge) * static_cast<double>(max_edge));
+  for (;;) {
+    const std::size_t after = splitter.countAfter();
+    if (after > max_triangles) return false;
+    if (after == refined.indices.size() / 3) break;
+    splitter.pass(after);
+  }
+  mesh = std::move(refined);
+  return true;
+}
+
+}  // namespace lambent::baker
