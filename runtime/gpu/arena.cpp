@@ -1,0 +1,102 @@
+#include "runtime/gpu/arena.hpp"
+
+#include <algorithm>
+#include <cassert>
+
+#include <fmt/format.h>
+
+namespace lambent::gpu {
+
+namespace {
+
+std::uint64_t alignUp(std::uint64_t byte_count) {
+  return (byte_count + Arena::kAlignment - 1) / Arena::kAlignment * Arena::kAlignment;
+}
+
+}  // namespace
+
+FreeList::FreeList(std::uint64_t byte_count) : free_bytes_(byte_count) {
+  if (byte_count > 0) free_.emplace(0, byte_count);
+}
+
+std::optional<std::uint64_t> FreeList::allocate(std::uint64_t byte_count) {
+  assert(byte_count > 0);
+  const auto fit =
+      std::find_if(free_.begin(), free_.end(), [&](const auto& run) { return run.second >= byte_count; });
+  if (fit == free_.end()) return {};
+  const auto [offset, available] = *fit;
+  free_.erase(fit);
+  if (available > byte_count) free_.emplace(offset + byte_count, available - byte_count);
+  free_bytes_ -= byte_count;
+  return offset;
+}
+
+void FreeList::release(std::uint64_t offset, std::uint64_t byte_count) {
+  auto [run, inserted] = free_.emplace(offset, byte_count);
+  assert(inserted);
+  free_bytes_ += byte_count;
+  if (const auto next = std::next(run); next != free_.end()) {
+    assert(offset + byte_count <= next->first);
+    if (offset + byte_count == next->first) {
+      run->second += next->second;
+      free_.erase(next);
+    }
+  }
+  if (run != free_.begin()) {
+    const auto previous = std::prev(run);
+    assert(previous->first + previous->second <= offset);
+    if (previous->first + previous->second == offset) {
+      previous->second += run->second;
+      free_.erase(run);
+    }
+  }
+}
+
+std::uint64_t FreeList::largestFree() const {
+  std::uint64_t largest = 0;
+  for (const auto& [offset, byte_count] : free_) largest = std::max(largest, byte_count);
+  return largest;
+}
+
+Arena::Arena(std::string label, std::uint64_t page_bytes) : label_(std::move(label)) {
+  setPageBytes(page_bytes);
+}
+
+void Arena::setPageBytes(std::uint64_t page_bytes) {
+  page_bytes_ = std::clamp(alignUp(page_bytes), kAlignment, kMaxPageBytes);
+}
+
+Result<Allocation> Arena::allocate(std::uint64_t byte_count) {
+  const std::uint64_t aligned = alignUp(std::max<std::uint64_t>(byte_count, 1));
+  if (aligned > kMaxPageBytes)
+    return fail(label_, fmt::format("{} bytes in one piece; a page holds {}", byte_count, kMaxPageBytes),
+                "split the mesh or the group");
+  for (std::uint32_t i = 0; i < pages_.size(); ++i)
+    if (const auto offset = pages_[i].list.allocate(aligned)) {
+      bytes_used_ += aligned;
+      return Allocation{.page = i, .offset = *offset, .byte_count = aligned};
+    }
+  const std::uint64_t page_bytes = std::max(page_bytes_, aligned);
+  pages_.push_back(
+      {Buffer(fmt::format("{} page {}", label_, pages_.size()), page_bytes), FreeList(page_bytes)});
+  return allocate(byte_count);
+}
+
+void Arena::release(const Allocation& allocation) {
+  assert(allocation.page < pages_.size());
+  pages_[allocation.page].list.release(allocation.offset, allocation.byte_count);
+  bytes_used_ -= allocation.byte_count;
+}
+
+void Arena::write(const Allocation& allocation, std::uint64_t offset, std::span<const std::byte> bytes) {
+  assert(offset + bytes.size() <= allocation.byte_count);
+  pages_[allocation.page].buffer.writeBytes(allocation.offset + offset, bytes);
+}
+
+void Arena::clear(const Allocation& allocation) {
+  glClearNamedBufferSubData(
+      pages_[allocation.page].buffer.id(), GL_R32UI, static_cast<GLintptr>(allocation.offset),
+      static_cast<GLsizeiptr>(allocation.byte_count), GL_RED_INTEGER, GL_UNSIGNED_INT, nullptr);
+}
+
+}  // namespace lambent::gpu

@@ -1,0 +1,190 @@
+#include "runtime/gpu/context.hpp"
+
+#include <array>
+#include <string_view>
+
+#include <epoxy/egl.h>
+#include <epoxy/gl.h>
+#include <fmt/format.h>
+
+namespace lambent::gpu {
+
+namespace {
+
+constexpr std::size_t kMessagesKept = 8;
+
+bool hasExtension(const char* list, std::string_view name) {
+  std::string_view rest = list ? list : "";
+  while (!rest.empty()) {
+    const std::size_t end = rest.find(' ');
+    if (rest.substr(0, end) == name) return true;
+    if (end == std::string_view::npos) break;
+    rest.remove_prefix(end + 1);
+  }
+  return false;
+}
+
+struct DisplayChoice {
+  EGLDisplay display = EGL_NO_DISPLAY;
+  const char* platform = "";
+};
+
+// Displays in the order in which to try them: a real GPU first (Mesa's surfaceless platform would hide
+// another vendor's behind its software renderer), then surfaceless, then software devices, then whatever EGL
+// thinks is the default.
+std::vector<DisplayChoice> displayChoices() {
+  std::vector<DisplayChoice> choices, software;
+  const char* client = eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
+  const bool platforms = hasExtension(client, "EGL_EXT_platform_base");
+  if (platforms && hasExtension(client, "EGL_EXT_platform_device") &&
+      (hasExtension(client, "EGL_EXT_device_enumeration") || hasExtension(client, "EGL_EXT_device_base"))) {
+    std::array<EGLDeviceEXT, 16> devices{};
+    EGLint count = 0;
+    eglQueryDevicesEXT(static_cast<EGLint>(devices.size()), devices.data(), &count);
+    for (EGLint i = 0; i < count; ++i) {
+      const EGLDeviceEXT device = devices[static_cast<std::size_t>(i)];
+      const char* extensions = eglQueryDeviceStringEXT(device, EGL_EXTENSIONS);
+      const DisplayChoice choice{eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, device, nullptr),
+                                 "EGL device"};
+      (hasExtension(extensions, "EGL_MESA_device_software") ? software : choices).push_back(choice);
+    }
+  }
+  if (platforms && hasExtension(client, "EGL_MESA_platform_surfaceless"))
+    choices.push_back({eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr),
+                       "EGL surfaceless"});
+  choices.insert(choices.end(), software.begin(), software.end());
+  choices.push_back({eglGetDisplay(EGL_DEFAULT_DISPLAY), "EGL default display"});
+  return choices;
+}
+
+// A current OpenGL 4.5 core context on the display without any surface, or why not.
+Result<EGLContext> makeCurrent(EGLDisplay display, bool debug) {
+  const auto no = [](std::string why) { return fail("OpenGL", std::move(why)); };
+  if (display == EGL_NO_DISPLAY || !eglInitialize(display, nullptr, nullptr)) return no("does not start");
+  const char* extensions = eglQueryString(display, EGL_EXTENSIONS);
+  if (!hasExtension(extensions, "EGL_KHR_surfaceless_context")) return no("needs a surface");
+  if (!eglBindAPI(EGL_OPENGL_API)) return no("has no desktop OpenGL");
+  EGLConfig config = nullptr;
+  EGLint config_count = 0;
+  // No surface is ever made, so any surface type will do (0), not the default EGL_WINDOW_BIT.
+  constexpr std::array<EGLint, 5> kConfig = {EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_SURFACE_TYPE, 0,
+                                             EGL_NONE};
+  if (!eglChooseConfig(display, kConfig.data(), &config, 1, &config_count) || config_count == 0) {
+    if (!hasExtension(extensions, "EGL_KHR_no_config_context")) return no("has no OpenGL configuration");
+    config = nullptr;
+  }
+  const std::array<EGLint, 9> attributes = {EGL_CONTEXT_MAJOR_VERSION,
+                                            4,
+                                            EGL_CONTEXT_MINOR_VERSION,
+                                            5,
+                                            EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                                            EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                                            EGL_CONTEXT_OPENGL_DEBUG,
+                                            debug ? EGL_TRUE : EGL_FALSE,
+                                            EGL_NONE};
+  const EGLContext context = eglCreateContext(display, config, EGL_NO_CONTEXT, attributes.data());
+  if (context == EGL_NO_CONTEXT) return no("gives no 4.5 core context");
+  if (!eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context)) {
+    eglDestroyContext(display, context);
+    return no("does not make its context current");
+  }
+  return context;
+}
+
+std::string glText(GLenum name) {
+  const auto* text = reinterpret_cast<const char*>(glGetString(name));
+  return text ? text : "";
+}
+
+}  // namespace
+
+struct Context::State {
+  EGLDisplay display = EGL_NO_DISPLAY;  // none: somebody else's context
+  EGLContext context = EGL_NO_CONTEXT;
+  DeviceInfo info;
+  bool debug = false;
+  std::uint64_t errors = 0;
+  std::vector<std::string> messages;
+
+  void note(std::string message) {
+    ++errors;
+    if (messages.size() < kMessagesKept) messages.push_back(std::move(message));
+  }
+
+  static void GLAPIENTRY onMessage(GLenum, GLenum type, GLuint, GLenum severity, GLsizei length,
+                                   const GLchar* message, const void* user) {
+    if (type != GL_DEBUG_TYPE_ERROR && severity != GL_DEBUG_SEVERITY_HIGH) return;
+    auto* state = static_cast<State*>(const_cast<void*>(user));
+    state->note(std::string(message, static_cast<std::size_t>(length)));
+  }
+
+  ~State() {
+    if (context == EGL_NO_CONTEXT) return;
+    eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+    eglDestroyContext(display, context);
+    eglTerminate(display);
+  }
+};
+
+Context::Context(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Context::Context(Context&&) noexcept = default;
+Context& Context::operator=(Context&&) noexcept = default;
+Context::~Context() = default;
+
+Result<Context> Context::createHeadless(const ContextOptions& options) {
+  std::string tried;
+  for (const DisplayChoice& choice : displayChoices()) {
+    const Result<EGLContext> context = makeCurrent(choice.display, options.debug);
+    if (!context) {
+      tried += fmt::format("{}{} {}", tried.empty() ? "" : ", ", choice.platform, context.error().problem);
+      continue;
+    }
+    Result<Context> attached = attachToCurrent(options);
+    if (!attached) return attached;
+    attached->state_->display = choice.display;
+    attached->state_->context = *context;
+    return attached;
+  }
+  return fail("OpenGL", fmt::format("no device gives OpenGL 4.5 core without a display ({})", tried),
+              "install a driver, or Mesa's software renderer (libgl1-mesa-dri, libegl1)");
+}
+
+Result<Context> Context::attachToCurrent(const ContextOptions& options) {
+  if (epoxy_gl_version() < 45)
+    return fail("OpenGL",
+                fmt::format("{} offers OpenGL {}, 4.5 is needed", glText(GL_RENDERER), glText(GL_VERSION)),
+                "update the driver");
+  auto state = std::make_unique<State>();
+  state->debug = options.debug;
+  state->info = {.renderer = glText(GL_RENDERER), .vendor = glText(GL_VENDOR), .version = glText(GL_VERSION)};
+  GLint64 storage = 0;
+  glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &storage);
+  GLint blocks = 0, samples = 0;
+  glGetIntegerv(GL_MAX_VERTEX_SHADER_STORAGE_BLOCKS, &blocks);
+  glGetIntegerv(GL_MAX_SAMPLES, &samples);
+  state->info.max_storage_bytes = static_cast<std::uint64_t>(storage);
+  state->info.max_vertex_storage_blocks = static_cast<std::uint32_t>(blocks);
+  state->info.max_samples = static_cast<std::uint32_t>(samples);
+  if (options.debug) {
+    glEnable(GL_DEBUG_OUTPUT);
+    glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
+    glDebugMessageCallback(&State::onMessage, state.get());
+  }
+  return Context(std::move(state));
+}
+
+const DeviceInfo& Context::info() const {
+  return state_->info;
+}
+
+std::uint64_t Context::errors() const {
+  if (!state_->debug)
+    while (const GLenum error = glGetError()) state_->note(fmt::format("glGetError: 0x{:04x}", error));
+  return state_->errors;
+}
+
+const std::vector<std::string>& Context::errorMessages() const {
+  return state_->messages;
+}
+
+}  // namespace lambent::gpu

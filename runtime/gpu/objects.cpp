@@ -1,0 +1,94 @@
+#include "runtime/gpu/objects.hpp"
+
+#include <algorithm>
+#include <cassert>
+
+namespace lambent::gpu {
+
+namespace {
+
+void setLabel(GLenum kind, GLuint id, std::string_view label) {
+  glObjectLabel(kind, id, static_cast<GLsizei>(label.size()), label.data());
+}
+
+template <typename Create>
+GLuint made(Create create) {
+  GLuint id = 0;
+  create(&id);
+  return id;
+}
+
+}  // namespace
+
+Buffer::Buffer(std::string_view label, std::size_t byte_count)
+    : Handle(made([](GLuint* id) { glCreateBuffers(1, id); })), byte_count_(byte_count) {
+  assert(byte_count > 0);
+  glNamedBufferStorage(id(), static_cast<GLsizeiptr>(byte_count), nullptr, GL_DYNAMIC_STORAGE_BIT);
+  setLabel(GL_BUFFER, id(), label);
+}
+
+void Buffer::writeBytes(std::size_t offset, std::span<const std::byte> bytes) {
+  assert(offset + bytes.size() <= byte_count_);
+  if (bytes.empty()) return;
+  glNamedBufferSubData(id(), static_cast<GLintptr>(offset), static_cast<GLsizeiptr>(bytes.size()),
+                       bytes.data());
+}
+
+void Buffer::readBytes(std::size_t offset, std::span<std::byte> bytes) const {
+  assert(offset + bytes.size() <= byte_count_);
+  if (bytes.empty()) return;
+  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+  glGetNamedBufferSubData(id(), static_cast<GLintptr>(offset), static_cast<GLsizeiptr>(bytes.size()),
+                          bytes.data());
+}
+
+void Table::reserve(std::size_t byte_count) {
+  // GL binds no empty buffer, and a little room saves remaking it while a scene streams in.
+  if (buffer_.byteCount() < std::max<std::size_t>(byte_count, 16))
+    buffer_ = Buffer(label_, std::max<std::size_t>(byte_count + byte_count / 2, 256));
+}
+
+void Table::assignBytes(std::span<const std::byte> bytes) {
+  reserve(bytes.size());
+  buffer_.writeBytes(0, bytes);
+}
+
+Texture::Texture(std::string_view label, const TextureDesc& desc)
+    : Handle(made([&](GLuint* id) {
+        glCreateTextures(desc.cube          ? GL_TEXTURE_CUBE_MAP
+                         : desc.samples > 0 ? GL_TEXTURE_2D_MULTISAMPLE
+                                            : GL_TEXTURE_2D,
+                         1, id);
+      })),
+      desc_(desc) {
+  const auto width = static_cast<GLsizei>(desc.width), height = static_cast<GLsizei>(desc.height);
+  if (desc.samples > 0)
+    glTextureStorage2DMultisample(id(), static_cast<GLsizei>(desc.samples), desc.format, width, height,
+                                  GL_TRUE);
+  else
+    glTextureStorage2D(id(), static_cast<GLsizei>(desc.levels), desc.format, width, height);
+  setLabel(GL_TEXTURE, id(), label);
+}
+
+Sampler::Sampler(GLenum wrap_s, GLenum wrap_t, GLenum mag_filter, GLenum min_filter)
+    : Handle(made([](GLuint* id) { glCreateSamplers(1, id); })) {
+  glSamplerParameteri(id(), GL_TEXTURE_WRAP_S, static_cast<GLint>(wrap_s));
+  glSamplerParameteri(id(), GL_TEXTURE_WRAP_T, static_cast<GLint>(wrap_t));
+  glSamplerParameteri(id(), GL_TEXTURE_MAG_FILTER, static_cast<GLint>(mag_filter));
+  glSamplerParameteri(id(), GL_TEXTURE_MIN_FILTER, static_cast<GLint>(min_filter));
+}
+
+Framebuffer::Framebuffer(std::string_view label, const Texture& color, const Texture* depth)
+    : Handle(made([](GLuint* id) { glCreateFramebuffers(1, id); })) {
+  glNamedFramebufferTexture(id(), GL_COLOR_ATTACHMENT0, color.id(), 0);
+  if (depth != nullptr) glNamedFramebufferTexture(id(), GL_DEPTH_ATTACHMENT, depth->id(), 0);
+  setLabel(GL_FRAMEBUFFER, id(), label);
+  assert(glCheckNamedFramebufferStatus(id(), GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE);
+}
+
+VertexArray::VertexArray(std::string_view label)
+    : Handle(made([](GLuint* id) { glCreateVertexArrays(1, id); })) {
+  setLabel(GL_VERTEX_ARRAY, id(), label);
+}
+
+}  // namespace lambent::gpu

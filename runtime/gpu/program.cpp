@@ -1,0 +1,159 @@
+#include "runtime/gpu/program.hpp"
+
+#include <cctype>
+#include <optional>
+#include <set>
+
+#include <fmt/format.h>
+
+namespace lambent::gpu {
+
+namespace {
+
+struct Assembler {
+  std::span<const FindText> tables;
+  ShaderText out;
+  std::set<std::string, std::less<>> included;
+
+  void addLine(std::string_view line, std::string_view file, int number) {
+    out.text.append(line).push_back('\n');
+    out.origins.push_back({std::string(file), number});
+  }
+
+  std::string_view find(std::string_view file) const {
+    for (const FindText table : tables)
+      if (const std::string_view text = table(file); !text.empty()) return text;
+    return {};
+  }
+
+  Result<void> addFile(std::string_view file, std::string_view from, int from_line) {
+    if (!included.insert(std::string(file)).second) return {};
+    std::string_view rest = find(file);
+    if (rest.empty())
+      return fail(from.empty() ? std::string(file) : fmt::format("{}:{}", from, from_line),
+                  fmt::format("shader file \"{}\" is not embedded", file),
+                  "add it to the room's lambent_embed");
+    for (int number = 1; !rest.empty(); ++number) {
+      const std::size_t end = rest.find('\n');
+      const std::string_view line = rest.substr(0, end);
+      rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
+      if (const auto name = includedName(line)) {
+        if (Result<void> added = addFile(*name, file, number); !added) return added;
+      } else {
+        addLine(line, file, number);
+      }
+    }
+    return {};
+  }
+
+  static std::optional<std::string_view> includedName(std::string_view line) {
+    const std::size_t start = line.find_first_not_of(" \t");
+    if (start == std::string_view::npos || !line.substr(start).starts_with("#include")) return {};
+    const std::size_t open = line.find('"');
+    const std::size_t close = open == std::string_view::npos ? open : line.find('"', open + 1);
+    if (close == std::string_view::npos) return {};
+    return line.substr(open + 1, close - open - 1);
+  }
+};
+
+// The line number in what drivers write before a message: "0:12(5): error" (Mesa), "0(12) : error" (NVIDIA),
+// "ERROR: 0:12: ..." (AMD, Apple). Says where the position ends, too.
+struct Position {
+  int line = 0;
+  std::size_t begin = 0, end = 0;
+};
+std::optional<Position> findPosition(std::string_view log_line) {
+  const std::size_t zero = log_line.find('0');
+  if (zero == std::string_view::npos || zero > 8 || zero + 2 >= log_line.size()) return {};
+  const char separator = log_line[zero + 1];
+  if (separator != ':' && separator != '(') return {};
+  std::size_t at = zero + 2;
+  int line = 0;
+  while (at < log_line.size() && std::isdigit(static_cast<unsigned char>(log_line[at])))
+    line = line * 10 + (log_line[at++] - '0');
+  if (at == zero + 2) return {};
+  // Skips the column and the punctuation up to the message.
+  at = log_line.find(": ", at);
+  if (at == std::string_view::npos) return {};
+  return Position{line, zero, at};
+}
+
+std::string shaderLog(GLuint shader) {
+  GLint length = 0;
+  glGetShaderiv(shader, GL_INFO_LOG_LENGTH, &length);
+  std::string log(static_cast<std::size_t>(length), '\0');
+  glGetShaderInfoLog(shader, length, &length, log.data());
+  log.resize(static_cast<std::size_t>(length));
+  return log;
+}
+
+struct ShaderTraits {
+  static void destroy(GLuint id) { glDeleteShader(id); }
+};
+
+}  // namespace
+
+Result<ShaderText> assembleShader(std::string_view file, std::span<const FindText> tables,
+                                  std::span<const Define> defines) {
+  Assembler assembler{.tables = tables, .out = {}, .included = {}};
+  assembler.addLine("#version 450 core", "<head>", 1);
+  for (const Define& define : defines)
+    assembler.addLine(fmt::format("#define {} {}", define.name, define.value), "<head>", 1);
+  if (Result<void> added = assembler.addFile(file, {}, 0); !added) return failAgain(added.error());
+  return std::move(assembler.out);
+}
+
+std::string mapLog(std::string_view log, const ShaderText& shader) {
+  std::string mapped;
+  while (!log.empty()) {
+    const std::size_t end = log.find('\n');
+    const std::string_view line = log.substr(0, end);
+    log.remove_prefix(end == std::string_view::npos ? log.size() : end + 1);
+    if (line.empty()) continue;
+    if (!mapped.empty()) mapped += " | ";
+    const auto position = findPosition(line);
+    if (position && position->line >= 1 &&
+        static_cast<std::size_t>(position->line) <= shader.origins.size()) {
+      const auto& origin = shader.origins[static_cast<std::size_t>(position->line - 1)];
+      mapped += fmt::format("{}{}:{}{}", line.substr(0, position->begin), origin.file, origin.line,
+                            line.substr(position->end));
+    } else {
+      mapped += line;
+    }
+  }
+  return mapped;
+}
+
+Result<Program> Program::create(std::string_view label, std::initializer_list<Stage> stages,
+                                std::span<const FindText> tables, std::span<const Define> defines) {
+  Program program(glCreateProgram());
+  for (const Stage& stage : stages) {
+    const Result<ShaderText> shader = assembleShader(stage.file, tables, defines);
+    if (!shader) return failAgain(shader.error());
+    const Handle<ShaderTraits> object(glCreateShader(stage.kind));
+    const char* text = shader->text.c_str();
+    glShaderSource(object.id(), 1, &text, nullptr);
+    glCompileShader(object.id());
+    GLint done = 0;
+    glGetShaderiv(object.id(), GL_COMPILE_STATUS, &done);
+    if (!done)
+      return fail(std::string(stage.file),
+                  fmt::format("does not compile: {}", mapLog(shaderLog(object.id()), *shader)));
+    glAttachShader(program.id(), object.id());
+  }
+  glLinkProgram(program.id());
+  GLint done = 0;
+  glGetProgramiv(program.id(), GL_LINK_STATUS, &done);
+  if (!done) {
+    GLint length = 0;
+    glGetProgramiv(program.id(), GL_INFO_LOG_LENGTH, &length);
+    std::string log(static_cast<std::size_t>(length), '\0');
+    glGetProgramInfoLog(program.id(), length, &length, log.data());
+    log.resize(static_cast<std::size_t>(length));
+    return fail(std::string(label), fmt::format("does not link: {}", log));
+  }
+  glObjectLabel(GL_PROGRAM, program.id(), static_cast<GLsizei>(label.size()), label.data());
+  return program;
+}
+
+}  // namespace lambent::gpu

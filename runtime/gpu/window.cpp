@@ -1,0 +1,120 @@
+#include "runtime/gpu/window.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <utility>
+
+// epoxy must come before GLFW, which would otherwise bring its own GL header.
+#include <epoxy/gl.h>
+//
+#include <GLFW/glfw3.h>
+
+namespace lambent::gpu {
+
+struct Window::State {
+  GLFWwindow* window = nullptr;
+  std::optional<Context> context;
+  Input pending;
+  double last_x = 0.0, last_y = 0.0;
+
+  ~State() {
+    context.reset();
+    if (window != nullptr) glfwDestroyWindow(window);
+    glfwTerminate();
+  }
+
+  static State& of(GLFWwindow* window) { return *static_cast<State*>(glfwGetWindowUserPointer(window)); }
+
+  static void onScroll(GLFWwindow* window, double, double notches) {
+    of(window).pending.scroll += static_cast<float>(notches);
+  }
+  static void onKey(GLFWwindow* window, int key, int, int action, int) {
+    if (action != GLFW_PRESS) return;
+    Input& input = of(window).pending;
+    if (key == GLFW_KEY_ESCAPE) input.quit = true;
+    if (key == GLFW_KEY_R) input.reset = true;
+    if (key == GLFW_KEY_SPACE) input.pause = true;
+  }
+  static void onMove(GLFWwindow* window, double x, double y) {
+    State& state = of(window);
+    if (glfwGetMouseButton(window, GLFW_MOUSE_BUTTON_LEFT) == GLFW_PRESS) {
+      int width = 1, height = 1;
+      glfwGetWindowSize(window, &width, &height);
+      state.pending.drag_x += static_cast<float>((x - state.last_x) / std::max(height, 1));
+      state.pending.drag_y += static_cast<float>((y - state.last_y) / std::max(height, 1));
+    }
+    state.last_x = x;
+    state.last_y = y;
+  }
+};
+
+bool Window::displayAvailable() {
+  const auto set = [](const char* name) {
+    const char* value = std::getenv(name);
+    return value != nullptr && *value != '\0';
+  };
+  return set("DISPLAY") || set("WAYLAND_DISPLAY");
+}
+
+Window::Window(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Window::Window(Window&&) noexcept = default;
+Window& Window::operator=(Window&&) noexcept = default;
+Window::~Window() = default;
+
+Result<Window> Window::create(const std::string& title, std::uint32_t width, std::uint32_t height,
+                              const ContextOptions& options) {
+  constexpr const char* kMend = "give --headless OUT.png to render without a display";
+  const auto reason = [] {
+    const char* text = nullptr;
+    glfwGetError(&text);
+    return std::string(text ? text : "unknown reason");
+  };
+  if (!glfwInit()) return fail("window", "cannot be opened: " + reason(), kMend);
+  auto state = std::make_unique<State>();
+  glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 4);
+  glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 5);
+  glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+  glfwWindowHint(GLFW_OPENGL_DEBUG_CONTEXT, options.debug ? GLFW_TRUE : GLFW_FALSE);
+  state->window =
+      glfwCreateWindow(static_cast<int>(width), static_cast<int>(height), title.c_str(), nullptr, nullptr);
+  if (state->window == nullptr) return fail("window", "cannot be opened with OpenGL 4.5: " + reason(), kMend);
+  glfwMakeContextCurrent(state->window);
+  glfwSwapInterval(1);
+  glfwSetWindowUserPointer(state->window, state.get());
+  glfwSetScrollCallback(state->window, &State::onScroll);
+  glfwSetKeyCallback(state->window, &State::onKey);
+  glfwSetCursorPosCallback(state->window, &State::onMove);
+  Result<Context> context = Context::attachToCurrent(options);
+  if (!context) return failAgain(context.error());
+  state->context = std::move(*context);
+  return Window(std::move(state));
+}
+
+const Context& Window::context() const {
+  return *state_->context;
+}
+
+Input Window::poll() {
+  glfwPollEvents();
+  Input input = std::exchange(state_->pending, {});
+  const auto held = [&](int key) { return glfwGetKey(state_->window, key) == GLFW_PRESS ? 1 : 0; };
+  input.turn = held(GLFW_KEY_D) - held(GLFW_KEY_A);
+  input.quit = input.quit || glfwWindowShouldClose(state_->window);
+  return input;
+}
+
+void Window::framebufferSize(std::uint32_t& width, std::uint32_t& height) const {
+  int w = 0, h = 0;
+  glfwGetFramebufferSize(state_->window, &w, &h);
+  width = static_cast<std::uint32_t>(std::max(w, 1));
+  height = static_cast<std::uint32_t>(std::max(h, 1));
+}
+
+void Window::setTitle(const std::string& title) {
+  glfwSetWindowTitle(state_->window, title.c_str());
+}
+void Window::swap() {
+  glfwSwapBuffers(state_->window);
+}
+
+}  // namespace lambent::gpu

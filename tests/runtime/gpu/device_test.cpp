@@ -1,0 +1,113 @@
+#include <gtest/gtest.h>
+
+#include "runtime/gpu/arena.hpp"
+#include "runtime/gpu/pass_timers.hpp"
+#include "runtime/gpu/program.hpp"
+#include "runtime/gpu/work_list.hpp"
+#include "tests/support/gpu_context.hpp"
+
+namespace lambent::gpu {
+namespace {
+
+std::string_view findText(std::string_view name) {
+  if (name == "broken.comp") return "layout(local_size_x = 1) in;\nvoid main() {\n  undeclared = 1;\n}\n";
+  if (name == "mark.comp")
+    return R"(layout(local_size_x = 4) in;
+struct WorkItem { uint record; uint first; };
+layout(std430, binding = 0) readonly buffer Work { uint work_count; uint pad[3]; WorkItem work[]; };
+layout(std430, binding = 1) buffer Marks { uint marks[]; };
+void main() {
+  uint index = gl_WorkGroupID.x + gl_WorkGroupID.y * 65535u;
+  if (index >= work_count) return;
+  WorkItem item = work[index];
+  atomicAdd(marks[item.record + item.first + gl_LocalInvocationID.x], 1u);
+}
+)";
+  return {};
+}
+constexpr FindText kTables[] = {&findText};
+
+}  // namespace
+
+using Device = testing::GpuTest;
+
+TEST_F(Device, SaysWhatItIs) {
+  EXPECT_FALSE(context->info().renderer.empty());
+  EXPECT_GE(context->info().max_storage_bytes, Arena::kMaxPageBytes);
+  // Vertices are pulled from storage buffers, which OpenGL 4.5 leaves optional in vertex shaders.
+  EXPECT_GE(context->info().max_vertex_storage_blocks, 4u);
+}
+
+TEST_F(Device, CountsErrors) {
+  glEnable(GL_TEXTURE_2D + 12345);
+  EXPECT_EQ(context->errors(), 1u);
+  context.reset();  // the error was meant
+}
+
+TEST_F(Device, NamesFileAndLineOfAShaderThatDoesNotCompile) {
+  const auto program = Program::create("broken", {{GL_COMPUTE_SHADER, "broken.comp"}}, kTables);
+  ASSERT_FALSE(program);
+  EXPECT_EQ(program.error().subject, "broken.comp");
+  EXPECT_NE(program.error().problem.find("broken.comp:3"), std::string::npos) << program.error().problem;
+  context.reset();  // drivers count the compiler's errors too
+}
+
+TEST_F(Device, RunsEveryWorkItemOnceAlsoBeyondOneRowOfGroups) {
+  const auto program = Program::create("mark", {{GL_COMPUTE_SHADER, "mark.comp"}}, kTables);
+  ASSERT_TRUE(program) << program.error().line();
+  constexpr std::uint32_t kElements = 4 * 70'000;  // more than 65,535 groups of 4
+  Buffer marks("marks", 4 * (kElements + 4));
+  glClearNamedBufferData(marks.id(), GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, nullptr);
+  WorkList list("work");
+  list.add({0}, 0, kElements, 4);
+  list.add({1}, kElements, 4, 4);
+  Counters counters;
+  list.upload(counters);
+  const std::uint64_t uploaded = counters.uploaded_bytes;
+  list.upload(counters);
+  EXPECT_EQ(counters.uploaded_bytes, uploaded) << "an unchanged list is not uploaded again";
+  program->use();
+  marks.bindStorage(1);
+  list.dispatch(0, 0, counters);
+  list.dispatch(1, 0, counters);
+  EXPECT_EQ(counters.dispatches, 2u);
+  std::vector<std::uint32_t> result(kElements + 4);
+  glMemoryBarrier(GL_ALL_BARRIER_BITS);
+  marks.read(0, std::span(result));
+  EXPECT_EQ(std::count(result.begin(), result.end(), 1u), static_cast<std::ptrdiff_t>(result.size()));
+}
+
+TEST_F(Device, ArenaKeepsWhatItIsGivenAndOpensPagesAsNeeded) {
+  Arena arena("test", 4096);
+  const auto first = arena.allocate(3000), second = arena.allocate(3000);
+  ASSERT_TRUE(first && second);
+  EXPECT_EQ(first->page, 0u);
+  EXPECT_EQ(second->page, 1u);
+  const std::vector<std::uint32_t> values = {1, 2, 3, 4};
+  arena.write(*second, 16, std::as_bytes(std::span(values)));
+  std::vector<std::uint32_t> back(4);
+  arena.page(1).read(second->offset + 16, std::span(back));
+  EXPECT_EQ(back, values);
+  arena.clear(*second);
+  arena.page(1).read(second->offset + 16, std::span(back));
+  EXPECT_EQ(back, std::vector<std::uint32_t>(4, 0));
+  arena.release(*first);
+  EXPECT_EQ(arena.allocate(4000)->page, 0u);
+  EXPECT_FALSE(arena.allocate(Arena::kMaxPageBytes + 1));
+}
+
+TEST_F(Device, TimesPassesWithoutLosingThem) {
+  PassTimers timers;
+  for (int frame = 0; frame < 6; ++frame) {
+    timers.beginFrame();
+    PassTimers::Scope scope(timers, "clear");
+    scope.counters().draws = static_cast<std::uint32_t>(frame);
+  }
+  timers.finish();
+  ASSERT_EQ(timers.latest().size(), 1u);
+  EXPECT_EQ(timers.latest()[0].name, "clear");
+  EXPECT_EQ(timers.latest()[0].counters.draws, 5u);
+  EXPECT_GE(timers.latest()[0].gpu_ms, 0.0);
+}
+
+}  // namespace lambent::gpu
