@@ -1,0 +1,113 @@
+// Diffuse transfer times light: the math only, no bindings. The CPU twin is diffuse_ref.hpp, with the same names and
+// the same order of terms. An entry shader says which stage it is (LAMBENT_STAGE_PROJECT, _SAMPLES or _VERTICES) and
+// defines the fetches that the stage's functions declare.
+#include "diffuse_shared.h"
+
+#if defined(LAMBENT_STAGE_PROJECT) || defined(LAMBENT_STAGE_VERTICES)
+vec3 lightAt(uint index);  // coefficient of the light in the group's frame, RGB
+#endif
+
+#ifdef LAMBENT_STAGE_PROJECT
+float basisAt(uint word);  // of the transfer page
+
+// A mean or basis vector times the light: one value per colour channel. `bands` is its order².
+vec3 projectOnLight(VectorRecord vector, uint light, uint bands) {
+  vec3 sum = vec3(0.0);
+  for (uint i = 0u; i < bands; ++i) {
+    vec3 basis = vec3(basisAt(vector.basis_word + i));
+    if (vector.channels == 3u)
+      basis.yz = vec2(basisAt(vector.basis_word + vector.columns + i),
+                      basisAt(vector.basis_word + 2u * vector.columns + i));
+    sum += basis * lightAt(light + i);
+  }
+  for (uint i = bands; i < vector.columns; ++i) {  // lights that belong to the group
+    vec3 basis = vec3(basisAt(vector.basis_word + i));
+    if (vector.channels == 3u)
+      basis.yz = vec2(basisAt(vector.basis_word + vector.columns + i),
+                      basisAt(vector.basis_word + 2u * vector.columns + i));
+    sum += basis * lightAt(light + kLightStride + i - bands);
+  }
+  return sum;
+}
+#endif
+
+#ifdef LAMBENT_STAGE_SAMPLES
+uint codeWordAt(uint word);  // of the transfer page
+
+// The code of a sample, straight from the plane as it lies in the bundle.
+uint codeOf(uint codes, uint sample_index) {
+  uint word = codes & ~kCodes16Bit;
+  if ((codes & kCodes16Bit) != 0u) {
+    uint pair = codeWordAt(word + (sample_index >> 1u));
+    return (pair >> (16u * (sample_index & 1u))) & 0xffffu;
+  }
+  uint four = codeWordAt(word + (sample_index >> 2u));
+  return (four >> (8u * (sample_index & 3u))) & 0xffu;
+}
+#endif
+
+#ifdef LAMBENT_STAGE_VERTICES
+vec4 sampleAt(uint index);   // shaded sample, w = resident
+uint rowWordAt(uint word);   // of the rows page
+
+// A_l / pi, A_l the clamped cosine's weights: pi, 2pi/3, pi/4, 0, -pi/24, 0, pi/64 (Ramamoorthi and Hanrahan 2001).
+float clampedCosineOverPi(int l) {
+  const float kWeights[8] = float[8](1.0, 2.0 / 3.0, 0.25, 0.0, -1.0 / 24.0, 0.0, 1.0 / 64.0, 0.0);
+  return kWeights[l];
+}
+
+// E/pi of an open surface with this normal (group frame): sum over l, m of A_l/pi y_lm(n) light_lm. Cartesian
+// recurrences, so the poles are ordinary points (docs/conventions.md: no Condon-Shortley sign).
+vec3 unshadowedRadiance(vec3 normal, uint light, int order) {
+  vec3 sum = vec3(0.0);
+  float c = 1.0, s = 0.0;              // Re and Im of (x + iy)^m
+  float sectoral = 0.28209479177387814;  // y_mm without c or s; sqrt(2) inside for m > 0
+  for (int m = 0; m < order; ++m) {
+    if (m > 0) {
+      float next_c = normal.x * c - normal.y * s;
+      s = normal.x * s + normal.y * c;
+      c = next_c;
+      sectoral *= m == 1 ? sqrt(3.0) : sqrt(float(2 * m + 1) / float(2 * m));
+    }
+    float p = sectoral, before = 0.0;
+    for (int l = m; l < order; ++l) {
+      if (l > m) {
+        float z_factor = sqrt(float(4 * l * l - 1) / float(l * l - m * m));
+        float back = l == m + 1 ? 0.0
+                                : z_factor * sqrt(float((l - 1) * (l - 1) - m * m) / float(4 * (l - 1) * (l - 1) - 1));
+        float next = z_factor * normal.z * p - back * before;
+        before = p;
+        p = next;
+      }
+      float weight = clampedCosineOverPi(l);
+      if (weight == 0.0) continue;
+      uint centre = light + uint(l * (l + 1));
+      vec3 ring = m == 0 ? lightAt(centre) : c * lightAt(centre + uint(m)) + s * lightAt(centre - uint(m));
+      sum += weight * p * ring;
+    }
+  }
+  return sum;
+}
+
+// A vertex from its row of samples; what is not resident counts as unshadowed.
+vec3 vertexRadiance(DrawRecord draw, uint vertex, vec3 normal, int order) {
+  vec3 sum = vec3(0.0);
+  float resident = 0.0, total = 0.0;
+  if (draw.rows_word != kNoRows) {
+    uint begin = rowWordAt(draw.rows_word + vertex), end = rowWordAt(draw.rows_word + vertex + 1u);
+    uint samples_word = draw.rows_word + draw.vertex_count + 1u;
+    uint weights_word = samples_word + draw.row_entries;
+    for (uint entry = begin; entry < end; ++entry) {
+      uint pair = rowWordAt(weights_word + (entry >> 1u));
+      float weight = float((pair >> (16u * (entry & 1u))) & 0xffffu) / 65535.0;
+      vec4 shaded = sampleAt(draw.first_sample + rowWordAt(samples_word + entry));
+      sum += weight * shaded.w * shaded.rgb;
+      resident += weight * shaded.w;
+      total += weight;
+    }
+  }
+  if (total == 0.0) return unshadowedRadiance(normal, draw.light, order);
+  if (resident < total) sum += (total - resident) * unshadowedRadiance(normal, draw.light, order);
+  return sum / total;
+}
+#endif

@@ -1,0 +1,40 @@
+// Stage c, one invocation per vertex of the dirty draws: gathers its row of samples. Linear E/pi, not clamped.
+#include "diffuse_shared.h"
+
+layout(local_size_x = kWorkGroupSize) in;
+layout(std430, binding = kBindWork) readonly buffer Work { uint work_count; uint pad[3]; WorkItem work[]; };
+layout(std430, binding = kBindLights) readonly buffer Lights { vec4 lights[]; };
+layout(std430, binding = kBindDraws) readonly buffer Draws { DrawRecord draws[]; };
+layout(std430, binding = kBindRows) readonly buffer Rows { uint rows[]; };
+layout(std430, binding = kBindGeometry) readonly buffer Geometry { float geometry[]; };
+layout(std430, binding = kBindRadiance) writeonly buffer Radiance { float radiance_out[]; };
+layout(std430, binding = kBindSamples) readonly buffer Samples { vec4 samples[]; };
+
+#define LAMBENT_STAGE_VERTICES
+#include "diffuse_eval.glsl"
+
+vec3 lightAt(uint index) { return lights[index].rgb; }
+vec4 sampleAt(uint index) { return samples[index]; }
+uint rowWordAt(uint word) { return rows[word]; }
+
+void main() {
+  uint index = gl_WorkGroupID.x + gl_WorkGroupID.y * kMaxWorkGroupsX;
+  if (index >= work_count) return;
+  DrawRecord draw = draws[work[index].record];
+  uint vertex = work[index].first + gl_LocalInvocationID.x;
+  if (vertex >= draw.vertex_count) return;
+  uint at = draw.normals_word + 3u * vertex;
+  vec3 normal_mesh = vec3(geometry[at], geometry[at + 1u], geometry[at + 2u]);
+  float m[12] = draw.group_from_mesh_normal;
+  mat3 group_from_mesh = mat3(m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10]);
+  vec3 normal = normalize(group_from_mesh * normal_mesh);
+#ifdef LAMBENT_ORDER
+  vec3 radiance = vertexRadiance(draw, vertex, normal, LAMBENT_ORDER);
+#else
+  vec3 radiance = vertexRadiance(draw, vertex, normal, int(draw.order));
+#endif
+  uint out_word = draw.radiance_word + 3u * vertex;
+  radiance_out[out_word] = radiance.r;
+  radiance_out[out_word + 1u] = radiance.g;
+  radiance_out[out_word + 2u] = radiance.b;
+}

@@ -1,0 +1,139 @@
+// What of the loaded bundles lies on the GPU, and where. add() makes the tables of a bundle, upload() takes
+// what the Loader hands on, one item at a time, and puts it into arenas and textures; nothing else writes
+// there. Effects and the frame read the tables: each entry has a version that rises when something that it
+// refers to arrived. Render thread only. Errors: a mesh or a group too large for one page (128 MiB), named.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include <glm/mat3x3.hpp>
+
+#include "runtime/base/result.hpp"
+#include "runtime/bundle/description.hpp"
+#include "runtime/gpu/arena.hpp"
+#include "runtime/gpu/objects.hpp"
+#include "runtime/streaming/loader.hpp"
+
+namespace lambent::streaming {
+
+// A primitive of a mesh: one block of the geometry arena. Words are from the start of the page; 0xffffffff:
+// absent.
+struct ResidentMesh {
+  static constexpr std::uint32_t kAbsent = 0xffffffffu;
+  gpu::Allocation block;  // empty: not here yet
+  std::uint32_t vertex_count = 0, index_count = 0;
+  std::uint32_t positions_word = 0, normals_word = 0;    // 3 floats each
+  std::uint32_t texcoords_word[2] = {kAbsent, kAbsent};  // 2 floats
+  std::uint32_t colors_word = kAbsent;                   // 4 x unorm16
+  std::uint32_t indices_word = 0;                        // uint32
+};
+
+struct ResidentPlane {
+  std::uint32_t word = 0;  // codes in the cell's block
+  std::uint32_t bits = 8;
+  float offset = 0.0f, scale = 0.0f;
+  float variance = 0.0f;
+};
+
+struct ResidentTransfer {
+  bundle::TransferPart part = bundle::TransferPart::Direct;
+  std::uint32_t order = 1, columns = 1, channels = 1;
+  std::uint32_t basis_word = 0;
+  std::vector<ResidentPlane> planes;
+  bool basis_resident = false;
+  std::uint32_t planes_resident = 0;  // a prefix of `planes`
+};
+
+struct ResidentCell {
+  std::uint32_t group = 0;  // into groups()
+  std::uint32_t first_sample = 0, sample_count = 0;
+  gpu::Allocation block;  // transfer arena: bases and codes of all parts; reserved with the first of them
+  std::vector<ResidentTransfer> transfers;
+  std::uint64_t version = 0;
+
+  // Enough has arrived to look better than no shadows at all: every part with its basis and with planes that
+  // carry kUsableVariance of what all its planes carry.
+  bool usable() const;
+};
+inline constexpr float kUsableVariance = 0.9f;
+
+struct ResidentGroup {
+  std::uint32_t bundle = 0, index = 0;  // in its description
+  std::uint32_t order = 1, light_columns = 0;
+  std::uint32_t first_cell = 0, cell_count = 0;  // into cells()
+  gpu::Allocation samples;                       // one vec4 per sample, zero until shaded
+};
+
+struct ResidentDraw {
+  std::uint32_t bundle = 0, index = 0;  // in its description
+  std::uint32_t group = 0, mesh = 0;    // into groups() and meshes()
+  std::int32_t material = -1;           // of the bundle
+  glm::mat3 group_from_mesh_normal{1.0f};
+  gpu::Allocation
+      rows;  // vertex_count + 1 offsets, row_entries samples, row_entries unorm16 weights; empty: not here
+  std::uint32_t row_entries = 0;
+  gpu::Allocation radiance;  // 3 floats per vertex, once the mesh is here
+  std::uint64_t version = 0;
+};
+
+struct ResidentBundle {
+  std::vector<gltf::Material> materials;
+  std::vector<gltf::Texture> textures;
+  std::vector<gpu::Texture> images;  // empty handle: not here yet
+  // Where the bundle's own indices start in the tables.
+  std::uint32_t first_group = 0, first_draw = 0;
+  std::vector<std::uint32_t> first_mesh;  // of each mesh's first primitive
+};
+
+class Residency {
+ public:
+  // Pages are as large as a bundle needs, up to max_page_bytes.
+  explicit Residency(std::uint64_t max_page_bytes = gpu::Arena::kMaxPageBytes);
+
+  // Returns the bundle's index.
+  Result<std::uint32_t> add(const bundle::Description& description);
+  Result<void> upload(std::uint32_t bundle, const Ready& item);
+
+  const std::vector<ResidentBundle>& bundles() const { return bundles_; }
+  const std::vector<ResidentMesh>& meshes() const { return meshes_; }
+  const std::vector<ResidentGroup>& groups() const { return groups_; }
+  const std::vector<ResidentCell>& cells() const { return cells_; }
+  const std::vector<ResidentDraw>& draws() const { return draws_; }
+  // Rises with every upload; entries carry the value at which they last changed.
+  std::uint64_t version() const { return version_; }
+
+  gpu::Arena& geometry() { return geometry_; }
+  gpu::Arena& transfer() { return transfer_; }
+  gpu::Arena& samples() { return samples_; }
+  gpu::Arena& rows() { return rows_; }
+  gpu::Arena& radiance() { return radiance_; }
+
+  // What is in use on the GPU: arenas and textures.
+  std::uint64_t bytesResident() const;
+  // Bytes of an item as they are uploaded.
+  static std::uint64_t uploadBytes(const Ready& item);
+
+ private:
+  Result<void> put(std::uint32_t bundle, const MeshReady& item);
+  Result<void> put(std::uint32_t bundle, const ImageReady& item);
+  Result<void> put(std::uint32_t bundle, const RowsReady& item);
+  Result<void> put(std::uint32_t bundle, const BasisReady& item);
+  Result<void> put(std::uint32_t bundle, const PlaneReady& item);
+  ResidentCell& cellOf(std::uint32_t bundle, std::uint32_t group, std::uint32_t cell);
+  Result<void> reserveCell(ResidentCell& cell);
+
+  std::uint64_t max_page_bytes_;
+  std::vector<ResidentBundle> bundles_;
+  std::vector<ResidentMesh> meshes_;
+  std::vector<ResidentGroup> groups_;
+  std::vector<ResidentCell> cells_;
+  std::vector<ResidentDraw> draws_;
+  std::uint64_t version_ = 1;
+  std::uint64_t texture_bytes_ = 0;
+  gpu::Arena geometry_, transfer_, samples_, rows_, radiance_;
+};
+
+}  // namespace lambent::streaming
