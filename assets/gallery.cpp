@@ -1,0 +1,141 @@
+#include <array>
+#include <numbers>
+
+#include <glm/gtc/quaternion.hpp>
+
+#include "assets/scenes.hpp"
+#include "assets/shapes.hpp"
+#include "assets/teapot.hpp"
+#include "assets/torus_knot.hpp"
+
+namespace lambent::assets {
+
+namespace {
+
+// The room: inner faces at x = +-kHalfWidth and z = kBack, open at z = kFront and above kHeight.
+constexpr float kHalfWidth = 2.5f, kBack = -2.2f, kFront = 2.4f, kHeight = 2.6f, kThick = 0.14f;
+constexpr float kFine = 0.045f, kCoarse = 0.4f;  // cells where light falls, and where nobody looks
+
+enum MaterialIndex { kStone, kRed, kTeal, kPlaster, kLimestone, kPorcelain, kBronze, kCobalt, kOchre };
+
+std::vector<Material> materials() {
+  return {{.name = "stone floor", .base_color = glm::vec3(1.0f), .image = 0},
+          {.name = "red wall", .base_color = {0.56f, 0.10f, 0.07f}},
+          {.name = "teal wall", .base_color = {0.07f, 0.33f, 0.36f}},
+          {.name = "plaster", .base_color = {0.76f, 0.72f, 0.66f}},
+          {.name = "limestone", .base_color = {0.66f, 0.62f, 0.55f}},
+          // Its inside shows through the spout and the gap under the lid.
+          {.name = "porcelain", .base_color = {0.82f, 0.81f, 0.78f}, .double_sided = true},
+          {.name = "bronze", .base_color = {0.72f, 0.42f, 0.14f}},
+          {.name = "cobalt", .base_color = {0.09f, 0.16f, 0.48f}},
+          {.name = "ochre", .base_color = {0.80f, 0.55f, 0.16f}}};
+}
+
+// A slab whose one face (edge_u x edge_v) is cut finely; the others close it coarsely.
+Mesh slab(glm::vec3 corner, glm::vec3 edge_u, glm::vec3 edge_v, glm::vec3 depth, float cell) {
+  Mesh mesh = plane(corner, edge_u, edge_v, cell);
+  append(mesh, plane(corner + depth + edge_u, -edge_u, edge_v, kCoarse));
+  append(mesh, plane(corner + edge_u, depth, edge_v, kCoarse));
+  append(mesh, plane(corner + depth, -depth, edge_v, kCoarse));
+  append(mesh, plane(corner + edge_v, edge_u, depth, kCoarse));
+  append(mesh, plane(corner + depth, edge_u, -depth, kCoarse));
+  return mesh;
+}
+
+Mesh withoutTexcoords(Mesh mesh) {
+  mesh.texcoords.clear();
+  return mesh;
+}
+
+// Texture coordinates count metres; one repeat of the texture is two tiles wide.
+Mesh tiledFloor() {
+  constexpr float kTile = 0.5f;
+  const float width = 2 * (kHalfWidth + kThick), length = kFront - kBack + kThick;
+  Mesh mesh = slab({-kHalfWidth - kThick, 0, kFront}, {width, 0, 0}, {0, 0, -length}, {0, -kThick, 0}, kFine);
+  for (glm::vec2& texcoord : mesh.texcoords) texcoord /= 2 * kTile;
+  return mesh;
+}
+
+Mesh column() {
+  constexpr std::array<glm::vec2, 14> kProfile = {{{0.0f, 0.0f},
+                                                   {0.34f, 0.0f},
+                                                   {0.34f, 0.07f},
+                                                   {0.29f, 0.10f},
+                                                   {0.29f, 0.14f},
+                                                   {0.23f, 0.18f},
+                                                   {0.21f, 0.50f},
+                                                   {0.21f, 0.72f},
+                                                   {0.24f, 0.76f},
+                                                   {0.24f, 0.79f},
+                                                   {0.40f, 0.83f},
+                                                   {0.42f, 0.83f},
+                                                   {0.42f, 0.90f},
+                                                   {0.0f, 0.90f}}};
+  return lathe(kProfile, 96, 0.03f);
+}
+
+}  // namespace
+
+Scene gallery() {
+  Scene scene;
+  scene.name = "gallery";
+  scene.materials = materials();
+  scene.images = {{"stone", stonePng(/*tiles=*/2, /*texels_per_tile=*/128)}};
+
+  const auto add = [&](const std::string& name, Mesh mesh, MaterialIndex material) {
+    scene.meshes.push_back({name, std::move(mesh), material});
+    return static_cast<int>(scene.meshes.size()) - 1;
+  };
+  const auto place = [&](const std::string& name, int mesh, glm::vec3 at = glm::vec3(0.0f),
+                         float turn_deg = 0.0f, float scale = 1.0f) {
+    const float half = turn_deg * std::numbers::pi_v<float> / 360.0f;
+    scene.nodes.push_back({name, mesh, at, glm::quat(std::cos(half), 0.0f, std::sin(half), 0.0f), scale});
+  };
+
+  const float depth = kFront - kBack;
+  place("floor", add("floor", tiledFloor(), kStone));
+  place("back wall", add("back wall",
+                         withoutTexcoords(slab({-kHalfWidth, 0, kBack}, {2 * kHalfWidth, 0, 0},
+                                               {0, kHeight, 0}, {0, 0, -kThick}, kFine)),
+                         kPlaster));
+  place("left wall", add("left wall",
+                         withoutTexcoords(slab({-kHalfWidth, 0, kFront}, {0, 0, -depth}, {0, kHeight, 0},
+                                               {-kThick, 0, 0}, kFine)),
+                         kRed));
+  place("right wall", add("right wall",
+                          withoutTexcoords(slab({kHalfWidth, 0, kBack}, {0, 0, depth}, {0, kHeight, 0},
+                                                {kThick, 0, 0}, kFine)),
+                          kTeal));
+
+  place("column", add("column", column(), kLimestone));
+  place("teapot", add("teapot", teapot(/*cells=*/22, /*height_m=*/0.62f), kPorcelain), {0, 0.90f, 0}, 24.0f);
+
+  const int plinth = add("plinth", box({-0.42f, 0, -0.42f}, {0.42f, 0.46f, 0.42f}, 0.04f), kPlaster);
+  place("plinth of the knot", plinth, {1.46f, 0, -1.05f}, -18.0f);
+  place("plinth of the spheres", plinth, {-1.50f, 0, -1.15f}, 14.0f);
+
+  // The knot's own axis is vertical; it stands upright on its plinth, facing the room.
+  const int knot = add("torus knot",
+                       torusKnot({.ring_radius = 0.36f,
+                                  .torus_radius = 0.16f,
+                                  .tube_radius = 0.085f,
+                                  .cells_along = 420,
+                                  .cells_around = 36}),
+                       kBronze);
+  const glm::quat upright = glm::angleAxis(-0.35f, glm::vec3(0, 1, 0)) *
+                            glm::angleAxis(std::numbers::pi_v<float> / 2, glm::vec3(1, 0, 0));
+  scene.nodes.push_back({"torus knot", knot, {1.46f, 1.03f, -1.05f}, upright, 1.0f});
+
+  const int ball = add("ball", sphere(/*radius=*/1.0f, /*cells=*/24), kCobalt);
+  place("large ball", ball, {-1.50f, 0.80f, -1.15f}, 0.0f, 0.34f);
+  place("small ball", ball, {-0.98f, 0.15f, 0.62f}, 0.0f, 0.15f);
+
+  place("cube", add("cube", box({-0.16f, 0, -0.16f}, {0.16f, 0.32f, 0.16f}, 0.025f), kOchre),
+        {1.12f, 0, 0.55f}, 31.0f);
+
+  scene.cameras = {{"main", {0.55f, 1.75f, 5.3f}, {0.0f, 0.88f, -0.3f}, 36.0f},
+                   {"detail", {-1.0f, 1.65f, 2.1f}, {0.05f, 1.15f, -0.1f}, 34.0f}};
+  return scene;
+}
+
+}  // namespace lambent::assets

@@ -1,0 +1,185 @@
+#include "assets/glb.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+#include <numbers>
+#include <span>
+
+#include <glm/common.hpp>
+#include <glm/ext/matrix_transform.hpp>
+#include <glm/geometric.hpp>
+#include <nlohmann/json.hpp>
+
+#include "runtime/base/atomic_file.hpp"
+
+namespace lambent::assets {
+
+namespace {
+
+using Json = nlohmann::ordered_json;  // members in the order in which they are written
+
+// glTF's names for GL constants.
+constexpr int kFloat = 5126, kUnsignedInt = 5125, kArrayBuffer = 34962, kElementArrayBuffer = 34963;
+
+Json toJson(glm::vec3 v) {
+  return {v.x, v.y, v.z};
+}
+Json toJson(glm::quat q) {
+  return {q.x, q.y, q.z, q.w};
+}
+
+class Writer {
+ public:
+  explicit Writer(const Scene& scene) : scene_(scene) {}
+
+  std::string write() {
+    Json meshes = Json::array(), materials = Json::array();
+    for (const MaterialMesh& mesh : scene_.meshes) meshes.push_back(meshJson(mesh));
+    for (const Material& material : scene_.materials) materials.push_back(materialJson(material));
+    Json json = {{"asset", {{"version", "2.0"}, {"generator", "lambent-assets"}}},
+                 {"extensionsUsed", Json::array({"KHR_materials_specular"})},
+                 {"scene", 0}};
+    addNodes(json);
+    json["meshes"] = std::move(meshes);
+    json["materials"] = std::move(materials);
+    if (!scene_.images.empty()) addTextures(json);
+    json["accessors"] = std::move(accessors_);
+    json["bufferViews"] = std::move(views_);
+    align(binary_, '\0');
+    json["buffers"] = Json::array({{{"byteLength", binary_.size()}}});
+    return glb(json.dump());
+  }
+
+ private:
+  static void align(std::string& bytes, char padding) {
+    while (bytes.size() % 4) bytes += padding;
+  }
+
+  int addView(const void* data, std::size_t length, int target) {
+    align(binary_, '\0');
+    Json view = {{"buffer", 0}, {"byteOffset", binary_.size()}, {"byteLength", length}};
+    if (target) view["target"] = target;
+    binary_.append(static_cast<const char*>(data), length);
+    views_.push_back(std::move(view));
+    return static_cast<int>(views_.size()) - 1;
+  }
+
+  template <typename T>
+  int addAccessor(std::span<const T> values, const char* type, int component, int target,
+                  const Json& extra = {}) {
+    Json accessor = {{"bufferView", addView(values.data(), values.size_bytes(), target)},
+                     {"componentType", component},
+                     {"count", values.size()},
+                     {"type", type}};
+    if (extra.is_object()) accessor.update(extra);
+    accessors_.push_back(std::move(accessor));
+    return static_cast<int>(accessors_.size()) - 1;
+  }
+
+  Json meshJson(const MaterialMesh& item) {
+    const Mesh& mesh = item.mesh;
+    glm::vec3 low = mesh.positions.front(), high = low;
+    for (const glm::vec3 position : mesh.positions)
+      low = glm::min(low, position), high = glm::max(high, position);
+    Json attributes;
+    attributes["POSITION"] = addAccessor(std::span(mesh.positions), "VEC3", kFloat, kArrayBuffer,
+                                         {{"min", toJson(low)}, {"max", toJson(high)}});
+    attributes["NORMAL"] = addAccessor(std::span(mesh.normals), "VEC3", kFloat, kArrayBuffer);
+    if (!mesh.texcoords.empty())
+      attributes["TEXCOORD_0"] = addAccessor(std::span(mesh.texcoords), "VEC2", kFloat, kArrayBuffer);
+    const int indices = addAccessor(std::span(mesh.indices), "SCALAR", kUnsignedInt, kElementArrayBuffer);
+    return {{"name", item.name},
+            {"primitives",
+             Json::array({{{"attributes", attributes}, {"indices", indices}, {"material", item.material}}})}};
+  }
+
+  static Json materialJson(const Material& material) {
+    const glm::vec3 c = material.base_color;
+    Json surface = {
+        {"baseColorFactor", {c.r, c.g, c.b, 1.0f}}, {"metallicFactor", 0.0f}, {"roughnessFactor", 1.0f}};
+    if (material.image >= 0) surface["baseColorTexture"] = {{"index", material.image}};
+    Json json = {{"name", material.name},
+                 {"pbrMetallicRoughness", surface},
+                 {"extensions", {{"KHR_materials_specular", {{"specularFactor", 0.0f}}}}}};
+    if (material.double_sided) json["doubleSided"] = true;
+    return json;
+  }
+
+  // Texture i shows image i through the one sampler.
+  void addTextures(Json& json) {
+    constexpr int kLinear = 9729, kLinearMipmapLinear = 9987, kRepeat = 10497;
+    Json textures = Json::array(), images = Json::array();
+    for (const Image& image : scene_.images) {
+      const int view = addView(image.png.data(), image.png.size(), /*target=*/0);
+      textures.push_back({{"sampler", 0}, {"source", images.size()}});
+      images.push_back({{"name", image.name}, {"mimeType", "image/png"}, {"bufferView", view}});
+    }
+    json["samplers"] = Json::array({{{"magFilter", kLinear},
+                                     {"minFilter", kLinearMipmapLinear},
+                                     {"wrapS", kRepeat},
+                                     {"wrapT", kRepeat}}});
+    json["textures"] = std::move(textures);
+    json["images"] = std::move(images);
+  }
+
+  void addNodes(Json& json) {
+    Json nodes = Json::array(), cameras = Json::array(), roots = Json::array();
+    for (const Node& node : scene_.nodes) {
+      Json item = {{"name", node.name}, {"mesh", node.mesh}};
+      if (node.translation != glm::vec3(0.0f)) item["translation"] = toJson(node.translation);
+      if (node.rotation != glm::quat(1.0f, 0.0f, 0.0f, 0.0f)) item["rotation"] = toJson(node.rotation);
+      if (node.scale != 1.0f) item["scale"] = toJson(glm::vec3(node.scale));
+      nodes.push_back(std::move(item));
+    }
+    for (const Camera& camera : scene_.cameras) {
+      const glm::mat4 view_from_world = glm::lookAt(camera.eye, camera.target, glm::vec3(0, 1, 0));
+      const glm::quat turn = glm::normalize(glm::quat_cast(glm::transpose(glm::mat3(view_from_world))));
+      nodes.push_back({{"name", camera.name},
+                       {"camera", cameras.size()},
+                       {"translation", toJson(camera.eye)},
+                       {"rotation", toJson(turn)}});
+      const float yfov = camera.yfov_deg * std::numbers::pi_v<float> / 180.0f;
+      cameras.push_back({{"name", camera.name},
+                         {"type", "perspective"},
+                         {"perspective", {{"yfov", yfov}, {"znear", 0.05f}}}});
+    }
+    for (std::size_t i = 0; i < nodes.size(); ++i) roots.push_back(i);
+    json["scenes"] = Json::array({{{"name", scene_.name}, {"nodes", std::move(roots)}}});
+    json["nodes"] = std::move(nodes);
+    json["cameras"] = std::move(cameras);
+  }
+
+  std::string glb(std::string text) const {
+    align(text, ' ');
+    std::string out;
+    const auto word = [&](std::size_t value) {
+      static_assert(std::endian::native == std::endian::little);
+      const auto narrow = static_cast<std::uint32_t>(value);
+      out.append(reinterpret_cast<const char*>(&narrow), sizeof narrow);
+    };
+    out += "glTF";
+    word(2);
+    word(12 + 8 + text.size() + 8 + binary_.size());
+    word(text.size());
+    out += "JSON" + text;
+    word(binary_.size());
+    out += std::string("BIN\0", 4) + binary_;
+    return out;
+  }
+
+  const Scene& scene_;
+  Json views_ = Json::array(), accessors_ = Json::array();
+  std::string binary_;
+};
+
+}  // namespace
+
+Result<void> writeGlb(const std::filesystem::path& path, const Scene& scene) {
+  Result<AtomicFile> file = AtomicFile::open(path);
+  if (!file) return failAgain(std::move(file.error()));
+  if (Result<void> written = file->write(Writer(scene).write()); !written) return written;
+  return file->commit();
+}
+
+}  // namespace lambent::assets

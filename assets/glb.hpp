@@ -1,0 +1,62 @@
+// A scene of the generator and its writer: binary glTF 2.0, one buffer, the same bytes for the same scene.
+// Materials are pure Lambert (metallic 0, roughness 1, KHR_materials_specular with factor 0), which is what
+// the first pictures of Lambent show. Every node carries TRS, so that editors can move things.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <glm/gtc/quaternion.hpp>
+#include <glm/vec3.hpp>
+
+#include "assets/mesh.hpp"
+#include "runtime/base/result.hpp"
+
+namespace lambent::assets {
+
+struct Material {
+  std::string name;
+  glm::vec3 base_color{0.8f};  // linear; multiplies the texture
+  int image = -1;              // into Scene::images
+  bool double_sided = false;
+};
+
+struct Image {
+  std::string name;
+  std::vector<std::uint8_t> png;
+};
+
+struct MaterialMesh {
+  std::string name;
+  Mesh mesh;
+  int material = 0;
+};
+
+struct Node {
+  std::string name;
+  int mesh = 0;  // into Scene::meshes; several nodes may show one mesh
+  glm::vec3 translation{0.0f};
+  glm::quat rotation{1.0f, 0.0f, 0.0f, 0.0f};
+  float scale = 1.0f;
+};
+
+struct Camera {
+  std::string name;
+  glm::vec3 eye{0.0f, 1.0f, 5.0f}, target{0.0f};
+  float yfov_deg = 40.0f;
+};
+
+struct Scene {
+  std::string name;
+  std::vector<Material> materials;
+  std::vector<Image> images;
+  std::vector<MaterialMesh> meshes;
+  std::vector<Node> nodes;
+  std::vector<Camera> cameras;
+};
+
+Result<void> writeGlb(const std::filesystem::path& path, const Scene& scene);
+
+}  // namespace lambent::assets

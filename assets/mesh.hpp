@@ -1,0 +1,24 @@
+// What the scene generator builds: triangle meshes in metres, +Y up, counter-clockwise seen from outside.
+// Part of the generator only; the programs read the glTF files that it writes.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <glm/mat4x4.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+namespace lambent::assets {
+
+struct Mesh {
+  std::vector<glm::vec3> positions;
+  std::vector<glm::vec3> normals;    // unit length
+  std::vector<glm::vec2> texcoords;  // empty or one per vertex
+  std::vector<std::uint32_t> indices;
+};
+
+// Appends `more`, moved by a matrix without shear. Both must have texture coordinates or both none.
+void append(Mesh& mesh, const Mesh& more, const glm::mat4& place = glm::mat4(1.0f));
+
+}  // namespace lambent::assets

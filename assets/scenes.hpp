@@ -1,0 +1,17 @@
+// The scenes that ship. `gallery` is the one of scripts/demo: a museum corner, open to the sky above and in
+// front, with the Utah teapot on a column, a torus knot and spheres, about 90,000 vertices. `hello` is a
+// floor, a box and a sphere, a few hundred vertices, for tests and first tries. Metres; the cameras are
+// called "main" and "detail".
+#pragma once
+
+#include "assets/glb.hpp"
+
+namespace lambent::assets {
+
+Scene gallery();
+Scene hello();
+
+// Stone tiles, seamless, `tiles` x `tiles` of two tones with joints; sRGB.
+std::vector<std::uint8_t> stonePng(int tiles, int texels_per_tile);
+
+}  // namespace lambent::assets

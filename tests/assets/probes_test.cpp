@@ -1,0 +1,71 @@
+// The probes are finite light of mean 1, with the sun and the boxes where the source says.
+#include "assets/probes.hpp"
+
+#include <numbers>
+
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+
+#include "runtime/spec/light.hpp"
+#include "runtime/spec/probe.hpp"
+
+namespace lambent::assets {
+namespace {
+
+double luminance(glm::dvec3 c) {
+  return glm::dot(c, glm::dvec3(0.2126, 0.7152, 0.0722));
+}
+
+double luminanceTowards(const spec::RgbImage& image, float azimuth_deg, float elevation_deg) {
+  const spec::Probe probe{image, sh::ImageLayout::LatLong, 0};
+  return luminance(spec::radiance(probe, spec::directionFromAzimuthElevation(azimuth_deg, elevation_deg)));
+}
+
+TEST(AssetsProbes, AreFinitePositiveAndOfMeanLuminanceOne) {
+  for (const spec::RgbImage& image : {skyProbe(256), studioProbe(256)}) {
+    for (const glm::vec3 texel : image.texels)
+      for (int c = 0; c < 3; ++c) ASSERT_TRUE(std::isfinite(texel[c]) && texel[c] >= 0.0f);
+    EXPECT_NEAR(luminance(integrate(image)) / (4 * std::numbers::pi), 1.0, 1e-5);
+  }
+}
+
+TEST(AssetsProbes, IntegrateCountsTheSphereOnce) {
+  const spec::RgbImage ones = latLongImage(64, 1, [](glm::dvec3) { return glm::dvec3(1.0); });
+  EXPECT_NEAR(integrate(ones).x, 4 * std::numbers::pi, 1e-9);
+}
+
+TEST(AssetsProbes, TheSkyIsBlueAboveAndItsSunKeepsItsEnergyAtEveryWidth) {
+  const spec::RgbImage large = skyProbe(512), small = skyProbe(128);
+  // The sun stands out by far, so that what lies within four degrees of it is nearly all its own light.
+  const auto sunlight = [](const spec::RgbImage& image) {
+    const glm::dvec3 to_sun(spec::directionFromAzimuthElevation(52.0f, 42.0f));
+    spec::RgbImage near = image;
+    for (std::uint32_t y = 0; y < image.height; ++y)
+      for (std::uint32_t x = 0; x < image.width; ++x) {
+        const glm::dvec3 dir =
+            sh::texelDirection(sh::ImageLayout::LatLong, static_cast<int>(image.width),
+                               static_cast<int>(image.height), static_cast<int>(x), static_cast<int>(y));
+        if (glm::dot(dir, to_sun) < std::cos(6.0 * std::numbers::pi / 180))
+          near.texels[y * image.width + x] *= 0.0f;
+      }
+    return luminance(integrate(near));
+  };
+  EXPECT_NEAR(sunlight(large) / sunlight(small), 1.0, 0.01);
+  EXPECT_GT(luminanceTowards(large, 52, 42), 50.0);
+  const spec::Probe probe{large, sh::ImageLayout::LatLong, 0};
+  const glm::vec3 zenith = spec::radiance(probe, glm::vec3(0, 1, 0));
+  EXPECT_GT(zenith.b, 1.5f * zenith.r);
+  EXPECT_LT(luminanceTowards(large, 0, -60), 1.0);  // the ground gives back a quarter
+}
+
+TEST(AssetsProbes, TheStudioHasThreeBoxesInADarkRoom) {
+  const spec::RgbImage image = studioProbe(256);
+  const double key = luminanceTowards(image, 48, 40), fill = luminanceTowards(image, -62, 24),
+               rim = luminanceTowards(image, 172, 58), wall = luminanceTowards(image, -120, 5);
+  EXPECT_GT(key, 1.5 * rim);
+  EXPECT_GT(rim, 1.2 * fill);
+  EXPECT_GT(fill, 10.0 * wall);
+}
+
+}  // namespace
+}  // namespace lambent::assets
