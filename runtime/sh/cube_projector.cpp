@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 #include <memory>
+#include <numbers>
 
 #include <glm/geometric.hpp>
 
@@ -14,9 +15,8 @@ namespace lambent::sh {
 
 namespace {
 
-// Nodes and weights of 6-point Gauss-Legendre quadrature on [-1, 1]. Over one texel the integrands are smooth
-// (their singularities lie at imaginary distance 1), so that 6 x 6 points are exact to 1e-7 for a whole face
-// and to rounding from 4 texels an edge on.
+// Nodes and weights of 6-point Gauss-Legendre quadrature on [-1, 1]. Over one texel the integrands are
+// smooth: 6 x 6 points give the means of y to 1e-4 for a whole face and to rounding from 4 texels an edge on.
 struct GaussNode {
   double at, weight;
 };
@@ -28,25 +28,54 @@ constexpr std::array<GaussNode, 6> kGauss = {{{-0.93246951420315203, 0.171324492
                                               {0.93246951420315203, 0.17132449237917035}}};
 
 // Omega (2 y(centre) - mean y) of one texel for all coefficients.
-void texelWeights(int order, int size, int face, int x, int y, std::span<double> weights) {
+void sharpenedWeights(int order, int size, int face, int x, int y, std::span<double> weights) {
   const double half = 1.0 / size;
   const double sc = 2 * (x + 0.5) / size - 1, tc = 2 * (y + 0.5) / size - 1;
   const auto count = static_cast<std::size_t>(coefficientCount(order));
   const double solid_angle_sr = cubeTexelSolidAngle(size, x, y);
 
-  std::array<double, kMaxCoefficients> basis;
-  evaluate(order, cubeTexelDirection(size, face, x, y), basis);
-  for (std::size_t i = 0; i < count; ++i) weights[i] = 2 * solid_angle_sr * basis[i];
+  std::array<double, kMaxCoefficients> basis, integral{};
+  double area = 0;
   for (const GaussNode& u : kGauss) {
     for (const GaussNode& v : kGauss) {
       const glm::dvec3 dir = cubeFaceDirection(face, sc + half * u.at, tc + half * v.at);
-      const double squared = glm::dot(dir, dir);
-      const double area = half * half * u.weight * v.weight / (squared * std::sqrt(squared));
-      evaluate(order, dir / std::sqrt(squared), basis);
-      for (std::size_t i = 0; i < count; ++i) weights[i] -= area * basis[i];
+      const double squared = glm::dot(dir, dir), length = std::sqrt(squared);
+      const double weight = u.weight * v.weight / (squared * length);
+      evaluate(order, dir / length, basis);
+      area += weight;
+      for (std::size_t i = 0; i < count; ++i) integral[i] += weight * basis[i];
     }
   }
+  evaluate(order, cubeTexelDirection(size, face, x, y), basis);
+  for (std::size_t i = 0; i < count; ++i) weights[i] = solid_angle_sr * (2 * basis[i] - integral[i] / area);
 }
+
+// The weights of all texels, made so that uniform light has no coefficient but the first: over a whole cube
+// the sharpened weights of the bands that the cube's own symmetry lets through (4 and up) sum to a little
+// more than 0.
+class TexelWeights {
+ public:
+  TexelWeights(int order, int size) : order_(order), size_(size) {
+    std::array<double, kMaxCoefficients> weights;
+    for (int face = 0; face < 6; ++face)
+      for (int y = 0; y < size; ++y)
+        for (int x = 0; x < size; ++x) {
+          sharpenedWeights(order, size, face, x, y, weights);
+          for (std::size_t i = 1; i < static_cast<std::size_t>(coefficientCount(order)); ++i)
+            excess_[i] += weights[i] / (4 * std::numbers::pi);
+        }
+  }
+  void at(int face, int x, int y, std::span<double> weights) const {
+    sharpenedWeights(order_, size_, face, x, y, weights);
+    const double solid_angle_sr = cubeTexelSolidAngle(size_, x, y);
+    for (std::size_t i = 1; i < static_cast<std::size_t>(coefficientCount(order_)); ++i)
+      weights[i] -= excess_[i] * solid_angle_sr;
+  }
+
+ private:
+  int order_, size_;
+  std::array<double, kMaxCoefficients> excess_{};  // per steradian
+};
 
 constexpr int kLanes = 8;
 using Lanes = float __attribute__((vector_size(kLanes * sizeof(float))));
@@ -105,32 +134,66 @@ std::size_t roundedUp(std::size_t count) {
   return (count + kLanes - 1) / kLanes * kLanes;
 }
 
-// Sums and differences of the texels of one row pair that mirror each other: four parities of one face.
-// plus and minus are the rows on the positive and negative side of tc's axis, `size` texels each.
-// to[odd_sc + 2 odd_tc] points to the first of `half` numbers of the red channel; the others follow at
-// `channel_step`.
+// Sums and differences of the four texels of a face that mirror each other, for one row pair and the first
+// `half` columns: plus and minus are the rows on the positive and negative side of tc's axis, `size` texels
+// each. to[odd_sc + 2 odd_tc] points to the first of `half` reds; greens and blues follow at channel_step.
+using FoldTargets = std::array<float*, 4>;
+
+template <typename Value, typename Store>
+void foldFour(const Value& plus_low, const Value& plus_high, const Value& minus_low, const Value& minus_high,
+              float sign, Store&& store) {
+  const Value low_even = plus_low + minus_low, low_odd = plus_low - minus_low;
+  const Value high_even = plus_high + minus_high, high_odd = plus_high - minus_high;
+  store(0, high_even + low_even);
+  store(1, sign * (high_even - low_even));
+  store(2, high_odd + low_odd);
+  store(3, sign * (high_odd - low_odd));
+}
+
+void foldColumns(const glm::vec3* plus, const glm::vec3* minus, std::size_t size, std::size_t first,
+                 float sign, const FoldTargets& to, std::size_t channel_step) {
+  for (std::size_t c = first; c < (size + 1) / 2; ++c)
+    foldFour(plus[c], plus[size - 1 - c], minus[c], minus[size - 1 - c], sign,
+             [&](std::size_t p, const glm::vec3& sum) {
+               for (std::size_t channel = 0; channel < 3; ++channel)
+                 to[p][channel * channel_step + c] = sum[static_cast<int>(channel)];
+             });
+}
+
+// Eight texels as three vectors of one channel each.
+struct Texels {
+  Lanes red, green, blue;
+};
+Texels loadTexels(const glm::vec3* from) {
+  const Lanes a = load(&from->x), b = load(&from->x + 8), c = load(&from->x + 16);
+  const Lanes red = __builtin_shufflevector(a, b, 0, 3, 6, 9, 12, 15, -1, -1);
+  const Lanes green = __builtin_shufflevector(a, b, 1, 4, 7, 10, 13, -1, -1, -1);
+  const Lanes blue = __builtin_shufflevector(a, b, 2, 5, 8, 11, 14, -1, -1, -1);
+  return {__builtin_shufflevector(red, c, 0, 1, 2, 3, 4, 5, 10, 13),
+          __builtin_shufflevector(green, c, 0, 1, 2, 3, 4, 8, 11, 14),
+          __builtin_shufflevector(blue, c, 0, 1, 2, 3, 4, 9, 12, 15)};
+}
+Lanes reversed(const Lanes& lanes) {
+  return __builtin_shufflevector(lanes, lanes, 7, 6, 5, 4, 3, 2, 1, 0);
+}
+
 void foldRows(const glm::vec3* plus, const glm::vec3* minus, std::size_t size, bool sc_flipped,
-              const std::array<float*, 4>& to, std::size_t channel_step) {
-  const std::size_t half = (size + 1) / 2;
+              const FoldTargets& to, std::size_t channel_step) {
   const float sign = sc_flipped ? -1.0f : 1.0f;
-  const float* __restrict plus_flat = &plus->x;
-  const float* __restrict minus_flat = &minus->x;
-  for (std::size_t channel = 0; channel < 3; ++channel) {
-    float* __restrict even_even = to[0] + channel * channel_step;
-    float* __restrict odd_even = to[1] + channel * channel_step;
-    float* __restrict even_odd = to[2] + channel * channel_step;
-    float* __restrict odd_odd = to[3] + channel * channel_step;
-    for (std::size_t c = 0; c < half; ++c) {
-      const std::size_t low = 3 * c + channel, high = 3 * (size - 1 - c) + channel;
-      const float low_even = plus_flat[low] + minus_flat[low], low_odd = plus_flat[low] - minus_flat[low];
-      const float high_even = plus_flat[high] + minus_flat[high],
-                  high_odd = plus_flat[high] - minus_flat[high];
-      even_even[c] = high_even + low_even;
-      odd_even[c] = sign * (high_even - low_even);
-      even_odd[c] = high_odd + low_odd;
-      odd_odd[c] = sign * (high_odd - low_odd);
-    }
+  std::size_t c = 0;
+  for (; c + kLanes <= size / 2; c += kLanes) {
+    const Texels plus_low = loadTexels(plus + c), plus_high = loadTexels(plus + size - kLanes - c);
+    const Texels minus_low = loadTexels(minus + c), minus_high = loadTexels(minus + size - kLanes - c);
+    const auto fold = [&](Lanes Texels::*channel, std::size_t offset) {
+      foldFour(plus_low.*channel, reversed(plus_high.*channel), minus_low.*channel,
+               reversed(minus_high.*channel), sign,
+               [&](std::size_t p, const Lanes& sum) { std::memcpy(to[p] + offset + c, &sum, sizeof sum); });
+    };
+    fold(&Texels::red, 0);
+    fold(&Texels::green, channel_step);
+    fold(&Texels::blue, 2 * channel_step);
   }
+  foldColumns(plus, minus, size, c, sign, to, channel_step);
 }
 
 }  // namespace
@@ -140,12 +203,13 @@ std::vector<float> cubeWeights(int order, int size) {
   const auto count = static_cast<std::size_t>(coefficientCount(order));
   const auto edge = static_cast<std::size_t>(size);
   std::vector<float> table(count * 6 * edge * edge);
+  const TexelWeights texel_weights(order, size);
   std::array<double, kMaxCoefficients> weights;
   std::size_t k = 0;
   for (int face = 0; face < 6; ++face)
     for (int y = 0; y < size; ++y)
       for (int x = 0; x < size; ++x, ++k) {
-        texelWeights(order, size, face, x, y, weights);
+        texel_weights.at(face, x, y, weights);
         for (std::size_t i = 0; i < count; ++i)
           table[i * 6 * edge * edge + k] = static_cast<float>(weights[i]);
       }
@@ -169,6 +233,7 @@ CubeProjector::CubeProjector(int order, int size) : order_(order), size_(size) {
 
   // The weight of each texel of the octant x, y, z > 0. In the middle row or column of an odd size a texel is
   // its own mirror image and is added to itself: half the weight.
+  const TexelWeights texel_weights(order, size);
   std::array<double, kMaxCoefficients> weights;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const int face = static_cast<int>(2 * axis);
@@ -176,8 +241,8 @@ CubeProjector::CubeProjector(int order, int size) : order_(order), size_(size) {
     for (std::size_t r = 0; r < half; ++r)
       for (std::size_t c = 0; c < half; ++c) {
         const int row = static_cast<int>(r), column = static_cast<int>(c);
-        texelWeights(order, size, face, axes.sc_flipped ? column : size - 1 - column,
-                     axes.tc_flipped ? row : size - 1 - row, weights);
+        texel_weights.at(face, axes.sc_flipped ? column : size - 1 - column,
+                         axes.tc_flipped ? row : size - 1 - row, weights);
         const double share = (2 * column + 1 == size ? 0.5 : 1.0) * (2 * row + 1 == size ? 0.5 : 1.0);
         for (const ParityClass& parity_class : classes_)
           for (std::size_t i = 0; i < parity_class.coefficients.size(); ++i)
@@ -192,41 +257,41 @@ LightVector CubeProjector::project(std::span<const glm::vec3> faces) const {
   assert(faces.size() == 6 * size * size);
   const std::size_t class_step = 3 * folded_count_;  // red, green and blue sums of one parity class
   const auto folded = std::make_unique_for_overwrite<float[]>(8 * class_step);
-  // Two faces of an axis, folded in their own planes: [face][parity in sc, tc][channel][column].
-  const auto rows = std::make_unique_for_overwrite<float[]>(2 * 4 * 3 * half);
+  // Two faces of an axis, folded in their own planes: [face][parity in sc, tc][channel][row][column].
+  const std::size_t plane = half * half;
+  const auto planes = std::make_unique_for_overwrite<float[]>(2 * 4 * 3 * plane);
 
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    for (std::size_t r = 0; r < half; ++r) {
-      for (std::size_t side = 0; side < 2; ++side) {
-        const FaceAxes& axes = kFaceAxes[2 * axis + side];
-        const glm::vec3* face = faces.data() + (2 * axis + side) * size * size;
+    for (std::size_t side = 0; side < 2; ++side) {
+      const FaceAxes& axes = kFaceAxes[2 * axis + side];
+      const glm::vec3* face = faces.data() + (2 * axis + side) * size * size;
+      for (std::size_t r = 0; r < half; ++r) {
         const glm::vec3* low = face + r * size;
         const glm::vec3* high = face + (size - 1 - r) * size;
-        float* to = rows.get() + side * 12 * half;
+        float* to = planes.get() + side * 12 * plane + r * half;
         foldRows(axes.tc_flipped ? low : high, axes.tc_flipped ? high : low, size, axes.sc_flipped,
-                 {to, to + 3 * half, to + 6 * half, to + 9 * half}, half);
+                 {to, to + 3 * plane, to + 6 * plane, to + 9 * plane}, plane);
       }
-      const int bit = 1 << axis, bit_sc = 1 << kFaceAxes[2 * axis].axis_of_sc,
-                bit_tc = 1 << kFaceAxes[2 * axis].axis_of_tc;
-      for (int p = 0; p < 4; ++p) {
-        const int in_plane = (p & 1 ? bit_sc : 0) | (p & 2 ? bit_tc : 0);
-        for (std::size_t channel = 0; channel < 3; ++channel) {
-          const float* __restrict plus = rows.get() + (static_cast<std::size_t>(p) * 3 + channel) * half;
-          const float* __restrict minus = plus + 12 * half;
-          float* const at = folded.get() + channel * folded_count_ + (axis * half + r) * half;
-          float* __restrict even = at + static_cast<std::size_t>(in_plane) * class_step;
-          float* __restrict odd = at + static_cast<std::size_t>(in_plane | bit) * class_step;
-          for (std::size_t c = 0; c < half; ++c) {
-            even[c] = plus[c] + minus[c];
-            odd[c] = plus[c] - minus[c];
-          }
+    }
+    const int bit = 1 << axis;
+    const int bit_sc = 1 << kFaceAxes[2 * axis].axis_of_sc, bit_tc = 1 << kFaceAxes[2 * axis].axis_of_tc;
+    for (int p = 0; p < 4; ++p) {
+      const int in_plane = (p & 1 ? bit_sc : 0) | (p & 2 ? bit_tc : 0);
+      for (std::size_t channel = 0; channel < 3; ++channel) {
+        const float* __restrict plus = planes.get() + (static_cast<std::size_t>(p) * 3 + channel) * plane;
+        const float* __restrict minus = plus + 12 * plane;
+        float* const at = folded.get() + channel * folded_count_ + axis * plane;
+        float* __restrict even = at + static_cast<std::size_t>(in_plane) * class_step;
+        float* __restrict odd = at + static_cast<std::size_t>(in_plane | bit) * class_step;
+        for (std::size_t k = 0; k < plane; ++k) {
+          even[k] = plus[k] + minus[k];
+          odd[k] = plus[k] - minus[k];
         }
       }
     }
   }
   for (std::size_t row = 0; row < 8 * 3; ++row)
-    std::fill(folded.get() + row * folded_count_ + 3 * half * half, folded.get() + (row + 1) * folded_count_,
-              0.0f);
+    std::fill(folded.get() + row * folded_count_ + 3 * plane, folded.get() + (row + 1) * folded_count_, 0.0f);
 
   LightVector light{.order = order_};
   for (std::size_t p = 0; p < classes_.size(); ++p) {

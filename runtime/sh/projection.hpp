@@ -31,7 +31,8 @@ LightVector projectImage(int order, ImageLayout layout, int width, int height,
 
 // The plain table: weight of texel k (cube_map.hpp's order) for coefficient i at [i * 6 size² + k]. Weights
 // are Omega (2 y(centre) - mean of y over the texel): for box-filtered texels this removes the leading error
-// of either choice alone, since the filtered texel and the averaged basis would blur twice.
+// of either choice alone, since the filtered texel and the averaged basis would blur twice. A multiple of
+// Omega is then taken off coefficients 1 and up, so that uniform light gives exactly constantLight.
 std::vector<float> cubeWeights(int order, int size);
 
 class CubeProjector {

@@ -4,6 +4,7 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <cstring>
 #include <string>
 
 namespace lambent::sh {
@@ -95,32 +96,36 @@ void makeBand(const std::array<std::array<double, 3>, 3>& first, const double* b
   });
 }
 
-// to += column j times value, over all of a band; to has room for the padding.
-template <int L, typename T>
+// out = D in for one band of coefficients with interleaved channels. Each column is read once for all
+// channels.
+template <int L, int Channels, typename T>
 void applyBand(const T* columns, const T* in, T* out) {
-  std::array<T, static_cast<std::size_t>(stride(L))> sum{};
-  for (int j = 0; j < 2 * L + 1; ++j)
-    for (int i = 0; i < stride(L); ++i)
-      sum[static_cast<std::size_t>(i)] += columns[j * stride(L) + i] * in[j];
-  std::copy_n(sum.begin(), 2 * L + 1, out);
+  if constexpr (L == 0) {
+    for (int channel = 0; channel < Channels; ++channel) out[channel] = in[channel];
+  } else {
+    using Lanes __attribute__((vector_size(4 * sizeof(T)))) = T;
+    constexpr int kVectors = stride(L) / 4;
+    Lanes sum[Channels][kVectors] = {};
+    for (int j = 0; j < 2 * L + 1; ++j)
+      for (int v = 0; v < kVectors; ++v) {
+        Lanes column;
+        std::memcpy(&column, columns + j * stride(L) + 4 * v, sizeof column);
+        for (int channel = 0; channel < Channels; ++channel)
+          sum[channel][v] += column * in[j * Channels + channel];
+      }
+    T rows[Channels][stride(L)];
+    std::memcpy(rows, sum, sizeof rows);
+    for (int i = 0; i < 2 * L + 1; ++i)
+      for (int channel = 0; channel < Channels; ++channel) out[i * Channels + channel] = rows[channel][i];
+  }
 }
 
-template <typename T>
+template <int Channels, typename T>
 void applyBands(int order, const T* columns, const T* in, T* out) {
-  detail::unrolled(std::make_integer_sequence<int, kMaxOrder>{}, [&](auto band) {
-    if (band < order) applyBand<band>(columns + bandOffset(band), in + band * band, out + band * band);
+  detail::unrolled(std::make_integer_sequence<int, kMaxOrder>{}, [&](auto l) {
+    if (l < order)
+      applyBand<l, Channels>(columns + bandOffset(l), in + l * l * Channels, out + l * l * Channels);
   });
-}
-
-// One channel after the other: the columns then run along vector lanes.
-void applyRgb(int order, const float* columns, const glm::vec3* in, glm::vec3* out) {
-  const auto count = static_cast<std::size_t>(coefficientCount(order));
-  std::array<std::array<float, kMaxCoefficients>, 3> from, to;
-  for (std::size_t i = 0; i < count; ++i)
-    for (std::size_t channel = 0; channel < 3; ++channel) from[channel][i] = in[i][static_cast<int>(channel)];
-  for (std::size_t channel = 0; channel < 3; ++channel)
-    applyBands(order, columns, from[channel].data(), to[channel].data());
-  for (std::size_t i = 0; i < count; ++i) out[i] = {to[0][i], to[1][i], to[2][i]};
 }
 
 }  // namespace
@@ -202,23 +207,23 @@ double Rotation::entry(int i, int j) const {
 
 void Rotation::apply(std::span<const float> in, std::span<float> out) const {
   assert(static_cast<int>(in.size()) >= coefficientCount(order_) && out.size() >= in.size());
-  applyBands(order_, columns_float_.data(), in.data(), out.data());
+  applyBands<1>(order_, columns_float_.data(), in.data(), out.data());
 }
 
 void Rotation::apply(std::span<const double> in, std::span<double> out) const {
   assert(static_cast<int>(in.size()) >= coefficientCount(order_) && out.size() >= in.size());
-  applyBands(order_, columns_.data(), in.data(), out.data());
+  applyBands<1>(order_, columns_.data(), in.data(), out.data());
 }
 
 void Rotation::apply(std::span<const glm::vec3> in, std::span<glm::vec3> out) const {
   assert(static_cast<int>(in.size()) >= coefficientCount(order_) && out.size() >= in.size());
-  applyRgb(order_, columns_float_.data(), in.data(), out.data());
+  applyBands<3>(order_, columns_float_.data(), &in[0].x, &out[0].x);
 }
 
 LightVector Rotation::apply(const LightVector& light) const {
   assert(light.order <= order_);
   LightVector result{.order = light.order};
-  applyRgb(light.order, columns_float_.data(), light.c.data(), result.c.data());
+  applyBands<3>(light.order, columns_float_.data(), &light.c[0].x, &result.c[0].x);
   return result;
 }
 

@@ -1,0 +1,143 @@
+#include "runtime/sh/basis.hpp"
+
+#include <array>
+#include <numbers>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "tests/runtime/sh/sphere.hpp"
+
+namespace lambent::sh {
+namespace {
+
+using testing::Random;
+
+constexpr double kPi = std::numbers::pi;
+
+std::vector<double> evaluated(int order, const glm::dvec3& dir) {
+  std::vector<double> y(static_cast<std::size_t>(coefficientCount(order)));
+  evaluate(order, dir, y);
+  return y;
+}
+
+TEST(ShBasis, IndexesBandsInOrder) {
+  EXPECT_EQ(coefficientCount(5), 25);
+  int i = 0;
+  for (int l = 0; l < kMaxOrder; ++l)
+    for (int m = -l; m <= l; ++m, ++i) {
+      EXPECT_EQ(coefficientIndex(l, m), i);
+      EXPECT_EQ(bandOf(i), l);
+    }
+}
+
+TEST(ShBasis, HasTheConstantsOfTheConventions) {
+  const double x = 0.6, y = -0.48, z = 0.64;
+  const auto values = evaluated(3, {x, y, z});
+  const std::array<double, 9> expected = {0.282094791773878,
+                                          0.488602511902920 * y,
+                                          0.488602511902920 * z,
+                                          0.488602511902920 * x,
+                                          1.092548430592079 * x * y,
+                                          1.092548430592079 * y * z,
+                                          0.315391565252520 * (3 * z * z - 1),
+                                          1.092548430592079 * x * z,
+                                          0.546274215296040 * (x * x - y * y)};
+  for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_NEAR(values[i], expected[i], 1e-14) << i;
+}
+
+// 40 Gauss nodes in polar angle and azimuth integrate products of two functions of band 7 to rounding.
+TEST(ShBasis, IsOrthonormalAtEveryOrder) {
+  for (int order = 1; order <= kMaxOrder; ++order) {
+    const auto count = static_cast<std::size_t>(coefficientCount(order));
+    std::vector<double> gram(count * count);
+    testing::overSphere(40, [&](const glm::dvec3& dir, double weight) {
+      const auto y = evaluated(order, dir);
+      for (std::size_t i = 0; i < count; ++i)
+        for (std::size_t j = 0; j < count; ++j) gram[i * count + j] += weight * y[i] * y[j];
+    });
+    for (std::size_t i = 0; i < count; ++i)
+      for (std::size_t j = 0; j < count; ++j)
+        EXPECT_NEAR(gram[i * count + j], i == j ? 1.0 : 0.0, 1e-12)
+            << "order " << order << ": " << i << ", " << j;
+  }
+}
+
+TEST(ShBasis, DiffersFromCondonShortleyByMinusOneToTheM) {
+  Random random(1);
+  for (int k = 0; k < 50; ++k) {
+    const glm::dvec3 dir = random.direction();
+    const auto ours = evaluated(kMaxOrder, dir);
+    const auto theirs = testing::condonShortleySh(dir, kMaxOrder);
+    for (int l = 0; l < kMaxOrder; ++l)
+      for (int m = -l; m <= l; ++m) {
+        const auto i = static_cast<std::size_t>(coefficientIndex(l, m));
+        EXPECT_NEAR(ours[i], (m % 2 == 0 ? 1 : -1) * theirs[i], 1e-12) << l << ", " << m;
+      }
+  }
+}
+
+// sum_m y_lm² = (2l+1)/4pi in every direction, the poles and their neighbourhood included.
+TEST(ShBasis, KeepsTheEnergyOfEachBandEverywhere) {
+  std::vector<glm::dvec3> dirs = {{0, 0, 1},       {0, 0, -1}, {1e-20, 0, 1},
+                                  {0, -1e-20, -1}, {1, 0, 0},  {0, -1, 0}};
+  Random random(2);
+  for (int k = 0; k < 200; ++k) dirs.push_back(random.direction());
+  for (const glm::dvec3& dir : dirs) {
+    std::array<double, kMaxCoefficients> y;
+    std::array<float, kMaxCoefficients> y_float;
+    evaluate(kMaxOrder, dir, y);
+    evaluate(kMaxOrder, glm::vec3(dir), y_float);
+    for (int l = 0; l < kMaxOrder; ++l) {
+      double energy = 0, energy_float = 0;
+      for (int i = l * l; i < (l + 1) * (l + 1); ++i) {
+        energy += y[static_cast<std::size_t>(i)] * y[static_cast<std::size_t>(i)];
+        const double value = static_cast<double>(y_float[static_cast<std::size_t>(i)]);
+        energy_float += value * value;
+      }
+      EXPECT_NEAR(energy, (2 * l + 1) / (4 * kPi), 1e-14);
+      // Rounding the direction to float shifts band l by up to about l 2^-24, relatively.
+      EXPECT_NEAR(energy_float, (2 * l + 1) / (4 * kPi), 2e-6);
+    }
+  }
+}
+
+TEST(ShBasis, IsZonalAtThePoles) {
+  for (double z : {1.0, -1.0})
+    for (double off : {0.0, 1e-20, -1e-20}) {
+      const auto y = evaluated(kMaxOrder, {off, off, z});
+      for (int l = 0; l < kMaxOrder; ++l)
+        for (int m = -l; m <= l; ++m) {
+          const double zonal = std::sqrt((2 * l + 1) / (4 * kPi)) * (l % 2 == 1 ? z : 1);
+          EXPECT_NEAR(y[static_cast<std::size_t>(coefficientIndex(l, m))], m == 0 ? zonal : 0, 1e-14);
+        }
+    }
+}
+
+TEST(ShBasis, EvaluatesBatchesAsSingleDirections) {
+  Random random(3);
+  for (std::size_t count : {1u, 7u, 8u, 9u, 64u, 100u}) {
+    std::vector<float> x, y, z;
+    for (std::size_t k = 0; k < count; ++k) {
+      const glm::vec3 dir(random.direction());
+      x.push_back(dir.x);
+      y.push_back(dir.y);
+      z.push_back(dir.z);
+    }
+    for (int order = 1; order <= kMaxOrder; ++order) {
+      const std::size_t stride = count + 3, entries = static_cast<std::size_t>(coefficientCount(order));
+      std::vector<float> batch(entries * stride, 77.0f), one(entries);
+      evaluateBatch(order, x.data(), y.data(), z.data(), count, batch.data(), stride);
+      for (std::size_t k = 0; k < count; ++k) {
+        evaluate(order, glm::vec3(x[k], y[k], z[k]), one);
+        // The same operations; only fused multiply-adds may fall differently.
+        for (std::size_t i = 0; i < entries; ++i) EXPECT_NEAR(batch[i * stride + k], one[i], 3e-6f);
+      }
+      for (std::size_t i = 0; i < entries; ++i)
+        EXPECT_EQ(batch[i * stride + count], 77.0f) << "wrote past the batch";
+    }
+  }
+}
+
+}  // namespace
+}  // namespace lambent::sh

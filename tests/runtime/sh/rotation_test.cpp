@@ -1,0 +1,181 @@
+#include "runtime/sh/rotation.hpp"
+
+#include <array>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "runtime/sh/zonal.hpp"
+#include "tests/runtime/sh/sphere.hpp"
+
+namespace lambent::sh {
+namespace {
+
+using testing::Random;
+
+constexpr double kDegree = std::numbers::pi / 180;
+
+std::array<double, kMaxCoefficients> evaluated(const glm::dvec3& dir) {
+  std::array<double, kMaxCoefficients> y;
+  evaluate(kMaxOrder, dir, y);
+  return y;
+}
+
+// Axes through faces, edges and corners, and some in general position.
+std::vector<glm::dvec3> axes() {
+  std::vector<glm::dvec3> list = {{1, 0, 0}, {0, 1, 0},  {0, 0, 1}, {0, 0, -1}, {1, 1, 0},
+                                  {0, 1, 1}, {-1, 0, 1}, {1, 1, 1}, {1, -1, 1}, {1e-9, 0, 1}};
+  Random random(4);
+  for (int k = 0; k < 10; ++k) list.push_back(random.direction());
+  for (glm::dvec3& axis : list) axis = glm::normalize(axis);
+  return list;
+}
+
+std::vector<glm::dquat> rotations() {
+  std::vector<glm::dquat> list;
+  for (double angle : {0.0, 1e-8, 1.0, 90 * kDegree, 180 * kDegree, (180 - 1e-6) * kDegree, 270 * kDegree})
+    for (const glm::dvec3& axis : axes()) list.push_back(glm::angleAxis(angle, axis));
+  Random random(5);
+  for (int k = 0; k < 50; ++k) list.push_back(random.rotation());
+  return list;
+}
+
+double largestDifference(std::span<const double> a, std::span<const double> b) {
+  double largest = 0;
+  for (std::size_t i = 0; i < b.size(); ++i) largest = std::max(largest, std::abs(a[i] - b[i]));
+  return largest;
+}
+
+// y(R s) = D y(s) in double: at special angles, about special axes, towards the poles.
+TEST(ShRotation, TurnsTheBasisUpToOrder8NearThePoles) {
+  Random random(6);
+  for (const glm::dquat& q : rotations()) {
+    const glm::dmat3 matrix = glm::mat3_cast(q);
+    const Rotation rotation(matrix, kMaxOrder);
+    for (const glm::dvec3& dir :
+         {glm::dvec3(0, 0, 1), glm::dvec3(0, 0, -1), random.direction(), random.direction()}) {
+      std::array<double, kMaxCoefficients> turned;
+      rotation.apply(evaluated(dir), std::span<double>(turned));
+      EXPECT_LE(largestDifference(turned, evaluated(matrix * dir)), 1e-12)
+          << "quaternion " << q.w << " " << q.x << " " << q.y << " " << q.z;
+    }
+  }
+}
+
+TEST(ShRotation, IsOrthogonal) {
+  for (const glm::dquat& q : rotations()) {
+    const Rotation rotation(q, kMaxOrder);
+    for (int i = 0; i < kMaxCoefficients; ++i)
+      for (int j = 0; j <= i; ++j) {
+        if (bandOf(i) != bandOf(j)) {
+          EXPECT_EQ(rotation.entry(i, j), 0);
+          continue;
+        }
+        double product = 0;
+        for (int k = 0; k < kMaxCoefficients; ++k) product += rotation.entry(i, k) * rotation.entry(j, k);
+        ASSERT_NEAR(product, i == j ? 1 : 0, 1e-12);
+      }
+  }
+}
+
+TEST(ShRotation, ComposesAsRotationsDo) {
+  Random random(7);
+  for (int k = 0; k < 50; ++k) {
+    const glm::dquat a = random.rotation(), b = random.rotation();
+    const auto y = evaluated(random.direction());
+    std::array<double, kMaxCoefficients> once, twice, together;
+    Rotation(b, kMaxOrder).apply(y, std::span<double>(once));
+    Rotation(a, kMaxOrder).apply(once, std::span<double>(twice));
+    Rotation(a * b, kMaxOrder).apply(y, std::span<double>(together));
+    EXPECT_LE(largestDifference(twice, together), 1e-12);
+  }
+}
+
+TEST(ShRotation, CarriesAFunctionAlong) {
+  Random random(8);
+  for (int order = 1; order <= kMaxOrder; ++order) {
+    const glm::dquat q = random.rotation();
+    const glm::vec3 dir(random.direction());
+    const LightVector light = discLight(order, dir, 0.4, {1, 2, 3});
+    const LightVector expected = discLight(order, glm::vec3(q * glm::dvec3(dir)), 0.4, {1, 2, 3});
+    const LightVector turned = Rotation(q, order).apply(light);
+    const LightVector turned_by_more = Rotation(q, kMaxOrder).apply(light);
+    EXPECT_EQ(turned.order, order);
+    for (std::size_t i = 0; i < light.c.size(); ++i)
+      for (int channel = 0; channel < 3; ++channel) {
+        EXPECT_NEAR(turned.c[i][channel], expected.c[i][channel], 3e-6f);
+        EXPECT_EQ(turned.c[i][channel], turned_by_more.c[i][channel]);
+      }
+  }
+}
+
+TEST(ShRotation, LeavesZonalLightAloneAboutItsAxis) {
+  const LightVector light = discLight(kMaxOrder, {0, 0, 1}, 0.3, {1, 1, 1});
+  const LightVector turned = Rotation(glm::angleAxis(1.234, glm::dvec3(0, 0, 1)), kMaxOrder).apply(light);
+  for (std::size_t i = 0; i < light.c.size(); ++i) EXPECT_NEAR(turned.c[i].r, light.c[i].r, 1e-6f);
+}
+
+TEST(ShRotation, AgreesInFloatWithDouble) {
+  Random random(9);
+  for (const glm::dquat& q : rotations()) {
+    const Rotation rotation(q, kMaxOrder);
+    std::array<double, kMaxCoefficients> in, out;
+    std::array<float, kMaxCoefficients> in_float, out_float;
+    for (std::size_t i = 0; i < in.size(); ++i) {
+      in_float[i] = static_cast<float>(2 * random.uniform() - 1);
+      in[i] = static_cast<double>(in_float[i]);
+    }
+    rotation.apply(in, std::span<double>(out));
+    rotation.apply(in_float, std::span<float>(out_float));
+    // 15 products of numbers up to 1, each rounded at 2^-24.
+    for (std::size_t i = 0; i < in.size(); ++i) EXPECT_NEAR(static_cast<double>(out_float[i]), out[i], 1e-5);
+  }
+}
+
+// The documented way to turn a body for hours: accumulate and renormalise a quaternion, rebuild the matrix.
+TEST(ShRotation, DoesNotDriftOver100000SmallTurns) {
+  constexpr int kTurns = 100000;
+  const glm::dvec3 axis = glm::normalize(glm::dvec3(1, 2, 3));
+  const glm::dquat step = glm::angleAxis(360 * kDegree / 1000, axis);
+  glm::dquat q(1, 0, 0, 0);
+  for (int k = 0; k < kTurns; ++k) q = glm::normalize(step * q);
+  const auto y = evaluated(glm::normalize(glm::dvec3(-1, 0.5, 0.2)));
+  std::array<double, kMaxCoefficients> turned;
+  Rotation(q, kMaxOrder).apply(y, std::span<double>(turned));
+  EXPECT_LE(largestDifference(turned, y), 1e-9) << "100 full turns bring the function back";
+}
+
+TEST(ShRotation, RefusesWhatIsNoRotation) {
+  EXPECT_TRUE(Rotation::make(glm::dmat3(1), 5).has_value());
+  EXPECT_FALSE(Rotation::make(glm::dmat3(-1), 5).has_value()) << "mirror";
+  EXPECT_FALSE(Rotation::make(glm::dmat3(2), 5).has_value()) << "scale";
+  EXPECT_FALSE(Rotation::make(glm::dmat3(0), 5).has_value());
+  EXPECT_FALSE(Rotation::make(glm::dmat3(std::numeric_limits<double>::quiet_NaN()), 5).has_value());
+  EXPECT_FALSE(Rotation::make(glm::dmat3(1), 0).has_value());
+  EXPECT_FALSE(Rotation::make(glm::dmat3(1), kMaxOrder + 1).has_value());
+}
+
+TEST(ShRotation, FindsTheRotationInAScaledOrDriftedMatrix) {
+  Random random(10);
+  for (int k = 0; k < 20; ++k) {
+    const glm::dmat3 exact = glm::mat3_cast(random.rotation());
+    glm::dmat3 drifted = exact * 3.0;
+    drifted[1] *= 0.5;
+    drifted[0][2] += 1e-7;
+    const auto found = orthonormalised(drifted);
+    ASSERT_TRUE(found.has_value());
+    EXPECT_TRUE(isRotation(*found, 1e-14));
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) EXPECT_NEAR((*found)[i][j], exact[i][j], 1e-6);
+  }
+  glm::dmat3 mirror(1);
+  mirror[2][2] = -1;
+  EXPECT_FALSE(orthonormalised(mirror).has_value());
+  EXPECT_FALSE(orthonormalised(glm::dmat3(0)).has_value());
+  EXPECT_FALSE(orthonormalised(glm::dmat3(std::numeric_limits<double>::infinity())).has_value());
+}
+
+}  // namespace
+}  // namespace lambent::sh

@@ -1,0 +1,226 @@
+#include "runtime/sh/zonal.hpp"
+
+#include <algorithm>
+#include <array>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "tests/runtime/sh/sphere.hpp"
+
+namespace lambent::sh {
+namespace {
+
+using testing::Random;
+
+constexpr double kPi = std::numbers::pi;
+constexpr double kDegree = kPi / 180;
+
+double zonalValue(int order, double angular_radius_rad, double angle_rad) {
+  double sum = 0;
+  for (int l = 0; l < order; ++l)
+    sum += discZonal(l, angular_radius_rad) * std::sqrt((2 * l + 1) / (4 * kPi)) *
+           legendre(l, std::cos(angle_rad));
+  return sum;
+}
+
+TEST(ShZonal, HasTheClampedCosinesBands) {
+  const std::array<double, 13> expected = {1, 2.0 / 3,    0.25, 0,          -1.0 / 24, 0,          1.0 / 64,
+                                           0, -1.0 / 128, 0,    7.0 / 1536, 0,         -3.0 / 1024};
+  for (int l = 0; l < 13; ++l)
+    EXPECT_NEAR(clampedCosine(l) / kPi, expected[static_cast<std::size_t>(l)], 1e-15) << l;
+}
+
+// Against quadrature of max(n.s, 0)/pi over the hemisphere about z.
+TEST(ShZonal, TransfersAllLightToAnOpenPoint) {
+  std::array<double, kMaxCoefficients> expected{}, y, transfer;
+  testing::overSphere(40, 0, kPi / 2, 0, 2 * kPi, [&](const glm::dvec3& dir, double weight) {
+    evaluate(kMaxOrder, dir, y);
+    for (std::size_t i = 0; i < y.size(); ++i) expected[i] += weight * dir.z / kPi * y[i];
+  });
+  unoccludedTransfer(kMaxOrder, glm::dvec3(0, 0, 1), transfer);
+  for (std::size_t i = 0; i < y.size(); ++i) EXPECT_NEAR(transfer[i], expected[i], 1e-12) << i;
+
+  // Uniform light gives exactly the albedo, left out here, whatever the normal.
+  Random random(11);
+  std::array<float, kMaxCoefficients> transfer_float;
+  for (int k = 0; k < 20; ++k) {
+    unoccludedTransfer(5, glm::vec3(random.direction()), transfer_float);
+    EXPECT_NEAR(transfer_float[0] * constantLight(5, glm::vec3(1)).c[0].r, 1.0f, 1e-6f);
+  }
+}
+
+// A wall blocks x < 0 and the receiver looks along z. The table's values carry the Condon-Shortley sign.
+TEST(ShZonal, MatchesTheHalfPlaneInClosedForm) {
+  std::array<double, 25> transfer{}, y;
+  testing::overSphere(40, 0, kPi / 2, -kPi / 2, kPi / 2, [&](const glm::dvec3& dir, double weight) {
+    evaluate(5, dir, y);
+    for (std::size_t i = 0; i < y.size(); ++i) transfer[i] += weight * dir.z * y[i];
+  });
+  struct Entry {
+    int l, m;
+    double value;
+  };
+  const std::array<Entry, 10> table = {{{0, 0, .443113463},
+                                        {1, 0, .511663354},
+                                        {1, 1, -.325735651},
+                                        {2, 0, .247707956},
+                                        {2, 1, -.429044203},
+                                        {3, 1, -.304699606},
+                                        {3, 3, .078672479},
+                                        {4, 0, -.055389183},
+                                        {4, 1, -.131370506},
+                                        {4, 3, .115854788}}};
+  for (int l = 0; l < 5; ++l)
+    for (int m = -l; m <= l; ++m) {
+      const auto found = std::find_if(table.begin(), table.end(),
+                                      [&](const Entry& entry) { return entry.l == l && entry.m == m; });
+      const double expected = found == table.end() ? 0 : found->value * (m % 2 == 0 ? 1 : -1);
+      // The table's own quadrature reaches 4e-6 where m is odd (a square root at the zenith).
+      EXPECT_NEAR(transfer[static_cast<std::size_t>(coefficientIndex(l, m))], expected,
+                  m % 2 == 0 ? 1e-9 : 4e-6)
+          << l << ", " << m;
+    }
+  EXPECT_NEAR(transfer[static_cast<std::size_t>(coefficientIndex(1, 1))], std::sqrt(3 / (4 * kPi)) * 2 / 3,
+              1e-12);
+}
+
+TEST(ShZonal, HasTheDiscsClosedForm) {
+  struct Row {
+    double degrees;
+    std::array<double, 6> bands;
+  };
+  const std::array<Row, 4> table = {{{5, {.006745, .011660, .014996, .017642, .019851, .021737}},
+                                     {20, {.106892, .179560, .217831, .234176, .232424, .215409}},
+                                     {40, {.414675, .634221, .627219, .468438, .233047, .002440}},
+                                     {90, {1.772454, 1.534990, 0, -.586184, 0, .367410}}}};
+  for (const Row& row : table)
+    for (int l = 0; l < 6; ++l)
+      EXPECT_NEAR(discZonal(l, row.degrees * kDegree), row.bands[static_cast<std::size_t>(l)], 6e-7)
+          << row.degrees << " degrees, band " << l;
+}
+
+// Both branches of discZonal, and discs so small that the closed form cancels.
+TEST(ShZonal, KeepsTinyDiscsAccurate) {
+  for (int l = 0; l < kMaxOrder; ++l) {
+    for (double radius : {1e-9, 1e-6, 0.0046, 0.05}) {
+      const double half = std::sin(radius / 2), solid_angle = 4 * kPi * half * half;
+      const double delta = solid_angle * std::sqrt((2 * l + 1) / (4 * kPi));
+      // Relative to a point light the disc loses l(l+1) a²/8 to first order.
+      EXPECT_NEAR(discZonal(l, radius) / delta, 1 - l * (l + 1) * radius * radius / 8,
+                  2 * std::pow(l * radius, 4) + 1e-12);
+    }
+    EXPECT_NEAR(discZonal(l, 0.1 - 1e-12), discZonal(l, 0.1 + 1e-12), 1e-11) << "where the branches meet";
+    EXPECT_NEAR(discZonal(l, kPi), l == 0 ? std::sqrt(4 * kPi) : 0, 1e-14) << "the whole sphere";
+    EXPECT_EQ(discZonal(l, 0), 0);
+  }
+}
+
+// Relative L2 error, value at the centre and minimum of the truncated disc.
+TEST(ShZonal, TruncatesDiscsAsTabulated) {
+  struct Entry {
+    double error, centre, minimum;
+  };
+  struct Row {
+    double degrees;
+    std::array<Entry, 6> orders;
+  };
+  constexpr std::array<int, 6> kOrders = {2, 3, 4, 5, 6, 8};
+  const std::array<Row, 5> table = {{{5,
+                                      {{{.996, .008, -.004},
+                                        {.991, .017, -.003},
+                                        {.985, .030, -.008},
+                                        {.976, .047, -.007},
+                                        {.966, .067, -.011},
+                                        {.941, .118, -.016}}}},
+                                     {10,
+                                      {{{.985, .030, -.015},
+                                        {.966, .067, -.013},
+                                        {.941, .118, -.029},
+                                        {.909, .181, -.026},
+                                        {.872, .256, -.040},
+                                        {.785, .431, -.053}}}},
+                                     {20,
+                                      {{{.941, .118, -.058},
+                                        {.872, .255, -.048},
+                                        {.784, .430, -.095},
+                                        {.687, .627, -.077},
+                                        {.591, .828, -.100},
+                                        {.448, 1.18, -.081}}}},
+                                     {40,
+                                      {{{.781, .427, -.193},
+                                        {.585, .822, -.121},
+                                        {.439, 1.17, -.147},
+                                        {.394, 1.37, -.054},
+                                        {.394, 1.37, -.053},
+                                        {.329, .981, -.097}}}},
+                                     {60,
+                                      {{{.573, .812, -.312},
+                                        {.390, 1.28, -.097},
+                                        {.385, 1.36, -.061},
+                                        {.343, 1.10, -.189},
+                                        {.289, .793, -.086},
+                                        {.268, .925, -.148}}}}}};
+  for (const Row& row : table)
+    for (std::size_t k = 0; k < kOrders.size(); ++k) {
+      const double radius = row.degrees * kDegree, solid_angle = 2 * kPi * (1 - std::cos(radius));
+      double energy = 0, minimum = 1;
+      for (int l = 0; l < kOrders[k]; ++l) energy += discZonal(l, radius) * discZonal(l, radius);
+      for (int step = 0; step <= 3600; ++step)
+        minimum = std::min(minimum, zonalValue(kOrders[k], radius, step * kPi / 3600));
+      // The table has three digits.
+      EXPECT_NEAR(std::sqrt(1 - energy / solid_angle), row.orders[k].error, 6e-4)
+          << row.degrees << ", " << kOrders[k];
+      EXPECT_NEAR(zonalValue(kOrders[k], radius, 0), row.orders[k].centre,
+                  row.orders[k].centre < 1 ? 6e-4 : 6e-3);
+      EXPECT_NEAR(minimum, row.orders[k].minimum, 6e-4);
+    }
+}
+
+// Unshadowed irradiance of a receiver that faces a disc, over the exact pi sin² a.
+TEST(ShZonal, LightsAFacingReceiverAsTabulated) {
+  struct Row {
+    double degrees;
+    std::array<double, 4> ratio;
+  };
+  constexpr std::array<int, 4> kOrders = {2, 3, 5, 7};
+  const std::array<Row, 5> table = {{{1, {.7500, 1.0625, .9688, 1.0195}},
+                                     {20, {.7578, 1.0514, .9814, 1.0067}},
+                                     {40, {.7831, 1.0225, 1.0026, .9966}},
+                                     {60, {.8333, .9896, 1.0042, 1.0028}},
+                                     {90, {1, 1, 1, 1}}}};
+  const glm::vec3 normal(0.36f, 0.48f, -0.8f);
+  for (const Row& row : table)
+    for (std::size_t k = 0; k < kOrders.size(); ++k) {
+      const double radius = row.degrees * kDegree;
+      const LightVector light = discLight(kOrders[k], normal, radius, {1, 1, 1});
+      const double irradiance_over_pi = static_cast<double>(cosineConvolved(light).evaluate(normal).r);
+      const double ratio = irradiance_over_pi / (std::sin(radius) * std::sin(radius));
+      EXPECT_NEAR(ratio, row.ratio[k], 1.1e-4) << row.degrees << " degrees, order " << kOrders[k];
+    }
+}
+
+TEST(ShZonal, TransferAndConvolutionAgree) {
+  Random random(12);
+  const LightVector light =
+      discLight(6, {0.6f, 0, 0.8f}, 0.7, {3, 2, 1}) + constantLight(6, {0.1f, 0.2f, 0.3f});
+  std::array<double, 6> cosine_zonal;
+  for (int l = 0; l < 6; ++l)
+    cosine_zonal[static_cast<std::size_t>(l)] = clampedCosine(l) / kPi * std::sqrt((2 * l + 1) / (4 * kPi));
+  for (int k = 0; k < 20; ++k) {
+    const glm::vec3 normal(random.direction());
+    std::array<float, 36> transfer;
+    unoccludedTransfer(6, normal, transfer);
+    glm::vec3 sum(0);
+    for (std::size_t i = 0; i < transfer.size(); ++i) sum += transfer[i] * light.c[i];
+    const glm::vec3 by_cosine = cosineConvolved(light).evaluate(normal);
+    const glm::vec3 by_kernel = convolved(light, cosine_zonal).evaluate(normal);
+    for (int channel = 0; channel < 3; ++channel) {
+      EXPECT_NEAR(sum[channel], by_cosine[channel], 2e-6f);
+      EXPECT_NEAR(sum[channel], by_kernel[channel], 2e-6f);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace lambent::sh
