@@ -118,9 +118,12 @@ struct Group {
   std::vector<Cell> cells;
 };
 
-// One primitive at one node: what is drawn, with transfer of its own.
+// One side of one primitive at one node: what is drawn, with transfer of its own. A double-sided material gives two
+// draws of the same primitive; the back one is drawn with its winding reversed and its normals negated, so that both
+// are single-sided from here on.
 struct Draw {
   std::uint32_t node = 0, mesh = 0, primitive = 0, group = 0;
+  bool back = false;
   std::uint32_t rows = 0;  // payload: vertex rows into the group's samples
 };
 

@@ -19,8 +19,9 @@ constexpr std::uint32_t kWeightOne = 65535;
 
 template <typename T>
 void append(std::vector<std::byte>& out, std::span<const T> values) {
-  const auto bytes = std::as_bytes(values);
-  out.insert(out.end(), bytes.begin(), bytes.end());
+  const std::size_t first = out.size();
+  out.resize(first + values.size_bytes());
+  if (!values.empty()) std::memcpy(out.data() + first, values.data(), values.size_bytes());
 }
 
 // Takes `count` values off the front of `bytes`; the caller has checked the length.
@@ -113,10 +114,10 @@ Result<VertexRows> decodeRows(std::span<const std::byte> bytes, std::uint32_t ve
 // -----------------------------------------------------------------------------------------------------
 
 std::vector<std::byte> encodeBasis(std::span<const float> vectors) {
-  std::vector<std::byte> out;
-  for (const float value : vectors) {
-    const std::uint16_t half = glm::packHalf1x16(value);
-    append<std::uint16_t>(out, std::span(&half, 1));
+  std::vector<std::byte> out(vectors.size() * sizeof(std::uint16_t));
+  for (std::size_t i = 0; i < vectors.size(); ++i) {
+    const std::uint16_t half = glm::packHalf1x16(vectors[i]);
+    std::memcpy(out.data() + i * sizeof(half), &half, sizeof(half));
   }
   return out;
 }

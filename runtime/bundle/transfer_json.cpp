@@ -14,6 +14,7 @@ constexpr std::uint64_t kMaxPayloadBytes = std::uint64_t{1} << 32;  // refuse to
 constexpr std::array kPayloadTypes = {"vertexRows", "transferBasis", "weightPlane"};
 constexpr std::array kCodecs = {"raw", "zstd"};
 constexpr std::array kParts = {"direct"};
+constexpr std::array kSides = {"front", "back"};
 
 template <typename Enum, std::size_t N>
 Enum readWord(const Field& field, const std::array<const char*, N>& words) {
@@ -146,6 +147,7 @@ Draw readDraw(const Field& field, const Description& d) {
   draw.mesh = static_cast<std::uint32_t>(mesh);
   draw.primitive = field["primitive"].index(d.meshes[draw.mesh].primitives.size());
   draw.group = field["group"].index(d.groups.size());
+  draw.back = readWord<bool>(field["side"], kSides);
   draw.rows = payloadIndex(field["rows"], d, PayloadType::VertexRows, 0);
   return draw;
 }
@@ -163,8 +165,11 @@ Json writeTransfer(const Description& d) {
                         {"priority", payload.priority}});
   for (const Group& group : d.groups) groups.push_back(groupJson(group));
   for (const Draw& draw : d.draws)
-    draws.push_back(
-        {{"node", draw.node}, {"primitive", draw.primitive}, {"group", draw.group}, {"rows", draw.rows}});
+    draws.push_back({{"node", draw.node},
+                     {"primitive", draw.primitive},
+                     {"group", draw.group},
+                     {"side", word(draw.back, kSides)},
+                     {"rows", draw.rows}});
   return {{"version", d.version},
           {"generator",
            {{"program", d.generator.program},

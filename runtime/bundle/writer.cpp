@@ -1,5 +1,6 @@
 #include "runtime/bundle/writer.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cassert>
 
@@ -40,7 +41,8 @@ std::span<const std::byte> bytesOf(const T& words) {
 
 Result<void> write(const std::filesystem::path& path, Description description,
                    const std::vector<Blob>& blobs) {
-  for (const Blob& blob : blobs) assert(!blob.empty() && "glTF has no empty bufferViews");
+  assert(std::none_of(blobs.begin(), blobs.end(), [](const Blob& blob) { return blob.empty(); }) &&
+         "glTF has no empty bufferViews");
   const std::uint64_t binary_bytes = placeViews(blobs, description.views);
   std::string json = toJson(description, binary_bytes);
   json.resize((json.size() + 7) / 8 * 8 + 4,

@@ -1,0 +1,170 @@
+#include "baker/bake/assemble.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "runtime/bundle/transfer_codec.hpp"
+
+namespace lambent::baker {
+
+namespace {
+
+constexpr int kZstdLevel = 9;
+constexpr std::uint32_t kRowsPriority = 1, kBasisPriority = 2, kFirstPlanePriority = 3;
+
+class Assembler {
+ public:
+  Assembler(const Scene& scene, const BakeOptions& options, const EffectPlan& plan, BakeReport& report)
+      : scene_(scene), plan_(plan), options_(options), report_(report) {}
+
+  void copyScene() {
+    description_.generator = {"lambent", LAMBENT_VERSION, LAMBENT_ISA, options_.settings()};
+    description_.generator.settings["source"] = scene_.source.filename().string();
+    description_.generator.settings["sourceDigest"] = fmt::format("{:016x}", sceneDigest(scene_));
+    description_.nodes = scene_.nodes;
+    description_.roots = scene_.roots;
+    description_.materials = scene_.materials;
+    description_.textures = scene_.textures;
+    description_.cameras = scene_.cameras;
+  }
+
+  void addMeshes(ShippedMeshes& meshes) {
+    for (std::size_t m = 0; m < scene_.meshes.size(); ++m) {
+      bundle::Mesh mesh{scene_.meshes[m].name, {}};
+      for (std::size_t p = 0; p < meshes.decoded[m].size(); ++p) {
+        const bundle::MeshData& data = meshes.decoded[m][p];
+        bundle::Primitive primitive;
+        report_.mesh_bytes += meshes.draco[m][p].size();
+        primitive.view = addView(std::move(meshes.draco[m][p]));
+        primitive.attributes = meshes.attributes[m][p];
+        primitive.material = scene_.meshes[m].primitives[p].material;
+        primitive.vertex_count = static_cast<std::uint32_t>(data.positions.size());
+        primitive.index_count = static_cast<std::uint32_t>(data.indices.size());
+        primitive.bounds_min = primitive.bounds_max = data.positions.front();
+        for (const glm::vec3& position : data.positions) {
+          primitive.bounds_min = glm::min(primitive.bounds_min, position);
+          primitive.bounds_max = glm::max(primitive.bounds_max, position);
+        }
+        primitive.digest = bundle::meshDigest(data);
+        mesh.primitives.push_back(primitive);
+      }
+      description_.meshes.push_back(std::move(mesh));
+    }
+  }
+
+  void addGroups(const std::vector<BakedGroup>& baked) {
+    for (std::size_t g = 0; g < baked.size(); ++g) {
+      const RigidGroup& planned = plan_.groups[g];
+      bundle::Group group;
+      group.name = planned.name;
+      group.node = planned.root;
+      group.rest_translation = planned.rest_translation;
+      group.rest_rotation = planned.rest_rotation;
+      group.bounds_min = baked[g].geometry.bounds_min;
+      group.bounds_max = baked[g].geometry.bounds_max;
+      group.sample_count = static_cast<std::uint32_t>(baked[g].samples.size());
+      for (const SampleCell& cell : baked[g].samples.cells)
+        group.cells.push_back({cell.first, cell.count, cell.bounds_min, cell.bounds_max, {}});
+      description_.groups.push_back(std::move(group));
+      for (std::size_t d = 0; d < planned.draws.size(); ++d)
+        addDraw(planned.draws[d], static_cast<std::uint32_t>(g), baked[g].geometry.draws[d],
+                baked[g].samples);
+    }
+  }
+
+  void addImages() {
+    for (const SceneImage& image : scene_.images) {
+      report_.image_bytes += image.file_bytes.size();
+      description_.images.push_back({image.name, image.mime_type, addView(image.file_bytes)});
+    }
+  }
+
+  void addTransfer(const std::vector<BakedGroup>& baked) {
+    std::size_t most_planes = 0;
+    for (std::size_t g = 0; g < baked.size(); ++g)
+      for (std::size_t c = 0; c < baked[g].cells.size(); ++c) {
+        const CodedTransfer& coded = baked[g].cells[c];
+        bundle::DiffuseTransfer transfer;
+        transfer.order = static_cast<std::uint32_t>(options_.order);
+        transfer.basis = addTransferPayload(bundle::PayloadType::TransferBasis, coded.basis, kBasisPriority);
+        transfer.error_bound = options_.effectiveErrorBound();
+        transfer.error = coded.error;
+        description_.groups[g].cells[c].diffuse.push_back(std::move(transfer));
+        most_planes = std::max(most_planes, coded.planes.size());
+      }
+    for (std::size_t j = 0; j < most_planes; ++j)
+      for (std::size_t g = 0; g < baked.size(); ++g)
+        for (std::size_t c = 0; c < baked[g].cells.size(); ++c) {
+          if (j >= baked[g].cells[c].planes.size()) continue;
+          const CodedPlane& coded = baked[g].cells[c].planes[j];
+          bundle::WeightPlane plane = coded.plane;
+          plane.payload = addTransferPayload(bundle::PayloadType::WeightPlane,
+                                             bundle::encodePlane(coded.codes, plane.bits),
+                                             kFirstPlanePriority + static_cast<std::uint32_t>(j));
+          description_.groups[g].cells[c].diffuse.front().planes.push_back(plane);
+        }
+  }
+
+  AssembledBundle take() { return {std::move(description_), std::move(blobs_)}; }
+
+ private:
+  std::uint32_t addView(bundle::Blob bytes) {
+    blobs_.push_back(std::move(bytes));
+    return static_cast<std::uint32_t>(blobs_.size() - 1);
+  }
+
+  // Compressed where that helps.
+  std::uint32_t addPayload(bundle::PayloadType type, bundle::Blob raw, std::uint32_t priority) {
+    bundle::Payload payload{type, bundle::PayloadCodec::Raw, 0, raw.size(), priority};
+    if (bundle::Blob packed = bundle::compressZstd(raw, kZstdLevel); packed.size() < raw.size()) {
+      payload.codec = bundle::PayloadCodec::Zstd;
+      raw = std::move(packed);
+    }
+    payload.view = addView(std::move(raw));
+    description_.payloads.push_back(payload);
+    return static_cast<std::uint32_t>(description_.payloads.size() - 1);
+  }
+
+  std::uint32_t addTransferPayload(bundle::PayloadType type, bundle::Blob raw, std::uint32_t priority) {
+    const std::uint32_t index = addPayload(type, std::move(raw), priority);
+    report_.transfer_bytes += blobs_.back().size();
+    return index;
+  }
+
+  void addDraw(const PlannedDraw& planned, std::uint32_t group, const DrawGeometry& geometry,
+               const SampleSet& samples) {
+    bundle::VertexRows rows;
+    for (std::uint32_t v = 0; v < geometry.vertex_count; ++v) {
+      rows.offsets.push_back(v);
+      rows.samples.push_back(samples.vertex_sample[geometry.first_vertex + v]);
+      rows.weights.push_back(1.0f);
+    }
+    rows.offsets.push_back(geometry.vertex_count);
+    bundle::Draw draw{planned.node, planned.mesh, planned.primitive, group, planned.back, 0};
+    draw.rows = addTransferPayload(bundle::PayloadType::VertexRows, bundle::encodeRows(rows), kRowsPriority);
+    description_.draws.push_back(draw);
+  }
+
+  const Scene& scene_;
+  const EffectPlan& plan_;
+  const BakeOptions& options_;
+  BakeReport& report_;
+  bundle::Description description_;
+  std::vector<bundle::Blob> blobs_;
+};
+
+}  // namespace
+
+AssembledBundle assemble(const Scene& scene, const BakeOptions& options, const EffectPlan& plan,
+                         ShippedMeshes meshes, std::vector<BakedGroup> baked, BakeReport& report) {
+  Assembler assembler(scene, options, plan, report);
+  assembler.copyScene();
+  assembler.addMeshes(meshes);
+  assembler.addGroups(baked);
+  assembler.addImages();
+  assembler.addTransfer(baked);
+  return assembler.take();
+}
+
+}  // namespace lambent::baker

@@ -1,0 +1,153 @@
+#include "baker/bake/bake.hpp"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "baker/bake/assemble.hpp"
+#include "baker/bake/ship_meshes.hpp"
+#include "baker/effects/diffuse/direct.hpp"
+#include "baker/effects/effect_list.hpp"
+#include "baker/transport/ray_scene.hpp"
+#include "baker/work/parallel.hpp"
+
+namespace lambent::baker {
+
+namespace {
+
+constexpr std::size_t kMinRays = 128, kMaxRays = 1u << 20;
+
+Result<void> checkOptions(const BakeOptions& options) {
+  if (options.order < 1 || options.order > 8)
+    return fail("--order", fmt::format("{} is not between 1 and 8", options.order), "5 is the default");
+  if (options.effectiveRays() < kMinRays || options.effectiveRays() > kMaxRays)
+    return fail("--rays", fmt::format("{} is not between {} and {}", options.rays, kMinRays, kMaxRays),
+                "512 is the default");
+  if (!(options.effectiveErrorBound() > 0.0f && options.effectiveErrorBound() < 1.0f))
+    return fail("--error", "is not between 0 and 1", "0.003 means 0.3 %");
+  if (!(options.max_edge_m >= 0.0f))
+    return fail("--max-edge", "is negative", "give a length in the scene's units");
+  return {};
+}
+
+// All effects that the scene calls for, or those that the user listed.
+Result<std::vector<EffectEntry>> effectsOf(const BakeOptions& options) {
+  const auto all = effectList();
+  std::vector<EffectEntry> chosen;
+  if (options.effects == "auto") return std::vector<EffectEntry>(all.begin(), all.end());
+  for (std::size_t begin = 0; begin <= options.effects.size();) {
+    const std::size_t end = std::min(options.effects.find(',', begin), options.effects.size());
+    const std::string name = options.effects.substr(begin, end - begin);
+    const auto found =
+        std::find_if(all.begin(), all.end(), [&](const EffectEntry& e) { return name == e.name; });
+    if (found == all.end()) {
+      std::string known;
+      for (const EffectEntry& entry : all)
+        known += fmt::format("{}{}", known.empty() ? "" : ", ", entry.name);
+      return fail("--effects", fmt::format("\"{}\" is not an effect", name),
+                  "use auto or a list of: " + known);
+    }
+    chosen.push_back(*found);
+    begin = end + 1;
+  }
+  return chosen;
+}
+
+tl::unexpected<Error> stopped(const Scene& scene) {
+  return fail(scene.source.string(), "stopped; nothing was written");
+}
+
+// Samples, rays and codes of one group.
+Result<BakedGroup> bakeGroup(const Scene& scene, const RigidGroup& group, const ShippedMeshes& meshes,
+                             const std::vector<std::shared_ptr<const AlphaMap>>& alpha_maps,
+                             const BakeOptions& options, Progress& progress, const std::stop_token& stop,
+                             BakeReport& report) {
+  BakedGroup baked;
+  progress.begin("samples");
+  baked.geometry = buildGroupGeometry(group, scene, meshes.decoded);
+  baked.samples = buildSamples(baked.geometry);
+  report.vertices += baked.geometry.positions.size();
+  report.triangles += baked.geometry.triangles.size();
+  report.samples += baked.samples.size();
+
+  progress.begin("hierarchy");
+  auto rays = RayScene::build(baked.geometry, scene, alpha_maps);
+  if (!rays) return failAgain(rays.error());
+
+  progress.begin("direct light", baked.samples.size(), "samples");
+  const auto field = bakeDirect(baked.geometry, baked.samples, *rays,
+                                {options.order, options.effectiveRays()}, progress, stop);
+  if (!field) return stopped(scene);
+  report.ray_seconds += progress.now().seconds;
+  report.rays += field->rays;
+  report.filled_samples += field->filled_samples;
+
+  progress.begin("coding", baked.samples.cells.size(), "cells");
+  baked.cells.resize(baked.samples.cells.size());
+  const bool finished = parallelRanges(baked.cells.size(), 1, stop, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t c = begin; c < end; ++c) {
+      const SampleCell& cell = baked.samples.cells[c];
+      const auto vectors = std::span(field->vectors)
+                               .subspan(cell.first * field->vectorSize(), cell.count * field->vectorSize());
+      baked.cells[c] =
+          codeTransfer(vectors, cell.count, field->order, field->channels, options.effectiveErrorBound());
+      progress.add(1);
+    }
+  });
+  if (!finished) return stopped(scene);
+  for (const CodedTransfer& cell : baked.cells)
+    report.worst_error = std::max(report.worst_error, double{cell.error});
+  return baked;
+}
+
+Result<BakeReport> bakeOnTheseThreads(const Scene& scene, const BakeOptions& options,
+                                      const std::filesystem::path& output, Progress& progress,
+                                      const std::stop_token& stop) {
+  BakeReport report;
+  progress.begin("plan");
+  const auto plan = planFor(scene, options);
+  if (!plan) return failAgain(plan.error());
+  const auto alpha_maps = loadAlphaMaps(scene);
+  if (!alpha_maps) return failAgain(alpha_maps.error());
+
+  auto meshes = shipMeshes(scene, plan->groups, options.max_edge_m, progress, stop);
+  if (!meshes) return failAgain(meshes.error());
+
+  std::vector<BakedGroup> baked;
+  for (const RigidGroup& group : plan->groups) {
+    auto result = bakeGroup(scene, group, *meshes, *alpha_maps, options, progress, stop, report);
+    if (!result) return failAgain(result.error());
+    baked.push_back(std::move(*result));
+  }
+  if (stop.stop_requested()) return stopped(scene);
+
+  progress.begin("writing");
+  AssembledBundle bundle = assemble(scene, options, *plan, std::move(*meshes), std::move(baked), report);
+  if (auto written = bundle::write(output, std::move(bundle.description), bundle.blobs); !written)
+    return failAgain(written.error());
+  progress.end();
+  std::error_code ignored;
+  report.file_bytes = std::filesystem::file_size(output, ignored);
+  report.stages = progress.finished();
+  return report;
+}
+
+}  // namespace
+
+Result<EffectPlan> planFor(const Scene& scene, const BakeOptions& options) {
+  const auto effects = effectsOf(options);
+  if (!effects) return failAgain(effects.error());
+  return makePlan(scene, *effects);
+}
+
+Result<BakeReport> bake(const Scene& scene, const BakeOptions& options, const std::filesystem::path& output,
+                        Progress& progress, std::stop_token stop) {
+  if (auto checked = checkOptions(options); !checked) return failAgain(checked.error());
+  std::optional<Result<BakeReport>> result;
+  withThreads(options.threads, [&] { result = bakeOnTheseThreads(scene, options, output, progress, stop); });
+  return std::move(*result);
+}
+
+}  // namespace lambent::baker

@@ -1,0 +1,42 @@
+// The whole bake as one call: a scene in, a bundle out. The command line, the editor and tests all call this.
+// Stages report to a Progress and can be stopped; nothing is written before everything is known, so a bake
+// that stops or fails leaves the old bundle as it was.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "baker/bake/options.hpp"
+#include "baker/import/scene.hpp"
+#include "baker/plan/effect_plan.hpp"
+#include "baker/work/progress.hpp"
+#include "runtime/base/result.hpp"
+
+namespace lambent::baker {
+
+struct BakeReport {
+  std::uint64_t vertices = 0, triangles = 0, samples = 0, filled_samples = 0, rays = 0;
+  std::uint64_t file_bytes = 0, mesh_bytes = 0, transfer_bytes = 0, image_bytes = 0;
+  double ray_seconds = 0.0;  // of the passes that trace
+  double worst_error = 0.0;  // of coded transfer, over cells; relative RMS
+  std::vector<Progress::Stage> stages;
+};
+
+// Errors: options out of range, an effect that is not known, a scene that cannot be coded, an output that
+// cannot be written, "stopped" if a stop was requested.
+Result<BakeReport> bake(const Scene& scene, const BakeOptions& options, const std::filesystem::path& output,
+                        Progress& progress, std::stop_token stop);
+
+// The plan that bake() follows under these options.
+Result<EffectPlan> planFor(const Scene& scene, const BakeOptions& options);
+
+// A digest of everything in the scene that a bake reads.
+std::uint64_t sceneDigest(const Scene& scene);
+
+// Is `output` what bake() would write: same scene, same options, same program?
+bool isUpToDate(const Scene& scene, const BakeOptions& options, const std::filesystem::path& output);
+
+}  // namespace lambent::baker

@@ -1,0 +1,48 @@
+#include "baker/bake/options.hpp"
+
+#include <array>
+
+#include <fmt/format.h>
+
+namespace lambent::baker {
+
+namespace {
+
+struct QualityRow {
+  const char* name;
+  std::size_t rays;
+  float error_bound;
+};
+constexpr std::array kQualities = {
+    QualityRow{"draft", 128, 0.01f},
+    QualityRow{"standard", 512, 0.003f},
+    QualityRow{"high", 2048, 0.001f},
+};
+
+const QualityRow& row(Quality quality) {
+  return kQualities[static_cast<std::size_t>(quality)];
+}
+
+}  // namespace
+
+const char* qualityName(Quality quality) {
+  return row(quality).name;
+}
+
+std::size_t BakeOptions::effectiveRays() const {
+  return rays != 0 ? rays : row(quality).rays;
+}
+
+float BakeOptions::effectiveErrorBound() const {
+  return error_bound > 0.0f ? error_bound : row(quality).error_bound;
+}
+
+std::map<std::string, std::string> BakeOptions::settings() const {
+  return {{"order", std::to_string(order)},
+          {"rays", std::to_string(effectiveRays())},
+          {"errorBound", fmt::format("{}", effectiveErrorBound())},
+          {"maxEdge", fmt::format("{}", max_edge_m)},
+          {"effects", effects}};
+}
+
+}  // namespace lambent::baker

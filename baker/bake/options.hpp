@@ -1,0 +1,30 @@
+// What a bake can be asked for, and what each quality stands for. settings() is what the bundle records:
+// everything that changes the bytes that come out, and nothing else (not the number of threads).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <string>
+
+namespace lambent::baker {
+
+enum class Quality : std::uint8_t { Draft, Standard, High };
+
+struct BakeOptions {
+  Quality quality = Quality::Standard;
+  int order = 5;             // 1..8
+  std::size_t rays = 0;      // per sample over its hemisphere; 0: the quality's
+  float error_bound = 0.0f;  // of the coded transfer, relative RMS; 0: the quality's
+  float max_edge_m = 0.0f;   // edges longer than this are split; 0: none
+  std::string effects = "auto";
+  unsigned threads = 0;  // 0: all
+
+  std::size_t effectiveRays() const;
+  float effectiveErrorBound() const;
+  std::map<std::string, std::string> settings() const;
+};
+
+const char* qualityName(Quality quality);
+
+}  // namespace lambent::baker

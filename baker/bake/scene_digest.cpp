@@ -1,0 +1,107 @@
+// What decides whether a bundle is up to date: a digest of the scene, and the settings recorded in the file.
+#include <cstring>
+#include <span>
+
+#include <fmt/format.h>
+
+#include "baker/bake/bake.hpp"
+#include "runtime/bundle/checksum.hpp"
+#include "runtime/bundle/reader.hpp"
+
+namespace lambent::baker {
+
+namespace {
+
+// Collects values into one digest; lists bring their length, so that no two scenes read alike.
+class Digest {
+ public:
+  template <typename T>
+  requires std::is_trivially_copyable_v<T>
+  void add(const T& value) {
+    bytes_.insert(bytes_.end(), std::as_bytes(std::span(&value, 1)).begin(),
+                  std::as_bytes(std::span(&value, 1)).end());
+  }
+  template <typename T>
+  void addList(const std::vector<T>& list) {
+    add(list.size());
+    add(bundle::checksum(std::as_bytes(std::span(list))));
+  }
+  void addText(const std::string& text) {
+    add(text.size());
+    add(bundle::checksum(std::as_bytes(std::span(text))));
+  }
+  std::uint64_t value() const { return bundle::checksum(bytes_); }
+
+ private:
+  std::vector<std::byte> bytes_;
+};
+
+void addMesh(const bundle::MeshData& mesh, Digest& digest) {
+  digest.addList(mesh.positions);
+  digest.addList(mesh.normals);
+  digest.addList(mesh.texcoords0);
+  digest.addList(mesh.texcoords1);
+  digest.addList(mesh.colors);
+  digest.addList(mesh.indices);
+}
+
+// Field by field: padding between fields has no value.
+void addMaterial(const gltf::Material& m, Digest& digest) {
+  digest.addText(m.name);
+  digest.add(m.base_color);
+  digest.add(m.base_color_texture.texture), digest.add(m.base_color_texture.texcoord);
+  digest.add(m.metallic), digest.add(m.roughness), digest.add(m.emissive);
+  digest.add(m.alpha_mode), digest.add(m.alpha_cutoff), digest.add(m.double_sided);
+}
+
+void addCamera(const gltf::Camera& c, Digest& digest) {
+  digest.addText(c.name);
+  digest.add(c.perspective);
+  for (const float value : {c.yfov_rad, c.aspect, c.xmag, c.ymag, c.znear, c.zfar}) digest.add(value);
+}
+
+}  // namespace
+
+std::uint64_t sceneDigest(const Scene& scene) {
+  Digest digest;
+  digest.addText(scene.source.filename().string());
+  for (const gltf::Node& node : scene.nodes) {
+    digest.addText(node.name);
+    digest.add(node.parent), digest.addList(node.children), digest.add(node.parent_from_node);
+    digest.add(node.mesh), digest.add(node.camera), digest.add(node.animated), digest.add(node.movable);
+  }
+  digest.addList(scene.roots);
+  for (const SceneMesh& mesh : scene.meshes) {
+    digest.addText(mesh.name);
+    digest.add(mesh.primitives.size());
+    for (const ScenePrimitive& primitive : mesh.primitives) {
+      addMesh(primitive.mesh, digest);
+      digest.add(primitive.material);
+    }
+  }
+  for (const gltf::Material& material : scene.materials) addMaterial(material, digest);
+  for (const gltf::Texture& texture : scene.textures) {
+    digest.add(texture.image);
+    digest.add(texture.sampler);
+  }
+  for (const SceneImage& image : scene.images) {
+    digest.addText(image.name);
+    digest.addText(image.mime_type);
+    digest.addList(image.file_bytes);
+  }
+  for (const gltf::Camera& camera : scene.cameras) addCamera(camera, digest);
+  return digest.value();
+}
+
+bool isUpToDate(const Scene& scene, const BakeOptions& options, const std::filesystem::path& output) {
+  const auto reader = bundle::Reader::open(output);
+  if (!reader || !reader->checkAll()) return false;
+  const bundle::Generator& generator = reader->description().generator;
+  auto wanted = options.settings();
+  wanted["source"] = scene.source.filename().string();
+  wanted["sourceDigest"] = fmt::format("{:016x}", sceneDigest(scene));
+  return generator.version == LAMBENT_VERSION && generator.isa == LAMBENT_ISA &&
+         generator.settings == wanted && reader->description().version == bundle::kVersionCurrent;
+}
+
+}  // namespace lambent::baker

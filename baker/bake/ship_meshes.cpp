@@ -1,0 +1,130 @@
+#include "baker/bake/ship_meshes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+
+#include "baker/import/subdivide.hpp"
+#include "baker/work/parallel.hpp"
+
+namespace lambent::baker {
+
+namespace {
+
+constexpr int kLatticeBits =
+    16;  // of the group's longest axis: 1/65536 of it is far below any edge worth a vertex
+constexpr std::size_t kMaxTriangles = 20'000'000;  // per primitive after splitting
+
+struct Box {
+  glm::vec3 low{std::numeric_limits<float>::max()}, high{std::numeric_limits<float>::lowest()};
+  void add(glm::vec3 p) { low = glm::min(low, p), high = glm::max(high, p); }
+  float longest() const { return std::max({high.x - low.x, high.y - low.y, high.z - low.z, 0.0f}); }
+  float furthest() const {
+    const glm::vec3 far = glm::max(glm::abs(low), glm::abs(high));
+    return std::max({far.x, far.y, far.z});
+  }
+};
+
+Box boxOf(const SceneMesh& mesh, const glm::mat4& transform) {
+  Box box;
+  for (const ScenePrimitive& primitive : mesh.primitives)
+    for (const glm::vec3& p : primitive.mesh.positions) box.add(glm::vec3(transform * glm::vec4(p, 1.0f)));
+  return box;
+}
+
+// The longest that a unit vector of the mesh becomes in the group.
+float scaleOf(const glm::mat4& m) {
+  return std::max({glm::length(glm::vec3(m[0])), glm::length(glm::vec3(m[1])), glm::length(glm::vec3(m[2]))});
+}
+
+// Per mesh: its lattice step and its longest edge, in mesh units. A mesh that several draws use takes the
+// finest.
+struct MeshLimits {
+  float step = std::numeric_limits<float>::max();
+  float max_edge = std::numeric_limits<float>::infinity();
+};
+
+std::vector<MeshLimits> limitsOf(const Scene& scene, const std::vector<RigidGroup>& groups,
+                                 float max_edge_m) {
+  std::vector<MeshLimits> limits(scene.meshes.size());
+  for (const RigidGroup& group : groups) {
+    Box box;
+    for (const PlannedDraw& draw : group.draws) {
+      const Box mesh = boxOf(scene.meshes[draw.mesh], draw.group_from_mesh);
+      box.add(mesh.low), box.add(mesh.high);
+    }
+    const float longest = box.longest();
+    if (!(longest > 0.0f)) continue;
+    const float group_step = latticeStep(longest, kLatticeBits);
+    for (const PlannedDraw& draw : group.draws) {
+      const float scale = scaleOf(draw.group_from_mesh);
+      if (!(scale > 0.0f)) continue;
+      MeshLimits& mesh = limits[draw.mesh];
+      // Powers of two, so that meshes under the same scale get the very same lattice.
+      mesh.step = std::min(mesh.step, std::exp2(std::floor(std::log2(group_step / scale))));
+      if (max_edge_m > 0.0f) mesh.max_edge = std::min(mesh.max_edge, max_edge_m / scale);
+    }
+  }
+  for (std::size_t m = 0; m < limits.size(); ++m) {
+    const Box box = boxOf(scene.meshes[m], glm::mat4(1.0f));
+    if (limits[m].step == std::numeric_limits<float>::max())  // drawn by no group
+      limits[m].step = latticeStep(std::max(box.longest(), std::numeric_limits<float>::min()), kLatticeBits);
+    // A mesh far from its own origin has no floats for a lattice that fine.
+    const float finest =
+        latticeStep(std::max(box.furthest(), std::numeric_limits<float>::min()), kMaxPositionBits - 1);
+    limits[m].step = std::max(limits[m].step, finest);
+  }
+  return limits;
+}
+
+}  // namespace
+
+Result<ShippedMeshes> shipMeshes(const Scene& scene, const std::vector<RigidGroup>& groups, float max_edge_m,
+                                 Progress& progress, std::stop_token stop) {
+  const std::vector<MeshLimits> limits = limitsOf(scene, groups, max_edge_m);
+  struct Task {
+    std::size_t mesh, primitive;
+    std::optional<Result<EncodedMesh>> encoded;
+  };
+  std::vector<Task> tasks;
+  for (std::size_t m = 0; m < scene.meshes.size(); ++m)
+    for (std::size_t p = 0; p < scene.meshes[m].primitives.size(); ++p) tasks.push_back({m, p, std::nullopt});
+
+  progress.begin("meshes", tasks.size(), "meshes");
+  const bool finished = parallelRanges(tasks.size(), 1, stop, [&](std::size_t begin, std::size_t end) {
+    for (Task& task : std::span(tasks).subspan(begin, end - begin)) {
+      const std::string subject =
+          fmt::format("{}: mesh {} primitive {}", scene.source.string(), task.mesh, task.primitive);
+      bundle::MeshData mesh = scene.meshes[task.mesh].primitives[task.primitive].mesh;
+      if (std::isfinite(limits[task.mesh].max_edge) &&
+          !splitLongEdges(mesh, limits[task.mesh].max_edge, kMaxTriangles))
+        task.encoded = fail(
+            subject,
+            fmt::format("would have more than {} triangles with --max-edge {}", kMaxTriangles, max_edge_m),
+            "choose a longer edge");
+      else
+        task.encoded = encodeDraco(mesh, limits[task.mesh].step, subject);
+      progress.add(1);
+    }
+  });
+  if (!finished) return fail(scene.source.string(), "stopped", "");
+
+  ShippedMeshes shipped;
+  shipped.draco.resize(scene.meshes.size());
+  shipped.attributes.resize(scene.meshes.size());
+  shipped.decoded.resize(scene.meshes.size());
+  for (Task& task : tasks) {
+    if (!*task.encoded) return failAgain(task.encoded->error());
+    EncodedMesh& encoded = **task.encoded;
+    shipped.draco[task.mesh].push_back(std::move(encoded.bytes));
+    shipped.attributes[task.mesh].push_back(encoded.attributes);
+    shipped.decoded[task.mesh].push_back(std::move(encoded.decoded));
+  }
+  return shipped;
+}
+
+}  // namespace lambent::baker

@@ -1,0 +1,25 @@
+// "Bake what ships": meshes are refined, coded by Draco on one lattice per group and decoded again before
+// anything is computed on them.
+#pragma once
+
+#include <stop_token>
+#include <vector>
+
+#include "baker/compress/draco_encode.hpp"
+#include "baker/import/scene.hpp"
+#include "baker/plan/rigid_groups.hpp"
+#include "baker/work/progress.hpp"
+
+namespace lambent::baker {
+
+struct ShippedMeshes {
+  std::vector<std::vector<std::vector<std::byte>>> draco;        // [mesh][primitive]
+  std::vector<std::vector<bundle::DracoAttributes>> attributes;  // [mesh][primitive]
+  std::vector<std::vector<bundle::MeshData>> decoded;            // [mesh][primitive]
+};
+
+// max_edge_m: edges longer than this (in the group's metres) are split; 0: none.
+Result<ShippedMeshes> shipMeshes(const Scene& scene, const std::vector<RigidGroup>& groups, float max_edge_m,
+                                 Progress& progress, std::stop_token stop);
+
+}  // namespace lambent::baker

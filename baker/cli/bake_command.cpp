@@ -1,0 +1,132 @@
+// lambent bake SCENE -o OUT.lmb.glb
+#include <map>
+#include <memory>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "baker/bake/bake.hpp"
+#include "baker/cli/commands.hpp"
+#include "baker/cli/output.hpp"
+#include "baker/import/gltf.hpp"
+
+namespace lambent::baker {
+
+namespace {
+
+struct BakeArguments {
+  std::filesystem::path scene, output;
+  BakeOptions options;
+  bool force = false, json = false;
+};
+
+nlohmann::json reportJson(const BakeArguments& a, const BakeReport& r) {
+  nlohmann::json stages = nlohmann::json::array();
+  for (const Progress::Stage& stage : r.stages)
+    stages.push_back(
+        {{"stage", stage.name}, {"seconds", stage.seconds}, {"units", stage.done}, {"unit", stage.unit}});
+  return {{"output", a.output.string()},
+          {"settings", a.options.settings()},
+          {"vertices", r.vertices},
+          {"triangles", r.triangles},
+          {"samples", r.samples},
+          {"filledSamples", r.filled_samples},
+          {"rays", r.rays},
+          {"raysPerSecond", r.ray_seconds > 0.0 ? static_cast<double>(r.rays) / r.ray_seconds : 0.0},
+          {"codingError", r.worst_error},
+          {"fileBytes", r.file_bytes},
+          {"meshBytes", r.mesh_bytes},
+          {"transferBytes", r.transfer_bytes},
+          {"imageBytes", r.image_bytes},
+          {"stages", stages}};
+}
+
+void printReport(const BakeArguments& a, const BakeReport& r) {
+  double seconds = 0.0;
+  for (const Progress::Stage& stage : r.stages) seconds += stage.seconds;
+  fmt::print("{}: {} vertices, {} triangles, {} samples in {}\n", a.output.string(), r.vertices, r.triangles,
+             r.samples, durationText(seconds));
+  fmt::print("  rays      {} in {} ({} a second)\n", countText(static_cast<double>(r.rays)),
+             durationText(r.ray_seconds),
+             countText(r.ray_seconds > 0.0 ? static_cast<double>(r.rays) / r.ray_seconds : 0.0));
+  fmt::print(
+      "  bytes     {}: mesh {}, transfer {} ({:.1f} a vertex), images {}\n",
+      bytesText(static_cast<double>(r.file_bytes)), bytesText(static_cast<double>(r.mesh_bytes)),
+      bytesText(static_cast<double>(r.transfer_bytes)),
+      static_cast<double>(r.transfer_bytes) / static_cast<double>(std::max<std::uint64_t>(r.vertices, 1)),
+      bytesText(static_cast<double>(r.image_bytes)));
+  fmt::print("  coding    {:.2f} % relative error of shaded radiance (bound {:.2f} %)\n",
+             100.0 * r.worst_error, 100.0 * double{a.options.effectiveErrorBound()});
+}
+
+int runBake(const BakeArguments& a) {
+  const std::stop_source stop;
+  const InterruptGuard interrupts(stop);
+  Progress progress;
+  progress.begin("import");
+  auto scene = importScene(a.scene);
+  if (!scene) return reportError(scene.error());
+  for (const std::string& warning : scene->warnings)
+    fmt::print(stderr, "lambent: {}: {}\n", a.scene.string(), warning);
+  if (!a.force && isUpToDate(*scene, a.options, a.output)) {
+    if (a.json)
+      fmt::print("{}\n", nlohmann::json{{"output", a.output.string()}, {"upToDate", true}}.dump(2));
+    else
+      fmt::print("{} is up to date; --force bakes it again\n", a.output.string());
+    return 0;
+  }
+  Result<BakeReport> report = [&] {
+    const ProgressLine line(progress);
+    return bake(*scene, a.options, a.output, progress, stop.get_token());
+  }();
+  if (!report) return reportError(report.error());
+  if (a.json)
+    fmt::print("{}\n", reportJson(a, *report).dump(2));
+  else
+    printReport(a, *report);
+  return 0;
+}
+
+}  // namespace
+
+void addBakeCommand(CLI::App& app, Command& run) {
+  auto a = std::make_shared<BakeArguments>();
+  CLI::App* command = app.add_subcommand("bake", "Bake a glTF scene into a bundle");
+  command->add_option("SCENE", a->scene, "The scene, .gltf or .glb")->required();
+  command->add_option("-o,--output", a->output, "The bundle to write, OUT.lmb.glb")->required();
+  const std::map<std::string, Quality> qualities = {
+      {"draft", Quality::Draft}, {"standard", Quality::Standard}, {"high", Quality::High}};
+  command
+      ->add_option("--quality", a->options.quality,
+                   "draft, standard (default) or high: rays and error bound together")
+      ->transform(CLI::CheckedTransformer(qualities).description(""))
+      ->type_name("NAME");
+  command->add_option("--order", a->options.order, "Bands of spherical harmonics, 1..8; order² coefficients")
+      ->capture_default_str()
+      ->type_name("N");
+  command
+      ->add_option("--rays", a->options.rays,
+                   "Rays per sample over its hemisphere; default 128, 512 or 2048 by quality")
+      ->type_name("N");
+  command
+      ->add_option("--error", a->options.error_bound,
+                   "Bound on the coding error, relative RMS of shaded radiance; default 0.01, 0.003 or 0.001 "
+                   "by quality")
+      ->type_name("E");
+  command
+      ->add_option("--max-edge", a->options.max_edge_m,
+                   "Split edges longer than this (scene units), so that large faces catch shadows")
+      ->type_name("M");
+  command->add_option("--effects", a->options.effects, "auto: what the scene calls for; or a list of effects")
+      ->capture_default_str()
+      ->type_name("LIST");
+  command
+      ->add_option("--threads", a->options.threads, "Threads; default all. The result does not depend on it")
+      ->type_name("N");
+  command->add_flag("--force", a->force, "Bake even if the bundle is up to date");
+  command->add_flag("--json", a->json, "Print figures as JSON");
+  command->callback([a, &run] { run = [a] { return runBake(*a); }; });
+}
+
+}  // namespace lambent::baker

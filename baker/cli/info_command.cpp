@@ -1,0 +1,129 @@
+// lambent info BUNDLE
+#include <memory>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "baker/cli/commands.hpp"
+#include "baker/cli/output.hpp"
+#include "runtime/bundle/reader.hpp"
+
+namespace lambent::baker {
+
+namespace {
+
+struct InfoArguments {
+  std::filesystem::path bundle;
+  bool json = false;
+};
+
+struct Sizes {
+  std::uint64_t mesh = 0, image = 0, rows = 0, basis = 0, planes = 0;
+  std::uint64_t vertices = 0, triangles = 0;
+};
+
+Sizes sizesOf(const bundle::Description& d) {
+  Sizes sizes;
+  for (const bundle::Mesh& mesh : d.meshes)
+    for (const bundle::Primitive& primitive : mesh.primitives) sizes.mesh += d.views[primitive.view].length;
+  for (const bundle::Image& image : d.images) sizes.image += d.views[image.view].length;
+  for (const bundle::Payload& payload : d.payloads) {
+    const std::uint64_t length = d.views[payload.view].length;
+    if (payload.type == bundle::PayloadType::VertexRows) sizes.rows += length;
+    if (payload.type == bundle::PayloadType::TransferBasis) sizes.basis += length;
+    if (payload.type == bundle::PayloadType::WeightPlane) sizes.planes += length;
+  }
+  for (const bundle::Draw& draw : d.draws) {
+    const bundle::Primitive& primitive = d.meshes[draw.mesh].primitives[draw.primitive];
+    sizes.vertices += primitive.vertex_count;
+    sizes.triangles += primitive.index_count / 3;
+  }
+  return sizes;
+}
+
+void printJson(const bundle::Reader& reader, const Sizes& sizes) {
+  const bundle::Description& d = reader.description();
+  nlohmann::json groups = nlohmann::json::array();
+  for (const bundle::Group& group : d.groups) {
+    nlohmann::json cells = nlohmann::json::array();
+    for (const bundle::Cell& cell : group.cells)
+      for (const bundle::DiffuseTransfer& transfer : cell.diffuse)
+        cells.push_back({{"samples", cell.sample_count},
+                         {"effect", "diffuse"},
+                         {"part", "direct"},
+                         {"order", transfer.order},
+                         {"channels", transfer.channels},
+                         {"planes", transfer.planes.size()},
+                         {"errorBound", transfer.error_bound},
+                         {"error", transfer.error}});
+    groups.push_back({{"name", group.name}, {"samples", group.sample_count}, {"transfer", cells}});
+  }
+  const nlohmann::json json = {
+      {"file", reader.path().string()},
+      {"formatVersion", d.version},
+      {"generator",
+       {{"program", d.generator.program}, {"version", d.generator.version}, {"isa", d.generator.isa}}},
+      {"settings", d.generator.settings},
+      {"draws", d.draws.size()},
+      {"vertices", sizes.vertices},
+      {"triangles", sizes.triangles},
+      {"fileBytes", reader.fileBytes()},
+      {"meshBytes", sizes.mesh},
+      {"imageBytes", sizes.image},
+      {"rowBytes", sizes.rows},
+      {"basisBytes", sizes.basis},
+      {"planeBytes", sizes.planes},
+      {"groups", groups}};
+  fmt::print("{}\n", json.dump(2));
+}
+
+void printText(const bundle::Reader& reader, const Sizes& sizes) {
+  const bundle::Description& d = reader.description();
+  fmt::print("{}: format {}, {} {} ({})\n", reader.path().string(), d.version, d.generator.program,
+             d.generator.version, d.generator.isa);
+  for (const auto& [name, value] : d.generator.settings) fmt::print("  {:<13} {}\n", name, value);
+  const double vertices = static_cast<double>(std::max<std::uint64_t>(sizes.vertices, 1));
+  const auto line = [&](const char* name, std::uint64_t bytes) {
+    fmt::print("  {:<13} {:>10}  {:6.2f} bytes a vertex\n", name, bytesText(static_cast<double>(bytes)),
+               static_cast<double>(bytes) / vertices);
+  };
+  fmt::print("{} draws, {} vertices, {} triangles\n", d.draws.size(), sizes.vertices, sizes.triangles);
+  line("meshes", sizes.mesh);
+  line("images", sizes.image);
+  line("vertex rows", sizes.rows);
+  line("bases", sizes.basis);
+  line("weight planes", sizes.planes);
+  line("whole file", reader.fileBytes());
+  for (const bundle::Group& group : d.groups) {
+    fmt::print("group \"{}\": {} samples in {} cells\n", group.name, group.sample_count, group.cells.size());
+    for (const bundle::Cell& cell : group.cells)
+      for (const bundle::DiffuseTransfer& transfer : cell.diffuse)
+        fmt::print(
+            "  diffuse direct, order {}, {} channel{}: {} samples, {} planes, error {:.3f} % (bound {:.3f} "
+            "%)\n",
+            transfer.order, transfer.channels, transfer.channels == 1 ? "" : "s", cell.sample_count,
+            transfer.planes.size(), 100.0 * double{transfer.error}, 100.0 * double{transfer.error_bound});
+  }
+}
+
+int runInfo(const InfoArguments& a) {
+  const auto reader = bundle::Reader::open(a.bundle);
+  if (!reader) return reportError(reader.error());
+  if (const auto checked = reader->checkAll(); !checked) return reportError(checked.error());
+  (a.json ? printJson : printText)(*reader, sizesOf(reader->description()));
+  return 0;
+}
+
+}  // namespace
+
+void addInfoCommand(CLI::App& app, Command& run) {
+  auto a = std::make_shared<InfoArguments>();
+  CLI::App* command =
+      app.add_subcommand("info", "Check a bundle and say what is in it: sizes, orders, errors");
+  command->add_option("BUNDLE", a->bundle, "The bundle, .lmb.glb")->required();
+  command->add_flag("--json", a->json, "Print as JSON");
+  command->callback([a, &run] { run = [a] { return runInfo(*a); }; });
+}
+
+}  // namespace lambent::baker

@@ -1,0 +1,45 @@
+// What the command line prints: the progress line on a terminal, errors as one line, interrupts as stop
+// requests.
+#pragma once
+
+#include <cstdint>
+#include <stop_token>
+#include <string>
+#include <thread>
+
+#include "baker/work/progress.hpp"
+#include "runtime/base/result.hpp"
+
+namespace lambent::baker {
+
+// "1.2 M", "3.4 MiB", "1:02".
+std::string countText(double count);
+std::string bytesText(double bytes);
+std::string durationText(double seconds);
+
+// Prints "lambent: SUBJECT: PROBLEM; MEND" to stderr and returns the exit code 1.
+int reportError(const Error& error);
+
+// While it lives: one line on stderr that follows `progress`, with rate and time left, if stderr is a
+// terminal.
+class ProgressLine {
+ public:
+  explicit ProgressLine(const Progress& progress);
+  ~ProgressLine();
+
+ private:
+  std::jthread thread_;
+};
+
+// While it lives: SIGINT and SIGTERM ask `stop` to stop; a second one ends the program at once. Construct it
+// before any thread, so that all of them inherit the blocked signals.
+class InterruptGuard {
+ public:
+  explicit InterruptGuard(std::stop_source stop);
+  ~InterruptGuard();
+
+ private:
+  std::jthread thread_;
+};
+
+}  // namespace lambent::baker

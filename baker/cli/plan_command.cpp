@@ -1,0 +1,89 @@
+// lambent plan SCENE
+#include <memory>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "baker/bake/bake.hpp"
+#include "baker/cli/commands.hpp"
+#include "baker/cli/output.hpp"
+#include "baker/import/gltf.hpp"
+
+namespace lambent::baker {
+
+namespace {
+
+struct PlanArguments {
+  std::filesystem::path scene;
+  BakeOptions options;
+  bool json = false;
+};
+
+struct GroupSize {
+  std::size_t vertices = 0, triangles = 0;
+};
+
+GroupSize sizeOf(const Scene& scene, const RigidGroup& group) {
+  GroupSize size;
+  for (const PlannedDraw& draw : group.draws) {
+    const bundle::MeshData& mesh = scene.meshes[draw.mesh].primitives[draw.primitive].mesh;
+    size.vertices += mesh.positions.size();
+    size.triangles += mesh.indices.size() / 3;
+  }
+  return size;
+}
+
+void printJson(const Scene& scene, const EffectPlan& plan) {
+  nlohmann::json groups = nlohmann::json::array(), effects = nlohmann::json::array();
+  for (const RigidGroup& group : plan.groups) {
+    const GroupSize size = sizeOf(scene, group);
+    groups.push_back({{"name", group.name},
+                      {"draws", group.draws.size()},
+                      {"vertices", size.vertices},
+                      {"triangles", size.triangles}});
+  }
+  for (const EffectChoice& choice : plan.effects)
+    effects.push_back({{"effect", choice.effect}, {"baked", choice.baked}, {"reason", choice.reason}});
+  const nlohmann::json json = {
+      {"scene", scene.source.string()}, {"groups", groups}, {"effects", effects}, {"leftOut", plan.left_out}};
+  fmt::print("{}\n", json.dump(2));
+}
+
+void printText(const Scene& scene, const EffectPlan& plan) {
+  fmt::print("{}\n", scene.source.string());
+  for (const EffectChoice& choice : plan.effects)
+    fmt::print("  {:<10} {}: {}\n", choice.effect, choice.baked ? "baked" : "not baked", choice.reason);
+  fmt::print("  rigid groups\n");
+  for (const RigidGroup& group : plan.groups) {
+    const GroupSize size = sizeOf(scene, group);
+    fmt::print("    {}: {} draws, {} vertices, {} triangles\n", group.name, group.draws.size(), size.vertices,
+               size.triangles);
+  }
+  if (!plan.left_out.empty()) fmt::print("  left out\n");
+  for (const std::string& sentence : plan.left_out) fmt::print("    {}\n", sentence);
+}
+
+int runPlan(const PlanArguments& a) {
+  const auto scene = importScene(a.scene);
+  if (!scene) return reportError(scene.error());
+  const auto plan = planFor(*scene, a.options);
+  if (!plan) return reportError(plan.error());
+  (a.json ? printJson : printText)(*scene, *plan);
+  return 0;
+}
+
+}  // namespace
+
+void addPlanCommand(CLI::App& app, Command& run) {
+  auto a = std::make_shared<PlanArguments>();
+  CLI::App* command = app.add_subcommand("plan", "Say what would be baked, what not, and why");
+  command->add_option("SCENE", a->scene, "The scene, .gltf or .glb")->required();
+  command->add_option("--effects", a->options.effects, "auto, or a list of effects")
+      ->capture_default_str()
+      ->type_name("LIST");
+  command->add_flag("--json", a->json, "Print as JSON");
+  command->callback([a, &run] { run = [a] { return runPlan(*a); }; });
+}
+
+}  // namespace lambent::baker

@@ -1,0 +1,15 @@
+// How much light real scenes have per coefficient of each band, relative to band 0. Error bounds are stated
+// in shaded radiance over such lights, not in raw coefficients: an error in a band that carries little light
+// matters little.
+#pragma once
+
+#include <array>
+
+namespace lambent::baker {
+
+// Mean over lights of (sum over m and RGB of l_lm²) / (2l+1), each light divided by its own band 0. Randomly
+// rotated, the covariance of light vectors is diagonal with these entries, so they are all that the mean
+// error needs. Made by: bench_light_bands PROBES..., see docs/accuracy.md.
+inline constexpr std::array<double, 8> kBandPower = {1.0, 0.41, 0.27, 0.2, 0.15, 0.12, 0.09, 0.07};
+
+}  // namespace lambent::baker

@@ -1,0 +1,32 @@
+#include "baker/effects/diffuse/fill.hpp"
+
+#include <algorithm>
+
+namespace lambent::baker {
+
+std::uint32_t fillFromNeighbours(const std::vector<std::pair<std::uint32_t, std::uint32_t>>& edges,
+                                 std::vector<std::uint8_t> valid, TransferField& field) {
+  std::uint32_t filled = 0;
+  const std::size_t size = field.vectorSize();
+  // Each layer sees only the layers before it, so the order of samples does not matter.
+  while (std::find(valid.begin(), valid.end(), 0) != valid.end()) {
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> border;  // invalid sample, valid neighbour
+    for (const auto& [a, b] : edges)
+      if (valid[a] != valid[b]) border.emplace_back(valid[a] ? b : a, valid[a] ? a : b);
+    if (border.empty()) break;
+    std::sort(border.begin(), border.end());
+    for (std::size_t i = 0; i < border.size();) {
+      const std::uint32_t sample = border[i].first;
+      std::vector<double> sum(size, 0.0);
+      double count = 0.0;
+      for (; i < border.size() && border[i].first == sample; ++i, ++count)
+        for (std::size_t k = 0; k < size; ++k) sum[k] += double{field.at(border[i].second)[k]};
+      for (std::size_t k = 0; k < size; ++k) field.at(sample)[k] = static_cast<float>(sum[k] / count);
+      ++filled;
+    }
+    for (const auto& entry : border) valid[entry.first] = 1;
+  }
+  return filled;
+}
+
+}  // namespace lambent::baker

@@ -1,0 +1,18 @@
+// Samples that lie inside or under something are dark; interpolated, that darkness would leak out along the
+// contact. They take the mean of their valid neighbours instead, layer by layer.
+#pragma once
+
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "baker/effects/diffuse/transfer_field.hpp"
+
+namespace lambent::baker {
+
+// `edges` as sampleEdges() gives them. Returns how many samples were filled; what no valid sample is
+// connected to keeps its value.
+std::uint32_t fillFromNeighbours(const std::vector<std::pair<std::uint32_t, std::uint32_t>>& edges,
+                                 std::vector<std::uint8_t> valid, TransferField& field);
+
+}  // namespace lambent::baker

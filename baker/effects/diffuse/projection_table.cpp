@@ -1,0 +1,80 @@
+#include "baker/effects/diffuse/projection_table.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cassert>
+
+#include <Eigen/QR>
+#include <glm/vec3.hpp>
+
+#include "runtime/sh/basis.hpp"
+#include "runtime/sh/zonal.hpp"
+
+namespace lambent::baker {
+
+namespace {
+
+// The smallest change (least squares) of equal weights that makes the quadrature of every y_i max(z, 0)/pi
+// exact. Harmonics are nearly dependent on a hemisphere, hence the rank-revealing solver.
+Eigen::VectorXd exactWeights(const Eigen::MatrixXd& basis, const Eigen::VectorXd& exact) {
+  const Eigen::Index rays = basis.cols();
+  const Eigen::VectorXd equal = Eigen::VectorXd::Constant(rays, 1.0 / static_cast<double>(rays));
+  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
+  solver.setThreshold(1e-10);
+  solver.compute(basis);
+  return equal + solver.solve(exact - basis * equal);
+}
+
+}  // namespace
+
+ProjectionTable::ProjectionTable(const DirectionTable& table, int order)
+    : columns_(static_cast<std::size_t>(sh::coefficientCount(order))) {
+  const auto rays = static_cast<Eigen::Index>(table.size());
+  const auto columns = static_cast<Eigen::Index>(columns_);
+  Eigen::MatrixXd basis(columns, rays);
+  for (Eigen::Index r = 0; r < rays; ++r) {
+    const auto i = static_cast<std::size_t>(r);
+    sh::evaluate<double>(order, double{table.x[i]}, double{table.y[i]}, double{table.z[i]},
+                         std::span(basis.col(r).data(), columns_));
+  }
+  Eigen::VectorXd exact(columns);
+  sh::unoccludedTransfer(order, glm::dvec3(0.0, 0.0, 1.0), std::span(exact.data(), columns_));
+  const Eigen::VectorXd weights = exactWeights(basis, exact);
+  weights_.assign(weights.begin(), weights.end());
+
+  packet_sums_.assign(table.packets() * columns_, 0.0f);
+  for (Eigen::Index i = 0; i < columns; ++i) open_.push_back(static_cast<float>(exact(i)));
+  for (Eigen::Index r = 0; r < rays; ++r)
+    for (Eigen::Index i = 0; i < columns; ++i) rows_.push_back(static_cast<float>(weights(r) * basis(i, r)));
+  for (std::size_t r = 0; r < table.size(); ++r)
+    for (std::size_t i = 0; i < columns_; ++i) packet_sums_[r / kPacketWidth * columns_ + i] += row(r)[i];
+}
+
+void ProjectionTable::project(std::span<const std::uint16_t> blocked, std::span<float> out) const {
+  assert(out.size() == columns_);
+  int blocked_rays = 0;
+  for (const std::uint16_t mask : blocked) blocked_rays += std::popcount(mask);
+  // Sum the smaller side: what is blocked off the closed form, or what is open on nothing.
+  const bool subtract = blocked_rays * 2 <= static_cast<int>(blocked.size() * kPacketWidth);
+  if (subtract)
+    std::copy(open_.begin(), open_.end(), out.begin());
+  else
+    std::fill(out.begin(), out.end(), 0.0f);
+
+  const auto add = [&](std::span<const float> values) {
+    if (subtract)
+      for (std::size_t i = 0; i < columns_; ++i) out[i] -= values[i];
+    else
+      for (std::size_t i = 0; i < columns_; ++i) out[i] += values[i];
+  };
+  for (std::size_t p = 0; p < blocked.size(); ++p) {
+    const auto mask = static_cast<std::uint16_t>(subtract ? blocked[p] : ~blocked[p]);
+    if (mask == 0xffff)
+      add(packetSum(p));
+    else
+      for (std::uint32_t left = mask; left != 0; left &= left - 1)
+        add(row(p * kPacketWidth + static_cast<std::size_t>(std::countr_zero(left))));
+  }
+}
+
+}  // namespace lambent::baker

@@ -1,0 +1,40 @@
+// Spherical harmonics of the shared directions, weighted so that sums over rays are exact where the answer is
+// known: with nothing blocked the sum is the closed form (A_l/pi) y_i(n) to float rounding, with everything
+// blocked it is 0. Between the two the error is that of the low-discrepancy table alone.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "baker/transport/direction_table.hpp"
+
+namespace lambent::baker {
+
+class ProjectionTable {
+ public:
+  // `table` is cosine-distributed (cosineTable); order 1..8.
+  ProjectionTable(const DirectionTable& table, int order);
+
+  // Shadowed transfer in the local frame from the blocked masks of RayScene::trace. out: order² coefficients.
+  void project(std::span<const std::uint16_t> blocked, std::span<float> out) const;
+
+  // The weights of the rays: near 1/rays, all positive for at least 128 rays. Sum to 1.
+  std::span<const double> weights() const { return weights_; }
+
+ private:
+  std::span<const float> row(std::size_t ray) const {
+    return std::span(rows_).subspan(ray * columns_, columns_);
+  }
+  std::span<const float> packetSum(std::size_t p) const {
+    return std::span(packet_sums_).subspan(p * columns_, columns_);
+  }
+
+  std::size_t columns_;
+  std::vector<double> weights_;
+  std::vector<float> rows_;         // weight * y_i of each ray
+  std::vector<float> packet_sums_;  // of the sixteen rays of each packet
+  std::vector<float> open_;         // the closed form
+};
+
+}  // namespace lambent::baker

@@ -1,0 +1,35 @@
+// What will be baked for a scene, what not, and why: "simulate only the effects that a scene calls for". Each
+// effect says for itself whether the scene calls for it (baker/effects/effect_list.hpp); `lambent plan`
+// prints the outcome.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "baker/import/scene.hpp"
+#include "baker/plan/rigid_groups.hpp"
+
+namespace lambent::baker {
+
+struct EffectChoice {
+  std::string effect;
+  bool baked = false;
+  std::string reason;  // one sentence, true either way
+};
+
+// One line of the list of effects.
+struct EffectEntry {
+  const char* name;
+  EffectChoice (*choose)(const Scene& scene, const std::vector<RigidGroup>& groups);
+};
+
+struct EffectPlan {
+  std::vector<RigidGroup> groups;
+  std::vector<EffectChoice> effects;
+  std::vector<std::string> left_out;  // what the scene has and the bake will not show, one sentence each
+};
+
+EffectPlan makePlan(const Scene& scene, std::span<const EffectEntry> effects);
+
+}  // namespace lambent::baker

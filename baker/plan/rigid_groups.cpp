@@ -1,0 +1,87 @@
+#include "baker/plan/rigid_groups.hpp"
+
+#include <Eigen/Geometry>
+#include <Eigen/SVD>
+#include <glm/gtc/matrix_transform.hpp>
+
+namespace lambent::baker {
+
+namespace {
+
+// The rotation nearest to the upper 3x3 of a world matrix: U V^T of its SVD, made proper. Scale and shear
+// stay in the group's geometry.
+glm::quat polarRotation(const glm::mat4& world) {
+  Eigen::Matrix3d m;
+  for (int row = 0; row < 3; ++row)
+    for (int column = 0; column < 3; ++column) m(row, column) = double{world[column][row]};
+  if (!m.allFinite() || m.isZero()) return {1.0f, 0.0f, 0.0f, 0.0f};
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(m, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Eigen::Matrix3d rotation = svd.matrixU() * svd.matrixV().transpose();
+  if (rotation.determinant() < 0.0) rotation = -rotation;  // a mirror is a rotation and an inversion
+  const Eigen::Quaterniond q(rotation);
+  return glm::normalize(glm::quat(static_cast<float>(q.w()), static_cast<float>(q.x()),
+                                  static_cast<float>(q.y()), static_cast<float>(q.z())));
+}
+
+class GroupFinder {
+ public:
+  explicit GroupFinder(const Scene& scene) : scene_(scene), world_(gltf::worldTransforms(scene.nodes)) {
+    groups_.emplace_back().name = "static";
+  }
+
+  std::vector<RigidGroup> find() {
+    // Depth first without recursion, children in order.
+    std::vector<std::pair<std::int32_t, std::size_t>> stack;  // node, group
+    for (auto root = scene_.roots.rbegin(); root != scene_.roots.rend(); ++root) stack.emplace_back(*root, 0);
+    while (!stack.empty()) {
+      const auto [index, parent_group] = stack.back();
+      stack.pop_back();
+      const gltf::Node& node = scene_.nodes[static_cast<std::size_t>(index)];
+      const std::size_t group = node.animated || node.movable ? startGroup(index) : parent_group;
+      if (node.mesh >= 0) addDraws(static_cast<std::uint32_t>(index), groups_[group]);
+      for (auto child = node.children.rbegin(); child != node.children.rend(); ++child)
+        stack.emplace_back(*child, group);
+    }
+    std::erase_if(groups_, [](const RigidGroup& group) { return group.draws.empty(); });
+    return std::move(groups_);
+  }
+
+ private:
+  std::size_t startGroup(std::int32_t root) {
+    const gltf::Node& node = scene_.nodes[static_cast<std::size_t>(root)];
+    const glm::mat4& world = world_[static_cast<std::size_t>(root)];
+    RigidGroup& group = groups_.emplace_back();
+    group.name = node.name.empty() ? "node " + std::to_string(root) : node.name;
+    group.root = root;
+    group.rest_translation = glm::vec3(world[3]);
+    group.rest_rotation = polarRotation(world);
+    return groups_.size() - 1;
+  }
+
+  void addDraws(std::uint32_t node, RigidGroup& group) {
+    const auto mesh = static_cast<std::uint32_t>(scene_.nodes[node].mesh);
+    const glm::mat4 world_from_group =
+        glm::translate(glm::mat4(1.0f), group.rest_translation) * glm::mat4_cast(group.rest_rotation);
+    const glm::mat4 group_from_mesh =
+        group.root < 0 ? world_[node] : glm::inverse(world_from_group) * world_[node];
+    const auto& primitives = scene_.meshes[mesh].primitives;
+    for (std::uint32_t p = 0; p < primitives.size(); ++p) {
+      const std::int32_t material = primitives[p].material;
+      group.draws.push_back({node, mesh, p, false, group_from_mesh});
+      if (material >= 0 && scene_.materials[static_cast<std::size_t>(material)].double_sided)
+        group.draws.push_back({node, mesh, p, true, group_from_mesh});
+    }
+  }
+
+  const Scene& scene_;
+  std::vector<glm::mat4> world_;
+  std::vector<RigidGroup> groups_;
+};
+
+}  // namespace
+
+std::vector<RigidGroup> findRigidGroups(const Scene& scene) {
+  return GroupFinder(scene).find();
+}
+
+}  // namespace lambent::baker

@@ -1,0 +1,31 @@
+// Where cut-out surfaces let rays through: alphaMode MASK by texture, factor and vertex colour against the
+// cutoff.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include <glm/vec2.hpp>
+
+#include "baker/import/image.hpp"
+#include "baker/import/scene.hpp"
+
+namespace lambent::baker {
+
+struct AlphaMap {
+  std::shared_ptr<const DecodedImage> image;  // may be null: only factor and vertex colour count
+  gltf::Sampler sampler;
+  float factor = 1.0f;
+  float cutoff = 0.5f;
+
+  // Does a surface point with this texture coordinate and vertex alpha stop a ray?
+  bool blocks(glm::vec2 uv, float vertex_alpha) const {
+    const float texture_alpha = image ? sampleImage(*image, sampler, uv).w : 1.0f;
+    return texture_alpha * factor * vertex_alpha >= cutoff;
+  }
+};
+
+// One entry per material, null where its alpha mode is not MASK. Images are decoded once each.
+Result<std::vector<std::shared_ptr<const AlphaMap>>> loadAlphaMaps(const Scene& scene);
+
+}  // namespace lambent::baker

@@ -1,0 +1,68 @@
+#include "baker/transport/direction_table.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <utility>
+
+namespace lambent::baker {
+
+namespace {
+
+// Distance along a Hilbert curve over a 256 x 256 grid.
+std::uint32_t hilbertIndex(double u, double v) {
+  constexpr std::uint32_t kSide = 256;
+  auto x = std::min(static_cast<std::uint32_t>(u * kSide), kSide - 1);
+  auto y = std::min(static_cast<std::uint32_t>(v * kSide), kSide - 1);
+  std::uint32_t distance = 0;
+  for (std::uint32_t s = kSide / 2; s > 0; s /= 2) {
+    const std::uint32_t rx = (x & s) ? 1 : 0, ry = (y & s) ? 1 : 0;
+    distance += s * s * ((3 * rx) ^ ry);
+    if (ry == 0) {
+      if (rx == 1) x = kSide - 1 - x, y = kSide - 1 - y;
+      std::swap(x, y);
+    }
+  }
+  return distance;
+}
+
+// Unit square to unit disc, keeping areas and neighbours together.
+std::pair<double, double> concentricDisc(double u, double v) {
+  const double a = 2.0 * u - 1.0, b = 2.0 * v - 1.0;
+  if (a == 0.0 && b == 0.0) return {0.0, 0.0};
+  const bool wide = std::abs(a) > std::abs(b);
+  const double radius = wide ? a : b;
+  const double angle =
+      wide ? std::numbers::pi / 4.0 * (b / a) : std::numbers::pi / 2.0 - std::numbers::pi / 4.0 * (a / b);
+  return {radius * std::cos(angle), radius * std::sin(angle)};
+}
+
+}  // namespace
+
+DirectionTable cosineTable(std::size_t rays) {
+  const std::size_t count = std::max<std::size_t>(1, (rays + kPacketWidth - 1) / kPacketWidth) * kPacketWidth;
+  struct Point {
+    std::uint32_t along;
+    double u, v;
+  };
+  std::vector<Point> points(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const double u = (static_cast<double>(i) + 0.5) / static_cast<double>(count);
+    const double v = std::fmod(static_cast<double>(i) * (std::numbers::phi - 1.0), 1.0);
+    points[i] = {hilbertIndex(u, v), u, v};
+  }
+  std::stable_sort(points.begin(), points.end(),
+                   [](const Point& a, const Point& b) { return a.along < b.along; });
+
+  DirectionTable table;
+  for (const Point& point : points) {
+    const auto [x, y] = concentricDisc(point.u, point.v);
+    table.x.push_back(static_cast<float>(x));
+    table.y.push_back(static_cast<float>(y));
+    table.z.push_back(static_cast<float>(std::sqrt(std::max(0.0, 1.0 - x * x - y * y))));
+  }
+  return table;
+}
+
+}  // namespace lambent::baker

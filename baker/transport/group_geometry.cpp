@@ -1,0 +1,61 @@
+#include "baker/transport/group_geometry.hpp"
+
+#include <glm/gtc/matrix_inverse.hpp>
+
+namespace lambent::baker {
+
+namespace {
+
+glm::vec3 unitOr(glm::vec3 v, glm::vec3 fallback) {
+  const float length = glm::length(v);
+  return length > 0.0f ? v / length : fallback;
+}
+
+void append(const PlannedDraw& draw, const bundle::MeshData& mesh, const gltf::Material* material,
+            std::int32_t material_index, GroupGeometry& geometry) {
+  DrawGeometry out{.first_vertex = static_cast<std::uint32_t>(geometry.positions.size()),
+                   .vertex_count = static_cast<std::uint32_t>(mesh.positions.size()),
+                   .first_triangle = static_cast<std::uint32_t>(geometry.triangles.size()),
+                   .triangle_count = static_cast<std::uint32_t>(mesh.indices.size() / 3),
+                   .material = material_index,
+                   .back = draw.back};
+  const glm::mat3 linear(draw.group_from_mesh);
+  const glm::mat3 normal_matrix = glm::inverseTranspose(linear);
+  const float side = draw.back ? -1.0f : 1.0f;
+  const bool use_second_set = material && material->base_color_texture.texcoord == 1;
+  const auto& texcoords = use_second_set ? mesh.texcoords1 : mesh.texcoords0;
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+    // Adding 0 turns -0 into 0: samples are welded by their bits.
+    geometry.positions.push_back(glm::vec3(draw.group_from_mesh * glm::vec4(mesh.positions[v], 1.0f)) + 0.0f);
+    geometry.normals.push_back(side * unitOr(normal_matrix * mesh.normals[v], {0.0f, 1.0f, 0.0f}) + 0.0f);
+    geometry.texcoords.push_back(texcoords.empty() ? glm::vec2(0.0f) : texcoords[v]);
+    geometry.alphas.push_back(mesh.colors.empty() ? 1.0f : mesh.colors[v].w);
+  }
+  const bool reversed = (glm::determinant(linear) < 0.0f) != draw.back;
+  for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+    glm::uvec3 triangle(mesh.indices[i], mesh.indices[i + 1], mesh.indices[i + 2]);
+    if (reversed) std::swap(triangle.y, triangle.z);
+    geometry.triangles.push_back(triangle + out.first_vertex);
+  }
+  geometry.draws.push_back(out);
+}
+
+}  // namespace
+
+GroupGeometry buildGroupGeometry(const RigidGroup& group, const Scene& scene,
+                                 const std::vector<std::vector<bundle::MeshData>>& decoded) {
+  GroupGeometry geometry;
+  for (const PlannedDraw& draw : group.draws) {
+    const std::int32_t index = scene.meshes[draw.mesh].primitives[draw.primitive].material;
+    const gltf::Material* material = index < 0 ? nullptr : &scene.materials[static_cast<std::size_t>(index)];
+    append(draw, decoded[draw.mesh][draw.primitive], material, index, geometry);
+  }
+  if (!geometry.positions.empty()) geometry.bounds_min = geometry.bounds_max = geometry.positions.front();
+  for (const glm::vec3& p : geometry.positions) {
+    geometry.bounds_min = glm::min(geometry.bounds_min, p);
+    geometry.bounds_max = glm::max(geometry.bounds_max, p);
+  }
+  return geometry;
+}
+
+}  // namespace lambent::baker

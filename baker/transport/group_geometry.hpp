@@ -1,0 +1,39 @@
+// The geometry of one rigid group as rays see it: the decoded meshes of all its draws, side by side in the
+// group's frame. Triangles wind counter-clockwise seen from the outside (mirroring nodes are undone), back
+// sides of double-sided materials are draws of their own but share the triangles of the front for visibility.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <glm/mat4x4.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include "baker/plan/rigid_groups.hpp"
+#include "runtime/bundle/mesh.hpp"
+
+namespace lambent::baker {
+
+struct DrawGeometry {
+  std::uint32_t first_vertex = 0, vertex_count = 0;
+  std::uint32_t first_triangle = 0, triangle_count = 0;
+  std::int32_t material = -1;
+  bool back = false;
+};
+
+struct GroupGeometry {
+  std::vector<glm::vec3> positions;   // group frame, metres
+  std::vector<glm::vec3> normals;     // unit; of back draws negated
+  std::vector<glm::vec2> texcoords;   // of the material's base-colour texture; zero where it has none
+  std::vector<float> alphas;          // of the vertex colours, 1 where there are none
+  std::vector<glm::uvec3> triangles;  // into positions; of back draws wound the other way
+  std::vector<DrawGeometry> draws;    // in the order of RigidGroup::draws
+  glm::vec3 bounds_min{0.0f}, bounds_max{0.0f};
+};
+
+// decoded[mesh][primitive] is what ships.
+GroupGeometry buildGroupGeometry(const RigidGroup& group, const Scene& scene,
+                                 const std::vector<std::vector<bundle::MeshData>>& decoded);
+
+}  // namespace lambent::baker

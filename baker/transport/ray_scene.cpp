@@ -1,0 +1,265 @@
+#include "baker/transport/ray_scene.hpp"
+
+#include <array>
+#include <bit>
+#include <cassert>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include <embree3/rtcore.h>
+#include <glm/geometric.hpp>
+
+#if defined(__SSE2__)
+#include <pmmintrin.h>
+#include <xmmintrin.h>
+#endif
+
+namespace lambent::baker {
+
+namespace {
+
+struct ReleaseDevice {
+  void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
+};
+struct ReleaseScene {
+  void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
+};
+using Device = std::unique_ptr<std::remove_pointer_t<RTCDevice>, ReleaseDevice>;
+using EmbreeScene = std::unique_ptr<std::remove_pointer_t<RTCScene>, ReleaseScene>;
+
+// Embree asks for denormals to be flushed while it runs; restored afterwards, so that no other code is
+// changed by which thread it happens to run on.
+class FlushDenormals {
+ public:
+#if defined(__SSE2__)
+  FlushDenormals() : saved_(_mm_getcsr()) {
+    _mm_setcsr(saved_ | _MM_FLUSH_ZERO_ON | _MM_DENORMALS_ZERO_ON);
+  }
+  ~FlushDenormals() {
+    _mm_setcsr(saved_);
+  }
+
+ private:
+  unsigned saved_;
+#endif
+};
+
+// What a filter needs to know of a cut-out geometry.
+struct MaskedDraw {
+  std::shared_ptr<const AlphaMap> alpha;
+  std::vector<glm::uvec3> triangles;
+  std::vector<glm::vec2> texcoords;
+  std::vector<float> alphas;
+
+  bool blocks(std::uint32_t triangle, float u, float v) const {
+    const glm::uvec3 t = triangles[triangle];
+    const float w = 1.0f - u - v;
+    return alpha->blocks(w * texcoords[t.x] + u * texcoords[t.y] + v * texcoords[t.z],
+                         w * alphas[t.x] + u * alphas[t.y] + v * alphas[t.z]);
+  }
+};
+
+void filterMasked(const RTCFilterFunctionNArguments* args) {
+  const auto& draw = *static_cast<const MaskedDraw*>(args->geometryUserPtr);
+  for (unsigned i = 0; i < args->N; ++i) {
+    if (args->valid[i] != -1) continue;
+    const float u = RTCHitN_u(args->hit, args->N, i), v = RTCHitN_v(args->hit, args->N, i);
+    if (!draw.blocks(RTCHitN_primID(args->hit, args->N, i), u, v)) args->valid[i] = 0;
+  }
+}
+
+// Deals the rays of a sample out over its origins: ray r takes the origin in whose stretch of the cumulated
+// weights the r-th point of the golden-ratio sequence falls, so that each origin gets its share of every part
+// of the sky.
+class OriginDealer {
+ public:
+  explicit OriginDealer(std::span<const SampleOrigin> origins) : origins_(origins) {}
+
+  std::size_t pick(std::size_t ray) const {
+    if (origins_.size() == 1) return 0;
+    const std::uint32_t golden =
+        static_cast<std::uint32_t>(ray) * 2654435769u;  // frac(ray * (phi - 1)) * 2^32
+    float left = static_cast<float>(golden >> 8) * 0x1p-24f;
+    for (std::size_t o = 0; o + 1 < origins_.size(); ++o) {
+      if (left < origins_[o].weight) return o;
+      left -= origins_[o].weight;
+    }
+    return origins_.size() - 1;
+  }
+
+ private:
+  std::span<const SampleOrigin> origins_;
+};
+
+// Fills one packet; lanes below their origin's horizon are invalid.
+struct Packet {
+  alignas(64) RTCRayHit16 rays;
+  alignas(64) std::array<int, kPacketWidth> valid;
+  std::array<std::size_t, kPacketWidth> origin;
+
+  void fill(std::size_t packet, std::span<const SampleOrigin> origins, const OriginDealer& dealer,
+            const glm::mat3& frame, const DirectionTable& table) {
+    RTCRay16& ray = rays.ray;
+    const std::size_t first = packet * kPacketWidth;
+    for (std::size_t k = 0; k < kPacketWidth; ++k) {
+      const float x = table.x[first + k], y = table.y[first + k], z = table.z[first + k];
+      ray.dir_x[k] = frame[0].x * x + frame[1].x * y + frame[2].x * z;
+      ray.dir_y[k] = frame[0].y * x + frame[1].y * y + frame[2].y * z;
+      ray.dir_z[k] = frame[0].z * x + frame[1].z * y + frame[2].z * z;
+      ray.tnear[k] = 0.0f;
+      ray.tfar[k] = std::numeric_limits<float>::infinity();
+      ray.time[k] = 0.0f;
+      ray.mask[k] = ~0u;
+      ray.flags[k] = 0;
+    }
+    for (std::size_t k = 0; k < kPacketWidth; ++k) {
+      origin[k] = dealer.pick(first + k);
+      const SampleOrigin& o = origins[origin[k]];
+      ray.org_x[k] = o.position.x;
+      ray.org_y[k] = o.position.y;
+      ray.org_z[k] = o.position.z;
+      const float above = ray.dir_x[k] * o.geometric_normal.x + ray.dir_y[k] * o.geometric_normal.y +
+                          ray.dir_z[k] * o.geometric_normal.z;
+      valid[k] = above > 0.0f ? -1 : 0;
+    }
+  }
+};
+
+}  // namespace
+
+struct RayScene::State {
+  Device device;
+  EmbreeScene scene;
+  std::vector<std::unique_ptr<MaskedDraw>> masked;  // user data of geometries: must stay in place
+  std::vector<bool> double_sided;                   // by geometry id
+};
+
+RayScene::RayScene(std::unique_ptr<State> state) : state_(std::move(state)) {}
+RayScene::RayScene(RayScene&&) noexcept = default;
+RayScene& RayScene::operator=(RayScene&&) noexcept = default;
+RayScene::~RayScene() = default;
+
+namespace {
+
+// One Embree geometry of its own buffers for a draw; null if Embree has no memory for it.
+RTCGeometry makeGeometry(RTCDevice device, const GroupGeometry& group, const DrawGeometry& draw) {
+  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+  void* vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                           sizeof(glm::vec3), draw.vertex_count);
+  auto* indices = static_cast<glm::uvec3*>(rtcSetNewGeometryBuffer(
+      geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(glm::uvec3), draw.triangle_count));
+  if (!vertices || !indices) {
+    rtcReleaseGeometry(geometry);
+    return nullptr;
+  }
+  std::memcpy(vertices, &group.positions[draw.first_vertex], draw.vertex_count * sizeof(glm::vec3));
+  for (std::uint32_t t = 0; t < draw.triangle_count; ++t)
+    indices[t] = group.triangles[draw.first_triangle + t] - draw.first_vertex;
+  return geometry;
+}
+
+std::unique_ptr<MaskedDraw> maskedDraw(const GroupGeometry& group, const DrawGeometry& draw,
+                                       std::shared_ptr<const AlphaMap> alpha) {
+  auto masked = std::make_unique<MaskedDraw>();
+  masked->alpha = std::move(alpha);
+  for (std::uint32_t t = 0; t < draw.triangle_count; ++t)
+    masked->triangles.push_back(group.triangles[draw.first_triangle + t] - draw.first_vertex);
+  const auto first = static_cast<std::ptrdiff_t>(draw.first_vertex),
+             count = static_cast<std::ptrdiff_t>(draw.vertex_count);
+  masked->texcoords.assign(group.texcoords.begin() + first, group.texcoords.begin() + first + count);
+  masked->alphas.assign(group.alphas.begin() + first, group.alphas.begin() + first + count);
+  return masked;
+}
+
+}  // namespace
+
+Result<RayScene> RayScene::build(const GroupGeometry& group, const Scene& scene,
+                                 std::vector<std::shared_ptr<const AlphaMap>> alpha_maps) {
+  auto state = std::make_unique<State>();
+  // Embree's own thread count follows TBB's, which withThreads() limits; its result does not depend on it.
+  state->device.reset(rtcNewDevice(nullptr));
+  if (!state->device)
+    return fail("Embree", "cannot be set up", "check that libembree3 runs on this processor");
+  state->scene.reset(rtcNewScene(state->device.get()));
+  rtcSetSceneBuildQuality(state->scene.get(), RTC_BUILD_QUALITY_HIGH);
+
+  for (const DrawGeometry& draw : group.draws) {
+    const gltf::Material* material =
+        draw.material < 0 ? nullptr : &scene.materials[static_cast<std::size_t>(draw.material)];
+    if (draw.back || draw.triangle_count == 0) continue;  // the front's triangles stand for both sides
+    if (material && material->alpha_mode == gltf::AlphaMode::Blend) continue;
+    RTCGeometry geometry = makeGeometry(state->device.get(), group, draw);
+    if (!geometry) return fail("Embree", "has not enough memory for the scene", "bake it in parts");
+    if (material && material->alpha_mode == gltf::AlphaMode::Mask) {
+      state->masked.push_back(maskedDraw(group, draw, alpha_maps[static_cast<std::size_t>(draw.material)]));
+      rtcSetGeometryUserData(geometry, state->masked.back().get());
+      rtcSetGeometryOccludedFilterFunction(geometry, filterMasked);
+      rtcSetGeometryIntersectFilterFunction(geometry, filterMasked);
+    }
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometryByID(state->scene.get(), geometry, static_cast<unsigned>(state->double_sided.size()));
+    rtcReleaseGeometry(geometry);  // the scene holds it
+    state->double_sided.push_back(material && material->double_sided);
+  }
+  rtcCommitScene(state->scene.get());
+  if (rtcGetDeviceError(state->device.get()) != RTC_ERROR_NONE)
+    return fail("Embree", "could not build its hierarchy over the scene", "check the memory that is free");
+  return RayScene(std::move(state));
+}
+
+std::uint32_t RayScene::trace(std::span<const SampleOrigin> origins, const glm::mat3& frame,
+                              const DirectionTable& table, std::span<std::uint16_t> masks) const {
+  assert(!origins.empty() && masks.size() == table.packets());
+  const FlushDenormals flush;
+  const OriginDealer dealer(origins);
+  Packet packet;
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags =
+      RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;  // the faster one for occlusion, coherent as the rays are
+  std::uint32_t traced = 0;
+  for (std::size_t p = 0; p < masks.size(); ++p) {
+    packet.fill(p, origins, dealer, frame, table);
+    rtcOccluded16(packet.valid.data(), state_->scene.get(), &context, &packet.rays.ray);
+    std::uint32_t valid = 0, hit = 0;
+    for (std::size_t k = 0; k < kPacketWidth; ++k) {
+      valid |= packet.valid[k] ? 1u << k : 0u;
+      hit |= packet.rays.ray.tfar[k] < 0.0f ? 1u << k : 0u;  // Embree sets -inf where something is in the way
+    }
+    masks[p] = static_cast<std::uint16_t>((~valid & 0xffffu) | hit);
+    traced += static_cast<std::uint32_t>(std::popcount(valid));
+  }
+  return traced;
+}
+
+void RayScene::backFaceShare(std::span<const SampleOrigin> origins, const glm::mat3& frame,
+                             const DirectionTable& table, std::span<float> shares) const {
+  assert(!origins.empty() && shares.size() == origins.size());
+  const FlushDenormals flush;
+  const OriginDealer dealer(origins);
+  Packet packet;
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  std::vector<std::uint32_t> rays(origins.size(), 0), backs(origins.size(), 0);
+  for (std::size_t p = 0; p < table.packets(); ++p) {
+    packet.fill(p, origins, dealer, frame, table);
+    for (std::size_t k = 0; k < kPacketWidth; ++k) packet.rays.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
+    rtcIntersect16(packet.valid.data(), state_->scene.get(), &context, &packet.rays);
+    for (std::size_t k = 0; k < kPacketWidth; ++k) {
+      if (!packet.valid[k]) continue;
+      ++rays[packet.origin[k]];
+      const RTCHit16& hit = packet.rays.hit;
+      if (hit.geomID[k] == RTC_INVALID_GEOMETRY_ID || state_->double_sided[hit.geomID[k]]) continue;
+      const RTCRay16& ray = packet.rays.ray;
+      const float along =
+          ray.dir_x[k] * hit.Ng_x[k] + ray.dir_y[k] * hit.Ng_y[k] + ray.dir_z[k] * hit.Ng_z[k];
+      backs[packet.origin[k]] += along > 0.0f;
+    }
+  }
+  for (std::size_t o = 0; o < origins.size(); ++o)
+    shares[o] = rays[o] == 0 ? 0.0f : static_cast<float>(backs[o]) / static_cast<float>(rays[o]);
+}
+
+}  // namespace lambent::baker

@@ -1,0 +1,47 @@
+// Visibility inside one rigid group, by Embree. All rays of one sample go in packets of sixteen sorted
+// directions: measured, that is 1.2 to 2.8 times as fast as single rays or one direction over many samples.
+// Calls are safe from any thread. Surfaces: solid ones and single-sided back faces block; alphaMode MASK
+// blocks where its alpha says so; alphaMode BLEND blocks nothing.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include <glm/mat3x3.hpp>
+
+#include "baker/transport/alpha_map.hpp"
+#include "baker/transport/direction_table.hpp"
+#include "baker/transport/group_geometry.hpp"
+#include "baker/transport/samples.hpp"
+
+namespace lambent::baker {
+
+class RayScene {
+ public:
+  // `alpha_maps` as loadAlphaMaps gives them. Errors: Embree cannot be set up or runs out of memory.
+  static Result<RayScene> build(const GroupGeometry& geometry, const Scene& scene,
+                                std::vector<std::shared_ptr<const AlphaMap>> alpha_maps);
+  RayScene(RayScene&&) noexcept;
+  RayScene& operator=(RayScene&&) noexcept;
+  ~RayScene();
+
+  // Bit k of masks[p] is set where ray 16 p + k of the table, turned by `frame` (group_from_local), is
+  // blocked. Rays are dealt out over the origins by their weights; below an origin's geometric horizon they
+  // are blocked untraced. `origins` must not be empty; returns how many rays were traced.
+  std::uint32_t trace(std::span<const SampleOrigin> origins, const glm::mat3& frame,
+                      const DirectionTable& table, std::span<std::uint16_t> masks) const;
+
+  // Per origin: of its rays, the share whose first hit is the back of a single-sided surface. An origin with
+  // a large share lies inside a body or under something.
+  void backFaceShare(std::span<const SampleOrigin> origins, const glm::mat3& frame,
+                     const DirectionTable& table, std::span<float> shares) const;
+
+ private:
+  struct State;
+  explicit RayScene(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace lambent::baker

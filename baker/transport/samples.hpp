@@ -1,0 +1,54 @@
+// Where transfer is computed. Vertices of a group with the same position and normal share one sample whatever
+// their texture coordinates; samples are sorted along a Morton curve, so that neighbours in memory are
+// neighbours in space, and cut into cells. Rays of a sample start from several origins, one for each face
+// around the vertex: pulled a little into the face and offset along its geometric normal. At concave edges
+// anything else sees through walls.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "baker/transport/group_geometry.hpp"
+
+namespace lambent::baker {
+
+inline constexpr float kPullIntoFace = 0.03f;            // share of the way to the face's centroid
+inline constexpr std::uint32_t kMaxCellSamples = 65536;  // "64 Ki samples" of the format
+
+// One place from which a sample's rays start.
+struct SampleOrigin {
+  glm::vec3 position;          // group frame
+  glm::vec3 geometric_normal;  // unit; rays below it are blocked
+  float weight;                // the corner's angle; origins of one sample sum to 1
+};
+
+struct SampleCell {
+  std::uint32_t first = 0, count = 0;
+  glm::vec3 bounds_min{0.0f}, bounds_max{0.0f};
+};
+
+struct SampleSet {
+  std::vector<glm::vec3> positions;          // group frame
+  std::vector<glm::vec3> normals;            // unit shading normals
+  std::vector<std::uint32_t> vertex_sample;  // GroupGeometry vertex -> sample
+  std::vector<SampleOrigin> origins;
+  std::vector<std::uint32_t> origin_offsets;  // size() + 1; a sample without a face has none
+  std::vector<SampleCell> cells;
+
+  std::size_t size() const { return positions.size(); }
+  std::span<const SampleOrigin> originsOf(std::size_t sample) const {
+    return std::span(origins).subspan(origin_offsets[sample],
+                                      origin_offsets[sample + 1] - origin_offsets[sample]);
+  }
+};
+
+SampleSet buildSamples(const GroupGeometry& geometry);
+
+// Pairs of samples that share an edge of a face, each once as (smaller, larger), sorted.
+std::vector<std::pair<std::uint32_t, std::uint32_t>> sampleEdges(const GroupGeometry& geometry,
+                                                                 const SampleSet& samples);
+
+}  // namespace lambent::baker

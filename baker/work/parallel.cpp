@@ -1,0 +1,27 @@
+#include "baker/work/parallel.hpp"
+
+#include <algorithm>
+
+#include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+namespace lambent::baker {
+
+bool parallelRanges(std::size_t count, std::size_t grain, const std::stop_token& stop,
+                    const std::function<void(std::size_t begin, std::size_t end)>& body) {
+  const std::size_t ranges = (count + grain - 1) / grain;
+  tbb::parallel_for(std::size_t{0}, ranges, [&](std::size_t range) {
+    if (!stop.stop_requested()) body(range * grain, std::min(count, (range + 1) * grain));
+  });
+  return !stop.stop_requested();
+}
+
+void withThreads(unsigned threads, const std::function<void()>& job) {
+  if (threads == 0) return job();
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+  tbb::task_arena arena(static_cast<int>(threads));
+  arena.execute(job);
+}
+
+}  // namespace lambent::baker
