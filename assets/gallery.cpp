@@ -22,8 +22,8 @@ std::vector<Material> materials() {
   return {{.name = "stone floor", .base_color = glm::vec3(1.0f), .image = 0},
           {.name = "red wall", .base_color = {0.56f, 0.10f, 0.07f}},
           {.name = "teal wall", .base_color = {0.07f, 0.33f, 0.36f}},
-          {.name = "plaster", .base_color = {0.76f, 0.72f, 0.66f}},
-          {.name = "limestone", .base_color = {0.66f, 0.62f, 0.55f}},
+          {.name = "plaster", .base_color = {0.40f, 0.37f, 0.33f}},
+          {.name = "limestone", .base_color = {0.70f, 0.65f, 0.57f}},
           // Its inside shows through the spout and the gap under the lid.
           {.name = "porcelain", .base_color = {0.82f, 0.81f, 0.78f}, .double_sided = true},
           {.name = "bronze", .base_color = {0.72f, 0.42f, 0.14f}},
@@ -108,9 +108,9 @@ Scene gallery() {
                           kTeal));
 
   place("column", add("column", column(), kLimestone));
-  place("teapot", add("teapot", teapot(/*cells=*/22, /*height_m=*/0.62f), kPorcelain), {0, 0.90f, 0}, 24.0f);
+  place("teapot", add("teapot", teapot(/*cells=*/22, /*height_m=*/0.74f), kPorcelain), {0, 0.90f, 0}, 24.0f);
 
-  const int plinth = add("plinth", box({-0.42f, 0, -0.42f}, {0.42f, 0.46f, 0.42f}, 0.04f), kPlaster);
+  const int plinth = add("plinth", box({-0.42f, 0, -0.42f}, {0.42f, 0.46f, 0.42f}, 0.04f), kLimestone);
   place("plinth of the knot", plinth, {1.46f, 0, -1.05f}, -18.0f);
   place("plinth of the spheres", plinth, {-1.50f, 0, -1.15f}, 14.0f);
 
@@ -133,8 +133,8 @@ Scene gallery() {
   place("cube", add("cube", box({-0.16f, 0, -0.16f}, {0.16f, 0.32f, 0.16f}, 0.025f), kOchre),
         {1.12f, 0, 0.55f}, 31.0f);
 
-  scene.cameras = {{"main", {0.55f, 1.75f, 5.3f}, {0.0f, 0.88f, -0.3f}, 36.0f},
-                   {"detail", {-1.0f, 1.65f, 2.1f}, {0.05f, 1.15f, -0.1f}, 34.0f}};
+  scene.cameras = {{"main", {0.65f, 1.72f, 4.9f}, {0.02f, 0.93f, -0.3f}, 35.0f},
+                   {"detail", {-0.75f, 1.75f, 1.9f}, {0.1f, 1.13f, -0.1f}, 34.0f}};
   return scene;
 }
 

@@ -19,7 +19,7 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 constexpr double kTurbidity = 3.0;  // clear, a little hazy
-constexpr float kSunAzimuthDeg = 52.0f, kSunElevationDeg = 42.0f;
+constexpr float kSunAzimuthDeg = 34.0f, kSunElevationDeg = 44.0f;
 // The disc is wider than the sun's 0.27 degrees, at the same irradiance: small pictures and low orders can
 // show it.
 constexpr double kSunRadius = 2.6 * kPi / 180;
