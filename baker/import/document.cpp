@@ -34,7 +34,7 @@ Result<json> parseJson(const std::string& text, const std::string& file) {
       return fail(file, fmt::format("nests JSON deeper than {} levels", kMaxDepth), "simplify its extras");
     return document;
   } catch (const json::exception& exception) {
-    return fail(file, fmt::format("is neither glTF nor GLB ({})", exception.what()),
+    return fail(file, fmt::format("is not glTF: its JSON cannot be parsed ({})", exception.what()),
                 "export the scene again");
   }
 }
@@ -132,7 +132,8 @@ class BufferSource {
 };
 
 void setDracoIndicesAside(json& document) {
-  for (json& mesh : document.value("meshes", json::array()).empty() ? json::array() : document["meshes"]) {
+  if (!document.contains("meshes")) return;
+  for (json& mesh : document["meshes"]) {
     if (!mesh.contains("primitives")) continue;
     for (json& primitive : mesh["primitives"]) {
       if (!primitive.contains("extensions")) continue;

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <exception>
+#include <map>
 #include <set>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -20,6 +23,24 @@ void warnAboutExtensions(const Document& document, Scene& scene) {
   for (const std::string& name : std::set<std::string>(used.begin(), used.end()))
     if (std::find(kExtensions.begin(), kExtensions.end(), name) == kExtensions.end())
       scene.warnings.push_back(fmt::format("the extension {} is not read", name));
+}
+
+// Warnings alike but for the primitive become one.
+void foldWarnings(std::vector<std::string>& warnings) {
+  std::vector<std::string> kept;
+  std::map<std::string, std::pair<std::size_t, std::size_t>>
+      seen;  // what -> its place in `kept`, how many more
+  for (std::string& warning : warnings) {
+    const auto [entry, added] = seen.try_emplace(warning.substr(warning.find(": ") + 1), kept.size(), 0);
+    if (added) {
+      kept.push_back(std::move(warning));
+    } else {
+      ++entry->second.second;
+    }
+  }
+  for (const auto& [what, place] : seen)
+    if (place.second > 0) kept[place.first] += fmt::format(" (and {} more like it)", place.second);
+  warnings = std::move(kept);
 }
 
 // Meshes that no node of the scene draws are left out, and those of which nothing is left.
@@ -52,6 +73,7 @@ Result<Scene> convert(const Document& document) {
   // the tree of the default scene
   if (auto nodes = convertNodes(document, scene); !nodes) return failAgain(std::move(nodes.error()));
   dropUnusedMeshes(scene);
+  foldWarnings(scene.warnings);
   if (scene.meshes.empty()) return fail(document.file(), "has no triangles in its scene", "give it a mesh");
   return scene;
 }

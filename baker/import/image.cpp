@@ -52,7 +52,10 @@ Result<DecodedImage> decode(const SceneImage& image) {
   OIIO::ImageSpec wanted;
   wanted.attribute("oiio:UnassociatedAlpha", 1);  // glTF colours are not multiplied by alpha
   const char* name = image.mime_type == "image/png" ? "memory.png" : "memory.jpg";
-  const auto input = OIIO::ImageInput::open(name, &wanted, &memory);
+  // The reader takes its bytes from the configuration; open() forgets the proxy when it is given both.
+  OIIO::Filesystem::IOProxy* proxy = &memory;
+  wanted.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
+  const auto input = OIIO::ImageInput::open(name, &wanted);
   if (!input)
     return fail(subject, fmt::format("cannot be decoded ({})", OIIO::geterror()),
                 "save it again as PNG or JPEG");

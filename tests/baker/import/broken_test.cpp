@@ -1,0 +1,186 @@
+// What importScene() refuses, and that it names the object. Under address and undefined sanitizers these also
+// show that nothing is read out of bounds.
+#include <functional>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "baker/import/gltf.hpp"
+#include "tests/baker/import/gltf_writer.hpp"
+#include "tests/support/shared_data.hpp"
+
+namespace lambent::baker {
+namespace {
+
+using nlohmann::json;
+using testing::GltfWriter;
+using testing::oneTriangle;
+using testing::TemporaryFolder;
+
+struct Case {
+  const char* names;  // must stand in the error
+  std::function<void(json&)> bend;
+};
+
+TEST(BrokenScene, IsRefusedWithTheNameOfTheObject) {
+  const std::vector<Case> cases{
+      {"accessor 0", [](json& j) { j["accessors"][0]["count"] = 4; }},
+      {"accessor 0",
+       [](json& j) { j["accessors"][0]["count"] = 6148914691236517206u; }},  // count * 12 wraps to 8
+      {"accessor 0", [](json& j) { j["accessors"][0]["count"] = -1; }},
+      {"accessor 0", [](json& j) { j["accessors"][0]["byteOffset"] = 4; }},
+      {"accessor 0", [](json& j) { j["accessors"][0]["componentType"] = 5124; }},
+      {"accessor 0", [](json& j) { j["accessors"][0]["type"] = "VEC5"; }},
+      {"accessor 0", [](json& j) { j["accessors"][0]["type"] = "VEC2"; }},
+      {"accessor 0",
+       [](json& j) { j["accessors"][0]["bufferView"] = 4294967296u; }},  // 0 when cut to 32 bits
+      {"accessor 0",
+       [](json& j) { j["accessors"][0].erase("bufferView"), j["accessors"][0]["count"] = 1u << 30; }},
+      {"accessor 0: sparse",
+       [](json& j) {
+         j["accessors"][0]["sparse"] = {{"count", 9}};
+       }},
+      {"bufferView 0", [](json& j) { j["bufferViews"][0]["byteOffset"] = 18446744073709551610u; }},
+      {"bufferView 0", [](json& j) { j["bufferViews"][0]["buffer"] = 1; }},
+      {"bufferView 0", [](json& j) { j["bufferViews"][0]["byteStride"] = 3; }},
+      {"accessor 0", [](json& j) { j["bufferViews"][0]["byteStride"] = 8; }},
+      {"buffer 0", [](json& j) { j["buffers"][0]["byteLength"] = 37; }},
+      {"buffer 0", [](json& j) { j["buffers"][0]["uri"] = "../scene.bin"; }},
+      {"buffer 0", [](json& j) { j["buffers"][0]["uri"] = "%2e%2e/scene.bin"; }},
+      {"buffer 0", [](json& j) { j["buffers"][0]["uri"] = "/etc/hostname"; }},
+      {"buffer 0", [](json& j) { j["buffers"][0]["uri"] = "file:///etc/hostname"; }},
+      {"buffer 0", [](json& j) { j["buffers"][0]["uri"] = "data:application/octet-stream;base64,AAAA"; }},
+      {"buffer 0", [](json& j) { j["buffers"][0]["uri"] = "not there.bin"; }},
+      {"buffer 0", [](json& j) { j["buffers"][0].erase("uri"); }},
+      {"mesh 0, primitive 0", [](json& j) { j["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = 7; }},
+      {"mesh 0, primitive 0", [](json& j) { j["meshes"][0]["primitives"][0]["material"] = 0; }},
+      {"mesh 0, primitive 0", [](json& j) { j["meshes"][0]["primitives"][0]["mode"] = 7; }},
+      {"KHR_draco",
+       [](json& j) {
+         j["meshes"][0]["primitives"][0]["extensions"]["KHR_draco_mesh_compression"] = {
+             {"bufferView", 9}, {"attributes", json::object()}};
+       }},
+      {"mesh 0, primitive 0",
+       [](json& j) {
+         j["meshes"][0]["primitives"][0]["indices"] = 0;
+         j["meshes"][0]["primitives"][0]["extensions"]["KHR_draco_mesh_compression"] = {
+             {"bufferView", 0}, {"attributes", {{"POSITION", 0}}}};
+       }},
+      {"node 0", [](json& j) { j["nodes"][0]["mesh"] = 1; }},
+      {"node 0", [](json& j) { j["nodes"][0]["children"] = {0}; }},
+      {"node 1",
+       [](json& j) { j["nodes"] = json::parse(R"([{"children":[1]},{"children":[2]},{"children":[1]}])"); }},
+      {"its own ancestor",
+       [](json& j) { j["nodes"] = json::parse(R"([{},{"children":[2]},{"children":[1]}])"); }},
+      {"node 0",
+       [](json& j) {
+         j["nodes"][0]["rotation"] = {0, 0, 1};
+       }},
+      {"node 0",
+       [](json& j) {
+         j["nodes"][0]["scale"] = {1e300, 1, 1};
+       }},
+      {"scene 0", [](json& j) { j["scenes"][0]["nodes"] = {3}; }},
+      {"scene 9", [](json& j) { j["scene"] = 9; }},
+      {"stands twice",
+       [](json& j) {
+         j["scenes"][0]["nodes"] = {0, 0};
+       }},
+      {"camera 0",
+       [](json& j) {
+         j["cameras"] = json::parse(R"([{"type":"perspective","perspective":{"yfov":4,"znear":1}}])");
+       }},
+      {"animation 0",
+       [](json& j) { j["animations"] = json::parse(R"([{"channels":[{"target":{"node":5}}]}])"); }},
+      {"texture 0", [](json& j) { j["textures"] = json::parse(R"([{"source":0}])"); }},
+      {"image 0", [](json& j) { j["images"] = json::parse(R"([{"bufferView":5}])"); }},
+      {"2.1", [](json& j) { j["asset"]["minVersion"] = "2.1"; }},
+      {"asset", [](json& j) { j.erase("asset"); }},
+      {"no triangles", [](json& j) { j["meshes"][0]["primitives"][0]["mode"] = 0; }},
+      {"deeper",
+       [](json& j) {
+         json deep = 1;
+         for (int i = 0; i < 3000; ++i) deep = json{{"x", std::move(deep)}};
+         j["extras"] = std::move(deep);
+       }},
+  };
+  TemporaryFolder folder;
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    GltfWriter writer = oneTriangle();
+    writer.writeText(folder);
+    cases[i].bend(writer.json);
+    const auto path = folder.write("scene.gltf", writer.json.dump());
+    const auto scene = importScene(path);
+    ASSERT_FALSE(scene) << "case " << i << " (" << cases[i].names << ")";
+    EXPECT_NE(scene.error().line().find(cases[i].names), std::string::npos)
+        << i << ": " << scene.error().line();
+    EXPECT_NE(scene.error().line().find("scene.gltf"), std::string::npos) << scene.error().line();
+  }
+}
+
+TEST(BrokenScene, NamesIndicesPastTheVertices) {
+  TemporaryFolder folder;
+  GltfWriter writer = oneTriangle();
+  writer.primitive()["indices"] = writer.add<std::uint8_t>("SCALAR", 5121, {0, 1, 3}, 1);
+  const auto scene = importScene(writer.writeText(folder));
+  ASSERT_FALSE(scene);
+  EXPECT_NE(scene.error().problem.find("index 3"), std::string::npos);
+}
+
+TEST(BrokenScene, FollowsNoLinkOutOfItsFolder) {
+  TemporaryFolder folder;
+  GltfWriter writer = oneTriangle();
+  folder.write("outside.bin", writer.bytes);
+  writer.json["buffers"] = {{{"byteLength", writer.bytes.size()}, {"uri", "link.bin"}}};
+  const auto path = folder.write("inside/scene.gltf", writer.json.dump());
+  std::filesystem::create_symlink(folder.path() / "outside.bin", folder.path() / "inside" / "link.bin");
+  const auto scene = importScene(path);
+  ASSERT_FALSE(scene);
+  EXPECT_NE(scene.error().problem.find("outside"), std::string::npos);
+}
+
+TEST(BrokenScene, IsRefusedAtEveryTruncationOfAGlb) {
+  TemporaryFolder folder;
+  const std::string whole = oneTriangle().binary();
+  for (std::size_t size = 0; size < whole.size(); ++size)
+    EXPECT_FALSE(importScene(folder.write("cut.glb", whole.substr(0, size)))) << size;
+  EXPECT_TRUE(importScene(folder.write("whole.glb", whole)));
+}
+
+TEST(BrokenScene, SurvivesFlippedBytes) {
+  TemporaryFolder folder;
+  const std::string whole = oneTriangle().binary();
+  std::mt19937 random(3);
+  for (int round = 0; round < 500; ++round) {
+    std::string bytes = whole;
+    for (int flips = 0; flips < 1 + round % 3; ++flips)
+      bytes[random() % bytes.size()] = static_cast<char>(random());
+    static_cast<void>(importScene(folder.write("flipped.glb", bytes)));
+  }
+}
+
+TEST(BrokenScene, MissingAndForeignFilesAreTold) {
+  TemporaryFolder folder;
+  EXPECT_NE(importScene(folder.path() / "none.glb").error().problem.find("no such file"), std::string::npos);
+  EXPECT_FALSE(importScene(folder.path()));
+  EXPECT_FALSE(importScene(folder.write("empty.gltf", "")));
+  EXPECT_FALSE(importScene(folder.write("picture.glb", "\x89PNG\r\n\x1a\n")));
+}
+
+TEST(BrokenScene, NoFileOfTheValidatorsCorpusDoesHarm) {
+  const auto corpus = testing::sharedFile("invalid/gltf-validator");
+  LAMBENT_NEEDS_SHARED(corpus);
+  int files = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(corpus)) {
+    if (entry.path().extension() != ".gltf" && entry.path().extension() != ".glb") continue;
+    const auto scene = importScene(entry.path());
+    if (!scene) {
+      EXPECT_EQ(scene.error().line().find('\n'), std::string::npos);
+    }
+    ++files;
+  }
+  EXPECT_GE(files, 90);
+}
+
+}  // namespace
+}  // namespace lambent::baker

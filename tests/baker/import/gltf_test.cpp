@@ -1,0 +1,254 @@
+// What importScene() understands, on small files written here.
+#include "baker/import/gltf.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "tests/baker/import/gltf_writer.hpp"
+
+namespace lambent::baker {
+namespace {
+
+using testing::GltfWriter;
+using testing::oneTriangle;
+using testing::TemporaryFolder;
+using Indices = std::vector<std::uint32_t>;
+
+Scene imported(const std::filesystem::path& path) {
+  auto scene = importScene(path);
+  EXPECT_TRUE(scene) << (scene ? "" : scene.error().line());
+  return scene ? std::move(*scene) : Scene{};
+}
+
+const bundle::MeshData& firstMesh(const Scene& scene) {
+  return scene.meshes.at(0).primitives.at(0).mesh;
+}
+
+TEST(ImportScene, ReadsTextAndBinaryAlike) {
+  TemporaryFolder folder;
+  GltfWriter writer = oneTriangle();
+  for (const Scene& scene : {imported(writer.writeText(folder)), imported(writer.writeBinary(folder))}) {
+    const bundle::MeshData& mesh = firstMesh(scene);
+    EXPECT_EQ(mesh.positions, (std::vector<glm::vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
+    EXPECT_EQ(mesh.indices, (Indices{0, 1, 2}));
+    EXPECT_TRUE(scene.warnings.empty());
+  }
+}
+
+TEST(ImportScene, MakesFlatNormalsWhereThereAreNone) {
+  TemporaryFolder folder;
+  GltfWriter writer;
+  writer.addPositions({0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1});
+  writer.primitive()["indices"] = writer.add<std::uint16_t>("SCALAR", 5123, {0, 1, 2, 0, 3, 1}, 1);
+  const Scene scene = imported(writer.writeText(folder));
+  const bundle::MeshData& mesh = firstMesh(scene);
+  ASSERT_EQ(mesh.normals.size(), 6u);
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(mesh.normals[static_cast<std::size_t>(i)], glm::vec3(0, 0, 1));
+  for (int i = 3; i < 6; ++i) EXPECT_EQ(mesh.normals[static_cast<std::size_t>(i)], glm::vec3(0, 1, 0));
+}
+
+TEST(ImportScene, NormalizesNormalsAndRepairsThoseWithoutDirection) {
+  TemporaryFolder folder;
+  GltfWriter writer = oneTriangle();
+  writer.primitive()["attributes"]["NORMAL"] =
+      writer.add<float>("VEC3", 5126, {0, 0, 4, 0, 0, 0, 3, 0, 0}, 3);
+  const Scene scene = imported(writer.writeText(folder));
+  EXPECT_EQ(firstMesh(scene).normals, (std::vector<glm::vec3>{{0, 0, 1}, {0, 0, 1}, {1, 0, 0}}));
+  EXPECT_EQ(scene.warnings.size(), 1u);
+}
+
+TEST(ImportScene, TurnsStripsAndFansIntoTrianglesWithTheirWinding) {
+  TemporaryFolder folder;
+  const std::vector<float> strip{0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0, 0, 2, 0},
+      fan{0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
+  for (const auto& [mode, positions, triangles] : {std::tuple{5, strip, 3u}, std::tuple{6, fan, 2u}}) {
+    GltfWriter writer;
+    writer.addPositions(positions);
+    writer.primitive()["mode"] = mode;
+    const Scene scene = imported(writer.writeText(folder));
+    ASSERT_EQ(firstMesh(scene).indices.size(), triangles * 3);
+    for (const glm::vec3& n : firstMesh(scene).normals) EXPECT_EQ(n, glm::vec3(0, 0, 1));
+  }
+}
+
+TEST(ImportScene, LeavesPointsAndLinesOutWithAWarning) {
+  TemporaryFolder folder;
+  GltfWriter writer = oneTriangle();
+  nlohmann::json lines = writer.primitive();
+  lines["mode"] = 1;
+  writer.json["meshes"][0]["primitives"].push_back(lines);
+  const Scene scene = imported(writer.writeText(folder));
+  EXPECT_EQ(scene.meshes[0].primitives.size(), 1u);
+  ASSERT_EQ(scene.warnings.size(), 1u);
+  EXPECT_NE(scene.warnings[0].find("mesh 0, primitive 1"), std::string::npos);
+}
+
+TEST(ImportScene, ReadsColorsOfAllTypesAsLinear) {
+  TemporaryFolder folder;
+  const auto colors = [&](auto add) {
+    GltfWriter writer = oneTriangle();
+    writer.primitive()["attributes"]["COLOR_0"] = add(writer);
+    writer.json["accessors"].back()["normalized"] = writer.json["accessors"].back()["componentType"] != 5126;
+    return firstMesh(imported(writer.writeText(folder))).colors.at(1);
+  };
+  EXPECT_EQ(colors([](GltfWriter& w) {
+              return w.add<float>("VEC3", 5126, {0, 0, 0, 0.25f, 0.5f, 1, 0, 0, 0}, 3);
+            }),
+            glm::vec4(0.25f, 0.5f, 1.0f, 1.0f));
+  EXPECT_EQ(colors([](GltfWriter& w) {
+              return w.add<std::uint8_t>("VEC4", 5121, {0, 0, 0, 0, 51, 102, 255, 0, 0, 0, 0, 0}, 4);
+            }),
+            glm::vec4(51.0f / 255.0f, 102.0f / 255.0f, 1.0f, 0.0f));
+  EXPECT_EQ(colors([](GltfWriter& w) {
+              return w.add<std::uint16_t>("VEC4", 5123, {0, 0, 0, 0, 13107, 65535, 0, 65535, 0, 0, 0, 0}, 4);
+            }),
+            glm::vec4(13107.0f / 65535.0f, 1.0f, 0.0f, 1.0f));
+}
+
+TEST(ImportScene, ReadsInterleavedQuantizedAndSparseAccessors) {
+  TemporaryFolder folder;
+  GltfWriter writer;
+  // Per vertex: 3 shorts of position, 1 of padding, 4 bytes of which 3 are the normal.
+  std::string vertices;
+  for (const auto& [x, y] : {std::pair{0, 0}, std::pair{100, 0}, std::pair{0, 100}}) {
+    const std::int16_t position[4] = {static_cast<std::int16_t>(x), static_cast<std::int16_t>(y), 0, 0};
+    const std::int8_t normal[4] = {0, 0, 127, 0};
+    vertices.append(reinterpret_cast<const char*>(position), 8)
+        .append(reinterpret_cast<const char*>(normal), 4);
+  }
+  writer.bytes = vertices;
+  writer.json["bufferViews"].push_back({{"buffer", 0}, {"byteLength", 36}, {"byteStride", 12}});
+  writer.json["accessors"] = {{{"bufferView", 0}, {"componentType", 5122}, {"count", 3}, {"type", "VEC3"}},
+                              {{"bufferView", 0},
+                               {"byteOffset", 8},
+                               {"componentType", 5120},
+                               {"normalized", true},
+                               {"count", 3},
+                               {"type", "VEC3"}}};
+  writer.primitive()["attributes"] = {{"POSITION", 0}, {"NORMAL", 1}};
+  writer.json["extensionsRequired"] = {"KHR_mesh_quantization"};
+  // The third vertex is moved to (0, 50, 0).
+  writer.add<std::uint8_t>("SCALAR", 5121, {2}, 1);
+  writer.add<std::int16_t>("VEC3", 5122, {0, 50, 0}, 3);
+  writer.json["accessors"][0]["sparse"] = {{"count", 1},
+                                           {"indices", {{"bufferView", 1}, {"componentType", 5121}}},
+                                           {"values", {{"bufferView", 2}}}};
+  const Scene scene = imported(writer.writeText(folder));
+  EXPECT_EQ(firstMesh(scene).positions, (std::vector<glm::vec3>{{0, 0, 0}, {100, 0, 0}, {0, 50, 0}}));
+  EXPECT_EQ(firstMesh(scene).normals[0], glm::vec3(0, 0, 1));
+}
+
+TEST(ImportScene, DropsBrokenAndDegenerateTrianglesWithWarnings) {
+  TemporaryFolder folder;
+  GltfWriter writer;
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  writer.addPositions({0, 0, 0, 1, 0, 0, 0, 1, 0, nan, 0, 0, 0.5f, 0, 0});
+  writer.primitive()["indices"] =
+      writer.add<std::uint32_t>("SCALAR", 5125, {0, 1, 2, 0, 3, 2, 0, 4, 1, 1, 1, 2}, 1);
+  const Scene scene = imported(writer.writeText(folder));
+  EXPECT_EQ(firstMesh(scene).indices.size(), 3u);
+  EXPECT_EQ(firstMesh(scene).positions.size(), 3u);
+  EXPECT_EQ(scene.warnings.size(), 2u);
+}
+
+TEST(ImportScene, ReadsTheTreeOfTheDefaultSceneOnly) {
+  TemporaryFolder folder;
+  GltfWriter writer = oneTriangle();
+  writer.json["scenes"] = nlohmann::json::parse(R"([{"nodes":[0]},{"nodes":[1,4]}])");
+  writer.json["scene"] = 1;
+  writer.json["nodes"] = nlohmann::json::parse(R"([{"mesh":0},
+    {"name":"root","translation":[1,2,3],"rotation":[0,0,0.70710678,0.70710678],"scale":[2,2,-2],"children":[3,2]},
+    {"name":"lens","camera":0,"matrix":[1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,5,1]},
+    {"name":"child","mesh":0,"extras":{"lambent":{"movable":true}}},
+    {"name":"other","mesh":0}])");
+  writer.json["cameras"] =
+      nlohmann::json::parse(R"([{"type":"perspective","perspective":{"yfov":0.5,"znear":0.1}}])");
+  writer.json["animations"] = nlohmann::json::parse(
+      R"([{"channels":[{"sampler":0,"target":{"node":4,"path":"rotation"}},
+                       {"sampler":0,"target":{"node":3,"path":"weights"}}],"samplers":[{"input":0,"output":0}]}])");
+  const Scene scene = imported(writer.writeText(folder));
+  ASSERT_EQ(scene.nodes.size(), 4u);
+  EXPECT_EQ(scene.roots, (std::vector<std::int32_t>{0, 3}));
+  EXPECT_EQ(scene.nodes[0].name, "root");
+  EXPECT_EQ(scene.nodes[0].children, (std::vector<std::int32_t>{1, 2}));
+  EXPECT_EQ(scene.nodes[1].name, "child");
+  EXPECT_EQ(scene.nodes[1].parent, 0);
+  EXPECT_TRUE(scene.nodes[1].movable);
+  EXPECT_FALSE(scene.nodes[1].animated);  // morph weights move no node
+  EXPECT_EQ(scene.nodes[2].camera, 0);
+  EXPECT_FLOAT_EQ(scene.cameras[0].yfov_rad, 0.5f);
+  EXPECT_EQ(scene.cameras[0].zfar, 0.0f);
+  EXPECT_TRUE(scene.nodes[3].animated);
+  EXPECT_EQ(scene.meshes.size(), 1u);  // one mesh, two instances
+
+  // T * R * S: +X goes to +Y doubled, +Z is mirrored.
+  const auto world = gltf::worldTransforms(scene.nodes);
+  const glm::vec4 p = world[1] * glm::vec4(1, 0, 1, 1);
+  EXPECT_NEAR(p.x, 1.0f, 1e-6f);
+  EXPECT_NEAR(p.y, 4.0f, 1e-6f);
+  EXPECT_NEAR(p.z, 1.0f, 1e-6f);
+  EXPECT_LT(glm::determinant(world[1]), 0.0f);
+  EXPECT_EQ(world[2][3].z, 3.0f - 10.0f);
+}
+
+TEST(ImportScene, ReadsMaterialsAndOnlyTheImagesOfBaseColors) {
+  TemporaryFolder folder;
+  GltfWriter writer = oneTriangle();
+  writer.primitive()["attributes"]["TEXCOORD_0"] = writer.add<float>("VEC2", 5126, {0, 0, 1, 0, 0, 1}, 2);
+  writer.primitive()["material"] = 1;
+  writer.json["materials"] =
+      nlohmann::json::parse(R"([{},{"name":"leaf","doubleSided":true,"alphaMode":"MASK",
+    "alphaCutoff":0.25,"emissiveFactor":[1,0.5,0],"normalTexture":{"index":0},"pbrMetallicRoughness":{
+    "baseColorFactor":[0.1,0.2,0.3,0.4],"metallicFactor":0,"roughnessFactor":0.5,
+    "baseColorTexture":{"index":1,"extensions":{"KHR_texture_transform":{"offset":[0.5,0],"scale":[2,3]}}}}}])");
+  writer.json["textures"] = nlohmann::json::parse(R"([{"source":0},{"source":1,"sampler":0}])");
+  writer.json["samplers"] = nlohmann::json::parse(R"([{"wrapS":33071,"minFilter":9729}])");
+  writer.json["images"] = nlohmann::json::parse(R"([{"uri":"missing.png"},{"uri":"a%20leaf.png"}])");
+  folder.write("a leaf.png", "\x89PNG\r\n\x1a\n and so on");
+  const Scene scene = imported(writer.writeText(folder));
+  const gltf::Material& leaf = scene.materials.at(1);
+  EXPECT_EQ(leaf.base_color, glm::vec4(0.1f, 0.2f, 0.3f, 0.4f));
+  EXPECT_EQ(leaf.alpha_mode, gltf::AlphaMode::Mask);
+  EXPECT_EQ(leaf.alpha_cutoff, 0.25f);
+  EXPECT_TRUE(leaf.double_sided);
+  EXPECT_EQ(leaf.emissive, glm::vec3(1.0f, 0.5f, 0.0f));
+  EXPECT_EQ(leaf.base_color_texture.texture, 0);
+  EXPECT_EQ(scene.materials[0].base_color_texture.texture, -1);
+  ASSERT_EQ(scene.textures.size(), 1u);
+  EXPECT_EQ(scene.textures[0].sampler.wrap_s, 33071u);
+  EXPECT_EQ(scene.textures[0].sampler.wrap_t, 10497u);
+  EXPECT_EQ(scene.images.at(0).mime_type, "image/png");
+  EXPECT_EQ(scene.images.at(0).name, "a leaf.png");
+  EXPECT_EQ(firstMesh(scene).texcoords0, (std::vector<glm::vec2>{{0.5f, 0}, {2.5f, 0}, {0.5f, 3}}));
+}
+
+TEST(ImportScene, FindsPercentEncodedBuffersAndEmbeddedOnes) {
+  TemporaryFolder folder;
+  GltfWriter writer = oneTriangle();
+  folder.write("my data/tri angle.bin", writer.bytes);
+  auto path = writer.writeText(folder, "x.bin");
+  writer.json["buffers"][0]["uri"] = "my%20data/tri%20angle.bin";
+  EXPECT_TRUE(importScene(folder.write("scene.gltf", writer.json.dump())));
+  // Three zero positions but for two ones, in base64.
+  writer.json["buffers"][0]["uri"] =
+      "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA";
+  EXPECT_TRUE(importScene(folder.write("scene.gltf", writer.json.dump())));
+}
+
+TEST(ImportScene, WarnsAboutAnUnknownExtensionOnceAndRefusesARequiredOneByName) {
+  TemporaryFolder folder;
+  GltfWriter writer = oneTriangle();
+  writer.json["extensionsUsed"] = {"ACME_sparkle", "ACME_sparkle", "KHR_mesh_quantization"};
+  const Scene scene = imported(writer.writeText(folder));
+  ASSERT_EQ(scene.warnings.size(), 1u);
+  EXPECT_NE(scene.warnings[0].find("ACME_sparkle"), std::string::npos);
+  writer.json["extensionsRequired"] = {"ACME_sparkle"};
+  const auto refused = importScene(writer.writeText(folder));
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().problem.find("ACME_sparkle"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace lambent::baker

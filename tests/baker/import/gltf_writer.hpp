@@ -1,0 +1,100 @@
+// Small glTF files for the tests of import: a folder that vanishes with the test, and one-triangle scenes as
+// JSON that each test bends to its purpose.
+#pragma once
+
+#include <cstddef>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <unistd.h>
+
+namespace lambent::testing {
+
+class TemporaryFolder {
+ public:
+  TemporaryFolder() {
+    const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
+    path_ = std::filesystem::temp_directory_path() / (std::string("lambent_") + info->test_suite_name() +
+                                                      "_" + info->name() + "_" + std::to_string(getpid()));
+    std::filesystem::create_directories(path_);
+  }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  ~TemporaryFolder() { std::filesystem::remove_all(path_); }
+
+  const std::filesystem::path& path() const { return path_; }
+  std::filesystem::path write(const std::string& name, const std::string& bytes) const {
+    std::filesystem::create_directories((path_ / name).parent_path());
+    std::ofstream(path_ / name, std::ios::binary) << bytes;
+    return path_ / name;
+  }
+
+ private:
+  std::filesystem::path path_;
+};
+
+// A document under construction: add() appends values to buffer 0 and gives the index of their accessor.
+class GltfWriter {
+ public:
+  nlohmann::json json =
+      nlohmann::json::parse(R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],
+    "nodes":[{"mesh":0}],"accessors":[],"bufferViews":[],
+    "meshes":[{"primitives":[{"attributes":{}}]}]})");
+  std::string bytes;
+
+  template <typename T>
+  int add(const std::string& type, int component_type, const std::vector<T>& values, std::size_t components) {
+    json["bufferViews"].push_back(
+        {{"buffer", 0}, {"byteOffset", bytes.size()}, {"byteLength", values.size() * sizeof(T)}});
+    bytes.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
+    bytes.resize((bytes.size() + 3) / 4 * 4);
+    json["accessors"].push_back({{"bufferView", json["bufferViews"].size() - 1},
+                                 {"componentType", component_type},
+                                 {"count", values.size() / components},
+                                 {"type", type}});
+    return static_cast<int>(json["accessors"].size()) - 1;
+  }
+
+  nlohmann::json& primitive() { return json["meshes"][0]["primitives"][0]; }
+  void addPositions(const std::vector<float>& xyz) {
+    primitive()["attributes"]["POSITION"] = add("VEC3", 5126, xyz, 3);
+  }
+
+  // Text with the buffer in "scene.bin" beside it.
+  std::filesystem::path writeText(const TemporaryFolder& folder,
+                                  const std::string& buffer_name = "scene.bin") {
+    json["buffers"] = {{{"byteLength", bytes.size()}, {"uri", buffer_name}}};
+    if (buffer_name.find(':') == std::string::npos && buffer_name.find("..") == std::string::npos)
+      folder.write(buffer_name, bytes);
+    return folder.write("scene.gltf", json.dump());
+  }
+
+  std::string binary() {
+    json["buffers"] = {{{"byteLength", bytes.size()}}};
+    std::string text = json.dump();
+    text.resize((text.size() + 3) / 4 * 4, ' ');
+    const auto u32 = [](std::size_t v) {
+      const auto value = static_cast<std::uint32_t>(v);
+      return std::string(reinterpret_cast<const char*>(&value), 4);
+    };
+    return "glTF" + u32(2) + u32(28 + text.size() + bytes.size()) + u32(text.size()) + "JSON" + text +
+           u32(bytes.size()) + std::string("BIN\0", 4) + bytes;
+  }
+  std::filesystem::path writeBinary(const TemporaryFolder& folder) {
+    return folder.write("scene.glb", binary());
+  }
+};
+
+// (0,0,0) (1,0,0) (0,1,0)
+inline GltfWriter oneTriangle() {
+  GltfWriter writer;
+  writer.addPositions({0, 0, 0, 1, 0, 0, 0, 1, 0});
+  return writer;
+}
+
+}  // namespace lambent::testing

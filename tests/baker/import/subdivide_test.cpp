@@ -1,0 +1,127 @@
+#include "baker/import/subdivide.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+
+#include <gtest/gtest.h>
+
+namespace lambent::baker {
+namespace {
+
+using bundle::MeshData;
+using Point = std::array<float, 3>;
+using Edge = std::pair<Point, Point>;
+
+Point key(const glm::vec3& p) {
+  return {p.x, p.y, p.z};
+}
+
+double area(const MeshData& mesh) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
+    const glm::dvec3 a = mesh.positions[mesh.indices[i]], b = mesh.positions[mesh.indices[i + 1]],
+                     c = mesh.positions[mesh.indices[i + 2]];
+    sum += 0.5 * glm::length(glm::cross(b - a, c - a));
+  }
+  return sum;
+}
+
+// How many triangles lie on each edge, edges told apart by the positions of their ends.
+std::map<Edge, int> edges(const MeshData& mesh) {
+  std::map<Edge, int> count;
+  for (std::size_t i = 0; i < mesh.indices.size(); ++i) {
+    const std::size_t next = i % 3 == 2 ? i - 2 : i + 1;
+    const Point a = key(mesh.positions[mesh.indices[i]]), b = key(mesh.positions[mesh.indices[next]]);
+    ++count[std::minmax(a, b)];
+  }
+  return count;
+}
+
+float longestEdge(const MeshData& mesh) {
+  float longest = 0.0f;
+  for (const auto& [edge, count] : edges(mesh))
+    longest = std::max(longest, std::hypot(edge.first[0] - edge.second[0], edge.first[1] - edge.second[1],
+                                           edge.first[2] - edge.second[2]));
+  return longest;
+}
+
+// A closed box with hard edges: every side has vertices, normals and texture coordinates of its own, and the
+// sides differ so much that neighbours split differently.
+MeshData box(glm::vec3 size) {
+  MeshData mesh;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (int side = 0; side < 2; ++side) {
+      const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+      glm::vec3 normal(0.0f);
+      normal[axis] = side == 0 ? -1.0f : 1.0f;
+      for (int corner = 0; corner < 4; ++corner) {
+        glm::vec3 p(0.0f);
+        p[axis] = static_cast<float>(side) * size[axis];
+        p[(axis + 1) % 3] = static_cast<float>(corner & 1) * size[(axis + 1) % 3];
+        p[(axis + 2) % 3] = static_cast<float>(corner >> 1) * size[(axis + 2) % 3];
+        mesh.positions.push_back(p + glm::vec3(0.1f, 0.7f, -0.3f));  // places that are not exact in binary
+        mesh.normals.push_back(normal);
+        mesh.texcoords0.emplace_back(corner & 1, corner >> 1);
+      }
+      if (side == 0) {
+        mesh.indices.insert(mesh.indices.end(),
+                            {first, first + 2, first + 1, first + 1, first + 2, first + 3});
+      } else {
+        mesh.indices.insert(mesh.indices.end(),
+                            {first, first + 1, first + 2, first + 1, first + 3, first + 2});
+      }
+    }
+  }
+  return mesh;
+}
+
+TEST(SplitLongEdges, LeavesAClosedMeshClosedAcrossSeams) {
+  for (const float limit : {0.9f, 0.31f, 0.1f}) {
+    MeshData mesh = box({1.3f, 0.2f, 3.7f});
+    const double before = area(mesh);
+    ASSERT_TRUE(splitLongEdges(mesh, limit, 1u << 20));
+    EXPECT_LE(longestEdge(mesh), limit);
+    EXPECT_NEAR(area(mesh), before, 1e-5 * before);
+    for (const auto& [edge, count] : edges(mesh)) ASSERT_EQ(count, 2);
+  }
+}
+
+TEST(SplitLongEdges, InterpolatesAttributesAndKeepsNormalsUnit) {
+  MeshData mesh;
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  mesh.normals = {{0, 0, 1}, {1, 0, 0}, {0, 1, 0}};
+  mesh.texcoords0 = {{0, 0}, {1, 0}, {0, 1}};
+  mesh.colors = {{0, 0, 0, 1}, {1, 0, 0, 1}, {0, 1, 0, 1}};
+  mesh.indices = {0, 1, 2};
+  ASSERT_TRUE(splitLongEdges(mesh, 0.2f, 1000));
+  ASSERT_EQ(mesh.normals.size(), mesh.positions.size());
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+    // Texture coordinates and colours are linear in position: midpoints keep them so, exactly (powers of
+    // two).
+    EXPECT_EQ(mesh.texcoords0[v], glm::vec2(mesh.positions[v]));
+    EXPECT_EQ(mesh.colors[v], glm::vec4(mesh.positions[v], 1.0f) * glm::vec4(1, 1, 0, 1));
+    EXPECT_NEAR(glm::length(mesh.normals[v]), 1.0f, 1e-6f);
+  }
+  for (std::size_t i = 0; i < mesh.indices.size(); i += 3)  // winding
+    EXPECT_GT(glm::cross(mesh.positions[mesh.indices[i + 1]] - mesh.positions[mesh.indices[i]],
+                         mesh.positions[mesh.indices[i + 2]] - mesh.positions[mesh.indices[i]])
+                  .z,
+              0.0f);
+}
+
+TEST(SplitLongEdges, ChangesNothingWhereEdgesAreShortOrTheGuardSteps) {
+  MeshData mesh = box({1, 1, 1});
+  const MeshData before = mesh;
+  EXPECT_TRUE(splitLongEdges(mesh, 2.0f, 12));
+  EXPECT_EQ(mesh.indices, before.indices);
+  EXPECT_FALSE(splitLongEdges(mesh, 0.01f, 1000));
+  EXPECT_EQ(mesh.indices, before.indices);
+  EXPECT_EQ(mesh.positions.size(), before.positions.size());
+  // Edges so short that floats cannot halve them end at the guard too.
+  EXPECT_FALSE(splitLongEdges(mesh, 1e-12f, 100000));
+}
+
+}  // namespace
+}  // namespace lambent::baker
