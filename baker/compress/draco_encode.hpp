@@ -18,10 +18,9 @@
 
 namespace lambent::baker {
 
-inline constexpr int kNormalBits = 12;
+inline constexpr int kNormalBits = 13;  // 12 would err by up to 0.058 degrees
 inline constexpr int kTexcoordBits = 16;
-inline constexpr int kMaxPositionBits =
-    24;  // float holds every integer up to 2^24: lattice points stay exact
+inline constexpr int kMaxPositionBits = 23;  // Draco rounds by adding 0.5: exact in float up to 2^23
 
 struct EncodedMesh {
   std::vector<std::byte> bytes;
@@ -29,7 +28,7 @@ struct EncodedMesh {
   bundle::MeshData decoded;
 };
 
-// The largest power of two with extent / step <= 2^bits: `bits` bits per axis for a group of that size.
+// The smallest power of two with extent / step <= 2^bits: `bits` bits per axis for a group of that size.
 // extent > 0 finite, 1 <= bits <= kMaxPositionBits.
 float latticeStep(float extent, int bits);
 
