@@ -95,6 +95,7 @@ constexpr void unrolled(std::integer_sequence<int, I...>, F&& f) {
 template <int Order, typename T, typename Sink>
 inline void evaluateFixed(T x, T y, T z, Sink&& sink) {
   static_assert(Order >= 1 && Order <= kMaxOrder);
+  const T z_squared = z * z;
   T c = T(1), s = T(0);  // Re and Im of (x + iy)^m
   detail::unrolled(std::make_integer_sequence<int, Order>{}, [&](auto m_constant) {
     constexpr int m = m_constant;
@@ -106,21 +107,22 @@ inline void evaluateFixed(T x, T y, T z, Sink&& sink) {
       s = s * x + c * y;
       c = next;
     }
-    constexpr double kStart = detail::sectoral(m) * (m == 0 ? 1 : detail::constexprSqrt(2));
-    T p = T(kStart), before = T(0);
+    // The column's polynomials in z: k = l - m = 0..3 written out, the rest by three-term recurrence.
+    constexpr double k0 = detail::sectoral(m) * (m == 0 ? 1 : detail::constexprSqrt(2));
+    constexpr double k1 = detail::zFactor(m + 1, m) * k0;
+    constexpr double k2 = detail::zFactor(m + 2, m) * k1, k2_constant = -detail::backFactor(m + 2, m) * k0;
+    constexpr double k3 = detail::zFactor(m + 3, m) * k2;
+    constexpr double k3_linear = detail::zFactor(m + 3, m) * k2_constant - detail::backFactor(m + 3, m) * k1;
+    T p = T(k0), before = T(0);
     detail::unrolled(std::make_integer_sequence<int, Order - m>{}, [&](auto k_constant) {
-      constexpr int l = m + k_constant;
-      if constexpr (l > m) {
-        constexpr double kZ = detail::zFactor(l, m), kBack = detail::backFactor(l, m);
-        T next = p;
-        if constexpr (l == m + 1) {
-          next = T(kZ * kStart) * z;
-        } else {
-          next = T(kZ) * z * p - T(kBack) * before;
-        }
-        before = p;
-        p = next;
-      }
+      constexpr int k = k_constant, l = m + k;
+      T next = p;
+      if constexpr (k == 1) next = T(k1) * z;
+      if constexpr (k == 2) next = T(k2) * z_squared + T(k2_constant);
+      if constexpr (k == 3) next = z * (T(k3) * z_squared + T(k3_linear));
+      if constexpr (k > 3) next = T(detail::zFactor(l, m)) * z * p - T(detail::backFactor(l, m)) * before;
+      before = p;
+      p = next;
       sink(coefficientIndex(l, m), m == 0 ? p : p * c);
       if constexpr (m > 0) sink(coefficientIndex(l, -m), p * s);
     });

@@ -139,26 +139,48 @@ double leastLambda(const std::vector<Channel>& channels) {
   return high;
 }
 
-// Adds the lowest points of the sphere that lie under the bound to the active directions; false if there are
-// none.
-bool addNegativeMinima(std::vector<Channel>& channels, double lambda, float bound) {
+// The lowest active directions, each well apart from the others: minima of bands up to 7 hardly lie closer.
+std::vector<glm::vec3> lowestDirections(const Channel& channel, const BandWeights& weights) {
   constexpr std::size_t kStarts = 6;
+  constexpr float kApart = 0.955f;  // cos 0.3
+  const std::vector<float> values = channel.values(weights);
+  std::vector<glm::vec3> starts;
+  while (starts.size() < kStarts) {
+    std::size_t lowest = values.size();
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      if (lowest < values.size() && values[k] >= values[lowest]) continue;
+      const bool apart = std::none_of(starts.begin(), starts.end(), [&](const glm::vec3& start) {
+        return glm::dot(start, channel.dirs[k]) > kApart;
+      });
+      if (apart) lowest = k;
+    }
+    if (lowest == values.size()) break;
+    starts.push_back(channel.dirs[lowest]);
+  }
+  return starts;
+}
+
+// Adds minima of the whole sphere that lie under the bound to the active directions; false if there are none.
+bool addNegativeMinima(std::vector<Channel>& channels, double lambda, float bound) {
   bool added = false;
   for (Channel& channel : channels) {
     const BandWeights weights = laplacianWeights(channel.order, lambda);
-    const std::vector<float> values = channel.values(weights);
-    std::vector<std::size_t> lowest(values.size());
-    for (std::size_t k = 0; k < lowest.size(); ++k) lowest[k] = k;
-    std::partial_sort(lowest.begin(), lowest.begin() + kStarts, lowest.end(),
-                      [&](std::size_t a, std::size_t b) { return values[a] < values[b]; });
-    for (std::size_t start = 0; start < kStarts; ++start) {
-      const glm::vec3 dir = descend(channel, weights, channel.dirs[lowest[start]]);
+    for (const glm::vec3& start : lowestDirections(channel, weights)) {
+      const glm::vec3 dir = descend(channel, weights, start);
       if (channel.value(weights, dir) >= bound) continue;
       channel.add(dir);
       added = true;
     }
   }
   return added;
+}
+
+// Whether a window can make this channel non-negative: its mean is positive, and not lost in its other
+// coefficients.
+bool canBeHelped(const LightVector& light, int channel) {
+  float largest = 0;
+  for (const glm::vec3& value : light.coefficients()) largest = std::max(largest, std::abs(value[channel]));
+  return light.c[0][channel] > 1e-6f * largest;
 }
 
 }  // namespace
@@ -185,7 +207,7 @@ double deringingLambda(const LightVector& light) {
   const LightVector irradiance = cosineConvolved(light);
   std::vector<Channel> channels;
   for (int channel = 0; channel < 3; ++channel)
-    if (light.c[0][channel] > 0) channels.push_back(makeChannel(irradiance, channel));
+    if (canBeHelped(light, channel)) channels.push_back(makeChannel(irradiance, channel));
   if (channels.empty()) return 0;
 
   // Untouched if there is no negative value, up to rounding; half the guard keeps this apart from the

@@ -22,11 +22,11 @@ BandWeights hannWeights(int order);
 BandWeights laplacianWeights(int order, double lambda);
 
 // The lambda of Auto: 0 when no channel rings. How it is found: irradiance of each channel at a fixed set of
-// 1024 directions, lambda by doubling from 2^-12 until no value is negative and then by bisection, then the
-// minima over the whole sphere by descent from the lowest of those directions; directions found negative join
-// the set, until none is. The search aims at a minimum of 1e-5 of the channel's mean, as a guard for
-// rounding. Channels whose mean is not positive are left out, since no window can help them; with non-finite
-// coefficients the answer is 0.
+// 1024 directions; lambda by doubling from 2^-12 until no value is negative, then by bisection; then the
+// minima over the whole sphere by descent from the six lowest of those directions that lie 0.3 rad apart;
+// minima found negative join the set and the search repeats, until there is none. It aims at a minimum of
+// 1e-5 of the channel's mean, as a guard for rounding. Left out are channels that no window can help: those
+// whose first coefficient is not above 1e-6 of their largest. With non-finite coefficients the answer is 0.
 double deringingLambda(const LightVector& light);
 
 BandWeights windowWeights(const LightVector& light, Window window);

@@ -1,5 +1,6 @@
 #include "runtime/sh/basis.hpp"
 
+#include <algorithm>
 #include <array>
 #include <numbers>
 #include <vector>
@@ -96,8 +97,8 @@ TEST(ShBasis, KeepsTheEnergyOfEachBandEverywhere) {
         energy_float += value * value;
       }
       EXPECT_NEAR(energy, (2 * l + 1) / (4 * kPi), 1e-14);
-      // Rounding the direction to float shifts band l by up to about l 2^-24, relatively.
-      EXPECT_NEAR(energy_float, (2 * l + 1) / (4 * kPi), 2e-6);
+      // Rounding the direction to float shifts band l by up to about l 2^-24, and so does the recurrence.
+      EXPECT_NEAR(energy_float, (2 * l + 1) / (4 * kPi), std::max(2e-6, 5e-7 * l));
     }
   }
 }

@@ -97,6 +97,9 @@ TEST(ShWindow, AutoStaysFiniteOnOddLights) {
   quadratic.c[0] = {1e-3f, 1e-3f, 1e-3f};  // hardly any mean: only a very strong window helps
   EXPECT_GE(leastIrradiance(applyWindow(quadratic, Window::Auto)), -1e-5f);
 
+  quadratic.c[0] = {1e-42f, -1, 1e-30f};  // means that vanish beside the rest
+  expectEqual(applyWindow(quadratic, Window::Auto), quadratic);
+
   LightVector broken = discLight(5, {0, 1, 0}, 0.1, {1, 1, 1});
   broken.c[7].g = std::numeric_limits<float>::quiet_NaN();
   EXPECT_EQ(deringingLambda(broken), 0);
