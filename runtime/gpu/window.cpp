@@ -4,10 +4,9 @@
 #include <cstdlib>
 #include <utility>
 
-// epoxy must come before GLFW, which would otherwise bring its own GL header.
-#include <epoxy/gl.h>
-//
+#define GLFW_INCLUDE_NONE  // epoxy has OpenGL's declarations
 #include <GLFW/glfw3.h>
+#include <epoxy/gl.h>
 
 namespace lambent::gpu {
 

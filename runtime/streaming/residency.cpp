@@ -111,8 +111,11 @@ Result<std::uint32_t> Residency::add(const bundle::Description& description) {
   for (const bundle::Mesh& mesh : description.meshes) {
     bundle.first_mesh.push_back(static_cast<std::uint32_t>(meshes_.size()));
     for (const bundle::Primitive& primitive : mesh.primitives) {
-      meshes_.push_back(
-          {.block = {}, .vertex_count = primitive.vertex_count, .index_count = primitive.index_count});
+      ResidentMesh resident;
+      resident.vertex_count = primitive.vertex_count;
+      resident.index_count = primitive.index_count;
+      resident.center = 0.5f * (primitive.bounds_min + primitive.bounds_max);
+      meshes_.push_back(resident);
       needs.geometry +=
           48ull * primitive.vertex_count + 4ull * primitive.index_count + gpu::Arena::kAlignment;
     }

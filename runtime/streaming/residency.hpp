@@ -25,6 +25,7 @@ struct ResidentMesh {
   static constexpr std::uint32_t kAbsent = 0xffffffffu;
   gpu::Allocation block;  // empty: not here yet
   std::uint32_t vertex_count = 0, index_count = 0;
+  glm::vec3 center{0.0f};                                // of its bounds, mesh space
   std::uint32_t positions_word = 0, normals_word = 0;    // 3 floats each
   std::uint32_t texcoords_word[2] = {kAbsent, kAbsent};  // 2 floats
   std::uint32_t colors_word = kAbsent;                   // 4 x unorm16

@@ -1,0 +1,106 @@
+#include "runtime/demo/camera.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/geometric.hpp>
+#include <glm/trigonometric.hpp>
+
+#include "runtime/scene/bounds.hpp"
+
+namespace lambent::demo {
+
+namespace {
+
+constexpr float kDegreesPerWindow = 220.0f;  // a drag over the window's height
+constexpr float kZoomPerNotch = 0.9f;
+constexpr float kMaxElevationDeg = 89.0f;
+
+std::optional<std::uint32_t> firstCameraNode(const bundle::Description& description) {
+  for (std::uint32_t i = 0; i < description.nodes.size(); ++i)
+    if (description.nodes[i].camera >= 0) return i;
+  return {};
+}
+
+// An empty scene is looked at as if it were a unit box.
+scene::Box boundsOf(const frame::World& world) {
+  scene::Box bounds = scene::worldBounds(world.registry());
+  if (bounds.empty()) {
+    bounds.add(glm::vec3(-0.5f));
+    bounds.add(glm::vec3(0.5f));
+  }
+  return bounds;
+}
+
+glm::mat4 worldFromNode(const frame::World& world, std::size_t bundle, std::uint32_t node) {
+  const auto* place = world.registry().tryGet<scene::WorldTransform>(world.instance(bundle).nodes[node]);
+  return place ? place->world_from_node : glm::mat4(1.0f);
+}
+
+}  // namespace
+
+Result<ViewController> ViewController::create(const frame::World& world,
+                                              const std::optional<spec::Camera>& camera) {
+  ViewController controller;
+  if (camera && std::holds_alternative<spec::OrbitCamera>(*camera)) {
+    controller.orbit_ = std::get<spec::OrbitCamera>(*camera);
+  } else {
+    std::optional<Error> error;
+    for (std::size_t bundle = 0; bundle < world.bundleCount() && !controller.file_camera_; ++bundle) {
+      const bundle::Description& description = world.description(bundle);
+      if (!camera) {
+        if (const auto node = firstCameraNode(description)) controller.file_camera_ = {bundle, *node};
+        continue;
+      }
+      const Result<std::uint32_t> node =
+          spec::findCameraNode(description.nodes, description.cameras, std::get<spec::NamedCamera>(*camera));
+      if (node)
+        controller.file_camera_ = {bundle, *node};
+      else if (!error)
+        error = node.error();
+    }
+    if (camera && !controller.file_camera_ && error) return failAgain(*error);
+  }
+  controller.first_file_camera_ = controller.file_camera_;
+  controller.first_orbit_ = controller.orbit_;
+  return controller;
+}
+
+Result<spec::View> ViewController::view(const frame::World& world, float aspect) const {
+  const scene::Box bounds = boundsOf(world);
+  if (!file_camera_) return spec::orbitView(orbit_, bounds.min, bounds.max, aspect);
+  const bundle::Description& description = world.description(file_camera_->bundle);
+  const auto camera = static_cast<std::size_t>(description.nodes[file_camera_->node].camera);
+  return spec::cameraView(description.cameras[camera],
+                          worldFromNode(world, file_camera_->bundle, file_camera_->node), bounds.min,
+                          bounds.max, aspect);
+}
+
+void ViewController::move(const frame::World& world, const gpu::Input& input) {
+  if (input.reset) {
+    file_camera_ = first_file_camera_;
+    orbit_ = first_orbit_;
+  }
+  if (input.drag_x == 0.0f && input.drag_y == 0.0f && input.scroll == 0.0f) return;
+  if (file_camera_) {
+    const bundle::Description& description = world.description(file_camera_->bundle);
+    const gltf::Camera& camera =
+        description.cameras[static_cast<std::size_t>(description.nodes[file_camera_->node].camera)];
+    const scene::Box bounds = boundsOf(world);
+    const glm::vec3 offset =
+        glm::vec3(worldFromNode(world, file_camera_->bundle, file_camera_->node)[3]) - bounds.center();
+    const float distance = std::max(glm::length(offset), 1e-6f);
+    orbit_.azimuth_deg = glm::degrees(std::atan2(offset.x, offset.z));
+    orbit_.elevation_deg = glm::degrees(std::asin(std::clamp(offset.y / distance, -1.0f, 1.0f)));
+    orbit_.distance_radii = distance / std::max(bounds.radius(), 1e-6f);
+    if (camera.perspective) orbit_.fov_deg = glm::degrees(camera.yfov_rad);
+    file_camera_.reset();
+  }
+  orbit_.azimuth_deg = std::remainder(orbit_.azimuth_deg - kDegreesPerWindow * input.drag_x, 360.0f);
+  orbit_.elevation_deg = std::clamp(orbit_.elevation_deg + kDegreesPerWindow * input.drag_y,
+                                    -kMaxElevationDeg, kMaxElevationDeg);
+  orbit_.distance_radii =
+      std::clamp(orbit_.distance_radii * std::pow(kZoomPerNotch, input.scroll), 0.05f, 100.0f);
+}
+
+}  // namespace lambent::demo

@@ -1,0 +1,32 @@
+// Where lambent-demo looks from: the camera that was asked for, the file's first one, or an orbit; and in the
+// window, the orbit that the mouse moves. A camera of the file stays as it is until the first drag, then
+// becomes the orbit that stands at the same place and looks at the scene's centre.
+#pragma once
+
+#include <optional>
+
+#include "runtime/base/result.hpp"
+#include "runtime/frame/world.hpp"
+#include "runtime/gpu/window.hpp"
+#include "runtime/spec/camera.hpp"
+
+namespace lambent::demo {
+
+class ViewController {
+ public:
+  // Errors: no camera of that name.
+  static Result<ViewController> create(const frame::World& world, const std::optional<spec::Camera>& camera);
+
+  Result<spec::View> view(const frame::World& world, float aspect) const;
+  void move(const frame::World& world, const gpu::Input& input);
+
+ private:
+  struct FileCamera {
+    std::size_t bundle = 0;
+    std::uint32_t node = 0;
+  };
+  std::optional<FileCamera> file_camera_, first_file_camera_;
+  spec::OrbitCamera orbit_, first_orbit_;
+};
+
+}  // namespace lambent::demo

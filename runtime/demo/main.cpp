@@ -1,0 +1,25 @@
+#include <cstdio>
+#include <exception>
+
+#include <fmt/format.h>
+
+#include "runtime/demo/options.hpp"
+#include "runtime/demo/run.hpp"
+
+int main(int argc, char** argv) {
+  using namespace lambent;
+  try {
+    const auto parsed = demo::parseOptions(argc, argv);
+    if (const int* exit_code = std::get_if<int>(&parsed)) return *exit_code;
+    const auto& options = std::get<demo::Options>(parsed);
+    if (options.default_light)
+      fmt::print(stderr, "lambent-demo: no --light given; showing {}\n",
+                 fmt::join(options.light_words, " and "));
+    const Result<void> done = options.headless ? demo::runHeadless(options) : demo::runWindowed(options);
+    if (done) return 0;
+    demo::printError(done.error());
+  } catch (const std::exception& error) {  // out of memory, mostly
+    demo::printError({.subject = "stopped", .problem = error.what(), .mend = {}});
+  }
+  return 1;
+}

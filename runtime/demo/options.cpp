@@ -1,0 +1,173 @@
+#include "runtime/demo/options.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <map>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "runtime/spec/rotate.hpp"
+
+namespace lambent::demo {
+
+namespace {
+
+using effects::diffuse::TransferMode;
+
+const std::map<std::string, TransferMode> kTransferWords = {{"unshadowed", TransferMode::Unshadowed},
+                                                            {"shadowed", TransferMode::Shadowed},
+                                                            {"full", TransferMode::Full}};
+const std::map<std::string, sh::Window> kWindowWords = {
+    {"auto", sh::Window::Auto}, {"off", sh::Window::Off}, {"hann", sh::Window::Hann}};
+
+// A blue sky's worth of constant light and a soft sun, about radiance 1 on a white surface that faces it.
+constexpr const char* kDefaultLights[] = {"constant:0.35,0.42,0.55", "sun:35,45,6,100,92,80"};
+
+// What CLI11 hands over, before the words are understood.
+struct Words {
+  std::vector<std::string> bundles, lights;
+  std::string light_layout, camera, size = "1280x720", headless, transfer = "full", window = "auto";
+  std::string rotate_light = "0", exposure = "auto";
+  std::uint32_t frames = 1;
+  bool json = false;
+};
+
+void declare(CLI::App& app, Words& words) {
+  app.add_option("BUNDLE", words.bundles, "Bundles to show (scene.lmb.glb)")->required();
+  app.add_option(
+         "--light", words.lights,
+         "Light; several add up: a probe (.hdr, .exr), constant:R,G,B or\nsun:AZ,EL,ANGLE,R[,G,B] (degrees, "
+         "angular radius, radiance)")
+      ->take_all()
+      ->expected(1);
+  app.add_option("--light-layout", words.light_layout,
+                 "Layout of probes, where their shape misleads: latlong, angular, cross");
+  app.add_option("--camera", words.camera,
+                 "Name or index of a camera in the file, or orbit:AZ,EL,DIST,FOV\n(default: the file's "
+                 "first, else an orbit)");
+  app.add_option("--size", words.size, "Picture in pixels, WIDTHxHEIGHT")->capture_default_str();
+  app.add_option("--headless", words.headless,
+                 "Write one picture (.png tone-mapped, .exr linear) without a display");
+  app.add_option("--transfer", words.transfer, "What of the transfer counts: unshadowed, shadowed or full")
+      ->capture_default_str();
+  app.add_option("--window", words.window, "Against ringing of the light: auto, off or hann")
+      ->capture_default_str();
+  app.add_option("--frames", words.frames, "Frames to render headless before the picture is taken")
+      ->capture_default_str()
+      ->check(CLI::Range(1u, 1'000'000u));
+  app.add_option("--rotate-light", words.rotate_light, "Turn all lights about +Y by degrees (+Z towards +X)")
+      ->capture_default_str();
+  app.add_option("--exposure", words.exposure, "Stops above radiance 1 = white, or auto")
+      ->capture_default_str();
+  app.add_flag("--json", words.json, "Report on stdout: times, counts, bytes resident");
+  app.set_version_flag("--version", "lambent-demo " LAMBENT_VERSION);
+}
+
+template <typename T>
+Result<T> wordOf(const std::map<std::string, T>& words, const char* option, const std::string& word) {
+  if (const auto found = words.find(word); found != words.end()) return found->second;
+  std::string known;
+  for (const auto& [name, value] : words) known += (known.empty() ? "" : ", ") + name;
+  return fail(option, fmt::format("\"{}\" is not known", word), "give one of " + known);
+}
+
+Result<void> understandLights(const Words& words, Options& options) {
+  std::optional<sh::ImageLayout> layout;
+  if (!words.light_layout.empty()) {
+    const Result<sh::ImageLayout> parsed = spec::parseLightLayout(words.light_layout);
+    if (!parsed) return failAgain(parsed.error());
+    layout = *parsed;
+  }
+  options.default_light = words.lights.empty();
+  options.light_words = words.lights;
+  if (options.default_light) options.light_words.assign(std::begin(kDefaultLights), std::end(kDefaultLights));
+  for (const std::string& word : options.light_words) {
+    Result<spec::Light> light = spec::parseLight(word);
+    if (!light) return failAgain(light.error());
+    if (auto* probe = std::get_if<spec::ProbeLight>(&*light)) probe->layout = layout;
+    options.lights.push_back(std::move(*light));
+  }
+  return {};
+}
+
+Result<void> understandPicture(const Words& words, Options& options) {
+  const Result<spec::Size> size = spec::parseSize(words.size);
+  if (!size) return failAgain(size.error());
+  options.size = *size;
+  if (!words.camera.empty()) {
+    const Result<spec::Camera> camera = spec::parseCamera(words.camera);
+    if (!camera) return failAgain(camera.error());
+    options.camera = *camera;
+  }
+  if (!words.headless.empty()) {
+    options.headless = words.headless;
+    std::string extension = options.headless->extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    if (extension != ".png" && extension != ".exr")
+      return fail("--headless", fmt::format("\"{}\" is neither .png nor .exr", words.headless),
+                  "name a .png (tone-mapped) or an .exr (linear)");
+    options.linear = extension == ".exr";
+  }
+  if (words.exposure != "auto") {
+    char* end = nullptr;
+    const float ev = std::strtof(words.exposure.c_str(), &end);
+    if (words.exposure.empty() || *end != '\0' || !(ev >= -64.0f && ev <= 64.0f))
+      return fail("--exposure", fmt::format("\"{}\" is not a number of stops", words.exposure),
+                  "give -64..64 or auto");
+    options.exposure_ev = ev;
+  }
+  return {};
+}
+
+Result<Options> understand(const Words& words) {
+  Options options;
+  options.bundles.assign(words.bundles.begin(), words.bundles.end());
+  if (Result<void> done = understandLights(words, options); !done) return failAgain(done.error());
+  if (Result<void> done = understandPicture(words, options); !done) return failAgain(done.error());
+  const Result<TransferMode> transfer = wordOf(kTransferWords, "--transfer", words.transfer);
+  if (!transfer) return failAgain(transfer.error());
+  const Result<sh::Window> window = wordOf(kWindowWords, "--window", words.window);
+  if (!window) return failAgain(window.error());
+  const Result<float> turn = spec::parseDegrees(words.rotate_light);
+  if (!turn) return failAgain(turn.error());
+  options.transfer = *transfer;
+  options.transfer_word = words.transfer;
+  options.window = *window;
+  options.window_word = words.window;
+  options.rotate_light_deg = *turn;
+  options.frames = words.frames;
+  options.json = words.json;
+  return options;
+}
+
+}  // namespace
+
+void printError(const Error& error) {
+  fmt::print(stderr, "lambent-demo: {}\n", error.line());
+}
+
+std::variant<Options, int> parseOptions(int argc, const char* const* argv) {
+  CLI::App app("Shows baked scenes under light that changes: in a window, or as a picture with --headless.",
+               "lambent-demo");
+  app.footer(
+      "In the window: drag turns the camera, the wheel moves it, R resets it; space stops the light, A and D "
+      "turn "
+      "it; Esc quits.\nExit codes: 0 done, 1 failed, 2 wrong usage.");
+  Words words;
+  declare(app, words);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+    printError({.subject = "usage", .problem = error.what(), .mend = "see lambent-demo --help"});
+    return 2;
+  }
+  Result<Options> options = understand(words);
+  if (options) return std::move(*options);
+  printError(options.error());
+  return 2;
+}
+
+}  // namespace lambent::demo

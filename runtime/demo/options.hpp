@@ -1,0 +1,44 @@
+// The command line of lambent-demo as values. Comes in: argv. Goes out: Options, every word parsed and in its
+// range, or the exit code with which to stop: 0 after --help and --version, 2 after one line on stderr that
+// says what is wrong and what to do.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "runtime/effects/diffuse/diffuse.hpp"
+#include "runtime/sh/window.hpp"
+#include "runtime/spec/camera.hpp"
+#include "runtime/spec/light.hpp"
+#include "runtime/spec/size.hpp"
+
+namespace lambent::demo {
+
+struct Options {
+  std::vector<std::filesystem::path> bundles;
+  std::vector<spec::Light> lights;
+  std::vector<std::string> light_words;  // as given, for reports
+  bool default_light = false;            // none was given
+  std::optional<spec::Camera> camera;    // none: the file's first camera, else an orbit
+  spec::Size size;
+  std::optional<std::filesystem::path> headless;  // .png or .exr
+  bool linear = false;                            // headless is .exr
+  effects::diffuse::TransferMode transfer = effects::diffuse::TransferMode::Full;
+  std::string transfer_word;
+  sh::Window window = sh::Window::Auto;
+  std::string window_word;
+  std::uint32_t frames = 1;
+  float rotate_light_deg = 0.0f;
+  std::optional<float> exposure_ev;  // none: automatic
+  bool json = false;
+};
+
+std::variant<Options, int> parseOptions(int argc, const char* const* argv);
+
+// What is written to stderr before the exit with code 1 or 2.
+void printError(const Error& error);
+
+}  // namespace lambent::demo

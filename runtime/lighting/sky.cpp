@@ -1,0 +1,105 @@
+#include "runtime/lighting/sky.hpp"
+
+#include <algorithm>
+#include <future>
+
+#include <glm/common.hpp>
+#include <glm/gtc/packing.hpp>
+#include <glm/gtc/type_ptr.hpp>
+#include <glm/matrix.hpp>
+#include <glm/vec4.hpp>
+
+#include "lambent_lighting_embedded.hpp"
+#include "runtime/sh/cube_map.hpp"
+
+namespace lambent::lighting {
+
+namespace {
+
+constexpr gpu::FindText kShaders[] = {&embedded::lambent_lighting::find};
+constexpr float kLargestHalf = 65504.0f;
+
+// As in sky.frag.
+constexpr GLuint kBindDiscs = 0;
+constexpr GLint kWorldFromClip = 0, kLightFromWorld = 1, kDiscCount = 2;
+struct DiscRecord {
+  glm::vec4 direction_and_radius;
+  glm::vec4 radiance;
+};
+
+// About one texel of the cube per texel of the probe; a constant needs no more than one.
+std::uint32_t cubeSize(const Environment& environment) {
+  std::uint32_t size = 1;
+  for (const spec::Probe& probe : environment.probes()) {
+    const std::uint32_t width = probe.image.width;
+    const std::uint32_t wanted = probe.layout == sh::ImageLayout::VerticalCross ? width / 3 : width / 4;
+    size = std::max(size, std::clamp(wanted, 16u, 1024u));
+  }
+  return size;
+}
+
+std::vector<std::uint64_t> faceTexels(const Environment& environment, int face, std::uint32_t size) {
+  std::vector<std::uint64_t> texels;
+  texels.reserve(std::size_t{size} * size);
+  for (std::uint32_t y = 0; y < size; ++y)
+    for (std::uint32_t x = 0; x < size; ++x) {
+      const glm::vec3 dir =
+          sh::cubeTexelDirection(static_cast<int>(size), face, static_cast<int>(x), static_cast<int>(y));
+      glm::vec3 sum = environment.constant();
+      for (const spec::Probe& probe : environment.probes()) sum += spec::radiance(probe, dir);
+      texels.push_back(glm::packHalf4x16(glm::vec4(glm::min(sum, glm::vec3(kLargestHalf)), 0.0f)));
+    }
+  return texels;
+}
+
+}  // namespace
+
+Result<Sky> Sky::create(const Environment& environment) {
+  Sky sky;
+  Result<gpu::Program> program = gpu::Program::create(
+      "sky", {{GL_VERTEX_SHADER, "sky.vert"}, {GL_FRAGMENT_SHADER, "sky.frag"}}, kShaders);
+  if (!program) return failAgain(program.error());
+  sky.program_ = std::move(*program);
+  const std::uint32_t size = cubeSize(environment);
+  sky.cube_ = gpu::Texture("sky", {.format = GL_RGBA16F, .width = size, .height = size, .cube = true});
+  std::vector<std::future<std::vector<std::uint64_t>>> faces;
+  for (int face = 0; face < 6; ++face)
+    faces.push_back(
+        std::async(std::launch::async, [&, face] { return faceTexels(environment, face, size); }));
+  for (int face = 0; face < 6; ++face)
+    glTextureSubImage3D(sky.cube_.id(), 0, 0, 0, face, static_cast<GLsizei>(size), static_cast<GLsizei>(size),
+                        1, GL_RGBA, GL_HALF_FLOAT, faces[static_cast<std::size_t>(face)].get().data());
+  glTextureParameteri(sky.cube_.id(), GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+  glTextureParameteri(sky.cube_.id(), GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  std::vector<DiscRecord> discs;
+  for (const Disc& disc : environment.discs())
+    discs.push_back({{disc.direction, disc.radius_rad}, {disc.radiance, 0.0f}});
+  sky.disc_count_ = static_cast<std::uint32_t>(discs.size());
+  sky.discs_.assign(std::span<const DiscRecord>(discs));
+  sky.no_vertices_ = gpu::VertexArray("sky");
+  return sky;
+}
+
+void Sky::draw(const Environment& environment, const glm::mat4& view_from_world,
+               const glm::mat4& clip_from_view, gpu::Counters& counters) const {
+  // Directions only: without the eye's place, so that precision does not depend on where the scene stands.
+  const glm::mat4 rotation = glm::mat4(glm::mat3(view_from_world));
+  const glm::mat4 world_from_clip = glm::inverse(clip_from_view * rotation);
+  const glm::mat3 light_from_world = glm::transpose(environment.worldFromLight());
+  program_.use();
+  glUniformMatrix4fv(kWorldFromClip, 1, GL_FALSE, glm::value_ptr(world_from_clip));
+  glUniformMatrix3fv(kLightFromWorld, 1, GL_FALSE, glm::value_ptr(light_from_world));
+  glUniform1ui(kDiscCount, disc_count_);
+  cube_.bind(0);
+  glBindSampler(0, 0);
+  discs_.bindStorage(kBindDiscs);
+  glBindVertexArray(no_vertices_.id());
+  glEnable(GL_TEXTURE_CUBE_MAP_SEAMLESS);
+  glDepthFunc(GL_LEQUAL);
+  glDisable(GL_CULL_FACE);
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+  ++counters.draws;
+  ++counters.draw_calls;
+}
+
+}  // namespace lambent::lighting

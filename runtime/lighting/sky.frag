@@ -1,0 +1,29 @@
+// The environment's radiance along the pixel's ray. Perspective rays start at the origin, so far - near is the ray for
+// both kinds of camera.
+layout(location = 1) uniform mat3 light_from_world;
+layout(location = 2) uniform uint disc_count;
+layout(binding = 0) uniform samplerCube sky;
+
+struct Disc {
+  vec4 direction_and_radius;  // in the lights' own frame; radians
+  vec4 radiance;
+};
+layout(std430, binding = 0) readonly buffer Discs { Disc discs[]; };
+
+layout(location = 0) in vec4 near_ws;
+layout(location = 1) in vec4 far_ws;
+layout(location = 0) out vec4 color;
+
+void main() {
+  vec3 dir_ws = normalize(far_ws.xyz / far_ws.w - near_ws.xyz / near_ws.w);
+  vec3 dir = light_from_world * dir_ws;
+  vec3 radiance = texture(sky, dir).rgb;
+  for (uint i = 0u; i < disc_count; ++i) {
+    vec3 to_disc = discs[i].direction_and_radius.xyz;
+    // acos would lose the last digits just where discs are small.
+    float angle = atan(length(cross(dir, to_disc)), dot(dir, to_disc));
+    float inside = clamp((discs[i].direction_and_radius.w - angle) / max(fwidth(angle), 1e-6) + 0.5, 0.0, 1.0);
+    radiance += inside * discs[i].radiance.rgb;
+  }
+  color = vec4(radiance, 0.0);
+}

@@ -1,0 +1,35 @@
+// What the camera sees where nothing stands: the environment's own radiance, not its spherical harmonics.
+// Probes and constants are resampled once into a cube map (half floats, clamped to what those hold); suns
+// stay analytic discs with an edge one pixel wide. Drawn behind everything, with alpha 0: the sky covers
+// nothing. Errors: shaders that do not compile on this device.
+#pragma once
+
+#include <glm/mat4x4.hpp>
+
+#include "runtime/base/result.hpp"
+#include "runtime/gpu/objects.hpp"
+#include "runtime/gpu/program.hpp"
+#include "runtime/lighting/environment.hpp"
+
+namespace lambent::lighting {
+
+class Sky {
+ public:
+  static Result<Sky> create(const Environment& environment);
+
+  // Into the bound framebuffer, where its depth is still that of the clear. Only the rotation of
+  // view_from_world is used.
+  void draw(const Environment& environment, const glm::mat4& view_from_world, const glm::mat4& clip_from_view,
+            gpu::Counters& counters) const;
+
+ private:
+  Sky() : discs_("sky discs") {}
+
+  gpu::Program program_;
+  gpu::Texture cube_;
+  gpu::Table discs_;
+  gpu::VertexArray no_vertices_;
+  std::uint32_t disc_count_ = 0;
+};
+
+}  // namespace lambent::lighting
