@@ -14,7 +14,9 @@ void evaluateOne(T x, T y, T z, T* out) {
 // One direction per vector lane. ivdep is the caller's promise that outputs do not overlap inputs.
 template <int Order, typename T>
 void evaluateMany(const T* xs, const T* ys, const T* zs, std::size_t count, T* out, std::size_t stride) {
+#ifndef __clang__
 #pragma GCC ivdep
+#endif
   for (std::size_t k = 0; k < count; ++k)
     evaluateFixed<Order>(xs[k], ys[k], zs[k],
                          [=](int i, T value) { out[static_cast<std::size_t>(i) * stride + k] = value; });
