@@ -1,6 +1,7 @@
-// Brings a bundle into memory in the order in which it is wanted, on worker threads: reads ranges, checks them,
-// decodes Draco, images and entropy coding. No GL: the render thread takes what is ready and uploads it within its
-// budget (residency.hpp). Order of delivery is the order of priority, whatever the number of threads.
+// Brings a bundle into memory in the order in which it is wanted, on worker threads: reads ranges, checks
+// them, decodes Draco, images and entropy coding. No GL: the render thread takes what is ready and uploads it
+// within its budget (residency.hpp). Order of delivery is the order of priority, whatever the number of
+// threads.
 #pragma once
 
 #include <cstddef>
@@ -47,8 +48,8 @@ using Ready = std::variant<MeshReady, ImageReady, RowsReady, BasisReady, PlaneRe
 
 class Loader {
  public:
-  // Starts `threads` workers (at least 1) on everything in the bundle: meshes and rows first, then images, then per
-  // cell bases and planes by priority.
+  // Starts `threads` workers (at least 1) on everything in the bundle: meshes and rows first, then images,
+  // then per cell bases and planes by priority.
   Loader(std::shared_ptr<const bundle::Reader> reader, unsigned threads);
   ~Loader();  // stops the workers after the item in hand
   Loader(Loader&&) noexcept;

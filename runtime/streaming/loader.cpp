@@ -1,0 +1,180 @@
+#include "runtime/streaming/loader.hpp"
+
+#include <algorithm>
+#include <condition_variable>
+#include <exception>
+#include <limits>
+#include <mutex>
+#include <new>
+#include <thread>
+#include <utility>
+
+#include "runtime/streaming/work.hpp"
+
+namespace lambent::streaming {
+namespace {
+
+// What may be decoded or in the making but not taken. The item that is next to be taken never waits for room,
+// so the real limit is this and one item, and workers cannot wait for each other.
+constexpr std::size_t kMaxHeldBytes = std::size_t{64} << 20;
+constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
+
+}  // namespace
+
+// Workers claim items in order and put what they load into the item's slot; take() empties slots from the
+// front. So the sequence is the list's, however many workers there are and however long each item takes.
+struct Loader::State {
+  struct Slot {
+    std::optional<Ready> ready;
+    std::size_t held = 0;  // bytes reserved, then those of `ready`
+  };
+
+  State(std::shared_ptr<const bundle::Reader> bundle, unsigned thread_count)
+      : reader(std::move(bundle)), work(workList(reader->description())), slots(work.size()) {
+    const std::size_t wanted = std::min<std::size_t>(std::max(thread_count, 1u), work.size());
+    for (std::size_t i = 0; i < wanted; ++i) workers.emplace_back([this] { runWorker(); });
+  }
+
+  ~State() {
+    {
+      const std::lock_guard lock(mutex);
+      stopping = true;
+    }
+    room.notify_all();  // the workers join as `workers` is destroyed
+  }
+
+  // --- workers ---
+
+  void runWorker() {
+    for (;;) {
+      std::size_t at = 0;
+      {
+        const std::lock_guard lock(mutex);
+        if (stopping || next_claim >= end()) return;
+        at = next_claim++;
+      }
+      auto loaded = loadOne(at);
+      if (!loaded) return;
+      {
+        const std::lock_guard lock(mutex);
+        if (*loaded) {
+          bytes_read += reader->description().views[viewOf(reader->description(), work[at])].length;
+          hold(at, bytesOf(**loaded));
+          slots[at].ready = std::move(**loaded);
+        } else {
+          hold(at, 0);
+          if (at < failed_at) {
+            failed_at = at;
+            failure = std::move(loaded->error());
+          }
+        }
+      }
+      more.notify_all();
+      room.notify_all();
+    }
+  }
+
+  std::optional<Result<Ready>> loadOne(std::size_t at) {
+    const std::string& path = reader->path().string();
+    try {
+      return load(*reader, work[at], [&](std::size_t bytes) { return reserve(at, bytes); });
+    } catch (const std::bad_alloc&) {
+      return fail(path, "does not fit into memory",
+                  "close other programs or bake the scene at lower quality");
+    } catch (const std::exception& exception) {
+      return fail(path, exception.what(), "bake it again");
+    }
+  }
+
+  // Waits for room. False when the item is not wanted any more.
+  bool reserve(std::size_t at, std::size_t bytes) {
+    std::unique_lock lock(mutex);
+    const auto unwanted = [&] { return stopping || at >= end(); };
+    room.wait(lock, [&] { return unwanted() || at == next_take || held_bytes + bytes <= kMaxHeldBytes; });
+    if (unwanted()) return false;
+    hold(at, bytes);
+    return true;
+  }
+
+  // --- under the mutex ---
+
+  void hold(std::size_t at, std::size_t bytes) {
+    held_bytes += bytes - slots[at].held;
+    slots[at].held = bytes;
+  }
+
+  std::size_t end() const { return std::min(work.size(), failed_at); }
+  bool frontIsReady() const { return next_take < end() && slots[next_take].ready.has_value(); }
+  // No worker is at an item before the failed one, where it could fail as well: this failure is the first.
+  bool failureIsFirst() const {
+    if (failed_at == kNone) return false;
+    for (std::size_t at = next_take; at < failed_at; ++at) {
+      if (!slots[at].ready) return false;
+    }
+    return true;
+  }
+
+  const std::shared_ptr<const bundle::Reader> reader;
+  const std::vector<Work> work;
+
+  mutable std::mutex mutex;      // guards all below
+  std::condition_variable more;  // something is ready, or nothing more will come
+  std::condition_variable room;  // something was taken, or is not wanted any more
+  std::vector<Slot> slots;       // by place in `work`
+  std::size_t next_claim = 0;
+  std::size_t next_take = 0;
+  std::size_t held_bytes = 0;
+  std::size_t failed_at = kNone;
+  Error failure;
+  std::uint64_t bytes_read = 0;
+  bool stopping = false;
+
+  std::vector<std::jthread> workers;  // last: they use all above
+};
+
+Loader::Loader(std::shared_ptr<const bundle::Reader> reader, unsigned threads)
+    : state_(std::make_unique<State>(std::move(reader), threads)) {}
+Loader::~Loader() = default;
+Loader::Loader(Loader&&) noexcept = default;
+Loader& Loader::operator=(Loader&&) noexcept = default;
+
+std::vector<Ready> Loader::take(std::size_t max_bytes) {
+  std::vector<Ready> taken;
+  {
+    const std::lock_guard lock(state_->mutex);
+    std::size_t bytes = 0;
+    while (state_->frontIsReady()) {
+      State::Slot& front = state_->slots[state_->next_take];
+      if (!taken.empty() && bytes + front.held > max_bytes) break;
+      bytes += front.held;
+      taken.push_back(std::move(*front.ready));
+      front.ready.reset();
+      state_->hold(state_->next_take, 0);
+      ++state_->next_take;
+    }
+  }
+  if (!taken.empty()) state_->room.notify_all();
+  return taken;
+}
+
+void Loader::waitForMore() {
+  std::unique_lock lock(state_->mutex);
+  state_->more.wait(lock, [&] { return state_->frontIsReady() || state_->next_take >= state_->end(); });
+}
+
+bool Loader::finished() const {
+  const std::lock_guard lock(state_->mutex);
+  return state_->next_take >= state_->end();
+}
+
+std::optional<Error> Loader::error() const {
+  const std::lock_guard lock(state_->mutex);
+  return state_->failureIsFirst() ? std::optional(state_->failure) : std::nullopt;
+}
+
+std::uint64_t Loader::bytesRead() const {
+  const std::lock_guard lock(state_->mutex);
+  return state_->bytes_read;
+}
+
+}  // namespace lambent::streaming

@@ -1,0 +1,247 @@
+#include "runtime/streaming/loader.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cstring>
+#include <fstream>
+#include <memory>
+#include <numeric>
+#include <string>
+#include <thread>
+#include <variant>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "runtime/bundle/writer.hpp"
+#include "tests/runtime/streaming/sample_bundle.hpp"
+
+namespace lambent::streaming {
+namespace {
+
+using testing::Sample;
+
+struct Name {
+  std::string operator()(const MeshReady& r) const { return "mesh " + join({r.mesh, r.primitive}); }
+  std::string operator()(const ImageReady& r) const { return "image " + join({r.image}); }
+  std::string operator()(const RowsReady& r) const { return "rows " + join({r.draw}); }
+  std::string operator()(const BasisReady& r) const { return "basis " + join({r.group, r.cell, r.transfer}); }
+  std::string operator()(const PlaneReady& r) const {
+    return "plane " + join({r.group, r.cell, r.transfer, r.plane});
+  }
+  static std::string join(std::initializer_list<std::uint32_t> numbers) {
+    std::string text;
+    for (const std::uint32_t n : numbers) {
+      if (!text.empty()) text += '.';
+      text += std::to_string(n);
+    }
+    return text;
+  }
+};
+
+std::vector<std::string> names(const std::vector<Ready>& items) {
+  std::vector<std::string> all;
+  for (const Ready& item : items) all.push_back(std::visit(Name{}, item));
+  return all;
+}
+
+const std::vector<std::string> kInOrder = {
+    "mesh 0.0",      "mesh 1.0",      "mesh 1.1",       // by place
+    "rows 1",        "rows 0",        "rows 2",         // priorities 2, 3, 3
+    "image 0",       "image 1",                         // by place
+    "basis 1.0.0",   "plane 1.0.0.0", "plane 1.0.0.1",  // 10, 12, 11: never before plane 0
+    "basis 0.0.0",   "basis 1.1.0",   "plane 1.1.0.0",  // 20, 20, 5: never before its basis
+    "plane 0.0.0.0", "plane 1.0.0.2", "plane 0.0.0.1",  // 21, 30, 40
+};
+
+class LoaderTest : public ::testing::Test {
+ protected:
+  std::filesystem::path path() const { return folder_ / "scene.lmb.glb"; }
+
+  void write(const Sample& sample) {
+    const auto written = bundle::write(path(), sample.description, sample.blobs);
+    ASSERT_TRUE(written) << written.error().line();
+  }
+  std::shared_ptr<const bundle::Reader> open() const {
+    auto reader = bundle::Reader::open(path());
+    EXPECT_TRUE(reader) << reader.error().line();
+    return reader ? std::make_shared<const bundle::Reader>(std::move(*reader)) : nullptr;
+  }
+  // Everything, as a frame loop would take it.
+  static std::vector<Ready> drain(Loader& loader, std::size_t max_bytes) {
+    std::vector<Ready> all;
+    while (!loader.finished()) {
+      loader.waitForMore();
+      for (Ready& item : loader.take(max_bytes)) all.push_back(std::move(item));
+    }
+    EXPECT_TRUE(loader.take(max_bytes).empty());
+    loader.waitForMore();  // returns at once
+    return all;
+  }
+  // Turns over one bit of a view in the file.
+  void damage(std::uint32_t view) const {
+    std::size_t at = std::string::npos;
+    {
+      const auto reader = open();
+      ASSERT_TRUE(reader);
+      std::ifstream in(path(), std::ios::binary);
+      const std::string bytes((std::istreambuf_iterator<char>(in)), {});
+      const auto wanted = reader->readView(view);
+      ASSERT_TRUE(wanted);
+      at = bytes.find(std::string(reinterpret_cast<const char*>(wanted->data()), wanted->size()));
+      ASSERT_NE(at, std::string::npos);
+      at += wanted->size() / 2;
+    }
+    std::fstream file(path(), std::ios::binary | std::ios::in | std::ios::out);
+    file.seekg(static_cast<std::streamoff>(at));
+    const char byte = static_cast<char>(file.get() ^ 4);
+    file.seekp(static_cast<std::streamoff>(at));
+    file.put(byte);
+  }
+
+ private:
+  testing::TemporaryFolder folder_;
+};
+
+TEST_F(LoaderTest, DeliversByPriorityWhatWasWritten) {
+  const Sample sample = testing::sampleBundle();
+  write(sample);
+  Loader loader(open(), 2);
+  const auto items = drain(loader, 1 << 20);
+  EXPECT_EQ(names(items), kInOrder);
+  EXPECT_FALSE(loader.error());
+  const std::uint64_t all_bytes =
+      std::accumulate(sample.blobs.begin(), sample.blobs.end(), std::uint64_t{0},
+                      [](std::uint64_t sum, const bundle::Blob& blob) { return sum + blob.size(); });
+  EXPECT_EQ(loader.bytesRead(), all_bytes) << "everything is read once";
+
+  ASSERT_EQ(items.size(), kInOrder.size());
+  const auto& mesh = std::get<MeshReady>(items[2]).data;
+  ASSERT_EQ(mesh.positions.size(), 52u);
+  EXPECT_NEAR(mesh.positions[0].y, 3.0f, 1e-6f);
+  const auto& rows = std::get<RowsReady>(items[4]).rows;
+  ASSERT_EQ(rows.samples.size(), 402u);
+  EXPECT_EQ(rows.samples[401], 101u);
+  const auto& image = std::get<ImageReady>(items[6]);
+  EXPECT_EQ(image.width, 20u);
+  EXPECT_EQ(image.height, 10u);
+  EXPECT_EQ(image.rgba[(9 * 20 + 19) * 4 + 2], testing::texel(19, 9, 2));
+  const auto& basis = std::get<BasisReady>(items[8]).vectors;
+  ASSERT_EQ(basis.size(), 16u);
+  EXPECT_EQ(basis[15], 20.0f) << "15 + 10/2: exact in binary16";
+  const auto& codes = std::get<PlaneReady>(items[10]).codes;
+  ASSERT_EQ(codes.size(), 1000u) << "500 samples of 16 bits";
+  std::uint16_t code = 0;
+  std::memcpy(&code, &codes[2 * 499], sizeof code);
+  EXPECT_EQ(code, 31 * 499 + 11);
+}
+
+TEST_F(LoaderTest, GivesTheSameSequenceForAnyNumberOfThreadsAndAnyBudget) {
+  write(testing::sampleBundle());
+  for (const unsigned threads : {0u, 1u, 3u, 16u, 64u}) {
+    for (const std::size_t budget : {std::size_t{1}, std::size_t{5000}, std::size_t{1} << 30}) {
+      Loader loader(open(), threads);
+      EXPECT_EQ(names(drain(loader, budget)), kInOrder) << threads << " threads";
+    }
+  }
+}
+
+TEST_F(LoaderTest, TakesAtLeastOneItemAndNoMoreThanTheBudgetBeyond) {
+  write(testing::manyImages(6, 64));  // 16 KiB each
+  Loader loader(open(), 1);
+  std::size_t taken = 0;
+  while (!loader.finished()) {
+    loader.waitForMore();
+    const auto items = loader.take(40 << 10);
+    EXPECT_LE(items.size(), 2u);
+    EXPECT_GE(items.size(), 1u) << "waitForMore had promised one";
+    taken += items.size();
+  }
+  EXPECT_EQ(taken, 6u);
+}
+
+TEST_F(LoaderTest, DecodesNoFurtherAheadThanItsMemory) {
+  constexpr std::uint32_t kThreads = 4;
+  write(testing::manyImages(48, 1024));  // 4 MiB each: 192 MiB in all, of which 64 fit
+  Loader loader(open(), kThreads);
+  loader.waitForMore();
+  // Time to go too far; how far it gets is bounded however long this is.
+  std::this_thread::sleep_for(std::chrono::milliseconds(500));
+  const std::uint64_t file_bytes = testing::manyImages(1, 1024).blobs[0].size();
+  EXPECT_LE(loader.bytesRead(), (16 + 1) * file_bytes);
+  EXPECT_EQ(drain(loader, std::size_t{16} << 20).size(), 48u);
+  EXPECT_FALSE(loader.error());
+}
+
+TEST_F(LoaderTest, IsDestroyedMidWayWithoutHanging) {
+  write(testing::manyImages(40, 1024));  // more than its memory: workers wait for room
+  const auto reader = open();
+  for (int take = 0; take < 4; ++take) {
+    Loader loader(reader, 4);
+    for (int i = 0; i < take; ++i) {
+      loader.waitForMore();
+      loader.take(1);
+    }
+    Loader moved = std::move(loader);
+  }
+}
+
+TEST_F(LoaderTest, StopsAtADamagedPayloadAndNamesTheFileWhateverTheThreads) {
+  const Sample sample = testing::sampleBundle();
+  write(sample);
+  const bundle::Description& d = sample.description;
+  damage(d.payloads[d.groups[1].cells[0].diffuse[0].planes[0].payload].view);  // "plane 1.0.0.0"
+  damage(d.payloads[d.groups[0].cells[0].diffuse[0].planes[1].payload].view);  // and the last of all
+  const std::vector<std::string> before(kInOrder.begin(), kInOrder.begin() + 9);
+  std::string first_line;
+  for (const unsigned threads : {1u, 8u}) {
+    Loader loader(open(), threads);
+    EXPECT_EQ(names(drain(loader, 1 << 20)), before);
+    ASSERT_TRUE(loader.error());
+    const std::string line = loader.error()->line();
+    EXPECT_NE(line.find(path().string()), std::string::npos) << line;
+    if (!first_line.empty()) {
+      EXPECT_EQ(line, first_line) << "the first damage in order, not in time";
+    }
+    first_line = line;
+  }
+}
+
+TEST_F(LoaderTest, NamesTheImageThatCannotBeDecoded) {
+  Sample sample = testing::sampleBundle();
+  bundle::Blob& blob = sample.blobs[sample.description.images[1].view];
+  blob.assign(blob.size(), std::byte{'x'});
+  write(sample);
+  Loader loader(open(), 2);
+  EXPECT_EQ(drain(loader, 1 << 20).size(), 7u);
+  ASSERT_TRUE(loader.error());
+  EXPECT_NE(loader.error()->line().find(path().string() + ": image 1 \"leaf\""), std::string::npos)
+      << loader.error()->line();
+}
+
+TEST_F(LoaderTest, RefusesCodesForSamplesThatACellDoesNotHave) {
+  Sample sample = testing::sampleBundle();
+  bundle::Group& group = sample.description.groups[1];
+  group.sample_count = group.cells[1].first_sample;
+  group.cells[1].sample_count = 0;
+  write(sample);
+  Loader loader(open(), 2);
+  drain(loader, 1 << 20);
+  ASSERT_TRUE(loader.error());
+  EXPECT_NE(loader.error()->line().find("group 1 cell 1 plane 0: has 200 bytes of codes, not 0"),
+            std::string::npos)
+      << loader.error()->line();
+}
+
+TEST_F(LoaderTest, FinishesAnEmptyBundleAtOnce) {
+  write(Sample{});
+  Loader loader(open(), 4);
+  EXPECT_TRUE(loader.finished());
+  loader.waitForMore();
+  EXPECT_TRUE(loader.take(1 << 20).empty());
+  EXPECT_FALSE(loader.error());
+  EXPECT_EQ(loader.bytesRead(), 0u);
+}
+
+}  // namespace
+}  // namespace lambent::streaming
