@@ -77,10 +77,11 @@ struct RigidGroupComponent {
   std::uint64_t seen_node = 0;  // version of the node's WorldTransform that this was computed from
 };
 
-// One primitive at one node: bundle::Draw as an entity.
+// One side of one primitive at one node: bundle::Draw as an entity.
 struct DrawItem {
   std::uint32_t bundle = 0, draw = 0;
   std::uint32_t mesh = 0, primitive = 0;
+  bool back = false;  // drawn with its winding and normals turned round
   std::int32_t material = -1;
   ecs::Entity node;   // its WorldTransform places the mesh
   ecs::Entity group;  // its RigidGroupComponent says whose light shades it

@@ -114,12 +114,13 @@ class Instantiation {
                                                    .draw = static_cast<std::uint32_t>(i),
                                                    .mesh = draw.mesh,
                                                    .primitive = draw.primitive,
+                                                   .back = draw.back,
                                                    .material = primitive.material,
                                                    .node = node,
                                                    .group = instance_.groups[draw.group],
                                                    .bounds = {primitive.bounds_min, primitive.bounds_max}});
-      registry_.emplace<StableId>(
-          entity, childId(registry_.get<StableId>(node), StableKind::Draw, {}, draw.primitive));
+      registry_.emplace<StableId>(entity, childId(registry_.get<StableId>(node), StableKind::Draw,
+                                                  draw.back ? "back" : "", draw.primitive));
     }
   }
 

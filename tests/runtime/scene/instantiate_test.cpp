@@ -79,7 +79,10 @@ struct Hall {
       d.draws.push_back({.node = static_cast<std::uint32_t>(node), .mesh = 0, .primitive = 0, .group = 0});
       d.draws.push_back({.node = static_cast<std::uint32_t>(node), .mesh = 0, .primitive = 1, .group = 0});
     }
-    d.draws.push_back({.node = static_cast<std::uint32_t>(top), .mesh = 0, .primitive = 0, .group = 1});
+    for (const bool back : {false, true}) {
+      d.draws.push_back(
+          {.node = static_cast<std::uint32_t>(top), .mesh = 0, .primitive = 0, .group = 1, .back = back});
+    }
   }
 
   bundle::Description d;
@@ -100,7 +103,7 @@ TEST(Instantiate, EntitiesSayWhatTheDescriptionSays) {
   const Hall hall;
   ecs::Registry registry;
   const SceneInstance scene = instance(registry, hall.d);
-  EXPECT_EQ(registry.entityCount(), 1 + 5 + 2 + 5u);
+  EXPECT_EQ(registry.entityCount(), 1 + 5 + 2 + 6u);
   const auto world = gltf::worldTransforms(hall.d.nodes);
   for (std::size_t i = 0; i < world.size(); ++i) {
     const glm::mat4& found = registry.get<WorldTransform>(scene.nodes[i]).world_from_node;
@@ -109,6 +112,8 @@ TEST(Instantiate, EntitiesSayWhatTheDescriptionSays) {
   const DrawItem& legs = registry.get<DrawItem>(scene.draws[3]);
   EXPECT_EQ(legs.bundle, 3u);
   EXPECT_EQ(legs.primitive, 1u);
+  EXPECT_FALSE(legs.back);
+  EXPECT_TRUE(registry.get<DrawItem>(scene.draws[5]).back);
   EXPECT_EQ(legs.material, -1);
   EXPECT_EQ(legs.node, nodeOf(scene, hall.chair_b));
   EXPECT_EQ(legs.group, scene.groups[0]);
@@ -205,7 +210,7 @@ TEST(StableId, IsOneForEachEntityAndTheSameInEverySession) {
   const SceneInstance a = instance(first, hall.d), b = instance(second, hall.d);
   std::set<StableId> ids;
   for (auto [entity, id] : first.view<StableId>()) EXPECT_TRUE(ids.insert(id).second);
-  EXPECT_EQ(ids.size(), 13u);
+  EXPECT_EQ(ids.size(), 14u);
   for (auto [entity, id] : second.view<StableId>()) EXPECT_TRUE(ids.contains(id));
   EXPECT_EQ(first.get<StableId>(a.draws[2]), second.get<StableId>(b.draws[2]));
   // Written down once: a change would orphan every world file.
