@@ -11,7 +11,7 @@
 
 #include "runtime/base/result.hpp"
 
-namespace tinygltf {
+namespace lambent_tinygltf {
 class Model;
 }
 
@@ -30,14 +30,14 @@ class Document {
   Document& operator=(Document&&) noexcept;
   ~Document();
 
-  const tinygltf::Model& model() const { return *model_; }
+  const lambent_tinygltf::Model& model() const { return *model_; }
   const std::filesystem::path& path() const { return path_; }
   std::string file() const { return path_.string(); }
 
  private:
-  Document(std::filesystem::path path, std::unique_ptr<tinygltf::Model> model);
+  Document(std::filesystem::path path, std::unique_ptr<lambent_tinygltf::Model> model);
   std::filesystem::path path_;
-  std::unique_ptr<tinygltf::Model> model_;
+  std::unique_ptr<lambent_tinygltf::Model> model_;
 };
 
 }  // namespace lambent::baker
