@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <exception>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -138,7 +139,9 @@ void setDracoIndicesAside(json& document) {
     for (json& primitive : mesh["primitives"]) {
       if (!primitive.contains("extensions")) continue;
       const auto draco = primitive["extensions"].find("KHR_draco_mesh_compression");
-      if (draco == primitive["extensions"].end() || !primitive.contains("indices")) continue;
+      if (draco == primitive["extensions"].end()) continue;
+      draco->erase(kDracoIndices);  // the file's own would be unchecked
+      if (!primitive.contains("indices")) continue;
       (*draco)[kDracoIndices] = primitive["indices"];
       primitive.erase("indices");
     }

@@ -1,8 +1,8 @@
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
-#include <optional>
-#include <set>
+#include <span>
 
 #include <fmt/format.h>
 
@@ -41,8 +41,8 @@ UvTransform uvTransform(const tinygltf::TextureInfo& info) {
   const float c = std::cos(angle), s = std::sin(angle);
   transform.matrix =
       glm::mat3(scale.x * c, -scale.x * s, 0.0f, scale.y * s, scale.y * c, 0.0f, offset.x, offset.y, 1.0f);
-  transform.texcoord =
-      static_cast<std::uint32_t>(numberOr(value, "texCoord", static_cast<float>(info.texCoord)));
+  const float texcoord = numberOr(value, "texCoord", static_cast<float>(info.texCoord));
+  transform.texcoord = static_cast<std::uint32_t>(std::clamp(texcoord, 0.0f, 255.0f));
   transform.identity = transform.matrix == glm::mat3(1.0f);
   return transform;
 }

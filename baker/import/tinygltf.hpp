@@ -6,7 +6,7 @@
 #define TINYGLTF_NO_EXTERNAL_IMAGE
 #define TINYGLTF_NO_FS
 #define TINYGLTF_USE_CPP14
-// Debian's libdraco.so carries, and exports, a tinygltf of its own with other switches. Under its own name the linker
-// would take whichever it meets first; under this one there is only ours.
+// Debian's libdraco.so carries, and exports, a tinygltf of its own with other switches. Under its own name
+// the linker would take whichever it meets first; under this one there is only ours.
 #define tinygltf lambent_tinygltf
 #include <tiny_gltf.h>

@@ -66,6 +66,11 @@ TEST(BrokenScene, IsRefusedWithTheNameOfTheObject) {
          j["meshes"][0]["primitives"][0]["extensions"]["KHR_draco_mesh_compression"] = {
              {"bufferView", 0}, {"attributes", {{"POSITION", 0}}}};
        }},
+      {"without POSITION or indices",  // the importer's own note, forged
+       [](json& j) {
+         j["meshes"][0]["primitives"][0]["extensions"]["KHR_draco_mesh_compression"] = {
+             {"bufferView", 0}, {"attributes", {{"POSITION", 0}}}, {"lambent_indices", 1000000}};
+       }},
       {"node 0", [](json& j) { j["nodes"][0]["mesh"] = 1; }},
       {"node 0", [](json& j) { j["nodes"][0]["children"] = {0}; }},
       {"node 1",
