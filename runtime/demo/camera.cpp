@@ -22,6 +22,15 @@ std::optional<std::uint32_t> firstCameraNode(const bundle::Description& descript
   return {};
 }
 
+// Where nothing else is asked for: the bounding sphere just fits the picture's narrower side.
+spec::OrbitCamera framingOrbit(float aspect) {
+  spec::OrbitCamera orbit{
+      .azimuth_deg = 25.0f, .elevation_deg = 12.0f, .distance_radii = 1.0f, .fov_deg = 35.0f};
+  const float half_height = std::tan(glm::radians(0.5f * orbit.fov_deg));
+  orbit.distance_radii = 1.0f / std::sin(std::atan(half_height * std::min(aspect, 1.0f)));
+  return orbit;
+}
+
 // An empty scene is looked at as if it were a unit box.
 scene::Box boundsOf(const frame::World& world) {
   scene::Box bounds = scene::worldBounds(world.registry());
@@ -40,8 +49,9 @@ glm::mat4 worldFromNode(const frame::World& world, std::size_t bundle, std::uint
 }  // namespace
 
 Result<ViewController> ViewController::create(const frame::World& world,
-                                              const std::optional<spec::Camera>& camera) {
+                                              const std::optional<spec::Camera>& camera, float aspect) {
   ViewController controller;
+  controller.orbit_ = framingOrbit(aspect);
   if (camera && std::holds_alternative<spec::OrbitCamera>(*camera)) {
     controller.orbit_ = std::get<spec::OrbitCamera>(*camera);
   } else {

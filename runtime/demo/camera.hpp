@@ -14,8 +14,9 @@ namespace lambent::demo {
 
 class ViewController {
  public:
-  // Errors: no camera of that name.
-  static Result<ViewController> create(const frame::World& world, const std::optional<spec::Camera>& camera);
+  // aspect: of the picture, for an orbit that frames the scene. Errors: no camera of that name.
+  static Result<ViewController> create(const frame::World& world, const std::optional<spec::Camera>& camera,
+                                       float aspect);
 
   Result<spec::View> view(const frame::World& world, float aspect) const;
   void move(const frame::World& world, const gpu::Input& input);

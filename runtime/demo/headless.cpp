@@ -51,7 +51,8 @@ Result<void> runHeadless(const Options& options) {
   report.load_ms =
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 
-  const Result<ViewController> controller = ViewController::create(world, options.camera);
+  const Result<ViewController> controller =
+      ViewController::create(world, options.camera, options.size.aspect());
   if (!controller) return failAgain(controller.error());
   const Result<spec::View> view = controller->view(world, options.size.aspect());
   if (!view) return failAgain(view.error());

@@ -33,33 +33,45 @@ struct Words {
   bool json = false;
 };
 
+struct Row {
+  const char* name;
+  std::string Words::*field;
+  const char* type;
+  const char* help;
+};
+
+constexpr Row kRows[] = {
+    {"--light-layout", &Words::light_layout, "LAYOUT",
+     "Layout of probes whose shape misleads: latlong, angular, cross"},
+    {"--camera", &Words::camera, "CAM",
+     "Name or index of a camera in the file, or orbit:AZ,EL,DIST,FOV\n(default: the file's first, else an "
+     "orbit)"},
+    {"--size", &Words::size, "WxH", "Picture or window in pixels"},
+    {"--headless", &Words::headless, "OUT",
+     "Write one picture (.png tone-mapped, .exr linear) without a display"},
+    {"--transfer", &Words::transfer, "MODE", "What of the transfer counts: unshadowed, shadowed or full"},
+    {"--window", &Words::window, "WINDOW", "Against ringing of the light: auto, off or hann"},
+    {"--rotate-light", &Words::rotate_light, "DEG", "Turn all lights about +Y (+Z towards +X)"},
+    {"--exposure", &Words::exposure, "EV", "Stops above radiance 1 = white, or auto"},
+};
+
 void declare(CLI::App& app, Words& words) {
-  app.add_option("BUNDLE", words.bundles, "Bundles to show (scene.lmb.glb)")->required();
+  app.add_option("BUNDLE", words.bundles, "Baked scenes to show (.lmb.glb)")->required()->type_name("");
   app.add_option(
          "--light", words.lights,
-         "Light; several add up: a probe (.hdr, .exr), constant:R,G,B or\nsun:AZ,EL,ANGLE,R[,G,B] (degrees, "
+         "Several add up: a probe file (.hdr, .exr), constant:R,G,B or\nsun:AZ,EL,ANGLE,R[,G,B] (degrees, "
          "angular radius, radiance)")
+      ->type_name("LIGHT")
       ->take_all()
       ->expected(1);
-  app.add_option("--light-layout", words.light_layout,
-                 "Layout of probes, where their shape misleads: latlong, angular, cross");
-  app.add_option("--camera", words.camera,
-                 "Name or index of a camera in the file, or orbit:AZ,EL,DIST,FOV\n(default: the file's "
-                 "first, else an orbit)");
-  app.add_option("--size", words.size, "Picture in pixels, WIDTHxHEIGHT")->capture_default_str();
-  app.add_option("--headless", words.headless,
-                 "Write one picture (.png tone-mapped, .exr linear) without a display");
-  app.add_option("--transfer", words.transfer, "What of the transfer counts: unshadowed, shadowed or full")
-      ->capture_default_str();
-  app.add_option("--window", words.window, "Against ringing of the light: auto, off or hann")
-      ->capture_default_str();
+  for (const Row& row : kRows) {
+    CLI::Option* option = app.add_option(row.name, words.*row.field, row.help)->type_name(row.type);
+    if (!(words.*row.field).empty()) option->capture_default_str();
+  }
   app.add_option("--frames", words.frames, "Frames to render headless before the picture is taken")
+      ->type_name("N")
       ->capture_default_str()
-      ->check(CLI::Range(1u, 1'000'000u));
-  app.add_option("--rotate-light", words.rotate_light, "Turn all lights about +Y by degrees (+Z towards +X)")
-      ->capture_default_str();
-  app.add_option("--exposure", words.exposure, "Stops above radiance 1 = white, or auto")
-      ->capture_default_str();
+      ->check(CLI::Range(1u, 1'000'000u).description(""));
   app.add_flag("--json", words.json, "Report on stdout: times, counts, bytes resident");
   app.set_version_flag("--version", "lambent-demo " LAMBENT_VERSION);
 }

@@ -53,7 +53,7 @@ Result<void> runWindowed(const Options& options) {
   frame::World world;
   for (const std::filesystem::path& path : options.bundles)
     if (Result<void> opened = world.open(path); !opened) return opened;
-  Result<ViewController> controller = ViewController::create(world, options.camera);
+  Result<ViewController> controller = ViewController::create(world, options.camera, options.size.aspect());
   if (!controller) return failAgain(controller.error());
   spec::Size size = options.size;
   window->framebufferSize(size.width, size.height);

@@ -112,7 +112,7 @@ void Frame::raster(World& world, const lighting::Environment& environment, const
   glClearNamedFramebufferfv(hdr_target_.id(), GL_COLOR, 0, kNothing);
   glClearNamedFramebufferfv(hdr_target_.id(), GL_DEPTH, 0, &kFar);
   surfaces_.drawOpaque(world, pass.counters());
-  sky_.draw(environment, view.view_from_world, view.clip_from_view, pass.counters());
+  sky_.draw(environment, view.view_from_world, view.clip_from_view, options_.size.height, pass.counters());
   glDepthFunc(GL_LESS);
   surfaces_.drawBlended(world, pass.counters());
 }

@@ -21,7 +21,7 @@ constexpr float kLargestHalf = 65504.0f;
 
 // As in sky.frag.
 constexpr GLuint kBindDiscs = 0;
-constexpr GLint kWorldFromClip = 0, kLightFromWorld = 1, kDiscCount = 2;
+constexpr GLint kWorldFromClip = 0, kLightFromWorld = 1, kDiscCount = 2, kPixelAngle = 3;
 struct DiscRecord {
   glm::vec4 direction_and_radius;
   glm::vec4 radiance;
@@ -81,7 +81,7 @@ Result<Sky> Sky::create(const Environment& environment) {
 }
 
 void Sky::draw(const Environment& environment, const glm::mat4& view_from_world,
-               const glm::mat4& clip_from_view, gpu::Counters& counters) const {
+               const glm::mat4& clip_from_view, std::uint32_t picture_height, gpu::Counters& counters) const {
   // Directions only: without the eye's place, so that precision does not depend on where the scene stands.
   const glm::mat4 rotation = glm::mat4(glm::mat3(view_from_world));
   const glm::mat4 world_from_clip = glm::inverse(clip_from_view * rotation);
@@ -90,6 +90,7 @@ void Sky::draw(const Environment& environment, const glm::mat4& view_from_world,
   glUniformMatrix4fv(kWorldFromClip, 1, GL_FALSE, glm::value_ptr(world_from_clip));
   glUniformMatrix3fv(kLightFromWorld, 1, GL_FALSE, glm::value_ptr(light_from_world));
   glUniform1ui(kDiscCount, disc_count_);
+  glUniform1f(kPixelAngle, 2.0f / (clip_from_view[1][1] * static_cast<float>(picture_height)));
   cube_.bind(0);
   glBindSampler(0, 0);
   discs_.bindStorage(kBindDiscs);

@@ -2,6 +2,7 @@
 // both kinds of camera.
 layout(location = 1) uniform mat3 light_from_world;
 layout(location = 2) uniform uint disc_count;
+layout(location = 3) uniform float pixel_angle;  // radians that a pixel spans
 layout(binding = 0) uniform samplerCube sky;
 
 struct Disc {
@@ -22,7 +23,8 @@ void main() {
     vec3 to_disc = discs[i].direction_and_radius.xyz;
     // acos would lose the last digits just where discs are small.
     float angle = atan(length(cross(dir, to_disc)), dot(dir, to_disc));
-    float inside = clamp((discs[i].direction_and_radius.w - angle) / max(fwidth(angle), 1e-6) + 0.5, 0.0, 1.0);
+    // Not by derivatives: they are not to be trusted where a pixel is covered in part.
+    float inside = clamp((discs[i].direction_and_radius.w - angle) / pixel_angle + 0.5, 0.0, 1.0);
     radiance += inside * discs[i].radiance.rgb;
   }
   color = vec4(radiance, 0.0);

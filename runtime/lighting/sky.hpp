@@ -20,7 +20,7 @@ class Sky {
   // Into the bound framebuffer, where its depth is still that of the clear. Only the rotation of
   // view_from_world is used.
   void draw(const Environment& environment, const glm::mat4& view_from_world, const glm::mat4& clip_from_view,
-            gpu::Counters& counters) const;
+            std::uint32_t picture_height, gpu::Counters& counters) const;
 
  private:
   Sky() : discs_("sky discs") {}

@@ -1,0 +1,153 @@
+// lambent-demo as a user meets it: exit codes, one-line errors, pictures, the report.
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <sys/wait.h>
+
+#include "runtime/base/atomic_file.hpp"
+#include "runtime/spec/image.hpp"
+#include "tests/runtime/frame/bundle_builder.hpp"
+#include "tests/support/gpu_context.hpp"
+
+namespace lambent {
+namespace {
+
+struct Outcome {
+  int exit_code = -1;
+  std::string out, err;
+};
+
+class DemoProgram : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder = std::filesystem::path(::testing::TempDir()) /
+             ("demo-" + std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()));
+    std::filesystem::create_directories(folder);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder); }
+
+  Outcome run(const std::string& arguments) const {
+    const std::filesystem::path err = folder / "stderr.txt";
+    const std::string command = fmt::format("{} {} 2>{}", quoted(LAMBENT_DEMO), arguments, quoted(err));
+    Outcome outcome;
+    FILE* pipe = popen(command.c_str(), "r");
+    std::array<char, 4096> buffer{};
+    while (const std::size_t count = std::fread(buffer.data(), 1, buffer.size(), pipe))
+      outcome.out.append(buffer.data(), count);
+    const int status = pclose(pipe);
+    outcome.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    outcome.err = readTextFile(err).value_or("");
+    return outcome;
+  }
+
+  std::string bundle() const {
+    const std::filesystem::path path = folder / "sphere.lmb.glb";
+    testing::BundleBuilder().add({testing::sphereMesh(12, 24), {}}).write(path);
+    return quoted(path);
+  }
+
+  // As one word of a shell command.
+  static std::string quoted(const std::filesystem::path& path) { return fmt::format("'{}'", path.string()); }
+
+  std::filesystem::path folder;
+};
+
+bool deviceHere() {
+  return gpu::Context::createHeadless().has_value();
+}
+
+void expectOneLine(const std::string& text) {
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1) << text;
+  EXPECT_TRUE(text.starts_with("lambent-demo: ")) << text;
+}
+
+}  // namespace
+
+TEST_F(DemoProgram, WrongUsageIsExitCode2AndOneLine) {
+  for (const char* arguments :
+       {"", "a.glb --size 0x5", "a.glb --light moon:1", "a.glb --camera orbit:1", "a.glb --transfer some",
+        "a.glb --window foggy", "a.glb --headless a.jpg", "a.glb --exposure bright", "a.glb --frames 0",
+        "a.glb --rotate-light much", "a.glb --light-layout round", "a.glb --no-such-option"}) {
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.exit_code, 2) << arguments;
+    expectOneLine(outcome.err);
+    EXPECT_EQ(outcome.out, "") << arguments;
+  }
+}
+
+TEST_F(DemoProgram, HelpAndVersionAreExitCode0) {
+  EXPECT_EQ(run("--version").exit_code, 0);
+  const Outcome help = run("--help");
+  EXPECT_EQ(help.exit_code, 0);
+  for (const char* option : {"--light", "--light-layout", "--camera", "--size", "--headless", "--transfer",
+                             "--window", "--frames", "--rotate-light", "--exposure", "--json", "--version"})
+    EXPECT_NE(help.out.find(option), std::string::npos) << option;
+}
+
+TEST_F(DemoProgram, AMissingFileIsExitCode1AndNamed) {
+  const Outcome probe = run("a.glb --light nowhere.hdr --headless a.png");
+  EXPECT_EQ(probe.exit_code, 1);
+  expectOneLine(probe.err);
+  EXPECT_NE(probe.err.find("nowhere.hdr"), std::string::npos);
+  if (!deviceHere()) GTEST_SKIP() << "no OpenGL 4.5 here: the rest needs it";
+  const Outcome scene = run(quoted(folder / "lost.lmb.glb") + " --light constant:1,1,1 --headless a.png");
+  EXPECT_EQ(scene.exit_code, 1);
+  expectOneLine(scene.err);
+  EXPECT_NE(scene.err.find("lost.lmb.glb"), std::string::npos);
+}
+
+TEST_F(DemoProgram, WritesPicturesAndPrintsWhere) {
+  if (!deviceHere()) GTEST_SKIP() << "no OpenGL 4.5 here";
+  const std::string png = (folder / "a.png").string(), exr = (folder / "a.exr").string();
+  const Outcome display = run(bundle() + " --light constant:1,1,1 --size 96x64 --headless " + quoted(png));
+  ASSERT_EQ(display.exit_code, 0) << display.err;
+  EXPECT_EQ(display.out, png + "\n");
+  EXPECT_EQ(display.err, "");
+  const auto image = spec::readPng(png);
+  ASSERT_TRUE(image);
+  EXPECT_EQ(image->width, 96u);
+  ASSERT_EQ(run(bundle() + " --light constant:1,2,3 --size 64x64 --headless " + quoted(exr)).exit_code, 0);
+  const auto linear = spec::readExr(exr);
+  ASSERT_TRUE(linear);
+  const glm::vec4 centre = linear->texels[32 * 64 + 32];
+  for (int i = 0; i < 3; ++i) EXPECT_NEAR(centre[i], static_cast<float>(i + 1), 3e-3f);  // half-float basis
+  EXPECT_EQ(centre.a, 1.0f);
+}
+
+TEST_F(DemoProgram, ReportsAsJson) {
+  if (!deviceHere()) GTEST_SKIP() << "no OpenGL 4.5 here";
+  const std::string png = (folder / "a.png").string();
+  const Outcome outcome =
+      run(bundle() + " --light sun:0,40,5,50 --size 64x64 --frames 3 --json --headless " + quoted(png));
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const auto report = nlohmann::json::parse(outcome.out);
+  EXPECT_EQ(report["picture"], png);
+  EXPECT_EQ(report["size"], nlohmann::json({64, 64}));
+  EXPECT_EQ(report["gl_errors"], 0);
+  EXPECT_GT(report["bytes_resident"], 0);
+  EXPECT_GE(report["negative_pixels"], 0);
+  EXPECT_FALSE(report["renderer"].get<std::string>().empty());
+  const auto dispatches = [&](const char* frame) {
+    for (const auto& pass : report[frame]["passes"])
+      if (pass["name"] == "shade") return pass["dispatches"].get<int>();
+    return -1;
+  };
+  EXPECT_EQ(dispatches("first_frame"), 3);
+  EXPECT_EQ(dispatches("last_frame"), 0) << "a still frame shades nothing";
+  for (const auto& pass : report["last_frame"]["passes"]) EXPECT_TRUE(pass["gpu_ms"].is_number()) << pass;
+}
+
+TEST_F(DemoProgram, LeavesNoPictureWhereItCannotWrite) {
+  if (!deviceHere()) GTEST_SKIP() << "no OpenGL 4.5 here";
+  const Outcome outcome =
+      run(bundle() + " --light constant:1,1,1 --size 16x16 --headless " + quoted(folder / "no/such/a.png"));
+  EXPECT_EQ(outcome.exit_code, 1);
+  expectOneLine(outcome.err);
+}
+
+}  // namespace lambent

@@ -1,0 +1,207 @@
+#include "tests/runtime/frame/bundle_builder.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+
+#include "baker/compress/draco_encode.hpp"
+#include "runtime/bundle/transfer_codec.hpp"
+#include "runtime/sh/zonal.hpp"
+#include "runtime/spec/image.hpp"
+
+namespace lambent::testing {
+
+namespace {
+
+// Collects blobs; a payload's or image's view is the index of its blob.
+struct Store {
+  bundle::Description& description;
+  std::vector<bundle::Blob>& blobs;
+
+  std::uint32_t blob(bundle::Blob bytes) {
+    blobs.push_back(std::move(bytes));
+    return static_cast<std::uint32_t>(blobs.size() - 1);
+  }
+  std::uint32_t payload(bundle::PayloadType type, bundle::Blob bytes) {
+    const auto priority = static_cast<std::uint32_t>(description.payloads.size());
+    const std::uint64_t length = bytes.size();
+    description.payloads.push_back({.type = type,
+                                    .codec = bundle::PayloadCodec::Raw,
+                                    .view = blob(std::move(bytes)),
+                                    .raw_length = length,
+                                    .priority = priority});
+    return priority;
+  }
+};
+
+// Plane i carries coefficient i, 16 bits over its range; the mean is zero.
+bundle::DiffuseTransfer storeTransfer(Store& store, int order,
+                                      const std::vector<std::vector<float>>& vectors) {
+  const auto columns = static_cast<std::size_t>(order * order);
+  bundle::DiffuseTransfer transfer{.part = bundle::TransferPart::Direct,
+                                   .order = static_cast<std::uint32_t>(order),
+                                   .light_columns = 0,
+                                   .channels = 1,
+                                   .basis = 0,
+                                   .planes = {},
+                                   .error_bound = 1e-3f,
+                                   .error = 1e-4f};
+  std::vector<float> basis((1 + columns) * columns, 0.0f);
+  for (std::size_t i = 0; i < columns; ++i) basis[(1 + i) * columns + i] = 1.0f;
+  transfer.basis = store.payload(bundle::PayloadType::TransferBasis, bundle::encodeBasis(basis));
+  for (std::size_t i = 0; i < columns; ++i) {
+    float low = vectors[0][i], high = vectors[0][i];
+    for (const auto& vector : vectors) {
+      low = std::min(low, vector[i]);
+      high = std::max(high, vector[i]);
+    }
+    const float scale = (high - low) / 65535.0f;
+    std::vector<std::uint32_t> codes;
+    for (const auto& vector : vectors)
+      codes.push_back(scale > 0.0f ? static_cast<std::uint32_t>(std::lround((vector[i] - low) / scale)) : 0u);
+    transfer.planes.push_back(
+        {.payload = store.payload(bundle::PayloadType::WeightPlane, bundle::encodePlane(codes, 16)),
+         .bits = 16,
+         .offset = low,
+         .scale = scale,
+         .variance = 1.0f / static_cast<float>(columns)});
+  }
+  return transfer;
+}
+
+}  // namespace
+
+TransferOf openTransfer(int order) {
+  return [order](const glm::vec3& normal) {
+    std::vector<float> transfer(static_cast<std::size_t>(order * order));
+    sh::unoccludedTransfer(order, normal, transfer);
+    return transfer;
+  };
+}
+
+BundleBuilder& BundleBuilder::add(BuiltMesh mesh) {
+  meshes_.push_back(std::move(mesh));
+  return *this;
+}
+
+BundleBuilder& BundleBuilder::transfer(TransferOf transfer) {
+  transfer_ = std::move(transfer);
+  return *this;
+}
+
+BundleBuilder& BundleBuilder::groupRotation(const glm::quat& rest_rotation) {
+  rest_rotation_ = rest_rotation;
+  return *this;
+}
+
+std::int32_t BundleBuilder::addTexture(std::uint32_t width, std::uint32_t height,
+                                       const std::vector<std::uint8_t>& rgba, const gltf::Sampler& sampler) {
+  const std::vector<std::uint8_t> png = spec::encodePng({.width = width, .height = height, .texels = rgba});
+  const auto bytes = std::as_bytes(std::span(png));
+  images_.emplace_back(bytes.begin(), bytes.end());
+  textures_.push_back({.image = static_cast<std::int32_t>(images_.size() - 1), .sampler = sampler});
+  return static_cast<std::int32_t>(textures_.size() - 1);
+}
+
+void BundleBuilder::write(const std::filesystem::path& path) const {
+  bundle::Description description;
+  description.generator = {.program = "test", .version = "1", .isa = "any", .settings = {}};
+  std::vector<bundle::Blob> blobs;
+  Store store{description, blobs};
+  bundle::Group group;
+  group.name = "group";
+  group.rest_rotation = rest_rotation_;
+  group.bounds_min = glm::vec3(-10.0f);
+  group.bounds_max = glm::vec3(10.0f);
+  std::vector<std::vector<float>> vectors;
+  for (std::uint32_t i = 0; i < meshes_.size(); ++i) {
+    const BuiltMesh& mesh = meshes_[i];
+    const Result<baker::EncodedMesh> encoded = baker::encodeDraco(mesh.data, 1.0f / 16384.0f, "test mesh");
+    ASSERT_TRUE(encoded) << encoded.error().line();
+    const bundle::MeshData& decoded = encoded->decoded;
+    bundle::Primitive primitive{.view = store.blob(encoded->bytes),
+                                .attributes = encoded->attributes,
+                                .material = static_cast<std::int32_t>(i),
+                                .vertex_count = static_cast<std::uint32_t>(decoded.positions.size()),
+                                .index_count = static_cast<std::uint32_t>(decoded.indices.size()),
+                                .bounds_min = decoded.positions[0],
+                                .bounds_max = decoded.positions[0],
+                                .digest = bundle::meshDigest(decoded)};
+    for (const glm::vec3& position : decoded.positions) {
+      primitive.bounds_min = glm::min(primitive.bounds_min, position);
+      primitive.bounds_max = glm::max(primitive.bounds_max, position);
+    }
+    bundle::VertexRows rows;
+    rows.offsets.push_back(0);
+    const glm::mat3 group_from_mesh = glm::mat3_cast(glm::conjugate(rest_rotation_)) *
+                                      glm::transpose(glm::inverse(glm::mat3(mesh.world_from_mesh)));
+    for (const glm::vec3& normal : decoded.normals) {
+      rows.samples.push_back(static_cast<std::uint32_t>(vectors.size()));
+      rows.weights.push_back(1.0f);
+      rows.offsets.push_back(static_cast<std::uint32_t>(rows.samples.size()));
+      vectors.push_back(transfer_(glm::normalize(group_from_mesh * normal)));
+    }
+    description.meshes.push_back({.name = "mesh", .primitives = {primitive}});
+    description.materials.push_back(mesh.material);
+    gltf::Node node;
+    node.name = "node";
+    node.parent_from_node = mesh.world_from_mesh;
+    node.mesh = static_cast<std::int32_t>(i);
+    description.nodes.push_back(node);
+    description.roots.push_back(static_cast<std::int32_t>(i));
+    description.draws.push_back(
+        {.node = i,
+         .mesh = i,
+         .primitive = 0,
+         .group = 0,
+         .rows = store.payload(bundle::PayloadType::VertexRows, bundle::encodeRows(rows))});
+  }
+  for (std::uint32_t i = 0; i < images_.size(); ++i)
+    description.images.push_back({.name = "image", .mime_type = "image/png", .view = store.blob(images_[i])});
+  description.textures = textures_;
+  group.sample_count = static_cast<std::uint32_t>(vectors.size());
+  group.cells.push_back({.first_sample = 0,
+                         .sample_count = group.sample_count,
+                         .bounds_min = group.bounds_min,
+                         .bounds_max = group.bounds_max,
+                         .diffuse = {storeTransfer(store, order_, vectors)}});
+  description.groups.push_back(std::move(group));
+  const Result<void> written = bundle::write(path, description, blobs);
+  ASSERT_TRUE(written) << written.error().line();
+}
+
+bundle::MeshData sphereMesh(int rings, int segments) {
+  bundle::MeshData mesh;
+  constexpr float kPi = std::numbers::pi_v<float>;
+  for (int r = 0; r <= rings; ++r)
+    for (int s = 0; s <= segments; ++s) {
+      const float theta = kPi * static_cast<float>(r) / static_cast<float>(rings);
+      const float phi = 2.0f * kPi * static_cast<float>(s % segments) / static_cast<float>(segments);
+      const glm::vec3 normal(std::sin(theta) * std::sin(phi), std::cos(theta),
+                             std::sin(theta) * std::cos(phi));
+      mesh.positions.push_back(normal);
+      mesh.normals.push_back(glm::normalize(normal));
+    }
+  const auto at = [&](int r, int s) { return static_cast<std::uint32_t>(r * (segments + 1) + s); };
+  for (int r = 0; r < rings; ++r)
+    for (int s = 0; s < segments; ++s) {
+      if (r > 0) mesh.indices.insert(mesh.indices.end(), {at(r, s), at(r + 1, s), at(r, s + 1)});
+      if (r + 1 < rings)
+        mesh.indices.insert(mesh.indices.end(), {at(r, s + 1), at(r + 1, s), at(r + 1, s + 1)});
+    }
+  return mesh;
+}
+
+bundle::MeshData quadMesh() {
+  return {.positions = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}},
+          .normals = std::vector<glm::vec3>(4, glm::vec3(0, 0, 1)),
+          .texcoords0 = {{0, 1}, {1, 1}, {1, 0}, {0, 0}},
+          .texcoords1 = {},
+          .colors = {},
+          .indices = {0, 1, 2, 0, 2, 3}};
+}
+
+}  // namespace lambent::testing

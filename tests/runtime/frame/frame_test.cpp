@@ -1,0 +1,290 @@
+// Pictures with known answers, and what a frame may and may not do.
+#include "runtime/frame/frame.hpp"
+
+#include <numeric>
+
+#include <glm/geometric.hpp>
+#include <glm/gtc/matrix_transform.hpp>
+#include <gtest/gtest.h>
+
+#include "runtime/scene/bounds.hpp"
+#include "runtime/sh/image_layout.hpp"
+#include "tests/runtime/frame/bundle_builder.hpp"
+#include "tests/support/gpu_context.hpp"
+
+namespace lambent::frame {
+namespace {
+
+using testing::BundleBuilder;
+using testing::quadMesh;
+using testing::sphereMesh;
+
+gltf::Material colored(glm::vec4 color) {
+  gltf::Material material;
+  material.base_color = color;
+  return material;
+}
+
+// A world with one bundle, a light and a frame of 64 x 64.
+struct Stage {
+  std::filesystem::path path;
+  World world;
+  lighting::Environment environment;
+  std::optional<Frame> frame;
+  spec::OrbitCamera camera{
+      .azimuth_deg = 0.0f, .elevation_deg = 0.0f, .distance_radii = 2.5f, .fov_deg = 40.0f};
+
+  Stage(const BundleBuilder& builder, const std::vector<spec::Light>& lights, FrameOptions options = {})
+      : path(std::filesystem::path(::testing::TempDir()) /
+             (std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()) + ".lmb.glb")),
+        environment(*lighting::Environment::create(lights)) {
+    builder.write(path);
+    const Result<void> opened = world.open(path);
+    EXPECT_TRUE(opened) << opened.error().line();
+    if (!opened) return;
+    gpu::Counters counters;
+    const Result<void> loaded = world.uploadAll(counters);
+    EXPECT_TRUE(loaded) << loaded.error().line();
+    options.size = {64, 64};
+    Result<Frame> made = Frame::create(options, environment);
+    EXPECT_TRUE(made) << made.error().line();
+    if (made) frame.emplace(std::move(*made));
+  }
+  ~Stage() { std::filesystem::remove(path); }
+
+  void render() {
+    const scene::Box bounds = scene::worldBounds(world.registry());
+    const Result<void> done =
+        frame->render(world, environment, spec::orbitView(camera, bounds.min, bounds.max, 1.0f));
+    ASSERT_TRUE(done) << done.error().line();
+  }
+  spec::RgbaImage picture() {
+    render();
+    return frame->readLinear();
+  }
+  gpu::Counters counts(const std::string& pass) {
+    frame->timers().finish();
+    for (const gpu::PassTime& time : frame->timers().latest())
+      if (time.name == pass) return time.counters;
+    ADD_FAILURE() << "no pass " << pass;
+    return {};
+  }
+};
+
+const FrameOptions kLinear = [] {
+  FrameOptions options;
+  options.output = Output::Linear;
+  return options;
+}();
+const spec::Light kWhite = spec::ConstantLight{.radiance = glm::vec3(1.0f)};
+
+glm::vec4 at(const spec::RgbaImage& image, std::uint32_t x, std::uint32_t y) {
+  return image.texels[y * image.width + x];
+}
+
+std::size_t covered(const spec::RgbaImage& image) {
+  return static_cast<std::size_t>(std::count_if(image.texels.begin(), image.texels.end(),
+                                                [](const glm::vec4& texel) { return texel.a > 0.5f; }));
+}
+
+}  // namespace
+
+using FrameTest = testing::GpuTest;
+
+TEST_F(FrameTest, UniformLightShowsTheAlbedoOfAnOpenSphere) {
+  Stage stage(BundleBuilder().add({sphereMesh(24, 48), colored({0.8f, 0.5f, 0.2f, 1.0f})}), {kWhite},
+              kLinear);
+  const spec::RgbaImage image = stage.picture();
+  std::size_t count = 0;
+  for (const glm::vec4& texel : image.texels) {
+    if (texel.a == 0.0f) {
+      // Filtered, so equal up to rounding.
+      EXPECT_LT(glm::distance(texel, glm::vec4(1.0f, 1.0f, 1.0f, 0.0f)), 1e-6f) << "the sky covers nothing";
+      continue;
+    }
+    ++count;
+    // The basis is stored in half floats: 2^-11 relative.
+    EXPECT_LT(glm::distance(glm::vec3(texel), glm::vec3(0.8f, 0.5f, 0.2f)), 1e-3f);
+  }
+  // The box's half diagonal is sqrt(3) radii, the eye 2.5 of these away: the disc's radius is
+  // tan(asin(1/4.33)) on a picture of half height tan(20 degrees).
+  const double radius =
+      std::tan(std::asin(1.0 / (2.5 * std::sqrt(3.0)))) / std::tan(20.0 * 3.14159265 / 180.0) * 32.0;
+  EXPECT_NEAR(static_cast<double>(count), 3.14159265 * radius * radius, 0.03 * 64 * 64);
+  EXPECT_EQ(stage.frame->negativePixels(), 0u);
+}
+
+TEST_F(FrameTest, AStillFrameShadesAndUploadsNothing) {
+  Stage stage(
+      BundleBuilder().add({sphereMesh(12, 24), colored(glm::vec4(1.0f))}),
+      {spec::SunLight{.azimuth_deg = 90, .elevation_deg = 0, .angle_deg = 30, .radiance = glm::vec3(1.0f)}},
+      kLinear);
+  stage.render();
+  EXPECT_EQ(stage.counts("shade").dispatches, 3u) << "cells, samples, vertices";
+  EXPECT_EQ(stage.counts("raster").draws, 2u) << "the sphere and the sky";
+  stage.render();
+  EXPECT_EQ(stage.counts("shade").dispatches, 0u);
+  EXPECT_EQ(stage.counts("shade").uploaded_bytes, 0u);
+  EXPECT_EQ(stage.counts("light").uploaded_bytes, 0u);
+  EXPECT_EQ(stage.counts("raster").uploaded_bytes, 0u);
+  stage.camera.azimuth_deg = 40.0f;
+  stage.render();
+  EXPECT_EQ(stage.counts("shade").dispatches, 0u) << "diffuse light does not depend on the camera";
+  stage.environment.setTurn(5.0f);
+  stage.render();
+  EXPECT_EQ(stage.counts("shade").dispatches, 3u);
+}
+
+TEST_F(FrameTest, TheSunLightsTheSideThatFacesItAlsoInTurnedGroupsAndUnderATurnedLight) {
+  FrameOptions options = kLinear;
+  options.window = sh::Window::Off;  // E/pi of the side that faces it is 8 sin(20 degrees)², 0.94
+  const auto builder = BundleBuilder(5)
+                           .groupRotation(glm::angleAxis(1.1f, glm::normalize(glm::vec3(1, 2, -1))))
+                           .add({sphereMesh(24, 48), colored(glm::vec4(1.0f))});
+  Stage stage(
+      builder,
+      {spec::SunLight{.azimuth_deg = 90, .elevation_deg = 0, .angle_deg = 20, .radiance = glm::vec3(8.0f)}},
+      options);
+  const auto brightness = [&](std::uint32_t x, std::uint32_t y) { return at(stage.picture(), x, y).g; };
+  // Seen from +Z, +X is on the right.
+  EXPECT_GT(brightness(43, 32), 0.3f);
+  EXPECT_LT(brightness(21, 32), 0.1f);
+  // Turned by 90 degrees, +X goes to -Z: behind. By 180 to the left. By -90 to the front.
+  stage.environment.setTurn(180.0f);
+  EXPECT_GT(brightness(21, 32), 0.3f);
+  EXPECT_LT(brightness(43, 32), 0.1f);
+  stage.environment.setTurn(-90.0f);
+  EXPECT_GT(brightness(32, 32), 0.8f);
+  EXPECT_NEAR(brightness(21, 32), brightness(42, 32), 0.02f);
+  stage.environment.setTurn(90.0f);
+  EXPECT_LT(brightness(32, 32), 0.1f);
+}
+
+TEST_F(FrameTest, CullsBackFacesOfSingleSidedMaterialsOnly) {
+  gltf::Material both = colored(glm::vec4(1.0f));
+  both.double_sided = true;
+  for (const bool double_sided : {false, true}) {
+    Stage stage(BundleBuilder().add({quadMesh(), double_sided ? both : colored(glm::vec4(1.0f))}), {kWhite},
+                kLinear);
+    EXPECT_GT(covered(stage.picture()), 500u);
+    stage.camera.azimuth_deg = 180.0f;
+    EXPECT_EQ(covered(stage.picture()) > 500u, double_sided);
+  }
+}
+
+TEST_F(FrameTest, MirroredNodesKeepTheirFronts) {
+  Stage stage(BundleBuilder().add(
+                  {quadMesh(), colored(glm::vec4(1.0f)), glm::scale(glm::mat4(1.0f), glm::vec3(-1, 1, 1))}),
+              {kWhite}, kLinear);
+  EXPECT_GT(covered(stage.picture()), 500u);
+  stage.camera.azimuth_deg = 180.0f;
+  EXPECT_EQ(covered(stage.picture()), 0u);
+}
+
+TEST_F(FrameTest, TexturesAreUprightAndSrgb) {
+  BundleBuilder builder;
+  gltf::Material material;
+  // Rows from the top: red, green; blue, grey 188 = 0.5029 linear with alpha 0.
+  material.base_color_texture.texture =
+      builder.addTexture(2, 2, {255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 255, 188, 188, 188, 0},
+                         {.wrap_s = GL_CLAMP_TO_EDGE,
+                          .wrap_t = GL_CLAMP_TO_EDGE,
+                          .mag_filter = GL_NEAREST,
+                          .min_filter = GL_NEAREST});
+  {
+    Stage stage(BundleBuilder(builder).add({quadMesh(), material}), {kWhite}, kLinear);
+    const spec::RgbaImage image = stage.picture();
+    EXPECT_LT(glm::distance(at(image, 26, 26), glm::vec4(1, 0, 0, 1)), 1e-3f);
+    EXPECT_LT(glm::distance(at(image, 37, 26), glm::vec4(0, 1, 0, 1)), 1e-3f);
+    EXPECT_LT(glm::distance(at(image, 26, 37), glm::vec4(0, 0, 1, 1)), 1e-3f);
+    EXPECT_LT(glm::distance(at(image, 37, 37), glm::vec4(glm::vec3(0.5029f), 1)), 2e-3f)
+        << "opaque: alpha ignored";
+  }
+  material.alpha_mode = gltf::AlphaMode::Mask;
+  Stage stage(BundleBuilder(builder).add({quadMesh(), material}), {kWhite}, kLinear);
+  const spec::RgbaImage image = stage.picture();
+  EXPECT_EQ(at(image, 37, 37).a, 0.0f) << "masked away";
+  EXPECT_EQ(at(image, 26, 26).a, 1.0f);
+}
+
+TEST_F(FrameTest, BlendsOverWhatStandsBehind) {
+  gltf::Material glass = colored({1.0f, 0.0f, 0.0f, 0.25f});
+  glass.alpha_mode = gltf::AlphaMode::Blend;
+  BundleBuilder builder;
+  builder.add({quadMesh(), glass, glm::translate(glm::mat4(1.0f), glm::vec3(0, 0, 0.5f))});
+  builder.add({quadMesh(), colored({0.0f, 1.0f, 0.0f, 1.0f}), glm::scale(glm::mat4(1.0f), glm::vec3(0.5f))});
+  Stage stage(builder, {kWhite}, kLinear);
+  const spec::RgbaImage image = stage.picture();
+  EXPECT_LT(glm::distance(at(image, 32, 32), glm::vec4(0.25f, 0.75f, 0.0f, 1.0f)), 2e-3f);
+  // Beside the green quad the sky shines through the glass.
+  EXPECT_LT(glm::distance(at(image, 12, 32), glm::vec4(1.0f, 0.75f, 0.75f, 0.25f)), 2e-3f);
+}
+
+TEST_F(FrameTest, CountsNegativePixelsAndClampsThem) {
+  const auto dark = [](const glm::vec3&) { return std::vector<float>(9, -0.1f); };
+  Stage stage(BundleBuilder().transfer(dark).add({quadMesh(), colored(glm::vec4(1.0f))}), {kWhite}, kLinear);
+  const spec::RgbaImage image = stage.picture();
+  EXPECT_EQ(stage.frame->negativePixels(), covered(image));
+  EXPECT_GT(covered(image), 0u);
+  EXPECT_EQ(at(image, 32, 32), glm::vec4(0, 0, 0, 1));
+}
+
+TEST_F(FrameTest, DisplayPicturesAreExposedAndOpaque) {
+  FrameOptions options;
+  options.exposure_ev = 0.0f;
+  Stage stage(BundleBuilder().add({sphereMesh(12, 24), colored(glm::vec4(glm::vec3(0.5f), 1.0f))}), {kWhite},
+              options);
+  stage.render();
+  const spec::Rgba8Image image = stage.frame->readDisplay();
+  const std::size_t centre = 4 * (32 * 64 + 32);
+  // 0.5 - 0.04, coded: 1.055 * 0.46^(1/2.4) - 0.055 = 0.708.
+  EXPECT_NEAR(image.texels[centre], 181, 2);
+  EXPECT_EQ(image.texels[centre + 3], 255);
+  EXPECT_EQ(image.texels[3], 255) << "the sky too";
+}
+
+TEST_F(FrameTest, TheSkyShowsTheProbeWhereItStands) {
+  // A smooth picture of the sphere with a colour for each axis.
+  spec::RgbImage probe{.width = 128, .height = 64, .texels = {}};
+  for (std::uint32_t y = 0; y < probe.height; ++y)
+    for (std::uint32_t x = 0; x < probe.width; ++x)
+      probe.texels.push_back(0.5f +
+                             0.4f * glm::vec3(sh::texelDirection(sh::ImageLayout::LatLong, 128, 64,
+                                                                 static_cast<int>(x), static_cast<int>(y))));
+  const std::filesystem::path file = std::filesystem::path(::testing::TempDir()) / "axes.hdr";
+  ASSERT_TRUE(spec::writeHdr(file, probe));
+  Stage stage(BundleBuilder().add({sphereMesh(12, 24), colored(glm::vec4(1.0f))}),
+              {spec::ProbeLight{.file = file, .layout = {}}}, kLinear);
+  for (const glm::vec2 place : {glm::vec2(0, 0), glm::vec2(90, 20), glm::vec2(200, -60), glm::vec2(300, 70)})
+    for (const float turn : {0.0f, 90.0f}) {
+      stage.camera.azimuth_deg = place.x;
+      stage.camera.elevation_deg = place.y;
+      stage.environment.setTurn(turn);
+      const scene::Box bounds = scene::worldBounds(stage.world.registry());
+      const spec::View view = spec::orbitView(stage.camera, bounds.min, bounds.max, 1.0f);
+      const spec::RgbaImage image = stage.picture();
+      // The ray through the centre of the top left pixel.
+      const glm::vec4 far_clip(-63.0f / 64.0f, 63.0f / 64.0f, 1.0f, 1.0f);
+      const glm::vec4 far_ws = glm::inverse(view.clip_from_view * view.view_from_world) * far_clip;
+      const glm::vec3 dir_ws = glm::normalize(glm::vec3(far_ws) / far_ws.w - view.eye_ws);
+      const glm::vec3 expected = spec::radiance(stage.environment.probes()[0],
+                                                glm::transpose(stage.environment.worldFromLight()) * dir_ws);
+      // RGBE has 8 bits, the cube map half a degree to a texel.
+      EXPECT_LT(glm::distance(glm::vec3(at(image, 0, 0)), expected), 0.01f) << place.x << " turned " << turn;
+    }
+  std::filesystem::remove(file);
+}
+
+TEST_F(FrameTest, ManyDrawsOfOneTextureAreOneCall) {
+  BundleBuilder builder;
+  for (int i = 0; i < 20; ++i)
+    builder.add({quadMesh(), colored(glm::vec4(1.0f)),
+                 glm::translate(glm::mat4(1.0f), glm::vec3(static_cast<float>(i), 0, 0))});
+  Stage stage(builder, {kWhite}, kLinear);
+  stage.render();
+  EXPECT_EQ(stage.counts("raster").draws, 21u);
+  EXPECT_EQ(stage.counts("raster").draw_calls, 2u);
+  EXPECT_EQ(stage.counts("shade").dispatches, 3u);
+}
+
+}  // namespace lambent::frame

@@ -1,0 +1,63 @@
+#include "runtime/lighting/group_lights.hpp"
+
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+
+#include "runtime/sh/zonal.hpp"
+#include "tests/support/gpu_context.hpp"
+
+namespace lambent::lighting {
+namespace {
+
+Environment sunAlong(float azimuth_deg) {
+  return *Environment::create(
+      {spec::SunLight{.azimuth_deg = azimuth_deg, .elevation_deg = 0, .angle_deg = 30}});
+}
+
+}  // namespace
+
+using GroupLightsTest = testing::GpuTest;
+
+TEST_F(GroupLightsTest, GiveEachGroupTheLightInItsOwnFrame) {
+  GroupLights lights;
+  gpu::Counters counters;
+  // Group 1 is turned by 90 degrees about +Y: its +X is the world's -Z, so a sun on +X stands on its +Z.
+  const GroupPlace places[] = {
+      {.order = 5},
+      {.world_from_group = glm::angleAxis(1.5707963f, glm::vec3(0, 1, 0)), .order = 4, .light_columns = 2}};
+  lights.update(sunAlong(90), sh::Window::Off, places, counters);
+  EXPECT_EQ(lights.firstOf(0), 0u);
+  EXPECT_EQ(lights.firstOf(1), 64u);
+  ASSERT_EQ(lights.coefficients().size(), 64u + 64u + 2u);
+  const sh::LightVector upright = sunAlong(90).light().truncated(5),
+                        turned = sunAlong(0).light().truncated(4);
+  for (std::size_t i = 0; i < 64; ++i) {
+    EXPECT_LT(glm::distance(glm::vec3(lights.coefficients()[i]), upright.c[i]), 1e-5f);
+    EXPECT_LT(glm::distance(glm::vec3(lights.coefficients()[64 + i]), turned.c[i]), 1e-5f);
+  }
+}
+
+TEST_F(GroupLightsTest, HaveNewVersionsOnlyWhereSomethingChanged) {
+  GroupLights lights;
+  gpu::Counters counters;
+  Environment environment = sunAlong(10);
+  std::vector<GroupPlace> places = {{.order = 3}, {.order = 3}};
+  lights.update(environment, sh::Window::Auto, places, counters);
+  const std::uint64_t first = lights.versionOf(0), second = lights.versionOf(1),
+                      uploaded = counters.uploaded_bytes;
+  lights.update(environment, sh::Window::Auto, places, counters);
+  EXPECT_EQ(lights.versionOf(0), first);
+  EXPECT_EQ(counters.uploaded_bytes, uploaded);
+  places[1].world_from_group = glm::angleAxis(0.1f, glm::vec3(0, 0, 1));
+  lights.update(environment, sh::Window::Auto, places, counters);
+  EXPECT_EQ(lights.versionOf(0), first);
+  EXPECT_GT(lights.versionOf(1), second);
+  environment.setTurn(1.0f);
+  lights.update(environment, sh::Window::Auto, places, counters);
+  EXPECT_GT(lights.versionOf(0), first);
+  const std::uint64_t before = lights.versionOf(0);
+  lights.update(environment, sh::Window::Hann, places, counters);
+  EXPECT_GT(lights.versionOf(0), before) << "the window is part of the light";
+}
+
+}  // namespace lambent::lighting
