@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <exception>
+#include <span>
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
@@ -45,8 +46,29 @@ glm::vec4 texel(const DecodedImage& image, const gltf::Sampler& sampler, std::in
   return {srgbTable()[p[0]], srgbTable()[p[1]], srgbTable()[p[2]], static_cast<float>(p[3]) / 255.0f};
 }
 
+// Whether the chunks of a PNG lie within its bytes up to the last one, IEND. (OpenImageIO leaks when libpng
+// meets the end of the file early.) Source: PNG specification, section 5.
+bool isWholePng(std::span<const std::byte> png) {
+  constexpr std::size_t kSignature = 8, kFrame = 12;  // a chunk's length, type and check sum
+  constexpr std::uint32_t kEnd = 0x49454e44;
+  const auto u32 = [&](std::size_t at) {
+    std::uint32_t value = 0;
+    for (std::size_t i = 0; i < 4; ++i) value = (value << 8) | std::to_integer<std::uint32_t>(png[at + i]);
+    return value;
+  };
+  for (std::size_t at = kSignature; at + kFrame <= png.size();) {
+    const std::size_t length = u32(at);
+    if (length > png.size() - at - kFrame) return false;
+    if (u32(at + 4) == kEnd) return true;
+    at += kFrame + length;
+  }
+  return false;
+}
+
 Result<DecodedImage> decode(const SceneImage& image) {
   const std::string subject = fmt::format("image \"{}\"", image.name);
+  if (image.mime_type == "image/png" && !isWholePng(image.file_bytes))
+    return fail(subject, "is truncated", "save it again");
   OIIO::Filesystem::IOMemReader memory(const_cast<std::byte*>(image.file_bytes.data()),
                                        image.file_bytes.size());
   OIIO::ImageSpec wanted;
