@@ -19,10 +19,8 @@ Result<void> writePicture(const frame::Frame& frame, const Options& options) {
 }
 
 // Errors of a picture that the device cannot hold are told before anything is loaded.
-Result<void> checkSize(const spec::Size& size) {
-  GLint limit = 0;
-  glGetIntegerv(GL_MAX_TEXTURE_SIZE, &limit);
-  if (size.width > static_cast<std::uint32_t>(limit) || size.height > static_cast<std::uint32_t>(limit))
+Result<void> checkSize(const spec::Size& size, std::uint32_t limit) {
+  if (size.width > limit || size.height > limit)
     return fail("--size", fmt::format("this device draws at most {} pixels a side", limit),
                 "ask for a smaller picture");
   return {};
@@ -35,11 +33,10 @@ Result<void> runHeadless(const Options& options) {
   Result<lighting::Environment> environment = lighting::Environment::create(options.lights);
   if (!environment) return failAgain(environment.error());
   for (const std::string& notice : environment->notices()) fmt::print(stderr, "lambent-demo: {}\n", notice);
-  environment->setTurn(options.rotate_light_deg);
 
   Result<gpu::Context> context = gpu::Context::createHeadless();
   if (!context) return failAgain(context.error());
-  if (Result<void> fits = checkSize(options.size); !fits) return fits;
+  if (Result<void> fits = checkSize(options.size, context->info().max_texture_side); !fits) return fits;
 
   const auto start = std::chrono::steady_clock::now();
   Report report;
@@ -66,6 +63,9 @@ Result<void> runHeadless(const Options& options) {
                            *environment);
   if (!frame) return failAgain(frame.error());
   for (std::uint32_t i = 0; i < options.frames; ++i) {
+    // Over several frames the light turns into its place, so that what a turn costs can be read off.
+    environment->setTurn(options.rotate_light_deg * static_cast<float>(i + 1) /
+                         static_cast<float>(options.frames));
     if (Result<void> rendered = frame->render(world, *environment, *view); !rendered) return rendered;
     if (i == 0) {
       frame->timers().finish();

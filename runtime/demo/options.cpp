@@ -68,7 +68,9 @@ void declare(CLI::App& app, Words& words) {
     CLI::Option* option = app.add_option(row.name, words.*row.field, row.help)->type_name(row.type);
     if (!(words.*row.field).empty()) option->capture_default_str();
   }
-  app.add_option("--frames", words.frames, "Frames to render headless before the picture is taken")
+  app.add_option("--frames", words.frames,
+                 "Frames to render headless, the last one is written;\nthe light turns through "
+                 "--rotate-light over them")
       ->type_name("N")
       ->capture_default_str()
       ->check(CLI::Range(1u, 1'000'000u).description(""));

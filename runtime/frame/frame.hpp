@@ -26,7 +26,7 @@ namespace lambent::frame {
 
 enum class Output {
   Linear,  // float RGBA, one ray per pixel centre, textures at full resolution: pictures for comparison
-  Display  // tone-mapped, sRGB-coded, four samples a pixel
+  Display  // tone-mapped, sRGB-coded, four samples per pixel
 };
 
 struct FrameOptions {

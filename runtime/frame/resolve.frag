@@ -4,6 +4,8 @@
 
 layout(location = 0) out vec4 color;
 
+const float kLargest = 65504.0;  // brighter suns are infinite in half floats, and the curve would make NaN of that
+
 // Khronos PBR Neutral: colours up to 0.76 pass almost unchanged (4 % are taken off as the specular part that it is
 // meant for and Lambert lacks: here that only deepens blacks), brighter ones are compressed and drift to white.
 // https://github.com/KhronosGroup/ToneMapping/blob/main/PBR_Neutral/README.md
@@ -37,7 +39,7 @@ void main() {
 #ifdef LAMBENT_LINEAR
     sum += vec4(clamped, linear.a);
 #else
-    sum += vec4(srgbFromLinear(toneCurve(exposure.scale * clamped)), 1.0);
+    sum += vec4(srgbFromLinear(toneCurve(exposure.scale * min(clamped, vec3(kLargest)))), 1.0);
 #endif
   }
   if (negative) atomicAdd(exposure.negative_pixels, 1u);

@@ -30,6 +30,7 @@ struct DeviceInfo {
   std::uint64_t max_storage_bytes = 0;  // of one shader storage block
   std::uint32_t max_vertex_storage_blocks = 0;
   std::uint32_t max_samples = 0;
+  std::uint32_t max_texture_side = 0;
 };
 
 class Context {

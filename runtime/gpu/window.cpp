@@ -1,7 +1,6 @@
 #include "runtime/gpu/window.hpp"
 
 #include <algorithm>
-#include <cstdlib>
 #include <utility>
 
 #define GLFW_INCLUDE_NONE  // epoxy has OpenGL's declarations
@@ -46,14 +45,6 @@ struct Window::State {
     state.last_y = y;
   }
 };
-
-bool Window::displayAvailable() {
-  const auto set = [](const char* name) {
-    const char* value = std::getenv(name);
-    return value != nullptr && *value != '\0';
-  };
-  return set("DISPLAY") || set("WAYLAND_DISPLAY");
-}
 
 Window::Window(std::unique_ptr<State> state) : state_(std::move(state)) {}
 Window::Window(Window&&) noexcept = default;

@@ -27,8 +27,6 @@ class Window {
  public:
   static Result<Window> create(const std::string& title, std::uint32_t width, std::uint32_t height,
                                const ContextOptions& options);
-  // Whether a display to open a window on seems to be there.
-  static bool displayAvailable();
 
   Window(Window&&) noexcept;
   Window& operator=(Window&&) noexcept;

@@ -12,7 +12,6 @@ namespace {
 // one the list: its length, padding to 16 bytes, items.
 constexpr std::size_t kBlockBytes = 256;
 constexpr std::size_t kHeaderBytes = 16;
-constexpr std::uint32_t kMaxGroupsX = 65535;
 
 std::size_t listBytes(std::size_t item_count) {
   return kHeaderBytes + item_count * sizeof(WorkItem);

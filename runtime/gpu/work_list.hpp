@@ -23,6 +23,8 @@ using BatchKey = std::vector<std::uint32_t>;
 
 class WorkList {
  public:
+  static constexpr std::uint32_t kMaxGroupsX = 65535;
+
   explicit WorkList(std::string_view label) : buffer_(label) {}
 
   void clear() { batches_.clear(); }

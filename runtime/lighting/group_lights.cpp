@@ -7,12 +7,6 @@
 
 namespace lambent::lighting {
 
-namespace {
-
-constexpr std::uint32_t kLightStride = sh::kMaxCoefficients;
-
-}  // namespace
-
 void GroupLights::update(const Environment& environment, sh::Window window,
                          std::span<const GroupPlace> groups, gpu::Counters& counters) {
   const bool light_changed = environment.version() != environment_version_ || window != window_;
@@ -23,7 +17,7 @@ void GroupLights::update(const Environment& environment, sh::Window window,
     std::uint32_t first = 0;
     for (std::size_t i = 0; i < groups.size(); ++i) {
       groups_[i].first = first;
-      first += kLightStride + groups[i].light_columns;
+      first += kStride + groups[i].light_columns;
     }
     coefficients_.assign(first, glm::vec4(0.0f));
   }
@@ -39,7 +33,7 @@ void GroupLights::update(const Environment& environment, sh::Window window,
     if (!light) light = sh::applyWindow(environment.light().truncated(order), window);
     const glm::dquat group_from_world = glm::conjugate(glm::dquat(group.place.world_from_group));
     const sh::LightVector light_group = sh::Rotation(group_from_world, order).apply(*light);
-    for (std::uint32_t k = 0; k < kLightStride; ++k)
+    for (std::uint32_t k = 0; k < kStride; ++k)
       coefficients_[group.first + k] = glm::vec4(light_group.c[k], 0.0f);
   }
   environment_version_ = environment.version();

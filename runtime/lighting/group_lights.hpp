@@ -27,6 +27,8 @@ struct GroupPlace {
 
 class GroupLights {
  public:
+  static constexpr std::uint32_t kStride = sh::kMaxCoefficients;  // vec4s of a block before its light columns
+
   GroupLights() : table_("group lights") {}
 
   // Does nothing if neither the environment, the window nor any group changed.

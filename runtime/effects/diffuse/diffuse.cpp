@@ -6,6 +6,9 @@
 
 namespace lambent::effects::diffuse {
 
+static_assert(kLightStride == lighting::GroupLights::kStride &&
+              kMaxWorkGroupsX == gpu::WorkList::kMaxGroupsX);
+
 namespace {
 
 constexpr gpu::FindText kShaders[] = {&embedded::lambent_effects_diffuse::find};
