@@ -1,5 +1,8 @@
 #include "baker/transport/group_geometry.hpp"
 
+#include <utility>
+
+#include <glm/geometric.hpp>
 #include <glm/gtc/matrix_inverse.hpp>
 
 namespace lambent::baker {
@@ -16,7 +19,7 @@ void append(const PlannedDraw& draw, const bundle::MeshData& mesh, const gltf::M
   DrawGeometry out{.first_vertex = static_cast<std::uint32_t>(geometry.positions.size()),
                    .vertex_count = static_cast<std::uint32_t>(mesh.positions.size()),
                    .first_triangle = static_cast<std::uint32_t>(geometry.triangles.size()),
-                   .triangle_count = static_cast<std::uint32_t>(mesh.indices.size() / 3),
+                   .triangle_count = 0,
                    .material = material_index,
                    .back = draw.back};
   const glm::mat3 linear(draw.group_from_mesh);
@@ -35,7 +38,13 @@ void append(const PlannedDraw& draw, const bundle::MeshData& mesh, const gltf::M
   for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
     glm::uvec3 triangle(mesh.indices[i], mesh.indices[i + 1], mesh.indices[i + 2]);
     if (reversed) std::swap(triangle.y, triangle.z);
-    geometry.triangles.push_back(triangle + out.first_vertex);
+    triangle += out.first_vertex;
+    const glm::vec3 a = geometry.positions[triangle.x], b = geometry.positions[triangle.y],
+                    c = geometry.positions[triangle.z];
+    if (glm::cross(b - a, c - a) == glm::vec3(0.0f))
+      continue;  // no surface: rays must not come to depend on it
+    geometry.triangles.push_back(triangle);
+    ++out.triangle_count;
   }
   geometry.draws.push_back(out);
 }

@@ -92,7 +92,11 @@ class OriginDealer {
   std::span<const SampleOrigin> origins_;
 };
 
-// Fills one packet; lanes below their origin's horizon are invalid.
+bool isAbove(glm::vec3 direction, const SampleOrigin& origin) {
+  return glm::dot(direction, origin.geometric_normal) > 0.0f;
+}
+
+// Fills one packet; lanes below the horizons of all origins are invalid.
 struct Packet {
   alignas(64) RTCRayHit16 rays;
   alignas(64) std::array<int, kPacketWidth> valid;
@@ -114,14 +118,17 @@ struct Packet {
       ray.flags[k] = 0;
     }
     for (std::size_t k = 0; k < kPacketWidth; ++k) {
+      const glm::vec3 direction(ray.dir_x[k], ray.dir_y[k], ray.dir_z[k]);
       origin[k] = dealer.pick(first + k);
+      // Below this face's horizon the ray starts from the next face that it is above, so that a convex body
+      // loses nothing of its smooth normals' hemispheres.
+      for (std::size_t tries = 1; tries < origins.size() && !isAbove(direction, origins[origin[k]]); ++tries)
+        origin[k] = origin[k] + 1 == origins.size() ? 0 : origin[k] + 1;
       const SampleOrigin& o = origins[origin[k]];
       ray.org_x[k] = o.position.x;
       ray.org_y[k] = o.position.y;
       ray.org_z[k] = o.position.z;
-      const float above = ray.dir_x[k] * o.geometric_normal.x + ray.dir_y[k] * o.geometric_normal.y +
-                          ray.dir_z[k] * o.geometric_normal.z;
-      valid[k] = above > 0.0f ? -1 : 0;
+      valid[k] = isAbove(direction, o) ? -1 : 0;
     }
   }
 };

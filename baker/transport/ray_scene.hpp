@@ -28,7 +28,7 @@ class RayScene {
   ~RayScene();
 
   // Bit k of masks[p] is set where ray 16 p + k of the table, turned by `frame` (group_from_local), is
-  // blocked. Rays are dealt out over the origins by their weights; below an origin's geometric horizon they
+  // blocked. Rays are dealt out over the origins by their weights; below the horizons of all of them they
   // are blocked untraced. `origins` must not be empty; returns how many rays were traced.
   std::uint32_t trace(std::span<const SampleOrigin> origins, const glm::mat3& frame,
                       const DirectionTable& table, std::span<std::uint16_t> masks) const;

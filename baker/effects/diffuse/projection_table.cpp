@@ -4,7 +4,7 @@
 #include <bit>
 #include <cassert>
 
-#include <Eigen/QR>
+#include <Eigen/SVD>
 #include <glm/vec3.hpp>
 
 #include "runtime/sh/basis.hpp"
@@ -15,14 +15,23 @@ namespace lambent::baker {
 namespace {
 
 // The smallest change (least squares) of equal weights that makes the quadrature of every y_i max(z, 0)/pi
-// exact. Harmonics are nearly dependent on a hemisphere, hence the rank-revealing solver.
+// exact. Harmonics are nearly dependent on a hemisphere, hence the rank-revealing solver. With few rays for
+// the order exact weights may turn negative, and uniform light could come out above albedo: then the
+// combinations of harmonics that the hemisphere hardly shows are left to equal weights, more of them until
+// every weight is positive.
 Eigen::VectorXd exactWeights(const Eigen::MatrixXd& basis, const Eigen::VectorXd& exact) {
   const Eigen::Index rays = basis.cols();
   const Eigen::VectorXd equal = Eigen::VectorXd::Constant(rays, 1.0 / static_cast<double>(rays));
-  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
-  solver.setThreshold(1e-10);
-  solver.compute(basis);
-  return equal + solver.solve(exact - basis * equal);
+  const Eigen::BDCSVD<Eigen::MatrixXd> svd(basis, Eigen::ComputeThinU | Eigen::ComputeThinV);
+  const Eigen::VectorXd residual = svd.matrixU().transpose() * (exact - basis * equal);
+  for (double threshold = 1e-10;; threshold *= 10.0) {
+    Eigen::VectorXd change = Eigen::VectorXd::Zero(rays);
+    for (Eigen::Index i = 0; i < residual.size(); ++i)
+      if (svd.singularValues()(i) > threshold * svd.singularValues()(0))
+        change += residual(i) / svd.singularValues()(i) * svd.matrixV().col(i);
+    const Eigen::VectorXd weights = equal + change;
+    if (weights.minCoeff() > 0.0) return weights / weights.sum();
+  }
 }
 
 }  // namespace

@@ -19,7 +19,7 @@ class ProjectionTable {
   // Shadowed transfer in the local frame from the blocked masks of RayScene::trace. out: order² coefficients.
   void project(std::span<const std::uint16_t> blocked, std::span<float> out) const;
 
-  // The weights of the rays: near 1/rays, all positive for at least 128 rays. Sum to 1.
+  // The weights of the rays: near 1/rays, all positive. Sum to 1.
   std::span<const double> weights() const { return weights_; }
 
  private:

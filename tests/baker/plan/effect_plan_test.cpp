@@ -1,0 +1,51 @@
+#include "baker/plan/effect_plan.hpp"
+
+#include <algorithm>
+
+#include <gtest/gtest.h>
+
+#include "baker/effects/effect_list.hpp"
+#include "tests/support/shapes.hpp"
+
+namespace lambent::baker {
+namespace {
+
+using testing::grid;
+using testing::sceneOf;
+
+bool leavesOut(const Scene& scene, const std::string& words) {
+  const EffectPlan plan = makePlan(scene, effectList());
+  return std::any_of(plan.left_out.begin(), plan.left_out.end(),
+                     [&](const std::string& sentence) { return sentence.find(words) != std::string::npos; });
+}
+
+TEST(EffectPlan, BakesDiffuseTransferForSurfacesAndSaysWhy) {
+  const EffectPlan plan = makePlan(sceneOf({grid({0, 0, 0}, 1.0f, 1)}), effectList());
+  ASSERT_EQ(plan.effects.size(), 1u);
+  EXPECT_EQ(plan.effects[0].effect, "diffuse");
+  EXPECT_TRUE(plan.effects[0].baked);
+  EXPECT_NE(plan.effects[0].reason.find("1 draw"), std::string::npos);
+  EXPECT_TRUE(plan.left_out.empty());
+}
+
+TEST(EffectPlan, OfNothingBakesNothing) {
+  const EffectPlan plan = makePlan(Scene{}, effectList());
+  EXPECT_FALSE(plan.effects[0].baked);
+}
+
+TEST(EffectPlan, SaysWhatTheBakeWillNotShow) {
+  Scene scene = sceneOf({grid({0, 0, 0}, 1.0f, 1), grid({0, 1, 0}, 1.0f, 1)});
+  EXPECT_FALSE(leavesOut(scene, "Metallic"));
+  scene.materials[0].metallic = 1.0f;
+  EXPECT_TRUE(leavesOut(scene, "Metallic"));
+  EXPECT_FALSE(leavesOut(scene, "Emissive"));
+  scene.materials[0].emissive = {1, 0, 0};
+  EXPECT_TRUE(leavesOut(scene, "Emissive"));
+  EXPECT_FALSE(leavesOut(scene, "Rigid groups"));
+  scene.nodes[1].animated = true;
+  EXPECT_TRUE(leavesOut(scene, "Animations"));
+  EXPECT_TRUE(leavesOut(scene, "Rigid groups"));
+}
+
+}  // namespace
+}  // namespace lambent::baker

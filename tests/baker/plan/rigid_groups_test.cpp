@@ -1,0 +1,79 @@
+#include "baker/plan/rigid_groups.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/shapes.hpp"
+
+namespace lambent::baker {
+namespace {
+
+using testing::grid;
+using testing::sceneOf;
+
+// Node 0 holds nodes 1 and 2; each has a mesh.
+Scene family() {
+  Scene scene = sceneOf({grid({0, 0, 0}, 1.0f, 1), grid({0, 0, 0}, 1.0f, 1), grid({0, 0, 0}, 1.0f, 1)});
+  scene.roots = {0};
+  scene.nodes[0].children = {1, 2};
+  scene.nodes[1].parent = scene.nodes[2].parent = 0;
+  return scene;
+}
+
+TEST(RigidGroups, OfAStillSceneAreOne) {
+  const auto groups = findRigidGroups(family());
+  ASSERT_EQ(groups.size(), 1u);
+  EXPECT_EQ(groups[0].root, -1);
+  EXPECT_EQ(groups[0].draws.size(), 3u);
+}
+
+TEST(RigidGroups, MovableAndAnimatedNodesTakeTheirDescendantsAlong) {
+  Scene scene = family();
+  scene.nodes[0].movable = true;
+  scene.nodes[0].name = "cart";
+  scene.nodes[2].animated = true;
+  const auto groups = findRigidGroups(scene);
+  ASSERT_EQ(groups.size(), 2u);  // nothing is left for the static group
+  EXPECT_EQ(groups[0].name, "cart");
+  EXPECT_EQ(groups[0].draws.size(), 2u);
+  EXPECT_EQ(groups[1].root, 2);
+  EXPECT_EQ(groups[1].draws[0].node, 2u);
+}
+
+TEST(RigidGroups, FrameIsRotationAndPlaceWithoutScale) {
+  Scene scene = sceneOf({grid({0, 0, 0}, 1.0f, 1)});
+  scene.nodes[0].movable = true;
+  const glm::quat turn = glm::angleAxis(0.7f, glm::normalize(glm::vec3(1, 2, -1)));
+  for (const glm::vec3 scale : {glm::vec3(1.0f), glm::vec3(0.01f), glm::vec3(2, 3, 5), glm::vec3(-2, 2, 2)}) {
+    scene.nodes[0].parent_from_node = glm::translate(glm::mat4(1.0f), {4, 5, 6}) * glm::mat4_cast(turn) *
+                                      glm::scale(glm::mat4(1.0f), scale);
+    const auto group = findRigidGroups(scene).at(0);
+    EXPECT_EQ(group.rest_translation, glm::vec3(4, 5, 6));
+    // What the frame leaves over is stretch alone (and the mirror): a symmetric matrix.
+    const glm::mat3 left(group.draws[0].group_from_mesh);
+    EXPECT_NEAR(glm::length(group.rest_rotation), 1.0f, 1e-6f);
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) EXPECT_NEAR(left[i][j], left[j][i], 1e-5f * std::abs(scale.y));
+    EXPECT_NEAR(std::abs(glm::determinant(left)), std::abs(scale.x * scale.y * scale.z),
+                1e-5f * std::abs(scale.x * scale.y * scale.z));
+  }
+}
+
+TEST(RigidGroups, DoubleSidedSurfacesAreDrawnFromBothSides) {
+  Scene scene = family();
+  scene.materials[0].double_sided = true;
+  const auto group = findRigidGroups(scene).at(0);
+  ASSERT_EQ(group.draws.size(), 6u);
+  EXPECT_FALSE(group.draws[0].back);
+  EXPECT_TRUE(group.draws[1].back);
+}
+
+TEST(RigidGroups, AZeroScaleIsNotANan) {
+  Scene scene = sceneOf({grid({0, 0, 0}, 1.0f, 1)});
+  scene.nodes[0].movable = true;
+  scene.nodes[0].parent_from_node = glm::scale(glm::mat4(1.0f), glm::vec3(0.0f));
+  const auto group = findRigidGroups(scene).at(0);
+  EXPECT_EQ(group.rest_rotation, glm::quat(1, 0, 0, 0));
+}
+
+}  // namespace
+}  // namespace lambent::baker

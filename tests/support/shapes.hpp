@@ -1,0 +1,126 @@
+// Small meshes and scenes with known answers, built in the test. Triangles wind counter-clockwise seen from
+// outside.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include <glm/geometric.hpp>
+#include <glm/gtc/matrix_transform.hpp>
+
+#include "baker/import/scene.hpp"
+
+namespace lambent::testing {
+
+// A rectangle in the xz plane around `centre`, normal +Y, cut into n x n cells.
+inline bundle::MeshData grid(glm::vec3 centre, float width, int n) {
+  bundle::MeshData mesh;
+  for (int j = 0; j <= n; ++j)
+    for (int i = 0; i <= n; ++i) {
+      const float u = static_cast<float>(i) / static_cast<float>(n) - 0.5f;
+      const float v = static_cast<float>(j) / static_cast<float>(n) - 0.5f;
+      mesh.positions.push_back(centre + width * glm::vec3(u, 0.0f, v));
+      mesh.normals.emplace_back(0.0f, 1.0f, 0.0f);
+      mesh.texcoords0.emplace_back(u + 0.5f, v + 0.5f);
+    }
+  const auto at = [n](int i, int j) { return static_cast<std::uint32_t>(j * (n + 1) + i); };
+  for (int j = 0; j < n; ++j)
+    for (int i = 0; i < n; ++i)
+      for (const std::uint32_t index :
+           {at(i, j), at(i, j + 1), at(i + 1, j), at(i + 1, j), at(i, j + 1), at(i + 1, j + 1)})
+        mesh.indices.push_back(index);
+  return mesh;
+}
+
+// `matrix` without shear; normals follow by the rotation alone.
+inline bundle::MeshData transformed(bundle::MeshData mesh, const glm::mat4& matrix) {
+  for (glm::vec3& p : mesh.positions) p = glm::vec3(matrix * glm::vec4(p, 1.0f));
+  for (glm::vec3& n : mesh.normals) n = glm::normalize(glm::mat3(matrix) * n);
+  return mesh;
+}
+
+inline bundle::MeshData turned(bundle::MeshData mesh, float degrees, glm::vec3 axis) {
+  return transformed(std::move(mesh), glm::rotate(glm::mat4(1.0f), glm::radians(degrees), axis));
+}
+
+inline bundle::MeshData joined(bundle::MeshData a, const bundle::MeshData& b) {
+  const auto first = static_cast<std::uint32_t>(a.positions.size());
+  a.positions.insert(a.positions.end(), b.positions.begin(), b.positions.end());
+  a.normals.insert(a.normals.end(), b.normals.begin(), b.normals.end());
+  a.texcoords0.clear();
+  for (const std::uint32_t index : b.indices) a.indices.push_back(first + index);
+  return a;
+}
+
+inline bundle::MeshData flipped(bundle::MeshData mesh) {
+  for (glm::vec3& n : mesh.normals) n = -n;
+  for (std::size_t i = 0; i < mesh.indices.size(); i += 3)
+    std::swap(mesh.indices[i + 1], mesh.indices[i + 2]);
+  return mesh;
+}
+
+// Six grids with flat normals looking outwards.
+inline bundle::MeshData box(glm::vec3 centre, glm::vec3 size, int n) {
+  bundle::MeshData mesh;
+  const bundle::MeshData top = grid({0.0f, 0.5f, 0.0f}, 1.0f, n);
+  for (const float angle : {0.0f, 90.0f, 180.0f, 270.0f})
+    mesh = joined(std::move(mesh), turned(top, angle, {1, 0, 0}));
+  for (const float angle : {90.0f, 270.0f}) mesh = joined(std::move(mesh), turned(top, angle, {0, 0, 1}));
+  for (glm::vec3& p : mesh.positions) p = centre + p * size;
+  return mesh;
+}
+
+inline bundle::MeshData icosphere(glm::vec3 centre, float radius, int subdivisions) {
+  const float t = 0.5f * (1.0f + std::sqrt(5.0f));
+  std::vector<glm::vec3> points = {{-1, t, 0},  {1, t, 0},  {-1, -t, 0}, {1, -t, 0}, {0, -1, t},  {0, 1, t},
+                                   {0, -1, -t}, {0, 1, -t}, {t, 0, -1},  {t, 0, 1},  {-t, 0, -1}, {-t, 0, 1}};
+  std::vector<std::uint32_t> faces = {0, 11, 5,  0, 5,  1, 0, 1, 7, 0, 7,  10, 0, 10, 11, 1, 5, 9, 5, 11,
+                                      4, 11, 10, 2, 10, 7, 6, 7, 1, 8, 3,  9,  4, 3,  4,  2, 3, 2, 6, 3,
+                                      6, 8,  3,  8, 9,  4, 9, 5, 2, 4, 11, 6,  2, 10, 8,  6, 7, 9, 8, 1};
+  for (int s = 0; s < subdivisions; ++s) {
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> middles;
+    const auto middle = [&](std::uint32_t a, std::uint32_t b) {
+      const auto [entry, is_new] =
+          middles.try_emplace(std::minmax(a, b), static_cast<std::uint32_t>(points.size()));
+      if (is_new) points.push_back(glm::normalize(points[a]) + glm::normalize(points[b]));
+      return entry->second;
+    };
+    std::vector<std::uint32_t> finer;
+    for (std::size_t i = 0; i < faces.size(); i += 3) {
+      const std::uint32_t a = faces[i], b = faces[i + 1], c = faces[i + 2];
+      const std::uint32_t ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
+      for (const std::uint32_t index : {a, ab, ca, b, bc, ab, c, ca, bc, ab, bc, ca}) finer.push_back(index);
+    }
+    faces = std::move(finer);
+  }
+  bundle::MeshData mesh;
+  for (const glm::vec3& point : points) {
+    mesh.normals.push_back(glm::normalize(point));
+    mesh.positions.push_back(centre + radius * glm::normalize(point));
+  }
+  mesh.indices = std::move(faces);
+  return mesh;
+}
+
+// One static node per mesh, all with one white material.
+inline baker::Scene sceneOf(const std::vector<bundle::MeshData>& meshes) {
+  baker::Scene scene;
+  scene.source = "test.glb";
+  gltf::Material white;
+  white.name = "white";
+  white.metallic = 0.0f;
+  scene.materials = {white};
+  for (const bundle::MeshData& mesh : meshes) {
+    gltf::Node node;
+    node.mesh = static_cast<std::int32_t>(scene.meshes.size());
+    scene.roots.push_back(static_cast<std::int32_t>(scene.nodes.size()));
+    scene.nodes.push_back(node);
+    scene.meshes.push_back({"", {{mesh, 0}}});
+  }
+  return scene;
+}
+
+}  // namespace lambent::testing
