@@ -43,4 +43,13 @@ std::vector<Entity> Registry::entities() const {
   return all;
 }
 
+SparseSetBase* Registry::findSet(detail::TypeId type) const {
+  const auto it = sets_.find(type);
+  return it == sets_.end() ? nullptr : it->second.get();
+}
+
+void Registry::addSet(detail::TypeId type, std::unique_ptr<SparseSetBase> set) {
+  sets_.emplace(type, std::move(set));
+}
+
 }  // namespace lambent::ecs

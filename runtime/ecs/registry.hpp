@@ -139,20 +139,23 @@ class Registry {
  private:
   template <class T>
   SparseSet<T>* find() {
-    const auto it = sets_.find(detail::typeId<T>());
-    return it == sets_.end() ? nullptr : static_cast<SparseSet<T>*>(it->second.get());
+    return static_cast<SparseSet<T>*>(findSet(detail::typeId<T>()));
   }
   template <class T>
   const SparseSet<T>* find() const {
-    const auto it = sets_.find(detail::typeId<T>());
-    return it == sets_.end() ? nullptr : static_cast<const SparseSet<T>*>(it->second.get());
+    return static_cast<const SparseSet<T>*>(findSet(detail::typeId<T>()));
   }
   template <class T>
   SparseSet<T>& setOf() {
-    std::unique_ptr<SparseSetBase>& slot = sets_[detail::typeId<T>()];
-    if (!slot) slot = std::make_unique<SparseSet<T>>();
-    return static_cast<SparseSet<T>&>(*slot);
+    if (SparseSet<T>* set = find<T>()) return *set;
+    auto made = std::make_unique<SparseSet<T>>();
+    SparseSet<T>& set = *made;
+    addSet(detail::typeId<T>(), std::move(made));
+    return set;
   }
+  // Not in the header: the map's code once, instead of once per component type.
+  SparseSetBase* findSet(detail::TypeId type) const;
+  void addSet(detail::TypeId type, std::unique_ptr<SparseSetBase> set);
 
   std::vector<std::uint32_t> generations_;  // by index; odd: alive
   std::vector<std::uint32_t> free_;         // indices to use again, latest first

@@ -54,24 +54,9 @@ class SparseSetBase {
     return place != kNoPlace && entities_[place] == entity ? place : kNoPlace;
   }
 
-  void append(Entity entity) {
-    if (entity.index >= places_.size()) places_.resize(std::size_t{entity.index} + 1, kNoPlace);
-    assert(places_[entity.index] == kNoPlace && "a component of a dead entity was left behind");
-    places_[entity.index] = static_cast<std::uint32_t>(entities_.size());
-    entities_.push_back(entity);
-    versions_.push_back(++version_);
-  }
-
+  void append(Entity entity);
   // The last entity moves into the gap; the caller does the same with the values.
-  void removeAt(std::uint32_t place) {
-    places_[entities_.back().index] = place;
-    places_[entities_[place].index] = kNoPlace;
-    entities_[place] = entities_.back();
-    versions_[place] = versions_.back();
-    entities_.pop_back();
-    versions_.pop_back();
-    ++version_;
-  }
+  void removeAt(std::uint32_t place);
 
  private:
   std::vector<std::uint32_t> places_;    // by Entity::index
