@@ -22,15 +22,6 @@ std::optional<std::uint32_t> firstCameraNode(const bundle::Description& descript
   return {};
 }
 
-// Where nothing else is asked for: the bounding sphere just fits the picture's narrower side.
-spec::OrbitCamera framingOrbit(float aspect) {
-  spec::OrbitCamera orbit{
-      .azimuth_deg = 25.0f, .elevation_deg = 12.0f, .distance_radii = 1.0f, .fov_deg = 35.0f};
-  const float half_height = std::tan(glm::radians(0.5f * orbit.fov_deg));
-  orbit.distance_radii = 1.0f / std::sin(std::atan(half_height * std::min(aspect, 1.0f)));
-  return orbit;
-}
-
 // An empty scene is looked at as if it were a unit box.
 scene::Box boundsOf(const frame::World& world) {
   scene::Box bounds = scene::worldBounds(world.registry());
@@ -39,6 +30,28 @@ scene::Box boundsOf(const frame::World& world) {
     bounds.add(glm::vec3(0.5f));
   }
   return bounds;
+}
+
+// Where nothing else is asked for: the corners of the scene's box lie within the picture, with a margin.
+spec::OrbitCamera framingOrbit(const scene::Box& bounds, float aspect) {
+  constexpr float kFilled = 0.9f;
+  spec::OrbitCamera orbit{
+      .azimuth_deg = 25.0f, .elevation_deg = 12.0f, .distance_radii = 1.0f, .fov_deg = 35.0f};
+  const glm::vec3 back = spec::directionFromAzimuthElevation(orbit.azimuth_deg, orbit.elevation_deg);
+  const glm::vec3 right = glm::normalize(glm::cross(glm::vec3(0.0f, 1.0f, 0.0f), back));
+  const glm::vec3 up = glm::cross(back, right);
+  const float half_height = kFilled * std::tan(glm::radians(0.5f * orbit.fov_deg));
+  const glm::vec3 half = 0.5f * (bounds.max - bounds.min);
+  float distance = 0.0f;
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::vec3 signs(corner & 1 ? 1.0f : -1.0f, corner & 2 ? 1.0f : -1.0f, corner & 4 ? 1.0f : -1.0f);
+    const glm::vec3 place = signs * half;
+    const float reach =
+        std::max(std::abs(glm::dot(place, up)), std::abs(glm::dot(place, right)) / aspect) / half_height;
+    distance = std::max(distance, glm::dot(place, back) + reach);
+  }
+  if (bounds.radius() > 0.0f) orbit.distance_radii = std::max(distance / bounds.radius(), 1.01f);
+  return orbit;
 }
 
 glm::mat4 worldFromNode(const frame::World& world, std::size_t bundle, std::uint32_t node) {
@@ -51,7 +64,7 @@ glm::mat4 worldFromNode(const frame::World& world, std::size_t bundle, std::uint
 Result<ViewController> ViewController::create(const frame::World& world,
                                               const std::optional<spec::Camera>& camera, float aspect) {
   ViewController controller;
-  controller.orbit_ = framingOrbit(aspect);
+  controller.orbit_ = framingOrbit(boundsOf(world), aspect);
   if (camera && std::holds_alternative<spec::OrbitCamera>(*camera)) {
     controller.orbit_ = std::get<spec::OrbitCamera>(*camera);
   } else {
