@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include "runtime/base/atomic_file.hpp"
 #include "runtime/spec/image.hpp"
@@ -25,8 +26,9 @@ struct Outcome {
 class DemoProgram : public ::testing::Test {
  protected:
   void SetUp() override {
-    folder = std::filesystem::path(::testing::TempDir()) /
-             ("demo-" + std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()));
+    folder =
+        std::filesystem::path(::testing::TempDir()) /
+        fmt::format("{}-demo-{}", getpid(), ::testing::UnitTest::GetInstance()->current_test_info()->name());
     std::filesystem::create_directories(folder);
   }
   void TearDown() override { std::filesystem::remove_all(folder); }

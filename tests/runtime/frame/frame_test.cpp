@@ -3,9 +3,11 @@
 
 #include <numeric>
 
+#include <fmt/format.h>
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "runtime/scene/bounds.hpp"
 #include "runtime/sh/image_layout.hpp"
@@ -25,6 +27,13 @@ gltf::Material colored(glm::vec4 color) {
   return material;
 }
 
+// Tests of several builds may run side by side.
+std::filesystem::path temporary(const std::string& name) {
+  return std::filesystem::path(::testing::TempDir()) /
+         fmt::format("{}-{}-{}", getpid(), ::testing::UnitTest::GetInstance()->current_test_info()->name(),
+                     name);
+}
+
 // A world with one bundle, a light and a frame of 64 x 64.
 struct Stage {
   std::filesystem::path path;
@@ -34,17 +43,19 @@ struct Stage {
   spec::OrbitCamera camera{
       .azimuth_deg = 0.0f, .elevation_deg = 0.0f, .distance_radii = 2.5f, .fov_deg = 40.0f};
 
-  Stage(const BundleBuilder& builder, const std::vector<spec::Light>& lights, FrameOptions options = {})
-      : path(std::filesystem::path(::testing::TempDir()) /
-             (std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()) + ".lmb.glb")),
+  Stage(const BundleBuilder& builder, const std::vector<spec::Light>& lights, FrameOptions options = {},
+        bool load = true)
+      : path(temporary(load ? "whole.lmb.glb" : "streamed.lmb.glb")),
         environment(*lighting::Environment::create(lights)) {
     builder.write(path);
     const Result<void> opened = world.open(path);
     EXPECT_TRUE(opened) << opened.error().line();
     if (!opened) return;
-    gpu::Counters counters;
-    const Result<void> loaded = world.uploadAll(counters);
-    EXPECT_TRUE(loaded) << loaded.error().line();
+    if (load) {
+      gpu::Counters counters;
+      const Result<void> loaded = world.uploadAll(counters);
+      EXPECT_TRUE(loaded) << loaded.error().line();
+    }
     options.size = {64, 64};
     Result<Frame> made = Frame::create(options, environment);
     EXPECT_TRUE(made) << made.error().line();
@@ -251,7 +262,7 @@ TEST_F(FrameTest, TheSkyShowsTheProbeWhereItStands) {
       probe.texels.push_back(0.5f +
                              0.4f * glm::vec3(sh::texelDirection(sh::ImageLayout::LatLong, 128, 64,
                                                                  static_cast<int>(x), static_cast<int>(y))));
-  const std::filesystem::path file = std::filesystem::path(::testing::TempDir()) / "axes.hdr";
+  const std::filesystem::path file = temporary("axes.hdr");
   ASSERT_TRUE(spec::writeHdr(file, probe));
   Stage stage(BundleBuilder().add({sphereMesh(12, 24), colored(glm::vec4(1.0f))}),
               {spec::ProbeLight{.file = file, .layout = {}}}, kLinear);
@@ -273,6 +284,46 @@ TEST_F(FrameTest, TheSkyShowsTheProbeWhereItStands) {
       EXPECT_LT(glm::distance(glm::vec3(at(image, 0, 0)), expected), 0.01f) << place.x << " turned " << turn;
     }
   std::filesystem::remove(file);
+}
+
+TEST_F(FrameTest, ABundleThatStreamsInIsLitFromTheFirstMeshOnAndEndsAtTheSamePicture) {
+  const auto builder = BundleBuilder().add({sphereMesh(12, 24), colored(glm::vec4(1.0f))});
+  const std::vector<spec::Light> lights = {
+      spec::SunLight{.azimuth_deg = 20, .elevation_deg = 40, .angle_deg = 30, .radiance = glm::vec3(4.0f)}};
+  Stage whole(builder, lights, kLinear);
+  const spec::RgbaImage expected = whole.picture();
+  FrameOptions options = kLinear;
+  options.upload_budget_bytes = 1;  // one item a frame
+  Stage stage(builder, lights, options, /*load=*/false);
+  for (int frame = 0; frame < 100'000 && !stage.world.loaded(); ++frame) {
+    const spec::RgbaImage image = stage.picture();
+    if (covered(image) > 0) {
+      EXPECT_GT(at(image, 32, 28).g, 0.1f) << "frame " << frame;
+    }
+  }
+  ASSERT_TRUE(stage.world.loaded());
+  const spec::RgbaImage image = stage.picture();
+  for (std::size_t i = 0; i < image.texels.size(); ++i) ASSERT_EQ(image.texels[i], expected.texels[i]);
+  stage.render();
+  EXPECT_EQ(stage.counts("shade").dispatches, 0u);
+}
+
+TEST_F(FrameTest, ShowsSeveralBundlesTogether) {
+  const auto at_x = [](float x, glm::vec4 color) {
+    return BundleBuilder().add(
+        {quadMesh(), colored(color), glm::translate(glm::mat4(1.0f), glm::vec3(x, 0, 0))});
+  };
+  Stage stage(at_x(-1.0f, {1, 0, 0, 1}), {kWhite}, kLinear);
+  const std::filesystem::path second = temporary("second.lmb.glb");
+  at_x(1.0f, {0, 1, 0, 1}).write(second);
+  ASSERT_TRUE(stage.world.open(second));
+  ASSERT_TRUE(stage.world.open(second)) << "the same file again is another instance";
+  gpu::Counters counters;
+  ASSERT_TRUE(stage.world.uploadAll(counters));
+  const spec::RgbaImage image = stage.picture();
+  EXPECT_LT(glm::distance(at(image, 26, 32), glm::vec4(1, 0, 0, 1)), 1e-3f);
+  EXPECT_LT(glm::distance(at(image, 38, 32), glm::vec4(0, 1, 0, 1)), 1e-3f);
+  std::filesystem::remove(second);
 }
 
 TEST_F(FrameTest, ManyDrawsOfOneTextureAreOneCall) {
