@@ -1,14 +1,12 @@
 #include "baker/transport/ray_scene.hpp"
 
-#include <array>
 #include <bit>
 #include <cassert>
-#include <cmath>
 #include <cstring>
-#include <limits>
 
 #include <embree3/rtcore.h>
-#include <glm/geometric.hpp>
+
+#include "baker/transport/ray_packets.hpp"
 
 #if defined(__SSE2__)
 #include <pmmintrin.h>
@@ -69,68 +67,9 @@ void filterMasked(const RTCFilterFunctionNArguments* args) {
   }
 }
 
-// Deals the rays of a sample out over its origins: ray r takes the origin in whose stretch of the cumulated
-// weights the r-th point of the golden-ratio sequence falls, so that each origin gets its share of every part
-// of the sky.
-class OriginDealer {
- public:
-  explicit OriginDealer(std::span<const SampleOrigin> origins) : origins_(origins) {}
-
-  std::size_t pick(std::size_t ray) const {
-    if (origins_.size() == 1) return 0;
-    const std::uint32_t golden =
-        static_cast<std::uint32_t>(ray) * 2654435769u;  // frac(ray * (phi - 1)) * 2^32
-    float left = static_cast<float>(golden >> 8) * 0x1p-24f;
-    for (std::size_t o = 0; o + 1 < origins_.size(); ++o) {
-      if (left < origins_[o].weight) return o;
-      left -= origins_[o].weight;
-    }
-    return origins_.size() - 1;
-  }
-
- private:
-  std::span<const SampleOrigin> origins_;
-};
-
-bool isAbove(glm::vec3 direction, const SampleOrigin& origin) {
-  return glm::dot(direction, origin.geometric_normal) > 0.0f;
-}
-
-// Fills one packet; lanes below the horizons of all origins are invalid.
 struct Packet {
   alignas(64) RTCRayHit16 rays;
-  alignas(64) std::array<int, kPacketWidth> valid;
-  std::array<std::size_t, kPacketWidth> origin;
-
-  void fill(std::size_t packet, std::span<const SampleOrigin> origins, const OriginDealer& dealer,
-            const glm::mat3& frame, const DirectionTable& table) {
-    RTCRay16& ray = rays.ray;
-    const std::size_t first = packet * kPacketWidth;
-    for (std::size_t k = 0; k < kPacketWidth; ++k) {
-      const float x = table.x[first + k], y = table.y[first + k], z = table.z[first + k];
-      ray.dir_x[k] = frame[0].x * x + frame[1].x * y + frame[2].x * z;
-      ray.dir_y[k] = frame[0].y * x + frame[1].y * y + frame[2].y * z;
-      ray.dir_z[k] = frame[0].z * x + frame[1].z * y + frame[2].z * z;
-      ray.tnear[k] = 0.0f;
-      ray.tfar[k] = std::numeric_limits<float>::infinity();
-      ray.time[k] = 0.0f;
-      ray.mask[k] = ~0u;
-      ray.flags[k] = 0;
-    }
-    for (std::size_t k = 0; k < kPacketWidth; ++k) {
-      const glm::vec3 direction(ray.dir_x[k], ray.dir_y[k], ray.dir_z[k]);
-      origin[k] = dealer.pick(first + k);
-      // Below this face's horizon the ray starts from the next face that it is above, so that a convex body
-      // loses nothing of its smooth normals' hemispheres.
-      for (std::size_t tries = 1; tries < origins.size() && !isAbove(direction, origins[origin[k]]); ++tries)
-        origin[k] = origin[k] + 1 == origins.size() ? 0 : origin[k] + 1;
-      const SampleOrigin& o = origins[origin[k]];
-      ray.org_x[k] = o.position.x;
-      ray.org_y[k] = o.position.y;
-      ray.org_z[k] = o.position.z;
-      valid[k] = isAbove(direction, o) ? -1 : 0;
-    }
-  }
+  PacketLanes lanes;
 };
 
 }  // namespace
@@ -227,11 +166,11 @@ std::uint32_t RayScene::trace(std::span<const SampleOrigin> origins, const glm::
       RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;  // the faster one for occlusion, coherent as the rays are
   std::uint32_t traced = 0;
   for (std::size_t p = 0; p < masks.size(); ++p) {
-    packet.fill(p, origins, dealer, frame, table);
-    rtcOccluded16(packet.valid.data(), state_->scene.get(), &context, &packet.rays.ray);
+    fillPacket(p, origins, dealer, frame, table, packet.rays.ray, packet.lanes);
+    rtcOccluded16(packet.lanes.valid.data(), state_->scene.get(), &context, &packet.rays.ray);
     std::uint32_t valid = 0, hit = 0;
     for (std::size_t k = 0; k < kPacketWidth; ++k) {
-      valid |= packet.valid[k] ? 1u << k : 0u;
+      valid |= packet.lanes.valid[k] ? 1u << k : 0u;
       hit |= packet.rays.ray.tfar[k] < 0.0f ? 1u << k : 0u;  // Embree sets -inf where something is in the way
     }
     masks[p] = static_cast<std::uint16_t>((~valid & 0xffffu) | hit);
@@ -251,18 +190,18 @@ void RayScene::backFaceShare(std::span<const SampleOrigin> origins, const glm::m
   context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
   std::vector<std::uint32_t> rays(origins.size(), 0), backs(origins.size(), 0);
   for (std::size_t p = 0; p < table.packets(); ++p) {
-    packet.fill(p, origins, dealer, frame, table);
+    fillPacket(p, origins, dealer, frame, table, packet.rays.ray, packet.lanes);
     for (std::size_t k = 0; k < kPacketWidth; ++k) packet.rays.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
-    rtcIntersect16(packet.valid.data(), state_->scene.get(), &context, &packet.rays);
+    rtcIntersect16(packet.lanes.valid.data(), state_->scene.get(), &context, &packet.rays);
     for (std::size_t k = 0; k < kPacketWidth; ++k) {
-      if (!packet.valid[k]) continue;
-      ++rays[packet.origin[k]];
+      if (!packet.lanes.valid[k]) continue;
+      ++rays[packet.lanes.origin[k]];
       const RTCHit16& hit = packet.rays.hit;
       if (hit.geomID[k] == RTC_INVALID_GEOMETRY_ID || state_->double_sided[hit.geomID[k]]) continue;
       const RTCRay16& ray = packet.rays.ray;
       const float along =
           ray.dir_x[k] * hit.Ng_x[k] + ray.dir_y[k] * hit.Ng_y[k] + ray.dir_z[k] * hit.Ng_z[k];
-      backs[packet.origin[k]] += along > 0.0f;
+      backs[packet.lanes.origin[k]] += along > 0.0f;
     }
   }
   for (std::size_t o = 0; o < origins.size(); ++o)

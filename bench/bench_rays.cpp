@@ -1,0 +1,217 @@
+// Pass 0 against its limit: rays a second of the baker's direct pass beside bare Embree loops over the same
+// rays, in one run, on one thread. The bare loops time nothing but the calls: their packets are filled
+// beforehand, a few samples at a time so that they stay in cache.
+//   bench_rays [--scene=FILE.glb] [--benchmark_...]; the default scene is the shipped gallery.
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include <benchmark/benchmark.h>
+#include <embree3/rtcore.h>
+#include <glm/geometric.hpp>
+
+#include "baker/bake/ship_meshes.hpp"
+#include "baker/effects/diffuse/direct.hpp"
+#include "baker/import/gltf.hpp"
+#include "baker/transport/frame.hpp"
+#include "baker/transport/ray_packets.hpp"
+#include "baker/transport/ray_scene.hpp"
+#include "baker/work/parallel.hpp"
+
+namespace {
+
+using namespace lambent;
+using namespace lambent::baker;
+using Clock = std::chrono::steady_clock;
+
+constexpr std::size_t kRays = 512;  // 1024 directions of the whole sphere
+constexpr std::size_t kSamplesAtATime =
+    8;  // 8 x 32 packets x 832 bytes: half of a 512 KiB second-level cache
+
+struct Workload {
+  GroupGeometry geometry;
+  SampleSet samples;
+  RayScene rays;
+  RTCDevice device = nullptr;  // the bare scene; lives as long as the program
+  RTCScene scene = nullptr;
+};
+
+double secondsSince(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+// A scene of one triangle geometry under the flags that were found fastest (quality HIGH).
+void buildBareScene(Workload& work) {
+  work.device = rtcNewDevice(nullptr);
+  work.scene = rtcNewScene(work.device);
+  rtcSetSceneBuildQuality(work.scene, RTC_BUILD_QUALITY_HIGH);
+  RTCGeometry geometry = rtcNewGeometry(work.device, RTC_GEOMETRY_TYPE_TRIANGLE);
+  const auto& g = work.geometry;
+  std::memcpy(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                      sizeof(glm::vec3), g.positions.size()),
+              g.positions.data(), g.positions.size() * sizeof(glm::vec3));
+  std::memcpy(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                      sizeof(glm::uvec3), g.triangles.size()),
+              g.triangles.data(), g.triangles.size() * sizeof(glm::uvec3));
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometry(work.scene, geometry);
+  rtcReleaseGeometry(geometry);
+  rtcCommitScene(work.scene);
+}
+
+struct FilledPacket {
+  alignas(64) RTCRay16 ray;
+  PacketLanes lanes;
+};
+
+enum class Call { Incoherent16, Coherent16, Incoherent8, Single };
+
+std::uint64_t traceBare(const Workload& work, std::vector<FilledPacket>& packets, Call call) {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags =
+      call == Call::Coherent16 ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+  std::uint64_t rays = 0;
+  for (FilledPacket& packet : packets) {
+    if (call == Call::Incoherent16 || call == Call::Coherent16) {
+      rtcOccluded16(packet.lanes.valid.data(), work.scene, &context, &packet.ray);
+    } else {
+      if (call == Call::Single) {
+        for (unsigned k = 0; k < kPacketWidth; ++k) {
+          if (!packet.lanes.valid[k]) continue;
+          RTCRay ray = rtcGetRayFromRayN(reinterpret_cast<RTCRayN*>(&packet.ray), kPacketWidth, k);
+          rtcOccluded1(work.scene, &context, &ray);
+          benchmark::DoNotOptimize(ray.tfar);
+        }
+      } else {
+        for (unsigned half = 0; half < 2; ++half) {
+          alignas(32) RTCRay8 ray;
+          alignas(32) int valid[8];
+          for (unsigned k = 0; k < 8; ++k) {
+            const unsigned from = half * 8 + k;
+            valid[k] = packet.lanes.valid[from];
+            ray.org_x[k] = packet.ray.org_x[from], ray.org_y[k] = packet.ray.org_y[from],
+            ray.org_z[k] = packet.ray.org_z[from];
+            ray.dir_x[k] = packet.ray.dir_x[from], ray.dir_y[k] = packet.ray.dir_y[from],
+            ray.dir_z[k] = packet.ray.dir_z[from];
+            ray.tnear[k] = 0.0f, ray.tfar[k] = packet.ray.tfar[from], ray.time[k] = 0.0f, ray.mask[k] = ~0u,
+            ray.flags[k] = 0;
+          }
+          rtcOccluded8(valid, work.scene, &context, &ray);
+          benchmark::DoNotOptimize(ray.tfar[0]);
+        }
+      }
+    }
+    for (const int valid : packet.lanes.valid) rays += valid != 0;
+  }
+  return rays;
+}
+
+struct Timed {
+  std::uint64_t rays = 0;
+  double seconds = 0.0;
+  double perSecond() const { return static_cast<double>(rays) / seconds; }
+};
+
+// Every eighth run of samples over the whole scene: enough rays to be representative.
+Timed runBare(const Workload& work, const DirectionTable& table, Call call) {
+  Timed timed;
+  std::vector<FilledPacket> packets;
+  for (std::size_t first = 0; first < work.samples.size(); first += kSamplesAtATime * 8) {
+    packets.clear();
+    for (std::size_t s = first; s < std::min(first + kSamplesAtATime, work.samples.size()); ++s) {
+      const auto origins = work.samples.originsOf(s);
+      if (origins.empty()) continue;
+      const glm::mat3 frame(localFrame(glm::normalize(glm::dvec3(work.samples.normals[s]))));
+      const OriginDealer dealer(origins);
+      for (std::size_t p = 0; p < table.packets(); ++p) {
+        packets.emplace_back();
+        fillPacket(p, origins, dealer, frame, table, packets.back().ray, packets.back().lanes);
+      }
+    }
+    const auto start = Clock::now();
+    timed.rays += traceBare(work, packets, call);
+    timed.seconds += secondsSince(start);
+  }
+  return timed;
+}
+
+Timed runPass(const Workload& work) {
+  Progress progress;
+  const auto start = Clock::now();
+  const auto field = bakeDirect(work.geometry, work.samples, work.rays, {5, kRays}, progress, {});
+  return {field->rays, secondsSince(start)};
+}
+
+void report(benchmark::State& state, const Timed& timed) {
+  state.SetIterationTime(timed.seconds);
+  state.counters["Mrays/s"] = 1e-6 * timed.perSecond();
+}
+
+Workload load(const std::string& file) {
+  auto scene = importScene(file);
+  if (!scene) {
+    std::fprintf(stderr, "bench_rays: %s\n", scene.error().line().c_str());
+    std::exit(1);
+  }
+  const auto groups = findRigidGroups(*scene);
+  Progress progress;
+  const auto meshes = shipMeshes(*scene, groups, 0.0f, progress, {});
+  auto geometry = buildGroupGeometry(groups.at(0), *scene, meshes->decoded);
+  auto samples = buildSamples(geometry);
+  auto rays = RayScene::build(geometry, *scene, *loadAlphaMaps(*scene));
+  Workload work{std::move(geometry), std::move(samples), std::move(*rays)};
+  buildBareScene(work);
+  return work;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::string file = LAMBENT_BINARY_DIR "/assets/gallery.glb";
+  for (int i = 1; i < argc; ++i)
+    if (std::strncmp(argv[i], "--scene=", 8) == 0) {
+      file = argv[i] + 8;
+      std::rotate(argv + i, argv + i + 1, argv + argc);
+      --argc;
+    }
+  benchmark::Initialize(&argc, argv);
+  static const Workload work = load(file);
+  static const DirectionTable table = cosineTable(kRays);
+  const auto bare = [](const char* name, Call call) {
+    benchmark::RegisterBenchmark(name,
+                                 [call](benchmark::State& state) {
+                                   for (auto _ : state) report(state, runBare(work, table, call));
+                                 })
+        ->UseManualTime()
+        ->Unit(benchmark::kMillisecond);
+  };
+  bare("bare/occluded16_incoherent", Call::Incoherent16);
+  bare("bare/occluded16_coherent", Call::Coherent16);
+  bare("bare/occluded8_incoherent", Call::Incoherent8);
+  bare("bare/occluded1", Call::Single);
+  // The ratio is taken pass by pass in turn, so that a machine whose speed drifts does not spoil it.
+  benchmark::RegisterBenchmark("pass0/against_occluded16_incoherent",
+                               [](benchmark::State& state) {
+                                 double ratios = 0.0;
+                                 for (auto _ : state) {
+                                   withThreads(1, [&] {
+                                     const double limit =
+                                         runBare(work, table, Call::Incoherent16).perSecond();
+                                     const Timed pass = runPass(work);
+                                     report(state, pass);
+                                     ratios += pass.perSecond() / limit;
+                                   });
+                                 }
+                                 state.counters["ratio"] = ratios / static_cast<double>(state.iterations());
+                               })
+      ->UseManualTime()
+      ->Unit(benchmark::kMillisecond)
+      ->Iterations(5);
+  benchmark::RunSpecifiedBenchmarks();
+  return 0;
+}
