@@ -17,7 +17,9 @@ AtomicFile::AtomicFile(fs::path path, fs::path part, int descriptor)
     : path_(std::move(path)), part_(std::move(part)), descriptor_(descriptor) {}
 
 AtomicFile::AtomicFile(AtomicFile&& other) noexcept
-    : path_(std::move(other.path_)), part_(std::move(other.part_)), descriptor_(std::exchange(other.descriptor_, -1)) {}
+    : path_(std::move(other.path_)),
+      part_(std::move(other.part_)),
+      descriptor_(std::exchange(other.descriptor_, -1)) {}
 
 AtomicFile& AtomicFile::operator=(AtomicFile&& other) noexcept {
   if (this != &other) {
@@ -29,7 +31,9 @@ AtomicFile& AtomicFile::operator=(AtomicFile&& other) noexcept {
   return *this;
 }
 
-AtomicFile::~AtomicFile() { discard(); }
+AtomicFile::~AtomicFile() {
+  discard();
+}
 
 void AtomicFile::discard() noexcept {
   if (descriptor_ < 0) return;
@@ -45,7 +49,8 @@ Result<AtomicFile> AtomicFile::open(const fs::path& path) {
   const int descriptor = ::open(part.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   if (descriptor < 0) {
     if (errno == ENOENT) return fail(path.string(), "its folder does not exist", "create the folder first");
-    return fail(path.string(), std::string("cannot be written: ") + std::strerror(errno), "choose another place");
+    return fail(path.string(), std::string("cannot be written: ") + std::strerror(errno),
+                "choose another place");
   }
   return AtomicFile(path, std::move(part), descriptor);
 }
@@ -63,15 +68,19 @@ Result<void> AtomicFile::write(std::span<const std::byte> bytes) {
   return {};
 }
 
-Result<void> AtomicFile::write(const std::string& text) { return write(std::as_bytes(std::span(text))); }
+Result<void> AtomicFile::write(const std::string& text) {
+  return write(std::as_bytes(std::span(text)));
+}
 
 Result<void> AtomicFile::commit() {
-  const bool synced = ::fsync(descriptor_) == 0 || errno == EINVAL || errno == EROFS;  // pipes have nothing to sync
+  const bool synced =
+      ::fsync(descriptor_) == 0 || errno == EINVAL || errno == EROFS;  // pipes have nothing to sync
   const bool closed = ::close(std::exchange(descriptor_, -1)) == 0;
   if (synced && closed && ::rename(part_.c_str(), path_.c_str()) == 0) return {};
   const int why = errno;
   ::unlink(part_.c_str());
-  return fail(path_.string(), std::string("cannot be written: ") + std::strerror(why), "choose another place");
+  return fail(path_.string(), std::string("cannot be written: ") + std::strerror(why),
+              "choose another place");
 }
 
 Result<std::string> readTextFile(const fs::path& path) {

@@ -1,5 +1,6 @@
-// Errors as values. Bad input (a file, an option, a device) is told apart from a bug: it comes back as an Error
-// that names the thing and the mend, and a program prints it as one line. Broken invariants are assertions.
+// Errors as values. Bad input (a file, an option, a device) is told apart from a bug: it comes back as an
+// Error that names the thing and the mend, and a program prints it as one line. Broken invariants are
+// assertions.
 #pragma once
 
 #include <string>
@@ -27,6 +28,8 @@ inline tl::unexpected<Error> fail(std::string subject, std::string problem, std:
 }
 
 // Hands an error on under the name of the file that it came up in.
-inline tl::unexpected<Error> failAgain(Error error) { return tl::unexpected<Error>(std::move(error)); }
+inline tl::unexpected<Error> failAgain(Error error) {
+  return tl::unexpected<Error>(std::move(error));
+}
 
 }  // namespace lambent
