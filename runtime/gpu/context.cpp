@@ -122,7 +122,7 @@ struct Context::State {
     if (context == EGL_NO_CONTEXT) return;
     eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
     eglDestroyContext(display, context);
-    eglTerminate(display);
+    // The display stays: a process has one of each kind, and other contexts may be using it.
   }
 };
 
