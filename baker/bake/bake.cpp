@@ -24,7 +24,7 @@ Result<void> checkOptions(const BakeOptions& options) {
     return fail("--order", fmt::format("{} is not between 1 and 8", options.order), "5 is the default");
   if (options.effectiveRays() < kMinRays || options.effectiveRays() > kMaxRays)
     return fail("--rays", fmt::format("{} is not between {} and {}", options.rays, kMinRays, kMaxRays),
-                "512 is the default");
+                "1024 is the default");
   if (!(options.effectiveErrorBound() > 0.0f && options.effectiveErrorBound() < 1.0f))
     return fail("--error", "is not between 0 and 1", "0.003 means 0.3 %");
   if (!(options.max_edge_m >= 0.0f))

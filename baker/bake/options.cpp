@@ -14,9 +14,9 @@ struct QualityRow {
   float error_bound;
 };
 constexpr std::array kQualities = {
-    QualityRow{"draft", 128, 0.01f},
-    QualityRow{"standard", 512, 0.003f},
-    QualityRow{"high", 2048, 0.001f},
+    QualityRow{"draft", 256, 0.01f},
+    QualityRow{"standard", 1024, 0.003f},
+    QualityRow{"high", 4096, 0.001f},
 };
 
 const QualityRow& row(Quality quality) {

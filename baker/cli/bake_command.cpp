@@ -107,7 +107,7 @@ void addBakeCommand(CLI::App& app, Command& run) {
       ->type_name("N");
   command
       ->add_option("--rays", a->options.rays,
-                   "Rays per sample over its hemisphere; default 128, 512 or 2048 by quality")
+                   "Rays per sample over its hemisphere; default 256, 1024 or 4096 by quality")
       ->type_name("N");
   command
       ->add_option("--error", a->options.error_bound,

@@ -85,7 +85,7 @@ TEST_F(Bake, WritesABundleThatIsWhole) {
   EXPECT_EQ(d.groups[1].name, "ball");
   EXPECT_EQ(d.groups[1].rest_translation, glm::vec3(0.8f, 0.6f, 0));
   EXPECT_EQ(d.draws.size(), 3u);
-  EXPECT_EQ(d.generator.settings.at("rays"), "128");
+  EXPECT_EQ(d.generator.settings.at("rays"), "256");
   EXPECT_LE(report->worst_error, 0.01);
   // In the order in which they are wanted.
   for (std::size_t p = 1; p < d.payloads.size(); ++p)
