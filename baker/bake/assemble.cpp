@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include <fmt/format.h>
+#include <glm/geometric.hpp>
 
 #include "runtime/bundle/transfer_codec.hpp"
 
@@ -45,6 +46,10 @@ class Assembler {
         for (const glm::vec3& position : data.positions) {
           primitive.bounds_min = glm::min(primitive.bounds_min, position);
           primitive.bounds_max = glm::max(primitive.bounds_max, position);
+        }
+        for (std::size_t i = 0; i + 2 < data.indices.size(); i += 3) {
+          const glm::vec3 a = data.positions[data.indices[i]], b = data.positions[data.indices[i + 1]];
+          primitive.vector_area += 0.5f * glm::cross(b - a, data.positions[data.indices[i + 2]] - a);
         }
         primitive.digest = bundle::meshDigest(data);
         mesh.primitives.push_back(primitive);

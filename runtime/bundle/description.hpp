@@ -42,7 +42,8 @@ struct Primitive {
   std::uint32_t vertex_count = 0;  // after decoding
   std::uint32_t index_count = 0;
   glm::vec3 bounds_min{0.0f}, bounds_max{0.0f};  // of the decoded positions, in mesh space
-  std::uint64_t digest = 0;                      // meshDigest() of the decoded mesh
+  glm::vec3 vector_area{0.0f};  // sum of area times normal; 0 where closed, else towards the opening
+  std::uint64_t digest = 0;     // meshDigest() of the decoded mesh
 };
 
 struct Mesh {
@@ -78,7 +79,7 @@ struct WeightPlane {
   std::uint32_t payload = 0;
   std::uint32_t bits = 8;  // 8 or 16
   float offset = 0.0f, scale = 0.0f;
-  float variance = 0.0f;  // share of the cell's weighted transfer energy that this plane carries
+  float variance = 0.0f;  // share of the cell's weighted variance about the mean that this plane carries
 };
 
 // Which light a transfer vector carries. Parts add up and can be switched apart (--transfer).
@@ -118,9 +119,9 @@ struct Group {
   std::vector<Cell> cells;
 };
 
-// One side of one primitive at one node: what is drawn, with transfer of its own. A double-sided material gives two
-// draws of the same primitive; the back one is drawn with its winding reversed and its normals negated, so that both
-// are single-sided from here on.
+// One side of one primitive at one node: what is drawn, with transfer of its own. A double-sided material
+// gives two draws of the same primitive; the back one is drawn with its winding reversed and its normals
+// negated, so that both are single-sided from here on.
 struct Draw {
   std::uint32_t node = 0, mesh = 0, primitive = 0, group = 0;
   bool back = false;

@@ -54,7 +54,8 @@ Json primitiveJson(const Primitive& primitive, Json& accessors) {
   accessors.push_back(accessorJson(5125, "SCALAR", primitive.index_count));
   if (primitive.material >= 0) json["material"] = primitive.material;
   json["extensions"]["KHR_draco_mesh_compression"] = {{"bufferView", primitive.view}, {"attributes", draco}};
-  json["extensions"][std::string(kExtensionName)] = {{"digest", hexJson(primitive.digest)}};
+  json["extensions"][std::string(kExtensionName)] = {{"digest", hexJson(primitive.digest)},
+                                                     {"vectorArea", vectorJson(primitive.vector_area)}};
   return json;
 }
 
@@ -74,7 +75,9 @@ Primitive readPrimitive(const Field& field, const std::vector<Field>& accessors,
   primitive.bounds_max = position["max"].vector<glm::vec3>();
   const Field& indices = accessors[field["indices"].index(accessors.size())];
   primitive.index_count = static_cast<std::uint32_t>(indices["count"].count(kLargestCount));
-  primitive.digest = field["extensions"][std::string(kExtensionName).c_str()]["digest"].hex64();
+  const Field own = field["extensions"][std::string(kExtensionName).c_str()];
+  primitive.digest = own["digest"].hex64();
+  primitive.vector_area = own["vectorArea"].vector<glm::vec3>();
   return primitive;
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include <glm/geometric.hpp>
+#include <glm/gtc/matrix_inverse.hpp>
 #include <glm/trigonometric.hpp>
 
 #include "runtime/scene/bounds.hpp"
@@ -32,11 +33,38 @@ scene::Box boundsOf(const frame::World& world) {
   return bounds;
 }
 
-// Where nothing else is asked for: the corners of the scene's box lie within the picture, with a margin.
-spec::OrbitCamera framingOrbit(const scene::Box& bounds, float aspect) {
-  constexpr float kFilled = 0.9f;
+// The side to which a scene is open, as a horizontal vector: the sum of area times normal over its surfaces,
+// which is 0 for closed bodies and looks out of a stage or a room without a front.
+glm::vec3 openSide(const frame::World& world) {
+  glm::vec3 sum(0.0f);
+  const auto& draws = world.residency().draws();
+  for (std::size_t i = 0; i < draws.size(); ++i) {
+    const bundle::Description& description = world.description(draws[i].bundle);
+    const bundle::Draw& draw = description.draws[draws[i].index];
+    const bundle::Primitive& primitive = description.meshes[draw.mesh].primitives[draw.primitive];
+    const float side = draw.back ? -1.0f : 1.0f;  // two-sided surfaces cancel
+    const glm::mat3 world_from_mesh(world.worldFromMesh(i));
+    const float volume = glm::determinant(world_from_mesh);
+    // Areas go by the matrix of cofactors; a mirror turns the winding back.
+    if (volume != 0.0f)
+      sum += side * std::abs(volume) * glm::inverseTranspose(world_from_mesh) * primitive.vector_area;
+  }
+  return {sum.x, 0.0f, sum.z};
+}
+
+// Where nothing else is asked for: from the side to which the scene is open, if it is, and so that the
+// corners of its box lie within the picture, with a margin.
+spec::OrbitCamera framingOrbit(const frame::World& world, float aspect) {
+  constexpr float kFilled = 0.9f, kOpen = 0.25f;
+  const scene::Box bounds = boundsOf(world);
   spec::OrbitCamera orbit{
       .azimuth_deg = 25.0f, .elevation_deg = 12.0f, .distance_radii = 1.0f, .fov_deg = 35.0f};
+  const glm::vec3 open = openSide(world), size = bounds.max - bounds.min;
+  if (glm::length(open) > kOpen * size.y * std::max(size.x, size.z)) {
+    constexpr float kAside = 8.0f;  // straight on looks flat
+    orbit.azimuth_deg = glm::degrees(std::atan2(open.x, open.z)) + kAside;
+    orbit.elevation_deg = 4.0f;
+  }
   const glm::vec3 back = spec::directionFromAzimuthElevation(orbit.azimuth_deg, orbit.elevation_deg);
   const glm::vec3 right = glm::normalize(glm::cross(glm::vec3(0.0f, 1.0f, 0.0f), back));
   const glm::vec3 up = glm::cross(back, right);
@@ -64,7 +92,7 @@ glm::mat4 worldFromNode(const frame::World& world, std::size_t bundle, std::uint
 Result<ViewController> ViewController::create(const frame::World& world,
                                               const std::optional<spec::Camera>& camera, float aspect) {
   ViewController controller;
-  controller.orbit_ = framingOrbit(boundsOf(world), aspect);
+  controller.orbit_ = framingOrbit(world, aspect);
   if (camera && std::holds_alternative<spec::OrbitCamera>(*camera)) {
     controller.orbit_ = std::get<spec::OrbitCamera>(*camera);
   } else {

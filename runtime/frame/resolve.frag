@@ -22,6 +22,16 @@ vec3 toneCurve(vec3 linear) {
   return mix(mapped, vec3(new_peak), to_white);
 }
 
+// Ringing can leave single channels below zero. Cutting those off alone would turn a dark grey into a saturated blue:
+// the colour moves towards its own luminance instead, until the lowest channel is 0; without luminance it is black.
+vec3 withoutNegatives(vec3 linear) {
+  float low = min(linear.r, min(linear.g, linear.b));
+  if (low >= 0.0) return linear;
+  float luminance = dot(linear, vec3(0.2126, 0.7152, 0.0722));
+  if (luminance <= 0.0) return vec3(0.0);
+  return luminance + (linear - luminance) * (luminance / (luminance - low));
+}
+
 // IEC 61966-2-1.
 vec3 srgbFromLinear(vec3 linear) {
   vec3 low = 12.92 * linear, high = 1.055 * pow(max(linear, vec3(0.0031308)), vec3(1.0 / 2.4)) - 0.055;
@@ -35,11 +45,11 @@ void main() {
   for (int i = 0; i < kSamples; ++i) {
     vec4 linear = hdrAt(pixel, i);
     negative = negative || (linear.a > 0.0 && any(lessThan(linear.rgb, vec3(0.0))));
-    vec3 clamped = max(linear.rgb, vec3(0.0));
 #ifdef LAMBENT_LINEAR
-    sum += vec4(clamped, linear.a);
+    sum += vec4(max(linear.rgb, vec3(0.0)), linear.a);
 #else
-    sum += vec4(srgbFromLinear(toneCurve(exposure.scale * min(clamped, vec3(kLargest)))), 1.0);
+    vec3 shown = max(withoutNegatives(linear.rgb), vec3(0.0));  // max: rounding
+    sum += vec4(srgbFromLinear(toneCurve(exposure.scale * min(shown, vec3(kLargest)))), 1.0);
 #endif
   }
   if (negative) atomicAdd(exposure.negative_pixels, 1u);

@@ -75,8 +75,7 @@ void Surfaces::collect(World& world, const effects::diffuse::Diffuse& diffuse, g
                         .radiance_page = draw.radiance.page,
                         .bundle = -1,
                         .texture = -1,
-                        .double_sided = material.double_sided,
-                        .mirrored = glm::determinant(glm::mat3(world_from_mesh)) < 0.0f},
+                        .clockwise = (glm::determinant(glm::mat3(world_from_mesh)) < 0.0f) != draw.back},
               .draw = i,
               .distance = glm::distance(eye_ws, glm::vec3(world_from_mesh * glm::vec4(mesh.center, 1.0f)))};
     if (records_[i].textured != 0) {
@@ -170,17 +169,14 @@ void Surfaces::drawRuns(World& world, const std::vector<Run>& runs, gpu::Counter
   glBindBufferBase(GL_UNIFORM_BUFFER, kBindView, view_.buffer().id());
   glBindBuffer(GL_DRAW_INDIRECT_BUFFER, commands_.buffer().id());
   draws_.bindStorage(kBindDraws);
+  glEnable(GL_CULL_FACE);  // double-sided surfaces are two draws
   for (const Run& run : runs) {
     const gpu::Buffer& geometry = world.residency().geometry().page(run.state.geometry_page);
     geometry.bindStorage(kBindGeometry);
     glVertexArrayElementBuffer(vertices_.id(), geometry.id());
     world.residency().radiance().page(run.state.radiance_page).bindStorage(kBindRadiance);
     bindTexture(world, run.state);
-    if (run.state.double_sided)
-      glDisable(GL_CULL_FACE);
-    else
-      glEnable(GL_CULL_FACE);
-    glFrontFace(run.state.mirrored ? GL_CW : GL_CCW);
+    glFrontFace(run.state.clockwise ? GL_CW : GL_CCW);
     glMultiDrawElementsIndirect(
         GL_TRIANGLES, GL_UNSIGNED_INT,
         reinterpret_cast<const void*>(std::size_t{run.first_command} * sizeof(Command)),

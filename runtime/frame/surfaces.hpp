@@ -39,7 +39,7 @@ class Surfaces {
   struct State {
     std::uint32_t geometry_page = 0, radiance_page = 0;
     std::int32_t bundle = -1, texture = -1;  // -1: untextured
-    bool double_sided = false, mirrored = false;
+    bool clockwise = false;                  // which winding is seen
     auto operator<=>(const State&) const = default;
   };
   struct Run {

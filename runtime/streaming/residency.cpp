@@ -157,7 +157,9 @@ Result<std::uint32_t> Residency::add(const bundle::Description& description) {
          .group = bundle.first_group + draw.group,
          .mesh = mesh,
          .material = description.meshes[draw.mesh].primitives[draw.primitive].material,
-         .group_from_mesh_normal = normalMatrix(description.groups[draw.group], world_from_node[draw.node]),
+         .back = draw.back,
+         .group_from_mesh_normal = (draw.back ? -1.0f : 1.0f) *
+                                   normalMatrix(description.groups[draw.group], world_from_node[draw.node]),
          .rows = {},
          .row_entries = 0,
          .radiance = {},

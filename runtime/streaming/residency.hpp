@@ -69,10 +69,11 @@ struct ResidentGroup {
 };
 
 struct ResidentDraw {
-  std::uint32_t bundle = 0, index = 0;  // in its description
-  std::uint32_t group = 0, mesh = 0;    // into groups() and meshes()
-  std::int32_t material = -1;           // of the bundle
-  glm::mat3 group_from_mesh_normal{1.0f};
+  std::uint32_t bundle = 0, index = 0;     // in its description
+  std::uint32_t group = 0, mesh = 0;       // into groups() and meshes()
+  std::int32_t material = -1;              // of the bundle
+  bool back = false;                       // the back of a double-sided surface
+  glm::mat3 group_from_mesh_normal{1.0f};  // of a back, negated
   gpu::Allocation
       rows;  // vertex_count + 1 offsets, row_entries samples, row_entries unorm16 weights; empty: not here
   std::uint32_t row_entries = 0;

@@ -134,16 +134,6 @@ void BundleBuilder::write(const std::filesystem::path& path) const {
       primitive.bounds_min = glm::min(primitive.bounds_min, position);
       primitive.bounds_max = glm::max(primitive.bounds_max, position);
     }
-    bundle::VertexRows rows;
-    rows.offsets.push_back(0);
-    const glm::mat3 group_from_mesh = glm::mat3_cast(glm::conjugate(rest_rotation_)) *
-                                      glm::transpose(glm::inverse(glm::mat3(mesh.world_from_mesh)));
-    for (const glm::vec3& normal : decoded.normals) {
-      rows.samples.push_back(static_cast<std::uint32_t>(vectors.size()));
-      rows.weights.push_back(1.0f);
-      rows.offsets.push_back(static_cast<std::uint32_t>(rows.samples.size()));
-      vectors.push_back(transfer_(glm::normalize(group_from_mesh * normal)));
-    }
     description.meshes.push_back({.name = "mesh", .primitives = {primitive}});
     description.materials.push_back(mesh.material);
     gltf::Node node;
@@ -152,12 +142,26 @@ void BundleBuilder::write(const std::filesystem::path& path) const {
     node.mesh = static_cast<std::int32_t>(i);
     description.nodes.push_back(node);
     description.roots.push_back(static_cast<std::int32_t>(i));
-    description.draws.push_back(
-        {.node = i,
-         .mesh = i,
-         .primitive = 0,
-         .group = 0,
-         .rows = store.payload(bundle::PayloadType::VertexRows, bundle::encodeRows(rows))});
+    const glm::mat3 group_from_mesh = glm::mat3_cast(glm::conjugate(rest_rotation_)) *
+                                      glm::transpose(glm::inverse(glm::mat3(mesh.world_from_mesh)));
+    for (const bool back : {false, true}) {
+      if (back && !mesh.material.double_sided) continue;
+      bundle::VertexRows rows;
+      rows.offsets.push_back(0);
+      for (const glm::vec3& normal : decoded.normals) {
+        rows.samples.push_back(static_cast<std::uint32_t>(vectors.size()));
+        rows.weights.push_back(1.0f);
+        rows.offsets.push_back(static_cast<std::uint32_t>(rows.samples.size()));
+        vectors.push_back(transfer_((back ? -1.0f : 1.0f) * glm::normalize(group_from_mesh * normal)));
+      }
+      description.draws.push_back(
+          {.node = i,
+           .mesh = i,
+           .primitive = 0,
+           .group = 0,
+           .back = back,
+           .rows = store.payload(bundle::PayloadType::VertexRows, bundle::encodeRows(rows))});
+    }
   }
   for (std::uint32_t i = 0; i < images_.size(); ++i)
     description.images.push_back({.name = "image", .mime_type = "image/png", .view = store.blob(images_[i])});

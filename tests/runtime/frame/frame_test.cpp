@@ -183,6 +183,26 @@ TEST_F(FrameTest, CullsBackFacesOfSingleSidedMaterialsOnly) {
   }
 }
 
+TEST_F(FrameTest, LightsEachSideOfATwoSidedCardForItself) {
+  // The sun stands before the card; its back is turned away, with transfer of its own and unshadowed alike.
+  gltf::Material both = colored(glm::vec4(1.0f));
+  both.double_sided = true;
+  for (const auto transfer :
+       {effects::diffuse::TransferMode::Full, effects::diffuse::TransferMode::Unshadowed}) {
+    auto options = kLinear;
+    options.transfer = transfer;
+    Stage stage(
+        BundleBuilder().add({quadMesh(), both}),
+        {spec::SunLight{.azimuth_deg = 0, .elevation_deg = 0, .angle_deg = 20, .radiance = glm::vec3(5)}},
+        options);
+    const auto brightness = [&] { return stage.picture().texels[32 * 64 + 32].g; };
+    const float front = brightness();
+    stage.camera.azimuth_deg = 180.0f;
+    EXPECT_GT(front, 0.3f);
+    EXPECT_LT(brightness(), 0.2f * front);
+  }
+}
+
 TEST_F(FrameTest, MirroredNodesKeepTheirFronts) {
   Stage stage(BundleBuilder().add(
                   {quadMesh(), colored(glm::vec4(1.0f)), glm::scale(glm::mat4(1.0f), glm::vec3(-1, 1, 1))}),
