@@ -49,7 +49,8 @@ DirectionTable cosineTable(std::size_t rays) {
   std::vector<Point> points(count);
   for (std::size_t i = 0; i < count; ++i) {
     const double u = (static_cast<double>(i) + 0.5) / static_cast<double>(count);
-    const double v = std::fmod(static_cast<double>(i) * (std::numbers::phi - 1.0), 1.0);
+    // From 0.5 on: at v = 0 the first ray would lie in the horizon itself, and a flat face would block it.
+    const double v = std::fmod(0.5 + static_cast<double>(i) * (std::numbers::phi - 1.0), 1.0);
     points[i] = {hilbertIndex(u, v), u, v};
   }
   std::stable_sort(points.begin(), points.end(),

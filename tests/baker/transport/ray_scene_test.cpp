@@ -19,6 +19,11 @@ glm::mat3 upright() {
   return glm::mat3(localFrame({0, 1, 0}));
 }
 
+TEST(CosineTable, HasNoDirectionInTheHorizonWhereAFlatFaceWouldBlockIt) {
+  for (const std::size_t rays : {128u, 256u, 1024u, 4096u})
+    for (const float z : cosineTable(rays).z) EXPECT_GT(z, 0.25f / std::sqrt(static_cast<float>(rays)));
+}
+
 TEST(LocalFrame, IsARotationAtThePolesToo) {
   for (const glm::dvec3 n :
        {glm::dvec3(0, 0, 1), glm::dvec3(0, 0, -1), glm::dvec3(0, 1, 0), glm::dvec3(1e-9, 0, -1)}) {
