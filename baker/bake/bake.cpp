@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <optional>
 
 #include <fmt/format.h>
@@ -12,6 +13,7 @@
 #include "baker/effects/effect_list.hpp"
 #include "baker/transport/ray_scene.hpp"
 #include "baker/work/parallel.hpp"
+#include "runtime/base/atomic_file.hpp"
 
 namespace lambent::baker {
 
@@ -24,11 +26,13 @@ Result<void> checkOptions(const BakeOptions& options) {
     return fail("--order", fmt::format("{} is not between 1 and 8", options.order), "5 is the default");
   if (options.effectiveRays() < kMinRays || options.effectiveRays() > kMaxRays)
     return fail("--rays", fmt::format("{} is not between {} and {}", options.rays, kMinRays, kMaxRays),
-                "1024 is the default");
-  if (!(options.effectiveErrorBound() > 0.0f && options.effectiveErrorBound() < 1.0f))
-    return fail("--error", "is not between 0 and 1", "0.003 means 0.3 %");
-  if (!(options.max_edge_m >= 0.0f))
-    return fail("--max-edge", "is negative", "give a length in the scene's units");
+                "leave it out to take what --quality stands for");
+  if (!(options.error_bound >= 0.0f && options.error_bound < 1.0f))
+    return fail("--error", fmt::format("{} is not between 0 and 1", options.error_bound),
+                "0.003 means 0.3 %");
+  if (!(options.max_edge_m >= 0.0f && std::isfinite(options.max_edge_m)))
+    return fail("--max-edge", fmt::format("{} is not a length", options.max_edge_m),
+                "give a positive number in the scene's units, or leave it out");
   return {};
 }
 
@@ -136,6 +140,14 @@ Result<BakeReport> bakeOnTheseThreads(const Scene& scene, const BakeOptions& opt
 
 }  // namespace
 
+Result<void> checkRequest(const BakeOptions& options, const std::filesystem::path& output) {
+  if (auto checked = checkOptions(options); !checked) return checked;
+  if (const auto effects = effectsOf(options); !effects) return failAgain(effects.error());
+  // Opened as it will be for writing; closing it uncommitted leaves nothing.
+  if (const auto writable = AtomicFile::open(output); !writable) return failAgain(writable.error());
+  return {};
+}
+
 Result<EffectPlan> planFor(const Scene& scene, const BakeOptions& options) {
   const auto effects = effectsOf(options);
   if (!effects) return failAgain(effects.error());
@@ -144,7 +156,7 @@ Result<EffectPlan> planFor(const Scene& scene, const BakeOptions& options) {
 
 Result<BakeReport> bake(const Scene& scene, const BakeOptions& options, const std::filesystem::path& output,
                         Progress& progress, std::stop_token stop) {
-  if (auto checked = checkOptions(options); !checked) return failAgain(checked.error());
+  if (auto checked = checkRequest(options, output); !checked) return failAgain(checked.error());
   std::optional<Result<BakeReport>> result;
   withThreads(options.threads, [&] { result = bakeOnTheseThreads(scene, options, output, progress, stop); });
   return std::move(*result);

@@ -30,6 +30,10 @@ struct BakeReport {
 Result<BakeReport> bake(const Scene& scene, const BakeOptions& options, const std::filesystem::path& output,
                         Progress& progress, std::stop_token stop);
 
+// What can be told wrong before the scene is read and rays are traced: options out of range, an effect that
+// is not known, a place that cannot be written. bake() begins with it.
+Result<void> checkRequest(const BakeOptions& options, const std::filesystem::path& output);
+
 // The plan that bake() follows under these options.
 Result<EffectPlan> planFor(const Scene& scene, const BakeOptions& options);
 

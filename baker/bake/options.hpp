@@ -14,7 +14,7 @@ enum class Quality : std::uint8_t { Draft, Standard, High };
 struct BakeOptions {
   Quality quality = Quality::Standard;
   int order = 5;             // 1..8
-  std::size_t rays = 0;      // per sample over its hemisphere; 0: the quality's
+  std::uint32_t rays = 0;    // per sample over its hemisphere; 0: the quality's
   float error_bound = 0.0f;  // of the coded transfer, relative RMS; 0: the quality's
   float max_edge_m = 0.0f;   // edges longer than this are split; 0: none
   std::string effects = "auto";

@@ -61,6 +61,7 @@ void printReport(const BakeArguments& a, const BakeReport& r) {
 }
 
 int runBake(const BakeArguments& a) {
+  if (const auto checked = checkRequest(a.options, a.output); !checked) return reportError(checked.error());
   const std::stop_source stop;
   const InterruptGuard interrupts(stop);
   Progress progress;

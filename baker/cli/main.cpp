@@ -7,12 +7,14 @@
 
 int main(int argc, char** argv) {
   CLI::App app("Bakes glTF scenes once, so that they can be lit any way you like in real time.", "lambent");
-  app.set_version_flag("--version", std::string("lambent ") + LAMBENT_VERSION);
   app.require_subcommand(1);
   lambent::baker::Command run;
   lambent::baker::addBakeCommand(app, run);
   lambent::baker::addPlanCommand(app, run);
   lambent::baker::addInfoCommand(app, run);
+  const std::string version = std::string("lambent ") + LAMBENT_VERSION;
+  app.set_version_flag("--version", version);
+  for (CLI::App* command : app.get_subcommands({})) command->set_version_flag("--version", version);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& asked) {

@@ -33,15 +33,16 @@ class DirectPass {
         projection_(table_, settings.order),
         order_(settings.order) {}
 
-  // Samples [begin, end): transfer into `field`, and whether they can be trusted.
-  std::uint64_t bake(std::size_t begin, std::size_t end, TransferField& field,
+  // Samples [begin, end): transfer into `field`, and whether they can be trusted. Leaves the rest of them
+  // when a stop is requested: a million rays a sample take seconds a range.
+  std::uint64_t bake(std::size_t begin, std::size_t end, const std::stop_token& stop, TransferField& field,
                      std::vector<std::uint8_t>& valid) const {
     sh::Rotation group_from_local(glm::dmat3(1.0), order_);
     std::vector<std::uint16_t> blocked(table_.packets());
     std::vector<float> local(field.columns);
     std::vector<SampleOrigin> origins;
     std::uint64_t traced = 0;
-    for (std::size_t s = begin; s < end; ++s) {
+    for (std::size_t s = begin; s < end && !stop.stop_requested(); ++s) {
       const glm::dmat3 frame = localFrame(glm::normalize(glm::dvec3(samples_.normals[s])));
       valid[s] = outsideOrigins(s, glm::mat3(frame), origins);
       if (origins.empty())
@@ -104,7 +105,7 @@ std::optional<TransferField> bakeDirect(const GroupGeometry& geometry, const Sam
   const DirectPass pass(samples, rays, settings);
   const bool finished =
       parallelRanges(samples.size(), kSamplesPerRange, stop, [&](std::size_t begin, std::size_t end) {
-        traced += pass.bake(begin, end, field, valid);
+        traced += pass.bake(begin, end, stop, field, valid);
         progress.add(end - begin);
       });
   if (!finished) return std::nullopt;
