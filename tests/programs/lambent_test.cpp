@@ -1,0 +1,328 @@
+// lambent as a user meets it: exit codes, one-line errors, files that appear whole or not at all, figures.
+#include <chrono>
+#include <thread>
+
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/support/program.hpp"
+
+namespace lambent {
+namespace {
+
+using nlohmann::json;
+using testing::bytesOf;
+using testing::expectOneLine;
+using testing::Outcome;
+using testing::writeBytes;
+
+const std::string kHello = LAMBENT_BINARY_DIR "/assets/hello.glb";
+const std::string kGallery = LAMBENT_BINARY_DIR "/assets/gallery.glb";
+
+class LambentProgram : public testing::ProgramTest {
+ protected:
+  Outcome lambent(const std::vector<std::string>& arguments) const { return run(LAMBENT_PROGRAM, arguments); }
+  std::string path(const std::string& name) const { return (folder / name).string(); }
+
+  // hello.glb at draft; further options behind.
+  Outcome bakeHello(const std::string& name, std::vector<std::string> options = {}) const {
+    options.insert(options.begin(), {"bake", kHello, "-o", path(name), "--quality", "draft"});
+    return lambent(options);
+  }
+};
+
+}  // namespace
+
+TEST_F(LambentProgram, HelpAndVersionAreExitCode0) {
+  const Outcome version = lambent({"--version"});
+  EXPECT_EQ(version.exit_code, 0);
+  EXPECT_TRUE(version.out.starts_with("lambent ")) << version.out;
+  const Outcome help = lambent({"--help"});
+  EXPECT_EQ(help.exit_code, 0);
+  const std::vector<std::pair<std::string, std::vector<std::string>>> commands = {
+      {"bake",
+       {"SCENE", "--output", "--quality", "--order", "--rays", "--error", "--max-edge", "--effects",
+        "--threads", "--force", "--json"}},
+      {"plan", {"SCENE", "--effects", "--json"}},
+      {"info", {"BUNDLE", "--json"}}};
+  for (const auto& [command, options] : commands) {
+    EXPECT_NE(help.out.find(command), std::string::npos) << command;
+    const Outcome about = lambent({command, "--help"});
+    EXPECT_EQ(about.exit_code, 0) << command;
+    EXPECT_EQ(about.err, "") << command;
+    for (const std::string& option : options)
+      EXPECT_NE(about.out.find(option), std::string::npos) << command << " " << option;
+    EXPECT_EQ(lambent({command, "--version"}).out, version.out) << command;
+  }
+}
+
+TEST_F(LambentProgram, WrongUsageIsExitCode2AndOneLine) {
+  const std::vector<std::vector<std::string>> wrong = {
+      {},
+      {"brew"},
+      {"bake"},
+      {"bake", kHello},
+      {"bake", kHello, "-o"},
+      {"bake", kHello, "-o", path("a.lmb.glb"), "--no-such-option"},
+      {"bake", kHello, "-o", path("a.lmb.glb"), "--quality", "splendid"},
+      {"bake", kHello, "-o", path("a.lmb.glb"), "--order", "five"},
+      {"bake", kHello, "-o", path("a.lmb.glb"), "--rays", "-5"},
+      {"bake", kHello, "-o", path("a.lmb.glb"), "--threads", "-1"},
+      {"bake", kHello, "-o", path("a.lmb.glb"), "--max-edge", "wide"},
+      {"bake", kHello, kHello, "-o", path("a.lmb.glb")},
+      {"plan"},
+      {"info"},
+      {"info", "a", "b"}};
+  for (const auto& arguments : wrong) {
+    const Outcome outcome = lambent(arguments);
+    const std::string words = fmt::format("{}", fmt::join(arguments, " "));
+    EXPECT_EQ(outcome.exit_code, 2) << words;
+    expectOneLine(outcome, "lambent", words);
+  }
+  EXPECT_EQ(fileCount(), 0);
+}
+
+TEST_F(LambentProgram, BakesTheSameBytesWithAnyNumberOfThreads) {
+  ASSERT_EQ(bakeHello("one.lmb.glb", {"--threads", "1"}).exit_code, 0);
+  ASSERT_EQ(bakeHello("two.lmb.glb", {"--threads", "2"}).exit_code, 0);
+  ASSERT_GT(bytesOf(folder / "one.lmb.glb").size(), 1000u);
+  EXPECT_TRUE(bytesOf(folder / "one.lmb.glb") == bytesOf(folder / "two.lmb.glb"));
+  EXPECT_EQ(fileCount(), 2);
+}
+
+TEST_F(LambentProgram, BakesAgainOnlyWhenSomethingChangedOrForced) {
+  const auto bundle = folder / "hello.lmb.glb";
+  ASSERT_EQ(bakeHello("hello.lmb.glb").exit_code, 0);
+  const auto long_ago = std::filesystem::last_write_time(bundle) - std::chrono::hours(1);
+  std::filesystem::last_write_time(bundle, long_ago);
+  const std::string before = bytesOf(bundle);
+
+  const Outcome again = bakeHello("hello.lmb.glb");
+  EXPECT_EQ(again.exit_code, 0);
+  EXPECT_NE(again.out.find("up to date"), std::string::npos) << again.out;
+  EXPECT_EQ(json::parse(bakeHello("hello.lmb.glb", {"--json"}).out)["upToDate"], true);
+  EXPECT_EQ(std::filesystem::last_write_time(bundle), long_ago);
+
+  EXPECT_EQ(bakeHello("hello.lmb.glb", {"--force"}).exit_code, 0);
+  EXPECT_GT(std::filesystem::last_write_time(bundle), long_ago);
+  EXPECT_TRUE(bytesOf(bundle) == before);
+
+  EXPECT_EQ(bakeHello("hello.lmb.glb", {"--order", "3"}).exit_code, 0);
+  EXPECT_FALSE(bytesOf(bundle) == before);
+  // A damaged bundle is not up to date.
+  std::string damaged = before;
+  damaged[before.size() / 2] ^= 1;
+  writeBytes(bundle, damaged);
+  EXPECT_EQ(bakeHello("hello.lmb.glb").exit_code, 0);
+  EXPECT_TRUE(bytesOf(bundle) == before);
+}
+
+TEST_F(LambentProgram, ReportsFiguresThatAddUpAsJson) {
+  const Outcome baked = bakeHello("hello.lmb.glb", {"--json"});
+  ASSERT_EQ(baked.exit_code, 0) << baked.err;
+  const json report = json::parse(baked.out);
+  EXPECT_EQ(report["output"], path("hello.lmb.glb"));
+  EXPECT_EQ(report["settings"]["rays"], "256");
+  EXPECT_GT(report["raysPerSecond"], 0.0);
+  EXPECT_EQ(report["fileBytes"], std::filesystem::file_size(folder / "hello.lmb.glb"));
+  EXPECT_LE(report["codingError"], 0.01);
+  EXPECT_LE(report["samples"], report["vertices"]);
+  EXPECT_FALSE(report["stages"].empty());
+  for (const json& stage : report["stages"]) EXPECT_GE(stage["seconds"], 0.0) << stage;
+
+  const Outcome planned = lambent({"plan", kHello, "--json"});
+  ASSERT_EQ(planned.exit_code, 0) << planned.err;
+  const json plan = json::parse(planned.out);
+  std::uint64_t vertices = 0, triangles = 0;
+  for (const json& group : plan["groups"]) {
+    vertices += group["vertices"].get<std::uint64_t>();
+    triangles += group["triangles"].get<std::uint64_t>();
+  }
+  ASSERT_EQ(plan["effects"].size(), 1u);
+  EXPECT_EQ(plan["effects"][0]["effect"], "diffuse");
+  EXPECT_EQ(plan["effects"][0]["baked"], true);
+  EXPECT_FALSE(plan["effects"][0]["reason"].get<std::string>().empty());
+
+  const Outcome told = lambent({"info", path("hello.lmb.glb"), "--json"});
+  ASSERT_EQ(told.exit_code, 0) << told.err;
+  const json info = json::parse(told.out);
+  EXPECT_EQ(info["triangles"], triangles);
+  EXPECT_EQ(info["triangles"], report["triangles"]);
+  EXPECT_EQ(info["vertices"], report["vertices"]);
+  EXPECT_LE(info["vertices"], vertices) << "coding joins equal vertices and adds none";
+  EXPECT_EQ(info["fileBytes"], report["fileBytes"]);
+  EXPECT_EQ(info["meshBytes"], report["meshBytes"]);
+  EXPECT_EQ(info["imageBytes"], report["imageBytes"]);
+  EXPECT_EQ(info["rowBytes"].get<int>() + info["basisBytes"].get<int>() + info["planeBytes"].get<int>(),
+            report["transferBytes"].get<int>());
+  EXPECT_EQ(info["settings"]["order"], "5");
+  EXPECT_EQ(info["groups"].size(), plan["groups"].size());
+  EXPECT_EQ(info["groups"][0]["samples"], report["samples"]);
+  // The same in words.
+  for (const auto& arguments : {std::vector<std::string>{"plan", kHello}, {"info", path("hello.lmb.glb")}}) {
+    const Outcome words = lambent(arguments);
+    EXPECT_EQ(words.exit_code, 0);
+    EXPECT_EQ(words.err, "");
+    EXPECT_NE(words.out.find(std::to_string(triangles) + " triangles"), std::string::npos) << words.out;
+  }
+}
+
+TEST_F(LambentProgram, BadInputIsExitCode1OneLineAndLeavesNoFile) {
+  std::filesystem::create_directory(folder / "a-folder");
+  writeBytes(folder / "words.glb", "Dear Sir or Madam,\nplease find the scene attached.\n");
+  writeBytes(folder / "cut.glb", bytesOf(kHello).substr(0, 5000));
+  writeBytes(folder / "empty.glb", "");
+  const std::ptrdiff_t files = fileCount();
+  struct Case {
+    std::string named;  // stands in the line
+    std::vector<std::string> arguments;
+  };
+  const std::string out = path("out.lmb.glb");
+  const std::vector<Case> cases = {{"lost.glb", {"bake", path("lost.glb"), "-o", out}},
+                                   {"a-folder", {"bake", path("a-folder"), "-o", out}},
+                                   {"words.glb", {"bake", path("words.glb"), "-o", out}},
+                                   {"cut.glb", {"bake", path("cut.glb"), "-o", out}},
+                                   {"empty.glb", {"bake", path("empty.glb"), "-o", out}},
+                                   {"no/such/out", {"bake", kHello, "-o", path("no/such/out.lmb.glb")}},
+                                   {"a-folder", {"bake", kHello, "-o", path("a-folder")}},
+                                   {"\"smell\"", {"bake", kHello, "-o", out, "--effects", "diffuse,smell"}},
+                                   {"--effects", {"bake", kHello, "-o", out, "--effects", ""}},
+                                   {"--order", {"bake", kHello, "-o", out, "--order", "9"}},
+                                   {"--order", {"bake", kHello, "-o", out, "--order", "-1"}},
+                                   {"--rays", {"bake", kHello, "-o", out, "--rays", "5"}},
+                                   {"--rays", {"bake", kHello, "-o", out, "--rays", "1048577"}},
+                                   {"--max-edge", {"bake", kHello, "-o", out, "--max-edge", "-1"}},
+                                   {"--max-edge", {"bake", kHello, "-o", out, "--max-edge", "nan"}},
+                                   {"--max-edge", {"bake", kHello, "-o", out, "--max-edge", "inf"}},
+                                   {"--max-edge", {"bake", kHello, "-o", out, "--max-edge", "1e-6"}},
+                                   {"--error", {"bake", kHello, "-o", out, "--error", "nan"}},
+                                   {"--error", {"bake", kHello, "-o", out, "--error", "-0.1"}},
+                                   {"--error", {"bake", kHello, "-o", out, "--error", "1"}},
+                                   {"lost.glb", {"plan", path("lost.glb")}},
+                                   {"cut.glb", {"plan", path("cut.glb")}},
+                                   {"\"smell\"", {"plan", kHello, "--effects", "smell"}},
+                                   {"lost.glb", {"info", path("lost.glb")}},
+                                   {"a-folder", {"info", path("a-folder")}},
+                                   {"words.glb", {"info", path("words.glb")}},
+                                   {"hello.glb", {"info", kHello}}};
+  for (const Case& wrong : cases) {
+    const Outcome outcome = lambent(wrong.arguments);
+    const std::string words = fmt::format("{}", fmt::join(wrong.arguments, " "));
+    EXPECT_EQ(outcome.exit_code, 1) << words;
+    expectOneLine(outcome, "lambent", words);
+    EXPECT_NE(outcome.err.find(wrong.named), std::string::npos) << words << "\n" << outcome.err;
+    EXPECT_NE(outcome.err.find("; "), std::string::npos) << "no mend: " << outcome.err;
+  }
+  EXPECT_EQ(fileCount(), files);
+}
+
+// Hours of rays must not end in "its folder does not exist".
+TEST_F(LambentProgram, LooksAtTheOutputAndTheOptionsBeforeTheRays) {
+  const auto begin = std::chrono::steady_clock::now();
+  for (const std::string& output : {path("no/such/out.lmb.glb"), folder.string()})
+    EXPECT_EQ(lambent({"bake", kGallery, "-o", output, "--quality", "high", "--rays", "1048576"}).exit_code,
+              1);
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(10));
+}
+
+TEST_F(LambentProgram, AnInterruptEndsALongBakeAndKeepsTheOldBundle) {
+  const auto bundle = folder / "gallery.lmb.glb";
+  writeBytes(bundle, "the old one");
+  for (const int signal : {SIGINT, SIGTERM}) {
+    const ::pid_t id = start(
+        LAMBENT_PROGRAM, {"bake", kGallery, "-o", bundle.string(), "--quality", "high", "--rays", "1048576"});
+    std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+    ::kill(id, signal);
+    const auto begin = std::chrono::steady_clock::now();
+    const Outcome outcome = finish(id);
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(5));
+    EXPECT_EQ(outcome.exit_code, 1);
+    expectOneLine(outcome, "lambent", "interrupted");
+    EXPECT_NE(outcome.err.find("stopped; nothing was written"), std::string::npos) << outcome.err;
+    EXPECT_EQ(bytesOf(bundle), "the old one");
+    EXPECT_EQ(fileCount(), 1);
+  }
+}
+
+class DamagedBundle : public LambentProgram {
+ protected:
+  void SetUp() override {
+    LambentProgram::SetUp();
+    ASSERT_EQ(bakeHello("hello.lmb.glb").exit_code, 0);
+    whole = bytesOf(folder / "hello.lmb.glb");
+  }
+  // Bundles that no program may accept, by what is wrong with them.
+  std::vector<std::pair<std::string, std::string>> damaged() const {
+    std::vector<std::pair<std::string, std::string>> bundles;
+    const std::size_t size = whole.size();
+    for (const std::size_t length : {std::size_t{0}, std::size_t{3}, std::size_t{12}, std::size_t{21},
+                                     size / 4, size / 2, size - 8, size - 1})
+      bundles.emplace_back(fmt::format("cut at {}", length), whole.substr(0, length));
+    for (const std::size_t at :
+         {std::size_t{1}, std::size_t{9}, std::size_t{300}, size / 3, size / 2, size - 20}) {
+      bundles.emplace_back(fmt::format("flipped at {}", at), whole);
+      bundles.back().second[at] ^= 0x10;
+    }
+    bundles.emplace_back("trailing bytes", whole + "0123");
+    return bundles;
+  }
+  // The same bundle as a program of the future would write it.
+  std::string tooNew() const {
+    const std::string field = "\"LAMBENT_radiance_transfer\":{";
+    const std::size_t extension = whole.find(field);
+    const std::size_t version = whole.find("\"version\":1", extension);
+    EXPECT_NE(version, std::string::npos);
+    std::string bundle = whole;
+    bundle[version + 10] = '9';
+    return bundle;
+  }
+
+  std::string whole;
+};
+
+TEST_F(DamagedBundle, IsToldByInfoInOneLine) {
+  for (const auto& [what, bytes] : damaged()) {
+    writeBytes(folder / "damaged.lmb.glb", bytes);
+    const Outcome outcome = lambent({"info", path("damaged.lmb.glb")});
+    EXPECT_EQ(outcome.exit_code, 1) << what;
+    expectOneLine(outcome, "lambent", what);
+    EXPECT_NE(outcome.err.find("damaged.lmb.glb: "), std::string::npos) << what << "\n" << outcome.err;
+  }
+  writeBytes(folder / "future.lmb.glb", tooNew());
+  const Outcome outcome = lambent({"info", path("future.lmb.glb")});
+  EXPECT_EQ(outcome.exit_code, 1);
+  expectOneLine(outcome, "lambent", "too new");
+  EXPECT_NE(outcome.err.find("newer"), std::string::npos) << outcome.err;
+}
+
+TEST_F(DamagedBundle, IsToldByTheDemoInOneLineAndGivesNoPicture) {
+  const auto show = [&](const std::string& name) {
+    return run(LAMBENT_DEMO,
+               {path(name), "--light", "constant:1,1,1", "--size", "32x32", "--headless", path("a.png")});
+  };
+  if (const Outcome outcome = show("hello.lmb.glb"); outcome.exit_code != 0)
+    GTEST_SKIP() << "no OpenGL 4.5 here: " << outcome.err;
+  ASSERT_TRUE(std::filesystem::remove(folder / "a.png"));
+  auto bundles = damaged();
+  bundles.emplace_back("too new", tooNew());
+  for (const auto& [what, bytes] : bundles) {
+    writeBytes(folder / "damaged.lmb.glb", bytes);
+    const Outcome outcome = show("damaged.lmb.glb");
+    EXPECT_EQ(outcome.exit_code, 1) << what;
+    expectOneLine(outcome, "lambent-demo", what);
+    EXPECT_NE(outcome.err.find("damaged.lmb.glb: "), std::string::npos) << what << "\n" << outcome.err;
+    EXPECT_FALSE(std::filesystem::exists(folder / "a.png")) << what;
+  }
+}
+
+TEST_F(LambentProgram, BundlesPassTheKhronosValidator) {
+  ASSERT_EQ(bakeHello("hello.lmb.glb").exit_code, 0);
+  const Outcome gallery = lambent({"bake", kGallery, "-o", path("gallery.lmb.glb"), "--quality", "draft"});
+  ASSERT_EQ(gallery.exit_code, 0) << gallery.err;
+  const Outcome outcome = run(LAMBENT_SOURCE_DIR "/tests/support/validate_gltf.sh",
+                              {path("hello.lmb.glb"), path("gallery.lmb.glb")});
+  if (outcome.exit_code == 77) GTEST_SKIP() << outcome.out;
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
+}
+
+}  // namespace lambent

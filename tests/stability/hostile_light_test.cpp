@@ -1,0 +1,52 @@
+// Probes with texels that are not finite or absurdly bright: the light stays finite and the repair is told.
+#include <limits>
+
+#include "runtime/lighting/environment.hpp"
+#include "runtime/spec/image.hpp"
+#include "tests/support/program.hpp"
+
+namespace lambent {
+
+class HostileLight : public testing::ProgramTest {
+ protected:
+  // A grey sky of 32 x 16 with `poison` in two of its texels.
+  Result<lighting::Environment> skyWith(float poison) const {
+    spec::RgbaImage image{32, 16, std::vector<glm::vec4>(32 * 16, glm::vec4(1.0f))};
+    image.texels[100] = image.texels[101] = glm::vec4(glm::vec3(poison), 1.0f);
+    const auto path = folder / "sky.exr";
+    EXPECT_TRUE(spec::writeExr(path, image));
+    return lighting::Environment::create({spec::ProbeLight{path, {}}});
+  }
+  static bool isFinite(const sh::LightVector& light) {
+    for (const auto& c : light.c)
+      if (!std::isfinite(c.x) || !std::isfinite(c.y) || !std::isfinite(c.z)) return false;
+    return true;
+  }
+};
+
+TEST_F(HostileLight, TexelsThatAreNotFiniteCountAsBlackAndAreTold) {
+  for (const float poison : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(),
+                             -std::numeric_limits<float>::infinity()}) {
+    auto sky = skyWith(poison);
+    ASSERT_TRUE(sky) << sky.error().line();
+    EXPECT_TRUE(isFinite(sky->light()));
+    ASSERT_EQ(sky->notices().size(), 1u);
+    EXPECT_NE(sky->notices()[0].find("2 texels"), std::string::npos) << sky->notices()[0];
+    // Two of 512 texels are missing: less than the share of two texels at the equator.
+    EXPECT_NEAR(sky->light().c[0].x, 3.5449077f, 3.5449077f * 2.0f / 512.0f * 1.6f);
+    sky->setTurn(33.0f);
+    EXPECT_TRUE(isFinite(sky->light()));
+  }
+}
+
+TEST_F(HostileLight, TexelsOfAbsurdRadianceGiveFiniteLight) {
+  for (const float poison : {1e30f, 3e38f, -1e30f}) {
+    auto sky = skyWith(poison);
+    if (!sky) continue;  // refused in one line is as good
+    EXPECT_TRUE(isFinite(sky->light())) << poison;
+    sky->setTurn(33.0f);
+    EXPECT_TRUE(isFinite(sky->light())) << poison;
+  }
+}
+
+}  // namespace lambent
