@@ -1,0 +1,111 @@
+// hello.glb, baked by `lambent` and shown by `lambent-demo`, as linear pictures of one ray per pixel.
+//
+// hello_sky.exr is what the programs drew when the stored picture was last looked at. After a change that is
+// meant to change it: cmake --build --preset release --target golden-pictures
+#include <cmath>
+
+#include <glm/geometric.hpp>
+
+#include "runtime/spec/image.hpp"
+#include "tests/support/program.hpp"
+
+namespace lambent {
+namespace {
+
+constexpr const char* kStored = LAMBENT_SOURCE_DIR "/tests/golden/hello_sky.exr";
+constexpr const char* kSky = LAMBENT_BINARY_DIR "/assets/sky.hdr";
+
+bool isCovered(const glm::vec4& texel) {
+  return texel.a > 0.5f;
+}
+
+// sqrt(sum (X - A)² / sum A²) over pixels that are covered in both pictures.
+double relativeRms(const spec::RgbaImage& x, const spec::RgbaImage& a) {
+  double error = 0.0, energy = 0.0;
+  for (std::size_t i = 0; i < a.texels.size(); ++i) {
+    if (!isCovered(x.texels[i]) || !isCovered(a.texels[i])) continue;
+    const glm::dvec3 value(a.texels[i]), off = glm::dvec3(x.texels[i]) - value;
+    error += off.x * off.x + off.y * off.y + off.z * off.z;
+    energy += value.x * value.x + value.y * value.y + value.z * value.z;
+  }
+  return std::sqrt(error / energy);
+}
+
+class HelloPicture : public testing::ProgramTest {
+ protected:
+  void SetUp() override {
+    ProgramTest::SetUp();
+    const auto baked = run(LAMBENT_PROGRAM, {"bake", LAMBENT_BINARY_DIR "/assets/hello.glb", "-o",
+                                             (folder / "hello.lmb.glb").string(), "--quality", "draft"});
+    ASSERT_EQ(baked.exit_code, 0) << baked.err;
+  }
+  // Skips the test where no picture can be drawn.
+  void show(const std::vector<std::string>& options, spec::RgbaImage& picture) const {
+    const std::string path = (folder / "picture.exr").string();
+    std::vector<std::string> words = {
+        (folder / "hello.lmb.glb").string(), "--size", "128x96", "--window", "off", "--headless", path};
+    words.insert(words.end(), options.begin(), options.end());
+    const auto outcome = run(LAMBENT_DEMO, words);
+    if (outcome.err.find("OpenGL") != std::string::npos) GTEST_SKIP() << outcome.err;
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    auto read = spec::readExr(path);
+    ASSERT_TRUE(read) << read.error().line();
+    picture = std::move(*read);
+    ASSERT_EQ(picture.texels.size(), 128u * 96u);
+  }
+  static std::size_t covered(const spec::RgbaImage& image) {
+    return static_cast<std::size_t>(std::count_if(image.texels.begin(), image.texels.end(), isCovered));
+  }
+};
+
+}  // namespace
+
+TEST_F(HelloPicture, UnderTheSkyIsTheStoredOne) {
+  const auto stored = spec::readExr(kStored);
+  ASSERT_TRUE(stored) << stored.error().line();
+  spec::RgbaImage picture;
+  show({"--light", kSky}, picture);
+  if (picture.texels.empty()) return;
+  // Devices may put single pixels of an outline on either side.
+  EXPECT_NEAR(static_cast<double>(covered(picture)), static_cast<double>(covered(*stored)), 20.0);
+  EXPECT_LT(relativeRms(picture, *stored), 0.01);
+}
+
+// Lights add up, whatever the scene.
+TEST_F(HelloPicture, IsLinearInItsLight) {
+  spec::RgbaImage sky, sun, both;
+  const std::string disc = "sun:40,50,3,200,150,100";
+  show({"--light", kSky}, sky);
+  if (sky.texels.empty()) return;
+  show({"--light", disc}, sun);
+  show({"--light", kSky, "--light", disc}, both);
+  for (std::size_t i = 0; i < sun.texels.size(); ++i)
+    sun.texels[i] += glm::vec4(glm::vec3(sky.texels[i]), 0.0f);
+  EXPECT_LT(relativeRms(both, sun), 1e-3);  // codes are the same; float sums differ
+}
+
+TEST_F(HelloPicture, UnderUniformLightIsNeverBrighterThanItsAlbedo) {
+  spec::RgbaImage shadowed, open;
+  show({"--light", "constant:1,1,1"}, shadowed);
+  if (shadowed.texels.empty()) return;
+  show({"--light", "constant:1,1,1", "--transfer", "unshadowed"}, open);
+  const std::vector<glm::vec3> albedos = {{0.7f, 0.68f, 0.64f}, {0.75f, 0.25f, 0.12f}, {0.2f, 0.4f, 0.7f}};
+  std::size_t in_shadow = 0;
+  for (std::size_t i = 0; i < open.texels.size(); ++i) {
+    if (!isCovered(open.texels[i])) continue;
+    // Without shadows every pixel shows the albedo of one of the three materials.
+    float nearest = 1e9f;
+    for (const glm::vec3& albedo : albedos)
+      nearest = std::min(nearest, glm::distance(glm::vec3(open.texels[i]), albedo));
+    EXPECT_LT(nearest, 1e-3f) << i;
+    for (int c = 0; c < 3; ++c) {
+      EXPECT_GE(shadowed.texels[i][c], 0.0f) << i;
+      // Transfer is coded to 1 % RMS at draft; single vertices may be three times as far.
+      EXPECT_LE(shadowed.texels[i][c], 1.03f * open.texels[i][c]) << i;
+    }
+    in_shadow += shadowed.texels[i].r < 0.9f * open.texels[i].r;
+  }
+  EXPECT_GT(in_shadow, covered(open) / 50) << "where box and ball stand";
+}
+
+}  // namespace lambent
