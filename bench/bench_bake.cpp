@@ -1,6 +1,5 @@
 // A whole bake, split by stage: seconds of each as counters.
 //   bench_bake [--scene=FILE.glb] [--benchmark_...]; the default scene is the shipped gallery.
-#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -11,6 +10,7 @@
 
 #include "baker/bake/bake.hpp"
 #include "baker/import/gltf.hpp"
+#include "bench/scene_argument.hpp"
 
 namespace {
 
@@ -40,13 +40,7 @@ void bakeWhole(benchmark::State& state, const std::string& file) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  std::string file = LAMBENT_BINARY_DIR "/assets/gallery.glb";
-  for (int i = 1; i < argc; ++i)
-    if (std::strncmp(argv[i], "--scene=", 8) == 0) {
-      file = argv[i] + 8;
-      std::rotate(argv + i, argv + i + 1, argv + argc);
-      --argc;
-    }
+  const std::string file = takeSceneArgument(argc, argv);
   benchmark::Initialize(&argc, argv);
   benchmark::RegisterBenchmark("bake/standard", [file](benchmark::State& state) { bakeWhole(state, file); })
       ->UseManualTime()

@@ -21,6 +21,7 @@
 #include "baker/transport/ray_packets.hpp"
 #include "baker/transport/ray_scene.hpp"
 #include "baker/work/parallel.hpp"
+#include "bench/scene_argument.hpp"
 
 namespace {
 
@@ -172,13 +173,7 @@ Workload load(const std::string& file) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  std::string file = LAMBENT_BINARY_DIR "/assets/gallery.glb";
-  for (int i = 1; i < argc; ++i)
-    if (std::strncmp(argv[i], "--scene=", 8) == 0) {
-      file = argv[i] + 8;
-      std::rotate(argv + i, argv + i + 1, argv + argc);
-      --argc;
-    }
+  const std::string file = takeSceneArgument(argc, argv);
   benchmark::Initialize(&argc, argv);
   static const Workload work = load(file);
   static const DirectionTable table = cosineTable(kRays);
