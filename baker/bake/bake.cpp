@@ -157,6 +157,9 @@ Result<EffectPlan> planFor(const Scene& scene, const BakeOptions& options) {
 Result<BakeReport> bake(const Scene& scene, const BakeOptions& options, const std::filesystem::path& output,
                         Progress& progress, std::stop_token stop) {
   if (auto checked = checkRequest(options, output); !checked) return failAgain(checked.error());
+  std::error_code ignored;
+  if (std::filesystem::equivalent(scene.source, output, ignored))
+    return fail(output.string(), "is the scene itself", "name another file for the bundle");
   std::optional<Result<BakeReport>> result;
   withThreads(options.threads, [&] { result = bakeOnTheseThreads(scene, options, output, progress, stop); });
   return std::move(*result);

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include <tbb/global_control.h>
+#include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
@@ -18,7 +19,8 @@ bool parallelRanges(std::size_t count, std::size_t grain, const std::stop_token&
 }
 
 void withThreads(unsigned threads, const std::function<void()>& job) {
-  if (threads == 0) return job();
+  // More threads than cores gain nothing, and TBB allocates for each.
+  if (threads == 0 || threads >= static_cast<unsigned>(tbb::info::default_concurrency())) return job();
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
   tbb::task_arena arena(static_cast<int>(threads));
   arena.execute(job);

@@ -13,7 +13,8 @@ namespace lambent::baker {
 bool parallelRanges(std::size_t count, std::size_t grain, const std::stop_token& stop,
                     const std::function<void(std::size_t begin, std::size_t end)>& body);
 
-// Runs `job` with at most `threads` threads in every parallel loop inside it; 0: as many as the machine has.
+// Runs `job` with at most `threads` threads in every parallel loop inside it; 0, or more than the machine
+// has: as many as that.
 void withThreads(unsigned threads, const std::function<void()>& job);
 
 }  // namespace lambent::baker
