@@ -57,8 +57,8 @@ void printText(const Scene& scene, const EffectPlan& plan) {
   fmt::print("  rigid groups\n");
   for (const RigidGroup& group : plan.groups) {
     const GroupSize size = sizeOf(scene, group);
-    fmt::print("    {}: {} draws, {} vertices, {} triangles\n", group.name, group.draws.size(), size.vertices,
-               size.triangles);
+    fmt::print("    {}: {} draw{}, {} vertices, {} triangles\n", group.name, group.draws.size(),
+               group.draws.size() == 1 ? "" : "s", size.vertices, size.triangles);
   }
   if (!plan.left_out.empty()) fmt::print("  left out\n");
   for (const std::string& sentence : plan.left_out) fmt::print("    {}\n", sentence);

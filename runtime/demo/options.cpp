@@ -42,7 +42,7 @@ struct Row {
 
 constexpr Row kRows[] = {
     {"--light-layout", &Words::light_layout, "LAYOUT",
-     "Layout of probes whose shape misleads: latlong, angular, cross"},
+     "Layout of probes whose shape misleads: lat-long, angular-map\nor vertical-cross"},
     {"--camera", &Words::camera, "CAM",
      "Name or index of a camera in the file, or orbit:AZ,EL,DIST,FOV\n(default: the file's first, else an "
      "orbit)"},
