@@ -66,11 +66,13 @@ class Assembler {
       group.node = planned.root;
       group.rest_translation = planned.rest_translation;
       group.rest_rotation = planned.rest_rotation;
-      group.bounds_min = baked[g].geometry.bounds_min;
-      group.bounds_max = baked[g].geometry.bounds_max;
+      const glm::vec3 origin = baked[g].geometry.origin;
+      group.bounds_min = origin + baked[g].geometry.bounds_min;
+      group.bounds_max = origin + baked[g].geometry.bounds_max;
       group.sample_count = static_cast<std::uint32_t>(baked[g].samples.size());
       for (const SampleCell& cell : baked[g].samples.cells)
-        group.cells.push_back({cell.first, cell.count, cell.bounds_min, cell.bounds_max, {}});
+        group.cells.push_back(
+            {cell.first, cell.count, origin + cell.bounds_min, origin + cell.bounds_max, {}});
       description_.groups.push_back(std::move(group));
       for (std::size_t d = 0; d < planned.draws.size(); ++d)
         addDraw(planned.draws[d], static_cast<std::uint32_t>(g), baked[g].geometry.draws[d],

@@ -17,7 +17,7 @@ namespace {
 
 constexpr int kLatticeBits =
     16;  // of the group's longest axis: 1/65536 of it is far below any edge worth a vertex
-constexpr std::size_t kMaxTriangles = 20'000'000;  // per primitive after splitting
+constexpr std::size_t kMaxTriangles = 4'000'000;  // per primitive after splitting
 
 struct Box {
   glm::vec3 low{std::numeric_limits<float>::max()}, high{std::numeric_limits<float>::lowest()};

@@ -1,5 +1,6 @@
 #include "baker/transport/group_geometry.hpp"
 
+#include <limits>
 #include <utility>
 
 #include <glm/geometric.hpp>
@@ -22,14 +23,16 @@ void append(const PlannedDraw& draw, const bundle::MeshData& mesh, const gltf::M
                    .triangle_count = 0,
                    .material = material_index,
                    .back = draw.back};
+  const glm::dmat4 group_from_mesh(draw.group_from_mesh);
   const glm::mat3 linear(draw.group_from_mesh);
   const glm::mat3 normal_matrix = glm::inverseTranspose(linear);
   const float side = draw.back ? -1.0f : 1.0f;
   const bool use_second_set = material && material->base_color_texture.texcoord == 1;
   const auto& texcoords = use_second_set ? mesh.texcoords1 : mesh.texcoords0;
   for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+    const glm::dvec3 placed = group_from_mesh * glm::dvec4(mesh.positions[v], 1.0);
     // Adding 0 turns -0 into 0: samples are welded by their bits.
-    geometry.positions.push_back(glm::vec3(draw.group_from_mesh * glm::vec4(mesh.positions[v], 1.0f)) + 0.0f);
+    geometry.positions.push_back(glm::vec3(placed - glm::dvec3(geometry.origin)) + 0.0f);
     geometry.normals.push_back(side * unitOr(normal_matrix * mesh.normals[v], {0.0f, 1.0f, 0.0f}) + 0.0f);
     geometry.texcoords.push_back(texcoords.empty() ? glm::vec2(0.0f) : texcoords[v]);
     geometry.alphas.push_back(mesh.colors.empty() ? 1.0f : mesh.colors[v].w);
@@ -49,11 +52,27 @@ void append(const PlannedDraw& draw, const bundle::MeshData& mesh, const gltf::M
   geometry.draws.push_back(out);
 }
 
+// The centre of a group that stands much further from its frame's origin than it is large; else 0.
+glm::vec3 originOf(const RigidGroup& group, const std::vector<std::vector<bundle::MeshData>>& decoded) {
+  constexpr double kFar = 16.0;
+  glm::dvec3 low(std::numeric_limits<double>::max()), high(std::numeric_limits<double>::lowest());
+  for (const PlannedDraw& draw : group.draws) {
+    const glm::dmat4 group_from_mesh(draw.group_from_mesh);
+    for (const glm::vec3& position : decoded[draw.mesh][draw.primitive].positions) {
+      const glm::dvec3 placed = group_from_mesh * glm::dvec4(position, 1.0);
+      low = glm::min(low, placed), high = glm::max(high, placed);
+    }
+  }
+  const glm::dvec3 centre = 0.5 * (low + high);
+  return glm::length(centre) > kFar * glm::length(high - low) ? glm::vec3(centre) : glm::vec3(0.0f);
+}
+
 }  // namespace
 
 GroupGeometry buildGroupGeometry(const RigidGroup& group, const Scene& scene,
                                  const std::vector<std::vector<bundle::MeshData>>& decoded) {
   GroupGeometry geometry;
+  geometry.origin = originOf(group, decoded);
   for (const PlannedDraw& draw : group.draws) {
     const std::int32_t index = scene.meshes[draw.mesh].primitives[draw.primitive].material;
     const gltf::Material* material = index < 0 ? nullptr : &scene.materials[static_cast<std::size_t>(index)];

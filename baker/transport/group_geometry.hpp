@@ -1,6 +1,8 @@
 // The geometry of one rigid group as rays see it: the decoded meshes of all its draws, side by side in the
 // group's frame. Triangles wind counter-clockwise seen from the outside (mirroring nodes are undone), back
 // sides of double-sided materials are draws of their own but share the triangles of the front for visibility.
+// Transfer does not depend on where things are, so a group that stands far from its frame's origin is brought
+// near it: out there floats are too coarse for rays.
 #pragma once
 
 #include <cstdint>
@@ -23,13 +25,14 @@ struct DrawGeometry {
 };
 
 struct GroupGeometry {
-  std::vector<glm::vec3> positions;   // group frame, metres
+  glm::vec3 origin{0.0f};             // group frame, metres: 0 unless the group stands far away
+  std::vector<glm::vec3> positions;   // from `origin`, along the group frame's axes
   std::vector<glm::vec3> normals;     // unit; of back draws negated
   std::vector<glm::vec2> texcoords;   // of the material's base-colour texture; zero where it has none
   std::vector<float> alphas;          // of the vertex colours, 1 where there are none
   std::vector<glm::uvec3> triangles;  // into positions; of back draws wound the other way
   std::vector<DrawGeometry> draws;    // in the order of RigidGroup::draws
-  glm::vec3 bounds_min{0.0f}, bounds_max{0.0f};
+  glm::vec3 bounds_min{0.0f}, bounds_max{0.0f};  // from `origin`
 };
 
 // decoded[mesh][primitive] is what ships.

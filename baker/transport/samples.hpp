@@ -20,7 +20,7 @@ inline constexpr std::uint32_t kMaxCellSamples = 65536;  // "64 Ki samples" of t
 
 // One place from which a sample's rays start.
 struct SampleOrigin {
-  glm::vec3 position;          // group frame
+  glm::vec3 position;          // as GroupGeometry::positions
   glm::vec3 geometric_normal;  // unit; rays below it are blocked
   float weight;                // the corner's angle; origins of one sample sum to 1
 };
@@ -31,7 +31,7 @@ struct SampleCell {
 };
 
 struct SampleSet {
-  std::vector<glm::vec3> positions;          // group frame
+  std::vector<glm::vec3> positions;          // as GroupGeometry::positions
   std::vector<glm::vec3> normals;            // unit shading normals
   std::vector<std::uint32_t> vertex_sample;  // GroupGeometry vertex -> sample
   std::vector<SampleOrigin> origins;

@@ -43,7 +43,11 @@ void AtomicFile::discard() noexcept {
 
 Result<AtomicFile> AtomicFile::open(const fs::path& path) {
   std::error_code ignored;
-  if (fs::is_directory(path, ignored)) return fail(path.string(), "is a folder", "name a file to write");
+  const fs::file_status there = fs::status(path, ignored);
+  if (fs::is_directory(there)) return fail(path.string(), "is a folder", "name a file to write");
+  // A rename would put a plain file in the place of a device or a pipe.
+  if (fs::exists(there) && !fs::is_regular_file(there))
+    return fail(path.string(), "is a device or a pipe", "name a file to write");
   fs::path part = path;
   part += ".part-" + std::to_string(::getpid());
   const int descriptor = ::open(part.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);

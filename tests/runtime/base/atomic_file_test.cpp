@@ -50,6 +50,7 @@ TEST_F(AtomicFileTest, LeavesNothingWithoutCommit) {
 }
 
 TEST_F(AtomicFileTest, SaysWhyItCannotBeWritten) {
+  EXPECT_NE(AtomicFile::open("/dev/null").error().problem.find("device"), std::string::npos);
   EXPECT_NE(AtomicFile::open(folder_).error().problem.find("folder"), std::string::npos);
   EXPECT_NE(AtomicFile::open(folder_ / "missing" / "file").error().problem.find("folder does not exist"),
             std::string::npos);
