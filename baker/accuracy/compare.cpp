@@ -1,0 +1,72 @@
+#include "baker/accuracy/compare.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+
+namespace lambent::baker {
+
+namespace {
+
+double percentile(std::vector<double>& values, double share) {
+  const auto at =
+      values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1) + 0.5);
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+bool finite(const glm::dvec3& v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+}  // namespace
+
+Result<PictureError> comparePictures(const spec::RgbaImage& picture, const spec::RgbaImage& reference,
+                                     const std::optional<spec::RgbaImage>& reference2,
+                                     const std::string& subject) {
+  const spec::RgbaImage& second = reference2 ? *reference2 : reference;
+  for (const spec::RgbaImage* other : {&reference, &second})
+    if (other->width != picture.width || other->height != picture.height)
+      return fail(subject,
+                  fmt::format("is {} x {}, the reference {} x {}", picture.width, picture.height,
+                              other->width, other->height),
+                  "draw both with the same --size");
+  PictureError error;
+  double squares = 0.0, energy = 0.0;
+  glm::dvec3 difference_sum(0.0), reference_sum(0.0);
+  std::vector<double> differences;
+  for (std::size_t i = 0; i < picture.texels.size(); ++i) {
+    if (picture.texels[i].w <= 0.0f || reference.texels[i].w <= 0.0f || second.texels[i].w <= 0.0f) continue;
+    const glm::dvec3 x(picture.texels[i]), a(reference.texels[i]), b(second.texels[i]), mean = 0.5 * (a + b);
+    if (!finite(x) || !finite(a) || !finite(b))
+      return fail(
+          subject,
+          fmt::format("or its reference is not finite at pixel {}, {}", i % picture.width, i / picture.width),
+          "draw it again");
+    squares += glm::dot(x - a, x - b);
+    energy += glm::dot(a, b);
+    difference_sum += x - mean;
+    reference_sum += mean;
+    differences.push_back(glm::length(x - mean));
+  }
+  if (differences.empty())
+    return fail(subject, "covers no pixel that its reference covers", "use the same camera for both");
+  if (!(energy > 0.0)) return fail(subject, "has a black reference", "use a light that reaches the scene");
+
+  error.pixels = differences.size();
+  error.relative_rms = std::sqrt(std::max(squares, 0.0) / energy);
+  for (int k = 0; k < 3; ++k)
+    error.bias[static_cast<std::size_t>(k)] =
+        reference_sum[k] != 0.0 ? difference_sum[k] / reference_sum[k] : 0.0;
+  const double scale = std::sqrt(energy / static_cast<double>(error.pixels));
+  error.median = percentile(differences, 0.5) / scale;
+  error.percentile_95 = percentile(differences, 0.95) / scale;
+  error.percentile_99 = percentile(differences, 0.99) / scale;
+  error.largest = *std::max_element(differences.begin(), differences.end()) / scale;
+  return error;
+}
+
+}  // namespace lambent::baker

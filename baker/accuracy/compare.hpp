@@ -1,0 +1,31 @@
+// How far a picture lies from a reference, in linear radiance, over the pixels that both cover (alpha > 0 in
+// every picture; no sky, no tone map). With a second reference that was made independently (another seed),
+// the noise of the references cancels: errors are products of two differences whose noise is not correlated.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include "runtime/base/result.hpp"
+#include "runtime/spec/image.hpp"
+
+namespace lambent::baker {
+
+struct PictureError {
+  std::uint64_t pixels = 0;  // covered in all pictures
+  double relative_rms =
+      0.0;  // sqrt( sum (X-A)² / sum A² ); with B: sqrt( sum (X-A)(X-B) / sum AB ), 0 if negative
+  std::array<double, 3> bias{};  // per channel: sum (X-A) / sum A; A the mean of both references
+  // Over pixels, of the root mean square difference of the channels, relative to that of the reference over
+  // the picture. Noise of the references is in these.
+  double median = 0.0, percentile_95 = 0.0, percentile_99 = 0.0, largest = 0.0;
+};
+
+// Errors name `subject`: sizes that differ, values that are not finite, no pixel that all cover, a black
+// reference.
+Result<PictureError> comparePictures(const spec::RgbaImage& picture, const spec::RgbaImage& reference,
+                                     const std::optional<spec::RgbaImage>& reference2,
+                                     const std::string& subject);
+
+}  // namespace lambent::baker

@@ -1,0 +1,78 @@
+// lambent compare PICTURE.exr REFERENCE.exr [--reference2 OTHER.exr]
+#include <memory>
+#include <optional>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "baker/accuracy/compare.hpp"
+#include "baker/cli/commands.hpp"
+#include "baker/cli/output.hpp"
+
+namespace lambent::baker {
+
+namespace {
+
+struct CompareArguments {
+  std::filesystem::path picture, reference, reference2;
+  bool json = false;
+};
+
+void print(const CompareArguments& a, const PictureError& e) {
+  if (a.json) {
+    const nlohmann::json json = {{"picture", a.picture.string()},
+                                 {"reference", a.reference.string()},
+                                 {"noiseFree", !a.reference2.empty()},
+                                 {"pixels", e.pixels},
+                                 {"relativeRms", e.relative_rms},
+                                 {"bias", e.bias},
+                                 {"median", e.median},
+                                 {"percentile95", e.percentile_95},
+                                 {"percentile99", e.percentile_99},
+                                 {"max", e.largest}};
+    fmt::print("{}\n", json.dump(2));
+    return;
+  }
+  fmt::print("{} against {}: {} pixels\n", a.picture.string(), a.reference.string(), e.pixels);
+  fmt::print("  relative RMS  {:.3f} %{}\n", 100.0 * e.relative_rms,
+             a.reference2.empty() ? "" : ", free of the references' noise");
+  fmt::print("  bias          R {:+.3f} %, G {:+.3f} %, B {:+.3f} %\n", 100.0 * e.bias[0], 100.0 * e.bias[1],
+             100.0 * e.bias[2]);
+  fmt::print("  pixels        median {:.3f} %, 95th {:.3f} %, 99th {:.3f} %, max {:.3f} %\n",
+             100.0 * e.median, 100.0 * e.percentile_95, 100.0 * e.percentile_99, 100.0 * e.largest);
+}
+
+int runCompare(const CompareArguments& a) {
+  const auto picture = spec::readExr(a.picture);
+  if (!picture) return reportError(picture.error());
+  const auto reference = spec::readExr(a.reference);
+  if (!reference) return reportError(reference.error());
+  std::optional<spec::RgbaImage> reference2;
+  if (!a.reference2.empty()) {
+    auto second = spec::readExr(a.reference2);
+    if (!second) return reportError(second.error());
+    reference2 = std::move(*second);
+  }
+  const auto error = comparePictures(*picture, *reference, reference2, a.picture.string());
+  if (!error) return reportError(error.error());
+  print(a, *error);
+  return 0;
+}
+
+}  // namespace
+
+void addCompareCommand(CLI::App& app, Command& run) {
+  auto a = std::make_shared<CompareArguments>();
+  CLI::App* command = app.add_subcommand("compare", "Error figures of a linear picture against a reference");
+  command->add_option("PICTURE", a->picture, "The picture, .exr")->required();
+  command->add_option("REFERENCE", a->reference, "What it should be, .exr of the same size")->required();
+  command
+      ->add_option("--reference2", a->reference2,
+                   "A second, independent reference: cancels the noise of both")
+      ->type_name("EXR");
+  command->add_flag("--json", a->json, "Print figures as JSON");
+  command->callback([a, &run] { run = [a] { return runCompare(*a); }; });
+}
+
+}  // namespace lambent::baker

@@ -1,0 +1,84 @@
+#include "baker/accuracy/compare.hpp"
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include <gtest/gtest.h>
+
+namespace lambent::baker {
+namespace {
+
+spec::RgbaImage filled(glm::vec3 color, std::uint32_t width = 8, std::uint32_t height = 4) {
+  return {width, height, std::vector<glm::vec4>(std::size_t{width} * height, glm::vec4(color, 1.0f))};
+}
+
+TEST(ComparePictures, OfAPictureWithItselfIsZero) {
+  const auto error = comparePictures(filled({1, 2, 3}), filled({1, 2, 3}), {}, "a.exr");
+  ASSERT_TRUE(error) << error.error().line();
+  EXPECT_EQ(error->pixels, 32u);
+  EXPECT_EQ(error->relative_rms, 0.0);
+  EXPECT_EQ(error->largest, 0.0);
+}
+
+TEST(ComparePictures, OfAScaledPictureIsTheScale) {
+  const auto error = comparePictures(filled({1.1f, 2.2f, 3.3f}), filled({1, 2, 3}), {}, "a.exr");
+  ASSERT_TRUE(error);
+  EXPECT_NEAR(error->relative_rms, 0.1, 1e-6);
+  for (const double bias : error->bias) EXPECT_NEAR(bias, 0.1, 1e-6);
+  EXPECT_NEAR(error->median, 0.1, 1e-6);
+  EXPECT_NEAR(error->largest, 0.1, 1e-6);
+}
+
+TEST(ComparePictures, CountsOnlyWhatAllPicturesCover) {
+  auto picture = filled({1, 1, 1});
+  const auto reference = filled({1, 1, 1});
+  picture.texels[3] = glm::vec4(100.0f, 0.0f, 0.0f, 0.0f);  // sky
+  auto error = comparePictures(picture, reference, {}, "a.exr");
+  ASSERT_TRUE(error);
+  EXPECT_EQ(error->pixels, 31u);
+  EXPECT_EQ(error->largest, 0.0);
+  picture.texels[3].w = 1.0f;
+  error = comparePictures(picture, reference, {}, "a.exr");
+  EXPECT_EQ(error->pixels, 32u);
+  EXPECT_GT(error->largest, 50.0);
+  EXPECT_EQ(error->median, 0.0);
+}
+
+TEST(ComparePictures, WithTwoReferencesIsFreeOfTheirNoise) {
+  // The picture is 2 % too bright, each reference has 30 % noise of its own.
+  std::mt19937 random(5);
+  std::normal_distribution<float> noise(1.0f, 0.3f);
+  const auto noisy = [&] {
+    auto image = filled({1, 1, 1}, 512, 512);
+    for (glm::vec4& texel : image.texels)
+      texel = glm::vec4(noise(random), noise(random), noise(random), 1.0f);
+    return image;
+  };
+  const auto picture = filled({1.02f, 1.02f, 1.02f}, 512, 512);
+  const auto a = noisy(), b = noisy();
+  const auto one = comparePictures(picture, a, {}, "a.exr");
+  const auto both = comparePictures(picture, a, b, "a.exr");
+  ASSERT_TRUE(one && both);
+  EXPECT_NEAR(one->relative_rms, 0.3 / std::sqrt(1.09), 0.01);
+  // The product of the noises averages to 0.09 / sqrt(786432) = 1e-4, against 4e-4 of true error.
+  EXPECT_NEAR(both->relative_rms, 0.02, 0.008);
+  EXPECT_NEAR(both->bias[1], 0.02, 0.002);
+}
+
+TEST(ComparePictures, RefusesWhatCannotBeCompared) {
+  const auto white = filled({1, 1, 1});
+  EXPECT_FALSE(comparePictures(white, filled({1, 1, 1}, 4, 8), {}, "a.exr"));
+  EXPECT_FALSE(comparePictures(white, white, filled({1, 1, 1}, 4, 4), "a.exr"));
+  EXPECT_FALSE(comparePictures(white, filled({0, 0, 0}), {}, "a.exr"));
+  auto broken = white;
+  broken.texels[9].y = std::numeric_limits<float>::quiet_NaN();
+  const auto error = comparePictures(broken, white, {}, "a.exr");
+  ASSERT_FALSE(error);
+  EXPECT_NE(error.error().problem.find("pixel 1, 1"), std::string::npos) << error.error().line();
+  for (glm::vec4& texel : broken.texels) texel.w = 0.0f;
+  EXPECT_FALSE(comparePictures(broken, white, {}, "a.exr"));
+}
+
+}  // namespace
+}  // namespace lambent::baker
