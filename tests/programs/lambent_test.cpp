@@ -44,7 +44,8 @@ TEST_F(LambentProgram, HelpAndVersionAreExitCode0) {
        {"SCENE", "--output", "--quality", "--order", "--rays", "--error", "--max-edge", "--effects",
         "--threads", "--force", "--json"}},
       {"plan", {"SCENE", "--effects", "--json"}},
-      {"info", {"BUNDLE", "--json"}}};
+      {"info", {"BUNDLE", "--json"}},
+      {"compare", {"PICTURE", "REFERENCE", "--reference2", "--json"}}};
   for (const auto& [command, options] : commands) {
     EXPECT_NE(help.out.find(command), std::string::npos) << command;
     const Outcome about = lambent({command, "--help"});
@@ -72,7 +73,8 @@ TEST_F(LambentProgram, WrongUsageIsExitCode2AndOneLine) {
       {"bake", kHello, kHello, "-o", path("a.lmb.glb")},
       {"plan"},
       {"info"},
-      {"info", "a", "b"}};
+      {"info", "a", "b"},
+      {"compare", "a.exr"}};
   for (const auto& arguments : wrong) {
     const Outcome outcome = lambent(arguments);
     const std::string words = fmt::format("{}", fmt::join(arguments, " "));
@@ -165,6 +167,17 @@ TEST_F(LambentProgram, ReportsFiguresThatAddUpAsJson) {
     EXPECT_EQ(words.err, "");
     EXPECT_NE(words.out.find(std::to_string(triangles) + " triangles"), std::string::npos) << words.out;
   }
+}
+
+TEST_F(LambentProgram, ComparesPictures) {
+  const std::string picture = LAMBENT_SOURCE_DIR "/tests/golden/hello_sky.exr";
+  const Outcome same = lambent({"compare", picture, picture, "--reference2", picture, "--json"});
+  EXPECT_EQ(same.exit_code, 0) << same.err;
+  EXPECT_EQ(json::parse(same.out)["relativeRms"], 0.0);
+  EXPECT_GT(json::parse(same.out)["pixels"], 1000);
+  const Outcome lost = lambent({"compare", picture, path("lost.exr")});
+  EXPECT_EQ(lost.exit_code, 1);
+  expectOneLine(lost, "lambent", "lost.exr");
 }
 
 TEST_F(LambentProgram, BadInputIsExitCode1OneLineAndLeavesNoFile) {
