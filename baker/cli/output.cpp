@@ -89,7 +89,8 @@ InterruptGuard::InterruptGuard(std::stop_source stop) {
       int signal = 0;
       if (sigwait(&signals, &signal) != 0 || signal == SIGUSR1) return;
       if (interrupts > 0) std::_Exit(130);
-      fmt::print(stderr, "\nlambent: stopping after the work in hand; interrupt again to end at once\n");
+      if (::isatty(STDERR_FILENO) != 0)
+        fmt::print(stderr, "\nlambent: stopping after the work in hand; interrupt again to end at once\n");
       stop.request_stop();
     }
   });
