@@ -51,6 +51,7 @@ void checkView(const Object& view, const Root& root) {
   if (stride < 4 || stride > 252 || stride % 4 != 0)
     throw BrokenField{
         fmt::format("{}: byteStride {} is not a multiple of 4 from 4 to 252", view.name, stride)};
+  checkMeshopt(view, root);
 }
 
 // `count` elements of `element` bytes at byteOffset of the object's bufferView.

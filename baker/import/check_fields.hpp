@@ -96,7 +96,8 @@ struct Root {
   }
 };
 
-void checkBuffers(const Root& root);  // buffers, views, accessors: every byte extent
-void checkNodes(const Root& root);    // nodes, scenes, animations: one tree, all references
+void checkMeshopt(const Object& view, const Root& root);  // a bufferView coded by meshoptimizer, if it is
+void checkBuffers(const Root& root);                      // buffers, views, accessors: every byte extent
+void checkNodes(const Root& root);  // nodes, scenes, animations: one tree, all references
 
 }  // namespace lambent::baker

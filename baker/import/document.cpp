@@ -5,7 +5,9 @@
 #include <cstdint>
 #include <exception>
 #include <limits>
+#include <map>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include <fmt/format.h>
@@ -13,6 +15,7 @@
 
 #include "baker/import/check.hpp"
 #include "baker/import/container.hpp"
+#include "baker/import/meshopt.hpp"
 #include "baker/import/tinygltf.hpp"
 #include "baker/import/uri.hpp"
 
@@ -49,9 +52,19 @@ class BufferSource {
     if (!document.contains("buffers")) return;
     for (json& buffer : document["buffers"]) {
       const std::string uri = buffer.value("uri", std::string());
-      wanted_.push_back({uri, buffer["byteLength"].get<std::size_t>()});
+      wanted_.push_back({uri, buffer["byteLength"].get<std::size_t>(), {}});
       if (!uri.starts_with("data:")) buffer["uri"] = std::to_string(i);
       ++i;
+    }
+    // Views that meshoptimizer coded belong to a buffer without bytes of its own; those that have bytes keep
+    // them.
+    if (!document.contains("bufferViews")) return;
+    for (std::size_t v = 0; v < document["bufferViews"].size(); ++v) {
+      const json& view = document["bufferViews"][v];
+      Wanted& buffer = wanted_[view["buffer"].get<std::size_t>()];
+      if (buffer.uri.empty() && view.contains("extensions") && view["extensions"].contains(kMeshopt))
+        buffer.coded.push_back({v, view.value("byteOffset", std::size_t{0}),
+                                view["byteLength"].get<std::size_t>(), view["extensions"][kMeshopt]});
     }
   }
 
@@ -59,7 +72,8 @@ class BufferSource {
   // tries.
   Result<void> checkEmbedded() const {
     for (std::size_t i = 0; i < wanted_.size(); ++i) {
-      const auto& [uri, length] = wanted_[i];
+      const std::string& uri = wanted_[i].uri;
+      const std::size_t length = wanted_[i].length;
       if (!uri.starts_with("data:")) continue;
       std::vector<unsigned char> bytes;
       std::string mime_type;
@@ -84,16 +98,21 @@ class BufferSource {
   }
 
  private:
+  struct CodedView {
+    std::size_t index = 0, offset = 0, length = 0;
+    json extension;
+  };
   struct Wanted {
     std::string uri;
     std::size_t length = 0;
+    std::vector<CodedView> coded;  // not empty: the buffer is made of these
   };
 
   bool read(std::vector<unsigned char>& out, const std::string& name) {
     std::size_t i = 0;
     std::from_chars(name.data(), name.data() + name.size(), i);
     if (i >= wanted_.size()) return false;
-    auto bytes = load(i);
+    auto bytes = wanted_[i].coded.empty() ? load(i) : decode(wanted_[i]);
     if (!bytes) {
       error_ = std::move(bytes.error());
       return false;
@@ -103,15 +122,50 @@ class BufferSource {
     return true;
   }
 
+  // A buffer of views that meshoptimizer coded.
+  Result<std::vector<std::byte>> decode(const Wanted& buffer) {
+    std::size_t coded_bytes = 0;
+    for (const CodedView& view : buffer.coded) coded_bytes += view.extension["byteLength"].get<std::size_t>();
+    if (buffer.length / kMeshoptLargestRatio > coded_bytes)
+      return fail(path_.string(), fmt::format("claims {} bytes coded in {}", buffer.length, coded_bytes),
+                  "export the scene again");
+    std::vector<std::byte> bytes(buffer.length);
+    std::map<std::size_t, std::vector<std::byte>> sources;
+    for (const CodedView& view : buffer.coded) {
+      const auto source = view.extension["buffer"].get<std::size_t>();
+      if (!sources.contains(source)) {
+        auto loaded = load(source);
+        if (!loaded) return loaded;
+        sources[source] = std::move(*loaded);
+      }
+      const auto coded = std::span<const std::byte>(sources[source])
+                             .subspan(view.extension.value("byteOffset", std::size_t{0}),
+                                      view.extension["byteLength"].get<std::size_t>());
+      const auto decoded =
+          decodeMeshopt(view.extension, coded, std::span(bytes).subspan(view.offset, view.length),
+                        path_.string(), fmt::format("bufferView {}", view.index));
+      if (!decoded) return failAgain(decoded.error());
+    }
+    return bytes;
+  }
+
   Result<std::vector<std::byte>> load(std::size_t i) {
-    const auto& [uri, length] = wanted_[i];
+    const std::string& uri = wanted_[i].uri;
+    const std::size_t length = wanted_[i].length;
     const std::string object = fmt::format("buffer {}", i);
     std::vector<std::byte> bytes;
     if (uri.empty()) {
       if (i != 0 || binary_.empty())
         return fail(path_.string(), object + " has neither a URI nor a binary chunk",
                     "export the scene again");
-      bytes = std::move(binary_);
+      bytes = binary_;  // a copy: views that meshoptimizer coded may ask again
+    } else if (uri.starts_with("data:")) {
+      std::vector<unsigned char> decoded;
+      std::string mime_type;
+      tinygltf::DecodeDataURI(&decoded, mime_type, uri, length,
+                              /*checkSize=*/true);  // checkEmbedded() saw to it
+      bytes.assign(reinterpret_cast<const std::byte*>(decoded.data()),
+                   reinterpret_cast<const std::byte*>(decoded.data() + decoded.size()));
     } else {
       auto file = resolveUri(path_.parent_path(), uri, path_.string(), object);
       if (!file) return failAgain(std::move(file.error()));

@@ -109,6 +109,24 @@ TEST(Samples, CountsAreThoseOfTheListAndVariantsAgree) {
   }
 }
 
+TEST(Samples, MeshoptimizerCodesTheSameDuck) {
+  const auto original = testing::sharedFile("scenes/khronos/Duck/glTF-Binary/Duck.glb");
+  LAMBENT_NEEDS_SHARED(original);
+  const auto duck = importScene(original);
+  ASSERT_TRUE(duck) << duck.error().line();
+  const Drawn expected = drawn(*duck);
+  for (const char* file : {"Duck_quantized.glb", "Duck_meshopt_quantized.glb", "Duck_meshopt_float.glb"}) {
+    const auto scene = importScene(testing::sharedFile(std::string("scenes/gltfpack/") + file));
+    ASSERT_TRUE(scene) << scene.error().line();
+    const Drawn found = drawn(*scene);
+    EXPECT_EQ(found.triangles, expected.triangles) << file;
+    // Positions keep 14 bits of the longest axis.
+    EXPECT_NEAR(found.area / expected.area, 1.0, 2e-3) << file;
+    EXPECT_LT(glm::length(found.low - expected.low) + glm::length(found.high - expected.high),
+              1e-3f * glm::length(expected.high - expected.low));
+  }
+}
+
 TEST(Samples, MirroredNodesKeepTheirNegativeDeterminant) {
   const auto path = testing::sharedFile("scenes/khronos/NegativeScaleTest/glTF-Binary/NegativeScaleTest.glb");
   LAMBENT_NEEDS_SHARED(path);
