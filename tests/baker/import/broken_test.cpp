@@ -105,7 +105,7 @@ TEST(BrokenScene, IsRefusedWithTheNameOfTheObject) {
       {"deeper",
        [](json& j) {
          json deep = 1;
-         for (int i = 0; i < 3000; ++i) deep = json{{"x", std::move(deep)}};
+         for (int i = 0; i < 300; ++i) deep = json{{"x", std::move(deep)}};
          j["extras"] = std::move(deep);
        }},
   };
