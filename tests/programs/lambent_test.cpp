@@ -250,7 +250,8 @@ TEST_F(LambentProgram, AnInterruptEndsALongBakeAndKeepsTheOldBundle) {
     ::kill(id, signal);
     const auto begin = std::chrono::steady_clock::now();
     const Outcome outcome = finish(id);
-    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(5));
+    // The bake itself would take hours; a slow, sanitized build has half a minute to notice.
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(30));
     EXPECT_EQ(outcome.exit_code, 1);
     expectOneLine(outcome, "lambent", "interrupted");
     EXPECT_NE(outcome.err.find("stopped; nothing was written"), std::string::npos) << outcome.err;
