@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include <fmt/format.h>
 #include <glm/geometric.hpp>
 
 #include "runtime/bundle/transfer_codec.hpp"
@@ -20,9 +19,7 @@ class Assembler {
       : scene_(scene), plan_(plan), options_(options), report_(report) {}
 
   void copyScene() {
-    description_.generator = {"lambent", LAMBENT_VERSION, LAMBENT_ISA, options_.settings()};
-    description_.generator.settings["source"] = scene_.source.filename().string();
-    description_.generator.settings["sourceDigest"] = fmt::format("{:016x}", sceneDigest(scene_));
+    description_.generator = generatorOf(scene_, options_);
     description_.nodes = scene_.nodes;
     description_.roots = scene_.roots;
     description_.materials = scene_.materials;

@@ -14,6 +14,7 @@
 #include "baker/plan/effect_plan.hpp"
 #include "baker/work/progress.hpp"
 #include "runtime/base/result.hpp"
+#include "runtime/bundle/description.hpp"
 
 namespace lambent::baker {
 
@@ -39,6 +40,9 @@ Result<EffectPlan> planFor(const Scene& scene, const BakeOptions& options);
 
 // A digest of everything in the scene that a bake reads.
 std::uint64_t sceneDigest(const Scene& scene);
+
+// What a bundle of this scene under these options records of its making.
+bundle::Generator generatorOf(const Scene& scene, const BakeOptions& options);
 
 // Is `output` what bake() would write: same scene, same options, same program?
 bool isUpToDate(const Scene& scene, const BakeOptions& options, const std::filesystem::path& output);

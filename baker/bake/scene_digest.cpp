@@ -93,15 +93,20 @@ std::uint64_t sceneDigest(const Scene& scene) {
   return digest.value();
 }
 
+bundle::Generator generatorOf(const Scene& scene, const BakeOptions& options) {
+  bundle::Generator generator{"lambent", LAMBENT_VERSION, LAMBENT_ISA, options.settings()};
+  generator.settings["source"] = scene.source.filename().string();
+  generator.settings["sourceDigest"] = fmt::format("{:016x}", sceneDigest(scene));
+  return generator;
+}
+
 bool isUpToDate(const Scene& scene, const BakeOptions& options, const std::filesystem::path& output) {
   const auto reader = bundle::Reader::open(output);
   if (!reader || !reader->checkAll()) return false;
   const bundle::Generator& generator = reader->description().generator;
-  auto wanted = options.settings();
-  wanted["source"] = scene.source.filename().string();
-  wanted["sourceDigest"] = fmt::format("{:016x}", sceneDigest(scene));
-  return generator.version == LAMBENT_VERSION && generator.isa == LAMBENT_ISA &&
-         generator.settings == wanted && reader->description().version == bundle::kVersionCurrent;
+  const bundle::Generator wanted = generatorOf(scene, options);
+  return generator.version == wanted.version && generator.isa == wanted.isa &&
+         generator.settings == wanted.settings && reader->description().version == bundle::kVersionCurrent;
 }
 
 }  // namespace lambent::baker
