@@ -8,15 +8,14 @@
 
 #include <fmt/format.h>
 
+#include "runtime/bundle/glb.hpp"
+
 namespace lambent::baker {
 namespace {
 
-constexpr std::size_t kHeaderBytes = 12, kChunkHeaderBytes = 8;
-constexpr std::uint32_t kMagic = 0x46546C67;   // "glTF"
-constexpr std::uint32_t kJson = 0x4E4F534A;    // "JSON"
-constexpr std::uint32_t kBinary = 0x004E4942;  // "BIN\0"
+using bundle::kGlbChunkHeaderBytes, bundle::kGlbHeaderBytes, bundle::kGlbMagic;
 
-const char* kExport = "export the scene again";
+constexpr const char* kExport = "export the scene again";
 
 std::uint32_t readU32(std::span<const std::byte> bytes, std::size_t at) {
   std::uint32_t value = 0;
@@ -31,11 +30,11 @@ struct Chunk {
 };
 
 Result<Chunk> readChunk(std::span<const std::byte> glb, std::size_t& at, const std::string& file) {
-  if (glb.size() - at < kChunkHeaderBytes)
+  if (glb.size() - at < kGlbChunkHeaderBytes)
     return fail(file, fmt::format("GLB chunk at byte {} has no header", at), kExport);
   const std::uint32_t length = readU32(glb, at);
   const std::uint32_t type = readU32(glb, at + 4);
-  at += kChunkHeaderBytes;
+  at += kGlbChunkHeaderBytes;
   if (length > glb.size() - at)
     return fail(file, fmt::format("GLB chunk at byte {} claims {} bytes of {}", at, length, glb.size() - at),
                 kExport);
@@ -45,26 +44,27 @@ Result<Chunk> readChunk(std::span<const std::byte> glb, std::size_t& at, const s
 }
 
 Result<Container> takeApart(std::span<const std::byte> glb, const std::string& file) {
-  if (glb.size() < kHeaderBytes) return fail(file, "GLB is truncated", kExport);
+  if (glb.size() < kGlbHeaderBytes) return fail(file, "GLB is truncated", kExport);
   if (readU32(glb, 4) != 2)
     return fail(file, fmt::format("GLB has version {}, not 2", readU32(glb, 4)),
                 "convert the scene to glTF 2.0");
   const std::uint32_t length = readU32(glb, 8);
-  if (length > glb.size() || length < kHeaderBytes)
+  if (length > glb.size() || length < kGlbHeaderBytes)
     return fail(file, fmt::format("GLB is truncated: {} bytes of {}", glb.size(), length), kExport);
   glb = glb.first(length);
 
-  std::size_t at = kHeaderBytes;
+  std::size_t at = kGlbHeaderBytes;
   auto json = readChunk(glb, at, file);
   if (!json) return failAgain(std::move(json.error()));
-  if (json->type != kJson) return fail(file, "GLB does not start with a JSON chunk", kExport);
+  if (json->type != bundle::kGlbJsonChunk) return fail(file, "GLB does not start with a JSON chunk", kExport);
   Container container;
   container.json.assign(reinterpret_cast<const char*>(json->bytes.data()), json->bytes.size());
   if (at < glb.size()) {
     auto binary = readChunk(glb, at, file);
     if (!binary) return failAgain(std::move(binary.error()));
     // Chunks of unknown type must be ignored; the binary chunk, if any, is the second.
-    if (binary->type == kBinary) container.binary.assign(binary->bytes.begin(), binary->bytes.end());
+    if (binary->type == bundle::kGlbBinChunk)
+      container.binary.assign(binary->bytes.begin(), binary->bytes.end());
   }
   return container;
 }
@@ -89,7 +89,7 @@ Result<Container> openContainer(const std::filesystem::path& path) {
   const std::string file = path.string();
   auto bytes = readBytes(path, file);
   if (!bytes) return failAgain(std::move(bytes.error()));
-  if (bytes->size() >= 4 && readU32(*bytes, 0) == kMagic) return takeApart(*bytes, file);
+  if (bytes->size() >= 4 && readU32(*bytes, 0) == kGlbMagic) return takeApart(*bytes, file);
   if (bytes->empty()) return fail(file, "is empty", kExport);
   Container container;
   container.json.assign(reinterpret_cast<const char*>(bytes->data()), bytes->size());

@@ -12,7 +12,7 @@
 namespace lambent::baker {
 namespace {
 
-const char* kExport = "export the scene again";
+constexpr const char* kExport = "export the scene again";
 
 template <typename Vector>
 Result<std::vector<Vector>> readVectors(const Document& document, const tinygltf::Primitive& primitive,
