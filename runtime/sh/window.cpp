@@ -51,24 +51,22 @@ struct Extremal {
 // One channel of the light, relative to its mean, as it is and under the positive kernel.
 struct Channel {
   int order;
-  BandWeights kernel;
-  std::array<float, kMaxCoefficients> c{};
+  std::array<float, kMaxCoefficients> plain{}, smooth{};
 
   // The blend that lifts the light to the guard towards `dir`: (1 - a) plain + a smooth = guard. 0 where it
   // need not be lifted, 1 where even the kernel does not suffice.
   float blendTowards(const glm::vec3& dir) const {
     std::array<float, kMaxCoefficients> y;
     evaluate(order, dir, y);
-    float plain = 0, smooth = 0;
-    for (int i = 0; i < coefficientCount(order); ++i) {
-      const float value = c[static_cast<std::size_t>(i)] * y[static_cast<std::size_t>(i)];
-      plain += value;
-      smooth += kernel[static_cast<std::size_t>(bandOf(i))] * value;
+    float as_is = 0, lifted = 0;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(coefficientCount(order)); ++i) {
+      as_is += plain[i] * y[i];
+      lifted += smooth[i] * y[i];
     }
-    if (plain >= -0.5f * kGuard)
+    if (as_is >= -0.5f * kGuard)
       return 0;  // untouched up to rounding; half the guard keeps this apart from the aim
-    if (smooth <= kGuard) return 1;
-    return (kGuard - plain) / (smooth - plain);
+    if (lifted <= kGuard) return 1;
+    return (kGuard - as_is) / (lifted - as_is);
   }
 };
 
@@ -149,27 +147,35 @@ BandWeights positiveWeights(int order) {
   return weights;
 }
 
-double deringingBlend(const LightVector& light) {
+namespace {
+
+double blendFor(const LightVector& light, const BandWeights& kernel) {
   float blend = 0;
-  const BandWeights kernel = positiveWeights(light.order);
   for (int k = 0; k < 3; ++k) {
-    Channel channel{.order = light.order, .kernel = kernel};
+    Channel channel{.order = light.order};
     const float mean = light.c[0][k] * 0.28209479f;  // of the radiance: c_0 y_00
     float largest = 0;
     for (std::size_t i = 0; i < light.coefficients().size(); ++i) {
       if (!std::isfinite(light.c[i][k])) return 0;
       largest = std::max(largest, std::abs(light.c[i][k]));
-      channel.c[i] = light.c[i][k] / mean;
+      channel.plain[i] = light.c[i][k] / mean;
+      channel.smooth[i] = kernel[static_cast<std::size_t>(bandOf(static_cast<int>(i)))] * channel.plain[i];
     }
     if (light.c[0][k] > kHopeless * largest) blend = std::max(blend, leastBlend(channel));
   }
   return double{blend};
 }
 
+}  // namespace
+
+double deringingBlend(const LightVector& light) {
+  return blendFor(light, positiveWeights(light.order));
+}
+
 BandWeights windowWeights(const LightVector& light, Window window) {
   if (window == Window::Hann) return hannWeights(light.order);
-  const auto blend = static_cast<float>(window == Window::Auto ? deringingBlend(light) : 0.0);
   const BandWeights kernel = positiveWeights(light.order);
+  const auto blend = static_cast<float>(window == Window::Auto ? blendFor(light, kernel) : 0.0);
   BandWeights weights{};
   for (std::size_t l = 0; l < static_cast<std::size_t>(light.order); ++l)
     weights[l] = 1 - blend + blend * kernel[l];
