@@ -40,6 +40,8 @@ struct Scene {
   std::vector<gltf::Texture> textures;
   std::vector<SceneImage> images;
   std::vector<gltf::Camera> cameras;
+  std::vector<gltf::Light> lights;
+  std::vector<gltf::Animation> animations;
   std::vector<std::string> warnings;  // what was left out, one sentence each
 };
 

@@ -32,7 +32,7 @@ struct View {
 
 // Attributes of a Draco mesh: the unique id of each, -1 where absent.
 struct DracoAttributes {
-  std::int32_t position = -1, normal = -1, texcoord0 = -1, texcoord1 = -1, color0 = -1;
+  std::int32_t position = -1, normal = -1, texcoord0 = -1, texcoord1 = -1, color0 = -1, tangent = -1;
 };
 
 struct Primitive {
@@ -144,6 +144,8 @@ struct Description {
   std::vector<gltf::Texture> textures;
   std::vector<Image> images;
   std::vector<gltf::Camera> cameras;
+  std::vector<gltf::Light> lights;
+  std::vector<gltf::Animation> animations;
 
   std::vector<View> views;
   std::vector<Payload> payloads;

@@ -1,9 +1,10 @@
-// The part of a glTF file that Lambent keeps: nodes, materials, textures, cameras. Both sides share these
-// types: the importer fills them from any glTF file, the bundle carries them through, the runtime draws from
-// them. Units and axes are glTF's: metres, +Y up, right-handed, colours linear Rec.709. Indices are -1 where
-// there is none.
+// The part of a glTF file that Lambent keeps: nodes, materials, textures, cameras, lights, animations. Both
+// sides share these types: the importer fills them from any glTF file, the bundle carries them through, the
+// runtime draws from them. Units and axes are glTF's: metres, +Y up, right-handed, colours linear Rec.709.
+// Indices are -1 where there is none.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -23,8 +24,9 @@ struct Node {
   glm::mat4 parent_from_node{1.0f};
   std::int32_t mesh = -1;
   std::int32_t camera = -1;
-  bool animated = false;  // some animation moves it
-  bool movable = false;   // extras.lambent.movable
+  std::int32_t light = -1;  // KHR_lights_punctual; shines along the node's -Z
+  bool animated = false;    // some animation moves it
+  bool movable = false;     // extras.lambent.movable
 };
 
 // glTF 2.0 sampler enums as they stand in the file (GL constants).
@@ -41,7 +43,17 @@ struct Texture {
 
 struct TextureRef {
   std::int32_t texture = -1;
-  std::uint32_t texcoord = 0;  // which TEXCOORD_n
+  std::uint32_t texcoord = 0;  // which TEXCOORD_n, 0 or 1
+  // KHR_texture_transform, applied where the texture is looked up: uv' = offset + R(rotation) (scale * uv).
+  glm::vec2 offset{0.0f}, scale{1.0f};
+  float rotation_rad = 0.0f;
+  bool operator==(const TextureRef&) const = default;
+
+  glm::vec2 apply(glm::vec2 uv) const {
+    const float c = std::cos(rotation_rad), s = std::sin(rotation_rad);
+    const glm::vec2 scaled = scale * uv;
+    return offset + glm::vec2(c * scaled.x + s * scaled.y, c * scaled.y - s * scaled.x);
+  }
 };
 
 enum class AlphaMode : std::uint8_t { Opaque, Mask, Blend };
@@ -52,7 +64,14 @@ struct Material {
   glm::vec4 base_color{1.0f};     // linear
   TextureRef base_color_texture;  // sRGB colour, linear alpha; multiplies base_color
   float metallic = 1.0f, roughness = 1.0f;
+  // Radiance that the surface gives off: factor times KHR_materials_emissive_strength, times the texture.
   glm::vec3 emissive{0.0f};
+  TextureRef emissive_texture;  // sRGB colour
+  TextureRef normal_texture;    // tangent space, linear
+  float normal_scale = 1.0f;    // on the x and y of the texture's normal
+  // KHR_materials_unlit: shows its base colour as radiance, whatever the light; blocks light, reflects and
+  // gives off none.
+  bool unlit = false;
   AlphaMode alpha_mode = AlphaMode::Opaque;
   float alpha_cutoff = 0.5f;
   bool double_sided = false;
@@ -66,6 +85,35 @@ struct Camera {
   float xmag = 1.0f, ymag = 1.0f;  // orthographic half sizes
   float znear = 0.01f;
   float zfar = 0.0f;  // 0: infinite
+};
+
+// KHR_lights_punctual. At distance d and inside its cone it gives colour x intensity / d² W/m² on a surface
+// that faces it (directional: colour x intensity), faded out towards `range_m` as the extension asks.
+struct Light {
+  enum class Type : std::uint8_t { Directional, Point, Spot };
+  std::string name;
+  Type type = Type::Point;
+  glm::vec3 color{1.0f};                                    // linear
+  float intensity = 1.0f;                                   // candela = W/sr; directional: lux = W/m²
+  float range_m = 0.0f;                                     // 0: no end
+  float inner_cone_rad = 0.0f, outer_cone_rad = 0.785398f;  // spot: half angles, inner < outer <= pi/2
+};
+
+// Keyframes of one node's translation, rotation or scale. Values are as glTF stores them: 3 or 4 numbers a
+// key (quaternion x, y, z, w), for Cubic in-tangent, value, out-tangent.
+struct AnimationChannel {
+  enum class Path : std::uint8_t { Translation, Rotation, Scale };
+  enum class Interpolation : std::uint8_t { Step, Linear, Cubic };
+  std::uint32_t node = 0;
+  Path path = Path::Translation;
+  Interpolation interpolation = Interpolation::Linear;
+  std::vector<float> times_s;  // rising
+  std::vector<float> values;
+};
+
+struct Animation {
+  std::string name;
+  std::vector<AnimationChannel> channels;
 };
 
 // world_from_node for every node; parents may stand after their children in the list.

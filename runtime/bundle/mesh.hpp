@@ -22,6 +22,7 @@ struct MeshData {
   std::vector<glm::vec2> texcoords0;   // may be empty
   std::vector<glm::vec2> texcoords1;   // may be empty
   std::vector<glm::vec4> colors;       // linear, 0..1; may be empty
+  std::vector<glm::vec4> tangents;     // as glTF: unit xyz, w the bitangent's sign; may be empty
   std::vector<std::uint32_t> indices;  // triangles, counter-clockwise seen from outside
 };
 

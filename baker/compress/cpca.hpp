@@ -1,0 +1,52 @@
+// Codes the transfer vectors of one cell by clustered principal components (Sloan, Hall, Hart, Snyder 2003)
+// with quantized weights, so that the relative RMS error of shaded radiance over real lights stays under a
+// bound:
+//   sqrt( sum_s sum_i W_i (t_s,i - t'_s,i)² / sum_s sum_i W_i t_s,i² ) <= bound
+// over the values that are shown: those of the full block where there is one, else of the shadowed block; the
+// shadowed block by itself keeps the same bound. W_i: the band power of light (light_weights.hpp) for columns
+// of the environment; 1 / (energy of the column in the cell) for lights of the group, so that each counts
+// alike; for outputs of normal maps times (A_l/pi)² of the output's band. The number of clusters and of axes
+// in each is what codes to the fewest bytes (codebook, ids and weights after entropy coding). Planes come by
+// falling variance: any prefix renders. Deterministic, for any number of threads.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <stop_token>
+#include <vector>
+
+#include "runtime/bundle/codebook.hpp"
+
+namespace lambent::baker {
+
+struct CodedPlane {
+  std::uint32_t bits = 8;            // 8 or 16
+  float variance = 0.0f;             // share of the cell's weighted variance about its mean
+  std::vector<std::uint32_t> codes;  // in the order of bundle::positionsOf
+};
+
+struct CodedTransfer {
+  bundle::TransferShape shape;
+  bundle::Codebook codebook;
+  std::vector<std::uint32_t> cluster_of;  // per sample
+  std::vector<CodedPlane> planes;         // by falling variance
+  float error = 0.0f;                     // measured on the decoded vectors
+};
+
+struct CodingSettings {
+  float bound = 0.005f;        // > 0
+  std::uint32_t clusters = 0;  // 0: whatever codes to the fewest bytes
+};
+
+// vectors: `count` times shape.size() values, count > 0; all finite. Stops early, with an unusable result,
+// when asked to.
+CodedTransfer codeTransfer(std::span<const float> vectors, std::size_t count,
+                           const bundle::TransferShape& shape, const CodingSettings& settings,
+                           const std::stop_token& stop = {});
+
+// The error that codeTransfer bounds.
+double radianceError(std::span<const float> truth, std::span<const float> coded,
+                     const bundle::TransferShape& shape);
+
+}  // namespace lambent::baker

@@ -1,0 +1,77 @@
+// Clustered principal components (Sloan 2003): the vectors of a cell as clusters, each a mean and a few axes,
+// with one quantized weight per sample and axis. Here stands the lossless half: what the numbers mean, and
+// encoder and decoder of the payloads. Which clusters, axes and steps to take is decided in baker/compress.
+//
+// Order of samples: as in the cell. Order of codes: by cluster, samples of one cluster in the order of the
+// cell (positionsOf). Clusters are numbered by falling number of axes, so the samples that plane j concerns
+// are the first planeCount(j) positions, and every plane is dense.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "runtime/base/result.hpp"
+
+namespace lambent::bundle {
+
+// What a transfer vector holds. Two blocks: light that arrives without a bounce ("shadowed") and all light
+// ("full", absent without bounces). A value is [block: shadowed channels, then full
+// channels][output][column].
+struct TransferShape {
+  std::uint32_t order = 5;              // bands of the environment, 0..8; 0: the group's lights alone
+  std::uint32_t light_columns = 0;      // lights that belong to the group
+  std::uint32_t shadowed_channels = 1;  // 1: the same for R, G and B; 3: RGB
+  std::uint32_t full_channels = 0;      // 0, 1 or 3
+  // 1: E/pi at the sample's normal. 9: transferred light in bands 0..2 (for normal maps), to be convolved
+  // with A_l/pi at the pixel's normal.
+  std::uint32_t outputs = 1;
+
+  std::uint32_t columns() const { return order * order + light_columns; }
+  std::uint32_t channels() const { return shadowed_channels + full_channels; }
+  std::uint32_t size() const { return channels() * outputs * columns(); }
+  bool operator==(const TransferShape&) const = default;
+};
+
+struct AxisCode {
+  float offset = 0.0f, scale = 0.0f;  // weight = offset + scale * code
+};
+
+struct Codebook {
+  std::vector<std::uint32_t> axis_counts;  // one per cluster, never rising
+  std::vector<AxisCode> axes;              // cluster by cluster
+  std::vector<float> vectors;              // cluster by cluster: the mean, then the axes; shape.size() each
+
+  std::size_t clusters() const { return axis_counts.size(); }
+};
+
+// Payload "codebook". Vectors are binary16 in the file.
+std::vector<std::byte> encodeCodebook(const Codebook& codebook);
+// Errors name `subject`: sizes that do not add up, counts that rise, values that are not finite.
+Result<Codebook> decodeCodebook(std::span<const std::byte> bytes, const TransferShape& shape,
+                                std::uint32_t clusters, const std::string& subject);
+
+// Payload "clusterIds": one id per sample of the cell; one byte each up to 256 clusters, else two.
+std::vector<std::byte> encodeClusterIds(std::span<const std::uint32_t> cluster_of, std::uint32_t clusters);
+Result<std::vector<std::uint32_t>> decodeClusterIds(std::span<const std::byte> bytes, std::uint32_t clusters,
+                                                    std::uint32_t sample_count, const std::string& subject);
+
+// The samples in the order of the codes: stable counting sort by cluster.
+std::vector<std::uint32_t> positionsOf(std::span<const std::uint32_t> cluster_of, std::uint32_t clusters);
+
+// Payload "weightPlane": codes of plane j in the order of positionsOf, `bits` (8 or 16) each, little endian,
+// as the differences of each code from the one before it in the same plane (modulo 2^bits): neighbours are
+// alike. 16-bit planes have all low bytes first, then all high bytes.
+std::vector<std::byte> encodePlane(std::span<const std::uint32_t> codes, std::uint32_t bits);
+Result<std::vector<std::uint32_t>> decodePlane(std::span<const std::byte> bytes, std::uint32_t bits,
+                                               std::uint32_t count, const std::string& subject);
+
+// Transfer vectors of one cell, sample-major, shape.size() each; `planes` may be a prefix. The CPU twin of
+// what the diffuse effect decodes in its shader.
+std::vector<float> decodeTransfer(const TransferShape& shape, const Codebook& codebook,
+                                  std::span<const std::uint32_t> cluster_of,
+                                  std::span<const std::vector<std::uint32_t>> planes);
+
+}  // namespace lambent::bundle
