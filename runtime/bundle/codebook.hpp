@@ -47,7 +47,10 @@ struct Codebook {
   std::size_t clusters() const { return axis_counts.size(); }
 };
 
-// Payload "codebook". Vectors are binary16 in the file.
+// Payload "codebook". Vectors are binary16 in the file. Its length follows from the sizes.
+inline std::uint64_t codebookBytes(const TransferShape& shape, std::uint32_t clusters, std::uint32_t axes) {
+  return 2ull * clusters + 8ull * axes + 2ull * (std::uint64_t{clusters} + axes) * shape.size();
+}
 std::vector<std::byte> encodeCodebook(const Codebook& codebook);
 // Errors name `subject`: sizes that do not add up, counts that rise or exceed shape.size(), values that are
 // not finite or so large that decoded vectors would not be.

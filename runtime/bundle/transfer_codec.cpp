@@ -93,8 +93,7 @@ Result<VertexRows> decodeRows(std::span<const std::byte> bytes, std::uint32_t ve
   if (!single && head[0] != kSparseRows) return damaged("of an unknown kind");
   const std::size_t vertices = vertex_count;
   const std::size_t expected = single ? entries * 4 : (vertices + 1) * 4 + entries * 6;
-  if (bytes.size() != expected || (single && entries != vertices))
-    return damaged("sizes do not add up");
+  if (bytes.size() != expected || (single && entries != vertices)) return damaged("sizes do not add up");
 
   VertexRows rows;
   if (single) {

@@ -58,8 +58,7 @@ std::uint32_t payloadIndex(const Field& field, const Description& d, PayloadType
                            std::optional<std::uint64_t> raw_length) {
   const std::uint32_t index = field.index(d.payloads.size());
   if (d.payloads[index].type != type) field.fault("is a payload of another type");
-  if (raw_length && d.payloads[index].raw_length != *raw_length)
-    field.fault("is a payload of another size");
+  if (raw_length && d.payloads[index].raw_length != *raw_length) field.fault("is a payload of another size");
   return index;
 }
 
@@ -129,7 +128,8 @@ Cell readCell(const Field& field, const Description& d, const Group& group, std:
   for (const Field& entry : field["diffuse"].items()) {
     cell.diffuse.push_back(readDiffuse(entry, d, group, cell.sample_count));
     const DiffuseTransfer &first = cell.diffuse.front(), &last = cell.diffuse.back();
-    if (cell.diffuse.size() > 1 && (!first.fromEnvironment() || last.fromEnvironment()))
+    if (cell.diffuse.size() > 2 ||
+        (cell.diffuse.size() == 2 && (!first.fromEnvironment() || last.fromEnvironment())))
       entry.fault("is not the group's lights after the environment");
     if (last.shape.outputs != first.shape.outputs) entry["outputs"].fault("differs within the cell");
   }
@@ -141,12 +141,8 @@ Cell readCell(const Field& field, const Description& d, const Group& group, std:
 GroupLight readGroupLight(const Field& field, const Description& d) {
   GroupLight light;
   light.kind = readWord<GroupLight::Kind>(field["kind"], kLightKinds);
-  if (light.kind == GroupLight::Kind::Material) {
-    light.index = field["material"].index(d.materials.size());
-  } else {
-    light.index = field["node"].index(d.nodes.size());
-    if (d.nodes[light.index].light < 0) field["node"].fault("carries no light");
-  }
+  light.index = light.kind == GroupLight::Kind::Material ? field["material"].index(d.materials.size())
+                                                         : field["node"].index(d.nodes.size());
   light.color = field["color"].vector<glm::vec3>();
   return light;
 }
