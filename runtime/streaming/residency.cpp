@@ -75,6 +75,35 @@ std::uint32_t mipLevels(std::uint32_t width, std::uint32_t height) {
   return static_cast<std::uint32_t>(std::bit_width(std::max(width, height)));
 }
 
+gpu::Texture makeTexture(const std::string& label, GLenum format, const ImageReady& image) {
+  gpu::Texture texture(label, {.format = format,
+                               .width = image.width,
+                               .height = image.height,
+                               .levels = mipLevels(image.width, image.height)});
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  glTextureSubImage2D(texture.id(), 0, 0, 0, static_cast<GLsizei>(image.width),
+                      static_cast<GLsizei>(image.height), GL_RGBA, GL_UNSIGNED_BYTE, image.rgba.data());
+  glGenerateTextureMipmap(texture.id());
+  return texture;
+}
+
+std::vector<ImageUse> imageUses(const bundle::Description& description) {
+  std::vector<ImageUse> uses(description.images.size());
+  const auto useOf = [&](const gltf::TextureRef& reference) -> ImageUse* {
+    if (reference.texture < 0) return nullptr;
+    const std::int32_t image = description.textures[static_cast<std::size_t>(reference.texture)].image;
+    return image >= 0 ? &uses[static_cast<std::size_t>(image)] : nullptr;
+  };
+  for (const gltf::Material& material : description.materials) {
+    if (ImageUse* use = useOf(material.base_color_texture)) use->color = true;
+    if (ImageUse* use = useOf(material.emissive_texture)) use->color = true;
+    if (ImageUse* use = useOf(material.normal_texture)) use->normals = true;
+  }
+  // What no material names may yet be asked for: as colour, the usual.
+  for (ImageUse& use : uses) use.color |= !use.normals;
+  return uses;
+}
+
 }  // namespace
 
 bool ResidentCell::usable() const {
@@ -104,6 +133,8 @@ Result<std::uint32_t> Residency::add(const bundle::Description& description) {
   ResidentBundle bundle{.materials = description.materials,
                         .textures = description.textures,
                         .images = std::vector<gpu::Texture>(description.images.size()),
+                        .linear_images = std::vector<gpu::Texture>(description.images.size()),
+                        .image_uses = imageUses(description),
                         .first_group = static_cast<std::uint32_t>(groups_.size()),
                         .first_draw = static_cast<std::uint32_t>(draws_.size()),
                         .first_mesh = {}};
@@ -117,7 +148,7 @@ Result<std::uint32_t> Residency::add(const bundle::Description& description) {
       resident.center = 0.5f * (primitive.bounds_min + primitive.bounds_max);
       meshes_.push_back(resident);
       needs.geometry +=
-          48ull * primitive.vertex_count + 4ull * primitive.index_count + gpu::Arena::kAlignment;
+          64ull * primitive.vertex_count + 4ull * primitive.index_count + gpu::Arena::kAlignment;
     }
   }
   std::vector<ResidentGroup> groups;
@@ -204,16 +235,17 @@ Result<void> Residency::put(std::uint32_t bundle, const MeshReady& item) {
   std::vector<std::uint64_t> colors;
   colors.reserve(data.colors.size());
   for (const glm::vec4& color : data.colors) colors.push_back(glm::packUnorm4x16(color));
-  const std::span<const std::byte> parts[] = {bytesOf(data.positions),  bytesOf(data.normals),
-                                              bytesOf(data.texcoords0), bytesOf(data.texcoords1),
-                                              bytesOf(colors),          bytesOf(data.indices)};
+  const std::span<const std::byte> parts[] = {
+      bytesOf(data.positions), bytesOf(data.normals),  bytesOf(data.texcoords0), bytesOf(data.texcoords1),
+      bytesOf(colors),         bytesOf(data.tangents), bytesOf(data.indices)};
   std::uint64_t byte_count = 0;
   for (const auto& part : parts) byte_count += part.size();
   const Result<gpu::Allocation> block = geometry_.allocate(byte_count);
   if (!block) return failAgain(block.error());
   mesh.block = *block;
   std::uint32_t* const word_of[] = {&mesh.positions_word,    &mesh.normals_word, &mesh.texcoords_word[0],
-                                    &mesh.texcoords_word[1], &mesh.colors_word,  &mesh.indices_word};
+                                    &mesh.texcoords_word[1], &mesh.colors_word,  &mesh.tangents_word,
+                                    &mesh.indices_word};
   std::uint64_t offset = 0;
   for (std::size_t i = 0; i < std::size(parts); ++i) {
     if (parts[i].empty()) continue;
@@ -232,17 +264,13 @@ Result<void> Residency::put(std::uint32_t bundle, const MeshReady& item) {
 }
 
 Result<void> Residency::put(std::uint32_t bundle, const ImageReady& item) {
-  gpu::Texture texture(fmt::format("image {}.{}", bundle, item.image),
-                       {.format = GL_SRGB8_ALPHA8,
-                        .width = item.width,
-                        .height = item.height,
-                        .levels = mipLevels(item.width, item.height)});
-  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-  glTextureSubImage2D(texture.id(), 0, 0, 0, static_cast<GLsizei>(item.width),
-                      static_cast<GLsizei>(item.height), GL_RGBA, GL_UNSIGNED_BYTE, item.rgba.data());
-  glGenerateTextureMipmap(texture.id());
-  texture_bytes_ += std::uint64_t{item.width} * item.height * 4 * 4 / 3;
-  bundles_[bundle].images[item.image] = std::move(texture);
+  ResidentBundle& owner = bundles_[bundle];
+  const ImageUse use = owner.image_uses[item.image];
+  const std::string label = fmt::format("image {}.{}", bundle, item.image);
+  if (use.color) owner.images[item.image] = makeTexture(label, GL_SRGB8_ALPHA8, item);
+  if (use.normals) owner.linear_images[item.image] = makeTexture(label + " linear", GL_RGBA8, item);
+  const std::uint64_t copies = (use.color ? 1u : 0u) + (use.normals ? 1u : 0u);
+  texture_bytes_ += copies * item.width * item.height * 4 * 4 / 3;
   return {};
 }
 
@@ -320,7 +348,7 @@ std::uint64_t Residency::uploadBytes(const Ready& item) {
     std::uint64_t operator()(const MeshReady& mesh) const {
       return 24ull * mesh.data.positions.size() + 8ull * mesh.data.texcoords0.size() +
              8ull * mesh.data.texcoords1.size() + 8ull * mesh.data.colors.size() +
-             4ull * mesh.data.indices.size();
+             16ull * mesh.data.tangents.size() + 4ull * mesh.data.indices.size();
     }
     std::uint64_t operator()(const ImageReady& image) const { return image.rgba.size(); }
     std::uint64_t operator()(const RowsReady& rows) const {

@@ -29,6 +29,7 @@ struct ResidentMesh {
   std::uint32_t positions_word = 0, normals_word = 0;    // 3 floats each
   std::uint32_t texcoords_word[2] = {kAbsent, kAbsent};  // 2 floats
   std::uint32_t colors_word = kAbsent;                   // 4 x unorm16
+  std::uint32_t tangents_word = kAbsent;                 // 4 floats
   std::uint32_t indices_word = 0;                        // uint32
 };
 
@@ -81,10 +82,18 @@ struct ResidentDraw {
   std::uint64_t version = 0;
 };
 
+// How the materials read an image.
+struct ImageUse {
+  bool color = false, normals = false;
+};
+
 struct ResidentBundle {
   std::vector<gltf::Material> materials;
   std::vector<gltf::Texture> textures;
-  std::vector<gpu::Texture> images;  // empty handle: not here yet
+  // By image; empty handle: not here yet. Colours are decoded from sRGB where they are looked up, normals are
+  // not; an image that serves as both lies in both, for each way of reading it has mip levels of its own.
+  std::vector<gpu::Texture> images, linear_images;
+  std::vector<ImageUse> image_uses;
   // Where the bundle's own indices start in the tables.
   std::uint32_t first_group = 0, first_draw = 0;
   std::vector<std::uint32_t> first_mesh;  // of each mesh's first primitive
