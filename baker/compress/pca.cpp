@@ -7,7 +7,6 @@
 #include <Eigen/Eigenvalues>
 
 #include "baker/compress/light_weights.hpp"
-#include "runtime/bundle/transfer_codec.hpp"
 #include "runtime/sh/basis.hpp"
 
 namespace lambent::baker {
@@ -65,53 +64,50 @@ double stepFor(const Vector& variances, double budget) {
   return low;
 }
 
-CodedPlane quantize(const Vector& weights, double step) {
+CodedPlane quantize(const Vector& weights, double step, bundle::AxisCode& axis) {
   const double low = weights.minCoeff(), range = weights.maxCoeff() - low;
   CodedPlane coded;
-  coded.plane.bits = range / step <= 255.0 ? 8 : 16;
-  const double levels = coded.plane.bits == 8 ? 255.0 : 65535.0;
-  coded.plane.offset = static_cast<float>(low);
-  coded.plane.scale = static_cast<float>(std::max(step, range / levels));
+  coded.bits = range / step <= 255.0 ? 8 : 16;
+  const double levels = coded.bits == 8 ? 255.0 : 65535.0;
+  axis.offset = static_cast<float>(low);
+  axis.scale = static_cast<float>(std::max(step, range / levels));
   for (const double weight : weights) {
-    const double code =
-        coded.plane.scale > 0.0f ? std::round((weight - low) / double{coded.plane.scale}) : 0.0;
+    const double code = axis.scale > 0.0f ? std::round((weight - low) / double{axis.scale}) : 0.0;
     coded.codes.push_back(static_cast<std::uint32_t>(std::clamp(code, 0.0, levels)));
   }
   return coded;
 }
 
-// Codes with a given step; measures nothing.
+// Codes with a given step as one cluster; measures nothing.
 CodedTransfer codeWith(const Spectrum& spectrum, const Matrix& weighted, const Vector& roots, double step,
-                       Eigen::Index keep) {
+                       Eigen::Index keep, const bundle::TransferShape& shape) {
   CodedTransfer coded;
-  std::vector<float> basis;
+  coded.shape = shape;
+  coded.cluster_of.assign(static_cast<std::size_t>(weighted.cols()), 0);
+  bundle::Codebook& codebook = coded.codebook;
+  codebook.axis_counts = {static_cast<std::uint32_t>(keep)};
   const auto append = [&](const Vector& v) {
-    for (Eigen::Index i = 0; i < v.size(); ++i) basis.push_back(static_cast<float>(v(i) / roots(i)));
+    for (Eigen::Index i = 0; i < v.size(); ++i)
+      codebook.vectors.push_back(static_cast<float>(v(i) / roots(i)));
   };
   append(spectrum.mean);
   const double total = std::max(spectrum.variances.sum(), 1e-300);
   for (Eigen::Index j = 0; j < keep; ++j) {
     append(spectrum.axes.col(j));
     const Vector weights = (weighted.colwise() - spectrum.mean).transpose() * spectrum.axes.col(j);
-    coded.planes.push_back(quantize(weights, step));
-    coded.planes.back().plane.variance = static_cast<float>(spectrum.variances(j) / total);
+    coded.planes.push_back(quantize(weights, step, codebook.axes.emplace_back()));
+    coded.planes.back().variance = static_cast<float>(spectrum.variances(j) / total);
   }
-  coded.basis = bundle::encodeBasis(basis);
+  // As it will be read: the vectors are rounded to half precision in the file.
+  if (auto rounded = bundle::decodeCodebook(bundle::encodeCodebook(codebook), shape, 1, "transfer"))
+    codebook = std::move(*rounded);
   return coded;
 }
 
-std::vector<float> decode(const CodedTransfer& coded, std::size_t count, int order, std::uint32_t channels) {
-  bundle::DiffuseTransfer transfer;
-  transfer.order = static_cast<std::uint32_t>(order);
-  transfer.channels = channels;
+std::vector<float> decode(const CodedTransfer& coded) {
   std::vector<std::vector<std::uint32_t>> codes;
-  for (const CodedPlane& plane : coded.planes) {
-    transfer.planes.push_back(plane.plane);
-    codes.push_back(plane.codes);
-  }
-  const auto basis = bundle::decodeBasis(coded.basis, coded.basis.size() / 2, "basis");
-  assert(basis);
-  return bundle::decodeTransfer(transfer, static_cast<std::uint32_t>(count), *basis, codes);
+  for (const CodedPlane& plane : coded.planes) codes.push_back(plane.codes);
+  return bundle::decodeTransfer(coded.shape, coded.codebook, coded.cluster_of, codes);
 }
 
 }  // namespace
@@ -144,13 +140,14 @@ CodedTransfer codeTransfer(std::span<const float> vectors, std::size_t count, in
   // The basis is rounded to half precision after the analysis, so the estimate is checked and tightened if
   // need be.
   double budget = 0.98 * double{bound} * double{bound} * energy;
+  const bundle::TransferShape shape{.order = static_cast<std::uint32_t>(order),
+                                    .shadowed_channels = channels};
   CodedTransfer coded;
   for (int attempt = 0; attempt < 12; ++attempt, budget *= 0.7) {
     const double step = std::max(stepFor(spectrum.variances, budget), 1e-9);
     const auto keep = static_cast<Eigen::Index>((spectrum.variances.array() > step * step / 12.0).count());
-    coded = codeWith(spectrum, weighted, roots, step, keep);
-    coded.error =
-        static_cast<float>(radianceError(vectors, decode(coded, count, order, channels), order, channels));
+    coded = codeWith(spectrum, weighted, roots, step, keep, shape);
+    coded.error = static_cast<float>(radianceError(vectors, decode(coded), order, channels));
     if (coded.error <= bound) break;
   }
   return coded;

@@ -10,20 +10,9 @@
 #include <span>
 #include <vector>
 
-#include "runtime/bundle/description.hpp"
+#include "baker/compress/cpca.hpp"
 
 namespace lambent::baker {
-
-struct CodedPlane {
-  bundle::WeightPlane plane;  // payload is set by whoever stores the codes
-  std::vector<std::uint32_t> codes;
-};
-
-struct CodedTransfer {
-  std::vector<std::byte> basis;  // bundle::encodeBasis of mean and axes
-  std::vector<CodedPlane> planes;
-  float error = 0.0f;  // measured on the decoded vectors
-};
 
 // vectors: [sample][channel][column], `count` samples; order² columns per channel. bound > 0.
 CodedTransfer codeTransfer(std::span<const float> vectors, std::size_t count, int order,

@@ -4,7 +4,7 @@
 //
 // Order of samples: as in the cell. Order of codes: by cluster, samples of one cluster in the order of the
 // cell (positionsOf). Clusters are numbered by falling number of axes, so the samples that plane j concerns
-// are the first planeCount(j) positions, and every plane is dense.
+// are the first planeCounts()[j] positions, and every plane is dense. Byte tables: docs/format.md.
 #pragma once
 
 #include <cstddef>
@@ -47,9 +47,13 @@ struct Codebook {
   std::size_t clusters() const { return axis_counts.size(); }
 };
 
-// Payload "codebook". Vectors are binary16 in the file.
+// Payload "codebook". Vectors are binary16 in the file. Its length follows from the sizes.
+inline std::uint64_t codebookBytes(const TransferShape& shape, std::uint32_t clusters, std::uint32_t axes) {
+  return 2ull * clusters + 8ull * axes + 2ull * (std::uint64_t{clusters} + axes) * shape.size();
+}
 std::vector<std::byte> encodeCodebook(const Codebook& codebook);
-// Errors name `subject`: sizes that do not add up, counts that rise, values that are not finite.
+// Errors name `subject`: sizes that do not add up, counts that rise or exceed shape.size(), values that are
+// not finite or so large that decoded vectors would not be.
 Result<Codebook> decodeCodebook(std::span<const std::byte> bytes, const TransferShape& shape,
                                 std::uint32_t clusters, const std::string& subject);
 
@@ -61,15 +65,18 @@ Result<std::vector<std::uint32_t>> decodeClusterIds(std::span<const std::byte> b
 // The samples in the order of the codes: stable counting sort by cluster.
 std::vector<std::uint32_t> positionsOf(std::span<const std::uint32_t> cluster_of, std::uint32_t clusters);
 
+// How many positions each plane concerns, one entry per plane: the samples in clusters of more axes.
+std::vector<std::uint32_t> planeCounts(const Codebook& codebook, std::span<const std::uint32_t> cluster_of);
+
 // Payload "weightPlane": codes of plane j in the order of positionsOf, `bits` (8 or 16) each, little endian,
 // as the differences of each code from the one before it in the same plane (modulo 2^bits): neighbours are
 // alike. 16-bit planes have all low bytes first, then all high bytes.
-std::vector<std::byte> encodePlane(std::span<const std::uint32_t> codes, std::uint32_t bits);
-Result<std::vector<std::uint32_t>> decodePlane(std::span<const std::byte> bytes, std::uint32_t bits,
-                                               std::uint32_t count, const std::string& subject);
+std::vector<std::byte> encodeWeightPlane(std::span<const std::uint32_t> codes, std::uint32_t bits);
+Result<std::vector<std::uint32_t>> decodeWeightPlane(std::span<const std::byte> bytes, std::uint32_t bits,
+                                                     std::uint32_t count, const std::string& subject);
 
-// Transfer vectors of one cell, sample-major, shape.size() each; `planes` may be a prefix. The CPU twin of
-// what the diffuse effect decodes in its shader.
+// Transfer vectors of one cell, sample-major, shape.size() each; `planes` may be a prefix, each as long as
+// planeCounts says. The CPU twin of what the diffuse effect decodes in its shader.
 std::vector<float> decodeTransfer(const TransferShape& shape, const Codebook& codebook,
                                   std::span<const std::uint32_t> cluster_of,
                                   std::span<const std::vector<std::uint32_t>> planes);
