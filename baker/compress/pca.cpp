@@ -11,6 +11,7 @@
 #include "runtime/sh/basis.hpp"
 
 namespace lambent::baker {
+inline namespace single_cluster {
 
 namespace {
 
@@ -156,4 +157,5 @@ CodedTransfer codeTransfer(std::span<const float> vectors, std::size_t count, in
   return coded;
 }
 
+}  // namespace single_cluster
 }  // namespace lambent::baker

@@ -13,6 +13,7 @@
 #include "runtime/bundle/description.hpp"
 
 namespace lambent::baker {
+inline namespace single_cluster {  // until cpca.hpp takes its place: there are types of the same names there
 
 struct CodedPlane {
   bundle::WeightPlane plane;  // payload is set by whoever stores the codes
@@ -33,4 +34,5 @@ CodedTransfer codeTransfer(std::span<const float> vectors, std::size_t count, in
 double radianceError(std::span<const float> truth, std::span<const float> coded, int order,
                      std::uint32_t channels);
 
+}  // namespace single_cluster
 }  // namespace lambent::baker
