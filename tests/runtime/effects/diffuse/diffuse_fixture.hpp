@@ -81,7 +81,7 @@ class BundleMaker {
     description.meshes.push_back({.name = "mesh", .primitives = {}});
     description.payloads.resize(1);
     const std::uint32_t plain = options.cells * options.samples;
-    addDraw(made, options, g, 1, 0, plain);
+    if (plain > 0) addDraw(made, options, g, 1, 0, plain);
     if (options.mapped_cells > 0) addDraw(made, options, g, 9, plain, group.sample_count);
     description.groups.push_back(std::move(group));
   }
