@@ -34,7 +34,7 @@ layout(location = 6) in vec3 light[kLightCoefficients];
 vec3 receivedLight() {
   TextureSlot slot = draws[draw_of].normal_texture;
   vec2 at = coordinatesIn(slot);
-  vec3 normal = normalize(normal_group);
+  vec3 normal = unit(normal_group);
   TangentFrame from_picture =
       frameFromDerivatives(normal, dFdx(position_group), dFdy(position_group), dFdx(at), dFdy(at));
   if (slot.set != kAbsent) {

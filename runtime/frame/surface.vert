@@ -11,6 +11,7 @@ layout(location = 0) flat out uint draw_of;
 layout(location = 1) out vec4 coordinates;  // TEXCOORD_0 and TEXCOORD_1
 layout(location = 2) out vec4 vertex_color;
 #ifdef LAMBENT_NORMAL_MAPPED
+#include "surface_normal.glsl"
 // In the group's frame. With them all fifteen locations that OpenGL 4.5 promises are in use.
 layout(location = 3) out vec3 position_group;
 layout(location = 4) out vec3 normal_group;
@@ -38,7 +39,7 @@ void main() {
 #ifdef LAMBENT_NORMAL_MAPPED
   mat3 group_from_mesh = mat3(draw.group_from_mesh);
   position_group = group_from_mesh * position;
-  normal_group = normalize(mat3(draw.group_from_mesh_normal) * geometry3(draw.normals_word + 3u * vertex));
+  normal_group = unit(mat3(draw.group_from_mesh_normal) * geometry3(draw.normals_word + 3u * vertex));
   tangent_group = vec4(0.0);
   if (draw.tangents_word != kAbsent) {
     uint at = draw.tangents_word + 4u * vertex;
