@@ -34,7 +34,9 @@ void append(const PlannedDraw& draw, const bundle::MeshData& mesh, const gltf::M
     // Adding 0 turns -0 into 0: samples are welded by their bits.
     geometry.positions.push_back(glm::vec3(placed - glm::dvec3(geometry.origin)) + 0.0f);
     geometry.normals.push_back(side * unitOr(normal_matrix * mesh.normals[v], {0.0f, 1.0f, 0.0f}) + 0.0f);
-    geometry.texcoords.push_back(texcoords.empty() ? glm::vec2(0.0f) : texcoords[v]);
+    geometry.texcoords.push_back(texcoords.empty() ? glm::vec2(0.0f)
+                                 : material        ? material->base_color_texture.apply(texcoords[v])
+                                                   : texcoords[v]);
     geometry.alphas.push_back(mesh.colors.empty() ? 1.0f : mesh.colors[v].w);
   }
   const bool reversed = (glm::determinant(linear) < 0.0f) != draw.back;
