@@ -25,6 +25,8 @@ class Assembler {
     description_.materials = scene_.materials;
     description_.textures = scene_.textures;
     description_.cameras = scene_.cameras;
+    description_.lights = scene_.lights;
+    description_.animations = scene_.animations;
   }
 
   void addMeshes(ShippedMeshes& meshes) {
