@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <numeric>
 
 #include <fmt/format.h>
 #include <glm/gtc/packing.hpp>
@@ -14,8 +15,12 @@ namespace lambent::bundle {
 namespace {
 
 constexpr const char* kMend = "copy it again or bake it again";
-// A weight times a binary16 value (under 65536), summed over all axes that a vector can have, stays finite.
-constexpr float kMaxWeight = 1e28f;
+// First word of a codebook payload.
+constexpr std::uint32_t kPlainForm = 0, kSharedForm = 1;
+// More than any cell needs; keeps a small file from asking for much memory.
+constexpr std::uint64_t kMaxVectorValues = std::uint64_t{1} << 27;
+// A weight times a value, summed over all axes that a vector can have, stays finite.
+constexpr float kMaxWeight = 1e20f, kMaxValue = 1e12f;
 
 // 16-bit words as two runs of bytes, low and high: the entropy coder works on bytes, and the two kinds have
 // nothing in common.
@@ -29,39 +34,151 @@ std::uint16_t splitWord(std::span<const std::byte> bytes, std::size_t count, std
                                     std::to_integer<unsigned>(bytes[count + i]) << 8);
 }
 
-void appendFloat(std::vector<std::byte>& out, float value) {
-  std::byte bytes[sizeof(value)];
-  std::memcpy(bytes, &value, sizeof(value));
-  out.insert(out.end(), std::begin(bytes), std::end(bytes));
+// Integers near zero as 32-bit words (0, -1, 1, -2, ...) in four runs of bytes, lowest first.
+void appendZigzag(std::vector<std::byte>& out, std::span<const std::int32_t> values) {
+  for (int shift = 0; shift < 32; shift += 8)
+    for (const std::int32_t value : values) {
+      const auto word = static_cast<std::uint32_t>(value) << 1 ^ static_cast<std::uint32_t>(value >> 31);
+      out.push_back(static_cast<std::byte>(word >> shift & 0xff));
+    }
 }
 
-float floatAt(std::span<const std::byte> bytes, std::size_t i) {
-  float value = 0.0f;
-  std::memcpy(&value, bytes.data() + i * sizeof(value), sizeof(value));
-  return value;
+template <typename T>
+void appendValues(std::vector<std::byte>& out, std::span<const T> values) {
+  const auto bytes = std::as_bytes(values);
+  out.insert(out.end(), bytes.begin(), bytes.end());
 }
+
+// Takes values off the front of a payload; once one is missing, everything is, and nothing is allocated.
+class Front {
+ public:
+  explicit Front(std::span<const std::byte> bytes) : rest_(bytes) {}
+
+  bool whole() const { return whole_ && rest_.empty(); }
+
+  template <typename T>
+  std::vector<T> values(std::uint64_t count) {
+    const auto bytes = take(count, sizeof(T));
+    std::vector<T> out(bytes.size() / sizeof(T));
+    if (!out.empty()) std::memcpy(out.data(), bytes.data(), bytes.size());
+    return out;
+  }
+
+  std::vector<std::uint16_t> split(std::uint64_t count) {
+    const auto bytes = take(count, 2);
+    std::vector<std::uint16_t> out(bytes.size() / 2);
+    for (std::size_t i = 0; i < out.size(); ++i) out[i] = splitWord(bytes, out.size(), i);
+    return out;
+  }
+
+  std::vector<std::int32_t> zigzag(std::uint64_t count) {
+    const auto bytes = take(count, 4);
+    std::vector<std::int32_t> out(bytes.size() / 4);
+    for (std::size_t i = 0; i < out.size(); ++i) {
+      std::uint32_t word = 0;
+      for (std::size_t run = 0; run < 4; ++run)
+        word |= std::to_integer<std::uint32_t>(bytes[run * out.size() + i]) << 8 * run;
+      out[i] = static_cast<std::int32_t>(word >> 1 ^ (~(word & 1) + 1));
+    }
+    return out;
+  }
+
+ private:
+  std::span<const std::byte> take(std::uint64_t count, std::size_t width) {
+    if (!whole_ || rest_.size() / width < count) {
+      whole_ = false;
+      return {};
+    }
+    const auto bytes = rest_.first(static_cast<std::size_t>(count) * width);
+    rest_ = rest_.subspan(bytes.size());
+    return bytes;
+  }
+
+  std::span<const std::byte> rest_;
+  bool whole_ = true;
+};
 
 bool usable(const AxisCode& axis) {
   const float last = axis.offset + 65535.0f * axis.scale;  // NaN fails every comparison
   return std::abs(axis.offset) <= kMaxWeight && std::abs(last) <= kMaxWeight;
 }
 
-}  // namespace
-
-// --- codebook: counts (u16), offsets (f32), scales (f32), vectors (binary16, split) ---
-
-std::vector<std::byte> encodeCodebook(const Codebook& codebook) {
-  std::vector<std::byte> out;
-  std::vector<std::uint16_t> counts, halves;
-  for (const std::uint32_t count : codebook.axis_counts) {
+// What both forms begin with: form, counts, offsets, scales.
+void appendHead(std::vector<std::byte>& out, std::uint32_t form, std::span<const std::uint32_t> axis_counts,
+                std::span<const AxisCode> axes) {
+  std::vector<std::uint16_t> counts;
+  std::vector<float> codes;
+  for (const std::uint32_t count : axis_counts) {
     assert(count <= std::numeric_limits<std::uint16_t>::max());
     counts.push_back(static_cast<std::uint16_t>(count));
   }
-  for (const float value : codebook.vectors) halves.push_back(glm::packHalf1x16(value));
+  for (const AxisCode& axis : axes) codes.push_back(axis.offset);
+  for (const AxisCode& axis : axes) codes.push_back(axis.scale);
+  appendValues<std::uint32_t>(out, std::span(&form, 1));
   appendSplit(out, counts);
-  for (const AxisCode& axis : codebook.axes) appendFloat(out, axis.offset);
-  for (const AxisCode& axis : codebook.axes) appendFloat(out, axis.scale);
+  appendValues<float>(out, codes);
+}
+
+bool allBelow(std::span<const float> values, float limit) {  // NaN is not below anything
+  return std::all_of(values.begin(), values.end(), [&](float v) { return std::abs(v) <= limit; });
+}
+
+bool allBelow(std::span<const std::int32_t> values) {
+  return std::all_of(values.begin(), values.end(),
+                     [](std::int32_t v) { return v > -kMaxCoordinate && v < kMaxCoordinate; });
+}
+
+}  // namespace
+
+// --- codebook ---
+
+std::vector<std::byte> encodeCodebook(const Codebook& codebook) {
+  std::vector<std::byte> out;
+  std::vector<std::uint16_t> halves;
+  for (const float value : codebook.vectors) halves.push_back(glm::packHalf1x16(value));
+  appendHead(out, kPlainForm, codebook.axis_counts, codebook.axes);
   appendSplit(out, halves);
+  return out;
+}
+
+std::vector<std::byte> encodeCodebook(const SharedCodebook& codebook) {
+  std::vector<std::byte> out;
+  appendHead(out, kSharedForm, codebook.axis_counts, codebook.axes);
+  const auto rank = static_cast<std::uint32_t>(codebook.basis_scales.size());
+  appendValues<std::uint32_t>(out, std::span(&rank, 1));
+  appendValues<float>(out, codebook.value_scales);
+  appendValues<float>(out, codebook.basis_scales);
+  appendValues<float>(out, std::span(&codebook.mean_scale, 1));
+  appendZigzag(out, codebook.basis);
+  appendZigzag(out, codebook.means);
+  appendZigzag(out, codebook.directions);
+  return out;
+}
+
+Codebook expand(const SharedCodebook& codebook) {
+  const std::size_t size = codebook.value_scales.size(), rank = codebook.basis_scales.size(),
+                    clusters = codebook.axis_counts.size(), axes = codebook.axes.size();
+  Codebook out{codebook.axis_counts, codebook.axes, std::vector<float>((clusters + axes) * size, 0.0f)};
+  std::vector<float> basis(rank * size);
+  for (std::size_t r = 0; r < rank; ++r)
+    for (std::size_t i = 0; i < size; ++i)
+      basis[r * size + i] = codebook.value_scales[i] * codebook.basis_scales[r] *
+                            static_cast<float>(codebook.basis[r * size + i]);
+  float* vector = out.vectors.data();
+  const auto put = [&](const std::int32_t* coordinates, std::size_t stride, float scale) {
+    for (std::size_t r = 0; r < rank; ++r) {
+      const float weight = scale * static_cast<float>(coordinates[r * stride]);
+      if (weight == 0.0f) continue;
+      for (std::size_t i = 0; i < size; ++i) vector[i] += weight * basis[r * size + i];
+    }
+    vector += size;
+  };
+  std::size_t axis = 0;
+  for (std::size_t c = 0; c < clusters; ++c) {
+    put(codebook.means.data() + c, clusters, codebook.mean_scale);
+    for (std::uint32_t j = 0; j < codebook.axis_counts[c]; ++j)
+      put(codebook.directions.data() + axis++, axes, 1.0f);
+  }
   return out;
 }
 
@@ -72,34 +189,46 @@ Result<Codebook> decodeCodebook(std::span<const std::byte> bytes, const Transfer
   };
   const std::uint64_t size = shape.size();
   if (clusters == 0 || size == 0) return damaged("it is of nothing");
-  if (bytes.size() / 2 < clusters) return damaged("too short");
+  Front front(bytes);
+  const auto form = front.values<std::uint32_t>(1);
+  const auto counts = front.split(clusters);
+  if (counts.empty() || form[0] > kSharedForm) return damaged("too short, or of an unknown form");
   Codebook codebook;
-  std::uint64_t axes = 0;
-  for (std::uint32_t c = 0; c < clusters; ++c) {
-    const std::uint32_t count = splitWord(bytes, clusters, c);
-    if (count > size) return damaged("a cluster has more axes than a vector has values");
-    if (c > 0 && count > codebook.axis_counts.back()) return damaged("numbers of axes rise");
-    codebook.axis_counts.push_back(count);
-    axes += count;
+  codebook.axis_counts.assign(counts.begin(), counts.end());
+  if (counts.front() > size) return damaged("a cluster has more axes than a vector has values");
+  if (!std::is_sorted(counts.rbegin(), counts.rend())) return damaged("numbers of axes rise");
+  const std::uint64_t axes = std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
+  const auto codes = front.values<float>(2 * axes);
+  for (std::size_t a = 0; a < codes.size() / 2; ++a) {
+    codebook.axes.push_back({codes[a], codes[axes + a]});
+    if (!usable(codebook.axes.back())) return damaged("a weight that is not finite");
   }
-  // Under 2^63: at most 2^16 axes in each of 2^32 clusters; the division keeps the last product from
-  // overflowing.
-  std::span<const std::byte> rest = bytes.subspan(std::size_t{clusters} * 2);
-  if (rest.size() / 8 < axes || (rest.size() - axes * 8) / 2 / size < axes + clusters ||
-      rest.size() - axes * 8 != (axes + clusters) * size * 2)
-    return damaged("sizes do not add up");
 
-  for (std::size_t a = 0; a < axes; ++a) {
-    const AxisCode axis{floatAt(rest, a), floatAt(rest, axes + a)};
-    if (!usable(axis)) return damaged("a weight that is not finite");
-    codebook.axes.push_back(axis);
+  if (axes + clusters > kMaxVectorValues / size) return damaged("too many axes");
+  if (form[0] == kPlainForm) {
+    const auto halves = front.split((axes + clusters) * size);
+    if (!front.whole()) return damaged("sizes do not add up");
+    for (const std::uint16_t half : halves) codebook.vectors.push_back(glm::unpackHalf1x16(half));
+  } else {
+    SharedCodebook shared{
+        std::move(codebook.axis_counts), std::move(codebook.axes), {}, {}, 0.0f, {}, {}, {}};
+    const auto rank = front.values<std::uint32_t>(1);
+    if (rank.empty() || rank[0] > size) return damaged("sizes do not add up");
+    shared.value_scales = front.values<float>(size);
+    shared.basis_scales = front.values<float>(rank[0]);
+    const auto mean_scale = front.values<float>(1);
+    shared.basis = front.zigzag(rank[0] * size);
+    shared.means = front.zigzag(std::uint64_t{rank[0]} * clusters);
+    shared.directions = front.zigzag(std::uint64_t{rank[0]} * axes);
+    if (!front.whole()) return damaged("sizes do not add up");
+    shared.mean_scale = mean_scale[0];
+    if (!allBelow(shared.value_scales, kMaxValue) || !allBelow(shared.basis_scales, kMaxValue) ||
+        !allBelow(mean_scale, kMaxValue) || !allBelow(shared.basis) || !allBelow(shared.means) ||
+        !allBelow(shared.directions))
+      return damaged("a value is not finite");
+    codebook = expand(shared);
   }
-  rest = rest.subspan(axes * 8);
-  codebook.vectors.resize((axes + clusters) * size);
-  for (std::size_t i = 0; i < codebook.vectors.size(); ++i) {
-    codebook.vectors[i] = glm::unpackHalf1x16(splitWord(rest, codebook.vectors.size(), i));
-    if (!std::isfinite(codebook.vectors[i])) return damaged("a value is not finite");
-  }
+  if (!allBelow(codebook.vectors, kMaxValue)) return damaged("a value is not finite");
   return codebook;
 }
 

@@ -47,11 +47,33 @@ struct Codebook {
   std::size_t clusters() const { return axis_counts.size(); }
 };
 
-// Payload "codebook". Vectors are binary16 in the file. Its length follows from the sizes.
+// Bytes of payload "codebook" with vectors as binary16, and of its numbers as they are held in memory.
 inline std::uint64_t codebookBytes(const TransferShape& shape, std::uint32_t clusters, std::uint32_t axes) {
   return 2ull * clusters + 8ull * axes + 2ull * (std::uint64_t{clusters} + axes) * shape.size();
 }
+
+// A codebook as the baker makes it: vectors are few, small integers in coordinates of one basis that the
+// clusters of the cell share, so that each costs a few bits per coordinate after entropy coding.
+//   basis vector r, value i = value_scales[i] * basis_scales[r] * basis[r * size + i]
+//   mean of cluster c       = mean_scale * sum_r means[r * clusters + c] * basis vector r
+//   direction of axis a     = sum_r directions[r * axes + a] * basis vector r
+struct SharedCodebook {
+  std::vector<std::uint32_t> axis_counts;
+  std::vector<AxisCode> axes;
+  std::vector<float> value_scales;
+  std::vector<float> basis_scales;  // one per basis vector
+  float mean_scale = 0.0f;
+  std::vector<std::int32_t> basis, means, directions;  // magnitudes under kMaxCoordinate
+
+  std::size_t clusters() const { return axis_counts.size(); }
+};
+inline constexpr std::int32_t kMaxCoordinate = 1 << 22;
+
+Codebook expand(const SharedCodebook& codebook);
+
+// Payload "codebook", in one of two forms: with vectors as binary16, or over a shared basis.
 std::vector<std::byte> encodeCodebook(const Codebook& codebook);
+std::vector<std::byte> encodeCodebook(const SharedCodebook& codebook);
 // Errors name `subject`: sizes that do not add up, counts that rise or exceed shape.size(), values that are
 // not finite or so large that decoded vectors would not be.
 Result<Codebook> decodeCodebook(std::span<const std::byte> bytes, const TransferShape& shape,

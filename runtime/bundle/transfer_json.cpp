@@ -101,8 +101,8 @@ DiffuseTransfer readDiffuse(const Field& field, const Description& d, const Grou
   if (planes.size() > transfer.shape.size()) field["planes"].fault("are more than the vector has values");
   transfer.axes =
       static_cast<std::uint32_t>(field["axes"].count(std::uint64_t{transfer.clusters} * planes.size()));
-  transfer.codebook = payloadIndex(field["codebook"], d, PayloadType::Codebook,
-                                   codebookBytes(transfer.shape, transfer.clusters, transfer.axes));
+  // Its length depends on how it is coded; decodeCodebook() holds it against the counts.
+  transfer.codebook = payloadIndex(field["codebook"], d, PayloadType::Codebook, 0);
   if (transfer.clusters > 1)
     transfer.cluster_ids = static_cast<std::int32_t>(
         payloadIndex(field["clusterIds"], d, PayloadType::ClusterIds,

@@ -44,7 +44,7 @@ TEST(TransferShape, CountsBlocksChannelsOutputsAndColumns) {
 TEST(Codebook, ComesBackExactlyWhereHalfHoldsIt) {
   const Codebook codebook = smallCodebook();
   const auto bytes = encodeCodebook(codebook);
-  EXPECT_EQ(bytes.size(), 3u * 2 + 3 * 8 + 24 * 2);
+  EXPECT_EQ(bytes.size(), 4 + 3u * 2 + 3 * 8 + 24 * 2);
   const auto back = decodeCodebook(bytes, smallShape(), 3, "cell 0");
   ASSERT_TRUE(back) << back.error().line();
   EXPECT_EQ(back->axis_counts, codebook.axis_counts);
