@@ -154,6 +154,36 @@ TEST_F(Bake, KnowsWhenABundleIsUpToDate) {
   EXPECT_FALSE(isUpToDate(scene, draft(), folder_ / "stage.lmb.glb"));
 }
 
+TEST_F(Bake, IsOutOfDateWhenLightsMaterialsOrMotionChange) {
+  Scene scene = stage();
+  scene.lights = {gltf::Light{}};
+  scene.nodes[2].trs = gltf::Trs{};
+  scene.animations = {{"roll", {{.node = 2, .times_s = {0, 1}, .values = {0, 0, 0, 1, 0, 0}}}}};
+  const std::uint64_t before = digestOf(scene);
+  const auto changes = [&](auto change) {
+    Scene other = scene;
+    change(other);
+    return digestOf(other) != before;
+  };
+  EXPECT_FALSE(changes([](Scene&) {}));
+  EXPECT_TRUE(changes([](Scene& s) { s.lights[0].intensity = 2.0f; }));
+  EXPECT_TRUE(changes([](Scene& s) { s.lights[0].outer_cone_rad = 0.5f; }));
+  EXPECT_TRUE(changes([](Scene& s) { s.nodes[0].light = 0; }));
+  EXPECT_TRUE(changes([](Scene& s) { s.nodes[2].trs->scale.y = 3.0f; }));
+  EXPECT_TRUE(changes([](Scene& s) { s.animations[0].channels[0].values[5] = 1.0f; }));
+  EXPECT_TRUE(changes([](Scene& s) { s.animations[0].channels[0].node = 1; }));
+  EXPECT_TRUE(changes([](Scene& s) { s.materials[0].emissive.x = 1.0f; }));
+  EXPECT_TRUE(changes([](Scene& s) { s.materials[0].emissive_texture.scale.x = 2.0f; }));
+  EXPECT_TRUE(changes([](Scene& s) { s.materials[0].normal_scale = 2.0f; }));
+  EXPECT_TRUE(changes([](Scene& s) { s.materials[0].normal_texture.texture = 1; }));
+  EXPECT_TRUE(changes([](Scene& s) { s.materials[0].base_color_texture.rotation_rad = 1.0f; }));
+  EXPECT_TRUE(changes([](Scene& s) { s.materials[0].unlit = true; }));
+  EXPECT_TRUE(changes([](Scene& s) {
+    bundle::MeshData& mesh = s.meshes[0].primitives[0].mesh;
+    mesh.tangents.assign(mesh.positions.size(), {1, 0, 0, 1});
+  }));
+}
+
 TEST_F(Bake, ThatIsStoppedOrFailsLeavesTheOldBundle) {
   ASSERT_TRUE(bakeTo("stage.lmb.glb", stage(), draft()));
   const std::string before = bytes("stage.lmb.glb");
