@@ -159,11 +159,11 @@ TEST_F(Bake, IsOutOfDateWhenLightsMaterialsOrMotionChange) {
   scene.lights = {gltf::Light{}};
   scene.nodes[2].trs = gltf::Trs{};
   scene.animations = {{"roll", {{.node = 2, .times_s = {0, 1}, .values = {0, 0, 0, 1, 0, 0}}}}};
-  const std::uint64_t before = digestOf(scene);
+  const std::uint64_t before = sceneDigest(scene);
   const auto changes = [&](auto change) {
     Scene other = scene;
     change(other);
-    return digestOf(other) != before;
+    return sceneDigest(other) != before;
   };
   EXPECT_FALSE(changes([](Scene&) {}));
   EXPECT_TRUE(changes([](Scene& s) { s.lights[0].intensity = 2.0f; }));

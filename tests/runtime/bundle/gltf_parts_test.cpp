@@ -164,8 +164,11 @@ TEST_F(GltfParts, ThatNobodyCouldUseAreRefusedByName) {
   refused([](Description& d) { d.nodes[0].light = 1; }, "light");
   refused([](Description& d) { d.lights[0].intensity = -1.0f; }, "intensity is negative");
   refused([](Description& d) { d.lights[0].color.y = -1.0f; }, "color is negative");
-  refused([](Description& d) { d.lights[0] = {.name = "", .type = gltf::Light::Type::Spot, .inner_cone_rad = 1.0f}; },
-          "spot");
+  refused(
+      [](Description& d) {
+        d.lights[0] = {.name = "", .type = gltf::Light::Type::Spot, .inner_cone_rad = 1.0f};
+      },
+      "spot");
 }
 
 }  // namespace
