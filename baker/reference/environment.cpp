@@ -1,0 +1,203 @@
+#include "baker/reference/environment.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "baker/reference/warp.hpp"
+#include "runtime/spec/rotate.hpp"
+
+namespace lambent::baker::reference {
+
+namespace {
+
+// Texels are divided this finely where a direction inside one is asked for; the layouts of runtime/sh are
+// defined on whole texels.
+constexpr int kFine = 1024;
+
+struct Fine {
+  int width, height, x, y;
+};
+
+Fine fine(const spec::Probe& probe, double x, double y) {
+  const int width = static_cast<int>(probe.image.width) * kFine,
+            height = static_cast<int>(probe.image.height) * kFine;
+  return {width, height, std::clamp(static_cast<int>(x * kFine), 0, width - 1),
+          std::clamp(static_cast<int>(y * kFine), 0, height - 1)};
+}
+
+glm::dvec3 directionAt(const spec::Probe& probe, double x, double y) {
+  const Fine f = fine(probe, x, y);
+  return sh::texelDirection(probe.layout, f.width, f.height, f.x, f.y);
+}
+
+// Steradians per texel's area, there.
+double densityAt(const spec::Probe& probe, double x, double y) {
+  const Fine f = fine(probe, x, y);
+  return sh::texelSolidAngle(probe.layout, f.width, f.height, f.x, f.y) * double{kFine} * kFine;
+}
+
+double brightness(const glm::vec3& radiance) {
+  return std::max(0.0, (double{radiance.r} + double{radiance.g} + double{radiance.b}) / 3.0);
+}
+
+// The last entry at or below u, and how far u lies from it to the next.
+std::pair<std::size_t, double> place(const double* first, std::size_t count, double u) {
+  const double* above = std::upper_bound(first + 1, first + count, u);
+  const auto at = static_cast<std::size_t>(above - first) - 1;
+  const double width = first[at + 1] - first[at];
+  return {at, width > 0.0 ? std::min((u - first[at]) / width, 0x1.fffffep-1) : 0.5};
+}
+
+}  // namespace
+
+Environment::Environment(spec::DistantLights lights, float turn_degrees, int band_limit)
+    : lights_(std::move(lights)),
+      world_from_light_(spec::lightRotation(turn_degrees)),
+      band_limit_(band_limit) {
+  vector_ = spec::turned(lights_.lightVector(), turn_degrees);
+  if (band_limit > 0) vector_ = vector_.truncated(band_limit);
+  for (const spec::Disc& disc : lights_.discs) {
+    const double half = std::sin(0.5 * double{disc.radius_rad});
+    cones_.push_back(
+        {.frame = frameAbout(glm::normalize(disc.direction)), .cap = static_cast<float>(2.0 * half * half)});
+    if (disc.radiance != glm::vec3(0.0f)) dark_ = false;
+  }
+  if (lights_.constant != glm::vec3(0.0f)) dark_ = false;
+  // Texels that are not wholly pictures of a direction hold whatever the file has there.
+  for (spec::Probe& probe : lights_.probes)
+    for (std::size_t i = 0; i < probe.image.texels.size(); ++i) {
+      const int width = static_cast<int>(probe.image.width), height = static_cast<int>(probe.image.height);
+      const int x = static_cast<int>(i % probe.image.width), y = static_cast<int>(i / probe.image.width);
+      if (sh::texelSolidAngle(probe.layout, width, height, x, y) <= 0.0)
+        probe.image.texels[i] = glm::vec3(0.0f);
+      if (probe.image.texels[i] != glm::vec3(0.0f)) dark_ = false;
+    }
+  if (band_limit > 0) return;
+
+  for (std::size_t i = 0; i < lights_.probes.size(); ++i) addProbe(i);
+  for (std::size_t i = 0; i < lights_.discs.size(); ++i)
+    parts_.push_back({.probability = brightness(lights_.discs[i].radiance) * double{cones_[i].cap} * 2.0 *
+                                     std::numbers::pi,
+                      .disc = i,
+                      .is_disc = true});
+  std::erase_if(parts_, [](const Part& part) { return !(part.probability > 0.0); });
+  double sum = 0.0;
+  for (const Part& part : parts_) sum += part.probability;
+  for (Part& part : parts_) part.probability /= sum;
+}
+
+void Environment::addProbe(std::size_t index) {
+  const spec::Probe& probe = lights_.probes[index];
+  const std::size_t width = probe.image.width, height = probe.image.height;
+  Distribution out;
+  out.rows.assign(height + 1, 0.0);
+  out.columns.assign((width + 1) * height, 0.0);
+  for (std::size_t y = 0; y < height; ++y) {
+    double* row = &out.columns[y * (width + 1)];
+    for (std::size_t x = 0; x < width; ++x) {
+      const double angle =
+          sh::texelSolidAngle(probe.layout, static_cast<int>(width), static_cast<int>(height),
+                              static_cast<int>(x), static_cast<int>(y));
+      row[x + 1] = row[x] + angle * brightness(probe.image.texels[y * width + x]);
+    }
+    const double sum = row[width];
+    out.rows[y + 1] = out.rows[y] + sum;
+    for (std::size_t x = 1; x <= width; ++x) row[x] = sum > 0.0 ? row[x] / sum : 0.0;
+  }
+  const double power = out.rows[height];
+  if (power > 0.0)
+    for (double& row : out.rows) row /= power;
+  distributions_.push_back(std::move(out));
+  parts_.push_back({.probability = power, .probe = index});
+}
+
+glm::vec3 Environment::probeRadiance(std::size_t index, const glm::dvec3& dir) const {
+  const spec::RgbImage& image = lights_.probes[index].image;
+  const glm::dvec2 at = sh::imageCoordinates(lights_.probes[index].layout, static_cast<int>(image.width),
+                                             static_cast<int>(image.height), dir);
+  const auto x = static_cast<std::size_t>(std::clamp(at.x, 0.0, image.width - 1.0));
+  const auto y = static_cast<std::size_t>(std::clamp(at.y, 0.0, image.height - 1.0));
+  return image.texels[y * image.width + x];
+}
+
+float Environment::probePdf(std::size_t index, const glm::dvec3& dir) const {
+  const spec::Probe& probe = lights_.probes[index];
+  const Distribution& d = distributions_[index];
+  const std::size_t width = probe.image.width, height = probe.image.height;
+  const glm::dvec2 at =
+      sh::imageCoordinates(probe.layout, static_cast<int>(width), static_cast<int>(height), dir);
+  const auto x = static_cast<std::size_t>(std::clamp(at.x, 0.0, static_cast<double>(width) - 1.0));
+  const auto y = static_cast<std::size_t>(std::clamp(at.y, 0.0, static_cast<double>(height) - 1.0));
+  const double* row = &d.columns[y * (width + 1)];
+  const double texel = (d.rows[y + 1] - d.rows[y]) * (row[x + 1] - row[x]);
+  const double density = densityAt(probe, at.x, at.y);
+  return density > 0.0 ? static_cast<float>(texel / density) : 0.0f;
+}
+
+bool Environment::inside(const Cone& cone, const glm::vec3& dir) const {
+  // By the chord: the cosine of a small disc's rim has no digits left.
+  if (cone.cap > 1.0f) return glm::dot(dir, cone.frame[2]) >= 1.0f - cone.cap;
+  const glm::vec3 away = dir - cone.frame[2];
+  return glm::dot(away, away) <= 2.0f * cone.cap;
+}
+
+glm::vec3 Environment::radiance(const glm::vec3& dir) const {
+  if (band_limit_ > 0) return vector_.evaluate(dir);
+  glm::vec3 sum = lights_.constant;
+  if (parts_.empty()) return sum;
+  const glm::vec3 local = dir * world_from_light_;  // by the transpose
+  for (std::size_t i = 0; i < cones_.size(); ++i)
+    if (inside(cones_[i], local)) sum += lights_.discs[i].radiance;
+  for (std::size_t i = 0; i < lights_.probes.size(); ++i) sum += probeRadiance(i, glm::dvec3(local));
+  return sum;
+}
+
+glm::vec3 Environment::shown(const glm::vec3& dir, float pixel_angle_rad) const {
+  const glm::vec3 local = glm::normalize(dir * world_from_light_);
+  glm::vec3 sum = lights_.constant;
+  for (const spec::Disc& disc : lights_.discs) {
+    const float angle =
+        std::atan2(glm::length(glm::cross(local, disc.direction)), glm::dot(local, disc.direction));
+    sum += std::clamp((disc.radius_rad - angle) / pixel_angle_rad + 0.5f, 0.0f, 1.0f) * disc.radiance;
+  }
+  for (const spec::Probe& probe : lights_.probes) sum += spec::radiance(probe, local);
+  return sum;
+}
+
+Environment::Sample Environment::sample(float choice, const glm::vec2& u) const {
+  std::size_t chosen = 0;
+  for (double left = choice; chosen + 1 < parts_.size() && left >= parts_[chosen].probability; ++chosen)
+    left -= parts_[chosen].probability;
+  const Part& part = parts_[chosen];
+  Sample out;
+  glm::vec3 local;
+  if (part.is_disc) {
+    local = cones_[part.disc].frame * coneDirection(u, cones_[part.disc].cap);
+  } else {
+    const spec::Probe& probe = lights_.probes[part.probe];
+    const Distribution& d = distributions_[part.probe];
+    const std::size_t width = probe.image.width;
+    const auto [y, below] = place(d.rows.data(), d.rows.size(), double{u.y});
+    const auto [x, right] = place(&d.columns[y * (width + 1)], width + 1, double{u.x});
+    local = glm::vec3(directionAt(probe, static_cast<double>(x) + right, static_cast<double>(y) + below));
+    if (local == glm::vec3(0.0f)) return out;  // the rim of an angular map
+  }
+  out.dir = glm::normalize(world_from_light_ * local);
+  out.radiance = radiance(out.dir);
+  out.pdf = pdf(out.dir);
+  return out;
+}
+
+float Environment::pdf(const glm::vec3& dir) const {
+  const glm::vec3 local = dir * world_from_light_;
+  double sum = 0.0;
+  for (const Part& part : parts_) {
+    if (!part.is_disc)
+      sum += part.probability * double{probePdf(part.probe, glm::dvec3(local))};
+    else if (inside(cones_[part.disc], local))
+      sum += part.probability / (2.0 * std::numbers::pi * double{cones_[part.disc].cap});
+  }
+  return static_cast<float>(sum);
+}
+
+}  // namespace lambent::baker::reference
