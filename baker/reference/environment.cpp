@@ -111,16 +111,7 @@ void Environment::addProbe(std::size_t index) {
   parts_.push_back({.probability = power, .probe = index});
 }
 
-glm::vec3 Environment::probeRadiance(std::size_t index, const glm::dvec3& dir) const {
-  const spec::RgbImage& image = lights_.probes[index].image;
-  const glm::dvec2 at = sh::imageCoordinates(lights_.probes[index].layout, static_cast<int>(image.width),
-                                             static_cast<int>(image.height), dir);
-  const auto x = static_cast<std::size_t>(std::clamp(at.x, 0.0, image.width - 1.0));
-  const auto y = static_cast<std::size_t>(std::clamp(at.y, 0.0, image.height - 1.0));
-  return image.texels[y * image.width + x];
-}
-
-float Environment::probePdf(std::size_t index, const glm::dvec3& dir) const {
+Environment::Look Environment::lookAtProbe(std::size_t index, const glm::dvec3& dir) const {
   const spec::Probe& probe = lights_.probes[index];
   const Distribution& d = distributions_[index];
   const std::size_t width = probe.image.width, height = probe.image.height;
@@ -131,7 +122,7 @@ float Environment::probePdf(std::size_t index, const glm::dvec3& dir) const {
   const double* row = &d.columns[y * (width + 1)];
   const double texel = (d.rows[y + 1] - d.rows[y]) * (row[x + 1] - row[x]);
   const double density = densityAt(probe, at.x, at.y);
-  return density > 0.0 ? static_cast<float>(texel / density) : 0.0f;
+  return {probe.image.texels[y * width + x], density > 0.0 ? static_cast<float>(texel / density) : 0.0f};
 }
 
 bool Environment::inside(const Cone& cone, const glm::vec3& dir) const {
@@ -141,14 +132,20 @@ bool Environment::inside(const Cone& cone, const glm::vec3& dir) const {
   return glm::dot(away, away) <= 2.0f * cone.cap;
 }
 
-glm::vec3 Environment::radiance(const glm::vec3& dir) const {
-  if (band_limit_ > 0) return vector_.evaluate(dir);
-  glm::vec3 sum = lights_.constant;
+Environment::Look Environment::look(const glm::vec3& dir) const {
+  if (band_limit_ > 0) return {vector_.evaluate(dir), 0.0f};
+  Look sum{lights_.constant, 0.0f};
   if (parts_.empty()) return sum;
   const glm::vec3 local = dir * world_from_light_;  // by the transpose
-  for (std::size_t i = 0; i < cones_.size(); ++i)
-    if (inside(cones_[i], local)) sum += lights_.discs[i].radiance;
-  for (std::size_t i = 0; i < lights_.probes.size(); ++i) sum += probeRadiance(i, glm::dvec3(local));
+  for (const Part& part : parts_) {
+    Look one;
+    if (!part.is_disc)
+      one = lookAtProbe(part.probe, glm::dvec3(local));
+    else if (inside(cones_[part.disc], local))
+      one = {lights_.discs[part.disc].radiance, 1.0f / (2.0f * kPi * cones_[part.disc].cap)};
+    sum.radiance += one.radiance;
+    sum.pdf += static_cast<float>(part.probability) * one.pdf;
+  }
   return sum;
 }
 
@@ -164,40 +161,21 @@ glm::vec3 Environment::shown(const glm::vec3& dir, float pixel_angle_rad) const 
   return sum;
 }
 
-Environment::Sample Environment::sample(float choice, const glm::vec2& u) const {
+glm::vec3 Environment::sample(float choice, const glm::vec2& u) const {
   std::size_t chosen = 0;
   for (double left = choice; chosen + 1 < parts_.size() && left >= parts_[chosen].probability; ++chosen)
     left -= parts_[chosen].probability;
   const Part& part = parts_[chosen];
-  Sample out;
-  glm::vec3 local;
-  if (part.is_disc) {
-    local = cones_[part.disc].frame * coneDirection(u, cones_[part.disc].cap);
-  } else {
-    const spec::Probe& probe = lights_.probes[part.probe];
-    const Distribution& d = distributions_[part.probe];
-    const std::size_t width = probe.image.width;
-    const auto [y, below] = place(d.rows.data(), d.rows.size(), double{u.y});
-    const auto [x, right] = place(&d.columns[y * (width + 1)], width + 1, double{u.x});
-    local = glm::vec3(directionAt(probe, static_cast<double>(x) + right, static_cast<double>(y) + below));
-    if (local == glm::vec3(0.0f)) return out;  // the rim of an angular map
-  }
-  out.dir = glm::normalize(world_from_light_ * local);
-  out.radiance = radiance(out.dir);
-  out.pdf = pdf(out.dir);
-  return out;
-}
-
-float Environment::pdf(const glm::vec3& dir) const {
-  const glm::vec3 local = dir * world_from_light_;
-  double sum = 0.0;
-  for (const Part& part : parts_) {
-    if (!part.is_disc)
-      sum += part.probability * double{probePdf(part.probe, glm::dvec3(local))};
-    else if (inside(cones_[part.disc], local))
-      sum += part.probability / (2.0 * std::numbers::pi * double{cones_[part.disc].cap});
-  }
-  return static_cast<float>(sum);
+  if (part.is_disc)
+    return glm::normalize(world_from_light_ *
+                          (cones_[part.disc].frame * coneDirection(u, cones_[part.disc].cap)));
+  const spec::Probe& probe = lights_.probes[part.probe];
+  const Distribution& d = distributions_[part.probe];
+  const std::size_t width = probe.image.width;
+  const auto [y, below] = place(d.rows.data(), d.rows.size(), double{u.y});
+  const auto [x, right] = place(&d.columns[y * (width + 1)], width + 1, double{u.x});
+  const glm::dvec3 local = directionAt(probe, static_cast<double>(x) + right, static_cast<double>(y) + below);
+  return local == glm::dvec3(0.0) ? glm::vec3(0.0f) : glm::normalize(world_from_light_ * glm::vec3(local));
 }
 
 }  // namespace lambent::baker::reference

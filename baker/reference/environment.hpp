@@ -17,22 +17,21 @@ class Environment {
   // band_limit: 0 for whole light.
   Environment(spec::DistantLights lights, float turn_degrees, int band_limit);
 
-  // What arrives from a unit direction of the world.
-  glm::vec3 radiance(const glm::vec3& dir) const;
   // What the eye sees there, as the runtime draws its sky: probes bilinear, rims of discs softened over a
   // pixel.
   glm::vec3 shown(const glm::vec3& dir, float pixel_angle_rad) const;
 
   // Discs and probes have a density to draw directions from; a constant and band-limited light have none.
   bool sampled() const { return !parts_.empty(); }
-  struct Sample {
-    glm::vec3 dir{0.0f};
+  // A unit direction of the world, now and then (the rim of an angular map) none, as 0. `choice` picks the
+  // part, `u` the place in it.
+  glm::vec3 sample(float choice, const glm::vec2& u) const;
+  // What arrives from dir, and the density with which sample() draws it.
+  struct Look {
     glm::vec3 radiance{0.0f};
-    float pdf = 0.0f;  // per steradian; 0: no direction
+    float pdf = 0.0f;
   };
-  // `choice` picks the part, `u` the place in it.
-  Sample sample(float choice, const glm::vec2& u) const;
-  float pdf(const glm::vec3& dir) const;
+  Look look(const glm::vec3& dir) const;
   bool dark() const { return dark_; }
 
  private:
@@ -51,8 +50,7 @@ class Environment {
     float cap = 0.0f;       // 1 - cos of the radius
   };
 
-  glm::vec3 probeRadiance(std::size_t probe, const glm::dvec3& dir) const;
-  float probePdf(std::size_t probe, const glm::dvec3& dir) const;
+  Look lookAtProbe(std::size_t probe, const glm::dvec3& dir) const;
   bool inside(const Cone& cone, const glm::vec3& dir) const;
   void addProbe(std::size_t probe);
 

@@ -79,11 +79,13 @@ struct Integrator::Walk {
   // Next-event estimation: towards discs and probes, an emissive triangle, a punctual light.
   void lightFromSky(std::size_t p, bool first) {
     const Path& path = paths[p];
-    const auto sample = world.environment.sample(draw(path, kChoices).x, draw(path, kSkyPlace));
-    if (!(sample.pdf > 0.0f)) return;
-    const Scattering s = scattering(path.at, sample.dir, first);
-    addShadow(p, sample.dir, kInfinity,
-              path.throughput * sample.radiance * (s.value / sample.pdf * powerHeuristic(sample.pdf, s.pdf)));
+    const glm::vec3 dir = world.environment.sample(draw(path, kChoices).x, draw(path, kSkyPlace));
+    const Scattering s = scattering(path.at, dir, first);
+    if (s.value == 0.0f) return;
+    const Environment::Look sky = world.environment.look(dir);
+    if (!(sky.pdf > 0.0f)) return;
+    addShadow(p, dir, kInfinity,
+              path.throughput * sky.radiance * (s.value / sky.pdf * powerHeuristic(sky.pdf, s.pdf)));
   }
 
   void lightFromEmissive(std::size_t p, bool first) {
@@ -177,10 +179,9 @@ struct Integrator::Walk {
   }
 
   void addSky(Path& path) {
-    glm::vec3 radiance = world.environment.radiance(path.dir);
-    if (radiance == glm::vec3(0.0f)) return;
-    if (world.environment.sampled()) radiance *= powerHeuristic(path.pdf, world.environment.pdf(path.dir));
-    path.sum += path.throughput * radiance;
+    const Environment::Look sky = world.environment.look(path.dir);
+    const float weight = world.environment.sampled() ? powerHeuristic(path.pdf, sky.pdf) : 1.0f;
+    path.sum += path.throughput * sky.radiance * weight;
   }
 
   void addEmitted(Path& path, const Hit& hit, const SurfacePoint& there) const {

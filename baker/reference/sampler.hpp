@@ -48,12 +48,14 @@ constexpr std::uint32_t owenScrambled(std::uint32_t x, std::uint32_t seed) {
   return reversedBits(laineKarras(reversedBits(x), seed));
 }
 
-// The second dimension of Sobol's sequence; the first is reversedBits(index).
-constexpr std::uint32_t sobolSecond(std::uint32_t index) {
-  std::uint32_t result = 0;
-  for (std::uint32_t direction = 1u << 31; index != 0; index >>= 1, direction ^= direction >> 1)
-    if (index & 1u) result ^= direction;
-  return result;
+// The second dimension of Sobol's sequence with its bits reversed: Pascal's triangle modulo 2 times the
+// index. The first dimension with its bits reversed is the index itself.
+constexpr std::uint32_t sobolSecondReversed(std::uint32_t index) {
+  index ^= index >> 16;
+  index ^= (index & 0xff00ff00u) >> 8;
+  index ^= (index & 0xf0f0f0f0u) >> 4;
+  index ^= (index & 0xccccccccu) >> 2;
+  return index ^ ((index & 0xaaaaaaaau) >> 1);
 }
 
 // In [0, 1), never 1.
@@ -72,8 +74,8 @@ class Sampler {
     const std::uint32_t key = combine(key_, dimension);
     // Shuffled per pair, so that pairs are padded independently.
     const std::uint32_t shuffled = owenScrambled(index, key);
-    return {unitFloat(owenScrambled(reversedBits(shuffled), hash32(key ^ 0x68bc21ebu))),
-            unitFloat(owenScrambled(sobolSecond(shuffled), hash32(key ^ 0x02e5be93u)))};
+    return {unitFloat(reversedBits(laineKarras(shuffled, hash32(key ^ 0x68bc21ebu)))),
+            unitFloat(reversedBits(laineKarras(sobolSecondReversed(shuffled), hash32(key ^ 0x02e5be93u))))};
   }
 
  private:
