@@ -14,18 +14,18 @@ namespace lambent::baker::reference {
 // given, albedo/π times the cosine at the first hit replaced by its first `out` bands.
 struct BandLimit {
   int in = 5;
-  std::optional<int> out;
+  std::optional<int> out = {};
 };
 
 // IN or IN,OUT, each 1..8.
 Result<BandLimit> parseBandLimit(std::string_view word);
 
 struct Options {
-  spec::Size size;
+  spec::Size size = {};
   std::uint32_t spp = 256;  // samples a pixel, 1..kMaxSpp
   std::uint32_t seed = 0;   // pictures of two seeds have independent noise
-  std::optional<BandLimit> band_limit;
-  std::optional<std::uint32_t> bounces;  // interreflections: 0 is direct light; none: as many as matter
+  std::optional<BandLimit> band_limit = {};
+  std::optional<std::uint32_t> bounces = {};  // interreflections: 0 is direct light; none: as many as matter
   float rotate_light_deg = 0.0f;
   unsigned threads = 0;  // 0: as many as the machine has
 };

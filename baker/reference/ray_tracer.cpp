@@ -234,7 +234,10 @@ void RayTracer::visible(const Ray& ray, std::vector<Hit>& layers) const {
     trace(state_->blended.get(), filterLayers, solid.ray.tfar);
     std::sort(layers.begin(), layers.end(),
               [](const Hit& a, const Hit& b) { return a.t != b.t ? a.t < b.t : a.triangle < b.triangle; });
-    const auto same = [](const Hit& a, const Hit& b) { return a.t == b.t && a.triangle == b.triangle; };
+    // On the edge between two triangles a ray may meet both.
+    const auto same = [](const Hit& a, const Hit& b) {
+      return a.surface == b.surface && b.t - a.t <= 1e-6f * b.t;
+    };
     layers.erase(std::unique(layers.begin(), layers.end(), same), layers.end());
   }
   if (solid.hit.geomID != RTC_INVALID_GEOMETRY_ID)

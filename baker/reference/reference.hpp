@@ -22,9 +22,9 @@
 namespace lambent::baker::reference {
 
 struct Request {
-  std::vector<spec::Light> lights;
-  std::optional<spec::Camera> camera;  // none: the file's first, else an orbit that frames the scene
-  Options options;
+  std::vector<spec::Light> lights = {};
+  std::optional<spec::Camera> camera = {};  // none: the file's first, else an orbit that frames the scene
+  Options options = {};
 };
 
 struct Report {
