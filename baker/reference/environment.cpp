@@ -14,26 +14,33 @@ namespace {
 // defined on whole texels.
 constexpr int kFine = 1024;
 
-struct Fine {
-  int width, height, x, y;
-};
-
-Fine fine(const spec::Probe& probe, double x, double y) {
+glm::dvec3 directionAt(const spec::Probe& probe, double x, double y) {
   const int width = static_cast<int>(probe.image.width) * kFine,
             height = static_cast<int>(probe.image.height) * kFine;
-  return {width, height, std::clamp(static_cast<int>(x * kFine), 0, width - 1),
-          std::clamp(static_cast<int>(y * kFine), 0, height - 1)};
+  return sh::texelDirection(probe.layout, width, height,
+                            std::clamp(static_cast<int>(x * kFine), 0, width - 1),
+                            std::clamp(static_cast<int>(y * kFine), 0, height - 1));
 }
 
-glm::dvec3 directionAt(const spec::Probe& probe, double x, double y) {
-  const Fine f = fine(probe, x, y);
-  return sh::texelDirection(probe.layout, f.width, f.height, f.x, f.y);
-}
-
-// Steradians per texel's area, there.
-double densityAt(const spec::Probe& probe, double x, double y) {
-  const Fine f = fine(probe, x, y);
-  return sh::texelSolidAngle(probe.layout, f.width, f.height, f.x, f.y) * double{kFine} * kFine;
+// Steradians per texel's area in a unit direction that lies at (x, y) of the picture.
+double densityAt(const spec::Probe& probe, const glm::dvec3& dir, const glm::dvec2& at) {
+  constexpr double kFull = std::numbers::pi;
+  const double width = probe.image.width, height = probe.image.height;
+  switch (probe.layout) {
+    case sh::ImageLayout::LatLong:  // sin(polar) dpolar dazimuth
+      return std::sqrt(std::max(0.0, 1.0 - dir.y * dir.y)) * (kFull / height) * (2.0 * kFull / width);
+    case sh::ImageLayout::AngularMap: {  // sin(pi r) pi dr dphi over r dr dphi
+      const double u = 2.0 * at.x / width - 1.0, v = 2.0 * at.y / height - 1.0;
+      const double r = std::sqrt(u * u + v * v), side = std::sqrt(std::max(0.0, 1.0 - dir.z * dir.z));
+      return (r > 1e-9 ? kFull * side / r : kFull * kFull) * (2.0 / width) * (2.0 / height);
+    }
+    case sh::ImageLayout::VerticalCross: {  // (1 + u² + v²)^(-3/2) du dv, u and v over a face of the cube
+      const glm::dvec3 size = glm::abs(dir);
+      const double towards = std::max({size.x, size.y, size.z});
+      return towards * towards * towards * (6.0 / width) * (6.0 / width);
+    }
+  }
+  return 0.0;
 }
 
 double brightness(const glm::vec3& radiance) {
@@ -41,11 +48,11 @@ double brightness(const glm::vec3& radiance) {
 }
 
 // The last entry at or below u, and how far u lies from it to the next.
-std::pair<std::size_t, double> place(const double* first, std::size_t count, double u) {
-  const double* above = std::upper_bound(first + 1, first + count, u);
+std::pair<std::size_t, double> place(const float* first, std::size_t count, float u) {
+  const float* above = std::upper_bound(first + 1, first + count, u);
   const auto at = static_cast<std::size_t>(above - first) - 1;
-  const double width = first[at + 1] - first[at];
-  return {at, width > 0.0 ? std::min((u - first[at]) / width, 0x1.fffffep-1) : 0.5};
+  const double width = double{first[at + 1]} - double{first[at]};
+  return {at, width > 0.0 ? std::min((double{u} - double{first[at]}) / width, 0x1.fffffep-1) : 0.5};
 }
 
 }  // namespace
@@ -90,39 +97,41 @@ void Environment::addProbe(std::size_t index) {
   const spec::Probe& probe = lights_.probes[index];
   const std::size_t width = probe.image.width, height = probe.image.height;
   Distribution out;
-  out.rows.assign(height + 1, 0.0);
-  out.columns.assign((width + 1) * height, 0.0);
+  out.columns.assign((width + 1) * height, 0.0f);
+  std::vector<double> rows = {0.0}, row(width + 1, 0.0);
   for (std::size_t y = 0; y < height; ++y) {
-    double* row = &out.columns[y * (width + 1)];
     for (std::size_t x = 0; x < width; ++x) {
       const double angle =
           sh::texelSolidAngle(probe.layout, static_cast<int>(width), static_cast<int>(height),
                               static_cast<int>(x), static_cast<int>(y));
       row[x + 1] = row[x] + angle * brightness(probe.image.texels[y * width + x]);
     }
-    const double sum = row[width];
-    out.rows[y + 1] = out.rows[y] + sum;
-    for (std::size_t x = 1; x <= width; ++x) row[x] = sum > 0.0 ? row[x] / sum : 0.0;
+    rows.push_back(rows.back() + row[width]);
+    for (std::size_t x = 1; x <= width; ++x)
+      out.columns[y * (width + 1) + x] = row[width] > 0.0 ? static_cast<float>(row[x] / row[width]) : 0.0f;
   }
-  const double power = out.rows[height];
-  if (power > 0.0)
-    for (double& row : out.rows) row /= power;
+  const double power = rows[height];
+  for (const double value : rows) out.rows.push_back(power > 0.0 ? static_cast<float>(value / power) : 0.0f);
+  // Probabilities as the rounded sums have them, since by those texels are drawn.
+  for (std::size_t i = 0; i < width * height; ++i) {
+    const std::size_t y = i / width, column = y * (width + 1) + i % width;
+    out.texels.emplace_back(probe.image.texels[i], (out.rows[y + 1] - out.rows[y]) *
+                                                       (out.columns[column + 1] - out.columns[column]));
+  }
   distributions_.push_back(std::move(out));
   parts_.push_back({.probability = power, .probe = index});
 }
 
 Environment::Look Environment::lookAtProbe(std::size_t index, const glm::dvec3& dir) const {
   const spec::Probe& probe = lights_.probes[index];
-  const Distribution& d = distributions_[index];
-  const std::size_t width = probe.image.width, height = probe.image.height;
+  const std::uint32_t width = probe.image.width, height = probe.image.height;
   const glm::dvec2 at =
       sh::imageCoordinates(probe.layout, static_cast<int>(width), static_cast<int>(height), dir);
-  const auto x = static_cast<std::size_t>(std::clamp(at.x, 0.0, static_cast<double>(width) - 1.0));
-  const auto y = static_cast<std::size_t>(std::clamp(at.y, 0.0, static_cast<double>(height) - 1.0));
-  const double* row = &d.columns[y * (width + 1)];
-  const double texel = (d.rows[y + 1] - d.rows[y]) * (row[x + 1] - row[x]);
-  const double density = densityAt(probe, at.x, at.y);
-  return {probe.image.texels[y * width + x], density > 0.0 ? static_cast<float>(texel / density) : 0.0f};
+  const auto x = static_cast<std::size_t>(std::clamp(at.x, 0.0, width - 1.0));
+  const auto y = static_cast<std::size_t>(std::clamp(at.y, 0.0, height - 1.0));
+  const glm::vec4& texel = distributions_[index].texels[y * width + x];
+  const double density = densityAt(probe, dir, at);
+  return {glm::vec3(texel), density > 0.0 ? static_cast<float>(double{texel.w} / density) : 0.0f};
 }
 
 bool Environment::inside(const Cone& cone, const glm::vec3& dir) const {
@@ -172,8 +181,8 @@ glm::vec3 Environment::sample(float choice, const glm::vec2& u) const {
   const spec::Probe& probe = lights_.probes[part.probe];
   const Distribution& d = distributions_[part.probe];
   const std::size_t width = probe.image.width;
-  const auto [y, below] = place(d.rows.data(), d.rows.size(), double{u.y});
-  const auto [x, right] = place(&d.columns[y * (width + 1)], width + 1, double{u.x});
+  const auto [y, below] = place(d.rows.data(), d.rows.size(), u.y);
+  const auto [x, right] = place(&d.columns[y * (width + 1)], width + 1, u.x);
   const glm::dvec3 local = directionAt(probe, static_cast<double>(x) + right, static_cast<double>(y) + below);
   return local == glm::dvec3(0.0) ? glm::vec3(0.0f) : glm::normalize(world_from_light_ * glm::vec3(local));
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <glm/mat3x3.hpp>
+#include <glm/vec4.hpp>
 
 #include "runtime/spec/distant_lights.hpp"
 
@@ -37,7 +38,8 @@ class Environment {
  private:
   // Row by row cumulated, so that evenly spread numbers stay evenly spread over the picture.
   struct Distribution {
-    std::vector<double> rows, columns;  // both begin with 0 and end with 1, columns in each row
+    std::vector<float> rows, columns;  // both begin with 0 and end with 1, columns in each row
+    std::vector<glm::vec4> texels;     // radiance, and the probability that the texel is drawn
   };
   struct Part {
     double probability = 0.0;
