@@ -3,6 +3,8 @@
 #include <cstdlib>
 #include <cstring>
 #include <string>
+#include <map>
+#include <cmath>
 
 #include "baker/bake/ship_meshes.hpp"
 #include "baker/compress/cpca.hpp"
@@ -71,6 +73,21 @@ int main(int argc, char** argv) {
       cb += bundle::compressZstd(bundle::encodeCodebook(coded.codebook),L).size();
       ib += bundle::compressZstd(bundle::encodeClusterIds(coded.cluster_of, unsigned(coded.codebook.clusters())),L).size();
       for (auto& p : coded.planes){ wb += bundle::compressZstd(bundle::encodeWeightPlane(p.codes,p.bits),L).size(); axes+=double(p.codes.size()); wide+=p.bits==16; }
+      
+      if (getenv("ENT")) {
+        auto H=[](const std::vector<int>& v){ std::map<int,int> h; for(int x:v) h[x]++; double b=0; for(auto&[x,n]:h) b-=n*std::log2(double(n)/double(v.size())); return b/8; };
+        // order of codes
+        std::vector<unsigned> cnt(coded.codebook.clusters()); for(auto c:coded.cluster_of) cnt[c]++;
+        double raw=0,rawc=0; double d[6]={0},dc[6]={0}; double r2=0;
+        for (auto& p: coded.planes){ std::vector<int> v(p.codes.begin(),p.codes.end()); raw+=H(v);
+          for(int sh=0;sh<4;++sh){ std::vector<int> e; int acc=0; for(size_t i=0;i<v.size();++i){ int pr=acc>>8; e.push_back(v[i]-pr); acc+=((v[i]<<8)-acc)>>sh; } d[sh]+=H(e);
+            size_t o=0; for(auto n:cnt){ if(o>=v.size()) break; std::vector<int> g(e.begin()+long(o),e.begin()+long(o+n)); dc[sh]+=H(g); o+=n; } }
+          { std::vector<int> e; for(size_t i=0;i<v.size();++i){ int a=i>0?v[i-1]:0,b=i>1?v[i-2]:a; e.push_back(v[i]-(3*a+b)/4);} d[4]+=H(e); }
+          { std::vector<int> e; for(size_t i=0;i<v.size();++i){ int a=i>0?v[i-1]:0,b=i>1?v[i-2]:a; e.push_back(v[i]-(a+b)/2);} d[5]+=H(e); }
+          size_t o=0; for(auto n:cnt){ if(o>=v.size()) break; std::vector<int> g(v.begin()+long(o),v.begin()+long(o+n)); rawc+=H(g); o+=n; }
+        }
+        printf("  entropy raw %.2f per cluster %.2f; smooth0 %.2f/%.2f s1 %.2f/%.2f s2 %.2f/%.2f s3 %.2f/%.2f; 3a+b %.2f a+b %.2f\n",raw/double(V),rawc/double(V),d[0]/double(V),dc[0]/double(V),d[1]/double(V),dc[1]/double(V),d[2]/double(V),dc[2]/double(V),d[3]/double(V),dc[3]/double(V),d[4]/double(V),d[5]/double(V)); (void)r2;
+      }
       err=std::max(err,double(coded.error)); K+=coded.codebook.clusters(); planes=std::max(planes,coded.planes.size());
     }
     std::printf("bound %.2f %% clusters %4zu axes %5.2f planes %zu (%zu wide) bytes/vertex %.2f = %.2f book + %.2f ids + %.2f weights  error %.3f %%  %.2f s\n", bound*100,K,axes/double(N),planes,wide,double(cb+ib+wb)/double(V),double(cb)/double(V),double(ib)/double(V),double(wb)/double(V),err*100,secs);

@@ -111,13 +111,13 @@ CodedTransfer codeTransfer(std::span<const float> vectors, std::size_t count,
   const Points points = coordinates(vectors, space.roots, basis);
   if (knob("VERBOSE", 0)) std::printf("rank %d\n", int(rank));
 
-  const auto searched = someSamples(count, kSearchSamples);
+  const auto searched = someSamples(count, size_t(knob("SUB", 8192)));
   Points sub(rank, static_cast<Eigen::Index>(searched.size()));
   for (std::size_t s = 0; s < searched.size(); ++s) sub.col(static_cast<Eigen::Index>(s)) = points.col(searched[s]);
   Clustering best;
   const auto n = static_cast<double>(count);
   if (settings.clusters > 0) {
-    best = refine(sub, seedClusters(sub, settings.clusters), budget, 8, n);
+    best = refine(sub, seedClusters(sub, settings.clusters), budget, int(knob("IT",8)), n);
   } else {
     for (const std::uint32_t clusters : {1u, 4u, 16u, 64u, 128u, 256u}) {
       if (stop.stop_requested()) return {};
@@ -127,7 +127,7 @@ CodedTransfer codeTransfer(std::span<const float> vectors, std::size_t count,
       else if (tried.bytes > 1.1 * best.bytes) break;
     }
   }
-  Clustering all = refine(points, assignClusters(points, best.clusters, best.step, {}), budget, 2, n);
+  Clustering all = refine(points, assignClusters(points, best.clusters, best.step, {}), budget, int(knob("IT2",2)), n);
   if (knob("VERBOSE", 0)) std::printf("  all: %zu clusters: %.2f bytes per sample, step %g\n", all.clusters.size(), all.bytes / n, all.step);
 
   CodedTransfer coded;

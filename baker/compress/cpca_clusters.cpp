@@ -16,7 +16,7 @@ namespace {
 double knob(const char* n, double d) { const char* e = std::getenv(n); return e ? std::atof(e) : d; }
 
 constexpr std::size_t kGrain = 1024;
-constexpr std::size_t kNearest = 8;  // clusters tried per sample, by distance to their means
+const std::size_t kNearest = getenv("NEAR")?size_t(atoi(getenv("NEAR"))):8;  // clusters tried per sample, by distance to their means
 
 // Entropy of a Gaussian weight of this variance in steps.
 double weightBits(double variance, double step) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <cstdlib>
+#include <cstdio>
 #include <numbers>
 
 #include "baker/compress/cpca.hpp"
@@ -94,7 +96,7 @@ WeightedSpace weightedSpace(std::span<const float> vectors, const bundle::Transf
   WeightedSpace space{normalisedRoots(vectors, shape), false};
   space.dark = std::all_of(space.roots.begin(), space.roots.end(), [](double root) { return root == 0.0; });
   if (shape.full_channels > 0)
-    for (std::size_t i = 0; i < shadowedSize(shape); ++i) space.roots[i] *= kShadowedRoot;
+    for (std::size_t i = 0; i < shadowedSize(shape); ++i) space.roots[i] *= (getenv("ALPHA")?atof(getenv("ALPHA")):kShadowedRoot);
   return space;
 }
 
@@ -112,6 +114,7 @@ double radianceError(std::span<const float> truth, std::span<const float> coded,
   for (const Block& block : blocksOf(shape)) {
     double sum = 0.0;
     for (std::size_t i = block.first; i < block.last; ++i) sum += off[i];
+    if (getenv("VERBOSE")) printf("   block %.4f %%\n", 100*std::sqrt(sum));
     worst = std::max(worst, std::sqrt(sum));
   }
   return worst;

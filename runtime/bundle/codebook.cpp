@@ -288,7 +288,9 @@ std::vector<std::byte> encodeWeightPlane(std::span<const std::uint32_t> codes, s
   std::uint32_t previous = 0;
   for (const std::uint32_t code : codes) {
     assert(code < (1u << bits));
-    differences.push_back(static_cast<std::uint16_t>((code - previous) & ((1u << bits) - 1)));
+    const auto difference = static_cast<std::int32_t>((code - previous) << (32 - bits)) >> (32 - bits);
+    differences.push_back(
+        static_cast<std::uint16_t>((static_cast<std::uint32_t>(difference) << 1 ^ static_cast<std::uint32_t>(difference >> 31)) & ((1u << bits) - 1)));
     previous = code;
   }
   std::vector<std::byte> out;
@@ -305,7 +307,8 @@ Result<std::vector<std::uint32_t>> decodeWeightPlane(std::span<const std::byte> 
   std::vector<std::uint32_t> codes(count);
   std::uint32_t code = 0;
   for (std::size_t i = 0; i < codes.size(); ++i) {
-    code += bits == 16 ? splitWord(bytes, count, i) : std::to_integer<std::uint32_t>(bytes[i]);
+    const std::uint32_t word = bits == 16 ? splitWord(bytes, count, i) : std::to_integer<std::uint32_t>(bytes[i]);
+    code += word >> 1 ^ (~(word & 1) + 1);
     code &= (1u << bits) - 1;
     codes[i] = code;
   }

@@ -186,7 +186,18 @@ std::vector<float> decodeTransfer(const DiffuseTransfer& transfer, std::uint32_t
 
 std::vector<std::byte> compressZstd(std::span<const std::byte> bytes, int level) {
   std::vector<std::byte> out(ZSTD_compressBound(bytes.size()));
-  const std::size_t size = ZSTD_compress(out.data(), out.size(), bytes.data(), bytes.size(), level);
+  std::size_t size = ZSTD_compress(out.data(), out.size(), bytes.data(), bytes.size(), level);
+  if (getenv("LIT")) {
+    ZSTD_CCtx* c = ZSTD_createCCtx();
+    ZSTD_CCtx_setParameter(c, ZSTD_c_compressionLevel, 1);
+    ZSTD_CCtx_setParameter(c, ZSTD_c_strategy, ZSTD_fast);
+    ZSTD_CCtx_setParameter(c, ZSTD_c_minMatch, 7);
+    ZSTD_CCtx_setParameter(c, ZSTD_c_targetLength, atoi(getenv("LIT")));
+    std::vector<std::byte> out2(out.size());
+    const std::size_t size2 = ZSTD_compress2(c, out2.data(), out2.size(), bytes.data(), bytes.size());
+    ZSTD_freeCCtx(c);
+    if (size2 < size) { size = size2; out.swap(out2); }
+  }
   assert(!ZSTD_isError(size) && "the destination is as large as ZSTD_compressBound asks");
   out.resize(size);
   return out;
