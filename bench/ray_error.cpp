@@ -8,7 +8,7 @@
 #include <string>
 
 #include "baker/bake/ship_meshes.hpp"
-#include "baker/compress/pca.hpp"
+#include "baker/compress/cpca.hpp"
 #include "baker/effects/diffuse/direct.hpp"
 #include "baker/import/gltf.hpp"
 #include "baker/transport/ray_scene.hpp"
@@ -33,6 +33,8 @@ int main(int argc, char** argv) {
   const SampleSet samples = buildSamples(geometry);
   const auto rays = RayScene::build(geometry, *scene, *loadAlphaMaps(*scene));
   constexpr int kOrder = 5;
+  lambent::bundle::TransferShape shape;
+  shape.order = kOrder;
   const auto bakeWith = [&](std::size_t count) {
     return *bakeDirect(geometry, samples, *rays, {kOrder, count}, progress, {});
   };
@@ -44,7 +46,7 @@ int main(int argc, char** argv) {
     const TransferField field = bakeWith(count);
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     std::printf("%6zu  %5.2f %%  %7.2f\n", count,
-                100.0 * radianceError(truth.vectors, field.vectors, kOrder, 1), seconds);
+                100.0 * radianceError(truth.vectors, field.vectors, shape), seconds);
   }
   return 0;
 }

@@ -47,6 +47,11 @@ struct Codebook {
   std::size_t clusters() const { return axis_counts.size(); }
 };
 
+// Bytes of payload "codebook" with vectors as binary16, and of its numbers as they are held in memory.
+inline std::uint64_t codebookBytes(const TransferShape& shape, std::uint32_t clusters, std::uint32_t axes) {
+  return 2ull * clusters + 8ull * axes + 2ull * (std::uint64_t{clusters} + axes) * shape.size();
+}
+
 // A codebook as the baker makes it: vectors are few, small integers in coordinates of one basis that the
 // clusters of the cell share, so that each costs a few bits per coordinate after entropy coding.
 //   basis vector r, value i = value_scales[i] * basis_scales[r] * basis[r * size + i]
@@ -85,9 +90,10 @@ std::vector<std::uint32_t> positionsOf(std::span<const std::uint32_t> cluster_of
 // How many positions each plane concerns, one entry per plane: the samples in clusters of more axes.
 std::vector<std::uint32_t> planeCounts(const Codebook& codebook, std::span<const std::uint32_t> cluster_of);
 
-// Payload "weightPlane": codes of plane j in the order of positionsOf, `bits` (8 or 16) each, little endian,
-// as the differences of each code from the one before it in the same plane (modulo 2^bits): neighbours are
-// alike. 16-bit planes have all low bytes first, then all high bytes.
+// Payload "weightPlane": codes of plane j in the order of positionsOf, `bits` (8 or 16) each, as the
+// difference of each code from the one before it in the same plane (neighbours are alike): modulo 2^bits to
+// the range around 0, then 0, -1, 1, -2, ... as 0, 1, 2, 3, ..., little endian. 16-bit planes have all low
+// bytes first, then all high bytes.
 std::vector<std::byte> encodeWeightPlane(std::span<const std::uint32_t> codes, std::uint32_t bits);
 Result<std::vector<std::uint32_t>> decodeWeightPlane(std::span<const std::byte> bytes, std::uint32_t bits,
                                                      std::uint32_t count, const std::string& subject);

@@ -100,24 +100,19 @@ TEST_F(Bake, StoresTransferThatDecodesToTheScene) {
   const bundle::Description& d = reader->description();
   const bundle::Cell& cell = d.groups[0].cells.at(0);
   const bundle::DiffuseTransfer& transfer = cell.diffuse.at(0);
-  const auto basis =
-      bundle::decodeBasis(*reader->readPayload(transfer.basis), (1 + transfer.planes.size()) * 25, "basis");
-  ASSERT_TRUE(basis);
+  const auto found = reader->readCodebook(0, 0, 0);
+  ASSERT_TRUE(found) << found.error().line();
   std::vector<std::vector<std::uint32_t>> codes;
-  for (const bundle::WeightPlane& plane : transfer.planes)
-    codes.push_back(
-        *bundle::decodePlane(*reader->readPayload(plane.payload), plane.bits, cell.sample_count, "plane"));
-  const auto vectors = bundle::decodeTransfer(transfer, cell.sample_count, *basis, codes);
+  for (std::uint32_t j = 0; j < transfer.planes.size(); ++j) codes.push_back(*reader->readPlane(0, 0, 0, j));
+  const auto vectors = bundle::decodeTransfer(transfer.shape, found->codebook, found->cluster_of, codes);
 
   const auto mesh = reader->readMesh(d.draws[0].mesh, 0);
   ASSERT_TRUE(mesh) << mesh.error().line();
-  const auto rows =
-      bundle::decodeRows(*reader->readPayload(d.draws[0].rows),
-                         static_cast<std::uint32_t>(mesh->positions.size()), cell.sample_count, "rows");
+  const auto rows = reader->readRows(0);
   ASSERT_TRUE(rows) << rows.error().line();
   const float to_uniform = std::sqrt(4.0f * 3.14159265f);
   for (std::size_t v = 0; v < mesh->positions.size(); ++v) {
-    const float radiance = to_uniform * vectors[rows->samples[v] * 25];
+    const float radiance = to_uniform * vectors[rows->samples[v] * transfer.shape.size()];
     EXPECT_LE(radiance, 1.05f);  // coded to 1 % RMS
     // The floor's far corner is open; beside the box it is not.
     if (glm::distance(mesh->positions[v], glm::vec3(2, 0, 2)) < 0.1f) {

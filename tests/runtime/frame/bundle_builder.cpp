@@ -205,6 +205,7 @@ bundle::MeshData quadMesh() {
           .texcoords0 = {{0, 1}, {1, 1}, {1, 0}, {0, 0}},
           .texcoords1 = {},
           .colors = {},
+          .tangents = {},
           .indices = {0, 1, 2, 0, 2, 3}};
 }
 
