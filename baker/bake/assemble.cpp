@@ -11,7 +11,7 @@ namespace lambent::baker {
 namespace {
 
 constexpr int kZstdLevel = 9;
-constexpr std::uint32_t kRowsPriority = 1, kBasisPriority = 2, kFirstPlanePriority = 3;
+constexpr std::uint32_t kRowsPriority = 1, kCodebookPriority = 2, kFirstPlanePriority = 3;
 
 class Assembler {
  public:
@@ -25,6 +25,8 @@ class Assembler {
     description_.materials = scene_.materials;
     description_.textures = scene_.textures;
     description_.cameras = scene_.cameras;
+    description_.lights = scene_.lights;
+    description_.animations = scene_.animations;
   }
 
   void addMeshes(ShippedMeshes& meshes) {
@@ -67,6 +69,11 @@ class Assembler {
       group.bounds_min = origin + baked[g].geometry.bounds_min;
       group.bounds_max = origin + baked[g].geometry.bounds_max;
       group.sample_count = static_cast<std::uint32_t>(baked[g].samples.size());
+      for (const PlannedLight& light : baked[g].lights)
+        group.lights.push_back({light.kind == PlannedLight::Kind::Material
+                                    ? bundle::GroupLight::Kind::Material
+                                    : bundle::GroupLight::Kind::Node,
+                                light.index, light.color});
       for (const SampleCell& cell : baked[g].samples.cells)
         group.cells.push_back(
             {cell.first, cell.count, origin + cell.bounds_min, origin + cell.bounds_max, {}});
@@ -84,30 +91,23 @@ class Assembler {
     }
   }
 
+  // Codebooks of all cells, then plane after plane: what is wanted first lies first.
   void addTransfer(const std::vector<BakedGroup>& baked) {
     std::size_t most_planes = 0;
-    for (std::size_t g = 0; g < baked.size(); ++g)
-      for (std::size_t c = 0; c < baked[g].cells.size(); ++c) {
-        const CodedTransfer& coded = baked[g].cells[c];
-        bundle::DiffuseTransfer transfer;
-        transfer.order = static_cast<std::uint32_t>(options_.order);
-        transfer.basis = addTransferPayload(bundle::PayloadType::TransferBasis, coded.basis, kBasisPriority);
-        transfer.error_bound = options_.effectiveErrorBound();
-        transfer.error = coded.error;
-        description_.groups[g].cells[c].diffuse.push_back(std::move(transfer));
-        most_planes = std::max(most_planes, coded.planes.size());
-      }
-    for (std::size_t j = 0; j < most_planes; ++j)
+    const auto forAll = [&](const auto& visit) {
       for (std::size_t g = 0; g < baked.size(); ++g)
-        for (std::size_t c = 0; c < baked[g].cells.size(); ++c) {
-          if (j >= baked[g].cells[c].planes.size()) continue;
-          const CodedPlane& coded = baked[g].cells[c].planes[j];
-          bundle::WeightPlane plane = coded.plane;
-          plane.payload = addTransferPayload(bundle::PayloadType::WeightPlane,
-                                             bundle::encodePlane(coded.codes, plane.bits),
-                                             kFirstPlanePriority + static_cast<std::uint32_t>(j));
-          description_.groups[g].cells[c].diffuse.front().planes.push_back(plane);
-        }
+        for (std::size_t c = 0; c < baked[g].cells.size(); ++c)
+          for (std::size_t t = 0; t < baked[g].cells[c].size(); ++t)
+            visit(baked[g].cells[c][t], description_.groups[g].cells[c].diffuse, t);
+    };
+    forAll([&](const CodedTransfer& coded, auto& stored, std::size_t) {
+      stored.push_back(addCodebook(coded));
+      most_planes = std::max(most_planes, coded.planes.size());
+    });
+    for (std::size_t j = 0; j < most_planes; ++j)
+      forAll([&](const CodedTransfer& coded, auto& stored, std::size_t t) {
+        if (j < coded.planes.size()) stored[t].planes.push_back(addPlane(coded.planes[j], j));
+      });
   }
 
   AssembledBundle take() { return {std::move(description_), std::move(blobs_)}; }
@@ -136,6 +136,34 @@ class Assembler {
     return index;
   }
 
+  // All of a cell's transfer but the planes, which come after the codebooks of all cells.
+  bundle::DiffuseTransfer addCodebook(const CodedTransfer& coded) {
+    bundle::DiffuseTransfer transfer;
+    transfer.shape = coded.shape;
+    transfer.clusters = static_cast<std::uint32_t>(coded.codebook.clusters());
+    transfer.axes = static_cast<std::uint32_t>(coded.codebook.axes.size());
+    transfer.codebook = addTransferPayload(bundle::PayloadType::Codebook,
+                                           bundle::encodeCodebook(coded.codebook), kCodebookPriority);
+    if (transfer.clusters > 1)
+      transfer.cluster_ids = static_cast<std::int32_t>(addTransferPayload(
+          bundle::PayloadType::ClusterIds, bundle::encodeClusterIds(coded.cluster_of, transfer.clusters),
+          kCodebookPriority));
+    transfer.error_bound = options_.effectiveErrorBound();
+    transfer.error = coded.error;
+    return transfer;
+  }
+
+  bundle::WeightPlane addPlane(const CodedPlane& coded, std::size_t j) {
+    bundle::WeightPlane plane{.payload = 0,
+                              .bits = coded.bits,
+                              .count = static_cast<std::uint32_t>(coded.codes.size()),
+                              .variance = coded.variance};
+    plane.payload = addTransferPayload(bundle::PayloadType::WeightPlane,
+                                       bundle::encodeWeightPlane(coded.codes, coded.bits),
+                                       kFirstPlanePriority + static_cast<std::uint32_t>(j));
+    return plane;
+  }
+
   void addDraw(const PlannedDraw& planned, std::uint32_t group, const DrawGeometry& geometry,
                const SampleSet& samples) {
     bundle::VertexRows rows;
@@ -145,7 +173,13 @@ class Assembler {
       rows.weights.push_back(1.0f);
     }
     rows.offsets.push_back(geometry.vertex_count);
-    bundle::Draw draw{planned.node, planned.mesh, planned.primitive, group, planned.back, 0};
+    bundle::Draw draw{planned.node,
+                      planned.mesh,
+                      planned.primitive,
+                      group,
+                      planned.back,
+                      0,
+                      geometry.normal_mapped ? 9u : 1u};
     draw.rows = addTransferPayload(bundle::PayloadType::VertexRows, bundle::encodeRows(rows), kRowsPriority);
     description_.draws.push_back(draw);
   }

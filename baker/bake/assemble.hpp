@@ -1,24 +1,17 @@
 // Puts a bundle together from what the bake found: views in the order in which a runtime wants them (meshes
-// and rows, images, then per cell means and axes, then weight planes by falling variance over all cells).
+// and rows, images, then per cell codebook and cluster ids, then weight planes by falling variance over all
+// cells).
 #pragma once
 
 #include <vector>
 
 #include "baker/bake/bake.hpp"
+#include "baker/bake/bake_group.hpp"
 #include "baker/bake/ship_meshes.hpp"
-#include "baker/compress/pca.hpp"
-#include "baker/transport/group_geometry.hpp"
-#include "baker/transport/samples.hpp"
 #include "runtime/bundle/description.hpp"
 #include "runtime/bundle/writer.hpp"
 
 namespace lambent::baker {
-
-struct BakedGroup {
-  GroupGeometry geometry;  // draws and bounds are used here
-  SampleSet samples;
-  std::vector<CodedTransfer> cells;  // direct transfer, one per sample cell
-};
 
 struct AssembledBundle {
   bundle::Description description;

@@ -8,10 +8,10 @@
 #include <fmt/format.h>
 
 #include "baker/bake/assemble.hpp"
+#include "baker/bake/bake_group.hpp"
 #include "baker/bake/ship_meshes.hpp"
-#include "baker/effects/diffuse/direct.hpp"
+#include "baker/effects/diffuse/bounces.hpp"
 #include "baker/effects/effect_list.hpp"
-#include "baker/transport/ray_scene.hpp"
 #include "baker/work/parallel.hpp"
 #include "runtime/base/atomic_file.hpp"
 
@@ -30,6 +30,9 @@ Result<void> checkOptions(const BakeOptions& options) {
   if (!(options.error_bound >= 0.0f && options.error_bound < 1.0f))
     return fail("--error", fmt::format("{} is not between 0 and 1", options.error_bound),
                 "0.003 means 0.3 %");
+  if (options.bounces > kMostBounces)
+    return fail("--bounces", fmt::format("{} is more than {}", options.bounces, kMostBounces),
+                "leave it out to bake as many as the error bound asks for");
   if (!(options.max_edge_m >= 0.0f && std::isfinite(options.max_edge_m)))
     return fail("--max-edge", fmt::format("{} is not a length", options.max_edge_m),
                 "give a positive number in the scene's units, or leave it out");
@@ -61,49 +64,6 @@ Result<std::vector<EffectEntry>> effectsOf(const BakeOptions& options) {
 
 tl::unexpected<Error> stopped(const Scene& scene) {
   return fail(scene.source.string(), "stopped; nothing was written");
-}
-
-// Samples, rays and codes of one group.
-Result<BakedGroup> bakeGroup(const Scene& scene, const RigidGroup& group, const ShippedMeshes& meshes,
-                             const std::vector<std::shared_ptr<const AlphaMap>>& alpha_maps,
-                             const BakeOptions& options, Progress& progress, const std::stop_token& stop,
-                             BakeReport& report) {
-  BakedGroup baked;
-  progress.begin("samples");
-  baked.geometry = buildGroupGeometry(group, scene, meshes.decoded);
-  baked.samples = buildSamples(baked.geometry);
-  report.vertices += baked.geometry.positions.size();
-  report.triangles += baked.geometry.triangles.size();
-  report.samples += baked.samples.size();
-
-  progress.begin("hierarchy");
-  auto rays = RayScene::build(baked.geometry, scene, alpha_maps);
-  if (!rays) return failAgain(rays.error());
-
-  progress.begin("direct light", baked.samples.size(), "samples");
-  const auto field = bakeDirect(baked.geometry, baked.samples, *rays,
-                                {options.order, options.effectiveRays()}, progress, stop);
-  if (!field) return stopped(scene);
-  report.ray_seconds += progress.now().seconds;
-  report.rays += field->rays;
-  report.filled_samples += field->filled_samples;
-
-  progress.begin("coding", baked.samples.cells.size(), "cells");
-  baked.cells.resize(baked.samples.cells.size());
-  const bool finished = parallelRanges(baked.cells.size(), 1, stop, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t c = begin; c < end; ++c) {
-      const SampleCell& cell = baked.samples.cells[c];
-      const auto vectors = std::span(field->vectors)
-                               .subspan(cell.first * field->vectorSize(), cell.count * field->vectorSize());
-      baked.cells[c] =
-          codeTransfer(vectors, cell.count, field->order, field->channels, options.effectiveErrorBound());
-      progress.add(1);
-    }
-  });
-  if (!finished) return stopped(scene);
-  for (const CodedTransfer& cell : baked.cells)
-    report.worst_error = std::max(report.worst_error, double{cell.error});
-  return baked;
 }
 
 Result<BakeReport> bakeOnTheseThreads(const Scene& scene, const BakeOptions& options,

@@ -19,7 +19,7 @@ struct InfoArguments {
 };
 
 struct Sizes {
-  std::uint64_t mesh = 0, image = 0, rows = 0, basis = 0, planes = 0;
+  std::uint64_t mesh = 0, image = 0, rows = 0, codebooks = 0, ids = 0, planes = 0;
   std::uint64_t vertices = 0, triangles = 0;
 };
 
@@ -31,7 +31,8 @@ Sizes sizesOf(const bundle::Description& d) {
   for (const bundle::Payload& payload : d.payloads) {
     const std::uint64_t length = d.views[payload.view].length;
     if (payload.type == bundle::PayloadType::VertexRows) sizes.rows += length;
-    if (payload.type == bundle::PayloadType::TransferBasis) sizes.basis += length;
+    if (payload.type == bundle::PayloadType::Codebook) sizes.codebooks += length;
+    if (payload.type == bundle::PayloadType::ClusterIds) sizes.ids += length;
     if (payload.type == bundle::PayloadType::WeightPlane) sizes.planes += length;
   }
   for (const bundle::Draw& draw : d.draws) {
@@ -51,9 +52,13 @@ void printJson(const bundle::Reader& reader, const Sizes& sizes) {
       for (const bundle::DiffuseTransfer& transfer : cell.diffuse)
         cells.push_back({{"samples", cell.sample_count},
                          {"effect", "diffuse"},
-                         {"part", "direct"},
-                         {"order", transfer.order},
-                         {"channels", transfer.channels},
+                         {"light", transfer.fromEnvironment() ? "environment" : "lamps"},
+                         {"order", transfer.shape.order},
+                         {"lightColumns", transfer.shape.light_columns},
+                         {"shadowedChannels", transfer.shape.shadowed_channels},
+                         {"fullChannels", transfer.shape.full_channels},
+                         {"normalMapped", transfer.shape.outputs == 9},
+                         {"clusters", transfer.clusters},
                          {"planes", transfer.planes.size()},
                          {"errorBound", transfer.error_bound},
                          {"error", transfer.error}});
@@ -72,7 +77,8 @@ void printJson(const bundle::Reader& reader, const Sizes& sizes) {
       {"meshBytes", sizes.mesh},
       {"imageBytes", sizes.image},
       {"rowBytes", sizes.rows},
-      {"basisBytes", sizes.basis},
+      {"codebookBytes", sizes.codebooks},
+      {"clusterIdBytes", sizes.ids},
       {"planeBytes", sizes.planes},
       {"groups", groups}};
   fmt::print("{}\n", json.dump(2));
@@ -92,18 +98,20 @@ void printText(const bundle::Reader& reader, const Sizes& sizes) {
   line("meshes", sizes.mesh);
   line("images", sizes.image);
   line("vertex rows", sizes.rows);
-  line("bases", sizes.basis);
+  line("codebooks", sizes.codebooks);
+  line("cluster ids", sizes.ids);
   line("weight planes", sizes.planes);
   line("whole file", reader.fileBytes());
   for (const bundle::Group& group : d.groups) {
     fmt::print("group \"{}\": {} samples in {} cells\n", group.name, group.sample_count, group.cells.size());
     for (const bundle::Cell& cell : group.cells)
       for (const bundle::DiffuseTransfer& transfer : cell.diffuse)
-        fmt::print(
-            "  diffuse direct, order {}, {} channel{}: {} samples, {} planes, error {:.3f} % (bound {:.3f} "
-            "%)\n",
-            transfer.order, transfer.channels, transfer.channels == 1 ? "" : "s", cell.sample_count,
-            transfer.planes.size(), 100.0 * double{transfer.error}, 100.0 * double{transfer.error_bound});
+        fmt::print("  diffuse {}: {}, {} samples, {} clusters, {} planes, error {:.3f} % (bound {:.3f} %)\n",
+                   transfer.fromEnvironment() ? fmt::format("order {}", transfer.shape.order)
+                                              : fmt::format("{} lamps", transfer.shape.light_columns),
+                   transfer.shape.full_channels > 0 ? "shadowed and full" : "shadowed", cell.sample_count,
+                   transfer.clusters, transfer.planes.size(), 100.0 * double{transfer.error},
+                   100.0 * double{transfer.error_bound});
   }
 }
 

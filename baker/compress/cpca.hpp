@@ -2,12 +2,11 @@
 // with quantized weights, so that the relative RMS error of shaded radiance over real lights stays under a
 // bound:
 //   sqrt( sum_s sum_i W_i (t_s,i - t'_s,i)² / sum_s sum_i W_i t_s,i² ) <= bound
-// over the values that are shown: those of the full block where there is one, else of the shadowed block; the
-// shadowed block by itself keeps the same bound. W_i: the band power of light (light_weights.hpp) for columns
-// of the environment; 1 / (energy of the column in the cell) for lights of the group, so that each counts
-// alike; for outputs of normal maps times (A_l/pi)² of the output's band. The number of clusters and of axes
-// in each is what codes to the fewest bytes (codebook, ids and weights after entropy coding). Planes come by
-// falling variance: any prefix renders. Deterministic, for any number of threads.
+// over each block by itself: full light, which is shown, and shadowed light. W_i: the band power of light
+// (light_weights.hpp) for columns of the environment; for lights of the group what makes each count as much
+// as the whole environment; for outputs of normal maps times (A_l/pi)² of the output's band. The number of
+// clusters and of axes in each is what codes to the fewest bytes (codebook, ids and weights after entropy
+// coding). Planes come by falling variance: any prefix renders. Deterministic, for any number of threads.
 #pragma once
 
 #include <cstddef>
@@ -28,7 +27,7 @@ struct CodedPlane {
 
 struct CodedTransfer {
   bundle::TransferShape shape;
-  bundle::Codebook codebook;
+  bundle::SharedCodebook codebook;
   std::vector<std::uint32_t> cluster_of;  // per sample
   std::vector<CodedPlane> planes;         // by falling variance
   float error = 0.0f;                     // measured on the decoded vectors
@@ -45,7 +44,7 @@ CodedTransfer codeTransfer(std::span<const float> vectors, std::size_t count,
                            const bundle::TransferShape& shape, const CodingSettings& settings,
                            const std::stop_token& stop = {});
 
-// The error that codeTransfer bounds.
+// The error that codeTransfer bounds: of the worse of the two blocks.
 double radianceError(std::span<const float> truth, std::span<const float> coded,
                      const bundle::TransferShape& shape);
 

@@ -38,9 +38,9 @@ std::pair<double, double> concentricDisc(double u, double v) {
   return {radius * std::cos(angle), radius * std::sin(angle)};
 }
 
-}  // namespace
-
-DirectionTable cosineTable(std::size_t rays) {
+// Calls add(x, y) with points of the disc, equal areas, along a Hilbert curve.
+template <typename Add>
+void forDiscPoints(std::size_t rays, const Add& add) {
   const std::size_t count = std::max<std::size_t>(1, (rays + kPacketWidth - 1) / kPacketWidth) * kPacketWidth;
   struct Point {
     std::uint32_t along;
@@ -56,13 +56,34 @@ DirectionTable cosineTable(std::size_t rays) {
   std::stable_sort(points.begin(), points.end(),
                    [](const Point& a, const Point& b) { return a.along < b.along; });
 
-  DirectionTable table;
   for (const Point& point : points) {
     const auto [x, y] = concentricDisc(point.u, point.v);
-    table.x.push_back(static_cast<float>(x));
-    table.y.push_back(static_cast<float>(y));
-    table.z.push_back(static_cast<float>(std::sqrt(std::max(0.0, 1.0 - x * x - y * y))));
+    add(x, y);
   }
+}
+
+void append(DirectionTable& table, double x, double y, double z) {
+  table.x.push_back(static_cast<float>(x));
+  table.y.push_back(static_cast<float>(y));
+  table.z.push_back(static_cast<float>(z));
+}
+
+}  // namespace
+
+DirectionTable cosineTable(std::size_t rays) {
+  DirectionTable table;
+  forDiscPoints(
+      rays, [&](double x, double y) { append(table, x, y, std::sqrt(std::max(0.0, 1.0 - x * x - y * y))); });
+  return table;
+}
+
+DirectionTable uniformTable(std::size_t rays) {
+  DirectionTable table;
+  // Lambert's equal-area map from the disc: z = 1 - r².
+  forDiscPoints(rays, [&](double x, double y) {
+    const double r2 = x * x + y * y, stretch = std::sqrt(std::max(0.0, 2.0 - r2));
+    append(table, stretch * x, stretch * y, std::max(0.0, 1.0 - r2));
+  });
   return table;
 }
 

@@ -15,6 +15,18 @@ glm::vec3 unitOr(glm::vec3 v, glm::vec3 fallback) {
   return length > 0.0f ? v / length : fallback;
 }
 
+glm::vec2 texcoordOf(const gltf::TextureRef& ref, const bundle::MeshData& mesh, std::size_t vertex) {
+  const auto& set = ref.texcoord == 1 ? mesh.texcoords1 : mesh.texcoords0;
+  return ref.texture < 0 || set.empty() ? glm::vec2(0.0f) : ref.apply(set[vertex]);
+}
+
+// A normal map without coordinates to look it up by changes nothing.
+bool isNormalMapped(const gltf::Material& material, const bundle::MeshData& mesh) {
+  const gltf::TextureRef& map = material.normal_texture;
+  return !material.unlit && map.texture >= 0 &&
+         !(map.texcoord == 1 ? mesh.texcoords1 : mesh.texcoords0).empty();
+}
+
 void append(const PlannedDraw& draw, const bundle::MeshData& mesh, const gltf::Material* material,
             std::int32_t material_index, GroupGeometry& geometry) {
   DrawGeometry out{.first_vertex = static_cast<std::uint32_t>(geometry.positions.size()),
@@ -22,20 +34,22 @@ void append(const PlannedDraw& draw, const bundle::MeshData& mesh, const gltf::M
                    .first_triangle = static_cast<std::uint32_t>(geometry.triangles.size()),
                    .triangle_count = 0,
                    .material = material_index,
-                   .back = draw.back};
+                   .back = draw.back,
+                   .normal_mapped = material && isNormalMapped(*material, mesh)};
   const glm::dmat4 group_from_mesh(draw.group_from_mesh);
   const glm::mat3 linear(draw.group_from_mesh);
   const glm::mat3 normal_matrix = glm::inverseTranspose(linear);
   const float side = draw.back ? -1.0f : 1.0f;
-  const bool use_second_set = material && material->base_color_texture.texcoord == 1;
-  const auto& texcoords = use_second_set ? mesh.texcoords1 : mesh.texcoords0;
+  const gltf::TextureRef base = material ? material->base_color_texture : gltf::TextureRef{};
+  const gltf::TextureRef emissive = material ? material->emissive_texture : gltf::TextureRef{};
   for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
     const glm::dvec3 placed = group_from_mesh * glm::dvec4(mesh.positions[v], 1.0);
     // Adding 0 turns -0 into 0: samples are welded by their bits.
     geometry.positions.push_back(glm::vec3(placed - glm::dvec3(geometry.origin)) + 0.0f);
     geometry.normals.push_back(side * unitOr(normal_matrix * mesh.normals[v], {0.0f, 1.0f, 0.0f}) + 0.0f);
-    geometry.texcoords.push_back(texcoords.empty() ? glm::vec2(0.0f) : texcoords[v]);
-    geometry.alphas.push_back(mesh.colors.empty() ? 1.0f : mesh.colors[v].w);
+    geometry.texcoords.push_back(texcoordOf(base, mesh, v));
+    geometry.emissive_texcoords.push_back(texcoordOf(emissive, mesh, v));
+    geometry.colors.push_back(mesh.colors.empty() ? glm::vec4(1.0f) : mesh.colors[v]);
   }
   const bool reversed = (glm::determinant(linear) < 0.0f) != draw.back;
   for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {

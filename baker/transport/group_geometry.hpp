@@ -21,17 +21,20 @@ struct DrawGeometry {
   std::uint32_t first_vertex = 0, vertex_count = 0;
   std::uint32_t first_triangle = 0, triangle_count = 0;
   std::int32_t material = -1;
-  bool back = false;
+  bool back = false;           // of a double-sided material; the draw before it is its front
+  bool normal_mapped = false;  // its samples hold transferred light for any normal
 };
 
 struct GroupGeometry {
-  glm::vec3 origin{0.0f};             // group frame, metres: 0 unless the group stands far away
-  std::vector<glm::vec3> positions;   // from `origin`, along the group frame's axes
-  std::vector<glm::vec3> normals;     // unit; of back draws negated
-  std::vector<glm::vec2> texcoords;   // of the material's base-colour texture; zero where it has none
-  std::vector<float> alphas;          // of the vertex colours, 1 where there are none
-  std::vector<glm::uvec3> triangles;  // into positions; of back draws wound the other way
-  std::vector<DrawGeometry> draws;    // in the order of RigidGroup::draws
+  glm::vec3 origin{0.0f};            // group frame, metres: 0 unless the group stands far away
+  std::vector<glm::vec3> positions;  // from `origin`, along the group frame's axes
+  std::vector<glm::vec3> normals;    // unit; of back draws negated
+  std::vector<glm::vec2>
+      texcoords;  // of the material's base-colour texture, transformed; 0 where it has none
+  std::vector<glm::vec2> emissive_texcoords;     // of its emissive texture
+  std::vector<glm::vec4> colors;                 // of the vertices, linear; 1 where there are none
+  std::vector<glm::uvec3> triangles;             // into positions; of back draws corners 1 and 2 are swapped
+  std::vector<DrawGeometry> draws;               // in the order of RigidGroup::draws
   glm::vec3 bounds_min{0.0f}, bounds_max{0.0f};  // from `origin`
 };
 

@@ -44,6 +44,17 @@ inline bool isAbove(glm::vec3 direction, const SampleOrigin& origin) {
   return glm::dot(direction, origin.geometric_normal) > 0.0f;
 }
 
+// The origin that a ray starts from. Below the horizon of the one that it is dealt to it takes the next that
+// it is above, so that a convex body loses nothing of its smooth normals' hemispheres; if there is none, the
+// one dealt comes back.
+inline std::size_t startOf(std::size_t ray, glm::vec3 direction, std::span<const SampleOrigin> origins,
+                           const OriginDealer& dealer) {
+  std::size_t origin = dealer.pick(ray);
+  for (std::size_t tries = 1; tries < origins.size() && !isAbove(direction, origins[origin]); ++tries)
+    origin = origin + 1 == origins.size() ? 0 : origin + 1;
+  return origin;
+}
+
 // Which rays of a packet are to be traced (-1, else 0) and which origin each starts from.
 struct PacketLanes {
   alignas(64) std::array<int, kPacketWidth> valid;
@@ -69,11 +80,7 @@ void fillPacket(std::size_t p, std::span<const SampleOrigin> origins, const Orig
   }
   for (std::size_t k = 0; k < kPacketWidth; ++k) {
     const glm::vec3 direction(ray.dir_x[k], ray.dir_y[k], ray.dir_z[k]);
-    std::size_t origin = dealer.pick(first + k);
-    // Below this face's horizon the ray starts from the next face that it is above, so that a convex body
-    // loses nothing of its smooth normals' hemispheres.
-    for (std::size_t tries = 1; tries < origins.size() && !isAbove(direction, origins[origin]); ++tries)
-      origin = origin + 1 == origins.size() ? 0 : origin + 1;
+    const std::size_t origin = startOf(first + k, direction, origins, dealer);
     const SampleOrigin& start = origins[origin];
     ray.org_x[k] = start.position.x;
     ray.org_y[k] = start.position.y;

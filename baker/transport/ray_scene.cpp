@@ -1,8 +1,12 @@
 #include "baker/transport/ray_scene.hpp"
 
+#include <algorithm>
+#include <array>
 #include <bit>
 #include <cassert>
 #include <cstring>
+#include <limits>
+#include <utility>
 
 #include <embree3/rtcore.h>
 
@@ -48,13 +52,13 @@ struct MaskedDraw {
   std::shared_ptr<const AlphaMap> alpha;
   std::vector<glm::uvec3> triangles;
   std::vector<glm::vec2> texcoords;
-  std::vector<float> alphas;
+  std::vector<glm::vec4> colors;
 
   bool blocks(std::uint32_t triangle, float u, float v) const {
     const glm::uvec3 t = triangles[triangle];
     const float w = 1.0f - u - v;
     return alpha->blocks(w * texcoords[t.x] + u * texcoords[t.y] + v * texcoords[t.z],
-                         w * alphas[t.x] + u * alphas[t.y] + v * alphas[t.z]);
+                         w * colors[t.x].w + u * colors[t.y].w + v * colors[t.z].w);
   }
 };
 
@@ -72,13 +76,33 @@ struct Packet {
   PacketLanes lanes;
 };
 
+// Bit k is set where lane k is to be traced.
+std::uint32_t validMask(const PacketLanes& lanes) {
+  std::uint32_t mask = 0;
+  for (std::size_t k = 0; k < kPacketWidth; ++k) mask |= lanes.valid[k] ? 1u << k : 0u;
+  return mask;
+}
+
+void forgetHits(RTCRayHit16& rays) {
+  for (std::size_t k = 0; k < kPacketWidth; ++k) {
+    rays.ray.tfar[k] = std::numeric_limits<float>::infinity();
+    rays.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
+  }
+}
+
 }  // namespace
+
+// The triangles of an Embree geometry in GroupGeometry.
+struct SurfaceSides {
+  std::uint32_t front = 0, back = 0;  // first triangles
+  bool double_sided = false;
+};
 
 struct RayScene::State {
   Device device;
   EmbreeScene scene;
   std::vector<std::unique_ptr<MaskedDraw>> masked;  // user data of geometries: must stay in place
-  std::vector<bool> double_sided;                   // by geometry id
+  std::vector<SurfaceSides> surfaces;               // by geometry id
 };
 
 RayScene::RayScene(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -114,7 +138,7 @@ std::unique_ptr<MaskedDraw> maskedDraw(const GroupGeometry& group, const DrawGeo
   const auto first = static_cast<std::ptrdiff_t>(draw.first_vertex),
              count = static_cast<std::ptrdiff_t>(draw.vertex_count);
   masked->texcoords.assign(group.texcoords.begin() + first, group.texcoords.begin() + first + count);
-  masked->alphas.assign(group.alphas.begin() + first, group.alphas.begin() + first + count);
+  masked->colors.assign(group.colors.begin() + first, group.colors.begin() + first + count);
   return masked;
 }
 
@@ -130,7 +154,8 @@ Result<RayScene> RayScene::build(const GroupGeometry& group, const Scene& scene,
   state->scene.reset(rtcNewScene(state->device.get()));
   rtcSetSceneBuildQuality(state->scene.get(), RTC_BUILD_QUALITY_HIGH);
 
-  for (const DrawGeometry& draw : group.draws) {
+  for (std::size_t d = 0; d < group.draws.size(); ++d) {
+    const DrawGeometry& draw = group.draws[d];
     const gltf::Material* material =
         draw.material < 0 ? nullptr : &scene.materials[static_cast<std::size_t>(draw.material)];
     if (draw.back || draw.triangle_count == 0) continue;  // the front's triangles stand for both sides
@@ -144,9 +169,12 @@ Result<RayScene> RayScene::build(const GroupGeometry& group, const Scene& scene,
       rtcSetGeometryIntersectFilterFunction(geometry, filterMasked);
     }
     rtcCommitGeometry(geometry);
-    rtcAttachGeometryByID(state->scene.get(), geometry, static_cast<unsigned>(state->double_sided.size()));
+    rtcAttachGeometryByID(state->scene.get(), geometry, static_cast<unsigned>(state->surfaces.size()));
     rtcReleaseGeometry(geometry);  // the scene holds it
-    state->double_sided.push_back(material && material->double_sided);
+    SurfaceSides sides{.front = draw.first_triangle, .back = 0, .double_sided = false};
+    if (d + 1 < group.draws.size() && group.draws[d + 1].back)
+      sides.back = group.draws[d + 1].first_triangle, sides.double_sided = true;
+    state->surfaces.push_back(sides);
   }
   rtcCommitScene(state->scene.get());
   if (rtcGetDeviceError(state->device.get()) != RTC_ERROR_NONE)
@@ -179,6 +207,83 @@ std::uint32_t RayScene::trace(std::span<const SampleOrigin> origins, const glm::
   return traced;
 }
 
+std::uint32_t RayScene::traceHits(std::span<const SampleOrigin> origins, const glm::mat3& frame,
+                                  const DirectionTable& table, bool mostly_blocked,
+                                  std::span<std::uint16_t> masks, std::vector<RayHit>& hits) const {
+  assert(!origins.empty() && masks.size() == table.packets());
+  const FlushDenormals flush;
+  const OriginDealer dealer(origins);
+  Packet packet;
+  RTCIntersectContext any, closest;
+  rtcInitIntersectContext(&any);
+  rtcInitIntersectContext(&closest);
+  any.flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+  closest.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  std::uint32_t traced = 0;
+  for (std::size_t p = 0; p < masks.size(); ++p) {
+    fillPacket(p, origins, dealer, frame, table, packet.rays.ray, packet.lanes);
+    const std::uint32_t valid = validMask(packet.lanes);
+    traced += static_cast<std::uint32_t>(std::popcount(valid));
+    masks[p] = static_cast<std::uint16_t>(~valid);
+    // Where few rays hit, it is faster to ask first whether, and then only those what.
+    if (!mostly_blocked) {
+      rtcOccluded16(packet.lanes.valid.data(), state_->scene.get(), &any, &packet.rays.ray);
+      std::uint32_t blocked = 0;
+      for (std::size_t k = 0; k < kPacketWidth; ++k) {
+        const bool hit = packet.rays.ray.tfar[k] < 0.0f;
+        blocked |= hit ? 1u << k : 0u;
+        packet.lanes.valid[k] = hit ? -1 : 0;
+      }
+      masks[p] = static_cast<std::uint16_t>(masks[p] | blocked);
+      if (blocked == 0) continue;
+    }
+    forgetHits(packet.rays);
+    rtcIntersect16(packet.lanes.valid.data(), state_->scene.get(), &closest, &packet.rays);
+    const RTCRay16& ray = packet.rays.ray;
+    const RTCHit16& hit = packet.rays.hit;
+    for (std::size_t k = 0; k < kPacketWidth; ++k) {
+      if (!packet.lanes.valid[k] || hit.geomID[k] == RTC_INVALID_GEOMETRY_ID) continue;
+      masks[p] = static_cast<std::uint16_t>(masks[p] | 1u << k);
+      const SurfaceSides& sides = state_->surfaces[hit.geomID[k]];
+      const float along =
+          ray.dir_x[k] * hit.Ng_x[k] + ray.dir_y[k] * hit.Ng_y[k] + ray.dir_z[k] * hit.Ng_z[k];
+      const bool back = along > 0.0f;
+      if (back && !sides.double_sided) continue;
+      RayHit out{.ray = static_cast<std::uint32_t>(p * kPacketWidth + k),
+                 .triangle = (back ? sides.back : sides.front) + hit.primID[k],
+                 .u = hit.u[k],
+                 .v = hit.v[k]};
+      if (back) std::swap(out.u, out.v);  // corners 1 and 2 of a back are swapped
+      hits.push_back(out);
+    }
+  }
+  return traced;
+}
+
+void RayScene::occluded(std::span<const RaySegment> segments, std::span<std::uint8_t> blocked) const {
+  assert(blocked.size() == segments.size());
+  const FlushDenormals flush;
+  alignas(64) RTCRay16 rays;
+  alignas(64) std::array<int, kPacketWidth> valid;
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+  for (std::size_t first = 0; first < segments.size(); first += kPacketWidth) {
+    for (std::size_t k = 0; k < kPacketWidth; ++k) {
+      valid[k] = first + k < segments.size() ? -1 : 0;
+      const RaySegment& segment = segments[std::min(first + k, segments.size() - 1)];
+      rays.org_x[k] = segment.origin.x, rays.org_y[k] = segment.origin.y, rays.org_z[k] = segment.origin.z;
+      rays.dir_x[k] = segment.direction.x, rays.dir_y[k] = segment.direction.y;
+      rays.dir_z[k] = segment.direction.z;
+      rays.tnear[k] = 0.0f, rays.tfar[k] = segment.length;
+      rays.time[k] = 0.0f, rays.mask[k] = ~0u, rays.flags[k] = 0;
+    }
+    rtcOccluded16(valid.data(), state_->scene.get(), &context, &rays);
+    for (std::size_t k = 0; k < kPacketWidth && first + k < segments.size(); ++k)
+      blocked[first + k] = rays.tfar[k] < 0.0f ? 1 : 0;
+  }
+}
+
 void RayScene::backFaceShare(std::span<const SampleOrigin> origins, const glm::mat3& frame,
                              const DirectionTable& table, std::span<float> shares) const {
   assert(!origins.empty() && shares.size() == origins.size());
@@ -197,7 +302,7 @@ void RayScene::backFaceShare(std::span<const SampleOrigin> origins, const glm::m
       if (!packet.lanes.valid[k]) continue;
       ++rays[packet.lanes.origin[k]];
       const RTCHit16& hit = packet.rays.hit;
-      if (hit.geomID[k] == RTC_INVALID_GEOMETRY_ID || state_->double_sided[hit.geomID[k]]) continue;
+      if (hit.geomID[k] == RTC_INVALID_GEOMETRY_ID || state_->surfaces[hit.geomID[k]].double_sided) continue;
       const RTCRay16& ray = packet.rays.ray;
       const float along =
           ray.dir_x[k] * hit.Ng_x[k] + ray.dir_y[k] * hit.Ng_y[k] + ray.dir_z[k] * hit.Ng_z[k];

@@ -18,6 +18,19 @@
 
 namespace lambent::baker {
 
+// What a ray met first: a front, or either side of a double-sided surface.
+struct RayHit {
+  std::uint32_t ray = 0;       // of the table
+  std::uint32_t triangle = 0;  // of GroupGeometry::triangles; of the back draw where the back was met
+  float u = 0.0f, v = 0.0f;    // barycentric weights of its corners 1 and 2
+};
+
+// A stretch between two points.
+struct RaySegment {
+  glm::vec3 origin, direction;  // unit
+  float length;                 // up to there, exclusive
+};
+
 class RayScene {
  public:
   // `alpha_maps` as loadAlphaMaps gives them. Errors: Embree cannot be set up or runs out of memory.
@@ -32,6 +45,16 @@ class RayScene {
   // are blocked untraced. `origins` must not be empty; returns how many rays were traced.
   std::uint32_t trace(std::span<const SampleOrigin> origins, const glm::mat3& frame,
                       const DirectionTable& table, std::span<std::uint16_t> masks) const;
+
+  // As trace(), and what the blocked rays met, in the order of the rays, appended to `hits`. Backs of
+  // single-sided surfaces block and are not listed. `mostly_blocked` is a hint about which way is faster, and
+  // must be the same where the same result is wanted.
+  std::uint32_t traceHits(std::span<const SampleOrigin> origins, const glm::mat3& frame,
+                          const DirectionTable& table, bool mostly_blocked, std::span<std::uint16_t> masks,
+                          std::vector<RayHit>& hits) const;
+
+  // blocked[i] becomes 1 where something lies between the ends of segment i, else 0.
+  void occluded(std::span<const RaySegment> segments, std::span<std::uint8_t> blocked) const;
 
   // Per origin: of its rays, the share whose first hit is the back of a single-sided surface. An origin with
   // a large share lies inside a body or under something.

@@ -17,7 +17,7 @@ namespace {
 // --- welding
 // ---------------------------------------------------------------------------------------------------
 
-using VertexKey = std::array<std::uint32_t, 6>;  // bits of position and normal
+using VertexKey = std::array<std::uint32_t, 7>;  // bits of position and normal; whether normal-mapped
 
 struct VertexKeyHash {
   std::size_t operator()(const VertexKey& key) const {
@@ -27,10 +27,10 @@ struct VertexKeyHash {
   }
 };
 
-VertexKey keyOf(glm::vec3 position, glm::vec3 normal) {
+VertexKey keyOf(glm::vec3 position, glm::vec3 normal, bool normal_mapped) {
   const auto bits = [](float value) { return std::bit_cast<std::uint32_t>(value); };
-  return {bits(position.x), bits(position.y), bits(position.z),
-          bits(normal.x),   bits(normal.y),   bits(normal.z)};
+  return {bits(position.x), bits(position.y), bits(position.z),       bits(normal.x),
+          bits(normal.y),   bits(normal.z),   normal_mapped ? 1u : 0u};
 }
 
 // --- Morton order
@@ -52,42 +52,79 @@ std::uint64_t mortonCode(glm::vec3 position, glm::vec3 low, float cells_per_metr
          spread3(static_cast<std::uint64_t>(grid.z)) << 2;
 }
 
-// The order of `positions` along the curve; ties keep their order.
-std::vector<std::uint32_t> mortonOrder(std::span<const glm::vec3> positions, glm::vec3 low, glm::vec3 high) {
-  const glm::vec3 extent = high - low;
+// Sorts the places listed along the curve; ties keep their order.
+void sortAlongMorton(std::span<const glm::vec3> positions, const GroupGeometry& geometry,
+                     std::vector<std::uint32_t>& list) {
+  const glm::vec3 low = geometry.bounds_min, extent = geometry.bounds_max - low;
   const float longest = std::max({extent.x, extent.y, extent.z});
   const float cells_per_metre = longest > 0.0f ? 2097151.0f / longest : 0.0f;
-  std::vector<std::pair<std::uint64_t, std::uint32_t>> codes(positions.size());
-  for (std::size_t i = 0; i < positions.size(); ++i)
-    codes[i] = {mortonCode(positions[i], low, cells_per_metre), static_cast<std::uint32_t>(i)};
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> codes;
+  for (const std::uint32_t i : list) codes.emplace_back(mortonCode(positions[i], low, cells_per_metre), i);
   std::sort(codes.begin(), codes.end());
-  std::vector<std::uint32_t> order(positions.size());
-  std::transform(codes.begin(), codes.end(), order.begin(), [](const auto& code) { return code.second; });
-  return order;
+  std::transform(codes.begin(), codes.end(), list.begin(), [](const auto& code) { return code.second; });
 }
 
-void weld(const GroupGeometry& geometry, SampleSet& samples) {
+// One sample per key, in the order of first use.
+struct Welded {
+  std::vector<glm::vec3> positions, normals;
+  std::vector<bool> normal_mapped;
+};
+
+Welded weld(const GroupGeometry& geometry, SampleSet& samples) {
+  Welded welded;
   std::unordered_map<VertexKey, std::uint32_t, VertexKeyHash> seen;
   seen.reserve(geometry.positions.size());
-  std::vector<glm::vec3> positions, normals;
   samples.vertex_sample.resize(geometry.positions.size());
-  for (std::size_t v = 0; v < geometry.positions.size(); ++v) {
-    const auto [entry, is_new] = seen.try_emplace(keyOf(geometry.positions[v], geometry.normals[v]),
-                                                  static_cast<std::uint32_t>(positions.size()));
-    if (is_new) {
-      positions.push_back(geometry.positions[v]);
-      normals.push_back(geometry.normals[v]);
+  for (const DrawGeometry& draw : geometry.draws)
+    for (std::uint32_t v = draw.first_vertex; v < draw.first_vertex + draw.vertex_count; ++v) {
+      const glm::vec3 position = geometry.positions[v], normal = geometry.normals[v];
+      const auto [entry, is_new] = seen.try_emplace(keyOf(position, normal, draw.normal_mapped),
+                                                    static_cast<std::uint32_t>(welded.positions.size()));
+      if (is_new) {
+        welded.positions.push_back(position);
+        welded.normals.push_back(normal);
+        welded.normal_mapped.push_back(draw.normal_mapped);
+      }
+      samples.vertex_sample[v] = entry->second;
     }
-    samples.vertex_sample[v] = entry->second;
-  }
+  return welded;
+}
 
-  const auto order = mortonOrder(positions, geometry.bounds_min, geometry.bounds_max);
-  std::vector<std::uint32_t> place(order.size());
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    place[order[i]] = static_cast<std::uint32_t>(i);
-    samples.positions.push_back(positions[order[i]]);
-    samples.normals.push_back(normals[order[i]]);
+// Cuts the samples listed into cells and appends them to the set, each cell in the order of first use.
+// `place` gets where each went.
+void appendCells(const Welded& welded, std::vector<std::uint32_t> list, bool normal_mapped,
+                 const GroupGeometry& geometry, SampleSet& samples, std::vector<std::uint32_t>& place) {
+  if (list.size() > kMaxCellSamples) sortAlongMorton(welded.positions, geometry, list);
+  for (std::size_t first = 0; first < list.size(); first += kMaxCellSamples) {
+    const std::size_t count = std::min<std::size_t>(kMaxCellSamples, list.size() - first);
+    const auto members = std::span(list).subspan(first, count);
+    std::sort(members.begin(), members.end());
+    const glm::vec3 start = welded.positions[members.front()];
+    SampleCell cell{.first = static_cast<std::uint32_t>(samples.size()),
+                    .count = static_cast<std::uint32_t>(count),
+                    .bounds_min = start,
+                    .bounds_max = start,
+                    .normal_mapped = normal_mapped};
+    for (const std::uint32_t member : members) {
+      place[member] = static_cast<std::uint32_t>(samples.size());
+      samples.positions.push_back(welded.positions[member]);
+      samples.normals.push_back(welded.normals[member]);
+      cell.bounds_min = glm::min(cell.bounds_min, welded.positions[member]);
+      cell.bounds_max = glm::max(cell.bounds_max, welded.positions[member]);
+    }
+    samples.cells.push_back(cell);
   }
+}
+
+void placeSamples(const GroupGeometry& geometry, SampleSet& samples) {
+  const Welded welded = weld(geometry, samples);
+  std::array<std::vector<std::uint32_t>, 2> lists;
+  for (std::uint32_t i = 0; i < welded.positions.size(); ++i)
+    lists[welded.normal_mapped[i] ? 1 : 0].push_back(i);
+  std::vector<std::uint32_t> place(welded.positions.size());
+  appendCells(welded, std::move(lists[0]), /*normal_mapped=*/false, geometry, samples, place);
+  samples.first_normal_mapped = samples.size();
+  appendCells(welded, std::move(lists[1]), /*normal_mapped=*/true, geometry, samples, place);
   for (std::uint32_t& sample : samples.vertex_sample) sample = place[sample];
 }
 
@@ -149,27 +186,12 @@ void findOrigins(const GroupGeometry& geometry, SampleSet& samples) {
   }
 }
 
-void cutCells(SampleSet& samples) {
-  for (std::size_t first = 0; first < samples.size(); first += kMaxCellSamples) {
-    SampleCell cell;
-    cell.first = static_cast<std::uint32_t>(first);
-    cell.count = static_cast<std::uint32_t>(std::min<std::size_t>(kMaxCellSamples, samples.size() - first));
-    cell.bounds_min = cell.bounds_max = samples.positions[first];
-    for (std::size_t s = first; s < first + cell.count; ++s) {
-      cell.bounds_min = glm::min(cell.bounds_min, samples.positions[s]);
-      cell.bounds_max = glm::max(cell.bounds_max, samples.positions[s]);
-    }
-    samples.cells.push_back(cell);
-  }
-}
-
 }  // namespace
 
 SampleSet buildSamples(const GroupGeometry& geometry) {
   SampleSet samples;
-  weld(geometry, samples);
+  placeSamples(geometry, samples);
   findOrigins(geometry, samples);
-  cutCells(samples);
   return samples;
 }
 

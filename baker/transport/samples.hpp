@@ -1,8 +1,10 @@
 // Where transfer is computed. Vertices of a group with the same position and normal share one sample whatever
-// their texture coordinates; samples are sorted along a Morton curve, so that neighbours in memory are
-// neighbours in space, and cut into cells. Rays of a sample start from several origins, one for each face
-// around the vertex: pulled a little into the face and offset along its geometric normal. At concave edges
-// anything else sees through walls.
+// their texture coordinates. Samples are cut into cells along a Morton curve, those of normal-mapped draws
+// into cells of their own, which come last; in a cell they stand in the order in which vertices first use
+// them: Draco walks over the mesh, so neighbours in memory are neighbours on the surface and rows code to
+// nearly nothing. Rays of a sample start from several origins, one for each face around the vertex: pulled a
+// little into the face and offset along its geometric normal. At concave edges anything else sees through
+// walls.
 #pragma once
 
 #include <cstdint>
@@ -28,6 +30,7 @@ struct SampleOrigin {
 struct SampleCell {
   std::uint32_t first = 0, count = 0;
   glm::vec3 bounds_min{0.0f}, bounds_max{0.0f};
+  bool normal_mapped = false;
 };
 
 struct SampleSet {
@@ -37,6 +40,7 @@ struct SampleSet {
   std::vector<SampleOrigin> origins;
   std::vector<std::uint32_t> origin_offsets;  // size() + 1; a sample without a face has none
   std::vector<SampleCell> cells;
+  std::size_t first_normal_mapped = 0;  // samples from here on belong to normal-mapped draws
 
   std::size_t size() const { return positions.size(); }
   std::span<const SampleOrigin> originsOf(std::size_t sample) const {

@@ -4,7 +4,7 @@
 //
 // Order of samples: as in the cell. Order of codes: by cluster, samples of one cluster in the order of the
 // cell (positionsOf). Clusters are numbered by falling number of axes, so the samples that plane j concerns
-// are the first planeCount(j) positions, and every plane is dense.
+// are the first planeCounts()[j] positions, and every plane is dense. Byte tables: docs/format.md.
 #pragma once
 
 #include <cstddef>
@@ -47,9 +47,35 @@ struct Codebook {
   std::size_t clusters() const { return axis_counts.size(); }
 };
 
-// Payload "codebook". Vectors are binary16 in the file.
+// Bytes of payload "codebook" with vectors as binary16, and of its numbers as they are held in memory.
+inline std::uint64_t codebookBytes(const TransferShape& shape, std::uint32_t clusters, std::uint32_t axes) {
+  return 2ull * clusters + 8ull * axes + 2ull * (std::uint64_t{clusters} + axes) * shape.size();
+}
+
+// A codebook as the baker makes it: vectors are few, small integers in coordinates of one basis that the
+// clusters of the cell share, so that each costs a few bits per coordinate after entropy coding.
+//   basis vector r, value i = value_scales[i] * basis_scales[r] * basis[r * size + i]
+//   mean of cluster c       = mean_scale * sum_r means[r * clusters + c] * basis vector r
+//   direction of axis a     = sum_r directions[r * axes + a] * basis vector r
+struct SharedCodebook {
+  std::vector<std::uint32_t> axis_counts;
+  std::vector<AxisCode> axes;
+  std::vector<float> value_scales;
+  std::vector<float> basis_scales;  // one per basis vector
+  float mean_scale = 0.0f;
+  std::vector<std::int32_t> basis, means, directions;  // magnitudes under kMaxCoordinate
+
+  std::size_t clusters() const { return axis_counts.size(); }
+};
+inline constexpr std::int32_t kMaxCoordinate = 1 << 22;
+
+Codebook expand(const SharedCodebook& codebook);
+
+// Payload "codebook", in one of two forms: with vectors as binary16, or over a shared basis.
 std::vector<std::byte> encodeCodebook(const Codebook& codebook);
-// Errors name `subject`: sizes that do not add up, counts that rise, values that are not finite.
+std::vector<std::byte> encodeCodebook(const SharedCodebook& codebook);
+// Errors name `subject`: sizes that do not add up, counts that rise or exceed shape.size(), values that are
+// not finite or so large that decoded vectors would not be.
 Result<Codebook> decodeCodebook(std::span<const std::byte> bytes, const TransferShape& shape,
                                 std::uint32_t clusters, const std::string& subject);
 
@@ -61,15 +87,19 @@ Result<std::vector<std::uint32_t>> decodeClusterIds(std::span<const std::byte> b
 // The samples in the order of the codes: stable counting sort by cluster.
 std::vector<std::uint32_t> positionsOf(std::span<const std::uint32_t> cluster_of, std::uint32_t clusters);
 
-// Payload "weightPlane": codes of plane j in the order of positionsOf, `bits` (8 or 16) each, little endian,
-// as the differences of each code from the one before it in the same plane (modulo 2^bits): neighbours are
-// alike. 16-bit planes have all low bytes first, then all high bytes.
-std::vector<std::byte> encodePlane(std::span<const std::uint32_t> codes, std::uint32_t bits);
-Result<std::vector<std::uint32_t>> decodePlane(std::span<const std::byte> bytes, std::uint32_t bits,
-                                               std::uint32_t count, const std::string& subject);
+// How many positions each plane concerns, one entry per plane: the samples in clusters of more axes.
+std::vector<std::uint32_t> planeCounts(const Codebook& codebook, std::span<const std::uint32_t> cluster_of);
 
-// Transfer vectors of one cell, sample-major, shape.size() each; `planes` may be a prefix. The CPU twin of
-// what the diffuse effect decodes in its shader.
+// Payload "weightPlane": codes of plane j in the order of positionsOf, `bits` (8 or 16) each, as the
+// difference of each code from the one before it in the same plane (neighbours are alike): modulo 2^bits to
+// the range around 0, then 0, -1, 1, -2, ... as 0, 1, 2, 3, ..., little endian. 16-bit planes have all low
+// bytes first, then all high bytes.
+std::vector<std::byte> encodeWeightPlane(std::span<const std::uint32_t> codes, std::uint32_t bits);
+Result<std::vector<std::uint32_t>> decodeWeightPlane(std::span<const std::byte> bytes, std::uint32_t bits,
+                                                     std::uint32_t count, const std::string& subject);
+
+// Transfer vectors of one cell, sample-major, shape.size() each; `planes` may be a prefix, each as long as
+// planeCounts says. The CPU twin of what the diffuse effect decodes in its shader.
 std::vector<float> decodeTransfer(const TransferShape& shape, const Codebook& codebook,
                                   std::span<const std::uint32_t> cluster_of,
                                   std::span<const std::vector<std::uint32_t>> planes);

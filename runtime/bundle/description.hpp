@@ -2,9 +2,8 @@
 // extension LAMBENT_radiance_transfer that says what was baked. docs/format.md is the same in words, with
 // units and the schema.
 //
-// Sizes: a group has samples, numbered through all its cells; a transfer vector has columns() = order² +
-// light_columns entries per channel. Every index is checked when a file is read: code past the reader need
-// not check again.
+// Sizes: a group has samples, numbered through all its cells; codebook.hpp says what a transfer vector is.
+// Every index is checked when a file is read: code past the reader need not check again.
 #pragma once
 
 #include <array>
@@ -14,6 +13,7 @@
 #include <string_view>
 #include <vector>
 
+#include "runtime/bundle/codebook.hpp"
 #include "runtime/bundle/gltf_types.hpp"
 
 namespace lambent::bundle {
@@ -21,7 +21,8 @@ namespace lambent::bundle {
 inline constexpr std::string_view kExtensionName = "LAMBENT_radiance_transfer";
 // Format versions, newest last; code asks for these names, never for a bare number.
 inline constexpr std::uint32_t kVersionFirstLight = 1;
-inline constexpr std::uint32_t kVersionCurrent = kVersionFirstLight;
+inline constexpr std::uint32_t kVersionClusteredTransfer = 2;
+inline constexpr std::uint32_t kVersionCurrent = kVersionClusteredTransfer;
 
 // A byte range of the GLB's binary chunk.
 struct View {
@@ -59,9 +60,10 @@ struct Image {
 
 // What a payload's bytes mean; see docs/format.md for the byte tables.
 enum class PayloadType : std::uint8_t {
-  VertexRows,     // per vertex: which samples, with what weights
-  TransferBasis,  // mean and basis vectors of a cell, binary16
-  WeightPlane,    // one quantized weight per sample
+  VertexRows,   // per vertex: which samples, with what weights
+  Codebook,     // clusters of a cell: means and axes, binary16, and the steps of the weights
+  ClusterIds,   // which cluster each sample belongs to
+  WeightPlane,  // one quantized weight per sample of the clusters that have this axis
 };
 
 enum class PayloadCodec : std::uint8_t { Raw, Zstd };
@@ -74,37 +76,48 @@ struct Payload {
   std::uint32_t priority = 0;    // streaming order: lower is wanted earlier
 };
 
-// One quantized weight per sample: weight = offset + scale * q, q an unsigned integer of `bits` bits.
+// Axis j of the clusters that have so many: one code per sample of theirs. How a code becomes a weight is the
+// cluster's own (AxisCode).
 struct WeightPlane {
   std::uint32_t payload = 0;
-  std::uint32_t bits = 8;  // 8 or 16
-  float offset = 0.0f, scale = 0.0f;
-  float variance = 0.0f;  // share of the cell's weighted variance about the mean that this plane carries
+  std::uint32_t bits = 8;   // 8 or 16
+  std::uint32_t count = 0;  // codes: samples in clusters that have this axis
+  float variance = 0.0f;    // share of the cell's weighted variance about its mean that this plane carries
 };
 
-// Which light a transfer vector carries. Parts add up and can be switched apart (--transfer).
-enum class TransferPart : std::uint8_t { Direct };
-
-// The diffuse transfer of one cell: t_p = mean + sum_j weight_j(p) * basis_j, (order² + light_columns) x
-// channels.
+// The diffuse transfer of one cell, as a codebook and a few weights per sample (codebook.hpp).
 struct DiffuseTransfer {
-  TransferPart part = TransferPart::Direct;
-  std::uint32_t order = 5;          // bands 0..order-1
-  std::uint32_t light_columns = 0;  // K: lights that belong to the group
-  std::uint32_t channels = 1;       // 1: the same for R, G and B; 3: RGB
-  std::uint32_t basis = 0;          // payload: (1 + planes.size()) vectors, mean first
+  TransferShape shape;
+  std::uint32_t clusters = 1;
+  std::uint32_t axes = 0;           // sum over clusters
+  std::uint32_t codebook = 0;       // payload
+  std::int32_t cluster_ids = -1;    // payload; -1 where there is one cluster
   std::vector<WeightPlane> planes;  // by falling variance; any prefix renders
   float error_bound = 0.0f;         // relative RMS of shaded radiance over real lights that was asked for
   float error = 0.0f;               // and what the coded form reached
 
-  std::uint32_t columns() const { return order * order + light_columns; }
+  bool fromEnvironment() const { return shape.order > 0; }  // else from the group's own lights
 };
 
 // The unit of storage: at most 64 Ki samples.
 struct Cell {
   std::uint32_t first_sample = 0, sample_count = 0;
   glm::vec3 bounds_min{0.0f}, bounds_max{0.0f};  // group frame
+  // What adds up: light from the environment (no light columns), then light of the group's own lights (order
+  // 0, a column for each), each at most once. The same outputs in all.
   std::vector<DiffuseTransfer> diffuse;
+
+  std::uint32_t outputs() const { return diffuse.empty() ? 1 : diffuse.front().shape.outputs; }
+};
+
+// A light that belongs to a group: it does not move in the group's frame. Column k of the group's transfer is
+// the radiance that light k gives at unit strength; its colour times its strength now is the coefficient.
+struct GroupLight {
+  enum class Kind : std::uint8_t { Material, Node };
+  Kind kind = Kind::Material;
+  std::uint32_t index = 0;  // of the emissive material, or of the node that carries a KHR light
+  // At rest. Material: radiance, factor times strength. Node: colour times intensity.
+  glm::vec3 color{0.0f};
 };
 
 // The unit of transport: nodes that never move relative to each other. Transfer is stored in the group's
@@ -116,7 +129,15 @@ struct Group {
   glm::quat rest_rotation{1.0f, 0.0f, 0.0f, 0.0f};  // world_from_group at rest
   glm::vec3 bounds_min{0.0f}, bounds_max{0.0f};     // group frame
   std::uint32_t sample_count = 0;
-  std::vector<Cell> cells;
+  std::vector<Cell> cells;         // those with one output first, then those with nine
+  std::vector<GroupLight> lights;  // one per light column, in their order
+
+  // Samples of the cells with one output: they are the group's first.
+  std::uint32_t plainSamples() const {
+    std::uint32_t count = 0;
+    for (const Cell& cell : cells) count += cell.outputs() == 1 ? cell.sample_count : 0;
+    return count;
+  }
 };
 
 // One side of one primitive at one node: what is drawn, with transfer of its own. A double-sided material
@@ -125,7 +146,8 @@ struct Group {
 struct Draw {
   std::uint32_t node = 0, mesh = 0, primitive = 0, group = 0;
   bool back = false;
-  std::uint32_t rows = 0;  // payload: vertex rows into the group's samples
+  std::uint32_t rows = 0;     // payload: vertex rows into the group's samples, those with as many outputs
+  std::uint32_t outputs = 1;  // 9: has a normal map, shaded per pixel from transferred light
 };
 
 struct Generator {

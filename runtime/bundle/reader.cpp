@@ -1,5 +1,6 @@
 #include "runtime/bundle/reader.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstring>
 
@@ -8,6 +9,7 @@
 #include "runtime/bundle/checksum.hpp"
 #include "runtime/bundle/description_json.hpp"
 #include "runtime/bundle/glb.hpp"
+#include "runtime/bundle/gltf_parts.hpp"
 #include "runtime/bundle/transfer_codec.hpp"
 
 namespace lambent::bundle {
@@ -48,7 +50,16 @@ Result<Reader> Reader::open(const std::filesystem::path& path) {
   const auto intact = checkJson(*glb);
   if (!description) return failAgain(description.error());
   if (!intact) return failAgain(intact.error());
-  return Reader(std::make_unique<File>(File{std::move(*glb), std::move(*description)}));
+  Reader reader(std::make_unique<File>(File{std::move(*glb), std::move(*description)}));
+  Description& d = reader.file_->description;
+  for (std::size_t i = 0; i < d.animations.size(); ++i) {
+    const auto bytes = reader.readView(static_cast<std::uint32_t>(d.views.size() - d.animations.size() + i));
+    if (!bytes) return failAgain(bytes.error());
+    if (!loadAnimation(d.animations[i], *bytes))
+      return fail(path.string(), fmt::format("is damaged: the keyframes of animation {} make no motion", i),
+                  "bake it again");
+  }
+  return reader;
 }
 
 const std::filesystem::path& Reader::path() const {
@@ -90,6 +101,70 @@ Result<MeshData> Reader::readMesh(std::uint32_t mesh, std::uint32_t primitive_in
   return data;
 }
 
+Result<VertexRows> Reader::readRows(std::uint32_t index) const {
+  const Draw& draw = description().draws.at(index);
+  const Group& group = description().groups[draw.group];
+  const std::string subject = fmt::format("{}: draw {}", path().string(), index);
+  const auto bytes = readPayload(draw.rows);
+  if (!bytes) return failAgain(bytes.error());
+  auto rows = decodeRows(*bytes, description().meshes[draw.mesh].primitives[draw.primitive].vertex_count,
+                         draw.outputs == 1 ? group.plainSamples() : group.sample_count, subject);
+  if (!rows) return rows;
+  const auto plain = [first = draw.outputs == 1 ? 0 : group.plainSamples()](std::uint32_t sample) {
+    return sample < first;
+  };
+  if (std::any_of(rows->samples.begin(), rows->samples.end(), plain))
+    return fail(subject, "has a normal map and takes samples without one", "bake it again");
+  return rows;
+}
+
+Result<CellCodebook> Reader::readCodebook(std::uint32_t group, std::uint32_t cell_index,
+                                          std::uint32_t transfer_index) const {
+  const Cell& cell = description().groups.at(group).cells.at(cell_index);
+  const DiffuseTransfer& transfer = cell.diffuse.at(transfer_index);
+  const std::string subject = fmt::format("{}: group {} cell {}", path().string(), group, cell_index);
+  const auto bytes = readPayload(transfer.codebook);
+  if (!bytes) return failAgain(bytes.error());
+  auto codebook = decodeCodebook(*bytes, transfer.shape, transfer.clusters, subject);
+  if (!codebook) return failAgain(codebook.error());
+  CellCodebook found{std::move(*codebook), std::vector<std::uint32_t>(cell.sample_count, 0)};
+  if (transfer.cluster_ids >= 0) {
+    const auto id_bytes = readPayload(static_cast<std::uint32_t>(transfer.cluster_ids));
+    if (!id_bytes) return failAgain(id_bytes.error());
+    auto ids = decodeClusterIds(*id_bytes, transfer.clusters, cell.sample_count, subject);
+    if (!ids) return failAgain(ids.error());
+    found.cluster_of = std::move(*ids);
+  }
+  const std::vector<std::uint32_t> counts = planeCounts(found.codebook, found.cluster_of);
+  const auto same = [](std::uint32_t count, const WeightPlane& plane) { return count == plane.count; };
+  if (!std::equal(counts.begin(), counts.end(), transfer.planes.begin(), transfer.planes.end(), same))
+    return fail(subject, "has weight planes of other sizes than its clusters ask for", "bake it again");
+  return found;
+}
+
+Result<std::vector<std::uint32_t>> Reader::readPlane(std::uint32_t group, std::uint32_t cell,
+                                                     std::uint32_t transfer, std::uint32_t index) const {
+  const WeightPlane& plane =
+      description().groups.at(group).cells.at(cell).diffuse.at(transfer).planes.at(index);
+  const auto bytes = readPayload(plane.payload);
+  if (!bytes) return failAgain(bytes.error());
+  return decodeWeightPlane(*bytes, plane.bits, plane.count,
+                           fmt::format("{}: group {} cell {} plane {}", path().string(), group, cell, index));
+}
+
+namespace {
+
+Result<void> checkTransfer(const Reader& reader, std::uint32_t group, std::uint32_t cell,
+                           std::uint32_t transfer) {
+  if (auto found = reader.readCodebook(group, cell, transfer); !found) return failAgain(found.error());
+  const std::size_t planes = reader.description().groups[group].cells[cell].diffuse[transfer].planes.size();
+  for (std::uint32_t j = 0; j < planes; ++j)
+    if (auto codes = reader.readPlane(group, cell, transfer, j); !codes) return failAgain(codes.error());
+  return {};
+}
+
+}  // namespace
+
 Result<void> Reader::checkAll() const {
   const Description& d = description();
   for (std::uint32_t view = 0; view < d.views.size(); ++view)
@@ -97,15 +172,12 @@ Result<void> Reader::checkAll() const {
   for (std::uint32_t mesh = 0; mesh < d.meshes.size(); ++mesh)
     for (std::uint32_t p = 0; p < d.meshes[mesh].primitives.size(); ++p)
       if (auto data = readMesh(mesh, p); !data) return failAgain(data.error());
-  for (const Draw& draw : d.draws) {
-    const auto bytes = readPayload(draw.rows);
-    if (!bytes) return failAgain(bytes.error());
-    const auto rows = decodeRows(*bytes, d.meshes[draw.mesh].primitives[draw.primitive].vertex_count,
-                                 d.groups[draw.group].sample_count, path().string());
-    if (!rows) return failAgain(rows.error());
-  }
-  for (std::uint32_t payload = 0; payload < d.payloads.size(); ++payload)
-    if (auto bytes = readPayload(payload); !bytes) return failAgain(bytes.error());
+  for (std::uint32_t draw = 0; draw < d.draws.size(); ++draw)
+    if (auto rows = readRows(draw); !rows) return failAgain(rows.error());
+  for (std::uint32_t group = 0; group < d.groups.size(); ++group)
+    for (std::uint32_t cell = 0; cell < d.groups[group].cells.size(); ++cell)
+      for (std::uint32_t t = 0; t < d.groups[group].cells[cell].diffuse.size(); ++t)
+        if (auto checked = checkTransfer(*this, group, cell, t); !checked) return checked;
   return {};
 }
 

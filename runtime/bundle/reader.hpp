@@ -1,6 +1,7 @@
-// Reads bundles: the JSON once, then only the byte ranges that are asked for. Owns the open file; every call
-// is safe from any thread. What comes out has been checked: lengths against the file, checksums against the
-// bytes, every index and count of the description against the lists that it points into. No GL, no baker.
+// Reads bundles: the JSON once, and with it the keyframes of animations, then only the byte ranges that are
+// asked for. Owns the open file; every call is safe from any thread. What comes out has been checked: lengths
+// against the file, checksums against the bytes, every index and count of the description against the lists
+// that it points into. No GL, no baker.
 #pragma once
 
 #include <cstddef>
@@ -12,8 +13,15 @@
 #include "runtime/base/result.hpp"
 #include "runtime/bundle/description.hpp"
 #include "runtime/bundle/mesh.hpp"
+#include "runtime/bundle/transfer_codec.hpp"
 
 namespace lambent::bundle {
+
+// The codebook of a cell's transfer, and the cluster of each sample.
+struct CellCodebook {
+  Codebook codebook;
+  std::vector<std::uint32_t> cluster_of;
+};
 
 class Reader {
  public:
@@ -34,7 +42,14 @@ class Reader {
   Result<std::vector<std::byte>> readPayload(std::uint32_t payload) const;
   // Decodes a primitive and compares its digest.
   Result<MeshData> readMesh(std::uint32_t mesh, std::uint32_t primitive) const;
-  // Reads and compares everything in the file.
+  // Of a draw; its samples are of cells with as many outputs.
+  Result<VertexRows> readRows(std::uint32_t draw) const;
+  // Of Cell::diffuse[transfer]; it agrees with the counts of the planes.
+  Result<CellCodebook> readCodebook(std::uint32_t group, std::uint32_t cell, std::uint32_t transfer) const;
+  // Codes in the order of positionsOf.
+  Result<std::vector<std::uint32_t>> readPlane(std::uint32_t group, std::uint32_t cell,
+                                               std::uint32_t transfer, std::uint32_t plane) const;
+  // Reads, decodes and compares everything in the file.
   Result<void> checkAll() const;
 
  private:

@@ -4,9 +4,9 @@
 #include <cassert>
 #include <cmath>
 #include <cstring>
+#include <numeric>
 
 #include <fmt/format.h>
-#include <glm/gtc/packing.hpp>
 #include <zstd.h>
 
 namespace lambent::bundle {
@@ -14,7 +14,8 @@ namespace lambent::bundle {
 namespace {
 
 constexpr const char* kMend = "copy it again or bake it again";
-constexpr std::uint32_t kSingleRows = 0, kSparseRows = 1;  // first word of a rows payload
+// First word of a rows payload. (0 and 1 were those of version 1, with samples as they are.)
+constexpr std::uint32_t kSingleRows = 2, kSparseRows = 3;
 constexpr std::uint32_t kWeightOne = 65535;
 
 template <typename T>
@@ -31,6 +32,13 @@ std::vector<T> takeFront(std::span<const std::byte>& bytes, std::size_t count) {
   std::memcpy(values.data(), bytes.data(), count * sizeof(T));
   bytes = bytes.subspan(count * sizeof(T));
   return values;
+}
+
+// Rows of a mesh in sample order are then runs of 0 and 1, which cost next to nothing after zstd.
+std::vector<std::uint32_t> differences(std::span<const std::uint32_t> samples) {
+  std::vector<std::uint32_t> out(samples.begin(), samples.end());
+  std::adjacent_difference(out.begin(), out.end(), out.begin());
+  return out;
 }
 
 // Integer weights of one row that sum to exactly 65535: what rounding left over goes to the largest.
@@ -50,8 +58,7 @@ void quantizeRow(std::span<const float> weights, std::vector<std::uint16_t>& out
 
 }  // namespace
 
-// --- vertex rows
-// -----------------------------------------------------------------------------------------------
+// --- vertex rows ---
 
 std::vector<std::byte> encodeRows(const VertexRows& rows) {
   const std::size_t vertex_count = rows.offsets.size() - 1;
@@ -63,7 +70,7 @@ std::vector<std::byte> encodeRows(const VertexRows& rows) {
                                 static_cast<std::uint32_t>(rows.samples.size())};
   append<std::uint32_t>(out, head);
   if (!single) append<std::uint32_t>(out, rows.offsets);
-  append<std::uint32_t>(out, rows.samples);
+  append<std::uint32_t>(out, differences(rows.samples));
   if (!single) {
     std::vector<std::uint16_t> weights;
     for (std::size_t v = 0; v < vertex_count; ++v)
@@ -83,10 +90,10 @@ Result<VertexRows> decodeRows(std::span<const std::byte> bytes, std::uint32_t ve
   const auto head = takeFront<std::uint32_t>(bytes, 2);
   const std::size_t entries = head[1];
   const bool single = head[0] == kSingleRows;
+  if (!single && head[0] != kSparseRows) return damaged("of an unknown kind");
   const std::size_t vertices = vertex_count;
   const std::size_t expected = single ? entries * 4 : (vertices + 1) * 4 + entries * 6;
-  if (head[0] > kSparseRows || bytes.size() != expected || (single && entries != vertices))
-    return damaged("sizes do not add up");
+  if (bytes.size() != expected || (single && entries != vertices)) return damaged("sizes do not add up");
 
   VertexRows rows;
   if (single) {
@@ -99,6 +106,7 @@ Result<VertexRows> decodeRows(std::span<const std::byte> bytes, std::uint32_t ve
       return damaged("offsets do not rise from 0 to the number of entries");
   }
   rows.samples = takeFront<std::uint32_t>(bytes, entries);
+  std::partial_sum(rows.samples.begin(), rows.samples.end(), rows.samples.begin());
   for (const std::uint32_t sample : rows.samples)
     if (sample >= sample_count) return damaged("a sample that the group does not have");
   rows.weights.assign(entries, 1.0f);
@@ -110,79 +118,7 @@ Result<VertexRows> decodeRows(std::span<const std::byte> bytes, std::uint32_t ve
   return rows;
 }
 
-// --- basis
-// -----------------------------------------------------------------------------------------------------
-
-std::vector<std::byte> encodeBasis(std::span<const float> vectors) {
-  std::vector<std::byte> out(vectors.size() * sizeof(std::uint16_t));
-  for (std::size_t i = 0; i < vectors.size(); ++i) {
-    const std::uint16_t half = glm::packHalf1x16(vectors[i]);
-    std::memcpy(out.data() + i * sizeof(half), &half, sizeof(half));
-  }
-  return out;
-}
-
-Result<std::vector<float>> decodeBasis(std::span<const std::byte> bytes, std::size_t value_count,
-                                       const std::string& subject) {
-  if (bytes.size() != value_count * 2)
-    return fail(subject, "has a damaged transfer basis: wrong size", kMend);
-  const auto halves = takeFront<std::uint16_t>(bytes, value_count);
-  std::vector<float> values(value_count);
-  std::transform(halves.begin(), halves.end(), values.begin(),
-                 [](std::uint16_t half) { return glm::unpackHalf1x16(half); });
-  if (!std::all_of(values.begin(), values.end(), [](float v) { return std::isfinite(v); }))
-    return fail(subject, "has a damaged transfer basis: a value is not finite", kMend);
-  return values;
-}
-
-// --- weight planes
-// ---------------------------------------------------------------------------------------------
-
-std::vector<std::byte> encodePlane(std::span<const std::uint32_t> codes, std::uint32_t bits) {
-  assert(bits == 8 || bits == 16);
-  std::vector<std::byte> out(codes.size() * bits / 8);
-  for (std::size_t i = 0; i < codes.size(); ++i) {
-    assert(codes[i] < (1u << bits));
-    std::memcpy(out.data() + i * bits / 8, &codes[i], bits / 8);
-  }
-  return out;
-}
-
-Result<std::vector<std::uint32_t>> decodePlane(std::span<const std::byte> bytes, std::uint32_t bits,
-                                               std::uint32_t sample_count, const std::string& subject) {
-  assert(bits == 8 || bits == 16);
-  if (bytes.size() != std::size_t{sample_count} * bits / 8)
-    return fail(subject, "has a damaged weight plane: wrong size", kMend);
-  std::vector<std::uint32_t> codes(sample_count, 0);
-  for (std::size_t i = 0; i < codes.size(); ++i)
-    std::memcpy(&codes[i], bytes.data() + i * bits / 8, bits / 8);
-  return codes;
-}
-
-// --- whole cells
-// -----------------------------------------------------------------------------------------------
-
-std::vector<float> decodeTransfer(const DiffuseTransfer& transfer, std::uint32_t sample_count,
-                                  std::span<const float> basis,
-                                  std::span<const std::vector<std::uint32_t>> planes) {
-  const std::size_t values = std::size_t{transfer.channels} * transfer.columns();
-  assert(basis.size() >= (1 + planes.size()) * values && planes.size() <= transfer.planes.size());
-  std::vector<float> out(sample_count * values);
-  for (std::size_t s = 0; s < sample_count; ++s) {
-    const std::span<float> vector(out.data() + s * values, values);
-    std::copy_n(basis.begin(), values, vector.begin());
-    for (std::size_t j = 0; j < planes.size(); ++j) {
-      const float weight =
-          transfer.planes[j].offset + transfer.planes[j].scale * static_cast<float>(planes[j][s]);
-      const auto axis = basis.subspan((1 + j) * values, values);
-      for (std::size_t i = 0; i < values; ++i) vector[i] += weight * axis[i];
-    }
-  }
-  return out;
-}
-
-// --- entropy coding
-// --------------------------------------------------------------------------------------------
+// --- entropy coding ---
 
 std::vector<std::byte> compressZstd(std::span<const std::byte> bytes, int level) {
   std::vector<std::byte> out(ZSTD_compressBound(bytes.size()));

@@ -1,6 +1,7 @@
 // The extension LAMBENT_radiance_transfer: what was baked and where it lies.
 #include <algorithm>
 #include <array>
+#include <optional>
 
 #include "runtime/bundle/description.hpp"
 #include "runtime/bundle/json_fields.hpp"
@@ -10,10 +11,11 @@ namespace lambent::bundle {
 namespace {
 
 constexpr std::uint32_t kMaxOrder = 8, kMaxColumns = 4096, kMaxCellSamples = 65536;
+constexpr std::uint32_t kMaxClusters = 65536;
 constexpr std::uint64_t kMaxPayloadBytes = std::uint64_t{1} << 32;  // refuse to allocate more for one payload
-constexpr std::array kPayloadTypes = {"vertexRows", "transferBasis", "weightPlane"};
+constexpr std::array kPayloadTypes = {"vertexRows", "codebook", "clusterIds", "weightPlane"};
 constexpr std::array kCodecs = {"raw", "zstd"};
-constexpr std::array kParts = {"direct"};
+constexpr std::array kLightKinds = {"material", "node"};
 constexpr std::array kSides = {"front", "back"};
 
 template <typename Enum, std::size_t N>
@@ -34,56 +36,115 @@ Json diffuseJson(const DiffuseTransfer& transfer) {
   for (const WeightPlane& plane : transfer.planes)
     planes.push_back({{"payload", plane.payload},
                       {"bits", plane.bits},
-                      {"offset", plane.offset},
-                      {"scale", plane.scale},
+                      {"count", plane.count},
                       {"variance", plane.variance}});
-  return {{"part", word(transfer.part, kParts)},
-          {"order", transfer.order},
-          {"lightColumns", transfer.light_columns},
-          {"channels", transfer.channels},
-          {"basis", transfer.basis},
-          {"planes", planes},
-          {"errorBound", transfer.error_bound},
-          {"error", transfer.error}};
+  Json json = {{"order", transfer.shape.order},
+               {"lightColumns", transfer.shape.light_columns},
+               {"shadowedChannels", transfer.shape.shadowed_channels},
+               {"fullChannels", transfer.shape.full_channels},
+               {"outputs", transfer.shape.outputs},
+               {"clusters", transfer.clusters},
+               {"axes", transfer.axes},
+               {"codebook", transfer.codebook},
+               {"planes", planes},
+               {"errorBound", transfer.error_bound},
+               {"error", transfer.error}};
+  if (transfer.cluster_ids >= 0) json["clusterIds"] = transfer.cluster_ids;
+  return json;
 }
 
 // A payload of the type wanted, of the size wanted.
 std::uint32_t payloadIndex(const Field& field, const Description& d, PayloadType type,
-                           std::uint64_t raw_length) {
+                           std::optional<std::uint64_t> raw_length) {
   const std::uint32_t index = field.index(d.payloads.size());
   if (d.payloads[index].type != type) field.fault("is a payload of another type");
-  if (raw_length != 0 && d.payloads[index].raw_length != raw_length)
-    field.fault("is a payload of another size");
+  if (raw_length && d.payloads[index].raw_length != *raw_length) field.fault("is a payload of another size");
   return index;
 }
 
-DiffuseTransfer readDiffuse(const Field& field, const Description& d, std::uint32_t sample_count) {
+TransferShape readShape(const Field& field, const std::vector<GroupLight>& lights) {
+  TransferShape shape;
+  shape.order = static_cast<std::uint32_t>(field["order"].count(kMaxOrder));
+  shape.light_columns = static_cast<std::uint32_t>(field["lightColumns"].count(kMaxColumns));
+  if ((shape.order == 0) == (shape.light_columns == 0))
+    field["order"].fault("and lightColumns: not just one of them is 0");
+  if (shape.light_columns != 0 && shape.light_columns != lights.size())
+    field["lightColumns"].fault("are not as many as the group has lights");
+  shape.shadowed_channels = static_cast<std::uint32_t>(field["shadowedChannels"].count(3));
+  if (shape.shadowed_channels != 1 && shape.shadowed_channels != 3)
+    field["shadowedChannels"].fault("is neither 1 nor 3");
+  shape.full_channels = static_cast<std::uint32_t>(field["fullChannels"].count(3));
+  if (shape.full_channels == 2) field["fullChannels"].fault("is neither 0, 1 nor 3");
+  shape.outputs = static_cast<std::uint32_t>(field["outputs"].count(9));
+  if (shape.outputs != 1 && shape.outputs != 9) field["outputs"].fault("is neither 1 nor 9");
+  return shape;
+}
+
+WeightPlane readPlane(const Field& field, const Description& d, std::uint32_t largest_count) {
+  WeightPlane plane;
+  plane.bits = static_cast<std::uint32_t>(field["bits"].count(16));
+  if (plane.bits != 8 && plane.bits != 16) field["bits"].fault("is neither 8 nor 16");
+  plane.count = static_cast<std::uint32_t>(field["count"].count(largest_count));
+  plane.payload = payloadIndex(field["payload"], d, PayloadType::WeightPlane,
+                               std::uint64_t{plane.count} * plane.bits / 8);
+  plane.variance = field["variance"].number();
+  return plane;
+}
+
+DiffuseTransfer readDiffuse(const Field& field, const Description& d, const Group& group,
+                            std::uint32_t sample_count) {
   DiffuseTransfer transfer;
-  transfer.part = readWord<TransferPart>(field["part"], kParts);
-  transfer.order = static_cast<std::uint32_t>(field["order"].count(kMaxOrder));
-  if (transfer.order == 0) field["order"].fault("is 0");
-  transfer.light_columns = static_cast<std::uint32_t>(field["lightColumns"].count(kMaxColumns));
-  transfer.channels = static_cast<std::uint32_t>(field["channels"].count(3));
-  if (transfer.channels != 1 && transfer.channels != 3) field["channels"].fault("is neither 1 nor 3");
+  transfer.shape = readShape(field, group.lights);
+  transfer.clusters = static_cast<std::uint32_t>(field["clusters"].count(kMaxClusters));
+  if (transfer.clusters == 0) field["clusters"].fault("is 0");
   const auto planes = field["planes"].items();
-  const std::uint64_t vector_values = std::uint64_t{transfer.channels} * transfer.columns();
-  if (planes.size() > vector_values) field["planes"].fault("are more than the vector has values");
-  transfer.basis =
-      payloadIndex(field["basis"], d, PayloadType::TransferBasis, (1 + planes.size()) * vector_values * 2);
+  if (planes.size() > transfer.shape.size()) field["planes"].fault("are more than the vector has values");
+  transfer.axes =
+      static_cast<std::uint32_t>(field["axes"].count(std::uint64_t{transfer.clusters} * planes.size()));
+  // Its length depends on how it is coded; decodeCodebook() holds it against the counts.
+  transfer.codebook = payloadIndex(field["codebook"], d, PayloadType::Codebook, 0);
+  if (transfer.clusters > 1)
+    transfer.cluster_ids = static_cast<std::int32_t>(
+        payloadIndex(field["clusterIds"], d, PayloadType::ClusterIds,
+                     std::uint64_t{sample_count} * (transfer.clusters <= 256 ? 1 : 2)));
+  std::uint32_t largest_count = sample_count;
   for (const Field& entry : planes) {
-    WeightPlane plane;
-    plane.bits = static_cast<std::uint32_t>(entry["bits"].count(16));
-    if (plane.bits != 8 && plane.bits != 16) entry["bits"].fault("is neither 8 nor 16");
-    plane.payload = payloadIndex(entry["payload"], d, PayloadType::WeightPlane,
-                                 std::uint64_t{sample_count} * plane.bits / 8);
-    plane.offset = entry["offset"].number();
-    plane.scale = entry["scale"].number();
-    plane.variance = entry["variance"].number();
-    transfer.planes.push_back(plane);
+    transfer.planes.push_back(readPlane(entry, d, largest_count));
+    largest_count = transfer.planes.back().count;  // a sample that has axis j + 1 has axis j
   }
   transfer.error_bound = field["errorBound"].number();
   transfer.error = field["error"].number();
   return transfer;
+}
+
+Cell readCell(const Field& field, const Description& d, const Group& group, std::uint32_t first_sample) {
+  Cell cell;
+  cell.first_sample = static_cast<std::uint32_t>(field["firstSample"].count(group.sample_count));
+  if (cell.first_sample != first_sample) field["firstSample"].fault("leaves a gap between cells");
+  cell.sample_count = static_cast<std::uint32_t>(
+      field["sampleCount"].count(std::min(kMaxCellSamples, group.sample_count - cell.first_sample)));
+  cell.bounds_min = field["boundsMin"].vector<glm::vec3>();
+  cell.bounds_max = field["boundsMax"].vector<glm::vec3>();
+  for (const Field& entry : field["diffuse"].items()) {
+    cell.diffuse.push_back(readDiffuse(entry, d, group, cell.sample_count));
+    const DiffuseTransfer &first = cell.diffuse.front(), &last = cell.diffuse.back();
+    if (cell.diffuse.size() > 2 ||
+        (cell.diffuse.size() == 2 && (!first.fromEnvironment() || last.fromEnvironment())))
+      entry.fault("is not the group's lights after the environment");
+    if (last.shape.outputs != first.shape.outputs) entry["outputs"].fault("differs within the cell");
+  }
+  if (!group.cells.empty() && group.cells.back().outputs() > cell.outputs())
+    field.fault("has one output and stands after cells with nine");
+  return cell;
+}
+
+GroupLight readGroupLight(const Field& field, const Description& d) {
+  GroupLight light;
+  light.kind = readWord<GroupLight::Kind>(field["kind"], kLightKinds);
+  light.index = light.kind == GroupLight::Kind::Material ? field["material"].index(d.materials.size())
+                                                         : field["node"].index(d.nodes.size());
+  light.color = field["color"].vector<glm::vec3>();
+  return light;
 }
 
 Json cellJson(const Cell& cell) {
@@ -96,6 +157,12 @@ Json cellJson(const Cell& cell) {
           {"diffuse", diffuse}};
 }
 
+Json groupLightJson(const GroupLight& light) {
+  return {{"kind", word(light.kind, kLightKinds)},
+          {light.kind == GroupLight::Kind::Material ? "material" : "node", light.index},
+          {"color", vectorJson(light.color)}};
+}
+
 Json groupJson(const Group& group) {
   const glm::quat& r = group.rest_rotation;
   Json json = {{"name", group.name},
@@ -104,8 +171,10 @@ Json groupJson(const Group& group) {
                {"boundsMin", vectorJson(group.bounds_min)},
                {"boundsMax", vectorJson(group.bounds_max)},
                {"sampleCount", group.sample_count},
+               {"lights", Json::array()},
                {"cells", Json::array()}};
   if (group.node >= 0) json["node"] = group.node;
+  for (const GroupLight& light : group.lights) json["lights"].push_back(groupLightJson(light));
   for (const Cell& cell : group.cells) json["cells"].push_back(cellJson(cell));
   return json;
 }
@@ -121,19 +190,12 @@ Group readGroup(const Field& field, const Description& d) {
   group.bounds_min = field["boundsMin"].vector<glm::vec3>();
   group.bounds_max = field["boundsMax"].vector<glm::vec3>();
   group.sample_count = static_cast<std::uint32_t>(field["sampleCount"].count(0xfffffffeu));
+  for (const Field& entry : field["lights"].items()) group.lights.push_back(readGroupLight(entry, d));
+  if (group.lights.size() > kMaxColumns) field["lights"].fault("are too many");
   std::uint32_t next = 0;
   for (const Field& entry : field["cells"].items()) {
-    Cell cell;
-    cell.first_sample = static_cast<std::uint32_t>(entry["firstSample"].count(group.sample_count));
-    if (cell.first_sample != next) entry["firstSample"].fault("leaves a gap between cells");
-    cell.sample_count = static_cast<std::uint32_t>(
-        entry["sampleCount"].count(std::min(kMaxCellSamples, group.sample_count - cell.first_sample)));
-    cell.bounds_min = entry["boundsMin"].vector<glm::vec3>();
-    cell.bounds_max = entry["boundsMax"].vector<glm::vec3>();
-    for (const Field& transfer : entry["diffuse"].items())
-      cell.diffuse.push_back(readDiffuse(transfer, d, cell.sample_count));
-    next += cell.sample_count;
-    group.cells.push_back(std::move(cell));
+    group.cells.push_back(readCell(entry, d, group, next));
+    next += group.cells.back().sample_count;
   }
   if (next != group.sample_count) field["cells"].fault("do not hold all samples of the group");
   return group;
@@ -148,7 +210,8 @@ Draw readDraw(const Field& field, const Description& d) {
   draw.primitive = field["primitive"].index(d.meshes[draw.mesh].primitives.size());
   draw.group = field["group"].index(d.groups.size());
   draw.back = readWord<bool>(field["side"], kSides);
-  draw.rows = payloadIndex(field["rows"], d, PayloadType::VertexRows, 0);
+  draw.rows = payloadIndex(field["rows"], d, PayloadType::VertexRows, {});
+  draw.outputs = field["normalMapped"].flag() ? 9 : 1;
   return draw;
 }
 
@@ -169,7 +232,8 @@ Json writeTransfer(const Description& d) {
                      {"primitive", draw.primitive},
                      {"group", draw.group},
                      {"side", word(draw.back, kSides)},
-                     {"rows", draw.rows}});
+                     {"rows", draw.rows},
+                     {"normalMapped", draw.outputs == 9}});
   return {{"version", d.version},
           {"generator",
            {{"program", d.generator.program},

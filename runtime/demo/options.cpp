@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "runtime/spec/numbers.hpp"
 #include "runtime/spec/rotate.hpp"
 
 namespace lambent::demo {
@@ -25,7 +26,8 @@ const std::map<std::string, sh::Window> kWindowWords = {
 struct Words {
   std::vector<std::string> bundles, lights;
   std::string light_layout, camera, size = "1280x720", headless, transfer = "full", window = "auto";
-  std::string rotate_light = "0", exposure = "auto";
+  std::string rotate_light = "0", exposure = "auto", lamps = "1";
+  std::uint64_t max_memory = ~std::uint64_t{0};
   std::uint32_t frames = 1;
   bool json = false;
 };
@@ -46,9 +48,12 @@ constexpr Row kRows[] = {
     {"--size", &Words::size, "WxH", "Picture or window in pixels"},
     {"--headless", &Words::headless, "OUT",
      "Write one picture (.png tone-mapped, .exr linear) without a display"},
-    {"--transfer", &Words::transfer, "MODE", "What of the transfer counts: unshadowed, shadowed or full"},
+    {"--transfer", &Words::transfer, "MODE",
+     "Light that counts: unshadowed, shadowed (no bounces) or full;\nunshadowed, the scenes' own lights are "
+     "dark"},
     {"--window", &Words::window, "WINDOW", "Against ringing of the light: auto, off or hann"},
     {"--rotate-light", &Words::rotate_light, "DEG", "Turn all lights about +Y (+Z towards +X)"},
+    {"--lamps", &Words::lamps, "FACTOR", "Times the strength of the scenes' own lights; 0 switches them off"},
     {"--exposure", &Words::exposure, "EV", "Stops above radiance 1 = white, or auto"},
 };
 
@@ -71,6 +76,12 @@ void declare(CLI::App& app, Words& words) {
       ->type_name("N")
       ->capture_default_str()
       ->check(CLI::Range(1u, 1'000'000u).description(""));
+  app.add_option(
+         "--max-memory", words.max_memory,
+         "GPU memory for the scenes, in bytes or like 200MB; what has no\nroom is detail of the light "
+         "(default: no limit)")
+      ->type_name("BYTES")
+      ->transform(CLI::AsSizeValue(/*kb_is_1000=*/false));
   app.add_flag("--json", words.json, "Report on stdout: times, counts, bytes resident");
   app.set_version_flag("--version", "lambent-demo " LAMBENT_VERSION);
 }
@@ -144,6 +155,11 @@ Result<Options> understand(const Words& words) {
   if (!window) return failAgain(window.error());
   const Result<float> turn = spec::parseDegrees(words.rotate_light);
   if (!turn) return failAgain(turn.error());
+  const std::optional<float> lamps = spec::parseNumber(words.lamps);
+  if (!lamps || *lamps < 0.0f || *lamps > 1e6f)
+    return fail("--lamps", fmt::format("\"{}\" is not a factor", words.lamps), "give 0..1000000");
+  options.lamps = *lamps;
+  options.max_memory_bytes = words.max_memory;
   options.transfer = *transfer;
   options.transfer_word = words.transfer;
   options.window = *window;

@@ -1,26 +1,60 @@
-// Interpolated E/pi times albedo (factor x texture x vertex colour). Linear, not clamped; alpha is coverage.
+// E/pi times albedo (factor x texture x vertex colour), and what the surface gives off itself. Linear, not clamped;
+// alpha is coverage.
 #include "surface_shared.h"
 
 layout(std430, binding = kBindDraws) readonly buffer Draws { SurfaceDraw draws[]; };
-layout(binding = 0) uniform sampler2D base_color_texture;
+layout(binding = kUnitBaseColor) uniform sampler2D base_color_texture;
+layout(binding = kUnitEmissive) uniform sampler2D emissive_texture;
 
-layout(location = 0) in vec3 radiance;
-layout(location = 1) in vec2 texcoord;
+layout(location = 0) flat in uint draw_of;
+layout(location = 1) in vec4 looks_at;
 layout(location = 2) in vec4 vertex_color;
-layout(location = 3) flat in uint draw_of;
 layout(location = 0) out vec4 color;
+
+vec4 look(sampler2D image, vec2 at) {
+#ifdef LAMBENT_FINEST_TEXELS
+  return textureLod(image, at, 0.0);  // what one ray through the pixel's centre would see
+#else
+  return texture(image, at);
+#endif
+}
+
+#ifdef LAMBENT_NORMAL_MAPPED
+#include "surface_normal.glsl"
+layout(binding = kUnitNormal) uniform sampler2D normal_texture;
+layout(location = 3) in vec4 position_group;
+layout(location = 4) in vec4 normal_group;
+layout(location = 5) in vec4 tangent_group;
+layout(location = 6) in vec3 light[kLightCoefficients];
+
+vec3 receivedLight() {
+  vec2 at = vec2(position_group.w, normal_group.w);
+  vec3 normal = unit(normal_group.xyz);
+  TangentFrame from_picture =
+      frameFromDerivatives(normal, dFdx(position_group.xyz), dFdy(position_group.xyz), dFdx(at), dFdy(at));
+  if (draws[draw_of].normal_texture.set != kAbsent) {
+    bool stored = draws[draw_of].tangents_word != kAbsent;
+    TangentFrame frame = stored ? frameFromTangent(normal, tangent_group) : from_picture;
+    normal = perturbedNormal(frame, look(normal_texture, at).xyz, draws[draw_of].normal_scale);
+  }
+  return diffuseLight(light, draws[draw_of].facing * normal);
+}
+#else
+layout(location = 3) in vec3 radiance;
+
+vec3 receivedLight() { return radiance; }
+#endif
 
 void main() {
   vec4 albedo = draws[draw_of].base_color * vertex_color;
-  if (draws[draw_of].textured != 0u) {
-#ifdef LAMBENT_FINEST_TEXELS
-    albedo *= textureLod(base_color_texture, texcoord, 0.0);  // what one ray through the pixel's centre would see
-#else
-    albedo *= texture(base_color_texture, texcoord);
-#endif
-  }
+  if (draws[draw_of].base_color_texture.set != kAbsent) albedo *= look(base_color_texture, looks_at.xy);
+  vec3 emission = draws[draw_of].emission.rgb;
+  if (draws[draw_of].emissive_texture.set != kAbsent) emission *= look(emissive_texture, looks_at.zw).rgb;
+  vec3 received = receivedLight();
+  if (draws[draw_of].unlit != 0u) received = vec3(1.0);  // the base colour as it is
+
   uint mode = draws[draw_of].alpha_mode;
   if (mode == kAlphaMask && albedo.a < draws[draw_of].alpha_cutoff) discard;
   float alpha = mode == kAlphaBlend ? albedo.a : 1.0;
-  color = vec4(radiance * albedo.rgb, alpha);
+  color = vec4(received * albedo.rgb + emission, alpha);
 }

@@ -7,29 +7,60 @@ layout(std430, binding = kBindGeometry) readonly buffer Geometry { uint geometry
 layout(std430, binding = kBindRadiance) readonly buffer Radiance { float radiance_of[]; };
 
 layout(location = 0) in uint draw_index;  // one per instance: the draw's base instance
-layout(location = 0) out vec3 radiance;
-layout(location = 1) out vec2 texcoord;
+layout(location = 0) flat out uint draw_of;
+layout(location = 1) out vec4 looks_at;  // in the base colour picture: xy; in the emissive one: zw
 layout(location = 2) out vec4 vertex_color;
-layout(location = 3) flat out uint draw_of;
+#ifdef LAMBENT_NORMAL_MAPPED
+#include "surface_normal.glsl"
+// In the group's frame. With them all fifteen locations that OpenGL 4.5 promises are in use.
+layout(location = 3) out vec4 position_group;  // w, and that of the normal: where in the normal picture
+layout(location = 4) out vec4 normal_group;
+layout(location = 5) out vec4 tangent_group;  // w: +1 or -1 as glTF has it, of the mesh as it stands in the group
+layout(location = 6) out vec3 light[kLightCoefficients];
+#else
+layout(location = 3) out vec3 radiance;
+#endif
+
+vec2 geometry2(uint at) { return vec2(uintBitsToFloat(geometry[at]), uintBitsToFloat(geometry[at + 1u])); }
+vec3 geometry3(uint at) { return vec3(geometry2(at), uintBitsToFloat(geometry[at + 2u])); }
+vec3 radianceAt(uint at) { return vec3(radiance_of[at], radiance_of[at + 1u], radiance_of[at + 2u]); }
+
+// Done here, not per pixel: pixels beside a triangle have their part in its derivatives and mip levels, but what they
+// read of a buffer need not be there (Mesa gives 0).
+vec2 lookedAt(SurfaceDraw draw, TextureSlot slot, uint vertex) {
+  if (slot.set == kAbsent) return vec2(0.0);
+  uint word = slot.set == 1u ? draw.texcoords1_word : draw.texcoords0_word;
+  return slot.texture_from_coordinates * vec3(geometry2(word + 2u * vertex), 1.0);
+}
 
 void main() {
   SurfaceDraw draw = draws[draw_index];
   uint vertex = uint(gl_VertexID);
-  uint at = draw.positions_word + 3u * vertex;
-  vec3 position = vec3(uintBitsToFloat(geometry[at]), uintBitsToFloat(geometry[at + 1u]),
-                       uintBitsToFloat(geometry[at + 2u]));
-  at = draw.radiance_word + 3u * vertex;
-  radiance = vec3(radiance_of[at], radiance_of[at + 1u], radiance_of[at + 2u]);
-  texcoord = vec2(0.0);
-  if (draw.texcoords_word != kAbsent) {
-    at = draw.texcoords_word + 2u * vertex;
-    texcoord = vec2(uintBitsToFloat(geometry[at]), uintBitsToFloat(geometry[at + 1u]));
-  }
+  vec3 position = geometry3(draw.positions_word + 3u * vertex);
+  looks_at = vec4(lookedAt(draw, draw.base_color_texture, vertex), lookedAt(draw, draw.emissive_texture, vertex));
   vertex_color = vec4(1.0);
   if (draw.colors_word != kAbsent) {
-    at = draw.colors_word + 2u * vertex;
+    uint at = draw.colors_word + 2u * vertex;
     vertex_color = vec4(unpackUnorm2x16(geometry[at]), unpackUnorm2x16(geometry[at + 1u]));
   }
+#ifdef LAMBENT_NORMAL_MAPPED
+  mat3 group_from_mesh = mat3(draw.group_from_mesh);
+  vec3 normal = unit(mat3(draw.group_from_mesh_normal) * geometry3(draw.normals_word + 3u * vertex));
+  vec2 normal_at = lookedAt(draw, draw.normal_texture, vertex);
+  position_group = vec4(group_from_mesh * position, normal_at.x);
+  normal_group = vec4(normal, normal_at.y);
+  tangent_group = vec4(0.0);
+  if (draw.tangents_word != kAbsent) {
+    uint at = draw.tangents_word + 4u * vertex;
+    // A mirrored node mirrors the bitangent, which a cross product of turned vectors would not.
+    float mirrored = determinant(group_from_mesh) < 0.0 ? -1.0 : 1.0;
+    tangent_group = vec4(group_from_mesh * geometry3(at), mirrored * uintBitsToFloat(geometry[at + 3u]));
+  }
+  uint words = 3u * kLightCoefficients;
+  for (uint j = 0u; j < kLightCoefficients; ++j) light[j] = radianceAt(draw.radiance_word + words * vertex + 3u * j);
+#else
+  radiance = radianceAt(draw.radiance_word + 3u * vertex);
+#endif
   draw_of = draw_index;
   gl_Position = clip_from_view * (view_from_world * (draw.world_from_mesh * vec4(position, 1.0)));
 }

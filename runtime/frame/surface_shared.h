@@ -5,11 +5,15 @@
 #include <cstddef>
 #include <cstdint>
 
+#include <glm/mat3x2.hpp>
+#include <glm/mat3x4.hpp>
 #include <glm/mat4x4.hpp>
 #include <glm/vec4.hpp>
 
 namespace lambent::frame {
 using uint = std::uint32_t;
+using glm::mat3x2;
+using glm::mat3x4;
 using glm::mat4;
 using glm::vec4;
 #define LAMBENT_CONSTANT inline constexpr uint
@@ -23,25 +27,51 @@ LAMBENT_CONSTANT kBindGeometry = 1u;  // arena page
 LAMBENT_CONSTANT kBindRadiance = 2u;  // arena page
 LAMBENT_CONSTANT kAbsent = 0xffffffffu;
 
+LAMBENT_CONSTANT kUnitBaseColor = 0u;  // texture units
+LAMBENT_CONSTANT kUnitEmissive = 1u;
+LAMBENT_CONSTANT kUnitNormal = 2u;
+
 LAMBENT_CONSTANT kAlphaOpaque = 0u;  // alpha is 1
 LAMBENT_CONSTANT kAlphaMask = 1u;    // below the cutoff nothing is there
 LAMBENT_CONSTANT kAlphaBlend = 2u;
 
+// Draws with a normal map have light in bands 0..2 at each vertex in place of radiance: 9 colours.
+LAMBENT_CONSTANT kLightCoefficients = 9u;
+
+// How a surface looks into one of its textures.
+struct TextureSlot {
+  mat3x2 texture_from_coordinates;  // KHR_texture_transform, on (u, v, 1)
+  uint set;                         // TEXCOORD_0 or TEXCOORD_1; kAbsent: no texture
+  uint pad;
+};
+
 struct SurfaceDraw {
   mat4 world_from_mesh;
+  mat3x4 group_from_mesh;         // directions along the surface; columns padded as std430 has them
+  mat3x4 group_from_mesh_normal;  // of the front, also in draws of the back
   vec4 base_color;
+  vec4 emission;  // radiance; w unused
+  TextureSlot base_color_texture;
+  TextureSlot emissive_texture;
+  TextureSlot normal_texture;
+  float normal_scale;
+  float facing;  // -1: the back of a double-sided surface
   uint positions_word;
-  uint texcoords_word;  // of the set that the material names
+  uint normals_word;
+  uint tangents_word;
+  uint texcoords0_word;
+  uint texcoords1_word;
   uint colors_word;
   uint radiance_word;
   uint alpha_mode;
   float alpha_cutoff;
-  uint textured;
-  uint pad;
+  uint unlit;
 };
 
 #ifdef __cplusplus
 #undef LAMBENT_CONSTANT
-static_assert(sizeof(SurfaceDraw) == 112 && offsetof(SurfaceDraw, positions_word) == 80);
+static_assert(sizeof(TextureSlot) == 32 && offsetof(TextureSlot, set) == 24);
+static_assert(sizeof(SurfaceDraw) == 336 && offsetof(SurfaceDraw, base_color) == 160 &&
+              offsetof(SurfaceDraw, base_color_texture) == 192 && offsetof(SurfaceDraw, normal_scale) == 288);
 }  // namespace lambent::frame
 #endif

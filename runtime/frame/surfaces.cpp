@@ -19,46 +19,23 @@ struct ViewBlock {
   glm::mat4 view_from_world, clip_from_view;
 };
 
-gltf::Material materialOf(const World& world, const streaming::ResidentDraw& draw) {
-  const auto& materials = world.residency().bundles()[draw.bundle].materials;
-  return draw.material >= 0 ? materials[static_cast<std::size_t>(draw.material)] : gltf::Material{};
-}
-
-SurfaceDraw describe(const World& world, std::size_t index) {
-  const streaming::ResidentDraw& draw = world.residency().draws()[index];
-  const streaming::ResidentMesh& mesh = world.residency().meshes()[draw.mesh];
-  const gltf::Material material = materialOf(world, draw);
-  const std::uint32_t set = std::min(material.base_color_texture.texcoord, 1u);
-  const std::uint32_t texcoords = mesh.texcoords_word[set];
-  return {.world_from_mesh = world.worldFromMesh(index),
-          .base_color = material.base_color,
-          .positions_word = mesh.positions_word,
-          .texcoords_word = texcoords,
-          .colors_word = mesh.colors_word,
-          .radiance_word = draw.radiance.word(),
-          .alpha_mode = static_cast<uint>(material.alpha_mode),
-          .alpha_cutoff = material.alpha_cutoff,
-          .textured = material.base_color_texture.texture >= 0 && texcoords != kAbsent ? 1u : 0u,
-          .pad = 0};
-}
-
 }  // namespace
 
 Surfaces::Surfaces() : draws_("surface draws"), commands_("surface commands"), view_("view") {}
 
 Result<Surfaces> Surfaces::create(bool finest_texels) {
   Surfaces surfaces;
-  std::vector<gpu::Define> defines;
-  if (finest_texels) defines.push_back({"LAMBENT_FINEST_TEXELS", "1"});
-  Result<gpu::Program> program = gpu::Program::create(
-      "surface", {{GL_VERTEX_SHADER, "surface.vert"}, {GL_FRAGMENT_SHADER, "surface.frag"}}, kShaders,
-      defines);
-  if (!program) return failAgain(program.error());
-  surfaces.program_ = std::move(*program);
+  for (const bool normal_mapped : {false, true}) {
+    std::vector<gpu::Define> defines;
+    if (finest_texels) defines.push_back({"LAMBENT_FINEST_TEXELS", "1"});
+    if (normal_mapped) defines.push_back({"LAMBENT_NORMAL_MAPPED", "1"});
+    Result<gpu::Program> program = gpu::Program::create(
+        "surface", {{GL_VERTEX_SHADER, "surface.vert"}, {GL_FRAGMENT_SHADER, "surface.frag"}}, kShaders,
+        defines);
+    if (!program) return failAgain(program.error());
+    surfaces.programs_[normal_mapped ? 1 : 0] = std::move(*program);
+  }
   surfaces.vertices_ = gpu::VertexArray("surface");
-  surfaces.white_ = gpu::Texture("white", {.format = GL_RGBA8});
-  constexpr std::uint8_t kWhite[] = {255, 255, 255, 255};
-  glTextureSubImage2D(surfaces.white_.id(), 0, 0, 0, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, kWhite);
   return surfaces;
 }
 
@@ -69,20 +46,15 @@ void Surfaces::collect(World& world, const effects::diffuse::Diffuse& diffuse, g
     const streaming::ResidentDraw& draw = residency.draws()[i];
     if (!diffuse.shaded(i)) continue;
     const streaming::ResidentMesh& mesh = residency.meshes()[draw.mesh];
-    const gltf::Material material = materialOf(world, draw);
     const glm::mat4& world_from_mesh = records_[i].world_from_mesh;
     Item item{.state = {.geometry_page = mesh.block.page,
                         .radiance_page = draw.radiance.page,
-                        .bundle = -1,
-                        .texture = -1,
+                        .textures = texturesOf(world, i, records_[i]),
+                        .normal_mapped = normalMapped(world, i),
                         .clockwise = (glm::determinant(glm::mat3(world_from_mesh)) < 0.0f) != draw.back},
               .draw = i,
               .distance = glm::distance(eye_ws, glm::vec3(world_from_mesh * glm::vec4(mesh.center, 1.0f)))};
-    if (records_[i].textured != 0) {
-      item.state.bundle = static_cast<std::int32_t>(draw.bundle);
-      item.state.texture = material.base_color_texture.texture;
-    }
-    (material.alpha_mode == gltf::AlphaMode::Blend ? blended : opaque).push_back(item);
+    (records_[i].alpha_mode == kAlphaBlend ? blended : opaque).push_back(item);
   }
 }
 
@@ -106,10 +78,12 @@ void Surfaces::prepare(World& world, const effects::diffuse::Diffuse& diffuse, c
   std::size_t shaded = 0;
   for (std::size_t i = 0; i < residency.draws().size(); ++i) shaded += diffuse.shaded(i) ? 1 : 0;
   const bool scene_same = residency.version() == residency_seen_ &&
-                          world.transformsVersion() == transforms_seen_ && shaded == shaded_seen_;
+                          world.transformsVersion() == transforms_seen_ &&
+                          world.lampsVersion() == lamps_seen_ && shaded == shaded_seen_;
   if (scene_same && (blended_.empty() || view.eye_ws == eye_seen_ws_)) return;
   residency_seen_ = residency.version();
   transforms_seen_ = world.transformsVersion();
+  lamps_seen_ = world.lampsVersion();
   shaded_seen_ = shaded;
   eye_seen_ws_ = view.eye_ws;
 
@@ -145,26 +119,8 @@ void Surfaces::prepare(World& world, const effects::diffuse::Diffuse& diffuse, c
   }
 }
 
-void Surfaces::bindTexture(const World& world, const State& state) {
-  const gpu::Texture* texture = &white_;
-  gltf::Sampler wanted;
-  if (state.texture >= 0) {
-    const streaming::ResidentBundle& bundle =
-        world.residency().bundles()[static_cast<std::size_t>(state.bundle)];
-    const gltf::Texture& described = bundle.textures[static_cast<std::size_t>(state.texture)];
-    wanted = described.sampler;
-    if (described.image >= 0 && bundle.images[static_cast<std::size_t>(described.image)])
-      texture = &bundle.images[static_cast<std::size_t>(described.image)];
-  }
-  auto& sampler = samplers_[{wanted.wrap_s, wanted.wrap_t, wanted.mag_filter, wanted.min_filter}];
-  if (!sampler) sampler = gpu::Sampler(wanted.wrap_s, wanted.wrap_t, wanted.mag_filter, wanted.min_filter);
-  texture->bind(0);
-  glBindSampler(0, sampler.id());
-}
-
 void Surfaces::drawRuns(World& world, const std::vector<Run>& runs, gpu::Counters& counters) {
   if (runs.empty()) return;
-  program_.use();
   glBindVertexArray(vertices_.id());
   glBindBufferBase(GL_UNIFORM_BUFFER, kBindView, view_.buffer().id());
   glBindBuffer(GL_DRAW_INDIRECT_BUFFER, commands_.buffer().id());
@@ -175,7 +131,8 @@ void Surfaces::drawRuns(World& world, const std::vector<Run>& runs, gpu::Counter
     geometry.bindStorage(kBindGeometry);
     glVertexArrayElementBuffer(vertices_.id(), geometry.id());
     world.residency().radiance().page(run.state.radiance_page).bindStorage(kBindRadiance);
-    bindTexture(world, run.state);
+    programs_[run.state.normal_mapped ? 1 : 0].use();
+    units_.bind(world, run.state.textures);
     glFrontFace(run.state.clockwise ? GL_CW : GL_CCW);
     glMultiDrawElementsIndirect(
         GL_TRIANGLES, GL_UNSIGNED_INT,
@@ -186,7 +143,7 @@ void Surfaces::drawRuns(World& world, const std::vector<Run>& runs, gpu::Counter
   }
   glFrontFace(GL_CCW);
   glDisable(GL_CULL_FACE);
-  glBindSampler(0, 0);
+  units_.unbindSamplers();
 }
 
 void Surfaces::drawOpaque(World& world, gpu::Counters& counters) {

@@ -4,16 +4,17 @@
 // shaders that do not compile on this device.
 #pragma once
 
+#include <array>
 #include <compare>
-#include <map>
-#include <tuple>
 #include <vector>
 
 #include <glm/vec3.hpp>
 
 #include "runtime/base/result.hpp"
 #include "runtime/effects/diffuse/diffuse.hpp"
+#include "runtime/frame/surface_record.hpp"
 #include "runtime/frame/surface_shared.h"
+#include "runtime/frame/texture_units.hpp"
 #include "runtime/frame/world.hpp"
 #include "runtime/gpu/program.hpp"
 #include "runtime/spec/camera.hpp"
@@ -38,8 +39,9 @@ class Surfaces {
   // Draws that may go into one multi-draw.
   struct State {
     std::uint32_t geometry_page = 0, radiance_page = 0;
-    std::int32_t bundle = -1, texture = -1;  // -1: untextured
-    bool clockwise = false;                  // which winding is seen
+    SurfaceTextures textures;
+    bool normal_mapped = false;
+    bool clockwise = false;  // which winding is seen
     auto operator<=>(const State&) const = default;
   };
   struct Run {
@@ -58,17 +60,15 @@ class Surfaces {
   void appendRuns(const World& world, const std::vector<Item>& items, std::vector<Run>& runs,
                   std::vector<Command>& commands) const;
   void drawRuns(World& world, const std::vector<Run>& runs, gpu::Counters& counters);
-  void bindTexture(const World& world, const State& state);
 
-  gpu::Program program_;
+  std::array<gpu::Program, 2> programs_;  // light as radiance, light for normal maps
+  TextureUnits units_;
   gpu::VertexArray vertices_;
   gpu::Buffer draw_indices_;
   gpu::Table draws_, commands_, view_;
-  gpu::Texture white_;
-  std::map<std::tuple<std::uint32_t, std::uint32_t, std::uint32_t, std::uint32_t>, gpu::Sampler> samplers_;
   std::vector<SurfaceDraw> records_;
   std::vector<Run> opaque_, blended_;
-  std::uint64_t residency_seen_ = 0, transforms_seen_ = 0;
+  std::uint64_t residency_seen_ = 0, transforms_seen_ = 0, lamps_seen_ = 0;
   std::size_t shaded_seen_ = 0;
   glm::vec3 eye_seen_ws_{0.0f};
 };

@@ -29,8 +29,11 @@ struct Loader::State {
     std::size_t held = 0;  // bytes reserved, then those of `ready`
   };
 
-  State(std::shared_ptr<const bundle::Reader> bundle, unsigned thread_count)
-      : reader(std::move(bundle)), work(workList(reader->description())), slots(work.size()) {
+  State(std::shared_ptr<const bundle::Reader> bundle, bundle::Description wanted_parts, unsigned thread_count)
+      : reader(std::move(bundle)),
+        description(std::move(wanted_parts)),
+        work(workList(description)),
+        slots(work.size()) {
     const std::size_t wanted = std::min<std::size_t>(std::max(thread_count, 1u), work.size());
     for (std::size_t i = 0; i < wanted; ++i) workers.emplace_back([this] { runWorker(); });
   }
@@ -58,7 +61,7 @@ struct Loader::State {
       {
         const std::lock_guard lock(mutex);
         if (*loaded) {
-          bytes_read += reader->description().views[viewOf(reader->description(), work[at])].length;
+          bytes_read += bytesInFile(description, work[at]);
           hold(at, bytesOf(**loaded));
           slots[at].ready = std::move(**loaded);
         } else {
@@ -115,6 +118,7 @@ struct Loader::State {
   }
 
   const std::shared_ptr<const bundle::Reader> reader;
+  const bundle::Description description;  // of what is wanted
   const std::vector<Work> work;
 
   mutable std::mutex mutex;      // guards all below
@@ -133,7 +137,9 @@ struct Loader::State {
 };
 
 Loader::Loader(std::shared_ptr<const bundle::Reader> reader, unsigned threads)
-    : state_(std::make_unique<State>(std::move(reader), threads)) {}
+    : Loader(reader, reader->description(), threads) {}
+Loader::Loader(std::shared_ptr<const bundle::Reader> reader, bundle::Description wanted, unsigned threads)
+    : state_(std::make_unique<State>(std::move(reader), std::move(wanted), threads)) {}
 Loader::~Loader() = default;
 Loader::Loader(Loader&&) noexcept = default;
 Loader& Loader::operator=(Loader&&) noexcept = default;

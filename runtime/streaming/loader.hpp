@@ -14,7 +14,6 @@
 #include "runtime/base/result.hpp"
 #include "runtime/bundle/mesh.hpp"
 #include "runtime/bundle/reader.hpp"
-#include "runtime/bundle/transfer_codec.hpp"
 
 namespace lambent::streaming {
 
@@ -34,23 +33,26 @@ struct RowsReady {
   bundle::VertexRows rows;
 };
 
-struct BasisReady {
+struct CodebookReady {
   std::uint32_t group = 0, cell = 0, transfer = 0;  // transfer: index into Cell::diffuse
-  std::vector<float> vectors;                       // (1 + planes) x channels x columns
+  bundle::Codebook codebook;
+  std::vector<std::uint32_t> positions;  // in the order of the codes: sample of the cell | cluster << 16
 };
 
 struct PlaneReady {
   std::uint32_t group = 0, cell = 0, transfer = 0, plane = 0;
-  std::vector<std::byte> codes;  // as the GPU reads them: bits per sample, little endian
+  std::vector<std::byte> codes;  // as the GPU reads them: bits per position, little endian
 };
 
-using Ready = std::variant<MeshReady, ImageReady, RowsReady, BasisReady, PlaneReady>;
+using Ready = std::variant<MeshReady, ImageReady, RowsReady, CodebookReady, PlaneReady>;
 
 class Loader {
  public:
   // Starts `threads` workers (at least 1) on everything in the bundle: meshes and rows first, then images,
-  // then per cell bases and planes by priority.
+  // then codebooks and planes by priority.
   Loader(std::shared_ptr<const bundle::Reader> reader, unsigned threads);
+  // Brings only what `wanted` still lists: the bundle's description with weight planes cut off (budget.hpp).
+  Loader(std::shared_ptr<const bundle::Reader> reader, bundle::Description wanted, unsigned threads);
   ~Loader();  // stops the workers after the item in hand
   Loader(Loader&&) noexcept;
   Loader& operator=(Loader&&) noexcept;

@@ -10,6 +10,8 @@
 #include <glm/gtc/quaternion.hpp>
 #include <glm/matrix.hpp>
 
+#include "runtime/streaming/sizes.hpp"
+
 namespace lambent::streaming {
 
 namespace {
@@ -26,40 +28,32 @@ std::uint32_t words(std::uint64_t byte_count) {
 // Small bundles share a page.
 constexpr std::uint64_t kMinPageBytes = std::uint64_t{1} << 20;
 
-// What a bundle will need in each arena: pages are made no larger.
-struct Needs {
-  std::uint64_t geometry = 0, transfer = 0, samples = 0, rows = 0, radiance = 0;
-};
-
-std::uint64_t codeBytes(std::uint64_t sample_count, std::uint32_t bits) {
-  return words(sample_count * bits / 8) * 4ull;
-}
-
-std::uint64_t cellBytes(const ResidentCell& cell) {
-  std::uint64_t bytes = 0;
-  for (const ResidentTransfer& transfer : cell.transfers) {
-    bytes += 4ull * (1 + transfer.planes.size()) * transfer.channels * transfer.columns;
-    for (const ResidentPlane& plane : transfer.planes) bytes += codeBytes(cell.sample_count, plane.bits);
-  }
-  return bytes;
-}
-
 ResidentTransfer describe(const bundle::DiffuseTransfer& transfer) {
-  ResidentTransfer resident{.part = transfer.part,
-                            .order = transfer.order,
-                            .columns = transfer.columns(),
-                            .channels = transfer.channels,
-                            .basis_word = 0,
-                            .planes = {},
-                            .basis_resident = false,
-                            .planes_resident = 0};
+  ResidentTransfer resident;
+  resident.shape = transfer.shape;
+  resident.clusters = transfer.clusters;
+  resident.axes = transfer.axes;
   for (const bundle::WeightPlane& plane : transfer.planes)
-    resident.planes.push_back({.word = 0,
-                               .bits = plane.bits,
-                               .offset = plane.offset,
-                               .scale = plane.scale,
-                               .variance = plane.variance});
+    resident.planes.push_back(
+        {.word = 0, .bits = plane.bits, .count = plane.count, .variance = plane.variance});
   return resident;
+}
+
+// Places everything of a cell from `word` on; returns the word after.
+std::uint32_t layOut(ResidentCell& cell, std::uint32_t word) {
+  for (ResidentTransfer& transfer : cell.transfers) {
+    const std::uint32_t vectors = transfer.clusters + transfer.axes;
+    transfer.clusters_word = word;
+    transfer.weights_word = transfer.clusters_word + 2 * transfer.clusters;
+    transfer.vectors_word = transfer.weights_word + 2 * vectors;
+    transfer.positions_word = transfer.vectors_word + vectors * transfer.shape.size();
+    word = transfer.positions_word + cell.sample_count;
+    for (ResidentPlane& plane : transfer.planes) {
+      plane.word = word;
+      word += words(std::uint64_t{plane.count} * plane.bits / 8);
+    }
+  }
+  return word;
 }
 
 // Normals go by the inverse transpose; the group's own placement has no scale. A flattened mesh has no
@@ -75,11 +69,40 @@ std::uint32_t mipLevels(std::uint32_t width, std::uint32_t height) {
   return static_cast<std::uint32_t>(std::bit_width(std::max(width, height)));
 }
 
+gpu::Texture makeTexture(const std::string& label, GLenum format, const ImageReady& image) {
+  gpu::Texture texture(label, {.format = format,
+                               .width = image.width,
+                               .height = image.height,
+                               .levels = mipLevels(image.width, image.height)});
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  glTextureSubImage2D(texture.id(), 0, 0, 0, static_cast<GLsizei>(image.width),
+                      static_cast<GLsizei>(image.height), GL_RGBA, GL_UNSIGNED_BYTE, image.rgba.data());
+  glGenerateTextureMipmap(texture.id());
+  return texture;
+}
+
+std::vector<ImageUse> imageUses(const bundle::Description& description) {
+  std::vector<ImageUse> uses(description.images.size());
+  const auto useOf = [&](const gltf::TextureRef& reference) -> ImageUse* {
+    if (reference.texture < 0) return nullptr;
+    const std::int32_t image = description.textures[static_cast<std::size_t>(reference.texture)].image;
+    return image >= 0 ? &uses[static_cast<std::size_t>(image)] : nullptr;
+  };
+  for (const gltf::Material& material : description.materials) {
+    if (ImageUse* use = useOf(material.base_color_texture)) use->color = true;
+    if (ImageUse* use = useOf(material.emissive_texture)) use->color = true;
+    if (ImageUse* use = useOf(material.normal_texture)) use->normals = true;
+  }
+  // What no material names may yet be asked for: as colour, the usual.
+  for (ImageUse& use : uses) use.color |= !use.normals;
+  return uses;
+}
+
 }  // namespace
 
 bool ResidentCell::usable() const {
   for (const ResidentTransfer& transfer : transfers) {
-    if (!transfer.basis_resident) return false;
+    if (!transfer.codebook_resident) return false;
     if (transfer.planes_resident == transfer.planes.size()) continue;
     float all = 0.0f, here = 0.0f;
     for (std::size_t i = 0; i < transfer.planes.size(); ++i) {
@@ -104,10 +127,11 @@ Result<std::uint32_t> Residency::add(const bundle::Description& description) {
   ResidentBundle bundle{.materials = description.materials,
                         .textures = description.textures,
                         .images = std::vector<gpu::Texture>(description.images.size()),
+                        .linear_images = std::vector<gpu::Texture>(description.images.size()),
+                        .image_uses = imageUses(description),
                         .first_group = static_cast<std::uint32_t>(groups_.size()),
                         .first_draw = static_cast<std::uint32_t>(draws_.size()),
                         .first_mesh = {}};
-  Needs needs;
   for (const bundle::Mesh& mesh : description.meshes) {
     bundle.first_mesh.push_back(static_cast<std::uint32_t>(meshes_.size()));
     for (const bundle::Primitive& primitive : mesh.primitives) {
@@ -116,8 +140,6 @@ Result<std::uint32_t> Residency::add(const bundle::Description& description) {
       resident.index_count = primitive.index_count;
       resident.center = 0.5f * (primitive.bounds_min + primitive.bounds_max);
       meshes_.push_back(resident);
-      needs.geometry +=
-          48ull * primitive.vertex_count + 4ull * primitive.index_count + gpu::Arena::kAlignment;
     }
   }
   std::vector<ResidentGroup> groups;
@@ -125,26 +147,25 @@ Result<std::uint32_t> Residency::add(const bundle::Description& description) {
     ResidentGroup resident{.bundle = bundle_index,
                            .index = static_cast<std::uint32_t>(groups.size()),
                            .order = 1,
-                           .light_columns = 0,
+                           .light_columns = static_cast<std::uint32_t>(group.lights.size()),
                            .first_cell = static_cast<std::uint32_t>(cells_.size()),
                            .cell_count = static_cast<std::uint32_t>(group.cells.size()),
+                           .plain_samples = group.plainSamples(),
                            .samples = {}};
     for (const bundle::Cell& cell : group.cells) {
       ResidentCell resident_cell{.group = bundle.first_group + resident.index,
                                  .first_sample = cell.first_sample,
                                  .sample_count = cell.sample_count,
+                                 .outputs = cell.outputs(),
                                  .block = {},
                                  .transfers = {},
                                  .version = version_};
       for (const bundle::DiffuseTransfer& transfer : cell.diffuse) {
         resident_cell.transfers.push_back(describe(transfer));
-        resident.order = std::max(resident.order, transfer.order);
-        resident.light_columns = std::max(resident.light_columns, transfer.light_columns);
+        resident.order = std::max(resident.order, transfer.shape.order);
       }
-      needs.transfer += cellBytes(resident_cell) + gpu::Arena::kAlignment;
       cells_.push_back(std::move(resident_cell));
     }
-    needs.samples += 16ull * group.sample_count;
     groups.push_back(resident);
   }
   const std::vector<glm::mat4> world_from_node = gltf::worldTransforms(description.nodes);
@@ -158,15 +179,15 @@ Result<std::uint32_t> Residency::add(const bundle::Description& description) {
          .mesh = mesh,
          .material = description.meshes[draw.mesh].primitives[draw.primitive].material,
          .back = draw.back,
+         .outputs = draw.outputs,
          .group_from_mesh_normal = (draw.back ? -1.0f : 1.0f) *
                                    normalMatrix(description.groups[draw.group], world_from_node[draw.node]),
          .rows = {},
          .row_entries = 0,
          .radiance = {},
          .version = version_});
-    needs.rows += description.payloads[draw.rows].raw_length + 4ull * meshes_[mesh].vertex_count + 32;
-    needs.radiance += 12ull * meshes_[mesh].vertex_count + gpu::Arena::kAlignment;
   }
+  const Needs needs = needsOf(description);
   const auto page_bytes = [&](std::uint64_t need) {
     return std::min(std::max(need, kMinPageBytes), max_page_bytes_);
   };
@@ -176,9 +197,9 @@ Result<std::uint32_t> Residency::add(const bundle::Description& description) {
   rows_.setPageBytes(page_bytes(needs.rows));
   radiance_.setPageBytes(page_bytes(needs.radiance));
   for (ResidentGroup& group : groups) {
-    const std::uint32_t sample_count = description.groups[group.index].sample_count;
+    const std::uint64_t sample_count = samplesOf(description.groups[group.index]);
     if (sample_count > 0) {
-      const Result<gpu::Allocation> samples = samples_.allocate(16ull * sample_count);
+      const Result<gpu::Allocation> samples = samples_.allocate(16 * sample_count);
       if (!samples) return failAgain(samples.error());
       group.samples = *samples;
       samples_.clear(*samples);
@@ -204,16 +225,17 @@ Result<void> Residency::put(std::uint32_t bundle, const MeshReady& item) {
   std::vector<std::uint64_t> colors;
   colors.reserve(data.colors.size());
   for (const glm::vec4& color : data.colors) colors.push_back(glm::packUnorm4x16(color));
-  const std::span<const std::byte> parts[] = {bytesOf(data.positions),  bytesOf(data.normals),
-                                              bytesOf(data.texcoords0), bytesOf(data.texcoords1),
-                                              bytesOf(colors),          bytesOf(data.indices)};
+  const std::span<const std::byte> parts[] = {
+      bytesOf(data.positions), bytesOf(data.normals),  bytesOf(data.texcoords0), bytesOf(data.texcoords1),
+      bytesOf(colors),         bytesOf(data.tangents), bytesOf(data.indices)};
   std::uint64_t byte_count = 0;
   for (const auto& part : parts) byte_count += part.size();
   const Result<gpu::Allocation> block = geometry_.allocate(byte_count);
   if (!block) return failAgain(block.error());
   mesh.block = *block;
   std::uint32_t* const word_of[] = {&mesh.positions_word,    &mesh.normals_word, &mesh.texcoords_word[0],
-                                    &mesh.texcoords_word[1], &mesh.colors_word,  &mesh.indices_word};
+                                    &mesh.texcoords_word[1], &mesh.colors_word,  &mesh.tangents_word,
+                                    &mesh.indices_word};
   std::uint64_t offset = 0;
   for (std::size_t i = 0; i < std::size(parts); ++i) {
     if (parts[i].empty()) continue;
@@ -223,7 +245,8 @@ Result<void> Residency::put(std::uint32_t bundle, const MeshReady& item) {
   }
   for (ResidentDraw& draw : draws_) {
     if (draw.mesh != index) continue;
-    const Result<gpu::Allocation> radiance = radiance_.allocate(12ull * mesh.vertex_count);
+    const Result<gpu::Allocation> radiance =
+        radiance_.allocate(4ull * radianceWords(draw.outputs) * mesh.vertex_count);
     if (!radiance) return failAgain(radiance.error());
     draw.radiance = *radiance;
     draw.version = version_;
@@ -232,17 +255,13 @@ Result<void> Residency::put(std::uint32_t bundle, const MeshReady& item) {
 }
 
 Result<void> Residency::put(std::uint32_t bundle, const ImageReady& item) {
-  gpu::Texture texture(fmt::format("image {}.{}", bundle, item.image),
-                       {.format = GL_SRGB8_ALPHA8,
-                        .width = item.width,
-                        .height = item.height,
-                        .levels = mipLevels(item.width, item.height)});
-  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-  glTextureSubImage2D(texture.id(), 0, 0, 0, static_cast<GLsizei>(item.width),
-                      static_cast<GLsizei>(item.height), GL_RGBA, GL_UNSIGNED_BYTE, item.rgba.data());
-  glGenerateTextureMipmap(texture.id());
-  texture_bytes_ += std::uint64_t{item.width} * item.height * 4 * 4 / 3;
-  bundles_[bundle].images[item.image] = std::move(texture);
+  ResidentBundle& owner = bundles_[bundle];
+  const ImageUse use = owner.image_uses[item.image];
+  const std::string label = fmt::format("image {}.{}", bundle, item.image);
+  if (use.color) owner.images[item.image] = makeTexture(label, GL_SRGB8_ALPHA8, item);
+  if (use.normals) owner.linear_images[item.image] = makeTexture(label + " linear", GL_RGBA8, item);
+  const std::uint64_t copies = (use.color ? 1u : 0u) + (use.normals ? 1u : 0u);
+  texture_bytes_ += copies * item.width * item.height * 4 * 4 / 3;
   return {};
 }
 
@@ -272,28 +291,36 @@ ResidentCell& Residency::cellOf(std::uint32_t bundle, std::uint32_t group, std::
 
 Result<void> Residency::reserveCell(ResidentCell& cell) {
   if (cell.block) return {};
-  const Result<gpu::Allocation> block = transfer_.allocate(cellBytes(cell));
+  const Result<gpu::Allocation> block = transfer_.allocate(4ull * layOut(cell, 0));
   if (!block) return failAgain(block.error());
   cell.block = *block;
-  std::uint32_t word = block->word();
-  for (ResidentTransfer& transfer : cell.transfers) {
-    transfer.basis_word = word;
-    word += static_cast<std::uint32_t>((1 + transfer.planes.size()) * transfer.channels * transfer.columns);
-    for (ResidentPlane& plane : transfer.planes) {
-      plane.word = word;
-      word += words(codeBytes(cell.sample_count, plane.bits));
-    }
-  }
+  layOut(cell, block->word());
   return {};
 }
 
-Result<void> Residency::put(std::uint32_t bundle, const BasisReady& item) {
+Result<void> Residency::put(std::uint32_t bundle, const CodebookReady& item) {
   ResidentCell& cell = cellOf(bundle, item.group, item.cell);
   if (Result<void> reserved = reserveCell(cell); !reserved) return reserved;
   ResidentTransfer& transfer = cell.transfers[item.transfer];
-  assert(item.vectors.size() == (1 + transfer.planes.size()) * transfer.channels * transfer.columns);
-  transfer_.write(cell.block, 4ull * (transfer.basis_word - cell.block.word()), bytesOf(item.vectors));
-  transfer.basis_resident = true;
+  const bundle::Codebook& codebook = item.codebook;
+  assert(codebook.clusters() == transfer.clusters && codebook.axes.size() == transfer.axes &&
+         item.positions.size() == cell.sample_count);
+  std::vector<std::uint32_t> clusters;
+  std::vector<bundle::AxisCode> weights;
+  for (std::size_t c = 0, axis = 0; c < codebook.clusters(); ++c) {
+    const std::uint32_t axes = codebook.axis_counts[c];
+    clusters.insert(clusters.end(), {static_cast<std::uint32_t>(weights.size()), axes});
+    weights.push_back({.offset = 1.0f, .scale = 0.0f});  // the mean
+    for (std::uint32_t j = 0; j < axes; ++j) weights.push_back(codebook.axes[axis++]);
+  }
+  const auto write = [&](std::uint32_t word, std::span<const std::byte> bytes) {
+    transfer_.write(cell.block, 4ull * (word - cell.block.word()), bytes);
+  };
+  write(transfer.clusters_word, bytesOf(clusters));
+  write(transfer.weights_word, bytesOf(weights));
+  write(transfer.vectors_word, bytesOf(codebook.vectors));
+  write(transfer.positions_word, bytesOf(item.positions));
+  transfer.codebook_resident = true;
   cell.version = version_;
   return {};
 }
@@ -315,18 +342,29 @@ std::uint64_t Residency::bytesResident() const {
          radiance_.bytesUsed() + texture_bytes_;
 }
 
+std::uint64_t Residency::planesResident() const {
+  std::uint64_t planes = 0;
+  for (const ResidentCell& cell : cells_)
+    for (const ResidentTransfer& transfer : cell.transfers) planes += transfer.planes_resident;
+  return planes;
+}
+
 std::uint64_t Residency::uploadBytes(const Ready& item) {
   struct Size {
     std::uint64_t operator()(const MeshReady& mesh) const {
       return 24ull * mesh.data.positions.size() + 8ull * mesh.data.texcoords0.size() +
              8ull * mesh.data.texcoords1.size() + 8ull * mesh.data.colors.size() +
-             4ull * mesh.data.indices.size();
+             16ull * mesh.data.tangents.size() + 4ull * mesh.data.indices.size();
     }
     std::uint64_t operator()(const ImageReady& image) const { return image.rgba.size(); }
     std::uint64_t operator()(const RowsReady& rows) const {
       return 4ull * rows.rows.offsets.size() + 6ull * rows.rows.samples.size();
     }
-    std::uint64_t operator()(const BasisReady& basis) const { return 4ull * basis.vectors.size(); }
+    std::uint64_t operator()(const CodebookReady& ready) const {
+      const bundle::Codebook& codebook = ready.codebook;
+      return 16ull * codebook.clusters() + 8ull * codebook.axes.size() + 4ull * codebook.vectors.size() +
+             4ull * ready.positions.size();
+    }
     std::uint64_t operator()(const PlaneReady& plane) const { return plane.codes.size(); }
   };
   return std::visit(Size{}, item);

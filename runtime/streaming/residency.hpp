@@ -29,34 +29,40 @@ struct ResidentMesh {
   std::uint32_t positions_word = 0, normals_word = 0;    // 3 floats each
   std::uint32_t texcoords_word[2] = {kAbsent, kAbsent};  // 2 floats
   std::uint32_t colors_word = kAbsent;                   // 4 x unorm16
+  std::uint32_t tangents_word = kAbsent;                 // 4 floats
   std::uint32_t indices_word = 0;                        // uint32
 };
 
 struct ResidentPlane {
-  std::uint32_t word = 0;  // codes in the cell's block
+  std::uint32_t word = 0;  // codes in the cell's block, in the order of positions
   std::uint32_t bits = 8;
-  float offset = 0.0f, scale = 0.0f;
+  std::uint32_t count = 0;
   float variance = 0.0f;
 };
 
+// Words of the cell's block; diffuse_shared.h has the layout.
 struct ResidentTransfer {
-  bundle::TransferPart part = bundle::TransferPart::Direct;
-  std::uint32_t order = 1, columns = 1, channels = 1;
-  std::uint32_t basis_word = 0;
+  bundle::TransferShape shape;
+  std::uint32_t clusters = 1, axes = 0;
+  std::uint32_t clusters_word = 0;   // per cluster: its first vector, its number of axes
+  std::uint32_t weights_word = 0;    // per vector: offset and scale of its weight; 1 and 0 of a mean
+  std::uint32_t vectors_word = 0;    // shape.size() floats each: of every cluster the mean, then the axes
+  std::uint32_t positions_word = 0;  // per position: sample of the cell | cluster << 16
   std::vector<ResidentPlane> planes;
-  bool basis_resident = false;
+  bool codebook_resident = false;
   std::uint32_t planes_resident = 0;  // a prefix of `planes`
 };
 
 struct ResidentCell {
   std::uint32_t group = 0;  // into groups()
   std::uint32_t first_sample = 0, sample_count = 0;
-  gpu::Allocation block;  // transfer arena: bases and codes of all parts; reserved with the first of them
+  std::uint32_t outputs = 1;
+  gpu::Allocation block;  // transfer arena: codebooks and codes; reserved with the first of them
   std::vector<ResidentTransfer> transfers;
   std::uint64_t version = 0;
 
-  // Enough has arrived to look better than no shadows at all: every part with its basis and with planes that
-  // carry kUsableVariance of what all its planes carry.
+  // Enough has arrived to look better than no shadows at all: every transfer with its codebook and with
+  // planes that carry kUsableVariance of what all its planes carry.
   bool usable() const;
 };
 inline constexpr float kUsableVariance = 0.9f;
@@ -65,7 +71,13 @@ struct ResidentGroup {
   std::uint32_t bundle = 0, index = 0;  // in its description
   std::uint32_t order = 1, light_columns = 0;
   std::uint32_t first_cell = 0, cell_count = 0;  // into cells()
-  gpu::Allocation samples;                       // one vec4 per sample, zero until shaded
+  std::uint32_t plain_samples = 0;               // those with one output come first
+  gpu::Allocation samples;                       // a vec4 per sample and output, zero until shaded
+
+  // vec4 index of output o of sample s in the page: sampleBase(outputs) + outputs * s + o. May wrap round.
+  std::uint32_t sampleBase(std::uint32_t outputs) const {
+    return samples.word() / 4 - (outputs - 1) * plain_samples;
+  }
 };
 
 struct ResidentDraw {
@@ -73,18 +85,27 @@ struct ResidentDraw {
   std::uint32_t group = 0, mesh = 0;       // into groups() and meshes()
   std::int32_t material = -1;              // of the bundle
   bool back = false;                       // the back of a double-sided surface
+  std::uint32_t outputs = 1;               // 9: normal-mapped
   glm::mat3 group_from_mesh_normal{1.0f};  // of a back, negated
   gpu::Allocation
       rows;  // vertex_count + 1 offsets, row_entries samples, row_entries unorm16 weights; empty: not here
   std::uint32_t row_entries = 0;
-  gpu::Allocation radiance;  // 3 floats per vertex, once the mesh is here
+  gpu::Allocation radiance;  // radianceWords(outputs) floats per vertex, once the mesh is here
   std::uint64_t version = 0;
+};
+
+// How the materials read an image.
+struct ImageUse {
+  bool color = false, normals = false;
 };
 
 struct ResidentBundle {
   std::vector<gltf::Material> materials;
   std::vector<gltf::Texture> textures;
-  std::vector<gpu::Texture> images;  // empty handle: not here yet
+  // By image; empty handle: not here yet. Colours are decoded from sRGB where they are looked up, normals are
+  // not; an image that serves as both lies in both, for each way of reading it has mip levels of its own.
+  std::vector<gpu::Texture> images, linear_images;
+  std::vector<ImageUse> image_uses;
   // Where the bundle's own indices start in the tables.
   std::uint32_t first_group = 0, first_draw = 0;
   std::vector<std::uint32_t> first_mesh;  // of each mesh's first primitive
@@ -95,7 +116,7 @@ class Residency {
   // Pages are as large as a bundle needs, up to max_page_bytes.
   explicit Residency(std::uint64_t max_page_bytes = gpu::Arena::kMaxPageBytes);
 
-  // Returns the bundle's index.
+  // Returns the bundle's index. The description may lack planes that the budget has no room for (budget.hpp).
   Result<std::uint32_t> add(const bundle::Description& description);
   Result<void> upload(std::uint32_t bundle, const Ready& item);
 
@@ -115,6 +136,7 @@ class Residency {
 
   // What is in use on the GPU: arenas and textures.
   std::uint64_t bytesResident() const;
+  std::uint64_t planesResident() const;
   // Bytes of an item as they are uploaded.
   static std::uint64_t uploadBytes(const Ready& item);
 
@@ -122,7 +144,7 @@ class Residency {
   Result<void> put(std::uint32_t bundle, const MeshReady& item);
   Result<void> put(std::uint32_t bundle, const ImageReady& item);
   Result<void> put(std::uint32_t bundle, const RowsReady& item);
-  Result<void> put(std::uint32_t bundle, const BasisReady& item);
+  Result<void> put(std::uint32_t bundle, const CodebookReady& item);
   Result<void> put(std::uint32_t bundle, const PlaneReady& item);
   ResidentCell& cellOf(std::uint32_t bundle, std::uint32_t group, std::uint32_t cell);
   Result<void> reserveCell(ResidentCell& cell);

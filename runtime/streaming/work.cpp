@@ -28,7 +28,7 @@ void appendByPriority(std::vector<Work>& list, std::vector<Ranked> ranked) {
   for (const Ranked& item : ranked) list.push_back(item.work);
 }
 
-template <class Place>  // BasisWork or PlaneWork
+template <class Place>  // CodebookWork or PlaneWork
 const bundle::Cell& cellOf(const bundle::Description& description, const Place& at) {
   return description.groups[at.group].cells[at.cell];
 }
@@ -52,7 +52,7 @@ class Load {
   Loaded operator()(const MeshWork& work) const {
     const bundle::Primitive& primitive = description_.meshes[work.mesh].primitives[work.primitive];
     // As if every attribute were there: it costs nothing to leave some room.
-    constexpr std::size_t kVertexBytes = sizeof(float) * (3 + 3 + 2 + 2 + 4);
+    constexpr std::size_t kVertexBytes = sizeof(float) * (3 + 3 + 2 + 2 + 4 + 4);
     if (!reserve_(primitive.vertex_count * kVertexBytes + primitive.index_count * sizeof(std::uint32_t)))
       return {};
     auto mesh = reader_.readMesh(work.mesh, work.primitive);
@@ -61,14 +61,9 @@ class Load {
   }
 
   Loaded operator()(const RowsWork& work) const {
-    const bundle::Draw& draw = description_.draws[work.draw];
     // Six bytes of an entry in the file become eight.
-    if (!reserve_(description_.payloads[draw.rows].raw_length * 2)) return {};
-    const auto bytes = reader_.readPayload(draw.rows);
-    if (!bytes) return failAgain(bytes.error());
-    auto rows = bundle::decodeRows(
-        *bytes, description_.meshes[draw.mesh].primitives[draw.primitive].vertex_count,
-        description_.groups[draw.group].sample_count, named(fmt::format("draw {}", work.draw)));
+    if (!reserve_(description_.payloads[description_.draws[work.draw].rows].raw_length * 2)) return {};
+    auto rows = reader_.readRows(work.draw);
     if (!rows) return failAgain(rows.error());
     return RowsReady{work.draw, std::move(*rows)};
   }
@@ -86,37 +81,38 @@ class Load {
     return ImageReady{work.image, size->width, size->height, std::move(*rgba)};
   }
 
-  Loaded operator()(const BasisWork& work) const {
+  Loaded operator()(const CodebookWork& work) const {
     const bundle::DiffuseTransfer& transfer = transferOf(description_, work);
-    const std::size_t values = (1 + transfer.planes.size()) * transfer.channels * transfer.columns();
-    if (!reserve_(values * sizeof(float))) return {};
-    const auto bytes = reader_.readPayload(transfer.basis);
-    if (!bytes) return failAgain(bytes.error());
-    auto vectors = bundle::decodeBasis(*bytes, values,
-                                       named(fmt::format("group {} cell {} basis", work.group, work.cell)));
-    if (!vectors) return failAgain(vectors.error());
-    return BasisReady{work.group, work.cell, work.transfer, std::move(*vectors)};
+    // Halves become floats; ids and positions of the samples.
+    if (!reserve_(2 * bundle::codebookBytes(transfer.shape, transfer.clusters, transfer.axes) +
+                  8 * std::size_t{cellOf(description_, work).sample_count}))
+      return {};
+    auto found = reader_.readCodebook(work.group, work.cell, work.transfer);
+    if (!found) return failAgain(found.error());
+    std::vector<std::uint32_t> positions = bundle::positionsOf(found->cluster_of, transfer.clusters);
+    for (std::uint32_t& position : positions) position |= found->cluster_of[position] << 16;
+    return CodebookReady{work.group, work.cell, work.transfer, std::move(found->codebook),
+                         std::move(positions)};
   }
 
   Loaded operator()(const PlaneWork& work) const {
     const bundle::WeightPlane& plane = transferOf(description_, work).planes[work.plane];
-    if (!reserve_(description_.payloads[plane.payload].raw_length)) return {};
-    auto codes = reader_.readPayload(plane.payload);
+    if (!reserve_(5 * std::size_t{plane.count})) return {};
+    const auto codes = reader_.readPlane(work.group, work.cell, work.transfer, work.plane);
     if (!codes) return failAgain(codes.error());
-    const std::size_t expected = std::size_t{cellOf(description_, work).sample_count} * plane.bits / 8;
-    if (codes->size() != expected)
-      return fail(named(fmt::format("group {} cell {} plane {}", work.group, work.cell, work.plane)),
-                  fmt::format("has {} bytes of codes, not {}", codes->size(), expected), "bake it again");
-    return PlaneReady{work.group, work.cell, work.transfer, work.plane, std::move(*codes)};
+    PlaneReady ready{work.group, work.cell, work.transfer, work.plane, {}};
+    ready.codes.reserve(codes->size() * plane.bits / 8);
+    for (const std::uint32_t code : *codes) {
+      ready.codes.push_back(static_cast<std::byte>(code & 0xff));
+      if (plane.bits == 16) ready.codes.push_back(static_cast<std::byte>(code >> 8));
+    }
+    return ready;
   }
 
  private:
   // "PATH: WHAT", the subject of an error.
   std::string named(const std::string& what) const { return reader_.path().string() + ": " + what; }
   static Result<Ready> failAgain(Error error) { return lambent::failAgain(std::move(error)); }
-  static Result<Ready> fail(std::string subject, std::string problem, std::string mend) {
-    return lambent::fail(std::move(subject), std::move(problem), std::move(mend));
-  }
 
   const bundle::Reader& reader_;
   const bundle::Description& description_;
@@ -140,8 +136,8 @@ std::vector<Work> workList(const bundle::Description& d) {
     for (std::uint32_t cell = 0; cell < d.groups[group].cells.size(); ++cell) {
       const auto& parts = d.groups[group].cells[cell].diffuse;
       for (std::uint32_t t = 0; t < parts.size(); ++t) {
-        std::uint32_t priority = d.payloads[parts[t].basis].priority;
-        transfer.push_back({priority, BasisWork{group, cell, t}});
+        std::uint32_t priority = d.payloads[parts[t].codebook].priority;
+        transfer.push_back({priority, CodebookWork{group, cell, t}});
         for (std::uint32_t plane = 0; plane < parts[t].planes.size(); ++plane) {
           priority = std::max(priority, d.payloads[parts[t].planes[plane].payload].priority);
           transfer.push_back({priority, PlaneWork{group, cell, t, plane}});
@@ -153,14 +149,21 @@ std::vector<Work> workList(const bundle::Description& d) {
   return list;
 }
 
-std::uint32_t viewOf(const bundle::Description& d, const Work& work) {
+std::uint64_t bytesInFile(const bundle::Description& d, const Work& work) {
+  const auto view = [&](std::uint32_t index) { return d.views[index].length; };
+  const auto payload = [&](std::uint32_t index) { return view(d.payloads[index].view); };
   return std::visit(
-      Overloaded{
-          [&](const MeshWork& at) { return d.meshes[at.mesh].primitives[at.primitive].view; },
-          [&](const RowsWork& at) { return d.payloads[d.draws[at.draw].rows].view; },
-          [&](const ImageWork& at) { return d.images[at.image].view; },
-          [&](const BasisWork& at) { return d.payloads[transferOf(d, at).basis].view; },
-          [&](const PlaneWork& at) { return d.payloads[transferOf(d, at).planes[at.plane].payload].view; }},
+      Overloaded{[&](const MeshWork& at) { return view(d.meshes[at.mesh].primitives[at.primitive].view); },
+                 [&](const RowsWork& at) { return payload(d.draws[at.draw].rows); },
+                 [&](const ImageWork& at) { return view(d.images[at.image].view); },
+                 [&](const CodebookWork& at) {
+                   const bundle::DiffuseTransfer& transfer = transferOf(d, at);
+                   const std::uint64_t codebook = payload(transfer.codebook);
+                   return transfer.cluster_ids < 0
+                              ? codebook
+                              : codebook + payload(static_cast<std::uint32_t>(transfer.cluster_ids));
+                 },
+                 [&](const PlaneWork& at) { return payload(transferOf(d, at).planes[at.plane].payload); }},
       work);
 }
 
@@ -173,14 +176,18 @@ std::size_t bytesOf(const Ready& ready) {
                                  return sizeInBytes(item.data.positions) + sizeInBytes(item.data.normals) +
                                         sizeInBytes(item.data.texcoords0) +
                                         sizeInBytes(item.data.texcoords1) + sizeInBytes(item.data.colors) +
-                                        sizeInBytes(item.data.indices);
+                                        sizeInBytes(item.data.tangents) + sizeInBytes(item.data.indices);
                                },
                                [](const ImageReady& item) { return sizeInBytes(item.rgba); },
                                [](const RowsReady& item) {
                                  return sizeInBytes(item.rows.offsets) + sizeInBytes(item.rows.samples) +
                                         sizeInBytes(item.rows.weights);
                                },
-                               [](const BasisReady& item) { return sizeInBytes(item.vectors); },
+                               [](const CodebookReady& item) {
+                                 return sizeInBytes(item.codebook.axis_counts) +
+                                        sizeInBytes(item.codebook.axes) + sizeInBytes(item.codebook.vectors) +
+                                        sizeInBytes(item.positions);
+                               },
                                [](const PlaneReady& item) { return sizeInBytes(item.codes); }},
                     ready);
 }

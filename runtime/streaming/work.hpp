@@ -24,21 +24,21 @@ struct RowsWork {
 struct ImageWork {
   std::uint32_t image = 0;
 };
-struct BasisWork {
+struct CodebookWork {
   std::uint32_t group = 0, cell = 0, transfer = 0;
 };
 struct PlaneWork {
   std::uint32_t group = 0, cell = 0, transfer = 0, plane = 0;
 };
-using Work = std::variant<MeshWork, RowsWork, ImageWork, BasisWork, PlaneWork>;
+using Work = std::variant<MeshWork, RowsWork, ImageWork, CodebookWork, PlaneWork>;
 
-// Meshes, then rows, then images, then bases and planes: each by the priority of its payload and, where that
-// is equal, by place in the description. A basis comes before its planes and those in their order, whatever
-// priorities say.
+// Meshes, then rows, then images, then codebooks and planes: each by the priority of its payload and, where
+// that is equal, by place in the description. A codebook comes before its planes and those in their order,
+// whatever priorities say.
 std::vector<Work> workList(const bundle::Description& description);
 
-// The view in the file that an item is read from.
-std::uint32_t viewOf(const bundle::Description& description, const Work& work);
+// What an item takes in the file.
+std::uint64_t bytesInFile(const bundle::Description& description, const Work& work);
 
 // Asked for the bytes that an item will hold, before they are held; false: give up.
 using Reserve = std::function<bool(std::size_t)>;

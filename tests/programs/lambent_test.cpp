@@ -155,7 +155,8 @@ TEST_F(LambentProgram, ReportsFiguresThatAddUpAsJson) {
   EXPECT_EQ(info["fileBytes"], report["fileBytes"]);
   EXPECT_EQ(info["meshBytes"], report["meshBytes"]);
   EXPECT_EQ(info["imageBytes"], report["imageBytes"]);
-  EXPECT_EQ(info["rowBytes"].get<int>() + info["basisBytes"].get<int>() + info["planeBytes"].get<int>(),
+  EXPECT_EQ(info["rowBytes"].get<int>() + info["codebookBytes"].get<int>() +
+                info["clusterIdBytes"].get<int>() + info["planeBytes"].get<int>(),
             report["transferBytes"].get<int>());
   EXPECT_EQ(info["settings"]["order"], "5");
   EXPECT_EQ(info["groups"].size(), plan["groups"].size());

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "runtime/bundle/reader.hpp"
-#include "runtime/bundle/transfer_codec.hpp"
 
 namespace lambent::testing {
 
@@ -28,46 +27,48 @@ struct DecodedDraw {
   }
 };
 
-// Bundles of one transfer channel.
-inline Result<std::vector<DecodedDraw>> decodeBundle(const std::filesystem::path& path) {
+// Transfer of all light (the full block where there is one, else the shadowed one) from the environment;
+// `channel` of it where it has three. Bundles without normal maps.
+inline Result<std::vector<DecodedDraw>> decodeBundle(const std::filesystem::path& path,
+                                                     std::uint32_t channel = 0) {
   const auto reader = bundle::Reader::open(path);
   if (!reader) return failAgain(reader.error());
   if (const auto checked = reader->checkAll(); !checked) return failAgain(checked.error());
   const bundle::Description& d = reader->description();
 
   std::vector<std::vector<float>> samples;  // per group: [sample * columns + column]
-  for (const bundle::Group& group : d.groups) {
+  for (std::uint32_t g = 0; g < d.groups.size(); ++g) {
     samples.emplace_back();
-    for (const bundle::Cell& cell : group.cells) {
-      const bundle::DiffuseTransfer& transfer = cell.diffuse.at(0);
-      const auto basis = reader->readPayload(transfer.basis).and_then([&](const auto& bytes) {
-        return bundle::decodeBasis(bytes, (1 + transfer.planes.size()) * transfer.columns(), "basis");
-      });
-      if (!basis) return failAgain(basis.error());
-      std::vector<std::vector<std::uint32_t>> codes;
-      for (const bundle::WeightPlane& plane : transfer.planes) {
-        auto decoded = reader->readPayload(plane.payload).and_then([&](const auto& bytes) {
-          return bundle::decodePlane(bytes, plane.bits, cell.sample_count, "plane");
-        });
-        if (!decoded) return failAgain(decoded.error());
-        codes.push_back(std::move(*decoded));
+    for (std::uint32_t c = 0; c < d.groups[g].cells.size(); ++c) {
+      const bundle::DiffuseTransfer& transfer = d.groups[g].cells[c].diffuse.at(0);
+      const bundle::TransferShape& shape = transfer.shape;
+      const auto codes = reader->readCodebook(g, c, 0);
+      if (!codes) return failAgain(codes.error());
+      std::vector<std::vector<std::uint32_t>> planes;
+      for (std::uint32_t j = 0; j < transfer.planes.size(); ++j) {
+        auto plane = reader->readPlane(g, c, 0, j);
+        if (!plane) return failAgain(plane.error());
+        planes.push_back(std::move(*plane));
       }
-      const auto vectors = bundle::decodeTransfer(transfer, cell.sample_count, *basis, codes);
-      samples.back().insert(samples.back().end(), vectors.begin(), vectors.end());
+      const auto vectors = bundle::decodeTransfer(shape, codes->codebook, codes->cluster_of, planes);
+      const std::uint32_t first = shape.full_channels > 0 ? shape.shadowed_channels : 0;
+      const std::uint32_t channels = shape.full_channels > 0 ? shape.full_channels : shape.shadowed_channels;
+      const std::size_t begin = std::size_t{first + (channels == 3 ? channel : 0)} * shape.columns();
+      for (std::size_t s = 0; s < codes->cluster_of.size(); ++s)
+        for (std::size_t i = 0; i < shape.columns(); ++i)
+          samples.back().push_back(vectors[s * shape.size() + begin + i]);
     }
   }
 
   std::vector<DecodedDraw> draws;
-  for (const bundle::Draw& draw : d.draws) {
+  for (std::uint32_t number = 0; number < d.draws.size(); ++number) {
+    const bundle::Draw& draw = d.draws[number];
     auto mesh = reader->readMesh(draw.mesh, draw.primitive);
     if (!mesh) return failAgain(mesh.error());
-    const bundle::Group& group = d.groups[draw.group];
-    const auto rows = reader->readPayload(draw.rows).and_then([&](const auto& bytes) {
-      return bundle::decodeRows(bytes, static_cast<std::uint32_t>(mesh->positions.size()), group.sample_count,
-                                "rows");
-    });
+    const auto rows = reader->readRows(number);
     if (!rows) return failAgain(rows.error());
-    DecodedDraw decoded{draw, std::move(*mesh), {}, group.cells.at(0).diffuse.at(0).columns()};
+    DecodedDraw decoded{
+        draw, std::move(*mesh), {}, d.groups[draw.group].cells.at(0).diffuse.at(0).shape.columns()};
     decoded.transfer.assign(decoded.mesh.positions.size() * decoded.columns, 0.0f);
     for (std::size_t v = 0; v < decoded.mesh.positions.size(); ++v)
       for (std::uint32_t entry = rows->offsets[v]; entry < rows->offsets[v + 1]; ++entry)

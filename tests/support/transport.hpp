@@ -1,5 +1,4 @@
-// The baker's first stages on a scene made in the test, without Draco: geometry, samples, rays, direct
-// transfer.
+// The baker's first stages on a scene made in the test, without Draco: geometry, samples, rays, transfer.
 #pragma once
 
 #include <numbers>
@@ -7,7 +6,9 @@
 
 #include <gtest/gtest.h>
 
+#include "baker/effects/diffuse/bounces.hpp"
 #include "baker/effects/diffuse/direct.hpp"
+#include "baker/plan/group_lights.hpp"
 #include "baker/plan/rigid_groups.hpp"
 #include "baker/transport/ray_scene.hpp"
 #include "runtime/sh/basis.hpp"
@@ -15,17 +16,39 @@
 namespace lambent::testing {
 
 struct Transport {
+  baker::Scene scene;
+  std::vector<baker::PlannedLight> lights;
   baker::GroupGeometry geometry;
   baker::SampleSet samples;
   baker::RayScene rays;
+  baker::SurfaceColors colors;
 
-  explicit Transport(const baker::Scene& scene) : Transport(scene, baker::findRigidGroups(scene).at(0)) {}
+  explicit Transport(const baker::Scene& from) : Transport(from, baker::findRigidGroups(from).at(0)) {}
+  Transport(const Transport&) = delete;  // colors refers to geometry
+  Transport& operator=(const Transport&) = delete;
+
+  baker::DiffuseScene diffuse() const { return {scene, geometry, samples, rays, colors, lights}; }
 
   baker::TransferField direct(int order = 5, std::size_t ray_count = 512) const {
+    return bake(order, ray_count, /*bounces=*/0).direct.field;
+  }
+
+  struct Baked {
+    baker::DirectResult direct;
+    baker::BounceResult bounced;  // sums of the passes
+  };
+  // bounces < 0: as many as it takes for tail_error.
+  Baked bake(int order, std::size_t ray_count, int bounces, double tail_error = 1e-3,
+             std::size_t hit_memory = std::size_t{1} << 30) const {
+    const baker::DiffuseScene view = diffuse();
+    const baker::DirectPass pass(view, {order, ray_count, bounces != 0, hit_memory});
     baker::Progress progress;
-    auto field = baker::bakeDirect(geometry, samples, rays, {order, ray_count}, progress, {});
-    EXPECT_TRUE(field.has_value());
-    return std::move(*field);
+    auto first = baker::bakeDirect(pass, view, progress, {});
+    EXPECT_TRUE(first.has_value());
+    if (bounces == 0) return {std::move(*first), {}};
+    auto rest = baker::bakeBounces(pass, *first, view, {bounces, tail_error}, progress, {});
+    EXPECT_TRUE(rest.has_value());
+    return {std::move(*first), std::move(*rest)};
   }
 
   // The sample whose position is nearest.
@@ -38,10 +61,20 @@ struct Transport {
   }
 
  private:
-  Transport(const baker::Scene& scene, const baker::RigidGroup& group)
-      : geometry(baker::buildGroupGeometry(group, scene, decoded(scene))),
+  Transport(const baker::Scene& from, const baker::RigidGroup& group)
+      : scene(from),
+        lights(baker::findGroupLights(from, group)),
+        geometry(baker::buildGroupGeometry(group, from, decoded(from))),
         samples(baker::buildSamples(geometry)),
-        rays(build(geometry, scene)) {}
+        rays(build(geometry, from)),
+        colors(load(from, geometry, lights)) {}
+
+  static baker::SurfaceColors load(const baker::Scene& scene, const baker::GroupGeometry& geometry,
+                                   const std::vector<baker::PlannedLight>& lights) {
+    auto colors = baker::SurfaceColors::load(scene, geometry, lights);
+    EXPECT_TRUE(colors.has_value());
+    return std::move(*colors);
+  }
 
   static std::vector<std::vector<bundle::MeshData>> decoded(const baker::Scene& scene) {
     std::vector<std::vector<bundle::MeshData>> meshes;

@@ -1,14 +1,12 @@
 #include "baker/effects/diffuse/direct.hpp"
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <utility>
 
 #include <glm/geometric.hpp>
 
 #include "baker/effects/diffuse/fill.hpp"
-#include "baker/effects/diffuse/projection_table.hpp"
 #include "baker/transport/frame.hpp"
 #include "baker/work/parallel.hpp"
 #include "runtime/sh/rotation.hpp"
@@ -20,98 +18,216 @@ namespace {
 // An origin of which more first hits than this are backs lies inside a body or under something.
 constexpr float kInsideShare = 0.5f;
 constexpr std::size_t kGlanceRays = 16, kLookRays = 64;
-constexpr std::size_t kSamplesPerRange = 256;
+constexpr int kIncidentOrder = 3;
 
-class DirectPass {
- public:
-  DirectPass(const SampleSet& samples, const RayScene& rays, const DirectSettings& settings)
-      : samples_(samples),
-        rays_(rays),
-        table_(cosineTable(settings.rays)),
-        glance_(cosineTable(kGlanceRays)),
-        look_(cosineTable(kLookRays)),
-        projection_(table_, settings.order),
-        order_(settings.order) {}
-
-  // Samples [begin, end): transfer into `field`, and whether they can be trusted. Leaves the rest of them
-  // when a stop is requested: a million rays a sample take seconds a range.
-  std::uint64_t bake(std::size_t begin, std::size_t end, const std::stop_token& stop, TransferField& field,
-                     std::vector<std::uint8_t>& valid) const {
-    sh::Rotation group_from_local(glm::dmat3(1.0), order_);
-    std::vector<std::uint16_t> blocked(table_.packets());
-    std::vector<float> local(field.columns);
-    std::vector<SampleOrigin> origins;
-    std::uint64_t traced = 0;
-    for (std::size_t s = begin; s < end && !stop.stop_requested(); ++s) {
-      const glm::dmat3 frame = localFrame(glm::normalize(glm::dvec3(samples_.normals[s])));
-      valid[s] = outsideOrigins(s, glm::mat3(frame), origins);
-      if (origins.empty())
-        std::fill(blocked.begin(), blocked.end(),
-                  std::uint16_t{0});  // no face to stand on: nothing known blocks it
-      else
-        traced += rays_.trace(origins, glm::mat3(frame), table_, blocked);
-      projection_.project(blocked, local);
-      group_from_local.set(frame);
-      group_from_local.apply(std::span<const float>(local), field.at(s));
-    }
-    return traced;
-  }
-
- private:
-  // The origins of a sample that do not lie inside something, weights made to sum to 1; all of them, and
-  // false, if none is left.
-  bool outsideOrigins(std::size_t sample, const glm::mat3& frame, std::vector<SampleOrigin>& origins) const {
-    const auto all = samples_.originsOf(sample);
-    origins.assign(all.begin(), all.end());
-    if (all.empty()) return false;
-    std::vector<float> shares(all.size());
-    // Sixteen rays are enough to see that nothing is odd, which is nearly always so.
-    rays_.backFaceShare(all, frame, glance_, shares);
-    if (std::all_of(shares.begin(), shares.end(), [](float share) { return share == 0.0f; })) return true;
-    rays_.backFaceShare(all, frame, look_, shares);
-    origins.clear();
-    float weight = 0.0f;
-    for (std::size_t o = 0; o < all.size(); ++o) {
-      if (shares[o] > kInsideShare) continue;
-      origins.push_back(all[o]);
-      weight += all[o].weight;
-    }
-    if (origins.empty()) {
-      origins.assign(all.begin(), all.end());
-      return false;
-    }
-    for (SampleOrigin& origin : origins) origin.weight /= weight;
-    return true;
-  }
-
-  const SampleSet& samples_;
-  const RayScene& rays_;
-  DirectionTable table_, glance_, look_;
-  ProjectionTable projection_;
-  int order_;
-};
+TransferField makeField(std::size_t samples, int order, std::uint32_t outputs, std::uint32_t channels,
+                        std::uint32_t columns) {
+  TransferField field{
+      .order = order, .outputs = outputs, .channels = channels, .columns = columns, .vectors = {}};
+  field.vectors.resize(samples * field.vectorSize());
+  return field;
+}
 
 }  // namespace
 
-std::optional<TransferField> bakeDirect(const GroupGeometry& geometry, const SampleSet& samples,
-                                        const RayScene& rays, const DirectSettings& settings,
-                                        Progress& progress, std::stop_token stop) {
-  TransferField field;
-  field.order = settings.order;
-  field.columns = static_cast<std::uint32_t>(sh::coefficientCount(settings.order));
-  field.vectors.resize(samples.size() * field.vectorSize());
-  std::vector<std::uint8_t> valid(samples.size(), 0);
+// One thread's way through a range of samples: scratch memory, and what each sample's rays meet.
+class DirectPass::Walk {
+ public:
+  explicit Walk(const DirectPass& pass)
+      : pass_(pass),
+        group_from_local_(glm::dmat3(1.0), pass.settings_.order),
+        incident_from_local_(glm::dmat3(1.0), kIncidentOrder) {}
+
+  // Rays of sample `s`. Nothing is traced where it has no face to stand on.
+  std::uint32_t look(std::size_t s) {
+    hemisphere_ = &pass_.hemisphereOf(s);
+    frame_ = localFrame(glm::normalize(glm::dvec3(pass_.scene_.samples.normals[s])));
+    valid_ = outsideOrigins(s);
+    hits_.clear();
+    blocked_.assign(hemisphere_->table().packets(), 0);
+    if (origins_.empty()) return 0;
+    const bool wants_hits = pass_.settings_.keep_hits || !pass_.emitters_.empty();
+    if (!wants_hits) return pass_.scene_.rays.trace(origins_, frame(), hemisphere_->table(), blocked_);
+    const std::uint32_t traced = pass_.scene_.rays.traceHits(origins_, frame(), hemisphere_->table(),
+                                                             mostly_blocked_, blocked_, hits_);
+    mostly_blocked_ = 2 * hits_.size() > hemisphere_->table().size();
+    return traced;
+  }
+
+  bool valid() const { return valid_; }
+
+  // Transfer of the sample that was looked at.
+  void project(std::span<float> scalar, std::span<float> incident) {
+    const std::size_t bands = static_cast<std::size_t>(sh::coefficientCount(pass_.settings_.order));
+    local_.resize(bands);
+    hemisphere_->projection().project(blocked_, local_);
+    group_from_local_.set(frame_);
+    group_from_local_.apply(std::span<const float>(local_), scalar.first(bands));
+    for (std::uint32_t c = 1; c < pass_.channels_; ++c)
+      std::copy_n(scalar.begin(), bands, scalar.begin() + static_cast<std::ptrdiff_t>(c * pass_.columns_));
+    if (!incident.empty()) projectIncident(bands, incident);
+    const LightSums sums{.scalar = scalar,
+                         .incident = incident,
+                         .channels = pass_.channels_,
+                         .columns = pass_.columns_,
+                         .first_column = static_cast<std::uint32_t>(bands)};
+    if (!pass_.emitters_.empty() && !origins_.empty()) {
+      pass_.emitters_.addMet(hits_, origins_, *hemisphere_, frame(), sums);
+      pass_.emitters_.addChosen(origins_, *hemisphere_, frame(), pass_.scene_.rays, sums);
+    }
+    if (!incident.empty()) turnIncident(incident);
+  }
+
+  void keepHits(RangeHits& out) const {
+    for (const RayHit& hit : hits_) {
+      const glm::vec3 albedo = pass_.scene_.colors.albedo(hit.triangle, hit.u, hit.v);
+      if (albedo == glm::vec3(0.0f)) continue;
+      GatherHit kept{.triangle = hit.triangle,
+                     .ray = hit.ray,
+                     .u = GatherHit::unorm(hit.u),
+                     .v = GatherHit::unorm(hit.v)};
+      for (int c = 0; c < 3; ++c) kept.albedo[c] = GatherHit::unorm(albedo[c]);
+      out.hits.push_back(kept);
+    }
+  }
+
+ private:
+  glm::mat3 frame() const { return glm::mat3(frame_); }
+
+  // The environment's columns of the nine numbers, in the group's frame but for the outputs.
+  void projectIncident(std::size_t bands, std::span<float> incident) {
+    const std::size_t stride = std::size_t{pass_.channels_} * pass_.columns_;
+    incident_local_.assign(kIncident * bands, 0.0f);
+    for (std::size_t ray = 0; ray < hemisphere_->table().size(); ++ray) {
+      if (blocked_[ray / kPacketWidth] >> (ray % kPacketWidth) & 1u) continue;
+      const auto& weights = hemisphere_->incidentWeight(ray);
+      const auto harmonics = hemisphere_->projection().harmonics(ray);
+      for (std::size_t j = 0; j < kIncident; ++j)
+        for (std::size_t i = 0; i < bands; ++i) incident_local_[j * bands + i] += weights[j] * harmonics[i];
+    }
+    for (std::size_t j = 0; j < kIncident; ++j) {
+      const auto row = incident.subspan(j * stride, stride);
+      group_from_local_.apply(std::span<const float>(incident_local_).subspan(j * bands, bands),
+                              row.first(bands));
+      for (std::uint32_t c = 1; c < pass_.channels_; ++c)
+        std::copy_n(row.begin(), bands, row.begin() + static_cast<std::ptrdiff_t>(c * pass_.columns_));
+    }
+  }
+
+  // The nine outputs from the sample's frame into the group's.
+  void turnIncident(std::span<float> incident) {
+    incident_from_local_.set(frame_);
+    const std::size_t stride = std::size_t{pass_.channels_} * pass_.columns_;
+    std::array<float, kIncident> from, to;
+    for (std::size_t at = 0; at < stride; ++at) {
+      for (std::size_t j = 0; j < kIncident; ++j) from[j] = incident[j * stride + at];
+      incident_from_local_.apply(std::span<const float>(from), std::span<float>(to));
+      for (std::size_t j = 0; j < kIncident; ++j) incident[j * stride + at] = to[j];
+    }
+  }
+
+  // The origins of a sample that do not lie inside something, weights made to sum to 1; all of them, and
+  // false, if none is left.
+  bool outsideOrigins(std::size_t sample) {
+    const auto all = pass_.scene_.samples.originsOf(sample);
+    origins_.assign(all.begin(), all.end());
+    if (all.empty()) return false;
+    std::vector<float> shares(all.size());
+    // Sixteen rays are enough to see that nothing is odd, which is nearly always so.
+    pass_.scene_.rays.backFaceShare(all, frame(), pass_.glance_, shares);
+    if (std::all_of(shares.begin(), shares.end(), [](float share) { return share == 0.0f; })) return true;
+    pass_.scene_.rays.backFaceShare(all, frame(), pass_.look_, shares);
+    origins_.clear();
+    float weight = 0.0f;
+    for (std::size_t o = 0; o < all.size(); ++o) {
+      if (shares[o] > kInsideShare) continue;
+      origins_.push_back(all[o]);
+      weight += all[o].weight;
+    }
+    if (origins_.empty()) {
+      origins_.assign(all.begin(), all.end());
+      return false;
+    }
+    for (SampleOrigin& origin : origins_) origin.weight /= weight;
+    return true;
+  }
+
+  const DirectPass& pass_;
+  sh::Rotation group_from_local_, incident_from_local_;
+  const Hemisphere* hemisphere_ = nullptr;
+  glm::dmat3 frame_{1.0};
+  bool valid_ = false, mostly_blocked_ = false;
+  std::vector<SampleOrigin> origins_;
+  std::vector<std::uint16_t> blocked_;
+  std::vector<RayHit> hits_;
+  std::vector<float> local_, incident_local_;
+};
+
+DirectPass::DirectPass(const DiffuseScene& scene, const DirectSettings& settings)
+    : scene_(scene),
+      settings_(settings),
+      glance_(cosineTable(kGlanceRays)),
+      look_(cosineTable(kLookRays)),
+      plain_(Hemisphere::forNormal(settings.rays, settings.order)),
+      emitters_(scene.scene, scene.geometry, scene.colors, scene.lights),
+      channels_(scene.colors.grey() ? 1 : 3),
+      columns_(static_cast<std::uint32_t>(sh::coefficientCount(settings.order)) +
+               static_cast<std::uint32_t>(scene.lights.size())) {
+  if (scene.samples.first_normal_mapped < scene.samples.size())
+    mapped_ = Hemisphere::forAnyNormal(settings.rays, settings.order);
+}
+
+std::uint64_t DirectPass::bake(std::size_t begin, std::size_t end, const std::stop_token& stop,
+                               TransferField& field, TransferField& mapped, std::vector<std::uint8_t>& valid,
+                               RangeHits& hits) const {
+  Walk walk(*this);
+  std::uint64_t traced = 0;
+  const std::size_t first_mapped = scene_.samples.first_normal_mapped;
+  for (std::size_t s = begin; s < end && !stop.stop_requested(); ++s) {
+    hits.offsets.push_back(static_cast<std::uint32_t>(hits.hits.size()));
+    traced += walk.look(s);
+    valid[s] = walk.valid();
+    walk.project(field.at(s), s < first_mapped ? std::span<float>() : mapped.at(s - first_mapped));
+    if (settings_.keep_hits) walk.keepHits(hits);
+  }
+  hits.offsets.push_back(static_cast<std::uint32_t>(hits.hits.size()));
+  return traced;
+}
+
+void DirectPass::traceAgain(std::size_t begin, std::size_t end, RangeHits& hits) const {
+  Walk walk(*this);
+  hits.offsets.clear();
+  hits.hits.clear();
+  for (std::size_t s = begin; s < end; ++s) {
+    hits.offsets.push_back(static_cast<std::uint32_t>(hits.hits.size()));
+    walk.look(s);
+    walk.keepHits(hits);
+  }
+  hits.offsets.push_back(static_cast<std::uint32_t>(hits.hits.size()));
+}
+
+std::optional<DirectResult> bakeDirect(const DirectPass& pass, const DiffuseScene& scene, Progress& progress,
+                                       const std::stop_token& stop) {
+  const std::size_t count = scene.samples.size(), mapped = count - scene.samples.first_normal_mapped;
+  const DirectSettings& settings = pass.settings();
+  DirectResult result{.field = makeField(count, settings.order, 1, pass.channels(), pass.columns()),
+                      .mapped = makeField(mapped, settings.order, kIncident, pass.channels(), pass.columns()),
+                      .valid = std::vector<std::uint8_t>(count, 0),
+                      .hits = HitStore(count, settings.keep_hits ? settings.hit_memory : 0)};
   std::atomic<std::uint64_t> traced = 0;
-  const DirectPass pass(samples, rays, settings);
   const bool finished =
-      parallelRanges(samples.size(), kSamplesPerRange, stop, [&](std::size_t begin, std::size_t end) {
-        traced += pass.bake(begin, end, stop, field, valid);
+      parallelRanges(count, kSamplesPerRange, stop, [&](std::size_t begin, std::size_t end) {
+        RangeHits hits;
+        traced += pass.bake(begin, end, stop, result.field, result.mapped, result.valid, hits);
+        if (settings.keep_hits) result.hits.offer(begin / kSamplesPerRange, std::move(hits));
         progress.add(end - begin);
       });
   if (!finished) return std::nullopt;
-  field.rays = traced;
-  field.filled_samples = fillFromNeighbours(sampleEdges(geometry, samples), valid, field);
-  return field;
+  result.field.rays = traced;
+  const auto edges = sampleEdges(scene.geometry, scene.samples);
+  result.field.filled_samples = fillFromNeighbours(edges, result.valid, result.field);
+  fillMappedFromNeighbours(edges, result.valid, scene.samples.first_normal_mapped, result.mapped);
+  return result;
 }
 
 }  // namespace lambent::baker

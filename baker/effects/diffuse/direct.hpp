@@ -1,28 +1,84 @@
-// Pass 0 of the diffuse effect: direct, shadowed transfer (Sloan 2002, the first pass of section 4):
-//   t_p,i = (1/pi) ∫ V_p(s) max(n·s, 0) y_i(s) ds.
-// Rays are cosine-distributed about the shading normal; the geometric normals of the faces around a sample
-// decide what lies below its horizon.
+// Pass 0 of the diffuse effect: light that arrives without a bounce (Sloan 2002, the first pass of section
+// 4):
+//   t_p,i = (1/pi) ∫ V_p(s) max(n·s, 0) y_i(s) ds,
+// and beside it the lights of the group, at unit strength. The shading normal gives the cosine; the geometric
+// normals of the faces around a sample decide what lies below its horizon. What the blocked rays met is
+// handed on, for the passes that follow.
 #pragma once
 
 #include <optional>
+#include <span>
 #include <stop_token>
 
+#include "baker/effects/diffuse/emitters.hpp"
+#include "baker/effects/diffuse/hemisphere.hpp"
+#include "baker/effects/diffuse/hits.hpp"
 #include "baker/effects/diffuse/transfer_field.hpp"
 #include "baker/transport/group_geometry.hpp"
 #include "baker/transport/ray_scene.hpp"
 #include "baker/transport/samples.hpp"
+#include "baker/transport/surface_colors.hpp"
 #include "baker/work/progress.hpp"
 
 namespace lambent::baker {
 
+// What the diffuse effect reads of a group; all of it outlives the bake.
+struct DiffuseScene {
+  const Scene& scene;
+  const GroupGeometry& geometry;
+  const SampleSet& samples;
+  const RayScene& rays;
+  const SurfaceColors& colors;
+  std::span<const PlannedLight> lights;
+};
+
 struct DirectSettings {
-  int order = 5;           // 1..8
-  std::size_t rays = 512;  // per sample over its hemisphere, at least 128
+  int order = 5;               // 1..8
+  std::size_t rays = 512;      // per sample over its hemisphere, at least 128
+  bool keep_hits = false;      // for bounces
+  std::size_t hit_memory = 0;  // bytes; what does not fit is traced again when asked for
+};
+
+// Pass 0 of ranges of samples; also traces a range's hits again.
+class DirectPass {
+ public:
+  DirectPass(const DiffuseScene& scene, const DirectSettings& settings);
+
+  const Hemisphere& hemisphereOf(std::size_t sample) const {
+    return sample < scene_.samples.first_normal_mapped ? plain_ : *mapped_;
+  }
+  std::uint32_t columns() const { return columns_; }
+  std::uint32_t channels() const { return channels_; }
+  const DirectSettings& settings() const { return settings_; }
+
+  // Samples [begin, end): transfer into the fields (`mapped` holds the normal-mapped samples alone), whether
+  // each can be trusted, and what its rays met. Returns the rays traced. Leaves the rest of them when a stop
+  // is requested: a million rays a sample take seconds a range.
+  std::uint64_t bake(std::size_t begin, std::size_t end, const std::stop_token& stop, TransferField& field,
+                     TransferField& mapped, std::vector<std::uint8_t>& valid, RangeHits& hits) const;
+  // The hits alone, as bake() gave them.
+  void traceAgain(std::size_t begin, std::size_t end, RangeHits& hits) const;
+
+ private:
+  class Walk;
+  DiffuseScene scene_;
+  DirectSettings settings_;
+  DirectionTable glance_, look_;
+  Hemisphere plain_;
+  std::optional<Hemisphere> mapped_;  // where there are such samples
+  Emitters emitters_;
+  std::uint32_t channels_, columns_;
+};
+
+struct DirectResult {
+  TransferField field;              // outputs 1, all samples
+  TransferField mapped;             // outputs 9, from SampleSet::first_normal_mapped on
+  std::vector<std::uint8_t> valid;  // per sample: 0 where it was filled from its neighbours
+  HitStore hits;
 };
 
 // Nothing if stopped. The result does not depend on the number of threads. Progress counts samples.
-std::optional<TransferField> bakeDirect(const GroupGeometry& geometry, const SampleSet& samples,
-                                        const RayScene& rays, const DirectSettings& settings,
-                                        Progress& progress, std::stop_token stop);
+std::optional<DirectResult> bakeDirect(const DirectPass& pass, const DiffuseScene& scene, Progress& progress,
+                                       const std::stop_token& stop);
 
 }  // namespace lambent::baker

@@ -14,29 +14,30 @@ namespace lambent::baker {
 
 namespace {
 
-// The smallest change (least squares) of equal weights that makes the quadrature of every y_i max(z, 0)/pi
-// exact. Harmonics are nearly dependent on a hemisphere, hence the rank-revealing solver. With few rays for
-// the order exact weights may turn negative, and uniform light could come out above albedo: then the
-// combinations of harmonics that the hemisphere hardly shows are left to equal weights, more of them until
-// every weight is positive.
-Eigen::VectorXd exactWeights(const Eigen::MatrixXd& basis, const Eigen::VectorXd& exact) {
+// The smallest relative change (least squares) of the base weights that makes the quadrature of every
+// y_i max(z, 0)/pi exact. Harmonics are nearly dependent on a hemisphere, hence the rank-revealing solver.
+// With few rays for the order exact weights may turn negative, and uniform light could come out above albedo:
+// then the combinations of harmonics that the hemisphere hardly shows are left to the base weights, more of
+// them until every weight is positive.
+Eigen::VectorXd exactWeights(const Eigen::MatrixXd& basis, const Eigen::VectorXd& base,
+                             const Eigen::VectorXd& exact) {
   const Eigen::Index rays = basis.cols();
-  const Eigen::VectorXd equal = Eigen::VectorXd::Constant(rays, 1.0 / static_cast<double>(rays));
-  const Eigen::BDCSVD<Eigen::MatrixXd> svd(basis, Eigen::ComputeThinU | Eigen::ComputeThinV);
-  const Eigen::VectorXd residual = svd.matrixU().transpose() * (exact - basis * equal);
+  const Eigen::MatrixXd weighted = basis * base.asDiagonal();
+  const Eigen::BDCSVD<Eigen::MatrixXd> svd(weighted, Eigen::ComputeThinU | Eigen::ComputeThinV);
+  const Eigen::VectorXd residual = svd.matrixU().transpose() * (exact - basis * base);
   for (double threshold = 1e-10;; threshold *= 10.0) {
     Eigen::VectorXd change = Eigen::VectorXd::Zero(rays);
     for (Eigen::Index i = 0; i < residual.size(); ++i)
       if (svd.singularValues()(i) > threshold * svd.singularValues()(0))
         change += residual(i) / svd.singularValues()(i) * svd.matrixV().col(i);
-    const Eigen::VectorXd weights = equal + change;
+    const Eigen::VectorXd weights = base.cwiseProduct(Eigen::VectorXd::Ones(rays) + change);
     if (weights.minCoeff() > 0.0) return weights / weights.sum();
   }
 }
 
 }  // namespace
 
-ProjectionTable::ProjectionTable(const DirectionTable& table, int order)
+ProjectionTable::ProjectionTable(const DirectionTable& table, std::span<const double> base, int order)
     : columns_(static_cast<std::size_t>(sh::coefficientCount(order))) {
   const auto rays = static_cast<Eigen::Index>(table.size());
   const auto columns = static_cast<Eigen::Index>(columns_);
@@ -48,13 +49,17 @@ ProjectionTable::ProjectionTable(const DirectionTable& table, int order)
   }
   Eigen::VectorXd exact(columns);
   sh::unoccludedTransfer(order, glm::dvec3(0.0, 0.0, 1.0), std::span(exact.data(), columns_));
-  const Eigen::VectorXd weights = exactWeights(basis, exact);
+  const Eigen::VectorXd weights =
+      exactWeights(basis, Eigen::Map<const Eigen::VectorXd>(base.data(), rays), exact);
   weights_.assign(weights.begin(), weights.end());
 
   packet_sums_.assign(table.packets() * columns_, 0.0f);
   for (Eigen::Index i = 0; i < columns; ++i) open_.push_back(static_cast<float>(exact(i)));
   for (Eigen::Index r = 0; r < rays; ++r)
-    for (Eigen::Index i = 0; i < columns; ++i) rows_.push_back(static_cast<float>(weights(r) * basis(i, r)));
+    for (Eigen::Index i = 0; i < columns; ++i) {
+      harmonics_.push_back(static_cast<float>(basis(i, r)));
+      rows_.push_back(static_cast<float>(weights(r) * basis(i, r)));
+    }
   for (std::size_t r = 0; r < table.size(); ++r)
     for (std::size_t i = 0; i < columns_; ++i) packet_sums_[r / kPacketWidth * columns_ + i] += row(r)[i];
 }

@@ -13,13 +13,19 @@ namespace lambent::baker {
 
 class ProjectionTable {
  public:
-  // `table` is cosine-distributed (cosineTable); order 1..8.
-  ProjectionTable(const DirectionTable& table, int order);
+  // `base` are the weights of the rays as their distribution asks for: cos/pi over the rays' density, sum 1.
+  // order 1..8.
+  ProjectionTable(const DirectionTable& table, std::span<const double> base, int order);
 
   // Shadowed transfer in the local frame from the blocked masks of RayScene::trace. out: order² coefficients.
   void project(std::span<const std::uint16_t> blocked, std::span<float> out) const;
 
-  // The weights of the rays: near 1/rays, all positive. Sum to 1.
+  // y_i in the direction of a ray, unweighted.
+  std::span<const float> harmonics(std::size_t ray) const {
+    return std::span(harmonics_).subspan(ray * columns_, columns_);
+  }
+
+  // The weights of the rays: near `base`, all positive. Sum to 1.
   std::span<const double> weights() const { return weights_; }
 
  private:
@@ -32,6 +38,7 @@ class ProjectionTable {
 
   std::size_t columns_;
   std::vector<double> weights_;
+  std::vector<float> harmonics_;    // y_i of each ray
   std::vector<float> rows_;         // weight * y_i of each ray
   std::vector<float> packet_sums_;  // of the sixteen rays of each packet
   std::vector<float> open_;         // the closed form

@@ -54,13 +54,32 @@ TEST(Samples, AreCutIntoCellsOfAtMost64Ki) {
   EXPECT_EQ(t.samples.cells[0].count + t.samples.cells[1].count, t.samples.size());
 }
 
-TEST(Samples, NextToEachOtherInMemoryAreCloseInSpace) {
+TEST(Samples, OfACellStandInTheOrderInWhichVerticesUseThem) {
   const Transport t(sceneOf({grid({0, 0, 0}, 1.0f, 64)}));
-  double sum = 0.0;
-  for (std::size_t s = 1; s < t.samples.size(); ++s)
-    sum += double{glm::distance(t.samples.positions[s], t.samples.positions[s - 1])};
-  // Row by row it would be 1/64 plus a jump of 1 a row, 0.031; a Morton curve makes about 1.6 cells a step.
-  EXPECT_LT(sum / static_cast<double>(t.samples.size() - 1), 0.03);
+  for (std::uint32_t v = 0; v < t.samples.size(); ++v) EXPECT_EQ(t.samples.vertex_sample[v], v);
+}
+
+TEST(Samples, OfLargeGroupsAreCutIntoCompactCells) {
+  const Transport t(sceneOf({grid({0, 0, 0}, 1.0f, 300)}));
+  const SampleCell& last = t.samples.cells[1];
+  // 24,537 of 90,601 samples along a Morton curve: the corner that it ends in, not a stripe over the whole.
+  EXPECT_LT((last.bounds_max.x - last.bounds_min.x) * (last.bounds_max.z - last.bounds_min.z), 0.55f);
+}
+
+TEST(Samples, OfNormalMappedDrawsComeLastInCellsOfTheirOwn) {
+  Scene scene = sceneOf({grid({0, 0, 0}, 1.0f, 2), grid({0, 0, 0}, 1.0f, 2)});
+  scene.materials.push_back(scene.materials[0]);
+  scene.materials[1].normal_texture.texture = 0;
+  scene.meshes[0].primitives[0].material = 1;
+  const Transport t(scene);
+  // The grids coincide, but what they store differs.
+  EXPECT_EQ(t.samples.size(), 18u);
+  EXPECT_EQ(t.samples.first_normal_mapped, 9u);
+  ASSERT_EQ(t.samples.cells.size(), 2u);
+  EXPECT_FALSE(t.samples.cells[0].normal_mapped);
+  EXPECT_TRUE(t.samples.cells[1].normal_mapped);
+  EXPECT_GE(t.samples.vertex_sample[0], 9u);  // the first mesh has the map
+  EXPECT_LT(t.samples.vertex_sample[9], 9u);
 }
 
 TEST(SampleEdges, AreThoseOfTheTriangles) {

@@ -85,25 +85,56 @@ Sample sampleBundle() {
   camera.yfov_rad = 0.7f;
   d.cameras = {camera};
 
-  const std::vector<std::uint32_t> codes = {1, 65535, 7};
-  const std::vector<float> basis = {0.5f, 0.25f, -0.125f, 1.0f, 0.75f, 0.0f, 1.0f, 2.0f};
-  s.blobs = {blobOf(13, 1), encodeBasis(basis), compressZstd(encodePlane(codes, 16), 3)};
-  d.payloads = {{PayloadType::TransferBasis, PayloadCodec::Raw, 1, 16, 1},
-                {PayloadType::WeightPlane, PayloadCodec::Zstd, 2, 6, 2}};
-  DiffuseTransfer transfer;
-  transfer.order = 2;
-  transfer.basis = 0;
-  transfer.planes = {{1, 16, -0.5f, 0.001f, 0.9f}};
-  transfer.error_bound = 0.005f;
-  transfer.error = 0.004f;
-  Cell cell{0, 3, glm::vec3(-1.0f), glm::vec3(1.0f), {transfer}};
+  // Cell 0 plain, two clusters of two and no axes; cell 1 normal-mapped, of one cluster; lamps in both.
+  const auto add = [&](PayloadType type, const Blob& bytes) {
+    const bool zstd = type == PayloadType::WeightPlane;
+    s.blobs.push_back(zstd ? compressZstd(bytes, 3) : bytes);
+    d.payloads.push_back({type, zstd ? PayloadCodec::Zstd : PayloadCodec::Raw,
+                          static_cast<std::uint32_t>(s.blobs.size() - 1), bytes.size(),
+                          static_cast<std::uint32_t>(d.payloads.size())});
+    return static_cast<std::uint32_t>(d.payloads.size() - 1);
+  };
+  const auto codebook = [&](const TransferShape& shape, const std::vector<std::uint32_t>& axis_counts) {
+    Codebook book{axis_counts, {}, {}};
+    for (const std::uint32_t count : axis_counts) {
+      book.axes.insert(book.axes.end(), count, {-0.5f, 0.001f});
+      book.vectors.insert(book.vectors.end(), (1 + count) * shape.size(), 0.25f);
+    }
+    return encodeCodebook(book);
+  };
+  s.blobs = {blobOf(13, 1)};
+  DiffuseTransfer plain;
+  plain.shape = {.order = 2, .shadowed_channels = 1, .full_channels = 3};
+  plain.clusters = 2;
+  plain.axes = 2;
+  plain.codebook = add(PayloadType::Codebook, codebook(plain.shape, {2, 0}));
+  plain.cluster_ids =
+      static_cast<std::int32_t>(add(PayloadType::ClusterIds, encodeClusterIds(std::vector{0u, 1u, 0u}, 2)));
+  const auto plane = [&](std::uint32_t bits, const std::vector<std::uint32_t>& codes, float variance) {
+    return WeightPlane{add(PayloadType::WeightPlane, encodeWeightPlane(codes, bits)), bits,
+                       static_cast<std::uint32_t>(codes.size()), variance};
+  };
+  plain.planes = {plane(16, {65535, 7}, 0.9f), plane(8, {3, 255}, 0.05f)};
+  plain.error_bound = 0.005f;
+  plain.error = 0.004f;
+  DiffuseTransfer lamps;
+  lamps.shape = {.order = 0, .light_columns = 2, .shadowed_channels = 3};
+  lamps.codebook = add(PayloadType::Codebook, codebook(lamps.shape, {0}));
+  DiffuseTransfer mapped;
+  mapped.shape = {.order = 1, .outputs = 9};
+  mapped.axes = 1;
+  mapped.codebook = add(PayloadType::Codebook, codebook(mapped.shape, {1}));
+  mapped.planes = {plane(8, {1, 2}, 0.5f)};
   Group group;
   group.name = "root";
   group.node = 0;
   group.rest_translation = {1.0f, 2.0f, 3.0f};
   group.rest_rotation = glm::quat(0.5f, 0.5f, -0.5f, 0.5f);
-  group.sample_count = 3;
-  group.cells = {cell};
+  group.sample_count = 5;
+  group.lights = {{GroupLight::Kind::Material, 0, {3.0f, 2.0f, 1.0f}},
+                  {GroupLight::Kind::Node, 1, {0.0f, 40.0f, 0.5f}}};
+  group.cells = {{0, 3, glm::vec3(-1.0f), glm::vec3(1.0f), {plain, lamps}},
+                 {3, 2, glm::vec3(-1.0f), glm::vec3(1.0f), {mapped}}};
   d.groups = {group};
   return s;
 }
@@ -127,13 +158,44 @@ TEST_F(BundleFile, GivesBackWhatWasWritten) {
   EXPECT_EQ(d.cameras[0].yfov_rad, 0.7f);
   EXPECT_EQ(d.groups[0].rest_rotation, sample.description.groups[0].rest_rotation);
   EXPECT_EQ(d.generator.settings.at("rays"), "64");
-  const DiffuseTransfer& transfer = d.groups[0].cells[0].diffuse[0];
-  EXPECT_EQ(transfer.planes[0].scale, 0.001f);
-  EXPECT_EQ(transfer.error, 0.004f);
   EXPECT_EQ(*reader->readView(0), sample.blobs[0]);
-  const auto plane = reader->readPayload(1);
-  ASSERT_TRUE(plane) << plane.error().line();
-  EXPECT_EQ(*decodePlane(*plane, 16, 3, "plane"), (std::vector<std::uint32_t>{1, 65535, 7}));
+}
+
+TEST_F(BundleFile, GivesBackClustersLampsAndNormalMappedCells) {
+  const Sample sample = sampleBundle();
+  ASSERT_TRUE(write(path_, sample.description, sample.blobs));
+  auto reader = Reader::open(path_);
+  ASSERT_TRUE(reader) << reader.error().line();
+  const Group& group = reader->description().groups[0];
+  ASSERT_EQ(group.lights.size(), 2u);
+  EXPECT_EQ(group.lights[0].kind, GroupLight::Kind::Material);
+  EXPECT_EQ(group.lights[1].kind, GroupLight::Kind::Node);
+  EXPECT_EQ(group.lights[1].index, 1u);
+  EXPECT_EQ(group.lights[1].color, glm::vec3(0.0f, 40.0f, 0.5f));
+  EXPECT_EQ(group.plainSamples(), 3u);
+  EXPECT_EQ(group.cells[1].outputs(), 9u);
+  const Cell& expected = sample.description.groups[0].cells[0];
+  ASSERT_EQ(group.cells[0].diffuse.size(), 2u);
+  for (std::size_t t = 0; t < 2; ++t) {
+    const DiffuseTransfer &found = group.cells[0].diffuse[t], &wanted = expected.diffuse[t];
+    EXPECT_EQ(found.shape, wanted.shape);
+    EXPECT_EQ(found.clusters, wanted.clusters);
+    EXPECT_EQ(found.axes, wanted.axes);
+    EXPECT_EQ(found.cluster_ids, wanted.cluster_ids);
+    EXPECT_EQ(found.planes.size(), wanted.planes.size());
+    EXPECT_EQ(found.error, wanted.error);
+  }
+  EXPECT_TRUE(group.cells[0].diffuse[0].fromEnvironment());
+  EXPECT_FALSE(group.cells[0].diffuse[1].fromEnvironment());
+  const auto codes = reader->readCodebook(0, 0, 0);
+  ASSERT_TRUE(codes) << codes.error().line();
+  EXPECT_EQ(codes->codebook.axis_counts, (std::vector<std::uint32_t>{2, 0}));
+  EXPECT_EQ(codes->codebook.axes[1].scale, 0.001f);
+  EXPECT_EQ(codes->cluster_of, (std::vector<std::uint32_t>{0, 1, 0}));
+  EXPECT_EQ(*reader->readPlane(0, 0, 0, 0), (std::vector<std::uint32_t>{65535, 7}));
+  EXPECT_EQ(*reader->readPlane(0, 0, 0, 1), (std::vector<std::uint32_t>{3, 255}));
+  EXPECT_EQ(reader->readCodebook(0, 1, 0)->cluster_of, (std::vector<std::uint32_t>{0, 0}));
+  EXPECT_TRUE(reader->checkAll());
 }
 
 TEST_F(BundleFile, IsTheSameBytesTwice) {
@@ -152,7 +214,7 @@ TEST_F(BundleFile, TruncatedAtAnyPrefixIsRefusedInOneLine) {
     replace(whole.substr(0, length));
     const auto read = readAll();
     ASSERT_FALSE(read) << "prefix of " << length << " bytes";
-    EXPECT_EQ(read.error().subject, path_.string());
+    EXPECT_EQ(read.error().subject.rfind(path_.string(), 0), 0u) << read.error().line();
     EXPECT_EQ(read.error().line().find('\n'), std::string::npos);
   }
   replace(whole + "x");
@@ -183,6 +245,16 @@ TEST_F(BundleFile, TooNewIsCalledTooNew) {
       << reader.error().line();
 }
 
+TEST_F(BundleFile, AnOlderVersionIsToBeBakedAgain) {
+  Sample sample = sampleBundle();
+  sample.description.version = kVersionFirstLight;
+  ASSERT_TRUE(write(path_, sample.description, sample.blobs));
+  const auto reader = Reader::open(path_);
+  ASSERT_FALSE(reader);
+  EXPECT_NE(reader.error().problem.find("was written by an older program"), std::string::npos);
+  EXPECT_EQ(reader.error().mend, "bake it again");
+}
+
 // Valid checksums around nonsense: what a hostile or buggy writer could make.
 TEST_F(BundleFile, IndicesOutOfRangeAreRefusedByName) {
   const auto refused = [&](auto spoil, const char* place) {
@@ -195,16 +267,60 @@ TEST_F(BundleFile, IndicesOutOfRangeAreRefusedByName) {
   };
   refused([](Description& d) { d.roots = {2}; }, "scenes[0].nodes[0]");
   refused([](Description& d) { d.nodes[1].children = {0}; }, "nodes form a ring");
-  refused([](Description& d) { d.images[0].view = 3; }, "images[0].bufferView");
+  refused([](Description& d) { d.images[0].view = 99; }, "images[0].bufferView");
   refused([](Description& d) { d.textures[0].image = 1; }, "textures[0].source");
-  refused([](Description& d) { d.groups[0].cells[0].sample_count = 4; }, "sampleCount");
-  refused([](Description& d) { d.groups[0].sample_count = 4; }, "do not hold all samples");
-  refused([](Description& d) { d.groups[0].cells[0].diffuse[0].order = 9; }, "order");
-  refused([](Description& d) { d.groups[0].cells[0].diffuse[0].channels = 3; }, "basis");
-  refused([](Description& d) { d.groups[0].cells[0].diffuse[0].planes[0].payload = 0; }, "another type");
+  refused([](Description& d) { d.groups[0].cells[1].sample_count = 3; }, "sampleCount");
+  refused([](Description& d) { d.groups[0].sample_count = 6; }, "do not hold all samples");
+  const auto first = [](Description& d) -> DiffuseTransfer& { return d.groups[0].cells[0].diffuse[0]; };
+  const auto lamps = [](Description& d) -> DiffuseTransfer& { return d.groups[0].cells[0].diffuse[1]; };
+  refused([&](Description& d) { first(d).shape.order = 9; }, "order");
+  refused([&](Description& d) { first(d).shape.order = 0; }, "order");
+  refused([&](Description& d) { first(d).shape.light_columns = 2; }, "order");
+  refused([&](Description& d) { first(d).shape.full_channels = 0; }, "codebook is a payload of another size");
+  refused([&](Description& d) { first(d).shape.full_channels = 2; }, "fullChannels");
+  refused([&](Description& d) { first(d).shape.shadowed_channels = 0; }, "shadowedChannels");
+  refused([&](Description& d) { first(d).shape.outputs = 3; }, "outputs");
+  refused([&](Description& d) { first(d).clusters = 0; }, "clusters");
+  refused([&](Description& d) { first(d).clusters = 3; }, "codebook is a payload of another size");
+  refused([&](Description& d) { first(d).axes = 3; }, "codebook is a payload of another size");
+  refused([&](Description& d) { first(d).axes = 5; }, "axes");
+  refused([&](Description& d) { first(d).cluster_ids = 0; }, "clusterIds is a payload of another type");
+  refused([&](Description& d) { first(d).cluster_ids = -1; }, "clusterIds is missing");
+  refused([&](Description& d) { first(d).planes[0].payload = 0; }, "another type");
+  refused([&](Description& d) { first(d).planes[0].count = 1; }, "another size");
+  refused([&](Description& d) { first(d).planes[1].count = 3; }, "planes[1].count");
+  refused([&](Description& d) { lamps(d).shape.light_columns = 1; }, "lightColumns");
+  refused([](Description& d) { std::swap(d.groups[0].cells[0].diffuse[0], d.groups[0].cells[0].diffuse[1]); },
+          "the group's lights after the environment");
+  refused([](Description& d) { d.groups[0].cells[0].diffuse.push_back(d.groups[0].cells[0].diffuse[1]); },
+          "the group's lights after the environment");
+  refused([](Description& d) { d.groups[0].lights[0].index = 1; }, "lights[0].material");
+  refused([](Description& d) { d.groups[0].lights[1].index = 2; }, "lights[1].node");
+  refused(
+      [](Description& d) {
+        Group& g = d.groups[0];
+        std::swap(g.cells[0], g.cells[1]);
+        g.cells[0].first_sample = 0;
+        g.cells[1].first_sample = 2;
+      },
+      "stands after cells with nine");
   refused([](Description& d) { d.payloads[0].raw_length = 17; }, "rawLength");
   refused([](Description& d) { d.groups[0].rest_rotation = glm::quat(0.0f, 0.0f, 0.0f, 0.0f); },
           "restRotation");
+}
+
+TEST_F(BundleFile, ClustersThatContradictThePlanesAreRefusedBeforeUse) {
+  Sample sample = sampleBundle();
+  const auto ids = static_cast<std::uint32_t>(sample.description.groups[0].cells[0].diffuse[0].cluster_ids);
+  sample.blobs[sample.description.payloads[ids].view] = encodeClusterIds(std::vector{0u, 0u, 0u}, 2);
+  ASSERT_TRUE(write(path_, sample.description, sample.blobs));
+  auto reader = Reader::open(path_);
+  ASSERT_TRUE(reader) << reader.error().line();
+  const auto codes = reader->readCodebook(0, 0, 0);
+  ASSERT_FALSE(codes);
+  EXPECT_NE(codes.error().line().find("group 0 cell 0: has weight planes of other sizes"), std::string::npos)
+      << codes.error().line();
+  EXPECT_FALSE(reader->checkAll());
 }
 
 TEST_F(BundleFile, APlainGltfFileIsSaidNotToBeBaked) {

@@ -1,6 +1,5 @@
 #include "runtime/bundle/transfer_codec.hpp"
 
-#include <cmath>
 #include <numeric>
 #include <random>
 
@@ -62,44 +61,30 @@ TEST(VertexRows, DamagedOnesAreRefused) {
   auto falling = bytes;
   falling[8 + 4] = std::byte{9};  // offsets {0, 9, 3}
   EXPECT_FALSE(decodeRows(falling, 2, 2, "rows"));
-}
-
-TEST(TransferBasis, HalfKeepsElevenBits) {
-  std::vector<float> values;
-  for (int i = -300; i <= 300; ++i) values.push_back(0.0031f * static_cast<float>(i));
-  const auto back = decodeBasis(encodeBasis(values), values.size(), "basis");
-  ASSERT_TRUE(back);
-  for (std::size_t i = 0; i < values.size(); ++i)
-    EXPECT_NEAR((*back)[i], values[i], std::max(std::abs(values[i]) / 2048.0f, 1e-7f));
-  EXPECT_FALSE(decodeBasis(encodeBasis(values), values.size() + 1, "basis"));
-  const std::vector<std::byte> infinite = {std::byte{0x00}, std::byte{0x7c}};
-  EXPECT_FALSE(decodeBasis(infinite, 1, "basis"));
-}
-
-TEST(WeightPlane, CodesComeBackAtBothWidths) {
-  for (const std::uint32_t bits : {8u, 16u}) {
-    const std::vector<std::uint32_t> codes = {0, 1, 127, 128, (1u << bits) - 1};
-    const auto bytes = encodePlane(codes, bits);
-    EXPECT_EQ(bytes.size(), codes.size() * bits / 8);
-    const auto back = decodePlane(bytes, bits, 5, "plane");
-    ASSERT_TRUE(back);
-    EXPECT_EQ(*back, codes);
-    EXPECT_FALSE(decodePlane(bytes, bits, 6, "plane"));
+  for (const int kind : {0, 1, 4}) {  // 0 and 1 held samples, not differences
+    auto other = bytes;
+    other[0] = static_cast<std::byte>(kind);
+    EXPECT_FALSE(decodeRows(other, 2, 2, "rows")) << kind;
   }
 }
 
-TEST(TransferCodec, DecodesMeanPlusWeightedAxesAndAnyPrefix) {
-  DiffuseTransfer transfer;
-  transfer.order = 1;
-  transfer.channels = 3;
-  transfer.planes = {{0, 8, -1.0f, 0.5f, 0.9f}, {0, 8, 0.0f, 0.25f, 0.1f}};
-  const std::vector<float> basis = {1, 2, 3, 10, 20, 30, 100, 200, 300};
-  const std::vector<std::vector<std::uint32_t>> planes = {{0, 4}, {1, 2}};
-  const auto both = decodeTransfer(transfer, 2, basis, planes);
-  EXPECT_EQ(both, (std::vector<float>{1 - 10 + 25, 2 - 20 + 50, 3 - 30 + 75, 1 + 10 + 50, 2 + 20 + 100,
-                                      3 + 30 + 150}));
-  const auto mean = decodeTransfer(transfer, 2, basis, {});
-  EXPECT_EQ(mean, (std::vector<float>{1, 2, 3, 1, 2, 3}));
+TEST(VertexRows, SamplesInOrderCostNextToNothing) {
+  VertexRows rows{{0}, {}, {}};
+  for (std::uint32_t v = 0; v < 10000; ++v) {
+    rows.offsets.push_back(v + 1);
+    rows.samples.push_back(70000 + v);
+    rows.weights.push_back(1.0f);
+  }
+  const auto bytes = encodeRows(rows);
+  EXPECT_LT(compressZstd(bytes, 9).size(), 100u) << "one difference, 9999 times";
+  EXPECT_EQ(decodeRows(bytes, 10000, 80000, "rows")->samples, rows.samples);
+}
+
+TEST(VertexRows, DifferencesGoBackwardsAndFar) {
+  const VertexRows rows{{0, 1, 2, 3, 4}, {5, 0, 0xfffffff0u, 3}, {1.0f, 1.0f, 1.0f, 1.0f}};
+  const auto back = decodeRows(encodeRows(rows), 4, 0xffffffffu, "rows");
+  ASSERT_TRUE(back) << back.error().line();
+  EXPECT_EQ(back->samples, rows.samples);
 }
 
 TEST(Zstd, RefusesAFalseLength) {

@@ -13,7 +13,9 @@
 
 #include <gtest/gtest.h>
 
+#include "runtime/bundle/transfer_codec.hpp"
 #include "runtime/bundle/writer.hpp"
+#include "runtime/streaming/budget.hpp"
 #include "tests/runtime/streaming/sample_bundle.hpp"
 
 namespace lambent::streaming {
@@ -25,7 +27,9 @@ struct Name {
   std::string operator()(const MeshReady& r) const { return "mesh " + join({r.mesh, r.primitive}); }
   std::string operator()(const ImageReady& r) const { return "image " + join({r.image}); }
   std::string operator()(const RowsReady& r) const { return "rows " + join({r.draw}); }
-  std::string operator()(const BasisReady& r) const { return "basis " + join({r.group, r.cell, r.transfer}); }
+  std::string operator()(const CodebookReady& r) const {
+    return "codebook " + join({r.group, r.cell, r.transfer});
+  }
   std::string operator()(const PlaneReady& r) const {
     return "plane " + join({r.group, r.cell, r.transfer, r.plane});
   }
@@ -46,12 +50,12 @@ std::vector<std::string> names(const std::vector<Ready>& items) {
 }
 
 const std::vector<std::string> kInOrder = {
-    "mesh 0.0",      "mesh 1.0",      "mesh 1.1",       // by place
-    "rows 1",        "rows 0",        "rows 2",         // priorities 2, 3, 3
-    "image 0",       "image 1",                         // by place
-    "basis 1.0.0",   "plane 1.0.0.0", "plane 1.0.0.1",  // 10, 12, 11: never before plane 0
-    "basis 0.0.0",   "basis 1.1.0",   "plane 1.1.0.0",  // 20, 20, 5: never before its basis
-    "plane 0.0.0.0", "plane 1.0.0.2", "plane 0.0.0.1",  // 21, 30, 40
+    "mesh 0.0",       "mesh 1.0",       "mesh 1.1",       // by place
+    "rows 1",         "rows 0",         "rows 2",         // priorities 2, 3, 3
+    "image 0",        "image 1",                          // by place
+    "codebook 1.0.0", "plane 1.0.0.0",  "plane 1.0.0.1",  // 10, 12, 11: never before plane 0
+    "codebook 0.0.0", "codebook 1.1.0", "plane 1.1.0.0",  // 20, 20, 5: never before its codebook
+    "plane 0.0.0.0",  "plane 1.0.0.2",  "plane 0.0.0.1",  // 21, 30, 40
 };
 
 class LoaderTest : public ::testing::Test {
@@ -126,14 +130,20 @@ TEST_F(LoaderTest, DeliversByPriorityWhatWasWritten) {
   EXPECT_EQ(image.width, 20u);
   EXPECT_EQ(image.height, 10u);
   EXPECT_EQ(image.rgba[(9 * 20 + 19) * 4 + 2], testing::texel(19, 9, 2));
-  const auto& basis = std::get<BasisReady>(items[8]).vectors;
-  ASSERT_EQ(basis.size(), 16u);
-  EXPECT_EQ(basis[15], 20.0f) << "15 + 10/2: exact in binary16";
+  const auto& codebook = std::get<CodebookReady>(items[8]);
+  ASSERT_EQ(codebook.codebook.vectors.size(), 20u);
+  EXPECT_EQ(codebook.codebook.vectors[19], 24.0f) << "19 + 10/2: exact in binary16";
+  EXPECT_EQ(codebook.codebook.axes.size(), 3u);
+  ASSERT_EQ(codebook.positions.size(), 500u);
+  EXPECT_EQ(codebook.positions[0], 1u) << "sample 0 is of the second cluster";
+  EXPECT_EQ(codebook.positions[332], 499u) << "333 samples of the first cluster";
+  EXPECT_EQ(codebook.positions[333], 0u | 1u << 16);
+  EXPECT_EQ(codebook.positions[499], 498u | 1u << 16);
   const auto& codes = std::get<PlaneReady>(items[10]).codes;
-  ASSERT_EQ(codes.size(), 1000u) << "500 samples of 16 bits";
+  ASSERT_EQ(codes.size(), 666u) << "333 samples of 16 bits";
   std::uint16_t code = 0;
-  std::memcpy(&code, &codes[2 * 499], sizeof code);
-  EXPECT_EQ(code, 31 * 499 + 11);
+  std::memcpy(&code, &codes[2 * 332], sizeof code);
+  EXPECT_EQ(code, 31 * 332 + 11);
 }
 
 TEST_F(LoaderTest, GivesTheSameSequenceForAnyNumberOfThreadsAndAnyBudget) {
@@ -219,18 +229,67 @@ TEST_F(LoaderTest, NamesTheImageThatCannotBeDecoded) {
       << loader.error()->line();
 }
 
-TEST_F(LoaderTest, RefusesCodesForSamplesThatACellDoesNotHave) {
+TEST_F(LoaderTest, RefusesClustersThatContradictThePlanes) {
   Sample sample = testing::sampleBundle();
-  bundle::Group& group = sample.description.groups[1];
-  group.sample_count = group.cells[1].first_sample;
-  group.cells[1].sample_count = 0;
+  const bundle::DiffuseTransfer& transfer = sample.description.groups[1].cells[0].diffuse[0];
+  const auto view = sample.description.payloads[static_cast<std::uint32_t>(transfer.cluster_ids)].view;
+  const std::vector<std::uint32_t> all_first(500, 0);
+  sample.blobs[view] = bundle::encodeClusterIds(all_first, 2);
+  sample.description.payloads[static_cast<std::uint32_t>(transfer.cluster_ids)].codec =
+      bundle::PayloadCodec::Raw;
+  write(sample);
+  Loader loader(open(), 2);
+  EXPECT_EQ(drain(loader, 1 << 20).size(), 8u);
+  ASSERT_TRUE(loader.error());
+  EXPECT_NE(loader.error()->line().find("group 1 cell 0: has weight planes of other sizes"),
+            std::string::npos)
+      << loader.error()->line();
+}
+
+TEST_F(LoaderTest, RefusesRowsOfANormalMappedDrawIntoPlainSamples) {
+  Sample sample = testing::sampleBundle();
+  sample.description.draws[0].outputs = 9;
   write(sample);
   Loader loader(open(), 2);
   drain(loader, 1 << 20);
   ASSERT_TRUE(loader.error());
-  EXPECT_NE(loader.error()->line().find("group 1 cell 1 plane 0: has 200 bytes of codes, not 0"),
-            std::string::npos)
+  EXPECT_NE(loader.error()->line().find("draw 0: has a normal map"), std::string::npos)
       << loader.error()->line();
+}
+
+TEST_F(LoaderTest, BringsWhatTheBudgetHasRoomForAndAlwaysAllButPlanes) {
+  write(testing::sampleBundle());
+  const auto reader = open();
+  const std::uint64_t everything = withinBudget(*reader, ~std::uint64_t{0})->bytes;
+  const auto taken = [&](std::uint64_t max_bytes) {
+    const auto kept = withinBudget(*reader, max_bytes);
+    EXPECT_TRUE(kept);
+    Loader loader(reader, kept->description, 2);
+    auto found = names(drain(loader, 1 << 20));
+    EXPECT_FALSE(loader.error());
+    return found;
+  };
+  EXPECT_EQ(taken(everything), kInOrder);
+  std::vector<std::string> expected = kInOrder;
+  expected.pop_back();
+  EXPECT_EQ(taken(everything - 1), expected) << "the last of all stays away";
+  std::vector<std::string> without_planes;
+  for (const std::string& name : kInOrder)
+    if (!name.starts_with("plane")) without_planes.push_back(name);
+  EXPECT_EQ(taken(0), without_planes);
+  // In between it is a prefix of the order, and within its limit.
+  std::size_t before = 0;
+  for (std::uint64_t cut = 4000; cut > 0; cut -= 100) {
+    const auto kept = withinBudget(*reader, everything - cut);
+    ASSERT_TRUE(kept);
+    const std::size_t planes = taken(everything - cut).size() - without_planes.size();
+    if (planes > 0) {
+      EXPECT_LE(kept->bytes, everything - cut);
+    }
+    EXPECT_GE(planes, before);
+    before = planes;
+  }
+  EXPECT_GT(before, 0u);
 }
 
 TEST_F(LoaderTest, FinishesAnEmptyBundleAtOnce) {

@@ -118,30 +118,45 @@ class Builder {
     sample.description.draws.push_back(draw);
   }
 
-  // One cell of order 2: 4 columns, as many planes as priorities.
-  void addCell(bundle::Group& group, std::uint32_t samples, std::uint32_t basis_priority,
-               const std::vector<std::uint32_t>& plane_priorities) {
+  // One cell of order 2: 4 columns, as many planes as priorities. Of two clusters, the second has no axes and
+  // holds every third sample.
+  void addCell(bundle::Group& group, std::uint32_t samples, std::uint32_t codebook_priority,
+               const std::vector<std::uint32_t>& plane_priorities, std::uint32_t clusters = 1) {
     bundle::Cell cell;
     cell.first_sample = group.sample_count;
     cell.sample_count = samples;
     group.sample_count += samples;
     bundle::DiffuseTransfer transfer;
-    transfer.order = 2;
-    std::vector<float> basis;
-    for (std::size_t i = 0; i < 4 * (1 + plane_priorities.size()); ++i) {
-      basis.push_back(static_cast<float>(i) + static_cast<float>(basis_priority) * 0.5f);
+    transfer.shape.order = 2;
+    transfer.clusters = clusters;
+    transfer.axes = static_cast<std::uint32_t>(plane_priorities.size());
+    bundle::Codebook codebook;
+    codebook.axis_counts.assign(clusters, 0);
+    codebook.axis_counts[0] = transfer.axes;
+    codebook.axes.assign(transfer.axes, {0.0f, 0.01f});
+    for (std::size_t i = 0; i < 4 * (clusters + transfer.axes); ++i) {
+      codebook.vectors.push_back(static_cast<float>(i) + static_cast<float>(codebook_priority) * 0.5f);
     }
-    transfer.basis =
-        addPayload(bundle::PayloadType::TransferBasis, bundle::encodeBasis(basis), basis_priority);
+    transfer.codebook =
+        addPayload(bundle::PayloadType::Codebook, bundle::encodeCodebook(codebook), codebook_priority);
+    std::vector<std::uint32_t> cluster_of(samples, 0);
+    if (clusters > 1) {
+      for (std::uint32_t i = 0; i < samples; i += 3) cluster_of[i] = 1;
+      transfer.cluster_ids = static_cast<std::int32_t>(
+          addPayload(bundle::PayloadType::ClusterIds, bundle::encodeClusterIds(cluster_of, clusters),
+                     codebook_priority));
+    }
+    const std::vector<std::uint32_t> counts = bundle::planeCounts(codebook, cluster_of);
     for (std::size_t p = 0; p < plane_priorities.size(); ++p) {
       const std::uint32_t bits = p % 2 == 0 ? 8 : 16;
-      std::vector<std::uint32_t> codes(samples);
-      for (std::uint32_t i = 0; i < samples; ++i) codes[i] = (31 * i + plane_priorities[p]) % (1u << bits);
+      std::vector<std::uint32_t> codes(counts[p]);
+      for (std::uint32_t i = 0; i < codes.size(); ++i)
+        codes[i] = (31 * i + plane_priorities[p]) % (1u << bits);
       bundle::WeightPlane plane;
-      plane.payload =
-          addPayload(bundle::PayloadType::WeightPlane, bundle::encodePlane(codes, bits), plane_priorities[p]);
+      plane.payload = addPayload(bundle::PayloadType::WeightPlane, bundle::encodeWeightPlane(codes, bits),
+                                 plane_priorities[p]);
       plane.bits = bits;
-      plane.scale = 0.01f;
+      plane.count = counts[p];
       plane.variance = 0.5f;
       transfer.planes.push_back(plane);
     }
@@ -184,8 +199,8 @@ Sample sampleBundle() {
   d.groups.resize(2);
   d.groups[0].name = "first";
   d.groups[1].name = "second";
-  b.addCell(d.groups[0], 300, /*basis_priority=*/20, {21, 40});
-  b.addCell(d.groups[1], 500, 10, {12, 11, 30});
+  b.addCell(d.groups[0], 300, /*codebook_priority=*/20, {21, 40});
+  b.addCell(d.groups[1], 500, 10, {12, 11, 30}, /*clusters=*/2);
   b.addCell(d.groups[1], 200, 20, {5});
   bundle::Mesh fan, pair;
   fan.name = "fan";

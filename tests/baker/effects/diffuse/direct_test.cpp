@@ -255,7 +255,8 @@ TEST(DirectTransfer, StopsWhenAsked) {
   std::stop_source stop;
   stop.request_stop();
   Progress progress;
-  EXPECT_FALSE(bakeDirect(t.geometry, t.samples, t.rays, {5, 128}, progress, stop.get_token()).has_value());
+  const DiffuseScene scene = t.diffuse();
+  EXPECT_FALSE(bakeDirect(DirectPass(scene, {5, 128}), scene, progress, stop.get_token()).has_value());
 }
 
 }  // namespace

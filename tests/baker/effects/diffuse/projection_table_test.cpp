@@ -12,12 +12,16 @@
 namespace lambent::baker {
 namespace {
 
+std::vector<double> evenly(const DirectionTable& table) {
+  return std::vector<double>(table.size(), 1.0 / static_cast<double>(table.size()));
+}
+
 class ProjectionTableOfOrder : public ::testing::TestWithParam<std::tuple<int, int>> {};
 
 TEST_P(ProjectionTableOfOrder, IsExactWhereTheAnswerIsKnown) {
   const auto [order, rays] = GetParam();
   const DirectionTable directions = cosineTable(static_cast<std::size_t>(rays));
-  const ProjectionTable table(directions, order);
+  const ProjectionTable table(directions, evenly(directions), order);
   const auto columns = static_cast<std::size_t>(sh::coefficientCount(order));
   std::vector<float> open(columns), out(columns);
   sh::unoccludedTransfer(order, glm::vec3(0.0f, 0.0f, 1.0f), open);
@@ -41,7 +45,8 @@ TEST_P(ProjectionTableOfOrder, IsExactWhereTheAnswerIsKnown) {
 // Were a weight negative, uniform light could come out above albedo.
 TEST_P(ProjectionTableOfOrder, WeightsArePositiveAndSumToOne) {
   const auto [order, rays] = GetParam();
-  const ProjectionTable table(cosineTable(static_cast<std::size_t>(rays)), order);
+  const DirectionTable directions = cosineTable(static_cast<std::size_t>(rays));
+  const ProjectionTable table(directions, evenly(directions), order);
   const auto weights = table.weights();
   EXPECT_GT(*std::min_element(weights.begin(), weights.end()), 0.0);
   EXPECT_NEAR(std::accumulate(weights.begin(), weights.end(), 0.0), 1.0, 1e-12);

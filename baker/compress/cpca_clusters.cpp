@@ -1,0 +1,261 @@
+#include "baker/compress/cpca_clusters.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <numeric>
+
+#include "baker/work/parallel.hpp"
+
+namespace lambent::baker {
+
+namespace {
+
+constexpr std::size_t kGrain = 1024;
+constexpr std::size_t kBlock = 256;     // samples gathered for one matrix product
+constexpr double kFewestMembers = 8.0;  // of a cluster; its mean and name are not worth it for fewer
+constexpr double kNamingPrice = 2.0;    // a change of cluster also breaks the prediction of weights
+constexpr std::size_t kNearest = 8;     // clusters tried per sample, by distance to their means
+
+// Entropy of a Gaussian weight of this variance in steps.
+double weightBits(double variance, double step) {
+  const double in_steps = variance / (step * step) + 1.0 / 12.0;
+  return std::max(0.1, 0.5 * std::log2(2.0 * std::numbers::pi * std::numbers::e * in_steps)) + 0.05;
+}
+
+// Bits in the codebook of a unit vector known well enough for weights of this variance (axisGrid): those of
+// an integer of typical size, for each coordinate.
+double axisBits(Eigen::Index rank, double variance, double step) {
+  const auto coordinates = static_cast<double>(rank);
+  const double typical = 1.0 / (std::sqrt(coordinates) * axisGrid(rank, variance, step));
+  return 40.0 + coordinates * (0.5 + 1.1 * std::log2(1.0 + typical));
+}
+
+double bitPrice(double step) {
+  return 2.0 * std::numbers::ln2 * step * step / 12.0;
+}
+
+// A number in 0..1 from a counter (splitmix64).
+double hashed(std::uint64_t counter) {
+  std::uint64_t z = (counter + 1) * 0x9e3779b97f4a7c15ull;
+  z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9ull;
+  z = (z ^ z >> 27) * 0x94d049bb133111ebull;
+  return static_cast<double>((z ^ z >> 31) >> 11) * 0x1p-53;
+}
+
+double expectedError(const Cluster& cluster, double step) {
+  double error = 0.0;
+  for (Eigen::Index j = 0; j < cluster.variances.size(); ++j)
+    error += j < cluster.kept ? step * step / 12.0 : cluster.variances(j);
+  return error;
+}
+
+void keepAxesOf(Cluster& cluster, double step) {
+  cluster.kept = 0;
+  const double noise = step * step / 12.0, price = bitPrice(step);
+  for (Eigen::Index j = 0; j < cluster.variances.size(); ++j) {
+    const double variance = cluster.variances(j);
+    if (variance <= noise) break;
+    const double bits = cluster.count * weightBits(std::min(variance, cluster.innovation(j)), step) +
+                        axisBits(cluster.axes.rows(), variance, step);
+    if (cluster.count * (variance - noise) <= price * bits) break;
+    cluster.kept = j + 1;
+  }
+}
+
+}  // namespace
+
+double axisGrid(Eigen::Index rank, double variance, double step) {
+  return step * std::sqrt(0.2 / (static_cast<double>(rank) * variance));
+}
+
+ClusterIds seedClusters(const Points& points, std::uint32_t clusters) {
+  const auto count = static_cast<std::size_t>(points.cols());
+  ClusterIds ids(count, 0);
+  std::vector<double> distance(count, std::numeric_limits<double>::infinity());
+  Eigen::Index seed = 0;
+  for (std::uint32_t c = 0; c < clusters; ++c) {
+    parallelRanges(count, kGrain, {}, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t s = begin; s < end; ++s) {
+        const double d = double{(points.col(static_cast<Eigen::Index>(s)) - points.col(seed)).squaredNorm()};
+        if (d >= distance[s]) continue;
+        distance[s] = d;
+        ids[s] = c;
+      }
+    });
+    const double total = std::accumulate(distance.begin(), distance.end(), 0.0);
+    if (!(total > 0.0)) break;  // every point is a seed or equal to one
+    double left = hashed(c) * total;
+    std::size_t next = 0;
+    for (std::size_t s = 0; s < count; ++s) {
+      if (distance[s] <= 0.0) continue;
+      next = s;
+      if ((left -= distance[s]) <= 0.0) break;
+    }
+    seed = static_cast<Eigen::Index>(next);
+  }
+  return ids;
+}
+
+std::vector<Cluster> fitClusters(const Points& points, ClusterIds& ids, bool held_out) {
+  const std::uint32_t numbered = ids.empty() ? 0 : *std::max_element(ids.begin(), ids.end()) + 1;
+  std::vector<std::vector<std::uint32_t>> members(numbered);
+  for (std::uint32_t s = 0; s < ids.size(); ++s) members[ids[s]].push_back(s);
+  std::vector<std::uint32_t> renumbered(numbered, 0);
+  std::uint32_t used = 0;
+  for (std::uint32_t c = 0; c < numbered; ++c) {
+    if (members[c].empty()) continue;
+    renumbered[c] = used;
+    if (used != c) members[used] = std::move(members[c]);
+    ++used;
+  }
+  for (std::uint32_t& id : ids) id = renumbered[id];
+
+  std::vector<Cluster> clusters(used);
+  parallelRanges(used, 1, {}, [&](std::size_t c, std::size_t) {
+    Cluster& cluster = clusters[c];
+    const std::vector<std::uint32_t>& own = members[c];
+    cluster.count = static_cast<double>(own.size());
+    Eigen::VectorXd sum = Eigen::VectorXd::Zero(points.rows());
+    for (const std::uint32_t s : own) sum += points.col(s).cast<double>();
+    cluster.mean = (sum / cluster.count).cast<float>();
+    const Spectrum spectrum = spectrumOf(secondMoment(points, own, cluster.mean));
+    cluster.axes = spectrum.axes.cast<float>();
+    cluster.variances = spectrum.variances;
+    // Differences between neighbours of the cluster, along the axes.
+    Eigen::VectorXd squares = Eigen::VectorXd::Zero(points.rows());
+    Points block(points.rows(), static_cast<Eigen::Index>(kBlock));
+    for (std::size_t first = 1; first < own.size(); first += kBlock) {
+      const std::size_t last = std::min(own.size(), first + kBlock);
+      for (std::size_t m = first; m < last; ++m)
+        block.col(static_cast<Eigen::Index>(m - first)) = points.col(own[m]) - points.col(own[m - 1]);
+      const Points along = cluster.axes.transpose() * block.leftCols(static_cast<Eigen::Index>(last - first));
+      squares += along.rowwise().squaredNorm().cast<double>();
+    }
+    cluster.innovation = squares / std::max(1.0, cluster.count - 1.0);
+    // n samples leave n - 1 - j dimensions of noise to axis j: its variance looks smaller than it is.
+    if (held_out)
+      for (Eigen::Index j = 0; j < cluster.variances.size(); ++j)
+        cluster.variances(j) *= cluster.count / std::max(1.0, cluster.count - 1.0 - static_cast<double>(j));
+  });
+  return clusters;
+}
+
+void keepAxes(std::vector<Cluster>& clusters, double step) {
+  parallelRanges(clusters.size(), 1, {}, [&](std::size_t c, std::size_t) { keepAxesOf(clusters[c], step); });
+}
+
+double stepFor(std::vector<Cluster>& clusters, double budget) {
+  double total = 0.0, largest = 0.0;
+  for (const Cluster& cluster : clusters) {
+    total += cluster.count;
+    if (cluster.variances.size() > 0) largest = std::max(largest, cluster.variances.maxCoeff());
+  }
+  const auto error = [&](double step) {
+    keepAxes(clusters, step);
+    double sum = 0.0;
+    for (const Cluster& cluster : clusters) sum += cluster.count * expectedError(cluster, step);
+    return sum / total;
+  };
+  double high = std::sqrt(12.0 * std::max(largest, budget)), low = 1e-6 * high;
+  if (error(high) <= budget) return high;
+  for (int i = 0; i < 24; ++i) {
+    const double middle = std::sqrt(low * high);
+    (error(middle) <= budget ? low : high) = middle;
+  }
+  keepAxes(clusters, low);
+  return low;
+}
+
+ClusterIds assignClusters(const Points& points, const std::vector<Cluster>& clusters, double step,
+                          std::span<const std::uint32_t> before) {
+  struct Prepared {
+    Eigen::MatrixXf axes;    // kept ones, transposed
+    Eigen::VectorXf spread;  // price of a weight's distance from 0
+    float cost = 0.0f;
+  };
+  const double price = bitPrice(step);
+  double largest = 0.0;
+  for (const Cluster& cluster : clusters) largest = std::max(largest, cluster.count);
+  std::vector<Prepared> prepared(clusters.size());
+  Eigen::MatrixXf means(points.rows(), static_cast<Eigen::Index>(clusters.size()));
+  for (std::size_t c = 0; c < clusters.size(); ++c) {
+    const Cluster& cluster = clusters[c];
+    means.col(static_cast<Eigen::Index>(c)) = cluster.mean;
+    prepared[c].axes = cluster.axes.leftCols(cluster.kept).transpose();
+    prepared[c].spread.resize(cluster.kept);
+    double cost = 0.0;
+    for (Eigen::Index j = 0; j < cluster.kept; ++j) {
+      const double variance = cluster.variances(j);
+      cost += step * step / 12.0 +
+              price * (weightBits(std::min(variance, cluster.innovation(j)), step) - 0.5 / std::numbers::ln2);
+      prepared[c].spread(j) =
+          static_cast<float>(price * 0.5 / std::numbers::ln2 / (variance + step * step / 12.0));
+    }
+    // Small clusters lose their members to others, unless there is none but small ones.
+    const bool open = cluster.count >= std::min(largest, kFewestMembers);
+    prepared[c].cost = open ? static_cast<float>(cost) : std::numeric_limits<float>::max();
+  }
+  const auto name =
+      static_cast<float>(kNamingPrice * price * std::log2(static_cast<double>(clusters.size()) + 1.0));
+
+  const Eigen::VectorXf norms = means.colwise().squaredNorm();
+  ClusterIds ids(static_cast<std::size_t>(points.cols()));
+  parallelRanges(ids.size(), kGrain, {}, [&](std::size_t begin, std::size_t end) {
+    const Eigen::MatrixXf near =
+        (-2.0f * means.transpose() *
+         points.middleCols(static_cast<Eigen::Index>(begin), static_cast<Eigen::Index>(end - begin)))
+            .colwise() +
+        norms;
+    std::vector<std::uint32_t> order(clusters.size());
+    Eigen::VectorXf off, weights;
+    for (std::size_t s = begin; s < end; ++s) {
+      const auto distances = near.col(static_cast<Eigen::Index>(s - begin));
+      std::iota(order.begin(), order.end(), 0u);
+      const std::size_t tried = std::min(kNearest, order.size());
+      std::partial_sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(tried), order.end(),
+                        [&](std::uint32_t a, std::uint32_t b) {
+                          return distances(a) != distances(b) ? distances(a) < distances(b) : a < b;
+                        });
+      float best = std::numeric_limits<float>::infinity();
+      const auto point = points.col(static_cast<Eigen::Index>(s));
+      const auto consider = [&](std::uint32_t c) {
+        off = point - clusters[c].mean;
+        weights.noalias() = prepared[c].axes * off;
+        float cost = off.squaredNorm() - weights.squaredNorm() + prepared[c].cost +
+                     weights.cwiseAbs2().dot(prepared[c].spread);
+        // Neighbours in one cluster cost almost nothing to name.
+        if (!before.empty() &&
+            !((s > 0 && before[s - 1] == c) || (s + 1 < before.size() && before[s + 1] == c)))
+          cost += name;
+        if (cost < best || (cost == best && c < ids[s])) {
+          best = cost;
+          ids[s] = c;
+        }
+      };
+      for (std::size_t t = 0; t < tried; ++t) consider(order[t]);
+      if (!before.empty()) {
+        consider(before[s]);
+        if (s > 0) consider(before[s - 1]);
+      }
+    }
+  });
+  return ids;
+}
+
+double expectedBytes(const std::vector<Cluster>& clusters, double step, double count) {
+  double total = 0.0, bits = 0.0;
+  for (const Cluster& cluster : clusters) total += cluster.count;
+  for (const Cluster& cluster : clusters) {
+    const double share = cluster.count / total * count;
+    for (Eigen::Index j = 0; j < cluster.kept; ++j)
+      bits += share * weightBits(std::min(cluster.variances(j), cluster.innovation(j)), step) +
+              axisBits(cluster.axes.rows(), cluster.variances(j), step);
+    bits += 8.0 * static_cast<double>(cluster.mean.size());
+  }
+  bits += count * 0.4 * std::log2(static_cast<double>(clusters.size()));
+  return bits / 8.0;
+}
+
+}  // namespace lambent::baker

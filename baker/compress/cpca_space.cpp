@@ -1,0 +1,121 @@
+#include "baker/compress/cpca_space.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <numbers>
+
+#include "baker/compress/cpca.hpp"
+#include "baker/compress/light_weights.hpp"
+#include "baker/work/parallel.hpp"
+#include "runtime/sh/basis.hpp"
+#include "runtime/sh/zonal.hpp"
+
+namespace lambent::baker {
+
+namespace {
+
+constexpr std::size_t kGrain = 1024;  // samples in a range of a sum
+
+std::size_t shadowedSize(const bundle::TransferShape& shape) {
+  return std::size_t{shape.shadowed_channels} * shape.outputs * shape.columns();
+}
+
+// Per value, the sum over samples of value(sample, i)², ordered.
+template <typename Value>
+std::vector<double> energies(std::size_t size, std::size_t count, const Value& value) {
+  std::vector<std::vector<double>> partial((count + kGrain - 1) / kGrain);
+  parallelRanges(count, kGrain, {}, [&](std::size_t begin, std::size_t end) {
+    std::vector<double>& sums = partial[begin / kGrain];
+    sums.assign(size, 0.0);
+    for (std::size_t s = begin; s < end; ++s)
+      for (std::size_t i = 0; i < size; ++i) {
+        const double v = value(s * size + i);
+        sums[i] += v * v;
+      }
+  });
+  std::vector<double> total(size, 0.0);
+  for (const auto& sums : partial)
+    for (std::size_t i = 0; i < size; ++i) total[i] += sums[i];
+  return total;
+}
+
+// sqrt(W_i) but for the lights of the group, which are 1 here: band power of light; where a vector has
+// outputs for normal maps, times A_l/pi of the output's band.
+std::vector<double> bandRoots(const bundle::TransferShape& shape) {
+  std::vector<double> roots;
+  const std::size_t columns = shape.columns(), environment = std::size_t{shape.order} * shape.order;
+  for (std::size_t i = 0; i < shape.size(); ++i) {
+    const auto column = static_cast<int>(i % columns), output = static_cast<int>(i / columns % shape.outputs);
+    double root = 1.0;
+    if (static_cast<std::size_t>(column) < environment)
+      root = std::sqrt(kBandPower[static_cast<std::size_t>(sh::bandOf(column))]);
+    if (shape.outputs > 1) root *= sh::clampedCosine(sh::bandOf(output)) / std::numbers::pi;
+    roots.push_back(root);
+  }
+  return roots;
+}
+
+struct Block {
+  std::size_t first = 0, last = 0;
+};
+
+std::vector<Block> blocksOf(const bundle::TransferShape& shape) {
+  std::vector<Block> blocks = {{0, shadowedSize(shape)}};
+  if (shape.full_channels > 0) blocks.push_back({shadowedSize(shape), shape.size()});
+  return blocks;
+}
+
+// Each block of energy 1; in it, the columns of lights of as much energy as the whole environment, each.
+std::vector<double> normalisedRoots(std::span<const float> vectors, const bundle::TransferShape& shape) {
+  std::vector<double> roots = bandRoots(shape);
+  const std::size_t size = shape.size(), columns = shape.columns(),
+                    environment = std::size_t{shape.order} * shape.order;
+  const auto energy =
+      energies(size, vectors.size() / size, [&](std::size_t at) { return double{vectors[at]}; });
+  for (const Block& block : blocksOf(shape)) {
+    std::vector<double> of_column(columns, 0.0);
+    for (std::size_t i = block.first; i < block.last; ++i)
+      of_column[i % columns] += roots[i] * roots[i] * energy[i];
+    double sky = 0.0, lit = 0.0;
+    for (std::size_t c = 0; c < environment; ++c) sky += of_column[c];
+    for (std::size_t c = environment; c < columns; ++c) lit += of_column[c] > 0.0 ? 1.0 : 0.0;
+    const double parts = lit + (sky > 0.0 ? 1.0 : 0.0);
+    for (std::size_t i = block.first; i < block.last; ++i) {
+      const double own = i % columns < environment ? sky : of_column[i % columns];
+      roots[i] = own > 0.0 ? roots[i] / std::sqrt(own * parts) : 0.0;
+    }
+  }
+  return roots;
+}
+
+}  // namespace
+
+WeightedSpace weightedSpace(std::span<const float> vectors, const bundle::TransferShape& shape) {
+  WeightedSpace space{normalisedRoots(vectors, shape), 1.0};
+  if (shape.full_channels > 0) {
+    for (std::size_t i = 0; i < shadowedSize(shape); ++i) space.roots[i] *= kShadowedRoot;
+    space.blocks += kShadowedRoot * kShadowedRoot;
+  }
+  return space;
+}
+
+double radianceError(std::span<const float> truth, std::span<const float> coded,
+                     const bundle::TransferShape& shape) {
+  const std::size_t size = shape.size();
+  assert(truth.size() == coded.size() && truth.size() % size == 0);
+  const std::vector<double> roots = normalisedRoots(truth, shape);
+  const auto off = energies(size, truth.size() / size,
+                            [&](std::size_t at) { return double{coded[at]} - double{truth[at]}; });
+  double worst = 0.0;
+  for (const Block& block : blocksOf(shape)) {
+    double sum = 0.0;
+    // Where the truth has no energy there is nothing to be relative to: the error counts as it is.
+    for (std::size_t i = block.first; i < block.last; ++i)
+      sum += (roots[i] > 0.0 ? roots[i] * roots[i] : 1.0) * off[i];
+    worst = std::max(worst, std::sqrt(sum));
+  }
+  return worst;
+}
+
+}  // namespace lambent::baker

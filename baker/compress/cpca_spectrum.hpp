@@ -1,0 +1,28 @@
+// Principal components: of a whole cell about zero, which gives the few coordinates in which clusters are
+// made, and of one cluster about its mean. Sums are made range by range in order, so results are the same for
+// any number of threads; eigenvectors, which have no sign of their own, get one.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include <Eigen/Core>
+
+namespace lambent::baker {
+
+// One column per sample.
+using Points = Eigen::MatrixXf;
+
+struct Spectrum {
+  Eigen::MatrixXd axes;       // columns, orthonormal, by falling variance
+  Eigen::VectorXd variances;  // >= 0
+};
+
+// Of a symmetric matrix with eigenvalues >= 0.
+Spectrum spectrumOf(const Eigen::MatrixXd& covariance);
+
+// Mean over `members` (all samples where empty) of x xᵀ; x about `centre` where that is not empty.
+Eigen::MatrixXd secondMoment(const Points& points, std::span<const std::uint32_t> members,
+                             const Eigen::VectorXf& centre);
+
+}  // namespace lambent::baker

@@ -1,0 +1,197 @@
+#include "baker/effects/diffuse/bounces.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+
+#include "baker/compress/light_weights.hpp"
+#include "baker/effects/diffuse/fill.hpp"
+#include "baker/transport/frame.hpp"
+#include "baker/work/parallel.hpp"
+#include "runtime/sh/basis.hpp"
+#include "runtime/sh/rotation.hpp"
+
+namespace lambent::baker {
+
+namespace {
+
+// Energy of a field for each source of light: the environment first, then each light of the group.
+std::vector<double> energies(const TransferField& field) {
+  const auto bands = static_cast<std::size_t>(sh::coefficientCount(field.order));
+  std::vector<double> sums(1 + field.columns - bands, 0.0);
+  const std::size_t samples = field.size();
+  for (std::size_t s = 0; s < samples; ++s) {
+    const auto vector = field.at(s);
+    for (std::size_t at = 0; at < vector.size(); ++at) {
+      const std::size_t column = at % field.columns;
+      const double square = double{vector[at]} * double{vector[at]};
+      if (column < bands)
+        sums[0] += kBandPower[static_cast<std::size_t>(sh::bandOf(static_cast<int>(column)))] * square;
+      else
+        sums[1 + column - bands] += square;
+    }
+  }
+  for (double& sum : sums)
+    sum = std::sqrt(sum / static_cast<double>(std::max<std::size_t>(samples * field.channels, 1)));
+  return sums;
+}
+
+void add(const TransferField& part, TransferField& sum) {
+  for (std::size_t i = 0; i < sum.vectors.size(); ++i) sum.vectors[i] += part.vectors[i];
+}
+
+TransferField zeroLike(const TransferField& field) {
+  TransferField zero = field;
+  std::fill(zero.vectors.begin(), zero.vectors.end(), 0.0f);
+  zero.rays = 0, zero.filled_samples = 0;
+  return zero;
+}
+
+class Gather {
+ public:
+  Gather(const DirectPass& pass, const DirectResult& direct, const DiffuseScene& scene)
+      : pass_(pass), direct_(direct), scene_(scene) {
+    triangle_samples_.reserve(scene.geometry.triangles.size());
+    for (const glm::uvec3& t : scene.geometry.triangles)
+      triangle_samples_.emplace_back(scene.samples.vertex_sample[t.x], scene.samples.vertex_sample[t.y],
+                                     scene.samples.vertex_sample[t.z]);
+  }
+
+  // Samples [begin, end) of one pass. `mapped` gets the pass added; it is in the group's frame.
+  void range(std::size_t begin, std::size_t end, const TransferField& before, TransferField& now,
+             TransferField& mapped) const {
+    RangeHits again;
+    const RangeHits* hits = &direct_.hits.range(begin / kSamplesPerRange);
+    if (!hits->kept) {
+      pass_.traceAgain(begin, end, again);
+      hits = &again;
+    }
+    const std::size_t first_mapped = scene_.samples.first_normal_mapped;
+    for (std::size_t s = begin; s < end; ++s) {
+      const auto own =
+          std::span(hits->hits)
+              .subspan(hits->offsets[s - begin], hits->offsets[s - begin + 1] - hits->offsets[s - begin]);
+      const Hemisphere& hemisphere = pass_.hemisphereOf(s);
+      if (s < first_mapped)
+        gatherPlain(own, hemisphere, before, now.at(s));
+      else
+        gatherMapped(s, own, hemisphere, before, now.at(s), mapped.at(s - first_mapped));
+    }
+  }
+
+ private:
+  // Radiance that leaves the point that was met: weight * albedo * interpolated transfer, added to `sum`.
+  void addExit(const GatherHit& hit, float weight, const TransferField& before, std::span<float> sum) const {
+    const glm::uvec3 corners = triangle_samples_[hit.triangle];
+    const float u = static_cast<float>(hit.u) * (1.0f / 65535.0f),
+                v = static_cast<float>(hit.v) * (1.0f / 65535.0f);
+    const float* a = before.at(corners.x).data();
+    const float* b = before.at(corners.y).data();
+    const float* c = before.at(corners.z).data();
+    float* out = sum.data();
+    const std::size_t columns = before.columns;
+    for (std::size_t channel = 0; channel < before.channels; ++channel) {
+      const float albedo = weight * static_cast<float>(hit.albedo[channel]) * (1.0f / 65535.0f);
+      const float wa = albedo * (1.0f - u - v), wb = albedo * u, wc = albedo * v;
+      for (std::size_t i = 0; i < columns; ++i) out[i] += wa * a[i] + wb * b[i] + wc * c[i];
+      a += columns, b += columns, c += columns, out += columns;
+    }
+  }
+
+  void gatherPlain(std::span<const GatherHit> hits, const Hemisphere& hemisphere, const TransferField& before,
+                   std::span<float> out) const {
+    for (const GatherHit& hit : hits)
+      addExit(hit, static_cast<float>(hemisphere.weight(hit.ray)), before, out);
+  }
+
+  void gatherMapped(std::size_t sample, std::span<const GatherHit> hits, const Hemisphere& hemisphere,
+                    const TransferField& before, std::span<float> out, std::span<float> mapped) const {
+    const std::size_t stride = before.vectorSize();
+    std::vector<float> exit(stride), local(kIncident * stride, 0.0f);
+    for (const GatherHit& hit : hits) {
+      std::fill(exit.begin(), exit.end(), 0.0f);
+      addExit(hit, 1.0f, before, exit);
+      const auto weight = static_cast<float>(hemisphere.weight(hit.ray));
+      for (std::size_t i = 0; i < stride; ++i) out[i] += weight * exit[i];
+      const auto& weights = hemisphere.incidentWeight(hit.ray);
+      for (std::size_t j = 0; j < kIncident; ++j)
+        for (std::size_t i = 0; i < stride; ++i) local[j * stride + i] += weights[j] * exit[i];
+    }
+    if (hits.empty()) return;
+    const sh::Rotation group_from_local(
+        localFrame(glm::normalize(glm::dvec3(scene_.samples.normals[sample]))), 3);
+    std::array<float, kIncident> from, to;
+    for (std::size_t at = 0; at < stride; ++at) {
+      for (std::size_t j = 0; j < kIncident; ++j) from[j] = local[j * stride + at];
+      group_from_local.apply(std::span<const float>(from), std::span<float>(to));
+      for (std::size_t j = 0; j < kIncident; ++j) mapped[j * stride + at] += to[j];
+    }
+  }
+
+  const DirectPass& pass_;
+  const DirectResult& direct_;
+  const DiffuseScene& scene_;
+  std::vector<glm::uvec3> triangle_samples_;
+};
+
+// What all passes after this one would add, as a share of all light: the passes shrink at least as fast as
+// the last two did, so the rest is a geometric series.
+double tailOf(const std::vector<double>& before, const std::vector<double>& now,
+              const std::vector<double>& all) {
+  double worst = 0.0;
+  for (std::size_t k = 0; k < now.size(); ++k) {
+    if (!(all[k] > 0.0)) continue;
+    const double ratio = before[k] > 0.0 ? std::min(now[k] / before[k], 0.999) : 0.0;
+    worst = std::max(worst, now[k] * ratio / (1.0 - ratio) / all[k]);
+  }
+  return worst;
+}
+
+}  // namespace
+
+std::optional<BounceResult> bakeBounces(const DirectPass& pass, const DirectResult& direct,
+                                        const DiffuseScene& scene, const BounceSettings& settings,
+                                        Progress& progress, const std::stop_token& stop) {
+  const Gather gather(pass, direct, scene);
+  BounceResult result{
+      .field = zeroLike(direct.field), .mapped = zeroLike(direct.mapped), .energy = {1.0}, .left_out = 0.0};
+  const bool any_filled =
+      std::find(direct.valid.begin(), direct.valid.end(), std::uint8_t{0}) != direct.valid.end();
+  const auto edges = any_filled ? sampleEdges(scene.geometry, scene.samples)
+                                : std::vector<std::pair<std::uint32_t, std::uint32_t>>{};
+  TransferField before = direct.field;
+  std::vector<double> energy = energies(before), all = energy;
+  const std::vector<double> first = energy;
+  const int most = settings.bounces < 0 ? kMostBounces : settings.bounces;
+  for (int bounce = 1; bounce <= most; ++bounce) {
+    progress.begin(fmt::format("bounce {}", bounce), scene.samples.size(), "samples");
+    TransferField now = zeroLike(before);
+    const bool finished =
+        parallelRanges(scene.samples.size(), kSamplesPerRange, stop, [&](std::size_t begin, std::size_t end) {
+          gather.range(begin, end, before, now, result.mapped);
+          progress.add(end - begin);
+        });
+    if (!finished) return std::nullopt;
+    if (any_filled) fillFromNeighbours(edges, direct.valid, now);
+    add(now, result.field);
+
+    const std::vector<double> energy_before = std::exchange(energy, energies(now));
+    double share = 0.0;
+    for (std::size_t k = 0; k < energy.size(); ++k) {
+      all[k] += energy[k];
+      if (first[k] > 0.0) share = std::max(share, energy[k] / first[k]);
+    }
+    result.energy.push_back(share);
+    result.left_out = tailOf(energy_before, energy, all);
+    if (settings.bounces < 0 && result.left_out < settings.tail_error) break;
+    before = std::move(now);
+  }
+  if (any_filled)
+    fillMappedFromNeighbours(edges, direct.valid, scene.samples.first_normal_mapped, result.mapped);
+  return result;
+}
+
+}  // namespace lambent::baker

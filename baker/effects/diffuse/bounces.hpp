@@ -1,0 +1,37 @@
+// Interreflection (Sloan 2002, section 4, passes b >= 1): each pass gathers what the pass before left at the
+// points that the rays of pass 0 met,
+//   t^b_p = sum_rays w_r rho(q_r) t^(b-1)(q_r),   t(q) interpolated over the triangle that was met,
+// all samples from the same state of the others (Jacobi), so the order of work does not matter. The surface's
+// albedo rho is textured and coloured; the receiver's own is left out. Passes end when what is still to come
+// would add less than asked for.
+#pragma once
+
+#include <optional>
+#include <stop_token>
+#include <vector>
+
+#include "baker/effects/diffuse/direct.hpp"
+
+namespace lambent::baker {
+
+struct BounceSettings {
+  int bounces = -1;          // -1: as many as it takes
+  double tail_error = 1e-3;  // with -1: relative RMS of all light that passes left out may amount to
+};
+
+inline constexpr int kMostBounces = 64;
+
+struct BounceResult {
+  TransferField field, mapped;  // sums of the passes, laid out as those of DirectResult
+  // Energy of each pass from pass 0 on: RMS over the samples under real lights, of the light (environment or
+  // one of the group's) for which the share of the last pass is the largest; relative to that of pass 0.
+  std::vector<double> energy;
+  double left_out = 0.0;  // estimate of what the passes left out, relative to all light
+};
+
+// Nothing if stopped. Stages "bounce 1", "bounce 2", ... of `progress`, counting samples.
+std::optional<BounceResult> bakeBounces(const DirectPass& pass, const DirectResult& direct,
+                                        const DiffuseScene& scene, const BounceSettings& settings,
+                                        Progress& progress, const std::stop_token& stop);
+
+}  // namespace lambent::baker

@@ -1,0 +1,71 @@
+// What the rays of pass 0 met, kept for the passes that gather over it: sparse, since on open shapes few rays
+// meet anything. Ranges of samples are kept up to a limit of memory, whichever come first; the others are
+// traced again when asked for and give the very same hits, so the result does not depend on which were kept.
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+namespace lambent::baker {
+
+inline constexpr std::size_t kSamplesPerRange = 256;
+
+struct GatherHit {
+  std::uint32_t triangle = 0, ray = 0;
+  std::uint16_t u = 0, v = 0;           // unorm16: barycentric weights of corners 1 and 2
+  std::uint16_t albedo[3] = {0, 0, 0};  // unorm16, of the point that was met
+
+  static std::uint16_t unorm(float value) {
+    return static_cast<std::uint16_t>(std::clamp(value, 0.0f, 1.0f) * 65535.0f + 0.5f);
+  }
+};
+
+// Of one range of samples.
+struct RangeHits {
+  std::vector<std::uint32_t> offsets;  // of each sample's first hit, and the end
+  std::vector<GatherHit> hits;
+  bool kept = false;
+
+  std::size_t bytes() const { return hits.size() * sizeof(GatherHit); }
+};
+
+class HitStore {
+ public:
+  HitStore() = default;
+  HitStore(std::size_t samples, std::size_t limit_bytes)
+      : ranges_((samples + kSamplesPerRange - 1) / kSamplesPerRange), limit_bytes_(limit_bytes) {}
+  HitStore(HitStore&& other) noexcept
+      : ranges_(std::move(other.ranges_)), limit_bytes_(other.limit_bytes_), held_(other.held_.load()) {}
+  HitStore& operator=(HitStore&& other) noexcept {
+    ranges_ = std::move(other.ranges_);
+    limit_bytes_ = other.limit_bytes_;
+    held_ = other.held_.load();
+    return *this;
+  }
+
+  // From any thread, each range once.
+  void offer(std::size_t range, RangeHits&& hits) {
+    const std::size_t bytes = hits.bytes();
+    if (held_.fetch_add(bytes) + bytes > limit_bytes_) {
+      held_.fetch_sub(bytes);
+      return;
+    }
+    ranges_[range] = std::move(hits);
+    ranges_[range].hits.shrink_to_fit();
+    ranges_[range].kept = true;
+  }
+  const RangeHits& range(std::size_t index) const { return ranges_[index]; }
+  std::size_t bytes() const { return held_; }
+
+ private:
+  std::vector<RangeHits> ranges_;
+  std::size_t limit_bytes_ = 0;
+  std::atomic<std::size_t> held_ = 0;
+};
+
+}  // namespace lambent::baker

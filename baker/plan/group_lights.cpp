@@ -1,0 +1,67 @@
+#include "baker/plan/group_lights.hpp"
+
+#include <algorithm>
+
+#include <glm/gtc/matrix_transform.hpp>
+#include <glm/matrix.hpp>
+
+namespace lambent::baker {
+
+namespace {
+
+// The node at or above `node` that starts its rigid group; -1: the static group.
+std::int32_t groupRootOf(const Scene& scene, std::uint32_t node) {
+  auto at = static_cast<std::int32_t>(node);
+  while (at >= 0) {
+    const gltf::Node& here = scene.nodes[static_cast<std::size_t>(at)];
+    if (here.animated || here.movable) return at;
+    at = here.parent;
+  }
+  return -1;
+}
+
+bool isLit(glm::vec3 color) {
+  return color.r > 0.0f || color.g > 0.0f || color.b > 0.0f;
+}
+
+}  // namespace
+
+std::vector<PlannedLight> findGroupLights(const Scene& scene, const RigidGroup& group) {
+  std::vector<PlannedLight> lights;
+  for (const PlannedDraw& draw : group.draws) {
+    const std::int32_t material = scene.meshes[draw.mesh].primitives[draw.primitive].material;
+    if (material < 0) continue;
+    const auto index = static_cast<std::uint32_t>(material);
+    const gltf::Material& source = scene.materials[index];
+    const bool known = std::any_of(lights.begin(), lights.end(),
+                                   [&](const PlannedLight& light) { return light.index == index; });
+    // What is blended casts no shadow and is met by no ray: it shines for the eye only.
+    if (!known && !source.unlit && source.alpha_mode != gltf::AlphaMode::Blend && isLit(source.emissive))
+      lights.push_back({PlannedLight::Kind::Material, index, source.emissive, glm::mat4(1.0f)});
+  }
+  const std::vector<glm::mat4> world = gltf::worldTransforms(scene.nodes);
+  const glm::mat4 world_from_group =
+      glm::translate(glm::mat4(1.0f), group.rest_translation) * glm::mat4_cast(group.rest_rotation);
+  for (std::uint32_t n = 0; n < scene.nodes.size(); ++n) {
+    if (scene.nodes[n].light < 0 || groupRootOf(scene, n) != group.root) continue;
+    const gltf::Light& light = scene.lights[static_cast<std::size_t>(scene.nodes[n].light)];
+    const glm::vec3 color = light.intensity * light.color;
+    if (!isLit(color)) continue;
+    lights.push_back({PlannedLight::Kind::Node, n, color,
+                      group.root < 0 ? world[n] : glm::inverse(world_from_group) * world[n]});
+  }
+  return lights;
+}
+
+std::vector<std::uint32_t> lightsWithoutGroup(const Scene& scene, const std::vector<RigidGroup>& groups) {
+  std::vector<std::uint32_t> nodes;
+  for (std::uint32_t n = 0; n < scene.nodes.size(); ++n) {
+    if (scene.nodes[n].light < 0) continue;
+    const std::int32_t root = groupRootOf(scene, n);
+    if (std::none_of(groups.begin(), groups.end(), [&](const RigidGroup& g) { return g.root == root; }))
+      nodes.push_back(n);
+  }
+  return nodes;
+}
+
+}  // namespace lambent::baker

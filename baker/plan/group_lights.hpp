@@ -1,0 +1,31 @@
+// The lights that belong to a rigid group: emissive materials on its surfaces, and punctual lights on nodes
+// that move with it. Each becomes a column of the group's transfer at unit strength (light that cannot be
+// told by what arrives from infinity), so that it can be dimmed and recoloured live.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <glm/mat4x4.hpp>
+#include <glm/vec3.hpp>
+
+#include "baker/import/scene.hpp"
+#include "baker/plan/rigid_groups.hpp"
+
+namespace lambent::baker {
+
+struct PlannedLight {
+  enum class Kind : std::uint8_t { Material, Node };
+  Kind kind = Kind::Material;
+  std::uint32_t index = 0;  // of the scene's materials or nodes
+  glm::vec3 color{1.0f};    // strength as in the file: radiance, or colour x intensity of a punctual light
+  glm::mat4 group_from_node{1.0f};  // of a punctual light
+};
+
+// Materials first, in the order of the draws, then nodes in their own order.
+std::vector<PlannedLight> findGroupLights(const Scene& scene, const RigidGroup& group);
+
+// Nodes with a light that moves with no surface: no group has it.
+std::vector<std::uint32_t> lightsWithoutGroup(const Scene& scene, const std::vector<RigidGroup>& groups);
+
+}  // namespace lambent::baker

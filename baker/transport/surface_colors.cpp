@@ -1,0 +1,121 @@
+#include "baker/transport/surface_colors.hpp"
+
+#include <algorithm>
+#include <map>
+
+#include <glm/common.hpp>
+
+namespace lambent::baker {
+
+namespace {
+
+bool isGrey(glm::vec3 color) {
+  return color.r == color.g && color.g == color.b;
+}
+
+// Texels as the runtime sees them: grey if every texel is.
+bool isGrey(const DecodedImage& image) {
+  for (std::size_t i = 0; i + 3 < image.rgba.size(); i += 4)
+    if (image.rgba[i] != image.rgba[i + 1] || image.rgba[i] != image.rgba[i + 2]) return false;
+  return true;
+}
+
+}  // namespace
+
+Result<SurfaceColors> SurfaceColors::load(const Scene& scene, const GroupGeometry& geometry,
+                                          std::span<const PlannedLight> lights) {
+  SurfaceColors colors;
+  colors.geometry_ = &geometry;
+  colors.surface_of_.resize(geometry.triangles.size());
+  std::map<std::int32_t, std::shared_ptr<const DecodedImage>> decoded;
+  const auto texture = [&](const gltf::TextureRef& ref) -> Result<Texture> {
+    if (ref.texture < 0) return Texture{};
+    const gltf::Texture& source = scene.textures[static_cast<std::size_t>(ref.texture)];
+    if (source.image < 0) return Texture{};
+    auto& image = decoded[source.image];
+    if (!image) {
+      auto pixels = decodeImage(scene.images[static_cast<std::size_t>(source.image)]);
+      if (!pixels) return failAgain(pixels.error());
+      image = std::make_shared<DecodedImage>(std::move(*pixels));
+    }
+    return Texture{image, source.sampler};
+  };
+
+  for (const DrawGeometry& draw : geometry.draws) {
+    const gltf::Material material =
+        draw.material < 0 ? gltf::Material{} : scene.materials[static_cast<std::size_t>(draw.material)];
+    Surface surface{
+        .first_triangle = draw.first_triangle,
+        .base_color = material.unlit ? glm::vec3(0.0f) : glm::vec3(material.base_color),
+        .base_texture = {},
+        .emissive_texture = {},
+        .light = kNoLight,
+        .colored_vertices = false,
+        .base_alpha = material.base_color.w,
+        .alpha_cutoff = material.alpha_mode == gltf::AlphaMode::Mask ? material.alpha_cutoff : 0.0f};
+    const auto first = geometry.colors.begin() + draw.first_vertex;
+    surface.colored_vertices = std::any_of(
+        first, first + draw.vertex_count, [](const glm::vec4& c) { return glm::vec3(c) != glm::vec3(1.0f); });
+    auto base = texture(material.base_color_texture);
+    if (!base) return failAgain(base.error());
+    surface.base_texture = std::move(*base);
+    for (std::uint32_t k = 0; k < lights.size(); ++k)
+      if (lights[k].kind == PlannedLight::Kind::Material &&
+          static_cast<std::int32_t>(lights[k].index) == draw.material)
+        surface.light = k;
+    if (surface.light != kNoLight) {
+      auto emissive = texture(material.emissive_texture);
+      if (!emissive) return failAgain(emissive.error());
+      surface.emissive_texture = std::move(*emissive);
+      if (surface.emissive_texture.image && !isGrey(*surface.emissive_texture.image))
+        colors.grey_emission_ = false;
+    }
+    const bool grey_vertices = std::all_of(first, first + draw.vertex_count,
+                                           [](const glm::vec4& c) { return isGrey(glm::vec3(c)); });
+    if (!isGrey(surface.base_color) || !grey_vertices ||
+        (surface.base_color != glm::vec3(0.0f) && surface.base_texture.image &&
+         !isGrey(*surface.base_texture.image)))
+      colors.grey_ = false;
+    std::fill_n(colors.surface_of_.begin() + draw.first_triangle, draw.triangle_count,
+                static_cast<std::uint32_t>(colors.surfaces_.size()));
+    colors.surfaces_.push_back(std::move(surface));
+  }
+  colors.grey_ = colors.grey_ && colors.grey_emission_;
+  return colors;
+}
+
+glm::vec4 SurfaceColors::lookUp(const Texture& texture, const std::vector<glm::vec2>& texcoords,
+                                std::uint32_t triangle, float u, float v) const {
+  if (!texture.image) return glm::vec4(1.0f);
+  const glm::uvec3 t = geometry_->triangles[triangle];
+  return sampleImage(*texture.image, texture.sampler,
+                     (1.0f - u - v) * texcoords[t.x] + u * texcoords[t.y] + v * texcoords[t.z]);
+}
+
+glm::vec4 SurfaceColors::vertexColor(std::uint32_t triangle, float u, float v) const {
+  const glm::uvec3 t = geometry_->triangles[triangle];
+  const auto& c = geometry_->colors;
+  return (1.0f - u - v) * c[t.x] + u * c[t.y] + v * c[t.z];
+}
+
+glm::vec3 SurfaceColors::albedo(std::uint32_t triangle, float u, float v) const {
+  const Surface& surface = surfaceOf(triangle);
+  if (surface.base_color == glm::vec3(0.0f)) return glm::vec3(0.0f);
+  glm::vec3 color =
+      surface.base_color * glm::vec3(lookUp(surface.base_texture, geometry_->texcoords, triangle, u, v));
+  if (surface.colored_vertices) color *= glm::vec3(vertexColor(triangle, u, v));
+  return glm::clamp(color, 0.0f, 1.0f);
+}
+
+glm::vec3 SurfaceColors::emission(std::uint32_t triangle, float u, float v) const {
+  const Surface& surface = surfaceOf(triangle);
+  if (surface.alpha_cutoff > 0.0f) {
+    const float alpha = surface.base_alpha *
+                        lookUp(surface.base_texture, geometry_->texcoords, triangle, u, v).w *
+                        vertexColor(triangle, u, v).w;
+    if (alpha < surface.alpha_cutoff) return glm::vec3(0.0f);
+  }
+  return glm::vec3(lookUp(surface.emissive_texture, geometry_->emissive_texcoords, triangle, u, v));
+}
+
+}  // namespace lambent::baker

@@ -1,0 +1,64 @@
+#include "runtime/streaming/sizes.hpp"
+
+#include "runtime/gpu/arena.hpp"
+
+namespace lambent::streaming {
+
+namespace {
+
+std::uint64_t vertexBytes(const bundle::DracoAttributes& attributes) {
+  std::uint64_t bytes = 12;
+  if (attributes.normal >= 0) bytes += 12;
+  if (attributes.texcoord0 >= 0) bytes += 8;
+  if (attributes.texcoord1 >= 0) bytes += 8;
+  if (attributes.color0 >= 0) bytes += 8;
+  if (attributes.tangent >= 0) bytes += 16;
+  return bytes;
+}
+
+}  // namespace
+
+std::uint64_t planeBytes(const bundle::WeightPlane& plane) {
+  return (std::uint64_t{plane.count} * plane.bits / 8 + 3) / 4 * 4;
+}
+
+std::uint64_t codebookBytesOnGpu(const bundle::DiffuseTransfer& transfer, std::uint32_t sample_count) {
+  const std::uint64_t vectors = std::uint64_t{transfer.clusters} + transfer.axes;
+  return 4 * (2ull * transfer.clusters + vectors * (2 + transfer.shape.size()) + sample_count);
+}
+
+std::uint64_t cellBytes(const bundle::Cell& cell) {
+  std::uint64_t bytes = 0;
+  for (const bundle::DiffuseTransfer& transfer : cell.diffuse) {
+    bytes += codebookBytesOnGpu(transfer, cell.sample_count);
+    for (const bundle::WeightPlane& plane : transfer.planes) bytes += planeBytes(plane);
+  }
+  return bytes;
+}
+
+std::uint64_t samplesOf(const bundle::Group& group) {
+  std::uint64_t count = 0;
+  for (const bundle::Cell& cell : group.cells) count += std::uint64_t{cell.outputs()} * cell.sample_count;
+  return count;
+}
+
+Needs needsOf(const bundle::Description& description) {
+  constexpr std::uint64_t kSlack = gpu::Arena::kAlignment;
+  Needs needs;
+  for (const bundle::Mesh& mesh : description.meshes)
+    for (const bundle::Primitive& primitive : mesh.primitives)
+      needs.geometry +=
+          vertexBytes(primitive.attributes) * primitive.vertex_count + 4ull * primitive.index_count + kSlack;
+  for (const bundle::Group& group : description.groups) {
+    needs.samples += 16 * samplesOf(group);
+    for (const bundle::Cell& cell : group.cells) needs.transfer += cellBytes(cell) + kSlack;
+  }
+  for (const bundle::Draw& draw : description.draws) {
+    const std::uint64_t vertices = description.meshes[draw.mesh].primitives[draw.primitive].vertex_count;
+    needs.rows += description.payloads[draw.rows].raw_length + 6 * vertices + 2 * kSlack;
+    needs.radiance += 4ull * radianceWords(draw.outputs) * vertices + kSlack;
+  }
+  return needs;
+}
+
+}  // namespace lambent::streaming

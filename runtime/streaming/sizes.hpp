@@ -1,0 +1,32 @@
+// What a bundle takes on the GPU, told from its description: in each arena, in bytes. Residency makes its
+// pages no larger, and the budget (budget.hpp) counts by it.
+#pragma once
+
+#include <cstdint>
+
+#include "runtime/bundle/description.hpp"
+
+namespace lambent::streaming {
+
+// All that is written for a vertex of a draw: E/pi, or for normal maps light of bands 0..2; RGB floats.
+constexpr std::uint32_t radianceWords(std::uint32_t outputs) {
+  return 3 * outputs;
+}
+
+// Codes of a plane, rounded up to whole words.
+std::uint64_t planeBytes(const bundle::WeightPlane& plane);
+// The codebook as the kernels read it (diffuse_shared.h), and the positions of the samples.
+std::uint64_t codebookBytesOnGpu(const bundle::DiffuseTransfer& transfer, std::uint32_t sample_count);
+std::uint64_t cellBytes(const bundle::Cell& cell);
+// vec4s of shaded samples.
+std::uint64_t samplesOf(const bundle::Group& group);
+
+struct Needs {
+  std::uint64_t geometry = 0, transfer = 0, samples = 0, rows = 0, radiance = 0;
+
+  std::uint64_t total() const { return geometry + transfer + samples + rows + radiance; }
+};
+// At most so much: rows are told by their length in the file.
+Needs needsOf(const bundle::Description& description);
+
+}  // namespace lambent::streaming

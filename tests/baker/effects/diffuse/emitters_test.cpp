@@ -1,0 +1,160 @@
+// Light of the group's own lights against closed forms: Lambert's formula for polygons, closed boxes, inverse
+// squares.
+#include "baker/effects/diffuse/emitters.hpp"
+
+#include "tests/support/shapes.hpp"
+#include "tests/support/transport.hpp"
+
+namespace lambent::baker {
+namespace {
+
+using testing::box;
+using testing::flipped;
+using testing::grid;
+using testing::sceneOf;
+using testing::transformed;
+using testing::Transport;
+
+constexpr double kPi = std::numbers::pi;
+
+// Irradiance over pi at `p` with normal `n` under a polygon of radiance 1 that lies wholly above its horizon
+// (Lambert 1760: sum over edges of the angle times the edge plane's normal).
+double underPolygon(glm::dvec3 p, glm::dvec3 n, const std::vector<glm::dvec3>& corners) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const glm::dvec3 a = glm::normalize(corners[i] - p),
+                     b = glm::normalize(corners[(i + 1) % corners.size()] - p);
+    const glm::dvec3 across = glm::cross(a, b);
+    sum += std::atan2(glm::length(across), glm::dot(a, b)) * glm::dot(glm::normalize(across), n);
+  }
+  return std::abs(sum) / (2.0 * kPi);
+}
+
+// A floor under a square panel that shines downwards.
+Scene panelScene(float height, float width, float floor_width = 4.0f) {
+  Scene scene = sceneOf({grid({0, 0, 0}, floor_width, 8), flipped(grid({0, height, 0}, width, 2))});
+  scene.materials[0].base_color = {0.0f, 0.0f, 0.0f, 1.0f};
+  scene.materials.push_back(scene.materials[0]);
+  scene.materials[1].emissive = {2.0f, 3.0f, 4.0f};
+  scene.meshes[1].primitives[0].material = 1;
+  return scene;
+}
+
+TEST(GroupLights, PanelAboveAFloorMatchesLambertsFormula) {
+  for (const float height : {0.05f, 0.5f, 3.0f}) {
+    const Transport t(panelScene(height, 1.0f));
+    ASSERT_EQ(t.lights.size(), 1u);
+    EXPECT_EQ(t.lights[0].color, glm::vec3(2.0f, 3.0f, 4.0f));
+    const auto field = t.direct(2, 1024);
+    ASSERT_EQ(field.columns, 5u);
+    ASSERT_EQ(field.channels, 1u);  // the column is at unit strength
+    const double h = double{height};
+    const std::vector<glm::dvec3> corners = {{-0.5, h, -0.5}, {0.5, h, -0.5}, {0.5, h, 0.5}, {-0.5, h, 0.5}};
+    double error = 0.0, energy = 0.0;
+    for (std::size_t s = 0; s < t.samples.size(); ++s) {
+      const glm::vec3 p = t.samples.positions[s];
+      if (p.y != 0.0f) continue;
+      const double exact = underPolygon(p, {0, 1, 0}, corners);
+      EXPECT_NEAR(field.at(s)[4], exact, 0.02) << height << " at " << p.x << ", " << p.z;
+      error += std::pow(double{field.at(s)[4]} - exact, 2), energy += exact * exact;
+    }
+    // Just under the panel's edge, 5 cm away, 256 points and 1024 rays draw the edge of the light.
+    EXPECT_LT(std::sqrt(error / energy), height < 0.1f ? 0.015 : 0.005) << height;
+  }
+}
+
+TEST(GroupLights, ClosedEmittingBoxShinesWithTheGeometricSeries) {
+  Scene scene = sceneOf({flipped(box({0, 0, 0}, {2, 1, 3}, 4))});
+  scene.materials[0].base_color = glm::vec4(glm::vec3(0.5f), 1.0f);
+  scene.materials[0].emissive = glm::vec3(1.0f);
+  const Transport t(scene);
+  const auto baked = t.bake(2, 1024, 20);
+  for (std::size_t s = 0; s < t.samples.size(); ++s) {
+    // E/pi: what all walls give, e / (1 - albedo); direct and in all. The box has corners, where points on
+    // the emitters and rays share the work.
+    EXPECT_NEAR(baked.direct.field.at(s)[4], 1.0f, 0.03f);
+    EXPECT_NEAR(baked.direct.field.at(s)[4] + baked.bounced.field.at(s)[4], 2.0f, 0.03f);
+  }
+}
+
+TEST(GroupLights, SingleSidedPanelShinesToItsFrontOnly) {
+  Scene scene = panelScene(1.0f, 1.0f);
+  scene.meshes[1].primitives[0].mesh = flipped(scene.meshes[1].primitives[0].mesh);
+  const auto back = Transport(scene).direct(2, 256);
+  for (std::size_t s = 0; s < 81; ++s) EXPECT_EQ(back.at(s)[4], 0.0f);
+  scene.materials[1].double_sided = true;
+  const Transport both(scene);
+  EXPECT_GT(both.direct(2, 256).at(both.sampleAt({0, 0, 0}))[4], 0.1f);
+}
+
+Scene underLight(gltf::Light light, const glm::mat4& place) {
+  Scene scene = sceneOf({grid({0, 0, 0}, 4.0f, 8)});
+  gltf::Node node;
+  node.parent_from_node = place;
+  node.light = 0;
+  scene.roots.push_back(static_cast<std::int32_t>(scene.nodes.size()));
+  scene.nodes.push_back(node);
+  scene.lights.push_back(light);
+  return scene;
+}
+
+// A node that looks down from `position`.
+glm::mat4 lookingDown(glm::vec3 position) {
+  return glm::rotate(glm::translate(glm::mat4(1.0f), position), glm::radians(-90.0f), {1, 0, 0});
+}
+
+TEST(GroupLights, PointLightFallsOffWithTheSquareAndTheCosine) {
+  const glm::vec3 at(0.3f, 2.0f, -0.4f);
+  gltf::Light light;
+  light.intensity = 7.0f, light.color = {1.0f, 0.5f, 0.25f};
+  const Transport t(underLight(light, glm::translate(glm::mat4(1.0f), at)));
+  ASSERT_EQ(t.lights.size(), 1u);
+  EXPECT_EQ(t.lights[0].color, glm::vec3(7.0f, 3.5f, 1.75f));
+  const auto field = t.direct(2, 128);
+  for (std::size_t s = 0; s < t.samples.size(); ++s) {
+    const glm::vec3 offset = at - t.samples.positions[s];
+    const float d2 = glm::dot(offset, offset);
+    const float expected = offset.y / std::sqrt(d2) / d2 / static_cast<float>(kPi);
+    EXPECT_NEAR(field.at(s)[4], expected, 0.02f * expected);  // origins stand 3 % into the faces
+  }
+}
+
+TEST(GroupLights, PointLightIsShadowed) {
+  Scene scene = underLight({}, glm::translate(glm::mat4(1.0f), {0, 2, 0}));
+  scene.meshes.push_back({"", {{flipped(grid({0, 1, 0}, 1.0f, 1)), 0}}});
+  gltf::Node roof;
+  roof.mesh = 1;
+  scene.roots.push_back(static_cast<std::int32_t>(scene.nodes.size()));
+  scene.nodes.push_back(roof);
+  const Transport t(scene);
+  const auto field = t.direct(2, 128);
+  EXPECT_EQ(field.at(t.sampleAt({0.5f, 0, 0.5f}))[4], 0.0f);  // shadow reaches out to 1 m
+  EXPECT_GT(field.at(t.sampleAt({2.0f, 0, 2.0f}))[4], 0.0f);
+}
+
+TEST(GroupLights, SpotHasItsConeAndDirectionalLightNeither) {
+  gltf::Light spot;
+  spot.type = gltf::Light::Type::Spot;
+  spot.inner_cone_rad = glm::radians(20.0f), spot.outer_cone_rad = glm::radians(30.0f);
+  const Transport t(underLight(spot, lookingDown({0, 2, 0})));
+  const auto field = t.direct(2, 128);
+  EXPECT_NEAR(field.at(t.sampleAt({0, 0, 0}))[4], 1.0 / 4.0 / kPi, 2e-3);
+  EXPECT_EQ(field.at(t.sampleAt({1.5f, 0, 0}))[4], 0.0f);  // 37 degrees off its axis
+
+  gltf::Light sun;
+  sun.type = gltf::Light::Type::Directional;
+  const Transport lit(underLight(sun, lookingDown({0, -5, 0})));  // wherever its node stands
+  const auto everywhere = lit.direct(2, 128);
+  for (std::size_t s = 0; s < lit.samples.size(); ++s) EXPECT_NEAR(everywhere.at(s)[4], 1.0 / kPi, 1e-5);
+}
+
+TEST(GroupLights, RangeEndsALight) {
+  gltf::Light light;
+  light.range_m = 4.0f;
+  EXPECT_NEAR(punctualIrradiance(light, {0, -1, 0}, {0, -2, 0}), 0.25f * (1.0f - 0.0625f), 1e-6f);
+  EXPECT_EQ(punctualIrradiance(light, {0, -1, 0}, {0, -4.5f, 0}), 0.0f);
+  EXPECT_EQ(punctualIrradiance(light, {0, -1, 0}, {0, 0, 0}), 0.0f);
+}
+
+}  // namespace
+}  // namespace lambent::baker

@@ -1,0 +1,101 @@
+// Normal maps on the CPU: light received at a normal, and the frame in which a normal map stands.
+#include <algorithm>
+#include <random>
+
+#include <glm/gtc/quaternion.hpp>
+#include <glm/mat3x3.hpp>
+#include <gtest/gtest.h>
+
+#include "runtime/frame/surface_normal_ref.hpp"
+#include "runtime/sh/zonal.hpp"
+
+namespace lambent::frame {
+namespace {
+
+struct Random {
+  std::mt19937 engine{7};
+  float number() { return std::uniform_real_distribution<float>(-1.0f, 1.0f)(engine); }
+  glm::vec3 vector() { return {number(), number(), number()}; }
+  glm::vec3 direction() {
+    glm::vec3 v = vector();
+    while (glm::dot(v, v) > 1.0f || glm::dot(v, v) < 0.01f) v = vector();
+    return glm::normalize(v);
+  }
+};
+
+// A patch of a plane as a camera sees it: how position and texture coordinates change over the picture.
+struct Patch {
+  glm::vec3 normal, rising_u, rising_v;  // rising_u, rising_v: dp/du, dp/dv
+  glm::vec2 t_dx{0.3f, -0.1f}, t_dy{0.05f, 0.2f};
+
+  ref::TangentFrame frame() const {
+    const auto moved = [&](glm::vec2 t) { return t.x * rising_u + t.y * rising_v; };
+    return ref::frameFromDerivatives(normal, moved(t_dx), moved(t_dy), t_dx, t_dy);
+  }
+};
+
+TEST(SurfaceNormal, UniformLightIsReceivedAlikeByEveryNormal) {
+  Random random;
+  const glm::vec3 radiance(1.0f, 2.0f, 0.25f);
+  const sh::LightVector light = sh::constantLight(3, radiance);
+  std::array<glm::vec3, 9> bands{};
+  std::copy_n(light.c.begin(), bands.size(), bands.begin());
+  for (int i = 0; i < 50; ++i)
+    EXPECT_LT(glm::distance(ref::diffuseLight(bands, random.direction()), radiance), 1e-6f);
+}
+
+TEST(SurfaceNormal, ReceivesThreeBandsAsOpenTransferDoes) {
+  Random random;
+  for (int i = 0; i < 50; ++i) {
+    std::array<glm::vec3, 9> light{};
+    for (glm::vec3& coefficient : light) coefficient = random.vector();
+    const glm::vec3 normal = random.direction();
+    std::array<float, 9> transfer{};
+    sh::unoccludedTransfer(3, normal, transfer);
+    glm::vec3 expected(0.0f);
+    for (std::size_t j = 0; j < 9; ++j) expected += transfer[j] * light[j];
+    EXPECT_LT(glm::distance(ref::diffuseLight(light, normal), expected), 1e-6f);  // rounding of 9 terms
+  }
+}
+
+TEST(SurfaceNormal, FindsTheFrameFromThePictureAlsoUnderMirroredCoordinates) {
+  Random random;
+  for (int i = 0; i < 50; ++i) {
+    const glm::quat turn = glm::angleAxis(3.0f * random.number(), random.direction());
+    const glm::vec3 x = turn * glm::vec3(1, 0, 0), y = turn * glm::vec3(0, 1, 0),
+                    z = turn * glm::vec3(0, 0, 1);
+    // u to the right and v downwards is a picture that is seen upright.
+    for (const float mirrored : {1.0f, -1.0f}) {
+      const ref::TangentFrame frame =
+          Patch{.normal = z, .rising_u = mirrored * 2.0f * x, .rising_v = -0.5f * y}.frame();
+      EXPECT_LT(glm::distance(frame.tangent, mirrored * x), 1e-5f);
+      EXPECT_EQ(frame.handedness, mirrored);
+      const glm::vec3 up = ref::perturbedNormal(frame, {0.5f, 1.0f, 0.5f}, 1.0f);
+      EXPECT_LT(glm::distance(up, y), 1e-5f) << "green points to the top of the picture";
+      const glm::vec3 right = ref::perturbedNormal(frame, {1.0f, 0.5f, 0.5f}, 1.0f);
+      EXPECT_LT(glm::distance(right, mirrored * x), 1e-5f);
+    }
+  }
+}
+
+TEST(SurfaceNormal, StaysWhereThereIsNoFrameAndWhereTheMapIsFlat) {
+  const glm::vec3 z(0, 0, 1), texel(0.9f, 0.2f, 0.7f);
+  // All texture coordinates the same, and coordinates that change along a line only.
+  const Patch patches[] = {
+      {.normal = z, .rising_u = {1, 0, 0}, .rising_v = {0, 1, 0}, .t_dx = {0, 0}, .t_dy = {0, 0}},
+      {.normal = z, .rising_u = {1, 0, 0}, .rising_v = {0, 1, 0}, .t_dx = {1, 0}, .t_dy = {2, 0}}};
+  for (const Patch& patch : patches) EXPECT_EQ(ref::perturbedNormal(patch.frame(), texel, 1.0f), z);
+  EXPECT_EQ(ref::perturbedNormal(ref::frameFromTangent(z, glm::vec4(0.0f)), texel, 1.0f), z);
+  EXPECT_EQ(ref::perturbedNormal(ref::frameFromTangent(z, {1, 0, 0, 1}), {0.5f, 0.5f, 1.0f}, 1.0f), z);
+  EXPECT_EQ(ref::perturbedNormal(ref::frameFromTangent(z, {1, 0, 0, 1}), texel, 0.0f), z);
+}
+
+TEST(SurfaceNormal, TheScaleBendsXAndYOnly) {
+  const ref::TangentFrame frame = ref::frameFromTangent({0, 0, 1}, {1, 0, 0, -1});
+  // (0.5, 0.5, 0.5) scaled by 2 on x and y, y turned by the handedness.
+  const glm::vec3 bent = ref::perturbedNormal(frame, glm::vec3(0.75f), 2.0f);
+  EXPECT_LT(glm::distance(bent, glm::normalize(glm::vec3(2, -2, 1))), 1e-6f);
+}
+
+}  // namespace
+}  // namespace lambent::frame
