@@ -142,6 +142,27 @@ TEST(Material, OfTexturesIsLinearAndMultiplies) {
   EXPECT_NEAR(seen(0.5f).g, 0.5, 1e-5);
 }
 
+TEST(Material, OfEmissiveTexturesShinesWhereTheyAreBright) {
+  // The right half of a lamp over a floor, both as it looks and by what it gives: points that mirror each
+  // other about the lamp's middle get what the whole lamp gives, together.
+  Scene scene =
+      sceneOf({testing::grid({0, 0, 0}, 8.0f, 1), testing::flipped(testing::grid({0, 1, 0}, 2.0f, 1))});
+  gltf::Material lamp;
+  lamp.base_color = glm::vec4(0, 0, 0, 1);
+  lamp.emissive = glm::vec3(10.0f);
+  testing::paint(scene, 1, lamp);
+  const auto at = [](const Scene& lit, float x) {
+    return measured(lit, {x, 0.9f, 3}, {x, 0, 0}, {}, samples(256, 0));
+  };
+  const Measured whole = at(scene, 0.6f);
+  scene.materials[1].emissive_texture = texture(scene, {0, 0, 0, 255, 255, 255, 255, 255});
+  const Measured near = at(scene, 0.6f), far = at(scene, -0.6f);
+  EXPECT_GT(near.mean.g, 1.3 * far.mean.g);
+  EXPECT_NEAR(near.mean.g + far.mean.g, whole.mean.g, 4.0 * (near.error.g + far.error.g + whole.error.g));
+  EXPECT_EQ(measured(scene, {0.5f, 0.2f, 0}, {0.5f, 1, 0.1f}, {}, samples(1, 0)).mean.g, 10.0);
+  EXPECT_EQ(measured(scene, {-0.5f, 0.2f, 0}, {-0.5f, 1, 0.1f}, {}, samples(1, 0)).mean.g, 0.0);
+}
+
 TEST(Material, OfNormalMapsTurnsTheCosineOnly) {
   // A texel's +X leans along u (+x here), its +Y against v (-z here), with or without tangents in the file.
   const std::uint8_t lean = 128 + 64;
