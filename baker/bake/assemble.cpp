@@ -25,6 +25,8 @@ class Assembler {
     description_.materials = scene_.materials;
     description_.textures = scene_.textures;
     description_.cameras = scene_.cameras;
+    description_.lights = scene_.lights;
+    description_.animations = scene_.animations;
   }
 
   void addMeshes(ShippedMeshes& meshes) {
@@ -67,6 +69,11 @@ class Assembler {
       group.bounds_min = origin + baked[g].geometry.bounds_min;
       group.bounds_max = origin + baked[g].geometry.bounds_max;
       group.sample_count = static_cast<std::uint32_t>(baked[g].samples.size());
+      for (const PlannedLight& light : baked[g].lights)
+        group.lights.push_back({light.kind == PlannedLight::Kind::Material
+                                    ? bundle::GroupLight::Kind::Material
+                                    : bundle::GroupLight::Kind::Node,
+                                light.index, light.color});
       for (const SampleCell& cell : baked[g].samples.cells)
         group.cells.push_back(
             {cell.first, cell.count, origin + cell.bounds_min, origin + cell.bounds_max, {}});
@@ -84,20 +91,23 @@ class Assembler {
     }
   }
 
+  // Codebooks of all cells, then plane after plane: what is wanted first lies first.
   void addTransfer(const std::vector<BakedGroup>& baked) {
     std::size_t most_planes = 0;
-    for (std::size_t g = 0; g < baked.size(); ++g)
-      for (std::size_t c = 0; c < baked[g].cells.size(); ++c) {
-        const CodedTransfer& coded = baked[g].cells[c];
-        description_.groups[g].cells[c].diffuse.push_back(addCodebook(coded));
-        most_planes = std::max(most_planes, coded.planes.size());
-      }
-    for (std::size_t j = 0; j < most_planes; ++j)
+    const auto forAll = [&](const auto& visit) {
       for (std::size_t g = 0; g < baked.size(); ++g)
         for (std::size_t c = 0; c < baked[g].cells.size(); ++c)
-          if (j < baked[g].cells[c].planes.size())
-            description_.groups[g].cells[c].diffuse.front().planes.push_back(
-                addPlane(baked[g].cells[c].planes[j], j));
+          for (std::size_t t = 0; t < baked[g].cells[c].size(); ++t)
+            visit(baked[g].cells[c][t], description_.groups[g].cells[c].diffuse, t);
+    };
+    forAll([&](const CodedTransfer& coded, auto& stored, std::size_t) {
+      stored.push_back(addCodebook(coded));
+      most_planes = std::max(most_planes, coded.planes.size());
+    });
+    for (std::size_t j = 0; j < most_planes; ++j)
+      forAll([&](const CodedTransfer& coded, auto& stored, std::size_t t) {
+        if (j < coded.planes.size()) stored[t].planes.push_back(addPlane(coded.planes[j], j));
+      });
   }
 
   AssembledBundle take() { return {std::move(description_), std::move(blobs_)}; }
@@ -163,7 +173,13 @@ class Assembler {
       rows.weights.push_back(1.0f);
     }
     rows.offsets.push_back(geometry.vertex_count);
-    bundle::Draw draw{planned.node, planned.mesh, planned.primitive, group, planned.back, 0, 1};
+    bundle::Draw draw{planned.node,
+                      planned.mesh,
+                      planned.primitive,
+                      group,
+                      planned.back,
+                      0,
+                      geometry.normal_mapped ? 9u : 1u};
     draw.rows = addTransferPayload(bundle::PayloadType::VertexRows, bundle::encodeRows(rows), kRowsPriority);
     description_.draws.push_back(draw);
   }

@@ -6,20 +6,12 @@
 #include <vector>
 
 #include "baker/bake/bake.hpp"
+#include "baker/bake/bake_group.hpp"
 #include "baker/bake/ship_meshes.hpp"
-#include "baker/compress/cpca.hpp"
-#include "baker/transport/group_geometry.hpp"
-#include "baker/transport/samples.hpp"
 #include "runtime/bundle/description.hpp"
 #include "runtime/bundle/writer.hpp"
 
 namespace lambent::baker {
-
-struct BakedGroup {
-  GroupGeometry geometry;  // draws and bounds are used here
-  SampleSet samples;
-  std::vector<CodedTransfer> cells;  // direct transfer, one per sample cell
-};
 
 struct AssembledBundle {
   bundle::Description description;

@@ -3,6 +3,7 @@
 #include <array>
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 namespace lambent::baker {
 
@@ -37,9 +38,18 @@ float BakeOptions::effectiveErrorBound() const {
   return error_bound > 0.0f ? error_bound : row(quality).error_bound;
 }
 
+std::uint64_t BakeOptions::effectiveMemory() const {
+  if (memory_bytes != 0) return memory_bytes;
+  const long pages = sysconf(_SC_PHYS_PAGES), page_bytes = sysconf(_SC_PAGESIZE);
+  constexpr std::uint64_t kUnknown = std::uint64_t{1} << 31;
+  if (pages <= 0 || page_bytes <= 0) return kUnknown;
+  return static_cast<std::uint64_t>(pages) * static_cast<std::uint64_t>(page_bytes) / 2;
+}
+
 std::map<std::string, std::string> BakeOptions::settings() const {
   return {{"order", std::to_string(order)},
           {"rays", std::to_string(effectiveRays())},
+          {"bounces", bounces < 0 ? "auto" : std::to_string(bounces)},
           {"errorBound", fmt::format("{}", effectiveErrorBound())},
           {"maxEdge", fmt::format("{}", max_edge_m)},
           {"effects", effects}};

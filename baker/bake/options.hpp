@@ -1,5 +1,5 @@
 // What a bake can be asked for, and what each quality stands for. settings() is what the bundle records:
-// everything that changes the bytes that come out, and nothing else (not the number of threads).
+// everything that changes the bytes that come out, and nothing else (not the number of threads, not memory).
 #pragma once
 
 #include <cstddef>
@@ -15,13 +15,16 @@ struct BakeOptions {
   Quality quality = Quality::Standard;
   int order = 5;             // 1..8
   std::uint32_t rays = 0;    // per sample over its hemisphere; 0: the quality's
+  int bounces = -1;          // 0: direct light with shadows; -1: as many as the error bound asks for
   float error_bound = 0.0f;  // of the coded transfer, relative RMS; 0: the quality's
   float max_edge_m = 0.0f;   // edges longer than this are split; 0: none
   std::string effects = "auto";
-  unsigned threads = 0;  // 0: all
+  unsigned threads = 0;            // 0: all
+  std::uint64_t memory_bytes = 0;  // that passes may keep things in; 0: half of the machine's
 
   std::size_t effectiveRays() const;
   float effectiveErrorBound() const;
+  std::uint64_t effectiveMemory() const;
   std::map<std::string, std::string> settings() const;
 };
 

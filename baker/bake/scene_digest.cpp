@@ -42,15 +42,24 @@ void addMesh(const bundle::MeshData& mesh, Digest& digest) {
   digest.addList(mesh.texcoords0);
   digest.addList(mesh.texcoords1);
   digest.addList(mesh.colors);
+  digest.addList(mesh.tangents);
   digest.addList(mesh.indices);
+}
+
+void addTexture(const gltf::TextureRef& ref, Digest& digest) {
+  digest.add(ref.texture), digest.add(ref.texcoord);
+  digest.add(ref.offset), digest.add(ref.scale), digest.add(ref.rotation_rad);
 }
 
 // Field by field: padding between fields has no value.
 void addMaterial(const gltf::Material& m, Digest& digest) {
   digest.addText(m.name);
   digest.add(m.base_color);
-  digest.add(m.base_color_texture.texture), digest.add(m.base_color_texture.texcoord);
+  addTexture(m.base_color_texture, digest);
   digest.add(m.metallic), digest.add(m.roughness), digest.add(m.emissive);
+  addTexture(m.emissive_texture, digest);
+  addTexture(m.normal_texture, digest);
+  digest.add(m.normal_scale), digest.add(m.unlit);
   digest.add(m.alpha_mode), digest.add(m.alpha_cutoff), digest.add(m.double_sided);
 }
 
@@ -60,16 +69,39 @@ void addCamera(const gltf::Camera& c, Digest& digest) {
   for (const float value : {c.yfov_rad, c.aspect, c.xmag, c.ymag, c.znear, c.zfar}) digest.add(value);
 }
 
+void addLight(const gltf::Light& light, Digest& digest) {
+  digest.addText(light.name);
+  digest.add(light.type), digest.add(light.color), digest.add(light.intensity), digest.add(light.range_m);
+  digest.add(light.inner_cone_rad), digest.add(light.outer_cone_rad);
+}
+
+void addAnimation(const gltf::Animation& animation, Digest& digest) {
+  digest.addText(animation.name);
+  digest.add(animation.channels.size());
+  for (const gltf::AnimationChannel& channel : animation.channels) {
+    digest.add(channel.node), digest.add(channel.path), digest.add(channel.interpolation);
+    digest.addList(channel.times_s);
+    digest.addList(channel.values);
+  }
+}
+
+void addNode(const gltf::Node& node, Digest& digest) {
+  digest.addText(node.name);
+  digest.add(node.parent), digest.addList(node.children), digest.add(node.parent_from_node);
+  digest.add(node.mesh), digest.add(node.camera), digest.add(node.light);
+  digest.add(node.animated), digest.add(node.movable), digest.add(node.trs.has_value());
+  if (!node.trs) return;
+  const glm::quat& q = node.trs->rotation;
+  digest.add(node.trs->translation), digest.add(glm::vec4(q.x, q.y, q.z, q.w)), digest.add(node.trs->scale);
+}
+
 }  // namespace
 
 std::uint64_t sceneDigest(const Scene& scene) {
   Digest digest;
   digest.addText(scene.source.filename().string());
-  for (const gltf::Node& node : scene.nodes) {
-    digest.addText(node.name);
-    digest.add(node.parent), digest.addList(node.children), digest.add(node.parent_from_node);
-    digest.add(node.mesh), digest.add(node.camera), digest.add(node.animated), digest.add(node.movable);
-  }
+  digest.add(scene.nodes.size());
+  for (const gltf::Node& node : scene.nodes) addNode(node, digest);
   digest.addList(scene.roots);
   for (const SceneMesh& mesh : scene.meshes) {
     digest.addText(mesh.name);
@@ -90,6 +122,10 @@ std::uint64_t sceneDigest(const Scene& scene) {
     digest.addList(image.file_bytes);
   }
   for (const gltf::Camera& camera : scene.cameras) addCamera(camera, digest);
+  digest.add(scene.lights.size());
+  for (const gltf::Light& light : scene.lights) addLight(light, digest);
+  digest.add(scene.animations.size());
+  for (const gltf::Animation& animation : scene.animations) addAnimation(animation, digest);
   return digest.value();
 }
 

@@ -34,6 +34,10 @@ nlohmann::json reportJson(const BakeArguments& a, const BakeReport& r) {
           {"filledSamples", r.filled_samples},
           {"rays", r.rays},
           {"raysPerSecond", r.ray_seconds > 0.0 ? static_cast<double>(r.rays) / r.ray_seconds : 0.0},
+          {"lights", r.lights},
+          {"passEnergy", r.pass_energy},
+          {"leftOut", r.left_out},
+          {"hitBytes", r.hit_bytes},
           {"codingError", r.worst_error},
           {"fileBytes", r.file_bytes},
           {"meshBytes", r.mesh_bytes},
@@ -50,6 +54,9 @@ void printReport(const BakeArguments& a, const BakeReport& r) {
   fmt::print("  rays      {} in {} ({} a second)\n", countText(static_cast<double>(r.rays)),
              durationText(r.ray_seconds),
              countText(r.ray_seconds > 0.0 ? static_cast<double>(r.rays) / r.ray_seconds : 0.0));
+  if (!r.pass_energy.empty())
+    fmt::print("  bounces   {}, the last with {:.3f} % of the direct light; {:.3f} % left out\n",
+               r.pass_energy.size() - 1, 100.0 * r.pass_energy.back(), 100.0 * r.left_out);
   fmt::print(
       "  bytes     {}: mesh {}, transfer {} ({:.1f} a vertex), images {}\n",
       bytesText(static_cast<double>(r.file_bytes)), bytesText(static_cast<double>(r.mesh_bytes)),
@@ -110,6 +117,20 @@ void addBakeCommand(CLI::App& app, Command& run) {
       ->add_option("--rays", a->options.rays,
                    "Rays per sample over its hemisphere; default 256, 1024 or 4096 by quality")
       ->type_name("N");
+  command
+      ->add_option(
+          "--bounces", a->options.bounces,
+          "Interreflections; 0: direct light with shadows only; default: until what is left out is far "
+          "under the error bound")
+      ->check(CLI::NonNegativeNumber)
+      ->type_name("N");
+  command
+      ->add_option(
+          "--max-memory", a->options.memory_bytes,
+          "Memory for what passes keep, in bytes or like 4GB; default half of the machine's. What does "
+          "not fit is computed again: slower, the same result")
+      ->transform(CLI::AsSizeValue(/*kb_is_1000=*/false))
+      ->type_name("BYTES");
   command
       ->add_option("--error", a->options.error_bound,
                    "Bound on the coding error, relative RMS of shaded radiance; default 0.01, 0.003 or 0.001 "

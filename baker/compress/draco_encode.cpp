@@ -105,6 +105,8 @@ bundle::DracoAttributes addAttributes(draco::Mesh& out, const bundle::MeshData& 
     ids.texcoord1 = addAttribute(out, Attribute::TEX_COORD, draco::DT_FLOAT32, false, mesh.texcoords1);
   if (!mesh.colors.empty())
     ids.color0 = addAttribute(out, Attribute::COLOR, draco::DT_UINT16, true, quantizeColors(mesh.colors));
+  if (!mesh.tangents.empty())
+    ids.tangent = addAttribute(out, Attribute::GENERIC, draco::DT_FLOAT32, false, mesh.tangents);
   return ids;
 }
 
@@ -142,6 +144,9 @@ void setQuantization(draco::ExpertEncoder& encoder, const draco::Mesh& mesh, int
         break;
       case draco::GeometryAttribute::TEX_COORD:
         encoder.SetAttributeQuantization(i, kTexcoordBits);
+        break;
+      case draco::GeometryAttribute::GENERIC:
+        encoder.SetAttributeQuantization(i, kTangentBits);
         break;
       default:
         break;

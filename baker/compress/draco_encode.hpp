@@ -4,7 +4,8 @@
 // mesh; goes out: the Draco buffer, the attribute ids for KHR_draco_mesh_compression, and the mesh that the
 // buffer decodes to (vertices are reordered, identical ones merged, triangles that collapse on the lattice
 // dropped). Errors of the lossy attributes: position step/2 per axis; normals under 0.05 degrees (octahedral,
-// kNormalBits); texture coordinates half of 1/65535 of their larger range; colours 1/131070 (16-bit
+// kNormalBits); texture coordinates half of 1/65535 of their larger range; tangents under 0.03
+// degrees, their sign exact; colours 1/131070 (16-bit
 // normalised, RGBA; as in the glTF accessor: COLOR_0 has componentType 5123, normalized; the other attributes
 // are FLOAT).
 #pragma once
@@ -20,6 +21,7 @@ namespace lambent::baker {
 
 inline constexpr int kNormalBits = 13;  // 12 would err by up to 0.058 degrees
 inline constexpr int kTexcoordBits = 16;
+inline constexpr int kTangentBits = 12;      // 2/4095 of its components: 0.02 degrees
 inline constexpr int kMaxPositionBits = 23;  // Draco rounds by adding 0.5: exact in float up to 2^23
 
 struct EncodedMesh {

@@ -73,8 +73,11 @@ Elements elementsAt(const tinygltf::Model& model, int view_index, std::size_t of
   return {bytes.data() + view.byteOffset + offset, stride};
 }
 
-void applySparse(const tinygltf::Model& model, const tinygltf::Accessor& accessor, std::size_t stored,
-                 std::size_t element, Floats& floats) {
+// Calls replace(target, bytes of the value) for every element that a sparse accessor replaces.
+template <typename Replace>
+void forEachSparse(const tinygltf::Model& model, const tinygltf::Accessor& accessor, std::size_t element,
+                   Replace replace) {
+  if (!accessor.sparse.isSparse) return;
   const auto& sparse = accessor.sparse;
   const auto count = static_cast<std::size_t>(sparse.count);
   const auto index_bytes = static_cast<std::size_t>(
@@ -87,10 +90,7 @@ void applySparse(const tinygltf::Model& model, const tinygltf::Accessor& accesso
                  element, /*strided=*/false);
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t target = toIndex(indices[i], sparse.indices.componentType);
-    if (target >= accessor.count) continue;  // points nowhere: nothing to replace
-    for (std::size_t c = 0; c < stored; ++c)
-      floats.values[target * floats.components + c] =
-          toFloat(values[i] + c * element / stored, accessor.componentType, accessor.normalized);
+    if (target < accessor.count) replace(target, values[i]);  // else there is nothing to replace
   }
 }
 
@@ -101,9 +101,11 @@ Result<Floats> readFloats(const Document& document, int index, const std::string
   const tinygltf::Model& model = document.model();
   const tinygltf::Accessor& accessor = model.accessors[static_cast<std::size_t>(index)];
   const int stored_components = tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(accessor.type));
-  const bool vector = accessor.type <= TINYGLTF_TYPE_VEC4 && accessor.type >= TINYGLTF_TYPE_VEC2;
-  if (!vector || std::find(allowed_components.begin(), allowed_components.end(), stored_components) ==
-                     allowed_components.end())
+  // MAT2 has four components too, but is no vector.
+  const bool known = (accessor.type <= TINYGLTF_TYPE_VEC4 && accessor.type >= TINYGLTF_TYPE_VEC2) ||
+                     accessor.type == TINYGLTF_TYPE_SCALAR || accessor.type == TINYGLTF_TYPE_MAT4;
+  if (!known || std::find(allowed_components.begin(), allowed_components.end(), stored_components) ==
+                    allowed_components.end())
     return fail(document.file(), fmt::format("accessor {} ({}) has the wrong type", index, use),
                 "export the scene again");
 
@@ -122,7 +124,12 @@ Result<Floats> readFloats(const Document& document, int index, const std::string
     for (std::size_t i = 0; i < accessor.count; ++i)
       for (std::size_t c = 0; c < stored; ++c) floats.values[i * components + c] = 0.0f;
   }
-  if (accessor.sparse.isSparse) applySparse(model, accessor, stored, stored * component_bytes, floats);
+  forEachSparse(model, accessor, stored * component_bytes,
+                [&](std::size_t target, const unsigned char* value) {
+                  for (std::size_t c = 0; c < stored; ++c)
+                    floats.values[target * components + c] =
+                        toFloat(value + c * component_bytes, accessor.componentType, accessor.normalized);
+                });
   return floats;
 }
 
@@ -132,15 +139,20 @@ Result<std::vector<std::uint32_t>> readIndices(const Document& document, int ind
   const bool is_index = type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE ||
                         type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT ||
                         type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
-  if (accessor.type != TINYGLTF_TYPE_SCALAR || !is_index || accessor.sparse.isSparse)
+  if (accessor.type != TINYGLTF_TYPE_SCALAR || !is_index)
     return fail(document.file(), fmt::format("accessor {} does not hold unsigned indices", index),
                 "export the scene again");
   const auto bytes =
       static_cast<std::size_t>(tinygltf::GetComponentSizeInBytes(static_cast<std::uint32_t>(type)));
-  const Elements elements = elementsAt(document.model(), accessor.bufferView, accessor.byteOffset,
-                                       accessor.count, bytes, /*strided=*/true);
-  std::vector<std::uint32_t> indices(accessor.count);
-  for (std::size_t i = 0; i < indices.size(); ++i) indices[i] = toIndex(elements[i], type);
+  std::vector<std::uint32_t> indices(accessor.count, 0);
+  if (accessor.bufferView >= 0) {
+    const Elements elements = elementsAt(document.model(), accessor.bufferView, accessor.byteOffset,
+                                         accessor.count, bytes, /*strided=*/true);
+    for (std::size_t i = 0; i < indices.size(); ++i) indices[i] = toIndex(elements[i], type);
+  }
+  forEachSparse(document.model(), accessor, bytes, [&](std::size_t target, const unsigned char* value) {
+    indices[target] = toIndex(value, type);
+  });
   return indices;
 }
 

@@ -12,8 +12,8 @@
 
 namespace lambent::baker {
 
-// A vector per element, `components` floats each; `stored` of them come from the file (VEC3 colours in a
-// VEC4), the rest is 1. Errors name the accessor and `use` ("POSITION").
+// A scalar, vector or 4 x 4 matrix per element, `components` floats each; those that the file has fewer of
+// (VEC3 colours in a VEC4) are 1. Errors name the accessor and `use` ("POSITION").
 struct Floats {
   std::vector<float> values;
   std::size_t components = 0;
@@ -22,6 +22,7 @@ struct Floats {
 Result<Floats> readFloats(const Document& document, int accessor, const std::string& use,
                           const std::vector<int>& allowed_components, std::size_t components);
 
+// Of an index accessor, sparse or not.
 Result<std::vector<std::uint32_t>> readIndices(const Document& document, int accessor);
 
 }  // namespace lambent::baker

@@ -52,8 +52,16 @@ void checkPrimitive(const Object& primitive, const Root& root) {
   const auto extensions = primitive.object("extensions");
   const auto draco = extensions ? extensions->object("KHR_draco_mesh_compression") : std::nullopt;
   if (draco) checkDraco(*draco, root);
-  if (indices && !draco && !root.object.list("accessors")[*indices].contains("bufferView"))
+  // Zeros throughout would be triangles without area.
+  if (indices && !draco && !root.object.list("accessors")[*indices].contains("bufferView") &&
+      !root.object.list("accessors")[*indices].contains("sparse"))
     throw BrokenField{fmt::format("accessor {} holds indices but has no bufferView", *indices)};
+  std::size_t t = 0;
+  for (const nlohmann::json& entry : primitive.list("targets")) {
+    const Object target{entry, fmt::format("{}, morph target {}", primitive.name, t++)};
+    if (!entry.is_object()) throw BrokenField{fmt::format("{} is not an object", target.name)};
+    for (const auto& item : entry.items()) target.index(item.key().c_str(), accessors, "accessors");
+  }
 }
 
 void checkTextureInfo(const Object& owner, const char* key, const Root& root) {
@@ -62,6 +70,7 @@ void checkTextureInfo(const Object& owner, const char* key, const Root& root) {
   if (!info->index("index", root.size("textures"), "textures"))
     throw BrokenField{fmt::format("{} has no index", info->name)};
   info->number("texCoord");
+  checkTextureTransform(*info);
 }
 
 void checkMaterials(const Root& root) {
@@ -87,12 +96,14 @@ void checkMaterials(const Root& root) {
     }
     for (const char* key : {"normalTexture", "occlusionTexture", "emissiveTexture"})
       checkTextureInfo(material, key, root);
+    checkEmissiveStrength(material);
   });
 }
 
 void checkMeshes(const Root& root) {
   root.forEach("meshes", "mesh", [&](const Object& mesh) {
     std::size_t i = 0;
+    checkNumbers(mesh, "weights");
     for (const nlohmann::json& primitive : mesh.list("primitives"))
       checkPrimitive({primitive, fmt::format("{}, primitive {}", mesh.name, i++)}, root);
   });
@@ -108,6 +119,7 @@ Result<void> checkDocument(const nlohmann::json& document, const std::string& fi
     checkBuffers(root);
     checkMaterials(root);
     checkMeshes(root);
+    checkLights(root);
     checkNodes(root);
     return {};
   } catch (const BrokenField& broken) {

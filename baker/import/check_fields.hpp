@@ -96,6 +96,15 @@ struct Root {
   }
 };
 
+// Finite numbers: `count` of them, or any number where 0.
+void checkNumbers(const Object& object, const char* key, std::size_t count = 0);
+
+// Extensions: values as well as types, so that the conversions can take them as they are.
+void checkTextureTransform(const Object& texture_info);
+void checkEmissiveStrength(const Object& material);
+void checkLights(const Root& root);
+void checkNodeExtensions(const Object& node, const Root& root);  // lights, instances
+
 void checkMeshopt(const Object& view, const Root& root);  // a bufferView coded by meshoptimizer, if it is
 void checkBuffers(const Root& root);                      // buffers, views, accessors: every byte extent
 void checkNodes(const Root& root);  // nodes, scenes, animations: one tree, all references

@@ -75,6 +75,7 @@ void gatherVertices(MeshData& mesh, std::span<const std::uint32_t> sources) {
   gather(mesh.texcoords0);
   gather(mesh.texcoords1);
   gather(mesh.colors);
+  gather(mesh.tangents);
 }
 
 void dropUnusedVertices(MeshData& mesh) {
@@ -133,6 +134,25 @@ std::size_t repairNormals(MeshData& mesh) {
   return count;
 }
 
+// Any direction in the surface will do for a tangent that has none.
+glm::vec3 someTangent(const glm::vec3& normal) {
+  const glm::vec3 axis = std::abs(normal.x) < 0.5f ? glm::vec3(1, 0, 0) : glm::vec3(0, 1, 0);
+  return glm::normalize(glm::cross(normal, axis));
+}
+
+std::size_t repairTangents(MeshData& mesh) {
+  std::size_t count = 0;
+  for (std::size_t v = 0; v < mesh.tangents.size(); ++v) {
+    glm::vec4& tangent = mesh.tangents[v];
+    const float length = glm::length(glm::vec3(tangent));
+    const bool good = isFinite(glm::vec3(tangent)) && std::isfinite(length) && length > 1e-6f;
+    if (!good) ++count;
+    const glm::vec3 direction = good ? glm::vec3(tangent) / length : someTangent(mesh.normals[v]);
+    tangent = glm::vec4(direction, tangent.w < 0.0f ? -1.0f : 1.0f);
+  }
+  return count;
+}
+
 template <typename Vector>
 std::size_t repairValues(std::vector<Vector>& values, const Vector& replacement) {
   std::size_t count = 0;
@@ -161,6 +181,7 @@ void cleanMesh(MeshData& mesh, const std::string& name, std::vector<std::string>
   } else {
     warn(repairNormals(mesh), "normals without direction made from the faces around them");
   }
+  warn(repairTangents(mesh), "tangents without direction made up");
   warn(repairValues(mesh.texcoords0, glm::vec2(0.0f)) + repairValues(mesh.texcoords1, glm::vec2(0.0f)),
        "texture coordinates that are not finite set to 0");
   warn(repairValues(mesh.colors, glm::vec4(1.0f)), "colours that are not finite set to white");

@@ -9,6 +9,9 @@
 #include <string>
 #include <vector>
 
+#include <nlohmann/json_fwd.hpp>
+
+#include "baker/import/import_options.hpp"
 #include "runtime/base/result.hpp"
 
 namespace lambent_tinygltf {
@@ -17,27 +20,34 @@ class Model;
 
 namespace lambent::baker {
 
-// tinygltf refuses index accessors without a bufferView, which Draco primitives have; their number is kept
-// here, in the extension object, instead.
-inline constexpr const char* kDracoIndices = "lambent_indices";
+// tinygltf refuses index accessors without a bufferView, which Draco primitives have and sparse ones may
+// have; their number is kept here, in an extension object of the primitive, instead.
+inline constexpr const char* kIndicesAside = "LAMBENT_indices";
 
 class Document {
  public:
   // Errors: those of importScene() that concern the file, not its geometry.
-  static Result<Document> open(const std::filesystem::path& path);
+  static Result<Document> open(const std::filesystem::path& path, const ImportOptions& options = {});
 
   Document(Document&&) noexcept;
   Document& operator=(Document&&) noexcept;
   ~Document();
 
   const lambent_tinygltf::Model& model() const { return *model_; }
+  // The checked text itself, without buffers and images: for the parts that tinygltf does not read as they
+  // stand (extensions, animations, skins).
+  const nlohmann::json& json() const { return *json_; }
+  const ImportOptions& options() const { return options_; }
   const std::filesystem::path& path() const { return path_; }
   std::string file() const { return path_.string(); }
 
  private:
-  Document(std::filesystem::path path, std::unique_ptr<lambent_tinygltf::Model> model);
+  Document(std::filesystem::path path, const ImportOptions& options,
+           std::unique_ptr<lambent_tinygltf::Model> model, std::unique_ptr<nlohmann::json> json);
   std::filesystem::path path_;
+  ImportOptions options_;
   std::unique_ptr<lambent_tinygltf::Model> model_;
+  std::unique_ptr<nlohmann::json> json_;
 };
 
 }  // namespace lambent::baker

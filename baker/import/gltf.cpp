@@ -20,9 +20,16 @@ namespace {
 
 void warnAboutExtensions(const Document& document, Scene& scene) {
   const auto& used = document.model().extensionsUsed;
-  for (const std::string& name : std::set<std::string>(used.begin(), used.end()))
-    if (std::find(kExtensions.begin(), kExtensions.end(), name) == kExtensions.end())
+  std::string looks;
+  for (const std::string& name : std::set<std::string>(used.begin(), used.end())) {
+    if (std::find(kExtensions.begin(), kExtensions.end(), name) != kExtensions.end()) continue;
+    if (name.starts_with("KHR_materials_"))
+      looks += (looks.empty() ? "" : ", ") + name;
+    else
       scene.warnings.push_back(fmt::format("the extension {} is not read", name));
+  }
+  if (!looks.empty())
+    scene.warnings.push_back(fmt::format("what materials look like by {} is left out", looks));
 }
 
 // Warnings alike but for the primitive become one.
@@ -43,36 +50,26 @@ void foldWarnings(std::vector<std::string>& warnings) {
   warnings = std::move(kept);
 }
 
-// Meshes that no node of the scene draws are left out, and those of which nothing is left.
-void dropUnusedMeshes(Scene& scene) {
-  std::vector<std::int32_t> number(scene.meshes.size(), -1);
-  std::vector<SceneMesh> kept;
-  for (gltf::Node& node : scene.nodes) {
-    if (node.mesh < 0) continue;
-    const auto mesh = static_cast<std::size_t>(node.mesh);
-    if (number[mesh] < 0 && !scene.meshes[mesh].primitives.empty()) {
-      number[mesh] = static_cast<std::int32_t>(kept.size());
-      kept.push_back(std::move(scene.meshes[mesh]));
-      scene.meshes[mesh].primitives.clear();
-    }
-    node.mesh = number[mesh];
-  }
-  scene.meshes = std::move(kept);
-}
-
 Result<Scene> convert(const Document& document) {
   Scene scene;
   scene.source = document.path();
   warnAboutExtensions(document, scene);
   // materials, with the textures and images that they use
-  auto transforms = convertMaterials(document, scene);
-  if (!transforms) return failAgain(std::move(transforms.error()));
-  // geometry, brought to clean triangles
-  if (auto meshes = convertMeshes(document, *transforms, scene); !meshes)
-    return failAgain(std::move(meshes.error()));
+  if (auto materials = convertMaterials(document, scene); !materials)
+    return failAgain(std::move(materials.error()));
+  convertLights(document, scene);
   // the tree of the default scene
-  if (auto nodes = convertNodes(document, scene); !nodes) return failAgain(std::move(nodes.error()));
-  dropUnusedMeshes(scene);
+  auto map = convertNodes(document, scene);
+  if (!map) return failAgain(std::move(map.error()));
+  // its geometry at rest, brought to clean triangles
+  if (auto meshes = convertMeshes(document, *map, scene); !meshes)
+    return failAgain(std::move(meshes.error()));
+  // what moves in it
+  if (auto animations = convertAnimations(document, *map, scene); !animations)
+    return failAgain(std::move(animations.error()));
+  // and what it holds many times
+  if (auto instances = convertInstances(document, *map, scene); !instances)
+    return failAgain(std::move(instances.error()));
   foldWarnings(scene.warnings);
   if (scene.meshes.empty()) return fail(document.file(), "has no triangles in its scene", "give it a mesh");
   return scene;
@@ -80,8 +77,8 @@ Result<Scene> convert(const Document& document) {
 
 }  // namespace
 
-Result<Scene> importScene(const std::filesystem::path& path) {
-  auto document = Document::open(path);
+Result<Scene> importScene(const std::filesystem::path& path, const ImportOptions& options) {
+  auto document = Document::open(path, options);
   if (!document) return failAgain(std::move(document.error()));
   try {
     return convert(*document);

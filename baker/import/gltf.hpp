@@ -4,6 +4,7 @@
 
 #include <filesystem>
 
+#include "baker/import/import_options.hpp"
 #include "baker/import/scene.hpp"
 #include "runtime/base/result.hpp"
 
@@ -11,6 +12,6 @@ namespace lambent::baker {
 
 // Errors: missing or unreadable file, not glTF 2.0, unknown required extension, broken accessors or buffers,
 // a scene without triangles.
-Result<Scene> importScene(const std::filesystem::path& path);
+Result<Scene> importScene(const std::filesystem::path& path, const ImportOptions& options = {});
 
 }  // namespace lambent::baker

@@ -2,11 +2,12 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <span>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
-#include "baker/import/container.hpp"
 #include "baker/import/convert.hpp"
 #include "baker/import/tinygltf.hpp"
 #include "baker/import/uri.hpp"
@@ -29,22 +30,19 @@ glm::vec2 pairOr(const tinygltf::Value& object, const char* key, glm::vec2 fallb
           static_cast<float>(pair.Get(1).GetNumberAsDouble())};
 }
 
-// KHR_texture_transform: uv' = offset + R(rotation) * (scale * uv), with R as the extension writes it.
-UvTransform uvTransform(const tinygltf::TextureInfo& info) {
-  UvTransform transform{.texcoord = static_cast<std::uint32_t>(info.texCoord)};
-  const auto extension = info.extensions.find("KHR_texture_transform");
-  if (extension == info.extensions.end() || !extension->second.IsObject()) return transform;
+// A textureInfo without its texture: the set of coordinates and KHR_texture_transform.
+gltf::TextureRef placement(const tinygltf::ExtensionMap& extensions, int texcoord) {
+  gltf::TextureRef ref;
+  ref.texcoord = static_cast<std::uint32_t>(std::max(texcoord, 0));
+  const auto extension = extensions.find("KHR_texture_transform");
+  if (extension == extensions.end() || !extension->second.IsObject()) return ref;
   const tinygltf::Value& value = extension->second;
-  const glm::vec2 offset = pairOr(value, "offset", glm::vec2(0.0f)),
-                  scale = pairOr(value, "scale", glm::vec2(1.0f));
-  const float angle = numberOr(value, "rotation", 0.0f);
-  const float c = std::cos(angle), s = std::sin(angle);
-  transform.matrix =
-      glm::mat3(scale.x * c, -scale.x * s, 0.0f, scale.y * s, scale.y * c, 0.0f, offset.x, offset.y, 1.0f);
-  const float texcoord = numberOr(value, "texCoord", static_cast<float>(info.texCoord));
-  transform.texcoord = static_cast<std::uint32_t>(std::clamp(texcoord, 0.0f, 255.0f));
-  transform.identity = transform.matrix == glm::mat3(1.0f);
-  return transform;
+  ref.offset = pairOr(value, "offset", ref.offset);
+  ref.scale = pairOr(value, "scale", ref.scale);
+  ref.rotation_rad = numberOr(value, "rotation", 0.0f);
+  const float overriding = numberOr(value, "texCoord", static_cast<float>(ref.texcoord));
+  ref.texcoord = static_cast<std::uint32_t>(std::clamp(overriding, 0.0f, 255.0f));
+  return ref;
 }
 
 // The type by the first bytes; what the file says about it is often wrong.
@@ -56,14 +54,34 @@ std::string imageType(const std::vector<std::byte>& bytes) {
   return {};
 }
 
-// Textures and images are taken over when the first base colour asks for them.
+// Textures and images are taken over when the first material asks for them.
 class Textures {
  public:
   Textures(const Document& document, Scene& scene)
       : document_(document),
         scene_(scene),
         texture_of_(document.model().textures.size(), kUnknown),
-        image_of_(document.model().images.size(), kUnknown) {}
+        image_of_(document.json().contains("images") ? document.json()["images"].size() : 0, kUnknown) {}
+
+  // The reference of a material, `use` in words; without a texture where it has none that can be used.
+  Result<gltf::TextureRef> refer(int index, const tinygltf::ExtensionMap& extensions, int texcoord,
+                                 std::size_t material, const char* use) {
+    if (index < 0) return gltf::TextureRef{};
+    gltf::TextureRef ref = placement(extensions, texcoord);
+    if (ref.texcoord > 1) {
+      scene_.warnings.push_back(
+          fmt::format("material {}: its {} uses TEXCOORD_{}: only 0 and 1 are read, it is left out", material,
+                      use, ref.texcoord));
+      return gltf::TextureRef{};
+    }
+    const auto texture = take(index);
+    if (!texture) return failAgain(texture.error());
+    ref.texture = *texture;
+    return ref.texture < 0 ? gltf::TextureRef{} : ref;
+  }
+
+ private:
+  static constexpr std::int32_t kUnknown = -2;
 
   // The scene's texture for the file's, -1 where it has no image that can be used.
   Result<std::int32_t> take(int index) {
@@ -92,13 +110,10 @@ class Textures {
     return texture;
   }
 
- private:
-  static constexpr std::int32_t kUnknown = -2;
-
   Result<std::int32_t> takeImage(int index) {
     std::int32_t& image = image_of_[static_cast<std::size_t>(index)];
     if (image != kUnknown) return image;
-    const tinygltf::Image& source = document_.model().images[static_cast<std::size_t>(index)];
+    const nlohmann::json& source = document_.json()["images"][static_cast<std::size_t>(index)];
     auto bytes = imageBytes(source, index);
     if (!bytes) return failAgain(std::move(bytes.error()));
     image = -1;
@@ -108,20 +123,22 @@ class Textures {
       return image;
     }
     image = static_cast<std::int32_t>(scene_.images.size());
-    scene_.images.push_back(
-        {source.name.empty() ? decodePercent(source.uri) : source.name, type, std::move(*bytes)});
+    std::string name = source.value("name", "");
+    const std::string uri = source.value("uri", "");
+    if (name.empty() && !uri.starts_with("data:")) name = decodePercent(uri);
+    scene_.images.push_back({name, type, std::move(*bytes)});
     return image;
   }
 
-  Result<std::vector<std::byte>> imageBytes(const tinygltf::Image& source, int index) const {
-    if (source.uri.empty()) {  // embedded, kept encoded by the loader
-      const auto bytes = std::as_bytes(std::span(source.image));
-      return std::vector<std::byte>(bytes.begin(), bytes.end());
-    }
-    const std::string object = fmt::format("image {}", index);
-    auto file = resolveUri(document_.path().parent_path(), source.uri, document_.file(), object);
-    if (!file) return failAgain(std::move(file.error()));
-    return readBytes(*file, fmt::format("{}: {} ({})", document_.file(), object, file->filename().string()));
+  Result<std::vector<std::byte>> imageBytes(const nlohmann::json& source, int index) const {
+    if (source.contains("uri"))
+      return readUri(document_.path(), source["uri"].get<std::string>(), document_.options(),
+                     fmt::format("image {}", index));
+    const tinygltf::BufferView& view = document_.model().bufferViews[source["bufferView"].get<std::size_t>()];
+    const auto bytes =
+        std::as_bytes(std::span(document_.model().buffers[static_cast<std::size_t>(view.buffer)].data))
+            .subspan(view.byteOffset, view.byteLength);
+    return std::vector<std::byte>(bytes.begin(), bytes.end());
   }
 
   const Document& document_;
@@ -144,6 +161,12 @@ gltf::Material convertMaterial(const tinygltf::Material& source) {
   material.name = source.name;
   assign(material.base_color, source.pbrMetallicRoughness.baseColorFactor);
   assign(material.emissive, source.emissiveFactor);
+  if (const auto strength = source.extensions.find("KHR_materials_emissive_strength");
+      strength != source.extensions.end())
+    material.emissive *= numberOr(strength->second, "emissiveStrength", 1.0f);
+  for (int c = 0; c < 3; ++c)  // the product of two large numbers need not be one
+    material.emissive[c] = std::min(material.emissive[c], std::numeric_limits<float>::max());
+  material.unlit = source.extensions.contains("KHR_materials_unlit");
   material.base_color = glm::min(material.base_color, glm::vec4(1.0f));
   material.metallic = static_cast<float>(source.pbrMetallicRoughness.metallicFactor);
   material.roughness = static_cast<float>(source.pbrMetallicRoughness.roughnessFactor);
@@ -154,28 +177,48 @@ gltf::Material convertMaterial(const tinygltf::Material& source) {
   return material;
 }
 
+// What the textures of a material are, and what becomes of it without those that cannot be used.
+Result<void> addTextures(const tinygltf::Material& source, std::size_t number, Textures& textures,
+                         std::vector<std::string>& warnings, gltf::Material& material) {
+  const auto assign = [](gltf::TextureRef& target, Result<gltf::TextureRef> ref) -> Result<void> {
+    if (!ref) return failAgain(std::move(ref.error()));
+    target = *ref;
+    return {};
+  };
+  const auto& base = source.pbrMetallicRoughness.baseColorTexture;
+  Result<void> done =
+      assign(material.base_color_texture,
+             textures.refer(base.index, base.extensions, base.texCoord, number, "base colour texture"));
+  if (!done) return done;
+  const auto& normal = source.normalTexture;
+  done = assign(material.normal_texture,
+                textures.refer(normal.index, normal.extensions, normal.texCoord, number, "normal texture"));
+  if (!done) return done;
+  if (material.normal_texture.texture >= 0 && std::isfinite(normal.scale))
+    material.normal_scale = static_cast<float>(normal.scale);
+  const auto& emissive = source.emissiveTexture;
+  if (material.emissive == glm::vec3(0.0f) || emissive.index < 0) return {};
+  done = assign(material.emissive_texture, textures.refer(emissive.index, emissive.extensions,
+                                                          emissive.texCoord, number, "emissive texture"));
+  if (done && material.emissive_texture.texture < 0) {
+    // All of the surface would shine where the texture says where it does.
+    warnings.push_back(fmt::format("material {}: without its emissive texture it does not shine", number));
+    material.emissive = glm::vec3(0.0f);
+  }
+  return done;
+}
+
 }  // namespace
 
-Result<std::vector<UvTransform>> convertMaterials(const Document& document, Scene& scene) {
+Result<void> convertMaterials(const Document& document, Scene& scene) {
   Textures textures(document, scene);
-  std::vector<UvTransform> transforms;
   for (const tinygltf::Material& source : document.model().materials) {
     gltf::Material material = convertMaterial(source);
-    const tinygltf::TextureInfo& info = source.pbrMetallicRoughness.baseColorTexture;
-    UvTransform transform = uvTransform(info);
-    if (info.index >= 0 && transform.texcoord > 1) {
-      scene.warnings.push_back(
-          fmt::format("material {} uses TEXCOORD_{}: only 0 and 1 are read, its texture is left out",
-                      scene.materials.size(), transform.texcoord));
-    } else if (info.index >= 0) {
-      auto texture = textures.take(info.index);
-      if (!texture) return failAgain(std::move(texture.error()));
-      material.base_color_texture = {*texture, transform.texcoord};
-    }
-    transforms.push_back(transform);
+    if (auto done = addTextures(source, scene.materials.size(), textures, scene.warnings, material); !done)
+      return done;
     scene.materials.push_back(std::move(material));
   }
-  return transforms;
+  return {};
 }
 
 }  // namespace lambent::baker

@@ -1,11 +1,11 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <set>
 
 #include <fmt/format.h>
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/type_ptr.hpp>
+#include <nlohmann/json.hpp>
 
 #include "baker/import/convert.hpp"
 #include "baker/import/tinygltf.hpp"
@@ -34,12 +34,9 @@ bool isMovable(const tinygltf::Node& node) {
          lambent.Get("movable").Get<bool>();
 }
 
-std::set<int> animatedNodes(const tinygltf::Model& model) {
-  std::set<int> nodes;
-  for (const tinygltf::Animation& animation : model.animations)
-    for (const tinygltf::AnimationChannel& channel : animation.channels)
-      if (channel.target_path != "weights") nodes.insert(channel.target_node);
-  return nodes;
+std::int32_t lightOf(const nlohmann::json& node) {
+  if (!node.contains("extensions") || !node["extensions"].contains("KHR_lights_punctual")) return -1;
+  return node["extensions"]["KHR_lights_punctual"]["light"].get<std::int32_t>();
 }
 
 // Roots of the default scene, of the first one, or, in a file without scenes, all nodes without a parent.
@@ -86,7 +83,22 @@ Result<gltf::Camera> convertCamera(const tinygltf::Camera& camera, const std::st
 
 }  // namespace
 
-Result<void> convertNodes(const Document& document, Scene& scene) {
+glm::mat4 localMatrix(const Document& document, std::size_t file_node) {
+  return localMatrix(document.model().nodes[file_node]);
+}
+
+std::vector<glm::mat4> fileWorldTransforms(const Document& document) {
+  const auto& sources = document.model().nodes;
+  std::vector<gltf::Node> nodes(sources.size());
+  for (std::size_t i = 0; i < sources.size(); ++i) {
+    nodes[i].parent_from_node = localMatrix(sources[i]);
+    for (const int child : sources[i].children)
+      nodes[static_cast<std::size_t>(child)].parent = static_cast<std::int32_t>(i);
+  }
+  return gltf::worldTransforms(nodes);
+}
+
+Result<NodeMap> convertNodes(const Document& document, Scene& scene) {
   const tinygltf::Model& model = document.model();
   for (std::size_t i = 0; i < model.cameras.size(); ++i) {
     auto camera = convertCamera(model.cameras[i], document.file(), i);
@@ -95,18 +107,17 @@ Result<void> convertNodes(const Document& document, Scene& scene) {
   }
 
   // Parents first, in the order of the file; nodes of other scenes are left out.
-  const std::set<int> animated = animatedNodes(model);
+  NodeMap map;
+  map.scene_node.assign(model.nodes.size(), -1);
   std::vector<std::pair<int, std::int32_t>> pending;  // node of the file, new parent
   const std::vector<int> roots = rootsOf(model);
   for (auto it = roots.rbegin(); it != roots.rend(); ++it) pending.emplace_back(*it, -1);
-  std::vector<bool> taken(model.nodes.size(), false);
   while (!pending.empty()) {
     const auto [index, parent] = pending.back();
     pending.pop_back();
-    if (taken[static_cast<std::size_t>(index)])
+    if (map.scene_node[static_cast<std::size_t>(index)] >= 0)
       return fail(document.file(), fmt::format("node {} stands twice in the scene", index),
                   "list each root node once");
-    taken[static_cast<std::size_t>(index)] = true;
 
     const tinygltf::Node& source = model.nodes[static_cast<std::size_t>(index)];
     gltf::Node node;
@@ -120,13 +131,12 @@ Result<void> convertNodes(const Document& document, Scene& scene) {
                       "reset its transform");
     node.mesh = source.mesh;
     node.camera = source.camera;
-    node.animated = animated.contains(index);
+    node.light = lightOf(document.json()["nodes"][static_cast<std::size_t>(index)]);
     node.movable = isMovable(source);
-    if (source.skin >= 0)
-      scene.warnings.push_back(
-          fmt::format("node {} is skinned: taken as it stands, the skin is left out", index));
 
     const auto added = static_cast<std::int32_t>(scene.nodes.size());
+    map.scene_node[static_cast<std::size_t>(index)] = added;
+    map.file_node.push_back(index);
     if (parent < 0) {
       scene.roots.push_back(added);
     } else {
@@ -136,7 +146,7 @@ Result<void> convertNodes(const Document& document, Scene& scene) {
     for (auto child = source.children.rbegin(); child != source.children.rend(); ++child)
       pending.emplace_back(*child, added);
   }
-  return {};
+  return map;
 }
 
 }  // namespace lambent::baker

@@ -1,18 +1,21 @@
+#include "baker/import/primitives.hpp"
+
 #include <array>
 #include <cassert>
 #include <numeric>
 #include <span>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "baker/import/accessor.hpp"
-#include "baker/import/convert.hpp"
 #include "baker/import/tinygltf.hpp"
 
 namespace lambent::baker {
 namespace {
 
 constexpr const char* kExport = "export the scene again";
+constexpr const char* kDraco = "KHR_draco_mesh_compression";
 
 template <typename Vector>
 Result<std::vector<Vector>> readVectors(const Document& document, const tinygltf::Primitive& primitive,
@@ -40,7 +43,16 @@ bool assign(T& target, Result<T> result, Error& error) {
   return true;
 }
 
-Result<bundle::MeshData> readPlain(const Document& document, const tinygltf::Primitive& primitive) {
+// The file's number of the accessor that holds the indices, -1 where there are none.
+int indexAccessor(const tinygltf::Primitive& primitive) {
+  const auto aside = primitive.extensions.find(kIndicesAside);
+  return aside == primitive.extensions.end() ? primitive.indices
+                                             : aside->second.Get("accessor").GetNumberAsInt();
+}
+
+Result<bundle::MeshData> readPlain(const Document& document, const tinygltf::Primitive& primitive,
+                                   bool tangents) {
+  const int indices = indexAccessor(primitive);
   bundle::MeshData mesh;
   Error error;
   const bool read =
@@ -49,52 +61,91 @@ Result<bundle::MeshData> readPlain(const Document& document, const tinygltf::Pri
       assign(mesh.texcoords0, readVectors<glm::vec2>(document, primitive, "TEXCOORD_0", {2}), error) &&
       assign(mesh.texcoords1, readVectors<glm::vec2>(document, primitive, "TEXCOORD_1", {2}), error) &&
       assign(mesh.colors, readVectors<glm::vec4>(document, primitive, "COLOR_0", {3, 4}), error) &&
-      (primitive.indices < 0 || assign(mesh.indices, readIndices(document, primitive.indices), error));
+      (!tangents ||
+       assign(mesh.tangents, readVectors<glm::vec4>(document, primitive, "TANGENT", {4}), error)) &&
+      (indices < 0 || assign(mesh.indices, readIndices(document, indices), error));
   if (!read) return failAgain(std::move(error));
-  if (primitive.indices < 0) {
+  if (indices < 0) {
     mesh.indices.resize(mesh.positions.size());
     std::iota(mesh.indices.begin(), mesh.indices.end(), 0u);
   }
   return mesh;
 }
 
-Result<bundle::MeshData> readDraco(const Document& document, const tinygltf::Primitive& primitive,
-                                   const tinygltf::Value& extension, const std::string& name) {
-  const tinygltf::Model& model = document.model();
-  const tinygltf::Value& ids = extension.Get("attributes");
-  const auto id = [&](const char* semantic) {
-    return ids.Has(semantic) ? ids.Get(semantic).GetNumberAsInt() : -1;
-  };
+// A Draco primitive: the buffer, and what the file says of it.
+struct DracoSource {
+  std::span<const std::byte> bytes;
   bundle::Primitive announced;
-  announced.attributes = {.position = id("POSITION"),
-                          .normal = id("NORMAL"),
-                          .texcoord0 = id("TEXCOORD_0"),
-                          .texcoord1 = id("TEXCOORD_1"),
-                          .color0 = id("COLOR_0")};
-  const auto position = primitive.attributes.find("POSITION");
-  if (position == primitive.attributes.end() || announced.attributes.position < 0 ||
-      !extension.Has(kDracoIndices))
-    return fail(document.file(), fmt::format("{}: compressed without POSITION or indices", name), kExport);
-  const auto indices = static_cast<std::size_t>(extension.Get(kDracoIndices).GetNumberAsInt());
-  announced.vertex_count =
-      static_cast<std::uint32_t>(model.accessors[static_cast<std::size_t>(position->second)].count);
-  announced.index_count = static_cast<std::uint32_t>(model.accessors[indices].count);
+  const tinygltf::Value* ids = nullptr;
 
+  std::int32_t id(const std::string& semantic) const {
+    return ids->Has(semantic) ? ids->Get(semantic).GetNumberAsInt() : -1;
+  }
+};
+
+Result<DracoSource> dracoSource(const Document& document, const tinygltf::Primitive& primitive, bool tangents,
+                                const std::string& name) {
+  const tinygltf::Model& model = document.model();
+  const tinygltf::Value& extension = primitive.extensions.at(kDraco);
+  DracoSource source;
+  source.ids = &extension.Get("attributes");
+  source.announced.attributes = {.position = source.id("POSITION"),
+                                 .normal = source.id("NORMAL"),
+                                 .texcoord0 = source.id("TEXCOORD_0"),
+                                 .texcoord1 = source.id("TEXCOORD_1"),
+                                 .color0 = source.id("COLOR_0"),
+                                 .tangent = tangents ? source.id("TANGENT") : -1};
+  const auto position = primitive.attributes.find("POSITION");
+  const int indices = indexAccessor(primitive);
+  if (position == primitive.attributes.end() || source.announced.attributes.position < 0 || indices < 0)
+    return fail(document.file(), fmt::format("{}: compressed without POSITION or indices", name), kExport);
+  source.announced.vertex_count =
+      static_cast<std::uint32_t>(model.accessors[static_cast<std::size_t>(position->second)].count);
+  source.announced.index_count =
+      static_cast<std::uint32_t>(model.accessors[static_cast<std::size_t>(indices)].count);
   const auto& view =
       model.bufferViews[static_cast<std::size_t>(extension.Get("bufferView").GetNumberAsInt())];
-  const auto bytes = std::as_bytes(std::span(model.buffers[static_cast<std::size_t>(view.buffer)].data))
-                         .subspan(view.byteOffset, view.byteLength);
-  return bundle::decodeDraco(bytes, announced, fmt::format("{}: {}", document.file(), name));
+  source.bytes = std::as_bytes(std::span(model.buffers[static_cast<std::size_t>(view.buffer)].data))
+                     .subspan(view.byteOffset, view.byteLength);
+  return source;
+}
+
+// JOINTS_n and WEIGHTS_n for n = 0, 1, ...: from the Draco buffer where they lie there.
+Result<std::vector<Influences>> readInfluences(const Document& document, const tinygltf::Primitive& primitive,
+                                               const DracoSource* draco, const std::string& name) {
+  const auto read = [&](const std::string& semantic) {
+    const std::int32_t id = draco == nullptr ? -1 : draco->id(semantic);
+    if (id < 0) return readVectors<glm::vec4>(document, primitive, semantic, {4});
+    return bundle::decodeDracoAttribute(draco->bytes, draco->announced, id, semantic,
+                                        fmt::format("{}: {}", document.file(), name));
+  };
+  std::vector<Influences> sets;
+  for (int n = 0; primitive.attributes.contains(fmt::format("JOINTS_{}", n)); ++n) {
+    auto joints = read(fmt::format("JOINTS_{}", n));
+    if (!joints) return failAgain(std::move(joints.error()));
+    auto weights = read(fmt::format("WEIGHTS_{}", n));
+    if (!weights) return failAgain(std::move(weights.error()));
+    sets.push_back({std::move(*joints), std::move(*weights)});
+  }
+  return sets;
 }
 
 // Every attribute has a value for every vertex, every index a vertex.
-Result<void> checkCounts(const bundle::MeshData& mesh, const std::string& file, const std::string& name) {
+Result<void> checkCounts(const bundle::MeshData& mesh, const std::vector<Influences>& influences,
+                         const std::string& file, const std::string& name) {
   const std::size_t vertices = mesh.positions.size();
-  const std::array counts{
-      std::pair{"NORMAL", mesh.normals.size()}, std::pair{"TEXCOORD_0", mesh.texcoords0.size()},
-      std::pair{"TEXCOORD_1", mesh.texcoords1.size()}, std::pair{"COLOR_0", mesh.colors.size()}};
+  std::vector<std::pair<std::string, std::size_t>> counts{{"NORMAL", mesh.normals.size()},
+                                                          {"TEXCOORD_0", mesh.texcoords0.size()},
+                                                          {"TEXCOORD_1", mesh.texcoords1.size()},
+                                                          {"COLOR_0", mesh.colors.size()},
+                                                          {"TANGENT", mesh.tangents.size()}};
+  std::erase_if(counts, [](const auto& entry) { return entry.second == 0; });  // not there
+  for (std::size_t n = 0; n < influences.size(); ++n) {
+    counts.emplace_back(fmt::format("JOINTS_{}", n), influences[n].joints.size());
+    counts.emplace_back(fmt::format("WEIGHTS_{}", n), influences[n].weights.size());
+  }
   for (const auto& [semantic, count] : counts)
-    if (count != 0 && count != vertices)
+    if (count != vertices)
       return fail(file, fmt::format("{}: {} has {} elements, POSITION {}", name, semantic, count, vertices),
                   kExport);
   for (std::size_t i = 0; i < mesh.indices.size(); ++i)
@@ -124,14 +175,11 @@ std::vector<std::uint32_t> toTriangles(const std::vector<std::uint32_t>& in, int
   return out;
 }
 
-void transformTexcoords(bundle::MeshData& mesh, const UvTransform& transform) {
-  if (transform.identity || transform.texcoord > 1) return;
-  for (glm::vec2& uv : transform.texcoord == 0 ? mesh.texcoords0 : mesh.texcoords1)
-    uv = glm::vec2(transform.matrix * glm::vec3(uv, 1.0f));
-}
+}  // namespace
 
-Result<bundle::MeshData> convertPrimitive(const Document& document, const tinygltf::Primitive& primitive,
-                                          const std::string& name, std::vector<std::string>& warnings) {
+Result<bundle::MeshData> readPrimitive(const Document& document, const tinygltf::Primitive& primitive,
+                                       const MeshPose& pose, bool tangents, const std::string& name,
+                                       std::vector<std::string>& warnings) {
   if (primitive.mode < TINYGLTF_MODE_TRIANGLES) {
     warnings.push_back(fmt::format("{}: points and lines are left out", name));
     return bundle::MeshData{};
@@ -140,42 +188,36 @@ Result<bundle::MeshData> convertPrimitive(const Document& document, const tinygl
     warnings.push_back(fmt::format("{}: has no positions and is left out", name));
     return bundle::MeshData{};
   }
-  if (!primitive.targets.empty()) warnings.push_back(fmt::format("{}: morph targets are left out", name));
-  const auto draco = primitive.extensions.find("KHR_draco_mesh_compression");
-  const bool compressed = draco != primitive.extensions.end();
-  auto mesh =
-      compressed ? readDraco(document, primitive, draco->second, name) : readPlain(document, primitive);
+  // glTF: tangents without normals mean nothing.
+  tangents = tangents && primitive.attributes.contains("NORMAL");
+  DracoSource draco;
+  const bool compressed = primitive.extensions.contains(kDraco);
+  if (compressed) {
+    auto source = dracoSource(document, primitive, tangents, name);
+    if (!source) return failAgain(std::move(source.error()));
+    draco = std::move(*source);
+  }
+  auto mesh = compressed ? bundle::decodeDraco(draco.bytes, draco.announced,
+                                               fmt::format("{}: {}", document.file(), name))
+                         : readPlain(document, primitive, tangents);
   if (!mesh) return mesh;
-  if (auto counts = checkCounts(*mesh, document.file(), name); !counts)
+  std::vector<Influences> influences;
+  if (!pose.joints.empty()) {
+    auto read = readInfluences(document, primitive, compressed ? &draco : nullptr, name);
+    if (!read) return failAgain(std::move(read.error()));
+    influences = std::move(*read);
+  }
+  if (auto counts = checkCounts(*mesh, influences, document.file(), name); !counts)
     return failAgain(std::move(counts.error()));
   // Draco holds lists whatever the mode says.
   if (!compressed) mesh->indices = toTriangles(mesh->indices, primitive.mode);
   for (glm::vec4& color : mesh->colors) color = glm::clamp(color, glm::vec4(0.0f), glm::vec4(1.0f));
+  // glTF: targets first, then the skin.
+  if (auto done = applyMorphTargets(document, primitive, pose.weights, name, *mesh); !done)
+    return failAgain(std::move(done.error()));
+  if (auto done = applySkin(influences, pose.joints, document.file(), name, *mesh); !done)
+    return failAgain(std::move(done.error()));
   return mesh;
-}
-
-}  // namespace
-
-Result<void> convertMeshes(const Document& document, const std::vector<UvTransform>& transforms,
-                           Scene& scene) {
-  for (std::size_t m = 0; m < document.model().meshes.size(); ++m) {
-    const tinygltf::Mesh& source = document.model().meshes[m];
-    SceneMesh mesh{.name = source.name, .primitives = {}};
-    for (std::size_t p = 0; p < source.primitives.size(); ++p) {
-      const tinygltf::Primitive& primitive = source.primitives[p];
-      const std::string name = fmt::format("mesh {}, primitive {}", m, p);
-      auto data = convertPrimitive(document, primitive, name, scene.warnings);
-      if (!data) return failAgain(std::move(data.error()));
-      if (data->indices.empty()) continue;
-      cleanMesh(*data, name, scene.warnings);
-      if (data->indices.empty()) continue;
-      if (primitive.material >= 0)
-        transformTexcoords(*data, transforms[static_cast<std::size_t>(primitive.material)]);
-      mesh.primitives.push_back({std::move(*data), primitive.material});
-    }
-    scene.meshes.push_back(std::move(mesh));
-  }
-  return {};
 }
 
 }  // namespace lambent::baker

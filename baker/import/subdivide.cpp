@@ -120,6 +120,12 @@ class Splitter {
           length > 1e-6f ? sum / length : mesh_.normals[low];  // opposite normals have no mean
       mesh_.normals.push_back(normal);
     }
+    if (!mesh_.tangents.empty()) {
+      const glm::vec4 first = mesh_.tangents[low];
+      const glm::vec3 sum = glm::vec3(first) + glm::vec3(mesh_.tangents[high]);
+      const float length = glm::length(sum);
+      mesh_.tangents.emplace_back(length > 1e-6f ? sum / length : glm::vec3(first), first.w);
+    }
     return next;
   }
 

@@ -1,11 +1,52 @@
 #include "baker/import/uri.hpp"
 
 #include <charconv>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
 #include <system_error>
 
 #include <fmt/format.h>
 
+#include "baker/import/container.hpp"
+
 namespace lambent::baker {
+namespace {
+
+// RFC 4648; padding may be missing, anything else that does not belong gives nothing.
+std::optional<std::vector<std::byte>> decodeBase64(std::string_view text) {
+  constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  while (!text.empty() && text.back() == '=') text.remove_suffix(1);
+  std::vector<std::byte> bytes;
+  bytes.reserve(text.size() / 4 * 3 + 2);
+  std::uint32_t bits = 0;
+  int count = 0;
+  for (const char c : text) {
+    const std::size_t digit = kDigits.find(c);
+    if (digit == std::string_view::npos) return std::nullopt;
+    bits = (bits << 6) | static_cast<std::uint32_t>(digit);
+    count += 6;
+    if (count < 8) continue;
+    count -= 8;
+    bytes.push_back(static_cast<std::byte>((bits >> count) & 0xffu));
+  }
+  return bytes;
+}
+
+// RFC 2397.
+std::optional<std::vector<std::byte>> decodeData(const std::string& uri) {
+  constexpr std::string_view kBase64 = ";base64";
+  const std::size_t comma = uri.find(',');
+  if (comma == std::string::npos) return std::nullopt;
+  if (std::string_view(uri).substr(0, comma).ends_with(kBase64))
+    return decodeBase64(std::string_view(uri).substr(comma + 1));
+  const std::string text = decodePercent(uri.substr(comma + 1));
+  const auto bytes = std::as_bytes(std::span(text));
+  return std::vector<std::byte>(bytes.begin(), bytes.end());
+}
+
+}  // namespace
 
 std::string decodePercent(const std::string& uri) {
   std::string decoded;
@@ -25,7 +66,8 @@ std::string decodePercent(const std::string& uri) {
 }
 
 Result<std::filesystem::path> resolveUri(const std::filesystem::path& folder, const std::string& uri,
-                                         const std::string& subject, const std::string& object) {
+                                         const ImportOptions& options, const std::string& subject,
+                                         const std::string& object) {
   const std::string shown = uri.substr(0, 80);
   const std::size_t colon = uri.find(':');
   if (colon != std::string::npos && uri.find_first_of("/?#") > colon)
@@ -39,11 +81,26 @@ Result<std::filesystem::path> resolveUri(const std::filesystem::path& folder, co
   std::error_code error;
   const auto home = std::filesystem::weakly_canonical(std::filesystem::absolute(folder), error);
   const auto file = error ? home : std::filesystem::weakly_canonical(home / name, error);
+  if (!error && options.allow_outside) return file;
   const auto relative = error ? std::filesystem::path("..") : file.lexically_relative(home);
   if (relative.empty() || *relative.begin() == ".." || relative == ".")
     return fail(subject, fmt::format("{} (\"{}\") lies outside the scene's folder", object, shown),
-                "move it beside the scene");
+                "move it beside the scene, or pass --allow-outside");
   return file;
+}
+
+Result<std::vector<std::byte>> readUri(const std::filesystem::path& file, const std::string& uri,
+                                       const ImportOptions& options, const std::string& object) {
+  if (uri.starts_with("data:")) {
+    auto bytes = decodeData(uri);
+    if (!bytes)
+      return fail(file.string(), fmt::format("{} has a data URI that is not base64", object),
+                  "export the scene again");
+    return std::move(*bytes);
+  }
+  const auto found = resolveUri(file.parent_path(), uri, options, file.string(), object);
+  if (!found) return failAgain(found.error());
+  return readBytes(*found, fmt::format("{}: {} ({})", file.string(), object, found->filename().string()));
 }
 
 }  // namespace lambent::baker

@@ -1,11 +1,14 @@
 // Relative URIs of a glTF file to files beside it. A scene may come from anywhere, so it may only name files
-// in its own folder or below: absolute paths, other schemes, ".." past the folder and links that lead out are
-// refused.
+// in its own folder or below: absolute paths, ".." past the folder and links that lead out are refused unless
+// ImportOptions::allow_outside says otherwise; other schemes (http:, file:) always are.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <string>
+#include <vector>
 
+#include "baker/import/import_options.hpp"
 #include "runtime/base/result.hpp"
 
 namespace lambent::baker {
@@ -13,8 +16,14 @@ namespace lambent::baker {
 // Undoes percent-encoding: "Box%20With%20Spaces.bin" -> "Box With Spaces.bin".
 std::string decodePercent(const std::string& uri);
 
-// The file that `uri` names, inside `folder`. Errors name `subject` and `object` ("buffer 0").
+// The file that `uri` names, from `folder` on. Errors name `subject` and `object` ("buffer 0").
 Result<std::filesystem::path> resolveUri(const std::filesystem::path& folder, const std::string& uri,
-                                         const std::string& subject, const std::string& object);
+                                         const ImportOptions& options, const std::string& subject,
+                                         const std::string& object);
+
+// The bytes behind a URI of the scene `file`: a data: URI (base64 or percent-encoded, of any media type) or a
+// file. Errors name the scene and `object`.
+Result<std::vector<std::byte>> readUri(const std::filesystem::path& file, const std::string& uri,
+                                       const ImportOptions& options, const std::string& object);
 
 }  // namespace lambent::baker

@@ -19,7 +19,8 @@ inline constexpr std::uint64_t kIntegrityBytes = 16;
 std::string toJson(const Description& description, std::uint64_t binary_bytes);
 
 // Errors name `file`: not JSON, not glTF 2.0, no extension (not a bundle), a version that this program does
-// not know, anything missing, of the wrong type or out of range.
+// not know, anything missing, of the wrong type or out of range. Keyframes of animations have their sizes but
+// not their values, which stand in the binary chunk (gltf_parts.hpp).
 Result<Description> fromJson(const std::string& text, std::uint64_t binary_bytes, const std::string& file);
 
 }  // namespace lambent::bundle

@@ -1,9 +1,12 @@
-// The glTF 2.0 part of a bundle's JSON: what any viewer reads.
+// The glTF 2.0 part of a bundle's JSON: what any viewer reads. Materials, lenses and animations stand in
+// files of their own (gltf_parts.hpp).
 #include <algorithm>
 #include <array>
+#include <set>
 
 #include "runtime/bundle/description.hpp"
 #include "runtime/bundle/description_json.hpp"
+#include "runtime/bundle/gltf_parts.hpp"
 #include "runtime/bundle/json_fields.hpp"
 
 namespace lambent::bundle {
@@ -11,7 +14,6 @@ namespace lambent::bundle {
 namespace {
 
 constexpr std::uint64_t kLargestCount = 0xffffffffu;
-constexpr std::array kAlphaModes = {"OPAQUE", "MASK", "BLEND"};
 
 // --- meshes
 // ----------------------------------------------------------------------------------------------------
@@ -33,6 +35,7 @@ constexpr std::array kAttributes = {
     AttributeName{"TEXCOORD_0", &DracoAttributes::texcoord0, 5126, "VEC2"},
     AttributeName{"TEXCOORD_1", &DracoAttributes::texcoord1, 5126, "VEC2"},
     AttributeName{"COLOR_0", &DracoAttributes::color0, 5123, "VEC4"},
+    AttributeName{"TANGENT", &DracoAttributes::tangent, 5126, "VEC4"},
 };
 
 Json primitiveJson(const Primitive& primitive, Json& accessors) {
@@ -88,13 +91,19 @@ Json nodeJson(const gltf::Node& node) {
   Json json = Json::object();
   if (!node.name.empty()) json["name"] = node.name;
   if (!node.children.empty()) json["children"] = node.children;
-  if (node.parent_from_node != glm::mat4(1.0f)) {
+  if (node.trs) {  // channels of animations need the parts; elsewhere the matrix is exact
+    const glm::quat& q = node.trs->rotation;
+    json["translation"] = vectorJson(node.trs->translation);
+    json["rotation"] = vectorJson(glm::vec4(q.x, q.y, q.z, q.w));
+    json["scale"] = vectorJson(node.trs->scale);
+  } else if (node.parent_from_node != glm::mat4(1.0f)) {
     Json matrix = Json::array();
     for (int i = 0; i < 16; ++i) matrix.push_back(glm::value_ptr(node.parent_from_node)[i]);
     json["matrix"] = std::move(matrix);
   }
   if (node.mesh >= 0) json["mesh"] = node.mesh;
   if (node.camera >= 0) json["camera"] = node.camera;
+  if (node.light >= 0) json["extensions"][kPunctualLights] = {{"light", node.light}};
   if (node.movable) json["extras"]["lambent"]["movable"] = true;
   return json;
 }
@@ -109,8 +118,18 @@ gltf::Node readNode(const Field& field, const Description& d, std::size_t node_c
     if (entries.size() != 16) field["matrix"].fault("is not 16 numbers");
     for (std::size_t i = 0; i < 16; ++i) glm::value_ptr(node.parent_from_node)[i] = entries[i].number();
   }
+  if (field.has("rotation")) {
+    const auto q = field["rotation"].vector<glm::vec4>();
+    if (std::abs(glm::length(q) - 1.0f) > 1e-3f) field["rotation"].fault("is not a unit quaternion");
+    node.trs = gltf::Trs{field["translation"].vector<glm::vec3>(), glm::quat(q.w, q.x, q.y, q.z),
+                         field["scale"].vector<glm::vec3>()};
+    node.parent_from_node = node.trs->matrix();
+  }
   if (field.has("mesh")) node.mesh = static_cast<std::int32_t>(field["mesh"].index(d.meshes.size()));
   if (field.has("camera")) node.camera = static_cast<std::int32_t>(field["camera"].index(d.cameras.size()));
+  if (field.has("extensions") && field["extensions"].has(kPunctualLights))
+    node.light =
+        static_cast<std::int32_t>(field["extensions"][kPunctualLights]["light"].index(d.lights.size()));
   node.movable = field.has("extras") && field["extras"].has("lambent") &&
                  field["extras"]["lambent"].has("movable") && field["extras"]["lambent"]["movable"].flag();
   return node;
@@ -132,84 +151,8 @@ void linkParents(const Field& document, std::vector<gltf::Node>& nodes) {
   }
 }
 
-// --- materials, textures, cameras
-// --------------------------------------------------------------------------------
-
-Json materialJson(const gltf::Material& material) {
-  Json json = Json::object();
-  if (!material.name.empty()) json["name"] = material.name;
-  Json& pbr = json["pbrMetallicRoughness"];
-  pbr = {{"baseColorFactor", vectorJson(material.base_color)},
-         {"metallicFactor", material.metallic},
-         {"roughnessFactor", material.roughness}};
-  if (material.base_color_texture.texture >= 0)
-    pbr["baseColorTexture"] = {{"index", material.base_color_texture.texture},
-                               {"texCoord", material.base_color_texture.texcoord}};
-  if (material.emissive != glm::vec3(0.0f)) json["emissiveFactor"] = vectorJson(material.emissive);
-  if (material.alpha_mode != gltf::AlphaMode::Opaque)
-    json["alphaMode"] = kAlphaModes[static_cast<std::size_t>(material.alpha_mode)];
-  if (material.alpha_mode == gltf::AlphaMode::Mask) json["alphaCutoff"] = material.alpha_cutoff;
-  if (material.double_sided) json["doubleSided"] = true;
-  return json;
-}
-
-gltf::Material readMaterial(const Field& field, std::size_t texture_count) {
-  gltf::Material material;
-  if (field.has("name")) material.name = field["name"].text();
-  const Field pbr = field["pbrMetallicRoughness"];
-  material.base_color = pbr["baseColorFactor"].vector<glm::vec4>();
-  material.metallic = pbr["metallicFactor"].number();
-  material.roughness = pbr["roughnessFactor"].number();
-  if (pbr.has("baseColorTexture")) {
-    const Field texture = pbr["baseColorTexture"];
-    material.base_color_texture.texture = static_cast<std::int32_t>(texture["index"].index(texture_count));
-    material.base_color_texture.texcoord = static_cast<std::uint32_t>(texture["texCoord"].count(1));
-  }
-  if (field.has("emissiveFactor")) material.emissive = field["emissiveFactor"].vector<glm::vec3>();
-  if (field.has("alphaMode")) {
-    const std::string mode = field["alphaMode"].text();
-    const auto found = std::find(kAlphaModes.begin(), kAlphaModes.end(), mode);
-    if (found == kAlphaModes.end()) field["alphaMode"].fault("is not OPAQUE, MASK or BLEND");
-    material.alpha_mode = static_cast<gltf::AlphaMode>(found - kAlphaModes.begin());
-  }
-  if (field.has("alphaCutoff")) material.alpha_cutoff = field["alphaCutoff"].number();
-  if (field.has("doubleSided")) material.double_sided = field["doubleSided"].flag();
-  return material;
-}
-
-Json cameraJson(const gltf::Camera& camera) {
-  Json json = Json::object();
-  if (!camera.name.empty()) json["name"] = camera.name;
-  json["type"] = camera.perspective ? "perspective" : "orthographic";
-  Json& lens = json[camera.perspective ? "perspective" : "orthographic"];
-  lens["znear"] = camera.znear;
-  if (camera.zfar > 0.0f) lens["zfar"] = camera.zfar;
-  if (camera.perspective) {
-    lens["yfov"] = camera.yfov_rad;
-    if (camera.aspect > 0.0f) lens["aspectRatio"] = camera.aspect;
-  } else {
-    lens["xmag"] = camera.xmag;
-    lens["ymag"] = camera.ymag;
-  }
-  return json;
-}
-
-gltf::Camera readCamera(const Field& field) {
-  gltf::Camera camera;
-  if (field.has("name")) camera.name = field["name"].text();
-  camera.perspective = field["type"].text() == "perspective";
-  const Field lens = field[camera.perspective ? "perspective" : "orthographic"];
-  camera.znear = lens["znear"].number();
-  if (lens.has("zfar")) camera.zfar = lens["zfar"].number();
-  if (camera.perspective) {
-    camera.yfov_rad = lens["yfov"].number();
-    if (lens.has("aspectRatio")) camera.aspect = lens["aspectRatio"].number();
-  } else {
-    camera.xmag = lens["xmag"].number();
-    camera.ymag = lens["ymag"].number();
-  }
-  return camera;
-}
+// --- textures
+// ---------------------------------------------------------------------------------------------------------
 
 // glTF keeps samplers apart from textures; equal ones share an entry.
 std::size_t samplerIndex(const gltf::Sampler& sampler, std::vector<gltf::Sampler>& samplers) {
@@ -241,6 +184,10 @@ void writeGltf(const Description& d, std::uint64_t binary_bytes, Json& document)
       json["primitives"].push_back(primitiveJson(primitive, accessors));
     return json;
   });
+  // The writer put the views of the animations last.
+  std::size_t view = d.views.size() - d.animations.size();
+  writeList(document, "animations", d.animations,
+            [&](const gltf::Animation& animation) { return animationJson(animation, view++, accessors); });
   if (!accessors.empty()) document["accessors"] = std::move(accessors);
 
   std::vector<gltf::Sampler> samplers;
@@ -258,18 +205,24 @@ void writeGltf(const Description& d, std::uint64_t binary_bytes, Json& document)
     if (!image.name.empty()) json["name"] = image.name;
     return json;
   });
-  writeList(document, "materials", d.materials, materialJson);
+  std::set<std::string> used{std::string(kExtensionName)};
+  writeList(document, "materials", d.materials,
+            [&](const gltf::Material& material) { return materialJson(material, used); });
   writeList(document, "cameras", d.cameras, cameraJson);
+  if (!d.lights.empty()) {
+    writeList(document["extensions"][kPunctualLights], "lights", d.lights, lightJson);
+    used.insert(kPunctualLights);
+  }
   writeList(document, "nodes", d.nodes, nodeJson);
   if (!d.roots.empty()) {
     document["scenes"] = Json::array({{{"nodes", d.roots}}});
     document["scene"] = 0;
   }
-  document["extensionsUsed"] = {std::string(kExtensionName)};
   if (!d.meshes.empty()) {
-    document["extensionsUsed"].push_back("KHR_draco_mesh_compression");
+    used.insert("KHR_draco_mesh_compression");
     document["extensionsRequired"] = {"KHR_draco_mesh_compression"};
   }
+  document["extensionsUsed"] = used;
 }
 
 void readGltf(const Field& document, std::uint64_t binary_bytes, Description& d) {
@@ -298,6 +251,9 @@ void readGltf(const Field& document, std::uint64_t binary_bytes, Description& d)
   for (const Field& material : document.list("materials"))
     d.materials.push_back(readMaterial(material, d.textures.size()));
   for (const Field& camera : document.list("cameras")) d.cameras.push_back(readCamera(camera));
+  if (document.has("extensions") && document["extensions"].has(kPunctualLights))
+    for (const Field& light : document["extensions"][kPunctualLights].list("lights"))
+      d.lights.push_back(readLight(light));
 
   const auto accessors = document.list("accessors");
   for (const Field& field : document.list("meshes")) {
@@ -311,6 +267,17 @@ void readGltf(const Field& document, std::uint64_t binary_bytes, Description& d)
   const auto nodes = document.list("nodes");
   for (const Field& node : nodes) d.nodes.push_back(readNode(node, d, nodes.size()));
   linkParents(document, d.nodes);
+  const auto animations = document.list("animations");
+  if (animations.size() > d.views.size()) document["animations"].fault("are more than the bufferViews");
+  for (std::size_t i = 0; i < animations.size(); ++i) {
+    const std::size_t view = d.views.size() - animations.size() + i;
+    d.animations.push_back(readAnimation(animations[i], accessors, view, d.views[view].length, d.nodes));
+    for (const gltf::AnimationChannel& channel : d.animations.back().channels) {
+      gltf::Node& node = d.nodes[channel.node];
+      node.animated = true;
+      if (!node.trs) node.trs = gltf::Trs{};  // readAnimation() saw to it that it has no matrix
+    }
+  }
   if (document.has("scenes"))
     for (const Field& root : document["scenes"].items().at(0).list("nodes"))
       d.roots.push_back(static_cast<std::int32_t>(root.index(d.nodes.size())));

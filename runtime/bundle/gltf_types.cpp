@@ -4,6 +4,13 @@
 
 namespace lambent::gltf {
 
+glm::mat4 Trs::matrix() const {
+  glm::mat4 matrix = glm::mat4_cast(rotation);
+  for (int column = 0; column < 3; ++column) matrix[column] *= scale[column];
+  matrix[3] = glm::vec4(translation, 1.0f);
+  return matrix;
+}
+
 std::vector<glm::mat4> worldTransforms(const std::vector<Node>& nodes) {
   std::vector<glm::mat4> world_from_node(nodes.size(), glm::mat4(1.0f));
   std::vector<bool> done(nodes.size(), false);

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,15 @@
 
 namespace lambent::gltf {
 
+// A transform in the parts that animation channels replace one by one.
+struct Trs {
+  glm::vec3 translation{0.0f};
+  glm::quat rotation{1.0f, 0.0f, 0.0f, 0.0f};  // unit
+  glm::vec3 scale{1.0f};
+  bool operator==(const Trs&) const = default;
+  glm::mat4 matrix() const;  // translation * rotation * scale
+};
+
 struct Node {
   std::string name;
   std::int32_t parent = -1;
@@ -27,6 +37,7 @@ struct Node {
   std::int32_t light = -1;  // KHR_lights_punctual; shines along the node's -Z
   bool animated = false;    // some animation moves it
   bool movable = false;     // extras.lambent.movable
+  std::optional<Trs> trs;   // of animated nodes: the parts of parent_from_node
 };
 
 // glTF 2.0 sampler enums as they stand in the file (GL constants).

@@ -113,6 +113,18 @@ Result<void> normalize(std::vector<glm::vec3>& normals, const std::string& subje
   return {};
 }
 
+// Unit, and w the exact sign that it stands for: the coder is lossy.
+Result<void> normalize(std::vector<glm::vec4>& tangents, const std::string& subject) {
+  for (std::size_t i = 0; i < tangents.size(); ++i) {
+    const glm::vec3 direction(tangents[i]);
+    const float length = glm::length(direction);
+    if (!(length > 1e-6f) || !std::isfinite(length))
+      return fail(subject, fmt::format("has a tangent without direction at vertex {}", i), kReencode);
+    tangents[i] = glm::vec4(direction / length, tangents[i].w < 0.0f ? -1.0f : 1.0f);
+  }
+  return {};
+}
+
 Result<MeshData> extract(const draco::Mesh& mesh, const DracoAttributes& attributes,
                          const std::string& subject) {
   MeshData data;
@@ -130,7 +142,9 @@ Result<MeshData> extract(const draco::Mesh& mesh, const DracoAttributes& attribu
   if (done && attributes.texcoord1 >= 0)
     done = take(data.texcoords1, attributes.texcoord1, "texture coordinates");
   if (done && attributes.color0 >= 0) done = take(data.colors, attributes.color0, "colours");
+  if (done && attributes.tangent >= 0) done = take(data.tangents, attributes.tangent, "tangents");
   if (done) done = normalize(data.normals, subject);
+  if (done) done = normalize(data.tangents, subject);
   if (!done) return failAgain(std::move(done.error()));
   for (glm::vec4& color : data.colors) color = glm::clamp(color, glm::vec4(0.0f), glm::vec4(1.0f));
 
@@ -146,10 +160,10 @@ Result<MeshData> extract(const draco::Mesh& mesh, const DracoAttributes& attribu
   return data;
 }
 
-}  // namespace
-
-Result<MeshData> decodeDraco(std::span<const std::byte> bytes, const Primitive& primitive,
-                             const std::string& subject) {
+// What `use` makes of the decoded mesh, whose counts are those of the primitive.
+template <typename Out, typename Use>
+Result<Out> withDecoded(std::span<const std::byte> bytes, const Primitive& primitive,
+                        const std::string& subject, Use use) {
   if (auto header = checkHeader(bytes, primitive, subject); !header)
     return failAgain(std::move(header.error()));
   try {
@@ -167,10 +181,27 @@ Result<MeshData> decodeDraco(std::span<const std::byte> bytes, const Primitive& 
                               mesh.num_points(), std::uint64_t{mesh.num_faces()} * 3, primitive.vertex_count,
                               primitive.index_count),
                   kReencode);
-    return extract(mesh, primitive.attributes, subject);
+    return use(mesh);
   } catch (const std::exception& exception) {
     return fail(subject, fmt::format("is damaged ({})", exception.what()), kReencode);
   }
+}
+
+}  // namespace
+
+Result<MeshData> decodeDraco(std::span<const std::byte> bytes, const Primitive& primitive,
+                             const std::string& subject) {
+  return withDecoded<MeshData>(bytes, primitive, subject, [&](const draco::Mesh& mesh) {
+    return extract(mesh, primitive.attributes, subject);
+  });
+}
+
+Result<std::vector<glm::vec4>> decodeDracoAttribute(std::span<const std::byte> bytes,
+                                                    const Primitive& primitive, std::int32_t id,
+                                                    const std::string& name, const std::string& subject) {
+  return withDecoded<std::vector<glm::vec4>>(bytes, primitive, subject, [&](const draco::Mesh& mesh) {
+    return readAttribute<glm::vec4>(mesh, id, name.c_str(), subject);
+  });
 }
 
 std::uint64_t meshDigest(const MeshData& mesh) {

@@ -31,6 +31,12 @@ struct MeshData {
 Result<MeshData> decodeDraco(std::span<const std::byte> bytes, const Primitive& primitive,
                              const std::string& subject);
 
+// One attribute of a Draco buffer that MeshData has no place for (joints, weights): four floats a vertex in
+// the order of decodeDraco(), 1 where it has fewer components. Checks and errors as there.
+Result<std::vector<glm::vec4>> decodeDracoAttribute(std::span<const std::byte> bytes,
+                                                    const Primitive& primitive, std::int32_t id,
+                                                    const std::string& name, const std::string& subject);
+
 // XXH3-64 over positions and indices: transfer belongs to exactly this mesh.
 std::uint64_t meshDigest(const MeshData& mesh);
 

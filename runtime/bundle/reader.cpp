@@ -9,6 +9,8 @@
 #include "runtime/bundle/checksum.hpp"
 #include "runtime/bundle/description_json.hpp"
 #include "runtime/bundle/glb.hpp"
+#include "runtime/bundle/gltf_parts.hpp"
+#include "runtime/bundle/transfer_codec.hpp"
 
 namespace lambent::bundle {
 
@@ -48,7 +50,16 @@ Result<Reader> Reader::open(const std::filesystem::path& path) {
   const auto intact = checkJson(*glb);
   if (!description) return failAgain(description.error());
   if (!intact) return failAgain(intact.error());
-  return Reader(std::make_unique<File>(File{std::move(*glb), std::move(*description)}));
+  Reader reader(std::make_unique<File>(File{std::move(*glb), std::move(*description)}));
+  Description& d = reader.file_->description;
+  for (std::size_t i = 0; i < d.animations.size(); ++i) {
+    const auto bytes = reader.readView(static_cast<std::uint32_t>(d.views.size() - d.animations.size() + i));
+    if (!bytes) return failAgain(bytes.error());
+    if (!loadAnimation(d.animations[i], *bytes))
+      return fail(path.string(), fmt::format("is damaged: the keyframes of animation {} make no motion", i),
+                  "bake it again");
+  }
+  return reader;
 }
 
 const std::filesystem::path& Reader::path() const {

@@ -1,6 +1,7 @@
-// Reads bundles: the JSON once, then only the byte ranges that are asked for. Owns the open file; every call
-// is safe from any thread. What comes out has been checked: lengths against the file, checksums against the
-// bytes, every index and count of the description against the lists that it points into. No GL, no baker.
+// Reads bundles: the JSON once, and with it the keyframes of animations, then only the byte ranges that are
+// asked for. Owns the open file; every call is safe from any thread. What comes out has been checked: lengths
+// against the file, checksums against the bytes, every index and count of the description against the lists
+// that it points into. No GL, no baker.
 #pragma once
 
 #include <cstddef>

@@ -102,7 +102,7 @@ DiffuseTransfer readDiffuse(const Field& field, const Description& d, const Grou
   transfer.axes =
       static_cast<std::uint32_t>(field["axes"].count(std::uint64_t{transfer.clusters} * planes.size()));
   // Its length depends on how it is coded; decodeCodebook() holds it against the counts.
-  transfer.codebook = payloadIndex(field["codebook"], d, PayloadType::Codebook, 0);
+  transfer.codebook = payloadIndex(field["codebook"], d, PayloadType::Codebook, std::nullopt);
   if (transfer.clusters > 1)
     transfer.cluster_ids = static_cast<std::int32_t>(
         payloadIndex(field["clusterIds"], d, PayloadType::ClusterIds,

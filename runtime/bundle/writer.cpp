@@ -10,6 +10,7 @@
 #include "runtime/bundle/checksum.hpp"
 #include "runtime/bundle/description_json.hpp"
 #include "runtime/bundle/glb.hpp"
+#include "runtime/bundle/gltf_parts.hpp"
 
 namespace lambent::bundle {
 
@@ -19,14 +20,14 @@ constexpr std::uint64_t padded8(std::uint64_t bytes) {
   return (bytes + 7) / 8 * 8;
 }
 
-// Views lie in the order of the blobs, each on a multiple of 8, after the integrity view.
-std::uint64_t placeViews(const std::vector<Blob>& blobs, std::vector<View>& views) {
+// Views lie in the order of the parts, each on a multiple of 8, after the integrity view.
+std::uint64_t placeViews(const std::vector<std::span<const std::byte>>& parts, std::vector<View>& views) {
   std::uint64_t offset = kIntegrityBytes;
   views.clear();
-  for (const Blob& blob : blobs) {
-    Blob with_padding = blob;
-    with_padding.resize(padded8(blob.size()));
-    views.push_back({offset, blob.size(), checksum(with_padding)});
+  for (const std::span<const std::byte> part : parts) {
+    Blob with_padding(part.begin(), part.end());
+    with_padding.resize(padded8(part.size()));
+    views.push_back({offset, part.size(), checksum(with_padding)});
     offset += with_padding.size();
   }
   return offset;
@@ -43,7 +44,12 @@ Result<void> write(const std::filesystem::path& path, Description description,
                    const std::vector<Blob>& blobs) {
   assert(std::none_of(blobs.begin(), blobs.end(), [](const Blob& blob) { return blob.empty(); }) &&
          "glTF has no empty bufferViews");
-  const std::uint64_t binary_bytes = placeViews(blobs, description.views);
+  std::vector<Blob> animations;  // their views come last
+  for (const gltf::Animation& animation : description.animations)
+    animations.push_back(animationBytes(animation));
+  std::vector<std::span<const std::byte>> parts(blobs.begin(), blobs.end());
+  parts.insert(parts.end(), animations.begin(), animations.end());
+  const std::uint64_t binary_bytes = placeViews(parts, description.views);
   std::string json = toJson(description, binary_bytes);
   json.resize((json.size() + 7) / 8 * 8 + 4,
               ' ');  // so that the binary chunk's data begin on a multiple of 8
@@ -60,13 +66,13 @@ Result<void> write(const std::filesystem::path& path, Description description,
   const std::array bin_head = {word(binary_bytes), kGlbBinChunk};
   const std::uint64_t json_checksum = checksum(bytesOf(json));
   const std::array integrity = {json_checksum, ~json_checksum};
-  for (const auto part : {bytesOf(head), bytesOf(json), bytesOf(bin_head), bytesOf(integrity)})
-    if (auto written = file->write(part); !written) return written;
+  for (const auto words : {bytesOf(head), bytesOf(json), bytesOf(bin_head), bytesOf(integrity)})
+    if (auto written = file->write(words); !written) return written;
 
   constexpr std::array<std::byte, 8> kZeros{};
-  for (const Blob& blob : blobs) {
-    if (auto written = file->write(blob); !written) return written;
-    const auto padding = std::span(kZeros).first(padded8(blob.size()) - blob.size());
+  for (const std::span<const std::byte> part : parts) {
+    if (auto written = file->write(part); !written) return written;
+    const auto padding = std::span(kZeros).first(padded8(part.size()) - part.size());
     if (auto written = file->write(padding); !written) return written;
   }
   return file->commit();

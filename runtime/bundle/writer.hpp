@@ -13,7 +13,8 @@ namespace lambent::bundle {
 
 using Blob = std::vector<std::byte>;
 
-// `description.views` is filled here: blobs[i] becomes view i. The file appears whole or not at all.
+// `description.views` is filled here: blobs[i] becomes view i; the keyframes of the animations, which have at
+// least one channel with keys each, follow in views of their own. The file appears whole or not at all.
 // The same description and blobs give the same bytes.
 Result<void> write(const std::filesystem::path& path, Description description,
                    const std::vector<Blob>& blobs);

@@ -7,13 +7,9 @@ layout(binding = kUnitBaseColor) uniform sampler2D base_color_texture;
 layout(binding = kUnitEmissive) uniform sampler2D emissive_texture;
 
 layout(location = 0) flat in uint draw_of;
-layout(location = 1) in vec4 coordinates;
+layout(location = 1) in vec4 looks_at;
 layout(location = 2) in vec4 vertex_color;
 layout(location = 0) out vec4 color;
-
-vec2 coordinatesIn(TextureSlot slot) {
-  return slot.texture_from_coordinates * vec3(slot.set == 1u ? coordinates.zw : coordinates.xy, 1.0);
-}
 
 vec4 look(sampler2D image, vec2 at) {
 #ifdef LAMBENT_FINEST_TEXELS
@@ -26,18 +22,17 @@ vec4 look(sampler2D image, vec2 at) {
 #ifdef LAMBENT_NORMAL_MAPPED
 #include "surface_normal.glsl"
 layout(binding = kUnitNormal) uniform sampler2D normal_texture;
-layout(location = 3) in vec3 position_group;
-layout(location = 4) in vec3 normal_group;
+layout(location = 3) in vec4 position_group;
+layout(location = 4) in vec4 normal_group;
 layout(location = 5) in vec4 tangent_group;
 layout(location = 6) in vec3 light[kLightCoefficients];
 
 vec3 receivedLight() {
-  TextureSlot slot = draws[draw_of].normal_texture;
-  vec2 at = coordinatesIn(slot);
-  vec3 normal = normalize(normal_group);
+  vec2 at = vec2(position_group.w, normal_group.w);
+  vec3 normal = unit(normal_group.xyz);
   TangentFrame from_picture =
-      frameFromDerivatives(normal, dFdx(position_group), dFdy(position_group), dFdx(at), dFdy(at));
-  if (slot.set != kAbsent) {
+      frameFromDerivatives(normal, dFdx(position_group.xyz), dFdy(position_group.xyz), dFdx(at), dFdy(at));
+  if (draws[draw_of].normal_texture.set != kAbsent) {
     bool stored = draws[draw_of].tangents_word != kAbsent;
     TangentFrame frame = stored ? frameFromTangent(normal, tangent_group) : from_picture;
     normal = perturbedNormal(frame, look(normal_texture, at).xyz, draws[draw_of].normal_scale);
@@ -52,11 +47,9 @@ vec3 receivedLight() { return radiance; }
 
 void main() {
   vec4 albedo = draws[draw_of].base_color * vertex_color;
-  TextureSlot slot = draws[draw_of].base_color_texture;
-  if (slot.set != kAbsent) albedo *= look(base_color_texture, coordinatesIn(slot));
+  if (draws[draw_of].base_color_texture.set != kAbsent) albedo *= look(base_color_texture, looks_at.xy);
   vec3 emission = draws[draw_of].emission.rgb;
-  slot = draws[draw_of].emissive_texture;
-  if (slot.set != kAbsent) emission *= look(emissive_texture, coordinatesIn(slot)).rgb;
+  if (draws[draw_of].emissive_texture.set != kAbsent) emission *= look(emissive_texture, looks_at.zw).rgb;
   vec3 received = receivedLight();
   if (draws[draw_of].unlit != 0u) received = vec3(1.0);  // the base colour as it is
 

@@ -8,12 +8,13 @@ layout(std430, binding = kBindRadiance) readonly buffer Radiance { float radianc
 
 layout(location = 0) in uint draw_index;  // one per instance: the draw's base instance
 layout(location = 0) flat out uint draw_of;
-layout(location = 1) out vec4 coordinates;  // TEXCOORD_0 and TEXCOORD_1
+layout(location = 1) out vec4 looks_at;  // in the base colour picture: xy; in the emissive one: zw
 layout(location = 2) out vec4 vertex_color;
 #ifdef LAMBENT_NORMAL_MAPPED
+#include "surface_normal.glsl"
 // In the group's frame. With them all fifteen locations that OpenGL 4.5 promises are in use.
-layout(location = 3) out vec3 position_group;
-layout(location = 4) out vec3 normal_group;
+layout(location = 3) out vec4 position_group;  // w, and that of the normal: where in the normal picture
+layout(location = 4) out vec4 normal_group;
 layout(location = 5) out vec4 tangent_group;  // w: +1 or -1 as glTF has it, of the mesh as it stands in the group
 layout(location = 6) out vec3 light[kLightCoefficients];
 #else
@@ -22,14 +23,21 @@ layout(location = 3) out vec3 radiance;
 
 vec2 geometry2(uint at) { return vec2(uintBitsToFloat(geometry[at]), uintBitsToFloat(geometry[at + 1u])); }
 vec3 geometry3(uint at) { return vec3(geometry2(at), uintBitsToFloat(geometry[at + 2u])); }
-vec2 coordinatesAt(uint word, uint vertex) { return word == kAbsent ? vec2(0.0) : geometry2(word + 2u * vertex); }
 vec3 radianceAt(uint at) { return vec3(radiance_of[at], radiance_of[at + 1u], radiance_of[at + 2u]); }
+
+// Done here, not per pixel: pixels beside a triangle have their part in its derivatives and mip levels, but what they
+// read of a buffer need not be there (Mesa gives 0).
+vec2 lookedAt(SurfaceDraw draw, TextureSlot slot, uint vertex) {
+  if (slot.set == kAbsent) return vec2(0.0);
+  uint word = slot.set == 1u ? draw.texcoords1_word : draw.texcoords0_word;
+  return slot.texture_from_coordinates * vec3(geometry2(word + 2u * vertex), 1.0);
+}
 
 void main() {
   SurfaceDraw draw = draws[draw_index];
   uint vertex = uint(gl_VertexID);
   vec3 position = geometry3(draw.positions_word + 3u * vertex);
-  coordinates = vec4(coordinatesAt(draw.texcoords0_word, vertex), coordinatesAt(draw.texcoords1_word, vertex));
+  looks_at = vec4(lookedAt(draw, draw.base_color_texture, vertex), lookedAt(draw, draw.emissive_texture, vertex));
   vertex_color = vec4(1.0);
   if (draw.colors_word != kAbsent) {
     uint at = draw.colors_word + 2u * vertex;
@@ -37,8 +45,10 @@ void main() {
   }
 #ifdef LAMBENT_NORMAL_MAPPED
   mat3 group_from_mesh = mat3(draw.group_from_mesh);
-  position_group = group_from_mesh * position;
-  normal_group = normalize(mat3(draw.group_from_mesh_normal) * geometry3(draw.normals_word + 3u * vertex));
+  vec3 normal = unit(mat3(draw.group_from_mesh_normal) * geometry3(draw.normals_word + 3u * vertex));
+  vec2 normal_at = lookedAt(draw, draw.normal_texture, vertex);
+  position_group = vec4(group_from_mesh * position, normal_at.x);
+  normal_group = vec4(normal, normal_at.y);
   tangent_group = vec4(0.0);
   if (draw.tangents_word != kAbsent) {
     uint at = draw.tangents_word + 4u * vertex;

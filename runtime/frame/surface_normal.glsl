@@ -10,6 +10,9 @@ struct TangentFrame {
 // Below this a squared length is no length: its inverse root may not be finite.
 const float kNoLength = 1e-36;
 
+// At unit length; 0 stays 0, as normals of flattened meshes are.
+vec3 unit(vec3 direction) { return direction * inversesqrt(max(dot(direction, direction), kNoLength)); }
+
 // The direction's part along the surface, at unit length.
 vec3 alongSurface(vec3 normal, vec3 direction) {
   vec3 part = direction - dot(direction, normal) * normal;

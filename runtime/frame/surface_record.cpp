@@ -37,12 +37,11 @@ gltf::Material materialOf(const World& world, std::size_t draw) {
 }
 
 glm::vec3 emissionOf(const World& world, std::size_t draw) {
-  return materialOf(world, draw).emissive;
+  return world.emission(draw);
 }
 
-// No bundle carries transfer to light in bands yet: every draw has radiance.
-bool normalMapped(const World&, std::size_t) {
-  return false;
+bool normalMapped(const World& world, std::size_t draw) {
+  return world.residency().draws()[draw].outputs > 1;
 }
 
 SurfaceDraw describe(const World& world, std::size_t draw) {

@@ -78,10 +78,12 @@ void Surfaces::prepare(World& world, const effects::diffuse::Diffuse& diffuse, c
   std::size_t shaded = 0;
   for (std::size_t i = 0; i < residency.draws().size(); ++i) shaded += diffuse.shaded(i) ? 1 : 0;
   const bool scene_same = residency.version() == residency_seen_ &&
-                          world.transformsVersion() == transforms_seen_ && shaded == shaded_seen_;
+                          world.transformsVersion() == transforms_seen_ &&
+                          world.lampsVersion() == lamps_seen_ && shaded == shaded_seen_;
   if (scene_same && (blended_.empty() || view.eye_ws == eye_seen_ws_)) return;
   residency_seen_ = residency.version();
   transforms_seen_ = world.transformsVersion();
+  lamps_seen_ = world.lampsVersion();
   shaded_seen_ = shaded;
   eye_seen_ws_ = view.eye_ws;
 

@@ -68,7 +68,7 @@ class Surfaces {
   gpu::Table draws_, commands_, view_;
   std::vector<SurfaceDraw> records_;
   std::vector<Run> opaque_, blended_;
-  std::uint64_t residency_seen_ = 0, transforms_seen_ = 0;
+  std::uint64_t residency_seen_ = 0, transforms_seen_ = 0, lamps_seen_ = 0;
   std::size_t shaded_seen_ = 0;
   glm::vec3 eye_seen_ws_{0.0f};
 };

@@ -4,8 +4,30 @@
 #include <thread>
 
 #include "runtime/scene/transforms.hpp"
+#include "runtime/streaming/budget.hpp"
 
 namespace lambent::frame {
+
+namespace {
+
+ecs::Entity lampOf(const bundle::Description& description, const scene::SceneInstance& instance,
+                   const bundle::Draw& draw) {
+  const std::int32_t material = description.meshes[draw.mesh].primitives[draw.primitive].material;
+  const auto& lights = description.groups[draw.group].lights;
+  for (std::size_t k = 0; k < lights.size(); ++k)
+    if (lights[k].kind == bundle::GroupLight::Kind::Material &&
+        static_cast<std::int32_t>(lights[k].index) == material)
+      return instance.lamps[draw.group][k];
+  return {};
+}
+
+// A lamp that was taken out of the scene is dark.
+glm::vec3 radianceOf(const ecs::Registry& registry, ecs::Entity entity) {
+  const auto* lamp = registry.tryGet<scene::LampComponent>(entity);
+  return lamp ? lamp->radiance() : glm::vec3(0.0f);
+}
+
+}  // namespace
 
 Result<void> World::open(const std::filesystem::path& path) {
   Result<bundle::Reader> opened = bundle::Reader::open(path);
@@ -19,11 +41,21 @@ Result<void> World::open(const std::filesystem::path& path) {
       scene::instantiate(registry_, reader->description(),
                          {.bundle_index = index, .bundle_id = path.string(), .instance = instance_number});
   if (!instance) return failAgain(instance.error());
-  if (const Result<std::uint32_t> added = residency_.add(reader->description()); !added)
+  bundle::Description wanted = reader->description();
+  if (room_bytes_ != ~std::uint64_t{0}) {
+    Result<streaming::Budgeted> budgeted = streaming::withinBudget(*reader, room_bytes_);
+    if (!budgeted) return failAgain(budgeted.error());
+    room_bytes_ -= std::min(room_bytes_, budgeted->bytes);
+    wanted = std::move(budgeted->description);
+  }
+  if (const Result<std::uint32_t> added = residency_.add(wanted); !added)
     return fail(path.string(), added.error().subject + ": " + added.error().problem, added.error().mend);
   const unsigned threads = std::max(1u, std::thread::hardware_concurrency());
-  bundles_.push_back(
-      {.reader = reader, .loader = streaming::Loader(reader, threads), .instance = std::move(*instance)});
+  for (const bundle::Draw& draw : wanted.draws)
+    lamp_of_draw_.push_back(lampOf(reader->description(), *instance, draw));
+  bundles_.push_back({.reader = reader,
+                      .loader = streaming::Loader(reader, std::move(wanted), threads),
+                      .instance = std::move(*instance)});
   return {};
 }
 
@@ -77,10 +109,37 @@ std::vector<lighting::GroupPlace> World::groupPlaces() const {
     const ecs::Entity entity = bundles_[group.bundle].instance.groups[group.index];
     const auto* rigid = registry_.tryGet<scene::RigidGroupComponent>(entity);
     places.push_back({.world_from_group = rigid ? rigid->rotation : glm::quat(1.0f, 0.0f, 0.0f, 0.0f),
-                      .order = group.order,
-                      .light_columns = group.light_columns});
+                      .order = group.order});
+    for (const ecs::Entity lamp : bundles_[group.bundle].instance.lamps[group.index])
+      places.back().lamps.push_back(radianceOf(registry_, lamp));
   }
   return places;
+}
+
+glm::vec3 World::emission(std::size_t draw) const {
+  if (lamp_of_draw_[draw] != ecs::Entity{}) return radianceOf(registry_, lamp_of_draw_[draw]);
+  const streaming::ResidentDraw& resident = residency_.draws()[draw];
+  const auto& materials = residency_.bundles()[resident.bundle].materials;
+  return resident.material >= 0 ? materials[static_cast<std::size_t>(resident.material)].emissive
+                                : glm::vec3(0.0f);
+}
+
+void World::scaleLamps(float factor) {
+  for (auto [entity, lamp] : registry_.view<const scene::LampComponent>())
+    registry_.edit<scene::LampComponent>(entity).strength *= factor;
+}
+
+LoadedParts World::loadedParts() const {
+  LoadedParts parts{.planes_resident = residency_.planesResident()};
+  for (const Bundle& bundle : bundles_) {
+    parts.bytes_loaded += bundle.loader.bytesRead();
+    parts.bytes_in_bundles += bundle.reader->fileBytes();
+    for (const bundle::Group& group : bundle.reader->description().groups)
+      for (const bundle::Cell& cell : group.cells)
+        for (const bundle::DiffuseTransfer& transfer : cell.diffuse)
+          parts.planes_in_bundles += transfer.planes.size();
+  }
+  return parts;
 }
 
 glm::mat4 World::worldFromMesh(std::size_t draw) const {

@@ -20,8 +20,22 @@
 
 namespace lambent::frame {
 
+struct WorldOptions {
+  // Of GPU memory that the bundles may take together. Weight planes that have no room stay away: first those
+  // of the bundles opened last. What is needed to show surfaces at all is always brought.
+  std::uint64_t max_resident_bytes = ~std::uint64_t{0};
+};
+
+// How much of the bundles has been brought.
+struct LoadedParts {
+  std::uint64_t bytes_loaded = 0, bytes_in_bundles = 0;  // of the files
+  std::uint64_t planes_resident = 0, planes_in_bundles = 0;
+};
+
 class World {
  public:
+  explicit World(const WorldOptions& options = {}) : room_bytes_(options.max_resident_bytes) {}
+
   Result<void> open(const std::filesystem::path& path);
 
   // Up to about `budget_bytes` of what is ready; never waits.
@@ -29,6 +43,7 @@ class World {
   // Waits until everything is resident.
   Result<void> uploadAll(gpu::Counters& counters);
   bool loaded() const;
+  LoadedParts loadedParts() const;
 
   void updateTransforms();
   std::uint64_t transformsVersion() const { return registry_.version<scene::WorldTransform>(); }
@@ -36,6 +51,13 @@ class World {
   // In the order of residency().groups() and draws().
   std::vector<lighting::GroupPlace> groupPlaces() const;
   glm::mat4 worldFromMesh(std::size_t draw) const;
+  // Radiance that the draw's material gives off now, before its texture: its lamp's where it is one in its
+  // group, else the material's own.
+  glm::vec3 emission(std::size_t draw) const;
+  // Rises when a lamp changes.
+  std::uint64_t lampsVersion() const { return registry_.version<scene::LampComponent>(); }
+  // Multiplies the strength of all lamps.
+  void scaleLamps(float factor);
 
   streaming::Residency& residency() { return residency_; }
   const streaming::Residency& residency() const { return residency_; }
@@ -58,6 +80,8 @@ class World {
   ecs::Registry registry_;
   streaming::Residency residency_;
   std::vector<Bundle> bundles_;
+  std::vector<ecs::Entity> lamp_of_draw_;  // none: not a lamp of its group
+  std::uint64_t room_bytes_;               // left for bundles yet to be opened
 };
 
 }  // namespace lambent::frame

@@ -1,5 +1,6 @@
 #include "runtime/lighting/group_lights.hpp"
 
+#include <algorithm>
 #include <array>
 #include <optional>
 
@@ -10,14 +11,17 @@ namespace lambent::lighting {
 void GroupLights::update(const Environment& environment, sh::Window window,
                          std::span<const GroupPlace> groups, gpu::Counters& counters) {
   const bool light_changed = environment.version() != environment_version_ || window != window_;
-  bool any_changed = groups.size() != groups_.size();
+  bool any_changed = !std::ranges::equal(groups, groups_, [](const GroupPlace& a, const Group& b) {
+    return a.lamps.size() == b.place.lamps.size();
+  });
   if (any_changed) {
-    // Blocks move when groups come: all are written again.
+    // Blocks move when groups come, and with them their lamps: all are written again.
     groups_.assign(groups.size(), {});
     std::uint32_t first = 0;
     for (std::size_t i = 0; i < groups.size(); ++i) {
       groups_[i].first = first;
-      first += kStride + groups[i].light_columns;
+      first += kStride + static_cast<std::uint32_t>(groups[i].lamps.size());
+      groups_[i].place.lamps.resize(groups[i].lamps.size());
     }
     coefficients_.assign(first, glm::vec4(0.0f));
   }
@@ -35,6 +39,8 @@ void GroupLights::update(const Environment& environment, sh::Window window,
     const sh::LightVector light_group = sh::Rotation(group_from_world, order).apply(*light);
     for (std::uint32_t k = 0; k < kStride; ++k)
       coefficients_[group.first + k] = glm::vec4(light_group.c[k], 0.0f);
+    for (std::uint32_t k = 0; k < group.place.lamps.size(); ++k)
+      coefficients_[group.first + kStride + k] = glm::vec4(group.place.lamps[k], 0.0f);
   }
   environment_version_ = environment.version();
   window_ = window;

@@ -1,8 +1,8 @@
 // The light of each rigid group on the GPU, in the group's own frame: what effects multiply transfer with.
-// Comes in: the environment, and per group its rotation in the world, the order of its transfer and how many
-// light columns it has. Goes out: a block of vec4 per group (64 coefficients, zeros above order², then the
-// group's own light columns) and a version that rises when that block changed. Windowed once per order, then
-// rotated per group.
+// Comes in: the environment, and per group its rotation in the world, the order of its transfer and what its
+// own lights give now. Goes out: a block of vec4 per group (64 coefficients, zeros above order², then the
+// group's own lights) and a version that rises when that block changed. Windowed once per order, then rotated
+// per group.
 #pragma once
 
 #include <cstdint>
@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <glm/gtc/quaternion.hpp>
+#include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
 #include "runtime/gpu/objects.hpp"
@@ -21,7 +22,8 @@ namespace lambent::lighting {
 struct GroupPlace {
   glm::quat world_from_group{1.0f, 0.0f, 0.0f, 0.0f};
   std::uint32_t order = 1;
-  std::uint32_t light_columns = 0;  // lights that belong to the group: dark until they have a strength
+  // Lights that belong to the group, one per light column of its transfer: colour times strength.
+  std::vector<glm::vec3> lamps{};
   bool operator==(const GroupPlace&) const = default;
 };
 

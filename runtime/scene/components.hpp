@@ -113,6 +113,26 @@ struct CameraComponent {
   }
 };
 
+// A light that belongs to a rigid group, as bundle::GroupLight: it gives colour x strength, radiance of an
+// emissive material or intensity of a lamp. Lit anew at once, with the shadows and bounces that were baked
+// for it.
+struct LampComponent {
+  std::uint32_t bundle = 0, group = 0, column = 0;
+  glm::vec3 color{1.0f};  // linear; the bundle's at first
+  float strength = 1.0f;
+  bool enabled = true;
+
+  glm::vec3 radiance() const { return enabled ? strength * color : glm::vec3(0.0f); }
+
+  static constexpr std::string_view kComponentName = "Lamp";
+  static auto fields() {
+    using L = LampComponent;
+    return std::tuple{ecs::Field{"color", &L::color, glm::vec3(1.0f)},
+                      ecs::Field{"strength", &L::strength, 1.0f, "", ecs::Range{0.0f, 1e6f}},
+                      ecs::Field{"enabled", &L::enabled, true}};
+  }
+};
+
 // How the light from outside, sky and probes, stands over the scene.
 struct EnvironmentComponent {
   float intensity = 1.0f;     // factor on its radiance

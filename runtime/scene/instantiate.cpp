@@ -25,6 +25,7 @@ class Instantiation {
     updateTransforms(registry_);  // groups need their root's matrix at rest
     makeGroups();
     makeDraws();
+    makeLamps();
     return std::move(instance_);
   }
 
@@ -124,6 +125,28 @@ class Instantiation {
     }
   }
 
+  void makeLamps() {
+    using Kind = bundle::GroupLight::Kind;
+    for (std::uint32_t g = 0; g < description_.groups.size(); ++g) {
+      instance_.lamps.emplace_back();
+      const auto& lights = description_.groups[g].lights;
+      for (std::uint32_t k = 0; k < lights.size(); ++k) {
+        const ecs::Entity entity = registry_.create();
+        instance_.lamps.back().push_back(entity);
+        registry_.emplace<LampComponent>(
+            entity, LampComponent{
+                        .bundle = options_.bundle_index, .group = g, .column = k, .color = lights[k].color});
+        // An emissive material is one lamp in each group that it lights; a lamp is told by its node.
+        const bool material = lights[k].kind == Kind::Material;
+        const std::string& name = material ? description_.materials[lights[k].index].name
+                                           : description_.nodes[lights[k].index].name;
+        registry_.emplace<Name>(entity, name);
+        giveId(entity, material ? instance_.groups[g] : instance_.nodes[lights[k].index], StableKind::Lamp,
+               name);
+      }
+    }
+  }
+
   ecs::Entity nodeOrRoot(std::int32_t node) const {
     return node < 0 ? instance_.root : instance_.nodes[static_cast<std::size_t>(node)];
   }
@@ -156,6 +179,9 @@ Result<SceneInstance> instantiate(ecs::Registry& registry, const bundle::Descrip
 }
 
 void destroyInstance(ecs::Registry& registry, const SceneInstance& instance) {
+  for (const auto& lamps : instance.lamps) {
+    for (const ecs::Entity entity : lamps) registry.destroy(entity);
+  }
   for (const auto* list : {&instance.draws, &instance.groups, &instance.nodes}) {
     for (const ecs::Entity entity : *list) registry.destroy(entity);
   }

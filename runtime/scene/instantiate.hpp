@@ -1,5 +1,6 @@
 // A bundle's description as entities: one root that places the whole, one entity per node (Name, StableId,
-// Transform, CameraComponent where it carries one), one per rigid group and one per draw. Several bundles,
+// Transform, CameraComponent where it carries one), one per rigid group, one per draw and one per light of a
+// group. Several bundles,
 // and one bundle several times under different instance numbers, may stand in one registry. Payloads are not
 // touched: streaming brings them.
 #pragma once
@@ -26,6 +27,7 @@ struct SceneInstance {
   std::vector<ecs::Entity> nodes;
   std::vector<ecs::Entity> groups;
   std::vector<ecs::Entity> draws;
+  std::vector<std::vector<ecs::Entity>> lamps;  // of each group, by light column
 };
 
 // World matrices and groups are up to date on return (updateTransforms has run over the registry). The

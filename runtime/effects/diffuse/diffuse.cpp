@@ -18,50 +18,46 @@ std::uint32_t variantOf(std::uint32_t order) {
   return order >= 2 && order <= 6 ? order : 0;
 }
 
-bool partCounts(bundle::TransferPart part, TransferMode mode) {
-  return mode == TransferMode::Full ||
-         (mode == TransferMode::Shadowed && part == bundle::TransferPart::Direct);
+TransferRecord describeTransfer(const streaming::ResidentGroup& group, const streaming::ResidentCell& cell,
+                                const streaming::ResidentTransfer& transfer, std::uint32_t light,
+                                TransferMode mode) {
+  const bundle::TransferShape& shape = transfer.shape;
+  const bool full = mode == TransferMode::Full && shape.full_channels > 0;
+  return {.light = shape.order > 0 ? light : light + kLightStride,
+          .columns = shape.columns(),
+          .channels = full ? shape.full_channels : shape.shadowed_channels,
+          .outputs = shape.outputs,
+          .clusters = transfer.clusters,
+          .clusters_word = transfer.clusters_word,
+          .weights_word = transfer.weights_word,
+          .vectors_word = transfer.vectors_word,
+          .positions_word = transfer.positions_word,
+          .vector_size = shape.size(),
+          .first_value = full ? shape.shadowed_channels * shape.outputs * shape.columns() : 0,
+          .plane_count = transfer.planes_resident,
+          .first_plane = 0,
+          .first_product = 0,
+          .first_output = group.sampleBase(cell.outputs) + cell.outputs * cell.first_sample,
+          .sample_count = cell.sample_count,
+          .accumulate = 0};
 }
 
-// Means of all parts first (slot 0), then the resident planes, slots from 1.
-CellRecord addCell(const streaming::Residency& residency, const streaming::ResidentCell& cell,
-                   std::uint32_t light, TransferMode mode, Tables& tables) {
-  const streaming::ResidentGroup& group = residency.groups()[cell.group];
-  CellRecord record{.light = light,
-                    .first_vector = static_cast<uint>(tables.vectors.size()),
-                    .vector_count = 0,
-                    .first_product = tables.product_count,
-                    .plane_count = 0,
-                    .first_output = group.samples.word() / 4 + cell.first_sample,
-                    .sample_count = cell.sample_count,
-                    .order = 0};
+// A cell's transfers, as far as they are resident.
+Tables::Cell addCell(const streaming::Residency& residency, const streaming::ResidentCell& cell,
+                     std::uint32_t light, TransferMode mode, Tables& tables) {
+  Tables::Cell range{.first = static_cast<std::uint32_t>(tables.transfers.size()), .count = 0};
   for (const streaming::ResidentTransfer& transfer : cell.transfers) {
-    if (!partCounts(transfer.part, mode) || !transfer.basis_resident) continue;
-    // One order for the whole cell picks a specialised kernel; mixed orders take the general one.
-    record.order = record.vector_count == 0 || record.order == transfer.order ? transfer.order : 0;
-    const uint length = transfer.channels * transfer.columns;
-    VectorRecord vector{.basis_word = transfer.basis_word,
-                        .codes = 0,
-                        .offset = 1.0f,
-                        .scale = 0.0f,
-                        .channels = transfer.channels,
-                        .columns = transfer.columns,
-                        .order = transfer.order,
-                        .slot = 0};
-    tables.vectors.push_back(vector);
-    for (uint j = 0; j < transfer.planes_resident; ++j) {
-      const streaming::ResidentPlane& plane = transfer.planes[j];
-      vector.basis_word += length;
-      vector.codes = plane.word | (plane.bits == 16 ? kCodes16Bit : 0u);
-      vector.offset = plane.offset;
-      vector.scale = plane.scale;
-      vector.slot = ++record.plane_count;
-      tables.vectors.push_back(vector);
-    }
-    record.vector_count = static_cast<uint>(tables.vectors.size()) - record.first_vector;
+    if (mode == TransferMode::Unshadowed || !transfer.codebook_resident) continue;
+    TransferRecord record = describeTransfer(residency.groups()[cell.group], cell, transfer, light, mode);
+    record.accumulate = range.count++ > 0 ? 1 : 0;
+    record.first_plane = static_cast<std::uint32_t>(tables.planes.size());
+    for (std::uint32_t j = 0; j < transfer.planes_resident; ++j)
+      tables.planes.push_back(transfer.planes[j].word | (transfer.planes[j].bits == 16 ? kCodes16Bit : 0u));
+    record.first_product = tables.product_count;
+    tables.product_count += (transfer.clusters + transfer.axes) * record.outputs;
+    tables.transfers.push_back(record);
   }
-  tables.product_count += 1 + record.plane_count;
-  return record;
+  return range;
 }
 
 DrawRecord describeDraw(const streaming::Residency& residency, const streaming::ResidentDraw& draw,
@@ -78,20 +74,22 @@ DrawRecord describeDraw(const streaming::Residency& residency, const streaming::
   record.normals_word = mesh.normals_word;
   record.rows_word = draw.rows && mode != TransferMode::Unshadowed ? draw.rows.word() : kNoRows;
   record.row_entries = draw.row_entries;
-  record.first_sample = group.samples.word() / 4;
+  record.first_sample = group.sampleBase(draw.outputs);
   record.radiance_word = draw.radiance.word();
+  record.outputs = draw.outputs;
   return record;
 }
 
 }  // namespace
 
 Diffuse::Diffuse()
-    : cells_table_("diffuse cells"),
-      vectors_table_("diffuse vectors"),
+    : transfers_table_("diffuse transfers"),
+      planes_table_("diffuse planes"),
       draws_table_("diffuse draws"),
       products_("diffuse products"),
       project_work_("diffuse project work"),
       samples_work_("diffuse samples work"),
+      adding_work_("diffuse adding work"),
       vertices_work_("diffuse vertices work") {}
 
 Result<void> Diffuse::shade(streaming::Residency& residency, const lighting::GroupLights& lights,
@@ -119,10 +117,10 @@ void Diffuse::rebuildTables(const streaming::Residency& residency, const lightin
     tables_.cells.push_back(addCell(residency, cell, lights.firstOf(cell.group), mode, tables_));
   for (const streaming::ResidentDraw& draw : residency.draws())
     tables_.draws.push_back(describeDraw(residency, draw, lights.firstOf(draw.group), mode));
-  cells_table_.assign(std::span<const CellRecord>(tables_.cells));
-  vectors_table_.assign(std::span<const VectorRecord>(tables_.vectors));
+  transfers_table_.assign(std::span<const TransferRecord>(tables_.transfers));
+  planes_table_.assign(std::span<const std::uint32_t>(tables_.planes));
   draws_table_.assign(std::span<const DrawRecord>(tables_.draws));
-  products_.reserve(tables_.product_count * sizeof(Product));
+  products_.reserve(tables_.product_count * sizeof(glm::vec4));
   cells_seen_.resize(residency.cells().size());
   draws_seen_.resize(residency.draws().size());
   group_shaded_.resize(residency.groups().size());
@@ -131,18 +129,26 @@ void Diffuse::rebuildTables(const streaming::Residency& residency, const lightin
 void Diffuse::collectCells(const streaming::Residency& residency, const lighting::GroupLights& lights) {
   project_work_.clear();
   samples_work_.clear();
+  adding_work_.clear();
   if (mode_seen_ == TransferMode::Unshadowed) return;
   for (std::uint32_t i = 0; i < tables_.cells.size(); ++i) {
     const streaming::ResidentCell& cell = residency.cells()[i];
-    if (!cell.usable() || tables_.cells[i].vector_count == 0) continue;
+    const Tables::Cell range = tables_.cells[i];
+    if (!cell.usable() || range.count == 0) continue;
     Seen& seen = cells_seen_[i];
     const std::uint64_t light = lights.versionOf(cell.group);
     if (seen.version == cell.version && seen.light == light) continue;
     seen = {.version = cell.version, .light = light, .cells = 0};
     ++group_shaded_[cell.group];
-    project_work_.add({variantOf(tables_.cells[i].order), cell.block.page}, i, 1, 1);
-    samples_work_.add({0, cell.block.page, residency.groups()[cell.group].samples.page}, i, cell.sample_count,
-                      kWorkGroupSize);
+    for (std::uint32_t t = range.first; t < range.first + range.count; ++t) {
+      const TransferRecord& record = tables_.transfers[t];
+      const std::uint32_t order = cell.transfers[t - range.first].shape.order;
+      project_work_.add({variantOf(order), record.outputs, cell.block.page}, t,
+                        record.clusters * record.outputs, kUnitsPerGroup);
+      (record.accumulate != 0 ? adding_work_ : samples_work_)
+          .add({0, record.outputs, cell.block.page, residency.groups()[cell.group].samples.page}, t,
+               record.sample_count, kWorkGroupSize);
+    }
   }
 }
 
@@ -158,23 +164,26 @@ void Diffuse::collectDraws(const streaming::Residency& residency, const lighting
     seen = now;
     const streaming::ResidentGroup& group = residency.groups()[draw.group];
     const streaming::ResidentMesh& mesh = residency.meshes()[draw.mesh];
-    vertices_work_.add(
-        {variantOf(group.order), draw.rows.page, mesh.block.page, group.samples.page, draw.radiance.page}, i,
-        mesh.vertex_count, kWorkGroupSize);
+    vertices_work_.add({variantOf(group.order), draw.outputs, draw.rows.page, mesh.block.page,
+                        group.samples.page, draw.radiance.page},
+                       i, mesh.vertex_count, kWorkGroupSize);
   }
 }
 
-Result<const gpu::Program*> Diffuse::program(Stage stage, std::uint32_t order) {
+Result<const gpu::Program*> Diffuse::program(Stage stage, std::uint32_t order, std::uint32_t outputs) {
   constexpr std::array<const char*, kStageCount> kFiles = {"diffuse_project.comp", "diffuse_samples.comp",
                                                            "diffuse_vertices.comp"};
   auto& programs = programs_[stage];
-  if (const auto found = programs.find(order); found != programs.end()) return &found->second;
+  const std::array<std::uint32_t, 2> variant = {order, stage == Project ? 0 : outputs};
+  if (const auto found = programs.find(variant); found != programs.end()) return &found->second;
   std::vector<gpu::Define> defines;
   if (order != 0) defines.push_back({"LAMBENT_ORDER", std::to_string(order)});
-  Result<gpu::Program> made = gpu::Program::create(fmt::format("{} order {}", kFiles[stage], order),
-                                                   {{GL_COMPUTE_SHADER, kFiles[stage]}}, kShaders, defines);
+  if (stage != Project) defines.push_back({"LAMBENT_OUTPUTS", std::to_string(outputs)});
+  Result<gpu::Program> made =
+      gpu::Program::create(fmt::format("{} order {} outputs {}", kFiles[stage], order, outputs),
+                           {{GL_COMPUTE_SHADER, kFiles[stage]}}, kShaders, defines);
   if (!made) return failAgain(made.error());
-  return &programs.emplace(order, std::move(*made)).first->second;
+  return &programs.emplace(variant, std::move(*made)).first->second;
 }
 
 Result<void> Diffuse::runCells(streaming::Residency& residency, const lighting::GroupLights& lights,
@@ -182,27 +191,35 @@ Result<void> Diffuse::runCells(streaming::Residency& residency, const lighting::
   if (project_work_.empty()) return {};
   project_work_.upload(counters);
   samples_work_.upload(counters);
+  if (!adding_work_.empty()) adding_work_.upload(counters);
   lights.bindStorage(kBindLights);
-  cells_table_.bindStorage(kBindCells);
-  vectors_table_.bindStorage(kBindVectors);
+  transfers_table_.bindStorage(kBindTransfers);
+  planes_table_.bindStorage(kBindPlanes);
   products_.bindStorage(kBindProducts);
   std::size_t index = 0;
   for (const auto& [key, items] : project_work_.batches()) {
-    const Result<const gpu::Program*> kernel = program(Project, key[0]);
+    const Result<const gpu::Program*> kernel = program(Project, key[0], key[1]);
     if (!kernel) return failAgain(kernel.error());
     (*kernel)->use();
-    residency.transfer().page(key[1]).bindStorage(kBindTransfer);
+    residency.transfer().page(key[2]).bindStorage(kBindTransfer);
     project_work_.dispatch(index++, kBindWork, counters);
   }
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
-  index = 0;
-  for (const auto& [key, items] : samples_work_.batches()) {
-    const Result<const gpu::Program*> kernel = program(Samples, key[0]);
+  if (Result<void> run = runSamples(residency, samples_work_, counters); !run) return run;
+  return runSamples(residency, adding_work_, counters);
+}
+
+Result<void> Diffuse::runSamples(streaming::Residency& residency, const gpu::WorkList& work,
+                                 gpu::Counters& counters) {
+  if (work.empty()) return {};
+  std::size_t index = 0;
+  for (const auto& [key, items] : work.batches()) {
+    const Result<const gpu::Program*> kernel = program(Samples, key[0], key[1]);
     if (!kernel) return failAgain(kernel.error());
     (*kernel)->use();
-    residency.transfer().page(key[1]).bindStorage(kBindTransfer);
-    residency.samples().page(key[2]).bindStorage(kBindSamples);
-    samples_work_.dispatch(index++, kBindWork, counters);
+    residency.transfer().page(key[2]).bindStorage(kBindTransfer);
+    residency.samples().page(key[3]).bindStorage(kBindSamples);
+    work.dispatch(index++, kBindWork, counters);
   }
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
   return {};
@@ -216,7 +233,7 @@ Result<void> Diffuse::runDraws(streaming::Residency& residency, const lighting::
   draws_table_.bindStorage(kBindDraws);
   std::size_t index = 0;
   for (const auto& [key, items] : vertices_work_.batches()) {
-    const Result<const gpu::Program*> kernel = program(Vertices, key[0]);
+    const Result<const gpu::Program*> kernel = program(Vertices, key[0], key[1]);
     if (!kernel) return failAgain(kernel.error());
     (*kernel)->use();
     // A page that no draw of the batch has anything in yet may not exist: any buffer will do in its place.
@@ -226,10 +243,10 @@ Result<void> Diffuse::runDraws(streaming::Residency& residency, const lighting::
       else
         draws_table_.bindStorage(binding);
     };
-    bind(residency.rows(), key[1], kBindRows);
-    bind(residency.geometry(), key[2], kBindGeometry);
-    bind(residency.samples(), key[3], kBindSamples);
-    bind(residency.radiance(), key[4], kBindRadiance);
+    bind(residency.rows(), key[2], kBindRows);
+    bind(residency.geometry(), key[3], kBindGeometry);
+    bind(residency.samples(), key[4], kBindSamples);
+    bind(residency.radiance(), key[5], kBindRadiance);
     vertices_work_.dispatch(index++, kBindWork, counters);
   }
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);

@@ -1,8 +1,9 @@
-// The diffuse effect on the GPU: radiance E/pi at every vertex, straight from the quantized transfer. Reads:
-// transfer, rows and normals in the residency's arenas, the groups' lights. Writes: the samples and radiance
-// arenas. Three stages (cell, sample, vertex), each one indirect dispatch per arena page over what is dirty:
-// a cell when its group's light or its own codes changed, a vertex when any cell of its group or its own mesh
-// or rows did. Nothing changed: nothing is dispatched. What is not resident shades unshadowed.
+// The diffuse effect on the GPU: radiance E/pi at every vertex (for normal maps: light of bands 0..2),
+// straight from the quantized transfer. Reads: transfer, rows and normals in the residency's arenas, the
+// groups' lights. Writes: the samples and radiance arenas. Three stages (cluster, sample, vertex), each one
+// indirect dispatch per arena page and kernel over what is dirty: a cell when its group's light or its own
+// codes changed, a vertex when any cell of its group or its own mesh or rows did. Nothing changed: nothing is
+// dispatched. What is not resident shades unshadowed.
 #pragma once
 
 #include <array>
@@ -19,14 +20,19 @@
 
 namespace lambent::effects::diffuse {
 
-// Which parts of the transfer count: none, direct light only, all.
+// Which block of the transfer counts: none, light without bounces, all light where it was baked. Unshadowed,
+// the groups' own lights are dark: without transfer there is no telling where their light goes.
 enum class TransferMode { Unshadowed, Shadowed, Full };
 
 // The tables that the kernels read, as last uploaded.
 struct Tables {
-  std::vector<CellRecord> cells;  // index: residency cell
-  std::vector<VectorRecord> vectors;
-  std::vector<DrawRecord> draws;  // index: residency draw
+  struct Cell {
+    std::uint32_t first = 0, count = 0;  // into transfers
+  };
+  std::vector<Cell> cells;  // index: residency cell
+  std::vector<TransferRecord> transfers;
+  std::vector<std::uint32_t> planes;  // word of the codes, with kCodes16Bit
+  std::vector<DrawRecord> draws;      // index: residency draw
   std::uint32_t product_count = 0;
 };
 
@@ -52,16 +58,20 @@ class Diffuse {
                      TransferMode mode);
   void collectCells(const streaming::Residency& residency, const lighting::GroupLights& lights);
   void collectDraws(const streaming::Residency& residency, const lighting::GroupLights& lights);
-  Result<const gpu::Program*> program(Stage stage, std::uint32_t order);
+  Result<const gpu::Program*> program(Stage stage, std::uint32_t order, std::uint32_t outputs);
+  Result<void> runSamples(streaming::Residency& residency, const gpu::WorkList& work,
+                          gpu::Counters& counters);
   Result<void> runCells(streaming::Residency& residency, const lighting::GroupLights& lights,
                         gpu::Counters& counters);
   Result<void> runDraws(streaming::Residency& residency, const lighting::GroupLights& lights,
                         gpu::Counters& counters);
 
-  std::array<std::map<std::uint32_t, gpu::Program>, kStageCount> programs_;  // by order; 0: any
+  // By order (0: any) and outputs.
+  std::array<std::map<std::array<std::uint32_t, 2>, gpu::Program>, kStageCount> programs_;
   Tables tables_;
-  gpu::Table cells_table_, vectors_table_, draws_table_, products_;
-  gpu::WorkList project_work_, samples_work_, vertices_work_;
+  gpu::Table transfers_table_, planes_table_, draws_table_, products_;
+  // A cell's first transfer writes its samples, the second adds to them.
+  gpu::WorkList project_work_, samples_work_, adding_work_, vertices_work_;
   std::vector<Seen> cells_seen_, draws_seen_;
   std::vector<std::uint64_t> group_shaded_;  // rises when a cell of the group was shaded
   std::uint64_t residency_seen_ = 0;

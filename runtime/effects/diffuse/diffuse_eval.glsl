@@ -8,24 +8,19 @@ vec3 lightAt(uint index);  // coefficient of the light in the group's frame, RGB
 #endif
 
 #ifdef LAMBENT_STAGE_PROJECT
-float basisAt(uint word);  // of the transfer page
+float vectorAt(uint word);  // of the transfer page
 
-// A mean or basis vector times the light: one value per colour channel. `bands` is its order².
-vec3 projectOnLight(VectorRecord vector, uint light, uint bands) {
+// One output of a mean or axis times the light: one value per colour channel.
+vec3 projectOnLight(TransferRecord transfer, uint vector, uint output_index, uint columns) {
   vec3 sum = vec3(0.0);
-  for (uint i = 0u; i < bands; ++i) {
-    vec3 basis = vec3(basisAt(vector.basis_word + i));
-    if (vector.channels == 3u)
-      basis.yz = vec2(basisAt(vector.basis_word + vector.columns + i),
-                      basisAt(vector.basis_word + 2u * vector.columns + i));
-    sum += basis * lightAt(light + i);
-  }
-  for (uint i = bands; i < vector.columns; ++i) {  // lights that belong to the group
-    vec3 basis = vec3(basisAt(vector.basis_word + i));
-    if (vector.channels == 3u)
-      basis.yz = vec2(basisAt(vector.basis_word + vector.columns + i),
-                      basisAt(vector.basis_word + 2u * vector.columns + i));
-    sum += basis * lightAt(light + kLightStride + i - bands);
+  uint at = transfer.vectors_word + vector * transfer.vector_size + transfer.first_value + output_index * columns;
+  if (transfer.channels == 1u) {
+    for (uint i = 0u; i < columns; ++i) sum += vectorAt(at + i) * lightAt(transfer.light + i);
+  } else {
+    uint stride = transfer.outputs * columns;
+    for (uint i = 0u; i < columns; ++i)
+      sum += vec3(vectorAt(at + i), vectorAt(at + stride + i), vectorAt(at + 2u * stride + i)) *
+             lightAt(transfer.light + i);
   }
   return sum;
 }
@@ -34,15 +29,15 @@ vec3 projectOnLight(VectorRecord vector, uint light, uint bands) {
 #ifdef LAMBENT_STAGE_SAMPLES
 uint codeWordAt(uint word);  // of the transfer page
 
-// The code of a sample, straight from the plane as it lies in the bundle.
-uint codeOf(uint codes, uint sample_index) {
+// The code at a position, straight from the quantized plane.
+uint codeOf(uint codes, uint position) {
   uint word = codes & ~kCodes16Bit;
   if ((codes & kCodes16Bit) != 0u) {
-    uint pair = codeWordAt(word + (sample_index >> 1u));
-    return (pair >> (16u * (sample_index & 1u))) & 0xffffu;
+    uint pair = codeWordAt(word + (position >> 1u));
+    return (pair >> (16u * (position & 1u))) & 0xffffu;
   }
-  uint four = codeWordAt(word + (sample_index >> 2u));
-  return (four >> (8u * (sample_index & 3u))) & 0xffu;
+  uint four = codeWordAt(word + (position >> 2u));
+  return (four >> (8u * (position & 3u))) & 0xffu;
 }
 #endif
 
@@ -89,25 +84,53 @@ vec3 unshadowedRadiance(vec3 normal, uint light, int order) {
   return sum;
 }
 
+// Of a row entry: weight and sample.
+struct RowEntry {
+  float weight;
+  uint sample_index;
+};
+
+RowEntry rowEntryAt(DrawRecord draw, uint entry) {
+  uint samples_word = draw.rows_word + draw.vertex_count + 1u;
+  uint pair = rowWordAt(samples_word + draw.row_entries + (entry >> 1u));
+  return RowEntry(float((pair >> (16u * (entry & 1u))) & 0xffffu) / 65535.0, rowWordAt(samples_word + entry));
+}
+
 // A vertex from its row of samples; what is not resident counts as unshadowed.
 vec3 vertexRadiance(DrawRecord draw, uint vertex, vec3 normal, int order) {
   vec3 sum = vec3(0.0);
   float resident = 0.0, total = 0.0;
   if (draw.rows_word != kNoRows) {
-    uint begin = rowWordAt(draw.rows_word + vertex), end = rowWordAt(draw.rows_word + vertex + 1u);
-    uint samples_word = draw.rows_word + draw.vertex_count + 1u;
-    uint weights_word = samples_word + draw.row_entries;
-    for (uint entry = begin; entry < end; ++entry) {
-      uint pair = rowWordAt(weights_word + (entry >> 1u));
-      float weight = float((pair >> (16u * (entry & 1u))) & 0xffffu) / 65535.0;
-      vec4 shaded = sampleAt(draw.first_sample + rowWordAt(samples_word + entry));
-      sum += weight * shaded.w * shaded.rgb;
-      resident += weight * shaded.w;
-      total += weight;
+    uint end = rowWordAt(draw.rows_word + vertex + 1u);
+    for (uint i = rowWordAt(draw.rows_word + vertex); i < end; ++i) {
+      RowEntry entry = rowEntryAt(draw, i);
+      vec4 shaded = sampleAt(draw.first_sample + entry.sample_index);
+      sum += entry.weight * shaded.w * shaded.rgb;
+      resident += entry.weight * shaded.w;
+      total += entry.weight;
     }
   }
   if (total == 0.0) return unshadowedRadiance(normal, draw.light, order);
   if (resident < total) sum += (total - resident) * unshadowedRadiance(normal, draw.light, order);
   return sum / total;
+}
+
+// The same for normal maps: transferred light of bands 0..2, in the group's frame. Unshadowed it is the light itself.
+void vertexLight(DrawRecord draw, uint vertex, out vec3 light[kMappedOutputs]) {
+  float resident = 0.0, total = 0.0;
+  for (uint j = 0u; j < kMappedOutputs; ++j) light[j] = vec3(0.0);
+  if (draw.rows_word != kNoRows) {
+    uint end = rowWordAt(draw.rows_word + vertex + 1u);
+    for (uint i = rowWordAt(draw.rows_word + vertex); i < end; ++i) {
+      RowEntry entry = rowEntryAt(draw, i);
+      uint first = draw.first_sample + kMappedOutputs * entry.sample_index;
+      float shaded = sampleAt(first).w;
+      for (uint j = 0u; j < kMappedOutputs; ++j) light[j] += entry.weight * shaded * sampleAt(first + j).rgb;
+      resident += entry.weight * shaded;
+      total += entry.weight;
+    }
+  }
+  float unshadowed = total == 0.0 ? 1.0 : max(total - resident, 0.0), sum = total == 0.0 ? 1.0 : total;
+  for (uint j = 0u; j < kMappedOutputs; ++j) light[j] = (light[j] + unshadowed * lightAt(draw.light + j)) / sum;
 }
 #endif

@@ -1,14 +1,14 @@
-// Stage a, one work group per dirty cell: the cell's mean and basis vectors times the group's light. Offsets of the
-// weights go into the mean here, scales into the vectors, so that a sample has one multiply-add per plane and channel.
+// Stage a, kUnitsPerGroup work units to a group, each one output of one cluster: mean and axes times the group's light.
+// Offsets of the weights go into the mean here, scales into the axes, so that a sample has one multiply-add per axis
+// and channel.
 #include "diffuse_shared.h"
 
 layout(local_size_x = kWorkGroupSize) in;
 layout(std430, binding = kBindWork) readonly buffer Work { uint work_count; uint pad[3]; WorkItem work[]; };
 layout(std430, binding = kBindLights) readonly buffer Lights { vec4 lights[]; };
-layout(std430, binding = kBindCells) readonly buffer Cells { CellRecord cells[]; };
-layout(std430, binding = kBindVectors) readonly buffer Vectors { VectorRecord vectors[]; };
-layout(std430, binding = kBindProducts) writeonly buffer Products { Product products[]; };
-layout(std430, binding = kBindTransfer) readonly buffer Transfer { float transfer[]; };
+layout(std430, binding = kBindTransfers) readonly buffer Transfers { TransferRecord transfers[]; };
+layout(std430, binding = kBindProducts) writeonly buffer Products { vec4 products[]; };
+layout(std430, binding = kBindTransfer) readonly buffer Transfer { float page[]; };
 
 shared vec3 means[kWorkGroupSize];
 
@@ -16,31 +16,39 @@ shared vec3 means[kWorkGroupSize];
 #include "diffuse_eval.glsl"
 
 vec3 lightAt(uint index) { return lights[index].rgb; }
-float basisAt(uint word) { return transfer[word]; }
+float vectorAt(uint word) { return page[word]; }
 
 void main() {
   uint index = gl_WorkGroupID.x + gl_WorkGroupID.y * kMaxWorkGroupsX;
   if (index >= work_count) return;
-  CellRecord cell = cells[work[index].record];
+  TransferRecord transfer = transfers[work[index].record];
+  uint lane = gl_LocalInvocationID.x % kLanesPerUnit;
+  uint unit = work[index].first + gl_LocalInvocationID.x / kLanesPerUnit;
+  uint cluster = unit / transfer.outputs, output_index = unit % transfer.outputs;
+  bool there = cluster < transfer.clusters;
   vec3 mean = vec3(0.0);
-  for (uint j = gl_LocalInvocationID.x; j < cell.vector_count; j += kWorkGroupSize) {
-    VectorRecord vector = vectors[cell.first_vector + j];
+  uint first = 0u;
+  if (there) {
+    first = floatBitsToUint(page[transfer.clusters_word + 2u * cluster]);
+    uint axes = min(floatBitsToUint(page[transfer.clusters_word + 2u * cluster + 1u]), transfer.plane_count);
+    for (uint v = lane; v <= axes; v += kLanesPerUnit) {
+      uint vector = first + v;
 #ifdef LAMBENT_ORDER
-    vec3 value = projectOnLight(vector, cell.light, LAMBENT_ORDER * LAMBENT_ORDER);
+      vec3 value = projectOnLight(transfer, vector, output_index, LAMBENT_ORDER * LAMBENT_ORDER);
 #else
-    vec3 value = projectOnLight(vector, cell.light, vector.order * vector.order);
+      vec3 value = projectOnLight(transfer, vector, output_index, transfer.columns);
 #endif
-    mean += vector.offset * value;
-    if (vector.slot > 0u) {
-      vec3 scaled = vector.scale * value;
-      products[cell.first_product + vector.slot] = Product(scaled.r, scaled.g, scaled.b, vector.codes);
+      mean += page[transfer.weights_word + 2u * vector] * value;
+      if (v > 0u)
+        products[transfer.first_product + transfer.outputs * vector + output_index] =
+            vec4(page[transfer.weights_word + 2u * vector + 1u] * value, 0.0);
     }
   }
   means[gl_LocalInvocationID.x] = mean;
   barrier();
-  if (gl_LocalInvocationID.x == 0u) {
+  if (there && lane == 0u) {
     vec3 total = vec3(0.0);
-    for (uint lane = 0u; lane < kWorkGroupSize; ++lane) total += means[lane];
-    products[cell.first_product] = Product(total.r, total.g, total.b, 0u);
+    for (uint i = 0u; i < kLanesPerUnit; ++i) total += means[gl_LocalInvocationID.x + i];
+    products[transfer.first_product + transfer.outputs * first + output_index] = vec4(total, 0.0);
   }
 }

@@ -3,6 +3,7 @@
 // what the GPU sees: arena pages as 32-bit words. No GL.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -25,7 +26,7 @@ struct Memory {
   std::span<const uint> geometry;      // page
 
   glm::vec3 lightAt(uint index) const { return glm::vec3(lights[index]); }
-  float basisAt(uint word) const { return std::bit_cast<float>(transfer[word]); }
+  float floatAt(uint word) const { return std::bit_cast<float>(transfer[word]); }
   uint codeWordAt(uint word) const { return transfer[word]; }
   glm::vec4 sampleAt(uint index) const { return samples[index]; }
   uint rowWordAt(uint word) const { return rows[word]; }
@@ -71,57 +72,88 @@ inline glm::vec3 unshadowedRadiance(const Memory& memory, glm::vec3 normal, uint
   return sum;
 }
 
-inline glm::vec3 projectOnLight(const Memory& memory, const VectorRecord& vector, uint light, uint bands) {
+inline glm::vec3 projectOnLight(const Memory& memory, const TransferRecord& transfer, uint vector,
+                                uint output_index) {
   glm::vec3 sum(0.0f);
-  for (uint i = 0; i < vector.columns; ++i) {
-    glm::vec3 basis(memory.basisAt(vector.basis_word + i));
-    if (vector.channels == 3) {
-      basis.y = memory.basisAt(vector.basis_word + vector.columns + i);
-      basis.z = memory.basisAt(vector.basis_word + 2 * vector.columns + i);
-    }
-    sum += basis * memory.lightAt(i < bands ? light + i : light + kLightStride + i - bands);
-  }
+  const uint columns = transfer.columns, stride = transfer.channels == 1 ? 0 : transfer.outputs * columns;
+  const uint at =
+      transfer.vectors_word + vector * transfer.vector_size + transfer.first_value + output_index * columns;
+  for (uint i = 0; i < columns; ++i)
+    sum += glm::vec3(memory.floatAt(at + i), memory.floatAt(at + stride + i),
+                     memory.floatAt(at + 2 * stride + i)) *
+           memory.lightAt(transfer.light + i);
   return sum;
 }
 
-inline uint codeOf(const Memory& memory, uint codes, uint sample_index) {
+inline uint codeOf(const Memory& memory, uint codes, uint position) {
   const uint word = codes & ~kCodes16Bit;
   if ((codes & kCodes16Bit) != 0) {
-    const uint pair = memory.codeWordAt(word + (sample_index >> 1));
-    return (pair >> (16 * (sample_index & 1))) & 0xffff;
+    const uint pair = memory.codeWordAt(word + (position >> 1));
+    return (pair >> (16 * (position & 1))) & 0xffff;
   }
-  const uint four = memory.codeWordAt(word + (sample_index >> 2));
-  return (four >> (8 * (sample_index & 3))) & 0xff;
+  const uint four = memory.codeWordAt(word + (position >> 2));
+  return (four >> (8 * (position & 3))) & 0xff;
 }
 
-// Stage a: products[cell.first_product ...].
-inline void projectCell(const Memory& memory, const CellRecord& cell, std::span<const VectorRecord> vectors,
-                        std::span<Product> products) {
-  std::array<glm::vec3, kWorkGroupSize> means{};
-  for (uint j = 0; j < cell.vector_count; ++j) {
-    const VectorRecord& vector = vectors[cell.first_vector + j];
-    const glm::vec3 value = projectOnLight(memory, vector, cell.light, vector.order * vector.order);
-    means[j % kWorkGroupSize] += vector.offset * value;
-    const glm::vec3 scaled = vector.scale * value;
-    if (vector.slot > 0)
-      products[cell.first_product + vector.slot] = {scaled.r, scaled.g, scaled.b, vector.codes};
+// Stage a, one output of one cluster: its products, the mean's with all offsets in it.
+inline void projectCluster(const Memory& memory, const TransferRecord& transfer, uint cluster,
+                           uint output_index, std::span<glm::vec4> products) {
+  const uint first = memory.codeWordAt(transfer.clusters_word + 2 * cluster);
+  const uint axes =
+      std::min(memory.codeWordAt(transfer.clusters_word + 2 * cluster + 1), transfer.plane_count);
+  const auto product = [&](uint vector) -> glm::vec4& {
+    return products[transfer.first_product + transfer.outputs * vector + output_index];
+  };
+  std::array<glm::vec3, kLanesPerUnit> means{};
+  for (uint v = 0; v <= axes; ++v) {
+    const uint vector = first + v;
+    const glm::vec3 value = projectOnLight(memory, transfer, vector, output_index);
+    means[v % kLanesPerUnit] += memory.floatAt(transfer.weights_word + 2 * vector) * value;
+    if (v > 0)
+      product(vector) = glm::vec4(memory.floatAt(transfer.weights_word + 2 * vector + 1) * value, 0.0f);
   }
   glm::vec3 total(0.0f);
   for (const glm::vec3& mean : means) total += mean;
-  products[cell.first_product] = {total.r, total.g, total.b, 0};
+  product(first) = glm::vec4(total, 0.0f);
 }
 
-// Stage b.
-inline glm::vec4 shadeSample(const Memory& memory, const CellRecord& cell, std::span<const Product> products,
-                             uint sample_index) {
-  const Product& mean = products[cell.first_product];
-  glm::vec3 radiance(mean.r, mean.g, mean.b);
-  for (uint j = 1; j <= cell.plane_count; ++j) {
-    const Product& plane = products[cell.first_product + j];
-    radiance +=
-        static_cast<float>(codeOf(memory, plane.codes, sample_index)) * glm::vec3(plane.r, plane.g, plane.b);
+inline void projectTransfer(const Memory& memory, const TransferRecord& transfer,
+                            std::span<glm::vec4> products) {
+  for (uint cluster = 0; cluster < transfer.clusters; ++cluster)
+    for (uint j = 0; j < transfer.outputs; ++j) projectCluster(memory, transfer, cluster, j, products);
+}
+
+// Stage b: one position of the cell, into its sample.
+inline void shadePosition(const Memory& memory, const TransferRecord& transfer, std::span<const uint> planes,
+                          std::span<const glm::vec4> products, uint position, std::span<glm::vec4> samples) {
+  const uint place = memory.codeWordAt(transfer.positions_word + position);
+  const uint sample_index = place & 0xffff, cluster = place >> 16;
+  const uint first = memory.codeWordAt(transfer.clusters_word + 2 * cluster);
+  const uint axes =
+      std::min(memory.codeWordAt(transfer.clusters_word + 2 * cluster + 1), transfer.plane_count);
+  for (uint j = 0; j < transfer.outputs; ++j) {
+    uint product = transfer.first_product + transfer.outputs * first + j;
+    glm::vec3 light(products[product]);
+    for (uint axis = 0; axis < axes; ++axis) {
+      product += transfer.outputs;
+      light += static_cast<float>(codeOf(memory, planes[transfer.first_plane + axis], position)) *
+               glm::vec3(products[product]);
+    }
+    glm::vec4& out = samples[transfer.first_output + transfer.outputs * sample_index + j];
+    out = glm::vec4(transfer.accumulate != 0 ? light + glm::vec3(out) : light, 1.0f);
   }
-  return {radiance, 1.0f};
+}
+
+struct RowEntry {
+  float weight;
+  uint sample_index;
+};
+
+inline RowEntry rowEntryAt(const Memory& memory, const DrawRecord& draw, uint entry) {
+  const uint samples_word = draw.rows_word + draw.vertex_count + 1;
+  const uint pair = memory.rowWordAt(samples_word + draw.row_entries + (entry >> 1));
+  return {static_cast<float>((pair >> (16 * (entry & 1))) & 0xffff) / 65535.0f,
+          memory.rowWordAt(samples_word + entry)};
 }
 
 inline glm::vec3 vertexRadiance(const Memory& memory, const DrawRecord& draw, uint vertex, glm::vec3 normal,
@@ -129,17 +161,13 @@ inline glm::vec3 vertexRadiance(const Memory& memory, const DrawRecord& draw, ui
   glm::vec3 sum(0.0f);
   float resident = 0.0f, total = 0.0f;
   if (draw.rows_word != kNoRows) {
-    const uint begin = memory.rowWordAt(draw.rows_word + vertex),
-               end = memory.rowWordAt(draw.rows_word + vertex + 1);
-    const uint samples_word = draw.rows_word + draw.vertex_count + 1;
-    const uint weights_word = samples_word + draw.row_entries;
-    for (uint entry = begin; entry < end; ++entry) {
-      const uint pair = memory.rowWordAt(weights_word + (entry >> 1));
-      const float weight = static_cast<float>((pair >> (16 * (entry & 1))) & 0xffff) / 65535.0f;
-      const glm::vec4 shaded = memory.sampleAt(draw.first_sample + memory.rowWordAt(samples_word + entry));
-      sum += weight * shaded.w * glm::vec3(shaded);
-      resident += weight * shaded.w;
-      total += weight;
+    const uint end = memory.rowWordAt(draw.rows_word + vertex + 1);
+    for (uint i = memory.rowWordAt(draw.rows_word + vertex); i < end; ++i) {
+      const RowEntry entry = rowEntryAt(memory, draw, i);
+      const glm::vec4 shaded = memory.sampleAt(draw.first_sample + entry.sample_index);
+      sum += entry.weight * shaded.w * glm::vec3(shaded);
+      resident += entry.weight * shaded.w;
+      total += entry.weight;
     }
   }
   if (total == 0.0f) return unshadowedRadiance(memory, normal, draw.light, order);
@@ -147,7 +175,30 @@ inline glm::vec3 vertexRadiance(const Memory& memory, const DrawRecord& draw, ui
   return sum / total;
 }
 
-// Stage c.
+using MappedLight = std::array<glm::vec3, kMappedOutputs>;
+
+inline MappedLight vertexLight(const Memory& memory, const DrawRecord& draw, uint vertex) {
+  MappedLight light{};
+  float resident = 0.0f, total = 0.0f;
+  if (draw.rows_word != kNoRows) {
+    const uint end = memory.rowWordAt(draw.rows_word + vertex + 1);
+    for (uint i = memory.rowWordAt(draw.rows_word + vertex); i < end; ++i) {
+      const RowEntry entry = rowEntryAt(memory, draw, i);
+      const uint first = draw.first_sample + kMappedOutputs * entry.sample_index;
+      const float shaded = memory.sampleAt(first).w;
+      for (uint j = 0; j < kMappedOutputs; ++j)
+        light[j] += entry.weight * shaded * glm::vec3(memory.sampleAt(first + j));
+      resident += entry.weight * shaded;
+      total += entry.weight;
+    }
+  }
+  const float unshadowed = total == 0.0f ? 1.0f : std::max(total - resident, 0.0f);
+  for (uint j = 0; j < kMappedOutputs; ++j)
+    light[j] = (light[j] + unshadowed * memory.lightAt(draw.light + j)) / (total == 0.0f ? 1.0f : total);
+  return light;
+}
+
+// Stage c, draws without normal maps; vertexLight is those with.
 inline glm::vec3 shadeVertex(const Memory& memory, const DrawRecord& draw, uint vertex) {
   const uint at = draw.normals_word + 3 * vertex;
   const auto component = [&](uint i) { return std::bit_cast<float>(memory.geometry[at + i]); };

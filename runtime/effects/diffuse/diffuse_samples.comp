@@ -1,29 +1,41 @@
-// Stage b, one invocation per sample of the dirty cells: mean plus code times product over the resident planes.
+// Stage b, one invocation per position of the dirty cells: mean plus code times product over the resident planes.
+// Neighbouring positions are of one cluster, so they read the same products.
 #include "diffuse_shared.h"
 
 layout(local_size_x = kWorkGroupSize) in;
 layout(std430, binding = kBindWork) readonly buffer Work { uint work_count; uint pad[3]; WorkItem work[]; };
-layout(std430, binding = kBindCells) readonly buffer Cells { CellRecord cells[]; };
-layout(std430, binding = kBindProducts) readonly buffer Products { Product products[]; };
-layout(std430, binding = kBindTransfer) readonly buffer Transfer { uint transfer[]; };
-layout(std430, binding = kBindSamples) writeonly buffer Samples { vec4 samples[]; };
+layout(std430, binding = kBindTransfers) readonly buffer Transfers { TransferRecord transfers[]; };
+layout(std430, binding = kBindPlanes) readonly buffer Planes { uint planes[]; };
+layout(std430, binding = kBindProducts) readonly buffer Products { vec4 products[]; };
+layout(std430, binding = kBindTransfer) readonly buffer Transfer { uint page[]; };
+layout(std430, binding = kBindSamples) buffer Samples { vec4 samples[]; };
 
 #define LAMBENT_STAGE_SAMPLES
 #include "diffuse_eval.glsl"
 
-uint codeWordAt(uint word) { return transfer[word]; }
+uint codeWordAt(uint word) { return page[word]; }
 
 void main() {
   uint index = gl_WorkGroupID.x + gl_WorkGroupID.y * kMaxWorkGroupsX;
   if (index >= work_count) return;
-  CellRecord cell = cells[work[index].record];
-  uint sample_index = work[index].first + gl_LocalInvocationID.x;
-  if (sample_index >= cell.sample_count) return;
-  Product mean = products[cell.first_product];
-  vec3 radiance = vec3(mean.r, mean.g, mean.b);
-  for (uint j = 1u; j <= cell.plane_count; ++j) {
-    Product plane = products[cell.first_product + j];
-    radiance += float(codeOf(plane.codes, sample_index)) * vec3(plane.r, plane.g, plane.b);
+  TransferRecord transfer = transfers[work[index].record];
+  uint position = work[index].first + gl_LocalInvocationID.x;
+  if (position >= transfer.sample_count) return;
+  uint place = page[transfer.positions_word + position];
+  uint sample_index = place & 0xffffu, cluster = place >> 16u;
+  uint first = page[transfer.clusters_word + 2u * cluster];
+  uint axes = min(page[transfer.clusters_word + 2u * cluster + 1u], transfer.plane_count);
+  uint product = transfer.first_product + LAMBENT_OUTPUTS * first;
+  vec3 light[LAMBENT_OUTPUTS];
+  for (uint j = 0u; j < LAMBENT_OUTPUTS; ++j) light[j] = products[product + j].rgb;
+  for (uint axis = 0u; axis < axes; ++axis) {
+    product += LAMBENT_OUTPUTS;
+    float code = float(codeOf(planes[transfer.first_plane + axis], position));
+    for (uint j = 0u; j < LAMBENT_OUTPUTS; ++j) light[j] += code * products[product + j].rgb;
   }
-  samples[cell.first_output + sample_index] = vec4(radiance, 1.0);
+  uint out_index = transfer.first_output + LAMBENT_OUTPUTS * sample_index;
+  for (uint j = 0u; j < LAMBENT_OUTPUTS; ++j) {
+    if (transfer.accumulate != 0u) light[j] += samples[out_index + j].rgb;
+    samples[out_index + j] = vec4(light[j], 1.0);
+  }
 }

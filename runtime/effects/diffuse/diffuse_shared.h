@@ -13,22 +13,25 @@ using uint = std::uint32_t;
 #define LAMBENT_CONSTANT const uint
 #endif
 
-LAMBENT_CONSTANT kBindWork = 0u;      // WorkItem per work group
-LAMBENT_CONSTANT kBindLights = 1u;    // vec4 per coefficient, a block per group of kLightStride and more
-LAMBENT_CONSTANT kBindCells = 2u;     // CellRecord
-LAMBENT_CONSTANT kBindVectors = 3u;   // VectorRecord
-LAMBENT_CONSTANT kBindProducts = 4u;  // Product
-LAMBENT_CONSTANT kBindTransfer = 5u;  // arena page: basis vectors (float) and codes
-LAMBENT_CONSTANT kBindSamples = 6u;   // arena page: vec4 per sample, w = 1 where it has been shaded
-LAMBENT_CONSTANT kBindDraws = 2u;     // DrawRecord
-LAMBENT_CONSTANT kBindRows = 3u;      // arena page: rows of vertices
-LAMBENT_CONSTANT kBindGeometry = 4u;  // arena page: normals among others
-LAMBENT_CONSTANT kBindRadiance = 5u;  // arena page: 3 floats per vertex, E/pi
+LAMBENT_CONSTANT kBindWork = 0u;       // WorkItem per work group
+LAMBENT_CONSTANT kBindLights = 1u;     // vec4 per coefficient, a block per group: kLightStride, then its own lights
+LAMBENT_CONSTANT kBindTransfers = 2u;  // TransferRecord
+LAMBENT_CONSTANT kBindPlanes = 3u;     // word of each resident plane's codes in its page, with kCodes16Bit
+LAMBENT_CONSTANT kBindProducts = 4u;   // vec4: a vector times the light, scaled to be multiplied by the code itself
+LAMBENT_CONSTANT kBindTransfer = 5u;   // arena page: codebooks (float), positions and codes
+LAMBENT_CONSTANT kBindSamples = 6u;    // arena page: vec4 per sample and output, w = 1 where it has been shaded
+LAMBENT_CONSTANT kBindDraws = 2u;      // DrawRecord
+LAMBENT_CONSTANT kBindRows = 3u;       // arena page: rows of vertices
+LAMBENT_CONSTANT kBindGeometry = 4u;   // arena page: normals among others
+LAMBENT_CONSTANT kBindRadiance = 5u;   // arena page: per vertex 3 floats, E/pi, or for normal maps 27, [output][rgb]
 
 LAMBENT_CONSTANT kWorkGroupSize = 64u;
+LAMBENT_CONSTANT kLanesPerUnit = 16u;  // of the project stage: a unit is one output of one cluster
+LAMBENT_CONSTANT kUnitsPerGroup = kWorkGroupSize / kLanesPerUnit;
 LAMBENT_CONSTANT kMaxWorkGroupsX = 65535u;  // what OpenGL 4.5 promises; longer lists fold into y
 LAMBENT_CONSTANT kLightStride = 64u;        // 8 bands; the group's own light columns follow
-LAMBENT_CONSTANT kCodes16Bit = 0x80000000u;  // in Product::codes: 16-bit codes, else 8-bit
+LAMBENT_CONSTANT kMappedOutputs = 9u;       // of samples and draws with normal maps: light of bands 0..2
+LAMBENT_CONSTANT kCodes16Bit = 0x80000000u;  // 16-bit codes, else 8-bit
 LAMBENT_CONSTANT kNoRows = 0xffffffffu;
 
 #ifndef __cplusplus
@@ -39,34 +42,29 @@ struct WorkItem {
 };
 #endif
 
-// A cell whose transfer is resident, wholly or in part.
-struct CellRecord {
-  uint light;          // vec4 index of the group's light
-  uint first_vector;   // into the VectorRecords
-  uint vector_count;   // means and planes that are resident
-  uint first_product;  // products[first_product] is the mean, with all offsets in it; planes follow
-  uint plane_count;    // resident planes of all parts
-  uint first_output;   // vec4 index into the samples page
+// One transfer of a cell, as far as it is resident, and which block of it counts. Words are of the transfer page:
+//   clusters   per cluster two uints: its first vector, its number of axes
+//   weights    per vector two floats: offset and scale of the weight (1 and 0 of a mean)
+//   vectors    vector_size floats each: of every cluster the mean, then its axes; [channel][output][column]
+//   positions  per position, in the order of the codes: sample of the cell | cluster << 16
+struct TransferRecord {
+  uint light;    // vec4 index of the coefficient that belongs to column 0
+  uint columns;  // all of the environment, or all of the group's own lights
+  uint channels;  // 1 or 3, of the block that counts
+  uint outputs;   // 1 or kMappedOutputs
+  uint clusters;
+  uint clusters_word;
+  uint weights_word;
+  uint vectors_word;
+  uint positions_word;
+  uint vector_size;
+  uint first_value;    // of the block within a vector
+  uint plane_count;    // resident
+  uint first_plane;    // into the planes' words
+  uint first_product;  // output o of vector v is products[first_product + outputs v + o]; all offsets are in the means
+  uint first_output;   // vec4 index into the samples page of the cell's first sample
   uint sample_count;
-  uint order;
-};
-
-// A mean (slot 0, weight 1) or a basis vector (slot j >= 1, weight offset + scale * code).
-struct VectorRecord {
-  uint basis_word;  // channels x columns floats, channel-major
-  uint codes;       // word of the plane's codes, with kCodes16Bit
-  float offset;
-  float scale;
-  uint channels;  // 1 or 3
-  uint columns;   // order² + light columns
-  uint order;
-  uint slot;
-};
-
-// A vector times the light, scaled to be multiplied by the code itself.
-struct Product {
-  float r, g, b;
-  uint codes;
+  uint accumulate;  // 1: adds to what another transfer of the cell has written
 };
 
 struct DrawRecord {
@@ -77,15 +75,16 @@ struct DrawRecord {
   uint normals_word;
   uint rows_word;  // vertex_count + 1 offsets, then samples, then weights two to a word; kNoRows: unshadowed
   uint row_entries;
-  uint first_sample;   // vec4 index of the group's first sample
+  uint first_sample;   // vec4 index of output o of sample s: first_sample + outputs s + o
   uint radiance_word;  // where the result goes
+  uint outputs;
+  uint pad[3];
 };
 
 #ifdef __cplusplus
 #undef LAMBENT_CONSTANT
-static_assert(sizeof(CellRecord) == 32 && offsetof(CellRecord, first_product) == 12 && offsetof(CellRecord, order) == 28);
-static_assert(sizeof(VectorRecord) == 32 && offsetof(VectorRecord, offset) == 8 && offsetof(VectorRecord, slot) == 28);
-static_assert(sizeof(Product) == 16);
-static_assert(sizeof(DrawRecord) == 80 && offsetof(DrawRecord, light) == 48 && offsetof(DrawRecord, rows_word) == 64);
+static_assert(sizeof(TransferRecord) == 68 && offsetof(TransferRecord, first_product) == 52 &&
+              offsetof(TransferRecord, accumulate) == 64);
+static_assert(sizeof(DrawRecord) == 96 && offsetof(DrawRecord, light) == 48 && offsetof(DrawRecord, outputs) == 80);
 }  // namespace lambent::effects::diffuse
 #endif

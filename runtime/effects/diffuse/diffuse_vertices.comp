@@ -1,4 +1,5 @@
-// Stage c, one invocation per vertex of the dirty draws: gathers its row of samples. Linear E/pi, not clamped.
+// Stage c, one invocation per vertex of the dirty draws: gathers its row of samples. Linear E/pi, not clamped, or with
+// LAMBENT_OUTPUTS 9 the transferred light that a normal map is shaded from.
 #include "diffuse_shared.h"
 
 layout(local_size_x = kWorkGroupSize) in;
@@ -23,18 +24,25 @@ void main() {
   DrawRecord draw = draws[work[index].record];
   uint vertex = work[index].first + gl_LocalInvocationID.x;
   if (vertex >= draw.vertex_count) return;
+#if LAMBENT_OUTPUTS == 1
   uint at = draw.normals_word + 3u * vertex;
   vec3 normal_mesh = vec3(geometry[at], geometry[at + 1u], geometry[at + 2u]);
   float m[12] = draw.group_from_mesh_normal;
   mat3 group_from_mesh = mat3(m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10]);
   vec3 normal = normalize(group_from_mesh * normal_mesh);
 #ifdef LAMBENT_ORDER
-  vec3 radiance = vertexRadiance(draw, vertex, normal, LAMBENT_ORDER);
+  vec3 light[1] = vec3[1](vertexRadiance(draw, vertex, normal, LAMBENT_ORDER));
 #else
-  vec3 radiance = vertexRadiance(draw, vertex, normal, int(draw.order));
+  vec3 light[1] = vec3[1](vertexRadiance(draw, vertex, normal, int(draw.order)));
 #endif
-  uint out_word = draw.radiance_word + 3u * vertex;
-  radiance_out[out_word] = radiance.r;
-  radiance_out[out_word + 1u] = radiance.g;
-  radiance_out[out_word + 2u] = radiance.b;
+#else
+  vec3 light[kMappedOutputs];
+  vertexLight(draw, vertex, light);
+#endif
+  uint out_word = draw.radiance_word + 3u * LAMBENT_OUTPUTS * vertex;
+  for (uint j = 0u; j < LAMBENT_OUTPUTS; ++j) {
+    radiance_out[out_word + 3u * j] = light[j].r;
+    radiance_out[out_word + 3u * j + 1u] = light[j].g;
+    radiance_out[out_word + 3u * j + 2u] = light[j].b;
+  }
 }

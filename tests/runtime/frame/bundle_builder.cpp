@@ -37,38 +37,37 @@ struct Store {
   }
 };
 
-// Plane i carries coefficient i, 16 bits over its range; the mean is zero.
-bundle::DiffuseTransfer storeTransfer(Store& store, int order,
+// One cluster: plane i carries value i, 16 bits over its range; the mean is zero.
+bundle::DiffuseTransfer storeTransfer(Store& store, const bundle::TransferShape& shape,
                                       const std::vector<std::vector<float>>& vectors) {
-  const auto columns = static_cast<std::size_t>(order * order);
-  bundle::DiffuseTransfer transfer{.part = bundle::TransferPart::Direct,
-                                   .order = static_cast<std::uint32_t>(order),
-                                   .light_columns = 0,
-                                   .channels = 1,
-                                   .basis = 0,
-                                   .planes = {},
-                                   .error_bound = 1e-3f,
-                                   .error = 1e-4f};
-  std::vector<float> basis((1 + columns) * columns, 0.0f);
-  for (std::size_t i = 0; i < columns; ++i) basis[(1 + i) * columns + i] = 1.0f;
-  transfer.basis = store.payload(bundle::PayloadType::TransferBasis, bundle::encodeBasis(basis));
-  for (std::size_t i = 0; i < columns; ++i) {
+  const std::size_t size = shape.size();
+  bundle::DiffuseTransfer transfer;
+  transfer.shape = shape;
+  transfer.axes = shape.size();
+  transfer.error_bound = 1e-3f;
+  transfer.error = 1e-4f;
+  bundle::Codebook codebook{{shape.size()}, {}, std::vector<float>((1 + size) * size, 0.0f)};
+  std::vector<std::vector<std::uint32_t>> codes(size);
+  for (std::size_t i = 0; i < size; ++i) {
+    codebook.vectors[(1 + i) * size + i] = 1.0f;
     float low = vectors[0][i], high = vectors[0][i];
     for (const auto& vector : vectors) {
       low = std::min(low, vector[i]);
       high = std::max(high, vector[i]);
     }
     const float scale = (high - low) / 65535.0f;
-    std::vector<std::uint32_t> codes;
+    codebook.axes.push_back({.offset = low, .scale = scale});
     for (const auto& vector : vectors)
-      codes.push_back(scale > 0.0f ? static_cast<std::uint32_t>(std::lround((vector[i] - low) / scale)) : 0u);
-    transfer.planes.push_back(
-        {.payload = store.payload(bundle::PayloadType::WeightPlane, bundle::encodePlane(codes, 16)),
-         .bits = 16,
-         .offset = low,
-         .scale = scale,
-         .variance = 1.0f / static_cast<float>(columns)});
+      codes[i].push_back(scale > 0.0f ? static_cast<std::uint32_t>(std::lround((vector[i] - low) / scale))
+                                      : 0u);
   }
+  transfer.codebook = store.payload(bundle::PayloadType::Codebook, bundle::encodeCodebook(codebook));
+  for (const auto& plane : codes)
+    transfer.planes.push_back(
+        {.payload = store.payload(bundle::PayloadType::WeightPlane, bundle::encodeWeightPlane(plane, 16)),
+         .bits = 16,
+         .count = static_cast<std::uint32_t>(plane.size()),
+         .variance = 1.0f / static_cast<float>(size)});
   return transfer;
 }
 
@@ -89,6 +88,21 @@ BundleBuilder& BundleBuilder::add(BuiltMesh mesh) {
 
 BundleBuilder& BundleBuilder::transfer(TransferOf transfer) {
   transfer_ = std::move(transfer);
+  return *this;
+}
+
+BundleBuilder& BundleBuilder::bounces() {
+  bounces_ = true;
+  return *this;
+}
+
+BundleBuilder& BundleBuilder::normalMapped() {
+  normal_mapped_ = true;
+  return *this;
+}
+
+BundleBuilder& BundleBuilder::lamp(const bundle::GroupLight& light, float transfer) {
+  lamps_.push_back({light, transfer});
   return *this;
 }
 
@@ -160,18 +174,34 @@ void BundleBuilder::write(const std::filesystem::path& path) const {
            .primitive = 0,
            .group = 0,
            .back = back,
-           .rows = store.payload(bundle::PayloadType::VertexRows, bundle::encodeRows(rows))});
+           .rows = store.payload(bundle::PayloadType::VertexRows, bundle::encodeRows(rows)),
+           .outputs = normal_mapped_ ? 9u : 1u});
     }
   }
   for (std::uint32_t i = 0; i < images_.size(); ++i)
     description.images.push_back({.name = "image", .mime_type = "image/png", .view = store.blob(images_[i])});
   description.textures = textures_;
   group.sample_count = static_cast<std::uint32_t>(vectors.size());
-  group.cells.push_back({.first_sample = 0,
-                         .sample_count = group.sample_count,
-                         .bounds_min = group.bounds_min,
-                         .bounds_max = group.bounds_max,
-                         .diffuse = {storeTransfer(store, order_, vectors)}});
+  bundle::Cell cell;
+  cell.sample_count = group.sample_count;
+  cell.bounds_min = group.bounds_min;
+  cell.bounds_max = group.bounds_max;
+  const bundle::TransferShape shape{.order = static_cast<std::uint32_t>(order_),
+                                    .full_channels = bounces_ ? 1u : 0u,
+                                    .outputs = normal_mapped_ ? 9u : 1u};
+  cell.diffuse.push_back(storeTransfer(store, shape, vectors));
+  if (!lamps_.empty()) {
+    const bundle::TransferShape lamp_shape{.order = 0,
+                                           .light_columns = static_cast<std::uint32_t>(lamps_.size())};
+    std::vector<float> column;
+    for (const BuiltLamp& lamp : lamps_) {
+      group.lights.push_back(lamp.light);
+      column.push_back(lamp.transfer);
+    }
+    cell.diffuse.push_back(
+        storeTransfer(store, lamp_shape, std::vector<std::vector<float>>(group.sample_count, column)));
+  }
+  group.cells.push_back(std::move(cell));
   description.groups.push_back(std::move(group));
   const Result<void> written = bundle::write(path, description, blobs);
   ASSERT_TRUE(written) << written.error().line();

@@ -16,7 +16,8 @@
 
 namespace lambent::testing {
 
-// Transfer vector (order² entries) of a sample with this normal, group frame.
+// Transfer vector of a sample with this normal, group frame: order² entries, with bounces twice as many (the
+// shadowed block, then the full one), for normal maps nine times as many, by output.
 using TransferOf = std::function<std::vector<float>(const glm::vec3& normal)>;
 TransferOf openTransfer(int order);
 
@@ -32,6 +33,11 @@ class BundleBuilder {
 
   BundleBuilder& add(BuiltMesh mesh);
   BundleBuilder& transfer(TransferOf transfer);
+  BundleBuilder& bounces();
+  BundleBuilder& normalMapped();
+  // A light of the group that gives `transfer` times its radiance to every sample. Bundles without normal
+  // maps.
+  BundleBuilder& lamp(const bundle::GroupLight& light, float transfer);
   BundleBuilder& groupRotation(const glm::quat& rest_rotation);
   // Returns the texture's index.
   std::int32_t addTexture(std::uint32_t width, std::uint32_t height, const std::vector<std::uint8_t>& rgba,
@@ -40,7 +46,13 @@ class BundleBuilder {
   void write(const std::filesystem::path& path) const;
 
  private:
+  struct BuiltLamp {
+    bundle::GroupLight light;
+    float transfer = 0.0f;
+  };
   int order_;
+  bool bounces_ = false, normal_mapped_ = false;
+  std::vector<BuiltLamp> lamps_;
   TransferOf transfer_;
   glm::quat rest_rotation_{1.0f, 0.0f, 0.0f, 0.0f};
   std::vector<BuiltMesh> meshes_;

@@ -11,6 +11,7 @@
 
 #include "runtime/scene/bounds.hpp"
 #include "runtime/sh/image_layout.hpp"
+#include "runtime/streaming/sizes.hpp"
 #include "tests/runtime/frame/bundle_builder.hpp"
 #include "tests/support/gpu_context.hpp"
 
@@ -44,8 +45,9 @@ struct Stage {
       .azimuth_deg = 0.0f, .elevation_deg = 0.0f, .distance_radii = 2.5f, .fov_deg = 40.0f};
 
   Stage(const BundleBuilder& builder, const std::vector<spec::Light>& lights, FrameOptions options = {},
-        bool load = true)
+        bool load = true, const WorldOptions& world_options = {})
       : path(temporary(load ? "whole.lmb.glb" : "streamed.lmb.glb")),
+        world(world_options),
         environment(*lighting::Environment::create(lights)) {
     builder.write(path);
     const Result<void> opened = world.open(path);
@@ -326,6 +328,109 @@ TEST_F(FrameTest, ABundleThatStreamsInIsLitFromTheFirstMeshOnAndEndsAtTheSamePic
   for (std::size_t i = 0; i < image.texels.size(); ++i) ASSERT_EQ(image.texels[i], expected.texels[i]);
   stage.render();
   EXPECT_EQ(stage.counts("shade").dispatches, 0u);
+}
+
+TEST_F(FrameTest, TheWordsOfTransferChooseTheBlock) {
+  // A quarter of the light without bounces, three quarters with them, all of it where nothing shadows.
+  const auto transfer = [](const glm::vec3& normal) {
+    const std::vector<float> open = testing::openTransfer(3)(normal);
+    std::vector<float> blocks;
+    for (const float factor : {0.25f, 0.75f})
+      for (const float value : open) blocks.push_back(factor * value);
+    return blocks;
+  };
+  const auto builder =
+      BundleBuilder().bounces().transfer(transfer).add({sphereMesh(12, 24), colored(glm::vec4(1.0f))});
+  using effects::diffuse::TransferMode;
+  for (const auto& [mode, expected] : {std::pair{TransferMode::Full, 0.75f},
+                                       {TransferMode::Shadowed, 0.25f},
+                                       {TransferMode::Unshadowed, 1.0f}}) {
+    FrameOptions options = kLinear;
+    options.transfer = mode;
+    Stage stage(builder, {kWhite}, options);
+    EXPECT_NEAR(at(stage.picture(), 32, 32).g, expected, 1e-3f) << "codes of 16 bits";
+  }
+}
+
+TEST_F(FrameTest, LampsShineAndLightTheirGroupAndDimTogether) {
+  gltf::Material glowing = colored({0.5f, 0.5f, 0.5f, 1.0f});
+  glowing.emissive = {2.0f, 1.0f, 0.5f};
+  // Of a material that is a lamp the lamp says what it gives off: here it was baked with another colour.
+  const auto builder =
+      BundleBuilder()
+          .lamp({.kind = bundle::GroupLight::Kind::Material, .index = 0, .color = {4.0f, 1.0f, 0.0f}}, 0.5f)
+          .lamp({.kind = bundle::GroupLight::Kind::Node, .index = 0, .color = {0.0f, 0.0f, 8.0f}}, 0.25f)
+          .add({sphereMesh(12, 24), glowing});
+  Stage stage(builder, {spec::ConstantLight{.radiance = glm::vec3(0.0f)}}, kLinear);
+  const auto expect = [&](float factor) {
+    const glm::vec3 emission(4.0f, 1.0f, 0.0f), incident = 0.5f * emission + glm::vec3(0.0f, 0.0f, 2.0f);
+    const glm::vec3 found(at(stage.picture(), 32, 32));
+    EXPECT_LT(glm::distance(found, factor * (emission + 0.5f * incident)), 1e-3f) << factor;
+  };
+  expect(1.0f);
+  stage.render();
+  EXPECT_EQ(stage.counts("shade").dispatches, 0u) << "a still frame";
+  stage.world.scaleLamps(0.5f);
+  expect(0.5f);
+  EXPECT_GT(stage.counts("shade").dispatches, 0u);
+  stage.world.scaleLamps(0.0f);
+  expect(0.0f);
+}
+
+TEST_F(FrameTest, NormalMappedDrawsWithoutAMapLookAsPlainOnes) {
+  // Transferred light of bands 0..2 is the light itself in the open: output j is column j.
+  const auto open_light = [](const glm::vec3&) {
+    std::vector<float> transfer(81, 0.0f);
+    for (std::size_t j = 0; j < 9; ++j) transfer[10 * j] = 1.0f;
+    return transfer;
+  };
+  const std::vector<spec::Light> lights = {
+      spec::SunLight{.azimuth_deg = 20, .elevation_deg = 40, .angle_deg = 30, .radiance = glm::vec3(4.0f)},
+      spec::ConstantLight{.radiance = {0.1f, 0.2f, 0.3f}}};
+  const auto turn = glm::angleAxis(0.8f, glm::normalize(glm::vec3(1, 2, 3)));
+  Stage plain(BundleBuilder().groupRotation(turn).add({sphereMesh(24, 48), colored(glm::vec4(1.0f))}), lights,
+              kLinear);
+  Stage mapped(BundleBuilder()
+                   .groupRotation(turn)
+                   .normalMapped()
+                   .transfer(open_light)
+                   .add({sphereMesh(24, 48), colored(glm::vec4(1.0f))}),
+               lights, kLinear);
+  const spec::RgbaImage expected = plain.picture(), found = mapped.picture();
+  for (std::size_t i = 0; i < found.texels.size(); ++i)
+    // The plain one interpolates E between vertices, the other one the normal.
+    ASSERT_LT(glm::distance(found.texels[i], expected.texels[i]), 0.02f) << i;
+}
+
+TEST_F(FrameTest, ABudgetLeavesTheLastPlanesAwayAndStillShowsEverything) {
+  const auto builder = BundleBuilder().add({sphereMesh(24, 48), colored(glm::vec4(1.0f))});
+  const std::vector<spec::Light> lights = {
+      spec::SunLight{.azimuth_deg = 20, .elevation_deg = 40, .angle_deg = 30, .radiance = glm::vec3(4.0f)}};
+  Stage whole(builder, lights, kLinear);
+  const spec::RgbaImage expected = whole.picture();
+  const std::uint64_t all_bytes = whole.world.residency().bytesResident();
+  EXPECT_EQ(whole.world.loadedParts().planes_resident, 9u);
+  // Error of the picture falls as memory rises; planes are of equal variance here, mean and first band first.
+  double before = 1e9;
+  for (std::uint64_t planes = 0; planes <= 9; planes += 3) {
+    const bundle::Cell& cell = whole.world.description(0).groups[0].cells[0];
+    const std::uint64_t plane_bytes = streaming::planeBytes(cell.diffuse[0].planes[0]);
+    const std::uint64_t max_bytes = all_bytes + 512 - (9 - planes) * plane_bytes;
+    Stage stage(builder, lights, kLinear, /*load=*/true, {.max_resident_bytes = max_bytes});
+    const spec::RgbaImage image = stage.picture();
+    const LoadedParts parts = stage.world.loadedParts();
+    EXPECT_NEAR(static_cast<double>(parts.planes_resident), static_cast<double>(planes), 1.0);
+    EXPECT_EQ(parts.planes_in_bundles, 9u);
+    EXPECT_LE(parts.bytes_loaded, parts.bytes_in_bundles);
+    EXPECT_LE(stage.world.residency().bytesResident(), max_bytes);
+    EXPECT_EQ(covered(image), covered(expected));
+    double error = 0.0;
+    for (std::size_t i = 0; i < image.texels.size(); ++i)
+      error += glm::distance(image.texels[i], expected.texels[i]);
+    EXPECT_LE(error, before);
+    before = error;
+  }
+  EXPECT_EQ(before, 0.0) << "with room for all it is the same picture";
 }
 
 TEST_F(FrameTest, ShowsSeveralBundlesTogether) {

@@ -22,9 +22,10 @@ TEST_F(GroupLightsTest, GiveEachGroupTheLightInItsOwnFrame) {
   GroupLights lights;
   gpu::Counters counters;
   // Group 1 is turned by 90 degrees about +Y: its +X is the world's -Z, so a sun on +X stands on its +Z.
-  const GroupPlace places[] = {
-      {.order = 5},
-      {.world_from_group = glm::angleAxis(1.5707963f, glm::vec3(0, 1, 0)), .order = 4, .light_columns = 2}};
+  const GroupPlace places[] = {{.order = 5},
+                               {.world_from_group = glm::angleAxis(1.5707963f, glm::vec3(0, 1, 0)),
+                                .order = 4,
+                                .lamps = {{1, 2, 3}, {4, 0, 0}}}};
   lights.update(sunAlong(90), sh::Window::Off, places, counters);
   EXPECT_EQ(lights.firstOf(0), 0u);
   EXPECT_EQ(lights.firstOf(1), 64u);
@@ -35,6 +36,22 @@ TEST_F(GroupLightsTest, GiveEachGroupTheLightInItsOwnFrame) {
     EXPECT_LT(glm::distance(glm::vec3(lights.coefficients()[i]), upright.c[i]), 1e-5f);
     EXPECT_LT(glm::distance(glm::vec3(lights.coefficients()[64 + i]), turned.c[i]), 1e-5f);
   }
+  EXPECT_EQ(lights.coefficients()[128], glm::vec4(1, 2, 3, 0)) << "lamps follow, as they are";
+  EXPECT_EQ(lights.coefficients()[129], glm::vec4(4, 0, 0, 0));
+}
+
+TEST_F(GroupLightsTest, ALampThatChangesIsNewLightForItsGroupOnly) {
+  GroupLights lights;
+  gpu::Counters counters;
+  const Environment environment = sunAlong(10);
+  std::vector<GroupPlace> places = {{.order = 3, .lamps = {{1, 1, 1}}}, {.order = 3, .lamps = {{1, 1, 1}}}};
+  lights.update(environment, sh::Window::Auto, places, counters);
+  const std::uint64_t first = lights.versionOf(0), second = lights.versionOf(1);
+  places[1].lamps[0] = {0, 0, 5};
+  lights.update(environment, sh::Window::Auto, places, counters);
+  EXPECT_EQ(lights.versionOf(0), first);
+  EXPECT_GT(lights.versionOf(1), second);
+  EXPECT_EQ(lights.coefficients()[lights.firstOf(1) + 64], glm::vec4(0, 0, 5, 0));
 }
 
 TEST_F(GroupLightsTest, HaveNewVersionsOnlyWhereSomethingChanged) {

@@ -239,6 +239,35 @@ TEST(StableId, OutlivesReimportWithNodesAddedAndReordered) {
   EXPECT_FALSE(same(hall.top, top_first)) << "the path counts, not the name alone";
 }
 
+TEST(Instantiate, GivesEachLightOfAGroupAnEntityThatKeepsItsId) {
+  Hall hall;
+  hall.d.materials[1].name = "glow";
+  using Kind = bundle::GroupLight::Kind;
+  hall.d.groups[0].lights = {{Kind::Node, static_cast<std::uint32_t>(hall.eye), {1.0f, 2.0f, 3.0f}},
+                             {Kind::Material, 1, {5.0f, 0.0f, 0.0f}}};
+  hall.d.groups[1].lights = {{Kind::Material, 1, {5.0f, 0.0f, 0.0f}}};
+  ecs::Registry registry, again;
+  const SceneInstance scene = instance(registry, hall.d);
+  EXPECT_EQ(registry.entityCount(), 1 + 5 + 2 + 6 + 3u);
+  ASSERT_EQ(scene.lamps.size(), 2u);
+  ASSERT_EQ(scene.lamps[0].size(), 2u);
+  const auto& lamp = registry.get<LampComponent>(scene.lamps[0][0]);
+  EXPECT_EQ(lamp.color, glm::vec3(1.0f, 2.0f, 3.0f));
+  EXPECT_EQ(lamp.radiance(), lamp.color);
+  EXPECT_EQ(registry.get<LampComponent>(scene.lamps[0][1]).column, 1u);
+  EXPECT_EQ(registry.get<LampComponent>(scene.lamps[1][0]).group, 1u);
+  EXPECT_EQ(registry.get<Name>(scene.lamps[1][0]).value, "glow");
+  registry.edit<LampComponent>(scene.lamps[0][0]).enabled = false;
+  EXPECT_EQ(registry.get<LampComponent>(scene.lamps[0][0]).radiance(), glm::vec3(0.0f));
+  // Another light before it in the group moves its column, not its id.
+  std::swap(hall.d.groups[0].lights[0], hall.d.groups[0].lights[1]);
+  const SceneInstance other = instance(again, hall.d);
+  EXPECT_EQ(registry.get<StableId>(scene.lamps[0][0]), again.get<StableId>(other.lamps[0][1]));
+  EXPECT_NE(registry.get<StableId>(scene.lamps[0][1]), registry.get<StableId>(scene.lamps[1][0]));
+  destroyInstance(registry, scene);
+  EXPECT_EQ(registry.entityCount(), 0u);
+}
+
 TEST(Instantiate, TwiceNeedsAnotherInstanceNumberAndDestructionTakesOnlyItsOwn) {
   const Hall hall;
   ecs::Registry registry;
@@ -260,7 +289,7 @@ TEST(Instantiate, TwiceNeedsAnotherInstanceNumberAndDestructionTakesOnlyItsOwn) 
 
 template <class Component>
 class DeclaredFields : public ::testing::Test {};
-using Components = ::testing::Types<Name, Transform, CameraComponent, EnvironmentComponent>;
+using Components = ::testing::Types<Name, Transform, CameraComponent, EnvironmentComponent, LampComponent>;
 TYPED_TEST_SUITE(DeclaredFields, Components);
 
 TYPED_TEST(DeclaredFields, HaveTheComponentsOwnDefaultsInsideTheirRangesUnderNamesOfTheirOwn) {

@@ -1,7 +1,8 @@
 // Random bundles for the diffuse effect: several groups, cells and draws of odd sizes with random meshes,
-// rows, bases and codes, as descriptions and as what the loader would hand on.
+// rows, clusters and codes, as descriptions and as what the loader would hand on.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <random>
 #include <vector>
@@ -16,17 +17,21 @@ namespace lambent::testing {
 
 struct RandomBundle {
   bundle::Description description;
-  std::vector<streaming::Ready> meshes, rows, bases;
-  std::vector<std::vector<streaming::PlaneReady>> planes;  // per cell
+  std::vector<streaming::Ready> meshes, rows;
+  std::vector<std::vector<streaming::CodebookReady>> codebooks;  // per cell, by transfer
+  std::vector<std::vector<streaming::PlaneReady>> planes;  // per cell, of the environment, then the lamps
 };
 
 struct RandomBundleOptions {
   std::uint32_t order = 5;
-  std::uint32_t channels = 1;
+  std::uint32_t shadowed_channels = 1, full_channels = 0;
   std::uint32_t planes = 7;
+  std::uint32_t clusters = 1;
+  std::uint32_t lamps = 0;
   std::uint32_t groups = 2;
-  std::uint32_t cells = 3;      // per group
-  std::uint32_t samples = 101;  // per cell, odd on purpose
+  std::uint32_t cells = 3;         // per group
+  std::uint32_t mapped_cells = 0;  // and so many with nine outputs
+  std::uint32_t samples = 101;     // per cell, odd on purpose
   std::uint32_t vertices = 131;
 };
 
@@ -56,15 +61,16 @@ class BundleMaker {
  private:
   void addGroup(RandomBundle& made, const RandomBundleOptions& options, std::uint32_t g) {
     bundle::Description& description = made.description;
-    bundle::Group group{.name = "group",
-                        .node = static_cast<std::int32_t>(g),
-                        .rest_translation = {},
-                        .rest_rotation = rotation(),
-                        .bounds_min = {},
-                        .bounds_max = {},
-                        .sample_count = options.cells * options.samples,
-                        .cells = {}};
-    for (std::uint32_t c = 0; c < options.cells; ++c) group.cells.push_back(makeCell(made, options, g, c));
+    const std::uint32_t cells = options.cells + options.mapped_cells;
+    bundle::Group group;
+    group.node = static_cast<std::int32_t>(g);
+    group.rest_rotation = rotation();
+    group.sample_count = cells * options.samples;
+    for (std::uint32_t k = 0; k < options.lamps; ++k)
+      group.lights.push_back(
+          {.kind = bundle::GroupLight::Kind::Material, .index = 0, .color = glm::vec3(1.0f)});
+    for (std::uint32_t c = 0; c < cells; ++c)
+      group.cells.push_back(makeCell(made, options, g, c, c < options.cells ? 1 : 9));
     gltf::Node node;
     node.parent_from_node = glm::mat4_cast(group.rest_rotation);
     // Scale differs by axis: normals must go by the inverse transpose.
@@ -72,47 +78,86 @@ class BundleMaker {
     node.mesh = static_cast<std::int32_t>(g);
     description.nodes.push_back(node);
     description.roots.push_back(static_cast<std::int32_t>(g));
-    addMesh(made, options, g);
-    description.payloads.push_back({});
-    description.draws.push_back({.node = g, .mesh = g, .primitive = 0, .group = g, .rows = g});
-    made.rows.push_back(streaming::RowsReady{.draw = g, .rows = makeRows(options, group.sample_count)});
+    description.meshes.push_back({.name = "mesh", .primitives = {}});
+    description.payloads.resize(1);
+    const std::uint32_t plain = options.cells * options.samples;
+    if (plain > 0) addDraw(made, options, g, 1, 0, plain);
+    if (options.mapped_cells > 0) addDraw(made, options, g, 9, plain, group.sample_count);
     description.groups.push_back(std::move(group));
   }
 
-  bundle::Cell makeCell(RandomBundle& made, const RandomBundleOptions& options, std::uint32_t g,
-                        std::uint32_t c) {
-    bundle::DiffuseTransfer transfer{.part = bundle::TransferPart::Direct,
-                                     .order = options.order,
-                                     .light_columns = 0,
-                                     .channels = options.channels,
-                                     .basis = 0,
-                                     .planes = {},
-                                     .error_bound = 0.0f,
-                                     .error = 0.0f};
-    const std::uint32_t length = options.channels * options.order * options.order;
-    streaming::BasisReady basis{.group = g, .cell = c, .transfer = 0, .vectors = {}};
-    for (std::uint32_t i = 0; i < (1 + options.planes) * length; ++i)
-      basis.vectors.push_back(uniform(-0.5f, 0.5f));
-    made.bases.emplace_back(std::move(basis));
-    auto& planes = made.planes.emplace_back();
-    for (std::uint32_t j = 0; j < options.planes; ++j) {
-      const std::uint32_t bits = j % 2 == 0 ? 16 : 8;
-      std::vector<std::uint32_t> codes;
-      for (std::uint32_t s = 0; s < options.samples; ++s) codes.push_back(below(bits == 16 ? 65536 : 256));
-      transfer.planes.push_back({.payload = 0,
-                                 .bits = bits,
-                                 .offset = uniform(-1.0f, 0.0f),
-                                 .scale = 2.0f / (bits == 16 ? 65535.0f : 255.0f),
-                                 .variance = j == 0 ? 0.95f : 0.01f});
-      planes.push_back(
-          {.group = g, .cell = c, .transfer = 0, .plane = j, .codes = bundle::encodePlane(codes, bits)});
-    }
-    return {.first_sample = c * options.samples,
-            .sample_count = options.samples,
-            .bounds_min = {},
-            .bounds_max = {},
-            .diffuse = {transfer}};
+  void addDraw(RandomBundle& made, const RandomBundleOptions& options, std::uint32_t g, std::uint32_t outputs,
+               std::uint32_t first_sample, std::uint32_t end_sample) {
+    const auto index = static_cast<std::uint32_t>(made.description.draws.size());
+    const auto primitive = static_cast<std::uint32_t>(made.description.meshes[g].primitives.size());
+    addMesh(made, options, g);
+    made.description.draws.push_back(
+        {.node = g, .mesh = g, .primitive = primitive, .group = g, .rows = 0, .outputs = outputs});
+    made.rows.push_back(
+        streaming::RowsReady{.draw = index, .rows = makeRows(options, first_sample, end_sample)});
   }
+
+  bundle::Cell makeCell(RandomBundle& made, const RandomBundleOptions& options, std::uint32_t g,
+                        std::uint32_t c, std::uint32_t outputs) {
+    bundle::Cell cell;
+    cell.first_sample = c * options.samples;
+    cell.sample_count = options.samples;
+    made.codebooks.emplace_back();
+    made.planes.emplace_back();
+    bundle::TransferShape shape{.order = options.order,
+                                .light_columns = 0,
+                                .shadowed_channels = options.shadowed_channels,
+                                .full_channels = options.full_channels,
+                                .outputs = outputs};
+    cell.diffuse.push_back(makeTransfer(made, options, g, c, 0, shape));
+    if (options.lamps > 0) {
+      shape.order = 0;
+      shape.light_columns = options.lamps;
+      cell.diffuse.push_back(makeTransfer(made, options, g, c, 1, shape));
+    }
+    return cell;
+  }
+
+  // Clusters of ever fewer axes, random samples in each.
+  bundle::DiffuseTransfer makeTransfer(RandomBundle& made, const RandomBundleOptions& options,
+                                       std::uint32_t g, std::uint32_t c, std::uint32_t transfer_index,
+                                       const bundle::TransferShape& shape) {
+    bundle::DiffuseTransfer transfer;
+    transfer.shape = shape;
+    transfer.clusters = options.clusters;
+    bundle::Codebook codebook;
+    for (std::uint32_t cluster = 0; cluster < options.clusters; ++cluster) {
+      codebook.axis_counts.push_back(options.planes - cluster * (options.planes + 1) / options.clusters);
+      for (std::uint32_t j = 0; j < codebook.axis_counts.back(); ++j)
+        codebook.axes.push_back(
+            {.offset = uniform(-1.0f, 0.0f), .scale = 2.0f / (bitsOf(j) == 16 ? 65535.0f : 255.0f)});
+    }
+    transfer.axes = static_cast<std::uint32_t>(codebook.axes.size());
+    for (std::uint32_t i = 0; i < (options.clusters + transfer.axes) * shape.size(); ++i)
+      codebook.vectors.push_back(uniform(-0.5f, 0.5f));
+    std::vector<std::uint32_t> cluster_of;
+    for (std::uint32_t s = 0; s < options.samples; ++s)
+      cluster_of.push_back(s == 0 ? 0 : below(options.clusters));
+    const std::vector<std::uint32_t> counts = bundle::planeCounts(codebook, cluster_of);
+    for (std::uint32_t j = 0; j < counts.size(); ++j) {
+      streaming::PlaneReady plane{.group = g, .cell = c, .transfer = transfer_index, .plane = j, .codes = {}};
+      for (std::uint32_t i = 0; i < counts[j] * bitsOf(j) / 8; ++i)
+        plane.codes.push_back(static_cast<std::byte>(below(256)));
+      made.planes.back().push_back(std::move(plane));
+      transfer.planes.push_back(
+          {.payload = 0, .bits = bitsOf(j), .count = counts[j], .variance = j == 0 ? 0.95f : 0.01f});
+    }
+    std::vector<std::uint32_t> positions = bundle::positionsOf(cluster_of, options.clusters);
+    for (std::uint32_t& position : positions) position |= cluster_of[position] << 16;
+    made.codebooks.back().push_back({.group = g,
+                                     .cell = c,
+                                     .transfer = transfer_index,
+                                     .codebook = std::move(codebook),
+                                     .positions = std::move(positions)});
+    return transfer;
+  }
+
+  static std::uint32_t bitsOf(std::uint32_t plane) { return plane % 2 == 0 ? 16 : 8; }
 
   void addMesh(RandomBundle& made, const RandomBundleOptions& options, std::uint32_t g) {
     bundle::MeshData data;
@@ -129,17 +174,20 @@ class BundleMaker {
     primitive.material = 0;
     primitive.vertex_count = options.vertices;
     primitive.index_count = static_cast<std::uint32_t>(data.indices.size());
-    made.description.meshes.push_back({.name = "mesh", .primitives = {primitive}});
-    made.meshes.push_back(streaming::MeshReady{.mesh = g, .primitive = 0, .data = std::move(data)});
+    auto& primitives = made.description.meshes[g].primitives;
+    made.meshes.push_back(streaming::MeshReady{
+        .mesh = g, .primitive = static_cast<std::uint32_t>(primitives.size()), .data = std::move(data)});
+    primitives.push_back(primitive);
   }
 
-  bundle::VertexRows makeRows(const RandomBundleOptions& options, std::uint32_t sample_count) {
+  bundle::VertexRows makeRows(const RandomBundleOptions& options, std::uint32_t first_sample,
+                              std::uint32_t end_sample) {
     bundle::VertexRows rows;
     rows.offsets.push_back(0);
     for (std::uint32_t v = 0; v < options.vertices; ++v) {
       const std::uint32_t entries = 1 + below(4);
       for (std::uint32_t e = 0; e < entries; ++e) {
-        rows.samples.push_back(below(sample_count));
+        rows.samples.push_back(first_sample + below(end_sample - first_sample));
         rows.weights.push_back(1.0f / static_cast<float>(entries));
       }
       rows.offsets.push_back(static_cast<std::uint32_t>(rows.samples.size()));

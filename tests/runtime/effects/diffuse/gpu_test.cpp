@@ -27,7 +27,9 @@ struct Bench {
       : residency(page_bytes), made(maker.make(options)) {
     EXPECT_TRUE(residency.add(made.description));
     for (std::uint32_t g = 0; g < options.groups; ++g)
-      places.push_back({.world_from_group = maker.rotation(), .order = options.order, .light_columns = 0});
+      places.push_back({.world_from_group = maker.rotation(),
+                        .order = options.order,
+                        .lamps = std::vector<glm::vec3>(options.lamps, glm::vec3(0.7f, 0.3f, 1.1f))});
   }
   void upload(const streaming::Ready& item) { ASSERT_TRUE(residency.upload(0, item)); }
   void uploadMeshes() {
@@ -36,11 +38,14 @@ struct Bench {
   void uploadRows() {
     for (const auto& item : made.rows) upload(item);
   }
-  // Bases, and of each cell's planes the first `count`.
+  // Codebooks, and of each transfer the first `count` planes.
   void uploadTransfer(std::uint32_t count) {
-    for (const auto& item : made.bases) upload(item);
-    for (const auto& planes : made.planes)
-      for (std::uint32_t j = 0; j < std::min<std::size_t>(count, planes.size()); ++j) upload(planes[j]);
+    for (std::size_t cell = 0; cell < made.codebooks.size(); ++cell) uploadCell(cell, count);
+  }
+  void uploadCell(std::size_t cell, std::uint32_t count) {
+    for (const auto& item : made.codebooks[cell]) upload(item);
+    for (const auto& plane : made.planes[cell])
+      if (plane.plane < count) upload(plane);
   }
   std::uint32_t shade(TransferMode mode = TransferMode::Full) {
     gpu::Counters counters;
@@ -68,18 +73,20 @@ struct Bench {
     std::vector<std::vector<glm::vec4>> samples;
     for (std::uint32_t i = 0; i < residency.samples().pageCount(); ++i)
       samples.emplace_back(residency.samples().page(i).byteCount() / 16, glm::vec4(0.0f));
-    std::vector<Product> products(tables.product_count);
+    std::vector<glm::vec4> products(tables.product_count);
     for (std::size_t i = 0; i < tables.cells.size(); ++i) {
       const streaming::ResidentCell& resident = residency.cells()[i];
       if (!resident.usable()) continue;
-      const CellRecord& cell = tables.cells[i];
       ref::Memory memory;
       memory.lights = lights.coefficients();
       memory.transfer = transfer[resident.block.page];
-      ref::projectCell(memory, cell, tables.vectors, products);
-      for (uint s = 0; s < cell.sample_count; ++s)
-        samples[residency.groups()[resident.group].samples.page][cell.first_output + s] =
-            ref::shadeSample(memory, cell, products, s);
+      for (uint t = 0; t < tables.cells[i].count; ++t) {
+        const TransferRecord& record = tables.transfers[tables.cells[i].first + t];
+        ref::projectTransfer(memory, record, products);
+        for (uint position = 0; position < record.sample_count; ++position)
+          ref::shadePosition(memory, record, tables.planes, products, position,
+                             samples[residency.groups()[resident.group].samples.page]);
+      }
     }
     double difference = 0.0, largest = 0.0;
     for (std::size_t i = 0; i < tables.draws.size(); ++i) {
@@ -92,12 +99,19 @@ struct Bench {
                                .geometry = geometry[residency.meshes()[resident.mesh].block.page]};
       const std::vector<uint>& result = radiance[resident.radiance.page];
       for (uint v = 0; v < draw.vertex_count; ++v) {
-        const glm::vec3 expected = ref::shadeVertex(memory, draw, v);
-        for (int k = 0; k < 3; ++k) {
-          const auto got = std::bit_cast<float>(result[draw.radiance_word + 3 * v + static_cast<uint>(k)]);
-          largest = std::max<double>(largest, std::abs(expected[k]));
-          difference = std::max<double>(difference, std::abs(got - expected[k]));
-        }
+        ref::MappedLight expected{};
+        if (draw.outputs == 1)
+          expected[0] = ref::shadeVertex(memory, draw, v);
+        else
+          expected = ref::vertexLight(memory, draw, v);
+        for (uint j = 0; j < draw.outputs; ++j)
+          for (uint k = 0; k < 3; ++k) {
+            const auto got =
+                std::bit_cast<float>(result[draw.radiance_word + 3 * (draw.outputs * v + j) + k]);
+            const float wanted = expected[j][static_cast<int>(k)];
+            largest = std::max<double>(largest, std::abs(wanted));
+            difference = std::max<double>(difference, std::abs(got - wanted));
+          }
       }
     }
     return difference / largest;
@@ -112,7 +126,8 @@ TEST_F(DiffuseGpu, MatchesItsTwinAtEveryOrderAndPrefix) {
   testing::BundleMaker maker(11);
   for (std::uint32_t order = 1; order <= 8; ++order)
     for (const std::uint32_t prefix : {1u, 4u, 7u}) {
-      Bench bench(maker, {.order = order, .channels = order % 2 == 0 ? 3u : 1u, .samples = 97 + order});
+      Bench bench(maker,
+                  {.order = order, .shadowed_channels = order % 2 == 0 ? 3u : 1u, .samples = 97 + order});
       bench.uploadMeshes();
       bench.uploadRows();
       bench.uploadTransfer(prefix);
@@ -121,14 +136,74 @@ TEST_F(DiffuseGpu, MatchesItsTwinAtEveryOrderAndPrefix) {
     }
 }
 
+TEST_F(DiffuseGpu, MatchesItsTwinWithClustersLampsBothBlocksAndNormalMaps) {
+  testing::BundleMaker maker(12);
+  for (const std::uint32_t clusters : {1u, 3u, 300u})
+    for (const std::uint32_t lamps : {0u, 1u, 70u})
+      for (const std::uint32_t mapped : {0u, 2u}) {
+        Bench bench(maker, {.order = 4,
+                            .shadowed_channels = 1,
+                            .full_channels = 3,
+                            .clusters = clusters,
+                            .lamps = lamps,
+                            .cells = 2,
+                            .mapped_cells = mapped,
+                            .samples = 423});
+        bench.uploadMeshes();
+        bench.uploadRows();
+        bench.uploadTransfer(4);
+        for (const TransferMode mode : {TransferMode::Full, TransferMode::Shadowed}) {
+          bench.shade(mode);
+          EXPECT_LT(bench.differenceToTwin(), 1e-3)
+              << clusters << " clusters, " << lamps << " lamps, " << mapped << " mapped cells";
+        }
+      }
+}
+
 TEST_F(DiffuseGpu, MatchesItsTwinWithMorePlanesThanLanes) {
   testing::BundleMaker maker(12);
-  Bench bench(maker, {.order = 8, .channels = 3, .planes = 70, .groups = 1, .cells = 2, .samples = 66});
+  Bench bench(maker,
+              {.order = 8, .shadowed_channels = 3, .planes = 70, .groups = 1, .cells = 2, .samples = 66});
   bench.uploadMeshes();
   bench.uploadRows();
   bench.uploadTransfer(70);
   bench.shade();
   EXPECT_LT(bench.differenceToTwin(), 1e-3);
+}
+
+TEST_F(DiffuseGpu, NormalMappedDrawsHaveTheLightItselfUntilTransferIsThere) {
+  testing::BundleMaker maker(17);
+  Bench bench(maker, {.order = 5, .lamps = 2, .cells = 1, .mapped_cells = 1});
+  bench.uploadMeshes();
+  bench.uploadRows();
+  bench.shade();
+  EXPECT_LT(bench.differenceToTwin(), 1e-3);
+  const streaming::ResidentDraw& draw = bench.residency.draws()[1];
+  ASSERT_EQ(draw.outputs, 9u);
+  const auto pages = Bench::pagesOf(bench.residency.radiance());
+  const auto light = bench.lights.coefficients().subspan(bench.lights.firstOf(draw.group));
+  for (uint j = 0; j < 9; ++j)
+    EXPECT_EQ(std::bit_cast<float>(pages[draw.radiance.page][draw.radiance.word() + 3 * j]), light[j].r);
+}
+
+TEST_F(DiffuseGpu, ALampThatDimsIsShadedAgainAndUnshadowedIsDark) {
+  testing::BundleMaker maker(18);
+  Bench bench(maker, {.lamps = 2, .groups = 1});
+  bench.uploadMeshes();
+  bench.uploadRows();
+  bench.uploadTransfer(7);
+  EXPECT_EQ(bench.shade(), 5u) << "two kernels project, then the environment, the lamps, the vertices";
+  EXPECT_EQ(bench.shade(), 0u);
+  const auto before = Bench::pagesOf(bench.residency.radiance());
+  bench.places[0].lamps[1] = glm::vec3(0.0f);
+  EXPECT_EQ(bench.shade(), 5u);
+  EXPECT_LT(bench.differenceToTwin(), 1e-3);
+  EXPECT_NE(Bench::pagesOf(bench.residency.radiance()), before);
+  EXPECT_EQ(bench.shade(TransferMode::Unshadowed), 1u);
+  const auto unshadowed = Bench::pagesOf(bench.residency.radiance());
+  bench.places[0].lamps[0] = glm::vec3(50.0f);
+  bench.shade(TransferMode::Unshadowed);
+  EXPECT_EQ(Bench::pagesOf(bench.residency.radiance()), unshadowed);
 }
 
 TEST_F(DiffuseGpu, MatchesItsTwinOverSeveralPages) {
@@ -152,8 +227,7 @@ TEST_F(DiffuseGpu, ShadesUnshadowedUntilTransferIsThere) {
   bench.uploadRows();
   bench.shade();
   // One cell of several: rows that reach into the others mix in the unshadowed light.
-  bench.upload(bench.made.bases[0]);
-  bench.upload(bench.made.planes[0][0]);
+  bench.uploadCell(0, 1);
   EXPECT_EQ(bench.shade(), 3u);
   EXPECT_LT(bench.differenceToTwin(), 1e-3);
 }

@@ -40,61 +40,151 @@ TEST(DiffuseTwin, ShadesUnshadowedAsTheClosedFormOfOpenTransfer) {
   }
 }
 
-TEST(DiffuseTwin, ShadesSamplesAsDecodedTransferTimesLight) {
-  testing::BundleMaker maker(4);
-  for (const std::uint32_t channels : {1u, 3u}) {
-    const testing::RandomBundle made =
-        maker.make({.order = 4, .channels = channels, .planes = 5, .cells = 1});
-    const bundle::DiffuseTransfer& transfer = made.description.groups[0].cells[0].diffuse[0];
-    const auto& basis = std::get<streaming::BasisReady>(made.bases[0]).vectors;
-    const std::uint32_t samples = made.description.groups[0].cells[0].sample_count;
-    const std::vector<glm::vec4> light = randomLight(maker, 4);
-    // The page: basis, then planes, each from a whole word.
-    std::vector<uint> page(basis.size());
-    std::memcpy(page.data(), basis.data(), 4 * basis.size());
-    std::vector<VectorRecord> vectors;
-    std::vector<std::vector<std::uint32_t>> decoded;
-    const uint length = channels * 16;
-    for (uint j = 0; j <= transfer.planes.size(); ++j) {
-      VectorRecord vector{j * length, 0, 1.0f, 0.0f, channels, 16, 4, j};
-      if (j > 0) {
-        const bundle::WeightPlane& plane = transfer.planes[j - 1];
-        const auto& codes = made.planes[0][j - 1].codes;
-        vector.codes = static_cast<uint>(page.size()) | (plane.bits == 16 ? kCodes16Bit : 0u);
-        vector.offset = plane.offset;
-        vector.scale = plane.scale;
-        page.resize(page.size() + (codes.size() + 3) / 4);
-        std::memcpy(&page[vector.codes & ~kCodes16Bit], codes.data(), codes.size());
-        decoded.push_back(*bundle::decodePlane(codes, plane.bits, samples, "plane"));
-      }
-      vectors.push_back(vector);
+namespace {
+
+// A transfer as residency lays it out, alone in its page.
+struct Page {
+  std::vector<uint> words, planes;
+  TransferRecord record{};
+
+  Page(const testing::RandomBundle& made, std::size_t transfer_index, bool full) {
+    const bundle::DiffuseTransfer& transfer = made.description.groups[0].cells[0].diffuse[transfer_index];
+    const bundle::TransferShape& shape = transfer.shape;
+    const bundle::Codebook& codebook = made.codebooks[0][transfer_index].codebook;
+    const auto& positions = made.codebooks[0][transfer_index].positions;
+    record = {.light = shape.order > 0 ? 0 : kLightStride,
+              .columns = shape.columns(),
+              .channels = full ? shape.full_channels : shape.shadowed_channels,
+              .outputs = shape.outputs,
+              .clusters = transfer.clusters,
+              .clusters_word = 0,
+              .weights_word = 0,
+              .vectors_word = 0,
+              .positions_word = 0,
+              .vector_size = shape.size(),
+              .first_value = full ? shape.shadowed_channels * shape.outputs * shape.columns() : 0,
+              .plane_count = static_cast<uint>(transfer.planes.size()),
+              .first_plane = 0,
+              .first_product = 0,
+              .first_output = 0,
+              .sample_count = static_cast<uint>(positions.size()),
+              .accumulate = transfer_index > 0 ? 1u : 0u};
+    uint vector = 0;
+    for (const uint axes : codebook.axis_counts) {
+      words.insert(words.end(), {vector, axes});
+      vector += 1 + axes;
     }
-    const std::vector<float> plain = bundle::decodeTransfer(transfer, samples, basis, decoded);
-    ref::Memory memory;
-    memory.lights = light;
-    memory.transfer = page;
-    const CellRecord cell{.light = 0,
-                          .first_vector = 0,
-                          .vector_count = static_cast<uint>(vectors.size()),
-                          .first_product = 0,
-                          .plane_count = static_cast<uint>(vectors.size()) - 1,
-                          .first_output = 0,
-                          .sample_count = samples,
-                          .order = 4};
-    std::vector<Product> products(vectors.size());
-    ref::projectCell(memory, cell, vectors, products);
-    for (uint s = 0; s < samples; ++s) {
-      glm::vec3 expected(0.0f);
-      for (glm::length_t channel = 0; channel < 3; ++channel)
-        for (std::size_t i = 0; i < 16; ++i)
-          expected[channel] +=
-              plain[(s * channels + (channels == 3 ? static_cast<uint>(channel) : 0u)) * 16 + i] *
-              light[i][channel];
-      const glm::vec4 got = ref::shadeSample(memory, cell, products, s);
-      EXPECT_LT(glm::distance(glm::vec3(got), expected), 1e-4f);  // values are of size 1, sums of 100 floats
-      EXPECT_EQ(got.w, 1.0f);
+    record.weights_word = size();
+    for (std::size_t c = 0, axis = 0; c < codebook.clusters(); ++c) {
+      append(std::vector{1.0f, 0.0f});
+      for (uint j = 0; j < codebook.axis_counts[c]; ++j, ++axis)
+        append(std::vector{codebook.axes[axis].offset, codebook.axes[axis].scale});
+    }
+    record.vectors_word = size();
+    append(codebook.vectors);
+    record.positions_word = size();
+    words.insert(words.end(), positions.begin(), positions.end());
+    for (const streaming::PlaneReady& plane : made.planes[0]) {
+      if (plane.transfer != transfer_index) continue;
+      planes.push_back(size() | (transfer.planes[plane.plane].bits == 16 ? kCodes16Bit : 0u));
+      words.resize(words.size() + (plane.codes.size() + 3) / 4);
+      std::memcpy(&words[planes.back() & ~kCodes16Bit], plane.codes.data(), plane.codes.size());
     }
   }
+  uint size() const { return static_cast<uint>(words.size()); }
+  void append(const std::vector<float>& values) {
+    for (const float value : values) words.push_back(std::bit_cast<uint>(value));
+  }
+};
+
+std::vector<std::vector<std::uint32_t>> codesOf(const testing::RandomBundle& made, std::size_t transfer) {
+  std::vector<std::vector<std::uint32_t>> all;
+  for (const streaming::PlaneReady& plane : made.planes[0]) {
+    if (plane.transfer != transfer) continue;
+    const std::size_t bytes =
+        made.description.groups[0].cells[0].diffuse[transfer].planes[plane.plane].bits / 8;
+    auto& codes = all.emplace_back(plane.codes.size() / bytes, 0u);
+    for (std::size_t i = 0; i < codes.size(); ++i) std::memcpy(&codes[i], &plane.codes[i * bytes], bytes);
+  }
+  return all;
+}
+
+// What all transfers of the cell give, decoded the plain way: [sample][output].
+std::vector<glm::vec3> decodedTimesLight(const testing::RandomBundle& made,
+                                         const std::vector<glm::vec4>& light, bool full) {
+  std::vector<glm::vec3> out;
+  for (std::size_t t = 0; t < made.codebooks[0].size(); ++t) {
+    const bundle::TransferShape& shape = made.description.groups[0].cells[0].diffuse[t].shape;
+    const auto& positions = made.codebooks[0][t].positions;
+    std::vector<std::uint32_t> cluster_of(positions.size());
+    for (const std::uint32_t place : positions) cluster_of[place & 0xffff] = place >> 16;
+    const std::vector<float> vectors =
+        bundle::decodeTransfer(shape, made.codebooks[0][t].codebook, cluster_of, codesOf(made, t));
+    out.resize(positions.size() * shape.outputs, glm::vec3(0.0f));
+    const std::uint32_t first = full ? shape.shadowed_channels : 0;
+    const std::uint32_t channels = full ? shape.full_channels : shape.shadowed_channels;
+    for (std::size_t s = 0; s < positions.size(); ++s)
+      for (std::uint32_t j = 0; j < shape.outputs; ++j)
+        for (std::uint32_t c = 0; c < 3; ++c)
+          for (std::uint32_t i = 0; i < shape.columns(); ++i) {
+            const std::uint32_t channel = first + (channels == 3 ? c : 0);
+            out[s * shape.outputs + j][static_cast<int>(c)] +=
+                vectors[s * shape.size() + (channel * shape.outputs + j) * shape.columns() + i] *
+                light[(shape.order > 0 ? 0 : kLightStride) + i][static_cast<int>(c)];
+          }
+  }
+  return out;
+}
+
+}  // namespace
+
+TEST(DiffuseTwin, ShadesSamplesAsDecodedTransferTimesLight) {
+  testing::BundleMaker maker(4);
+  for (const std::uint32_t clusters : {1u, 3u, 300u})
+    for (const std::uint32_t lamps : {0u, 5u})
+      for (const bool mapped : {false, true})
+        for (const bool full : {false, true}) {
+          const testing::RandomBundle made = maker.make({.order = 3,
+                                                         .shadowed_channels = mapped ? 3u : 1u,
+                                                         .full_channels = mapped ? 1u : 3u,
+                                                         .planes = 5,
+                                                         .clusters = clusters,
+                                                         .lamps = lamps,
+                                                         .groups = 1,
+                                                         .cells = mapped ? 0u : 1u,
+                                                         .mapped_cells = mapped ? 1u : 0u});
+          std::vector<glm::vec4> light = randomLight(maker, 3);
+          for (std::uint32_t k = 0; k < lamps; ++k)
+            light.emplace_back(maker.uniform(0, 1), maker.uniform(0, 1), maker.uniform(0, 1), 0.0f);
+          const std::vector<glm::vec3> expected = decodedTimesLight(made, light, full);
+          std::vector<glm::vec4> samples(expected.size(), glm::vec4(0.0f));
+          for (std::size_t t = 0; t < made.codebooks[0].size(); ++t) {
+            const Page page(made, t, full);
+            ref::Memory memory;
+            memory.lights = light;
+            memory.transfer = page.words;
+            std::vector<glm::vec4> products(page.words.size());
+            ref::projectTransfer(memory, page.record, products);
+            for (uint p = 0; p < page.record.sample_count; ++p)
+              ref::shadePosition(memory, page.record, page.planes, products, p, samples);
+          }
+          for (std::size_t i = 0; i < samples.size(); ++i) {
+            // Values are of size 1, sums of 100 floats.
+            EXPECT_LT(glm::distance(glm::vec3(samples[i]), expected[i]), 1e-4f) << clusters;
+            EXPECT_EQ(samples[i].w, 1.0f);
+          }
+        }
+}
+
+TEST(DiffuseTwin, MappedLightOfAnUnshadowedVertexIsTheLight) {
+  testing::BundleMaker maker(5);
+  const std::vector<glm::vec4> light = randomLight(maker, 3);
+  ref::Memory memory;
+  memory.lights = light;
+  DrawRecord draw{};
+  draw.rows_word = kNoRows;
+  const ref::MappedLight found = ref::vertexLight(memory, draw, 0);
+  for (std::size_t j = 0; j < 9; ++j) EXPECT_EQ(found[j], glm::vec3(light[j]));
 }
 
 }  // namespace lambent::effects::diffuse

@@ -1,0 +1,33 @@
+// One rigid group from its decoded meshes to codes: samples, rays, bounces, coding.
+#pragma once
+
+#include <memory>
+#include <stop_token>
+#include <vector>
+
+#include "baker/bake/bake.hpp"
+#include "baker/bake/ship_meshes.hpp"
+#include "baker/compress/cpca.hpp"
+#include "baker/plan/group_lights.hpp"
+#include "baker/transport/alpha_map.hpp"
+#include "baker/transport/group_geometry.hpp"
+#include "baker/transport/samples.hpp"
+
+namespace lambent::baker {
+
+struct BakedGroup {
+  GroupGeometry geometry;  // draws and bounds are used here
+  SampleSet samples;
+  std::vector<PlannedLight> lights;
+  // Per sample cell: light of the environment, then, where there are some, of the group's lights.
+  std::vector<std::vector<CodedTransfer>> cells;
+};
+
+// Adds what it did to the report. Errors: no memory for the hierarchy, images that cannot be decoded,
+// "stopped".
+Result<BakedGroup> bakeGroup(const Scene& scene, const RigidGroup& group, const ShippedMeshes& meshes,
+                             const std::vector<std::shared_ptr<const AlphaMap>>& alpha_maps,
+                             const BakeOptions& options, Progress& progress, const std::stop_token& stop,
+                             BakeReport& report);
+
+}  // namespace lambent::baker

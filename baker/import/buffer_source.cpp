@@ -1,0 +1,114 @@
+#include "baker/import/buffer_source.hpp"
+
+#include <algorithm>
+#include <span>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "baker/import/container.hpp"
+#include "baker/import/meshopt.hpp"
+#include "baker/import/uri.hpp"
+
+namespace lambent::baker {
+namespace {
+
+using nlohmann::json;
+
+// The bytes that some view stands on, each counted once however many views share them.
+std::size_t bytesCovered(std::vector<std::pair<std::size_t, std::size_t>> ranges) {
+  std::sort(ranges.begin(), ranges.end());
+  std::size_t covered = 0, end = 0;
+  for (const auto& [first, last] : ranges) {
+    if (last <= end) continue;
+    covered += last - std::max(first, end);
+    end = last;
+  }
+  return covered;
+}
+
+}  // namespace
+
+BufferSource::BufferSource(json& document, std::vector<std::byte> binary, const std::filesystem::path& path,
+                           const ImportOptions& options)
+    : binary_(std::move(binary)), path_(path), options_(options) {
+  if (!document.contains("buffers")) return;
+  for (json& buffer : document["buffers"]) {
+    wanted_.push_back({buffer.value("uri", std::string()), buffer["byteLength"].get<std::size_t>(), {}});
+    buffer["uri"] = std::to_string(wanted_.size() - 1);
+  }
+  // Views that meshoptimizer coded belong to a buffer without bytes of its own; those that have bytes keep
+  // them.
+  if (!document.contains("bufferViews")) return;
+  for (std::size_t v = 0; v < document["bufferViews"].size(); ++v) {
+    const json& view = document["bufferViews"][v];
+    Wanted& buffer = wanted_[view["buffer"].get<std::size_t>()];
+    if (!buffer.uri.empty() || !view.contains("extensions") || !view["extensions"].contains(kMeshopt))
+      continue;
+    const json& extension = view["extensions"][kMeshopt];
+    buffer.coded.push_back(
+        {v, view.value("byteOffset", std::size_t{0}), view["byteLength"].get<std::size_t>(), extension});
+    sources_.insert(extension["buffer"].get<std::size_t>());
+  }
+}
+
+Result<std::vector<std::byte>> BufferSource::read(std::size_t i) {
+  if (i >= wanted_.size())
+    return fail(path_.string(), fmt::format("buffer {} does not exist", i), "export the scene again");
+  auto bytes = wanted_[i].coded.empty() ? load(i) : decode(wanted_[i]);
+  if (bytes) bytes->resize(wanted_[i].length);
+  return bytes;
+}
+
+// A buffer of views that meshoptimizer coded.
+Result<std::vector<std::byte>> BufferSource::decode(const Wanted& buffer) {
+  std::map<std::size_t, std::vector<std::pair<std::size_t, std::size_t>>> ranges;  // by source
+  for (const CodedView& view : buffer.coded) {
+    const auto first = view.extension.value("byteOffset", std::size_t{0});
+    ranges[view.extension["buffer"].get<std::size_t>()].emplace_back(
+        first, first + view.extension["byteLength"].get<std::size_t>());
+  }
+  std::size_t coded_bytes = 0;
+  for (const auto& [source, list] : ranges) coded_bytes += bytesCovered(list);
+  if (buffer.length / kMeshoptLargestRatio > coded_bytes)
+    return fail(path_.string(), fmt::format("claims {} bytes coded in {}", buffer.length, coded_bytes),
+                "export the scene again");
+  std::vector<std::byte> bytes(buffer.length);
+  for (const CodedView& view : buffer.coded) {
+    const auto source = view.extension["buffer"].get<std::size_t>();
+    if (!kept_.contains(source))
+      if (auto loaded = load(source); !loaded) return loaded;
+    const auto coded = std::span<const std::byte>(kept_.at(source))
+                           .subspan(view.extension.value("byteOffset", std::size_t{0}),
+                                    view.extension["byteLength"].get<std::size_t>());
+    const auto decoded =
+        decodeMeshopt(view.extension, coded, std::span(bytes).subspan(view.offset, view.length),
+                      path_.string(), fmt::format("bufferView {}", view.index));
+    if (!decoded) return failAgain(decoded.error());
+  }
+  return bytes;
+}
+
+Result<std::vector<std::byte>> BufferSource::load(std::size_t i) {
+  if (const auto kept = kept_.find(i); kept != kept_.end()) return kept->second;
+  const std::string& uri = wanted_[i].uri;
+  const std::size_t length = wanted_[i].length;
+  const std::string object = fmt::format("buffer {}", i);
+  std::vector<std::byte> bytes;
+  if (uri.empty()) {
+    if (i != 0 || binary_.empty())
+      return fail(path_.string(), object + " has neither a URI nor a binary chunk", "export the scene again");
+    bytes = std::exchange(binary_, {});
+  } else {
+    auto read = readUri(path_, uri, options_, object);
+    if (!read) return read;
+    bytes = std::move(*read);
+  }
+  if (bytes.size() < length)
+    return fail(path_.string(), fmt::format("{} has {} bytes of {}", object, bytes.size(), length),
+                "the file is truncated; copy or export it again");
+  if (sources_.contains(i)) kept_[i] = bytes;
+  return bytes;
+}
+
+}  // namespace lambent::baker

@@ -1,0 +1,162 @@
+// The meshes that a scene draws, each as it stands at rest.
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <tuple>
+
+#include <fmt/format.h>
+#include <glm/matrix.hpp>
+#include <nlohmann/json.hpp>
+
+#include "baker/import/accessor.hpp"
+#include "baker/import/convert.hpp"
+#include "baker/import/primitives.hpp"
+#include "baker/import/tinygltf.hpp"
+
+namespace lambent::baker {
+namespace {
+
+// Posed meshes are copies, and nodes are cheap to write: a small file could claim any amount.
+constexpr std::size_t kMaxVertices = 1u << 26;
+
+std::vector<float> weightsOf(const tinygltf::Node& node, const tinygltf::Mesh& mesh) {
+  const std::vector<double>& weights = node.weights.empty() ? mesh.weights : node.weights;
+  return {weights.begin(), weights.end()};
+}
+
+// Joints' matrices of a skin: world at rest from mesh as stored.
+Result<std::vector<glm::dmat4>> jointMatrices(const Document& document, std::size_t number,
+                                              const std::vector<glm::mat4>& world) {
+  const nlohmann::json& skin = document.json()["skins"][number];
+  const nlohmann::json& joints = skin["joints"];
+  std::vector<glm::dmat4> matrices(joints.size(), glm::dmat4(1.0));
+  if (skin.contains("inverseBindMatrices")) {
+    const auto floats =
+        readFloats(document, skin["inverseBindMatrices"].get<int>(), "inverseBindMatrices", {16}, 16);
+    if (!floats) return failAgain(floats.error());
+    if (floats->count() < joints.size())
+      return fail(document.file(),
+                  fmt::format("skin {}: {} inverse bind matrices for {} joints", number, floats->count(),
+                              joints.size()),
+                  "export the scene again");
+    for (std::size_t j = 0; j < joints.size(); ++j)
+      for (int i = 0; i < 16; ++i)
+        matrices[j][i / 4][i % 4] = double{floats->values[16 * j + static_cast<std::size_t>(i)]};
+  }
+  for (std::size_t j = 0; j < joints.size(); ++j) {
+    matrices[j] = glm::dmat4(world[joints[j].get<std::size_t>()]) * matrices[j];
+    for (int i = 0; i < 16; ++i)
+      if (!std::isfinite(matrices[j][i / 4][i % 4]))
+        return fail(document.file(), fmt::format("skin {}: the matrix of joint {} is not finite", number, j),
+                    "export the scene again");
+  }
+  return matrices;
+}
+
+class MeshConverter {
+ public:
+  MeshConverter(const Document& document, NodeMap& map, Scene& scene)
+      : document_(document), map_(map), scene_(scene), world_(fileWorldTransforms(document)) {}
+
+  Result<void> convert() {
+    const std::size_t nodes = scene_.nodes.size();  // skins may add some
+    for (std::size_t n = 0; n < nodes; ++n)
+      if (scene_.nodes[n].mesh >= 0)
+        if (auto done = convertNode(n); !done) return done;
+    return {};
+  }
+
+ private:
+  Result<void> convertNode(std::size_t n) {
+    const auto file_node = static_cast<std::size_t>(map_.file_node[n]);
+    const tinygltf::Node& source = document_.model().nodes[file_node];
+    const auto file_mesh = static_cast<std::size_t>(source.mesh);
+    MeshPose pose{weightsOf(source, document_.model().meshes[file_mesh]), {}};
+    const bool skinned = source.skin >= 0;
+    if (skinned) {
+      auto joints = jointMatrices(document_, static_cast<std::size_t>(source.skin), world_);
+      if (!joints) return failAgain(std::move(joints.error()));
+      pose.joints = std::move(*joints);
+      scene_.warnings.push_back(
+          fmt::format("node {}: its skin stands as the file's joints do and does not move", file_node));
+      n = placeSkinned(n, pose);
+    }
+    // A skinned mesh depends on its node: nobody else draws it.
+    const auto [entry, added] = number_.try_emplace(
+        {file_mesh, pose.weights, skinned ? static_cast<std::int64_t>(n) : -1}, std::int32_t{-1});
+    if (added) {
+      auto mesh = readMesh(file_mesh, pose);
+      if (!mesh) return failAgain(std::move(mesh.error()));
+      if (!mesh->primitives.empty()) {
+        entry->second = static_cast<std::int32_t>(scene_.meshes.size());
+        scene_.meshes.push_back(std::move(*mesh));
+      }
+    }
+    scene_.nodes[n].mesh = entry->second;
+    return {};
+  }
+
+  // glTF places a skinned mesh by its joints alone. It stays at its node all the same, brought into the
+  // node's space, so that what moves the figure as a whole moves the mesh; but not where the node's space is
+  // flat or mirrored: there it gets a node of its own. Returns the node that draws it.
+  std::size_t placeSkinned(std::size_t n, MeshPose& pose) {
+    const glm::dmat4 world(world_[static_cast<std::size_t>(map_.file_node[n])]);
+    const double size = std::cbrt(std::abs(glm::determinant(glm::dmat3(world))));
+    if (glm::determinant(glm::dmat3(world)) > 0.0 && size > 1e-6) {
+      const glm::dmat4 mesh_from_world = glm::inverse(world);
+      for (glm::dmat4& joint : pose.joints) joint = mesh_from_world * joint;
+      return n;
+    }
+    gltf::Node own;
+    own.name = scene_.nodes[n].name;
+    own.mesh = scene_.nodes[n].mesh;
+    own.movable = scene_.nodes[n].movable;
+    scene_.nodes[n].mesh = -1;
+    scene_.roots.push_back(static_cast<std::int32_t>(scene_.nodes.size()));
+    scene_.nodes.push_back(std::move(own));
+    map_.file_node.push_back(-1);
+    return scene_.nodes.size() - 1;
+  }
+
+  Result<SceneMesh> readMesh(std::size_t m, const MeshPose& pose) {
+    const tinygltf::Mesh& source = document_.model().meshes[m];
+    SceneMesh mesh{.name = source.name, .primitives = {}};
+    for (std::size_t p = 0; p < source.primitives.size(); ++p) {
+      const tinygltf::Primitive& primitive = source.primitives[p];
+      const std::string name = fmt::format("mesh {}, primitive {}", m, p);
+      const bool tangents =
+          primitive.material >= 0 &&
+          scene_.materials[static_cast<std::size_t>(primitive.material)].normal_texture.texture >= 0;
+      auto data = readPrimitive(document_, primitive, pose, tangents, name, scene_.warnings);
+      if (!data) return failAgain(std::move(data.error()));
+      if (data->indices.empty()) continue;
+      if (!primitive.targets.empty())
+        scene_.warnings.push_back(
+            fmt::format("{}: its morph targets stand as the file's weights say and do not move", name));
+      cleanMesh(*data, name, scene_.warnings);
+      vertices_ += data->positions.size();
+      if (vertices_ > kMaxVertices)
+        return fail(document_.file(),
+                    fmt::format("{} brings the scene to more than {} vertices", name, kMaxVertices),
+                    "import it in parts");
+      if (!data->indices.empty()) mesh.primitives.push_back({std::move(*data), primitive.material});
+    }
+    return mesh;
+  }
+
+  using Key = std::tuple<std::size_t, std::vector<float>, std::int64_t>;  // mesh, weights, node of a skin
+  const Document& document_;
+  NodeMap& map_;
+  Scene& scene_;
+  std::vector<glm::mat4> world_;
+  std::map<Key, std::int32_t> number_;
+  std::size_t vertices_ = 0;
+};
+
+}  // namespace
+
+Result<void> convertMeshes(const Document& document, NodeMap& map, Scene& scene) {
+  return MeshConverter(document, map, scene).convert();
+}
+
+}  // namespace lambent::baker

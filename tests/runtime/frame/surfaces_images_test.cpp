@@ -1,0 +1,50 @@
+// In which colour spaces the images of a bundle lie on the GPU, by what its materials look for in them.
+#include <gtest/gtest.h>
+
+#include "runtime/streaming/residency.hpp"
+#include "tests/support/gpu_context.hpp"
+
+namespace lambent::frame {
+using SurfaceImages = testing::GpuTest;
+
+TEST_F(SurfaceImages, ColoursAreSrgbNormalsLinearAndAnImageThatIsBothIsHeldTwice) {
+  // Image 0: base colour. 1: emissive. 2: normals. 3: base colour of one material, normals of another.
+  // 4: no material names it.
+  bundle::Description description;
+  for (std::int32_t i = 0; i < 5; ++i) {
+    description.images.push_back({.name = "image", .mime_type = "image/png", .view = 0});
+    description.textures.push_back({.image = i, .sampler = {}});
+  }
+  gltf::Material first, second;
+  first.base_color_texture.texture = 0;
+  first.emissive_texture.texture = 1;
+  first.normal_texture.texture = 2;
+  second.base_color_texture.texture = 3;
+  second.normal_texture.texture = 3;
+  description.materials = {first, second};
+
+  streaming::Residency residency;
+  ASSERT_TRUE(residency.add(description));
+  for (std::uint32_t i = 0; i < 5; ++i)
+    ASSERT_TRUE(residency.upload(
+        0, streaming::ImageReady{
+               .image = i, .width = 4, .height = 3, .rgba = std::vector<std::uint8_t>(4 * 12, 188)}));
+
+  const streaming::ResidentBundle& bundle = residency.bundles()[0];
+  const bool color[] = {true, true, false, true, true}, normals[] = {false, false, true, true, false};
+  for (std::size_t i = 0; i < 5; ++i) {
+    SCOPED_TRACE(i);
+    EXPECT_EQ(bool(bundle.images[i]), color[i]);
+    EXPECT_EQ(bool(bundle.linear_images[i]), normals[i]);
+    if (color[i]) {
+      EXPECT_EQ(bundle.images[i].desc().format, GLenum{GL_SRGB8_ALPHA8});
+    }
+    if (normals[i]) {
+      EXPECT_EQ(bundle.linear_images[i].desc().format, GLenum{GL_RGBA8});
+    }
+  }
+  // 4 x 3 texels of four bytes, a third more for mip levels.
+  EXPECT_EQ(residency.bytesResident(), 6u * 64u) << "five images, one of them twice";
+}
+
+}  // namespace lambent::frame
