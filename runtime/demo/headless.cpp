@@ -40,9 +40,10 @@ Result<void> runHeadless(const Options& options) {
 
   const auto start = std::chrono::steady_clock::now();
   Report report;
-  frame::World world;
+  frame::World world({.max_resident_bytes = options.max_memory_bytes});
   for (const std::filesystem::path& path : options.bundles)
     if (Result<void> opened = world.open(path); !opened) return opened;
+  world.scaleLamps(options.lamps);
   gpu::Counters loading;
   if (Result<void> loaded = world.uploadAll(loading); !loaded) return loaded;
   report.load_ms =
@@ -80,6 +81,7 @@ Result<void> runHeadless(const Options& options) {
   frame->timers().finish();
   report.last_frame = frame->timers().latest();
   report.bytes_resident = world.residency().bytesResident();
+  report.parts = world.loadedParts();
   report.negative_pixels = frame->negativePixels();
   report.exposure_ev = frame->exposureEv();
   report.gl_errors = context->errors();

@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "runtime/spec/numbers.hpp"
 #include "runtime/spec/rotate.hpp"
 
 namespace lambent::demo {
@@ -21,14 +22,12 @@ const std::map<std::string, TransferMode> kTransferWords = {{"unshadowed", Trans
 const std::map<std::string, sh::Window> kWindowWords = {
     {"auto", sh::Window::Auto}, {"off", sh::Window::Off}, {"hann", sh::Window::Hann}};
 
-// A blue sky's worth of constant light and a soft sun, about radiance 1 on a white surface that faces it.
-constexpr const char* kDefaultLights[] = {"constant:0.35,0.42,0.55", "sun:35,45,6,100,92,80"};
-
 // What CLI11 hands over, before the words are understood.
 struct Words {
   std::vector<std::string> bundles, lights;
   std::string light_layout, camera, size = "1280x720", headless, transfer = "full", window = "auto";
-  std::string rotate_light = "0", exposure = "auto";
+  std::string rotate_light = "0", exposure = "auto", lamps = "1";
+  std::uint64_t max_memory = ~std::uint64_t{0};
   std::uint32_t frames = 1;
   bool json = false;
 };
@@ -49,9 +48,12 @@ constexpr Row kRows[] = {
     {"--size", &Words::size, "WxH", "Picture or window in pixels"},
     {"--headless", &Words::headless, "OUT",
      "Write one picture (.png tone-mapped, .exr linear) without a display"},
-    {"--transfer", &Words::transfer, "MODE", "What of the transfer counts: unshadowed, shadowed or full"},
+    {"--transfer", &Words::transfer, "MODE",
+     "Light that counts: unshadowed, shadowed (no bounces) or full;\nunshadowed, the scenes' own lights are "
+     "dark"},
     {"--window", &Words::window, "WINDOW", "Against ringing of the light: auto, off or hann"},
     {"--rotate-light", &Words::rotate_light, "DEG", "Turn all lights about +Y (+Z towards +X)"},
+    {"--lamps", &Words::lamps, "FACTOR", "Times the strength of the scenes' own lights; 0 switches them off"},
     {"--exposure", &Words::exposure, "EV", "Stops above radiance 1 = white, or auto"},
 };
 
@@ -74,6 +76,12 @@ void declare(CLI::App& app, Words& words) {
       ->type_name("N")
       ->capture_default_str()
       ->check(CLI::Range(1u, 1'000'000u).description(""));
+  app.add_option(
+         "--max-memory", words.max_memory,
+         "GPU memory for the scenes, in bytes or like 200MB; what has no\nroom is detail of the light "
+         "(default: no limit)")
+      ->type_name("BYTES")
+      ->transform(CLI::AsSizeValue(/*kb_is_1000=*/false));
   app.add_flag("--json", words.json, "Report on stdout: times, counts, bytes resident");
   app.set_version_flag("--version", "lambent-demo " LAMBENT_VERSION);
 }
@@ -95,7 +103,8 @@ Result<void> understandLights(const Words& words, Options& options) {
   }
   options.default_light = words.lights.empty();
   options.light_words = words.lights;
-  if (options.default_light) options.light_words.assign(std::begin(kDefaultLights), std::end(kDefaultLights));
+  if (options.default_light)
+    options.light_words.assign(spec::kDefaultLights.begin(), spec::kDefaultLights.end());
   for (const std::string& word : options.light_words) {
     Result<spec::Light> light = spec::parseLight(word);
     if (!light) return failAgain(light.error());
@@ -146,6 +155,11 @@ Result<Options> understand(const Words& words) {
   if (!window) return failAgain(window.error());
   const Result<float> turn = spec::parseDegrees(words.rotate_light);
   if (!turn) return failAgain(turn.error());
+  const std::optional<float> lamps = spec::parseNumber(words.lamps);
+  if (!lamps || *lamps < 0.0f || *lamps > 1e6f)
+    return fail("--lamps", fmt::format("\"{}\" is not a factor", words.lamps), "give 0..1000000");
+  options.lamps = *lamps;
+  options.max_memory_bytes = words.max_memory;
   options.transfer = *transfer;
   options.transfer_word = words.transfer;
   options.window = *window;

@@ -32,7 +32,9 @@ struct Options {
   std::string window_word;
   std::uint32_t frames = 1;
   float rotate_light_deg = 0.0f;
-  std::optional<float> exposure_ev;  // none: automatic
+  std::optional<float> exposure_ev;                    // none: automatic
+  float lamps = 1.0f;                                  // factor on the strength of the scenes' own lights
+  std::uint64_t max_memory_bytes = ~std::uint64_t{0};  // of GPU memory for the bundles
   bool json = false;
 };
 

@@ -50,9 +50,10 @@ Result<void> runWindowed(const Options& options) {
   const std::string title = "Lambent - " + options.bundles.front().filename().string();
   Result<gpu::Window> window = gpu::Window::create(title, options.size.width, options.size.height, {});
   if (!window) return failAgain(window.error());
-  frame::World world;
+  frame::World world({.max_resident_bytes = options.max_memory_bytes});
   for (const std::filesystem::path& path : options.bundles)
     if (Result<void> opened = world.open(path); !opened) return opened;
+  world.scaleLamps(options.lamps);
   Result<ViewController> controller = ViewController::create(world, options.camera, options.size.aspect());
   if (!controller) return failAgain(controller.error());
   spec::Size size = options.size;

@@ -74,7 +74,8 @@ TEST_F(DemoProgram, WrongUsageIsExitCode2AndOneLine) {
   for (const char* arguments :
        {"", "a.glb --size 0x5", "a.glb --light moon:1", "a.glb --camera orbit:1", "a.glb --transfer some",
         "a.glb --window foggy", "a.glb --headless a.jpg", "a.glb --exposure bright", "a.glb --frames 0",
-        "a.glb --rotate-light much", "a.glb --light-layout round", "a.glb --no-such-option"}) {
+        "a.glb --rotate-light much", "a.glb --light-layout round", "a.glb --lamps -1", "a.glb --lamps bright",
+        "a.glb --max-memory much", "a.glb --no-such-option"}) {
     const Outcome outcome = run(arguments);
     EXPECT_EQ(outcome.exit_code, 2) << arguments;
     expectOneLine(outcome.err);
@@ -86,8 +87,9 @@ TEST_F(DemoProgram, HelpAndVersionAreExitCode0) {
   EXPECT_EQ(run("--version").exit_code, 0);
   const Outcome help = run("--help");
   EXPECT_EQ(help.exit_code, 0);
-  for (const char* option : {"--light", "--light-layout", "--camera", "--size", "--headless", "--transfer",
-                             "--window", "--frames", "--rotate-light", "--exposure", "--json", "--version"})
+  for (const char* option :
+       {"--light", "--light-layout", "--camera", "--size", "--headless", "--transfer", "--window", "--frames",
+        "--rotate-light", "--exposure", "--lamps", "--max-memory", "--json", "--version"})
     EXPECT_NE(help.out.find(option), std::string::npos) << option;
 }
 
@@ -119,6 +121,32 @@ TEST_F(DemoProgram, WritesPicturesAndPrintsWhere) {
   const glm::vec4 centre = linear->texels[32 * 64 + 32];
   for (int i = 0; i < 3; ++i) EXPECT_NEAR(centre[i], static_cast<float>(i + 1), 3e-3f);  // half-float basis
   EXPECT_EQ(centre.a, 1.0f);
+}
+
+TEST_F(DemoProgram, KeepsToItsMemoryAndDimsLamps) {
+  if (!deviceHere()) GTEST_SKIP() << "no OpenGL 4.5 here";
+  const std::filesystem::path lit = folder / "lit.lmb.glb", exr = folder / "a.exr";
+  testing::BundleBuilder()
+      .lamp({.kind = bundle::GroupLight::Kind::Node, .index = 0, .color = glm::vec3(2.0f)}, 0.5f)
+      .add({testing::sphereMesh(12, 24), {}})
+      .write(lit);
+  const auto centre = [&](const std::string& more) {
+    const Outcome outcome =
+        run(quoted(lit) + " --light constant:0,0,0 --size 64x64 --json --headless " + quoted(exr) + more);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    const auto picture = spec::readExr(exr);
+    EXPECT_TRUE(picture);
+    return std::pair{nlohmann::json::parse(outcome.out), picture->texels[32 * 64 + 32].r};
+  };
+  const auto [whole, bright] = centre("");
+  EXPECT_EQ(whole["planes_resident"], whole["planes_in_bundles"]);
+  EXPECT_NEAR(bright, 1.0f, 1e-3f);
+  EXPECT_NEAR(centre(" --lamps 0.25").second, 0.25f, 1e-3f);
+  const auto [cut, still_bright] = centre(" --max-memory 1kB");
+  EXPECT_EQ(cut["planes_resident"], 0);
+  EXPECT_LT(cut["bytes_loaded"], whole["bytes_loaded"]);
+  EXPECT_LE(whole["bytes_loaded"], whole["bytes_in_bundles"]);
+  EXPECT_LT(cut["bytes_resident"], whole["bytes_resident"]);
 }
 
 TEST_F(DemoProgram, ReportsAsJson) {
