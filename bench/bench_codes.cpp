@@ -15,7 +15,7 @@
 
 #include "baker/bake/ship_meshes.hpp"
 #include "baker/compress/cpca.hpp"
-#include "baker/effects/diffuse/bounces.hpp"
+#include "baker/effects/diffuse/payloads.hpp"
 #include "baker/import/gltf.hpp"
 #include "runtime/bundle/transfer_codec.hpp"
 
@@ -74,44 +74,6 @@ Options parse(int argc, char** argv) {
     }
   }
   return options;
-}
-
-struct CellVectors {
-  bundle::TransferShape shape;
-  std::vector<float> vectors;
-};
-
-// Appends one block of a sample, [channel][output][column] from the field's [output][channel][column].
-void appendBlock(std::vector<float>& out, const TransferField& direct, const TransferField* bounced,
-                 std::uint32_t channels, std::size_t sample) {
-  for (std::uint32_t channel = 0; channel < channels; ++channel)
-    for (std::uint32_t output = 0; output < direct.outputs; ++output)
-      for (std::uint32_t column = 0; column < direct.columns; ++column) {
-        const std::size_t own = std::min(channel, direct.channels - 1);
-        float value = direct.at(sample)[(output * direct.channels + own) * direct.columns + column];
-        if (bounced != nullptr)
-          value += bounced->at(sample)[(output * bounced->channels + channel) * bounced->columns + column];
-        out.push_back(value);
-      }
-}
-
-CellVectors vectorsOf(const SampleCell& cell, std::size_t first_mapped, int order, const DirectResult& direct,
-                      const BounceResult* bounced) {
-  const bool mapped = cell.normal_mapped;
-  const TransferField& field = mapped ? direct.mapped : direct.field;
-  const TransferField* bounces = bounced == nullptr ? nullptr : mapped ? &bounced->mapped : &bounced->field;
-  CellVectors out;
-  out.shape.order = static_cast<std::uint32_t>(order);
-  out.shape.light_columns = field.columns - out.shape.order * out.shape.order;
-  // Without bounces, light of the environment has no colour of its own.
-  out.shape.shadowed_channels = out.shape.light_columns > 0 ? field.channels : 1;
-  out.shape.full_channels = bounces != nullptr ? bounces->channels : 0;
-  out.shape.outputs = field.outputs;
-  for (std::size_t s = cell.first - (mapped ? first_mapped : 0), end = s + cell.count; s < end; ++s) {
-    appendBlock(out.vectors, field, nullptr, out.shape.shadowed_channels, s);
-    if (bounces != nullptr) appendBlock(out.vectors, field, bounces, out.shape.full_channels, s);
-  }
-  return out;
 }
 
 struct Row {
@@ -186,8 +148,9 @@ int main(int argc, char** argv) {
   if (options.bounces != 0) bounced = bakeBounces(pass, *direct, view, {options.bounces, 1e-3}, progress, {});
   std::vector<CellVectors> cells;
   for (const SampleCell& cell : samples.cells)
-    cells.push_back(
-        vectorsOf(cell, samples.first_normal_mapped, options.order, *direct, bounced ? &*bounced : nullptr));
+    for (CellVectors& parts :
+         cellVectors(cell, samples, *direct, bounced ? &*bounced : nullptr, colors->greyEmission()))
+      cells.push_back(std::move(parts));
 
   const auto vertices = static_cast<double>(geometry.positions.size());
   if (options.csv)

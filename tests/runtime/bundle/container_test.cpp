@@ -276,13 +276,10 @@ TEST_F(BundleFile, IndicesOutOfRangeAreRefusedByName) {
   refused([&](Description& d) { first(d).shape.order = 9; }, "order");
   refused([&](Description& d) { first(d).shape.order = 0; }, "order");
   refused([&](Description& d) { first(d).shape.light_columns = 2; }, "order");
-  refused([&](Description& d) { first(d).shape.full_channels = 0; }, "codebook is a payload of another size");
   refused([&](Description& d) { first(d).shape.full_channels = 2; }, "fullChannels");
   refused([&](Description& d) { first(d).shape.shadowed_channels = 0; }, "shadowedChannels");
   refused([&](Description& d) { first(d).shape.outputs = 3; }, "outputs");
   refused([&](Description& d) { first(d).clusters = 0; }, "clusters");
-  refused([&](Description& d) { first(d).clusters = 3; }, "codebook is a payload of another size");
-  refused([&](Description& d) { first(d).axes = 3; }, "codebook is a payload of another size");
   refused([&](Description& d) { first(d).axes = 5; }, "axes");
   refused([&](Description& d) { first(d).cluster_ids = 0; }, "clusterIds is a payload of another type");
   refused([&](Description& d) { first(d).cluster_ids = -1; }, "clusterIds is missing");
@@ -321,6 +318,20 @@ TEST_F(BundleFile, ClustersThatContradictThePlanesAreRefusedBeforeUse) {
   EXPECT_NE(codes.error().line().find("group 0 cell 0: has weight planes of other sizes"), std::string::npos)
       << codes.error().line();
   EXPECT_FALSE(reader->checkAll());
+}
+
+TEST_F(BundleFile, ACodebookOfOtherSizesThanDescribedIsRefusedBeforeUse) {
+  const auto refused = [&](auto spoil) {
+    Sample sample = sampleBundle();
+    spoil(sample.description.groups[0].cells[0].diffuse[0]);
+    ASSERT_TRUE(write(path_, sample.description, sample.blobs));
+    auto reader = Reader::open(path_);
+    ASSERT_TRUE(reader) << reader.error().line();
+    EXPECT_FALSE(reader->readCodebook(0, 0, 0));
+  };
+  refused([](DiffuseTransfer& transfer) { transfer.shape.full_channels = 0; });
+  refused([](DiffuseTransfer& transfer) { transfer.clusters = 3; });
+  refused([](DiffuseTransfer& transfer) { transfer.axes = 3; });
 }
 
 TEST_F(BundleFile, APlainGltfFileIsSaidNotToBeBaked) {
