@@ -102,7 +102,7 @@ DiffuseTransfer readDiffuse(const Field& field, const Description& d, const Grou
   transfer.axes =
       static_cast<std::uint32_t>(field["axes"].count(std::uint64_t{transfer.clusters} * planes.size()));
   // Its length depends on how it is coded; decodeCodebook() holds it against the counts.
-  transfer.codebook = payloadIndex(field["codebook"], d, PayloadType::Codebook, 0);
+  transfer.codebook = payloadIndex(field["codebook"], d, PayloadType::Codebook, {});
   if (transfer.clusters > 1)
     transfer.cluster_ids = static_cast<std::int32_t>(
         payloadIndex(field["clusterIds"], d, PayloadType::ClusterIds,
@@ -143,6 +143,8 @@ GroupLight readGroupLight(const Field& field, const Description& d) {
   light.kind = readWord<GroupLight::Kind>(field["kind"], kLightKinds);
   light.index = light.kind == GroupLight::Kind::Material ? field["material"].index(d.materials.size())
                                                          : field["node"].index(d.nodes.size());
+  if (light.kind == GroupLight::Kind::Node && d.nodes[light.index].light < 0)
+    field["node"].fault("carries no light");
   light.color = field["color"].vector<glm::vec3>();
   return light;
 }

@@ -84,6 +84,10 @@ Sample sampleBundle() {
   camera.name = "main";
   camera.yfov_rad = 0.7f;
   d.cameras = {camera};
+  gltf::Light lamp;
+  lamp.name = "lamp";
+  d.lights = {lamp};
+  d.nodes[1].light = 0;
 
   // Cell 0 plain, two clusters of two and no axes; cell 1 normal-mapped, of one cluster; lamps in both.
   const auto add = [&](PayloadType type, const Blob& bytes) {
@@ -276,13 +280,10 @@ TEST_F(BundleFile, IndicesOutOfRangeAreRefusedByName) {
   refused([&](Description& d) { first(d).shape.order = 9; }, "order");
   refused([&](Description& d) { first(d).shape.order = 0; }, "order");
   refused([&](Description& d) { first(d).shape.light_columns = 2; }, "order");
-  refused([&](Description& d) { first(d).shape.full_channels = 0; }, "codebook is a payload of another size");
   refused([&](Description& d) { first(d).shape.full_channels = 2; }, "fullChannels");
   refused([&](Description& d) { first(d).shape.shadowed_channels = 0; }, "shadowedChannels");
   refused([&](Description& d) { first(d).shape.outputs = 3; }, "outputs");
   refused([&](Description& d) { first(d).clusters = 0; }, "clusters");
-  refused([&](Description& d) { first(d).clusters = 3; }, "codebook is a payload of another size");
-  refused([&](Description& d) { first(d).axes = 3; }, "codebook is a payload of another size");
   refused([&](Description& d) { first(d).axes = 5; }, "axes");
   refused([&](Description& d) { first(d).cluster_ids = 0; }, "clusterIds is a payload of another type");
   refused([&](Description& d) { first(d).cluster_ids = -1; }, "clusterIds is missing");
@@ -296,6 +297,7 @@ TEST_F(BundleFile, IndicesOutOfRangeAreRefusedByName) {
           "the group's lights after the environment");
   refused([](Description& d) { d.groups[0].lights[0].index = 1; }, "lights[0].material");
   refused([](Description& d) { d.groups[0].lights[1].index = 2; }, "lights[1].node");
+  refused([](Description& d) { d.groups[0].lights[1].index = 0; }, "carries no light");
   refused(
       [](Description& d) {
         Group& g = d.groups[0];
@@ -321,6 +323,23 @@ TEST_F(BundleFile, ClustersThatContradictThePlanesAreRefusedBeforeUse) {
   EXPECT_NE(codes.error().line().find("group 0 cell 0: has weight planes of other sizes"), std::string::npos)
       << codes.error().line();
   EXPECT_FALSE(reader->checkAll());
+}
+
+TEST_F(BundleFile, CodebooksOfAnotherSizeThanDescribedAreRefusedBeforeUse) {
+  const auto refused = [&](auto spoil) {
+    Sample sample = sampleBundle();
+    spoil(sample.description.groups[0].cells[0].diffuse[0]);
+    ASSERT_TRUE(write(path_, sample.description, sample.blobs));
+    auto reader = Reader::open(path_);
+    ASSERT_TRUE(reader) << reader.error().line();
+    const auto codes = reader->readCodebook(0, 0, 0);
+    ASSERT_FALSE(codes);
+    EXPECT_NE(codes.error().line().find("group 0 cell 0: has a"), std::string::npos) << codes.error().line();
+  };
+  refused([](DiffuseTransfer& transfer) { transfer.shape.full_channels = 0; });
+  refused([](DiffuseTransfer& transfer) { transfer.clusters = 3; });
+  refused([](DiffuseTransfer& transfer) { transfer.axes = 3; });
+  refused([](DiffuseTransfer& transfer) { transfer.axes = 0; });
 }
 
 TEST_F(BundleFile, APlainGltfFileIsSaidNotToBeBaked) {
