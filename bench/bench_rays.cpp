@@ -14,13 +14,10 @@
 #include <embree3/rtcore.h>
 #include <glm/geometric.hpp>
 
-#include "baker/bake/ship_meshes.hpp"
-#include "baker/effects/diffuse/direct.hpp"
-#include "baker/import/gltf.hpp"
 #include "baker/transport/frame.hpp"
 #include "baker/transport/ray_packets.hpp"
-#include "baker/transport/ray_scene.hpp"
 #include "baker/work/parallel.hpp"
+#include "bench/group_workload.hpp"
 #include "bench/scene_argument.hpp"
 
 namespace {
@@ -34,9 +31,7 @@ constexpr std::size_t kSamplesAtATime =
     8;  // 8 x 32 packets x 832 bytes: half of a 512 KiB second-level cache
 
 struct Workload {
-  GroupGeometry geometry;
-  SampleSet samples;
-  RayScene rays;
+  std::unique_ptr<GroupWorkload> group;
   RTCDevice device = nullptr;  // the bare scene; lives as long as the program
   RTCScene scene = nullptr;
 };
@@ -51,7 +46,7 @@ void buildBareScene(Workload& work) {
   work.scene = rtcNewScene(work.device);
   rtcSetSceneBuildQuality(work.scene, RTC_BUILD_QUALITY_HIGH);
   RTCGeometry geometry = rtcNewGeometry(work.device, RTC_GEOMETRY_TYPE_TRIANGLE);
-  const auto& g = work.geometry;
+  const auto& g = work.group->geometry;
   std::memcpy(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
                                       sizeof(glm::vec3), g.positions.size()),
               g.positions.data(), g.positions.size() * sizeof(glm::vec3));
@@ -122,12 +117,13 @@ struct Timed {
 Timed runBare(const Workload& work, const DirectionTable& table, Call call) {
   Timed timed;
   std::vector<FilledPacket> packets;
-  for (std::size_t first = 0; first < work.samples.size(); first += kSamplesAtATime * 8) {
+  const SampleSet& samples = work.group->samples;
+  for (std::size_t first = 0; first < samples.size(); first += kSamplesAtATime * 8) {
     packets.clear();
-    for (std::size_t s = first; s < std::min(first + kSamplesAtATime, work.samples.size()); ++s) {
-      const auto origins = work.samples.originsOf(s);
+    for (std::size_t s = first; s < std::min(first + kSamplesAtATime, samples.size()); ++s) {
+      const auto origins = samples.originsOf(s);
       if (origins.empty()) continue;
-      const glm::mat3 frame(localFrame(glm::normalize(glm::dvec3(work.samples.normals[s]))));
+      const glm::mat3 frame(localFrame(glm::normalize(glm::dvec3(samples.normals[s]))));
       const OriginDealer dealer(origins);
       for (std::size_t p = 0; p < table.packets(); ++p) {
         packets.emplace_back();
@@ -144,8 +140,9 @@ Timed runBare(const Workload& work, const DirectionTable& table, Call call) {
 Timed runPass(const Workload& work) {
   Progress progress;
   const auto start = Clock::now();
-  const auto field = bakeDirect(work.geometry, work.samples, work.rays, {5, kRays}, progress, {});
-  return {field->rays, secondsSince(start)};
+  const DiffuseScene view = work.group->view();
+  const auto direct = bakeDirect(DirectPass(view, {.order = 5, .rays = kRays}), view, progress, {});
+  return {direct->field.rays, secondsSince(start)};
 }
 
 void report(benchmark::State& state, const Timed& timed) {
@@ -153,21 +150,19 @@ void report(benchmark::State& state, const Timed& timed) {
   state.counters["Mrays/s"] = 1e-6 * timed.perSecond();
 }
 
-Workload load(const std::string& file) {
-  auto scene = importScene(file);
-  if (!scene) {
-    std::fprintf(stderr, "bench_rays: %s\n", scene.error().line().c_str());
-    std::exit(1);
-  }
-  const auto groups = findRigidGroups(*scene);
+// Bounces against pass 0, in one run: seconds of the first gather pass over those of the direct pass with
+// hits kept.
+double bounceRatio(const Workload& work) {
+  const DiffuseScene view = work.group->view();
+  const DirectPass pass(view,
+                        {.order = 5, .rays = kRays, .keep_hits = true, .hit_memory = std::size_t{4} << 30});
   Progress progress;
-  const auto meshes = shipMeshes(*scene, groups, 0.0f, progress, {});
-  auto geometry = buildGroupGeometry(groups.at(0), *scene, meshes->decoded);
-  auto samples = buildSamples(geometry);
-  auto rays = RayScene::build(geometry, *scene, *loadAlphaMaps(*scene));
-  Workload work{std::move(geometry), std::move(samples), std::move(*rays)};
-  buildBareScene(work);
-  return work;
+  const auto start = Clock::now();
+  const auto direct = bakeDirect(pass, view, progress, {});
+  const double direct_seconds = secondsSince(start);
+  const auto bounce_start = Clock::now();
+  bakeBounces(pass, *direct, view, {.bounces = 1}, progress, {});
+  return secondsSince(bounce_start) / direct_seconds;
 }
 
 }  // namespace
@@ -175,7 +170,8 @@ Workload load(const std::string& file) {
 int main(int argc, char** argv) {
   const std::string file = takeSceneArgument(argc, argv);
   benchmark::Initialize(&argc, argv);
-  static const Workload work = load(file);
+  static Workload work{loadGroup(file)};
+  buildBareScene(work);
   static const DirectionTable table = cosineTable(kRays);
   const auto bare = [](const char* name, Call call) {
     benchmark::RegisterBenchmark(name,
@@ -207,6 +203,14 @@ int main(int argc, char** argv) {
       ->UseManualTime()
       ->Unit(benchmark::kMillisecond)
       ->Iterations(5);
+  benchmark::RegisterBenchmark("bounce/against_pass0_with_hits",
+                               [](benchmark::State& state) {
+                                 double ratios = 0.0;
+                                 for (auto _ : state) withThreads(1, [&] { ratios += bounceRatio(work); });
+                                 state.counters["ratio"] = ratios / static_cast<double>(state.iterations());
+                               })
+      ->Unit(benchmark::kMillisecond)
+      ->Iterations(3);
   benchmark::RunSpecifiedBenchmarks();
   return 0;
 }

@@ -1,50 +1,80 @@
-// What accuracy costs in pass 0: error at the samples (relative RMS of shaded radiance over real lights)
-// against the number of rays, beside the time. The truth is the same pass with many rays.
-//   ray_error SCENE.glb [--truth=RAYS]
+// What accuracy costs at the samples: error (relative RMS of shaded radiance over real lights) against the
+// number of rays, beside the time, of direct light alone and of all light. The truth is the same bake with
+// many rays.
+//   ray_error SCENE.glb [--truth=RAYS] [--bounces=N]
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <string>
 
-#include "baker/bake/ship_meshes.hpp"
-#include "baker/compress/pca.hpp"
-#include "baker/effects/diffuse/direct.hpp"
-#include "baker/import/gltf.hpp"
-#include "baker/transport/ray_scene.hpp"
+#include "baker/compress/cpca.hpp"
+#include "baker/effects/diffuse/payloads.hpp"
+#include "bench/group_workload.hpp"
+
+namespace {
+
+using namespace lambent::baker;
+constexpr int kOrder = 5;
+
+struct Baked {
+  DirectResult direct;
+  std::optional<BounceResult> bounced;
+  double seconds = 0.0;
+};
+
+Baked bakeWith(const GroupWorkload& work, std::size_t rays, int bounces) {
+  const auto start = std::chrono::steady_clock::now();
+  const DiffuseScene view = work.view();
+  const DirectPass pass(
+      view, {.order = kOrder, .rays = rays, .keep_hits = bounces > 0, .hit_memory = std::size_t{4} << 30});
+  Progress progress;
+  Baked baked{*bakeDirect(pass, view, progress, {}), {}, 0.0};
+  if (bounces > 0) baked.bounced = bakeBounces(pass, baked.direct, view, {bounces, 0.0}, progress, {});
+  baked.direct.hits = HitStore();
+  baked.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return baked;
+}
+
+// Over all cells, of light from the environment.
+double errorOf(const GroupWorkload& work, const Baked& truth, const Baked& test, bool all_light) {
+  double error = 0.0, samples = 0.0;
+  for (const SampleCell& cell : work.samples.cells) {
+    const auto vectorsOf = [&](const Baked& baked) {
+      return cellVectors(cell, work.samples, baked.direct,
+                         all_light && baked.bounced ? &*baked.bounced : nullptr, true)[0];
+    };
+    const CellVectors a = vectorsOf(truth), b = vectorsOf(test);
+    if (a.shape != b.shape) continue;
+    const double cell_error = radianceError(a.vectors, b.vectors, a.shape);
+    error += cell.count * cell_error * cell_error;
+    samples += cell.count;
+  }
+  return std::sqrt(error / samples);
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
-  using namespace lambent::baker;
+  std::size_t truth_rays = 16384;
+  int bounces = 3;
   if (argc < 2) {
     std::fprintf(stderr, "ray_error: no scene; give a .gltf or .glb file\n");
     return 2;
   }
-  const std::size_t truth_rays =
-      argc > 2 && std::strncmp(argv[2], "--truth=", 8) == 0 ? std::strtoul(argv[2] + 8, nullptr, 10) : 16384;
-  const auto scene = importScene(argv[1]);
-  if (!scene) {
-    std::fprintf(stderr, "ray_error: %s\n", scene.error().line().c_str());
-    return 1;
+  for (int i = 2; i < argc; ++i) {
+    if (std::strncmp(argv[i], "--truth=", 8) == 0) truth_rays = std::strtoul(argv[i] + 8, nullptr, 10);
+    if (std::strncmp(argv[i], "--bounces=", 10) == 0) bounces = std::atoi(argv[i] + 10);
   }
-  const auto groups = findRigidGroups(*scene);
-  Progress progress;
-  const auto meshes = shipMeshes(*scene, groups, 0.0f, progress, {});
-  const GroupGeometry geometry = buildGroupGeometry(groups.at(0), *scene, meshes->decoded);
-  const SampleSet samples = buildSamples(geometry);
-  const auto rays = RayScene::build(geometry, *scene, *loadAlphaMaps(*scene));
-  constexpr int kOrder = 5;
-  const auto bakeWith = [&](std::size_t count) {
-    return *bakeDirect(geometry, samples, *rays, {kOrder, count}, progress, {});
-  };
-  const TransferField truth = bakeWith(truth_rays);
-  std::printf("%s: %zu samples, order %d, against %zu rays\n  rays   error   seconds\n", argv[1],
-              samples.size(), kOrder, truth_rays);
+  const auto work = loadGroup(argv[1]);
+  const Baked truth = bakeWith(*work, truth_rays, bounces);
+  std::printf(
+      "%s: %zu samples, order %d, %d bounces, against %zu rays\n  rays   direct  all light   seconds\n",
+      argv[1], work->samples.size(), kOrder, bounces, truth_rays);
   for (const std::size_t count : {128u, 256u, 512u, 1024u, 2048u, 4096u}) {
-    const auto start = std::chrono::steady_clock::now();
-    const TransferField field = bakeWith(count);
-    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    std::printf("%6zu  %5.2f %%  %7.2f\n", count,
-                100.0 * radianceError(truth.vectors, field.vectors, kOrder, 1), seconds);
+    const Baked test = bakeWith(*work, count, bounces);
+    std::printf("%6zu  %5.2f %%    %5.2f %%   %7.2f\n", count, 100.0 * errorOf(*work, truth, test, false),
+                100.0 * errorOf(*work, truth, test, true), test.seconds);
   }
   return 0;
 }

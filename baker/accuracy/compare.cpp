@@ -35,11 +35,14 @@ Result<PictureError> comparePictures(const spec::RgbaImage& picture, const spec:
                               other->width, other->height),
                   "draw both with the same --size");
   PictureError error;
-  double squares = 0.0, energy = 0.0;
+  double squares = 0.0, noise_squares = 0.0, energy = 0.0;
   glm::dvec3 difference_sum(0.0), reference_sum(0.0);
   std::vector<double> differences;
   for (std::size_t i = 0; i < picture.texels.size(); ++i) {
-    if (picture.texels[i].w <= 0.0f || reference.texels[i].w <= 0.0f || second.texels[i].w <= 0.0f) continue;
+    const int covered =
+        (picture.texels[i].w > 0.0f) + (reference.texels[i].w > 0.0f) + (second.texels[i].w > 0.0f);
+    error.pixels_apart += covered == 1 || covered == 2;
+    if (covered < 3) continue;
     const glm::dvec3 x(picture.texels[i]), a(reference.texels[i]), b(second.texels[i]), mean = 0.5 * (a + b);
     if (!finite(x) || !finite(a) || !finite(b))
       return fail(
@@ -47,6 +50,10 @@ Result<PictureError> comparePictures(const spec::RgbaImage& picture, const spec:
           fmt::format("or its reference is not finite at pixel {}, {}", i % picture.width, i / picture.width),
           "draw it again");
     squares += glm::dot(x - a, x - b);
+    // With d the error and p, q the noise of A and B, (d - p)(d - q) strays by -d (p + q) + pq. Its variance
+    // is that of (d - (p + q)/2)(p - q), which can be seen.
+    const double noise = glm::dot(x - mean, a - b);
+    noise_squares += noise * noise;
     energy += glm::dot(a, b);
     difference_sum += x - mean;
     reference_sum += mean;
@@ -58,6 +65,7 @@ Result<PictureError> comparePictures(const spec::RgbaImage& picture, const spec:
 
   error.pixels = differences.size();
   error.relative_rms = std::sqrt(std::max(squares, 0.0) / energy);
+  error.relative_square_error = std::sqrt(noise_squares) / energy;
   for (int k = 0; k < 3; ++k)
     error.bias[static_cast<std::size_t>(k)] =
         reference_sum[k] != 0.0 ? difference_sum[k] / reference_sum[k] : 0.0;

@@ -14,8 +14,14 @@ namespace lambent::baker {
 
 struct PictureError {
   std::uint64_t pixels = 0;  // covered in all pictures
+  // Covered in one, sky in another: more than the odd pixel of an outline says that scene, camera or size
+  // differ.
+  std::uint64_t pixels_apart = 0;
   double relative_rms =
       0.0;  // sqrt( sum (X-A)² / sum A² ); with B: sqrt( sum (X-A)(X-B) / sum AB ), 0 if negative
+  // Standard error of relative_rms²: what is left of two references' noise. relative_rms is a figure only
+  // where its square is well above. 0 with one reference, whose noise cannot be told from error.
+  double relative_square_error = 0.0;
   std::array<double, 3> bias{};  // per channel: sum (X-A) / sum A; A the mean of both references
   // Over pixels, of the root mean square difference of the channels, relative to that of the reference over
   // the picture. Noise of the references is in these.

@@ -17,6 +17,7 @@ using Command = std::function<int()>;
 void addBakeCommand(CLI::App& app, Command& run);
 void addPlanCommand(CLI::App& app, Command& run);
 void addInfoCommand(CLI::App& app, Command& run);
+void addReferenceCommand(CLI::App& app, Command& run);
 void addCompareCommand(CLI::App& app, Command& run);
 
 }  // namespace lambent::baker

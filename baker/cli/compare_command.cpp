@@ -25,7 +25,9 @@ void print(const CompareArguments& a, const PictureError& e) {
                                  {"reference", a.reference.string()},
                                  {"noiseFree", !a.reference2.empty()},
                                  {"pixels", e.pixels},
+                                 {"pixelsApart", e.pixels_apart},
                                  {"relativeRms", e.relative_rms},
+                                 {"relativeSquareError", e.relative_square_error},
                                  {"bias", e.bias},
                                  {"median", e.median},
                                  {"percentile95", e.percentile_95},
@@ -34,9 +36,13 @@ void print(const CompareArguments& a, const PictureError& e) {
     fmt::print("{}\n", json.dump(2));
     return;
   }
-  fmt::print("{} against {}: {} pixels\n", a.picture.string(), a.reference.string(), e.pixels);
+  fmt::print("{} against {}: {} pixels{}\n", a.picture.string(), a.reference.string(), e.pixels,
+             e.pixels_apart ? fmt::format(", {} more covered in one only", e.pixels_apart) : "");
+  const bool drowned = e.relative_rms * e.relative_rms < 2.0 * e.relative_square_error;
   fmt::print("  relative RMS  {:.3f} %{}\n", 100.0 * e.relative_rms,
-             a.reference2.empty() ? "" : ", free of the references' noise");
+             a.reference2.empty() ? ", the reference's own noise included"
+             : drowned            ? ", drowned in the references' noise: give them more --spp"
+                                  : ", free of the references' noise");
   fmt::print("  bias          R {:+.3f} %, G {:+.3f} %, B {:+.3f} %\n", 100.0 * e.bias[0], 100.0 * e.bias[1],
              100.0 * e.bias[2]);
   fmt::print("  pixels        median {:.3f} %, 95th {:.3f} %, 99th {:.3f} %, max {:.3f} %\n",

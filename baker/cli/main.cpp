@@ -12,6 +12,7 @@ int main(int argc, char** argv) {
   lambent::baker::addBakeCommand(app, run);
   lambent::baker::addPlanCommand(app, run);
   lambent::baker::addInfoCommand(app, run);
+  lambent::baker::addReferenceCommand(app, run);
   lambent::baker::addCompareCommand(app, run);
   const std::string version = std::string("lambent ") + LAMBENT_VERSION;
   app.set_version_flag("--version", version);

@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
+#include <limits>
 
 #include <Eigen/Cholesky>
 
@@ -18,12 +17,13 @@ namespace lambent::baker {
 
 namespace {
 
-double knob(const char* n, double d) { const char* e = std::getenv(n); return e ? std::atof(e) : d; }
-
 constexpr std::size_t kGrain = 512;
-constexpr std::size_t kBasisSamples = 8192;  // see the covariance of the basis
-constexpr std::size_t kSearchSamples = 8192, kRun = 64;
-constexpr double kTailShare = 0.03;  // of the square error allowed, for what the basis leaves out
+constexpr std::size_t kBasisSamples = 8192;  // for the covariance of all values
+constexpr double kTailShare = 0.05;          // of the square error allowed, for what the basis leaves out
+constexpr std::size_t kRun = 64;             // neighbours kept together where only some samples are taken
+constexpr std::size_t kLeastSearched = 4096, kSearchedPerCluster = 96;
+constexpr int kSearchRounds = 4, kFinalRounds = 3, kMostAttempts = 8;
+constexpr std::uint32_t kClusterCounts[] = {1, 4, 16, 64, 128, 256};
 
 // Runs of neighbours spread over the cell: `kept` samples or all.
 std::vector<std::uint32_t> someSamples(std::size_t count, std::size_t kept) {
@@ -35,7 +35,8 @@ std::vector<std::uint32_t> someSamples(std::size_t count, std::size_t kept) {
   return samples;
 }
 
-Points weighted(std::span<const float> vectors, const std::vector<double>& roots, std::span<const std::uint32_t> samples) {
+Points weighted(std::span<const float> vectors, const std::vector<double>& roots,
+                std::span<const std::uint32_t> samples) {
   const std::size_t size = roots.size();
   Points out(static_cast<Eigen::Index>(size), static_cast<Eigen::Index>(samples.size()));
   for (std::size_t s = 0; s < samples.size(); ++s)
@@ -48,7 +49,8 @@ Points weighted(std::span<const float> vectors, const std::vector<double>& roots
 // Coordinates of all samples over the rounded basis, by least squares.
 Points coordinates(std::span<const float> vectors, const std::vector<double>& roots,
                    const bundle::SharedCodebook& basis) {
-  const auto size = static_cast<Eigen::Index>(roots.size()), rank = static_cast<Eigen::Index>(basis.basis_scales.size());
+  const auto size = static_cast<Eigen::Index>(roots.size()),
+             rank = static_cast<Eigen::Index>(basis.basis_scales.size());
   Eigen::MatrixXd axes(size, rank);
   for (Eigen::Index r = 0; r < rank; ++r)
     for (Eigen::Index i = 0; i < size; ++i)
@@ -63,33 +65,84 @@ Points coordinates(std::span<const float> vectors, const std::vector<double>& ro
   parallelRanges(count, kGrain, {}, [&](std::size_t begin, std::size_t end) {
     const Eigen::Map<const Eigen::MatrixXf> block(vectors.data() + begin * roots.size(), size,
                                                   static_cast<Eigen::Index>(end - begin));
-    points.middleCols(static_cast<Eigen::Index>(begin), static_cast<Eigen::Index>(end - begin)).noalias() = project * block;
+    points.middleCols(static_cast<Eigen::Index>(begin), static_cast<Eigen::Index>(end - begin)).noalias() =
+        project * block;
   });
   return points;
+}
+
+Points columnsOf(const Points& points, std::span<const std::uint32_t> samples) {
+  Points out(points.rows(), static_cast<Eigen::Index>(samples.size()));
+  for (std::size_t s = 0; s < samples.size(); ++s)
+    out.col(static_cast<Eigen::Index>(s)) = points.col(samples[s]);
+  return out;
 }
 
 struct Clustering {
   ClusterIds ids;
   std::vector<Cluster> clusters;
-  double step = 0.0, bytes = 0.0;
+  double step = 0.0;
 };
 
-Clustering refine(const Points& points, ClusterIds ids, double budget, int rounds, double count) {
-  Clustering c{std::move(ids), {}, 0.0, 0.0};
+// Iterative PCA: fits and moves samples in turn.
+Clustering refine(const Points& points, ClusterIds ids, double budget, int rounds, bool held_out) {
+  Clustering found{std::move(ids), {}, 0.0};
   for (int round = 0;; ++round) {
-    c.clusters = fitClusters(points, c.ids);
-    c.step = stepFor(c.clusters, budget);
-    if (round == rounds || c.clusters.size() == 1) break;
-    c.ids = assignClusters(points, c.clusters, c.step, c.ids);
+    found.clusters = fitClusters(points, found.ids, held_out);
+    found.step = stepFor(found.clusters, budget);
+    if (round == rounds || found.clusters.size() == 1) return found;
+    found.ids = assignClusters(points, found.clusters, found.step, found.ids);
   }
-  c.bytes = expectedBytes(c.clusters, c.step, count);
-  return c;
+}
+
+Clustering fromSome(const Points& points, std::uint32_t clusters, double budget) {
+  const auto count = static_cast<std::size_t>(points.cols());
+  const auto some = someSamples(count, std::max(kLeastSearched, kSearchedPerCluster * clusters));
+  const Points searched = columnsOf(points, some);
+  return refine(searched, seedClusters(searched, clusters), budget, kSearchRounds, some.size() < count);
+}
+
+// The number of clusters that codes to the fewest bytes, by estimates from some of the samples.
+Clustering search(const Points& points, double budget, const std::stop_token& stop) {
+  Clustering best;
+  double fewest = std::numeric_limits<double>::infinity();
+  for (const std::uint32_t clusters : kClusterCounts) {
+    if (stop.stop_requested()) break;
+    Clustering tried = fromSome(points, clusters, budget);
+    const double bytes = expectedBytes(tried.clusters, tried.step, static_cast<double>(points.cols()));
+    if (bytes >= fewest) break;
+    fewest = bytes;
+    best = std::move(tried);
+  }
+  return best;
 }
 
 std::vector<float> decode(const CodedTransfer& coded) {
   std::vector<std::vector<std::uint32_t>> codes;
   for (const CodedPlane& plane : coded.planes) codes.push_back(plane.codes);
   return bundle::decodeTransfer(coded.shape, bundle::expand(coded.codebook), coded.cluster_of, codes);
+}
+
+// Steps are planned by what errors and bits are expected to be; here they are measured, and the step made as
+// large as the bound allows.
+CodedTransfer fitToBound(std::span<const float> vectors, const Points& points, Clustering& found,
+                         const bundle::SharedCodebook& basis, const bundle::TransferShape& shape,
+                         double bound, const std::stop_token& stop) {
+  CodedTransfer best;
+  double step = found.step;
+  for (int attempt = 0; attempt < kMostAttempts && !stop.stop_requested(); ++attempt) {
+    keepAxes(found.clusters, step);
+    CodedTransfer coded = quantize(points, found.ids, found.clusters, basis, shape, step);
+    coded.error = static_cast<float>(radianceError(vectors, decode(coded), shape));
+    const bool met = double{coded.error} <= bound, met_before = double{best.error} <= bound;
+    // The larger error is the smaller code, among those that keep the bound.
+    if (attempt == 0 || (met ? !met_before || coded.error > best.error : coded.error < best.error))
+      best = std::move(coded);
+    if (met && double{best.error} > 0.98 * bound) break;
+    if (best.planes.empty() && met) break;  // nothing left to save
+    step *= std::clamp(0.995 * bound / std::max(double{coded.error}, 1e-12), 0.3, 1.5);
+  }
+  return best;
 }
 
 }  // namespace
@@ -99,49 +152,32 @@ CodedTransfer codeTransfer(std::span<const float> vectors, std::size_t count,
                            const std::stop_token& stop) {
   assert(count > 0 && vectors.size() == count * shape.size() && settings.bound > 0.0f);
   const WeightedSpace space = weightedSpace(vectors, shape);
-  const double allowed = double{settings.bound} * double{settings.bound} / static_cast<double>(count);
-  const double budget = 0.9 * allowed;
+  const double bound = double{settings.bound};
+  const double allowed = bound * bound * space.blocks / static_cast<double>(count);
+  const double budget = 0.9 * allowed;  // the rest: rounding of basis, means and axes
 
-  const auto some = someSamples(count, kBasisSamples);
-  const Spectrum spectrum = spectrumOf(secondMoment(weighted(vectors, space.roots, some), {}, {}));
+  // A basis for the cell: all principal components but those that hardly matter.
+  const Spectrum spectrum =
+      spectrumOf(secondMoment(weighted(vectors, space.roots, someSamples(count, kBasisSamples)), {}, {}));
   Eigen::Index rank = spectrum.variances.size();
   for (double tail = 0.0; rank > 0 && (tail += spectrum.variances(rank - 1)) <= kTailShare * allowed;) --rank;
-  double step = std::sqrt(12.0 * budget / static_cast<double>(std::max<Eigen::Index>(rank, 1)));
-  const bundle::SharedCodebook basis = roundedBasis(spectrum.axes.leftCols(rank), spectrum.variances, space.roots, step);
-  const Points points = coordinates(vectors, space.roots, basis);
-  if (knob("VERBOSE", 0)) std::printf("rank %d\n", int(rank));
-
-  const auto searched = someSamples(count, kSearchSamples);
-  Points sub(rank, static_cast<Eigen::Index>(searched.size()));
-  for (std::size_t s = 0; s < searched.size(); ++s) sub.col(static_cast<Eigen::Index>(s)) = points.col(searched[s]);
-  Clustering best;
-  const auto n = static_cast<double>(count);
-  if (settings.clusters > 0) {
-    best = refine(sub, seedClusters(sub, settings.clusters), budget, 8, n);
-  } else {
-    for (const std::uint32_t clusters : {1u, 4u, 16u, 64u, 128u, 256u}) {
-      if (stop.stop_requested()) return {};
-      Clustering tried = refine(sub, seedClusters(sub, clusters), budget, 6, n);
-      if (knob("VERBOSE", 0)) std::printf("  %u -> %zu clusters: %.2f bytes per sample\n", clusters, tried.clusters.size(), tried.bytes / n);
-      if (clusters == 1 || tried.bytes < best.bytes) best = std::move(tried);
-      else if (tried.bytes > 1.1 * best.bytes) break;
-    }
-  }
-  Clustering all = refine(points, assignClusters(points, best.clusters, best.step, {}), budget, 2, n);
-  if (knob("VERBOSE", 0)) std::printf("  all: %zu clusters: %.2f bytes per sample, step %g\n", all.clusters.size(), all.bytes / n, all.step);
-
-  CodedTransfer coded;
-  step = all.step;
-  for (int attempt = 0; attempt < 6 && !stop.stop_requested(); ++attempt) {
-    keepAxes(all.clusters, step);
-    coded = quantize(points, all.ids, all.clusters, basis, shape, step);
+  const double step = std::sqrt(12.0 * budget / static_cast<double>(std::max<Eigen::Index>(rank, 1)));
+  const bundle::SharedCodebook basis =
+      roundedBasis(spectrum.axes.leftCols(rank), spectrum.variances, space.roots, step);
+  if (rank == 0) {  // dark
+    CodedTransfer coded{shape, basis, std::vector<std::uint32_t>(count, 0), {}, 0.0f};
+    coded.codebook.axis_counts = {0};
     coded.error = static_cast<float>(radianceError(vectors, decode(coded), shape));
-    if (knob("VERBOSE", 0)) std::printf("  step %g error %.4f %%\n", step, 100 * double{coded.error});
-    const double ratio = double{settings.bound} / double{coded.error};
-    if (ratio >= 1.0 && (ratio < 1.02 || attempt >= 3)) break;
-    step *= 0.995 * ratio;
+    return coded;
   }
-  return coded;
+
+  const Points points = coordinates(vectors, space.roots, basis);
+  const Clustering few =
+      settings.clusters > 0 ? fromSome(points, settings.clusters, budget) : search(points, budget, stop);
+  if (stop.stop_requested()) return {};
+  Clustering found = refine(points, assignClusters(points, few.clusters, few.step, {}), budget, kFinalRounds,
+                            /*held_out=*/false);
+  return fitToBound(vectors, points, found, basis, shape, bound, stop);
 }
 
 }  // namespace lambent::baker

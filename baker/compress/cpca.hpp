@@ -3,10 +3,10 @@
 // bound:
 //   sqrt( sum_s sum_i W_i (t_s,i - t'_s,i)² / sum_s sum_i W_i t_s,i² ) <= bound
 // over each block by itself: full light, which is shown, and shadowed light. W_i: the band power of light
-// (light_weights.hpp) for columns of the environment; for lights of the group what makes each count as much as
-// the whole environment; for outputs of normal maps times (A_l/pi)² of the output's band. The number of clusters and of axes
-// in each is what codes to the fewest bytes (codebook, ids and weights after entropy coding). Planes come by
-// falling variance: any prefix renders. Deterministic, for any number of threads.
+// (light_weights.hpp) for columns of the environment; for lights of the group what makes each count as much
+// as the whole environment; for outputs of normal maps times (A_l/pi)² of the output's band. The number of
+// clusters and of axes in each is what codes to the fewest bytes (codebook, ids and weights after entropy
+// coding). Planes come by falling variance: any prefix renders. Deterministic, for any number of threads.
 #pragma once
 
 #include <cstddef>

@@ -7,16 +7,16 @@
 #include <numeric>
 
 #include "baker/work/parallel.hpp"
-#include <cstdlib>
 
 namespace lambent::baker {
 
 namespace {
 
-double knob(const char* n, double d) { const char* e = std::getenv(n); return e ? std::atof(e) : d; }
-
 constexpr std::size_t kGrain = 1024;
-constexpr std::size_t kNearest = 8;  // clusters tried per sample, by distance to their means
+constexpr std::size_t kBlock = 256;     // samples gathered for one matrix product
+constexpr double kFewestMembers = 8.0;  // of a cluster; its mean and name are not worth it for fewer
+constexpr double kNamingPrice = 2.0;    // a change of cluster also breaks the prediction of weights
+constexpr std::size_t kNearest = 8;     // clusters tried per sample, by distance to their means
 
 // Entropy of a Gaussian weight of this variance in steps.
 double weightBits(double variance, double step) {
@@ -24,16 +24,17 @@ double weightBits(double variance, double step) {
   return std::max(0.1, 0.5 * std::log2(2.0 * std::numbers::pi * std::numbers::e * in_steps)) + 0.05;
 }
 
-// Bits in the codebook of a unit vector known well enough for weights of this variance; see
-// cpca_quantize.cpp.
-double axisBits(const Eigen::Ref<const Eigen::VectorXf>& axis, double variance, double step) {
-  const double grid = step * std::sqrt(0.15 / static_cast<double>(axis.size()) / variance);
-  double bits = 32.0;
-  for (const float value : axis) bits += 0.5 + 1.2 * std::log2(1.0 + 2.0 * std::abs(double{value}) / grid);
-  return bits;
+// Bits in the codebook of a unit vector known well enough for weights of this variance (axisGrid): those of
+// an integer of typical size, for each coordinate.
+double axisBits(Eigen::Index rank, double variance, double step) {
+  const auto coordinates = static_cast<double>(rank);
+  const double typical = 1.0 / (std::sqrt(coordinates) * axisGrid(rank, variance, step));
+  return 40.0 + coordinates * (0.5 + 1.1 * std::log2(1.0 + typical));
 }
 
-double bitPrice(double step) { return 2.0 * std::numbers::ln2 * step * step / 12.0; }
+double bitPrice(double step) {
+  return 2.0 * std::numbers::ln2 * step * step / 12.0;
+}
 
 // A number in 0..1 from a counter (splitmix64).
 double hashed(std::uint64_t counter) {
@@ -57,13 +58,17 @@ void keepAxesOf(Cluster& cluster, double step) {
     const double variance = cluster.variances(j);
     if (variance <= noise) break;
     const double bits = cluster.count * weightBits(std::min(variance, cluster.innovation(j)), step) +
-                        axisBits(cluster.axes.col(j), variance, step);
+                        axisBits(cluster.axes.rows(), variance, step);
     if (cluster.count * (variance - noise) <= price * bits) break;
     cluster.kept = j + 1;
   }
 }
 
 }  // namespace
+
+double axisGrid(Eigen::Index rank, double variance, double step) {
+  return step * std::sqrt(0.2 / (static_cast<double>(rank) * variance));
+}
 
 ClusterIds seedClusters(const Points& points, std::uint32_t clusters) {
   const auto count = static_cast<std::size_t>(points.cols());
@@ -93,7 +98,7 @@ ClusterIds seedClusters(const Points& points, std::uint32_t clusters) {
   return ids;
 }
 
-std::vector<Cluster> fitClusters(const Points& points, ClusterIds& ids) {
+std::vector<Cluster> fitClusters(const Points& points, ClusterIds& ids, bool held_out) {
   const std::uint32_t numbered = ids.empty() ? 0 : *std::max_element(ids.begin(), ids.end()) + 1;
   std::vector<std::vector<std::uint32_t>> members(numbered);
   for (std::uint32_t s = 0; s < ids.size(); ++s) members[ids[s]].push_back(s);
@@ -120,15 +125,19 @@ std::vector<Cluster> fitClusters(const Points& points, ClusterIds& ids) {
     cluster.variances = spectrum.variances;
     // Differences between neighbours of the cluster, along the axes.
     Eigen::VectorXd squares = Eigen::VectorXd::Zero(points.rows());
-    Points block(points.rows(), 256);
-    for (std::size_t first = 1; first < own.size(); first += 256) {
-      const std::size_t last = std::min(own.size(), first + 256);
+    Points block(points.rows(), static_cast<Eigen::Index>(kBlock));
+    for (std::size_t first = 1; first < own.size(); first += kBlock) {
+      const std::size_t last = std::min(own.size(), first + kBlock);
       for (std::size_t m = first; m < last; ++m)
         block.col(static_cast<Eigen::Index>(m - first)) = points.col(own[m]) - points.col(own[m - 1]);
       const Points along = cluster.axes.transpose() * block.leftCols(static_cast<Eigen::Index>(last - first));
       squares += along.rowwise().squaredNorm().cast<double>();
     }
     cluster.innovation = squares / std::max(1.0, cluster.count - 1.0);
+    // n samples leave n - 1 - j dimensions of noise to axis j: its variance looks smaller than it is.
+    if (held_out)
+      for (Eigen::Index j = 0; j < cluster.variances.size(); ++j)
+        cluster.variances(j) *= cluster.count / std::max(1.0, cluster.count - 1.0 - static_cast<double>(j));
   });
   return clusters;
 }
@@ -167,9 +176,8 @@ ClusterIds assignClusters(const Points& points, const std::vector<Cluster>& clus
     float cost = 0.0f;
   };
   const double price = bitPrice(step);
-  const double maha = knob("MAHA", 0.5), naming = knob("NAMING", 1.0);
-  double total = 0.0;
-  for (const Cluster& cluster : clusters) total += cluster.count;
+  double largest = 0.0;
+  for (const Cluster& cluster : clusters) largest = std::max(largest, cluster.count);
   std::vector<Prepared> prepared(clusters.size());
   Eigen::MatrixXf means(points.rows(), static_cast<Eigen::Index>(clusters.size()));
   for (std::size_t c = 0; c < clusters.size(); ++c) {
@@ -181,13 +189,16 @@ ClusterIds assignClusters(const Points& points, const std::vector<Cluster>& clus
     for (Eigen::Index j = 0; j < cluster.kept; ++j) {
       const double variance = cluster.variances(j);
       cost += step * step / 12.0 +
-              price * (weightBits(std::min(variance, cluster.innovation(j)), step) - maha * 0.5 / std::numbers::ln2);
+              price * (weightBits(std::min(variance, cluster.innovation(j)), step) - 0.5 / std::numbers::ln2);
       prepared[c].spread(j) =
-          static_cast<float>(maha * price * 0.5 / std::numbers::ln2 / (variance + step * step / 12.0));
+          static_cast<float>(price * 0.5 / std::numbers::ln2 / (variance + step * step / 12.0));
     }
-    prepared[c].cost = static_cast<float>(cost);
+    // Small clusters lose their members to others, unless there is none but small ones.
+    const bool open = cluster.count >= std::min(largest, kFewestMembers);
+    prepared[c].cost = open ? static_cast<float>(cost) : std::numeric_limits<float>::max();
   }
-  const auto name = static_cast<float>(naming * price * std::log2(static_cast<double>(clusters.size()) + 1.0));
+  const auto name =
+      static_cast<float>(kNamingPrice * price * std::log2(static_cast<double>(clusters.size()) + 1.0));
 
   const Eigen::VectorXf norms = means.colwise().squaredNorm();
   ClusterIds ids(static_cast<std::size_t>(points.cols()));
@@ -215,7 +226,8 @@ ClusterIds assignClusters(const Points& points, const std::vector<Cluster>& clus
         float cost = off.squaredNorm() - weights.squaredNorm() + prepared[c].cost +
                      weights.cwiseAbs2().dot(prepared[c].spread);
         // Neighbours in one cluster cost almost nothing to name.
-        if (!before.empty() && !((s > 0 && before[s - 1] == c) || (s + 1 < before.size() && before[s + 1] == c)))
+        if (!before.empty() &&
+            !((s > 0 && before[s - 1] == c) || (s + 1 < before.size() && before[s + 1] == c)))
           cost += name;
         if (cost < best || (cost == best && c < ids[s])) {
           best = cost;
@@ -239,7 +251,7 @@ double expectedBytes(const std::vector<Cluster>& clusters, double step, double c
     const double share = cluster.count / total * count;
     for (Eigen::Index j = 0; j < cluster.kept; ++j)
       bits += share * weightBits(std::min(cluster.variances(j), cluster.innovation(j)), step) +
-              axisBits(cluster.axes.col(j), cluster.variances(j), step);
+              axisBits(cluster.axes.rows(), cluster.variances(j), step);
     bits += 8.0 * static_cast<double>(cluster.mean.size());
   }
   bits += count * 0.4 * std::log2(static_cast<double>(clusters.size()));

@@ -29,8 +29,13 @@ using ClusterIds = std::vector<std::uint32_t>;
 // `clusters` where there are not so many different points.
 ClusterIds seedClusters(const Points& points, std::uint32_t clusters);
 
-// Clusters without samples are left out and ids closed up.
-std::vector<Cluster> fitClusters(const Points& points, ClusterIds& ids);
+// Clusters without samples are left out and ids closed up. `held_out`: variances as they would be on samples
+// that were not fitted, for estimates from few samples.
+std::vector<Cluster> fitClusters(const Points& points, ClusterIds& ids, bool held_out);
+
+// How finely coordinates of a unit axis have to be known whose weights have this variance: errors of the
+// axis, times its weights, add a fifth to what quantization of the weights leaves.
+double axisGrid(Eigen::Index rank, double variance, double step);
 
 // Decides which axes are worth their bits.
 void keepAxes(std::vector<Cluster>& clusters, double step);
@@ -38,11 +43,11 @@ void keepAxes(std::vector<Cluster>& clusters, double step);
 // The largest step for which the expected mean square error stays under `budget`; keeps axes for it.
 double stepFor(std::vector<Cluster>& clusters, double budget);
 
-// Moves every sample to the cluster where it costs least.
+// Moves every sample to the cluster where it costs least. `before`: the ids so far, or nothing.
 ClusterIds assignClusters(const Points& points, const std::vector<Cluster>& clusters, double step,
                           std::span<const std::uint32_t> before);
 
-// Expected bits of everything per sample of these clusters, if they held `count` samples.
+// Expected size of codebook, ids and weights if the clusters held `count` samples in all.
 double expectedBytes(const std::vector<Cluster>& clusters, double step, double count);
 
 }  // namespace lambent::baker

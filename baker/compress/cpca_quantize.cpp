@@ -7,22 +7,22 @@
 #include <Eigen/Cholesky>
 
 #include "baker/work/parallel.hpp"
-#include <cstdlib>
 
 namespace lambent::baker {
 
 namespace {
 
-double knob(const char* n, double d) { const char* e = std::getenv(n); return e ? std::atof(e) : d; }
+constexpr double kLargestCoordinate = bundle::kMaxCoordinate - 1;
 constexpr double kMaxCode = 65535.0;
 
 std::int32_t rounded(double value) {
-  const double limit = bundle::kMaxCoordinate - 1;
-  return static_cast<std::int32_t>(std::lround(std::clamp(value, -limit, limit)));
+  return static_cast<std::int32_t>(std::lround(std::clamp(value, -kLargestCoordinate, kLargestCoordinate)));
 }
 
 // Few different values code to few bytes.
-double coarse(double value) { return std::exp2(std::round(4.0 * std::log2(value)) / 4.0); }
+double coarse(double value) {
+  return std::exp2(std::round(4.0 * std::log2(value)) / 4.0);
+}
 
 struct CodedCluster {
   std::vector<std::int32_t> mean, directions;  // [coordinate], [axis][coordinate]
@@ -43,7 +43,8 @@ CodedCluster codeCluster(const Points& points, std::span<const std::uint32_t> me
   Eigen::MatrixXd axes(rank, cluster.kept);
   Eigen::VectorXd scales(cluster.kept);
   for (Eigen::Index j = 0; j < cluster.kept; ++j) {
-    const double grid = coarse(step * std::sqrt(knob("KAXIS", 0.15) / static_cast<double>(rank) / cluster.variances(j)));
+    const double grid =
+        coarse(std::max(axisGrid(rank, cluster.variances(j), step), 2.0 / kLargestCoordinate));
     scales(j) = step * grid;
     for (Eigen::Index r = 0; r < rank; ++r) {
       coded.directions.push_back(rounded(double{cluster.axes(r, j)} / grid));
@@ -55,7 +56,8 @@ CodedCluster codeCluster(const Points& points, std::span<const std::uint32_t> me
     const Eigen::LDLT<Eigen::MatrixXd> gram(axes.transpose() * axes);
     const Eigen::MatrixXd solve = gram.solve(axes.transpose());
     for (std::size_t m = 0; m < members.size(); ++m)
-      weights.col(static_cast<Eigen::Index>(m)).noalias() = solve * (points.col(members[m]).cast<double>() - mean);
+      weights.col(static_cast<Eigen::Index>(m)).noalias() =
+          solve * (points.col(members[m]).cast<double>() - mean);
   }
   for (Eigen::Index j = 0; j < cluster.kept; ++j) {
     const double low = weights.row(j).minCoeff(), high = weights.row(j).maxCoeff();
@@ -64,8 +66,9 @@ CodedCluster codeCluster(const Points& points, std::span<const std::uint32_t> me
     const auto offset = static_cast<float>(first * double{scale});
     std::vector<std::uint32_t> codes;
     for (std::size_t m = 0; m < members.size(); ++m)
-      codes.push_back(static_cast<std::uint32_t>(std::clamp(
-          std::round((weights(j, static_cast<Eigen::Index>(m)) - double{offset}) / double{scale}), 0.0, kMaxCode)));
+      codes.push_back(static_cast<std::uint32_t>(
+          std::clamp(std::round((weights(j, static_cast<Eigen::Index>(m)) - double{offset}) / double{scale}),
+                     0.0, kMaxCode)));
     coded.axes.push_back({offset, scale});
     coded.codes.push_back(std::move(codes));
   }
@@ -77,9 +80,12 @@ CodedCluster codeCluster(const Points& points, std::span<const std::uint32_t> me
 bundle::SharedCodebook roundedBasis(const Eigen::MatrixXd& axes, const Eigen::VectorXd& energies,
                                     const std::vector<double>& roots, double step) {
   bundle::SharedCodebook basis;
-  for (const double root : roots) basis.value_scales.push_back(root > 0.0 ? static_cast<float>(1.0 / root) : 0.0f);
+  for (const double root : roots)
+    basis.value_scales.push_back(root > 0.0 ? static_cast<float>(1.0 / root) : 0.0f);
   for (Eigen::Index r = 0; r < axes.cols(); ++r) {
-    const double grid = step * std::sqrt(knob("KBASIS", 0.15) / static_cast<double>(axes.rows()) / energies(r));
+    // Errors of the basis add a tenth of what quantization of one axis' weights leaves, for each vector.
+    const double grid = std::max(step * std::sqrt(0.1 / (static_cast<double>(axes.rows()) * energies(r))),
+                                 1.0 / kLargestCoordinate);
     basis.basis_scales.push_back(static_cast<float>(grid));
     for (Eigen::Index i = 0; i < axes.rows(); ++i) basis.basis.push_back(rounded(axes(i, r) / grid));
   }
@@ -106,8 +112,11 @@ CodedTransfer quantize(const Points& points, const ClusterIds& ids, const std::v
   for (const Cluster& cluster : clusters)
     mean_axes += cluster.count / static_cast<double>(ids.size()) * static_cast<double>(cluster.kept);
   const auto rank = static_cast<std::size_t>(points.rows());
-  const double mean_grid = double{static_cast<float>(
-      step * std::sqrt(knob("KMEAN", 0.1) * mean_axes / static_cast<double>(std::max<std::size_t>(rank, 1))))};
+  // Errors of the means, which no weight corrects along the axes that are left out, add a fiftieth.
+  double mean_grid = step * std::sqrt(0.02 * mean_axes / static_cast<double>(std::max<std::size_t>(rank, 1)));
+  for (const Cluster& cluster : clusters)
+    mean_grid = std::max(mean_grid, double{cluster.mean.cwiseAbs().maxCoeff()} / kLargestCoordinate);
+  mean_grid = double{static_cast<float>(mean_grid)};
 
   std::vector<CodedCluster> parts(clusters.size());
   parallelRanges(parts.size(), 1, {}, [&](std::size_t c, std::size_t) {
@@ -122,7 +131,8 @@ CodedTransfer quantize(const Points& points, const ClusterIds& ids, const std::v
   for (std::size_t r = 0; r < rank; ++r)
     for (const CodedCluster& part : parts) {
       book.means.push_back(part.mean[r]);
-      for (std::size_t j = 0; j < part.axes.size(); ++j) book.directions.push_back(part.directions[j * rank + r]);
+      for (std::size_t j = 0; j < part.axes.size(); ++j)
+        book.directions.push_back(part.directions[j * rank + r]);
     }
 
   double variance = 1e-300;

@@ -71,7 +71,8 @@ std::vector<double> normalisedRoots(std::span<const float> vectors, const bundle
   std::vector<double> roots = bandRoots(shape);
   const std::size_t size = shape.size(), columns = shape.columns(),
                     environment = std::size_t{shape.order} * shape.order;
-  const auto energy = energies(size, vectors.size() / size, [&](std::size_t at) { return double{vectors[at]}; });
+  const auto energy =
+      energies(size, vectors.size() / size, [&](std::size_t at) { return double{vectors[at]}; });
   for (const Block& block : blocksOf(shape)) {
     std::vector<double> of_column(columns, 0.0);
     for (std::size_t i = block.first; i < block.last; ++i)
@@ -91,10 +92,11 @@ std::vector<double> normalisedRoots(std::span<const float> vectors, const bundle
 }  // namespace
 
 WeightedSpace weightedSpace(std::span<const float> vectors, const bundle::TransferShape& shape) {
-  WeightedSpace space{normalisedRoots(vectors, shape), false};
-  space.dark = std::all_of(space.roots.begin(), space.roots.end(), [](double root) { return root == 0.0; });
-  if (shape.full_channels > 0)
+  WeightedSpace space{normalisedRoots(vectors, shape), 1.0};
+  if (shape.full_channels > 0) {
     for (std::size_t i = 0; i < shadowedSize(shape); ++i) space.roots[i] *= kShadowedRoot;
+    space.blocks += kShadowedRoot * kShadowedRoot;
+  }
   return space;
 }
 
@@ -103,15 +105,14 @@ double radianceError(std::span<const float> truth, std::span<const float> coded,
   const std::size_t size = shape.size();
   assert(truth.size() == coded.size() && truth.size() % size == 0);
   const std::vector<double> roots = normalisedRoots(truth, shape);
-  const auto off = energies(size, truth.size() / size, [&](std::size_t at) {
-    // Where the truth has no energy there is nothing to be relative to: the error counts as it is.
-    const double root = roots[at % size] > 0.0 ? roots[at % size] : 1.0;
-    return root * (double{coded[at]} - double{truth[at]});
-  });
+  const auto off = energies(size, truth.size() / size,
+                            [&](std::size_t at) { return double{coded[at]} - double{truth[at]}; });
   double worst = 0.0;
   for (const Block& block : blocksOf(shape)) {
     double sum = 0.0;
-    for (std::size_t i = block.first; i < block.last; ++i) sum += off[i];
+    // Where the truth has no energy there is nothing to be relative to: the error counts as it is.
+    for (std::size_t i = block.first; i < block.last; ++i)
+      sum += (roots[i] > 0.0 ? roots[i] * roots[i] : 1.0) * off[i];
     worst = std::max(worst, std::sqrt(sum));
   }
   return worst;

@@ -16,8 +16,7 @@ constexpr Eigen::Index kBlock = 256;  // samples gathered for one matrix product
 
 Spectrum spectrumOf(const Eigen::MatrixXd& covariance) {
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(covariance);
-  Spectrum spectrum{solver.eigenvectors().rowwise().reverse(),
-                    solver.eigenvalues().reverse().cwiseMax(0.0)};
+  Spectrum spectrum{solver.eigenvectors().rowwise().reverse(), solver.eigenvalues().reverse().cwiseMax(0.0)};
   for (Eigen::Index j = 0; j < spectrum.axes.cols(); ++j) {
     Eigen::Index largest = 0;
     spectrum.axes.col(j).cwiseAbs().maxCoeff(&largest);

@@ -79,6 +79,7 @@ void checkMaterials(const Root& root) {
     if (in_view != image.text("uri").empty())
       throw BrokenField{fmt::format("{} has neither or both of uri and bufferView", image.name)};
     image.text("mimeType");
+    image.text("name");
   });
   root.forEach("samplers", "sampler", [](const Object& sampler) {
     for (const char* key : {"wrapS", "wrapT", "magFilter", "minFilter"})

@@ -47,6 +47,7 @@ void checkAnimation(const Object& animation, const Root& root) {
   const auto named = [&](const char* what, std::size_t i) {
     return fmt::format("{}, {} {}", animation.name, what, i);
   };
+  animation.text("name");
   std::size_t i = 0;
   for (const nlohmann::json& entry : animation.list("samplers")) {
     const Object sampler{entry, named("sampler", i++)};

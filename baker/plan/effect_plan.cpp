@@ -2,25 +2,82 @@
 
 #include <algorithm>
 
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+
 namespace lambent::baker {
 
 namespace {
 
+std::string nameOf(const Scene& scene, std::size_t node) {
+  const std::string& name = scene.nodes[node].name;
+  return name.empty() ? fmt::format("node {}", node) : name;
+}
+
+// The root of the rigid group that a node belongs to, -1 for what stands still.
+std::int32_t groupRoot(const Scene& scene, std::size_t node) {
+  for (auto at = static_cast<std::int32_t>(node); at >= 0;
+       at = scene.nodes[static_cast<std::size_t>(at)].parent) {
+    const gltf::Node& here = scene.nodes[static_cast<std::size_t>(at)];
+    if (here.animated || here.movable) return at;
+  }
+  return -1;
+}
+
+// A light is baked into the transfer of its group's surfaces; without any there is nowhere to bake it.
+void addLonelyLights(const Scene& scene, const std::vector<RigidGroup>& groups,
+                     std::vector<std::string>& sentences) {
+  for (std::size_t n = 0; n < scene.nodes.size(); ++n) {
+    if (scene.nodes[n].light < 0) continue;
+    const std::int32_t root = groupRoot(scene, n);
+    if (std::none_of(groups.begin(), groups.end(), [&](const RigidGroup& g) { return g.root == root; }))
+      sentences.push_back(
+          fmt::format("The light of {} shines on nothing: no surface moves with it.", nameOf(scene, n)));
+  }
+}
+
+// Transfer holds for directions, so a group may turn and grow evenly, but not be stretched.
+bool stretches(const gltf::AnimationChannel& channel, const gltf::Node& node) {
+  if (channel.path != gltf::AnimationChannel::Path::Scale) return false;
+  const bool cubic = channel.interpolation == gltf::AnimationChannel::Interpolation::Cubic;
+  const auto key = [&](std::size_t i) {
+    const float* v = &channel.values[cubic ? 9 * i + 3 : 3 * i];
+    return glm::dvec3(v[0], v[1], v[2]);
+  };
+  glm::dvec3 rest = node.trs ? glm::dvec3(node.trs->scale) : glm::dvec3(0.0);
+  if (rest == glm::dvec3(0.0)) rest = key(0);
+  for (std::size_t i = 0; i < channel.times_s.size(); ++i) {
+    const glm::dvec3 scale = key(i);
+    if (glm::length(glm::cross(rest, scale)) > 1e-4 * glm::length(rest) * glm::length(scale)) return true;
+  }
+  return false;
+}
+
+void addStretchedNodes(const Scene& scene, std::vector<std::string>& sentences) {
+  for (const gltf::Animation& animation : scene.animations)
+    for (const gltf::AnimationChannel& channel : animation.channels)
+      if (stretches(channel, scene.nodes[channel.node]))
+        sentences.push_back(
+            fmt::format("An animation stretches {}: its transfer stays that of its shape at rest.",
+                        nameOf(scene, channel.node)));
+}
+
 // What this version does not carry yet, so that nobody has to find out by looking at the picture.
-std::vector<std::string> leftOut(const Scene& scene) {
+std::vector<std::string> leftOut(const Scene& scene, const std::vector<RigidGroup>& groups) {
   std::vector<std::string> sentences = scene.warnings;
   const auto any_material = [&](auto test) {
     return std::any_of(scene.materials.begin(), scene.materials.end(), test);
   };
-  if (any_material([](const gltf::Material& m) { return m.metallic > 0.0f || m.roughness < 1.0f; }))
+  if (any_material(
+          [](const gltf::Material& m) { return !m.unlit && (m.metallic > 0.0f || m.roughness < 1.0f); }))
     sentences.emplace_back(
         "Metallic and glossy reflection are left out: every material is Lambert with albedo = base colour.");
-  if (any_material([](const gltf::Material& m) { return m.emissive != glm::vec3(0.0f); }))
-    sentences.emplace_back("Emissive materials do not shine: their light is left out.");
   if (any_material([](const gltf::Material& m) { return m.alpha_mode == gltf::AlphaMode::Blend; }))
     sentences.emplace_back("Materials with alphaMode BLEND cast no shadow.");
+  addLonelyLights(scene, groups, sentences);
   if (std::any_of(scene.nodes.begin(), scene.nodes.end(), [](const gltf::Node& n) { return n.animated; }))
-    sentences.emplace_back("Animations do not play: animated nodes are separate rigid groups, at rest.");
+    sentences.emplace_back("Animations do not play yet: animated nodes are separate rigid groups, at rest.");
+  addStretchedNodes(scene, sentences);
   return sentences;
 }
 
@@ -30,7 +87,7 @@ EffectPlan makePlan(const Scene& scene, std::span<const EffectEntry> effects) {
   EffectPlan plan;
   plan.groups = findRigidGroups(scene);
   for (const EffectEntry& entry : effects) plan.effects.push_back(entry.choose(scene, plan.groups));
-  plan.left_out = leftOut(scene);
+  plan.left_out = leftOut(scene, plan.groups);
   if (plan.groups.size() > 1)
     plan.left_out.emplace_back(
         "Rigid groups do not shadow or light each other yet: each is baked by itself.");

@@ -34,12 +34,20 @@ std::uint16_t splitWord(std::span<const std::byte> bytes, std::size_t count, std
                                     std::to_integer<unsigned>(bytes[count + i]) << 8);
 }
 
-// Integers near zero as 32-bit words (0, -1, 1, -2, ...) in four runs of bytes, lowest first.
-void appendZigzag(std::vector<std::byte>& out, std::span<const std::int32_t> values) {
+// 0, -1, 1, -2, ... as 0, 1, 2, 3, ...: integers near zero have few bits set.
+std::uint32_t zigzag(std::int32_t value) {
+  return static_cast<std::uint32_t>(value) << 1 ^ static_cast<std::uint32_t>(value >> 31);
+}
+
+std::int32_t unzigzag(std::uint32_t word) {
+  return static_cast<std::int32_t>(word >> 1 ^ (~(word & 1) + 1));
+}
+
+// Integers near zero as 32-bit words in four runs of bytes, lowest first.
+void appendIntegers(std::vector<std::byte>& out, std::span<const std::int32_t> values) {
   for (int shift = 0; shift < 32; shift += 8)
     for (const std::int32_t value : values) {
-      const auto word = static_cast<std::uint32_t>(value) << 1 ^ static_cast<std::uint32_t>(value >> 31);
-      out.push_back(static_cast<std::byte>(word >> shift & 0xff));
+      out.push_back(static_cast<std::byte>(zigzag(value) >> shift & 0xff));
     }
 }
 
@@ -71,14 +79,14 @@ class Front {
     return out;
   }
 
-  std::vector<std::int32_t> zigzag(std::uint64_t count) {
+  std::vector<std::int32_t> integers(std::uint64_t count) {
     const auto bytes = take(count, 4);
     std::vector<std::int32_t> out(bytes.size() / 4);
     for (std::size_t i = 0; i < out.size(); ++i) {
       std::uint32_t word = 0;
       for (std::size_t run = 0; run < 4; ++run)
         word |= std::to_integer<std::uint32_t>(bytes[run * out.size() + i]) << 8 * run;
-      out[i] = static_cast<std::int32_t>(word >> 1 ^ (~(word & 1) + 1));
+      out[i] = unzigzag(word);
     }
     return out;
   }
@@ -149,9 +157,9 @@ std::vector<std::byte> encodeCodebook(const SharedCodebook& codebook) {
   appendValues<float>(out, codebook.value_scales);
   appendValues<float>(out, codebook.basis_scales);
   appendValues<float>(out, std::span(&codebook.mean_scale, 1));
-  appendZigzag(out, codebook.basis);
-  appendZigzag(out, codebook.means);
-  appendZigzag(out, codebook.directions);
+  appendIntegers(out, codebook.basis);
+  appendIntegers(out, codebook.means);
+  appendIntegers(out, codebook.directions);
   return out;
 }
 
@@ -217,9 +225,9 @@ Result<Codebook> decodeCodebook(std::span<const std::byte> bytes, const Transfer
     shared.value_scales = front.values<float>(size);
     shared.basis_scales = front.values<float>(rank[0]);
     const auto mean_scale = front.values<float>(1);
-    shared.basis = front.zigzag(rank[0] * size);
-    shared.means = front.zigzag(std::uint64_t{rank[0]} * clusters);
-    shared.directions = front.zigzag(std::uint64_t{rank[0]} * axes);
+    shared.basis = front.integers(rank[0] * size);
+    shared.means = front.integers(std::uint64_t{rank[0]} * clusters);
+    shared.directions = front.integers(std::uint64_t{rank[0]} * axes);
     if (!front.whole()) return damaged("sizes do not add up");
     shared.mean_scale = mean_scale[0];
     if (!allBelow(shared.value_scales, kMaxValue) || !allBelow(shared.basis_scales, kMaxValue) ||
@@ -284,15 +292,16 @@ std::vector<std::uint32_t> planeCounts(const Codebook& codebook, std::span<const
 
 std::vector<std::byte> encodeWeightPlane(std::span<const std::uint32_t> codes, std::uint32_t bits) {
   assert(bits == 8 || bits == 16);
-  std::vector<std::uint16_t> differences;
+  std::vector<std::uint16_t> words;
   std::uint32_t previous = 0;
   for (const std::uint32_t code : codes) {
     assert(code < (1u << bits));
-    differences.push_back(static_cast<std::uint16_t>((code - previous) & ((1u << bits) - 1)));
+    const auto difference = static_cast<std::int32_t>((code - previous) << (32 - bits)) >> (32 - bits);
+    words.push_back(static_cast<std::uint16_t>(zigzag(difference)));  // fits: |difference| <= 2^(bits-1)
     previous = code;
   }
   std::vector<std::byte> out;
-  appendSplit(out, differences);
+  appendSplit(out, words);
   if (bits == 8) out.resize(codes.size());
   return out;
 }
@@ -305,8 +314,9 @@ Result<std::vector<std::uint32_t>> decodeWeightPlane(std::span<const std::byte> 
   std::vector<std::uint32_t> codes(count);
   std::uint32_t code = 0;
   for (std::size_t i = 0; i < codes.size(); ++i) {
-    code += bits == 16 ? splitWord(bytes, count, i) : std::to_integer<std::uint32_t>(bytes[i]);
-    code &= (1u << bits) - 1;
+    const std::uint32_t word =
+        bits == 16 ? splitWord(bytes, count, i) : std::to_integer<std::uint32_t>(bytes[i]);
+    code = (code + static_cast<std::uint32_t>(unzigzag(word))) & ((1u << bits) - 1);
     codes[i] = code;
   }
   return codes;

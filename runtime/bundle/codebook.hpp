@@ -90,9 +90,10 @@ std::vector<std::uint32_t> positionsOf(std::span<const std::uint32_t> cluster_of
 // How many positions each plane concerns, one entry per plane: the samples in clusters of more axes.
 std::vector<std::uint32_t> planeCounts(const Codebook& codebook, std::span<const std::uint32_t> cluster_of);
 
-// Payload "weightPlane": codes of plane j in the order of positionsOf, `bits` (8 or 16) each, little endian,
-// as the differences of each code from the one before it in the same plane (modulo 2^bits): neighbours are
-// alike. 16-bit planes have all low bytes first, then all high bytes.
+// Payload "weightPlane": codes of plane j in the order of positionsOf, `bits` (8 or 16) each, as the
+// difference of each code from the one before it in the same plane (neighbours are alike): modulo 2^bits to
+// the range around 0, then 0, -1, 1, -2, ... as 0, 1, 2, 3, ..., little endian. 16-bit planes have all low
+// bytes first, then all high bytes.
 std::vector<std::byte> encodeWeightPlane(std::span<const std::uint32_t> codes, std::uint32_t bits);
 Result<std::vector<std::uint32_t>> decodeWeightPlane(std::span<const std::byte> bytes, std::uint32_t bits,
                                                      std::uint32_t count, const std::string& subject);

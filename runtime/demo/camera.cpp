@@ -52,34 +52,9 @@ glm::vec3 openSide(const frame::World& world) {
   return {sum.x, 0.0f, sum.z};
 }
 
-// Where nothing else is asked for: from the side to which the scene is open, if it is, and so that the
-// corners of its box lie within the picture, with a margin.
 spec::OrbitCamera framingOrbit(const frame::World& world, float aspect) {
-  constexpr float kFilled = 0.9f, kOpen = 0.25f;
   const scene::Box bounds = boundsOf(world);
-  spec::OrbitCamera orbit{
-      .azimuth_deg = 25.0f, .elevation_deg = 12.0f, .distance_radii = 1.0f, .fov_deg = 35.0f};
-  const glm::vec3 open = openSide(world), size = bounds.max - bounds.min;
-  if (glm::length(open) > kOpen * size.y * std::max(size.x, size.z)) {
-    constexpr float kAside = 8.0f;  // straight on looks flat
-    orbit.azimuth_deg = glm::degrees(std::atan2(open.x, open.z)) + kAside;
-    orbit.elevation_deg = 4.0f;
-  }
-  const glm::vec3 back = spec::directionFromAzimuthElevation(orbit.azimuth_deg, orbit.elevation_deg);
-  const glm::vec3 right = glm::normalize(glm::cross(glm::vec3(0.0f, 1.0f, 0.0f), back));
-  const glm::vec3 up = glm::cross(back, right);
-  const float half_height = kFilled * std::tan(glm::radians(0.5f * orbit.fov_deg));
-  const glm::vec3 half = 0.5f * (bounds.max - bounds.min);
-  float distance = 0.0f;
-  for (int corner = 0; corner < 8; ++corner) {
-    const glm::vec3 signs(corner & 1 ? 1.0f : -1.0f, corner & 2 ? 1.0f : -1.0f, corner & 4 ? 1.0f : -1.0f);
-    const glm::vec3 place = signs * half;
-    const float reach =
-        std::max(std::abs(glm::dot(place, up)), std::abs(glm::dot(place, right)) / aspect) / half_height;
-    distance = std::max(distance, glm::dot(place, back) + reach);
-  }
-  if (bounds.radius() > 0.0f) orbit.distance_radii = std::max(distance / bounds.radius(), 1.01f);
-  return orbit;
+  return spec::framingOrbit(bounds.min, bounds.max, openSide(world), aspect);
 }
 
 glm::mat4 worldFromNode(const frame::World& world, std::size_t bundle, std::uint32_t node) {

@@ -22,9 +22,6 @@ const std::map<std::string, TransferMode> kTransferWords = {{"unshadowed", Trans
 const std::map<std::string, sh::Window> kWindowWords = {
     {"auto", sh::Window::Auto}, {"off", sh::Window::Off}, {"hann", sh::Window::Hann}};
 
-// A blue sky's worth of constant light and a soft sun, about radiance 1 on a white surface that faces it.
-constexpr const char* kDefaultLights[] = {"constant:0.35,0.42,0.55", "sun:35,45,6,100,92,80"};
-
 // What CLI11 hands over, before the words are understood.
 struct Words {
   std::vector<std::string> bundles, lights;
@@ -106,7 +103,8 @@ Result<void> understandLights(const Words& words, Options& options) {
   }
   options.default_light = words.lights.empty();
   options.light_words = words.lights;
-  if (options.default_light) options.light_words.assign(std::begin(kDefaultLights), std::end(kDefaultLights));
+  if (options.default_light)
+    options.light_words.assign(spec::kDefaultLights.begin(), spec::kDefaultLights.end());
   for (const std::string& word : options.light_words) {
     Result<spec::Light> light = spec::parseLight(word);
     if (!light) return failAgain(light.error());

@@ -5,7 +5,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,16 +13,11 @@
 
 #include "runtime/base/result.hpp"
 #include "runtime/sh/light_vector.hpp"
-#include "runtime/spec/light.hpp"
-#include "runtime/spec/probe.hpp"
+#include "runtime/spec/distant_lights.hpp"
 
 namespace lambent::lighting {
 
-struct Disc {
-  glm::vec3 direction{0.0f, 1.0f, 0.0f};  // towards it, before the turn
-  float radius_rad = 0.0f;
-  glm::vec3 radiance{0.0f};
-};
+using spec::Disc;
 
 class Environment {
  public:
@@ -38,19 +32,16 @@ class Environment {
   const sh::LightVector& light() const { return light_; }  // world space, turned
   std::uint64_t version() const { return version_; }       // rises with every turn
 
-  const std::vector<spec::Probe>& probes() const { return probes_; }
-  const std::vector<Disc>& discs() const { return discs_; }
-  glm::vec3 constant() const { return constant_; }
+  const std::vector<spec::Probe>& probes() const { return lights_.probes; }
+  const std::vector<Disc>& discs() const { return lights_.discs; }
+  glm::vec3 constant() const { return lights_.constant; }
   // What was repaired in the probes; a sentence each.
-  const std::vector<std::string>& notices() const { return notices_; }
+  const std::vector<std::string>& notices() const { return lights_.notices; }
 
  private:
   Environment() = default;
 
-  std::vector<spec::Probe> probes_;
-  std::vector<Disc> discs_;
-  glm::vec3 constant_{0.0f};
-  std::vector<std::string> notices_;
+  spec::DistantLights lights_;
   sh::LightVector unturned_, light_;
   float turn_degrees_ = 0.0f;
   std::uint64_t version_ = 1;

@@ -70,6 +70,34 @@ Result<Camera> parseCamera(std::string_view word) {
   return orbit;
 }
 
+OrbitCamera framingOrbit(glm::vec3 bounds_min_ws, glm::vec3 bounds_max_ws, glm::vec3 open_side_ws,
+                         float aspect) {
+  constexpr float kFilled = 0.9f, kOpen = 0.25f;
+  OrbitCamera orbit{.azimuth_deg = 25.0f, .elevation_deg = 12.0f, .distance_radii = 1.0f, .fov_deg = 35.0f};
+  const glm::vec3 open(open_side_ws.x, 0.0f, open_side_ws.z), size = bounds_max_ws - bounds_min_ws;
+  if (glm::length(open) > kOpen * size.y * std::max(size.x, size.z)) {
+    constexpr float kAside = 8.0f;  // straight on looks flat
+    orbit.azimuth_deg = glm::degrees(std::atan2(open.x, open.z)) + kAside;
+    orbit.elevation_deg = 4.0f;
+  }
+  const glm::vec3 back = directionFromAzimuthElevation(orbit.azimuth_deg, orbit.elevation_deg);
+  const glm::vec3 right = glm::normalize(glm::cross(glm::vec3(0.0f, 1.0f, 0.0f), back));
+  const glm::vec3 up = glm::cross(back, right);
+  const float half_height = kFilled * std::tan(glm::radians(0.5f * orbit.fov_deg));
+  const glm::vec3 half = 0.5f * size;
+  float distance = 0.0f;
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::vec3 signs(corner & 1 ? 1.0f : -1.0f, corner & 2 ? 1.0f : -1.0f, corner & 4 ? 1.0f : -1.0f);
+    const glm::vec3 place = signs * half;
+    const float reach =
+        std::max(std::abs(glm::dot(place, up)), std::abs(glm::dot(place, right)) / aspect) / half_height;
+    distance = std::max(distance, glm::dot(place, back) + reach);
+  }
+  const float radius = 0.5f * glm::length(size);
+  if (radius > 0.0f) orbit.distance_radii = std::max(distance / radius, 1.01f);
+  return orbit;
+}
+
 View orbitView(const OrbitCamera& camera, glm::vec3 bounds_min_ws, glm::vec3 bounds_max_ws, float aspect) {
   const glm::vec3 centre = 0.5f * (bounds_min_ws + bounds_max_ws);
   const float radius = std::max(0.5f * glm::length(bounds_max_ws - bounds_min_ws), 1e-6f);

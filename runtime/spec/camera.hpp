@@ -43,6 +43,12 @@ struct View {
   glm::vec3 eye_ws{0.0f};
 };
 
+// Where nothing else is asked for: from the side to which a scene is open, if it is, and so that the corners
+// of its box lie within the picture, with a margin. open_side_ws: the sum of area times normal over its
+// surfaces, which is 0 for closed bodies and looks out of a stage or a room without a front.
+OrbitCamera framingOrbit(glm::vec3 bounds_min_ws, glm::vec3 bounds_max_ws, glm::vec3 open_side_ws,
+                         float aspect);
+
 View orbitView(const OrbitCamera& camera, glm::vec3 bounds_min_ws, glm::vec3 bounds_max_ws, float aspect);
 
 // The node that carries the camera: by the camera's name, else the name of its node, else the camera's index.

@@ -5,6 +5,7 @@
 // quote the word and show the form that was expected. No file is opened here: probe.hpp does that.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <optional>
 #include <string_view>
@@ -37,6 +38,11 @@ struct SunLight {
 };
 
 using Light = std::variant<ProbeLight, ConstantLight, SunLight>;
+
+// Where no light is asked for: a blue sky's worth of constant light and a soft sun, about radiance 1 on a
+// white surface that faces it.
+inline constexpr std::array<const char*, 2> kDefaultLights = {"constant:0.35,0.42,0.55",
+                                                              "sun:35,45,6,100,92,80"};
 
 Result<Light> parseLight(std::string_view word);
 

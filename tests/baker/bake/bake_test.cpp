@@ -124,6 +124,43 @@ TEST_F(Bake, StoresTransferThatDecodesToTheScene) {
   }
 }
 
+// Whatever reads glTF reads a bundle: our own importer finds in it what was in the scene.
+TEST_F(Bake, WritesAnOrdinaryScene) {
+  Scene scene = stage();
+  scene.lights = {{.name = "lamp", .type = gltf::Light::Type::Spot, .color = {1, 0.5f, 0}, .intensity = 9}};
+  scene.nodes[1].light = 0;
+  scene.nodes[2].trs = gltf::Trs{.translation = {0.8f, 0.6f, 0}, .scale = {1, -1, 1}};
+  scene.nodes[2].parent_from_node = scene.nodes[2].trs->matrix();
+  scene.nodes[2].animated = true;
+  scene.animations = {{"roll", {{.node = 2, .times_s = {0, 1}, .values = {0, 0, 0, 1, 0, 0}}}}};
+  scene.images = {{"bumps", "image/png", std::vector<std::byte>(9)}};
+  const char* png = "\x89PNG\r\n\x1a\n";
+  for (std::size_t i = 0; i < 8; ++i) scene.images[0].file_bytes[i] = static_cast<std::byte>(png[i]);
+  scene.textures = {{0, {}}};
+  scene.materials[0].emissive = {4, 2, 1};
+  scene.materials[0].normal_texture = {.texture = 0, .offset = {0.5f, 0.25f}, .rotation_rad = 1.0f};
+  bundle::MeshData& floor = scene.meshes[0].primitives[0].mesh;
+  floor.tangents.assign(floor.positions.size(), {1, 0, 0, -1});
+  const auto baked = bakeTo("stage.lmb.glb", scene, draft());
+  ASSERT_TRUE(baked) << baked.error().line();
+
+  const auto again = importScene(folder_ / "stage.lmb.glb");
+  ASSERT_TRUE(again) << again.error().line();
+  ASSERT_EQ(again->lights.size(), 1u);
+  EXPECT_EQ(again->lights[0].color, scene.lights[0].color);
+  EXPECT_EQ(again->nodes.at(1).light, 0);
+  EXPECT_EQ(again->nodes.at(2).trs, scene.nodes[2].trs);
+  EXPECT_TRUE(again->nodes[2].movable);
+  ASSERT_EQ(again->animations.size(), 1u);
+  EXPECT_EQ(again->animations[0].channels.at(0).values, scene.animations[0].channels[0].values);
+  EXPECT_EQ(again->materials.at(0).emissive, scene.materials[0].emissive);
+  EXPECT_EQ(again->materials[0].normal_texture, scene.materials[0].normal_texture);
+  const bundle::MeshData& mesh = again->meshes.at(0).primitives.at(0).mesh;
+  EXPECT_EQ(mesh.positions.size(), floor.positions.size());
+  ASSERT_EQ(mesh.tangents.size(), mesh.positions.size());
+  for (const glm::vec4& tangent : mesh.tangents) EXPECT_EQ(tangent, glm::vec4(1, 0, 0, -1));
+}
+
 TEST_F(Bake, SplitsLongEdgesSoThatAFloorOfTwoTrianglesCatchesAShadow) {
   const Scene scene = sceneOf({grid({0, 0, 0}, 4.0f, 1), icosphere({0, 0.8f, 0}, 0.6f, 2)});
   BakeOptions options = draft();
@@ -147,6 +184,36 @@ TEST_F(Bake, KnowsWhenABundleIsUpToDate) {
   EXPECT_FALSE(isUpToDate(scene, other, folder_ / "stage.lmb.glb"));
   scene.meshes[0].primitives[0].mesh.positions[3].y += 0.01f;
   EXPECT_FALSE(isUpToDate(scene, draft(), folder_ / "stage.lmb.glb"));
+}
+
+TEST_F(Bake, IsOutOfDateWhenLightsMaterialsOrMotionChange) {
+  Scene scene = stage();
+  scene.lights = {gltf::Light{}};
+  scene.nodes[2].trs = gltf::Trs{};
+  scene.animations = {{"roll", {{.node = 2, .times_s = {0, 1}, .values = {0, 0, 0, 1, 0, 0}}}}};
+  const std::uint64_t before = sceneDigest(scene);
+  const auto changes = [&](auto change) {
+    Scene other = scene;
+    change(other);
+    return sceneDigest(other) != before;
+  };
+  EXPECT_FALSE(changes([](Scene&) {}));
+  EXPECT_TRUE(changes([](Scene& s) { s.lights[0].intensity = 2.0f; }));
+  EXPECT_TRUE(changes([](Scene& s) { s.lights[0].outer_cone_rad = 0.5f; }));
+  EXPECT_TRUE(changes([](Scene& s) { s.nodes[0].light = 0; }));
+  EXPECT_TRUE(changes([](Scene& s) { s.nodes[2].trs->scale.y = 3.0f; }));
+  EXPECT_TRUE(changes([](Scene& s) { s.animations[0].channels[0].values[5] = 1.0f; }));
+  EXPECT_TRUE(changes([](Scene& s) { s.animations[0].channels[0].node = 1; }));
+  EXPECT_TRUE(changes([](Scene& s) { s.materials[0].emissive.x = 1.0f; }));
+  EXPECT_TRUE(changes([](Scene& s) { s.materials[0].emissive_texture.scale.x = 2.0f; }));
+  EXPECT_TRUE(changes([](Scene& s) { s.materials[0].normal_scale = 2.0f; }));
+  EXPECT_TRUE(changes([](Scene& s) { s.materials[0].normal_texture.texture = 1; }));
+  EXPECT_TRUE(changes([](Scene& s) { s.materials[0].base_color_texture.rotation_rad = 1.0f; }));
+  EXPECT_TRUE(changes([](Scene& s) { s.materials[0].unlit = true; }));
+  EXPECT_TRUE(changes([](Scene& s) {
+    bundle::MeshData& mesh = s.meshes[0].primitives[0].mesh;
+    mesh.tangents.assign(mesh.positions.size(), {1, 0, 0, 1});
+  }));
 }
 
 TEST_F(Bake, ThatIsStoppedOrFailsLeavesTheOldBundle) {

@@ -167,7 +167,10 @@ TEST(ImportScene, ReadsTheTreeOfTheDefaultSceneOnly) {
       nlohmann::json::parse(R"([{"type":"perspective","perspective":{"yfov":0.5,"znear":0.1}}])");
   writer.json["animations"] = nlohmann::json::parse(
       R"([{"channels":[{"sampler":0,"target":{"node":4,"path":"rotation"}},
-                       {"sampler":0,"target":{"node":3,"path":"weights"}}],"samplers":[{"input":0,"output":0}]}])");
+                       {"sampler":0,"target":{"node":3,"path":"weights"}},
+                       {"sampler":0,"target":{"node":0,"path":"rotation"}}],"samplers":[{}]}])");
+  writer.json["animations"][0]["samplers"][0]["input"] = writer.add<float>("SCALAR", 5126, {0}, 1);
+  writer.json["animations"][0]["samplers"][0]["output"] = writer.add<float>("VEC4", 5126, {0, 0, 0, 1}, 4);
   const Scene scene = imported(writer.writeText(folder));
   ASSERT_EQ(scene.nodes.size(), 4u);
   EXPECT_EQ(scene.roots, (std::vector<std::int32_t>{0, 3}));
@@ -181,6 +184,9 @@ TEST(ImportScene, ReadsTheTreeOfTheDefaultSceneOnly) {
   EXPECT_FLOAT_EQ(scene.cameras[0].yfov_rad, 0.5f);
   EXPECT_EQ(scene.cameras[0].zfar, 0.0f);
   EXPECT_TRUE(scene.nodes[3].animated);
+  ASSERT_EQ(scene.animations.size(), 1u);
+  ASSERT_EQ(scene.animations[0].channels.size(), 1u);  // the other node stands in no scene
+  EXPECT_EQ(scene.animations[0].channels[0].node, 3u);
   EXPECT_EQ(scene.meshes.size(), 1u);  // one mesh, two instances
 
   // T * R * S: +X goes to +Y doubled, +Z is mirrored.
@@ -193,14 +199,14 @@ TEST(ImportScene, ReadsTheTreeOfTheDefaultSceneOnly) {
   EXPECT_EQ(world[2][3].z, 3.0f - 10.0f);
 }
 
-TEST(ImportScene, ReadsMaterialsAndOnlyTheImagesOfBaseColors) {
+TEST(ImportScene, ReadsMaterialsAndOnlyTheImagesThatTheyUse) {
   TemporaryFolder folder;
   GltfWriter writer = oneTriangle();
   writer.primitive()["attributes"]["TEXCOORD_0"] = writer.add<float>("VEC2", 5126, {0, 0, 1, 0, 0, 1}, 2);
   writer.primitive()["material"] = 1;
   writer.json["materials"] =
       nlohmann::json::parse(R"([{},{"name":"leaf","doubleSided":true,"alphaMode":"MASK",
-    "alphaCutoff":0.25,"emissiveFactor":[1,0.5,0],"normalTexture":{"index":0},"pbrMetallicRoughness":{
+    "alphaCutoff":0.25,"emissiveFactor":[1,0.5,0],"occlusionTexture":{"index":0},"pbrMetallicRoughness":{
     "baseColorFactor":[0.1,0.2,0.3,0.4],"metallicFactor":0,"roughnessFactor":0.5,
     "baseColorTexture":{"index":1,"extensions":{"KHR_texture_transform":{"offset":[0.5,0],"scale":[2,3]}}}}}])");
   writer.json["textures"] = nlohmann::json::parse(R"([{"source":0},{"source":1,"sampler":0}])");
@@ -221,7 +227,10 @@ TEST(ImportScene, ReadsMaterialsAndOnlyTheImagesOfBaseColors) {
   EXPECT_EQ(scene.textures[0].sampler.wrap_t, 10497u);
   EXPECT_EQ(scene.images.at(0).mime_type, "image/png");
   EXPECT_EQ(scene.images.at(0).name, "a leaf.png");
-  EXPECT_EQ(firstMesh(scene).texcoords0, (std::vector<glm::vec2>{{0.5f, 0}, {2.5f, 0}, {0.5f, 3}}));
+  // The transform stays with the texture: the coordinates are those of the file.
+  EXPECT_EQ(leaf.base_color_texture.offset, glm::vec2(0.5f, 0.0f));
+  EXPECT_EQ(leaf.base_color_texture.scale, glm::vec2(2.0f, 3.0f));
+  EXPECT_EQ(firstMesh(scene).texcoords0, (std::vector<glm::vec2>{{0, 0}, {1, 0}, {0, 1}}));
 }
 
 TEST(ImportScene, FindsPercentEncodedBuffersAndEmbeddedOnes) {
@@ -237,6 +246,60 @@ TEST(ImportScene, FindsPercentEncodedBuffersAndEmbeddedOnes) {
   EXPECT_TRUE(importScene(folder.write("scene.gltf", writer.json.dump())));
 }
 
+TEST(ImportScene, ReadsDataUrisOfAnyMediaTypeForBuffersAndImages) {
+  TemporaryFolder folder;
+  GltfWriter writer = oneTriangle();
+  writer.primitive()["material"] = 0;
+  writer.json["materials"] =
+      nlohmann::json::parse(R"([{"pbrMetallicRoughness":{"baseColorTexture":{"index":0}}}])");
+  writer.json["textures"] = nlohmann::json::parse(R"([{"source":0}])");
+  writer.json["images"] = nlohmann::json::parse(R"([{"uri":"data:image/png;base64,iVBORw0KGgpzbyBvbg=="}])");
+  writer.json["buffers"] = {{{"byteLength", 36}}};
+  for (const char* uri :
+       {"data:;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA",
+        "data:application/gltf-buffer,%00%00%00%00%00%00%00%00%00%00%00%00%00%00%80%3f%00%00%00"
+        "%00%00%00%00%00%00%00%00%00%00%00%80%3f%00%00%00%00"}) {
+    writer.json["buffers"][0]["uri"] = uri;
+    const Scene scene = imported(folder.write("scene.gltf", writer.json.dump()));
+    EXPECT_EQ(firstMesh(scene).positions, (std::vector<glm::vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}})) << uri;
+    ASSERT_EQ(scene.images.size(), 1u);
+    EXPECT_EQ(scene.images[0].mime_type, "image/png");
+    EXPECT_EQ(scene.images[0].file_bytes.size(), 13u);  // the signature and "so on"
+  }
+}
+
+TEST(ImportScene, ReadsFilesOutsideItsFolderOnlyWhenAllowed) {
+  TemporaryFolder folder;
+  GltfWriter writer = oneTriangle();
+  writer.json["buffers"] = {{{"byteLength", writer.bytes.size()}}};
+  const auto buffer = folder.write("outside/scene.bin", writer.bytes);
+  for (const std::string& uri : {std::string("../outside/scene.bin"), buffer.string()}) {
+    writer.json["buffers"][0]["uri"] = uri;
+    const auto path = folder.write("inside/scene.gltf", writer.json.dump());
+    const auto refused = importScene(path);
+    ASSERT_FALSE(refused);
+    EXPECT_NE(refused.error().line().find("--allow-outside"), std::string::npos) << refused.error().line();
+    EXPECT_TRUE(importScene(path, {.allow_outside = true}));
+  }
+}
+
+TEST(ImportScene, ReadsSparseIndicesWithAndWithoutABase) {
+  TemporaryFolder folder;
+  for (const bool base : {true, false}) {
+    GltfWriter writer = oneTriangle();
+    const int indices = writer.add<std::uint16_t>("SCALAR", 5123, {0, 2, 0}, 1);
+    writer.add<std::uint8_t>("SCALAR", 5121, {1, 2}, 1);
+    writer.add<std::uint16_t>("SCALAR", 5123, {1, 2}, 1);
+    nlohmann::json& accessor = writer.json["accessors"][static_cast<std::size_t>(indices)];
+    if (!base) accessor.erase("bufferView");
+    accessor["sparse"] = {{"count", 2},
+                          {"indices", {{"bufferView", 2}, {"componentType", 5121}}},
+                          {"values", {{"bufferView", 3}}}};
+    writer.primitive()["indices"] = indices;
+    EXPECT_EQ(firstMesh(imported(writer.writeText(folder))).indices, (Indices{0, 1, 2})) << base;
+  }
+}
+
 TEST(ImportScene, WarnsAboutAnUnknownExtensionOnceAndRefusesARequiredOneByName) {
   TemporaryFolder folder;
   GltfWriter writer = oneTriangle();
@@ -244,6 +307,10 @@ TEST(ImportScene, WarnsAboutAnUnknownExtensionOnceAndRefusesARequiredOneByName) 
   const Scene scene = imported(writer.writeText(folder));
   ASSERT_EQ(scene.warnings.size(), 1u);
   EXPECT_NE(scene.warnings[0].find("ACME_sparkle"), std::string::npos);
+  writer.json["extensionsUsed"] = {"KHR_materials_sheen", "KHR_materials_clearcoat"};
+  const Scene glossy = imported(writer.writeText(folder));
+  ASSERT_EQ(glossy.warnings.size(), 1u);
+  EXPECT_NE(glossy.warnings[0].find("KHR_materials_clearcoat, KHR_materials_sheen"), std::string::npos);
   writer.json["extensionsRequired"] = {"ACME_sparkle"};
   const auto refused = importScene(writer.writeText(folder));
   ASSERT_FALSE(refused);

@@ -1,6 +1,7 @@
 // EXT_meshopt_compression: what comes out is what went in, and nothing false gets through.
 #include <functional>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <meshoptimizer.h>
 
@@ -132,6 +133,13 @@ TEST(Meshopt, RefusesWhatIsFalseByName) {
         g.document["buffers"][1]["byteLength"] = 3000000000u;
       },
       "a bomb", "claims 3000000000 bytes");
+  refused(
+      [](CodedGrid& g) {
+        // The same bytes named again and again stand for no more than once.
+        for (int i = 0; i < 100; ++i) g.document["bufferViews"].push_back(g.document["bufferViews"][0]);
+        g.document["buffers"][1]["byteLength"] = (g.bytes.size() + 2) * 256;
+      },
+      "a bomb with many fuses", fmt::format("bytes coded in {}", CodedGrid().bytes.size()).c_str());
 }
 
 }  // namespace

@@ -94,8 +94,14 @@ TEST(SplitLongEdges, InterpolatesAttributesAndKeepsNormalsUnit) {
   mesh.normals = {{0, 0, 1}, {1, 0, 0}, {0, 1, 0}};
   mesh.texcoords0 = {{0, 0}, {1, 0}, {0, 1}};
   mesh.colors = {{0, 0, 0, 1}, {1, 0, 0, 1}, {0, 1, 0, 1}};
+  mesh.tangents = {{1, 0, 0, -1}, {0, 1, 0, -1}, {-1, 0, 0, -1}};  // two of them opposite: they have no mean
   mesh.indices = {0, 1, 2};
   ASSERT_TRUE(splitLongEdges(mesh, 0.2f, 1000));
+  ASSERT_EQ(mesh.tangents.size(), mesh.positions.size());
+  for (const glm::vec4& tangent : mesh.tangents) {
+    EXPECT_NEAR(glm::length(glm::vec3(tangent)), 1.0f, 1e-6f);
+    EXPECT_EQ(tangent.w, -1.0f);
+  }
   ASSERT_EQ(mesh.normals.size(), mesh.positions.size());
   for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
     // Texture coordinates and colours are linear in position: midpoints keep them so, exactly (powers of

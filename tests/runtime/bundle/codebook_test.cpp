@@ -135,6 +135,79 @@ TEST(Codebook, WithFlippedBitsIsRefusedOrDecodesToFiniteVectors) {
   EXPECT_GT(refused, 3u * 16 / 2);  // most flips of a count
 }
 
+// Two basis vectors; clusters of 1 and 0 axes over vectors of 4 values.
+SharedCodebook sharedCodebook() {
+  SharedCodebook codebook;
+  codebook.axis_counts = {1, 0};
+  codebook.axes = {{-1.0f, 0.5f}};
+  codebook.value_scales = {1.0f, 1.0f, 2.0f, 0.5f};
+  codebook.basis_scales = {0.25f, 1.0f};
+  codebook.mean_scale = 0.5f;
+  codebook.basis = {4, 0, -8, 1000, 0, -1, 1, 0};
+  codebook.means = {2, 4, 0, -6};  // coordinate by coordinate
+  codebook.directions = {-1, 3};
+  return codebook;
+}
+
+TEST(SharedCodebook, ExpandsToMeansAndAxes) {
+  const Codebook codebook = expand(sharedCodebook());
+  // Basis: {1, 0, -4, 125} and {0, -1, 2, 0}.
+  EXPECT_EQ(codebook.vectors, (std::vector<float>{1, 0, -4, 125,      // mean of cluster 0: 1 and 0
+                                                  -1, -3, 10, -125,   // its axis: -1 and 3
+                                                  2, 3, -14, 250}));  // mean of cluster 1: 2 and -3
+  EXPECT_EQ(codebook.axis_counts, (std::vector<std::uint32_t>{1, 0}));
+}
+
+TEST(SharedCodebook, ComesBackExactly) {
+  const SharedCodebook codebook = sharedCodebook();
+  const auto bytes = encodeCodebook(codebook);
+  const auto back = decodeCodebook(bytes, smallShape(), 2, "cell 0");
+  ASSERT_TRUE(back) << back.error().line();
+  EXPECT_EQ(back->vectors, expand(codebook).vectors);
+  ASSERT_EQ(back->axes.size(), 1u);
+  EXPECT_EQ(back->axes[0].offset, -1.0f);
+  EXPECT_EQ(back->axes[0].scale, 0.5f);
+  for (std::size_t length = 0; length < bytes.size(); ++length)
+    EXPECT_FALSE(decodeCodebook(prefix(bytes, length), smallShape(), 2, "cell 0")) << length;
+  auto longer = bytes;
+  longer.push_back(std::byte{0});
+  EXPECT_FALSE(decodeCodebook(longer, smallShape(), 2, "cell 0"));
+  EXPECT_FALSE(decodeCodebook(bytes, smallShape(), 3, "cell 0"));
+}
+
+TEST(SharedCodebook, WithFlippedBitsIsRefusedOrDecodesToFiniteVectors) {
+  const auto bytes = encodeCodebook(sharedCodebook());
+  const std::vector<std::uint32_t> cluster_of = {0, 1};
+  std::size_t refused = 0;
+  for (std::size_t bit = 0; bit < bytes.size() * 8; ++bit) {
+    auto flipped = bytes;
+    flipped[bit / 8] ^= static_cast<std::byte>(1u << bit % 8);
+    const auto back = decodeCodebook(flipped, smallShape(), 2, "cell 0");
+    if (!back) {
+      ++refused;
+      continue;
+    }
+    std::vector<std::vector<std::uint32_t>> planes;
+    for (const std::uint32_t count : planeCounts(*back, cluster_of)) planes.emplace_back(count, 65535u);
+    for (const float value : decodeTransfer(smallShape(), *back, cluster_of, planes))
+      ASSERT_TRUE(std::isfinite(value)) << bit;
+  }
+  EXPECT_GT(refused, 100u);
+}
+
+TEST(SharedCodebook, OfTooManyVectorsIsRefusedBeforeTheyAreMade) {
+  // 70,000 clusters of 3,072 values from a payload of 140 kB.
+  SharedCodebook codebook;
+  codebook.axis_counts.assign(70000, 0);
+  TransferShape shape;
+  shape.order = 8;
+  shape.shadowed_channels = 3;
+  shape.full_channels = 3;
+  shape.outputs = 8;
+  codebook.value_scales.assign(shape.size(), 1.0f);
+  EXPECT_FALSE(decodeCodebook(encodeCodebook(codebook), shape, 70000, "cell 0"));
+}
+
 TEST(ClusterIds, ComeBackAtBothWidths) {
   for (const std::uint32_t clusters : {1u, 3u, 256u, 257u, 65536u}) {
     const std::vector<std::uint32_t> cluster_of = {0, clusters - 1, clusters / 2, 0, 0};
@@ -187,6 +260,12 @@ TEST(WeightPlanes, ComeBackAtBothWidths) {
   }
   EXPECT_TRUE(decodeWeightPlane({}, 8, 0, "cell 0")->empty());
   EXPECT_FALSE(decodeWeightPlane({}, 12, 0, "cell 0"));
+}
+
+TEST(WeightPlanes, HoldDifferencesNearZeroAsSmallBytes) {
+  const auto bytes = encodeWeightPlane(std::vector<std::uint32_t>{3, 2, 2, 4, 0}, 8);
+  EXPECT_EQ(bytes,
+            (std::vector<std::byte>{std::byte{6}, std::byte{1}, std::byte{0}, std::byte{4}, std::byte{7}}));
 }
 
 TEST(WeightPlanes, OfAnyBytesDecodeToCodesOfTheirWidth) {

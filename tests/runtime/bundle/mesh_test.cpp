@@ -146,6 +146,44 @@ TEST(DracoMesh, TexcoordsAndColorsKeepTheirBounds) {
   }
 }
 
+TEST(DracoMesh, TangentsAreUnitWithinAThirtiethOfADegreeAndKeepTheirSign) {
+  MeshData mesh = bump(40);
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+    const glm::vec3 along = glm::normalize(glm::cross(mesh.normals[i], glm::vec3(0, 0, 1)));
+    mesh.tangents.emplace_back(along, mesh.positions[i].x < 0.5f ? -1.0f : 1.0f);
+  }
+  const EncodedMesh out = encoded(mesh);
+  ASSERT_EQ(out.decoded.tangents.size(), out.decoded.positions.size());
+  ASSERT_EQ(out.decoded.positions.size(), mesh.positions.size());
+  std::map<Key, glm::vec4> tangent_at;
+  for (std::size_t i = 0; i < out.decoded.positions.size(); ++i)
+    tangent_at[bits(out.decoded.positions[i])] = out.decoded.tangents[i];
+  double worst = 0.0;
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+    const glm::vec4 decoded = tangent_at.at(bits(glm::round(mesh.positions[i] / kStep) * kStep + 0.0f));
+    EXPECT_EQ(decoded.w, mesh.tangents[i].w);
+    EXPECT_NEAR(glm::length(glm::vec3(decoded)), 1.0f, 1e-6f);
+    worst = std::max(worst, glm::length(glm::cross(glm::dvec3(decoded), glm::dvec3(mesh.tangents[i]))));
+  }
+  RecordProperty("worst_degrees", std::to_string(std::asin(worst) * 180.0 / std::numbers::pi));
+  // Half a step of 2/4095 on two of the axes.
+  EXPECT_LT(std::asin(worst) * 180.0 / std::numbers::pi, 0.03);
+}
+
+TEST(DecodeDraco, GivesAnAttributeThatMeshesHaveNoPlaceFor) {
+  MeshData mesh = bump(4);
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i)
+    mesh.colors.emplace_back(mesh.positions[i].x, 0.25f, 0.5f, 1.0f);
+  const EncodedMesh out = encoded(mesh);
+  const Primitive primitive = announce(out);
+  const auto weights = decodeDracoAttribute(out.bytes, primitive, out.attributes.color0, "WEIGHTS_0", "mesh");
+  ASSERT_TRUE(weights) << weights.error().line();
+  EXPECT_EQ(*weights, out.decoded.colors);
+  const auto missing = decodeDracoAttribute(out.bytes, primitive, 9, "WEIGHTS_0", "mesh");
+  ASSERT_FALSE(missing);
+  EXPECT_NE(missing.error().problem.find("WEIGHTS_0"), std::string::npos);
+}
+
 TEST(DracoMesh, SurvivesShapesThatConnectivityCodersTripOver) {
   MeshData triangle;
   triangle.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};

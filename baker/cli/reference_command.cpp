@@ -1,0 +1,166 @@
+// lambent reference SCENE --light LIGHT... --camera CAM -o OUT.exr
+#include <memory>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "baker/cli/commands.hpp"
+#include "baker/cli/output.hpp"
+#include "baker/import/gltf.hpp"
+#include "baker/reference/reference.hpp"
+#include "runtime/spec/rotate.hpp"
+
+namespace lambent::baker {
+
+namespace {
+
+struct ReferenceArguments {
+  std::filesystem::path scene, output;
+  std::vector<std::string> lights;
+  std::string light_layout, camera, size = "1280x720", band_limit, rotate_light = "0";
+  reference::Options options;
+  bool json = false, force = false;
+};
+
+Result<void> understandLights(const ReferenceArguments& a, reference::Request& request) {
+  std::optional<sh::ImageLayout> layout;
+  if (!a.light_layout.empty()) {
+    const auto parsed = spec::parseLightLayout(a.light_layout);
+    if (!parsed) return failAgain(parsed.error());
+    layout = *parsed;
+  }
+  std::vector<std::string> words = a.lights;
+  if (words.empty()) words.assign(spec::kDefaultLights.begin(), spec::kDefaultLights.end());
+  for (const std::string& word : words) {
+    auto light = spec::parseLight(word);
+    if (!light) return failAgain(light.error());
+    if (auto* probe = std::get_if<spec::ProbeLight>(&*light)) probe->layout = layout;
+    request.lights.push_back(std::move(*light));
+  }
+  return {};
+}
+
+// The words of the command line as values.
+Result<reference::Request> understand(const ReferenceArguments& a) {
+  reference::Request request{.lights = {}, .camera = {}, .options = a.options};
+  if (auto done = understandLights(a, request); !done) return failAgain(std::move(done.error()));
+  if (!a.camera.empty()) {
+    auto camera = spec::parseCamera(a.camera);
+    if (!camera) return failAgain(camera.error());
+    request.camera = *camera;
+  }
+  const auto size = spec::parseSize(a.size);
+  if (!size) return failAgain(size.error());
+  request.options.size = *size;
+  const auto turn = spec::parseDegrees(a.rotate_light);
+  if (!turn) return failAgain(turn.error());
+  request.options.rotate_light_deg = *turn;
+  if (!a.band_limit.empty()) {
+    const auto limit = reference::parseBandLimit(a.band_limit);
+    if (!limit) return failAgain(limit.error());
+    request.options.band_limit = *limit;
+  }
+  if (auto checked = reference::checkOptions(request.options); !checked)
+    return failAgain(std::move(checked.error()));
+  return request;
+}
+
+void print(const ReferenceArguments& a, const reference::Request& request, const reference::Report& r) {
+  const double rate = r.seconds > 0.0 ? static_cast<double>(r.rays) / r.seconds : 0.0;
+  if (a.json) {
+    nlohmann::json json = {{"output", a.output.string()},
+                           {"width", request.options.size.width},
+                           {"height", request.options.size.height},
+                           {"spp", request.options.spp},
+                           {"seed", request.options.seed},
+                           {"resumedSpp", r.resumed_samples},
+                           {"rays", r.rays},
+                           {"seconds", r.seconds},
+                           {"raysPerSecond", rate},
+                           {"standardError", nullptr}};
+    if (r.standard_error) json["standardError"] = *r.standard_error;
+    fmt::print("{}\n", json.dump(2));
+    return;
+  }
+  fmt::print("{}: {} x {}, {} samples a pixel in {}\n", a.output.string(), request.options.size.width,
+             request.options.size.height, request.options.spp, durationText(r.seconds));
+  fmt::print("  rays   {} ({} a second)\n", countText(static_cast<double>(r.rays)), countText(rate));
+  if (r.standard_error)
+    fmt::print("  noise  {:.3f} % standard error of a pixel\n", 100.0 * *r.standard_error);
+}
+
+int runReference(const ReferenceArguments& a) {
+  constexpr int kWrongUsage = 2;
+  const auto request = understand(a);
+  if (!request) {
+    reportError(request.error());
+    return kWrongUsage;
+  }
+  const std::stop_source stop;
+  const InterruptGuard interrupts(stop);
+  Progress progress;
+  progress.begin("import");
+  const auto scene = importScene(a.scene);
+  if (!scene) return reportError(scene.error());
+  for (const std::string& warning : scene->warnings)
+    fmt::print(stderr, "lambent: {}: {}\n", a.scene.string(), warning);
+  const auto report = [&] {
+    const ProgressLine line(progress);
+    return reference::render(*scene, *request, a.output, a.force, progress, stop.get_token());
+  }();
+  if (!report) return reportError(report.error());
+  for (const std::string& notice : report->notices) fmt::print(stderr, "lambent: {}\n", notice);
+  print(a, *request, *report);
+  return 0;
+}
+
+}  // namespace
+
+void addReferenceCommand(CLI::App& app, Command& run) {
+  auto a = std::make_shared<ReferenceArguments>();
+  CLI::App* command = app.add_subcommand("reference", "Path-trace a picture to measure the runtime against");
+  command->add_option("SCENE", a->scene, "The scene, .gltf or .glb")->required();
+  command->add_option("-o,--output", a->output, "The picture to write, linear OUT.exr")->required();
+  command
+      ->add_option("--light", a->lights,
+                   "Several add up: a probe file (.hdr, .exr), constant:R,G,B or\nsun:AZ,EL,ANGLE,R[,G,B] "
+                   "(degrees, angular radius, radiance)")
+      ->type_name("LIGHT")
+      ->take_all()
+      ->expected(1);
+  command
+      ->add_option("--light-layout", a->light_layout,
+                   "Layout of probes whose shape misleads: lat-long, angular-map\nor vertical-cross")
+      ->type_name("LAYOUT");
+  command->add_option("--rotate-light", a->rotate_light, "Turn all lights about +Y (+Z towards +X)")
+      ->capture_default_str()
+      ->type_name("DEG");
+  command
+      ->add_option("--camera", a->camera,
+                   "Name or index of a camera in the file, or orbit:AZ,EL,DIST,FOV\n(default: the file's "
+                   "first, else an orbit)")
+      ->type_name("CAM");
+  command->add_option("--size", a->size, "Picture in pixels")->capture_default_str()->type_name("WxH");
+  command->add_option("--spp", a->options.spp, "Samples a pixel")->capture_default_str()->type_name("N");
+  command->add_option("--seed", a->options.seed, "Of the random numbers; two seeds have independent noise")
+      ->capture_default_str()
+      ->type_name("S");
+  command
+      ->add_option("--band-limit", a->band_limit,
+                   "IN: light cut to its first IN bands (1..8). IN,OUT: and the\ncosine at the first hit to "
+                   "OUT bands")
+      ->type_name("IN[,OUT]");
+  command
+      ->add_option("--bounces", a->options.bounces,
+                   "Interreflections; 0 is direct light. Default: as many as matter")
+      ->type_name("N");
+  command
+      ->add_option("--threads", a->options.threads, "Threads; default all. The result does not depend on it")
+      ->type_name("N");
+  command->add_flag("--force", a->force, "Begin anew even if OUT.exr.partial could be gone on with");
+  command->add_flag("--json", a->json, "Print figures as JSON");
+  command->callback([a, &run] { run = [a] { return runReference(*a); }; });
+}
+
+}  // namespace lambent::baker

@@ -1,0 +1,97 @@
+#include "baker/reference/digest.hpp"
+
+#include <cstring>
+#include <span>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+#include "runtime/bundle/checksum.hpp"
+
+namespace lambent::baker::reference {
+
+namespace {
+
+// Lists bring their length, so that no two inputs read alike. Only types without padding.
+class Digest {
+ public:
+  template <typename... T>
+  void add(const T&... values) {
+    (addOne(values), ...);
+  }
+  template <typename T>
+  void addList(const std::vector<T>& list) {
+    addOne(list.size());
+    addOne(bundle::checksum(std::as_bytes(std::span(list))));
+  }
+  std::uint64_t value() const { return bundle::checksum(bytes_); }
+
+ private:
+  template <typename T>
+  requires std::is_trivially_copyable_v<T>
+  void addOne(const T& value) {
+    const auto raw = std::as_bytes(std::span(&value, 1));
+    bytes_.insert(bytes_.end(), raw.begin(), raw.end());
+  }
+  std::vector<std::byte> bytes_;
+};
+
+void add(const gltf::TextureRef& ref, Digest& digest) {
+  digest.add(ref.texture, ref.texcoord, ref.offset, ref.scale, ref.rotation_rad);
+}
+
+void add(const gltf::Material& m, Digest& digest) {
+  digest.add(m.base_color, m.emissive, m.normal_scale, m.unlit, m.alpha_mode, m.alpha_cutoff, m.double_sided);
+  add(m.base_color_texture, digest);
+  add(m.emissive_texture, digest);
+  add(m.normal_texture, digest);
+}
+
+void add(const Scene& scene, Digest& digest) {
+  const std::vector<glm::mat4> world = gltf::worldTransforms(scene.nodes);
+  for (std::size_t n = 0; n < scene.nodes.size(); ++n)
+    digest.add(world[n], scene.nodes[n].mesh, scene.nodes[n].light);
+  for (const SceneMesh& mesh : scene.meshes) {
+    digest.add(mesh.primitives.size());
+    for (const ScenePrimitive& primitive : mesh.primitives) {
+      const bundle::MeshData& data = primitive.mesh;
+      digest.add(primitive.material);
+      digest.addList(data.positions), digest.addList(data.normals), digest.addList(data.texcoords0);
+      digest.addList(data.texcoords1), digest.addList(data.colors), digest.addList(data.tangents);
+      digest.addList(data.indices);
+    }
+  }
+  for (const gltf::Material& material : scene.materials) add(material, digest);
+  for (const gltf::Texture& texture : scene.textures)
+    digest.add(texture.image, texture.sampler.wrap_s, texture.sampler.wrap_t, texture.sampler.mag_filter);
+  for (const SceneImage& image : scene.images) digest.addList(image.file_bytes);
+  for (const gltf::Light& l : scene.lights)
+    digest.add(l.type, l.color, l.intensity, l.range_m, l.inner_cone_rad, l.outer_cone_rad);
+}
+
+void add(const spec::DistantLights& lights, Digest& digest) {
+  digest.add(lights.constant, lights.discs.size());
+  for (const spec::Disc& disc : lights.discs) digest.add(disc.direction, disc.radius_rad, disc.radiance);
+  for (const spec::Probe& probe : lights.probes) {
+    digest.add(probe.layout, probe.image.width, probe.image.height);
+    digest.addList(probe.image.texels);
+  }
+}
+
+}  // namespace
+
+std::uint64_t digestOf(const Scene& scene, const spec::DistantLights& lights, const spec::View& view,
+                       const Options& options) {
+  Digest digest;
+  for (const char c : std::string_view(LAMBENT_VERSION " " LAMBENT_ISA)) digest.add(c);
+  add(scene, digest);
+  add(lights, digest);
+  digest.add(view.view_from_world, view.clip_from_view);
+  const BandLimit limit = options.band_limit.value_or(BandLimit{.in = 0, .out = {}});
+  digest.add(options.size.width, options.size.height, options.spp, options.seed, limit.in,
+             limit.out.value_or(0), options.bounces.has_value(), options.bounces.value_or(0),
+             options.rotate_light_deg);
+  return digest.value();
+}
+
+}  // namespace lambent::baker::reference

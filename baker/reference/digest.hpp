@@ -1,0 +1,17 @@
+// One number for everything that decides a picture's bytes: scene, light, view, options, program. Two
+// checkpoints with the same digest may be gone on with.
+#pragma once
+
+#include <cstdint>
+
+#include "baker/import/scene.hpp"
+#include "baker/reference/options.hpp"
+#include "runtime/spec/camera.hpp"
+#include "runtime/spec/distant_lights.hpp"
+
+namespace lambent::baker::reference {
+
+std::uint64_t digestOf(const Scene& scene, const spec::DistantLights& lights, const spec::View& view,
+                       const Options& options);
+
+}  // namespace lambent::baker::reference

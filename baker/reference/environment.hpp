@@ -1,0 +1,69 @@
+// The light from infinity, as paths meet it. Comes in: the distant lights, their turn, and the band limit.
+// Whole light is a constant, discs with sharp rims and probes whose texels each shine evenly over their area;
+// discs and probes can be sampled in proportion to what they send. Band-limited light is its spherical
+// harmonics, signed: it can be looked up only.
+#pragma once
+
+#include <vector>
+
+#include <glm/mat3x3.hpp>
+#include <glm/vec4.hpp>
+
+#include "runtime/spec/distant_lights.hpp"
+
+namespace lambent::baker::reference {
+
+class Environment {
+ public:
+  // band_limit: 0 for whole light.
+  Environment(spec::DistantLights lights, float turn_degrees, int band_limit);
+
+  // What the eye sees there, as the runtime draws its sky: probes bilinear, rims of discs softened over a
+  // pixel.
+  glm::vec3 shown(const glm::vec3& dir, float pixel_angle_rad) const;
+
+  // Discs and probes have a density to draw directions from; a constant and band-limited light have none.
+  bool sampled() const { return !parts_.empty(); }
+  // A unit direction of the world, now and then (the rim of an angular map) none, as 0. `choice` picks the
+  // part, `u` the place in it.
+  glm::vec3 sample(float choice, const glm::vec2& u) const;
+  // What arrives from dir, and the density with which sample() draws it.
+  struct Look {
+    glm::vec3 radiance{0.0f};
+    float pdf = 0.0f;
+  };
+  Look look(const glm::vec3& dir) const;
+  bool dark() const { return dark_; }
+
+ private:
+  // Row by row cumulated, so that evenly spread numbers stay evenly spread over the picture.
+  struct Distribution {
+    std::vector<float> rows, columns;  // both begin with 0 and end with 1, columns in each row
+    std::vector<glm::vec4> texels;     // radiance, and the probability that the texel is drawn
+  };
+  struct Part {
+    double probability = 0.0;
+    std::size_t probe = 0;  // or
+    std::size_t disc = 0;
+    bool is_disc = false;
+  };
+  struct Cone {
+    glm::mat3 frame{1.0f};  // in the lights' own frame
+    float cap = 0.0f;       // 1 - cos of the radius
+  };
+
+  Look lookAtProbe(std::size_t probe, const glm::dvec3& dir) const;
+  bool inside(const Cone& cone, const glm::vec3& dir) const;
+  void addProbe(std::size_t probe);
+
+  spec::DistantLights lights_;
+  glm::mat3 world_from_light_{1.0f};
+  int band_limit_ = 0;
+  sh::LightVector vector_;
+  bool dark_ = true;
+  std::vector<Cone> cones_;
+  std::vector<Distribution> distributions_;
+  std::vector<Part> parts_;
+};
+
+}  // namespace lambent::baker::reference

@@ -1,0 +1,65 @@
+// Paths: what one pixel's samples see. At every diffuse vertex: one direction by the cosine, weighed against
+// one towards discs and probes, one point on an emissive triangle and one punctual light (Veach's multiple
+// importance sampling, power heuristic). All samples of a pixel that are asked for together walk in step, so
+// that their rays travel in packets. A pixel's samples belong to two independent replicas in turn, which
+// gives the error of their mean without bias. One Integrator serves all threads.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "baker/reference/camera.hpp"
+#include "baker/reference/environment.hpp"
+#include "baker/reference/lamps.hpp"
+#include "baker/reference/options.hpp"
+#include "baker/reference/ray_tracer.hpp"
+#include "baker/reference/sampler.hpp"
+
+namespace lambent::baker::reference {
+
+// Everything that light and rays meet.
+struct World {
+  const Surfaces& surfaces;
+  const RayTracer& rays;
+  const Environment& environment;
+  const EmissiveTriangles& emissive;
+  const std::vector<PunctualLight>& punctual;
+  EyeRays eye;
+};
+
+struct PixelSum {
+  std::array<glm::dvec3, 2> replicas{};  // sums over the samples of each
+  double alpha = 0.0;                    // coverage, not a sum
+  std::uint64_t rays = 0;
+};
+
+class Integrator {
+ public:
+  Integrator(const World& world, const Options& options) : world_(world), options_(options) {}
+
+  // Samples first..first + count - 1 of the pixel; even ones are the first replica's.
+  PixelSum pixel(std::uint32_t x, std::uint32_t y, std::uint32_t first, std::uint32_t count) const;
+
+ private:
+  struct Path {
+    SurfacePoint at;
+    glm::vec3 throughput{1.0f}, sum{0.0f};
+    std::uint32_t index = 0, replica = 0;  // which point of which replica
+    glm::vec3 dir{0.0f};
+    float pdf = 0.0f;  // of dir, by the surface's own strategy
+    bool alive = true;
+  };
+  // A light's contribution that counts if nothing is in the way.
+  struct Shadow {
+    Ray ray;
+    std::size_t path;
+    glm::vec3 radiance;
+  };
+  struct Walk;  // the paths of one pixel, in step
+
+  const World& world_;
+  const Options& options_;
+};
+
+}  // namespace lambent::baker::reference

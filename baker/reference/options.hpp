@@ -1,0 +1,38 @@
+// What a reference picture is asked for, beside scene, lights and camera. Everything here but the number of
+// threads decides the picture's bytes.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "runtime/base/result.hpp"
+#include "runtime/spec/size.hpp"
+
+namespace lambent::baker::reference {
+
+// The lighting of a precomputed picture: environment light cut to its first `in` bands; and, where `out` is
+// given, albedo/π times the cosine at the first hit replaced by its first `out` bands.
+struct BandLimit {
+  int in = 5;
+  std::optional<int> out = {};
+};
+
+// IN or IN,OUT, each 1..8.
+Result<BandLimit> parseBandLimit(std::string_view word);
+
+struct Options {
+  spec::Size size = {};
+  std::uint32_t spp = 256;  // samples a pixel, 1..kMaxSpp
+  std::uint32_t seed = 0;   // pictures of two seeds have independent noise
+  std::optional<BandLimit> band_limit = {};
+  std::optional<std::uint32_t> bounces = {};  // interreflections: 0 is direct light; none: as many as matter
+  float rotate_light_deg = 0.0f;
+  unsigned threads = 0;  // 0: as many as the machine has
+};
+
+inline constexpr std::uint32_t kMaxSpp = 1u << 24;
+
+// Errors: a number outside its range.
+Result<void> checkOptions(const Options& options);
+
+}  // namespace lambent::baker::reference

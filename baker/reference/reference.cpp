@@ -1,0 +1,157 @@
+#include "baker/reference/reference.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+#include "baker/reference/digest.hpp"
+#include "baker/reference/film.hpp"
+#include "baker/reference/integrator.hpp"
+#include "baker/work/parallel.hpp"
+#include "runtime/base/atomic_file.hpp"
+
+namespace lambent::baker::reference {
+
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+constexpr std::uint32_t kPass = 16;  // samples of a pixel that walk together
+// Rows between two looks at the clock and the stop token.
+constexpr std::uint32_t kRows = 32;
+constexpr auto kCheckpointEvery = std::chrono::seconds(10);
+
+double secondsSince(Clock::time_point begin) {
+  return std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+// Rows [first, last) up to `samples` a pixel. False when stopped.
+bool renderRows(const Integrator& integrator, Film& film, std::uint32_t first, std::uint32_t last,
+                std::uint32_t samples, Progress& progress, const std::stop_token& stop) {
+  return parallelRanges(last - first, 1, stop, [&](std::size_t begin, std::size_t end) {
+    std::vector<PixelSum> row(film.size().width);
+    for (std::size_t r = begin; r < end; ++r) {
+      const std::uint32_t y = first + static_cast<std::uint32_t>(r), done = film.done(y);
+      if (done >= samples) continue;
+      for (std::uint32_t x = 0; x < row.size(); ++x) row[x] = integrator.pixel(x, y, done, samples - done);
+      film.addRow(y, samples - done, row);
+      progress.add(std::uint64_t{film.size().width} * (samples - done));
+    }
+  });
+}
+
+// Pass by pass over the picture, with a checkpoint every few seconds and when stopped.
+Result<void> renderAll(const Integrator& integrator, Film& film, std::uint32_t spp,
+                       const fs::path& checkpoint, Progress& progress, const std::stop_token& stop) {
+  const double seconds_before = film.seconds;
+  const Clock::time_point begin = Clock::now();
+  Clock::time_point saved = begin;
+  const auto save = [&]() -> Result<void> {
+    film.seconds = seconds_before + secondsSince(begin);
+    saved = Clock::now();
+    if (checkpoint.empty()) return {};
+    return film.save(checkpoint);
+  };
+  for (std::uint32_t pass = 0; pass < spp; pass += kPass)
+    for (std::uint32_t row = 0; row < film.size().height; row += kRows) {
+      const bool whole = renderRows(integrator, film, row, std::min(row + kRows, film.size().height),
+                                    std::min(spp, pass + kPass), progress, stop);
+      if (!whole || Clock::now() - saved > kCheckpointEvery)
+        if (auto done = save(); !done) return done;
+      if (!whole)
+        return checkpoint.empty() ? fail("reference", "stopped")
+                                  : fail(checkpoint.string(), "stopped; keeps the samples so far",
+                                         "run the same words again to go on");
+    }
+  film.seconds = seconds_before + secondsSince(begin);
+  return {};
+}
+
+Result<void> checkOutput(const fs::path& output) {
+  if (output.empty()) return {};
+  if (output.extension() != ".exr")
+    return fail(output.string(), "is not an .exr", "name the picture OUT.exr");
+  if (auto file = AtomicFile::open(output); !file) return failAgain(std::move(file.error()));
+  return {};
+}
+
+void takeUp(Film& film, const fs::path& checkpoint, bool force, Report& report) {
+  std::error_code ignored;
+  if (checkpoint.empty() || force || !fs::exists(checkpoint, ignored)) return;
+  if (film.restore(checkpoint)) {
+    report.resumed_samples = film.done(0);
+    for (std::uint32_t y = 1; y < film.size().height; ++y)
+      report.resumed_samples = std::min(report.resumed_samples, film.done(y));
+    return;
+  }
+  report.notices.push_back(checkpoint.string() +
+                           ": is damaged, or of another scene or other words; the picture is begun anew");
+}
+
+}  // namespace
+
+fs::path checkpointOf(const fs::path& output) {
+  if (output.empty()) return {};
+  fs::path checkpoint = output;
+  checkpoint += ".partial";
+  return checkpoint;
+}
+
+Result<Report> render(const Scene& scene, const Request& request, const fs::path& output, bool force,
+                      Progress& progress, const std::stop_token& stop) {
+  const Options& options = request.options;
+  if (auto checked = checkOptions(options); !checked) return failAgain(std::move(checked.error()));
+  if (auto checked = checkOutput(output); !checked) return failAgain(std::move(checked.error()));
+  Report report;
+  // the light, and the scene in world space
+  progress.begin("scene");
+  auto lights = spec::loadDistantLights(request.lights);
+  if (!lights) return failAgain(std::move(lights.error()));
+  report.notices = lights->notices;
+  auto surfaces = Surfaces::build(scene);
+  if (!surfaces) return failAgain(std::move(surfaces.error()));
+  const auto view = viewOf(scene, *surfaces, request.camera, options.size.aspect());
+  if (!view) return failAgain(view.error());
+  Film film(options.size, digestOf(scene, *lights, *view, options));
+  const Environment environment(std::move(*lights), options.rotate_light_deg,
+                                options.band_limit ? options.band_limit->in : 0);
+  const EmissiveTriangles emissive(*surfaces);
+  const std::vector<PunctualLight> punctual = punctualLights(scene);
+  // what an earlier run has done
+  const fs::path checkpoint = checkpointOf(output);
+  takeUp(film, checkpoint, force, report);
+
+  Result<void> done;
+  withThreads(options.threads, [&] {
+    auto rays = RayTracer::build(*surfaces);
+    if (!rays) {
+      done = failAgain(std::move(rays.error()));
+      return;
+    }
+    const World world{.surfaces = *surfaces,
+                      .rays = *rays,
+                      .environment = environment,
+                      .emissive = emissive,
+                      .punctual = punctual,
+                      .eye = EyeRays(*view, options.size)};
+    std::uint64_t left = 0;
+    for (std::uint32_t y = 0; y < options.size.height; ++y)
+      left += std::uint64_t{options.size.width} * (options.spp - film.done(y));
+    progress.begin("paths", left, "samples");
+    done = renderAll(Integrator(world, options), film, options.spp, checkpoint, progress, stop);
+  });
+  progress.end();
+  if (!done) return failAgain(std::move(done.error()));
+  report.image = film.image();
+  report.rays = film.rays();
+  report.seconds = film.seconds;
+  report.standard_error = film.standardError();
+  if (output.empty()) return report;
+  if (auto written = spec::writeExr(output, report.image); !written)
+    return failAgain(std::move(written.error()));
+  std::error_code ignored;
+  fs::remove(checkpoint, ignored);
+  return report;
+}
+
+}  // namespace lambent::baker::reference

@@ -1,0 +1,47 @@
+// A path-traced picture of a glTF scene, to measure the runtime against: the same scene, lights, camera and
+// conventions, but an integrator, a sampler and rays of its own, so that a mistake in the bake cannot hide in
+// both. Comes in: the scene, the lights and camera as parsed, options. Goes out: OUT.exr, linear float32
+// RGBA, signed, alpha = coverage. While it works, OUT.exr.partial holds what is done; asked again in the same
+// words, the work goes on from there and ends in the same bytes. The same bytes too for any number of
+// threads.
+#pragma once
+
+#include <filesystem>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "baker/import/scene.hpp"
+#include "baker/reference/options.hpp"
+#include "baker/work/progress.hpp"
+#include "runtime/base/result.hpp"
+#include "runtime/spec/camera.hpp"
+#include "runtime/spec/image.hpp"
+#include "runtime/spec/light.hpp"
+
+namespace lambent::baker::reference {
+
+struct Request {
+  std::vector<spec::Light> lights = {};
+  std::optional<spec::Camera> camera = {};  // none: the file's first, else an orbit that frames the scene
+  Options options = {};
+};
+
+struct Report {
+  spec::RgbaImage image;
+  std::uint64_t rays = 0;
+  double seconds = 0.0;                  // of tracing, over all runs that it took
+  std::uint32_t resumed_samples = 0;     // a pixel, that an earlier run had done
+  std::optional<double> standard_error;  // of the pixels, relative to the picture; none for one sample
+  std::vector<std::string> notices;      // what was repaired or put aside, a sentence each
+};
+
+std::filesystem::path checkpointOf(const std::filesystem::path& output);
+
+// Without output: neither a checkpoint nor a picture on disk. force: an earlier checkpoint does not count.
+// Errors: options, a probe, a texture, no such camera, an output that cannot be written; stopped, with what
+// is done kept in the checkpoint.
+Result<Report> render(const Scene& scene, const Request& request, const std::filesystem::path& output,
+                      bool force, Progress& progress, const std::stop_token& stop);
+
+}  // namespace lambent::baker::reference

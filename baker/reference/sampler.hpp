@@ -1,0 +1,85 @@
+// The reference's random numbers: Owen-scrambled Sobol points, two dimensions at a time, padded. Every number
+// is a function of (seed, pixel, replica, dimension, index) alone, so that pictures do not depend on threads
+// or on interruptions. Points of one pixel fill the square evenly in every power-of-two prefix; pixels and
+// dimensions are independent of each other. Scrambling by hash: Burley, "Practical Hash-based Owen
+// Scrambling", JCGT 9(4), 2020, with Vegdahl's constants (psychopath.io, "Building a Better LK Hash", 2021).
+#pragma once
+
+#include <cstdint>
+
+#include <glm/vec2.hpp>
+
+namespace lambent::baker::reference {
+
+// Avalanching hash of 32 bits ("lowbias32", Wellons).
+constexpr std::uint32_t hash32(std::uint32_t x) {
+  x ^= x >> 16;
+  x *= 0x7feb352du;
+  x ^= x >> 15;
+  x *= 0x846ca68bu;
+  x ^= x >> 16;
+  return x;
+}
+
+constexpr std::uint32_t combine(std::uint32_t seed, std::uint32_t value) {
+  return hash32(seed ^ (hash32(value + 0x9e3779b9u) + 0x85ebca6bu));
+}
+
+constexpr std::uint32_t reversedBits(std::uint32_t x) {
+  x = (x >> 16) | (x << 16);
+  x = ((x & 0x00ff00ffu) << 8) | ((x & 0xff00ff00u) >> 8);
+  x = ((x & 0x0f0f0f0fu) << 4) | ((x & 0xf0f0f0f0u) >> 4);
+  x = ((x & 0x33333333u) << 2) | ((x & 0xccccccccu) >> 2);
+  return ((x & 0x55555555u) << 1) | ((x & 0xaaaaaaaau) >> 1);
+}
+
+// Each bit is flipped by a hash of the bits below it.
+constexpr std::uint32_t laineKarras(std::uint32_t x, std::uint32_t seed) {
+  x ^= x * 0x3d20adeau;
+  x += seed;
+  x *= (seed >> 16) | 1u;
+  x ^= x * 0x05526c56u;
+  x ^= x * 0x53a22864u;
+  return x;
+}
+
+// Each bit is flipped by a hash of the bits above it: Owen's nested uniform scrambling.
+constexpr std::uint32_t owenScrambled(std::uint32_t x, std::uint32_t seed) {
+  return reversedBits(laineKarras(reversedBits(x), seed));
+}
+
+// The second dimension of Sobol's sequence with its bits reversed: Pascal's triangle modulo 2 times the
+// index. The first dimension with its bits reversed is the index itself.
+constexpr std::uint32_t sobolSecondReversed(std::uint32_t index) {
+  index ^= index >> 16;
+  index ^= (index & 0xff00ff00u) >> 8;
+  index ^= (index & 0xf0f0f0f0u) >> 4;
+  index ^= (index & 0xccccccccu) >> 2;
+  return index ^ ((index & 0xaaaaaaaau) >> 1);
+}
+
+// In [0, 1), never 1.
+constexpr float unitFloat(std::uint32_t x) {
+  return static_cast<float>(x >> 8) * 0x1p-24f;
+}
+
+class Sampler {
+ public:
+  // Replicas of a pixel are independent of each other, as pixels and seeds are.
+  Sampler(std::uint32_t seed, std::uint32_t pixel, std::uint32_t replica)
+      : key_(combine(combine(combine(0x4c4d4272u, seed), pixel), replica)) {}
+
+  // Point `index` of the pair of dimensions `dimension`.
+  glm::vec2 pair(std::uint32_t dimension, std::uint32_t index) const {
+    const std::uint32_t key = combine(key_, dimension);
+    // Shuffled per pair, so that pairs are padded independently.
+    const std::uint32_t shuffled = owenScrambled(index, key);
+    return {unitFloat(reversedBits(laineKarras(shuffled, hash32(key ^ 0x68bc21ebu)))),
+            unitFloat(reversedBits(laineKarras(sobolSecondReversed(shuffled), hash32(key ^ 0x02e5be93u))))};
+  }
+
+ private:
+  std::uint32_t key_;
+};
+
+}  // namespace lambent::baker::reference

@@ -1,0 +1,35 @@
+// Textures as a ray sees them: bilinear at full resolution under the sampler's wrap modes, from the decoded
+// images. Colours come out linear; data (normals) as stored. Texel centres lie at half-integers, v = 0 is the
+// top.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include <glm/vec2.hpp>
+#include <glm/vec4.hpp>
+
+#include "baker/import/image.hpp"
+#include "runtime/base/result.hpp"
+
+namespace lambent::baker::reference {
+
+class Textures {
+ public:
+  // Decodes the images that materials of `scene` look up. Errors name the image.
+  static Result<Textures> load(const Scene& scene);
+
+  // sRGB-coded colour made linear, with alpha. White where there is no such texture.
+  glm::vec4 color(const gltf::TextureRef& ref, const glm::vec2& uv) const;
+  // 0..1 as stored.
+  glm::vec4 data(const gltf::TextureRef& ref, const glm::vec2& uv) const;
+
+ private:
+  template <typename Decode>
+  glm::vec4 lookUp(const gltf::TextureRef& ref, const glm::vec2& uv, const Decode& decode) const;
+
+  std::vector<gltf::Texture> textures_;
+  std::vector<std::optional<DecodedImage>> images_;
+};
+
+}  // namespace lambent::baker::reference

@@ -1,0 +1,52 @@
+// The first rigid group of a scene with everything that the diffuse effect reads, as a bake makes it. Errors
+// end the program: these are benchmarks.
+#pragma once
+
+#include <cstdio>
+#include <cstdlib>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "baker/bake/ship_meshes.hpp"
+#include "baker/effects/diffuse/bounces.hpp"
+#include "baker/import/gltf.hpp"
+#include "baker/transport/ray_scene.hpp"
+
+struct GroupWorkload {
+  lambent::baker::Scene scene;
+  lambent::baker::GroupGeometry geometry;
+  lambent::baker::SampleSet samples;
+  std::vector<lambent::baker::PlannedLight> lights;
+  std::unique_ptr<lambent::baker::RayScene> rays;
+  std::unique_ptr<lambent::baker::SurfaceColors> colors;
+
+  lambent::baker::DiffuseScene view() const { return {scene, geometry, samples, *rays, *colors, lights}; }
+};
+
+template <typename T>
+T orExit(lambent::Result<T> result) {
+  if (!result) {
+    std::fprintf(stderr, "%s\n", result.error().line().c_str());
+    std::exit(1);
+  }
+  return std::move(*result);
+}
+
+// Kept in place: colours refer to the geometry.
+inline std::unique_ptr<GroupWorkload> loadGroup(const std::string& file) {
+  using namespace lambent::baker;
+  auto work = std::make_unique<GroupWorkload>();
+  work->scene = orExit(importScene(file));
+  const auto groups = findRigidGroups(work->scene);
+  Progress progress;
+  const auto meshes = orExit(shipMeshes(work->scene, groups, 0.0f, progress, {}));
+  work->geometry = buildGroupGeometry(groups.at(0), work->scene, meshes.decoded);
+  work->samples = buildSamples(work->geometry);
+  work->lights = findGroupLights(work->scene, groups.at(0));
+  work->rays = std::make_unique<RayScene>(
+      orExit(RayScene::build(work->geometry, work->scene, orExit(loadAlphaMaps(work->scene)))));
+  work->colors =
+      std::make_unique<SurfaceColors>(orExit(SurfaceColors::load(work->scene, work->geometry, work->lights)));
+  return work;
+}

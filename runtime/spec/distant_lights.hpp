@@ -1,0 +1,41 @@
+// The words for lights made real: what shines from infinity, in the lights' own frame (before
+// --rotate-light). Comes in: the lights as parsed. Goes out: probes loaded, discs, one constant, and the
+// light vector of all of them together. The runtime and the reference renderer both start from here, so that
+// they mean the same light. Errors: those of loading a probe.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "runtime/base/result.hpp"
+#include "runtime/sh/light_vector.hpp"
+#include "runtime/spec/light.hpp"
+#include "runtime/spec/probe.hpp"
+
+namespace lambent::spec {
+
+struct Disc {
+  glm::vec3 direction{0.0f, 1.0f, 0.0f};  // towards it
+  float radius_rad = 0.0f;
+  glm::vec3 radiance{0.0f};
+};
+
+struct DistantLights {
+  std::vector<Probe> probes;
+  std::vector<Disc> discs;
+  glm::vec3 constant{0.0f};
+  // What was repaired in the probes; a sentence each.
+  std::vector<std::string> notices;
+
+  // All of it as bands 0..7: probes projected texel by texel, discs and the constant in closed form.
+  sh::LightVector lightVector() const;
+};
+
+Result<DistantLights> loadDistantLights(const std::vector<Light>& lights);
+
+// Light that was turned by `degrees` about +Y, as lightRotation() turns directions.
+sh::LightVector turned(const sh::LightVector& light, float degrees);
+
+}  // namespace lambent::spec

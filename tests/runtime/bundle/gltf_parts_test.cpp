@@ -1,0 +1,175 @@
+// Materials, lights and animations come back as they were written, and what no viewer could use is refused.
+#include <filesystem>
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "runtime/bundle/glb.hpp"
+#include "runtime/bundle/reader.hpp"
+#include "runtime/bundle/writer.hpp"
+
+namespace lambent::bundle {
+namespace {
+
+namespace fs = std::filesystem;
+using gltf::AnimationChannel;
+
+class GltfParts : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    path_ = fs::temp_directory_path() / ("lambent-gltf-parts-" + std::to_string(::getpid()) + ".lmb.glb");
+  }
+  void TearDown() override { fs::remove(path_); }
+
+  Result<Reader> through(const Description& description, const std::vector<Blob>& blobs = {}) const {
+    if (auto written = write(path_, description, blobs); !written) return failAgain(written.error());
+    return Reader::open(path_);
+  }
+  std::string json() const { return GlbFile::open(path_)->json(); }
+
+  fs::path path_;
+};
+
+Description empty() {
+  Description d;
+  d.generator = {"lambent", "0.1.0", "x86-64-v3", {}};
+  return d;
+}
+
+TEST_F(GltfParts, MaterialsKeepEmissionNormalMapsAndTextureTransforms) {
+  Description d = empty();
+  d.images = {{"bark", "image/png", 0}};
+  d.textures = {{0, {}}, {0, {33071, 33648, 9728, 9985}}};
+  gltf::Material lamp;
+  lamp.emissive = {1.0f, 8.0f, 0.5f};
+  lamp.emissive_texture = {.texture = 1, .texcoord = 1, .offset = {0.25f, -1.0f}};
+  lamp.normal_texture = {.texture = 0, .scale = {2.0f, 3.0f}, .rotation_rad = 0.5f};
+  lamp.normal_scale = 0.75f;
+  lamp.base_color_texture = {.texture = 0};
+  gltf::Material sign;
+  sign.unlit = true;
+  sign.emissive = {0.25f, 0.0f, 1.0f};
+  d.materials = {lamp, sign};
+  const auto reader = through(d, {Blob(5)});
+  ASSERT_TRUE(reader) << reader.error().line();
+  const auto& materials = reader->description().materials;
+  ASSERT_EQ(materials.size(), 2u);
+  for (int c = 0; c < 3; ++c)  // through a quotient and back
+    EXPECT_NEAR(materials[0].emissive[c], lamp.emissive[c], 1e-6f * lamp.emissive[c]);
+  EXPECT_EQ(materials[0].emissive_texture, lamp.emissive_texture);
+  EXPECT_EQ(materials[0].normal_texture, lamp.normal_texture);
+  EXPECT_EQ(materials[0].base_color_texture, lamp.base_color_texture);
+  EXPECT_EQ(materials[0].normal_scale, 0.75f);
+  EXPECT_FALSE(materials[0].unlit);
+  EXPECT_TRUE(materials[1].unlit);
+  EXPECT_EQ(materials[1].emissive, sign.emissive);
+  const std::string text = json();
+  for (const char* quoted :
+       {"\"KHR_texture_transform\"", "\"KHR_materials_emissive_strength\"", "\"KHR_materials_unlit\""})
+    EXPECT_NE(text.find(quoted, text.find("extensionsUsed")), std::string::npos) << quoted;
+  EXPECT_EQ(text.find("KHR_lights_punctual"), std::string::npos);  // not used, not named
+}
+
+TEST_F(GltfParts, LightsComeBackWithTheirNodes) {
+  Description d = empty();
+  using Type = gltf::Light::Type;
+  d.lights = {{.name = "sun", .type = Type::Directional, .color = {1.0f, 0.5f, 0.25f}, .intensity = 3.0f},
+              {.name = "bulb", .intensity = 100.0f, .range_m = 7.0f},
+              {.name = "", .type = Type::Spot, .inner_cone_rad = 0.2f, .outer_cone_rad = 0.3f}};
+  d.nodes.resize(2);
+  d.nodes[1].light = 2;
+  d.roots = {0, 1};
+  const auto reader = through(d);
+  ASSERT_TRUE(reader) << reader.error().line();
+  const Description& back = reader->description();
+  ASSERT_EQ(back.lights.size(), 3u);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(back.lights[i].name, d.lights[i].name);
+    EXPECT_EQ(back.lights[i].type, d.lights[i].type);
+    EXPECT_EQ(back.lights[i].color, d.lights[i].color);
+    EXPECT_EQ(back.lights[i].intensity, d.lights[i].intensity);
+    EXPECT_EQ(back.lights[i].range_m, d.lights[i].range_m);
+  }
+  EXPECT_EQ(back.lights[2].outer_cone_rad, 0.3f);
+  EXPECT_EQ(back.nodes[0].light, -1);
+  EXPECT_EQ(back.nodes[1].light, 2);
+}
+
+Description moving() {
+  Description d = empty();
+  d.nodes.resize(2);
+  d.nodes[1].trs = gltf::Trs{{1, 2, 3}, glm::quat(0.5f, 0.5f, -0.5f, 0.5f), {-1, 0, 2}};
+  d.nodes[1].parent_from_node = d.nodes[1].trs->matrix();
+  d.roots = {0, 1};
+  AnimationChannel slide{.node = 0,
+                         .interpolation = AnimationChannel::Interpolation::Step,
+                         .times_s = {0.0f, 0.1f, 5.0f},
+                         .values = {1, 2, 3, 4, 5, 6, 7, 8, 9}};
+  AnimationChannel turn{
+      .node = 1, .path = AnimationChannel::Path::Rotation, .times_s = {0.25f}, .values = {0, 0, 0, 1}};
+  AnimationChannel grow{.node = 1,
+                        .path = AnimationChannel::Path::Scale,
+                        .interpolation = AnimationChannel::Interpolation::Cubic,
+                        .times_s = {1.0f},
+                        .values = {0, 0, 0, 1, 1, 1, 0, 0, 0}};
+  d.animations = {{"walk", {slide, turn}}, {"", {grow}}};
+  return d;
+}
+
+TEST_F(GltfParts, AnimationsKeepEveryKeyAndTheirNodesTheirParts) {
+  const Description d = moving();
+  const auto reader = through(d, {Blob(3)});
+  ASSERT_TRUE(reader) << reader.error().line();
+  const Description& back = reader->description();
+  EXPECT_EQ(back.views.size(), 3u);  // the blob, and one for each animation
+  ASSERT_EQ(back.animations.size(), 2u);
+  for (std::size_t a = 0; a < 2; ++a) {
+    EXPECT_EQ(back.animations[a].name, d.animations[a].name);
+    ASSERT_EQ(back.animations[a].channels.size(), d.animations[a].channels.size());
+    for (std::size_t c = 0; c < d.animations[a].channels.size(); ++c) {
+      const AnimationChannel& found = back.animations[a].channels[c];
+      const AnimationChannel& expected = d.animations[a].channels[c];
+      EXPECT_EQ(found.node, expected.node);
+      EXPECT_EQ(found.path, expected.path);
+      EXPECT_EQ(found.interpolation, expected.interpolation);
+      EXPECT_EQ(found.times_s, expected.times_s);
+      EXPECT_EQ(found.values, expected.values);
+    }
+  }
+  EXPECT_TRUE(back.nodes[0].animated);
+  EXPECT_EQ(back.nodes[0].trs, gltf::Trs{});
+  EXPECT_TRUE(back.nodes[1].animated);
+  EXPECT_EQ(back.nodes[1].trs, d.nodes[1].trs);
+  EXPECT_EQ(back.nodes[1].parent_from_node, d.nodes[1].parent_from_node);
+  EXPECT_TRUE(reader->checkAll());
+}
+
+TEST_F(GltfParts, ThatNobodyCouldUseAreRefusedByName) {
+  const auto refused = [&](auto spoil, const char* words) {
+    Description d = moving();
+    d.lights.resize(1);
+    spoil(d);
+    const auto reader = through(d);
+    ASSERT_FALSE(reader) << words;
+    EXPECT_NE(reader.error().problem.find(words), std::string::npos) << reader.error().line();
+  };
+  refused([](Description& d) { d.animations[0].channels[0].node = 2; }, "target.node");
+  refused([](Description& d) { d.animations[0].channels[0].times_s[1] = 9.0f; },
+          "animation 0 make no motion");
+  refused([](Description& d) { d.animations[1].channels[0].values[4] = std::nanf(""); },
+          "animation 1 make no motion");
+  refused([](Description& d) { d.animations[0].channels[1].values.resize(8); }, "2 values for 1 keys");
+  refused([](Description& d) { d.nodes[0].parent_from_node[3].x = 1.0f; }, "has a matrix");
+  refused([](Description& d) { d.nodes[1].trs->rotation.w = 5.0f; }, "unit quaternion");
+  refused([](Description& d) { d.nodes[0].light = 1; }, "light");
+  refused([](Description& d) { d.lights[0].intensity = -1.0f; }, "intensity is negative");
+  refused([](Description& d) { d.lights[0].color.y = -1.0f; }, "color is negative");
+  refused(
+      [](Description& d) {
+        d.lights[0] = {.name = "", .type = gltf::Light::Type::Spot, .inner_cone_rad = 1.0f};
+      },
+      "spot");
+}
+
+}  // namespace
+}  // namespace lambent::bundle
