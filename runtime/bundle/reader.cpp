@@ -128,7 +128,7 @@ Result<CellCodebook> Reader::readCodebook(std::uint32_t group, std::uint32_t cel
   auto codebook = decodeCodebook(*bytes, transfer.shape, transfer.clusters, subject);
   if (!codebook) return failAgain(codebook.error());
   if (codebook->axes.size() != transfer.axes)  // whoever makes room for them goes by the description
-    return fail(subject, "has a codebook of another number of axes than described", "bake it again");
+    return fail(subject, "has a codebook of another size than its description says", "bake it again");
   CellCodebook found{std::move(*codebook), std::vector<std::uint32_t>(cell.sample_count, 0)};
   if (transfer.cluster_ids >= 0) {
     const auto id_bytes = readPayload(static_cast<std::uint32_t>(transfer.cluster_ids));

@@ -143,6 +143,8 @@ GroupLight readGroupLight(const Field& field, const Description& d) {
   light.kind = readWord<GroupLight::Kind>(field["kind"], kLightKinds);
   light.index = light.kind == GroupLight::Kind::Material ? field["material"].index(d.materials.size())
                                                          : field["node"].index(d.nodes.size());
+  if (light.kind == GroupLight::Kind::Node && d.nodes[light.index].light < 0)
+    field["node"].fault("carries no light");
   light.color = field["color"].vector<glm::vec3>();
   return light;
 }

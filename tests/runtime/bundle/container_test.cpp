@@ -84,6 +84,10 @@ Sample sampleBundle() {
   camera.name = "main";
   camera.yfov_rad = 0.7f;
   d.cameras = {camera};
+  gltf::Light lamp;
+  lamp.name = "lamp";
+  d.lights = {lamp};
+  d.nodes[1].light = 0;
 
   // Cell 0 plain, two clusters of two and no axes; cell 1 normal-mapped, of one cluster; lamps in both.
   const auto add = [&](PayloadType type, const Blob& bytes) {
@@ -293,6 +297,7 @@ TEST_F(BundleFile, IndicesOutOfRangeAreRefusedByName) {
           "the group's lights after the environment");
   refused([](Description& d) { d.groups[0].lights[0].index = 1; }, "lights[0].material");
   refused([](Description& d) { d.groups[0].lights[1].index = 2; }, "lights[1].node");
+  refused([](Description& d) { d.groups[0].lights[1].index = 0; }, "carries no light");
   refused(
       [](Description& d) {
         Group& g = d.groups[0];
@@ -320,18 +325,21 @@ TEST_F(BundleFile, ClustersThatContradictThePlanesAreRefusedBeforeUse) {
   EXPECT_FALSE(reader->checkAll());
 }
 
-TEST_F(BundleFile, ACodebookOfOtherSizesThanDescribedIsRefusedBeforeUse) {
+TEST_F(BundleFile, CodebooksOfAnotherSizeThanDescribedAreRefusedBeforeUse) {
   const auto refused = [&](auto spoil) {
     Sample sample = sampleBundle();
     spoil(sample.description.groups[0].cells[0].diffuse[0]);
     ASSERT_TRUE(write(path_, sample.description, sample.blobs));
     auto reader = Reader::open(path_);
     ASSERT_TRUE(reader) << reader.error().line();
-    EXPECT_FALSE(reader->readCodebook(0, 0, 0));
+    const auto codes = reader->readCodebook(0, 0, 0);
+    ASSERT_FALSE(codes);
+    EXPECT_NE(codes.error().line().find("group 0 cell 0: has a"), std::string::npos) << codes.error().line();
   };
   refused([](DiffuseTransfer& transfer) { transfer.shape.full_channels = 0; });
   refused([](DiffuseTransfer& transfer) { transfer.clusters = 3; });
   refused([](DiffuseTransfer& transfer) { transfer.axes = 3; });
+  refused([](DiffuseTransfer& transfer) { transfer.axes = 0; });
 }
 
 TEST_F(BundleFile, APlainGltfFileIsSaidNotToBeBaked) {

@@ -196,6 +196,10 @@ void BundleBuilder::write(const std::filesystem::path& path) const {
     std::vector<float> column;
     for (const BuiltLamp& lamp : lamps_) {
       group.lights.push_back(lamp.light);
+      if (lamp.light.kind == bundle::GroupLight::Kind::Node) {
+        description.lights.resize(1);
+        description.nodes[lamp.light.index].light = 0;
+      }
       column.push_back(lamp.transfer);
     }
     cell.diffuse.push_back(
