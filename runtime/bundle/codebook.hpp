@@ -47,11 +47,6 @@ struct Codebook {
   std::size_t clusters() const { return axis_counts.size(); }
 };
 
-// Bytes of payload "codebook" with vectors as binary16, and of its numbers as they are held in memory.
-inline std::uint64_t codebookBytes(const TransferShape& shape, std::uint32_t clusters, std::uint32_t axes) {
-  return 2ull * clusters + 8ull * axes + 2ull * (std::uint64_t{clusters} + axes) * shape.size();
-}
-
 // A codebook as the baker makes it: vectors are few, small integers in coordinates of one basis that the
 // clusters of the cell share, so that each costs a few bits per coordinate after entropy coding.
 //   basis vector r, value i = value_scales[i] * basis_scales[r] * basis[r * size + i]

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "runtime/streaming/image_decode.hpp"
+#include "runtime/streaming/sizes.hpp"
 
 namespace lambent::streaming {
 namespace {
@@ -83,10 +84,9 @@ class Load {
 
   Loaded operator()(const CodebookWork& work) const {
     const bundle::DiffuseTransfer& transfer = transferOf(description_, work);
-    // Halves become floats; ids and positions of the samples.
-    if (!reserve_(2 * bundle::codebookBytes(transfer.shape, transfer.clusters, transfer.axes) +
-                  8 * std::size_t{cellOf(description_, work).sample_count}))
-      return {};
+    const std::uint32_t samples = cellOf(description_, work).sample_count;
+    // What it becomes, and the cluster of each sample.
+    if (!reserve_(codebookBytesOnGpu(transfer, samples) + 4 * std::size_t{samples})) return {};
     auto found = reader_.readCodebook(work.group, work.cell, work.transfer);
     if (!found) return failAgain(found.error());
     std::vector<std::uint32_t> positions = bundle::positionsOf(found->cluster_of, transfer.clusters);
