@@ -129,11 +129,11 @@ CodedTransfer quantize(const Points& points, const ClusterIds& ids, const std::v
     book.axes.insert(book.axes.end(), part.axes.begin(), part.axes.end());
   }
   for (std::size_t r = 0; r < rank; ++r)
-    for (const CodedCluster& part : parts) {
-      book.means.push_back(part.mean[r]);
-      for (std::size_t j = 0; j < part.axes.size(); ++j)
-        book.directions.push_back(part.directions[j * rank + r]);
-    }
+    for (const CodedCluster& part : parts) book.means.push_back(part.mean[r]);
+  for (std::size_t j = 0; j < parts.front().axes.size(); ++j)  // of the cluster with the most axes
+    for (std::size_t r = 0; r < rank; ++r)
+      for (const CodedCluster& part : parts)
+        if (j < part.axes.size()) book.directions.push_back(part.directions[j * rank + r]);
 
   double variance = 1e-300;
   for (const Cluster& cluster : clusters) variance += cluster.count * cluster.variances.sum();

@@ -181,11 +181,19 @@ Codebook expand(const SharedCodebook& codebook) {
     }
     vector += size;
   };
-  std::size_t axis = 0;
+  std::vector<std::size_t> sharing;  // by j: how many clusters have an axis j
+  for (std::size_t c = 0; c < clusters; ++c)
+    for (std::uint32_t j = 0; j < codebook.axis_counts[c]; ++j) {
+      if (sharing.size() <= j) sharing.push_back(0);
+      ++sharing[j];
+    }
   for (std::size_t c = 0; c < clusters; ++c) {
     put(codebook.means.data() + c, clusters, codebook.mean_scale);
-    for (std::uint32_t j = 0; j < codebook.axis_counts[c]; ++j)
-      put(codebook.directions.data() + axis++, axes, 1.0f);
+    const std::int32_t* directions = codebook.directions.data();
+    for (std::uint32_t j = 0; j < codebook.axis_counts[c]; ++j) {
+      put(directions + c, sharing[j], 1.0f);
+      directions += rank * sharing[j];
+    }
   }
   return out;
 }

@@ -51,7 +51,9 @@ struct Codebook {
 // clusters of the cell share, so that each costs a few bits per coordinate after entropy coding.
 //   basis vector r, value i = value_scales[i] * basis_scales[r] * basis[r * size + i]
 //   mean of cluster c       = mean_scale * sum_r means[r * clusters + c] * basis vector r
-//   direction of axis a     = sum_r directions[r * axes + a] * basis vector r
+//   axis j of cluster c     = sum_r directions[j][r][c] * basis vector r
+// where directions[j][r] has an entry for each cluster with an axis j, the first ones: axes of the same
+// number need like precision, so numbers of like size lie together.
 struct SharedCodebook {
   std::vector<std::uint32_t> axis_counts;
   std::vector<AxisCode> axes;
