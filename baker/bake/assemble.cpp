@@ -10,7 +10,7 @@ namespace lambent::baker {
 
 namespace {
 
-constexpr int kZstdLevel = 9;
+constexpr int kZstdLevel = 19;
 constexpr std::uint32_t kRowsPriority = 1, kCodebookPriority = 2, kFirstPlanePriority = 3;
 
 class Assembler {

@@ -284,8 +284,8 @@ void RayScene::occluded(std::span<const RaySegment> segments, std::span<std::uin
   }
 }
 
-void RayScene::backFaceShare(std::span<const SampleOrigin> origins, const glm::mat3& frame,
-                             const DirectionTable& table, std::span<float> shares) const {
+float RayScene::backFaceShare(std::span<const SampleOrigin> origins, const glm::mat3& frame,
+                              const DirectionTable& table, std::span<float> shares) const {
   assert(!origins.empty() && shares.size() == origins.size());
   const FlushDenormals flush;
   const OriginDealer dealer(origins);
@@ -294,6 +294,7 @@ void RayScene::backFaceShare(std::span<const SampleOrigin> origins, const glm::m
   rtcInitIntersectContext(&context);
   context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
   std::vector<std::uint32_t> rays(origins.size(), 0), backs(origins.size(), 0);
+  std::uint32_t traced = 0, met = 0;
   for (std::size_t p = 0; p < table.packets(); ++p) {
     fillPacket(p, origins, dealer, frame, table, packet.rays.ray, packet.lanes);
     for (std::size_t k = 0; k < kPacketWidth; ++k) packet.rays.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
@@ -302,6 +303,8 @@ void RayScene::backFaceShare(std::span<const SampleOrigin> origins, const glm::m
       if (!packet.lanes.valid[k]) continue;
       ++rays[packet.lanes.origin[k]];
       const RTCHit16& hit = packet.rays.hit;
+      ++traced;
+      met += hit.geomID[k] != RTC_INVALID_GEOMETRY_ID;
       if (hit.geomID[k] == RTC_INVALID_GEOMETRY_ID || state_->surfaces[hit.geomID[k]].double_sided) continue;
       const RTCRay16& ray = packet.rays.ray;
       const float along =
@@ -311,6 +314,7 @@ void RayScene::backFaceShare(std::span<const SampleOrigin> origins, const glm::m
   }
   for (std::size_t o = 0; o < origins.size(); ++o)
     shares[o] = rays[o] == 0 ? 0.0f : static_cast<float>(backs[o]) / static_cast<float>(rays[o]);
+  return traced == 0 ? 0.0f : static_cast<float>(met) / static_cast<float>(traced);
 }
 
 }  // namespace lambent::baker

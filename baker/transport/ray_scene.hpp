@@ -57,9 +57,9 @@ class RayScene {
   void occluded(std::span<const RaySegment> segments, std::span<std::uint8_t> blocked) const;
 
   // Per origin: of its rays, the share whose first hit is the back of a single-sided surface. An origin with
-  // a large share lies inside a body or under something.
-  void backFaceShare(std::span<const SampleOrigin> origins, const glm::mat3& frame,
-                     const DirectionTable& table, std::span<float> shares) const;
+  // a large share lies inside a body or under something. Returns the share of all rays that met anything.
+  float backFaceShare(std::span<const SampleOrigin> origins, const glm::mat3& frame,
+                      const DirectionTable& table, std::span<float> shares) const;
 
  private:
   struct State;

@@ -1,5 +1,5 @@
-// The last pass: counts negative pixels, clamps them, and makes the picture that is looked at: exposed, through a tone
-// curve, sRGB-coded (sample by sample, so that edges against bright sky stay smooth), or linear as it is.
+// The last pass: counts negative pixels and makes the picture that is looked at: clamped, exposed, through a tone
+// curve, sRGB-coded (sample by sample, so that edges against bright sky stay smooth); or linear as it is, signs and all.
 #include "hdr_input.glsl"
 
 layout(location = 0) out vec4 color;
@@ -46,7 +46,7 @@ void main() {
     vec4 linear = hdrAt(pixel, i);
     negative = negative || (linear.a > 0.0 && any(lessThan(linear.rgb, vec3(0.0))));
 #ifdef LAMBENT_LINEAR
-    sum += vec4(max(linear.rgb, vec3(0.0)), linear.a);
+    sum += linear;  // signed: pictures are compared against references that are, and clamping would look like an error
 #else
     vec3 shown = max(withoutNegatives(linear.rgb), vec3(0.0));  // max: rounding
     sum += vec4(srgbFromLinear(toneCurve(exposure.scale * min(shown, vec3(kLargest)))), 1.0);

@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
+#include "runtime/bundle/description.hpp"
 #include "tests/support/program.hpp"
 
 namespace lambent {
@@ -287,7 +288,7 @@ class DamagedBundle : public LambentProgram {
   std::string tooNew() const {
     const std::string field = "\"LAMBENT_radiance_transfer\":{";
     const std::size_t extension = whole.find(field);
-    const std::size_t version = whole.find("\"version\":1", extension);
+    const std::size_t version = whole.find("\"version\":" + std::to_string(bundle::kVersionCurrent), extension);
     EXPECT_NE(version, std::string::npos);
     std::string bundle = whole;
     bundle[version + 10] = '9';

@@ -74,7 +74,7 @@ class Gather {
       const auto own =
           std::span(hits->hits)
               .subspan(hits->offsets[s - begin], hits->offsets[s - begin + 1] - hits->offsets[s - begin]);
-      const Hemisphere& hemisphere = pass_.hemisphereOf(s);
+      const Hemisphere& hemisphere = pass_.hemisphereOf(s, direct_.looks.closely[s] != 0);
       if (s < first_mapped)
         gatherPlain(own, hemisphere, before, now.at(s));
       else
@@ -158,8 +158,8 @@ std::optional<BounceResult> bakeBounces(const DirectPass& pass, const DirectResu
   const Gather gather(pass, direct, scene);
   BounceResult result{
       .field = zeroLike(direct.field), .mapped = zeroLike(direct.mapped), .energy = {1.0}, .left_out = 0.0};
-  const bool any_filled =
-      std::find(direct.valid.begin(), direct.valid.end(), std::uint8_t{0}) != direct.valid.end();
+  const bool any_filled = std::find(direct.looks.valid.begin(), direct.looks.valid.end(), std::uint8_t{0}) !=
+                          direct.looks.valid.end();
   const auto edges = any_filled ? sampleEdges(scene.geometry, scene.samples)
                                 : std::vector<std::pair<std::uint32_t, std::uint32_t>>{};
   TransferField before = direct.field;
@@ -175,7 +175,7 @@ std::optional<BounceResult> bakeBounces(const DirectPass& pass, const DirectResu
           progress.add(end - begin);
         });
     if (!finished) return std::nullopt;
-    if (any_filled) fillFromNeighbours(edges, direct.valid, now);
+    if (any_filled) fillFromNeighbours(edges, direct.looks.valid, now);
     add(now, result.field);
 
     const std::vector<double> energy_before = std::exchange(energy, energies(now));
@@ -190,7 +190,7 @@ std::optional<BounceResult> bakeBounces(const DirectPass& pass, const DirectResu
     before = std::move(now);
   }
   if (any_filled)
-    fillMappedFromNeighbours(edges, direct.valid, scene.samples.first_normal_mapped, result.mapped);
+    fillMappedFromNeighbours(edges, direct.looks.valid, scene.samples.first_normal_mapped, result.mapped);
   return result;
 }
 

@@ -17,8 +17,13 @@ namespace {
 
 // An origin of which more first hits than this are backs lies inside a body or under something.
 constexpr float kInsideShare = 0.5f;
+// A glance of which so much is blocked asks for a closer look.
+constexpr float kBlockedShare = 0.5f;
 constexpr std::size_t kGlanceRays = 16, kLookRays = 64;
 constexpr int kIncidentOrder = 3;
+// Where more than one ray in so many hits, most packets have one that does, and to ask at once what they hit
+// is faster than to ask first whether they do.
+constexpr std::size_t kAskWhatAtOnce = 6;
 
 TransferField makeField(std::size_t samples, int order, std::uint32_t outputs, std::uint32_t channels,
                         std::uint32_t columns) {
@@ -40,9 +45,9 @@ class DirectPass::Walk {
 
   // Rays of sample `s`. Nothing is traced where it has no face to stand on.
   std::uint32_t look(std::size_t s) {
-    hemisphere_ = &pass_.hemisphereOf(s);
     frame_ = localFrame(glm::normalize(glm::dvec3(pass_.scene_.samples.normals[s])));
     valid_ = outsideOrigins(s);
+    hemisphere_ = &pass_.hemisphereOf(s, closely_);
     hits_.clear();
     blocked_.assign(hemisphere_->table().packets(), 0);
     if (origins_.empty()) return 0;
@@ -50,11 +55,12 @@ class DirectPass::Walk {
     if (!wants_hits) return pass_.scene_.rays.trace(origins_, frame(), hemisphere_->table(), blocked_);
     const std::uint32_t traced = pass_.scene_.rays.traceHits(origins_, frame(), hemisphere_->table(),
                                                              mostly_blocked_, blocked_, hits_);
-    mostly_blocked_ = 2 * hits_.size() > hemisphere_->table().size();
+    mostly_blocked_ = kAskWhatAtOnce * hits_.size() > hemisphere_->table().size();
     return traced;
   }
 
   bool valid() const { return valid_; }
+  bool closely() const { return closely_; }
 
   // Transfer of the sample that was looked at.
   void project(std::span<float> scalar, std::span<float> incident) {
@@ -131,10 +137,11 @@ class DirectPass::Walk {
   bool outsideOrigins(std::size_t sample) {
     const auto all = pass_.scene_.samples.originsOf(sample);
     origins_.assign(all.begin(), all.end());
+    closely_ = false;
     if (all.empty()) return false;
     std::vector<float> shares(all.size());
     // Sixteen rays are enough to see that nothing is odd, which is nearly always so.
-    pass_.scene_.rays.backFaceShare(all, frame(), pass_.glance_, shares);
+    closely_ = pass_.scene_.rays.backFaceShare(all, frame(), pass_.glance_, shares) >= kBlockedShare;
     if (std::all_of(shares.begin(), shares.end(), [](float share) { return share == 0.0f; })) return true;
     pass_.scene_.rays.backFaceShare(all, frame(), pass_.look_, shares);
     origins_.clear();
@@ -156,7 +163,7 @@ class DirectPass::Walk {
   sh::Rotation group_from_local_, incident_from_local_;
   const Hemisphere* hemisphere_ = nullptr;
   glm::dmat3 frame_{1.0};
-  bool valid_ = false, mostly_blocked_ = false;
+  bool valid_ = false, closely_ = false, mostly_blocked_ = false;
   std::vector<SampleOrigin> origins_;
   std::vector<std::uint16_t> blocked_;
   std::vector<RayHit> hits_;
@@ -169,16 +176,19 @@ DirectPass::DirectPass(const DiffuseScene& scene, const DirectSettings& settings
       glance_(cosineTable(kGlanceRays)),
       look_(cosineTable(kLookRays)),
       plain_(Hemisphere::forNormal(settings.rays, settings.order)),
+      plain_closely_(Hemisphere::forNormal(2 * settings.rays, settings.order)),
       emitters_(scene.scene, scene.geometry, scene.colors, scene.lights),
       channels_(scene.colors.grey() ? 1 : 3),
       columns_(static_cast<std::uint32_t>(sh::coefficientCount(settings.order)) +
                static_cast<std::uint32_t>(scene.lights.size())) {
-  if (scene.samples.first_normal_mapped < scene.samples.size())
+  if (scene.samples.first_normal_mapped < scene.samples.size()) {
     mapped_ = Hemisphere::forAnyNormal(settings.rays, settings.order);
+    mapped_closely_ = Hemisphere::forAnyNormal(2 * settings.rays, settings.order);
+  }
 }
 
 std::uint64_t DirectPass::bake(std::size_t begin, std::size_t end, const std::stop_token& stop,
-                               TransferField& field, TransferField& mapped, std::vector<std::uint8_t>& valid,
+                               TransferField& field, TransferField& mapped, SampleLooks& looks,
                                RangeHits& hits) const {
   Walk walk(*this);
   std::uint64_t traced = 0;
@@ -186,7 +196,8 @@ std::uint64_t DirectPass::bake(std::size_t begin, std::size_t end, const std::st
   for (std::size_t s = begin; s < end && !stop.stop_requested(); ++s) {
     hits.offsets.push_back(static_cast<std::uint32_t>(hits.hits.size()));
     traced += walk.look(s);
-    valid[s] = walk.valid();
+    looks.valid[s] = walk.valid();
+    looks.closely[s] = walk.closely();
     walk.project(field.at(s), s < first_mapped ? std::span<float>() : mapped.at(s - first_mapped));
     if (settings_.keep_hits) walk.keepHits(hits);
   }
@@ -212,21 +223,21 @@ std::optional<DirectResult> bakeDirect(const DirectPass& pass, const DiffuseScen
   const DirectSettings& settings = pass.settings();
   DirectResult result{.field = makeField(count, settings.order, 1, pass.channels(), pass.columns()),
                       .mapped = makeField(mapped, settings.order, kIncident, pass.channels(), pass.columns()),
-                      .valid = std::vector<std::uint8_t>(count, 0),
+                      .looks = {std::vector<std::uint8_t>(count, 0), std::vector<std::uint8_t>(count, 0)},
                       .hits = HitStore(count, settings.keep_hits ? settings.hit_memory : 0)};
   std::atomic<std::uint64_t> traced = 0;
   const bool finished =
       parallelRanges(count, kSamplesPerRange, stop, [&](std::size_t begin, std::size_t end) {
         RangeHits hits;
-        traced += pass.bake(begin, end, stop, result.field, result.mapped, result.valid, hits);
+        traced += pass.bake(begin, end, stop, result.field, result.mapped, result.looks, hits);
         if (settings.keep_hits) result.hits.offer(begin / kSamplesPerRange, std::move(hits));
         progress.add(end - begin);
       });
   if (!finished) return std::nullopt;
   result.field.rays = traced;
   const auto edges = sampleEdges(scene.geometry, scene.samples);
-  result.field.filled_samples = fillFromNeighbours(edges, result.valid, result.field);
-  fillMappedFromNeighbours(edges, result.valid, scene.samples.first_normal_mapped, result.mapped);
+  result.field.filled_samples = fillFromNeighbours(edges, result.looks.valid, result.field);
+  fillMappedFromNeighbours(edges, result.looks.valid, scene.samples.first_normal_mapped, result.mapped);
   return result;
 }
 

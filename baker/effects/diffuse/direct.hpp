@@ -34,9 +34,15 @@ struct DiffuseScene {
 
 struct DirectSettings {
   int order = 5;               // 1..8
-  std::size_t rays = 512;      // per sample over its hemisphere, at least 128
+  std::size_t rays = 512;      // per sample over its hemisphere, at least 128; some take twice as many
   bool keep_hits = false;      // for bounces
   std::size_t hit_memory = 0;  // bytes; what does not fit is traced again when asked for
+};
+
+// One entry per sample.
+struct SampleLooks {
+  std::vector<std::uint8_t> valid;    // 0: lies inside something, filled from its neighbours
+  std::vector<std::uint8_t> closely;  // 1: looked with twice the rays
 };
 
 // Pass 0 of ranges of samples; also traces a range's hits again.
@@ -44,18 +50,20 @@ class DirectPass {
  public:
   DirectPass(const DiffuseScene& scene, const DirectSettings& settings);
 
-  const Hemisphere& hemisphereOf(std::size_t sample) const {
-    return sample < scene_.samples.first_normal_mapped ? plain_ : *mapped_;
+  // `closely`: with twice the rays.
+  const Hemisphere& hemisphereOf(std::size_t sample, bool closely) const {
+    if (sample < scene_.samples.first_normal_mapped) return closely ? plain_closely_ : plain_;
+    return closely ? *mapped_closely_ : *mapped_;
   }
   std::uint32_t columns() const { return columns_; }
   std::uint32_t channels() const { return channels_; }
   const DirectSettings& settings() const { return settings_; }
 
-  // Samples [begin, end): transfer into the fields (`mapped` holds the normal-mapped samples alone), whether
-  // each can be trusted, and what its rays met. Returns the rays traced. Leaves the rest of them when a stop
+  // Samples [begin, end): transfer into the fields (`mapped` holds the normal-mapped samples alone), how each
+  // looked, and what its rays met. Returns the rays traced. Leaves the rest of them when a stop
   // is requested: a million rays a sample take seconds a range.
   std::uint64_t bake(std::size_t begin, std::size_t end, const std::stop_token& stop, TransferField& field,
-                     TransferField& mapped, std::vector<std::uint8_t>& valid, RangeHits& hits) const;
+                     TransferField& mapped, SampleLooks& looks, RangeHits& hits) const;
   // The hits alone, as bake() gave them.
   void traceAgain(std::size_t begin, std::size_t end, RangeHits& hits) const;
 
@@ -64,16 +72,16 @@ class DirectPass {
   DiffuseScene scene_;
   DirectSettings settings_;
   DirectionTable glance_, look_;
-  Hemisphere plain_;
-  std::optional<Hemisphere> mapped_;  // where there are such samples
+  Hemisphere plain_, plain_closely_;
+  std::optional<Hemisphere> mapped_, mapped_closely_;  // where there are such samples
   Emitters emitters_;
   std::uint32_t channels_, columns_;
 };
 
 struct DirectResult {
-  TransferField field;              // outputs 1, all samples
-  TransferField mapped;             // outputs 9, from SampleSet::first_normal_mapped on
-  std::vector<std::uint8_t> valid;  // per sample: 0 where it was filled from its neighbours
+  TransferField field;   // outputs 1, all samples
+  TransferField mapped;  // outputs 9, from SampleSet::first_normal_mapped on
+  SampleLooks looks;
   HitStore hits;
 };
 

@@ -60,7 +60,7 @@ TEST(NormalMappedTransfer, AtTheSurfacesOwnNormalIsThePlainTransferBouncesInclud
   const Transport t(mappedScene({grid({0, 0, 0}, 2.0f, 12), icosphere({0.1f, 0.7f, 0.0f}, 0.5f, 3)}));
   const auto baked = t.bake(5, 512, 2);
   for (std::size_t s = 0; s < t.samples.size(); ++s) {
-    if (!baked.direct.valid[s]) continue;
+    if (!baked.direct.looks.valid[s]) continue;
     const auto plain = baked.direct.field.at(s), mapped = baked.direct.mapped.at(s);
     const auto plain_bounced = baked.bounced.field.at(s), mapped_bounced = baked.bounced.mapped.at(s);
     for (std::size_t i = 0; i < 25; ++i) {
