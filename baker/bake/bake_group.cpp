@@ -14,7 +14,7 @@ namespace lambent::baker {
 namespace {
 
 // What passes left out may amount to, as a share of the bound on the coding error.
-constexpr double kTailShare = 0.2;
+constexpr double kTailShare = 0.3;
 
 struct Transported {
   DirectResult direct;

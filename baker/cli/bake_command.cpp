@@ -18,7 +18,7 @@ namespace {
 struct BakeArguments {
   std::filesystem::path scene, output;
   BakeOptions options;
-  bool force = false, json = false;
+  bool force = false, json = false, allow_outside = false;
 };
 
 nlohmann::json reportJson(const BakeArguments& a, const BakeReport& r) {
@@ -73,7 +73,7 @@ int runBake(const BakeArguments& a) {
   const InterruptGuard interrupts(stop);
   Progress progress;
   progress.begin("import");
-  auto scene = importScene(a.scene);
+  auto scene = importScene(a.scene, {.allow_outside = a.allow_outside});
   if (!scene) return reportError(scene.error());
   for (const std::string& warning : scene->warnings)
     fmt::print(stderr, "lambent: {}: {}\n", a.scene.string(), warning);
@@ -146,6 +146,8 @@ void addBakeCommand(CLI::App& app, Command& run) {
   command
       ->add_option("--threads", a->options.threads, "Threads; default all. The result does not depend on it")
       ->type_name("N");
+  command->add_flag("--allow-outside", a->allow_outside,
+                    "Read buffers and images outside the scene's folder too");
   command->add_flag("--force", a->force, "Bake even if the bundle is up to date");
   command->add_flag("--json", a->json, "Print figures as JSON");
   command->callback([a, &run] { run = [a] { return runBake(*a); }; });

@@ -17,7 +17,7 @@ namespace {
 struct PlanArguments {
   std::filesystem::path scene;
   BakeOptions options;
-  bool json = false;
+  bool json = false, allow_outside = false;
 };
 
 struct GroupSize {
@@ -65,7 +65,7 @@ void printText(const Scene& scene, const EffectPlan& plan) {
 }
 
 int runPlan(const PlanArguments& a) {
-  const auto scene = importScene(a.scene);
+  const auto scene = importScene(a.scene, {.allow_outside = a.allow_outside});
   if (!scene) return reportError(scene.error());
   const auto plan = planFor(*scene, a.options);
   if (!plan) return reportError(plan.error());
@@ -82,6 +82,8 @@ void addPlanCommand(CLI::App& app, Command& run) {
   command->add_option("--effects", a->options.effects, "auto, or a list of effects")
       ->capture_default_str()
       ->type_name("LIST");
+  command->add_flag("--allow-outside", a->allow_outside,
+                    "Read buffers and images outside the scene's folder too");
   command->add_flag("--json", a->json, "Print as JSON");
   command->callback([a, &run] { run = [a] { return runPlan(*a); }; });
 }

@@ -20,7 +20,7 @@ struct ReferenceArguments {
   std::vector<std::string> lights;
   std::string light_layout, camera, size = "1280x720", band_limit, rotate_light = "0";
   reference::Options options;
-  bool json = false, force = false;
+  bool json = false, force = false, allow_outside = false;
 };
 
 Result<void> understandLights(const ReferenceArguments& a, reference::Request& request) {
@@ -101,7 +101,7 @@ int runReference(const ReferenceArguments& a) {
   const InterruptGuard interrupts(stop);
   Progress progress;
   progress.begin("import");
-  const auto scene = importScene(a.scene);
+  const auto scene = importScene(a.scene, {.allow_outside = a.allow_outside});
   if (!scene) return reportError(scene.error());
   for (const std::string& warning : scene->warnings)
     fmt::print(stderr, "lambent: {}: {}\n", a.scene.string(), warning);
@@ -158,6 +158,8 @@ void addReferenceCommand(CLI::App& app, Command& run) {
   command
       ->add_option("--threads", a->options.threads, "Threads; default all. The result does not depend on it")
       ->type_name("N");
+  command->add_flag("--allow-outside", a->allow_outside,
+                    "Read buffers and images outside the scene's folder too");
   command->add_flag("--force", a->force, "Begin anew even if OUT.exr.partial could be gone on with");
   command->add_flag("--json", a->json, "Print figures as JSON");
   command->callback([a, &run] { run = [a] { return runReference(*a); }; });

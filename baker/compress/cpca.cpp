@@ -134,13 +134,17 @@ CodedTransfer fitToBound(std::span<const float> vectors, const Points& points, C
     keepAxes(found.clusters, step);
     CodedTransfer coded = quantize(points, found.ids, found.clusters, basis, shape, step);
     coded.error = static_cast<float>(radianceError(vectors, decode(coded), shape));
-    const bool met = double{coded.error} <= bound, met_before = double{best.error} <= bound;
+    const float error = coded.error;
+    const bool met = double{error} <= bound, met_before = double{best.error} <= bound;
     // The larger error is the smaller code, among those that keep the bound.
     if (attempt == 0 || (met ? !met_before || coded.error > best.error : coded.error < best.error))
       best = std::move(coded);
     if (met && double{best.error} > 0.98 * bound) break;
     if (best.planes.empty() && met) break;  // nothing left to save
-    step *= std::clamp(0.995 * bound / std::max(double{coded.error}, 1e-12), 0.3, 1.5);
+    // Part of the error does not follow the step (rounded means and axes, the weaker of the two blocks): what
+    // is missing has to come from the rest, so go down twice as far as the ratio says.
+    const double ratio = 0.995 * bound / std::max(double{error}, 1e-12);
+    step *= std::clamp(met ? ratio : ratio * ratio, 0.3, 1.5);
   }
   return best;
 }

@@ -32,6 +32,8 @@ const std::array<float, 256>& srgbTable() {
 
 std::uint32_t wrap(std::int64_t texel, std::uint32_t size, std::uint32_t mode) {
   const auto n = static_cast<std::int64_t>(size);
+  if (texel >= 0 && texel < n)
+    return static_cast<std::uint32_t>(texel);  // nearly always, and divisions are slow
   if (mode == kClampToEdge) return static_cast<std::uint32_t>(std::clamp<std::int64_t>(texel, 0, n - 1));
   const std::int64_t period = mode == kMirroredRepeat ? 2 * n : n;
   std::int64_t t = texel % period;
@@ -127,6 +129,12 @@ glm::vec4 sampleImage(const DecodedImage& image, const gltf::Sampler& sampler, g
   const glm::vec2 f(at - base);
   return glm::mix(glm::mix(texel(image, sampler, x, y), texel(image, sampler, x + 1, y), f.x),
                   glm::mix(texel(image, sampler, x, y + 1), texel(image, sampler, x + 1, y + 1), f.x), f.y);
+}
+
+glm::vec4 nearestTexel(const DecodedImage& image, const gltf::Sampler& sampler, glm::vec2 uv) {
+  const glm::vec2 at = glm::clamp(uv * glm::vec2(image.width, image.height), -1e15f, 1e15f);
+  return texel(image, sampler, static_cast<std::int64_t>(std::floor(at.x)),
+               static_cast<std::int64_t>(std::floor(at.y)));
 }
 
 }  // namespace lambent::baker

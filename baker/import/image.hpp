@@ -24,4 +24,8 @@ Result<DecodedImage> decodeImage(const SceneImage& image);
 // Bilinear look-up at uv under the sampler's wrap modes: linear RGB, alpha, each 0..1.
 glm::vec4 sampleImage(const DecodedImage& image, const gltf::Sampler& sampler, glm::vec2 uv);
 
+// The texel that uv falls in, for sums over so many look-ups that blending between texels makes no
+// difference.
+glm::vec4 nearestTexel(const DecodedImage& image, const gltf::Sampler& sampler, glm::vec2 uv);
+
 }  // namespace lambent::baker

@@ -84,12 +84,16 @@ Result<SurfaceColors> SurfaceColors::load(const Scene& scene, const GroupGeometr
   return colors;
 }
 
+glm::vec2 SurfaceColors::at(const std::vector<glm::vec2>& texcoords, std::uint32_t triangle, float u,
+                            float v) const {
+  const glm::uvec3 t = geometry_->triangles[triangle];
+  return (1.0f - u - v) * texcoords[t.x] + u * texcoords[t.y] + v * texcoords[t.z];
+}
+
 glm::vec4 SurfaceColors::lookUp(const Texture& texture, const std::vector<glm::vec2>& texcoords,
                                 std::uint32_t triangle, float u, float v) const {
   if (!texture.image) return glm::vec4(1.0f);
-  const glm::uvec3 t = geometry_->triangles[triangle];
-  return sampleImage(*texture.image, texture.sampler,
-                     (1.0f - u - v) * texcoords[t.x] + u * texcoords[t.y] + v * texcoords[t.z]);
+  return sampleImage(*texture.image, texture.sampler, at(texcoords, triangle, u, v));
 }
 
 glm::vec4 SurfaceColors::vertexColor(std::uint32_t triangle, float u, float v) const {
@@ -101,8 +105,9 @@ glm::vec4 SurfaceColors::vertexColor(std::uint32_t triangle, float u, float v) c
 glm::vec3 SurfaceColors::albedo(std::uint32_t triangle, float u, float v) const {
   const Surface& surface = surfaceOf(triangle);
   if (surface.base_color == glm::vec3(0.0f)) return glm::vec3(0.0f);
-  glm::vec3 color =
-      surface.base_color * glm::vec3(lookUp(surface.base_texture, geometry_->texcoords, triangle, u, v));
+  glm::vec3 color = surface.base_color;
+  if (const Texture& base = surface.base_texture; base.image)
+    color *= glm::vec3(nearestTexel(*base.image, base.sampler, at(geometry_->texcoords, triangle, u, v)));
   if (surface.colored_vertices) color *= glm::vec3(vertexColor(triangle, u, v));
   return glm::clamp(color, 0.0f, 1.0f);
 }

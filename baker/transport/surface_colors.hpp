@@ -53,6 +53,7 @@ class SurfaceColors {
   const Surface& surfaceOf(std::uint32_t triangle) const { return surfaces_[surface_of_[triangle]]; }
   glm::vec4 lookUp(const Texture& texture, const std::vector<glm::vec2>& texcoords, std::uint32_t triangle,
                    float u, float v) const;
+  glm::vec2 at(const std::vector<glm::vec2>& texcoords, std::uint32_t triangle, float u, float v) const;
   glm::vec4 vertexColor(std::uint32_t triangle, float u, float v) const;
 
   const GroupGeometry* geometry_ = nullptr;  // outlives this

@@ -42,8 +42,11 @@ TEST_F(LambentProgram, HelpAndVersionAreExitCode0) {
   EXPECT_EQ(help.exit_code, 0);
   const std::vector<std::pair<std::string, std::vector<std::string>>> commands = {
       {"bake",
-       {"SCENE", "--output", "--quality", "--order", "--rays", "--error", "--max-edge", "--effects",
-        "--threads", "--force", "--json"}},
+       {"SCENE", "--output", "--quality", "--order", "--rays", "--bounces", "--error", "--max-edge",
+        "--effects", "--threads", "--max-memory", "--allow-outside", "--force", "--json"}},
+      {"reference",
+       {"SCENE", "--light", "--camera", "--output", "--spp", "--seed", "--band-limit", "--bounces",
+        "--json"}},
       {"plan", {"SCENE", "--effects", "--json"}},
       {"info", {"BUNDLE", "--json"}},
       {"compare", {"PICTURE", "REFERENCE", "--reference2", "--json"}}};
@@ -288,7 +291,8 @@ class DamagedBundle : public LambentProgram {
   std::string tooNew() const {
     const std::string field = "\"LAMBENT_radiance_transfer\":{";
     const std::size_t extension = whole.find(field);
-    const std::size_t version = whole.find("\"version\":" + std::to_string(bundle::kVersionCurrent), extension);
+    const std::size_t version =
+        whole.find("\"version\":" + std::to_string(bundle::kVersionCurrent), extension);
     EXPECT_NE(version, std::string::npos);
     std::string bundle = whole;
     bundle[version + 10] = '9';

@@ -18,6 +18,12 @@ namespace lambent::baker {
 
 namespace {
 
+// Once a pass has less than this share of all light, every kThinned-th ray stands for all where a sample has
+// more hits than kHitsToThin: their noise of a percent of a percent is not seen.
+constexpr double kShareToThin = 0.01;
+constexpr std::size_t kHitsToThin = 64;
+constexpr std::uint32_t kThinned = 4;
+
 // Energy of a field for each source of light: the environment first, then each light of the group.
 std::vector<double> energies(const TransferField& field) {
   const auto bands = static_cast<std::size_t>(sh::coefficientCount(field.order));
@@ -60,9 +66,10 @@ class Gather {
                                      scene.samples.vertex_sample[t.z]);
   }
 
-  // Samples [begin, end) of one pass. `mapped` gets the pass added; it is in the group's frame.
-  void range(std::size_t begin, std::size_t end, const TransferField& before, TransferField& now,
-             TransferField& mapped) const {
+  // Samples [begin, end) of bounce `bounce`. `mapped` gets it added; it is in the group's frame.
+  void range(int bounce, bool thinly, std::size_t begin, std::size_t end, const TransferField& before,
+             TransferField& now, TransferField& mapped) const {
+    std::vector<GatherHit> thinned;
     RangeHits again;
     const RangeHits* hits = &direct_.hits.range(begin / kSamplesPerRange);
     if (!hits->kept) {
@@ -71,18 +78,44 @@ class Gather {
     }
     const std::size_t first_mapped = scene_.samples.first_normal_mapped;
     for (std::size_t s = begin; s < end; ++s) {
-      const auto own =
+      auto own =
           std::span(hits->hits)
               .subspan(hits->offsets[s - begin], hits->offsets[s - begin + 1] - hits->offsets[s - begin]);
       const Hemisphere& hemisphere = pass_.hemisphereOf(s, direct_.looks.closely[s] != 0);
+      float scale = 1.0f;
+      if (thinly && own.size() > kHitsToThin) {
+        scale = thin(own, hemisphere, static_cast<std::uint32_t>(bounce), thinned);
+        own = thinned;
+      }
       if (s < first_mapped)
-        gatherPlain(own, hemisphere, before, now.at(s));
+        gatherPlain(own, scale, hemisphere, before, now.at(s));
       else
-        gatherMapped(s, own, hemisphere, before, now.at(s), mapped.at(s - first_mapped));
+        gatherMapped(s, own, scale, hemisphere, before, now.at(s), mapped.at(s - first_mapped));
     }
   }
 
  private:
+  // The hits of every kThinned-th ray (rays lie along a Hilbert curve, so these are as evenly spread), others
+  // in each bounce. Returns what their weights must be multiplied with to stand for all, so that no light is
+  // lost or won: a white furnace stays white.
+  static float thin(std::span<const GatherHit> hits, const Hemisphere& hemisphere, std::uint32_t bounce,
+                    std::vector<GatherHit>& out) {
+    out.clear();
+    double all = 0.0, kept = 0.0;
+    for (const GatherHit& hit : hits) {
+      const double weight = hemisphere.weight(hit.ray);
+      all += weight;
+      if (hit.ray % kThinned != bounce % kThinned) continue;
+      kept += weight;
+      out.push_back(hit);
+    }
+    if (out.empty()) {
+      out.assign(hits.begin(), hits.end());
+      return 1.0f;
+    }
+    return static_cast<float>(all / kept);
+  }
+
   // Radiance that leaves the point that was met: weight * albedo * interpolated transfer, added to `sum`.
   void addExit(const GatherHit& hit, float weight, const TransferField& before, std::span<float> sum) const {
     const glm::uvec3 corners = triangle_samples_[hit.triangle];
@@ -101,19 +134,20 @@ class Gather {
     }
   }
 
-  void gatherPlain(std::span<const GatherHit> hits, const Hemisphere& hemisphere, const TransferField& before,
-                   std::span<float> out) const {
+  void gatherPlain(std::span<const GatherHit> hits, float scale, const Hemisphere& hemisphere,
+                   const TransferField& before, std::span<float> out) const {
     for (const GatherHit& hit : hits)
-      addExit(hit, static_cast<float>(hemisphere.weight(hit.ray)), before, out);
+      addExit(hit, scale * static_cast<float>(hemisphere.weight(hit.ray)), before, out);
   }
 
-  void gatherMapped(std::size_t sample, std::span<const GatherHit> hits, const Hemisphere& hemisphere,
-                    const TransferField& before, std::span<float> out, std::span<float> mapped) const {
+  void gatherMapped(std::size_t sample, std::span<const GatherHit> hits, float scale,
+                    const Hemisphere& hemisphere, const TransferField& before, std::span<float> out,
+                    std::span<float> mapped) const {
     const std::size_t stride = before.vectorSize();
     std::vector<float> exit(stride), local(kIncident * stride, 0.0f);
     for (const GatherHit& hit : hits) {
       std::fill(exit.begin(), exit.end(), 0.0f);
-      addExit(hit, 1.0f, before, exit);
+      addExit(hit, scale, before, exit);
       const auto weight = static_cast<float>(hemisphere.weight(hit.ray));
       for (std::size_t i = 0; i < stride; ++i) out[i] += weight * exit[i];
       const auto& weights = hemisphere.incidentWeight(hit.ray);
@@ -136,6 +170,14 @@ class Gather {
   const DiffuseScene& scene_;
   std::vector<glm::uvec3> triangle_samples_;
 };
+
+// The largest share that a pass has of all light, over the sources of light.
+double shareOf(const std::vector<double>& pass, const std::vector<double>& all) {
+  double share = 0.0;
+  for (std::size_t k = 0; k < pass.size(); ++k)
+    if (all[k] > 0.0) share = std::max(share, pass[k] / all[k]);
+  return share;
+}
 
 // What all passes after this one would add, as a share of all light: the passes shrink at least as fast as
 // the last two did, so the rest is a geometric series.
@@ -169,9 +211,10 @@ std::optional<BounceResult> bakeBounces(const DirectPass& pass, const DirectResu
   for (int bounce = 1; bounce <= most; ++bounce) {
     progress.begin(fmt::format("bounce {}", bounce), scene.samples.size(), "samples");
     TransferField now = zeroLike(before);
+    const bool thinly = shareOf(energy, all) < kShareToThin;
     const bool finished =
         parallelRanges(scene.samples.size(), kSamplesPerRange, stop, [&](std::size_t begin, std::size_t end) {
-          gather.range(begin, end, before, now, result.mapped);
+          gather.range(bounce, thinly, begin, end, before, now, result.mapped);
           progress.add(end - begin);
         });
     if (!finished) return std::nullopt;

@@ -1,9 +1,10 @@
 // Interreflection (Sloan 2002, section 4, passes b >= 1): each pass gathers what the pass before left at the
 // points that the rays of pass 0 met,
 //   t^b_p = sum_rays w_r rho(q_r) t^(b-1)(q_r),   t(q) interpolated over the triangle that was met,
-// all samples from the same state of the others (Jacobi), so the order of work does not matter. The surface's
-// albedo rho is textured and coloured; the receiver's own is left out. Passes end when what is still to come
-// would add less than asked for.
+// all samples from the same state of the others (Jacobi), so the order of work does not matter. Passes that carry
+// less than a hundredth of all light gather over every fourth ray. The
+// surface's albedo rho is textured and coloured; the receiver's own is left out. Passes end when what is
+// still to come would add less than asked for.
 #pragma once
 
 #include <optional>

@@ -17,7 +17,8 @@ namespace {
 
 // An origin of which more first hits than this are backs lies inside a body or under something.
 constexpr float kInsideShare = 0.5f;
-// A glance of which so much is blocked asks for a closer look.
+// A glance of which so much is blocked asks for a closer look; one that is blocked altogether most likely
+// stands in a closed room, where there is nothing more to see.
 constexpr float kBlockedShare = 0.5f;
 constexpr std::size_t kGlanceRays = 16, kLookRays = 64;
 constexpr int kIncidentOrder = 3;
@@ -141,7 +142,8 @@ class DirectPass::Walk {
     if (all.empty()) return false;
     std::vector<float> shares(all.size());
     // Sixteen rays are enough to see that nothing is odd, which is nearly always so.
-    closely_ = pass_.scene_.rays.backFaceShare(all, frame(), pass_.glance_, shares) >= kBlockedShare;
+    const float blocked = pass_.scene_.rays.backFaceShare(all, frame(), pass_.glance_, shares);
+    closely_ = blocked >= kBlockedShare && blocked < 1.0f;
     if (std::all_of(shares.begin(), shares.end(), [](float share) { return share == 0.0f; })) return true;
     pass_.scene_.rays.backFaceShare(all, frame(), pass_.look_, shares);
     origins_.clear();

@@ -253,13 +253,24 @@ TEST_F(FrameTest, BlendsOverWhatStandsBehind) {
   EXPECT_LT(glm::distance(at(image, 12, 32), glm::vec4(1.0f, 0.75f, 0.75f, 0.25f)), 2e-3f);
 }
 
-TEST_F(FrameTest, CountsNegativePixelsAndClampsThem) {
+TEST_F(FrameTest, CountsNegativePixelsAndKeepsTheirSignInLinearPictures) {
   const auto dark = [](const glm::vec3&) { return std::vector<float>(9, -0.1f); };
   Stage stage(BundleBuilder().transfer(dark).add({quadMesh(), colored(glm::vec4(1.0f))}), {kWhite}, kLinear);
   const spec::RgbaImage image = stage.picture();
   EXPECT_EQ(stage.frame->negativePixels(), covered(image));
   EXPECT_GT(covered(image), 0u);
-  EXPECT_EQ(at(image, 32, 32), glm::vec4(0, 0, 0, 1));
+  EXPECT_LT(at(image, 32, 32).r, 0.0f);  // clamped, it could not be held against a reference
+}
+
+TEST_F(FrameTest, DisplayPicturesShowNegativePixelsAsBlack) {
+  const auto dark = [](const glm::vec3&) { return std::vector<float>(9, -0.1f); };
+  FrameOptions options;
+  options.exposure_ev = 0.0f;
+  Stage stage(BundleBuilder().transfer(dark).add({quadMesh(), colored(glm::vec4(1.0f))}), {kWhite}, options);
+  stage.render();
+  const spec::Rgba8Image image = stage.frame->readDisplay();
+  for (std::size_t channel = 0; channel < 3; ++channel)
+    EXPECT_EQ(image.texels[4 * (32 * 64 + 32) + channel], 0);
 }
 
 TEST_F(FrameTest, DisplayPicturesAreExposedAndOpaque) {

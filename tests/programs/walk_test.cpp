@@ -1,0 +1,120 @@
+// Every glTF file of the shared scenes, baked at draft quality and shown, by the programs as a user runs
+// them: a bundle and a picture without a value that is not finite, or one line that says why not. The
+// variants of one Khronos model (embedded, Draco, quantized, ...) show the same object, so they give the same
+// picture.
+#include <cmath>
+#include <map>
+
+#include "baker/accuracy/compare.hpp"
+#include "runtime/spec/image.hpp"
+#include "tests/support/program.hpp"
+#include "tests/support/shared_data.hpp"
+
+namespace lambent {
+namespace {
+
+using testing::Outcome;
+
+// Why a file may be refused, by its path: the line must say so.
+const std::map<std::string, std::string> kRefused = {
+    {"asset-generator/Compatibility/Compatibility_04.gltf", "needs glTF 2.1"},
+    {"asset-generator/Compatibility/Compatibility_05.gltf", "FAKE_materials_quantumRendering"},
+    {"draco-testdata/CubeScaledInstances/glTF/cube_att.gltf", "is a child of node 1 and of node 2"},
+    {"draco-testdata/SphereTwoMaterials/sphere_two_materials_point_cloud.gltf", "has no triangles"},
+};
+
+bool isPointsOrLines(const std::string& name) {
+  for (const char* mode : {"_00", "_01", "_02", "_03", "_07", "_08", "_09", "_10"})
+    if (name == std::string("asset-generator/Mesh_PrimitiveMode/Mesh_PrimitiveMode") + mode + ".gltf")
+      return true;
+  return false;
+}
+
+// The model of a Khronos file: khronos/MODEL/VARIANT/FILE.
+std::string modelOf(const std::filesystem::path& name) {
+  auto part = name.begin();
+  if (*part != "khronos") return {};
+  return (++part)->string();
+}
+
+class SharedScenes : public testing::ProgramTest {
+ protected:
+  // Pictures are small: what is looked for shows in any size.
+  std::optional<spec::RgbaImage> show(const std::filesystem::path& bundle) {
+    const std::string picture = (folder / "picture.exr").string();
+    const Outcome shown =
+        run(LAMBENT_DEMO, {bundle.string(), "--light", "sun:40,50,30,4,3,2", "--light",
+                           "constant:0.3,0.4,0.5", "--size", "96x96", "--headless", picture});
+    if (testing::lacksDevice(shown)) {
+      no_device = true;
+      return std::nullopt;
+    }
+    EXPECT_EQ(shown.exit_code, 0) << bundle << shown.err;
+    auto read = spec::readExr(picture);
+    EXPECT_TRUE(read) << bundle;
+    if (!read) return std::nullopt;
+    return std::move(*read);
+  }
+
+  bool no_device = false;
+};
+
+std::size_t coveredPixels(const spec::RgbaImage& image) {
+  return static_cast<std::size_t>(
+      std::count_if(image.texels.begin(), image.texels.end(), [](const glm::vec4& t) { return t.a > 0.0f; }));
+}
+
+}  // namespace
+
+TEST_F(SharedScenes, BakeAndShowOrAreRefusedInOneRightLine) {
+  const std::filesystem::path scenes = testing::sharedFile("scenes");
+  LAMBENT_NEEDS_SHARED(scenes);
+  std::vector<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(scenes))
+    if (entry.path().extension() == ".gltf" || entry.path().extension() == ".glb")
+      files.push_back(entry.path().lexically_relative(scenes));
+  std::sort(files.begin(), files.end());
+  EXPECT_GT(files.size(), 90u);
+
+  struct First {
+    std::string file;
+    spec::RgbaImage picture;
+  };
+  std::map<std::string, First> models;
+  const std::filesystem::path bundle = folder / "scene.lmb.glb";
+  std::size_t shown = 0;
+  for (const std::filesystem::path& file : files) {
+    const std::string name = file.generic_string();
+    const Outcome baked = run(LAMBENT_PROGRAM, {"bake", (scenes / file).string(), "-o", bundle.string(),
+                                                "--quality", "draft", "--rays", "128", "--force"});
+    const auto refused = kRefused.find(name);
+    if (refused != kRefused.end() || isPointsOrLines(name)) {
+      const std::string why = refused != kRefused.end() ? refused->second : "has no triangles";
+      EXPECT_EQ(baked.exit_code, 1) << name;
+      EXPECT_NE(baked.err.find(why), std::string::npos) << name << "\n" << baked.err;
+      continue;
+    }
+    EXPECT_EQ(baked.exit_code, 0) << name << "\n" << baked.err;
+    if (baked.exit_code != 0) continue;
+    const auto picture = show(bundle);
+    if (!picture) continue;
+    ++shown;
+    EXPECT_GT(coveredPixels(*picture), 0u) << name;
+    EXPECT_TRUE(std::all_of(picture->texels.begin(), picture->texels.end(), [](const glm::vec4& t) {
+      return std::isfinite(t.r) && std::isfinite(t.g) && std::isfinite(t.b);
+    })) << name;
+
+    const std::string model = modelOf(file);
+    if (model.empty()) continue;
+    const auto [first, is_new] = models.try_emplace(model, First{name, *picture});
+    if (is_new) continue;
+    const auto error = baker::comparePictures(*picture, first->second.picture, std::nullopt, name);
+    ASSERT_TRUE(error) << name << " beside " << first->second.file << ": " << error.error().line();
+    // Quantized and Draco meshes have samples a little elsewhere, and 128 rays leave 2 % at each.
+    EXPECT_LT(error->relative_rms, 0.04) << name << " beside " << first->second.file;
+  }
+  if (no_device) GTEST_SKIP() << "baked, but there is no OpenGL 4.5 here to show them";
+  EXPECT_GT(shown, 80u);
+}
+
+}  // namespace lambent
