@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
+#include "baker/plan/group_lights.hpp"
+
 namespace lambent::baker {
 
 namespace {
@@ -14,26 +16,12 @@ std::string nameOf(const Scene& scene, std::size_t node) {
   return name.empty() ? fmt::format("node {}", node) : name;
 }
 
-// The root of the rigid group that a node belongs to, -1 for what stands still.
-std::int32_t groupRoot(const Scene& scene, std::size_t node) {
-  for (auto at = static_cast<std::int32_t>(node); at >= 0;
-       at = scene.nodes[static_cast<std::size_t>(at)].parent) {
-    const gltf::Node& here = scene.nodes[static_cast<std::size_t>(at)];
-    if (here.animated || here.movable) return at;
-  }
-  return -1;
-}
-
 // A light is baked into the transfer of its group's surfaces; without any there is nowhere to bake it.
 void addLonelyLights(const Scene& scene, const std::vector<RigidGroup>& groups,
                      std::vector<std::string>& sentences) {
-  for (std::size_t n = 0; n < scene.nodes.size(); ++n) {
-    if (scene.nodes[n].light < 0) continue;
-    const std::int32_t root = groupRoot(scene, n);
-    if (std::none_of(groups.begin(), groups.end(), [&](const RigidGroup& g) { return g.root == root; }))
-      sentences.push_back(
-          fmt::format("The light of {} shines on nothing: no surface moves with it.", nameOf(scene, n)));
-  }
+  for (const std::uint32_t node : lightsWithoutGroup(scene, groups))
+    sentences.push_back(
+        fmt::format("The light of {} shines on nothing: no surface moves with it.", nameOf(scene, node)));
 }
 
 // Transfer holds for directions, so a group may turn and grow evenly, but not be stretched.

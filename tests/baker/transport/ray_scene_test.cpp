@@ -83,5 +83,49 @@ TEST(RayScene, SeesBacksOnlyFromInsideASolid) {
   EXPECT_EQ(share, 0.0f);
 }
 
+TEST(RayScene, TellsWhatBlockedRaysMetInBothWaysAlike) {
+  // A two-sided card over a single-sided floor that is seen from behind.
+  Scene scene = sceneOf({grid({0, 1, 0}, 2.0f, 3), grid({0, 3, 0}, 9.0f, 1)});
+  scene.materials.push_back(scene.materials[0]);
+  scene.materials[1].double_sided = true;
+  scene.meshes[0].primitives[0].material = 1;
+  const Transport t(scene);
+  const SampleOrigin origin{{0.1f, 0, 0.2f}, {0, 1, 0}, 1.0f};
+  const DirectionTable table = cosineTable(1024);
+  std::vector<std::uint16_t> masks(table.packets()), asked_first(masks), at_once(masks);
+  std::vector<RayHit> hits, hits_at_once;
+  t.rays.trace(std::span(&origin, 1), upright(), table, masks);
+  t.rays.traceHits(std::span(&origin, 1), upright(), table, /*mostly_blocked=*/false, asked_first, hits);
+  t.rays.traceHits(std::span(&origin, 1), upright(), table, /*mostly_blocked=*/true, at_once, hits_at_once);
+  EXPECT_EQ(asked_first, masks);
+  EXPECT_EQ(at_once, masks);
+  ASSERT_EQ(hits.size(), hits_at_once.size());
+  EXPECT_GT(hits.size(), 100u);
+  const DrawGeometry& back = t.geometry.draws[1];
+  ASSERT_TRUE(back.back);
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    EXPECT_EQ(hits[i].triangle, hits_at_once[i].triangle);
+    // Only the card is listed, by its back, where the ray crosses it: the floor above shows its own back.
+    ASSERT_GE(hits[i].triangle, back.first_triangle);
+    ASSERT_LT(hits[i].triangle, back.first_triangle + back.triangle_count);
+    const glm::uvec3 corners = t.geometry.triangles[hits[i].triangle];
+    const glm::vec3 place = (1.0f - hits[i].u - hits[i].v) * t.geometry.positions[corners.x] +
+                            hits[i].u * t.geometry.positions[corners.y] +
+                            hits[i].v * t.geometry.positions[corners.z];
+    const std::size_t r = hits[i].ray;
+    const glm::vec3 d = upright() * glm::vec3(table.x[r], table.y[r], table.z[r]);
+    EXPECT_LT(glm::distance(place, origin.position + d / d.y), 1e-4f);
+  }
+}
+
+TEST(RayScene, SegmentsEndWhereTheyEnd) {
+  const Transport t(sceneOf({grid({0, 1, 0}, 2.0f, 1)}));
+  const std::vector<RaySegment> segments = {
+      {{0, 0, 0}, {0, 1, 0}, 0.9f}, {{0, 0, 0}, {0, 1, 0}, 1.1f}, {{5, 0, 0}, {0, 1, 0}, 9.0f}};
+  std::vector<std::uint8_t> blocked(3, 7);
+  t.rays.occluded(segments, blocked);
+  EXPECT_EQ(blocked, (std::vector<std::uint8_t>{0, 1, 0}));
+}
+
 }  // namespace
 }  // namespace lambent::baker
