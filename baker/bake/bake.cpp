@@ -19,6 +19,7 @@ namespace lambent::baker {
 
 namespace {
 
+static_assert(BakeOptions::kMostBounces == kMostBounces);
 constexpr std::size_t kMinRays = 128, kMaxRays = 1u << 20;
 
 Result<void> checkOptions(const BakeOptions& options) {

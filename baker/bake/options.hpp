@@ -12,6 +12,8 @@ namespace lambent::baker {
 enum class Quality : std::uint8_t { Draft, Standard, High };
 
 struct BakeOptions {
+  static constexpr int kMostBounces = 64;
+
   Quality quality = Quality::Standard;
   int order = 5;             // 1..8
   std::uint32_t rays = 0;    // per sample over its hemisphere; 0: the quality's

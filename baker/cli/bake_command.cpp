@@ -122,7 +122,7 @@ void addBakeCommand(CLI::App& app, Command& run) {
           "--bounces", a->options.bounces,
           "Interreflections; 0: direct light with shadows only; default: until what is left out is far "
           "under the error bound")
-      ->check(CLI::NonNegativeNumber)
+      ->check(CLI::Range(0, BakeOptions::kMostBounces))
       ->type_name("N");
   command
       ->add_option(
