@@ -37,7 +37,7 @@ std::vector<float> bumpyTransfer(std::size_t count, const bundle::TransferShape&
   for (std::size_t s = 0; s < count; ++s) {
     direction += 0.4f * glm::vec3(normal(random), normal(random), normal(random));
     direction = glm::normalize(direction);
-    sh::unoccludedTransfer(static_cast<int>(shape.order), direction, open);
+    if (shape.order > 0) sh::unoccludedTransfer(static_cast<int>(shape.order), direction, open);
     for (std::size_t i = 0; i < shape.size(); ++i) {
       const std::size_t column = i % shape.columns();
       const float value = column < open.size() ? open[column] : 0.3f + 0.2f * direction.x;
