@@ -13,10 +13,9 @@
 #include <string_view>
 #include <vector>
 
-#include "baker/bake/ship_meshes.hpp"
 #include "baker/compress/cpca.hpp"
 #include "baker/effects/diffuse/payloads.hpp"
-#include "baker/import/gltf.hpp"
+#include "bench/group_workload.hpp"
 #include "runtime/bundle/transfer_codec.hpp"
 
 namespace {
@@ -115,33 +114,22 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "bench_codes: give a .gltf or .glb file, and three numbers to --albedo\n");
     return 2;
   }
-  auto scene = importScene(options.scene);
-  if (!scene) {
-    std::fprintf(stderr, "bench_codes: %s\n", scene.error().line().c_str());
-    return 1;
-  }
-  if (!options.albedo.empty())
-    for (auto& material : scene->materials) {
+  const auto paint = [&](Scene& scene) {
+    if (options.albedo.empty()) return;
+    for (auto& material : scene.materials) {
       material.base_color =
           glm::vec4(static_cast<float>(options.albedo[0]), static_cast<float>(options.albedo[1]),
                     static_cast<float>(options.albedo[2]), material.base_color.a);
       material.base_color_texture = {};
     }
-  const auto groups = findRigidGroups(*scene);
+  };
+  const auto map = [&](GroupGeometry& geometry) {
+    for (DrawGeometry& draw : geometry.draws) draw.normal_mapped |= options.normal_mapped;
+  };
+  const auto work = loadGroup(options.scene, paint, map);
+  const SampleSet& samples = work->samples;
+  const DiffuseScene view = work->view();
   Progress progress;
-  const auto meshes = shipMeshes(*scene, groups, 0.0f, progress, {});
-  if (!meshes) {
-    std::fprintf(stderr, "bench_codes: %s\n", meshes.error().line().c_str());
-    return 1;
-  }
-  GroupGeometry geometry = buildGroupGeometry(groups.at(0), *scene, meshes->decoded);
-  if (options.normal_mapped)
-    for (DrawGeometry& draw : geometry.draws) draw.normal_mapped = true;
-  const SampleSet samples = buildSamples(geometry);
-  const auto lights = findGroupLights(*scene, groups.at(0));
-  const auto rays = RayScene::build(geometry, *scene, *loadAlphaMaps(*scene));
-  const auto colors = SurfaceColors::load(*scene, geometry, lights);
-  const DiffuseScene view{*scene, geometry, samples, *rays, *colors, lights};
   const DirectPass pass(view, {options.order, options.rays, options.bounces != 0, std::size_t{2} << 30});
   const auto direct = bakeDirect(pass, view, progress, {});
   std::optional<BounceResult> bounced;
@@ -149,10 +137,10 @@ int main(int argc, char** argv) {
   std::vector<CellVectors> cells;
   for (const SampleCell& cell : samples.cells)
     for (CellVectors& parts :
-         cellVectors(cell, samples, *direct, bounced ? &*bounced : nullptr, colors->greyEmission()))
+         cellVectors(cell, samples, *direct, bounced ? &*bounced : nullptr, work->colors->greyEmission()))
       cells.push_back(std::move(parts));
 
-  const auto vertices = static_cast<double>(geometry.positions.size());
+  const auto vertices = static_cast<double>(work->geometry.positions.size());
   if (options.csv)
     std::printf(
         "scene,vertices,samples,values,bound,clusters,axes,bytes_per_vertex,codebook,ids,weights,"

@@ -4,6 +4,7 @@
 
 #include <cstdio>
 #include <cstdlib>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -33,20 +34,26 @@ T orExit(lambent::Result<T> result) {
   return std::move(*result);
 }
 
-// Kept in place: colours refer to the geometry.
-inline std::unique_ptr<GroupWorkload> loadGroup(const std::string& file) {
+// Kept in place: colours refer to the geometry. What is measured may be changed on the way: the scene as
+// read, the geometry as built.
+inline std::unique_ptr<GroupWorkload> loadGroup(
+    const std::string& file, const std::function<void(lambent::baker::Scene&)>& change_scene = {},
+    const std::function<void(lambent::baker::GroupGeometry&)>& change_geometry = {}) {
   using namespace lambent::baker;
   auto work = std::make_unique<GroupWorkload>();
   work->scene = orExit(importScene(file));
+  if (change_scene) change_scene(work->scene);
   const auto groups = findRigidGroups(work->scene);
   Progress progress;
   const auto meshes = orExit(shipMeshes(work->scene, groups, 0.0f, progress, {}));
   work->geometry = buildGroupGeometry(groups.at(0), work->scene, meshes.decoded);
+  if (change_geometry) change_geometry(work->geometry);
   work->samples = buildSamples(work->geometry);
   work->lights = findGroupLights(work->scene, groups.at(0));
+  DecodedImages images(work->scene);
   work->rays = std::make_unique<RayScene>(
-      orExit(RayScene::build(work->geometry, work->scene, orExit(loadAlphaMaps(work->scene)))));
-  work->colors =
-      std::make_unique<SurfaceColors>(orExit(SurfaceColors::load(work->scene, work->geometry, work->lights)));
+      orExit(RayScene::build(work->geometry, work->scene, orExit(loadAlphaMaps(work->scene, images)))));
+  work->colors = std::make_unique<SurfaceColors>(
+      orExit(SurfaceColors::load(work->scene, work->geometry, work->lights, images)));
   return work;
 }

@@ -74,7 +74,8 @@ Result<BakeReport> bakeOnTheseThreads(const Scene& scene, const BakeOptions& opt
   progress.begin("plan");
   const auto plan = planFor(scene, options);
   if (!plan) return failAgain(plan.error());
-  const auto alpha_maps = loadAlphaMaps(scene);
+  DecodedImages images(scene);
+  const auto alpha_maps = loadAlphaMaps(scene, images);
   if (!alpha_maps) return failAgain(alpha_maps.error());
 
   auto meshes = shipMeshes(scene, plan->groups, options.max_edge_m, progress, stop);
@@ -82,7 +83,7 @@ Result<BakeReport> bakeOnTheseThreads(const Scene& scene, const BakeOptions& opt
 
   std::vector<BakedGroup> baked;
   for (const RigidGroup& group : plan->groups) {
-    auto result = bakeGroup(scene, group, *meshes, *alpha_maps, options, progress, stop, report);
+    auto result = bakeGroup(scene, group, *meshes, *alpha_maps, images, options, progress, stop, report);
     if (!result) return failAgain(result.error());
     baked.push_back(std::move(*result));
   }

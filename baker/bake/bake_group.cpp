@@ -50,15 +50,15 @@ std::optional<Transported> transport(const DiffuseScene& scene, const BakeOption
 
 Result<BakedGroup> bakeGroup(const Scene& scene, const RigidGroup& group, const ShippedMeshes& meshes,
                              const std::vector<std::shared_ptr<const AlphaMap>>& alpha_maps,
-                             const BakeOptions& options, Progress& progress, const std::stop_token& stop,
-                             BakeReport& report) {
+                             DecodedImages& images, const BakeOptions& options, Progress& progress,
+                             const std::stop_token& stop, BakeReport& report) {
   const auto stopped = [&] { return fail(scene.source.string(), "stopped; nothing was written"); };
   BakedGroup baked;
   progress.begin("samples");
   baked.geometry = buildGroupGeometry(group, scene, meshes.decoded);
   baked.samples = buildSamples(baked.geometry);
   baked.lights = findGroupLights(scene, group);
-  auto colors = SurfaceColors::load(scene, baked.geometry, baked.lights);
+  auto colors = SurfaceColors::load(scene, baked.geometry, baked.lights, images);
   if (!colors) return failAgain(colors.error());
   report.vertices += baked.geometry.positions.size();
   report.triangles += baked.geometry.triangles.size();

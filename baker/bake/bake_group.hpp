@@ -27,7 +27,7 @@ struct BakedGroup {
 // "stopped".
 Result<BakedGroup> bakeGroup(const Scene& scene, const RigidGroup& group, const ShippedMeshes& meshes,
                              const std::vector<std::shared_ptr<const AlphaMap>>& alpha_maps,
-                             const BakeOptions& options, Progress& progress, const std::stop_token& stop,
-                             BakeReport& report);
+                             DecodedImages& images, const BakeOptions& options, Progress& progress,
+                             const std::stop_token& stop, BakeReport& report);
 
 }  // namespace lambent::baker

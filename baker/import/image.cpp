@@ -118,6 +118,19 @@ Result<DecodedImage> decodeImage(const SceneImage& image) {
   }
 }
 
+Result<std::shared_ptr<const DecodedImage>> DecodedImages::ofTexture(std::int32_t texture) {
+  if (texture < 0) return std::shared_ptr<const DecodedImage>();
+  const std::int32_t index = scene_.textures[static_cast<std::size_t>(texture)].image;
+  if (index < 0) return std::shared_ptr<const DecodedImage>();
+  auto& image = images_[index];
+  if (!image) {
+    auto pixels = decodeImage(scene_.images[static_cast<std::size_t>(index)]);
+    if (!pixels) return failAgain(pixels.error());
+    image = std::make_shared<DecodedImage>(std::move(*pixels));
+  }
+  return image;
+}
+
 glm::vec4 sampleImage(const DecodedImage& image, const gltf::Sampler& sampler, glm::vec2 uv) {
   // Texel centres lie at half-integers; coordinates are cut so that wild ones stay in integer range.
   const glm::dvec2 size(image.width, image.height);

@@ -1,7 +1,9 @@
-// Decoded texture images for passes that look texels up (alpha masks now, textured albedo with the bounces).
+// Decoded texture images for passes that look texels up (alpha masks, textured albedo, emission).
 #pragma once
 
 #include <cstdint>
+#include <map>
+#include <memory>
 #include <vector>
 
 #include <glm/vec2.hpp>
@@ -20,6 +22,19 @@ struct DecodedImage {
 
 // By OpenImageIO. Errors name the image.
 Result<DecodedImage> decodeImage(const SceneImage& image);
+
+// The images of a scene, decoded when first asked for and then kept. For one thread.
+class DecodedImages {
+ public:
+  explicit DecodedImages(const Scene& scene) : scene_(scene) {}  // outlives this
+
+  // Of a texture of the scene; null where it has no image. Errors: those of decodeImage.
+  Result<std::shared_ptr<const DecodedImage>> ofTexture(std::int32_t texture);
+
+ private:
+  const Scene& scene_;
+  std::map<std::int32_t, std::shared_ptr<const DecodedImage>> images_;
+};
 
 // Bilinear look-up at uv under the sampler's wrap modes: linear RGB, alpha, each 0..1.
 glm::vec4 sampleImage(const DecodedImage& image, const gltf::Sampler& sampler, glm::vec2 uv);

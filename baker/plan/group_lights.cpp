@@ -14,7 +14,7 @@ std::int32_t groupRootOf(const Scene& scene, std::uint32_t node) {
   auto at = static_cast<std::int32_t>(node);
   while (at >= 0) {
     const gltf::Node& here = scene.nodes[static_cast<std::size_t>(at)];
-    if (here.animated || here.movable) return at;
+    if (startsRigidGroup(here)) return at;
     at = here.parent;
   }
   return -1;

@@ -37,7 +37,7 @@ class GroupFinder {
       const auto [index, parent_group] = stack.back();
       stack.pop_back();
       const gltf::Node& node = scene_.nodes[static_cast<std::size_t>(index)];
-      const std::size_t group = node.animated || node.movable ? startGroup(index) : parent_group;
+      const std::size_t group = startsRigidGroup(node) ? startGroup(index) : parent_group;
       if (node.mesh >= 0) addDraws(static_cast<std::uint32_t>(index), groups_[group]);
       for (auto child = node.children.rbegin(); child != node.children.rend(); ++child)
         stack.emplace_back(*child, group);

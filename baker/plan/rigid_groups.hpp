@@ -33,6 +33,11 @@ struct RigidGroup {
   std::vector<PlannedDraw> draws;
 };
 
+// Whether the node, with all below it, moves by itself.
+inline bool startsRigidGroup(const gltf::Node& node) {
+  return node.animated || node.movable;
+}
+
 // Groups without geometry are left out. Draws come in the order of the scene graph.
 std::vector<RigidGroup> findRigidGroups(const Scene& scene);
 

@@ -25,7 +25,7 @@ struct AlphaMap {
   }
 };
 
-// One entry per material, null where its alpha mode is not MASK. Images are decoded once each.
-Result<std::vector<std::shared_ptr<const AlphaMap>>> loadAlphaMaps(const Scene& scene);
+// One entry per material, null where its alpha mode is not MASK.
+Result<std::vector<std::shared_ptr<const AlphaMap>>> loadAlphaMaps(const Scene& scene, DecodedImages& images);
 
 }  // namespace lambent::baker

@@ -1,7 +1,7 @@
 #include "baker/transport/surface_colors.hpp"
 
 #include <algorithm>
-#include <map>
+#include <utility>
 
 #include <glm/common.hpp>
 
@@ -23,22 +23,15 @@ bool isGrey(const DecodedImage& image) {
 }  // namespace
 
 Result<SurfaceColors> SurfaceColors::load(const Scene& scene, const GroupGeometry& geometry,
-                                          std::span<const PlannedLight> lights) {
+                                          std::span<const PlannedLight> lights, DecodedImages& images) {
   SurfaceColors colors;
   colors.geometry_ = &geometry;
   colors.surface_of_.resize(geometry.triangles.size());
-  std::map<std::int32_t, std::shared_ptr<const DecodedImage>> decoded;
   const auto texture = [&](const gltf::TextureRef& ref) -> Result<Texture> {
-    if (ref.texture < 0) return Texture{};
-    const gltf::Texture& source = scene.textures[static_cast<std::size_t>(ref.texture)];
-    if (source.image < 0) return Texture{};
-    auto& image = decoded[source.image];
-    if (!image) {
-      auto pixels = decodeImage(scene.images[static_cast<std::size_t>(source.image)]);
-      if (!pixels) return failAgain(pixels.error());
-      image = std::make_shared<DecodedImage>(std::move(*pixels));
-    }
-    return Texture{image, source.sampler};
+    auto image = images.ofTexture(ref.texture);
+    if (!image) return failAgain(image.error());
+    if (!*image) return Texture{};
+    return Texture{std::move(*image), scene.textures[static_cast<std::size_t>(ref.texture)].sampler};
   };
 
   for (const DrawGeometry& draw : geometry.draws) {

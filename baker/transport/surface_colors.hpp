@@ -1,6 +1,6 @@
 // What the surfaces of a group reflect and give off where a ray meets them: textured albedo and emission, as
 // the pictures show them. Also which of the group's lights a triangle belongs to. Comes in: the scene, the
-// group's geometry and its planned lights. Images are decoded once each. Colours linear Rec.709.
+// group's geometry and its planned lights. Colours linear Rec.709.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +22,7 @@ class SurfaceColors {
  public:
   // Errors: those of decodeImage.
   static Result<SurfaceColors> load(const Scene& scene, const GroupGeometry& geometry,
-                                    std::span<const PlannedLight> lights);
+                                    std::span<const PlannedLight> lights, DecodedImages& images);
 
   // Base colour factor x texture x vertex colour, at most 1; 0 for unlit surfaces, which reflect nothing.
   glm::vec3 albedo(std::uint32_t triangle, float u, float v) const;

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <random>
 #include <utility>
 #include <vector>
 
@@ -102,6 +103,24 @@ inline bundle::MeshData icosphere(glm::vec3 centre, float radius, int subdivisio
     mesh.positions.push_back(centre + radius * glm::normalize(point));
   }
   mesh.indices = std::move(faces);
+  return mesh;
+}
+
+// 300 random triangles through each other. Normals are those of the faces, tilted at random by up to `tilt`.
+inline bundle::MeshData soup(unsigned seed, float size, float tilt) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<float> uniform(-1.0f, 1.0f);
+  const auto point = [&] { return glm::vec3(uniform(random), uniform(random), uniform(random)); };
+  bundle::MeshData mesh;
+  for (std::uint32_t i = 0; i < 300; ++i) {
+    const glm::vec3 a = point(), b = a + size * point(), c = a + size * point();
+    const glm::vec3 face = glm::normalize(glm::cross(b - a, c - a));
+    for (const glm::vec3& p : {a, b, c}) {
+      mesh.indices.push_back(static_cast<std::uint32_t>(mesh.positions.size()));
+      mesh.positions.push_back(p);
+      mesh.normals.push_back(tilt > 0.0f ? glm::normalize(face + tilt * point()) : face);
+    }
+  }
   return mesh;
 }
 

@@ -71,7 +71,8 @@ struct Transport {
 
   static baker::SurfaceColors load(const baker::Scene& scene, const baker::GroupGeometry& geometry,
                                    const std::vector<baker::PlannedLight>& lights) {
-    auto colors = baker::SurfaceColors::load(scene, geometry, lights);
+    baker::DecodedImages images(scene);
+    auto colors = baker::SurfaceColors::load(scene, geometry, lights, images);
     EXPECT_TRUE(colors.has_value());
     return std::move(*colors);
   }
@@ -86,7 +87,8 @@ struct Transport {
   }
 
   static baker::RayScene build(const baker::GroupGeometry& geometry, const baker::Scene& scene) {
-    auto maps = baker::loadAlphaMaps(scene);
+    baker::DecodedImages images(scene);
+    auto maps = baker::loadAlphaMaps(scene, images);
     EXPECT_TRUE(maps.has_value());
     auto rays = baker::RayScene::build(geometry, scene, std::move(*maps));
     EXPECT_TRUE(rays.has_value());

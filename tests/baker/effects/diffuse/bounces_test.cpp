@@ -1,8 +1,6 @@
 // Interreflection against closed forms (literature: a sphere's form factors are uniform; furnaces).
 #include "baker/effects/diffuse/bounces.hpp"
 
-#include <random>
-
 #include "baker/work/parallel.hpp"
 #include "runtime/sh/zonal.hpp"
 #include "runtime/spec/image.hpp"
@@ -17,6 +15,7 @@ using testing::flipped;
 using testing::grid;
 using testing::icosphere;
 using testing::sceneOf;
+using testing::soup;
 using testing::transformed;
 using testing::Transport;
 using testing::turned;
@@ -129,20 +128,7 @@ TEST(Bounces, InAWhiteFurnaceAddUpToOne) {
 }
 
 TEST(Bounces, NeverHaveMoreEnergyThanAlbedoTimesTheBounceBefore) {
-  std::mt19937 random(5);
-  std::uniform_real_distribution<float> uniform(-1.0f, 1.0f);
-  const auto point = [&] { return glm::vec3(uniform(random), uniform(random), uniform(random)); };
-  bundle::MeshData soup;
-  for (std::uint32_t i = 0; i < 300; ++i) {
-    const glm::vec3 a = point(), b = a + 0.5f * point(), c = a + 0.5f * point();
-    const glm::vec3 face = glm::normalize(glm::cross(b - a, c - a));
-    for (const glm::vec3& p : {a, b, c}) {
-      soup.indices.push_back(static_cast<std::uint32_t>(soup.positions.size()));
-      soup.positions.push_back(p);
-      soup.normals.push_back(face);
-    }
-  }
-  Scene scene = sceneOf({soup});
+  Scene scene = sceneOf({soup(5, 0.5f, 0.0f)});
   scene.materials[0].double_sided = true;
   constexpr float kAlbedo = 0.7f;
   scene.materials[0].base_color = glm::vec4(glm::vec3(kAlbedo), 1.0f);

@@ -1,8 +1,6 @@
 // Direct transfer against closed forms (numbers from the literature's tables, signs without Condon-Shortley).
 #include "baker/effects/diffuse/direct.hpp"
 
-#include <random>
-
 #include "runtime/sh/rotation.hpp"
 #include "runtime/sh/zonal.hpp"
 #include "tests/support/shapes.hpp"
@@ -17,6 +15,7 @@ using testing::grid;
 using testing::icosphere;
 using testing::joined;
 using testing::sceneOf;
+using testing::soup;
 using testing::transformed;
 using testing::Transport;
 using testing::turned;
@@ -147,20 +146,7 @@ TEST(DirectTransfer, InAClosedBoxIsDark) {
 
 TEST(DirectTransfer, UnderUniformLightIsNeverAboveAlbedo) {
   // A soup of random triangles, through each other, normals anywhere in the half space of their face.
-  std::mt19937 random(11);
-  std::uniform_real_distribution<float> uniform(-1.0f, 1.0f);
-  const auto point = [&] { return glm::vec3(uniform(random), uniform(random), uniform(random)); };
-  bundle::MeshData soup;
-  for (std::uint32_t i = 0; i < 300; ++i) {
-    const glm::vec3 a = point(), b = a + 0.3f * point(), c = a + 0.3f * point();
-    const glm::vec3 face = glm::normalize(glm::cross(b - a, c - a));
-    for (const glm::vec3& p : {a, b, c}) {
-      soup.indices.push_back(static_cast<std::uint32_t>(soup.positions.size()));
-      soup.positions.push_back(p);
-      soup.normals.push_back(glm::normalize(face + 0.9f * point()));
-    }
-  }
-  const Transport t(sceneOf({soup}));
+  const Transport t(sceneOf({soup(11, 0.3f, 0.9f)}));
   const auto field = t.direct();
   for (std::size_t s = 0; s < t.samples.size(); ++s) {
     EXPECT_LE(uniformRadiance(field.at(s)), 1.0f + 1e-5f);
