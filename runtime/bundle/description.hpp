@@ -22,6 +22,7 @@ inline constexpr std::string_view kExtensionName = "LAMBENT_radiance_transfer";
 // Format versions, newest last; code asks for these names, never for a bare number.
 inline constexpr std::uint32_t kVersionFirstLight = 1;
 inline constexpr std::uint32_t kVersionClusteredTransfer = 2;
+inline constexpr std::uint32_t kVersionLocalLight = 3;
 inline constexpr std::uint32_t kVersionCurrent = kVersionClusteredTransfer;
 
 // A byte range of the GLB's binary chunk.
@@ -60,10 +61,12 @@ struct Image {
 
 // What a payload's bytes mean; see docs/format.md for the byte tables.
 enum class PayloadType : std::uint8_t {
-  VertexRows,   // per vertex: which samples, with what weights
-  Codebook,     // clusters of a cell: means and axes, binary16, and the steps of the weights
-  ClusterIds,   // which cluster each sample belongs to
-  WeightPlane,  // one quantized weight per sample of the clusters that have this axis
+  VertexRows,    // per vertex: which samples, with what weights
+  Codebook,      // clusters of a cell: means and axes, binary16, and the steps of the weights
+  ClusterIds,    // which cluster each sample belongs to
+  WeightPlane,   // one quantized weight per sample of the clusters that have this axis
+  LightWeights,  // which light samples each sample of a cell is lit from (light_weights.hpp)
+  CaptureProxy,  // a group in a few triangles, as other groups see it (capture_proxy.hpp)
 };
 
 enum class PayloadCodec : std::uint8_t { Raw, Zstd };
@@ -99,6 +102,9 @@ struct DiffuseTransfer {
   bool fromEnvironment() const { return shape.order > 0; }  // else from the group's own lights
 };
 
+// Light samples that one cell may be lit from.
+inline constexpr std::uint32_t kMaxLightSamples = 64;
+
 // The unit of storage: at most 64 Ki samples.
 struct Cell {
   std::uint32_t first_sample = 0, sample_count = 0;
@@ -106,6 +112,10 @@ struct Cell {
   // What adds up: light from the environment (no light columns), then light of the group's own lights (order
   // 0, a column for each), each at most once. The same outputs in all.
   std::vector<DiffuseTransfer> diffuse;
+  // Which of the group's light samples it is lit from, rising: light weights name them by their place in this
+  // list. At most kMaxLightSamples. With one entry all its samples take that one whole.
+  std::vector<std::uint32_t> light_samples = {0};
+  std::int32_t light_weights = -1;  // payload; -1 where there is one light sample
 
   std::uint32_t outputs() const { return diffuse.empty() ? 1 : diffuse.front().shape.outputs; }
 };
@@ -131,6 +141,10 @@ struct Group {
   std::uint32_t sample_count = 0;
   std::vector<Cell> cells;         // those with one output first, then those with nine
   std::vector<GroupLight> lights;  // one per light column, in their order
+  // Where the light that comes in from outside is sampled, group frame: at least one point. All cells
+  // together use every one.
+  std::vector<glm::vec3> light_samples = {glm::vec3(0.0f)};
+  std::int32_t proxy = -1;  // payload: what other groups see of it; -1: nothing
 
   // Samples of the cells with one output: they are the group's first.
   std::uint32_t plainSamples() const {

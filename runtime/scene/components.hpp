@@ -133,16 +133,66 @@ struct LampComponent {
   }
 };
 
-// How the light from outside, sky and probes, stands over the scene.
+// A light that stands in the scene and may move, beside a Transform: at the node's place, shining along its
+// -Z where it has a direction. Punctual kinds are those of KHR_lights_punctual; spheres and discs are
+// surfaces of uniform radiance.
+struct LocalLightComponent {
+  enum class Kind : std::uint8_t { Point, Spot, Directional, Sphere, Disc };
+  Kind kind = Kind::Point;
+  glm::vec3 color{1.0f};  // linear
+  float strength = 1.0f;  // Point, Spot: candela; Directional: lux; Sphere, Disc: radiance
+  float radius_m = 0.0f;  // Sphere, Disc
+  float range_m = 0.0f;   // Point, Spot: where it fades out, 0: never
+  float inner_cone_rad = 0.0f, outer_cone_rad = 0.785398f;  // Spot
+  bool enabled = true;
+
+  glm::vec3 power() const { return enabled ? strength * color : glm::vec3(0.0f); }
+
+  static constexpr std::string_view kComponentName = "Light";
+  static auto fields() {
+    using L = LocalLightComponent;
+    constexpr float kHalfPi = 0.5f * std::numbers::pi_v<float>;
+    return std::tuple{
+        ecs::Field{"color", &L::color, glm::vec3(1.0f)},
+        ecs::Field{"strength", &L::strength, 1.0f, "", ecs::Range{0.0f, 1e9f}},
+        ecs::Field{"radius", &L::radius_m, 0.0f, "m", ecs::Range{0.0f, 1e6f}},
+        ecs::Field{"range", &L::range_m, 0.0f, "m", ecs::Range{0.0f, 1e9f}},
+        ecs::Field{"inner_cone", &L::inner_cone_rad, 0.0f, "rad", ecs::Range{0.0f, kHalfPi}},
+        ecs::Field{"outer_cone", &L::outer_cone_rad, 0.785398f, "rad", ecs::Range{0.0f, kHalfPi}},
+        ecs::Field{"enabled", &L::enabled, true}};
+  }
+};
+
+// One animation of a bundle, an entity of its own; scene::playAnimations moves what its channels name.
+struct AnimationComponent {
+  std::uint32_t bundle = 0, animation = 0;
+  float time_s = 0.0f;
+  float speed = 1.0f;  // seconds of animation per second; negative plays backwards
+  bool playing = true;
+  bool loop = true;
+
+  static constexpr std::string_view kComponentName = "Animation";
+  static auto fields() {
+    using A = AnimationComponent;
+    return std::tuple{ecs::Field{"time", &A::time_s, 0.0f, "s"},
+                      ecs::Field{"speed", &A::speed, 1.0f, "", ecs::Range{-100.0f, 100.0f}},
+                      ecs::Field{"playing", &A::playing, true}, ecs::Field{"loop", &A::loop, true}};
+  }
+};
+
+// How the light from outside, sky and probes, stands over the scene. There may be two sets of it to fade
+// between.
 struct EnvironmentComponent {
   float intensity = 1.0f;     // factor on its radiance
   float rotation_deg = 0.0f;  // about +Y; positive turns take +Z to +X
+  float fade = 0.0f;          // 0: the first set of lights, 1: the second
 
   static constexpr std::string_view kComponentName = "Environment";
   static auto fields() {
     using E = EnvironmentComponent;
     return std::tuple{ecs::Field{"intensity", &E::intensity, 1.0f, "", ecs::Range{0.0f, 1e6f}},
-                      ecs::Field{"rotation", &E::rotation_deg, 0.0f, "deg", ecs::Range{-360.0f, 360.0f}}};
+                      ecs::Field{"rotation", &E::rotation_deg, 0.0f, "deg", ecs::Range{-360.0f, 360.0f}},
+                      ecs::Field{"fade", &E::fade, 0.0f, "", ecs::Range{0.0f, 1.0f}}};
   }
 };
 
