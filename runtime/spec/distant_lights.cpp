@@ -18,12 +18,11 @@ Result<DistantLights> loadDistantLights(const std::vector<Light>& lights) {
       out.discs.push_back({.direction = directionFromAzimuthElevation(sun->azimuth_deg, sun->elevation_deg),
                            .radius_rad = glm::radians(sun->angle_deg),
                            .radiance = sun->radiance});
-    } else {
-      const auto& file = std::get<ProbeLight>(light);
-      Result<Probe> probe = loadProbe(file);
+    } else if (const auto* file = std::get_if<ProbeLight>(&light)) {
+      Result<Probe> probe = loadProbe(*file);
       if (!probe) return failAgain(probe.error());
       if (probe->texels_not_finite > 0)
-        out.notices.push_back(file.file.string() + ": " + std::to_string(probe->texels_not_finite) +
+        out.notices.push_back(file->file.string() + ": " + std::to_string(probe->texels_not_finite) +
                               " texels are not finite and count as black");
       out.probes.push_back(std::move(*probe));
     }
