@@ -109,7 +109,6 @@ class Load {
     return ready;
   }
 
- private:
   Loaded operator()(const LightWeightsWork& work) const {
     const std::size_t bytes = sizeof(bundle::LightWeights) * cellOf(description_, work).sample_count;
     if (!reserve_(2 * bytes)) return {};
@@ -126,6 +125,7 @@ class Load {
     return ProxyReady{work.group, std::move(*proxy)};
   }
 
+ private:
   // "PATH: WHAT", the subject of an error.
   std::string named(const std::string& what) const { return reader_.path().string() + ": " + what; }
   static Result<Ready> failAgain(Error error) { return lambent::failAgain(std::move(error)); }
