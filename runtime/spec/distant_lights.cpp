@@ -31,13 +31,22 @@ Result<DistantLights> loadDistantLights(const std::vector<Light>& lights) {
 }
 
 sh::LightVector DistantLights::lightVector() const {
+  return skyVector() + discVector();
+}
+
+sh::LightVector DistantLights::skyVector() const {
   sh::LightVector light = sh::constantLight(sh::kMaxOrder, constant);
-  for (const Disc& disc : discs)
-    light +=
-        sh::discLight(sh::kMaxOrder, disc.direction, static_cast<double>(disc.radius_rad), disc.radiance);
   for (const Probe& probe : probes)
     light += sh::projectImage(sh::kMaxOrder, probe.layout, static_cast<int>(probe.image.width),
                               static_cast<int>(probe.image.height), probe.image.texels);
+  return light;
+}
+
+sh::LightVector DistantLights::discVector() const {
+  sh::LightVector light{.order = sh::kMaxOrder};
+  for (const Disc& disc : discs)
+    light +=
+        sh::discLight(sh::kMaxOrder, disc.direction, static_cast<double>(disc.radius_rad), disc.radiance);
   return light;
 }
 

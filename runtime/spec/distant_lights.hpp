@@ -30,8 +30,10 @@ struct DistantLights {
   // What was repaired in the probes; a sentence each.
   std::vector<std::string> notices;
 
-  // All of it as bands 0..7: probes projected texel by texel, discs and the constant in closed form.
-  sh::LightVector lightVector() const;
+  // As bands 0..7: probes projected texel by texel, discs and the constant in closed form.
+  sh::LightVector lightVector() const;  // all of it
+  sh::LightVector skyVector() const;    // probes and the constant
+  sh::LightVector discVector() const;
 };
 
 Result<DistantLights> loadDistantLights(const std::vector<Light>& lights);
