@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+#include <glm/vector_relational.hpp>
 
 namespace lambent::frame {
 
@@ -16,11 +18,16 @@ lighting::LocalLight::Kind kindOf(scene::LocalLightComponent::Kind kind) {
   using From = scene::LocalLightComponent::Kind;
   using To = lighting::LocalLight::Kind;
   switch (kind) {
-    case From::Point: return To::Point;
-    case From::Spot: return To::Spot;
-    case From::Directional: return To::Directional;
-    case From::Sphere: return To::Sphere;
-    case From::Disc: return To::Disc;
+    case From::Point:
+      return To::Point;
+    case From::Spot:
+      return To::Spot;
+    case From::Directional:
+      return To::Directional;
+    case From::Sphere:
+      return To::Sphere;
+    case From::Disc:
+      return To::Disc;
   }
   return To::Point;
 }
@@ -50,8 +57,7 @@ Sphere sphereAround(const scene::Box& bounds) {
 
 float largestScale(const glm::mat4& matrix) {
   float scale = 0.0f;
-  for (int column = 0; column < 3; ++column)
-    scale = std::max(scale, glm::length(glm::vec3(matrix[column])));
+  for (int column = 0; column < 3; ++column) scale = std::max(scale, glm::length(glm::vec3(matrix[column])));
   return scale;
 }
 
@@ -86,7 +92,7 @@ std::vector<const bundle::CaptureProxy*> proxiesOf(const streaming::Residency& r
   return proxies;
 }
 
-LitScene gatherLitScene(const World& world, const effects::diffuse::Proxies& proxies, float surroundings) {
+LitScene gatherLitScene(const World& world, float surroundings) {
   LitScene scene;
   const ecs::Registry& registry = world.registry();
   const auto& groups = world.residency().groups();
@@ -126,7 +132,7 @@ LitScene gatherLitScene(const World& world, const effects::diffuse::Proxies& pro
                                        .brightness = std::clamp(brightness, 1.0f, kMaxBrightness)},
                               .center_ws = glm::vec3(world_from_group * glm::vec4(sphere.center, 1.0f)),
                               .radius_m = sphere.radius * largestScale(world_from_group),
-                              .radiance_version = proxies.versionOf(g)});
+                              .radiance_version = 0});
     }
     std::uint32_t near_mask = 0;
     for (std::size_t k = 0; k < scene.lights.size(); ++k) {

@@ -9,7 +9,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "runtime/effects/diffuse/proxies.hpp"
 #include "runtime/frame/world.hpp"
 #include "runtime/lighting/incident_light.hpp"
 
@@ -28,7 +27,8 @@ struct LitScene {
 };
 
 // surroundings: mean radiance, by which bodies count as bright.
-LitScene gatherLitScene(const World& world, const effects::diffuse::Proxies& proxies, float surroundings);
+// radiance_version of the bodies is for effects to say.
+LitScene gatherLitScene(const World& world, float surroundings);
 
 // The proxies of the groups that have one, in the order of the bodies.
 std::vector<const bundle::CaptureProxy*> proxiesOf(const streaming::Residency& residency);

@@ -187,9 +187,10 @@ Result<void> IncidentLight::capture(const Environment& environment, std::span<co
     for (std::size_t s = 0; s < groups[g].samples_ws.size(); ++s) {
       Sample& sample = groups_[g].samples[s];
       CapturePoint point{.position_ws = groups[g].samples_ws[s], .own_body = groups[g].body, .queries = {}};
-      Drawn now{.position_ws = point.position_ws,
-                .environment = environment.version(),
-                .lights = groups_[g].lights};
+      Drawn now;
+      now.position_ws = point.position_ws;
+      now.environment = environment.version();
+      now.lights = groups_[g].lights;
       for (std::uint32_t b = 0; b < bodies.size(); ++b)
         if (b != point.own_body && capture_.sees(point, bodies[b].body))
           now.seen.push_back(
