@@ -1,0 +1,407 @@
+#include "runtime/lighting/capture.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <string>
+
+#include <glm/mat4x4.hpp>
+#include <glm/vec4.hpp>
+
+#include "lambent_lighting_embedded.hpp"
+#include "runtime/lighting/capture_combine.hpp"
+#include "runtime/lighting/capture_shared.h"
+#include "runtime/sh/cube_map.hpp"
+
+namespace lambent::lighting {
+
+namespace {
+
+using namespace capture;
+
+constexpr gpu::FindText kShaders[] = {&embedded::lambent_lighting::find};
+// As in capture_project.comp.
+constexpr GLint kFirstPoint = 0, kSubsamples = 1, kCoefficientCount = 2;
+constexpr std::uint32_t kNoRecord = 0xffffffffu;
+
+using Vertex = std::array<std::uint32_t, 4>;  // position as bits of floats, surface id
+using TexelEntry = std::array<std::uint32_t, 2>;
+
+bool finite(const glm::vec3& v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+// The vertices of one level. A triangle's id comes from its last corner, so each triangle needs one that is
+// last in no other; of closed meshes, with half as many vertices as triangles, about half are doubled.
+class LevelVertices {
+ public:
+  LevelVertices(const bundle::CaptureProxy& proxy, std::vector<Vertex>& vertices)
+      : proxy_(proxy), vertices_(vertices), first_(vertices.size()), slots_(proxy.positions.size(), kNone) {}
+
+  void add(std::uint32_t surface_id, std::array<std::uint32_t, 3> corners,
+           std::vector<std::uint32_t>& indices) {
+    for (int turn = 0; turn < 3 && !isFree(corners[2]); ++turn)
+      std::rotate(corners.begin(), corners.begin() + 1, corners.end());
+    std::uint32_t last = slots_[corners[2]];
+    if (!isFree(corners[2])) {
+      last = make(corners[2]);
+    } else if (last == kNone) {
+      last = slots_[corners[2]] = make(corners[2]);
+    }
+    vertices_[first_ + last][3] = surface_id;
+    for (const std::size_t k : {0u, 1u}) {
+      if (slots_[corners[k]] == kNone) slots_[corners[k]] = make(corners[k]);
+      indices.push_back(slots_[corners[k]]);
+    }
+    indices.push_back(last);
+  }
+
+ private:
+  static constexpr std::uint32_t kNone = 0xffffffffu;
+
+  bool isFree(std::uint32_t corner) const {
+    return slots_[corner] == kNone || vertices_[first_ + slots_[corner]][3] == 0;
+  }
+  std::uint32_t make(std::uint32_t corner) {
+    const glm::vec3& p = proxy_.positions[corner];
+    vertices_.push_back({std::bit_cast<std::uint32_t>(p.x), std::bit_cast<std::uint32_t>(p.y),
+                         std::bit_cast<std::uint32_t>(p.z), 0});
+    return static_cast<std::uint32_t>(vertices_.size() - 1 - first_);
+  }
+
+  const bundle::CaptureProxy& proxy_;
+  std::vector<Vertex>& vertices_;
+  std::size_t first_;
+  std::vector<std::uint32_t> slots_;  // per position of the proxy
+};
+static_assert(3 * bundle::kMaxProxyTriangles <= 1u << kVertexBits);
+
+void put(float (&row)[4], const glm::dvec4& value) {
+  for (int i = 0; i < 4; ++i) row[i] = static_cast<float>(value[i]);
+}
+
+DrawRecord drawRecord(const CaptureOptions& options, const Tile& tile, const CaptureBody& body,
+                      const glm::vec3& point_ws, std::uint32_t page_height) {
+  glm::dmat4 point_from_proxy(body.world_from_proxy);
+  point_from_proxy[3] -= glm::dvec4(glm::dvec3(point_ws), 0.0);
+  const glm::dmat4 rows = glm::transpose(glm::dmat4(faceFromWorld(tile.face)) * point_from_proxy);
+  DrawRecord record{};
+  put(record.face_x, rows[0]);
+  put(record.face_y, rows[1]);
+  put(record.face_w, rows[2]);
+  const double size = options.size, subsamples = options.subsamples;
+  const auto scale = [&](double pixels) { return size * subsamples / pixels; };
+  const auto offset = [&](double at, double texel, double pixels) {
+    return (2 * (at - texel * subsamples) + size * subsamples) / pixels - 1;
+  };
+  const double width = kAtlasWidth, height = page_height;
+  put(record.place, {scale(width), offset(tile.x, tile.texels.x0, width), scale(height),
+                     offset(tile.y, tile.texels.y0, height)});
+  const auto edge = [&](std::uint32_t texel) { return 2.0 * texel / size - 1; };
+  put(record.window,
+      {edge(tile.texels.x0), edge(tile.texels.x1), edge(tile.texels.y0), edge(tile.texels.y1)});
+  return record;
+}
+
+}  // namespace
+
+Capture::Capture(const CaptureOptions& options)
+    : options_(options),
+      projector_(options.order, static_cast<int>(options.size)),
+      vertices_("capture vertices"),
+      draws_("capture draws"),
+      indices_("capture indices"),
+      points_("capture points"),
+      texels_("capture texels"),
+      lookups_("capture lookups"),
+      results_("capture results"),
+      hidden_("capture hidden lights") {}
+
+Result<Capture> Capture::create(const CaptureOptions& options, const Environment& environment) {
+  if (options.size < 4 || options.size > 64)
+    return fail("light capture", "a size of " + std::to_string(options.size), "4 to 64 texels");
+  if (options.subsamples < 1 || options.subsamples > 16)
+    return fail("light capture", std::to_string(options.subsamples) + " subsamples", "1 to 16");
+  if (options.order < 1 || options.order > sh::kMaxOrder)
+    return fail("light capture", "order " + std::to_string(options.order), "1 to 8");
+  Capture capture(options);
+  auto sky = CaptureSky::create(options, environment);
+  if (!sky) return failAgain(sky.error());
+  capture.sky_ = std::move(*sky);
+  auto draw = gpu::Program::create(
+      "capture", {{GL_VERTEX_SHADER, "capture.vert"}, {GL_FRAGMENT_SHADER, "capture.frag"}}, kShaders);
+  if (!draw) return failAgain(draw.error());
+  capture.draw_program_ = std::move(*draw);
+  auto project =
+      gpu::Program::create("capture projection", {{GL_COMPUTE_SHADER, "capture_project.comp"}}, kShaders);
+  if (!project) return failAgain(project.error());
+  capture.project_program_ = std::move(*project);
+  capture.array_ = gpu::VertexArray("capture");
+
+  // [texel][coefficient]: the lanes of a work group read one texel's weights together.
+  const std::vector<float> weights = sh::cubeWeights(options.order, static_cast<int>(options.size));
+  const std::size_t count = static_cast<std::size_t>(sh::coefficientCount(options.order)),
+                    texels = weights.size() / count;
+  std::vector<float> by_texel(weights.size());
+  for (std::size_t i = 0; i < count; ++i)
+    for (std::size_t k = 0; k < texels; ++k) by_texel[k * count + i] = weights[i * texels + k];
+  capture.weights_ = gpu::Buffer("capture weights", by_texel.size() * sizeof(float));
+  capture.weights_.write(0, std::span<const float>(by_texel));
+  return capture;
+}
+
+void Capture::setProxies(std::span<const bundle::CaptureProxy* const> proxies, gpu::Counters& counters) {
+  proxies_.clear();
+  bounds_.clear();
+  triangle_count_ = 0;
+  std::vector<Vertex> vertices;
+  for (const bundle::CaptureProxy* proxy : proxies) {
+    bounds_.push_back(ProxyBounds::of(*proxy));
+    Proxy made{.first_triangle = triangle_count_, .levels = {}};
+    for (const bundle::ProxyLevel& level : proxy->levels) {
+      Level& drawn = made.levels.emplace_back();
+      drawn.first_vertex = static_cast<std::uint32_t>(vertices.size());
+      LevelVertices add(*proxy, vertices);
+      for (std::uint32_t t = level.first_triangle; t < level.first_triangle + level.triangle_count; ++t) {
+        const bundle::ProxyTriangle& triangle = proxy->triangles[t];
+        const auto usable = [&](std::uint32_t v) { return finite(proxy->positions[v]); };
+        if (!std::all_of(triangle.vertices.begin(), triangle.vertices.end(), usable)) continue;
+        add.add(triangle_count_ + t + 1, triangle.vertices,
+                triangle.front_only ? drawn.front_only : drawn.two_sided);
+      }
+    }
+    proxies_.push_back(std::move(made));
+    triangle_count_ += static_cast<std::uint32_t>(proxy->triangles.size());
+  }
+  vertices_.assign(std::span<const Vertex>(vertices));
+  counters.uploaded_bytes += vertices.size() * sizeof(Vertex);
+}
+
+bool Capture::sees(const CapturePoint& point, const CaptureBody& body) const {
+  return body.proxy < bounds_.size() && capture::sees(options_, point, body, bounds_[body.proxy]);
+}
+
+Result<void> Capture::run(const Environment& environment, std::span<const CaptureBody> bodies,
+                          std::span<const CapturePoint> points, const gpu::Buffer& triangle_radiance,
+                          gpu::Counters& counters) {
+  if (pending_) return fail("light capture", "started again before the last one was taken");
+  if (triangle_radiance.byteCount() < std::size_t{triangle_count_} * sizeof(glm::vec4))
+    return fail("light capture", "fewer radiances than the proxies have triangles");
+  const gpu::DebugGroup group("light capture");
+  sky_is_new_ = sky_.update(environment, counters) || sky_is_new_;
+  const Plan plan = capture::plan(options_, bounds_, bodies, points);
+
+  run_ = {};
+  run_.points.assign(points.begin(), points.end());
+  run_.sky = sky_.light(environment);
+  run_.records.assign(points.size(), kNoRecord);
+  for (std::uint32_t r = 0; r < plan.points.size(); ++r) run_.records[plan.points[r].point] = r;
+  load_ = {};
+  pending_ = true;
+  if (plan.points.empty()) return {};
+
+  upload(plan, bodies, points, counters);
+  for (std::size_t i = 0; i < plan.pages.size(); ++i) {
+    drawPage(plan.pages[i], i, counters);
+    projectPage(plan.pages[i], triangle_radiance, counters);
+  }
+  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+  const std::size_t result_bytes = plan.points.size() * 2 *
+                                   static_cast<std::size_t>(sh::coefficientCount(options_.order)) *
+                                   sizeof(glm::vec4),
+                    hidden_bytes = run_.word_count * sizeof(std::uint32_t);
+  readback_.start(result_bytes + hidden_bytes + sky_.texels().byteCount());
+  run_.results_at = readback_.copy(results_.buffer(), result_bytes);
+  run_.hidden_at = readback_.copy(hidden_.buffer(), hidden_bytes);
+  run_.new_sky = std::exchange(sky_is_new_, false);
+  if (run_.new_sky) run_.sky_at = readback_.copy(sky_.texels(), sky_.texels().byteCount());
+  readback_.finish();
+  return {};
+}
+
+// All pages' tables at once.
+void Capture::upload(const Plan& plan, std::span<const CaptureBody> bodies,
+                     std::span<const CapturePoint> points, gpu::Counters& counters) {
+  load_ = {.pages = static_cast<std::uint32_t>(plan.pages.size()),
+           .points = static_cast<std::uint32_t>(plan.points.size()),
+           .tiles = static_cast<std::uint32_t>(plan.tiles.size()),
+           .draws = static_cast<std::uint32_t>(plan.draws.size())};
+  std::vector<PointRecord> records;
+  std::vector<TexelEntry> texels;
+  std::vector<Lookup> lookups;
+  std::vector<float> near_of_tile(plan.tiles.size());
+  const std::uint32_t size = options_.size, subsamples = options_.subsamples;
+  for (const PlannedPoint& planned : plan.points) {
+    PointRecord& record = records.emplace_back();
+    record.first_texel = static_cast<std::uint32_t>(texels.size());
+    record.first_word = static_cast<std::uint32_t>(lookups.size() / kLookupsPerWord);
+    for (std::uint32_t t = planned.first_tile; t < planned.first_tile + planned.tile_count; ++t) {
+      const Tile& tile = plan.tiles[t];
+      near_of_tile[t] = planned.near_m;
+      for (std::uint32_t y = tile.texels.y0; y < tile.texels.y1; ++y)
+        for (std::uint32_t x = tile.texels.x0; x < tile.texels.x1; ++x)
+          texels.push_back({(tile.x + (x - tile.texels.x0) * subsamples) |
+                                (tile.y + (y - tile.texels.y0) * subsamples) << 16,
+                            (tile.face * size + y) * size + x});
+    }
+    record.texel_count = static_cast<std::uint32_t>(texels.size()) - record.first_texel;
+    appendLookups(size, subsamples, planned, plan.tiles, points[planned.point], lookups);
+    record.word_count = static_cast<std::uint32_t>(lookups.size() / kLookupsPerWord) - record.first_word;
+    run_.queries.push_back({record.first_word, record.word_count});
+    run_.uncovered.push_back((6 * size * size - record.texel_count) * subsamples * subsamples);
+  }
+  load_.pixels = texels.size() * subsamples * subsamples;
+  run_.word_count = lookups.size() / kLookupsPerWord;
+
+  std::vector<DrawRecord> draws;
+  std::vector<std::uint32_t> indices;
+  draws.reserve(plan.draws.size());
+  page_indices_.assign(plan.pages.size(), {});
+  for (std::size_t i = 0; i < plan.pages.size(); ++i) {
+    const Page& page = plan.pages[i];
+    for (std::uint32_t d = page.first_draw; d < page.first_draw + page.draw_count; ++d) {
+      const Draw& draw = plan.draws[d];
+      const Tile& tile = plan.tiles[draw.tile];
+      DrawRecord& record = draws.emplace_back(
+          drawRecord(options_, tile, bodies[draw.body], points[tile.point].position_ws, page.height));
+      record.first_vertex = proxies_[bodies[draw.body].proxy].levels[draw.level].first_vertex;
+      record.near_m = near_of_tile[draw.tile];
+    }
+    for (const bool front_only : {false, true}) {
+      IndexRange& range = page_indices_[i][front_only];
+      range.first = static_cast<std::uint32_t>(indices.size());
+      for (std::uint32_t d = page.first_draw; d < page.first_draw + page.draw_count; ++d) {
+        const Level& level = proxies_[bodies[plan.draws[d].body].proxy].levels[plan.draws[d].level];
+        for (const std::uint32_t v : front_only ? level.front_only : level.two_sided)
+          indices.push_back(d << kVertexBits | v);
+      }
+      range.count = static_cast<std::uint32_t>(indices.size()) - range.first;
+    }
+  }
+  load_.triangles = indices.size() / 3;
+
+  const auto give = [&](gpu::Table& table, auto& values) {
+    table.assign(std::span(std::as_const(values)));
+    counters.uploaded_bytes += std::span(values).size_bytes();
+  };
+  give(points_, records);
+  give(texels_, texels);
+  give(lookups_, lookups);
+  give(draws_, draws);
+  give(indices_, indices);
+  results_.reserve(records.size() * 2 * static_cast<std::size_t>(sh::coefficientCount(options_.order)) *
+                   sizeof(glm::vec4));
+  hidden_.reserve(run_.word_count * sizeof(std::uint32_t));
+}
+
+void Capture::drawPage(const Page& page, std::size_t index, gpu::Counters& counters) {
+  // Grows with the largest page so far.
+  if (!ids_ || ids_.desc().height < page.height) {
+    const std::uint32_t height = std::min(std::bit_ceil(page.height), kAtlasHeight);
+    ids_ = gpu::Texture("capture ids", {.format = GL_R32UI, .width = kAtlasWidth, .height = height});
+    depths_ = gpu::Texture("capture depths",
+                           {.format = GL_DEPTH_COMPONENT32F, .width = kAtlasWidth, .height = height});
+    atlas_ = gpu::Framebuffer("capture atlas", ids_, &depths_);
+  }
+  glBindFramebuffer(GL_FRAMEBUFFER, atlas_.id());
+  glViewport(0, 0, static_cast<GLsizei>(kAtlasWidth), static_cast<GLsizei>(page.height));
+  glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
+  for (GLenum i = 0; i < 4; ++i) glEnable(GL_CLIP_DISTANCE0 + i);
+  glEnable(GL_DEPTH_TEST);
+  glDepthFunc(GL_GREATER);
+  glDepthMask(GL_TRUE);
+  glDisable(GL_BLEND);
+  glFrontFace(GL_CCW);
+  glEnable(GL_SCISSOR_TEST);
+  glScissor(0, 0, static_cast<GLsizei>(kAtlasWidth), static_cast<GLsizei>(page.height));
+  constexpr GLuint kNothing[4] = {0, 0, 0, 0};
+  constexpr GLfloat kFar = 0.0f;
+  glClearBufferuiv(GL_COLOR, 0, kNothing);
+  glClearBufferfv(GL_DEPTH, 0, &kFar);
+  glDisable(GL_SCISSOR_TEST);
+
+  draw_program_.use();
+  glBindVertexArray(array_.id());
+  glVertexArrayElementBuffer(array_.id(), indices_.buffer().id());
+  vertices_.bindStorage(kBindVertices);
+  draws_.bindStorage(kBindDraws);
+  for (const bool front_only : {false, true}) {
+    const IndexRange& range = page_indices_[index][front_only];
+    if (range.count == 0) continue;
+    if (front_only) glEnable(GL_CULL_FACE);
+    glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(range.count), GL_UNSIGNED_INT,
+                   reinterpret_cast<const void*>(std::size_t{range.first} * sizeof(std::uint32_t)));
+    ++counters.draws;
+    ++counters.draw_calls;
+    if (front_only) glDisable(GL_CULL_FACE);
+  }
+  glDepthFunc(GL_LESS);
+  for (GLenum i = 0; i < 4; ++i) glDisable(GL_CLIP_DISTANCE0 + i);
+  glClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
+  glBindFramebuffer(GL_FRAMEBUFFER, 0);
+}
+
+void Capture::projectPage(const Page& page, const gpu::Buffer& triangle_radiance, gpu::Counters& counters) {
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);  // the caller may have shaded the triangles in a shader
+  project_program_.use();
+  glUniform1ui(kFirstPoint, page.first_point);
+  glUniform1ui(kSubsamples, options_.subsamples);
+  glUniform1ui(kCoefficientCount, static_cast<GLuint>(sh::coefficientCount(options_.order)));
+  ids_.bind(kUnitIds);
+  depths_.bind(kUnitDepth);
+  glBindSampler(kUnitIds, 0);
+  glBindSampler(kUnitDepth, 0);
+  points_.bindStorage(kBindPoints);
+  texels_.bindStorage(kBindTexels);
+  weights_.bindStorage(kBindWeights);
+  sky_.bindStorage(kBindSky);
+  triangle_radiance.bindStorage(kBindRadiance);
+  lookups_.bindStorage(kBindLookups);
+  results_.bindStorage(kBindResults);
+  hidden_.bindStorage(kBindHidden);
+  glDispatchCompute(page.point_count, 1, 1);
+  ++counters.dispatches;
+}
+
+std::optional<std::vector<CapturedLight>> Capture::take(bool wait) {
+  if (!pending_ || !readback_.arrived(wait)) return std::nullopt;
+  pending_ = false;
+  const auto count = static_cast<std::size_t>(sh::coefficientCount(options_.order));
+  std::vector<glm::vec4> results(run_.uncovered.size() * 2 * count);
+  std::vector<std::uint32_t> hidden(run_.word_count);
+  if (!results.empty()) {
+    readback_.read(run_.results_at, std::span(results));
+    readback_.read(run_.hidden_at, std::span(hidden));
+  }
+  if (run_.new_sky) {
+    std::vector<glm::vec4> texels(sky_.texels().byteCount() / sizeof(glm::vec4));
+    readback_.read(run_.sky_at, std::span(texels));
+    sky_through_texels_ = projector_.project(std::vector<glm::vec3>(texels.begin(), texels.end()));
+  }
+
+  std::vector<CapturedLight> lights(run_.points.size());
+  for (std::size_t p = 0; p < lights.size(); ++p) {
+    CapturedLight& out = lights[p];
+    const CapturePoint& point = run_.points[p];
+    out.light = run_.sky;
+    out.visible.assign(point.queries.size(), 1.0f);
+    const std::uint32_t record = run_.records[p];
+    if (record == kNoRecord) continue;
+    const std::span<const glm::vec4> sums = std::span(results).subspan(record * 2 * count, 2 * count);
+    combine(sums, run_.uncovered[record], run_.sky, sky_through_texels_, out);
+    for (std::size_t q = 0; q < point.queries.size(); ++q)
+      out.visible[q] = visibleShare(point.queries[q], hidden[run_.queries[record].first_word + q], out.light);
+  }
+  return lights;
+}
+
+sh::LightVector Capture::skyThroughTexels(const Environment& environment, gpu::Counters& counters) {
+  sky_is_new_ = sky_.update(environment, counters) || sky_is_new_;
+  std::vector<glm::vec4> texels(sky_.texels().byteCount() / sizeof(glm::vec4));
+  sky_.texels().read(0, std::span(texels));
+  return projector_.project(std::vector<glm::vec3>(texels.begin(), texels.end()));
+}
+
+}  // namespace lambent::lighting
