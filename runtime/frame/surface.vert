@@ -19,6 +19,10 @@ layout(location = 5) out vec4 tangent_group;  // w: +1 or -1 as glTF has it, of 
 layout(location = 6) out vec3 light[kLightCoefficients];
 #else
 layout(location = 3) out vec3 radiance;
+#ifdef LAMBENT_NEAR_LIGHTS
+#include "surface_normal.glsl"
+layout(location = 4) out vec3 normal_group;  // of the side that is seen
+#endif
 #endif
 
 vec2 geometry2(uint at) { return vec2(uintBitsToFloat(geometry[at]), uintBitsToFloat(geometry[at + 1u])); }
@@ -60,6 +64,10 @@ void main() {
   for (uint j = 0u; j < kLightCoefficients; ++j) light[j] = radianceAt(draw.radiance_word + words * vertex + 3u * j);
 #else
   radiance = radianceAt(draw.radiance_word + 3u * vertex);
+#ifdef LAMBENT_NEAR_LIGHTS
+  normal_group =
+      draw.facing * unit(mat3(draw.group_from_mesh_normal) * geometry3(draw.normals_word + 3u * vertex));
+#endif
 #endif
   draw_of = draw_index;
   gl_Position = clip_from_view * (view_from_world * (draw.world_from_mesh * vec4(position, 1.0)));

@@ -105,6 +105,23 @@ bool World::loaded() const {
                      [](const Bundle& bundle) { return bundle.loader.finished(); });
 }
 
+std::vector<scene::AnimatedBundle> World::animatedBundles() const {
+  std::vector<scene::AnimatedBundle> animated;
+  for (std::size_t i = 0; i < bundles_.size(); ++i)
+    animated.push_back({.bundle = static_cast<std::uint32_t>(i),
+                        .description = &bundles_[i].reader->description(),
+                        .instance = &bundles_[i].instance});
+  return animated;
+}
+
+void World::playAnimations(float seconds) {
+  scene::playAnimations(registry_, animatedBundles(), seconds);
+}
+
+void World::setAnimationTime(float time_s) {
+  scene::setAnimationTime(registry_, animatedBundles(), time_s);
+}
+
 void World::updateTransforms() {
   scene::updateTransforms(registry_);
 }

@@ -13,6 +13,7 @@
 #include "runtime/bundle/reader.hpp"
 #include "runtime/ecs/registry.hpp"
 #include "runtime/lighting/group_lights.hpp"
+#include "runtime/scene/animation.hpp"
 #include "runtime/scene/components.hpp"
 #include "runtime/scene/instantiate.hpp"
 #include "runtime/streaming/loader.hpp"
@@ -46,6 +47,9 @@ class World {
   LoadedParts loadedParts() const;
 
   void updateTransforms();
+  // All animations of the bundles, before updateTransforms.
+  void playAnimations(float seconds);
+  void setAnimationTime(float time_s);
   std::uint64_t transformsVersion() const { return registry_.version<scene::WorldTransform>(); }
 
   // In the order of residency().groups() and draws().
@@ -85,6 +89,7 @@ class World {
     scene::SceneInstance instance;
     std::vector<glm::mat4> world_from_node_at_rest;
   };
+  std::vector<scene::AnimatedBundle> animatedBundles() const;
   const scene::RigidGroupComponent* rigidGroup(std::size_t group) const;
   bool inPlace(std::size_t group, std::size_t column) const;
   Result<std::uint64_t> uploadFrom(std::uint32_t bundle, std::uint64_t budget_bytes, gpu::Counters& counters);
