@@ -21,7 +21,8 @@ Json countsJson(const frame::StepCounts& counts) {
           {"light_samples_risen", counts.incident.risen},
           {"light_samples_written", counts.light_samples_written},
           {"cells_shaded", counts.cells_shaded},
-          {"draws_shaded", counts.draws_shaded}};
+          {"draws_shaded", counts.draws_shaded},
+          {"shadow_cubes_drawn", counts.shadow_cubes_drawn}};
 }
 
 // Of all frames but the first, which also waits for what is made once.

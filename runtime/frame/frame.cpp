@@ -72,8 +72,10 @@ void Frame::resize(const spec::Size& size) {
 Result<void> Frame::render(World& world, const lighting::Environment& environment, const spec::View& view) {
   timers_.beginFrame();
   if (Result<void> done = step(world, environment); !done) return done;
+  // cubes of the lights that stand among surfaces
+  if (Result<void> done = castShadows(world); !done) return done;
   // surfaces, sky, blended surfaces: linear radiance
-  raster(world, environment, view);
+  if (Result<void> done = raster(world, environment, view); !done) return done;
   // exposure, tone curve, sRGB; negative pixels are counted and clamped here
   toneMap();
   return {};
@@ -189,9 +191,19 @@ Result<void> Frame::shade(World& world) {
   return done;
 }
 
-void Frame::raster(World& world, const lighting::Environment& environment, const spec::View& view) {
+Result<void> Frame::castShadows(World& world) {
+  gpu::PassTimers::Scope pass(timers_, "shadows");
+  Result<void> done =
+      near_lights_.update(world, lit_scene_.near_lights, lit_scene_.near_masks, pass.counters());
+  counts_.shadow_cubes_drawn = near_lights_.cubesDrawn();
+  return done;
+}
+
+Result<void> Frame::raster(World& world, const lighting::Environment& environment, const spec::View& view) {
   gpu::PassTimers::Scope pass(timers_, "raster");
-  surfaces_.prepare(world, diffuse_, view, pass.counters());
+  if (Result<void> done = surfaces_.prepare(world, diffuse_, view, pass.counters(), &near_lights_); !done)
+    return done;
+  near_lights_.bind(view, options_.size);
   glBindFramebuffer(GL_FRAMEBUFFER, hdr_target_.id());
   glViewport(0, 0, static_cast<GLsizei>(options_.size.width), static_cast<GLsizei>(options_.size.height));
   glEnable(GL_DEPTH_TEST);
@@ -204,6 +216,7 @@ void Frame::raster(World& world, const lighting::Environment& environment, const
   sky_.draw(environment, view.view_from_world, view.clip_from_view, options_.size.height, pass.counters());
   glDepthFunc(GL_LESS);
   surfaces_.drawBlended(world, pass.counters());
+  return {};
 }
 
 void Frame::toneMap() {

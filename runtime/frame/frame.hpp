@@ -13,6 +13,7 @@
 #include "runtime/effects/diffuse/diffuse.hpp"
 #include "runtime/effects/diffuse/proxies.hpp"
 #include "runtime/frame/lit_scene.hpp"
+#include "runtime/frame/near_lights.hpp"
 #include "runtime/frame/surfaces.hpp"
 #include "runtime/frame/tone_mapper.hpp"
 #include "runtime/frame/world.hpp"
@@ -52,6 +53,7 @@ struct StepCounts {
   lighting::IncidentCounts incident;
   std::uint32_t light_samples_written = 0;  // coefficients computed for the shaders
   std::uint32_t cells_shaded = 0, draws_shaded = 0;
+  std::uint32_t shadow_cubes_drawn = 0;
 };
 
 // After so many steps a still scene is taken to be at rest: light has gone to and fro as often.
@@ -89,7 +91,8 @@ class Frame {
                                gpu::Counters& counters);
   Result<void> capture(World& world, const lighting::Environment& environment);
   bool atRest(const World& world) const;
-  void raster(World& world, const lighting::Environment& environment, const spec::View& view);
+  Result<void> castShadows(World& world);
+  Result<void> raster(World& world, const lighting::Environment& environment, const spec::View& view);
   void toneMap();
 
   FrameOptions options_;
@@ -99,6 +102,7 @@ class Frame {
   effects::diffuse::Diffuse diffuse_;
   effects::diffuse::Proxies proxies_;
   LitScene lit_scene_;
+  NearLights near_lights_;
   std::optional<lighting::IncidentLight> incident_;  // once there is something to sample
   std::uint64_t proxies_seen_ = 0;
   int capture_order_ = 0;
