@@ -126,11 +126,10 @@ void NearLights::updateMasks(const World& world, std::span<const std::uint32_t> 
   any_ = lights_used_ != 0;
   std::vector<NearDraw> draws;
   if (any_) {
-    const std::vector<lighting::GroupPlace> places = world.groupPlaces();
     draws.reserve(residency.draws().size());
     for (std::size_t i = 0; i < residency.draws().size(); ++i) {
       const std::uint32_t group = residency.draws()[i].group;
-      const glm::quat& turn = places[group].world_from_group;
+      const glm::quat turn = world.rotationOf(group);
       // Unlit surfaces show their colour whatever the light.
       const bool lit = group < mask_of_group.size() && !materialOf(world, i).unlit;
       draws.push_back({.world_from_group = {turn.x, turn.y, turn.z, turn.w},
