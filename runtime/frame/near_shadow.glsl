@@ -7,6 +7,7 @@ const float kNothing = 1e30;
 // What is nearer to the light than the receiver by less than these texels' width does not shadow it: rounding, curved
 // surfaces and corners of rooms within a texel.
 const float kBiasTexels = 1.5;
+const float kLeastSquared = 1e-12;  // a micrometre: weights stay finite
 const float kGoldenAngle = 2.39996323, kGolden = 0.61803399;
 
 float nearDistance(int light, int face, ivec2 texel);
@@ -146,7 +147,7 @@ float discVisible(int index, NearRecord light, ShadowReceiver receiver, vec3 sha
     vec2 unit_place = discPoint(i, count, turns);
     vec2 at = disc.radius * unit_place;
     vec3 ray = at.x * disc.s + at.y * disc.t - receiver.position;
-    float squared = dot(ray, ray), weight = max(dot(shading_normal, ray), 0.0) / (squared * squared);
+    float squared = max(dot(ray, ray), kLeastSquared), weight = max(dot(shading_normal, ray), 0.0) / (squared * squared);
     all += weight;
     if (weight <= 0.0 || dot(receiver.normal, ray) <= 0.0) continue;
     if (found > 0.0) {

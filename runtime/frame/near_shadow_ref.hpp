@@ -11,6 +11,7 @@ namespace lambent::frame::ref {
 
 inline constexpr float kNothing = 1e30f;
 inline constexpr float kBiasTexels = 1.5f;
+inline constexpr float kLeastSquared = 1e-12f;
 inline constexpr float kGoldenAngle = 2.39996323f, kGolden = 0.61803399f;
 
 struct ShadowReceiver {
@@ -143,7 +144,7 @@ float discVisible(const Distance& distance, const NearRecord& light, const Shado
     const glm::vec2 unit_place = discPoint(i, count, turns);
     const glm::vec2 at = disc.radius * unit_place;
     const glm::vec3 ray = at.x * disc.s + at.y * disc.t - receiver.position;
-    const float squared = glm::dot(ray, ray),
+    const float squared = std::max(glm::dot(ray, ray), kLeastSquared),
                 weight = std::max(glm::dot(shading_normal, ray), 0.0f) / (squared * squared);
     all += weight;
     if (weight <= 0.0f || glm::dot(receiver.normal, ray) <= 0.0f) continue;
