@@ -7,7 +7,10 @@ const float kNothing = 1e30;
 // What is nearer to the light than the receiver by less than these texels' width does not shadow it: rounding, curved
 // surfaces and corners of rooms within a texel.
 const float kBiasTexels = 1.5;
-const float kGoldenAngle = 2.39996323, kGolden = 0.61803399;
+// What stands beside the light's cone says how high blockers are, too; few points would miss the cone's rim.
+const float kSearchWidth = 2.0, kFoundWidth = 3.0;  // in the disc's radius
+const float kLeastSquared = 1e-12;  // a micrometre: weights stay finite
+const float kGoldenAngle = 2.39996323;
 
 float nearDistance(int light, int face, ivec2 texel);
 
@@ -107,8 +110,12 @@ vec2 discPoint(int i, int count, float turns) {
   return sqrt((float(i) + 0.5) / float(count)) * vec2(cos(angle), sin(angle));
 }
 
-// How far up from the disc (0) to the receiver (1) a blocker stands; negative: not between the receiver and the disc.
-float blockerHeight(ShadowReceiver receiver, LightDisc disc, Blocker blocker) {
+// The i-th of points on a line [van der Corput 1935]: even with discPoint's radius and apart from its angle.
+float linePoint(int i) { return float(bitfieldReverse(uint(i))) * 2.3283064e-10; }
+
+// How far up from the disc (0) to the receiver (1) a blocker stands; negative: not between the receiver and a disc of
+// this radius.
+float blockerHeight(ShadowReceiver receiver, LightDisc disc, float radius, Blocker blocker) {
   if (blocker.distance >= planeDistance(receiver, blocker.direction) * (1.0 - receiver.bias)) return -1.0;
   vec3 place = blocker.distance * blocker.direction;
   float height = dot(disc.normal, place) / disc.height;
@@ -117,7 +124,7 @@ float blockerHeight(ShadowReceiver receiver, LightDisc disc, Blocker blocker) {
   float scale = 1.0 / (1.0 - height);
   vec3 seen = receiver.position + scale * (place - receiver.position);
   float doubt = receiver.bias * blocker.distance * scale;
-  return dot(seen, seen) <= (disc.radius + doubt) * (disc.radius + doubt) ? height : -1.0;
+  return dot(seen, seen) <= (radius + doubt) * (radius + doubt) ? height : -1.0;
 }
 
 // Of a light with an extent: the mean over points on its disc, each weighed by the light it gives at the shading
@@ -129,10 +136,11 @@ float discVisible(int index, NearRecord light, ShadowReceiver receiver, vec3 sha
   if (disc.height <= 0.0) return 0.0;
   float heights = 0.0, found = 0.0;
   for (int i = 0; i < count; ++i) {
-    vec2 at = disc.radius * discPoint(i, count, turns);
-    float up = fract(float(i + 1) * kGolden + turns);
+    vec2 at = kSearchWidth * disc.radius * discPoint(i, count, turns);
+    // One on the receiver's own ray, the rest closer together towards the receiver, where penumbras are narrow.
+    float down = i == 0 ? 0.0 : fract(linePoint(i) + turns), up = 1.0 - down * sqrt(down);
     vec3 place = (1.0 - up) * (at.x * disc.s + at.y * disc.t) + up * receiver.position;
-    float height = blockerHeight(receiver, disc, blockerAt(index, place, size));
+    float height = blockerHeight(receiver, disc, kFoundWidth * disc.radius, blockerAt(index, place, size));
     if (height >= 0.0) {
       heights += height;
       found += 1.0;
@@ -146,13 +154,13 @@ float discVisible(int index, NearRecord light, ShadowReceiver receiver, vec3 sha
     vec2 unit_place = discPoint(i, count, turns);
     vec2 at = disc.radius * unit_place;
     vec3 ray = at.x * disc.s + at.y * disc.t - receiver.position;
-    float squared = dot(ray, ray), weight = max(dot(shading_normal, ray), 0.0) / (squared * squared);
+    float squared = max(dot(ray, ray), kLeastSquared), weight = max(dot(shading_normal, ray), 0.0) / (squared * squared);
     all += weight;
     if (weight <= 0.0 || dot(receiver.normal, ray) <= 0.0) continue;
     if (found > 0.0) {
       vec2 wide = max(disc.radius, least) * unit_place;
       vec3 place = (1.0 - up) * (wide.x * disc.s + wide.y * disc.t) + up * receiver.position;
-      if (blockerHeight(receiver, disc, blockerAt(index, place, size)) >= 0.0) continue;
+      if (blockerHeight(receiver, disc, disc.radius, blockerAt(index, place, size)) >= 0.0) continue;
     }
     visible += weight;
   }

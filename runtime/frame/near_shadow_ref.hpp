@@ -11,7 +11,9 @@ namespace lambent::frame::ref {
 
 inline constexpr float kNothing = 1e30f;
 inline constexpr float kBiasTexels = 1.5f;
-inline constexpr float kGoldenAngle = 2.39996323f, kGolden = 0.61803399f;
+inline constexpr float kSearchWidth = 2.0f, kFoundWidth = 3.0f;
+inline constexpr float kLeastSquared = 1e-12f;
+inline constexpr float kGoldenAngle = 2.39996323f;
 
 struct ShadowReceiver {
   glm::vec3 position;
@@ -109,7 +111,14 @@ inline glm::vec2 discPoint(int i, int count, float turns) {
          glm::vec2(std::cos(angle), std::sin(angle));
 }
 
-inline float blockerHeight(const ShadowReceiver& receiver, const LightDisc& disc, const Blocker& blocker) {
+inline float linePoint(int i) {
+  std::uint32_t reversed = 0;
+  for (int bit = 0; bit < 32; ++bit) reversed |= (static_cast<std::uint32_t>(i) >> bit & 1u) << (31 - bit);
+  return static_cast<float>(reversed) * 2.3283064e-10f;
+}
+
+inline float blockerHeight(const ShadowReceiver& receiver, const LightDisc& disc, float radius,
+                           const Blocker& blocker) {
   if (blocker.distance >= planeDistance(receiver, blocker.direction) * (1.0f - receiver.bias)) return -1.0f;
   const glm::vec3 place = blocker.distance * blocker.direction;
   const float height = glm::dot(disc.normal, place) / disc.height;
@@ -117,7 +126,7 @@ inline float blockerHeight(const ShadowReceiver& receiver, const LightDisc& disc
   const float scale = 1.0f / (1.0f - height);
   const glm::vec3 seen = receiver.position + scale * (place - receiver.position);
   const float doubt = receiver.bias * blocker.distance * scale;
-  return glm::dot(seen, seen) <= (disc.radius + doubt) * (disc.radius + doubt) ? height : -1.0f;
+  return glm::dot(seen, seen) <= (radius + doubt) * (radius + doubt) ? height : -1.0f;
 }
 
 template <typename Distance>
@@ -127,10 +136,11 @@ float discVisible(const Distance& distance, const NearRecord& light, const Shado
   if (disc.height <= 0.0f) return 0.0f;
   float heights = 0.0f, found = 0.0f;
   for (int i = 0; i < count; ++i) {
-    const glm::vec2 at = disc.radius * discPoint(i, count, turns);
-    const float up = glm::fract(static_cast<float>(i + 1) * kGolden + turns);
+    const glm::vec2 at = kSearchWidth * disc.radius * discPoint(i, count, turns);
+    const float down = i == 0 ? 0.0f : glm::fract(linePoint(i) + turns), up = 1.0f - down * std::sqrt(down);
     const glm::vec3 place = (1.0f - up) * (at.x * disc.s + at.y * disc.t) + up * receiver.position;
-    const float height = blockerHeight(receiver, disc, blockerAt(distance, place, size));
+    const float height =
+        blockerHeight(receiver, disc, kFoundWidth * disc.radius, blockerAt(distance, place, size));
     if (height >= 0.0f) {
       heights += height;
       found += 1.0f;
@@ -143,14 +153,14 @@ float discVisible(const Distance& distance, const NearRecord& light, const Shado
     const glm::vec2 unit_place = discPoint(i, count, turns);
     const glm::vec2 at = disc.radius * unit_place;
     const glm::vec3 ray = at.x * disc.s + at.y * disc.t - receiver.position;
-    const float squared = glm::dot(ray, ray),
+    const float squared = std::max(glm::dot(ray, ray), kLeastSquared),
                 weight = std::max(glm::dot(shading_normal, ray), 0.0f) / (squared * squared);
     all += weight;
     if (weight <= 0.0f || glm::dot(receiver.normal, ray) <= 0.0f) continue;
     if (found > 0.0f) {
       const glm::vec2 wide = std::max(disc.radius, least) * unit_place;
       const glm::vec3 place = (1.0f - up) * (wide.x * disc.s + wide.y * disc.t) + up * receiver.position;
-      if (blockerHeight(receiver, disc, blockerAt(distance, place, size)) >= 0.0f) continue;
+      if (blockerHeight(receiver, disc, disc.radius, blockerAt(distance, place, size)) >= 0.0f) continue;
     }
     visible += weight;
   }

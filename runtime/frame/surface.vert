@@ -10,8 +10,10 @@ layout(location = 0) in uint draw_index;  // one per instance: the draw's base i
 layout(location = 0) flat out uint draw_of;
 layout(location = 1) out vec4 looks_at;  // in the base colour picture: xy; in the emissive one: zw
 layout(location = 2) out vec4 vertex_color;
-#ifdef LAMBENT_NORMAL_MAPPED
+#if defined(LAMBENT_NORMAL_MAPPED) || defined(LAMBENT_NEAR_LIGHTS)
 #include "surface_normal.glsl"
+#endif
+#ifdef LAMBENT_NORMAL_MAPPED
 // In the group's frame. With them all fifteen locations that OpenGL 4.5 promises are in use.
 layout(location = 3) out vec4 position_group;  // w, and that of the normal: where in the normal picture
 layout(location = 4) out vec4 normal_group;
@@ -20,7 +22,6 @@ layout(location = 6) out vec3 light[kLightCoefficients];
 #else
 layout(location = 3) out vec3 radiance;
 #ifdef LAMBENT_NEAR_LIGHTS
-#include "surface_normal.glsl"
 layout(location = 4) out vec3 normal_group;  // of the side that is seen
 #endif
 #endif
