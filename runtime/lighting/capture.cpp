@@ -303,6 +303,11 @@ void Capture::drawPage(const Page& page, std::size_t index, gpu::Counters& count
     ids_ = gpu::Texture("capture ids", {.format = GL_R32UI, .width = kAtlasWidth, .height = height});
     depths_ = gpu::Texture("capture depths",
                            {.format = GL_DEPTH_COMPONENT32F, .width = kAtlasWidth, .height = height});
+    // Textures of integers are incomplete with the filters that textures are made with.
+    for (const gpu::Texture* texture : {&ids_, &depths_}) {
+      glTextureParameteri(texture->id(), GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+      glTextureParameteri(texture->id(), GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+    }
     atlas_ = gpu::Framebuffer("capture atlas", ids_, &depths_);
   }
   glBindFramebuffer(GL_FRAMEBUFFER, atlas_.id());
@@ -397,11 +402,11 @@ std::optional<std::vector<CapturedLight>> Capture::take(bool wait) {
   return lights;
 }
 
-sh::LightVector Capture::skyThroughTexels(const Environment& environment, gpu::Counters& counters) {
-  sky_is_new_ = sky_.update(environment, counters) || sky_is_new_;
+std::vector<glm::vec3> Capture::skyTexels(const glm::mat3& world_from_light) {
+  sky_.makeTurned(world_from_light, glm::vec3(0.0f));
   std::vector<glm::vec4> texels(sky_.texels().byteCount() / sizeof(glm::vec4));
   sky_.texels().read(0, std::span(texels));
-  return projector_.project(std::vector<glm::vec3>(texels.begin(), texels.end()));
+  return {texels.begin(), texels.end()};
 }
 
 }  // namespace lambent::lighting

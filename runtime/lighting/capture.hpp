@@ -59,9 +59,10 @@ class Capture {
     std::uint64_t triangles = 0, pixels = 0;
   };
   const Load& load() const { return load_; }
-  // The whole sky as projected from its texels, without the correction to the exact light: measures the
-  // texels. Waits for the GPU.
-  sh::LightVector skyThroughTexels(const Environment& environment, gpu::Counters& counters);
+  // The probes as they come through the texels, turned in any way, without the correction to the exact light:
+  // measures the texels. 6 size² radiances in the order of sh/cube_map.hpp. Waits for the GPU; not to be
+  // called while pending().
+  std::vector<glm::vec3> skyTexels(const glm::mat3& world_from_light);
 
  private:
   struct Level {

@@ -17,6 +17,9 @@ namespace lambent::lighting::capture {
 namespace {
 
 constexpr double kCullShare = 0.25;  // of a texel: solid angle of bodies, error of levels
+// The near plane, as a share of the distance to the nearest body's box, or of the radius of one that holds
+// the point. Depth is reversed and so does not suffer.
+constexpr double kNearShare = 1e-3, kLeastNearShare = 1e-9;
 // Rectangles grow by this share of a texel, so that rounding cannot cut a body's edge.
 constexpr double kRectMargin = 1e-4;
 
@@ -80,6 +83,17 @@ Corners cornersOf(const CapturePoint& point, const CaptureBody& body, const Prox
     corners[i] = glm::dvec3(m * at) - glm::dvec3(point.position_ws);
   }
   return corners;
+}
+
+// From the point to the box; 0 inside.
+double boxDistance(const Corners& corners) {
+  glm::dvec3 nearest = corners[0];
+  for (const std::size_t k : {1u, 2u, 4u}) {
+    const glm::dvec3 edge = corners[k] - corners[0];
+    const double squared = glm::dot(edge, edge);
+    if (squared > 0) nearest += std::clamp(-glm::dot(corners[0], edge) / squared, 0.0, 1.0) * edge;
+  }
+  return glm::length(nearest);
 }
 
 struct Interval {
@@ -203,9 +217,8 @@ class PointPlanner {
       const Sphere sphere = sphereOf(point, bodies_[b], bounds);
       if (!largeEnough(options_, sphere, bodies_[b].brightness)) continue;
       seen_.push_back({b, levelFor(options_, sphere, bounds), sphere, cornersOf(point, bodies_[b], bounds)});
-      // Near enough to cut nothing off from outside, and little of a body that the point is in.
-      near_m = std::min(near_m, 1e-3 * std::max(0.5 * (glm::length(sphere.centre) - sphere.radius_m),
-                                                0.01 * sphere.radius_m));
+      near_m = std::min(near_m, std::max(kNearShare * boxDistance(seen_.back().corners),
+                                         kLeastNearShare * sphere.radius_m));
     }
     const auto first_tile = static_cast<std::uint32_t>(plan_.tiles.size());
     for (std::uint32_t face = 0; face < 6; ++face) addFace(index, face);

@@ -1,5 +1,6 @@
 #include "runtime/lighting/capture_queries.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <numbers>
@@ -11,9 +12,6 @@
 namespace lambent::lighting::capture {
 
 namespace {
-
-// A surface that lies as far away as the light itself, give or take this share, does not hide it.
-constexpr double kSameDistance = 1e-3;
 
 bool usable(const glm::dvec3& direction) {
   const double squared = glm::dot(direction, direction);

@@ -18,6 +18,9 @@
 
 namespace lambent::lighting::capture {
 
+// A surface that lies as far away as the light itself, give or take this share, does not hide it.
+inline constexpr double kSameDistance = 1e-3;
+
 // For the GPU: bit i of a word says whether something is nearer than the light along direction i.
 struct Lookup {
   std::uint32_t pixel = kNoPixel;  // x | y << 16

@@ -40,7 +40,7 @@ struct CapturePoint {
   static constexpr std::uint32_t kNoBody = 0xffffffffu;
   glm::vec3 position_ws{0.0f};
   std::uint32_t own_body = kNoBody;  // index into the bodies; does not see itself
-  std::vector<LightQuery> queries;
+  std::vector<LightQuery> queries{};
 };
 
 struct CapturedLight {

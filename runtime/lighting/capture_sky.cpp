@@ -88,8 +88,15 @@ Result<CaptureSky> CaptureSky::create(const CaptureOptions& options, const Envir
 
 bool CaptureSky::update(const Environment& environment, gpu::Counters& counters) {
   if (version_ == environment.version()) return false;
+  makeTurned(environment.worldFromLight(), environment.constant());
   version_ = environment.version();
-  const glm::mat3 light_from_world = glm::transpose(environment.worldFromLight());
+  ++counters.dispatches;
+  return true;
+}
+
+void CaptureSky::makeTurned(const glm::mat3& world_from_light, const glm::vec3& constant_radiance) {
+  version_ = 0;
+  const glm::mat3 light_from_world = glm::transpose(world_from_light);
   const float texels_of_subsample =
       static_cast<float>(probes_.desc().width) / static_cast<float>(options_.size * options_.subsamples);
   program_.use();
@@ -97,7 +104,7 @@ bool CaptureSky::update(const Environment& environment, gpu::Counters& counters)
   glUniform1ui(kSize, options_.size);
   glUniform1ui(kSubsamples, options_.subsamples);
   glUniform1f(kLevel, std::max(0.0f, std::log2(texels_of_subsample)));
-  glUniform3fv(kConstant, 1, glm::value_ptr(environment.constant()));
+  glUniform3fv(kConstant, 1, glm::value_ptr(constant_radiance));
   glUniform3f(kScale, 1.0f, 1.0f, 1.0f);
   probes_.bind(0);
   glBindSampler(0, sampler_.id());
@@ -106,8 +113,6 @@ bool CaptureSky::update(const Environment& environment, gpu::Counters& counters)
   glDispatchCompute((6 * options_.size * options_.size + 63) / 64, 1, 1);
   glBindSampler(0, 0);
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
-  ++counters.dispatches;
-  return true;
 }
 
 sh::LightVector CaptureSky::light(const Environment& environment) const {

@@ -6,6 +6,9 @@
 
 #include <cstdint>
 
+#include <glm/mat3x3.hpp>
+#include <glm/vec3.hpp>
+
 #include "runtime/base/result.hpp"
 #include "runtime/gpu/objects.hpp"
 #include "runtime/gpu/program.hpp"
@@ -22,6 +25,8 @@ class CaptureSky {
 
   // Does nothing if the environment is as it was. True if the cube was made anew.
   bool update(const Environment& environment, gpu::Counters& counters);
+  // Makes the cube with the probes turned in any way, for measurements; the next update() makes it anew.
+  void makeTurned(const glm::mat3& world_from_light, const glm::vec3& constant_radiance);
   void bindStorage(GLuint binding) const { texels_.bindStorage(binding); }
   const gpu::Buffer& texels() const { return texels_; }
   // What the sky without its suns sends to a point from which nothing hides it; bands as the options say.
@@ -33,7 +38,7 @@ class CaptureSky {
   gpu::Texture probes_;  // in the lights' own frame, float32, with mip maps
   gpu::Sampler sampler_;
   gpu::Buffer texels_;
-  std::uint64_t version_ = 0;
+  std::uint64_t version_ = 0;  // of the environment that the cube shows; 0: of none
   sh::LightVector unturned_;
 };
 
