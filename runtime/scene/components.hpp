@@ -170,6 +170,7 @@ struct AnimationComponent {
   float speed = 1.0f;  // seconds of animation per second; negative plays backwards
   bool playing = true;
   bool loop = true;
+  float posed_s = 0.0f;  // the time that the nodes stand at; kept by playAnimations
 
   static constexpr std::string_view kComponentName = "Animation";
   static auto fields() {
