@@ -24,7 +24,8 @@ float durationOf(const Animation& animation);
 // Puts what the channels name into the parts of a node.
 void applyChannel(const AnimationChannel& channel, float time_s, Trs& parts);
 
-// Moves the nodes that the animations name to where they are at time_s: trs and parent_from_node.
+// Moves the nodes that the animations name to where they are at time_s: trs and parent_from_node. Where
+// several move the same, the last counts.
 void applyAnimations(std::span<const Animation> animations, float time_s, std::vector<Node>& nodes);
 
 }  // namespace lambent::gltf

@@ -21,10 +21,11 @@ ecs::Entity lampOf(const bundle::Description& description, const scene::SceneIns
   return {};
 }
 
-// A lamp that was taken out of the scene is dark.
+// What a light column of a group is multiplied with. A lamp that was taken out of the scene is dark.
 glm::vec3 radianceOf(const ecs::Registry& registry, ecs::Entity entity) {
-  const auto* lamp = registry.tryGet<scene::LampComponent>(entity);
-  return lamp ? lamp->radiance() : glm::vec3(0.0f);
+  if (const auto* material = registry.tryGet<scene::LampComponent>(entity)) return material->radiance();
+  const auto* lamp = registry.tryGet<scene::LocalLightComponent>(entity);
+  return lamp ? lamp->power() : glm::vec3(0.0f);
 }
 
 }  // namespace
@@ -127,6 +128,10 @@ glm::vec3 World::emission(std::size_t draw) const {
 void World::scaleLamps(float factor) {
   for (auto [entity, lamp] : registry_.view<const scene::LampComponent>())
     registry_.edit<scene::LampComponent>(entity).strength *= factor;
+  for (const Bundle& bundle : bundles_)
+    for (const ecs::Entity node : bundle.instance.nodes)
+      if (registry_.has<scene::LocalLightComponent>(node))
+        registry_.edit<scene::LocalLightComponent>(node).strength *= factor;
 }
 
 LoadedParts World::loadedParts() const {

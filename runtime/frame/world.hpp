@@ -54,9 +54,9 @@ class World {
   // Radiance that the draw's material gives off now, before its texture: its lamp's where it is one in its
   // group, else the material's own.
   glm::vec3 emission(std::size_t draw) const;
-  // Rises when a lamp changes.
+  // Rises when what an emissive material gives off changes.
   std::uint64_t lampsVersion() const { return registry_.version<scene::LampComponent>(); }
-  // Multiplies the strength of all lamps.
+  // Multiplies the strength of all lights that the bundles bring with them.
   void scaleLamps(float factor);
 
   streaming::Residency& residency() { return residency_; }

@@ -1,9 +1,11 @@
-// The light at infinity: probes, suns and constants added up, turned together about +Y. Comes in: the lights
-// as parsed. Goes out: one light vector of order 8 in world space (probes projected once when loaded, suns in
-// closed form) and what the sky shows: a probe's radiance, discs, a constant. No GL. Errors: those of loading
-// a probe.
+// The light at infinity: probes, suns and constants added up, in one or two sets to fade between, turned
+// together about +Y. Comes in: the lights as parsed; those that stand in the scene are passed over. Goes out:
+// light vectors of order 8 in world space (probes projected once when loaded, suns in closed form), the suns
+// as discs, and what the sky shows. Fading and turning mix what was projected once. No GL. Errors: those of
+// loading a probe.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -21,30 +23,52 @@ using spec::Disc;
 
 class Environment {
  public:
-  static Result<Environment> create(const std::vector<spec::Light>& lights);
+  static constexpr std::size_t kSets = 2;
 
+  static Result<Environment> create(const std::vector<spec::Light>& lights,
+                                    const std::vector<spec::Light>& second_lights = {});
+
+  // Each gives a new version where it changes something. Values that are not finite change nothing.
   // Positive turns take +Z to +X.
   void setTurn(float degrees);
+  // 0: the first set alone, 1: the second; between them (1 - fade) of the one and fade of the other. Clamped.
+  void setFade(float fade);
+  // Factor on all of it, 0 or more.
+  void setIntensity(float intensity);
   float turnDegrees() const { return turn_degrees_; }
+  float fade() const { return fade_; }
+  float intensity() const { return intensity_; }
   // World directions from the lights' own.
   glm::mat3 worldFromLight() const;
 
-  const sh::LightVector& light() const { return light_; }  // world space, turned
-  std::uint64_t version() const { return version_; }       // rises with every turn
+  // Now: world space, turned, faded, times the intensity.
+  const sh::LightVector& light() const { return light_; }         // all of it
+  const sh::LightVector& skyLight() const { return sky_light_; }  // without the discs of suns
+  // The suns of both sets, always as many and in the same order; dark ones have radiance 0.
+  const std::vector<Disc>& discs() const { return discs_; }
+  std::uint64_t version() const { return version_; }
 
-  const std::vector<spec::Probe>& probes() const { return lights_.probes; }
-  const std::vector<Disc>& discs() const { return lights_.discs; }
-  glm::vec3 constant() const { return lights_.constant; }
+  // As loaded: the lights' own frame, whole radiance.
+  const spec::DistantLights& set(std::size_t index) const { return sets_[index].lights; }
+  // By what set() is multiplied now.
+  float shareOf(std::size_t index) const;
   // What was repaired in the probes; a sentence each.
-  const std::vector<std::string>& notices() const { return lights_.notices; }
+  const std::vector<std::string>& notices() const { return notices_; }
 
  private:
+  struct Set {
+    spec::DistantLights lights;
+    sh::LightVector sky, discs;  // in the lights' own frame
+  };
   Environment() = default;
+  void mix();
 
-  spec::DistantLights lights_;
-  sh::LightVector unturned_, light_;
-  float turn_degrees_ = 0.0f;
-  std::uint64_t version_ = 1;
+  std::array<Set, kSets> sets_;
+  std::vector<std::string> notices_;
+  float turn_degrees_ = 0.0f, fade_ = 0.0f, intensity_ = 1.0f;
+  sh::LightVector light_, sky_light_;
+  std::vector<Disc> discs_;
+  std::uint64_t version_ = 0;
 };
 
 }  // namespace lambent::lighting

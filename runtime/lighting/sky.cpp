@@ -21,16 +21,18 @@ constexpr float kLargestHalf = 65504.0f;
 
 // As in sky.frag.
 constexpr GLuint kBindDiscs = 0;
-constexpr GLint kWorldFromClip = 0, kLightFromWorld = 1, kDiscCount = 2, kPixelAngle = 3;
+constexpr GLint kWorldFromClip = 0, kLightFromWorld = 1, kDiscCount = 2, kPixelAngle = 3, kShares = 4;
 struct DiscRecord {
-  glm::vec4 direction_and_radius;
-  glm::vec4 radiance;
+  glm::vec4 direction_and_radius;  // in the lights' own frame
+  glm::vec3 radiance;
+  float set;
 };
+static_assert(sizeof(DiscRecord) == 32);
 
 // About one texel of the cube per texel of the probe; a constant needs no more than one.
-std::uint32_t cubeSize(const Environment& environment) {
+std::uint32_t cubeSize(const spec::DistantLights& lights) {
   std::uint32_t size = 1;
-  for (const spec::Probe& probe : environment.probes()) {
+  for (const spec::Probe& probe : lights.probes) {
     const std::uint32_t width = probe.image.width;
     const std::uint32_t wanted = probe.layout == sh::ImageLayout::VerticalCross ? width / 3 : width / 4;
     size = std::max(size, std::clamp(wanted, 16u, 1024u));
@@ -38,18 +40,32 @@ std::uint32_t cubeSize(const Environment& environment) {
   return size;
 }
 
-std::vector<std::uint64_t> faceTexels(const Environment& environment, int face, std::uint32_t size) {
+std::vector<std::uint64_t> faceTexels(const spec::DistantLights& lights, int face, std::uint32_t size) {
   std::vector<std::uint64_t> texels;
   texels.reserve(std::size_t{size} * size);
   for (std::uint32_t y = 0; y < size; ++y)
     for (std::uint32_t x = 0; x < size; ++x) {
       const glm::vec3 dir =
           sh::cubeTexelDirection(static_cast<int>(size), face, static_cast<int>(x), static_cast<int>(y));
-      glm::vec3 sum = environment.constant();
-      for (const spec::Probe& probe : environment.probes()) sum += spec::radiance(probe, dir);
+      glm::vec3 sum = lights.constant;
+      for (const spec::Probe& probe : lights.probes) sum += spec::radiance(probe, dir);
       texels.push_back(glm::packHalf4x16(glm::vec4(glm::min(sum, glm::vec3(kLargestHalf)), 0.0f)));
     }
   return texels;
+}
+
+gpu::Texture skyCube(const spec::DistantLights& lights) {
+  const std::uint32_t size = cubeSize(lights);
+  gpu::Texture cube("sky", {.format = GL_RGBA16F, .width = size, .height = size, .cube = true});
+  std::vector<std::future<std::vector<std::uint64_t>>> faces;
+  for (int face = 0; face < 6; ++face)
+    faces.push_back(std::async(std::launch::async, [&, face] { return faceTexels(lights, face, size); }));
+  for (int face = 0; face < 6; ++face)
+    glTextureSubImage3D(cube.id(), 0, 0, 0, face, static_cast<GLsizei>(size), static_cast<GLsizei>(size), 1,
+                        GL_RGBA, GL_HALF_FLOAT, faces[static_cast<std::size_t>(face)].get().data());
+  glTextureParameteri(cube.id(), GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+  glTextureParameteri(cube.id(), GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  return cube;
 }
 
 }  // namespace
@@ -60,20 +76,12 @@ Result<Sky> Sky::create(const Environment& environment) {
       "sky", {{GL_VERTEX_SHADER, "sky.vert"}, {GL_FRAGMENT_SHADER, "sky.frag"}}, kShaders);
   if (!program) return failAgain(program.error());
   sky.program_ = std::move(*program);
-  const std::uint32_t size = cubeSize(environment);
-  sky.cube_ = gpu::Texture("sky", {.format = GL_RGBA16F, .width = size, .height = size, .cube = true});
-  std::vector<std::future<std::vector<std::uint64_t>>> faces;
-  for (int face = 0; face < 6; ++face)
-    faces.push_back(
-        std::async(std::launch::async, [&, face] { return faceTexels(environment, face, size); }));
-  for (int face = 0; face < 6; ++face)
-    glTextureSubImage3D(sky.cube_.id(), 0, 0, 0, face, static_cast<GLsizei>(size), static_cast<GLsizei>(size),
-                        1, GL_RGBA, GL_HALF_FLOAT, faces[static_cast<std::size_t>(face)].get().data());
-  glTextureParameteri(sky.cube_.id(), GL_TEXTURE_MIN_FILTER, GL_LINEAR);
-  glTextureParameteri(sky.cube_.id(), GL_TEXTURE_MAG_FILTER, GL_LINEAR);
   std::vector<DiscRecord> discs;
-  for (const Disc& disc : environment.discs())
-    discs.push_back({{disc.direction, disc.radius_rad}, {disc.radiance, 0.0f}});
+  for (std::size_t i = 0; i < Environment::kSets; ++i) {
+    sky.cubes_[i] = skyCube(environment.set(i));
+    for (const Disc& disc : environment.set(i).discs)
+      discs.push_back({{disc.direction, disc.radius_rad}, disc.radiance, static_cast<float>(i)});
+  }
   sky.disc_count_ = static_cast<std::uint32_t>(discs.size());
   sky.discs_.assign(std::span<const DiscRecord>(discs));
   sky.no_vertices_ = gpu::VertexArray("sky");
@@ -91,8 +99,11 @@ void Sky::draw(const Environment& environment, const glm::mat4& view_from_world,
   glUniformMatrix3fv(kLightFromWorld, 1, GL_FALSE, glm::value_ptr(light_from_world));
   glUniform1ui(kDiscCount, disc_count_);
   glUniform1f(kPixelAngle, 2.0f / (clip_from_view[1][1] * static_cast<float>(picture_height)));
-  cube_.bind(0);
-  glBindSampler(0, 0);
+  glUniform2f(kShares, environment.shareOf(0), environment.shareOf(1));
+  for (GLuint i = 0; i < Environment::kSets; ++i) {
+    cubes_[i].bind(i);
+    glBindSampler(i, 0);
+  }
   discs_.bindStorage(kBindDiscs);
   glBindVertexArray(no_vertices_.id());
   glEnable(GL_TEXTURE_CUBE_MAP_SEAMLESS);

@@ -3,11 +3,14 @@
 layout(location = 1) uniform mat3 light_from_world;
 layout(location = 2) uniform uint disc_count;
 layout(location = 3) uniform float pixel_angle;  // radians that a pixel spans
-layout(binding = 0) uniform samplerCube sky;
+layout(location = 4) uniform vec2 shares;        // of the first and the second set of lights
+layout(binding = 0) uniform samplerCube first_sky;
+layout(binding = 1) uniform samplerCube second_sky;
 
 struct Disc {
   vec4 direction_and_radius;  // in the lights' own frame; radians
-  vec4 radiance;
+  vec3 radiance;
+  float set;  // 0 or 1
 };
 layout(std430, binding = 0) readonly buffer Discs { Disc discs[]; };
 
@@ -18,14 +21,14 @@ layout(location = 0) out vec4 color;
 void main() {
   vec3 dir_ws = normalize(far_ws.xyz / far_ws.w - near_ws.xyz / near_ws.w);
   vec3 dir = light_from_world * dir_ws;
-  vec3 radiance = texture(sky, dir).rgb;
+  vec3 radiance = shares.x * texture(first_sky, dir).rgb + shares.y * texture(second_sky, dir).rgb;
   for (uint i = 0u; i < disc_count; ++i) {
     vec3 to_disc = discs[i].direction_and_radius.xyz;
     // acos would lose the last digits just where discs are small.
     float angle = atan(length(cross(dir, to_disc)), dot(dir, to_disc));
     // Not by derivatives: they are not to be trusted where a pixel is covered in part.
     float inside = clamp((discs[i].direction_and_radius.w - angle) / pixel_angle + 0.5, 0.0, 1.0);
-    radiance += inside * discs[i].radiance.rgb;
+    radiance += inside * (discs[i].set > 0.5 ? shares.y : shares.x) * discs[i].radiance;
   }
   color = vec4(radiance, 0.0);
 }

@@ -1,8 +1,11 @@
 // What the camera sees where nothing stands: the environment's own radiance, not its spherical harmonics.
-// Probes and constants are resampled once into a cube map (half floats, clamped to what those hold); suns
-// stay analytic discs with an edge one pixel wide. Drawn behind everything, with alpha 0: the sky covers
+// Probes and constants are resampled once into a cube map per set of lights (half floats, clamped to what
+// those hold); suns stay analytic discs with an edge one pixel wide. Turned, faded and scaled as the
+// environment is when it is drawn. Drawn behind everything, with alpha 0: the sky covers
 // nothing. Errors: shaders that do not compile on this device.
 #pragma once
+
+#include <array>
 
 #include <glm/mat4x4.hpp>
 
@@ -26,7 +29,7 @@ class Sky {
   Sky() : discs_("sky discs") {}
 
   gpu::Program program_;
-  gpu::Texture cube_;
+  std::array<gpu::Texture, Environment::kSets> cubes_;
   gpu::Table discs_;
   gpu::VertexArray no_vertices_;
   std::uint32_t disc_count_ = 0;

@@ -113,9 +113,9 @@ struct CameraComponent {
   }
 };
 
-// A light that belongs to a rigid group, as bundle::GroupLight: it gives colour x strength, radiance of an
-// emissive material or intensity of a lamp. Lit anew at once, with the shadows and bounces that were baked
-// for it.
+// An emissive material of a rigid group, as bundle::GroupLight: it gives colour x strength as radiance. Lit
+// anew at once, with the shadows and bounces that were baked for it. Lamps have a LocalLightComponent
+// instead.
 struct LampComponent {
   std::uint32_t bundle = 0, group = 0, column = 0;
   glm::vec3 color{1.0f};  // linear; the bundle's at first
@@ -170,6 +170,7 @@ struct AnimationComponent {
   float speed = 1.0f;  // seconds of animation per second; negative plays backwards
   bool playing = true;
   bool loop = true;
+  float posed_s = 0.0f;  // the time that the nodes stand at; kept by playAnimations
 
   static constexpr std::string_view kComponentName = "Animation";
   static auto fields() {

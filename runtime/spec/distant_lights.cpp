@@ -18,12 +18,11 @@ Result<DistantLights> loadDistantLights(const std::vector<Light>& lights) {
       out.discs.push_back({.direction = directionFromAzimuthElevation(sun->azimuth_deg, sun->elevation_deg),
                            .radius_rad = glm::radians(sun->angle_deg),
                            .radiance = sun->radiance});
-    } else {
-      const auto& file = std::get<ProbeLight>(light);
-      Result<Probe> probe = loadProbe(file);
+    } else if (const auto* file = std::get_if<ProbeLight>(&light)) {
+      Result<Probe> probe = loadProbe(*file);
       if (!probe) return failAgain(probe.error());
       if (probe->texels_not_finite > 0)
-        out.notices.push_back(file.file.string() + ": " + std::to_string(probe->texels_not_finite) +
+        out.notices.push_back(file->file.string() + ": " + std::to_string(probe->texels_not_finite) +
                               " texels are not finite and count as black");
       out.probes.push_back(std::move(*probe));
     }
@@ -32,13 +31,22 @@ Result<DistantLights> loadDistantLights(const std::vector<Light>& lights) {
 }
 
 sh::LightVector DistantLights::lightVector() const {
+  return skyVector() + discVector();
+}
+
+sh::LightVector DistantLights::skyVector() const {
   sh::LightVector light = sh::constantLight(sh::kMaxOrder, constant);
-  for (const Disc& disc : discs)
-    light +=
-        sh::discLight(sh::kMaxOrder, disc.direction, static_cast<double>(disc.radius_rad), disc.radiance);
   for (const Probe& probe : probes)
     light += sh::projectImage(sh::kMaxOrder, probe.layout, static_cast<int>(probe.image.width),
                               static_cast<int>(probe.image.height), probe.image.texels);
+  return light;
+}
+
+sh::LightVector DistantLights::discVector() const {
+  sh::LightVector light{.order = sh::kMaxOrder};
+  for (const Disc& disc : discs)
+    light +=
+        sh::discLight(sh::kMaxOrder, disc.direction, static_cast<double>(disc.radius_rad), disc.radiance);
   return light;
 }
 

@@ -1,7 +1,8 @@
 // The words for lights made real: what shines from infinity, in the lights' own frame (before
-// --rotate-light). Comes in: the lights as parsed. Goes out: probes loaded, discs, one constant, and the
-// light vector of all of them together. The runtime and the reference renderer both start from here, so that
-// they mean the same light. Errors: those of loading a probe.
+// --rotate-light). Comes in: the lights as parsed; those that stand in the scene are passed over. Goes out:
+// probes loaded, discs, one constant, and the light vector of all of them together. The runtime and the
+// reference renderer both start from here, so that they mean the same light. Errors: those of loading a
+// probe.
 #pragma once
 
 #include <string>
@@ -29,8 +30,10 @@ struct DistantLights {
   // What was repaired in the probes; a sentence each.
   std::vector<std::string> notices;
 
-  // All of it as bands 0..7: probes projected texel by texel, discs and the constant in closed form.
-  sh::LightVector lightVector() const;
+  // As bands 0..7: probes projected texel by texel, discs and the constant in closed form.
+  sh::LightVector lightVector() const;  // all of it
+  sh::LightVector skyVector() const;    // probes and the constant
+  sh::LightVector discVector() const;
 };
 
 Result<DistantLights> loadDistantLights(const std::vector<Light>& lights);

@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 
+#include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
 
 #include "runtime/spec/numbers.hpp"
@@ -15,10 +16,17 @@ namespace lambent::spec {
 namespace {
 
 constexpr std::string_view kForms =
-    "give a probe file (.hdr or .exr), constant:R,G,B or sun:AZ,EL,ANGLE,R[,G,B]";
+    "give a probe file (.hdr or .exr), constant:R,G,B, sun:AZ,EL,ANGLE,R[,G,B], sphere:X,Y,Z,RADIUS,R[,G,B] "
+    "or disc:X,Y,Z,NX,NY,NZ,RADIUS,R[,G,B]";
 constexpr std::string_view kConstantForm = "write constant:R,G,B with radiances of 0 or more";
 constexpr std::string_view kSunForm =
     "write sun:AZ,EL,ANGLE,R[,G,B] in degrees: elevation -90..90, angular radius above 0 up to 180, "
+    "radiances of 0 or more";
+constexpr std::string_view kSphereForm =
+    "write sphere:X,Y,Z,RADIUS,R[,G,B] in metres: radius and radiances of 0 or more";
+constexpr std::string_view kDiscForm =
+    "write disc:X,Y,Z,NX,NY,NZ,RADIUS,R[,G,B] in metres: it shines along NX,NY,NZ, which is not 0; radius "
+    "and "
     "radiances of 0 or more";
 
 tl::unexpected<Error> wrong(std::string_view word, std::string problem, std::string_view mend) {
@@ -60,19 +68,56 @@ Result<Light> parseSun(std::string_view word, std::string_view text) {
   return SunLight{azimuth, elevation, angle, *colour};
 }
 
+Result<Light> parseSphere(std::string_view word, std::string_view text) {
+  const auto values = parseNumbers(text);
+  if (!values) return wrong(word, "is not a list of numbers", kSphereForm);
+  if (values->size() != 5 && values->size() != 7)
+    return wrong(word, "needs five or seven numbers", kSphereForm);
+  const std::vector<float>& v = *values;
+  if (v[3] < 0.0f) return wrong(word, "has a negative radius", kSphereForm);
+  const auto colour = parseRadiance(std::span(v).subspan(4));
+  if (!colour) return wrong(word, "has a negative radiance", kSphereForm);
+  return SphereLight{{v[0], v[1], v[2]}, v[3], *colour};
+}
+
+Result<Light> parseDisc(std::string_view word, std::string_view text) {
+  const auto values = parseNumbers(text);
+  if (!values) return wrong(word, "is not a list of numbers", kDiscForm);
+  if (values->size() != 8 && values->size() != 10)
+    return wrong(word, "needs eight or ten numbers", kDiscForm);
+  const std::vector<float>& v = *values;
+  // In double: squares of floats neither overflow nor vanish there.
+  const glm::dvec3 normal(v[3], v[4], v[5]);
+  if (!(glm::length(normal) > 0.0)) return wrong(word, "has a normal of length 0", kDiscForm);
+  if (v[6] < 0.0f) return wrong(word, "has a negative radius", kDiscForm);
+  const auto colour = parseRadiance(std::span(v).subspan(7));
+  if (!colour) return wrong(word, "has a negative radiance", kDiscForm);
+  return DiscLight{{v[0], v[1], v[2]}, glm::vec3(glm::normalize(normal)), v[6], *colour};
+}
+
 }  // namespace
 
 Result<Light> parseLight(std::string_view word) {
-  constexpr std::string_view kConstant = "constant:", kSun = "sun:", kSphere = "sphere:";
+  constexpr std::string_view kConstant = "constant:", kSun = "sun:", kSphere = "sphere:", kDisc = "disc:";
   if (word.empty()) return wrong(word, "is empty", kForms);
   if (word.starts_with(kConstant)) return parseConstant(word, word.substr(kConstant.size()));
   if (word.starts_with(kSun)) return parseSun(word, word.substr(kSun.size()));
-  if (word.starts_with(kSphere)) return wrong(word, "sphere lights are not yet supported", kForms);
+  if (word.starts_with(kSphere)) return parseSphere(word, word.substr(kSphere.size()));
+  if (word.starts_with(kDisc)) return parseDisc(word, word.substr(kDisc.size()));
   const std::filesystem::path file(word);
   const std::string extension = lowerExtension(file);
   if (extension != ".hdr" && extension != ".exr")
     return wrong(word, "is no kind of light known here", kForms);
   return ProbeLight{file, std::nullopt};
+}
+
+std::vector<LocalLight> localLights(std::span<const Light> lights) {
+  std::vector<LocalLight> out;
+  for (const Light& light : lights) {
+    if (const auto* sphere = std::get_if<SphereLight>(&light)) out.emplace_back(*sphere);
+    if (const auto* disc = std::get_if<DiscLight>(&light)) out.emplace_back(*disc);
+  }
+  return out;
 }
 
 Result<sh::ImageLayout> parseLightLayout(std::string_view word) {

@@ -311,7 +311,7 @@ TEST_F(FrameTest, TheSkyShowsTheProbeWhereItStands) {
       const glm::vec4 far_clip(-63.0f / 64.0f, 63.0f / 64.0f, 1.0f, 1.0f);
       const glm::vec4 far_ws = glm::inverse(view.clip_from_view * view.view_from_world) * far_clip;
       const glm::vec3 dir_ws = glm::normalize(glm::vec3(far_ws) / far_ws.w - view.eye_ws);
-      const glm::vec3 expected = spec::radiance(stage.environment.probes()[0],
+      const glm::vec3 expected = spec::radiance(stage.environment.set(0).probes[0],
                                                 glm::transpose(stage.environment.worldFromLight()) * dir_ws);
       // RGBE has 8 bits, the cube map half a degree to a texel.
       EXPECT_LT(glm::distance(glm::vec3(at(image, 0, 0)), expected), 0.01f) << place.x << " turned " << turn;

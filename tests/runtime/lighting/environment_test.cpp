@@ -1,5 +1,9 @@
 #include "runtime/lighting/environment.hpp"
 
+#include <cmath>
+#include <filesystem>
+#include <limits>
+
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
@@ -17,7 +21,7 @@ TEST(Environment, AddsItsLights) {
   expected += sh::discLight(8, {1, 0, 0}, 10.0 * 3.14159265358979 / 180.0, glm::vec3(1.0f));
   for (std::size_t i = 0; i < 64; ++i)
     EXPECT_LT(glm::distance(environment->light().c[i], expected.c[i]), 1e-5f) << "coefficient " << i;
-  EXPECT_EQ(environment->constant(), glm::vec3(1.5f, 2, 3));
+  EXPECT_EQ(environment->set(0).constant, glm::vec3(1.5f, 2, 3));
   ASSERT_EQ(environment->discs().size(), 1u);
 }
 
@@ -39,6 +43,86 @@ TEST(Environment, TurnsAsASunOfTheTurnedAzimuth) {
   for (int i = 0; i < 1000; ++i) turned.setTurn(static_cast<float>(i) * 0.37f);
   turned.setTurn(0.0f);
   for (std::size_t i = 0; i < 64; ++i) EXPECT_EQ(turned.light().c[i], sun(20).light().c[i]);
+}
+
+// Two sets with a sun each, to tell them apart.
+Result<Environment> twoSets() {
+  return Environment::create(
+      {spec::ConstantLight{.radiance = {1, 2, 3}},
+       spec::SunLight{.azimuth_deg = 20, .elevation_deg = 25, .angle_deg = 5, .radiance = {4, 4, 4}}},
+      {spec::ConstantLight{.radiance = {0, 0, 8}},
+       spec::SunLight{.azimuth_deg = -50, .elevation_deg = 60, .angle_deg = 9, .radiance = {2, 0, 1}}});
+}
+
+TEST(Environment, MixesTwoSetsTurnedTogether) {
+  auto environment = twoSets();
+  ASSERT_TRUE(environment);
+  EXPECT_EQ(
+      environment->light().c[0],
+      Environment::create(
+          {spec::ConstantLight{.radiance = {1, 2, 3}},
+           spec::SunLight{.azimuth_deg = 20, .elevation_deg = 25, .angle_deg = 5, .radiance = {4, 4, 4}}})
+          ->light()
+          .c[0])
+      << "the first set alone, where nothing is faded";
+  environment->setTurn(30.0f);
+  environment->setFade(0.25f);
+  environment->setIntensity(2.0f);
+  // 1.5 of the first set and 0.5 of the second, whose suns stand 30 degrees farther round.
+  constexpr double kDegree = 3.14159265358979 / 180.0;
+  const sh::LightVector sky = sh::constantLight(8, {1.5f, 3.0f, 8.5f});
+  const glm::vec3 first = spec::directionFromAzimuthElevation(50, 25),
+                  second = spec::directionFromAzimuthElevation(-20, 60);
+  const sh::LightVector whole = sky + sh::discLight(8, first, 5 * kDegree, glm::vec3(6.0f)) +
+                                sh::discLight(8, second, 9 * kDegree, {1, 0, 0.5f});
+  for (std::size_t i = 0; i < 64; ++i) {
+    EXPECT_LT(glm::distance(environment->light().c[i], whole.c[i]), 2e-5f) << "coefficient " << i;
+    EXPECT_LT(glm::distance(environment->skyLight().c[i], sky.c[i]), 2e-5f) << "coefficient " << i;
+  }
+  ASSERT_EQ(environment->discs().size(), 2u);
+  EXPECT_LT(glm::distance(environment->discs()[0].direction, first), 1e-6f);
+  EXPECT_LT(glm::distance(environment->discs()[1].direction, second), 1e-6f);
+  EXPECT_EQ(environment->discs()[0].radiance, glm::vec3(6.0f));
+  EXPECT_EQ(environment->discs()[1].radiance, glm::vec3(1.0f, 0.0f, 0.5f));
+  environment->setFade(1.0f);
+  EXPECT_EQ(environment->discs()[0].radiance, glm::vec3(0.0f)) << "dark, but still the first";
+  EXPECT_EQ(environment->skyLight().c[0].r, 0.0f);
+}
+
+TEST(Environment, HasANewVersionOnlyWhereSomethingChanged) {
+  auto environment = twoSets();
+  ASSERT_TRUE(environment);
+  const std::uint64_t version = environment->version();
+  constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+  for (const float same : {0.0f, -1.0f, kNaN}) environment->setFade(same);
+  for (const float same : {1.0f, kNaN}) environment->setIntensity(same);
+  for (const float same : {0.0f, kNaN}) environment->setTurn(same);
+  EXPECT_EQ(environment->version(), version);
+  environment->setFade(7.0f);
+  EXPECT_EQ(environment->fade(), 1.0f);
+  const std::uint64_t faded = environment->version();
+  EXPECT_GT(faded, version);
+  environment->setIntensity(-3.0f);
+  EXPECT_EQ(environment->intensity(), 0.0f);
+  EXPECT_GT(environment->version(), faded);
+  for (const glm::vec3& c : environment->light().c) EXPECT_EQ(c, glm::vec3(0.0f));
+}
+
+TEST(Environment, ReportsTexelsThatAreNotFiniteInBothSetsAndCountsThemAsBlack) {
+  const auto file = std::filesystem::path(::testing::TempDir()) / "lambent-environment-not-finite.exr";
+  spec::RgbaImage image{.width = 8, .height = 4, .texels = std::vector<glm::vec4>(32, glm::vec4(1.0f))};
+  image.texels[3].r = std::numeric_limits<float>::quiet_NaN();
+  image.texels[17].b = std::numeric_limits<float>::infinity();
+  ASSERT_TRUE(spec::writeExr(file, image));
+  const std::vector<spec::Light> probe = {spec::ProbeLight{.file = file, .layout = {}}};
+  const auto environment = Environment::create(probe, probe);
+  std::filesystem::remove(file);
+  ASSERT_TRUE(environment) << environment.error().line();
+  ASSERT_EQ(environment->notices().size(), 2u);
+  for (const std::string& notice : environment->notices())
+    EXPECT_NE(notice.find("2 texels are not finite and count as black"), std::string::npos) << notice;
+  for (const glm::vec3& c : environment->light().c)
+    for (int channel = 0; channel < 3; ++channel) EXPECT_TRUE(std::isfinite(c[channel]));
 }
 
 TEST(Environment, ProjectsAProbeToItsMeanRadiance) {

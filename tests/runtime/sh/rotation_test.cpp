@@ -111,6 +111,44 @@ TEST(ShRotation, CarriesAFunctionAlong) {
   }
 }
 
+// Light as it goes into the frame of a group, against a reference that knows nothing of the recurrence:
+// lights of one direction each, turned by turning their directions, in double and by the textbook's
+// functions.
+TEST(ShRotation, TurnsLightVectorsAsTheirDirectionsTo1e5AtEveryOrder) {
+  Random random(12);
+  std::vector<glm::dquat> turns = rotations();
+  for (const double angle : {1e-4, 1e-6, (90 + 1e-4) * kDegree, (180 - 1e-3) * kDegree})
+    for (const glm::dvec3& axis : axes()) turns.push_back(glm::angleAxis(angle, axis));
+  std::vector<glm::dvec3> dirs = {glm::dvec3(0, 0, 1), glm::dvec3(0, 0, -1),
+                                  glm::normalize(glm::dvec3(1e-6, -1e-6, 1))};
+  while (dirs.size() < 6) dirs.push_back(random.direction());
+  for (int order = 1; order <= kMaxOrder; ++order)
+    for (const glm::dquat& q : turns) {
+      LightVector light{.order = order};
+      std::array<glm::dvec3, kMaxCoefficients> expected{};
+      for (const glm::dvec3& dir : dirs) {
+        const glm::dvec3 colour(random.uniform(), random.uniform(), random.uniform());
+        const auto y = testing::condonShortleySh(dir, order),
+                   there = testing::condonShortleySh(q * dir, order);
+        for (int l = 0; l < order; ++l)
+          for (int m = -l; m <= l; ++m) {
+            const auto i = static_cast<std::size_t>(coefficientIndex(l, m));
+            const double sign = m % 2 ? -1 : 1;  // to our functions
+            light.c[i] += glm::vec3(sign * y[i] * colour);
+            expected[i] += sign * there[i] * colour;
+          }
+      }
+      const LightVector turned = Rotation(q, order).apply(light);
+      double error = 0;
+      for (std::size_t i = 0; i < turned.c.size(); ++i) {
+        const glm::dvec3 away = glm::dvec3(turned.c[i]) - expected[i];
+        error = std::max({error, std::abs(away.x), std::abs(away.y), std::abs(away.z)});
+      }
+      ASSERT_LE(error, 1e-5) << "order " << order << ", quaternion " << q.w << " " << q.x << " " << q.y << " "
+                             << q.z;
+    }
+}
+
 TEST(ShRotation, LeavesZonalLightAloneAboutItsAxis) {
   const LightVector light = discLight(kMaxOrder, {0, 0, 1}, 0.3, {1, 1, 1});
   const LightVector turned = Rotation(glm::angleAxis(1.234, glm::dvec3(0, 0, 1)), kMaxOrder).apply(light);

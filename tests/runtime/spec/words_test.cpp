@@ -5,6 +5,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
+#include "runtime/spec/distant_lights.hpp"
 #include "runtime/spec/light.hpp"
 #include "runtime/spec/numbers.hpp"
 #include "runtime/spec/rotate.hpp"
@@ -69,10 +70,50 @@ TEST(SpecLight, RefusesEverythingElseAndShowsTheForm) {
   }
 }
 
-TEST(SpecLight, SaysThatSphereLightsAreNotYetThere) {
-  const Result<Light> light = parseLight("sphere:0,1,0,0.1,5,5,5");
-  ASSERT_FALSE(light);
-  EXPECT_NE(light.error().line().find("not yet supported; give a probe file"), std::string::npos);
+TEST(SpecLight, ParsesLightsThatStandInTheScene) {
+  const Result<Light> sphere = parseLight("sphere:1,-2,3.5,0.25,5,4,3");
+  ASSERT_TRUE(sphere) << sphere.error().line();
+  EXPECT_EQ(std::get<SphereLight>(*sphere).position_ws, glm::vec3(1.0f, -2.0f, 3.5f));
+  EXPECT_EQ(std::get<SphereLight>(*sphere).radius_m, 0.25f);
+  EXPECT_EQ(std::get<SphereLight>(*sphere).radiance, glm::vec3(5.0f, 4.0f, 3.0f));
+  EXPECT_EQ(std::get<SphereLight>(parseLight("sphere:0,1,0,0.1,7").value()).radiance, glm::vec3(7.0f));
+  EXPECT_EQ(std::get<SphereLight>(parseLight("sphere:0,1,0,0,7").value()).radius_m, 0.0f)
+      << "gives no light, but is a sphere";
+
+  const Result<Light> disc = parseLight("disc:1,2,3,0,-2,0,0.5,9,8,7");
+  ASSERT_TRUE(disc) << disc.error().line();
+  EXPECT_EQ(std::get<DiscLight>(*disc).position_ws, glm::vec3(1.0f, 2.0f, 3.0f));
+  EXPECT_EQ(std::get<DiscLight>(*disc).normal_ws, glm::vec3(0.0f, -1.0f, 0.0f)) << "unit";
+  EXPECT_EQ(std::get<DiscLight>(*disc).radius_m, 0.5f);
+  EXPECT_EQ(std::get<DiscLight>(*disc).radiance, glm::vec3(9.0f, 8.0f, 7.0f));
+  for (const char* word : {"disc:0,0,0,1e-40,0,0,1,1", "disc:0,0,0,3e38,0,0,1,1"})
+    EXPECT_EQ(std::get<DiscLight>(parseLight(word).value()).normal_ws, glm::vec3(1.0f, 0.0f, 0.0f)) << word;
+
+  const std::vector<Light> lights = {*sphere, ConstantLight{}, *disc, *sphere};
+  const std::vector<LocalLight> local = localLights(lights);
+  ASSERT_EQ(local.size(), 3u);
+  EXPECT_TRUE(std::holds_alternative<DiscLight>(local[1]));
+  const Result<DistantLights> distant = loadDistantLights(lights);
+  ASSERT_TRUE(distant);
+  EXPECT_TRUE(distant->discs.empty() && distant->probes.empty()) << "they do not stand at infinity";
+  EXPECT_EQ(distant->constant, glm::vec3(1.0f));
+}
+
+TEST(SpecLight, RefusesSpheresAndDiscsThatAreNone) {
+  for (const char* wrong : {"sphere:", "sphere:0,0,0,1", "sphere:0,0,0,1,1,1", "sphere:0,0,0,-1,1",
+                            "sphere:0,0,0,1,-1", "sphere:0,nan,0,1,1", "sphere:0,0,0,1,1,1,1,1"}) {
+    const Result<Light> light = parseLight(wrong);
+    ASSERT_FALSE(light) << wrong;
+    EXPECT_NE(light.error().line().find("sphere:X,Y,Z,RADIUS,R[,G,B]"), std::string::npos)
+        << light.error().line();
+  }
+  for (const char* wrong : {"disc:", "disc:0,0,0,0,1,0,1", "disc:0,0,0,0,1,0,1,1,1", "disc:0,0,0,0,0,0,1,1",
+                            "disc:0,0,0,0,1,0,-1,1", "disc:0,0,0,0,1,0,1,-1", "disc:0,0,0,0,inf,0,1,1"}) {
+    const Result<Light> light = parseLight(wrong);
+    ASSERT_FALSE(light) << wrong;
+    EXPECT_NE(light.error().line().find("disc:X,Y,Z,NX,NY,NZ,RADIUS,R[,G,B]"), std::string::npos)
+        << light.error().line();
+  }
 }
 
 TEST(SpecLight, NoGarbageCrashesOrSlipsThrough) {

@@ -1,0 +1,141 @@
+#include "runtime/bundle/keyframes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include <glm/common.hpp>
+#include <glm/vec4.hpp>
+
+namespace lambent::gltf {
+
+namespace {
+
+using Interpolation = AnimationChannel::Interpolation;
+
+// Between keys `first` and `first + 1`, `share` of the way and `interval_s` apart; share 0 is the first
+// alone.
+struct Place {
+  std::size_t first = 0;
+  double share = 0.0, interval_s = 0.0;
+};
+
+Place placeOf(const AnimationChannel& channel, float time_s) {
+  const std::vector<float>& times = channel.times_s;
+  const float time = std::isfinite(time_s) ? time_s : 0.0f;
+  const auto above = std::upper_bound(times.begin(), times.end(), time);
+  if (above == times.begin()) return {};
+  const auto first = static_cast<std::size_t>(above - times.begin()) - 1;
+  if (above == times.end()) return {.first = first};
+  // Above 0: `above` is later than the time, and the key before is not.
+  const double interval = double{*above} - double{times[first]};
+  return {.first = first, .share = (double{time} - double{times[first]}) / interval, .interval_s = interval};
+}
+
+template <int N>
+using Vector = glm::vec<N, double>;
+
+// Element `part` of a key: 0 for steps and lines; in-tangent, value, out-tangent for cubic splines.
+template <int N>
+Vector<N> read(const AnimationChannel& channel, std::size_t key, std::size_t part = 0) {
+  const std::size_t parts = channel.interpolation == Interpolation::Cubic ? 3 : 1;
+  const std::size_t at = (key * parts + part) * N;
+  Vector<N> value(0.0);
+  if (at + N > channel.values.size()) return value;
+  for (int i = 0; i < N; ++i) value[i] = double{channel.values[at + static_cast<std::size_t>(i)]};
+  return value;
+}
+
+template <int N>
+Vector<N> valueOf(const AnimationChannel& channel, std::size_t key) {
+  return read<N>(channel, key, channel.interpolation == Interpolation::Cubic ? 1 : 0);
+}
+
+// glTF 2.0, C.5: tangents are per second, the spline runs over one unit.
+template <int N>
+Vector<N> cubicAt(const AnimationChannel& channel, const Place& at) {
+  const double t = at.share, t2 = t * t, t3 = t2 * t;
+  return (2.0 * t3 - 3.0 * t2 + 1.0) * read<N>(channel, at.first, 1) +
+         at.interval_s * (t3 - 2.0 * t2 + t) * read<N>(channel, at.first, 2) +
+         (3.0 * t2 - 2.0 * t3) * read<N>(channel, at.first + 1, 1) +
+         at.interval_s * (t3 - t2) * read<N>(channel, at.first + 1, 0);
+}
+
+glm::dquat quaternion(const Vector<4>& xyzw) {
+  return {xyzw.w, xyzw.x, xyzw.y, xyzw.z};
+}
+
+// glTF 2.0, C.4, by the shorter of the two ways round.
+glm::dquat slerp(const glm::dquat& from, glm::dquat to, double share) {
+  double cosine = glm::dot(from, to);
+  if (cosine < 0.0) {
+    to = -to;
+    cosine = -cosine;
+  }
+  const double angle = std::acos(std::min(cosine, 1.0)), sine = std::sin(angle);
+  if (sine < 1e-6) return from * (1.0 - share) + to * share;
+  return from * (std::sin((1.0 - share) * angle) / sine) + to * (std::sin(share * angle) / sine);
+}
+
+}  // namespace
+
+glm::vec3 vectorAt(const AnimationChannel& channel, float time_s) {
+  if (channel.times_s.empty()) return glm::vec3(0.0f);
+  const Place at = placeOf(channel, time_s);
+  const Vector<3> from = valueOf<3>(channel, at.first);
+  if (at.share == 0.0 || channel.interpolation == Interpolation::Step) return glm::vec3(from);
+  if (channel.interpolation == Interpolation::Cubic) return glm::vec3(cubicAt<3>(channel, at));
+  return glm::vec3(glm::mix(from, valueOf<3>(channel, at.first + 1), at.share));
+}
+
+glm::quat rotationAt(const AnimationChannel& channel, float time_s) {
+  if (channel.times_s.empty()) return {1.0f, 0.0f, 0.0f, 0.0f};
+  const Place at = placeOf(channel, time_s);
+  const auto unit = [](const glm::dquat& q) {
+    const double length = glm::length(q);
+    return length > 1e-12 ? q / length : glm::dquat(1.0, 0.0, 0.0, 0.0);
+  };
+  const glm::dquat from = unit(quaternion(valueOf<4>(channel, at.first)));
+  if (at.share == 0.0 || channel.interpolation == Interpolation::Step) return glm::quat(from);
+  if (channel.interpolation == Interpolation::Linear)
+    return glm::quat(unit(slerp(from, unit(quaternion(valueOf<4>(channel, at.first + 1))), at.share)));
+  // A spline may pass through 0, where no rotation is meant.
+  const glm::dquat q = quaternion(cubicAt<4>(channel, at));
+  return glm::quat(glm::length(q) > 1e-6 ? unit(q) : from);
+}
+
+float durationOf(const Animation& animation) {
+  float last = 0.0f;
+  for (const AnimationChannel& channel : animation.channels)
+    if (!channel.times_s.empty()) last = std::max(last, channel.times_s.back());
+  return last;
+}
+
+void applyChannel(const AnimationChannel& channel, float time_s, Trs& parts) {
+  if (channel.times_s.empty()) return;
+  switch (channel.path) {
+    case AnimationChannel::Path::Translation:
+      parts.translation = vectorAt(channel, time_s);
+      return;
+    case AnimationChannel::Path::Rotation:
+      parts.rotation = rotationAt(channel, time_s);
+      return;
+    case AnimationChannel::Path::Scale:
+      parts.scale = vectorAt(channel, time_s);
+      return;
+  }
+}
+
+void applyAnimations(std::span<const Animation> animations, float time_s, std::vector<Node>& nodes) {
+  std::vector<bool> moved(nodes.size(), false);
+  for (const Animation& animation : animations)
+    for (const AnimationChannel& channel : animation.channels) {
+      if (channel.node >= nodes.size() || !nodes[channel.node].trs) continue;
+      applyChannel(channel, time_s, *nodes[channel.node].trs);
+      moved[channel.node] = true;
+    }
+  for (std::size_t n = 0; n < nodes.size(); ++n)
+    if (moved[n]) nodes[n].parent_from_node = nodes[n].trs->matrix();
+}
+
+}  // namespace lambent::gltf
