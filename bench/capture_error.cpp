@@ -141,7 +141,7 @@ void probeErrors(const std::filesystem::path& file, int directions, std::vector<
       const glm::dquat turn =
           glm::normalize(glm::dquat(normal(random), normal(random), normal(random), normal(random)));
       const auto start = Clock::now();
-      const std::vector<glm::vec3> texels = capture.skyTexels(glm::mat3(glm::mat3_cast(turn)));
+      const std::vector<glm::vec3> texels = capture.skyTexels(environment, glm::mat3(glm::mat3_cast(turn)));
       const double milliseconds = millisecondsSince(start);
       const sh::LightVector turned = sh::Rotation(turn, exact.order).apply(exact);
       for (std::size_t k = 0; k < projectors.size(); ++k) {
@@ -214,7 +214,7 @@ void printTimes() {
         gpu::Buffer radiance("radiance", shining.size() * sizeof(glm::vec4));
         radiance.write(0, std::span<const glm::vec4>(shining));
         // Of radius 0.5; within 19.6 m a point sees them at 16 texels.
-        const float spacing = near ? 2.5f : 9.0f;
+        const float spacing = near ? 2.5f : 6.5f;
         std::vector<CaptureBody> bodies;
         std::vector<CapturePoint> points;
         for (std::uint32_t i = 0; i < 200; ++i) {

@@ -22,12 +22,14 @@ namespace {
 using namespace capture;
 
 constexpr gpu::FindText kShaders[] = {&embedded::lambent_lighting::find};
-// As in capture_project.comp.
-constexpr GLint kFirstPoint = 0, kSubsamples = 1, kCoefficientCount = 2;
+// As in capture.vert, capture_resolve.comp and capture_project.comp.
+constexpr GLint kClipFromPixel = 0;
+constexpr GLint kFirstTexel = 0, kTexelCount = 1, kFirstWord = 2, kWordCount = 3, kSubsamples = 4;
+constexpr GLint kFirstPoint = 0;
+constexpr std::uint32_t kMaxGroups = 65535;  // that OpenGL promises
 constexpr std::uint32_t kNoRecord = 0xffffffffu;
 
 using Vertex = std::array<std::uint32_t, 4>;  // position as bits of floats, surface id
-using TexelEntry = std::array<std::uint32_t, 2>;
 
 bool finite(const glm::vec3& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
@@ -83,26 +85,38 @@ void put(float (&row)[4], const glm::dvec4& value) {
 }
 
 DrawRecord drawRecord(const CaptureOptions& options, const Tile& tile, const CaptureBody& body,
-                      const glm::vec3& point_ws, std::uint32_t page_height) {
+                      const PlannedPoint& planned, const glm::vec3& point_ws, std::uint32_t page_height) {
   glm::dmat4 point_from_proxy(body.world_from_proxy);
   point_from_proxy[3] -= glm::dvec4(glm::dvec3(point_ws), 0.0);
-  const glm::dmat4 rows = glm::transpose(glm::dmat4(faceFromWorld(tile.face)) * point_from_proxy);
-  DrawRecord record{};
-  put(record.face_x, rows[0]);
-  put(record.face_y, rows[1]);
-  put(record.face_w, rows[2]);
-  const double size = options.size, subsamples = options.subsamples;
-  const auto scale = [&](double pixels) { return size * subsamples / pixels; };
-  const auto offset = [&](double at, double texel, double pixels) {
-    return (2 * (at - texel * subsamples) + size * subsamples) / pixels - 1;
+  // Face coordinates, x = sc w and y = tc w, in units of the near plane's distance.
+  const glm::dmat4 rows = glm::transpose(glm::dmat4(faceFromWorld(tile.face)) * point_from_proxy) *
+                          (1.0 / double{planned.near_m});
+  // The face's square, scaled and moved so that the tile comes to lie in its place.
+  const double face_pixels = options.size * options.subsamples;
+  const auto placed = [&](const glm::dvec4& along, std::uint32_t at, std::uint32_t texel,
+                          double atlas_pixels) {
+    const double offset = 2.0 * (1.0 * at - 1.0 * texel * options.subsamples) + face_pixels;
+    return along * (face_pixels / atlas_pixels) + rows[2] * (offset / atlas_pixels - 1);
   };
-  const double width = kAtlasWidth, height = page_height;
-  put(record.place, {scale(width), offset(tile.x, tile.texels.x0, width), scale(height),
-                     offset(tile.y, tile.texels.y0, height)});
-  const auto edge = [&](std::uint32_t texel) { return 2.0 * texel / size - 1; };
-  put(record.window,
-      {edge(tile.texels.x0), edge(tile.texels.x1), edge(tile.texels.y0), edge(tile.texels.y1)});
+  DrawRecord record{};
+  put(record.clip_x, placed(rows[0], tile.x, tile.texels.x0, kAtlasWidth));
+  put(record.clip_y, placed(rows[1], tile.y, tile.texels.y0, page_height));
+  put(record.clip_w, rows[2]);
+  record.tile_x = tile.x | (tile.x + tile.texels.width() * options.subsamples) << 16;
+  record.tile_y = tile.y | (tile.y + tile.texels.height() * options.subsamples) << 16;
   return record;
+}
+
+// A table as a texture for texelFetch. Made anew for each use: tables move when they grow.
+void bindTable(gpu::Handle<gpu::TextureTraits>& texture, GLuint unit, GLenum format,
+               const gpu::Buffer& buffer) {
+  if (!texture) {
+    GLuint id = 0;
+    glCreateTextures(GL_TEXTURE_BUFFER, 1, &id);
+    texture = gpu::Handle<gpu::TextureTraits>(id);
+  }
+  glTextureBuffer(texture.id(), format, buffer.id());
+  glBindTextureUnit(unit, texture.id());
 }
 
 }  // namespace
@@ -115,6 +129,7 @@ Capture::Capture(const CaptureOptions& options)
       indices_("capture indices"),
       points_("capture points"),
       texels_("capture texels"),
+      values_("capture values"),
       lookups_("capture lookups"),
       results_("capture results"),
       hidden_("capture hidden lights") {}
@@ -134,8 +149,13 @@ Result<Capture> Capture::create(const CaptureOptions& options, const Environment
       "capture", {{GL_VERTEX_SHADER, "capture.vert"}, {GL_FRAGMENT_SHADER, "capture.frag"}}, kShaders);
   if (!draw) return failAgain(draw.error());
   capture.draw_program_ = std::move(*draw);
-  auto project =
-      gpu::Program::create("capture projection", {{GL_COMPUTE_SHADER, "capture_project.comp"}}, kShaders);
+  auto resolve =
+      gpu::Program::create("capture resolve", {{GL_COMPUTE_SHADER, "capture_resolve.comp"}}, kShaders);
+  if (!resolve) return failAgain(resolve.error());
+  capture.resolve_program_ = std::move(*resolve);
+  const gpu::Define coefficients{"COEFFICIENTS", std::to_string(sh::coefficientCount(options.order))};
+  auto project = gpu::Program::create("capture projection", {{GL_COMPUTE_SHADER, "capture_project.comp"}},
+                                      kShaders, std::span(&coefficients, 1));
   if (!project) return failAgain(project.error());
   capture.project_program_ = std::move(*project);
   capture.array_ = gpu::VertexArray("capture");
@@ -195,7 +215,7 @@ Result<void> Capture::run(const Environment& environment, std::span<const Captur
 
   run_ = {};
   run_.points.assign(points.begin(), points.end());
-  run_.sky = sky_.light(environment);
+  run_.sky = environment.skyLight().truncated(options_.order);
   run_.records.assign(points.size(), kNoRecord);
   for (std::uint32_t r = 0; r < plan.points.size(); ++r) run_.records[plan.points[r].point] = r;
   load_ = {};
@@ -229,17 +249,14 @@ void Capture::upload(const Plan& plan, std::span<const CaptureBody> bodies,
            .tiles = static_cast<std::uint32_t>(plan.tiles.size()),
            .draws = static_cast<std::uint32_t>(plan.draws.size())};
   std::vector<PointRecord> records;
-  std::vector<TexelEntry> texels;
+  std::vector<TexelRecord> texels;
   std::vector<Lookup> lookups;
-  std::vector<float> near_of_tile(plan.tiles.size());
   const std::uint32_t size = options_.size, subsamples = options_.subsamples;
   for (const PlannedPoint& planned : plan.points) {
     PointRecord& record = records.emplace_back();
     record.first_texel = static_cast<std::uint32_t>(texels.size());
-    record.first_word = static_cast<std::uint32_t>(lookups.size() / kLookupsPerWord);
     for (std::uint32_t t = planned.first_tile; t < planned.first_tile + planned.tile_count; ++t) {
       const Tile& tile = plan.tiles[t];
-      near_of_tile[t] = planned.near_m;
       for (std::uint32_t y = tile.texels.y0; y < tile.texels.y1; ++y)
         for (std::uint32_t x = tile.texels.x0; x < tile.texels.x1; ++x)
           texels.push_back({(tile.x + (x - tile.texels.x0) * subsamples) |
@@ -247,12 +264,14 @@ void Capture::upload(const Plan& plan, std::span<const CaptureBody> bodies,
                             (tile.face * size + y) * size + x});
     }
     record.texel_count = static_cast<std::uint32_t>(texels.size()) - record.first_texel;
+    run_.first_texels.push_back(record.first_texel);
+    run_.first_words.push_back(static_cast<std::uint32_t>(lookups.size() / kLookupsPerWord));
     appendLookups(size, subsamples, planned, plan.tiles, points[planned.point], lookups);
-    record.word_count = static_cast<std::uint32_t>(lookups.size() / kLookupsPerWord) - record.first_word;
-    run_.queries.push_back({record.first_word, record.word_count});
-    run_.uncovered.push_back((6 * size * size - record.texel_count) * subsamples * subsamples);
+    run_.uncovered.push_back(6 * size * size - record.texel_count);
   }
-  load_.pixels = texels.size() * subsamples * subsamples;
+  run_.first_texels.push_back(static_cast<std::uint32_t>(texels.size()));
+  run_.first_words.push_back(static_cast<std::uint32_t>(lookups.size() / kLookupsPerWord));
+  load_.pixels = std::uint64_t{texels.size()} * subsamples * subsamples;
   run_.word_count = lookups.size() / kLookupsPerWord;
 
   std::vector<DrawRecord> draws;
@@ -261,13 +280,17 @@ void Capture::upload(const Plan& plan, std::span<const CaptureBody> bodies,
   page_indices_.assign(plan.pages.size(), {});
   for (std::size_t i = 0; i < plan.pages.size(); ++i) {
     const Page& page = plan.pages[i];
-    for (std::uint32_t d = page.first_draw; d < page.first_draw + page.draw_count; ++d) {
-      const Draw& draw = plan.draws[d];
-      const Tile& tile = plan.tiles[draw.tile];
-      DrawRecord& record = draws.emplace_back(
-          drawRecord(options_, tile, bodies[draw.body], points[tile.point].position_ws, page.height));
-      record.first_vertex = proxies_[bodies[draw.body].proxy].levels[draw.level].first_vertex;
-      record.near_m = near_of_tile[draw.tile];
+    for (std::uint32_t p = page.first_point, d = page.first_draw; p < page.first_point + page.point_count;
+         ++p) {
+      const PlannedPoint& planned = plan.points[p];
+      const std::uint32_t end_tile = planned.first_tile + planned.tile_count;
+      for (; d < page.first_draw + page.draw_count && plan.draws[d].tile < end_tile; ++d) {
+        const Draw& draw = plan.draws[d];
+        const CaptureBody& body = bodies[draw.body];
+        DrawRecord& record = draws.emplace_back(drawRecord(options_, plan.tiles[draw.tile], body, planned,
+                                                           points[planned.point].position_ws, page.height));
+        record.first_vertex = proxies_[body.proxy].levels[draw.level].first_vertex;
+      }
     }
     for (const bool front_only : {false, true}) {
       IndexRange& range = page_indices_[i][front_only];
@@ -293,6 +316,7 @@ void Capture::upload(const Plan& plan, std::span<const CaptureBody> bodies,
   give(indices_, indices);
   results_.reserve(records.size() * 2 * static_cast<std::size_t>(sh::coefficientCount(options_.order)) *
                    sizeof(glm::vec4));
+  values_.reserve(texels.size() * sizeof(glm::vec4));
   hidden_.reserve(run_.word_count * sizeof(std::uint32_t));
 }
 
@@ -330,8 +354,10 @@ void Capture::drawPage(const Page& page, std::size_t index, gpu::Counters& count
   draw_program_.use();
   glBindVertexArray(array_.id());
   glVertexArrayElementBuffer(array_.id(), indices_.buffer().id());
-  vertices_.bindStorage(kBindVertices);
-  draws_.bindStorage(kBindDraws);
+  bindTable(vertices_view_, kUnitVertices, GL_RGBA32UI, vertices_.buffer());
+  bindTable(draws_view_, kUnitDraws, GL_RGBA32UI, draws_.buffer());
+  for (const GLuint unit : {kUnitVertices, kUnitDraws}) glBindSampler(unit, 0);
+  glUniform2f(kClipFromPixel, 2.0f / static_cast<float>(kAtlasWidth), 2.0f / static_cast<float>(page.height));
   for (const bool front_only : {false, true}) {
     const IndexRange& range = page_indices_[index][front_only];
     if (range.count == 0) continue;
@@ -349,25 +375,40 @@ void Capture::drawPage(const Page& page, std::size_t index, gpu::Counters& count
 }
 
 void Capture::projectPage(const Page& page, const gpu::Buffer& triangle_radiance, gpu::Counters& counters) {
+  const std::uint32_t end_point = page.first_point + page.point_count;
+  const std::uint32_t first_texel = run_.first_texels[page.first_point],
+                      texel_count = run_.first_texels[end_point] - first_texel,
+                      first_word = run_.first_words[page.first_point],
+                      word_count = run_.first_words[end_point] - first_word;
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);  // the caller may have shaded the triangles in a shader
-  project_program_.use();
-  glUniform1ui(kFirstPoint, page.first_point);
+  resolve_program_.use();
+  glUniform1ui(kFirstTexel, first_texel);
+  glUniform1ui(kTexelCount, texel_count);
+  glUniform1ui(kFirstWord, first_word);
+  glUniform1ui(kWordCount, word_count);
   glUniform1ui(kSubsamples, options_.subsamples);
-  glUniform1ui(kCoefficientCount, static_cast<GLuint>(sh::coefficientCount(options_.order)));
   ids_.bind(kUnitIds);
   depths_.bind(kUnitDepth);
-  glBindSampler(kUnitIds, 0);
-  glBindSampler(kUnitDepth, 0);
-  points_.bindStorage(kBindPoints);
+  for (const GLuint unit : {kUnitIds, kUnitDepth}) glBindSampler(unit, 0);
   texels_.bindStorage(kBindTexels);
-  weights_.bindStorage(kBindWeights);
-  sky_.bindStorage(kBindSky);
   triangle_radiance.bindStorage(kBindRadiance);
+  values_.bindStorage(kBindValues);
   lookups_.bindStorage(kBindLookups);
-  results_.bindStorage(kBindResults);
   hidden_.bindStorage(kBindHidden);
+  glDispatchCompute((texel_count + word_count + kWorkGroupSize - 1) / kWorkGroupSize, 1, 1);
+
+  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
+  project_program_.use();
+  glUniform1ui(kFirstPoint, page.first_point);
+  bindTable(values_view_, kUnitValues, GL_RGBA32F, values_.buffer());
+  bindTable(texels_view_, kUnitTexels, GL_RG32UI, texels_.buffer());
+  bindTable(sky_view_, kUnitSky, GL_RGBA32F, sky_.texels());
+  bindTable(weights_view_, kUnitWeights, GL_R32F, weights_);
+  for (const GLuint unit : {kUnitValues, kUnitTexels, kUnitSky, kUnitWeights}) glBindSampler(unit, 0);
+  points_.bindStorage(kBindPoints);
+  results_.bindStorage(kBindResults);
   glDispatchCompute(page.point_count, 1, 1);
-  ++counters.dispatches;
+  counters.dispatches += 2;
 }
 
 std::optional<std::vector<CapturedLight>> Capture::take(bool wait) {
@@ -397,13 +438,13 @@ std::optional<std::vector<CapturedLight>> Capture::take(bool wait) {
     const std::span<const glm::vec4> sums = std::span(results).subspan(record * 2 * count, 2 * count);
     combine(sums, run_.uncovered[record], run_.sky, sky_through_texels_, out);
     for (std::size_t q = 0; q < point.queries.size(); ++q)
-      out.visible[q] = visibleShare(point.queries[q], hidden[run_.queries[record].first_word + q], out.light);
+      out.visible[q] = visibleShare(point.queries[q], hidden[run_.first_words[record] + q], out.light);
   }
   return lights;
 }
 
-std::vector<glm::vec3> Capture::skyTexels(const glm::mat3& world_from_light) {
-  sky_.makeTurned(world_from_light, glm::vec3(0.0f));
+std::vector<glm::vec3> Capture::skyTexels(const Environment& environment, const glm::mat3& world_from_light) {
+  sky_.makeTurned(environment, world_from_light);
   std::vector<glm::vec4> texels(sky_.texels().byteCount() / sizeof(glm::vec4));
   sky_.texels().read(0, std::span(texels));
   return {texels.begin(), texels.end()};

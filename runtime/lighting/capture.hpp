@@ -40,11 +40,11 @@ class Capture {
   // Whether a body at this place would be drawn at all for this point.
   bool sees(const CapturePoint& point, const CaptureBody& body) const;
 
-  // Draws and projects; per page of cube maps two draws (surfaces with and without a dark side) and one
-  // dispatch, and one dispatch when the environment turned. triangle_radiance: vec4 per triangle; what is not
-  // finite counts as black. Points that see no body cost the GPU nothing. Not to be called while pending().
-  // Changes the bound framebuffer, viewport, depth and culling state. Errors: called while pending; fewer
-  // radiances than triangles.
+  // Draws and projects; per page of cube maps at most two draws (surfaces with and without a dark side)
+  // and two dispatches, and one dispatch when the environment changed. triangle_radiance: vec4 per triangle;
+  // what is not finite counts as black. Points that see no body cost the GPU nothing. Not to be called while
+  // pending(). Changes the bound framebuffer, viewport, depth and culling state. Errors: called while
+  // pending; fewer radiances than triangles.
   Result<void> run(const Environment& environment, std::span<const CaptureBody> bodies,
                    std::span<const CapturePoint> points, const gpu::Buffer& triangle_radiance,
                    gpu::Counters& counters);
@@ -59,10 +59,10 @@ class Capture {
     std::uint64_t triangles = 0, pixels = 0;
   };
   const Load& load() const { return load_; }
-  // The probes as they come through the texels, turned in any way, without the correction to the exact light:
+  // The sky as it comes through the texels, turned in any way, without the correction to the exact light:
   // measures the texels. 6 size² radiances in the order of sh/cube_map.hpp. Waits for the GPU; not to be
   // called while pending().
-  std::vector<glm::vec3> skyTexels(const glm::mat3& world_from_light);
+  std::vector<glm::vec3> skyTexels(const Environment& environment, const glm::mat3& world_from_light);
 
  private:
   struct Level {
@@ -79,9 +79,9 @@ class Capture {
   // What take() needs of the run.
   struct Run {
     std::vector<CapturePoint> points;
-    std::vector<std::uint32_t> records;          // per point its record on the GPU, or kNoRecord
-    std::vector<capture::QuerySamples> queries;  // per record
-    std::vector<std::uint32_t> uncovered;        // per record: subsamples of the cube that no tile covers
+    std::vector<std::uint32_t> records;                    // per point its record on the GPU, or kNoRecord
+    std::vector<std::uint32_t> uncovered;                  // per record: texels that no tile covers
+    std::vector<std::uint32_t> first_texels, first_words;  // per record, and the end
     std::size_t word_count = 0;
     std::size_t results_at = 0, hidden_at = 0, sky_at = 0;  // in the readback
     bool new_sky = false;
@@ -97,12 +97,14 @@ class Capture {
   CaptureOptions options_;
   sh::CubeProjector projector_;
   CaptureSky sky_;
-  gpu::Program draw_program_, project_program_;
+  gpu::Program draw_program_, resolve_program_, project_program_;
   gpu::Texture ids_, depths_;
   gpu::Framebuffer atlas_;
   gpu::VertexArray array_;
-  gpu::Table vertices_, draws_, indices_, points_, texels_, lookups_, results_, hidden_;
+  gpu::Table vertices_, draws_, indices_, points_, texels_, values_, lookups_, results_, hidden_;
   gpu::Buffer weights_;
+  using View = gpu::Handle<gpu::TextureTraits>;
+  View vertices_view_, draws_view_, values_view_, texels_view_, sky_view_, weights_view_;
   capture::Readback readback_;
   std::vector<Proxy> proxies_;
   std::vector<capture::ProxyBounds> bounds_;

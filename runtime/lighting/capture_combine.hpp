@@ -20,7 +20,7 @@
 
 namespace lambent::lighting::capture {
 
-// sums: order² pairs as capture_project.comp writes them. uncovered: subsamples of the cube without a tile.
+// sums: order² pairs as capture_project.comp writes them. uncovered: texels of the cube without a tile.
 // Fills light and sky_visible.
 inline void combine(std::span<const glm::vec4> sums, std::uint32_t uncovered, const sh::LightVector& exact,
                     const sh::LightVector& through_texels, CapturedLight& out) {

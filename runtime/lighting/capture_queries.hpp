@@ -27,12 +27,6 @@ struct Lookup {
   std::uint32_t depth_bits = 0;    // of a float: near / w, reversed
 };
 
-// Of one point: its queries' words follow each other.
-struct QuerySamples {
-  std::uint32_t first_word = 0;
-  std::uint32_t word_count = 0;  // one per query; 0: no query of the point can be hidden
-};
-
 // Unit directions of equal solid angle over the disc; one for radius 0.
 std::vector<glm::vec3> discDirections(const LightQuery& query);
 

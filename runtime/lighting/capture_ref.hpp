@@ -115,7 +115,7 @@ inline CapturedLight captureRef(const RefScene& scene, const CapturePoint& point
           }
         const auto texel = static_cast<std::size_t>((face * size + y) * size + x);
         const double share = static_cast<double>(covered) / (subsamples * subsamples);
-        sums[0].w += subsamples * subsamples - covered;
+        sums[0].w += 1.0 - share;
         for (std::size_t i = 0; i < count; ++i) {
           const double weight = static_cast<double>(weights[i * texel_count + texel]);
           sums[2 * i] += glm::dvec4(weight / (subsamples * subsamples) * bodies, 0.0);

@@ -13,20 +13,26 @@ using uint = std::uint32_t;
 #define LAMBENT_CONSTANT const uint
 #endif
 
+// Tables are read as buffer textures where many lanes read far apart: software renderers fetch whole vectors from those,
+// and from storage blocks value by value.
 // capture.vert
-LAMBENT_CONSTANT kBindVertices = 0u;  // uvec4: position as bits of floats, triangle of which it is the last corner + 1
-LAMBENT_CONSTANT kBindDraws = 1u;     // DrawRecord
-// capture_project.comp
-LAMBENT_CONSTANT kBindPoints = 0u;    // PointRecord
-LAMBENT_CONSTANT kBindTexels = 1u;    // uvec2: pixel x | y << 16 of its first subsample; texel of the cube
-LAMBENT_CONSTANT kBindWeights = 2u;   // float: [texel][coefficient], sh::cubeWeights
-LAMBENT_CONSTANT kBindSky = 3u;       // vec4 per texel, box-filtered
-LAMBENT_CONSTANT kBindRadiance = 4u;  // vec4 per triangle
-LAMBENT_CONSTANT kBindLookups = 5u;   // uvec2: pixel x | y << 16, or kNoPixel; bits of the depth of the light
-LAMBENT_CONSTANT kBindResults = 6u;   // vec4, see capture_project.comp
-LAMBENT_CONSTANT kBindHidden = 7u;    // uint: a bit per lookup
-LAMBENT_CONSTANT kUnitIds = 0u;
+LAMBENT_CONSTANT kUnitVertices = 0u;  // rgba32ui: position as bits of floats, triangle of which it is the last corner + 1
+LAMBENT_CONSTANT kUnitDraws = 1u;     // rgba32ui: DrawRecord, kDrawTexels each
+// capture_resolve.comp
+LAMBENT_CONSTANT kUnitIds = 0u;       // the atlas
 LAMBENT_CONSTANT kUnitDepth = 1u;
+LAMBENT_CONSTANT kBindTexels = 0u;    // TexelRecord
+LAMBENT_CONSTANT kBindRadiance = 1u;  // vec4 per triangle
+LAMBENT_CONSTANT kBindValues = 2u;    // vec4 per TexelRecord: mean radiance of bodies; share that they hide
+LAMBENT_CONSTANT kBindLookups = 3u;   // uvec2: pixel x | y << 16, or kNoPixel; bits of the depth of the light
+LAMBENT_CONSTANT kBindHidden = 4u;    // uint per kLookupsPerWord lookups: a bit each
+// capture_project.comp
+LAMBENT_CONSTANT kUnitValues = 0u;    // rgba32f
+LAMBENT_CONSTANT kUnitTexels = 1u;    // rg32ui: TexelRecord
+LAMBENT_CONSTANT kUnitSky = 2u;       // rgba32f per texel of the cube, box-filtered
+LAMBENT_CONSTANT kUnitWeights = 3u;   // r32f: [texel][coefficient], sh::cubeWeights
+LAMBENT_CONSTANT kBindPoints = 0u;    // PointRecord
+LAMBENT_CONSTANT kBindResults = 1u;   // vec4, see capture_project.comp
 
 LAMBENT_CONSTANT kWorkGroupSize = 64u;
 LAMBENT_CONSTANT kVertexBits = 10u;  // an index is a draw << kVertexBits | a vertex of the level
@@ -35,36 +41,35 @@ LAMBENT_CONSTANT kBlackId = 0x80000000u;
 LAMBENT_CONSTANT kNoPixel = 0xffffffffu;
 LAMBENT_CONSTANT kLookupsPerWord = 32u;
 
-#ifndef __cplusplus
-#define LAMBENT_VEC4(name) vec4 name
-#else
-#define LAMBENT_VEC4(name) float name[4]
-#endif
+LAMBENT_CONSTANT kDrawTexels = 4u;
 
-// One body in one tile. Face coordinates: a direction (sc, tc, 1) w of sh::cubeFaceDirection has x = sc w, y = tc w.
+// One body in one tile. Clip coordinates are divided by the near plane's distance, so that z is 1; their w is then the
+// distance along the face's axis, as a multiple of the near plane's.
 struct DrawRecord {
-  LAMBENT_VEC4(face_x);  // rows: face coordinates from the proxy's frame, the point at the origin
-  LAMBENT_VEC4(face_y);
-  LAMBENT_VEC4(face_w);
-  LAMBENT_VEC4(place);   // clip x = x place.x + w place.y, clip y = y place.z + w place.w
-  LAMBENT_VEC4(window);  // the tile's least and greatest sc, least and greatest tc
+  float clip_x[4];  // rows: clip coordinates from the proxy's frame, with the tile in its place
+  float clip_y[4];
+  float clip_w[4];
   uint first_vertex;
-  float near_m;
-  uint pad[2];
+  uint tile_x;  // pixels of the atlas: first | end << 16
+  uint tile_y;
+  uint pad;
+};
+
+// A texel of a point's cube that a tile covers.
+struct TexelRecord {
+  uint pixel;  // x | y << 16 of its first subsample
+  uint texel;  // of the cube
 };
 
 // A point from which some body is seen; its results follow each other in this order.
 struct PointRecord {
   uint first_texel;
   uint texel_count;
-  uint first_word;  // of its lookups, kLookupsPerWord to a word
-  uint word_count;
 };
 
 #ifdef __cplusplus
 #undef LAMBENT_CONSTANT
-#undef LAMBENT_VEC4
-static_assert(sizeof(DrawRecord) == 96 && offsetof(DrawRecord, first_vertex) == 80);
-static_assert(sizeof(PointRecord) == 16);
+static_assert(sizeof(DrawRecord) == 16 * kDrawTexels && offsetof(DrawRecord, first_vertex) == 48);
+static_assert(sizeof(TexelRecord) == 8 && sizeof(PointRecord) == 8);
 }  // namespace lambent::lighting::capture
 #endif

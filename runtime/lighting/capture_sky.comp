@@ -1,13 +1,14 @@
 // The sky as all points see it: per texel of the cube in world axes the mean over subsamples² directions of the probes,
-// plus the constant. Suns are not in it.
+// plus the constants. Suns are not in it.
 layout(local_size_x = 64) in;
 layout(location = 0) uniform mat3 light_from_world;
 layout(location = 1) uniform uint size;
 layout(location = 2) uniform uint subsamples;
-layout(location = 3) uniform float level;   // of the probes' mip maps: one texel to a subsample
+layout(location = 3) uniform vec2 levels;  // of the mip maps of both sets' probes: one texel to a subsample
 layout(location = 4) uniform vec3 constant_radiance;
-layout(location = 5) uniform vec3 probe_scale;
-layout(binding = 0) uniform samplerCube probes;
+layout(location = 5) uniform vec2 shares;  // of the sets' probes
+layout(binding = 0) uniform samplerCube first_probes;
+layout(binding = 1) uniform samplerCube second_probes;
 layout(std430, binding = 0) writeonly buffer Sky { vec4 sky[]; };
 
 // sh::cubeFaceDirection
@@ -32,7 +33,9 @@ void main() {
     for (uint i = 0u; i < subsamples; ++i) {
       float sc = (float(x * subsamples + i) + 0.5) * step - 1.0;
       float tc = (float(y * subsamples + j) + 0.5) * step - 1.0;
-      sum += textureLod(probes, light_from_world * faceDirection(face, sc, tc), level).rgb;
+      vec3 direction = light_from_world * faceDirection(face, sc, tc);
+      if (shares.x > 0.0) sum += shares.x * textureLod(first_probes, direction, levels.x).rgb;
+      if (shares.y > 0.0) sum += shares.y * textureLod(second_probes, direction, levels.y).rgb;
     }
-  sky[texel] = vec4(sum / float(subsamples * subsamples) * probe_scale + constant_radiance, 0.0);
+  sky[texel] = vec4(sum / float(subsamples * subsamples) + constant_radiance, 0.0);
 }
