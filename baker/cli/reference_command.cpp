@@ -170,8 +170,8 @@ void addReferenceCommand(CLI::App& app, Command& run) {
       ->type_name("S");
   command
       ->add_option("--band-limit", a->band_limit,
-                   "IN: light cut to its first IN bands (1..8). IN,OUT: and the\ncosine at the first hit to "
-                   "OUT bands")
+                   "IN: light cut to its first IN bands (1..8), spheres and discs\nas seen from each point. "
+                   "IN,OUT: and the cosine at the first\nhit to OUT bands")
       ->type_name("IN[,OUT]");
   command
       ->add_option("--bounces", a->options.bounces,

@@ -54,6 +54,7 @@ struct Integrator::Walk {
   std::vector<std::size_t> ray_path = {};
   std::vector<Hit> hits = {};
   std::vector<std::uint8_t> blocked = {};
+  sh::LightVector first_shapes = {};  // shapes that are sky, from the first vertex, where all paths stand
   std::uint64_t traced = 0;
 
   glm::vec2 draw(const Path& path, Dimension which) const {
@@ -73,6 +74,9 @@ struct Integrator::Walk {
     const float value = std::max(cosine, 0.0f) / kPi;
     return {value, value};
   }
+
+  // Cut to their bands, spheres and discs shine from all over the sky, as seen from each point, and signed.
+  bool shapesAreSky() const { return options.band_limit.has_value() && !world.shapes.empty(); }
 
   void addShadow(std::size_t p, const glm::vec3& dir, float far, const glm::vec3& radiance) {
     if (radiance != glm::vec3(0.0f)) shadows.push_back({{paths[p].at.origin(), dir, far}, p, radiance});
@@ -107,6 +111,7 @@ struct Integrator::Walk {
   }
 
   void lightFromShapes(std::size_t p, bool first) {
+    if (shapesAreSky()) return;
     const Path& path = paths[p];
     for (std::uint32_t i = 0; i < world.shapes.size(); ++i) {
       const glm::vec2 u = samplers[path.replica].pair(dimension + (i + 1) * kPerShape, path.index);
@@ -193,14 +198,24 @@ struct Integrator::Walk {
     }
   }
 
-  void addSky(Path& path) {
-    const Environment::Look sky = world.environment.look(path.dir);
+  // Shapes that are sky, as seen from a point.
+  sh::LightVector shapesFrom(const glm::vec3& point) const {
+    sh::LightVector sum{.order = options.band_limit->in};
+    for (const spec::LocalLight& shape : world.shapes) sum += shapeLight(shape, sum.order, point);
+    return sum;
+  }
+
+  void addSky(Path& path, bool first) {
+    Environment::Look sky = world.environment.look(path.dir);
+    if (shapesAreSky())
+      sky.radiance += (first ? first_shapes : shapesFrom(path.at.origin())).evaluate(path.dir);
     const float weight = world.environment.sampled() ? powerHeuristic(path.pdf, sky.pdf) : 1.0f;
     path.sum += path.throughput * sky.radiance * weight;
   }
 
   // Shapes that the ray passes before it meets a surface at `far`.
   void addShapes(Path& path, float far) const {
+    if (shapesAreSky()) return;
     for (const spec::LocalLight& shape : world.shapes)
       if (const auto way = lookAtShape(shape, path.at.origin(), path.dir);
           way && way->distance * kShadowReach < far)
@@ -219,7 +234,7 @@ struct Integrator::Walk {
   }
 
   // To where the directions lead; what shines there is added, and the paths stand at the next vertex.
-  void advance() {
+  void advance(bool first) {
     hits.resize(rays.size());
     if (!rays.empty()) world.rays.intersect(rays, hits);
     traced += rays.size();
@@ -227,7 +242,7 @@ struct Integrator::Walk {
       Path& path = paths[ray_path[i]];
       addShapes(path, hits[i].any() ? hits[i].t : kInfinity);
       if (!hits[i].any()) {
-        addSky(path);
+        addSky(path, first);
         path.alive = false;
         continue;
       }
@@ -240,10 +255,10 @@ struct Integrator::Walk {
   }
 
   // Where only the sky can be at the end of a ray, whether it is there is all that counts.
-  void lookAtSky() {
+  void lookAtSky(bool first) {
     traceOccluded();
     for (std::size_t i = 0; i < rays.size(); ++i)
-      if (!blocked[i]) addSky(paths[ray_path[i]]);
+      if (!blocked[i]) addSky(paths[ray_path[i]], first);
   }
 
   void playRoulette() {
@@ -261,6 +276,7 @@ struct Integrator::Walk {
 
   // Reflected light of `layer`, a sum per replica.
   void reflect(std::uint32_t layer) {
+    if (shapesAreSky() && !paths.empty()) first_shapes = shapesFrom(paths.front().at.origin());
     const std::uint32_t last = options.bounces.value_or(kMostVertices);
     for (std::uint32_t vertex = 0; vertex <= last && anyAlive(); ++vertex) {
       // Deeper than anything is seen, dimensions may repeat.
@@ -269,11 +285,11 @@ struct Integrator::Walk {
       if (!options.bounces && vertex > kFirstRoulette) playRoulette();
       gatherLights(vertex == 0);
       scatter(vertex == 0);
-      if (vertex == last && world.emissive.empty() && world.shapes.empty()) {
-        if (!world.environment.dark()) lookAtSky();
+      if (vertex == last && world.emissive.empty() && (world.shapes.empty() || shapesAreSky())) {
+        if (!world.environment.dark() || shapesAreSky()) lookAtSky(vertex == 0);
         return;
       }
-      advance();
+      advance(vertex == 0);
     }
   }
 };

@@ -10,8 +10,10 @@
 
 namespace lambent::baker::reference {
 
-// The lighting of a precomputed picture: environment light cut to its first `in` bands; and, where `out` is
-// given, albedo/π times the cosine at the first hit replaced by its first `out` bands.
+// The lighting of a precomputed picture: light from infinity, and spheres and discs of light as seen from
+// each point that they light, first hit and bounces alike, cut to their first `in` bands; a ray that meets no
+// surface sees that, however near the light may stand. Emissive surfaces and punctual lights stay whole. And,
+// where `out` is given, albedo/π times the cosine at the first hit replaced by its first `out` bands.
 struct BandLimit {
   int in = 5;
   std::optional<int> out = {};

@@ -116,9 +116,6 @@ Result<Report> render(const Scene& scene, const Request& request, const fs::path
   if (!lights) return failAgain(std::move(lights.error()));
   report.notices = lights->notices;
   const std::vector<spec::LocalLight> shapes = spec::localLights(request.lights);
-  if (options.band_limit && !shapes.empty())
-    return fail("--band-limit", "holds for light from infinity, but a sphere or disc of light is near",
-                "leave it out, or take a sun: instead");
   auto surfaces = Surfaces::build(scene);
   if (!surfaces) return failAgain(std::move(surfaces.error()));
   const auto view = viewOf(scene, *surfaces, request.camera, options.size.aspect());

@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 
 #include "baker/reference/warp.hpp"
+#include "runtime/sh/local_light.hpp"
 
 namespace lambent::baker::reference {
 
@@ -85,6 +86,16 @@ std::optional<WayToLight> look(const spec::DiscLight& light, const glm::vec3& po
   return towards(light, there);
 }
 
+sh::LightVector truncated(const spec::SphereLight& light, int order, const glm::dvec3& point) {
+  return sh::sphereLight(order, glm::dvec3(light.position_ws) - point, double{light.radius_m},
+                         light.radiance);
+}
+
+sh::LightVector truncated(const spec::DiscLight& light, int order, const glm::dvec3& point) {
+  return sh::discAreaLight(order, glm::dvec3(light.position_ws) - point, glm::dvec3(light.normal_ws),
+                           double{light.radius_m}, light.radiance);
+}
+
 }  // namespace
 
 std::optional<WayToLight> sampleShape(const spec::LocalLight& light, const glm::vec3& point,
@@ -95,6 +106,10 @@ std::optional<WayToLight> sampleShape(const spec::LocalLight& light, const glm::
 std::optional<WayToLight> lookAtShape(const spec::LocalLight& light, const glm::vec3& point,
                                       const glm::vec3& dir) {
   return std::visit([&](const auto& shape) { return look(shape, point, dir); }, light);
+}
+
+sh::LightVector shapeLight(const spec::LocalLight& light, int order, const glm::vec3& point) {
+  return std::visit([&](const auto& shape) { return truncated(shape, order, glm::dvec3(point)); }, light);
 }
 
 }  // namespace lambent::baker::reference

@@ -10,6 +10,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
+#include "runtime/sh/light_vector.hpp"
 #include "runtime/spec/light.hpp"
 
 namespace lambent::baker::reference {
@@ -28,5 +29,8 @@ std::optional<WayToLight> sampleShape(const spec::LocalLight& light, const glm::
 // What stands in the unit direction dir; none where that misses or meets a disc from behind.
 std::optional<WayToLight> lookAtShape(const spec::LocalLight& light, const glm::vec3& point,
                                       const glm::vec3& dir);
+
+// The first bands of what arrives at the point where nothing is in the way, as a light sample there has it.
+sh::LightVector shapeLight(const spec::LocalLight& light, int order, const glm::vec3& point);
 
 }  // namespace lambent::baker::reference

@@ -154,16 +154,6 @@ TEST(ShapeLights, DensitiesOfBothStrategiesAgree) {
       }
 }
 
-TEST(ShapeLights, AreRefusedWhereLightIsCutToItsBands) {
-  Request request{
-      .lights = {sphere({0, 1, 0}, 0.5f, 1.0f)}, .camera = spec::OrbitCamera{}, .options = samples(1)};
-  request.options.band_limit = BandLimit{};
-  Progress progress;
-  const auto report = render(whiteFloor(), request, {}, false, progress, {});
-  ASSERT_FALSE(report);
-  EXPECT_NE(report.error().line().find("from infinity"), std::string::npos) << report.error().line();
-}
-
 TEST(Time, PutsTheSceneWhereItsAnimationsHaveIt) {
   // A ceiling that leaves the sky after half a second.
   Scene scene =
