@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "runtime/frame/near_shadow_ref.hpp"
 #include "runtime/frame/surfaces.hpp"
 #include "runtime/lighting/environment.hpp"
 #include "runtime/lighting/group_lights.hpp"
@@ -276,6 +277,57 @@ TEST_F(NearLightsTest, AnEdgeCastsAPenumbraOfTheRightWidthAndShape) {
         error += std::abs(double{mean / whole} - expected) / kSize;
       }
       EXPECT_LT(error, samples == 64 ? 0.006 : 0.01);
+    }
+  }
+}
+
+TEST_F(NearLightsTest, ShadowsOfSeveralBlockersAreNearThoseOfRaysToEveryPointOfTheLight) {
+  struct Blocker {
+    float height, half;
+    glm::vec2 center;
+  };
+  const std::vector<std::vector<Blocker>> scenes = {
+      {{1.0f, 0.3f, {0, 0}}},  // smaller than the penumbra is wide at its corners
+      {{0.3f, 0.2f, {-0.4f, 0}}, {1.2f, 0.2f, {0.2f, 0.1f}}},  // apart
+      {{0.1f, 0.3f, {0.3f, 0}}, {0.9f, 0.2f, {0, 0}}}};        // one behind the other
+  for (const auto& blockers : scenes) {
+    const bool hidden = &blockers == &scenes.back();
+    BundleBuilder builder;
+    builder.add(level(0.0f, 5.0f));
+    for (const Blocker& b : blockers) builder.add(level(b.height, b.half, b.center));
+    for (const std::uint32_t samples : {16u, 64u}) {
+      Stage stage(builder, {.samples = samples});
+      constexpr float kHalf = 1.2f, kRadius = 0.25f;
+      const glm::vec3 light(0.1f, 2.0f, 0.0f);
+      const auto picture = stage.picture(above(kHalf, 0.05f), sphereLight(light, kRadius, glm::vec3(1.0f)));
+      double error = 0.0, squares = 0.0, shadowed = 0.0;
+      for (std::uint32_t y = 0; y < kSize; ++y)
+        for (std::uint32_t x = 0; x < kSize; ++x) {
+          const glm::vec3 place(placeOf(x, kHalf), 0.0f, placeOf(y, kHalf));
+          const glm::vec3 to = light - place, axis = glm::normalize(to);
+          glm::vec3 s, t;
+          ref::nearBasis(axis, s, t);
+          int visible = 0;
+          constexpr int kRays = 400;
+          for (int i = 0; i < kRays; ++i) {
+            const glm::vec2 at = kRadius * ref::discPoint(i, kRays, 0.0f);
+            const glm::vec3 ray = to + at.x * s + at.y * t;
+            visible += std::none_of(blockers.begin(), blockers.end(), [&](const Blocker& b) {
+              const glm::vec3 hit = place + b.height / ray.y * ray;
+              return std::abs(hit.x - b.center.x) < b.half && std::abs(hit.z - b.center.y) < b.half;
+            });
+          }
+          const float d2 = glm::dot(to, to), whole = kRadius * kRadius / d2 * to.y / std::sqrt(d2);
+          const double share = visible / double{kRays},
+                       apart = double{picture[y * kSize + x].r / whole} - share;
+          error += apart / (kSize * kSize);
+          squares += apart * apart / (kSize * kSize);
+          shadowed += (1.0 - share) / (kSize * kSize);
+        }
+      // As shares of the light. Few points miss the rims of penumbras, and are noisy within them.
+      EXPECT_LT(std::abs(error), samples == 64 ? 0.008 : 0.015) << "the shadow is as dark on the whole";
+      EXPECT_LT(std::sqrt(squares), samples == 64 && !hidden ? 0.02 : 0.06);
+      EXPECT_GT(shadowed, 0.05);
     }
   }
 }
