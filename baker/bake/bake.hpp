@@ -27,6 +27,11 @@ struct BakeReport {
   std::uint64_t hit_bytes = 0;  // kept for the bounces
   // Energy of each pass relative to direct light (bounces.hpp), of the group that took most of them.
   std::vector<double> pass_energy;
+  struct Group {
+    std::string name;
+    std::uint64_t light_samples = 0, proxy_triangles = 0;  // of the proxy's finest level
+  };
+  std::vector<Group> groups;
   double left_out = 0.0;  // estimate of the light that further bounces would add, relative to all
   std::vector<Progress::Stage> stages;
 };

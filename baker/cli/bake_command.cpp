@@ -26,6 +26,11 @@ nlohmann::json reportJson(const BakeArguments& a, const BakeReport& r) {
   for (const Progress::Stage& stage : r.stages)
     stages.push_back(
         {{"stage", stage.name}, {"seconds", stage.seconds}, {"units", stage.done}, {"unit", stage.unit}});
+  nlohmann::json groups = nlohmann::json::array();
+  for (const BakeReport::Group& group : r.groups)
+    groups.push_back({{"name", group.name},
+                      {"lightSamples", group.light_samples},
+                      {"proxyTriangles", group.proxy_triangles}});
   return {{"output", a.output.string()},
           {"settings", a.options.settings()},
           {"vertices", r.vertices},
@@ -35,6 +40,7 @@ nlohmann::json reportJson(const BakeArguments& a, const BakeReport& r) {
           {"rays", r.rays},
           {"raysPerSecond", r.ray_seconds > 0.0 ? static_cast<double>(r.rays) / r.ray_seconds : 0.0},
           {"lights", r.lights},
+          {"groups", groups},
           {"passEnergy", r.pass_energy},
           {"leftOut", r.left_out},
           {"hitBytes", r.hit_bytes},
@@ -57,6 +63,11 @@ void printReport(const BakeArguments& a, const BakeReport& r) {
   if (!r.pass_energy.empty())
     fmt::print("  bounces   {}, the last with {:.3f} % of the direct light; {:.3f} % left out\n",
                r.pass_energy.size() - 1, 100.0 * r.pass_energy.back(), 100.0 * r.left_out);
+  std::uint64_t light_samples = 0, proxy_triangles = 0;
+  for (const BakeReport::Group& group : r.groups)
+    light_samples += group.light_samples, proxy_triangles += group.proxy_triangles;
+  fmt::print("  groups    {}: {} light sample{}, {} proxy triangles\n", r.groups.size(), light_samples,
+             light_samples == 1 ? "" : "s", proxy_triangles);
   fmt::print(
       "  bytes     {}: mesh {}, transfer {} ({:.1f} a vertex), images {}\n",
       bytesText(static_cast<double>(r.file_bytes)), bytesText(static_cast<double>(r.mesh_bytes)),
@@ -97,6 +108,19 @@ int runBake(const BakeArguments& a) {
 }
 
 }  // namespace
+
+void addLightSamplesOption(CLI::App& command, BakeOptions& options) {
+  command
+      .add_option_function<std::string>(
+          "--light-samples",
+          [&options](const std::string& text) {
+            options.light_samples = text == "auto" ? 0 : std::stoi(text);
+          },
+          "Points of each cell at which light from outside is sampled, 1..32; 1 for a group: light at "
+          "infinity. auto (default): by how near light comes, shared out over the group")
+      ->check((CLI::Range(1, static_cast<int>(kMostLightSamples)) | CLI::IsMember({"auto"})).description(""))
+      ->type_name("N|auto");
+}
 
 void addBakeCommand(CLI::App& app, Command& run) {
   auto a = std::make_shared<BakeArguments>();
@@ -140,6 +164,7 @@ void addBakeCommand(CLI::App& app, Command& run) {
       ->add_option("--max-edge", a->options.max_edge_m,
                    "Split edges longer than this (scene units), so that large faces catch shadows")
       ->type_name("M");
+  addLightSamplesOption(*command, a->options);
   command->add_option("--effects", a->options.effects, "auto: what the scene calls for; or a list of effects")
       ->capture_default_str()
       ->type_name("LIST");

@@ -11,18 +11,11 @@
 
 #include <glm/vec3.hpp>
 
+#include "baker/plan/local_light.hpp"
 #include "baker/transport/samples.hpp"
 #include "runtime/bundle/light_weights.hpp"
 
 namespace lambent::baker {
-
-inline constexpr std::uint32_t kMostLightSamples = 32;  // that can be asked for
-
-struct LightSampleCount {
-  std::uint32_t count = 1;  // 1..kMostLightSamples; 1: a single one for the group
-  // Of the group, shared out over its cells by area (at least one each); else of each cell.
-  bool of_group = true;
-};
 
 struct LightSamples {
   struct Cell {

@@ -7,9 +7,6 @@
 
 namespace lambent::baker {
 
-namespace {
-
-// The node at or above `node` that starts its rigid group; -1: the static group.
 std::int32_t groupRootOf(const Scene& scene, std::uint32_t node) {
   auto at = static_cast<std::int32_t>(node);
   while (at >= 0) {
@@ -19,6 +16,8 @@ std::int32_t groupRootOf(const Scene& scene, std::uint32_t node) {
   }
   return -1;
 }
+
+namespace {
 
 bool isLit(glm::vec3 color) {
   return color.r > 0.0f || color.g > 0.0f || color.b > 0.0f;

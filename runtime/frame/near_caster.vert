@@ -33,5 +33,5 @@ void main() {
 #endif
   // No far plane; the fragment stage writes depth.
   float ahead = dot(face.forward, from_light);
-  gl_Position = vec4(dot(face.right, from_light), dot(face.up, from_light), ahead - 2.0 * face.near, ahead);
+  gl_Position = vec4(dot(face.right, from_light), dot(face.up, from_light), ahead - 2.0 * face.clip_near, ahead);
 }

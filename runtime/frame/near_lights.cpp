@@ -63,7 +63,7 @@ NearRecord recordOf(const NearLight& light, float reach) {
 ShadowFace faceOf(const NearLight& light, float reach, std::uint32_t face) {
   const FaceAxes axes = faceAxes(face);
   return {.right = axes.right,
-          .near = kNearPlane_m,
+          .clip_near = kNearPlane_m,
           .up = axes.up,
           .reach = reach,
           .forward = axes.forward,

@@ -9,6 +9,7 @@ const float kNothing = 1e30;
 const float kBiasTexels = 1.5;
 // What stands beside the light's cone says how high blockers are, too; few points would miss the cone's rim.
 const float kSearchWidth = 2.0, kFoundWidth = 3.0;  // in the disc's radius
+const float kOneLayer = 0.01;  // of the way: blockers no farther apart than this count as one layer
 const float kLeastSquared = 1e-12;  // a micrometre: weights stay finite
 const float kGoldenAngle = 2.39996323;
 
@@ -127,41 +128,65 @@ float blockerHeight(ShadowReceiver receiver, LightDisc disc, float radius, Block
   return dot(seen, seen) <= (radius + doubt) * (radius + doubt) ? height : -1.0;
 }
 
-// Of a light with an extent: the mean over points on its disc, each weighed by the light it gives at the shading
-// normal. First the mean height of what stands in between, then each point's ray looked up where it passes that height
-// [Fernando, Percentage-closer soft shadows, 2005]; `turns` differs from pixel to pixel.
-float discVisible(int index, NearRecord light, ShadowReceiver receiver, vec3 shading_normal, int size, int count,
-                  float turns) {
-  LightDisc disc = lightDisc(light, receiver);
-  if (disc.height <= 0.0) return 0.0;
-  float heights = 0.0, found = 0.0;
+// The heights at which most of what stands in between stands: one or two, found among rays all over the cone and
+// beside it. Two are those of the distribution of two heights that has the same first three moments, which for two flat
+// blockers is exact.
+struct BlockerLayers {
+  float low, high;  // the same if they are one; 1: nothing is there
+};
+BlockerLayers blockerLayers(int index, ShadowReceiver receiver, LightDisc disc, int size, int count, float turns) {
+  float found = 0.0;
+  vec3 powers = vec3(0.0);  // of height, summed
   for (int i = 0; i < count; ++i) {
     vec2 at = kSearchWidth * disc.radius * discPoint(i, count, turns);
     // One on the receiver's own ray, the rest closer together towards the receiver, where penumbras are narrow.
     float down = i == 0 ? 0.0 : fract(linePoint(i) + turns), up = 1.0 - down * sqrt(down);
     vec3 place = (1.0 - up) * (at.x * disc.s + at.y * disc.t) + up * receiver.position;
     float height = blockerHeight(receiver, disc, kFoundWidth * disc.radius, blockerAt(index, place, size));
-    if (height >= 0.0) {
-      heights += height;
-      found += 1.0;
-    }
+    if (height < 0.0) continue;
+    found += 1.0;
+    powers += vec3(height, height * height, height * height * height);
   }
-  float up = found > 0.0 ? heights / found : 1.0;
+  if (found == 0.0) return BlockerLayers(1.0, 1.0);
+  vec3 moments = powers / found;
+  float variance = moments.y - moments.x * moments.x;
+  if (variance < kOneLayer * kOneLayer) return BlockerLayers(moments.x, moments.x);
+  float deviation = sqrt(variance);
+  float third = moments.z - 3.0 * moments.x * moments.y + 2.0 * moments.x * moments.x * moments.x;
+  float half_skew = 0.5 * third / (variance * deviation), root = sqrt(1.0 + half_skew * half_skew);
+  return BlockerLayers(clamp(moments.x + deviation * (half_skew - root), 0.0, 1.0),
+                       clamp(moments.x + deviation * (half_skew + root), 0.0, 1.0));
+}
+
+// Whether the ray from the receiver to a point of the disc is blocked at this height, or at one that is no nearer to the
+// other layer's.
+bool blockedAt(float up, float other, int index, ShadowReceiver receiver, LightDisc disc, vec2 unit_place, int size) {
   // Sharp shadows still fade over a texel.
   float least = receiver.bias * 0.5 * receiver.distance * up / max(1.0 - up, 1e-3);
+  vec2 at = max(disc.radius, least) * unit_place;
+  vec3 place = (1.0 - up) * (at.x * disc.s + at.y * disc.t) + up * receiver.position;
+  float height = blockerHeight(receiver, disc, disc.radius, blockerAt(index, place, size));
+  return height >= 0.0 && abs(height - up) <= abs(height - other);
+}
+
+// Of a light with an extent: the mean over points on its disc, each weighed by the light it gives at the shading
+// normal. Each point's ray is looked up where it passes the layers of blockers; after Fernando, Percentage-closer soft
+// shadows, 2005, which has one layer. `turns` differs from pixel to pixel.
+float discVisible(int index, NearRecord light, ShadowReceiver receiver, vec3 shading_normal, int size, int count,
+                  float turns) {
+  LightDisc disc = lightDisc(light, receiver);
+  if (disc.height <= 0.0) return 0.0;
+  BlockerLayers layers = blockerLayers(index, receiver, disc, size, count, turns);
   float visible = 0.0, all = 0.0;
   for (int i = 0; i < count; ++i) {
-    vec2 unit_place = discPoint(i, count, turns);
-    vec2 at = disc.radius * unit_place;
+    vec2 unit_place = discPoint(i, count, turns), at = disc.radius * unit_place;
     vec3 ray = at.x * disc.s + at.y * disc.t - receiver.position;
     float squared = max(dot(ray, ray), kLeastSquared), weight = max(dot(shading_normal, ray), 0.0) / (squared * squared);
     all += weight;
     if (weight <= 0.0 || dot(receiver.normal, ray) <= 0.0) continue;
-    if (found > 0.0) {
-      vec2 wide = max(disc.radius, least) * unit_place;
-      vec3 place = (1.0 - up) * (wide.x * disc.s + wide.y * disc.t) + up * receiver.position;
-      if (blockerHeight(receiver, disc, disc.radius, blockerAt(index, place, size)) >= 0.0) continue;
-    }
+    if (layers.low < 1.0 && blockedAt(layers.low, layers.high, index, receiver, disc, unit_place, size)) continue;
+    if (layers.low < layers.high && blockedAt(layers.high, layers.low, index, receiver, disc, unit_place, size))
+      continue;
     visible += weight;
   }
   return all > 0.0 ? visible / all : 1.0;

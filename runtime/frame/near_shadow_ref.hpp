@@ -12,6 +12,7 @@ namespace lambent::frame::ref {
 inline constexpr float kNothing = 1e30f;
 inline constexpr float kBiasTexels = 1.5f;
 inline constexpr float kSearchWidth = 2.0f, kFoundWidth = 3.0f;
+inline constexpr float kOneLayer = 0.01f;
 inline constexpr float kLeastSquared = 1e-12f;
 inline constexpr float kGoldenAngle = 2.39996323f;
 
@@ -129,39 +130,65 @@ inline float blockerHeight(const ShadowReceiver& receiver, const LightDisc& disc
   return glm::dot(seen, seen) <= (radius + doubt) * (radius + doubt) ? height : -1.0f;
 }
 
+struct BlockerLayers {
+  float low, high;
+};
 template <typename Distance>
-float discVisible(const Distance& distance, const NearRecord& light, const ShadowReceiver& receiver,
-                  glm::vec3 shading_normal, int size, int count, float turns) {
-  const LightDisc disc = lightDisc(light, receiver);
-  if (disc.height <= 0.0f) return 0.0f;
-  float heights = 0.0f, found = 0.0f;
+BlockerLayers blockerLayers(const Distance& distance, const ShadowReceiver& receiver, const LightDisc& disc,
+                            int size, int count, float turns) {
+  float found = 0.0f;
+  glm::vec3 powers(0.0f);
   for (int i = 0; i < count; ++i) {
     const glm::vec2 at = kSearchWidth * disc.radius * discPoint(i, count, turns);
     const float down = i == 0 ? 0.0f : glm::fract(linePoint(i) + turns), up = 1.0f - down * std::sqrt(down);
     const glm::vec3 place = (1.0f - up) * (at.x * disc.s + at.y * disc.t) + up * receiver.position;
     const float height =
         blockerHeight(receiver, disc, kFoundWidth * disc.radius, blockerAt(distance, place, size));
-    if (height >= 0.0f) {
-      heights += height;
-      found += 1.0f;
-    }
+    if (height < 0.0f) continue;
+    found += 1.0f;
+    powers += glm::vec3(height, height * height, height * height * height);
   }
-  const float up = found > 0.0f ? heights / found : 1.0f;
+  if (found == 0.0f) return {1.0f, 1.0f};
+  const glm::vec3 moments = powers / found;
+  const float variance = moments.y - moments.x * moments.x;
+  if (variance < kOneLayer * kOneLayer) return {moments.x, moments.x};
+  const float deviation = std::sqrt(variance);
+  const float third = moments.z - 3.0f * moments.x * moments.y + 2.0f * moments.x * moments.x * moments.x;
+  const float half_skew = 0.5f * third / (variance * deviation),
+              root = std::sqrt(1.0f + half_skew * half_skew);
+  return {std::clamp(moments.x + deviation * (half_skew - root), 0.0f, 1.0f),
+          std::clamp(moments.x + deviation * (half_skew + root), 0.0f, 1.0f)};
+}
+
+template <typename Distance>
+bool blockedAt(float up, float other, const Distance& distance, const ShadowReceiver& receiver,
+               const LightDisc& disc, glm::vec2 unit_place, int size) {
   const float least = receiver.bias * 0.5f * receiver.distance * up / std::max(1.0f - up, 1e-3f);
+  const glm::vec2 at = std::max(disc.radius, least) * unit_place;
+  const glm::vec3 place = (1.0f - up) * (at.x * disc.s + at.y * disc.t) + up * receiver.position;
+  const float height = blockerHeight(receiver, disc, disc.radius, blockerAt(distance, place, size));
+  return height >= 0.0f && std::abs(height - up) <= std::abs(height - other);
+}
+
+template <typename Distance>
+float discVisible(const Distance& distance, const NearRecord& light, const ShadowReceiver& receiver,
+                  glm::vec3 shading_normal, int size, int count, float turns) {
+  const LightDisc disc = lightDisc(light, receiver);
+  if (disc.height <= 0.0f) return 0.0f;
+  const BlockerLayers layers = blockerLayers(distance, receiver, disc, size, count, turns);
   float visible = 0.0f, all = 0.0f;
   for (int i = 0; i < count; ++i) {
-    const glm::vec2 unit_place = discPoint(i, count, turns);
-    const glm::vec2 at = disc.radius * unit_place;
+    const glm::vec2 unit_place = discPoint(i, count, turns), at = disc.radius * unit_place;
     const glm::vec3 ray = at.x * disc.s + at.y * disc.t - receiver.position;
     const float squared = std::max(glm::dot(ray, ray), kLeastSquared),
                 weight = std::max(glm::dot(shading_normal, ray), 0.0f) / (squared * squared);
     all += weight;
     if (weight <= 0.0f || glm::dot(receiver.normal, ray) <= 0.0f) continue;
-    if (found > 0.0f) {
-      const glm::vec2 wide = std::max(disc.radius, least) * unit_place;
-      const glm::vec3 place = (1.0f - up) * (wide.x * disc.s + wide.y * disc.t) + up * receiver.position;
-      if (blockerHeight(receiver, disc, disc.radius, blockerAt(distance, place, size)) >= 0.0f) continue;
-    }
+    if (layers.low < 1.0f && blockedAt(layers.low, layers.high, distance, receiver, disc, unit_place, size))
+      continue;
+    if (layers.low < layers.high &&
+        blockedAt(layers.high, layers.low, distance, receiver, disc, unit_place, size))
+      continue;
     visible += weight;
   }
   return all > 0.0f ? visible / all : 1.0f;

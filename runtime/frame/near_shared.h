@@ -62,7 +62,7 @@ struct NearDraw {
 // One face of one cube, as it is drawn.
 struct ShadowFace {
   vec3 right;
-  float near;  // of the clip plane
+  float clip_near;  // of the clip plane
   vec3 up;
   float reach;
   vec3 forward;

@@ -6,25 +6,28 @@ layout(std140, binding = kBindNearLights) uniform NearBlock { NearView near_view
 layout(std430, binding = kBindNearDraws) readonly buffer NearDraws { NearDraw near_draws[]; };
 layout(binding = kUnitNearShadows) uniform sampler2D near_shadows;
 
+// Pictures to be looked at are of half floats, and one infinite pixel beside a small light would blind the exposure.
+const float kLargestShown = 6e4;
+
 float nearDistance(int light, int face, ivec2 texel) {
   int size = int(near_view.size);
   float depth = texelFetch(near_shadows, ivec2(face, light) * size + texel, 0).r;
   return depth < 1.0 ? depth * near_lights[light].reach : kNothing;
 }
 
-// In homogeneous coordinates of which w is left aside: gl_FragCoord.w has the depth at full precision, also where the
-// depth buffer has little.
+// View frame. In homogeneous coordinates of which w is left aside: gl_FragCoord.w has the depth at full precision, also
+// where the depth buffer has little.
 vec3 pixelPosition() {
   vec3 ndc = vec3(2.0 * gl_FragCoord.xy / vec2(near_view.width, near_view.height), 2.0 * gl_FragCoord.z) - 1.0;
-  vec3 position_vs = (near_view.view_from_clip * (vec4(ndc, 1.0) / gl_FragCoord.w)).xyz;
-  return (near_view.world_from_view * vec4(position_vs, 1.0)).xyz;
+  return (near_view.view_from_clip * (vec4(ndc, 1.0) / gl_FragCoord.w)).xyz;
 }
 
 // normal_group: as the surface is shaded, of the side that is seen.
 vec3 nearLight(uint draw, vec3 normal_group) {
-  vec3 position = pixelPosition();
+  vec3 position_vs = pixelPosition();
+  vec3 position = (near_view.world_from_view * vec4(position_vs, 1.0)).xyz;
   // Points to the eye: the picture's axes are right-handed with the direction to it.
-  vec3 normal = nearUnit(cross(dFdx(position), dFdy(position)));
+  vec3 normal = nearUnit(mat3(near_view.world_from_view) * cross(dFdx(position_vs), dFdy(position_vs)));
   vec4 turn = near_draws[draw].world_from_group;
   vec3 shading_normal =
       nearUnit(normal_group + 2.0 * cross(turn.xyz, cross(turn.xyz, normal_group) + turn.w * normal_group));
@@ -34,5 +37,9 @@ vec3 nearLight(uint draw, vec3 normal_group) {
     if ((near_draws[draw].lights >> k & 1u) != 0u)
       sum += nearRadiance(k, near_lights[k], position, normal, shading_normal, int(near_view.size),
                           int(near_view.samples), turns);
+#ifdef LAMBENT_FINEST_TEXELS
   return sum;
+#else
+  return min(sum, vec3(kLargestShown));
+#endif
 }

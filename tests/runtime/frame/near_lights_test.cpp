@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "runtime/frame/near_shadow_ref.hpp"
 #include "runtime/frame/surfaces.hpp"
 #include "runtime/lighting/environment.hpp"
 #include "runtime/lighting/group_lights.hpp"
@@ -167,6 +168,58 @@ TEST_F(NearLightsTest, AFloorUnderASphereHasItsIrradianceWithinAPercent) {
   EXPECT_FLOAT_EQ(picture[0].g, 0.5f * picture[0].r);
 }
 
+TEST_F(NearLightsTest, PunctualLightsAndSeveralLightsAddUp) {
+  Stage stage(BundleBuilder().add(level(0.0f, 5.0f, {0, 0}, 0.5f)));
+  NearLight spot;
+  spot.kind = NearLight::Kind::Spot;
+  spot.position_ws = {0, 1, 0};
+  spot.direction_ws = {0, -1, 0};
+  spot.power = {10, 0, 1};
+  spot.range_m = 2.0f;
+  spot.inner_cone_rad = 0.3f;
+  spot.outer_cone_rad = 0.9f;
+  const auto expected = [&](glm::vec2 at) {
+    const float d2 = 1.0f + glm::dot(at, at), cosine = 1.0f / std::sqrt(d2);
+    const float share = std::clamp((cosine - std::cos(0.9f)) / (std::cos(0.3f) - std::cos(0.9f)), 0.0f, 1.0f);
+    return 0.5f * 10.0f / d2 * cosine / kPi * share * share * std::max(1.0f - d2 * d2 / 16.0f, 0.0f);
+  };
+  expectFloor(stage.picture(above(2.0f), spot), 2.0f, 0.01f, expected, "spot");
+  NearLight sphere = sphereLight({0.5f, 1.0f, 0.5f}, 0.1f, {3, 2, 1});
+  const auto alone = stage.picture(above(2.0f), sphere);
+  const std::vector<NearLight> both = {spot, sphere};
+  const auto together = stage.picture(above(2.0f), both);
+  for (std::uint32_t y = 0; y < kSize; ++y)
+    for (std::uint32_t x = 0; x < kSize; ++x) {
+      const std::size_t i = y * kSize + x;
+      const float wanted = alone[i].r + expected({placeOf(x, 2.0f), placeOf(y, 2.0f)});
+      ASSERT_NEAR(together[i].r, wanted, 0.01f * wanted);
+    }
+  stage.masks = {2u};
+  EXPECT_EQ(stage.picture(above(2.0f), both), alone) << "the second alone shines on this group";
+}
+
+TEST_F(NearLightsTest, BlendedSurfacesAreLitAndCastNoShadowAndUnlitOnesStayAsTheyAre) {
+  BuiltMesh glass = level(0.5f, 5.0f), sign = level(0.4f, 5.0f, {5, 0});
+  glass.material.base_color.a = 0.25f;
+  glass.material.alpha_mode = gltf::AlphaMode::Blend;
+  sign.material.unlit = true;
+  Stage stage(BundleBuilder().add(level(0.0f, 5.0f)).add(glass).add(sign));
+  NearLight light;
+  light.position_ws = {0, 2, 0};
+  light.power = glm::vec3(8.0f * kPi);
+  const auto picture = stage.picture(above(1.0f), light);
+  const float floor = 8.0f * 2.0f / 8.0f, pane = 8.0f * 1.5f / (2.25f * 1.5f);
+  const auto at = [&](std::uint32_t x) {  // at z = 0, by how far light falls in from the side
+    const float s = placeOf(x, 1.0f), z = placeOf(32, 1.0f);
+    return std::pair(std::pow(1.0f + (s * s + z * z) / 4.0f, -1.5f),
+                     std::pow(1.0f + (s * s + z * z) / 2.25f, -1.5f));
+  };
+  const auto [on_floor, on_pane] = at(20);
+  EXPECT_NEAR(picture[32 * kSize + 20].r, 0.75f * floor * on_floor + 0.25f * pane * on_pane, 0.01f);
+  const auto [unused, over_sign] = at(44);
+  EXPECT_NEAR(picture[32 * kSize + 44].r, 0.75f * 1.0f + 0.25f * pane * over_sign, 0.01f);
+}
+
 TEST_F(NearLightsTest, AFloorThatLightGrazesIsLitAllOver) {
   Stage stage(BundleBuilder().add(level(0.0f, 5.0f)));
   constexpr float kHeight = 0.05f;
@@ -224,6 +277,57 @@ TEST_F(NearLightsTest, AnEdgeCastsAPenumbraOfTheRightWidthAndShape) {
         error += std::abs(double{mean / whole} - expected) / kSize;
       }
       EXPECT_LT(error, samples == 64 ? 0.006 : 0.01);
+    }
+  }
+}
+
+TEST_F(NearLightsTest, ShadowsOfSeveralBlockersAreNearThoseOfRaysToEveryPointOfTheLight) {
+  struct Blocker {
+    float height, half;
+    glm::vec2 center;
+  };
+  const std::vector<std::vector<Blocker>> scenes = {
+      {{1.0f, 0.3f, {0, 0}}},  // smaller than the penumbra is wide at its corners
+      {{0.3f, 0.2f, {-0.4f, 0}}, {1.2f, 0.2f, {0.2f, 0.1f}}},  // apart
+      {{0.1f, 0.3f, {0.3f, 0}}, {0.9f, 0.2f, {0, 0}}}};        // one behind the other
+  for (const auto& blockers : scenes) {
+    const bool hidden = &blockers == &scenes.back();
+    BundleBuilder builder;
+    builder.add(level(0.0f, 5.0f));
+    for (const Blocker& b : blockers) builder.add(level(b.height, b.half, b.center));
+    for (const std::uint32_t samples : {16u, 64u}) {
+      Stage stage(builder, {.samples = samples});
+      constexpr float kHalf = 1.2f, kRadius = 0.25f;
+      const glm::vec3 light(0.1f, 2.0f, 0.0f);
+      const auto picture = stage.picture(above(kHalf, 0.05f), sphereLight(light, kRadius, glm::vec3(1.0f)));
+      double error = 0.0, squares = 0.0, shadowed = 0.0;
+      for (std::uint32_t y = 0; y < kSize; ++y)
+        for (std::uint32_t x = 0; x < kSize; ++x) {
+          const glm::vec3 place(placeOf(x, kHalf), 0.0f, placeOf(y, kHalf));
+          const glm::vec3 to = light - place, axis = glm::normalize(to);
+          glm::vec3 s, t;
+          ref::nearBasis(axis, s, t);
+          int visible = 0;
+          constexpr int kRays = 400;
+          for (int i = 0; i < kRays; ++i) {
+            const glm::vec2 at = kRadius * ref::discPoint(i, kRays, 0.0f);
+            const glm::vec3 ray = to + at.x * s + at.y * t;
+            visible += std::none_of(blockers.begin(), blockers.end(), [&](const Blocker& b) {
+              const glm::vec3 hit = place + b.height / ray.y * ray;
+              return std::abs(hit.x - b.center.x) < b.half && std::abs(hit.z - b.center.y) < b.half;
+            });
+          }
+          const float d2 = glm::dot(to, to), whole = kRadius * kRadius / d2 * to.y / std::sqrt(d2);
+          const double share = visible / double{kRays},
+                       apart = double{picture[y * kSize + x].r / whole} - share;
+          error += apart / (kSize * kSize);
+          squares += apart * apart / (kSize * kSize);
+          shadowed += (1.0 - share) / (kSize * kSize);
+        }
+      // As shares of the light. Few points miss the rims of penumbras, and are noisy within them.
+      EXPECT_LT(std::abs(error), samples == 64 ? 0.008 : 0.015) << "the shadow is as dark on the whole";
+      EXPECT_LT(std::sqrt(squares), samples == 64 && !hidden ? 0.02 : 0.06);
+      EXPECT_GT(shadowed, 0.05);
     }
   }
 }
