@@ -14,14 +14,16 @@ namespace lambent::baker {
 
 struct BlendWeights {
   std::array<std::uint32_t, bundle::kLightsPerSample> light{};
-  std::array<double, bundle::kLightsPerSample> weight{};  // of the nearest first; unused ones are 0
+  std::array<double, bundle::kLightsPerSample> weight{};  // falling; unused ones are 0
 };
 
-// Modified Shepard weights (Franke and Nielson 1980) of the four nearest light samples:
-//   w_k ~ ((R - d_k)+ / (R d_k))^2, d_k the distance, R that of the fifth nearest,
-// so that a light sample fades out before another takes its place, and there is no jump anywhere. Ours
-// differs: d_k² + eps stands for d_k² (at a light sample the weight is not infinite), and with up to four
-// light samples R is infinite.
+// The weights, none negative, that minimize
+//   |sum_k w_k x_k - p|² + lambda sum_k w_k (|x_k - p|² + e_k),
+// x_k the light samples, p the place: what varies evenly in space is blended exactly where light samples
+// stand around p, and the second term takes the near ones. It is lifted to the paraboloid over the x_k, so
+// that the weights are barycentric coordinates in the (regular) Delaunay tetrahedralization at a point near
+// to p: no more than four, without a jump anywhere. e_k in [0, eps_m2), drawn by x_k, decides where more than
+// four would do.
 BlendWeights blendWeights(glm::vec3 place, std::span<const glm::vec3> lights, double eps_m2);
 
 // In steps of 1/255 that sum to 255 exactly (largest remainder), falling; those that come to 0 name light 0.
@@ -32,7 +34,7 @@ struct QuantizedWeights {
 };
 QuantizedWeights quantized(const BlendWeights& weights);
 
-// Those of `lights` that can be among the five nearest of a place inside the box.
+// Those of `lights` that can have a weight at a place inside the box.
 std::vector<std::uint32_t> lightsNear(glm::vec3 box_min, glm::vec3 box_max,
                                       std::span<const glm::vec3> lights);
 
