@@ -2,11 +2,30 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <optional>
+
+#include <glm/geometric.hpp>
 
 #include "runtime/sh/rotation.hpp"
 
 namespace lambent::lighting {
+
+namespace {
+
+// Writes `now` over the block; returns by how much of itself it changed, at most 1.
+float overwrite(std::span<glm::vec4> block, std::span<const glm::vec3> now) {
+  double change = 0.0, power = 0.0;
+  for (std::size_t i = 0; i < block.size(); ++i) {
+    const glm::dvec3 before(block[i]), after(i < now.size() ? now[i] : glm::vec3(0.0f));
+    change += glm::dot(after - before, after - before);
+    power += std::max(glm::dot(before, before), glm::dot(after, after));
+    block[i] = glm::vec4(after, 0.0f);
+  }
+  return power > 0.0 ? static_cast<float>(std::min(std::sqrt(change / power), 1.0)) : 0.0f;
+}
+
+}  // namespace
 
 void GroupLights::layOut(std::span<const GroupPlace> groups) {
   groups_.assign(groups.size(), {});
@@ -26,8 +45,8 @@ bool GroupLights::updateLamps(Group& group, const GroupPlace& place) {
   group.lamps = place.lamps;
   group.lamps_version = ++version_;
   const std::size_t first = group.first + kStride * group.samples.size();
-  for (std::size_t k = 0; k < group.lamps.size(); ++k)
-    coefficients_[first + k] = glm::vec4(group.lamps[k], 0.0f);
+  group.change = std::max(
+      group.change, overwrite(std::span(coefficients_).subspan(first, group.lamps.size()), group.lamps));
   return true;
 }
 
@@ -51,6 +70,7 @@ void GroupLights::update(const Environment& environment, sh::Window window,
     group.order = place.order;
     const auto order = static_cast<int>(place.order);
     std::optional<sh::Rotation> rotation;
+    group.change = 0.0f;
     bool changed = updateLamps(group, place);
     for (std::size_t k = 0; k < place.incident.size(); ++k) {
       const Incident& incident = place.incident[k];
@@ -70,8 +90,8 @@ void GroupLights::update(const Environment& environment, sh::Window window,
       if (from_environment && !shared) shared = sh::applyWindow(environment.light().truncated(order), window);
       const sh::LightVector light_group = rotation->apply(
           from_environment ? *shared : sh::applyWindow(incident.light->truncated(order), window));
-      const std::size_t first = group.first + kStride * k;
-      for (std::size_t c = 0; c < kStride; ++c) coefficients_[first + c] = glm::vec4(light_group.c[c], 0.0f);
+      const auto block = std::span(coefficients_).subspan(group.first + kStride * k, kStride);
+      group.change = std::max(group.change, overwrite(block, light_group.c));
     }
     if (changed) group.version = version_;
     any_changed |= changed;

@@ -55,6 +55,9 @@ class GroupLights {
     return groups_[group].samples[sample].version;
   }
   std::uint64_t lampsVersionOf(std::size_t group) const { return groups_[group].lamps_version; }
+  // By how much of itself the group's light changed in the last update, at the sample where it changed most:
+  // 0 where nothing did, at most 1.
+  float changeOf(std::size_t group) const { return groups_[group].change; }
   // Light samples whose coefficients the last update wrote.
   std::uint32_t renewedSamples() const { return renewed_; }
   void bindStorage(std::uint32_t binding) const { table_.bindStorage(binding); }
@@ -74,6 +77,7 @@ class GroupLights {
     std::vector<Sample> samples;
     std::uint32_t first = 0;
     std::uint64_t version = 0, lamps_version = 0;
+    float change = 0.0f;
   };
   void layOut(std::span<const GroupPlace> groups);
   bool updateLamps(Group& group, const GroupPlace& place);
