@@ -11,6 +11,7 @@
 #include <glm/vec4.hpp>
 
 #include "lambent_lighting_embedded.hpp"
+#include "runtime/lighting/capture_closed.hpp"
 #include "runtime/lighting/capture_combine.hpp"
 #include "runtime/lighting/capture_shared.h"
 #include "runtime/sh/cube_map.hpp"
@@ -183,6 +184,7 @@ void Capture::setProxies(std::span<const bundle::CaptureProxy* const> proxies, g
     for (const bundle::ProxyLevel& level : proxy->levels) {
       Level& drawn = made.levels.emplace_back();
       drawn.first_vertex = static_cast<std::uint32_t>(vertices.size());
+      drawn.closed = isClosed(*proxy, level);
       LevelVertices add(*proxy, vertices);
       for (std::uint32_t t = level.first_triangle; t < level.first_triangle + level.triangle_count; ++t) {
         const bundle::ProxyTriangle& triangle = proxy->triangles[t];
@@ -292,13 +294,16 @@ void Capture::upload(const Plan& plan, std::span<const CaptureBody> bodies,
         record.first_vertex = proxies_[body.proxy].levels[draw.level].first_vertex;
       }
     }
-    for (const bool front_only : {false, true}) {
+    for (const bool front_only : {false, true}) {  // without and with culling of back faces
       IndexRange& range = page_indices_[i][front_only];
       range.first = static_cast<std::uint32_t>(indices.size());
       for (std::uint32_t d = page.first_draw; d < page.first_draw + page.draw_count; ++d) {
         const Level& level = proxies_[bodies[plan.draws[d].body].proxy].levels[plan.draws[d].level];
-        for (const std::uint32_t v : front_only ? level.front_only : level.two_sided)
-          indices.push_back(d << kVertexBits | v);
+        const auto append = [&](const std::vector<std::uint32_t>& corners) {
+          for (const std::uint32_t v : corners) indices.push_back(d << kVertexBits | v);
+        };
+        if (front_only) append(level.front_only);
+        if (front_only == (level.closed && plan.draws[d].from_outside)) append(level.two_sided);
       }
       range.count = static_cast<std::uint32_t>(indices.size()) - range.first;
     }

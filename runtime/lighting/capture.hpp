@@ -67,7 +67,9 @@ class Capture {
  private:
   struct Level {
     std::uint32_t first_vertex = 0;
-    std::vector<std::uint32_t> two_sided, front_only;  // corners, as vertices of the level
+    // Corners, as vertices of the level. Of a closed surface seen from outside no dark side can show.
+    std::vector<std::uint32_t> two_sided, front_only;
+    bool closed = false;
   };
   struct Proxy {
     std::uint32_t first_triangle = 0;

@@ -42,6 +42,7 @@ struct Tile {
 
 struct Draw {
   std::uint32_t tile = 0, body = 0, level = 0;
+  bool from_outside = false;  // the point lies outside the body's box
 };
 
 struct Page {

@@ -190,13 +190,14 @@ float IncidentLight::changeAround(const Drawn& drawn, const Drawn& now, std::spa
       if (passesLight(point, after.center_ws - now.position_ws, moved.half_angle + moved.angle)) return kAnew;
     }
     // A body that fills a share of the sphere makes up so much of the light's mean, and n times as much of n
-    // bands of it (|y(d)|² = n²/4pi). Turned by an angle, it differs from itself by about n/2 times the angle
-    // (the parallax of a delta light), until it is another altogether.
+    // bands of it (|y(d)|² = n²/4pi), up to all of it. Turned by an angle, it differs from itself by about
+    // n/2 times the angle (the parallax of a delta light), until it is another altogether.
     const auto bands = static_cast<float>(order_);
     constexpr float kOther = std::numbers::sqrt2_v<float>;
     const float parallax = other ? kOther : std::min(0.5f * bands * moved.angle, kOther);
     const auto drift = static_cast<float>(after.radiance_drift - before.radiance_drift);
-    change += 0.5f * (1.0f - std::cos(moved.half_angle)) * bands * body.body.brightness * (parallax + drift);
+    const float share = std::min(0.5f * (1.0f - std::cos(moved.half_angle)) * bands, 1.0f);
+    change += share * body.body.brightness * (parallax + drift);
     if (!come) ++then;
     if (!gone) ++here;
   }
