@@ -177,17 +177,23 @@ float discVisible(int index, NearRecord light, ShadowReceiver receiver, vec3 sha
   LightDisc disc = lightDisc(light, receiver);
   if (disc.height <= 0.0) return 0.0;
   BlockerLayers layers = blockerLayers(index, receiver, disc, size, count, turns);
+  int layer_count = layers.low >= 1.0 ? 0 : layers.low < layers.high ? 2 : 1;
+  // Nothing to ask where nothing is found and all of the disc is above the surface.
+  vec2 slope = vec2(dot(receiver.normal, disc.s), dot(receiver.normal, disc.t));
+  bool above = -dot(receiver.normal, receiver.position) > disc.radius * length(slope);
+  int points = layer_count == 0 && above ? 0 : count;
   float visible = 0.0, all = 0.0;
-  for (int i = 0; i < count; ++i) {
+  for (int i = 0; i < points; ++i) {
     vec2 unit_place = discPoint(i, count, turns), at = disc.radius * unit_place;
     vec3 ray = at.x * disc.s + at.y * disc.t - receiver.position;
     float squared = max(dot(ray, ray), kLeastSquared), weight = max(dot(shading_normal, ray), 0.0) / (squared * squared);
     all += weight;
     if (weight <= 0.0 || dot(receiver.normal, ray) <= 0.0) continue;
-    if (layers.low < 1.0 && blockedAt(layers.low, layers.high, index, receiver, disc, unit_place, size)) continue;
-    if (layers.low < layers.high && blockedAt(layers.high, layers.low, index, receiver, disc, unit_place, size))
-      continue;
-    visible += weight;
+    bool blocked = false;
+    for (int k = 0; k < layer_count && !blocked; ++k)
+      blocked = blockedAt(k == 0 ? layers.low : layers.high, k == 0 ? layers.high : layers.low, index, receiver, disc,
+                          unit_place, size);
+    if (!blocked) visible += weight;
   }
   return all > 0.0 ? visible / all : 1.0;
 }

@@ -176,20 +176,23 @@ float discVisible(const Distance& distance, const NearRecord& light, const Shado
   const LightDisc disc = lightDisc(light, receiver);
   if (disc.height <= 0.0f) return 0.0f;
   const BlockerLayers layers = blockerLayers(distance, receiver, disc, size, count, turns);
+  const int layer_count = layers.low >= 1.0f ? 0 : layers.low < layers.high ? 2 : 1;
+  const glm::vec2 slope(glm::dot(receiver.normal, disc.s), glm::dot(receiver.normal, disc.t));
+  const bool above = -glm::dot(receiver.normal, receiver.position) > disc.radius * glm::length(slope);
+  const int points = layer_count == 0 && above ? 0 : count;
   float visible = 0.0f, all = 0.0f;
-  for (int i = 0; i < count; ++i) {
+  for (int i = 0; i < points; ++i) {
     const glm::vec2 unit_place = discPoint(i, count, turns), at = disc.radius * unit_place;
     const glm::vec3 ray = at.x * disc.s + at.y * disc.t - receiver.position;
     const float squared = std::max(glm::dot(ray, ray), kLeastSquared),
                 weight = std::max(glm::dot(shading_normal, ray), 0.0f) / (squared * squared);
     all += weight;
     if (weight <= 0.0f || glm::dot(receiver.normal, ray) <= 0.0f) continue;
-    if (layers.low < 1.0f && blockedAt(layers.low, layers.high, distance, receiver, disc, unit_place, size))
-      continue;
-    if (layers.low < layers.high &&
-        blockedAt(layers.high, layers.low, distance, receiver, disc, unit_place, size))
-      continue;
-    visible += weight;
+    bool blocked = false;
+    for (int k = 0; k < layer_count && !blocked; ++k)
+      blocked = blockedAt(k == 0 ? layers.low : layers.high, k == 0 ? layers.high : layers.low, distance,
+                          receiver, disc, unit_place, size);
+    if (!blocked) visible += weight;
   }
   return all > 0.0f ? visible / all : 1.0f;
 }

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <numbers>
 #include <optional>
 
@@ -459,7 +460,12 @@ TEST_F(NearLightsTest, ADrawThatNoLightShinesOnCostsNothingAndChangesNoPixel) {
   stage.masks = {2u};
   EXPECT_EQ(stage.picture(above(0.5f), light), plain);
   stage.masks = {1u};
-  EXPECT_EQ(stage.picture(above(0.5f), sphereLight({0, 1, 0}, 0.1f, glm::vec3(0.0f))), plain);
+  const float none = std::numeric_limits<float>::quiet_NaN();
+  for (const NearLight& dark :
+       {sphereLight({0, 1, 0}, 0.1f, glm::vec3(0.0f)), sphereLight({0, 1, 0}, 0.0f, glm::vec3(1.0f)),
+        sphereLight({0, none, 0}, 0.1f, glm::vec3(1.0f)),
+        sphereLight({0, 1, 0}, 0.1f, glm::vec3(std::numeric_limits<float>::infinity()))})
+    EXPECT_EQ(stage.picture(above(0.5f), dark), plain);
   EXPECT_EQ(stage.shadows.draws, 0u);
   EXPECT_NE(stage.picture(above(0.5f), light), plain);
   EXPECT_EQ(stage.picture(above(0.5f), std::span<const NearLight>{}), plain) << "and off again";
