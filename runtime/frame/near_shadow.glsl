@@ -204,7 +204,8 @@ float discVisible(int index, NearRecord light, ShadowReceiver receiver, vec3 sha
   for (int i = 0; i < points; ++i) {
     vec2 unit_place = discPoint(i, count, turns), at = disc.radius * unit_place;
     vec3 ray = at.x * disc.s + at.y * disc.t - receiver.position;
-    float squared = max(dot(ray, ray), kLeastSquared), weight = max(dot(shading_normal, ray), 0.0) / (squared * squared);
+    float squared = max(dot(ray, ray), kLeastSquared);
+    float weight = max(dot(shading_normal, ray), 0.0) / (squared * squared);
     all += weight;
     if (weight <= 0.0 || dot(receiver.horizon, ray) <= 0.0) continue;
     bool blocked = false;

@@ -2,7 +2,10 @@
 #include "near_shared.h"
 #include "near_shadow.glsl"
 
-layout(std140, binding = kBindNearLights) uniform NearBlock { NearView near_view; NearRecord near_lights[kNearLights]; };
+layout(std140, binding = kBindNearLights) uniform NearBlock {
+  NearView near_view;
+  NearRecord near_lights[kNearLights];
+};
 layout(std430, binding = kBindNearDraws) readonly buffer NearDraws { NearDraw near_draws[]; };
 layout(binding = kUnitNearShadows) uniform sampler2D near_shadows;
 
