@@ -38,7 +38,7 @@ float faceArea(const std::array<glm::vec3, 3>& c) {
   return 0.5f * glm::length(glm::cross(c[1] - c[0], c[2] - c[0]));
 }
 
-// The point of a triangle that is nearest to p (Ericson, Real-Time Collision Detection, 5.1.5).
+// The point of a triangle that is nearest to p (Ericson 2005, section 5.1.5).
 glm::vec3 nearestOf(const std::array<glm::vec3, 3>& t, glm::vec3 p) {
   const glm::vec3 ab = t[1] - t[0], ac = t[2] - t[0], ap = p - t[0];
   const float d1 = glm::dot(ab, ap), d2 = glm::dot(ac, ap);
