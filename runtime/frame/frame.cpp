@@ -178,9 +178,10 @@ Result<void> Frame::capture(World& world, const lighting::Environment& environme
     ProxyRadiance& radiance = proxy_radiance_[g];
     if (radiance.version != proxies_.versionOf(g)) {
       radiance.version = proxies_.versionOf(g);
-      // Shaded for another reason than light: all of it may be different.
-      const float change = group_lights_.changeOf(g);
-      radiance.drift += change > 0.0f ? double{change} : 1.0;
+      // Shaded for another reason than light or a turn: all of it may be different.
+      const bool by_light = group_lights_.versionOf(g) != radiance.light;
+      radiance.light = group_lights_.versionOf(g);
+      radiance.drift += by_light ? double{group_lights_.changeOf(g)} : 1.0;
     }
     if (const std::uint32_t body = lit_scene_.groups[g].body; body != lighting::CapturePoint::kNoBody)
       lit_scene_.bodies[body].radiance_drift = radiance.drift;

@@ -106,7 +106,7 @@ class Frame {
   std::optional<lighting::IncidentLight> incident_;  // once there is something to sample
   // How the light that groups send out has changed, summed up.
   struct ProxyRadiance {
-    std::uint64_t version = 0;
+    std::uint64_t version = 0, light = 0;
     double drift = 0.0;
   };
   std::vector<ProxyRadiance> proxy_radiance_;

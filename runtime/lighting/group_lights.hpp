@@ -55,8 +55,9 @@ class GroupLights {
     return groups_[group].samples[sample].version;
   }
   std::uint64_t lampsVersionOf(std::size_t group) const { return groups_[group].lamps_version; }
-  // By how much of itself the group's light changed in the last update, at the sample where it changed most:
-  // 0 where nothing did, at most 1.
+  // By how much of itself the light that arrives at the group changed in the last update, at the sample where
+  // it changed most: 0 where nothing did, at most 1. In world axes: a group that turns under a still light
+  // has 0.
   float changeOf(std::size_t group) const { return groups_[group].change; }
   // Light samples whose coefficients the last update wrote.
   std::uint32_t renewedSamples() const { return renewed_; }
@@ -69,6 +70,7 @@ class GroupLights {
     bool from_environment = false;
     std::uint64_t seen = 0;  // version of the light it was computed from
     std::uint64_t version = 0;
+    sh::LightVector light_ws{1};  // windowed
   };
   struct Group {
     glm::quat world_from_group{1.0f, 0.0f, 0.0f, 0.0f};

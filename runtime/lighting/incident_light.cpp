@@ -172,7 +172,7 @@ bool IncidentLight::somethingMoves(std::span<const IncidentGroup> groups,
 float IncidentLight::changeAround(const Drawn& drawn, const Drawn& now, std::span<const IncidentBody> bodies,
                                   const CapturePoint& point) const {
   if (drawn.environment != now.environment || drawn.lights != now.lights) return kAnew;
-  float change = 0.0f;
+  float change_squared = 0.0f;
   auto then = drawn.seen.begin();
   auto here = now.seen.begin();
   while (then != drawn.seen.end() || here != now.seen.end()) {
@@ -197,11 +197,12 @@ float IncidentLight::changeAround(const Drawn& drawn, const Drawn& now, std::spa
     const float parallax = other ? kOther : std::min(0.5f * bands * moved.angle, kOther);
     const auto drift = static_cast<float>(after.radiance_drift - before.radiance_drift);
     const float share = std::min(0.5f * (1.0f - std::cos(moved.half_angle)) * bands, 1.0f);
-    change += share * body.body.brightness * (parallax + drift);
+    const float part = share * body.body.brightness * (parallax + drift);
+    change_squared += part * part;  // some brighten, some darken
     if (!come) ++then;
     if (!gone) ++here;
   }
-  return change;
+  return std::sqrt(change_squared);
 }
 
 Result<void> IncidentLight::capture(const Environment& environment, std::span<const IncidentGroup> groups,

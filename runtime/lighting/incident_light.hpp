@@ -25,7 +25,7 @@
 namespace lambent::lighting {
 
 inline constexpr float kLeastChange = 1e-3f;
-inline constexpr float kMovingChange = 4e-3f;                  // while things move
+inline constexpr float kMovingChange = 0.02f;                  // while things move
 inline constexpr float kRestingChange = 0.25f * kLeastChange;  // when nothing moves any more
 
 // A body, and how its radiance changes.
