@@ -100,16 +100,17 @@ void expectAsLarge(const bundle::MeshData& mesh, const std::vector<double>& tole
   }
 }
 
+// Which vertices stay is a matter of last bits on a body this even; with 16 triangles that shows.
 TEST(CaptureProxyShape, OfASphereLooksAsLarge) {
-  expectAsLarge(icosphere({2, 0, 0}, 1.0f, 4), {0.01, 0.03, 0.15});
+  expectAsLarge(icosphere({2, 0, 0}, 1.0f, 4), {0.015, 0.03, 0.15});
 }
 
 TEST(CaptureProxyShape, OfATeapotLooksAsLarge) {
-  expectAsLarge(meshOf(assets::teapot(8, 1.0f)), {0.03, 0.06, 0.2});
+  expectAsLarge(meshOf(assets::teapot(8, 1.0f)), {0.02, 0.04, 0.15});
 }
 
 TEST(CaptureProxyShape, OfAKnotLooksAsLarge) {
-  expectAsLarge(meshOf(assets::torusKnot({.cells_along = 120, .cells_around = 12})), {0.05, 0.15, 0.4});
+  expectAsLarge(meshOf(assets::torusKnot({.cells_along = 120, .cells_around = 12})), {0.04, 0.1, 0.3});
 }
 
 TEST(CaptureProxyShape, HasLevelsWithinTheirLimits) {
