@@ -9,6 +9,7 @@
 #include "baker/cli/output.hpp"
 #include "baker/import/gltf.hpp"
 #include "baker/reference/reference.hpp"
+#include "runtime/spec/numbers.hpp"
 #include "runtime/spec/rotate.hpp"
 
 namespace lambent::baker {
@@ -18,7 +19,7 @@ namespace {
 struct ReferenceArguments {
   std::filesystem::path scene, output;
   std::vector<std::string> lights;
-  std::string light_layout, camera, size = "1280x720", band_limit, rotate_light = "0";
+  std::string light_layout, camera, size = "1280x720", band_limit, rotate_light = "0", time;
   reference::Options options;
   bool json = false, force = false, allow_outside = false;
 };
@@ -66,6 +67,15 @@ Result<reference::Request> understand(const ReferenceArguments& a) {
   return request;
 }
 
+// None: at rest.
+Result<std::optional<float>> understandTime(const std::string& word) {
+  if (word.empty()) return std::optional<float>{};
+  const std::optional<float> time = spec::parseNumber(word);
+  if (!time || *time < 0.0f)
+    return fail("--time", fmt::format("\"{}\" is not a time", word), "give seconds of 0 or more, as 1.5");
+  return time;
+}
+
 void print(const ReferenceArguments& a, const reference::Request& request, const reference::Report& r) {
   const double rate = r.seconds > 0.0 ? static_cast<double>(r.rays) / r.seconds : 0.0;
   if (a.json) {
@@ -97,12 +107,18 @@ int runReference(const ReferenceArguments& a) {
     reportError(request.error());
     return kWrongUsage;
   }
+  const auto time = understandTime(a.time);
+  if (!time) {
+    reportError(time.error());
+    return kWrongUsage;
+  }
   const std::stop_source stop;
   const InterruptGuard interrupts(stop);
   Progress progress;
   progress.begin("import");
-  const auto scene = importScene(a.scene, {.allow_outside = a.allow_outside});
+  auto scene = importScene(a.scene, {.allow_outside = a.allow_outside});
   if (!scene) return reportError(scene.error());
+  if (*time) reference::poseAt(*scene, **time);
   for (const std::string& warning : scene->warnings)
     fmt::print(stderr, "lambent: {}: {}\n", a.scene.string(), warning);
   const auto report = [&] {
@@ -124,8 +140,9 @@ void addReferenceCommand(CLI::App& app, Command& run) {
   command->add_option("-o,--output", a->output, "The picture to write, linear OUT.exr")->required();
   command
       ->add_option("--light", a->lights,
-                   "Several add up: a probe file (.hdr, .exr), constant:R,G,B or\nsun:AZ,EL,ANGLE,R[,G,B] "
-                   "(degrees, angular radius, radiance)")
+                   "Several add up: a probe file (.hdr, .exr), constant:R,G,B,\nsun:AZ,EL,ANGLE,R[,G,B] "
+                   "(degrees, angular radius, radiance),\nsphere:X,Y,Z,RADIUS,R[,G,B] or "
+                   "disc:X,Y,Z,NX,NY,NZ,RADIUS,R[,G,B]\n(metres, radiance; unseen by the camera)")
       ->type_name("LIGHT")
       ->take_all()
       ->expected(1);
@@ -133,9 +150,14 @@ void addReferenceCommand(CLI::App& app, Command& run) {
       ->add_option("--light-layout", a->light_layout,
                    "Layout of probes whose shape misleads: lat-long, angular-map\nor vertical-cross")
       ->type_name("LAYOUT");
-  command->add_option("--rotate-light", a->rotate_light, "Turn all lights about +Y (+Z towards +X)")
+  command
+      ->add_option("--rotate-light", a->rotate_light, "Turn all light from infinity about +Y (+Z towards +X)")
       ->capture_default_str()
       ->type_name("DEG");
+  command
+      ->add_option("--time", a->time,
+                   "Play the file's animations to this second (default: the scene at rest)")
+      ->type_name("SECONDS");
   command
       ->add_option("--camera", a->camera,
                    "Name or index of a camera in the file, or orbit:AZ,EL,DIST,FOV\n(default: the file's "

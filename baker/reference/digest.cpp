@@ -78,14 +78,27 @@ void add(const spec::DistantLights& lights, Digest& digest) {
   }
 }
 
+void add(const std::vector<spec::LocalLight>& shapes, Digest& digest) {
+  digest.add(shapes.size());
+  for (const spec::LocalLight& shape : shapes) {
+    digest.add(shape.index());
+    if (const auto* sphere = std::get_if<spec::SphereLight>(&shape))
+      digest.add(sphere->position_ws, sphere->radius_m, sphere->radiance);
+    else if (const auto* disc = std::get_if<spec::DiscLight>(&shape))
+      digest.add(disc->position_ws, disc->normal_ws, disc->radius_m, disc->radiance);
+  }
+}
+
 }  // namespace
 
-std::uint64_t digestOf(const Scene& scene, const spec::DistantLights& lights, const spec::View& view,
+std::uint64_t digestOf(const Scene& scene, const spec::DistantLights& lights,
+                       const std::vector<spec::LocalLight>& shapes, const spec::View& view,
                        const Options& options) {
   Digest digest;
   for (const char c : std::string_view(LAMBENT_VERSION " " LAMBENT_ISA)) digest.add(c);
   add(scene, digest);
   add(lights, digest);
+  add(shapes, digest);
   digest.add(view.view_from_world, view.clip_from_view);
   const BandLimit limit = options.band_limit.value_or(BandLimit{.in = 0, .out = {}});
   digest.add(options.size.width, options.size.height, options.spp, options.seed, limit.in,

@@ -11,7 +11,8 @@
 
 namespace lambent::baker::reference {
 
-std::uint64_t digestOf(const Scene& scene, const spec::DistantLights& lights, const spec::View& view,
+std::uint64_t digestOf(const Scene& scene, const spec::DistantLights& lights,
+                       const std::vector<spec::LocalLight>& shapes, const spec::View& view,
                        const Options& options);
 
 }  // namespace lambent::baker::reference

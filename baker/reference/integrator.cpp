@@ -26,6 +26,8 @@ enum Dimension : std::uint32_t {
   kPerVertex
 };
 constexpr std::uint32_t kPerLayer = kPerVertex * (kMostVertices + 1);
+// Shape i draws from dimensions of its own, beyond those of all layers.
+constexpr std::uint32_t kPerShape = 1u << 20;
 
 float largest(const glm::vec3& v) {
   return std::max({std::abs(v.r), std::abs(v.g), std::abs(v.b)});
@@ -104,6 +106,18 @@ struct Integrator::Walk {
                   (s.value / pdf * powerHeuristic(pdf, s.pdf)));
   }
 
+  void lightFromShapes(std::size_t p, bool first) {
+    const Path& path = paths[p];
+    for (std::uint32_t i = 0; i < world.shapes.size(); ++i) {
+      const glm::vec2 u = samplers[path.replica].pair(dimension + (i + 1) * kPerShape, path.index);
+      const auto way = sampleShape(world.shapes[i], path.at.origin(), u);
+      if (!way) continue;
+      const Scattering s = scattering(path.at, way->dir, first);
+      addShadow(p, way->dir, way->distance * kShadowReach,
+                path.throughput * way->radiance * (s.value / way->pdf * powerHeuristic(way->pdf, s.pdf)));
+    }
+  }
+
   // One of them, by what it would give without shadows.
   void lightFromPunctual(std::size_t p, bool first) {
     const Path& path = paths[p];
@@ -138,6 +152,7 @@ struct Integrator::Walk {
       if (!paths[p].alive) continue;
       if (world.environment.sampled()) lightFromSky(p, first);
       if (!world.emissive.empty()) lightFromEmissive(p, first);
+      lightFromShapes(p, first);
       if (!world.punctual.empty()) lightFromPunctual(p, first);
     }
     rays.clear();
@@ -184,6 +199,14 @@ struct Integrator::Walk {
     path.sum += path.throughput * sky.radiance * weight;
   }
 
+  // Shapes that the ray passes before it meets a surface at `far`.
+  void addShapes(Path& path, float far) const {
+    for (const spec::LocalLight& shape : world.shapes)
+      if (const auto way = lookAtShape(shape, path.at.origin(), path.dir);
+          way && way->distance * kShadowReach < far)
+        path.sum += path.throughput * way->radiance * powerHeuristic(path.pdf, way->pdf);
+  }
+
   void addEmitted(Path& path, const Hit& hit, const SurfacePoint& there) const {
     if (there.emitted == glm::vec3(0.0f)) return;
     const glm::vec3 to = there.position - path.at.origin();
@@ -202,6 +225,7 @@ struct Integrator::Walk {
     traced += rays.size();
     for (std::size_t i = 0; i < rays.size(); ++i) {
       Path& path = paths[ray_path[i]];
+      addShapes(path, hits[i].any() ? hits[i].t : kInfinity);
       if (!hits[i].any()) {
         addSky(path);
         path.alive = false;
@@ -245,7 +269,7 @@ struct Integrator::Walk {
       if (!options.bounces && vertex > kFirstRoulette) playRoulette();
       gatherLights(vertex == 0);
       scatter(vertex == 0);
-      if (vertex == last && world.emissive.empty()) {
+      if (vertex == last && world.emissive.empty() && world.shapes.empty()) {
         if (!world.environment.dark()) lookAtSky();
         return;
       }

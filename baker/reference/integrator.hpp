@@ -1,8 +1,9 @@
 // Paths: what one pixel's samples see. At every diffuse vertex: one direction by the cosine, weighed against
-// one towards discs and probes, one point on an emissive triangle and one punctual light (Veach's multiple
-// importance sampling, power heuristic). All samples of a pixel that are asked for together walk in step, so
-// that their rays travel in packets. A pixel's samples belong to two independent replicas in turn, which
-// gives the error of their mean without bias. One Integrator serves all threads.
+// one towards discs and probes, one towards each sphere and disc of light in the scene, one point on an
+// emissive triangle and one punctual light (Veach's multiple importance sampling, power heuristic). All
+// samples of a pixel that are asked for together walk in step, so that their rays travel in packets. A
+// pixel's samples belong to two independent replicas in turn, which gives the error of their mean without
+// bias. One Integrator serves all threads.
 #pragma once
 
 #include <array>
@@ -15,6 +16,7 @@
 #include "baker/reference/options.hpp"
 #include "baker/reference/ray_tracer.hpp"
 #include "baker/reference/sampler.hpp"
+#include "baker/reference/shape_lights.hpp"
 
 namespace lambent::baker::reference {
 
@@ -25,6 +27,7 @@ struct World {
   const Environment& environment;
   const EmissiveTriangles& emissive;
   const std::vector<PunctualLight>& punctual;
+  const std::vector<spec::LocalLight>& shapes;
   EyeRays eye;
 };
 

@@ -8,6 +8,7 @@
 #include "baker/reference/integrator.hpp"
 #include "baker/work/parallel.hpp"
 #include "runtime/base/atomic_file.hpp"
+#include "runtime/bundle/keyframes.hpp"
 
 namespace lambent::baker::reference {
 
@@ -90,6 +91,12 @@ void takeUp(Film& film, const fs::path& checkpoint, bool force, Report& report) 
 
 }  // namespace
 
+void poseAt(Scene& scene, float time_s) {
+  if (scene.animations.empty())
+    scene.warnings.emplace_back("It has no animations: it looks the same at all times.");
+  gltf::applyAnimations(scene.animations, time_s, scene.nodes);
+}
+
 fs::path checkpointOf(const fs::path& output) {
   if (output.empty()) return {};
   fs::path checkpoint = output;
@@ -108,11 +115,15 @@ Result<Report> render(const Scene& scene, const Request& request, const fs::path
   auto lights = spec::loadDistantLights(request.lights);
   if (!lights) return failAgain(std::move(lights.error()));
   report.notices = lights->notices;
+  const std::vector<spec::LocalLight> shapes = spec::localLights(request.lights);
+  if (options.band_limit && !shapes.empty())
+    return fail("--band-limit", "holds for light from infinity, but a sphere or disc of light is near",
+                "leave it out, or take a sun: instead");
   auto surfaces = Surfaces::build(scene);
   if (!surfaces) return failAgain(std::move(surfaces.error()));
   const auto view = viewOf(scene, *surfaces, request.camera, options.size.aspect());
   if (!view) return failAgain(view.error());
-  Film film(options.size, digestOf(scene, *lights, *view, options));
+  Film film(options.size, digestOf(scene, *lights, shapes, *view, options));
   const Environment environment(std::move(*lights), options.rotate_light_deg,
                                 options.band_limit ? options.band_limit->in : 0);
   const EmissiveTriangles emissive(*surfaces);
@@ -133,6 +144,7 @@ Result<Report> render(const Scene& scene, const Request& request, const fs::path
                       .environment = environment,
                       .emissive = emissive,
                       .punctual = punctual,
+                      .shapes = shapes,
                       .eye = EyeRays(*view, options.size)};
     std::uint64_t left = 0;
     for (std::uint32_t y = 0; y < options.size.height; ++y)

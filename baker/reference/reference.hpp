@@ -36,11 +36,15 @@ struct Report {
   std::vector<std::string> notices;      // what was repaired or put aside, a sentence each
 };
 
+// Moves the nodes to where the scene's animations have them at time_s; until then it stands at rest. Warns in
+// the scene where there is nothing to move.
+void poseAt(Scene& scene, float time_s);
+
 std::filesystem::path checkpointOf(const std::filesystem::path& output);
 
-// Without output: neither a checkpoint nor a picture on disk. force: an earlier checkpoint does not count.
-// Errors: options, a probe, a texture, no such camera, an output that cannot be written; stopped, with what
-// is done kept in the checkpoint.
+// Of the scene as its nodes stand. Without output: neither a checkpoint nor a picture on disk. force: an
+// earlier checkpoint does not count. Errors: options, a probe, a texture, no such camera, an output that
+// cannot be written; stopped, with what is done kept in the checkpoint.
 Result<Report> render(const Scene& scene, const Request& request, const std::filesystem::path& output,
                       bool force, Progress& progress, const std::stop_token& stop);
 

@@ -2,88 +2,123 @@
 // the bodies of other rigid groups are drawn into a small cube map in world axes, and that is projected to
 // spherical harmonics on the GPU. Comes in: the environment, bodies as capture proxies with a radiance per
 // triangle, points. Goes out, some frames later: per point the light that arrives there and how much of each
-// analytic light is not hidden. Analytic lights never pass through the texels. Errors: shaders that do not
-// compile on this device.
+// analytic light is not hidden. Analytic lights never pass through the texels. How: docs/decisions/016.
+// Errors: shaders that do not compile on this device.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
 
-#include <glm/mat4x4.hpp>
-#include <glm/vec3.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/vec4.hpp>
 
 #include "runtime/base/result.hpp"
 #include "runtime/bundle/capture_proxy.hpp"
 #include "runtime/gpu/objects.hpp"
+#include "runtime/gpu/program.hpp"
+#include "runtime/lighting/capture_plan.hpp"
+#include "runtime/lighting/capture_queries.hpp"
+#include "runtime/lighting/capture_readback.hpp"
+#include "runtime/lighting/capture_scene.hpp"
+#include "runtime/lighting/capture_sky.hpp"
 #include "runtime/lighting/environment.hpp"
 #include "runtime/sh/light_vector.hpp"
 
 namespace lambent::lighting {
 
-struct CaptureOptions {
-  std::uint32_t size = 16;        // texels along an edge of a cube map, 4..64
-  std::uint32_t subsamples = 16;  // along an edge of a texel, 1..16
-  int order = 6;                  // bands of the light that comes out
-  bool operator==(const CaptureOptions&) const = default;
-};
-
-// A body where it stands now. Its proxy is one of those given to setProxies.
-struct CaptureBody {
-  std::uint32_t proxy = 0;
-  glm::mat4 world_from_proxy{1.0f};
-  // Bodies under a quarter of a texel are left out; one that shines this many times brighter than its
-  // surroundings, only when it is as many times smaller.
-  float brightness = 1.0f;
-};
-
-// A light that goes to harmonics in closed form, as seen from a point: what of it is not hidden?
-struct LightQuery {
-  glm::vec3 direction{0.0f, 1.0f, 0.0f};  // unit, world, towards it
-  float angular_radius_rad = 0.0f;        // 0: a single direction
-  float distance_m = 0.0f;                // bodies farther away do not hide it; 0: at infinity
-  glm::vec3 radiance{0.0f};  // of a disc that is partly hidden, for its shape; 0 for single directions
-};
-
-struct CapturePoint {
-  static constexpr std::uint32_t kNoBody = 0xffffffffu;
-  glm::vec3 position_ws{0.0f};
-  std::uint32_t own_body = kNoBody;  // index into the bodies; does not see itself
-  std::vector<LightQuery> queries;
-};
-
-struct CapturedLight {
-  // World axes. Sky (without its discs) and bodies; where a disc of a query is partly hidden, also what is
-  // then wrong with `visible` times the whole disc.
-  sh::LightVector light;
-  glm::vec3 sky_visible{1.0f};  // share of the sky's light that no body hides
-  std::vector<float> visible;   // per query, 0..1
-};
-
 class Capture {
  public:
   static Result<Capture> create(const CaptureOptions& options, const Environment& environment);
+  const CaptureOptions& options() const { return options_; }
 
-  // All proxies anew; triangles are numbered through them in their order.
+  // All proxies anew; triangles are numbered through them in their order. Not to be called while pending().
   void setProxies(std::span<const bundle::CaptureProxy* const> proxies, gpu::Counters& counters);
-  std::uint32_t firstTriangle(std::size_t proxy) const;
-  std::uint32_t triangleCount() const;
+  std::uint32_t firstTriangle(std::size_t proxy) const { return proxies_[proxy].first_triangle; }
+  std::uint32_t triangleCount() const { return triangle_count_; }
 
   // Whether a body at this place would be drawn at all for this point.
   bool sees(const CapturePoint& point, const CaptureBody& body) const;
 
-  // Draws and projects; one draw and one dispatch per page of cube maps. triangle_radiance: vec4 per
-  // triangle. Not to be called while pending().
+  // Draws and projects; per page of cube maps at most two draws (surfaces with and without a dark side)
+  // and two dispatches, and two when the environment changed. triangle_radiance: vec4 per triangle;
+  // what is not finite counts as black. Points that see no body cost the GPU nothing. Not to be called while
+  // pending(). Changes the bound framebuffer, viewport, depth and culling state. Errors: called while
+  // pending; fewer radiances than triangles.
   Result<void> run(const Environment& environment, std::span<const CaptureBody> bodies,
                    std::span<const CapturePoint> points, const gpu::Buffer& triangle_radiance,
                    gpu::Counters& counters);
-  bool pending() const;
-  // The light of the last run, one per point; none while the GPU is still at it, unless told to wait.
+  bool pending() const { return pending_; }
+  // The light of the last run, one per point; none while the GPU is still at it, unless told to wait, or
+  // where nothing was run.
   std::optional<std::vector<CapturedLight>> take(bool wait);
 
+  // Of the last run: what its cube maps took. Pixels are subsamples.
+  struct Load {
+    std::uint32_t pages = 0, points = 0, tiles = 0, draws = 0;
+    std::uint64_t triangles = 0, pixels = 0;
+  };
+  const Load& load() const { return load_; }
+  // The sky as it comes through the texels, turned in any way, without the correction to the exact light:
+  // measures the texels. Waits for the GPU; not to be called while pending().
+  sh::LightVector skyThroughTexels(const Environment& environment, const glm::mat3& world_from_light);
+
  private:
-  Capture() = default;
+  struct Level {
+    std::uint32_t first_vertex = 0;
+    // Corners, as vertices of the level. Of a closed surface seen from outside no dark side can show.
+    std::vector<std::uint32_t> two_sided, front_only;
+    bool closed = false;
+  };
+  struct Proxy {
+    std::uint32_t first_triangle = 0;
+    std::vector<Level> levels;
+  };
+  struct IndexRange {
+    std::uint32_t first = 0, count = 0;
+  };
+  // What take() needs of the run.
+  struct Run {
+    std::vector<CapturePoint> points;
+    std::vector<std::uint32_t> records;                    // per point its record on the GPU, or kNoRecord
+    std::vector<std::uint32_t> uncovered;                  // per record: texels that no tile covers
+    std::vector<std::uint32_t> first_texels, first_words;  // per record, and the end
+    std::size_t word_count = 0;
+    std::size_t results_at = 0, hidden_at = 0, sky_at = 0;  // in the readback
+    bool new_sky = false;
+    sh::LightVector sky;
+  };
+
+  explicit Capture(const CaptureOptions& options);
+  sh::LightVector lightFrom(std::span<const glm::vec4> coefficients) const;
+  void upload(const capture::Plan& plan, std::span<const CaptureBody> bodies,
+              std::span<const CapturePoint> points, gpu::Counters& counters);
+  void drawPage(const capture::Page& page, std::size_t index, gpu::Counters& counters);
+  void projectPage(const capture::Page& page, const gpu::Buffer& triangle_radiance, gpu::Counters& counters);
+
+  CaptureOptions options_;
+  CaptureSky sky_;
+  gpu::Program draw_program_, resolve_program_, project_program_;
+  gpu::Texture ids_, depths_;
+  gpu::Framebuffer atlas_;
+  gpu::VertexArray array_;
+  gpu::Table vertices_, draws_, indices_, points_, texels_, values_, lookups_, results_, hidden_;
+  gpu::Buffer weights_;
+  using View = gpu::Handle<gpu::TextureTraits>;
+  View vertices_view_, draws_view_, values_view_, texels_view_, weights_view_;
+  capture::Readback readback_;
+  std::vector<Proxy> proxies_;
+  std::vector<capture::ProxyBounds> bounds_;
+  std::uint32_t triangle_count_ = 0;
+  std::vector<std::array<IndexRange, 2>> page_indices_;  // per page: two-sided, front only
+
+  bool pending_ = false;
+  Run run_;
+  bool sky_is_new_ = false;
+  sh::LightVector sky_through_texels_;  // as projected from the sky's cube
+  Load load_;
 };
 
 }  // namespace lambent::lighting

@@ -113,9 +113,9 @@ struct CameraComponent {
   }
 };
 
-// A light that belongs to a rigid group, as bundle::GroupLight: it gives colour x strength, radiance of an
-// emissive material or intensity of a lamp. Lit anew at once, with the shadows and bounces that were baked
-// for it.
+// An emissive material of a rigid group, as bundle::GroupLight: it gives colour x strength as radiance. Lit
+// anew at once, with the shadows and bounces that were baked for it. Lamps have a LocalLightComponent
+// instead.
 struct LampComponent {
   std::uint32_t bundle = 0, group = 0, column = 0;
   glm::vec3 color{1.0f};  // linear; the bundle's at first

@@ -26,6 +26,7 @@ class Instantiation {
     makeGroups();
     makeDraws();
     makeLamps();
+    makeAnimations();
     return std::move(instance_);
   }
 
@@ -47,8 +48,16 @@ class Instantiation {
       Transform transform;
       transform.parent = nodeOrRoot(node.parent);
       setLocalMatrix(transform, node.parent_from_node);
+      if (node.trs) {  // the very parts that animations replace one by one
+        transform.translation = node.trs->translation;
+        transform.rotation = node.trs->rotation;
+        transform.scale = node.trs->scale;
+        transform.shear = glm::vec3(0.0f);
+      }
       registry_.emplace<Transform>(instance_.nodes[i], transform);
       if (node.camera >= 0) makeCamera(instance_.nodes[i], static_cast<std::uint32_t>(node.camera));
+      if (node.light >= 0)
+        makeLight(instance_.nodes[i], description_.lights[static_cast<std::size_t>(node.light)]);
     }
     // Ids chain from parent to child: parents first. Roots and children keep the file's order, by which
     // siblings of the same name are told apart.
@@ -76,6 +85,18 @@ class Instantiation {
                                                                .ymag = camera.ymag,
                                                                .znear = camera.znear,
                                                                .zfar = camera.zfar});
+  }
+
+  void makeLight(ecs::Entity entity, const gltf::Light& light) {
+    using Kind = LocalLightComponent::Kind;
+    constexpr Kind kKinds[] = {Kind::Directional, Kind::Point, Kind::Spot};
+    registry_.emplace<LocalLightComponent>(
+        entity, LocalLightComponent{.kind = kKinds[static_cast<std::size_t>(light.type)],
+                                    .color = light.color,
+                                    .strength = light.intensity,
+                                    .range_m = light.range_m,
+                                    .inner_cone_rad = light.inner_cone_rad,
+                                    .outer_cone_rad = light.outer_cone_rad});
   }
 
   void makeGroups() {
@@ -131,19 +152,33 @@ class Instantiation {
       instance_.lamps.emplace_back();
       const auto& lights = description_.groups[g].lights;
       for (std::uint32_t k = 0; k < lights.size(); ++k) {
+        // A lamp is its node: one light, whether it shines on its own group or on others. An emissive
+        // material is one lamp in each group that it lights.
+        if (lights[k].kind == Kind::Node) {
+          instance_.lamps.back().push_back(instance_.nodes[lights[k].index]);
+          continue;
+        }
         const ecs::Entity entity = registry_.create();
         instance_.lamps.back().push_back(entity);
         registry_.emplace<LampComponent>(
             entity, LampComponent{
                         .bundle = options_.bundle_index, .group = g, .column = k, .color = lights[k].color});
-        // An emissive material is one lamp in each group that it lights; a lamp is told by its node.
-        const bool material = lights[k].kind == Kind::Material;
-        const std::string& name = material ? description_.materials[lights[k].index].name
-                                           : description_.nodes[lights[k].index].name;
+        const std::string& name = description_.materials[lights[k].index].name;
         registry_.emplace<Name>(entity, name);
-        giveId(entity, material ? instance_.groups[g] : instance_.nodes[lights[k].index], StableKind::Lamp,
-               name);
+        giveId(entity, instance_.groups[g], StableKind::Lamp, name);
       }
+    }
+  }
+
+  void makeAnimations() {
+    for (std::uint32_t i = 0; i < description_.animations.size(); ++i) {
+      const std::string& name = description_.animations[i].name;
+      const ecs::Entity entity = registry_.create();
+      instance_.animations.push_back(entity);
+      registry_.emplace<AnimationComponent>(
+          entity, AnimationComponent{.bundle = options_.bundle_index, .animation = i});
+      registry_.emplace<Name>(entity, name);
+      giveId(entity, instance_.root, StableKind::Animation, name);
     }
   }
 
@@ -179,10 +214,11 @@ Result<SceneInstance> instantiate(ecs::Registry& registry, const bundle::Descrip
 }
 
 void destroyInstance(ecs::Registry& registry, const SceneInstance& instance) {
+  // Lamps may be nodes: what is destroyed twice is destroyed once.
   for (const auto& lamps : instance.lamps) {
     for (const ecs::Entity entity : lamps) registry.destroy(entity);
   }
-  for (const auto* list : {&instance.draws, &instance.groups, &instance.nodes}) {
+  for (const auto* list : {&instance.animations, &instance.draws, &instance.groups, &instance.nodes}) {
     for (const ecs::Entity entity : *list) registry.destroy(entity);
   }
   registry.destroy(instance.root);

@@ -1,8 +1,8 @@
 // A bundle's description as entities: one root that places the whole, one entity per node (Name, StableId,
-// Transform, CameraComponent where it carries one), one per rigid group, one per draw and one per light of a
-// group. Several bundles,
-// and one bundle several times under different instance numbers, may stand in one registry. Payloads are not
-// touched: streaming brings them.
+// Transform, CameraComponent and LocalLightComponent where it carries one), one per rigid group, per draw,
+// per emissive material in a group that it lights, and per animation. Several bundles, and one bundle several
+// times under different instance numbers, may stand in one registry. Payloads are not touched: streaming
+// brings them.
 #pragma once
 
 #include <cstdint>
@@ -27,7 +27,10 @@ struct SceneInstance {
   std::vector<ecs::Entity> nodes;
   std::vector<ecs::Entity> groups;
   std::vector<ecs::Entity> draws;
-  std::vector<std::vector<ecs::Entity>> lamps;  // of each group, by light column
+  // Of each group, by light column: an entity with a LampComponent for a material, the node with its
+  // LocalLightComponent for a lamp.
+  std::vector<std::vector<ecs::Entity>> lamps;
+  std::vector<ecs::Entity> animations;
 };
 
 // World matrices and groups are up to date on return (updateTransforms has run over the registry). The

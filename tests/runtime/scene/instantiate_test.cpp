@@ -243,22 +243,37 @@ TEST(Instantiate, GivesEachLightOfAGroupAnEntityThatKeepsItsId) {
   Hall hall;
   hall.d.materials[1].name = "glow";
   using Kind = bundle::GroupLight::Kind;
+  hall.d.lights = {{.name = "eye",
+                    .type = gltf::Light::Type::Spot,
+                    .color = {0.5f, 1.0f, 1.5f},
+                    .intensity = 2.0f,
+                    .range_m = 7.0f,
+                    .inner_cone_rad = 0.1f,
+                    .outer_cone_rad = 0.2f}};
+  hall.d.nodes[static_cast<std::size_t>(hall.eye)].light = 0;
   hall.d.groups[0].lights = {{Kind::Node, static_cast<std::uint32_t>(hall.eye), {1.0f, 2.0f, 3.0f}},
                              {Kind::Material, 1, {5.0f, 0.0f, 0.0f}}};
   hall.d.groups[1].lights = {{Kind::Material, 1, {5.0f, 0.0f, 0.0f}}};
   ecs::Registry registry, again;
   const SceneInstance scene = instance(registry, hall.d);
-  EXPECT_EQ(registry.entityCount(), 1 + 5 + 2 + 6 + 3u);
+  EXPECT_EQ(registry.entityCount(), 1 + 5 + 2 + 6 + 2u) << "a lamp is its node";
   ASSERT_EQ(scene.lamps.size(), 2u);
   ASSERT_EQ(scene.lamps[0].size(), 2u);
-  const auto& lamp = registry.get<LampComponent>(scene.lamps[0][0]);
-  EXPECT_EQ(lamp.color, glm::vec3(1.0f, 2.0f, 3.0f));
-  EXPECT_EQ(lamp.radiance(), lamp.color);
+  EXPECT_EQ(scene.lamps[0][0], nodeOf(scene, hall.eye));
+  EXPECT_FALSE(registry.has<LampComponent>(scene.lamps[0][0]));
+  const auto& lamp = registry.get<LocalLightComponent>(scene.lamps[0][0]);
+  EXPECT_EQ(lamp.kind, LocalLightComponent::Kind::Spot);
+  EXPECT_EQ(lamp.power(), glm::vec3(1.0f, 2.0f, 3.0f));
+  EXPECT_EQ(lamp.range_m, 7.0f);
+  EXPECT_EQ(lamp.inner_cone_rad, 0.1f);
+  EXPECT_EQ(lamp.outer_cone_rad, 0.2f);
   EXPECT_EQ(registry.get<LampComponent>(scene.lamps[0][1]).column, 1u);
   EXPECT_EQ(registry.get<LampComponent>(scene.lamps[1][0]).group, 1u);
   EXPECT_EQ(registry.get<Name>(scene.lamps[1][0]).value, "glow");
-  registry.edit<LampComponent>(scene.lamps[0][0]).enabled = false;
-  EXPECT_EQ(registry.get<LampComponent>(scene.lamps[0][0]).radiance(), glm::vec3(0.0f));
+  registry.edit<LampComponent>(scene.lamps[0][1]).enabled = false;
+  EXPECT_EQ(registry.get<LampComponent>(scene.lamps[0][1]).radiance(), glm::vec3(0.0f));
+  registry.edit<LocalLightComponent>(scene.lamps[0][0]).enabled = false;
+  EXPECT_EQ(registry.get<LocalLightComponent>(scene.lamps[0][0]).power(), glm::vec3(0.0f));
   // Another light before it in the group moves its column, not its id.
   std::swap(hall.d.groups[0].lights[0], hall.d.groups[0].lights[1]);
   const SceneInstance other = instance(again, hall.d);
@@ -289,7 +304,8 @@ TEST(Instantiate, TwiceNeedsAnotherInstanceNumberAndDestructionTakesOnlyItsOwn) 
 
 template <class Component>
 class DeclaredFields : public ::testing::Test {};
-using Components = ::testing::Types<Name, Transform, CameraComponent, EnvironmentComponent, LampComponent>;
+using Components = ::testing::Types<Name, Transform, CameraComponent, EnvironmentComponent, LampComponent,
+                                    LocalLightComponent, AnimationComponent>;
 TYPED_TEST_SUITE(DeclaredFields, Components);
 
 TYPED_TEST(DeclaredFields, HaveTheComponentsOwnDefaultsInsideTheirRangesUnderNamesOfTheirOwn) {

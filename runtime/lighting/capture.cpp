@@ -1,0 +1,450 @@
+#include "runtime/lighting/capture.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <string>
+
+#include <glm/mat4x4.hpp>
+#include <glm/vec4.hpp>
+
+#include "lambent_lighting_embedded.hpp"
+#include "runtime/lighting/capture_closed.hpp"
+#include "runtime/lighting/capture_combine.hpp"
+#include "runtime/lighting/capture_shared.h"
+#include "runtime/lighting/capture_table.hpp"
+#include "runtime/sh/cube_map.hpp"
+#include "runtime/sh/projection.hpp"
+
+namespace lambent::lighting {
+
+namespace {
+
+using namespace capture;
+
+constexpr gpu::FindText kShaders[] = {&embedded::lambent_lighting::find};
+// As in capture.vert, capture_resolve.comp and capture_project.comp.
+constexpr GLint kClipFromPixel = 0;
+constexpr GLint kFirstTexel = 0, kTexelCount = 1, kFirstWord = 2, kWordCount = 3, kSubsamples = 4;
+constexpr GLint kFirstPoint = 0;
+constexpr std::uint32_t kMaxGroups = 65535;  // that OpenGL promises
+constexpr std::uint32_t kNoRecord = 0xffffffffu;
+
+using Vertex = std::array<std::uint32_t, 4>;  // position as bits of floats, surface id
+
+bool finite(const glm::vec3& v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+// The vertices of one level. A triangle's id comes from its last corner, so each triangle needs one that is
+// last in no other; of closed meshes, with half as many vertices as triangles, about half are doubled.
+class LevelVertices {
+ public:
+  LevelVertices(const bundle::CaptureProxy& proxy, std::vector<Vertex>& vertices)
+      : proxy_(proxy), vertices_(vertices), first_(vertices.size()), slots_(proxy.positions.size(), kNone) {}
+
+  void add(std::uint32_t surface_id, std::array<std::uint32_t, 3> corners,
+           std::vector<std::uint32_t>& indices) {
+    for (int turn = 0; turn < 3 && !isFree(corners[2]); ++turn)
+      std::rotate(corners.begin(), corners.begin() + 1, corners.end());
+    std::uint32_t last = slots_[corners[2]];
+    if (!isFree(corners[2])) {
+      last = make(corners[2]);
+    } else if (last == kNone) {
+      last = slots_[corners[2]] = make(corners[2]);
+    }
+    vertices_[first_ + last][3] = surface_id;
+    for (const std::size_t k : {0u, 1u}) {
+      if (slots_[corners[k]] == kNone) slots_[corners[k]] = make(corners[k]);
+      indices.push_back(slots_[corners[k]]);
+    }
+    indices.push_back(last);
+  }
+
+ private:
+  static constexpr std::uint32_t kNone = 0xffffffffu;
+
+  bool isFree(std::uint32_t corner) const {
+    return slots_[corner] == kNone || vertices_[first_ + slots_[corner]][3] == 0;
+  }
+  std::uint32_t make(std::uint32_t corner) {
+    const glm::vec3& p = proxy_.positions[corner];
+    vertices_.push_back({std::bit_cast<std::uint32_t>(p.x), std::bit_cast<std::uint32_t>(p.y),
+                         std::bit_cast<std::uint32_t>(p.z), 0});
+    return static_cast<std::uint32_t>(vertices_.size() - 1 - first_);
+  }
+
+  const bundle::CaptureProxy& proxy_;
+  std::vector<Vertex>& vertices_;
+  std::size_t first_;
+  std::vector<std::uint32_t> slots_;  // per position of the proxy
+};
+static_assert(3 * bundle::kMaxProxyTriangles <= 1u << kVertexBits);
+
+void put(float (&row)[4], const glm::dvec4& value) {
+  for (int i = 0; i < 4; ++i) row[i] = static_cast<float>(value[i]);
+}
+
+DrawRecord drawRecord(const CaptureOptions& options, const Tile& tile, const CaptureBody& body,
+                      const PlannedPoint& planned, const glm::vec3& point_ws, std::uint32_t page_height) {
+  glm::dmat4 point_from_proxy(body.world_from_proxy);
+  point_from_proxy[3] -= glm::dvec4(glm::dvec3(point_ws), 0.0);
+  // Face coordinates, x = sc w and y = tc w, in units of the near plane's distance.
+  const glm::dmat4 rows = glm::transpose(glm::dmat4(faceFromWorld(tile.face)) * point_from_proxy) *
+                          (1.0 / double{planned.near_m});
+  // The face's square, scaled and moved so that the tile comes to lie in its place.
+  const double face_pixels = options.size * options.subsamples;
+  const auto placed = [&](const glm::dvec4& along, std::uint32_t at, std::uint32_t texel,
+                          double atlas_pixels) {
+    const double offset = 2.0 * (1.0 * at - 1.0 * texel * options.subsamples) + face_pixels;
+    return along * (face_pixels / atlas_pixels) + rows[2] * (offset / atlas_pixels - 1);
+  };
+  DrawRecord record{};
+  put(record.clip_x, placed(rows[0], tile.x, tile.texels.x0, kAtlasWidth));
+  put(record.clip_y, placed(rows[1], tile.y, tile.texels.y0, page_height));
+  put(record.clip_w, rows[2]);
+  record.tile_x = tile.x | (tile.x + tile.texels.width() * options.subsamples) << 16;
+  record.tile_y = tile.y | (tile.y + tile.texels.height() * options.subsamples) << 16;
+  return record;
+}
+
+}  // namespace
+
+Capture::Capture(const CaptureOptions& options)
+    : options_(options),
+      vertices_("capture vertices"),
+      draws_("capture draws"),
+      indices_("capture indices"),
+      points_("capture points"),
+      texels_("capture texels"),
+      values_("capture values"),
+      lookups_("capture lookups"),
+      results_("capture results"),
+      hidden_("capture hidden lights") {}
+
+Result<Capture> Capture::create(const CaptureOptions& options, const Environment& environment) {
+  if (options.size < 4 || options.size > 64)
+    return fail("light capture", "a size of " + std::to_string(options.size), "4 to 64 texels");
+  if (options.subsamples < 1 || options.subsamples > 16)
+    return fail("light capture", std::to_string(options.subsamples) + " subsamples", "1 to 16");
+  if (options.order < 1 || options.order > sh::kMaxOrder)
+    return fail("light capture", "order " + std::to_string(options.order), "1 to 8");
+  Capture capture(options);
+  // [texel][coefficient]: the lanes of a work group read one texel's weights together.
+  const std::vector<float> weights = sh::cubeWeights(options.order, static_cast<int>(options.size));
+  const std::size_t count = static_cast<std::size_t>(sh::coefficientCount(options.order)),
+                    texels = weights.size() / count;
+  std::vector<float> by_texel(weights.size());
+  for (std::size_t i = 0; i < count; ++i)
+    for (std::size_t k = 0; k < texels; ++k) by_texel[k * count + i] = weights[i * texels + k];
+  capture.weights_ = gpu::Buffer("capture weights", by_texel.size() * sizeof(float));
+  capture.weights_.write(0, std::span<const float>(by_texel));
+  auto sky = CaptureSky::create(options, environment);
+  if (!sky) return failAgain(sky.error());
+  capture.sky_ = std::move(*sky);
+  auto draw = gpu::Program::create(
+      "capture", {{GL_VERTEX_SHADER, "capture.vert"}, {GL_FRAGMENT_SHADER, "capture.frag"}}, kShaders);
+  if (!draw) return failAgain(draw.error());
+  capture.draw_program_ = std::move(*draw);
+  auto resolve =
+      gpu::Program::create("capture resolve", {{GL_COMPUTE_SHADER, "capture_resolve.comp"}}, kShaders);
+  if (!resolve) return failAgain(resolve.error());
+  capture.resolve_program_ = std::move(*resolve);
+  const gpu::Define order{"ORDER", std::to_string(options.order)};
+  auto project = gpu::Program::create("capture projection", {{GL_COMPUTE_SHADER, "capture_project.comp"}},
+                                      kShaders, std::span(&order, 1));
+  if (!project) return failAgain(project.error());
+  capture.project_program_ = std::move(*project);
+  capture.array_ = gpu::VertexArray("capture");
+  return capture;
+}
+
+void Capture::setProxies(std::span<const bundle::CaptureProxy* const> proxies, gpu::Counters& counters) {
+  proxies_.clear();
+  bounds_.clear();
+  triangle_count_ = 0;
+  std::vector<Vertex> vertices;
+  for (const bundle::CaptureProxy* proxy : proxies) {
+    bounds_.push_back(ProxyBounds::of(*proxy));
+    Proxy made{.first_triangle = triangle_count_, .levels = {}};
+    for (const bundle::ProxyLevel& level : proxy->levels) {
+      Level& drawn = made.levels.emplace_back();
+      drawn.first_vertex = static_cast<std::uint32_t>(vertices.size());
+      drawn.closed = isClosed(*proxy, level);
+      LevelVertices add(*proxy, vertices);
+      for (std::uint32_t t = level.first_triangle; t < level.first_triangle + level.triangle_count; ++t) {
+        const bundle::ProxyTriangle& triangle = proxy->triangles[t];
+        const auto usable = [&](std::uint32_t v) { return finite(proxy->positions[v]); };
+        if (!std::all_of(triangle.vertices.begin(), triangle.vertices.end(), usable)) continue;
+        add.add(triangle_count_ + t + 1, triangle.vertices,
+                triangle.front_only ? drawn.front_only : drawn.two_sided);
+      }
+    }
+    proxies_.push_back(std::move(made));
+    triangle_count_ += static_cast<std::uint32_t>(proxy->triangles.size());
+  }
+  vertices_.assign(std::span<const Vertex>(vertices));
+  counters.uploaded_bytes += vertices.size() * sizeof(Vertex);
+}
+
+bool Capture::sees(const CapturePoint& point, const CaptureBody& body) const {
+  return body.proxy < bounds_.size() && capture::sees(options_, point, body, bounds_[body.proxy]);
+}
+
+Result<void> Capture::run(const Environment& environment, std::span<const CaptureBody> bodies,
+                          std::span<const CapturePoint> points, const gpu::Buffer& triangle_radiance,
+                          gpu::Counters& counters) {
+  if (pending_) return fail("light capture", "started again before the last one was taken");
+  if (triangle_radiance.byteCount() < std::size_t{triangle_count_} * sizeof(glm::vec4))
+    return fail("light capture", "fewer radiances than the proxies have triangles");
+  const gpu::DebugGroup group("light capture");
+  sky_is_new_ = sky_.update(environment, weights_, counters) || sky_is_new_;
+  const Plan plan = capture::plan(options_, bounds_, bodies, points);
+
+  run_ = {};
+  run_.points.assign(points.begin(), points.end());
+  run_.sky = environment.skyLight().truncated(options_.order);
+  run_.records.assign(points.size(), kNoRecord);
+  for (std::uint32_t r = 0; r < plan.points.size(); ++r) run_.records[plan.points[r].point] = r;
+  load_ = {};
+  pending_ = true;
+  if (plan.points.empty()) return {};
+
+  upload(plan, bodies, points, counters);
+  for (std::size_t i = 0; i < plan.pages.size(); ++i) {
+    drawPage(plan.pages[i], i, counters);
+    projectPage(plan.pages[i], triangle_radiance, counters);
+  }
+  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+  const std::size_t result_bytes = plan.points.size() * 2 *
+                                   static_cast<std::size_t>(sh::coefficientCount(options_.order)) *
+                                   sizeof(glm::vec4),
+                    hidden_bytes = run_.word_count * sizeof(std::uint32_t);
+  readback_.start(result_bytes + hidden_bytes + sky_.light().byteCount());
+  run_.results_at = readback_.copy(results_.buffer(), result_bytes);
+  run_.hidden_at = readback_.copy(hidden_.buffer(), hidden_bytes);
+  run_.new_sky = std::exchange(sky_is_new_, false);
+  if (run_.new_sky) run_.sky_at = readback_.copy(sky_.light(), sky_.light().byteCount());
+  readback_.finish();
+  return {};
+}
+
+// All pages' tables at once.
+void Capture::upload(const Plan& plan, std::span<const CaptureBody> bodies,
+                     std::span<const CapturePoint> points, gpu::Counters& counters) {
+  load_ = {.pages = static_cast<std::uint32_t>(plan.pages.size()),
+           .points = static_cast<std::uint32_t>(plan.points.size()),
+           .tiles = static_cast<std::uint32_t>(plan.tiles.size()),
+           .draws = static_cast<std::uint32_t>(plan.draws.size())};
+  std::vector<PointRecord> records;
+  std::vector<TexelRecord> texels;
+  std::vector<Lookup> lookups;
+  const std::uint32_t size = options_.size, subsamples = options_.subsamples;
+  for (const PlannedPoint& planned : plan.points) {
+    PointRecord& record = records.emplace_back();
+    record.first_texel = static_cast<std::uint32_t>(texels.size());
+    for (std::uint32_t t = planned.first_tile; t < planned.first_tile + planned.tile_count; ++t) {
+      const Tile& tile = plan.tiles[t];
+      for (std::uint32_t y = tile.texels.y0; y < tile.texels.y1; ++y)
+        for (std::uint32_t x = tile.texels.x0; x < tile.texels.x1; ++x)
+          texels.push_back({(tile.x + (x - tile.texels.x0) * subsamples) |
+                                (tile.y + (y - tile.texels.y0) * subsamples) << 16,
+                            (tile.face * size + y) * size + x});
+    }
+    record.texel_count = static_cast<std::uint32_t>(texels.size()) - record.first_texel;
+    run_.first_texels.push_back(record.first_texel);
+    run_.first_words.push_back(static_cast<std::uint32_t>(lookups.size() / kLookupsPerWord));
+    appendLookups(size, subsamples, planned, plan.tiles, points[planned.point], lookups);
+    run_.uncovered.push_back(6 * size * size - record.texel_count);
+  }
+  run_.first_texels.push_back(static_cast<std::uint32_t>(texels.size()));
+  run_.first_words.push_back(static_cast<std::uint32_t>(lookups.size() / kLookupsPerWord));
+  load_.pixels = std::uint64_t{texels.size()} * subsamples * subsamples;
+  run_.word_count = lookups.size() / kLookupsPerWord;
+
+  std::vector<DrawRecord> draws;
+  std::vector<std::uint32_t> indices;
+  draws.reserve(plan.draws.size());
+  page_indices_.assign(plan.pages.size(), {});
+  for (std::size_t i = 0; i < plan.pages.size(); ++i) {
+    const Page& page = plan.pages[i];
+    for (std::uint32_t p = page.first_point, d = page.first_draw; p < page.first_point + page.point_count;
+         ++p) {
+      const PlannedPoint& planned = plan.points[p];
+      const std::uint32_t end_tile = planned.first_tile + planned.tile_count;
+      for (; d < page.first_draw + page.draw_count && plan.draws[d].tile < end_tile; ++d) {
+        const Draw& draw = plan.draws[d];
+        const CaptureBody& body = bodies[draw.body];
+        DrawRecord& record = draws.emplace_back(drawRecord(options_, plan.tiles[draw.tile], body, planned,
+                                                           points[planned.point].position_ws, page.height));
+        record.first_vertex = proxies_[body.proxy].levels[draw.level].first_vertex;
+      }
+    }
+    for (const bool front_only : {false, true}) {  // without and with culling of back faces
+      IndexRange& range = page_indices_[i][front_only];
+      range.first = static_cast<std::uint32_t>(indices.size());
+      for (std::uint32_t d = page.first_draw; d < page.first_draw + page.draw_count; ++d) {
+        const Level& level = proxies_[bodies[plan.draws[d].body].proxy].levels[plan.draws[d].level];
+        const auto append = [&](const std::vector<std::uint32_t>& corners) {
+          for (const std::uint32_t v : corners) indices.push_back(d << kVertexBits | v);
+        };
+        if (front_only) append(level.front_only);
+        if (front_only == (level.closed && plan.draws[d].from_outside)) append(level.two_sided);
+      }
+      range.count = static_cast<std::uint32_t>(indices.size()) - range.first;
+    }
+  }
+  load_.triangles = indices.size() / 3;
+
+  const auto give = [&](gpu::Table& table, auto& values) {
+    table.assign(std::span(std::as_const(values)));
+    counters.uploaded_bytes += std::span(values).size_bytes();
+  };
+  give(points_, records);
+  give(texels_, texels);
+  give(lookups_, lookups);
+  give(draws_, draws);
+  give(indices_, indices);
+  results_.reserve(records.size() * 2 * static_cast<std::size_t>(sh::coefficientCount(options_.order)) *
+                   sizeof(glm::vec4));
+  values_.reserve(texels.size() * sizeof(glm::vec4));
+  hidden_.reserve(run_.word_count * sizeof(std::uint32_t));
+}
+
+void Capture::drawPage(const Page& page, std::size_t index, gpu::Counters& counters) {
+  // Grows with the largest page so far.
+  if (!ids_ || ids_.desc().height < page.height) {
+    const std::uint32_t height = std::min(std::bit_ceil(page.height), kAtlasHeight);
+    ids_ = gpu::Texture("capture ids", {.format = GL_R32UI, .width = kAtlasWidth, .height = height});
+    depths_ = gpu::Texture("capture depths",
+                           {.format = GL_DEPTH_COMPONENT32F, .width = kAtlasWidth, .height = height});
+    // Textures of integers are incomplete with the filters that textures are made with.
+    for (const gpu::Texture* texture : {&ids_, &depths_}) {
+      glTextureParameteri(texture->id(), GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+      glTextureParameteri(texture->id(), GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+    }
+    atlas_ = gpu::Framebuffer("capture atlas", ids_, &depths_);
+  }
+  glBindFramebuffer(GL_FRAMEBUFFER, atlas_.id());
+  glViewport(0, 0, static_cast<GLsizei>(kAtlasWidth), static_cast<GLsizei>(page.height));
+  glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
+  for (GLenum i = 0; i < 4; ++i) glEnable(GL_CLIP_DISTANCE0 + i);
+  glEnable(GL_DEPTH_TEST);
+  glDepthFunc(GL_GREATER);
+  glDepthMask(GL_TRUE);
+  glDisable(GL_BLEND);
+  glFrontFace(GL_CCW);
+  glEnable(GL_SCISSOR_TEST);
+  glScissor(0, 0, static_cast<GLsizei>(kAtlasWidth), static_cast<GLsizei>(page.height));
+  constexpr GLuint kNothing[4] = {0, 0, 0, 0};
+  constexpr GLfloat kFar = 0.0f;
+  glClearBufferuiv(GL_COLOR, 0, kNothing);
+  glClearBufferfv(GL_DEPTH, 0, &kFar);
+  glDisable(GL_SCISSOR_TEST);
+
+  draw_program_.use();
+  glBindVertexArray(array_.id());
+  glVertexArrayElementBuffer(array_.id(), indices_.buffer().id());
+  bindTable(vertices_view_, kUnitVertices, GL_RGBA32UI, vertices_.buffer());
+  bindTable(draws_view_, kUnitDraws, GL_RGBA32UI, draws_.buffer());
+  glUniform2f(kClipFromPixel, 2.0f / static_cast<float>(kAtlasWidth), 2.0f / static_cast<float>(page.height));
+  for (const bool front_only : {false, true}) {
+    const IndexRange& range = page_indices_[index][front_only];
+    if (range.count == 0) continue;
+    if (front_only) glEnable(GL_CULL_FACE);
+    glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(range.count), GL_UNSIGNED_INT,
+                   reinterpret_cast<const void*>(std::size_t{range.first} * sizeof(std::uint32_t)));
+    ++counters.draws;
+    ++counters.draw_calls;
+    if (front_only) glDisable(GL_CULL_FACE);
+  }
+  glDepthFunc(GL_LESS);
+  for (GLenum i = 0; i < 4; ++i) glDisable(GL_CLIP_DISTANCE0 + i);
+  glClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
+  glBindFramebuffer(GL_FRAMEBUFFER, 0);
+}
+
+void Capture::projectPage(const Page& page, const gpu::Buffer& triangle_radiance, gpu::Counters& counters) {
+  const std::uint32_t end_point = page.first_point + page.point_count;
+  const std::uint32_t first_texel = run_.first_texels[page.first_point],
+                      texel_count = run_.first_texels[end_point] - first_texel,
+                      first_word = run_.first_words[page.first_point],
+                      word_count = run_.first_words[end_point] - first_word;
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);  // the caller may have shaded the triangles in a shader
+  resolve_program_.use();
+  glUniform1ui(kFirstTexel, first_texel);
+  glUniform1ui(kTexelCount, texel_count);
+  glUniform1ui(kFirstWord, first_word);
+  glUniform1ui(kWordCount, word_count);
+  glUniform1ui(kSubsamples, options_.subsamples);
+  ids_.bind(kUnitIds);
+  depths_.bind(kUnitDepth);
+  for (const GLuint unit : {kUnitIds, kUnitDepth}) glBindSampler(unit, 0);
+  texels_.bindStorage(kBindTexels);
+  triangle_radiance.bindStorage(kBindRadiance);
+  values_.bindStorage(kBindValues);
+  lookups_.bindStorage(kBindLookups);
+  hidden_.bindStorage(kBindHidden);
+  glDispatchCompute((texel_count + word_count + kWorkGroupSize - 1) / kWorkGroupSize, 1, 1);
+
+  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
+  project_program_.use();
+  glUniform1ui(kFirstPoint, page.first_point);
+  bindTable(values_view_, kUnitValues, GL_RGBA32F, values_.buffer());
+  bindTable(texels_view_, kUnitTexels, GL_RG32UI, texels_.buffer());
+  bindTable(weights_view_, kUnitWeights, GL_R32F, weights_);
+  sky_.bindTables();
+  points_.bindStorage(kBindPoints);
+  results_.bindStorage(kBindResults);
+  glDispatchCompute(page.point_count, 1, 1);
+  counters.dispatches += 2;
+}
+
+std::optional<std::vector<CapturedLight>> Capture::take(bool wait) {
+  if (!pending_ || !readback_.arrived(wait)) return std::nullopt;
+  pending_ = false;
+  const auto count = static_cast<std::size_t>(sh::coefficientCount(options_.order));
+  std::vector<glm::vec4> results(run_.uncovered.size() * 2 * count);
+  std::vector<std::uint32_t> hidden(run_.word_count);
+  if (!results.empty()) {
+    readback_.read(run_.results_at, std::span(results));
+    readback_.read(run_.hidden_at, std::span(hidden));
+  }
+  if (run_.new_sky) {
+    std::vector<glm::vec4> sky(count);
+    readback_.read(run_.sky_at, std::span(sky));
+    sky_through_texels_ = lightFrom(sky);
+  }
+
+  std::vector<CapturedLight> lights(run_.points.size());
+  for (std::size_t p = 0; p < lights.size(); ++p) {
+    CapturedLight& out = lights[p];
+    const CapturePoint& point = run_.points[p];
+    out.light = run_.sky;
+    out.visible.assign(point.queries.size(), 1.0f);
+    const std::uint32_t record = run_.records[p];
+    if (record == kNoRecord) continue;
+    const std::span<const glm::vec4> sums = std::span(results).subspan(record * 2 * count, 2 * count);
+    combine(sums, run_.uncovered[record], run_.sky, sky_through_texels_, out);
+    for (std::size_t q = 0; q < point.queries.size(); ++q)
+      out.visible[q] = visibleShare(point.queries[q], hidden[run_.first_words[record] + q], out.light);
+  }
+  return lights;
+}
+
+sh::LightVector Capture::skyThroughTexels(const Environment& environment, const glm::mat3& world_from_light) {
+  sky_.makeTurned(environment, world_from_light, weights_);
+  std::vector<glm::vec4> sky(static_cast<std::size_t>(sh::coefficientCount(options_.order)));
+  sky_.light().read(0, std::span(sky));
+  return lightFrom(sky);
+}
+
+sh::LightVector Capture::lightFrom(std::span<const glm::vec4> coefficients) const {
+  sh::LightVector light{.order = options_.order};
+  std::copy(coefficients.begin(), coefficients.end(), light.c.begin());
+  return light;
+}
+
+}  // namespace lambent::lighting

@@ -1,0 +1,375 @@
+#include "runtime/lighting/capture_plan.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <numeric>
+
+#include <glm/geometric.hpp>
+#include <glm/mat4x4.hpp>
+
+#include "runtime/sh/cube_map.hpp"
+
+namespace lambent::lighting::capture {
+
+namespace {
+
+constexpr double kCullShare = 0.25;  // of a texel: solid angle of bodies, error of levels
+// The near plane, as a share of the distance to the nearest body's box, or of the radius of one that holds
+// the point. Depth is reversed and so does not suffer.
+constexpr double kNearShare = 1e-3, kLeastNearShare = 1e-9;
+// Points nearer to a body's box than this share of its radius count as inside.
+constexpr double kOutsideShare = 1e-6;
+// Rectangles grow by this share of a texel, so that rounding cannot cut a body's edge.
+constexpr double kRectMargin = 1e-4;
+
+bool finite(const glm::vec3& v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+struct Sphere {
+  glm::dvec3 centre{0.0};  // as seen from the point
+  double radius_m = 0;     // 0: there is nothing to see
+  double scale = 0;
+};
+
+Sphere sphereOf(const CapturePoint& point, const CaptureBody& body, const ProxyBounds& bounds) {
+  const glm::dmat4 m(body.world_from_proxy);
+  double squared = 0;
+  for (int column = 0; column < 3; ++column)
+    squared = std::max(squared, glm::dot(glm::dvec3(m[column]), glm::dvec3(m[column])));
+  Sphere sphere;
+  sphere.scale = std::sqrt(squared);
+  sphere.radius_m = sphere.scale * static_cast<double>(bounds.radius_m);
+  sphere.centre = glm::dvec3(m * glm::dvec4(bounds.centre, 1.0)) - glm::dvec3(point.position_ws);
+  const double sum = sphere.radius_m + glm::dot(sphere.centre, sphere.centre);
+  if (!std::isfinite(sum)) sphere.radius_m = 0;
+  return sphere;
+}
+
+bool largeEnough(const CaptureOptions& options, const Sphere& sphere, float brightness) {
+  if (!(sphere.radius_m > 0)) return false;
+  const double squared = glm::dot(sphere.centre, sphere.centre);
+  if (squared <= sphere.radius_m * sphere.radius_m) return true;
+  // 2 pi (1 - cos a), written so that small a keep their digits.
+  const double sine_squared = sphere.radius_m * sphere.radius_m / squared;
+  const double solid_angle_sr =
+      2 * std::numbers::pi * sine_squared / (1 + std::sqrt(std::max(0.0, 1 - sine_squared)));
+  const double texel_sr = 4 * std::numbers::pi / (6.0 * options.size * options.size);
+  const double brighter = brightness > 1.0f ? static_cast<double>(brightness) : 1.0;
+  return solid_angle_sr * brighter >= kCullShare * texel_sr;
+}
+
+std::uint32_t levelFor(const CaptureOptions& options, const Sphere& sphere, const ProxyBounds& bounds) {
+  const double distance_m = glm::length(sphere.centre) - sphere.radius_m;
+  if (!(distance_m > 0)) return 0;
+  const double texel_rad = 0.5 * std::numbers::pi / options.size;
+  std::uint32_t level = 0;
+  for (std::uint32_t i = 0; i < bounds.level_errors_m.size(); ++i)
+    if (static_cast<double>(bounds.level_errors_m[i]) * sphere.scale <= kCullShare * texel_rad * distance_m)
+      level = i;
+  return level;
+}
+
+using Corners = std::array<glm::dvec3, 8>;
+
+Corners cornersOf(const CapturePoint& point, const CaptureBody& body, const ProxyBounds& bounds) {
+  const glm::dmat4 m(body.world_from_proxy);
+  Corners corners;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const glm::dvec4 at((i & 1 ? bounds.highest : bounds.lowest).x,
+                        (i & 2 ? bounds.highest : bounds.lowest).y,
+                        (i & 4 ? bounds.highest : bounds.lowest).z, 1.0);
+    corners[i] = glm::dvec3(m * at) - glm::dvec3(point.position_ws);
+  }
+  return corners;
+}
+
+// From the point to the box; 0 inside.
+double boxDistance(const Corners& corners) {
+  glm::dvec3 nearest = corners[0];
+  for (const std::size_t k : {1u, 2u, 4u}) {
+    const glm::dvec3 edge = corners[k] - corners[0];
+    const double squared = glm::dot(edge, edge);
+    if (squared > 0) nearest += std::clamp(-glm::dot(corners[0], edge) / squared, 0.0, 1.0) * edge;
+  }
+  return glm::length(nearest);
+}
+
+struct Interval {
+  double lowest = -1, highest = 1;  // of sc or tc
+};
+
+// Of a circle of radius r about (x, w): the tangents of the directions under which it is seen.
+Interval circleInterval(double x, double w, double r) {
+  const double distance = std::hypot(x, w);
+  if (distance <= r) return {};
+  const double middle = std::atan2(x, w), half = std::asin(r / distance), end = std::numbers::pi / 4;
+  if (middle - half >= end || middle + half <= -end) return {1, -1};
+  return {middle - half > -end ? std::tan(middle - half) : -1,
+          middle + half < end ? std::tan(middle + half) : 1};
+}
+
+std::optional<TexelRect> rectOf(std::uint32_t size, std::uint32_t face, const Sphere& sphere,
+                                const Corners& corners) {
+  const glm::dmat3& from_world = faceFromWorld(face);
+  const glm::dvec3 c = from_world * sphere.centre;
+  if (c.z <= -sphere.radius_m) return std::nullopt;
+  Interval sc = circleInterval(c.x, c.z, sphere.radius_m), tc = circleInterval(c.y, c.z, sphere.radius_m);
+
+  // The box about the body, cut off close before the point; its projection is the hull of its corners.
+  const double cut = 1e-6 * sphere.radius_m;
+  Corners at;
+  for (std::size_t i = 0; i < at.size(); ++i) at[i] = from_world * corners[i];
+  Interval box_sc{1e30, -1e30}, box_tc{1e30, -1e30};
+  const auto include = [&](const glm::dvec3& p, double w) {
+    box_sc = {std::min(box_sc.lowest, p.x / w), std::max(box_sc.highest, p.x / w)};
+    box_tc = {std::min(box_tc.lowest, p.y / w), std::max(box_tc.highest, p.y / w)};
+  };
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    if (at[i].z >= cut) include(at[i], at[i].z);
+    for (const std::size_t bit : {1u, 2u, 4u}) {
+      const std::size_t other = i | bit;
+      if (other == i || (at[i].z >= cut) == (at[other].z >= cut)) continue;
+      const double t = (cut - at[i].z) / (at[other].z - at[i].z);
+      include(at[i] + t * (at[other] - at[i]), cut);
+    }
+  }
+  sc = {std::max(sc.lowest, box_sc.lowest), std::min(sc.highest, box_sc.highest)};
+  tc = {std::max(tc.lowest, box_tc.lowest), std::min(tc.highest, box_tc.highest)};
+  if (sc.lowest > sc.highest || tc.lowest > tc.highest) return std::nullopt;
+  const auto first = [&](double s) {
+    return static_cast<std::uint32_t>(
+        std::clamp(std::floor((s + 1) / 2 * size - kRectMargin), 0.0, double(size)));
+  };
+  const auto last = [&](double s) {
+    return static_cast<std::uint32_t>(
+        std::clamp(std::ceil((s + 1) / 2 * size + kRectMargin), 0.0, double(size)));
+  };
+  const TexelRect rect{first(sc.lowest), first(tc.lowest), last(sc.highest), last(tc.highest)};
+  if (rect.x0 >= rect.x1 || rect.y0 >= rect.y1) return std::nullopt;
+  return rect;
+}
+
+bool overlap(const TexelRect& a, const TexelRect& b) {
+  return a.x0 < b.x1 && b.x0 < a.x1 && a.y0 < b.y1 && b.y0 < a.y1;
+}
+
+TexelRect together(const TexelRect& a, const TexelRect& b) {
+  return {std::min(a.x0, b.x0), std::min(a.y0, b.y0), std::max(a.x1, b.x1), std::max(a.y1, b.y1)};
+}
+
+// Makes the rectangles disjoint: what overlaps becomes one.
+void mergeOverlaps(std::vector<TexelRect>& rects) {
+  for (bool merged = true; merged;) {
+    merged = false;
+    for (std::size_t i = 0; i < rects.size(); ++i)
+      for (std::size_t j = i + 1; j < rects.size();) {
+        if (!overlap(rects[i], rects[j])) {
+          ++j;
+          continue;
+        }
+        rects[i] = together(rects[i], rects[j]);
+        rects[j] = rects.back();
+        rects.pop_back();
+        merged = true;
+      }
+  }
+}
+
+// Rows of tiles, the highest first. The height that they need.
+std::uint32_t shelve(std::span<Tile> tiles, std::uint32_t subsamples) {
+  std::vector<std::size_t> order(tiles.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return tiles[a].texels.height() > tiles[b].texels.height();
+  });
+  std::uint32_t x = 0, shelf = 0, next_shelf = 0;
+  for (const std::size_t i : order) {
+    const std::uint32_t width = tiles[i].texels.width() * subsamples,
+                        height = tiles[i].texels.height() * subsamples;
+    if (x + width > kAtlasWidth) {
+      x = 0;
+      shelf = next_shelf;
+    }
+    tiles[i].x = x;
+    tiles[i].y = shelf;
+    x += width;
+    next_shelf = std::max(next_shelf, shelf + height);
+  }
+  return next_shelf;
+}
+
+// Tiles and draws of one point, at the ends of the plan's lists.
+class PointPlanner {
+ public:
+  PointPlanner(const CaptureOptions& options, std::span<const ProxyBounds> proxies,
+               std::span<const CaptureBody> bodies, Plan& plan)
+      : options_(options), proxies_(proxies), bodies_(bodies), plan_(plan) {}
+
+  void add(std::uint32_t index, const CapturePoint& point) {
+    if (!finite(point.position_ws)) return;
+    seen_.clear();
+    double near_m = std::numeric_limits<double>::max();
+    for (std::uint32_t b = 0; b < bodies_.size(); ++b) {
+      if (b == point.own_body || bodies_[b].proxy >= proxies_.size()) continue;
+      const ProxyBounds& bounds = proxies_[bodies_[b].proxy];
+      const Sphere sphere = sphereOf(point, bodies_[b], bounds);
+      if (!largeEnough(options_, sphere, bodies_[b].brightness)) continue;
+      const Corners corners = cornersOf(point, bodies_[b], bounds);
+      const double distance_m = boxDistance(corners);
+      seen_.push_back({b, levelFor(options_, sphere, bounds), distance_m > kOutsideShare * sphere.radius_m,
+                       sphere, corners});
+      near_m = std::min(near_m, std::max(kNearShare * distance_m, kLeastNearShare * sphere.radius_m));
+    }
+    const auto first_tile = static_cast<std::uint32_t>(plan_.tiles.size());
+    for (std::uint32_t face = 0; face < 6; ++face) addFace(index, face);
+    const auto tile_count = static_cast<std::uint32_t>(plan_.tiles.size()) - first_tile;
+    if (tile_count > 0)
+      plan_.points.push_back({index, first_tile, tile_count,
+                              std::max(static_cast<float>(near_m), std::numeric_limits<float>::min())});
+  }
+
+ private:
+  struct Seen {
+    std::uint32_t body, level;
+    bool from_outside;
+    Sphere sphere;
+    Corners corners;
+  };
+
+  void addFace(std::uint32_t index, std::uint32_t face) {
+    on_face_.clear();
+    rects_.clear();
+    for (const Seen& seen : seen_)
+      if (const auto rect = rectOf(options_.size, face, seen.sphere, seen.corners)) {
+        on_face_.push_back({&seen, *rect});
+        rects_.push_back(*rect);
+      }
+    mergeOverlaps(rects_);
+    for (const TexelRect& rect : rects_) {
+      const auto tile = static_cast<std::uint32_t>(plan_.tiles.size());
+      plan_.tiles.push_back({.point = index, .face = face, .texels = rect});
+      for (const auto& [seen, own] : on_face_)
+        if (overlap(own, rect)) plan_.draws.push_back({tile, seen->body, seen->level, seen->from_outside});
+    }
+  }
+
+  const CaptureOptions& options_;
+  std::span<const ProxyBounds> proxies_;
+  std::span<const CaptureBody> bodies_;
+  Plan& plan_;
+  std::vector<Seen> seen_;
+  std::vector<std::pair<const Seen*, TexelRect>> on_face_;
+  std::vector<TexelRect> rects_;
+};
+
+// As many points to a page as fit.
+void makePages(Plan& plan, std::uint32_t subsamples) {
+  const auto points = static_cast<std::uint32_t>(plan.points.size());
+  std::uint32_t first_draw = 0;
+  for (std::uint32_t first = 0; first < points;) {
+    // By area first, and fewer if the rows waste too much; one point always fits.
+    constexpr std::uint64_t kArea = std::uint64_t{kAtlasWidth} * kAtlasHeight;
+    std::uint32_t last = first;
+    for (std::uint64_t area = 0; last < points && last - first < kMaxPointsOfPage; ++last) {
+      const PlannedPoint& p = plan.points[last];
+      for (std::uint32_t t = 0; t < p.tile_count; ++t) {
+        const TexelRect& texels = plan.tiles[p.first_tile + t].texels;
+        area += std::uint64_t{texels.width()} * texels.height() * subsamples * subsamples;
+      }
+      if (last > first && area > kArea * 9 / 10) break;
+    }
+    Page page{.first_point = first, .first_draw = first_draw};
+    for (;;) {
+      const std::uint32_t first_tile = plan.points[first].first_tile,
+                          end_tile = plan.points[last - 1].first_tile + plan.points[last - 1].tile_count;
+      page.height = shelve(std::span(plan.tiles).subspan(first_tile, end_tile - first_tile), subsamples);
+      page.point_count = last - first;
+      if (page.height <= kAtlasHeight) {
+        while (first_draw < plan.draws.size() && plan.draws[first_draw].tile < end_tile) ++first_draw;
+        break;
+      }
+      last = first + (last - first + 1) / 2;
+    }
+    page.draw_count = first_draw - page.first_draw;
+    plan.pages.push_back(page);
+    first = last;
+  }
+}
+
+}  // namespace
+
+ProxyBounds ProxyBounds::of(const bundle::CaptureProxy& proxy) {
+  ProxyBounds bounds;
+  for (const bundle::ProxyLevel& level : proxy.levels) bounds.level_errors_m.push_back(level.error_m);
+  constexpr float kFar = std::numeric_limits<float>::max();
+  glm::vec3 lowest(kFar), highest(-kFar);
+  bool any = false;
+  for (const bundle::ProxyTriangle& triangle : proxy.triangles)
+    for (const std::uint32_t v : triangle.vertices) {
+      if (!finite(proxy.positions[v])) continue;
+      lowest = glm::min(lowest, proxy.positions[v]);
+      highest = glm::max(highest, proxy.positions[v]);
+      any = true;
+    }
+  if (!any || proxy.levels.empty()) return bounds;
+  bounds.lowest = lowest;
+  bounds.highest = highest;
+  bounds.centre = 0.5f * lowest + 0.5f * highest;
+  double squared = 0;
+  for (const bundle::ProxyTriangle& triangle : proxy.triangles)
+    for (const std::uint32_t v : triangle.vertices) {
+      if (!finite(proxy.positions[v])) continue;
+      const glm::dvec3 d = glm::dvec3(proxy.positions[v]) - glm::dvec3(bounds.centre);
+      squared = std::max(squared, glm::dot(d, d));
+    }
+  // A little more than the farthest corner: rounding must not put it outside.
+  bounds.radius_m = static_cast<float>(std::sqrt(squared) * (1 + 1e-6));
+  return bounds;
+}
+
+bool sees(const CaptureOptions& options, const CapturePoint& point, const CaptureBody& body,
+          const ProxyBounds& bounds) {
+  return finite(point.position_ws) && largeEnough(options, sphereOf(point, body, bounds), body.brightness);
+}
+
+const glm::dmat3& faceFromWorld(std::uint32_t face) {
+  static const std::array<glm::dmat3, 6> kFaces = [] {
+    std::array<glm::dmat3, 6> faces;
+    for (int f = 0; f < 6; ++f) {
+      const glm::dvec3 forward = sh::cubeFaceDirection(f, 0, 0);
+      faces[static_cast<std::size_t>(f)] = glm::transpose(glm::dmat3(
+          sh::cubeFaceDirection(f, 1, 0) - forward, sh::cubeFaceDirection(f, 0, 1) - forward, forward));
+    }
+    return faces;
+  }();
+  return kFaces[face];
+}
+
+std::uint32_t faceOf(const glm::dvec3& direction) {
+  const glm::dvec3 size = glm::abs(direction);
+  if (size.x >= size.y && size.x >= size.z) return direction.x >= 0 ? 0 : 1;
+  if (size.y >= size.z) return direction.y >= 0 ? 2 : 3;
+  return direction.z >= 0 ? 4 : 5;
+}
+
+std::optional<TexelRect> faceRect(std::uint32_t size, std::uint32_t face, const CapturePoint& point,
+                                  const CaptureBody& body, const ProxyBounds& bounds) {
+  const Sphere sphere = sphereOf(point, body, bounds);
+  if (!(sphere.radius_m > 0)) return std::nullopt;
+  return rectOf(size, face, sphere, cornersOf(point, body, bounds));
+}
+
+Plan plan(const CaptureOptions& options, std::span<const ProxyBounds> proxies,
+          std::span<const CaptureBody> bodies, std::span<const CapturePoint> points) {
+  Plan plan;
+  PointPlanner planner(options, proxies, bodies, plan);
+  for (std::uint32_t i = 0; i < points.size(); ++i) planner.add(i, points[i]);
+  makePages(plan, options.subsamples);
+  return plan;
+}
+
+}  // namespace lambent::lighting::capture

@@ -1,0 +1,105 @@
+#include "runtime/scene/animation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "runtime/bundle/keyframes.hpp"
+#include "runtime/scene/components.hpp"
+
+namespace lambent::scene {
+namespace {
+
+const AnimatedBundle* bundleOf(std::span<const AnimatedBundle> bundles, const AnimationComponent& player) {
+  const auto found = std::ranges::find(bundles, player.bundle, &AnimatedBundle::bundle);
+  return found != bundles.end() && player.animation < found->description->animations.size() ? &*found
+                                                                                            : nullptr;
+}
+
+// Where a player that stood at `time` stands after `seconds` of its own time. Outside 0..duration (put there
+// by hand) it stays until it comes in by itself.
+float advanced(float time, float seconds, float duration, bool loop) {
+  if (!(duration > 0.0f) || seconds == 0.0f) return time;
+  const float next = (std::isfinite(time) ? time : 0.0f) + seconds;
+  if (!loop) {
+    const float low = std::min(0.0f, time), high = std::max(duration, time);
+    return std::clamp(next, low, high);
+  }
+  if (next >= 0.0f && next < duration) return next;
+  const float within = std::fmod(next, duration);
+  return within < 0.0f ? within + duration : within;
+}
+
+// Writes what the channels say at the player's time; nodes that stand there already are not touched.
+void pose(ecs::Registry& registry, const AnimatedBundle& bundle, AnimationComponent& player,
+          std::vector<ecs::Entity>& moved) {
+  for (const gltf::AnimationChannel& channel : bundle.description->animations[player.animation].channels) {
+    const ecs::Entity node = bundle.instance->nodes[channel.node];
+    const Transform* now = registry.tryGet<Transform>(node);
+    if (!now) continue;  // taken out of the scene
+    gltf::Trs parts{.translation = now->translation, .rotation = now->rotation, .scale = now->scale};
+    const gltf::Trs before = parts;
+    gltf::applyChannel(channel, player.time_s, parts);
+    if (parts == before) continue;
+    Transform& transform = registry.edit<Transform>(node);
+    transform.translation = parts.translation;
+    transform.rotation = parts.rotation;
+    transform.scale = parts.scale;
+    moved.push_back(node);
+  }
+  player.posed_s = player.time_s;
+}
+
+std::uint32_t countOf(std::vector<ecs::Entity>& moved) {
+  std::ranges::sort(moved);
+  const auto again = std::ranges::unique(moved);
+  return static_cast<std::uint32_t>(again.begin() - moved.begin());
+}
+
+}  // namespace
+
+AnimationUpdates playAnimations(ecs::Registry& registry, std::span<const AnimatedBundle> bundles,
+                                float seconds) {
+  if (!std::isfinite(seconds)) seconds = 0.0f;
+  AnimationUpdates updates;
+  std::vector<ecs::Entity> moved;
+  for (auto [entity, player] : registry.view<AnimationComponent>()) {
+    const AnimatedBundle* bundle = bundleOf(bundles, player);
+    if (!bundle) continue;
+    if (player.playing && std::isfinite(player.speed)) {
+      const float duration = gltf::durationOf(bundle->description->animations[player.animation]);
+      const float time = advanced(player.time_s, seconds * player.speed, duration, player.loop);
+      if (time != player.time_s) {
+        player.time_s = time;
+        registry.touch<AnimationComponent>(entity);
+      }
+    }
+    if (player.time_s == player.posed_s || std::isnan(player.time_s)) continue;
+    pose(registry, *bundle, player, moved);
+    ++updates.animations;
+  }
+  updates.nodes = countOf(moved);
+  return updates;
+}
+
+AnimationUpdates setAnimationTime(ecs::Registry& registry, std::span<const AnimatedBundle> bundles,
+                                  float time_s) {
+  if (!std::isfinite(time_s)) time_s = 0.0f;
+  AnimationUpdates updates;
+  std::vector<ecs::Entity> moved;
+  for (auto [entity, player] : registry.view<AnimationComponent>()) {
+    const AnimatedBundle* bundle = bundleOf(bundles, player);
+    if (!bundle) continue;
+    if (time_s != player.time_s) {
+      player.time_s = time_s;
+      registry.touch<AnimationComponent>(entity);
+    }
+    pose(registry, *bundle, player, moved);
+    ++updates.animations;
+  }
+  updates.nodes = countOf(moved);
+  return updates;
+}
+
+}  // namespace lambent::scene

@@ -1,0 +1,76 @@
+// Small proxies for tests of the light capture.
+#pragma once
+
+#include <cmath>
+#include <initializer_list>
+#include <numbers>
+#include <span>
+#include <vector>
+
+#include <glm/geometric.hpp>
+#include <glm/gtc/matrix_transform.hpp>
+#include <glm/vec4.hpp>
+
+#include "runtime/bundle/capture_proxy.hpp"
+#include "runtime/lighting/capture.hpp"
+
+namespace lambent::testing {
+
+inline bundle::CaptureProxy proxyOf(std::vector<glm::vec3> positions,
+                                    const std::vector<std::array<std::uint32_t, 3>>& triangles,
+                                    bool front_only = false) {
+  bundle::CaptureProxy proxy;
+  proxy.positions = std::move(positions);
+  for (const auto& vertices : triangles)
+    proxy.triangles.push_back({.vertices = vertices, .front_only = front_only});
+  proxy.levels = {{0, static_cast<std::uint32_t>(triangles.size()), 0.0f}};
+  return proxy;
+}
+
+// 2 x 2 in the plane z = 0, shining along +Z.
+inline bundle::CaptureProxy squareProxy(bool front_only = false) {
+  return proxyOf({{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}, {{0, 1, 2}, {0, 2, 3}}, front_only);
+}
+
+// A disc of radius 1 in the plane z = 0, shining along +Z; a polygon of the same area.
+inline bundle::CaptureProxy discProxy(std::uint32_t corners = 256) {
+  const double turn = 2 * std::numbers::pi / corners;
+  const double radius = std::sqrt(turn / std::sin(turn));
+  bundle::CaptureProxy proxy;
+  for (std::uint32_t i = 0; i < corners; ++i)
+    proxy.positions.emplace_back(radius * std::cos(turn * i), radius * std::sin(turn * i), 0.0);
+  for (std::uint32_t i = 1; i + 1 < corners; ++i) proxy.triangles.push_back({.vertices = {0, i, i + 1}});
+  proxy.levels = {{0, corners - 2, 0.0f}};
+  return proxy;
+}
+
+// The cube [-1, 1]³ seen from outside, or from inside.
+inline bundle::CaptureProxy cubeProxy(bool inside = false) {
+  std::vector<glm::vec3> positions;
+  for (int i = 0; i < 8; ++i) positions.emplace_back(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1);
+  std::vector<std::array<std::uint32_t, 3>> triangles = {{0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5},
+                                                         {0, 1, 5}, {0, 5, 4}, {2, 6, 7}, {2, 7, 3},
+                                                         {0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}};
+  if (inside)
+    for (auto& t : triangles) std::swap(t[1], t[2]);
+  return proxyOf(std::move(positions), triangles);
+}
+
+// At `center`, scaled, its +Z turned towards `to`.
+inline glm::mat4 facing(const glm::vec3& center, const glm::vec3& to, float scale) {
+  const glm::vec3 z = glm::normalize(to - center);
+  const glm::vec3 x =
+      glm::normalize(glm::cross(std::abs(z.y) < 0.9f ? glm::vec3(0, 1, 0) : glm::vec3(1, 0, 0), z));
+  return glm::mat4(glm::vec4(scale * x, 0), glm::vec4(scale * glm::cross(z, x), 0), glm::vec4(scale * z, 0),
+                   glm::vec4(center, 1));
+}
+
+// A disc of the given angular radius as seen from `from`.
+inline lighting::CaptureBody discBody(std::uint32_t proxy, const glm::vec3& from, const glm::vec3& direction,
+                                      double radius_rad, float distance_m) {
+  return {.proxy = proxy,
+          .world_from_proxy = facing(from + distance_m * direction, from,
+                                     distance_m * static_cast<float>(std::tan(radius_rad)))};
+}
+
+}  // namespace lambent::testing

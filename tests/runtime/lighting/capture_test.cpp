@@ -1,0 +1,602 @@
+#include "runtime/lighting/capture.hpp"
+
+#include <array>
+#include <filesystem>
+#include <fstream>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "runtime/lighting/capture_closed.hpp"
+#include "runtime/lighting/capture_ref.hpp"
+#include "runtime/sh/rotation.hpp"
+#include "runtime/sh/zonal.hpp"
+#include "tests/runtime/lighting/capture_scenes.hpp"
+#include "tests/support/gpu_context.hpp"
+
+namespace lambent::lighting {
+namespace {
+
+using testing::cubeProxy;
+using testing::discBody;
+using testing::discProxy;
+using testing::facing;
+using testing::proxyOf;
+using testing::squareProxy;
+
+constexpr float kDegree = std::numbers::pi_v<float> / 180.0f;
+
+Environment uniformSky(float radiance) {
+  return *Environment::create({spec::ConstantLight{.radiance = glm::vec3(radiance)}});
+}
+
+// |a - b|² / |b|²
+double squaredError(const sh::LightVector& a, const sh::LightVector& b) {
+  double difference = 0, whole = 0;
+  for (std::size_t i = 0; i < a.c.size(); ++i) {
+    const glm::dvec3 d = glm::dvec3(a.c[i]) - glm::dvec3(b.c[i]);
+    difference += glm::dot(d, d);
+    whole += glm::dot(glm::dvec3(b.c[i]), glm::dvec3(b.c[i]));
+  }
+  return difference / whole;
+}
+
+double energy(const sh::LightVector& light) {
+  double sum = 0;
+  for (const glm::vec3& c : light.c) sum += glm::dot(glm::dvec3(c), glm::dvec3(c));
+  return sum;
+}
+
+bool allFinite(const CapturedLight& captured) {
+  bool finite = std::isfinite(captured.sky_visible.r + captured.sky_visible.g + captured.sky_visible.b);
+  for (const glm::vec3& c : captured.light.c) finite = finite && std::isfinite(c.r + c.g + c.b);
+  for (const float v : captured.visible) finite = finite && v >= 0 && v <= 1;
+  return finite;
+}
+
+}  // namespace
+
+class CaptureTest : public testing::GpuTest {
+ protected:
+  struct Scene {
+    CaptureOptions options{};
+    std::vector<bundle::CaptureProxy> proxies{};
+    std::vector<glm::vec4> radiance{};  // per triangle; black where it is shorter
+    std::vector<CaptureBody> bodies{};
+    std::vector<CapturePoint> points{};
+  };
+
+  std::vector<CapturedLight> captured(const Environment& environment, Scene scene) {
+    auto capture = Capture::create(scene.options, environment);
+    EXPECT_TRUE(capture) << capture.error().line();
+    std::vector<const bundle::CaptureProxy*> proxies;
+    for (const auto& proxy : scene.proxies) proxies.push_back(&proxy);
+    capture->setProxies(proxies, counters);
+    scene.radiance.resize(std::max<std::size_t>(capture->triangleCount(), 1));
+    gpu::Buffer radiance("radiance", scene.radiance.size() * sizeof(glm::vec4));
+    radiance.write(0, std::span<const glm::vec4>(scene.radiance));
+    const auto run = capture->run(environment, scene.bodies, scene.points, radiance, counters);
+    EXPECT_TRUE(run);
+    load = capture->load();
+    return *capture->take(true);
+  }
+
+  gpu::Counters counters;
+  Capture::Load load;
+};
+
+TEST_F(CaptureTest, NothingInSightLeavesTheExactSkyWithoutSunsAndCostsTheGpuNothing) {
+  const Environment environment = *Environment::create(
+      {spec::ConstantLight{.radiance = {1, 2, 3}}, spec::SunLight{.azimuth_deg = 20, .elevation_deg = 30}});
+  const auto light = captured(environment, {.points = {{.queries = {{.direction = {0, 1, 0}}}}, {}}});
+  ASSERT_EQ(light.size(), 2u);
+  EXPECT_LT(squaredError(light[0].light, sh::constantLight(6, {1, 2, 3})), 1e-12);
+  EXPECT_EQ(light[0].sky_visible, glm::vec3(1));
+  EXPECT_EQ(light[0].visible, std::vector<float>{1.0f});
+  EXPECT_TRUE(light[1].visible.empty());
+  EXPECT_EQ(counters.draws, 0u);
+}
+
+TEST_F(CaptureTest, ABlackDiscTakesItsCapOutOfTheSky) {
+  // A disc as a sphere of the same angular radius would: literature 7.3.
+  for (const double degrees : {5.0, 20.0, 40.0}) {
+    const glm::vec3 from(3, -2, 5), direction = glm::normalize(glm::vec3(1, 2, -0.5f));
+    const double radius = degrees * std::numbers::pi / 180;
+    const auto light = captured(uniformSky(2), {.proxies = {discProxy()},
+                                                .bodies = {discBody(0, from, direction, radius, 10)},
+                                                .points = {{.position_ws = from}}});
+    sh::LightVector cap = sh::constantLight(6, glm::vec3(2));
+    for (std::size_t i = 0; i < 36; ++i) cap.c[i] -= light[0].light.c[i];
+    EXPECT_LT(squaredError(cap, sh::discLight(6, direction, radius, glm::vec3(2))), 0.002) << degrees;
+    const double hidden = (1 - std::cos(radius)) / 2;
+    EXPECT_NEAR(light[0].sky_visible.g, 1 - hidden, 0.01 * hidden)
+        << degrees << ": a radius of 5 is 15 subsamples";
+  }
+}
+
+TEST_F(CaptureTest, AnEmittingSquareShinesWithItsSolidAngleAndShape) {
+  // A square of half-edge 1 at distance 1 is one face of a cube: a sixth of the sphere.
+  const std::vector<glm::vec4> shining(2, glm::vec4(3, 1, 0, 0));
+  const auto light = captured(uniformSky(0), {.proxies = {squareProxy()},
+                                              .radiance = shining,
+                                              .bodies = {{0, facing({0, 2, 0}, {0, 0, 0}, 2)}},
+                                              .points = {{}}});
+  std::array<double, sh::kMaxCoefficients> y, expected{};
+  constexpr int kSteps = 256;
+  for (int j = 0; j < kSteps; ++j)
+    for (int i = 0; i < kSteps; ++i) {
+      const glm::dvec3 dir = sh::cubeFaceDirection(2, 2 * (i + 0.5) / kSteps - 1, 2 * (j + 0.5) / kSteps - 1);
+      const double length = glm::length(dir), weight = 4.0 / (kSteps * kSteps) / (length * length * length);
+      sh::evaluate(6, dir / length, y);
+      for (std::size_t k = 0; k < 36; ++k) expected[k] += weight * y[k];
+    }
+  EXPECT_NEAR(light[0].light.c[0].r, 3 * 4 * std::numbers::pi / 6 * 0.28209479, 1e-4);
+  sh::LightVector face{.order = 6};
+  for (std::size_t k = 0; k < 36; ++k) face.c[k] = glm::vec3(3, 1, 0) * static_cast<float>(expected[k]);
+  EXPECT_LT(squaredError(light[0].light, face), 1e-4);
+}
+
+TEST_F(CaptureTest, FromBehindASurfaceIsBlackUnlessItHasNoBack) {
+  const std::vector<glm::vec4> shining(2, glm::vec4(1));
+  const glm::mat4 away = facing({0, 2, 0}, {0, 4, 0}, 2);
+  const auto black =
+      captured(uniformSky(1),
+               {.proxies = {squareProxy()}, .radiance = shining, .bodies = {{0, away}}, .points = {{}}});
+  EXPECT_NEAR(black[0].sky_visible.r, 5.0f / 6, 1e-4f);
+  EXPECT_NEAR(black[0].light.c[0].r, 3.5449077f * 5 / 6, 1e-3f);
+  const auto open =
+      captured(uniformSky(1),
+               {.proxies = {squareProxy(true)}, .radiance = shining, .bodies = {{0, away}}, .points = {{}}});
+  EXPECT_LT(squaredError(open[0].light, sh::constantLight(6, glm::vec3(1))), 1e-10);
+}
+
+TEST_F(CaptureTest, AClosedRoomIsDarkUnderABrightSky) {
+  const auto light =
+      captured(uniformSky(1e8f),
+               {.proxies = {cubeProxy(true)},
+                .bodies = {{0, glm::scale(glm::mat4(1), glm::vec3(3))}},
+                .points = {{.position_ws = {0.3f, -1, 0.5f}, .queries = {{.direction = {0, 0, 1}}}}}});
+  EXPECT_EQ(energy(light[0].light), 0.0);
+  EXPECT_EQ(light[0].sky_visible, glm::vec3(0));
+  EXPECT_EQ(light[0].visible[0], 0.0f);
+}
+
+TEST_F(CaptureTest, InAFurnaceNothingIsSeen) {
+  // Walls that shine like the sky: no coefficient but the first, whatever hides what.
+  const std::vector<glm::vec4> shining(12, glm::vec4(1));
+  const auto light =
+      captured(uniformSky(1), {.proxies = {cubeProxy()},
+                               .radiance = shining,
+                               .bodies = {{0, glm::translate(glm::mat4(1), glm::vec3(2.5f, 1, -0.5f))},
+                                          {0, glm::translate(glm::mat4(1), glm::vec3(0, -3, 1))}},
+                               .points = {{}}});
+  EXPECT_LT(squaredError(light[0].light, sh::constantLight(6, glm::vec3(1))), 1e-11);
+}
+
+TEST_F(CaptureTest, BodiesBehindEachOtherHideTheSkyOnce) {
+  const glm::vec3 up(0, 1, 0);
+  const CaptureBody front = discBody(0, {}, up, 20 * kDegree, 3),
+                    behind = discBody(0, {}, up, 20 * kDegree, 9);
+  const auto one = captured(uniformSky(1), {.proxies = {discProxy()}, .bodies = {front}, .points = {{}}});
+  const auto two =
+      captured(uniformSky(1), {.proxies = {discProxy()}, .bodies = {behind, front}, .points = {{}}});
+  EXPECT_LT(squaredError(two[0].light, one[0].light), 1e-6);
+}
+
+TEST_F(CaptureTest, TheNearerOfTwoBodiesShines) {
+  std::vector<glm::vec4> radiance(4, glm::vec4(1, 0, 0, 0));
+  radiance[2] = radiance[3] = glm::vec4(0, 1, 0, 0);
+  const CaptureBody red{0, facing({0, 0, 4}, {}, 2)}, green{1, facing({0, 0, 3}, {}, 1.5f)};
+  for (const bool swapped : {false, true}) {
+    const std::vector<CaptureBody> bodies = swapped ? std::vector{green, red} : std::vector{red, green};
+    const auto light = captured(
+        uniformSky(0),
+        {.proxies = {squareProxy(), squareProxy()}, .radiance = radiance, .bodies = bodies, .points = {{}}});
+    EXPECT_LT(light[0].light.c[0].r, 0.01f * light[0].light.c[0].g);
+  }
+}
+
+TEST_F(CaptureTest, ALightIsHiddenByWhatStandsBeforeItOnly) {
+  const glm::vec3 z(0, 0, 1);
+  const auto light =
+      captured(uniformSky(1),
+               {.proxies = {squareProxy()},
+                .bodies = {{0, facing({0, 0, 4}, {}, 1)}},
+                .points = {{.queries = {{.direction = z, .distance_m = 3},
+                                        {.direction = z, .distance_m = 4},  // in the body's own surface
+                                        {.direction = z, .distance_m = 5},
+                                        {.direction = z},
+                                        {.direction = -z},
+                                        {.direction = z, .angular_radius_rad = 0.1f, .distance_m = 5}}}}});
+  EXPECT_EQ(light[0].visible, (std::vector<float>{1, 1, 0, 0, 1, 0}));
+}
+
+TEST_F(CaptureTest, AHalfHiddenDiscHasTheShapeOfItsVisibleHalf) {
+  // A wall from x = 0 on covers half of a sun on +Y.
+  const float radius = 20 * kDegree;
+  const LightQuery sun{.direction = {0, 1, 0}, .angular_radius_rad = radius, .radiance = glm::vec3(5)};
+  const auto light = captured(uniformSky(0), {.proxies = {squareProxy()},
+                                              .bodies = {{0, facing({2, 2, 0}, {2, 0, 0}, 2)}},
+                                              .points = {{.queries = {sun}}}});
+  EXPECT_NEAR(light[0].visible[0], 0.5f, 1.0f / 32);
+  std::array<double, sh::kMaxCoefficients> y;
+  sh::LightVector half{.order = 6};
+  constexpr int kSteps = 400;
+  const double height = 1 - std::cos(static_cast<double>(radius));
+  for (int j = 0; j < kSteps; ++j)
+    for (int i = 0; i < kSteps; ++i) {
+      const double up = 1 - height * (j + 0.5) / kSteps, side = std::sqrt(1 - up * up),
+                   turn = std::numbers::pi * (0.5 + (i + 0.5) / kSteps);
+      sh::evaluate(6, glm::dvec3(side * std::cos(turn), up, side * std::sin(turn)), y);
+      for (std::size_t k = 0; k < 36; ++k)
+        half.c[k] += glm::vec3(glm::dvec3(5 * y[k] * height * std::numbers::pi / (kSteps * kSteps)));
+    }
+  const sh::LightVector total =
+      light[0].light +
+      light[0].visible[0] * sh::discLight(6, sun.direction, static_cast<double>(radius), sun.radiance);
+  const double shaped = squaredError(total, half);
+  EXPECT_LT(shaped, 0.01);
+  EXPECT_LT(shaped, 0.1 * squaredError(0.5f * sh::discLight(6, sun.direction, static_cast<double>(radius),
+                                                            sun.radiance),
+                                       half))
+      << "the shape must be worth its cost";
+}
+
+TEST_F(CaptureTest, ALightAllAroundIsHalfHiddenByAWallAtThePoint) {
+  const LightQuery around{
+      .direction = {0, 1, 0}, .angular_radius_rad = 170 * kDegree, .radiance = glm::vec3(1)};
+  const auto light = captured(uniformSky(0), {.proxies = {squareProxy()},
+                                              .bodies = {{0, facing({0, -0.001f, 0}, {}, 100)}},
+                                              .points = {{.queries = {around}}}});
+  EXPECT_NEAR(light[0].visible[0], 1 / (1 + std::cos(10 * kDegree)), 1.0f / 32);
+  EXPECT_TRUE(allFinite(light[0]));
+}
+
+TEST_F(CaptureTest, APointInsideABodySeesItsBlackInside) {
+  for (const float offset : {0.0f, 0.5f, 0.999f, 0.99999f}) {
+    const auto light = captured(uniformSky(1), {.proxies = {cubeProxy()},
+                                                .radiance = std::vector(12, glm::vec4(1)),
+                                                .bodies = {{}},
+                                                .points = {{.position_ws = {offset, 0, 0}}}});
+    EXPECT_LT(light[0].sky_visible.r, 1e-3f) << offset;
+    EXPECT_LT(energy(light[0].light), 1e-5) << offset;
+  }
+  // Exactly in a face there is no right answer, but a finite one.
+  const auto light =
+      captured(uniformSky(1), {.proxies = {cubeProxy()},
+                               .bodies = {{}},
+                               .points = {{.position_ws = {1, 0, 0}}, {.position_ws = {1, 1, 1}}}});
+  EXPECT_TRUE(allFinite(light[0]) && allFinite(light[1]));
+}
+
+TEST_F(CaptureTest, AFloorCloseUnderThePointHidesHalfOfTheSky) {
+  // Down to a hundred-thousandth of the body's size, where clipping ends to be exact.
+  for (const float height : {1e-2f, 1.0f}) {
+    const auto light = captured(uniformSky(1), {.proxies = {squareProxy()},
+                                                .bodies = {{0, facing({0, 0, 0}, {0, 1, 0}, 1000)}},
+                                                .points = {{.position_ws = {0.3f, height, 0.1f}}}});
+    EXPECT_NEAR(light[0].sky_visible.r, 0.5f, 0.005f) << height;
+  }
+}
+
+TEST_F(CaptureTest, RadianceOf1e8IsLinear) {
+  Scene scene{.proxies = {squareProxy()},
+              .radiance = std::vector(2, glm::vec4(1)),
+              .bodies = {{0, facing({1, 2, 0}, {}, 1)}},
+              .points = {{}}};
+  const auto one = captured(uniformSky(1), scene);
+  for (glm::vec4& radiance : scene.radiance) radiance *= 1e8f;
+  const auto bright = captured(uniformSky(1e8f), scene);
+  EXPECT_LT(squaredError(bright[0].light * 1e-8f, one[0].light), 1e-11);
+}
+
+TEST_F(CaptureTest, ARadianceThatIsNotFiniteIsBlack) {
+  const float infinity = std::numeric_limits<float>::infinity();
+  const auto light = captured(uniformSky(1), {.proxies = {squareProxy()},
+                                              .radiance = {glm::vec4(infinity, NAN, 1, 0), glm::vec4(1)},
+                                              .bodies = {{0, facing({1, 2, 0}, {}, 1)}},
+                                              .points = {{}}});
+  EXPECT_TRUE(allFinite(light[0]));
+  EXPECT_GT(light[0].light.c[0].b, light[0].light.c[0].r);
+}
+
+TEST_F(CaptureTest, BodiesWithoutSizeOrSenseDrawNothing) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  bundle::CaptureProxy empty, no_levels = squareProxy(), bad_corner = squareProxy();
+  no_levels.levels.clear();
+  bad_corner.positions[1] = glm::vec3(nan);
+  bad_corner.positions[3] = glm::vec3(nan);
+  const glm::mat4 near = glm::translate(glm::mat4(1), glm::vec3(0, 2, 0));
+  Scene scene{
+      .proxies = {squareProxy(), proxyOf({{0, 2, 0}}, {{0, 0, 0}}),
+                  proxyOf({{0, 2, 0}, {0, 3, 0}}, {{0, 1, 0}}), empty, no_levels, bad_corner},
+      .bodies = {{0, glm::mat4(0)},
+                 {0, glm::mat4(nan)},
+                 {1},
+                 {2},
+                 {3},
+                 {4, near},
+                 {5, near},
+                 {77, near},
+                 {0, glm::translate(glm::mat4(1), glm::vec3(std::numeric_limits<float>::infinity()))}},
+      .points = {{},
+                 {.position_ws = glm::vec3(nan),
+                  .queries = {{.direction = glm::vec3(nan)}, {.direction = glm::vec3(0)}}},
+                 {.position_ws = {0, 2, 0}}}};
+  const auto light = captured(uniformSky(1), scene);
+  for (const CapturedLight& l : light)
+    EXPECT_LT(squaredError(l.light, sh::constantLight(6, glm::vec3(1))), 1e-10);
+}
+
+TEST_F(CaptureTest, ABodyDoesNotSeeItselfAndSeesOthersOfTheSameProxy) {
+  const std::vector<CaptureBody> bodies = {{0, glm::mat4(1)},
+                                           {0, glm::translate(glm::mat4(1), glm::vec3(0, 4, 0))}};
+  const auto light = captured(
+      uniformSky(1),
+      {.proxies = {cubeProxy()}, .bodies = bodies, .points = {{.own_body = 0}, {.own_body = 1}, {}}});
+  EXPECT_GT(light[0].sky_visible.r, 0.9f);
+  EXPECT_LT(light[0].sky_visible.r, 0.99f);
+  EXPECT_LT(light[1].sky_visible.r, 0.99f) << "from the other's middle";
+  EXPECT_EQ(light[2].sky_visible.r, 0.0f);
+}
+
+TEST_F(CaptureTest, SmallBodiesAreLeftOutUnlessTheyAreBright) {
+  const auto capture = Capture::create({}, uniformSky(1));
+  ASSERT_TRUE(capture);
+  const CaptureOptions options;
+  const capture::ProxyBounds bounds = capture::ProxyBounds::of(discProxy());
+  // A quarter of a texel: 4 pi / (6 * 16 * 16) / 4 = 2.05e-3 sr, a radius of 1.46 degrees.
+  const auto seen = [&](double degrees, float brightness) {
+    CaptureBody body = discBody(0, {}, {0, 1, 0}, degrees * std::numbers::pi / 180, 10);
+    body.brightness = brightness;
+    return capture::sees(options, {}, body, bounds);
+  };
+  EXPECT_FALSE(seen(1.4, 1));
+  EXPECT_TRUE(seen(1.5, 1));
+  EXPECT_TRUE(seen(0.15, 100));
+  EXPECT_FALSE(seen(0.14, 100));
+  EXPECT_FALSE(seen(1.4, 0)) << "dark bodies hide no more than others";
+  EXPECT_TRUE(seen(0.01, std::numeric_limits<float>::infinity()));
+}
+
+TEST_F(CaptureTest, RunsAreTakenOnceAndOneAtATime) {
+  const Environment environment = uniformSky(1);
+  auto capture = Capture::create({}, environment);
+  ASSERT_TRUE(capture);
+  EXPECT_FALSE(capture->take(true));
+  const bundle::CaptureProxy square = squareProxy();
+  const bundle::CaptureProxy* const proxies[] = {&square};
+  capture->setProxies(proxies, counters);
+  const gpu::Buffer radiance("radiance", 32), too_small("too small", 16);
+  const CaptureBody bodies[] = {{0, facing({0, 3, 0}, {}, 1)}};
+  const CapturePoint points[] = {{}};
+  EXPECT_FALSE(capture->run(environment, bodies, points, too_small, counters));
+  EXPECT_TRUE(capture->run(environment, bodies, points, radiance, counters));
+  EXPECT_TRUE(capture->pending());
+  EXPECT_FALSE(capture->run(environment, bodies, points, radiance, counters));
+  std::optional<std::vector<CapturedLight>> light;
+  while (!(light = capture->take(false))) {
+  }
+  EXPECT_EQ(light->size(), 1u);
+  EXPECT_FALSE(capture->pending());
+  EXPECT_FALSE(capture->take(true));
+}
+
+TEST_F(CaptureTest, DrawsAndDispatchesDependOnPagesOnly) {
+  Scene scene{.options = {.subsamples = 4}, .proxies = {cubeProxy()}};
+  for (int i = 0; i < 50; ++i)
+    scene.bodies.push_back({0, glm::translate(glm::mat4(1), 4.0f * glm::vec3(i % 7, i / 7, 0))});
+  for (std::uint32_t i = 0; i < 50; ++i)
+    scene.points.push_back({.position_ws = 4.0f * glm::vec3(i % 7, i / 7, 0), .own_body = i});
+  captured(uniformSky(1), scene);
+  EXPECT_EQ(load.pages, 1u);
+  EXPECT_EQ(load.points, 50u);
+  EXPECT_EQ(counters.draws, 1u);
+  EXPECT_EQ(counters.dispatches, 4u) << "two of them for the sky";
+}
+
+TEST_F(CaptureTest, ManyPagesGiveTheLightOfOne) {
+  Scene scene{.proxies = {cubeProxy()}, .bodies = {{0, glm::translate(glm::mat4(1), glm::vec3(1.5f, 0, 0))}}};
+  for (int i = 0; i < 60; ++i) scene.points.push_back({.position_ws = {0, 0.01f * static_cast<float>(i), 0}});
+  const auto all = captured(uniformSky(1), scene);
+  EXPECT_GT(load.pages, 1u);
+  for (const std::size_t i : {0u, 31u, 59u}) {
+    Scene alone = scene;
+    alone.points = {scene.points[i]};
+    EXPECT_LT(squaredError(captured(uniformSky(1), alone)[0].light, all[i].light), 1e-12) << i;
+  }
+}
+
+TEST(CaptureClosed, KnowsBodiesWhoseDarkSidesCannotBeSeenFromOutside) {
+  const auto closed = [](const bundle::CaptureProxy& proxy) {
+    return capture::isClosed(proxy, proxy.levels[0]);
+  };
+  EXPECT_TRUE(closed(cubeProxy()));
+  EXPECT_FALSE(closed(cubeProxy(true))) << "a room faces inwards";
+  EXPECT_FALSE(closed(squareProxy()));
+  bundle::CaptureProxy open = cubeProxy();
+  --open.levels[0].triangle_count;
+  EXPECT_FALSE(closed(open));
+  // A room within a house: its walls can be seen from outside of neither, but their outside is dark.
+  bundle::CaptureProxy both = cubeProxy();
+  const bundle::CaptureProxy room = cubeProxy(true);
+  for (const glm::vec3& p : room.positions) both.positions.push_back(0.5f * p);
+  for (bundle::ProxyTriangle triangle : room.triangles) {
+    for (std::uint32_t& v : triangle.vertices) v += 8;
+    both.triangles.push_back(triangle);
+  }
+  both.levels[0].triangle_count = 24;
+  EXPECT_FALSE(closed(both));
+}
+
+TEST(CapturePlan, RectanglesHoldAllOfABody) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<float> place(-4, 4), angle(0, 6);
+  const bundle::CaptureProxy cube = cubeProxy();
+  const capture::ProxyBounds bounds = capture::ProxyBounds::of(cube);
+  for (int trial = 0; trial < 400; ++trial) {
+    const CaptureBody body{
+        0, glm::translate(glm::mat4(1), glm::vec3(place(random), place(random), place(random))) *
+               glm::rotate(glm::mat4(1), angle(random),
+                           glm::normalize(glm::vec3(place(random), 1, place(random))))};
+    std::array<std::optional<capture::TexelRect>, 6> rects;
+    for (std::uint32_t face = 0; face < 6; ++face)
+      rects[face] = capture::faceRect(16, face, {}, body, bounds);
+    for (int i = 0; i < 200; ++i) {
+      glm::vec3 p = glm::vec3(place(random), place(random), place(random)) / 4.0f;
+      p[i % 3] = i % 2 ? 1.0f : -1.0f;
+      const glm::dvec3 at(glm::vec3(body.world_from_proxy * glm::vec4(p, 1)));
+      const std::uint32_t face = capture::faceOf(at);
+      const glm::dvec3 on_face = capture::faceFromWorld(face) * at;
+      const double x = (on_face.x / on_face.z + 1) * 8, y = (on_face.y / on_face.z + 1) * 8;
+      ASSERT_TRUE(rects[face]);
+      EXPECT_TRUE(x >= rects[face]->x0 && x <= rects[face]->x1 && y >= rects[face]->y0 &&
+                  y <= rects[face]->y1);
+    }
+  }
+}
+
+TEST(CapturePlan, TilesAreApartAndInTheAtlas) {
+  const std::vector<capture::ProxyBounds> proxies = {capture::ProxyBounds::of(cubeProxy())};
+  std::mt19937 random(8);
+  std::uniform_real_distribution<float> place(-9, 9);
+  std::vector<CaptureBody> bodies;
+  for (int i = 0; i < 30; ++i)
+    bodies.push_back(
+        {0, glm::translate(glm::mat4(1), glm::vec3(place(random), place(random), place(random)))});
+  std::vector<CapturePoint> points(70);
+  for (CapturePoint& p : points) p.position_ws = glm::vec3(place(random), place(random), place(random));
+  const CaptureOptions options;
+  const capture::Plan plan = capture::plan(options, proxies, bodies, points);
+  EXPECT_GT(plan.pages.size(), 1u);
+  std::uint32_t points_seen = 0, draws_seen = 0;
+  for (const capture::Page& page : plan.pages) {
+    EXPECT_LE(page.height, capture::kAtlasHeight);
+    EXPECT_EQ(page.first_point, points_seen);
+    EXPECT_EQ(page.first_draw, draws_seen);
+    points_seen += page.point_count;
+    draws_seen += page.draw_count;
+    // In texels: tiles begin at multiples of a texel.
+    std::vector<bool> taken(capture::kAtlasWidth / 16 * capture::kAtlasHeight / 16);
+    const auto& last = plan.points[page.first_point + page.point_count - 1];
+    for (std::uint32_t t = plan.points[page.first_point].first_tile; t < last.first_tile + last.tile_count;
+         ++t) {
+      const capture::Tile& tile = plan.tiles[t];
+      for (std::uint32_t y = 0; y < tile.texels.height(); ++y)
+        for (std::uint32_t x = 0; x < tile.texels.width(); ++x) {
+          const std::size_t at = (tile.y / 16 + y) * (capture::kAtlasWidth / 16) + tile.x / 16 + x;
+          ASSERT_LT(tile.y + (y + 1) * 16, page.height + 1);
+          ASSERT_LT(tile.x / 16 + x, capture::kAtlasWidth / 16);
+          ASSERT_FALSE(taken[at]);
+          taken[at] = true;
+        }
+    }
+  }
+  EXPECT_EQ(points_seen, plan.points.size());
+  EXPECT_EQ(draws_seen, plan.draws.size());
+}
+
+TEST_F(CaptureTest, ASunOfOneTexelInAProbeKeepsItsPlaceAndPower) {
+  // 128 x 64 texels of 2.8 degrees, one of them 10000 times brighter: half a texel of the capture's cube.
+  const std::filesystem::path file = std::filesystem::path(::testing::TempDir()) / "capture_sun.hdr";
+  {
+    std::ofstream out(file, std::ios::binary);
+    out << "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 64 +X 128\n";
+    for (int y = 0; y < 64; ++y)
+      for (int x = 0; x < 128; ++x) {
+        const bool sun = x == 40 && y == 25;
+        // 128 / 256 * 2^1 = 1; 160 / 256 * 2^14 = 10240
+        out.put(static_cast<char>(sun ? 160 : 128)).put(static_cast<char>(sun ? 160 : 128));
+        out.put(static_cast<char>(sun ? 160 : 128)).put(static_cast<char>(sun ? 142 : 129));
+      }
+  }
+  const Environment environment = *Environment::create({spec::ProbeLight{file, sh::ImageLayout::LatLong}});
+  auto capture = Capture::create({}, environment);
+  ASSERT_TRUE(capture);
+  std::mt19937 random(5);
+  std::normal_distribution<double> normal;
+  for (int i = 0; i < 20; ++i) {
+    const glm::dquat turn =
+        glm::normalize(glm::dquat(normal(random), normal(random), normal(random), normal(random)));
+    const sh::LightVector through = capture->skyThroughTexels(environment, glm::mat3(glm::mat3_cast(turn)));
+    const sh::LightVector exact = sh::Rotation(turn, 8).apply(environment.light()).truncated(6);
+    EXPECT_LT(squaredError(through, exact), 1.5e-3) << i;
+    EXPECT_NEAR(through.c[0].g / exact.c[0].g, 1.0f, 0.02f) << i;
+  }
+}
+
+TEST_F(CaptureTest, AFadedSkyIsHiddenByItsShare) {
+  Environment environment =
+      *Environment::create({spec::ConstantLight{{1, 0, 0}}}, {spec::ConstantLight{{0, 2, 0}}});
+  environment.setFade(0.25f);
+  environment.setIntensity(2.0f);
+  const auto light = captured(
+      environment, {.proxies = {squareProxy()}, .bodies = {{0, facing({0, 2, 0}, {}, 2)}}, .points = {{}}});
+  sh::LightVector open = sh::constantLight(6, {1.5f, 1, 0});
+  EXPECT_NEAR(light[0].sky_visible.r, 5.0f / 6, 1e-4f);
+  EXPECT_NEAR(light[0].light.c[0].r, open.c[0].r * 5 / 6, 1e-3f);
+  EXPECT_NEAR(light[0].light.c[0].g, open.c[0].g * 5 / 6, 1e-3f);
+  EXPECT_EQ(light[0].light.c[0].b, 0.0f);
+}
+
+TEST_F(CaptureTest, TheShadersAgreeWithTheirTwinOn100RandomScenes) {
+  std::mt19937 random(20021);
+  const auto uniform = [&](float a, float b) { return std::uniform_real_distribution<float>(a, b)(random); };
+  for (int trial = 0; trial < 100; ++trial) {
+    Scene scene{
+        .options = {.size = trial % 2 ? 8u : 5u, .subsamples = trial % 3 ? 8u : 7u, .order = 3 + trial % 6}};
+    scene.proxies = {cubeProxy(), squareProxy(), squareProxy(true), discProxy(20), cubeProxy(true)};
+    std::size_t triangles = 0;
+    for (auto& proxy : scene.proxies) triangles += proxy.triangles.size();
+    for (std::size_t i = 0; i < triangles; ++i)
+      scene.radiance.emplace_back(uniform(0, 3), uniform(0, 1), trial % 10 ? uniform(0, 1) : 1e6f, 0);
+    const int count = 1 + trial % 9;
+    for (int i = 0; i < count; ++i)
+      scene.bodies.push_back({.proxy = static_cast<std::uint32_t>(uniform(0, 4.99f)),
+                              .world_from_proxy = facing({uniform(-4, 4), uniform(-4, 4), uniform(-4, 4)},
+                                                         {uniform(-9, 9), uniform(-9, 9), uniform(-9, 9)},
+                                                         uniform(0.3f, 2.5f))});
+    for (int i = 0; i < 2; ++i) {
+      CapturePoint point{.position_ws = {uniform(-3, 3), uniform(-3, 3), uniform(-3, 3)},
+                         .own_body = i ? CapturePoint::kNoBody : 0u};
+      for (int q = 0; q < 3; ++q)
+        point.queries.push_back(
+            {.direction = glm::normalize(glm::vec3(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1))),
+             .angular_radius_rad = q ? uniform(0, 2) : 0.0f,
+             .distance_m = trial % 2 ? uniform(0, 6) : 0.0f,
+             .radiance = q ? glm::vec3(uniform(0, 2)) : glm::vec3(0)});
+      scene.points.push_back(std::move(point));
+    }
+    const Environment environment = uniformSky(trial % 4 ? 1.0f : 0.0f);
+    const auto light = captured(environment, scene);
+    std::vector<const bundle::CaptureProxy*> proxies;
+    for (const auto& proxy : scene.proxies) proxies.push_back(&proxy);
+    const std::vector<glm::vec3> sky(6 * scene.options.size * scene.options.size,
+                                     environment.set(0).constant);
+    const capture::RefScene twin{
+        scene.options,  proxies, scene.bodies,
+        scene.radiance, sky,     sh::constantLight(scene.options.order, environment.set(0).constant)};
+    for (std::size_t p = 0; p < scene.points.size(); ++p) {
+      const CapturedLight expected = capture::captureRef(twin, scene.points[p]);
+      ASSERT_TRUE(allFinite(light[p]));
+      // Subsamples on edges may fall to either side; of eight of them the difference stays under this.
+      double difference = 0;
+      for (std::size_t i = 0; i < expected.light.c.size(); ++i)
+        difference += glm::dot(glm::dvec3(light[p].light.c[i] - expected.light.c[i]),
+                               glm::dvec3(light[p].light.c[i] - expected.light.c[i]));
+      const double subsample_sr = 4 * std::numbers::pi /
+                                  (6.0 * scene.options.size * scene.options.size * scene.options.subsamples *
+                                   scene.options.subsamples);
+      const double brightest = trial % 10 ? 3 : 1e6;
+      EXPECT_LT(std::sqrt(difference),
+                8 * subsample_sr * brightest * scene.options.order / std::sqrt(4 * std::numbers::pi))
+          << "scene " << trial << " point " << p;
+      EXPECT_NEAR(light[p].sky_visible.g, expected.sky_visible.g, 2e-3f) << "scene " << trial;
+      for (std::size_t q = 0; q < expected.visible.size(); ++q)
+        EXPECT_NEAR(light[p].visible[q], expected.visible[q], q ? 0.04f : 0.0f)
+            << "scene " << trial << " query " << q;
+    }
+  }
+}
+
+}  // namespace lambent::lighting

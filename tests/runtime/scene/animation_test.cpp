@@ -1,0 +1,208 @@
+// Animations move the nodes that they name, and only when something changes.
+#include "runtime/scene/animation.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "runtime/bundle/keyframes.hpp"
+#include "runtime/scene/components.hpp"
+#include "runtime/scene/lights.hpp"
+#include "runtime/scene/transforms.hpp"
+
+namespace lambent::scene {
+namespace {
+
+using Path = gltf::AnimationChannel::Path;
+using Interpolation = gltf::AnimationChannel::Interpolation;
+
+constexpr float kRounding = 1e-5f;
+constexpr glm::vec3 kUp(0.0f, 1.0f, 0.0f);
+
+gltf::AnimationChannel channel(std::uint32_t node, Path path, std::vector<float> times,
+                               std::vector<float> values) {
+  return {.node = node,
+          .path = path,
+          .interpolation = Interpolation::Linear,
+          .times_s = std::move(times),
+          .values = std::move(values)};
+}
+
+// A ball that rolls along x from 0 to 4 in two seconds, then rests until 3; and a top that turns by 90
+// degrees about +Y in a second while it grows from 1 to 3, a group of its own with rest scale 2.
+struct Playground {
+  Playground() {
+    d.nodes.resize(3);
+    d.roots = {0, 1, 2};
+    for (const std::size_t n : {std::size_t{0}, std::size_t{1}}) {
+      d.nodes[n].animated = true;
+      d.nodes[n].trs = gltf::Trs{.translation = {9.0f, 1.0f, 0.0f}, .scale = glm::vec3(n == 1 ? 2.0f : 1.0f)};
+      d.nodes[n].parent_from_node = d.nodes[n].trs->matrix();
+    }
+    const float half = std::sqrt(0.5f);
+    d.animations = {
+        {.name = "roll", .channels = {channel(0, Path::Translation, {0, 2, 3}, {0, 1, 0, 4, 1, 0, 4, 1, 0})}},
+        {.name = "spin",
+         .channels = {channel(1, Path::Rotation, {0, 1}, {0, 0, 0, 1, 0, half, 0, half}),
+                      channel(1, Path::Scale, {0, 1}, {1, 1, 1, 3, 3, 3})}}};
+    bundle::Group top;
+    top.node = 1;
+    top.rest_translation = {9.0f, 1.0f, 0.0f};
+    top.bounds_min = glm::vec3(-1.0f);
+    top.bounds_max = glm::vec3(1.0f);
+    d.groups = {top};
+    auto made = instantiate(registry, d, {.bundle_index = 5, .bundle_id = "playground"});
+    EXPECT_TRUE(made) << made.error().line();
+    scene = std::move(*made);
+    bundles = {{.bundle = 5, .description = &d, .instance = &scene}};
+  }
+
+  AnimationComponent& player(std::size_t i) { return registry.edit<AnimationComponent>(scene.animations[i]); }
+  const Transform& node(std::size_t n) { return registry.get<Transform>(scene.nodes[n]); }
+  AnimationUpdates play(float seconds) { return playAnimations(registry, bundles, seconds); }
+  AnimationUpdates set(float time) { return setAnimationTime(registry, bundles, time); }
+
+  bundle::Description d;
+  ecs::Registry registry;
+  SceneInstance scene;
+  std::vector<AnimatedBundle> bundles;
+};
+
+TEST(Animation, NodesRestUntilTheyArePlayed) {
+  Playground at;
+  EXPECT_EQ(at.registry.get<Name>(at.scene.animations[1]).value, "spin");
+  EXPECT_EQ(at.play(0.0f).nodes, 0u);
+  EXPECT_EQ(at.node(0).translation, glm::vec3(9, 1, 0));
+  const AnimationUpdates first = at.play(0.5f);
+  EXPECT_EQ(first.animations, 2u);
+  EXPECT_EQ(first.nodes, 2u) << "two channels of one node are one node";
+  EXPECT_LT(glm::distance(at.node(0).translation, glm::vec3(1, 1, 0)), kRounding);
+  EXPECT_LT(glm::distance(at.node(1).scale, glm::vec3(2)), kRounding);
+  EXPECT_EQ(at.node(1).translation, glm::vec3(9, 1, 0)) << "no channel, as it was";
+}
+
+TEST(Animation, CostsNothingWhilePausedOrAtItsEndOrBetweenEqualKeys) {
+  Playground at;
+  at.player(0).loop = false;
+  at.player(1).playing = false;
+  at.play(2.5f);
+  const std::uint64_t transforms = at.registry.version<Transform>();
+  const std::uint64_t players = at.registry.version<AnimationComponent>();
+  const AnimationUpdates between = at.play(0.25f);
+  EXPECT_EQ(between.animations, 1u);
+  EXPECT_EQ(between.nodes, 0u);
+  EXPECT_EQ(at.registry.version<Transform>(), transforms) << "between two equal keys";
+  at.play(10.0f);
+  EXPECT_EQ(at.player(0).time_s, 3.0f) << "to the end and no farther";
+  const std::uint64_t ended = at.registry.version<AnimationComponent>();
+  EXPECT_GT(ended, players);
+  EXPECT_EQ(at.play(1.0f).animations, 0u);
+  EXPECT_EQ(at.registry.version<AnimationComponent>(), ended);
+  EXPECT_EQ(at.registry.version<Transform>(), transforms);
+  EXPECT_EQ(at.node(1).scale, glm::vec3(2.0f)) << "paused from the start: at rest";
+}
+
+TEST(Animation, LoopsForwardAndBackward) {
+  Playground at;
+  at.play(3.5f);
+  EXPECT_NEAR(at.player(0).time_s, 0.5f, kRounding);
+  EXPECT_NEAR(at.player(1).time_s, 0.5f, kRounding);
+  EXPECT_NEAR(at.node(0).translation.x, 1.0f, kRounding);
+  at.player(0).speed = -2.0f;
+  at.play(0.5f);
+  EXPECT_NEAR(at.player(0).time_s, 2.5f, kRounding);
+  EXPECT_NEAR(at.node(0).translation.x, 4.0f, kRounding);
+  at.player(0).loop = false;
+  at.play(100.0f);
+  EXPECT_EQ(at.player(0).time_s, 0.0f);
+  for (const float wrong : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()})
+    EXPECT_EQ(at.play(wrong).animations, 0u);
+}
+
+TEST(Animation, GoesToATimeThatIsSet) {
+  Playground at;
+  for (std::size_t i = 0; i < 2; ++i) at.player(i).playing = false;
+  at.set(0.0f);
+  EXPECT_EQ(at.node(0).translation, glm::vec3(0, 1, 0)) << "from rest to the first key";
+  at.set(50.0f);
+  EXPECT_EQ(at.node(0).translation, glm::vec3(4, 1, 0)) << "the last key holds";
+  EXPECT_EQ(at.player(0).time_s, 50.0f);
+  at.player(0).time_s = 1.0f;  // by a field in an editor
+  EXPECT_EQ(at.play(0.016f).nodes, 1u);
+  EXPECT_EQ(at.node(0).translation.x, 2.0f);
+  EXPECT_EQ(at.play(0.016f).animations, 0u);
+  at.player(0).playing = true;
+  at.set(50.0f);
+  EXPECT_EQ(at.play(0.0f).nodes, 0u) << "no time passed";
+  at.play(1.0f);
+  EXPECT_LT(at.player(0).time_s, 3.0f) << "round again";
+}
+
+TEST(Animation, MovesAsTheBakersPosesDo) {
+  Playground at;
+  auto nodes = at.d.nodes;
+  at.set(0.7f);
+  updateTransforms(at.registry);
+  gltf::applyAnimations(at.d.animations, 0.7f, nodes);
+  for (std::size_t n = 0; n < nodes.size(); ++n)
+    for (int c = 0; c < 4; ++c)
+      EXPECT_LT(glm::distance(at.registry.get<WorldTransform>(at.scene.nodes[n]).world_from_node[c],
+                              nodes[n].parent_from_node[c]),
+                kRounding);
+}
+
+// Transfer holds for directions: growing evenly, a group turns as it would without.
+TEST(Animation, AGroupThatGrowsEvenlyStaysRigid) {
+  Playground at;
+  for (const float time : {0.0f, 0.25f, 0.6f, 1.0f}) {
+    at.set(time);
+    updateTransforms(at.registry);
+    const auto& top = at.registry.get<RigidGroupComponent>(at.scene.groups[0]);
+    const glm::quat turn = glm::angleAxis(glm::radians(90.0f * time), kUp);
+    EXPECT_NEAR(std::abs(glm::dot(top.rotation, turn)), 1.0f, 1e-6f) << time;
+    EXPECT_NEAR(std::abs(glm::dot(top.turn_since_rest, turn)), 1.0f, 1e-6f) << time;
+    EXPECT_LT(glm::distance(top.translation, glm::vec3(9, 1, 0)), kRounding) << "it grows about its place";
+    // From 2 at rest to 1 + 2 t.
+    const glm::vec3 grown(top.world_from_rest * glm::vec4(0, 1, 0, 0));
+    EXPECT_LT(glm::distance(grown, glm::vec3(0, (1 + 2 * time) / 2, 0)), kRounding);
+  }
+}
+
+TEST(Animation, SurvivesNodesAndBundlesThatWereTakenAway) {
+  Playground at;
+  at.registry.destroy(at.scene.nodes[1]);
+  EXPECT_EQ(at.play(0.5f).nodes, 1u);
+  at.bundles.clear();
+  EXPECT_EQ(at.play(0.5f).animations, 0u);
+  destroyInstance(at.registry, at.scene);
+  EXPECT_EQ(at.registry.entityCount(), 0u);
+}
+
+TEST(SceneLights, StandWhereTheirWordsSay) {
+  ecs::Registry registry;
+  const std::vector<spec::Light> lights = {spec::ConstantLight{},
+                                           spec::SphereLight{{1, 2, 3}, 0.5f, {8, 4, 0}},
+                                           spec::DiscLight{{0, 5, 0}, {0, -1, 0}, 0.25f, {1, 2, 3}},
+                                           spec::DiscLight{{0, 0, 9}, {0, 0, 1}, 1, {0, 0, 0}}};
+  const auto entities = addLights(registry, lights);
+  ASSERT_EQ(entities.size(), 3u);
+  updateTransforms(registry);
+  const auto light = [&](std::size_t i) { return registry.get<LocalLightComponent>(entities[i]); };
+  const auto place = [&](std::size_t i) { return registry.get<WorldTransform>(entities[i]).world_from_node; };
+  EXPECT_EQ(light(0).kind, LocalLightComponent::Kind::Sphere);
+  EXPECT_EQ(light(0).power(), glm::vec3(8, 4, 0));
+  EXPECT_EQ(light(0).strength, 8.0f);
+  EXPECT_EQ(light(0).radius_m, 0.5f);
+  EXPECT_EQ(glm::vec3(place(0)[3]), glm::vec3(1, 2, 3));
+  EXPECT_EQ(light(1).kind, LocalLightComponent::Kind::Disc);
+  EXPECT_LT(glm::distance(light(1).power(), glm::vec3(1, 2, 3)), 1e-6f);
+  EXPECT_LT(glm::distance(-glm::vec3(place(1)[2]), glm::vec3(0, -1, 0)), kRounding);
+  EXPECT_LT(glm::distance(-glm::vec3(place(2)[2]), glm::vec3(0, 0, 1)), kRounding) << "half a turn";
+  EXPECT_EQ(light(2).power(), glm::vec3(0)) << "dark";
+  const ecs::Entity environment = addEnvironment(registry, {.intensity = 2.0f, .fade = 0.5f});
+  EXPECT_EQ(registry.get<EnvironmentComponent>(environment).fade, 0.5f);
+}
+
+}  // namespace
+}  // namespace lambent::scene
