@@ -29,7 +29,6 @@ constexpr gpu::FindText kShaders[] = {&embedded::lambent_lighting::find};
 constexpr GLint kClipFromPixel = 0;
 constexpr GLint kFirstTexel = 0, kTexelCount = 1, kFirstWord = 2, kWordCount = 3, kSubsamples = 4;
 constexpr GLint kFirstPoint = 0;
-constexpr std::uint32_t kMaxGroups = 65535;  // that OpenGL promises
 constexpr std::uint32_t kNoRecord = 0xffffffffu;
 
 using Vertex = std::array<std::uint32_t, 4>;  // position as bits of floats, surface id
@@ -203,6 +202,9 @@ Result<void> Capture::run(const Environment& environment, std::span<const Captur
   sky_is_new_ = sky_.update(environment, weights_, counters) || sky_is_new_;
   const Plan plan = capture::plan(options_, bounds_, bodies, points);
 
+  if (plan.draws.size() >= std::size_t{1} << (32 - kVertexBits))
+    return fail("light capture", "more than four million bodies to draw", "capture fewer points at a time");
+
   run_ = {};
   run_.points.assign(points.begin(), points.end());
   run_.sky = environment.skyLight().truncated(options_.order);
@@ -316,7 +318,7 @@ void Capture::upload(const Plan& plan, std::span<const CaptureBody> bodies,
 void Capture::drawPage(const Page& page, std::size_t index, gpu::Counters& counters) {
   // Grows with the largest page so far.
   if (!ids_ || ids_.desc().height < page.height) {
-    const std::uint32_t height = std::min(std::bit_ceil(page.height), kAtlasHeight);
+    const std::uint32_t height = std::bit_ceil(page.height);
     ids_ = gpu::Texture("capture ids", {.format = GL_R32UI, .width = kAtlasWidth, .height = height});
     depths_ = gpu::Texture("capture depths",
                            {.format = GL_DEPTH_COMPONENT32F, .width = kAtlasWidth, .height = height});
