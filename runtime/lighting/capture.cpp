@@ -131,13 +131,13 @@ Result<Capture> Capture::create(const CaptureOptions& options, const Environment
   if (options.order < 1 || options.order > sh::kMaxOrder)
     return fail("light capture", "order " + std::to_string(options.order), "1 to 8");
   Capture capture(options);
-  // [texel][coefficient]: the lanes of a work group read one texel's weights together.
+  // [texel][coefficient], padded to vec4s: the shaders fetch four at a time.
   const std::vector<float> weights = sh::cubeWeights(options.order, static_cast<int>(options.size));
   const std::size_t count = static_cast<std::size_t>(sh::coefficientCount(options.order)),
-                    texels = weights.size() / count;
-  std::vector<float> by_texel(weights.size());
+                    texels = weights.size() / count, stride = (count + 3) / 4 * 4;
+  std::vector<float> by_texel(texels * stride);
   for (std::size_t i = 0; i < count; ++i)
-    for (std::size_t k = 0; k < texels; ++k) by_texel[k * count + i] = weights[i * texels + k];
+    for (std::size_t k = 0; k < texels; ++k) by_texel[k * stride + i] = weights[i * texels + k];
   capture.weights_ = gpu::Buffer("capture weights", by_texel.size() * sizeof(float));
   capture.weights_.write(0, std::span<const float>(by_texel));
   auto sky = CaptureSky::create(options, environment);
@@ -396,7 +396,7 @@ void Capture::projectPage(const Page& page, const gpu::Buffer& triangle_radiance
   glUniform1ui(kFirstPoint, page.first_point);
   bindTable(values_view_, kUnitValues, GL_RGBA32F, values_.buffer());
   bindTable(texels_view_, kUnitTexels, GL_RG32UI, texels_.buffer());
-  bindTable(weights_view_, kUnitWeights, GL_R32F, weights_);
+  bindTable(weights_view_, kUnitWeights, GL_RGBA32F, weights_);
   sky_.bindTables();
   points_.bindStorage(kBindPoints);
   results_.bindStorage(kBindResults);
