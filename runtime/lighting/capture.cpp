@@ -29,7 +29,6 @@ constexpr gpu::FindText kShaders[] = {&embedded::lambent_lighting::find};
 constexpr GLint kClipFromPixel = 0;
 constexpr GLint kFirstTexel = 0, kTexelCount = 1, kFirstWord = 2, kWordCount = 3, kSubsamples = 4;
 constexpr GLint kFirstPoint = 0;
-constexpr std::uint32_t kMaxGroups = 65535;  // that OpenGL promises
 constexpr std::uint32_t kNoRecord = 0xffffffffu;
 
 using Vertex = std::array<std::uint32_t, 4>;  // position as bits of floats, surface id
@@ -132,13 +131,13 @@ Result<Capture> Capture::create(const CaptureOptions& options, const Environment
   if (options.order < 1 || options.order > sh::kMaxOrder)
     return fail("light capture", "order " + std::to_string(options.order), "1 to 8");
   Capture capture(options);
-  // [texel][coefficient]: the lanes of a work group read one texel's weights together.
+  // [texel][coefficient], padded to vec4s: the shaders fetch four at a time.
   const std::vector<float> weights = sh::cubeWeights(options.order, static_cast<int>(options.size));
   const std::size_t count = static_cast<std::size_t>(sh::coefficientCount(options.order)),
-                    texels = weights.size() / count;
-  std::vector<float> by_texel(weights.size());
+                    texels = weights.size() / count, stride = (count + 3) / 4 * 4;
+  std::vector<float> by_texel(texels * stride);
   for (std::size_t i = 0; i < count; ++i)
-    for (std::size_t k = 0; k < texels; ++k) by_texel[k * count + i] = weights[i * texels + k];
+    for (std::size_t k = 0; k < texels; ++k) by_texel[k * stride + i] = weights[i * texels + k];
   capture.weights_ = gpu::Buffer("capture weights", by_texel.size() * sizeof(float));
   capture.weights_.write(0, std::span<const float>(by_texel));
   auto sky = CaptureSky::create(options, environment);
@@ -202,6 +201,9 @@ Result<void> Capture::run(const Environment& environment, std::span<const Captur
   const gpu::DebugGroup group("light capture");
   sky_is_new_ = sky_.update(environment, weights_, counters) || sky_is_new_;
   const Plan plan = capture::plan(options_, bounds_, bodies, points);
+
+  if (plan.draws.size() >= std::size_t{1} << (32 - kVertexBits))
+    return fail("light capture", "more than four million bodies to draw", "capture fewer points at a time");
 
   run_ = {};
   run_.points.assign(points.begin(), points.end());
@@ -316,7 +318,7 @@ void Capture::upload(const Plan& plan, std::span<const CaptureBody> bodies,
 void Capture::drawPage(const Page& page, std::size_t index, gpu::Counters& counters) {
   // Grows with the largest page so far.
   if (!ids_ || ids_.desc().height < page.height) {
-    const std::uint32_t height = std::min(std::bit_ceil(page.height), kAtlasHeight);
+    const std::uint32_t height = std::bit_ceil(page.height);
     ids_ = gpu::Texture("capture ids", {.format = GL_R32UI, .width = kAtlasWidth, .height = height});
     depths_ = gpu::Texture("capture depths",
                            {.format = GL_DEPTH_COMPONENT32F, .width = kAtlasWidth, .height = height});
@@ -394,7 +396,7 @@ void Capture::projectPage(const Page& page, const gpu::Buffer& triangle_radiance
   glUniform1ui(kFirstPoint, page.first_point);
   bindTable(values_view_, kUnitValues, GL_RGBA32F, values_.buffer());
   bindTable(texels_view_, kUnitTexels, GL_RG32UI, texels_.buffer());
-  bindTable(weights_view_, kUnitWeights, GL_R32F, weights_);
+  bindTable(weights_view_, kUnitWeights, GL_RGBA32F, weights_);
   sky_.bindTables();
   points_.bindStorage(kBindPoints);
   results_.bindStorage(kBindResults);

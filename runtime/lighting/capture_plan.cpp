@@ -271,16 +271,17 @@ void makePages(Plan& plan, std::uint32_t subsamples) {
   const auto points = static_cast<std::uint32_t>(plan.points.size());
   std::uint32_t first_draw = 0;
   for (std::uint32_t first = 0; first < points;) {
-    // By area first, and fewer if the rows waste too much; one point always fits.
+    // By area first, and fewer if the rows waste too much.
     constexpr std::uint64_t kArea = std::uint64_t{kAtlasWidth} * kAtlasHeight;
     std::uint32_t last = first;
-    for (std::uint64_t area = 0; last < points && last - first < kMaxPointsOfPage; ++last) {
+    for (std::uint64_t area = 0, texel_count = 0; last < points && last - first < kMaxPointsOfPage; ++last) {
       const PlannedPoint& p = plan.points[last];
       for (std::uint32_t t = 0; t < p.tile_count; ++t) {
         const TexelRect& texels = plan.tiles[p.first_tile + t].texels;
-        area += std::uint64_t{texels.width()} * texels.height() * subsamples * subsamples;
+        texel_count += std::uint64_t{texels.width()} * texels.height();
       }
-      if (last > first && area > kArea * 9 / 10) break;
+      area = texel_count * subsamples * subsamples;
+      if (last > first && (area > kArea * 9 / 10 || texel_count > kMaxTexelsOfPage)) break;
     }
     Page page{.first_point = first, .first_draw = first_draw};
     for (;;) {
@@ -288,7 +289,8 @@ void makePages(Plan& plan, std::uint32_t subsamples) {
                           end_tile = plan.points[last - 1].first_tile + plan.points[last - 1].tile_count;
       page.height = shelve(std::span(plan.tiles).subspan(first_tile, end_tile - first_tile), subsamples);
       page.point_count = last - first;
-      if (page.height <= kAtlasHeight) {
+      // One point alone may need up to twice its area and a row: 7168 pixels.
+      if (page.height <= kAtlasHeight || page.point_count == 1) {
         while (first_draw < plan.draws.size() && plan.draws[first_draw].tile < end_tile) ++first_draw;
         break;
       }

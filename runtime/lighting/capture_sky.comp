@@ -94,7 +94,7 @@ void main() {
     }
   sky[texel] = vec4(sum / texel_sr, 0.0);
 
-  uint first_weight = texel * uint(ORDER * ORDER);
+  uint first_weight = texel * uint((ORDER * ORDER + 3) / 4 * 4);
   even_offset /= texel_sr;
   // A single subsample tells nothing of what is within, and black is even.
   bool even = subsamples == 1u || !(brightness > 0.0);

@@ -102,7 +102,7 @@ Result<CaptureSky> CaptureSky::create(const CaptureOptions& options, const Envir
   const std::size_t texels = std::size_t{6} * options.size * options.size,
                     coefficients = static_cast<std::size_t>(sh::coefficientCount(options.order));
   sky.texels_ = gpu::Buffer("capture sky", texels * sizeof(glm::vec4));
-  sky.weights_ = gpu::Buffer("capture sky weights", texels * coefficients * sizeof(float));
+  sky.weights_ = gpu::Buffer("capture sky weights", texels * ((coefficients + 3) / 4) * sizeof(glm::vec4));
   sky.light_ = gpu::Buffer("capture sky light", coefficients * sizeof(glm::vec4));
   return sky;
 }
@@ -160,7 +160,7 @@ void CaptureSky::makeTurned(const Environment& environment, const glm::mat3& wor
 
 void CaptureSky::bindTables() {
   bindTable(texels_view_, kUnitSky, GL_RGBA32F, texels_);
-  bindTable(weights_view_, kUnitSkyWeights, GL_R32F, weights_);
+  bindTable(weights_view_, kUnitSkyWeights, GL_RGBA32F, weights_);
 }
 
 }  // namespace lambent::lighting

@@ -407,6 +407,22 @@ TEST_F(CaptureTest, ManyPagesGiveTheLightOfOne) {
   }
 }
 
+TEST(CapturePlan, OnePointAloneAlwaysGetsAPage) {
+  // Slabs in front of all faces, so that tiles are long and thin, at the largest size.
+  const std::vector<capture::ProxyBounds> proxies = {capture::ProxyBounds::of(squareProxy())};
+  std::vector<CaptureBody> bodies;
+  for (std::uint32_t face = 0; face < 6; ++face)
+    for (int strip = -2; strip <= 2; ++strip) {
+      const glm::vec3 at(sh::cubeFaceDirection(static_cast<int>(face), 0, 0.38 * strip));
+      bodies.push_back({0, glm::scale(glm::translate(glm::mat4(1), at),
+                                      glm::vec3(0.15f + 0.1f * static_cast<float>(face)))});
+    }
+  const CaptureOptions options{.size = 64, .subsamples = 16};
+  const capture::Plan plan = capture::plan(options, proxies, bodies, std::vector<CapturePoint>(3));
+  EXPECT_EQ(plan.points.size(), 3u);
+  for (const capture::Page& page : plan.pages) EXPECT_LT(page.height, 8192u);
+}
+
 TEST(CaptureClosed, KnowsBodiesWhoseDarkSidesCannotBeSeenFromOutside) {
   const auto closed = [](const bundle::CaptureProxy& proxy) {
     return capture::isClosed(proxy, proxy.levels[0]);
