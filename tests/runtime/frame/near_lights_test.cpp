@@ -108,7 +108,12 @@ struct Stage {
     world.updateTransforms();
     gpu::Counters counters;
     raster = {};
-    group_lights.update(environment, sh::Window::Off, world.groupPlaces(), counters);
+    std::vector<lighting::GroupPlace> places;
+    for (std::size_t g = 0; g < world.residency().groups().size(); ++g)
+      places.push_back({.world_from_group = world.rotationOf(g),
+                        .order = world.residency().groups()[g].order,
+                        .lamps = world.lampsOf(g)});
+    group_lights.update(environment, sh::Window::Off, places, counters);
     EXPECT_TRUE(
         diffuse.shade(world.residency(), group_lights, effects::diffuse::TransferMode::Full, counters));
     const Result<void> done = surfaces->prepare(world, diffuse, view, raster, plain ? nullptr : &near_lights);
