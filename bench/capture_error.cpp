@@ -15,6 +15,7 @@
 #include <fstream>
 #include <numbers>
 #include <random>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -86,13 +87,29 @@ glm::vec3 randomDirection(std::mt19937& random) {
   }
 }
 
+// A row for each order: lower orders have the same coefficients, only fewer.
+std::span<Row> addRows(const std::string& light, std::uint32_t size, std::vector<Row>& rows) {
+  const std::size_t first = rows.size();
+  for (int order = kLeastOrder; order <= kMostOrder; ++order)
+    rows.push_back({.light = light, .size = size, .order = order});
+  return std::span(rows).subspan(first);
+}
+
+void addErrors(const sh::LightVector& captured, const sh::LightVector& exact, double milliseconds,
+               std::span<Row> rows) {
+  for (Row& row : rows) {
+    row.add(squaredError(captured, exact.truncated(row.order)));
+    row.milliseconds += (milliseconds - row.milliseconds) / static_cast<double>(row.count);
+  }
+}
+
 // Points so far apart that none sees another's disc, each at 1 m from its own.
-Row discErrors(std::uint32_t size, int order, double radius_deg, int directions) {
-  Row row{
-      .light = "disc " + std::to_string(static_cast<int>(radius_deg)) + "°", .size = size, .order = order};
+void discErrors(std::uint32_t size, double radius_deg, int directions, std::vector<Row>& rows) {
+  const std::span<Row> own =
+      addRows("disc " + std::to_string(static_cast<int>(radius_deg)) + "°", size, rows);
   const double radius = radius_deg * std::numbers::pi / 180;
   const Environment dark = darkness();
-  Capture capture = must(Capture::create({.size = size, .order = order}, dark));
+  Capture capture = must(Capture::create({.size = size, .order = kMostOrder}, dark));
   gpu::Counters counters;
   const bundle::CaptureProxy disc = testing::discProxy();
   const bundle::CaptureProxy* const proxies[] = {&disc};
@@ -110,16 +127,18 @@ Row discErrors(std::uint32_t size, int order, double radius_deg, int directions)
       towards.push_back(randomDirection(random));
       points.push_back({.position_ws = 256.0f * glm::vec3(i & 1, i >> 1 & 1, i >> 2)});
       bodies.push_back(testing::discBody(0, points.back().position_ws, towards.back(), radius, 1.0f));
+      // None is too small to be measured; the others, 256 m away, must stay away.
+      bodies.back().brightness = size < 8 ? 8.0f : 1.0f;
     }
     const auto start = Clock::now();
     const auto run = capture.run(dark, bodies, points, radiance, counters);
     if (!run) must<int>(tl::unexpected(run.error()));
     const std::vector<CapturedLight> lights = *capture.take(true);
-    row.milliseconds += millisecondsSince(start) / directions;
+    const double milliseconds = millisecondsSince(start) / static_cast<double>(points.size());
     for (std::size_t i = 0; i < lights.size(); ++i)
-      row.add(squaredError(lights[i].light, sh::discLight(order, towards[i], radius, glm::vec3(1.0f))));
+      addErrors(lights[i].light, sh::discLight(kMostOrder, towards[i], radius, glm::vec3(1.0f)), milliseconds,
+                own);
   }
-  return row;
 }
 
 void probeErrors(const std::filesystem::path& file, int directions, std::vector<Row>& rows) {
@@ -127,12 +146,7 @@ void probeErrors(const std::filesystem::path& file, int directions, std::vector<
   const sh::LightVector exact = environment.light();
   for (const std::uint32_t size : kSizes) {
     Capture capture = must(Capture::create({.size = size}, environment));
-    std::vector<sh::CubeProjector> projectors;
-    const std::size_t first_row = rows.size();
-    for (int order = kLeastOrder; order <= kMostOrder; ++order) {
-      projectors.emplace_back(order, static_cast<int>(size));
-      rows.push_back({.light = file.filename().string(), .size = size, .order = order});
-    }
+    const std::span<Row> own = addRows(file.filename().string(), size, rows);
     // Larger cubes hardly depend on how the probe is turned, and take long.
     const int turns = std::max(20, directions * 256 / std::max(256, static_cast<int>(size * size)));
     std::mt19937 random(2002);
@@ -141,14 +155,9 @@ void probeErrors(const std::filesystem::path& file, int directions, std::vector<
       const glm::dquat turn =
           glm::normalize(glm::dquat(normal(random), normal(random), normal(random), normal(random)));
       const auto start = Clock::now();
-      const std::vector<glm::vec3> texels = capture.skyTexels(environment, glm::mat3(glm::mat3_cast(turn)));
+      const sh::LightVector captured = capture.skyThroughTexels(environment, glm::mat3(glm::mat3_cast(turn)));
       const double milliseconds = millisecondsSince(start);
-      const sh::LightVector turned = sh::Rotation(turn, exact.order).apply(exact);
-      for (std::size_t k = 0; k < projectors.size(); ++k) {
-        Row& row = rows[first_row + k];
-        row.add(squaredError(projectors[k].project(texels), turned.truncated(row.order)));
-        row.milliseconds += milliseconds / turns;
-      }
+      addErrors(captured, sh::Rotation(turn, exact.order).apply(exact), milliseconds, own);
     }
   }
 }
@@ -275,9 +284,7 @@ int main(int argc, char** argv) {
   }
   std::vector<Row> rows;
   for (const double radius : kRadiiDeg)
-    for (const std::uint32_t size : kSizes)
-      for (int order = kLeastOrder; order <= kMostOrder; ++order)
-        rows.push_back(discErrors(size, order, radius, directions));
+    for (const std::uint32_t size : kSizes) discErrors(size, radius, directions, rows);
   if (!probes.empty()) {
     std::vector<std::filesystem::path> files;
     for (const auto& entry : std::filesystem::directory_iterator(probes))

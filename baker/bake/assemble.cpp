@@ -174,11 +174,12 @@ class Assembler {
   }
 
   void addProxies(const std::vector<BakedGroup>& baked) {
-    for (std::size_t g = 0; g < baked.size(); ++g)
-      if (!baked[g].proxy.levels.empty())
-        description_.groups[g].proxy = static_cast<std::int32_t>(
-            addTransferPayload(bundle::PayloadType::CaptureProxy, bundle::encodeCaptureProxy(baked[g].proxy),
-                               kCodebookPriority));
+    for (std::size_t g = 0; g < baked.size(); ++g) {
+      if (baked[g].proxy.levels.empty()) continue;
+      description_.groups[g].proxy = static_cast<std::int32_t>(addPayload(
+          bundle::PayloadType::CaptureProxy, bundle::encodeCaptureProxy(baked[g].proxy), kCodebookPriority));
+      report_.proxy_bytes += blobs_.back().size();
+    }
   }
 
   bundle::WeightPlane addPlane(const CodedPlane& coded, std::size_t j) {

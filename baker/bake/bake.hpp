@@ -20,7 +20,7 @@ namespace lambent::baker {
 
 struct BakeReport {
   std::uint64_t vertices = 0, triangles = 0, samples = 0, filled_samples = 0, rays = 0;
-  std::uint64_t file_bytes = 0, mesh_bytes = 0, transfer_bytes = 0, image_bytes = 0;
+  std::uint64_t file_bytes = 0, mesh_bytes = 0, transfer_bytes = 0, proxy_bytes = 0, image_bytes = 0;
   double ray_seconds = 0.0;     // of the passes that trace
   double worst_error = 0.0;     // of coded transfer, over cells; relative RMS
   std::uint64_t lights = 0;     // of the groups' own
@@ -29,7 +29,8 @@ struct BakeReport {
   std::vector<double> pass_energy;
   struct Group {
     std::string name;
-    std::uint64_t light_samples = 0, proxy_triangles = 0;  // of the proxy's finest level
+    std::uint64_t light_samples = 0;
+    std::vector<std::uint32_t> proxy_triangles;  // of each level, the finest first; empty: no proxy
   };
   std::vector<Group> groups;
   double left_out = 0.0;  // estimate of the light that further bounces would add, relative to all

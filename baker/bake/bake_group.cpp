@@ -74,8 +74,11 @@ Result<BakedGroup> bakeGroup(const Scene& scene, const RigidGroup& group, LightS
                          baked.geometry.bounds_max, light_samples);
   progress.begin("proxy");
   baked.proxy = makeCaptureProxy(baked.geometry, baked.samples, *colors);
-  report.groups.push_back({group.name, baked.light_samples.points.size(),
-                           baked.proxy.levels.empty() ? 0 : baked.proxy.levels.front().triangle_count});
+  BakeReport::Group& figures = report.groups.emplace_back();
+  figures.name = group.name;
+  figures.light_samples = baked.light_samples.points.size();
+  for (const bundle::ProxyLevel& level : baked.proxy.levels)
+    figures.proxy_triangles.push_back(level.triangle_count);
 
   progress.begin("hierarchy");
   auto rays = RayScene::build(baked.geometry, scene, alpha_maps);

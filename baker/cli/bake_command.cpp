@@ -1,4 +1,5 @@
 // lambent bake SCENE -o OUT.lmb.glb
+#include <cstdlib>
 #include <map>
 #include <memory>
 
@@ -48,6 +49,7 @@ nlohmann::json reportJson(const BakeArguments& a, const BakeReport& r) {
           {"fileBytes", r.file_bytes},
           {"meshBytes", r.mesh_bytes},
           {"transferBytes", r.transfer_bytes},
+          {"proxyBytes", r.proxy_bytes},
           {"imageBytes", r.image_bytes},
           {"stages", stages}};
 }
@@ -65,15 +67,16 @@ void printReport(const BakeArguments& a, const BakeReport& r) {
                r.pass_energy.size() - 1, 100.0 * r.pass_energy.back(), 100.0 * r.left_out);
   std::uint64_t light_samples = 0, proxy_triangles = 0;
   for (const BakeReport::Group& group : r.groups)
-    light_samples += group.light_samples, proxy_triangles += group.proxy_triangles;
+    light_samples += group.light_samples,
+        proxy_triangles += group.proxy_triangles.empty() ? 0 : group.proxy_triangles.front();
   fmt::print("  groups    {}: {} light sample{}, {} proxy triangles\n", r.groups.size(), light_samples,
              light_samples == 1 ? "" : "s", proxy_triangles);
   fmt::print(
-      "  bytes     {}: mesh {}, transfer {} ({:.1f} a vertex), images {}\n",
+      "  bytes     {}: mesh {}, transfer {} ({:.1f} a vertex), proxies {}, images {}\n",
       bytesText(static_cast<double>(r.file_bytes)), bytesText(static_cast<double>(r.mesh_bytes)),
       bytesText(static_cast<double>(r.transfer_bytes)),
       static_cast<double>(r.transfer_bytes) / static_cast<double>(std::max<std::uint64_t>(r.vertices, 1)),
-      bytesText(static_cast<double>(r.image_bytes)));
+      bytesText(static_cast<double>(r.proxy_bytes)), bytesText(static_cast<double>(r.image_bytes)));
   fmt::print("  coding    {:.2f} % relative error of shaded radiance (bound {:.2f} %)\n",
              100.0 * r.worst_error, 100.0 * double{a.options.effectiveErrorBound()});
 }
@@ -114,11 +117,19 @@ void addLightSamplesOption(CLI::App& command, BakeOptions& options) {
       .add_option_function<std::string>(
           "--light-samples",
           [&options](const std::string& text) {
-            options.light_samples = text == "auto" ? 0 : std::stoi(text);
+            options.light_samples = text == "auto" ? 0 : std::atoi(text.c_str());
           },
           "Points of each cell at which light from outside is sampled, 1..32; 1 for a group: light at "
           "infinity. auto (default): by how near light comes, shared out over the group")
-      ->check((CLI::Range(1, static_cast<int>(kMostLightSamples)) | CLI::IsMember({"auto"})).description(""))
+      ->check(CLI::Validator(
+          [](const std::string& text) {
+            const bool number = !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
+            const int count = number && text.size() < 4 ? std::atoi(text.c_str()) : 0;
+            return text == "auto" || (count >= 1 && count <= static_cast<int>(kMostLightSamples))
+                       ? std::string()
+                       : fmt::format("{} is neither auto nor between 1 and {}", text, kMostLightSamples);
+          },
+          ""))
       ->type_name("N|auto");
 }
 

@@ -47,13 +47,12 @@ Sizes sizesOf(const bundle::Description& d) {
   return sizes;
 }
 
-// Of each level, the finest first.
+// Of each level, the finest first; empty: it has no proxy.
 std::vector<std::uint32_t> proxyTriangles(const bundle::Reader& reader, const bundle::Group& group) {
   const auto index = static_cast<std::uint32_t>(&group - reader.description().groups.data());
   std::vector<std::uint32_t> counts;
   if (const auto proxy = reader.readProxy(index))  // checked before anything is printed
     for (const bundle::ProxyLevel& level : proxy->levels) counts.push_back(level.triangle_count);
-  if (counts.empty()) counts.push_back(0);
   return counts;
 }
 
@@ -126,8 +125,10 @@ void printText(const bundle::Reader& reader, const Sizes& sizes) {
   line("whole file", reader.fileBytes());
   for (const bundle::Group& group : d.groups) {
     fmt::print("group \"{}\": {} samples in {} cells\n", group.name, group.sample_count, group.cells.size());
-    fmt::print("  {} light sample{}, {} proxy triangles\n", group.light_samples.size(),
-               group.light_samples.size() == 1 ? "" : "s", fmt::join(proxyTriangles(reader, group), ", "));
+    const std::vector<std::uint32_t> proxy = proxyTriangles(reader, group);
+    fmt::print("  {} light sample{}, {}\n", group.light_samples.size(),
+               group.light_samples.size() == 1 ? "" : "s",
+               proxy.empty() ? "no proxy" : fmt::format("proxy of {} triangles", fmt::join(proxy, ", ")));
     for (const bundle::Cell& cell : group.cells)
       for (const bundle::DiffuseTransfer& transfer : cell.diffuse)
         fmt::print("  diffuse {}: {}, {} samples, {} clusters, {} planes, error {:.3f} % (bound {:.3f} %)\n",

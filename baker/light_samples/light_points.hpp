@@ -2,7 +2,7 @@
 // is what Sloan, Kautz and Snyder 2002, section 6.1 call ICP. The same points give the same centres. A centre
 // is the mean of its points, not the nearest of them: a little inside of a bent surface, so that it neither
 // touches what the body stands on nor comes as near to a light as the nearest surface does. Measured on
-// spheres and boxes under a point light, 4 to 32 of them: within 10 % of the error of points on the surface
+// spheres and boxes under a point light, 4 to 32 of them: within 15 % of the error of points on the surface
 // up to a half-size of half the light's distance, and less error at 0.8 of it.
 #pragma once
 

@@ -52,15 +52,4 @@ std::vector<PlannedLight> findGroupLights(const Scene& scene, const RigidGroup& 
   return lights;
 }
 
-std::vector<std::uint32_t> lightsWithoutGroup(const Scene& scene, const std::vector<RigidGroup>& groups) {
-  std::vector<std::uint32_t> nodes;
-  for (std::uint32_t n = 0; n < scene.nodes.size(); ++n) {
-    if (scene.nodes[n].light < 0) continue;
-    const std::int32_t root = groupRootOf(scene, n);
-    if (std::none_of(groups.begin(), groups.end(), [&](const RigidGroup& g) { return g.root == root; }))
-      nodes.push_back(n);
-  }
-  return nodes;
-}
-
 }  // namespace lambent::baker

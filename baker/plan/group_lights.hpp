@@ -28,7 +28,4 @@ std::vector<PlannedLight> findGroupLights(const Scene& scene, const RigidGroup& 
 // The node at or above `node` that starts its rigid group; -1: the static group.
 std::int32_t groupRootOf(const Scene& scene, std::uint32_t node);
 
-// Nodes with a light that moves with no surface: no group has it.
-std::vector<std::uint32_t> lightsWithoutGroup(const Scene& scene, const std::vector<RigidGroup>& groups);
-
 }  // namespace lambent::baker

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <map>
 
@@ -38,7 +39,7 @@ float faceArea(const std::array<glm::vec3, 3>& c) {
   return 0.5f * glm::length(glm::cross(c[1] - c[0], c[2] - c[0]));
 }
 
-// The point of a triangle that is nearest to p (Ericson, Real-Time Collision Detection, 5.1.5).
+// The point of a triangle that is nearest to p (Ericson 2005, section 5.1.5).
 glm::vec3 nearestOf(const std::array<glm::vec3, 3>& t, glm::vec3 p) {
   const glm::vec3 ab = t[1] - t[0], ac = t[2] - t[0], ap = p - t[0];
   const float d1 = glm::dot(ab, ap), d2 = glm::dot(ac, ap);
@@ -77,10 +78,11 @@ class Likeness {
     size_ = static_cast<float>(area / static_cast<double>(std::max<std::size_t>(own.size(), 1)));
   }
 
-  // Sure to cost as much as `least` or more, at a glance.
-  bool beyond(std::size_t place, const ShiningPoint& point, float least) const {
-    const float clear = glm::distance(centres_[place], point.position) - radii_[place];
-    return clear > 0.0f && clear * clear >= least;
+  // At a glance: sure to lie farther than `reach_m`.
+  bool beyond(std::size_t place, const ShiningPoint& point, float reach_m) const {
+    const glm::vec3 d = centres_[place] - point.position;
+    const float sum = reach_m + radii_[place];
+    return glm::dot(d, d) >= sum * sum;
   }
   float cost(std::size_t place, std::uint32_t face, const ShiningPoint& point) const {
     const glm::vec3 d = nearestOf(faces_[face].corners, point.position) - point.position;
@@ -163,10 +165,11 @@ void dealOut(std::span<const ProxyFace> faces, const std::vector<std::uint32_t>&
   parallelRanges(points.size(), kGrain, {}, [&](std::size_t begin, std::size_t end) {
     std::size_t best = 0;  // neighbours in the list are neighbours on the surface
     for (std::size_t i = begin; i < end; ++i) {
-      float least = likeness.cost(best, own[best], points[i]);
+      float least = likeness.cost(best, own[best], points[i]), reach_m = std::sqrt(least);
       for (std::size_t k = 0; k < own.size(); ++k) {
-        if (likeness.beyond(k, points[i], least)) continue;
-        if (const float cost = likeness.cost(k, own[k], points[i]); cost < least) least = cost, best = k;
+        if (likeness.beyond(k, points[i], reach_m)) continue;
+        if (const float cost = likeness.cost(k, own[k], points[i]); cost < least)
+          least = cost, reach_m = std::sqrt(cost), best = k;
       }
       face_of[i] = own[best];
     }

@@ -3,6 +3,7 @@
 // over the points of a triangle are the triangle's.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>

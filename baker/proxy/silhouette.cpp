@@ -15,7 +15,7 @@ namespace lambent::baker {
 
 namespace {
 
-constexpr int kSide = 192;  // pixels
+constexpr int kSide = 128;  // pixels
 
 float cross2(glm::vec2 a, glm::vec2 b) {
   return a.x * b.y - a.y * b.x;

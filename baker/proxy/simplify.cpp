@@ -15,7 +15,7 @@ namespace lambent::baker {
 namespace {
 
 // Collapses cost time by the triangle; beyond this many clusters of vertices go first.
-constexpr std::size_t kDetailed = 32768;
+constexpr std::size_t kDetailed = 1u << 18;
 
 using Indices = std::vector<unsigned int>;
 
@@ -134,7 +134,7 @@ SimpleMesh simplified(const SimpleMesh& mesh, std::size_t most) {
     if (clusters.triangles.size() > most) start = std::move(clusters);
   }
   SimpleMesh best = reduced(start, most, Method::Collapses);
-  if (best.triangles.size() > most) best = reduced(start, most, Method::Clusters);
+  if (best.triangles.size() > most) best = reduced(best, most, Method::Clusters);
   if (best.triangles.empty() || best.triangles.size() > most) best = boxed(mesh, most);
   return best;
 }

@@ -173,9 +173,19 @@ Result<void> Frame::capture(World& world, const lighting::Environment& environme
   if (!incident_) return {};
   if (Result<void> done = proxies_.shade(world.residency(), group_lights_, diffuse_, pass.counters()); !done)
     return done;
-  for (std::size_t g = 0; g < lit_scene_.groups.size(); ++g)
+  proxy_radiance_.resize(lit_scene_.groups.size());
+  for (std::size_t g = 0; g < lit_scene_.groups.size(); ++g) {
+    ProxyRadiance& radiance = proxy_radiance_[g];
+    if (radiance.version != proxies_.versionOf(g)) {
+      radiance.version = proxies_.versionOf(g);
+      // Shaded for another reason than light or a turn: all of it may be different.
+      const bool by_light = group_lights_.versionOf(g) != radiance.light;
+      radiance.light = group_lights_.versionOf(g);
+      radiance.drift += by_light ? double{group_lights_.changeOf(g)} : 1.0;
+    }
     if (const std::uint32_t body = lit_scene_.groups[g].body; body != lighting::CapturePoint::kNoBody)
-      lit_scene_.bodies[body].radiance_version = proxies_.versionOf(g);
+      lit_scene_.bodies[body].radiance_drift = radiance.drift;
+  }
   Result<void> done = incident_->capture(environment, lit_scene_.groups, lit_scene_.bodies, lit_scene_.lights,
                                          proxies_.radiance(), pass.counters());
   counts_.incident.captured = incident_->counts().captured;

@@ -104,6 +104,12 @@ class Frame {
   LitScene lit_scene_;
   NearLights near_lights_;
   std::optional<lighting::IncidentLight> incident_;  // once there is something to sample
+  // How the light that groups send out has changed, summed up.
+  struct ProxyRadiance {
+    std::uint64_t version = 0, light = 0;
+    double drift = 0.0;
+  };
+  std::vector<ProxyRadiance> proxy_radiance_;
   std::uint64_t proxies_seen_ = 0;
   int capture_order_ = 0;
   lighting::GroupLights group_lights_;

@@ -132,7 +132,7 @@ LitScene gatherLitScene(const World& world, float surroundings) {
                                        .brightness = std::clamp(brightness, 1.0f, kMaxBrightness)},
                               .center_ws = glm::vec3(world_from_group * glm::vec4(sphere.center, 1.0f)),
                               .radius_m = sphere.radius * largestScale(world_from_group),
-                              .radiance_version = 0});
+                              .radiance_drift = 0.0});
     }
     std::uint32_t near_mask = 0;
     for (std::size_t k = 0; k < scene.lights.size(); ++k) {

@@ -27,7 +27,7 @@ struct LitScene {
 };
 
 // surroundings: mean radiance, by which bodies count as bright.
-// radiance_version of the bodies is for effects to say.
+// radiance_drift of the bodies is for the frame to say.
 LitScene gatherLitScene(const World& world, float surroundings);
 
 // The proxies of the groups that have one, in the order of the bodies.

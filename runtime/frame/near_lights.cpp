@@ -31,8 +31,12 @@ bool hasDirection(const NearLight& light) {
   return light.kind == NearLight::Kind::Spot || light.kind == NearLight::Kind::Disc;
 }
 
+// A light with a number that is none is dark.
 bool shines(const NearLight& light) {
-  return light.power != glm::vec3(0.0f) && (!hasExtent(light) || light.radius_m > 0.0f);
+  const auto finite = [](glm::vec3 v) { return std::isfinite(v.x + v.y + v.z); };
+  return finite(light.power) && finite(light.position_ws) && finite(light.direction_ws) &&
+         light.power != glm::vec3(0.0f) &&
+         (!hasExtent(light) || (light.radius_m > 0.0f && std::isfinite(light.radius_m)));
 }
 
 // Where its light ends; surfaces with an extent shine without end.
@@ -124,6 +128,12 @@ void NearLights::updateMasks(const World& world, std::span<const std::uint32_t> 
   for (std::size_t k = 0; k < lights_.size(); ++k) shining |= shines(lights_[k]) ? 1u << k : 0u;
   for (const std::uint32_t mask : mask_of_group) lights_used_ |= mask & shining;
   any_ = lights_used_ != 0;
+  Masks masks{.of_group = {mask_of_group.begin(), mask_of_group.end()},
+              .shining = shining,
+              .residency = residency.version(),
+              .transforms = world.transformsVersion()};
+  if (masks == masks_seen_) return;
+  masks_seen_ = std::move(masks);
   std::vector<NearDraw> draws;
   if (any_) {
     draws.reserve(residency.draws().size());
@@ -215,6 +225,8 @@ Result<void> NearLights::update(World& world, std::span<const NearLight> lights,
   cubes_drawn_ = 0;
   const std::span<const NearLight> kept = lights.first(std::min<std::size_t>(lights.size(), kNearLights));
   lights_.assign(kept.begin(), kept.end());
+  for (NearLight& light : lights_)
+    if (const float length = glm::length(light.direction_ws); length > 0.0f) light.direction_ws /= length;
   updateMasks(world, mask_of_group, counters);
   if (!any_) return {};
   if (Result<void> done = compile(); !done) return done;

@@ -71,6 +71,12 @@ class NearLights {
     float reach = 0.0f;
     bool drawn = false;
   };
+  struct Masks {
+    std::vector<std::uint32_t> of_group;
+    std::uint32_t shining = 0;
+    std::uint64_t residency = 0, transforms = 0;
+    bool operator==(const Masks&) const = default;
+  };
   struct Command {  // as glMultiDrawElementsIndirect reads it
     std::uint32_t count, instance_count, first_index, base_vertex, base_instance;
   };
@@ -107,6 +113,7 @@ class NearLights {
   DrawIndices indices_;
   TextureUnits units_;
   std::vector<NearDraw> draws_;
+  Masks masks_seen_;  // what draws_ follows from
   std::vector<lighting::NearLight> lights_;
   std::vector<Caster> casters_;    // of the whole world
   std::uint32_t lights_used_ = 0;  // that shine on any group

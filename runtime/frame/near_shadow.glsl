@@ -10,6 +10,9 @@ const float kBiasTexels = 1.5;
 // What stands beside the light's cone says how high blockers are, too; few points would miss the cone's rim.
 const float kSearchWidth = 2.0, kFoundWidth = 3.0;  // in the disc's radius
 const float kOneLayer = 0.01;  // of the way: blockers no farther apart than this count as one layer
+// A search for what blocks a ray takes so many steps, each so much shorter than the one before.
+const int kSteps = 3;
+const float kNearer = 0.8;
 const float kLeastSquared = 1e-12;  // a micrometre: weights stay finite
 const float kGoldenAngle = 2.39996323;
 
@@ -17,13 +20,15 @@ float nearDistance(int light, int face, ivec2 texel);
 
 struct ShadowReceiver {
   vec3 position;
-  vec3 normal;      // of the surface as it is, not as it is shaded
+  vec3 normal;      // of the triangle, not as it is shaded
+  vec3 horizon;     // interpolated, before a normal map: light above it counts, so that triangles of a round body do
+                    // not show where its dark side begins; the body itself shadows them there
   float distance;   // to the light
   float bias;       // share of a distance
 };
 
-ShadowReceiver shadowReceiver(vec3 position, vec3 normal, int size) {
-  return ShadowReceiver(position, normal, length(position), kBiasTexels * 2.0 / float(size));
+ShadowReceiver shadowReceiver(vec3 position, vec3 normal, vec3 horizon, int size) {
+  return ShadowReceiver(position, normal, horizon, length(position), kBiasTexels * 2.0 / float(size));
 }
 
 // Faces +X, -X, +Y, -Y, +Z, -Z; each is seen as by a camera that looks along its axis.
@@ -69,7 +74,7 @@ float planeDistance(ShadowReceiver receiver, vec3 direction) {
 
 // Of a light without an extent: between the four texels about the ray.
 float pointVisible(int light, ShadowReceiver receiver, int size) {
-  if (dot(receiver.normal, receiver.position) >= 0.0) return 0.0;
+  if (dot(receiver.horizon, receiver.position) >= 0.0) return 0.0;
   int face = shadowFace(receiver.position);
   vec2 place = facePlace(face, receiver.position, size) - 0.5;
   vec2 corner = floor(place), part = place - corner;
@@ -158,15 +163,28 @@ BlockerLayers blockerLayers(int index, ShadowReceiver receiver, LightDisc disc, 
                        clamp(moments.x + deviation * (half_skew + root), 0.0, 1.0));
 }
 
-// Whether the ray from the receiver to a point of the disc is blocked at this height, or at one that is no nearer to the
-// other layer's.
-bool blockedAt(float up, float other, int index, ShadowReceiver receiver, LightDisc disc, vec2 unit_place, int size) {
+// What stands where the ray from the receiver to a point of the disc passes this height, as blockerHeight.
+float heightOnRay(float up, int index, ShadowReceiver receiver, LightDisc disc, vec2 unit_place, int size) {
   // Sharp shadows still fade over a texel.
   float least = receiver.bias * 0.5 * receiver.distance * up / max(1.0 - up, 1e-3);
   vec2 at = max(disc.radius, least) * unit_place;
   vec3 place = (1.0 - up) * (at.x * disc.s + at.y * disc.t) + up * receiver.position;
-  float height = blockerHeight(receiver, disc, disc.radius, blockerAt(index, place, size));
-  return height >= 0.0 && abs(height - up) <= abs(height - other);
+  return blockerHeight(receiver, disc, disc.radius, blockerAt(index, place, size));
+}
+
+// Whether that ray is blocked, looked for from this height on: what is found at another height must be found there.
+bool blockedNear(float up, int index, ShadowReceiver receiver, LightDisc disc, vec2 unit_place, int size) {
+  float apart = 1.0;
+  for (int i = 0; i < kSteps; ++i) {
+    float height = heightOnRay(up, index, receiver, disc, unit_place, size);
+    if (height < 0.0) return false;
+    float step_up = abs(height - up);
+    if (step_up < kOneLayer) return true;
+    if (step_up > kNearer * apart) return false;
+    apart = step_up;
+    up = height;
+  }
+  return true;
 }
 
 // Of a light with an extent: the mean over points on its disc, each weighed by the light it gives at the shading
@@ -177,28 +195,34 @@ float discVisible(int index, NearRecord light, ShadowReceiver receiver, vec3 sha
   LightDisc disc = lightDisc(light, receiver);
   if (disc.height <= 0.0) return 0.0;
   BlockerLayers layers = blockerLayers(index, receiver, disc, size, count, turns);
+  int layer_count = layers.low >= 1.0 ? 0 : layers.low < layers.high ? 2 : 1;
+  // Nothing to ask where nothing is found and all of the disc is above the surface.
+  vec2 slope = vec2(dot(receiver.horizon, disc.s), dot(receiver.horizon, disc.t));
+  bool above = -dot(receiver.horizon, receiver.position) > disc.radius * length(slope);
+  int points = layer_count == 0 && above ? 0 : count;
   float visible = 0.0, all = 0.0;
-  for (int i = 0; i < count; ++i) {
+  for (int i = 0; i < points; ++i) {
     vec2 unit_place = discPoint(i, count, turns), at = disc.radius * unit_place;
     vec3 ray = at.x * disc.s + at.y * disc.t - receiver.position;
-    float squared = max(dot(ray, ray), kLeastSquared), weight = max(dot(shading_normal, ray), 0.0) / (squared * squared);
+    float squared = max(dot(ray, ray), kLeastSquared);
+    float weight = max(dot(shading_normal, ray), 0.0) / (squared * squared);
     all += weight;
-    if (weight <= 0.0 || dot(receiver.normal, ray) <= 0.0) continue;
-    if (layers.low < 1.0 && blockedAt(layers.low, layers.high, index, receiver, disc, unit_place, size)) continue;
-    if (layers.low < layers.high && blockedAt(layers.high, layers.low, index, receiver, disc, unit_place, size))
-      continue;
-    visible += weight;
+    if (weight <= 0.0 || dot(receiver.horizon, ray) <= 0.0) continue;
+    bool blocked = false;
+    for (int k = 0; k < layer_count && !blocked; ++k)
+      blocked = blockedNear(k == 0 ? layers.low : layers.high, index, receiver, disc, unit_place, size);
+    if (!blocked) visible += weight;
   }
   return all > 0.0 ? visible / all : 1.0;
 }
 
 // E/pi of one light at a point, shadows included.
-vec3 nearRadiance(int index, NearRecord light, vec3 position, vec3 normal, vec3 shading_normal, int size, int count,
-                  float turns) {
+vec3 nearRadiance(int index, NearRecord light, vec3 position, vec3 normal, vec3 horizon, vec3 shading_normal, int size,
+                  int count, float turns) {
   vec3 to_light = light.position - position;
   float share = nearShare(light, shading_normal, to_light);
   if (share <= 0.0) return vec3(0.0);
-  ShadowReceiver receiver = shadowReceiver(-to_light, normal, size);
+  ShadowReceiver receiver = shadowReceiver(-to_light, normal, horizon, size);
   bool flat_light = light.kind == kNearPoint || light.kind == kNearSpot;
   if (light.kind == kNearSphere && receiver.distance <= light.radius) return share * light.power;
   float visible = flat_light ? pointVisible(index, receiver, size)

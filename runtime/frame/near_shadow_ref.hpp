@@ -13,18 +13,21 @@ inline constexpr float kNothing = 1e30f;
 inline constexpr float kBiasTexels = 1.5f;
 inline constexpr float kSearchWidth = 2.0f, kFoundWidth = 3.0f;
 inline constexpr float kOneLayer = 0.01f;
+inline constexpr int kSteps = 3;
+inline constexpr float kNearer = 0.8f;
 inline constexpr float kLeastSquared = 1e-12f;
 inline constexpr float kGoldenAngle = 2.39996323f;
 
 struct ShadowReceiver {
   glm::vec3 position;
   glm::vec3 normal;
+  glm::vec3 horizon;
   float distance;
   float bias;
 };
 
-inline ShadowReceiver shadowReceiver(glm::vec3 position, glm::vec3 normal, int size) {
-  return {position, normal, glm::length(position), kBiasTexels * 2.0f / static_cast<float>(size)};
+inline ShadowReceiver shadowReceiver(glm::vec3 position, glm::vec3 normal, glm::vec3 horizon, int size) {
+  return {position, normal, horizon, glm::length(position), kBiasTexels * 2.0f / static_cast<float>(size)};
 }
 
 inline int shadowFace(glm::vec3 d) {
@@ -74,7 +77,7 @@ inline float planeDistance(const ShadowReceiver& receiver, glm::vec3 direction) 
 
 template <typename Distance>
 float pointVisible(const Distance& distance, const ShadowReceiver& receiver, int size) {
-  if (glm::dot(receiver.normal, receiver.position) >= 0.0f) return 0.0f;
+  if (glm::dot(receiver.horizon, receiver.position) >= 0.0f) return 0.0f;
   const int face = shadowFace(receiver.position);
   const glm::vec2 place = facePlace(face, receiver.position, size) - 0.5f;
   const glm::vec2 corner = glm::floor(place), part = place - corner;
@@ -161,13 +164,28 @@ BlockerLayers blockerLayers(const Distance& distance, const ShadowReceiver& rece
 }
 
 template <typename Distance>
-bool blockedAt(float up, float other, const Distance& distance, const ShadowReceiver& receiver,
-               const LightDisc& disc, glm::vec2 unit_place, int size) {
+float heightOnRay(float up, const Distance& distance, const ShadowReceiver& receiver, const LightDisc& disc,
+                  glm::vec2 unit_place, int size) {
   const float least = receiver.bias * 0.5f * receiver.distance * up / std::max(1.0f - up, 1e-3f);
   const glm::vec2 at = std::max(disc.radius, least) * unit_place;
   const glm::vec3 place = (1.0f - up) * (at.x * disc.s + at.y * disc.t) + up * receiver.position;
-  const float height = blockerHeight(receiver, disc, disc.radius, blockerAt(distance, place, size));
-  return height >= 0.0f && std::abs(height - up) <= std::abs(height - other);
+  return blockerHeight(receiver, disc, disc.radius, blockerAt(distance, place, size));
+}
+
+template <typename Distance>
+bool blockedNear(float up, const Distance& distance, const ShadowReceiver& receiver, const LightDisc& disc,
+                 glm::vec2 unit_place, int size) {
+  float apart = 1.0f;
+  for (int i = 0; i < kSteps; ++i) {
+    const float height = heightOnRay(up, distance, receiver, disc, unit_place, size);
+    if (height < 0.0f) return false;
+    const float step_up = std::abs(height - up);
+    if (step_up < kOneLayer) return true;
+    if (step_up > kNearer * apart) return false;
+    apart = step_up;
+    up = height;
+  }
+  return true;
 }
 
 template <typename Distance>
@@ -176,31 +194,34 @@ float discVisible(const Distance& distance, const NearRecord& light, const Shado
   const LightDisc disc = lightDisc(light, receiver);
   if (disc.height <= 0.0f) return 0.0f;
   const BlockerLayers layers = blockerLayers(distance, receiver, disc, size, count, turns);
+  const int layer_count = layers.low >= 1.0f ? 0 : layers.low < layers.high ? 2 : 1;
+  const glm::vec2 slope(glm::dot(receiver.horizon, disc.s), glm::dot(receiver.horizon, disc.t));
+  const bool above = -glm::dot(receiver.horizon, receiver.position) > disc.radius * glm::length(slope);
+  const int points = layer_count == 0 && above ? 0 : count;
   float visible = 0.0f, all = 0.0f;
-  for (int i = 0; i < count; ++i) {
+  for (int i = 0; i < points; ++i) {
     const glm::vec2 unit_place = discPoint(i, count, turns), at = disc.radius * unit_place;
     const glm::vec3 ray = at.x * disc.s + at.y * disc.t - receiver.position;
     const float squared = std::max(glm::dot(ray, ray), kLeastSquared),
                 weight = std::max(glm::dot(shading_normal, ray), 0.0f) / (squared * squared);
     all += weight;
-    if (weight <= 0.0f || glm::dot(receiver.normal, ray) <= 0.0f) continue;
-    if (layers.low < 1.0f && blockedAt(layers.low, layers.high, distance, receiver, disc, unit_place, size))
-      continue;
-    if (layers.low < layers.high &&
-        blockedAt(layers.high, layers.low, distance, receiver, disc, unit_place, size))
-      continue;
-    visible += weight;
+    if (weight <= 0.0f || glm::dot(receiver.horizon, ray) <= 0.0f) continue;
+    bool blocked = false;
+    for (int k = 0; k < layer_count && !blocked; ++k)
+      blocked = blockedNear(k == 0 ? layers.low : layers.high, distance, receiver, disc, unit_place, size);
+    if (!blocked) visible += weight;
   }
   return all > 0.0f ? visible / all : 1.0f;
 }
 
 template <typename Distance>
 glm::vec3 nearRadiance(const Distance& distance, const NearRecord& light, glm::vec3 position,
-                       glm::vec3 normal, glm::vec3 shading_normal, int size, int count, float turns) {
+                       glm::vec3 normal, glm::vec3 horizon, glm::vec3 shading_normal, int size, int count,
+                       float turns) {
   const glm::vec3 to_light = light.position - position;
   const float share = nearShare(light, shading_normal, to_light);
   if (share <= 0.0f) return glm::vec3(0.0f);
-  const ShadowReceiver receiver = shadowReceiver(-to_light, normal, size);
+  const ShadowReceiver receiver = shadowReceiver(-to_light, normal, horizon, size);
   const bool flat_light = light.kind == kNearPoint || light.kind == kNearSpot;
   if (light.kind == kNearSphere && receiver.distance <= light.radius) return share * light.power;
   const float visible = flat_light

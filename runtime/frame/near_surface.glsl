@@ -2,7 +2,10 @@
 #include "near_shared.h"
 #include "near_shadow.glsl"
 
-layout(std140, binding = kBindNearLights) uniform NearBlock { NearView near_view; NearRecord near_lights[kNearLights]; };
+layout(std140, binding = kBindNearLights) uniform NearBlock {
+  NearView near_view;
+  NearRecord near_lights[kNearLights];
+};
 layout(std430, binding = kBindNearDraws) readonly buffer NearDraws { NearDraw near_draws[]; };
 layout(binding = kUnitNearShadows) uniform sampler2D near_shadows;
 
@@ -22,21 +25,25 @@ vec3 pixelPosition() {
   return (near_view.view_from_clip * (vec4(ndc, 1.0) / gl_FragCoord.w)).xyz;
 }
 
-// normal_group: as the surface is shaded, of the side that is seen.
-vec3 nearLight(uint draw, vec3 normal_group) {
+vec3 turned(vec4 turn, vec3 v) { return nearUnit(v + 2.0 * cross(turn.xyz, cross(turn.xyz, v) + turn.w * v)); }
+
+// Group frame, of the side that is seen: the vertices' normal, and the one that the surface is shaded by.
+vec3 nearLight(uint draw, vec3 smooth_normal, vec3 shading_normal) {
   vec3 position_vs = pixelPosition();
   vec3 position = (near_view.world_from_view * vec4(position_vs, 1.0)).xyz;
   // Points to the eye: the picture's axes are right-handed with the direction to it.
   vec3 normal = nearUnit(mat3(near_view.world_from_view) * cross(dFdx(position_vs), dFdy(position_vs)));
   vec4 turn = near_draws[draw].world_from_group;
-  vec3 shading_normal =
-      nearUnit(normal_group + 2.0 * cross(turn.xyz, cross(turn.xyz, normal_group) + turn.w * normal_group));
+  vec3 horizon = turned(turn, smooth_normal);
+  shading_normal = turned(turn, shading_normal);
   float turns = pixelTurns(gl_FragCoord.xy);
   vec3 sum = vec3(0.0);
-  for (int k = 0; k < int(kNearLights); ++k)
-    if ((near_draws[draw].lights >> k & 1u) != 0u)
-      sum += nearRadiance(k, near_lights[k], position, normal, shading_normal, int(near_view.size),
-                          int(near_view.samples), turns);
+  // By the bits that are set: on some devices an if costs as much as what it leaves out, and a loop does not.
+  for (uint rest = near_draws[draw].lights; rest != 0u; rest &= rest - 1u) {
+    int k = findLSB(rest);
+    sum += nearRadiance(k, near_lights[k], position, normal, horizon, shading_normal, int(near_view.size),
+                        int(near_view.samples), turns);
+  }
 #ifdef LAMBENT_FINEST_TEXELS
   return sum;
 #else

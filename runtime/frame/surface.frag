@@ -44,8 +44,6 @@ vec3 pixelNormal() {
 layout(location = 3) in vec3 radiance;
 #ifdef LAMBENT_NEAR_LIGHTS
 layout(location = 4) in vec3 normal_group;  // of the side that is seen
-
-vec3 pixelNormal() { return normal_group; }
 #endif
 #endif
 
@@ -61,10 +59,11 @@ vec3 receivedLight() {
   vec3 received = radiance;
 #endif
 #ifdef LAMBENT_NEAR_LIGHTS
-#ifndef LAMBENT_NORMAL_MAPPED
-  vec3 normal = pixelNormal();
+#ifdef LAMBENT_NORMAL_MAPPED
+  received += nearLight(draw_of, draws[draw_of].facing * normal_group.xyz, normal);
+#else
+  received += nearLight(draw_of, normal_group, normal_group);
 #endif
-  received += nearLight(draw_of, normal);
 #endif
   return received;
 }

@@ -11,9 +11,12 @@
 #include <glm/vec4.hpp>
 
 #include "lambent_lighting_embedded.hpp"
+#include "runtime/lighting/capture_closed.hpp"
 #include "runtime/lighting/capture_combine.hpp"
 #include "runtime/lighting/capture_shared.h"
+#include "runtime/lighting/capture_table.hpp"
 #include "runtime/sh/cube_map.hpp"
+#include "runtime/sh/projection.hpp"
 
 namespace lambent::lighting {
 
@@ -26,7 +29,6 @@ constexpr gpu::FindText kShaders[] = {&embedded::lambent_lighting::find};
 constexpr GLint kClipFromPixel = 0;
 constexpr GLint kFirstTexel = 0, kTexelCount = 1, kFirstWord = 2, kWordCount = 3, kSubsamples = 4;
 constexpr GLint kFirstPoint = 0;
-constexpr std::uint32_t kMaxGroups = 65535;  // that OpenGL promises
 constexpr std::uint32_t kNoRecord = 0xffffffffu;
 
 using Vertex = std::array<std::uint32_t, 4>;  // position as bits of floats, surface id
@@ -107,23 +109,10 @@ DrawRecord drawRecord(const CaptureOptions& options, const Tile& tile, const Cap
   return record;
 }
 
-// A table as a texture for texelFetch. Made anew for each use: tables move when they grow.
-void bindTable(gpu::Handle<gpu::TextureTraits>& texture, GLuint unit, GLenum format,
-               const gpu::Buffer& buffer) {
-  if (!texture) {
-    GLuint id = 0;
-    glCreateTextures(GL_TEXTURE_BUFFER, 1, &id);
-    texture = gpu::Handle<gpu::TextureTraits>(id);
-  }
-  glTextureBuffer(texture.id(), format, buffer.id());
-  glBindTextureUnit(unit, texture.id());
-}
-
 }  // namespace
 
 Capture::Capture(const CaptureOptions& options)
     : options_(options),
-      projector_(options.order, static_cast<int>(options.size)),
       vertices_("capture vertices"),
       draws_("capture draws"),
       indices_("capture indices"),
@@ -142,6 +131,15 @@ Result<Capture> Capture::create(const CaptureOptions& options, const Environment
   if (options.order < 1 || options.order > sh::kMaxOrder)
     return fail("light capture", "order " + std::to_string(options.order), "1 to 8");
   Capture capture(options);
+  // [texel][coefficient], padded to vec4s: the shaders fetch four at a time.
+  const std::vector<float> weights = sh::cubeWeights(options.order, static_cast<int>(options.size));
+  const std::size_t count = static_cast<std::size_t>(sh::coefficientCount(options.order)),
+                    texels = weights.size() / count, stride = (count + 3) / 4 * 4;
+  std::vector<float> by_texel(texels * stride);
+  for (std::size_t i = 0; i < count; ++i)
+    for (std::size_t k = 0; k < texels; ++k) by_texel[k * stride + i] = weights[i * texels + k];
+  capture.weights_ = gpu::Buffer("capture weights", by_texel.size() * sizeof(float));
+  capture.weights_.write(0, std::span<const float>(by_texel));
   auto sky = CaptureSky::create(options, environment);
   if (!sky) return failAgain(sky.error());
   capture.sky_ = std::move(*sky);
@@ -153,22 +151,12 @@ Result<Capture> Capture::create(const CaptureOptions& options, const Environment
       gpu::Program::create("capture resolve", {{GL_COMPUTE_SHADER, "capture_resolve.comp"}}, kShaders);
   if (!resolve) return failAgain(resolve.error());
   capture.resolve_program_ = std::move(*resolve);
-  const gpu::Define coefficients{"COEFFICIENTS", std::to_string(sh::coefficientCount(options.order))};
+  const gpu::Define order{"ORDER", std::to_string(options.order)};
   auto project = gpu::Program::create("capture projection", {{GL_COMPUTE_SHADER, "capture_project.comp"}},
-                                      kShaders, std::span(&coefficients, 1));
+                                      kShaders, std::span(&order, 1));
   if (!project) return failAgain(project.error());
   capture.project_program_ = std::move(*project);
   capture.array_ = gpu::VertexArray("capture");
-
-  // [texel][coefficient]: the lanes of a work group read one texel's weights together.
-  const std::vector<float> weights = sh::cubeWeights(options.order, static_cast<int>(options.size));
-  const std::size_t count = static_cast<std::size_t>(sh::coefficientCount(options.order)),
-                    texels = weights.size() / count;
-  std::vector<float> by_texel(weights.size());
-  for (std::size_t i = 0; i < count; ++i)
-    for (std::size_t k = 0; k < texels; ++k) by_texel[k * count + i] = weights[i * texels + k];
-  capture.weights_ = gpu::Buffer("capture weights", by_texel.size() * sizeof(float));
-  capture.weights_.write(0, std::span<const float>(by_texel));
   return capture;
 }
 
@@ -183,6 +171,7 @@ void Capture::setProxies(std::span<const bundle::CaptureProxy* const> proxies, g
     for (const bundle::ProxyLevel& level : proxy->levels) {
       Level& drawn = made.levels.emplace_back();
       drawn.first_vertex = static_cast<std::uint32_t>(vertices.size());
+      drawn.closed = isClosed(*proxy, level);
       LevelVertices add(*proxy, vertices);
       for (std::uint32_t t = level.first_triangle; t < level.first_triangle + level.triangle_count; ++t) {
         const bundle::ProxyTriangle& triangle = proxy->triangles[t];
@@ -210,8 +199,11 @@ Result<void> Capture::run(const Environment& environment, std::span<const Captur
   if (triangle_radiance.byteCount() < std::size_t{triangle_count_} * sizeof(glm::vec4))
     return fail("light capture", "fewer radiances than the proxies have triangles");
   const gpu::DebugGroup group("light capture");
-  sky_is_new_ = sky_.update(environment, counters) || sky_is_new_;
+  sky_is_new_ = sky_.update(environment, weights_, counters) || sky_is_new_;
   const Plan plan = capture::plan(options_, bounds_, bodies, points);
+
+  if (plan.draws.size() >= std::size_t{1} << (32 - kVertexBits))
+    return fail("light capture", "more than four million bodies to draw", "capture fewer points at a time");
 
   run_ = {};
   run_.points.assign(points.begin(), points.end());
@@ -232,11 +224,11 @@ Result<void> Capture::run(const Environment& environment, std::span<const Captur
                                    static_cast<std::size_t>(sh::coefficientCount(options_.order)) *
                                    sizeof(glm::vec4),
                     hidden_bytes = run_.word_count * sizeof(std::uint32_t);
-  readback_.start(result_bytes + hidden_bytes + sky_.texels().byteCount());
+  readback_.start(result_bytes + hidden_bytes + sky_.light().byteCount());
   run_.results_at = readback_.copy(results_.buffer(), result_bytes);
   run_.hidden_at = readback_.copy(hidden_.buffer(), hidden_bytes);
   run_.new_sky = std::exchange(sky_is_new_, false);
-  if (run_.new_sky) run_.sky_at = readback_.copy(sky_.texels(), sky_.texels().byteCount());
+  if (run_.new_sky) run_.sky_at = readback_.copy(sky_.light(), sky_.light().byteCount());
   readback_.finish();
   return {};
 }
@@ -292,13 +284,16 @@ void Capture::upload(const Plan& plan, std::span<const CaptureBody> bodies,
         record.first_vertex = proxies_[body.proxy].levels[draw.level].first_vertex;
       }
     }
-    for (const bool front_only : {false, true}) {
+    for (const bool front_only : {false, true}) {  // without and with culling of back faces
       IndexRange& range = page_indices_[i][front_only];
       range.first = static_cast<std::uint32_t>(indices.size());
       for (std::uint32_t d = page.first_draw; d < page.first_draw + page.draw_count; ++d) {
         const Level& level = proxies_[bodies[plan.draws[d].body].proxy].levels[plan.draws[d].level];
-        for (const std::uint32_t v : front_only ? level.front_only : level.two_sided)
-          indices.push_back(d << kVertexBits | v);
+        const auto append = [&](const std::vector<std::uint32_t>& corners) {
+          for (const std::uint32_t v : corners) indices.push_back(d << kVertexBits | v);
+        };
+        if (front_only) append(level.front_only);
+        if (front_only == (level.closed && plan.draws[d].from_outside)) append(level.two_sided);
       }
       range.count = static_cast<std::uint32_t>(indices.size()) - range.first;
     }
@@ -323,7 +318,7 @@ void Capture::upload(const Plan& plan, std::span<const CaptureBody> bodies,
 void Capture::drawPage(const Page& page, std::size_t index, gpu::Counters& counters) {
   // Grows with the largest page so far.
   if (!ids_ || ids_.desc().height < page.height) {
-    const std::uint32_t height = std::min(std::bit_ceil(page.height), kAtlasHeight);
+    const std::uint32_t height = std::bit_ceil(page.height);
     ids_ = gpu::Texture("capture ids", {.format = GL_R32UI, .width = kAtlasWidth, .height = height});
     depths_ = gpu::Texture("capture depths",
                            {.format = GL_DEPTH_COMPONENT32F, .width = kAtlasWidth, .height = height});
@@ -356,7 +351,6 @@ void Capture::drawPage(const Page& page, std::size_t index, gpu::Counters& count
   glVertexArrayElementBuffer(array_.id(), indices_.buffer().id());
   bindTable(vertices_view_, kUnitVertices, GL_RGBA32UI, vertices_.buffer());
   bindTable(draws_view_, kUnitDraws, GL_RGBA32UI, draws_.buffer());
-  for (const GLuint unit : {kUnitVertices, kUnitDraws}) glBindSampler(unit, 0);
   glUniform2f(kClipFromPixel, 2.0f / static_cast<float>(kAtlasWidth), 2.0f / static_cast<float>(page.height));
   for (const bool front_only : {false, true}) {
     const IndexRange& range = page_indices_[index][front_only];
@@ -402,9 +396,8 @@ void Capture::projectPage(const Page& page, const gpu::Buffer& triangle_radiance
   glUniform1ui(kFirstPoint, page.first_point);
   bindTable(values_view_, kUnitValues, GL_RGBA32F, values_.buffer());
   bindTable(texels_view_, kUnitTexels, GL_RG32UI, texels_.buffer());
-  bindTable(sky_view_, kUnitSky, GL_RGBA32F, sky_.texels());
-  bindTable(weights_view_, kUnitWeights, GL_R32F, weights_);
-  for (const GLuint unit : {kUnitValues, kUnitTexels, kUnitSky, kUnitWeights}) glBindSampler(unit, 0);
+  bindTable(weights_view_, kUnitWeights, GL_RGBA32F, weights_);
+  sky_.bindTables();
   points_.bindStorage(kBindPoints);
   results_.bindStorage(kBindResults);
   glDispatchCompute(page.point_count, 1, 1);
@@ -422,9 +415,9 @@ std::optional<std::vector<CapturedLight>> Capture::take(bool wait) {
     readback_.read(run_.hidden_at, std::span(hidden));
   }
   if (run_.new_sky) {
-    std::vector<glm::vec4> texels(sky_.texels().byteCount() / sizeof(glm::vec4));
-    readback_.read(run_.sky_at, std::span(texels));
-    sky_through_texels_ = projector_.project(std::vector<glm::vec3>(texels.begin(), texels.end()));
+    std::vector<glm::vec4> sky(count);
+    readback_.read(run_.sky_at, std::span(sky));
+    sky_through_texels_ = lightFrom(sky);
   }
 
   std::vector<CapturedLight> lights(run_.points.size());
@@ -443,11 +436,17 @@ std::optional<std::vector<CapturedLight>> Capture::take(bool wait) {
   return lights;
 }
 
-std::vector<glm::vec3> Capture::skyTexels(const Environment& environment, const glm::mat3& world_from_light) {
-  sky_.makeTurned(environment, world_from_light);
-  std::vector<glm::vec4> texels(sky_.texels().byteCount() / sizeof(glm::vec4));
-  sky_.texels().read(0, std::span(texels));
-  return {texels.begin(), texels.end()};
+sh::LightVector Capture::skyThroughTexels(const Environment& environment, const glm::mat3& world_from_light) {
+  sky_.makeTurned(environment, world_from_light, weights_);
+  std::vector<glm::vec4> sky(static_cast<std::size_t>(sh::coefficientCount(options_.order)));
+  sky_.light().read(0, std::span(sky));
+  return lightFrom(sky);
+}
+
+sh::LightVector Capture::lightFrom(std::span<const glm::vec4> coefficients) const {
+  sh::LightVector light{.order = options_.order};
+  std::copy(coefficients.begin(), coefficients.end(), light.c.begin());
+  return light;
 }
 
 }  // namespace lambent::lighting

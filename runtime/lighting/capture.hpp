@@ -12,6 +12,9 @@
 #include <span>
 #include <vector>
 
+#include <glm/mat3x3.hpp>
+#include <glm/vec4.hpp>
+
 #include "runtime/base/result.hpp"
 #include "runtime/bundle/capture_proxy.hpp"
 #include "runtime/gpu/objects.hpp"
@@ -23,7 +26,6 @@
 #include "runtime/lighting/capture_sky.hpp"
 #include "runtime/lighting/environment.hpp"
 #include "runtime/sh/light_vector.hpp"
-#include "runtime/sh/projection.hpp"
 
 namespace lambent::lighting {
 
@@ -41,10 +43,10 @@ class Capture {
   bool sees(const CapturePoint& point, const CaptureBody& body) const;
 
   // Draws and projects; per page of cube maps at most two draws (surfaces with and without a dark side)
-  // and two dispatches, and one dispatch when the environment changed. triangle_radiance: vec4 per triangle;
+  // and two dispatches, and two when the environment changed. triangle_radiance: vec4 per triangle;
   // what is not finite counts as black. Points that see no body cost the GPU nothing. Not to be called while
   // pending(). Changes the bound framebuffer, viewport, depth and culling state. Errors: called while
-  // pending; fewer radiances than triangles.
+  // pending; fewer radiances than triangles; 2^22 bodies to draw, counted per face of a point.
   Result<void> run(const Environment& environment, std::span<const CaptureBody> bodies,
                    std::span<const CapturePoint> points, const gpu::Buffer& triangle_radiance,
                    gpu::Counters& counters);
@@ -60,14 +62,15 @@ class Capture {
   };
   const Load& load() const { return load_; }
   // The sky as it comes through the texels, turned in any way, without the correction to the exact light:
-  // measures the texels. 6 size² radiances in the order of sh/cube_map.hpp. Waits for the GPU; not to be
-  // called while pending().
-  std::vector<glm::vec3> skyTexels(const Environment& environment, const glm::mat3& world_from_light);
+  // measures the texels. Waits for the GPU; not to be called while pending().
+  sh::LightVector skyThroughTexels(const Environment& environment, const glm::mat3& world_from_light);
 
  private:
   struct Level {
     std::uint32_t first_vertex = 0;
-    std::vector<std::uint32_t> two_sided, front_only;  // corners, as vertices of the level
+    // Corners, as vertices of the level. Of a closed surface seen from outside no dark side can show.
+    std::vector<std::uint32_t> two_sided, front_only;
+    bool closed = false;
   };
   struct Proxy {
     std::uint32_t first_triangle = 0;
@@ -89,13 +92,13 @@ class Capture {
   };
 
   explicit Capture(const CaptureOptions& options);
+  sh::LightVector lightFrom(std::span<const glm::vec4> coefficients) const;
   void upload(const capture::Plan& plan, std::span<const CaptureBody> bodies,
               std::span<const CapturePoint> points, gpu::Counters& counters);
   void drawPage(const capture::Page& page, std::size_t index, gpu::Counters& counters);
   void projectPage(const capture::Page& page, const gpu::Buffer& triangle_radiance, gpu::Counters& counters);
 
   CaptureOptions options_;
-  sh::CubeProjector projector_;
   CaptureSky sky_;
   gpu::Program draw_program_, resolve_program_, project_program_;
   gpu::Texture ids_, depths_;
@@ -104,7 +107,7 @@ class Capture {
   gpu::Table vertices_, draws_, indices_, points_, texels_, values_, lookups_, results_, hidden_;
   gpu::Buffer weights_;
   using View = gpu::Handle<gpu::TextureTraits>;
-  View vertices_view_, draws_view_, values_view_, texels_view_, sky_view_, weights_view_;
+  View vertices_view_, draws_view_, values_view_, texels_view_, weights_view_;
   capture::Readback readback_;
   std::vector<Proxy> proxies_;
   std::vector<capture::ProxyBounds> bounds_;

@@ -20,6 +20,8 @@ constexpr double kCullShare = 0.25;  // of a texel: solid angle of bodies, error
 // The near plane, as a share of the distance to the nearest body's box, or of the radius of one that holds
 // the point. Depth is reversed and so does not suffer.
 constexpr double kNearShare = 1e-3, kLeastNearShare = 1e-9;
+// Points nearer to a body's box than this share of its radius count as inside.
+constexpr double kOutsideShare = 1e-6;
 // Rectangles grow by this share of a texel, so that rounding cannot cut a body's edge.
 constexpr double kRectMargin = 1e-4;
 
@@ -216,9 +218,11 @@ class PointPlanner {
       const ProxyBounds& bounds = proxies_[bodies_[b].proxy];
       const Sphere sphere = sphereOf(point, bodies_[b], bounds);
       if (!largeEnough(options_, sphere, bodies_[b].brightness)) continue;
-      seen_.push_back({b, levelFor(options_, sphere, bounds), sphere, cornersOf(point, bodies_[b], bounds)});
-      near_m = std::min(near_m, std::max(kNearShare * boxDistance(seen_.back().corners),
-                                         kLeastNearShare * sphere.radius_m));
+      const Corners corners = cornersOf(point, bodies_[b], bounds);
+      const double distance_m = boxDistance(corners);
+      seen_.push_back({b, levelFor(options_, sphere, bounds), distance_m > kOutsideShare * sphere.radius_m,
+                       sphere, corners});
+      near_m = std::min(near_m, std::max(kNearShare * distance_m, kLeastNearShare * sphere.radius_m));
     }
     const auto first_tile = static_cast<std::uint32_t>(plan_.tiles.size());
     for (std::uint32_t face = 0; face < 6; ++face) addFace(index, face);
@@ -231,6 +235,7 @@ class PointPlanner {
  private:
   struct Seen {
     std::uint32_t body, level;
+    bool from_outside;
     Sphere sphere;
     Corners corners;
   };
@@ -248,7 +253,7 @@ class PointPlanner {
       const auto tile = static_cast<std::uint32_t>(plan_.tiles.size());
       plan_.tiles.push_back({.point = index, .face = face, .texels = rect});
       for (const auto& [seen, own] : on_face_)
-        if (overlap(own, rect)) plan_.draws.push_back({tile, seen->body, seen->level});
+        if (overlap(own, rect)) plan_.draws.push_back({tile, seen->body, seen->level, seen->from_outside});
     }
   }
 
@@ -266,16 +271,17 @@ void makePages(Plan& plan, std::uint32_t subsamples) {
   const auto points = static_cast<std::uint32_t>(plan.points.size());
   std::uint32_t first_draw = 0;
   for (std::uint32_t first = 0; first < points;) {
-    // By area first, and fewer if the rows waste too much; one point always fits.
+    // By area first, and fewer if the rows waste too much.
     constexpr std::uint64_t kArea = std::uint64_t{kAtlasWidth} * kAtlasHeight;
     std::uint32_t last = first;
-    for (std::uint64_t area = 0; last < points && last - first < kMaxPointsOfPage; ++last) {
+    for (std::uint64_t area = 0, texel_count = 0; last < points && last - first < kMaxPointsOfPage; ++last) {
       const PlannedPoint& p = plan.points[last];
       for (std::uint32_t t = 0; t < p.tile_count; ++t) {
         const TexelRect& texels = plan.tiles[p.first_tile + t].texels;
-        area += std::uint64_t{texels.width()} * texels.height() * subsamples * subsamples;
+        texel_count += std::uint64_t{texels.width()} * texels.height();
       }
-      if (last > first && area > kArea * 9 / 10) break;
+      area = texel_count * subsamples * subsamples;
+      if (last > first && (area > kArea * 9 / 10 || texel_count > kMaxTexelsOfPage)) break;
     }
     Page page{.first_point = first, .first_draw = first_draw};
     for (;;) {
@@ -283,7 +289,8 @@ void makePages(Plan& plan, std::uint32_t subsamples) {
                           end_tile = plan.points[last - 1].first_tile + plan.points[last - 1].tile_count;
       page.height = shelve(std::span(plan.tiles).subspan(first_tile, end_tile - first_tile), subsamples);
       page.point_count = last - first;
-      if (page.height <= kAtlasHeight) {
+      // One point alone may need up to twice its area and a row: 7168 pixels.
+      if (page.height <= kAtlasHeight || page.point_count == 1) {
         while (first_draw < plan.draws.size() && plan.draws[first_draw].tile < end_tile) ++first_draw;
         break;
       }

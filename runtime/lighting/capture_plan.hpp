@@ -42,6 +42,7 @@ struct Tile {
 
 struct Draw {
   std::uint32_t tile = 0, body = 0, level = 0;
+  bool from_outside = false;  // the point lies outside the body's box
 };
 
 struct Page {
@@ -63,8 +64,10 @@ struct Plan {
   std::vector<Page> pages;
 };
 
-inline constexpr std::uint32_t kAtlasWidth = 2048, kAtlasHeight = 4096;  // pixels
-inline constexpr std::uint32_t kMaxPointsOfPage = 65535;                 // work groups that OpenGL promises
+// Pixels. A page of one point may be higher, below 8192.
+inline constexpr std::uint32_t kAtlasWidth = 2048, kAtlasHeight = 4096;
+// So that a dispatch stays below the 65535 work groups that OpenGL promises.
+inline constexpr std::uint32_t kMaxPointsOfPage = 65535, kMaxTexelsOfPage = 1u << 21;
 
 // Whether the body is drawn at all for a point.
 bool sees(const CaptureOptions& options, const CapturePoint& point, const CaptureBody& body,

@@ -1,40 +1,55 @@
-// From texels to spherical harmonics: sums with the weights of sh::cubeWeights, Omega (2 y(centre) - mean y). A work
-// group is a point, a lane a coefficient, COEFFICIENTS of them. Texels without a tile are all sky and need nothing: what
-// comes out is the bodies' light and the sky's light that they hide,
-//   results[2 (point COEFFICIENTS + i)]      xyz: sum of w_i * bodies; w: sum of the open shares of texels
-//   results[2 (point COEFFICIENTS + i) + 1]  xyz: sum of w_i * hidden share * sky; w: sum of w_i * hidden share
-// Sums have a fixed order, in two stages, so that they keep their digits.
+// From texels to spherical harmonics: sums with the weights of sh::cubeWeights, Omega (2 y(centre) - mean y), and of the
+// sky with its own (capture_sky.comp). A work group is a point; an invocation takes four coefficients of every
+// kSlices-th texel. Texels without a tile are all sky and need nothing: what comes out is the bodies' light and the sky's
+// light that they hide,
+//   results[2 (point ORDER² + i)]      xyz: sum of w_i * bodies; w: sum of the open shares of texels
+//   results[2 (point ORDER² + i) + 1]  xyz: sum of v_i * hidden share * sky; w: sum of v_i * hidden share
+// Sums have a fixed order.
 #include "capture_shared.h"
 
-layout(local_size_x = COEFFICIENTS) in;
+layout(local_size_x = kWorkGroupSize) in;
 layout(location = 0) uniform uint first_point;
 layout(binding = kUnitValues) uniform samplerBuffer values;
 layout(binding = kUnitTexels) uniform usamplerBuffer texels;
 layout(binding = kUnitSky) uniform samplerBuffer sky;
 layout(binding = kUnitWeights) uniform samplerBuffer weights;
+layout(binding = kUnitSkyWeights) uniform samplerBuffer sky_weights;
 layout(std430, binding = kBindPoints) readonly buffer Points { PointRecord points[]; };
 layout(std430, binding = kBindResults) writeonly buffer Results { vec4 results[]; };
 
+const uint kQuads = (ORDER * ORDER + 3) / 4, kSlices = kWorkGroupSize / kQuads;
+shared vec4 slice_bodies[kWorkGroupSize * 4u];  // [slice][coefficient]
+shared vec4 slice_hidden[kWorkGroupSize * 4u];
+
 void main() {
-  uint i = gl_LocalInvocationIndex, record = first_point + gl_WorkGroupID.x;
+  uint lane = gl_LocalInvocationIndex, record = first_point + gl_WorkGroupID.x;
+  uint slice = lane / kQuads, quad = lane % kQuads;
   PointRecord point = points[record];
-  vec4 bodies = vec4(0.0), hidden = vec4(0.0);
-  const uint kStage = 64u;
-  for (uint first = 0u; first < point.texel_count; first += kStage) {
-    vec4 stage_bodies = vec4(0.0), stage_hidden = vec4(0.0);
-    uint end = min(first + kStage, point.texel_count);
-    for (uint k = first; k < end; ++k) {
+  mat4 bodies = mat4(0.0), hidden = mat4(0.0);
+  if (slice < kSlices) {
+    for (uint k = slice; k < point.texel_count; k += kSlices) {
       int at = int(point.first_texel + k);
       vec4 value = texelFetch(values, at);
       int texel = int(texelFetch(texels, at).y);
-      float weight = texelFetch(weights, texel * COEFFICIENTS + int(i)).r;
-      stage_bodies += vec4(weight * value.rgb, 1.0 - value.a);
-      stage_hidden += weight * value.a * vec4(texelFetch(sky, texel).rgb, 1.0);
+      int at_weights = texel * int(kQuads) + int(quad);
+      vec4 light = vec4(value.rgb, 0.0), behind = value.a * vec4(texelFetch(sky, texel).rgb, 1.0);
+      bodies += outerProduct(light, texelFetch(weights, at_weights));
+      hidden += outerProduct(behind, texelFetch(sky_weights, at_weights));
+      bodies[0].w += 1.0 - value.a;
     }
-    bodies += stage_bodies;
-    hidden += stage_hidden;
+    for (uint i = 0u; i < 4u; ++i) {
+      slice_bodies[4u * lane + i] = vec4(bodies[i].xyz, bodies[0].w);
+      slice_hidden[4u * lane + i] = hidden[i];
+    }
   }
-  uint at = 2u * (record * COEFFICIENTS + i);
-  results[at] = bodies;
-  results[at + 1u] = hidden;
+  barrier();
+  if (lane >= uint(ORDER * ORDER)) return;
+  vec4 all_bodies = vec4(0.0), all_hidden = vec4(0.0);
+  for (uint s = 0u; s < kSlices; ++s) {
+    all_bodies += slice_bodies[4u * kQuads * s + lane];
+    all_hidden += slice_hidden[4u * kQuads * s + lane];
+  }
+  uint at = 2u * (record * uint(ORDER * ORDER) + lane);
+  results[at] = all_bodies;
+  results[at + 1u] = all_hidden;
 }

@@ -30,9 +30,18 @@ LAMBENT_CONSTANT kBindHidden = 4u;    // uint per kLookupsPerWord lookups: a bit
 LAMBENT_CONSTANT kUnitValues = 0u;    // rgba32f
 LAMBENT_CONSTANT kUnitTexels = 1u;    // rg32ui: TexelRecord
 LAMBENT_CONSTANT kUnitSky = 2u;       // rgba32f per texel of the cube, box-filtered
-LAMBENT_CONSTANT kUnitWeights = 3u;   // r32f: [texel][coefficient], sh::cubeWeights
+LAMBENT_CONSTANT kUnitWeights = 3u;     // rgba32f: [texel][coefficient], padded to fours, sh::cubeWeights
+LAMBENT_CONSTANT kUnitSkyWeights = 4u;  // rgba32f: the same for the sky, see capture_sky.comp
 LAMBENT_CONSTANT kBindPoints = 0u;    // PointRecord
 LAMBENT_CONSTANT kBindResults = 1u;   // vec4, see capture_project.comp
+
+// capture_sky.comp
+LAMBENT_CONSTANT kUnitFirstProbes = 0u;
+LAMBENT_CONSTANT kUnitSecondProbes = 1u;
+LAMBENT_CONSTANT kBindSky = 0u;
+LAMBENT_CONSTANT kBindWeights = 1u;
+LAMBENT_CONSTANT kBindSkyWeights = 2u;
+LAMBENT_CONSTANT kBindSkyLight = 3u;  // vec4 per coefficient
 
 LAMBENT_CONSTANT kWorkGroupSize = 64u;
 LAMBENT_CONSTANT kVertexBits = 10u;  // an index is a draw << kVertexBits | a vertex of the level

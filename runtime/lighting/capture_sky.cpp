@@ -4,6 +4,8 @@
 #include <bit>
 #include <cmath>
 #include <future>
+#include <span>
+#include <string>
 #include <vector>
 
 #include <glm/geometric.hpp>
@@ -12,16 +14,22 @@
 #include <glm/vec4.hpp>
 
 #include "lambent_lighting_embedded.hpp"
+#include "runtime/lighting/capture_shared.h"
+#include "runtime/lighting/capture_table.hpp"
+#include "runtime/sh/basis.hpp"
 #include "runtime/sh/cube_map.hpp"
 
 namespace lambent::lighting {
 
 namespace {
 
+using namespace capture;
+
 constexpr gpu::FindText kShaders[] = {&embedded::lambent_lighting::find};
 
 // As in capture_sky.comp.
 constexpr GLint kLightFromWorld = 0, kSize = 1, kSubsamples = 2, kLevels = 3, kConstant = 4, kShares = 5;
+constexpr GLint kTexelCount = 0;  // as in capture_sky_light.comp
 constexpr std::uint32_t kLargestProbeCube = 512;
 
 // At least a texel of the cube per texel of the probe, as far as memory goes; a power of two for the mip
@@ -79,29 +87,42 @@ gpu::Texture probeCube(const std::vector<spec::Probe>& probes) {
 Result<CaptureSky> CaptureSky::create(const CaptureOptions& options, const Environment& environment) {
   CaptureSky sky;
   sky.options_ = options;
+  const gpu::Define order{"ORDER", std::to_string(options.order)};
+  const std::span<const gpu::Define> defines(&order, 1);
   Result<gpu::Program> program =
-      gpu::Program::create("capture sky", {{GL_COMPUTE_SHADER, "capture_sky.comp"}}, kShaders);
+      gpu::Program::create("capture sky", {{GL_COMPUTE_SHADER, "capture_sky.comp"}}, kShaders, defines);
   if (!program) return failAgain(program.error());
   sky.program_ = std::move(*program);
+  program = gpu::Program::create("capture sky light", {{GL_COMPUTE_SHADER, "capture_sky_light.comp"}},
+                                 kShaders, defines);
+  if (!program) return failAgain(program.error());
+  sky.light_program_ = std::move(*program);
   for (std::size_t i = 0; i < Environment::kSets; ++i) sky.probes_[i] = probeCube(environment.set(i).probes);
   sky.sampler_ = gpu::Sampler(GL_CLAMP_TO_EDGE, GL_CLAMP_TO_EDGE, GL_LINEAR, GL_LINEAR_MIPMAP_LINEAR);
-  sky.texels_ = gpu::Buffer("capture sky", std::size_t{6} * options.size * options.size * sizeof(glm::vec4));
+  const std::size_t texels = std::size_t{6} * options.size * options.size,
+                    coefficients = static_cast<std::size_t>(sh::coefficientCount(options.order));
+  sky.texels_ = gpu::Buffer("capture sky", texels * sizeof(glm::vec4));
+  sky.weights_ = gpu::Buffer("capture sky weights", texels * ((coefficients + 3) / 4) * sizeof(glm::vec4));
+  sky.light_ = gpu::Buffer("capture sky light", coefficients * sizeof(glm::vec4));
   return sky;
 }
 
-bool CaptureSky::update(const Environment& environment, gpu::Counters& counters) {
+bool CaptureSky::update(const Environment& environment, const gpu::Buffer& weights, gpu::Counters& counters) {
   if (version_ == environment.version()) return false;
-  makeTurned(environment, environment.worldFromLight());
+  makeTurned(environment, environment.worldFromLight(), weights);
   version_ = environment.version();
-  ++counters.dispatches;
+  counters.dispatches += 2;
   return true;
 }
 
-void CaptureSky::makeTurned(const Environment& environment, const glm::mat3& world_from_light) {
+void CaptureSky::makeTurned(const Environment& environment, const glm::mat3& world_from_light,
+                            const gpu::Buffer& weights) {
   version_ = 0;
   const glm::mat3 light_from_world = glm::transpose(world_from_light);
+  // Two subsamples to a texel: with one, the filter's triangles would not add up evenly over a turned probe,
+  // and a sun of one texel would flicker by several per cent.
   const auto levelOf = [&](const gpu::Texture& probes) {
-    return std::max(0.0f, std::log2(static_cast<float>(probes.desc().width) /
+    return std::max(0.0f, std::log2(2.0f * static_cast<float>(probes.desc().width) /
                                     static_cast<float>(options_.size * options_.subsamples)));
   };
   glm::vec3 constant(0.0f);
@@ -122,11 +143,24 @@ void CaptureSky::makeTurned(const Environment& environment, const glm::mat3& wor
     glBindSampler(i, sampler_.id());
   }
   glEnable(GL_TEXTURE_CUBE_MAP_SEAMLESS);
-  texels_.bindStorage(0);
-  glDispatchCompute((6 * options_.size * options_.size + 63) / 64, 1, 1);
+  texels_.bindStorage(kBindSky);
+  weights.bindStorage(kBindWeights);
+  weights_.bindStorage(kBindSkyWeights);
+  const std::uint32_t texel_count = 6 * options_.size * options_.size;
+  glDispatchCompute((texel_count + kWorkGroupSize - 1) / kWorkGroupSize, 1, 1);
   for (GLuint i = 0; i < Environment::kSets; ++i) glBindSampler(i, 0);
-  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT |
-                  GL_BUFFER_UPDATE_BARRIER_BIT);
+  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
+  light_program_.use();
+  glUniform1ui(kTexelCount, texel_count);
+  bindTables();
+  light_.bindStorage(kBindSkyLight);
+  glDispatchCompute(1, 1, 1);
+  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+}
+
+void CaptureSky::bindTables() {
+  bindTable(texels_view_, kUnitSky, GL_RGBA32F, texels_);
+  bindTable(weights_view_, kUnitSkyWeights, GL_RGBA32F, weights_);
 }
 
 }  // namespace lambent::lighting

@@ -55,6 +55,10 @@ class GroupLights {
     return groups_[group].samples[sample].version;
   }
   std::uint64_t lampsVersionOf(std::size_t group) const { return groups_[group].lamps_version; }
+  // By how much of itself the light that arrives at the group changed in the last update, at the sample where
+  // it changed most: 0 where nothing did, at most 1. In world axes: a group that turns under a still light
+  // has 0.
+  float changeOf(std::size_t group) const { return groups_[group].change; }
   // Light samples whose coefficients the last update wrote.
   std::uint32_t renewedSamples() const { return renewed_; }
   void bindStorage(std::uint32_t binding) const { table_.bindStorage(binding); }
@@ -66,6 +70,7 @@ class GroupLights {
     bool from_environment = false;
     std::uint64_t seen = 0;  // version of the light it was computed from
     std::uint64_t version = 0;
+    sh::LightVector light_ws{1};  // windowed
   };
   struct Group {
     glm::quat world_from_group{1.0f, 0.0f, 0.0f, 0.0f};
@@ -74,6 +79,7 @@ class GroupLights {
     std::vector<Sample> samples;
     std::uint32_t first = 0;
     std::uint64_t version = 0, lamps_version = 0;
+    float change = 0.0f;
   };
   void layOut(std::span<const GroupPlace> groups);
   bool updateLamps(Group& group, const GroupPlace& place);

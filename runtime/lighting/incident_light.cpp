@@ -14,9 +14,6 @@ namespace lambent::lighting {
 namespace {
 
 constexpr float kAnew = std::numeric_limits<float>::infinity();
-// What moves by less than this share of a texel waits until everything rests.
-constexpr float kLeastMotionTexels = 0.25f;
-
 bool differs(const sh::LightVector& now, const sh::LightVector& before) {
   double change = 0.0, power = 0.0;
   for (std::size_t i = 0; i < sh::kMaxCoefficients; ++i) {
@@ -39,18 +36,36 @@ float turnBetween(const glm::mat4& a, const glm::mat4& b) {
   return turn;
 }
 
-}  // namespace
+// How a body's sphere moved as seen from a sample.
+struct BodyChange {
+  float half_angle = 0.0f, angle = 0.0f;  // radians
+};
 
-IncidentLight::IncidentLight(Capture capture, const CaptureOptions& options)
-    : capture_(std::move(capture)),
-      order_(options.order),
-      least_motion_rad_(kLeastMotionTexels * 0.5f * std::numbers::pi_v<float> /
-                        static_cast<float>(options.size)) {}
+BodyChange changeOf(float radius, const glm::vec3& offset_before, const glm::vec3& offset_after, float turn) {
+  constexpr float kPi = std::numbers::pi_v<float>;
+  const float moved = glm::distance(offset_before, offset_after) + radius * turn;
+  const float distance = std::min(glm::length(offset_before), glm::length(offset_after));
+  // Inside its sphere anything may have happened.
+  if (distance <= radius) return {.half_angle = kPi, .angle = moved > 0.0f ? kPi : 0.0f};
+  return {.half_angle = std::asin(radius / distance), .angle = moved / (distance - radius)};
+}
+
+// Whether a body in this direction may hide part of a light that was asked for.
+bool passesLight(const CapturePoint& point, const glm::vec3& towards, float half_angle) {
+  const float distance = glm::length(towards);
+  return std::ranges::any_of(point.queries, [&](const LightQuery& query) {
+    const float reach = half_angle + query.angular_radius_rad;
+    return reach >= std::numbers::pi_v<float> || distance == 0.0f ||
+           glm::dot(query.direction, towards) > distance * std::cos(reach);
+  });
+}
+
+}  // namespace
 
 Result<IncidentLight> IncidentLight::create(const CaptureOptions& options, const Environment& environment) {
   Result<Capture> capture = Capture::create(options, environment);
   if (!capture) return failAgain(capture.error());
-  return IncidentLight(std::move(*capture), options);
+  return IncidentLight(std::move(*capture), options.order);
 }
 
 void IncidentLight::takeDrawn(bool wait) {
@@ -152,27 +167,42 @@ bool IncidentLight::somethingMoves(std::span<const IncidentGroup> groups,
   return moves;
 }
 
-// How far things around the sample moved since it was drawn, in radians as seen from it; infinite if it has
-// to be drawn anew.
-float IncidentLight::changeAround(const Drawn& drawn, const Drawn& now,
-                                  std::span<const IncidentBody> bodies) const {
-  if (drawn.environment != now.environment || drawn.lights != now.lights ||
-      drawn.seen.size() != now.seen.size())
-    return kAnew;
-  float change = 0.0f;
-  for (std::size_t i = 0; i < now.seen.size(); ++i) {
-    const SeenBody &then = drawn.seen[i], &here = now.seen[i];
-    if (then.body != here.body || then.radiance_version != here.radiance_version) return kAnew;
-    const glm::vec3 offset_then = then.center_ws - drawn.position_ws;
-    const glm::vec3 offset_now = here.center_ws - now.position_ws;
-    const float radius = bodies[here.body].radius_m;
-    const float moved = glm::distance(offset_then, offset_now) +
-                        radius * turnBetween(then.world_from_proxy, here.world_from_proxy);
-    if (moved == 0.0f) continue;
-    const float nearest = glm::length(offset_now) - radius;
-    change = std::max(change, nearest > 0.0f ? moved / nearest : kAnew);
+// How much of the light at the sample changed since it was drawn, as an estimate; infinite if it has to be
+// drawn anew.
+float IncidentLight::changeAround(const Drawn& drawn, const Drawn& now, std::span<const IncidentBody> bodies,
+                                  const CapturePoint& point) const {
+  if (drawn.environment != now.environment || drawn.lights != now.lights) return kAnew;
+  float change_squared = 0.0f;
+  auto then = drawn.seen.begin();
+  auto here = now.seen.begin();
+  while (then != drawn.seen.end() || here != now.seen.end()) {
+    const bool gone = here == now.seen.end() || (then != drawn.seen.end() && then->body < here->body);
+    const bool come = !gone && (then == drawn.seen.end() || here->body < then->body);
+    const SeenBody& before = come ? *here : *then;
+    const SeenBody& after = gone ? *then : *here;
+    if (before.body >= bodies.size()) return kAnew;
+    const IncidentBody& body = bodies[before.body];
+    const BodyChange moved =
+        changeOf(body.radius_m, before.center_ws - drawn.position_ws, after.center_ws - now.position_ws,
+                 turnBetween(before.world_from_proxy, after.world_from_proxy));
+    const bool other = gone || come;
+    if (moved.angle > 0.0f || other) {
+      if (passesLight(point, after.center_ws - now.position_ws, moved.half_angle + moved.angle)) return kAnew;
+    }
+    // A body that fills a share of the sphere makes up so much of the light's mean, and n times as much of n
+    // bands of it (|y(d)|² = n²/4pi), up to all of it. Turned by an angle, it differs from itself by about
+    // n/2 times the angle (the parallax of a delta light), until it is another altogether.
+    const auto bands = static_cast<float>(order_);
+    constexpr float kOther = std::numbers::sqrt2_v<float>;
+    const float parallax = other ? kOther : std::min(0.5f * bands * moved.angle, kOther);
+    const auto drift = static_cast<float>(after.radiance_drift - before.radiance_drift);
+    const float share = std::min(0.5f * (1.0f - std::cos(moved.half_angle)) * bands, 1.0f);
+    const float part = share * body.body.brightness * (parallax + drift);
+    change_squared += part * part;  // some brighten, some darken
+    if (!come) ++then;
+    if (!gone) ++here;
   }
-  return change;
+  return std::sqrt(change_squared);
 }
 
 Result<void> IncidentLight::capture(const Environment& environment, std::span<const IncidentGroup> groups,
@@ -181,7 +211,7 @@ Result<void> IncidentLight::capture(const Environment& environment, std::span<co
   counts_.captured = 0;
   if (!requests_.empty()) return {};  // the last one is still on its way
   counts_.waiting = 0;
-  const float least_motion = somethingMoves(groups, bodies) ? least_motion_rad_ : 0.0f;
+  const float least_change = somethingMoves(groups, bodies) ? kMovingChange : kRestingChange;
   std::vector<CapturePoint> points;
   for (std::size_t g = 0; g < groups.size(); ++g)
     for (std::size_t s = 0; s < groups[g].samples_ws.size(); ++s) {
@@ -194,19 +224,12 @@ Result<void> IncidentLight::capture(const Environment& environment, std::span<co
       for (std::uint32_t b = 0; b < bodies.size(); ++b)
         if (b != point.own_body && capture_.sees(point, bodies[b].body))
           now.seen.push_back(
-              {b, bodies[b].body.world_from_proxy, bodies[b].center_ws, bodies[b].radiance_version});
+              {b, bodies[b].body.world_from_proxy, bodies[b].center_ws, bodies[b].radiance_drift});
       if (now.seen.empty()) {
         if (sample.drawn) ++counts_.waiting;  // for the next step, which finds nothing in the light's way
         sample.drawn_anew |= sample.drawn.has_value();
         sample.drawn.reset();
         continue;
-      }
-      if (sample.drawn) {
-        const float change = changeAround(*sample.drawn, now, bodies);
-        if (!(change > least_motion)) {
-          counts_.waiting += change > 0.0f ? 1 : 0;
-          continue;
-        }
       }
       const auto ask = [&](const std::optional<LightQuery>& query, std::vector<std::int32_t>& places) {
         places.push_back(query ? static_cast<std::int32_t>(point.queries.size()) : -1);
@@ -222,6 +245,13 @@ Result<void> IncidentLight::capture(const Environment& environment, std::span<co
       for (std::size_t k = 0; k < lights.size(); ++k)
         ask(groups[g].lit_by[k] != 0 ? queryOf(lights[k], point.position_ws) : std::nullopt,
             now.query_of_light);
+      if (sample.drawn) {
+        const float change = changeAround(*sample.drawn, now, bodies, point);
+        if (!(change > least_change)) {
+          counts_.waiting += change > kRestingChange ? 1 : 0;
+          continue;
+        }
+      }
       points.push_back(std::move(point));
       requests_.push_back({g, s, std::move(now)});
     }

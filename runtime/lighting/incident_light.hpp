@@ -1,10 +1,11 @@
 // What arrives at every light sample, step by step. A sample that sees no body of another group and no local
 // light has the environment's own light. Others have it from a capture (sky and bodies) plus the suns and
 // local lights in closed form, each times the share of it that no body hides. Captures are drawn for samples
-// whose surroundings changed: the sky turned, a body that they see moved by more than a quarter of a texel or
-// shines differently, a light moved; what moved by less is caught up with when everything rests. The light of
-// a sample is handed on only if it differs by more than kLeastChange of itself, so that bodies which light
-// each other come to rest. update() hands on what is known now, capture() asks for what the next step needs.
+// whose surroundings changed: the sky turned, a light moved, or bodies moved or shine differently by so much
+// that the light may have changed by kMovingChange of itself; what amounts to less is caught up with when
+// everything stands still. The light of a sample is handed on only if it changed by more than kLeastChange of
+// itself, so that bodies which light each other come to rest. update() hands on what is known now, capture()
+// asks for what the next step needs.
 #pragma once
 
 #include <cstdint>
@@ -24,13 +25,16 @@
 namespace lambent::lighting {
 
 inline constexpr float kLeastChange = 1e-3f;
+inline constexpr float kMovingChange = 0.02f;                  // while things move
+inline constexpr float kRestingChange = 0.25f * kLeastChange;  // when nothing moves any more
 
-// A body, and how often its radiance was computed anew.
+// A body, and how its radiance changes.
 struct IncidentBody {
   CaptureBody body;
   glm::vec3 center_ws{0.0f};  // of a sphere around it
   float radius_m = 0.0f;
-  std::uint64_t radiance_version = 0;
+  // Sum of all changes of its radiance so far, each as a share of what it was.
+  double radiance_drift = 0.0;
 };
 
 // A rigid group as a receiver.
@@ -74,7 +78,7 @@ class IncidentLight {
     std::uint32_t body = 0;
     glm::mat4 world_from_proxy{1.0f};
     glm::vec3 center_ws{0.0f};
-    std::uint64_t radiance_version = 0;
+    double radiance_drift = 0.0;
   };
   // What a sample's surroundings were drawn from, and what came out.
   struct Drawn {
@@ -104,17 +108,17 @@ class IncidentLight {
     Drawn drawn;
   };
 
-  IncidentLight(Capture capture, const CaptureOptions& options);
+  IncidentLight(Capture capture, int order) : capture_(std::move(capture)), order_(order) {}
   void takeDrawn(bool wait);
   void noticeLights(std::span<const IncidentGroup> groups, std::span<const LocalLight> lights);
   void updateSample(Sample& sample, const Group& group, const Environment& environment,
                     const glm::vec3& position_ws, std::span<const LocalLight> lights);
   bool somethingMoves(std::span<const IncidentGroup> groups, std::span<const IncidentBody> bodies);
-  float changeAround(const Drawn& drawn, const Drawn& now, std::span<const IncidentBody> bodies) const;
+  float changeAround(const Drawn& drawn, const Drawn& now, std::span<const IncidentBody> bodies,
+                     const CapturePoint& point) const;
 
   Capture capture_;
   int order_;
-  float least_motion_rad_;
   std::vector<Group> groups_;
   std::vector<Request> requests_;  // on their way
   std::vector<LocalLight> lights_before_;

@@ -144,7 +144,7 @@ TEST(NearLight, StaysFiniteAtTheLightItself) {
     for (const glm::vec3 place :
          {glm::vec3(0), {0, 0, 1e-20f}, {0, 0, -1e-6f}, {0.1f, 0, 0}, {0.1f, 0, -1e-9f}})
       for (const glm::vec3 normal : {glm::vec3(0, 0, 1), {0, 0, -1}, {1, 0, 0}}) {
-        const glm::vec3 radiance = ref::nearRadiance(lit, light, place, normal, normal, 64, 16, 0.3f);
+        const glm::vec3 radiance = ref::nearRadiance(lit, light, place, normal, normal, normal, 64, 16, 0.3f);
         // Of 1e8 cd at no less than a centimetre.
         EXPECT_TRUE(radiance.x >= 0.0f && radiance.x <= 1e8f * 1e4f) << kind << " " << radiance.x;
       }
@@ -211,7 +211,7 @@ TEST(NearShadow, APlaneThatLightGrazesIsLitAndABlockerShadowsIt) {
   const glm::vec3 up(0, 1, 0);
   for (int i = 0; i < 400; ++i) {
     const glm::vec3 place(random.number(-4, 4), -0.05f, random.number(-1, 1));
-    const ref::ShadowReceiver receiver = ref::shadowReceiver(place, up, 512);
+    const ref::ShadowReceiver receiver = ref::shadowReceiver(place, up, up, 512);
     EXPECT_EQ(ref::pointVisible(floor_only, receiver, 512), 1.0f);
     EXPECT_EQ(ref::discVisible(floor_only, sphere, receiver, up, 512, 16, random.number(0, 1)), 1.0f);
     // Contact: from 1 % of the distance behind the wall on; before it, all the way to its foot, light.

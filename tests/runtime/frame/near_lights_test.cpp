@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <numbers>
 #include <optional>
 
@@ -107,7 +108,12 @@ struct Stage {
     world.updateTransforms();
     gpu::Counters counters;
     raster = {};
-    group_lights.update(environment, sh::Window::Off, world.groupPlaces(), counters);
+    std::vector<lighting::GroupPlace> places;
+    for (std::size_t g = 0; g < world.residency().groups().size(); ++g)
+      places.push_back({.world_from_group = world.rotationOf(g),
+                        .order = world.residency().groups()[g].order,
+                        .lamps = world.lampsOf(g)});
+    group_lights.update(environment, sh::Window::Off, places, counters);
     EXPECT_TRUE(
         diffuse.shade(world.residency(), group_lights, effects::diffuse::TransferMode::Full, counters));
     const Result<void> done = surfaces->prepare(world, diffuse, view, raster, plain ? nullptr : &near_lights);
@@ -332,6 +338,43 @@ TEST_F(NearLightsTest, ShadowsOfSeveralBlockersAreNearThoseOfRaysToEveryPointOfT
   }
 }
 
+TEST_F(NearLightsTest, TheShadowOfARoundBodyIsDarkInsideAndRightAtItsRim) {
+  // What blocks the light stands at all heights from 0.2 to 0.8.
+  Stage stage(BundleBuilder()
+                  .add(level(0.0f, 5.0f))
+                  .add({sphereMesh(48, 96), grey(0.5f),
+                        glm::translate(glm::mat4(1.0f), glm::vec3(0, 0.5f, 0)) *
+                            glm::scale(glm::mat4(1.0f), glm::vec3(0.3f))}));
+  constexpr float kHalf = 0.8f, kRadius = 0.15f;
+  const glm::vec3 light(0.4f, 2.0f, 0.1f), body(0, 0.5f, 0);
+  const auto picture = stage.picture(above(kHalf, 0.1f), sphereLight(light, kRadius, glm::vec3(1.0f)));
+  std::size_t dark = 0, leaks = 0;
+  double squares = 0.0;
+  for (std::uint32_t y = 0; y < kSize; ++y)
+    for (std::uint32_t x = 0; x < kSize; ++x) {
+      const glm::vec3 place(placeOf(x, kHalf), 0.0f, placeOf(y, kHalf));
+      const glm::vec3 to = light - place;
+      glm::vec3 s, t;
+      ref::nearBasis(glm::normalize(to), s, t);
+      int visible = 0;
+      constexpr int kRays = 400;
+      for (int i = 0; i < kRays; ++i) {
+        const glm::vec2 at = kRadius * ref::discPoint(i, kRays, 0.0f);
+        const glm::vec3 ray = glm::normalize(to + at.x * s + at.y * t);
+        visible += glm::length(glm::cross(ray, body - place)) > 0.3f ? 1 : 0;
+      }
+      const float d2 = glm::dot(to, to), whole = kRadius * kRadius / d2 * to.y / std::sqrt(d2);
+      const double share = visible / double{kRays}, apart = double{picture[y * kSize + x].r / whole} - share;
+      squares += apart * apart / (kSize * kSize);
+      dark += visible == 0 ? 1 : 0;
+      leaks += visible == 0 && apart > 0.1 ? 1 : 0;  // two points of sixteen
+    }
+  EXPECT_GT(dark, 300u);
+  // At the umbra's rim rays meet the body below what the light's centre sees of it.
+  EXPECT_LE(leaks, dark / 25);
+  EXPECT_LT(std::sqrt(squares), 0.04);
+}
+
 TEST_F(NearLightsTest, ALightWithoutExtentCastsEdgesAsSharpAsItsTexels) {
   Stage stage(BundleBuilder().add(level(0.0f, 5.0f)).add(level(1.0f, 2.0f, {-2.0f, 0})));
   constexpr float kHalf = 0.5f;
@@ -459,7 +502,12 @@ TEST_F(NearLightsTest, ADrawThatNoLightShinesOnCostsNothingAndChangesNoPixel) {
   stage.masks = {2u};
   EXPECT_EQ(stage.picture(above(0.5f), light), plain);
   stage.masks = {1u};
-  EXPECT_EQ(stage.picture(above(0.5f), sphereLight({0, 1, 0}, 0.1f, glm::vec3(0.0f))), plain);
+  const float none = std::numeric_limits<float>::quiet_NaN();
+  for (const NearLight& dark :
+       {sphereLight({0, 1, 0}, 0.1f, glm::vec3(0.0f)), sphereLight({0, 1, 0}, 0.0f, glm::vec3(1.0f)),
+        sphereLight({0, none, 0}, 0.1f, glm::vec3(1.0f)),
+        sphereLight({0, 1, 0}, 0.1f, glm::vec3(std::numeric_limits<float>::infinity()))})
+    EXPECT_EQ(stage.picture(above(0.5f), dark), plain);
   EXPECT_EQ(stage.shadows.draws, 0u);
   EXPECT_NE(stage.picture(above(0.5f), light), plain);
   EXPECT_EQ(stage.picture(above(0.5f), std::span<const NearLight>{}), plain) << "and off again";

@@ -10,6 +10,8 @@ struct Case {
   float turns;
   vec3 normal;
   float pad0;
+  vec3 horizon;
+  float pad2;
   vec3 shading_normal;
   float pad1;
 };
@@ -31,7 +33,7 @@ void main() {
   if (i >= count) return;
   Case c = cases[i];
   vec3 to_light = c.light.position - c.position;
-  vec3 all = nearRadiance(0, c.light, c.position, c.normal, c.shading_normal, kSize, 16, c.turns);
+  vec3 all = nearRadiance(0, c.light, c.position, c.normal, c.horizon, c.shading_normal, kSize, 16, c.turns);
   results[i] = vec4(all.xy, nearShare(c.light, c.shading_normal, to_light),
                     pixelTurns(vec2(float(i) + 0.5, 37.5)));
 }

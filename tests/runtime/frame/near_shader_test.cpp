@@ -21,10 +21,12 @@ struct Case {
   float turns;
   glm::vec3 normal;
   float pad0;
+  glm::vec3 horizon;
+  float pad2;
   glm::vec3 shading_normal;
   float pad1;
 };
-static_assert(sizeof(Case) == 112);
+static_assert(sizeof(Case) == 128);
 
 // As near_probe.comp.
 float distanceAt(int face, glm::ivec2 texel) {
@@ -64,6 +66,7 @@ std::vector<Case> someCases() {
     c.normal = on_floor ? glm::vec3(0, 1, 0) : direction();
     c.position = c.light.position + (on_floor ? glm::vec3(number(-2, 2), -1.0f, number(-2, 2))
                                               : number(0.01f, 3.0f) * direction());
+    c.horizon = glm::normalize(c.normal + 0.1f * direction());
     c.shading_normal = glm::normalize(c.normal + 0.3f * direction());
     cases.push_back(c);
   }
@@ -96,8 +99,8 @@ TEST_F(NearShader, DoesWhatItsTwinDoes) {
     const float share = ref::nearShare(c.light, c.shading_normal, c.light.position - c.position);
     // Arc functions of GPUs are good to 1e-4.
     EXPECT_NEAR(results[i].z, share, 1e-3f * share + 2e-4f) << "case " << i << " kind " << c.light.kind;
-    const glm::vec3 radiance =
-        ref::nearRadiance(distanceAt, c.light, c.position, c.normal, c.shading_normal, kSize, 16, c.turns);
+    const glm::vec3 radiance = ref::nearRadiance(distanceAt, c.light, c.position, c.normal, c.horizon,
+                                                 c.shading_normal, kSize, 16, c.turns);
     const float whole = share * c.light.power.y;
     if (radiance.y > 0.02f * whole && radiance.y < 0.98f * whole) ++partly;
     // A tap on the border of two texels may fall to either side by rounding: one or two taps of sixteen,
