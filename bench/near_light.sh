@@ -39,7 +39,7 @@ name=$(basename "${scene%.*}").b$bounces
 mkdir -p "$out"
 
 for count in "${counts[@]}"; do
-  "$build"/bin/lambent bake "$scene" -o "$out/$name.$count.lmb.glb" --bounces "$bounces" --light-samples "$count" >/dev/null
+  "$build"/bin/lambent bake "$scene" -o "$out/$name.$count.lmb.glb" --bounces "$bounces" --light-samples "$count" --force >/dev/null
 done
 
 # A light word: towards azimuth and elevation 40 of the middle of the one group, radiance such that a surface

@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 
 #include "baker/light_samples/blend_weights.hpp"
+#include "baker/light_samples/fit_points.hpp"
 #include "baker/light_samples/light_points.hpp"
 #include "baker/work/parallel.hpp"
 #include "runtime/bundle/description.hpp"
@@ -15,9 +16,9 @@ namespace lambent::baker {
 
 namespace {
 
-// Of the group's diagonal: points nearer to each other are one, and within this of a point its weight is
-// flat.
-constexpr float kMerge = 1e-6f, kFlat = 1e-3f;
+// Of the group's diagonal: points nearer to each other are one; how far light samples are from deciding which
+// of them blend where several would do; how deep under the surface they lie at least.
+constexpr float kMerge = 1e-6f, kFlat = 1e-3f, kDepth = 5e-3f;
 constexpr std::size_t kGrain = 4096;
 
 LightSamples atCentre(const SampleSet& samples, glm::vec3 bounds_min, glm::vec3 bounds_max) {
@@ -117,6 +118,8 @@ LightSamples chooseLightSamples(const SampleSet& samples, std::span<const float>
     mergePoints(points, kMerge * diagonal);
     if (points.size() < 2) break;
     const double flat = double{kFlat} * double{diagonal};
+    fitPoints(points, samples, areas, flat * flat, kDepth * diagonal);
+    mergePoints(points, kMerge * diagonal);
     std::vector<Weighed> weighed;
     for (const SampleCell& cell : samples.cells) weighed.push_back(weigh(samples, cell, points, flat * flat));
     const auto too_many = [](const Weighed& cell) { return cell.used.size() > bundle::kMaxLightSamples; };
