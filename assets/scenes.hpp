@@ -1,10 +1,9 @@
 // The scenes that ship. `gallery` is the one of scripts/demo: a museum corner, open to the sky above and in
 // front, with the Utah teapot on a column, a torus knot and spheres, about 90,000 vertices. `hello` is a
 // floor, a box and a sphere, a few hundred vertices, for tests and first tries. Metres; the cameras are
-// called "main" and "detail". `knot` is one torus knot, 19,000 vertices, for lights that come near it.
-// `playroom` moves: a red ball rolls along a white wall, a lamp swings over a
-// teapot and a screen slides between the two, about 20,000 vertices. `field` is 200 bodies on a lawn, 20 of
-// them moving.
+// called "main" and "detail". `knot` is a torus knot alone, 19,000 vertices, for lights that come near it.
+// `playroom` moves: a red ball rolls along a white wall, a lamp swings over a teapot and a screen slides
+// between the two, about 20,000 vertices. `field` is 200 bodies on a lawn, 20 of them moving.
 #pragma once
 
 #include "assets/glb.hpp"

@@ -7,8 +7,8 @@
 # mean of two references (free of their noise), whose light is cut to the same five bands at each point
 # ("error": what light samples cause), and with two that have the whole light ("whole": truncation as well).
 # Three cameras; the table has the root mean square of their errors. Prints markdown; writes DIR/near_light.csv
-# and DIR/near-light.svg. Direct light, unless -n gives bounces. -p: DIR/near-light.png too, pictures side by
-# side (needs oiiotool and ImageMagick's convert).
+# and DIR/near-light.svg. Direct light, unless -n gives bounces. -p: DIR/near-light.png too: 1 light sample, 32
+# and the reference of five bands side by side at 0.8 (needs oiiotool).
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -27,10 +27,9 @@ done
 shift $((OPTIND - 1))
 (($# <= 1)) || usage
 scene=${1-$build/assets/knot.glb}
-if [[ $pictures ]]; then
-  for program in oiiotool convert; do
-    command -v $program >/dev/null || { echo "near_light.sh: -p needs $program" >&2; exit 2; }
-  done
+if [[ $pictures ]] && ! command -v oiiotool >/dev/null; then
+  echo "near_light.sh: -p needs oiiotool" >&2
+  exit 2
 fi
 ratios=(0.001 0.1 0.25 0.5 0.8) counts=(1 4 8 16 32)
 cameras=(orbit:10,30,2.3,40 orbit:100,20,2.3,40 orbit:310,55,2.3,40)
@@ -105,3 +104,18 @@ for ratio in "${ratios[@]}"; do
   done
 done
 python3 bench/plot_near_light.py "$csv" "$out/near-light.svg"
+
+[[ $pictures ]] || exit 0
+words=(--light "$(sphere_at "$out/$name.1.lmb.glb" 0.8)" --camera orbit:15,35,1.9,38 --size 440x360)
+panels=()
+for panel in 1 32 reference; do
+  picture=$out/$name.panel.$panel.exr
+  if [[ $panel != reference ]]; then
+    "$build"/bin/lambent-demo "$out/$name.$panel.lmb.glb" "${words[@]}" --window off --headless "$picture" >/dev/null
+  elif [[ ! -e $picture ]]; then
+    "$build"/bin/lambent reference "$scene" "${words[@]}" --band-limit 5 --bounces "$bounces" --spp 1024 -o "$picture" >/dev/null
+  fi
+  # 0.3 times radiance, over grey
+  panels+=("$picture" --mulc 0.3,0.3,0.3,1 --pattern constant:color=0.03,0.03,0.03,1 440x360 4 --over)
+done
+oiiotool "${panels[@]}" --mosaic 3x1 --ch R,G,B --colorconvert linear sRGB -d uint8 -o "$out/near-light.png"

@@ -32,7 +32,7 @@ std::size_t vertexCount(const Scene& scene) {
 }
 
 TEST(AssetsScenes, EveryMeshIsSound) {
-  for (const Scene& scene : {gallery(), hello()})
+  for (const Scene& scene : {gallery(), hello(), knot()})
     for (const MaterialMesh& mesh : scene.meshes) expectSound(mesh.mesh, scene.name + " " + mesh.name);
 }
 
@@ -40,6 +40,7 @@ TEST(AssetsScenes, HaveTheSizeThatTheyPromise) {
   EXPECT_GT(vertexCount(gallery()), 60000u);
   EXPECT_LT(vertexCount(gallery()), 120000u);
   EXPECT_LT(vertexCount(hello()), 1000u);
+  EXPECT_LT(vertexCount(knot()), 20000u);
 }
 
 TEST(AssetsScenes, WallsAndBoxesEncloseAPositiveVolume) {
@@ -48,6 +49,7 @@ TEST(AssetsScenes, WallsAndBoxesEncloseAPositiveVolume) {
     if (mesh.name != "teapot") {
       EXPECT_GT(volume(mesh.mesh), 0.0) << mesh.name;
     }
+  EXPECT_GT(volume(knot().meshes[0].mesh), 0.0);
 }
 
 TEST(AssetsScenes, NothingStandsBelowTheFloorOrOutsideTheRoom) {
