@@ -5,10 +5,12 @@
 #include <cstring>
 #include <numbers>
 #include <span>
+#include <utility>
 
 #include <glm/common.hpp>
 #include <glm/ext/matrix_transform.hpp>
 #include <glm/geometric.hpp>
+#include <glm/vec4.hpp>
 #include <nlohmann/json.hpp>
 
 #include "runtime/base/atomic_file.hpp"
@@ -38,9 +40,11 @@ class Writer {
     for (const MaterialMesh& mesh : scene_.meshes) meshes.push_back(meshJson(mesh));
     for (const Material& material : scene_.materials) materials.push_back(materialJson(material));
     Json json = {{"asset", {{"version", "2.0"}, {"generator", "lambent-assets"}}},
-                 {"extensionsUsed", Json::array({"KHR_materials_specular"})},
+                 {"extensionsUsed", extensionsUsed()},
                  {"scene", 0}};
     addNodes(json);
+    addAnimation(json);
+    if (!scene_.spots.empty()) json["extensions"] = {{"KHR_lights_punctual", {{"lights", spotsJson()}}}};
     json["meshes"] = std::move(meshes);
     json["materials"] = std::move(materials);
     if (!scene_.images.empty()) addTextures(json);
@@ -94,6 +98,53 @@ class Writer {
              Json::array({{{"attributes", attributes}, {"indices", indices}, {"material", item.material}}})}};
   }
 
+  Json extensionsUsed() const {
+    Json used = Json::array({"KHR_materials_specular"});
+    const auto glows = [](const Material& material) { return material.emission != glm::vec3(0.0f); };
+    if (std::ranges::any_of(scene_.materials, glows)) used.push_back("KHR_materials_emissive_strength");
+    if (!scene_.spots.empty()) used.push_back("KHR_lights_punctual");
+    return used;
+  }
+
+  Json spotsJson() const {
+    Json lights = Json::array();
+    const auto radians = [](float degrees) { return degrees * std::numbers::pi_v<float> / 180.0f; };
+    for (const Spot& spot : scene_.spots)
+      lights.push_back({{"name", spot.name},
+                        {"type", "spot"},
+                        {"color", toJson(spot.color)},
+                        {"intensity", spot.intensity_cd},
+                        {"spot",
+                         {{"innerConeAngle", radians(spot.inner_cone_deg)},
+                          {"outerConeAngle", radians(spot.outer_cone_deg)}}}});
+    return lights;
+  }
+
+  // All motions as one animation, in straight lines from key to key.
+  void addAnimation(Json& json) {
+    Json channels = Json::array(), samplers = Json::array();
+    for (std::size_t i = 0; i < scene_.nodes.size(); ++i) {
+      const Motion& motion = scene_.nodes[i].motion;
+      if (motion.times_s.empty()) continue;
+      const int times = addAccessor(std::span(motion.times_s), "SCALAR", kFloat, /*target=*/0,
+                                    {{"min", {motion.times_s.front()}}, {"max", {motion.times_s.back()}}});
+      const auto add = [&](const char* path, int values) {
+        channels.push_back({{"sampler", samplers.size()}, {"target", {{"node", i}, {"path", path}}}});
+        samplers.push_back({{"input", times}, {"interpolation", "LINEAR"}, {"output", values}});
+      };
+      if (!motion.translations.empty())
+        add("translation", addAccessor(std::span(motion.translations), "VEC3", kFloat, /*target=*/0));
+      if (!motion.rotations.empty()) {
+        std::vector<glm::vec4> values;
+        for (const glm::quat& q : motion.rotations) values.emplace_back(q.x, q.y, q.z, q.w);
+        add("rotation", addAccessor(std::span(std::as_const(values)), "VEC4", kFloat, /*target=*/0));
+      }
+    }
+    if (!channels.empty())
+      json["animations"] = Json::array(
+          {{{"name", scene_.name}, {"channels", std::move(channels)}, {"samplers", std::move(samplers)}}});
+  }
+
   static Json materialJson(const Material& material) {
     const glm::vec3 c = material.base_color;
     Json surface = {
@@ -102,6 +153,12 @@ class Writer {
     Json json = {{"name", material.name},
                  {"pbrMetallicRoughness", surface},
                  {"extensions", {{"KHR_materials_specular", {{"specularFactor", 0.0f}}}}}};
+    if (material.emission != glm::vec3(0.0f)) {
+      const glm::vec3 e = material.emission;
+      const float strength = std::max({e.r, e.g, e.b});
+      json["emissiveFactor"] = toJson(e / strength);
+      json["extensions"]["KHR_materials_emissive_strength"] = {{"emissiveStrength", strength}};
+    }
     if (material.double_sided) json["doubleSided"] = true;
     return json;
   }
@@ -126,10 +183,15 @@ class Writer {
   void addNodes(Json& json) {
     Json nodes = Json::array(), cameras = Json::array(), roots = Json::array();
     for (const Node& node : scene_.nodes) {
-      Json item = {{"name", node.name}, {"mesh", node.mesh}};
+      Json item = {{"name", node.name}};
+      if (node.mesh >= 0) item["mesh"] = node.mesh;
       if (node.translation != glm::vec3(0.0f)) item["translation"] = toJson(node.translation);
       if (node.rotation != glm::quat(1.0f, 0.0f, 0.0f, 0.0f)) item["rotation"] = toJson(node.rotation);
       if (node.scale != 1.0f) item["scale"] = toJson(glm::vec3(node.scale));
+      if (node.spot >= 0) item["extensions"] = {{"KHR_lights_punctual", {{"light", node.spot}}}};
+      if (node.movable) item["extras"] = {{"lambent", {{"movable", true}}}};
+      for (std::size_t child = 0; child < scene_.nodes.size(); ++child)
+        if (scene_.nodes[child].parent == static_cast<int>(nodes.size())) item["children"].push_back(child);
       nodes.push_back(std::move(item));
     }
     for (const Camera& camera : scene_.cameras) {
@@ -144,7 +206,8 @@ class Writer {
                          {"type", "perspective"},
                          {"perspective", {{"yfov", yfov}, {"znear", 0.05f}}}});
     }
-    for (std::size_t i = 0; i < nodes.size(); ++i) roots.push_back(i);
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+      if (i >= scene_.nodes.size() || scene_.nodes[i].parent < 0) roots.push_back(i);
     json["scenes"] = Json::array({{{"name", scene_.name}, {"nodes", std::move(roots)}}});
     json["nodes"] = std::move(nodes);
     json["cameras"] = std::move(cameras);

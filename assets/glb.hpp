@@ -19,6 +19,7 @@ namespace lambent::assets {
 struct Material {
   std::string name;
   glm::vec3 base_color{0.8f};  // linear; multiplies the texture
+  glm::vec3 emission{0.0f};    // radiance
   int image = -1;              // into Scene::images
   bool double_sided = false;
 };
@@ -34,12 +35,31 @@ struct MaterialMesh {
   int material = 0;
 };
 
+// KHR_lights_punctual: shines along the node's -Z within its cone.
+struct Spot {
+  std::string name;
+  glm::vec3 color{1.0f};
+  float intensity_cd = 1.0f;
+  float inner_cone_deg = 30.0f, outer_cone_deg = 45.0f;  // half angles
+};
+
+// Keys of a node's way: as many rotations as times, or none.
+struct Motion {
+  std::vector<float> times_s;
+  std::vector<glm::vec3> translations;
+  std::vector<glm::quat> rotations;
+};
+
 struct Node {
   std::string name;
-  int mesh = 0;  // into Scene::meshes; several nodes may show one mesh
+  int mesh = 0;  // into Scene::meshes, -1: none; several nodes may show one mesh
   glm::vec3 translation{0.0f};
   glm::quat rotation{1.0f, 0.0f, 0.0f, 0.0f};
   float scale = 1.0f;
+  int parent = -1;       // a node before it
+  int spot = -1;         // into Scene::spots
+  bool movable = false;  // a rigid group of its own, though nothing moves it yet
+  Motion motion{};       // empty: stands
 };
 
 struct Camera {
@@ -53,6 +73,7 @@ struct Scene {
   std::vector<Material> materials;
   std::vector<Image> images;
   std::vector<MaterialMesh> meshes;
+  std::vector<Spot> spots;
   std::vector<Node> nodes;
   std::vector<Camera> cameras;
 };

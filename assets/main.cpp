@@ -16,6 +16,8 @@ Result<void> writeAll(const std::filesystem::path& folder) {
   if (code) return fail(folder.string(), "cannot be created: " + code.message(), "choose another folder");
   if (auto done = assets::writeGlb(folder / "gallery.glb", assets::gallery()); !done) return done;
   if (auto done = assets::writeGlb(folder / "hello.glb", assets::hello()); !done) return done;
+  if (auto done = assets::writeGlb(folder / "playroom.glb", assets::playroom()); !done) return done;
+  if (auto done = assets::writeGlb(folder / "field.glb", assets::field()); !done) return done;
   constexpr std::uint32_t kProbeWidth = 512;
   if (auto done = spec::writeHdr(folder / "sky.hdr", assets::skyProbe(kProbeWidth)); !done) return done;
   return spec::writeHdr(folder / "studio.hdr", assets::studioProbe(kProbeWidth));

@@ -1,7 +1,9 @@
 // The scenes that ship. `gallery` is the one of scripts/demo: a museum corner, open to the sky above and in
 // front, with the Utah teapot on a column, a torus knot and spheres, about 90,000 vertices. `hello` is a
 // floor, a box and a sphere, a few hundred vertices, for tests and first tries. Metres; the cameras are
-// called "main" and "detail".
+// called "main" and "detail". `playroom` moves: a red ball rolls along a white wall, a lamp swings over a
+// teapot and a screen slides between the two, about 20,000 vertices. `field` is 200 bodies on a lawn, 20 of
+// them moving.
 #pragma once
 
 #include "assets/glb.hpp"
@@ -10,6 +12,8 @@ namespace lambent::assets {
 
 Scene gallery();
 Scene hello();
+Scene playroom();
+Scene field();
 
 // Stone tiles, seamless, `tiles` x `tiles` of two tones with joints; sRGB.
 std::vector<std::uint8_t> stonePng(int tiles, int texels_per_tile);

@@ -74,9 +74,18 @@ class Assembler {
                                     ? bundle::GroupLight::Kind::Material
                                     : bundle::GroupLight::Kind::Node,
                                 light.index, light.color});
-      for (const SampleCell& cell : baked[g].samples.cells)
-        group.cells.push_back(
-            {cell.first, cell.count, origin + cell.bounds_min, origin + cell.bounds_max, {}});
+      group.light_samples.clear();
+      for (const glm::vec3& point : baked[g].light_samples.points)
+        group.light_samples.push_back(origin + point);
+      for (std::size_t c = 0; c < baked[g].samples.cells.size(); ++c) {
+        const SampleCell& cell = baked[g].samples.cells[c];
+        group.cells.push_back({cell.first,
+                               cell.count,
+                               origin + cell.bounds_min,
+                               origin + cell.bounds_max,
+                               {},
+                               baked[g].light_samples.cells[c].points});
+      }
       description_.groups.push_back(std::move(group));
       for (std::size_t d = 0; d < planned.draws.size(); ++d)
         addDraw(planned.draws[d], static_cast<std::uint32_t>(g), baked[g].geometry.draws[d],
@@ -91,7 +100,8 @@ class Assembler {
     }
   }
 
-  // Codebooks of all cells, then plane after plane: what is wanted first lies first.
+  // Codebooks of all cells and what else belongs to their light, then plane after plane: what is wanted first
+  // lies first.
   void addTransfer(const std::vector<BakedGroup>& baked) {
     std::size_t most_planes = 0;
     const auto forAll = [&](const auto& visit) {
@@ -104,6 +114,8 @@ class Assembler {
       stored.push_back(addCodebook(coded));
       most_planes = std::max(most_planes, coded.planes.size());
     });
+    addLightWeights(baked);
+    addProxies(baked);
     for (std::size_t j = 0; j < most_planes; ++j)
       forAll([&](const CodedTransfer& coded, auto& stored, std::size_t t) {
         if (j < coded.planes.size()) stored[t].planes.push_back(addPlane(coded.planes[j], j));
@@ -151,6 +163,23 @@ class Assembler {
     transfer.error_bound = options_.effectiveErrorBound();
     transfer.error = coded.error;
     return transfer;
+  }
+
+  void addLightWeights(const std::vector<BakedGroup>& baked) {
+    for (std::size_t g = 0; g < baked.size(); ++g)
+      for (std::size_t c = 0; c < baked[g].light_samples.cells.size(); ++c)
+        if (const auto& weights = baked[g].light_samples.cells[c].weights; !weights.empty())
+          description_.groups[g].cells[c].light_weights = static_cast<std::int32_t>(addTransferPayload(
+              bundle::PayloadType::LightWeights, bundle::encodeLightWeights(weights), kCodebookPriority));
+  }
+
+  void addProxies(const std::vector<BakedGroup>& baked) {
+    for (std::size_t g = 0; g < baked.size(); ++g) {
+      if (baked[g].proxy.levels.empty()) continue;
+      description_.groups[g].proxy = static_cast<std::int32_t>(addPayload(
+          bundle::PayloadType::CaptureProxy, bundle::encodeCaptureProxy(baked[g].proxy), kCodebookPriority));
+      report_.proxy_bytes += blobs_.back().size();
+    }
   }
 
   bundle::WeightPlane addPlane(const CodedPlane& coded, std::size_t j) {

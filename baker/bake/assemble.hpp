@@ -1,6 +1,6 @@
 // Puts a bundle together from what the bake found: views in the order in which a runtime wants them (meshes
-// and rows, images, then per cell codebook and cluster ids, then weight planes by falling variance over all
-// cells).
+// and rows, images, then per cell codebook and cluster ids, light weights and proxies, then weight planes by
+// falling variance over all cells).
 #pragma once
 
 #include <vector>

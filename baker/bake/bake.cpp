@@ -34,6 +34,10 @@ Result<void> checkOptions(const BakeOptions& options) {
   if (options.bounces > kMostBounces)
     return fail("--bounces", fmt::format("{} is more than {}", options.bounces, kMostBounces),
                 "leave it out to bake as many as the error bound asks for");
+  if (options.light_samples < 0 || options.light_samples > static_cast<int>(kMostLightSamples))
+    return fail("--light-samples",
+                fmt::format("{} is not between 1 and {}", options.light_samples, kMostLightSamples),
+                "auto chooses by how near light comes");
   if (!(options.max_edge_m >= 0.0f && std::isfinite(options.max_edge_m)))
     return fail("--max-edge", fmt::format("{} is not a length", options.max_edge_m),
                 "give a positive number in the scene's units, or leave it out");
@@ -82,8 +86,9 @@ Result<BakeReport> bakeOnTheseThreads(const Scene& scene, const BakeOptions& opt
   if (!meshes) return failAgain(meshes.error());
 
   std::vector<BakedGroup> baked;
-  for (const RigidGroup& group : plan->groups) {
-    auto result = bakeGroup(scene, group, *meshes, *alpha_maps, images, options, progress, stop, report);
+  for (std::size_t g = 0; g < plan->groups.size(); ++g) {
+    auto result = bakeGroup(scene, plan->groups[g], plan->light_samples[g].count, *meshes, *alpha_maps,
+                            images, options, progress, stop, report);
     if (!result) return failAgain(result.error());
     baked.push_back(std::move(*result));
   }
@@ -113,7 +118,11 @@ Result<void> checkRequest(const BakeOptions& options, const std::filesystem::pat
 Result<EffectPlan> planFor(const Scene& scene, const BakeOptions& options) {
   const auto effects = effectsOf(options);
   if (!effects) return failAgain(effects.error());
-  return makePlan(scene, *effects);
+  EffectPlan plan = makePlan(scene, *effects);
+  if (options.light_samples > 0)
+    for (PlannedLightSamples& planned : plan.light_samples)
+      planned = {{static_cast<std::uint32_t>(options.light_samples), /*of_group=*/false}, "asked for"};
+  return plan;
 }
 
 Result<BakeReport> bake(const Scene& scene, const BakeOptions& options, const std::filesystem::path& output,

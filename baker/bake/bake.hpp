@@ -20,13 +20,19 @@ namespace lambent::baker {
 
 struct BakeReport {
   std::uint64_t vertices = 0, triangles = 0, samples = 0, filled_samples = 0, rays = 0;
-  std::uint64_t file_bytes = 0, mesh_bytes = 0, transfer_bytes = 0, image_bytes = 0;
+  std::uint64_t file_bytes = 0, mesh_bytes = 0, transfer_bytes = 0, proxy_bytes = 0, image_bytes = 0;
   double ray_seconds = 0.0;     // of the passes that trace
   double worst_error = 0.0;     // of coded transfer, over cells; relative RMS
   std::uint64_t lights = 0;     // of the groups' own
   std::uint64_t hit_bytes = 0;  // kept for the bounces
   // Energy of each pass relative to direct light (bounces.hpp), of the group that took most of them.
   std::vector<double> pass_energy;
+  struct Group {
+    std::string name;
+    std::uint64_t light_samples = 0;
+    std::vector<std::uint32_t> proxy_triangles;  // of each level, the finest first; empty: no proxy
+  };
+  std::vector<Group> groups;
   double left_out = 0.0;  // estimate of the light that further bounces would add, relative to all
   std::vector<Progress::Stage> stages;
 };

@@ -6,7 +6,9 @@
 #include "baker/effects/diffuse/bounces.hpp"
 #include "baker/effects/diffuse/direct.hpp"
 #include "baker/effects/diffuse/payloads.hpp"
+#include "baker/proxy/capture_proxy.hpp"
 #include "baker/transport/ray_scene.hpp"
+#include "baker/transport/sample_areas.hpp"
 #include "baker/work/parallel.hpp"
 
 namespace lambent::baker {
@@ -48,7 +50,8 @@ std::optional<Transported> transport(const DiffuseScene& scene, const BakeOption
 
 }  // namespace
 
-Result<BakedGroup> bakeGroup(const Scene& scene, const RigidGroup& group, const ShippedMeshes& meshes,
+Result<BakedGroup> bakeGroup(const Scene& scene, const RigidGroup& group, LightSampleCount light_samples,
+                             const ShippedMeshes& meshes,
                              const std::vector<std::shared_ptr<const AlphaMap>>& alpha_maps,
                              DecodedImages& images, const BakeOptions& options, Progress& progress,
                              const std::stop_token& stop, BakeReport& report) {
@@ -64,6 +67,18 @@ Result<BakedGroup> bakeGroup(const Scene& scene, const RigidGroup& group, const 
   report.triangles += baked.geometry.triangles.size();
   report.samples += baked.samples.size();
   report.lights += baked.lights.size();
+
+  progress.begin("light samples");
+  baked.light_samples =
+      chooseLightSamples(baked.samples, sampleAreas(baked.geometry, baked.samples), baked.geometry.bounds_min,
+                         baked.geometry.bounds_max, light_samples);
+  progress.begin("proxy");
+  baked.proxy = makeCaptureProxy(baked.geometry, baked.samples, *colors);
+  BakeReport::Group& figures = report.groups.emplace_back();
+  figures.name = group.name;
+  figures.light_samples = baked.light_samples.points.size();
+  for (const bundle::ProxyLevel& level : baked.proxy.levels)
+    figures.proxy_triangles.push_back(level.triangle_count);
 
   progress.begin("hierarchy");
   auto rays = RayScene::build(baked.geometry, scene, alpha_maps);

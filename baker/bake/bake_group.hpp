@@ -8,10 +8,12 @@
 #include "baker/bake/bake.hpp"
 #include "baker/bake/ship_meshes.hpp"
 #include "baker/compress/cpca.hpp"
+#include "baker/light_samples/light_samples.hpp"
 #include "baker/plan/group_lights.hpp"
 #include "baker/transport/alpha_map.hpp"
 #include "baker/transport/group_geometry.hpp"
 #include "baker/transport/samples.hpp"
+#include "runtime/bundle/capture_proxy.hpp"
 
 namespace lambent::baker {
 
@@ -21,11 +23,14 @@ struct BakedGroup {
   std::vector<PlannedLight> lights;
   // Per sample cell: light of the environment, then, where there are some, of the group's lights.
   std::vector<std::vector<CodedTransfer>> cells;
+  LightSamples light_samples;  // as SampleSet::positions
+  bundle::CaptureProxy proxy;  // group frame
 };
 
 // Adds what it did to the report. Errors: no memory for the hierarchy, images that cannot be decoded,
 // "stopped".
-Result<BakedGroup> bakeGroup(const Scene& scene, const RigidGroup& group, const ShippedMeshes& meshes,
+Result<BakedGroup> bakeGroup(const Scene& scene, const RigidGroup& group, LightSampleCount light_samples,
+                             const ShippedMeshes& meshes,
                              const std::vector<std::shared_ptr<const AlphaMap>>& alpha_maps,
                              DecodedImages& images, const BakeOptions& options, Progress& progress,
                              const std::stop_token& stop, BakeReport& report);

@@ -50,6 +50,7 @@ std::map<std::string, std::string> BakeOptions::settings() const {
   return {{"order", std::to_string(order)},
           {"rays", std::to_string(effectiveRays())},
           {"bounces", bounces < 0 ? "auto" : std::to_string(bounces)},
+          {"lightSamples", light_samples == 0 ? "auto" : std::to_string(light_samples)},
           {"errorBound", fmt::format("{}", effectiveErrorBound())},
           {"maxEdge", fmt::format("{}", max_edge_m)},
           {"effects", effects}};

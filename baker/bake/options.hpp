@@ -20,6 +20,7 @@ struct BakeOptions {
   int bounces = -1;          // 0: direct light with shadows; -1: as many as the error bound asks for
   float error_bound = 0.0f;  // of the coded transfer, relative RMS; 0: the quality's
   float max_edge_m = 0.0f;   // edges longer than this are split; 0: none
+  int light_samples = 0;     // of each cell, 1..32; 0: auto, by how near light comes (local_light.hpp)
   std::string effects = "auto";
   unsigned threads = 0;            // 0: all
   std::uint64_t memory_bytes = 0;  // that passes may keep things in; 0: half of the machine's

@@ -1,4 +1,5 @@
 // lambent bake SCENE -o OUT.lmb.glb
+#include <cstdlib>
 #include <map>
 #include <memory>
 
@@ -26,6 +27,11 @@ nlohmann::json reportJson(const BakeArguments& a, const BakeReport& r) {
   for (const Progress::Stage& stage : r.stages)
     stages.push_back(
         {{"stage", stage.name}, {"seconds", stage.seconds}, {"units", stage.done}, {"unit", stage.unit}});
+  nlohmann::json groups = nlohmann::json::array();
+  for (const BakeReport::Group& group : r.groups)
+    groups.push_back({{"name", group.name},
+                      {"lightSamples", group.light_samples},
+                      {"proxyTriangles", group.proxy_triangles}});
   return {{"output", a.output.string()},
           {"settings", a.options.settings()},
           {"vertices", r.vertices},
@@ -35,6 +41,7 @@ nlohmann::json reportJson(const BakeArguments& a, const BakeReport& r) {
           {"rays", r.rays},
           {"raysPerSecond", r.ray_seconds > 0.0 ? static_cast<double>(r.rays) / r.ray_seconds : 0.0},
           {"lights", r.lights},
+          {"groups", groups},
           {"passEnergy", r.pass_energy},
           {"leftOut", r.left_out},
           {"hitBytes", r.hit_bytes},
@@ -42,6 +49,7 @@ nlohmann::json reportJson(const BakeArguments& a, const BakeReport& r) {
           {"fileBytes", r.file_bytes},
           {"meshBytes", r.mesh_bytes},
           {"transferBytes", r.transfer_bytes},
+          {"proxyBytes", r.proxy_bytes},
           {"imageBytes", r.image_bytes},
           {"stages", stages}};
 }
@@ -57,12 +65,18 @@ void printReport(const BakeArguments& a, const BakeReport& r) {
   if (!r.pass_energy.empty())
     fmt::print("  bounces   {}, the last with {:.3f} % of the direct light; {:.3f} % left out\n",
                r.pass_energy.size() - 1, 100.0 * r.pass_energy.back(), 100.0 * r.left_out);
+  std::uint64_t light_samples = 0, proxy_triangles = 0;
+  for (const BakeReport::Group& group : r.groups)
+    light_samples += group.light_samples,
+        proxy_triangles += group.proxy_triangles.empty() ? 0 : group.proxy_triangles.front();
+  fmt::print("  groups    {}: {} light sample{}, {} proxy triangles\n", r.groups.size(), light_samples,
+             light_samples == 1 ? "" : "s", proxy_triangles);
   fmt::print(
-      "  bytes     {}: mesh {}, transfer {} ({:.1f} a vertex), images {}\n",
+      "  bytes     {}: mesh {}, transfer {} ({:.1f} a vertex), proxies {}, images {}\n",
       bytesText(static_cast<double>(r.file_bytes)), bytesText(static_cast<double>(r.mesh_bytes)),
       bytesText(static_cast<double>(r.transfer_bytes)),
       static_cast<double>(r.transfer_bytes) / static_cast<double>(std::max<std::uint64_t>(r.vertices, 1)),
-      bytesText(static_cast<double>(r.image_bytes)));
+      bytesText(static_cast<double>(r.proxy_bytes)), bytesText(static_cast<double>(r.image_bytes)));
   fmt::print("  coding    {:.2f} % relative error of shaded radiance (bound {:.2f} %)\n",
              100.0 * r.worst_error, 100.0 * double{a.options.effectiveErrorBound()});
 }
@@ -97,6 +111,27 @@ int runBake(const BakeArguments& a) {
 }
 
 }  // namespace
+
+void addLightSamplesOption(CLI::App& command, BakeOptions& options) {
+  command
+      .add_option_function<std::string>(
+          "--light-samples",
+          [&options](const std::string& text) {
+            options.light_samples = text == "auto" ? 0 : std::atoi(text.c_str());
+          },
+          "Points of each cell at which light from outside is sampled, 1..32; 1 for a group: light at "
+          "infinity. auto (default): by how near light comes, shared out over the group")
+      ->check(CLI::Validator(
+          [](const std::string& text) {
+            const bool number = !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
+            const int count = number && text.size() < 4 ? std::atoi(text.c_str()) : 0;
+            return text == "auto" || (count >= 1 && count <= static_cast<int>(kMostLightSamples))
+                       ? std::string()
+                       : fmt::format("{} is neither auto nor between 1 and {}", text, kMostLightSamples);
+          },
+          ""))
+      ->type_name("N|auto");
+}
 
 void addBakeCommand(CLI::App& app, Command& run) {
   auto a = std::make_shared<BakeArguments>();
@@ -140,6 +175,7 @@ void addBakeCommand(CLI::App& app, Command& run) {
       ->add_option("--max-edge", a->options.max_edge_m,
                    "Split edges longer than this (scene units), so that large faces catch shadows")
       ->type_name("M");
+  addLightSamplesOption(*command, a->options);
   command->add_option("--effects", a->options.effects, "auto: what the scene calls for; or a list of effects")
       ->capture_default_str()
       ->type_name("LIST");

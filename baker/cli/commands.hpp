@@ -10,6 +10,8 @@ class App;
 
 namespace lambent::baker {
 
+struct BakeOptions;
+
 // Returns the exit code: 0 done, 1 failed.
 using Command = std::function<int()>;
 
@@ -19,5 +21,8 @@ void addPlanCommand(CLI::App& app, Command& run);
 void addInfoCommand(CLI::App& app, Command& run);
 void addReferenceCommand(CLI::App& app, Command& run);
 void addCompareCommand(CLI::App& app, Command& run);
+
+// --light-samples, of bake and plan.
+void addLightSamplesOption(CLI::App& command, BakeOptions& options);
 
 }  // namespace lambent::baker

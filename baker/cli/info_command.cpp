@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include "baker/cli/commands.hpp"
@@ -19,7 +20,8 @@ struct InfoArguments {
 };
 
 struct Sizes {
-  std::uint64_t mesh = 0, image = 0, rows = 0, codebooks = 0, ids = 0, planes = 0;
+  std::uint64_t mesh = 0, image = 0, rows = 0, codebooks = 0, ids = 0, planes = 0, light_weights = 0,
+                proxies = 0;
   std::uint64_t vertices = 0, triangles = 0;
 };
 
@@ -34,6 +36,8 @@ Sizes sizesOf(const bundle::Description& d) {
     if (payload.type == bundle::PayloadType::Codebook) sizes.codebooks += length;
     if (payload.type == bundle::PayloadType::ClusterIds) sizes.ids += length;
     if (payload.type == bundle::PayloadType::WeightPlane) sizes.planes += length;
+    if (payload.type == bundle::PayloadType::LightWeights) sizes.light_weights += length;
+    if (payload.type == bundle::PayloadType::CaptureProxy) sizes.proxies += length;
   }
   for (const bundle::Draw& draw : d.draws) {
     const bundle::Primitive& primitive = d.meshes[draw.mesh].primitives[draw.primitive];
@@ -41,6 +45,15 @@ Sizes sizesOf(const bundle::Description& d) {
     sizes.triangles += primitive.index_count / 3;
   }
   return sizes;
+}
+
+// Of each level, the finest first; empty: it has no proxy.
+std::vector<std::uint32_t> proxyTriangles(const bundle::Reader& reader, const bundle::Group& group) {
+  const auto index = static_cast<std::uint32_t>(&group - reader.description().groups.data());
+  std::vector<std::uint32_t> counts;
+  if (const auto proxy = reader.readProxy(index))  // checked before anything is printed
+    for (const bundle::ProxyLevel& level : proxy->levels) counts.push_back(level.triangle_count);
+  return counts;
 }
 
 void printJson(const bundle::Reader& reader, const Sizes& sizes) {
@@ -62,7 +75,11 @@ void printJson(const bundle::Reader& reader, const Sizes& sizes) {
                          {"planes", transfer.planes.size()},
                          {"errorBound", transfer.error_bound},
                          {"error", transfer.error}});
-    groups.push_back({{"name", group.name}, {"samples", group.sample_count}, {"transfer", cells}});
+    groups.push_back({{"name", group.name},
+                      {"samples", group.sample_count},
+                      {"lightSamples", group.light_samples.size()},
+                      {"proxyTriangles", proxyTriangles(reader, group)},
+                      {"transfer", cells}});
   }
   const nlohmann::json json = {
       {"file", reader.path().string()},
@@ -80,6 +97,8 @@ void printJson(const bundle::Reader& reader, const Sizes& sizes) {
       {"codebookBytes", sizes.codebooks},
       {"clusterIdBytes", sizes.ids},
       {"planeBytes", sizes.planes},
+      {"lightWeightBytes", sizes.light_weights},
+      {"proxyBytes", sizes.proxies},
       {"groups", groups}};
   fmt::print("{}\n", json.dump(2));
 }
@@ -101,9 +120,15 @@ void printText(const bundle::Reader& reader, const Sizes& sizes) {
   line("codebooks", sizes.codebooks);
   line("cluster ids", sizes.ids);
   line("weight planes", sizes.planes);
+  line("light weights", sizes.light_weights);
+  line("proxies", sizes.proxies);
   line("whole file", reader.fileBytes());
   for (const bundle::Group& group : d.groups) {
     fmt::print("group \"{}\": {} samples in {} cells\n", group.name, group.sample_count, group.cells.size());
+    const std::vector<std::uint32_t> proxy = proxyTriangles(reader, group);
+    fmt::print("  {} light sample{}, {}\n", group.light_samples.size(),
+               group.light_samples.size() == 1 ? "" : "s",
+               proxy.empty() ? "no proxy" : fmt::format("proxy of {} triangles", fmt::join(proxy, ", ")));
     for (const bundle::Cell& cell : group.cells)
       for (const bundle::DiffuseTransfer& transfer : cell.diffuse)
         fmt::print("  diffuse {}: {}, {} samples, {} clusters, {} planes, error {:.3f} % (bound {:.3f} %)\n",

@@ -36,17 +36,25 @@ GroupSize sizeOf(const Scene& scene, const RigidGroup& group) {
 
 void printJson(const Scene& scene, const EffectPlan& plan) {
   nlohmann::json groups = nlohmann::json::array(), effects = nlohmann::json::array();
-  for (const RigidGroup& group : plan.groups) {
+  for (std::size_t g = 0; g < plan.groups.size(); ++g) {
+    const RigidGroup& group = plan.groups[g];
     const GroupSize size = sizeOf(scene, group);
+    const PlannedLightSamples& planned = plan.light_samples[g];
     groups.push_back({{"name", group.name},
+                      {"lightSamples", planned.count.count},
+                      {"lightSamplesOf", planned.count.of_group ? "group" : "cell"},
+                      {"lightSamplesReason", planned.reason},
                       {"draws", group.draws.size()},
                       {"vertices", size.vertices},
                       {"triangles", size.triangles}});
   }
   for (const EffectChoice& choice : plan.effects)
     effects.push_back({{"effect", choice.effect}, {"baked", choice.baked}, {"reason", choice.reason}});
-  const nlohmann::json json = {
-      {"scene", scene.source.string()}, {"groups", groups}, {"effects", effects}, {"leftOut", plan.left_out}};
+  const nlohmann::json json = {{"scene", scene.source.string()},
+                               {"groups", groups},
+                               {"effects", effects},
+                               {"nearLights", plan.near_lights},
+                               {"leftOut", plan.left_out}};
   fmt::print("{}\n", json.dump(2));
 }
 
@@ -55,11 +63,17 @@ void printText(const Scene& scene, const EffectPlan& plan) {
   for (const EffectChoice& choice : plan.effects)
     fmt::print("  {:<10} {}: {}\n", choice.effect, choice.baked ? "baked" : "not baked", choice.reason);
   fmt::print("  rigid groups\n");
-  for (const RigidGroup& group : plan.groups) {
+  for (std::size_t g = 0; g < plan.groups.size(); ++g) {
+    const RigidGroup& group = plan.groups[g];
     const GroupSize size = sizeOf(scene, group);
+    const auto& [count, reason] = plan.light_samples[g];
     fmt::print("    {}: {} draw{}, {} vertices, {} triangles\n", group.name, group.draws.size(),
                group.draws.size() == 1 ? "" : "s", size.vertices, size.triangles);
+    fmt::print("      {} light sample{}{}: {}\n", count.count, count.count == 1 ? "" : "s",
+               count.of_group ? "" : " in each cell", reason);
   }
+  if (!plan.near_lights.empty()) fmt::print("  near lights\n");
+  for (const std::string& sentence : plan.near_lights) fmt::print("    {}\n", sentence);
   if (!plan.left_out.empty()) fmt::print("  left out\n");
   for (const std::string& sentence : plan.left_out) fmt::print("    {}\n", sentence);
 }
@@ -82,6 +96,7 @@ void addPlanCommand(CLI::App& app, Command& run) {
   command->add_option("--effects", a->options.effects, "auto, or a list of effects")
       ->capture_default_str()
       ->type_name("LIST");
+  addLightSamplesOption(*command, a->options);
   command->add_flag("--allow-outside", a->allow_outside,
                     "Read buffers and images outside the scene's folder too");
   command->add_flag("--json", a->json, "Print as JSON");

@@ -5,8 +5,6 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
-#include "baker/plan/group_lights.hpp"
-
 namespace lambent::baker {
 
 namespace {
@@ -14,14 +12,6 @@ namespace {
 std::string nameOf(const Scene& scene, std::size_t node) {
   const std::string& name = scene.nodes[node].name;
   return name.empty() ? fmt::format("node {}", node) : name;
-}
-
-// A light is baked into the transfer of its group's surfaces; without any there is nowhere to bake it.
-void addLonelyLights(const Scene& scene, const std::vector<RigidGroup>& groups,
-                     std::vector<std::string>& sentences) {
-  for (const std::uint32_t node : lightsWithoutGroup(scene, groups))
-    sentences.push_back(
-        fmt::format("The light of {} shines on nothing: no surface moves with it.", nameOf(scene, node)));
 }
 
 // Transfer holds for directions, so a group may turn and grow evenly, but not be stretched.
@@ -51,7 +41,7 @@ void addStretchedNodes(const Scene& scene, std::vector<std::string>& sentences) 
 }
 
 // What this version does not carry yet, so that nobody has to find out by looking at the picture.
-std::vector<std::string> leftOut(const Scene& scene, const std::vector<RigidGroup>& groups) {
+std::vector<std::string> leftOut(const Scene& scene) {
   std::vector<std::string> sentences = scene.warnings;
   const auto any_material = [&](auto test) {
     return std::any_of(scene.materials.begin(), scene.materials.end(), test);
@@ -62,9 +52,6 @@ std::vector<std::string> leftOut(const Scene& scene, const std::vector<RigidGrou
         "Metallic and glossy reflection are left out: every material is Lambert with albedo = base colour.");
   if (any_material([](const gltf::Material& m) { return m.alpha_mode == gltf::AlphaMode::Blend; }))
     sentences.emplace_back("Materials with alphaMode BLEND cast no shadow.");
-  addLonelyLights(scene, groups, sentences);
-  if (std::any_of(scene.nodes.begin(), scene.nodes.end(), [](const gltf::Node& n) { return n.animated; }))
-    sentences.emplace_back("Animations do not play yet: animated nodes are separate rigid groups, at rest.");
   addStretchedNodes(scene, sentences);
   return sentences;
 }
@@ -75,10 +62,9 @@ EffectPlan makePlan(const Scene& scene, std::span<const EffectEntry> effects) {
   EffectPlan plan;
   plan.groups = findRigidGroups(scene);
   for (const EffectEntry& entry : effects) plan.effects.push_back(entry.choose(scene, plan.groups));
-  plan.left_out = leftOut(scene, plan.groups);
-  if (plan.groups.size() > 1)
-    plan.left_out.emplace_back(
-        "Rigid groups do not shadow or light each other yet: each is baked by itself.");
+  plan.light_samples = planLightSamples(scene, plan.groups);
+  plan.near_lights = lightsInside(scene, plan.groups);
+  plan.left_out = leftOut(scene);
   return plan;
 }
 

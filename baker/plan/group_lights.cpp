@@ -7,9 +7,6 @@
 
 namespace lambent::baker {
 
-namespace {
-
-// The node at or above `node` that starts its rigid group; -1: the static group.
 std::int32_t groupRootOf(const Scene& scene, std::uint32_t node) {
   auto at = static_cast<std::int32_t>(node);
   while (at >= 0) {
@@ -19,6 +16,8 @@ std::int32_t groupRootOf(const Scene& scene, std::uint32_t node) {
   }
   return -1;
 }
+
+namespace {
 
 bool isLit(glm::vec3 color) {
   return color.r > 0.0f || color.g > 0.0f || color.b > 0.0f;
@@ -51,17 +50,6 @@ std::vector<PlannedLight> findGroupLights(const Scene& scene, const RigidGroup& 
                       group.root < 0 ? world[n] : glm::inverse(world_from_group) * world[n]});
   }
   return lights;
-}
-
-std::vector<std::uint32_t> lightsWithoutGroup(const Scene& scene, const std::vector<RigidGroup>& groups) {
-  std::vector<std::uint32_t> nodes;
-  for (std::uint32_t n = 0; n < scene.nodes.size(); ++n) {
-    if (scene.nodes[n].light < 0) continue;
-    const std::int32_t root = groupRootOf(scene, n);
-    if (std::none_of(groups.begin(), groups.end(), [&](const RigidGroup& g) { return g.root == root; }))
-      nodes.push_back(n);
-  }
-  return nodes;
 }
 
 }  // namespace lambent::baker

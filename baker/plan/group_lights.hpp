@@ -25,7 +25,7 @@ struct PlannedLight {
 // Materials first, in the order of the draws, then nodes in their own order.
 std::vector<PlannedLight> findGroupLights(const Scene& scene, const RigidGroup& group);
 
-// Nodes with a light that moves with no surface: no group has it.
-std::vector<std::uint32_t> lightsWithoutGroup(const Scene& scene, const std::vector<RigidGroup>& groups);
+// The node at or above `node` that starts its rigid group; -1: the static group.
+std::int32_t groupRootOf(const Scene& scene, std::uint32_t node);
 
 }  // namespace lambent::baker

@@ -45,7 +45,8 @@ Result<SurfaceColors> SurfaceColors::load(const Scene& scene, const GroupGeometr
         .light = kNoLight,
         .colored_vertices = false,
         .base_alpha = material.base_color.w,
-        .alpha_cutoff = material.alpha_mode == gltf::AlphaMode::Mask ? material.alpha_cutoff : 0.0f};
+        .alpha_cutoff = material.alpha_mode == gltf::AlphaMode::Mask ? material.alpha_cutoff : 0.0f,
+        .alpha_mode = material.alpha_mode};
     const auto first = geometry.colors.begin() + draw.first_vertex;
     surface.colored_vertices = std::any_of(
         first, first + draw.vertex_count, [](const glm::vec4& c) { return glm::vec3(c) != glm::vec3(1.0f); });
@@ -105,14 +106,23 @@ glm::vec3 SurfaceColors::albedo(std::uint32_t triangle, float u, float v) const 
   return glm::clamp(color, 0.0f, 1.0f);
 }
 
+float SurfaceColors::alpha(const Surface& surface, std::uint32_t triangle, float u, float v) const {
+  return surface.base_alpha * lookUp(surface.base_texture, geometry_->texcoords, triangle, u, v).w *
+         vertexColor(triangle, u, v).w;
+}
+
+float SurfaceColors::coverage(std::uint32_t triangle, float u, float v) const {
+  const Surface& surface = surfaceOf(triangle);
+  if (surface.alpha_mode == gltf::AlphaMode::Opaque) return 1.0f;
+  const float a = alpha(surface, triangle, u, v);
+  if (surface.alpha_mode == gltf::AlphaMode::Blend) return glm::clamp(a, 0.0f, 1.0f);
+  return a >= surface.alpha_cutoff ? 1.0f : 0.0f;
+}
+
 glm::vec3 SurfaceColors::emission(std::uint32_t triangle, float u, float v) const {
   const Surface& surface = surfaceOf(triangle);
-  if (surface.alpha_cutoff > 0.0f) {
-    const float alpha = surface.base_alpha *
-                        lookUp(surface.base_texture, geometry_->texcoords, triangle, u, v).w *
-                        vertexColor(triangle, u, v).w;
-    if (alpha < surface.alpha_cutoff) return glm::vec3(0.0f);
-  }
+  if (surface.alpha_cutoff > 0.0f && alpha(surface, triangle, u, v) < surface.alpha_cutoff)
+    return glm::vec3(0.0f);
   return glm::vec3(lookUp(surface.emissive_texture, geometry_->emissive_texcoords, triangle, u, v));
 }
 

@@ -29,6 +29,8 @@ class SurfaceColors {
   // Emission at unit strength: the texture alone, 1 where there is none; 0 in the holes of cut-outs. Of
   // triangles with a light.
   glm::vec3 emission(std::uint32_t triangle, float u, float v) const;
+  // How much of what lies behind is hidden: 1 where opaque, 0 or 1 where cut out, alpha where blended.
+  float coverage(std::uint32_t triangle, float u, float v) const;
   // Column of the light that this triangle gives off; kNoLight where it gives off none.
   std::uint32_t lightOf(std::uint32_t triangle) const { return surfaceOf(triangle).light; }
 
@@ -49,10 +51,12 @@ class SurfaceColors {
     std::uint32_t light = kNoLight;
     bool colored_vertices = false;
     float base_alpha = 1.0f, alpha_cutoff = 0.0f;  // cutoff 0: not cut out
+    gltf::AlphaMode alpha_mode = gltf::AlphaMode::Opaque;
   };
   const Surface& surfaceOf(std::uint32_t triangle) const { return surfaces_[surface_of_[triangle]]; }
   glm::vec4 lookUp(const Texture& texture, const std::vector<glm::vec2>& texcoords, std::uint32_t triangle,
                    float u, float v) const;
+  float alpha(const Surface& surface, std::uint32_t triangle, float u, float v) const;
   glm::vec2 at(const std::vector<glm::vec2>& texcoords, std::uint32_t triangle, float u, float v) const;
   glm::vec4 vertexColor(std::uint32_t triangle, float u, float v) const;
 

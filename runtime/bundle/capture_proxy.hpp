@@ -1,4 +1,4 @@
-// Payload CaptureProxy: a rigid group as other groups see it when they sample their incident light: a few
+// Payload captureProxy: a rigid group as other groups see it when they sample their incident light: a few
 // triangles, each sending out one radiance in all directions,
 //   Σ_i reflectance_i * (E/pi of sample i) + emission * (what light `light` of the group gives now),
 // so that it is lit by whatever lights its group. Group frame, metres. Errors: lengths, indices out of range,
@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include <glm/vec3.hpp>
@@ -34,15 +35,16 @@ struct ProxyTriangle {
 // How much of a sample's E/pi the triangle sends out: albedo, times the share of the triangle that it stands
 // for.
 struct ProxyEntry {
-  std::uint32_t sample =
-      0;  // of the group; of samples with nine outputs E/pi is taken at the triangle's normal
-  glm::vec3 reflectance{0.0f};
+  // Of the group. Where it has nine outputs, E/pi is taken at the triangle's normal.
+  std::uint32_t sample = 0;
+  glm::vec3 reflectance{0.0f};  // 0..1, stored in steps of 1/65535; those of a triangle sum to at most 1
 };
 
-// The finest level comes first. All levels show the whole group.
+// The finest level comes first. Each shows the whole group, with triangles of its own: first_triangle is the
+// sum of the counts before it, and first_entry of a triangle likewise.
 struct ProxyLevel {
-  std::uint32_t first_triangle = 0, triangle_count = 0;
-  float error_m = 0.0f;  // how far the surface may lie from the group's own
+  std::uint32_t first_triangle = 0, triangle_count = 0;  // 1..kMaxProxyTriangles
+  float error_m = 0.0f;                                  // how far the surface may lie from the group's own
 };
 
 struct CaptureProxy {
@@ -55,6 +57,6 @@ struct CaptureProxy {
 std::vector<std::byte> encodeCaptureProxy(const CaptureProxy& proxy);
 // sample_count and light_count: of the group.
 Result<CaptureProxy> decodeCaptureProxy(std::span<const std::byte> bytes, std::uint32_t sample_count,
-                                        std::uint32_t light_count);
+                                        std::uint32_t light_count, const std::string& subject);
 
 }  // namespace lambent::bundle

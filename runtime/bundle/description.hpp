@@ -23,7 +23,7 @@ inline constexpr std::string_view kExtensionName = "LAMBENT_radiance_transfer";
 inline constexpr std::uint32_t kVersionFirstLight = 1;
 inline constexpr std::uint32_t kVersionClusteredTransfer = 2;
 inline constexpr std::uint32_t kVersionLocalLight = 3;
-inline constexpr std::uint32_t kVersionCurrent = kVersionClusteredTransfer;
+inline constexpr std::uint32_t kVersionCurrent = kVersionLocalLight;
 
 // A byte range of the GLB's binary chunk.
 struct View {

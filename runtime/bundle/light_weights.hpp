@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "runtime/base/result.hpp"
@@ -22,9 +23,13 @@ struct LightWeights {
   bool operator==(const LightWeights&) const = default;
 };
 
+// All of the first light sample of the cell.
+inline constexpr LightWeights kOneLight{{}, {255}};
+
 // Eight runs of one byte per sample: light 0, ..., light 3, weight 0, ..., weight 3.
 std::vector<std::byte> encodeLightWeights(std::span<const LightWeights> samples);
 Result<std::vector<LightWeights>> decodeLightWeights(std::span<const std::byte> bytes,
-                                                     std::size_t sample_count, std::size_t light_count);
+                                                     std::size_t sample_count, std::size_t light_count,
+                                                     const std::string& subject);
 
 }  // namespace lambent::bundle

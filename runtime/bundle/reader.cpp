@@ -154,6 +154,25 @@ Result<std::vector<std::uint32_t>> Reader::readPlane(std::uint32_t group, std::u
                            fmt::format("{}: group {} cell {} plane {}", path().string(), group, cell, index));
 }
 
+Result<std::vector<LightWeights>> Reader::readLightWeights(std::uint32_t group,
+                                                           std::uint32_t cell_index) const {
+  const Cell& cell = description().groups.at(group).cells.at(cell_index);
+  if (cell.light_weights < 0) return std::vector<LightWeights>(cell.sample_count, kOneLight);
+  const auto bytes = readPayload(static_cast<std::uint32_t>(cell.light_weights));
+  if (!bytes) return failAgain(bytes.error());
+  return decodeLightWeights(*bytes, cell.sample_count, cell.light_samples.size(),
+                            fmt::format("{}: group {} cell {}", path().string(), group, cell_index));
+}
+
+Result<CaptureProxy> Reader::readProxy(std::uint32_t index) const {
+  const Group& group = description().groups.at(index);
+  if (group.proxy < 0) return CaptureProxy{};
+  const auto bytes = readPayload(static_cast<std::uint32_t>(group.proxy));
+  if (!bytes) return failAgain(bytes.error());
+  return decodeCaptureProxy(*bytes, group.sample_count, static_cast<std::uint32_t>(group.lights.size()),
+                            fmt::format("{}: group {}", path().string(), index));
+}
+
 namespace {
 
 Result<void> checkTransfer(const Reader& reader, std::uint32_t group, std::uint32_t cell,
@@ -177,9 +196,13 @@ Result<void> Reader::checkAll() const {
   for (std::uint32_t draw = 0; draw < d.draws.size(); ++draw)
     if (auto rows = readRows(draw); !rows) return failAgain(rows.error());
   for (std::uint32_t group = 0; group < d.groups.size(); ++group)
-    for (std::uint32_t cell = 0; cell < d.groups[group].cells.size(); ++cell)
+    if (auto proxy = readProxy(group); !proxy) return failAgain(proxy.error());
+  for (std::uint32_t group = 0; group < d.groups.size(); ++group)
+    for (std::uint32_t cell = 0; cell < d.groups[group].cells.size(); ++cell) {
+      if (auto weights = readLightWeights(group, cell); !weights) return failAgain(weights.error());
       for (std::uint32_t t = 0; t < d.groups[group].cells[cell].diffuse.size(); ++t)
         if (auto checked = checkTransfer(*this, group, cell, t); !checked) return checked;
+    }
   return {};
 }
 

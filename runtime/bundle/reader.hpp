@@ -11,7 +11,9 @@
 #include <vector>
 
 #include "runtime/base/result.hpp"
+#include "runtime/bundle/capture_proxy.hpp"
 #include "runtime/bundle/description.hpp"
+#include "runtime/bundle/light_weights.hpp"
 #include "runtime/bundle/mesh.hpp"
 #include "runtime/bundle/transfer_codec.hpp"
 
@@ -49,6 +51,10 @@ class Reader {
   // Codes in the order of positionsOf.
   Result<std::vector<std::uint32_t>> readPlane(std::uint32_t group, std::uint32_t cell,
                                                std::uint32_t transfer, std::uint32_t plane) const;
+  // One per sample of the cell; of a cell with one light sample, that one whole.
+  Result<std::vector<LightWeights>> readLightWeights(std::uint32_t group, std::uint32_t cell) const;
+  // Without a level where the group has none.
+  Result<CaptureProxy> readProxy(std::uint32_t group) const;
   // Reads, decodes and compares everything in the file.
   Result<void> checkAll() const;
 

@@ -5,6 +5,7 @@
 
 #include "runtime/bundle/description.hpp"
 #include "runtime/bundle/json_fields.hpp"
+#include "runtime/bundle/light_weights.hpp"
 
 namespace lambent::bundle {
 
@@ -13,7 +14,8 @@ namespace {
 constexpr std::uint32_t kMaxOrder = 8, kMaxColumns = 4096, kMaxCellSamples = 65536;
 constexpr std::uint32_t kMaxClusters = 65536;
 constexpr std::uint64_t kMaxPayloadBytes = std::uint64_t{1} << 32;  // refuse to allocate more for one payload
-constexpr std::array kPayloadTypes = {"vertexRows", "codebook", "clusterIds", "weightPlane"};
+constexpr std::array kPayloadTypes = {"vertexRows",  "codebook",     "clusterIds",
+                                      "weightPlane", "lightWeights", "captureProxy"};
 constexpr std::array kCodecs = {"raw", "zstd"};
 constexpr std::array kLightKinds = {"material", "node"};
 constexpr std::array kSides = {"front", "back"};
@@ -117,6 +119,25 @@ DiffuseTransfer readDiffuse(const Field& field, const Description& d, const Grou
   return transfer;
 }
 
+// Which of the group's light samples a cell takes, and where the weights lie if they are several.
+void readCellLights(const Field& field, const Description& d, const Group& group, Cell& cell) {
+  const Field list = field["lightSamples"];
+  cell.light_samples.clear();
+  for (const Field& entry : list.items()) {
+    const std::uint32_t sample = entry.index(group.light_samples.size());
+    if (!cell.light_samples.empty() && sample <= cell.light_samples.back()) entry.fault("does not rise");
+    cell.light_samples.push_back(sample);
+  }
+  if (cell.light_samples.empty() || cell.light_samples.size() > kMaxLightSamples)
+    list.fault(fmt::format("are not 1 to {}", kMaxLightSamples));
+  if (cell.light_samples.size() > 1)
+    cell.light_weights =
+        static_cast<std::int32_t>(payloadIndex(field["lightWeights"], d, PayloadType::LightWeights,
+                                               std::uint64_t{cell.sample_count} * sizeof(LightWeights)));
+  else if (field.has("lightWeights"))
+    field["lightWeights"].fault("are there for one light sample");
+}
+
 Cell readCell(const Field& field, const Description& d, const Group& group, std::uint32_t first_sample) {
   Cell cell;
   cell.first_sample = static_cast<std::uint32_t>(field["firstSample"].count(group.sample_count));
@@ -133,6 +154,7 @@ Cell readCell(const Field& field, const Description& d, const Group& group, std:
       entry.fault("is not the group's lights after the environment");
     if (last.shape.outputs != first.shape.outputs) entry["outputs"].fault("differs within the cell");
   }
+  readCellLights(field, d, group, cell);
   if (!group.cells.empty() && group.cells.back().outputs() > cell.outputs())
     field.fault("has one output and stands after cells with nine");
   return cell;
@@ -152,11 +174,14 @@ GroupLight readGroupLight(const Field& field, const Description& d) {
 Json cellJson(const Cell& cell) {
   Json diffuse = Json::array();
   for (const DiffuseTransfer& transfer : cell.diffuse) diffuse.push_back(diffuseJson(transfer));
-  return {{"firstSample", cell.first_sample},
-          {"sampleCount", cell.sample_count},
-          {"boundsMin", vectorJson(cell.bounds_min)},
-          {"boundsMax", vectorJson(cell.bounds_max)},
-          {"diffuse", diffuse}};
+  Json json = {{"firstSample", cell.first_sample},
+               {"sampleCount", cell.sample_count},
+               {"boundsMin", vectorJson(cell.bounds_min)},
+               {"boundsMax", vectorJson(cell.bounds_max)},
+               {"diffuse", diffuse},
+               {"lightSamples", cell.light_samples}};
+  if (cell.light_weights >= 0) json["lightWeights"] = cell.light_weights;
+  return json;
 }
 
 Json groupLightJson(const GroupLight& light) {
@@ -174,8 +199,11 @@ Json groupJson(const Group& group) {
                {"boundsMax", vectorJson(group.bounds_max)},
                {"sampleCount", group.sample_count},
                {"lights", Json::array()},
+               {"lightSamples", Json::array()},
                {"cells", Json::array()}};
   if (group.node >= 0) json["node"] = group.node;
+  if (group.proxy >= 0) json["proxy"] = group.proxy;
+  for (const glm::vec3& point : group.light_samples) json["lightSamples"].push_back(vectorJson(point));
   for (const GroupLight& light : group.lights) json["lights"].push_back(groupLightJson(light));
   for (const Cell& cell : group.cells) json["cells"].push_back(cellJson(cell));
   return json;
@@ -194,12 +222,25 @@ Group readGroup(const Field& field, const Description& d) {
   group.sample_count = static_cast<std::uint32_t>(field["sampleCount"].count(0xfffffffeu));
   for (const Field& entry : field["lights"].items()) group.lights.push_back(readGroupLight(entry, d));
   if (group.lights.size() > kMaxColumns) field["lights"].fault("are too many");
+  group.light_samples.clear();
+  for (const Field& entry : field["lightSamples"].items())
+    group.light_samples.push_back(entry.vector<glm::vec3>());
+  if (group.light_samples.empty()) field["lightSamples"].fault("are none");
+  if (field.has("proxy"))
+    group.proxy =
+        static_cast<std::int32_t>(payloadIndex(field["proxy"], d, PayloadType::CaptureProxy, std::nullopt));
   std::uint32_t next = 0;
   for (const Field& entry : field["cells"].items()) {
     group.cells.push_back(readCell(entry, d, group, next));
     next += group.cells.back().sample_count;
   }
   if (next != group.sample_count) field["cells"].fault("do not hold all samples of the group");
+  // Nothing is captured for nobody. (A group without cells has one all the same.)
+  std::vector<bool> used(group.light_samples.size(), group.cells.empty());
+  for (const Cell& cell : group.cells)
+    for (const std::uint32_t sample : cell.light_samples) used[sample] = true;
+  if (std::find(used.begin(), used.end(), false) != used.end())
+    field["lightSamples"].fault("are not all taken by a cell");
   return group;
 }
 

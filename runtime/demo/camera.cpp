@@ -67,6 +67,7 @@ glm::mat4 worldFromNode(const frame::World& world, std::size_t bundle, std::uint
 Result<ViewController> ViewController::create(const frame::World& world,
                                               const std::optional<spec::Camera>& camera, float aspect) {
   ViewController controller;
+  controller.bounds_ = boundsOf(world);
   controller.orbit_ = framingOrbit(world, aspect);
   if (camera && std::holds_alternative<spec::OrbitCamera>(*camera)) {
     controller.orbit_ = std::get<spec::OrbitCamera>(*camera);
@@ -93,13 +94,12 @@ Result<ViewController> ViewController::create(const frame::World& world,
 }
 
 Result<spec::View> ViewController::view(const frame::World& world, float aspect) const {
-  const scene::Box bounds = boundsOf(world);
-  if (!file_camera_) return spec::orbitView(orbit_, bounds.min, bounds.max, aspect);
+  if (!file_camera_) return spec::orbitView(orbit_, bounds_.min, bounds_.max, aspect);
   const bundle::Description& description = world.description(file_camera_->bundle);
   const auto camera = static_cast<std::size_t>(description.nodes[file_camera_->node].camera);
   return spec::cameraView(description.cameras[camera],
-                          worldFromNode(world, file_camera_->bundle, file_camera_->node), bounds.min,
-                          bounds.max, aspect);
+                          worldFromNode(world, file_camera_->bundle, file_camera_->node), bounds_.min,
+                          bounds_.max, aspect);
 }
 
 void ViewController::move(const frame::World& world, const gpu::Input& input) {
@@ -112,13 +112,12 @@ void ViewController::move(const frame::World& world, const gpu::Input& input) {
     const bundle::Description& description = world.description(file_camera_->bundle);
     const gltf::Camera& camera =
         description.cameras[static_cast<std::size_t>(description.nodes[file_camera_->node].camera)];
-    const scene::Box bounds = boundsOf(world);
     const glm::vec3 offset =
-        glm::vec3(worldFromNode(world, file_camera_->bundle, file_camera_->node)[3]) - bounds.center();
+        glm::vec3(worldFromNode(world, file_camera_->bundle, file_camera_->node)[3]) - bounds_.center();
     const float distance = std::max(glm::length(offset), 1e-6f);
     orbit_.azimuth_deg = glm::degrees(std::atan2(offset.x, offset.z));
     orbit_.elevation_deg = glm::degrees(std::asin(std::clamp(offset.y / distance, -1.0f, 1.0f)));
-    orbit_.distance_radii = distance / std::max(bounds.radius(), 1e-6f);
+    orbit_.distance_radii = distance / std::max(bounds_.radius(), 1e-6f);
     if (camera.perspective) orbit_.fov_deg = glm::degrees(camera.yfov_rad);
     file_camera_.reset();
   }

@@ -26,6 +26,7 @@ class ViewController {
     std::size_t bundle = 0;
     std::uint32_t node = 0;
   };
+  scene::Box bounds_;  // of the scene at rest: what moves in it does not move the camera
   std::optional<FileCamera> file_camera_, first_file_camera_;
   spec::OrbitCamera orbit_, first_orbit_;
 };

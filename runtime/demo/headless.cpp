@@ -6,12 +6,19 @@
 #include "runtime/demo/camera.hpp"
 #include "runtime/demo/report.hpp"
 #include "runtime/demo/run.hpp"
+#include "runtime/demo/stage.hpp"
 #include "runtime/frame/frame.hpp"
 #include "runtime/spec/image.hpp"
 
 namespace lambent::demo {
 
 namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double millisecondsSince(Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
 
 Result<void> writePicture(const frame::Frame& frame, const Options& options) {
   if (options.linear) return spec::writeExr(*options.headless, frame.readLinear());
@@ -29,57 +36,69 @@ Result<void> checkSize(const spec::Size& size, std::uint32_t limit) {
 }  // namespace
 
 Result<void> runHeadless(const Options& options) {
-  // The light first: a wrong file is told before a device is looked for.
-  Result<lighting::Environment> environment = lighting::Environment::create(options.lights);
+  Result<lighting::Environment> environment = loadEnvironment(options);
   if (!environment) return failAgain(environment.error());
-  for (const std::string& notice : environment->notices()) fmt::print(stderr, "lambent-demo: {}\n", notice);
-
   Result<gpu::Context> context = gpu::Context::createHeadless();
   if (!context) return failAgain(context.error());
   if (Result<void> fits = checkSize(options.size, context->info().max_texture_side); !fits) return fits;
 
-  const auto start = std::chrono::steady_clock::now();
+  const auto start = Clock::now();
   Report report;
-  frame::World world({.max_resident_bytes = options.max_memory_bytes});
-  for (const std::filesystem::path& path : options.bundles)
-    if (Result<void> opened = world.open(path); !opened) return opened;
-  world.scaleLamps(options.lamps);
+  Result<Stage> stage = Stage::create(options, std::move(*environment));
+  if (!stage) return failAgain(stage.error());
+  frame::World& world = stage->world();
   gpu::Counters loading;
   if (Result<void> loaded = world.uploadAll(loading); !loaded) return loaded;
-  report.load_ms =
-      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  report.load_ms = millisecondsSince(start);
 
   const Result<ViewController> controller =
       ViewController::create(world, options.camera, options.size.aspect());
   if (!controller) return failAgain(controller.error());
-  const Result<spec::View> view = controller->view(world, options.size.aspect());
-  if (!view) return failAgain(view.error());
 
   Result<frame::Frame> frame =
       frame::Frame::create({.size = options.size,
                             .output = options.linear ? frame::Output::Linear : frame::Output::Display,
                             .transfer = options.transfer,
                             .window = options.window,
-                            .exposure_ev = options.exposure_ev},
-                           *environment);
+                            .exposure_ev = options.exposure_ev,
+                            .capture = options.capture,
+                            .wait_for_captures = true},
+                           stage->environment());
   if (!frame) return failAgain(frame.error());
+  const auto render = [&]() -> Result<void> {
+    world.updateTransforms();  // cameras may hang on what moves
+    const Result<spec::View> view = controller->view(world, options.size.aspect());
+    if (!view) return failAgain(view.error());
+    return frame->render(world, stage->environment(), *view);
+  };
   for (std::uint32_t i = 0; i < options.frames; ++i) {
-    // Over several frames the light turns into its place, so that what a turn costs can be read off.
-    environment->setTurn(options.rotate_light_deg * static_cast<float>(i + 1) /
-                         static_cast<float>(options.frames));
-    if (Result<void> rendered = frame->render(world, *environment, *view); !rendered) return rendered;
+    // Over several frames the light turns into its place and time runs up to the asked for, so that what
+    // movement costs can be read off.
+    stage->turnLight(options.rotate_light_deg * static_cast<float>(i + 1) /
+                     static_cast<float>(options.frames));
+    world.setAnimationTime(options.time_s - options.step_s * static_cast<float>(options.frames - 1 - i));
+    const auto frame_start = Clock::now();
+    if (Result<void> rendered = render(); !rendered) return rendered;
+    glFinish();
+    report.frame_ms.push_back(millisecondsSince(frame_start));
     if (i == 0) {
       frame->timers().finish();
-      report.first_frame = frame->timers().latest();
+      report.first_frame = {frame->timers().latest(), frame->counts()};
     }
   }
+  frame->timers().finish();
+  report.last_frame = {frame->timers().latest(), frame->counts()};
+  // The picture is of light that has come to rest.
+  const Result<std::uint32_t> steps = frame->rest(world, stage->environment());
+  if (!steps) return failAgain(steps.error());
+  report.rest_steps = *steps;
+  if (*steps > 0)
+    if (Result<void> rendered = render(); !rendered) return rendered;
   if (Result<void> written = writePicture(*frame, options); !written) return written;
   if (!options.json) {
     fmt::print("{}\n", options.headless->string());
     return {};
   }
-  frame->timers().finish();
-  report.last_frame = frame->timers().latest();
   report.bytes_resident = world.residency().bytesResident();
   report.parts = world.loadedParts();
   report.negative_pixels = frame->negativePixels();

@@ -24,9 +24,10 @@ const std::map<std::string, sh::Window> kWindowWords = {
 
 // What CLI11 hands over, before the words are understood.
 struct Words {
-  std::vector<std::string> bundles, lights;
+  std::vector<std::string> bundles, lights, fade_lights;
   std::string light_layout, camera, size = "1280x720", headless, transfer = "full", window = "auto";
-  std::string rotate_light = "0", exposure = "auto", lamps = "1";
+  std::string rotate_light = "0", exposure = "auto", lamps = "1", fade = "0", time = "0", step = "0.0333";
+  std::uint32_t capture_size = 16, capture_subsamples = 16, capture_order = 0;
   std::uint64_t max_memory = ~std::uint64_t{0};
   std::uint32_t frames = 1;
   bool json = false;
@@ -53,6 +54,9 @@ constexpr Row kRows[] = {
      "dark"},
     {"--window", &Words::window, "WINDOW", "Against ringing of the light: auto, off or hann"},
     {"--rotate-light", &Words::rotate_light, "DEG", "Turn all lights about +Y (+Z towards +X)"},
+    {"--fade", &Words::fade, "SHARE", "From the lights of --light to those of --fade-to: 0..1"},
+    {"--time", &Words::time, "S", "Where the scenes' animations stand in the last frame, in seconds"},
+    {"--step", &Words::step, "S", "Seconds of animation from frame to frame, headless"},
     {"--lamps", &Words::lamps, "FACTOR", "Times the strength of the scenes' own lights; 0 switches them off"},
     {"--exposure", &Words::exposure, "EV", "Stops above radiance 1 = white, or auto"},
 };
@@ -62,7 +66,13 @@ void declare(CLI::App& app, Words& words) {
   app.add_option(
          "--light", words.lights,
          "Several add up: a probe file (.hdr, .exr), constant:R,G,B or\nsun:AZ,EL,ANGLE,R[,G,B] (degrees, "
-         "angular radius, radiance)")
+         "angular radius, radiance);\nin the scene: sphere:X,Y,Z,RADIUS,R[,G,B] or "
+         "disc:X,Y,Z,NX,NY,NZ,RADIUS,R[,G,B]")
+      ->type_name("LIGHT")
+      ->take_all()
+      ->expected(1);
+  app.add_option("--fade-to", words.fade_lights,
+                 "Lights from infinity to fade to, see --fade; several add up")
       ->type_name("LIGHT")
       ->take_all()
       ->expected(1);
@@ -70,9 +80,21 @@ void declare(CLI::App& app, Words& words) {
     CLI::Option* option = app.add_option(row.name, words.*row.field, row.help)->type_name(row.type);
     if (!(words.*row.field).empty()) option->capture_default_str();
   }
+  const auto number = [&](const char* name, std::uint32_t& value, std::uint32_t low, std::uint32_t high,
+                          const char* help) {
+    app.add_option(name, value, help)
+        ->type_name("N")
+        ->capture_default_str()
+        ->check(CLI::Range(low, high).description(""));
+  };
+  number("--capture-size", words.capture_size, 4, 64,
+         "Texels along an edge of the cube maps in which light between\nbodies is sampled");
+  number("--capture-subsamples", words.capture_subsamples, 1, 16, "Subsamples along an edge of such a texel");
+  number("--capture-order", words.capture_order, 0, 8,
+         "Bands of the light that is sampled; 0: the transfer's");
   app.add_option("--frames", words.frames,
                  "Frames to render headless, the last one is written;\nthe light turns through "
-                 "--rotate-light over them")
+                 "--rotate-light and time goes on over them")
       ->type_name("N")
       ->capture_default_str()
       ->check(CLI::Range(1u, 1'000'000u).description(""));
@@ -101,17 +123,40 @@ Result<void> understandLights(const Words& words, Options& options) {
     if (!parsed) return failAgain(parsed.error());
     layout = *parsed;
   }
+  const auto understandAll = [&](const std::vector<std::string>& list,
+                                 std::vector<spec::Light>& lights) -> Result<void> {
+    for (const std::string& word : list) {
+      Result<spec::Light> light = spec::parseLight(word);
+      if (!light) return failAgain(light.error());
+      if (auto* probe = std::get_if<spec::ProbeLight>(&*light)) probe->layout = layout;
+      lights.push_back(std::move(*light));
+    }
+    return {};
+  };
   options.default_light = words.lights.empty();
   options.light_words = words.lights;
   if (options.default_light)
     options.light_words.assign(spec::kDefaultLights.begin(), spec::kDefaultLights.end());
-  for (const std::string& word : options.light_words) {
-    Result<spec::Light> light = spec::parseLight(word);
-    if (!light) return failAgain(light.error());
-    if (auto* probe = std::get_if<spec::ProbeLight>(&*light)) probe->layout = layout;
-    options.lights.push_back(std::move(*light));
-  }
+  if (Result<void> done = understandAll(options.light_words, options.lights); !done) return done;
+  options.fade_words = words.fade_lights;
+  if (Result<void> done = understandAll(words.fade_lights, options.fade_lights); !done) return done;
+  if (!spec::localLights(options.fade_lights).empty())
+    return fail("--fade-to", "takes lights from infinity only", "give spheres and discs with --light");
+  const std::optional<float> fade = spec::parseNumber(words.fade);
+  if (!fade || *fade < 0.0f || *fade > 1.0f)
+    return fail("--fade", fmt::format("\"{}\" is not a share", words.fade), "give 0..1");
+  if (*fade > 0.0f && options.fade_lights.empty())
+    return fail("--fade", "there is nothing to fade to", "give lights with --fade-to");
+  options.fade = *fade;
   return {};
+}
+
+Result<float> understandSeconds(const char* option, const std::string& word, float low, float high) {
+  const std::optional<float> seconds = spec::parseNumber(word);
+  if (!seconds || !(*seconds >= low && *seconds <= high))
+    return fail(option, fmt::format("\"{}\" is not a number of seconds", word),
+                fmt::format("give {}..{}", low, high));
+  return *seconds;
 }
 
 Result<void> understandPicture(const Words& words, Options& options) {
@@ -159,6 +204,15 @@ Result<Options> understand(const Words& words) {
   if (!lamps || *lamps < 0.0f || *lamps > 1e6f)
     return fail("--lamps", fmt::format("\"{}\" is not a factor", words.lamps), "give 0..1000000");
   options.lamps = *lamps;
+  const Result<float> time = understandSeconds("--time", words.time, -1e6f, 1e6f);
+  if (!time) return failAgain(time.error());
+  const Result<float> step = understandSeconds("--step", words.step, 0.0f, 1e3f);
+  if (!step) return failAgain(step.error());
+  options.time_s = *time;
+  options.step_s = *step;
+  options.capture = {.size = words.capture_size,
+                     .subsamples = words.capture_subsamples,
+                     .order = static_cast<int>(words.capture_order)};
   options.max_memory_bytes = words.max_memory;
   options.transfer = *transfer;
   options.transfer_word = words.transfer;
@@ -180,9 +234,10 @@ std::variant<Options, int> parseOptions(int argc, const char* const* argv) {
   CLI::App app("Shows baked scenes under light that changes: in a window, or as a picture with --headless.",
                "lambent-demo");
   app.footer(
-      "In the window: drag turns the camera, the wheel moves it, R resets it; space stops the light, A and D "
-      "turn "
-      "it; Esc quits.\nExit codes: 0 done, 1 failed, 2 wrong usage.");
+      "In the window: drag turns the camera, the wheel moves it, R resets it; the right button drags the "
+      "first "
+      "light that stands in the scene; space stops lights and animations, A and D turn the lights; Esc "
+      "quits.\nExit codes: 0 done, 1 failed, 2 wrong usage.");
   Words words;
   declare(app, words);
   try {

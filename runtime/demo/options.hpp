@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "runtime/effects/diffuse/diffuse.hpp"
+#include "runtime/lighting/capture.hpp"
 #include "runtime/sh/window.hpp"
 #include "runtime/spec/camera.hpp"
 #include "runtime/spec/light.hpp"
@@ -21,8 +22,11 @@ struct Options {
   std::vector<std::filesystem::path> bundles;
   std::vector<spec::Light> lights;
   std::vector<std::string> light_words;  // as given, for reports
-  bool default_light = false;            // none was given
-  std::optional<spec::Camera> camera;    // none: the file's first camera, else an orbit
+  std::vector<spec::Light> fade_lights;  // a second set of lights from infinity
+  std::vector<std::string> fade_words;
+  float fade = 0.0f;                   // towards it, 0..1
+  bool default_light = false;          // none was given
+  std::optional<spec::Camera> camera;  // none: the file's first camera, else an orbit
   spec::Size size;
   std::optional<std::filesystem::path> headless;  // .png or .exr
   bool linear = false;                            // headless is .exr
@@ -32,6 +36,9 @@ struct Options {
   std::string window_word;
   std::uint32_t frames = 1;
   float rotate_light_deg = 0.0f;
+  float time_s = 0.0f;  // of the scenes' animations in the last frame
+  float step_s = 0.0f;  // from frame to frame
+  lighting::CaptureOptions capture{.order = 0};
   std::optional<float> exposure_ev;                    // none: automatic
   float lamps = 1.0f;                                  // factor on the strength of the scenes' own lights
   std::uint64_t max_memory_bytes = ~std::uint64_t{0};  // of GPU memory for the bundles

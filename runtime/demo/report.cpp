@@ -1,5 +1,7 @@
 #include "runtime/demo/report.hpp"
 
+#include <algorithm>
+
 #include <nlohmann/json.hpp>
 
 namespace lambent::demo {
@@ -8,11 +10,38 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json frameJson(const std::vector<gpu::PassTime>& passes) {
+Json countsJson(const frame::StepCounts& counts) {
+  return {{"groups", counts.groups},
+          {"bodies", counts.bodies},
+          {"local_lights", counts.local_lights},
+          {"near_lights", counts.near_lights},
+          {"light_samples", counts.incident.samples},
+          {"light_samples_captured", counts.incident.captured},
+          {"light_samples_waiting", counts.incident.waiting},
+          {"light_samples_risen", counts.incident.risen},
+          {"light_samples_written", counts.light_samples_written},
+          {"cells_shaded", counts.cells_shaded},
+          {"draws_shaded", counts.draws_shaded},
+          {"shadow_cubes_drawn", counts.shadow_cubes_drawn}};
+}
+
+// Of all frames but the first, which also waits for what is made once.
+Json frameTimesJson(std::vector<double> frame_ms) {
+  if (frame_ms.size() > 1) frame_ms.erase(frame_ms.begin());
+  if (frame_ms.empty()) return Json();
+  std::sort(frame_ms.begin(), frame_ms.end());
+  const double median = frame_ms[frame_ms.size() / 2];
+  return {{"median", median},
+          {"p95", frame_ms[frame_ms.size() * 95 / 100]},
+          {"max", frame_ms.back()},
+          {"frames_per_second", median > 0.0 ? 1000.0 / median : 0.0}};
+}
+
+Json frameJson(const FrameReport& frame) {
   Json list = Json::array();
   gpu::Counters total;
   double cpu_ms = 0.0, gpu_ms = 0.0;
-  for (const gpu::PassTime& pass : passes) {
+  for (const gpu::PassTime& pass : frame.passes) {
     list.push_back({{"name", pass.name},
                     {"cpu_ms", pass.cpu_ms},
                     {"gpu_ms", pass.gpu_ms < 0.0 ? Json() : Json(pass.gpu_ms)},
@@ -26,9 +55,13 @@ Json frameJson(const std::vector<gpu::PassTime>& passes) {
     cpu_ms += pass.cpu_ms;
     gpu_ms += std::max(pass.gpu_ms, 0.0);
   }
-  return {{"passes", list},       {"cpu_ms", cpu_ms},
-          {"gpu_ms", gpu_ms},     {"dispatches", total.dispatches},
-          {"draws", total.draws}, {"draw_calls", total.draw_calls}};
+  return {{"passes", list},
+          {"counts", countsJson(frame.counts)},
+          {"cpu_ms", cpu_ms},
+          {"gpu_ms", gpu_ms},
+          {"dispatches", total.dispatches},
+          {"draws", total.draws},
+          {"draw_calls", total.draw_calls}};
 }
 
 }  // namespace
@@ -43,6 +76,13 @@ std::string reportJson(const Options& options, const gpu::DeviceInfo& device, co
                      {"size", {options.size.width, options.size.height}},
                      {"lights", options.light_words},
                      {"rotate_light_deg", options.rotate_light_deg},
+                     {"fade_to", options.fade_words},
+                     {"fade", options.fade},
+                     {"time_s", options.time_s},
+                     {"capture",
+                      {{"size", options.capture.size},
+                       {"subsamples", options.capture.subsamples},
+                       {"order", options.capture.order}}},
                      {"transfer", options.transfer_word},
                      {"window", options.window_word},
                      {"lamps", options.lamps},
@@ -58,6 +98,8 @@ std::string reportJson(const Options& options, const gpu::DeviceInfo& device, co
                      {"planes_in_bundles", report.parts.planes_in_bundles},
                      {"negative_pixels", report.negative_pixels},
                      {"frames", options.frames},
+                     {"frame_ms", frameTimesJson(report.frame_ms)},
+                     {"rest_steps", report.rest_steps},
                      {"first_frame", frameJson(report.first_frame)},
                      {"last_frame", frameJson(report.last_frame)}};
   return json.dump(2, ' ', false, Json::error_handler_t::replace);

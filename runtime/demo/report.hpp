@@ -1,20 +1,29 @@
 // What --json prints: the words of the run, passes of the first and the last frame (times in milliseconds,
-// what each issued), what was loaded, bytes resident, negative pixels, the device.
+// what each issued, what was captured and shaded), how long frames took, what was loaded, bytes resident,
+// negative pixels, the device.
 #pragma once
 
 #include <string>
 #include <vector>
 
 #include "runtime/demo/options.hpp"
+#include "runtime/frame/frame.hpp"
 #include "runtime/frame/world.hpp"
 #include "runtime/gpu/context.hpp"
 #include "runtime/gpu/pass_timers.hpp"
 
 namespace lambent::demo {
 
+struct FrameReport {
+  std::vector<gpu::PassTime> passes;
+  frame::StepCounts counts;
+};
+
 struct Report {
-  std::vector<gpu::PassTime> first_frame, last_frame;
-  double load_ms = 0.0;  // from opening the bundles until everything was resident
+  FrameReport first_frame, last_frame;
+  std::vector<double> frame_ms;  // of each frame until the GPU was done with it
+  std::uint32_t rest_steps = 0;  // after the last frame, until no light changed any more
+  double load_ms = 0.0;          // from opening the bundles until everything was resident
   std::uint64_t bytes_resident = 0;
   frame::LoadedParts parts;
   std::uint32_t negative_pixels = 0;

@@ -6,6 +6,7 @@
 
 #include "runtime/demo/camera.hpp"
 #include "runtime/demo/run.hpp"
+#include "runtime/demo/stage.hpp"
 #include "runtime/frame/frame.hpp"
 #include "runtime/gpu/window.hpp"
 
@@ -43,17 +44,14 @@ class TitleClock {
 }  // namespace
 
 Result<void> runWindowed(const Options& options) {
-  Result<lighting::Environment> environment = lighting::Environment::create(options.lights);
+  Result<lighting::Environment> environment = loadEnvironment(options);
   if (!environment) return failAgain(environment.error());
-  for (const std::string& notice : environment->notices()) fmt::print(stderr, "lambent-demo: {}\n", notice);
-
   const std::string title = "Lambent - " + options.bundles.front().filename().string();
   Result<gpu::Window> window = gpu::Window::create(title, options.size.width, options.size.height, {});
   if (!window) return failAgain(window.error());
-  frame::World world({.max_resident_bytes = options.max_memory_bytes});
-  for (const std::filesystem::path& path : options.bundles)
-    if (Result<void> opened = world.open(path); !opened) return opened;
-  world.scaleLamps(options.lamps);
+  Result<Stage> stage = Stage::create(options, std::move(*environment));
+  if (!stage) return failAgain(stage.error());
+  frame::World& world = stage->world();
   Result<ViewController> controller = ViewController::create(world, options.camera, options.size.aspect());
   if (!controller) return failAgain(controller.error());
   spec::Size size = options.size;
@@ -63,12 +61,14 @@ Result<void> runWindowed(const Options& options) {
                                                      .to_window = true,
                                                      .transfer = options.transfer,
                                                      .window = options.window,
-                                                     .exposure_ev = options.exposure_ev},
-                                                    *environment);
+                                                     .exposure_ev = options.exposure_ev,
+                                                     .capture = options.capture},
+                                                    stage->environment());
   if (!frame) return failAgain(frame.error());
 
   float turn_deg = options.rotate_light_deg;
   bool turning = true;
+  world.setAnimationTime(options.time_s);
   TitleClock title_clock;
   Clock::time_point last = Clock::now();
   while (true) {
@@ -82,14 +82,17 @@ Result<void> runWindowed(const Options& options) {
     else if (turning)
       turn_deg += kTurnDegreesPerSecond * seconds;
     turn_deg = std::remainder(turn_deg, 360.0f);
-    environment->setTurn(turn_deg);
+    stage->turnLight(turn_deg);
+    if (turning) world.playAnimations(seconds);
     controller->move(world, input);
 
     window->framebufferSize(size.width, size.height);
     frame->resize(size);
+    world.updateTransforms();
     const Result<spec::View> view = controller->view(world, size.aspect());
     if (!view) return failAgain(view.error());
-    if (Result<void> rendered = frame->render(world, *environment, *view); !rendered) return rendered;
+    if (input.light_x != 0.0f || input.light_y != 0.0f) stage->dragLight(*view, input.light_x, input.light_y);
+    if (Result<void> rendered = frame->render(world, stage->environment(), *view); !rendered) return rendered;
     window->swap();
     title_clock.tick(*window, title);
   }

@@ -22,6 +22,12 @@ std::vector<Texel> flipped(const std::vector<Texel>& texels, std::size_t row_len
   return result;
 }
 
+float meanRadiance(const lighting::Environment& environment) {
+  constexpr float kMeanOfBandZero = 0.28209479f;  // y_00
+  const glm::vec3 mean = kMeanOfBandZero * environment.light().c[0];
+  return std::max({mean.r, mean.g, mean.b, 0.0f});
+}
+
 }  // namespace
 
 Frame::Frame(const FrameOptions& options, lighting::Sky sky, Surfaces surfaces, ToneMapper tone_mapper)
@@ -65,19 +71,41 @@ void Frame::resize(const spec::Size& size) {
 
 Result<void> Frame::render(World& world, const lighting::Environment& environment, const spec::View& view) {
   timers_.beginFrame();
+  if (Result<void> done = step(world, environment); !done) return done;
+  // cubes of the lights that stand among surfaces
+  if (Result<void> done = castShadows(world); !done) return done;
+  // surfaces, sky, blended surfaces: linear radiance
+  if (Result<void> done = raster(world, environment, view); !done) return done;
+  // exposure, tone curve, sRGB; negative pixels are counted and clamped here
+  toneMap();
+  return {};
+}
+
+Result<std::uint32_t> Frame::rest(World& world, const lighting::Environment& environment) {
+  for (std::uint32_t steps = 0; steps < kMaxRestSteps; ++steps) {
+    if (atRest(world)) return steps;
+    timers_.beginFrame();
+    if (Result<void> done = step(world, environment); !done) return failAgain(done.error());
+  }
+  return kMaxRestSteps;
+}
+
+bool Frame::atRest(const World& world) const {
+  return world.loaded() && (!incident_ || incident_->atRest());
+}
+
+Result<void> Frame::step(World& world, const lighting::Environment& environment) {
+  counts_ = {};
   // what has arrived goes to the GPU, within the budget
   if (Result<void> done = upload(world); !done) return done;
   // where nodes and rigid groups stand
   transforms(world);
-  // the light, windowed and turned into each group's frame
-  light(world, environment);
+  // what arrives at each light sample, windowed and turned into its group's frame
+  if (Result<void> done = light(world, environment); !done) return done;
   // E/pi at every vertex whose light or transfer is new
   if (Result<void> done = shade(world); !done) return done;
-  // surfaces, sky, blended surfaces: linear radiance
-  raster(world, environment, view);
-  // exposure, tone curve, sRGB; negative pixels are counted and clamped here
-  toneMap();
-  return {};
+  // what bodies send to each other: arrives with the next step
+  return capture(world, environment);
 }
 
 Result<void> Frame::upload(World& world) {
@@ -90,19 +118,102 @@ void Frame::transforms(World& world) {
   world.updateTransforms();
 }
 
-void Frame::light(const World& world, const lighting::Environment& environment) {
+Result<void> Frame::prepareSampling(World& world, const lighting::Environment& environment,
+                                    gpu::Counters& counters) {
+  if (!incident_ && !lit_scene_.needsSampling()) return {};
+  lighting::CaptureOptions options = options_.capture;
+  if (options.order == 0) {
+    for (const streaming::ResidentGroup& group : world.residency().groups())
+      options.order = std::max(options.order, static_cast<int>(group.order));
+  }
+  if (!incident_ || options.order != capture_order_) {
+    auto made = lighting::IncidentLight::create(options, environment);
+    if (!made) return failAgain(made.error());
+    incident_ = std::move(*made);
+    capture_order_ = options.order;
+    proxies_seen_ = 0;
+  }
+  if (proxies_seen_ != world.residency().proxiesVersion()) {
+    proxies_seen_ = world.residency().proxiesVersion();
+    incident_->captures().setProxies(proxiesOf(world.residency()), counters);
+  }
+  return {};
+}
+
+Result<void> Frame::light(World& world, const lighting::Environment& environment) {
   gpu::PassTimers::Scope pass(timers_, "light");
-  group_lights_.update(environment, options_.window, world.groupPlaces(), pass.counters());
+  lit_scene_ = gatherLitScene(world, meanRadiance(environment));
+  if (Result<void> done = prepareSampling(world, environment, pass.counters()); !done) return done;
+  if (incident_) {
+    incident_->update(environment, lit_scene_.groups, lit_scene_.lights, options_.wait_for_captures);
+    counts_.incident = incident_->counts();
+  }
+  std::vector<lighting::GroupPlace> places;
+  for (std::size_t g = 0; g < world.residency().groups().size(); ++g) {
+    const streaming::ResidentGroup& group = world.residency().groups()[g];
+    lighting::GroupPlace place{
+        .world_from_group = world.rotationOf(g), .order = group.order, .lamps = world.lampsOf(g)};
+    if (incident_)
+      place.incident = incident_->incidentOf(g);
+    else
+      place.incident.resize(group.light_samples.size());
+    places.push_back(std::move(place));
+  }
+  group_lights_.update(environment, options_.window, places, pass.counters());
+  counts_.groups = static_cast<std::uint32_t>(places.size());
+  counts_.bodies = static_cast<std::uint32_t>(lit_scene_.bodies.size());
+  counts_.local_lights = static_cast<std::uint32_t>(lit_scene_.lights.size());
+  counts_.near_lights = static_cast<std::uint32_t>(lit_scene_.near_lights.size());
+  counts_.light_samples_written = group_lights_.renewedSamples();
+  return {};
+}
+
+Result<void> Frame::capture(World& world, const lighting::Environment& environment) {
+  gpu::PassTimers::Scope pass(timers_, "capture");
+  if (!incident_) return {};
+  if (Result<void> done = proxies_.shade(world.residency(), group_lights_, diffuse_, pass.counters()); !done)
+    return done;
+  proxy_radiance_.resize(lit_scene_.groups.size());
+  for (std::size_t g = 0; g < lit_scene_.groups.size(); ++g) {
+    ProxyRadiance& radiance = proxy_radiance_[g];
+    if (radiance.version != proxies_.versionOf(g)) {
+      radiance.version = proxies_.versionOf(g);
+      // Shaded for another reason than light or a turn: all of it may be different.
+      const bool by_light = group_lights_.versionOf(g) != radiance.light;
+      radiance.light = group_lights_.versionOf(g);
+      radiance.drift += by_light ? double{group_lights_.changeOf(g)} : 1.0;
+    }
+    if (const std::uint32_t body = lit_scene_.groups[g].body; body != lighting::CapturePoint::kNoBody)
+      lit_scene_.bodies[body].radiance_drift = radiance.drift;
+  }
+  Result<void> done = incident_->capture(environment, lit_scene_.groups, lit_scene_.bodies, lit_scene_.lights,
+                                         proxies_.radiance(), pass.counters());
+  counts_.incident.captured = incident_->counts().captured;
+  counts_.incident.waiting = incident_->counts().waiting;
+  return done;
 }
 
 Result<void> Frame::shade(World& world) {
   gpu::PassTimers::Scope pass(timers_, "shade");
-  return diffuse_.shade(world.residency(), group_lights_, options_.transfer, pass.counters());
+  Result<void> done = diffuse_.shade(world.residency(), group_lights_, options_.transfer, pass.counters());
+  counts_.cells_shaded = diffuse_.shadedLast().cells;
+  counts_.draws_shaded = diffuse_.shadedLast().draws;
+  return done;
 }
 
-void Frame::raster(World& world, const lighting::Environment& environment, const spec::View& view) {
+Result<void> Frame::castShadows(World& world) {
+  gpu::PassTimers::Scope pass(timers_, "shadows");
+  Result<void> done =
+      near_lights_.update(world, lit_scene_.near_lights, lit_scene_.near_masks, pass.counters());
+  counts_.shadow_cubes_drawn = near_lights_.cubesDrawn();
+  return done;
+}
+
+Result<void> Frame::raster(World& world, const lighting::Environment& environment, const spec::View& view) {
   gpu::PassTimers::Scope pass(timers_, "raster");
-  surfaces_.prepare(world, diffuse_, view, pass.counters());
+  if (Result<void> done = surfaces_.prepare(world, diffuse_, view, pass.counters(), &near_lights_); !done)
+    return done;
+  near_lights_.bind(view, options_.size);
   glBindFramebuffer(GL_FRAMEBUFFER, hdr_target_.id());
   glViewport(0, 0, static_cast<GLsizei>(options_.size.width), static_cast<GLsizei>(options_.size.height));
   glEnable(GL_DEPTH_TEST);
@@ -115,6 +226,7 @@ void Frame::raster(World& world, const lighting::Environment& environment, const
   sky_.draw(environment, view.view_from_world, view.clip_from_view, options_.size.height, pass.counters());
   glDepthFunc(GL_LESS);
   surfaces_.drawBlended(world, pass.counters());
+  return {};
 }
 
 void Frame::toneMap() {

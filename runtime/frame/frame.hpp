@@ -1,7 +1,8 @@
-// One frame, from what has arrived to the picture: stream, transforms, light, shade, raster, tone map. Every
-// pass runs only if something that it reads is newer than its last output; each is timed and counts what it
-// issued. The picture goes to the frame's own target, which can be read back, or to the window's framebuffer.
-// Errors: shaders that do not compile, a bundle that turns out damaged while it loads.
+// One frame, from what has arrived to the picture: stream, transforms, light, shade, capture, raster, tone
+// map. Every pass runs only if something that it reads is newer than its last output; each is timed and
+// counts what it issued. Light that bodies throw on each other travels one step a frame. The picture goes to
+// the frame's own target, which can be read back, or to the window's framebuffer. Errors: shaders that do not
+// compile, a bundle that turns out damaged while it loads.
 #pragma once
 
 #include <cstdint>
@@ -10,12 +11,16 @@
 
 #include "runtime/base/result.hpp"
 #include "runtime/effects/diffuse/diffuse.hpp"
+#include "runtime/effects/diffuse/proxies.hpp"
+#include "runtime/frame/lit_scene.hpp"
+#include "runtime/frame/near_lights.hpp"
 #include "runtime/frame/surfaces.hpp"
 #include "runtime/frame/tone_mapper.hpp"
 #include "runtime/frame/world.hpp"
 #include "runtime/gpu/pass_timers.hpp"
 #include "runtime/lighting/environment.hpp"
 #include "runtime/lighting/group_lights.hpp"
+#include "runtime/lighting/incident_light.hpp"
 #include "runtime/lighting/sky.hpp"
 #include "runtime/sh/window.hpp"
 #include "runtime/spec/camera.hpp"
@@ -37,13 +42,31 @@ struct FrameOptions {
   sh::Window window = sh::Window::Auto;
   std::optional<float> exposure_ev;                             // none: automatic
   std::uint64_t upload_budget_bytes = std::uint64_t{16} << 20;  // per frame
+  lighting::CaptureOptions capture{.order = 0};                 // order 0: that of the groups' transfer
+  // Captures arrive in the very next frame, however long that takes: the same pictures on every run.
+  bool wait_for_captures = false;
 };
+
+// What one step did; a still scene does nothing.
+struct StepCounts {
+  std::uint32_t groups = 0, bodies = 0, local_lights = 0, near_lights = 0;
+  lighting::IncidentCounts incident;
+  std::uint32_t light_samples_written = 0;  // coefficients computed for the shaders
+  std::uint32_t cells_shaded = 0, draws_shaded = 0;
+  std::uint32_t shadow_cubes_drawn = 0;
+};
+
+// After so many steps a still scene is taken to be at rest: light has gone to and fro as often.
+inline constexpr std::uint32_t kMaxRestSteps = 16;
 
 class Frame {
  public:
   static Result<Frame> create(const FrameOptions& options, const lighting::Environment& environment);
 
+  // A step and a picture.
   Result<void> render(World& world, const lighting::Environment& environment, const spec::View& view);
+  // Steps until no light changes any more, at most kMaxRestSteps; returns how many it took. No picture.
+  Result<std::uint32_t> rest(World& world, const lighting::Environment& environment);
   void resize(const spec::Size& size);
 
   // Waits for the GPU. Row 0 is the top.
@@ -53,6 +76,7 @@ class Frame {
   std::uint32_t negativePixels() const { return tone_mapper_.negativePixels(); }
   float exposureEv() const { return tone_mapper_.exposureEv(); }
   gpu::PassTimers& timers() { return timers_; }
+  const StepCounts& counts() const { return counts_; }
   const FrameOptions& options() const { return options_; }
 
  private:
@@ -60,9 +84,15 @@ class Frame {
 
   Result<void> upload(World& world);
   void transforms(World& world);
-  void light(const World& world, const lighting::Environment& environment);
+  Result<void> step(World& world, const lighting::Environment& environment);
+  Result<void> light(World& world, const lighting::Environment& environment);
   Result<void> shade(World& world);
-  void raster(World& world, const lighting::Environment& environment, const spec::View& view);
+  Result<void> prepareSampling(World& world, const lighting::Environment& environment,
+                               gpu::Counters& counters);
+  Result<void> capture(World& world, const lighting::Environment& environment);
+  bool atRest(const World& world) const;
+  Result<void> castShadows(World& world);
+  Result<void> raster(World& world, const lighting::Environment& environment, const spec::View& view);
   void toneMap();
 
   FrameOptions options_;
@@ -70,7 +100,20 @@ class Frame {
   Surfaces surfaces_;
   ToneMapper tone_mapper_;
   effects::diffuse::Diffuse diffuse_;
+  effects::diffuse::Proxies proxies_;
+  LitScene lit_scene_;
+  NearLights near_lights_;
+  std::optional<lighting::IncidentLight> incident_;  // once there is something to sample
+  // How the light that groups send out has changed, summed up.
+  struct ProxyRadiance {
+    std::uint64_t version = 0, light = 0;
+    double drift = 0.0;
+  };
+  std::vector<ProxyRadiance> proxy_radiance_;
+  std::uint64_t proxies_seen_ = 0;
+  int capture_order_ = 0;
   lighting::GroupLights group_lights_;
+  StepCounts counts_;
   gpu::PassTimers timers_;
   gpu::Texture hdr_, depth_, picture_;
   gpu::Framebuffer hdr_target_, picture_target_;

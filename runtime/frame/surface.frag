@@ -1,5 +1,5 @@
 // E/pi times albedo (factor x texture x vertex colour), and what the surface gives off itself. Linear, not clamped;
-// alpha is coverage.
+// alpha is coverage. With LAMBENT_NEAR_LIGHTS, lights among the surfaces add theirs per pixel.
 #include "surface_shared.h"
 
 layout(std430, binding = kBindDraws) readonly buffer Draws { SurfaceDraw draws[]; };
@@ -27,7 +27,8 @@ layout(location = 4) in vec4 normal_group;
 layout(location = 5) in vec4 tangent_group;
 layout(location = 6) in vec3 light[kLightCoefficients];
 
-vec3 receivedLight() {
+// Of the side that is seen, in the group's frame.
+vec3 pixelNormal() {
   vec2 at = vec2(position_group.w, normal_group.w);
   vec3 normal = unit(normal_group.xyz);
   TangentFrame from_picture =
@@ -37,13 +38,35 @@ vec3 receivedLight() {
     TangentFrame frame = stored ? frameFromTangent(normal, tangent_group) : from_picture;
     normal = perturbedNormal(frame, look(normal_texture, at).xyz, draws[draw_of].normal_scale);
   }
-  return diffuseLight(light, draws[draw_of].facing * normal);
+  return draws[draw_of].facing * normal;
 }
 #else
 layout(location = 3) in vec3 radiance;
-
-vec3 receivedLight() { return radiance; }
+#ifdef LAMBENT_NEAR_LIGHTS
+layout(location = 4) in vec3 normal_group;  // of the side that is seen
 #endif
+#endif
+
+#ifdef LAMBENT_NEAR_LIGHTS
+#include "near_surface.glsl"
+#endif
+
+vec3 receivedLight() {
+#ifdef LAMBENT_NORMAL_MAPPED
+  vec3 normal = pixelNormal();
+  vec3 received = diffuseLight(light, normal);
+#else
+  vec3 received = radiance;
+#endif
+#ifdef LAMBENT_NEAR_LIGHTS
+#ifdef LAMBENT_NORMAL_MAPPED
+  received += nearLight(draw_of, draws[draw_of].facing * normal_group.xyz, normal);
+#else
+  received += nearLight(draw_of, normal_group, normal_group);
+#endif
+#endif
+  return received;
+}
 
 void main() {
   vec4 albedo = draws[draw_of].base_color * vertex_color;

@@ -10,8 +10,10 @@ layout(location = 0) in uint draw_index;  // one per instance: the draw's base i
 layout(location = 0) flat out uint draw_of;
 layout(location = 1) out vec4 looks_at;  // in the base colour picture: xy; in the emissive one: zw
 layout(location = 2) out vec4 vertex_color;
-#ifdef LAMBENT_NORMAL_MAPPED
+#if defined(LAMBENT_NORMAL_MAPPED) || defined(LAMBENT_NEAR_LIGHTS)
 #include "surface_normal.glsl"
+#endif
+#ifdef LAMBENT_NORMAL_MAPPED
 // In the group's frame. With them all fifteen locations that OpenGL 4.5 promises are in use.
 layout(location = 3) out vec4 position_group;  // w, and that of the normal: where in the normal picture
 layout(location = 4) out vec4 normal_group;
@@ -19,6 +21,9 @@ layout(location = 5) out vec4 tangent_group;  // w: +1 or -1 as glTF has it, of 
 layout(location = 6) out vec3 light[kLightCoefficients];
 #else
 layout(location = 3) out vec3 radiance;
+#ifdef LAMBENT_NEAR_LIGHTS
+layout(location = 4) out vec3 normal_group;  // of the side that is seen
+#endif
 #endif
 
 vec2 geometry2(uint at) { return vec2(uintBitsToFloat(geometry[at]), uintBitsToFloat(geometry[at + 1u])); }
@@ -60,6 +65,10 @@ void main() {
   for (uint j = 0u; j < kLightCoefficients; ++j) light[j] = radianceAt(draw.radiance_word + words * vertex + 3u * j);
 #else
   radiance = radianceAt(draw.radiance_word + 3u * vertex);
+#ifdef LAMBENT_NEAR_LIGHTS
+  normal_group =
+      draw.facing * unit(mat3(draw.group_from_mesh_normal) * geometry3(draw.normals_word + 3u * vertex));
+#endif
 #endif
   draw_of = draw_index;
   gl_Position = clip_from_view * (view_from_world * (draw.world_from_mesh * vec4(position, 1.0)));

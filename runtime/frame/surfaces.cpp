@@ -1,7 +1,6 @@
 #include "runtime/frame/surfaces.hpp"
 
 #include <algorithm>
-#include <numeric>
 
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
@@ -13,7 +12,6 @@ namespace lambent::frame {
 namespace {
 
 constexpr gpu::FindText kShaders[] = {&embedded::lambent_frame::find};
-constexpr GLuint kDrawIndexAttribute = 0;
 
 struct ViewBlock {
   glm::mat4 view_from_world, clip_from_view;
@@ -21,26 +19,35 @@ struct ViewBlock {
 
 }  // namespace
 
-Surfaces::Surfaces() : draws_("surface draws"), commands_("surface commands"), view_("view") {}
+Surfaces::Surfaces()
+    : indices_("surface"), draws_("surface draws"), commands_("surface commands"), view_("view") {}
 
 Result<Surfaces> Surfaces::create(bool finest_texels) {
   Surfaces surfaces;
+  surfaces.finest_texels_ = finest_texels;
+  if (const Result<void> done = surfaces.compile(/*near_lit=*/false); !done) return failAgain(done.error());
+  return surfaces;
+}
+
+Result<void> Surfaces::compile(bool near_lit) {
   for (const bool normal_mapped : {false, true}) {
+    gpu::Program& place = programs_[programOf(normal_mapped, near_lit)];
+    if (place) continue;
     std::vector<gpu::Define> defines;
-    if (finest_texels) defines.push_back({"LAMBENT_FINEST_TEXELS", "1"});
+    if (finest_texels_) defines.push_back({"LAMBENT_FINEST_TEXELS", "1"});
     if (normal_mapped) defines.push_back({"LAMBENT_NORMAL_MAPPED", "1"});
+    if (near_lit) defines.push_back({"LAMBENT_NEAR_LIGHTS", "1"});
     Result<gpu::Program> program = gpu::Program::create(
         "surface", {{GL_VERTEX_SHADER, "surface.vert"}, {GL_FRAGMENT_SHADER, "surface.frag"}}, kShaders,
         defines);
     if (!program) return failAgain(program.error());
-    surfaces.programs_[normal_mapped ? 1 : 0] = std::move(*program);
+    place = std::move(*program);
   }
-  surfaces.vertices_ = gpu::VertexArray("surface");
-  return surfaces;
+  return {};
 }
 
 void Surfaces::collect(World& world, const effects::diffuse::Diffuse& diffuse, glm::vec3 eye_ws,
-                       std::vector<Item>& opaque, std::vector<Item>& blended) {
+                       const NearLights* near_lights, std::vector<Item>& opaque, std::vector<Item>& blended) {
   const streaming::Residency& residency = world.residency();
   for (std::uint32_t i = 0; i < residency.draws().size(); ++i) {
     const streaming::ResidentDraw& draw = residency.draws()[i];
@@ -51,6 +58,7 @@ void Surfaces::collect(World& world, const effects::diffuse::Diffuse& diffuse, g
                         .radiance_page = draw.radiance.page,
                         .textures = texturesOf(world, i, records_[i]),
                         .normal_mapped = normalMapped(world, i),
+                        .near_lit = near_lights != nullptr && near_lights->lightsOf(i) != 0,
                         .clockwise = (glm::determinant(glm::mat3(world_from_mesh)) < 0.0f) != draw.back},
               .draw = i,
               .distance = glm::distance(eye_ws, glm::vec3(world_from_mesh * glm::vec4(mesh.center, 1.0f)))};
@@ -70,17 +78,21 @@ void Surfaces::appendRuns(const World& world, const std::vector<Item>& items, st
   }
 }
 
-void Surfaces::prepare(World& world, const effects::diffuse::Diffuse& diffuse, const spec::View& view,
-                       gpu::Counters& counters) {
+Result<void> Surfaces::prepare(World& world, const effects::diffuse::Diffuse& diffuse, const spec::View& view,
+                               gpu::Counters& counters, const NearLights* near_lights) {
+  if (near_lights != nullptr && near_lights->any())
+    if (Result<void> done = compile(/*near_lit=*/true); !done) return done;
   const ViewBlock block{view.view_from_world, view.clip_from_view};
   view_.assign(std::span<const ViewBlock>(&block, 1));
   const streaming::Residency& residency = world.residency();
   std::size_t shaded = 0;
   for (std::size_t i = 0; i < residency.draws().size(); ++i) shaded += diffuse.shaded(i) ? 1 : 0;
-  const bool scene_same = residency.version() == residency_seen_ &&
+  const std::uint64_t near_version = near_lights != nullptr ? near_lights->version() : 0;
+  const bool scene_same = residency.version() == residency_seen_ && near_version == near_seen_ &&
                           world.transformsVersion() == transforms_seen_ &&
                           world.lampsVersion() == lamps_seen_ && shaded == shaded_seen_;
-  if (scene_same && (blended_.empty() || view.eye_ws == eye_seen_ws_)) return;
+  if (scene_same && (blended_.empty() || view.eye_ws == eye_seen_ws_)) return {};
+  near_seen_ = near_version;
   residency_seen_ = residency.version();
   transforms_seen_ = world.transformsVersion();
   lamps_seen_ = world.lampsVersion();
@@ -90,7 +102,7 @@ void Surfaces::prepare(World& world, const effects::diffuse::Diffuse& diffuse, c
   records_.clear();
   for (std::size_t i = 0; i < residency.draws().size(); ++i) records_.push_back(describe(world, i));
   std::vector<Item> opaque, blended;
-  collect(world, diffuse, view.eye_ws, opaque, blended);
+  collect(world, diffuse, view.eye_ws, near_lights, opaque, blended);
   std::stable_sort(opaque.begin(), opaque.end(),
                    [](const Item& a, const Item& b) { return a.state < b.state; });
   std::stable_sort(blended.begin(), blended.end(),
@@ -103,25 +115,12 @@ void Surfaces::prepare(World& world, const effects::diffuse::Diffuse& diffuse, c
   draws_.assign(std::span<const SurfaceDraw>(records_));
   commands_.assign(std::span<const Command>(commands));
   counters.uploaded_bytes += records_.size() * sizeof(SurfaceDraw) + commands.size() * sizeof(Command);
-
-  // gl_DrawID is not in OpenGL 4.5: an attribute that steps once per instance gives the base instance back.
-  if (draw_indices_.byteCount() < 4 * records_.size()) {
-    std::vector<std::uint32_t> indices(2 * records_.size());
-    std::iota(indices.begin(), indices.end(), 0u);
-    draw_indices_ = gpu::Buffer("draw indices", 4 * indices.size());
-    draw_indices_.write(0, std::span<const std::uint32_t>(indices));
-    const GLuint array = vertices_.id();
-    glVertexArrayVertexBuffer(array, 0, draw_indices_.id(), 0, 4);
-    glVertexArrayBindingDivisor(array, 0, 1);
-    glVertexArrayAttribIFormat(array, kDrawIndexAttribute, 1, GL_UNSIGNED_INT, 0);
-    glVertexArrayAttribBinding(array, kDrawIndexAttribute, 0);
-    glEnableVertexArrayAttrib(array, kDrawIndexAttribute);
-  }
+  indices_.reserve(records_.size());
+  return {};
 }
 
 void Surfaces::drawRuns(World& world, const std::vector<Run>& runs, gpu::Counters& counters) {
   if (runs.empty()) return;
-  glBindVertexArray(vertices_.id());
   glBindBufferBase(GL_UNIFORM_BUFFER, kBindView, view_.buffer().id());
   glBindBuffer(GL_DRAW_INDIRECT_BUFFER, commands_.buffer().id());
   draws_.bindStorage(kBindDraws);
@@ -129,9 +128,9 @@ void Surfaces::drawRuns(World& world, const std::vector<Run>& runs, gpu::Counter
   for (const Run& run : runs) {
     const gpu::Buffer& geometry = world.residency().geometry().page(run.state.geometry_page);
     geometry.bindStorage(kBindGeometry);
-    glVertexArrayElementBuffer(vertices_.id(), geometry.id());
+    indices_.bind(geometry);
     world.residency().radiance().page(run.state.radiance_page).bindStorage(kBindRadiance);
-    programs_[run.state.normal_mapped ? 1 : 0].use();
+    programs_[programOf(run.state.normal_mapped, run.state.near_lit)].use();
     units_.bind(world, run.state.textures);
     glFrontFace(run.state.clockwise ? GL_CW : GL_CCW);
     glMultiDrawElementsIndirect(

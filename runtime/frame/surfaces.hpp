@@ -1,6 +1,7 @@
 // Draws every resident, shaded primitive: opaque and masked ones in as few multi-draws as textures, pages and
 // culling allow, blended ones afterwards from back to front. Reads the arenas; writes the bound framebuffer.
-// Back faces of single-sided materials are culled, as glTF asks; mirrored nodes turn their winding. Errors:
+// Back faces of single-sided materials are culled, as glTF asks; mirrored nodes turn their winding. Draws
+// that near lights shine on have programs of their own, compiled when the first of them comes. Errors:
 // shaders that do not compile on this device.
 #pragma once
 
@@ -12,6 +13,8 @@
 
 #include "runtime/base/result.hpp"
 #include "runtime/effects/diffuse/diffuse.hpp"
+#include "runtime/frame/draw_indices.hpp"
+#include "runtime/frame/near_lights.hpp"
 #include "runtime/frame/surface_record.hpp"
 #include "runtime/frame/surface_shared.h"
 #include "runtime/frame/texture_units.hpp"
@@ -26,9 +29,10 @@ class Surfaces {
   // finest_texels: textures at their full resolution, for pictures of one ray per pixel.
   static Result<Surfaces> create(bool finest_texels);
 
-  // Brings draw records and commands up to date.
-  void prepare(World& world, const effects::diffuse::Diffuse& diffuse, const spec::View& view,
-               gpu::Counters& counters);
+  // Brings draw records and commands up to date. With near lights, these must be updated before and bound
+  // when it draws.
+  Result<void> prepare(World& world, const effects::diffuse::Diffuse& diffuse, const spec::View& view,
+                       gpu::Counters& counters, const NearLights* near_lights = nullptr);
   void drawOpaque(World& world, gpu::Counters& counters);
   void drawBlended(World& world, gpu::Counters& counters);
 
@@ -41,6 +45,7 @@ class Surfaces {
     std::uint32_t geometry_page = 0, radiance_page = 0;
     SurfaceTextures textures;
     bool normal_mapped = false;
+    bool near_lit = false;
     bool clockwise = false;  // which winding is seen
     auto operator<=>(const State&) const = default;
   };
@@ -55,20 +60,25 @@ class Surfaces {
   };
 
   Surfaces();
+  static std::size_t programOf(bool normal_mapped, bool near_lit) {
+    return (normal_mapped ? 1u : 0u) + (near_lit ? 2u : 0u);
+  }
+  Result<void> compile(bool near_lit);
   void collect(World& world, const effects::diffuse::Diffuse& diffuse, glm::vec3 eye_ws,
-               std::vector<Item>& opaque, std::vector<Item>& blended);
+               const NearLights* near_lights, std::vector<Item>& opaque, std::vector<Item>& blended);
   void appendRuns(const World& world, const std::vector<Item>& items, std::vector<Run>& runs,
                   std::vector<Command>& commands) const;
   void drawRuns(World& world, const std::vector<Run>& runs, gpu::Counters& counters);
 
-  std::array<gpu::Program, 2> programs_;  // light as radiance, light for normal maps
+  bool finest_texels_ = false;
+  // Light as radiance, light for normal maps; then both with near lights, if they were needed.
+  std::array<gpu::Program, 4> programs_;
   TextureUnits units_;
-  gpu::VertexArray vertices_;
-  gpu::Buffer draw_indices_;
+  DrawIndices indices_;
   gpu::Table draws_, commands_, view_;
   std::vector<SurfaceDraw> records_;
   std::vector<Run> opaque_, blended_;
-  std::uint64_t residency_seen_ = 0, transforms_seen_ = 0, lamps_seen_ = 0;
+  std::uint64_t residency_seen_ = 0, transforms_seen_ = 0, lamps_seen_ = 0, near_seen_ = 0;
   std::size_t shaded_seen_ = 0;
   glm::vec3 eye_seen_ws_{0.0f};
 };

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <thread>
 
+#include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
+
 #include "runtime/scene/transforms.hpp"
 #include "runtime/streaming/budget.hpp"
 
@@ -52,11 +55,14 @@ Result<void> World::open(const std::filesystem::path& path) {
   if (const Result<std::uint32_t> added = residency_.add(wanted); !added)
     return fail(path.string(), added.error().subject + ": " + added.error().problem, added.error().mend);
   const unsigned threads = std::max(1u, std::thread::hardware_concurrency());
+  for (const bundle::Group& group : wanted.groups)
+    group_bounds_.push_back({group.bounds_min, group.bounds_max});
   for (const bundle::Draw& draw : wanted.draws)
     lamp_of_draw_.push_back(lampOf(reader->description(), *instance, draw));
   bundles_.push_back({.reader = reader,
                       .loader = streaming::Loader(reader, std::move(wanted), threads),
-                      .instance = std::move(*instance)});
+                      .instance = std::move(*instance),
+                      .world_from_node_at_rest = gltf::worldTransforms(reader->description().nodes)});
   return {};
 }
 
@@ -99,22 +105,83 @@ bool World::loaded() const {
                      [](const Bundle& bundle) { return bundle.loader.finished(); });
 }
 
+std::vector<scene::AnimatedBundle> World::animatedBundles() const {
+  std::vector<scene::AnimatedBundle> animated;
+  for (std::size_t i = 0; i < bundles_.size(); ++i)
+    animated.push_back({.bundle = static_cast<std::uint32_t>(i),
+                        .description = &bundles_[i].reader->description(),
+                        .instance = &bundles_[i].instance});
+  return animated;
+}
+
+void World::playAnimations(float seconds) {
+  scene::playAnimations(registry_, animatedBundles(), seconds);
+}
+
+void World::setAnimationTime(float time_s) {
+  scene::setAnimationTime(registry_, animatedBundles(), time_s);
+}
+
 void World::updateTransforms() {
   scene::updateTransforms(registry_);
 }
 
-std::vector<lighting::GroupPlace> World::groupPlaces() const {
-  std::vector<lighting::GroupPlace> places;
-  places.reserve(residency_.groups().size());
-  for (const streaming::ResidentGroup& group : residency_.groups()) {
-    const ecs::Entity entity = bundles_[group.bundle].instance.groups[group.index];
-    const auto* rigid = registry_.tryGet<scene::RigidGroupComponent>(entity);
-    places.push_back({.world_from_group = rigid ? rigid->rotation : glm::quat(1.0f, 0.0f, 0.0f, 0.0f),
-                      .order = group.order});
-    for (const ecs::Entity lamp : bundles_[group.bundle].instance.lamps[group.index])
-      places.back().lamps.push_back(radianceOf(registry_, lamp));
-  }
-  return places;
+const scene::RigidGroupComponent* World::rigidGroup(std::size_t group) const {
+  const streaming::ResidentGroup& resident = residency_.groups()[group];
+  return registry_.tryGet<scene::RigidGroupComponent>(
+      bundles_[resident.bundle].instance.groups[resident.index]);
+}
+
+glm::quat World::rotationOf(std::size_t group) const {
+  const auto* rigid = rigidGroup(group);
+  return rigid ? rigid->rotation : glm::quat(1.0f, 0.0f, 0.0f, 0.0f);
+}
+
+glm::mat4 World::worldFromGroup(std::size_t group) const {
+  const auto* rigid = rigidGroup(group);
+  if (!rigid) return glm::mat4(1.0f);
+  glm::mat4 rest = glm::mat4_cast(rigid->rest_rotation);
+  rest[3] = glm::vec4(rigid->rest_translation, 1.0f);
+  return rigid->world_from_rest * rest;
+}
+
+bool World::inPlace(std::size_t group, std::size_t column) const {
+  const streaming::ResidentGroup& resident = residency_.groups()[group];
+  const Bundle& bundle = bundles_[resident.bundle];
+  const bundle::GroupLight& light = bundle.reader->description().groups[resident.index].lights[column];
+  if (light.kind == bundle::GroupLight::Kind::Material) return true;
+  const auto* now = registry_.tryGet<scene::WorldTransform>(bundle.instance.nodes[light.index]);
+  const auto* rigid = rigidGroup(group);
+  if (!now || !rigid) return false;
+  const glm::mat4 expected = rigid->world_from_rest * bundle.world_from_node_at_rest[light.index];
+  // Rounding of matrices that were composed another way round.
+  constexpr float kTolerance = 1e-4f;
+  const scene::Box& bounds = group_bounds_[group];
+  const float size = bounds.empty() ? 0.0f : bounds.radius();
+  if (glm::distance(glm::vec3(expected[3]), glm::vec3(now->world_from_node[3])) > kTolerance * size)
+    return false;
+  const auto axis = [](const glm::mat4& matrix) {
+    const glm::vec3 z(matrix[2]);
+    const float length = glm::length(z);
+    return length > 0.0f ? z / length : z;
+  };
+  return glm::distance(axis(expected), axis(now->world_from_node)) <= kTolerance;
+}
+
+std::vector<glm::vec3> World::lampsOf(std::size_t group) const {
+  const streaming::ResidentGroup& resident = residency_.groups()[group];
+  std::vector<glm::vec3> lamps;
+  for (const ecs::Entity lamp : bundles_[resident.bundle].instance.lamps[resident.index])
+    lamps.push_back(inPlace(group, lamps.size()) ? radianceOf(registry_, lamp) : glm::vec3(0.0f));
+  return lamps;
+}
+
+bool World::litByColumn(std::size_t group, ecs::Entity light) const {
+  const streaming::ResidentGroup& resident = residency_.groups()[group];
+  const auto& lamps = bundles_[resident.bundle].instance.lamps[resident.index];
+  for (std::size_t k = 0; k < lamps.size(); ++k)
+    if (lamps[k] == light) return inPlace(group, k);
+  return false;
 }
 
 glm::vec3 World::emission(std::size_t draw) const {

@@ -13,6 +13,7 @@
 #include "runtime/bundle/reader.hpp"
 #include "runtime/ecs/registry.hpp"
 #include "runtime/lighting/group_lights.hpp"
+#include "runtime/scene/animation.hpp"
 #include "runtime/scene/components.hpp"
 #include "runtime/scene/instantiate.hpp"
 #include "runtime/streaming/loader.hpp"
@@ -46,10 +47,22 @@ class World {
   LoadedParts loadedParts() const;
 
   void updateTransforms();
+  // All animations of the bundles, before updateTransforms.
+  void playAnimations(float seconds);
+  void setAnimationTime(float time_s);
   std::uint64_t transformsVersion() const { return registry_.version<scene::WorldTransform>(); }
 
   // In the order of residency().groups() and draws().
-  std::vector<lighting::GroupPlace> groupPlaces() const;
+  // Where the group's frame stands now, with scale if it has any since it was baked.
+  glm::mat4 worldFromGroup(std::size_t group) const;
+  // Group frame, as baked.
+  const scene::Box& groupBounds(std::size_t group) const { return group_bounds_[group]; }
+  // What the group's own lights give now, by light column. A lamp that was moved out of its place in the
+  // group gives nothing here: its column no longer holds.
+  std::vector<glm::vec3> lampsOf(std::size_t group) const;
+  // Whether the light is one of the group's own and stands in its place.
+  bool litByColumn(std::size_t group, ecs::Entity light) const;
+  glm::quat rotationOf(std::size_t group) const;
   glm::mat4 worldFromMesh(std::size_t draw) const;
   // Radiance that the draw's material gives off now, before its texture: its lamp's where it is one in its
   // group, else the material's own.
@@ -74,14 +87,19 @@ class World {
     std::shared_ptr<const bundle::Reader> reader;
     streaming::Loader loader;
     scene::SceneInstance instance;
+    std::vector<glm::mat4> world_from_node_at_rest;
   };
+  std::vector<scene::AnimatedBundle> animatedBundles() const;
+  const scene::RigidGroupComponent* rigidGroup(std::size_t group) const;
+  bool inPlace(std::size_t group, std::size_t column) const;
   Result<std::uint64_t> uploadFrom(std::uint32_t bundle, std::uint64_t budget_bytes, gpu::Counters& counters);
 
   ecs::Registry registry_;
   streaming::Residency residency_;
   std::vector<Bundle> bundles_;
   std::vector<ecs::Entity> lamp_of_draw_;  // none: not a lamp of its group
-  std::uint64_t room_bytes_;               // left for bundles yet to be opened
+  std::vector<scene::Box> group_bounds_;
+  std::uint64_t room_bytes_;  // left for bundles yet to be opened
 };
 
 }  // namespace lambent::frame

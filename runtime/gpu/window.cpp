@@ -35,11 +35,17 @@ struct Window::State {
   }
   static void onMove(GLFWwindow* window, double x, double y) {
     State& state = of(window);
+    int width = 1, height = 1;
+    glfwGetWindowSize(window, &width, &height);
+    const auto right = static_cast<float>((x - state.last_x) / std::max(height, 1));
+    const auto down = static_cast<float>((y - state.last_y) / std::max(height, 1));
     if (glfwGetMouseButton(window, GLFW_MOUSE_BUTTON_LEFT) == GLFW_PRESS) {
-      int width = 1, height = 1;
-      glfwGetWindowSize(window, &width, &height);
-      state.pending.drag_x += static_cast<float>((x - state.last_x) / std::max(height, 1));
-      state.pending.drag_y += static_cast<float>((y - state.last_y) / std::max(height, 1));
+      state.pending.drag_x += right;
+      state.pending.drag_y += down;
+    }
+    if (glfwGetMouseButton(window, GLFW_MOUSE_BUTTON_RIGHT) == GLFW_PRESS) {
+      state.pending.light_x += right;
+      state.pending.light_y += down;
     }
     state.last_x = x;
     state.last_y = y;

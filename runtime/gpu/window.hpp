@@ -15,12 +15,13 @@ namespace lambent::gpu {
 
 // What happened since the last poll.
 struct Input {
-  float drag_x = 0.0f, drag_y = 0.0f;  // left button held; right and down are positive
-  float scroll = 0.0f;                 // notches; away from the user is positive
-  bool reset = false;                  // R
-  bool pause = false;                  // space
-  int turn = 0;                        // A: -1, D: +1, while held
-  bool quit = false;                   // Esc, or the window is being closed
+  float drag_x = 0.0f, drag_y = 0.0f;    // left button held; right and down are positive
+  float light_x = 0.0f, light_y = 0.0f;  // the same with the right button
+  float scroll = 0.0f;                   // notches; away from the user is positive
+  bool reset = false;                    // R
+  bool pause = false;                    // space
+  int turn = 0;                          // A: -1, D: +1, while held
+  bool quit = false;                     // Esc, or the window is being closed
 };
 
 class Window {

@@ -1,8 +1,8 @@
 // The light of each rigid group on the GPU, in the group's own frame: what effects multiply transfer with.
-// Comes in: the environment, and per group its rotation in the world, the order of its transfer and what its
-// own lights give now. Goes out: a block of vec4 per group (64 coefficients, zeros above order², then the
-// group's own lights) and a version that rises when that block changed. Windowed once per order, then rotated
-// per group.
+// Comes in: the environment, and per group its rotation in the world, the order of its transfer, what arrives
+// at its light samples and what its own lights give now. Goes out: per group 64 coefficients of vec4 for each
+// light sample (zeros above order²), then the group's own lights, and versions that rise when these change.
+// Windowed (the environment once per order), then rotated per group.
 #pragma once
 
 #include <cstdint>
@@ -19,17 +19,23 @@
 
 namespace lambent::lighting {
 
+// What arrives at a light sample, world axes.
+struct Incident {
+  const sh::LightVector* light = nullptr;  // null: the environment's, nothing in its way
+  std::uint64_t version = 0;               // of `light`
+};
+
 struct GroupPlace {
   glm::quat world_from_group{1.0f, 0.0f, 0.0f, 0.0f};
   std::uint32_t order = 1;
   // Lights that belong to the group, one per light column of its transfer: colour times strength.
   std::vector<glm::vec3> lamps{};
-  bool operator==(const GroupPlace&) const = default;
+  std::vector<Incident> incident = {{}};  // per light sample
 };
 
 class GroupLights {
  public:
-  static constexpr std::uint32_t kStride = sh::kMaxCoefficients;  // vec4s of a block before its light columns
+  static constexpr std::uint32_t kStride = sh::kMaxCoefficients;  // vec4s of a light sample
 
   GroupLights() : table_("group lights") {}
 
@@ -38,23 +44,52 @@ class GroupLights {
               gpu::Counters& counters);
 
   std::size_t groupCount() const { return groups_.size(); }
-  std::uint32_t firstOf(std::size_t group) const { return groups_[group].first; }  // vec4 index
+  // vec4 indices: of a light sample's coefficients, of the group's own lights.
+  std::uint32_t firstOf(std::size_t group, std::size_t sample = 0) const {
+    return groups_[group].first + kStride * static_cast<std::uint32_t>(sample);
+  }
+  std::uint32_t lampsOf(std::size_t group) const { return firstOf(group, groups_[group].samples.size()); }
+  // Of all of it, of one light sample, of its own lights.
   std::uint64_t versionOf(std::size_t group) const { return groups_[group].version; }
+  std::uint64_t versionOf(std::size_t group, std::size_t sample) const {
+    return groups_[group].samples[sample].version;
+  }
+  std::uint64_t lampsVersionOf(std::size_t group) const { return groups_[group].lamps_version; }
+  // By how much of itself the light that arrives at the group changed in the last update, at the sample where
+  // it changed most: 0 where nothing did, at most 1. In world axes: a group that turns under a still light
+  // has 0.
+  float changeOf(std::size_t group) const { return groups_[group].change; }
+  // Light samples whose coefficients the last update wrote.
+  std::uint32_t renewedSamples() const { return renewed_; }
   void bindStorage(std::uint32_t binding) const { table_.bindStorage(binding); }
   // As uploaded, for CPU twins.
   std::span<const glm::vec4> coefficients() const { return coefficients_; }
 
  private:
-  struct Group {
-    GroupPlace place;
-    std::uint32_t first = 0;
+  struct Sample {
+    bool from_environment = false;
+    std::uint64_t seen = 0;  // version of the light it was computed from
     std::uint64_t version = 0;
+    sh::LightVector light_ws{1};  // windowed
   };
+  struct Group {
+    glm::quat world_from_group{1.0f, 0.0f, 0.0f, 0.0f};
+    std::uint32_t order = 0;
+    std::vector<glm::vec3> lamps;
+    std::vector<Sample> samples;
+    std::uint32_t first = 0;
+    std::uint64_t version = 0, lamps_version = 0;
+    float change = 0.0f;
+  };
+  void layOut(std::span<const GroupPlace> groups);
+  bool updateLamps(Group& group, const GroupPlace& place);
+
   std::vector<Group> groups_;
   std::vector<glm::vec4> coefficients_;
   std::uint64_t environment_version_ = 0;
   sh::Window window_ = sh::Window::Off;
   std::uint64_t version_ = 0;
+  std::uint32_t renewed_ = 0;
   gpu::Table table_;
 };
 

@@ -15,7 +15,7 @@ struct NearLight {
   glm::vec3 direction_ws{0.0f, 0.0f, -1.0f};  // unit; Spot and Disc shine this way
   float radius_m = 0.0f;                      // Sphere, Disc
   glm::vec3 power{0.0f};                      // Point, Spot: candela; Sphere, Disc: radiance
-  float range_m = 0.0f;                       // 0: no end
+  float range_m = 0.0f;                       // Point, Spot: where it fades out; 0: never
   float inner_cone_rad = 0.0f, outer_cone_rad = 0.785398f;
   bool operator==(const NearLight&) const = default;
 };

@@ -12,6 +12,8 @@
 #include <vector>
 
 #include "runtime/base/result.hpp"
+#include "runtime/bundle/capture_proxy.hpp"
+#include "runtime/bundle/light_weights.hpp"
 #include "runtime/bundle/mesh.hpp"
 #include "runtime/bundle/reader.hpp"
 
@@ -44,7 +46,18 @@ struct PlaneReady {
   std::vector<std::byte> codes;  // as the GPU reads them: bits per position, little endian
 };
 
-using Ready = std::variant<MeshReady, ImageReady, RowsReady, CodebookReady, PlaneReady>;
+struct LightWeightsReady {
+  std::uint32_t group = 0, cell = 0;
+  std::vector<bundle::LightWeights> samples;
+};
+
+struct ProxyReady {
+  std::uint32_t group = 0;
+  bundle::CaptureProxy proxy;
+};
+
+using Ready =
+    std::variant<MeshReady, ImageReady, RowsReady, CodebookReady, PlaneReady, LightWeightsReady, ProxyReady>;
 
 class Loader {
  public:

@@ -41,6 +41,10 @@ ResidentTransfer describe(const bundle::DiffuseTransfer& transfer) {
 
 // Places everything of a cell from `word` on; returns the word after.
 std::uint32_t layOut(ResidentCell& cell, std::uint32_t word) {
+  if (cell.light_samples.size() > 1) {
+    cell.light_weights_word = word;
+    word += kLightWeightWords * cell.sample_count;
+  }
   for (ResidentTransfer& transfer : cell.transfers) {
     const std::uint32_t vectors = transfer.clusters + transfer.axes;
     transfer.clusters_word = word;
@@ -101,6 +105,7 @@ std::vector<ImageUse> imageUses(const bundle::Description& description) {
 }  // namespace
 
 bool ResidentCell::usable() const {
+  if (!light_weights_resident) return false;
   for (const ResidentTransfer& transfer : transfers) {
     if (!transfer.codebook_resident) return false;
     if (transfer.planes_resident == transfer.planes.size()) continue;
@@ -151,7 +156,9 @@ Result<std::uint32_t> Residency::add(const bundle::Description& description) {
                            .first_cell = static_cast<std::uint32_t>(cells_.size()),
                            .cell_count = static_cast<std::uint32_t>(group.cells.size()),
                            .plain_samples = group.plainSamples(),
-                           .samples = {}};
+                           .samples = {},
+                           .light_samples = group.light_samples,
+                           .proxy = {}};
     for (const bundle::Cell& cell : group.cells) {
       ResidentCell resident_cell{.group = bundle.first_group + resident.index,
                                  .first_sample = cell.first_sample,
@@ -159,6 +166,8 @@ Result<std::uint32_t> Residency::add(const bundle::Description& description) {
                                  .outputs = cell.outputs(),
                                  .block = {},
                                  .transfers = {},
+                                 .light_samples = cell.light_samples,
+                                 .light_weights_resident = cell.light_samples.size() == 1,
                                  .version = version_};
       for (const bundle::DiffuseTransfer& transfer : cell.diffuse) {
         resident_cell.transfers.push_back(describe(transfer));
@@ -208,6 +217,7 @@ Result<std::uint32_t> Residency::add(const bundle::Description& description) {
   }
   bundles_.push_back(std::move(bundle));
   ++version_;
+  ++proxies_version_;
   return bundle_index;
 }
 
@@ -337,6 +347,23 @@ Result<void> Residency::put(std::uint32_t bundle, const PlaneReady& item) {
   return {};
 }
 
+Result<void> Residency::put(std::uint32_t bundle, const LightWeightsReady& item) {
+  ResidentCell& cell = cellOf(bundle, item.group, item.cell);
+  if (Result<void> reserved = reserveCell(cell); !reserved) return reserved;
+  assert(item.samples.size() == cell.sample_count && cell.light_samples.size() > 1);
+  static_assert(sizeof(bundle::LightWeights) == 4 * kLightWeightWords);
+  transfer_.write(cell.block, 4ull * (cell.light_weights_word - cell.block.word()), bytesOf(item.samples));
+  cell.light_weights_resident = true;
+  cell.version = version_;
+  return {};
+}
+
+Result<void> Residency::put(std::uint32_t bundle, const ProxyReady& item) {
+  groups_[bundles_[bundle].first_group + item.group].proxy = item.proxy;
+  ++proxies_version_;
+  return {};
+}
+
 std::uint64_t Residency::bytesResident() const {
   return geometry_.bytesUsed() + transfer_.bytesUsed() + samples_.bytesUsed() + rows_.bytesUsed() +
          radiance_.bytesUsed() + texture_bytes_;
@@ -366,6 +393,10 @@ std::uint64_t Residency::uploadBytes(const Ready& item) {
              4ull * ready.positions.size();
     }
     std::uint64_t operator()(const PlaneReady& plane) const { return plane.codes.size(); }
+    std::uint64_t operator()(const LightWeightsReady& weights) const {
+      return sizeof(bundle::LightWeights) * weights.samples.size();
+    }
+    std::uint64_t operator()(const ProxyReady&) const { return 0; }  // stays in memory
   };
   return std::visit(Size{}, item);
 }

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -59,10 +60,13 @@ struct ResidentCell {
   std::uint32_t outputs = 1;
   gpu::Allocation block;  // transfer arena: codebooks and codes; reserved with the first of them
   std::vector<ResidentTransfer> transfers;
+  std::vector<std::uint32_t> light_samples;  // of the group; light weights name them by place
+  std::uint32_t light_weights_word = 0;      // per sample two words: four places, four weights of 255
+  bool light_weights_resident = false;       // always, where there is one light sample
   std::uint64_t version = 0;
 
-  // Enough has arrived to look better than no shadows at all: every transfer with its codebook and with
-  // planes that carry kUsableVariance of what all its planes carry.
+  // Enough has arrived to look better than no shadows at all: light weights, every transfer with its codebook
+  // and with planes that carry kUsableVariance of what all its planes carry.
   bool usable() const;
 };
 inline constexpr float kUsableVariance = 0.9f;
@@ -73,6 +77,9 @@ struct ResidentGroup {
   std::uint32_t first_cell = 0, cell_count = 0;  // into cells()
   std::uint32_t plain_samples = 0;               // those with one output come first
   gpu::Allocation samples;                       // a vec4 per sample and output, zero until shaded
+  std::vector<glm::vec3> light_samples;          // group frame
+  // What other groups see of it; stays in memory, for it is small. None: not here yet, or nothing to see.
+  std::optional<bundle::CaptureProxy> proxy;
 
   // vec4 index of output o of sample s in the page: sampleBase(outputs) + outputs * s + o. May wrap round.
   std::uint32_t sampleBase(std::uint32_t outputs) const {
@@ -127,6 +134,8 @@ class Residency {
   const std::vector<ResidentDraw>& draws() const { return draws_; }
   // Rises with every upload; entries carry the value at which they last changed.
   std::uint64_t version() const { return version_; }
+  // Rises with every capture proxy that arrives and every group that comes.
+  std::uint64_t proxiesVersion() const { return proxies_version_; }
 
   gpu::Arena& geometry() { return geometry_; }
   gpu::Arena& transfer() { return transfer_; }
@@ -146,6 +155,8 @@ class Residency {
   Result<void> put(std::uint32_t bundle, const RowsReady& item);
   Result<void> put(std::uint32_t bundle, const CodebookReady& item);
   Result<void> put(std::uint32_t bundle, const PlaneReady& item);
+  Result<void> put(std::uint32_t bundle, const LightWeightsReady& item);
+  Result<void> put(std::uint32_t bundle, const ProxyReady& item);
   ResidentCell& cellOf(std::uint32_t bundle, std::uint32_t group, std::uint32_t cell);
   Result<void> reserveCell(ResidentCell& cell);
 
@@ -155,7 +166,7 @@ class Residency {
   std::vector<ResidentGroup> groups_;
   std::vector<ResidentCell> cells_;
   std::vector<ResidentDraw> draws_;
-  std::uint64_t version_ = 1;
+  std::uint64_t version_ = 1, proxies_version_ = 1;
   std::uint64_t texture_bytes_ = 0;
   gpu::Arena geometry_, transfer_, samples_, rows_, radiance_;
 };

@@ -28,7 +28,7 @@ std::uint64_t codebookBytesOnGpu(const bundle::DiffuseTransfer& transfer, std::u
 }
 
 std::uint64_t cellBytes(const bundle::Cell& cell) {
-  std::uint64_t bytes = 0;
+  std::uint64_t bytes = cell.light_samples.size() > 1 ? 4ull * kLightWeightWords * cell.sample_count : 0;
   for (const bundle::DiffuseTransfer& transfer : cell.diffuse) {
     bytes += codebookBytesOnGpu(transfer, cell.sample_count);
     for (const bundle::WeightPlane& plane : transfer.planes) bytes += planeBytes(plane);

@@ -13,6 +13,9 @@ constexpr std::uint32_t radianceWords(std::uint32_t outputs) {
   return 3 * outputs;
 }
 
+// Of a sample, where its cell is lit from several light samples.
+inline constexpr std::uint32_t kLightWeightWords = 2;
+
 // Codes of a plane, rounded up to whole words.
 std::uint64_t planeBytes(const bundle::WeightPlane& plane);
 // The codebook as the kernels read it (diffuse_shared.h), and the positions of the samples.

@@ -29,7 +29,7 @@ void appendByPriority(std::vector<Work>& list, std::vector<Ranked> ranked) {
   for (const Ranked& item : ranked) list.push_back(item.work);
 }
 
-template <class Place>  // CodebookWork or PlaneWork
+template <class Place>  // what names a group and a cell
 const bundle::Cell& cellOf(const bundle::Description& description, const Place& at) {
   return description.groups[at.group].cells[at.cell];
 }
@@ -109,6 +109,22 @@ class Load {
     return ready;
   }
 
+  Loaded operator()(const LightWeightsWork& work) const {
+    const std::size_t bytes = sizeof(bundle::LightWeights) * cellOf(description_, work).sample_count;
+    if (!reserve_(2 * bytes)) return {};
+    auto weights = reader_.readLightWeights(work.group, work.cell);
+    if (!weights) return failAgain(weights.error());
+    return LightWeightsReady{work.group, work.cell, std::move(*weights)};
+  }
+
+  Loaded operator()(const ProxyWork& work) const {
+    const auto payload = static_cast<std::size_t>(description_.groups[work.group].proxy);
+    if (!reserve_(3 * description_.payloads[payload].raw_length)) return {};
+    auto proxy = reader_.readProxy(work.group);
+    if (!proxy) return failAgain(proxy.error());
+    return ProxyReady{work.group, std::move(*proxy)};
+  }
+
  private:
   // "PATH: WHAT", the subject of an error.
   std::string named(const std::string& what) const { return reader_.path().string() + ": " + what; }
@@ -133,8 +149,15 @@ std::vector<Work> workList(const bundle::Description& d) {
   appendByPriority(list, std::move(rows));
   for (std::uint32_t image = 0; image < d.images.size(); ++image) list.push_back(ImageWork{image});
   for (std::uint32_t group = 0; group < d.groups.size(); ++group) {
+    const std::int32_t proxy = d.groups[group].proxy;
+    if (proxy >= 0)
+      transfer.push_back({d.payloads[static_cast<std::size_t>(proxy)].priority, ProxyWork{group}});
     for (std::uint32_t cell = 0; cell < d.groups[group].cells.size(); ++cell) {
       const auto& parts = d.groups[group].cells[cell].diffuse;
+      const std::int32_t weights = d.groups[group].cells[cell].light_weights;
+      if (weights >= 0)
+        transfer.push_back(
+            {d.payloads[static_cast<std::size_t>(weights)].priority, LightWeightsWork{group, cell}});
       for (std::uint32_t t = 0; t < parts.size(); ++t) {
         std::uint32_t priority = d.payloads[parts[t].codebook].priority;
         transfer.push_back({priority, CodebookWork{group, cell, t}});
@@ -153,17 +176,22 @@ std::uint64_t bytesInFile(const bundle::Description& d, const Work& work) {
   const auto view = [&](std::uint32_t index) { return d.views[index].length; };
   const auto payload = [&](std::uint32_t index) { return view(d.payloads[index].view); };
   return std::visit(
-      Overloaded{[&](const MeshWork& at) { return view(d.meshes[at.mesh].primitives[at.primitive].view); },
-                 [&](const RowsWork& at) { return payload(d.draws[at.draw].rows); },
-                 [&](const ImageWork& at) { return view(d.images[at.image].view); },
-                 [&](const CodebookWork& at) {
-                   const bundle::DiffuseTransfer& transfer = transferOf(d, at);
-                   const std::uint64_t codebook = payload(transfer.codebook);
-                   return transfer.cluster_ids < 0
-                              ? codebook
-                              : codebook + payload(static_cast<std::uint32_t>(transfer.cluster_ids));
-                 },
-                 [&](const PlaneWork& at) { return payload(transferOf(d, at).planes[at.plane].payload); }},
+      Overloaded{
+          [&](const MeshWork& at) { return view(d.meshes[at.mesh].primitives[at.primitive].view); },
+          [&](const RowsWork& at) { return payload(d.draws[at.draw].rows); },
+          [&](const ImageWork& at) { return view(d.images[at.image].view); },
+          [&](const CodebookWork& at) {
+            const bundle::DiffuseTransfer& transfer = transferOf(d, at);
+            const std::uint64_t codebook = payload(transfer.codebook);
+            return transfer.cluster_ids < 0
+                       ? codebook
+                       : codebook + payload(static_cast<std::uint32_t>(transfer.cluster_ids));
+          },
+          [&](const PlaneWork& at) { return payload(transferOf(d, at).planes[at.plane].payload); },
+          [&](const LightWeightsWork& at) {
+            return payload(static_cast<std::uint32_t>(cellOf(d, at).light_weights));
+          },
+          [&](const ProxyWork& at) { return payload(static_cast<std::uint32_t>(d.groups[at.group].proxy)); }},
       work);
 }
 
@@ -172,24 +200,29 @@ std::optional<Result<Ready>> load(const bundle::Reader& reader, const Work& work
 }
 
 std::size_t bytesOf(const Ready& ready) {
-  return std::visit(Overloaded{[](const MeshReady& item) {
-                                 return sizeInBytes(item.data.positions) + sizeInBytes(item.data.normals) +
-                                        sizeInBytes(item.data.texcoords0) +
-                                        sizeInBytes(item.data.texcoords1) + sizeInBytes(item.data.colors) +
-                                        sizeInBytes(item.data.tangents) + sizeInBytes(item.data.indices);
-                               },
-                               [](const ImageReady& item) { return sizeInBytes(item.rgba); },
-                               [](const RowsReady& item) {
-                                 return sizeInBytes(item.rows.offsets) + sizeInBytes(item.rows.samples) +
-                                        sizeInBytes(item.rows.weights);
-                               },
-                               [](const CodebookReady& item) {
-                                 return sizeInBytes(item.codebook.axis_counts) +
-                                        sizeInBytes(item.codebook.axes) + sizeInBytes(item.codebook.vectors) +
-                                        sizeInBytes(item.positions);
-                               },
-                               [](const PlaneReady& item) { return sizeInBytes(item.codes); }},
-                    ready);
+  return std::visit(
+      Overloaded{[](const MeshReady& item) {
+                   return sizeInBytes(item.data.positions) + sizeInBytes(item.data.normals) +
+                          sizeInBytes(item.data.texcoords0) + sizeInBytes(item.data.texcoords1) +
+                          sizeInBytes(item.data.colors) + sizeInBytes(item.data.tangents) +
+                          sizeInBytes(item.data.indices);
+                 },
+                 [](const ImageReady& item) { return sizeInBytes(item.rgba); },
+                 [](const RowsReady& item) {
+                   return sizeInBytes(item.rows.offsets) + sizeInBytes(item.rows.samples) +
+                          sizeInBytes(item.rows.weights);
+                 },
+                 [](const CodebookReady& item) {
+                   return sizeInBytes(item.codebook.axis_counts) + sizeInBytes(item.codebook.axes) +
+                          sizeInBytes(item.codebook.vectors) + sizeInBytes(item.positions);
+                 },
+                 [](const PlaneReady& item) { return sizeInBytes(item.codes); },
+                 [](const LightWeightsReady& item) { return sizeInBytes(item.samples); },
+                 [](const ProxyReady& item) {
+                   return sizeInBytes(item.proxy.positions) + sizeInBytes(item.proxy.triangles) +
+                          sizeInBytes(item.proxy.entries) + sizeInBytes(item.proxy.levels);
+                 }},
+      ready);
 }
 
 }  // namespace lambent::streaming

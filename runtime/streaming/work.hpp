@@ -30,11 +30,18 @@ struct CodebookWork {
 struct PlaneWork {
   std::uint32_t group = 0, cell = 0, transfer = 0, plane = 0;
 };
-using Work = std::variant<MeshWork, RowsWork, ImageWork, CodebookWork, PlaneWork>;
+struct LightWeightsWork {
+  std::uint32_t group = 0, cell = 0;
+};
+struct ProxyWork {
+  std::uint32_t group = 0;
+};
+using Work =
+    std::variant<MeshWork, RowsWork, ImageWork, CodebookWork, PlaneWork, LightWeightsWork, ProxyWork>;
 
-// Meshes, then rows, then images, then codebooks and planes: each by the priority of its payload and, where
-// that is equal, by place in the description. A codebook comes before its planes and those in their order,
-// whatever priorities say.
+// Meshes, then rows, then images, then light weights, proxies, codebooks and planes: each by the priority of
+// its payload and, where that is equal, by place in the description. A codebook comes before its planes and
+// those in their order, whatever priorities say.
 std::vector<Work> workList(const bundle::Description& description);
 
 // What an item takes in the file.

@@ -43,11 +43,11 @@ TEST_F(LambentProgram, HelpAndVersionAreExitCode0) {
   const std::vector<std::pair<std::string, std::vector<std::string>>> commands = {
       {"bake",
        {"SCENE", "--output", "--quality", "--order", "--rays", "--bounces", "--error", "--max-edge",
-        "--effects", "--threads", "--max-memory", "--allow-outside", "--force", "--json"}},
+        "--light-samples", "--effects", "--threads", "--max-memory", "--allow-outside", "--force", "--json"}},
       {"reference",
-       {"SCENE", "--light", "--camera", "--output", "--spp", "--seed", "--band-limit", "--bounces",
+       {"SCENE", "--light", "--camera", "--output", "--spp", "--seed", "--band-limit", "--bounces", "--time",
         "--json"}},
-      {"plan", {"SCENE", "--effects", "--json"}},
+      {"plan", {"SCENE", "--effects", "--light-samples", "--json"}},
       {"info", {"BUNDLE", "--json"}},
       {"compare", {"PICTURE", "REFERENCE", "--reference2", "--json"}}};
   for (const auto& [command, options] : commands) {
@@ -71,6 +71,9 @@ TEST_F(LambentProgram, WrongUsageIsExitCode2AndOneLine) {
       {"bake", kHello, "-o", path("a.lmb.glb"), "--no-such-option"},
       {"bake", kHello, "-o", path("a.lmb.glb"), "--quality", "splendid"},
       {"bake", kHello, "-o", path("a.lmb.glb"), "--order", "five"},
+      {"reference", kHello, "-o", path("a.exr"), "--time", "soon"},
+      {"reference", kHello, "-o", path("a.exr"), "--time", "-1"},
+      {"reference", kHello, "-o", path("a.exr"), "--light", "sphere:0,0,0,-1,1"},
       {"bake", kHello, "-o", path("a.lmb.glb"), "--rays", "-5"},
       {"bake", kHello, "-o", path("a.lmb.glb"), "--threads", "-1"},
       {"bake", kHello, "-o", path("a.lmb.glb"), "--max-edge", "wide"},
@@ -160,11 +163,19 @@ TEST_F(LambentProgram, ReportsFiguresThatAddUpAsJson) {
   EXPECT_EQ(info["meshBytes"], report["meshBytes"]);
   EXPECT_EQ(info["imageBytes"], report["imageBytes"]);
   EXPECT_EQ(info["rowBytes"].get<int>() + info["codebookBytes"].get<int>() +
-                info["clusterIdBytes"].get<int>() + info["planeBytes"].get<int>(),
+                info["clusterIdBytes"].get<int>() + info["planeBytes"].get<int>() +
+                info["lightWeightBytes"].get<int>(),
             report["transferBytes"].get<int>());
+  EXPECT_EQ(info["proxyBytes"], report["proxyBytes"]);
   EXPECT_EQ(info["settings"]["order"], "5");
   EXPECT_EQ(info["groups"].size(), plan["groups"].size());
   EXPECT_EQ(info["groups"][0]["samples"], report["samples"]);
+  EXPECT_EQ(info["groups"][0]["lightSamples"], 1);
+  EXPECT_EQ(report["groups"][0]["lightSamples"], 1);
+  EXPECT_EQ(plan["groups"][0]["lightSamples"], 1);
+  EXPECT_FALSE(plan["groups"][0]["lightSamplesReason"].get<std::string>().empty());
+  EXPECT_GT(info["groups"][0]["proxyTriangles"][0], 0);
+  EXPECT_EQ(info["groups"][0]["proxyTriangles"], report["groups"][0]["proxyTriangles"]);
   // The same in words.
   for (const auto& arguments : {std::vector<std::string>{"plan", kHello}, {"info", path("hello.lmb.glb")}}) {
     const Outcome words = lambent(arguments);

@@ -1,5 +1,7 @@
 #include "runtime/effects/diffuse/diffuse.hpp"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "lambent_effects_diffuse_embedded.hpp"
@@ -19,11 +21,13 @@ std::uint32_t variantOf(std::uint32_t order) {
 }
 
 TransferRecord describeTransfer(const streaming::ResidentGroup& group, const streaming::ResidentCell& cell,
-                                const streaming::ResidentTransfer& transfer, std::uint32_t light,
-                                TransferMode mode) {
+                                const streaming::ResidentTransfer& transfer, TransferMode mode) {
   const bundle::TransferShape& shape = transfer.shape;
   const bool full = mode == TransferMode::Full && shape.full_channels > 0;
-  return {.light = shape.order > 0 ? light : light + kLightStride,
+  const bool several = shape.order > 0 && cell.light_samples.size() > 1;
+  return {.light_count = several ? static_cast<std::uint32_t>(cell.light_samples.size()) : 1,
+          .first_light = 0,
+          .light_weights_word = cell.light_weights_word,
           .columns = shape.columns(),
           .channels = full ? shape.full_channels : shape.shadowed_channels,
           .outputs = shape.outputs,
@@ -37,6 +41,7 @@ TransferRecord describeTransfer(const streaming::ResidentGroup& group, const str
           .plane_count = transfer.planes_resident,
           .first_plane = 0,
           .first_product = 0,
+          .light_products = (transfer.clusters + transfer.axes) * shape.outputs,
           .first_output = group.sampleBase(cell.outputs) + cell.outputs * cell.first_sample,
           .sample_count = cell.sample_count,
           .accumulate = 0};
@@ -44,17 +49,24 @@ TransferRecord describeTransfer(const streaming::ResidentGroup& group, const str
 
 // A cell's transfers, as far as they are resident.
 Tables::Cell addCell(const streaming::Residency& residency, const streaming::ResidentCell& cell,
-                     std::uint32_t light, TransferMode mode, Tables& tables) {
+                     const lighting::GroupLights& lights, TransferMode mode, Tables& tables) {
   Tables::Cell range{.first = static_cast<std::uint32_t>(tables.transfers.size()), .count = 0};
   for (const streaming::ResidentTransfer& transfer : cell.transfers) {
     if (mode == TransferMode::Unshadowed || !transfer.codebook_resident) continue;
-    TransferRecord record = describeTransfer(residency.groups()[cell.group], cell, transfer, light, mode);
+    TransferRecord record = describeTransfer(residency.groups()[cell.group], cell, transfer, mode);
     record.accumulate = range.count++ > 0 ? 1 : 0;
-    record.first_plane = static_cast<std::uint32_t>(tables.planes.size());
+    record.first_light = static_cast<std::uint32_t>(tables.places.size());
+    if (transfer.shape.order == 0) {
+      tables.places.push_back(lights.lampsOf(cell.group));
+    } else {
+      for (const std::uint32_t sample : cell.light_samples)
+        tables.places.push_back(lights.firstOf(cell.group, sample));
+    }
+    record.first_plane = static_cast<std::uint32_t>(tables.places.size());
     for (std::uint32_t j = 0; j < transfer.planes_resident; ++j)
-      tables.planes.push_back(transfer.planes[j].word | (transfer.planes[j].bits == 16 ? kCodes16Bit : 0u));
+      tables.places.push_back(transfer.planes[j].word | (transfer.planes[j].bits == 16 ? kCodes16Bit : 0u));
     record.first_product = tables.product_count;
-    tables.product_count += (transfer.clusters + transfer.axes) * record.outputs;
+    tables.product_count += record.light_count * record.light_products;
     tables.transfers.push_back(record);
   }
   return range;
@@ -80,11 +92,19 @@ DrawRecord describeDraw(const streaming::Residency& residency, const streaming::
   return record;
 }
 
+// Newest of what the cell is lit by.
+std::uint64_t lightVersion(const lighting::GroupLights& lights, const streaming::ResidentCell& cell) {
+  std::uint64_t version = lights.lampsVersionOf(cell.group);
+  for (const std::uint32_t sample : cell.light_samples)
+    version = std::max(version, lights.versionOf(cell.group, sample));
+  return version;
+}
+
 }  // namespace
 
 Diffuse::Diffuse()
     : transfers_table_("diffuse transfers"),
-      planes_table_("diffuse planes"),
+      places_table_("diffuse places"),
       draws_table_("diffuse draws"),
       products_("diffuse products"),
       project_work_("diffuse project work"),
@@ -101,6 +121,7 @@ Result<void> Diffuse::shade(streaming::Residency& residency, const lighting::Gro
     }
     rebuildTables(residency, lights, mode);
   }
+  shaded_ = {};
   collectCells(residency, lights);
   collectDraws(residency, lights);
   if (Result<void> run = runCells(residency, lights, counters); !run) return run;
@@ -114,11 +135,11 @@ void Diffuse::rebuildTables(const streaming::Residency& residency, const lightin
   mode_seen_ = mode;
   tables_ = {};
   for (const streaming::ResidentCell& cell : residency.cells())
-    tables_.cells.push_back(addCell(residency, cell, lights.firstOf(cell.group), mode, tables_));
+    tables_.cells.push_back(addCell(residency, cell, lights, mode, tables_));
   for (const streaming::ResidentDraw& draw : residency.draws())
     tables_.draws.push_back(describeDraw(residency, draw, lights.firstOf(draw.group), mode));
   transfers_table_.assign(std::span<const TransferRecord>(tables_.transfers));
-  planes_table_.assign(std::span<const std::uint32_t>(tables_.planes));
+  places_table_.assign(std::span<const std::uint32_t>(tables_.places));
   draws_table_.assign(std::span<const DrawRecord>(tables_.draws));
   products_.reserve(tables_.product_count * sizeof(glm::vec4));
   cells_seen_.resize(residency.cells().size());
@@ -136,18 +157,20 @@ void Diffuse::collectCells(const streaming::Residency& residency, const lighting
     const Tables::Cell range = tables_.cells[i];
     if (!cell.usable() || range.count == 0) continue;
     Seen& seen = cells_seen_[i];
-    const std::uint64_t light = lights.versionOf(cell.group);
+    const std::uint64_t light = lightVersion(lights, cell);
     if (seen.version == cell.version && seen.light == light) continue;
     seen = {.version = cell.version, .light = light, .cells = 0};
     ++group_shaded_[cell.group];
+    ++shaded_.cells;
     for (std::uint32_t t = range.first; t < range.first + range.count; ++t) {
       const TransferRecord& record = tables_.transfers[t];
       const std::uint32_t order = cell.transfers[t - range.first].shape.order;
       project_work_.add({variantOf(order), record.outputs, cell.block.page}, t,
-                        record.clusters * record.outputs, kUnitsPerGroup);
+                        record.light_count * record.clusters * record.outputs, kUnitsPerGroup);
       (record.accumulate != 0 ? adding_work_ : samples_work_)
-          .add({0, record.outputs, cell.block.page, residency.groups()[cell.group].samples.page}, t,
-               record.sample_count, kWorkGroupSize);
+          .add({record.light_count > 1 ? 1u : 0u, record.outputs, cell.block.page,
+                residency.groups()[cell.group].samples.page},
+               t, record.sample_count, kWorkGroupSize);
     }
   }
 }
@@ -162,6 +185,7 @@ void Diffuse::collectDraws(const streaming::Residency& residency, const lighting
         .version = draw.version, .light = lights.versionOf(draw.group), .cells = group_shaded_[draw.group]};
     if (seen.version == now.version && seen.light == now.light && seen.cells == now.cells) continue;
     seen = now;
+    ++shaded_.draws;
     const streaming::ResidentGroup& group = residency.groups()[draw.group];
     const streaming::ResidentMesh& mesh = residency.meshes()[draw.mesh];
     vertices_work_.add({variantOf(group.order), draw.outputs, draw.rows.page, mesh.block.page,
@@ -170,17 +194,19 @@ void Diffuse::collectDraws(const streaming::Residency& residency, const lighting
   }
 }
 
-Result<const gpu::Program*> Diffuse::program(Stage stage, std::uint32_t order, std::uint32_t outputs) {
+Result<const gpu::Program*> Diffuse::program(Stage stage, std::uint32_t kind, std::uint32_t outputs) {
   constexpr std::array<const char*, kStageCount> kFiles = {"diffuse_project.comp", "diffuse_samples.comp",
                                                            "diffuse_vertices.comp"};
   auto& programs = programs_[stage];
-  const std::array<std::uint32_t, 2> variant = {order, stage == Project ? 0 : outputs};
+  const std::array<std::uint32_t, 2> variant = {kind, stage == Project ? 0 : outputs};
   if (const auto found = programs.find(variant); found != programs.end()) return &found->second;
   std::vector<gpu::Define> defines;
-  if (order != 0) defines.push_back({"LAMBENT_ORDER", std::to_string(order)});
+  if (kind != 0)
+    defines.push_back(stage == Samples ? gpu::Define{"LAMBENT_MANY_LIGHTS", "1"}
+                                       : gpu::Define{"LAMBENT_ORDER", std::to_string(kind)});
   if (stage != Project) defines.push_back({"LAMBENT_OUTPUTS", std::to_string(outputs)});
   Result<gpu::Program> made =
-      gpu::Program::create(fmt::format("{} order {} outputs {}", kFiles[stage], order, outputs),
+      gpu::Program::create(fmt::format("{} kind {} outputs {}", kFiles[stage], kind, outputs),
                            {{GL_COMPUTE_SHADER, kFiles[stage]}}, kShaders, defines);
   if (!made) return failAgain(made.error());
   return &programs.emplace(variant, std::move(*made)).first->second;
@@ -194,7 +220,7 @@ Result<void> Diffuse::runCells(streaming::Residency& residency, const lighting::
   if (!adding_work_.empty()) adding_work_.upload(counters);
   lights.bindStorage(kBindLights);
   transfers_table_.bindStorage(kBindTransfers);
-  planes_table_.bindStorage(kBindPlanes);
+  places_table_.bindStorage(kBindPlaces);
   products_.bindStorage(kBindProducts);
   std::size_t index = 0;
   for (const auto& [key, items] : project_work_.batches()) {

@@ -1,9 +1,9 @@
 // The diffuse effect on the GPU: radiance E/pi at every vertex (for normal maps: light of bands 0..2),
 // straight from the quantized transfer. Reads: transfer, rows and normals in the residency's arenas, the
-// groups' lights. Writes: the samples and radiance arenas. Three stages (cluster, sample, vertex), each one
-// indirect dispatch per arena page and kernel over what is dirty: a cell when its group's light or its own
-// codes changed, a vertex when any cell of its group or its own mesh or rows did. Nothing changed: nothing is
-// dispatched. What is not resident shades unshadowed.
+// light at the groups' light samples. Writes: the samples and radiance arenas. Three stages (cluster, sample,
+// vertex), each one indirect dispatch per arena page and kernel over what is dirty: a cell when its group's
+// light or its own codes changed, a vertex when any cell of its group or its own mesh or rows did. Nothing
+// changed: nothing is dispatched. What is not resident shades unshadowed.
 #pragma once
 
 #include <array>
@@ -31,7 +31,7 @@ struct Tables {
   };
   std::vector<Cell> cells;  // index: residency cell
   std::vector<TransferRecord> transfers;
-  std::vector<std::uint32_t> planes;  // word of the codes, with kCodes16Bit
+  std::vector<std::uint32_t> places;  // of their planes and lights
   std::vector<DrawRecord> draws;      // index: residency draw
   std::uint32_t product_count = 0;
 };
@@ -44,6 +44,15 @@ class Diffuse {
   Result<void> shade(streaming::Residency& residency, const lighting::GroupLights& lights, TransferMode mode,
                      gpu::Counters& counters);
 
+  // Rises when samples of the group were shaded.
+  std::uint64_t versionOf(std::size_t group) const {
+    return group < group_shaded_.size() ? group_shaded_[group] : 0;
+  }
+  // What the last call shaded.
+  struct Shaded {
+    std::uint32_t cells = 0, draws = 0;
+  };
+  const Shaded& shadedLast() const { return shaded_; }
   // Whether the draw's radiance has been written.
   bool shaded(std::size_t draw) const { return draw < draws_seen_.size() && draws_seen_[draw].version != 0; }
   const Tables& tables() const { return tables_; }
@@ -58,7 +67,7 @@ class Diffuse {
                      TransferMode mode);
   void collectCells(const streaming::Residency& residency, const lighting::GroupLights& lights);
   void collectDraws(const streaming::Residency& residency, const lighting::GroupLights& lights);
-  Result<const gpu::Program*> program(Stage stage, std::uint32_t order, std::uint32_t outputs);
+  Result<const gpu::Program*> program(Stage stage, std::uint32_t kind, std::uint32_t outputs);
   Result<void> runSamples(streaming::Residency& residency, const gpu::WorkList& work,
                           gpu::Counters& counters);
   Result<void> runCells(streaming::Residency& residency, const lighting::GroupLights& lights,
@@ -66,10 +75,10 @@ class Diffuse {
   Result<void> runDraws(streaming::Residency& residency, const lighting::GroupLights& lights,
                         gpu::Counters& counters);
 
-  // By order (0: any) and outputs.
+  // By order (0: any) or, for samples, 1 for several lights; and outputs.
   std::array<std::map<std::array<std::uint32_t, 2>, gpu::Program>, kStageCount> programs_;
   Tables tables_;
-  gpu::Table transfers_table_, planes_table_, draws_table_, products_;
+  gpu::Table transfers_table_, places_table_, draws_table_, products_;
   // A cell's first transfer writes its samples, the second adds to them.
   gpu::WorkList project_work_, samples_work_, adding_work_, vertices_work_;
   std::vector<Seen> cells_seen_, draws_seen_;
@@ -77,6 +86,7 @@ class Diffuse {
   std::uint64_t residency_seen_ = 0;
   std::size_t groups_seen_ = 0;
   TransferMode mode_seen_ = TransferMode::Full;
+  Shaded shaded_;
 };
 
 }  // namespace lambent::effects::diffuse

@@ -10,17 +10,17 @@ vec3 lightAt(uint index);  // coefficient of the light in the group's frame, RGB
 #ifdef LAMBENT_STAGE_PROJECT
 float vectorAt(uint word);  // of the transfer page
 
-// One output of a mean or axis times the light: one value per colour channel.
-vec3 projectOnLight(TransferRecord transfer, uint vector, uint output_index, uint columns) {
+// One output of a mean or axis times the light whose coefficients start at `light`: one value per colour channel.
+vec3 projectOnLight(TransferRecord transfer, uint vector, uint output_index, uint columns, uint light) {
   vec3 sum = vec3(0.0);
   uint at = transfer.vectors_word + vector * transfer.vector_size + transfer.first_value + output_index * columns;
   if (transfer.channels == 1u) {
-    for (uint i = 0u; i < columns; ++i) sum += vectorAt(at + i) * lightAt(transfer.light + i);
+    for (uint i = 0u; i < columns; ++i) sum += vectorAt(at + i) * lightAt(light + i);
   } else {
     uint stride = transfer.outputs * columns;
     for (uint i = 0u; i < columns; ++i)
       sum += vec3(vectorAt(at + i), vectorAt(at + stride + i), vectorAt(at + 2u * stride + i)) *
-             lightAt(transfer.light + i);
+             lightAt(light + i);
   }
   return sum;
 }
@@ -132,5 +132,41 @@ void vertexLight(DrawRecord draw, uint vertex, out vec3 light[kMappedOutputs]) {
   }
   float unshadowed = total == 0.0 ? 1.0 : max(total - resident, 0.0), sum = total == 0.0 ? 1.0 : total;
   for (uint j = 0u; j < kMappedOutputs; ++j) light[j] = (light[j] + unshadowed * lightAt(draw.light + j)) / sum;
+}
+#endif
+
+#ifdef LAMBENT_STAGE_PROXIES
+ProxyEntryRecord proxyEntryAt(uint index);
+
+// E/pi of light in bands 0..2 at a normal.
+vec3 mappedRadiance(uint first, vec3 n) {
+  float weights[kMappedOutputs] = float[kMappedOutputs](
+      0.282094792, 0.325735008 * n.y, 0.325735008 * n.z, 0.325735008 * n.x, 0.273137108 * n.x * n.y,
+      0.273137108 * n.y * n.z, 0.078847891 * (3.0 * n.z * n.z - 1.0), 0.273137108 * n.x * n.z,
+      0.136568554 * (n.x * n.x - n.y * n.y));
+  vec3 sum = vec3(0.0);
+  for (uint j = 0u; j < kMappedOutputs; ++j) sum += weights[j] * sampleAt(first + j).rgb;
+  return sum;
+}
+
+// What a proxy's triangle sends out. Samples that are not shaded yet count as unshadowed; truncated light may be
+// negative somewhere, a surface never gives that on.
+vec3 proxyRadiance(ProxyGroupRecord group, ProxyTriangleRecord triangle) {
+  vec3 normal = vec3(triangle.normal[0], triangle.normal[1], triangle.normal[2]);
+  vec3 sum = vec3(0.0), waiting = vec3(0.0);
+  for (uint i = triangle.first_entry; i < triangle.first_entry + triangle.entry_count; ++i) {
+    ProxyEntryRecord entry = proxyEntryAt(i);
+    vec3 reflectance = vec3(entry.reflectance[0], entry.reflectance[1], entry.reflectance[2]);
+    vec4 shaded = sampleAt(entry.sample_index);
+    if (shaded.w == 0.0)
+      waiting += reflectance;
+    else
+      sum += reflectance * (entry.outputs == 1u ? shaded.rgb : mappedRadiance(entry.sample_index, normal));
+  }
+  if (waiting != vec3(0.0)) sum += waiting * unshadowedRadiance(normal, group.light, int(group.order));
+  sum = max(sum, vec3(0.0));
+  if (triangle.lamp != kNoLamp)
+    sum += vec3(triangle.emission[0], triangle.emission[1], triangle.emission[2]) * lightAt(group.lamps + triangle.lamp);
+  return sum;
 }
 #endif

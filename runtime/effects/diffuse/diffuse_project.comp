@@ -1,4 +1,4 @@
-// Stage a, kUnitsPerGroup work units to a group, each one output of one cluster: mean and axes times the group's light.
+// Stage a, kUnitsPerGroup work units to a group, each one output of one cluster under one light: mean and axes times it.
 // Offsets of the weights go into the mean here, scales into the axes, so that a sample has one multiply-add per axis
 // and channel.
 #include "diffuse_shared.h"
@@ -7,6 +7,7 @@ layout(local_size_x = kWorkGroupSize) in;
 layout(std430, binding = kBindWork) readonly buffer Work { uint work_count; uint pad[3]; WorkItem work[]; };
 layout(std430, binding = kBindLights) readonly buffer Lights { vec4 lights[]; };
 layout(std430, binding = kBindTransfers) readonly buffer Transfers { TransferRecord transfers[]; };
+layout(std430, binding = kBindPlaces) readonly buffer Places { uint places[]; };
 layout(std430, binding = kBindProducts) writeonly buffer Products { vec4 products[]; };
 layout(std430, binding = kBindTransfer) readonly buffer Transfer { float page[]; };
 
@@ -24,23 +25,26 @@ void main() {
   TransferRecord transfer = transfers[work[index].record];
   uint lane = gl_LocalInvocationID.x % kLanesPerUnit;
   uint unit = work[index].first + gl_LocalInvocationID.x / kLanesPerUnit;
-  uint cluster = unit / transfer.outputs, output_index = unit % transfer.outputs;
-  bool there = cluster < transfer.clusters;
+  uint output_index = unit % transfer.outputs, cluster = unit / transfer.outputs % transfer.clusters;
+  uint light_index = unit / (transfer.outputs * transfer.clusters);
+  bool there = light_index < transfer.light_count;
+  uint first_product = transfer.first_product + transfer.light_products * light_index;
   vec3 mean = vec3(0.0);
   uint first = 0u;
   if (there) {
     first = floatBitsToUint(page[transfer.clusters_word + 2u * cluster]);
+    uint light = places[transfer.first_light + light_index];
     uint axes = min(floatBitsToUint(page[transfer.clusters_word + 2u * cluster + 1u]), transfer.plane_count);
     for (uint v = lane; v <= axes; v += kLanesPerUnit) {
       uint vector = first + v;
 #ifdef LAMBENT_ORDER
-      vec3 value = projectOnLight(transfer, vector, output_index, LAMBENT_ORDER * LAMBENT_ORDER);
+      vec3 value = projectOnLight(transfer, vector, output_index, LAMBENT_ORDER * LAMBENT_ORDER, light);
 #else
-      vec3 value = projectOnLight(transfer, vector, output_index, transfer.columns);
+      vec3 value = projectOnLight(transfer, vector, output_index, transfer.columns, light);
 #endif
       mean += page[transfer.weights_word + 2u * vector] * value;
       if (v > 0u)
-        products[transfer.first_product + transfer.outputs * vector + output_index] =
+        products[first_product + transfer.outputs * vector + output_index] =
             vec4(page[transfer.weights_word + 2u * vector + 1u] * value, 0.0);
     }
   }
@@ -49,6 +53,6 @@ void main() {
   if (there && lane == 0u) {
     vec3 total = vec3(0.0);
     for (uint i = 0u; i < kLanesPerUnit; ++i) total += means[gl_LocalInvocationID.x + i];
-    products[transfer.first_product + transfer.outputs * first + output_index] = vec4(total, 0.0);
+    products[first_product + transfer.outputs * first + output_index] = vec4(total, 0.0);
   }
 }

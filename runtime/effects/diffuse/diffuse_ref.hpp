@@ -73,7 +73,7 @@ inline glm::vec3 unshadowedRadiance(const Memory& memory, glm::vec3 normal, uint
 }
 
 inline glm::vec3 projectOnLight(const Memory& memory, const TransferRecord& transfer, uint vector,
-                                uint output_index) {
+                                uint output_index, uint light) {
   glm::vec3 sum(0.0f);
   const uint columns = transfer.columns, stride = transfer.channels == 1 ? 0 : transfer.outputs * columns;
   const uint at =
@@ -81,7 +81,7 @@ inline glm::vec3 projectOnLight(const Memory& memory, const TransferRecord& tran
   for (uint i = 0; i < columns; ++i)
     sum += glm::vec3(memory.floatAt(at + i), memory.floatAt(at + stride + i),
                      memory.floatAt(at + 2 * stride + i)) *
-           memory.lightAt(transfer.light + i);
+           memory.lightAt(light + i);
   return sum;
 }
 
@@ -95,19 +95,21 @@ inline uint codeOf(const Memory& memory, uint codes, uint position) {
   return (four >> (8 * (position & 3))) & 0xff;
 }
 
-// Stage a, one output of one cluster: its products, the mean's with all offsets in it.
-inline void projectCluster(const Memory& memory, const TransferRecord& transfer, uint cluster,
-                           uint output_index, std::span<glm::vec4> products) {
+// Stage a, one output of one cluster under one light: its products, the mean's with all offsets in it.
+inline void projectCluster(const Memory& memory, const TransferRecord& transfer, std::span<const uint> places,
+                           uint light_index, uint cluster, uint output_index, std::span<glm::vec4> products) {
+  const uint light = places[transfer.first_light + light_index];
   const uint first = memory.codeWordAt(transfer.clusters_word + 2 * cluster);
   const uint axes =
       std::min(memory.codeWordAt(transfer.clusters_word + 2 * cluster + 1), transfer.plane_count);
   const auto product = [&](uint vector) -> glm::vec4& {
-    return products[transfer.first_product + transfer.outputs * vector + output_index];
+    return products[transfer.first_product + transfer.light_products * light_index +
+                    transfer.outputs * vector + output_index];
   };
   std::array<glm::vec3, kLanesPerUnit> means{};
   for (uint v = 0; v <= axes; ++v) {
     const uint vector = first + v;
-    const glm::vec3 value = projectOnLight(memory, transfer, vector, output_index);
+    const glm::vec3 value = projectOnLight(memory, transfer, vector, output_index, light);
     means[v % kLanesPerUnit] += memory.floatAt(transfer.weights_word + 2 * vector) * value;
     if (v > 0)
       product(vector) = glm::vec4(memory.floatAt(transfer.weights_word + 2 * vector + 1) * value, 0.0f);
@@ -118,13 +120,29 @@ inline void projectCluster(const Memory& memory, const TransferRecord& transfer,
 }
 
 inline void projectTransfer(const Memory& memory, const TransferRecord& transfer,
-                            std::span<glm::vec4> products) {
-  for (uint cluster = 0; cluster < transfer.clusters; ++cluster)
-    for (uint j = 0; j < transfer.outputs; ++j) projectCluster(memory, transfer, cluster, j, products);
+                            std::span<const uint> places, std::span<glm::vec4> products) {
+  for (uint light = 0; light < transfer.light_count; ++light)
+    for (uint cluster = 0; cluster < transfer.clusters; ++cluster)
+      for (uint j = 0; j < transfer.outputs; ++j)
+        projectCluster(memory, transfer, places, light, cluster, j, products);
+}
+
+// How much of light k falls on a sample of the cell.
+struct LightShare {
+  uint light;
+  float weight;
+};
+
+inline LightShare lightShareOf(const Memory& memory, const TransferRecord& transfer, uint sample_index,
+                               uint k) {
+  if (transfer.light_count == 1) return {0, k == 0 ? 1.0f : 0.0f};
+  const uint word = transfer.light_weights_word + 2 * sample_index;
+  return {memory.codeWordAt(word) >> (8 * k) & 0xff,
+          static_cast<float>(memory.codeWordAt(word + 1) >> (8 * k) & 0xff) / 255.0f};
 }
 
 // Stage b: one position of the cell, into its sample.
-inline void shadePosition(const Memory& memory, const TransferRecord& transfer, std::span<const uint> planes,
+inline void shadePosition(const Memory& memory, const TransferRecord& transfer, std::span<const uint> places,
                           std::span<const glm::vec4> products, uint position, std::span<glm::vec4> samples) {
   const uint place = memory.codeWordAt(transfer.positions_word + position);
   const uint sample_index = place & 0xffff, cluster = place >> 16;
@@ -132,12 +150,17 @@ inline void shadePosition(const Memory& memory, const TransferRecord& transfer, 
   const uint axes =
       std::min(memory.codeWordAt(transfer.clusters_word + 2 * cluster + 1), transfer.plane_count);
   for (uint j = 0; j < transfer.outputs; ++j) {
-    uint product = transfer.first_product + transfer.outputs * first + j;
-    glm::vec3 light(products[product]);
-    for (uint axis = 0; axis < axes; ++axis) {
-      product += transfer.outputs;
-      light += static_cast<float>(codeOf(memory, planes[transfer.first_plane + axis], position)) *
-               glm::vec3(products[product]);
+    glm::vec3 light(0.0f);
+    for (uint k = 0; k < kLightsPerSample; ++k) {
+      const LightShare share = lightShareOf(memory, transfer, sample_index, k);
+      uint product =
+          transfer.first_product + transfer.light_products * share.light + transfer.outputs * first + j;
+      light += share.weight * glm::vec3(products[product]);
+      for (uint axis = 0; axis < axes; ++axis) {
+        product += transfer.outputs;
+        light += static_cast<float>(codeOf(memory, places[transfer.first_plane + axis], position)) *
+                 share.weight * glm::vec3(products[product]);
+      }
     }
     glm::vec4& out = samples[transfer.first_output + transfer.outputs * sample_index + j];
     out = glm::vec4(transfer.accumulate != 0 ? light + glm::vec3(out) : light, 1.0f);
@@ -207,6 +230,45 @@ inline glm::vec3 shadeVertex(const Memory& memory, const DrawRecord& draw, uint 
   const glm::vec3 normal =
       glm::normalize(group_from_mesh * glm::vec3(component(0), component(1), component(2)));
   return vertexRadiance(memory, draw, vertex, normal, static_cast<int>(draw.order));
+}
+
+// Stage d. The weights are A_l/pi y_j.
+inline glm::vec3 mappedRadiance(const Memory& memory, uint first, glm::vec3 n) {
+  const std::array<float, kMappedOutputs> weights = {0.282094792f,
+                                                     0.325735008f * n.y,
+                                                     0.325735008f * n.z,
+                                                     0.325735008f * n.x,
+                                                     0.273137108f * n.x * n.y,
+                                                     0.273137108f * n.y * n.z,
+                                                     0.078847891f * (3.0f * n.z * n.z - 1.0f),
+                                                     0.273137108f * n.x * n.z,
+                                                     0.136568554f * (n.x * n.x - n.y * n.y)};
+  glm::vec3 sum(0.0f);
+  for (uint j = 0; j < kMappedOutputs; ++j) sum += weights[j] * glm::vec3(memory.sampleAt(first + j));
+  return sum;
+}
+
+inline glm::vec3 proxyRadiance(const Memory& memory, const ProxyGroupRecord& group,
+                               const ProxyTriangleRecord& triangle,
+                               std::span<const ProxyEntryRecord> entries) {
+  const glm::vec3 normal(triangle.normal[0], triangle.normal[1], triangle.normal[2]);
+  glm::vec3 sum(0.0f), waiting(0.0f);
+  for (const ProxyEntryRecord& entry : entries.subspan(triangle.first_entry, triangle.entry_count)) {
+    const glm::vec3 reflectance(entry.reflectance[0], entry.reflectance[1], entry.reflectance[2]);
+    const glm::vec4 shaded = memory.sampleAt(entry.sample_index);
+    if (shaded.w == 0.0f)
+      waiting += reflectance;
+    else
+      sum += reflectance *
+             (entry.outputs == 1 ? glm::vec3(shaded) : mappedRadiance(memory, entry.sample_index, normal));
+  }
+  if (waiting != glm::vec3(0.0f))
+    sum += waiting * unshadowedRadiance(memory, normal, group.light, static_cast<int>(group.order));
+  sum = glm::max(sum, glm::vec3(0.0f));
+  if (triangle.lamp != kNoLamp)
+    sum += glm::vec3(triangle.emission[0], triangle.emission[1], triangle.emission[2]) *
+           memory.lightAt(group.lamps + triangle.lamp);
+  return sum;
 }
 
 }  // namespace lambent::effects::diffuse::ref

@@ -1,11 +1,12 @@
 // Stage b, one invocation per position of the dirty cells: mean plus code times product over the resident planes.
-// Neighbouring positions are of one cluster, so they read the same products.
+// Neighbouring positions are of one cluster, so they read the same products. With LAMBENT_MANY_LIGHTS each sample blends
+// the products of the light samples around it.
 #include "diffuse_shared.h"
 
 layout(local_size_x = kWorkGroupSize) in;
 layout(std430, binding = kBindWork) readonly buffer Work { uint work_count; uint pad[3]; WorkItem work[]; };
 layout(std430, binding = kBindTransfers) readonly buffer Transfers { TransferRecord transfers[]; };
-layout(std430, binding = kBindPlanes) readonly buffer Planes { uint planes[]; };
+layout(std430, binding = kBindPlaces) readonly buffer Places { uint places[]; };
 layout(std430, binding = kBindProducts) readonly buffer Products { vec4 products[]; };
 layout(std430, binding = kBindTransfer) readonly buffer Transfer { uint page[]; };
 layout(std430, binding = kBindSamples) buffer Samples { vec4 samples[]; };
@@ -27,12 +28,35 @@ void main() {
   uint axes = min(page[transfer.clusters_word + 2u * cluster + 1u], transfer.plane_count);
   uint product = transfer.first_product + LAMBENT_OUTPUTS * first;
   vec3 light[LAMBENT_OUTPUTS];
+#ifdef LAMBENT_MANY_LIGHTS
+  uint lights_of = page[transfer.light_weights_word + 2u * sample_index];
+  uint weights_of = page[transfer.light_weights_word + 2u * sample_index + 1u];
+  uint products_of[kLightsPerSample];
+  float weight[kLightsPerSample];
+  uint light_count = 0u;  // weights fall: those after the first 0 are 0
+  for (uint k = 0u; k < kLightsPerSample && (weights_of >> (8u * k) & 0xffu) != 0u; ++k) {
+    weight[k] = float(weights_of >> (8u * k) & 0xffu) / 255.0;
+    products_of[k] = product + transfer.light_products * (lights_of >> (8u * k) & 0xffu);
+    light_count = k + 1u;
+  }
+  for (uint j = 0u; j < LAMBENT_OUTPUTS; ++j) light[j] = vec3(0.0);
+  for (uint k = 0u; k < light_count; ++k)
+    for (uint j = 0u; j < LAMBENT_OUTPUTS; ++j) light[j] += weight[k] * products[products_of[k] + j].rgb;
+  for (uint axis = 0u; axis < axes; ++axis) {
+    float code = float(codeOf(places[transfer.first_plane + axis], position));
+    for (uint k = 0u; k < light_count; ++k) {
+      products_of[k] += LAMBENT_OUTPUTS;
+      for (uint j = 0u; j < LAMBENT_OUTPUTS; ++j) light[j] += code * weight[k] * products[products_of[k] + j].rgb;
+    }
+  }
+#else
   for (uint j = 0u; j < LAMBENT_OUTPUTS; ++j) light[j] = products[product + j].rgb;
   for (uint axis = 0u; axis < axes; ++axis) {
     product += LAMBENT_OUTPUTS;
-    float code = float(codeOf(planes[transfer.first_plane + axis], position));
+    float code = float(codeOf(places[transfer.first_plane + axis], position));
     for (uint j = 0u; j < LAMBENT_OUTPUTS; ++j) light[j] += code * products[product + j].rgb;
   }
+#endif
   uint out_index = transfer.first_output + LAMBENT_OUTPUTS * sample_index;
   for (uint j = 0u; j < LAMBENT_OUTPUTS; ++j) {
     if (transfer.accumulate != 0u) light[j] += samples[out_index + j].rgb;

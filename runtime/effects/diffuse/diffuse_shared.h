@@ -14,9 +14,9 @@ using uint = std::uint32_t;
 #endif
 
 LAMBENT_CONSTANT kBindWork = 0u;       // WorkItem per work group
-LAMBENT_CONSTANT kBindLights = 1u;     // vec4 per coefficient, a block per group: kLightStride, then its own lights
+LAMBENT_CONSTANT kBindLights = 1u;     // vec4 per coefficient: per group kLightStride for each light sample, then its own
 LAMBENT_CONSTANT kBindTransfers = 2u;  // TransferRecord
-LAMBENT_CONSTANT kBindPlanes = 3u;     // word of each resident plane's codes in its page, with kCodes16Bit
+LAMBENT_CONSTANT kBindPlaces = 3u;     // of a transfer: where its planes and its lights lie
 LAMBENT_CONSTANT kBindProducts = 4u;   // vec4: a vector times the light, scaled to be multiplied by the code itself
 LAMBENT_CONSTANT kBindTransfer = 5u;   // arena page: codebooks (float), positions and codes
 LAMBENT_CONSTANT kBindSamples = 6u;    // arena page: vec4 per sample and output, w = 1 where it has been shaded
@@ -24,15 +24,21 @@ LAMBENT_CONSTANT kBindDraws = 2u;      // DrawRecord
 LAMBENT_CONSTANT kBindRows = 3u;       // arena page: rows of vertices
 LAMBENT_CONSTANT kBindGeometry = 4u;   // arena page: normals among others
 LAMBENT_CONSTANT kBindRadiance = 5u;   // arena page: per vertex 3 floats, E/pi, or for normal maps 27, [output][rgb]
+LAMBENT_CONSTANT kBindProxyGroups = 2u;     // ProxyGroupRecord
+LAMBENT_CONSTANT kBindProxyTriangles = 3u;  // ProxyTriangleRecord
+LAMBENT_CONSTANT kBindProxyEntries = 4u;    // ProxyEntryRecord
+LAMBENT_CONSTANT kBindProxyRadiance = 5u;   // vec4 per triangle
 
 LAMBENT_CONSTANT kWorkGroupSize = 64u;
 LAMBENT_CONSTANT kLanesPerUnit = 16u;  // of the project stage: a unit is one output of one cluster
 LAMBENT_CONSTANT kUnitsPerGroup = kWorkGroupSize / kLanesPerUnit;
 LAMBENT_CONSTANT kMaxWorkGroupsX = 65535u;  // what OpenGL 4.5 promises; longer lists fold into y
-LAMBENT_CONSTANT kLightStride = 64u;        // 8 bands; the group's own light columns follow
+LAMBENT_CONSTANT kLightStride = 64u;        // 8 bands of a light sample; the group's own light columns follow the last
+LAMBENT_CONSTANT kLightsPerSample = 4u;     // light samples that one sample of a cell is lit from
 LAMBENT_CONSTANT kMappedOutputs = 9u;       // of samples and draws with normal maps: light of bands 0..2
 LAMBENT_CONSTANT kCodes16Bit = 0x80000000u;  // 16-bit codes, else 8-bit
 LAMBENT_CONSTANT kNoRows = 0xffffffffu;
+LAMBENT_CONSTANT kNoLamp = 0xffffffffu;
 
 #ifndef __cplusplus
 // What one work group does: elements first..first + kWorkGroupSize - 1 of a cell or a draw (gpu::WorkItem).
@@ -47,8 +53,12 @@ struct WorkItem {
 //   weights    per vector two floats: offset and scale of the weight (1 and 0 of a mean)
 //   vectors    vector_size floats each: of every cluster the mean, then its axes; [channel][output][column]
 //   positions  per position, in the order of the codes: sample of the cell | cluster << 16
+// Places: words of the planes' codes in the page, with kCodes16Bit; of each light the vec4 index of the coefficient that
+// belongs to column 0. There is one light, or one per light sample of the cell.
 struct TransferRecord {
-  uint light;    // vec4 index of the coefficient that belongs to column 0
+  uint light_count;
+  uint first_light;  // into the places
+  uint light_weights_word;  // of the page: per sample of the cell four lights, four weights of 255; for several lights
   uint columns;  // all of the environment, or all of the group's own lights
   uint channels;  // 1 or 3, of the block that counts
   uint outputs;   // 1 or kMappedOutputs
@@ -60,8 +70,11 @@ struct TransferRecord {
   uint vector_size;
   uint first_value;    // of the block within a vector
   uint plane_count;    // resident
-  uint first_plane;    // into the planes' words
-  uint first_product;  // output o of vector v is products[first_product + outputs v + o]; all offsets are in the means
+  uint first_plane;    // into the places
+  // Output o of vector v under light k is products[first_product + light_products k + outputs v + o]; all offsets are in
+  // the means.
+  uint first_product;
+  uint light_products;
   uint first_output;   // vec4 index into the samples page of the cell's first sample
   uint sample_count;
   uint accumulate;  // 1: adds to what another transfer of the cell has written
@@ -81,10 +94,37 @@ struct DrawRecord {
   uint pad[3];
 };
 
+// Capture proxies: triangles that send out one radiance in all directions (runtime/bundle/capture_proxy.hpp).
+struct ProxyGroupRecord {
+  uint first_triangle;
+  uint triangle_count;
+  uint light;  // vec4 index of the coefficients of its first light sample
+  uint lamps;  // and of its own lights
+  uint order;
+  uint pad[3];
+};
+
+struct ProxyTriangleRecord {
+  float normal[3];  // group frame
+  uint first_entry;
+  float emission[3];  // at unit strength of its lamp
+  uint entry_count;
+  uint lamp;  // of the group; kNoLamp: gives off none
+  uint pad[3];
+};
+
+struct ProxyEntryRecord {
+  float reflectance[3];
+  uint sample_index;  // vec4 index into the samples page of its first output
+  uint outputs;
+  uint pad[3];
+};
+
 #ifdef __cplusplus
 #undef LAMBENT_CONSTANT
-static_assert(sizeof(TransferRecord) == 68 && offsetof(TransferRecord, first_product) == 52 &&
-              offsetof(TransferRecord, accumulate) == 64);
+static_assert(sizeof(ProxyGroupRecord) == 32 && sizeof(ProxyTriangleRecord) == 48 && sizeof(ProxyEntryRecord) == 32);
+static_assert(sizeof(TransferRecord) == 80 && offsetof(TransferRecord, first_product) == 60 &&
+              offsetof(TransferRecord, accumulate) == 76);
 static_assert(sizeof(DrawRecord) == 96 && offsetof(DrawRecord, light) == 48 && offsetof(DrawRecord, outputs) == 80);
 }  // namespace lambent::effects::diffuse
 #endif

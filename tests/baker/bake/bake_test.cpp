@@ -124,6 +124,41 @@ TEST_F(Bake, StoresTransferThatDecodesToTheScene) {
   }
 }
 
+TEST_F(Bake, StoresLightSamplesAndProxiesInTheGroupsFrame) {
+  Scene scene = stage();
+  scene.nodes[2].parent_from_node = glm::translate(glm::mat4(1.0f), {50, 0.6f, 0});
+  const auto open = [&] { return bundle::Reader::open(folder_ / "stage.lmb.glb"); };
+  ASSERT_TRUE(bakeTo("stage.lmb.glb", scene, draft()));
+  auto reader = open();
+  ASSERT_TRUE(reader) << reader.error().line();
+  for (const bundle::Group& group : reader->description().groups)
+    EXPECT_EQ(group.light_samples, std::vector{0.5f * (group.bounds_min + group.bounds_max)});
+
+  BakeOptions options = draft();
+  options.light_samples = 8;
+  const auto report = bakeTo("stage.lmb.glb", scene, options);
+  ASSERT_TRUE(report) << report.error().line();
+  EXPECT_FALSE(isUpToDate(scene, draft(), folder_ / "stage.lmb.glb"));
+  reader = open();
+  ASSERT_TRUE(reader->checkAll());
+  for (std::uint32_t g = 0; g < 2; ++g) {
+    const bundle::Group& group = reader->description().groups[g];
+    EXPECT_EQ(group.light_samples.size(), 8u);
+    EXPECT_EQ(report->groups.at(g).light_samples, 8u);
+    for (const glm::vec3& point : group.light_samples)
+      EXPECT_TRUE(glm::all(glm::lessThanEqual(glm::abs(point), glm::vec3(2.0f))))
+          << "not in the world's frame";
+    ASSERT_EQ(group.cells.size(), 1u);
+    EXPECT_EQ(reader->readLightWeights(g, 0)->size(), group.sample_count);
+    const auto proxy = reader->readProxy(g);
+    ASSERT_TRUE(proxy) << proxy.error().line();
+    ASSERT_FALSE(proxy->levels.empty());
+    EXPECT_LE(proxy->levels[0].triangle_count, bundle::kMaxProxyTriangles);
+    for (const glm::vec3& p : proxy->positions)
+      EXPECT_TRUE(glm::all(glm::lessThanEqual(p, 1.1f * group.bounds_max + 0.1f)));
+  }
+}
+
 // Whatever reads glTF reads a bundle: our own importer finds in it what was in the scene.
 TEST_F(Bake, WritesAnOrdinaryScene) {
   Scene scene = stage();
@@ -245,6 +280,7 @@ TEST_F(Bake, NamesTheOptionThatIsWrong) {
   refused([](BakeOptions& o) { o.rays = 3; }, "--rays");
   refused([](BakeOptions& o) { o.error_bound = 2.0f; }, "--error");
   refused([](BakeOptions& o) { o.max_edge_m = -1.0f; }, "--max-edge");
+  refused([](BakeOptions& o) { o.light_samples = 33; }, "--light-samples");
   refused([](BakeOptions& o) { o.effects = "diffuse,smell"; }, "--effects");
 }
 

@@ -40,26 +40,6 @@ TEST(EffectPlan, SaysWhatTheBakeWillNotShow) {
   EXPECT_TRUE(leavesOut(scene, "Metallic"));
   scene.materials[0].unlit = true;  // shows its colour whatever the light, gloss or no gloss
   EXPECT_FALSE(leavesOut(scene, "Metallic"));
-  EXPECT_FALSE(leavesOut(scene, "Rigid groups"));
-  scene.nodes[1].animated = true;
-  EXPECT_TRUE(leavesOut(scene, "Animations"));
-  EXPECT_TRUE(leavesOut(scene, "Rigid groups"));
-}
-
-TEST(EffectPlan, NamesLightsThatMoveWithoutASurface) {
-  Scene scene = sceneOf({grid({0, 0, 0}, 1.0f, 1)});
-  scene.lights.resize(1);
-  scene.nodes.resize(3);
-  scene.nodes[1].children = {2};
-  scene.nodes[2].parent = 1;
-  scene.nodes[2].name = "torch";
-  scene.nodes[2].light = 0;
-  scene.roots.push_back(1);
-  EXPECT_FALSE(leavesOut(scene, "torch"));  // stands still, as the floor does
-  scene.nodes[1].movable = true;
-  EXPECT_TRUE(leavesOut(scene, "The light of torch shines on nothing"));
-  scene.nodes[1].mesh = 0;  // and now it is carried
-  EXPECT_FALSE(leavesOut(scene, "torch"));
 }
 
 TEST(EffectPlan, WarnsAboutAnimationsThatStretchButNotThoseThatGrow) {

@@ -50,7 +50,7 @@ TEST(GroupLights, BelongToTheGroupThatTheyMoveWith) {
   ASSERT_EQ(groups.size(), 2u);
   EXPECT_TRUE(findGroupLights(scene, groups[0]).empty());
   EXPECT_EQ(findGroupLights(scene, groups[1]).size(), 2u);
-  EXPECT_TRUE(lightsWithoutGroup(scene, groups).empty());
+  EXPECT_EQ(groupRootOf(scene, 2), groups[1].root);
 }
 
 TEST(GroupLights, ThatMoveWithNoSurfaceBelongToNone) {
@@ -59,7 +59,7 @@ TEST(GroupLights, ThatMoveWithNoSurfaceBelongToNone) {
   const auto groups = findRigidGroups(scene);
   ASSERT_EQ(groups.size(), 1u);
   EXPECT_EQ(findGroupLights(scene, groups[0]).size(), 1u);
-  EXPECT_EQ(lightsWithoutGroup(scene, groups), std::vector<std::uint32_t>{2});
+  EXPECT_EQ(groupRootOf(scene, 2), 2);
 }
 
 TEST(GroupLights, AreNotMadeOfWhatIsDarkUnlitOrBlended) {

@@ -50,6 +50,9 @@ Blob blobOf(std::size_t size, unsigned first) {
   return blob;
 }
 
+const std::vector<LightWeights> kWeights = {
+    kOneLight, {{1, 2, 0, 0}, {200, 55, 0, 0}}, {{2, 1, 0, 0}, {128, 127, 0, 0}}};
+
 // A description that uses every list but meshes (mesh_test.cpp has those), with values that are easy to lose.
 struct Sample {
   Description description;
@@ -139,6 +142,18 @@ Sample sampleBundle() {
                   {GroupLight::Kind::Node, 1, {0.0f, 40.0f, 0.5f}}};
   group.cells = {{0, 3, glm::vec3(-1.0f), glm::vec3(1.0f), {plain, lamps}},
                  {3, 2, glm::vec3(-1.0f), glm::vec3(1.0f), {mapped}}};
+  // Cell 0 is lit from all three light samples, cell 1 from the last.
+  group.light_samples = {glm::vec3(0.0f), {0.1f, -2.0f, 3e8f}, glm::vec3(1.0f)};
+  group.cells[0].light_samples = {0, 1, 2};
+  group.cells[0].light_weights =
+      static_cast<std::int32_t>(add(PayloadType::LightWeights, encodeLightWeights(kWeights)));
+  group.cells[1].light_samples = {2};
+  CaptureProxy proxy;
+  proxy.positions = {glm::vec3(0.0f), {1.0f, 0.0f, 0.0f}, {0.0f, 1.0f, 0.0f}};
+  proxy.triangles = {{{0, 1, 2}, true, {1.0f, 2.0f, 3.0f}, 1, 0, 1}};
+  proxy.entries = {{4, {1.0f, 0.5f, 0.0f}}};
+  proxy.levels = {{0, 1, 0.25f}};
+  group.proxy = static_cast<std::int32_t>(add(PayloadType::CaptureProxy, encodeCaptureProxy(proxy)));
   d.groups = {group};
   return s;
 }
@@ -202,6 +217,28 @@ TEST_F(BundleFile, GivesBackClustersLampsAndNormalMappedCells) {
   EXPECT_TRUE(reader->checkAll());
 }
 
+TEST_F(BundleFile, GivesBackLightSamplesAndProxies) {
+  Sample sample = sampleBundle();
+  sample.description.groups.emplace_back().name = "bare";  // no cells, no proxy
+  ASSERT_TRUE(write(path_, sample.description, sample.blobs));
+  auto reader = Reader::open(path_);
+  ASSERT_TRUE(reader) << reader.error().line();
+  const Group &group = reader->description().groups[0], &wanted = sample.description.groups[0];
+  EXPECT_EQ(group.light_samples, wanted.light_samples);
+  EXPECT_EQ(group.cells[0].light_samples, wanted.cells[0].light_samples);
+  EXPECT_EQ(group.cells[1].light_samples, wanted.cells[1].light_samples);
+  EXPECT_EQ(*reader->readLightWeights(0, 0), kWeights);
+  EXPECT_EQ(*reader->readLightWeights(0, 1), (std::vector<LightWeights>(2, kOneLight)));
+  const auto proxy = reader->readProxy(0);
+  ASSERT_TRUE(proxy) << proxy.error().line();
+  ASSERT_EQ(proxy->entries.size(), 1u);
+  EXPECT_EQ(proxy->entries[0].sample, 4u);
+  EXPECT_EQ(proxy->triangles[0].light, 1);
+  EXPECT_EQ(reader->description().groups[1].light_samples.size(), 1u);
+  EXPECT_TRUE(reader->readProxy(1)->levels.empty());
+  EXPECT_TRUE(reader->checkAll());
+}
+
 TEST_F(BundleFile, IsTheSameBytesTwice) {
   const Sample sample = sampleBundle();
   ASSERT_TRUE(write(path_, sample.description, sample.blobs));
@@ -250,13 +287,15 @@ TEST_F(BundleFile, TooNewIsCalledTooNew) {
 }
 
 TEST_F(BundleFile, AnOlderVersionIsToBeBakedAgain) {
-  Sample sample = sampleBundle();
-  sample.description.version = kVersionFirstLight;
-  ASSERT_TRUE(write(path_, sample.description, sample.blobs));
-  const auto reader = Reader::open(path_);
-  ASSERT_FALSE(reader);
-  EXPECT_NE(reader.error().problem.find("was written by an older program"), std::string::npos);
-  EXPECT_EQ(reader.error().mend, "bake it again");
+  for (const std::uint32_t version : {kVersionFirstLight, kVersionClusteredTransfer}) {
+    Sample sample = sampleBundle();
+    sample.description.version = version;
+    ASSERT_TRUE(write(path_, sample.description, sample.blobs));
+    const auto reader = Reader::open(path_);
+    ASSERT_FALSE(reader) << version;
+    EXPECT_NE(reader.error().problem.find("was written by an older program"), std::string::npos);
+    EXPECT_EQ(reader.error().mend, "bake it again");
+  }
 }
 
 // Valid checksums around nonsense: what a hostile or buggy writer could make.
@@ -306,6 +345,30 @@ TEST_F(BundleFile, IndicesOutOfRangeAreRefusedByName) {
         g.cells[1].first_sample = 2;
       },
       "stands after cells with nine");
+  const auto cell = [](Description& d) -> Cell& { return d.groups[0].cells[0]; };
+  refused([](Description& d) { d.groups[0].light_samples.clear(); }, "lightSamples are none");
+  refused([](Description& d) { d.groups[0].light_samples.pop_back(); }, "cells[0].lightSamples[2]");
+  refused([](Description& d) { d.groups[0].light_samples.emplace_back(0.0f); }, "not all taken by a cell");
+  refused([&](Description& d) { cell(d).light_samples = {}; }, "are not 1 to 64");
+  refused([&](Description& d) { cell(d).light_samples = {0, 2, 1}; }, "lightSamples[2] does not rise");
+  refused([&](Description& d) { cell(d).light_samples = {0, 1, 1}; }, "lightSamples[2] does not rise");
+  refused(
+      [&](Description& d) {
+        d.groups[0].light_samples.resize(65);
+        for (std::uint32_t i = 3; i < 65; ++i) cell(d).light_samples.push_back(i);
+      },
+      "are not 1 to 64");
+  refused([&](Description& d) { cell(d).light_samples = {1}; }, "lightWeights are there for one");
+  refused([&](Description& d) { cell(d).light_weights = -1; }, "lightWeights is missing");
+  refused([&](Description& d) { cell(d).light_weights = 0; }, "lightWeights is a payload of another type");
+  refused(
+      [&](Description& d) {
+        d.groups[0].cells[1].light_samples = {0, 1};
+        d.groups[0].cells[1].light_weights = cell(d).light_weights;
+      },
+      "lightWeights is a payload of another size");
+  refused([](Description& d) { d.groups[0].proxy = 0; }, "proxy is a payload of another type");
+  refused([](Description& d) { d.groups[0].proxy = 99; }, "proxy is 99");
   refused([](Description& d) { d.payloads[0].raw_length = 17; }, "rawLength");
   refused([](Description& d) { d.groups[0].rest_rotation = glm::quat(0.0f, 0.0f, 0.0f, 0.0f); },
           "restRotation");

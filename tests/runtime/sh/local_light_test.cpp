@@ -79,8 +79,8 @@ Coefficients discByQuadrature(double aside, double height, const glm::dquat& tur
 
 TEST(ShLocalLight, DiscsAreWhatTheirSolidAngleHolds) {
   Random random(31);
-  for (const double aside : {0.0, 1e-9, 0.3, 0.9, 0.99, 1.01, 1.2, 3.0, 40.0, 5000.0})
-    for (const double height : {1e-3, 0.05, 0.5, 1.0, 7.0, 300.0}) {
+  for (const double aside : {0.0, 1e-9, 0.3, 0.9, 0.99, 0.999, 1.001, 1.01, 1.2, 3.0, 40.0, 5000.0})
+    for (const double height : {2e-4, 1e-3, 0.05, 0.5, 1.0, 7.0, 300.0}) {
       const glm::dquat turn = random.rotation();
       const double radius = std::exp(6 * random.uniform() - 3);
       const glm::dvec3 center = radius * (turn * glm::dvec3(aside, 0, height)),

@@ -33,6 +33,10 @@ struct Name {
   std::string operator()(const PlaneReady& r) const {
     return "plane " + join({r.group, r.cell, r.transfer, r.plane});
   }
+  std::string operator()(const LightWeightsReady& r) const {
+    return "light weights " + join({r.group, r.cell});
+  }
+  std::string operator()(const ProxyReady& r) const { return "proxy " + join({r.group}); }
   static std::string join(std::initializer_list<std::uint32_t> numbers) {
     std::string text;
     for (const std::uint32_t n : numbers) {

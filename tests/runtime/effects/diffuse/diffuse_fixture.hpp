@@ -2,6 +2,7 @@
 // rows, clusters and codes, as descriptions and as what the loader would hand on.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <random>
@@ -19,7 +20,9 @@ struct RandomBundle {
   bundle::Description description;
   std::vector<streaming::Ready> meshes, rows;
   std::vector<std::vector<streaming::CodebookReady>> codebooks;  // per cell, by transfer
-  std::vector<std::vector<streaming::PlaneReady>> planes;  // per cell, of the environment, then the lamps
+  std::vector<std::vector<streaming::PlaneReady>> planes;   // per cell, of the environment, then the lamps
+  std::vector<streaming::LightWeightsReady> light_weights;  // per cell; none where there is one light sample
+  std::vector<streaming::ProxyReady> proxies;               // per group
 };
 
 struct RandomBundleOptions {
@@ -33,6 +36,8 @@ struct RandomBundleOptions {
   std::uint32_t mapped_cells = 0;  // and so many with nine outputs
   std::uint32_t samples = 101;     // per cell, odd on purpose
   std::uint32_t vertices = 131;
+  std::uint32_t light_samples = 1;    // per group, every cell uses all but the first
+  std::uint32_t proxy_triangles = 0;  // per group
 };
 
 class BundleMaker {
@@ -69,6 +74,7 @@ class BundleMaker {
     for (std::uint32_t k = 0; k < options.lamps; ++k)
       group.lights.push_back(
           {.kind = bundle::GroupLight::Kind::Material, .index = 0, .color = glm::vec3(1.0f)});
+    group.light_samples.assign(options.light_samples, glm::vec3(0.0f));
     for (std::uint32_t c = 0; c < cells; ++c)
       group.cells.push_back(makeCell(made, options, g, c, c < options.cells ? 1 : 9));
     gltf::Node node;
@@ -83,7 +89,48 @@ class BundleMaker {
     const std::uint32_t plain = options.cells * options.samples;
     if (plain > 0) addDraw(made, options, g, 1, 0, plain);
     if (options.mapped_cells > 0) addDraw(made, options, g, 9, plain, group.sample_count);
+    if (options.proxy_triangles > 0) {
+      group.proxy = 0;
+      made.proxies.push_back({.group = g, .proxy = makeProxy(options, group.sample_count)});
+    }
     description.groups.push_back(std::move(group));
+  }
+
+  // Triangles with none to eight entries, every other one shining.
+  bundle::CaptureProxy makeProxy(const RandomBundleOptions& options, std::uint32_t sample_count) {
+    bundle::CaptureProxy proxy;
+    for (std::uint32_t t = 0; t < options.proxy_triangles; ++t) {
+      bundle::ProxyTriangle triangle;
+      for (std::uint32_t v = 0; v < 3; ++v) {
+        triangle.vertices[v] = static_cast<std::uint32_t>(proxy.positions.size());
+        proxy.positions.push_back(direction());
+      }
+      triangle.first_entry = static_cast<std::uint32_t>(proxy.entries.size());
+      triangle.entry_count = t % 9;
+      for (std::uint32_t e = 0; e < triangle.entry_count; ++e)
+        proxy.entries.push_back({.sample = below(sample_count), .reflectance = 0.1f * color()});
+      if (options.lamps > 0 && t % 2 == 1) {
+        triangle.light = static_cast<std::int32_t>(below(options.lamps));
+        triangle.emission = color();
+      }
+      proxy.triangles.push_back(triangle);
+    }
+    proxy.levels.push_back({.first_triangle = 0, .triangle_count = options.proxy_triangles});
+    return proxy;
+  }
+  glm::vec3 color() { return {uniform(0, 1), uniform(0, 1), uniform(0, 1)}; }
+
+  // Up to four different lights, weights that fall and sum to 255.
+  bundle::LightWeights lightWeights(std::uint32_t lights) {
+    bundle::LightWeights weights;
+    const std::uint32_t count = 1 + below(std::min(lights, 4u)), first = below(lights);
+    std::uint32_t left = 255;
+    for (std::uint32_t k = 0; k < count; ++k) {
+      weights.light[k] = static_cast<std::uint8_t>((first + k) % lights);
+      weights.weight[k] = static_cast<std::uint8_t>(k + 1 == count ? left : (left + 1) / 2 + 10);
+      left -= weights.weight[k];
+    }
+    return weights;
   }
 
   void addDraw(RandomBundle& made, const RandomBundleOptions& options, std::uint32_t g, std::uint32_t outputs,
@@ -104,6 +151,15 @@ class BundleMaker {
     cell.sample_count = options.samples;
     made.codebooks.emplace_back();
     made.planes.emplace_back();
+    if (options.light_samples > 2) {
+      cell.light_samples.clear();
+      for (std::uint32_t k = 1; k < options.light_samples; ++k) cell.light_samples.push_back(k);
+      cell.light_weights = 0;
+      streaming::LightWeightsReady ready{.group = g, .cell = c, .samples = {}};
+      for (std::uint32_t s = 0; s < options.samples; ++s)
+        ready.samples.push_back(lightWeights(options.light_samples - 1));
+      made.light_weights.push_back(std::move(ready));
+    }
     bundle::TransferShape shape{.order = options.order,
                                 .light_columns = 0,
                                 .shadowed_channels = options.shadowed_channels,

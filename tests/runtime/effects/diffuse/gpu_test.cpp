@@ -5,6 +5,8 @@
 
 #include "runtime/effects/diffuse/diffuse.hpp"
 #include "runtime/effects/diffuse/diffuse_ref.hpp"
+#include "runtime/effects/diffuse/proxies.hpp"
+#include "runtime/sh/zonal.hpp"
 #include "tests/runtime/effects/diffuse/diffuse_fixture.hpp"
 #include "tests/support/gpu_context.hpp"
 
@@ -16,7 +18,9 @@ struct Bench {
   Diffuse diffuse;
   lighting::GroupLights lights;
   testing::RandomBundle made;
+  Proxies proxies;
   std::vector<lighting::GroupPlace> places;
+  std::vector<sh::LightVector> incident;
   lighting::Environment environment = *lighting::Environment::create(
       {spec::SunLight{
            .azimuth_deg = 30, .elevation_deg = 40, .angle_deg = 25, .radiance = {3.0f, 2.0f, 1.0f}},
@@ -26,10 +30,17 @@ struct Bench {
         std::uint64_t page_bytes = gpu::Arena::kMaxPageBytes)
       : residency(page_bytes), made(maker.make(options)) {
     EXPECT_TRUE(residency.add(made.description));
-    for (std::uint32_t g = 0; g < options.groups; ++g)
+    for (std::uint32_t k = 0; k < options.light_samples; ++k)
+      incident.push_back(sh::discLight(static_cast<int>(options.order), maker.direction(), 0.7,
+                                       glm::vec3(1.0f, 2.0f, 0.5f)));
+    for (std::uint32_t g = 0; g < options.groups; ++g) {
       places.push_back({.world_from_group = maker.rotation(),
                         .order = options.order,
                         .lamps = std::vector<glm::vec3>(options.lamps, glm::vec3(0.7f, 0.3f, 1.1f))});
+      if (options.light_samples > 1) places.back().incident.clear();
+      for (std::uint32_t k = 0; k < options.light_samples && options.light_samples > 1; ++k)
+        places.back().incident.push_back({.light = &incident[k], .version = 1});
+    }
   }
   void upload(const streaming::Ready& item) { ASSERT_TRUE(residency.upload(0, item)); }
   void uploadMeshes() {
@@ -43,6 +54,7 @@ struct Bench {
     for (std::size_t cell = 0; cell < made.codebooks.size(); ++cell) uploadCell(cell, count);
   }
   void uploadCell(std::size_t cell, std::uint32_t count) {
+    if (!made.light_weights.empty()) upload(made.light_weights[cell]);
     for (const auto& item : made.codebooks[cell]) upload(item);
     for (const auto& plane : made.planes[cell])
       if (plane.plane < count) upload(plane);
@@ -82,9 +94,9 @@ struct Bench {
       memory.transfer = transfer[resident.block.page];
       for (uint t = 0; t < tables.cells[i].count; ++t) {
         const TransferRecord& record = tables.transfers[tables.cells[i].first + t];
-        ref::projectTransfer(memory, record, products);
+        ref::projectTransfer(memory, record, tables.places, products);
         for (uint position = 0; position < record.sample_count; ++position)
-          ref::shadePosition(memory, record, tables.planes, products, position,
+          ref::shadePosition(memory, record, tables.places, products, position,
                              samples[residency.groups()[resident.group].samples.page]);
       }
     }
@@ -158,6 +170,84 @@ TEST_F(DiffuseGpu, MatchesItsTwinWithClustersLampsBothBlocksAndNormalMaps) {
               << clusters << " clusters, " << lamps << " lamps, " << mapped << " mapped cells";
         }
       }
+}
+
+TEST_F(DiffuseGpu, BlendsSeveralLightSamplesAsItsTwin) {
+  testing::BundleMaker maker(21);
+  for (const std::uint32_t lights : {3u, 33u})
+    for (const std::uint32_t mapped : {0u, 1u}) {
+      Bench bench(maker, {.order = 5,
+                          .full_channels = 3,
+                          .clusters = 5,
+                          .lamps = 2,
+                          .cells = 2,
+                          .mapped_cells = mapped,
+                          .samples = 423,
+                          .light_samples = lights});
+      bench.uploadMeshes();
+      bench.uploadRows();
+      bench.uploadTransfer(7);
+      bench.shade();
+      EXPECT_LT(bench.differenceToTwin(), 1e-3) << lights << " lights, " << mapped << " mapped cells";
+    }
+}
+
+TEST_F(DiffuseGpu, ShadesOnlyCellsWhoseLightSamplesChanged) {
+  testing::BundleMaker maker(22);
+  Bench bench(maker, {.groups = 2, .cells = 2, .light_samples = 4});
+  bench.uploadMeshes();
+  bench.uploadRows();
+  bench.uploadTransfer(7);
+  bench.shade();
+  bench.places[1].incident[0].version = 2;  // which no cell uses
+  bench.shade();
+  EXPECT_EQ(bench.diffuse.shadedLast().cells, 0u);
+  bench.places[1].incident[2].version = 2;
+  bench.shade();
+  EXPECT_EQ(bench.diffuse.shadedLast().cells, 2u) << "those of the second group";
+  EXPECT_LT(bench.differenceToTwin(), 1e-3);
+}
+
+TEST_F(DiffuseGpu, ProxiesSendOutWhatTheirSamplesReceive) {
+  testing::BundleMaker maker(23);
+  Bench bench(maker, {.order = 4,
+                      .lamps = 3,
+                      .groups = 3,
+                      .cells = 1,
+                      .mapped_cells = 1,
+                      .light_samples = 5,
+                      .proxy_triangles = 77});
+  bench.uploadMeshes();
+  bench.uploadRows();
+  for (const auto& item : bench.made.proxies) bench.upload(item);
+  for (const bool transfer_here : {false, true}) {
+    if (transfer_here) bench.uploadTransfer(7);
+    bench.shade();
+    gpu::Counters counters;
+    ASSERT_TRUE(bench.proxies.shade(bench.residency, bench.lights, bench.diffuse, counters));
+    EXPECT_EQ(counters.dispatches, 1u);
+    std::vector<glm::vec4> radiance(bench.proxies.triangles().size());
+    ASSERT_EQ(radiance.size(), 3u * 77u);
+    bench.proxies.radiance().read(0, std::span(radiance));
+    for (std::size_t g = 0; g < 3; ++g) {
+      const gpu::Buffer& page = bench.residency.samples().page(bench.residency.groups()[g].samples.page);
+      std::vector<glm::vec4> samples(page.byteCount() / sizeof(glm::vec4));
+      page.read(0, std::span(samples));
+      ref::Memory memory;
+      memory.lights = bench.lights.coefficients();
+      memory.samples = samples;
+      const ProxyGroupRecord& group = bench.proxies.groups()[g];
+      for (uint t = group.first_triangle; t < group.first_triangle + group.triangle_count; ++t) {
+        const glm::vec3 expected =
+            ref::proxyRadiance(memory, group, bench.proxies.triangles()[t], bench.proxies.entries());
+        EXPECT_LT(glm::distance(glm::vec3(radiance[t]), expected), 1e-3f * (1.0f + glm::length(expected)))
+            << "triangle " << t << (transfer_here ? " with" : " without") << " transfer";
+      }
+    }
+    counters = {};
+    ASSERT_TRUE(bench.proxies.shade(bench.residency, bench.lights, bench.diffuse, counters));
+    EXPECT_EQ(counters.dispatches, 0u) << "nothing changed";
+  }
 }
 
 TEST_F(DiffuseGpu, MatchesItsTwinWithMorePlanesThanLanes) {

@@ -44,7 +44,7 @@ namespace {
 
 // A transfer as residency lays it out, alone in its page.
 struct Page {
-  std::vector<uint> words, planes;
+  std::vector<uint> words, places;
   TransferRecord record{};
 
   Page(const testing::RandomBundle& made, std::size_t transfer_index, bool full) {
@@ -52,7 +52,15 @@ struct Page {
     const bundle::TransferShape& shape = transfer.shape;
     const bundle::Codebook& codebook = made.codebooks[0][transfer_index].codebook;
     const auto& positions = made.codebooks[0][transfer_index].positions;
-    record = {.light = shape.order > 0 ? 0 : kLightStride,
+    const std::uint32_t lights =
+        shape.order > 0 && !made.light_weights.empty()
+            ? static_cast<std::uint32_t>(made.description.groups[0].light_samples.size()) - 1
+            : 1;
+    for (std::uint32_t k = 0; k < lights; ++k)
+      places.push_back(shape.order > 0 ? kLightStride * k : lampsOf(made));
+    record = {.light_count = lights,
+              .first_light = 0,
+              .light_weights_word = 0,
               .columns = shape.columns(),
               .channels = full ? shape.full_channels : shape.shadowed_channels,
               .outputs = shape.outputs,
@@ -64,8 +72,9 @@ struct Page {
               .vector_size = shape.size(),
               .first_value = full ? shape.shadowed_channels * shape.outputs * shape.columns() : 0,
               .plane_count = static_cast<uint>(transfer.planes.size()),
-              .first_plane = 0,
+              .first_plane = lights,
               .first_product = 0,
+              .light_products = (transfer.clusters + transfer.axes) * shape.outputs,
               .first_output = 0,
               .sample_count = static_cast<uint>(positions.size()),
               .accumulate = transfer_index > 0 ? 1u : 0u};
@@ -86,10 +95,22 @@ struct Page {
     words.insert(words.end(), positions.begin(), positions.end());
     for (const streaming::PlaneReady& plane : made.planes[0]) {
       if (plane.transfer != transfer_index) continue;
-      planes.push_back(size() | (transfer.planes[plane.plane].bits == 16 ? kCodes16Bit : 0u));
+      places.push_back(size() | (transfer.planes[plane.plane].bits == 16 ? kCodes16Bit : 0u));
       words.resize(words.size() + (plane.codes.size() + 3) / 4);
-      std::memcpy(&words[planes.back() & ~kCodes16Bit], plane.codes.data(), plane.codes.size());
+      std::memcpy(&words[places.back() & ~kCodes16Bit], plane.codes.data(), plane.codes.size());
     }
+    if (lights > 1) {
+      record.light_weights_word = size();
+      const auto& weights = made.light_weights[0].samples;
+      words.resize(words.size() + 2 * weights.size());
+      std::memcpy(&words[record.light_weights_word], weights.data(), 8 * weights.size());
+    }
+  }
+  // The lamps come after the light samples.
+  static uint lampsOf(const testing::RandomBundle& made) {
+    return made.light_weights.empty()
+               ? kLightStride
+               : kLightStride * static_cast<uint>(made.description.groups[0].light_samples.size() - 1);
   }
   uint size() const { return static_cast<uint>(words.size()); }
   void append(const std::vector<float>& values) {
@@ -128,9 +149,19 @@ std::vector<glm::vec3> decodedTimesLight(const testing::RandomBundle& made,
         for (std::uint32_t c = 0; c < 3; ++c)
           for (std::uint32_t i = 0; i < shape.columns(); ++i) {
             const std::uint32_t channel = first + (channels == 3 ? c : 0);
+            float arriving = 0.0f;
+            if (shape.order == 0) {
+              arriving = light[Page::lampsOf(made) + i][static_cast<int>(c)];
+            } else if (made.light_weights.empty()) {
+              arriving = light[i][static_cast<int>(c)];
+            } else {
+              const bundle::LightWeights& weights = made.light_weights[0].samples[s];
+              for (std::size_t k = 0; k < 4; ++k)
+                arriving += static_cast<float>(weights.weight[k]) / 255.0f *
+                            light[kLightStride * weights.light[k] + i][static_cast<int>(c)];
+            }
             out[s * shape.outputs + j][static_cast<int>(c)] +=
-                vectors[s * shape.size() + (channel * shape.outputs + j) * shape.columns() + i] *
-                light[(shape.order > 0 ? 0 : kLightStride) + i][static_cast<int>(c)];
+                vectors[s * shape.size() + (channel * shape.outputs + j) * shape.columns() + i] * arriving;
           }
   }
   return out;
@@ -141,39 +172,46 @@ std::vector<glm::vec3> decodedTimesLight(const testing::RandomBundle& made,
 TEST(DiffuseTwin, ShadesSamplesAsDecodedTransferTimesLight) {
   testing::BundleMaker maker(4);
   for (const std::uint32_t clusters : {1u, 3u, 300u})
-    for (const std::uint32_t lamps : {0u, 5u})
-      for (const bool mapped : {false, true})
-        for (const bool full : {false, true}) {
-          const testing::RandomBundle made = maker.make({.order = 3,
-                                                         .shadowed_channels = mapped ? 3u : 1u,
-                                                         .full_channels = mapped ? 1u : 3u,
-                                                         .planes = 5,
-                                                         .clusters = clusters,
-                                                         .lamps = lamps,
-                                                         .groups = 1,
-                                                         .cells = mapped ? 0u : 1u,
-                                                         .mapped_cells = mapped ? 1u : 0u});
-          std::vector<glm::vec4> light = randomLight(maker, 3);
-          for (std::uint32_t k = 0; k < lamps; ++k)
-            light.emplace_back(maker.uniform(0, 1), maker.uniform(0, 1), maker.uniform(0, 1), 0.0f);
-          const std::vector<glm::vec3> expected = decodedTimesLight(made, light, full);
-          std::vector<glm::vec4> samples(expected.size(), glm::vec4(0.0f));
-          for (std::size_t t = 0; t < made.codebooks[0].size(); ++t) {
-            const Page page(made, t, full);
-            ref::Memory memory;
-            memory.lights = light;
-            memory.transfer = page.words;
-            std::vector<glm::vec4> products(page.words.size());
-            ref::projectTransfer(memory, page.record, products);
-            for (uint p = 0; p < page.record.sample_count; ++p)
-              ref::shadePosition(memory, page.record, page.planes, products, p, samples);
+    for (const std::uint32_t lights : {1u, 7u})
+      for (const std::uint32_t lamps : {0u, 5u})
+        for (const bool mapped : {false, true})
+          for (const bool full : {false, true}) {
+            const testing::RandomBundle made = maker.make({.order = 3,
+                                                           .shadowed_channels = mapped ? 3u : 1u,
+                                                           .full_channels = mapped ? 1u : 3u,
+                                                           .planes = 5,
+                                                           .clusters = clusters,
+                                                           .lamps = lamps,
+                                                           .groups = 1,
+                                                           .cells = mapped ? 0u : 1u,
+                                                           .mapped_cells = mapped ? 1u : 0u,
+                                                           .light_samples = lights});
+            std::vector<glm::vec4> light = randomLight(maker, 3);
+            for (std::uint32_t k = 2; k < lights; ++k) {
+              const std::vector<glm::vec4> more = randomLight(maker, 3);
+              light.insert(light.end(), more.begin(), more.end());
+            }
+            for (std::uint32_t k = 0; k < lamps; ++k)
+              light.emplace_back(maker.uniform(0, 1), maker.uniform(0, 1), maker.uniform(0, 1), 0.0f);
+            const std::vector<glm::vec3> expected = decodedTimesLight(made, light, full);
+            std::vector<glm::vec4> samples(expected.size(), glm::vec4(0.0f));
+            for (std::size_t t = 0; t < made.codebooks[0].size(); ++t) {
+              const Page page(made, t, full);
+              ref::Memory memory;
+              memory.lights = light;
+              memory.transfer = page.words;
+              std::vector<glm::vec4> products(lights * page.words.size());
+              ref::projectTransfer(memory, page.record, page.places, products);
+              for (uint p = 0; p < page.record.sample_count; ++p)
+                ref::shadePosition(memory, page.record, page.places, products, p, samples);
+            }
+            for (std::size_t i = 0; i < samples.size(); ++i) {
+              // Values are of size 1, sums of 100 floats.
+              EXPECT_LT(glm::distance(glm::vec3(samples[i]), expected[i]), 1e-4f)
+                  << clusters << " clusters, " << lights << " lights";
+              EXPECT_EQ(samples[i].w, 1.0f);
+            }
           }
-          for (std::size_t i = 0; i < samples.size(); ++i) {
-            // Values are of size 1, sums of 100 floats.
-            EXPECT_LT(glm::distance(glm::vec3(samples[i]), expected[i]), 1e-4f) << clusters;
-            EXPECT_EQ(samples[i].w, 1.0f);
-          }
-        }
 }
 
 TEST(DiffuseTwin, MappedLightOfAnUnshadowedVertexIsTheLight) {

@@ -1,0 +1,144 @@
+// What moving light is for: a ball that tints the wall it rolls along, a lamp that swings, a screen that
+// takes its light from the teapot.
+#include <cmath>
+#include <numbers>
+
+#include "assets/scenes.hpp"
+#include "assets/shapes.hpp"
+#include "assets/teapot.hpp"
+
+namespace lambent::assets {
+
+namespace {
+
+constexpr float kPi = std::numbers::pi_v<float>;
+constexpr float kHalfWidth = 2.4f, kBack = -1.2f, kFront = 1.8f, kHeight = 2.2f;
+constexpr float kCell = 0.06f;
+
+enum MaterialIndex { kFloor, kWall, kRed, kPorcelain, kWood, kBrass };
+
+// There and back along the wall in ten seconds, without slipping.
+Motion rolling(float radius) {
+  Motion motion;
+  constexpr int kKeys = 40;
+  constexpr float kReach = 1.7f;
+  for (int i = 0; i <= kKeys; ++i) {
+    const float phase = static_cast<float>(i) / kKeys;
+    const float x = -kReach * std::cos(2.0f * kPi * phase);
+    motion.times_s.push_back(10.0f * phase);
+    motion.translations.emplace_back(x, radius, kBack + radius + 0.12f);
+    motion.rotations.push_back(glm::angleAxis(-x / radius, glm::vec3(0, 0, 1)));
+  }
+  return motion;
+}
+
+// The lamp's arm turns to and fro about where it hangs.
+Motion swinging(glm::vec3 hook) {
+  Motion motion;
+  constexpr int kKeys = 32;
+  for (int i = 0; i <= kKeys; ++i) {
+    const float phase = static_cast<float>(i) / kKeys;
+    motion.times_s.push_back(5.0f * phase);
+    motion.translations.push_back(hook);
+    motion.rotations.push_back(glm::angleAxis(0.42f * std::sin(2.0f * kPi * phase), glm::vec3(0, 0, 1)));
+  }
+  return motion;
+}
+
+// In front of the teapot, and for a while away to the side.
+Motion sliding() {
+  return {.times_s = {0.0f, 2.0f, 4.0f, 6.0f, 8.0f, 10.0f},
+          .translations = {{2.0f, 0, 0.35f},
+                           {2.0f, 0, 0.35f},
+                           {1.0f, 0, 0.35f},
+                           {1.0f, 0, 0.35f},
+                           {2.0f, 0, 0.35f},
+                           {2.0f, 0, 0.35f}},
+          .rotations = {}};
+}
+
+// An open shade around the bulb, hanging from the origin of the arm.
+Mesh lampShade(float arm) {
+  const std::vector<glm::vec2> profile = {
+      {0.0f, 0.0f}, {0.17f, -0.20f}, {0.155f, -0.20f}, {0.03f, -0.03f}, {0.0f, -0.03f}};
+  std::vector<glm::vec2> upwards(profile.rbegin(), profile.rend());
+  Mesh shade = lathe(upwards, 48, 0.03f), mesh;
+  append(mesh, shade, glm::mat4(1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, -arm, 0, 1));
+  return mesh;
+}
+
+}  // namespace
+
+Scene playroom() {
+  Scene scene;
+  scene.name = "playroom";
+  scene.materials = {{.name = "floor", .base_color = {0.52f, 0.47f, 0.41f}},
+                     {.name = "white wall", .base_color = {0.85f, 0.85f, 0.83f}},
+                     {.name = "red ball", .base_color = {0.80f, 0.05f, 0.04f}},
+                     {.name = "porcelain", .base_color = {0.82f, 0.81f, 0.78f}, .double_sided = true},
+                     {.name = "wood", .base_color = {0.34f, 0.20f, 0.10f}},
+                     {.name = "brass", .base_color = {0.55f, 0.40f, 0.16f}}};
+  const auto add = [&](const std::string& name, Mesh mesh, MaterialIndex material) {
+    scene.meshes.push_back({name, std::move(mesh), material});
+    return static_cast<int>(scene.meshes.size()) - 1;
+  };
+  const auto place = [&](Node node) {
+    scene.nodes.push_back(std::move(node));
+    return static_cast<int>(scene.nodes.size()) - 1;
+  };
+
+  const float width = 2 * kHalfWidth;
+  place({.name = "floor",
+         .mesh = add("floor", plane({-kHalfWidth, 0, kFront}, {width, 0, 0}, {0, 0, kBack - kFront}, kCell),
+                     kFloor)});
+  place({.name = "white wall",
+         .mesh = add("white wall", plane({-kHalfWidth, 0, kBack}, {width, 0, 0}, {0, kHeight, 0}, kCell),
+                     kWall)});
+
+  constexpr float kBallRadius = 0.32f;
+  Node ball{.name = "red ball", .mesh = add("red ball", sphere(kBallRadius, 14), kRed)};
+  ball.motion = rolling(kBallRadius);
+  ball.translation = ball.motion.translations.front();
+  ball.rotation = ball.motion.rotations.front();
+  place(std::move(ball));
+
+  Node stand{.name = "teapot on its stand",
+             .mesh = add("stand", box({-0.28f, 0, -0.28f}, {0.28f, 0.5f, 0.28f}, 0.07f), kWood),
+             .translation = {1.0f, 0, -0.25f}};
+  stand.movable = true;
+  const int stand_node = place(std::move(stand));
+  place({.name = "teapot",
+         .mesh = add("teapot", teapot(/*cells=*/8, /*height_m=*/0.52f), kPorcelain),
+         .translation = {0, 0.5f, 0},
+         .rotation = glm::angleAxis(0.5f, glm::vec3(0, 1, 0)),
+         .parent = stand_node});
+
+  Node screen{.name = "screen",
+              .mesh = add("screen", box({-0.36f, 0.02f, -0.02f}, {0.36f, 1.35f, 0.02f}, 0.08f), kWood)};
+  screen.motion = sliding();
+  screen.translation = screen.motion.translations.front();
+  place(std::move(screen));
+
+  constexpr float kArm = 0.5f;
+  Node lamp{.name = "lamp", .mesh = add("lamp", lampShade(kArm), kBrass), .translation = {0.9f, 2.3f, 1.3f}};
+  lamp.motion = swinging(lamp.translation);
+  const int lamp_node = place(std::move(lamp));
+  scene.spots = {{.name = "bulb",
+                  .color = {1.0f, 0.82f, 0.58f},
+                  .intensity_cd = 14.0f,
+                  .inner_cone_deg = 22.0f,
+                  .outer_cone_deg = 42.0f}};
+  // Towards the teapot: down and back.
+  place({.name = "bulb",
+         .mesh = -1,
+         .translation = {0, -kArm - 0.12f, 0},
+         .rotation = glm::angleAxis(-0.72f, glm::vec3(1, 0, 0)),
+         .parent = lamp_node,
+         .spot = 0});
+
+  scene.cameras = {{"main", {-0.9f, 1.55f, 4.6f}, {0.1f, 0.72f, -0.5f}, 36.0f},
+                   {"detail", {0.1f, 1.25f, 2.2f}, {1.0f, 0.75f, -0.3f}, 36.0f}};
+  return scene;
+}
+
+}  // namespace lambent::assets

@@ -1,0 +1,38 @@
+// How near light comes to a group: from how many points the light around it must be sampled, and which lights
+// come so near that no sampling tells of them. Looks at where everything is at rest and, where there are
+// animations, at 64 times along them all.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "baker/import/scene.hpp"
+#include "baker/plan/rigid_groups.hpp"
+
+namespace lambent::baker {
+
+inline constexpr std::uint32_t kMostLightSamples = 32;  // that can be asked for
+
+struct LightSampleCount {
+  std::uint32_t count = 1;  // 1..kMostLightSamples; 1: a single one for the group
+  // Of the group, shared out over its cells by area (at least one each); else of each cell.
+  bool of_group = true;
+};
+
+struct PlannedLightSamples {
+  LightSampleCount count;
+  std::string reason;  // one sentence
+};
+
+// By half the group's diagonal over the distance of its centre from the nearest light of others (lamps, and
+// surfaces that give off light): under 0.1 one (light at infinity), under 0.25 four, under 0.5 eight, under
+// 0.8 sixteen, else 32. Bodies of other groups that give off no light ask by the same measure for one or
+// four. 32 too where a body of less than half its size comes within its bounds: shadows and reflections of
+// it can fall anywhere. One per group of the list.
+std::vector<PlannedLightSamples> planLightSamples(const Scene& scene, const std::vector<RigidGroup>& groups);
+
+// Lamps of others that come within a group's bounds. One sentence each.
+std::vector<std::string> lightsInside(const Scene& scene, const std::vector<RigidGroup>& groups);
+
+}  // namespace lambent::baker

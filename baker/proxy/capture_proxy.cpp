@@ -1,0 +1,184 @@
+#include "baker/proxy/capture_proxy.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <optional>
+
+#include <glm/geometric.hpp>
+
+#include "baker/proxy/parts.hpp"
+#include "baker/proxy/shine.hpp"
+#include "baker/proxy/silhouette.hpp"
+#include "baker/proxy/simplify.hpp"
+
+namespace lambent::baker {
+
+namespace {
+
+constexpr std::array<std::size_t, 3> kLevels = {bundle::kMaxProxyTriangles, 64, 16};
+constexpr std::size_t kLeastTriangles = 4;  // of a side of a part
+constexpr std::size_t kPointsPerTriangle = 128;
+// Beyond this, silhouettes are taken of the surface at this many triangles.
+constexpr std::size_t kSilhouetteTriangles = 32768;
+// A level is worth its place where it has at most this share of the triangles of the one before.
+constexpr double kFewer = 0.75;
+
+double areaOf(const SimpleMesh& mesh) {
+  double sum = 0.0;
+  for (const glm::uvec3& t : mesh.triangles)
+    sum += 0.5 * double{glm::length(glm::cross(mesh.positions[t.y] - mesh.positions[t.x],
+                                               mesh.positions[t.z] - mesh.positions[t.x]))};
+  return sum;
+}
+
+// How many triangles each part may have, so that all sides together have `most`: by area, at least
+// kLeastTriangles or as many as it has. None where that is too many.
+std::optional<std::vector<std::size_t>> shares(const std::vector<ProxyPart>& parts,
+                                               const std::vector<SimpleMesh>& meshes, std::size_t most) {
+  std::vector<std::size_t> counts;
+  std::size_t taken = 0;
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    counts.push_back(std::min(meshes[p].triangles.size(), kLeastTriangles));
+    taken += counts[p] * parts[p].sides();
+  }
+  if (taken > most) return std::nullopt;
+  // The rest goes by area to those that can use it, until nobody can.
+  for (;;) {
+    double area = 0.0;
+    for (std::size_t p = 0; p < parts.size(); ++p)
+      if (counts[p] < meshes[p].triangles.size())
+        area += areaOf(meshes[p]) * static_cast<double>(parts[p].sides());
+    const auto left = static_cast<double>(most - taken);
+    std::size_t given = 0;
+    for (std::size_t p = 0; p < parts.size() && area > 0.0; ++p) {
+      const std::size_t more = std::min(static_cast<std::size_t>(left * areaOf(meshes[p]) / area),
+                                        meshes[p].triangles.size() - counts[p]);
+      counts[p] += more;
+      given += more * parts[p].sides();
+    }
+    if (given == 0) return counts;
+    taken += given;
+  }
+}
+
+class ProxyMaker {
+ public:
+  ProxyMaker(const GroupGeometry& geometry, const SampleSet& samples, const SurfaceColors& colors)
+      : geometry_(geometry), samples_(samples), colors_(colors) {
+    parts_ = proxyParts(geometry, colors, bundle::kMaxProxyTriangles / kLeastTriangles);
+    for (const ProxyPart& part : parts_) meshes_.push_back(welded(geometry, part.front));
+    for (std::size_t p = parts_.size(); p-- > 0;)
+      if (meshes_[p].triangles.empty()) {
+        parts_.erase(parts_.begin() + static_cast<std::ptrdiff_t>(p));
+        meshes_.erase(meshes_.begin() + static_cast<std::ptrdiff_t>(p));
+      }
+  }
+
+  bundle::CaptureProxy make() {
+    for (const std::size_t most : kLevels) {
+      if (parts_.empty()) break;
+      const auto counts = shares(parts_, meshes_, most);
+      if (!counts) break;
+      std::vector<SimpleMesh> simple;
+      for (std::size_t p = 0; p < parts_.size(); ++p) simple.push_back(simplified(meshes_[p], (*counts)[p]));
+      const std::size_t triangles = trianglesOf(simple);
+      if (!proxy_.levels.empty() &&
+          static_cast<double>(triangles) > kFewer * static_cast<double>(proxy_.levels.back().triangle_count))
+        continue;
+      if (points_.empty()) spreadPoints(simple);
+      growToSilhouette(simple);
+      addLevel(simple);
+    }
+    for (glm::vec3& position : proxy_.positions) position += geometry_.origin;
+    return std::move(proxy_);
+  }
+
+ private:
+  std::size_t trianglesOf(const std::vector<SimpleMesh>& meshes) const {
+    std::size_t sum = 0;
+    for (std::size_t p = 0; p < meshes.size(); ++p) sum += meshes[p].triangles.size() * parts_[p].sides();
+    return sum;
+  }
+
+  // As many as the finest level can use; the coarser ones take the same.
+  void spreadPoints(const std::vector<SimpleMesh>& finest) {
+    for (std::size_t p = 0; p < parts_.size(); ++p) {
+      const std::size_t count = kPointsPerTriangle * std::max<std::size_t>(finest[p].triangles.size(), 4);
+      const bool gives_light = parts_[p].light != kNoLight;
+      points_.push_back({shiningPoints(geometry_, colors_, parts_[p].front, gives_light, count),
+                         shiningPoints(geometry_, colors_, parts_[p].back, gives_light, count)});
+    }
+  }
+
+  // Few triangles between points of a round surface lie inside of it and look smaller: they grow until they
+  // hide as much.
+  void growToSilhouette(std::vector<SimpleMesh>& simple) {
+    if (!outline_) {
+      std::vector<SimpleMesh> shown;
+      for (const SimpleMesh& mesh : meshes_)
+        shown.push_back(mesh.triangles.size() > kSilhouetteTriangles ? simplified(mesh, kSilhouetteTriangles)
+                                                                     : mesh);
+      outline_.emplace(shown);
+    }
+    const float scale = outline_->scaleOf(simple);
+    const glm::vec3 centre = 0.5f * (geometry_.bounds_min + geometry_.bounds_max);
+    for (SimpleMesh& mesh : simple)
+      for (glm::vec3& p : mesh.positions) {
+        const glm::vec3 grown = centre + scale * (p - centre);
+        mesh.error_m = std::max(mesh.error_m, glm::distance(grown, p));
+        p = grown;
+      }
+  }
+
+  void addLevel(const std::vector<SimpleMesh>& simple) {
+    std::vector<ProxyFace> faces;
+    bundle::ProxyLevel level{static_cast<std::uint32_t>(proxy_.triangles.size()), 0, 0.0f};
+    for (std::uint32_t p = 0; p < simple.size(); ++p) {
+      level.error_m = std::max(level.error_m, simple[p].error_m);
+      const auto first = static_cast<std::uint32_t>(proxy_.positions.size());
+      proxy_.positions.insert(proxy_.positions.end(), simple[p].positions.begin(), simple[p].positions.end());
+      for (std::size_t side = 0; side < parts_[p].sides(); ++side)
+        for (glm::uvec3 t : simple[p].triangles) {
+          if (side == 1) std::swap(t.y, t.z);
+          faces.push_back(
+              {{simple[p].positions[t.x], simple[p].positions[t.y], simple[p].positions[t.z]}, p, side == 1});
+          bundle::ProxyTriangle& triangle = proxy_.triangles.emplace_back();
+          triangle.vertices = {first + t.x, first + t.y, first + t.z};
+          triangle.front_only = parts_[p].two_sided;
+        }
+    }
+    const std::vector<FaceShine> shine = shineOf(faces, points_, geometry_, samples_);
+    for (std::size_t f = 0; f < faces.size(); ++f) {
+      bundle::ProxyTriangle& triangle = proxy_.triangles[level.first_triangle + f];
+      if (shine[f].emission != glm::vec3(0.0f)) {
+        triangle.emission = shine[f].emission;
+        triangle.light = static_cast<std::int32_t>(parts_[faces[f].part].light);
+      }
+      triangle.first_entry = static_cast<std::uint32_t>(proxy_.entries.size());
+      triangle.entry_count = static_cast<std::uint32_t>(shine[f].entries.size());
+      proxy_.entries.insert(proxy_.entries.end(), shine[f].entries.begin(), shine[f].entries.end());
+    }
+    level.triangle_count = static_cast<std::uint32_t>(faces.size());
+    proxy_.levels.push_back(level);
+  }
+
+  const GroupGeometry& geometry_;
+  const SampleSet& samples_;
+  const SurfaceColors& colors_;
+  std::vector<ProxyPart> parts_;
+  std::vector<SimpleMesh> meshes_;  // as parts_
+  std::optional<Silhouette> outline_;
+  std::vector<std::array<std::vector<ShiningPoint>, 2>> points_;  // of each part, both sides
+  bundle::CaptureProxy proxy_;
+};
+
+}  // namespace
+
+bundle::CaptureProxy makeCaptureProxy(const GroupGeometry& geometry, const SampleSet& samples,
+                                      const SurfaceColors& colors) {
+  return ProxyMaker(geometry, samples, colors).make();
+}
+
+}  // namespace lambent::baker

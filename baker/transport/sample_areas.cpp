@@ -1,0 +1,18 @@
+#include "baker/transport/sample_areas.hpp"
+
+#include <glm/geometric.hpp>
+
+namespace lambent::baker {
+
+std::vector<float> sampleAreas(const GroupGeometry& geometry, const SampleSet& samples) {
+  std::vector<float> areas(samples.size(), 0.0f);
+  for (const glm::uvec3& triangle : geometry.triangles) {
+    const glm::vec3 a = geometry.positions[triangle.x], b = geometry.positions[triangle.y],
+                    c = geometry.positions[triangle.z];
+    const float third = glm::length(glm::cross(b - a, c - a)) / 6.0f;
+    for (int corner = 0; corner < 3; ++corner) areas[samples.vertex_sample[triangle[corner]]] += third;
+  }
+  return areas;
+}
+
+}  // namespace lambent::baker

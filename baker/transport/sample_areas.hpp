@@ -1,0 +1,15 @@
+// How much of the surface each sample stands for.
+#pragma once
+
+#include <vector>
+
+#include "baker/transport/group_geometry.hpp"
+#include "baker/transport/samples.hpp"
+
+namespace lambent::baker {
+
+// Square metres; a third of each triangle goes to each of its corners. Both sides of a double-sided surface
+// count.
+std::vector<float> sampleAreas(const GroupGeometry& geometry, const SampleSet& samples);
+
+}  // namespace lambent::baker

@@ -1,0 +1,145 @@
+#include "runtime/bundle/capture_proxy.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+#include <glm/vector_relational.hpp>
+
+#include "runtime/bundle/payload_bytes.hpp"
+
+namespace lambent::bundle {
+
+namespace {
+
+// No level has more corners than its triangles; so 16 bits hold every index.
+constexpr std::uint32_t kMaxTriangles = kMaxProxyLevels * kMaxProxyTriangles;
+constexpr std::uint32_t kMaxPositions = 3 * kMaxTriangles;
+constexpr float kOne = 65535.0f;
+constexpr std::uint32_t kFrontOnly = 0x80;
+
+bool usable(float value) {
+  return std::abs(value) <= 1e30f;  // NaN fails every comparison
+}
+
+std::uint16_t unorm16(float value) {
+  return static_cast<std::uint16_t>(std::lround(std::clamp(value, 0.0f, 1.0f) * kOne));
+}
+
+}  // namespace
+
+std::vector<std::byte> encodeCaptureProxy(const CaptureProxy& proxy) {
+  assert(proxy.triangles.size() <= kMaxTriangles && proxy.positions.size() <= kMaxPositions);
+  std::vector<std::uint32_t> head = {
+      static_cast<std::uint32_t>(proxy.levels.size()), static_cast<std::uint32_t>(proxy.positions.size()),
+      static_cast<std::uint32_t>(proxy.triangles.size()), static_cast<std::uint32_t>(proxy.entries.size())};
+  std::vector<float> numbers;
+  for (const ProxyLevel& level : proxy.levels) {
+    head.push_back(level.triangle_count);
+    numbers.push_back(level.error_m);
+  }
+  for (int axis = 0; axis < 3; ++axis)
+    for (const glm::vec3& position : proxy.positions) numbers.push_back(position[axis]);
+  for (int channel = 0; channel < 3; ++channel)
+    for (const ProxyTriangle& triangle : proxy.triangles) numbers.push_back(triangle.emission[channel]);
+
+  std::vector<std::uint16_t> corners, lights, reflectances;
+  for (std::size_t corner = 0; corner < 3; ++corner)
+    for (const ProxyTriangle& triangle : proxy.triangles)
+      corners.push_back(static_cast<std::uint16_t>(triangle.vertices[corner]));
+  for (const ProxyTriangle& triangle : proxy.triangles)
+    lights.push_back(static_cast<std::uint16_t>(triangle.light + 1));
+  for (int channel = 0; channel < 3; ++channel)
+    for (const ProxyEntry& entry : proxy.entries) reflectances.push_back(unorm16(entry.reflectance[channel]));
+  std::vector<std::int32_t> steps;
+  for (std::uint32_t before = 0; const ProxyEntry& entry : proxy.entries) {
+    steps.push_back(static_cast<std::int32_t>(entry.sample - before));
+    before = entry.sample;
+  }
+
+  std::vector<std::byte> out;
+  appendValues<std::uint32_t>(out, head);
+  appendValues<float>(out, numbers);
+  for (const auto* words : {&corners, &lights, &reflectances}) appendSplit(out, *words);
+  for (const ProxyTriangle& triangle : proxy.triangles)
+    out.push_back(static_cast<std::byte>(triangle.entry_count | (triangle.front_only ? kFrontOnly : 0)));
+  appendIntegers(out, steps);
+  return out;
+}
+
+Result<CaptureProxy> decodeCaptureProxy(std::span<const std::byte> bytes, std::uint32_t sample_count,
+                                        std::uint32_t light_count, const std::string& subject) {
+  const auto damaged = [&](const char* why) {
+    return fail(subject, std::string("has a damaged capture proxy: ") + why,
+                "copy it again or bake it again");
+  };
+  Front front(bytes);
+  const auto head = front.values<std::uint32_t>(4);
+  if (head.size() != 4) return damaged("too short");
+  const std::uint32_t levels = head[0], positions = head[1], triangles = head[2], entries = head[3];
+  if (levels == 0 || levels > kMaxProxyLevels || positions > kMaxPositions || triangles > kMaxTriangles ||
+      entries > triangles * kMaxProxyEntries)
+    return damaged("more or fewer parts than one may have");
+  const auto counts = front.values<std::uint32_t>(levels);
+  const auto errors = front.values<float>(levels);
+  const auto places = front.values<float>(3 * std::uint64_t{positions});
+  const auto emissions = front.values<float>(3 * std::uint64_t{triangles});
+  const auto corners = front.split(3 * std::uint64_t{triangles});
+  const auto lights = front.split(triangles);
+  const auto reflectances = front.split(3 * std::uint64_t{entries});
+  const auto flags = front.values<std::uint8_t>(triangles);
+  const auto steps = front.integers(entries);
+  if (!front.whole()) return damaged("sizes do not add up");
+  for (const auto* numbers : {&errors, &places, &emissions})
+    if (!std::all_of(numbers->begin(), numbers->end(), usable)) return damaged("values that are not finite");
+
+  CaptureProxy proxy;
+  std::uint32_t next_triangle = 0;
+  for (std::size_t i = 0; i < levels; ++i) {
+    if (counts[i] == 0 || counts[i] > kMaxProxyTriangles || errors[i] < 0.0f)
+      return damaged("a level of no or too many triangles");
+    proxy.levels.push_back({next_triangle, counts[i], errors[i]});
+    next_triangle += counts[i];
+  }
+  if (next_triangle != triangles) return damaged("levels do not hold all triangles");
+  for (std::size_t i = 0; i < positions; ++i)
+    proxy.positions.emplace_back(places[i], places[positions + i], places[2 * positions + i]);
+  for (std::uint32_t sample = 0, i = 0; i < entries; ++i) {
+    sample += static_cast<std::uint32_t>(steps[i]);
+    if (sample >= sample_count) return damaged("a sample that the group does not have");
+    ProxyEntry entry{sample, {}};
+    for (std::uint32_t channel = 0; channel < 3; ++channel)
+      entry.reflectance[static_cast<int>(channel)] =
+          static_cast<float>(reflectances[channel * entries + i]) / kOne;
+    proxy.entries.push_back(entry);
+  }
+  std::uint32_t next_entry = 0;
+  for (std::size_t i = 0; i < triangles; ++i) {
+    ProxyTriangle triangle;
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+      triangle.vertices[corner] = corners[corner * triangles + i];
+      if (triangle.vertices[corner] >= positions) return damaged("a corner that it does not have");
+    }
+    triangle.front_only = (flags[i] & kFrontOnly) != 0;
+    for (std::size_t channel = 0; channel < 3; ++channel)
+      triangle.emission[static_cast<int>(channel)] = emissions[channel * triangles + i];
+    if (glm::any(glm::lessThan(triangle.emission, glm::vec3(0.0f)))) return damaged("negative light");
+    triangle.light = std::int32_t{lights[i]} - 1;
+    if (lights[i] > light_count) return damaged("a light that the group does not have");
+    triangle.first_entry = next_entry;
+    triangle.entry_count = flags[i] & ~kFrontOnly;
+    next_entry += triangle.entry_count;
+    if (triangle.entry_count > kMaxProxyEntries || next_entry > entries)
+      return damaged("a triangle of too many entries");
+    // What reflects more than it gets makes light between two groups grow without end.
+    glm::vec3 sum(0.0f);
+    for (std::uint32_t e = triangle.first_entry; e < next_entry; ++e) sum += proxy.entries[e].reflectance;
+    if (glm::any(glm::greaterThan(sum, glm::vec3(1.0f + kMaxProxyEntries / kOne))))
+      return damaged("a triangle that reflects more than it gets");
+    proxy.triangles.push_back(triangle);
+  }
+  if (next_entry != entries) return damaged("triangles do not hold all entries");
+  return proxy;
+}
+
+}  // namespace lambent::bundle

@@ -1,0 +1,114 @@
+#include "runtime/effects/diffuse/proxies.hpp"
+
+#include <glm/geometric.hpp>
+
+#include "lambent_effects_diffuse_embedded.hpp"
+
+namespace lambent::effects::diffuse {
+
+namespace {
+
+constexpr gpu::FindText kShaders[] = {&embedded::lambent_effects_diffuse::find};
+
+// Of a triangle without area: any will do, for nobody sees it.
+glm::vec3 normalOf(const bundle::CaptureProxy& proxy, const bundle::ProxyTriangle& triangle) {
+  const glm::vec3 a = proxy.positions[triangle.vertices[0]], b = proxy.positions[triangle.vertices[1]],
+                  c = proxy.positions[triangle.vertices[2]];
+  const glm::vec3 across = glm::cross(b - a, c - a);
+  const float length = glm::length(across);
+  return length > 0.0f ? across / length : glm::vec3(0.0f, 1.0f, 0.0f);
+}
+
+}  // namespace
+
+Proxies::Proxies()
+    : groups_table_("proxy groups"),
+      triangles_table_("proxy triangles"),
+      entries_table_("proxy entries"),
+      radiance_("proxy radiance"),
+      work_("proxy work") {}
+
+void Proxies::rebuildTables(const streaming::Residency& residency, const lighting::GroupLights& lights) {
+  groups_.clear();
+  triangles_.clear();
+  entries_.clear();
+  for (std::size_t g = 0; g < residency.groups().size(); ++g) {
+    const streaming::ResidentGroup& group = residency.groups()[g];
+    ProxyGroupRecord record{.first_triangle = static_cast<std::uint32_t>(triangles_.size()),
+                            .triangle_count = 0,
+                            .light = lights.firstOf(g),
+                            .lamps = lights.lampsOf(g),
+                            .order = group.order,
+                            .pad = {}};
+    if (group.proxy) {
+      const bundle::CaptureProxy& proxy = *group.proxy;
+      record.triangle_count = static_cast<std::uint32_t>(proxy.triangles.size());
+      const auto first_entry = static_cast<std::uint32_t>(entries_.size());
+      for (const bundle::ProxyTriangle& triangle : proxy.triangles) {
+        const glm::vec3 normal = normalOf(proxy, triangle);
+        triangles_.push_back(
+            {.normal = {normal.x, normal.y, normal.z},
+             .first_entry = first_entry + triangle.first_entry,
+             .emission = {triangle.emission.r, triangle.emission.g, triangle.emission.b},
+             .entry_count = triangle.entry_count,
+             .lamp = triangle.light < 0 ? kNoLamp : static_cast<std::uint32_t>(triangle.light),
+             .pad = {}});
+      }
+      for (const bundle::ProxyEntry& entry : proxy.entries) {
+        const std::uint32_t outputs = entry.sample < group.plain_samples ? 1 : 9;
+        entries_.push_back({.reflectance = {entry.reflectance.r, entry.reflectance.g, entry.reflectance.b},
+                            .sample_index = group.sampleBase(outputs) + outputs * entry.sample,
+                            .outputs = outputs,
+                            .pad = {}});
+      }
+    }
+    groups_.push_back(record);
+  }
+  seen_.assign(groups_.size(), {});
+  groups_table_.assign(std::span<const ProxyGroupRecord>(groups_));
+  triangles_table_.assign(std::span<const ProxyTriangleRecord>(triangles_));
+  entries_table_.assign(std::span<const ProxyEntryRecord>(entries_));
+  radiance_.reserve(triangles_.size() * sizeof(glm::vec4));
+}
+
+Result<void> Proxies::shade(streaming::Residency& residency, const lighting::GroupLights& lights,
+                            const Diffuse& diffuse, gpu::Counters& counters) {
+  if (residency.proxiesVersion() != proxies_seen_ || lights.coefficients().size() != lights_seen_) {
+    proxies_seen_ = residency.proxiesVersion();
+    lights_seen_ = lights.coefficients().size();
+    rebuildTables(residency, lights);
+  }
+  work_.clear();
+  for (std::uint32_t g = 0; g < groups_.size(); ++g) {
+    const streaming::ResidentGroup& group = residency.groups()[g];
+    if (groups_[g].triangle_count == 0 || !group.samples) continue;
+    Seen& seen = seen_[g];
+    const std::uint64_t samples = diffuse.versionOf(g), light = lights.versionOf(g);
+    if (seen.version != 0 && seen.samples == samples && seen.light == light) continue;
+    seen = {.samples = samples, .light = light, .version = seen.version + 1};
+    work_.add({group.samples.page}, g, groups_[g].triangle_count, kWorkGroupSize);
+  }
+  if (work_.empty()) return {};
+  if (!program_) {
+    Result<gpu::Program> made =
+        gpu::Program::create("diffuse proxies", {{GL_COMPUTE_SHADER, "diffuse_proxies.comp"}}, kShaders, {});
+    if (!made) return failAgain(made.error());
+    program_ = std::move(*made);
+  }
+  work_.upload(counters);
+  program_->use();
+  lights.bindStorage(kBindLights);
+  groups_table_.bindStorage(kBindProxyGroups);
+  triangles_table_.bindStorage(kBindProxyTriangles);
+  entries_table_.bindStorage(kBindProxyEntries);
+  radiance_.bindStorage(kBindProxyRadiance);
+  std::size_t index = 0;
+  for (const auto& [key, items] : work_.batches()) {
+    residency.samples().page(key[0]).bindStorage(kBindSamples);
+    work_.dispatch(index++, kBindWork, counters);
+  }
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+  return {};
+}
+
+}  // namespace lambent::effects::diffuse

@@ -1,0 +1,54 @@
+// What the capture proxies of all groups send out: a radiance per triangle, from the shaded samples of its
+// group and what the group's lights give now. Reads: the samples arena, the groups' lights. Writes: a table
+// of vec4, triangle after triangle through the proxies in the order of the residency's groups. Runs for the
+// groups that were shaded anew: one indirect dispatch per page of samples. Errors: a kernel that does not
+// compile on this device.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "runtime/base/result.hpp"
+#include "runtime/effects/diffuse/diffuse.hpp"
+#include "runtime/gpu/program.hpp"
+#include "runtime/gpu/work_list.hpp"
+#include "runtime/lighting/group_lights.hpp"
+#include "runtime/streaming/residency.hpp"
+
+namespace lambent::effects::diffuse {
+
+class Proxies {
+ public:
+  Proxies();
+
+  Result<void> shade(streaming::Residency& residency, const lighting::GroupLights& lights,
+                     const Diffuse& diffuse, gpu::Counters& counters);
+
+  const gpu::Buffer& radiance() const { return radiance_.buffer(); }
+  // Rises when what the group sends out was computed anew.
+  std::uint64_t versionOf(std::size_t group) const { return seen_[group].version; }
+
+  // As uploaded, for the CPU twin.
+  const std::vector<ProxyGroupRecord>& groups() const { return groups_; }
+  const std::vector<ProxyTriangleRecord>& triangles() const { return triangles_; }
+  const std::vector<ProxyEntryRecord>& entries() const { return entries_; }
+
+ private:
+  struct Seen {
+    std::uint64_t samples = 0, light = 0, version = 0;
+  };
+  void rebuildTables(const streaming::Residency& residency, const lighting::GroupLights& lights);
+
+  std::optional<gpu::Program> program_;
+  std::vector<ProxyGroupRecord> groups_;  // index: residency group
+  std::vector<ProxyTriangleRecord> triangles_;
+  std::vector<ProxyEntryRecord> entries_;
+  std::vector<Seen> seen_;
+  std::uint64_t proxies_seen_ = 0;
+  std::size_t lights_seen_ = 0;
+  gpu::Table groups_table_, triangles_table_, entries_table_, radiance_;
+  gpu::WorkList work_;
+};
+
+}  // namespace lambent::effects::diffuse

@@ -1,0 +1,157 @@
+#include "runtime/frame/lit_scene.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+#include <glm/vector_relational.hpp>
+
+namespace lambent::frame {
+
+namespace {
+
+// What is this many times brighter than its surroundings is drawn however small it is.
+constexpr float kMaxBrightness = 1e6f;
+
+lighting::LocalLight::Kind kindOf(scene::LocalLightComponent::Kind kind) {
+  using From = scene::LocalLightComponent::Kind;
+  using To = lighting::LocalLight::Kind;
+  switch (kind) {
+    case From::Point:
+      return To::Point;
+    case From::Spot:
+      return To::Spot;
+    case From::Directional:
+      return To::Directional;
+    case From::Sphere:
+      return To::Sphere;
+    case From::Disc:
+      return To::Disc;
+  }
+  return To::Point;
+}
+
+lighting::LocalLight describe(const scene::LocalLightComponent& light, const glm::mat4& world_from_node) {
+  const glm::vec3 ahead = -glm::vec3(world_from_node[2]);
+  const float length = glm::length(ahead);
+  return {.kind = kindOf(light.kind),
+          .position_ws = glm::vec3(world_from_node[3]),
+          .direction_ws = length > 0.0f ? ahead / length : glm::vec3(0.0f, 0.0f, -1.0f),
+          .power = light.power(),
+          .radius_m = light.radius_m,
+          .range_m = light.range_m,
+          .inner_cone_rad = light.inner_cone_rad,
+          .outer_cone_rad = light.outer_cone_rad};
+}
+
+// A sphere around the proxy, in its frame.
+struct Sphere {
+  glm::vec3 center{0.0f};
+  float radius = 0.0f;
+};
+
+Sphere sphereAround(const scene::Box& bounds) {
+  return bounds.empty() ? Sphere{} : Sphere{bounds.center(), bounds.radius()};
+}
+
+float largestScale(const glm::mat4& matrix) {
+  float scale = 0.0f;
+  for (int column = 0; column < 3; ++column) scale = std::max(scale, glm::length(glm::vec3(matrix[column])));
+  return scale;
+}
+
+// The most that a triangle of it gives off by itself.
+float peakEmission(const bundle::CaptureProxy& proxy, const std::vector<glm::vec3>& lamps) {
+  float peak = 0.0f;
+  for (const bundle::ProxyTriangle& triangle : proxy.triangles) {
+    if (triangle.light < 0) continue;
+    const glm::vec3 radiance = triangle.emission * lamps[static_cast<std::size_t>(triangle.light)];
+    peak = std::max({peak, radiance.r, radiance.g, radiance.b});
+  }
+  return peak;
+}
+
+bool within(const scene::Box& bounds, const glm::mat4& world_from_group, const lighting::LocalLight& light) {
+  if (bounds.empty() || light.kind == lighting::LocalLight::Kind::Directional) return false;
+  const float scale = largestScale(world_from_group);
+  const float determinant = glm::determinant(glm::mat3(world_from_group));
+  if (determinant == 0.0f || !std::isfinite(1.0f / determinant)) return false;
+  const glm::vec3 place(glm::inverse(world_from_group) * glm::vec4(light.position_ws, 1.0f));
+  const float reach = light.extent_m() / scale;
+  return glm::all(glm::greaterThan(place, bounds.min - reach)) &&
+         glm::all(glm::lessThan(place, bounds.max + reach));
+}
+
+}  // namespace
+
+std::vector<const bundle::CaptureProxy*> proxiesOf(const streaming::Residency& residency) {
+  std::vector<const bundle::CaptureProxy*> proxies;
+  for (const streaming::ResidentGroup& group : residency.groups())
+    if (group.proxy) proxies.push_back(&*group.proxy);
+  return proxies;
+}
+
+LitScene gatherLitScene(const World& world, float surroundings) {
+  LitScene scene;
+  const ecs::Registry& registry = world.registry();
+  const auto& groups = world.residency().groups();
+
+  std::vector<ecs::Entity> light_entities;
+  for (auto [entity, light] : registry.view<const scene::LocalLightComponent>()) {
+    const auto* place = registry.tryGet<scene::WorldTransform>(entity);
+    if (light.power() == glm::vec3(0.0f)) continue;
+    scene.lights.push_back(describe(light, place ? place->world_from_node : glm::mat4(1.0f)));
+    light_entities.push_back(entity);
+  }
+  std::vector<std::int32_t> near_of_light(scene.lights.size(), -1);
+  const auto nearPlace = [&](std::size_t k) {
+    if (near_of_light[k] < 0 && scene.near_lights.size() < lighting::kMaxNearLights)
+      if (const auto near = lighting::nearLightOf(scene.lights[k])) {
+        near_of_light[k] = static_cast<std::int32_t>(scene.near_lights.size());
+        scene.near_lights.push_back(*near);
+      }
+    return near_of_light[k];
+  };
+
+  std::uint32_t proxy_index = 0;
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    const streaming::ResidentGroup& group = groups[g];
+    const glm::mat4 world_from_group = world.worldFromGroup(g);
+    const scene::Box bounds = world.groupBounds(g);
+    lighting::IncidentGroup receiver;
+    for (const glm::vec3& sample : group.light_samples)
+      receiver.samples_ws.emplace_back(world_from_group * glm::vec4(sample, 1.0f));
+    if (group.proxy) {
+      receiver.body = static_cast<std::uint32_t>(scene.bodies.size());
+      const Sphere sphere = sphereAround(bounds);
+      const float peak = group.light_columns > 0 ? peakEmission(*group.proxy, world.lampsOf(g)) : 0.0f;
+      const float brightness = surroundings > 0.0f ? peak / surroundings : kMaxBrightness * peak;
+      scene.bodies.push_back({.body = {.proxy = proxy_index++,
+                                       .world_from_proxy = world_from_group,
+                                       .brightness = std::clamp(brightness, 1.0f, kMaxBrightness)},
+                              .center_ws = glm::vec3(world_from_group * glm::vec4(sphere.center, 1.0f)),
+                              .radius_m = sphere.radius * largestScale(world_from_group),
+                              .radiance_drift = 0.0});
+    }
+    std::uint32_t near_mask = 0;
+    for (std::size_t k = 0; k < scene.lights.size(); ++k) {
+      bool by_harmonics = !world.litByColumn(g, light_entities[k]);
+      if (by_harmonics && within(bounds, world_from_group, scene.lights[k])) {
+        const std::int32_t place = nearPlace(k);
+        if (place >= 0) {
+          near_mask |= 1u << place;
+          by_harmonics = false;
+        } else {
+          ++scene.near_left_out;
+        }
+      }
+      receiver.lit_by.push_back(by_harmonics ? 1 : 0);
+    }
+    scene.near_masks.push_back(near_mask);
+    scene.groups.push_back(std::move(receiver));
+  }
+  return scene;
+}
+
+}  // namespace lambent::frame

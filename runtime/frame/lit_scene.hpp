@@ -1,0 +1,36 @@
+// The scene as the lighting system sees it, gathered from the registry and what is resident: rigid groups as
+// receivers and as bodies, the lights that stand among them, and by which carrier each group has each light:
+// - the group's own column, where the light belongs to it and stands where it stood when that was baked;
+// - per pixel with a shadow cube map, where the light stands within the group's bounds;
+// - harmonics at the group's light samples otherwise.
+// Never two of them, or the light would count twice.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "runtime/frame/world.hpp"
+#include "runtime/lighting/incident_light.hpp"
+
+namespace lambent::frame {
+
+struct LitScene {
+  std::vector<lighting::IncidentGroup> groups;  // in the order of residency().groups()
+  std::vector<lighting::IncidentBody> bodies;
+  std::vector<lighting::LocalLight> lights;
+  std::vector<lighting::NearLight> near_lights;  // at most kMaxNearLights
+  std::vector<std::uint32_t> near_masks;         // per group: bit k for near light k
+  std::uint32_t near_left_out = 0;               // lights within bounds for which there was no place left
+
+  // Whether anything but the environment reaches any group from outside.
+  bool needsSampling() const { return bodies.size() > 1 || !lights.empty(); }
+};
+
+// surroundings: mean radiance, by which bodies count as bright.
+// radiance_drift of the bodies is for the frame to say.
+LitScene gatherLitScene(const World& world, float surroundings);
+
+// The proxies of the groups that have one, in the order of the bodies.
+std::vector<const bundle::CaptureProxy*> proxiesOf(const streaming::Residency& residency);
+
+}  // namespace lambent::frame

@@ -1,0 +1,372 @@
+#include "runtime/frame/near_lights.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include <glm/matrix.hpp>
+
+#include "lambent_frame_embedded.hpp"
+#include "runtime/frame/near_faces.hpp"
+
+namespace lambent::frame {
+
+namespace {
+
+using lighting::NearLight;
+constexpr gpu::FindText kShaders[] = {&embedded::lambent_frame::find};
+constexpr std::uint32_t kFaces = 6;
+constexpr std::size_t kFaceStride = 256;  // OpenGL 4.5 asks for no larger alignment of uniform blocks
+constexpr float kNearPlane_m = 2e-3f;
+constexpr float kLightSurface = 1.01f;  // what a spherical lamp is made of may be this much larger than it
+static_assert(kNearLights == lighting::kMaxNearLights);
+
+bool hasExtent(const NearLight& light) {
+  return light.kind == NearLight::Kind::Sphere || light.kind == NearLight::Kind::Disc;
+}
+
+bool hasDirection(const NearLight& light) {
+  return light.kind == NearLight::Kind::Spot || light.kind == NearLight::Kind::Disc;
+}
+
+// A light with a number that is none is dark.
+bool shines(const NearLight& light) {
+  const auto finite = [](glm::vec3 v) { return std::isfinite(v.x + v.y + v.z); };
+  return finite(light.power) && finite(light.position_ws) && finite(light.direction_ws) &&
+         light.power != glm::vec3(0.0f) &&
+         (!hasExtent(light) || (light.radius_m > 0.0f && std::isfinite(light.radius_m)));
+}
+
+// Where its light ends; surfaces with an extent shine without end.
+float rangeOf(const NearLight& light) {
+  return !hasExtent(light) && light.range_m > 0.0f ? light.range_m : std::numeric_limits<float>::infinity();
+}
+
+// Whether both have the same shadows, whatever their colour and cones.
+bool sameShadows(const NearLight& a, const NearLight& b) {
+  return a.kind == b.kind && a.position_ws == b.position_ws && a.radius_m == b.radius_m &&
+         a.range_m == b.range_m && (!hasDirection(a) || a.direction_ws == b.direction_ws);
+}
+
+NearRecord recordOf(const NearLight& light, float reach) {
+  const float inner = std::cos(light.inner_cone_rad), outer = std::cos(light.outer_cone_rad);
+  return {.position = light.position_ws,
+          .reach = reach,
+          .direction = light.direction_ws,
+          .kind = static_cast<uint>(light.kind),
+          .power = light.power,
+          .radius = light.radius_m,
+          .cos_outer = outer,
+          .cone_scale = 1.0f / std::max(0.001f, inner - outer),
+          .range = std::isinf(rangeOf(light)) ? 0.0f : light.range_m,
+          .pad = 0.0f};
+}
+
+ShadowFace faceOf(const NearLight& light, float reach, std::uint32_t face) {
+  const FaceAxes axes = faceAxes(face);
+  return {.right = axes.right,
+          .clip_near = kNearPlane_m,
+          .up = axes.up,
+          .reach = reach,
+          .forward = axes.forward,
+          .hole = light.kind == NearLight::Kind::Sphere ? kLightSurface * light.radius_m : 0.0f,
+          .position = light.position_ws,
+          .behind = light.kind == NearLight::Kind::Disc ? 1.0f : 0.0f,
+          .direction = light.direction_ws,
+          .pad = 0.0f};
+}
+
+scene::Box around(const scene::Box& box, glm::vec3 center) {
+  return {.min = box.min - center, .max = box.max - center};
+}
+
+// Whether any of the box stands where the light may shine.
+bool reaches(const NearLight& light, const scene::Box& from_light) {
+  return nearestDistance(from_light) <= rangeOf(light) &&
+         (!hasDirection(light) || mostAlong(from_light, light.direction_ws) > 0.0f);
+}
+
+}  // namespace
+
+bool NearLights::Caster::operator==(const Caster& other) const {
+  return draw == other.draw && world_from_mesh == other.world_from_mesh && block.page == other.block.page &&
+         block.offset == other.block.offset && block.byte_count == other.block.byte_count &&
+         masked == other.masked && image_arrived == other.image_arrived;
+}
+
+NearLights::NearLights(const NearOptions& options)
+    : options_{.size = std::clamp(options.size, 16u, 4096u),
+               .samples = std::clamp(options.samples, 1u, 256u)},
+      block_("near lights"),
+      draws_table_("near draws"),
+      records_("caster draws"),
+      commands_("caster commands"),
+      faces_("shadow faces"),
+      indices_("shadow casters") {}
+
+Result<void> NearLights::compile() {
+  if (programs_[0]) return {};
+  for (const bool masked : {false, true}) {
+    std::vector<gpu::Define> defines;
+    if (masked) defines.push_back({"LAMBENT_MASKED", "1"});
+    Result<gpu::Program> program = gpu::Program::create(
+        "shadow caster", {{GL_VERTEX_SHADER, "near_caster.vert"}, {GL_FRAGMENT_SHADER, "near_caster.frag"}},
+        kShaders, defines);
+    if (!program) return failAgain(program.error());
+    programs_[masked ? 1 : 0] = std::move(*program);
+  }
+  return {};
+}
+
+void NearLights::updateMasks(const World& world, std::span<const std::uint32_t> mask_of_group,
+                             gpu::Counters& counters) {
+  const streaming::Residency& residency = world.residency();
+  lights_used_ = 0;
+  std::uint32_t shining = 0;
+  for (std::size_t k = 0; k < lights_.size(); ++k) shining |= shines(lights_[k]) ? 1u << k : 0u;
+  for (const std::uint32_t mask : mask_of_group) lights_used_ |= mask & shining;
+  any_ = lights_used_ != 0;
+  Masks masks{.of_group = {mask_of_group.begin(), mask_of_group.end()},
+              .shining = shining,
+              .residency = residency.version(),
+              .transforms = world.transformsVersion()};
+  if (masks == masks_seen_) return;
+  masks_seen_ = std::move(masks);
+  std::vector<NearDraw> draws;
+  if (any_) {
+    draws.reserve(residency.draws().size());
+    for (std::size_t i = 0; i < residency.draws().size(); ++i) {
+      const std::uint32_t group = residency.draws()[i].group;
+      const glm::quat turn = world.rotationOf(group);
+      // Unlit surfaces show their colour whatever the light.
+      const bool lit = group < mask_of_group.size() && !materialOf(world, i).unlit;
+      draws.push_back({.world_from_group = {turn.x, turn.y, turn.z, turn.w},
+                       .lights = lit ? mask_of_group[group] & shining : 0u,
+                       .pad0 = 0,
+                       .pad1 = 0,
+                       .pad2 = 0});
+    }
+  }
+  const bool same_lights =
+      draws.size() == draws_.size() &&
+      std::equal(draws.begin(), draws.end(), draws_.begin(),
+                 [](const NearDraw& a, const NearDraw& b) { return a.lights == b.lights; });
+  const std::size_t bytes = draws.size() * sizeof(NearDraw);
+  const bool same = same_lights && (bytes == 0 || std::memcmp(draws.data(), draws_.data(), bytes) == 0);
+  if (!same_lights) ++version_;
+  if (same) return;
+  draws_ = std::move(draws);
+  if (draws_.empty()) return;
+  draws_table_.assign(std::span<const NearDraw>(draws_));
+  counters.uploaded_bytes += bytes;
+}
+
+void NearLights::collectCasters(const World& world) {
+  const streaming::Residency& residency = world.residency();
+  casters_.clear();
+  for (std::uint32_t i = 0; i < residency.draws().size(); ++i) {
+    const streaming::ResidentDraw& draw = residency.draws()[i];
+    if (draw.back) continue;  // the front's triangles stand for both sides (decisions/003)
+    const streaming::ResidentMesh& mesh = residency.meshes()[draw.mesh];
+    const gltf::Material material = materialOf(world, i);
+    if (!mesh.block || material.alpha_mode == gltf::AlphaMode::Blend) continue;
+    const scene::Box bounds =
+        scene::drawBounds(world.registry(), world.instance(draw.bundle).draws[draw.index]);
+    if (bounds.empty()) continue;
+    Caster caster{.draw = i,
+                  .world_from_mesh = world.worldFromMesh(i),
+                  .bounds_ws = bounds,
+                  .block = mesh.block,
+                  .masked = material.alpha_mode == gltf::AlphaMode::Mask};
+    if (const std::int32_t texture = material.base_color_texture.texture; caster.masked && texture >= 0) {
+      const streaming::ResidentBundle& bundle = residency.bundles()[draw.bundle];
+      const std::int32_t image = bundle.textures[static_cast<std::size_t>(texture)].image;
+      caster.image_arrived = image >= 0 && bool(bundle.images[static_cast<std::size_t>(image)]);
+    }
+    casters_.push_back(caster);
+  }
+}
+
+std::vector<std::uint32_t> NearLights::findChanged(World& world) {
+  const bool world_same =
+      world.residency().version() == residency_seen_ && world.transformsVersion() == transforms_seen_;
+  if (!world_same) collectCasters(world);
+  residency_seen_ = world.residency().version();
+  transforms_seen_ = world.transformsVersion();
+  std::vector<std::uint32_t> changed;
+  for (std::uint32_t k = 0; k < lights_.size(); ++k) {
+    Cube& cube = cubes_[k];
+    const NearLight& light = lights_[k];
+    const bool light_same = cube.drawn && sameShadows(cube.light, light);
+    if ((lights_used_ >> k & 1u) == 0 || (light_same && world_same)) continue;
+    std::vector<Caster> casters;
+    float reach = 0.0f;
+    for (const Caster& caster : casters_) {
+      const scene::Box box = around(caster.bounds_ws, light.position_ws);
+      if (!reaches(light, box)) continue;
+      casters.push_back(caster);
+      reach = std::max(reach, farthestDistance(box));
+    }
+    if (light_same && casters == cube.casters) continue;
+    cube.light = light;
+    cube.casters = std::move(casters);
+    // A little beyond: what stands at 1 is nothing.
+    cube.reach = std::max(1.001f * std::min(reach, rangeOf(light)), 1e-3f);
+    cube.drawn = false;
+    changed.push_back(k);
+  }
+  return changed;
+}
+
+Result<void> NearLights::update(World& world, std::span<const NearLight> lights,
+                                std::span<const std::uint32_t> mask_of_group, gpu::Counters& counters) {
+  cubes_drawn_ = 0;
+  const std::span<const NearLight> kept = lights.first(std::min<std::size_t>(lights.size(), kNearLights));
+  lights_.assign(kept.begin(), kept.end());
+  for (NearLight& light : lights_)
+    if (const float length = glm::length(light.direction_ws); length > 0.0f) light.direction_ws /= length;
+  updateMasks(world, mask_of_group, counters);
+  if (!any_) return {};
+  if (Result<void> done = compile(); !done) return done;
+  makeRoom(static_cast<std::uint32_t>(std::bit_width(lights_used_)));
+  const std::vector<std::uint32_t> changed = findChanged(world);
+  if (!changed.empty()) drawCubes(world, changed, counters);
+  return {};
+}
+
+void NearLights::makeRoom(std::uint32_t rows) {
+  if (rows <= rows_) return;
+  rows_ = rows;
+  shadows_ = gpu::Texture(
+      "near shadows",
+      {.format = GL_DEPTH_COMPONENT32F, .width = kFaces * options_.size, .height = rows * options_.size});
+  GLuint id = 0;
+  glCreateFramebuffers(1, &id);
+  target_ = gpu::Handle<gpu::FramebufferTraits>(id);
+  glNamedFramebufferTexture(id, GL_DEPTH_ATTACHMENT, shadows_.id(), 0);
+  glNamedFramebufferDrawBuffer(id, GL_NONE);
+  for (Cube& cube : cubes_) cube.drawn = false;  // what was drawn is lost
+}
+
+void NearLights::appendRuns(const World& world, std::uint32_t light, std::vector<Run>& runs,
+                            std::vector<Command>& commands) const {
+  const streaming::Residency& residency = world.residency();
+  struct Item {
+    State state;
+    const Caster* caster;
+  };
+  std::vector<Item> items;
+  for (const Caster& caster : cubes_[light].casters) {
+    Item item{.state = {.geometry_page = caster.block.page, .masked = caster.masked, .textures = {}},
+              .caster = &caster};
+    if (caster.masked) {
+      const std::int32_t texture = materialOf(world, caster.draw).base_color_texture.texture;
+      if (texture >= 0)
+        item.state.textures = {.bundle = static_cast<std::int32_t>(residency.draws()[caster.draw].bundle),
+                               .base_color = texture};
+    }
+    items.push_back(item);
+  }
+  std::stable_sort(items.begin(), items.end(),
+                   [](const Item& a, const Item& b) { return a.state < b.state; });
+  for (std::uint32_t face = 0; face < kFaces; ++face) {
+    const std::uint32_t tile = kFaces * light + face;
+    for (const Item& item : items) {
+      if (!faceMeets(faceAxes(face), around(item.caster->bounds_ws, cubes_[light].light.position_ws)))
+        continue;
+      if (runs.empty() || runs.back().tile != tile || runs.back().state != item.state)
+        runs.push_back({tile, item.state, static_cast<std::uint32_t>(commands.size()), 0});
+      ++runs.back().command_count;
+      const streaming::ResidentMesh& mesh = residency.meshes()[residency.draws()[item.caster->draw].mesh];
+      commands.push_back({mesh.index_count, 1, mesh.indices_word, 0, item.caster->draw});
+    }
+  }
+}
+
+void NearLights::drawCubes(World& world, const std::vector<std::uint32_t>& changed, gpu::Counters& counters) {
+  const streaming::Residency& residency = world.residency();
+  std::vector<SurfaceDraw> records;
+  records.reserve(residency.draws().size());
+  for (std::size_t i = 0; i < residency.draws().size(); ++i) records.push_back(describe(world, i));
+  std::vector<Run> runs;
+  std::vector<Command> commands;
+  std::vector<std::byte> faces(kFaces * kNearLights * kFaceStride);
+  for (const std::uint32_t k : changed) {
+    appendRuns(world, k, runs, commands);
+    for (std::uint32_t face = 0; face < kFaces; ++face) {
+      const ShadowFace block = faceOf(cubes_[k].light, cubes_[k].reach, face);
+      std::memcpy(faces.data() + (kFaces * k + face) * kFaceStride, &block, sizeof(block));
+    }
+  }
+  records_.assign(std::span<const SurfaceDraw>(records));
+  commands_.assign(std::span<const Command>(commands));
+  faces_.assign(std::span<const std::byte>(faces));
+  indices_.reserve(records.size());
+  counters.uploaded_bytes +=
+      records.size() * sizeof(SurfaceDraw) + commands.size() * sizeof(Command) + faces.size();
+
+  const auto size = static_cast<GLsizei>(options_.size);
+  glBindFramebuffer(GL_FRAMEBUFFER, target_.id());
+  glEnable(GL_DEPTH_TEST);
+  glDepthFunc(GL_LESS);
+  glDepthMask(GL_TRUE);
+  glDisable(GL_BLEND);
+  glDisable(GL_CULL_FACE);  // surfaces stop light from both sides, as in the bake
+  glEnable(GL_SCISSOR_TEST);
+  for (const std::uint32_t k : changed) {
+    glScissor(0, static_cast<GLint>(k) * size, 6 * size, size);
+    constexpr float kFar = 1.0f;
+    glClearNamedFramebufferfv(target_.id(), GL_DEPTH, 0, &kFar);
+    cubes_[k].drawn = true;
+    ++cubes_drawn_;
+  }
+  glDisable(GL_SCISSOR_TEST);
+  records_.bindStorage(kBindDraws);
+  glBindBuffer(GL_DRAW_INDIRECT_BUFFER, commands_.buffer().id());
+  for (const Run& run : runs) {
+    const auto light = static_cast<GLint>(run.tile / kFaces), face = static_cast<GLint>(run.tile % kFaces);
+    glViewport(face * size, light * size, size, size);
+    glBindBufferRange(GL_UNIFORM_BUFFER, kBindShadowFace, faces_.buffer().id(),
+                      static_cast<GLintptr>(run.tile * kFaceStride), sizeof(ShadowFace));
+    const gpu::Buffer& geometry = world.residency().geometry().page(run.state.geometry_page);
+    geometry.bindStorage(kBindGeometry);
+    indices_.bind(geometry);
+    programs_[run.state.masked ? 1 : 0].use();
+    if (run.state.masked) units_.bind(world, run.state.textures);
+    glMultiDrawElementsIndirect(
+        GL_TRIANGLES, GL_UNSIGNED_INT,
+        reinterpret_cast<const void*>(std::size_t{run.first_command} * sizeof(Command)),
+        static_cast<GLsizei>(run.command_count), 0);
+    counters.draws += run.command_count;
+    ++counters.draw_calls;
+  }
+  units_.unbindSamplers();
+}
+
+void NearLights::bind(const spec::View& view, const spec::Size& size) {
+  if (!any_) return;
+  struct Block {
+    NearView view;
+    std::array<NearRecord, kNearLights> lights;
+  };
+  Block block{};
+  block.view = {.view_from_clip = glm::mat4(glm::inverse(glm::dmat4(view.clip_from_view))),
+                .world_from_view = glm::mat4(glm::inverse(glm::dmat4(view.view_from_world))),
+                .width = static_cast<float>(size.width),
+                .height = static_cast<float>(size.height),
+                .size = options_.size,
+                .samples = options_.samples};
+  for (std::size_t k = 0; k < lights_.size(); ++k) block.lights[k] = recordOf(lights_[k], cubes_[k].reach);
+  block_.assign(std::span<const Block>(&block, 1));
+  glBindBufferBase(GL_UNIFORM_BUFFER, kBindNearLights, block_.buffer().id());
+  draws_table_.bindStorage(kBindNearDraws);
+  shadows_.bind(kUnitNearShadows);
+}
+
+std::uint64_t NearLights::bytesResident() const {
+  return std::uint64_t{4} * kFaces * options_.size * rows_ * options_.size + draws_.size() * sizeof(NearDraw);
+}
+
+}  // namespace lambent::frame

@@ -1,0 +1,52 @@
+// Near lights in the surface pass: E/pi from all that light this draw, with their shadows.
+#include "near_shared.h"
+#include "near_shadow.glsl"
+
+layout(std140, binding = kBindNearLights) uniform NearBlock {
+  NearView near_view;
+  NearRecord near_lights[kNearLights];
+};
+layout(std430, binding = kBindNearDraws) readonly buffer NearDraws { NearDraw near_draws[]; };
+layout(binding = kUnitNearShadows) uniform sampler2D near_shadows;
+
+// Pictures to be looked at are of half floats, and one infinite pixel beside a small light would blind the exposure.
+const float kLargestShown = 6e4;
+
+float nearDistance(int light, int face, ivec2 texel) {
+  int size = int(near_view.size);
+  float depth = texelFetch(near_shadows, ivec2(face, light) * size + texel, 0).r;
+  return depth < 1.0 ? depth * near_lights[light].reach : kNothing;
+}
+
+// View frame. In homogeneous coordinates of which w is left aside: gl_FragCoord.w has the depth at full precision, also
+// where the depth buffer has little.
+vec3 pixelPosition() {
+  vec3 ndc = vec3(2.0 * gl_FragCoord.xy / vec2(near_view.width, near_view.height), 2.0 * gl_FragCoord.z) - 1.0;
+  return (near_view.view_from_clip * (vec4(ndc, 1.0) / gl_FragCoord.w)).xyz;
+}
+
+vec3 turned(vec4 turn, vec3 v) { return nearUnit(v + 2.0 * cross(turn.xyz, cross(turn.xyz, v) + turn.w * v)); }
+
+// Group frame, of the side that is seen: the vertices' normal, and the one that the surface is shaded by.
+vec3 nearLight(uint draw, vec3 smooth_normal, vec3 shading_normal) {
+  vec3 position_vs = pixelPosition();
+  vec3 position = (near_view.world_from_view * vec4(position_vs, 1.0)).xyz;
+  // Points to the eye: the picture's axes are right-handed with the direction to it.
+  vec3 normal = nearUnit(mat3(near_view.world_from_view) * cross(dFdx(position_vs), dFdy(position_vs)));
+  vec4 turn = near_draws[draw].world_from_group;
+  vec3 horizon = turned(turn, smooth_normal);
+  shading_normal = turned(turn, shading_normal);
+  float turns = pixelTurns(gl_FragCoord.xy);
+  vec3 sum = vec3(0.0);
+  // By the bits that are set: on some devices an if costs as much as what it leaves out, and a loop does not.
+  for (uint rest = near_draws[draw].lights; rest != 0u; rest &= rest - 1u) {
+    int k = findLSB(rest);
+    sum += nearRadiance(k, near_lights[k], position, normal, horizon, shading_normal, int(near_view.size),
+                        int(near_view.samples), turns);
+  }
+#ifdef LAMBENT_FINEST_TEXELS
+  return sum;
+#else
+  return min(sum, vec3(kLargestShown));
+#endif
+}

@@ -1,0 +1,276 @@
+#include "runtime/lighting/incident_light.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include <glm/geometric.hpp>
+
+#include "runtime/sh/zonal.hpp"
+
+namespace lambent::lighting {
+
+namespace {
+
+constexpr float kAnew = std::numeric_limits<float>::infinity();
+bool differs(const sh::LightVector& now, const sh::LightVector& before) {
+  double change = 0.0, power = 0.0;
+  for (std::size_t i = 0; i < sh::kMaxCoefficients; ++i) {
+    const glm::dvec3 a(now.c[i]), b(before.c[i]);
+    change += glm::dot(a - b, a - b);
+    power += glm::dot(b, b);
+  }
+  return change > double{kLeastChange} * double{kLeastChange} * power;
+}
+
+void add(sh::LightVector& sum, const sh::LightVector& light, float factor) {
+  for (std::size_t i = 0; i < sh::kMaxCoefficients; ++i) sum.c[i] += factor * light.c[i];
+}
+
+// Columns of rotation and scale: how far points at unit distance from the origin may have moved.
+float turnBetween(const glm::mat4& a, const glm::mat4& b) {
+  float turn = 0.0f;
+  for (int column = 0; column < 3; ++column)
+    turn = std::max(turn, glm::distance(glm::vec3(a[column]), glm::vec3(b[column])));
+  return turn;
+}
+
+// How a body's sphere moved as seen from a sample.
+struct BodyChange {
+  float half_angle = 0.0f, angle = 0.0f;  // radians
+};
+
+BodyChange changeOf(float radius, const glm::vec3& offset_before, const glm::vec3& offset_after, float turn) {
+  constexpr float kPi = std::numbers::pi_v<float>;
+  const float moved = glm::distance(offset_before, offset_after) + radius * turn;
+  const float distance = std::min(glm::length(offset_before), glm::length(offset_after));
+  // Inside its sphere anything may have happened.
+  if (distance <= radius) return {.half_angle = kPi, .angle = moved > 0.0f ? kPi : 0.0f};
+  return {.half_angle = std::asin(radius / distance), .angle = moved / (distance - radius)};
+}
+
+// Whether a body in this direction may hide part of a light that was asked for.
+bool passesLight(const CapturePoint& point, const glm::vec3& towards, float half_angle) {
+  const float distance = glm::length(towards);
+  return std::ranges::any_of(point.queries, [&](const LightQuery& query) {
+    const float reach = half_angle + query.angular_radius_rad;
+    return reach >= std::numbers::pi_v<float> || distance == 0.0f ||
+           glm::dot(query.direction, towards) > distance * std::cos(reach);
+  });
+}
+
+}  // namespace
+
+Result<IncidentLight> IncidentLight::create(const CaptureOptions& options, const Environment& environment) {
+  Result<Capture> capture = Capture::create(options, environment);
+  if (!capture) return failAgain(capture.error());
+  return IncidentLight(std::move(*capture), options.order);
+}
+
+void IncidentLight::takeDrawn(bool wait) {
+  if (requests_.empty()) return;
+  std::optional<std::vector<CapturedLight>> results = capture_.take(wait);
+  if (!results) return;
+  for (std::size_t i = 0; i < requests_.size(); ++i) {
+    Request& request = requests_[i];
+    // Groups may have gone since.
+    if (request.group >= groups_.size() || request.sample >= groups_[request.group].samples.size()) continue;
+    Sample& sample = groups_[request.group].samples[request.sample];
+    request.drawn.result = std::move((*results)[i]);
+    sample.drawn = std::move(request.drawn);
+    sample.drawn_anew = true;
+  }
+  requests_.clear();
+}
+
+void IncidentLight::noticeLights(std::span<const IncidentGroup> groups, std::span<const LocalLight> lights) {
+  groups_.resize(groups.size());
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    groups_[g].samples.resize(groups[g].samples_ws.size());
+    bool changed = groups_[g].lit_by != groups[g].lit_by || lights.size() != lights_before_.size();
+    for (std::size_t k = 0; k < lights.size() && !changed; ++k)
+      changed = groups[g].lit_by[k] != 0 && lights[k] != lights_before_[k];
+    groups_[g].lit_by = groups[g].lit_by;
+    if (changed) ++groups_[g].lights;
+  }
+  lights_before_.assign(lights.begin(), lights.end());
+}
+
+void IncidentLight::update(const Environment& environment, std::span<const IncidentGroup> groups,
+                           std::span<const LocalLight> lights, bool wait) {
+  counts_ = {.captured = counts_.captured, .waiting = counts_.waiting};
+  takeDrawn(wait);
+  noticeLights(groups, lights);
+  for (std::size_t g = 0; g < groups.size(); ++g)
+    for (std::size_t s = 0; s < groups[g].samples_ws.size(); ++s)
+      updateSample(groups_[g].samples[s], groups_[g], environment, groups[g].samples_ws[s], lights);
+}
+
+void IncidentLight::updateSample(Sample& sample, const Group& group, const Environment& environment,
+                                 const glm::vec3& position_ws, std::span<const LocalLight> lights) {
+  ++counts_.samples;
+  const bool lit = std::ranges::find(group.lit_by, std::uint8_t{1}) != group.lit_by.end();
+  if (!sample.drawn && !lit) {
+    // GroupLights itself follows the environment.
+    if (!sample.plain || sample.version == 0 || sample.environment != environment.version()) ++counts_.risen;
+    if (!sample.plain || sample.version == 0) ++sample.version;
+    sample.plain = true;
+    sample.drawn_anew = false;
+    sample.environment = environment.version();
+    return;
+  }
+  // Where bodies stand around, a sky that turned waits for its capture.
+  const bool new_sky = !sample.drawn && sample.environment != environment.version();
+  const bool moved = lit && sample.position_ws != position_ws;
+  if (!sample.drawn_anew && !moved && !new_sky && !sample.plain && sample.lights == group.lights) return;
+  sample.drawn_anew = false;
+  sample.position_ws = position_ws;
+  sample.environment = environment.version();
+  sample.lights = group.lights;
+
+  const auto visible = [&](const std::vector<std::int32_t> Drawn::*queries, std::size_t index) {
+    if (!sample.drawn || index >= ((*sample.drawn).*queries).size()) return 1.0f;
+    const std::int32_t query = ((*sample.drawn).*queries)[index];
+    return query < 0 ? 1.0f : sample.drawn->result.visible[static_cast<std::size_t>(query)];
+  };
+  sh::LightVector now(order_);
+  add(now, sample.drawn ? sample.drawn->result.light : environment.skyLight().truncated(order_), 1.0f);
+  for (std::size_t i = 0; i < environment.discs().size(); ++i) {
+    const spec::Disc& disc = environment.discs()[i];
+    const float share = visible(&Drawn::query_of_disc, i);
+    if (share > 0.0f && disc.radiance != glm::vec3(0.0f))
+      add(now, sh::discLight(order_, disc.direction, double{disc.radius_rad}, disc.radiance), share);
+  }
+  for (std::size_t k = 0; k < lights.size(); ++k) {
+    if (group.lit_by[k] == 0) continue;
+    const float share = visible(&Drawn::query_of_light, k);
+    if (share > 0.0f) add(now, lightAt(lights[k], position_ws, order_), share);
+  }
+  if (!sample.plain && sample.version != 0 && !differs(now, sample.light)) return;
+  sample.light = now;
+  sample.plain = false;
+  ++sample.version;
+  ++counts_.risen;
+}
+
+bool IncidentLight::somethingMoves(std::span<const IncidentGroup> groups,
+                                   std::span<const IncidentBody> bodies) {
+  std::vector<glm::mat4> poses;
+  for (const IncidentBody& body : bodies) poses.push_back(body.body.world_from_proxy);
+  std::vector<glm::vec3> places;
+  for (const IncidentGroup& group : groups)
+    places.insert(places.end(), group.samples_ws.begin(), group.samples_ws.end());
+  const bool moves = poses != bodies_before_ || places != places_before_;
+  bodies_before_ = std::move(poses);
+  places_before_ = std::move(places);
+  return moves;
+}
+
+// How much of the light at the sample changed since it was drawn, as an estimate; infinite if it has to be
+// drawn anew.
+float IncidentLight::changeAround(const Drawn& drawn, const Drawn& now, std::span<const IncidentBody> bodies,
+                                  const CapturePoint& point) const {
+  if (drawn.environment != now.environment || drawn.lights != now.lights) return kAnew;
+  float change_squared = 0.0f;
+  auto then = drawn.seen.begin();
+  auto here = now.seen.begin();
+  while (then != drawn.seen.end() || here != now.seen.end()) {
+    const bool gone = here == now.seen.end() || (then != drawn.seen.end() && then->body < here->body);
+    const bool come = !gone && (then == drawn.seen.end() || here->body < then->body);
+    const SeenBody& before = come ? *here : *then;
+    const SeenBody& after = gone ? *then : *here;
+    if (before.body >= bodies.size()) return kAnew;
+    const IncidentBody& body = bodies[before.body];
+    const BodyChange moved =
+        changeOf(body.radius_m, before.center_ws - drawn.position_ws, after.center_ws - now.position_ws,
+                 turnBetween(before.world_from_proxy, after.world_from_proxy));
+    const bool other = gone || come;
+    if (moved.angle > 0.0f || other) {
+      if (passesLight(point, after.center_ws - now.position_ws, moved.half_angle + moved.angle)) return kAnew;
+    }
+    // A body that fills a share of the sphere makes up so much of the light's mean, and n times as much of n
+    // bands of it (|y(d)|² = n²/4pi), up to all of it. Turned by an angle, it differs from itself by about
+    // n/2 times the angle (the parallax of a delta light), until it is another altogether.
+    const auto bands = static_cast<float>(order_);
+    constexpr float kOther = std::numbers::sqrt2_v<float>;
+    const float parallax = other ? kOther : std::min(0.5f * bands * moved.angle, kOther);
+    const auto drift = static_cast<float>(after.radiance_drift - before.radiance_drift);
+    const float share = std::min(0.5f * (1.0f - std::cos(moved.half_angle)) * bands, 1.0f);
+    const float part = share * body.body.brightness * (parallax + drift);
+    change_squared += part * part;  // some brighten, some darken
+    if (!come) ++then;
+    if (!gone) ++here;
+  }
+  return std::sqrt(change_squared);
+}
+
+Result<void> IncidentLight::capture(const Environment& environment, std::span<const IncidentGroup> groups,
+                                    std::span<const IncidentBody> bodies, std::span<const LocalLight> lights,
+                                    const gpu::Buffer& triangle_radiance, gpu::Counters& counters) {
+  counts_.captured = 0;
+  if (!requests_.empty()) return {};  // the last one is still on its way
+  counts_.waiting = 0;
+  const float least_change = somethingMoves(groups, bodies) ? kMovingChange : kRestingChange;
+  std::vector<CapturePoint> points;
+  for (std::size_t g = 0; g < groups.size(); ++g)
+    for (std::size_t s = 0; s < groups[g].samples_ws.size(); ++s) {
+      Sample& sample = groups_[g].samples[s];
+      CapturePoint point{.position_ws = groups[g].samples_ws[s], .own_body = groups[g].body, .queries = {}};
+      Drawn now;
+      now.position_ws = point.position_ws;
+      now.environment = environment.version();
+      now.lights = groups_[g].lights;
+      for (std::uint32_t b = 0; b < bodies.size(); ++b)
+        if (b != point.own_body && capture_.sees(point, bodies[b].body))
+          now.seen.push_back(
+              {b, bodies[b].body.world_from_proxy, bodies[b].center_ws, bodies[b].radiance_drift});
+      if (now.seen.empty()) {
+        if (sample.drawn) ++counts_.waiting;  // for the next step, which finds nothing in the light's way
+        sample.drawn_anew |= sample.drawn.has_value();
+        sample.drawn.reset();
+        continue;
+      }
+      const auto ask = [&](const std::optional<LightQuery>& query, std::vector<std::int32_t>& places) {
+        places.push_back(query ? static_cast<std::int32_t>(point.queries.size()) : -1);
+        if (query) point.queries.push_back(*query);
+      };
+      for (const spec::Disc& disc : environment.discs()) {
+        std::optional<LightQuery> query;
+        if (disc.radiance != glm::vec3(0.0f))
+          query = LightQuery{
+              .direction = disc.direction, .angular_radius_rad = disc.radius_rad, .radiance = disc.radiance};
+        ask(query, now.query_of_disc);
+      }
+      for (std::size_t k = 0; k < lights.size(); ++k)
+        ask(groups[g].lit_by[k] != 0 ? queryOf(lights[k], point.position_ws) : std::nullopt,
+            now.query_of_light);
+      if (sample.drawn) {
+        const float change = changeAround(*sample.drawn, now, bodies, point);
+        if (!(change > least_change)) {
+          counts_.waiting += change > kRestingChange ? 1 : 0;
+          continue;
+        }
+      }
+      points.push_back(std::move(point));
+      requests_.push_back({g, s, std::move(now)});
+    }
+  counts_.captured = static_cast<std::uint32_t>(points.size());
+  if (points.empty()) return {};
+  std::vector<CaptureBody> placed;
+  for (const IncidentBody& body : bodies) placed.push_back(body.body);
+  return capture_.run(environment, placed, points, triangle_radiance, counters);
+}
+
+bool IncidentLight::atRest() const {
+  return requests_.empty() && counts_.waiting == 0 && counts_.risen == 0;
+}
+
+std::vector<Incident> IncidentLight::incidentOf(std::size_t group) const {
+  std::vector<Incident> incident;
+  for (const Sample& sample : groups_[group].samples)
+    incident.push_back({.light = sample.plain ? nullptr : &sample.light, .version = sample.version});
+  return incident;
+}
+
+}  // namespace lambent::lighting

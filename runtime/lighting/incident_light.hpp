@@ -1,0 +1,130 @@
+// What arrives at every light sample, step by step. A sample that sees no body of another group and no local
+// light has the environment's own light. Others have it from a capture (sky and bodies) plus the suns and
+// local lights in closed form, each times the share of it that no body hides. Captures are drawn for samples
+// whose surroundings changed: the sky turned, a light moved, or bodies moved or shine differently by so much
+// that the light may have changed by kMovingChange of itself; what amounts to less is caught up with when
+// everything stands still. The light of a sample is handed on only if it changed by more than kLeastChange of
+// itself, so that bodies which light each other come to rest. update() hands on what is known now, capture()
+// asks for what the next step needs.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <glm/gtc/quaternion.hpp>
+#include <glm/vec3.hpp>
+
+#include "runtime/base/result.hpp"
+#include "runtime/lighting/capture.hpp"
+#include "runtime/lighting/environment.hpp"
+#include "runtime/lighting/group_lights.hpp"
+#include "runtime/lighting/local_light.hpp"
+
+namespace lambent::lighting {
+
+inline constexpr float kLeastChange = 1e-3f;
+inline constexpr float kMovingChange = 0.02f;                  // while things move
+inline constexpr float kRestingChange = 0.25f * kLeastChange;  // when nothing moves any more
+
+// A body, and how its radiance changes.
+struct IncidentBody {
+  CaptureBody body;
+  glm::vec3 center_ws{0.0f};  // of a sphere around it
+  float radius_m = 0.0f;
+  // Sum of all changes of its radiance so far, each as a share of what it was.
+  double radiance_drift = 0.0;
+};
+
+// A rigid group as a receiver.
+struct IncidentGroup {
+  std::uint32_t body = CapturePoint::kNoBody;  // its own, among the bodies
+  std::vector<glm::vec3> samples_ws;
+  std::vector<std::uint8_t> lit_by;  // per local light, 1: by harmonics; 0: it has that light otherwise
+};
+
+struct IncidentCounts {
+  std::uint32_t samples = 0;   // light samples there are
+  std::uint32_t captured = 0;  // drawn in this step
+  std::uint32_t waiting = 0;   // surroundings changed, but by less than is drawn while things move
+  std::uint32_t risen = 0;     // handed on new light in this step
+};
+
+class IncidentLight {
+ public:
+  static Result<IncidentLight> create(const CaptureOptions& options, const Environment& environment);
+
+  Capture& captures() { return capture_; }
+
+  // Brings the light of all samples up to date with the last captures (`wait`: even if the GPU is not done)
+  // and with lights that need none.
+  void update(const Environment& environment, std::span<const IncidentGroup> groups,
+              std::span<const LocalLight> lights, bool wait);
+  // Draws what has changed around the samples. Errors: a shader that does not compile.
+  Result<void> capture(const Environment& environment, std::span<const IncidentGroup> groups,
+                       std::span<const IncidentBody> bodies, std::span<const LocalLight> lights,
+                       const gpu::Buffer& triangle_radiance, gpu::Counters& counters);
+  // Nothing is on its way, nothing was left for later and the last update handed on nothing new.
+  bool atRest() const;
+
+  // Of a group's light samples, for GroupLights.
+  std::vector<Incident> incidentOf(std::size_t group) const;
+  const IncidentCounts& counts() const { return counts_; }
+
+ private:
+  // A body as it stood when a sample's surroundings were drawn.
+  struct SeenBody {
+    std::uint32_t body = 0;
+    glm::mat4 world_from_proxy{1.0f};
+    glm::vec3 center_ws{0.0f};
+    double radiance_drift = 0.0;
+  };
+  // What a sample's surroundings were drawn from, and what came out.
+  struct Drawn {
+    glm::vec3 position_ws{0.0f};
+    std::uint64_t environment = 0, lights = 0;  // versions
+    std::vector<SeenBody> seen;
+    std::vector<std::int32_t> query_of_disc, query_of_light;  // into result.visible; -1: not asked
+    CapturedLight result;
+  };
+  struct Sample {
+    std::optional<Drawn> drawn;  // none: it sees no body
+    bool drawn_anew = false;     // and that is not in `light` yet
+    // What was handed on last, and of which inputs it was made.
+    std::uint64_t version = 0;  // 0: nothing yet
+    bool plain = true;          // the environment's own light
+    sh::LightVector light{1};
+    glm::vec3 position_ws{0.0f};
+    std::uint64_t environment = 0, lights = 0;
+  };
+  struct Group {
+    std::vector<Sample> samples;
+    std::vector<std::uint8_t> lit_by;
+    std::uint64_t lights = 0;  // rises when a light that lights it changed, or which ones do
+  };
+  struct Request {
+    std::size_t group = 0, sample = 0;
+    Drawn drawn;
+  };
+
+  IncidentLight(Capture capture, int order) : capture_(std::move(capture)), order_(order) {}
+  void takeDrawn(bool wait);
+  void noticeLights(std::span<const IncidentGroup> groups, std::span<const LocalLight> lights);
+  void updateSample(Sample& sample, const Group& group, const Environment& environment,
+                    const glm::vec3& position_ws, std::span<const LocalLight> lights);
+  bool somethingMoves(std::span<const IncidentGroup> groups, std::span<const IncidentBody> bodies);
+  float changeAround(const Drawn& drawn, const Drawn& now, std::span<const IncidentBody> bodies,
+                     const CapturePoint& point) const;
+
+  Capture capture_;
+  int order_;
+  std::vector<Group> groups_;
+  std::vector<Request> requests_;  // on their way
+  std::vector<LocalLight> lights_before_;
+  std::vector<glm::mat4> bodies_before_;
+  std::vector<glm::vec3> places_before_;
+  IncidentCounts counts_;
+};
+
+}  // namespace lambent::lighting

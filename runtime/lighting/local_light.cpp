@@ -1,0 +1,72 @@
+#include "runtime/lighting/local_light.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/geometric.hpp>
+
+#include "runtime/sh/local_light.hpp"
+
+namespace lambent::lighting {
+
+sh::LightVector lightAt(const LocalLight& light, const glm::vec3& point_ws, int order) {
+  const glm::dvec3 light_from_point = glm::dvec3(light.position_ws) - glm::dvec3(point_ws);
+  const glm::dvec3 axis(light.direction_ws);
+  switch (light.kind) {
+    case LocalLight::Kind::Point:
+      return sh::pointLight(order, light_from_point, light.power, light.range_m);
+    case LocalLight::Kind::Spot:
+      return sh::spotLight(order, light_from_point, axis, light.power, light.inner_cone_rad,
+                           light.outer_cone_rad, light.range_m);
+    case LocalLight::Kind::Directional:
+      return sh::directionalLight(order, -axis, light.power);
+    case LocalLight::Kind::Sphere:
+      return sh::sphereLight(order, light_from_point, light.radius_m, light.power);
+    case LocalLight::Kind::Disc:
+      return sh::discAreaLight(order, light_from_point, axis, light.radius_m, light.power);
+  }
+  return sh::LightVector(order);
+}
+
+std::optional<LightQuery> queryOf(const LocalLight& light, const glm::vec3& point_ws) {
+  if (light.power == glm::vec3(0.0f)) return std::nullopt;
+  if (light.kind == LocalLight::Kind::Directional) return LightQuery{.direction = -light.direction_ws};
+  const glm::vec3 towards = light.position_ws - point_ws;
+  const float distance = glm::length(towards);
+  const float extent = light.extent_m();
+  if (!(distance > extent) || !std::isfinite(distance)) return std::nullopt;
+  LightQuery query{.direction = towards / distance, .distance_m = distance};
+  query.angular_radius_rad = std::asin(std::min(1.0f, extent / distance));
+  // The shape of what is left of a sphere is known; a disc light's ellipse is dimmed as a whole.
+  if (light.kind == LocalLight::Kind::Sphere) query.radiance = light.power;
+  return query;
+}
+
+std::optional<NearLight> nearLightOf(const LocalLight& light) {
+  NearLight near{.position_ws = light.position_ws,
+                 .direction_ws = light.direction_ws,
+                 .radius_m = light.extent_m(),
+                 .power = light.power,
+                 .range_m = light.range_m,
+                 .inner_cone_rad = light.inner_cone_rad,
+                 .outer_cone_rad = light.outer_cone_rad};
+  switch (light.kind) {
+    case LocalLight::Kind::Point:
+      near.kind = NearLight::Kind::Point;
+      return near;
+    case LocalLight::Kind::Spot:
+      near.kind = NearLight::Kind::Spot;
+      return near;
+    case LocalLight::Kind::Sphere:
+      near.kind = NearLight::Kind::Sphere;
+      return near;
+    case LocalLight::Kind::Disc:
+      near.kind = NearLight::Kind::Disc;
+      return near;
+    case LocalLight::Kind::Directional:
+      return std::nullopt;
+  }
+  return std::nullopt;
+}
+
+}  // namespace lambent::lighting

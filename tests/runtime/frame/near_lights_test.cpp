@@ -1,0 +1,598 @@
+// Pictures under near lights with known answers: small bundles in the dark, lit by one light.
+#include "runtime/frame/near_lights.hpp"
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <numbers>
+#include <optional>
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+#include <glm/gtc/matrix_transform.hpp>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "runtime/frame/near_shadow_ref.hpp"
+#include "runtime/frame/surfaces.hpp"
+#include "runtime/lighting/environment.hpp"
+#include "runtime/lighting/group_lights.hpp"
+#include "tests/runtime/frame/bundle_builder.hpp"
+#include "tests/support/gpu_context.hpp"
+
+namespace lambent::frame {
+namespace {
+
+using lighting::NearLight;
+using testing::BuiltMesh;
+using testing::BundleBuilder;
+using testing::quadMesh;
+using testing::sphereMesh;
+
+constexpr float kPi = std::numbers::pi_v<float>;
+constexpr std::uint32_t kSize = 64;
+
+gltf::Material grey(float albedo) {
+  gltf::Material material;
+  material.base_color = glm::vec4(albedo, albedo, albedo, 1.0f);
+  return material;
+}
+
+// A square of 2 `half` that lies at this height, seen from above.
+BuiltMesh level(float y, float half, glm::vec2 center = {0, 0}, float albedo = 1.0f) {
+  return {quadMesh(), grey(albedo),
+          glm::translate(glm::mat4(1.0f), glm::vec3(center.x, y, center.y)) *
+              glm::rotate(glm::mat4(1.0f), -0.5f * kPi, glm::vec3(1, 0, 0)) *
+              glm::scale(glm::mat4(1.0f), glm::vec3(half))};
+}
+
+// From straight above, 2 `half` wide, of what is below y = `from`; x to the right, z downwards.
+spec::View above(float half, float from = 0.9f) {
+  return {.view_from_world = glm::lookAt(glm::vec3(0, from, 0), glm::vec3(0), glm::vec3(0, 0, -1)),
+          .clip_from_view = glm::ortho(-half, half, -half, half, 0.0f, 20.0f),
+          .eye_ws = {0, from, 0}};
+}
+float placeOf(std::uint32_t pixel, float half) {
+  return half * (2.0f * (static_cast<float>(pixel) + 0.5f) / static_cast<float>(kSize) - 1.0f);
+}
+
+NearLight sphereLight(glm::vec3 position, float radius, glm::vec3 radiance) {
+  NearLight light;
+  light.kind = NearLight::Kind::Sphere;
+  light.position_ws = position;
+  light.radius_m = radius;
+  light.power = radiance;
+  return light;
+}
+
+// A bundle, black surroundings, and the raster pass with near lights alone.
+struct Stage {
+  std::filesystem::path path;
+  World world;
+  lighting::Environment environment;
+  effects::diffuse::Diffuse diffuse;
+  lighting::GroupLights group_lights;
+  NearLights near_lights;
+  std::optional<Surfaces> surfaces;
+  gpu::Counters raster, shadows;
+  std::vector<std::uint32_t> masks = {0xfu};
+
+  explicit Stage(const BundleBuilder& builder, const NearOptions& options = {}, float sky = 0.0f)
+      : path(std::filesystem::path(::testing::TempDir()) /
+             fmt::format("{}-{}.lmb.glb", getpid(),
+                         ::testing::UnitTest::GetInstance()->current_test_info()->name())),
+        environment(*lighting::Environment::create({spec::ConstantLight{.radiance = glm::vec3(sky)}})),
+        near_lights(options) {
+    builder.write(path);
+    const Result<void> opened = world.open(path);
+    EXPECT_TRUE(opened) << opened.error().line();
+    gpu::Counters counters;
+    const Result<void> loaded = world.uploadAll(counters);
+    EXPECT_TRUE(loaded) << loaded.error().line();
+    Result<Surfaces> made = Surfaces::create(/*finest_texels=*/true);
+    EXPECT_TRUE(made) << made.error().line();
+    if (made) surfaces.emplace(std::move(*made));
+  }
+  ~Stage() { std::filesystem::remove(path); }
+
+  void update(std::span<const NearLight> lights) {
+    shadows = {};
+    world.updateTransforms();
+    const Result<void> done = near_lights.update(world, lights, masks, shadows);
+    ASSERT_TRUE(done) << done.error().line();
+  }
+  // Row 0 is the top. With `plain`, as where there are no near lights at all.
+  std::vector<glm::vec4> picture(const spec::View& view, std::span<const NearLight> lights,
+                                 bool plain = false) {
+    if (!plain) update(lights);
+    world.updateTransforms();
+    gpu::Counters counters;
+    raster = {};
+    std::vector<lighting::GroupPlace> places;
+    for (std::size_t g = 0; g < world.residency().groups().size(); ++g)
+      places.push_back({.world_from_group = world.rotationOf(g),
+                        .order = world.residency().groups()[g].order,
+                        .lamps = world.lampsOf(g)});
+    group_lights.update(environment, sh::Window::Off, places, counters);
+    EXPECT_TRUE(
+        diffuse.shade(world.residency(), group_lights, effects::diffuse::TransferMode::Full, counters));
+    const Result<void> done = surfaces->prepare(world, diffuse, view, raster, plain ? nullptr : &near_lights);
+    EXPECT_TRUE(done) << done.error().line();
+    const gpu::Texture color("picture", {.format = GL_RGBA32F, .width = kSize, .height = kSize});
+    const gpu::Texture depth("depth", {.format = GL_DEPTH_COMPONENT32F, .width = kSize, .height = kSize});
+    const gpu::Framebuffer target("picture", color, &depth);
+    glBindFramebuffer(GL_FRAMEBUFFER, target.id());
+    glViewport(0, 0, kSize, kSize);
+    glEnable(GL_DEPTH_TEST);
+    glDepthFunc(GL_LESS);
+    glDepthMask(GL_TRUE);
+    constexpr float kNone[] = {0, 0, 0, 0}, kFar = 1.0f;
+    glClearNamedFramebufferfv(target.id(), GL_COLOR, 0, kNone);
+    glClearNamedFramebufferfv(target.id(), GL_DEPTH, 0, &kFar);
+    if (!plain) near_lights.bind(view, {kSize, kSize});
+    surfaces->drawOpaque(world, raster);
+    surfaces->drawBlended(world, raster);
+    std::vector<glm::vec4> texels(kSize * kSize), result;
+    glGetTextureImage(color.id(), 0, GL_RGBA, GL_FLOAT,
+                      static_cast<GLsizei>(texels.size() * sizeof(glm::vec4)), texels.data());
+    for (std::uint32_t y = kSize; y-- > 0;)
+      result.insert(result.end(), texels.begin() + y * kSize, texels.begin() + (y + 1) * kSize);
+    return result;
+  }
+  std::vector<glm::vec4> picture(const spec::View& view, const NearLight& light) {
+    return picture(view, std::span(&light, 1));
+  }
+};
+
+// Holds every pixel against what it should be at its place (x, z).
+void expectFloor(const std::vector<glm::vec4>& picture, float half, float tolerance,
+                 const std::function<float(glm::vec2)>& expected, const std::string& what) {
+  for (std::uint32_t y = 0; y < kSize; ++y)
+    for (std::uint32_t x = 0; x < kSize; ++x) {
+      const glm::vec2 place(placeOf(x, half), placeOf(y, half));
+      const float wanted = expected(place);
+      ASSERT_NEAR(picture[y * kSize + x].r, wanted, tolerance * wanted + 1e-7f)
+          << what << " at " << place.x << " " << place.y;
+    }
+}
+
+}  // namespace
+
+using NearLightsTest = testing::GpuTest;
+
+TEST_F(NearLightsTest, AFloorUnderASphereHasItsIrradianceWithinAPercent) {
+  Stage stage(BundleBuilder().add(level(0.0f, 5.0f, {0, 0}, 0.5f)));
+  const auto picture = stage.picture(above(2.0f), sphereLight({0.3f, 1.0f, -0.2f}, 0.2f, {10, 5, 1}));
+  expectFloor(
+      picture, 2.0f, 0.01f,
+      [](glm::vec2 at) {
+        const glm::vec3 to(0.3f - at.x, 1.0f, -0.2f - at.y);
+        const float d2 = glm::dot(to, to);
+        return 0.5f * 10.0f * 0.04f / d2 / std::sqrt(d2);  // albedo L (r/d)^2 cos
+      },
+      "sphere");
+  EXPECT_FLOAT_EQ(picture[0].g, 0.5f * picture[0].r);
+}
+
+TEST_F(NearLightsTest, PunctualLightsAndSeveralLightsAddUp) {
+  Stage stage(BundleBuilder().add(level(0.0f, 5.0f, {0, 0}, 0.5f)));
+  NearLight spot;
+  spot.kind = NearLight::Kind::Spot;
+  spot.position_ws = {0, 1, 0};
+  spot.direction_ws = {0, -1, 0};
+  spot.power = {10, 0, 1};
+  spot.range_m = 2.0f;
+  spot.inner_cone_rad = 0.3f;
+  spot.outer_cone_rad = 0.9f;
+  const auto expected = [&](glm::vec2 at) {
+    const float d2 = 1.0f + glm::dot(at, at), cosine = 1.0f / std::sqrt(d2);
+    const float share = std::clamp((cosine - std::cos(0.9f)) / (std::cos(0.3f) - std::cos(0.9f)), 0.0f, 1.0f);
+    return 0.5f * 10.0f / d2 * cosine / kPi * share * share * std::max(1.0f - d2 * d2 / 16.0f, 0.0f);
+  };
+  expectFloor(stage.picture(above(2.0f), spot), 2.0f, 0.01f, expected, "spot");
+  NearLight sphere = sphereLight({0.5f, 1.0f, 0.5f}, 0.1f, {3, 2, 1});
+  const auto alone = stage.picture(above(2.0f), sphere);
+  const std::vector<NearLight> both = {spot, sphere};
+  const auto together = stage.picture(above(2.0f), both);
+  for (std::uint32_t y = 0; y < kSize; ++y)
+    for (std::uint32_t x = 0; x < kSize; ++x) {
+      const std::size_t i = y * kSize + x;
+      const float wanted = alone[i].r + expected({placeOf(x, 2.0f), placeOf(y, 2.0f)});
+      ASSERT_NEAR(together[i].r, wanted, 0.01f * wanted);
+    }
+  stage.masks = {2u};
+  EXPECT_EQ(stage.picture(above(2.0f), both), alone) << "the second alone shines on this group";
+}
+
+TEST_F(NearLightsTest, BlendedSurfacesAreLitAndCastNoShadowAndUnlitOnesStayAsTheyAre) {
+  BuiltMesh glass = level(0.5f, 5.0f), sign = level(0.4f, 5.0f, {5, 0});
+  glass.material.base_color.a = 0.25f;
+  glass.material.alpha_mode = gltf::AlphaMode::Blend;
+  sign.material.unlit = true;
+  Stage stage(BundleBuilder().add(level(0.0f, 5.0f)).add(glass).add(sign));
+  NearLight light;
+  light.position_ws = {0, 2, 0};
+  light.power = glm::vec3(8.0f * kPi);
+  const auto picture = stage.picture(above(1.0f), light);
+  const float floor = 8.0f * 2.0f / 8.0f, pane = 8.0f * 1.5f / (2.25f * 1.5f);
+  const auto at = [&](std::uint32_t x) {  // at z = 0, by how far light falls in from the side
+    const float s = placeOf(x, 1.0f), z = placeOf(32, 1.0f);
+    return std::pair(std::pow(1.0f + (s * s + z * z) / 4.0f, -1.5f),
+                     std::pow(1.0f + (s * s + z * z) / 2.25f, -1.5f));
+  };
+  const auto [on_floor, on_pane] = at(20);
+  EXPECT_NEAR(picture[32 * kSize + 20].r, 0.75f * floor * on_floor + 0.25f * pane * on_pane, 0.01f);
+  const auto [unused, over_sign] = at(44);
+  EXPECT_NEAR(picture[32 * kSize + 44].r, 0.75f * 1.0f + 0.25f * pane * over_sign, 0.01f);
+}
+
+TEST_F(NearLightsTest, AFloorThatLightGrazesIsLitAllOver) {
+  Stage stage(BundleBuilder().add(level(0.0f, 5.0f)));
+  constexpr float kHeight = 0.05f;
+  const auto distance2 = [](glm::vec2 at) { return glm::dot(at, at) + kHeight * kHeight; };
+  NearLight light = sphereLight({0, kHeight, 0}, 0.02f, glm::vec3(100.0f));
+  expectFloor(
+      stage.picture(above(4.0f), light), 4.0f, 0.01f,
+      [&](glm::vec2 at) {
+        const float d = std::sqrt(distance2(at)), h = d / 0.02f;
+        if (kHeight / d * h < 1.0f) return 0.0f;
+        return 100.0f * kHeight / d / (h * h);
+      },
+      "sphere");
+  light.kind = NearLight::Kind::Point;
+  expectFloor(
+      stage.picture(above(4.0f), light), 4.0f, 0.01f,
+      [&](glm::vec2 at) { return 100.0f * kHeight / std::pow(distance2(at), 1.5f) / kPi; }, "point");
+  light.kind = NearLight::Kind::Disc;
+  light.direction_ws = {0, -1, 0};
+  const auto disc = stage.picture(above(4.0f), light);
+  for (std::uint32_t y = 0; y < kSize; ++y)
+    for (std::uint32_t x = 0; x < kSize; ++x) {
+      // In its middle distance the differential form is exact to (r/d)^2.
+      const glm::vec2 at(placeOf(x, 4.0f), placeOf(y, 4.0f));
+      if (glm::length(at) < 0.3f) continue;
+      const float d2 = distance2(at), wanted = 100.0f * 0.02f * 0.02f * kHeight * kHeight / (d2 * d2);
+      ASSERT_NEAR(disc[y * kSize + x].r, wanted, 0.02f * wanted) << "disc at " << at.x << " " << at.y;
+    }
+}
+
+TEST_F(NearLightsTest, AnEdgeCastsAPenumbraOfTheRightWidthAndShape) {
+  // An edge along x = 0 halfway between floor and light: the penumbra is as wide as the light, 0.4.
+  for (const std::uint32_t samples : {16u, 64u}) {
+    Stage stage(BundleBuilder().add(level(0.0f, 5.0f)).add(level(1.0f, 2.0f, {-2.0f, 0})),
+                {.samples = samples});
+    constexpr float kHalf = 0.5f, kRadius = 0.2f;
+    for (const NearLight::Kind kind : {NearLight::Kind::Sphere, NearLight::Kind::Disc}) {
+      NearLight light = sphereLight({0, 2, 0}, kRadius, glm::vec3(10.0f));
+      light.kind = kind;
+      light.direction_ws = {0, -1, 0};
+      const auto picture = stage.picture(above(kHalf), light);
+      double error = 0.0;
+      for (std::uint32_t x = 0; x < kSize; ++x) {
+        float mean = 0.0f, whole = 0.0f;
+        for (std::uint32_t y = 0; y < kSize; ++y) {
+          const glm::vec3 to(-placeOf(x, kHalf), 2.0f, -placeOf(y, kHalf));
+          const float d2 = glm::dot(to, to), cosine = 2.0f / std::sqrt(d2);
+          mean += picture[y * kSize + x].r;
+          whole += 10.0f * kRadius * kRadius / d2 * cosine * (kind == NearLight::Kind::Disc ? cosine : 1.0f);
+        }
+        // The share of a disc beyond a line at s radii from its middle.
+        const float s = std::clamp(placeOf(x, kHalf) / kRadius, -1.0f, 1.0f);
+        const float expected = (std::acos(-s) + s * std::sqrt(1.0f - s * s)) / kPi;
+        EXPECT_NEAR(mean / whole, expected, samples == 64 ? 0.02f : 0.04f) << "x " << placeOf(x, kHalf);
+        error += std::abs(double{mean / whole} - expected) / kSize;
+      }
+      EXPECT_LT(error, samples == 64 ? 0.006 : 0.01);
+    }
+  }
+}
+
+TEST_F(NearLightsTest, ShadowsOfSeveralBlockersAreNearThoseOfRaysToEveryPointOfTheLight) {
+  struct Blocker {
+    float height, half;
+    glm::vec2 center;
+  };
+  const std::vector<std::vector<Blocker>> scenes = {
+      {{1.0f, 0.3f, {0, 0}}},  // smaller than the penumbra is wide at its corners
+      {{0.3f, 0.2f, {-0.4f, 0}}, {1.2f, 0.2f, {0.2f, 0.1f}}},  // apart
+      {{0.1f, 0.3f, {0.3f, 0}}, {0.9f, 0.2f, {0, 0}}}};        // one behind the other
+  for (const auto& blockers : scenes) {
+    const bool hidden = &blockers == &scenes.back();
+    BundleBuilder builder;
+    builder.add(level(0.0f, 5.0f));
+    for (const Blocker& b : blockers) builder.add(level(b.height, b.half, b.center));
+    for (const std::uint32_t samples : {16u, 64u}) {
+      Stage stage(builder, {.samples = samples});
+      constexpr float kHalf = 1.2f, kRadius = 0.25f;
+      const glm::vec3 light(0.1f, 2.0f, 0.0f);
+      const auto picture = stage.picture(above(kHalf, 0.05f), sphereLight(light, kRadius, glm::vec3(1.0f)));
+      double error = 0.0, squares = 0.0, shadowed = 0.0;
+      for (std::uint32_t y = 0; y < kSize; ++y)
+        for (std::uint32_t x = 0; x < kSize; ++x) {
+          const glm::vec3 place(placeOf(x, kHalf), 0.0f, placeOf(y, kHalf));
+          const glm::vec3 to = light - place, axis = glm::normalize(to);
+          glm::vec3 s, t;
+          ref::nearBasis(axis, s, t);
+          int visible = 0;
+          constexpr int kRays = 400;
+          for (int i = 0; i < kRays; ++i) {
+            const glm::vec2 at = kRadius * ref::discPoint(i, kRays, 0.0f);
+            const glm::vec3 ray = to + at.x * s + at.y * t;
+            visible += std::none_of(blockers.begin(), blockers.end(), [&](const Blocker& b) {
+              const glm::vec3 hit = place + b.height / ray.y * ray;
+              return std::abs(hit.x - b.center.x) < b.half && std::abs(hit.z - b.center.y) < b.half;
+            });
+          }
+          const float d2 = glm::dot(to, to), whole = kRadius * kRadius / d2 * to.y / std::sqrt(d2);
+          const double share = visible / double{kRays},
+                       apart = double{picture[y * kSize + x].r / whole} - share;
+          error += apart / (kSize * kSize);
+          squares += apart * apart / (kSize * kSize);
+          shadowed += (1.0 - share) / (kSize * kSize);
+        }
+      // As shares of the light. Few points miss the rims of penumbras, and are noisy within them.
+      EXPECT_LT(std::abs(error), samples == 64 ? 0.008 : 0.015) << "the shadow is as dark on the whole";
+      EXPECT_LT(std::sqrt(squares), samples == 64 && !hidden ? 0.02 : 0.06);
+      EXPECT_GT(shadowed, 0.05);
+    }
+  }
+}
+
+TEST_F(NearLightsTest, TheShadowOfARoundBodyIsDarkInsideAndRightAtItsRim) {
+  // What blocks the light stands at all heights from 0.2 to 0.8.
+  Stage stage(BundleBuilder()
+                  .add(level(0.0f, 5.0f))
+                  .add({sphereMesh(48, 96), grey(0.5f),
+                        glm::translate(glm::mat4(1.0f), glm::vec3(0, 0.5f, 0)) *
+                            glm::scale(glm::mat4(1.0f), glm::vec3(0.3f))}));
+  constexpr float kHalf = 0.8f, kRadius = 0.15f;
+  const glm::vec3 light(0.4f, 2.0f, 0.1f), body(0, 0.5f, 0);
+  const auto picture = stage.picture(above(kHalf, 0.1f), sphereLight(light, kRadius, glm::vec3(1.0f)));
+  std::size_t dark = 0, leaks = 0;
+  double squares = 0.0;
+  for (std::uint32_t y = 0; y < kSize; ++y)
+    for (std::uint32_t x = 0; x < kSize; ++x) {
+      const glm::vec3 place(placeOf(x, kHalf), 0.0f, placeOf(y, kHalf));
+      const glm::vec3 to = light - place;
+      glm::vec3 s, t;
+      ref::nearBasis(glm::normalize(to), s, t);
+      int visible = 0;
+      constexpr int kRays = 400;
+      for (int i = 0; i < kRays; ++i) {
+        const glm::vec2 at = kRadius * ref::discPoint(i, kRays, 0.0f);
+        const glm::vec3 ray = glm::normalize(to + at.x * s + at.y * t);
+        visible += glm::length(glm::cross(ray, body - place)) > 0.3f ? 1 : 0;
+      }
+      const float d2 = glm::dot(to, to), whole = kRadius * kRadius / d2 * to.y / std::sqrt(d2);
+      const double share = visible / double{kRays}, apart = double{picture[y * kSize + x].r / whole} - share;
+      squares += apart * apart / (kSize * kSize);
+      dark += visible == 0 ? 1 : 0;
+      leaks += visible == 0 && apart > 0.1 ? 1 : 0;  // two points of sixteen
+    }
+  EXPECT_GT(dark, 300u);
+  // At the umbra's rim rays meet the body below what the light's centre sees of it.
+  EXPECT_LE(leaks, dark / 25);
+  EXPECT_LT(std::sqrt(squares), 0.04);
+}
+
+TEST_F(NearLightsTest, ALightWithoutExtentCastsEdgesAsSharpAsItsTexels) {
+  Stage stage(BundleBuilder().add(level(0.0f, 5.0f)).add(level(1.0f, 2.0f, {-2.0f, 0})));
+  constexpr float kHalf = 0.5f;
+  // 2/512 of the distance; the floor has I cos / (d^2 pi), least in the corners.
+  NearLight point = sphereLight({0, 2, 0}, 0.0f, glm::vec3(10.0f));
+  point.kind = NearLight::Kind::Point;
+  const auto sharp = stage.picture(above(kHalf), point);
+  for (std::uint32_t y = 0; y < kSize; ++y)
+    for (std::uint32_t x = 0; x < kSize; ++x) {
+      const float at = placeOf(x, kHalf);
+      if (at < -0.016f) {
+        ASSERT_EQ(sharp[y * kSize + x].r, 0.0f);
+      }
+      if (at > 0.016f) {
+        ASSERT_GT(sharp[y * kSize + x].r, 0.65f);
+      }
+    }
+}
+
+TEST_F(NearLightsTest, AClosedRoomIsLitEverywhereWithoutLinesInItsCorners) {
+  // Six inner walls of a cube from -1 to 1.
+  BundleBuilder builder;
+  const glm::mat4 out = glm::translate(glm::mat4(1.0f), glm::vec3(0, 0, -1));  // faces +Z, behind the origin
+  const glm::vec3 y(0, 1, 0), x(1, 0, 0);
+  for (const float turn : {0.0f, 0.5f * kPi, kPi, 1.5f * kPi})
+    builder.add({quadMesh(), grey(1.0f), glm::rotate(glm::mat4(1.0f), turn, y) * out});
+  for (const float turn : {0.5f * kPi, -0.5f * kPi})
+    builder.add({quadMesh(), grey(1.0f), glm::rotate(glm::mat4(1.0f), turn, x) * out});
+  Stage stage(builder);
+  const glm::vec3 place(0.3f, -0.2f, 0.1f), eye(-0.5f, 0.4f, 0.6f);
+  for (const NearLight::Kind kind : {NearLight::Kind::Point, NearLight::Kind::Sphere}) {
+    NearLight light = sphereLight(place, 0.1f, glm::vec3(100.0f));
+    light.kind = kind;
+    for (const glm::vec3 towards : {glm::vec3(1, -1, -1), glm::vec3(1, 1, -1), glm::vec3(1, -1, 0.8f)}) {
+      const spec::View view{.view_from_world = glm::lookAt(eye, towards, y),
+                            .clip_from_view = glm::perspective(1.4f, 1.0f, 0.01f, 10.0f),
+                            .eye_ws = eye};
+      const auto picture = stage.picture(view, light);
+      std::size_t wrong = 0;
+      for (std::uint32_t row = 0; row < kSize; ++row)
+        for (std::uint32_t column = 0; column < kSize; ++column) {
+          // The pixel's ray meets the nearest of the walls.
+          const float t = std::tan(0.7f);
+          const glm::vec3 ray = glm::transpose(glm::mat3(view.view_from_world)) *
+                                glm::vec3(t * placeOf(column, 1.0f), -t * placeOf(row, 1.0f), -1.0f);
+          float far = 1e9f;
+          glm::vec3 normal(0.0f);
+          for (int i = 0; i < 3; ++i)
+            if (const float way = ((ray[i] > 0.0f ? 1.0f : -1.0f) - eye[i]) / ray[i]; way < far) {
+              far = way;
+              normal = glm::vec3(0.0f);
+              normal[i] = ray[i] > 0.0f ? -1.0f : 1.0f;
+            }
+          const glm::vec3 to = place - (eye + far * ray);
+          const float d2 = glm::dot(to, to), cosine = glm::dot(to, normal) / std::sqrt(d2);
+          const float wanted = 100.0f * cosine / d2 * (kind == NearLight::Kind::Point ? 1.0f / kPi : 0.01f);
+          wrong += std::abs(picture[row * kSize + column].r - wanted) > 0.02f * wanted ? 1 : 0;
+        }
+      // Pixels that two walls share.
+      EXPECT_LE(wrong, 2u) << "kind " << static_cast<int>(kind);
+    }
+  }
+}
+
+TEST_F(NearLightsTest, ASphereInACurvedRoomIsLitEverywhere) {
+  gltf::Material material = grey(1.0f);
+  material.double_sided = true;
+  Stage stage(BundleBuilder().add({sphereMesh(48, 96), material, glm::mat4(1.0f)}));
+  const spec::View view{
+      .view_from_world = glm::lookAt(glm::vec3(0, 0, 0.3f), glm::vec3(0.3f, 0.2f, -1), {0, 1, 0}),
+      .clip_from_view = glm::perspective(1.5f, 1.0f, 0.01f, 10.0f),
+      .eye_ws = {0, 0, 0.3f}};
+  // E = pi L (r/d)^2 at d = 1; facets lie up to 0.2 % nearer.
+  for (const glm::vec4& pixel : stage.picture(view, sphereLight({0, 0, 0}, 0.1f, glm::vec3(100.0f))))
+    ASSERT_NEAR(pixel.r, 1.0f, 0.01f);
+}
+
+TEST_F(NearLightsTest, BlockersShadowFromOnePercentOfTheDistanceOn) {
+  // A small square just over the floor, 2 m below the light: at 1 % of that its shadow is whole.
+  for (const float height : {0.02f, 0.2f}) {
+    Stage stage(BundleBuilder().add(level(0.0f, 5.0f)).add(level(height, 0.5f)));
+    const auto picture =
+        stage.picture(above(0.3f, 0.5f * height), sphereLight({0, 2, 0}, 0.1f, glm::vec3(10.0f)));
+    for (const glm::vec4& pixel : picture) ASSERT_EQ(pixel.r, 0.0f) << "height " << height;
+  }
+}
+
+TEST_F(NearLightsTest, StaysFiniteWhereTheLightTouchesTheSurface) {
+  Stage stage(BundleBuilder().add(level(0.0f, 1.0f)));
+  for (const float height : {0.0f, 1e-6f, -1e-3f, 0.05f})
+    for (const NearLight::Kind kind :
+         {NearLight::Kind::Point, NearLight::Kind::Spot, NearLight::Kind::Sphere, NearLight::Kind::Disc}) {
+      // A pixel's centre lies on it.
+      NearLight light = sphereLight({placeOf(32, 0.5f), height, placeOf(32, 0.5f)}, 0.1f, glm::vec3(1e8f));
+      light.kind = kind;
+      light.direction_ws = {0, -1, 0};
+      float most = 0.0f;
+      for (const glm::vec4& pixel : stage.picture(above(0.5f), light)) {
+        ASSERT_TRUE(pixel.r >= 0.0f && std::isfinite(pixel.r) && pixel.r <= 1e12f);
+        most = std::max(most, pixel.r);
+      }
+      if (kind == NearLight::Kind::Sphere) {
+        EXPECT_NEAR(most, 1e8f, 1e5f) << "within a sphere of radiance L, E = pi L";
+      }
+      if (height == 0.05f) {
+        EXPECT_GT(most, 1e6f);
+      }
+    }
+}
+
+TEST_F(NearLightsTest, ADrawThatNoLightShinesOnCostsNothingAndChangesNoPixel) {
+  Stage stage(BundleBuilder().add(level(0.0f, 1.0f)), {}, /*sky=*/1.0f);
+  const NearLight light = sphereLight({0, 1, 0}, 0.1f, glm::vec3(10.0f));
+  const auto plain = stage.picture(above(0.5f), {}, /*plain=*/true);
+  EXPECT_GT(plain[0].r, 0.9f);
+  const gpu::Counters before = stage.raster;
+  stage.masks = {0u};
+  EXPECT_EQ(stage.picture(above(0.5f), light), plain);
+  EXPECT_FALSE(stage.near_lights.any());
+  EXPECT_EQ(stage.shadows.draws, 0u);
+  EXPECT_EQ(stage.shadows.uploaded_bytes, 0u);
+  EXPECT_EQ(stage.near_lights.bytesResident(), 0u);
+  EXPECT_LE(stage.raster.draw_calls, before.draw_calls);
+  // A dark light is as none; a light that is not in the mask, too.
+  stage.masks = {2u};
+  EXPECT_EQ(stage.picture(above(0.5f), light), plain);
+  stage.masks = {1u};
+  const float none = std::numeric_limits<float>::quiet_NaN();
+  for (const NearLight& dark :
+       {sphereLight({0, 1, 0}, 0.1f, glm::vec3(0.0f)), sphereLight({0, 1, 0}, 0.0f, glm::vec3(1.0f)),
+        sphereLight({0, none, 0}, 0.1f, glm::vec3(1.0f)),
+        sphereLight({0, 1, 0}, 0.1f, glm::vec3(std::numeric_limits<float>::infinity()))})
+    EXPECT_EQ(stage.picture(above(0.5f), dark), plain);
+  EXPECT_EQ(stage.shadows.draws, 0u);
+  EXPECT_NE(stage.picture(above(0.5f), light), plain);
+  EXPECT_EQ(stage.picture(above(0.5f), std::span<const NearLight>{}), plain) << "and off again";
+}
+
+TEST_F(NearLightsTest, DrawsACubeOnlyWhenItsLightOrWhatItSeesMoved) {
+  Stage stage(BundleBuilder().add(level(0.0f, 1.0f)).add(level(0.5f, 0.1f)).add(level(0.0f, 0.1f, {50, 0})));
+  std::vector<NearLight> lights = {sphereLight({0, 1, 0}, 0.1f, glm::vec3(10.0f)),
+                                   sphereLight({0.3f, 1, 0}, 0.1f, glm::vec3(10.0f))};
+  lights[1].kind = NearLight::Kind::Point;
+  lights[1].range_m = 5.0f;
+  stage.update(lights);
+  EXPECT_EQ(stage.near_lights.cubesDrawn(), 2u);
+  EXPECT_GT(stage.shadows.draws, 0u);
+  stage.update(lights);
+  EXPECT_EQ(stage.near_lights.cubesDrawn(), 0u);
+  EXPECT_EQ(stage.shadows.draws + stage.shadows.uploaded_bytes, 0u);
+  lights[0].power = glm::vec3(3.0f);
+  stage.update(lights);
+  EXPECT_EQ(stage.near_lights.cubesDrawn(), 0u) << "brighter, not elsewhere";
+  lights[0].position_ws.x += 0.01f;
+  stage.update(lights);
+  EXPECT_EQ(stage.near_lights.cubesDrawn(), 1u);
+  const auto move = [&](std::size_t mesh, float by) {
+    for (auto [entity, item] : stage.world.registry().view<const scene::DrawItem>())
+      if (item.mesh == mesh) stage.world.registry().edit<scene::Transform>(item.node).translation.y += by;
+  };
+  move(1, 0.1f);
+  stage.update(lights);
+  EXPECT_EQ(stage.near_lights.cubesDrawn(), 2u) << "both see it";
+  move(2, 0.1f);
+  stage.update(lights);
+  EXPECT_EQ(stage.near_lights.cubesDrawn(), 1u) << "out of the second's range";
+  move(2, 0.0f);
+  stage.update(lights);
+  EXPECT_EQ(stage.near_lights.cubesDrawn(), 0u) << "touched, but where it was";
+}
+
+TEST_F(NearLightsTest, MasksLetLightThroughWhereTheirAlphaIsLow) {
+  BundleBuilder builder;
+  BuiltMesh blocker = level(1.0f, 1.0f);
+  // Left half there, right half a hole.
+  gltf::Sampler nearest{.wrap_s = GL_CLAMP_TO_EDGE,
+                        .wrap_t = GL_CLAMP_TO_EDGE,
+                        .mag_filter = GL_NEAREST,
+                        .min_filter = GL_NEAREST};
+  blocker.material.base_color_texture.texture =
+      builder.addTexture(2, 1, {255, 255, 255, 255, 255, 255, 255, 0}, nearest);
+  blocker.material.alpha_mode = gltf::AlphaMode::Mask;
+  Stage stage(builder.add(level(0.0f, 5.0f)).add(blocker));
+  NearLight light = sphereLight({0, 2, 0}, 0.0f, glm::vec3(10.0f));
+  light.kind = NearLight::Kind::Point;
+  const auto picture = stage.picture(above(1.0f), light);
+  for (std::uint32_t y = 0; y < kSize; ++y)
+    for (std::uint32_t x = 0; x < kSize; ++x) {
+      const float at = placeOf(x, 1.0f);
+      if (at < -0.02f) {
+        ASSERT_EQ(picture[y * kSize + x].r, 0.0f);
+      }
+      if (at > 0.02f) {
+        ASSERT_GT(picture[y * kSize + x].r, 0.3f);
+      }
+    }
+}
+
+TEST_F(NearLightsTest, NormalMappedDrawsAndTurnedGroupsAreLitAsPlainOnes) {
+  const NearLight light = sphereLight({0.4f, 1.0f, 0.2f}, 0.2f, glm::vec3(10.0f));
+  std::vector<glm::vec4> plain;
+  const glm::quat turn = glm::angleAxis(1.1f, glm::normalize(glm::vec3(1, 2, 3)));
+  for (const bool normal_mapped : {false, true})
+    for (const bool turned : {false, true}) {
+      BundleBuilder builder;
+      builder.add(level(0.0f, 3.0f)).add(level(0.5f, 0.2f));
+      if (normal_mapped)
+        builder.normalMapped().transfer([](const glm::vec3&) { return std::vector<float>(81, 0.0f); });
+      if (turned) builder.groupRotation(turn);
+      Stage stage(builder);
+      const auto picture = stage.picture(above(1.0f, 0.4f), light);
+      if (plain.empty()) plain = picture;
+      // Floats along two ways; a tap may fall to the next texel.
+      std::size_t apart = 0;
+      for (std::size_t i = 0; i < plain.size(); ++i)
+        apart += std::abs(picture[i].r - plain[i].r) > 1e-3f ? 1 : 0;
+      EXPECT_LT(apart, plain.size() / 100) << normal_mapped << turned;
+    }
+}
+
+}  // namespace lambent::frame
