@@ -190,6 +190,7 @@ Result<void> Frame::capture(World& world, const lighting::Environment& environme
                                          proxies_.radiance(), pass.counters());
   counts_.incident.captured = incident_->counts().captured;
   counts_.incident.waiting = incident_->counts().waiting;
+  if (counts_.incident.captured > 0) counts_.captured = incident_->captures().load();
   return done;
 }
 

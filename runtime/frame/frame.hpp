@@ -51,6 +51,7 @@ struct FrameOptions {
 struct StepCounts {
   std::uint32_t groups = 0, bodies = 0, local_lights = 0, near_lights = 0;
   lighting::IncidentCounts incident;
+  lighting::Capture::Load captured;  // what the captures of this step took
   std::uint32_t light_samples_written = 0;  // coefficients computed for the shaders
   std::uint32_t cells_shaded = 0, draws_shaded = 0;
   std::uint32_t shadow_cubes_drawn = 0;

@@ -13,10 +13,10 @@ using uint = std::uint32_t;
 #define LAMBENT_CONSTANT const uint
 #endif
 
-// Tables are read as buffer textures where many lanes read far apart: software renderers fetch whole vectors from those,
-// and from storage blocks value by value.
+// Tables are read as buffer textures where lanes read far apart: software renderers fetch whole vectors from those, and
+// from storage blocks value by value.
 // capture.vert
-LAMBENT_CONSTANT kUnitVertices = 0u;  // rgba32ui: position as bits of floats, triangle of which it is the last corner + 1
+LAMBENT_CONSTANT kUnitVertices = 0u;  // rgba32ui: bits of the position, triangle whose last corner it is + 1
 LAMBENT_CONSTANT kUnitDraws = 1u;     // rgba32ui: DrawRecord, kDrawTexels each
 // capture_resolve.comp
 LAMBENT_CONSTANT kUnitIds = 0u;       // the atlas

@@ -1,8 +1,8 @@
-// The sky as all points see it: per texel of the cube in world axes the mean of the probes over subsamples² directions,
-// plus the constants; suns are not in it. And per texel the weights with which it goes to harmonics. Where light is even
-// they are those of sh::cubeWeights; where a probe has a sun or a window, smaller than a texel, its place within the
-// texel is known here and must not be lost. With d the mean direction of the texel's light, s² its variance, d_u and s_u²
-// those of even light, and y(d, s) = exp(-l(l+1) s² / 4) y(d), the mean of y over a small spot:
+// The sky as all points see it: per texel of the cube in world axes the mean of the probes over subsamples²
+// directions, plus the constants; suns are not in it. And per texel the weights with which it goes to harmonics. Where
+// light is even they are those of sh::cubeWeights; where a probe has a sun or a window, smaller than a texel, its
+// place within the texel is known here and must not be lost. With d the mean direction of the texel's light, s² its
+// variance, d_u and s_u² those of even light, and y(d, s) = exp(-l(l+1) s² / 4) y(d), the mean of y over a small spot:
 //   Omega y(d, s) + s² / s_u² (w - Omega y(d_u, s_u))
 #include "capture_shared.h"
 

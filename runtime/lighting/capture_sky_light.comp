@@ -7,6 +7,8 @@ layout(binding = kUnitSky) uniform samplerBuffer sky;
 layout(binding = kUnitSkyWeights) uniform samplerBuffer sky_weights;
 layout(std430, binding = kBindSkyLight) writeonly buffer SkyLight { vec4 sky_light[]; };
 
+const uint kQuads = (ORDER * ORDER + 3) / 4;
+
 void main() {
   uint i = gl_LocalInvocationIndex;
   vec3 sum = vec3(0.0);
@@ -14,7 +16,7 @@ void main() {
   for (uint first = 0u; first < texel_count; first += kStage) {
     vec3 stage = vec3(0.0);
     for (uint k = first; k < min(first + kStage, texel_count); ++k)
-      stage += texelFetch(sky_weights, int(k * uint((ORDER * ORDER + 3) / 4) + i / 4u))[i % 4u] * texelFetch(sky, int(k)).rgb;
+      stage += texelFetch(sky_weights, int(k * kQuads + i / 4u))[i % 4u] * texelFetch(sky, int(k)).rgb;
     sum += stage;
   }
   sky_light[i] = vec4(sum, 0.0);

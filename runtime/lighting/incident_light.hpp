@@ -56,6 +56,7 @@ class IncidentLight {
   static Result<IncidentLight> create(const CaptureOptions& options, const Environment& environment);
 
   Capture& captures() { return capture_; }
+  const Capture& captures() const { return capture_; }
 
   // Brings the light of all samples up to date with the last captures (`wait`: even if the GPU is not done)
   // and with lights that need none.

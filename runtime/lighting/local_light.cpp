@@ -35,7 +35,7 @@ std::optional<LightQuery> queryOf(const LocalLight& light, const glm::vec3& poin
   const float distance = glm::length(towards);
   const float extent = light.extent_m();
   if (!(distance > extent) || !std::isfinite(distance)) return std::nullopt;
-  LightQuery query{.direction = towards / distance, .distance_m = distance};
+  LightQuery query{.direction = towards / distance, .distance_m = distance - extent};
   query.angular_radius_rad = std::asin(std::min(1.0f, extent / distance));
   // The shape of what is left of a sphere is known; a disc light's ellipse is dimmed as a whole.
   if (light.kind == LocalLight::Kind::Sphere) query.radiance = light.power;
