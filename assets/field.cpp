@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kRows = 10, kColumns = 20;  // bodies, the first one being the lawn
 constexpr int kMoving = 20;
-constexpr float kSpacing = 1.6f;
+constexpr float kSpacing = 2.4f;
 
 // Round a small circle, once in four seconds.
 Motion circling(glm::vec3 center, float start) {
@@ -69,8 +69,8 @@ Scene field() {
     }
     scene.nodes.push_back(std::move(node));
   }
-  scene.cameras = {{"main", {-6.0f, 7.5f, 15.0f}, {0, 0, 0}, 45.0f},
-                   {"detail", {-2.0f, 2.5f, 6.0f}, {0, 0.4f, 1.0f}, 45.0f}};
+  scene.cameras = {{"main", {-8.0f, 9.5f, 21.0f}, {0, 0, 0}, 45.0f},
+                   {"detail", {-3.0f, 3.0f, 8.0f}, {0, 0.4f, 1.0f}, 45.0f}};
   return scene;
 }
 

@@ -71,7 +71,7 @@ void Frame::resize(const spec::Size& size) {
 
 Result<void> Frame::render(World& world, const lighting::Environment& environment, const spec::View& view) {
   timers_.beginFrame();
-  if (Result<void> done = step(world, environment); !done) return done;
+  if (Result<void> done = step(world, environment, options_.captures_per_step); !done) return done;
   // cubes of the lights that stand among surfaces
   if (Result<void> done = castShadows(world); !done) return done;
   // surfaces, sky, blended surfaces: linear radiance
@@ -85,7 +85,8 @@ Result<std::uint32_t> Frame::rest(World& world, const lighting::Environment& env
   for (std::uint32_t steps = 0; steps < kMaxRestSteps; ++steps) {
     if (atRest(world)) return steps;
     timers_.beginFrame();
-    if (Result<void> done = step(world, environment); !done) return failAgain(done.error());
+    constexpr std::size_t kAll = ~std::size_t{0};  // nobody waits for the next picture
+    if (Result<void> done = step(world, environment, kAll); !done) return failAgain(done.error());
   }
   return kMaxRestSteps;
 }
@@ -94,7 +95,7 @@ bool Frame::atRest(const World& world) const {
   return world.loaded() && (!incident_ || incident_->atRest());
 }
 
-Result<void> Frame::step(World& world, const lighting::Environment& environment) {
+Result<void> Frame::step(World& world, const lighting::Environment& environment, std::size_t max_captures) {
   counts_ = {};
   // what has arrived goes to the GPU, within the budget
   if (Result<void> done = upload(world); !done) return done;
@@ -105,7 +106,7 @@ Result<void> Frame::step(World& world, const lighting::Environment& environment)
   // E/pi at every vertex whose light or transfer is new
   if (Result<void> done = shade(world); !done) return done;
   // what bodies send to each other: arrives with the next step
-  return capture(world, environment);
+  return capture(world, environment, max_captures);
 }
 
 Result<void> Frame::upload(World& world) {
@@ -168,7 +169,8 @@ Result<void> Frame::light(World& world, const lighting::Environment& environment
   return {};
 }
 
-Result<void> Frame::capture(World& world, const lighting::Environment& environment) {
+Result<void> Frame::capture(World& world, const lighting::Environment& environment,
+                            std::size_t max_captures) {
   gpu::PassTimers::Scope pass(timers_, "capture");
   if (!incident_) return {};
   if (Result<void> done = proxies_.shade(world.residency(), group_lights_, diffuse_, pass.counters()); !done)
@@ -187,7 +189,7 @@ Result<void> Frame::capture(World& world, const lighting::Environment& environme
       lit_scene_.bodies[body].radiance_drift = radiance.drift;
   }
   Result<void> done = incident_->capture(environment, lit_scene_.groups, lit_scene_.bodies, lit_scene_.lights,
-                                         proxies_.radiance(), pass.counters());
+                                         proxies_.radiance(), max_captures, pass.counters());
   counts_.incident.captured = incident_->counts().captured;
   counts_.incident.waiting = incident_->counts().waiting;
   if (counts_.incident.captured > 0) counts_.captured = incident_->captures().load();

@@ -43,6 +43,7 @@ struct FrameOptions {
   std::optional<float> exposure_ev;                             // none: automatic
   std::uint64_t upload_budget_bytes = std::uint64_t{16} << 20;  // per frame
   lighting::CaptureOptions capture{.order = 0};                 // order 0: that of the groups' transfer
+  std::uint32_t captures_per_step = 16;  // light samples that are drawn anew in a frame, at most
   // Captures arrive in the very next frame, however long that takes: the same pictures on every run.
   bool wait_for_captures = false;
 };
@@ -51,7 +52,7 @@ struct FrameOptions {
 struct StepCounts {
   std::uint32_t groups = 0, bodies = 0, local_lights = 0, near_lights = 0;
   lighting::IncidentCounts incident;
-  lighting::Capture::Load captured;  // what the captures of this step took
+  lighting::Capture::Load captured;         // what the captures of this step took
   std::uint32_t light_samples_written = 0;  // coefficients computed for the shaders
   std::uint32_t cells_shaded = 0, draws_shaded = 0;
   std::uint32_t shadow_cubes_drawn = 0;
@@ -85,12 +86,12 @@ class Frame {
 
   Result<void> upload(World& world);
   void transforms(World& world);
-  Result<void> step(World& world, const lighting::Environment& environment);
+  Result<void> step(World& world, const lighting::Environment& environment, std::size_t max_captures);
   Result<void> light(World& world, const lighting::Environment& environment);
   Result<void> shade(World& world);
   Result<void> prepareSampling(World& world, const lighting::Environment& environment,
                                gpu::Counters& counters);
-  Result<void> capture(World& world, const lighting::Environment& environment);
+  Result<void> capture(World& world, const lighting::Environment& environment, std::size_t max_captures);
   bool atRest(const World& world) const;
   Result<void> castShadows(World& world);
   Result<void> raster(World& world, const lighting::Environment& environment, const spec::View& view);

@@ -32,44 +32,47 @@ vec3 radianceAt(uint at) { return vec3(radiance_of[at], radiance_of[at + 1u], ra
 
 // Done here, not per pixel: pixels beside a triangle have their part in its derivatives and mip levels, but what they
 // read of a buffer need not be there (Mesa gives 0).
-vec2 lookedAt(SurfaceDraw draw, TextureSlot slot, uint vertex) {
-  if (slot.set == kAbsent) return vec2(0.0);
-  uint word = slot.set == 1u ? draw.texcoords1_word : draw.texcoords0_word;
-  return slot.texture_from_coordinates * vec3(geometry2(word + 2u * vertex), 1.0);
+vec2 lookedAt(uint set, mat3x2 texture_from_coordinates, uint vertex) {
+  uint word = set == 1u ? draws[draw_index].texcoords1_word : draws[draw_index].texcoords0_word;
+  return texture_from_coordinates * vec3(geometry2(word + 2u * vertex), 1.0);
 }
+// A macro, so that nothing is read of a texture that is absent.
+#define LOOKED_AT(slot) \
+  (draws[draw_index].slot.set == kAbsent \
+       ? vec2(0.0) \
+       : lookedAt(draws[draw_index].slot.set, draws[draw_index].slot.texture_from_coordinates, vertex))
 
 void main() {
-  SurfaceDraw draw = draws[draw_index];
   uint vertex = uint(gl_VertexID);
-  vec3 position = geometry3(draw.positions_word + 3u * vertex);
-  looks_at = vec4(lookedAt(draw, draw.base_color_texture, vertex), lookedAt(draw, draw.emissive_texture, vertex));
+  vec3 position = geometry3(draws[draw_index].positions_word + 3u * vertex);
+  looks_at = vec4(LOOKED_AT(base_color_texture), LOOKED_AT(emissive_texture));
   vertex_color = vec4(1.0);
-  if (draw.colors_word != kAbsent) {
-    uint at = draw.colors_word + 2u * vertex;
+  if (draws[draw_index].colors_word != kAbsent) {
+    uint at = draws[draw_index].colors_word + 2u * vertex;
     vertex_color = vec4(unpackUnorm2x16(geometry[at]), unpackUnorm2x16(geometry[at + 1u]));
   }
 #ifdef LAMBENT_NORMAL_MAPPED
-  mat3 group_from_mesh = mat3(draw.group_from_mesh);
-  vec3 normal = unit(mat3(draw.group_from_mesh_normal) * geometry3(draw.normals_word + 3u * vertex));
-  vec2 normal_at = lookedAt(draw, draw.normal_texture, vertex);
+  mat3 group_from_mesh = mat3(draws[draw_index].group_from_mesh);
+  vec3 normal = unit(mat3(draws[draw_index].group_from_mesh_normal) * geometry3(draws[draw_index].normals_word + 3u * vertex));
+  vec2 normal_at = LOOKED_AT(normal_texture);
   position_group = vec4(group_from_mesh * position, normal_at.x);
   normal_group = vec4(normal, normal_at.y);
   tangent_group = vec4(0.0);
-  if (draw.tangents_word != kAbsent) {
-    uint at = draw.tangents_word + 4u * vertex;
+  if (draws[draw_index].tangents_word != kAbsent) {
+    uint at = draws[draw_index].tangents_word + 4u * vertex;
     // A mirrored node mirrors the bitangent, which a cross product of turned vectors would not.
     float mirrored = determinant(group_from_mesh) < 0.0 ? -1.0 : 1.0;
     tangent_group = vec4(group_from_mesh * geometry3(at), mirrored * uintBitsToFloat(geometry[at + 3u]));
   }
   uint words = 3u * kLightCoefficients;
-  for (uint j = 0u; j < kLightCoefficients; ++j) light[j] = radianceAt(draw.radiance_word + words * vertex + 3u * j);
+  for (uint j = 0u; j < kLightCoefficients; ++j) light[j] = radianceAt(draws[draw_index].radiance_word + words * vertex + 3u * j);
 #else
-  radiance = radianceAt(draw.radiance_word + 3u * vertex);
+  radiance = radianceAt(draws[draw_index].radiance_word + 3u * vertex);
 #ifdef LAMBENT_NEAR_LIGHTS
   normal_group =
-      draw.facing * unit(mat3(draw.group_from_mesh_normal) * geometry3(draw.normals_word + 3u * vertex));
+      draws[draw_index].facing * unit(mat3(draws[draw_index].group_from_mesh_normal) * geometry3(draws[draw_index].normals_word + 3u * vertex));
 #endif
 #endif
   draw_of = draw_index;
-  gl_Position = clip_from_view * (view_from_world * (draw.world_from_mesh * vec4(position, 1.0)));
+  gl_Position = clip_from_view * (view_from_world * (draws[draw_index].world_from_mesh * vec4(position, 1.0)));
 }

@@ -7,7 +7,9 @@
 #include <numbers>
 #include <string>
 
+#include <glm/geometric.hpp>
 #include <glm/mat4x4.hpp>
+#include <glm/matrix.hpp>
 #include <glm/vec4.hpp>
 
 #include "lambent_lighting_embedded.hpp"
@@ -38,28 +40,38 @@ bool finite(const glm::vec3& v) {
 }
 
 // The vertices of one level. A triangle's id comes from its last corner, so each triangle needs one that is
-// last in no other; of closed meshes, with half as many vertices as triangles, about half are doubled.
+// last in no other; of closed meshes, with half as many vertices as triangles, about half are doubled. Black
+// last corners are shared by all triangles that end there.
 class LevelVertices {
  public:
   LevelVertices(const bundle::CaptureProxy& proxy, std::vector<Vertex>& vertices)
-      : proxy_(proxy), vertices_(vertices), first_(vertices.size()), slots_(proxy.positions.size(), kNone) {}
+      : proxy_(proxy),
+        vertices_(vertices),
+        first_(vertices.size()),
+        slots_(proxy.positions.size(), kNone),
+        black_(proxy.positions.size(), kNone) {}
 
-  void add(std::uint32_t surface_id, std::array<std::uint32_t, 3> corners,
-           std::vector<std::uint32_t>& indices) {
+  // Turns the corners so that few vertices are doubled; goes out: as vertices of the level.
+  std::array<std::uint32_t, 3> add(std::uint32_t surface_id, std::array<std::uint32_t, 3>& corners) {
     for (int turn = 0; turn < 3 && !isFree(corners[2]); ++turn)
       std::rotate(corners.begin(), corners.begin() + 1, corners.end());
     std::uint32_t last = slots_[corners[2]];
     if (!isFree(corners[2])) {
-      last = make(corners[2]);
+      last = make(corners[2], 0);
     } else if (last == kNone) {
-      last = slots_[corners[2]] = make(corners[2]);
+      last = slots_[corners[2]] = make(corners[2], 0);
     }
     vertices_[first_ + last][3] = surface_id;
+    std::array<std::uint32_t, 3> added{0, 0, last};
     for (const std::size_t k : {0u, 1u}) {
-      if (slots_[corners[k]] == kNone) slots_[corners[k]] = make(corners[k]);
-      indices.push_back(slots_[corners[k]]);
+      if (slots_[corners[k]] == kNone) slots_[corners[k]] = make(corners[k], 0);
+      added[k] = slots_[corners[k]];
     }
-    indices.push_back(last);
+    return added;
+  }
+  std::uint32_t black(std::uint32_t corner) {
+    if (black_[corner] == kNone) black_[corner] = make(corner, kBlackId);
+    return black_[corner];
   }
 
  private:
@@ -68,19 +80,27 @@ class LevelVertices {
   bool isFree(std::uint32_t corner) const {
     return slots_[corner] == kNone || vertices_[first_ + slots_[corner]][3] == 0;
   }
-  std::uint32_t make(std::uint32_t corner) {
+  std::uint32_t make(std::uint32_t corner, std::uint32_t surface_id) {
     const glm::vec3& p = proxy_.positions[corner];
     vertices_.push_back({std::bit_cast<std::uint32_t>(p.x), std::bit_cast<std::uint32_t>(p.y),
-                         std::bit_cast<std::uint32_t>(p.z), 0});
+                         std::bit_cast<std::uint32_t>(p.z), surface_id});
     return static_cast<std::uint32_t>(vertices_.size() - 1 - first_);
   }
 
   const bundle::CaptureProxy& proxy_;
   std::vector<Vertex>& vertices_;
   std::size_t first_;
-  std::vector<std::uint32_t> slots_;  // per position of the proxy
+  std::vector<std::uint32_t> slots_, black_;  // per position of the proxy
 };
-static_assert(3 * bundle::kMaxProxyTriangles <= 1u << kVertexBits);
+// Three corners of its own and a black one for each triangle.
+static_assert(4 * bundle::kMaxProxyTriangles <= 1u << kVertexBits);
+
+glm::dvec4 planeOf(const bundle::CaptureProxy& proxy, const bundle::ProxyTriangle& triangle) {
+  const glm::dvec3 a(proxy.positions[triangle.vertices[0]]), b(proxy.positions[triangle.vertices[1]]),
+      c(proxy.positions[triangle.vertices[2]]);
+  const glm::dvec3 normal = glm::cross(b - a, c - a);
+  return {normal, -glm::dot(normal, a)};
+}
 
 void put(float (&row)[4], const glm::dvec4& value) {
   for (int i = 0; i < 4; ++i) row[i] = static_cast<float>(value[i]);
@@ -172,13 +192,17 @@ void Capture::setProxies(std::span<const bundle::CaptureProxy* const> proxies, g
       Level& drawn = made.levels.emplace_back();
       drawn.first_vertex = static_cast<std::uint32_t>(vertices.size());
       drawn.closed = isClosed(*proxy, level);
-      LevelVertices add(*proxy, vertices);
+      LevelVertices level_vertices(*proxy, vertices);
       for (std::uint32_t t = level.first_triangle; t < level.first_triangle + level.triangle_count; ++t) {
         const bundle::ProxyTriangle& triangle = proxy->triangles[t];
         const auto usable = [&](std::uint32_t v) { return finite(proxy->positions[v]); };
         if (!std::all_of(triangle.vertices.begin(), triangle.vertices.end(), usable)) continue;
-        add.add(triangle_count_ + t + 1, triangle.vertices,
-                triangle.front_only ? drawn.front_only : drawn.two_sided);
+        std::array<std::uint32_t, 3> corners = triangle.vertices;
+        LevelTriangle& added = drawn.triangles.emplace_back();
+        added.corners = level_vertices.add(triangle_count_ + t + 1, corners);
+        added.front_only = triangle.front_only;
+        if (!triangle.front_only) added.black = level_vertices.black(corners[2]);
+        added.plane = planeOf(*proxy, triangle);
       }
     }
     proxies_.push_back(std::move(made));
@@ -284,19 +308,25 @@ void Capture::upload(const Plan& plan, std::span<const CaptureBody> bodies,
         record.first_vertex = proxies_[body.proxy].levels[draw.level].first_vertex;
       }
     }
-    for (const bool front_only : {false, true}) {  // without and with culling of back faces
-      IndexRange& range = page_indices_[i][front_only];
-      range.first = static_cast<std::uint32_t>(indices.size());
-      for (std::uint32_t d = page.first_draw; d < page.first_draw + page.draw_count; ++d) {
-        const Level& level = proxies_[bodies[plan.draws[d].body].proxy].levels[plan.draws[d].level];
-        const auto append = [&](const std::vector<std::uint32_t>& corners) {
-          for (const std::uint32_t v : corners) indices.push_back(d << kVertexBits | v);
-        };
-        if (front_only) append(level.front_only);
-        if (front_only == (level.closed && plan.draws[d].from_outside)) append(level.two_sided);
+    IndexRange& range = page_indices_[i];
+    range.first = static_cast<std::uint32_t>(indices.size());
+    for (std::uint32_t d = page.first_draw; d < page.first_draw + page.draw_count; ++d) {
+      const Draw& draw = plan.draws[d];
+      const CaptureBody& body = bodies[draw.body];
+      const Level& level = proxies_[body.proxy].levels[draw.level];
+      // Told here which side is seen: what is cut at the tile's edges may come out turned round on the GPU.
+      const glm::dvec4 point_proxy =
+          glm::inverse(glm::dmat4(body.world_from_proxy)) *
+          glm::dvec4(glm::dvec3(points[plan.tiles[draw.tile].point].position_ws), 1.0);
+      for (const LevelTriangle& triangle : level.triangles) {
+        const bool bright = glm::dot(triangle.plane, point_proxy) > 0.0;
+        if (!bright && (triangle.front_only || (level.closed && draw.from_outside))) continue;
+        const std::uint32_t last = bright ? triangle.corners[2] : triangle.black;
+        for (const std::uint32_t v : {triangle.corners[0], triangle.corners[1], last})
+          indices.push_back(d << kVertexBits | v);
       }
-      range.count = static_cast<std::uint32_t>(indices.size()) - range.first;
     }
+    range.count = static_cast<std::uint32_t>(indices.size()) - range.first;
   }
   load_.triangles = indices.size() / 3;
 
@@ -337,7 +367,7 @@ void Capture::drawPage(const Page& page, std::size_t index, gpu::Counters& count
   glDepthFunc(GL_GREATER);
   glDepthMask(GL_TRUE);
   glDisable(GL_BLEND);
-  glFrontFace(GL_CCW);
+  glDisable(GL_CULL_FACE);
   glEnable(GL_SCISSOR_TEST);
   glScissor(0, 0, static_cast<GLsizei>(kAtlasWidth), static_cast<GLsizei>(page.height));
   constexpr GLuint kNothing[4] = {0, 0, 0, 0};
@@ -352,16 +382,11 @@ void Capture::drawPage(const Page& page, std::size_t index, gpu::Counters& count
   bindTable(vertices_view_, kUnitVertices, GL_RGBA32UI, vertices_.buffer());
   bindTable(draws_view_, kUnitDraws, GL_RGBA32UI, draws_.buffer());
   glUniform2f(kClipFromPixel, 2.0f / static_cast<float>(kAtlasWidth), 2.0f / static_cast<float>(page.height));
-  for (const bool front_only : {false, true}) {
-    const IndexRange& range = page_indices_[index][front_only];
-    if (range.count == 0) continue;
-    if (front_only) glEnable(GL_CULL_FACE);
-    glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(range.count), GL_UNSIGNED_INT,
-                   reinterpret_cast<const void*>(std::size_t{range.first} * sizeof(std::uint32_t)));
-    ++counters.draws;
-    ++counters.draw_calls;
-    if (front_only) glDisable(GL_CULL_FACE);
-  }
+  const IndexRange& range = page_indices_[index];
+  glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(range.count), GL_UNSIGNED_INT,
+                 reinterpret_cast<const void*>(std::size_t{range.first} * sizeof(std::uint32_t)));
+  ++counters.draws;
+  ++counters.draw_calls;
   glDepthFunc(GL_LESS);
   for (GLenum i = 0; i < 4; ++i) glDisable(GL_CLIP_DISTANCE0 + i);
   glClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);

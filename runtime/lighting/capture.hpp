@@ -66,11 +66,17 @@ class Capture {
   sh::LightVector skyThroughTexels(const Environment& environment, const glm::mat3& world_from_light);
 
  private:
+  struct LevelTriangle {
+    // Vertices of the level. The last one names the surface: that of the bright side, or black.
+    std::array<std::uint32_t, 3> corners{};
+    std::uint32_t black = 0;  // of a triangle that is there from behind: its last corner, black
+    bool front_only = false;
+    glm::dvec4 plane{0.0};  // proxy frame; over 0 on the bright side
+  };
   struct Level {
     std::uint32_t first_vertex = 0;
-    // Corners, as vertices of the level. Of a closed surface seen from outside no dark side can show.
-    std::vector<std::uint32_t> two_sided, front_only;
-    bool closed = false;
+    std::vector<LevelTriangle> triangles;
+    bool closed = false;  // seen from outside, no dark side can show
   };
   struct Proxy {
     std::uint32_t first_triangle = 0;
@@ -112,7 +118,7 @@ class Capture {
   std::vector<Proxy> proxies_;
   std::vector<capture::ProxyBounds> bounds_;
   std::uint32_t triangle_count_ = 0;
-  std::vector<std::array<IndexRange, 2>> page_indices_;  // per page: two-sided, front only
+  std::vector<IndexRange> page_indices_;
 
   bool pending_ = false;
   Run run_;

@@ -16,7 +16,9 @@ namespace lambent::lighting::capture {
 
 namespace {
 
-constexpr double kCullShare = 0.25;  // of a texel: solid angle of bodies, error of levels
+constexpr double kCullShare = 0.25;  // of a texel's solid angle: smaller bodies are left out
+constexpr double kLevelErrorShare =
+    0.5;  // of a texel's width: levels of proxies keep solid angles, if not outlines
 // The near plane, as a share of the distance to the nearest body's box, or of the radius of one that holds
 // the point. Depth is reversed and so does not suffer.
 constexpr double kNearShare = 1e-3, kLeastNearShare = 1e-9;
@@ -68,7 +70,8 @@ std::uint32_t levelFor(const CaptureOptions& options, const Sphere& sphere, cons
   const double texel_rad = 0.5 * std::numbers::pi / options.size;
   std::uint32_t level = 0;
   for (std::uint32_t i = 0; i < bounds.level_errors_m.size(); ++i)
-    if (static_cast<double>(bounds.level_errors_m[i]) * sphere.scale <= kCullShare * texel_rad * distance_m)
+    if (static_cast<double>(bounds.level_errors_m[i]) * sphere.scale <=
+        kLevelErrorShare * texel_rad * distance_m)
       level = i;
   return level;
 }

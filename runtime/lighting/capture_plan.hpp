@@ -1,6 +1,6 @@
 // Which bodies are drawn for which point, where: the CPU's part of the light capture, without GL. Bodies
-// under a quarter of a texel are left out, the others drawn by their coarsest level whose error is under a
-// quarter of a texel. On each face of a point's cube the bodies' bounding rectangles, in whole texels, become
+// under a quarter of a texel are left out, the others drawn by their coarsest level whose error is under half
+// a texel. On each face of a point's cube the bodies' bounding rectangles, in whole texels, become
 // tiles of an atlas; those that overlap are one tile. Comes in: bounds of the proxies, bodies, points. Goes
 // out: pages (one atlas each, all tiles of a point on the same), tiles, draws.
 #pragma once

@@ -44,7 +44,7 @@ LAMBENT_CONSTANT kBindSkyWeights = 2u;
 LAMBENT_CONSTANT kBindSkyLight = 3u;  // vec4 per coefficient
 
 LAMBENT_CONSTANT kWorkGroupSize = 64u;
-LAMBENT_CONSTANT kVertexBits = 10u;  // an index is a draw << kVertexBits | a vertex of the level
+LAMBENT_CONSTANT kVertexBits = 11u;  // an index is a draw << kVertexBits | a vertex of the level
 // What a pixel holds: 0 where the sky is seen, else triangle + 1, or kBlackId for the dark side of a triangle.
 LAMBENT_CONSTANT kBlackId = 0x80000000u;
 LAMBENT_CONSTANT kNoPixel = 0xffffffffu;

@@ -207,12 +207,13 @@ float IncidentLight::changeAround(const Drawn& drawn, const Drawn& now, std::spa
 
 Result<void> IncidentLight::capture(const Environment& environment, std::span<const IncidentGroup> groups,
                                     std::span<const IncidentBody> bodies, std::span<const LocalLight> lights,
-                                    const gpu::Buffer& triangle_radiance, gpu::Counters& counters) {
+                                    const gpu::Buffer& triangle_radiance, std::size_t max_samples,
+                                    gpu::Counters& counters) {
   counts_.captured = 0;
   if (!requests_.empty()) return {};  // the last one is still on its way
   counts_.waiting = 0;
   const float least_change = somethingMoves(groups, bodies) ? kMovingChange : kRestingChange;
-  std::vector<CapturePoint> points;
+  std::vector<Wanted> wanted;
   for (std::size_t g = 0; g < groups.size(); ++g)
     for (std::size_t s = 0; s < groups[g].samples_ws.size(); ++s) {
       Sample& sample = groups_[g].samples[s];
@@ -231,35 +232,47 @@ Result<void> IncidentLight::capture(const Environment& environment, std::span<co
         sample.drawn.reset();
         continue;
       }
-      const auto ask = [&](const std::optional<LightQuery>& query, std::vector<std::int32_t>& places) {
-        places.push_back(query ? static_cast<std::int32_t>(point.queries.size()) : -1);
-        if (query) point.queries.push_back(*query);
-      };
-      for (const spec::Disc& disc : environment.discs()) {
-        std::optional<LightQuery> query;
-        if (disc.radiance != glm::vec3(0.0f))
-          query = LightQuery{
-              .direction = disc.direction, .angular_radius_rad = disc.radius_rad, .radiance = disc.radiance};
-        ask(query, now.query_of_disc);
-      }
-      for (std::size_t k = 0; k < lights.size(); ++k)
-        ask(groups[g].lit_by[k] != 0 ? queryOf(lights[k], point.position_ws) : std::nullopt,
-            now.query_of_light);
-      if (sample.drawn) {
-        const float change = changeAround(*sample.drawn, now, bodies, point);
-        if (!(change > least_change)) {
-          counts_.waiting += change > kRestingChange ? 1 : 0;
-          continue;
-        }
-      }
-      points.push_back(std::move(point));
-      requests_.push_back({g, s, std::move(now)});
+      askForLights(environment, groups[g], lights, point, now);
+      const float change = sample.drawn ? changeAround(*sample.drawn, now, bodies, point) : kAnew;
+      if (change > least_change)
+        wanted.push_back({change, {g, s, std::move(now)}, std::move(point)});
+      else if (change > kRestingChange)
+        ++counts_.waiting;
     }
-  counts_.captured = static_cast<std::uint32_t>(points.size());
-  if (points.empty()) return {};
+  // What changed most first; the others have their turn soon, for what they wait for adds up.
+  std::stable_sort(wanted.begin(), wanted.end(),
+                   [](const Wanted& a, const Wanted& b) { return a.change > b.change; });
+  if (wanted.size() > max_samples) {
+    counts_.waiting += static_cast<std::uint32_t>(wanted.size() - max_samples);
+    wanted.resize(max_samples);
+  }
+  if (wanted.empty()) return {};
+  counts_.captured = static_cast<std::uint32_t>(wanted.size());
+  std::vector<CapturePoint> points;
+  for (Wanted& one : wanted) {
+    points.push_back(std::move(one.point));
+    requests_.push_back(std::move(one.request));
+  }
   std::vector<CaptureBody> placed;
   for (const IncidentBody& body : bodies) placed.push_back(body.body);
   return capture_.run(environment, placed, points, triangle_radiance, counters);
+}
+
+void IncidentLight::askForLights(const Environment& environment, const IncidentGroup& group,
+                                 std::span<const LocalLight> lights, CapturePoint& point, Drawn& drawn) {
+  const auto ask = [&](const std::optional<LightQuery>& query, std::vector<std::int32_t>& places) {
+    places.push_back(query ? static_cast<std::int32_t>(point.queries.size()) : -1);
+    if (query) point.queries.push_back(*query);
+  };
+  for (const spec::Disc& disc : environment.discs()) {
+    std::optional<LightQuery> query;
+    if (disc.radiance != glm::vec3(0.0f))
+      query = LightQuery{
+          .direction = disc.direction, .angular_radius_rad = disc.radius_rad, .radiance = disc.radiance};
+    ask(query, drawn.query_of_disc);
+  }
+  for (std::size_t k = 0; k < lights.size(); ++k)
+    ask(group.lit_by[k] != 0 ? queryOf(lights[k], point.position_ws) : std::nullopt, drawn.query_of_light);
 }
 
 bool IncidentLight::atRest() const {

@@ -47,8 +47,10 @@ struct IncidentGroup {
 struct IncidentCounts {
   std::uint32_t samples = 0;   // light samples there are
   std::uint32_t captured = 0;  // drawn in this step
-  std::uint32_t waiting = 0;   // surroundings changed, but by less than is drawn while things move
-  std::uint32_t risen = 0;     // handed on new light in this step
+  // Surroundings changed, but by less than is drawn while things move, or there was no more room in the step;
+  // or a body is out of sight now, which needs no drawing.
+  std::uint32_t waiting = 0;
+  std::uint32_t risen = 0;  // handed on new light in this step
 };
 
 class IncidentLight {
@@ -62,10 +64,12 @@ class IncidentLight {
   // and with lights that need none.
   void update(const Environment& environment, std::span<const IncidentGroup> groups,
               std::span<const LocalLight> lights, bool wait);
-  // Draws what has changed around the samples. Errors: a shader that does not compile.
+  // Draws what has changed around the samples, at most so many of them: those that changed most. Errors: a
+  // shader that does not compile.
   Result<void> capture(const Environment& environment, std::span<const IncidentGroup> groups,
                        std::span<const IncidentBody> bodies, std::span<const LocalLight> lights,
-                       const gpu::Buffer& triangle_radiance, gpu::Counters& counters);
+                       const gpu::Buffer& triangle_radiance, std::size_t max_samples,
+                       gpu::Counters& counters);
   // Nothing is on its way, nothing was left for later and the last update handed on nothing new.
   bool atRest() const;
 
@@ -108,12 +112,19 @@ class IncidentLight {
     std::size_t group = 0, sample = 0;
     Drawn drawn;
   };
+  struct Wanted {
+    float change = 0.0f;
+    Request request;
+    CapturePoint point;
+  };
 
   IncidentLight(Capture capture, int order) : capture_(std::move(capture)), order_(order) {}
   void takeDrawn(bool wait);
   void noticeLights(std::span<const IncidentGroup> groups, std::span<const LocalLight> lights);
   void updateSample(Sample& sample, const Group& group, const Environment& environment,
                     const glm::vec3& position_ws, std::span<const LocalLight> lights);
+  static void askForLights(const Environment& environment, const IncidentGroup& group,
+                           std::span<const LocalLight> lights, CapturePoint& point, Drawn& drawn);
   bool somethingMoves(std::span<const IncidentGroup> groups, std::span<const IncidentBody> bodies);
   float changeAround(const Drawn& drawn, const Drawn& now, std::span<const IncidentBody> bodies,
                      const CapturePoint& point) const;
