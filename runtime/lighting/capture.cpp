@@ -28,7 +28,7 @@ using namespace capture;
 
 constexpr gpu::FindText kShaders[] = {&embedded::lambent_lighting::find};
 // As in capture.vert, capture_resolve.comp and capture_project.comp.
-constexpr GLint kClipFromPixel = 0;
+constexpr GLint kClipFromPixel = 0, kDepth = 1;
 constexpr GLint kFirstTexel = 0, kTexelCount = 1, kFirstWord = 2, kWordCount = 3, kSubsamples = 4;
 constexpr GLint kFirstPoint = 0;
 constexpr std::uint32_t kNoRecord = 0xffffffffu;
@@ -308,13 +308,13 @@ void Capture::upload(const Plan& plan, std::span<const CaptureBody> bodies,
         record.first_vertex = proxies_[body.proxy].levels[draw.level].first_vertex;
       }
     }
-    IndexRange& range = page_indices_[i];
-    range.first = static_cast<std::uint32_t>(indices.size());
+    std::vector<std::uint32_t> dark;
+    page_indices_[i].first_bright = static_cast<std::uint32_t>(indices.size());
     for (std::uint32_t d = page.first_draw; d < page.first_draw + page.draw_count; ++d) {
       const Draw& draw = plan.draws[d];
       const CaptureBody& body = bodies[draw.body];
       const Level& level = proxies_[body.proxy].levels[draw.level];
-      // Told here which side is seen: what is cut at the tile's edges may come out turned round on the GPU.
+      // Told here which side is seen, so that dark sides that cannot show need not be drawn.
       const glm::dvec4 point_proxy =
           glm::inverse(glm::dmat4(body.world_from_proxy)) *
           glm::dvec4(glm::dvec3(points[plan.tiles[draw.tile].point].position_ws), 1.0);
@@ -323,10 +323,12 @@ void Capture::upload(const Plan& plan, std::span<const CaptureBody> bodies,
         if (!bright && (triangle.front_only || (level.closed && draw.from_outside))) continue;
         const std::uint32_t last = bright ? triangle.corners[2] : triangle.black;
         for (const std::uint32_t v : {triangle.corners[0], triangle.corners[1], last})
-          indices.push_back(d << kVertexBits | v);
+          (bright ? indices : dark).push_back(d << kVertexBits | v);
       }
     }
-    range.count = static_cast<std::uint32_t>(indices.size()) - range.first;
+    page_indices_[i].first_dark = static_cast<std::uint32_t>(indices.size());
+    indices.insert(indices.end(), dark.begin(), dark.end());
+    page_indices_[i].end = static_cast<std::uint32_t>(indices.size());
   }
   load_.triangles = indices.size() / 3;
 
@@ -382,11 +384,19 @@ void Capture::drawPage(const Page& page, std::size_t index, gpu::Counters& count
   bindTable(vertices_view_, kUnitVertices, GL_RGBA32UI, vertices_.buffer());
   bindTable(draws_view_, kUnitDraws, GL_RGBA32UI, draws_.buffer());
   glUniform2f(kClipFromPixel, 2.0f / static_cast<float>(kAtlasWidth), 2.0f / static_cast<float>(page.height));
-  const IndexRange& range = page_indices_[index];
-  glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(range.count), GL_UNSIGNED_INT,
-                 reinterpret_cast<const void*>(std::size_t{range.first} * sizeof(std::uint32_t)));
-  ++counters.draws;
-  ++counters.draw_calls;
+  // A dark side that lies on a bright one, as in a fold of a simplified surface, must not show through it.
+  constexpr float kDarkDepth = 0.9999f;
+  const PageIndices& range = page_indices_[index];
+  const auto draw = [&](std::uint32_t first, std::uint32_t end, float depth) {
+    if (first == end) return;
+    glUniform1f(kDepth, depth);
+    glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(end - first), GL_UNSIGNED_INT,
+                   reinterpret_cast<const void*>(std::size_t{first} * sizeof(std::uint32_t)));
+    ++counters.draws;
+    ++counters.draw_calls;
+  };
+  draw(range.first_bright, range.first_dark, 1.0f);
+  draw(range.first_dark, range.end, kDarkDepth);
   glDepthFunc(GL_LESS);
   for (GLenum i = 0; i < 4; ++i) glDisable(GL_CLIP_DISTANCE0 + i);
   glClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);

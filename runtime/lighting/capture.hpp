@@ -82,8 +82,8 @@ class Capture {
     std::uint32_t first_triangle = 0;
     std::vector<Level> levels;
   };
-  struct IndexRange {
-    std::uint32_t first = 0, count = 0;
+  struct PageIndices {
+    std::uint32_t first_bright = 0, first_dark = 0, end = 0;
   };
   // What take() needs of the run.
   struct Run {
@@ -118,7 +118,7 @@ class Capture {
   std::vector<Proxy> proxies_;
   std::vector<capture::ProxyBounds> bounds_;
   std::uint32_t triangle_count_ = 0;
-  std::vector<IndexRange> page_indices_;
+  std::vector<PageIndices> page_indices_;
 
   bool pending_ = false;
   Run run_;

@@ -4,6 +4,7 @@
 
 layout(binding = kUnitVertices) uniform usamplerBuffer vertices;
 layout(binding = kUnitDraws) uniform usamplerBuffer draws;
+layout(location = 1) uniform float depth;  // 1, or a little less where what lies in the same place goes before
 layout(location = 0) uniform vec2 clip_from_pixel;  // times a pixel, minus 1: its edge in the atlas, -1..1
 
 out gl_PerVertex {
@@ -22,7 +23,7 @@ void main() {
   float y = dot(uintBitsToFloat(texelFetch(draws, draw + 1)), position);
   float w = dot(uintBitsToFloat(texelFetch(draws, draw + 2)), position);
   vec2 first = vec2(tile.yz & 0xffffu) * clip_from_pixel - 1.0, end = vec2(tile.yz >> 16u) * clip_from_pixel - 1.0;
-  gl_Position = vec4(x, y, 1.0, w);
+  gl_Position = vec4(x, y, depth, w);
   gl_ClipDistance[0] = x - first.x * w;
   gl_ClipDistance[1] = end.x * w - x;
   gl_ClipDistance[2] = y - first.y * w;
