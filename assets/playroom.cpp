@@ -45,16 +45,14 @@ Motion swinging(glm::vec3 hook) {
   return motion;
 }
 
-// In front of the teapot, and for a while away to the side.
+// Between lamp and teapot, and for a while away to the side.
 Motion sliding() {
-  return {.times_s = {0.0f, 2.0f, 4.0f, 6.0f, 8.0f, 10.0f},
-          .translations = {{2.0f, 0, 0.35f},
-                           {2.0f, 0, 0.35f},
-                           {1.0f, 0, 0.35f},
-                           {1.0f, 0, 0.35f},
-                           {2.0f, 0, 0.35f},
-                           {2.0f, 0, 0.35f}},
-          .rotations = {}};
+  constexpr float kOver = 1.28f, kBefore = 0.5f, kAway = 2.1f, kBetween = 0.95f;
+  Motion motion;
+  motion.times_s = {0.0f, 2.0f, 4.0f, 6.0f, 8.0f, 10.0f};
+  for (const float x : {kAway, kAway, kBetween, kBetween, kAway, kAway})
+    motion.translations.emplace_back(x, kOver, kBefore);
+  return motion;
 }
 
 // An open shade around the bulb, hanging from the origin of the arm.
@@ -114,7 +112,7 @@ Scene playroom() {
          .parent = stand_node});
 
   Node screen{.name = "screen",
-              .mesh = add("screen", box({-0.36f, 0.02f, -0.02f}, {0.36f, 1.35f, 0.02f}, 0.08f), kWood)};
+              .mesh = add("screen", box({-0.4f, -0.015f, -0.36f}, {0.4f, 0.015f, 0.36f}, 0.08f), kWood)};
   screen.motion = sliding();
   screen.translation = screen.motion.translations.front();
   place(std::move(screen));
