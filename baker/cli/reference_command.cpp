@@ -102,7 +102,7 @@ void print(const ReferenceArguments& a, const reference::Request& request, const
 
 int runReference(const ReferenceArguments& a) {
   constexpr int kWrongUsage = 2;
-  const auto request = understand(a);
+  auto request = understand(a);
   if (!request) {
     reportError(request.error());
     return kWrongUsage;
@@ -118,7 +118,10 @@ int runReference(const ReferenceArguments& a) {
   progress.begin("import");
   auto scene = importScene(a.scene, {.allow_outside = a.allow_outside});
   if (!scene) return reportError(scene.error());
-  if (*time) reference::poseAt(*scene, **time);
+  if (*time) {
+    request->nodes_at_rest = scene->nodes;
+    reference::poseAt(*scene, **time);
+  }
   for (const std::string& warning : scene->warnings)
     fmt::print(stderr, "lambent: {}: {}\n", a.scene.string(), warning);
   const auto report = [&] {

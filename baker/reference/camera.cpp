@@ -20,13 +20,12 @@ struct Box {
 
 // The boxes of primitives moved to their nodes, as the runtime has it (runtime/scene/bounds.hpp): not the
 // tightest box, but the one that any reader of the file's min and max gets.
-Box boundsOf(const Scene& scene) {
+Box boundsOf(const Scene& scene, const std::vector<gltf::Node>& nodes) {
   Box all;
-  const std::vector<glm::mat4> world = gltf::worldTransforms(scene.nodes);
-  for (std::size_t n = 0; n < scene.nodes.size(); ++n) {
-    if (scene.nodes[n].mesh < 0) continue;
-    for (const ScenePrimitive& primitive :
-         scene.meshes[static_cast<std::size_t>(scene.nodes[n].mesh)].primitives) {
+  const std::vector<glm::mat4> world = gltf::worldTransforms(nodes);
+  for (std::size_t n = 0; n < nodes.size(); ++n) {
+    if (nodes[n].mesh < 0) continue;
+    for (const ScenePrimitive& primitive : scene.meshes[static_cast<std::size_t>(nodes[n].mesh)].primitives) {
       Box box;
       for (const glm::vec3& position : primitive.mesh.positions) box.add(position);
       for (int corner = 0; corner < 8; ++corner)
@@ -50,8 +49,9 @@ glm::vec3 openSide(const Surfaces& surfaces) {
 }  // namespace
 
 Result<spec::View> viewOf(const Scene& scene, const Surfaces& surfaces,
+                          const std::vector<gltf::Node>& nodes_at_rest,
                           const std::optional<spec::Camera>& camera, float aspect) {
-  const Box bounds = boundsOf(scene);
+  const Box bounds = boundsOf(scene, nodes_at_rest);
   if (camera && std::holds_alternative<spec::OrbitCamera>(*camera))
     return spec::orbitView(std::get<spec::OrbitCamera>(*camera), bounds.min, bounds.max, aspect);
   std::optional<std::size_t> node;

@@ -13,7 +13,9 @@
 namespace lambent::baker::reference {
 
 // Errors: no camera of that name; one that cannot be looked through.
+// nodes_at_rest: by which orbits stand; what moves in a scene does not move its camera.
 Result<spec::View> viewOf(const Scene& scene, const Surfaces& surfaces,
+                          const std::vector<gltf::Node>& nodes_at_rest,
                           const std::optional<spec::Camera>& camera, float aspect);
 
 class EyeRays {

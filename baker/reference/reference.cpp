@@ -118,7 +118,9 @@ Result<Report> render(const Scene& scene, const Request& request, const fs::path
   const std::vector<spec::LocalLight> shapes = spec::localLights(request.lights);
   auto surfaces = Surfaces::build(scene);
   if (!surfaces) return failAgain(std::move(surfaces.error()));
-  const auto view = viewOf(scene, *surfaces, request.camera, options.size.aspect());
+  const auto view =
+      viewOf(scene, *surfaces, request.nodes_at_rest.empty() ? scene.nodes : request.nodes_at_rest,
+             request.camera, options.size.aspect());
   if (!view) return failAgain(view.error());
   Film film(options.size, digestOf(scene, *lights, shapes, *view, options));
   const Environment environment(std::move(*lights), options.rotate_light_deg,

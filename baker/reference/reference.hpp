@@ -25,6 +25,8 @@ struct Request {
   std::vector<spec::Light> lights = {};
   std::optional<spec::Camera> camera = {};  // none: the file's first, else an orbit that frames the scene
   Options options = {};
+  // Where the scene's nodes stand before poseAt, by which orbits stand; empty: where they stand now.
+  std::vector<gltf::Node> nodes_at_rest = {};
 };
 
 struct Report {

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 
@@ -76,7 +77,9 @@ Result<void> runHeadless(const Options& options) {
     // movement costs can be read off.
     stage->turnLight(options.rotate_light_deg * static_cast<float>(i + 1) /
                      static_cast<float>(options.frames));
-    world.setAnimationTime(options.time_s - options.step_s * static_cast<float>(options.frames - 1 - i));
+    if (options.time_s)
+      world.setAnimationTime(
+          std::max(0.0f, *options.time_s - options.step_s * static_cast<float>(options.frames - 1 - i)));
     const auto frame_start = Clock::now();
     if (Result<void> rendered = render(); !rendered) return rendered;
     glFinish();

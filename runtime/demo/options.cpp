@@ -26,7 +26,7 @@ const std::map<std::string, sh::Window> kWindowWords = {
 struct Words {
   std::vector<std::string> bundles, lights, fade_lights;
   std::string light_layout, camera, size = "1280x720", headless, transfer = "full", window = "auto";
-  std::string rotate_light = "0", exposure = "auto", lamps = "1", fade = "0", time = "0", step = "0.0333";
+  std::string rotate_light = "0", exposure = "auto", lamps = "1", fade = "0", time, step = "0.0333";
   std::uint32_t capture_size = 16, capture_subsamples = 16, capture_order = 0;
   std::uint64_t max_memory = ~std::uint64_t{0};
   std::uint32_t frames = 1;
@@ -55,7 +55,9 @@ constexpr Row kRows[] = {
     {"--window", &Words::window, "WINDOW", "Against ringing of the light: auto, off or hann"},
     {"--rotate-light", &Words::rotate_light, "DEG", "Turn all lights about +Y (+Z towards +X)"},
     {"--fade", &Words::fade, "SHARE", "From the lights of --light to those of --fade-to: 0..1"},
-    {"--time", &Words::time, "S", "Where the scenes' animations stand in the last frame, in seconds"},
+    {"--time", &Words::time, "S",
+     "Where the scenes' animations stand in the last frame, in\nseconds (default: headless, the scenes at "
+     "rest)"},
     {"--step", &Words::step, "S", "Seconds of animation from frame to frame, headless"},
     {"--lamps", &Words::lamps, "FACTOR", "Times the strength of the scenes' own lights; 0 switches them off"},
     {"--exposure", &Words::exposure, "EV", "Stops above radiance 1 = white, or auto"},
@@ -204,11 +206,13 @@ Result<Options> understand(const Words& words) {
   if (!lamps || *lamps < 0.0f || *lamps > 1e6f)
     return fail("--lamps", fmt::format("\"{}\" is not a factor", words.lamps), "give 0..1000000");
   options.lamps = *lamps;
-  const Result<float> time = understandSeconds("--time", words.time, -1e6f, 1e6f);
-  if (!time) return failAgain(time.error());
+  if (!words.time.empty()) {
+    const Result<float> time = understandSeconds("--time", words.time, 0.0f, 1e6f);
+    if (!time) return failAgain(time.error());
+    options.time_s = *time;
+  }
   const Result<float> step = understandSeconds("--step", words.step, 0.0f, 1e3f);
   if (!step) return failAgain(step.error());
-  options.time_s = *time;
   options.step_s = *step;
   options.capture = {.size = words.capture_size,
                      .subsamples = words.capture_subsamples,

@@ -36,8 +36,8 @@ struct Options {
   std::string window_word;
   std::uint32_t frames = 1;
   float rotate_light_deg = 0.0f;
-  float time_s = 0.0f;  // of the scenes' animations in the last frame
-  float step_s = 0.0f;  // from frame to frame
+  std::optional<float> time_s;  // of the scenes' animations in the last frame; none: at rest
+  float step_s = 0.0f;          // from frame to frame
   lighting::CaptureOptions capture{.order = 0};
   std::optional<float> exposure_ev;                    // none: automatic
   float lamps = 1.0f;                                  // factor on the strength of the scenes' own lights

@@ -83,7 +83,7 @@ std::string reportJson(const Options& options, const gpu::DeviceInfo& device, co
                      {"rotate_light_deg", options.rotate_light_deg},
                      {"fade_to", options.fade_words},
                      {"fade", options.fade},
-                     {"time_s", options.time_s},
+                     {"time_s", options.time_s ? Json(*options.time_s) : Json()},
                      {"capture",
                       {{"size", options.capture.size},
                        {"subsamples", options.capture.subsamples},

@@ -68,7 +68,7 @@ Result<void> runWindowed(const Options& options) {
 
   float turn_deg = options.rotate_light_deg;
   bool turning = true;
-  world.setAnimationTime(options.time_s);
+  world.setAnimationTime(options.time_s.value_or(0.0f));
   TitleClock title_clock;
   Clock::time_point last = Clock::now();
   while (true) {
