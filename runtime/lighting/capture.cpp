@@ -227,7 +227,7 @@ Result<void> Capture::run(const Environment& environment, std::span<const Captur
   const Plan plan = capture::plan(options_, bounds_, bodies, points);
 
   if (plan.draws.size() >= std::size_t{1} << (32 - kVertexBits))
-    return fail("light capture", "more than four million bodies to draw", "capture fewer points at a time");
+    return fail("light capture", "more than two million bodies to draw", "capture fewer points at a time");
 
   run_ = {};
   run_.points.assign(points.begin(), points.end());

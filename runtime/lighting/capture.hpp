@@ -46,7 +46,7 @@ class Capture {
   // and two dispatches, and two when the environment changed. triangle_radiance: vec4 per triangle;
   // what is not finite counts as black. Points that see no body cost the GPU nothing. Not to be called while
   // pending(). Changes the bound framebuffer, viewport, depth and culling state. Errors: called while
-  // pending; fewer radiances than triangles; 2^22 bodies to draw, counted per face of a point.
+  // pending; fewer radiances than triangles; 2^21 bodies to draw, counted per face of a point.
   Result<void> run(const Environment& environment, std::span<const CaptureBody> bodies,
                    std::span<const CapturePoint> points, const gpu::Buffer& triangle_radiance,
                    gpu::Counters& counters);

@@ -14,6 +14,7 @@ namespace lambent::lighting {
 namespace {
 
 constexpr float kAnew = std::numeric_limits<float>::infinity();
+
 bool differs(const sh::LightVector& now, const sh::LightVector& before) {
   double change = 0.0, power = 0.0;
   for (std::size_t i = 0; i < sh::kMaxCoefficients; ++i) {
@@ -154,6 +155,15 @@ void IncidentLight::updateSample(Sample& sample, const Group& group, const Envir
   ++counts_.risen;
 }
 
+bool IncidentLight::somethingShines(const Environment& environment, std::span<const IncidentBody> bodies) {
+  std::vector<double> shine = {static_cast<double>(environment.version())};
+  for (const Group& group : groups_) shine.push_back(static_cast<double>(group.lights));
+  for (const IncidentBody& body : bodies) shine.push_back(body.radiance_drift);
+  const bool changed = shine != shine_before_;
+  shine_before_ = std::move(shine);
+  return changed;
+}
+
 bool IncidentLight::somethingMoves(std::span<const IncidentGroup> groups,
                                    std::span<const IncidentBody> bodies) {
   std::vector<glm::mat4> poses;
@@ -211,8 +221,10 @@ Result<void> IncidentLight::capture(const Environment& environment, std::span<co
                                     gpu::Counters& counters) {
   counts_.captured = 0;
   if (!requests_.empty()) return {};  // the last one is still on its way
+  const bool moves = somethingMoves(groups, bodies), shines = somethingShines(environment, bodies);
+  if (!moves && !shines && nothing_to_draw_) return {};
   counts_.waiting = 0;
-  const float least_change = somethingMoves(groups, bodies) ? kMovingChange : kRestingChange;
+  const float least_change = moves ? kMovingChange : kRestingChange;
   std::vector<Wanted> wanted;
   for (std::size_t g = 0; g < groups.size(); ++g)
     for (std::size_t s = 0; s < groups[g].samples_ws.size(); ++s) {
@@ -246,6 +258,7 @@ Result<void> IncidentLight::capture(const Environment& environment, std::span<co
     counts_.waiting += static_cast<std::uint32_t>(wanted.size() - max_samples);
     wanted.resize(max_samples);
   }
+  nothing_to_draw_ = wanted.empty() && counts_.waiting == 0;
   if (wanted.empty()) return {};
   counts_.captured = static_cast<std::uint32_t>(wanted.size());
   std::vector<CapturePoint> points;

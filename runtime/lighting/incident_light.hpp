@@ -125,6 +125,8 @@ class IncidentLight {
                     const glm::vec3& position_ws, std::span<const LocalLight> lights);
   static void askForLights(const Environment& environment, const IncidentGroup& group,
                            std::span<const LocalLight> lights, CapturePoint& point, Drawn& drawn);
+  // Since the last call: the sky, a light, a body's radiance; a body, a sample.
+  bool somethingShines(const Environment& environment, std::span<const IncidentBody> bodies);
   bool somethingMoves(std::span<const IncidentGroup> groups, std::span<const IncidentBody> bodies);
   float changeAround(const Drawn& drawn, const Drawn& now, std::span<const IncidentBody> bodies,
                      const CapturePoint& point) const;
@@ -136,6 +138,8 @@ class IncidentLight {
   std::vector<LocalLight> lights_before_;
   std::vector<glm::mat4> bodies_before_;
   std::vector<glm::vec3> places_before_;
+  std::vector<double> shine_before_;
+  bool nothing_to_draw_ = false;  // when it was last looked for
   IncidentCounts counts_;
 };
 
