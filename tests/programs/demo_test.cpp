@@ -71,11 +71,30 @@ void expectOneLine(const std::string& text) {
 }  // namespace
 
 TEST_F(DemoProgram, WrongUsageIsExitCode2AndOneLine) {
-  for (const char* arguments :
-       {"", "a.glb --size 0x5", "a.glb --light moon:1", "a.glb --camera orbit:1", "a.glb --transfer some",
-        "a.glb --window foggy", "a.glb --headless a.jpg", "a.glb --exposure bright", "a.glb --frames 0",
-        "a.glb --rotate-light much", "a.glb --light-layout round", "a.glb --lamps -1", "a.glb --lamps bright",
-        "a.glb --max-memory much", "a.glb --no-such-option"}) {
+  for (const char* arguments : {"",
+                                "a.glb --size 0x5",
+                                "a.glb --light moon:1",
+                                "a.glb --camera orbit:1",
+                                "a.glb --transfer some",
+                                "a.glb --window foggy",
+                                "a.glb --headless a.jpg",
+                                "a.glb --exposure bright",
+                                "a.glb --frames 0",
+                                "a.glb --rotate-light much",
+                                "a.glb --light-layout round",
+                                "a.glb --lamps -1",
+                                "a.glb --lamps bright",
+                                "a.glb --max-memory much",
+                                "a.glb --time nan",
+                                "a.glb --step -1",
+                                "a.glb --fade 0.5",
+                                "a.glb --fade 2 --fade-to constant:1,1,1",
+                                "a.glb --fade-to sphere:0,1,0,1,1",
+                                "a.glb --capture-size 3",
+                                "a.glb --capture-subsamples 17",
+                                "a.glb --capture-order 9",
+                                "a.glb --light sphere:0,1,0,-1,1",
+                                "a.glb --no-such-option"}) {
     const Outcome outcome = run(arguments);
     EXPECT_EQ(outcome.exit_code, 2) << arguments;
     expectOneLine(outcome.err);
@@ -87,9 +106,13 @@ TEST_F(DemoProgram, HelpAndVersionAreExitCode0) {
   EXPECT_EQ(run("--version").exit_code, 0);
   const Outcome help = run("--help");
   EXPECT_EQ(help.exit_code, 0);
-  for (const char* option :
-       {"--light", "--light-layout", "--camera", "--size", "--headless", "--transfer", "--window", "--frames",
-        "--rotate-light", "--exposure", "--lamps", "--max-memory", "--json", "--version"})
+  for (const char* option : {"--light",         "--light-layout", "--camera",
+                             "--size",          "--headless",     "--transfer",
+                             "--window",        "--frames",       "--rotate-light",
+                             "--exposure",      "--lamps",        "--max-memory",
+                             "--fade-to",       "--fade",         "--time",
+                             "--step",          "--capture-size", "--capture-subsamples",
+                             "--capture-order", "--json",         "--version"})
     EXPECT_NE(help.out.find(option), std::string::npos) << option;
 }
 
@@ -149,6 +172,40 @@ TEST_F(DemoProgram, KeepsToItsMemoryAndDimsLamps) {
   EXPECT_LT(cut["bytes_resident"], whole["bytes_resident"]);
 }
 
+TEST_F(DemoProgram, FadesFromOneLightToAnother) {
+  if (!deviceHere()) GTEST_SKIP() << "no OpenGL 4.5 here";
+  const std::filesystem::path exr = folder / "a.exr";
+  const Outcome outcome =
+      run(bundle() + " --light constant:1,0,0 --fade-to constant:0,2,0 --fade 0.25 --size 64x64" +
+          " --headless " + quoted(exr));
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const auto picture = spec::readExr(exr);
+  ASSERT_TRUE(picture);
+  const glm::vec4 centre = picture->texels[32 * 64 + 32];
+  EXPECT_NEAR(centre.r, 0.75f, 3e-3f);
+  EXPECT_NEAR(centre.g, 0.5f, 3e-3f);
+}
+
+TEST_F(DemoProgram, ALightInTheSceneShinesByTheSquareOfItsDistance) {
+  if (!deviceHere()) GTEST_SKIP() << "no OpenGL 4.5 here";
+  const std::filesystem::path exr = folder / "a.exr";
+  const auto centre = [&](const std::string& light) {
+    const Outcome outcome =
+        run(bundle() + " --light " + light + " --window off --size 64x64 --json --headless " + quoted(exr));
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    const auto report = nlohmann::json::parse(outcome.out);
+    EXPECT_EQ(report["last_frame"]["counts"]["local_lights"], 1);
+    EXPECT_EQ(report["last_frame"]["counts"]["near_lights"], 0) << "outside the sphere's bounds";
+    const auto picture = spec::readExr(exr);
+    EXPECT_TRUE(picture);
+    return picture->texels[32 * 64 + 32].r;
+  };
+  // Towards the camera, which stands on +Z; sampled at the sphere's centre.
+  const float near = centre("sphere:0,0,20,1,100"), far = centre("sphere:0,0,40,1,100");
+  EXPECT_NEAR(near / far, 4.0f, 0.02f);
+  EXPECT_EQ(centre("sphere:0,0,20,0,100"), 0.0f) << "a light of no size";
+}
+
 TEST_F(DemoProgram, ReportsAsJson) {
   if (!deviceHere()) GTEST_SKIP() << "no OpenGL 4.5 here";
   const std::string png = (folder / "a.png").string();
@@ -170,6 +227,11 @@ TEST_F(DemoProgram, ReportsAsJson) {
   EXPECT_EQ(dispatches("first_frame"), 3);
   EXPECT_EQ(dispatches("last_frame"), 0) << "a still frame shades nothing";
   for (const auto& pass : report["last_frame"]["passes"]) EXPECT_TRUE(pass["gpu_ms"].is_number()) << pass;
+  EXPECT_EQ(report["first_frame"]["counts"]["light_samples_written"], 1);
+  EXPECT_EQ(report["last_frame"]["counts"]["light_samples_written"], 0);
+  EXPECT_EQ(report["last_frame"]["counts"]["cells_shaded"], 0);
+  EXPECT_EQ(report["last_frame"]["counts"]["light_samples_captured"], 0) << "one body sees no other";
+  EXPECT_GT(report["frame_ms"]["median"], 0.0);
 }
 
 TEST_F(DemoProgram, LeavesNoPictureWhereItCannotWrite) {
