@@ -1,15 +1,16 @@
 #!/usr/bin/env bash
 # Frames per second and what each frame does with 200 rigid groups, 20 of them moving: bench/many_bodies.sh [-b BUILD]
-# [-f FRAMES] [-s WxH]. One light sample a group, a tenth of a second of animation from frame to frame. An idle machine,
-# please: times are medians of wall time.
+# [-f FRAMES] [-s WxH] [-c CAPTURES]. One light sample a group, a tenth of a second of animation from frame to frame, at
+# most so many captures in each. An idle machine, please: times are medians of wall time.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
-build=build/release frames=40 size=640x360
-while getopts b:f:s: option; do
+build=build/release frames=40 size=640x360 captures=16
+while getopts b:f:s:c: option; do
   case $option in
     b) build=$OPTARG ;;
     f) frames=$OPTARG ;;
     s) size=$OPTARG ;;
+    c) captures=$OPTARG ;;
     *) sed -n 2,4p "$0" >&2; exit 2 ;;
   esac
 done
@@ -17,7 +18,8 @@ folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 "$build/bin/lambent" bake "$build/assets/field.glb" -o "$folder/field.lmb.glb" --quality draft --light-samples 1 >/dev/null
 "$build/bin/lambent-demo" "$folder/field.lmb.glb" --light "$build/assets/sky.hdr" --camera main --size "$size" \
-  --time 4 --step 0.1 --frames "$frames" --headless "$folder/field.png" --json >"$folder/report.json"
+  --time 4 --step 0.1 --frames "$frames" --captures-per-frame "$captures" \
+  --headless "$folder/field.png" --json >"$folder/report.json"
 python3 - "$folder/report.json" <<'PYTHON'
 import json, sys
 report = json.load(open(sys.argv[1]))

@@ -26,8 +26,8 @@ struct PlannedLightSamples {
 };
 
 // By half the group's diagonal over the distance of its centre from the nearest light of others (lamps, and
-// surfaces that give off light): under 0.1 one (light at infinity), under 0.25 four, under 0.5 eight, under
-// 0.8 sixteen, else 32. Bodies of other groups that give off no light ask by the same measure for one or
+// surfaces that give off light): under 0.05 one (light at infinity), under 0.15 four, under 0.25 eight, under
+// 0.5 sixteen, else 32. Bodies of other groups that give off no light ask by the same measure for one or
 // four. 32 too where a body of less than half its size comes within its bounds: shadows and reflections of
 // it can fall anywhere. One per group of the list.
 std::vector<PlannedLightSamples> planLightSamples(const Scene& scene, const std::vector<RigidGroup>& groups);

@@ -63,6 +63,7 @@ Result<void> runHeadless(const Options& options) {
                             .window = options.window,
                             .exposure_ev = options.exposure_ev,
                             .capture = options.capture,
+                            .captures_per_step = options.captures_per_frame,
                             .wait_for_captures = true},
                            stage->environment());
   if (!frame) return failAgain(frame.error());

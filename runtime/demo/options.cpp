@@ -27,7 +27,7 @@ struct Words {
   std::vector<std::string> bundles, lights, fade_lights;
   std::string light_layout, camera, size = "1280x720", headless, transfer = "full", window = "auto";
   std::string rotate_light = "0", exposure = "auto", lamps = "1", fade = "0", time, step = "0.0333";
-  std::uint32_t capture_size = 16, capture_subsamples = 16, capture_order = 0;
+  std::uint32_t capture_size = 16, capture_subsamples = 16, capture_order = 0, captures_per_frame = 16;
   std::uint64_t max_memory = ~std::uint64_t{0};
   std::uint32_t frames = 1;
   bool json = false;
@@ -92,6 +92,9 @@ void declare(CLI::App& app, Words& words) {
   number("--capture-size", words.capture_size, 4, 64,
          "Texels along an edge of the cube maps in which light between\nbodies is sampled");
   number("--capture-subsamples", words.capture_subsamples, 1, 16, "Subsamples along an edge of such a texel");
+  number(
+      "--captures-per-frame", words.captures_per_frame, 1, 1'000'000,
+      "Light samples that are drawn anew in a frame at most; a picture\nwithout a window is of all of them");
   number("--capture-order", words.capture_order, 0, 8,
          "Bands of the light that is sampled; 0: the transfer's");
   app.add_option("--frames", words.frames,
@@ -214,6 +217,7 @@ Result<Options> understand(const Words& words) {
   const Result<float> step = understandSeconds("--step", words.step, 0.0f, 1e3f);
   if (!step) return failAgain(step.error());
   options.step_s = *step;
+  options.captures_per_frame = words.captures_per_frame;
   options.capture = {.size = words.capture_size,
                      .subsamples = words.capture_subsamples,
                      .order = static_cast<int>(words.capture_order)};

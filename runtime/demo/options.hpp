@@ -39,6 +39,7 @@ struct Options {
   std::optional<float> time_s;  // of the scenes' animations in the last frame; none: at rest
   float step_s = 0.0f;          // from frame to frame
   lighting::CaptureOptions capture{.order = 0};
+  std::uint32_t captures_per_frame = 16;
   std::optional<float> exposure_ev;                    // none: automatic
   float lamps = 1.0f;                                  // factor on the strength of the scenes' own lights
   std::uint64_t max_memory_bytes = ~std::uint64_t{0};  // of GPU memory for the bundles

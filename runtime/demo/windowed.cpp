@@ -62,7 +62,8 @@ Result<void> runWindowed(const Options& options) {
                                                      .transfer = options.transfer,
                                                      .window = options.window,
                                                      .exposure_ev = options.exposure_ev,
-                                                     .capture = options.capture},
+                                                     .capture = options.capture,
+                                                     .captures_per_step = options.captures_per_frame},
                                                     stage->environment());
   if (!frame) return failAgain(frame.error());
 
