@@ -126,7 +126,7 @@ TEST_F(Bake, StoresTransferThatDecodesToTheScene) {
 
 TEST_F(Bake, StoresLightSamplesAndProxiesInTheGroupsFrame) {
   Scene scene = stage();
-  scene.nodes[2].parent_from_node = glm::translate(glm::mat4(1.0f), {50, 0.6f, 0});
+  scene.nodes[2].parent_from_node = glm::translate(glm::mat4(1.0f), {100, 0.6f, 0});
   const auto open = [&] { return bundle::Reader::open(folder_ / "stage.lmb.glb"); };
   ASSERT_TRUE(bakeTo("stage.lmb.glb", scene, draft()));
   auto reader = open();
