@@ -15,6 +15,7 @@ Json countsJson(const frame::StepCounts& counts) {
           {"bodies", counts.bodies},
           {"local_lights", counts.local_lights},
           {"near_lights", counts.near_lights},
+          {"near_lights_left_out", counts.near_lights_left_out},
           {"light_samples", counts.incident.samples},
           {"light_samples_captured", counts.incident.captured},
           {"light_samples_waiting", counts.incident.waiting},

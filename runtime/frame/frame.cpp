@@ -165,6 +165,7 @@ Result<void> Frame::light(World& world, const lighting::Environment& environment
   counts_.bodies = static_cast<std::uint32_t>(lit_scene_.bodies.size());
   counts_.local_lights = static_cast<std::uint32_t>(lit_scene_.lights.size());
   counts_.near_lights = static_cast<std::uint32_t>(lit_scene_.near_lights.size());
+  counts_.near_lights_left_out = lit_scene_.near_left_out;
   counts_.light_samples_written = group_lights_.renewedSamples();
   return {};
 }

@@ -51,6 +51,7 @@ struct FrameOptions {
 // What one step did; a still scene does nothing.
 struct StepCounts {
   std::uint32_t groups = 0, bodies = 0, local_lights = 0, near_lights = 0;
+  std::uint32_t near_lights_left_out = 0;  // by harmonics instead, once for each group
   lighting::IncidentCounts incident;
   lighting::Capture::Load captured;         // what the captures of this step took
   std::uint32_t light_samples_written = 0;  // coefficients computed for the shaders

@@ -20,7 +20,7 @@ struct LitScene {
   std::vector<lighting::LocalLight> lights;
   std::vector<lighting::NearLight> near_lights;  // at most kMaxNearLights
   std::vector<std::uint32_t> near_masks;         // per group: bit k for near light k
-  std::uint32_t near_left_out = 0;               // lights within bounds for which there was no place left
+  std::uint32_t near_left_out = 0;  // lights within bounds for which there was no place left: harmonics
 
   // Whether anything but the environment reaches any group from outside.
   bool needsSampling() const { return bodies.size() > 1 || !lights.empty(); }
