@@ -21,6 +21,7 @@ vec4 look(sampler2D image, vec2 at) {
 
 #ifdef LAMBENT_NORMAL_MAPPED
 #include "surface_normal.glsl"
+#include "diffuse_light.glsl"
 layout(binding = kUnitNormal) uniform sampler2D normal_texture;
 layout(location = 3) in vec4 position_group;
 layout(location = 4) in vec4 normal_group;

@@ -1,5 +1,4 @@
-// Normal maps: the normal at a pixel, and light in bands 0..2 received there. All in the group's frame.
-// surface_normal_ref.hpp is the same on the CPU, term by term.
+// Normal maps: the normal at a pixel, in the group's frame. surface_normal_ref.hpp is the same on the CPU, term by term.
 
 // Right-handed where `handedness` is +1. A tangent of 0: the surface has none, its normal stays as it is.
 struct TangentFrame {
@@ -40,13 +39,4 @@ vec3 perturbedNormal(TangentFrame frame, vec3 texel, float scale) {
   if (frame.tangent == vec3(0.0) || dot(bump, bump) <= kNoLength) return frame.normal;
   vec3 bitangent = frame.handedness * cross(frame.normal, frame.tangent);
   return normalize(bump.x * frame.tangent + bump.y * bitangent + bump.z * frame.normal);
-}
-
-// E/pi = sum_j (A_l/pi) y_j(n) l_j with A = pi, 2pi/3, pi/4 (Ramamoorthi and Hanrahan 2001).
-vec3 diffuseLight(vec3 light[9], vec3 n) {
-  return 0.28209479 * light[0] +
-         0.32573501 * (n.y * light[1] + n.z * light[2] + n.x * light[3]) +
-         0.27313711 * (n.x * n.y * light[4] + n.y * n.z * light[5] + n.x * n.z * light[7]) +
-         0.07884789 * (3.0 * n.z * n.z - 1.0) * light[6] +
-         0.13656855 * (n.x * n.x - n.y * n.y) * light[8];
 }

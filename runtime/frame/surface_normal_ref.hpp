@@ -1,15 +1,15 @@
 // The CPU twin of surface_normal.glsl: same names, same order of terms, so that a test can hold one against
-// the other. Vectors are in the group's frame, texels linear in 0..1, light real orthonormal coefficients of
-// bands 0..2 (docs/conventions.md). No GL.
+// the other. Vectors are in the group's frame, texels linear in 0..1. No GL.
 #pragma once
 
-#include <array>
 #include <cmath>
 
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
+
+#include "runtime/effects/diffuse/diffuse_light_ref.hpp"
 
 namespace lambent::frame::ref {
 
@@ -47,11 +47,6 @@ inline glm::vec3 perturbedNormal(const TangentFrame& frame, glm::vec3 texel, flo
   return glm::normalize(bump.x * frame.tangent + bump.y * bitangent + bump.z * frame.normal);
 }
 
-inline glm::vec3 diffuseLight(const std::array<glm::vec3, 9>& light, glm::vec3 n) {
-  return 0.28209479f * light[0] + 0.32573501f * (n.y * light[1] + n.z * light[2] + n.x * light[3]) +
-         0.27313711f * (n.x * n.y * light[4] + n.y * n.z * light[5] + n.x * n.z * light[7]) +
-         0.07884789f * (3.0f * n.z * n.z - 1.0f) * light[6] +
-         0.13656855f * (n.x * n.x - n.y * n.y) * light[8];
-}
+using effects::diffuse::ref::diffuseLight;
 
 }  // namespace lambent::frame::ref

@@ -1,9 +1,10 @@
 // Diffuse transfer times light: the math only, no bindings. The CPU twin is diffuse_ref.hpp, with the same names and
-// the same order of terms. An entry shader says which stage it is (LAMBENT_STAGE_PROJECT, _SAMPLES or _VERTICES) and
+// the same order of terms. An entry shader says which stage it is (LAMBENT_STAGE_PROJECT, _SAMPLES, _VERTICES or
+// _PROXIES) and
 // defines the fetches that the stage's functions declare.
 #include "diffuse_shared.h"
 
-#if defined(LAMBENT_STAGE_PROJECT) || defined(LAMBENT_STAGE_VERTICES)
+#ifndef LAMBENT_STAGE_SAMPLES
 vec3 lightAt(uint index);  // coefficient of the light in the group's frame, RGB
 #endif
 
@@ -41,9 +42,8 @@ uint codeOf(uint codes, uint position) {
 }
 #endif
 
-#ifdef LAMBENT_STAGE_VERTICES
-vec4 sampleAt(uint index);   // shaded sample, w = resident
-uint rowWordAt(uint word);   // of the rows page
+#if defined(LAMBENT_STAGE_VERTICES) || defined(LAMBENT_STAGE_PROXIES)
+vec4 sampleAt(uint index);  // shaded sample, w = resident
 
 // A_l / pi, A_l the clamped cosine's weights: pi, 2pi/3, pi/4, 0, -pi/24, 0, pi/64 (Ramamoorthi and Hanrahan 2001).
 float clampedCosineOverPi(int l) {
@@ -83,6 +83,10 @@ vec3 unshadowedRadiance(vec3 normal, uint light, int order) {
   }
   return sum;
 }
+#endif
+
+#ifdef LAMBENT_STAGE_VERTICES
+uint rowWordAt(uint word);  // of the rows page
 
 // Of a row entry: weight and sample.
 struct RowEntry {
@@ -136,17 +140,15 @@ void vertexLight(DrawRecord draw, uint vertex, out vec3 light[kMappedOutputs]) {
 #endif
 
 #ifdef LAMBENT_STAGE_PROXIES
+#include "diffuse_light.glsl"
+
 ProxyEntryRecord proxyEntryAt(uint index);
 
-// E/pi of light in bands 0..2 at a normal.
-vec3 mappedRadiance(uint first, vec3 n) {
-  float weights[kMappedOutputs] = float[kMappedOutputs](
-      0.282094792, 0.325735008 * n.y, 0.325735008 * n.z, 0.325735008 * n.x, 0.273137108 * n.x * n.y,
-      0.273137108 * n.y * n.z, 0.078847891 * (3.0 * n.z * n.z - 1.0), 0.273137108 * n.x * n.z,
-      0.136568554 * (n.x * n.x - n.y * n.y));
-  vec3 sum = vec3(0.0);
-  for (uint j = 0u; j < kMappedOutputs; ++j) sum += weights[j] * sampleAt(first + j).rgb;
-  return sum;
+// E/pi at a normal, of nine outputs of a sample.
+vec3 mappedRadiance(uint first, vec3 normal) {
+  vec3 light[kMappedOutputs];
+  for (uint j = 0u; j < kMappedOutputs; ++j) light[j] = sampleAt(first + j).rgb;
+  return diffuseLight(light, normal);
 }
 
 // What a proxy's triangle sends out. Samples that are not shaded yet count as unshadowed; truncated light may be

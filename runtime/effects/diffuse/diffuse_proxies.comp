@@ -10,13 +10,11 @@ layout(std430, binding = kBindProxyEntries) readonly buffer Entries { ProxyEntry
 layout(std430, binding = kBindProxyRadiance) writeonly buffer Radiance { vec4 radiance[]; };
 layout(std430, binding = kBindSamples) readonly buffer Samples { vec4 samples[]; };
 
-#define LAMBENT_STAGE_VERTICES
 #define LAMBENT_STAGE_PROXIES
 #include "diffuse_eval.glsl"
 
 vec3 lightAt(uint index) { return lights[index].rgb; }
 vec4 sampleAt(uint index) { return samples[index]; }
-uint rowWordAt(uint word) { return 0u; }
 ProxyEntryRecord proxyEntryAt(uint index) { return entries[index]; }
 
 void main() {

@@ -14,6 +14,7 @@
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
+#include "runtime/effects/diffuse/diffuse_light_ref.hpp"
 #include "runtime/effects/diffuse/diffuse_shared.h"
 
 namespace lambent::effects::diffuse::ref {
@@ -232,20 +233,11 @@ inline glm::vec3 shadeVertex(const Memory& memory, const DrawRecord& draw, uint 
   return vertexRadiance(memory, draw, vertex, normal, static_cast<int>(draw.order));
 }
 
-// Stage d. The weights are A_l/pi y_j.
-inline glm::vec3 mappedRadiance(const Memory& memory, uint first, glm::vec3 n) {
-  const std::array<float, kMappedOutputs> weights = {0.282094792f,
-                                                     0.325735008f * n.y,
-                                                     0.325735008f * n.z,
-                                                     0.325735008f * n.x,
-                                                     0.273137108f * n.x * n.y,
-                                                     0.273137108f * n.y * n.z,
-                                                     0.078847891f * (3.0f * n.z * n.z - 1.0f),
-                                                     0.273137108f * n.x * n.z,
-                                                     0.136568554f * (n.x * n.x - n.y * n.y)};
-  glm::vec3 sum(0.0f);
-  for (uint j = 0; j < kMappedOutputs; ++j) sum += weights[j] * glm::vec3(memory.sampleAt(first + j));
-  return sum;
+// Stage d.
+inline glm::vec3 mappedRadiance(const Memory& memory, uint first, glm::vec3 normal) {
+  std::array<glm::vec3, kMappedOutputs> light;
+  for (uint j = 0; j < kMappedOutputs; ++j) light[j] = glm::vec3(memory.sampleAt(first + j));
+  return diffuseLight(light, normal);
 }
 
 inline glm::vec3 proxyRadiance(const Memory& memory, const ProxyGroupRecord& group,
