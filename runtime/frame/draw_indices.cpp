@@ -20,4 +20,12 @@ void DrawIndices::reserve(std::size_t draw_count) {
   glEnableVertexArrayAttrib(array, kAttribute);
 }
 
+void DrawIndices::draw(std::uint32_t first_command, std::uint32_t command_count, gpu::Counters& counters) {
+  glMultiDrawElementsIndirect(GL_TRIANGLES, GL_UNSIGNED_INT,
+                              reinterpret_cast<const void*>(std::size_t{first_command} * sizeof(DrawCommand)),
+                              static_cast<GLsizei>(command_count), 0);
+  counters.draws += command_count;
+  ++counters.draw_calls;
+}
+
 }  // namespace lambent::frame

@@ -1,5 +1,6 @@
-// A vertex array whose one attribute, at location 0, steps once per instance through 0, 1, 2, ...: a draw's
-// base instance comes back in the shader. gl_DrawID is not in OpenGL 4.5.
+// Multi-draws whose shaders know which draw they are of: a vertex array whose one attribute, at location 0,
+// steps once per instance through 0, 1, 2, ..., so that a command's base instance comes back. gl_DrawID is
+// not in OpenGL 4.5.
 #pragma once
 
 #include <cstdint>
@@ -7,6 +8,11 @@
 #include "runtime/gpu/objects.hpp"
 
 namespace lambent::frame {
+
+// As glMultiDrawElementsIndirect reads it.
+struct DrawCommand {
+  std::uint32_t count = 0, instance_count = 1, first_index = 0, base_vertex = 0, base_instance = 0;
+};
 
 class DrawIndices {
  public:
@@ -18,6 +24,8 @@ class DrawIndices {
     glBindVertexArray(vertices_.id());
     glVertexArrayElementBuffer(vertices_.id(), elements.id());
   }
+  // Triangles of commands that follow each other in the bound indirect buffer.
+  static void draw(std::uint32_t first_command, std::uint32_t command_count, gpu::Counters& counters);
 
  private:
   gpu::VertexArray vertices_;

@@ -251,7 +251,7 @@ void NearLights::makeRoom(std::uint32_t rows) {
 }
 
 void NearLights::appendRuns(const World& world, std::uint32_t light, std::vector<Run>& runs,
-                            std::vector<Command>& commands) const {
+                            std::vector<DrawCommand>& commands) const {
   const streaming::Residency& residency = world.residency();
   struct Item {
     State state;
@@ -291,7 +291,7 @@ void NearLights::drawCubes(World& world, const std::vector<std::uint32_t>& chang
   records.reserve(residency.draws().size());
   for (std::size_t i = 0; i < residency.draws().size(); ++i) records.push_back(describe(world, i));
   std::vector<Run> runs;
-  std::vector<Command> commands;
+  std::vector<DrawCommand> commands;
   std::vector<std::byte> faces(kFaces * kNearLights * kFaceStride);
   for (const std::uint32_t k : changed) {
     appendRuns(world, k, runs, commands);
@@ -301,11 +301,11 @@ void NearLights::drawCubes(World& world, const std::vector<std::uint32_t>& chang
     }
   }
   records_.assign(std::span<const SurfaceDraw>(records));
-  commands_.assign(std::span<const Command>(commands));
+  commands_.assign(std::span<const DrawCommand>(commands));
   faces_.assign(std::span<const std::byte>(faces));
   indices_.reserve(records.size());
   counters.uploaded_bytes +=
-      records.size() * sizeof(SurfaceDraw) + commands.size() * sizeof(Command) + faces.size();
+      records.size() * sizeof(SurfaceDraw) + commands.size() * sizeof(DrawCommand) + faces.size();
 
   const auto size = static_cast<GLsizei>(options_.size);
   glBindFramebuffer(GL_FRAMEBUFFER, target_.id());
@@ -335,12 +335,7 @@ void NearLights::drawCubes(World& world, const std::vector<std::uint32_t>& chang
     indices_.bind(geometry);
     programs_[run.state.masked ? 1 : 0].use();
     if (run.state.masked) units_.bind(world, run.state.textures);
-    glMultiDrawElementsIndirect(
-        GL_TRIANGLES, GL_UNSIGNED_INT,
-        reinterpret_cast<const void*>(std::size_t{run.first_command} * sizeof(Command)),
-        static_cast<GLsizei>(run.command_count), 0);
-    counters.draws += run.command_count;
-    ++counters.draw_calls;
+    DrawIndices::draw(run.first_command, run.command_count, counters);
   }
   units_.unbindSamplers();
 }

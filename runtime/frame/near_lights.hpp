@@ -77,9 +77,6 @@ class NearLights {
     std::uint64_t residency = 0, transforms = 0;
     bool operator==(const Masks&) const = default;
   };
-  struct Command {  // as glMultiDrawElementsIndirect reads it
-    std::uint32_t count, instance_count, first_index, base_vertex, base_instance;
-  };
   // Casters that may go into one multi-draw.
   struct State {
     std::uint32_t geometry_page = 0;
@@ -100,7 +97,7 @@ class NearLights {
   // The lights whose cubes must be drawn; says what stands in them.
   std::vector<std::uint32_t> findChanged(World& world);
   void appendRuns(const World& world, std::uint32_t light, std::vector<Run>& runs,
-                  std::vector<Command>& commands) const;
+                  std::vector<DrawCommand>& commands) const;
   void drawCubes(World& world, const std::vector<std::uint32_t>& changed, gpu::Counters& counters);
 
   NearOptions options_;

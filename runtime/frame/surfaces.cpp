@@ -67,7 +67,7 @@ void Surfaces::collect(World& world, const effects::diffuse::Diffuse& diffuse, g
 }
 
 void Surfaces::appendRuns(const World& world, const std::vector<Item>& items, std::vector<Run>& runs,
-                          std::vector<Command>& commands) const {
+                          std::vector<DrawCommand>& commands) const {
   for (const Item& item : items) {
     const streaming::ResidentMesh& mesh =
         world.residency().meshes()[world.residency().draws()[item.draw].mesh];
@@ -107,14 +107,14 @@ Result<void> Surfaces::prepare(World& world, const effects::diffuse::Diffuse& di
                    [](const Item& a, const Item& b) { return a.state < b.state; });
   std::stable_sort(blended.begin(), blended.end(),
                    [](const Item& a, const Item& b) { return a.distance > b.distance; });
-  std::vector<Command> commands;
+  std::vector<DrawCommand> commands;
   opaque_.clear();
   blended_.clear();
   appendRuns(world, opaque, opaque_, commands);
   appendRuns(world, blended, blended_, commands);
   draws_.assign(std::span<const SurfaceDraw>(records_));
-  commands_.assign(std::span<const Command>(commands));
-  counters.uploaded_bytes += records_.size() * sizeof(SurfaceDraw) + commands.size() * sizeof(Command);
+  commands_.assign(std::span<const DrawCommand>(commands));
+  counters.uploaded_bytes += records_.size() * sizeof(SurfaceDraw) + commands.size() * sizeof(DrawCommand);
   indices_.reserve(records_.size());
   return {};
 }
@@ -133,12 +133,7 @@ void Surfaces::drawRuns(World& world, const std::vector<Run>& runs, gpu::Counter
     programs_[programOf(run.state.normal_mapped, run.state.near_lit)].use();
     units_.bind(world, run.state.textures);
     glFrontFace(run.state.clockwise ? GL_CW : GL_CCW);
-    glMultiDrawElementsIndirect(
-        GL_TRIANGLES, GL_UNSIGNED_INT,
-        reinterpret_cast<const void*>(std::size_t{run.first_command} * sizeof(Command)),
-        static_cast<GLsizei>(run.command_count), 0);
-    counters.draws += run.command_count;
-    ++counters.draw_calls;
+    DrawIndices::draw(run.first_command, run.command_count, counters);
   }
   glFrontFace(GL_CCW);
   glDisable(GL_CULL_FACE);

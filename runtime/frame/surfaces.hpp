@@ -37,9 +37,6 @@ class Surfaces {
   void drawBlended(World& world, gpu::Counters& counters);
 
  private:
-  struct Command {  // as glMultiDrawElementsIndirect reads it
-    std::uint32_t count, instance_count, first_index, base_vertex, base_instance;
-  };
   // Draws that may go into one multi-draw.
   struct State {
     std::uint32_t geometry_page = 0, radiance_page = 0;
@@ -67,7 +64,7 @@ class Surfaces {
   void collect(World& world, const effects::diffuse::Diffuse& diffuse, glm::vec3 eye_ws,
                const NearLights* near_lights, std::vector<Item>& opaque, std::vector<Item>& blended);
   void appendRuns(const World& world, const std::vector<Item>& items, std::vector<Run>& runs,
-                  std::vector<Command>& commands) const;
+                  std::vector<DrawCommand>& commands) const;
   void drawRuns(World& world, const std::vector<Run>& runs, gpu::Counters& counters);
 
   bool finest_texels_ = false;
