@@ -153,7 +153,7 @@ Result<void> Frame::light(World& world, const lighting::Environment& environment
   for (std::size_t g = 0; g < world.residency().groups().size(); ++g) {
     const streaming::ResidentGroup& group = world.residency().groups()[g];
     lighting::GroupPlace place{
-        .world_from_group = world.rotationOf(g), .order = group.order, .lamps = world.lampsOf(g)};
+        .world_from_group = world.rotationOf(g), .order = group.order, .lamps = lit_scene_.lamps[g]};
     if (incident_)
       place.incident = incident_->incidentOf(g);
     else

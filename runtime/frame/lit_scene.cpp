@@ -45,16 +45,6 @@ lighting::LocalLight describe(const scene::LocalLightComponent& light, const glm
           .outer_cone_rad = light.outer_cone_rad};
 }
 
-// A sphere around the proxy, in its frame.
-struct Sphere {
-  glm::vec3 center{0.0f};
-  float radius = 0.0f;
-};
-
-Sphere sphereAround(const scene::Box& bounds) {
-  return bounds.empty() ? Sphere{} : Sphere{bounds.center(), bounds.radius()};
-}
-
 float largestScale(const glm::mat4& matrix) {
   float scale = 0.0f;
   for (int column = 0; column < 3; ++column) scale = std::max(scale, glm::length(glm::vec3(matrix[column])));
@@ -118,20 +108,21 @@ LitScene gatherLitScene(const World& world, float surroundings) {
   for (std::size_t g = 0; g < groups.size(); ++g) {
     const streaming::ResidentGroup& group = groups[g];
     const glm::mat4 world_from_group = world.worldFromGroup(g);
-    const scene::Box bounds = world.groupBounds(g);
+    const scene::Box& bounds = world.groupBounds(g);
+    scene.lamps.push_back(world.lampsOf(g));
     lighting::IncidentGroup receiver;
     for (const glm::vec3& sample : group.light_samples)
       receiver.samples_ws.emplace_back(world_from_group * glm::vec4(sample, 1.0f));
     if (group.proxy) {
       receiver.body = static_cast<std::uint32_t>(scene.bodies.size());
-      const Sphere sphere = sphereAround(bounds);
-      const float peak = group.light_columns > 0 ? peakEmission(*group.proxy, world.lampsOf(g)) : 0.0f;
+      const glm::vec3 center = bounds.empty() ? glm::vec3(0.0f) : bounds.center();
+      const float peak = group.light_columns > 0 ? peakEmission(*group.proxy, scene.lamps.back()) : 0.0f;
       const float brightness = surroundings > 0.0f ? peak / surroundings : kMaxBrightness * peak;
       scene.bodies.push_back({.body = {.proxy = proxy_index++,
                                        .world_from_proxy = world_from_group,
                                        .brightness = std::clamp(brightness, 1.0f, kMaxBrightness)},
-                              .center_ws = glm::vec3(world_from_group * glm::vec4(sphere.center, 1.0f)),
-                              .radius_m = sphere.radius * largestScale(world_from_group),
+                              .center_ws = glm::vec3(world_from_group * glm::vec4(center, 1.0f)),
+                              .radius_m = bounds.radius() * largestScale(world_from_group),
                               .radiance_drift = 0.0});
     }
     std::uint32_t near_mask = 0;

@@ -16,6 +16,7 @@ namespace lambent::frame {
 
 struct LitScene {
   std::vector<lighting::IncidentGroup> groups;  // in the order of residency().groups()
+  std::vector<std::vector<glm::vec3>> lamps;    // per group, what its own lights give now, by light column
   std::vector<lighting::IncidentBody> bodies;
   std::vector<lighting::LocalLight> lights;
   std::vector<lighting::NearLight> near_lights;  // at most kMaxNearLights
