@@ -42,16 +42,6 @@ double millisecondsSince(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
-double squaredError(const sh::LightVector& a, const sh::LightVector& exact) {
-  double difference = 0, whole = 0;
-  for (std::size_t i = 0; i < exact.coefficients().size(); ++i) {
-    const glm::dvec3 d = glm::dvec3(a.c[i]) - glm::dvec3(exact.c[i]);
-    difference += glm::dot(d, d);
-    whole += glm::dot(glm::dvec3(exact.c[i]), glm::dvec3(exact.c[i]));
-  }
-  return difference / whole;
-}
-
 struct Row {
   std::string light;
   std::uint32_t size = 0;
@@ -98,7 +88,7 @@ std::span<Row> addRows(const std::string& light, std::uint32_t size, std::vector
 void addErrors(const sh::LightVector& captured, const sh::LightVector& exact, double milliseconds,
                std::span<Row> rows) {
   for (Row& row : rows) {
-    row.add(squaredError(captured, exact.truncated(row.order)));
+    row.add(testing::squaredError(captured.truncated(row.order), exact.truncated(row.order)));
     row.milliseconds += (milliseconds - row.milliseconds) / static_cast<double>(row.count);
   }
 }

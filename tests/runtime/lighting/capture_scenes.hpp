@@ -1,4 +1,4 @@
-// Small proxies for tests of the light capture.
+// Small proxies for tests of the light capture, and the measure of what it gets wrong.
 #pragma once
 
 #include <cmath>
@@ -13,6 +13,7 @@
 
 #include "runtime/bundle/capture_proxy.hpp"
 #include "runtime/lighting/capture.hpp"
+#include "runtime/sh/light_vector.hpp"
 
 namespace lambent::testing {
 
@@ -71,6 +72,17 @@ inline lighting::CaptureBody discBody(std::uint32_t proxy, const glm::vec3& from
   return {.proxy = proxy,
           .world_from_proxy = facing(from + distance_m * direction, from,
                                      distance_m * static_cast<float>(std::tan(radius_rad)))};
+}
+
+// |light - exact|² / |exact|².
+inline double squaredError(const sh::LightVector& light, const sh::LightVector& exact) {
+  double difference = 0, whole = 0;
+  for (std::size_t i = 0; i < exact.c.size(); ++i) {
+    const glm::dvec3 d = glm::dvec3(light.c[i]) - glm::dvec3(exact.c[i]);
+    difference += glm::dot(d, d);
+    whole += glm::dot(glm::dvec3(exact.c[i]), glm::dvec3(exact.c[i]));
+  }
+  return difference / whole;
 }
 
 }  // namespace lambent::testing

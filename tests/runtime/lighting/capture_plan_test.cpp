@@ -1,0 +1,125 @@
+// What the light capture decides without a GPU: tiles, pages, and which bodies are closed.
+#include "runtime/lighting/capture_plan.hpp"
+
+#include <array>
+#include <random>
+
+#include <glm/ext/matrix_transform.hpp>
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+
+#include "runtime/lighting/capture_closed.hpp"
+#include "runtime/sh/cube_map.hpp"
+#include "tests/runtime/lighting/capture_scenes.hpp"
+
+namespace lambent::lighting {
+
+using testing::cubeProxy;
+using testing::squareProxy;
+
+TEST(CapturePlan, OnePointAloneAlwaysGetsAPage) {
+  // Slabs in front of all faces, so that tiles are long and thin, at the largest size.
+  const std::vector<capture::ProxyBounds> proxies = {capture::ProxyBounds::of(squareProxy())};
+  std::vector<CaptureBody> bodies;
+  for (std::uint32_t face = 0; face < 6; ++face)
+    for (int strip = -2; strip <= 2; ++strip) {
+      const glm::vec3 at(sh::cubeFaceDirection(static_cast<int>(face), 0, 0.38 * strip));
+      bodies.push_back({0, glm::scale(glm::translate(glm::mat4(1), at),
+                                      glm::vec3(0.15f + 0.1f * static_cast<float>(face)))});
+    }
+  const CaptureOptions options{.size = 64, .subsamples = 16};
+  const capture::Plan plan = capture::plan(options, proxies, bodies, std::vector<CapturePoint>(3));
+  EXPECT_EQ(plan.points.size(), 3u);
+  for (const capture::Page& page : plan.pages) EXPECT_LT(page.height, 8192u);
+}
+
+TEST(CaptureClosed, KnowsBodiesWhoseDarkSidesCannotBeSeenFromOutside) {
+  const auto closed = [](const bundle::CaptureProxy& proxy) {
+    return capture::isClosed(proxy, proxy.levels[0]);
+  };
+  EXPECT_TRUE(closed(cubeProxy()));
+  EXPECT_FALSE(closed(cubeProxy(true))) << "a room faces inwards";
+  EXPECT_FALSE(closed(squareProxy()));
+  bundle::CaptureProxy open = cubeProxy();
+  --open.levels[0].triangle_count;
+  EXPECT_FALSE(closed(open));
+  // A room within a house: its walls can be seen from outside of neither, but their outside is dark.
+  bundle::CaptureProxy both = cubeProxy();
+  const bundle::CaptureProxy room = cubeProxy(true);
+  for (const glm::vec3& p : room.positions) both.positions.push_back(0.5f * p);
+  for (bundle::ProxyTriangle triangle : room.triangles) {
+    for (std::uint32_t& v : triangle.vertices) v += 8;
+    both.triangles.push_back(triangle);
+  }
+  both.levels[0].triangle_count = 24;
+  EXPECT_FALSE(closed(both));
+}
+
+TEST(CapturePlan, RectanglesHoldAllOfABody) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<float> place(-4, 4), angle(0, 6);
+  const bundle::CaptureProxy cube = cubeProxy();
+  const capture::ProxyBounds bounds = capture::ProxyBounds::of(cube);
+  for (int trial = 0; trial < 400; ++trial) {
+    const CaptureBody body{
+        0, glm::translate(glm::mat4(1), glm::vec3(place(random), place(random), place(random))) *
+               glm::rotate(glm::mat4(1), angle(random),
+                           glm::normalize(glm::vec3(place(random), 1, place(random))))};
+    std::array<std::optional<capture::TexelRect>, 6> rects;
+    for (std::uint32_t face = 0; face < 6; ++face)
+      rects[face] = capture::faceRect(16, face, {}, body, bounds);
+    for (int i = 0; i < 200; ++i) {
+      glm::vec3 p = glm::vec3(place(random), place(random), place(random)) / 4.0f;
+      p[i % 3] = i % 2 ? 1.0f : -1.0f;
+      const glm::dvec3 at(glm::vec3(body.world_from_proxy * glm::vec4(p, 1)));
+      const std::uint32_t face = capture::faceOf(at);
+      const glm::dvec3 on_face = capture::faceFromWorld(face) * at;
+      const double x = (on_face.x / on_face.z + 1) * 8, y = (on_face.y / on_face.z + 1) * 8;
+      ASSERT_TRUE(rects[face]);
+      EXPECT_TRUE(x >= rects[face]->x0 && x <= rects[face]->x1 && y >= rects[face]->y0 &&
+                  y <= rects[face]->y1);
+    }
+  }
+}
+
+TEST(CapturePlan, TilesAreApartAndInTheAtlas) {
+  const std::vector<capture::ProxyBounds> proxies = {capture::ProxyBounds::of(cubeProxy())};
+  std::mt19937 random(8);
+  std::uniform_real_distribution<float> place(-9, 9);
+  std::vector<CaptureBody> bodies;
+  for (int i = 0; i < 30; ++i)
+    bodies.push_back(
+        {0, glm::translate(glm::mat4(1), glm::vec3(place(random), place(random), place(random)))});
+  std::vector<CapturePoint> points(70);
+  for (CapturePoint& p : points) p.position_ws = glm::vec3(place(random), place(random), place(random));
+  const CaptureOptions options;
+  const capture::Plan plan = capture::plan(options, proxies, bodies, points);
+  EXPECT_GT(plan.pages.size(), 1u);
+  std::uint32_t points_seen = 0, draws_seen = 0;
+  for (const capture::Page& page : plan.pages) {
+    EXPECT_LE(page.height, capture::kAtlasHeight);
+    EXPECT_EQ(page.first_point, points_seen);
+    EXPECT_EQ(page.first_draw, draws_seen);
+    points_seen += page.point_count;
+    draws_seen += page.draw_count;
+    // In texels: tiles begin at multiples of a texel.
+    std::vector<bool> taken(capture::kAtlasWidth / 16 * capture::kAtlasHeight / 16);
+    const auto& last = plan.points[page.first_point + page.point_count - 1];
+    for (std::uint32_t t = plan.points[page.first_point].first_tile; t < last.first_tile + last.tile_count;
+         ++t) {
+      const capture::Tile& tile = plan.tiles[t];
+      for (std::uint32_t y = 0; y < tile.texels.height(); ++y)
+        for (std::uint32_t x = 0; x < tile.texels.width(); ++x) {
+          const std::size_t at = (tile.y / 16 + y) * (capture::kAtlasWidth / 16) + tile.x / 16 + x;
+          ASSERT_LT(tile.y + (y + 1) * 16, page.height + 1);
+          ASSERT_LT(tile.x / 16 + x, capture::kAtlasWidth / 16);
+          ASSERT_FALSE(taken[at]);
+          taken[at] = true;
+        }
+    }
+  }
+  EXPECT_EQ(points_seen, plan.points.size());
+  EXPECT_EQ(draws_seen, plan.draws.size());
+}
+
+}  // namespace lambent::lighting
