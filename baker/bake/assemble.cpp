@@ -13,6 +13,12 @@ namespace {
 constexpr int kZstdLevel = 19;
 constexpr std::uint32_t kRowsPriority = 1, kCodebookPriority = 2, kFirstPlanePriority = 3;
 
+std::uint32_t outputsOf(SampleKind kind, int glossy_order) {
+  if (kind == SampleKind::Plain) return 1;
+  return kind == SampleKind::NormalMapped ? bundle::kMappedOutputs
+                                          : static_cast<std::uint32_t>(glossy_order * glossy_order);
+}
+
 class Assembler {
  public:
   Assembler(const Scene& scene, const BakeOptions& options, const EffectPlan& plan, BakeReport& report)
@@ -108,7 +114,7 @@ class Assembler {
       for (std::size_t g = 0; g < baked.size(); ++g)
         for (std::size_t c = 0; c < baked[g].cells.size(); ++c)
           for (std::size_t t = 0; t < baked[g].cells[c].size(); ++t)
-            visit(baked[g].cells[c][t], description_.groups[g].cells[c].diffuse, t);
+            visit(baked[g].cells[c][t], description_.groups[g].cells[c].transfers, t);
     };
     forAll([&](const CodedTransfer& coded, auto& stored, std::size_t) {
       stored.push_back(addCodebook(coded));
@@ -149,8 +155,8 @@ class Assembler {
   }
 
   // All of a cell's transfer but the planes, which come after the codebooks of all cells.
-  bundle::DiffuseTransfer addCodebook(const CodedTransfer& coded) {
-    bundle::DiffuseTransfer transfer;
+  bundle::CellTransfer addCodebook(const CodedTransfer& coded) {
+    bundle::CellTransfer transfer;
     transfer.shape = coded.shape;
     transfer.clusters = static_cast<std::uint32_t>(coded.codebook.clusters());
     transfer.axes = static_cast<std::uint32_t>(coded.codebook.axes.size());
@@ -208,7 +214,7 @@ class Assembler {
                       group,
                       planned.back,
                       0,
-                      geometry.normal_mapped ? 9u : 1u};
+                      outputsOf(geometry.kind, options_.glossy_order)};
     draw.rows = addTransferPayload(bundle::PayloadType::VertexRows, bundle::encodeRows(rows), kRowsPriority);
     description_.draws.push_back(draw);
   }

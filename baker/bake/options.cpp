@@ -48,6 +48,7 @@ std::uint64_t BakeOptions::effectiveMemory() const {
 
 std::map<std::string, std::string> BakeOptions::settings() const {
   return {{"order", std::to_string(order)},
+          {"glossyOrder", std::to_string(glossy_order)},
           {"rays", std::to_string(effectiveRays())},
           {"bounces", bounces < 0 ? "auto" : std::to_string(bounces)},
           {"lightSamples", light_samples == 0 ? "auto" : std::to_string(light_samples)},

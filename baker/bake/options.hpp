@@ -15,7 +15,8 @@ struct BakeOptions {
   static constexpr int kMostBounces = 64;
 
   Quality quality = Quality::Standard;
-  int order = 5;             // 1..8
+  int order = 5;             // 1..8; with glossy surfaces 1..6
+  int glossy_order = 5;      // bands of the light that glossy surfaces reflect, 4..6
   std::uint32_t rays = 0;    // per sample over its hemisphere; 0: the quality's
   int bounces = -1;          // 0: direct light with shadows; -1: as many as the error bound asks for
   float error_bound = 0.0f;  // of the coded transfer, relative RMS; 0: the quality's

@@ -62,7 +62,7 @@ void printJson(const bundle::Reader& reader, const Sizes& sizes) {
   for (const bundle::Group& group : d.groups) {
     nlohmann::json cells = nlohmann::json::array();
     for (const bundle::Cell& cell : group.cells)
-      for (const bundle::DiffuseTransfer& transfer : cell.diffuse)
+      for (const bundle::CellTransfer& transfer : cell.transfers)
         cells.push_back({{"samples", cell.sample_count},
                          {"effect", "diffuse"},
                          {"light", transfer.fromEnvironment() ? "environment" : "lamps"},
@@ -130,7 +130,7 @@ void printText(const bundle::Reader& reader, const Sizes& sizes) {
                group.light_samples.size() == 1 ? "" : "s",
                proxy.empty() ? "no proxy" : fmt::format("proxy of {} triangles", fmt::join(proxy, ", ")));
     for (const bundle::Cell& cell : group.cells)
-      for (const bundle::DiffuseTransfer& transfer : cell.diffuse)
+      for (const bundle::CellTransfer& transfer : cell.transfers)
         fmt::print("  diffuse {}: {}, {} samples, {} clusters, {} planes, error {:.3f} % (bound {:.3f} %)\n",
                    transfer.fromEnvironment() ? fmt::format("order {}", transfer.shape.order)
                                               : fmt::format("{} lamps", transfer.shape.light_columns),

@@ -27,15 +27,21 @@ bool isNormalMapped(const gltf::Material& material, const bundle::MeshData& mesh
          !(map.texcoord == 1 ? mesh.texcoords1 : mesh.texcoords0).empty();
 }
 
+SampleKind kindOf(const gltf::Material* material, const bundle::MeshData& mesh, bool with_glossy) {
+  if (!material) return SampleKind::Plain;
+  if (with_glossy && !material->matte()) return SampleKind::Glossy;
+  return isNormalMapped(*material, mesh) ? SampleKind::NormalMapped : SampleKind::Plain;
+}
+
 void append(const PlannedDraw& draw, const bundle::MeshData& mesh, const gltf::Material* material,
-            std::int32_t material_index, GroupGeometry& geometry) {
+            std::int32_t material_index, bool with_glossy, GroupGeometry& geometry) {
   DrawGeometry out{.first_vertex = static_cast<std::uint32_t>(geometry.positions.size()),
                    .vertex_count = static_cast<std::uint32_t>(mesh.positions.size()),
                    .first_triangle = static_cast<std::uint32_t>(geometry.triangles.size()),
                    .triangle_count = 0,
                    .material = material_index,
                    .back = draw.back,
-                   .normal_mapped = material && isNormalMapped(*material, mesh)};
+                   .kind = kindOf(material, mesh, with_glossy)};
   const glm::dmat4 group_from_mesh(draw.group_from_mesh);
   const glm::mat3 linear(draw.group_from_mesh);
   const glm::mat3 normal_matrix = glm::inverseTranspose(linear);
@@ -84,13 +90,14 @@ glm::vec3 originOf(const RigidGroup& group, const std::vector<std::vector<bundle
 }  // namespace
 
 GroupGeometry buildGroupGeometry(const RigidGroup& group, const Scene& scene,
-                                 const std::vector<std::vector<bundle::MeshData>>& decoded) {
+                                 const std::vector<std::vector<bundle::MeshData>>& decoded,
+                                 bool with_glossy) {
   GroupGeometry geometry;
   geometry.origin = originOf(group, decoded);
   for (const PlannedDraw& draw : group.draws) {
     const std::int32_t index = scene.meshes[draw.mesh].primitives[draw.primitive].material;
     const gltf::Material* material = index < 0 ? nullptr : &scene.materials[static_cast<std::size_t>(index)];
-    append(draw, decoded[draw.mesh][draw.primitive], material, index, geometry);
+    append(draw, decoded[draw.mesh][draw.primitive], material, index, with_glossy, geometry);
   }
   if (!geometry.positions.empty()) geometry.bounds_min = geometry.bounds_max = geometry.positions.front();
   for (const glm::vec3& p : geometry.positions) {

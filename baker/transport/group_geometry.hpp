@@ -17,12 +17,19 @@
 
 namespace lambent::baker {
 
+// What is stored for the samples of a draw.
+enum class SampleKind : std::uint8_t {
+  Plain,         // E/pi at the sample's normal
+  NormalMapped,  // transferred light in bands 0..2, for any normal
+  Glossy,        // transferred light in all bands, for any BRDF and normal
+};
+
 struct DrawGeometry {
   std::uint32_t first_vertex = 0, vertex_count = 0;
   std::uint32_t first_triangle = 0, triangle_count = 0;
   std::int32_t material = -1;
   bool back = false;           // of a double-sided material; the draw before it is its front
-  bool normal_mapped = false;  // its samples hold transferred light for any normal
+  SampleKind kind = SampleKind::Plain;
 };
 
 struct GroupGeometry {
@@ -38,8 +45,10 @@ struct GroupGeometry {
   glm::vec3 bounds_min{0.0f}, bounds_max{0.0f};  // from `origin`
 };
 
-// decoded[mesh][primitive] is what ships.
+// decoded[mesh][primitive] is what ships. with_glossy: materials that are not matte have glossy samples; else all are
+// Lambert.
 GroupGeometry buildGroupGeometry(const RigidGroup& group, const Scene& scene,
-                                 const std::vector<std::vector<bundle::MeshData>>& decoded);
+                                 const std::vector<std::vector<bundle::MeshData>>& decoded,
+                                 bool with_glossy = false);
 
 }  // namespace lambent::baker

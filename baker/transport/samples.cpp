@@ -17,7 +17,7 @@ namespace {
 // --- welding
 // ---------------------------------------------------------------------------------------------------
 
-using VertexKey = std::array<std::uint32_t, 7>;  // bits of position and normal; whether normal-mapped
+using VertexKey = std::array<std::uint32_t, 7>;  // bits of position and normal; its kind
 
 struct VertexKeyHash {
   std::size_t operator()(const VertexKey& key) const {
@@ -27,10 +27,10 @@ struct VertexKeyHash {
   }
 };
 
-VertexKey keyOf(glm::vec3 position, glm::vec3 normal, bool normal_mapped) {
+VertexKey keyOf(glm::vec3 position, glm::vec3 normal, SampleKind kind) {
   const auto bits = [](float value) { return std::bit_cast<std::uint32_t>(value); };
   return {bits(position.x), bits(position.y), bits(position.z),       bits(normal.x),
-          bits(normal.y),   bits(normal.z),   normal_mapped ? 1u : 0u};
+          bits(normal.y),   bits(normal.z),   static_cast<std::uint32_t>(kind)};
 }
 
 // --- Morton order
@@ -67,7 +67,7 @@ void sortAlongMorton(std::span<const glm::vec3> positions, const GroupGeometry& 
 // One sample per key, in the order of first use.
 struct Welded {
   std::vector<glm::vec3> positions, normals;
-  std::vector<bool> normal_mapped;
+  std::vector<SampleKind> kinds;
 };
 
 Welded weld(const GroupGeometry& geometry, SampleSet& samples) {
@@ -78,12 +78,12 @@ Welded weld(const GroupGeometry& geometry, SampleSet& samples) {
   for (const DrawGeometry& draw : geometry.draws)
     for (std::uint32_t v = draw.first_vertex; v < draw.first_vertex + draw.vertex_count; ++v) {
       const glm::vec3 position = geometry.positions[v], normal = geometry.normals[v];
-      const auto [entry, is_new] = seen.try_emplace(keyOf(position, normal, draw.normal_mapped),
+      const auto [entry, is_new] = seen.try_emplace(keyOf(position, normal, draw.kind),
                                                     static_cast<std::uint32_t>(welded.positions.size()));
       if (is_new) {
         welded.positions.push_back(position);
         welded.normals.push_back(normal);
-        welded.normal_mapped.push_back(draw.normal_mapped);
+        welded.kinds.push_back(draw.kind);
       }
       samples.vertex_sample[v] = entry->second;
     }
@@ -92,7 +92,7 @@ Welded weld(const GroupGeometry& geometry, SampleSet& samples) {
 
 // Cuts the samples listed into cells and appends them to the set, each cell in the order of first use.
 // `place` gets where each went.
-void appendCells(const Welded& welded, std::vector<std::uint32_t> list, bool normal_mapped,
+void appendCells(const Welded& welded, std::vector<std::uint32_t> list, SampleKind kind,
                  const GroupGeometry& geometry, SampleSet& samples, std::vector<std::uint32_t>& place) {
   if (list.size() > kMaxCellSamples) sortAlongMorton(welded.positions, geometry, list);
   for (std::size_t first = 0; first < list.size(); first += kMaxCellSamples) {
@@ -104,7 +104,7 @@ void appendCells(const Welded& welded, std::vector<std::uint32_t> list, bool nor
                     .count = static_cast<std::uint32_t>(count),
                     .bounds_min = start,
                     .bounds_max = start,
-                    .normal_mapped = normal_mapped};
+                    .kind = kind};
     for (const std::uint32_t member : members) {
       place[member] = static_cast<std::uint32_t>(samples.size());
       samples.positions.push_back(welded.positions[member]);
@@ -118,13 +118,15 @@ void appendCells(const Welded& welded, std::vector<std::uint32_t> list, bool nor
 
 void placeSamples(const GroupGeometry& geometry, SampleSet& samples) {
   const Welded welded = weld(geometry, samples);
-  std::array<std::vector<std::uint32_t>, 2> lists;
+  std::array<std::vector<std::uint32_t>, 3> lists;
   for (std::uint32_t i = 0; i < welded.positions.size(); ++i)
-    lists[welded.normal_mapped[i] ? 1 : 0].push_back(i);
+    lists[static_cast<std::size_t>(welded.kinds[i])].push_back(i);
   std::vector<std::uint32_t> place(welded.positions.size());
-  appendCells(welded, std::move(lists[0]), /*normal_mapped=*/false, geometry, samples, place);
+  appendCells(welded, std::move(lists[0]), SampleKind::Plain, geometry, samples, place);
   samples.first_normal_mapped = samples.size();
-  appendCells(welded, std::move(lists[1]), /*normal_mapped=*/true, geometry, samples, place);
+  appendCells(welded, std::move(lists[1]), SampleKind::NormalMapped, geometry, samples, place);
+  samples.first_glossy = samples.size();
+  appendCells(welded, std::move(lists[2]), SampleKind::Glossy, geometry, samples, place);
   for (std::uint32_t& sample : samples.vertex_sample) sample = place[sample];
 }
 

@@ -1,6 +1,6 @@
 // Where transfer is computed. Vertices of a group with the same position and normal share one sample whatever
-// their texture coordinates. Samples are cut into cells along a Morton curve, those of normal-mapped draws
-// into cells of their own, which come last; in a cell they stand in the order in which vertices first use
+// their texture coordinates. Samples are cut into cells along a Morton curve, those of normal-mapped and those of
+// glossy draws into cells of their own, which come last; in a cell they stand in the order in which vertices first use
 // them: Draco walks over the mesh, so neighbours in memory are neighbours on the surface and rows code to
 // nearly nothing. Rays of a sample start from several origins, one for each face around the vertex: pulled a
 // little into the face and offset along its geometric normal. At concave edges anything else sees through
@@ -30,7 +30,7 @@ struct SampleOrigin {
 struct SampleCell {
   std::uint32_t first = 0, count = 0;
   glm::vec3 bounds_min{0.0f}, bounds_max{0.0f};
-  bool normal_mapped = false;
+  SampleKind kind = SampleKind::Plain;
 };
 
 struct SampleSet {
@@ -40,7 +40,8 @@ struct SampleSet {
   std::vector<SampleOrigin> origins;
   std::vector<std::uint32_t> origin_offsets;  // size() + 1; a sample without a face has none
   std::vector<SampleCell> cells;
-  std::size_t first_normal_mapped = 0;  // samples from here on belong to normal-mapped draws
+  std::size_t first_normal_mapped = 0;  // samples from here on belong to normal-mapped draws that are not glossy
+  std::size_t first_glossy = 0;         // and from here on to glossy ones
 
   std::size_t size() const { return positions.size(); }
   std::span<const SampleOrigin> originsOf(std::size_t sample) const {

@@ -23,7 +23,8 @@ inline constexpr std::string_view kExtensionName = "LAMBENT_radiance_transfer";
 inline constexpr std::uint32_t kVersionFirstLight = 1;
 inline constexpr std::uint32_t kVersionClusteredTransfer = 2;
 inline constexpr std::uint32_t kVersionLocalLight = 3;
-inline constexpr std::uint32_t kVersionCurrent = kVersionLocalLight;
+inline constexpr std::uint32_t kVersionGlossyTransfer = 4;
+inline constexpr std::uint32_t kVersionCurrent = kVersionGlossyTransfer;
 
 // A byte range of the GLB's binary chunk.
 struct View {
@@ -67,6 +68,7 @@ enum class PayloadType : std::uint8_t {
   WeightPlane,   // one quantized weight per sample of the clusters that have this axis
   LightWeights,  // which light samples each sample of a cell is lit from (light_weights.hpp)
   CaptureProxy,  // a group in a few triangles, as other groups see it (capture_proxy.hpp)
+  BrdfTable,     // b(v) of a family of BRDFs (brdf_table.hpp)
 };
 
 enum class PayloadCodec : std::uint8_t { Raw, Zstd };
@@ -88,8 +90,8 @@ struct WeightPlane {
   float variance = 0.0f;    // share of the cell's weighted variance about its mean that this plane carries
 };
 
-// The diffuse transfer of one cell, as a codebook and a few weights per sample (codebook.hpp).
-struct DiffuseTransfer {
+// A part of the transfer of one cell, as a codebook and a few weights per sample (codebook.hpp).
+struct CellTransfer {
   TransferShape shape;
   std::uint32_t clusters = 1;
   std::uint32_t axes = 0;           // sum over clusters
@@ -102,6 +104,8 @@ struct DiffuseTransfer {
   bool fromEnvironment() const { return shape.order > 0; }  // else from the group's own lights
 };
 
+inline constexpr std::uint32_t kMappedOutputs = 9;
+
 // Light samples that one cell may be lit from.
 inline constexpr std::uint32_t kMaxLightSamples = 64;
 
@@ -109,15 +113,16 @@ inline constexpr std::uint32_t kMaxLightSamples = 64;
 struct Cell {
   std::uint32_t first_sample = 0, sample_count = 0;
   glm::vec3 bounds_min{0.0f}, bounds_max{0.0f};  // group frame
-  // What adds up: light from the environment (no light columns), then light of the group's own lights (order
-  // 0, a column for each), each at most once. The same outputs in all.
-  std::vector<DiffuseTransfer> diffuse;
+  // What adds up: light from the environment (no light columns; of a glossy cell visibility, then, where light
+  // bounces, the bounced light), then light of the group's own lights (order 0, a column for each), each at most once.
+  // The same outputs in all.
+  std::vector<CellTransfer> transfers;
   // Which of the group's light samples it is lit from, rising: light weights name them by their place in this
   // list. At most kMaxLightSamples. With one entry all its samples take that one whole.
   std::vector<std::uint32_t> light_samples = {0};
   std::int32_t light_weights = -1;  // payload; -1 where there is one light sample
 
-  std::uint32_t outputs() const { return diffuse.empty() ? 1 : diffuse.front().shape.outputs; }
+  std::uint32_t outputs() const { return transfers.empty() ? 1 : transfers.front().shape.outputs; }
 };
 
 // A light that belongs to a group: it does not move in the group's frame. Column k of the group's transfer is
@@ -139,17 +144,17 @@ struct Group {
   glm::quat rest_rotation{1.0f, 0.0f, 0.0f, 0.0f};  // world_from_group at rest
   glm::vec3 bounds_min{0.0f}, bounds_max{0.0f};     // group frame
   std::uint32_t sample_count = 0;
-  std::vector<Cell> cells;         // those with one output first, then those with nine
+  std::vector<Cell> cells;         // by rising outputs: plain, then normal-mapped, then glossy
   std::vector<GroupLight> lights;  // one per light column, in their order
   // Where the light that comes in from outside is sampled, group frame: at least one point. All cells
   // together use every one.
   std::vector<glm::vec3> light_samples = {glm::vec3(0.0f)};
   std::int32_t proxy = -1;  // payload: what other groups see of it; -1: nothing
 
-  // Samples of the cells with one output: they are the group's first.
-  std::uint32_t plainSamples() const {
+  // Samples of the cells with so many outputs; those with fewer stand before them.
+  std::uint32_t samplesWith(std::uint32_t outputs) const {
     std::uint32_t count = 0;
-    for (const Cell& cell : cells) count += cell.outputs() == 1 ? cell.sample_count : 0;
+    for (const Cell& cell : cells) count += cell.outputs() == outputs ? cell.sample_count : 0;
     return count;
   }
 };
@@ -161,7 +166,20 @@ struct Draw {
   std::uint32_t node = 0, mesh = 0, primitive = 0, group = 0;
   bool back = false;
   std::uint32_t rows = 0;     // payload: vertex rows into the group's samples, those with as many outputs
-  std::uint32_t outputs = 1;  // 9: has a normal map, shaded per pixel from transferred light
+  // 9: has a normal map, shaded per pixel from transferred light. 16, 25, 36: glossy, per pixel too.
+  std::uint32_t outputs = 1;
+
+  bool glossy() const { return outputs > kMappedOutputs; }
+};
+
+// Whose b(v) a table holds. GGX tables serve all materials of their kind (F0 and F90 parts apart, roughness and
+// anisotropy as axes); a measured one serves the materials whose `brdf` is its index in Description::brdf_tables.
+enum class BrdfFamily : std::uint8_t { Ggx, AnisotropicGgx, Measured };
+
+struct BrdfTableEntry {
+  BrdfFamily family = BrdfFamily::Ggx;
+  std::string name;           // of a measured one: its file
+  std::uint32_t payload = 0;  // brdfTable
 };
 
 struct Generator {
@@ -182,6 +200,7 @@ struct Description {
   std::vector<gltf::Camera> cameras;
   std::vector<gltf::Light> lights;
   std::vector<gltf::Animation> animations;
+  std::vector<BrdfTableEntry> brdf_tables;  // what the glossy materials need; empty where there are none
 
   std::vector<View> views;
   std::vector<Payload> payloads;

@@ -69,12 +69,26 @@ struct TextureRef {
 
 enum class AlphaMode : std::uint8_t { Opaque, Mask, Blend };
 
-// Every material is Lambert with albedo = base colour until the glossy effect lands (docs/conventions.md).
+// What a surface reflects: the metallic-roughness model of glTF 2.0 with KHR_materials_ior, _specular and
+// _anisotropy, or a measured BRDF. Exact formulas: docs/conventions.md, "Materials".
 struct Material {
   std::string name;
   glm::vec4 base_color{1.0f};     // linear
   TextureRef base_color_texture;  // sRGB colour, linear alpha; multiplies base_color
   float metallic = 1.0f, roughness = 1.0f;
+  TextureRef metallic_roughness_texture;  // linear: G multiplies roughness, B metallic
+  float ior = 1.5f;                       // KHR_materials_ior; >= 1, or 0: infinite
+  // KHR_materials_specular: strength (texture: linear, A) and colour (texture: sRGB) of the reflection of what is no
+  // metal.
+  float specular = 1.0f;
+  glm::vec3 specular_color{1.0f};
+  TextureRef specular_texture, specular_color_texture;
+  // KHR_materials_anisotropy: strength 0..1, and the direction of the longer lobe against the tangent, towards the
+  // bitangent. Texture: linear, RG direction from -1 to 1, B strength.
+  float anisotropy = 0.0f, anisotropy_rotation_rad = 0.0f;
+  TextureRef anisotropy_texture;
+  // extras.lambent.brdf: a measured BRDF takes the place of everything above but base_color's alpha.
+  std::int32_t brdf = -1;
   // Radiance that the surface gives off: factor times KHR_materials_emissive_strength, times the texture.
   glm::vec3 emissive{0.0f};
   TextureRef emissive_texture;  // sRGB colour
@@ -86,6 +100,14 @@ struct Material {
   AlphaMode alpha_mode = AlphaMode::Opaque;
   float alpha_cutoff = 0.5f;
   bool double_sided = false;
+
+  // Nothing but a Lambert surface: no metal, and either no specular strength or roughness 1 all over, which is how
+  // glTF files say "matte". Such a surface is Lambert with albedo = base colour everywhere in Lambent.
+  bool matte() const {
+    if (unlit) return true;
+    if (brdf >= 0 || metallic > 0.0f) return false;
+    return specular <= 0.0f || (roughness >= 1.0f && metallic_roughness_texture.texture < 0);
+  }
 };
 
 struct Camera {

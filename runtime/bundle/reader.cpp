@@ -108,20 +108,23 @@ Result<VertexRows> Reader::readRows(std::uint32_t index) const {
   const auto bytes = readPayload(draw.rows);
   if (!bytes) return failAgain(bytes.error());
   auto rows = decodeRows(*bytes, description().meshes[draw.mesh].primitives[draw.primitive].vertex_count,
-                         draw.outputs == 1 ? group.plainSamples() : group.sample_count, subject);
+                         group.sample_count, subject);
   if (!rows) return rows;
-  const auto plain = [first = draw.outputs == 1 ? 0 : group.plainSamples()](std::uint32_t sample) {
-    return sample < first;
-  };
-  if (std::any_of(rows->samples.begin(), rows->samples.end(), plain))
-    return fail(subject, "has a normal map and takes samples without one", "bake it again");
+  // Samples stand by rising outputs.
+  std::uint32_t first = 0;
+  for (const Cell& cell : group.cells)
+    if (cell.outputs() < draw.outputs) first = cell.first_sample + cell.sample_count;
+  const std::uint32_t end = first + group.samplesWith(draw.outputs);
+  const auto other = [&](std::uint32_t sample) { return sample < first || sample >= end; };
+  if (std::any_of(rows->samples.begin(), rows->samples.end(), other))
+    return fail(subject, fmt::format("takes samples that do not have {} outputs", draw.outputs), "bake it again");
   return rows;
 }
 
 Result<CellCodebook> Reader::readCodebook(std::uint32_t group, std::uint32_t cell_index,
                                           std::uint32_t transfer_index) const {
   const Cell& cell = description().groups.at(group).cells.at(cell_index);
-  const DiffuseTransfer& transfer = cell.diffuse.at(transfer_index);
+  const CellTransfer& transfer = cell.transfers.at(transfer_index);
   const std::string subject = fmt::format("{}: group {} cell {}", path().string(), group, cell_index);
   const auto bytes = readPayload(transfer.codebook);
   if (!bytes) return failAgain(bytes.error());
@@ -147,7 +150,7 @@ Result<CellCodebook> Reader::readCodebook(std::uint32_t group, std::uint32_t cel
 Result<std::vector<std::uint32_t>> Reader::readPlane(std::uint32_t group, std::uint32_t cell,
                                                      std::uint32_t transfer, std::uint32_t index) const {
   const WeightPlane& plane =
-      description().groups.at(group).cells.at(cell).diffuse.at(transfer).planes.at(index);
+      description().groups.at(group).cells.at(cell).transfers.at(transfer).planes.at(index);
   const auto bytes = readPayload(plane.payload);
   if (!bytes) return failAgain(bytes.error());
   return decodeWeightPlane(*bytes, plane.bits, plane.count,
@@ -178,7 +181,7 @@ namespace {
 Result<void> checkTransfer(const Reader& reader, std::uint32_t group, std::uint32_t cell,
                            std::uint32_t transfer) {
   if (auto found = reader.readCodebook(group, cell, transfer); !found) return failAgain(found.error());
-  const std::size_t planes = reader.description().groups[group].cells[cell].diffuse[transfer].planes.size();
+  const std::size_t planes = reader.description().groups[group].cells[cell].transfers[transfer].planes.size();
   for (std::uint32_t j = 0; j < planes; ++j)
     if (auto codes = reader.readPlane(group, cell, transfer, j); !codes) return failAgain(codes.error());
   return {};
@@ -200,7 +203,7 @@ Result<void> Reader::checkAll() const {
   for (std::uint32_t group = 0; group < d.groups.size(); ++group)
     for (std::uint32_t cell = 0; cell < d.groups[group].cells.size(); ++cell) {
       if (auto weights = readLightWeights(group, cell); !weights) return failAgain(weights.error());
-      for (std::uint32_t t = 0; t < d.groups[group].cells[cell].diffuse.size(); ++t)
+      for (std::uint32_t t = 0; t < d.groups[group].cells[cell].transfers.size(); ++t)
         if (auto checked = checkTransfer(*this, group, cell, t); !checked) return checked;
     }
   return {};

@@ -33,7 +33,7 @@ const char* word(Enum value, const std::array<const char*, N>& words) {
   return words[static_cast<std::size_t>(value)];
 }
 
-Json diffuseJson(const DiffuseTransfer& transfer) {
+Json diffuseJson(const CellTransfer& transfer) {
   Json planes = Json::array();
   for (const WeightPlane& plane : transfer.planes)
     planes.push_back({{"payload", plane.payload},
@@ -93,9 +93,9 @@ WeightPlane readPlane(const Field& field, const Description& d, std::uint32_t la
   return plane;
 }
 
-DiffuseTransfer readDiffuse(const Field& field, const Description& d, const Group& group,
+CellTransfer readDiffuse(const Field& field, const Description& d, const Group& group,
                             std::uint32_t sample_count) {
-  DiffuseTransfer transfer;
+  CellTransfer transfer;
   transfer.shape = readShape(field, group.lights);
   transfer.clusters = static_cast<std::uint32_t>(field["clusters"].count(kMaxClusters));
   if (transfer.clusters == 0) field["clusters"].fault("is 0");
@@ -147,10 +147,10 @@ Cell readCell(const Field& field, const Description& d, const Group& group, std:
   cell.bounds_min = field["boundsMin"].vector<glm::vec3>();
   cell.bounds_max = field["boundsMax"].vector<glm::vec3>();
   for (const Field& entry : field["diffuse"].items()) {
-    cell.diffuse.push_back(readDiffuse(entry, d, group, cell.sample_count));
-    const DiffuseTransfer &first = cell.diffuse.front(), &last = cell.diffuse.back();
-    if (cell.diffuse.size() > 2 ||
-        (cell.diffuse.size() == 2 && (!first.fromEnvironment() || last.fromEnvironment())))
+    cell.transfers.push_back(readDiffuse(entry, d, group, cell.sample_count));
+    const CellTransfer &first = cell.transfers.front(), &last = cell.transfers.back();
+    if (cell.transfers.size() > 2 ||
+        (cell.transfers.size() == 2 && (!first.fromEnvironment() || last.fromEnvironment())))
       entry.fault("is not the group's lights after the environment");
     if (last.shape.outputs != first.shape.outputs) entry["outputs"].fault("differs within the cell");
   }
@@ -173,7 +173,7 @@ GroupLight readGroupLight(const Field& field, const Description& d) {
 
 Json cellJson(const Cell& cell) {
   Json diffuse = Json::array();
-  for (const DiffuseTransfer& transfer : cell.diffuse) diffuse.push_back(diffuseJson(transfer));
+  for (const CellTransfer& transfer : cell.transfers) diffuse.push_back(diffuseJson(transfer));
   Json json = {{"firstSample", cell.first_sample},
                {"sampleCount", cell.sample_count},
                {"boundsMin", vectorJson(cell.bounds_min)},

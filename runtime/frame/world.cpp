@@ -208,7 +208,7 @@ LoadedParts World::loadedParts() const {
     parts.bytes_in_bundles += bundle.reader->fileBytes();
     for (const bundle::Group& group : bundle.reader->description().groups)
       for (const bundle::Cell& cell : group.cells)
-        for (const bundle::DiffuseTransfer& transfer : cell.diffuse)
+        for (const bundle::CellTransfer& transfer : cell.transfers)
           parts.planes_in_bundles += transfer.planes.size();
   }
   return parts;

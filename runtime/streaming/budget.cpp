@@ -46,13 +46,13 @@ Result<Budgeted> withinBudget(const bundle::Reader& reader, std::uint64_t max_by
   Budgeted kept{whole, *textures};
   for (bundle::Group& group : kept.description.groups)
     for (bundle::Cell& cell : group.cells)
-      for (bundle::DiffuseTransfer& transfer : cell.diffuse) transfer.planes.clear();
+      for (bundle::CellTransfer& transfer : cell.transfers) transfer.planes.clear();
   kept.bytes += needsOf(kept.description).total();
   for (const Work& work : workList(whole)) {
     const auto* at = std::get_if<PlaneWork>(&work);
     if (at == nullptr) continue;
     const auto planesOf = [&](auto& description) -> auto& {
-      return description.groups[at->group].cells[at->cell].diffuse[at->transfer].planes;
+      return description.groups[at->group].cells[at->cell].transfers[at->transfer].planes;
     };
     const bundle::WeightPlane& plane = planesOf(whole)[at->plane];
     if (kept.bytes + planeBytes(plane) > max_bytes) break;

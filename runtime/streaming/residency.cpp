@@ -28,7 +28,7 @@ std::uint32_t words(std::uint64_t byte_count) {
 // Small bundles share a page.
 constexpr std::uint64_t kMinPageBytes = std::uint64_t{1} << 20;
 
-ResidentTransfer describe(const bundle::DiffuseTransfer& transfer) {
+ResidentTransfer describe(const bundle::CellTransfer& transfer) {
   ResidentTransfer resident;
   resident.shape = transfer.shape;
   resident.clusters = transfer.clusters;
@@ -155,7 +155,8 @@ Result<std::uint32_t> Residency::add(const bundle::Description& description) {
                            .light_columns = static_cast<std::uint32_t>(group.lights.size()),
                            .first_cell = static_cast<std::uint32_t>(cells_.size()),
                            .cell_count = static_cast<std::uint32_t>(group.cells.size()),
-                           .plain_samples = group.plainSamples(),
+                           .plain_samples = group.samplesWith(1),
+                           .mapped_samples = group.samplesWith(bundle::kMappedOutputs),
                            .samples = {},
                            .light_samples = group.light_samples,
                            .proxy = {}};
@@ -169,7 +170,7 @@ Result<std::uint32_t> Residency::add(const bundle::Description& description) {
                                  .light_samples = cell.light_samples,
                                  .light_weights_resident = cell.light_samples.size() == 1,
                                  .version = version_};
-      for (const bundle::DiffuseTransfer& transfer : cell.diffuse) {
+      for (const bundle::CellTransfer& transfer : cell.transfers) {
         resident_cell.transfers.push_back(describe(transfer));
         resident.order = std::max(resident.order, transfer.shape.order);
       }

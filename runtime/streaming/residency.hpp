@@ -75,15 +75,19 @@ struct ResidentGroup {
   std::uint32_t bundle = 0, index = 0;  // in its description
   std::uint32_t order = 1, light_columns = 0;
   std::uint32_t first_cell = 0, cell_count = 0;  // into cells()
-  std::uint32_t plain_samples = 0;               // those with one output come first
-  gpu::Allocation samples;                       // a vec4 per sample and output, zero until shaded
+  // Samples by their outputs, in this order: one, nine, and those of glossy surfaces.
+  std::uint32_t plain_samples = 0, mapped_samples = 0;
+  gpu::Allocation samples;  // a vec4 per sample and output, zero until shaded
   std::vector<glm::vec3> light_samples;          // group frame
   // What other groups see of it; stays in memory, for it is small. None: not here yet, or nothing to see.
   std::optional<bundle::CaptureProxy> proxy;
 
   // vec4 index of output o of sample s in the page: sampleBase(outputs) + outputs * s + o. May wrap round.
   std::uint32_t sampleBase(std::uint32_t outputs) const {
-    return samples.word() / 4 - (outputs - 1) * plain_samples;
+    const std::uint32_t plain = outputs > 1 ? (outputs - 1) * plain_samples : 0;
+    const std::uint32_t mapped =
+        outputs > bundle::kMappedOutputs ? (outputs - bundle::kMappedOutputs) * mapped_samples : 0;
+    return samples.word() / 4 - plain - mapped;
   }
 };
 

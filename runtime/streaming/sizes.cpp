@@ -22,14 +22,14 @@ std::uint64_t planeBytes(const bundle::WeightPlane& plane) {
   return (std::uint64_t{plane.count} * plane.bits / 8 + 3) / 4 * 4;
 }
 
-std::uint64_t codebookBytesOnGpu(const bundle::DiffuseTransfer& transfer, std::uint32_t sample_count) {
+std::uint64_t codebookBytesOnGpu(const bundle::CellTransfer& transfer, std::uint32_t sample_count) {
   const std::uint64_t vectors = std::uint64_t{transfer.clusters} + transfer.axes;
   return 4 * (2ull * transfer.clusters + vectors * (2 + transfer.shape.size()) + sample_count);
 }
 
 std::uint64_t cellBytes(const bundle::Cell& cell) {
   std::uint64_t bytes = cell.light_samples.size() > 1 ? 4ull * kLightWeightWords * cell.sample_count : 0;
-  for (const bundle::DiffuseTransfer& transfer : cell.diffuse) {
+  for (const bundle::CellTransfer& transfer : cell.transfers) {
     bytes += codebookBytesOnGpu(transfer, cell.sample_count);
     for (const bundle::WeightPlane& plane : transfer.planes) bytes += planeBytes(plane);
   }

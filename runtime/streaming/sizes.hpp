@@ -19,7 +19,7 @@ inline constexpr std::uint32_t kLightWeightWords = 2;
 // Codes of a plane, rounded up to whole words.
 std::uint64_t planeBytes(const bundle::WeightPlane& plane);
 // The codebook as the kernels read it (diffuse_shared.h), and the positions of the samples.
-std::uint64_t codebookBytesOnGpu(const bundle::DiffuseTransfer& transfer, std::uint32_t sample_count);
+std::uint64_t codebookBytesOnGpu(const bundle::CellTransfer& transfer, std::uint32_t sample_count);
 std::uint64_t cellBytes(const bundle::Cell& cell);
 // vec4s of shaded samples.
 std::uint64_t samplesOf(const bundle::Group& group);

@@ -34,8 +34,8 @@ const bundle::Cell& cellOf(const bundle::Description& description, const Place& 
   return description.groups[at.group].cells[at.cell];
 }
 template <class Place>
-const bundle::DiffuseTransfer& transferOf(const bundle::Description& description, const Place& at) {
-  return cellOf(description, at).diffuse[at.transfer];
+const bundle::CellTransfer& transferOf(const bundle::Description& description, const Place& at) {
+  return cellOf(description, at).transfers[at.transfer];
 }
 
 template <class T>
@@ -83,7 +83,7 @@ class Load {
   }
 
   Loaded operator()(const CodebookWork& work) const {
-    const bundle::DiffuseTransfer& transfer = transferOf(description_, work);
+    const bundle::CellTransfer& transfer = transferOf(description_, work);
     const std::uint32_t samples = cellOf(description_, work).sample_count;
     // What it becomes, and the cluster of each sample.
     if (!reserve_(codebookBytesOnGpu(transfer, samples) + 4 * std::size_t{samples})) return {};
@@ -153,7 +153,7 @@ std::vector<Work> workList(const bundle::Description& d) {
     if (proxy >= 0)
       transfer.push_back({d.payloads[static_cast<std::size_t>(proxy)].priority, ProxyWork{group}});
     for (std::uint32_t cell = 0; cell < d.groups[group].cells.size(); ++cell) {
-      const auto& parts = d.groups[group].cells[cell].diffuse;
+      const auto& parts = d.groups[group].cells[cell].transfers;
       const std::int32_t weights = d.groups[group].cells[cell].light_weights;
       if (weights >= 0)
         transfer.push_back(
@@ -181,7 +181,7 @@ std::uint64_t bytesInFile(const bundle::Description& d, const Work& work) {
           [&](const RowsWork& at) { return payload(d.draws[at.draw].rows); },
           [&](const ImageWork& at) { return view(d.images[at.image].view); },
           [&](const CodebookWork& at) {
-            const bundle::DiffuseTransfer& transfer = transferOf(d, at);
+            const bundle::CellTransfer& transfer = transferOf(d, at);
             const std::uint64_t codebook = payload(transfer.codebook);
             return transfer.cluster_ids < 0
                        ? codebook

@@ -40,7 +40,7 @@ inline Result<std::vector<DecodedDraw>> decodeBundle(const std::filesystem::path
   for (std::uint32_t g = 0; g < d.groups.size(); ++g) {
     samples.emplace_back();
     for (std::uint32_t c = 0; c < d.groups[g].cells.size(); ++c) {
-      const bundle::DiffuseTransfer& transfer = d.groups[g].cells[c].diffuse.at(0);
+      const bundle::CellTransfer& transfer = d.groups[g].cells[c].transfers.at(0);
       const bundle::TransferShape& shape = transfer.shape;
       const auto codes = reader->readCodebook(g, c, 0);
       if (!codes) return failAgain(codes.error());
@@ -68,7 +68,7 @@ inline Result<std::vector<DecodedDraw>> decodeBundle(const std::filesystem::path
     const auto rows = reader->readRows(number);
     if (!rows) return failAgain(rows.error());
     DecodedDraw decoded{
-        draw, std::move(*mesh), {}, d.groups[draw.group].cells.at(0).diffuse.at(0).shape.columns()};
+        draw, std::move(*mesh), {}, d.groups[draw.group].cells.at(0).transfers.at(0).shape.columns()};
     decoded.transfer.assign(decoded.mesh.positions.size() * decoded.columns, 0.0f);
     for (std::size_t v = 0; v < decoded.mesh.positions.size(); ++v)
       for (std::uint32_t entry = rows->offsets[v]; entry < rows->offsets[v + 1]; ++entry)

@@ -47,10 +47,11 @@ bool anyBounced(const TransferField* bounced, std::size_t first_column, std::siz
 std::vector<CellVectors> cellVectors(const SampleCell& cell, const SampleSet& samples,
                                      const DirectResult& direct, const BounceResult* bounced,
                                      bool grey_emission) {
-  const TransferField& field = cell.normal_mapped ? direct.mapped : direct.field;
+  const bool mapped = cell.kind == SampleKind::NormalMapped;
+  const TransferField& field = mapped ? direct.mapped : direct.field;
   const TransferField* extra = nullptr;
-  if (bounced) extra = cell.normal_mapped ? &bounced->mapped : &bounced->field;
-  const std::size_t first = cell.first - (cell.normal_mapped ? samples.first_normal_mapped : 0);
+  if (bounced) extra = mapped ? &bounced->mapped : &bounced->field;
+  const std::size_t first = cell.first - (mapped ? samples.first_normal_mapped : 0);
   const auto bands = static_cast<std::uint32_t>(sh::coefficientCount(field.order));
   const std::uint32_t lights = field.columns - bands;
   const auto full = [&](std::size_t column, std::size_t columns) {

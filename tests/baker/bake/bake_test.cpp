@@ -99,7 +99,7 @@ TEST_F(Bake, StoresTransferThatDecodesToTheScene) {
   ASSERT_TRUE(reader);
   const bundle::Description& d = reader->description();
   const bundle::Cell& cell = d.groups[0].cells.at(0);
-  const bundle::DiffuseTransfer& transfer = cell.diffuse.at(0);
+  const bundle::CellTransfer& transfer = cell.transfers.at(0);
   const auto found = reader->readCodebook(0, 0, 0);
   ASSERT_TRUE(found) << found.error().line();
   std::vector<std::vector<std::uint32_t>> codes;

@@ -110,7 +110,7 @@ Sample sampleBundle() {
     return encodeCodebook(book);
   };
   s.blobs = {blobOf(13, 1)};
-  DiffuseTransfer plain;
+  CellTransfer plain;
   plain.shape = {.order = 2, .shadowed_channels = 1, .full_channels = 3};
   plain.clusters = 2;
   plain.axes = 2;
@@ -124,10 +124,10 @@ Sample sampleBundle() {
   plain.planes = {plane(16, {65535, 7}, 0.9f), plane(8, {3, 255}, 0.05f)};
   plain.error_bound = 0.005f;
   plain.error = 0.004f;
-  DiffuseTransfer lamps;
+  CellTransfer lamps;
   lamps.shape = {.order = 0, .light_columns = 2, .shadowed_channels = 3};
   lamps.codebook = add(PayloadType::Codebook, codebook(lamps.shape, {0}));
-  DiffuseTransfer mapped;
+  CellTransfer mapped;
   mapped.shape = {.order = 1, .outputs = 9};
   mapped.axes = 1;
   mapped.codebook = add(PayloadType::Codebook, codebook(mapped.shape, {1}));
@@ -191,12 +191,12 @@ TEST_F(BundleFile, GivesBackClustersLampsAndNormalMappedCells) {
   EXPECT_EQ(group.lights[1].kind, GroupLight::Kind::Node);
   EXPECT_EQ(group.lights[1].index, 1u);
   EXPECT_EQ(group.lights[1].color, glm::vec3(0.0f, 40.0f, 0.5f));
-  EXPECT_EQ(group.plainSamples(), 3u);
+  EXPECT_EQ(group.samplesWith(1), 3u);
   EXPECT_EQ(group.cells[1].outputs(), 9u);
   const Cell& expected = sample.description.groups[0].cells[0];
-  ASSERT_EQ(group.cells[0].diffuse.size(), 2u);
+  ASSERT_EQ(group.cells[0].transfers.size(), 2u);
   for (std::size_t t = 0; t < 2; ++t) {
-    const DiffuseTransfer &found = group.cells[0].diffuse[t], &wanted = expected.diffuse[t];
+    const CellTransfer &found = group.cells[0].transfers[t], &wanted = expected.transfers[t];
     EXPECT_EQ(found.shape, wanted.shape);
     EXPECT_EQ(found.clusters, wanted.clusters);
     EXPECT_EQ(found.axes, wanted.axes);
@@ -204,8 +204,8 @@ TEST_F(BundleFile, GivesBackClustersLampsAndNormalMappedCells) {
     EXPECT_EQ(found.planes.size(), wanted.planes.size());
     EXPECT_EQ(found.error, wanted.error);
   }
-  EXPECT_TRUE(group.cells[0].diffuse[0].fromEnvironment());
-  EXPECT_FALSE(group.cells[0].diffuse[1].fromEnvironment());
+  EXPECT_TRUE(group.cells[0].transfers[0].fromEnvironment());
+  EXPECT_FALSE(group.cells[0].transfers[1].fromEnvironment());
   const auto codes = reader->readCodebook(0, 0, 0);
   ASSERT_TRUE(codes) << codes.error().line();
   EXPECT_EQ(codes->codebook.axis_counts, (std::vector<std::uint32_t>{2, 0}));
@@ -314,8 +314,8 @@ TEST_F(BundleFile, IndicesOutOfRangeAreRefusedByName) {
   refused([](Description& d) { d.textures[0].image = 1; }, "textures[0].source");
   refused([](Description& d) { d.groups[0].cells[1].sample_count = 3; }, "sampleCount");
   refused([](Description& d) { d.groups[0].sample_count = 6; }, "do not hold all samples");
-  const auto first = [](Description& d) -> DiffuseTransfer& { return d.groups[0].cells[0].diffuse[0]; };
-  const auto lamps = [](Description& d) -> DiffuseTransfer& { return d.groups[0].cells[0].diffuse[1]; };
+  const auto first = [](Description& d) -> CellTransfer& { return d.groups[0].cells[0].transfers[0]; };
+  const auto lamps = [](Description& d) -> CellTransfer& { return d.groups[0].cells[0].transfers[1]; };
   refused([&](Description& d) { first(d).shape.order = 9; }, "order");
   refused([&](Description& d) { first(d).shape.order = 0; }, "order");
   refused([&](Description& d) { first(d).shape.light_columns = 2; }, "order");
@@ -330,9 +330,9 @@ TEST_F(BundleFile, IndicesOutOfRangeAreRefusedByName) {
   refused([&](Description& d) { first(d).planes[0].count = 1; }, "another size");
   refused([&](Description& d) { first(d).planes[1].count = 3; }, "planes[1].count");
   refused([&](Description& d) { lamps(d).shape.light_columns = 1; }, "lightColumns");
-  refused([](Description& d) { std::swap(d.groups[0].cells[0].diffuse[0], d.groups[0].cells[0].diffuse[1]); },
+  refused([](Description& d) { std::swap(d.groups[0].cells[0].transfers[0], d.groups[0].cells[0].transfers[1]); },
           "the group's lights after the environment");
-  refused([](Description& d) { d.groups[0].cells[0].diffuse.push_back(d.groups[0].cells[0].diffuse[1]); },
+  refused([](Description& d) { d.groups[0].cells[0].transfers.push_back(d.groups[0].cells[0].transfers[1]); },
           "the group's lights after the environment");
   refused([](Description& d) { d.groups[0].lights[0].index = 1; }, "lights[0].material");
   refused([](Description& d) { d.groups[0].lights[1].index = 2; }, "lights[1].node");
@@ -376,7 +376,7 @@ TEST_F(BundleFile, IndicesOutOfRangeAreRefusedByName) {
 
 TEST_F(BundleFile, ClustersThatContradictThePlanesAreRefusedBeforeUse) {
   Sample sample = sampleBundle();
-  const auto ids = static_cast<std::uint32_t>(sample.description.groups[0].cells[0].diffuse[0].cluster_ids);
+  const auto ids = static_cast<std::uint32_t>(sample.description.groups[0].cells[0].transfers[0].cluster_ids);
   sample.blobs[sample.description.payloads[ids].view] = encodeClusterIds(std::vector{0u, 0u, 0u}, 2);
   ASSERT_TRUE(write(path_, sample.description, sample.blobs));
   auto reader = Reader::open(path_);
@@ -391,7 +391,7 @@ TEST_F(BundleFile, ClustersThatContradictThePlanesAreRefusedBeforeUse) {
 TEST_F(BundleFile, CodebooksOfAnotherSizeThanDescribedAreRefusedBeforeUse) {
   const auto refused = [&](auto spoil) {
     Sample sample = sampleBundle();
-    spoil(sample.description.groups[0].cells[0].diffuse[0]);
+    spoil(sample.description.groups[0].cells[0].transfers[0]);
     ASSERT_TRUE(write(path_, sample.description, sample.blobs));
     auto reader = Reader::open(path_);
     ASSERT_TRUE(reader) << reader.error().line();
@@ -399,10 +399,10 @@ TEST_F(BundleFile, CodebooksOfAnotherSizeThanDescribedAreRefusedBeforeUse) {
     ASSERT_FALSE(codes);
     EXPECT_NE(codes.error().line().find("group 0 cell 0: has a"), std::string::npos) << codes.error().line();
   };
-  refused([](DiffuseTransfer& transfer) { transfer.shape.full_channels = 0; });
-  refused([](DiffuseTransfer& transfer) { transfer.clusters = 3; });
-  refused([](DiffuseTransfer& transfer) { transfer.axes = 3; });
-  refused([](DiffuseTransfer& transfer) { transfer.axes = 0; });
+  refused([](CellTransfer& transfer) { transfer.shape.full_channels = 0; });
+  refused([](CellTransfer& transfer) { transfer.clusters = 3; });
+  refused([](CellTransfer& transfer) { transfer.axes = 3; });
+  refused([](CellTransfer& transfer) { transfer.axes = 0; });
 }
 
 TEST_F(BundleFile, APlainGltfFileIsSaidNotToBeBaked) {

@@ -38,10 +38,10 @@ struct Store {
 };
 
 // One cluster: plane i carries value i, 16 bits over its range; the mean is zero.
-bundle::DiffuseTransfer storeTransfer(Store& store, const bundle::TransferShape& shape,
+bundle::CellTransfer storeTransfer(Store& store, const bundle::TransferShape& shape,
                                       const std::vector<std::vector<float>>& vectors) {
   const std::size_t size = shape.size();
-  bundle::DiffuseTransfer transfer;
+  bundle::CellTransfer transfer;
   transfer.shape = shape;
   transfer.axes = shape.size();
   transfer.error_bound = 1e-3f;
@@ -189,7 +189,7 @@ void BundleBuilder::write(const std::filesystem::path& path) const {
   const bundle::TransferShape shape{.order = static_cast<std::uint32_t>(order_),
                                     .full_channels = bounces_ ? 1u : 0u,
                                     .outputs = normal_mapped_ ? 9u : 1u};
-  cell.diffuse.push_back(storeTransfer(store, shape, vectors));
+  cell.transfers.push_back(storeTransfer(store, shape, vectors));
   if (!lamps_.empty()) {
     const bundle::TransferShape lamp_shape{.order = 0,
                                            .light_columns = static_cast<std::uint32_t>(lamps_.size())};
@@ -203,7 +203,7 @@ void BundleBuilder::write(const std::filesystem::path& path) const {
       }
       column.push_back(lamp.transfer);
     }
-    cell.diffuse.push_back(
+    cell.transfers.push_back(
         storeTransfer(store, lamp_shape, std::vector<std::vector<float>>(group.sample_count, column)));
   }
   group.cells.push_back(std::move(cell));

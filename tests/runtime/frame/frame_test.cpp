@@ -425,7 +425,7 @@ TEST_F(FrameTest, ABudgetLeavesTheLastPlanesAwayAndStillShowsEverything) {
   double before = 1e9;
   for (std::uint64_t planes = 0; planes <= 9; planes += 3) {
     const bundle::Cell& cell = whole.world.description(0).groups[0].cells[0];
-    const std::uint64_t plane_bytes = streaming::planeBytes(cell.diffuse[0].planes[0]);
+    const std::uint64_t plane_bytes = streaming::planeBytes(cell.transfers[0].planes[0]);
     const std::uint64_t max_bytes = all_bytes + 512 - (9 - planes) * plane_bytes;
     Stage stage(builder, lights, kLinear, /*load=*/true, {.max_resident_bytes = max_bytes});
     const spec::RgbaImage image = stage.picture();

@@ -204,8 +204,8 @@ TEST_F(LoaderTest, StopsAtADamagedPayloadAndNamesTheFileWhateverTheThreads) {
   const Sample sample = testing::sampleBundle();
   write(sample);
   const bundle::Description& d = sample.description;
-  damage(d.payloads[d.groups[1].cells[0].diffuse[0].planes[0].payload].view);  // "plane 1.0.0.0"
-  damage(d.payloads[d.groups[0].cells[0].diffuse[0].planes[1].payload].view);  // and the last of all
+  damage(d.payloads[d.groups[1].cells[0].transfers[0].planes[0].payload].view);  // "plane 1.0.0.0"
+  damage(d.payloads[d.groups[0].cells[0].transfers[0].planes[1].payload].view);  // and the last of all
   const std::vector<std::string> before(kInOrder.begin(), kInOrder.begin() + 9);
   std::string first_line;
   for (const unsigned threads : {1u, 8u}) {
@@ -235,7 +235,7 @@ TEST_F(LoaderTest, NamesTheImageThatCannotBeDecoded) {
 
 TEST_F(LoaderTest, RefusesClustersThatContradictThePlanes) {
   Sample sample = testing::sampleBundle();
-  const bundle::DiffuseTransfer& transfer = sample.description.groups[1].cells[0].diffuse[0];
+  const bundle::CellTransfer& transfer = sample.description.groups[1].cells[0].transfers[0];
   const auto view = sample.description.payloads[static_cast<std::uint32_t>(transfer.cluster_ids)].view;
   const std::vector<std::uint32_t> all_first(500, 0);
   sample.blobs[view] = bundle::encodeClusterIds(all_first, 2);

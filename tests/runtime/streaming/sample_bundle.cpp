@@ -126,7 +126,7 @@ class Builder {
     cell.first_sample = group.sample_count;
     cell.sample_count = samples;
     group.sample_count += samples;
-    bundle::DiffuseTransfer transfer;
+    bundle::CellTransfer transfer;
     transfer.shape.order = 2;
     transfer.clusters = clusters;
     transfer.axes = static_cast<std::uint32_t>(plane_priorities.size());
@@ -160,7 +160,7 @@ class Builder {
       plane.variance = 0.5f;
       transfer.planes.push_back(plane);
     }
-    cell.diffuse.push_back(transfer);
+    cell.transfers.push_back(transfer);
     group.cells.push_back(cell);
   }
 

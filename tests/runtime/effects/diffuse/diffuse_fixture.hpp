@@ -165,20 +165,20 @@ class BundleMaker {
                                 .shadowed_channels = options.shadowed_channels,
                                 .full_channels = options.full_channels,
                                 .outputs = outputs};
-    cell.diffuse.push_back(makeTransfer(made, options, g, c, 0, shape));
+    cell.transfers.push_back(makeTransfer(made, options, g, c, 0, shape));
     if (options.lamps > 0) {
       shape.order = 0;
       shape.light_columns = options.lamps;
-      cell.diffuse.push_back(makeTransfer(made, options, g, c, 1, shape));
+      cell.transfers.push_back(makeTransfer(made, options, g, c, 1, shape));
     }
     return cell;
   }
 
   // Clusters of ever fewer axes, random samples in each.
-  bundle::DiffuseTransfer makeTransfer(RandomBundle& made, const RandomBundleOptions& options,
+  bundle::CellTransfer makeTransfer(RandomBundle& made, const RandomBundleOptions& options,
                                        std::uint32_t g, std::uint32_t c, std::uint32_t transfer_index,
                                        const bundle::TransferShape& shape) {
-    bundle::DiffuseTransfer transfer;
+    bundle::CellTransfer transfer;
     transfer.shape = shape;
     transfer.clusters = options.clusters;
     bundle::Codebook codebook;

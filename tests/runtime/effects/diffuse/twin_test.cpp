@@ -48,7 +48,7 @@ struct Page {
   TransferRecord record{};
 
   Page(const testing::RandomBundle& made, std::size_t transfer_index, bool full) {
-    const bundle::DiffuseTransfer& transfer = made.description.groups[0].cells[0].diffuse[transfer_index];
+    const bundle::CellTransfer& transfer = made.description.groups[0].cells[0].transfers[transfer_index];
     const bundle::TransferShape& shape = transfer.shape;
     const bundle::Codebook& codebook = made.codebooks[0][transfer_index].codebook;
     const auto& positions = made.codebooks[0][transfer_index].positions;
@@ -123,7 +123,7 @@ std::vector<std::vector<std::uint32_t>> codesOf(const testing::RandomBundle& mad
   for (const streaming::PlaneReady& plane : made.planes[0]) {
     if (plane.transfer != transfer) continue;
     const std::size_t bytes =
-        made.description.groups[0].cells[0].diffuse[transfer].planes[plane.plane].bits / 8;
+        made.description.groups[0].cells[0].transfers[transfer].planes[plane.plane].bits / 8;
     auto& codes = all.emplace_back(plane.codes.size() / bytes, 0u);
     for (std::size_t i = 0; i < codes.size(); ++i) std::memcpy(&codes[i], &plane.codes[i * bytes], bytes);
   }
@@ -135,7 +135,7 @@ std::vector<glm::vec3> decodedTimesLight(const testing::RandomBundle& made,
                                          const std::vector<glm::vec4>& light, bool full) {
   std::vector<glm::vec3> out;
   for (std::size_t t = 0; t < made.codebooks[0].size(); ++t) {
-    const bundle::TransferShape& shape = made.description.groups[0].cells[0].diffuse[t].shape;
+    const bundle::TransferShape& shape = made.description.groups[0].cells[0].transfers[t].shape;
     const auto& positions = made.codebooks[0][t].positions;
     std::vector<std::uint32_t> cluster_of(positions.size());
     for (const std::uint32_t place : positions) cluster_of[place & 0xffff] = place >> 16;
