@@ -161,12 +161,12 @@ CodedTransfer codeTransfer(std::span<const float> vectors, std::size_t count,
   const WeightedSpace space = weightedSpace(vectors, shape, settings.shown_energy);
   const double bound = double{settings.bound};
   const double allowed = bound * bound * space.blocks / static_cast<double>(count);
-  const double budget = 0.9 * allowed;  // the rest: rounding of basis, means and axes
 
   // A basis for the cell: all principal components but those that hardly matter.
   double left_out = 0.0;
   const Spectrum spectrum = leadingSpectrum(weighted(vectors, space.roots, someSamples(count, kBasisSamples)),
                                             kTailShare * allowed, left_out);
+  const double budget = 0.9 * allowed - left_out;  // the rest: rounding of basis, means and axes
   Eigen::Index rank = spectrum.variances.size();
   for (double tail = left_out; rank > 0 && (tail += spectrum.variances(rank - 1)) <= kTailShare * allowed;)
     --rank;

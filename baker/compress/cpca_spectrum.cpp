@@ -17,6 +17,10 @@ constexpr Eigen::Index kBlock = 256;        // samples gathered for one matrix p
 constexpr Eigen::Index kShortPoints = 320;  // up to here all components cost little
 constexpr Eigen::Index kFirstSketch = 128;  // components looked for at first; then twice as many, and so on
 
+// What is noise has no leading components: from here on more is left out rather than looked for.
+constexpr Eigen::Index kWideSketch = 256;
+constexpr double kLooseTail = 8.0;
+
 // A number with mean 0 and variance 1 from a counter (splitmix64); two-valued numbers sketch as well as
 // normal ones.
 float sign(std::uint64_t counter) {
@@ -64,7 +68,8 @@ Spectrum leadingSpectrum(const Points& points, double tail, double& left_out) {
     Spectrum found = spectrumOf(secondMoment(inside, {}, {}));
     left_out = std::max(0.0, energy - found.variances.sum());
     // The last ones found are found badly.
-    if (left_out + found.variances.tail(width / 8).sum() > tail) continue;
+    const double missing = left_out + found.variances.tail(width / 8).sum();
+    if (missing > (width < kWideSketch ? tail : kLooseTail * tail)) continue;
     found.axes = range.cast<double>() * found.axes;
     return found;
   }
