@@ -24,6 +24,11 @@
 
 namespace lambent::bundle {
 
+inline constexpr std::uint32_t kMaxBrdfLobes = 3;
+// cos(theta_v) of the node u = 0, where the integral itself has no limit that any view comes to. Views at or
+// below the horizon count as this one.
+inline constexpr float kLeastViewCosine = 1e-3f;
+
 struct BrdfTable {
   std::uint32_t order = 5;  // bands, 1..6
   // 2: the parts that F0 and F90 multiply: r = F0 b^0 + F90 b^1 (Schlick 1994). 3: red, green and blue.
@@ -53,9 +58,14 @@ struct BrdfView {
 void lookUp(const BrdfTable& table, const BrdfView& view, float roughness, float strength,
             std::span<float> out);
 
-// Payload "brdfTable".
+// The same without the coefficients that are always 0: out[lobe * coefficients() + c], as
+// ZonalFactors::factor takes them.
+void lookUpStored(const BrdfTable& table, const BrdfView& view, float roughness, float strength,
+                  std::span<float> out);
+
+// Payload "brdfTable": 16 bits a value, of the largest of its node and lobe; so within 2e-5 of that.
 std::vector<std::byte> encodeBrdfTable(const BrdfTable& table);
-// Errors name `subject`: sizes that do not add up, values that are not finite, b_0 that is negative or
+// Errors name `subject`: sizes that do not add up, values that are not finite, albedos that are negative or
 // over 1.
 Result<BrdfTable> decodeBrdfTable(std::span<const std::byte> bytes, const std::string& subject);
 
