@@ -124,7 +124,8 @@ int main(int argc, char** argv) {
     }
   };
   const auto map = [&](GroupGeometry& geometry) {
-    for (DrawGeometry& draw : geometry.draws) draw.normal_mapped |= options.normal_mapped;
+    if (!options.normal_mapped) return;
+    for (DrawGeometry& draw : geometry.draws) draw.kind = SampleKind::NormalMapped;
   };
   const auto work = loadGroup(options.scene, paint, map);
   const SampleSet& samples = work->samples;

@@ -32,12 +32,13 @@ std::uint32_t fillFromNeighbours(const std::vector<std::pair<std::uint32_t, std:
 void fillMappedFromNeighbours(const std::vector<std::pair<std::uint32_t, std::uint32_t>>& edges,
                               const std::vector<std::uint8_t>& valid, std::size_t first,
                               TransferField& field) {
-  if (first >= valid.size()) return;
-  const auto shift = static_cast<std::uint32_t>(first);
+  if (field.size() == 0) return;
+  const auto shift = static_cast<std::uint32_t>(first),
+             end = static_cast<std::uint32_t>(first + field.size());
   std::vector<std::pair<std::uint32_t, std::uint32_t>> own;
   for (const auto& [a, b] : edges)
-    if (a >= shift && b >= shift) own.emplace_back(a - shift, b - shift);
-  fillFromNeighbours(own, {valid.begin() + static_cast<std::ptrdiff_t>(first), valid.end()}, field);
+    if (a >= shift && b >= shift && a < end && b < end) own.emplace_back(a - shift, b - shift);
+  fillFromNeighbours(own, {valid.begin() + shift, valid.begin() + end}, field);
 }
 
 }  // namespace lambent::baker

@@ -15,7 +15,8 @@ namespace lambent::baker {
 std::uint32_t fillFromNeighbours(const std::vector<std::pair<std::uint32_t, std::uint32_t>>& edges,
                                  std::vector<std::uint8_t> valid, TransferField& field);
 
-// The same for a field that holds only the samples from `first` on; edges to others do not count.
+// The same for a field that holds only a stretch of the samples, from `first` on; edges to others do not
+// count.
 void fillMappedFromNeighbours(const std::vector<std::pair<std::uint32_t, std::uint32_t>>& edges,
                               const std::vector<std::uint8_t>& valid, std::size_t first,
                               TransferField& field);
