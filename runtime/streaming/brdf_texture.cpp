@@ -47,17 +47,17 @@ Result<BrdfTexture> makeBrdfTexture(const bundle::BrdfTable& table, const BrdfTe
   if (texels.layers > static_cast<std::uint32_t>(most))
     return fail(subject, fmt::format("takes {} layers of a texture; this device has {}", texels.layers, most),
                 "bake with fewer nodes of roughness or anisotropy");
-  BrdfTexture made{.texture = gpu::Texture("brdf", {.format = GL_RGBA32F,
-                                                    .width = texels.width,
-                                                    .height = texels.height,
-                                                    .layers = texels.layers}),
-                   .order = table.order,
-                   .lobes = table.lobes,
-                   .isotropic = table.isotropic(),
-                   .angles = table.angles,
-                   .azimuths = table.azimuths,
-                   .roughnesses = table.roughnesses,
-                   .strengths = table.strengths};
+  BrdfTexture made{
+      .texture = gpu::Texture(
+          "brdf",
+          {.format = GL_RGBA32F, .width = texels.width, .height = texels.height, .layers = texels.layers}),
+      .order = table.order,
+      .lobes = table.lobes,
+      .isotropic = table.isotropic(),
+      .angles = table.angles,
+      .azimuths = table.azimuths,
+      .roughnesses = table.roughnesses,
+      .strengths = table.strengths};
   const GLuint id = made.texture.id();
   glTextureSubImage3D(id, 0, 0, 0, 0, static_cast<GLsizei>(texels.width), static_cast<GLsizei>(texels.height),
                       static_cast<GLsizei>(texels.layers), GL_RGBA, GL_FLOAT, texels.values.data());

@@ -1,8 +1,10 @@
-// A table of b(v) as shaders look it up: the zonal weights of every node (runtime/sh/zonal_factors.hpp), packed four to
-// a texel, in a texture array of floats that the hardware interpolates. glossy_kernel.glsl reads it.
+// A table of b(v) as shaders look it up: the zonal weights of every node (runtime/sh/zonal_factors.hpp),
+// packed four to a texel, in a texture array of floats that the hardware interpolates. glossy_kernel.glsl
+// reads it.
 //   across: cos(theta_v) = u², node to node
 //   down:   roughness (isotropic), else azimuth
-//   layers: texel t of a node, isotropic; else (strength * roughnesses + roughness) * texels + t: between those two axes
+//   layers: texel t of a node, isotropic; else (strength * roughnesses + roughness) * texels + t: between
+//   those two axes
 //           the shader interpolates by itself
 // Two lobes: weight p of lobe a is component (2p + a) of the node, three: component 4p + a.
 #pragma once

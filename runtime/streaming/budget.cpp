@@ -26,7 +26,8 @@ Result<std::uint64_t> textureBytes(const bundle::Reader& reader) {
   for (const bundle::BrdfTableEntry& entry : d.brdf_tables) {
     const auto payload = reader.readPayload(entry.payload);
     if (!payload) return failAgain(payload.error());
-    const auto table = bundle::decodeBrdfTable(*payload, reader.path().string() + ": BRDF table \"" + entry.name + "\"");
+    const auto table =
+        bundle::decodeBrdfTable(*payload, reader.path().string() + ": BRDF table \"" + entry.name + "\"");
     if (!table) return failAgain(table.error());
     bytes += packBrdf(*table).bytes();
   }

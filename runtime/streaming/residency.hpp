@@ -81,10 +81,10 @@ struct ResidentGroup {
   // Samples by their outputs, in this order: one, nine, and those of glossy surfaces.
   std::uint32_t plain_samples = 0, mapped_samples = 0;
   std::uint32_t glossy_outputs = 0;  // of its glossy samples; 0: it has none
-  // A vec4 per sample and output, zero until shaded. w: 1 once it is; of glossy samples V_i, the visibility's own
-  // coefficient.
+  // A vec4 per sample and output, zero until shaded. w: 1 once it is; of glossy samples V_i, the visibility's
+  // own coefficient.
   gpu::Allocation samples;
-  std::vector<glm::vec3> light_samples;          // group frame
+  std::vector<glm::vec3> light_samples;  // group frame
   // What other groups see of it; stays in memory, for it is small. None: not here yet, or nothing to see.
   std::optional<bundle::CaptureProxy> proxy;
 
@@ -107,7 +107,8 @@ struct ResidentDraw {
   gpu::Allocation
       rows;  // vertex_count + 1 offsets, row_entries samples, row_entries unorm16 weights; empty: not here
   std::uint32_t row_entries = 0;
-  gpu::Allocation radiance;  // radianceWords(outputs) floats per vertex, once the mesh is here; none where glossy
+  gpu::Allocation
+      radiance;  // radianceWords(outputs) floats per vertex, once the mesh is here; none where glossy
   std::uint64_t version = 0;
 
   bool glossy() const { return outputs > bundle::kMappedOutputs; }

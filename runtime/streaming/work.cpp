@@ -131,8 +131,8 @@ class Load {
     if (!reserve_(8 * description_.payloads[entry.payload].raw_length)) return {};
     const auto payload = reader_.readPayload(entry.payload);
     if (!payload) return failAgain(payload.error());
-    auto table = bundle::decodeBrdfTable(
-        *payload, named(fmt::format("BRDF table {} \"{}\"", work.table, entry.name)));
+    auto table =
+        bundle::decodeBrdfTable(*payload, named(fmt::format("BRDF table {} \"{}\"", work.table, entry.name)));
     if (!table) return failAgain(table.error());
     BrdfTexels texels = packBrdf(*table);
     return BrdfReady{work.table, std::move(*table), std::move(texels)};

@@ -1,8 +1,8 @@
 // What the capture proxies of all groups send out: a radiance per triangle, from the shaded samples of its
-// group (of glossy ones the first nine outputs) and what the group's lights give now. Reads: the samples arena, the groups' lights. Writes: a table
-// of vec4, triangle after triangle through the proxies in the order of the residency's groups. Runs for the
-// groups that were shaded anew: one indirect dispatch per page of samples. Errors: a kernel that does not
-// compile on this device.
+// group (of glossy ones the first nine outputs) and what the group's lights give now. Reads: the samples
+// arena, the groups' lights. Writes: a table of vec4, triangle after triangle through the proxies in the
+// order of the residency's groups. Runs for the groups that were shaded anew: one indirect dispatch per page
+// of samples. Errors: a kernel that does not compile on this device.
 #pragma once
 
 #include <cstdint>

@@ -58,7 +58,8 @@ void TransferTable::add(const streaming::Residency& residency, const streaming::
     if (transfer.shape.order == 0) {
       places.push_back(lights.lampsOf(cell.group));
     } else {
-      for (const std::uint32_t sample : cell.light_samples) places.push_back(lights.firstOf(cell.group, sample));
+      for (const std::uint32_t sample : cell.light_samples)
+        places.push_back(lights.firstOf(cell.group, sample));
     }
     record.first_plane = static_cast<std::uint32_t>(places.size());
     for (std::uint32_t j = 0; j < transfer.planes_resident; ++j)

@@ -1,5 +1,5 @@
-// The transfers of cells as the kernels of all effects read them (diffuse_shared.h): records, and the places of planes
-// and lights that they refer to.
+// The transfers of cells as the kernels of all effects read them (diffuse_shared.h): records, and the places
+// of planes and lights that they refer to.
 #pragma once
 
 #include <cstdint>

@@ -181,8 +181,7 @@ Result<void> Glossy::project(streaming::Residency& residency, gpu::Counters& cou
       residency.transfer().page(key.back()).bindStorage(kBindTransfer);
       if (stage == Visibility) {
         gpu::Table& gaunt = gaunts_.try_emplace({key[0], key[1]}, "products of harmonics").first->second;
-        if (!gaunt.buffer())
-          gaunt.assign(std::span<const std::uint32_t>(gauntWords(key[0], key[1])));
+        if (!gaunt.buffer()) gaunt.assign(std::span<const std::uint32_t>(gauntWords(key[0], key[1])));
         gaunt.bindStorage(kBindGaunt);
       }
       work.dispatch(index++, kBindWork, counters);

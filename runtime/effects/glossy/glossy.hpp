@@ -1,9 +1,10 @@
-// The glossy effect on the GPU: transferred light l' = M l in bands at every sample of glossy cells, straight from the
-// quantized transfer, and beside it the visibility's own low bands V_i, which no light changes. Reads: transfer in the
-// residency's arena, the light at the groups' light samples. Writes: the samples arena, a vec4 (l'_i in RGB, V_i) per
-// output. Two stages (cluster, sample), each one indirect dispatch per arena page and kernel over the cells whose light
-// or codes changed; what a BRDF makes of l' is done per pixel (glossy_kernel.glsl). What is not resident, and all of it
-// when unshadowed, has the light itself. Without glossy cells nothing is compiled, held or dispatched.
+// The glossy effect on the GPU: transferred light l' = M l in bands at every sample of glossy cells, straight
+// from the quantized transfer, and beside it the visibility's own low bands V_i, which no light changes.
+// Reads: transfer in the residency's arena, the light at the groups' light samples. Writes: the samples
+// arena, a vec4 (l'_i in RGB, V_i) per output. Two stages (cluster, sample), each one indirect dispatch per
+// arena page and kernel over the cells whose light or codes changed; what a BRDF makes of l' is done per
+// pixel (glossy_kernel.glsl). What is not resident, and all of it when unshadowed, has the light itself.
+// Without glossy cells nothing is compiled, held or dispatched.
 #pragma once
 
 #include <array>
@@ -47,7 +48,8 @@ class Glossy {
   const std::vector<FillRecord>& fills() const { return fills_; }  // index: residency cell
 
  private:
-  // Visibility and dense transfers are projected, then the transfers of a cell are added up one after the other.
+  // Visibility and dense transfers are projected, then the transfers of a cell are added up one after the
+  // other.
   enum Kernel { Visibility, Dense, Samples, Fill, kKernelCount };
   static constexpr std::size_t kMaxTransfers = 3;  // visibility, bounced light, the group's lights
   struct Seen {

@@ -1,5 +1,5 @@
-// The CPU twin of glossy_eval.glsl and its entry shaders: same names, same tables, same order of terms. Memory is what
-// the GPU sees, as in diffuse_ref.hpp, whose decoding of codes it shares. No GL.
+// The CPU twin of glossy_eval.glsl and its entry shaders: same names, same tables, same order of terms.
+// Memory is what the GPU sees, as in diffuse_ref.hpp, whose decoding of codes it shares. No GL.
 #pragma once
 
 #include <algorithm>
@@ -34,7 +34,8 @@ inline glm::vec4 projectVisibility(const Memory& memory, std::span<const uint> g
   return {sum, memory.floatAt(at + output_index)};
 }
 
-// Stage a, all outputs of all clusters under all lights. Transfers without visibility: diffuse::ref::projectTransfer.
+// Stage a, all outputs of all clusters under all lights. Transfers without visibility:
+// diffuse::ref::projectTransfer.
 inline void projectTransfer(const Memory& memory, std::span<const uint> gaunt, const TransferRecord& transfer,
                             std::span<const uint> places, std::span<glm::vec4> products) {
   for (uint light_index = 0; light_index < transfer.light_count; ++light_index)

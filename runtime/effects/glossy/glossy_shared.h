@@ -6,8 +6,6 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "runtime/effects/diffuse/diffuse_shared.h"
-
 namespace lambent::effects::glossy {
 using uint = std::uint32_t;
 #define LAMBENT_CONSTANT inline constexpr uint
