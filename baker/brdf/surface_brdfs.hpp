@@ -1,9 +1,10 @@
-// How the surfaces of a group reflect where a ray meets them: the exit kernel of a point towards a direction, with
-// which the radiance that leaves it is a dot product with the light that was transferred to it:
+// How the surfaces of a group reflect where a ray meets them: the exit kernel of a point towards a direction,
+// with which the radiance that leaves it is a dot product with the light that was transferred to it:
 //   L_out(q -> v) = Σ_k c_k(v) l'_k,   c = specular lobe + diffuse, in the group's frame, per colour channel.
-// The specular lobe is b(v) of the material's table, turned; the diffuse part is albedo (1 - metallic) (1 - the largest
-// channel of the specular lobe's directional albedo) A_l/pi y_lm(n), so that both together never give more than they
-// get. Textures and vertex colours are looked up at the point. Matte surfaces have only the diffuse part.
+// The specular lobe is b(v) of the material's table, turned; the diffuse part is albedo (1 - metallic) (1 -
+// the largest channel of the specular lobe's directional albedo) A_l/pi y_lm(n), so that both together never
+// give more than they get. Textures and vertex colours are looked up at the point. Matte surfaces have only
+// the diffuse part.
 #pragma once
 
 #include <memory>
@@ -35,8 +36,8 @@ struct BrdfTables {
 class SurfaceBrdfs {
  public:
   // Errors: those of decodeImage.
-  static Result<SurfaceBrdfs> load(const Scene& scene, const GroupGeometry& geometry, const BrdfTables& tables,
-                                   DecodedImages& images, int order);
+  static Result<SurfaceBrdfs> load(const Scene& scene, const GroupGeometry& geometry,
+                                   const BrdfTables& tables, DecodedImages& images, int order);
 
   bool glossy(std::uint32_t triangle) const;
   // All kernels are the same in red, green and blue.

@@ -47,7 +47,7 @@ void forNodesAround(const BrdfTable& table, const BrdfView& view, float roughnes
   const Between s = between(at(strength, table.strengths), table.strengths),
                 r = between(at(roughness, table.roughnesses), table.roughnesses),
                 p = between(at(azimuth, table.azimuths), table.azimuths),
-                a = between(at(std::sqrt(std::max(view.cos_theta, 0.0f)), table.angles), table.angles);
+                a = between(at(angleAxis(view.cos_theta), table.angles), table.angles);
   const auto both = [](const Between& axis, auto&& f) {
     f(axis.first, 1.0f - axis.share);
     if (axis.share > 0.0f) f(axis.second, axis.share);
@@ -76,15 +76,14 @@ void lookUpStored(const BrdfTable& table, const BrdfView& view, float roughness,
     for (std::size_t k = 0; k < count; ++k) out[k] += weight * node[k];
   });
   if (table.isotropic()) return;
-  // Mirrored in x, cos(m phi) takes the sign (-1)^m and sin(m phi) the other; mirrored in y, sin(m phi) turns
-  // over.
-  const bool mirror_x = view.cos_phi < 0.0f, mirror_y = view.sin_phi < 0.0f;
-  if (!mirror_x && !mirror_y) return;
+  // Mirrored in the tangent or the bitangent, with the view, b sees its y axis turned over: sin(|m| phi)
+  // changes its sign.
+  if (view.cos_phi * view.sin_phi >= 0.0f) return;
   std::size_t k = 0;
   for (std::uint32_t lobe = 0; lobe < table.lobes; ++lobe)
     for (int l = 0; l < static_cast<int>(table.order); ++l)
       for (int m = -l; m <= l; ++m, ++k)
-        if ((mirror_x && (m % 2 != 0) != (m < 0)) != (mirror_y && m < 0)) out[k] = -out[k];
+        if (m < 0) out[k] = -out[k];
 }
 
 void lookUp(const BrdfTable& table, const BrdfView& view, float roughness, float strength,

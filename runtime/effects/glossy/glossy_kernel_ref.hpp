@@ -22,7 +22,7 @@
 namespace lambent::effects::glossy::ref {
 
 inline constexpr int kMaxBands = 6;
-inline constexpr float kLeastCosine = 1e-3f;
+using bundle::kLeastViewCosine;
 
 using Bands = std::array<glm::vec4, kMaxBands>;
 
@@ -76,20 +76,14 @@ inline LocalView localView(bool isotropic, const glm::vec3& normal, const glm::v
   const glm::vec3 across = to_eye - along * normal;
   const float squared = glm::dot(across, across);
   view.normal = normal;
-  view.cos_theta = std::clamp(along, kLeastCosine, 1.0f);
+  view.cos_theta = std::clamp(along, kLeastViewCosine, 1.0f);
+  view.tangent = squared > 1e-12f ? across / std::sqrt(squared) : isotropic ? perpendicular(normal) : tangent;
+  view.bitangent = glm::cross(normal, view.tangent);
   if (!isotropic) {
-    view.tangent = tangent;
-    view.bitangent = glm::cross(normal, tangent);
-    if (squared > 1e-12f) {
-      const glm::vec2 turned =
-          glm::vec2(glm::dot(across, view.tangent), glm::dot(across, view.bitangent)) / std::sqrt(squared);
-      if (turned.x < 0.0f) view.tangent = -view.tangent;
-      if (turned.y < 0.0f) view.bitangent = -view.bitangent;
-      view.azimuth = glm::abs(turned);
-    }
-  } else {
-    view.tangent = squared > 1e-12f ? across / std::sqrt(squared) : perpendicular(normal);
-    view.bitangent = glm::cross(normal, view.tangent);
+    const glm::vec2 turned(glm::dot(view.tangent, tangent),
+                           glm::dot(view.tangent, glm::cross(normal, tangent)));
+    if (turned.x * turned.y < 0.0f) view.bitangent = -view.bitangent;
+    view.azimuth = glm::abs(turned);
   }
   return view;
 }
@@ -126,13 +120,14 @@ inline std::vector<glm::vec4> lookUpWeights(const Table& table, const LocalView&
   const glm::vec2 last(static_cast<float>(table.texels.width - 1),
                        static_cast<float>(table.texels.height - 1));
   if (table.table->isotropic()) {
-    const glm::vec2 place = last * glm::vec2(std::sqrt(view.cos_theta), std::clamp(roughness, 0.0f, 1.0f));
+    const glm::vec2 place =
+        last * glm::vec2(bundle::angleAxis(view.cos_theta), std::clamp(roughness, 0.0f, 1.0f));
     for (std::uint32_t t = 0; t < weights.size(); ++t) weights[t] = table.brdfTexel(place, t);
     return weights;
   }
   constexpr float kHalfPi = std::numbers::pi_v<float> / 2;
-  const glm::vec2 place =
-      last * glm::vec2(std::sqrt(view.cos_theta), std::atan2(view.azimuth.y, view.azimuth.x) / kHalfPi);
+  const glm::vec2 place = last * glm::vec2(bundle::angleAxis(view.cos_theta),
+                                           std::atan2(view.azimuth.y, view.azimuth.x) / kHalfPi);
   const glm::vec2 nodes(static_cast<float>(table.table->roughnesses - 1),
                         static_cast<float>(table.table->strengths - 1));
   const glm::vec2 at = glm::clamp(glm::vec2(roughness, strength), 0.0f, 1.0f) * nodes;

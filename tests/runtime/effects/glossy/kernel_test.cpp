@@ -152,7 +152,7 @@ TEST(GlossyKernel, DiffuseAndReflectedLightTogetherNeverExceedWhatArrives) {
 TEST(GlossyKernel, AViewBelowTheSurfaceCountsAsOneAlongIt) {
   const glm::vec3 normal(0, 0, 1);
   const ref::LocalView view = ref::localView(true, normal, {}, glm::normalize(glm::vec3(1, 1, -0.5f)));
-  EXPECT_EQ(view.cos_theta, ref::kLeastCosine);
+  EXPECT_EQ(view.cos_theta, ref::kLeastViewCosine);
   EXPECT_LT(glm::distance(view.tangent, glm::normalize(glm::vec3(1, 1, 0))), 1e-6f);
   const ref::LocalView pole = ref::localView(true, normal, {}, normal);
   EXPECT_EQ(pole.cos_theta, 1.0f);
