@@ -1,7 +1,7 @@
 // A table of b(v) as shaders look it up: the zonal weights of every node (runtime/sh/zonal_factors.hpp),
 // packed four to a texel, in a texture array of floats that the hardware interpolates. glossy_kernel.glsl
 // reads it.
-//   across: cos(theta_v) = u², node to node
+//   across: u of the view's angle (bundle::angleAxis), node to node
 //   down:   roughness (isotropic), else azimuth
 //   layers: texel t of a node, isotropic; else (strength * roughnesses + roughness) * texels + t: between
 //   those two axes

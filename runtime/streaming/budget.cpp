@@ -23,11 +23,8 @@ Result<std::uint64_t> textureBytes(const bundle::Reader& reader) {
     if (!size) return failAgain(size.error());
     bytes += uses[i].copies() * size->rgbaBytes() * 4 / 3;
   }
-  for (const bundle::BrdfTableEntry& entry : d.brdf_tables) {
-    const auto payload = reader.readPayload(entry.payload);
-    if (!payload) return failAgain(payload.error());
-    const auto table =
-        bundle::decodeBrdfTable(*payload, reader.path().string() + ": BRDF table \"" + entry.name + "\"");
+  for (std::uint32_t i = 0; i < d.brdf_tables.size(); ++i) {
+    const auto table = reader.readBrdfTable(i);
     if (!table) return failAgain(table.error());
     bytes += packBrdf(*table).bytes();
   }

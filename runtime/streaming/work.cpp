@@ -129,10 +129,7 @@ class Load {
     const bundle::BrdfTableEntry& entry = description_.brdf_tables[work.table];
     // Its bytes, the table and the texels: all of a size.
     if (!reserve_(8 * description_.payloads[entry.payload].raw_length)) return {};
-    const auto payload = reader_.readPayload(entry.payload);
-    if (!payload) return failAgain(payload.error());
-    auto table =
-        bundle::decodeBrdfTable(*payload, named(fmt::format("BRDF table {} \"{}\"", work.table, entry.name)));
+    auto table = reader_.readBrdfTable(work.table);
     if (!table) return failAgain(table.error());
     BrdfTexels texels = packBrdf(*table);
     return BrdfReady{work.table, std::move(*table), std::move(texels)};

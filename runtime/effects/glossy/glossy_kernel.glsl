@@ -26,7 +26,7 @@ const int kTexels = (kWeights + 1) / 2;
 #endif
 const vec3 kZonalAxes[] = LAMBENT_ZONAL_AXES;
 
-const float kLeastCosine = 1e-3;  // of a view; lower ones count as this
+const float kLeastViewCosine = 1e-3;  // of a view; lower ones count as this
 const float kHalfPi = 1.5707963267948966;
 
 // A texel of the table: interpolated between nodes at a place across and down, both counted in nodes.
@@ -69,13 +69,16 @@ vec3 perpendicular(vec3 n) {
   return vec3(1.0 + facing * n.x * n.x * a, facing * n.x * n.y * a, -facing * n.x);
 }
 
-// The local frame of a table, and the view in it. The table's functions are even in x, where anisotropic in y too, so
-// that axes may be mirrored to where the table has its views.
+// The frame of a table, in which the view leans along x, and where the view stands. Anisotropic BRDFs mirror in the
+// material's tangent and bitangent: views of all quadrants take the first one's place, with y turned over in every other.
 struct LocalView {
   vec3 tangent, bitangent, normal;
   float cos_theta;
-  vec2 azimuth;  // cosine and sine, both positive
+  vec2 azimuth;  // cosine and sine against the material's tangent, both positive
 };
+
+// Of the table's axis across (bundle::angleAxis).
+float angleAxis(float cos_theta) { return sqrt(max(1.0 - sqrt(max(1.0 - cos_theta, 0.0)), 0.0)); }
 
 LocalView localView(vec3 normal, vec3 tangent, vec3 to_eye) {
   LocalView view;
@@ -83,17 +86,14 @@ LocalView localView(vec3 normal, vec3 tangent, vec3 to_eye) {
   vec3 across = to_eye - along * normal;
   float squared = dot(across, across);
   view.normal = normal;
-  view.cos_theta = clamp(along, kLeastCosine, 1.0);
+  view.cos_theta = clamp(along, kLeastViewCosine, 1.0);
   view.azimuth = vec2(1.0, 0.0);
 #ifdef LAMBENT_ANISOTROPIC
-  view.tangent = tangent;
-  view.bitangent = cross(normal, tangent);
-  if (squared > 1e-12) {
-    vec2 turned = vec2(dot(across, view.tangent), dot(across, view.bitangent)) * inversesqrt(squared);
-    if (turned.x < 0.0) view.tangent = -view.tangent;
-    if (turned.y < 0.0) view.bitangent = -view.bitangent;
-    view.azimuth = abs(turned);
-  }
+  view.tangent = squared > 1e-12 ? across * inversesqrt(squared) : tangent;
+  view.bitangent = cross(normal, view.tangent);
+  vec2 turned = vec2(dot(view.tangent, tangent), dot(view.tangent, cross(normal, tangent)));
+  if (turned.x * turned.y < 0.0) view.bitangent = -view.bitangent;
+  view.azimuth = abs(turned);
 #else
   view.tangent = squared > 1e-12 ? across * inversesqrt(squared) : perpendicular(normal);
   view.bitangent = cross(normal, view.tangent);
@@ -106,7 +106,7 @@ void lookUpWeights(LocalView view, float roughness, float strength, uvec2 roughn
                    out vec4 weights[kTexels]) {
   vec2 last = vec2(brdfNodes() - 1u);
 #ifdef LAMBENT_ANISOTROPIC
-  vec2 place = last * vec2(sqrt(view.cos_theta), atan(view.azimuth.y, view.azimuth.x) / kHalfPi);
+  vec2 place = last * vec2(angleAxis(view.cos_theta), atan(view.azimuth.y, view.azimuth.x) / kHalfPi);
   vec2 nodes = vec2(roughnesses_and_strengths - 1u);
   vec2 at = clamp(vec2(roughness, strength), 0.0, 1.0) * nodes;
   vec2 low = min(floor(at), max(nodes - 1.0, 0.0)), part = at - low, high = min(low + 1.0, nodes);
@@ -118,7 +118,7 @@ void lookUpWeights(LocalView view, float roughness, float strength, uvec2 roughn
     for (int t = 0; t < kTexels; ++t) weights[t] += share.x * share.y * brdfTexel(place, layer + uint(t));
   }
 #else
-  vec2 place = last * vec2(sqrt(view.cos_theta), clamp(roughness, 0.0, 1.0));
+  vec2 place = last * vec2(angleAxis(view.cos_theta), clamp(roughness, 0.0, 1.0));
   for (int t = 0; t < kTexels; ++t) weights[t] = brdfTexel(place, uint(t));
 #endif
 }

@@ -1,5 +1,5 @@
-// The CPU twin of glossy_kernel.glsl: same names, same order of terms; what the GPU looks up in a texture is interpolated
-// here from the same texels. Vectors are unit and in the group's frame. No GL.
+// The CPU twin of glossy_kernel.glsl: same names, same order of terms; what the GPU looks up in a texture is
+// interpolated here from the same texels. Vectors are unit and in the group's frame. No GL.
 #pragma once
 
 #include <algorithm>
@@ -22,7 +22,7 @@
 namespace lambent::effects::glossy::ref {
 
 inline constexpr int kMaxBands = 6;
-inline constexpr float kLeastCosine = 1e-3f;
+using bundle::kLeastViewCosine;
 
 using Bands = std::array<glm::vec4, kMaxBands>;
 
@@ -32,8 +32,8 @@ inline Bands bandsAt(int band_count, const glm::vec3& d, std::span<const glm::ve
   bands[0] = 0.282094792f * light[0];
   bands[1] = 0.488602512f * (y * light[1] + z * light[2] + x * light[3]);
   const float c2 = x * x - y * y, s2 = 2.0f * x * y;
-  bands[2] = 0.546274215f * (s2 * light[4] + c2 * light[8]) + 1.09254843f * z * (y * light[5] + x * light[7]) +
-             (0.946174696f * z2 - 0.315391565f) * light[6];
+  bands[2] = 0.546274215f * (s2 * light[4] + c2 * light[8]) +
+             1.09254843f * z * (y * light[5] + x * light[7]) + (0.946174696f * z2 - 0.315391565f) * light[6];
   const float c3 = x * c2 - y * s2, s3 = x * s2 + y * c2;
   bands[3] = 0.59004359f * (s3 * light[9] + c3 * light[15]) +
              1.44530572f * z * (s2 * light[10] + c2 * light[14]) +
@@ -76,20 +76,14 @@ inline LocalView localView(bool isotropic, const glm::vec3& normal, const glm::v
   const glm::vec3 across = to_eye - along * normal;
   const float squared = glm::dot(across, across);
   view.normal = normal;
-  view.cos_theta = std::clamp(along, kLeastCosine, 1.0f);
+  view.cos_theta = std::clamp(along, kLeastViewCosine, 1.0f);
+  view.tangent = squared > 1e-12f ? across / std::sqrt(squared) : isotropic ? perpendicular(normal) : tangent;
+  view.bitangent = glm::cross(normal, view.tangent);
   if (!isotropic) {
-    view.tangent = tangent;
-    view.bitangent = glm::cross(normal, tangent);
-    if (squared > 1e-12f) {
-      const glm::vec2 turned = glm::vec2(glm::dot(across, view.tangent), glm::dot(across, view.bitangent)) /
-                               std::sqrt(squared);
-      if (turned.x < 0.0f) view.tangent = -view.tangent;
-      if (turned.y < 0.0f) view.bitangent = -view.bitangent;
-      view.azimuth = glm::abs(turned);
-    }
-  } else {
-    view.tangent = squared > 1e-12f ? across / std::sqrt(squared) : perpendicular(normal);
-    view.bitangent = glm::cross(normal, view.tangent);
+    const glm::vec2 turned(glm::dot(view.tangent, tangent),
+                           glm::dot(view.tangent, glm::cross(normal, tangent)));
+    if (turned.x * turned.y < 0.0f) view.bitangent = -view.bitangent;
+    view.azimuth = glm::abs(turned);
   }
   return view;
 }
@@ -109,9 +103,9 @@ struct Table {
   // Between the four texels about a place, counted in nodes.
   glm::vec4 brdfTexel(glm::vec2 place, std::uint32_t layer) const {
     const auto texel = [&](std::uint32_t x, std::uint32_t y) {
-      return texels.values[(std::size_t{layer} * texels.height + std::min(y, texels.height - 1)) *
-                               texels.width +
-                           std::min(x, texels.width - 1)];
+      return texels
+          .values[(std::size_t{layer} * texels.height + std::min(y, texels.height - 1)) * texels.width +
+                  std::min(x, texels.width - 1)];
     };
     const glm::vec2 low = glm::floor(place), part = place - low;
     const auto x = static_cast<std::uint32_t>(low.x), y = static_cast<std::uint32_t>(low.y);
@@ -126,13 +120,14 @@ inline std::vector<glm::vec4> lookUpWeights(const Table& table, const LocalView&
   const glm::vec2 last(static_cast<float>(table.texels.width - 1),
                        static_cast<float>(table.texels.height - 1));
   if (table.table->isotropic()) {
-    const glm::vec2 place = last * glm::vec2(std::sqrt(view.cos_theta), std::clamp(roughness, 0.0f, 1.0f));
+    const glm::vec2 place =
+        last * glm::vec2(bundle::angleAxis(view.cos_theta), std::clamp(roughness, 0.0f, 1.0f));
     for (std::uint32_t t = 0; t < weights.size(); ++t) weights[t] = table.brdfTexel(place, t);
     return weights;
   }
   constexpr float kHalfPi = std::numbers::pi_v<float> / 2;
-  const glm::vec2 place =
-      last * glm::vec2(std::sqrt(view.cos_theta), std::atan2(view.azimuth.y, view.azimuth.x) / kHalfPi);
+  const glm::vec2 place = last * glm::vec2(bundle::angleAxis(view.cos_theta),
+                                           std::atan2(view.azimuth.y, view.azimuth.x) / kHalfPi);
   const glm::vec2 nodes(static_cast<float>(table.table->roughnesses - 1),
                         static_cast<float>(table.table->strengths - 1));
   const glm::vec2 at = glm::clamp(glm::vec2(roughness, strength), 0.0f, 1.0f) * nodes;
@@ -141,9 +136,9 @@ inline std::vector<glm::vec4> lookUpWeights(const Table& table, const LocalView&
   for (int corner = 0; corner < 4; ++corner) {
     const glm::vec2 side(static_cast<float>(corner & 1), static_cast<float>(corner >> 1));
     const glm::vec2 share = glm::mix(1.0f - part, part, side), node = glm::mix(low, high, side);
-    const auto layer = static_cast<std::uint32_t>(
-                           node.y * static_cast<float>(table.table->roughnesses) + node.x + 0.5f) *
-                       table.texels.per_node;
+    const auto layer =
+        static_cast<std::uint32_t>(node.y * static_cast<float>(table.table->roughnesses) + node.x + 0.5f) *
+        table.texels.per_node;
     for (std::uint32_t t = 0; t < weights.size(); ++t)
       weights[t] += share.x * share.y * table.brdfTexel(place, layer + t);
   }
@@ -166,8 +161,8 @@ inline Reflected reflectLight(const Table& table, const LocalView& view, std::sp
   sum.albedo = measured ? glm::vec3(weights[0]) : glm::vec3(weights[0].x, weights[0].y, 0.0f);
   for (int i = 0; i < static_cast<int>(table.factors.axes().size()); ++i) {
     const glm::vec3 axis = table.factors.axes()[static_cast<std::size_t>(i)];
-    const Bands bands = bandsAt(
-        band_count, axis.x * view.tangent + axis.y * view.bitangent + axis.z * view.normal, light);
+    const Bands bands =
+        bandsAt(band_count, axis.x * view.tangent + axis.y * view.bitangent + axis.z * view.normal, light);
     for (int l = 0; l < band_count; ++l) {
       if (i >= table.factors.axesOfBand(l)) continue;
       const int p = (table.factors.isIsotropic() ? l * (l + 1) / 2 : l * l) + i;
