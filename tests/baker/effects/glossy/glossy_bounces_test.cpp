@@ -79,8 +79,12 @@ TEST(GlossyBounces, InAWhiteFurnaceLeaveUniformLightAsItIs) {
   for (std::size_t s = 0; s < field.size(); ++s) {
     if (t.samples.originsOf(s).empty()) continue;
     const auto shadow = shadowMatrix(field, s);
+    // Exact but for late passes, whose every fourth ray errs by some percent of their percent, and more so in
+    // how it is spread over directions.
     for (std::size_t i = 0; i < 25; ++i)
-      EXPECT_NEAR(shadow[i * 16] + field.bounced[(s * 25 + i) * 16], i == 0 ? 1.0f : 0.0f, 3e-3f) << i;
+      EXPECT_NEAR(shadow[i * 16] + field.bounced[(s * 25 + i) * 16], i == 0 ? 1.0f : 0.0f,
+                  i == 0 ? 2e-3f : 8e-3f)
+          << i;
     EXPECT_NEAR(uniformRadiance(baked.direct.field.at(s)) + uniformRadiance(baked.bounced.field.at(s)), 1.0f,
                 3e-3f);
   }
@@ -123,8 +127,10 @@ TEST(GlossyBounces, AskForTheDirectionThatLightLeavesIn) {
 }
 
 TEST(GlossyBounces, InASphereSpreadALampEvenly) {
-  // A lamp of 1 cd in the centre of a closed sphere of radius 2 and albedo 1/2: the wall sends albedo E/pi
-  // everywhere, so what arrives after all bounces is uniform: albedo / (1 - albedo) / (pi r²).
+  // A lamp of 1 cd in the centre of a closed sphere of radius 2 and albedo 1/2: the wall sends out albedo
+  // E/pi, and all bounces together albedo / (1 - albedo) E/pi, the same everywhere. The lamp stands on every
+  // normal, so of its E/pi = 1 / (pi r²) five bands of the cosine and the mirror image see 2 (1 + 5/4 - 9/24)
+  // / 4 instead of 1 (the odd bands cancel).
   Scene scene = glossyScene({flipped(icosphere({0, 0, 0}, 2.0f, 4))});
   scene.materials[0].base_color = glm::vec4(glm::vec3(0.5f), 1.0f);
   scene.lights = {gltf::Light{}};
@@ -135,7 +141,8 @@ TEST(GlossyBounces, InASphereSpreadALampEvenly) {
   const Transport t(scene, true);
   const auto baked = bakeGlossy(t, lambertKernels(t), {.rays = 256, .bounces = -1, .tail_error = 1e-4});
   const GlossyField& field = baked.glossy.field;
-  const float uniform = std::sqrt(4.0f * kPi) / (kPi * 4.0f);
+  const float seen = 0.5f * (1.0f + 1.25f - 0.375f);
+  const float uniform = std::sqrt(4.0f * kPi) * seen / (kPi * 4.0f);
   for (std::size_t s = 0; s < field.size(); ++s)
     for (std::size_t i = 0; i < 25; ++i) {
       const float added = field.lights_full[s * 25 + i] - field.lights_shadowed[s * 25 + i];
