@@ -87,16 +87,4 @@ DirectionTable uniformTable(std::size_t rays) {
   return table;
 }
 
-DirectionTable mixedTable(std::size_t rays) {
-  DirectionTable table;
-  // As many rays stand above z as points of the disc within r² = (1 - z)/2 + (1 - z²)/2.
-  forDiscPoints(rays, [&](double x, double y) {
-    const double r2 = x * x + y * y;
-    const double z = std::max(0.0, 0.5 * (std::sqrt(9.0 - 8.0 * r2) - 1.0));
-    const double stretch = r2 > 0.0 ? std::sqrt((1.0 - z * z) / r2) : 0.0;
-    append(table, stretch * x, stretch * y, z);
-  });
-  return table;
-}
-
 }  // namespace lambent::baker

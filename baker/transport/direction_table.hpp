@@ -4,7 +4,6 @@
 #pragma once
 
 #include <cstddef>
-#include <numbers>
 #include <vector>
 
 namespace lambent::baker {
@@ -26,12 +25,5 @@ DirectionTable cosineTable(std::size_t rays);
 // The same points spread evenly over the hemisphere: pdf = 1/(2 pi). For light at any normal, where light
 // near the horizon counts.
 DirectionTable uniformTable(std::size_t rays);
-
-// Halfway between both: pdf = (1/2 + cos) / (2 pi). For light from everywhere that is seen through BRDFs,
-// which hardly look along the surface: rays there are also the slowest.
-DirectionTable mixedTable(std::size_t rays);
-inline double mixedDensity(double cosine) {
-  return (0.5 + cosine) / (2.0 * std::numbers::pi);
-}
 
 }  // namespace lambent::baker

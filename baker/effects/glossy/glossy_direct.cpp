@@ -28,7 +28,7 @@ class GlossyReceiver : public LightReceiver {
         row_(hemisphere.evenOutputs()) {}
 
   glm::vec3 direction(std::size_t ray) const override { return hemisphere_.direction(ray); }
-  float raysPerSteradian(float cosine) const override { return hemisphere_.raysPerSteradian(cosine); }
+  float raysPerSteradian(float) const override { return hemisphere_.raysPerSteradian(); }
   void addAlong(std::size_t ray, std::uint32_t light, glm::vec3 radiance) override {
     add(hemisphere_.row(ray), light, radiance);
   }

@@ -26,27 +26,30 @@ std::vector<std::uint16_t> evenHarmonics(int order) {
   return even;
 }
 
-// The smallest relative change (least squares) of the base weights that makes the quadrature of every even
+// The smallest relative change (least squares) of equal weights that makes the quadrature of every even
 // harmonic exact: 1/sqrt(4 pi) for the first, 0 for the others, as means over the hemisphere. Even harmonics
 // are orthogonal there, so the normal equations are as good as they can be. With too few rays weights may
-// turn negative; then the highest bands are left to the base weights, until none is.
-std::vector<double> exactWeights(const Eigen::MatrixXd& even, const Eigen::VectorXd& base, int order) {
-  for (int bands = order; bands > 0; --bands) {
-    const auto basis = even.topRows(static_cast<Eigen::Index>(evenCountOf(bands)));
-    Eigen::VectorXd wrong = -(basis * base);
+// turn negative; then the highest bands are left to the rays as they are, until none is.
+std::vector<double> exactWeights(const Eigen::MatrixXd& even, int order) {
+  const Eigen::Index rays = even.cols();
+  const double each = 1.0 / static_cast<double>(rays);
+  for (int bands = order; bands > 1; --bands) {
+    const auto rows = static_cast<Eigen::Index>(evenCountOf(bands));
+    const auto basis = even.topRows(rows);
+    Eigen::VectorXd wrong = -each * basis.rowwise().sum();
     wrong(0) += 0.5 * std::numbers::inv_sqrtpi;
-    const Eigen::MatrixXd gram = basis * base.asDiagonal() * basis.transpose();
-    const Eigen::VectorXd change = basis.transpose() * gram.ldlt().solve(wrong);
-    const Eigen::VectorXd weights = base.cwiseProduct(Eigen::VectorXd::Ones(base.size()) + change);
+    const Eigen::MatrixXd gram = each * basis * basis.transpose();
+    const Eigen::VectorXd weights =
+        each * (Eigen::VectorXd::Ones(rays) + basis.transpose() * gram.ldlt().solve(wrong));
     if (weights.minCoeff() > 0.0) return {weights.begin(), weights.end()};
   }
-  return {base.begin(), base.end()};
+  return std::vector<double>(static_cast<std::size_t>(rays), each);
 }
 
 }  // namespace
 
 GlossyHemisphere::GlossyHemisphere(std::size_t rays, int visibility_bands, int order_out)
-    : table_(mixedTable(rays)),
+    : table_(uniformTable(rays)),
       order_out_(order_out),
       even_(evenHarmonics(visibility_bands)),
       even_outputs_(evenCountOf(order_out)) {
@@ -59,10 +62,7 @@ GlossyHemisphere::GlossyHemisphere(std::size_t rays, int visibility_bands, int o
     for (std::size_t e = 0; e < even_.size(); ++e)
       even(static_cast<Eigen::Index>(e), static_cast<Eigen::Index>(r)) = all[even_[e]];
   }
-  Eigen::VectorXd base(even.cols());
-  for (std::size_t r = 0; r < table_.size(); ++r)
-    base(static_cast<Eigen::Index>(r)) = 1.0 / (mixedDensity(double{table_.z[r]}) * kTwoPi);
-  weights_ = exactWeights(even, base / base.sum(), visibility_bands);
+  weights_ = exactWeights(even, visibility_bands);
   packet_sums_.assign(table_.packets() * even_.size(), 0.0f);
   rows_.reserve(table_.size() * even_.size());
   for (std::size_t r = 0; r < table_.size(); ++r)
@@ -73,8 +73,8 @@ GlossyHemisphere::GlossyHemisphere(std::size_t rays, int visibility_bands, int o
     }
 }
 
-float GlossyHemisphere::raysPerSteradian(float cosine) const {
-  return static_cast<float>(static_cast<double>(table_.size()) * mixedDensity(double{cosine}));
+float GlossyHemisphere::raysPerSteradian() const {
+  return static_cast<float>(static_cast<double>(table_.size()) / kTwoPi);
 }
 
 void GlossyHemisphere::incident(glm::vec3 local, std::span<float> out) const {

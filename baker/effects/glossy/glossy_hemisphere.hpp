@@ -1,8 +1,8 @@
-// The directions in which glossy samples look, over the hemisphere (mixedTable), with their spherical
-// harmonics. Functions continue below the horizon as their mirror image (glossy_transport.hpp), so in the
-// sample's frame only harmonics with l + m even are left: n(n+1)/2 of n² ("even" ones here, in rising order
-// of their index; those of a lower order come first). They are orthogonal over the hemisphere, which makes
-// exact weights easy.
+// The directions in which glossy samples look, uniform over the hemisphere, with their spherical harmonics.
+// Functions continue below the horizon as their mirror image (glossy_transport.hpp), so in the sample's frame
+// only harmonics with l + m even are left: n(n+1)/2 of n² ("even" ones here, in rising order of their index;
+// those of a lower order come first). They are orthogonal over the hemisphere, which makes exact weights
+// easy (decisions/021).
 #pragma once
 
 #include <cstdint>
@@ -25,7 +25,7 @@ class GlossyHemisphere {
 
   const DirectionTable& table() const { return table_; }
   glm::vec3 direction(std::size_t ray) const { return {table_.x[ray], table_.y[ray], table_.z[ray]}; }
-  float raysPerSteradian(float cosine) const;
+  float raysPerSteradian() const;
   // Share of the hemisphere that a ray stands for; they sum to 1.
   double weight(std::size_t ray) const { return weights_[ray]; }
 

@@ -105,6 +105,30 @@ TEST(GlossyBounces, OfALambertKernelAreThoseOfAMatteSurfaceInBothDirections) {
   }
 }
 
+TEST(GlossyBounces, ReachNormalMappedSurfacesAsThoseOfAMatteSurfaceDo) {
+  const auto mapped_wall = [](bool glossy_floor) {
+    Scene scene = corner(glossy_floor, false);
+    scene.textures.push_back({-1, {}});
+    scene.materials[1].normal_texture.texture = 0;
+    return scene;
+  };
+  const Transport matte(mapped_wall(false)), t(mapped_wall(true), true);
+  ASSERT_GT(t.samples.first_glossy, t.samples.first_normal_mapped);
+  ASSERT_GT(t.samples.size(), t.samples.first_glossy);
+  const auto truth = matte.bake(5, 1024, 1);
+  const auto baked = bakeGlossy(t, lambertKernels(t), {.rays = 1024, .bounces = 1});
+  const TransferField &a = baked.bounced.mapped, &b = truth.bounced.mapped;
+  ASSERT_EQ(a.vectors.size(), b.vectors.size());
+  EXPECT_EQ(baked.direct.mapped.vectors, truth.direct.mapped.vectors);
+  double sum = 0.0, all = 0.0;
+  for (std::size_t i = 0; i < a.vectors.size(); ++i) {
+    sum += std::pow(double{a.vectors[i]} - double{b.vectors[i]}, 2);
+    all += std::pow(double{b.vectors[i]}, 2);
+  }
+  EXPECT_GT(all, 0.0);
+  EXPECT_LT(std::sqrt(sum / all), 0.03);
+}
+
 TEST(GlossyBounces, AskForTheDirectionThatLightLeavesIn) {
   // A large floor sends cos(theta) of what it gets from everywhere; a small matte plate that looks down on it
   // gets (1/pi) ∫ cos² = 2/3.
@@ -165,6 +189,33 @@ TEST(GlossyBounces, CarryColourAndLoseEnergyFromPassToPass) {
   ASSERT_EQ(baked.bounced.energy.size(), 5u);
   for (std::size_t b = 1; b < 5; ++b)
     EXPECT_LT(baked.bounced.energy[b], 0.5 * baked.bounced.energy[b - 1]) << b;
+}
+
+TEST(GlossyBounces, HaveThreeChannelsWhereKernelsAreColoured) {
+  const Transport t(corner(true, false), true);
+  ASSERT_TRUE(t.colors.grey());
+  ExitKernels kernels = lambertKernels(t);
+  kernels.grey = false;
+  const auto of_lambert = kernels.at;
+  kernels.at = [&](std::uint32_t triangle, float u, float v, const glm::vec3& to, std::span<float> out) {
+    of_lambert(triangle, u, v, to, out);
+    for (float& blue : out.last(25)) blue = 0.0f;
+  };
+  const auto baked = bakeGlossy(t, kernels, {.rays = 128, .bounces = 1});
+  EXPECT_EQ(baked.glossy.field.channels, 3u);
+  const std::size_t s = t.sampleAt({-0.5f, 0.25f, 0.0f});
+  ASSERT_LT(s, t.samples.first_glossy);
+  const auto transfer = baked.bounced.field.at(s);
+  EXPECT_GT(transfer[0], 0.01f);
+  EXPECT_EQ(transfer[0], transfer[25]);
+  EXPECT_EQ(transfer[50], 0.0f);
+}
+
+TEST(GlossyBounces, OfNoneLeaveTheFieldWithoutThem) {
+  const Transport t(corner(true, false), true);
+  const auto baked = bakeGlossy(t, lambertKernels(t), {.rays = 128});
+  EXPECT_TRUE(baked.glossy.field.bounced.empty());
+  EXPECT_FALSE(baked.glossy.field.visibility.empty());
 }
 
 TEST(GlossyBounces, AreTheSameForAnyMemoryAndNumberOfThreads) {
