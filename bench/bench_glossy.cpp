@@ -6,13 +6,12 @@
 #include <string>
 
 #include <benchmark/benchmark.h>
-#include <glm/geometric.hpp>
 
+#include "baker/brdf/surface_brdfs.hpp"
 #include "baker/effects/glossy/glossy_bounces.hpp"
 #include "baker/work/parallel.hpp"
 #include "bench/group_workload.hpp"
 #include "bench/scene_argument.hpp"
-#include "runtime/sh/zonal.hpp"
 
 namespace {
 
@@ -31,24 +30,12 @@ struct Timed {
   double perSecond() const { return rays / direct_seconds; }
 };
 
-ExitKernels lambertKernels(const GroupWorkload& work) {
-  return {true, [&work](std::uint32_t triangle, float, float, const glm::vec3&, std::span<float> out) {
-            const std::size_t size = out.size() / 3;
-            sh::unoccludedTransfer(5, work.geometry.normals[work.geometry.triangles[triangle].x],
-                                   out.first(size));
-            for (float& value : out.first(size)) value *= 0.7f;
-            std::copy_n(out.begin(), size, out.begin() + static_cast<std::ptrdiff_t>(size));
-            std::copy_n(out.begin(), size, out.begin() + static_cast<std::ptrdiff_t>(2 * size));
-          }};
-}
-
-Timed run(const GroupWorkload& work, bool hits) {
+Timed run(const GroupWorkload& work, const ExitKernels& kernels, bool hits) {
   Progress progress;
   const DiffuseScene view = work.view();
   const DirectPass plain(view,
                          {.order = 5, .rays = kRays, .keep_hits = hits, .hit_memory = std::size_t{4} << 30});
   const GlossyPass glossy(plain, view, 5);
-  const ExitKernels kernels = lambertKernels(work);
   Timed timed;
   auto start = Clock::now();
   auto direct = bakeDirect(plain, view, progress, {});
@@ -70,20 +57,29 @@ int main(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
   static const auto matte = loadGroup(file);
   static const auto glossy = loadGroup(
-      file, [](Scene& scene) { scene.materials.at(0).metallic = 1.0f; }, {}, /*with_glossy=*/true);
+      file,
+      [](Scene& scene) { scene.materials.at(0).metallic = 1.0f, scene.materials.at(0).roughness = 0.5f; }, {},
+      /*with_glossy=*/true);
+  DecodedImages images(glossy->scene);
+  static const SurfaceBrdfs brdfs = orExit(SurfaceBrdfs::load(
+      glossy->scene, glossy->geometry, orExit(BrdfTables::make(glossy->scene, 5)), images, 5));
+  static const ExitKernels kernels{
+      brdfs.grey(), [](std::uint32_t triangle, float u, float v, const glm::vec3& to, std::span<float> out) {
+        brdfs.exitKernel(triangle, u, v, to, out);
+      }};
   for (const bool hits : {false, true})
-    benchmark::RegisterBenchmark(hits ? "glossy/with_hits_and_a_bounce" : "glossy/direct",
-                                 [hits](benchmark::State& state) {
-                                   Timed plain, other;
-                                   for (auto _ : state)
-                                     withThreads(
-                                         1, [&] { plain = run(*matte, hits), other = run(*glossy, hits); });
-                                   state.counters["diffuse_Mrays/s"] = 1e-6 * plain.perSecond();
-                                   state.counters["glossy_Mrays/s"] = 1e-6 * other.perSecond();
-                                   state.counters["ratio"] = other.perSecond() / plain.perSecond();
-                                   state.counters["diffuse_bounce_s"] = plain.bounce_seconds;
-                                   state.counters["glossy_bounce_s"] = other.bounce_seconds;
-                                 })
+    benchmark::RegisterBenchmark(
+        hits ? "glossy/with_hits_and_a_bounce" : "glossy/direct",
+        [hits](benchmark::State& state) {
+          Timed plain, other;
+          for (auto _ : state)
+            withThreads(1, [&] { plain = run(*matte, kernels, hits), other = run(*glossy, kernels, hits); });
+          state.counters["diffuse_Mrays/s"] = 1e-6 * plain.perSecond();
+          state.counters["glossy_Mrays/s"] = 1e-6 * other.perSecond();
+          state.counters["ratio"] = other.perSecond() / plain.perSecond();
+          state.counters["diffuse_bounce_s"] = plain.bounce_seconds;
+          state.counters["glossy_bounce_s"] = other.bounce_seconds;
+        })
         ->Unit(benchmark::kMillisecond)
         ->Iterations(1);
   benchmark::RunSpecifiedBenchmarks();

@@ -56,7 +56,14 @@ void addMaterial(const gltf::Material& m, Digest& digest) {
   digest.addText(m.name);
   digest.add(m.base_color);
   addTexture(m.base_color_texture, digest);
-  digest.add(m.metallic), digest.add(m.roughness), digest.add(m.emissive);
+  digest.add(m.metallic), digest.add(m.roughness), digest.add(m.ior);
+  addTexture(m.metallic_roughness_texture, digest);
+  digest.add(m.specular), digest.add(m.specular_color);
+  addTexture(m.specular_texture, digest);
+  addTexture(m.specular_color_texture, digest);
+  digest.add(m.anisotropy), digest.add(m.anisotropy_rotation_rad);
+  addTexture(m.anisotropy_texture, digest);
+  digest.add(m.brdf), digest.add(m.emissive);
   addTexture(m.emissive_texture, digest);
   addTexture(m.normal_texture, digest);
   digest.add(m.normal_scale), digest.add(m.unlit);
@@ -112,6 +119,11 @@ std::uint64_t sceneDigest(const Scene& scene) {
     }
   }
   for (const gltf::Material& material : scene.materials) addMaterial(material, digest);
+  digest.add(scene.brdfs.size());
+  for (const MeasuredBrdf& brdf : scene.brdfs) {
+    digest.addText(brdf.name);
+    digest.addList(brdf.measurements);
+  }
   for (const gltf::Texture& texture : scene.textures) {
     digest.add(texture.image);
     digest.add(texture.sampler);

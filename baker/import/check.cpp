@@ -64,15 +64,6 @@ void checkPrimitive(const Object& primitive, const Root& root) {
   }
 }
 
-void checkTextureInfo(const Object& owner, const char* key, const Root& root) {
-  const auto info = owner.object(key);
-  if (!info) return;
-  if (!info->index("index", root.size("textures"), "textures"))
-    throw BrokenField{fmt::format("{} has no index", info->name)};
-  info->number("texCoord");
-  checkTextureTransform(*info);
-}
-
 void checkMaterials(const Root& root) {
   root.forEach("images", "image", [&](const Object& image) {
     const bool in_view = image.index("bufferView", root.size("bufferViews"), "bufferViews").has_value();
@@ -91,13 +82,12 @@ void checkMaterials(const Root& root) {
     texture.index("sampler", root.size("samplers"), "samplers");
   });
   root.forEach("materials", "material", [&](const Object& material) {
-    if (const auto pbr = material.object("pbrMetallicRoughness")) {
+    if (const auto pbr = material.object("pbrMetallicRoughness"))
       checkTextureInfo(*pbr, "baseColorTexture", root);
-      checkTextureInfo(*pbr, "metallicRoughnessTexture", root);
-    }
     for (const char* key : {"normalTexture", "occlusionTexture", "emissiveTexture"})
       checkTextureInfo(material, key, root);
     checkEmissiveStrength(material);
+    checkReflection(material, root);
   });
 }
 

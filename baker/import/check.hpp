@@ -15,12 +15,13 @@
 namespace lambent::baker {
 
 // The extensions that this room reads. Others are refused where required and warned about where not.
-inline constexpr std::array<std::string_view, 9> kExtensions{
+inline constexpr std::array<std::string_view, 11> kExtensions{
     "KHR_draco_mesh_compression",      "KHR_mesh_quantization",
     "KHR_texture_transform",           "EXT_meshopt_compression",
     "EXT_mesh_gpu_instancing",         "KHR_lights_punctual",
     "KHR_materials_emissive_strength", "KHR_materials_unlit",
-    "KHR_materials_specular"};  // read as all gloss is: left out, and the plan says so
+    "KHR_materials_specular",          "KHR_materials_ior",
+    "KHR_materials_anisotropy"};
 
 // Errors name `file` and the object, such as "accessor 3".
 Result<void> checkDocument(const nlohmann::json& document, const std::string& file);

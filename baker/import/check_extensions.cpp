@@ -20,6 +20,12 @@ double numberFrom(const Object& object, const char* key, double least, double fa
   return value->get<double>();
 }
 
+// From 0 to 1, up to a rounding.
+void shareFrom(const Object& object, const char* key) {
+  if (numberFrom(object, key, 0.0, 1.0) > 1.0 + 1e-4)
+    throw BrokenField{fmt::format("{}: {} is more than 1", object.name, key)};
+}
+
 void checkLight(const Object& light) {
   light.text("name");
   const std::string type = light.text("type");
@@ -56,6 +62,44 @@ void checkTextureTransform(const Object& texture_info) {
 void checkEmissiveStrength(const Object& material) {
   if (const auto strength = extension(material, "KHR_materials_emissive_strength"))
     numberFrom(*strength, "emissiveStrength", 0.0, 1.0);
+}
+
+void checkTextureInfo(const Object& owner, const char* key, const Root& root) {
+  const auto info = owner.object(key);
+  if (!info) return;
+  if (!info->index("index", root.size("textures"), "textures"))
+    throw BrokenField{fmt::format("{} has no index", info->name)};
+  info->number("texCoord");
+  checkTextureTransform(*info);
+}
+
+void checkReflection(const Object& material, const Root& root) {
+  if (const auto pbr = material.object("pbrMetallicRoughness")) {
+    shareFrom(*pbr, "metallicFactor");
+    shareFrom(*pbr, "roughnessFactor");
+    checkTextureInfo(*pbr, "metallicRoughnessTexture", root);
+  }
+  if (const auto ior = extension(material, "KHR_materials_ior"))
+    if (const double value = numberFrom(*ior, "ior", 0.0, 1.5); value != 0.0 && value < 1.0)
+      throw BrokenField{fmt::format("{}: ior is {}, neither 0 nor 1 and more", ior->name, value)};
+  if (const auto specular = extension(material, "KHR_materials_specular")) {
+    shareFrom(*specular, "specularFactor");
+    checkNumbers(*specular, "specularColorFactor", 3);
+    for (const nlohmann::json& value : specular->list("specularColorFactor"))
+      if (value.get<float>() < 0.0f)
+        throw BrokenField{fmt::format("{}: specularColorFactor is negative", specular->name)};
+    checkTextureInfo(*specular, "specularTexture", root);
+    checkTextureInfo(*specular, "specularColorTexture", root);
+  }
+  if (const auto anisotropy = extension(material, "KHR_materials_anisotropy")) {
+    shareFrom(*anisotropy, "anisotropyStrength");
+    numberFrom(*anisotropy, "anisotropyRotation", -std::numeric_limits<double>::max(), 0.0);
+    checkTextureInfo(*anisotropy, "anisotropyTexture", root);
+  }
+  // `extras` may be anything; only what stands under our own name is ours.
+  const nlohmann::json* extras = material.find("extras");
+  if (extras == nullptr || !extras->is_object() || !extras->contains("lambent")) return;
+  Object{*extras, material.name + ": extras"}.object("lambent")->text("brdf");
 }
 
 void checkLights(const Root& root) {

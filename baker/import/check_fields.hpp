@@ -102,6 +102,10 @@ void checkNumbers(const Object& object, const char* key, std::size_t count = 0);
 // Extensions: values as well as types, so that the conversions can take them as they are.
 void checkTextureTransform(const Object& texture_info);
 void checkEmissiveStrength(const Object& material);
+// A textureInfo under `key`, where there is one.
+void checkTextureInfo(const Object& owner, const char* key, const Root& root);
+// Metal, roughness, KHR_materials_ior, _specular, _anisotropy, and what `extras.lambent.brdf` names.
+void checkReflection(const Object& material, const Root& root);
 void checkLights(const Root& root);
 void checkNodeExtensions(const Object& node, const Root& root);  // lights, instances
 

@@ -24,6 +24,12 @@ std::vector<float> weightsOf(const tinygltf::Node& node, const tinygltf::Mesh& m
   return {weights.begin(), weights.end()};
 }
 
+// Whether tangents change what is seen. Others would cost bytes in the bundle for nothing.
+bool turnsWithTangents(const gltf::Material& material) {
+  return material.normal_texture.texture >= 0 ||
+         (material.anisotropy > 0.0f && !material.unlit && material.brdf < 0 && !material.matte());
+}
+
 // Joints' matrices of a skin: world at rest from mesh as stored.
 Result<std::vector<glm::dmat4>> jointMatrices(const Document& document, std::size_t number,
                                               const std::vector<glm::mat4>& world) {
@@ -124,9 +130,8 @@ class MeshConverter {
     for (std::size_t p = 0; p < source.primitives.size(); ++p) {
       const tinygltf::Primitive& primitive = source.primitives[p];
       const std::string name = fmt::format("mesh {}, primitive {}", m, p);
-      const bool tangents =
-          primitive.material >= 0 &&
-          scene_.materials[static_cast<std::size_t>(primitive.material)].normal_texture.texture >= 0;
+      const bool tangents = primitive.material >= 0 &&
+                            turnsWithTangents(scene_.materials[static_cast<std::size_t>(primitive.material)]);
       auto data = readPrimitive(document_, primitive, pose, tangents, name, scene_.warnings);
       if (!data) return failAgain(std::move(data.error()));
       if (data->indices.empty()) continue;

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "baker/import/measured_brdf.hpp"
 #include "runtime/base/result.hpp"
 #include "runtime/bundle/gltf_types.hpp"
 #include "runtime/bundle/mesh.hpp"
@@ -37,6 +38,7 @@ struct Scene {
   std::vector<std::int32_t> roots;  // of the default scene
   std::vector<SceneMesh> meshes;
   std::vector<gltf::Material> materials;
+  std::vector<MeasuredBrdf> brdfs;  // that Material::brdf counts in
   std::vector<gltf::Texture> textures;
   std::vector<SceneImage> images;
   std::vector<gltf::Camera> cameras;

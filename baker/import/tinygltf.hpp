@@ -1,4 +1,5 @@
-// tinygltf as this room builds it; every user must see the same switches. For .cpp files of this room only.
+// tinygltf as this room builds it; every user must see the same switches. For this room only: no header that
+// others include may include it.
 #pragma once
 
 #define TINYGLTF_NO_STB_IMAGE

@@ -42,6 +42,11 @@ void add(const gltf::TextureRef& ref, Digest& digest) {
 
 void add(const gltf::Material& m, Digest& digest) {
   digest.add(m.base_color, m.emissive, m.normal_scale, m.unlit, m.alpha_mode, m.alpha_cutoff, m.double_sided);
+  digest.add(m.metallic, m.roughness, m.ior, m.specular, m.specular_color, m.anisotropy,
+             m.anisotropy_rotation_rad, m.brdf);
+  for (const gltf::TextureRef* ref :
+       {&m.metallic_roughness_texture, &m.specular_texture, &m.specular_color_texture, &m.anisotropy_texture})
+    add(*ref, digest);
   add(m.base_color_texture, digest);
   add(m.emissive_texture, digest);
   add(m.normal_texture, digest);
@@ -62,6 +67,7 @@ void add(const Scene& scene, Digest& digest) {
     }
   }
   for (const gltf::Material& material : scene.materials) add(material, digest);
+  for (const MeasuredBrdf& brdf : scene.brdfs) digest.addList(brdf.measurements);
   for (const gltf::Texture& texture : scene.textures)
     digest.add(texture.image, texture.sampler.wrap_s, texture.sampler.wrap_t, texture.sampler.mag_filter);
   for (const SceneImage& image : scene.images) digest.addList(image.file_bytes);

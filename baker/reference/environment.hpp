@@ -34,6 +34,8 @@ class Environment {
   };
   Look look(const glm::vec3& dir) const;
   bool dark() const { return dark_; }
+  // In the world, turned; cut to the band limit where there is one.
+  const sh::LightVector& lightVector() const { return vector_; }
 
  private:
   // Row by row cumulated, so that evenly spread numbers stay evenly spread over the picture.

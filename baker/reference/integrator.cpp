@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
+#include "baker/reference/exit_kernel.hpp"
 #include "baker/reference/warp.hpp"
-#include "runtime/sh/zonal.hpp"
 
 namespace lambent::baker::reference {
 
@@ -28,17 +29,11 @@ enum Dimension : std::uint32_t {
 constexpr std::uint32_t kPerLayer = kPerVertex * (kMostVertices + 1);
 // Shape i draws from dimensions of its own, beyond those of all layers.
 constexpr std::uint32_t kPerShape = 1u << 20;
+// And so does what part of a glossy surface draws the direction.
+constexpr std::uint32_t kLobe = 1u << 31;
 
 float largest(const glm::vec3& v) {
   return std::max({std::abs(v.r), std::abs(v.g), std::abs(v.b)});
-}
-
-// albedo/π times the cosine, without the albedo, as its first `order` bands: Σ_k b_k y_k(s) =
-// Σ_l (A_l/π) (2l+1)/4π P_l(n·s).
-float bandLimitedCosine(int order, float cosine) {
-  double sum = 0.0;
-  for (int l = 0; l < order; ++l) sum += sh::clampedCosine(l) * (2 * l + 1) * sh::legendre(l, double{cosine});
-  return static_cast<float>(sum / (4.0 * std::numbers::pi * std::numbers::pi));
 }
 
 }  // namespace
@@ -47,6 +42,7 @@ struct Integrator::Walk {
   const World& world;
   const Options& options;
   Sampler samplers[2];
+  std::uint32_t pixel = 0;
   std::uint32_t dimension = 0;  // of the current vertex
   std::vector<Path> paths = {};
   std::vector<Shadow> shadows = {};
@@ -54,25 +50,29 @@ struct Integrator::Walk {
   std::vector<std::size_t> ray_path = {};
   std::vector<Hit> hits = {};
   std::vector<std::uint8_t> blocked = {};
-  sh::LightVector first_shapes = {};  // shapes that are sky, from the first vertex, where all paths stand
+  sh::LightVector first_shapes = {};     // shapes that are sky, from the first vertex, where all paths stand
+  std::optional<FirstHit> limited = {};  // --band-limit IN,OUT: where all paths stand at the first vertex
   std::uint64_t traced = 0;
 
   glm::vec2 draw(const Path& path, Dimension which) const {
     return samplers[path.replica].pair(dimension + which, path.index);
   }
 
-  // What share of the light from dir is reflected, without the albedo, times the cosine; and the density of
-  // dir by the surface's own strategy.
+  // What share of the light from dir is reflected, times the cosine, of matte surfaces without the albedo;
+  // and the density of dir by the surface's own strategy.
   struct Scattering {
-    float value = 0.0f, pdf = 0.0f;
+    glm::vec3 value{0.0f};
+    float pdf = 0.0f;
   };
   Scattering scattering(const SurfacePoint& at, const glm::vec3& dir, bool first) const {
     if (glm::dot(at.geometric, dir) <= 0.0f) return {};
-    const float cosine = glm::dot(at.shading, dir);
-    if (first && options.band_limit && options.band_limit->out)
-      return {bandLimitedCosine(*options.band_limit->out, cosine), 0.25f / kPi};
-    const float value = std::max(cosine, 0.0f) / kPi;
-    return {value, value};
+    if (first && limited) return {limited->kernelOfPair(dir), limited->pdf(dir)};
+    if (at.glossy) {
+      const glm::vec3 local = at.reflector.toLocal(dir);
+      return {at.reflector.value(local), at.reflector.pdf(local)};
+    }
+    const float value = std::max(glm::dot(at.shading, dir), 0.0f) / kPi;
+    return {glm::vec3(value), value};
   }
 
   // Cut to their bands, spheres and discs shine from all over the sky, as seen from each point, and signed.
@@ -87,7 +87,7 @@ struct Integrator::Walk {
     const Path& path = paths[p];
     const glm::vec3 dir = world.environment.sample(draw(path, kChoices).x, draw(path, kSkyPlace));
     const Scattering s = scattering(path.at, dir, first);
-    if (s.value == 0.0f) return;
+    if (s.value == glm::vec3(0.0f)) return;
     const Environment::Look sky = world.environment.look(dir);
     if (!(sky.pdf > 0.0f)) return;
     addShadow(p, dir, kInfinity,
@@ -129,7 +129,9 @@ struct Integrator::Walk {
     const auto given = [&](const PunctualLight& light, glm::vec3& radiance) -> std::optional<Beam> {
       const auto beam = beamAt(light, path.at.position);
       if (beam)
-        radiance = path.throughput * beam->irradiance * scattering(path.at, beam->to_light, first).value;
+        radiance = path.throughput * beam->irradiance *
+                   (first && limited ? limited->kernel(beam->to_light)
+                                     : scattering(path.at, beam->to_light, first).value);
       return beam;
     };
     float sum = 0.0f;
@@ -145,7 +147,9 @@ struct Integrator::Walk {
       left -= share;
       if (left >= 0.0f || !(share > 0.0f)) continue;
       const bool near = std::isfinite(beam->distance);
-      const glm::vec3 to = near ? world.punctual[i].position - path.at.origin() : beam->to_light;
+      glm::vec3 to = near ? world.punctual[i].position - path.at.origin() : beam->to_light;
+      // Below the plane what stands in the mirrored direction is in the way.
+      if (first && limited && glm::dot(path.at.geometric, to) < 0.0f) to = limited->mirrored(to);
       addShadow(p, to, near ? kShadowReach : kInfinity, radiance * (sum / share));
       return;
     }
@@ -175,23 +179,30 @@ struct Integrator::Walk {
 
   // A direction for each path; those below the horizon end there.
   void scatter(bool first) {
-    const bool uniform = first && options.band_limit && options.band_limit->out;
     rays.clear();
     ray_path.clear();
     for (std::size_t p = 0; p < paths.size(); ++p) {
       Path& path = paths[p];
       if (!path.alive) continue;
       const glm::vec2 u = draw(path, kDirection);
-      if (uniform) {
-        path.dir = sphereDirection(u);
-        path.pdf = 0.25f / kPi;
-        path.throughput *= scattering(path.at, path.dir, first).value / path.pdf;
+      if (first && limited) {
+        path.dir = limited->sample(u);
+        path.pdf = limited->pdf(path.dir);
+        path.throughput *= limited->kernelOfPair(path.dir) / path.pdf;
+      } else if (path.at.glossy) {
+        const Reflector& reflector = path.at.reflector;
+        const float choice = samplers[path.replica].pair(dimension + kLobe, path.index).x;
+        path.dir = glm::normalize(reflector.world_from_local * reflector.sample(choice, u));
+        const Scattering s = scattering(path.at, path.dir, first);
+        path.pdf = s.pdf;
+        path.throughput *= s.pdf > 0.0f ? s.value / s.pdf : glm::vec3(0.0f);
       } else {
         const glm::vec3 local = cosineDirection(u);
         path.dir = glm::normalize(frameAbout(path.at.shading) * local);
         path.pdf = local.z / kPi;
       }
-      path.alive = glm::dot(path.at.geometric, path.dir) > 0.0f && path.throughput != glm::vec3(0.0f);
+      path.alive = glm::dot(path.at.geometric, path.dir) > 0.0f &&
+                   (path.throughput != glm::vec3(0.0f) || (first && limited));
       if (!path.alive) continue;
       rays.push_back({path.at.origin(), path.dir, kInfinity});
       ray_path.push_back(p);
@@ -205,7 +216,11 @@ struct Integrator::Walk {
     return sum;
   }
 
+  // The sky that a path of the first vertex finds blocked, of what FirstHit::open() has counted.
+  void takeSky(Path& path) const { path.sum -= limited->skyOfPair(path.dir) / path.pdf; }
+
   void addSky(Path& path, bool first) {
+    if (first && limited) return;
     Environment::Look sky = world.environment.look(path.dir);
     if (shapesAreSky())
       sky.radiance += (first ? first_shapes : shapesFrom(path.at.origin())).evaluate(path.dir);
@@ -246,6 +261,7 @@ struct Integrator::Walk {
         path.alive = false;
         continue;
       }
+      if (first && limited) takeSky(path);
       const SurfacePoint there = world.surfaces.pointAt(hits[i], path.dir);
       path.alive = !there.blocked && !there.unlit;
       if (!path.alive) continue;
@@ -257,8 +273,13 @@ struct Integrator::Walk {
   // Where only the sky can be at the end of a ray, whether it is there is all that counts.
   void lookAtSky(bool first) {
     traceOccluded();
-    for (std::size_t i = 0; i < rays.size(); ++i)
-      if (!blocked[i]) addSky(paths[ray_path[i]], first);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      Path& path = paths[ray_path[i]];
+      if (!blocked[i])
+        addSky(path, first);
+      else if (first && limited)
+        takeSky(path);
+    }
   }
 
   void playRoulette() {
@@ -276,12 +297,21 @@ struct Integrator::Walk {
 
   // Reflected light of `layer`, a sum per replica.
   void reflect(std::uint32_t layer) {
-    if (shapesAreSky() && !paths.empty()) first_shapes = shapesFrom(paths.front().at.origin());
+    if (paths.empty()) return;
+    if (shapesAreSky()) first_shapes = shapesFrom(paths.front().at.origin());
+    limited.reset();
+    if (options.band_limit && options.band_limit->out) {
+      sh::LightVector light = world.environment.lightVector();
+      if (shapesAreSky()) light += first_shapes;
+      limited.emplace(paths.front().at, *options.band_limit->out, light, combine(pixel, layer));
+      for (Path& path : paths) path.sum += limited->open();
+    }
     const std::uint32_t last = options.bounces.value_or(kMostVertices);
     for (std::uint32_t vertex = 0; vertex <= last && anyAlive(); ++vertex) {
       // Deeper than anything is seen, dimensions may repeat.
       dimension = layer * kPerLayer + std::min(vertex, kMostVertices) * kPerVertex;
-      for (Path& path : paths) path.throughput *= path.at.albedo;
+      for (Path& path : paths)
+        if (!path.at.glossy && !(vertex == 0 && limited)) path.throughput *= path.at.albedo;
       if (!options.bounces && vertex > kFirstRoulette) playRoulette();
       gatherLights(vertex == 0);
       scatter(vertex == 0);
@@ -298,7 +328,8 @@ PixelSum Integrator::pixel(std::uint32_t x, std::uint32_t y, std::uint32_t first
   const std::uint32_t number = y * options_.size.width + x;
   Walk walk{.world = world_,
             .options = options_,
-            .samplers = {Sampler(options_.seed, number, 0), Sampler(options_.seed, number, 1)}};
+            .samplers = {Sampler(options_.seed, number, 0), Sampler(options_.seed, number, 1)},
+            .pixel = combine(options_.seed, number)};
   PixelSum out;
   const auto samplesOf = [&](std::uint32_t replica) {
     return (first + count + 1 - replica) / 2 - (first + 1 - replica) / 2;

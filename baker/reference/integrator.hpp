@@ -1,7 +1,9 @@
-// Paths: what one pixel's samples see. At every diffuse vertex: one direction by the cosine, weighed against
-// one towards discs and probes, one towards each sphere and disc of light in the scene, one point on an
-// emissive triangle and one punctual light (Veach's multiple importance sampling, power heuristic). All
-// samples of a pixel that are asked for together walk in step, so that their rays travel in packets. A
+// Paths: what one pixel's samples see. At every vertex: one direction by the surface (matte: by the cosine),
+// weighed against one towards discs and probes, one towards each sphere and disc of light in the scene, one
+// point on an emissive triangle and one punctual light (Veach's multiple importance sampling, power
+// heuristic). With
+// `--band-limit IN,OUT` the first hit's answer to the open sky is exact, and paths only find what blocks it.
+// All samples of a pixel that are asked for together walk in step, so that their rays travel in packets. A
 // pixel's samples belong to two independent replicas in turn, which gives the error of their mean without
 // bias. One Integrator serves all threads.
 #pragma once

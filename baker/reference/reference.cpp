@@ -18,6 +18,8 @@ namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
 constexpr std::uint32_t kPass = 16;  // samples of a pixel that walk together
+constexpr std::uint32_t kLimitedPass =
+    256;  // with a band limit of the kernel, which each pass integrates anew
 // Rows between two looks at the clock and the stop token.
 constexpr std::uint32_t kRows = 32;
 constexpr auto kCheckpointEvery = std::chrono::seconds(10);
@@ -42,7 +44,7 @@ bool renderRows(const Integrator& integrator, Film& film, std::uint32_t first, s
 }
 
 // Pass by pass over the picture, with a checkpoint every few seconds and when stopped.
-Result<void> renderAll(const Integrator& integrator, Film& film, std::uint32_t spp,
+Result<void> renderAll(const Integrator& integrator, Film& film, std::uint32_t spp, bool limited,
                        const fs::path& checkpoint, Progress& progress, const std::stop_token& stop) {
   const double seconds_before = film.seconds;
   const Clock::time_point begin = Clock::now();
@@ -53,10 +55,11 @@ Result<void> renderAll(const Integrator& integrator, Film& film, std::uint32_t s
     if (checkpoint.empty()) return {};
     return film.save(checkpoint);
   };
-  for (std::uint32_t pass = 0; pass < spp; pass += kPass)
+  const std::uint32_t together = limited ? kLimitedPass : kPass;
+  for (std::uint32_t pass = 0; pass < spp; pass += together)
     for (std::uint32_t row = 0; row < film.size().height; row += kRows) {
       const bool whole = renderRows(integrator, film, row, std::min(row + kRows, film.size().height),
-                                    std::min(spp, pass + kPass), progress, stop);
+                                    std::min(spp, pass + together), progress, stop);
       if (!whole || Clock::now() - saved > kCheckpointEvery)
         if (auto done = save(); !done) return done;
       if (!whole)
@@ -149,7 +152,8 @@ Result<Report> render(const Scene& scene, const Request& request, const fs::path
     for (std::uint32_t y = 0; y < options.size.height; ++y)
       left += std::uint64_t{options.size.width} * (options.spp - film.done(y));
     progress.begin("paths", left, "samples");
-    done = renderAll(Integrator(world, options), film, options.spp, checkpoint, progress, stop);
+    const bool limited = options.band_limit && options.band_limit->out;
+    done = renderAll(Integrator(world, options), film, options.spp, limited, checkpoint, progress, stop);
   });
   progress.end();
   if (!done) return failAgain(std::move(done.error()));

@@ -8,6 +8,8 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_inverse.hpp>
 
+#include "baker/reference/warp.hpp"
+
 namespace lambent::baker::reference {
 
 namespace {
@@ -40,6 +42,7 @@ Result<Surfaces> Surfaces::build(const Scene& scene) {
   auto textures = Textures::load(scene);
   if (!textures) return failAgain(std::move(textures.error()));
   out.textures_ = std::move(*textures);
+  out.buildTables(scene);
   const std::vector<glm::mat4> world = gltf::worldTransforms(scene.nodes);
   for (std::size_t n = 0; n < scene.nodes.size(); ++n) {
     if (scene.nodes[n].mesh < 0) continue;
@@ -57,6 +60,8 @@ Result<Surfaces> Surfaces::build(const Scene& scene) {
       Surface surface;
       if (primitive.material >= 0)
         surface.material = scene.materials[static_cast<std::size_t>(primitive.material)];
+      else
+        surface.material.metallic = 0.0f;  // matte white
       surface.first_vertex = static_cast<std::uint32_t>(out.positions_.size());
       surface.vertex_count = static_cast<std::uint32_t>(count);
       surface.first_triangle = static_cast<std::uint32_t>(out.triangles_.size());
@@ -83,6 +88,16 @@ Result<Surfaces> Surfaces::build(const Scene& scene) {
     }
   }
   return out;
+}
+
+void Surfaces::buildTables(const Scene& scene) {
+  for (const MeasuredBrdf& brdf : scene.brdfs) measured_.push_back(MeasuredReflection::build(brdf));
+  for (const gltf::Material& material : scene.materials) {
+    if (material.matte() || material.brdf >= 0) continue;
+    if (round_.empty()) round_ = AlbedoTable::build(/*anisotropic=*/false);
+    if (material.anisotropy > 0.0f && anisotropic_.empty())
+      anisotropic_ = AlbedoTable::build(/*anisotropic=*/true);
+  }
 }
 
 template <typename T>
@@ -152,6 +167,63 @@ glm::vec3 Surfaces::mappedNormal(const Hit& hit, const glm::vec3& normal) const 
   return unitOr(local.x * unit + local.y * along.w * glm::cross(normal, unit) + local.z * normal, normal);
 }
 
+std::pair<glm::vec3, float> Surfaces::anisotropy(const Hit& hit, const glm::vec3& normal,
+                                                 const glm::vec3& shading) const {
+  const gltf::Material& material = surfaces_[hit.surface].material;
+  const glm::vec3 any = frameAbout(shading)[0];
+  if (!(material.anisotropy > 0.0f)) return {any, 0.0f};
+  float strength = material.anisotropy;
+  glm::vec2 lean(1.0f, 0.0f);
+  if (const gltf::TextureRef& ref = material.anisotropy_texture; ref.texture >= 0) {
+    const glm::vec4 texel = textures_.data(ref, texcoord(hit, ref.texcoord));
+    lean = 2.0f * glm::vec2(texel) - 1.0f;
+    strength *= texel.b;
+  }
+  const float c = std::cos(material.anisotropy_rotation_rad), s = std::sin(material.anisotropy_rotation_rad);
+  lean = {c * lean.x - s * lean.y, s * lean.x + c * lean.y};
+  const glm::vec4 along = tangent(hit, normal);
+  const glm::vec3 t = unitOr(glm::vec3(along) - glm::dot(glm::vec3(along), normal) * normal, any);
+  const glm::vec3 dir = lean.x * t + lean.y * along.w * glm::cross(normal, t);
+  return {unitOr(dir - glm::dot(dir, shading) * shading, any), strength};
+}
+
+Reflector Surfaces::reflectorAt(const Hit& hit, const SurfacePoint& point, const glm::vec3& normal,
+                                const glm::vec3& to_eye) const {
+  const gltf::Material& material = surfaces_[hit.surface].material;
+  const auto texel = [&](const gltf::TextureRef& ref) {
+    return textures_.data(ref, texcoord(hit, ref.texcoord));
+  };
+  Reflector out;
+  const auto [t, strength] = anisotropy(hit, normal, point.shading);
+  out.world_from_local = {t, glm::cross(point.shading, t), point.shading};
+  out.view = liftedView(out.toLocal(glm::normalize(to_eye)));
+  if (material.brdf >= 0) {
+    out.measured = &measured_[static_cast<std::size_t>(material.brdf)];
+    out.alpha = glm::vec2(out.measured->alpha());
+    out.specular_share = 0.5f;
+    return out;
+  }
+  const glm::vec4 rough_metal = texel(material.metallic_roughness_texture);
+  const float roughness = std::clamp(material.roughness * rough_metal.g, 0.0f, 1.0f);
+  const float metal = std::clamp(material.metallic * rough_metal.b, 0.0f, 1.0f);
+  out.alpha = ggxAlpha(roughness, strength);
+  const float step = material.ior > 0.0f ? (material.ior - 1.0f) / (material.ior + 1.0f) : 1.0f;
+  const float specular = material.specular * texel(material.specular_texture).a;
+  const glm::vec3 tint(textures_.color(material.specular_color_texture,
+                                       texcoord(hit, material.specular_color_texture.texcoord)));
+  const glm::vec3 dielectric =
+      specular * glm::min(step * step * material.specular_color * tint, glm::vec3(1.0f));
+  out.f0 = glm::mix(dielectric, point.albedo, metal);
+  out.f90 = glm::mix(specular, 1.0f, metal);
+  const glm::vec2 parts = (strength > 0.0f ? anisotropic_ : round_).at(out.view, roughness, strength);
+  const glm::vec3 reflected = out.f0 * parts.x + out.f90 * parts.y;
+  const float most = std::max({reflected.r, reflected.g, reflected.b});
+  out.diffuse = (1.0f - metal) * std::max(1.0f - most, 0.0f) * point.albedo;
+  const float rest = std::max({out.diffuse.r, out.diffuse.g, out.diffuse.b});
+  out.specular_share = rest > 0.0f ? std::clamp(most / (most + rest), 0.1f, 0.9f) : 1.0f;
+  return out;
+}
+
 SurfacePoint Surfaces::pointAt(const Hit& hit, const glm::vec3& dir) const {
   const gltf::Material& material = surfaces_[hit.surface].material;
   const glm::uvec3 t = triangles_[hit.triangle];
@@ -165,6 +237,7 @@ SurfacePoint Surfaces::pointAt(const Hit& hit, const glm::vec3& dir) const {
   point.unlit = material.unlit;
   if (point.blocked) return point;
   point.shading = unitOr(interpolated(normals_, hit), point.geometric);
+  const glm::vec3 normal = point.shading;
   if (material.normal_texture.texture >= 0) point.shading = mappedNormal(hit, point.shading);
   const glm::vec4 color = baseColor(hit);
   point.albedo = glm::vec3(color);
@@ -174,6 +247,8 @@ SurfacePoint Surfaces::pointAt(const Hit& hit, const glm::vec3& dir) const {
     point.geometric = -point.geometric;
     point.shading = -point.shading;
   }
+  point.glossy = !material.matte();
+  if (point.glossy) point.reflector = reflectorAt(hit, point, normal, -dir);
   return point;
 }
 

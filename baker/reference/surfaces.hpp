@@ -1,8 +1,7 @@
 // The scene at rest as triangles in world space, with what a path needs to know where it meets one. Comes in:
 // import's Scene, all nodes at their place. Goes out: one Surface per node and primitive, and the point on it
-// that a ray hit: both normals, albedo, radiance that it gives off. Every material is Lambert with albedo =
-// base colour (docs/conventions.md, "Lambert until glossy"). Mirrored nodes have their triangles turned, so
-// that counter-clockwise is the front everywhere.
+// that a ray hit: both normals, how it reflects (docs/conventions.md, "Materials"), radiance that it gives
+// off. Mirrored nodes have their triangles turned, so that counter-clockwise is the front everywhere.
 #pragma once
 
 #include <cstdint>
@@ -13,6 +12,9 @@
 #include <glm/vec4.hpp>
 
 #include "baker/import/scene.hpp"
+#include "baker/reference/albedo_table.hpp"
+#include "baker/reference/brdf.hpp"
+#include "baker/reference/measured.hpp"
 #include "baker/reference/textures.hpp"
 
 namespace lambent::baker::reference {
@@ -39,8 +41,10 @@ struct SurfacePoint {
   glm::vec3 position{0.0f};
   glm::vec3 geometric{0.0f};  // unit; decides which directions are above the horizon
   glm::vec3 shading{0.0f};    // unit; in the cosine only
-  glm::vec3 albedo{0.0f};
-  glm::vec3 emitted{0.0f};  // radiance, the same in all directions
+  glm::vec3 albedo{0.0f};     // base colour; of a matte surface all there is to reflect
+  bool glossy = false;        // reflects by `reflector`
+  Reflector reflector;        // towards where it was looked at from
+  glm::vec3 emitted{0.0f};    // radiance, the same in all directions
   float alpha = 1.0f;
   float offset = 0.0f;  // how far rays start off the surface
   bool unlit = false;   // shows `albedo` as radiance
@@ -72,6 +76,12 @@ class Surfaces {
   glm::vec4 baseColor(const Hit& hit) const;
   glm::vec3 mappedNormal(const Hit& hit, const glm::vec3& normal) const;
   glm::vec4 tangent(const Hit& hit, const glm::vec3& normal) const;
+  Reflector reflectorAt(const Hit& hit, const SurfacePoint& point, const glm::vec3& normal,
+                        const glm::vec3& to_eye) const;
+  // Of the longer lobe, unit and across the shading normal; strength 0..1.
+  std::pair<glm::vec3, float> anisotropy(const Hit& hit, const glm::vec3& normal,
+                                         const glm::vec3& shading) const;
+  void buildTables(const Scene& scene);
 
   std::vector<Surface> surfaces_;
   std::vector<glm::vec3> positions_, normals_;
@@ -80,6 +90,8 @@ class Surfaces {
   std::vector<glm::vec4> tangents_;  // w = 0 where the file has none
   std::vector<glm::uvec3> triangles_;
   Textures textures_;
+  AlbedoTable round_, anisotropic_;
+  std::vector<MeasuredReflection> measured_;  // as Scene::brdfs
 };
 
 }  // namespace lambent::baker::reference

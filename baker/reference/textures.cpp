@@ -41,7 +41,9 @@ Result<Textures> Textures::load(const Scene& scene) {
   out.images_.resize(scene.images.size());
   for (const gltf::Material& material : scene.materials)
     for (const gltf::TextureRef* ref :
-         {&material.base_color_texture, &material.emissive_texture, &material.normal_texture}) {
+         {&material.base_color_texture, &material.emissive_texture, &material.normal_texture,
+          &material.metallic_roughness_texture, &material.specular_texture, &material.specular_color_texture,
+          &material.anisotropy_texture}) {
       if (ref->texture < 0) continue;
       const std::int32_t image = scene.textures[static_cast<std::size_t>(ref->texture)].image;
       if (image < 0 || out.images_[static_cast<std::size_t>(image)]) continue;

@@ -45,7 +45,9 @@ void expectWhole(const Scene& scene) {
   }
   for (const gltf::Material& material : scene.materials)
     for (const gltf::TextureRef* ref :
-         {&material.base_color_texture, &material.emissive_texture, &material.normal_texture}) {
+         {&material.base_color_texture, &material.emissive_texture, &material.normal_texture,
+          &material.metallic_roughness_texture, &material.specular_texture, &material.specular_color_texture,
+          &material.anisotropy_texture}) {
       ASSERT_LT(ref->texture, static_cast<std::int32_t>(scene.textures.size()));
       ASSERT_LE(ref->texcoord, 1u);
     }

@@ -37,7 +37,7 @@ const spec::Light kZenith = spec::SunLight{.elevation_deg = 90, .angle_deg = 1, 
 const float kZenithRadiance = 1000.0f * std::pow(std::sin(glm::radians(1.0f)), 2.0f);
 
 TEST(Material, OfCutOutsLetsRaysThroughByItsTexture) {
-  Scene scene = floorAndCard({});
+  Scene scene = floorAndCard(testing::matte());
   gltf::Material& cut = scene.materials[1];
   cut.alpha_mode = gltf::AlphaMode::Mask;
   cut.base_color_texture = texture(scene, {255, 255, 255, 255, 255, 255, 255, 100});  // left half stands
@@ -52,7 +52,7 @@ TEST(Material, OfCutOutsLetsRaysThroughByItsTexture) {
 }
 
 TEST(Material, OfBlendedSurfacesCoversTheEyeOnly) {
-  gltf::Material glass;
+  gltf::Material glass = testing::matte();
   glass.alpha_mode = gltf::AlphaMode::Blend;
   glass.base_color = glm::vec4(0.2f, 0.2f, 0.2f, 0.25f);
   const Scene scene = floorAndCard(glass);
@@ -70,7 +70,7 @@ TEST(Material, OfBlendedSurfacesCoversTheEyeOnly) {
 }
 
 TEST(Material, OfBlendedLayersAddsThemFromTheFront) {
-  gltf::Material glass;
+  gltf::Material glass = testing::matte();
   glass.alpha_mode = gltf::AlphaMode::Blend;
   glass.unlit = true;
   Scene scene = sceneOf({testing::grid({0, 1, 0}, 2.0f, 1), testing::grid({0, 2, 0}, 2.0f, 1)});
@@ -85,7 +85,7 @@ TEST(Material, OfBlendedLayersAddsThemFromTheFront) {
 }
 
 TEST(Material, OfUnlitSurfacesShowsItsColourBlocksAndGivesNothing) {
-  gltf::Material unlit, black;
+  gltf::Material unlit, black = testing::matte();
   unlit.unlit = true;
   unlit.base_color = glm::vec4(0.3f, 0.4f, 0.5f, 1);
   unlit.emissive = glm::vec3(7.0f);
@@ -102,7 +102,7 @@ TEST(Material, OfUnlitSurfacesShowsItsColourBlocksAndGivesNothing) {
 }
 
 TEST(Material, OfOneSideIsCulledForTheEyeAndBlackForTheLight) {
-  gltf::Material white;
+  gltf::Material white = testing::matte();
   Scene one = floorAndCard(white);
   white.double_sided = true;
   const Scene two = floorAndCard(white);
@@ -147,7 +147,7 @@ TEST(Material, OfEmissiveTexturesShinesWhereTheyAreBright) {
   // other about the lamp's middle get what the whole lamp gives, together.
   Scene scene =
       sceneOf({testing::grid({0, 0, 0}, 8.0f, 1), testing::flipped(testing::grid({0, 1, 0}, 2.0f, 1))});
-  gltf::Material lamp;
+  gltf::Material lamp = testing::matte();
   lamp.base_color = glm::vec4(0, 0, 0, 1);
   lamp.emissive = glm::vec3(10.0f);
   testing::paint(scene, 1, lamp);

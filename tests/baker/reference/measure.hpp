@@ -70,6 +70,13 @@ inline baker::reference::Options samples(std::uint32_t spp, std::optional<std::u
   return options;
 }
 
+// Lambert, white.
+inline gltf::Material matte() {
+  gltf::Material material;
+  material.metallic = 0.0f;
+  return material;
+}
+
 inline void paint(baker::Scene& scene, std::size_t mesh, const gltf::Material& material) {
   scene.meshes[mesh].primitives[0].material = static_cast<std::int32_t>(scene.materials.size());
   scene.materials.push_back(material);

@@ -16,7 +16,7 @@ using testing::sceneOf;
 constexpr double kPi = std::numbers::pi;
 
 gltf::Material lamp(float radiance) {
-  gltf::Material material;
+  gltf::Material material = testing::matte();
   material.base_color = glm::vec4(0, 0, 0, 1);
   material.emissive = glm::vec3(radiance);
   return material;

@@ -60,7 +60,7 @@ TEST(SphereLight, FromInsideComesFromEverywhereThatNothingBlocks) {
   // A half plane upright on the floor takes half of it.
   scene = sceneOf({testing::grid({0, 0, 0}, 20.0f, 1),
                    testing::turned(testing::grid({0, 0, 0}, 4000.0f, 1), -90.0f, {0, 0, 1})});
-  gltf::Material black;
+  gltf::Material black = testing::matte();
   black.base_color = glm::vec4(0, 0, 0, 1);
   black.double_sided = true;
   testing::paint(scene, 1, black);

@@ -1,4 +1,6 @@
 // Materials, lights and animations come back as they were written, and what no viewer could use is refused.
+#include "runtime/bundle/gltf_parts.hpp"
+
 #include <filesystem>
 
 #include <gtest/gtest.h>
@@ -68,6 +70,84 @@ TEST_F(GltfParts, MaterialsKeepEmissionNormalMapsAndTextureTransforms) {
        {"\"KHR_texture_transform\"", "\"KHR_materials_emissive_strength\"", "\"KHR_materials_unlit\""})
     EXPECT_NE(text.find(quoted, text.find("extensionsUsed")), std::string::npos) << quoted;
   EXPECT_EQ(text.find("KHR_lights_punctual"), std::string::npos);  // not used, not named
+}
+
+TEST_F(GltfParts, MaterialsKeepWhatTheyReflect) {
+  Description d = empty();
+  d.images = {{"scratches", "image/png", 0}};
+  d.textures = {{0, {}}, {0, {}}};
+  gltf::Material foil;
+  foil.metallic = 0.5f;
+  foil.roughness = 0.25f;
+  foil.metallic_roughness_texture = {.texture = 1, .scale = {2.0f, 3.0f}};
+  foil.ior = 0.0f;
+  foil.specular = 0.75f;
+  foil.specular_color = {1.0f, 2.0f, 0.0f};
+  foil.specular_texture = {.texture = 0, .texcoord = 1};
+  foil.specular_color_texture = {.texture = 1, .rotation_rad = 0.5f};
+  foil.anisotropy = 0.625f;
+  foil.anisotropy_rotation_rad = -7.0f;
+  foil.anisotropy_texture = {.texture = 1};
+  gltf::Material plain;
+  d.materials = {foil, plain};
+  const auto reader = through(d, {Blob(5)});
+  ASSERT_TRUE(reader) << reader.error().line();
+  const auto& materials = reader->description().materials;
+  ASSERT_EQ(materials.size(), 2u);
+  EXPECT_EQ(materials[0].metallic, foil.metallic);
+  EXPECT_EQ(materials[0].roughness, foil.roughness);
+  EXPECT_EQ(materials[0].metallic_roughness_texture, foil.metallic_roughness_texture);
+  EXPECT_EQ(materials[0].ior, 0.0f);
+  EXPECT_EQ(materials[0].specular, foil.specular);
+  EXPECT_EQ(materials[0].specular_color, foil.specular_color);
+  EXPECT_EQ(materials[0].specular_texture, foil.specular_texture);
+  EXPECT_EQ(materials[0].specular_color_texture, foil.specular_color_texture);
+  EXPECT_EQ(materials[0].anisotropy, foil.anisotropy);
+  EXPECT_EQ(materials[0].anisotropy_rotation_rad, foil.anisotropy_rotation_rad);
+  EXPECT_EQ(materials[0].anisotropy_texture, foil.anisotropy_texture);
+  EXPECT_EQ(materials[1].ior, 1.5f);
+  EXPECT_EQ(materials[1].specular, 1.0f);
+  EXPECT_EQ(materials[1].brdf, -1);
+  const std::string text = json();
+  for (const char* quoted :
+       {"\"KHR_materials_ior\"", "\"KHR_materials_specular\"", "\"KHR_materials_anisotropy\""})
+    EXPECT_NE(text.find(quoted, text.find("extensionsUsed")), std::string::npos) << quoted;
+  d.materials = {plain};
+  ASSERT_TRUE(through(d, {Blob(5)}));
+  EXPECT_EQ(json().find("KHR_materials"), std::string::npos);  // defaults need no extension
+}
+
+// Alone, without the tables that the bundle's reader asks for.
+TEST(MaterialJson, NamesMeasuredBrdfsByNumberInExtras) {
+  gltf::Material paint;
+  paint.brdf = 3;
+  std::set<std::string> used;
+  const Json json = materialJson(paint, used);
+  EXPECT_EQ(json["extras"]["lambent"]["brdf"], 3);
+  EXPECT_TRUE(used.empty());
+  EXPECT_EQ(readMaterial(Field(json, "material"), 0).brdf, 3);
+}
+
+TEST(MaterialJson, RefusesFactorsThatAreNone) {
+  const auto refused = [](auto spoil, const char* words) {
+    gltf::Material material;
+    spoil(material);
+    std::set<std::string> used;
+    const Json json = materialJson(material, used);
+    try {
+      readMaterial(Field(json, "material"), 0);
+      ADD_FAILURE() << words;
+    } catch (const JsonFault& fault) {
+      EXPECT_NE(std::string(fault.what()).find(words), std::string::npos) << fault.what();
+    }
+  };
+  refused([](gltf::Material& m) { m.metallic = 1.5f; }, "metallicFactor is not from 0 to 1");
+  refused([](gltf::Material& m) { m.roughness = -0.5f; }, "roughnessFactor is not from 0 to 1");
+  refused([](gltf::Material& m) { m.ior = 0.5f; }, "ior is neither");
+  refused([](gltf::Material& m) { m.specular = 2.0f; }, "specularFactor is not from 0 to 1");
+  refused([](gltf::Material& m) { m.specular_color.y = -1.0f; }, "specularColorFactor is negative");
+  refused([](gltf::Material& m) { m.anisotropy = 3.0f; }, "anisotropyStrength is not from 0 to 1");
+  refused([](gltf::Material& m) { m.anisotropy_rotation_rad = std::nanf(""); }, "anisotropyRotation");
 }
 
 TEST_F(GltfParts, LightsComeBackWithTheirNodes) {

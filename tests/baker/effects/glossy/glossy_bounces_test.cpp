@@ -1,6 +1,7 @@
 // Interreflection over glossy surfaces, and between glossy and matte ones, against closed forms.
 #include "baker/effects/glossy/glossy_bounces.hpp"
 
+#include "baker/brdf/surface_brdfs.hpp"
 #include "baker/work/parallel.hpp"
 #include "tests/support/glossy_transport.hpp"
 
@@ -216,6 +217,39 @@ TEST(GlossyBounces, OfNoneLeaveTheFieldWithoutThem) {
   const auto baked = bakeGlossy(t, lambertKernels(t), {.rays = 128});
   EXPECT_TRUE(baked.glossy.field.bounced.empty());
   EXPECT_FALSE(baked.glossy.field.visibility.empty());
+}
+
+TEST(GlossyBounces, OfRealMetalsNeverAddUpToMoreThanTheLightThatCame) {
+  for (const float roughness : {0.2f, 0.5f, 0.9f}) {
+    Scene scene = glossyScene({cup(), icosphere({0.3f, -0.1f, 0.1f}, 0.3f, 2)});
+    scene.materials[0].roughness = roughness;
+    const Transport t(scene, true);
+    DecodedImages images(scene);
+    const auto tables = BrdfTables::make(scene, 5);
+    ASSERT_TRUE(tables.has_value());
+    const auto brdfs = SurfaceBrdfs::load(t.scene, t.geometry, *tables, images, 5);
+    ASSERT_TRUE(brdfs.has_value());
+    const ExitKernels kernels{brdfs->grey(),
+                              [&](std::uint32_t triangle, float u, float v, const glm::vec3& to,
+                                  std::span<float> out) { brdfs->exitKernel(triangle, u, v, to, out); }};
+    const auto baked = bakeGlossy(t, kernels, {.rays = 256, .bounces = 12});
+    const GlossyField& field = baked.glossy.field;
+    double largest = 0.0, most = 0.0;
+    for (std::size_t s = 0; s < field.size(); ++s) {
+      if (t.samples.originsOf(s).empty()) continue;
+      // l' of uniform light, as a function: its mean over the sphere, and E/pi on the sample's own plane.
+      const double mean = double{shadowMatrix(field, s)[0]} + double{field.bounced[s * 625]};
+      largest = std::max(largest, mean);
+      most = std::max(most, double{uniformRadiance(baked.direct.field.at(s)) +
+                                   uniformRadiance(baked.bounced.field.at(s))});
+      EXPECT_GT(field.bounced[s * 625], -1e-6f);
+    }
+    // 2 % for what five bands make of narrow lobes and sharp edges.
+    EXPECT_LT(largest, 1.02) << roughness;
+    EXPECT_LT(most, 1.02) << roughness;
+    for (std::size_t b = 1; b < baked.bounced.energy.size(); ++b)
+      EXPECT_LT(baked.bounced.energy[b], baked.bounced.energy[b - 1]) << roughness << " pass " << b;
+  }
 }
 
 TEST(GlossyBounces, AreTheSameForAnyMemoryAndNumberOfThreads) {

@@ -1,0 +1,132 @@
+#include "baker/reference/exit_kernel.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/geometric.hpp>
+
+#include "baker/reference/sampler.hpp"
+#include "baker/reference/warp.hpp"
+#include "runtime/sh/basis.hpp"
+#include "runtime/sh/zonal.hpp"
+
+namespace lambent::baker::reference {
+
+namespace {
+
+float largest(const glm::vec3& v) {
+  return std::max({std::abs(v.r), std::abs(v.g), std::abs(v.b)});
+}
+
+void addDiffuse(const glm::vec3& albedo, const glm::vec3& normal, sh::LightVector& kernel) {
+  std::array<float, sh::kMaxCoefficients> transfer{};
+  sh::unoccludedTransfer(kernel.order, normal, transfer);
+  for (std::size_t k = 0; k < kernel.coefficients().size(); ++k) kernel.c[k] += albedo * transfer[k];
+}
+
+// Two strategies in turn where the reflector is no GGX lobe alone: their mixture is the density.
+void addSpecular(const Reflector& reflector, std::uint32_t seed, std::uint32_t points,
+                 sh::LightVector& kernel) {
+  const Sampler sampler(/*seed=*/3, seed, 0);
+  Reflector lobe = reflector;
+  lobe.specular_share = reflector.measured ? 0.5f : 1.0f;
+  std::array<glm::dvec3, sh::kMaxCoefficients> sums{};
+  std::array<float, sh::kMaxCoefficients> y{};
+  for (std::uint32_t i = 0; i < points; ++i) {
+    const bool cosine = reflector.measured && i % 2 == 1;
+    const glm::vec2 u = reflector.measured ? sampler.pair(i % 2, i / 2) : sampler.pair(0, i);
+    const glm::vec3 s = lobe.sample(cosine ? 1.0f : 0.0f, u);
+    const float pdf = lobe.pdf(s);
+    if (!(s.z > 0.0f && pdf > 0.0f)) continue;
+    const glm::vec3 weight = lobe.specular(s) / pdf;
+    sh::evaluate(kernel.order, glm::normalize(lobe.world_from_local * s), y);
+    for (std::size_t k = 0; k < kernel.coefficients().size(); ++k) sums[k] += glm::dvec3(weight * y[k]);
+  }
+  for (std::size_t k = 0; k < kernel.coefficients().size(); ++k)
+    kernel.c[k] += glm::vec3(sums[k] / static_cast<double>(points));
+}
+
+// Of the cumulated `edges`: the cell that u falls into, and where in it.
+template <std::size_t N>
+std::pair<std::size_t, float> cellOf(const std::array<float, N>& edges, float u) {
+  const auto above = std::upper_bound(edges.begin() + 1, edges.end() - 1, u);
+  const auto cell = static_cast<std::size_t>(above - edges.begin()) - 1;
+  const float width = edges[cell + 1] - edges[cell];
+  return {cell, width > 0.0f ? std::clamp((u - edges[cell]) / width, 0.0f, 1.0f) : 0.5f};
+}
+
+template <std::size_t N>
+void cumulate(const std::array<float, N>& weights, std::array<float, N + 1>& edges) {
+  float sum = 0.0f;
+  for (const float weight : weights) sum += weight;
+  edges[0] = 0.0f;
+  for (std::size_t i = 0; i < N; ++i)
+    edges[i + 1] =
+        sum > 0.0f ? edges[i] + weights[i] / sum : static_cast<float>(i + 1) / static_cast<float>(N);
+  edges[N] = 1.0f;
+}
+
+}  // namespace
+
+sh::LightVector exitKernel(const SurfacePoint& point, int order, std::uint32_t seed, std::uint32_t points) {
+  sh::LightVector kernel{.order = order};
+  addDiffuse(point.glossy ? point.reflector.diffuse : point.albedo, point.shading, kernel);
+  if (point.glossy) addSpecular(point.reflector, seed, points, kernel);
+  return kernel;
+}
+
+FirstHit::FirstHit(const SurfacePoint& point, int order, const sh::LightVector& light, std::uint32_t seed)
+    : kernel_(exitKernel(point, order, seed)), light_(light), frame_(frameAbout(point.geometric)) {
+  for (std::size_t k = 0; k < kernel_.c.size(); ++k) open_ += kernel_.c[k] * light_.c[k];
+  std::array<std::array<float, kColumns>, kRows> weights{};
+  float most = 0.0f;
+  for (std::size_t r = 0; r < kRows; ++r)
+    for (std::size_t c = 0; c < kColumns; ++c) {
+      const glm::vec3 dir =
+          directionAt((static_cast<float>(r) + 0.5f) / kRows, (static_cast<float>(c) + 0.5f) / kColumns);
+      weights[r][c] = largest(kernel(dir)) + largest(kernel(mirrored(dir)));
+      most = std::max(most, weights[r][c]);
+    }
+  std::array<float, kRows> row_weights{};
+  for (std::size_t r = 0; r < kRows; ++r) {
+    for (float& weight : weights[r]) row_weights[r] += weight += 0.05f * most;  // nowhere 0
+    cumulate(weights[r], columns_[r]);
+  }
+  cumulate(row_weights, rows_);
+}
+
+glm::vec3 FirstHit::directionAt(float height, float turn) const {
+  const float r = std::sqrt(std::max(0.0f, 1.0f - height * height)), angle = 2.0f * kPi * turn;
+  return glm::normalize(frame_ * glm::vec3(r * std::cos(angle), r * std::sin(angle), height));
+}
+
+glm::vec3 FirstHit::mirrored(const glm::vec3& v) const {
+  return v - 2.0f * glm::dot(v, frame_[2]) * frame_[2];
+}
+
+glm::vec3 FirstHit::kernelOfPair(const glm::vec3& dir) const {
+  return kernel_.evaluate(dir) + kernel_.evaluate(mirrored(dir));
+}
+
+glm::vec3 FirstHit::skyOfPair(const glm::vec3& dir) const {
+  const glm::vec3 image = mirrored(dir);
+  return kernel_.evaluate(dir) * light_.evaluate(dir) + kernel_.evaluate(image) * light_.evaluate(image);
+}
+
+glm::vec3 FirstHit::sample(const glm::vec2& u) const {
+  const auto [r, height] = cellOf(rows_, u.x);
+  const auto [c, turn] = cellOf(columns_[r], u.y);
+  return directionAt((static_cast<float>(r) + height) / kRows, (static_cast<float>(c) + turn) / kColumns);
+}
+
+float FirstHit::pdf(const glm::vec3& dir) const {
+  const glm::vec3 local = dir * frame_;  // by the transpose
+  if (!(local.z > 0.0f)) return 0.0f;
+  float turn = std::atan2(local.y, local.x) / (2.0f * kPi);
+  if (turn < 0.0f) turn += 1.0f;
+  const auto r = std::min(static_cast<std::size_t>(local.z * kRows), kRows - 1);
+  const auto c = std::min(static_cast<std::size_t>(turn * kColumns), kColumns - 1);
+  return (rows_[r + 1] - rows_[r]) * (columns_[r][c + 1] - columns_[r][c]) * kCells / (2.0f * kPi);
+}
+
+}  // namespace lambent::baker::reference

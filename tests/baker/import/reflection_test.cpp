@@ -1,0 +1,241 @@
+// What materials reflect: metal and roughness, the extensions about it, and measured BRDFs.
+#include <cmath>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "baker/import/gltf.hpp"
+#include "baker/import/measured_brdf.hpp"
+#include "tests/baker/import/gltf_writer.hpp"
+
+namespace lambent::baker {
+namespace {
+
+using nlohmann::json;
+using testing::GltfWriter;
+using testing::oneTriangle;
+using testing::TemporaryFolder;
+
+GltfWriter withMaterials(const TemporaryFolder& folder, const json& materials) {
+  GltfWriter writer = oneTriangle();
+  writer.primitive()["attributes"]["NORMAL"] =
+      writer.add<float>("VEC3", 5126, {0, 0, 1, 0, 0, 1, 0, 0, 1}, 3);
+  writer.primitive()["attributes"]["TANGENT"] =
+      writer.add<float>("VEC4", 5126, {1, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1}, 4);
+  writer.primitive()["material"] = 0;
+  writer.json["materials"] = materials;
+  writer.json["textures"] = json::parse(R"([{"source":0},{"source":1},{"source":2}])");
+  writer.json["images"] = json::parse(R"([{"uri":"a.png"},{"uri":"b.png"},{"uri":"c.png"}])");
+  for (const char* name : {"a.png", "b.png", "c.png"}) folder.write(name, "\x89PNG\r\n\x1a\n and so on");
+  return writer;
+}
+GltfWriter withMaterial(const TemporaryFolder& folder, const char* material) {
+  return withMaterials(folder, json::array({json::parse(material)}));
+}
+
+Scene imported(GltfWriter writer, const TemporaryFolder& folder) {
+  auto scene = importScene(writer.writeText(folder));
+  EXPECT_TRUE(scene) << (scene ? "" : scene.error().line());
+  return scene ? std::move(*scene) : Scene{};
+}
+
+std::string refusal(GltfWriter writer, const TemporaryFolder& folder) {
+  const auto scene = importScene(writer.writeText(folder));
+  EXPECT_FALSE(scene);
+  return scene ? "" : scene.error().line();
+}
+
+constexpr const char* kEverything = R"({"pbrMetallicRoughness":{"metallicFactor":0.5,"roughnessFactor":0.25,
+    "metallicRoughnessTexture":{"index":0,"texCoord":1}},
+  "extensions":{"KHR_materials_ior":{"ior":2.5},
+    "KHR_materials_specular":{"specularFactor":0.75,"specularColorFactor":[1,2,0.5],"specularTexture":{"index":1},
+      "specularColorTexture":{"index":0,"extensions":{"KHR_texture_transform":{"scale":[3,4]}}}},
+    "KHR_materials_anisotropy":{"anisotropyStrength":0.5,"anisotropyRotation":1.25,"anisotropyTexture":{"index":2}}}})";
+
+TEST(Reflection, OfEveryKindIsReadWithItsTextures) {
+  TemporaryFolder folder;
+  const Scene scene = imported(withMaterial(folder, kEverything), folder);
+  const gltf::Material& m = scene.materials.at(0);
+  EXPECT_EQ(m.metallic, 0.5f);
+  EXPECT_EQ(m.roughness, 0.25f);
+  EXPECT_EQ(m.metallic_roughness_texture.texcoord, 1u);
+  EXPECT_EQ(m.ior, 2.5f);
+  EXPECT_EQ(m.specular, 0.75f);
+  EXPECT_EQ(m.specular_color, glm::vec3(1.0f, 2.0f, 0.5f));
+  EXPECT_EQ(m.specular_color_texture.scale, glm::vec2(3.0f, 4.0f));
+  EXPECT_EQ(m.anisotropy, 0.5f);
+  EXPECT_EQ(m.anisotropy_rotation_rad, 1.25f);
+  const auto imageOf = [&](const gltf::TextureRef& ref) {
+    return scene.images
+        .at(static_cast<std::size_t>(scene.textures.at(static_cast<std::size_t>(ref.texture)).image))
+        .name;
+  };
+  EXPECT_EQ(imageOf(m.metallic_roughness_texture), "a.png");
+  EXPECT_EQ(imageOf(m.specular_texture), "b.png");
+  EXPECT_EQ(imageOf(m.specular_color_texture), "a.png");
+  EXPECT_EQ(imageOf(m.anisotropy_texture), "c.png");
+  EXPECT_TRUE(scene.warnings.empty());
+  EXPECT_FALSE(m.matte());
+}
+
+TEST(Reflection, IsWhatGltfSaysWhereTheFileSaysNothing) {
+  TemporaryFolder folder;
+  const gltf::Material m = imported(withMaterial(folder, R"({"extensions":{"KHR_materials_ior":{},
+      "KHR_materials_specular":{},"KHR_materials_anisotropy":{}}})"),
+                                    folder)
+                               .materials.at(0);
+  EXPECT_EQ(m.metallic, 1.0f);
+  EXPECT_EQ(m.roughness, 1.0f);
+  EXPECT_EQ(m.ior, 1.5f);
+  EXPECT_EQ(m.specular, 1.0f);
+  EXPECT_EQ(m.specular_color, glm::vec3(1.0f));
+  EXPECT_EQ(m.anisotropy, 0.0f);
+  EXPECT_EQ(m.brdf, -1);
+}
+
+TEST(Reflection, TexturesThatCouldChangeNothingStayOut) {
+  TemporaryFolder folder;
+  json material = json::parse(kEverything);
+  material["pbrMetallicRoughness"]["metallicFactor"] = 0;
+  material["extensions"]["KHR_materials_specular"]["specularFactor"] = 0;
+  material["extensions"]["KHR_materials_anisotropy"]["anisotropyStrength"] = 0;
+  const Scene scene = imported(withMaterials(folder, json::array({material})), folder);
+  EXPECT_TRUE(scene.images.empty());
+  EXPECT_TRUE(scene.materials.at(0).matte());
+}
+
+TEST(Reflection, KeepsTangentsWhereTheLobeIsNotRound) {
+  TemporaryFolder folder;
+  const auto tangents = [&](const char* material) {
+    return imported(withMaterial(folder, material), folder)
+        .meshes.at(0)
+        .primitives.at(0)
+        .mesh.tangents.size();
+  };
+  EXPECT_EQ(tangents(R"({"extensions":{"KHR_materials_anisotropy":{"anisotropyStrength":0.5}}})"), 3u);
+  EXPECT_EQ(tangents(R"({"extensions":{"KHR_materials_anisotropy":{"anisotropyStrength":0}}})"), 0u);
+  EXPECT_EQ(tangents(R"({"extensions":{"KHR_materials_anisotropy":{"anisotropyStrength":0.5},
+      "KHR_materials_unlit":{}}})"),
+            0u);
+}
+
+TEST(Reflection, FactorsThatAreNoneAreRefusedByName) {
+  TemporaryFolder folder;
+  const auto refused = [&](const char* material, const char* words) {
+    const std::string line = refusal(withMaterial(folder, material), folder);
+    EXPECT_NE(line.find(words), std::string::npos) << line;
+    EXPECT_NE(line.find("material 0"), std::string::npos) << line;
+  };
+  refused(R"({"pbrMetallicRoughness":{"roughnessFactor":1.5}})", "roughnessFactor");
+  refused(R"({"pbrMetallicRoughness":{"metallicFactor":-1}})", "metallicFactor");
+  refused(R"({"pbrMetallicRoughness":{"metallicRoughnessTexture":{"index":3}}})", "metallicRoughnessTexture");
+  refused(R"({"extensions":{"KHR_materials_ior":{"ior":0.5}}})", "ior is 0.5");
+  refused(R"({"extensions":{"KHR_materials_ior":{"ior":1e60}}})", "ior");
+  refused(R"({"extensions":{"KHR_materials_specular":{"specularFactor":2}}})", "specularFactor");
+  refused(R"({"extensions":{"KHR_materials_specular":{"specularColorFactor":[1,-1,1]}}})", "is negative");
+  refused(R"({"extensions":{"KHR_materials_specular":{"specularColorFactor":[1,1]}}})", "3 finite numbers");
+  refused(R"({"extensions":{"KHR_materials_specular":{"specularTexture":{"index":9}}}})", "specularTexture");
+  refused(R"({"extensions":{"KHR_materials_anisotropy":{"anisotropyStrength":1.5}}})", "anisotropyStrength");
+  refused(R"({"extensions":{"KHR_materials_anisotropy":{"anisotropyRotation":1e60}}})", "anisotropyRotation");
+  refused(R"({"extensions":{"KHR_materials_anisotropy":{"anisotropyTexture":{}}}})", "has no index");
+  refused(R"({"extras":{"lambent":{"brdf":7}}})", "brdf is not a string");
+}
+
+// White, twice as bright as a measurement should be, and a measurement without light.
+constexpr const char* kWhite =
+    "# num wls\r\n4\r\n\r\n# wls\r\n400 500\r\n600 700\r\n\r\n# values\r\n\r\n"
+    "0.5 0.25 0.75 -1.5 2 2 2 2\r\n0 0 1.5708 3 0 0 0 0\r\n";
+
+TEST(MeasuredBrdf, WhiteIsWhiteInRec709) {
+  TemporaryFolder folder;
+  const auto measured = readMeasuredBrdf(folder.write("white.brdf", kWhite));
+  ASSERT_TRUE(measured) << measured.error().line();
+  EXPECT_EQ(measured->name, "white.brdf");
+  ASSERT_EQ(measured->measurements.size(), 2u);
+  const BrdfMeasurement& m = measured->measurements[0];
+  EXPECT_EQ(m.theta_i, 0.5f);
+  EXPECT_EQ(m.phi_i, 0.25f);
+  EXPECT_EQ(m.theta_o, 0.75f);
+  EXPECT_EQ(m.phi_o, -1.5f);
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(m.value[c], 2.0f, 1e-6f);
+  EXPECT_EQ(measured->measurements[1].value, glm::vec3(0.0f));
+}
+
+TEST(MeasuredBrdf, ColoursAreThoseOfTheSpectrum) {
+  TemporaryFolder folder;
+  const auto colorOf = [&](const char* values) {
+    const std::string text = std::string("7\n400 450 500 550 600 650 700\n0 0 0 0 ") + values + "\n";
+    const auto measured = readMeasuredBrdf(folder.write("color.brdf", text));
+    EXPECT_TRUE(measured) << (measured ? "" : measured.error().line());
+    return measured ? measured->measurements.at(0).value : glm::vec3(0.0f);
+  };
+  const glm::vec3 red = colorOf("0 0 0 0 1 1 1"), green = colorOf("0 0 0.5 1 0 0 0"),
+                  blue = colorOf("1 1 0.5 0 0 0 0");
+  EXPECT_GT(red.r, 5.0f * std::max(red.g, red.b));
+  EXPECT_GT(green.g, 2.0f * std::max(green.r, green.b));
+  EXPECT_GT(blue.b, 5.0f * std::max(blue.r, blue.g));
+  // None of them takes light away, though Rec.709 has no such green.
+  for (const glm::vec3& color : {red, green, blue}) EXPECT_GE(std::min({color.r, color.g, color.b}), 0.0f);
+}
+
+TEST(MeasuredBrdf, FilesThatAreBrokenAreRefusedByLine) {
+  TemporaryFolder folder;
+  const auto refused = [&](const std::string& text, const char* words) {
+    const auto measured = readMeasuredBrdf(folder.write("broken.brdf", text));
+    ASSERT_FALSE(measured) << words;
+    EXPECT_NE(measured.error().line().find(words), std::string::npos) << measured.error().line();
+    EXPECT_NE(measured.error().line().find("broken.brdf"), std::string::npos);
+    EXPECT_FALSE(measured.error().mend.empty());
+  };
+  const std::string head = "2\n400 700\n";
+  refused("", "ends where the number of wavelengths");
+  refused("0\n", "0 wavelengths");
+  refused("2.5\n1 2\n", "2.5 wavelengths");
+  refused("1e9\n", "wavelengths");
+  refused("2\n700 400\n", "line 2: wavelengths do not rise");
+  refused("2\n400 410\n0 0 0 0 1 1\n", "visible range");
+  refused("2\n4000 7000\n0 0 0 0 1 1\n", "visible range");
+  refused(head, "holds no measurement");
+  refused(head + "0 0 0\n", "ends where phi_s");
+  refused(head + "0 0 0 0 1\n", "ends where a value of the spectrum");
+  refused(head + "0 0 0 0 1 nan\n", "line 3");
+  refused(head + "0 0 0 0 1 inf\n", "line 3");
+  refused(head + "\n0 0 0 zero 1 1\n", "line 4: phi_s is not a finite number");
+  refused(head + "0 0 0 0 1 1x\n", "line 3");
+  refused(head + "1.6 0 0 0 1 1\n", "theta_i is 1.6");
+  refused(head + "0 0 -0.1 0 1 1\n", "theta_s is -0.1");
+}
+
+TEST(MeasuredBrdf, MaterialsThatNameOneFileShareIt) {
+  TemporaryFolder folder;
+  folder.write("paints/white 1.brdf", kWhite);
+  folder.write("black.brdf", "1\n550\n0 0 0 0 0\n");
+  const json materials = json::parse(R"([{"extras":{"lambent":{"brdf":"paints/white%201.brdf"}}},{"extras":7},
+      {"extras":{"lambent":{"brdf":"./paints/../paints/white%201.brdf"}}},{"extras":{"lambent":{"brdf":"black.brdf"}}}])");
+  const Scene scene = imported(withMaterials(folder, materials), folder);
+  ASSERT_EQ(scene.brdfs.size(), 2u);
+  EXPECT_EQ(scene.brdfs[0].name, "white 1.brdf");
+  EXPECT_EQ(scene.brdfs[1].name, "black.brdf");
+  const std::vector<std::int32_t> expected = {0, -1, 0, 1};
+  ASSERT_EQ(scene.materials.size(), 4u);
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(scene.materials[i].brdf, expected[i]) << i;
+  EXPECT_FALSE(scene.materials[0].matte());
+}
+
+TEST(MeasuredBrdf, ThatASceneCannotUseNamesFileAndMaterial) {
+  TemporaryFolder folder;
+  folder.write("broken.brdf", "2\n");
+  const auto refused = [&](const char* file, const char* words) {
+    const std::string material = std::string(R"({"extras":{"lambent":{"brdf":")") + file + "\"}}}";
+    const std::string line = refusal(withMaterial(folder, material.c_str()), folder);
+    for (const char* part : {words, "scene.gltf", "material 0"})
+      EXPECT_NE(line.find(part), std::string::npos) << line;
+  };
+  refused("none.brdf", "none.brdf): no such file");
+  refused("broken.brdf", "broken.brdf): ends where");
+  refused("../elsewhere.brdf", "lies outside");
+  refused("http://example.com/a.brdf", "not a file beside the scene");
+}
+
+}  // namespace
+}  // namespace lambent::baker
