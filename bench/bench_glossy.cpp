@@ -33,8 +33,11 @@ struct Timed {
 Timed run(const GroupWorkload& work, const ExitKernels& kernels, bool hits) {
   Progress progress;
   const DiffuseScene view = work.view();
-  const DirectPass plain(view,
-                         {.order = 5, .rays = kRays, .keep_hits = hits, .hit_memory = std::size_t{4} << 30});
+  const DirectPass plain(view, {.order = 5,
+                                .rays = kRays,
+                                .keep_hits = hits,
+                                .hit_memory = std::size_t{4} << 30,
+                                .colored_kernels = !kernels.grey});
   const GlossyPass glossy(plain, view, 5);
   Timed timed;
   auto start = Clock::now();
