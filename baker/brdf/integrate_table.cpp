@@ -212,8 +212,9 @@ void integrateView(const Brdf& brdf, const BrdfParameters& at, const bundle::Brd
 }
 
 BrdfGrid gridFor(const Brdf& brdf) {
-  if (!brdf.isotropic()) return {.angles = 24, .azimuths = 13, .roughnesses = 16, .strengths = 10};
-  return {.angles = 48, .azimuths = 1, .roughnesses = brdf.hasRoughness() ? 32u : 1u, .strengths = 1};
+  if (!brdf.isotropic()) return {.angles = 24, .azimuths = 17, .roughnesses = 16, .strengths = 12};
+  if (!brdf.hasRoughness()) return {.angles = 96};
+  return {.angles = 48, .roughnesses = 32};
 }
 
 BrdfTable integrateTable(const Brdf& brdf, int order, const BrdfGrid& grid) {
