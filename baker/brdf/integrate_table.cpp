@@ -211,8 +211,13 @@ void integrateView(const Brdf& brdf, const BrdfParameters& at, const bundle::Brd
   integrate(brdf, at, exact, order, Points(brdf.focus(at), directions), out);
 }
 
-BrdfGrid gridFor(const Brdf& brdf) {
-  if (!brdf.isotropic()) return {.angles = 24, .azimuths = 17, .roughnesses = 16, .strengths = 12};
+BrdfGrid gridFor(const Brdf& brdf, int order) {
+  if (!brdf.isotropic()) {
+    // Each pair of roughness and strength fills layers of a texture, four values in each: as many pairs as
+    // fit into the 2048 layers that OpenGL 4.5 promises.
+    if (order >= 6) return {.angles = 24, .azimuths = 19, .roughnesses = 14, .strengths = 8};
+    return {.angles = 24, .azimuths = 19, .roughnesses = 15, .strengths = 10};
+  }
   if (!brdf.hasRoughness()) return {.angles = 96};
   return {.angles = 48, .roughnesses = 32};
 }
@@ -250,7 +255,7 @@ BrdfTable integrateTable(const Brdf& brdf, int order, const BrdfGrid& grid) {
 }
 
 BrdfTable integrateTable(const Brdf& brdf, int order) {
-  return integrateTable(brdf, order, gridFor(brdf));
+  return integrateTable(brdf, order, gridFor(brdf, order));
 }
 
 }  // namespace lambent::baker
