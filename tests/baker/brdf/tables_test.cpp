@@ -246,12 +246,20 @@ TEST(BrdfTables, AreTheSameForAnyNumberOfThreads) {
   EXPECT_EQ(one.values, all.values);
 }
 
+// The runtime keeps four values of a node in a layer; OpenGL 4.5 promises 2048 of them.
+TEST(BrdfTables, OfAnisotropicGgxFitTheTextureOfEveryDevice) {
+  for (std::uint32_t order = 1; order <= 6; ++order) {
+    const BrdfGrid grid = gridFor(*makeGgx(true), static_cast<int>(order));
+    const std::uint32_t layers_of_a_node = (2 * order * order + 3) / 4;
+    EXPECT_LE(grid.roughnesses * grid.strengths * layers_of_a_node, 2048u) << "order " << order;
+  }
+}
+
 TEST(BrdfTables, FitTheirPayload) {
   const auto table = integrateTable(*makeGgx(false), 5);
   const auto back = bundle::decodeBrdfTable(bundle::encodeBrdfTable(table), "table");
   ASSERT_TRUE(back) << back.error().line();
-  for (std::size_t i = 0; i < table.values.size(); ++i)
-    EXPECT_NEAR(back->values[i], table.values[i], 1.5e-5f);
+  for (std::size_t i = 0; i < table.values.size(); ++i) EXPECT_NEAR(back->values[i], table.values[i], 1e-4f);
 }
 
 }  // namespace
