@@ -102,6 +102,8 @@ class Writer {
     Json used = Json::array({"KHR_materials_specular"});
     const auto glows = [](const Material& material) { return material.emission != glm::vec3(0.0f); };
     if (std::ranges::any_of(scene_.materials, glows)) used.push_back("KHR_materials_emissive_strength");
+    const auto brushed = [](const Material& material) { return material.anisotropy > 0.0f; };
+    if (std::ranges::any_of(scene_.materials, brushed)) used.push_back("KHR_materials_anisotropy");
     if (!scene_.spots.empty()) used.push_back("KHR_lights_punctual");
     return used;
   }
@@ -147,18 +149,21 @@ class Writer {
 
   static Json materialJson(const Material& material) {
     const glm::vec3 c = material.base_color;
-    Json surface = {
-        {"baseColorFactor", {c.r, c.g, c.b, 1.0f}}, {"metallicFactor", 0.0f}, {"roughnessFactor", 1.0f}};
+    Json surface = {{"baseColorFactor", {c.r, c.g, c.b, 1.0f}},
+                    {"metallicFactor", material.metallic},
+                    {"roughnessFactor", material.roughness}};
     if (material.image >= 0) surface["baseColorTexture"] = {{"index", material.image}};
     Json json = {{"name", material.name},
                  {"pbrMetallicRoughness", surface},
-                 {"extensions", {{"KHR_materials_specular", {{"specularFactor", 0.0f}}}}}};
+                 {"extensions", {{"KHR_materials_specular", {{"specularFactor", material.specular}}}}}};
     if (material.emission != glm::vec3(0.0f)) {
       const glm::vec3 e = material.emission;
       const float strength = std::max({e.r, e.g, e.b});
       json["emissiveFactor"] = toJson(e / strength);
       json["extensions"]["KHR_materials_emissive_strength"] = {{"emissiveStrength", strength}};
     }
+    if (material.anisotropy > 0.0f)
+      json["extensions"]["KHR_materials_anisotropy"] = {{"anisotropyStrength", material.anisotropy}};
     if (material.double_sided) json["doubleSided"] = true;
     return json;
   }

@@ -1,6 +1,6 @@
 // A scene of the generator and its writer: binary glTF 2.0, one buffer, the same bytes for the same scene.
-// Materials are pure Lambert (metallic 0, roughness 1, KHR_materials_specular with factor 0), which is what
-// the first pictures of Lambent show. Every node carries TRS, so that editors can move things.
+// Materials are pure Lambert (metallic 0, roughness 1, KHR_materials_specular with factor 0) unless they say
+// otherwise. Every node carries TRS, so that editors can move things.
 #pragma once
 
 #include <cstdint>
@@ -22,6 +22,9 @@ struct Material {
   glm::vec3 emission{0.0f};    // radiance
   int image = -1;              // into Scene::images
   bool double_sided = false;
+  float roughness = 1.0f, metallic = 0.0f;
+  float specular = 0.0f;    // KHR_materials_specular
+  float anisotropy = 0.0f;  // strength; along the tangent, which is that of the texture coordinates
 };
 
 struct Image {

@@ -19,6 +19,7 @@ Result<void> writeAll(const std::filesystem::path& folder) {
   if (auto done = assets::writeGlb(folder / "knot.glb", assets::knot()); !done) return done;
   if (auto done = assets::writeGlb(folder / "playroom.glb", assets::playroom()); !done) return done;
   if (auto done = assets::writeGlb(folder / "field.glb", assets::field()); !done) return done;
+  if (auto done = assets::writeGlb(folder / "metals.glb", assets::metals()); !done) return done;
   constexpr std::uint32_t kProbeWidth = 512;
   if (auto done = spec::writeHdr(folder / "sky.hdr", assets::skyProbe(kProbeWidth)); !done) return done;
   return spec::writeHdr(folder / "studio.hdr", assets::studioProbe(kProbeWidth));

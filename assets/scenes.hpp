@@ -3,7 +3,9 @@
 // floor, a box and a sphere, a few hundred vertices, for tests and first tries. Metres; the cameras are
 // called "main" and "detail". `knot` is a torus knot alone, 19,000 vertices, for lights that come near it.
 // `playroom` moves: a red ball rolls along a white wall, a lamp swings over a teapot and a screen slides
-// between the two, about 20,000 vertices. `field` is 200 bodies on a lawn, 20 of them moving.
+// between the two, about 20,000 vertices. `field` is 200 bodies on a lawn, 20 of them moving. `metals`
+// shines: a golden teapot, copper balls from polished to rough, brushed steel and glazed clay before a white
+// wall.
 #pragma once
 
 #include "assets/glb.hpp"
@@ -15,6 +17,7 @@ Scene hello();
 Scene knot();
 Scene playroom();
 Scene field();
+Scene metals();
 
 // Stone tiles, seamless, `tiles` x `tiles` of two tones with joints; sRGB.
 std::vector<std::uint8_t> stonePng(int tiles, int texels_per_tile);

@@ -85,21 +85,22 @@ struct Clustering {
 };
 
 // Iterative PCA: fits and moves samples in turn.
-Clustering refine(const Points& points, ClusterIds ids, double budget, int rounds, bool held_out) {
+Clustering refine(const Points& points, ClusterIds ids, double budget, int axes, int rounds, bool held_out) {
   Clustering found{std::move(ids), {}, 0.0};
   for (int round = 0;; ++round) {
     found.clusters = fitClusters(points, found.ids, held_out);
     found.step = stepFor(found.clusters, budget);
+    if (axes >= 0) keepSoMany(found.clusters, axes);
     if (round == rounds || found.clusters.size() == 1) return found;
     found.ids = assignClusters(points, found.clusters, found.step, found.ids);
   }
 }
 
-Clustering fromSome(const Points& points, std::uint32_t clusters, double budget) {
+Clustering fromSome(const Points& points, std::uint32_t clusters, double budget, int axes) {
   const auto count = static_cast<std::size_t>(points.cols());
   const auto some = someSamples(count, std::max(kLeastSearched, kSearchedPerCluster * clusters));
   const Points searched = columnsOf(points, some);
-  return refine(searched, seedClusters(searched, clusters), budget, kSearchRounds, some.size() < count);
+  return refine(searched, seedClusters(searched, clusters), budget, axes, kSearchRounds, some.size() < count);
 }
 
 // The number of clusters that codes to the fewest bytes, by estimates from some of the samples.
@@ -108,7 +109,7 @@ Clustering search(const Points& points, double budget, const std::stop_token& st
   double fewest = std::numeric_limits<double>::infinity();
   for (const std::uint32_t clusters : kClusterCounts) {
     if (stop.stop_requested()) break;
-    Clustering tried = fromSome(points, clusters, budget);
+    Clustering tried = fromSome(points, clusters, budget, -1);
     const double bytes = expectedBytes(tried.clusters, tried.step, static_cast<double>(points.cols()));
     if (bytes >= fewest) break;
     fewest = bytes;
@@ -127,18 +128,20 @@ std::vector<float> decode(const CodedTransfer& coded) {
 // large as the bound allows.
 CodedTransfer fitToBound(std::span<const float> vectors, const Points& points, Clustering& found,
                          const bundle::SharedCodebook& basis, const bundle::TransferShape& shape,
-                         double bound, const std::stop_token& stop) {
+                         const CodingSettings& settings, const std::stop_token& stop) {
+  const double bound = double{settings.bound};
   CodedTransfer best;
   double step = found.step;
   for (int attempt = 0; attempt < kMostAttempts && !stop.stop_requested(); ++attempt) {
-    keepAxes(found.clusters, step);
+    if (settings.axes < 0) keepAxes(found.clusters, step);
     CodedTransfer coded = quantize(points, found.ids, found.clusters, basis, shape, step);
-    coded.error = static_cast<float>(radianceError(vectors, decode(coded), shape));
+    coded.error = static_cast<float>(radianceError(vectors, decode(coded), shape, settings.shown_energy));
     const float error = coded.error;
     const bool met = double{error} <= bound, met_before = double{best.error} <= bound;
     // The larger error is the smaller code, among those that keep the bound.
     if (attempt == 0 || (met ? !met_before || coded.error > best.error : coded.error < best.error))
       best = std::move(coded);
+    if (settings.axes >= 0) break;  // no step makes up for axes that are left out
     if (met && double{best.error} > 0.98 * bound) break;
     if (best.planes.empty() && met) break;  // nothing left to save
     // Part of the error does not follow the step (rounded means and axes, the weaker of the two blocks): what
@@ -155,33 +158,36 @@ CodedTransfer codeTransfer(std::span<const float> vectors, std::size_t count,
                            const bundle::TransferShape& shape, const CodingSettings& settings,
                            const std::stop_token& stop) {
   assert(count > 0 && vectors.size() == count * shape.size() && settings.bound > 0.0f);
-  const WeightedSpace space = weightedSpace(vectors, shape);
+  const WeightedSpace space = weightedSpace(vectors, shape, settings.shown_energy);
   const double bound = double{settings.bound};
   const double allowed = bound * bound * space.blocks / static_cast<double>(count);
-  const double budget = 0.9 * allowed;  // the rest: rounding of basis, means and axes
 
   // A basis for the cell: all principal components but those that hardly matter.
-  const Spectrum spectrum =
-      spectrumOf(secondMoment(weighted(vectors, space.roots, someSamples(count, kBasisSamples)), {}, {}));
+  double left_out = 0.0;
+  const Spectrum spectrum = leadingSpectrum(weighted(vectors, space.roots, someSamples(count, kBasisSamples)),
+                                            kTailShare * allowed, left_out);
+  const double budget = 0.9 * allowed - left_out;  // the rest: rounding of basis, means and axes
   Eigen::Index rank = spectrum.variances.size();
-  for (double tail = 0.0; rank > 0 && (tail += spectrum.variances(rank - 1)) <= kTailShare * allowed;) --rank;
+  for (double tail = left_out; rank > 0 && (tail += spectrum.variances(rank - 1)) <= kTailShare * allowed;)
+    --rank;
   const double step = std::sqrt(12.0 * budget / static_cast<double>(std::max<Eigen::Index>(rank, 1)));
   const bundle::SharedCodebook basis =
       roundedBasis(spectrum.axes.leftCols(rank), spectrum.variances, space.roots, step);
   if (rank == 0) {  // dark
     CodedTransfer coded{shape, basis, std::vector<std::uint32_t>(count, 0), {}, 0.0f};
     coded.codebook.axis_counts = {0};
-    coded.error = static_cast<float>(radianceError(vectors, decode(coded), shape));
+    coded.error = static_cast<float>(radianceError(vectors, decode(coded), shape, settings.shown_energy));
     return coded;
   }
 
   const Points points = coordinates(vectors, space.roots, basis);
-  const Clustering few =
-      settings.clusters > 0 ? fromSome(points, settings.clusters, budget) : search(points, budget, stop);
+  const Clustering few = settings.clusters > 0 ? fromSome(points, settings.clusters, budget, settings.axes)
+                                               : search(points, budget, stop);
   if (stop.stop_requested()) return {};
-  Clustering found = refine(points, assignClusters(points, few.clusters, few.step, {}), budget, kFinalRounds,
-                            /*held_out=*/false);
-  return fitToBound(vectors, points, found, basis, shape, bound, stop);
+  Clustering found =
+      refine(points, assignClusters(points, few.clusters, few.step, {}), budget, settings.axes, kFinalRounds,
+             /*held_out=*/false);
+  return fitToBound(vectors, points, found, basis, shape, settings, stop);
 }
 
 }  // namespace lambent::baker

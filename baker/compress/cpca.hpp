@@ -4,9 +4,11 @@
 //   sqrt( sum_s sum_i W_i (t_s,i - t'_s,i)² / sum_s sum_i W_i t_s,i² ) <= bound
 // over each block by itself: full light, which is shown, and shadowed light. W_i: the band power of light
 // (light_weights.hpp) for columns of the environment; for lights of the group what makes each count as much
-// as the whole environment; for outputs of normal maps times (A_l/pi)² of the output's band. The number of
-// clusters and of axes in each is what codes to the fewest bytes (codebook, ids and weights after entropy
-// coding). Planes come by falling variance: any prefix renders. Deterministic, for any number of threads.
+// as the whole environment; for outputs of normal maps times (A_l/pi)² of the output's band, for those of
+// glossy surfaces times the power of a lobe in it. Of visibility, coefficient k makes errors of power Σ_ij
+// lobe_i light_j Γ_ijk² in what is reflected. The number of clusters and of axes in each is what codes to the
+// fewest bytes (codebook, ids and weights after entropy coding). Planes come by falling variance: any prefix
+// renders. Deterministic, for any number of threads.
 #pragma once
 
 #include <cstddef>
@@ -36,7 +38,14 @@ struct CodedTransfer {
 struct CodingSettings {
   float bound = 0.005f;        // > 0
   std::uint32_t clusters = 0;  // 0: whatever codes to the fewest bytes
+  int axes = -1;               // of every cluster, whatever the bound; -1: as many as it takes
+  // Over 0: what errors are relative to, in place of the vectors' own energy (transferEnergy): visibility and
+  // bounced light are shown together.
+  double shown_energy = 0.0;
 };
+
+// Σ_s Σ_i W_i t_s,i² over red, green and blue.
+double transferEnergy(std::span<const float> vectors, const bundle::TransferShape& shape);
 
 // vectors: `count` times shape.size() values, count > 0; all finite. Stops early, with an unusable result,
 // when asked to.
@@ -46,6 +55,6 @@ CodedTransfer codeTransfer(std::span<const float> vectors, std::size_t count,
 
 // The error that codeTransfer bounds: of the worse of the two blocks.
 double radianceError(std::span<const float> truth, std::span<const float> coded,
-                     const bundle::TransferShape& shape);
+                     const bundle::TransferShape& shape, double shown_energy = 0.0);
 
 }  // namespace lambent::baker

@@ -146,6 +146,15 @@ void keepAxes(std::vector<Cluster>& clusters, double step) {
   parallelRanges(clusters.size(), 1, {}, [&](std::size_t c, std::size_t) { keepAxesOf(clusters[c], step); });
 }
 
+void keepSoMany(std::vector<Cluster>& clusters, int axes) {
+  for (Cluster& cluster : clusters) {
+    cluster.kept = 0;
+    while (cluster.kept < std::min<Eigen::Index>(axes, cluster.variances.size()) &&
+           cluster.variances(cluster.kept) > 0.0)
+      ++cluster.kept;
+  }
+}
+
 double stepFor(std::vector<Cluster>& clusters, double budget) {
   double total = 0.0, largest = 0.0;
   for (const Cluster& cluster : clusters) {

@@ -40,6 +40,9 @@ double axisGrid(Eigen::Index rank, double variance, double step);
 // Decides which axes are worth their bits.
 void keepAxes(std::vector<Cluster>& clusters, double step);
 
+// The first `axes` of each, as far as they have any variance.
+void keepSoMany(std::vector<Cluster>& clusters, int axes);
+
 // The largest step for which the expected mean square error stays under `budget`; keeps axes for it.
 double stepFor(std::vector<Cluster>& clusters, double budget);
 

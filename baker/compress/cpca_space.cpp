@@ -9,6 +9,7 @@
 #include "baker/compress/light_weights.hpp"
 #include "baker/work/parallel.hpp"
 #include "runtime/sh/basis.hpp"
+#include "runtime/sh/gaunt.hpp"
 #include "runtime/sh/zonal.hpp"
 
 namespace lambent::baker {
@@ -18,6 +19,7 @@ namespace {
 constexpr std::size_t kGrain = 1024;  // samples in a range of a sum
 
 std::size_t shadowedSize(const bundle::TransferShape& shape) {
+  if (shape.isVisibility()) return shape.size();
   return std::size_t{shape.shadowed_channels} * shape.outputs * shape.columns();
 }
 
@@ -40,9 +42,35 @@ std::vector<double> energies(std::size_t size, std::size_t count, const Value& v
   return total;
 }
 
-// sqrt(W_i) but for the lights of the group, which are 1 here: band power of light; where a vector has
-// outputs for normal maps, times A_l/pi of the output's band.
+// How much an output's error shows: not normal-mapped 1, for normal maps A_l/pi, for glossy surfaces by the
+// lobe.
+double outputRoot(const bundle::TransferShape& shape, int output) {
+  if (shape.outputs == 1) return 1.0;
+  const int band = sh::bandOf(output);
+  return shape.outputs <= bundle::kMappedOutputs ? sh::clampedCosine(band) / std::numbers::pi
+                                                 : std::sqrt(kLobePower[static_cast<std::size_t>(band)]);
+}
+
+// Of visibility: lights and lobes turned at random make errors of its coefficients independent of each other.
+std::vector<double> visibilityRoots(const bundle::TransferShape& shape) {
+  const auto bands_out = static_cast<int>(std::lround(std::sqrt(shape.outputs)));
+  const sh::GauntTable table = sh::makeGauntTable(static_cast<int>(shape.order), bands_out);
+  std::vector<double> powers(shape.size(), 0.0);
+  for (std::uint32_t i = 0; i < shape.outputs; ++i)
+    for (std::uint32_t t = table.offsets[i]; t < table.offsets[i + 1]; ++t) {
+      const sh::GauntTerm& term = table.terms[t];
+      powers[term.k] += kLobePower[static_cast<std::size_t>(sh::bandOf(static_cast<int>(i)))] *
+                        kBandPower[static_cast<std::size_t>(sh::bandOf(term.j))] * double{term.value} *
+                        double{term.value};
+    }
+  for (double& power : powers) power = std::sqrt(power);
+  return powers;
+}
+
+// sqrt(W_i) but for the lights of the group, which are 1 here: band power of light, times what the output
+// counts.
 std::vector<double> bandRoots(const bundle::TransferShape& shape) {
+  if (shape.isVisibility()) return visibilityRoots(shape);
   std::vector<double> roots;
   const std::size_t columns = shape.columns(), environment = std::size_t{shape.order} * shape.order;
   for (std::size_t i = 0; i < shape.size(); ++i) {
@@ -50,10 +78,14 @@ std::vector<double> bandRoots(const bundle::TransferShape& shape) {
     double root = 1.0;
     if (static_cast<std::size_t>(column) < environment)
       root = std::sqrt(kBandPower[static_cast<std::size_t>(sh::bandOf(column))]);
-    if (shape.outputs > 1) root *= sh::clampedCosine(sh::bandOf(output)) / std::numbers::pi;
-    roots.push_back(root);
+    roots.push_back(root * outputRoot(shape, output));
   }
   return roots;
+}
+
+// How many of red, green and blue a channel stands for.
+double channelWeight(const bundle::TransferShape& shape) {
+  return std::max(shape.shadowed_channels, shape.full_channels) == 3 ? 1.0 : 3.0;
 }
 
 struct Block {
@@ -61,14 +93,23 @@ struct Block {
 };
 
 std::vector<Block> blocksOf(const bundle::TransferShape& shape) {
-  std::vector<Block> blocks = {{0, shadowedSize(shape)}};
+  std::vector<Block> blocks;
+  if (shape.shadowed_channels > 0) blocks.push_back({0, shadowedSize(shape)});
   if (shape.full_channels > 0) blocks.push_back({shadowedSize(shape), shape.size()});
   return blocks;
 }
 
-// Each block of energy 1; in it, the columns of lights of as much energy as the whole environment, each.
-std::vector<double> normalisedRoots(std::span<const float> vectors, const bundle::TransferShape& shape) {
+// Each block of energy 1; in it, the columns of lights of as much energy as the whole environment, each. Or
+// relative to what is shown.
+std::vector<double> normalisedRoots(std::span<const float> vectors, const bundle::TransferShape& shape,
+                                    double shown_energy) {
   std::vector<double> roots = bandRoots(shape);
+  if (shown_energy > 0.0 || shape.isVisibility()) {
+    const double whole = shown_energy > 0.0 ? shown_energy : transferEnergy(vectors, shape);
+    const double scale = whole > 0.0 ? std::sqrt(channelWeight(shape) / whole) : 0.0;
+    for (double& root : roots) root *= scale;
+    return roots;
+  }
   const std::size_t size = shape.size(), columns = shape.columns(),
                     environment = std::size_t{shape.order} * shape.order;
   const auto energy =
@@ -91,9 +132,19 @@ std::vector<double> normalisedRoots(std::span<const float> vectors, const bundle
 
 }  // namespace
 
-WeightedSpace weightedSpace(std::span<const float> vectors, const bundle::TransferShape& shape) {
-  WeightedSpace space{normalisedRoots(vectors, shape), 1.0};
-  if (shape.full_channels > 0) {
+double transferEnergy(std::span<const float> vectors, const bundle::TransferShape& shape) {
+  const std::vector<double> roots = bandRoots(shape);
+  const auto energy = energies(shape.size(), vectors.size() / shape.size(),
+                               [&](std::size_t at) { return double{vectors[at]}; });
+  double sum = 0.0;
+  for (std::size_t i = 0; i < roots.size(); ++i) sum += roots[i] * roots[i] * energy[i];
+  return channelWeight(shape) * sum;
+}
+
+WeightedSpace weightedSpace(std::span<const float> vectors, const bundle::TransferShape& shape,
+                            double shown_energy) {
+  WeightedSpace space{normalisedRoots(vectors, shape, shown_energy), 1.0};
+  if (shape.full_channels > 0 && shape.shadowed_channels > 0) {
     for (std::size_t i = 0; i < shadowedSize(shape); ++i) space.roots[i] *= kShadowedRoot;
     space.blocks += kShadowedRoot * kShadowedRoot;
   }
@@ -101,10 +152,10 @@ WeightedSpace weightedSpace(std::span<const float> vectors, const bundle::Transf
 }
 
 double radianceError(std::span<const float> truth, std::span<const float> coded,
-                     const bundle::TransferShape& shape) {
+                     const bundle::TransferShape& shape, double shown_energy) {
   const std::size_t size = shape.size();
   assert(truth.size() == coded.size() && truth.size() % size == 0);
-  const std::vector<double> roots = normalisedRoots(truth, shape);
+  const std::vector<double> roots = normalisedRoots(truth, shape, shown_energy);
   const auto off = energies(size, truth.size() / size,
                             [&](std::size_t at) { return double{coded[at]} - double{truth[at]}; });
   double worst = 0.0;

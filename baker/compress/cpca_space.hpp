@@ -17,7 +17,9 @@ struct WeightedSpace {
   double blocks = 1.0;        // what the square errors of all blocks add up to where each is 1
 };
 
-WeightedSpace weightedSpace(std::span<const float> vectors, const bundle::TransferShape& shape);
+// shown_energy: as CodingSettings.
+WeightedSpace weightedSpace(std::span<const float> vectors, const bundle::TransferShape& shape,
+                            double shown_energy);
 
 // Weight of errors in the shadowed block beside a full one. Noise that spreads evenly over the space would
 // leave it a smaller share of its bound than the full block, which has more values; with this both come out

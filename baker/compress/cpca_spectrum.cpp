@@ -1,8 +1,11 @@
 #include "baker/compress/cpca_spectrum.hpp"
 
+#include <algorithm>
+#include <cstdint>
 #include <vector>
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/QR>
 
 #include "baker/work/parallel.hpp"
 
@@ -10,9 +13,69 @@ namespace lambent::baker {
 
 namespace {
 
-constexpr Eigen::Index kBlock = 256;  // samples gathered for one matrix product
+constexpr Eigen::Index kBlock = 256;        // samples gathered for one matrix product
+constexpr Eigen::Index kShortPoints = 320;  // up to here all components cost little
+constexpr Eigen::Index kFirstSketch = 128;  // components looked for at first; then twice as many, and so on
+
+// What is noise has no leading components: from here on more is left out rather than looked for.
+constexpr Eigen::Index kWideSketch = 256;
+constexpr double kLooseTail = 8.0;
+
+// A number with mean 0 and variance 1 from a counter (splitmix64); two-valued numbers sketch as well as
+// normal ones.
+float sign(std::uint64_t counter) {
+  std::uint64_t z = (counter + 1) * 0x9e3779b97f4a7c15ull;
+  z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9ull;
+  z = (z ^ z >> 27) * 0x94d049bb133111ebull;
+  return (z ^ z >> 31) & 1 ? 1.0f : -1.0f;
+}
+
+// E[x xᵀ] times a few columns. Ranges in order, so the same for any number of threads.
+Eigen::MatrixXf covarianceTimes(const Points& points, const Eigen::MatrixXf& columns) {
+  constexpr std::size_t kGrain = 1024;
+  const auto count = static_cast<std::size_t>(points.cols());
+  std::vector<Eigen::MatrixXf> partial((count + kGrain - 1) / kGrain);
+  parallelRanges(count, kGrain, {}, [&](std::size_t begin, std::size_t end) {
+    const auto block =
+        points.middleCols(static_cast<Eigen::Index>(begin), static_cast<Eigen::Index>(end - begin));
+    const Eigen::MatrixXf inner = block.transpose() * columns;
+    partial[begin / kGrain].noalias() = block * inner;
+  });
+  Eigen::MatrixXf sum = Eigen::MatrixXf::Zero(points.rows(), columns.cols());
+  for (const Eigen::MatrixXf& part : partial) sum += part;
+  return sum / static_cast<float>(count);
+}
+
+Eigen::MatrixXf orthonormal(const Eigen::MatrixXf& columns) {
+  const Eigen::HouseholderQR<Eigen::MatrixXf> qr(columns);
+  return qr.householderQ() * Eigen::MatrixXf::Identity(columns.rows(), columns.cols());
+}
 
 }  // namespace
+
+Spectrum leadingSpectrum(const Points& points, double tail, double& left_out) {
+  double energy = 0.0;
+  for (Eigen::Index s = 0; s < points.cols(); ++s) energy += points.col(s).cast<double>().squaredNorm();
+  energy /= static_cast<double>(points.cols());
+  for (Eigen::Index width = kFirstSketch; points.rows() > kShortPoints && 2 * width < points.rows();
+       width *= 2) {
+    Eigen::MatrixXf sketch(points.rows(), width);
+    for (Eigen::Index i = 0; i < sketch.size(); ++i) sketch.data()[i] = sign(static_cast<std::uint64_t>(i));
+    // One turn more than the range asks for: the components that matter little come out as well.
+    const Eigen::MatrixXf range =
+        orthonormal(covarianceTimes(points, orthonormal(covarianceTimes(points, sketch))));
+    const Points inside = range.transpose() * points;
+    Spectrum found = spectrumOf(secondMoment(inside, {}, {}));
+    left_out = std::max(0.0, energy - found.variances.sum());
+    // The last ones found are found badly.
+    const double missing = left_out + found.variances.tail(width / 8).sum();
+    if (missing > (width < kWideSketch ? tail : kLooseTail * tail)) continue;
+    found.axes = range.cast<double>() * found.axes;
+    return found;
+  }
+  left_out = 0.0;
+  return spectrumOf(secondMoment(points, {}, {}));
+}
 
 Spectrum spectrumOf(const Eigen::MatrixXd& covariance) {
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(covariance);

@@ -17,22 +17,24 @@
 
 namespace lambent::bundle {
 
+inline constexpr std::uint32_t kMappedOutputs = 9;
+
 // What a transfer vector holds. Two blocks: light that arrives without a bounce ("shadowed") and all light
 // ("full", absent without bounces). A value is [block: shadowed channels, then full
-// channels][output][column]. Or, for glossy surfaces, the visibility itself, from which direct light follows by the
-// product of spherical harmonics (runtime/sh/gaunt.hpp); beside it the bounced light alone has a transfer of its own,
-// with shadowed_channels 0.
+// channels][output][column]. Or, for glossy surfaces, the visibility itself, from which direct light follows
+// by the product of spherical harmonics (runtime/sh/gaunt.hpp); beside it the bounced light alone has a
+// transfer of its own, with shadowed_channels 0.
 struct TransferShape {
   std::uint32_t order = 5;              // bands of the environment, 0..8; 0: the group's lights alone
   std::uint32_t light_columns = 0;      // lights that belong to the group
   std::uint32_t shadowed_channels = 1;  // 1: the same for R, G and B; 3: RGB
   std::uint32_t full_channels = 0;      // 0, 1 or 3
   // 1: E/pi at the sample's normal. 9: transferred light in bands 0..2 (for normal maps), to be convolved
-  // with A_l/pi at the pixel's normal. 16, 25 or 36: transferred light l' = M l in bands 0..3, 4 or 5, for glossy
-  // surfaces.
+  // with A_l/pi at the pixel's normal. 16, 25 or 36: transferred light l' = M l in bands 0..3, 4 or 5, for
+  // glossy surfaces.
   std::uint32_t outputs = 1;
-  // Over 0: the vector is the visibility V in so many bands, order + bands of the outputs - 1: all that their product
-  // with the light needs (literature: rank of a shadow-only matrix). One channel.
+  // Over 0: the vector is the visibility V in so many bands, order + bands of the outputs - 1: all that their
+  // product with the light needs (literature: rank of a shadow-only matrix). One channel.
   std::uint32_t visibility_bands = 0;
 
   std::uint32_t columns() const { return order * order + light_columns; }

@@ -104,8 +104,6 @@ struct CellTransfer {
   bool fromEnvironment() const { return shape.order > 0; }  // else from the group's own lights
 };
 
-inline constexpr std::uint32_t kMappedOutputs = 9;
-
 // Light samples that one cell may be lit from.
 inline constexpr std::uint32_t kMaxLightSamples = 64;
 
@@ -113,9 +111,9 @@ inline constexpr std::uint32_t kMaxLightSamples = 64;
 struct Cell {
   std::uint32_t first_sample = 0, sample_count = 0;
   glm::vec3 bounds_min{0.0f}, bounds_max{0.0f};  // group frame
-  // What adds up: light from the environment (no light columns; of a glossy cell visibility, then, where light
-  // bounces, the bounced light), then light of the group's own lights (order 0, a column for each), each at most once.
-  // The same outputs in all.
+  // What adds up: light from the environment (no light columns; of a glossy cell visibility, then, where
+  // light bounces, the bounced light), then light of the group's own lights (order 0, a column for each),
+  // each at most once. The same outputs in all.
   std::vector<CellTransfer> transfers;
   // Which of the group's light samples it is lit from, rising: light weights name them by their place in this
   // list. At most kMaxLightSamples. With one entry all its samples take that one whole.
@@ -165,15 +163,16 @@ struct Group {
 struct Draw {
   std::uint32_t node = 0, mesh = 0, primitive = 0, group = 0;
   bool back = false;
-  std::uint32_t rows = 0;     // payload: vertex rows into the group's samples, those with as many outputs
+  std::uint32_t rows = 0;  // payload: vertex rows into the group's samples, those with as many outputs
   // 9: has a normal map, shaded per pixel from transferred light. 16, 25, 36: glossy, per pixel too.
   std::uint32_t outputs = 1;
 
   bool glossy() const { return outputs > kMappedOutputs; }
 };
 
-// Whose b(v) a table holds. GGX tables serve all materials of their kind (F0 and F90 parts apart, roughness and
-// anisotropy as axes); a measured one serves the materials whose `brdf` is its index in Description::brdf_tables.
+// Whose b(v) a table holds. GGX tables serve all materials of their kind (F0 and F90 parts apart, roughness
+// and anisotropy as axes); a measured one serves the materials whose `brdf` is its index in
+// Description::brdf_tables.
 enum class BrdfFamily : std::uint8_t { Ggx, AnisotropicGgx, Measured };
 
 struct BrdfTableEntry {

@@ -78,13 +78,13 @@ struct Material {
   float metallic = 1.0f, roughness = 1.0f;
   TextureRef metallic_roughness_texture;  // linear: G multiplies roughness, B metallic
   float ior = 1.5f;                       // KHR_materials_ior; >= 1, or 0: infinite
-  // KHR_materials_specular: strength (texture: linear, A) and colour (texture: sRGB) of the reflection of what is no
-  // metal.
+  // KHR_materials_specular: strength (texture: linear, A) and colour (texture: sRGB) of the reflection of
+  // what is no metal.
   float specular = 1.0f;
   glm::vec3 specular_color{1.0f};
   TextureRef specular_texture, specular_color_texture;
-  // KHR_materials_anisotropy: strength 0..1, and the direction of the longer lobe against the tangent, towards the
-  // bitangent. Texture: linear, RG direction from -1 to 1, B strength.
+  // KHR_materials_anisotropy: strength 0..1, and the direction of the longer lobe against the tangent,
+  // towards the bitangent. Texture: linear, RG direction from -1 to 1, B strength.
   float anisotropy = 0.0f, anisotropy_rotation_rad = 0.0f;
   TextureRef anisotropy_texture;
   // extras.lambent.brdf: a measured BRDF takes the place of everything above but base_color's alpha.
@@ -101,8 +101,8 @@ struct Material {
   float alpha_cutoff = 0.5f;
   bool double_sided = false;
 
-  // Nothing but a Lambert surface: no metal, and either no specular strength or roughness 1 all over, which is how
-  // glTF files say "matte". Such a surface is Lambert with albedo = base colour everywhere in Lambent.
+  // Nothing but a Lambert surface: no metal, and either no specular strength or roughness 1 all over, which
+  // is how glTF files say "matte". Such a surface is Lambert with albedo = base colour everywhere in Lambent.
   bool matte() const {
     if (unlit) return true;
     if (brdf >= 0 || metallic > 0.0f) return false;

@@ -117,7 +117,8 @@ Result<VertexRows> Reader::readRows(std::uint32_t index) const {
   const std::uint32_t end = first + group.samplesWith(draw.outputs);
   const auto other = [&](std::uint32_t sample) { return sample < first || sample >= end; };
   if (std::any_of(rows->samples.begin(), rows->samples.end(), other))
-    return fail(subject, fmt::format("takes samples that do not have {} outputs", draw.outputs), "bake it again");
+    return fail(subject, fmt::format("takes samples that do not have {} outputs", draw.outputs),
+                "bake it again");
   return rows;
 }
 
@@ -176,6 +177,12 @@ Result<CaptureProxy> Reader::readProxy(std::uint32_t index) const {
                             fmt::format("{}: group {}", path().string(), index));
 }
 
+Result<BrdfTable> Reader::readBrdfTable(std::uint32_t index) const {
+  const auto bytes = readPayload(description().brdf_tables.at(index).payload);
+  if (!bytes) return failAgain(bytes.error());
+  return decodeBrdfTable(*bytes, fmt::format("{}: BRDF table {}", path().string(), index));
+}
+
 namespace {
 
 Result<void> checkTransfer(const Reader& reader, std::uint32_t group, std::uint32_t cell,
@@ -198,6 +205,8 @@ Result<void> Reader::checkAll() const {
       if (auto data = readMesh(mesh, p); !data) return failAgain(data.error());
   for (std::uint32_t draw = 0; draw < d.draws.size(); ++draw)
     if (auto rows = readRows(draw); !rows) return failAgain(rows.error());
+  for (std::uint32_t table = 0; table < d.brdf_tables.size(); ++table)
+    if (auto found = readBrdfTable(table); !found) return failAgain(found.error());
   for (std::uint32_t group = 0; group < d.groups.size(); ++group)
     if (auto proxy = readProxy(group); !proxy) return failAgain(proxy.error());
   for (std::uint32_t group = 0; group < d.groups.size(); ++group)

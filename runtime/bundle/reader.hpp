@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "runtime/base/result.hpp"
+#include "runtime/bundle/brdf_table.hpp"
 #include "runtime/bundle/capture_proxy.hpp"
 #include "runtime/bundle/description.hpp"
 #include "runtime/bundle/light_weights.hpp"
@@ -46,13 +47,14 @@ class Reader {
   Result<MeshData> readMesh(std::uint32_t mesh, std::uint32_t primitive) const;
   // Of a draw; its samples are of cells with as many outputs.
   Result<VertexRows> readRows(std::uint32_t draw) const;
-  // Of Cell::diffuse[transfer]; it agrees with the counts of the planes.
+  // Of Cell::transfers[transfer]; it agrees with the counts of the planes.
   Result<CellCodebook> readCodebook(std::uint32_t group, std::uint32_t cell, std::uint32_t transfer) const;
   // Codes in the order of positionsOf.
   Result<std::vector<std::uint32_t>> readPlane(std::uint32_t group, std::uint32_t cell,
                                                std::uint32_t transfer, std::uint32_t plane) const;
   // One per sample of the cell; of a cell with one light sample, that one whole.
   Result<std::vector<LightWeights>> readLightWeights(std::uint32_t group, std::uint32_t cell) const;
+  Result<BrdfTable> readBrdfTable(std::uint32_t index) const;
   // Without a level where the group has none.
   Result<CaptureProxy> readProxy(std::uint32_t group) const;
   // Reads, decodes and compares everything in the file.

@@ -1,6 +1,7 @@
 // The extension LAMBENT_radiance_transfer: what was baked and where it lies.
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <optional>
 
 #include "runtime/bundle/description.hpp"
@@ -14,8 +15,11 @@ namespace {
 constexpr std::uint32_t kMaxOrder = 8, kMaxColumns = 4096, kMaxCellSamples = 65536;
 constexpr std::uint32_t kMaxClusters = 65536;
 constexpr std::uint64_t kMaxPayloadBytes = std::uint64_t{1} << 32;  // refuse to allocate more for one payload
-constexpr std::array kPayloadTypes = {"vertexRows",  "codebook",     "clusterIds",
-                                      "weightPlane", "lightWeights", "captureProxy"};
+constexpr std::array kPayloadTypes = {"vertexRows",   "codebook",     "clusterIds", "weightPlane",
+                                      "lightWeights", "captureProxy", "brdfTable"};
+constexpr std::array kBrdfFamilies = {"ggx", "anisotropicGgx", "measured"};
+// Transferred light of glossy surfaces has 4, 5 or 6 bands, and so may the light that they are given.
+constexpr std::uint32_t kMaxGlossyOrder = 6;
 constexpr std::array kCodecs = {"raw", "zstd"};
 constexpr std::array kLightKinds = {"material", "node"};
 constexpr std::array kSides = {"front", "back"};
@@ -33,7 +37,7 @@ const char* word(Enum value, const std::array<const char*, N>& words) {
   return words[static_cast<std::size_t>(value)];
 }
 
-Json diffuseJson(const CellTransfer& transfer) {
+Json cellTransferJson(const CellTransfer& transfer) {
   Json planes = Json::array();
   for (const WeightPlane& plane : transfer.planes)
     planes.push_back({{"payload", plane.payload},
@@ -51,6 +55,7 @@ Json diffuseJson(const CellTransfer& transfer) {
                {"planes", planes},
                {"errorBound", transfer.error_bound},
                {"error", transfer.error}};
+  if (transfer.shape.isVisibility()) json["visibilityBands"] = transfer.shape.visibility_bands;
   if (transfer.cluster_ids >= 0) json["clusterIds"] = transfer.cluster_ids;
   return json;
 }
@@ -64,6 +69,20 @@ std::uint32_t payloadIndex(const Field& field, const Description& d, PayloadType
   return index;
 }
 
+std::uint32_t readOutputs(const Field& field) {
+  const auto outputs = static_cast<std::uint32_t>(field.count(kMaxGlossyOrder * kMaxGlossyOrder));
+  if (outputs != 1 && outputs != kMappedOutputs && outputs != 16 && outputs != 25 && outputs != 36)
+    field.fault("is none of 1, 9, 16, 25 and 36");
+  return outputs;
+}
+
+std::uint32_t readChannels(const Field& field, bool may_be_none) {
+  const auto channels = static_cast<std::uint32_t>(field.count(3));
+  if (channels == 2 || (channels == 0 && !may_be_none))
+    field.fault(may_be_none ? "is neither 0, 1 nor 3" : "is neither 1 nor 3");
+  return channels;
+}
+
 TransferShape readShape(const Field& field, const std::vector<GroupLight>& lights) {
   TransferShape shape;
   shape.order = static_cast<std::uint32_t>(field["order"].count(kMaxOrder));
@@ -72,13 +91,21 @@ TransferShape readShape(const Field& field, const std::vector<GroupLight>& light
     field["order"].fault("and lightColumns: not just one of them is 0");
   if (shape.light_columns != 0 && shape.light_columns != lights.size())
     field["lightColumns"].fault("are not as many as the group has lights");
-  shape.shadowed_channels = static_cast<std::uint32_t>(field["shadowedChannels"].count(3));
-  if (shape.shadowed_channels != 1 && shape.shadowed_channels != 3)
-    field["shadowedChannels"].fault("is neither 1 nor 3");
-  shape.full_channels = static_cast<std::uint32_t>(field["fullChannels"].count(3));
-  if (shape.full_channels == 2) field["fullChannels"].fault("is neither 0, 1 nor 3");
-  shape.outputs = static_cast<std::uint32_t>(field["outputs"].count(9));
-  if (shape.outputs != 1 && shape.outputs != 9) field["outputs"].fault("is neither 1 nor 9");
+  shape.outputs = readOutputs(field["outputs"]);
+  const bool glossy = shape.outputs > kMappedOutputs;
+  if (glossy && shape.order > kMaxGlossyOrder) field["order"].fault("is over 6 for glossy surfaces");
+  shape.full_channels = readChannels(field["fullChannels"], /*may_be_none=*/true);
+  // Bounced light by itself, beside the visibility, has no shadowed part.
+  shape.shadowed_channels =
+      readChannels(field["shadowedChannels"],
+                   /*may_be_none=*/glossy && shape.order > 0 && shape.full_channels > 0);
+  if (field.has("visibilityBands")) {
+    shape.visibility_bands = static_cast<std::uint32_t>(field["visibilityBands"].count(2 * kMaxGlossyOrder));
+    const auto bands_out = static_cast<std::uint32_t>(std::lround(std::sqrt(shape.outputs)));
+    if (!glossy || shape.order == 0 || shape.visibility_bands != shape.order + bands_out - 1 ||
+        shape.shadowed_channels != 1 || shape.full_channels != 0)
+      field["visibilityBands"].fault("are not those of the product of the light and the outputs");
+  }
   return shape;
 }
 
@@ -93,8 +120,8 @@ WeightPlane readPlane(const Field& field, const Description& d, std::uint32_t la
   return plane;
 }
 
-CellTransfer readDiffuse(const Field& field, const Description& d, const Group& group,
-                            std::uint32_t sample_count) {
+CellTransfer readCellTransfer(const Field& field, const Description& d, const Group& group,
+                              std::uint32_t sample_count) {
   CellTransfer transfer;
   transfer.shape = readShape(field, group.lights);
   transfer.clusters = static_cast<std::uint32_t>(field["clusters"].count(kMaxClusters));
@@ -138,6 +165,24 @@ void readCellLights(const Field& field, const Description& d, const Group& group
     field["lightWeights"].fault("are there for one light sample");
 }
 
+// In this order, each at most once: of the environment (of a glossy cell visibility, then bounced light), of
+// the group's lights.
+void checkParts(const Field& field, const Cell& cell) {
+  enum Part { Environment, Bounced, Lights };
+  const auto partOf = [](const TransferShape& shape) {
+    if (shape.order == 0) return Lights;
+    return shape.outputs > kMappedOutputs && !shape.isVisibility() ? Bounced : Environment;
+  };
+  for (std::size_t t = 0; t < cell.transfers.size(); ++t) {
+    const TransferShape& shape = cell.transfers[t].shape;
+    if (shape.outputs != cell.outputs()) field.fault("differ in their outputs");
+    if (t == 0 ? partOf(shape) != Environment : partOf(shape) <= partOf(cell.transfers[t - 1].shape))
+      field.fault("are not the group's lights after the environment");
+    if (partOf(shape) == Bounced && shape.order != cell.transfers.front().shape.order)
+      field.fault("differ in their orders");
+  }
+}
+
 Cell readCell(const Field& field, const Description& d, const Group& group, std::uint32_t first_sample) {
   Cell cell;
   cell.first_sample = static_cast<std::uint32_t>(field["firstSample"].count(group.sample_count));
@@ -146,17 +191,12 @@ Cell readCell(const Field& field, const Description& d, const Group& group, std:
       field["sampleCount"].count(std::min(kMaxCellSamples, group.sample_count - cell.first_sample)));
   cell.bounds_min = field["boundsMin"].vector<glm::vec3>();
   cell.bounds_max = field["boundsMax"].vector<glm::vec3>();
-  for (const Field& entry : field["diffuse"].items()) {
-    cell.transfers.push_back(readDiffuse(entry, d, group, cell.sample_count));
-    const CellTransfer &first = cell.transfers.front(), &last = cell.transfers.back();
-    if (cell.transfers.size() > 2 ||
-        (cell.transfers.size() == 2 && (!first.fromEnvironment() || last.fromEnvironment())))
-      entry.fault("is not the group's lights after the environment");
-    if (last.shape.outputs != first.shape.outputs) entry["outputs"].fault("differs within the cell");
-  }
+  for (const Field& entry : field["transfers"].items())
+    cell.transfers.push_back(readCellTransfer(entry, d, group, cell.sample_count));
+  checkParts(field["transfers"], cell);
   readCellLights(field, d, group, cell);
   if (!group.cells.empty() && group.cells.back().outputs() > cell.outputs())
-    field.fault("has one output and stands after cells with nine");
+    field.fault("has fewer outputs than the cell before it");
   return cell;
 }
 
@@ -172,13 +212,13 @@ GroupLight readGroupLight(const Field& field, const Description& d) {
 }
 
 Json cellJson(const Cell& cell) {
-  Json diffuse = Json::array();
-  for (const CellTransfer& transfer : cell.transfers) diffuse.push_back(diffuseJson(transfer));
+  Json transfers = Json::array();
+  for (const CellTransfer& transfer : cell.transfers) transfers.push_back(cellTransferJson(transfer));
   Json json = {{"firstSample", cell.first_sample},
                {"sampleCount", cell.sample_count},
                {"boundsMin", vectorJson(cell.bounds_min)},
                {"boundsMax", vectorJson(cell.bounds_max)},
-               {"diffuse", diffuse},
+               {"transfers", transfers},
                {"lightSamples", cell.light_samples}};
   if (cell.light_weights >= 0) json["lightWeights"] = cell.light_weights;
   return json;
@@ -254,8 +294,35 @@ Draw readDraw(const Field& field, const Description& d) {
   draw.group = field["group"].index(d.groups.size());
   draw.back = readWord<bool>(field["side"], kSides);
   draw.rows = payloadIndex(field["rows"], d, PayloadType::VertexRows, {});
-  draw.outputs = field["normalMapped"].flag() ? 9 : 1;
+  draw.outputs = readOutputs(field["outputs"]);
   return draw;
+}
+
+BrdfTableEntry readBrdfTable(const Field& field, const Description& d) {
+  BrdfTableEntry entry;
+  entry.family = readWord<BrdfFamily>(field["family"], kBrdfFamilies);
+  entry.name = field["name"].text();
+  entry.payload = payloadIndex(field["payload"], d, PayloadType::BrdfTable, std::nullopt);
+  return entry;
+}
+
+// Glossy draws find what they look up.
+void checkBrdfTables(const Field& field, const Description& d) {
+  const auto has = [&](BrdfFamily family) {
+    return std::any_of(d.brdf_tables.begin(), d.brdf_tables.end(),
+                       [&](const BrdfTableEntry& entry) { return entry.family == family; });
+  };
+  for (const Draw& draw : d.draws) {
+    const std::int32_t index = d.meshes[draw.mesh].primitives[draw.primitive].material;
+    if (!draw.glossy() || index < 0) continue;
+    const gltf::Material& material = d.materials[static_cast<std::size_t>(index)];
+    const bool found =
+        material.brdf >= 0
+            ? static_cast<std::size_t>(material.brdf) < d.brdf_tables.size() &&
+                  d.brdf_tables[static_cast<std::size_t>(material.brdf)].family == BrdfFamily::Measured
+            : has(material.anisotropy > 0.0f ? BrdfFamily::AnisotropicGgx : BrdfFamily::Ggx);
+    if (!found) field.fault(fmt::format("lack the table of material {}", index));
+  }
 }
 
 }  // namespace
@@ -276,7 +343,11 @@ Json writeTransfer(const Description& d) {
                      {"group", draw.group},
                      {"side", word(draw.back, kSides)},
                      {"rows", draw.rows},
-                     {"normalMapped", draw.outputs == 9}});
+                     {"outputs", draw.outputs}});
+  Json tables = Json::array();
+  for (const BrdfTableEntry& entry : d.brdf_tables)
+    tables.push_back(
+        {{"family", word(entry.family, kBrdfFamilies)}, {"name", entry.name}, {"payload", entry.payload}});
   return {{"version", d.version},
           {"generator",
            {{"program", d.generator.program},
@@ -285,6 +356,7 @@ Json writeTransfer(const Description& d) {
             {"settings", d.generator.settings}}},
           {"checksums", checksums},
           {"payloads", payloads},
+          {"brdfTables", tables},
           {"groups", groups},
           {"draws", draws}};
 }
@@ -312,8 +384,10 @@ void readTransfer(const Field& extension, Description& d) {
     payload.priority = static_cast<std::uint32_t>(field["priority"].count(0xffffffffu));
     d.payloads.push_back(payload);
   }
+  for (const Field& field : extension["brdfTables"].items()) d.brdf_tables.push_back(readBrdfTable(field, d));
   for (const Field& field : extension["groups"].items()) d.groups.push_back(readGroup(field, d));
   for (const Field& field : extension["draws"].items()) d.draws.push_back(readDraw(field, d));
+  checkBrdfTables(extension["brdfTables"], d);
 }
 
 }  // namespace lambent::bundle

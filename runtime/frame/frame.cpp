@@ -105,6 +105,8 @@ Result<void> Frame::step(World& world, const lighting::Environment& environment,
   if (Result<void> done = light(world, environment); !done) return done;
   // E/pi at every vertex whose light or transfer is new
   if (Result<void> done = shade(world); !done) return done;
+  // transferred light at the samples of glossy surfaces, likewise
+  if (Result<void> done = shadeGlossy(world); !done) return done;
   // what bodies send to each other: arrives with the next step
   return capture(world, environment, max_captures);
 }
@@ -174,7 +176,10 @@ Result<void> Frame::capture(World& world, const lighting::Environment& environme
                             std::size_t max_captures) {
   gpu::PassTimers::Scope pass(timers_, "capture");
   if (!incident_) return {};
-  if (Result<void> done = proxies_.shade(world.residency(), group_lights_, diffuse_, pass.counters()); !done)
+  std::vector<std::uint64_t> shaded;
+  for (std::size_t g = 0; g < world.residency().groups().size(); ++g)
+    shaded.push_back(diffuse_.versionOf(g) + glossy_.versionOf(g));
+  if (Result<void> done = proxies_.shade(world.residency(), group_lights_, shaded, pass.counters()); !done)
     return done;
   proxy_radiance_.resize(lit_scene_.groups.size());
   for (std::size_t g = 0; g < lit_scene_.groups.size(); ++g) {
@@ -202,6 +207,15 @@ Result<void> Frame::shade(World& world) {
   Result<void> done = diffuse_.shade(world.residency(), group_lights_, options_.transfer, pass.counters());
   counts_.cells_shaded = diffuse_.shadedLast().cells;
   counts_.draws_shaded = diffuse_.shadedLast().draws;
+  return done;
+}
+
+Result<void> Frame::shadeGlossy(World& world) {
+  const auto& cells = world.residency().cells();
+  if (std::none_of(cells.begin(), cells.end(), [](const auto& cell) { return cell.glossy(); })) return {};
+  gpu::PassTimers::Scope pass(timers_, "glossy");
+  Result<void> done = glossy_.shade(world.residency(), group_lights_, options_.transfer, pass.counters());
+  counts_.cells_shaded += glossy_.cellsShadedLast();
   return done;
 }
 

@@ -12,6 +12,7 @@
 #include "runtime/base/result.hpp"
 #include "runtime/effects/diffuse/diffuse.hpp"
 #include "runtime/effects/diffuse/proxies.hpp"
+#include "runtime/effects/glossy/glossy.hpp"
 #include "runtime/frame/lit_scene.hpp"
 #include "runtime/frame/near_lights.hpp"
 #include "runtime/frame/surfaces.hpp"
@@ -90,6 +91,7 @@ class Frame {
   Result<void> step(World& world, const lighting::Environment& environment, std::size_t max_captures);
   Result<void> light(World& world, const lighting::Environment& environment);
   Result<void> shade(World& world);
+  Result<void> shadeGlossy(World& world);  // no pass where nothing is glossy
   Result<void> prepareSampling(World& world, const lighting::Environment& environment,
                                gpu::Counters& counters);
   Result<void> capture(World& world, const lighting::Environment& environment, std::size_t max_captures);
@@ -103,6 +105,7 @@ class Frame {
   Surfaces surfaces_;
   ToneMapper tone_mapper_;
   effects::diffuse::Diffuse diffuse_;
+  effects::glossy::Glossy glossy_;
   effects::diffuse::Proxies proxies_;
   LitScene lit_scene_;
   NearLights near_lights_;

@@ -1,4 +1,5 @@
-// E/pi times albedo (factor x texture x vertex colour), and what the surface gives off itself. Linear, not clamped;
+// E/pi times albedo (factor x texture x vertex colour), or what a glossy surface makes of its light, and what the
+// surface gives off itself. Linear, not clamped;
 // alpha is coverage. With LAMBENT_NEAR_LIGHTS, lights among the surfaces add theirs per pixel.
 #include "surface_shared.h"
 
@@ -19,28 +20,36 @@ vec4 look(sampler2D image, vec2 at) {
 #endif
 }
 
-#ifdef LAMBENT_NORMAL_MAPPED
+#if defined(LAMBENT_NORMAL_MAPPED) || defined(LAMBENT_GLOSSY)
 #include "surface_normal.glsl"
-#include "diffuse_light.glsl"
 layout(binding = kUnitNormal) uniform sampler2D normal_texture;
 layout(location = 3) in vec4 position_group;
 layout(location = 4) in vec4 normal_group;
 layout(location = 5) in vec4 tangent_group;
-layout(location = 6) in vec3 light[kLightCoefficients];
 
-// Of the side that is seen, in the group's frame.
-vec3 pixelNormal() {
+// Of the vertices, or of the pictures: the front's.
+TangentFrame pixelFrame() {
   vec2 at = vec2(position_group.w, normal_group.w);
   vec3 normal = unit(normal_group.xyz);
   TangentFrame from_picture =
       frameFromDerivatives(normal, dFdx(position_group.xyz), dFdy(position_group.xyz), dFdx(at), dFdy(at));
+  bool stored = draws[draw_of].tangents_word != kAbsent;
+  return stored ? frameFromTangent(normal, tangent_group) : from_picture;
+}
+
+// Of the side that is seen, in the group's frame.
+vec3 pixelNormal(TangentFrame frame) {
+  vec3 normal = frame.normal;
   if (draws[draw_of].normal_texture.set != kAbsent) {
-    bool stored = draws[draw_of].tangents_word != kAbsent;
-    TangentFrame frame = stored ? frameFromTangent(normal, tangent_group) : from_picture;
+    vec2 at = vec2(position_group.w, normal_group.w);
     normal = perturbedNormal(frame, look(normal_texture, at).xyz, draws[draw_of].normal_scale);
   }
   return draws[draw_of].facing * normal;
 }
+#ifndef LAMBENT_GLOSSY
+#include "diffuse_light.glsl"
+layout(location = 6) in vec3 light[kLightCoefficients];
+#endif
 #else
 layout(location = 3) in vec3 radiance;
 #ifdef LAMBENT_NEAR_LIGHTS
@@ -52,9 +61,12 @@ layout(location = 4) in vec3 normal_group;  // of the side that is seen
 #include "near_surface.glsl"
 #endif
 
-vec3 receivedLight() {
+#ifdef LAMBENT_GLOSSY
+#include "glossy_surface.glsl"
+#else
+vec3 reflectedLight(vec3 base_color) {
 #ifdef LAMBENT_NORMAL_MAPPED
-  vec3 normal = pixelNormal();
+  vec3 normal = pixelNormal(pixelFrame());
   vec3 received = diffuseLight(light, normal);
 #else
   vec3 received = radiance;
@@ -66,19 +78,20 @@ vec3 receivedLight() {
   received += nearLight(draw_of, normal_group, normal_group);
 #endif
 #endif
-  return received;
+  return received * base_color;
 }
+#endif
 
 void main() {
   vec4 albedo = draws[draw_of].base_color * vertex_color;
   if (draws[draw_of].base_color_texture.set != kAbsent) albedo *= look(base_color_texture, looks_at.xy);
   vec3 emission = draws[draw_of].emission.rgb;
   if (draws[draw_of].emissive_texture.set != kAbsent) emission *= look(emissive_texture, looks_at.zw).rgb;
-  vec3 received = receivedLight();
-  if (draws[draw_of].unlit != 0u) received = vec3(1.0);  // the base colour as it is
+  vec3 reflected = reflectedLight(albedo.rgb);
+  if (draws[draw_of].unlit != 0u) reflected = albedo.rgb;  // the base colour as it is
 
   uint mode = draws[draw_of].alpha_mode;
   if (mode == kAlphaMask && albedo.a < draws[draw_of].alpha_cutoff) discard;
   float alpha = mode == kAlphaBlend ? albedo.a : 1.0;
-  color = vec4(received * albedo.rgb + emission, alpha);
+  color = vec4(reflected + emission, alpha);
 }

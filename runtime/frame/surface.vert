@@ -1,24 +1,36 @@
 // Surfaces: vertices are pulled from the arenas; shading was done in compute.
 #include "surface_shared.h"
 
-layout(std140, binding = kBindView) uniform ViewBlock { mat4 view_from_world; mat4 clip_from_view; };
+layout(std140, binding = kBindView) uniform ViewBlock {
+  mat4 view_from_world;
+  mat4 clip_from_view;
+  vec4 eye;  // of glossy_surface.glsl
+};
 layout(std430, binding = kBindDraws) readonly buffer Draws { SurfaceDraw draws[]; };
 layout(std430, binding = kBindGeometry) readonly buffer Geometry { uint geometry[]; };
+#ifndef LAMBENT_GLOSSY
 layout(std430, binding = kBindRadiance) readonly buffer Radiance { float radiance_of[]; };
+#endif
 
 layout(location = 0) in uint draw_index;  // one per instance: the draw's base instance
 layout(location = 0) flat out uint draw_of;
 layout(location = 1) out vec4 looks_at;  // in the base colour picture: xy; in the emissive one: zw
 layout(location = 2) out vec4 vertex_color;
-#if defined(LAMBENT_NORMAL_MAPPED) || defined(LAMBENT_NEAR_LIGHTS)
+#if defined(LAMBENT_NORMAL_MAPPED) || defined(LAMBENT_NEAR_LIGHTS) || defined(LAMBENT_GLOSSY)
 #include "surface_normal.glsl"
 #endif
-#ifdef LAMBENT_NORMAL_MAPPED
-// In the group's frame. With them all fifteen locations that OpenGL 4.5 promises are in use.
+#if defined(LAMBENT_NORMAL_MAPPED) || defined(LAMBENT_GLOSSY)
+// In the group's frame. With those of normal maps all fifteen locations that OpenGL 4.5 promises are in use.
 layout(location = 3) out vec4 position_group;  // w, and that of the normal: where in the normal picture
 layout(location = 4) out vec4 normal_group;
 layout(location = 5) out vec4 tangent_group;  // w: +1 or -1 as glTF has it, of the mesh as it stands in the group
+#ifdef LAMBENT_GLOSSY
+layout(location = 6) out vec3 position_mesh;
+layout(location = 7) out vec4 looks_at_reflection;  // in the metallic-roughness picture: xy; specular: zw
+layout(location = 8) out vec4 looks_at_lobes;       // specular colour: xy; anisotropy: zw
+#else
 layout(location = 6) out vec3 light[kLightCoefficients];
+#endif
 #else
 layout(location = 3) out vec3 radiance;
 #ifdef LAMBENT_NEAR_LIGHTS
@@ -28,7 +40,9 @@ layout(location = 4) out vec3 normal_group;  // of the side that is seen
 
 vec2 geometry2(uint at) { return vec2(uintBitsToFloat(geometry[at]), uintBitsToFloat(geometry[at + 1u])); }
 vec3 geometry3(uint at) { return vec3(geometry2(at), uintBitsToFloat(geometry[at + 2u])); }
+#ifndef LAMBENT_GLOSSY
 vec3 radianceAt(uint at) { return vec3(radiance_of[at], radiance_of[at + 1u], radiance_of[at + 2u]); }
+#endif
 
 // Done here, not per pixel: pixels beside a triangle have their part in its derivatives and mip levels, but what they
 // read of a buffer need not be there (Mesa gives 0).
@@ -51,10 +65,19 @@ void main() {
     uint at = draws[draw_index].colors_word + 2u * vertex;
     vertex_color = vec4(unpackUnorm2x16(geometry[at]), unpackUnorm2x16(geometry[at + 1u]));
   }
-#ifdef LAMBENT_NORMAL_MAPPED
+#if defined(LAMBENT_NORMAL_MAPPED) || defined(LAMBENT_GLOSSY)
   mat3 group_from_mesh = mat3(draws[draw_index].group_from_mesh);
   vec3 normal = unit(mat3(draws[draw_index].group_from_mesh_normal) * geometry3(draws[draw_index].normals_word + 3u * vertex));
   vec2 normal_at = LOOKED_AT(normal_texture);
+#ifdef LAMBENT_GLOSSY
+  // Tangents follow from the normal map's coordinates or else from the mesh's own.
+  if (draws[draw_index].normal_texture.set == kAbsent && draws[draw_index].texcoords0_word != kAbsent)
+    normal_at = geometry2(draws[draw_index].texcoords0_word + 2u * vertex);
+  position_mesh = position;
+  looks_at_reflection =
+      vec4(LOOKED_AT(glossy.metallic_roughness_texture), LOOKED_AT(glossy.specular_texture));
+  looks_at_lobes = vec4(LOOKED_AT(glossy.specular_color_texture), LOOKED_AT(glossy.anisotropy_texture));
+#endif
   position_group = vec4(group_from_mesh * position, normal_at.x);
   normal_group = vec4(normal, normal_at.y);
   tangent_group = vec4(0.0);
@@ -64,8 +87,10 @@ void main() {
     float mirrored = determinant(group_from_mesh) < 0.0 ? -1.0 : 1.0;
     tangent_group = vec4(group_from_mesh * geometry3(at), mirrored * uintBitsToFloat(geometry[at + 3u]));
   }
+#ifndef LAMBENT_GLOSSY
   uint words = 3u * kLightCoefficients;
   for (uint j = 0u; j < kLightCoefficients; ++j) light[j] = radianceAt(draws[draw_index].radiance_word + words * vertex + 3u * j);
+#endif
 #else
   radiance = radianceAt(draws[draw_index].radiance_word + 3u * vertex);
 #ifdef LAMBENT_NEAR_LIGHTS

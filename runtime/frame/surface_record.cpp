@@ -14,12 +14,6 @@ glm::mat3x2 transformOf(const gltf::TextureRef& texture) {
   return {texture.apply({1.0f, 0.0f}) - origin, texture.apply({0.0f, 1.0f}) - origin, origin};
 }
 
-TextureSlot slotOf(const gltf::TextureRef& texture, const streaming::ResidentMesh& mesh) {
-  const std::uint32_t set = texture.texcoord;
-  const bool there = texture.texture >= 0 && set < 2 && mesh.texcoords_word[set] != kAbsent;
-  return {.texture_from_coordinates = transformOf(texture), .set = there ? set : kAbsent, .pad = 0};
-}
-
 // Undoes how the normal matrix was made, so that a group that moves turns nothing. A flattened mesh has no
 // inverse, and its normals went by the matrix itself.
 glm::mat3 directionMatrix(const glm::mat3& front_normal) {
@@ -29,6 +23,12 @@ glm::mat3 directionMatrix(const glm::mat3& front_normal) {
 }
 
 }  // namespace
+
+TextureSlot slotOf(const gltf::TextureRef& texture, const streaming::ResidentMesh& mesh) {
+  const std::uint32_t set = texture.texcoord;
+  const bool there = texture.texture >= 0 && set < 2 && mesh.texcoords_word[set] != kAbsent;
+  return {.texture_from_coordinates = transformOf(texture), .set = there ? set : kAbsent, .pad = 0};
+}
 
 gltf::Material materialOf(const World& world, std::size_t draw) {
   const streaming::ResidentDraw& resident = world.residency().draws()[draw];
@@ -41,7 +41,7 @@ glm::vec3 emissionOf(const World& world, std::size_t draw) {
 }
 
 bool normalMapped(const World& world, std::size_t draw) {
-  return world.residency().draws()[draw].outputs > 1;
+  return world.residency().draws()[draw].outputs == bundle::kMappedOutputs;
 }
 
 SurfaceDraw describe(const World& world, std::size_t draw) {
@@ -81,8 +81,19 @@ SurfaceTextures texturesOf(const World& world, std::size_t draw, const SurfaceDr
   // What gives off no light and what takes it at its vertices need not part batches by textures left unread.
   if (record.emissive_texture.set != kAbsent && glm::vec3(record.emission) != glm::vec3(0.0f))
     textures.emissive = material.emissive_texture.texture;
-  if (record.normal_texture.set != kAbsent && normalMapped(world, draw))
+  const bool glossy = world.residency().draws()[draw].glossy();
+  if (record.normal_texture.set != kAbsent && (glossy || normalMapped(world, draw)))
     textures.normal = material.normal_texture.texture;
+  if (glossy) {
+    const streaming::ResidentMesh& mesh = world.residency().meshes()[world.residency().draws()[draw].mesh];
+    const auto textureOf = [&](const gltf::TextureRef& reference) {
+      return slotOf(reference, mesh).set != kAbsent ? reference.texture : -1;
+    };
+    textures.metallic_roughness = textureOf(material.metallic_roughness_texture);
+    textures.specular = textureOf(material.specular_texture);
+    textures.specular_color = textureOf(material.specular_color_texture);
+    textures.anisotropy = textureOf(material.anisotropy_texture);
+  }
   if (textures != SurfaceTextures{})
     textures.bundle = static_cast<std::int32_t>(world.residency().draws()[draw].bundle);
   return textures;

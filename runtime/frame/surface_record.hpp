@@ -18,8 +18,13 @@ namespace lambent::frame {
 // Of the bundle's tables; -1: none.
 struct SurfaceTextures {
   std::int32_t bundle = -1, base_color = -1, emissive = -1, normal = -1;
+  // Of glossy draws.
+  std::int32_t metallic_roughness = -1, specular = -1, specular_color = -1, anisotropy = -1;
   auto operator<=>(const SurfaceTextures&) const = default;
 };
+
+// How a mesh looks into a texture; absent where it lacks the coordinates.
+TextureSlot slotOf(const gltf::TextureRef& texture, const streaming::ResidentMesh& mesh);
 
 gltf::Material materialOf(const World& world, std::size_t draw);
 

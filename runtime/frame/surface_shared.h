@@ -25,11 +25,18 @@ LAMBENT_CONSTANT kBindView = 0u;      // uniform block ViewBlock
 LAMBENT_CONSTANT kBindDraws = 0u;     // SurfaceDraw
 LAMBENT_CONSTANT kBindGeometry = 1u;  // arena page
 LAMBENT_CONSTANT kBindRadiance = 2u;  // arena page
+LAMBENT_CONSTANT kBindRows = 3u;      // arena page: rows of the vertices of glossy draws
+LAMBENT_CONSTANT kBindSamples = 4u;   // arena page: their samples
 LAMBENT_CONSTANT kAbsent = 0xffffffffu;
 
 LAMBENT_CONSTANT kUnitBaseColor = 0u;  // texture units
 LAMBENT_CONSTANT kUnitEmissive = 1u;
 LAMBENT_CONSTANT kUnitNormal = 2u;
+LAMBENT_CONSTANT kUnitMetallicRoughness = 3u;  // from here on of glossy draws
+LAMBENT_CONSTANT kUnitSpecular = 4u;
+LAMBENT_CONSTANT kUnitSpecularColor = 5u;
+LAMBENT_CONSTANT kUnitAnisotropy = 6u;
+LAMBENT_CONSTANT kUnitBrdf = 7u;  // table of b(v)
 
 LAMBENT_CONSTANT kAlphaOpaque = 0u;  // alpha is 1
 LAMBENT_CONSTANT kAlphaMask = 1u;    // below the cutoff nothing is there
@@ -43,6 +50,28 @@ struct TextureSlot {
   mat3x2 texture_from_coordinates;  // KHR_texture_transform, on (u, v, 1)
   uint set;                         // TEXCOORD_0 or TEXCOORD_1; kAbsent: no texture
   uint pad;
+};
+
+// What glossy draws have besides (effects/glossy).
+struct GlossyPart {
+  mat3x4 group_from_world;  // rotation
+  vec4 dielectric;          // ((ior - 1) / (ior + 1))² times the specular colour; w: specular
+  TextureSlot metallic_roughness_texture;
+  TextureSlot specular_texture;
+  TextureSlot specular_color_texture;
+  TextureSlot anisotropy_texture;
+  float metallic;
+  float roughness;
+  float anisotropy;
+  float direction_cos, direction_sin;  // of the longer lobe against the tangent
+  uint roughnesses, strengths;         // nodes of the table
+  uint indices_word;
+  uint rows_word;  // vertex_count + 1 offsets, then samples, then weights two to a word
+  uint row_entries;
+  uint vertex_count;
+  uint first_sample;  // vec4 index of output o of sample s: first_sample + outputs s + o
+  uint draw;          // of the residency
+  uint glossy_pad[3];
 };
 
 struct SurfaceDraw {
@@ -66,10 +95,19 @@ struct SurfaceDraw {
   uint alpha_mode;
   float alpha_cutoff;
   uint unlit;
+#ifdef LAMBENT_GLOSSY
+  GlossyPart glossy;
+#endif
 };
 
 #ifdef __cplusplus
 #undef LAMBENT_CONSTANT
+struct GlossyDraw {
+  SurfaceDraw surface;
+  GlossyPart glossy;
+};
+static_assert(sizeof(GlossyPart) == 256 && offsetof(GlossyPart, metallic) == 192 && sizeof(GlossyDraw) == 592 &&
+              offsetof(GlossyDraw, glossy) == 336);
 static_assert(sizeof(TextureSlot) == 32 && offsetof(TextureSlot, set) == 24);
 static_assert(sizeof(SurfaceDraw) == 336 && offsetof(SurfaceDraw, base_color) == 160 &&
               offsetof(SurfaceDraw, base_color_texture) == 192 && offsetof(SurfaceDraw, normal_scale) == 288);

@@ -15,35 +15,51 @@ constexpr gpu::FindText kShaders[] = {&embedded::lambent_frame::find};
 
 struct ViewBlock {
   glm::mat4 view_from_world, clip_from_view;
+  glm::vec4 eye;  // as glossy_surface.glsl has it
 };
+
+glm::vec4 eyeOf(const spec::View& view) {
+  const bool perspective = view.clip_from_view[2][3] != 0.0f;
+  if (perspective) return {view.eye_ws, 1.0f};
+  const glm::mat4& from_world = view.view_from_world;
+  return {from_world[0][2], from_world[1][2], from_world[2][2], 0.0f};
+}
 
 }  // namespace
 
 Surfaces::Surfaces()
-    : indices_("surface"), draws_("surface draws"), commands_("surface commands"), view_("view") {}
+    : indices_("surface"),
+      draws_("surface draws"),
+      glossy_draws_("glossy draws"),
+      commands_("surface commands"),
+      view_("view") {}
 
 Result<Surfaces> Surfaces::create(bool finest_texels) {
   Surfaces surfaces;
   surfaces.finest_texels_ = finest_texels;
-  if (const Result<void> done = surfaces.compile(/*near_lit=*/false); !done) return failAgain(done.error());
+  for (const bool normal_mapped : {false, true})
+    if (const Result<void> done = surfaces.compile({.normal_mapped = normal_mapped}); !done)
+      return failAgain(done.error());
   return surfaces;
 }
 
-Result<void> Surfaces::compile(bool near_lit) {
-  for (const bool normal_mapped : {false, true}) {
-    gpu::Program& place = programs_[programOf(normal_mapped, near_lit)];
-    if (place) continue;
-    std::vector<gpu::Define> defines;
-    if (finest_texels_) defines.push_back({"LAMBENT_FINEST_TEXELS", "1"});
-    if (normal_mapped) defines.push_back({"LAMBENT_NORMAL_MAPPED", "1"});
-    if (near_lit) defines.push_back({"LAMBENT_NEAR_LIGHTS", "1"});
-    Result<gpu::Program> program = gpu::Program::create(
-        "surface", {{GL_VERTEX_SHADER, "surface.vert"}, {GL_FRAGMENT_SHADER, "surface.frag"}}, kShaders,
-        defines);
-    if (!program) return failAgain(program.error());
-    place = std::move(*program);
-  }
+Result<void> Surfaces::compile(const ProgramKind& kind) {
+  if (programs_.contains(kind)) return {};
+  std::vector<gpu::Define> defines;
+  if (kind.glossy.bands > 0) defines = definesOf(kind.glossy);
+  if (finest_texels_) defines.push_back({"LAMBENT_FINEST_TEXELS", "1"});
+  if (kind.normal_mapped) defines.push_back({"LAMBENT_NORMAL_MAPPED", "1"});
+  if (kind.near_lit) defines.push_back({"LAMBENT_NEAR_LIGHTS", "1"});
+  Result<gpu::Program> program = gpu::Program::create(
+      "surface", {{GL_VERTEX_SHADER, "surface.vert"}, {GL_FRAGMENT_SHADER, "surface.frag"}}, kShaders,
+      defines);
+  if (!program) return failAgain(program.error());
+  programs_.emplace(kind, std::move(*program));
   return {};
+}
+
+bool Surfaces::ready(const World& world, const effects::diffuse::Diffuse& diffuse, std::size_t draw) const {
+  return world.residency().draws()[draw].glossy() ? glossyReady(world, draw) : diffuse.shaded(draw);
 }
 
 void Surfaces::collect(World& world, const effects::diffuse::Diffuse& diffuse, glm::vec3 eye_ws,
@@ -51,7 +67,7 @@ void Surfaces::collect(World& world, const effects::diffuse::Diffuse& diffuse, g
   const streaming::Residency& residency = world.residency();
   for (std::uint32_t i = 0; i < residency.draws().size(); ++i) {
     const streaming::ResidentDraw& draw = residency.draws()[i];
-    if (!diffuse.shaded(i)) continue;
+    if (!ready(world, diffuse, i)) continue;
     const streaming::ResidentMesh& mesh = residency.meshes()[draw.mesh];
     const glm::mat4& world_from_mesh = records_[i].world_from_mesh;
     Item item{.state = {.geometry_page = mesh.block.page,
@@ -62,6 +78,15 @@ void Surfaces::collect(World& world, const effects::diffuse::Diffuse& diffuse, g
                         .clockwise = (glm::determinant(glm::mat3(world_from_mesh)) < 0.0f) != draw.back},
               .draw = i,
               .distance = glm::distance(eye_ws, glm::vec3(world_from_mesh * glm::vec4(mesh.center, 1.0f)))};
+    if (draw.glossy()) {
+      item.state.glossy = glossyKindOf(world, i);
+      item.state.bundle = draw.bundle;
+      item.state.brdf_table = brdfTableOf(world, i);
+      item.state.rows_page = draw.rows.page;
+      item.state.samples_page = residency.groups()[draw.group].samples.page;
+      glossy_index_[i] = static_cast<std::uint32_t>(glossy_records_.size());
+      glossy_records_.push_back({.surface = records_[i], .glossy = describeGlossy(world, i)});
+    }
     (records_[i].alpha_mode == kAlphaBlend ? blended : opaque).push_back(item);
   }
 }
@@ -74,19 +99,18 @@ void Surfaces::appendRuns(const World& world, const std::vector<Item>& items, st
     if (runs.empty() || runs.back().state != item.state)
       runs.push_back({item.state, static_cast<std::uint32_t>(commands.size()), 0});
     ++runs.back().command_count;
-    commands.push_back({mesh.index_count, 1, mesh.indices_word, 0, item.draw});
+    const std::uint32_t record = item.state.glossy.bands > 0 ? glossy_index_[item.draw] : item.draw;
+    commands.push_back({mesh.index_count, 1, mesh.indices_word, 0, record});
   }
 }
 
 Result<void> Surfaces::prepare(World& world, const effects::diffuse::Diffuse& diffuse, const spec::View& view,
                                gpu::Counters& counters, const NearLights* near_lights) {
-  if (near_lights != nullptr && near_lights->any())
-    if (Result<void> done = compile(/*near_lit=*/true); !done) return done;
-  const ViewBlock block{view.view_from_world, view.clip_from_view};
+  const ViewBlock block{view.view_from_world, view.clip_from_view, eyeOf(view)};
   view_.assign(std::span<const ViewBlock>(&block, 1));
   const streaming::Residency& residency = world.residency();
   std::size_t shaded = 0;
-  for (std::size_t i = 0; i < residency.draws().size(); ++i) shaded += diffuse.shaded(i) ? 1 : 0;
+  for (std::size_t i = 0; i < residency.draws().size(); ++i) shaded += ready(world, diffuse, i) ? 1 : 0;
   const std::uint64_t near_version = near_lights != nullptr ? near_lights->version() : 0;
   const bool scene_same = residency.version() == residency_seen_ && near_version == near_seen_ &&
                           world.transformsVersion() == transforms_seen_ &&
@@ -101,6 +125,8 @@ Result<void> Surfaces::prepare(World& world, const effects::diffuse::Diffuse& di
 
   records_.clear();
   for (std::size_t i = 0; i < residency.draws().size(); ++i) records_.push_back(describe(world, i));
+  glossy_records_.clear();
+  glossy_index_.assign(records_.size(), 0);
   std::vector<Item> opaque, blended;
   collect(world, diffuse, view.eye_ws, near_lights, opaque, blended);
   std::stable_sort(opaque.begin(), opaque.end(),
@@ -112,9 +138,15 @@ Result<void> Surfaces::prepare(World& world, const effects::diffuse::Diffuse& di
   blended_.clear();
   appendRuns(world, opaque, opaque_, commands);
   appendRuns(world, blended, blended_, commands);
+  for (const std::vector<Run>* runs : {&opaque_, &blended_})
+    for (const Run& run : *runs)
+      if (Result<void> done = compile(kindOf(run.state)); !done) return done;
   draws_.assign(std::span<const SurfaceDraw>(records_));
+  if (!glossy_records_.empty()) glossy_draws_.assign(std::span<const GlossyDraw>(glossy_records_));
   commands_.assign(std::span<const DrawCommand>(commands));
-  counters.uploaded_bytes += records_.size() * sizeof(SurfaceDraw) + commands.size() * sizeof(DrawCommand);
+  counters.uploaded_bytes += records_.size() * sizeof(SurfaceDraw) +
+                             glossy_records_.size() * sizeof(GlossyDraw) +
+                             commands.size() * sizeof(DrawCommand);
   indices_.reserve(records_.size());
   return {};
 }
@@ -123,15 +155,22 @@ void Surfaces::drawRuns(World& world, const std::vector<Run>& runs, gpu::Counter
   if (runs.empty()) return;
   glBindBufferBase(GL_UNIFORM_BUFFER, kBindView, view_.buffer().id());
   glBindBuffer(GL_DRAW_INDIRECT_BUFFER, commands_.buffer().id());
-  draws_.bindStorage(kBindDraws);
   glEnable(GL_CULL_FACE);  // double-sided surfaces are two draws
   for (const Run& run : runs) {
     const gpu::Buffer& geometry = world.residency().geometry().page(run.state.geometry_page);
     geometry.bindStorage(kBindGeometry);
     indices_.bind(geometry);
-    world.residency().radiance().page(run.state.radiance_page).bindStorage(kBindRadiance);
-    programs_[programOf(run.state.normal_mapped, run.state.near_lit)].use();
+    programs_.at(kindOf(run.state)).use();
     units_.bind(world, run.state.textures);
+    if (run.state.glossy.bands > 0) {
+      glossy_draws_.bindStorage(kBindDraws);
+      world.residency().rows().page(run.state.rows_page).bindStorage(kBindRows);
+      world.residency().samples().page(run.state.samples_page).bindStorage(kBindSamples);
+      units_.bindGlossy(world, run.state.textures, run.state.bundle, run.state.brdf_table);
+    } else {
+      draws_.bindStorage(kBindDraws);
+      world.residency().radiance().page(run.state.radiance_page).bindStorage(kBindRadiance);
+    }
     glFrontFace(run.state.clockwise ? GL_CW : GL_CCW);
     DrawIndices::draw(run.first_command, run.command_count, counters);
   }

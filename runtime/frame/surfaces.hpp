@@ -1,12 +1,13 @@
 // Draws every resident, shaded primitive: opaque and masked ones in as few multi-draws as textures, pages and
 // culling allow, blended ones afterwards from back to front. Reads the arenas; writes the bound framebuffer.
 // Back faces of single-sided materials are culled, as glTF asks; mirrored nodes turn their winding. Draws
-// that near lights shine on have programs of their own, compiled when the first of them comes. Errors:
-// shaders that do not compile on this device.
+// that near lights shine on and glossy ones have programs of their own, compiled when the first of them
+// comes; glossy ones are shaded here altogether, per pixel. Errors: shaders that do not compile on this
+// device.
 #pragma once
 
-#include <array>
 #include <compare>
+#include <map>
 #include <vector>
 
 #include <glm/vec3.hpp>
@@ -14,6 +15,7 @@
 #include "runtime/base/result.hpp"
 #include "runtime/effects/diffuse/diffuse.hpp"
 #include "runtime/frame/draw_indices.hpp"
+#include "runtime/frame/glossy_record.hpp"
 #include "runtime/frame/near_lights.hpp"
 #include "runtime/frame/surface_record.hpp"
 #include "runtime/frame/surface_shared.h"
@@ -40,7 +42,11 @@ class Surfaces {
   // Draws that may go into one multi-draw.
   struct State {
     std::uint32_t geometry_page = 0, radiance_page = 0;
-    SurfaceTextures textures;
+    SurfaceTextures textures = {};
+    // Of glossy draws.
+    GlossyKind glossy = {};
+    std::uint32_t bundle = 0, rows_page = 0, samples_page = 0;
+    std::int32_t brdf_table = -1;
     bool normal_mapped = false;
     bool near_lit = false;
     bool clockwise = false;  // which winding is seen
@@ -57,10 +63,17 @@ class Surfaces {
   };
 
   Surfaces();
-  static std::size_t programOf(bool normal_mapped, bool near_lit) {
-    return (normal_mapped ? 1u : 0u) + (near_lit ? 2u : 0u);
+  // What a program is compiled for.
+  struct ProgramKind {
+    bool normal_mapped = false, near_lit = false;
+    GlossyKind glossy = {};
+    auto operator<=>(const ProgramKind&) const = default;
+  };
+  static ProgramKind kindOf(const State& state) {
+    return {.normal_mapped = state.normal_mapped, .near_lit = state.near_lit, .glossy = state.glossy};
   }
-  Result<void> compile(bool near_lit);
+  Result<void> compile(const ProgramKind& kind);
+  bool ready(const World& world, const effects::diffuse::Diffuse& diffuse, std::size_t draw) const;
   void collect(World& world, const effects::diffuse::Diffuse& diffuse, glm::vec3 eye_ws,
                const NearLights* near_lights, std::vector<Item>& opaque, std::vector<Item>& blended);
   void appendRuns(const World& world, const std::vector<Item>& items, std::vector<Run>& runs,
@@ -68,12 +81,13 @@ class Surfaces {
   void drawRuns(World& world, const std::vector<Run>& runs, gpu::Counters& counters);
 
   bool finest_texels_ = false;
-  // Light as radiance, light for normal maps; then both with near lights, if they were needed.
-  std::array<gpu::Program, 4> programs_;
+  std::map<ProgramKind, gpu::Program> programs_;  // as they were first needed
   TextureUnits units_;
   DrawIndices indices_;
-  gpu::Table draws_, commands_, view_;
+  gpu::Table draws_, glossy_draws_, commands_, view_;
   std::vector<SurfaceDraw> records_;
+  std::vector<GlossyDraw> glossy_records_;
+  std::vector<std::uint32_t> glossy_index_;  // of a draw among them
   std::vector<Run> opaque_, blended_;
   std::uint64_t residency_seen_ = 0, transforms_seen_ = 0, lamps_seen_ = 0, near_seen_ = 0;
   std::size_t shaded_seen_ = 0;

@@ -56,6 +56,7 @@ void Table::assignBytes(std::span<const std::byte> bytes) {
 Texture::Texture(std::string_view label, const TextureDesc& desc)
     : Handle(made([&](GLuint* id) {
         glCreateTextures(desc.cube          ? GL_TEXTURE_CUBE_MAP
+                         : desc.layers > 0  ? GL_TEXTURE_2D_ARRAY
                          : desc.samples > 0 ? GL_TEXTURE_2D_MULTISAMPLE
                                             : GL_TEXTURE_2D,
                          1, id);
@@ -65,6 +66,9 @@ Texture::Texture(std::string_view label, const TextureDesc& desc)
   if (desc.samples > 0)
     glTextureStorage2DMultisample(id(), static_cast<GLsizei>(desc.samples), desc.format, width, height,
                                   GL_TRUE);
+  else if (desc.layers > 0)
+    glTextureStorage3D(id(), static_cast<GLsizei>(desc.levels), desc.format, width, height,
+                       static_cast<GLsizei>(desc.layers));
   else
     glTextureStorage2D(id(), static_cast<GLsizei>(desc.levels), desc.format, width, height);
   setLabel(GL_TEXTURE, id(), label);

@@ -98,6 +98,7 @@ struct TextureDesc {
   std::uint32_t levels = 1;
   std::uint32_t samples = 0;  // 0: single-sampled
   bool cube = false;
+  std::uint32_t layers = 0;  // 0: no array
 };
 
 class Texture : public Handle<TextureTraits> {

@@ -25,7 +25,7 @@ void evaluateMany(const T* xs, const T* ys, const T* zs, std::size_t count, T* o
 // Calls f with std::integral_constant<int, order>.
 template <typename F>
 void withOrder(int order, F&& f) {
-  assert(order >= 1 && order <= kMaxOrder);
+  assert(order >= 1 && order <= kMaxBasisOrder);
   switch (order) {
     case 1:
       return f(std::integral_constant<int, 1>{});
@@ -43,6 +43,12 @@ void withOrder(int order, F&& f) {
       return f(std::integral_constant<int, 7>{});
     case 8:
       return f(std::integral_constant<int, 8>{});
+    case 9:
+      return f(std::integral_constant<int, 9>{});
+    case 10:
+      return f(std::integral_constant<int, 10>{});
+    case 11:
+      return f(std::integral_constant<int, 11>{});
   }
 }
 

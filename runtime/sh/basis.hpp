@@ -17,7 +17,8 @@
 
 namespace lambent::sh {
 
-constexpr int kMaxOrder = 8;
+constexpr int kMaxOrder = 8;        // of light and everything that is stored for it
+constexpr int kMaxBasisOrder = 11;  // of the functions and rotations: visibility in 6 + 6 - 1 bands (gaunt.hpp)
 
 constexpr int coefficientCount(int order) {
   return order * order;
@@ -35,7 +36,7 @@ constexpr int bandOf(int i) {
 
 constexpr int kMaxCoefficients = coefficientCount(kMaxOrder);
 
-// All n² values at one unit direction; out holds at least n² entries. order in 1..kMaxOrder.
+// All n² values at one unit direction; out holds at least n² entries. order in 1..kMaxBasisOrder.
 template <std::floating_point T>
 void evaluate(int order, T x, T y, T z, std::type_identity_t<std::span<T>> out);
 
@@ -94,7 +95,7 @@ constexpr void unrolled(std::integer_sequence<int, I...>, F&& f) {
 // each i, in columns of equal |m|. T may be any type with +, -, * among itself and construction from double.
 template <int Order, typename T, typename Sink>
 inline void evaluateFixed(T x, T y, T z, Sink&& sink) {
-  static_assert(Order >= 1 && Order <= kMaxOrder);
+  static_assert(Order >= 1 && Order <= kMaxBasisOrder);
   const T z_squared = z * z;
   T c = T(1), s = T(0);  // Re and Im of (x + iy)^m
   detail::unrolled(std::make_integer_sequence<int, Order>{}, [&](auto m_constant) {

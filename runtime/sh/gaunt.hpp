@@ -1,5 +1,5 @@
-// Products of functions given by spherical harmonics: Γ_ijk = ∫ y_i y_j y_k, sparse. With V in bands_in + bands_out - 1
-// bands the product V L of a light of bands_in bands is exact in its first bands_out bands:
+// Products of functions given by spherical harmonics: Γ_ijk = ∫ y_i y_j y_k, sparse. With V in bands_in +
+// bands_out - 1 bands the product V L of a light of bands_in bands is exact in its first bands_out bands:
 //   l'_i = Σ_jk Γ_ijk V_k l_j,   M_ij = Σ_k Γ_ijk V_k.
 #pragma once
 
@@ -25,7 +25,7 @@ struct GauntTable {
   int visibilityBands() const { return bands_in + bands_out - 1; }
 };
 
-// Orders 1..6. Exact to double rounding (by quadrature that integrates such polynomials exactly).
+// Bands 1..6. Exact to float rounding (by quadrature in double that integrates such polynomials exactly).
 GauntTable makeGauntTable(int bands_in, int bands_out);
 
 // matrix[i * bands_in² + j] += Σ_k Γ_ijk V_k.

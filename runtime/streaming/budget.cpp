@@ -2,7 +2,9 @@
 
 #include <variant>
 
+#include "runtime/streaming/brdf_texture.hpp"
 #include "runtime/streaming/image_decode.hpp"
+#include "runtime/streaming/image_uses.hpp"
 #include "runtime/streaming/sizes.hpp"
 #include "runtime/streaming/work.hpp"
 
@@ -10,29 +12,21 @@ namespace lambent::streaming {
 
 namespace {
 
-// As many copies as residency will make of each image: at most two, one as colour and one as normals.
-std::uint64_t copiesOf(const bundle::Description& d, std::size_t image) {
-  bool color = false, normals = false;
-  const auto names = [&](const gltf::TextureRef& reference) {
-    return reference.texture >= 0 &&
-           d.textures[static_cast<std::size_t>(reference.texture)].image == static_cast<std::int32_t>(image);
-  };
-  for (const gltf::Material& material : d.materials) {
-    color |= names(material.base_color_texture) || names(material.emissive_texture);
-    normals |= names(material.normal_texture);
-  }
-  return color && normals ? 2 : 1;
-}
-
 Result<std::uint64_t> textureBytes(const bundle::Reader& reader) {
   const bundle::Description& d = reader.description();
   std::uint64_t bytes = 0;
+  const std::vector<ImageUse> uses = imageUses(d);
   for (std::size_t i = 0; i < d.images.size(); ++i) {
     const auto file = reader.readView(d.images[i].view);
     if (!file) return failAgain(file.error());
     const auto size = imageSize(*file, reader.path().string() + ": image \"" + d.images[i].name + "\"");
     if (!size) return failAgain(size.error());
-    bytes += copiesOf(d, i) * size->rgbaBytes() * 4 / 3;
+    bytes += uses[i].copies() * size->rgbaBytes() * 4 / 3;
+  }
+  for (std::uint32_t i = 0; i < d.brdf_tables.size(); ++i) {
+    const auto table = reader.readBrdfTable(i);
+    if (!table) return failAgain(table.error());
+    bytes += packBrdf(*table).bytes();
   }
   return bytes;
 }

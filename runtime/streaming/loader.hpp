@@ -16,6 +16,7 @@
 #include "runtime/bundle/light_weights.hpp"
 #include "runtime/bundle/mesh.hpp"
 #include "runtime/bundle/reader.hpp"
+#include "runtime/streaming/brdf_texture.hpp"
 
 namespace lambent::streaming {
 
@@ -56,13 +57,19 @@ struct ProxyReady {
   bundle::CaptureProxy proxy;
 };
 
-using Ready =
-    std::variant<MeshReady, ImageReady, RowsReady, CodebookReady, PlaneReady, LightWeightsReady, ProxyReady>;
+struct BrdfReady {
+  std::uint32_t table = 0;  // of Description::brdf_tables
+  bundle::BrdfTable data;
+  BrdfTexels texels;
+};
+
+using Ready = std::variant<MeshReady, ImageReady, RowsReady, CodebookReady, PlaneReady, LightWeightsReady,
+                           ProxyReady, BrdfReady>;
 
 class Loader {
  public:
-  // Starts `threads` workers (at least 1) on everything in the bundle: meshes and rows first, then images,
-  // then codebooks and planes by priority.
+  // Starts `threads` workers (at least 1) on everything in the bundle: meshes and rows first, then
+  // tables of BRDFs, images, then codebooks and planes by priority.
   Loader(std::shared_ptr<const bundle::Reader> reader, unsigned threads);
   // Brings only what `wanted` still lists: the bundle's description with weight planes cut off (budget.hpp).
   Loader(std::shared_ptr<const bundle::Reader> reader, bundle::Description wanted, unsigned threads);

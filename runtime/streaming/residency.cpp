@@ -85,23 +85,6 @@ gpu::Texture makeTexture(const std::string& label, GLenum format, const ImageRea
   return texture;
 }
 
-std::vector<ImageUse> imageUses(const bundle::Description& description) {
-  std::vector<ImageUse> uses(description.images.size());
-  const auto useOf = [&](const gltf::TextureRef& reference) -> ImageUse* {
-    if (reference.texture < 0) return nullptr;
-    const std::int32_t image = description.textures[static_cast<std::size_t>(reference.texture)].image;
-    return image >= 0 ? &uses[static_cast<std::size_t>(image)] : nullptr;
-  };
-  for (const gltf::Material& material : description.materials) {
-    if (ImageUse* use = useOf(material.base_color_texture)) use->color = true;
-    if (ImageUse* use = useOf(material.emissive_texture)) use->color = true;
-    if (ImageUse* use = useOf(material.normal_texture)) use->normals = true;
-  }
-  // What no material names may yet be asked for: as colour, the usual.
-  for (ImageUse& use : uses) use.color |= !use.normals;
-  return uses;
-}
-
 }  // namespace
 
 bool ResidentCell::usable() const {
@@ -134,9 +117,13 @@ Result<std::uint32_t> Residency::add(const bundle::Description& description) {
                         .images = std::vector<gpu::Texture>(description.images.size()),
                         .linear_images = std::vector<gpu::Texture>(description.images.size()),
                         .image_uses = imageUses(description),
+                        .brdf_families = {},
+                        .brdf_tables = std::vector<BrdfTexture>(description.brdf_tables.size()),
                         .first_group = static_cast<std::uint32_t>(groups_.size()),
                         .first_draw = static_cast<std::uint32_t>(draws_.size()),
                         .first_mesh = {}};
+  for (const bundle::BrdfTableEntry& entry : description.brdf_tables)
+    bundle.brdf_families.push_back(entry.family);
   for (const bundle::Mesh& mesh : description.meshes) {
     bundle.first_mesh.push_back(static_cast<std::uint32_t>(meshes_.size()));
     for (const bundle::Primitive& primitive : mesh.primitives) {
@@ -157,6 +144,7 @@ Result<std::uint32_t> Residency::add(const bundle::Description& description) {
                            .cell_count = static_cast<std::uint32_t>(group.cells.size()),
                            .plain_samples = group.samplesWith(1),
                            .mapped_samples = group.samplesWith(bundle::kMappedOutputs),
+                           .glossy_outputs = 0,
                            .samples = {},
                            .light_samples = group.light_samples,
                            .proxy = {}};
@@ -174,6 +162,7 @@ Result<std::uint32_t> Residency::add(const bundle::Description& description) {
         resident_cell.transfers.push_back(describe(transfer));
         resident.order = std::max(resident.order, transfer.shape.order);
       }
+      if (resident_cell.glossy()) resident.glossy_outputs = resident_cell.outputs;
       cells_.push_back(std::move(resident_cell));
     }
     groups.push_back(resident);
@@ -256,11 +245,12 @@ Result<void> Residency::put(std::uint32_t bundle, const MeshReady& item) {
   }
   for (ResidentDraw& draw : draws_) {
     if (draw.mesh != index) continue;
+    draw.version = version_;
+    if (draw.glossy()) continue;
     const Result<gpu::Allocation> radiance =
         radiance_.allocate(4ull * radianceWords(draw.outputs) * mesh.vertex_count);
     if (!radiance) return failAgain(radiance.error());
     draw.radiance = *radiance;
-    draw.version = version_;
   }
   return {};
 }
@@ -270,9 +260,8 @@ Result<void> Residency::put(std::uint32_t bundle, const ImageReady& item) {
   const ImageUse use = owner.image_uses[item.image];
   const std::string label = fmt::format("image {}.{}", bundle, item.image);
   if (use.color) owner.images[item.image] = makeTexture(label, GL_SRGB8_ALPHA8, item);
-  if (use.normals) owner.linear_images[item.image] = makeTexture(label + " linear", GL_RGBA8, item);
-  const std::uint64_t copies = (use.color ? 1u : 0u) + (use.normals ? 1u : 0u);
-  texture_bytes_ += copies * item.width * item.height * 4 * 4 / 3;
+  if (use.linear) owner.linear_images[item.image] = makeTexture(label + " linear", GL_RGBA8, item);
+  texture_bytes_ += std::uint64_t{use.copies()} * item.width * item.height * 4 * 4 / 3;
   return {};
 }
 
@@ -365,6 +354,15 @@ Result<void> Residency::put(std::uint32_t bundle, const ProxyReady& item) {
   return {};
 }
 
+Result<void> Residency::put(std::uint32_t bundle, const BrdfReady& item) {
+  Result<BrdfTexture> made =
+      makeBrdfTexture(item.data, item.texels, fmt::format("BRDF table {}", item.table));
+  if (!made) return failAgain(made.error());
+  bundles_[bundle].brdf_tables[item.table] = std::move(*made);
+  texture_bytes_ += item.texels.bytes();
+  return {};
+}
+
 std::uint64_t Residency::bytesResident() const {
   return geometry_.bytesUsed() + transfer_.bytesUsed() + samples_.bytesUsed() + rows_.bytesUsed() +
          radiance_.bytesUsed() + texture_bytes_;
@@ -398,6 +396,7 @@ std::uint64_t Residency::uploadBytes(const Ready& item) {
       return sizeof(bundle::LightWeights) * weights.samples.size();
     }
     std::uint64_t operator()(const ProxyReady&) const { return 0; }  // stays in memory
+    std::uint64_t operator()(const BrdfReady& ready) const { return ready.texels.bytes(); }
   };
   return std::visit(Size{}, item);
 }

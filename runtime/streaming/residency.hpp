@@ -16,6 +16,8 @@
 #include "runtime/bundle/description.hpp"
 #include "runtime/gpu/arena.hpp"
 #include "runtime/gpu/objects.hpp"
+#include "runtime/streaming/brdf_texture.hpp"
+#include "runtime/streaming/image_uses.hpp"
 #include "runtime/streaming/loader.hpp"
 
 namespace lambent::streaming {
@@ -68,6 +70,7 @@ struct ResidentCell {
   // Enough has arrived to look better than no shadows at all: light weights, every transfer with its codebook
   // and with planes that carry kUsableVariance of what all its planes carry.
   bool usable() const;
+  bool glossy() const { return outputs > bundle::kMappedOutputs; }
 };
 inline constexpr float kUsableVariance = 0.9f;
 
@@ -77,8 +80,11 @@ struct ResidentGroup {
   std::uint32_t first_cell = 0, cell_count = 0;  // into cells()
   // Samples by their outputs, in this order: one, nine, and those of glossy surfaces.
   std::uint32_t plain_samples = 0, mapped_samples = 0;
-  gpu::Allocation samples;  // a vec4 per sample and output, zero until shaded
-  std::vector<glm::vec3> light_samples;          // group frame
+  std::uint32_t glossy_outputs = 0;  // of its glossy samples; 0: it has none
+  // A vec4 per sample and output, zero until shaded. w: 1 once it is; of glossy samples V_i, the visibility's
+  // own coefficient.
+  gpu::Allocation samples;
+  std::vector<glm::vec3> light_samples;  // group frame
   // What other groups see of it; stays in memory, for it is small. None: not here yet, or nothing to see.
   std::optional<bundle::CaptureProxy> proxy;
 
@@ -96,27 +102,27 @@ struct ResidentDraw {
   std::uint32_t group = 0, mesh = 0;       // into groups() and meshes()
   std::int32_t material = -1;              // of the bundle
   bool back = false;                       // the back of a double-sided surface
-  std::uint32_t outputs = 1;               // 9: normal-mapped
+  std::uint32_t outputs = 1;               // 9: normal-mapped; more: glossy
   glm::mat3 group_from_mesh_normal{1.0f};  // of a back, negated
   gpu::Allocation
       rows;  // vertex_count + 1 offsets, row_entries samples, row_entries unorm16 weights; empty: not here
   std::uint32_t row_entries = 0;
-  gpu::Allocation radiance;  // radianceWords(outputs) floats per vertex, once the mesh is here
+  gpu::Allocation
+      radiance;  // radianceWords(outputs) floats per vertex, once the mesh is here; none where glossy
   std::uint64_t version = 0;
-};
 
-// How the materials read an image.
-struct ImageUse {
-  bool color = false, normals = false;
+  bool glossy() const { return outputs > bundle::kMappedOutputs; }
 };
 
 struct ResidentBundle {
   std::vector<gltf::Material> materials;
   std::vector<gltf::Texture> textures;
-  // By image; empty handle: not here yet. Colours are decoded from sRGB where they are looked up, normals are
+  // By image; empty handle: not here yet. Colours are decoded from sRGB where they are looked up, numbers are
   // not; an image that serves as both lies in both, for each way of reading it has mip levels of its own.
   std::vector<gpu::Texture> images, linear_images;
   std::vector<ImageUse> image_uses;
+  std::vector<bundle::BrdfFamily> brdf_families;  // of the tables
+  std::vector<BrdfTexture> brdf_tables;           // without a texture: not here yet
   // Where the bundle's own indices start in the tables.
   std::uint32_t first_group = 0, first_draw = 0;
   std::vector<std::uint32_t> first_mesh;  // of each mesh's first primitive
@@ -161,6 +167,7 @@ class Residency {
   Result<void> put(std::uint32_t bundle, const PlaneReady& item);
   Result<void> put(std::uint32_t bundle, const LightWeightsReady& item);
   Result<void> put(std::uint32_t bundle, const ProxyReady& item);
+  Result<void> put(std::uint32_t bundle, const BrdfReady& item);
   ResidentCell& cellOf(std::uint32_t bundle, std::uint32_t group, std::uint32_t cell);
   Result<void> reserveCell(ResidentCell& cell);
 

@@ -56,7 +56,7 @@ Needs needsOf(const bundle::Description& description) {
   for (const bundle::Draw& draw : description.draws) {
     const std::uint64_t vertices = description.meshes[draw.mesh].primitives[draw.primitive].vertex_count;
     needs.rows += description.payloads[draw.rows].raw_length + 6 * vertices + 2 * kSlack;
-    needs.radiance += 4ull * radianceWords(draw.outputs) * vertices + kSlack;
+    if (!draw.glossy()) needs.radiance += 4ull * radianceWords(draw.outputs) * vertices + kSlack;
   }
   return needs;
 }

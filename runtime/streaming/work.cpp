@@ -125,6 +125,16 @@ class Load {
     return ProxyReady{work.group, std::move(*proxy)};
   }
 
+  Loaded operator()(const BrdfWork& work) const {
+    const bundle::BrdfTableEntry& entry = description_.brdf_tables[work.table];
+    // Its bytes, the table and the texels: all of a size.
+    if (!reserve_(8 * description_.payloads[entry.payload].raw_length)) return {};
+    auto table = reader_.readBrdfTable(work.table);
+    if (!table) return failAgain(table.error());
+    BrdfTexels texels = packBrdf(*table);
+    return BrdfReady{work.table, std::move(*table), std::move(texels)};
+  }
+
  private:
   // "PATH: WHAT", the subject of an error.
   std::string named(const std::string& what) const { return reader_.path().string() + ": " + what; }
@@ -147,6 +157,7 @@ std::vector<Work> workList(const bundle::Description& d) {
     rows.push_back({d.payloads[d.draws[draw].rows].priority, RowsWork{draw}});
   }
   appendByPriority(list, std::move(rows));
+  for (std::uint32_t table = 0; table < d.brdf_tables.size(); ++table) list.push_back(BrdfWork{table});
   for (std::uint32_t image = 0; image < d.images.size(); ++image) list.push_back(ImageWork{image});
   for (std::uint32_t group = 0; group < d.groups.size(); ++group) {
     const std::int32_t proxy = d.groups[group].proxy;
@@ -191,7 +202,8 @@ std::uint64_t bytesInFile(const bundle::Description& d, const Work& work) {
           [&](const LightWeightsWork& at) {
             return payload(static_cast<std::uint32_t>(cellOf(d, at).light_weights));
           },
-          [&](const ProxyWork& at) { return payload(static_cast<std::uint32_t>(d.groups[at.group].proxy)); }},
+          [&](const ProxyWork& at) { return payload(static_cast<std::uint32_t>(d.groups[at.group].proxy)); },
+          [&](const BrdfWork& at) { return payload(d.brdf_tables[at.table].payload); }},
       work);
 }
 
@@ -221,6 +233,9 @@ std::size_t bytesOf(const Ready& ready) {
                  [](const ProxyReady& item) {
                    return sizeInBytes(item.proxy.positions) + sizeInBytes(item.proxy.triangles) +
                           sizeInBytes(item.proxy.entries) + sizeInBytes(item.proxy.levels);
+                 },
+                 [](const BrdfReady& item) {
+                   return sizeInBytes(item.data.values) + sizeInBytes(item.texels.values);
                  }},
       ready);
 }

@@ -32,7 +32,7 @@ std::size_t vertexCount(const Scene& scene) {
 }
 
 TEST(AssetsScenes, EveryMeshIsSound) {
-  for (const Scene& scene : {gallery(), hello(), knot()})
+  for (const Scene& scene : {gallery(), hello(), knot(), metals()})
     for (const MaterialMesh& mesh : scene.meshes) expectSound(mesh.mesh, scene.name + " " + mesh.name);
 }
 
@@ -41,6 +41,7 @@ TEST(AssetsScenes, HaveTheSizeThatTheyPromise) {
   EXPECT_LT(vertexCount(gallery()), 120000u);
   EXPECT_LT(vertexCount(hello()), 1000u);
   EXPECT_LT(vertexCount(knot()), 20000u);
+  EXPECT_LT(vertexCount(metals()), 50000u);
 }
 
 TEST(AssetsScenes, WallsAndBoxesEncloseAPositiveVolume) {

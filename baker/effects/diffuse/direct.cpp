@@ -15,16 +15,7 @@ namespace lambent::baker {
 
 namespace {
 
-// An origin of which more first hits than this are backs lies inside a body or under something.
-constexpr float kInsideShare = 0.5f;
-// A glance of which so much is blocked asks for a closer look; one that is blocked altogether most likely
-// stands in a closed room, where there is nothing more to see.
-constexpr float kBlockedShare = 0.5f;
-constexpr std::size_t kGlanceRays = 16, kLookRays = 64;
 constexpr int kIncidentOrder = 3;
-// Where more than one ray in so many hits, most packets have one that does, and to ask at once what they hit
-// is faster than to ask first whether they do.
-constexpr std::size_t kAskWhatAtOnce = 6;
 
 TransferField makeField(std::size_t samples, int order, std::uint32_t outputs, std::uint32_t channels,
                         std::uint32_t columns) {
@@ -41,72 +32,51 @@ class DirectPass::Walk {
  public:
   explicit Walk(const DirectPass& pass)
       : pass_(pass),
+        look_(pass.scene_.samples, pass.scene_.rays, pass.glances_),
         group_from_local_(glm::dmat3(1.0), pass.settings_.order),
         incident_from_local_(glm::dmat3(1.0), kIncidentOrder) {}
 
   // Rays of sample `s`. Nothing is traced where it has no face to stand on.
   std::uint32_t look(std::size_t s) {
-    frame_ = localFrame(glm::normalize(glm::dvec3(pass_.scene_.samples.normals[s])));
-    valid_ = outsideOrigins(s);
-    hemisphere_ = &pass_.hemisphereOf(s, closely_);
-    hits_.clear();
-    blocked_.assign(hemisphere_->table().packets(), 0);
-    if (origins_.empty()) return 0;
-    const bool wants_hits = pass_.settings_.keep_hits || !pass_.emitters_.empty();
-    if (!wants_hits) return pass_.scene_.rays.trace(origins_, frame(), hemisphere_->table(), blocked_);
-    const std::uint32_t traced = pass_.scene_.rays.traceHits(origins_, frame(), hemisphere_->table(),
-                                                             mostly_blocked_, blocked_, hits_);
-    mostly_blocked_ = kAskWhatAtOnce * hits_.size() > hemisphere_->table().size();
-    return traced;
+    look_.stand(s);
+    hemisphere_ = &pass_.hemisphereOf(s, look_.closely());
+    return look_.look(hemisphere_->table(), pass_.settings_.keep_hits || !pass_.emitters_.empty());
   }
 
-  bool valid() const { return valid_; }
-  bool closely() const { return closely_; }
+  const SampleLook& looked() const { return look_; }
 
   // Transfer of the sample that was looked at.
   void project(std::span<float> scalar, std::span<float> incident) {
     const std::size_t bands = static_cast<std::size_t>(sh::coefficientCount(pass_.settings_.order));
     local_.resize(bands);
-    hemisphere_->projection().project(blocked_, local_);
-    group_from_local_.set(frame_);
+    hemisphere_->projection().project(look_.blocked(), local_);
+    group_from_local_.set(look_.frame());
     group_from_local_.apply(std::span<const float>(local_), scalar.first(bands));
     for (std::uint32_t c = 1; c < pass_.channels_; ++c)
       std::copy_n(scalar.begin(), bands, scalar.begin() + static_cast<std::ptrdiff_t>(c * pass_.columns_));
     if (!incident.empty()) projectIncident(bands, incident);
-    const LightSums sums{.scalar = scalar,
-                         .incident = incident,
-                         .channels = pass_.channels_,
-                         .columns = pass_.columns_,
-                         .first_column = static_cast<std::uint32_t>(bands)};
-    if (!pass_.emitters_.empty() && !origins_.empty()) {
-      pass_.emitters_.addMet(hits_, origins_, *hemisphere_, frame(), sums);
-      pass_.emitters_.addChosen(origins_, *hemisphere_, frame(), pass_.scene_.rays, sums);
+    if (!pass_.emitters_.empty() && !look_.origins().empty()) {
+      LambertReceiver receiver(*hemisphere_, {.scalar = scalar,
+                                              .incident = incident,
+                                              .channels = pass_.channels_,
+                                              .columns = pass_.columns_,
+                                              .first_column = static_cast<std::uint32_t>(bands)});
+      const glm::mat3 frame(look_.frame());
+      pass_.emitters_.addMet(look_.hits(), look_.origins(), frame, receiver);
+      pass_.emitters_.addChosen(look_.origins(), frame, pass_.scene_.rays, receiver);
     }
     if (!incident.empty()) turnIncident(incident);
   }
 
-  void keepHits(RangeHits& out) const {
-    for (const RayHit& hit : hits_) {
-      const glm::vec3 albedo = pass_.scene_.colors.albedo(hit.triangle, hit.u, hit.v);
-      if (albedo == glm::vec3(0.0f)) continue;
-      GatherHit kept{.triangle = hit.triangle,
-                     .ray = hit.ray,
-                     .u = GatherHit::unorm(hit.u),
-                     .v = GatherHit::unorm(hit.v)};
-      for (int c = 0; c < 3; ++c) kept.albedo[c] = GatherHit::unorm(albedo[c]);
-      out.hits.push_back(kept);
-    }
-  }
+  void keepHits(RangeHits& out) const { look_.keepHits(pass_.scene_.geometry, pass_.scene_.colors, out); }
 
  private:
-  glm::mat3 frame() const { return glm::mat3(frame_); }
-
   // The environment's columns of the nine numbers, in the group's frame but for the outputs.
   void projectIncident(std::size_t bands, std::span<float> incident) {
     const std::size_t stride = std::size_t{pass_.channels_} * pass_.columns_;
     incident_local_.assign(kIncident * bands, 0.0f);
     for (std::size_t ray = 0; ray < hemisphere_->table().size(); ++ray) {
-      if (blocked_[ray / kPacketWidth] >> (ray % kPacketWidth) & 1u) continue;
+      if (look_.blocked()[ray / kPacketWidth] >> (ray % kPacketWidth) & 1u) continue;
       const auto& weights = hemisphere_->incidentWeight(ray);
       const auto harmonics = hemisphere_->projection().harmonics(ray);
       for (std::size_t j = 0; j < kIncident; ++j)
@@ -123,7 +93,7 @@ class DirectPass::Walk {
 
   // The nine outputs from the sample's frame into the group's.
   void turnIncident(std::span<float> incident) {
-    incident_from_local_.set(frame_);
+    incident_from_local_.set(look_.frame());
     const std::size_t stride = std::size_t{pass_.channels_} * pass_.columns_;
     std::array<float, kIncident> from, to;
     for (std::size_t at = 0; at < stride; ++at) {
@@ -133,57 +103,23 @@ class DirectPass::Walk {
     }
   }
 
-  // The origins of a sample that do not lie inside something, weights made to sum to 1; all of them, and
-  // false, if none is left.
-  bool outsideOrigins(std::size_t sample) {
-    const auto all = pass_.scene_.samples.originsOf(sample);
-    origins_.assign(all.begin(), all.end());
-    closely_ = false;
-    if (all.empty()) return false;
-    std::vector<float> shares(all.size());
-    // Sixteen rays are enough to see that nothing is odd, which is nearly always so.
-    const float blocked = pass_.scene_.rays.backFaceShare(all, frame(), pass_.glance_, shares);
-    closely_ = blocked >= kBlockedShare && blocked < 1.0f;
-    if (std::all_of(shares.begin(), shares.end(), [](float share) { return share == 0.0f; })) return true;
-    pass_.scene_.rays.backFaceShare(all, frame(), pass_.look_, shares);
-    origins_.clear();
-    float weight = 0.0f;
-    for (std::size_t o = 0; o < all.size(); ++o) {
-      if (shares[o] > kInsideShare) continue;
-      origins_.push_back(all[o]);
-      weight += all[o].weight;
-    }
-    if (origins_.empty()) {
-      origins_.assign(all.begin(), all.end());
-      return false;
-    }
-    for (SampleOrigin& origin : origins_) origin.weight /= weight;
-    return true;
-  }
-
   const DirectPass& pass_;
+  SampleLook look_;
   sh::Rotation group_from_local_, incident_from_local_;
   const Hemisphere* hemisphere_ = nullptr;
-  glm::dmat3 frame_{1.0};
-  bool valid_ = false, closely_ = false, mostly_blocked_ = false;
-  std::vector<SampleOrigin> origins_;
-  std::vector<std::uint16_t> blocked_;
-  std::vector<RayHit> hits_;
   std::vector<float> local_, incident_local_;
 };
 
 DirectPass::DirectPass(const DiffuseScene& scene, const DirectSettings& settings)
     : scene_(scene),
       settings_(settings),
-      glance_(cosineTable(kGlanceRays)),
-      look_(cosineTable(kLookRays)),
       plain_(Hemisphere::forNormal(settings.rays, settings.order)),
       plain_closely_(Hemisphere::forNormal(2 * settings.rays, settings.order)),
       emitters_(scene.scene, scene.geometry, scene.colors, scene.lights),
-      channels_(scene.colors.grey() ? 1 : 3),
+      channels_(scene.colors.grey() && !settings.colored_kernels ? 1 : 3),
       columns_(static_cast<std::uint32_t>(sh::coefficientCount(settings.order)) +
                static_cast<std::uint32_t>(scene.lights.size())) {
-  if (scene.samples.first_normal_mapped < scene.samples.size()) {
+  if (scene.samples.first_normal_mapped < scene.samples.first_glossy) {
     mapped_ = Hemisphere::forAnyNormal(settings.rays, settings.order);
     mapped_closely_ = Hemisphere::forAnyNormal(2 * settings.rays, settings.order);
   }
@@ -198,8 +134,8 @@ std::uint64_t DirectPass::bake(std::size_t begin, std::size_t end, const std::st
   for (std::size_t s = begin; s < end && !stop.stop_requested(); ++s) {
     hits.offsets.push_back(static_cast<std::uint32_t>(hits.hits.size()));
     traced += walk.look(s);
-    looks.valid[s] = walk.valid();
-    looks.closely[s] = walk.closely();
+    looks.valid[s] = walk.looked().valid();
+    looks.closely[s] = walk.looked().closely();
     walk.project(field.at(s), s < first_mapped ? std::span<float>() : mapped.at(s - first_mapped));
     if (settings_.keep_hits) walk.keepHits(hits);
   }
@@ -221,25 +157,26 @@ void DirectPass::traceAgain(std::size_t begin, std::size_t end, RangeHits& hits)
 
 std::optional<DirectResult> bakeDirect(const DirectPass& pass, const DiffuseScene& scene, Progress& progress,
                                        const std::stop_token& stop) {
-  const std::size_t count = scene.samples.size(), mapped = count - scene.samples.first_normal_mapped;
+  const std::size_t count = scene.samples.size(), own = scene.samples.first_glossy;
+  const std::size_t mapped = own - scene.samples.first_normal_mapped;
   const DirectSettings& settings = pass.settings();
   DirectResult result{.field = makeField(count, settings.order, 1, pass.channels(), pass.columns()),
                       .mapped = makeField(mapped, settings.order, kIncident, pass.channels(), pass.columns()),
                       .looks = {std::vector<std::uint8_t>(count, 0), std::vector<std::uint8_t>(count, 0)},
-                      .hits = HitStore(count, settings.keep_hits ? settings.hit_memory : 0)};
+                      .hits = HitStore(own, settings.keep_hits ? settings.hit_memory : 0)};
   std::atomic<std::uint64_t> traced = 0;
-  const bool finished =
-      parallelRanges(count, kSamplesPerRange, stop, [&](std::size_t begin, std::size_t end) {
-        RangeHits hits;
-        traced += pass.bake(begin, end, stop, result.field, result.mapped, result.looks, hits);
-        if (settings.keep_hits) result.hits.offer(begin / kSamplesPerRange, std::move(hits));
-        progress.add(end - begin);
-      });
+  const bool finished = parallelRanges(own, kSamplesPerRange, stop, [&](std::size_t begin, std::size_t end) {
+    RangeHits hits;
+    traced += pass.bake(begin, end, stop, result.field, result.mapped, result.looks, hits);
+    if (settings.keep_hits) result.hits.offer(begin / kSamplesPerRange, std::move(hits));
+    progress.add(end - begin);
+  });
   if (!finished) return std::nullopt;
   result.field.rays = traced;
   const auto edges = sampleEdges(scene.geometry, scene.samples);
   result.field.filled_samples = fillFromNeighbours(edges, result.looks.valid, result.field);
-  fillMappedFromNeighbours(edges, result.looks.valid, scene.samples.first_normal_mapped, result.mapped);
+  fillStretchFromNeighbours(edges, result.looks.valid, scene.samples.first_normal_mapped,
+                            result.mapped.vectorSize(), result.mapped.vectors);
   return result;
 }
 

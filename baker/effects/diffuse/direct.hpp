@@ -13,6 +13,7 @@
 #include "baker/effects/diffuse/emitters.hpp"
 #include "baker/effects/diffuse/hemisphere.hpp"
 #include "baker/effects/diffuse/hits.hpp"
+#include "baker/effects/diffuse/sample_look.hpp"
 #include "baker/effects/diffuse/transfer_field.hpp"
 #include "baker/transport/group_geometry.hpp"
 #include "baker/transport/ray_scene.hpp"
@@ -33,10 +34,11 @@ struct DiffuseScene {
 };
 
 struct DirectSettings {
-  int order = 5;               // 1..8
-  std::size_t rays = 512;      // per sample over its hemisphere, at least 128; some take twice as many
-  bool keep_hits = false;      // for bounces
-  std::size_t hit_memory = 0;  // bytes; what does not fit is traced again when asked for
+  int order = 5;                 // 1..8
+  std::size_t rays = 512;        // per sample over its hemisphere, at least 128; some take twice as many
+  bool keep_hits = false;        // for bounces
+  std::size_t hit_memory = 0;    // bytes; what does not fit is traced again when asked for
+  bool colored_kernels = false;  // of glossy surfaces: three channels even where all colours are grey
 };
 
 // One entry per sample.
@@ -58,6 +60,8 @@ class DirectPass {
   std::uint32_t columns() const { return columns_; }
   std::uint32_t channels() const { return channels_; }
   const DirectSettings& settings() const { return settings_; }
+  const Emitters& emitters() const { return emitters_; }
+  const GlanceTables& glances() const { return glances_; }
 
   // Samples [begin, end): transfer into the fields (`mapped` holds the normal-mapped samples alone), how each
   // looked, and what its rays met. Returns the rays traced. Leaves the rest of them when a stop
@@ -71,7 +75,7 @@ class DirectPass {
   class Walk;
   DiffuseScene scene_;
   DirectSettings settings_;
-  DirectionTable glance_, look_;
+  GlanceTables glances_;
   Hemisphere plain_, plain_closely_;
   std::optional<Hemisphere> mapped_, mapped_closely_;  // where there are such samples
   Emitters emitters_;
@@ -80,12 +84,13 @@ class DirectPass {
 
 struct DirectResult {
   TransferField field;   // outputs 1, all samples
-  TransferField mapped;  // outputs 9, from SampleSet::first_normal_mapped on
+  TransferField mapped;  // outputs 9, SampleSet::first_normal_mapped up to first_glossy
   SampleLooks looks;
-  HitStore hits;
+  HitStore hits;  // of the samples up to first_glossy
 };
 
-// Nothing if stopped. The result does not depend on the number of threads. Progress counts samples.
+// Nothing if stopped. The result does not depend on the number of threads. Progress counts samples. Glossy
+// samples are left at 0 and not looked at: bakeGlossyDirect fills them in.
 std::optional<DirectResult> bakeDirect(const DirectPass& pass, const DiffuseScene& scene, Progress& progress,
                                        const std::stop_token& stop);
 

@@ -48,6 +48,20 @@ void LightSums::add(std::uint32_t light, glm::vec3 radiance, float weight,
   }
 }
 
+void LambertReceiver::addAlong(std::size_t ray, std::uint32_t light, glm::vec3 radiance) {
+  sums_.add(light, radiance, static_cast<float>(hemisphere_.weight(ray)),
+            hemisphere_.hasIncident() ? &hemisphere_.incidentWeight(ray) : nullptr);
+}
+
+void LambertReceiver::addFrom(glm::vec3 local, std::uint32_t light, glm::vec3 radiance) {
+  if (hemisphere_.hasIncident()) {
+    const auto incident = hemisphere_.incident(local);
+    sums_.add(light, radiance, local.z / kPi, &incident);
+  } else {
+    sums_.add(light, radiance, local.z / kPi, nullptr);
+  }
+}
+
 float punctualIrradiance(const gltf::Light& light, glm::vec3 light_direction, glm::vec3 to_surface) {
   if (light.type == gltf::Light::Type::Directional) return 1.0f;
   const float squared = glm::dot(to_surface, to_surface), distance = std::sqrt(squared);
@@ -127,7 +141,7 @@ void Emitters::choosePoints(std::size_t count, Surface& surface,
 }
 
 void Emitters::addMet(std::span<const RayHit> hits, std::span<const SampleOrigin> origins,
-                      const Hemisphere& hemisphere, const glm::mat3& frame, const LightSums& sums) const {
+                      const glm::mat3& frame, LightReceiver& receiver) const {
   const OriginDealer dealer(origins);
   for (const RayHit& hit : hits) {
     const std::uint32_t light = colors_.lightOf(hit.triangle);
@@ -137,21 +151,20 @@ void Emitters::addMet(std::span<const RayHit> hits, std::span<const SampleOrigin
     const glm::vec3 a = geometry_.positions[triangle.x], b = geometry_.positions[triangle.y],
                     c = geometry_.positions[triangle.z];
     const glm::vec3 point = (1.0f - hit.u - hit.v) * a + hit.u * b + hit.v * c;
-    const glm::vec3 local = hemisphere.direction(hit.ray), direction = frame * local;
+    const glm::vec3 local = receiver.direction(hit.ray), direction = frame * local;
     const glm::vec3 offset = point - origins[startOf(hit.ray, direction, origins, dealer)].position;
     const float facing = -glm::dot(direction, glm::normalize(glm::cross(b - a, c - a)));
     if (!(facing > 0.0f)) continue;
     const float points_per_steradian =
         static_cast<float>(surface.points.size()) / surface.area * glm::dot(offset, offset) / facing;
-    const float share = 1.0f - chosenShare(hemisphere.raysPerSteradian(local.z), points_per_steradian);
+    const float share = 1.0f - chosenShare(receiver.raysPerSteradian(local.z), points_per_steradian);
     const glm::vec3 radiance = share * colors_.emission(hit.triangle, hit.u, hit.v);
-    sums.add(light, radiance, static_cast<float>(hemisphere.weight(hit.ray)),
-             hemisphere.hasIncident() ? &hemisphere.incidentWeight(hit.ray) : nullptr);
+    receiver.addAlong(hit.ray, light, radiance);
   }
 }
 
-void Emitters::addChosen(std::span<const SampleOrigin> origins, const Hemisphere& hemisphere,
-                         const glm::mat3& frame, const RayScene& rays, const LightSums& sums) const {
+void Emitters::addChosen(std::span<const SampleOrigin> origins, const glm::mat3& frame, const RayScene& rays,
+                         LightReceiver& receiver) const {
   struct Chosen {
     std::uint32_t light;
     glm::vec3 radiance;  // times everything but the receiver's part
@@ -175,7 +188,7 @@ void Emitters::addChosen(std::span<const SampleOrigin> origins, const Hemisphere
       // One over (points + rays per steradian): the balance heuristic, with the number of points in it.
       const float points_per_steradian =
           static_cast<float>(surface.points.size()) / surface.area * squared / facing;
-      const float both = points_per_steradian + hemisphere.raysPerSteradian(local.z);
+      const float both = points_per_steradian + receiver.raysPerSteradian(local.z);
       segments.push_back({origin->position, direction, distance * kShortOf});
       chosen.push_back({surface.light, point.radiance / both, local});
     }
@@ -197,13 +210,7 @@ void Emitters::addChosen(std::span<const SampleOrigin> origins, const Hemisphere
   rays.occluded(segments, blocked);
   for (std::size_t i = 0; i < chosen.size(); ++i) {
     if (blocked[i]) continue;
-    const Chosen& from = chosen[i];
-    if (hemisphere.hasIncident()) {
-      const auto incident = hemisphere.incident(from.local);
-      sums.add(from.light, from.radiance, from.local.z / kPi, &incident);
-    } else {
-      sums.add(from.light, from.radiance, from.local.z / kPi, nullptr);
-    }
+    receiver.addFrom(chosen[i].local, chosen[i].light, chosen[i].radiance);
   }
 }
 

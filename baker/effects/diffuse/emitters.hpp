@@ -27,6 +27,34 @@ struct LightSums {
            const std::array<float, kIncident>* incident_weights) const;
 };
 
+// A sample as light arrives at it.
+class LightReceiver {
+ public:
+  virtual ~LightReceiver() = default;
+  // Of the rays that it looked with: local frame, z its normal.
+  virtual glm::vec3 direction(std::size_t ray) const = 0;
+  virtual float raysPerSteradian(float cosine) const = 0;
+  // Radiance along one of those rays.
+  virtual void addAlong(std::size_t ray, std::uint32_t light, glm::vec3 radiance) = 0;
+  // Radiance times solid angle from a local direction with z > 0.
+  virtual void addFrom(glm::vec3 local, std::uint32_t light, glm::vec3 radiance) = 0;
+};
+
+// E/pi, and the nine numbers of normal-mapped samples.
+class LambertReceiver : public LightReceiver {
+ public:
+  LambertReceiver(const Hemisphere& hemisphere, const LightSums& sums)
+      : hemisphere_(hemisphere), sums_(sums) {}
+  glm::vec3 direction(std::size_t ray) const override { return hemisphere_.direction(ray); }
+  float raysPerSteradian(float cosine) const override { return hemisphere_.raysPerSteradian(cosine); }
+  void addAlong(std::size_t ray, std::uint32_t light, glm::vec3 radiance) override;
+  void addFrom(glm::vec3 local, std::uint32_t light, glm::vec3 radiance) override;
+
+ private:
+  const Hemisphere& hemisphere_;
+  LightSums sums_;
+};
+
 class Emitters {
  public:
   Emitters(const Scene& scene, const GroupGeometry& geometry, const SurfaceColors& colors,
@@ -35,11 +63,11 @@ class Emitters {
   bool empty() const { return surfaces_.empty() && punctual_.empty(); }
 
   // Light that the sample's rays met (hits of RayScene::traceHits).
-  void addMet(std::span<const RayHit> hits, std::span<const SampleOrigin> origins,
-              const Hemisphere& hemisphere, const glm::mat3& frame, const LightSums& sums) const;
+  void addMet(std::span<const RayHit> hits, std::span<const SampleOrigin> origins, const glm::mat3& frame,
+              LightReceiver& receiver) const;
   // Light from points chosen on the emitters, and from punctual lights.
-  void addChosen(std::span<const SampleOrigin> origins, const Hemisphere& hemisphere, const glm::mat3& frame,
-                 const RayScene& rays, const LightSums& sums) const;
+  void addChosen(std::span<const SampleOrigin> origins, const glm::mat3& frame, const RayScene& rays,
+                 LightReceiver& receiver) const;
 
  private:
   struct Point {

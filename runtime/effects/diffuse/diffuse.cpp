@@ -20,58 +20,6 @@ std::uint32_t variantOf(std::uint32_t order) {
   return order >= 2 && order <= 6 ? order : 0;
 }
 
-TransferRecord describeTransfer(const streaming::ResidentGroup& group, const streaming::ResidentCell& cell,
-                                const streaming::ResidentTransfer& transfer, TransferMode mode) {
-  const bundle::TransferShape& shape = transfer.shape;
-  const bool full = mode == TransferMode::Full && shape.full_channels > 0;
-  const bool several = shape.order > 0 && cell.light_samples.size() > 1;
-  return {.light_count = several ? static_cast<std::uint32_t>(cell.light_samples.size()) : 1,
-          .first_light = 0,
-          .light_weights_word = cell.light_weights_word,
-          .columns = shape.columns(),
-          .channels = full ? shape.full_channels : shape.shadowed_channels,
-          .outputs = shape.outputs,
-          .clusters = transfer.clusters,
-          .clusters_word = transfer.clusters_word,
-          .weights_word = transfer.weights_word,
-          .vectors_word = transfer.vectors_word,
-          .positions_word = transfer.positions_word,
-          .vector_size = shape.size(),
-          .first_value = full ? shape.shadowed_channels * shape.outputs * shape.columns() : 0,
-          .plane_count = transfer.planes_resident,
-          .first_plane = 0,
-          .first_product = 0,
-          .light_products = (transfer.clusters + transfer.axes) * shape.outputs,
-          .first_output = group.sampleBase(cell.outputs) + cell.outputs * cell.first_sample,
-          .sample_count = cell.sample_count,
-          .accumulate = 0};
-}
-
-// A cell's transfers, as far as they are resident.
-Tables::Cell addCell(const streaming::Residency& residency, const streaming::ResidentCell& cell,
-                     const lighting::GroupLights& lights, TransferMode mode, Tables& tables) {
-  Tables::Cell range{.first = static_cast<std::uint32_t>(tables.transfers.size()), .count = 0};
-  for (const streaming::ResidentTransfer& transfer : cell.transfers) {
-    if (mode == TransferMode::Unshadowed || !transfer.codebook_resident) continue;
-    TransferRecord record = describeTransfer(residency.groups()[cell.group], cell, transfer, mode);
-    record.accumulate = range.count++ > 0 ? 1 : 0;
-    record.first_light = static_cast<std::uint32_t>(tables.places.size());
-    if (transfer.shape.order == 0) {
-      tables.places.push_back(lights.lampsOf(cell.group));
-    } else {
-      for (const std::uint32_t sample : cell.light_samples)
-        tables.places.push_back(lights.firstOf(cell.group, sample));
-    }
-    record.first_plane = static_cast<std::uint32_t>(tables.places.size());
-    for (std::uint32_t j = 0; j < transfer.planes_resident; ++j)
-      tables.places.push_back(transfer.planes[j].word | (transfer.planes[j].bits == 16 ? kCodes16Bit : 0u));
-    record.first_product = tables.product_count;
-    tables.product_count += record.light_count * record.light_products;
-    tables.transfers.push_back(record);
-  }
-  return range;
-}
-
 DrawRecord describeDraw(const streaming::Residency& residency, const streaming::ResidentDraw& draw,
                         std::uint32_t light, TransferMode mode) {
   const streaming::ResidentGroup& group = residency.groups()[draw.group];
@@ -90,14 +38,6 @@ DrawRecord describeDraw(const streaming::Residency& residency, const streaming::
   record.radiance_word = draw.radiance.word();
   record.outputs = draw.outputs;
   return record;
-}
-
-// Newest of what the cell is lit by.
-std::uint64_t lightVersion(const lighting::GroupLights& lights, const streaming::ResidentCell& cell) {
-  std::uint64_t version = lights.lampsVersionOf(cell.group);
-  for (const std::uint32_t sample : cell.light_samples)
-    version = std::max(version, lights.versionOf(cell.group, sample));
-  return version;
 }
 
 }  // namespace
@@ -134,8 +74,12 @@ void Diffuse::rebuildTables(const streaming::Residency& residency, const lightin
   groups_seen_ = lights.groupCount();
   mode_seen_ = mode;
   tables_ = {};
-  for (const streaming::ResidentCell& cell : residency.cells())
-    tables_.cells.push_back(addCell(residency, cell, lights, mode, tables_));
+  for (const streaming::ResidentCell& cell : residency.cells()) {
+    if (cell.glossy())
+      tables_.addNone();
+    else
+      tables_.add(residency, cell, lights, mode);
+  }
   for (const streaming::ResidentDraw& draw : residency.draws())
     tables_.draws.push_back(describeDraw(residency, draw, lights.firstOf(draw.group), mode));
   transfers_table_.assign(std::span<const TransferRecord>(tables_.transfers));
@@ -154,7 +98,7 @@ void Diffuse::collectCells(const streaming::Residency& residency, const lighting
   if (mode_seen_ == TransferMode::Unshadowed) return;
   for (std::uint32_t i = 0; i < tables_.cells.size(); ++i) {
     const streaming::ResidentCell& cell = residency.cells()[i];
-    const Tables::Cell range = tables_.cells[i];
+    const TransferTable::Cell range = tables_.cells[i];
     if (!cell.usable() || range.count == 0) continue;
     Seen& seen = cells_seen_[i];
     const std::uint64_t light = lightVersion(lights, cell);

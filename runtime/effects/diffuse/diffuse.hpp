@@ -13,6 +13,7 @@
 
 #include "runtime/base/result.hpp"
 #include "runtime/effects/diffuse/diffuse_shared.h"
+#include "runtime/effects/diffuse/transfer_table.hpp"
 #include "runtime/gpu/program.hpp"
 #include "runtime/gpu/work_list.hpp"
 #include "runtime/lighting/group_lights.hpp"
@@ -20,20 +21,9 @@
 
 namespace lambent::effects::diffuse {
 
-// Which block of the transfer counts: none, light without bounces, all light where it was baked. Unshadowed,
-// the groups' own lights are dark: without transfer there is no telling where their light goes.
-enum class TransferMode { Unshadowed, Shadowed, Full };
-
 // The tables that the kernels read, as last uploaded.
-struct Tables {
-  struct Cell {
-    std::uint32_t first = 0, count = 0;  // into transfers
-  };
-  std::vector<Cell> cells;  // index: residency cell
-  std::vector<TransferRecord> transfers;
-  std::vector<std::uint32_t> places;  // of their planes and lights
-  std::vector<DrawRecord> draws;      // index: residency draw
-  std::uint32_t product_count = 0;
+struct Tables : TransferTable {
+  std::vector<DrawRecord> draws;  // index: residency draw
 };
 
 class Diffuse {

@@ -28,18 +28,7 @@ vec3 projectOnLight(TransferRecord transfer, uint vector, uint output_index, uin
 #endif
 
 #ifdef LAMBENT_STAGE_SAMPLES
-uint codeWordAt(uint word);  // of the transfer page
-
-// The code at a position, straight from the quantized plane.
-uint codeOf(uint codes, uint position) {
-  uint word = codes & ~kCodes16Bit;
-  if ((codes & kCodes16Bit) != 0u) {
-    uint pair = codeWordAt(word + (position >> 1u));
-    return (pair >> (16u * (position & 1u))) & 0xffffu;
-  }
-  uint four = codeWordAt(word + (position >> 2u));
-  return (four >> (8u * (position & 3u))) & 0xffu;
-}
+#include "coded_transfer.glsl"
 #endif
 
 #if defined(LAMBENT_STAGE_VERTICES) || defined(LAMBENT_STAGE_PROXIES)
@@ -160,7 +149,7 @@ vec3 proxyRadiance(ProxyGroupRecord group, ProxyTriangleRecord triangle) {
     ProxyEntryRecord entry = proxyEntryAt(i);
     vec3 reflectance = vec3(entry.reflectance[0], entry.reflectance[1], entry.reflectance[2]);
     vec4 shaded = sampleAt(entry.sample_index);
-    if (shaded.w == 0.0)
+    if (shaded.w == 0.0 && entry.outputs <= kMappedOutputs)  // glossy samples are never without light
       waiting += reflectance;
     else
       sum += reflectance * (entry.outputs == 1u ? shaded.rgb : mappedRadiance(entry.sample_index, normal));

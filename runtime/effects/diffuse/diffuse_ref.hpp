@@ -248,7 +248,7 @@ inline glm::vec3 proxyRadiance(const Memory& memory, const ProxyGroupRecord& gro
   for (const ProxyEntryRecord& entry : entries.subspan(triangle.first_entry, triangle.entry_count)) {
     const glm::vec3 reflectance(entry.reflectance[0], entry.reflectance[1], entry.reflectance[2]);
     const glm::vec4 shaded = memory.sampleAt(entry.sample_index);
-    if (shaded.w == 0.0f)
+    if (shaded.w == 0.0f && entry.outputs <= kMappedOutputs)
       waiting += reflectance;
     else
       sum += reflectance *

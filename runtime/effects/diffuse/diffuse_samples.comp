@@ -29,14 +29,14 @@ void main() {
   uint product = transfer.first_product + LAMBENT_OUTPUTS * first;
   vec3 light[LAMBENT_OUTPUTS];
 #ifdef LAMBENT_MANY_LIGHTS
-  uint lights_of = page[transfer.light_weights_word + 2u * sample_index];
-  uint weights_of = page[transfer.light_weights_word + 2u * sample_index + 1u];
   uint products_of[kLightsPerSample];
   float weight[kLightsPerSample];
-  uint light_count = 0u;  // weights fall: those after the first 0 are 0
-  for (uint k = 0u; k < kLightsPerSample && (weights_of >> (8u * k) & 0xffu) != 0u; ++k) {
-    weight[k] = float(weights_of >> (8u * k) & 0xffu) / 255.0;
-    products_of[k] = product + transfer.light_products * (lights_of >> (8u * k) & 0xffu);
+  uint light_count = 0u;
+  for (uint k = 0u; k < kLightsPerSample; ++k) {
+    LightShare share = lightShareOf(transfer, sample_index, k);
+    if (share.weight == 0.0) break;
+    weight[k] = share.weight;
+    products_of[k] = product + transfer.light_products * share.light;
     light_count = k + 1u;
   }
   for (uint j = 0u; j < LAMBENT_OUTPUTS; ++j) light[j] = vec3(0.0);

@@ -61,7 +61,7 @@ struct TransferRecord {
   uint light_weights_word;  // of the page: per sample of the cell four lights, four weights of 255; for several lights
   uint columns;  // all of the environment, or all of the group's own lights
   uint channels;  // 1 or 3, of the block that counts
-  uint outputs;   // 1 or kMappedOutputs
+  uint outputs;   // 1, kMappedOutputs, or bands squared where glossy
   uint clusters;
   uint clusters_word;
   uint weights_word;
@@ -78,6 +78,8 @@ struct TransferRecord {
   uint first_output;   // vec4 index into the samples page of the cell's first sample
   uint sample_count;
   uint accumulate;  // 1: adds to what another transfer of the cell has written
+  uint order;       // bands of the environment's light; 0: the group's own lights
+  uint visibility;  // 1: the vectors are visibility, to be multiplied with the light (glossy_eval.glsl)
 };
 
 struct DrawRecord {
@@ -123,7 +125,7 @@ struct ProxyEntryRecord {
 #ifdef __cplusplus
 #undef LAMBENT_CONSTANT
 static_assert(sizeof(ProxyGroupRecord) == 32 && sizeof(ProxyTriangleRecord) == 48 && sizeof(ProxyEntryRecord) == 32);
-static_assert(sizeof(TransferRecord) == 80 && offsetof(TransferRecord, first_product) == 60 &&
+static_assert(sizeof(TransferRecord) == 88 && offsetof(TransferRecord, first_product) == 60 &&
               offsetof(TransferRecord, accumulate) == 76);
 static_assert(sizeof(DrawRecord) == 96 && offsetof(DrawRecord, light) == 48 && offsetof(DrawRecord, outputs) == 80);
 }  // namespace lambent::effects::diffuse

@@ -19,6 +19,12 @@ glm::vec3 normalOf(const bundle::CaptureProxy& proxy, const bundle::ProxyTriangl
   return length > 0.0f ? across / length : glm::vec3(0.0f, 1.0f, 0.0f);
 }
 
+// Of a sample of the group: plain ones stand first, then those of normal maps, then glossy ones.
+std::uint32_t outputsOf(const streaming::ResidentGroup& group, std::uint32_t sample) {
+  if (sample < group.plain_samples) return 1;
+  return sample < group.plain_samples + group.mapped_samples ? kMappedOutputs : group.glossy_outputs;
+}
+
 }  // namespace
 
 Proxies::Proxies()
@@ -55,7 +61,7 @@ void Proxies::rebuildTables(const streaming::Residency& residency, const lightin
              .pad = {}});
       }
       for (const bundle::ProxyEntry& entry : proxy.entries) {
-        const std::uint32_t outputs = entry.sample < group.plain_samples ? 1 : 9;
+        const std::uint32_t outputs = outputsOf(group, entry.sample);
         entries_.push_back({.reflectance = {entry.reflectance.r, entry.reflectance.g, entry.reflectance.b},
                             .sample_index = group.sampleBase(outputs) + outputs * entry.sample,
                             .outputs = outputs,
@@ -72,7 +78,7 @@ void Proxies::rebuildTables(const streaming::Residency& residency, const lightin
 }
 
 Result<void> Proxies::shade(streaming::Residency& residency, const lighting::GroupLights& lights,
-                            const Diffuse& diffuse, gpu::Counters& counters) {
+                            std::span<const std::uint64_t> shaded, gpu::Counters& counters) {
   if (residency.proxiesVersion() != proxies_seen_ || lights.coefficients().size() != lights_seen_) {
     proxies_seen_ = residency.proxiesVersion();
     lights_seen_ = lights.coefficients().size();
@@ -83,7 +89,7 @@ Result<void> Proxies::shade(streaming::Residency& residency, const lighting::Gro
     const streaming::ResidentGroup& group = residency.groups()[g];
     if (groups_[g].triangle_count == 0 || !group.samples) continue;
     Seen& seen = seen_[g];
-    const std::uint64_t samples = diffuse.versionOf(g), light = lights.versionOf(g);
+    const std::uint64_t samples = shaded[g], light = lights.versionOf(g);
     if (seen.version != 0 && seen.samples == samples && seen.light == light) continue;
     seen = {.samples = samples, .light = light, .version = seen.version + 1};
     work_.add({group.samples.page}, g, groups_[g].triangle_count, kWorkGroupSize);

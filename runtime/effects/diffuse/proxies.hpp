@@ -1,16 +1,17 @@
 // What the capture proxies of all groups send out: a radiance per triangle, from the shaded samples of its
-// group and what the group's lights give now. Reads: the samples arena, the groups' lights. Writes: a table
-// of vec4, triangle after triangle through the proxies in the order of the residency's groups. Runs for the
-// groups that were shaded anew: one indirect dispatch per page of samples. Errors: a kernel that does not
-// compile on this device.
+// group (of glossy ones the first nine outputs) and what the group's lights give now. Reads: the samples
+// arena, the groups' lights. Writes: a table of vec4, triangle after triangle through the proxies in the
+// order of the residency's groups. Runs for the groups that were shaded anew: one indirect dispatch per page
+// of samples. Errors: a kernel that does not compile on this device.
 #pragma once
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "runtime/base/result.hpp"
-#include "runtime/effects/diffuse/diffuse.hpp"
+#include "runtime/effects/diffuse/diffuse_shared.h"
 #include "runtime/gpu/program.hpp"
 #include "runtime/gpu/work_list.hpp"
 #include "runtime/lighting/group_lights.hpp"
@@ -22,8 +23,9 @@ class Proxies {
  public:
   Proxies();
 
+  // shaded: per group, a number that rises when samples of it are shaded, by whatever effect.
   Result<void> shade(streaming::Residency& residency, const lighting::GroupLights& lights,
-                     const Diffuse& diffuse, gpu::Counters& counters);
+                     std::span<const std::uint64_t> shaded, gpu::Counters& counters);
 
   const gpu::Buffer& radiance() const { return radiance_.buffer(); }
   // Rises when what the group sends out was computed anew.

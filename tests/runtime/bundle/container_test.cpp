@@ -344,7 +344,7 @@ TEST_F(BundleFile, IndicesOutOfRangeAreRefusedByName) {
         g.cells[0].first_sample = 0;
         g.cells[1].first_sample = 2;
       },
-      "stands after cells with nine");
+      "fewer outputs than the cell before");
   const auto cell = [](Description& d) -> Cell& { return d.groups[0].cells[0]; };
   refused([](Description& d) { d.groups[0].light_samples.clear(); }, "lightSamples are none");
   refused([](Description& d) { d.groups[0].light_samples.pop_back(); }, "cells[0].lightSamples[2]");

@@ -34,7 +34,10 @@ struct RandomBundleOptions {
   std::uint32_t groups = 2;
   std::uint32_t cells = 3;         // per group
   std::uint32_t mapped_cells = 0;  // and so many with nine outputs
-  std::uint32_t samples = 101;     // per cell, odd on purpose
+  std::uint32_t glossy_cells = 0;  // and so many of visibility, with glossy_bands² outputs
+  std::uint32_t glossy_bands = 5;
+  bool bounced = false;         // of glossy cells
+  std::uint32_t samples = 101;  // per cell, odd on purpose
   std::uint32_t vertices = 131;
   std::uint32_t light_samples = 1;    // per group, every cell uses all but the first
   std::uint32_t proxy_triangles = 0;  // per group
@@ -66,7 +69,8 @@ class BundleMaker {
  private:
   void addGroup(RandomBundle& made, const RandomBundleOptions& options, std::uint32_t g) {
     bundle::Description& description = made.description;
-    const std::uint32_t cells = options.cells + options.mapped_cells;
+    const std::uint32_t cells = options.cells + options.mapped_cells + options.glossy_cells;
+    const std::uint32_t glossy_outputs = options.glossy_bands * options.glossy_bands;
     bundle::Group group;
     group.node = static_cast<std::int32_t>(g);
     group.rest_rotation = rotation();
@@ -76,7 +80,10 @@ class BundleMaker {
           {.kind = bundle::GroupLight::Kind::Material, .index = 0, .color = glm::vec3(1.0f)});
     group.light_samples.assign(options.light_samples, glm::vec3(0.0f));
     for (std::uint32_t c = 0; c < cells; ++c)
-      group.cells.push_back(makeCell(made, options, g, c, c < options.cells ? 1 : 9));
+      group.cells.push_back(makeCell(made, options, g, c,
+                                     c < options.cells                          ? 1
+                                     : c < options.cells + options.mapped_cells ? 9
+                                                                                : glossy_outputs));
     gltf::Node node;
     node.parent_from_node = glm::mat4_cast(group.rest_rotation);
     // Scale differs by axis: normals must go by the inverse transpose.
@@ -88,7 +95,9 @@ class BundleMaker {
     description.payloads.resize(1);
     const std::uint32_t plain = options.cells * options.samples;
     if (plain > 0) addDraw(made, options, g, 1, 0, plain);
-    if (options.mapped_cells > 0) addDraw(made, options, g, 9, plain, group.sample_count);
+    const std::uint32_t mapped = plain + options.mapped_cells * options.samples;
+    if (options.mapped_cells > 0) addDraw(made, options, g, 9, plain, mapped);
+    if (options.glossy_cells > 0) addDraw(made, options, g, glossy_outputs, mapped, group.sample_count);
     if (options.proxy_triangles > 0) {
       group.proxy = 0;
       made.proxies.push_back({.group = g, .proxy = makeProxy(options, group.sample_count)});
@@ -165,19 +174,33 @@ class BundleMaker {
                                 .shadowed_channels = options.shadowed_channels,
                                 .full_channels = options.full_channels,
                                 .outputs = outputs};
-    cell.transfers.push_back(makeTransfer(made, options, g, c, 0, shape));
+    const auto add = [&](const bundle::TransferShape& part) {
+      const auto index = static_cast<std::uint32_t>(cell.transfers.size());
+      cell.transfers.push_back(makeTransfer(made, options, g, c, index, part));
+    };
+    if (outputs <= bundle::kMappedOutputs) {
+      add(shape);
+    } else {
+      add({.order = options.order,
+           .shadowed_channels = 1,
+           .full_channels = 0,
+           .outputs = outputs,
+           .visibility_bands = options.order + options.glossy_bands - 1});
+      if (options.bounced)
+        add({.order = options.order, .shadowed_channels = 0, .full_channels = 3, .outputs = outputs});
+    }
     if (options.lamps > 0) {
       shape.order = 0;
       shape.light_columns = options.lamps;
-      cell.transfers.push_back(makeTransfer(made, options, g, c, 1, shape));
+      add(shape);
     }
     return cell;
   }
 
   // Clusters of ever fewer axes, random samples in each.
-  bundle::CellTransfer makeTransfer(RandomBundle& made, const RandomBundleOptions& options,
-                                       std::uint32_t g, std::uint32_t c, std::uint32_t transfer_index,
-                                       const bundle::TransferShape& shape) {
+  bundle::CellTransfer makeTransfer(RandomBundle& made, const RandomBundleOptions& options, std::uint32_t g,
+                                    std::uint32_t c, std::uint32_t transfer_index,
+                                    const bundle::TransferShape& shape) {
     bundle::CellTransfer transfer;
     transfer.shape = shape;
     transfer.clusters = options.clusters;

@@ -77,7 +77,9 @@ struct Page {
               .light_products = (transfer.clusters + transfer.axes) * shape.outputs,
               .first_output = 0,
               .sample_count = static_cast<uint>(positions.size()),
-              .accumulate = transfer_index > 0 ? 1u : 0u};
+              .accumulate = transfer_index > 0 ? 1u : 0u,
+              .order = shape.order,
+              .visibility = 0};
     uint vector = 0;
     for (const uint axes : codebook.axis_counts) {
       words.insert(words.end(), {vector, axes});

@@ -1,0 +1,60 @@
+// How a sample looks around: where its rays start, what they meet, and what lies inside something. Shared by
+// all that trace from samples; one per thread and range of samples.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <glm/mat3x3.hpp>
+
+#include "baker/effects/diffuse/hits.hpp"
+#include "baker/transport/direction_table.hpp"
+#include "baker/transport/ray_scene.hpp"
+#include "baker/transport/samples.hpp"
+#include "baker/transport/surface_colors.hpp"
+
+namespace lambent::baker {
+
+// A few rays to see whether an origin lies inside something, or much is in the way.
+struct GlanceTables {
+  DirectionTable glance, look;
+  GlanceTables();
+};
+
+class SampleLook {
+ public:
+  SampleLook(const SampleSet& samples, const RayScene& rays, const GlanceTables& glances)
+      : samples_(samples), rays_(rays), glances_(glances) {}
+
+  // Stands on sample `s`: its frame, the origins that lie outside, and whether to look closely.
+  void stand(std::size_t s);
+  // Traces the table's rays, with what they meet where `wants_hits`. Returns how many were traced; none where
+  // the sample has no face to stand on.
+  std::uint32_t look(const DirectionTable& table, bool wants_hits);
+
+  bool valid() const { return valid_; }      // false: lies inside something, or has no face
+  bool closely() const { return closely_; }  // much is in the way: to be looked at with twice the rays
+  const glm::dmat3& frame() const { return frame_; }  // group_from_local
+  std::span<const SampleOrigin> origins() const { return origins_; }
+  // Bit k of blocked()[p]: ray 16 p + k.
+  std::span<const std::uint16_t> blocked() const { return blocked_; }
+  std::span<const RayHit> hits() const { return hits_; }
+
+  // Appends the hits to `out`, but for those on surfaces that reflect nothing.
+  void keepHits(const GroupGeometry& geometry, const SurfaceColors& colors, RangeHits& out) const;
+
+ private:
+  bool outsideOrigins(std::size_t sample);
+
+  const SampleSet& samples_;
+  const RayScene& rays_;
+  const GlanceTables& glances_;
+  glm::dmat3 frame_{1.0};
+  bool valid_ = false, closely_ = false, mostly_blocked_ = false;
+  std::vector<SampleOrigin> origins_;
+  std::vector<std::uint16_t> blocked_;
+  std::vector<RayHit> hits_;
+};
+
+}  // namespace lambent::baker

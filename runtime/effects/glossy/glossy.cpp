@@ -1,0 +1,214 @@
+#include "runtime/effects/glossy/glossy.hpp"
+
+#include <algorithm>
+#include <bit>
+
+#include <fmt/format.h>
+
+#include "lambent_effects_glossy_embedded.hpp"
+#include "runtime/sh/gaunt.hpp"
+
+namespace lambent::effects::glossy {
+
+using diffuse::TransferRecord;
+using namespace diffuse;  // the bindings of the kernels
+
+namespace {
+
+constexpr gpu::FindText kShaders[] = {&embedded::lambent_effects_glossy::find};
+
+std::uint32_t bandsOf(std::uint32_t outputs) {
+  return outputs == 16 ? 4 : outputs == 25 ? 5 : 6;
+}
+
+// Dense kernels with the order compiled in; 0 is the one that loops over any order.
+std::uint32_t variantOf(std::uint32_t order) {
+  return order >= 2 && order <= 6 ? order : 0;
+}
+
+FillRecord describeFill(const streaming::ResidentGroup& group, const streaming::ResidentCell& cell,
+                        std::uint32_t light) {
+  return {.first_output = group.sampleBase(cell.outputs) + cell.outputs * cell.first_sample,
+          .output_count = cell.outputs * cell.sample_count,
+          .outputs = cell.outputs,
+          .light = light,
+          .coefficients = group.order * group.order};
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> gauntWords(std::uint32_t bands_in, std::uint32_t bands_out) {
+  const sh::GauntTable table = sh::makeGauntTable(static_cast<int>(bands_in), static_cast<int>(bands_out));
+  std::vector<std::uint32_t> words(table.offsets.begin(), table.offsets.end());
+  for (const sh::GauntTerm& term : table.terms) {
+    words.push_back(term.j | std::uint32_t{term.k} << 16);
+    words.push_back(std::bit_cast<std::uint32_t>(term.value));
+  }
+  return words;
+}
+
+Glossy::Glossy()
+    : transfers_table_("glossy transfers"),
+      places_table_("glossy places"),
+      products_("glossy products"),
+      fills_table_("glossy fills"),
+      visibility_work_("glossy visibility work"),
+      dense_work_("glossy dense work"),
+      fill_work_("glossy fill work"),
+      samples_work_{gpu::WorkList("glossy samples work"), gpu::WorkList("glossy adding work"),
+                    gpu::WorkList("glossy adding more work")} {}
+
+Result<void> Glossy::shade(streaming::Residency& residency, const lighting::GroupLights& lights,
+                           TransferMode mode, gpu::Counters& counters) {
+  if (residency.version() != residency_seen_ || lights.groupCount() != groups_seen_ || mode != mode_seen_) {
+    any_ = std::any_of(residency.cells().begin(), residency.cells().end(),
+                       [](const streaming::ResidentCell& cell) { return cell.glossy(); });
+    if (mode != mode_seen_) cells_seen_.clear();  // everything anew
+    if (any_) rebuildTables(residency, lights, mode);
+    residency_seen_ = residency.version();
+    groups_seen_ = lights.groupCount();
+    mode_seen_ = mode;
+  }
+  cells_shaded_ = 0;
+  if (!any_) return {};
+  collect(residency, lights);
+  if (cells_shaded_ == 0) return {};
+  lights.bindStorage(kBindLights);
+  if (Result<void> run = fill(residency, counters); !run) return run;
+  if (Result<void> run = project(residency, counters); !run) return run;
+  for (gpu::WorkList& work : samples_work_)
+    if (Result<void> run = shadeSamples(residency, work, counters); !run) return run;
+  return {};
+}
+
+void Glossy::rebuildTables(const streaming::Residency& residency, const lighting::GroupLights& lights,
+                           TransferMode mode) {
+  tables_ = {};
+  fills_.clear();
+  for (const streaming::ResidentCell& cell : residency.cells()) {
+    fills_.push_back(describeFill(residency.groups()[cell.group], cell, lights.firstOf(cell.group)));
+    if (cell.glossy())
+      tables_.add(residency, cell, lights, mode);
+    else
+      tables_.addNone();
+  }
+  transfers_table_.assign(std::span<const TransferRecord>(tables_.transfers));
+  places_table_.assign(std::span<const std::uint32_t>(tables_.places));
+  fills_table_.assign(std::span<const FillRecord>(fills_));
+  products_.reserve(tables_.product_count * sizeof(glm::vec4));
+  cells_seen_.resize(residency.cells().size());
+  group_shaded_.resize(residency.groups().size());
+}
+
+void Glossy::collect(const streaming::Residency& residency, const lighting::GroupLights& lights) {
+  visibility_work_.clear();
+  dense_work_.clear();
+  fill_work_.clear();
+  for (gpu::WorkList& work : samples_work_) work.clear();
+  for (std::uint32_t i = 0; i < tables_.cells.size(); ++i) {
+    const streaming::ResidentCell& cell = residency.cells()[i];
+    if (!cell.glossy()) continue;
+    const TransferTable::Cell range = tables_.cells[i];
+    const bool open = range.count == 0 || !cell.usable();
+    const std::uint64_t light = open ? lights.versionOf(cell.group, 0) : lightVersion(lights, cell);
+    Seen& seen = cells_seen_[i];
+    // Versions of cells start at 1: one that was never seen is dirty.
+    if (seen.version == cell.version && seen.light == light) continue;
+    seen = {.version = cell.version, .light = light};
+    ++group_shaded_[cell.group];
+    ++cells_shaded_;
+    const std::uint32_t samples_page = residency.groups()[cell.group].samples.page;
+    if (open) {
+      fill_work_.add({samples_page}, i, fills_[i].output_count, kWorkGroupSize);
+      continue;
+    }
+    const std::uint32_t bands = bandsOf(cell.outputs);
+    for (std::uint32_t t = range.first; t < range.first + range.count; ++t) {
+      const TransferRecord& record = tables_.transfers[t];
+      const std::uint32_t units = record.light_count * record.clusters * record.outputs;
+      if (record.visibility != 0)
+        visibility_work_.add({record.order, bands, cell.block.page}, t, units, kUnitsPerGroup);
+      else
+        dense_work_.add({variantOf(record.order), cell.block.page}, t, units, kUnitsPerGroup);
+      samples_work_[std::min<std::size_t>(t - range.first, kMaxTransfers - 1)].add(
+          {bands, cell.block.page, samples_page}, t, bands * record.sample_count, kWorkGroupSize);
+    }
+  }
+}
+
+Result<const gpu::Program*> Glossy::program(Kernel kernel, std::uint32_t variant) {
+  constexpr std::array<const char*, kKernelCount> kFiles = {"glossy_project.comp", "diffuse_project.comp",
+                                                            "glossy_samples.comp", "glossy_fill.comp"};
+  auto& programs = programs_[kernel];
+  if (const auto found = programs.find(variant); found != programs.end()) return &found->second;
+  std::vector<gpu::Define> defines;
+  if (variant != 0)
+    defines.push_back({kernel == Samples ? "LAMBENT_BANDS" : "LAMBENT_ORDER", fmt::format("{}u", variant)});
+  Result<gpu::Program> made = gpu::Program::create(fmt::format("{} {}", kFiles[kernel], variant),
+                                                   {{GL_COMPUTE_SHADER, kFiles[kernel]}}, kShaders, defines);
+  if (!made) return failAgain(made.error());
+  return &programs.emplace(variant, std::move(*made)).first->second;
+}
+
+Result<void> Glossy::fill(streaming::Residency& residency, gpu::Counters& counters) {
+  if (fill_work_.empty()) return {};
+  const Result<const gpu::Program*> kernel = program(Fill, 0);
+  if (!kernel) return failAgain(kernel.error());
+  (*kernel)->use();
+  fill_work_.upload(counters);
+  fills_table_.bindStorage(kBindFills);
+  std::size_t index = 0;
+  for (const auto& [key, items] : fill_work_.batches()) {
+    residency.samples().page(key[0]).bindStorage(kBindSamples);
+    fill_work_.dispatch(index++, kBindWork, counters);
+  }
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+  return {};
+}
+
+Result<void> Glossy::project(streaming::Residency& residency, gpu::Counters& counters) {
+  transfers_table_.bindStorage(kBindTransfers);
+  places_table_.bindStorage(kBindPlaces);
+  products_.bindStorage(kBindProducts);
+  const auto run = [&](gpu::WorkList& work, Kernel stage) -> Result<void> {
+    if (work.empty()) return {};
+    work.upload(counters);
+    std::size_t index = 0;
+    for (const auto& [key, items] : work.batches()) {
+      const Result<const gpu::Program*> kernel = program(stage, stage == Visibility ? 0 : key[0]);
+      if (!kernel) return failAgain(kernel.error());
+      (*kernel)->use();
+      residency.transfer().page(key.back()).bindStorage(kBindTransfer);
+      if (stage == Visibility) {
+        gpu::Table& gaunt = gaunts_.try_emplace({key[0], key[1]}, "products of harmonics").first->second;
+        if (!gaunt.buffer()) gaunt.assign(std::span<const std::uint32_t>(gauntWords(key[0], key[1])));
+        gaunt.bindStorage(kBindGaunt);
+      }
+      work.dispatch(index++, kBindWork, counters);
+    }
+    return {};
+  };
+  if (Result<void> done = run(visibility_work_, Visibility); !done) return done;
+  if (Result<void> done = run(dense_work_, Dense); !done) return done;
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+  return {};
+}
+
+Result<void> Glossy::shadeSamples(streaming::Residency& residency, gpu::WorkList& work,
+                                  gpu::Counters& counters) {
+  if (work.empty()) return {};
+  work.upload(counters);
+  std::size_t index = 0;
+  for (const auto& [key, items] : work.batches()) {
+    const Result<const gpu::Program*> kernel = program(Samples, key[0]);
+    if (!kernel) return failAgain(kernel.error());
+    (*kernel)->use();
+    residency.transfer().page(key[1]).bindStorage(kBindTransfer);
+    residency.samples().page(key[2]).bindStorage(kBindSamples);
+    work.dispatch(index++, kBindWork, counters);
+  }
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+  return {};
+}
+
+}  // namespace lambent::effects::glossy

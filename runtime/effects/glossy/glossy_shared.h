@@ -1,0 +1,37 @@
+// One text for C++ and GLSL: what the glossy kernels bind and read besides diffuse_shared.h, whose records of transfers
+// and work items they share.
+#ifdef __cplusplus
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace lambent::effects::glossy {
+using uint = std::uint32_t;
+#define LAMBENT_CONSTANT inline constexpr uint
+#else
+#include "diffuse_shared.h"
+#define LAMBENT_CONSTANT const uint
+#endif
+
+// The others stand where they stand for diffuse transfer.
+LAMBENT_CONSTANT kBindGaunt = 7u;  // of the product of spherical harmonics: offsets of its outputs, then the terms
+LAMBENT_CONSTANT kBindFills = 2u;  // FillRecord
+
+// A term of the table of products takes two words: j | k << 16, and its value (sh::GauntTerm).
+LAMBENT_CONSTANT kGauntTermWords = 2u;
+
+// A cell that shows the light itself, for want of transfer or because it was asked for.
+struct FillRecord {
+  uint first_output;   // vec4 index into the samples page
+  uint output_count;   // all samples of the cell
+  uint outputs;        // of a sample
+  uint light;          // vec4 index of the light's first coefficient
+  uint coefficients;   // of the light
+};
+
+#ifdef __cplusplus
+#undef LAMBENT_CONSTANT
+static_assert(sizeof(FillRecord) == 20);
+}  // namespace lambent::effects::glossy
+#endif

@@ -1,0 +1,140 @@
+// Glossy surfaces in the raster pass: l' at the pixel from the samples of its triangle's corners, then what the BRDF makes
+// of it (glossy_kernel.glsl). No varyings for l': OpenGL 4.5 promises too few.
+layout(std140, binding = kBindView) uniform ViewBlock {
+  mat4 view_from_world;
+  mat4 clip_from_view;
+  vec4 eye;  // world; w 0: a direction, towards the eye of an orthographic camera
+};
+layout(std430, binding = kBindGeometry) readonly buffer Geometry { uint geometry[]; };
+layout(std430, binding = kBindRows) readonly buffer Rows { uint rows[]; };
+layout(std430, binding = kBindSamples) readonly buffer Samples { vec4 samples[]; };
+layout(binding = kUnitMetallicRoughness) uniform sampler2D metallic_roughness_texture;
+layout(binding = kUnitSpecular) uniform sampler2D specular_texture;
+layout(binding = kUnitSpecularColor) uniform sampler2D specular_color_texture;
+layout(binding = kUnitAnisotropy) uniform sampler2D anisotropy_texture;
+layout(binding = kUnitBrdf) uniform sampler2DArray brdf_table;
+layout(location = 6) in vec3 position_mesh;
+layout(location = 7) in vec4 looks_at_reflection;
+layout(location = 8) in vec4 looks_at_lobes;
+
+#include "glossy_kernel.glsl"
+
+uvec2 brdfNodes() { return uvec2(textureSize(brdf_table, 0).xy); }
+vec4 brdfTexel(vec2 place, uint layer) {
+  return textureLod(brdf_table, vec3((place + 0.5) / vec2(textureSize(brdf_table, 0).xy), float(layer)), 0.0);
+}
+
+vec3 cornerPosition(uint corner) {
+  uint at = draws[draw_of].positions_word + 3u * corner;
+  return vec3(uintBitsToFloat(geometry[at]), uintBitsToFloat(geometry[at + 1u]), uintBitsToFloat(geometry[at + 2u]));
+}
+
+// A row as it lies in the page is what the diffuse effect reads (diffuse_eval.glsl). A vertex without any sample leaves
+// the pixel to the others.
+void gatherLight(out vec4 light[kCoefficients]) {
+  uint first = draws[draw_of].glossy.indices_word + 3u * uint(gl_PrimitiveID);
+  uvec3 corners = uvec3(geometry[first], geometry[first + 1u], geometry[first + 2u]);
+  vec3 weights = cornerWeights(position_mesh, cornerPosition(corners.x), cornerPosition(corners.y),
+                               cornerPosition(corners.z));
+  uint rows_word = draws[draw_of].glossy.rows_word;
+  uint samples_word = rows_word + draws[draw_of].glossy.vertex_count + 1u;
+  uint weights_word = samples_word + draws[draw_of].glossy.row_entries;
+  float total = 0.0;
+  for (int k = 0; k < kCoefficients; ++k) light[k] = vec4(0.0);
+  for (int corner = 0; corner < 3; ++corner) {
+    uint vertex = corners[corner], end = rows[rows_word + vertex + 1u];
+    for (uint entry = rows[rows_word + vertex]; entry < end; ++entry) {
+      uint pair = rows[weights_word + (entry >> 1u)];
+      float weight = weights[corner] * float((pair >> (16u * (entry & 1u))) & 0xffffu) / 65535.0;
+      uint at = draws[draw_of].glossy.first_sample + uint(kCoefficients) * rows[samples_word + entry];
+      total += weight;
+      for (int k = 0; k < kCoefficients; ++k) light[k] += weight * samples[at + uint(k)];
+    }
+  }
+  float scale = total > 0.0 ? 1.0 / total : 0.0;
+  for (int k = 0; k < kCoefficients; ++k) light[k] *= scale;
+}
+
+// Group frame, unit.
+vec3 towardsEye() {
+  vec3 position_ws = (draws[draw_of].world_from_mesh * vec4(position_mesh, 1.0)).xyz;
+  return unit(mat3(draws[draw_of].glossy.group_from_world) * (eye.xyz - eye.w * position_ws));
+}
+
+#ifndef LAMBENT_MEASURED
+struct Lobes {
+  float metallic, roughness, anisotropy;
+  vec3 tangent;  // of the longer lobe
+  Fresnel fresnel;
+};
+
+Lobes lobesAt(vec3 base_color, TangentFrame frame, vec3 normal) {
+  Lobes lobes;
+  lobes.metallic = draws[draw_of].glossy.metallic;
+  lobes.roughness = draws[draw_of].glossy.roughness;
+  if (draws[draw_of].glossy.metallic_roughness_texture.set != kAbsent) {
+    vec2 texel = look(metallic_roughness_texture, looks_at_reflection.xy).gb;
+    lobes.roughness *= texel.x;
+    lobes.metallic *= texel.y;
+  }
+  lobes.roughness = clamp(lobes.roughness, 0.0, 1.0);
+  vec4 dielectric = draws[draw_of].glossy.dielectric;
+  if (draws[draw_of].glossy.specular_color_texture.set != kAbsent)
+    dielectric.rgb *= look(specular_color_texture, looks_at_lobes.xy).rgb;
+  if (draws[draw_of].glossy.specular_texture.set != kAbsent)
+    dielectric.a *= look(specular_texture, looks_at_reflection.zw).a;
+  lobes.fresnel = fresnelOf(base_color, lobes.metallic, dielectric.rgb, dielectric.a);
+  lobes.anisotropy = 0.0;
+  lobes.tangent = vec3(0.0);
+#ifdef LAMBENT_ANISOTROPIC
+  lobes.anisotropy = draws[draw_of].glossy.anisotropy;
+  vec2 direction = vec2(1.0, 0.0);
+  if (draws[draw_of].glossy.anisotropy_texture.set != kAbsent) {
+    vec3 texel = look(anisotropy_texture, looks_at_lobes.zw).rgb;
+    vec2 turned = 2.0 * texel.rg - 1.0;
+    float squared = dot(turned, turned);
+    if (squared > 1e-6) direction = turned * inversesqrt(squared);
+    lobes.anisotropy *= texel.b;
+  }
+  vec2 turn = vec2(draws[draw_of].glossy.direction_cos, draws[draw_of].glossy.direction_sin);
+  direction = vec2(turn.x * direction.x - turn.y * direction.y, turn.y * direction.x + turn.x * direction.y);
+  vec3 along = frame.tangent == vec3(0.0) ? perpendicular(frame.normal) : frame.tangent;
+  vec3 bitangent = frame.handedness * cross(frame.normal, along);
+  lobes.tangent = alongSurface(normal, direction.x * along + direction.y * bitangent);
+  if (lobes.tangent == vec3(0.0)) lobes.tangent = perpendicular(normal);
+#endif
+  return lobes;
+}
+#endif
+
+vec3 reflectedLight(vec3 base_color) {
+  TangentFrame frame = pixelFrame();
+  vec3 normal = pixelNormal(frame), to_eye = towardsEye();
+  vec4 light[kCoefficients];
+  gatherLight(light);
+  vec4 weights[kTexels];
+#ifdef LAMBENT_MEASURED
+  LocalView view = localView(normal, vec3(0.0), to_eye);
+  lookUpWeights(view, 0.0, 0.0, uvec2(1u), weights);
+  Reflected reflected = reflectLight(view, weights, light);
+  vec3 radiance = reflected.light.rgb;
+#ifdef LAMBENT_NEAR_LIGHTS
+  // As from a matte surface that sends as much towards the eye of light from all around.
+  radiance += reflected.albedo * nearLight(draws[draw_of].glossy.draw, draws[draw_of].facing * frame.normal, normal);
+#endif
+#else
+  Lobes lobes = lobesAt(base_color, frame, normal);
+  LocalView view = localView(normal, lobes.tangent, to_eye);
+  uvec2 nodes = uvec2(draws[draw_of].glossy.roughnesses, draws[draw_of].glossy.strengths);
+  lookUpWeights(view, lobes.roughness, lobes.anisotropy, nodes, weights);
+  Reflected reflected = reflectLight(view, weights, light);
+  vec3 diffuse = diffuseAlbedo(base_color, lobes.metallic, lobes.fresnel, reflected.albedo);
+  vec3 received = reflected.diffuse.rgb;
+#ifdef LAMBENT_NEAR_LIGHTS
+  received += nearLight(draws[draw_of].glossy.draw, draws[draw_of].facing * frame.normal, normal);
+#endif
+  vec3 radiance = lobes.fresnel.f0 * reflected.f0_light.rgb + lobes.fresnel.f90 * reflected.f90_light.rgb +
+                  diffuse * received;
+#endif
+  return radiance;
+}

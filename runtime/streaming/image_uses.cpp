@@ -1,0 +1,41 @@
+#include "runtime/streaming/image_uses.hpp"
+
+namespace lambent::streaming {
+
+namespace {
+
+std::vector<bool> glossyMaterials(const bundle::Description& description) {
+  std::vector<bool> glossy(description.materials.size(), false);
+  for (const bundle::Draw& draw : description.draws) {
+    const std::int32_t material = description.meshes[draw.mesh].primitives[draw.primitive].material;
+    if (draw.glossy() && material >= 0) glossy[static_cast<std::size_t>(material)] = true;
+  }
+  return glossy;
+}
+
+}  // namespace
+
+std::vector<ImageUse> imageUses(const bundle::Description& description) {
+  std::vector<ImageUse> uses(description.images.size());
+  const auto read = [&](const gltf::TextureRef& reference, bool ImageUse::*as) {
+    if (reference.texture < 0) return;
+    const std::int32_t image = description.textures[static_cast<std::size_t>(reference.texture)].image;
+    if (image >= 0) uses[static_cast<std::size_t>(image)].*as = true;
+  };
+  const std::vector<bool> glossy = glossyMaterials(description);
+  for (std::size_t i = 0; i < description.materials.size(); ++i) {
+    const gltf::Material& material = description.materials[i];
+    read(material.base_color_texture, &ImageUse::color);
+    read(material.emissive_texture, &ImageUse::color);
+    read(material.normal_texture, &ImageUse::linear);
+    if (!glossy[i]) continue;
+    read(material.specular_color_texture, &ImageUse::color);
+    for (const gltf::TextureRef* numbers :
+         {&material.metallic_roughness_texture, &material.specular_texture, &material.anisotropy_texture})
+      read(*numbers, &ImageUse::linear);
+  }
+  for (ImageUse& use : uses) use.color |= !use.linear;
+  return uses;
+}
+
+}  // namespace lambent::streaming

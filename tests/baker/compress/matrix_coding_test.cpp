@@ -1,0 +1,230 @@
+// Coding of what glossy surfaces need: visibility, and matrices of bounced light.
+#include <array>
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include <Eigen/SVD>
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+
+#include "baker/compress/cpca.hpp"
+#include "baker/compress/cpca_clusters.hpp"
+#include "baker/compress/light_weights.hpp"
+#include "runtime/sh/basis.hpp"
+#include "runtime/sh/gaunt.hpp"
+
+namespace lambent::baker {
+namespace {
+
+constexpr bundle::TransferShape kVisibility{.order = 5, .outputs = 25, .visibility_bands = 9};
+constexpr bundle::TransferShape kBounced{
+    .order = 5, .shadowed_channels = 0, .full_channels = 3, .outputs = 25};
+
+// Open sky but for a few round blockers that move over it: smooth in a path of samples, never twice the same.
+std::vector<float> wanderingVisibility(std::size_t count, unsigned seed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<float> normal;
+  std::vector<float> out;
+  std::array<glm::vec3, 3> blockers;
+  for (glm::vec3& blocker : blockers)
+    blocker = glm::normalize(glm::vec3(normal(random), normal(random), normal(random)));
+  for (std::size_t s = 0; s < count; ++s) {
+    std::array<float, 81> vector{}, y{};
+    vector[0] = 3.5449077f;
+    for (std::size_t b = 0; b < blockers.size(); ++b) {
+      blockers[b] =
+          glm::normalize(blockers[b] + 0.1f * glm::vec3(normal(random), normal(random), normal(random)));
+      sh::evaluate(9, blockers[b], y);
+      const float size = 0.3f + 0.1f * static_cast<float>(b);
+      for (int i = 0; i < 81; ++i)
+        vector[static_cast<std::size_t>(i)] -=
+            size * std::exp(-0.05f * static_cast<float>(sh::bandOf(i) * sh::bandOf(i))) *
+            y[static_cast<std::size_t>(i)];
+    }
+    out.insert(out.end(), vector.begin(), vector.end());
+  }
+  return out;
+}
+
+// Reflections of low rank with a little of everything.
+std::vector<float> bouncedMatrices(std::size_t count, unsigned seed, float noise) {
+  std::mt19937 random(seed);
+  std::normal_distribution<float> normal;
+  std::array<std::vector<float>, 6> parts;
+  for (auto& part : parts)
+    for (std::uint32_t i = 0; i < kBounced.size(); ++i) part.push_back(0.1f * normal(random));
+  std::vector<float> out;
+  for (std::size_t s = 0; s < count; ++s)
+    for (std::uint32_t i = 0; i < kBounced.size(); ++i) {
+      float value = noise * normal(random);
+      for (std::size_t p = 0; p < parts.size(); ++p)
+        value += std::sin(0.003f * static_cast<float>(s * (p + 1))) * parts[p][i];
+      out.push_back(value);
+    }
+  return out;
+}
+
+std::vector<float> decoded(const CodedTransfer& coded) {
+  std::vector<std::vector<std::uint32_t>> codes;
+  for (const CodedPlane& plane : coded.planes) codes.push_back(plane.codes);
+  return bundle::decodeTransfer(coded.shape, bundle::expand(coded.codebook), coded.cluster_of, codes);
+}
+
+double squaredDistance(const Points& points, const ClusterIds& ids, const std::vector<Cluster>& clusters) {
+  double sum = 0.0;
+  for (Eigen::Index s = 0; s < points.cols(); ++s) {
+    const Cluster& cluster = clusters[ids[static_cast<std::size_t>(s)]];
+    const Eigen::VectorXf off = points.col(s) - cluster.mean;
+    const Eigen::VectorXf along = cluster.axes.leftCols(cluster.kept).transpose() * off;
+    sum += double{off.squaredNorm()} - double{along.squaredNorm()};
+  }
+  return sum;
+}
+
+Points pointsOf(const std::vector<float>& vectors, std::uint32_t size) {
+  return Eigen::Map<const Eigen::MatrixXf>(vectors.data(), size,
+                                           static_cast<Eigen::Index>(vectors.size() / size));
+}
+
+TEST(MatrixCoding, KeepsItsBoundOnVisibility) {
+  const auto vectors = wanderingVisibility(3000, 1);
+  for (const float bound : {0.03f, 0.01f, 0.003f}) {
+    const CodedTransfer coded = codeTransfer(vectors, 3000, kVisibility, {.bound = bound});
+    EXPECT_LE(coded.error, bound);
+    EXPECT_NEAR(radianceError(vectors, decoded(coded), kVisibility), double{coded.error}, 1e-7);
+  }
+}
+
+TEST(MatrixCoding, WeighsVisibilityByTheErrorsThatItMakesInReflectedLight) {
+  // A lobe and a light, each turned at random, so of independent coefficients with the power of their bands.
+  const auto visibility = wanderingVisibility(1, 7);
+  const sh::GauntTable table = sh::makeGauntTable(5, 5);
+  std::vector<float> matrix(625, 0.0f);
+  sh::addVisibilityMatrix(table, visibility, matrix);
+  std::mt19937 random(11);
+  std::normal_distribution<double> normal;
+  double sum = 0.0;
+  constexpr int kTrials = 40000;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    std::array<double, 25> lobe{}, light{};
+    for (int i = 0; i < 25; ++i) {
+      const auto band = static_cast<std::size_t>(sh::bandOf(i));
+      lobe[static_cast<std::size_t>(i)] = std::sqrt(kLobePower[band]) * normal(random);
+      light[static_cast<std::size_t>(i)] = std::sqrt(kBandPower[band]) * normal(random);
+    }
+    double reflected = 0.0;
+    for (std::size_t i = 0; i < 25; ++i)
+      for (std::size_t j = 0; j < 25; ++j) reflected += lobe[i] * double{matrix[25 * i + j]} * light[j];
+    sum += reflected * reflected;
+  }
+  // For a single function V the diagonal is not the whole form; its mean over turned V is: bands 0..8 add up.
+  double turned = 0.0;
+  std::vector<double> powers(81, 0.0);
+  for (std::size_t i = 0; i < 25; ++i)
+    for (std::uint32_t t = table.offsets[i]; t < table.offsets[i + 1]; ++t)
+      powers[table.terms[t].k] += kLobePower[static_cast<std::size_t>(sh::bandOf(static_cast<int>(i)))] *
+                                  kBandPower[static_cast<std::size_t>(sh::bandOf(table.terms[t].j))] *
+                                  double{table.terms[t].value} * double{table.terms[t].value};
+  for (std::size_t k = 0; k < 81; ++k) turned += powers[k] * double{visibility[k]} * double{visibility[k]};
+  EXPECT_NEAR(sum / kTrials / turned, 1.0, 0.03)
+      << "lobes and lights alike in all directions: no cross terms";
+  EXPECT_NEAR(transferEnergy(visibility, kVisibility) / (3.0 * turned), 1.0, 1e-6) << "three channels";
+}
+
+TEST(MatrixCoding, BoundsBouncedLightRelativeToAllThatIsShown) {
+  const auto vectors = bouncedMatrices(1500, 3, 1e-4f);
+  const double own = transferEnergy(vectors, kBounced);
+  for (const double beside : {1.0, 100.0}) {
+    const CodedTransfer coded =
+        codeTransfer(vectors, 1500, kBounced, {.bound = 0.01f, .shown_energy = beside * own});
+    EXPECT_LE(coded.error, 0.01f);
+    EXPECT_NEAR(radianceError(vectors, decoded(coded), kBounced, beside * own), double{coded.error}, 1e-7);
+    EXPECT_GT(coded.error, 0.005f) << "what is allowed is made use of";
+  }
+}
+
+TEST(MatrixCoding, NeverGetsWorseWithMoreAxesWhereTheAssignmentStays) {
+  const Points points = pointsOf(wanderingVisibility(2000, 5), 81);
+  for (const std::uint32_t count : {1u, 8u, 64u}) {
+    ClusterIds ids = seedClusters(points, count);
+    std::vector<Cluster> clusters = fitClusters(points, ids, /*held_out=*/false);
+    double before = std::numeric_limits<double>::infinity();
+    for (int axes = 0; axes <= 16; ++axes) {
+      keepSoMany(clusters, axes);
+      const double now = squaredDistance(points, ids, clusters);
+      EXPECT_LE(now, before * (1.0 + 1e-6)) << count << " clusters, " << axes << " axes";
+      before = now;
+    }
+  }
+}
+
+TEST(MatrixCoding, IsVectorQuantizationWithoutAxes) {
+  const auto vectors = wanderingVisibility(1000, 9);
+  const CodedTransfer coded =
+      codeTransfer(vectors, 1000, kVisibility, {.bound = 1e-4f, .clusters = 16, .axes = 0});
+  EXPECT_TRUE(coded.planes.empty());
+  const std::vector<float> found = decoded(coded);
+  std::vector<std::array<double, 81>> means(coded.codebook.clusters());
+  std::vector<double> members(means.size(), 0.0);
+  for (std::size_t s = 0; s < 1000; ++s) {
+    members[coded.cluster_of[s]] += 1.0;
+    for (std::size_t i = 0; i < 81; ++i) means[coded.cluster_of[s]][i] += double{vectors[81 * s + i]};
+  }
+  for (std::size_t s = 0; s < 1000; ++s)
+    for (std::size_t i = 0; i < 81; ++i)
+      ASSERT_NEAR(double{found[81 * s + i]}, means[coded.cluster_of[s]][i] / members[coded.cluster_of[s]],
+                  2e-3);
+}
+
+TEST(MatrixCoding, IsPrincipalComponentAnalysisWithOneCluster) {
+  const Points points = pointsOf(wanderingVisibility(1500, 13), 81);
+  ClusterIds ids(1500, 0);
+  std::vector<Cluster> one = fitClusters(points, ids, /*held_out=*/false);
+  const Eigen::VectorXf mean = points.rowwise().mean();
+  const Eigen::MatrixXd centred = (points.colwise() - mean).cast<double>();
+  const Eigen::VectorXd singular = Eigen::JacobiSVD<Eigen::MatrixXd>(centred).singularValues();
+  for (const int axes : {0, 1, 4, 16}) {
+    keepSoMany(one, axes);
+    const double expected = singular.tail(singular.size() - axes).squaredNorm();
+    EXPECT_NEAR(squaredDistance(points, ids, one) / expected, 1.0, 1e-3) << axes;
+  }
+}
+
+TEST(MatrixCoding, FindsTheLeadingComponentsOfLongMatrices) {
+  const Points points = pointsOf(bouncedMatrices(700, 17, 1e-4f), kBounced.size());
+  double left_out = -1.0;
+  const double energy = double{points.squaredNorm()} / 700.0;
+  const Spectrum leading = leadingSpectrum(points, 1e-3 * energy, left_out);
+  ASSERT_GE(leading.variances.size(), 6);
+  ASSERT_LT(leading.variances.size(), static_cast<Eigen::Index>(kBounced.size()));
+  EXPECT_NEAR((leading.variances.sum() + left_out) / energy, 1.0, 1e-4);
+  EXPECT_LT(left_out, 1e-3 * energy);
+  const Eigen::MatrixXd gram = leading.axes.transpose() * leading.axes;
+  EXPECT_LT((gram - Eigen::MatrixXd::Identity(gram.rows(), gram.cols())).norm(), 1e-3);
+  const Eigen::MatrixXf best = leading.axes.leftCols(6).cast<float>();
+  const Points rest = points - best * (best.transpose() * points);
+  EXPECT_LT(double{rest.squaredNorm()} / 700.0, 1e-3 * energy) << "six parts were mixed";
+}
+
+TEST(MatrixCoding, StaysFiniteAndTheSameOnDegenerateInput) {
+  const std::vector<float> dark(81 * 40, 0.0f), alike = [] {
+    std::vector<float> all;
+    const auto one = wanderingVisibility(1, 19);
+    for (int s = 0; s < 40; ++s) all.insert(all.end(), one.begin(), one.end());
+    return all;
+  }();
+  const auto few = wanderingVisibility(3, 23);
+  for (const std::vector<float>* vectors : {&dark, &alike, &few})
+    for (const std::uint32_t clusters : {0u, 1u, 512u}) {
+      const CodingSettings settings{.bound = 0.01f, .clusters = clusters};
+      const CodedTransfer a = codeTransfer(*vectors, vectors->size() / 81, kVisibility, settings);
+      const CodedTransfer b = codeTransfer(*vectors, vectors->size() / 81, kVisibility, settings);
+      for (const float value : decoded(a)) ASSERT_TRUE(std::isfinite(value));
+      EXPECT_EQ(decoded(a), decoded(b));
+      EXPECT_LE(a.error, 0.01f);
+    }
+}
+
+}  // namespace
+}  // namespace lambent::baker

@@ -1,0 +1,142 @@
+// What glossy cells add to a bundle comes back as it was written, and what contradicts itself is refused by
+// name.
+#include <filesystem>
+#include <string>
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "runtime/bundle/reader.hpp"
+#include "runtime/bundle/writer.hpp"
+
+namespace lambent::bundle {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Sample {
+  Description description;
+  std::vector<Blob> blobs;
+};
+
+// One plain cell of two samples and one glossy cell of three: visibility, bounced light, a lamp; two tables.
+Sample sampleBundle() {
+  Sample s;
+  Description& d = s.description;
+  d.generator = {"lambent", "0.4.0", "x86-64-v3", {{"glossyOrder", "4"}}};
+  d.nodes.resize(1);
+  d.roots = {0};
+  d.nodes[0].light = 0;
+  d.lights.resize(1);
+  const auto add = [&](PayloadType type, const Blob& bytes) {
+    s.blobs.push_back(bytes);
+    d.payloads.push_back({type, PayloadCodec::Raw, static_cast<std::uint32_t>(s.blobs.size() - 1),
+                          bytes.size(), static_cast<std::uint32_t>(d.payloads.size())});
+    return static_cast<std::uint32_t>(d.payloads.size() - 1);
+  };
+  const auto transfer = [&](const TransferShape& shape) {
+    CellTransfer made;
+    made.shape = shape;
+    const Codebook book{{0}, {}, std::vector<float>(shape.size(), 0.25f)};
+    made.codebook = add(PayloadType::Codebook, encodeCodebook(book));
+    return made;
+  };
+  Group group;
+  group.sample_count = 5;
+  group.lights = {{GroupLight::Kind::Node, 0, glm::vec3(1.0f)}};
+  Cell plain{.first_sample = 0, .sample_count = 2, .transfers = {transfer({.order = 3})}};
+  Cell glossy{.first_sample = 2,
+              .sample_count = 3,
+              .transfers = {transfer({.order = 3, .outputs = 16, .visibility_bands = 6}),
+                            transfer({.order = 3, .shadowed_channels = 0, .full_channels = 3, .outputs = 16}),
+                            transfer({.order = 0, .light_columns = 1, .outputs = 16})}};
+  group.cells = {plain, glossy};
+  d.groups = {group};
+  const BrdfTable table{.order = 4, .lobes = 2, .angles = 2, .values = std::vector<float>(40, 0.1f)};
+  d.brdf_tables = {
+      {BrdfFamily::Measured, "acryl_blue.brdf", add(PayloadType::BrdfTable, encodeBrdfTable(table))},
+      {BrdfFamily::Ggx, "", add(PayloadType::BrdfTable, encodeBrdfTable(table))}};
+  return s;
+}
+
+class GlossyParts : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::temp_directory_path() / ("lambent-glossy-test-" + std::to_string(::getpid()));
+    fs::create_directories(folder_);
+    path_ = folder_ / "scene.lmb.glb";
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+  fs::path folder_, path_;
+};
+
+TEST_F(GlossyParts, ComeBackAsTheyWereWritten) {
+  const Sample sample = sampleBundle();
+  ASSERT_TRUE(write(path_, sample.description, sample.blobs));
+  const auto reader = Reader::open(path_);
+  ASSERT_TRUE(reader) << reader.error().line();
+  EXPECT_TRUE(reader->checkAll());
+  const Description& d = reader->description();
+  ASSERT_EQ(d.brdf_tables.size(), 2u);
+  EXPECT_EQ(d.brdf_tables[0].family, BrdfFamily::Measured);
+  EXPECT_EQ(d.brdf_tables[0].name, "acryl_blue.brdf");
+  EXPECT_EQ(d.brdf_tables[1].family, BrdfFamily::Ggx);
+  const auto table = reader->readBrdfTable(1);
+  ASSERT_TRUE(table) << table.error().line();
+  EXPECT_EQ(table->order, 4u);
+  const Group& group = d.groups[0];
+  EXPECT_EQ(group.samplesWith(1), 2u);
+  EXPECT_EQ(group.samplesWith(16), 3u);
+  ASSERT_EQ(group.cells[1].transfers.size(), 3u);
+  for (std::size_t t = 0; t < 3; ++t)
+    EXPECT_EQ(group.cells[1].transfers[t].shape, sample.description.groups[0].cells[1].transfers[t].shape);
+  EXPECT_EQ(group.cells[1].transfers[0].shape.size(), 36u) << "visibility in 3 + 4 - 1 bands";
+  EXPECT_EQ(group.cells[1].transfers[1].shape.size(), 3u * 16u * 9u);
+}
+
+TEST_F(GlossyParts, ThatContradictThemselvesAreRefusedByName) {
+  const auto refused = [&](auto spoil, const char* place) {
+    Sample sample = sampleBundle();
+    spoil(sample.description);
+    ASSERT_TRUE(write(path_, sample.description, sample.blobs));
+    const auto reader = Reader::open(path_);
+    ASSERT_FALSE(reader) << place;
+    EXPECT_NE(reader.error().problem.find(place), std::string::npos) << reader.error().line();
+  };
+  const auto glossy = [](Description& d) -> std::vector<CellTransfer>& {
+    return d.groups[0].cells[1].transfers;
+  };
+  refused([&](Description& d) { glossy(d)[0].shape.visibility_bands = 5; }, "visibilityBands");
+  refused([&](Description& d) { glossy(d)[0].shape.full_channels = 3; }, "visibilityBands");
+  refused([&](Description& d) { glossy(d)[0].shape.outputs = 49; }, "outputs");
+  refused([&](Description& d) { glossy(d)[0].shape.order = 7; }, "order");
+  refused([&](Description& d) { glossy(d)[1].shape.full_channels = 0; }, "shadowedChannels");
+  refused([&](Description& d) { glossy(d)[1].shape.order = 4; }, "differ in their orders");
+  refused([&](Description& d) { glossy(d)[1].shape.outputs = 25; }, "differ in their outputs");
+  refused([&](Description& d) { glossy(d).erase(glossy(d).begin()); },
+          "the group's lights after the environment");
+  refused([&](Description& d) { std::swap(glossy(d)[1], glossy(d)[2]); },
+          "the group's lights after the environment");
+  refused([&](Description& d) { glossy(d).push_back(glossy(d)[1]); },
+          "the group's lights after the environment");
+  refused([](Description& d) { std::swap(d.groups[0].cells[0].transfers, d.groups[0].cells[1].transfers); },
+          "fewer outputs than the cell before");
+  refused([](Description& d) { d.brdf_tables[0].payload = 0; }, "brdfTables[0].payload");
+}
+
+TEST_F(GlossyParts, TablesThatAreDamagedAreNamed) {
+  Sample sample = sampleBundle();
+  const std::uint32_t payload = sample.description.brdf_tables[1].payload;
+  sample.blobs[sample.description.payloads[payload].view].resize(8);
+  sample.description.payloads[payload].raw_length = 8;
+  ASSERT_TRUE(write(path_, sample.description, sample.blobs));
+  const auto reader = Reader::open(path_);
+  ASSERT_TRUE(reader) << reader.error().line();
+  const auto table = reader->readBrdfTable(1);
+  ASSERT_FALSE(table);
+  EXPECT_NE(table.error().line().find("BRDF table 1"), std::string::npos) << table.error().line();
+  EXPECT_FALSE(reader->checkAll());
+}
+
+}  // namespace
+}  // namespace lambent::bundle

@@ -1,0 +1,135 @@
+#include "runtime/sh/gaunt.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "runtime/sh/basis.hpp"
+#include "tests/runtime/sh/sphere.hpp"
+
+namespace lambent::sh {
+namespace {
+
+using testing::Random;
+
+std::size_t countOf(int bands) {
+  return static_cast<std::size_t>(coefficientCount(bands));
+}
+
+double gaunt(const GauntTable& table, std::size_t i, std::size_t j, std::size_t k) {
+  for (std::uint32_t t = table.offsets[i]; t < table.offsets[i + 1]; ++t)
+    if (table.terms[t].j == j && table.terms[t].k == k) return static_cast<double>(table.terms[t].value);
+  return 0;
+}
+
+std::vector<float> randomFunction(Random& random, int bands) {
+  std::vector<float> f(countOf(bands));
+  for (float& c : f) c = static_cast<float>(2 * random.uniform() - 1);
+  return f;
+}
+
+// How many are not 0 where all three functions have n bands, as several sources count them.
+TEST(Gaunt, HasTheKnownNumberOfTermsInEqualBands) {
+  constexpr std::array<std::size_t, 5> kKnown = {10, 83, 353, 1158, 2907};
+  for (int n = 2; n <= 6; ++n) {
+    const GauntTable table = makeGauntTable(n, n);
+    EXPECT_EQ(table.visibilityBands(), 2 * n - 1);
+    ASSERT_EQ(table.offsets.size(), countOf(n) + 1);
+    EXPECT_EQ(table.offsets.back(), table.terms.size());
+    EXPECT_EQ(std::count_if(table.terms.begin(), table.terms.end(),
+                            [&](const GauntTerm& term) { return term.k < countOf(n); }),
+              kKnown[static_cast<std::size_t>(n - 2)])
+        << n << " bands";
+  }
+}
+
+// Selection rules: l_k between |l_i - l_j| and l_i + l_j, even sum.
+TEST(Gaunt, IsOrderedSymmetricAndObeysTheTriangleRule) {
+  for (const auto& [in, out] : {std::pair{5, 5}, {6, 6}, {5, 4}, {4, 6}, {1, 3}}) {
+    const GauntTable table = makeGauntTable(in, out);
+    for (std::size_t i = 0; i < countOf(out); ++i) {
+      for (std::uint32_t t = table.offsets[i]; t < table.offsets[i + 1]; ++t) {
+        const GauntTerm& term = table.terms[t];
+        const int a = bandOf(static_cast<int>(i)), b = bandOf(term.j), c = bandOf(term.k);
+        EXPECT_TRUE(c >= std::abs(a - b) && c <= a + b && (a + b + c) % 2 == 0) << a << ' ' << b << ' ' << c;
+        EXPECT_GT(std::abs(term.value), 1e-4f);
+        if (t > table.offsets[i]) {
+          const GauntTerm& before = table.terms[t - 1];
+          EXPECT_TRUE(before.j < term.j || (before.j == term.j && before.k < term.k));
+        }
+      }
+      for (std::size_t j = 0; j < std::min(countOf(in), countOf(out)); ++j)
+        for (std::size_t k = 0; k < countOf(table.visibilityBands()); k += 3)
+          if (i < countOf(in)) {
+            EXPECT_EQ(gaunt(table, i, j, k), gaunt(table, j, i, k));
+          }
+    }
+  }
+}
+
+// Σ_k Γ_ijk² = ∫ (y_i y_j)²: the visibility has all bands that the product of two functions can have, and no
+// value was dropped.
+TEST(Gaunt, KeepsTheWholeEnergyOfProducts) {
+  const GauntTable table = makeGauntTable(6, 6);
+  std::vector<double> squares(36 * 36), energy(36 * 36);
+  testing::overSphere(64, [&](const glm::dvec3& dir, double weight) {
+    std::array<double, 36> y;
+    evaluate(6, dir, y);
+    for (std::size_t i = 0; i < 36; ++i)
+      for (std::size_t j = 0; j < 36; ++j) squares[i * 36 + j] += weight * y[i] * y[i] * y[j] * y[j];
+  });
+  for (std::size_t i = 0; i < 36; ++i)
+    for (std::uint32_t t = table.offsets[i]; t < table.offsets[i + 1]; ++t) {
+      const auto value = static_cast<double>(table.terms[t].value);
+      energy[i * 36 + table.terms[t].j] += value * value;
+    }
+  for (std::size_t n = 0; n < squares.size(); ++n) EXPECT_NEAR(energy[n], squares[n], 1e-6) << n;
+}
+
+// V = c: M = c times the identity; open points transfer light as it is.
+TEST(Gaunt, TakesFullVisibilityToTheIdentity) {
+  for (const auto& [in, out] : {std::pair{5, 5}, {6, 6}, {3, 5}, {6, 4}}) {
+    const GauntTable table = makeGauntTable(in, out);
+    std::vector<float> visibility(countOf(table.visibilityBands())), matrix(countOf(in) * countOf(out), 2.0f);
+    visibility[0] = static_cast<float>(std::sqrt(4 * std::numbers::pi));
+    addVisibilityMatrix(table, visibility, matrix);
+    for (std::size_t i = 0; i < countOf(out); ++i)
+      for (std::size_t j = 0; j < countOf(in); ++j)
+        EXPECT_NEAR(matrix[i * countOf(in) + j], i == j ? 3.0f : 2.0f, 1e-6f) << i << ", " << j;
+  }
+}
+
+// (V L)_i against quadrature of the product itself.
+TEST(Gaunt, MultipliesAsQuadratureDoes) {
+  Random random(11);
+  for (const auto& [in, out] : {std::pair{2, 2}, {4, 4}, {5, 5}, {5, 3}, {4, 6}, {6, 6}}) {
+    const GauntTable table = makeGauntTable(in, out);
+    const auto light = randomFunction(random, in),
+               visibility = randomFunction(random, table.visibilityBands());
+    std::vector<float> matrix(countOf(in) * countOf(out));
+    addVisibilityMatrix(table, visibility, matrix);
+    std::vector<double> expected(countOf(out));
+    testing::overSphere(64, [&](const glm::dvec3& dir, double weight) {
+      std::vector<double> y(countOf(kMaxBasisOrder));
+      evaluate(kMaxBasisOrder, dir, y);
+      double l = 0, v = 0;
+      for (std::size_t k = 0; k < light.size(); ++k) l += static_cast<double>(light[k]) * y[k];
+      for (std::size_t k = 0; k < visibility.size(); ++k) v += static_cast<double>(visibility[k]) * y[k];
+      for (std::size_t k = 0; k < expected.size(); ++k) expected[k] += weight * l * v * y[k];
+    });
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+      double transferred = 0;
+      for (std::size_t j = 0; j < light.size(); ++j)
+        transferred += static_cast<double>(matrix[i * light.size() + j]) * static_cast<double>(light[j]);
+      EXPECT_NEAR(transferred, expected[i], 2e-6 * (1 + std::abs(expected[i])))
+          << in << ", " << out << ": " << i;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace lambent::sh
