@@ -107,6 +107,37 @@ Lobes lobesAt(vec3 base_color, TangentFrame frame, vec3 normal) {
 }
 #endif
 
+#ifdef LAMBENT_RESIDUAL
+#include "reflected_shared.h"
+layout(std140, binding = kBindReflection) uniform ReflectionBlock { ReflectionValues reflection; };
+layout(binding = kUnitFirstReflection) uniform samplerCube first_reflection;
+layout(binding = kUnitSecondReflection) uniform samplerCube second_reflection;
+
+// What a rough mirror shows of the sky besides the bands that the surface has of it: P(L) - P(L_n). The bands scale
+// between levels as the levels themselves mix, so that light of few bands leaves nothing. Signed.
+vec3 residualLight(vec3 direction_ws, float roughness) {
+  float level = reflection.shares.z * pow(roughness, 2.0 / 3.0);  // roughnessOfLevel, turned about
+  vec3 direction = mat3(reflection.light_from_world) * direction_ws;
+  vec3 seen = reflection.shares.x * textureLod(first_reflection, direction, level).rgb +
+              reflection.shares.y * textureLod(second_reflection, direction, level).rgb;
+  vec4 light[kCoefficients], bands[kBands];
+  for (int k = 0; k < kCoefficients; ++k) light[k] = reflection.light[k];
+  bandsAt(direction_ws, light, bands);
+  int low = int(min(level, reflection.shares.z - 1.0));
+  float share = level - float(low);
+  vec4 first = mix(reflection.bands[2 * low], reflection.bands[2 * low + 2], share);
+  vec4 second = mix(reflection.bands[2 * low + 1], reflection.bands[2 * low + 3], share);
+  vec3 known = first.x * bands[0].rgb + first.y * bands[1].rgb + first.z * bands[2].rgb + first.w * bands[3].rgb;
+#if LAMBENT_BANDS > 4
+  known += second.x * bands[4].rgb;
+#endif
+#if LAMBENT_BANDS > 5
+  known += second.y * bands[5].rgb;
+#endif
+  return seen - known;
+}
+#endif
+
 vec3 reflectedLight(vec3 base_color) {
   TangentFrame frame = pixelFrame();
   vec3 normal = pixelNormal(frame), to_eye = towardsEye();
@@ -135,6 +166,16 @@ vec3 reflectedLight(vec3 base_color) {
 #endif
   vec3 radiance = lobes.fresnel.f0 * reflected.f0_light.rgb + lobes.fresnel.f90 * reflected.f90_light.rgb +
                   diffuse * received;
+#ifdef LAMBENT_RESIDUAL
+  // By the share of the sky that the lobe sees, as far as few bands can tell: (c . V) / (c . 1).
+  vec3 rho = lobes.fresnel.f0 * reflected.albedo.x + lobes.fresnel.f90 * reflected.albedo.y;
+  float f0 = dot(lobes.fresnel.f0, vec3(1.0 / 3.0));
+  float seen = f0 * reflected.f0_light.w + lobes.fresnel.f90 * reflected.f90_light.w;
+  float open = f0 * reflected.albedo.x + lobes.fresnel.f90 * reflected.albedo.y;
+  float visibility = clamp(seen / max(open, 1e-6), 0.0, 1.0);
+  vec3 mirrored = reflect(-to_eye, normal) * mat3(draws[draw_of].glossy.group_from_world);  // by the transpose
+  radiance += visibility * rho * residualLight(mirrored, lobes.roughness);
+#endif
 #endif
   return radiance;
 }
