@@ -107,6 +107,31 @@ Lobes lobesAt(vec3 base_color, TangentFrame frame, vec3 normal) {
 }
 #endif
 
+#ifdef LAMBENT_NEAR_LIGHTS
+#ifdef LAMBENT_MEASURED
+vec3 nearReflectance(vec3 to_light, float spread) { return vec3(0.0); }
+#else
+// Of this pixel.
+Lobes near_lobes = Lobes(0.0, 1.0, 0.0, vec3(0.0), Fresnel(vec3(0.0), 0.0));
+vec3 near_normal = vec3(0.0), near_to_eye = vec3(0.0);
+
+// f of docs/conventions.md, "Materials", without anisotropy. The light's extent widens the lobe, in half vectors by half.
+vec3 nearReflectance(vec3 to_light, float spread) {
+  float alpha = max(near_lobes.roughness * near_lobes.roughness, 1e-3);
+  float squared = min(alpha * alpha + 0.25 * spread * spread, 1.0);
+  float nv = max(dot(near_normal, near_to_eye), kLeastViewCosine), nl = max(dot(near_normal, to_light), 1e-3);
+  vec3 h = unit(near_to_eye + to_light);
+  float nh = clamp(dot(near_normal, h), 0.0, 1.0), vh = clamp(dot(near_to_eye, h), 0.0, 1.0);
+  float root = nh * nh * (squared - 1.0) + 1.0;
+  float distribution = squared / (root * root);  // times pi
+  float shadowing = 0.5 / (nl * sqrt(nv * nv * (1.0 - squared) + squared) + nv * sqrt(nl * nl * (1.0 - squared) + squared));
+  float edge = 1.0 - vh, edge2 = edge * edge;
+  return distribution * shadowing *
+         (near_lobes.fresnel.f0 + (near_lobes.fresnel.f90 - near_lobes.fresnel.f0) * edge2 * edge2 * edge);
+}
+#endif
+#endif
+
 #ifdef LAMBENT_RESIDUAL
 #include "reflected_shared.h"
 layout(std140, binding = kBindReflection) uniform ReflectionBlock { ReflectionValues reflection; };
@@ -162,10 +187,16 @@ vec3 reflectedLight(vec3 base_color) {
   vec3 diffuse = diffuseAlbedo(base_color, lobes.metallic, lobes.fresnel, reflected.albedo);
   vec3 received = reflected.diffuse.rgb;
 #ifdef LAMBENT_NEAR_LIGHTS
+  near_lobes = lobes;
+  near_normal = normal;
+  near_to_eye = to_eye;
   received += nearLight(draws[draw_of].glossy.draw, draws[draw_of].facing * frame.normal, normal);
 #endif
   vec3 radiance = lobes.fresnel.f0 * reflected.f0_light.rgb + lobes.fresnel.f90 * reflected.f90_light.rgb +
                   diffuse * received;
+#ifdef LAMBENT_NEAR_LIGHTS
+  radiance += near_highlights;
+#endif
 #ifdef LAMBENT_RESIDUAL
   // By the share of the sky that the lobe sees, as far as few bands can tell: (c . V) / (c . 1).
   vec3 rho = lobes.fresnel.f0 * reflected.albedo.x + lobes.fresnel.f90 * reflected.albedo.y;
