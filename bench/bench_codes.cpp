@@ -6,7 +6,6 @@
 // everywhere;
 // --clusters: so many instead of the best. Goal: under 16 bytes per vertex at 0.5 %, order 5, RGB, bounces.
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <string>
@@ -15,15 +14,13 @@
 
 #include "baker/compress/cpca.hpp"
 #include "baker/effects/diffuse/payloads.hpp"
+#include "bench/coded_bytes.hpp"
 #include "bench/group_workload.hpp"
-#include "runtime/bundle/transfer_codec.hpp"
 
 namespace {
 
 using namespace lambent;
 using namespace lambent::baker;
-
-constexpr int kZstdLevel = 19;  // as codes are stored
 
 struct Options {
   const char* scene = nullptr;
@@ -75,37 +72,6 @@ Options parse(int argc, char** argv) {
   return options;
 }
 
-struct Row {
-  std::size_t clusters = 0, codebook = 0, ids = 0, weights = 0, codes = 0;
-  double error = 0.0, seconds = 0.0;
-
-  std::size_t bytes() const { return codebook + ids + weights; }
-};
-
-Row measure(const std::vector<CellVectors>& cells, double bound, std::uint32_t clusters) {
-  Row row;
-  const auto packed = [](const std::vector<std::byte>& bytes) {
-    return std::min(bytes.size(), bundle::compressZstd(bytes, kZstdLevel).size());
-  };
-  for (const CellVectors& cell : cells) {
-    const auto start = std::chrono::steady_clock::now();
-    const CodedTransfer coded = codeTransfer(cell.vectors, cell.vectors.size() / cell.shape.size(),
-                                             cell.shape, {static_cast<float>(bound), clusters});
-    row.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    row.clusters += coded.codebook.clusters();
-    row.codebook += packed(bundle::encodeCodebook(coded.codebook));
-    if (coded.codebook.clusters() > 1)
-      row.ids += packed(
-          bundle::encodeClusterIds(coded.cluster_of, static_cast<std::uint32_t>(coded.codebook.clusters())));
-    for (const CodedPlane& plane : coded.planes) {
-      row.weights += packed(bundle::encodeWeightPlane(plane.codes, plane.bits));
-      row.codes += plane.codes.size();
-    }
-    row.error = std::max(row.error, double{coded.error});
-  }
-  return row;
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -153,7 +119,9 @@ int main(int argc, char** argv) {
         options.scene, vertices, samples.size(), cells.at(0).shape.size(), cells.size(), kZstdLevel);
   for (const double bound : options.bounds)
     for (const std::uint32_t clusters : {1u, options.clusters}) {
-      const Row row = measure(cells, bound, clusters);
+      CodedBytes row;
+      for (const CellVectors& cell : cells)
+        row.add(cell, {.bound = static_cast<float>(bound), .clusters = clusters});
       const double axes = static_cast<double>(row.codes) / static_cast<double>(samples.size());
       const auto each = [&](std::size_t bytes) { return static_cast<double>(bytes) / vertices; };
       if (options.csv)

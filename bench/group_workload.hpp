@@ -38,7 +38,8 @@ T orExit(lambent::Result<T> result) {
 // read, the geometry as built.
 inline std::unique_ptr<GroupWorkload> loadGroup(
     const std::string& file, const std::function<void(lambent::baker::Scene&)>& change_scene = {},
-    const std::function<void(lambent::baker::GroupGeometry&)>& change_geometry = {}) {
+    const std::function<void(lambent::baker::GroupGeometry&)>& change_geometry = {},
+    bool with_glossy = false) {
   using namespace lambent::baker;
   auto work = std::make_unique<GroupWorkload>();
   work->scene = orExit(importScene(file));
@@ -46,7 +47,7 @@ inline std::unique_ptr<GroupWorkload> loadGroup(
   const auto groups = findRigidGroups(work->scene);
   Progress progress;
   const auto meshes = orExit(shipMeshes(work->scene, groups, 0.0f, progress, {}));
-  work->geometry = buildGroupGeometry(groups.at(0), work->scene, meshes.decoded);
+  work->geometry = buildGroupGeometry(groups.at(0), work->scene, meshes.decoded, with_glossy);
   if (change_geometry) change_geometry(work->geometry);
   work->samples = buildSamples(work->geometry);
   work->lights = findGroupLights(work->scene, groups.at(0));

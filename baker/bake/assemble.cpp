@@ -21,8 +21,9 @@ std::uint32_t outputsOf(SampleKind kind, int glossy_order) {
 
 class Assembler {
  public:
-  Assembler(const Scene& scene, const BakeOptions& options, const EffectPlan& plan, BakeReport& report)
-      : scene_(scene), plan_(plan), options_(options), report_(report) {}
+  Assembler(const Scene& scene, const BakeOptions& options, const EffectPlan& plan, const BrdfTables& tables,
+            BakeReport& report)
+      : scene_(scene), plan_(plan), options_(options), tables_(tables), report_(report) {}
 
   void copyScene() {
     description_.generator = generatorOf(scene_, options_);
@@ -120,6 +121,7 @@ class Assembler {
       stored.push_back(addCodebook(coded));
       most_planes = std::max(most_planes, coded.planes.size());
     });
+    addBrdfTables();
     addLightWeights(baked);
     addProxies(baked);
     for (std::size_t j = 0; j < most_planes; ++j)
@@ -166,9 +168,21 @@ class Assembler {
       transfer.cluster_ids = static_cast<std::int32_t>(addTransferPayload(
           bundle::PayloadType::ClusterIds, bundle::encodeClusterIds(coded.cluster_of, transfer.clusters),
           kCodebookPriority));
-    transfer.error_bound = options_.effectiveErrorBound();
+    transfer.error_bound = coded.shape.outputs > bundle::kMappedOutputs ? options_.effectiveGlossyErrorBound()
+                                                                        : options_.effectiveErrorBound();
     transfer.error = coded.error;
     return transfer;
+  }
+
+  void addBrdfTables() {
+    for (const BrdfTables::Entry& entry : tables_.entries) {
+      description_.brdf_tables.push_back({entry.family, entry.name, 0});
+      description_.brdf_tables.back().payload = addTransferPayload(
+          bundle::PayloadType::BrdfTable, bundle::encodeBrdfTable(entry.table), kCodebookPriority);
+    }
+    for (std::size_t m = 0; m < description_.materials.size(); ++m)
+      if (description_.materials[m].brdf >= 0 && !tables_.entries.empty())
+        description_.materials[m].brdf = tables_.of_material[m];
   }
 
   void addLightWeights(const std::vector<BakedGroup>& baked) {
@@ -222,6 +236,7 @@ class Assembler {
   const Scene& scene_;
   const EffectPlan& plan_;
   const BakeOptions& options_;
+  const BrdfTables& tables_;
   BakeReport& report_;
   bundle::Description description_;
   std::vector<bundle::Blob> blobs_;
@@ -230,8 +245,8 @@ class Assembler {
 }  // namespace
 
 AssembledBundle assemble(const Scene& scene, const BakeOptions& options, const EffectPlan& plan,
-                         ShippedMeshes meshes, std::vector<BakedGroup> baked, BakeReport& report) {
-  Assembler assembler(scene, options, plan, report);
+                         const BrdfTables& tables, ShippedMeshes meshes, std::vector<BakedGroup> baked, BakeReport& report) {
+  Assembler assembler(scene, options, plan, tables, report);
   assembler.copyScene();
   assembler.addMeshes(meshes);
   assembler.addGroups(baked);

@@ -8,6 +8,7 @@
 #include "baker/bake/bake.hpp"
 #include "baker/bake/bake_group.hpp"
 #include "baker/bake/ship_meshes.hpp"
+#include "baker/brdf/surface_brdfs.hpp"
 #include "runtime/bundle/description.hpp"
 #include "runtime/bundle/writer.hpp"
 
@@ -18,8 +19,8 @@ struct AssembledBundle {
   std::vector<bundle::Blob> blobs;
 };
 
-// `baked` has one entry per plan group. Adds the sizes by kind to the report.
+// `baked` has one entry per plan group. tables: of the glossy materials; empty where they are shown as Lambert. Adds the sizes by kind to the report.
 AssembledBundle assemble(const Scene& scene, const BakeOptions& options, const EffectPlan& plan,
-                         ShippedMeshes meshes, std::vector<BakedGroup> baked, BakeReport& report);
+                         const BrdfTables& tables, ShippedMeshes meshes, std::vector<BakedGroup> baked, BakeReport& report);
 
 }  // namespace lambent::baker

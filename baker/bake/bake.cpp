@@ -20,11 +20,16 @@ namespace lambent::baker {
 namespace {
 
 static_assert(BakeOptions::kMostBounces == kMostBounces);
+constexpr int kLeastGlossyOrder = 4, kMostGlossyOrder = 6;
 constexpr std::size_t kMinRays = 128, kMaxRays = 1u << 20;
 
 Result<void> checkOptions(const BakeOptions& options) {
   if (options.order < 1 || options.order > 8)
     return fail("--order", fmt::format("{} is not between 1 and 8", options.order), "5 is the default");
+  if (options.glossy_order < kLeastGlossyOrder || options.glossy_order > kMostGlossyOrder)
+    return fail("--glossy-order",
+                fmt::format("{} is not between {} and {}", options.glossy_order, kLeastGlossyOrder, kMostGlossyOrder),
+                "5 is the default");
   if (options.effectiveRays() < kMinRays || options.effectiveRays() > kMaxRays)
     return fail("--rays", fmt::format("{} is not between {} and {}", options.rays, kMinRays, kMaxRays),
                 "leave it out to take what --quality stands for");
@@ -82,12 +87,20 @@ Result<BakeReport> bakeOnTheseThreads(const Scene& scene, const BakeOptions& opt
   const auto alpha_maps = loadAlphaMaps(scene, images);
   if (!alpha_maps) return failAgain(alpha_maps.error());
 
+  BrdfTables tables;
+  if (plan->bakes("glossy")) {
+    progress.begin("BRDF tables");
+    auto made = BrdfTables::make(scene, options.glossy_order);
+    if (!made) return failAgain(made.error());
+    tables = std::move(*made);
+  }
+
   auto meshes = shipMeshes(scene, plan->groups, options.max_edge_m, progress, stop);
   if (!meshes) return failAgain(meshes.error());
 
   std::vector<BakedGroup> baked;
   for (std::size_t g = 0; g < plan->groups.size(); ++g) {
-    auto result = bakeGroup(scene, plan->groups[g], plan->light_samples[g].count, *meshes, *alpha_maps,
+    auto result = bakeGroup(scene, plan->groups[g], plan->light_samples[g].count, tables, *meshes, *alpha_maps,
                             images, options, progress, stop, report);
     if (!result) return failAgain(result.error());
     baked.push_back(std::move(*result));
@@ -95,7 +108,7 @@ Result<BakeReport> bakeOnTheseThreads(const Scene& scene, const BakeOptions& opt
   if (stop.stop_requested()) return stopped(scene);
 
   progress.begin("writing");
-  AssembledBundle bundle = assemble(scene, options, *plan, std::move(*meshes), std::move(baked), report);
+  AssembledBundle bundle = assemble(scene, options, *plan, tables, std::move(*meshes), std::move(baked), report);
   if (auto written = bundle::write(output, std::move(bundle.description), bundle.blobs); !written)
     return failAgain(written.error());
   progress.end();
@@ -119,6 +132,9 @@ Result<EffectPlan> planFor(const Scene& scene, const BakeOptions& options) {
   const auto effects = effectsOf(options);
   if (!effects) return failAgain(effects.error());
   EffectPlan plan = makePlan(scene, *effects);
+  if (plan.bakes("glossy") && options.order > kMostGlossyOrder)
+    return fail("--order", fmt::format("{} is more than glossy surfaces take", options.order),
+                fmt::format("use at most {}, or --effects diffuse", kMostGlossyOrder));
   if (options.light_samples > 0)
     for (PlannedLightSamples& planned : plan.light_samples)
       planned = {{static_cast<std::uint32_t>(options.light_samples), /*of_group=*/false}, "asked for"};

@@ -1,11 +1,15 @@
 #include "baker/bake/bake_group.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "baker/effects/diffuse/bounces.hpp"
 #include "baker/effects/diffuse/direct.hpp"
 #include "baker/effects/diffuse/payloads.hpp"
+#include "baker/effects/glossy/glossy_bounces.hpp"
+#include "baker/effects/glossy/glossy_direct.hpp"
+#include "baker/effects/glossy/payloads.hpp"
 #include "baker/proxy/capture_proxy.hpp"
 #include "baker/transport/ray_scene.hpp"
 #include "baker/transport/sample_areas.hpp"
@@ -20,45 +24,119 @@ constexpr double kTailShare = 0.3;
 
 struct Transported {
   DirectResult direct;
+  std::optional<GlossyDirect> glossy;  // where there are glossy samples
   std::optional<BounceResult> bounced;
 };
 
-std::optional<Transported> transport(const DiffuseScene& scene, const BakeOptions& options,
-                                     Progress& progress, const std::stop_token& stop, BakeReport& report) {
-  const bool bounces = options.bounces != 0;
-  progress.begin("direct light", scene.samples.size(), "samples");
+// Rays and what they took, of a stage that has just ended.
+void countRays(std::uint64_t rays, std::uint32_t filled, const HitStore& hits, const Progress& progress,
+               BakeReport& report) {
+  report.ray_seconds += progress.now().seconds;
+  report.rays += rays;
+  report.filled_samples += filled;
+  report.hit_bytes = std::max<std::uint64_t>(report.hit_bytes, hits.bytes());
+}
+
+std::optional<Transported> transport(const DiffuseScene& scene, const SurfaceBrdfs* brdfs,
+                                     const BakeOptions& options, Progress& progress,
+                                     const std::stop_token& stop, BakeReport& report) {
+  const bool bounces = options.bounces != 0, any_glossy = brdfs != nullptr;
+  const std::size_t hit_memory = options.effectiveMemory() / (any_glossy ? 4 : 2);
+  progress.begin("direct light", scene.samples.first_glossy, "samples");
   const DirectPass pass(scene, {.order = options.order,
                                 .rays = options.effectiveRays(),
                                 .keep_hits = bounces,
-                                .hit_memory = options.effectiveMemory() / 2});
+                                .hit_memory = hit_memory,
+                                .colored_kernels = any_glossy && !brdfs->grey()});
   auto direct = bakeDirect(pass, scene, progress, stop);
   if (!direct) return std::nullopt;
-  report.ray_seconds += progress.now().seconds;
-  report.rays += direct->field.rays;
-  report.filled_samples += direct->field.filled_samples;
-  report.hit_bytes = std::max<std::uint64_t>(report.hit_bytes, direct->hits.bytes());
-  if (!bounces) return Transported{std::move(*direct), std::nullopt};
+  countRays(direct->field.rays, direct->field.filled_samples, direct->hits, progress, report);
+  Transported light{std::move(*direct), std::nullopt, std::nullopt};
 
+  std::optional<GlossyPass> glossy_pass;
+  if (any_glossy) {
+    glossy_pass.emplace(pass, scene, options.glossy_order);
+    light.glossy = bakeGlossyDirect(*glossy_pass, hit_memory, light.direct, progress, stop);
+    if (!light.glossy) return std::nullopt;
+    countRays(light.glossy->rays, light.glossy->filled_samples, light.glossy->hits, progress, report);
+    report.glossy_samples += light.glossy->field.size();
+  }
+  if (!bounces) return light;
+
+  ExitKernels kernels;
+  std::optional<GlossyBounces> partner;
+  if (any_glossy) {
+    kernels = {.grey = brdfs->grey(),
+               .at = [brdfs](std::uint32_t triangle, float u, float v, const glm::vec3& to,
+                             std::span<float> out) { brdfs->exitKernel(triangle, u, v, to, out); }};
+    partner.emplace(*glossy_pass, kernels, light.direct, *light.glossy);
+  }
   const double tail = kTailShare * double{options.effectiveErrorBound()};
-  auto bounced = bakeBounces(pass, *direct, scene, {options.bounces, tail}, progress, stop);
-  if (!bounced) return std::nullopt;
-  direct->hits = HitStore();
-  if (bounced->energy.size() > report.pass_energy.size()) report.pass_energy = bounced->energy;
-  report.left_out = std::max(report.left_out, bounced->left_out);
-  return Transported{std::move(*direct), std::move(bounced)};
+  light.bounced = bakeBounces(pass, light.direct, scene, {options.bounces, tail}, progress, stop,
+                              partner ? &*partner : nullptr);
+  if (!light.bounced) return std::nullopt;
+  if (partner) {
+    partner->finish();
+    light.glossy->hits = HitStore();
+  }
+  light.direct.hits = HitStore();
+  if (light.bounced->energy.size() > report.pass_energy.size()) report.pass_energy = light.bounced->energy;
+  report.left_out = std::max(report.left_out, light.bounced->left_out);
+  return light;
+}
+
+// Visibility and bounced light are shown together: errors of both are relative to both, and each may have as much.
+std::vector<CodedTransfer> codeGlossy(const SampleCell& cell, const GlossyField& field, bool grey_emission,
+                                      const BakeOptions& options, const std::stop_token& stop,
+                                      BakeReport& report) {
+  std::vector<CodedTransfer> coded;
+  const std::vector<CellVectors> parts = glossyCellVectors(cell, field, grey_emission);
+  double shown = 0.0;
+  std::size_t shown_parts = 0;
+  for (const CellVectors& part : parts)
+    if (part.shape.order > 0) shown += transferEnergy(part.vectors, part.shape), ++shown_parts;
+  double square = 0.0;
+  for (const CellVectors& part : parts) {
+    const bool environment = part.shape.order > 0;
+    const float bound = options.effectiveGlossyErrorBound() /
+                        (environment ? std::sqrt(static_cast<float>(shown_parts)) : 1.0f);
+    coded.push_back(codeTransfer(part.vectors, cell.count, part.shape,
+                                 {.bound = bound, .shown_energy = environment ? shown : 0.0}, stop));
+    const double error = coded.back().error;
+    if (environment)
+      square += error * error;
+    else
+      report.worst_glossy_error = std::max(report.worst_glossy_error, error);
+  }
+  report.worst_glossy_error = std::max(report.worst_glossy_error, std::sqrt(square));
+  return coded;
+}
+
+std::vector<CodedTransfer> codeDiffuse(const SampleCell& cell, const SampleSet& samples,
+                                       const Transported& light, bool grey_emission,
+                                       const BakeOptions& options, const std::stop_token& stop,
+                                       BakeReport& report) {
+  std::vector<CodedTransfer> coded;
+  for (const CellVectors& vectors :
+       cellVectors(cell, samples, light.direct, light.bounced ? &*light.bounced : nullptr, grey_emission)) {
+    coded.push_back(codeTransfer(vectors.vectors, cell.count, vectors.shape,
+                                 {.bound = options.effectiveErrorBound()}, stop));
+    report.worst_error = std::max(report.worst_error, double{coded.back().error});
+  }
+  return coded;
 }
 
 }  // namespace
 
 Result<BakedGroup> bakeGroup(const Scene& scene, const RigidGroup& group, LightSampleCount light_samples,
-                             const ShippedMeshes& meshes,
+                             const BrdfTables& tables, const ShippedMeshes& meshes,
                              const std::vector<std::shared_ptr<const AlphaMap>>& alpha_maps,
                              DecodedImages& images, const BakeOptions& options, Progress& progress,
                              const std::stop_token& stop, BakeReport& report) {
   const auto stopped = [&] { return fail(scene.source.string(), "stopped; nothing was written"); };
   BakedGroup baked;
   progress.begin("samples");
-  baked.geometry = buildGroupGeometry(group, scene, meshes.decoded);
+  baked.geometry = buildGroupGeometry(group, scene, meshes.decoded, !tables.entries.empty());
   baked.samples = buildSamples(baked.geometry);
   baked.lights = findGroupLights(scene, group);
   auto colors = SurfaceColors::load(scene, baked.geometry, baked.lights, images);
@@ -85,20 +163,23 @@ Result<BakedGroup> bakeGroup(const Scene& scene, const RigidGroup& group, LightS
   if (!rays) return failAgain(rays.error());
 
   const DiffuseScene view{scene, baked.geometry, baked.samples, *rays, *colors, baked.lights};
-  const auto light = transport(view, options, progress, stop, report);
+  std::optional<SurfaceBrdfs> brdfs;
+  if (baked.samples.first_glossy < baked.samples.size()) {
+    auto loaded = SurfaceBrdfs::load(scene, baked.geometry, tables, images, options.glossy_order);
+    if (!loaded) return failAgain(loaded.error());
+    brdfs = std::move(*loaded);
+  }
+  const auto light = transport(view, brdfs ? &*brdfs : nullptr, options, progress, stop, report);
   if (!light) return stopped();
 
   progress.begin("coding", baked.samples.size(), "samples");
-  const CodingSettings coding{.bound = options.effectiveErrorBound()};
   for (const SampleCell& cell : baked.samples.cells) {
-    auto& coded = baked.cells.emplace_back();
-    for (const CellVectors& vectors :
-         cellVectors(cell, baked.samples, light->direct, light->bounced ? &*light->bounced : nullptr,
-                     colors->greyEmission()))
-      coded.push_back(codeTransfer(vectors.vectors, cell.count, vectors.shape, coding, stop));
+    const bool grey = colors->greyEmission();
+    baked.cells.push_back(
+        cell.kind == SampleKind::Glossy
+            ? codeGlossy(cell, light->glossy->field, grey, options, stop, report)
+            : codeDiffuse(cell, baked.samples, *light, grey, options, stop, report));
     if (stop.stop_requested()) return stopped();
-    for (const CodedTransfer& transfer : coded)
-      report.worst_error = std::max(report.worst_error, double{transfer.error});
     progress.add(cell.count);
   }
   return baked;

@@ -7,6 +7,7 @@
 
 #include "baker/bake/bake.hpp"
 #include "baker/bake/ship_meshes.hpp"
+#include "baker/brdf/surface_brdfs.hpp"
 #include "baker/compress/cpca.hpp"
 #include "baker/light_samples/light_samples.hpp"
 #include "baker/plan/group_lights.hpp"
@@ -21,16 +22,17 @@ struct BakedGroup {
   GroupGeometry geometry;  // draws and bounds are used here
   SampleSet samples;
   std::vector<PlannedLight> lights;
-  // Per sample cell: light of the environment, then, where there are some, of the group's lights.
+  // Per sample cell: light of the environment (of a glossy cell visibility, then bounced light), then, where there are
+  // some, of the group's lights.
   std::vector<std::vector<CodedTransfer>> cells;
   LightSamples light_samples;  // as SampleSet::positions
   bundle::CaptureProxy proxy;  // group frame
 };
 
-// Adds what it did to the report. Errors: no memory for the hierarchy, images that cannot be decoded,
+// tables: of the scene's glossy materials; empty where all are shown as Lambert. Adds what it did to the report. Errors: no memory for the hierarchy, images that cannot be decoded,
 // "stopped".
 Result<BakedGroup> bakeGroup(const Scene& scene, const RigidGroup& group, LightSampleCount light_samples,
-                             const ShippedMeshes& meshes,
+                             const BrdfTables& tables, const ShippedMeshes& meshes,
                              const std::vector<std::shared_ptr<const AlphaMap>>& alpha_maps,
                              DecodedImages& images, const BakeOptions& options, Progress& progress,
                              const std::stop_token& stop, BakeReport& report);

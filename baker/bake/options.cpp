@@ -12,12 +12,12 @@ namespace {
 struct QualityRow {
   const char* name;
   std::size_t rays;
-  float error_bound;
+  float error_bound, glossy_error_bound;
 };
 constexpr std::array kQualities = {
-    QualityRow{"draft", 256, 0.01f},
-    QualityRow{"standard", 1024, 0.003f},
-    QualityRow{"high", 4096, 0.001f},
+    QualityRow{"draft", 256, 0.01f, 0.03f},
+    QualityRow{"standard", 1024, 0.003f, 0.01f},
+    QualityRow{"high", 4096, 0.001f, 0.003f},
 };
 
 const QualityRow& row(Quality quality) {
@@ -38,6 +38,10 @@ float BakeOptions::effectiveErrorBound() const {
   return error_bound > 0.0f ? error_bound : row(quality).error_bound;
 }
 
+float BakeOptions::effectiveGlossyErrorBound() const {
+  return error_bound > 0.0f ? error_bound : row(quality).glossy_error_bound;
+}
+
 std::uint64_t BakeOptions::effectiveMemory() const {
   if (memory_bytes != 0) return memory_bytes;
   const long pages = sysconf(_SC_PHYS_PAGES), page_bytes = sysconf(_SC_PAGESIZE);
@@ -53,6 +57,7 @@ std::map<std::string, std::string> BakeOptions::settings() const {
           {"bounces", bounces < 0 ? "auto" : std::to_string(bounces)},
           {"lightSamples", light_samples == 0 ? "auto" : std::to_string(light_samples)},
           {"errorBound", fmt::format("{}", effectiveErrorBound())},
+          {"glossyErrorBound", fmt::format("{}", effectiveGlossyErrorBound())},
           {"maxEdge", fmt::format("{}", max_edge_m)},
           {"effects", effects}};
 }

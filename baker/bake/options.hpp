@@ -28,6 +28,8 @@ struct BakeOptions {
 
   std::size_t effectiveRays() const;
   float effectiveErrorBound() const;
+  // Of glossy transfer, where bytes are dear: the same if it was given, else the quality's own.
+  float effectiveGlossyErrorBound() const;
   std::uint64_t effectiveMemory() const;
   std::map<std::string, std::string> settings() const;
 };

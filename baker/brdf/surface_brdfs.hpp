@@ -9,13 +9,14 @@
 
 #include <memory>
 #include <span>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "baker/brdf/brdf.hpp"
 #include "baker/import/image.hpp"
 #include "baker/transport/group_geometry.hpp"
 #include "runtime/bundle/description.hpp"
-#include "runtime/sh/zonal_factors.hpp"
 
 namespace lambent::baker {
 
@@ -35,19 +36,25 @@ struct BrdfTables {
 
 class SurfaceBrdfs {
  public:
-  // Errors: those of decodeImage.
+  // `geometry` outlives this. `tables` are of the same order and may go. Errors: those of decodeImage.
   static Result<SurfaceBrdfs> load(const Scene& scene, const GroupGeometry& geometry,
                                    const BrdfTables& tables, DecodedImages& images, int order);
 
+  // Not matte, and with glossy samples: a draw of a glossy material whose samples were planned as Lambert's
+  // is matte.
   bool glossy(std::uint32_t triangle) const;
   // All kernels are the same in red, green and blue.
-  bool grey() const { return grey_; }
-  // Towards the unit direction `to` (group frame, away from the surface) of the point u, v on `triangle`:
-  // out[channel * order² + k], three channels. All zero where `to` lies behind the surface.
+  bool grey() const;
+  // Towards the unit direction `to` (group frame, away from the surface) of the point u, v on `triangle`
+  // (barycentric weights of its corners 1 and 2): out[channel * order² + k], three channels. All zero where
+  // `to` lies behind the triangle; a view above it but below the plane of the interpolated normal counts as
+  // cos(theta_v) = kLeastViewCosine. From any thread; allocates nothing.
   void exitKernel(std::uint32_t triangle, float u, float v, const glm::vec3& to, std::span<float> out) const;
 
  private:
-  bool grey_ = true;
+  struct State;
+  explicit SurfaceBrdfs(std::shared_ptr<const State> state) : state_(std::move(state)) {}
+  std::shared_ptr<const State> state_;
 };
 
 }  // namespace lambent::baker

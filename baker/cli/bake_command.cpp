@@ -46,6 +46,8 @@ nlohmann::json reportJson(const BakeArguments& a, const BakeReport& r) {
           {"leftOut", r.left_out},
           {"hitBytes", r.hit_bytes},
           {"codingError", r.worst_error},
+          {"glossyCodingError", r.worst_glossy_error},
+          {"glossySamples", r.glossy_samples},
           {"fileBytes", r.file_bytes},
           {"meshBytes", r.mesh_bytes},
           {"transferBytes", r.transfer_bytes},
@@ -79,6 +81,9 @@ void printReport(const BakeArguments& a, const BakeReport& r) {
       bytesText(static_cast<double>(r.proxy_bytes)), bytesText(static_cast<double>(r.image_bytes)));
   fmt::print("  coding    {:.2f} % relative error of shaded radiance (bound {:.2f} %)\n",
              100.0 * r.worst_error, 100.0 * double{a.options.effectiveErrorBound()});
+  if (r.worst_glossy_error > 0.0)
+    fmt::print("            {:.2f} % of glossy surfaces (bound {:.2f} %)\n", 100.0 * r.worst_glossy_error,
+               100.0 * double{a.options.effectiveGlossyErrorBound()});
 }
 
 int runBake(const BakeArguments& a) {
@@ -149,6 +154,11 @@ void addBakeCommand(CLI::App& app, Command& run) {
       ->capture_default_str()
       ->type_name("N");
   command
+      ->add_option("--glossy-order", a->options.glossy_order,
+                   "Bands of the light that glossy surfaces reflect, 4..6")
+      ->capture_default_str()
+      ->type_name("N");
+  command
       ->add_option("--rays", a->options.rays,
                    "Rays per sample over its hemisphere; default 256, 1024 or 4096 by quality")
       ->type_name("N");
@@ -169,7 +179,7 @@ void addBakeCommand(CLI::App& app, Command& run) {
   command
       ->add_option("--error", a->options.error_bound,
                    "Bound on the coding error, relative RMS of shaded radiance; default 0.01, 0.003 or 0.001 "
-                   "by quality")
+                   "by quality, of glossy surfaces 0.03, 0.01 or 0.003")
       ->type_name("E");
   command
       ->add_option("--max-edge", a->options.max_edge_m,

@@ -21,7 +21,7 @@ struct InfoArguments {
 
 struct Sizes {
   std::uint64_t mesh = 0, image = 0, rows = 0, codebooks = 0, ids = 0, planes = 0, light_weights = 0,
-                proxies = 0;
+                proxies = 0, brdf_tables = 0;
   std::uint64_t vertices = 0, triangles = 0;
 };
 
@@ -38,6 +38,7 @@ Sizes sizesOf(const bundle::Description& d) {
     if (payload.type == bundle::PayloadType::WeightPlane) sizes.planes += length;
     if (payload.type == bundle::PayloadType::LightWeights) sizes.light_weights += length;
     if (payload.type == bundle::PayloadType::CaptureProxy) sizes.proxies += length;
+    if (payload.type == bundle::PayloadType::BrdfTable) sizes.brdf_tables += length;
   }
   for (const bundle::Draw& draw : d.draws) {
     const bundle::Primitive& primitive = d.meshes[draw.mesh].primitives[draw.primitive];
@@ -56,6 +57,12 @@ std::vector<std::uint32_t> proxyTriangles(const bundle::Reader& reader, const bu
   return counts;
 }
 
+const char* partName(const bundle::TransferShape& shape) {
+  if (shape.isVisibility()) return "visibility";
+  if (shape.shadowed_channels == 0) return "bounced";
+  return shape.full_channels > 0 ? "shadowed and full" : "shadowed";
+}
+
 void printJson(const bundle::Reader& reader, const Sizes& sizes) {
   const bundle::Description& d = reader.description();
   nlohmann::json groups = nlohmann::json::array();
@@ -64,8 +71,10 @@ void printJson(const bundle::Reader& reader, const Sizes& sizes) {
     for (const bundle::Cell& cell : group.cells)
       for (const bundle::CellTransfer& transfer : cell.transfers)
         cells.push_back({{"samples", cell.sample_count},
-                         {"effect", "diffuse"},
+                         {"effect", transfer.shape.outputs > bundle::kMappedOutputs ? "glossy" : "diffuse"},
                          {"light", transfer.fromEnvironment() ? "environment" : "lamps"},
+                         {"outputs", transfer.shape.outputs},
+                         {"visibilityBands", transfer.shape.visibility_bands},
                          {"order", transfer.shape.order},
                          {"lightColumns", transfer.shape.light_columns},
                          {"shadowedChannels", transfer.shape.shadowed_channels},
@@ -99,6 +108,7 @@ void printJson(const bundle::Reader& reader, const Sizes& sizes) {
       {"planeBytes", sizes.planes},
       {"lightWeightBytes", sizes.light_weights},
       {"proxyBytes", sizes.proxies},
+      {"brdfTableBytes", sizes.brdf_tables},
       {"groups", groups}};
   fmt::print("{}\n", json.dump(2));
 }
@@ -122,6 +132,7 @@ void printText(const bundle::Reader& reader, const Sizes& sizes) {
   line("weight planes", sizes.planes);
   line("light weights", sizes.light_weights);
   line("proxies", sizes.proxies);
+  if (!d.brdf_tables.empty()) line("BRDF tables", sizes.brdf_tables);
   line("whole file", reader.fileBytes());
   for (const bundle::Group& group : d.groups) {
     fmt::print("group \"{}\": {} samples in {} cells\n", group.name, group.sample_count, group.cells.size());
@@ -131,10 +142,10 @@ void printText(const bundle::Reader& reader, const Sizes& sizes) {
                proxy.empty() ? "no proxy" : fmt::format("proxy of {} triangles", fmt::join(proxy, ", ")));
     for (const bundle::Cell& cell : group.cells)
       for (const bundle::CellTransfer& transfer : cell.transfers)
-        fmt::print("  diffuse {}: {}, {} samples, {} clusters, {} planes, error {:.3f} % (bound {:.3f} %)\n",
-                   transfer.fromEnvironment() ? fmt::format("order {}", transfer.shape.order)
+        fmt::print("  {} {}: {}, {} samples, {} clusters, {} planes, error {:.3f} % (bound {:.3f} %)\n",
+                   transfer.shape.outputs > bundle::kMappedOutputs ? "glossy" : "diffuse", transfer.fromEnvironment() ? fmt::format("order {}", transfer.shape.order)
                                               : fmt::format("{} lamps", transfer.shape.light_columns),
-                   transfer.shape.full_channels > 0 ? "shadowed and full" : "shadowed", cell.sample_count,
+                   partName(transfer.shape), cell.sample_count,
                    transfer.clusters, transfer.planes.size(), 100.0 * double{transfer.error},
                    100.0 * double{transfer.error_bound});
   }

@@ -174,7 +174,7 @@ void addReferenceCommand(CLI::App& app, Command& run) {
   command
       ->add_option("--band-limit", a->band_limit,
                    "IN: light cut to its first IN bands (1..8), spheres and discs\nas seen from each point. "
-                   "IN,OUT: and the cosine at the first\nhit to OUT bands")
+                   "IN,OUT: and the BRDF at the\nfirst hit to OUT bands")
       ->type_name("IN[,OUT]");
   command
       ->add_option("--bounces", a->options.bounces,

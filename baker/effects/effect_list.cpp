@@ -1,12 +1,14 @@
 #include "baker/effects/effect_list.hpp"
 
 #include "baker/effects/diffuse/diffuse.hpp"
+#include "baker/effects/glossy/glossy.hpp"
 
 namespace lambent::baker {
 
 std::span<const EffectEntry> effectList() {
   static constexpr EffectEntry kEffects[] = {
       {"diffuse", chooseDiffuse},
+      {"glossy", chooseGlossy},
   };
   return kEffects;
 }

@@ -41,10 +41,15 @@ std::uint32_t wrap(std::int64_t texel, std::uint32_t size, std::uint32_t mode) {
   return static_cast<std::uint32_t>(t < n ? t : period - 1 - t);
 }
 
-glm::vec4 texel(const DecodedImage& image, const gltf::Sampler& sampler, std::int64_t x, std::int64_t y) {
+const std::uint8_t* bytesOf(const DecodedImage& image, const gltf::Sampler& sampler, std::int64_t x,
+                            std::int64_t y) {
   const std::size_t column = wrap(x, image.width, sampler.wrap_s),
                     row = wrap(y, image.height, sampler.wrap_t);
-  const std::uint8_t* p = &image.rgba[(row * image.width + column) * 4];
+  return &image.rgba[(row * image.width + column) * 4];
+}
+
+glm::vec4 texel(const DecodedImage& image, const gltf::Sampler& sampler, std::int64_t x, std::int64_t y) {
+  const std::uint8_t* p = bytesOf(image, sampler, x, y);
   return {srgbTable()[p[0]], srgbTable()[p[1]], srgbTable()[p[2]], static_cast<float>(p[3]) / 255.0f};
 }
 
@@ -144,10 +149,24 @@ glm::vec4 sampleImage(const DecodedImage& image, const gltf::Sampler& sampler, g
                   glm::mix(texel(image, sampler, x, y + 1), texel(image, sampler, x + 1, y + 1), f.x), f.y);
 }
 
+namespace {
+
+glm::vec2 texelPlace(const DecodedImage& image, glm::vec2 uv) {
+  return glm::floor(glm::clamp(uv * glm::vec2(image.width, image.height), -1e15f, 1e15f));
+}
+
+}  // namespace
+
 glm::vec4 nearestTexel(const DecodedImage& image, const gltf::Sampler& sampler, glm::vec2 uv) {
-  const glm::vec2 at = glm::clamp(uv * glm::vec2(image.width, image.height), -1e15f, 1e15f);
-  return texel(image, sampler, static_cast<std::int64_t>(std::floor(at.x)),
-               static_cast<std::int64_t>(std::floor(at.y)));
+  const glm::vec2 at = texelPlace(image, uv);
+  return texel(image, sampler, static_cast<std::int64_t>(at.x), static_cast<std::int64_t>(at.y));
+}
+
+glm::vec4 nearestData(const DecodedImage& image, const gltf::Sampler& sampler, glm::vec2 uv) {
+  const glm::vec2 at = texelPlace(image, uv);
+  const std::uint8_t* p =
+      bytesOf(image, sampler, static_cast<std::int64_t>(at.x), static_cast<std::int64_t>(at.y));
+  return glm::vec4(p[0], p[1], p[2], p[3]) / 255.0f;
 }
 
 }  // namespace lambent::baker

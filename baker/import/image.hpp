@@ -42,5 +42,7 @@ glm::vec4 sampleImage(const DecodedImage& image, const gltf::Sampler& sampler, g
 // The texel that uv falls in, for sums over so many look-ups that blending between texels makes no
 // difference.
 glm::vec4 nearestTexel(const DecodedImage& image, const gltf::Sampler& sampler, glm::vec2 uv);
+// The same of a picture that holds no colours: all four channels 0..1 as stored.
+glm::vec4 nearestData(const DecodedImage& image, const gltf::Sampler& sampler, glm::vec2 uv);
 
 }  // namespace lambent::baker

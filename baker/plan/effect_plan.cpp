@@ -41,13 +41,12 @@ void addStretchedNodes(const Scene& scene, std::vector<std::string>& sentences) 
 }
 
 // What this version does not carry yet, so that nobody has to find out by looking at the picture.
-std::vector<std::string> leftOut(const Scene& scene) {
+std::vector<std::string> leftOut(const Scene& scene, bool glossy) {
   std::vector<std::string> sentences = scene.warnings;
   const auto any_material = [&](auto test) {
     return std::any_of(scene.materials.begin(), scene.materials.end(), test);
   };
-  if (any_material(
-          [](const gltf::Material& m) { return !m.unlit && (m.metallic > 0.0f || m.roughness < 1.0f); }))
+  if (!glossy && any_material([](const gltf::Material& m) { return !m.matte(); }))
     sentences.emplace_back(
         "Metallic and glossy reflection are left out: every material is Lambert with albedo = base colour.");
   if (any_material([](const gltf::Material& m) { return m.alpha_mode == gltf::AlphaMode::Blend; }))
@@ -64,8 +63,14 @@ EffectPlan makePlan(const Scene& scene, std::span<const EffectEntry> effects) {
   for (const EffectEntry& entry : effects) plan.effects.push_back(entry.choose(scene, plan.groups));
   plan.light_samples = planLightSamples(scene, plan.groups);
   plan.near_lights = lightsInside(scene, plan.groups);
-  plan.left_out = leftOut(scene);
+  plan.left_out = leftOut(scene, plan.bakes("glossy"));
   return plan;
+}
+
+bool EffectPlan::bakes(std::string_view effect) const {
+  return std::any_of(effects.begin(), effects.end(), [&](const EffectChoice& choice) {
+    return choice.effect == effect && choice.baked;
+  });
 }
 
 }  // namespace lambent::baker

@@ -5,6 +5,7 @@
 
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "baker/import/scene.hpp"
@@ -31,6 +32,8 @@ struct EffectPlan {
   std::vector<PlannedLightSamples> light_samples;  // one per group
   std::vector<std::string> near_lights;            // lamps that come within groups, and how they are shown
   std::vector<std::string> left_out;  // what the scene has and the bake will not show, one sentence each
+
+  bool bakes(std::string_view effect) const;
 };
 
 EffectPlan makePlan(const Scene& scene, std::span<const EffectEntry> effects);

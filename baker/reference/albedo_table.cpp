@@ -14,7 +14,7 @@ namespace lambent::baker::reference {
 
 namespace {
 
-constexpr std::uint32_t kPoints = 1024, kAnisotropicPoints = 256;
+constexpr std::uint32_t kPoints = 512, kAnisotropicPoints = 256;
 
 glm::vec2 albedo(const glm::vec2& alpha, const glm::vec3& view, std::uint32_t points) {
   const Sampler sampler(/*seed=*/2, 0, 0);  // the same points everywhere: what error there is, is smooth
@@ -47,9 +47,9 @@ float node(std::size_t i, std::size_t nodes) {
 AlbedoTable AlbedoTable::build(bool anisotropic) {
   AlbedoTable out;
   out.angles_ = anisotropic ? 33 : 97;
-  out.azimuths_ = anisotropic ? 9 : 1;
-  out.roughnesses_ = anisotropic ? 17 : 49;
-  out.strengths_ = anisotropic ? 9 : 1;
+  out.azimuths_ = anisotropic ? 7 : 1;
+  out.roughnesses_ = anisotropic ? 13 : 33;
+  out.strengths_ = anisotropic ? 7 : 1;
   const std::size_t rows = out.strengths_ * out.roughnesses_ * out.azimuths_;
   out.values_.resize(rows * out.angles_);
   parallelRanges(rows, 1, {}, [&](std::size_t first, std::size_t last) {

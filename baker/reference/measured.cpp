@@ -129,7 +129,7 @@ float MeasuredReflection::scale(float cosine) const {
 }
 
 glm::vec3 MeasuredReflection::value(const glm::vec3& v, const glm::vec3& s) const {
-  return unscaled(v, s) * (scale(v.z) * scale(s.z));
+  return unscaled(v, s) * std::min(scale(v.z), scale(s.z));
 }
 
 }  // namespace lambent::baker::reference

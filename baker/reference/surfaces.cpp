@@ -93,7 +93,8 @@ Result<Surfaces> Surfaces::build(const Scene& scene) {
 void Surfaces::buildTables(const Scene& scene) {
   for (const MeasuredBrdf& brdf : scene.brdfs) measured_.push_back(MeasuredReflection::build(brdf));
   for (const gltf::Material& material : scene.materials) {
-    if (material.matte() || material.brdf >= 0) continue;
+    const bool bare = material.metallic >= 1.0f && material.metallic_roughness_texture.texture < 0;
+    if (material.matte() || material.brdf >= 0 || bare) continue;
     if (round_.empty()) round_ = AlbedoTable::build(/*anisotropic=*/false);
     if (material.anisotropy > 0.0f && anisotropic_.empty())
       anisotropic_ = AlbedoTable::build(/*anisotropic=*/true);
@@ -215,6 +216,7 @@ Reflector Surfaces::reflectorAt(const Hit& hit, const SurfacePoint& point, const
       specular * glm::min(step * step * material.specular_color * tint, glm::vec3(1.0f));
   out.f0 = glm::mix(dielectric, point.albedo, metal);
   out.f90 = glm::mix(specular, 1.0f, metal);
+  if (metal >= 1.0f) return out;  // nothing diffuse, all by the lobe
   const glm::vec2 parts = (strength > 0.0f ? anisotropic_ : round_).at(out.view, roughness, strength);
   const glm::vec3 reflected = out.f0 * parts.x + out.f90 * parts.y;
   const float most = std::max({reflected.r, reflected.g, reflected.b});

@@ -33,6 +33,24 @@ SampleKind kindOf(const gltf::Material* material, const bundle::MeshData& mesh, 
   return isNormalMapped(*material, mesh) ? SampleKind::NormalMapped : SampleKind::Plain;
 }
 
+// What textures of glossy surfaces ask for. A mirroring node turns the bitangent over, and so does the other
+// side, whose normal is negated: both sides keep the direction in which they are brushed.
+void appendGlossy(const bundle::MeshData& mesh, const glm::mat3& linear, float side, std::size_t first_vertex,
+                  GroupGeometry& geometry) {
+  const std::size_t end = first_vertex + mesh.positions.size();
+  for (std::size_t set = 0; set < 2; ++set) {
+    const auto& texcoords = set == 1 ? mesh.texcoords1 : mesh.texcoords0;
+    geometry.texcoord_sets[set].resize(first_vertex, glm::vec2(0.0f));
+    geometry.texcoord_sets[set].insert(geometry.texcoord_sets[set].end(), texcoords.begin(), texcoords.end());
+    geometry.texcoord_sets[set].resize(end, glm::vec2(0.0f));
+  }
+  const float sign = (glm::determinant(linear) < 0.0f ? -1.0f : 1.0f) * side;
+  geometry.tangents.resize(first_vertex, glm::vec4(0.0f));
+  for (const glm::vec4& tangent : mesh.tangents)
+    geometry.tangents.emplace_back(unitOr(linear * glm::vec3(tangent), glm::vec3(0.0f)), sign * tangent.w);
+  geometry.tangents.resize(end, glm::vec4(0.0f));
+}
+
 void append(const PlannedDraw& draw, const bundle::MeshData& mesh, const gltf::Material* material,
             std::int32_t material_index, bool with_glossy, GroupGeometry& geometry) {
   DrawGeometry out{.first_vertex = static_cast<std::uint32_t>(geometry.positions.size()),
@@ -57,6 +75,7 @@ void append(const PlannedDraw& draw, const bundle::MeshData& mesh, const gltf::M
     geometry.emissive_texcoords.push_back(texcoordOf(emissive, mesh, v));
     geometry.colors.push_back(mesh.colors.empty() ? glm::vec4(1.0f) : mesh.colors[v]);
   }
+  if (out.kind == SampleKind::Glossy) appendGlossy(mesh, linear, side, out.first_vertex, geometry);
   const bool reversed = (glm::determinant(linear) < 0.0f) != draw.back;
   for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
     glm::uvec3 triangle(mesh.indices[i], mesh.indices[i + 1], mesh.indices[i + 2]);

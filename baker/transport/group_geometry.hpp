@@ -5,6 +5,7 @@
 // near it: out there floats are too coarse for rays.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -28,7 +29,7 @@ struct DrawGeometry {
   std::uint32_t first_vertex = 0, vertex_count = 0;
   std::uint32_t first_triangle = 0, triangle_count = 0;
   std::int32_t material = -1;
-  bool back = false;           // of a double-sided material; the draw before it is its front
+  bool back = false;  // of a double-sided material; the draw before it is its front
   SampleKind kind = SampleKind::Plain;
 };
 
@@ -38,15 +39,21 @@ struct GroupGeometry {
   std::vector<glm::vec3> normals;    // unit; of back draws negated
   std::vector<glm::vec2>
       texcoords;  // of the material's base-colour texture, transformed; 0 where it has none
-  std::vector<glm::vec2> emissive_texcoords;     // of its emissive texture
-  std::vector<glm::vec4> colors;                 // of the vertices, linear; 1 where there are none
+  std::vector<glm::vec2> emissive_texcoords;  // of its emissive texture
+  std::vector<glm::vec4> colors;              // of the vertices, linear; 1 where there are none
+  // For the textures of glossy surfaces: of the vertices of draws with glossy samples (0 for those before
+  // them; the lists end with the last one). Texture coordinates of both sets as the file has them, 0 where it
+  // has none; tangents unit, along the group's axes, w the sign of the bitangent cross(normal, tangent) w on
+  // that side, 0 without tangents.
+  std::array<std::vector<glm::vec2>, 2> texcoord_sets;
+  std::vector<glm::vec4> tangents;
   std::vector<glm::uvec3> triangles;             // into positions; of back draws corners 1 and 2 are swapped
   std::vector<DrawGeometry> draws;               // in the order of RigidGroup::draws
   glm::vec3 bounds_min{0.0f}, bounds_max{0.0f};  // from `origin`
 };
 
-// decoded[mesh][primitive] is what ships. with_glossy: materials that are not matte have glossy samples; else all are
-// Lambert.
+// decoded[mesh][primitive] is what ships. with_glossy: materials that are not matte have glossy samples; else
+// all are Lambert.
 GroupGeometry buildGroupGeometry(const RigidGroup& group, const Scene& scene,
                                  const std::vector<std::vector<bundle::MeshData>>& decoded,
                                  bool with_glossy = false);

@@ -122,7 +122,7 @@ void applyBand(const T* columns, const T* in, T* out) {
 
 template <int Channels, typename T>
 void applyBands(int order, const T* columns, const T* in, T* out) {
-  detail::unrolled(std::make_integer_sequence<int, kMaxOrder>{}, [&](auto l) {
+  detail::unrolled(std::make_integer_sequence<int, kMaxBasisOrder>{}, [&](auto l) {
     if (l < order)
       applyBand<l, Channels>(columns + bandOffset(l), in + l * l * Channels, out + l * l * Channels);
   });
@@ -157,7 +157,7 @@ Result<glm::dmat3> orthonormalised(const glm::dmat3& matrix) {
 }
 
 Rotation::Rotation(const glm::dmat3& rotation, int order) : order_(order) {
-  assert(order >= 1 && order <= kMaxOrder);
+  assert(order >= 1 && order <= kMaxBasisOrder);
   columns_.resize(static_cast<std::size_t>(bandOffset(order)));
   columns_float_.resize(columns_.size());
   set(rotation);
@@ -167,9 +167,9 @@ Rotation::Rotation(const glm::dquat& quaternion, int order)
     : Rotation(glm::mat3_cast(glm::normalize(quaternion)), order) {}
 
 Result<Rotation> Rotation::make(const glm::dmat3& matrix, int order) {
-  if (order < 1 || order > kMaxOrder)
+  if (order < 1 || order > kMaxBasisOrder)
     return fail("rotation", "order " + std::to_string(order) + " is not supported",
-                "use 1 to " + std::to_string(kMaxOrder));
+                "use 1 to " + std::to_string(kMaxBasisOrder));
   if (!isRotation(matrix))
     return fail("rotation", "its matrix is not a rotation (mirrored, scaled, sheared or not finite)",
                 "pass it through orthonormalised() first");
@@ -191,7 +191,7 @@ void Rotation::set(const glm::dmat3& rotation) {
     for (std::size_t i = 0; i < 3; ++i)
       for (std::size_t j = 0; j < 3; ++j)
         columns[static_cast<std::size_t>(bandOffset(1)) + i * 4 + j] = first[i][j];
-  detail::unrolled(std::make_integer_sequence<int, kMaxOrder - 2>{}, [&](auto index) {
+  detail::unrolled(std::make_integer_sequence<int, kMaxBasisOrder - 2>{}, [&](auto index) {
     constexpr int l = index + 2;
     if (l < order_) makeBand<l>(first, columns + bandOffset(l - 1), columns + bandOffset(l));
   });

@@ -28,7 +28,7 @@ Result<glm::dmat3> orthonormalised(const glm::dmat3& matrix);
 class Rotation {
  public:
   Rotation(const glm::dmat3& rotation,
-           int order);  // asserts isRotation(rotation) and 1 <= order <= kMaxOrder
+           int order);  // asserts isRotation(rotation) and 1 <= order <= kMaxBasisOrder
   Rotation(const glm::dquat& quaternion, int order);  // any quaternion but zero; normalised here
   static Result<Rotation> make(const glm::dmat3& matrix, int order);
 

@@ -15,116 +15,18 @@
 #include "baker/import/gltf.hpp"
 #include "runtime/frame/frame.hpp"
 #include "runtime/scene/lights.hpp"
+#include "tests/stability/show.hpp"
 #include "tests/support/gpu_context.hpp"
 
 namespace lambent {
 namespace {
 
+using testing::add;
+using testing::constantLight;
+using testing::named;
+using testing::Show;
+
 using Kind = scene::LocalLightComponent::Kind;
-
-// A baked scene in a world, with a light, drawn in the little.
-class Show {
- public:
-  Show(const assets::Scene& source, const std::vector<spec::Light>& lights, int light_samples = 0)
-      : environment(*lighting::Environment::create(lights)) {
-    const auto folder =
-        std::filesystem::path(::testing::TempDir()) /
-        (std::to_string(::getpid()) + "-" + ::testing::UnitTest::GetInstance()->current_test_info()->name());
-    std::filesystem::create_directories(folder);
-    const std::filesystem::path file = folder / "scene.glb", bundle = folder / "scene.lmb.glb";
-    EXPECT_TRUE(assets::writeGlb(file, source));
-    const auto scene = baker::importScene(file);
-    EXPECT_TRUE(scene) << scene.error().line();
-    baker::BakeOptions options;
-    options.quality = baker::Quality::Draft;
-    options.light_samples = light_samples;
-    baker::Progress progress;
-    const auto report = baker::bake(*scene, options, bundle, progress, {});
-    EXPECT_TRUE(report) << report.error().line();
-    const Result<void> opened = world.open(bundle);
-    EXPECT_TRUE(opened) << opened.error().line();
-    gpu::Counters counters;
-    EXPECT_TRUE(world.uploadAll(counters));
-    std::filesystem::remove_all(folder);
-    frame::FrameOptions frame_options;
-    frame_options.size = {kSide, kSide};
-    frame_options.output = frame::Output::Linear;
-    frame_options.window = sh::Window::Off;
-    frame_options.wait_for_captures = true;
-    auto made = frame::Frame::create(frame_options, environment);
-    EXPECT_TRUE(made) << made.error().line();
-    frame.emplace(std::move(*made));
-  }
-
-  // Mean of a small patch around `target`, once the light has come to rest, within the steps of so many
-  // pictures; all of it finite.
-  glm::vec3 patch(glm::vec3 eye, glm::vec3 target, std::uint32_t pictures = 1) {
-    step(eye, target);
-    std::uint32_t steps = frame::kMaxRestSteps;
-    for (std::uint32_t times = 0; times < pictures && steps == frame::kMaxRestSteps; ++times) {
-      const Result<std::uint32_t> taken = frame->rest(world, environment);
-      EXPECT_TRUE(taken) << taken.error().line();
-      if (!taken) return {};
-      steps = *taken;
-    }
-    EXPECT_LT(steps, frame::kMaxRestSteps) << "does not come to rest";
-    step(eye, target);
-    glm::dvec3 sum(0.0);
-    for (const glm::vec4& texel : frame->readLinear().texels) {
-      EXPECT_TRUE(std::isfinite(texel.r) && std::isfinite(texel.g) && std::isfinite(texel.b));
-      sum += glm::dvec3(texel);
-    }
-    return glm::vec3(sum / double{kSide * kSide});
-  }
-  void step(glm::vec3 eye, glm::vec3 target) {
-    spec::View view;
-    view.view_from_world = glm::lookAt(eye, target, glm::vec3(0.01f, 1.0f, 0.02f));
-    view.clip_from_view = glm::perspective(glm::radians(1.5f), 1.0f, 0.01f, 1000.0f);
-    view.eye_ws = eye;
-    world.updateTransforms();
-    const Result<void> done = frame->render(world, environment, view);
-    ASSERT_TRUE(done) << done.error().line();
-  }
-
-  void move(const std::string& name, glm::vec3 to) {
-    scene::Transform* transform = nullptr;
-    for (auto [entity, node] : world.registry().view<const scene::Name>())
-      if (node.value == name && world.registry().has<scene::Transform>(entity))
-        transform = &world.registry().edit<scene::Transform>(entity);
-    ASSERT_NE(transform, nullptr) << name;
-    transform->translation = to;
-  }
-  void add(const scene::LocalLightComponent& light, glm::vec3 at) {
-    const ecs::Entity entity = world.registry().create();
-    world.registry().emplace<scene::Transform>(entity).translation = at;
-    world.registry().emplace<scene::LocalLightComponent>(entity, light);
-  }
-
-  static constexpr std::uint32_t kSide = 8;
-  frame::World world;
-  lighting::Environment environment;
-  std::optional<frame::Frame> frame;
-};
-
-spec::Light constantLight(float radiance) {
-  return spec::ConstantLight{.radiance = glm::vec3(radiance)};
-}
-
-assets::Scene named(const std::string& name) {
-  assets::Scene scene;
-  scene.name = name;
-  return scene;
-}
-
-// A body of a material of its own; in a rigid group of its own if it may move.
-void add(assets::Scene& scene, const std::string& name, assets::Mesh mesh, glm::vec3 color, glm::vec3 at,
-         bool movable, glm::vec3 emission = glm::vec3(0.0f)) {
-  scene.materials.push_back({.name = name, .base_color = color, .emission = emission});
-  scene.meshes.push_back({name, std::move(mesh), static_cast<int>(scene.materials.size()) - 1});
-  assets::Node node{.name = name, .mesh = static_cast<int>(scene.meshes.size()) - 1, .translation = at};
-  node.movable = movable;
-  scene.nodes.push_back(node);
-}
 
 assets::Mesh wall(float half, float cell) {  // faces +Z
   return assets::plane({-half, -half, 0}, {2 * half, 0, 0}, {0, 2 * half, 0}, cell);

@@ -23,7 +23,9 @@ struct Transport {
   baker::RayScene rays;
   baker::SurfaceColors colors;
 
-  explicit Transport(const baker::Scene& from) : Transport(from, baker::findRigidGroups(from).at(0)) {}
+  // with_glossy: materials that are not matte have glossy samples.
+  explicit Transport(const baker::Scene& from, bool with_glossy = false)
+      : Transport(from, baker::findRigidGroups(from).at(0), with_glossy) {}
   Transport(const Transport&) = delete;  // colors refers to geometry
   Transport& operator=(const Transport&) = delete;
 
@@ -61,10 +63,10 @@ struct Transport {
   }
 
  private:
-  Transport(const baker::Scene& from, const baker::RigidGroup& group)
+  Transport(const baker::Scene& from, const baker::RigidGroup& group, bool with_glossy)
       : scene(from),
         lights(baker::findGroupLights(from, group)),
-        geometry(baker::buildGroupGeometry(group, from, decoded(from))),
+        geometry(baker::buildGroupGeometry(group, from, decoded(from), with_glossy)),
         samples(baker::buildSamples(geometry)),
         rays(build(geometry, from)),
         colors(load(from, geometry, lights)) {}

@@ -18,11 +18,9 @@ namespace lambent::baker {
 
 namespace {
 
-// Once a pass has less than this share of all light, every kThinned-th ray stands for all where a sample has
-// more hits than kHitsToThin: their noise of a percent of a percent is not seen.
+// Once a pass has less than this share of all light, its rays are thinned: their noise of a percent of a
+// percent is not seen.
 constexpr double kShareToThin = 0.01;
-constexpr std::size_t kHitsToThin = 64;
-constexpr std::uint32_t kThinned = 4;
 
 // Energy of a field for each source of light: the environment first, then each light of the group.
 std::vector<double> energies(const TransferField& field) {
@@ -58,13 +56,9 @@ TransferField zeroLike(const TransferField& field) {
 
 class Gather {
  public:
-  Gather(const DirectPass& pass, const DirectResult& direct, const DiffuseScene& scene)
-      : pass_(pass), direct_(direct), scene_(scene) {
-    triangle_samples_.reserve(scene.geometry.triangles.size());
-    for (const glm::uvec3& t : scene.geometry.triangles)
-      triangle_samples_.emplace_back(scene.samples.vertex_sample[t.x], scene.samples.vertex_sample[t.y],
-                                     scene.samples.vertex_sample[t.z]);
-  }
+  Gather(const DirectPass& pass, const DirectResult& direct, const DiffuseScene& scene,
+         const ExitRadiance& exit)
+      : pass_(pass), direct_(direct), scene_(scene), exit_(exit) {}
 
   // Samples [begin, end) of bounce `bounce`. `mapped` gets it added; it is in the group's frame.
   void range(int bounce, bool thinly, std::size_t begin, std::size_t end, const TransferField& before,
@@ -78,76 +72,33 @@ class Gather {
     }
     const std::size_t first_mapped = scene_.samples.first_normal_mapped;
     for (std::size_t s = begin; s < end; ++s) {
-      auto own =
-          std::span(hits->hits)
-              .subspan(hits->offsets[s - begin], hits->offsets[s - begin + 1] - hits->offsets[s - begin]);
+      auto own = hits->of(s - begin);
       const Hemisphere& hemisphere = pass_.hemisphereOf(s, direct_.looks.closely[s] != 0);
       float scale = 1.0f;
-      if (thinly && own.size() > kHitsToThin) {
-        scale = thin(own, hemisphere, static_cast<std::uint32_t>(bounce), thinned);
-        own = thinned;
-      }
+      if (thinly) scale = thinHits(bounce, hemisphere, own, thinned);
+      const ExitToSample exit(exit_, hemisphere.table(), scene_.samples.normals[s], s, bounce);
       if (s < first_mapped)
-        gatherPlain(own, scale, hemisphere, before, now.at(s));
+        gatherPlain(own, scale, hemisphere, exit, before, now.at(s));
       else
-        gatherMapped(s, own, scale, hemisphere, before, now.at(s), mapped.at(s - first_mapped));
+        gatherMapped(s, own, scale, hemisphere, exit, before, now.at(s), mapped.at(s - first_mapped));
     }
   }
 
  private:
-  // The hits of every kThinned-th ray (rays lie along a Hilbert curve, so these are as evenly spread), others
-  // in each bounce. Returns what their weights must be multiplied with to stand for all, so that no light is
-  // lost or won: a white furnace stays white.
-  static float thin(std::span<const GatherHit> hits, const Hemisphere& hemisphere, std::uint32_t bounce,
-                    std::vector<GatherHit>& out) {
-    out.clear();
-    double all = 0.0, kept = 0.0;
-    for (const GatherHit& hit : hits) {
-      const double weight = hemisphere.weight(hit.ray);
-      all += weight;
-      if (hit.ray % kThinned != bounce % kThinned) continue;
-      kept += weight;
-      out.push_back(hit);
-    }
-    if (out.empty()) {
-      out.assign(hits.begin(), hits.end());
-      return 1.0f;
-    }
-    return static_cast<float>(all / kept);
-  }
-
-  // Radiance that leaves the point that was met: weight * albedo * interpolated transfer, added to `sum`.
-  void addExit(const GatherHit& hit, float weight, const TransferField& before, std::span<float> sum) const {
-    const glm::uvec3 corners = triangle_samples_[hit.triangle];
-    const float u = static_cast<float>(hit.u) * (1.0f / 65535.0f),
-                v = static_cast<float>(hit.v) * (1.0f / 65535.0f);
-    const float* a = before.at(corners.x).data();
-    const float* b = before.at(corners.y).data();
-    const float* c = before.at(corners.z).data();
-    float* out = sum.data();
-    const std::size_t columns = before.columns;
-    for (std::size_t channel = 0; channel < before.channels; ++channel) {
-      const float albedo = weight * static_cast<float>(hit.albedo[channel]) * (1.0f / 65535.0f);
-      const float wa = albedo * (1.0f - u - v), wb = albedo * u, wc = albedo * v;
-      for (std::size_t i = 0; i < columns; ++i) out[i] += wa * a[i] + wb * b[i] + wc * c[i];
-      a += columns, b += columns, c += columns, out += columns;
-    }
-  }
-
   void gatherPlain(std::span<const GatherHit> hits, float scale, const Hemisphere& hemisphere,
-                   const TransferField& before, std::span<float> out) const {
+                   const ExitToSample& exit, const TransferField& before, std::span<float> out) const {
     for (const GatherHit& hit : hits)
-      addExit(hit, scale * static_cast<float>(hemisphere.weight(hit.ray)), before, out);
+      exit.add(hit, scale * static_cast<float>(hemisphere.weight(hit.ray)), before, out);
   }
 
   void gatherMapped(std::size_t sample, std::span<const GatherHit> hits, float scale,
-                    const Hemisphere& hemisphere, const TransferField& before, std::span<float> out,
-                    std::span<float> mapped) const {
+                    const Hemisphere& hemisphere, const ExitToSample& exit_to, const TransferField& before,
+                    std::span<float> out, std::span<float> mapped) const {
     const std::size_t stride = before.vectorSize();
     std::vector<float> exit(stride), local(kIncident * stride, 0.0f);
     for (const GatherHit& hit : hits) {
       std::fill(exit.begin(), exit.end(), 0.0f);
-      addExit(hit, scale, before, exit);
+      exit_to.add(hit, scale, before, exit);
       const auto weight = static_cast<float>(hemisphere.weight(hit.ray));
       for (std::size_t i = 0; i < stride; ++i) out[i] += weight * exit[i];
       const auto& weights = hemisphere.incidentWeight(hit.ray);
@@ -168,7 +119,7 @@ class Gather {
   const DirectPass& pass_;
   const DirectResult& direct_;
   const DiffuseScene& scene_;
-  std::vector<glm::uvec3> triangle_samples_;
+  const ExitRadiance& exit_;
 };
 
 // The largest share that a pass has of all light, over the sources of light.
@@ -196,8 +147,10 @@ double tailOf(const std::vector<double>& before, const std::vector<double>& now,
 
 std::optional<BounceResult> bakeBounces(const DirectPass& pass, const DirectResult& direct,
                                         const DiffuseScene& scene, const BounceSettings& settings,
-                                        Progress& progress, const std::stop_token& stop) {
-  const Gather gather(pass, direct, scene);
+                                        Progress& progress, const std::stop_token& stop,
+                                        BouncePartner* partner) {
+  const ExitRadiance exit(scene.geometry, scene.samples, partner);
+  const Gather gather(pass, direct, scene, exit);
   BounceResult result{
       .field = zeroLike(direct.field), .mapped = zeroLike(direct.mapped), .energy = {1.0}, .left_out = 0.0};
   const bool any_filled = std::find(direct.looks.valid.begin(), direct.looks.valid.end(), std::uint8_t{0}) !=
@@ -205,23 +158,31 @@ std::optional<BounceResult> bakeBounces(const DirectPass& pass, const DirectResu
   const auto edges = any_filled ? sampleEdges(scene.geometry, scene.samples)
                                 : std::vector<std::pair<std::uint32_t, std::uint32_t>>{};
   TransferField before = direct.field;
-  std::vector<double> energy = energies(before), all = energy;
+  const auto energiesOf = [&](const TransferField& field) {
+    std::vector<double> sums = energies(field);
+    if (!partner) return sums;
+    const auto more = partner->energies();
+    sums.insert(sums.end(), more.begin(), more.end());
+    return sums;
+  };
+  std::vector<double> energy = energiesOf(before), all = energy;
   const std::vector<double> first = energy;
   const int most = settings.bounces < 0 ? kMostBounces : settings.bounces;
   for (int bounce = 1; bounce <= most; ++bounce) {
     progress.begin(fmt::format("bounce {}", bounce), scene.samples.size(), "samples");
     TransferField now = zeroLike(before);
     const bool thinly = shareOf(energy, all) < kShareToThin;
-    const bool finished =
-        parallelRanges(scene.samples.size(), kSamplesPerRange, stop, [&](std::size_t begin, std::size_t end) {
+    const bool finished = parallelRanges(
+        scene.samples.first_glossy, kSamplesPerRange, stop, [&](std::size_t begin, std::size_t end) {
           gather.range(bounce, thinly, begin, end, before, now, result.mapped);
           progress.add(end - begin);
         });
     if (!finished) return std::nullopt;
     if (any_filled) fillFromNeighbours(edges, direct.looks.valid, now);
+    if (partner && !partner->gather(bounce, thinly, exit, before, now, progress, stop)) return std::nullopt;
     add(now, result.field);
 
-    const std::vector<double> energy_before = std::exchange(energy, energies(now));
+    const std::vector<double> energy_before = std::exchange(energy, energiesOf(now));
     double share = 0.0;
     for (std::size_t k = 0; k < energy.size(); ++k) {
       all[k] += energy[k];
@@ -231,9 +192,11 @@ std::optional<BounceResult> bakeBounces(const DirectPass& pass, const DirectResu
     result.left_out = tailOf(energy_before, energy, all);
     if (settings.bounces < 0 && result.left_out < settings.tail_error) break;
     before = std::move(now);
+    if (partner) partner->advance();
   }
   if (any_filled)
-    fillMappedFromNeighbours(edges, direct.looks.valid, scene.samples.first_normal_mapped, result.mapped);
+    fillStretchFromNeighbours(edges, direct.looks.valid, scene.samples.first_normal_mapped,
+                              result.mapped.vectorSize(), result.mapped.vectors);
   return result;
 }
 

@@ -1,16 +1,17 @@
 // Interreflection (Sloan 2002, section 4, passes b >= 1): each pass gathers what the pass before left at the
 // points that the rays of pass 0 met,
 //   t^b_p = sum_rays w_r rho(q_r) t^(b-1)(q_r),   t(q) interpolated over the triangle that was met,
-// all samples from the same state of the others (Jacobi), so the order of work does not matter. Passes that carry
-// less than a hundredth of all light gather over every fourth ray. The
-// surface's albedo rho is textured and coloured; the receiver's own is left out. Passes end when what is
-// still to come would add less than asked for.
+// all samples from the same state of the others (Jacobi), so the order of work does not matter. Passes that
+// carry less than a hundredth of all light gather over every fourth ray. The surface's albedo rho is textured
+// and coloured; the receiver's own is left out. Passes end when what is still to come would add less than
+// asked for.
 #pragma once
 
 #include <optional>
 #include <stop_token>
 #include <vector>
 
+#include "baker/effects/diffuse/bounce_partner.hpp"
 #include "baker/effects/diffuse/direct.hpp"
 
 namespace lambent::baker {
@@ -30,9 +31,11 @@ struct BounceResult {
   double left_out = 0.0;  // estimate of what the passes left out, relative to all light
 };
 
-// Nothing if stopped. Stages "bounce 1", "bounce 2", ... of `progress`, counting samples.
+// Nothing if stopped. Stages "bounce 1", "bounce 2", ... of `progress`, counting samples. `partner` may be
+// null.
 std::optional<BounceResult> bakeBounces(const DirectPass& pass, const DirectResult& direct,
                                         const DiffuseScene& scene, const BounceSettings& settings,
-                                        Progress& progress, const std::stop_token& stop);
+                                        Progress& progress, const std::stop_token& stop,
+                                        BouncePartner* partner = nullptr);
 
 }  // namespace lambent::baker

@@ -175,7 +175,8 @@ std::optional<DirectResult> bakeDirect(const DirectPass& pass, const DiffuseScen
   result.field.rays = traced;
   const auto edges = sampleEdges(scene.geometry, scene.samples);
   result.field.filled_samples = fillFromNeighbours(edges, result.looks.valid, result.field);
-  fillMappedFromNeighbours(edges, result.looks.valid, scene.samples.first_normal_mapped, result.mapped);
+  fillStretchFromNeighbours(edges, result.looks.valid, scene.samples.first_normal_mapped,
+                            result.mapped.vectorSize(), result.mapped.vectors);
   return result;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -15,10 +16,10 @@ namespace lambent::baker {
 std::uint32_t fillFromNeighbours(const std::vector<std::pair<std::uint32_t, std::uint32_t>>& edges,
                                  std::vector<std::uint8_t> valid, TransferField& field);
 
-// The same for a field that holds only a stretch of the samples, from `first` on; edges to others do not
-// count.
-void fillMappedFromNeighbours(const std::vector<std::pair<std::uint32_t, std::uint32_t>>& edges,
-                              const std::vector<std::uint8_t>& valid, std::size_t first,
-                              TransferField& field);
+// The same for values of a stretch of the samples, from `first` on, `size` for each; edges to others do not
+// count. `valid` is that of all samples.
+std::uint32_t fillStretchFromNeighbours(const std::vector<std::pair<std::uint32_t, std::uint32_t>>& edges,
+                                        const std::vector<std::uint8_t>& valid, std::size_t first,
+                                        std::size_t size, std::span<float> values);
 
 }  // namespace lambent::baker

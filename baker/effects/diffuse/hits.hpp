@@ -7,6 +7,7 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include <glm/vec3.hpp>
@@ -32,6 +33,10 @@ struct RangeHits {
   bool kept = false;
 
   std::size_t bytes() const { return hits.size() * sizeof(GatherHit); }
+  // Of the sample at this place in the range.
+  std::span<const GatherHit> of(std::size_t sample) const {
+    return std::span(hits).subspan(offsets[sample], offsets[sample + 1] - offsets[sample]);
+  }
 };
 
 class HitStore {

@@ -1,9 +1,9 @@
-// Transfer matrices of the glossy samples of a group, in the group's frame: l' = M l, what arrives at a sample after
-// shadows and interreflection (Sloan 2002, section 4; Kautz 2002). Direct light as visibility V in
-// order_in + order_out - 1 bands; bounced light, and light of the group's own lights, as matrices.
-// Below the sample's tangent plane, where its BRDF asks for nothing, transferred light continues as its mirror image:
-// V(s) = V(mirrored s), bounced light alike. So open points have V = 1, closed rooms V = 0, and neither has an edge
-// along the horizon for few bands to ring at.
+// Transfer matrices of the glossy samples of a group, in the group's frame: l' = M l, what arrives at a
+// sample after shadows and interreflection (Sloan 2002, section 4; Kautz 2002). Direct light as visibility V
+// in order_in + order_out - 1 bands; bounced light, and light of the group's own lights, as matrices. Below
+// the sample's tangent plane, where its BRDF asks for nothing, transferred light continues as its mirror
+// image: V(s) = V(mirrored s), bounced light alike. So open points have V = 1, closed rooms V = 0, and
+// neither has an edge along the horizon for few bands to ring at.
 #pragma once
 
 #include <cstdint>
@@ -19,13 +19,17 @@ struct GlossyField {
   std::uint32_t first_sample = 0;   // SampleSet::first_glossy
 
   std::vector<float> visibility;  // [sample][k], visibilityBands()² each
-  // Bounced light of the environment: [sample][channel][output][column], order_out² by order_in²; empty without bounces.
+  // Bounced light of the environment: [sample][channel][output][column], order_out² by order_in²; empty
+  // without bounces.
   std::vector<float> bounced;
-  // Of the group's lights, without and with bounces: [sample][channel][output][light]; empty where there are none.
+  // Of the group's lights, without and with bounces: [sample][channel][output][light]; empty where there are
+  // none.
   std::vector<float> lights_shadowed, lights_full;
 
   int visibilityBands() const { return order_in + order_out - 1; }
-  std::size_t visibilitySize() const { return static_cast<std::size_t>(visibilityBands() * visibilityBands()); }
+  std::size_t visibilitySize() const {
+    return static_cast<std::size_t>(visibilityBands() * visibilityBands());
+  }
   std::size_t size() const { return visibility.size() / visibilitySize(); }
 };
 

@@ -48,6 +48,20 @@ double largestDifference(std::span<const double> a, std::span<const double> b) {
   return largest;
 }
 
+// As far as the functions themselves go: visibility is turned in 6 + 6 - 1 bands.
+TEST(ShRotation, TurnsTheBasisIn11Bands) {
+  Random random(60);
+  for (const glm::dquat& q : rotations()) {
+    const Rotation rotation(q, kMaxBasisOrder);
+    const glm::dvec3 dir = random.direction();
+    std::array<double, coefficientCount(kMaxBasisOrder)> y, expected, turned;
+    evaluate(kMaxBasisOrder, dir, y);
+    evaluate(kMaxBasisOrder, q * dir, expected);
+    rotation.apply(y, std::span<double>(turned));
+    EXPECT_LE(largestDifference(turned, expected), 1e-12);
+  }
+}
+
 // y(R s) = D y(s) in double: at special angles, about special axes, towards the poles.
 TEST(ShRotation, TurnsTheBasisUpToOrder8NearThePoles) {
   Random random(6);
@@ -192,7 +206,7 @@ TEST(ShRotation, RefusesWhatIsNoRotation) {
   EXPECT_FALSE(Rotation::make(glm::dmat3(0), 5).has_value());
   EXPECT_FALSE(Rotation::make(glm::dmat3(std::numeric_limits<double>::quiet_NaN()), 5).has_value());
   EXPECT_FALSE(Rotation::make(glm::dmat3(1), 0).has_value());
-  EXPECT_FALSE(Rotation::make(glm::dmat3(1), kMaxOrder + 1).has_value());
+  EXPECT_FALSE(Rotation::make(glm::dmat3(1), kMaxBasisOrder + 1).has_value());
 }
 
 TEST(ShRotation, FindsTheRotationInAScaledOrDriftedMatrix) {

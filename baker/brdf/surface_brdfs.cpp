@@ -1,0 +1,355 @@
+#include "baker/brdf/surface_brdfs.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <utility>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include "runtime/sh/basis.hpp"
+#include "runtime/sh/zonal.hpp"
+#include "runtime/sh/zonal_factors.hpp"
+
+namespace lambent::baker {
+
+namespace {
+
+using bundle::BrdfFamily;
+using bundle::BrdfTable;
+using bundle::BrdfView;
+using bundle::kLeastViewCosine;
+using bundle::kMaxBrdfLobes;
+
+constexpr std::size_t kMaxBands = 6, kMaxCoefficients = kMaxBands * kMaxBands;
+using Kernel = std::array<float, kMaxCoefficients>;
+
+struct Texture {
+  std::shared_ptr<const DecodedImage> image;  // null: 1 everywhere
+  gltf::Sampler sampler;
+  gltf::TextureRef ref;
+};
+
+// Of one draw.
+struct Surface {
+  gltf::Material material;
+  bool glossy = false, colored_vertices = false;
+  std::size_t table = 0;  // of a glossy one
+  Texture base, metallic_roughness, specular, specular_color, anisotropy;
+};
+
+// A table whose values are weights of zonal factors in place of coefficients: both look-up and factoring are
+// linear.
+struct Factored {
+  BrdfFamily family;
+  BrdfTable table;
+  sh::ZonalFactors factors;
+};
+
+Factored factored(const BrdfTables::Entry& entry) {
+  const int order = static_cast<int>(entry.table.order);
+  Factored out{
+      entry.family, entry.table,
+      entry.table.isotropic() ? sh::ZonalFactors::isotropic(order) : sh::ZonalFactors::anisotropic(order)};
+  const std::size_t count = entry.table.coefficients();
+  for (std::size_t first = 0; first < out.table.values.size(); first += count)
+    out.factors.factor(std::span(entry.table.values).subspan(first, count),
+                       std::span(out.table.values).subspan(first, count));
+  return out;
+}
+
+bool isGrey(const glm::vec3& color) {
+  return color.r == color.g && color.g == color.b;
+}
+
+bool isGrey(const Texture& texture) {
+  if (!texture.image) return true;
+  const auto& rgba = texture.image->rgba;
+  for (std::size_t i = 0; i + 3 < rgba.size(); i += 4)
+    if (rgba[i] != rgba[i + 1] || rgba[i] != rgba[i + 2]) return false;
+  return true;
+}
+
+glm::vec3 unitOr(const glm::vec3& v, const glm::vec3& fallback) {
+  const float squared = glm::dot(v, v);
+  return squared > 0.0f ? v / std::sqrt(squared) : fallback;
+}
+
+glm::vec3 anyAcross(const glm::vec3& n) {
+  return unitOr(std::abs(n.x) < 0.6f ? glm::vec3(0.0f, -n.z, n.y) : glm::vec3(-n.y, n.x, 0.0f),
+                {1.0f, 0.0f, 0.0f});
+}
+
+// The frame of a view about a normal: x along the surface towards where the view leans.
+struct ViewFrame {
+  glm::vec3 x, y, z;
+  float cos_theta;
+  BrdfView view;  // azimuth folded into the first quadrant
+};
+
+// `tangent` is unit and across the normal; isotropic surfaces give any.
+ViewFrame frameOf(const glm::vec3& normal, const glm::vec3& tangent, const glm::vec3& to) {
+  const float cosine = glm::dot(normal, to);
+  ViewFrame frame{
+      .x = unitOr(to - cosine * normal, tangent), .y = {}, .z = normal, .cos_theta = cosine, .view = {}};
+  frame.y = glm::cross(normal, frame.x);
+  const float cos_phi = glm::dot(frame.x, tangent), sin_phi = glm::dot(frame.x, glm::cross(normal, tangent));
+  // A mirrored view sees the mirrored table.
+  if (cos_phi * sin_phi < 0.0f) frame.y = -frame.y;
+  frame.view = {std::clamp(cosine, kLeastViewCosine, 1.0f), std::abs(cos_phi), std::abs(sin_phi)};
+  return frame;
+}
+
+}  // namespace
+
+struct SurfaceBrdfs::State {
+  const GroupGeometry* geometry = nullptr;
+  int order = 5;
+  bool grey = true;
+  std::vector<Factored> tables;
+  std::vector<Surface> surfaces;                 // one per draw
+  std::vector<std::uint32_t> surface_of;         // triangle -> draw
+  std::array<float, kMaxCoefficients> cosine{};  // A_l/pi of coefficient i
+
+  template <typename T>
+  T interpolated(const std::vector<T>& values, std::uint32_t triangle, float u, float v) const {
+    const glm::uvec3 t = geometry->triangles[triangle];
+    return (1.0f - u - v) * values[t.x] + u * values[t.y] + v * values[t.z];
+  }
+  glm::vec2 texcoord(const gltf::TextureRef& ref, std::uint32_t triangle, float u, float v) const {
+    return ref.apply(interpolated(geometry->texcoord_sets[std::min(ref.texcoord, 1u)], triangle, u, v));
+  }
+  glm::vec4 data(const Texture& texture, std::uint32_t triangle, float u, float v) const {
+    if (!texture.image) return glm::vec4(1.0f);
+    return nearestData(*texture.image, texture.sampler, texcoord(texture.ref, triangle, u, v));
+  }
+
+  glm::vec3 geometricNormal(std::uint32_t triangle) const;
+  glm::vec3 baseColor(const Surface& surface, std::uint32_t triangle, float u, float v) const;
+  // Direction of the longer lobe, unit, across `normal`; and strength.
+  std::pair<glm::vec3, float> anisotropy(const Surface& surface, std::uint32_t triangle, float u, float v,
+                                         const glm::vec3& normal) const;
+  void expand(const Factored& factored, std::span<const float> weights, const ViewFrame& frame,
+              std::span<Kernel> lobes) const;
+  void diffuseKernel(const glm::vec3& color, const glm::vec3& normal, std::span<float> out) const;
+  void glossyKernel(const Surface& surface, std::uint32_t triangle, float u, float v, const glm::vec3& normal,
+                    const glm::vec3& to, std::span<float> out) const;
+};
+
+glm::vec3 SurfaceBrdfs::State::geometricNormal(std::uint32_t triangle) const {
+  const glm::uvec3 t = geometry->triangles[triangle];
+  const glm::vec3 a = geometry->positions[t.x];
+  return glm::cross(geometry->positions[t.y] - a, geometry->positions[t.z] - a);
+}
+
+glm::vec3 SurfaceBrdfs::State::baseColor(const Surface& surface, std::uint32_t triangle, float u,
+                                         float v) const {
+  glm::vec3 color(surface.material.base_color);
+  if (surface.base.image)
+    color *= glm::vec3(nearestTexel(*surface.base.image, surface.base.sampler,
+                                    interpolated(geometry->texcoords, triangle, u, v)));
+  if (surface.colored_vertices) color *= glm::vec3(interpolated(geometry->colors, triangle, u, v));
+  return glm::clamp(color, 0.0f, 1.0f);
+}
+
+std::pair<glm::vec3, float> SurfaceBrdfs::State::anisotropy(const Surface& surface, std::uint32_t triangle,
+                                                            float u, float v, const glm::vec3& normal) const {
+  const gltf::Material& material = surface.material;
+  float strength = material.anisotropy;
+  glm::vec2 lean(1.0f, 0.0f);
+  if (surface.anisotropy.image) {
+    const glm::vec4 texel = data(surface.anisotropy, triangle, u, v);
+    lean = 2.0f * glm::vec2(texel) - 1.0f;
+    strength *= texel.b;
+  }
+  const float c = std::cos(material.anisotropy_rotation_rad), s = std::sin(material.anisotropy_rotation_rad);
+  lean = {c * lean.x - s * lean.y, s * lean.x + c * lean.y};
+
+  const glm::uvec3 corners = geometry->triangles[triangle];
+  glm::vec3 along;
+  float handedness = geometry->tangents[corners.x].w;
+  if (handedness != 0.0f) {
+    along = glm::vec3(interpolated(geometry->tangents, triangle, u, v));
+    handedness = handedness < 0.0f ? -1.0f : 1.0f;
+  } else {
+    // To where the texture's u rises; its v falls along the bitangent.
+    const gltf::TextureRef& ref = material.normal_texture;
+    const auto& set = geometry->texcoord_sets[std::min(ref.texcoord, 1u)];
+    const glm::vec2 a = ref.apply(set[corners.x]), ab = ref.apply(set[corners.y]) - a,
+                    ac = ref.apply(set[corners.z]) - a;
+    const glm::vec3 p = geometry->positions[corners.x], pb = geometry->positions[corners.y] - p,
+                    pc = geometry->positions[corners.z] - p;
+    const float sign = ab.x * ac.y - ac.x * ab.y < 0.0f ? -1.0f : 1.0f;
+    along = sign * (ac.y * pb - ab.y * pc);
+    handedness = glm::dot(glm::cross(normal, along), sign * (ab.x * pc - ac.x * pb)) < 0.0f ? 1.0f : -1.0f;
+  }
+  const glm::vec3 any = anyAcross(normal);
+  const glm::vec3 tangent = unitOr(along - glm::dot(along, normal) * normal, any);
+  return {unitOr(lean.x * tangent + lean.y * handedness * glm::cross(normal, tangent), any), strength};
+}
+
+// As ZonalFactors::expand, of all lobes at once.
+void SurfaceBrdfs::State::expand(const Factored& from, std::span<const float> weights, const ViewFrame& frame,
+                                 std::span<Kernel> lobes) const {
+  const std::size_t count = from.table.coefficients(), bands = from.table.order;
+  const bool isotropic = from.table.isotropic();
+  for (Kernel& lobe : lobes) lobe.fill(0.0f);
+  Kernel y;
+  const auto axes = from.factors.axes();
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    const glm::vec3& axis = axes[i];
+    sh::evaluate(order, axis.x * frame.x + axis.y * frame.y + axis.z * frame.z, y);
+    for (std::size_t l = isotropic ? i : (i + 1) / 2; l < bands; ++l) {
+      const std::size_t at = (isotropic ? l * (l + 1) / 2 : l * l) + i;
+      for (std::size_t lobe = 0; lobe < lobes.size(); ++lobe) {
+        const float weight = weights[lobe * count + at];
+        for (std::size_t k = l * l; k < (l + 1) * (l + 1); ++k) lobes[lobe][k] += weight * y[k];
+      }
+    }
+  }
+}
+
+void SurfaceBrdfs::State::diffuseKernel(const glm::vec3& color, const glm::vec3& normal,
+                                        std::span<float> out) const {
+  const auto count = static_cast<std::size_t>(sh::coefficientCount(order));
+  Kernel y;
+  sh::evaluate(order, normal, y);
+  for (int c = 0; c < 3; ++c)
+    for (std::size_t k = 0; k < count; ++k)
+      out[static_cast<std::size_t>(c) * count + k] += color[c] * cosine[k] * y[k];
+}
+
+void SurfaceBrdfs::State::glossyKernel(const Surface& surface, std::uint32_t triangle, float u, float v,
+                                       const glm::vec3& normal, const glm::vec3& to,
+                                       std::span<float> out) const {
+  const gltf::Material& material = surface.material;
+  const Factored& from = tables[surface.table];
+  const auto count = static_cast<std::size_t>(sh::coefficientCount(order));
+  const std::size_t stored = from.table.coefficients();
+  std::array<float, kMaxBrdfLobes * kMaxCoefficients> weights;
+  std::array<Kernel, kMaxBrdfLobes> lobes;
+
+  if (from.family == BrdfFamily::Measured) {
+    const ViewFrame frame = frameOf(normal, anyAcross(normal), to);
+    lookUpStored(from.table, frame.view, 0.0f, 0.0f, weights);
+    expand(from, weights, frame, lobes);
+    for (std::size_t c = 0; c < 3; ++c)
+      std::copy_n(lobes[c].begin(), count, out.begin() + static_cast<std::ptrdiff_t>(c * count));
+    return;
+  }
+
+  const glm::vec4 rough_metal = data(surface.metallic_roughness, triangle, u, v);
+  const float roughness = std::clamp(material.roughness * rough_metal.g, 0.0f, 1.0f);
+  const float metal = std::clamp(material.metallic * rough_metal.b, 0.0f, 1.0f);
+  const float specular = material.specular * data(surface.specular, triangle, u, v).a;
+  glm::vec3 tint = material.specular_color;
+  if (surface.specular_color.image)
+    tint *= glm::vec3(nearestTexel(*surface.specular_color.image, surface.specular_color.sampler,
+                                   texcoord(surface.specular_color.ref, triangle, u, v)));
+  const float step = material.ior > 0.0f ? (material.ior - 1.0f) / (material.ior + 1.0f) : 1.0f;
+  const glm::vec3 base = baseColor(surface, triangle, u, v);
+  const glm::vec3 f0 = glm::mix(specular * glm::min(step * step * tint, glm::vec3(1.0f)), base, metal);
+  const float f90 = glm::mix(specular, 1.0f, metal);
+
+  const auto [tangent, strength] = from.family == BrdfFamily::AnisotropicGgx
+                                       ? anisotropy(surface, triangle, u, v, normal)
+                                       : std::pair(anyAcross(normal), 0.0f);
+  const ViewFrame frame = frameOf(normal, tangent, to);
+  lookUpStored(from.table, frame.view, roughness, strength, weights);
+  expand(from, weights, frame, std::span(lobes).first(2));
+  for (int c = 0; c < 3; ++c)
+    for (std::size_t k = 0; k < count; ++k)
+      out[static_cast<std::size_t>(c) * count + k] = f0[c] * lobes[0][k] + f90 * lobes[1][k];
+
+  // Band 0 has one axis, and y_00 sqrt(4 pi) = 1: its weight is the lobe's directional albedo.
+  const glm::vec3 reflected = f0 * weights[0] + f90 * weights[stored];
+  const float rest = 1.0f - std::max({reflected.r, reflected.g, reflected.b});
+  if (metal < 1.0f && rest > 0.0f) diffuseKernel((1.0f - metal) * rest * base, normal, out);
+}
+
+Result<SurfaceBrdfs> SurfaceBrdfs::load(const Scene& scene, const GroupGeometry& geometry,
+                                        const BrdfTables& tables, DecodedImages& images, int order) {
+  auto state = std::make_shared<State>();
+  state->geometry = &geometry;
+  state->order = order;
+  for (int l = 0; l < order; ++l)
+    for (int k = l * l; k < (l + 1) * (l + 1); ++k)
+      state->cosine[static_cast<std::size_t>(k)] =
+          static_cast<float>(sh::clampedCosine(l) / sh::clampedCosine(0));
+  for (const BrdfTables::Entry& entry : tables.entries) {
+    assert(static_cast<int>(entry.table.order) == order);
+    state->tables.push_back(factored(entry));
+  }
+
+  state->surface_of.resize(geometry.triangles.size());
+  for (const DrawGeometry& draw : geometry.draws) {
+    Surface surface;
+    if (draw.material < 0)
+      surface.material.metallic = 0.0f;  // matte white
+    else
+      surface.material = scene.materials[static_cast<std::size_t>(draw.material)];
+    const gltf::Material& material = surface.material;
+    const std::int32_t table =
+        draw.material < 0 ? -1 : tables.of_material[static_cast<std::size_t>(draw.material)];
+    // Draws that were planned as matte have no coordinates for the other textures.
+    surface.glossy = table >= 0 && draw.kind == SampleKind::Glossy;
+    if (surface.glossy) surface.table = static_cast<std::size_t>(table);
+
+    std::vector<std::pair<Texture*, const gltf::TextureRef*>> wanted = {
+        {&surface.base, &material.base_color_texture}};
+    if (surface.glossy)
+      wanted.insert(wanted.end(), {{&surface.metallic_roughness, &material.metallic_roughness_texture},
+                                   {&surface.specular, &material.specular_texture},
+                                   {&surface.specular_color, &material.specular_color_texture},
+                                   {&surface.anisotropy, &material.anisotropy_texture}});
+    for (const auto& [texture, ref] : wanted) {
+      auto image = images.ofTexture(ref->texture);
+      if (!image) return failAgain(image.error());
+      if (*image)
+        *texture = {std::move(*image), scene.textures[static_cast<std::size_t>(ref->texture)].sampler, *ref};
+    }
+
+    const auto first = geometry.colors.begin() + draw.first_vertex, last = first + draw.vertex_count;
+    surface.colored_vertices =
+        std::any_of(first, last, [](const glm::vec4& c) { return glm::vec3(c) != glm::vec3(1.0f); });
+    const bool measured = surface.glossy && state->tables[surface.table].family == BrdfFamily::Measured;
+    const bool grey_specular =
+        !surface.glossy || (isGrey(material.specular_color) && isGrey(surface.specular_color));
+    if (!material.unlit &&
+        (measured || !grey_specular || !isGrey(glm::vec3(material.base_color)) || !isGrey(surface.base) ||
+         !std::all_of(first, last, [](const glm::vec4& c) { return isGrey(glm::vec3(c)); })))
+      state->grey = false;
+    std::fill_n(state->surface_of.begin() + draw.first_triangle, draw.triangle_count,
+                static_cast<std::uint32_t>(state->surfaces.size()));
+    state->surfaces.push_back(std::move(surface));
+  }
+  return SurfaceBrdfs(std::move(state));
+}
+
+bool SurfaceBrdfs::glossy(std::uint32_t triangle) const {
+  return state_->surfaces[state_->surface_of[triangle]].glossy;
+}
+
+bool SurfaceBrdfs::grey() const {
+  return state_->grey;
+}
+
+void SurfaceBrdfs::exitKernel(std::uint32_t triangle, float u, float v, const glm::vec3& to,
+                              std::span<float> out) const {
+  const auto all = 3 * static_cast<std::size_t>(sh::coefficientCount(state_->order));
+  assert(out.size() >= all);
+  std::fill_n(out.begin(), all, 0.0f);
+  const Surface& surface = state_->surfaces[state_->surface_of[triangle]];
+  const glm::vec3 area = state_->geometricNormal(triangle);
+  if (surface.material.unlit || glm::dot(area, to) <= 0.0f) return;
+  const glm::vec3 normal = unitOr(state_->interpolated(state_->geometry->normals, triangle, u, v),
+                                  unitOr(area, {0.0f, 1.0f, 0.0f}));
+  if (surface.glossy)
+    state_->glossyKernel(surface, triangle, u, v, normal, to, out);
+  else
+    state_->diffuseKernel(state_->baseColor(surface, triangle, u, v), normal, out);
+}
+
+}  // namespace lambent::baker

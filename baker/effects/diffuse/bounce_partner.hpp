@@ -1,0 +1,111 @@
+// What passes of bounces over matte and over other surfaces have in common: the radiance that leaves what
+// rays met, and how late passes are thinned.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <stop_token>
+#include <vector>
+
+#include <glm/mat3x3.hpp>
+#include <glm/vec3.hpp>
+
+#include "baker/effects/diffuse/hits.hpp"
+#include "baker/effects/diffuse/transfer_field.hpp"
+#include "baker/transport/direction_table.hpp"
+#include "baker/transport/group_geometry.hpp"
+#include "baker/transport/samples.hpp"
+#include "baker/work/progress.hpp"
+
+namespace lambent::baker {
+
+class ExitRadiance;
+
+// Surfaces that reflect by another law than Lambert's, with samples of their own (SampleSet::first_glossy
+// on): they take part in every pass, as senders and as receivers.
+class BouncePartner {
+ public:
+  virtual ~BouncePartner() = default;
+  // As ExitRadiance::add, of a hit on a triangle of its own; `corners` are the triangle's samples.
+  virtual void addExit(const GatherHit& hit, const glm::uvec3& corners, const glm::vec3& to, float chance,
+                       float weight, std::span<float> sum) const = 0;
+  // One pass over its samples. `before` and `now` are the plain transfer of all samples; `now` gets what
+  // follows at its own. False if stopped.
+  virtual bool gather(int bounce, bool thinly, const ExitRadiance& exit, const TransferField& before,
+                      TransferField& now, Progress& progress, const std::stop_token& stop) = 0;
+  // Makes what was gathered last the state of the pass before.
+  virtual void advance() = 0;
+  // RMS of what was gathered last (at first: of pass 0), for each source of light: the environment, then each
+  // light.
+  virtual std::vector<double> energies() const = 0;
+};
+
+// What leaves the points that rays met, after the pass before.
+class ExitRadiance {
+ public:
+  // partner: null where all is matte.
+  ExitRadiance(const GroupGeometry& geometry, const SampleSet& samples, const BouncePartner* partner);
+
+  bool matte(const GatherHit& hit) const { return triangle_samples_[hit.triangle].x < first_glossy_; }
+  bool anyGlossy() const { return partner_ != nullptr; }
+  // weight * albedo * interpolated transfer, added to `sum`, laid out as a sample of `before`.
+  void addMatte(const GatherHit& hit, float weight, const TransferField& before, std::span<float> sum) const;
+  // What leaves a hit that is not matte towards `to` (unit, group frame, away from the surface). chance: in
+  // [0, 1), for who takes one corner of the triangle for all three.
+  void addGlossy(const GatherHit& hit, const glm::vec3& to, float chance, float weight,
+                 std::span<float> sum) const;
+
+ private:
+  std::vector<glm::uvec3> triangle_samples_;
+  std::size_t first_glossy_;
+  const BouncePartner* partner_;
+};
+
+// The same as one sample receives it along its rays.
+class ExitToSample {
+ public:
+  // table: of the sample's rays, z along its normal.
+  ExitToSample(const ExitRadiance& exit, const DirectionTable& table, const glm::vec3& normal,
+               std::size_t sample, int bounce);
+
+  void add(const GatherHit& hit, float weight, const TransferField& before, std::span<float> sum) const {
+    if (exit_.matte(hit))
+      exit_.addMatte(hit, weight, before, sum);
+    else
+      addGlossy(hit, weight, sum);
+  }
+
+ private:
+  void addGlossy(const GatherHit& hit, float weight, std::span<float> sum) const;
+
+  const ExitRadiance& exit_;
+  const DirectionTable& table_;
+  glm::mat3 frame_{1.0f};
+  std::uint32_t seed_ = 0;
+};
+
+// Where a sample has more hits than this, thinning leaves those of every kThinned-th ray.
+inline constexpr std::size_t kHitsToThin = 64;
+inline constexpr std::uint32_t kThinned = 4;
+
+// The hits of every kThinned-th ray (rays lie along a Hilbert curve, so these are as evenly spread), others
+// in each bounce: `hits` becomes those, kept in `out`. Returns what their weights must be multiplied with to
+// stand for all, so that no light is lost or won: a white furnace stays white.
+template <typename Rays>
+float thinHits(int bounce, const Rays& rays, std::span<const GatherHit>& hits, std::vector<GatherHit>& out) {
+  if (hits.size() <= kHitsToThin) return 1.0f;
+  out.clear();
+  double all = 0.0, kept = 0.0;
+  for (const GatherHit& hit : hits) {
+    const double weight = rays.weight(hit.ray);
+    all += weight;
+    if (hit.ray % kThinned != static_cast<std::uint32_t>(bounce) % kThinned) continue;
+    kept += weight;
+    out.push_back(hit);
+  }
+  if (out.empty()) return 1.0f;
+  hits = out;
+  return static_cast<float>(all / kept);
+}
+
+}  // namespace lambent::baker

@@ -1,0 +1,81 @@
+#include "baker/effects/glossy/glossy.hpp"
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "baker/effects/glossy/lobe_energy.hpp"
+
+namespace lambent::baker {
+
+namespace {
+
+// What bakes have unless told otherwise; lobes rougher than this it carries to nine tenths and more.
+constexpr int kOrder = 5;
+constexpr float kRoughEnough = 0.5f;
+
+struct Counts {
+  std::size_t draws = 0, metals = 0, dielectrics = 0, anisotropic = 0, measured = 0;
+  std::size_t smooth = 0, textured = 0;  // roughness below what the order carries; by texture perhaps
+  float smoothest = 1.0f;
+};
+
+void count(const gltf::Material& material, Counts& counts) {
+  ++counts.draws;
+  if (material.brdf >= 0) {
+    ++counts.measured;
+    return;
+  }
+  ++(material.metallic > 0.0f ? counts.metals : counts.dielectrics);
+  counts.anisotropic += material.anisotropy > 0.0f;
+  if (material.roughness < kRoughEnough) {
+    ++counts.smooth;
+    counts.smoothest = std::min(counts.smoothest, material.roughness);
+  } else {
+    counts.textured += material.metallic_roughness_texture.texture >= 0;
+  }
+}
+
+std::string counted(std::size_t count, const char* noun) {
+  return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
+}
+
+}  // namespace
+
+EffectChoice chooseGlossy(const Scene& scene, const std::vector<RigidGroup>& groups) {
+  Counts counts;
+  for (const RigidGroup& group : groups)
+    for (const PlannedDraw& draw : group.draws) {
+      const std::int32_t index = scene.meshes[draw.mesh].primitives[draw.primitive].material;
+      if (index < 0) continue;
+      const gltf::Material& material = scene.materials[static_cast<std::size_t>(index)];
+      if (!material.matte()) count(material, counts);
+    }
+  if (counts.draws == 0) return {"glossy", false, "every material is matte"};
+  std::vector<std::string> kinds;
+  const auto name = [&](std::size_t n, const char* what) {
+    if (n > 0) kinds.push_back(fmt::format("{} {}", n, what));
+  };
+  name(counts.metals, "metallic");
+  name(counts.dielectrics, "dielectric");
+  name(counts.anisotropic, "anisotropic");
+  name(counts.measured, "measured");
+  std::string reason = fmt::format("{} not matte ({}): {} transfer matrices for any light and view",
+                                   counts.draws == 1 ? "1 draw is" : counted(counts.draws, "draw") + " are",
+                                   fmt::join(kinds, ", "), fmt::format("{0} x {0}", kOrder * kOrder));
+  if (counts.smooth > 0)
+    reason += fmt::format(
+        "; {} with roughness below {}, down to {:.2g}, where order {} carries {:.0f} % of the "
+        "highlight's energy",
+        counted(counts.smooth, "draw"), kRoughEnough, double{counts.smoothest}, kOrder,
+        100.0 * lobeEnergyShare(double{counts.smoothest}, kOrder));
+  if (counts.textured > 0)
+    reason += fmt::format("; {} whose roughness texture may go below {}", counted(counts.textured, "draw"),
+                          kRoughEnough);
+  return {"glossy", true, reason};
+}
+
+}  // namespace lambent::baker

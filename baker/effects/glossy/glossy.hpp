@@ -1,0 +1,12 @@
+// The baker's room of the glossy effect: does the scene call for it? Matrices are computed in
+// glossy_direct.hpp and glossy_bounces.hpp.
+#pragma once
+
+#include "baker/plan/effect_plan.hpp"
+
+namespace lambent::baker {
+
+// Every scene with a surface that is not matte calls for glossy transfer.
+EffectChoice chooseGlossy(const Scene& scene, const std::vector<RigidGroup>& groups);
+
+}  // namespace lambent::baker

@@ -1,0 +1,227 @@
+#include "baker/effects/glossy/glossy_direct.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cassert>
+
+#include "baker/effects/diffuse/fill.hpp"
+#include "baker/effects/diffuse/sample_look.hpp"
+#include "baker/work/parallel.hpp"
+#include "runtime/sh/basis.hpp"
+#include "runtime/sh/rotation.hpp"
+#include "runtime/sh/zonal.hpp"
+
+namespace lambent::baker {
+
+namespace {
+
+// l' of the lights of a group as it arrives at one sample: even outputs, local frame;
+// values[(channel * outputs + output) * lights + light].
+class GlossyReceiver : public LightReceiver {
+ public:
+  GlossyReceiver(const GlossyHemisphere& hemisphere, std::size_t channels, std::size_t lights,
+                 std::span<float> values)
+      : hemisphere_(hemisphere),
+        channels_(channels),
+        lights_(lights),
+        values_(values),
+        row_(hemisphere.evenOutputs()) {}
+
+  glm::vec3 direction(std::size_t ray) const override { return hemisphere_.direction(ray); }
+  float raysPerSteradian(float) const override { return hemisphere_.raysPerSteradian(); }
+  void addAlong(std::size_t ray, std::uint32_t light, glm::vec3 radiance) override {
+    add(hemisphere_.row(ray), light, radiance);
+  }
+  void addFrom(glm::vec3 local, std::uint32_t light, glm::vec3 radiance) override {
+    hemisphere_.incident(local, row_);
+    add(row_, light, radiance);
+  }
+
+ private:
+  void add(std::span<const float> row, std::uint32_t light, glm::vec3 radiance) {
+    const std::size_t outputs = hemisphere_.evenOutputs();
+    for (std::size_t c = 0; c < channels_; ++c)
+      for (std::size_t e = 0; e < outputs; ++e)
+        values_[(c * outputs + e) * lights_ + light] += row[e] * radiance[static_cast<int>(c)];
+  }
+
+  const GlossyHemisphere& hemisphere_;
+  std::size_t channels_, lights_;
+  std::span<float> values_;
+  std::vector<float> row_;
+};
+
+std::size_t squared(int order) {
+  return static_cast<std::size_t>(sh::coefficientCount(order));
+}
+
+}  // namespace
+
+// One thread's way through a range of samples.
+class GlossyPass::Walk {
+ public:
+  explicit Walk(const GlossyPass& pass)
+      : pass_(pass),
+        look_(pass.scene_.samples, pass.scene_.rays, pass.plain_.glances()),
+        visibility_from_local_(glm::dmat3(1.0), pass.gaunt_.visibilityBands()),
+        outputs_from_local_(glm::dmat3(1.0), pass.order_out_),
+        local_(squared(pass.gaunt_.visibilityBands())) {}
+
+  std::uint32_t look(std::size_t sample) {
+    look_.stand(pass_.first() + sample);
+    hemisphere_ = &pass_.hemisphereOf(look_.closely());
+    return look_.look(hemisphere_->table(),
+                      pass_.plain_.settings().keep_hits || !pass_.plain_.emitters().empty());
+  }
+
+  const SampleLook& looked() const { return look_; }
+
+  void project(std::span<float> visibility) {
+    hemisphere_->project(look_.blocked(), local_);
+    visibility_from_local_.set(look_.frame());
+    visibility_from_local_.apply(std::span<const float>(local_), visibility);
+  }
+
+  // values: [channel][output][light]
+  void receiveLights(std::size_t channels, std::size_t lights, std::span<float> values) {
+    if (look_.origins().empty()) return;
+    const std::size_t even = hemisphere_->evenOutputs();
+    lights_local_.assign(channels * even * lights, 0.0f);
+    GlossyReceiver receiver(*hemisphere_, channels, lights, lights_local_);
+    const glm::mat3 frame(look_.frame());
+    pass_.plain_.emitters().addMet(look_.hits(), look_.origins(), frame, receiver);
+    pass_.plain_.emitters().addChosen(look_.origins(), frame, pass_.scene_.rays, receiver);
+    outputs_from_local_.set(look_.frame());
+    const std::size_t outputs = squared(pass_.order_out_);
+    for (std::size_t c = 0; c < channels; ++c)
+      turnOutputs(outputs_from_local_, hemisphere_->evenIndices().first(even), lights,
+                  std::span(lights_local_).subspan(c * even * lights), lights,
+                  values.subspan(c * outputs * lights), lights);
+  }
+
+  void keepHits(RangeHits& out) const { look_.keepHits(pass_.scene_.geometry, pass_.scene_.colors, out); }
+
+ private:
+  const GlossyPass& pass_;
+  SampleLook look_;
+  sh::Rotation visibility_from_local_, outputs_from_local_;
+  const GlossyHemisphere* hemisphere_ = nullptr;
+  std::vector<float> local_, lights_local_;
+};
+
+GlossyPass::GlossyPass(const DirectPass& plain, const DiffuseScene& scene, int order_out)
+    : plain_(plain),
+      scene_(scene),
+      order_in_(plain.settings().order),
+      order_out_(order_out),
+      usual_(plain.settings().rays, order_in_ + order_out - 1, order_out),
+      closely_(2 * plain.settings().rays, order_in_ + order_out - 1, order_out),
+      gaunt_(sh::makeGauntTable(order_in_, order_out)) {}
+
+GlossyField GlossyPass::shape() const {
+  return {.order_in = order_in_,
+          .order_out = order_out_,
+          .channels = plain_.channels(),
+          .light_columns = static_cast<std::uint32_t>(scene_.lights.size()),
+          .first_sample = static_cast<std::uint32_t>(first()),
+          .visibility = {},
+          .bounced = {},
+          .lights_shadowed = {},
+          .lights_full = {}};
+}
+
+std::uint64_t GlossyPass::bake(std::size_t begin, std::size_t end, const std::stop_token& stop,
+                               GlossyField& field, SampleLooks& looks, RangeHits& hits) const {
+  Walk walk(*this);
+  std::uint64_t traced = 0;
+  const std::size_t lights = field.light_columns, per_sample = field.channels * squared(order_out_) * lights;
+  for (std::size_t s = begin; s < end && !stop.stop_requested(); ++s) {
+    hits.offsets.push_back(static_cast<std::uint32_t>(hits.hits.size()));
+    traced += walk.look(s);
+    looks.valid[first() + s] = walk.looked().valid();
+    looks.closely[first() + s] = walk.looked().closely();
+    walk.project(std::span(field.visibility).subspan(s * field.visibilitySize(), field.visibilitySize()));
+    if (lights > 0)
+      walk.receiveLights(field.channels, lights,
+                         std::span(field.lights_shadowed).subspan(s * per_sample, per_sample));
+    if (plain_.settings().keep_hits) walk.keepHits(hits);
+  }
+  hits.offsets.push_back(static_cast<std::uint32_t>(hits.hits.size()));
+  return traced;
+}
+
+void GlossyPass::traceAgain(std::size_t begin, std::size_t end, RangeHits& hits) const {
+  Walk walk(*this);
+  hits.offsets.clear();
+  hits.hits.clear();
+  for (std::size_t s = begin; s < end; ++s) {
+    hits.offsets.push_back(static_cast<std::uint32_t>(hits.hits.size()));
+    walk.look(s);
+    walk.keepHits(hits);
+  }
+  hits.offsets.push_back(static_cast<std::uint32_t>(hits.hits.size()));
+}
+
+void plainTransfer(int order_out, glm::vec3 normal, std::span<const float> matrix, std::span<float> out) {
+  std::vector<float> kernel(squared(order_out));
+  sh::unoccludedTransfer(order_out, normal, std::span<float>(kernel));
+  std::fill(out.begin(), out.end(), 0.0f);
+  for (std::size_t k = 0; k < kernel.size(); ++k)
+    for (std::size_t i = 0; i < out.size(); ++i) out[i] += kernel[k] * matrix[k * out.size() + i];
+}
+
+std::optional<GlossyDirect> bakeGlossyDirect(const GlossyPass& pass, std::size_t hit_memory,
+                                             DirectResult& direct, Progress& progress,
+                                             const std::stop_token& stop) {
+  const SampleSet& samples = pass.scene().samples;
+  const std::size_t count = pass.size();
+  const bool keep_hits = pass.plain().settings().keep_hits;
+  GlossyDirect result{.field = pass.shape(), .hits = HitStore(count, keep_hits ? hit_memory : 0)};
+  GlossyField& field = result.field;
+  const std::size_t outputs = squared(field.order_out), columns = squared(field.order_in),
+                    lights = field.light_columns;
+  field.visibility.resize(count * field.visibilitySize());
+  field.lights_shadowed.resize(count * field.channels * outputs * lights);
+  progress.begin("glossy shadows", count, "samples");
+  std::atomic<std::uint64_t> traced = 0;
+  const bool looked = parallelRanges(count, kSamplesPerRange, stop, [&](std::size_t begin, std::size_t end) {
+    RangeHits hits;
+    traced += pass.bake(begin, end, stop, field, direct.looks, hits);
+    if (keep_hits) result.hits.offer(begin / kSamplesPerRange, std::move(hits));
+    progress.add(end - begin);
+  });
+  if (!looked) return std::nullopt;
+  result.rays = traced;
+  const auto edges = sampleEdges(pass.scene().geometry, samples);
+  result.filled_samples = fillStretchFromNeighbours(edges, direct.looks.valid, pass.first(),
+                                                    field.visibilitySize(), field.visibility);
+  if (lights > 0)
+    fillStretchFromNeighbours(edges, direct.looks.valid, pass.first(), field.channels * outputs * lights,
+                              field.lights_shadowed);
+
+  const bool derived = parallelRanges(count, kSamplesPerRange, stop, [&](std::size_t begin, std::size_t end) {
+    std::vector<float> matrix(outputs * columns);
+    for (std::size_t s = begin; s < end; ++s) {
+      std::fill(matrix.begin(), matrix.end(), 0.0f);
+      sh::addVisibilityMatrix(
+          pass.gaunt(),
+          std::span(field.visibility).subspan(s * field.visibilitySize(), field.visibilitySize()), matrix);
+      const glm::vec3 normal = samples.normals[pass.first() + s];
+      const auto out = direct.field.at(pass.first() + s);
+      plainTransfer(field.order_out, normal, matrix, out.first(columns));
+      for (std::size_t c = 0; c < field.channels; ++c) {
+        std::copy_n(out.begin(), columns,
+                    out.begin() + static_cast<std::ptrdiff_t>(c * direct.field.columns));
+        if (lights > 0)
+          plainTransfer(field.order_out, normal,
+                        std::span(field.lights_shadowed)
+                            .subspan((s * field.channels + c) * outputs * lights, outputs * lights),
+                        out.subspan(c * direct.field.columns + columns, lights));
+      }
+    }
+  });
+  if (!derived) return std::nullopt;
+  return result;
+}
+
+}  // namespace lambent::baker

@@ -1,0 +1,65 @@
+// Pass 0 of the glossy effect: what a sample sees of the surroundings, V, and the lights of its group as they
+// arrive from each direction. Transfer of E/pi at the sample's normal follows from both, for whoever asks for
+// plain transfer:
+//   t = Σ_k (A_l/pi) y_k(n) M_k.
+#pragma once
+
+#include <optional>
+#include <stop_token>
+
+#include "baker/effects/diffuse/direct.hpp"
+#include "baker/effects/glossy/glossy_hemisphere.hpp"
+#include "baker/effects/glossy/glossy_transport.hpp"
+#include "runtime/sh/gaunt.hpp"
+
+namespace lambent::baker {
+
+// Pass 0 of ranges of glossy samples; also traces a range's hits again. Samples are counted from first_glossy
+// on.
+class GlossyPass {
+ public:
+  // Rays, order (in), channels and lights are those of `plain`, which outlives this. Orders 4..6.
+  GlossyPass(const DirectPass& plain, const DiffuseScene& scene, int order_out);
+
+  const DirectPass& plain() const { return plain_; }
+  const DiffuseScene& scene() const { return scene_; }
+  const GlossyHemisphere& hemisphereOf(bool closely) const { return closely ? closely_ : usual_; }
+  const sh::GauntTable& gaunt() const { return gaunt_; }
+  std::size_t first() const { return scene_.samples.first_glossy; }
+  std::size_t size() const { return scene_.samples.size() - first(); }
+  // Of a GlossyField without samples.
+  GlossyField shape() const;
+
+  // As DirectPass::bake. `looks` is that of all samples.
+  std::uint64_t bake(std::size_t begin, std::size_t end, const std::stop_token& stop, GlossyField& field,
+                     SampleLooks& looks, RangeHits& hits) const;
+  void traceAgain(std::size_t begin, std::size_t end, RangeHits& hits) const;
+
+ private:
+  class Walk;
+  const DirectPass& plain_;
+  DiffuseScene scene_;
+  int order_in_, order_out_;
+  GlossyHemisphere usual_, closely_;
+  sh::GauntTable gaunt_;
+};
+
+struct GlossyDirect {
+  GlossyField field;  // visibility and lights_shadowed
+  HitStore hits;      // from first_glossy on
+  std::uint64_t rays = 0;
+  std::uint32_t filled_samples = 0;
+};
+
+// Nothing if stopped. Also fills in the glossy samples of direct.field and direct.looks. Stage "glossy
+// shadows" of `progress`, counting samples. hit_memory: bytes. The result does not depend on the number of
+// threads.
+std::optional<GlossyDirect> bakeGlossyDirect(const GlossyPass& pass, std::size_t hit_memory,
+                                             DirectResult& direct, Progress& progress,
+                                             const std::stop_token& stop);
+
+// What a sample's matrix in the group's frame gives at a Lambert receiver with its normal:
+// out[column] = Σ_k (A_l/pi) y_k(n) matrix[k * columns + column].
+void plainTransfer(int order_out, glm::vec3 normal, std::span<const float> matrix, std::span<float> out);
+
+}  // namespace lambent::baker

@@ -1,0 +1,62 @@
+// The directions in which glossy samples look, uniform over the hemisphere, with their spherical harmonics.
+// Functions continue below the horizon as their mirror image (glossy_transport.hpp), so in the sample's frame
+// only harmonics with l + m even are left: n(n+1)/2 of n² ("even" ones here, in rising order of their index;
+// those of a lower order come first). They are orthogonal over the hemisphere, which makes exact weights
+// easy.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "baker/transport/direction_table.hpp"
+#include "runtime/sh/rotation.hpp"
+
+namespace lambent::baker {
+
+class GlossyHemisphere {
+ public:
+  // The weights integrate all harmonics of visibility_bands bands exactly and are positive: with nothing
+  // blocked V is 1, with everything blocked 0, to rounding, and matrices made from V have eigenvalues in [0,
+  // 1]. With too few rays for that many bands, as many as they can.
+  GlossyHemisphere(std::size_t rays, int visibility_bands, int order_out);
+
+  const DirectionTable& table() const { return table_; }
+  glm::vec3 direction(std::size_t ray) const { return {table_.x[ray], table_.y[ray], table_.z[ray]}; }
+  float raysPerSteradian() const;
+  // Share of the hemisphere that a ray stands for; they sum to 1.
+  double weight(std::size_t ray) const { return weights_[ray]; }
+
+  std::size_t evenCount() const { return even_.size(); }                // of V
+  std::size_t evenOutputs() const { return even_outputs_; }             // of l'
+  std::span<const std::uint16_t> evenIndices() const { return even_; }  // place among all harmonics
+  // What unit radiance along a ray, and along its mirror image, adds: even harmonics times solid angle,
+  // evenCount() of them, evenOutputs() of which belong to l'.
+  std::span<const float> row(std::size_t ray) const {
+    return std::span(rows_).subspan(ray * even_.size(), even_.size());
+  }
+  // The same of any local direction, per steradian; out: evenOutputs().
+  void incident(glm::vec3 local, std::span<float> out) const;
+
+  // V in the local frame from the blocked masks of RayScene::trace; all visibility_bands² coefficients.
+  void project(std::span<const std::uint16_t> blocked, std::span<float> out) const;
+
+ private:
+  DirectionTable table_;
+  int order_out_;
+  std::vector<std::uint16_t> even_;
+  std::size_t even_outputs_;
+  std::vector<double> weights_;
+  std::vector<float> rows_;
+  std::vector<float> packet_sums_;
+};
+
+// Even outputs in a sample's frame as all outputs in the group's, of `count` columns: local[e * local_stride
+// + column] to out[output * out_stride + column]. The order is that of `group_from_local`.
+void turnOutputs(const sh::Rotation& group_from_local, std::span<const std::uint16_t> even, std::size_t count,
+                 std::span<const float> local, std::size_t local_stride, std::span<float> out,
+                 std::size_t out_stride);
+
+}  // namespace lambent::baker

@@ -1,0 +1,41 @@
+// What coded transfer takes in a file, by kind, after entropy coding.
+#pragma once
+
+#include <algorithm>
+#include <chrono>
+
+#include "baker/compress/cpca.hpp"
+#include "baker/effects/diffuse/payloads.hpp"
+#include "runtime/bundle/transfer_codec.hpp"
+
+namespace lambent {
+
+inline constexpr int kZstdLevel = 19;  // as codes are stored
+
+struct CodedBytes {
+  std::size_t clusters = 0, codebook = 0, ids = 0, weights = 0, codes = 0;
+  double error = 0.0, seconds = 0.0;  // the worst error; the time of all
+
+  std::size_t bytes() const { return codebook + ids + weights; }
+
+  void add(const baker::CellVectors& cell, const baker::CodingSettings& settings) {
+    const auto packed = [](const std::vector<std::byte>& raw) {
+      return std::min(raw.size(), bundle::compressZstd(raw, kZstdLevel).size());
+    };
+    const auto start = std::chrono::steady_clock::now();
+    const baker::CodedTransfer coded =
+        baker::codeTransfer(cell.vectors, cell.vectors.size() / cell.shape.size(), cell.shape, settings);
+    seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const auto own_clusters = static_cast<std::uint32_t>(coded.codebook.clusters());
+    clusters += own_clusters;
+    codebook += packed(bundle::encodeCodebook(coded.codebook));
+    if (own_clusters > 1) ids += packed(bundle::encodeClusterIds(coded.cluster_of, own_clusters));
+    for (const baker::CodedPlane& plane : coded.planes) {
+      weights += packed(bundle::encodeWeightPlane(plane.codes, plane.bits));
+      codes += plane.codes.size();
+    }
+    error = std::max(error, double{coded.error});
+  }
+};
+
+}  // namespace lambent

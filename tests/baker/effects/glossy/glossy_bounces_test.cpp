@@ -1,0 +1,179 @@
+// Interreflection over glossy surfaces, and between glossy and matte ones, against closed forms.
+#include "baker/effects/glossy/glossy_bounces.hpp"
+
+#include "baker/work/parallel.hpp"
+#include "tests/support/glossy_transport.hpp"
+
+namespace lambent::baker {
+namespace {
+
+using testing::bakeGlossy;
+using testing::box;
+using testing::flipped;
+using testing::glossyScene;
+using testing::grid;
+using testing::icosphere;
+using testing::lambertKernels;
+using testing::sceneOf;
+using testing::shadowMatrix;
+using testing::transformed;
+using testing::Transport;
+using testing::turned;
+using testing::uniformRadiance;
+
+constexpr float kPi = std::numbers::pi_v<float>;
+
+bundle::MeshData cup() {
+  auto mesh = flipped(box({0, 0, 0}, {2, 1, 2}, 6));
+  std::vector<std::uint32_t> kept;
+  for (std::size_t i = 0; i < mesh.indices.size(); i += 3)
+    if (!(mesh.normals[mesh.indices[i]].y < -0.5f))
+      kept.insert(kept.end(), mesh.indices.begin() + static_cast<std::ptrdiff_t>(i),
+                  mesh.indices.begin() + static_cast<std::ptrdiff_t>(i) + 3);
+  mesh.indices = kept;
+  return mesh;
+}
+
+// A floor and a wall that meet at a right angle; which is glossy.
+Scene corner(bool glossy_floor, bool glossy_wall, glm::vec3 floor_color = glm::vec3(0.8f)) {
+  Scene scene =
+      sceneOf({grid({0, 0, 0}, 1.0f, 12), transformed(turned(grid({0, 0, 0}, 1.0f, 12), -90.0f, {0, 0, 1}),
+                                                      glm::translate(glm::mat4(1.0f), {-0.5f, 0.5f, 0}))});
+  scene.materials.push_back(scene.materials[0]);
+  scene.materials[0].base_color = glm::vec4(floor_color, 1.0f);
+  scene.materials[1].base_color = {0.6f, 0.6f, 0.6f, 1.0f};
+  scene.materials[0].metallic = glossy_floor ? 1.0f : 0.0f;
+  scene.materials[1].metallic = glossy_wall ? 1.0f : 0.0f;
+  scene.meshes[1].primitives[0].material = 1;
+  return scene;
+}
+
+// Relative RMS difference over samples at the same places with the same normals, and the share that they
+// have.
+double difference(const Transport& a, const TransferField& of_a, const Transport& b,
+                  const TransferField& of_b, bool wall) {
+  double sum = 0.0, all = 0.0;
+  for (std::size_t s = 0; s < a.samples.size(); ++s) {
+    if ((std::abs(a.samples.normals[s].x) > 0.5f) != wall) continue;
+    for (std::size_t q = 0; q < b.samples.size(); ++q) {
+      if (a.samples.positions[s] != b.samples.positions[q] || a.samples.normals[s] != b.samples.normals[q])
+        continue;
+      for (std::size_t i = 0; i < of_a.at(s).size(); ++i) {
+        sum += std::pow(double{of_a.at(s)[i]} - double{of_b.at(q)[i]}, 2);
+        all += std::pow(double{of_b.at(q)[i]}, 2);
+      }
+    }
+  }
+  EXPECT_GT(all, 0.0);
+  return std::sqrt(sum / all);
+}
+
+TEST(GlossyBounces, InAWhiteFurnaceLeaveUniformLightAsItIs) {
+  // Nothing is lost, so uniform light arrives everywhere as uniform light: the first column is (1, 0, 0,
+  // ...).
+  const Transport t(glossyScene({cup(), icosphere({0.3f, -0.1f, 0.1f}, 0.3f, 3)}), true);
+  const auto baked =
+      bakeGlossy(t, lambertKernels(t), {.order = 4, .order_out = 5, .rays = 256, .bounces = kMostBounces});
+  const GlossyField& field = baked.glossy.field;
+  ASSERT_EQ(field.bounced.size(), field.size() * 25 * 16);
+  for (std::size_t s = 0; s < field.size(); ++s) {
+    if (t.samples.originsOf(s).empty()) continue;
+    const auto shadow = shadowMatrix(field, s);
+    for (std::size_t i = 0; i < 25; ++i)
+      EXPECT_NEAR(shadow[i * 16] + field.bounced[(s * 25 + i) * 16], i == 0 ? 1.0f : 0.0f, 3e-3f) << i;
+    EXPECT_NEAR(uniformRadiance(baked.direct.field.at(s)) + uniformRadiance(baked.bounced.field.at(s)), 1.0f,
+                3e-3f);
+  }
+}
+
+TEST(GlossyBounces, OfALambertKernelAreThoseOfAMatteSurfaceInBothDirections) {
+  // A bounce between floor and wall, with the floor, the wall or both glossy by name only. What differs is
+  // the receiver's or sender's cosine, of which the glossy one has five bands.
+  const Transport matte(corner(false, false));
+  const auto truth = matte.bake(5, 1024, 2);
+  for (const auto& [floor, wall] : {std::pair{true, false}, {false, true}, {true, true}}) {
+    const Transport t(corner(floor, wall), true);
+    const auto baked = bakeGlossy(t, lambertKernels(t), {.rays = 1024, .bounces = 2});
+    EXPECT_LT(difference(t, baked.bounced.field, matte, truth.bounced.field, /*wall=*/true), 0.03)
+        << floor << wall;
+    EXPECT_LT(difference(t, baked.bounced.field, matte, truth.bounced.field, /*wall=*/false), 0.03)
+        << floor << wall;
+  }
+}
+
+TEST(GlossyBounces, AskForTheDirectionThatLightLeavesIn) {
+  // A large floor sends cos(theta) of what it gets from everywhere; a small matte plate that looks down on it
+  // gets (1/pi) ∫ cos² = 2/3.
+  const auto plate =
+      transformed(flipped(grid({0, 0, 0}, 0.02f, 2)), glm::translate(glm::mat4(1.0f), {0, 1, 0}));
+  Scene scene = sceneOf({grid({0, 0, 0}, 200.0f, 100), plate});
+  scene.materials.push_back(scene.materials[0]);
+  scene.materials[0].metallic = 1.0f;
+  scene.meshes[1].primitives[0].material = 1;
+  const Transport t(scene, true);
+  const ExitKernels kernels{true, [](std::uint32_t, float, float, const glm::vec3& to, std::span<float> out) {
+                              std::fill(out.begin(), out.end(), 0.0f);
+                              for (std::size_t c = 0; c < 3; ++c) out[c * 25] = to.y;
+                            }};
+  const auto baked = bakeGlossy(t, kernels, {.rays = 2048, .bounces = 1});
+  const std::size_t s = t.sampleAt({0, 1, 0});
+  ASSERT_LT(s, t.samples.first_glossy);
+  EXPECT_NEAR(baked.bounced.field.at(s)[0], 2.0f / 3.0f, 5e-3f);
+  for (std::size_t i = 1; i < 25; ++i) EXPECT_NEAR(baked.bounced.field.at(s)[i], 0.0f, 5e-3f);
+}
+
+TEST(GlossyBounces, InASphereSpreadALampEvenly) {
+  // A lamp of 1 cd in the centre of a closed sphere of radius 2 and albedo 1/2: the wall sends albedo E/pi
+  // everywhere, so what arrives after all bounces is uniform: albedo / (1 - albedo) / (pi r²).
+  Scene scene = glossyScene({flipped(icosphere({0, 0, 0}, 2.0f, 4))});
+  scene.materials[0].base_color = glm::vec4(glm::vec3(0.5f), 1.0f);
+  scene.lights = {gltf::Light{}};
+  gltf::Node node;
+  node.light = 0;
+  scene.roots.push_back(static_cast<std::int32_t>(scene.nodes.size()));
+  scene.nodes.push_back(node);
+  const Transport t(scene, true);
+  const auto baked = bakeGlossy(t, lambertKernels(t), {.rays = 256, .bounces = -1, .tail_error = 1e-4});
+  const GlossyField& field = baked.glossy.field;
+  const float uniform = std::sqrt(4.0f * kPi) / (kPi * 4.0f);
+  for (std::size_t s = 0; s < field.size(); ++s)
+    for (std::size_t i = 0; i < 25; ++i) {
+      const float added = field.lights_full[s * 25 + i] - field.lights_shadowed[s * 25 + i];
+      EXPECT_NEAR(added, i == 0 ? uniform : 0.0f, 0.01f * uniform) << i;
+    }
+}
+
+TEST(GlossyBounces, CarryColourAndLoseEnergyFromPassToPass) {
+  const Transport t(corner(true, true, {0.9f, 0.1f, 0.1f}), true);
+  const auto baked = bakeGlossy(t, lambertKernels(t), {.rays = 256, .bounces = 4});
+  const GlossyField& field = baked.glossy.field;
+  ASSERT_EQ(field.channels, 3u);
+  std::size_t wall = 0;
+  for (std::size_t s = 0; s < field.size(); ++s)
+    if (t.samples.normals[s].x > 0.5f && t.samples.positions[s].y < 0.3f && t.samples.positions[s].y > 0.1f)
+      wall = s;
+  const auto at = [&](std::size_t channel) { return field.bounced[(wall * 3 + channel) * 625]; };
+  EXPECT_GT(at(0), 3.0f * at(1));
+  EXPECT_EQ(at(1), at(2));
+  ASSERT_EQ(baked.bounced.energy.size(), 5u);
+  for (std::size_t b = 1; b < 5; ++b)
+    EXPECT_LT(baked.bounced.energy[b], 0.5 * baked.bounced.energy[b - 1]) << b;
+}
+
+TEST(GlossyBounces, AreTheSameForAnyMemoryAndNumberOfThreads) {
+  const Transport t(corner(true, false), true);
+  const auto kept = bakeGlossy(t, lambertKernels(t), {.rays = 128, .bounces = 3});
+  EXPECT_GT(kept.glossy.hits.bytes(), 0u);
+  const auto again = bakeGlossy(t, lambertKernels(t), {.rays = 128, .bounces = 3, .hit_memory = 0});
+  EXPECT_EQ(again.glossy.hits.bytes(), 0u);
+  EXPECT_EQ(kept.glossy.field.bounced, again.glossy.field.bounced);
+  EXPECT_EQ(kept.bounced.field.vectors, again.bounced.field.vectors);
+  withThreads(1, [&] {
+    const auto one = bakeGlossy(t, lambertKernels(t), {.rays = 128, .bounces = 3});
+    EXPECT_EQ(kept.glossy.field.bounced, one.glossy.field.bounced);
+    EXPECT_EQ(kept.bounced.field.vectors, one.bounced.field.vectors);
+  });
+}
+
+}  // namespace
+}  // namespace lambent::baker

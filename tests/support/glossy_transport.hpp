@@ -1,0 +1,90 @@
+// The baker's passes over matte and glossy surfaces together, on a scene made in the test, with kernels made
+// in the test.
+#pragma once
+
+#include <memory>
+
+#include "baker/effects/glossy/glossy_bounces.hpp"
+#include "runtime/sh/zonal.hpp"
+#include "tests/support/shapes.hpp"
+#include "tests/support/transport.hpp"
+
+namespace lambent::testing {
+
+struct GlossyBake {
+  baker::DirectResult direct;
+  baker::GlossyDirect glossy;  // with bounces, all of its field
+  baker::BounceResult bounced;
+};
+
+struct GlossyBakeSettings {
+  int order = 5, order_out = 5;
+  std::size_t rays = 512;
+  int bounces = 0;
+  std::size_t hit_memory = std::size_t{1} << 30;
+  double tail_error = 1e-3;
+};
+
+inline GlossyBake bakeGlossy(const Transport& t, const baker::ExitKernels& kernels,
+                             const GlossyBakeSettings& settings) {
+  const baker::DiffuseScene view = t.diffuse();
+  const baker::DirectPass plain(view, {.order = settings.order,
+                                       .rays = settings.rays,
+                                       .keep_hits = settings.bounces != 0,
+                                       .hit_memory = settings.hit_memory,
+                                       .colored_kernels = !kernels.grey});
+  const baker::GlossyPass pass(plain, view, settings.order_out);
+  baker::Progress progress;
+  auto direct = baker::bakeDirect(plain, view, progress, {});
+  EXPECT_TRUE(direct.has_value());
+  auto glossy = baker::bakeGlossyDirect(pass, settings.hit_memory, *direct, progress, {});
+  EXPECT_TRUE(glossy.has_value());
+  GlossyBake bake{std::move(*direct), std::move(*glossy), {}};
+  if (settings.bounces == 0) return bake;
+  baker::GlossyBounces partner(pass, kernels, bake.direct, bake.glossy);
+  auto bounced = baker::bakeBounces(plain, bake.direct, view, {settings.bounces, settings.tail_error},
+                                    progress, {}, &partner);
+  EXPECT_TRUE(bounced.has_value());
+  partner.finish();
+  bake.bounced = std::move(*bounced);
+  return bake;
+}
+
+// Lambert surfaces of the scene's own albedo, told as kernels: albedo A_l/pi y_k(n), n the face's normal.
+inline baker::ExitKernels lambertKernels(const Transport& t, int order_out = 5) {
+  return {
+      t.colors.grey(),
+      [&t, order_out](std::uint32_t triangle, float u, float v, const glm::vec3& to, std::span<float> out) {
+        const glm::uvec3 c = t.geometry.triangles[triangle];
+        const glm::vec3 normal = glm::normalize((1.0f - u - v) * t.geometry.normals[c.x] +
+                                                u * t.geometry.normals[c.y] + v * t.geometry.normals[c.z]);
+        const glm::vec3 albedo = t.colors.albedo(triangle, u, v);
+        EXPECT_NEAR(glm::length(to), 1.0f, 1e-4f);
+        const std::size_t size = out.size() / 3;
+        sh::unoccludedTransfer(order_out, normal, out.first(size));
+        for (std::size_t k = 0; k < size; ++k) {
+          const float value = out[k];
+          for (std::size_t channel = 0; channel < 3; ++channel)
+            out[channel * size + k] = albedo[static_cast<int>(channel)] * value;
+        }
+      }};
+}
+
+// M of the environment at glossy sample `s` (from first_glossy on), channel 0, without bounces.
+inline std::vector<float> shadowMatrix(const baker::GlossyField& field, std::size_t s) {
+  const auto table = sh::makeGauntTable(field.order_in, field.order_out);
+  std::vector<float> matrix(
+      static_cast<std::size_t>(field.order_in * field.order_in * field.order_out * field.order_out));
+  sh::addVisibilityMatrix(
+      table, std::span(field.visibility).subspan(s * field.visibilitySize(), field.visibilitySize()), matrix);
+  return matrix;
+}
+
+// All samples glossy: a metal, so that no draw counts as matte.
+inline baker::Scene glossyScene(const std::vector<bundle::MeshData>& meshes) {
+  baker::Scene scene = sceneOf(meshes);
+  scene.materials[0].metallic = 1.0f;
+  return scene;
+}
+
+}  // namespace lambent::testing
