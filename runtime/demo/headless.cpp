@@ -61,6 +61,7 @@ Result<void> runHeadless(const Options& options) {
                             .output = options.linear ? frame::Output::Linear : frame::Output::Display,
                             .transfer = options.transfer,
                             .window = options.window,
+                            .residual = options.residual,
                             .exposure_ev = options.exposure_ev,
                             .capture = options.capture,
                             .captures_per_step = options.captures_per_frame,

@@ -34,6 +34,7 @@ struct Options {
   std::string transfer_word;
   sh::Window window = sh::Window::Auto;
   std::string window_word;
+  bool residual = true;
   std::uint32_t frames = 1;
   float rotate_light_deg = 0.0f;
   std::optional<float> time_s;  // of the scenes' animations in the last frame; none: at rest

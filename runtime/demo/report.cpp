@@ -92,6 +92,7 @@ std::string reportJson(const Options& options, const gpu::DeviceInfo& device, co
                        {"per_frame", options.captures_per_frame}}},
                      {"transfer", options.transfer_word},
                      {"window", options.window_word},
+                     {"residual", options.residual},
                      {"lamps", options.lamps},
                      {"exposure_ev", options.linear ? Json() : Json(report.exposure_ev)},
                      {"renderer", device.renderer},

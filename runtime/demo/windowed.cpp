@@ -61,6 +61,7 @@ Result<void> runWindowed(const Options& options) {
                                                      .to_window = true,
                                                      .transfer = options.transfer,
                                                      .window = options.window,
+                                                     .residual = options.residual,
                                                      .exposure_ev = options.exposure_ev,
                                                      .capture = options.capture,
                                                      .captures_per_step = options.captures_per_frame},

@@ -22,6 +22,7 @@
 #include "runtime/lighting/environment.hpp"
 #include "runtime/lighting/group_lights.hpp"
 #include "runtime/lighting/incident_light.hpp"
+#include "runtime/lighting/reflected_sky.hpp"
 #include "runtime/lighting/sky.hpp"
 #include "runtime/sh/window.hpp"
 #include "runtime/spec/camera.hpp"
@@ -41,6 +42,8 @@ struct FrameOptions {
   bool to_window = false;  // draw into framebuffer 0
   effects::diffuse::TransferMode transfer = effects::diffuse::TransferMode::Full;
   sh::Window window = sh::Window::Auto;
+  // Glossy surfaces reflect what the bands of their light leave out of the sky, too.
+  bool residual = true;
   std::optional<float> exposure_ev;                             // none: automatic
   std::uint64_t upload_budget_bytes = std::uint64_t{16} << 20;  // per frame
   lighting::CaptureOptions capture{.order = 0};                 // order 0: that of the groups' transfer
@@ -96,6 +99,7 @@ class Frame {
                                gpu::Counters& counters);
   Result<void> capture(World& world, const lighting::Environment& environment, std::size_t max_captures);
   bool atRest(const World& world) const;
+  Result<void> reflectSky(const World& world, const lighting::Environment& environment);
   Result<void> castShadows(World& world);
   Result<void> raster(World& world, const lighting::Environment& environment, const spec::View& view);
   void toneMap();
@@ -109,7 +113,8 @@ class Frame {
   effects::diffuse::Proxies proxies_;
   LitScene lit_scene_;
   NearLights near_lights_;
-  std::optional<lighting::IncidentLight> incident_;  // once there is something to sample
+  std::optional<lighting::ReflectedSky> reflected_sky_;  // once a glossy surface asks for it
+  std::optional<lighting::IncidentLight> incident_;      // once there is something to sample
   // How the light that groups send out has changed, summed up.
   struct ProxyRadiance {
     std::uint64_t version = 0, light = 0;

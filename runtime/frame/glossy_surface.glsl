@@ -107,6 +107,62 @@ Lobes lobesAt(vec3 base_color, TangentFrame frame, vec3 normal) {
 }
 #endif
 
+#ifdef LAMBENT_NEAR_LIGHTS
+#ifdef LAMBENT_MEASURED
+vec3 nearReflectance(vec3 to_light, float spread) { return vec3(0.0); }
+#else
+// Of this pixel.
+Lobes near_lobes = Lobes(0.0, 1.0, 0.0, vec3(0.0), Fresnel(vec3(0.0), 0.0));
+vec3 near_normal = vec3(0.0), near_to_eye = vec3(0.0);
+
+// f of docs/conventions.md, "Materials", without anisotropy. The light's extent widens the lobe, in half vectors by half.
+vec3 nearReflectance(vec3 to_light, float spread) {
+  float alpha = max(near_lobes.roughness * near_lobes.roughness, 1e-3);
+  float squared = min(alpha * alpha + 0.25 * spread * spread, 1.0);
+  float nv = max(dot(near_normal, near_to_eye), kLeastViewCosine), nl = max(dot(near_normal, to_light), 1e-3);
+  vec3 h = unit(near_to_eye + to_light);
+  float nh = clamp(dot(near_normal, h), 0.0, 1.0), vh = clamp(dot(near_to_eye, h), 0.0, 1.0);
+  float root = nh * nh * (squared - 1.0) + 1.0;
+  float distribution = squared / (root * root);  // times pi
+  float shadowing = 0.5 / (nl * sqrt(nv * nv * (1.0 - squared) + squared) + nv * sqrt(nl * nl * (1.0 - squared) + squared));
+  float edge = 1.0 - vh, edge2 = edge * edge;
+  return distribution * shadowing *
+         (near_lobes.fresnel.f0 + (near_lobes.fresnel.f90 - near_lobes.fresnel.f0) * edge2 * edge2 * edge);
+}
+#endif
+#endif
+
+#ifdef LAMBENT_RESIDUAL
+#include "reflected_shared.h"
+layout(std140, binding = kBindReflection) uniform ReflectionBlock { ReflectionValues reflection; };
+layout(binding = kUnitFirstReflection) uniform samplerCube first_reflection;
+layout(binding = kUnitSecondReflection) uniform samplerCube second_reflection;
+
+// What a rough mirror shows of the sky besides the bands that the surface has of it: P(L) - P(L_n). The bands scale
+// between levels as the levels themselves mix, so that light of few bands leaves nothing. Signed.
+vec3 residualLight(vec3 direction_ws, float roughness) {
+  float level = reflection.shares.z * pow(roughness, 2.0 / 3.0);  // roughnessOfLevel, turned about
+  vec3 direction = mat3(reflection.light_from_world) * direction_ws;
+  vec3 seen = reflection.shares.x * textureLod(first_reflection, direction, level).rgb +
+              reflection.shares.y * textureLod(second_reflection, direction, level).rgb;
+  vec4 light[kCoefficients], bands[kBands];
+  for (int k = 0; k < kCoefficients; ++k) light[k] = reflection.light[k];
+  bandsAt(direction_ws, light, bands);
+  int low = int(min(level, reflection.shares.z - 1.0));
+  float share = level - float(low);
+  vec4 first = mix(reflection.bands[2 * low], reflection.bands[2 * low + 2], share);
+  vec4 second = mix(reflection.bands[2 * low + 1], reflection.bands[2 * low + 3], share);
+  vec3 known = first.x * bands[0].rgb + first.y * bands[1].rgb + first.z * bands[2].rgb + first.w * bands[3].rgb;
+#if LAMBENT_BANDS > 4
+  known += second.x * bands[4].rgb;
+#endif
+#if LAMBENT_BANDS > 5
+  known += second.y * bands[5].rgb;
+#endif
+  return seen - known;
+}
+#endif
+
 vec3 reflectedLight(vec3 base_color) {
   TangentFrame frame = pixelFrame();
   vec3 normal = pixelNormal(frame), to_eye = towardsEye();
@@ -131,10 +187,26 @@ vec3 reflectedLight(vec3 base_color) {
   vec3 diffuse = diffuseAlbedo(base_color, lobes.metallic, lobes.fresnel, reflected.albedo);
   vec3 received = reflected.diffuse.rgb;
 #ifdef LAMBENT_NEAR_LIGHTS
+  near_lobes = lobes;
+  near_normal = normal;
+  near_to_eye = to_eye;
   received += nearLight(draws[draw_of].glossy.draw, draws[draw_of].facing * frame.normal, normal);
 #endif
   vec3 radiance = lobes.fresnel.f0 * reflected.f0_light.rgb + lobes.fresnel.f90 * reflected.f90_light.rgb +
                   diffuse * received;
+#ifdef LAMBENT_NEAR_LIGHTS
+  radiance += near_highlights;
+#endif
+#ifdef LAMBENT_RESIDUAL
+  // By the share of the sky that the lobe sees, as far as few bands can tell: (c . V) / (c . 1).
+  vec3 rho = lobes.fresnel.f0 * reflected.albedo.x + lobes.fresnel.f90 * reflected.albedo.y;
+  float f0 = dot(lobes.fresnel.f0, vec3(1.0 / 3.0));
+  float seen = f0 * reflected.f0_light.w + lobes.fresnel.f90 * reflected.f90_light.w;
+  float open = f0 * reflected.albedo.x + lobes.fresnel.f90 * reflected.albedo.y;
+  float visibility = clamp(seen / max(open, 1e-6), 0.0, 1.0);
+  vec3 mirrored = reflect(-to_eye, normal) * mat3(draws[draw_of].glossy.group_from_world);  // by the transpose
+  radiance += visibility * rho * residualLight(mirrored, lobes.roughness);
+#endif
 #endif
   return radiance;
 }

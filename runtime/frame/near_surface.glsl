@@ -27,6 +27,12 @@ vec3 pixelPosition() {
 
 vec3 turned(vec4 turn, vec3 v) { return nearUnit(v + 2.0 * cross(turn.xyz, cross(turn.xyz, v) + turn.w * v)); }
 
+#ifdef LAMBENT_GLOSSY
+// pi times the specular f towards the eye of light from this direction, group frame, that spreads over so many radians.
+vec3 nearReflectance(vec3 to_light, float spread);
+vec3 near_highlights = vec3(0.0);  // of the last nearLight
+#endif
+
 // Group frame, of the side that is seen: the vertices' normal, and the one that the surface is shaded by.
 vec3 nearLight(uint draw, vec3 smooth_normal, vec3 shading_normal) {
   vec3 position_vs = pixelPosition();
@@ -41,8 +47,16 @@ vec3 nearLight(uint draw, vec3 smooth_normal, vec3 shading_normal) {
   // By the bits that are set: on some devices an if costs as much as what it leaves out, and a loop does not.
   for (uint rest = near_draws[draw].lights; rest != 0u; rest &= rest - 1u) {
     int k = findLSB(rest);
-    sum += nearRadiance(k, near_lights[k], position, normal, horizon, shading_normal, int(near_view.size),
-                        int(near_view.samples), turns);
+    vec3 received = nearRadiance(k, near_lights[k], position, normal, horizon, shading_normal, int(near_view.size),
+                                 int(near_view.samples), turns);
+    sum += received;
+#ifdef LAMBENT_GLOSSY
+    vec3 to_light = near_lights[k].position - position;
+    bool wide = near_lights[k].kind == kNearSphere || near_lights[k].kind == kNearDisc;
+    float spread = wide ? atan(near_lights[k].radius, length(to_light)) : 0.0;
+    vec3 to_light_group = turned(vec4(-turn.xyz, turn.w), nearUnit(to_light));
+    near_highlights += min(received * nearReflectance(to_light_group, spread), vec3(kLargestShown));
+#endif
   }
 #ifdef LAMBENT_FINEST_TEXELS
   return sum;

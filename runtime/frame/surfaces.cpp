@@ -49,6 +49,7 @@ Result<void> Surfaces::compile(const ProgramKind& kind) {
   if (kind.glossy.bands > 0) defines = definesOf(kind.glossy);
   if (finest_texels_) defines.push_back({"LAMBENT_FINEST_TEXELS", "1"});
   if (kind.normal_mapped) defines.push_back({"LAMBENT_NORMAL_MAPPED", "1"});
+  if (kind.residual) defines.push_back({"LAMBENT_RESIDUAL", "1"});
   if (kind.near_lit) defines.push_back({"LAMBENT_NEAR_LIGHTS", "1"});
   Result<gpu::Program> program = gpu::Program::create(
       "surface", {{GL_VERTEX_SHADER, "surface.vert"}, {GL_FRAGMENT_SHADER, "surface.frag"}}, kShaders,
@@ -105,15 +106,18 @@ void Surfaces::appendRuns(const World& world, const std::vector<Item>& items, st
 }
 
 Result<void> Surfaces::prepare(World& world, const effects::diffuse::Diffuse& diffuse, const spec::View& view,
-                               gpu::Counters& counters, const NearLights* near_lights) {
+                               gpu::Counters& counters, const NearLights* near_lights,
+                               const lighting::ReflectedSky* reflected_sky) {
+  const bool residual_same = (reflected_sky != nullptr) == (reflected_sky_ != nullptr);
+  reflected_sky_ = reflected_sky;
   const ViewBlock block{view.view_from_world, view.clip_from_view, eyeOf(view)};
   view_.assign(std::span<const ViewBlock>(&block, 1));
   const streaming::Residency& residency = world.residency();
   std::size_t shaded = 0;
   for (std::size_t i = 0; i < residency.draws().size(); ++i) shaded += ready(world, diffuse, i) ? 1 : 0;
   const std::uint64_t near_version = near_lights != nullptr ? near_lights->version() : 0;
-  const bool scene_same = residency.version() == residency_seen_ && near_version == near_seen_ &&
-                          world.transformsVersion() == transforms_seen_ &&
+  const bool scene_same = residual_same && residency.version() == residency_seen_ &&
+                          near_version == near_seen_ && world.transformsVersion() == transforms_seen_ &&
                           world.lampsVersion() == lamps_seen_ && shaded == shaded_seen_;
   if (scene_same && (blended_.empty() || view.eye_ws == eye_seen_ws_)) return {};
   near_seen_ = near_version;
@@ -156,6 +160,7 @@ void Surfaces::drawRuns(World& world, const std::vector<Run>& runs, gpu::Counter
   glBindBufferBase(GL_UNIFORM_BUFFER, kBindView, view_.buffer().id());
   glBindBuffer(GL_DRAW_INDIRECT_BUFFER, commands_.buffer().id());
   glEnable(GL_CULL_FACE);  // double-sided surfaces are two draws
+  if (reflected_sky_ != nullptr) reflected_sky_->bind();
   for (const Run& run : runs) {
     const gpu::Buffer& geometry = world.residency().geometry().page(run.state.geometry_page);
     geometry.bindStorage(kBindGeometry);

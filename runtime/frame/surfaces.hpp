@@ -22,6 +22,7 @@
 #include "runtime/frame/texture_units.hpp"
 #include "runtime/frame/world.hpp"
 #include "runtime/gpu/program.hpp"
+#include "runtime/lighting/reflected_sky.hpp"
 #include "runtime/spec/camera.hpp"
 
 namespace lambent::frame {
@@ -32,9 +33,11 @@ class Surfaces {
   static Result<Surfaces> create(bool finest_texels);
 
   // Brings draw records and commands up to date. With near lights, these must be updated before and bound
-  // when it draws.
+  // when it draws. With a reflected sky, glossy surfaces add what their few bands of light leave out; it must
+  // live until they are drawn.
   Result<void> prepare(World& world, const effects::diffuse::Diffuse& diffuse, const spec::View& view,
-                       gpu::Counters& counters, const NearLights* near_lights = nullptr);
+                       gpu::Counters& counters, const NearLights* near_lights = nullptr,
+                       const lighting::ReflectedSky* reflected_sky = nullptr);
   void drawOpaque(World& world, gpu::Counters& counters);
   void drawBlended(World& world, gpu::Counters& counters);
 
@@ -67,10 +70,15 @@ class Surfaces {
   struct ProgramKind {
     bool normal_mapped = false, near_lit = false;
     GlossyKind glossy = {};
+    bool residual = false;
     auto operator<=>(const ProgramKind&) const = default;
   };
-  static ProgramKind kindOf(const State& state) {
-    return {.normal_mapped = state.normal_mapped, .near_lit = state.near_lit, .glossy = state.glossy};
+  ProgramKind kindOf(const State& state) const {
+    return {.normal_mapped = state.normal_mapped,
+            .near_lit = state.near_lit,
+            .glossy = state.glossy,
+            .residual = reflected_sky_ != nullptr && state.glossy.bands > 0 &&
+                        state.glossy.family != bundle::BrdfFamily::Measured};
   }
   Result<void> compile(const ProgramKind& kind);
   bool ready(const World& world, const effects::diffuse::Diffuse& diffuse, std::size_t draw) const;
@@ -92,6 +100,7 @@ class Surfaces {
   std::uint64_t residency_seen_ = 0, transforms_seen_ = 0, lamps_seen_ = 0, near_seen_ = 0;
   std::size_t shaded_seen_ = 0;
   glm::vec3 eye_seen_ws_{0.0f};
+  const lighting::ReflectedSky* reflected_sky_ = nullptr;  // of this frame; null: no residual
 };
 
 }  // namespace lambent::frame

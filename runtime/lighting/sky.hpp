@@ -25,6 +25,9 @@ class Sky {
   void draw(const Environment& environment, const glm::mat4& view_from_world, const glm::mat4& clip_from_view,
             std::uint32_t picture_height, gpu::Counters& counters) const;
 
+  // Probes and constants of a set of lights, in their own frame.
+  const gpu::Texture& cube(std::size_t set) const { return cubes_[set]; }
+
  private:
   Sky() : discs_("sky discs") {}
 

@@ -39,7 +39,7 @@ struct Store {
 
 // One cluster: plane i carries value i, 16 bits over its range; the mean is zero.
 bundle::CellTransfer storeTransfer(Store& store, const bundle::TransferShape& shape,
-                                      const std::vector<std::vector<float>>& vectors) {
+                                   const std::vector<std::vector<float>>& vectors) {
   const std::size_t size = shape.size();
   bundle::CellTransfer transfer;
   transfer.shape = shape;
@@ -98,6 +98,19 @@ BundleBuilder& BundleBuilder::bounces() {
 
 BundleBuilder& BundleBuilder::normalMapped() {
   normal_mapped_ = true;
+  return *this;
+}
+
+BundleBuilder& BundleBuilder::glossy(std::uint32_t bands, bundle::BrdfFamily family,
+                                     bundle::BrdfTable table) {
+  glossy_bands_ = bands;
+  family_ = family;
+  table_ = std::move(table);
+  transfer_ = [n = static_cast<std::size_t>(order_) + bands - 1](const glm::vec3&) {
+    std::vector<float> open(n * n, 0.0f);
+    open[0] = 3.54490770f;  // sqrt(4 pi): visible in all directions
+    return open;
+  };
   return *this;
 }
 
@@ -175,7 +188,7 @@ void BundleBuilder::write(const std::filesystem::path& path) const {
            .group = 0,
            .back = back,
            .rows = store.payload(bundle::PayloadType::VertexRows, bundle::encodeRows(rows)),
-           .outputs = normal_mapped_ ? 9u : 1u});
+           .outputs = outputs()});
     }
   }
   for (std::uint32_t i = 0; i < images_.size(); ++i)
@@ -186,9 +199,16 @@ void BundleBuilder::write(const std::filesystem::path& path) const {
   cell.sample_count = group.sample_count;
   cell.bounds_min = group.bounds_min;
   cell.bounds_max = group.bounds_max;
-  const bundle::TransferShape shape{.order = static_cast<std::uint32_t>(order_),
-                                    .full_channels = bounces_ ? 1u : 0u,
-                                    .outputs = normal_mapped_ ? 9u : 1u};
+  const bundle::TransferShape shape{
+      .order = static_cast<std::uint32_t>(order_),
+      .full_channels = bounces_ ? 1u : 0u,
+      .outputs = outputs(),
+      .visibility_bands = glossy_bands_ > 0 ? static_cast<std::uint32_t>(order_) + glossy_bands_ - 1 : 0};
+  if (glossy_bands_ > 0)
+    description.brdf_tables.push_back(
+        {.family = family_,
+         .name = family_ == bundle::BrdfFamily::Measured ? "measured.brdf" : "",
+         .payload = store.payload(bundle::PayloadType::BrdfTable, bundle::encodeBrdfTable(table_))});
   cell.transfers.push_back(storeTransfer(store, shape, vectors));
   if (!lamps_.empty()) {
     const bundle::TransferShape lamp_shape{.order = 0,

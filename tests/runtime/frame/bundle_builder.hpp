@@ -10,6 +10,7 @@
 
 #include <glm/mat4x4.hpp>
 
+#include "runtime/bundle/brdf_table.hpp"
 #include "runtime/bundle/description.hpp"
 #include "runtime/bundle/mesh.hpp"
 #include "runtime/bundle/writer.hpp"
@@ -35,6 +36,9 @@ class BundleBuilder {
   BundleBuilder& transfer(TransferOf transfer);
   BundleBuilder& bounces();
   BundleBuilder& normalMapped();
+  // All surfaces glossy, with transferred light in so many bands and this table; transfer is then visibility
+  // in order + bands - 1 bands, open unless a later transfer() says otherwise.
+  BundleBuilder& glossy(std::uint32_t bands, bundle::BrdfFamily family, bundle::BrdfTable table);
   // A light of the group that gives `transfer` times its radiance to every sample. Bundles without normal
   // maps.
   BundleBuilder& lamp(const bundle::GroupLight& light, float transfer);
@@ -52,6 +56,12 @@ class BundleBuilder {
   };
   int order_;
   bool bounces_ = false, normal_mapped_ = false;
+  std::uint32_t outputs() const {
+    return glossy_bands_ > 0 ? glossy_bands_ * glossy_bands_ : normal_mapped_ ? 9u : 1u;
+  }
+  std::uint32_t glossy_bands_ = 0;  // 0: not glossy
+  bundle::BrdfFamily family_ = bundle::BrdfFamily::Ggx;
+  bundle::BrdfTable table_;
   std::vector<BuiltLamp> lamps_;
   TransferOf transfer_;
   glm::quat rest_rotation_{1.0f, 0.0f, 0.0f, 0.0f};

@@ -37,6 +37,7 @@ struct Name {
     return "light weights " + join({r.group, r.cell});
   }
   std::string operator()(const ProxyReady& r) const { return "proxy " + join({r.group}); }
+  std::string operator()(const BrdfReady& r) const { return "brdf " + join({r.table}); }
   static std::string join(std::initializer_list<std::uint32_t> numbers) {
     std::string text;
     for (const std::uint32_t n : numbers) {
@@ -56,7 +57,7 @@ std::vector<std::string> names(const std::vector<Ready>& items) {
 const std::vector<std::string> kInOrder = {
     "mesh 0.0",       "mesh 1.0",       "mesh 1.1",       // by place
     "rows 1",         "rows 0",         "rows 2",         // priorities 2, 3, 3
-    "image 0",        "image 1",                          // by place
+    "brdf 0",         "image 0",        "image 1",        // by place
     "codebook 1.0.0", "plane 1.0.0.0",  "plane 1.0.0.1",  // 10, 12, 11: never before plane 0
     "codebook 0.0.0", "codebook 1.1.0", "plane 1.1.0.0",  // 20, 20, 5: never before its codebook
     "plane 0.0.0.0",  "plane 1.0.0.2",  "plane 0.0.0.1",  // 21, 30, 40
@@ -127,14 +128,20 @@ TEST_F(LoaderTest, DeliversByPriorityWhatWasWritten) {
   const auto& mesh = std::get<MeshReady>(items[2]).data;
   ASSERT_EQ(mesh.positions.size(), 52u);
   EXPECT_NEAR(mesh.positions[0].y, 3.0f, 1e-6f);
+  const BrdfReady& table = std::get<BrdfReady>(items[6]);
+  ASSERT_EQ(table.data.values.size(), testing::brdfTable().values.size());
+  EXPECT_NEAR(table.data.values[77], 0.077f, 1e-5f);
+  EXPECT_EQ(table.texels.width, 3u);
+  EXPECT_EQ(table.texels.height, 2u);
+  EXPECT_EQ(table.texels.layers, 5u) << "twenty weights of a node, four to a texel";
   const auto& rows = std::get<RowsReady>(items[4]).rows;
   ASSERT_EQ(rows.samples.size(), 402u);
   EXPECT_EQ(rows.samples[401], 101u);
-  const auto& image = std::get<ImageReady>(items[6]);
+  const auto& image = std::get<ImageReady>(items[7]);
   EXPECT_EQ(image.width, 20u);
   EXPECT_EQ(image.height, 10u);
   EXPECT_EQ(image.rgba[(9 * 20 + 19) * 4 + 2], testing::texel(19, 9, 2));
-  const auto& codebook = std::get<CodebookReady>(items[8]);
+  const auto& codebook = std::get<CodebookReady>(items[9]);
   ASSERT_EQ(codebook.codebook.vectors.size(), 20u);
   EXPECT_EQ(codebook.codebook.vectors[19], 24.0f) << "19 + 10/2: exact in binary16";
   EXPECT_EQ(codebook.codebook.axes.size(), 3u);
@@ -143,7 +150,7 @@ TEST_F(LoaderTest, DeliversByPriorityWhatWasWritten) {
   EXPECT_EQ(codebook.positions[332], 499u) << "333 samples of the first cluster";
   EXPECT_EQ(codebook.positions[333], 0u | 1u << 16);
   EXPECT_EQ(codebook.positions[499], 498u | 1u << 16);
-  const auto& codes = std::get<PlaneReady>(items[10]).codes;
+  const auto& codes = std::get<PlaneReady>(items[11]).codes;
   ASSERT_EQ(codes.size(), 666u) << "333 samples of 16 bits";
   std::uint16_t code = 0;
   std::memcpy(&code, &codes[2 * 332], sizeof code);
@@ -206,7 +213,7 @@ TEST_F(LoaderTest, StopsAtADamagedPayloadAndNamesTheFileWhateverTheThreads) {
   const bundle::Description& d = sample.description;
   damage(d.payloads[d.groups[1].cells[0].transfers[0].planes[0].payload].view);  // "plane 1.0.0.0"
   damage(d.payloads[d.groups[0].cells[0].transfers[0].planes[1].payload].view);  // and the last of all
-  const std::vector<std::string> before(kInOrder.begin(), kInOrder.begin() + 9);
+  const std::vector<std::string> before(kInOrder.begin(), kInOrder.begin() + 10);
   std::string first_line;
   for (const unsigned threads : {1u, 8u}) {
     Loader loader(open(), threads);
@@ -227,7 +234,7 @@ TEST_F(LoaderTest, NamesTheImageThatCannotBeDecoded) {
   blob.assign(blob.size(), std::byte{'x'});
   write(sample);
   Loader loader(open(), 2);
-  EXPECT_EQ(drain(loader, 1 << 20).size(), 7u);
+  EXPECT_EQ(drain(loader, 1 << 20).size(), 8u);
   ASSERT_TRUE(loader.error());
   EXPECT_NE(loader.error()->line().find(path().string() + ": image 1 \"leaf\""), std::string::npos)
       << loader.error()->line();
@@ -243,7 +250,7 @@ TEST_F(LoaderTest, RefusesClustersThatContradictThePlanes) {
       bundle::PayloadCodec::Raw;
   write(sample);
   Loader loader(open(), 2);
-  EXPECT_EQ(drain(loader, 1 << 20).size(), 8u);
+  EXPECT_EQ(drain(loader, 1 << 20).size(), 9u);
   ASSERT_TRUE(loader.error());
   EXPECT_NE(loader.error()->line().find("group 1 cell 0: has weight planes of other sizes"),
             std::string::npos)
@@ -257,7 +264,7 @@ TEST_F(LoaderTest, RefusesRowsOfANormalMappedDrawIntoPlainSamples) {
   Loader loader(open(), 2);
   drain(loader, 1 << 20);
   ASSERT_TRUE(loader.error());
-  EXPECT_NE(loader.error()->line().find("draw 0: has a normal map"), std::string::npos)
+  EXPECT_NE(loader.error()->line().find("draw 0: takes samples"), std::string::npos)
       << loader.error()->line();
 }
 

@@ -13,6 +13,7 @@
 #define STB_IMAGE_WRITE_IMPLEMENTATION
 #include <stb/stb_image_write.h>
 
+#include "runtime/bundle/brdf_table.hpp"
 #include "runtime/bundle/mesh.hpp"
 #include "runtime/bundle/transfer_codec.hpp"
 
@@ -213,7 +214,18 @@ Sample sampleBundle() {
   b.addDraw(1, 1, 1, 3);
   d.images.push_back({.name = "bark", .mime_type = "image/png", .view = b.addBlob(pngFile(20, 10, 3))});
   d.images.push_back({.name = "leaf", .mime_type = "image/jpeg", .view = b.addBlob(jpegFile(16, 8, 100))});
+  d.brdf_tables.push_back(
+      {.family = bundle::BrdfFamily::Ggx,
+       .name = "",
+       .payload = b.addPayload(bundle::PayloadType::BrdfTable, bundle::encodeBrdfTable(brdfTable()), 50)});
   return std::move(b.sample);
+}
+
+bundle::BrdfTable brdfTable() {
+  bundle::BrdfTable table{.order = 4, .lobes = 2, .angles = 3, .roughnesses = 2, .values = {}};
+  for (std::size_t i = 0; i < table.nodes() * table.nodeValues(); ++i)
+    table.values.push_back(0.001f * static_cast<float>(i));
+  return table;
 }
 
 Sample manyImages(std::uint32_t count, std::uint32_t side) {

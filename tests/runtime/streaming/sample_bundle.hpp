@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "runtime/bundle/brdf_table.hpp"
 #include "runtime/bundle/description.hpp"
 #include "runtime/bundle/writer.hpp"
 
@@ -23,9 +24,10 @@ struct Sample {
   std::vector<bundle::Blob> blobs;
 };
 
-// Two meshes (one of two primitives), three draws, two images, two groups of one and two cells. Priorities
-// are such that the order of the description is not the order of delivery.
+// Two meshes (one of two primitives), three draws, two images, two groups of one and two cells, a table of
+// b(v). Priorities are such that the order of the description is not the order of delivery.
 Sample sampleBundle();
+bundle::BrdfTable brdfTable();  // of that bundle
 
 // `count` images, all of one view: side x side texels, little in the file and much in memory.
 Sample manyImages(std::uint32_t count, std::uint32_t side);

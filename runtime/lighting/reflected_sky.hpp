@@ -1,0 +1,46 @@
+// What rough mirrors show of the sky beyond the few bands that surfaces have of its light: P(L) - P(L_n),
+// prefiltered by the round lobe of reflected_lobe.hpp. P(L) stands in a cube map per set of lights, roughness
+// along its mip levels, in the lights' own frame: made once, for turning, fading and dimming only mix it
+// anew. P(L_n) has n bands, each scaled by the lobe's, and is taken off where a surface looks
+// (glossy_surface.glsl), so that light of few bands leaves nothing. Render thread only. Errors: a kernel that
+// does not compile on this device.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "runtime/base/result.hpp"
+#include "runtime/gpu/objects.hpp"
+#include "runtime/lighting/environment.hpp"
+#include "runtime/lighting/reflected_shared.h"
+#include "runtime/lighting/sky.hpp"
+#include "runtime/sh/window.hpp"
+
+namespace lambent::lighting {
+
+class ReflectedSky {
+ public:
+  // `sky` is that of the environment.
+  static Result<ReflectedSky> make(const Environment& environment, const Sky& sky, gpu::Counters& counters);
+
+  // The environment as it stands now, and the light that surfaces have of it: so many bands, windowed.
+  void update(const Environment& environment, int order, sh::Window window, gpu::Counters& counters);
+  void bind() const;
+
+  // As uploaded, for tests.
+  const ReflectionValues& values() const { return values_; }
+  const gpu::Texture& cube(std::size_t set) const { return cubes_[set]; }
+  std::uint64_t bytes() const;
+
+ private:
+  ReflectedSky() : block_("reflection") {}
+
+  std::array<gpu::Texture, Environment::kSets> cubes_;
+  ReflectionValues values_{};
+  gpu::Table block_;
+  std::uint64_t environment_seen_ = ~std::uint64_t{0};
+  int order_seen_ = 0;
+  sh::Window window_seen_ = sh::Window::Off;
+};
+
+}  // namespace lambent::lighting
