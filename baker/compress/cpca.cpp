@@ -23,6 +23,10 @@ constexpr double kTailShare = 0.05;          // of the square error allowed, for
 constexpr std::size_t kRun = 64;             // neighbours kept together where only some samples are taken
 constexpr std::size_t kLeastSearched = 4096, kSearchedPerCluster = 96;
 constexpr int kSearchRounds = 4, kFinalRounds = 3, kMostAttempts = 8;
+// What a weight counts for in the choice of axes, however little it says. A weight of a glossy sample stands
+// for 25 multiply-adds of four numbers whenever light changes, so axes that are nearly all noise are not
+// worth their time.
+constexpr double kPlainWeightBits = 0.1, kGlossyWeightBits = 1.5;
 constexpr std::uint32_t kClusterCounts[] = {1, 4, 16, 64, 128, 256};
 
 // Runs of neighbours spread over the cell: `kept` samples or all.
@@ -85,10 +89,11 @@ struct Clustering {
 };
 
 // Iterative PCA: fits and moves samples in turn.
-Clustering refine(const Points& points, ClusterIds ids, double budget, int axes, int rounds, bool held_out) {
+Clustering refine(const Points& points, ClusterIds ids, double budget, int axes, int rounds, bool held_out,
+                  double least_bits) {
   Clustering found{std::move(ids), {}, 0.0};
   for (int round = 0;; ++round) {
-    found.clusters = fitClusters(points, found.ids, held_out);
+    found.clusters = fitClusters(points, found.ids, held_out, least_bits);
     found.step = stepFor(found.clusters, budget);
     if (axes >= 0) keepSoMany(found.clusters, axes);
     if (round == rounds || found.clusters.size() == 1) return found;
@@ -96,20 +101,22 @@ Clustering refine(const Points& points, ClusterIds ids, double budget, int axes,
   }
 }
 
-Clustering fromSome(const Points& points, std::uint32_t clusters, double budget, int axes) {
+Clustering fromSome(const Points& points, std::uint32_t clusters, double budget, int axes,
+                    double least_bits) {
   const auto count = static_cast<std::size_t>(points.cols());
   const auto some = someSamples(count, std::max(kLeastSearched, kSearchedPerCluster * clusters));
   const Points searched = columnsOf(points, some);
-  return refine(searched, seedClusters(searched, clusters), budget, axes, kSearchRounds, some.size() < count);
+  return refine(searched, seedClusters(searched, clusters), budget, axes, kSearchRounds, some.size() < count,
+                least_bits);
 }
 
 // The number of clusters that codes to the fewest bytes, by estimates from some of the samples.
-Clustering search(const Points& points, double budget, const std::stop_token& stop) {
+Clustering search(const Points& points, double budget, double least_bits, const std::stop_token& stop) {
   Clustering best;
   double fewest = std::numeric_limits<double>::infinity();
   for (const std::uint32_t clusters : kClusterCounts) {
     if (stop.stop_requested()) break;
-    Clustering tried = fromSome(points, clusters, budget, -1);
+    Clustering tried = fromSome(points, clusters, budget, -1, least_bits);
     const double bytes = expectedBytes(tried.clusters, tried.step, static_cast<double>(points.cols()));
     if (bytes >= fewest) break;
     fewest = bytes;
@@ -181,13 +188,15 @@ CodedTransfer codeTransfer(std::span<const float> vectors, std::size_t count,
     return coded;
   }
 
+  const double least_bits = shape.outputs > bundle::kMappedOutputs ? kGlossyWeightBits : kPlainWeightBits;
   const Points points = coordinates(vectors, space.roots, basis);
-  const Clustering few = settings.clusters > 0 ? fromSome(points, settings.clusters, budget, settings.axes)
-                                               : search(points, budget, stop);
+  const Clustering few = settings.clusters > 0
+                             ? fromSome(points, settings.clusters, budget, settings.axes, least_bits)
+                             : search(points, budget, least_bits, stop);
   if (stop.stop_requested()) return {};
   Clustering found =
       refine(points, assignClusters(points, few.clusters, few.step, {}), budget, settings.axes, kFinalRounds,
-             /*held_out=*/false);
+             /*held_out=*/false, least_bits);
   return fitToBound(vectors, points, found, basis, shape, settings, bound * std::sqrt(reachable / allowed),
                     stop);
 }

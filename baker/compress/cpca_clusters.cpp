@@ -18,10 +18,10 @@ constexpr double kFewestMembers = 8.0;  // of a cluster; its mean and name are n
 constexpr double kNamingPrice = 2.0;    // a change of cluster also breaks the prediction of weights
 constexpr std::size_t kNearest = 8;     // clusters tried per sample, by distance to their means
 
-// Entropy of a Gaussian weight of this variance in steps.
-double weightBits(double variance, double step) {
+// Entropy of a Gaussian weight of this variance in steps, and what the weight costs besides.
+double weightBits(double variance, double step, double least_bits) {
   const double in_steps = variance / (step * step) + 1.0 / 12.0;
-  return std::max(0.1, 0.5 * std::log2(2.0 * std::numbers::pi * std::numbers::e * in_steps)) + 0.05;
+  return std::max(least_bits, 0.5 * std::log2(2.0 * std::numbers::pi * std::numbers::e * in_steps)) + 0.05;
 }
 
 // Bits in the codebook of a unit vector known well enough for weights of this variance (axisGrid): those of
@@ -57,8 +57,9 @@ void keepAxesOf(Cluster& cluster, double step) {
   for (Eigen::Index j = 0; j < cluster.variances.size(); ++j) {
     const double variance = cluster.variances(j);
     if (variance <= noise) break;
-    const double bits = cluster.count * weightBits(std::min(variance, cluster.innovation(j)), step) +
-                        axisBits(cluster.axes.rows(), variance, step);
+    const double bits =
+        cluster.count * weightBits(std::min(variance, cluster.innovation(j)), step, cluster.least_bits) +
+        axisBits(cluster.axes.rows(), variance, step);
     if (cluster.count * (variance - noise) <= price * bits) break;
     cluster.kept = j + 1;
   }
@@ -98,7 +99,7 @@ ClusterIds seedClusters(const Points& points, std::uint32_t clusters) {
   return ids;
 }
 
-std::vector<Cluster> fitClusters(const Points& points, ClusterIds& ids, bool held_out) {
+std::vector<Cluster> fitClusters(const Points& points, ClusterIds& ids, bool held_out, double least_bits) {
   const std::uint32_t numbered = ids.empty() ? 0 : *std::max_element(ids.begin(), ids.end()) + 1;
   std::vector<std::vector<std::uint32_t>> members(numbered);
   for (std::uint32_t s = 0; s < ids.size(); ++s) members[ids[s]].push_back(s);
@@ -117,6 +118,7 @@ std::vector<Cluster> fitClusters(const Points& points, ClusterIds& ids, bool hel
     Cluster& cluster = clusters[c];
     const std::vector<std::uint32_t>& own = members[c];
     cluster.count = static_cast<double>(own.size());
+    cluster.least_bits = least_bits;
     Eigen::VectorXd sum = Eigen::VectorXd::Zero(points.rows());
     for (const std::uint32_t s : own) sum += points.col(s).cast<double>();
     cluster.mean = (sum / cluster.count).cast<float>();
@@ -198,7 +200,8 @@ ClusterIds assignClusters(const Points& points, const std::vector<Cluster>& clus
     for (Eigen::Index j = 0; j < cluster.kept; ++j) {
       const double variance = cluster.variances(j);
       cost += step * step / 12.0 +
-              price * (weightBits(std::min(variance, cluster.innovation(j)), step) - 0.5 / std::numbers::ln2);
+              price * (weightBits(std::min(variance, cluster.innovation(j)), step, cluster.least_bits) -
+                       0.5 / std::numbers::ln2);
       prepared[c].spread(j) =
           static_cast<float>(price * 0.5 / std::numbers::ln2 / (variance + step * step / 12.0));
     }
@@ -259,7 +262,8 @@ double expectedBytes(const std::vector<Cluster>& clusters, double step, double c
   for (const Cluster& cluster : clusters) {
     const double share = cluster.count / total * count;
     for (Eigen::Index j = 0; j < cluster.kept; ++j)
-      bits += share * weightBits(std::min(cluster.variances(j), cluster.innovation(j)), step) +
+      bits += share * weightBits(std::min(cluster.variances(j), cluster.innovation(j)), step,
+                                 cluster.least_bits) +
               axisBits(cluster.axes.rows(), cluster.variances(j), step);
     bits += 8.0 * static_cast<double>(cluster.mean.size());
   }

@@ -21,6 +21,7 @@ struct Cluster {
   Eigen::VectorXd variances;   // of the weights of each axis
   Eigen::VectorXd innovation;  // mean square of what a weight's predecessor does not foretell
   Eigen::Index kept = 0;       // axes worth their bits at the step that keepAxes was given
+  double least_bits = 0.1;     // that a weight counts for, however little it says
 };
 
 using ClusterIds = std::vector<std::uint32_t>;
@@ -31,7 +32,8 @@ ClusterIds seedClusters(const Points& points, std::uint32_t clusters);
 
 // Clusters without samples are left out and ids closed up. `held_out`: variances as they would be on samples
 // that were not fitted, for estimates from few samples.
-std::vector<Cluster> fitClusters(const Points& points, ClusterIds& ids, bool held_out);
+std::vector<Cluster> fitClusters(const Points& points, ClusterIds& ids, bool held_out,
+                                 double least_bits = 0.1);
 
 // How finely coordinates of a unit axis have to be known whose weights have this variance: errors of the
 // axis, times its weights, add a fifth to what quantization of the weights leaves.
