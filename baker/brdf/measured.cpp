@@ -78,7 +78,7 @@ class Measured final : public Brdf {
 
   void value(const BrdfParameters&, const glm::dvec3& v, const glm::dvec3& s,
              std::span<double> out) const override {
-    const glm::dvec3 f = unscaled(placeOf(v, s)) * (scale(v.z) * scale(s.z));
+    const glm::dvec3 f = unscaled(placeOf(v, s)) * std::min(scale(v.z), scale(s.z));
     for (int c = 0; c < 3; ++c) out[static_cast<std::size_t>(c)] = f[c];
   }
 

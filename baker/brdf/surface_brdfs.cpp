@@ -92,8 +92,13 @@ struct ViewFrame {
 // `tangent` is unit and across the normal; isotropic surfaces give any.
 ViewFrame frameOf(const glm::vec3& normal, const glm::vec3& tangent, const glm::vec3& to) {
   const float cosine = glm::dot(normal, to);
-  ViewFrame frame{
-      .x = unitOr(to - cosine * normal, tangent), .y = {}, .z = normal, .cos_theta = cosine, .view = {}};
+  // Straight above there is no such direction, and a rounding must not choose one.
+  const glm::vec3 lean = to - cosine * normal;
+  ViewFrame frame{.x = glm::dot(lean, lean) > 1e-8f ? glm::normalize(lean) : tangent,
+                  .y = {},
+                  .z = normal,
+                  .cos_theta = cosine,
+                  .view = {}};
   frame.y = glm::cross(normal, frame.x);
   const float cos_phi = glm::dot(frame.x, tangent), sin_phi = glm::dot(frame.x, glm::cross(normal, tangent));
   // A mirrored view sees the mirrored table.

@@ -13,7 +13,9 @@ namespace lambent::baker::reference {
 // The lighting of a precomputed picture: light from infinity, and spheres and discs of light as seen from
 // each point that they light, first hit and bounces alike, cut to their first `in` bands; a ray that meets no
 // surface sees that, however near the light may stand. Emissive surfaces and punctual lights stay whole. And,
-// where `out` is given, albedo/π times the cosine at the first hit replaced by its first `out` bands.
+// where `out` is given, the BRDF times the cosine at the first hit replaced by its first `out` bands, with
+// the light below the surface's plane mirrored where something stands in the mirrored direction
+// (docs/conventions.md, "Materials").
 struct BandLimit {
   int in = 5;
   std::optional<int> out = {};
