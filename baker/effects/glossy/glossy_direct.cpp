@@ -192,12 +192,15 @@ std::optional<GlossyDirect> bakeGlossyDirect(const GlossyPass& pass, std::size_t
   });
   if (!looked) return std::nullopt;
   result.rays = traced;
-  const auto edges = sampleEdges(pass.scene().geometry, samples);
-  result.filled_samples = fillStretchFromNeighbours(edges, direct.looks.valid, pass.first(),
-                                                    field.visibilitySize(), field.visibility);
-  if (lights > 0)
-    fillStretchFromNeighbours(edges, direct.looks.valid, pass.first(), field.channels * outputs * lights,
-                              field.lights_shadowed);
+  const auto first_valid = direct.looks.valid.begin() + static_cast<std::ptrdiff_t>(pass.first());
+  if (std::find(first_valid, direct.looks.valid.end(), std::uint8_t{0}) != direct.looks.valid.end()) {
+    const auto edges = sampleEdges(pass.scene().geometry, samples);
+    const auto fill = [&](std::size_t size, std::vector<float>& values) {
+      return fillStretchFromNeighbours(edges, direct.looks.valid, pass.first(), size, values);
+    };
+    result.filled_samples = fill(field.visibilitySize(), field.visibility);
+    if (lights > 0) fill(field.channels * outputs * lights, field.lights_shadowed);
+  }
 
   const bool derived = parallelRanges(count, kSamplesPerRange, stop, [&](std::size_t begin, std::size_t end) {
     std::vector<float> matrix(outputs * columns);
