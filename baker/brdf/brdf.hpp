@@ -58,7 +58,7 @@ void integrateView(const Brdf& brdf, const BrdfParameters& at, const bundle::Brd
 struct BrdfGrid {
   std::uint32_t angles = 2, azimuths = 1, roughnesses = 1, strengths = 1;
 };
-BrdfGrid gridFor(const Brdf& brdf);
+BrdfGrid gridFor(const Brdf& brdf, int order);
 
 // b(v) over the whole grid, by integration that follows the lobe however narrow it is; 0.1 % or better.
 // Deterministic, on all threads.

@@ -211,9 +211,15 @@ void integrateView(const Brdf& brdf, const BrdfParameters& at, const bundle::Brd
   integrate(brdf, at, exact, order, Points(brdf.focus(at), directions), out);
 }
 
-BrdfGrid gridFor(const Brdf& brdf) {
-  if (!brdf.isotropic()) return {.angles = 24, .azimuths = 13, .roughnesses = 16, .strengths = 10};
-  return {.angles = 48, .azimuths = 1, .roughnesses = brdf.hasRoughness() ? 32u : 1u, .strengths = 1};
+BrdfGrid gridFor(const Brdf& brdf, int order) {
+  if (!brdf.isotropic()) {
+    // Each pair of roughness and strength fills layers of a texture, four values in each: as many pairs as
+    // fit into the 2048 layers that OpenGL 4.5 promises.
+    if (order >= 6) return {.angles = 24, .azimuths = 19, .roughnesses = 14, .strengths = 8};
+    return {.angles = 24, .azimuths = 19, .roughnesses = 15, .strengths = 10};
+  }
+  if (!brdf.hasRoughness()) return {.angles = 96};
+  return {.angles = 48, .roughnesses = 32};
 }
 
 BrdfTable integrateTable(const Brdf& brdf, int order, const BrdfGrid& grid) {
@@ -249,7 +255,7 @@ BrdfTable integrateTable(const Brdf& brdf, int order, const BrdfGrid& grid) {
 }
 
 BrdfTable integrateTable(const Brdf& brdf, int order) {
-  return integrateTable(brdf, order, gridFor(brdf));
+  return integrateTable(brdf, order, gridFor(brdf, order));
 }
 
 }  // namespace lambent::baker

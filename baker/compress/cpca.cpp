@@ -128,8 +128,7 @@ std::vector<float> decode(const CodedTransfer& coded) {
 // large as the bound allows.
 CodedTransfer fitToBound(std::span<const float> vectors, const Points& points, Clustering& found,
                          const bundle::SharedCodebook& basis, const bundle::TransferShape& shape,
-                         const CodingSettings& settings, const std::stop_token& stop) {
-  const double bound = double{settings.bound};
+                         const CodingSettings& settings, double bound, const std::stop_token& stop) {
   CodedTransfer best;
   double step = found.step;
   for (int attempt = 0; attempt < kMostAttempts && !stop.stop_requested(); ++attempt) {
@@ -166,7 +165,9 @@ CodedTransfer codeTransfer(std::span<const float> vectors, std::size_t count,
   double left_out = 0.0;
   const Spectrum spectrum = leadingSpectrum(weighted(vectors, space.roots, someSamples(count, kBasisSamples)),
                                             kTailShare * allowed, left_out);
-  const double budget = 0.9 * allowed - left_out;  // the rest: rounding of basis, means and axes
+  // Where the components that were looked for leave out more than is allowed, the rest is coded to match.
+  const double reachable = std::max(allowed, left_out + 0.5 * allowed);
+  const double budget = 0.9 * reachable - left_out;  // the rest: rounding of basis, means and axes
   Eigen::Index rank = spectrum.variances.size();
   for (double tail = left_out; rank > 0 && (tail += spectrum.variances(rank - 1)) <= kTailShare * allowed;)
     --rank;
@@ -187,7 +188,8 @@ CodedTransfer codeTransfer(std::span<const float> vectors, std::size_t count,
   Clustering found =
       refine(points, assignClusters(points, few.clusters, few.step, {}), budget, settings.axes, kFinalRounds,
              /*held_out=*/false);
-  return fitToBound(vectors, points, found, basis, shape, settings, stop);
+  return fitToBound(vectors, points, found, basis, shape, settings, bound * std::sqrt(reachable / allowed),
+                    stop);
 }
 
 }  // namespace lambent::baker

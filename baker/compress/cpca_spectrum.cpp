@@ -17,9 +17,9 @@ constexpr Eigen::Index kBlock = 256;        // samples gathered for one matrix p
 constexpr Eigen::Index kShortPoints = 320;  // up to here all components cost little
 constexpr Eigen::Index kFirstSketch = 128;  // components looked for at first; then twice as many, and so on
 
-// What is noise has no leading components: from here on more is left out rather than looked for.
-constexpr Eigen::Index kWideSketch = 256;
-constexpr double kLooseTail = 8.0;
+// So many at most: beyond them lies noise, which has no leading components. To code it would cost more than
+// all the rest, and leaving it out does the picture good.
+constexpr Eigen::Index kWidestSketch = 256;
 
 // A number with mean 0 and variance 1 from a counter (splitmix64); two-valued numbers sketch as well as
 // normal ones.
@@ -57,8 +57,7 @@ Spectrum leadingSpectrum(const Points& points, double tail, double& left_out) {
   double energy = 0.0;
   for (Eigen::Index s = 0; s < points.cols(); ++s) energy += points.col(s).cast<double>().squaredNorm();
   energy /= static_cast<double>(points.cols());
-  for (Eigen::Index width = kFirstSketch; points.rows() > kShortPoints && 2 * width < points.rows();
-       width *= 2) {
+  for (Eigen::Index width = kFirstSketch; points.rows() > kShortPoints; width *= 2) {
     Eigen::MatrixXf sketch(points.rows(), width);
     for (Eigen::Index i = 0; i < sketch.size(); ++i) sketch.data()[i] = sign(static_cast<std::uint64_t>(i));
     // One turn more than the range asks for: the components that matter little come out as well.
@@ -68,8 +67,7 @@ Spectrum leadingSpectrum(const Points& points, double tail, double& left_out) {
     Spectrum found = spectrumOf(secondMoment(inside, {}, {}));
     left_out = std::max(0.0, energy - found.variances.sum());
     // The last ones found are found badly.
-    const double missing = left_out + found.variances.tail(width / 8).sum();
-    if (missing > (width < kWideSketch ? tail : kLooseTail * tail)) continue;
+    if (width < kWidestSketch && left_out + found.variances.tail(width / 8).sum() > tail) continue;
     found.axes = range.cast<double>() * found.axes;
     return found;
   }

@@ -14,8 +14,11 @@ namespace lambent::baker::reference {
 
 namespace {
 
-float largest(const glm::vec3& v) {
-  return std::max({std::abs(v.r), std::abs(v.g), std::abs(v.b)});
+// How bright what stands in the way is taken to be, against the sky.
+constexpr float kReflected = 0.3f;
+
+float total(const glm::vec3& v) {
+  return std::abs(v.r) + std::abs(v.g) + std::abs(v.b);
 }
 
 void addDiffuse(const glm::vec3& albedo, const glm::vec3& normal, sh::LightVector& kernel) {
@@ -78,18 +81,22 @@ sh::LightVector exitKernel(const SurfacePoint& point, int order, std::uint32_t s
 FirstHit::FirstHit(const SurfacePoint& point, int order, const sh::LightVector& light, std::uint32_t seed)
     : kernel_(exitKernel(point, order, seed)), light_(light), frame_(frameAbout(point.geometric)) {
   for (std::size_t k = 0; k < kernel_.c.size(); ++k) open_ += kernel_.c[k] * light_.c[k];
+  float energy = 0.0f;
+  for (const glm::vec3& l : light_.c) energy += glm::dot(l, l) / 3.0f;
+  const float brightness =
+      energy > 0.0f ? std::sqrt(energy / (4.0f * kPi)) : 1.0f;  // root of the mean square
   std::array<std::array<float, kColumns>, kRows> weights{};
-  float most = 0.0f;
+  float mean = 0.0f;
   for (std::size_t r = 0; r < kRows; ++r)
     for (std::size_t c = 0; c < kColumns; ++c) {
       const glm::vec3 dir =
           directionAt((static_cast<float>(r) + 0.5f) / kRows, (static_cast<float>(c) + 0.5f) / kColumns);
-      weights[r][c] = largest(kernel(dir)) + largest(kernel(mirrored(dir)));
-      most = std::max(most, weights[r][c]);
+      weights[r][c] = total(skyOfPair(dir)) + kReflected * brightness * total(kernelOfPair(dir));
+      mean += weights[r][c] / kCells;
     }
   std::array<float, kRows> row_weights{};
   for (std::size_t r = 0; r < kRows; ++r) {
-    for (float& weight : weights[r]) row_weights[r] += weight += 0.05f * most;  // nowhere 0
+    for (float& weight : weights[r]) row_weights[r] += weight += 0.1f * mean;  // nowhere 0
     cumulate(weights[r], columns_[r]);
   }
   cumulate(row_weights, rows_);

@@ -35,12 +35,13 @@ class FirstHit {
   glm::vec3 skyOfPair(const glm::vec3& dir) const;
   glm::vec3 mirrored(const glm::vec3& v) const;
 
-  // A unit direction above the plane, about in proportion to the kernel of the pair.
+  // A unit direction above the plane, about in proportion to what the pair would send of the sky, and of light as
+  // bright as the sky is on average.
   glm::vec3 sample(const glm::vec2& u) const;
   float pdf(const glm::vec3& dir) const;  // 0 below the plane
 
  private:
-  static constexpr std::size_t kRows = 12, kColumns = 24;  // even in height and azimuth, so in solid angle
+  static constexpr std::size_t kRows = 16, kColumns = 32;  // even in height and azimuth, so in solid angle
   static constexpr float kCells = kRows * kColumns;
 
   glm::vec3 directionAt(float height, float turn) const;

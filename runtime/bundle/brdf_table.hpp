@@ -75,7 +75,7 @@ void lookUp(const BrdfTable& table, const BrdfView& view, float roughness, float
 void lookUpStored(const BrdfTable& table, const BrdfView& view, float roughness, float strength,
                   std::span<float> out);
 
-// Payload "brdfTable": 16 bits a value, of the largest of its node and lobe; so within 2e-5 of that.
+// Payload "brdfTable": 16 bits a value, within 1e-4 of the largest of its node and lobe.
 std::vector<std::byte> encodeBrdfTable(const BrdfTable& table);
 // Errors name `subject`: sizes that do not add up, values that are not finite, albedos that are negative or
 // over 1.

@@ -39,8 +39,8 @@ void ExitRadiance::addGlossy(const GatherHit& hit, const glm::vec3& to, float ch
 }
 
 ExitToSample::ExitToSample(const ExitRadiance& exit, const DirectionTable& table, const glm::vec3& normal,
-                           std::size_t sample, int bounce)
-    : exit_(exit), table_(table) {
+                           std::size_t sample, int bounce, bool thinly)
+    : exit_(exit), table_(table), thinly_(thinly) {
   if (!exit.anyGlossy()) return;
   frame_ = glm::mat3(localFrame(glm::normalize(glm::dvec3(normal))));
   seed_ = static_cast<std::uint32_t>(sample) * 0x9E3779B9u ^ static_cast<std::uint32_t>(bounce) * 0x85EBCA6Bu;
@@ -52,7 +52,7 @@ void ExitToSample::addGlossy(const GatherHit& hit, float weight, std::span<float
   const glm::vec3 along = frame_ * glm::vec3(table_.x[hit.ray], table_.y[hit.ray], table_.z[hit.ray]);
   // A golden-ratio sequence over the rays, which neighbour each other: they share out the corners evenly.
   const std::uint32_t dealt = seed_ + hit.ray * 2654435769u;
-  exit_.addGlossy(hit, -along, static_cast<float>(dealt >> 8) * 0x1p-24f, weight, sum);
+  exit_.addGlossy(hit, -along, thinly_ ? static_cast<float>(dealt >> 8) * 0x1p-24f : -1.0f, weight, sum);
 }
 
 }  // namespace lambent::baker

@@ -50,8 +50,9 @@ class ExitRadiance {
   bool anyGlossy() const { return partner_ != nullptr; }
   // weight * albedo * interpolated transfer, added to `sum`, laid out as a sample of `before`.
   void addMatte(const GatherHit& hit, float weight, const TransferField& before, std::span<float> sum) const;
-  // What leaves a hit that is not matte towards `to` (unit, group frame, away from the surface). chance: in
-  // [0, 1), for who takes one corner of the triangle for all three.
+  // What leaves a hit that is not matte towards `to` (unit, group frame, away from the surface). chance:
+  // below 0, what is known at the triangle's corners is interpolated; from [0, 1), it picks one corner for
+  // all three, as often as its weight says: the same in the mean for a third of the reading (thinned passes).
   void addGlossy(const GatherHit& hit, const glm::vec3& to, float chance, float weight,
                  std::span<float> sum) const;
 
@@ -66,7 +67,7 @@ class ExitToSample {
  public:
   // table: of the sample's rays, z along its normal.
   ExitToSample(const ExitRadiance& exit, const DirectionTable& table, const glm::vec3& normal,
-               std::size_t sample, int bounce);
+               std::size_t sample, int bounce, bool thinly);
 
   void add(const GatherHit& hit, float weight, const TransferField& before, std::span<float> sum) const {
     if (exit_.matte(hit))
@@ -81,6 +82,7 @@ class ExitToSample {
   const ExitRadiance& exit_;
   const DirectionTable& table_;
   glm::mat3 frame_{1.0f};
+  bool thinly_;
   std::uint32_t seed_ = 0;
 };
 

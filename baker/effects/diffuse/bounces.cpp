@@ -76,7 +76,7 @@ class Gather {
       const Hemisphere& hemisphere = pass_.hemisphereOf(s, direct_.looks.closely[s] != 0);
       float scale = 1.0f;
       if (thinly) scale = thinHits(bounce, hemisphere, own, thinned);
-      const ExitToSample exit(exit_, hemisphere.table(), scene_.samples.normals[s], s, bounce);
+      const ExitToSample exit(exit_, hemisphere.table(), scene_.samples.normals[s], s, bounce, thinly);
       if (s < first_mapped)
         gatherPlain(own, scale, hemisphere, exit, before, now.at(s));
       else

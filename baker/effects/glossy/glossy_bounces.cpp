@@ -147,16 +147,22 @@ void GlossyBounces::addExit(const GatherHit& hit, const glm::uvec3& corners, con
   const std::size_t outputs = before_.environment.outputs, columns = before_.environment.columns;
   std::array<float, 3 * kMostOutputs> kernel;
   kernels_.at(hit.triangle, u, v, to, std::span(kernel).first(3 * outputs));
-  // One corner for all three, as often as its weight says: the expected value is the interpolated one, for a
-  // third of the reading, and matrices of a triangle's corners hardly differ.
-  const std::uint32_t corner = chance < u ? corners.y : chance < u + v ? corners.z : corners.x;
-  const std::size_t s = corner - pass_.first();
   const std::size_t channels = direct_.field.channels, lights = before_.lights.columns;
-  for (std::size_t c = 0; c < channels; ++c) {
-    const auto k = std::span<const float>(kernel).subspan(c * outputs, outputs);
-    float* out = sum.data() + c * (columns + lights);
-    contract(k, before_.environment.matrix(s, c), columns, weight, out);
-    if (lights > 0) contract(k, before_.lights.matrix(s, c), lights, weight, out + columns);
+  const auto add = [&](std::uint32_t corner, float share) {
+    const std::size_t s = corner - pass_.first();
+    for (std::size_t c = 0; c < channels; ++c) {
+      const auto k = std::span<const float>(kernel).subspan(c * outputs, outputs);
+      float* out = sum.data() + c * (columns + lights);
+      contract(k, before_.environment.matrix(s, c), columns, share, out);
+      if (lights > 0) contract(k, before_.lights.matrix(s, c), lights, share, out + columns);
+    }
+  };
+  if (chance < 0.0f) {
+    add(corners.x, weight * (1.0f - u - v));
+    add(corners.y, weight * u);
+    add(corners.z, weight * v);
+  } else {
+    add(chance < u ? corners.y : chance < u + v ? corners.z : corners.x, weight);
   }
 }
 
@@ -182,7 +188,7 @@ bool GlossyBounces::gather(int bounce, bool thinly, const ExitRadiance& exit, co
           auto own = hits->of(s - begin);
           const float scale = thinly ? thinHits(bounce, hemisphere, own, thinned) : 1.0f;
           const ExitToSample to_sample(exit, hemisphere.table(), pass_.scene().samples.normals[sample],
-                                       sample, bounce);
+                                       sample, bounce, thinly);
           walk.gather(sample, own, scale, hemisphere, to_sample, s, now_);
         }
         progress.add(end - begin);

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "baker/brdf/brdf.hpp"
+#include "baker/work/parallel.hpp"
 #include "runtime/sh/basis.hpp"
 #include "runtime/sh/zonal.hpp"
 #include "tests/baker/brdf/quadrature.hpp"
@@ -204,23 +205,14 @@ TEST(BrdfTables, OfAnisotropicGgxAreIsotropicAtStrengthNothing) {
 // Quadrants by reflection are what integration finds there.
 TEST(BrdfTables, OfAnisotropicGgxMirrorIntoAllQuadrants) {
   const auto ggx = makeGgx(true);
-  const bundle::BrdfTable table =
-      integrateTable(*ggx, 4, {.angles = 2, .azimuths = 3, .roughnesses = 2, .strengths = 2});
   std::vector<float> found(32);
   const float c = std::sqrt(0.5f);
-  for (const auto& [x, y] : {std::pair{c, c}, {-c, c}, {-c, -c}, {c, -c}}) {
-    // cos 0.001 is the first node, 45 degrees the second.
-    const auto expected = kernel(*ggx, {.roughness = 1.0f, .strength = 0.0f}, {0.001f, x, y}, 4, 2048);
-    lookUp(table, {0.0f, x, y}, 1.0f, 0.0f, found);
-    for (std::size_t k = 0; k < 32; ++k)
-      EXPECT_NEAR(found[k], expected[k], 1e-3) << x << ", " << y << ": " << k;
-  }
-  const bundle::BrdfTable narrow =
+  const bundle::BrdfTable table =
       integrateTable(*ggx, 4, {.angles = 3, .azimuths = 3, .roughnesses = 3, .strengths = 2});
   const float cosine = 1 - 0.75f * 0.75f;  // u = 1/2
   for (const auto& [x, y] : {std::pair{c, c}, {-c, c}, {-c, -c}, {c, -c}}) {
     const auto expected = kernel(*ggx, {.roughness = 0.5f, .strength = 1.0f}, {cosine, x, y}, 4, 2048);
-    lookUp(narrow, {cosine, x, y}, 0.5f, 1.0f, found);
+    lookUp(table, {cosine, x, y}, 0.5f, 1.0f, found);
     for (std::size_t k = 0; k < 32; ++k)
       EXPECT_NEAR(found[k], expected[k], 4e-3) << x << ", " << y << ": " << k;
   }
@@ -248,16 +240,26 @@ TEST(BrdfTables, HoldTheKnownShareOfTheLobesEnergy) {
 
 TEST(BrdfTables, AreTheSameForAnyNumberOfThreads) {
   const BrdfGrid grid{.angles = 5, .azimuths = 3, .roughnesses = 3, .strengths = 2};
-  const auto once = integrateTable(*makeGgx(true), 5, grid), again = integrateTable(*makeGgx(true), 5, grid);
-  EXPECT_EQ(once.values, again.values);
+  const auto all = integrateTable(*makeGgx(true), 5, grid);
+  bundle::BrdfTable one;
+  withThreads(1, [&] { one = integrateTable(*makeGgx(true), 5, grid); });
+  EXPECT_EQ(one.values, all.values);
+}
+
+// The runtime keeps four values of a node in a layer; OpenGL 4.5 promises 2048 of them.
+TEST(BrdfTables, OfAnisotropicGgxFitTheTextureOfEveryDevice) {
+  for (std::uint32_t order = 1; order <= 6; ++order) {
+    const BrdfGrid grid = gridFor(*makeGgx(true), static_cast<int>(order));
+    const std::uint32_t layers_of_a_node = (2 * order * order + 3) / 4;
+    EXPECT_LE(grid.roughnesses * grid.strengths * layers_of_a_node, 2048u) << "order " << order;
+  }
 }
 
 TEST(BrdfTables, FitTheirPayload) {
   const auto table = integrateTable(*makeGgx(false), 5);
   const auto back = bundle::decodeBrdfTable(bundle::encodeBrdfTable(table), "table");
   ASSERT_TRUE(back) << back.error().line();
-  for (std::size_t i = 0; i < table.values.size(); ++i)
-    EXPECT_NEAR(back->values[i], table.values[i], 1.5e-5f);
+  for (std::size_t i = 0; i < table.values.size(); ++i) EXPECT_NEAR(back->values[i], table.values[i], 1e-4f);
 }
 
 }  // namespace

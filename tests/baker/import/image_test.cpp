@@ -30,6 +30,19 @@ TEST(DecodeImage, GivesTexelsAsStoredFromTheTop) {
             (std::vector<std::uint8_t>{255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 255, 188, 188, 188, 128}));
 }
 
+TEST(NearestData, IsAsStoredWhereColorsAreLinear) {
+  const auto image = decodeImage(png());
+  ASSERT_TRUE(image);
+  const gltf::Sampler sampler;
+  const glm::vec4 data = nearestData(*image, sampler, {0.75f, 0.75f}),
+                  color = nearestTexel(*image, sampler, {0.75f, 0.75f});
+  EXPECT_NEAR(data.r, 188.0f / 255.0f, 1e-6f);
+  EXPECT_NEAR(data.a, 128.0f / 255.0f, 1e-6f);
+  EXPECT_NEAR(color.r, 0.5f, 0.005f);
+  EXPECT_EQ(color.a, data.a);
+  EXPECT_EQ(nearestData(*image, sampler, {1.25f, -0.25f}), nearestData(*image, sampler, {0.25f, 0.75f}));
+}
+
 TEST(DecodeImage, RefusesDamageByName) {
   const SceneImage whole = png();
   for (std::size_t size = 0; size < whole.file_bytes.size(); ++size) {

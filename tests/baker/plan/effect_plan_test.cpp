@@ -21,16 +21,18 @@ bool leavesOut(const Scene& scene, const std::string& words) {
 
 TEST(EffectPlan, BakesDiffuseTransferForSurfacesAndSaysWhy) {
   const EffectPlan plan = makePlan(sceneOf({grid({0, 0, 0}, 1.0f, 1)}), effectList());
-  ASSERT_EQ(plan.effects.size(), 1u);
+  ASSERT_EQ(plan.effects.size(), 2u);
   EXPECT_EQ(plan.effects[0].effect, "diffuse");
   EXPECT_TRUE(plan.effects[0].baked);
   EXPECT_NE(plan.effects[0].reason.find("1 draw"), std::string::npos);
+  EXPECT_EQ(plan.effects[1].effect, "glossy");
+  EXPECT_FALSE(plan.effects[1].baked);
   EXPECT_TRUE(plan.left_out.empty());
 }
 
 TEST(EffectPlan, OfNothingBakesNothing) {
   const EffectPlan plan = makePlan(Scene{}, effectList());
-  EXPECT_FALSE(plan.effects[0].baked);
+  for (const EffectChoice& effect : plan.effects) EXPECT_FALSE(effect.baked) << effect.effect;
 }
 
 TEST(EffectPlan, SaysWhatTheBakeWillNotShow) {

@@ -211,13 +211,13 @@ TEST(Glossy, LimitedKernelsSeeAClosedSkyAboveAndBelow) {
   const glm::vec3 eye = kPlace + glm::vec3(0.3f, 0.4f, 0.2f);
   for (const Sample& sample : kSamples) {
     const auto dark =
-        measured(underCeiling(sample.material, black), eye, kPlace, {kSun}, limited(4096, 5, 5));
+        measured(underCeiling(sample.material, black), eye, kPlace, {kSun}, limited(1024, 5, 5));
     EXPECT_LT(std::abs(dark.mean.g), 4.0 * dark.error.g + 1e-3) << sample.name;
     EXPECT_LT(dark.error.g, 0.01) << sample.name;
     EXPECT_EQ(dark.alpha, 1.0);
     EXPECT_GT(dark.error.g, 0.0) << sample.name;
     const auto bright =
-        measured(underCeiling(sample.material, shining), eye, kPlace, {}, limited(4096, 5, 5));
+        measured(underCeiling(sample.material, shining), eye, kPlace, {}, limited(1024, 5, 5));
     const sh::LightVector kernel = kernelOf(sample.material, glm::normalize(eye - kPlace), 1);
     const double expected = 2.0 * std::sqrt(4.0 * std::numbers::pi) * double{kernel.c[0].g};
     EXPECT_NEAR(bright.mean.g, expected, 4.0 * bright.error.g + 3e-3 * expected) << sample.name;

@@ -1,6 +1,7 @@
 // Interreflection over glossy surfaces, and between glossy and matte ones, against closed forms.
 #include "baker/effects/glossy/glossy_bounces.hpp"
 
+#include "baker/brdf/surface_brdfs.hpp"
 #include "baker/work/parallel.hpp"
 #include "tests/support/glossy_transport.hpp"
 
@@ -79,8 +80,12 @@ TEST(GlossyBounces, InAWhiteFurnaceLeaveUniformLightAsItIs) {
   for (std::size_t s = 0; s < field.size(); ++s) {
     if (t.samples.originsOf(s).empty()) continue;
     const auto shadow = shadowMatrix(field, s);
+    // Exact but for late passes, whose every fourth ray errs by some percent of their percent, and more so in
+    // how it is spread over directions.
     for (std::size_t i = 0; i < 25; ++i)
-      EXPECT_NEAR(shadow[i * 16] + field.bounced[(s * 25 + i) * 16], i == 0 ? 1.0f : 0.0f, 3e-3f) << i;
+      EXPECT_NEAR(shadow[i * 16] + field.bounced[(s * 25 + i) * 16], i == 0 ? 1.0f : 0.0f,
+                  i == 0 ? 2e-3f : 8e-3f)
+          << i;
     EXPECT_NEAR(uniformRadiance(baked.direct.field.at(s)) + uniformRadiance(baked.bounced.field.at(s)), 1.0f,
                 3e-3f);
   }
@@ -99,6 +104,30 @@ TEST(GlossyBounces, OfALambertKernelAreThoseOfAMatteSurfaceInBothDirections) {
     EXPECT_LT(difference(t, baked.bounced.field, matte, truth.bounced.field, /*wall=*/false), 0.03)
         << floor << wall;
   }
+}
+
+TEST(GlossyBounces, ReachNormalMappedSurfacesAsThoseOfAMatteSurfaceDo) {
+  const auto mapped_wall = [](bool glossy_floor) {
+    Scene scene = corner(glossy_floor, false);
+    scene.textures.push_back({-1, {}});
+    scene.materials[1].normal_texture.texture = 0;
+    return scene;
+  };
+  const Transport matte(mapped_wall(false)), t(mapped_wall(true), true);
+  ASSERT_GT(t.samples.first_glossy, t.samples.first_normal_mapped);
+  ASSERT_GT(t.samples.size(), t.samples.first_glossy);
+  const auto truth = matte.bake(5, 1024, 1);
+  const auto baked = bakeGlossy(t, lambertKernels(t), {.rays = 1024, .bounces = 1});
+  const TransferField &a = baked.bounced.mapped, &b = truth.bounced.mapped;
+  ASSERT_EQ(a.vectors.size(), b.vectors.size());
+  EXPECT_EQ(baked.direct.mapped.vectors, truth.direct.mapped.vectors);
+  double sum = 0.0, all = 0.0;
+  for (std::size_t i = 0; i < a.vectors.size(); ++i) {
+    sum += std::pow(double{a.vectors[i]} - double{b.vectors[i]}, 2);
+    all += std::pow(double{b.vectors[i]}, 2);
+  }
+  EXPECT_GT(all, 0.0);
+  EXPECT_LT(std::sqrt(sum / all), 0.03);
 }
 
 TEST(GlossyBounces, AskForTheDirectionThatLightLeavesIn) {
@@ -123,8 +152,10 @@ TEST(GlossyBounces, AskForTheDirectionThatLightLeavesIn) {
 }
 
 TEST(GlossyBounces, InASphereSpreadALampEvenly) {
-  // A lamp of 1 cd in the centre of a closed sphere of radius 2 and albedo 1/2: the wall sends albedo E/pi
-  // everywhere, so what arrives after all bounces is uniform: albedo / (1 - albedo) / (pi r²).
+  // A lamp of 1 cd in the centre of a closed sphere of radius 2 and albedo 1/2: the wall sends out albedo
+  // E/pi, and all bounces together albedo / (1 - albedo) E/pi, the same everywhere. The lamp stands on every
+  // normal, so of its E/pi = 1 / (pi r²) five bands of the cosine and the mirror image see 2 (1 + 5/4 - 9/24)
+  // / 4 instead of 1 (the odd bands cancel).
   Scene scene = glossyScene({flipped(icosphere({0, 0, 0}, 2.0f, 4))});
   scene.materials[0].base_color = glm::vec4(glm::vec3(0.5f), 1.0f);
   scene.lights = {gltf::Light{}};
@@ -135,7 +166,8 @@ TEST(GlossyBounces, InASphereSpreadALampEvenly) {
   const Transport t(scene, true);
   const auto baked = bakeGlossy(t, lambertKernels(t), {.rays = 256, .bounces = -1, .tail_error = 1e-4});
   const GlossyField& field = baked.glossy.field;
-  const float uniform = std::sqrt(4.0f * kPi) / (kPi * 4.0f);
+  const float seen = 0.5f * (1.0f + 1.25f - 0.375f);
+  const float uniform = std::sqrt(4.0f * kPi) * seen / (kPi * 4.0f);
   for (std::size_t s = 0; s < field.size(); ++s)
     for (std::size_t i = 0; i < 25; ++i) {
       const float added = field.lights_full[s * 25 + i] - field.lights_shadowed[s * 25 + i];
@@ -158,6 +190,66 @@ TEST(GlossyBounces, CarryColourAndLoseEnergyFromPassToPass) {
   ASSERT_EQ(baked.bounced.energy.size(), 5u);
   for (std::size_t b = 1; b < 5; ++b)
     EXPECT_LT(baked.bounced.energy[b], 0.5 * baked.bounced.energy[b - 1]) << b;
+}
+
+TEST(GlossyBounces, HaveThreeChannelsWhereKernelsAreColoured) {
+  const Transport t(corner(true, false), true);
+  ASSERT_TRUE(t.colors.grey());
+  ExitKernels kernels = lambertKernels(t);
+  kernels.grey = false;
+  const auto of_lambert = kernels.at;
+  kernels.at = [&](std::uint32_t triangle, float u, float v, const glm::vec3& to, std::span<float> out) {
+    of_lambert(triangle, u, v, to, out);
+    for (float& blue : out.last(25)) blue = 0.0f;
+  };
+  const auto baked = bakeGlossy(t, kernels, {.rays = 128, .bounces = 1});
+  EXPECT_EQ(baked.glossy.field.channels, 3u);
+  const std::size_t s = t.sampleAt({-0.5f, 0.25f, 0.0f});
+  ASSERT_LT(s, t.samples.first_glossy);
+  const auto transfer = baked.bounced.field.at(s);
+  EXPECT_GT(transfer[0], 0.01f);
+  EXPECT_EQ(transfer[0], transfer[25]);
+  EXPECT_EQ(transfer[50], 0.0f);
+}
+
+TEST(GlossyBounces, OfNoneLeaveTheFieldWithoutThem) {
+  const Transport t(corner(true, false), true);
+  const auto baked = bakeGlossy(t, lambertKernels(t), {.rays = 128});
+  EXPECT_TRUE(baked.glossy.field.bounced.empty());
+  EXPECT_FALSE(baked.glossy.field.visibility.empty());
+}
+
+TEST(GlossyBounces, OfRealMetalsNeverAddUpToMoreThanTheLightThatCame) {
+  for (const float roughness : {0.2f, 0.5f, 0.9f}) {
+    Scene scene = glossyScene({cup(), icosphere({0.3f, -0.1f, 0.1f}, 0.3f, 2)});
+    scene.materials[0].roughness = roughness;
+    const Transport t(scene, true);
+    DecodedImages images(scene);
+    const auto tables = BrdfTables::make(scene, 5);
+    ASSERT_TRUE(tables.has_value());
+    const auto brdfs = SurfaceBrdfs::load(t.scene, t.geometry, *tables, images, 5);
+    ASSERT_TRUE(brdfs.has_value());
+    const ExitKernels kernels{brdfs->grey(),
+                              [&](std::uint32_t triangle, float u, float v, const glm::vec3& to,
+                                  std::span<float> out) { brdfs->exitKernel(triangle, u, v, to, out); }};
+    const auto baked = bakeGlossy(t, kernels, {.rays = 256, .bounces = 12});
+    const GlossyField& field = baked.glossy.field;
+    double largest = 0.0, most = 0.0;
+    for (std::size_t s = 0; s < field.size(); ++s) {
+      if (t.samples.originsOf(s).empty()) continue;
+      // l' of uniform light, as a function: its mean over the sphere, and E/pi on the sample's own plane.
+      const double mean = double{shadowMatrix(field, s)[0]} + double{field.bounced[s * 625]};
+      largest = std::max(largest, mean);
+      most = std::max(most, double{uniformRadiance(baked.direct.field.at(s)) +
+                                   uniformRadiance(baked.bounced.field.at(s))});
+      EXPECT_GT(field.bounced[s * 625], -1e-6f);
+    }
+    // 2 % for what five bands make of narrow lobes and sharp edges.
+    EXPECT_LT(largest, 1.02) << roughness;
+    EXPECT_LT(most, 1.02) << roughness;
+    for (std::size_t b = 1; b < baked.bounced.energy.size(); ++b)
+      EXPECT_LT(baked.bounced.energy[b], baked.bounced.energy[b - 1]) << roughness << " pass " << b;
+  }
 }
 
 TEST(GlossyBounces, AreTheSameForAnyMemoryAndNumberOfThreads) {

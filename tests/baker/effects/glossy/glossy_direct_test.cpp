@@ -100,7 +100,7 @@ TEST(GlossyDirect, UnderASphereLosesItsDiscAndTheMirrorImageOfIt) {
   for (const float degrees : {0.0f, 40.0f}) {
     const float a = glm::radians(degrees);
     const glm::vec3 towards(std::sin(a), std::cos(a), 0.0f);
-    const Transport t(glossyScene({grid({0, 0, 0}, 0.01f, 2), icosphere(10.0f * towards, 4.0f, 5)}), true);
+    const Transport t(glossyScene({grid({0, 0, 0}, 0.01f, 2), icosphere(10.0f * towards, 4.0f, 4)}), true);
     const auto baked = bakeGlossy(t, lambertKernels(t), {.rays = 4096});
     const double radius = std::asin(0.4);
     std::vector<float> expected = cone(9, towards, radius),
@@ -127,7 +127,7 @@ TEST(GlossyDirect, GivesShadowMatricesTheirStructureWhateverIsInTheWay) {
     const GlossyField& field = baked.glossy.field;
     const Eigen::Index n2 = order * order;
     int shadowed = 0;
-    for (std::size_t s = 0; s < field.size(); ++s) {
+    for (std::size_t s = 0; s < field.size(); s += 4) {
       const auto matrix = shadowMatrix(field, s);
       const Eigen::Map<const Eigen::MatrixXf> m(matrix.data(), n2, n2);
       EXPECT_LT((m - m.transpose()).cwiseAbs().maxCoeff(), 1e-6f);
@@ -141,7 +141,7 @@ TEST(GlossyDirect, GivesShadowMatricesTheirStructureWhateverIsInTheWay) {
       EXPECT_LE(m.cwiseAbs().maxCoeff(), 1.0f + 1e-6f);
       shadowed += v[0] < 0.9f * kUniform && v[0] > 0.1f * kUniform;
     }
-    EXPECT_GT(shadowed, 100);
+    EXPECT_GT(shadowed, 50);
   }
 }
 

@@ -1,0 +1,90 @@
+// Glossy transport against diffuse transport of the same mesh, in one run on one thread: rays a second of
+// pass 0, and seconds of the first bounce. The glossy bake makes all of the group's first material a metal;
+// its kernels are Lambert's (the cost of real ones comes on top).
+//   bench_glossy [--scene=FILE.glb] [--benchmark_...]; the default scene is the shipped gallery.
+#include <chrono>
+#include <string>
+
+#include <benchmark/benchmark.h>
+
+#include "baker/brdf/surface_brdfs.hpp"
+#include "baker/effects/glossy/glossy_bounces.hpp"
+#include "baker/work/parallel.hpp"
+#include "bench/group_workload.hpp"
+#include "bench/scene_argument.hpp"
+
+namespace {
+
+using namespace lambent;
+using namespace lambent::baker;
+using Clock = std::chrono::steady_clock;
+
+constexpr std::size_t kRays = 512;
+
+double secondsSince(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+struct Timed {
+  double rays = 0.0, direct_seconds = 0.0, bounce_seconds = 0.0;
+  double perSecond() const { return rays / direct_seconds; }
+};
+
+Timed run(const GroupWorkload& work, const ExitKernels& kernels, bool hits) {
+  Progress progress;
+  const DiffuseScene view = work.view();
+  const DirectPass plain(view, {.order = 5,
+                                .rays = kRays,
+                                .keep_hits = hits,
+                                .hit_memory = std::size_t{4} << 30,
+                                .colored_kernels = !kernels.grey});
+  const GlossyPass glossy(plain, view, 5);
+  Timed timed;
+  auto start = Clock::now();
+  auto direct = bakeDirect(plain, view, progress, {});
+  auto seen = bakeGlossyDirect(glossy, std::size_t{4} << 30, *direct, progress, {});
+  timed.direct_seconds = secondsSince(start);
+  timed.rays = static_cast<double>(direct->field.rays + seen->rays);
+  if (!hits) return timed;
+  start = Clock::now();
+  GlossyBounces partner(glossy, kernels, *direct, *seen);
+  bakeBounces(plain, *direct, view, {.bounces = 1}, progress, {}, glossy.size() > 0 ? &partner : nullptr);
+  timed.bounce_seconds = secondsSince(start);
+  return timed;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const std::string file = takeSceneArgument(argc, argv);
+  benchmark::Initialize(&argc, argv);
+  static const auto matte = loadGroup(file);
+  static const auto glossy = loadGroup(
+      file,
+      [](Scene& scene) { scene.materials.at(0).metallic = 1.0f, scene.materials.at(0).roughness = 0.5f; }, {},
+      /*with_glossy=*/true);
+  DecodedImages images(glossy->scene);
+  static const SurfaceBrdfs brdfs = orExit(SurfaceBrdfs::load(
+      glossy->scene, glossy->geometry, orExit(BrdfTables::make(glossy->scene, 5)), images, 5));
+  static const ExitKernels kernels{
+      brdfs.grey(), [](std::uint32_t triangle, float u, float v, const glm::vec3& to, std::span<float> out) {
+        brdfs.exitKernel(triangle, u, v, to, out);
+      }};
+  for (const bool hits : {false, true})
+    benchmark::RegisterBenchmark(
+        hits ? "glossy/with_hits_and_a_bounce" : "glossy/direct",
+        [hits](benchmark::State& state) {
+          Timed plain, other;
+          for (auto _ : state)
+            withThreads(1, [&] { plain = run(*matte, kernels, hits), other = run(*glossy, kernels, hits); });
+          state.counters["diffuse_Mrays/s"] = 1e-6 * plain.perSecond();
+          state.counters["glossy_Mrays/s"] = 1e-6 * other.perSecond();
+          state.counters["ratio"] = other.perSecond() / plain.perSecond();
+          state.counters["diffuse_bounce_s"] = plain.bounce_seconds;
+          state.counters["glossy_bounce_s"] = other.bounce_seconds;
+        })
+        ->Unit(benchmark::kMillisecond)
+        ->Iterations(1);
+  benchmark::RunSpecifiedBenchmarks();
+  return 0;
+}
