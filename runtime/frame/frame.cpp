@@ -75,7 +75,7 @@ Result<void> Frame::render(World& world, const lighting::Environment& environmen
   // cubes of the lights that stand among surfaces
   if (Result<void> done = castShadows(world); !done) return done;
   // the sky as rough mirrors show it
-  if (Result<void> done = reflectSky(world, environment); !done) return done;
+  if (Result<void> done = reflectSky(environment); !done) return done;
   // surfaces, sky, blended surfaces: linear radiance
   if (Result<void> done = raster(world, environment, view); !done) return done;
   // exposure, tone curve, sRGB; negative pixels are counted and clamped here
@@ -229,24 +229,23 @@ Result<void> Frame::castShadows(World& world) {
   return done;
 }
 
-Result<void> Frame::reflectSky(const World& world, const lighting::Environment& environment) {
-  if (!options_.residual || !glossy_.any()) return {};
-  gpu::Counters unseen;
-  std::uint32_t order = 1;
-  for (const streaming::ResidentGroup& group : world.residency().groups())
-    order = std::max(order, group.order);
-  if (!reflected_sky_) {
-    gpu::PassTimers::Scope pass(timers_, "residual");
-    Result<lighting::ReflectedSky> made = lighting::ReflectedSky::make(environment, sky_, pass.counters());
-    if (!made) return failAgain(made.error());
-    reflected_sky_ = std::move(*made);
-  }
-  reflected_sky_->update(environment, static_cast<int>(order), options_.window, unseen);
+Result<void> Frame::reflectSky(const lighting::Environment& environment) {
+  if (!options_.residual || !glossy_.any() || reflected_sky_) return {};
+  gpu::PassTimers::Scope pass(timers_, "residual");
+  Result<lighting::ReflectedSky> made = lighting::ReflectedSky::make(environment, sky_, pass.counters());
+  if (!made) return failAgain(made.error());
+  reflected_sky_ = std::move(*made);
   return {};
 }
 
 Result<void> Frame::raster(World& world, const lighting::Environment& environment, const spec::View& view) {
   gpu::PassTimers::Scope pass(timers_, "raster");
+  if (reflected_sky_) {
+    std::uint32_t order = 1;
+    for (const streaming::ResidentGroup& group : world.residency().groups())
+      order = std::max(order, group.order);
+    reflected_sky_->update(environment, static_cast<int>(order), options_.window, pass.counters());
+  }
   if (Result<void> done = surfaces_.prepare(world, diffuse_, view, pass.counters(), &near_lights_,
                                             reflected_sky_ ? &*reflected_sky_ : nullptr);
       !done)

@@ -99,7 +99,7 @@ class Frame {
                                gpu::Counters& counters);
   Result<void> capture(World& world, const lighting::Environment& environment, std::size_t max_captures);
   bool atRest(const World& world) const;
-  Result<void> reflectSky(const World& world, const lighting::Environment& environment);
+  Result<void> reflectSky(const lighting::Environment& environment);  // once; no pass then
   Result<void> castShadows(World& world);
   Result<void> raster(World& world, const lighting::Environment& environment, const spec::View& view);
   void toneMap();

@@ -125,14 +125,4 @@ void ReflectedSky::bind() const {
   glEnable(GL_TEXTURE_CUBE_MAP_SEAMLESS);
 }
 
-std::uint64_t ReflectedSky::bytes() const {
-  std::uint64_t bytes = 0;
-  for (const gpu::Texture& cube : cubes_)
-    for (std::uint32_t level = 0; level < kReflectedLevels; ++level) {
-      const std::uint64_t side = std::max(cube.desc().width >> level, 1u);
-      bytes += 6 * 8 * side * side;
-    }
-  return bytes;
-}
-
 }  // namespace lambent::lighting

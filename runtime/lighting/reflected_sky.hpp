@@ -30,7 +30,6 @@ class ReflectedSky {
   // As uploaded, for tests.
   const ReflectionValues& values() const { return values_; }
   const gpu::Texture& cube(std::size_t set) const { return cubes_[set]; }
-  std::uint64_t bytes() const;
 
  private:
   ReflectedSky() : block_("reflection") {}
