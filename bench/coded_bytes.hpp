@@ -34,7 +34,7 @@ struct CodedBytes {
       weights += packed(bundle::encodeWeightPlane(plane.codes, plane.bits));
       codes += plane.codes.size();
     }
-    error = std::max(error, double{coded.error});
+    if (!(double{coded.error} <= error)) error = double{coded.error};  // NaN shows
   }
 };
 

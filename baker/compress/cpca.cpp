@@ -174,9 +174,10 @@ CodedTransfer codeTransfer(std::span<const float> vectors, std::size_t count,
                                             kTailShare * allowed, left_out);
   // Where the components that were looked for leave out more than is allowed, the rest is coded to match.
   const double reachable = std::max(allowed, left_out + 0.5 * allowed);
-  const double budget = 0.9 * reachable - left_out;  // the rest: rounding of basis, means and axes
+  const double budget = 0.9 * (reachable - left_out);  // the rest: rounding of basis, means and axes
   Eigen::Index rank = spectrum.variances.size();
-  for (double tail = left_out; rank > 0 && (tail += spectrum.variances(rank - 1)) <= kTailShare * allowed;)
+  for (double tail = left_out;
+       rank > 0 && (tail += spectrum.variances(rank - 1)) <= left_out + kTailShare * allowed;)
     --rank;
   const double step = std::sqrt(12.0 * budget / static_cast<double>(std::max<Eigen::Index>(rank, 1)));
   const bundle::SharedCodebook basis =

@@ -84,8 +84,11 @@ bundle::SharedCodebook roundedBasis(const Eigen::MatrixXd& axes, const Eigen::Ve
     basis.value_scales.push_back(root > 0.0 ? static_cast<float>(1.0 / root) : 0.0f);
   for (Eigen::Index r = 0; r < axes.cols(); ++r) {
     // Errors of the basis add a tenth of what quantization of one axis' weights leaves, for each vector.
-    const double grid = std::max(step * std::sqrt(0.1 / (static_cast<double>(axes.rows()) * energies(r))),
-                                 1.0 / kLargestCoordinate);
+    // However little it matters, it stays a direction.
+    const double coarsest = axes.col(r).cwiseAbs().maxCoeff() / 4.0;
+    const double grid =
+        std::clamp(step * std::sqrt(0.1 / (static_cast<double>(axes.rows()) * std::max(energies(r), 1e-300))),
+                   1.0 / kLargestCoordinate, std::max(coarsest, 1.0 / kLargestCoordinate));
     basis.basis_scales.push_back(static_cast<float>(grid));
     for (Eigen::Index i = 0; i < axes.rows(); ++i) basis.basis.push_back(rounded(axes(i, r) / grid));
   }
