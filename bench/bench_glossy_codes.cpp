@@ -3,6 +3,7 @@
 //   bench_glossy_codes SCENE [--rays=N] [--bounces=N] [--bounds=3,1.5,1,0.5] [--grid] [--csv]
 // By bounds as a bake does it (clusters and axes that cost least), or with --grid for so many clusters, 1 to
 // 512, with so many axes each, 0 (vector quantization) to 16. Goal: under 40 bytes a vertex at 1.5 %.
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -11,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-#include "baker/brdf/surface_brdfs.hpp"
+#include "baker/brdf/kernel_power.hpp"
 #include "baker/effects/glossy/glossy_bounces.hpp"
 #include "baker/effects/glossy/glossy_direct.hpp"
 #include "baker/effects/glossy/payloads.hpp"
@@ -82,27 +83,23 @@ GlossyField transport(const GroupWorkload& work, const SurfaceBrdfs& brdfs, cons
   return std::move(glossy->field);
 }
 
-// All cells, visibility and bounced light with as much error each.
+// All cells: visibility, bounced light, and the error of both together, each with as much.
 struct Measured {
-  CodedBytes bytes;
+  std::array<CodedBytes, 2> parts;
   double error = 0.0;
 };
 
 Measured measure(const std::vector<std::vector<CellVectors>>& cells, CodingSettings settings) {
   Measured out;
   for (const auto& parts : cells) {
-    double shown = 0.0, square = 0.0;
-    for (const CellVectors& part : parts) shown += transferEnergy(part.vectors, part.shape);
-    settings.shown_energy = shown;
+    settings.shown_energy = 0.0;
+    for (const CellVectors& part : parts)
+      settings.shown_energy += transferEnergy(part.vectors, part.shape, settings.kernel_power);
     CodingSettings own = settings;
     own.bound /= std::sqrt(static_cast<float>(parts.size()));
-    for (const CellVectors& part : parts) {
-      CodedBytes coded;
-      coded.add(part, own);
-      square += coded.error * coded.error;
-      out.bytes.clusters += coded.clusters, out.bytes.codebook += coded.codebook, out.bytes.ids += coded.ids;
-      out.bytes.weights += coded.weights, out.bytes.codes += coded.codes, out.bytes.seconds += coded.seconds;
-    }
+    double square = 0.0;
+    for (const CellVectors& part : parts)
+      square += std::pow(out.parts[part.shape.isVisibility() ? 0 : 1].add(part, own), 2.0);
     out.error = std::max(out.error, std::sqrt(square));
   }
   return out;
@@ -135,25 +132,33 @@ int main(int argc, char** argv) {
   const auto vertices = static_cast<double>(work->geometry.positions.size());
   if (options.csv)
     std::printf(
-        "scene,clusters_asked,axes_asked,bound,clusters,bytes_per_vertex,codebook,ids,weights,error,"
-        "seconds\n");
+        "scene,clusters_asked,axes_asked,bound,bytes_per_vertex,error,part,clusters,axes,bytes,"
+        "codebook,ids,weights,part_error,seconds\n");
   else
     std::printf(
-        "%s: %.0f vertices, %zu glossy samples; zstd %d\n"
-        "clusters  axes  bytes/vertex = codebook +  ids + weights     error  seconds\n",
+        "%s: %.0f vertices, %zu glossy samples; zstd %d; visibility | bounced light\n"
+        "bytes/vertex    error | clusters  axes   bytes = book +  ids + weights   error  seconds\n",
         options.scene, vertices, field.size(), kZstdLevel);
-  const auto row = [&](const CodingSettings& settings) {
+  const auto row = [&](CodingSettings settings) {
+    settings.kernel_power = kernelPower(work->geometry, brdfs, kOrder);
     const Measured m = measure(cells, settings);
     const auto each = [&](std::size_t bytes) { return static_cast<double>(bytes) / vertices; };
-    if (options.csv)
-      std::printf("%s,%u,%d,%g,%zu,%.3f,%.3f,%.3f,%.3f,%.6f,%.2f\n", options.scene, settings.clusters,
-                  settings.axes, double{settings.bound}, m.bytes.clusters, each(m.bytes.bytes()),
-                  each(m.bytes.codebook), each(m.bytes.ids), each(m.bytes.weights), m.error, m.bytes.seconds);
-    else
-      std::printf("%8zu  %4.1f  %12.2f   %8.2f  %5.2f  %8.2f  %6.3f %%  %7.2f\n", m.bytes.clusters,
-                  static_cast<double>(m.bytes.codes) / static_cast<double>(field.size()),
-                  each(m.bytes.bytes()), each(m.bytes.codebook), each(m.bytes.ids), each(m.bytes.weights),
-                  100.0 * m.error, m.bytes.seconds);
+    const double all = each(m.parts[0].bytes() + m.parts[1].bytes());
+    if (!options.csv) std::printf("%12.2f  %6.3f %%", all, 100.0 * m.error);
+    for (std::size_t p = 0; p < 2; ++p) {
+      const CodedBytes& part = m.parts[p];
+      const double axes = static_cast<double>(part.codes) / static_cast<double>(field.size());
+      if (options.csv)
+        std::printf("%s,%u,%d,%g,%.3f,%.6f,%s,%zu,%.2f,%.3f,%.3f,%.3f,%.3f,%.6f,%.2f\n", options.scene,
+                    settings.clusters, settings.axes, double{settings.bound}, all, m.error,
+                    p == 0 ? "visibility" : "bounced", part.clusters, axes, each(part.bytes()),
+                    each(part.codebook), each(part.ids), each(part.weights), part.error, part.seconds);
+      else
+        std::printf(" | %8zu %5.1f  %6.2f = %5.2f + %4.2f + %6.2f  %6.3f %% %5.1f", part.clusters, axes,
+                    each(part.bytes()), each(part.codebook), each(part.ids), each(part.weights),
+                    100.0 * part.error, part.seconds);
+    }
+    if (!options.csv) std::printf("\n");
     std::fflush(stdout);
   };
   if (options.grid) {

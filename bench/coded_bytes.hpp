@@ -18,7 +18,8 @@ struct CodedBytes {
 
   std::size_t bytes() const { return codebook + ids + weights; }
 
-  void add(const baker::CellVectors& cell, const baker::CodingSettings& settings) {
+  // Returns the error of this one.
+  double add(const baker::CellVectors& cell, const baker::CodingSettings& settings) {
     const auto packed = [](const std::vector<std::byte>& raw) {
       return std::min(raw.size(), bundle::compressZstd(raw, kZstdLevel).size());
     };
@@ -35,6 +36,7 @@ struct CodedBytes {
       codes += plane.codes.size();
     }
     if (!(double{coded.error} <= error)) error = double{coded.error};  // NaN shows
+    return double{coded.error};
   }
 };
 

@@ -245,7 +245,8 @@ class Assembler {
 }  // namespace
 
 AssembledBundle assemble(const Scene& scene, const BakeOptions& options, const EffectPlan& plan,
-                         const BrdfTables& tables, ShippedMeshes meshes, std::vector<BakedGroup> baked, BakeReport& report) {
+                         const BrdfTables& tables, ShippedMeshes meshes, std::vector<BakedGroup> baked,
+                         BakeReport& report) {
   Assembler assembler(scene, options, plan, tables, report);
   assembler.copyScene();
   assembler.addMeshes(meshes);

@@ -19,8 +19,10 @@ struct AssembledBundle {
   std::vector<bundle::Blob> blobs;
 };
 
-// `baked` has one entry per plan group. tables: of the glossy materials; empty where they are shown as Lambert. Adds the sizes by kind to the report.
+// `baked` has one entry per plan group. tables: of the glossy materials; empty where they are shown as
+// Lambert. Adds the sizes by kind to the report.
 AssembledBundle assemble(const Scene& scene, const BakeOptions& options, const EffectPlan& plan,
-                         const BrdfTables& tables, ShippedMeshes meshes, std::vector<BakedGroup> baked, BakeReport& report);
+                         const BrdfTables& tables, ShippedMeshes meshes, std::vector<BakedGroup> baked,
+                         BakeReport& report);
 
 }  // namespace lambent::baker

@@ -27,9 +27,10 @@ Result<void> checkOptions(const BakeOptions& options) {
   if (options.order < 1 || options.order > 8)
     return fail("--order", fmt::format("{} is not between 1 and 8", options.order), "5 is the default");
   if (options.glossy_order < kLeastGlossyOrder || options.glossy_order > kMostGlossyOrder)
-    return fail("--glossy-order",
-                fmt::format("{} is not between {} and {}", options.glossy_order, kLeastGlossyOrder, kMostGlossyOrder),
-                "5 is the default");
+    return fail(
+        "--glossy-order",
+        fmt::format("{} is not between {} and {}", options.glossy_order, kLeastGlossyOrder, kMostGlossyOrder),
+        "5 is the default");
   if (options.effectiveRays() < kMinRays || options.effectiveRays() > kMaxRays)
     return fail("--rays", fmt::format("{} is not between {} and {}", options.rays, kMinRays, kMaxRays),
                 "leave it out to take what --quality stands for");
@@ -100,15 +101,16 @@ Result<BakeReport> bakeOnTheseThreads(const Scene& scene, const BakeOptions& opt
 
   std::vector<BakedGroup> baked;
   for (std::size_t g = 0; g < plan->groups.size(); ++g) {
-    auto result = bakeGroup(scene, plan->groups[g], plan->light_samples[g].count, tables, *meshes, *alpha_maps,
-                            images, options, progress, stop, report);
+    auto result = bakeGroup(scene, plan->groups[g], plan->light_samples[g].count, tables, *meshes,
+                            *alpha_maps, images, options, progress, stop, report);
     if (!result) return failAgain(result.error());
     baked.push_back(std::move(*result));
   }
   if (stop.stop_requested()) return stopped(scene);
 
   progress.begin("writing");
-  AssembledBundle bundle = assemble(scene, options, *plan, tables, std::move(*meshes), std::move(baked), report);
+  AssembledBundle bundle =
+      assemble(scene, options, *plan, tables, std::move(*meshes), std::move(baked), report);
   if (auto written = bundle::write(output, std::move(bundle.description), bundle.blobs); !written)
     return failAgain(written.error());
   progress.end();

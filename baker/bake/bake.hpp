@@ -21,8 +21,8 @@ namespace lambent::baker {
 struct BakeReport {
   std::uint64_t vertices = 0, triangles = 0, samples = 0, filled_samples = 0, rays = 0;
   std::uint64_t file_bytes = 0, mesh_bytes = 0, transfer_bytes = 0, proxy_bytes = 0, image_bytes = 0;
-  double ray_seconds = 0.0;     // of the passes that trace
-  double worst_error = 0.0;     // of coded transfer, over cells; relative RMS
+  double ray_seconds = 0.0;         // of the passes that trace
+  double worst_error = 0.0;         // of coded transfer, over cells; relative RMS
   double worst_glossy_error = 0.0;  // of glossy cells: of all that they show together
   std::uint64_t glossy_samples = 0;
   std::uint64_t lights = 0;     // of the groups' own

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "baker/brdf/kernel_power.hpp"
 #include "baker/effects/diffuse/bounces.hpp"
 #include "baker/effects/diffuse/direct.hpp"
 #include "baker/effects/diffuse/payloads.hpp"
@@ -85,8 +86,10 @@ std::optional<Transported> transport(const DiffuseScene& scene, const SurfaceBrd
   return light;
 }
 
-// Visibility and bounced light are shown together: errors of both are relative to both, and each may have as much.
-std::vector<CodedTransfer> codeGlossy(const SampleCell& cell, const GlossyField& field, bool grey_emission,
+// Visibility and bounced light are shown together: errors of both are relative to both, and each may have as
+// much.
+std::vector<CodedTransfer> codeGlossy(const SampleCell& cell, const GlossyField& field,
+                                      const BandPower& kernel_power, bool grey_emission,
                                       const BakeOptions& options, const std::stop_token& stop,
                                       BakeReport& report) {
   std::vector<CodedTransfer> coded;
@@ -94,14 +97,15 @@ std::vector<CodedTransfer> codeGlossy(const SampleCell& cell, const GlossyField&
   double shown = 0.0;
   std::size_t shown_parts = 0;
   for (const CellVectors& part : parts)
-    if (part.shape.order > 0) shown += transferEnergy(part.vectors, part.shape), ++shown_parts;
+    if (part.shape.order > 0) shown += transferEnergy(part.vectors, part.shape, kernel_power), ++shown_parts;
   double square = 0.0;
   for (const CellVectors& part : parts) {
     const bool environment = part.shape.order > 0;
     const float bound = options.effectiveGlossyErrorBound() /
                         (environment ? std::sqrt(static_cast<float>(shown_parts)) : 1.0f);
-    coded.push_back(codeTransfer(part.vectors, cell.count, part.shape,
-                                 {.bound = bound, .shown_energy = environment ? shown : 0.0}, stop));
+    coded.push_back(codeTransfer(
+        part.vectors, cell.count, part.shape,
+        {.bound = bound, .shown_energy = environment ? shown : 0.0, .kernel_power = kernel_power}, stop));
     const double error = coded.back().error;
     if (environment)
       square += error * error;
@@ -173,11 +177,13 @@ Result<BakedGroup> bakeGroup(const Scene& scene, const RigidGroup& group, LightS
   if (!light) return stopped();
 
   progress.begin("coding", baked.samples.size(), "samples");
+  const BandPower kernel_power =
+      brdfs ? kernelPower(baked.geometry, *brdfs, options.glossy_order) : BandPower(kLobePower);
   for (const SampleCell& cell : baked.samples.cells) {
     const bool grey = colors->greyEmission();
     baked.cells.push_back(
         cell.kind == SampleKind::Glossy
-            ? codeGlossy(cell, light->glossy->field, grey, options, stop, report)
+            ? codeGlossy(cell, light->glossy->field, kernel_power, grey, options, stop, report)
             : codeDiffuse(cell, baked.samples, *light, grey, options, stop, report));
     if (stop.stop_requested()) return stopped();
     progress.add(cell.count);

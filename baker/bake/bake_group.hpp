@@ -22,15 +22,15 @@ struct BakedGroup {
   GroupGeometry geometry;  // draws and bounds are used here
   SampleSet samples;
   std::vector<PlannedLight> lights;
-  // Per sample cell: light of the environment (of a glossy cell visibility, then bounced light), then, where there are
-  // some, of the group's lights.
+  // Per sample cell: light of the environment (of a glossy cell visibility, then bounced light), then, where
+  // there are some, of the group's lights.
   std::vector<std::vector<CodedTransfer>> cells;
   LightSamples light_samples;  // as SampleSet::positions
   bundle::CaptureProxy proxy;  // group frame
 };
 
-// tables: of the scene's glossy materials; empty where all are shown as Lambert. Adds what it did to the report. Errors: no memory for the hierarchy, images that cannot be decoded,
-// "stopped".
+// tables: of the scene's glossy materials; empty where all are shown as Lambert. Adds what it did to the
+// report. Errors: no memory for the hierarchy, images that cannot be decoded, "stopped".
 Result<BakedGroup> bakeGroup(const Scene& scene, const RigidGroup& group, LightSampleCount light_samples,
                              const BrdfTables& tables, const ShippedMeshes& meshes,
                              const std::vector<std::shared_ptr<const AlphaMap>>& alpha_maps,

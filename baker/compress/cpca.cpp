@@ -20,6 +20,7 @@ namespace {
 constexpr std::size_t kGrain = 512;
 constexpr std::size_t kBasisSamples = 8192;  // for the covariance of all values
 constexpr double kTailShare = 0.05;          // of the square error allowed, for what the basis leaves out
+constexpr double kBesideLeftOut = 1.3;       // of what the basis must leave out: all square error then
 constexpr std::size_t kRun = 64;             // neighbours kept together where only some samples are taken
 constexpr std::size_t kLeastSearched = 4096, kSearchedPerCluster = 96;
 constexpr int kSearchRounds = 4, kFinalRounds = 3, kMostAttempts = 8;
@@ -141,7 +142,8 @@ CodedTransfer fitToBound(std::span<const float> vectors, const Points& points, C
   for (int attempt = 0; attempt < kMostAttempts && !stop.stop_requested(); ++attempt) {
     if (settings.axes < 0) keepAxes(found.clusters, step);
     CodedTransfer coded = quantize(points, found.ids, found.clusters, basis, shape, step);
-    coded.error = static_cast<float>(radianceError(vectors, decode(coded), shape, settings.shown_energy));
+    coded.error = static_cast<float>(
+        radianceError(vectors, decode(coded), shape, settings.shown_energy, settings.kernel_power));
     const float error = coded.error;
     const bool met = double{error} <= bound, met_before = double{best.error} <= bound;
     // The larger error is the smaller code, among those that keep the bound.
@@ -164,7 +166,7 @@ CodedTransfer codeTransfer(std::span<const float> vectors, std::size_t count,
                            const bundle::TransferShape& shape, const CodingSettings& settings,
                            const std::stop_token& stop) {
   assert(count > 0 && vectors.size() == count * shape.size() && settings.bound > 0.0f);
-  const WeightedSpace space = weightedSpace(vectors, shape, settings.shown_energy);
+  const WeightedSpace space = weightedSpace(vectors, shape, settings.shown_energy, settings.kernel_power);
   const double bound = double{settings.bound};
   const double allowed = bound * bound * space.blocks / static_cast<double>(count);
 
@@ -173,7 +175,7 @@ CodedTransfer codeTransfer(std::span<const float> vectors, std::size_t count,
   const Spectrum spectrum = leadingSpectrum(weighted(vectors, space.roots, someSamples(count, kBasisSamples)),
                                             kTailShare * allowed, left_out);
   // Where the components that were looked for leave out more than is allowed, the rest is coded to match.
-  const double reachable = std::max(allowed, left_out + 0.5 * allowed);
+  const double reachable = std::max(allowed, kBesideLeftOut * left_out);
   const double budget = 0.9 * (reachable - left_out);  // the rest: rounding of basis, means and axes
   Eigen::Index rank = spectrum.variances.size();
   for (double tail = left_out;
@@ -185,7 +187,8 @@ CodedTransfer codeTransfer(std::span<const float> vectors, std::size_t count,
   if (rank == 0) {  // dark
     CodedTransfer coded{shape, basis, std::vector<std::uint32_t>(count, 0), {}, 0.0f};
     coded.codebook.axis_counts = {0};
-    coded.error = static_cast<float>(radianceError(vectors, decode(coded), shape, settings.shown_energy));
+    coded.error = static_cast<float>(
+        radianceError(vectors, decode(coded), shape, settings.shown_energy, settings.kernel_power));
     return coded;
   }
 

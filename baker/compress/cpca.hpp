@@ -17,6 +17,7 @@
 #include <stop_token>
 #include <vector>
 
+#include "baker/compress/light_weights.hpp"
 #include "runtime/bundle/codebook.hpp"
 
 namespace lambent::baker {
@@ -42,10 +43,13 @@ struct CodingSettings {
   // Over 0: what errors are relative to, in place of the vectors' own energy (transferEnergy): visibility and
   // bounced light are shown together.
   double shown_energy = 0.0;
+  // Of glossy transfer: how much an error in an output of each band shows.
+  BandPower kernel_power = kLobePower;
 };
 
 // Σ_s Σ_i W_i t_s,i² over red, green and blue.
-double transferEnergy(std::span<const float> vectors, const bundle::TransferShape& shape);
+double transferEnergy(std::span<const float> vectors, const bundle::TransferShape& shape,
+                      const BandPower& kernel_power = kLobePower);
 
 // vectors: `count` times shape.size() values, count > 0; all finite. Stops early, with an unusable result,
 // when asked to.
@@ -55,6 +59,7 @@ CodedTransfer codeTransfer(std::span<const float> vectors, std::size_t count,
 
 // The error that codeTransfer bounds: of the worse of the two blocks.
 double radianceError(std::span<const float> truth, std::span<const float> coded,
-                     const bundle::TransferShape& shape, double shown_energy = 0.0);
+                     const bundle::TransferShape& shape, double shown_energy = 0.0,
+                     const BandPower& kernel_power = kLobePower);
 
 }  // namespace lambent::baker

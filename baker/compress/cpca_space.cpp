@@ -44,22 +44,22 @@ std::vector<double> energies(std::size_t size, std::size_t count, const Value& v
 
 // How much an output's error shows: not normal-mapped 1, for normal maps A_l/pi, for glossy surfaces by the
 // lobe.
-double outputRoot(const bundle::TransferShape& shape, int output) {
+double outputRoot(const bundle::TransferShape& shape, int output, const BandPower& kernel_power) {
   if (shape.outputs == 1) return 1.0;
   const int band = sh::bandOf(output);
   return shape.outputs <= bundle::kMappedOutputs ? sh::clampedCosine(band) / std::numbers::pi
-                                                 : std::sqrt(kLobePower[static_cast<std::size_t>(band)]);
+                                                 : std::sqrt(kernel_power[static_cast<std::size_t>(band)]);
 }
 
 // Of visibility: lights and lobes turned at random make errors of its coefficients independent of each other.
-std::vector<double> visibilityRoots(const bundle::TransferShape& shape) {
+std::vector<double> visibilityRoots(const bundle::TransferShape& shape, const BandPower& kernel_power) {
   const auto bands_out = static_cast<int>(std::lround(std::sqrt(shape.outputs)));
   const sh::GauntTable table = sh::makeGauntTable(static_cast<int>(shape.order), bands_out);
   std::vector<double> powers(shape.size(), 0.0);
   for (std::uint32_t i = 0; i < shape.outputs; ++i)
     for (std::uint32_t t = table.offsets[i]; t < table.offsets[i + 1]; ++t) {
       const sh::GauntTerm& term = table.terms[t];
-      powers[term.k] += kLobePower[static_cast<std::size_t>(sh::bandOf(static_cast<int>(i)))] *
+      powers[term.k] += kernel_power[static_cast<std::size_t>(sh::bandOf(static_cast<int>(i)))] *
                         kBandPower[static_cast<std::size_t>(sh::bandOf(term.j))] * double{term.value} *
                         double{term.value};
     }
@@ -69,8 +69,8 @@ std::vector<double> visibilityRoots(const bundle::TransferShape& shape) {
 
 // sqrt(W_i) but for the lights of the group, which are 1 here: band power of light, times what the output
 // counts.
-std::vector<double> bandRoots(const bundle::TransferShape& shape) {
-  if (shape.isVisibility()) return visibilityRoots(shape);
+std::vector<double> bandRoots(const bundle::TransferShape& shape, const BandPower& kernel_power) {
+  if (shape.isVisibility()) return visibilityRoots(shape, kernel_power);
   std::vector<double> roots;
   const std::size_t columns = shape.columns(), environment = std::size_t{shape.order} * shape.order;
   for (std::size_t i = 0; i < shape.size(); ++i) {
@@ -78,7 +78,7 @@ std::vector<double> bandRoots(const bundle::TransferShape& shape) {
     double root = 1.0;
     if (static_cast<std::size_t>(column) < environment)
       root = std::sqrt(kBandPower[static_cast<std::size_t>(sh::bandOf(column))]);
-    roots.push_back(root * outputRoot(shape, output));
+    roots.push_back(root * outputRoot(shape, output, kernel_power));
   }
   return roots;
 }
@@ -102,10 +102,10 @@ std::vector<Block> blocksOf(const bundle::TransferShape& shape) {
 // Each block of energy 1; in it, the columns of lights of as much energy as the whole environment, each. Or
 // relative to what is shown.
 std::vector<double> normalisedRoots(std::span<const float> vectors, const bundle::TransferShape& shape,
-                                    double shown_energy) {
-  std::vector<double> roots = bandRoots(shape);
+                                    double shown_energy, const BandPower& kernel_power) {
+  std::vector<double> roots = bandRoots(shape, kernel_power);
   if (shown_energy > 0.0 || shape.isVisibility()) {
-    const double whole = shown_energy > 0.0 ? shown_energy : transferEnergy(vectors, shape);
+    const double whole = shown_energy > 0.0 ? shown_energy : transferEnergy(vectors, shape, kernel_power);
     const double scale = whole > 0.0 ? std::sqrt(channelWeight(shape) / whole) : 0.0;
     for (double& root : roots) root *= scale;
     return roots;
@@ -132,8 +132,9 @@ std::vector<double> normalisedRoots(std::span<const float> vectors, const bundle
 
 }  // namespace
 
-double transferEnergy(std::span<const float> vectors, const bundle::TransferShape& shape) {
-  const std::vector<double> roots = bandRoots(shape);
+double transferEnergy(std::span<const float> vectors, const bundle::TransferShape& shape,
+                      const BandPower& kernel_power) {
+  const std::vector<double> roots = bandRoots(shape, kernel_power);
   const auto energy = energies(shape.size(), vectors.size() / shape.size(),
                                [&](std::size_t at) { return double{vectors[at]}; });
   double sum = 0.0;
@@ -142,8 +143,8 @@ double transferEnergy(std::span<const float> vectors, const bundle::TransferShap
 }
 
 WeightedSpace weightedSpace(std::span<const float> vectors, const bundle::TransferShape& shape,
-                            double shown_energy) {
-  WeightedSpace space{normalisedRoots(vectors, shape, shown_energy), 1.0};
+                            double shown_energy, const BandPower& kernel_power) {
+  WeightedSpace space{normalisedRoots(vectors, shape, shown_energy, kernel_power), 1.0};
   if (shape.full_channels > 0 && shape.shadowed_channels > 0) {
     for (std::size_t i = 0; i < shadowedSize(shape); ++i) space.roots[i] *= kShadowedRoot;
     space.blocks += kShadowedRoot * kShadowedRoot;
@@ -152,10 +153,10 @@ WeightedSpace weightedSpace(std::span<const float> vectors, const bundle::Transf
 }
 
 double radianceError(std::span<const float> truth, std::span<const float> coded,
-                     const bundle::TransferShape& shape, double shown_energy) {
+                     const bundle::TransferShape& shape, double shown_energy, const BandPower& kernel_power) {
   const std::size_t size = shape.size();
   assert(truth.size() == coded.size() && truth.size() % size == 0);
-  const std::vector<double> roots = normalisedRoots(truth, shape, shown_energy);
+  const std::vector<double> roots = normalisedRoots(truth, shape, shown_energy, kernel_power);
   const auto off = energies(size, truth.size() / size,
                             [&](std::size_t at) { return double{coded[at]} - double{truth[at]}; });
   double worst = 0.0;

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "baker/compress/light_weights.hpp"
 #include "runtime/bundle/codebook.hpp"
 
 namespace lambent::baker {
@@ -17,9 +18,9 @@ struct WeightedSpace {
   double blocks = 1.0;        // what the square errors of all blocks add up to where each is 1
 };
 
-// shown_energy: as CodingSettings.
+// shown_energy, kernel_power: as CodingSettings.
 WeightedSpace weightedSpace(std::span<const float> vectors, const bundle::TransferShape& shape,
-                            double shown_energy);
+                            double shown_energy, const BandPower& kernel_power);
 
 // Weight of errors in the shadowed block beside a full one. Noise that spreads evenly over the space would
 // leave it a smaller share of its bound than the full block, which has more values; with this both come out

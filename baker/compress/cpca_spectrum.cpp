@@ -15,11 +15,11 @@ namespace {
 
 constexpr Eigen::Index kBlock = 256;        // samples gathered for one matrix product
 constexpr Eigen::Index kShortPoints = 320;  // up to here all components cost little
-constexpr Eigen::Index kFirstSketch = 128;  // components looked for at first; then twice as many, and so on
+constexpr Eigen::Index kFirstSketch = 64;   // components looked for at first; then twice as many, and so on
 
-// So many at most: beyond them lies noise, which has no leading components. To code it would cost more than
-// all the rest, and leaving it out does the picture good.
-constexpr Eigen::Index kWidestSketch = 256;
+// So many at most: light between sharp metals has no leading components, and all of it would cost more than
+// the rest together, of bytes and of time when light changes.
+constexpr Eigen::Index kWidestSketch = 128;
 
 // A number with mean 0 and variance 1 from a counter (splitmix64); two-valued numbers sketch as well as
 // normal ones.

@@ -13,9 +13,11 @@ namespace lambent::baker {
 inline constexpr std::array<double, 8> kBandPower = {1.0,    0.5085, 0.3297, 0.2374,
                                                      0.1984, 0.1678, 0.1428, 0.1173};
 
-// How much of the lobe of a glossy surface lies in a coefficient of each band, relative to band 0, squared:
-// GGX of roughness 0.3, the sharpest of which order 5 carries a fair part, mean over views 11 to 77 degrees
-// from the normal. Errors of transferred light count by it.
-inline constexpr std::array<double, 6> kLobePower = {1.0, 0.910, 0.795, 0.682, 0.579, 0.486};
+// What a glossy surface makes of light in each band, squared, relative to band 0: the power of its kernel per
+// coefficient. Errors of transferred light count by it. This one is that of GGX of roughness 0.3, the
+// sharpest of which order 5 carries a fair part (mean over views 11 to 77 degrees from the normal); a bake
+// takes that of its materials.
+using BandPower = std::array<double, 6>;
+inline constexpr BandPower kLobePower = {1.0, 0.910, 0.795, 0.682, 0.579, 0.486};
 
 }  // namespace lambent::baker
