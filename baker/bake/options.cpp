@@ -16,8 +16,8 @@ struct QualityRow {
 };
 constexpr std::array kQualities = {
     QualityRow{"draft", 256, 0.01f, 0.03f},
-    QualityRow{"standard", 1024, 0.003f, 0.01f},
-    QualityRow{"high", 4096, 0.001f, 0.003f},
+    QualityRow{"standard", 1024, 0.003f, 0.015f},
+    QualityRow{"high", 4096, 0.001f, 0.005f},
 };
 
 const QualityRow& row(Quality quality) {

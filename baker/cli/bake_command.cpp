@@ -179,7 +179,7 @@ void addBakeCommand(CLI::App& app, Command& run) {
   command
       ->add_option("--error", a->options.error_bound,
                    "Bound on the coding error, relative RMS of shaded radiance; default 0.01, 0.003 or 0.001 "
-                   "by quality, of glossy surfaces 0.03, 0.01 or 0.003")
+                   "by quality, of glossy surfaces 0.03, 0.015 or 0.005")
       ->type_name("E");
   command
       ->add_option("--max-edge", a->options.max_edge_m,
