@@ -111,7 +111,8 @@ ViewFrame frameOf(const glm::vec3& normal, const glm::vec3& tangent, const glm::
 constexpr std::size_t kAxisLanes = 16;
 
 // out_k of band l = Σ_i weights[i] harmonics[k][i].
-inline void sumAxes(const float* weights, std::size_t axes, std::size_t l, const float* harmonics, float* out) {
+inline void sumAxes(const float* weights, std::size_t axes, std::size_t l, const float* harmonics,
+                    float* out) {
   for (std::size_t k = l * l; k < (l + 1) * (l + 1); ++k) {
     float sum = 0.0f;
     for (std::size_t i = 0; i < axes; ++i) sum += weights[i] * harmonics[k * kAxisLanes + i];

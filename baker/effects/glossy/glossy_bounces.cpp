@@ -4,7 +4,6 @@
 #include <array>
 #include <cassert>
 #include <cmath>
-#include <cstdlib>
 #include <cstring>
 
 #include <glm/geometric.hpp>
@@ -24,13 +23,18 @@ constexpr std::size_t kMostOutputs = 36;
 // Hits whose radiance is added to a matrix at once.
 constexpr std::size_t kBlock = 8;
 
-// Rays that share what leaves one of the points that they met. V needs many rays for its edges; what leaves a
-// glossy point changes slowly beside them, and costs a matrix to read. Every hit keeps its own weight, so a
-// white furnace stays white in all outputs. At least so many parts of the hemisphere are told apart.
-std::uint32_t raysTogether(int bounce, bool thinly, std::size_t rays) {
-  const auto of = [](const char* name, int usual) { return static_cast<std::uint32_t>(std::getenv(name) ? atoi(std::getenv(name)) : usual); };
-  if (rays >= 4096 && std::getenv("GT")) return of("GT", 4);
-  return thinly ? of("G3", 32) : bounce > 1 ? of("G2", 16) : of("G1", 8);
+// Rays in a row that share what leaves one of the points that they met: the fewer, the more of all light the
+// pass carries. V needs many rays for its edges; what leaves a glossy point costs a matrix to read. Each hit
+// keeps its own weight, so a white furnace stays white in every output. Noise goes like share x rays^0.75, so
+// evenly shared out work gives every pass about 1 / share rays.
+constexpr std::uint32_t kMostTogether = 32;
+constexpr std::size_t kLeastRows = 16;  // over the hemisphere
+
+std::uint32_t raysTogether(double share, std::size_t rays) {
+  std::uint32_t together = 1;
+  while (together < kMostTogether && 2.0 * together * share <= 1.0 && rays / (2 * together) >= kLeastRows)
+    together *= 2;
+  return together;
 }
 
 // For each of `Kernels` kernels, `outputs` values each and one after the other:
@@ -42,7 +46,7 @@ void contract(const float* kernels, std::size_t outputs, const float* matrix, fl
   typedef float Eight __attribute__((vector_size(32)));
   constexpr std::size_t kWhole = Columns / 8, kRest = Columns % 8;
   Eight sums[Kernels][kWhole] = {};
-  float rest[Kernels][kRest + 1] = {};
+  std::array<std::array<float, Kernels>, kRest> rest{};
   for (std::size_t k = 0; k < outputs; ++k, matrix += Columns) {
     for (std::size_t w = 0; w < kWhole; ++w) {
       Eight row;
@@ -51,12 +55,12 @@ void contract(const float* kernels, std::size_t outputs, const float* matrix, fl
     }
     for (std::size_t i = 0; i < kRest; ++i)
       for (std::size_t n = 0; n < Kernels; ++n)
-        rest[n][i] += kernels[n * outputs + k] * matrix[8 * kWhole + i];
+        rest[i][n] += kernels[n * outputs + k] * matrix[8 * kWhole + i];
   }
   for (std::size_t n = 0; n < Kernels; ++n, out += out_stride) {
     for (std::size_t w = 0; w < kWhole; ++w)
       for (std::size_t i = 0; i < 8; ++i) out[8 * w + i] += weight * sums[n][w][i];
-    for (std::size_t i = 0; i < kRest; ++i) out[8 * kWhole + i] += weight * rest[n][i];
+    for (std::size_t i = 0; i < kRest; ++i) out[8 * kWhole + i] += weight * rest[i][n];
   }
 }
 
@@ -89,7 +93,7 @@ class GlossyBounces::Walk {
         outputs_from_local_(glm::dmat3(1.0), bounces.direct_.field.order_out),
         exits_(kBlock * before.vectorSize()) {}
 
-  // Of one sample. Hits of rays in one row of `together` (raysTogether) share what leaves one of them.
+  // Of one sample. Hits of rays in a row of `together` (raysTogether) share what leaves one of them.
   void gather(std::size_t sample, std::span<const GatherHit> hits, std::uint32_t together, int bounce,
               const GlossyHemisphere& hemisphere, const ExitToSample& exit, std::size_t s, State& now) {
     if (hits.empty()) return;
@@ -108,11 +112,13 @@ class GlossyBounces::Walk {
       // Another one in each row and each pass: a golden-ratio sequence.
       const std::uint32_t dealt = (row + static_cast<std::uint32_t>(bounce) * 5u) * 2654435769u;
       const auto pick = static_cast<std::size_t>(std::uint64_t{dealt} * (last - first) >> 32);
-      exit.add(hits[first + pick], 1.0f, before_, std::span(exits_).subspan(filled * stride, stride));
+      exit.add(hits[first + pick], 1.0f, !spansRays(hits, first + pick), before_,
+               std::span(exits_).subspan(filled * stride, stride));
       if (++filled == kBlock) addBlock(even), filled = 0;
     }
     if (filled > 0) {
-      for (auto& of_output : weights_) std::fill(of_output.begin() + static_cast<std::ptrdiff_t>(filled), of_output.end(), 0.0f);
+      for (auto& of_output : weights_)
+        std::fill(of_output.begin() + static_cast<std::ptrdiff_t>(filled), of_output.end(), 0.0f);
       addBlock(even);
     }
     outputs_from_local_.set(localFrame(glm::normalize(glm::dvec3(pass_.scene().samples.normals[sample]))));
@@ -128,6 +134,13 @@ class GlossyBounces::Walk {
   }
 
  private:
+  // Neighbouring rays met the same triangle. Where none did, triangles are small beside the distance of rays,
+  // and one corner stands for three: the same in the mean, and less noise than comes from the rays.
+  static bool spansRays(std::span<const GatherHit> hits, std::size_t at) {
+    return (at > 0 && hits[at - 1].triangle == hits[at].triangle) ||
+           (at + 1 < hits.size() && hits[at + 1].triangle == hits[at].triangle);
+  }
+
   // Adds the block's radiance to the matrix, and clears it.
   void addBlock(std::size_t even) {
     const std::size_t stride = before_.vectorSize();
@@ -171,6 +184,7 @@ GlossyBounces::GlossyBounces(const GlossyPass& pass, const ExitKernels& kernels,
           now_.environment.at(s));
   });
   take(now_, nullptr, {});
+  first_energies_ = energies_;
   advance();
 }
 
@@ -188,6 +202,10 @@ void GlossyBounces::addExit(const GatherHit& hit, const glm::uvec3& corners, con
   const float u = static_cast<float>(hit.u) * (1.0f / 65535.0f),
               v = static_cast<float>(hit.v) * (1.0f / 65535.0f);
   const std::size_t outputs = before_.environment.outputs, columns = before_.environment.columns;
+  const std::uint32_t picked = chance < u ? corners.y : chance < u + v ? corners.z : corners.x;
+  // On its way while the kernel is made.
+  if (const auto matrix = before_.environment.at(picked - pass_.first()); chance >= 0.0f)
+    for (std::size_t i = 0; i < matrix.size(); i += 16) __builtin_prefetch(matrix.data() + i);
   std::array<float, 3 * kMostOutputs> kernel;
   kernels_.at(hit.triangle, u, v, to, std::span(kernel).first(3 * outputs));
   const std::size_t channels = direct_.field.channels, lights = before_.lights.columns;
@@ -210,13 +228,14 @@ void GlossyBounces::addExit(const GatherHit& hit, const glm::uvec3& corners, con
     add(corners.y, weight * u);
     add(corners.z, weight * v);
   } else {
-    add(chance < u ? corners.y : chance < u + v ? corners.z : corners.x, weight);
+    add(picked, weight);
   }
 }
 
 bool GlossyBounces::gather(int bounce, bool thinly, const ExitRadiance& exit, const TransferField& before,
                            TransferField& now, Progress& progress, const std::stop_token& stop) {
   const std::size_t first = pass_.first();
+  const double share = shareOfBefore();
   now_ = zero();
   now_.environment.values.assign(pass_.size() * now_.environment.sampleSize(), 0.0f);
   now_.lights.values.assign(pass_.size() * now_.lights.sampleSize(), 0.0f);
@@ -233,10 +252,9 @@ bool GlossyBounces::gather(int bounce, bool thinly, const ExitRadiance& exit, co
           const std::size_t sample = first + s;
           const GlossyHemisphere& hemisphere = pass_.hemisphereOf(plain_.looks.closely[sample] != 0);
           const ExitToSample to_sample(exit, hemisphere.table(), pass_.scene().samples.normals[sample],
-                                       sample, bounce, thinly || bounce > (getenv("C1") && pass_.hemisphereOf(false).table().size() < 4096 ? 0 : 1));
-          walk.gather(sample, hits->of(s - begin),
-                      raysTogether(bounce, thinly, hemisphere.table().size()), bounce, hemisphere, to_sample,
-                      s, now_);
+                                       sample, bounce, thinly);
+          walk.gather(sample, hits->of(s - begin), raysTogether(share, hemisphere.table().size()), bounce,
+                      hemisphere, to_sample, s, now_);
         }
         progress.add(end - begin);
       });
@@ -301,6 +319,13 @@ bool GlossyBounces::take(const State& state, TransferField* plain, const std::st
         std::sqrt(energies_[k] / static_cast<double>(std::max<std::size_t>(pass_.size() * channels, 1)));
   }
   return taken;
+}
+
+double GlossyBounces::shareOfBefore() const {
+  double share = 0.0;
+  for (std::size_t k = 0; k < energies_.size(); ++k)
+    if (energies_[k] > 0.0) share = std::max(share, std::min(energies_[k] / first_energies_[k], 1.0));
+  return share;
 }
 
 void GlossyBounces::advance() {
