@@ -107,6 +107,28 @@ ViewFrame frameOf(const glm::vec3& normal, const glm::vec3& tangent, const glm::
   return frame;
 }
 
+// Of all directions of a factored function: at most 2 * 6 - 1.
+constexpr std::size_t kAxisLanes = 16;
+
+// out_k of band l = Σ_i weights[i] harmonics[k][i].
+inline void sumAxes(const float* weights, std::size_t axes, std::size_t l, const float* harmonics,
+                    float* out) {
+  for (std::size_t k = l * l; k < (l + 1) * (l + 1); ++k) {
+    float sum = 0.0f;
+    for (std::size_t i = 0; i < axes; ++i) sum += weights[i] * harmonics[k * kAxisLanes + i];
+    out[k] = sum;
+  }
+}
+
+// Band l has l + 1 axes. Order known: all is unrolled.
+template <int Order>
+void sumIsotropic(const float* weights, const float* harmonics, float* out) {
+  sh::detail::unrolled(std::make_integer_sequence<int, Order>{}, [&](auto band) {
+    constexpr std::size_t l = band;
+    sumAxes(weights + l * (l + 1) / 2, l + 1, l, harmonics, out);
+  });
+}
+
 }  // namespace
 
 struct SurfaceBrdfs::State {
@@ -195,23 +217,36 @@ std::pair<glm::vec3, float> SurfaceBrdfs::State::anisotropy(const Surface& surfa
   return {unitOr(lean.x * tangent + lean.y * handedness * glm::cross(normal, tangent), any), strength};
 }
 
-// As ZonalFactors::expand, of all lobes at once.
+// As ZonalFactors::expand, of all lobes at once: every axis in a lane of its own.
 void SurfaceBrdfs::State::expand(const Factored& from, std::span<const float> weights, const ViewFrame& frame,
                                  std::span<Kernel> lobes) const {
-  const std::size_t count = from.table.coefficients(), bands = from.table.order;
-  const bool isotropic = from.table.isotropic();
-  for (Kernel& lobe : lobes) lobe.fill(0.0f);
-  Kernel y;
+  const std::size_t count = from.table.coefficients();
   const auto axes = from.factors.axes();
+  alignas(32) std::array<float, kAxisLanes> x{}, y{}, z{};
+  alignas(32) std::array<float, kAxisLanes * kMaxCoefficients> harmonics;
   for (std::size_t i = 0; i < axes.size(); ++i) {
-    const glm::vec3& axis = axes[i];
-    sh::evaluate(order, axis.x * frame.x + axis.y * frame.y + axis.z * frame.z, y);
-    for (std::size_t l = isotropic ? i : (i + 1) / 2; l < bands; ++l) {
-      const std::size_t at = (isotropic ? l * (l + 1) / 2 : l * l) + i;
-      for (std::size_t lobe = 0; lobe < lobes.size(); ++lobe) {
-        const float weight = weights[lobe * count + at];
-        for (std::size_t k = l * l; k < (l + 1) * (l + 1); ++k) lobes[lobe][k] += weight * y[k];
-      }
+    const glm::vec3 axis = axes[i].x * frame.x + axes[i].y * frame.y + axes[i].z * frame.z;
+    x[i] = axis.x, y[i] = axis.y, z[i] = axis.z;
+  }
+  const std::size_t lanes = axes.size() <= kAxisLanes / 2 ? kAxisLanes / 2 : kAxisLanes;
+  sh::evaluateBatch<float>(order, x.data(), y.data(), z.data(), lanes, harmonics.data(), kAxisLanes);
+  for (std::size_t lobe = 0; lobe < lobes.size(); ++lobe) {
+    const float* own = weights.data() + lobe * count;
+    if (!from.table.isotropic()) {
+      std::size_t at = 0;
+      for (std::size_t l = 0; l < from.table.order; at += 2 * l + 1, ++l)
+        sumAxes(own + at, 2 * l + 1, l, harmonics.data(), lobes[lobe].data());
+      continue;
+    }
+    switch (order) {
+      case 4:
+        sumIsotropic<4>(own, harmonics.data(), lobes[lobe].data());
+        break;
+      case 5:
+        sumIsotropic<5>(own, harmonics.data(), lobes[lobe].data());
+        break;
+      default:
+        sumIsotropic<6>(own, harmonics.data(), lobes[lobe].data());
     }
   }
 }

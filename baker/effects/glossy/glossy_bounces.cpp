@@ -4,6 +4,7 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <cstring>
 
 #include <glm/geometric.hpp>
 
@@ -22,29 +23,62 @@ constexpr std::size_t kMostOutputs = 36;
 // Hits whose radiance is added to a matrix at once.
 constexpr std::size_t kBlock = 8;
 
-// out[i] += Σ_k kernel[k] matrix[k * Columns + i]
-template <std::size_t Columns>
-void contract(std::span<const float> kernel, const float* matrix, float weight, float* out) {
-  std::array<float, Columns> sum{};
-  for (const float k : kernel) {
-    for (std::size_t i = 0; i < Columns; ++i) sum[i] += k * matrix[i];
-    matrix += Columns;
-  }
-  for (std::size_t i = 0; i < Columns; ++i) out[i] += weight * sum[i];
+// Rays in a row that share what leaves one of the points that they met: the fewer, the more of all light the
+// pass carries. V needs many rays for its edges; what leaves a glossy point costs a matrix to read. Each hit
+// keeps its own weight, so a white furnace stays white in every output. Noise goes like share x rays^0.75, so
+// evenly shared out work gives every pass about 1 / share rays.
+constexpr std::uint32_t kMostTogether = 32;
+constexpr std::size_t kLeastRows = 16;  // over the hemisphere
+
+std::uint32_t raysTogether(double share, std::size_t rays) {
+  std::uint32_t together = 1;
+  while (together < kMostTogether && 2.0 * together * share <= 1.0 && rays / (2 * together) >= kLeastRows)
+    together *= 2;
+  return together;
 }
 
-void contract(std::span<const float> kernel, std::span<const float> matrix, std::size_t columns, float weight,
-              float* out) {
+// For each of `Kernels` kernels, `outputs` values each and one after the other:
+//   out[n * out_stride + i] += weight Σ_k kernel_n[k] matrix[k * Columns + i].
+// In vectors by hand: left alone, the sums go through memory.
+template <std::size_t Columns, std::size_t Kernels>
+void contract(const float* kernels, std::size_t outputs, const float* matrix, float weight, float* out,
+              std::size_t out_stride) {
+  typedef float Eight __attribute__((vector_size(32)));
+  constexpr std::size_t kWhole = Columns / 8, kRest = Columns % 8;
+  Eight sums[Kernels][kWhole] = {};
+  std::array<std::array<float, Kernels>, kRest> rest{};
+  for (std::size_t k = 0; k < outputs; ++k, matrix += Columns) {
+    for (std::size_t w = 0; w < kWhole; ++w) {
+      Eight row;
+      std::memcpy(&row, matrix + 8 * w, sizeof(row));
+      for (std::size_t n = 0; n < Kernels; ++n) sums[n][w] += kernels[n * outputs + k] * row;
+    }
+    for (std::size_t i = 0; i < kRest; ++i)
+      for (std::size_t n = 0; n < Kernels; ++n)
+        rest[i][n] += kernels[n * outputs + k] * matrix[8 * kWhole + i];
+  }
+  for (std::size_t n = 0; n < Kernels; ++n, out += out_stride) {
+    for (std::size_t w = 0; w < kWhole; ++w)
+      for (std::size_t i = 0; i < 8; ++i) out[8 * w + i] += weight * sums[n][w][i];
+    for (std::size_t i = 0; i < kRest; ++i) out[8 * kWhole + i] += weight * rest[i][n];
+  }
+}
+
+template <std::size_t Kernels>
+void contract(const float* kernels, std::size_t outputs, const float* matrix, std::size_t columns,
+              float weight, float* out, std::size_t out_stride) {
   switch (columns) {
     case 16:
-      return contract<16>(kernel, matrix.data(), weight, out);
+      return contract<16, Kernels>(kernels, outputs, matrix, weight, out, out_stride);
     case 25:
-      return contract<25>(kernel, matrix.data(), weight, out);
+      return contract<25, Kernels>(kernels, outputs, matrix, weight, out, out_stride);
     case 36:
-      return contract<36>(kernel, matrix.data(), weight, out);
+      return contract<36, Kernels>(kernels, outputs, matrix, weight, out, out_stride);
     default:
-      for (std::size_t k = 0; k < kernel.size(); ++k)
-        for (std::size_t i = 0; i < columns; ++i) out[i] += weight * kernel[k] * matrix[k * columns + i];
+      for (std::size_t n = 0; n < Kernels; ++n)
+        for (std::size_t k = 0; k < outputs; ++k)
+          for (std::size_t i = 0; i < columns; ++i)
+            out[n * out_stride + i] += weight * kernels[n * outputs + k] * matrix[k * columns + i];
   }
 }
 
@@ -59,14 +93,34 @@ class GlossyBounces::Walk {
         outputs_from_local_(glm::dmat3(1.0), bounces.direct_.field.order_out),
         exits_(kBlock * before.vectorSize()) {}
 
-  // matrices: of the sample, in the group's frame.
-  void gather(std::size_t sample, std::span<const GatherHit> hits, float scale,
+  // Of one sample. Hits of rays in a row of `together` (raysTogether) share what leaves one of them.
+  void gather(std::size_t sample, std::span<const GatherHit> hits, std::uint32_t together, int bounce,
               const GlossyHemisphere& hemisphere, const ExitToSample& exit, std::size_t s, State& now) {
     if (hits.empty()) return;
     const std::size_t stride = before_.vectorSize(), even = hemisphere.evenOutputs();
     local_.assign(even * stride, 0.0f);
-    for (std::size_t first = 0; first < hits.size(); first += kBlock)
-      addBlock(hits.subspan(first, std::min(kBlock, hits.size() - first)), scale, hemisphere, exit);
+    std::fill(exits_.begin(), exits_.end(), 0.0f);
+    std::size_t filled = 0;
+    for (std::size_t first = 0, last = 0; first < hits.size(); first = last) {
+      const std::uint32_t row = hits[first].ray / together;
+      std::array<float, kMostOutputs> weights{};
+      for (; last < hits.size() && hits[last].ray / together == row; ++last) {
+        const float* own = hemisphere.row(hits[last].ray).data();
+        for (std::size_t e = 0; e < even; ++e) weights[e] += own[e];
+      }
+      for (std::size_t e = 0; e < even; ++e) weights_[e][filled] = weights[e];
+      // Another one in each row and each pass: a golden-ratio sequence.
+      const std::uint32_t dealt = (row + static_cast<std::uint32_t>(bounce) * 5u) * 2654435769u;
+      const auto pick = static_cast<std::size_t>(std::uint64_t{dealt} * (last - first) >> 32);
+      exit.add(hits[first + pick], 1.0f, !spansRays(hits, first + pick), before_,
+               std::span(exits_).subspan(filled * stride, stride));
+      if (++filled == kBlock) addBlock(even), filled = 0;
+    }
+    if (filled > 0) {
+      for (auto& of_output : weights_)
+        std::fill(of_output.begin() + static_cast<std::ptrdiff_t>(filled), of_output.end(), 0.0f);
+      addBlock(even);
+    }
     outputs_from_local_.set(localFrame(glm::normalize(glm::dvec3(pass_.scene().samples.normals[sample]))));
     const auto indices = hemisphere.evenIndices().first(even);
     const auto turn = [&](GlossyMatrices& matrices, std::size_t first_column) {
@@ -80,18 +134,18 @@ class GlossyBounces::Walk {
   }
 
  private:
-  void addBlock(std::span<const GatherHit> hits, float scale, const GlossyHemisphere& hemisphere,
-                const ExitToSample& exit) {
-    const std::size_t stride = before_.vectorSize(), even = hemisphere.evenOutputs();
-    std::fill(exits_.begin(), exits_.end(), 0.0f);
-    std::array<std::array<float, kBlock>, kMostOutputs> weights{};  // of each output
-    for (std::size_t h = 0; h < hits.size(); ++h) {
-      exit.add(hits[h], scale, before_, std::span(exits_).subspan(h * stride, stride));
-      const auto row = hemisphere.row(hits[h].ray);
-      for (std::size_t e = 0; e < even; ++e) weights[e][h] = row[e];
-    }
+  // Neighbouring rays met the same triangle. Where none did, triangles are small beside the distance of rays,
+  // and one corner stands for three: the same in the mean, and less noise than comes from the rays.
+  static bool spansRays(std::span<const GatherHit> hits, std::size_t at) {
+    return (at > 0 && hits[at - 1].triangle == hits[at].triangle) ||
+           (at + 1 < hits.size() && hits[at + 1].triangle == hits[at].triangle);
+  }
+
+  // Adds the block's radiance to the matrix, and clears it.
+  void addBlock(std::size_t even) {
+    const std::size_t stride = before_.vectorSize();
     for (std::size_t e = 0; e < even; ++e) {
-      const std::array<float, kBlock> w = weights[e];
+      const std::array<float, kBlock> w = weights_[e];
       float* out = local_.data() + e * stride;
       const float* in = exits_.data();
       for (std::size_t i = 0; i < stride; ++i) {
@@ -100,12 +154,14 @@ class GlossyBounces::Walk {
         out[i] += sum;
       }
     }
+    std::fill(exits_.begin(), exits_.end(), 0.0f);
   }
 
   const GlossyPass& pass_;
   const TransferField& before_;
   sh::Rotation outputs_from_local_;
   std::vector<float> exits_, local_;
+  std::array<std::array<float, kBlock>, kMostOutputs> weights_{};  // of each output: of the block's hits
 };
 
 GlossyBounces::GlossyBounces(const GlossyPass& pass, const ExitKernels& kernels, const DirectResult& plain,
@@ -128,6 +184,7 @@ GlossyBounces::GlossyBounces(const GlossyPass& pass, const ExitKernels& kernels,
           now_.environment.at(s));
   });
   take(now_, nullptr, {});
+  first_energies_ = energies_;
   advance();
 }
 
@@ -145,30 +202,40 @@ void GlossyBounces::addExit(const GatherHit& hit, const glm::uvec3& corners, con
   const float u = static_cast<float>(hit.u) * (1.0f / 65535.0f),
               v = static_cast<float>(hit.v) * (1.0f / 65535.0f);
   const std::size_t outputs = before_.environment.outputs, columns = before_.environment.columns;
+  const std::uint32_t picked = chance < u ? corners.y : chance < u + v ? corners.z : corners.x;
+  // On its way while the kernel is made.
+  if (const auto matrix = before_.environment.at(picked - pass_.first()); chance >= 0.0f)
+    for (std::size_t i = 0; i < matrix.size(); i += 16) __builtin_prefetch(matrix.data() + i);
   std::array<float, 3 * kMostOutputs> kernel;
   kernels_.at(hit.triangle, u, v, to, std::span(kernel).first(3 * outputs));
   const std::size_t channels = direct_.field.channels, lights = before_.lights.columns;
+  const auto of = [&](const GlossyMatrices& matrices, std::size_t s, float share, std::size_t first) {
+    float* out = sum.data() + first;
+    if (matrices.channels < channels)  // one for all: read once
+      return contract<3>(kernel.data(), outputs, matrices.at(s).data(), matrices.columns, share, out,
+                         columns + lights);
+    for (std::size_t c = 0; c < channels; ++c, out += columns + lights)
+      contract<1>(kernel.data() + c * outputs, outputs, matrices.matrix(s, c).data(), matrices.columns, share,
+                  out, 0);
+  };
   const auto add = [&](std::uint32_t corner, float share) {
     const std::size_t s = corner - pass_.first();
-    for (std::size_t c = 0; c < channels; ++c) {
-      const auto k = std::span<const float>(kernel).subspan(c * outputs, outputs);
-      float* out = sum.data() + c * (columns + lights);
-      contract(k, before_.environment.matrix(s, c), columns, share, out);
-      if (lights > 0) contract(k, before_.lights.matrix(s, c), lights, share, out + columns);
-    }
+    of(before_.environment, s, share, 0);
+    if (lights > 0) of(before_.lights, s, share, columns);
   };
   if (chance < 0.0f) {
     add(corners.x, weight * (1.0f - u - v));
     add(corners.y, weight * u);
     add(corners.z, weight * v);
   } else {
-    add(chance < u ? corners.y : chance < u + v ? corners.z : corners.x, weight);
+    add(picked, weight);
   }
 }
 
 bool GlossyBounces::gather(int bounce, bool thinly, const ExitRadiance& exit, const TransferField& before,
                            TransferField& now, Progress& progress, const std::stop_token& stop) {
   const std::size_t first = pass_.first();
+  const double share = shareOfBefore();
   now_ = zero();
   now_.environment.values.assign(pass_.size() * now_.environment.sampleSize(), 0.0f);
   now_.lights.values.assign(pass_.size() * now_.lights.sampleSize(), 0.0f);
@@ -181,15 +248,13 @@ bool GlossyBounces::gather(int bounce, bool thinly, const ExitRadiance& exit, co
           hits = &again;
         }
         Walk walk(*this, before);
-        std::vector<GatherHit> thinned;
         for (std::size_t s = begin; s < end; ++s) {
           const std::size_t sample = first + s;
           const GlossyHemisphere& hemisphere = pass_.hemisphereOf(plain_.looks.closely[sample] != 0);
-          auto own = hits->of(s - begin);
-          const float scale = thinly ? thinHits(bounce, hemisphere, own, thinned) : 1.0f;
           const ExitToSample to_sample(exit, hemisphere.table(), pass_.scene().samples.normals[sample],
                                        sample, bounce, thinly);
-          walk.gather(sample, own, scale, hemisphere, to_sample, s, now_);
+          walk.gather(sample, hits->of(s - begin), raysTogether(share, hemisphere.table().size()), bounce,
+                      hemisphere, to_sample, s, now_);
         }
         progress.add(end - begin);
       });
@@ -254,6 +319,13 @@ bool GlossyBounces::take(const State& state, TransferField* plain, const std::st
         std::sqrt(energies_[k] / static_cast<double>(std::max<std::size_t>(pass_.size() * channels, 1)));
   }
   return taken;
+}
+
+double GlossyBounces::shareOfBefore() const {
+  double share = 0.0;
+  for (std::size_t k = 0; k < energies_.size(); ++k)
+    if (energies_[k] > 0.0) share = std::max(share, std::min(energies_[k] / first_energies_[k], 1.0));
+  return share;
 }
 
 void GlossyBounces::advance() {

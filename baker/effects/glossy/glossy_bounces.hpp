@@ -60,13 +60,16 @@ class GlossyBounces : public BouncePartner {
   // far.
   bool take(const State& state, TransferField* plain, const std::stop_token& stop);
 
+  // Largest share over the sources of light that what was gathered last has of pass 0; 1 where that had none.
+  double shareOfBefore() const;
+
   const GlossyPass& pass_;
   const ExitKernels& kernels_;
   const DirectResult& plain_;
   GlossyDirect& direct_;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> edges_;  // empty where no sample is filled
   State before_, now_, sum_;
-  std::vector<double> energies_;
+  std::vector<double> energies_, first_energies_;
 };
 
 }  // namespace lambent::baker

@@ -252,6 +252,38 @@ TEST(GlossyBounces, OfRealMetalsNeverAddUpToMoreThanTheLightThatCame) {
   }
 }
 
+TEST(GlossyBounces, OfFewBandsOfLightAreTheFirstColumnsOfThoseOfMany) {
+  // Passes leave columns where they are, so fewer bands of light give the same matrices, cut: but for the
+  // weights of rays, which are exact for other bands of visibility.
+  const Transport t(glossyScene({cup(), icosphere({0.3f, -0.1f, 0.1f}, 0.3f, 2)}), true);
+  for (const int order_out : {4, 5, 6}) {
+    const auto kernels = lambertKernels(t, order_out);
+    const auto outputs = static_cast<std::size_t>(order_out * order_out);
+    const auto whole =
+        bakeGlossy(t, kernels, {.order = 6, .order_out = order_out, .rays = 512, .bounces = 2});
+    for (const int order : {1, 2, 3, 4, 5}) {
+      const auto columns = static_cast<std::size_t>(order * order);
+      const auto cut =
+          bakeGlossy(t, kernels, {.order = order, .order_out = order_out, .rays = 512, .bounces = 2});
+      ASSERT_EQ(cut.glossy.field.bounced.size(), whole.glossy.field.bounced.size() / 36 * columns);
+      double wrong = 0.0, all = 0.0;
+      for (std::size_t s = 0; s < cut.glossy.field.size(); ++s) {
+        const auto a = shadowMatrix(cut.glossy.field, s), b = shadowMatrix(whole.glossy.field, s);
+        for (std::size_t k = 0; k < outputs; ++k)
+          for (std::size_t i = 0; i < columns; ++i) {
+            const double is = double{a[k * columns + i]} +
+                              double{cut.glossy.field.bounced[(s * outputs + k) * columns + i]},
+                         should = double{b[k * 36 + i]} +
+                                  double{whole.glossy.field.bounced[(s * outputs + k) * 36 + i]};
+            wrong += (is - should) * (is - should);
+            all += should * should;
+          }
+      }
+      EXPECT_LT(std::sqrt(wrong / all), 2e-3) << order << " to " << order_out;
+    }
+  }
+}
+
 TEST(GlossyBounces, AreTheSameForAnyMemoryAndNumberOfThreads) {
   const Transport t(corner(true, false), true);
   const auto kept = bakeGlossy(t, lambertKernels(t), {.rays = 128, .bounces = 3});
