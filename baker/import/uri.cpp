@@ -79,7 +79,9 @@ Result<std::filesystem::path> resolveUri(const std::filesystem::path& folder, co
     return fail(subject, fmt::format("{} has an empty or broken URI", object), "export the scene again");
 
   std::error_code error;
-  const auto home = std::filesystem::weakly_canonical(std::filesystem::absolute(folder), error);
+  // A scene named without a folder lies in the current one; absolute() takes no empty path.
+  const auto home =
+      std::filesystem::weakly_canonical(folder.empty() ? std::filesystem::path(".") : folder, error);
   const auto file = error ? home : std::filesystem::weakly_canonical(home / name, error);
   if (!error && options.allow_outside) return file;
   const auto relative = error ? std::filesystem::path("..") : file.lexically_relative(home);

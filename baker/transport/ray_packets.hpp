@@ -55,6 +55,15 @@ inline std::size_t startOf(std::size_t ray, glm::vec3 direction, std::span<const
   return origin;
 }
 
+// What a direction below the horizons of all origins sees: nothing, or what the mirror image in the plane of
+// the origin dealt to it sees (docs/conventions.md, "Exit kernel").
+enum class BelowHorizon { Blocked, Mirrored };
+
+inline glm::vec3 mirroredAbove(glm::vec3 direction, const SampleOrigin& origin) {
+  const float below = glm::dot(direction, origin.geometric_normal);
+  return below > 0.0f ? direction : direction - 2.0f * below * origin.geometric_normal;
+}
+
 // Which rays of a packet are to be traced (-1, else 0) and which origin each starts from.
 struct PacketLanes {
   alignas(64) std::array<int, kPacketWidth> valid;
@@ -62,10 +71,11 @@ struct PacketLanes {
 };
 
 // Fills packet p of the table, turned by `frame` (group_from_local). Lanes below the horizons of all origins
-// are not valid.
+// are not valid, or mirrored.
 template <typename Ray16>
 void fillPacket(std::size_t p, std::span<const SampleOrigin> origins, const OriginDealer& dealer,
-                const glm::mat3& frame, const DirectionTable& table, Ray16& ray, PacketLanes& lanes) {
+                const glm::mat3& frame, const DirectionTable& table, Ray16& ray, PacketLanes& lanes,
+                BelowHorizon below = BelowHorizon::Blocked) {
   const std::size_t first = p * kPacketWidth;
   for (std::size_t k = 0; k < kPacketWidth; ++k) {
     const float x = table.x[first + k], y = table.y[first + k], z = table.z[first + k];
@@ -85,8 +95,14 @@ void fillPacket(std::size_t p, std::span<const SampleOrigin> origins, const Orig
     ray.org_x[k] = start.position.x;
     ray.org_y[k] = start.position.y;
     ray.org_z[k] = start.position.z;
-    lanes.valid[k] = isAbove(direction, start) ? -1 : 0;
     lanes.origin[k] = origin;
+    lanes.valid[k] = isAbove(direction, start) ? -1 : 0;
+    if (lanes.valid[k] || below == BelowHorizon::Blocked) continue;
+    const glm::vec3 image = mirroredAbove(direction, start);
+    ray.dir_x[k] = image.x;
+    ray.dir_y[k] = image.y;
+    ray.dir_z[k] = image.z;
+    lanes.valid[k] = isAbove(image, start) ? -1 : 0;  // not quite all: what runs along the plane
   }
 }
 

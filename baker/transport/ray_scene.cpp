@@ -183,7 +183,8 @@ Result<RayScene> RayScene::build(const GroupGeometry& group, const Scene& scene,
 }
 
 std::uint32_t RayScene::trace(std::span<const SampleOrigin> origins, const glm::mat3& frame,
-                              const DirectionTable& table, std::span<std::uint16_t> masks) const {
+                              const DirectionTable& table, std::span<std::uint16_t> masks,
+                              BelowHorizon below) const {
   assert(!origins.empty() && masks.size() == table.packets());
   const FlushDenormals flush;
   const OriginDealer dealer(origins);
@@ -194,7 +195,7 @@ std::uint32_t RayScene::trace(std::span<const SampleOrigin> origins, const glm::
       RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;  // the faster one for occlusion, coherent as the rays are
   std::uint32_t traced = 0;
   for (std::size_t p = 0; p < masks.size(); ++p) {
-    fillPacket(p, origins, dealer, frame, table, packet.rays.ray, packet.lanes);
+    fillPacket(p, origins, dealer, frame, table, packet.rays.ray, packet.lanes, below);
     rtcOccluded16(packet.lanes.valid.data(), state_->scene.get(), &context, &packet.rays.ray);
     std::uint32_t valid = 0, hit = 0;
     for (std::size_t k = 0; k < kPacketWidth; ++k) {
@@ -209,7 +210,8 @@ std::uint32_t RayScene::trace(std::span<const SampleOrigin> origins, const glm::
 
 std::uint32_t RayScene::traceHits(std::span<const SampleOrigin> origins, const glm::mat3& frame,
                                   const DirectionTable& table, bool mostly_blocked,
-                                  std::span<std::uint16_t> masks, std::vector<RayHit>& hits) const {
+                                  std::span<std::uint16_t> masks, std::vector<RayHit>& hits,
+                                  BelowHorizon below) const {
   assert(!origins.empty() && masks.size() == table.packets());
   const FlushDenormals flush;
   const OriginDealer dealer(origins);
@@ -221,7 +223,7 @@ std::uint32_t RayScene::traceHits(std::span<const SampleOrigin> origins, const g
   closest.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
   std::uint32_t traced = 0;
   for (std::size_t p = 0; p < masks.size(); ++p) {
-    fillPacket(p, origins, dealer, frame, table, packet.rays.ray, packet.lanes);
+    fillPacket(p, origins, dealer, frame, table, packet.rays.ray, packet.lanes, below);
     const std::uint32_t valid = validMask(packet.lanes);
     traced += static_cast<std::uint32_t>(std::popcount(valid));
     masks[p] = static_cast<std::uint16_t>(~valid);

@@ -14,6 +14,7 @@
 #include "baker/transport/alpha_map.hpp"
 #include "baker/transport/direction_table.hpp"
 #include "baker/transport/group_geometry.hpp"
+#include "baker/transport/ray_packets.hpp"
 #include "baker/transport/samples.hpp"
 
 namespace lambent::baker {
@@ -42,16 +43,17 @@ class RayScene {
 
   // Bit k of masks[p] is set where ray 16 p + k of the table, turned by `frame` (group_from_local), is
   // blocked. Rays are dealt out over the origins by their weights; below the horizons of all of them they
-  // are blocked untraced. `origins` must not be empty; returns how many rays were traced.
+  // are blocked untraced, or mirrored. `origins` must not be empty; returns how many rays were traced.
   std::uint32_t trace(std::span<const SampleOrigin> origins, const glm::mat3& frame,
-                      const DirectionTable& table, std::span<std::uint16_t> masks) const;
+                      const DirectionTable& table, std::span<std::uint16_t> masks,
+                      BelowHorizon below = BelowHorizon::Blocked) const;
 
   // As trace(), and what the blocked rays met, in the order of the rays, appended to `hits`. Backs of
   // single-sided surfaces block and are not listed. `mostly_blocked` is a hint about which way is faster, and
   // must be the same where the same result is wanted.
   std::uint32_t traceHits(std::span<const SampleOrigin> origins, const glm::mat3& frame,
                           const DirectionTable& table, bool mostly_blocked, std::span<std::uint16_t> masks,
-                          std::vector<RayHit>& hits) const;
+                          std::vector<RayHit>& hits, BelowHorizon below = BelowHorizon::Blocked) const;
 
   // blocked[i] becomes 1 where something lies between the ends of segment i, else 0.
   void occluded(std::span<const RaySegment> segments, std::span<std::uint8_t> blocked) const;

@@ -151,13 +151,17 @@ void Emitters::addMet(std::span<const RayHit> hits, std::span<const SampleOrigin
     const glm::vec3 a = geometry_.positions[triangle.x], b = geometry_.positions[triangle.y],
                     c = geometry_.positions[triangle.z];
     const glm::vec3 point = (1.0f - hit.u - hit.v) * a + hit.u * b + hit.v * c;
-    const glm::vec3 local = receiver.direction(hit.ray), direction = frame * local;
-    const glm::vec3 offset = point - origins[startOf(hit.ray, direction, origins, dealer)].position;
+    const glm::vec3 local = receiver.direction(hit.ray), straight = frame * local;
+    const SampleOrigin& origin = origins[startOf(hit.ray, straight, origins, dealer)];
+    const glm::vec3 offset = point - origin.position, direction = mirroredAbove(straight, origin);
     const float facing = -glm::dot(direction, glm::normalize(glm::cross(b - a, c - a)));
     if (!(facing > 0.0f)) continue;
     const float points_per_steradian =
         static_cast<float>(surface.points.size()) / surface.area * glm::dot(offset, offset) / facing;
-    const float share = 1.0f - chosenShare(receiver.raysPerSteradian(local.z), points_per_steradian);
+    // Points are not chosen by way of the mirror.
+    const float share = isAbove(straight, origin)
+                            ? 1.0f - chosenShare(receiver.raysPerSteradian(local.z), points_per_steradian)
+                            : 1.0f;
     const glm::vec3 radiance = share * colors_.emission(hit.triangle, hit.u, hit.v);
     receiver.addAlong(hit.ray, light, radiance);
   }

@@ -29,13 +29,14 @@ void SampleLook::stand(std::size_t s) {
   valid_ = outsideOrigins(s);
 }
 
-std::uint32_t SampleLook::look(const DirectionTable& table, bool wants_hits) {
+std::uint32_t SampleLook::look(const DirectionTable& table, bool wants_hits, BelowHorizon below) {
   hits_.clear();
   blocked_.assign(table.packets(), 0);
   if (origins_.empty()) return 0;
   const glm::mat3 frame(frame_);
-  if (!wants_hits) return rays_.trace(origins_, frame, table, blocked_);
-  const std::uint32_t traced = rays_.traceHits(origins_, frame, table, mostly_blocked_, blocked_, hits_);
+  if (!wants_hits) return rays_.trace(origins_, frame, table, blocked_, below);
+  const std::uint32_t traced =
+      rays_.traceHits(origins_, frame, table, mostly_blocked_, blocked_, hits_, below);
   mostly_blocked_ = kAskWhatAtOnce * hits_.size() > table.size();
   return traced;
 }

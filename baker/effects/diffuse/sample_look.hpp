@@ -31,7 +31,8 @@ class SampleLook {
   void stand(std::size_t s);
   // Traces the table's rays, with what they meet where `wants_hits`. Returns how many were traced; none where
   // the sample has no face to stand on.
-  std::uint32_t look(const DirectionTable& table, bool wants_hits);
+  std::uint32_t look(const DirectionTable& table, bool wants_hits,
+                     BelowHorizon below = BelowHorizon::Blocked);
 
   bool valid() const { return valid_; }      // false: lies inside something, or has no face
   bool closely() const { return closely_; }  // much is in the way: to be looked at with twice the rays

@@ -71,7 +71,8 @@ class GlossyPass::Walk {
     look_.stand(pass_.first() + sample);
     hemisphere_ = &pass_.hemisphereOf(look_.closely());
     return look_.look(hemisphere_->table(),
-                      pass_.plain_.settings().keep_hits || !pass_.plain_.emitters().empty());
+                      pass_.plain_.settings().keep_hits || !pass_.plain_.emitters().empty(),
+                      BelowHorizon::Mirrored);
   }
 
   const SampleLook& looked() const { return look_; }
