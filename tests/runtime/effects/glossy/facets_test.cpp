@@ -1,5 +1,5 @@
 // What evaluation at vertices would cost against evaluation at pixels: the figures of
-// docs/decisions/021-glossy-pixels.md.
+// docs/decisions/022-glossy-pixels.md.
 #include <fmt/format.h>
 #include <glm/gtc/constants.hpp>
 #include <gtest/gtest.h>
