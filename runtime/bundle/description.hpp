@@ -205,6 +205,14 @@ struct Description {
   std::vector<Payload> payloads;
   std::vector<Group> groups;
   std::vector<Draw> draws;
+
+  // Of all glossy cells and draws; 0 where there are none.
+  std::uint32_t glossyOutputs() const {
+    for (const Group& group : groups)
+      if (!group.cells.empty() && group.cells.back().outputs() > kMappedOutputs)
+        return group.cells.back().outputs();
+    return 0;
+  }
 };
 
 }  // namespace lambent::bundle

@@ -180,7 +180,12 @@ Result<CaptureProxy> Reader::readProxy(std::uint32_t index) const {
 Result<BrdfTable> Reader::readBrdfTable(std::uint32_t index) const {
   const auto bytes = readPayload(description().brdf_tables.at(index).payload);
   if (!bytes) return failAgain(bytes.error());
-  return decodeBrdfTable(*bytes, fmt::format("{}: BRDF table {}", path().string(), index));
+  const std::string subject = fmt::format("{}: BRDF table {}", path().string(), index);
+  auto table = decodeBrdfTable(*bytes, subject);
+  if (const std::uint32_t outputs = description().glossyOutputs();
+      table && outputs != 0 && table->order * table->order != outputs)
+    return fail(subject, "has other bands than the transfer that it is looked up for", "bake it again");
+  return table;
 }
 
 namespace {

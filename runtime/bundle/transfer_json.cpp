@@ -306,14 +306,20 @@ BrdfTableEntry readBrdfTable(const Field& field, const Description& d) {
   return entry;
 }
 
-// Glossy draws find what they look up.
+// Glossy surfaces all have as many bands, and their draws find what they look up.
 void checkBrdfTables(const Field& field, const Description& d) {
+  for (const Group& group : d.groups)
+    for (const Cell& cell : group.cells)
+      if (cell.outputs() > kMappedOutputs && cell.outputs() != d.glossyOutputs())
+        field.fault("serve cells of different outputs");
+
   const auto has = [&](BrdfFamily family) {
     return std::any_of(d.brdf_tables.begin(), d.brdf_tables.end(),
                        [&](const BrdfTableEntry& entry) { return entry.family == family; });
   };
   for (const Draw& draw : d.draws) {
     const std::int32_t index = d.meshes[draw.mesh].primitives[draw.primitive].material;
+    if (draw.glossy() && draw.outputs != d.glossyOutputs()) field.fault("serve draws of different outputs");
     if (!draw.glossy() || index < 0) continue;
     const gltf::Material& material = d.materials[static_cast<std::size_t>(index)];
     const bool found =

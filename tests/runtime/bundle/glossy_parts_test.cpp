@@ -124,6 +124,22 @@ TEST_F(GlossyParts, ThatContradictThemselvesAreRefusedByName) {
   refused([](Description& d) { d.brdf_tables[0].payload = 0; }, "brdfTables[0].payload");
 }
 
+TEST_F(GlossyParts, TablesOfOtherBandsThanTheTransferAreRefused) {
+  Sample sample = sampleBundle();
+  const BrdfTable table{.order = 5, .lobes = 2, .angles = 2, .values = std::vector<float>(60, 0.1f)};
+  const std::uint32_t payload = sample.description.brdf_tables[1].payload;
+  const Blob bytes = encodeBrdfTable(table);
+  sample.blobs[sample.description.payloads[payload].view] = bytes;
+  sample.description.payloads[payload].raw_length = bytes.size();
+  ASSERT_TRUE(write(path_, sample.description, sample.blobs));
+  const auto reader = Reader::open(path_);
+  ASSERT_TRUE(reader) << reader.error().line();
+  EXPECT_TRUE(reader->readBrdfTable(0));
+  const auto found = reader->readBrdfTable(1);
+  ASSERT_FALSE(found);
+  EXPECT_NE(found.error().problem.find("other bands"), std::string::npos) << found.error().line();
+}
+
 TEST_F(GlossyParts, TablesThatAreDamagedAreNamed) {
   Sample sample = sampleBundle();
   const std::uint32_t payload = sample.description.brdf_tables[1].payload;
