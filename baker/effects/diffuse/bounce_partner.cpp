@@ -48,12 +48,11 @@ ExitToSample::ExitToSample(const ExitRadiance& exit, const DirectionTable& table
   seed_ ^= seed_ >> 15;
 }
 
-void ExitToSample::addGlossy(const GatherHit& hit, float weight, bool one_corner,
-                             std::span<float> sum) const {
+void ExitToSample::addGlossy(const GatherHit& hit, float weight, std::span<float> sum) const {
   const glm::vec3 along = frame_ * glm::vec3(table_.x[hit.ray], table_.y[hit.ray], table_.z[hit.ray]);
   // A golden-ratio sequence over the rays, which neighbour each other: they share out the corners evenly.
   const std::uint32_t dealt = seed_ + hit.ray * 2654435769u;
-  exit_.addGlossy(hit, -along, one_corner ? static_cast<float>(dealt >> 8) * 0x1p-24f : -1.0f, weight, sum);
+  exit_.addGlossy(hit, -along, thinly_ ? static_cast<float>(dealt >> 8) * 0x1p-24f : -1.0f, weight, sum);
 }
 
 }  // namespace lambent::baker

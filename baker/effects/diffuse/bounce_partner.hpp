@@ -70,19 +70,14 @@ class ExitToSample {
                std::size_t sample, int bounce, bool thinly);
 
   void add(const GatherHit& hit, float weight, const TransferField& before, std::span<float> sum) const {
-    add(hit, weight, thinly_, before, sum);
-  }
-  // one_corner: of a glossy hit, whether a corner of its triangle stands for all three (addGlossy).
-  void add(const GatherHit& hit, float weight, bool one_corner, const TransferField& before,
-           std::span<float> sum) const {
     if (exit_.matte(hit))
       exit_.addMatte(hit, weight, before, sum);
     else
-      addGlossy(hit, weight, one_corner, sum);
+      addGlossy(hit, weight, sum);
   }
 
  private:
-  void addGlossy(const GatherHit& hit, float weight, bool one_corner, std::span<float> sum) const;
+  void addGlossy(const GatherHit& hit, float weight, std::span<float> sum) const;
 
   const ExitRadiance& exit_;
   const DirectionTable& table_;

@@ -25,14 +25,16 @@ constexpr std::size_t kBlock = 8;
 
 // Rays in a row that share what leaves one of the points that they met: the fewer, the more of all light the
 // pass carries. V needs many rays for its edges; what leaves a glossy point costs a matrix to read. Each hit
-// keeps its own weight, so a white furnace stays white in every output. Noise goes like share x rays^0.75, so
-// evenly shared out work gives every pass about 1 / share rays.
+// keeps its own weight, so a white furnace stays white in every output. Noise goes like share
+// x rays^0.75, so every pass may have rays like 1 / share, with caution: in white rooms late passes add up.
 constexpr std::uint32_t kMostTogether = 32;
-constexpr std::size_t kLeastRows = 16;  // over the hemisphere
+constexpr double kCaution = 64.0;       // 2 rays below 0.8 %, 4 below 0.4 %
+constexpr std::size_t kLeastRows = 64;  // over the hemisphere
 
 std::uint32_t raysTogether(double share, std::size_t rays) {
   std::uint32_t together = 1;
-  while (together < kMostTogether && 2.0 * together * share <= 1.0 && rays / (2 * together) >= kLeastRows)
+  while (together < kMostTogether && kCaution * together * share <= 1.0 &&
+         rays / (2 * together) >= kLeastRows)
     together *= 2;
   return together;
 }
@@ -112,8 +114,7 @@ class GlossyBounces::Walk {
       // Another one in each row and each pass: a golden-ratio sequence.
       const std::uint32_t dealt = (row + static_cast<std::uint32_t>(bounce) * 5u) * 2654435769u;
       const auto pick = static_cast<std::size_t>(std::uint64_t{dealt} * (last - first) >> 32);
-      exit.add(hits[first + pick], 1.0f, !spansRays(hits, first + pick), before_,
-               std::span(exits_).subspan(filled * stride, stride));
+      exit.add(hits[first + pick], 1.0f, before_, std::span(exits_).subspan(filled * stride, stride));
       if (++filled == kBlock) addBlock(even), filled = 0;
     }
     if (filled > 0) {
@@ -134,13 +135,6 @@ class GlossyBounces::Walk {
   }
 
  private:
-  // Neighbouring rays met the same triangle. Where none did, triangles are small beside the distance of rays,
-  // and one corner stands for three: the same in the mean, and less noise than comes from the rays.
-  static bool spansRays(std::span<const GatherHit> hits, std::size_t at) {
-    return (at > 0 && hits[at - 1].triangle == hits[at].triangle) ||
-           (at + 1 < hits.size() && hits[at + 1].triangle == hits[at].triangle);
-  }
-
   // Adds the block's radiance to the matrix, and clears it.
   void addBlock(std::size_t even) {
     const std::size_t stride = before_.vectorSize();
