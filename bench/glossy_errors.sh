@@ -1,19 +1,20 @@
 #!/usr/bin/env bash
 # Errors of glossy pictures against the path-traced reference:
-#   bench/glossy_errors.sh [-o DIR] [-b BUILD] [-s SPP] [-z SIZE] [-a "BAKE OPTIONS"] SCENE.glb PROBE.hdr... -- CAMERA...
+#   bench/glossy_errors.sh [-o DIR] [-b BUILD] [-s SPP] [-z SIZE] [-n BOUNCES] [-a "BAKE OPTIONS"] SCENE.glb PROBE.hdr... -- CAMERA...
 # Per probe and camera: against light and first-hit kernel both cut to five bands, which is what a perfect renderer of
 # order 5 would show; then against the whole light and BRDF, without and with what order 5 cannot carry (--residual).
-# Each free of the reference's noise by two seeds (lambent compare --reference2). Three bounces, no window.
+# Each free of the reference's noise by two seeds (lambent compare --reference2). BOUNCES 3 if not said, no window.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 
-build=$here/build/release out=$here/out/glossy_errors spp=256 size=384x384 options=()
-while getopts "o:b:s:z:a:" option; do
+build=$here/build/release out=$here/out/glossy_errors spp=256 size=384x384 bounces=3 options=()
+while getopts "o:b:s:z:n:a:" option; do
   case $option in
     o) out=$OPTARG ;;
     b) build=$OPTARG ;;
     s) spp=$OPTARG ;;
     z) size=$OPTARG ;;
+    n) bounces=$OPTARG ;;
     a) read -ra options <<< "$OPTARG" ;;
     *) sed -n 2,7p "$0" >&2; exit 2 ;;
   esac
@@ -28,7 +29,7 @@ cameras=("$@")
 name=$(basename "${scene%.*}")
 mkdir -p "$out"
 
-"$build"/bin/lambent bake "$scene" -o "$out/$name.lmb.glb" --bounces 3 "${options[@]}" >/dev/null
+"$build"/bin/lambent bake "$scene" -o "$out/$name.lmb.glb" --bounces "$bounces" "${options[@]}" >/dev/null
 
 percent() { # PICTURE REFERENCE1 REFERENCE2 -> relative RMS in percent
   "$build"/bin/lambent compare "$1" "$2" --reference2 "$3" --json |
@@ -38,14 +39,14 @@ echo "| scene | probe | camera | five bands % | whole, without residual % | with
 echo "|---|---|---|---|---|---|"
 for probe in "${probes[@]}"; do
   for camera in "${cameras[@]}"; do
-    stem="$out/$name.$(basename "${probe%.*}").${camera//[^0-9a-z-]/_}"
+    stem="$out/$name.b$bounces.$(basename "${probe%.*}").${camera//[^0-9a-z-]/_}"
     words=(--light "$probe" --camera "$camera" --size "$size")
     for seed in 1 2; do
       [[ -e $stem.five$seed.exr ]] ||
-        "$build"/bin/lambent reference "$scene" "${words[@]}" --band-limit 5,5 --bounces 3 --spp "$spp" --seed $seed \
+        "$build"/bin/lambent reference "$scene" "${words[@]}" --band-limit 5,5 --bounces "$bounces" --spp "$spp" --seed $seed \
           -o "$stem.five$seed.exr" >/dev/null
       [[ -e $stem.whole$seed.exr ]] ||
-        "$build"/bin/lambent reference "$scene" "${words[@]}" --bounces 3 --spp "$spp" --seed $seed \
+        "$build"/bin/lambent reference "$scene" "${words[@]}" --bounces "$bounces" --spp "$spp" --seed $seed \
           -o "$stem.whole$seed.exr" >/dev/null
     done
     for residual in off on; do

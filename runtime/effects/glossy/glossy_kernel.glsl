@@ -80,6 +80,9 @@ struct LocalView {
 // Of the table's axis across (bundle::angleAxis).
 float angleAxis(float cos_theta) { return sqrt(max(1.0 - sqrt(max(1.0 - cos_theta, 0.0)), 0.0)); }
 
+// Under this the squared tangential part of a view is rounding, and its direction none; the table is smooth there.
+const float kLeastAcross = 1e-8;
+
 LocalView localView(vec3 normal, vec3 tangent, vec3 to_eye) {
   LocalView view;
   float along = dot(normal, to_eye);
@@ -89,13 +92,13 @@ LocalView localView(vec3 normal, vec3 tangent, vec3 to_eye) {
   view.cos_theta = clamp(along, kLeastViewCosine, 1.0);
   view.azimuth = vec2(1.0, 0.0);
 #ifdef LAMBENT_ANISOTROPIC
-  view.tangent = squared > 1e-12 ? across * inversesqrt(squared) : tangent;
+  view.tangent = squared > kLeastAcross ? across * inversesqrt(squared) : tangent;
   view.bitangent = cross(normal, view.tangent);
   vec2 turned = vec2(dot(view.tangent, tangent), dot(view.tangent, cross(normal, tangent)));
   if (turned.x * turned.y < 0.0) view.bitangent = -view.bitangent;
   view.azimuth = abs(turned);
 #else
-  view.tangent = squared > 1e-12 ? across * inversesqrt(squared) : perpendicular(normal);
+  view.tangent = squared > kLeastAcross ? across * inversesqrt(squared) : perpendicular(normal);
   view.bitangent = cross(normal, view.tangent);
 #endif
   return view;

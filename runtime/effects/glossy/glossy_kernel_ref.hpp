@@ -69,6 +69,8 @@ struct LocalView {
   glm::vec2 azimuth{1.0f, 0.0f};
 };
 
+inline constexpr float kLeastAcross = 1e-8f;
+
 inline LocalView localView(bool isotropic, const glm::vec3& normal, const glm::vec3& tangent,
                            const glm::vec3& to_eye) {
   LocalView view;
@@ -77,7 +79,9 @@ inline LocalView localView(bool isotropic, const glm::vec3& normal, const glm::v
   const float squared = glm::dot(across, across);
   view.normal = normal;
   view.cos_theta = std::clamp(along, kLeastViewCosine, 1.0f);
-  view.tangent = squared > 1e-12f ? across / std::sqrt(squared) : isotropic ? perpendicular(normal) : tangent;
+  view.tangent = squared > kLeastAcross ? across / std::sqrt(squared)
+                 : isotropic            ? perpendicular(normal)
+                                        : tangent;
   view.bitangent = glm::cross(normal, view.tangent);
   if (!isotropic) {
     const glm::vec2 turned(glm::dot(view.tangent, tangent),

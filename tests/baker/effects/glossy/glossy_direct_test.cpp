@@ -81,6 +81,17 @@ TEST(GlossyDirect, IsTheIdentityOnAConvexBody) {
   }
 }
 
+TEST(GlossyDirect, IsTheIdentityOnAnOpenFaceWhoseNormalsLean) {
+  // As in the middle of a large face with smooth normals: what the normal's hemisphere has below the face is
+  // mirrored in the face, not lost.
+  auto face = grid({0, 0, 0}, 1.0f, 4);
+  for (glm::vec3& n : face.normals) n = glm::normalize(glm::vec3(0.6f, 1.0f, -0.2f));
+  const Transport t(glossyScene({face}), true);
+  const auto baked = bakeGlossy(t, lambertKernels(t), {});
+  for (std::size_t s = 0; s < t.samples.size(); ++s)
+    expectIdentity(shadowMatrix(baked.glossy.field, s), 25, 1e-4f);
+}
+
 TEST(GlossyDirect, BesideAnInfiniteWallMatchesTheHalfSpace) {
   // The wall blocks x < 0; what it leaves of the hemisphere above z = 0 and its mirror image are the half
   // space x > 0.
