@@ -147,9 +147,11 @@ TEST_F(LambentProgram, ReportsFiguresThatAddUpAsJson) {
     vertices += group["vertices"].get<std::uint64_t>();
     triangles += group["triangles"].get<std::uint64_t>();
   }
-  ASSERT_EQ(plan["effects"].size(), 1u);
+  ASSERT_EQ(plan["effects"].size(), 2u);
   EXPECT_EQ(plan["effects"][0]["effect"], "diffuse");
   EXPECT_EQ(plan["effects"][0]["baked"], true);
+  EXPECT_EQ(plan["effects"][1]["effect"], "glossy");
+  EXPECT_EQ(plan["effects"][1]["baked"], false);
   EXPECT_FALSE(plan["effects"][0]["reason"].get<std::string>().empty());
 
   const Outcome told = lambent({"info", path("hello.lmb.glb"), "--json"});

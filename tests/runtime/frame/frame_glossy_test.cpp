@@ -1,6 +1,4 @@
 // Glossy surfaces in whole frames: pictures with known answers, and what they cost.
-#include <chrono>
-#include <cstdlib>
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -295,39 +293,6 @@ TEST_F(FrameGlossy, TheResidualIsMadeOnceAndLeavesUniformLightAsItIs) {
   const spec::RgbaImage plain = without.frame->readLinear();
   for (std::size_t i = 0; i < image.texels.size(); ++i)
     EXPECT_LT(glm::distance(image.texels[i], plain.texels[i]), 2e-3f);
-}
-
-// To look at: LAMBENT_PICTURES names a folder.
-TEST_F(FrameGlossy, DrawsSpheresOfRisingRoughness) {
-  const char* folder = std::getenv("LAMBENT_PICTURES");
-  if (folder == nullptr) GTEST_SKIP() << "LAMBENT_PICTURES names no folder";
-  BundleBuilder builder(5);
-  for (int i = 0; i < 4; ++i)
-    for (int row = 0; row < 2; ++row) {
-      gltf::Material material = metal(glm::vec3(0.95f, 0.7f, 0.35f), 0.2f + 0.25f * static_cast<float>(i));
-      if (row == 1) {
-        material.metallic = 0.0f;
-        material.base_color = {0.6f, 0.05f, 0.05f, 1.0f};
-      }
-      const glm::vec3 place(2.2f * static_cast<float>(i), -2.2f * static_cast<float>(row), 0.0f);
-      glm::mat4 world_from_mesh(1.0f);
-      world_from_mesh[3] = glm::vec4(place, 1.0f);
-      builder.add({sphereMesh(20, 40), material, world_from_mesh});
-    }
-  builder.glossy(5, bundle::BrdfFamily::Ggx, ggxTable());
-  Stage stage(builder, {kSun, spec::ConstantLight{.radiance = glm::vec3(0.2f, 0.25f, 0.3f)}},
-              /*residual=*/true, Output::Display, {640, 360});
-  stage.camera.distance_radii = 1.6f;
-  stage.render();
-  ASSERT_TRUE(
-      spec::writePng(std::filesystem::path(folder) / "glossy_spheres.png", stage.frame->readDisplay()));
-  for (int i = 0; i < 3; ++i) {
-    const auto start = std::chrono::steady_clock::now();
-    stage.render();
-    glFinish();
-    fmt::print("frame {:.1f} ms\n",
-               std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
-  }
 }
 
 }  // namespace lambent::frame
