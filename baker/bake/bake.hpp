@@ -37,6 +37,7 @@ struct BakeReport {
   std::vector<Group> groups;
   double left_out = 0.0;  // estimate of the light that further bounces would add, relative to all
   std::vector<Progress::Stage> stages;
+  std::vector<std::string> notices;  // what came out other than the plan says, a sentence each
 };
 
 // Errors: options out of range, an effect that is not known, a scene that cannot be coded, an output that

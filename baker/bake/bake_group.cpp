@@ -4,6 +4,8 @@
 #include <cmath>
 #include <optional>
 
+#include <fmt/format.h>
+
 #include "baker/brdf/kernel_power.hpp"
 #include "baker/effects/diffuse/bounces.hpp"
 #include "baker/effects/diffuse/direct.hpp"
@@ -22,6 +24,17 @@ namespace {
 
 // What passes left out may amount to, as a share of the bound on the coding error.
 constexpr double kTailShare = 0.3;
+
+// What the runtime holds of a group's shaded samples lies in one page: a vec4 for each output of each sample,
+// and an OpenGL driver may have pages of 128 MiB.
+constexpr std::uint64_t kMostBytesShaded = std::uint64_t{128} << 20;
+std::uint64_t bytesShaded(const SampleSet& samples, int glossy_order) {
+  const std::uint64_t outputs =
+      static_cast<std::uint64_t>(glossy_order) * static_cast<std::uint64_t>(glossy_order);
+  return 16 * (samples.first_normal_mapped +
+               bundle::kMappedOutputs * (samples.first_glossy - samples.first_normal_mapped) +
+               outputs * (samples.size() - samples.first_glossy));
+}
 
 struct Transported {
   DirectResult direct;
@@ -140,8 +153,20 @@ Result<BakedGroup> bakeGroup(const Scene& scene, const RigidGroup& group, LightS
   const auto stopped = [&] { return fail(scene.source.string(), "stopped; nothing was written"); };
   BakedGroup baked;
   progress.begin("samples");
-  baked.geometry = buildGroupGeometry(group, scene, meshes.decoded, !tables.entries.empty());
-  baked.samples = buildSamples(baked.geometry);
+  const auto place = [&](bool with_glossy) {
+    baked.geometry = buildGroupGeometry(group, scene, meshes.decoded, with_glossy);
+    baked.samples = buildSamples(baked.geometry);
+  };
+  place(!tables.entries.empty());
+  if (const std::uint64_t bytes = bytesShaded(baked.samples, options.glossy_order);
+      baked.samples.first_glossy < baked.samples.size() && bytes > kMostBytesShaded) {
+    report.notices.push_back(fmt::format(
+        "rigid group \"{}\": {} glossy samples take {} MiB on the GPU, more than the {} MiB that one piece "
+        "may have; its "
+        "surfaces are Lambert. Part it into several groups (extras.lambent.movable), or lower --glossy-order",
+        group.name, baked.samples.size() - baked.samples.first_glossy, bytes >> 20, kMostBytesShaded >> 20));
+    place(/*with_glossy=*/false);
+  }
   baked.lights = findGroupLights(scene, group);
   auto colors = SurfaceColors::load(scene, baked.geometry, baked.lights, images);
   if (!colors) return failAgain(colors.error());

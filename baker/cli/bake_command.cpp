@@ -53,6 +53,7 @@ nlohmann::json reportJson(const BakeArguments& a, const BakeReport& r) {
           {"transferBytes", r.transfer_bytes},
           {"proxyBytes", r.proxy_bytes},
           {"imageBytes", r.image_bytes},
+          {"notices", r.notices},
           {"stages", stages}};
 }
 
@@ -108,6 +109,8 @@ int runBake(const BakeArguments& a) {
     return bake(*scene, a.options, a.output, progress, stop.get_token());
   }();
   if (!report) return reportError(report.error());
+  for (const std::string& notice : report->notices)
+    fmt::print(stderr, "lambent: {}: {}\n", a.scene.string(), notice);
   if (a.json)
     fmt::print("{}\n", reportJson(a, *report).dump(2));
   else
