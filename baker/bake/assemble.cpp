@@ -168,8 +168,8 @@ class Assembler {
       transfer.cluster_ids = static_cast<std::int32_t>(addTransferPayload(
           bundle::PayloadType::ClusterIds, bundle::encodeClusterIds(coded.cluster_of, transfer.clusters),
           kCodebookPriority));
-    transfer.error_bound = coded.shape.outputs > bundle::kMappedOutputs ? options_.effectiveGlossyErrorBound()
-                                                                        : options_.effectiveErrorBound();
+    transfer.error_bound =
+        coded.shape.glossy() ? options_.effectiveGlossyErrorBound() : options_.effectiveErrorBound();
     transfer.error = coded.error;
     return transfer;
   }

@@ -16,21 +16,21 @@ Result<BrdfTables> BrdfTables::make(const Scene& scene, int order) {
   for (const gltf::Material& material : scene.materials) {
     std::int32_t& entry = out.of_material.emplace_back(-1);
     if (material.matte()) continue;
-    if (material.brdf >= 0) {
+    const BrdfFamily family = bundle::brdfFamilyOf(material);
+    if (family == BrdfFamily::Measured) {
       const auto index = static_cast<std::size_t>(material.brdf);
       if (!measured[index]) {
         const auto brdf = makeMeasured(scene.brdfs[index]);
         if (!brdf) return failAgain(brdf.error());
-        measured[index] = put(BrdfFamily::Measured, scene.brdfs[index].name, **brdf);
+        measured[index] = put(family, scene.brdfs[index].name, **brdf);
       }
       entry = *measured[index];
-    } else if (material.anisotropy > 0.0f) {
-      if (!anisotropic) anisotropic = put(BrdfFamily::AnisotropicGgx, "", *makeGgx(true));
-      entry = *anisotropic;
-    } else {
-      if (!round) round = put(BrdfFamily::Ggx, "", *makeGgx(false));
-      entry = *round;
+      continue;
     }
+    const bool is_anisotropic = family == BrdfFamily::AnisotropicGgx;
+    std::optional<std::int32_t>& table = is_anisotropic ? anisotropic : round;
+    if (!table) table = put(family, "", *makeGgx(is_anisotropic));
+    entry = *table;
   }
   return out;
 }

@@ -288,9 +288,9 @@ void SurfaceBrdfs::State::glossyKernel(const Surface& surface, std::uint32_t tri
   if (surface.specular_color.image)
     tint *= glm::vec3(nearestTexel(*surface.specular_color.image, surface.specular_color.sampler,
                                    texcoord(surface.specular_color.ref, triangle, u, v)));
-  const float step = material.ior > 0.0f ? (material.ior - 1.0f) / (material.ior + 1.0f) : 1.0f;
   const glm::vec3 base = baseColor(surface, triangle, u, v);
-  const glm::vec3 f0 = glm::mix(specular * glm::min(step * step * tint, glm::vec3(1.0f)), base, metal);
+  const glm::vec3 f0 =
+      glm::mix(specular * glm::min(material.reflectance() * tint, glm::vec3(1.0f)), base, metal);
   const float f90 = glm::mix(specular, 1.0f, metal);
 
   const auto [tangent, strength] = from.family == BrdfFamily::AnisotropicGgx

@@ -11,6 +11,7 @@
 #include "baker/cli/commands.hpp"
 #include "baker/cli/output.hpp"
 #include "baker/import/gltf.hpp"
+#include "baker/plan/counted.hpp"
 
 namespace lambent::baker {
 
@@ -72,8 +73,8 @@ void printReport(const BakeArguments& a, const BakeReport& r) {
   for (const BakeReport::Group& group : r.groups)
     light_samples += group.light_samples,
         proxy_triangles += group.proxy_triangles.empty() ? 0 : group.proxy_triangles.front();
-  fmt::print("  groups    {}: {} light sample{}, {} proxy triangles\n", r.groups.size(), light_samples,
-             light_samples == 1 ? "" : "s", proxy_triangles);
+  fmt::print("  groups    {}: {}, {} proxy triangles\n", r.groups.size(),
+             counted(light_samples, "light sample"), proxy_triangles);
   fmt::print(
       "  bytes     {}: mesh {}, transfer {} ({:.1f} a vertex), proxies {}, images {}\n",
       bytesText(static_cast<double>(r.file_bytes)), bytesText(static_cast<double>(r.mesh_bytes)),

@@ -8,6 +8,7 @@
 
 #include "baker/cli/commands.hpp"
 #include "baker/cli/output.hpp"
+#include "baker/plan/counted.hpp"
 #include "runtime/bundle/reader.hpp"
 
 namespace lambent::baker {
@@ -71,7 +72,7 @@ void printJson(const bundle::Reader& reader, const Sizes& sizes) {
     for (const bundle::Cell& cell : group.cells)
       for (const bundle::CellTransfer& transfer : cell.transfers)
         cells.push_back({{"samples", cell.sample_count},
-                         {"effect", transfer.shape.outputs > bundle::kMappedOutputs ? "glossy" : "diffuse"},
+                         {"effect", transfer.shape.glossy() ? "glossy" : "diffuse"},
                          {"light", transfer.fromEnvironment() ? "environment" : "lamps"},
                          {"outputs", transfer.shape.outputs},
                          {"visibilityBands", transfer.shape.visibility_bands},
@@ -137,17 +138,16 @@ void printText(const bundle::Reader& reader, const Sizes& sizes) {
   for (const bundle::Group& group : d.groups) {
     fmt::print("group \"{}\": {} samples in {} cells\n", group.name, group.sample_count, group.cells.size());
     const std::vector<std::uint32_t> proxy = proxyTriangles(reader, group);
-    fmt::print("  {} light sample{}, {}\n", group.light_samples.size(),
-               group.light_samples.size() == 1 ? "" : "s",
+    fmt::print("  {}, {}\n", counted(group.light_samples.size(), "light sample"),
                proxy.empty() ? "no proxy" : fmt::format("proxy of {} triangles", fmt::join(proxy, ", ")));
     for (const bundle::Cell& cell : group.cells)
       for (const bundle::CellTransfer& transfer : cell.transfers)
         fmt::print("  {} {}: {}, {} samples, {} clusters, {} planes, error {:.3f} % (bound {:.3f} %)\n",
-                   transfer.shape.outputs > bundle::kMappedOutputs ? "glossy" : "diffuse", transfer.fromEnvironment() ? fmt::format("order {}", transfer.shape.order)
+                   transfer.shape.glossy() ? "glossy" : "diffuse",
+                   transfer.fromEnvironment() ? fmt::format("order {}", transfer.shape.order)
                                               : fmt::format("{} lamps", transfer.shape.light_columns),
-                   partName(transfer.shape), cell.sample_count,
-                   transfer.clusters, transfer.planes.size(), 100.0 * double{transfer.error},
-                   100.0 * double{transfer.error_bound});
+                   partName(transfer.shape), cell.sample_count, transfer.clusters, transfer.planes.size(),
+                   100.0 * double{transfer.error}, 100.0 * double{transfer.error_bound});
   }
 }
 

@@ -9,6 +9,7 @@
 #include "baker/cli/commands.hpp"
 #include "baker/cli/output.hpp"
 #include "baker/import/gltf.hpp"
+#include "baker/plan/counted.hpp"
 
 namespace lambent::baker {
 
@@ -67,9 +68,9 @@ void printText(const Scene& scene, const EffectPlan& plan) {
     const RigidGroup& group = plan.groups[g];
     const GroupSize size = sizeOf(scene, group);
     const auto& [count, reason] = plan.light_samples[g];
-    fmt::print("    {}: {} draw{}, {} vertices, {} triangles\n", group.name, group.draws.size(),
-               group.draws.size() == 1 ? "" : "s", size.vertices, size.triangles);
-    fmt::print("      {} light sample{}{}: {}\n", count.count, count.count == 1 ? "" : "s",
+    fmt::print("    {}: {}, {} vertices, {} triangles\n", group.name, counted(group.draws.size(), "draw"),
+               size.vertices, size.triangles);
+    fmt::print("      {}{}: {}\n", counted(count.count, "light sample"),
                count.of_group ? "" : " in each cell", reason);
   }
   if (!plan.near_lights.empty()) fmt::print("  near lights\n");

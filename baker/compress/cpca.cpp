@@ -192,7 +192,7 @@ CodedTransfer codeTransfer(std::span<const float> vectors, std::size_t count,
     return coded;
   }
 
-  const double least_bits = shape.outputs > bundle::kMappedOutputs ? kGlossyWeightBits : kPlainWeightBits;
+  const double least_bits = shape.glossy() ? kGlossyWeightBits : kPlainWeightBits;
   const Points points = coordinates(vectors, space.roots, basis);
   const Clustering few = settings.clusters > 0
                              ? fromSome(points, settings.clusters, budget, settings.axes, least_bits)

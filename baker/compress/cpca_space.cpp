@@ -47,13 +47,13 @@ std::vector<double> energies(std::size_t size, std::size_t count, const Value& v
 double outputRoot(const bundle::TransferShape& shape, int output, const BandPower& kernel_power) {
   if (shape.outputs == 1) return 1.0;
   const int band = sh::bandOf(output);
-  return shape.outputs <= bundle::kMappedOutputs ? sh::clampedCosine(band) / std::numbers::pi
-                                                 : std::sqrt(kernel_power[static_cast<std::size_t>(band)]);
+  return shape.glossy() ? std::sqrt(kernel_power[static_cast<std::size_t>(band)])
+                        : sh::clampedCosine(band) / std::numbers::pi;
 }
 
 // Of visibility: lights and lobes turned at random make errors of its coefficients independent of each other.
 std::vector<double> visibilityRoots(const bundle::TransferShape& shape, const BandPower& kernel_power) {
-  const auto bands_out = static_cast<int>(std::lround(std::sqrt(shape.outputs)));
+  const auto bands_out = static_cast<int>(bundle::bandsOf(shape.outputs));
   const sh::GauntTable table = sh::makeGauntTable(static_cast<int>(shape.order), bands_out);
   std::vector<double> powers(shape.size(), 0.0);
   for (std::uint32_t i = 0; i < shape.outputs; ++i)

@@ -18,6 +18,16 @@
 namespace lambent::bundle {
 
 inline constexpr std::uint32_t kMappedOutputs = 9;
+// More outputs than a normal map needs are all bands that a glossy surface reflects.
+constexpr bool isGlossy(std::uint32_t outputs) {
+  return outputs > kMappedOutputs;
+}
+// Bands of so many outputs, a square number.
+constexpr std::uint32_t bandsOf(std::uint32_t outputs) {
+  std::uint32_t bands = 0;
+  while (bands * bands < outputs) ++bands;
+  return bands;
+}
 
 // What a transfer vector holds. Two blocks: light that arrives without a bounce ("shadowed") and all light
 // ("full", absent without bounces). A value is [block: shadowed channels, then full
@@ -40,6 +50,7 @@ struct TransferShape {
   std::uint32_t columns() const { return order * order + light_columns; }
   std::uint32_t channels() const { return shadowed_channels + full_channels; }
   bool isVisibility() const { return visibility_bands > 0; }
+  bool glossy() const { return isGlossy(outputs); }
   std::uint32_t size() const {
     return isVisibility() ? visibility_bands * visibility_bands : channels() * outputs * columns();
   }

@@ -167,13 +167,19 @@ struct Draw {
   // 9: has a normal map, shaded per pixel from transferred light. 16, 25, 36: glossy, per pixel too.
   std::uint32_t outputs = 1;
 
-  bool glossy() const { return outputs > kMappedOutputs; }
+  bool glossy() const { return isGlossy(outputs); }
 };
 
 // Whose b(v) a table holds. GGX tables serve all materials of their kind (F0 and F90 parts apart, roughness
 // and anisotropy as axes); a measured one serves the materials whose `brdf` is its index in
 // Description::brdf_tables.
 enum class BrdfFamily : std::uint8_t { Ggx, AnisotropicGgx, Measured };
+
+// Which of them a material that is not matte looks up.
+inline BrdfFamily brdfFamilyOf(const gltf::Material& material) {
+  if (material.brdf >= 0) return BrdfFamily::Measured;
+  return material.anisotropy > 0.0f ? BrdfFamily::AnisotropicGgx : BrdfFamily::Ggx;
+}
 
 struct BrdfTableEntry {
   BrdfFamily family = BrdfFamily::Ggx;
@@ -209,8 +215,7 @@ struct Description {
   // Of all glossy cells and draws; 0 where there are none.
   std::uint32_t glossyOutputs() const {
     for (const Group& group : groups)
-      if (!group.cells.empty() && group.cells.back().outputs() > kMappedOutputs)
-        return group.cells.back().outputs();
+      if (!group.cells.empty() && isGlossy(group.cells.back().outputs())) return group.cells.back().outputs();
     return 0;
   }
 };

@@ -101,6 +101,11 @@ struct Material {
   float alpha_cutoff = 0.5f;
   bool double_sided = false;
 
+  // Of what is no metal, head on, from air, before specular strength and colour: by its index of refraction.
+  float reflectance() const {
+    const float ratio = ior > 0.0f ? (ior - 1.0f) / (ior + 1.0f) : 1.0f;
+    return ratio * ratio;
+  }
   // Nothing but a Lambert surface: no metal, and either no specular strength or roughness 1 all over, which
   // is how glTF files say "matte". Such a surface is Lambert with albedo = base colour everywhere in Lambent.
   bool matte() const {

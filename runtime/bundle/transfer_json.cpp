@@ -92,7 +92,7 @@ TransferShape readShape(const Field& field, const std::vector<GroupLight>& light
   if (shape.light_columns != 0 && shape.light_columns != lights.size())
     field["lightColumns"].fault("are not as many as the group has lights");
   shape.outputs = readOutputs(field["outputs"]);
-  const bool glossy = shape.outputs > kMappedOutputs;
+  const bool glossy = shape.glossy();
   if (glossy && shape.order > kMaxGlossyOrder) field["order"].fault("is over 6 for glossy surfaces");
   shape.full_channels = readChannels(field["fullChannels"], /*may_be_none=*/true);
   // Bounced light by itself, beside the visibility, has no shadowed part.
@@ -101,8 +101,7 @@ TransferShape readShape(const Field& field, const std::vector<GroupLight>& light
                    /*may_be_none=*/glossy && shape.order > 0 && shape.full_channels > 0);
   if (field.has("visibilityBands")) {
     shape.visibility_bands = static_cast<std::uint32_t>(field["visibilityBands"].count(2 * kMaxGlossyOrder));
-    const auto bands_out = static_cast<std::uint32_t>(std::lround(std::sqrt(shape.outputs)));
-    if (!glossy || shape.order == 0 || shape.visibility_bands != shape.order + bands_out - 1 ||
+    if (!glossy || shape.order == 0 || shape.visibility_bands != shape.order + bandsOf(shape.outputs) - 1 ||
         shape.shadowed_channels != 1 || shape.full_channels != 0)
       field["visibilityBands"].fault("are not those of the product of the light and the outputs");
   }
@@ -171,7 +170,7 @@ void checkParts(const Field& field, const Cell& cell) {
   enum Part { Environment, Bounced, Lights };
   const auto partOf = [](const TransferShape& shape) {
     if (shape.order == 0) return Lights;
-    return shape.outputs > kMappedOutputs && !shape.isVisibility() ? Bounced : Environment;
+    return shape.glossy() && !shape.isVisibility() ? Bounced : Environment;
   };
   for (std::size_t t = 0; t < cell.transfers.size(); ++t) {
     const TransferShape& shape = cell.transfers[t].shape;
@@ -308,9 +307,10 @@ BrdfTableEntry readBrdfTable(const Field& field, const Description& d) {
 
 // Glossy surfaces all have as many bands, and their draws find what they look up.
 void checkBrdfTables(const Field& field, const Description& d) {
+  const std::uint32_t outputs = d.glossyOutputs();
   for (const Group& group : d.groups)
     for (const Cell& cell : group.cells)
-      if (cell.outputs() > kMappedOutputs && cell.outputs() != d.glossyOutputs())
+      if (isGlossy(cell.outputs()) && cell.outputs() != outputs)
         field.fault("serve cells of different outputs");
 
   const auto has = [&](BrdfFamily family) {
@@ -319,14 +319,14 @@ void checkBrdfTables(const Field& field, const Description& d) {
   };
   for (const Draw& draw : d.draws) {
     const std::int32_t index = d.meshes[draw.mesh].primitives[draw.primitive].material;
-    if (draw.glossy() && draw.outputs != d.glossyOutputs()) field.fault("serve draws of different outputs");
+    if (draw.glossy() && draw.outputs != outputs) field.fault("serve draws of different outputs");
     if (!draw.glossy() || index < 0) continue;
     const gltf::Material& material = d.materials[static_cast<std::size_t>(index)];
-    const bool found =
-        material.brdf >= 0
-            ? static_cast<std::size_t>(material.brdf) < d.brdf_tables.size() &&
-                  d.brdf_tables[static_cast<std::size_t>(material.brdf)].family == BrdfFamily::Measured
-            : has(material.anisotropy > 0.0f ? BrdfFamily::AnisotropicGgx : BrdfFamily::Ggx);
+    const BrdfFamily family = brdfFamilyOf(material);
+    const bool found = family == BrdfFamily::Measured
+                           ? static_cast<std::size_t>(material.brdf) < d.brdf_tables.size() &&
+                                 d.brdf_tables[static_cast<std::size_t>(material.brdf)].family == family
+                           : has(family);
     if (!found) field.fault(fmt::format("lack the table of material {}", index));
   }
 }

@@ -9,31 +9,11 @@
 
 namespace lambent::frame {
 
-namespace {
-
-std::uint32_t bandsOf(std::uint32_t outputs) {
-  return outputs == 16 ? 4 : outputs == 25 ? 5 : 6;
-}
-
-bundle::BrdfFamily familyOf(const gltf::Material& material) {
-  if (material.brdf >= 0) return bundle::BrdfFamily::Measured;
-  return material.anisotropy != 0.0f ? bundle::BrdfFamily::AnisotropicGgx : bundle::BrdfFamily::Ggx;
-}
-
-// Of light that meets the surface head on, from air.
-float reflectanceOf(float ior) {
-  if (ior == 0.0f) return 1.0f;  // KHR_materials_ior: infinite
-  const float ratio = (ior - 1.0f) / (ior + 1.0f);
-  return ratio * ratio;
-}
-
-}  // namespace
-
 std::int32_t brdfTableOf(const World& world, std::size_t draw) {
   const streaming::ResidentDraw& resident = world.residency().draws()[draw];
   const streaming::ResidentBundle& owner = world.residency().bundles()[resident.bundle];
-  const gltf::Material material = materialOf(world, draw);
-  const bundle::BrdfFamily family = familyOf(material);
+  const gltf::Material& material = materialOf(world, draw);
+  const bundle::BrdfFamily family = bundle::brdfFamilyOf(material);
   if (family == bundle::BrdfFamily::Measured)
     return static_cast<std::size_t>(material.brdf) < owner.brdf_tables.size() ? material.brdf : -1;
   for (std::size_t i = 0; i < owner.brdf_families.size(); ++i)
@@ -46,7 +26,7 @@ bool glossyReady(const World& world, std::size_t draw) {
   const streaming::ResidentBundle& owner = world.residency().bundles()[resident.bundle];
   const std::int32_t table = brdfTableOf(world, draw);
   return resident.glossy() && table >= 0 && owner.brdf_tables[static_cast<std::size_t>(table)].texture &&
-         owner.brdf_tables[static_cast<std::size_t>(table)].order == bandsOf(resident.outputs) &&
+         owner.brdf_tables[static_cast<std::size_t>(table)].order == bundle::bandsOf(resident.outputs) &&
          world.residency().meshes()[resident.mesh].block && resident.rows &&
          world.residency().groups()[resident.group].samples;
 }
@@ -58,8 +38,8 @@ GlossyPart describeGlossy(const World& world, std::size_t draw) {
   const streaming::BrdfTexture& table = world.residency()
                                             .bundles()[resident.bundle]
                                             .brdf_tables[static_cast<std::size_t>(brdfTableOf(world, draw))];
-  const gltf::Material material = materialOf(world, draw);
-  const glm::vec3 dielectric = reflectanceOf(material.ior) * material.specular_color;
+  const gltf::Material& material = materialOf(world, draw);
+  const glm::vec3 dielectric = material.reflectance() * material.specular_color;
   return {.group_from_world = glm::mat3x4(glm::mat3_cast(glm::conjugate(world.rotationOf(resident.group)))),
           .dielectric = glm::vec4(dielectric, material.specular),
           .metallic_roughness_texture = slotOf(material.metallic_roughness_texture, mesh),
@@ -83,8 +63,8 @@ GlossyPart describeGlossy(const World& world, std::size_t draw) {
 }
 
 GlossyKind glossyKindOf(const World& world, std::size_t draw) {
-  return {.bands = bandsOf(world.residency().draws()[draw].outputs),
-          .family = familyOf(materialOf(world, draw))};
+  return {.bands = bundle::bandsOf(world.residency().draws()[draw].outputs),
+          .family = bundle::brdfFamilyOf(materialOf(world, draw))};
 }
 
 std::vector<gpu::Define> definesOf(const GlossyKind& kind) {

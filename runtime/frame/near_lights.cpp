@@ -170,7 +170,7 @@ void NearLights::collectCasters(const World& world) {
     const streaming::ResidentDraw& draw = residency.draws()[i];
     if (draw.back) continue;  // the front's triangles stand for both sides (decisions/003)
     const streaming::ResidentMesh& mesh = residency.meshes()[draw.mesh];
-    const gltf::Material material = materialOf(world, i);
+    const gltf::Material& material = materialOf(world, i);
     if (!mesh.block || material.alpha_mode == gltf::AlphaMode::Blend) continue;
     const scene::Box bounds =
         scene::drawBounds(world.registry(), world.instance(draw.bundle).draws[draw.index]);

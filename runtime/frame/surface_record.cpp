@@ -30,10 +30,11 @@ TextureSlot slotOf(const gltf::TextureRef& texture, const streaming::ResidentMes
   return {.texture_from_coordinates = transformOf(texture), .set = there ? set : kAbsent, .pad = 0};
 }
 
-gltf::Material materialOf(const World& world, std::size_t draw) {
+const gltf::Material& materialOf(const World& world, std::size_t draw) {
+  static const gltf::Material kDefault;
   const streaming::ResidentDraw& resident = world.residency().draws()[draw];
   const auto& materials = world.residency().bundles()[resident.bundle].materials;
-  return resident.material >= 0 ? materials[static_cast<std::size_t>(resident.material)] : gltf::Material{};
+  return resident.material >= 0 ? materials[static_cast<std::size_t>(resident.material)] : kDefault;
 }
 
 glm::vec3 emissionOf(const World& world, std::size_t draw) {
@@ -47,7 +48,7 @@ bool normalMapped(const World& world, std::size_t draw) {
 SurfaceDraw describe(const World& world, std::size_t draw) {
   const streaming::ResidentDraw& resident = world.residency().draws()[draw];
   const streaming::ResidentMesh& mesh = world.residency().meshes()[resident.mesh];
-  const gltf::Material material = materialOf(world, draw);
+  const gltf::Material& material = materialOf(world, draw);
   const float facing = resident.back ? -1.0f : 1.0f;
   const glm::mat3 front_normal = facing * resident.group_from_mesh_normal;
   // Unlit surfaces give off nothing but their base colour (KHR_materials_unlit).
@@ -75,7 +76,7 @@ SurfaceDraw describe(const World& world, std::size_t draw) {
 }
 
 SurfaceTextures texturesOf(const World& world, std::size_t draw, const SurfaceDraw& record) {
-  const gltf::Material material = materialOf(world, draw);
+  const gltf::Material& material = materialOf(world, draw);
   SurfaceTextures textures;
   if (record.base_color_texture.set != kAbsent) textures.base_color = material.base_color_texture.texture;
   // What gives off no light and what takes it at its vertices need not part batches by textures left unread.

@@ -26,7 +26,8 @@ struct SurfaceTextures {
 // How a mesh looks into a texture; absent where it lacks the coordinates.
 TextureSlot slotOf(const gltf::TextureRef& texture, const streaming::ResidentMesh& mesh);
 
-gltf::Material materialOf(const World& world, std::size_t draw);
+// Valid while the draw's bundle is; of a draw without a material glTF's default.
+const gltf::Material& materialOf(const World& world, std::size_t draw);
 
 // Radiance that the surface gives off, before its texture.
 glm::vec3 emissionOf(const World& world, std::size_t draw);

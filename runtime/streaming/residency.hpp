@@ -70,7 +70,7 @@ struct ResidentCell {
   // Enough has arrived to look better than no shadows at all: light weights, every transfer with its codebook
   // and with planes that carry kUsableVariance of what all its planes carry.
   bool usable() const;
-  bool glossy() const { return outputs > bundle::kMappedOutputs; }
+  bool glossy() const { return bundle::isGlossy(outputs); }
 };
 inline constexpr float kUsableVariance = 0.9f;
 
@@ -92,7 +92,7 @@ struct ResidentGroup {
   std::uint32_t sampleBase(std::uint32_t outputs) const {
     const std::uint32_t plain = outputs > 1 ? (outputs - 1) * plain_samples : 0;
     const std::uint32_t mapped =
-        outputs > bundle::kMappedOutputs ? (outputs - bundle::kMappedOutputs) * mapped_samples : 0;
+        bundle::isGlossy(outputs) ? (outputs - bundle::kMappedOutputs) * mapped_samples : 0;
     return samples.word() / 4 - plain - mapped;
   }
 };
@@ -111,7 +111,7 @@ struct ResidentDraw {
       radiance;  // radianceWords(outputs) floats per vertex, once the mesh is here; none where glossy
   std::uint64_t version = 0;
 
-  bool glossy() const { return outputs > bundle::kMappedOutputs; }
+  bool glossy() const { return bundle::isGlossy(outputs); }
 };
 
 struct ResidentBundle {

@@ -11,7 +11,7 @@ namespace lambent::streaming {
 // All that is written for a vertex of a draw: E/pi, or for normal maps light of bands 0..2; RGB floats.
 // Glossy ones take their samples at each pixel.
 constexpr std::uint32_t radianceWords(std::uint32_t outputs) {
-  return outputs > bundle::kMappedOutputs ? 0 : 3 * outputs;
+  return bundle::isGlossy(outputs) ? 0 : 3 * outputs;
 }
 
 // Of a sample, where its cell is lit from several light samples.

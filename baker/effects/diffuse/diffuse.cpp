@@ -4,17 +4,10 @@
 
 #include <fmt/format.h>
 
+#include "baker/plan/counted.hpp"
 #include "baker/plan/group_lights.hpp"
 
 namespace lambent::baker {
-
-namespace {
-
-std::string counted(std::size_t count, const char* noun) {
-  return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
-}
-
-}  // namespace
 
 EffectChoice chooseDiffuse(const Scene& scene, const std::vector<RigidGroup>& groups) {
   std::size_t draws = 0, mapped = 0, lights = 0;

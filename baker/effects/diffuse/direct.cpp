@@ -132,27 +132,19 @@ std::uint64_t DirectPass::bake(std::size_t begin, std::size_t end, const std::st
   std::uint64_t traced = 0;
   const std::size_t first_mapped = scene_.samples.first_normal_mapped;
   for (std::size_t s = begin; s < end && !stop.stop_requested(); ++s) {
-    hits.offsets.push_back(static_cast<std::uint32_t>(hits.hits.size()));
+    hits.next();
     traced += walk.look(s);
     looks.valid[s] = walk.looked().valid();
     looks.closely[s] = walk.looked().closely();
     walk.project(field.at(s), s < first_mapped ? std::span<float>() : mapped.at(s - first_mapped));
     if (settings_.keep_hits) walk.keepHits(hits);
   }
-  hits.offsets.push_back(static_cast<std::uint32_t>(hits.hits.size()));
+  hits.next();
   return traced;
 }
 
 void DirectPass::traceAgain(std::size_t begin, std::size_t end, RangeHits& hits) const {
-  Walk walk(*this);
-  hits.offsets.clear();
-  hits.hits.clear();
-  for (std::size_t s = begin; s < end; ++s) {
-    hits.offsets.push_back(static_cast<std::uint32_t>(hits.hits.size()));
-    walk.look(s);
-    walk.keepHits(hits);
-  }
-  hits.offsets.push_back(static_cast<std::uint32_t>(hits.hits.size()));
+  hits.traceAgain(Walk(*this), begin, end);
 }
 
 std::optional<DirectResult> bakeDirect(const DirectPass& pass, const DiffuseScene& scene, Progress& progress,

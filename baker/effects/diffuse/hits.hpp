@@ -32,6 +32,21 @@ struct RangeHits {
   std::vector<GatherHit> hits;
   bool kept = false;
 
+  // The hits that are appended from here on are of the next sample; the last call ends the range.
+  void next() { offsets.push_back(static_cast<std::uint32_t>(hits.size())); }
+  // Samples [begin, end) by a walk that looks and keeps hits, in place of what was here.
+  template <typename Walk>
+  void traceAgain(Walk&& walk, std::size_t begin, std::size_t end) {
+    offsets.clear();
+    hits.clear();
+    for (std::size_t s = begin; s < end; ++s) {
+      next();
+      walk.look(s);
+      walk.keepHits(*this);
+    }
+    next();
+  }
+
   std::size_t bytes() const { return hits.size() * sizeof(GatherHit); }
   // Of the sample at this place in the range.
   std::span<const GatherHit> of(std::size_t sample) const {

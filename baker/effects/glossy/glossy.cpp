@@ -8,6 +8,7 @@
 #include <fmt/ranges.h>
 
 #include "baker/effects/glossy/lobe_energy.hpp"
+#include "baker/plan/counted.hpp"
 
 namespace lambent::baker {
 
@@ -37,10 +38,6 @@ void count(const gltf::Material& material, Counts& counts) {
   } else {
     counts.textured += material.metallic_roughness_texture.texture >= 0;
   }
-}
-
-std::string counted(std::size_t count, const char* noun) {
-  return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
 }
 
 }  // namespace

@@ -137,7 +137,7 @@ std::uint64_t GlossyPass::bake(std::size_t begin, std::size_t end, const std::st
   std::uint64_t traced = 0;
   const std::size_t lights = field.light_columns, per_sample = field.channels * squared(order_out_) * lights;
   for (std::size_t s = begin; s < end && !stop.stop_requested(); ++s) {
-    hits.offsets.push_back(static_cast<std::uint32_t>(hits.hits.size()));
+    hits.next();
     traced += walk.look(s);
     looks.valid[first() + s] = walk.looked().valid();
     looks.closely[first() + s] = walk.looked().closely();
@@ -147,20 +147,12 @@ std::uint64_t GlossyPass::bake(std::size_t begin, std::size_t end, const std::st
                          std::span(field.lights_shadowed).subspan(s * per_sample, per_sample));
     if (plain_.settings().keep_hits) walk.keepHits(hits);
   }
-  hits.offsets.push_back(static_cast<std::uint32_t>(hits.hits.size()));
+  hits.next();
   return traced;
 }
 
 void GlossyPass::traceAgain(std::size_t begin, std::size_t end, RangeHits& hits) const {
-  Walk walk(*this);
-  hits.offsets.clear();
-  hits.hits.clear();
-  for (std::size_t s = begin; s < end; ++s) {
-    hits.offsets.push_back(static_cast<std::uint32_t>(hits.hits.size()));
-    walk.look(s);
-    walk.keepHits(hits);
-  }
-  hits.offsets.push_back(static_cast<std::uint32_t>(hits.hits.size()));
+  hits.traceAgain(Walk(*this), begin, end);
 }
 
 void plainTransfer(int order_out, glm::vec3 normal, std::span<const float> matrix, std::span<float> out) {

@@ -24,7 +24,9 @@ std::vector<CellVectors> glossyCellVectors(const SampleCell& cell, const GlossyF
   const auto order = static_cast<std::uint32_t>(field.order_in),
              outputs = static_cast<std::uint32_t>(field.order_out * field.order_out);
   const std::size_t first = cell.first - field.first_sample, count = cell.count;
-  const auto copied = [](std::span<const float> part) { return std::vector<float>(part.begin(), part.end()); };
+  const auto copied = [](std::span<const float> part) {
+    return std::vector<float>(part.begin(), part.end());
+  };
 
   std::vector<CellVectors> out;
   const bundle::TransferShape visibility{

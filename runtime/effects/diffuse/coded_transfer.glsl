@@ -1,8 +1,19 @@
 // Quantized weights of samples, and how the light samples share in one: for the sample stages of all effects. The CPU twin
-// stands in diffuse_ref.hpp (codeOf, lightShareOf).
+// stands in diffuse_ref.hpp (codedSampleAt, codeOf, lightShareOf).
 #include "diffuse_shared.h"
 
 uint codeWordAt(uint word);  // of the transfer page
+
+// Whose code stands at a position: the sample of the cell, the first vector of its cluster and how many of its axes are
+// resident.
+struct CodedSample {
+  uint sample_index, first, axes;
+};
+CodedSample codedSampleAt(TransferRecord transfer, uint position) {
+  uint place = codeWordAt(transfer.positions_word + position);
+  uint cluster = transfer.clusters_word + 2u * (place >> 16u);
+  return CodedSample(place & 0xffffu, codeWordAt(cluster), min(codeWordAt(cluster + 1u), transfer.plane_count));
+}
 
 // The code at a position, straight from the quantized plane.
 uint codeOf(uint codes, uint position) {

@@ -96,36 +96,66 @@ inline uint codeOf(const Memory& memory, uint codes, uint position) {
   return (four >> (8 * (position & 3))) & 0xff;
 }
 
+// The vectors of a cluster: its mean, then its axes as far as they are resident.
+struct ResidentCluster {
+  uint first, axes;
+};
+
+inline ResidentCluster clusterAt(const Memory& memory, const TransferRecord& transfer, uint cluster) {
+  const uint word = transfer.clusters_word + 2 * cluster;
+  return {memory.codeWordAt(word), std::min(memory.codeWordAt(word + 1), transfer.plane_count)};
+}
+
 // Stage a, one output of one cluster under one light: its products, the mean's with all offsets in it.
-inline void projectCluster(const Memory& memory, const TransferRecord& transfer, std::span<const uint> places,
-                           uint light_index, uint cluster, uint output_index, std::span<glm::vec4> products) {
+// projected(vector, output, light): the vector times the light.
+template <typename Projected>
+void projectCluster(const Memory& memory, const TransferRecord& transfer, std::span<const uint> places,
+                    uint light_index, uint cluster, uint output_index, const Projected& projected,
+                    std::span<glm::vec4> products) {
   const uint light = places[transfer.first_light + light_index];
-  const uint first = memory.codeWordAt(transfer.clusters_word + 2 * cluster);
-  const uint axes =
-      std::min(memory.codeWordAt(transfer.clusters_word + 2 * cluster + 1), transfer.plane_count);
+  const ResidentCluster at = clusterAt(memory, transfer, cluster);
   const auto product = [&](uint vector) -> glm::vec4& {
     return products[transfer.first_product + transfer.light_products * light_index +
                     transfer.outputs * vector + output_index];
   };
-  std::array<glm::vec3, kLanesPerUnit> means{};
-  for (uint v = 0; v <= axes; ++v) {
-    const uint vector = first + v;
-    const glm::vec3 value = projectOnLight(memory, transfer, vector, output_index, light);
+  std::array<glm::vec4, kLanesPerUnit> means{};
+  for (uint v = 0; v <= at.axes; ++v) {
+    const uint vector = at.first + v;
+    const glm::vec4 value = projected(vector, output_index, light);
     means[v % kLanesPerUnit] += memory.floatAt(transfer.weights_word + 2 * vector) * value;
-    if (v > 0)
-      product(vector) = glm::vec4(memory.floatAt(transfer.weights_word + 2 * vector + 1) * value, 0.0f);
+    if (v > 0) product(vector) = memory.floatAt(transfer.weights_word + 2 * vector + 1) * value;
   }
-  glm::vec3 total(0.0f);
-  for (const glm::vec3& mean : means) total += mean;
-  product(first) = glm::vec4(total, 0.0f);
+  glm::vec4 total(0.0f);
+  for (const glm::vec4& mean : means) total += mean;
+  product(at.first) = total;
+}
+
+template <typename Projected>
+void projectClusters(const Memory& memory, const TransferRecord& transfer, std::span<const uint> places,
+                     const Projected& projected, std::span<glm::vec4> products) {
+  for (uint light = 0; light < transfer.light_count; ++light)
+    for (uint cluster = 0; cluster < transfer.clusters; ++cluster)
+      for (uint j = 0; j < transfer.outputs; ++j)
+        projectCluster(memory, transfer, places, light, cluster, j, projected, products);
 }
 
 inline void projectTransfer(const Memory& memory, const TransferRecord& transfer,
                             std::span<const uint> places, std::span<glm::vec4> products) {
-  for (uint light = 0; light < transfer.light_count; ++light)
-    for (uint cluster = 0; cluster < transfer.clusters; ++cluster)
-      for (uint j = 0; j < transfer.outputs; ++j)
-        projectCluster(memory, transfer, places, light, cluster, j, products);
+  const auto projected = [&](uint vector, uint output_index, uint light) {
+    return glm::vec4(projectOnLight(memory, transfer, vector, output_index, light), 0.0f);
+  };
+  projectClusters(memory, transfer, places, projected, products);
+}
+
+// Whose code stands at a position: the sample of the cell, and its cluster.
+struct CodedSample {
+  uint sample_index;
+  ResidentCluster cluster;
+};
+
+inline CodedSample codedSampleAt(const Memory& memory, const TransferRecord& transfer, uint position) {
+  const uint place = memory.codeWordAt(transfer.positions_word + position);
+  return {place & 0xffff, clusterAt(memory, transfer, place >> 16)};
 }
 
 // How much of light k falls on a sample of the cell.
@@ -145,25 +175,21 @@ inline LightShare lightShareOf(const Memory& memory, const TransferRecord& trans
 // Stage b: one position of the cell, into its sample.
 inline void shadePosition(const Memory& memory, const TransferRecord& transfer, std::span<const uint> places,
                           std::span<const glm::vec4> products, uint position, std::span<glm::vec4> samples) {
-  const uint place = memory.codeWordAt(transfer.positions_word + position);
-  const uint sample_index = place & 0xffff, cluster = place >> 16;
-  const uint first = memory.codeWordAt(transfer.clusters_word + 2 * cluster);
-  const uint axes =
-      std::min(memory.codeWordAt(transfer.clusters_word + 2 * cluster + 1), transfer.plane_count);
+  const CodedSample at = codedSampleAt(memory, transfer, position);
   for (uint j = 0; j < transfer.outputs; ++j) {
     glm::vec3 light(0.0f);
     for (uint k = 0; k < kLightsPerSample; ++k) {
-      const LightShare share = lightShareOf(memory, transfer, sample_index, k);
-      uint product =
-          transfer.first_product + transfer.light_products * share.light + transfer.outputs * first + j;
+      const LightShare share = lightShareOf(memory, transfer, at.sample_index, k);
+      uint product = transfer.first_product + transfer.light_products * share.light +
+                     transfer.outputs * at.cluster.first + j;
       light += share.weight * glm::vec3(products[product]);
-      for (uint axis = 0; axis < axes; ++axis) {
+      for (uint axis = 0; axis < at.cluster.axes; ++axis) {
         product += transfer.outputs;
         light += static_cast<float>(codeOf(memory, places[transfer.first_plane + axis], position)) *
                  share.weight * glm::vec3(products[product]);
       }
     }
-    glm::vec4& out = samples[transfer.first_output + transfer.outputs * sample_index + j];
+    glm::vec4& out = samples[transfer.first_output + transfer.outputs * at.sample_index + j];
     out = glm::vec4(transfer.accumulate != 0 ? light + glm::vec3(out) : light, 1.0f);
   }
 }

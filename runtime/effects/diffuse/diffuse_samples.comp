@@ -22,18 +22,15 @@ void main() {
   TransferRecord transfer = transfers[work[index].record];
   uint position = work[index].first + gl_LocalInvocationID.x;
   if (position >= transfer.sample_count) return;
-  uint place = page[transfer.positions_word + position];
-  uint sample_index = place & 0xffffu, cluster = place >> 16u;
-  uint first = page[transfer.clusters_word + 2u * cluster];
-  uint axes = min(page[transfer.clusters_word + 2u * cluster + 1u], transfer.plane_count);
-  uint product = transfer.first_product + LAMBENT_OUTPUTS * first;
+  CodedSample at = codedSampleAt(transfer, position);
+  uint product = transfer.first_product + LAMBENT_OUTPUTS * at.first;
   vec3 light[LAMBENT_OUTPUTS];
 #ifdef LAMBENT_MANY_LIGHTS
   uint products_of[kLightsPerSample];
   float weight[kLightsPerSample];
   uint light_count = 0u;
   for (uint k = 0u; k < kLightsPerSample; ++k) {
-    LightShare share = lightShareOf(transfer, sample_index, k);
+    LightShare share = lightShareOf(transfer, at.sample_index, k);
     if (share.weight == 0.0) break;
     weight[k] = share.weight;
     products_of[k] = product + transfer.light_products * share.light;
@@ -42,7 +39,7 @@ void main() {
   for (uint j = 0u; j < LAMBENT_OUTPUTS; ++j) light[j] = vec3(0.0);
   for (uint k = 0u; k < light_count; ++k)
     for (uint j = 0u; j < LAMBENT_OUTPUTS; ++j) light[j] += weight[k] * products[products_of[k] + j].rgb;
-  for (uint axis = 0u; axis < axes; ++axis) {
+  for (uint axis = 0u; axis < at.axes; ++axis) {
     float code = float(codeOf(places[transfer.first_plane + axis], position));
     for (uint k = 0u; k < light_count; ++k) {
       products_of[k] += LAMBENT_OUTPUTS;
@@ -51,13 +48,13 @@ void main() {
   }
 #else
   for (uint j = 0u; j < LAMBENT_OUTPUTS; ++j) light[j] = products[product + j].rgb;
-  for (uint axis = 0u; axis < axes; ++axis) {
+  for (uint axis = 0u; axis < at.axes; ++axis) {
     product += LAMBENT_OUTPUTS;
     float code = float(codeOf(places[transfer.first_plane + axis], position));
     for (uint j = 0u; j < LAMBENT_OUTPUTS; ++j) light[j] += code * products[product + j].rgb;
   }
 #endif
-  uint out_index = transfer.first_output + LAMBENT_OUTPUTS * sample_index;
+  uint out_index = transfer.first_output + LAMBENT_OUTPUTS * at.sample_index;
   for (uint j = 0u; j < LAMBENT_OUTPUTS; ++j) {
     if (transfer.accumulate != 0u) light[j] += samples[out_index + j].rgb;
     samples[out_index + j] = vec4(light[j], 1.0);

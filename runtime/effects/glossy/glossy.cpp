@@ -17,10 +17,6 @@ namespace {
 
 constexpr gpu::FindText kShaders[] = {&embedded::lambent_effects_glossy::find};
 
-std::uint32_t bandsOf(std::uint32_t outputs) {
-  return outputs == 16 ? 4 : outputs == 25 ? 5 : 6;
-}
-
 // Dense kernels with the order compiled in; 0 is the one that loops over any order.
 std::uint32_t variantOf(std::uint32_t order) {
   return order >= 2 && order <= 6 ? order : 0;
@@ -122,7 +118,7 @@ void Glossy::collect(const streaming::Residency& residency, const lighting::Grou
       fill_work_.add({samples_page}, i, fills_[i].output_count, kWorkGroupSize);
       continue;
     }
-    const std::uint32_t bands = bandsOf(cell.outputs);
+    const std::uint32_t bands = bundle::bandsOf(cell.outputs);
     for (std::uint32_t t = range.first; t < range.first + range.count; ++t) {
       const TransferRecord& record = tables_.transfers[t];
       const std::uint32_t units = record.light_count * record.clusters * record.outputs;

@@ -24,24 +24,21 @@ void main() {
   uint element = work[index].first + gl_LocalInvocationID.x;
   uint position = element / LAMBENT_BANDS, first_output = element % LAMBENT_BANDS * LAMBENT_BANDS;
   if (position >= transfer.sample_count) return;
-  uint place = page[transfer.positions_word + position];
-  uint sample_index = place & 0xffffu, cluster = place >> 16u;
-  uint first = page[transfer.clusters_word + 2u * cluster];
-  uint axes = min(page[transfer.clusters_word + 2u * cluster + 1u], transfer.plane_count);
+  CodedSample at = codedSampleAt(transfer, position);
   vec4 light[LAMBENT_BANDS];
   for (uint j = 0u; j < LAMBENT_BANDS; ++j) light[j] = vec4(0.0);
   for (uint k = 0u; k < kLightsPerSample; ++k) {
-    LightShare share = lightShareOf(transfer, sample_index, k);
+    LightShare share = lightShareOf(transfer, at.sample_index, k);
     if (share.weight == 0.0) break;
-    uint product = transfer.first_product + transfer.light_products * share.light + kOutputs * first + first_output;
+    uint product = transfer.first_product + transfer.light_products * share.light + kOutputs * at.first + first_output;
     for (uint j = 0u; j < LAMBENT_BANDS; ++j) light[j] += share.weight * products[product + j];
-    for (uint axis = 0u; axis < axes; ++axis) {
+    for (uint axis = 0u; axis < at.axes; ++axis) {
       product += kOutputs;
       float weight = float(codeOf(places[transfer.first_plane + axis], position)) * share.weight;
       for (uint j = 0u; j < LAMBENT_BANDS; ++j) light[j] += weight * products[product + j];
     }
   }
-  uint out_index = transfer.first_output + kOutputs * sample_index + first_output;
+  uint out_index = transfer.first_output + kOutputs * at.sample_index + first_output;
   for (uint j = 0u; j < LAMBENT_BANDS; ++j) {
     if (transfer.accumulate != 0u) light[j] += samples[out_index + j];
     samples[out_index + j] = light[j];

@@ -1,48 +1,15 @@
 // The container: what is written comes back, and nothing damaged gets through.
 #include <cstddef>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
-#include <string>
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
-#include "runtime/bundle/reader.hpp"
-#include "runtime/bundle/transfer_codec.hpp"
-#include "runtime/bundle/writer.hpp"
+#include "tests/runtime/bundle/bundle_file.hpp"
 
 namespace lambent::bundle {
 namespace {
 
 namespace fs = std::filesystem;
-
-class BundleFile : public ::testing::Test {
- protected:
-  void SetUp() override {
-    folder_ = fs::temp_directory_path() / ("lambent-bundle-test-" + std::to_string(::getpid()));
-    fs::create_directories(folder_);
-    path_ = folder_ / "scene.lmb.glb";
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
-  std::string bytes() const {
-    std::ifstream in(path_, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-  }
-  void replace(const std::string& bytes) const {
-    std::ofstream(path_, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  }
-  // Everything that the demo would read of the file.
-  Result<void> readAll() const {
-    auto reader = Reader::open(path_);
-    if (!reader) return failAgain(reader.error());
-    return reader->checkAll();
-  }
-
-  fs::path folder_, path_;
-};
 
 Blob blobOf(std::size_t size, unsigned first) {
   Blob blob(size);
@@ -54,11 +21,6 @@ const std::vector<LightWeights> kWeights = {
     kOneLight, {{1, 2, 0, 0}, {200, 55, 0, 0}}, {{2, 1, 0, 0}, {128, 127, 0, 0}}};
 
 // A description that uses every list but meshes (mesh_test.cpp has those), with values that are easy to lose.
-struct Sample {
-  Description description;
-  std::vector<Blob> blobs;
-};
-
 Sample sampleBundle() {
   Sample s;
   Description& d = s.description;
@@ -93,14 +55,7 @@ Sample sampleBundle() {
   d.nodes[1].light = 0;
 
   // Cell 0 plain, two clusters of two and no axes; cell 1 normal-mapped, of one cluster; lamps in both.
-  const auto add = [&](PayloadType type, const Blob& bytes) {
-    const bool zstd = type == PayloadType::WeightPlane;
-    s.blobs.push_back(zstd ? compressZstd(bytes, 3) : bytes);
-    d.payloads.push_back({type, zstd ? PayloadCodec::Zstd : PayloadCodec::Raw,
-                          static_cast<std::uint32_t>(s.blobs.size() - 1), bytes.size(),
-                          static_cast<std::uint32_t>(d.payloads.size())});
-    return static_cast<std::uint32_t>(d.payloads.size() - 1);
-  };
+  const auto add = [&](PayloadType type, const Blob& bytes) { return s.add(type, bytes); };
   const auto codebook = [&](const TransferShape& shape, const std::vector<std::uint32_t>& axis_counts) {
     Codebook book{axis_counts, {}, {}};
     for (const std::uint32_t count : axis_counts) {
@@ -330,8 +285,9 @@ TEST_F(BundleFile, IndicesOutOfRangeAreRefusedByName) {
   refused([&](Description& d) { first(d).planes[0].count = 1; }, "another size");
   refused([&](Description& d) { first(d).planes[1].count = 3; }, "planes[1].count");
   refused([&](Description& d) { lamps(d).shape.light_columns = 1; }, "lightColumns");
-  refused([](Description& d) { std::swap(d.groups[0].cells[0].transfers[0], d.groups[0].cells[0].transfers[1]); },
-          "the group's lights after the environment");
+  refused(
+      [](Description& d) { std::swap(d.groups[0].cells[0].transfers[0], d.groups[0].cells[0].transfers[1]); },
+      "the group's lights after the environment");
   refused([](Description& d) { d.groups[0].cells[0].transfers.push_back(d.groups[0].cells[0].transfers[1]); },
           "the group's lights after the environment");
   refused([](Description& d) { d.groups[0].lights[0].index = 1; }, "lights[0].material");

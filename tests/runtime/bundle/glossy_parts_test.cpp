@@ -1,23 +1,11 @@
 // What glossy cells add to a bundle comes back as it was written, and what contradicts itself is refused by
 // name.
-#include <filesystem>
-#include <string>
-
 #include <gtest/gtest.h>
-#include <unistd.h>
 
-#include "runtime/bundle/reader.hpp"
-#include "runtime/bundle/writer.hpp"
+#include "tests/runtime/bundle/bundle_file.hpp"
 
 namespace lambent::bundle {
 namespace {
-
-namespace fs = std::filesystem;
-
-struct Sample {
-  Description description;
-  std::vector<Blob> blobs;
-};
 
 // One plain cell of two samples and one glossy cell of three: visibility, bounced light, a lamp; two tables.
 Sample sampleBundle() {
@@ -28,17 +16,11 @@ Sample sampleBundle() {
   d.roots = {0};
   d.nodes[0].light = 0;
   d.lights.resize(1);
-  const auto add = [&](PayloadType type, const Blob& bytes) {
-    s.blobs.push_back(bytes);
-    d.payloads.push_back({type, PayloadCodec::Raw, static_cast<std::uint32_t>(s.blobs.size() - 1),
-                          bytes.size(), static_cast<std::uint32_t>(d.payloads.size())});
-    return static_cast<std::uint32_t>(d.payloads.size() - 1);
-  };
   const auto transfer = [&](const TransferShape& shape) {
     CellTransfer made;
     made.shape = shape;
     const Codebook book{{0}, {}, std::vector<float>(shape.size(), 0.25f)};
-    made.codebook = add(PayloadType::Codebook, encodeCodebook(book));
+    made.codebook = s.add(PayloadType::Codebook, encodeCodebook(book));
     return made;
   };
   Group group;
@@ -54,21 +36,12 @@ Sample sampleBundle() {
   d.groups = {group};
   const BrdfTable table{.order = 4, .lobes = 2, .angles = 2, .values = std::vector<float>(40, 0.1f)};
   d.brdf_tables = {
-      {BrdfFamily::Measured, "acryl_blue.brdf", add(PayloadType::BrdfTable, encodeBrdfTable(table))},
-      {BrdfFamily::Ggx, "", add(PayloadType::BrdfTable, encodeBrdfTable(table))}};
+      {BrdfFamily::Measured, "acryl_blue.brdf", s.add(PayloadType::BrdfTable, encodeBrdfTable(table))},
+      {BrdfFamily::Ggx, "", s.add(PayloadType::BrdfTable, encodeBrdfTable(table))}};
   return s;
 }
 
-class GlossyParts : public ::testing::Test {
- protected:
-  void SetUp() override {
-    folder_ = fs::temp_directory_path() / ("lambent-glossy-test-" + std::to_string(::getpid()));
-    fs::create_directories(folder_);
-    path_ = folder_ / "scene.lmb.glb";
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-  fs::path folder_, path_;
-};
+using GlossyParts = BundleFile;
 
 TEST_F(GlossyParts, ComeBackAsTheyWereWritten) {
   const Sample sample = sampleBundle();

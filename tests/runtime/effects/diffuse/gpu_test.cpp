@@ -6,66 +6,18 @@
 #include "runtime/effects/diffuse/diffuse.hpp"
 #include "runtime/effects/diffuse/diffuse_ref.hpp"
 #include "runtime/effects/diffuse/proxies.hpp"
-#include "runtime/sh/zonal.hpp"
-#include "tests/runtime/effects/diffuse/diffuse_fixture.hpp"
+#include "tests/runtime/effects/diffuse/shading_bench.hpp"
 #include "tests/support/gpu_context.hpp"
 
 namespace lambent::effects::diffuse {
 namespace {
 
-struct Bench {
-  streaming::Residency residency;
-  Diffuse diffuse;
-  lighting::GroupLights lights;
-  testing::RandomBundle made;
+struct Bench : testing::ShadingBench<Diffuse> {
+  using ShadingBench::ShadingBench;
+  Diffuse& diffuse = effect;
   Proxies proxies;
-  std::vector<lighting::GroupPlace> places;
-  std::vector<sh::LightVector> incident;
-  lighting::Environment environment = *lighting::Environment::create(
-      {spec::SunLight{
-           .azimuth_deg = 30, .elevation_deg = 40, .angle_deg = 25, .radiance = {3.0f, 2.0f, 1.0f}},
-       spec::ConstantLight{.radiance = {0.2f, 0.3f, 0.5f}}});
 
-  Bench(testing::BundleMaker& maker, const testing::RandomBundleOptions& options,
-        std::uint64_t page_bytes = gpu::Arena::kMaxPageBytes)
-      : residency(page_bytes), made(maker.make(options)) {
-    EXPECT_TRUE(residency.add(made.description));
-    for (std::uint32_t k = 0; k < options.light_samples; ++k)
-      incident.push_back(sh::discLight(static_cast<int>(options.order), maker.direction(), 0.7,
-                                       glm::vec3(1.0f, 2.0f, 0.5f)));
-    for (std::uint32_t g = 0; g < options.groups; ++g) {
-      places.push_back({.world_from_group = maker.rotation(),
-                        .order = options.order,
-                        .lamps = std::vector<glm::vec3>(options.lamps, glm::vec3(0.7f, 0.3f, 1.1f))});
-      if (options.light_samples > 1) places.back().incident.clear();
-      for (std::uint32_t k = 0; k < options.light_samples && options.light_samples > 1; ++k)
-        places.back().incident.push_back({.light = &incident[k], .version = 1});
-    }
-  }
-  void upload(const streaming::Ready& item) { ASSERT_TRUE(residency.upload(0, item)); }
-  void uploadMeshes() {
-    for (const auto& item : made.meshes) upload(item);
-  }
-  void uploadRows() {
-    for (const auto& item : made.rows) upload(item);
-  }
-  // Codebooks, and of each transfer the first `count` planes.
-  void uploadTransfer(std::uint32_t count) {
-    for (std::size_t cell = 0; cell < made.codebooks.size(); ++cell) uploadCell(cell, count);
-  }
-  void uploadCell(std::size_t cell, std::uint32_t count) {
-    if (!made.light_weights.empty()) upload(made.light_weights[cell]);
-    for (const auto& item : made.codebooks[cell]) upload(item);
-    for (const auto& plane : made.planes[cell])
-      if (plane.plane < count) upload(plane);
-  }
-  std::uint32_t shade(TransferMode mode = TransferMode::Full) {
-    gpu::Counters counters;
-    lights.update(environment, sh::Window::Off, places, counters);
-    const Result<void> shaded = diffuse.shade(residency, lights, mode, counters);
-    EXPECT_TRUE(shaded) << shaded.error().line();
-    return counters.dispatches;
-  }
+  std::uint32_t shade(TransferMode mode = TransferMode::Full) { return shadeIn(mode); }
 
   std::vector<std::uint64_t> shadedGroups() const {
     std::vector<std::uint64_t> shaded;

@@ -4,61 +4,22 @@
 #include <algorithm>
 #include <vector>
 
-#include <gtest/gtest.h>
-
 #include "runtime/effects/glossy/glossy.hpp"
 #include "runtime/effects/glossy/glossy_ref.hpp"
-#include "runtime/sh/zonal.hpp"
-#include "tests/runtime/effects/diffuse/diffuse_fixture.hpp"
+#include "tests/runtime/effects/diffuse/shading_bench.hpp"
 
 namespace lambent::effects::glossy::testing {
 
-struct Bench {
-  streaming::Residency residency;
-  Glossy glossy;
-  lighting::GroupLights lights;
-  lambent::testing::RandomBundle made;
-  std::vector<lighting::GroupPlace> places;
-  std::vector<sh::LightVector> incident;
-  lighting::Environment environment = *lighting::Environment::create(
-      {spec::SunLight{
-           .azimuth_deg = 30, .elevation_deg = 40, .angle_deg = 25, .radiance = {3.0f, 2.0f, 1.0f}},
-       spec::ConstantLight{.radiance = {0.2f, 0.3f, 0.5f}}});
+struct Bench : lambent::testing::ShadingBench<Glossy> {
+  using ShadingBench::ShadingBench;
+  Glossy& glossy = effect;
 
-  Bench(lambent::testing::BundleMaker& maker, const lambent::testing::RandomBundleOptions& options)
-      : made(maker.make(options)) {
-    EXPECT_TRUE(residency.add(made.description));
-    for (std::uint32_t k = 0; k < options.light_samples; ++k)
-      incident.push_back(sh::discLight(static_cast<int>(options.order), maker.direction(), 0.7,
-                                       glm::vec3(1.0f, 2.0f, 0.5f)));
-    for (std::uint32_t g = 0; g < options.groups; ++g) {
-      places.push_back({.world_from_group = maker.rotation(),
-                        .order = options.order,
-                        .lamps = std::vector<glm::vec3>(options.lamps, glm::vec3(0.7f, 0.3f, 1.1f))});
-      if (options.light_samples > 1) places.back().incident.clear();
-      for (std::uint32_t k = 0; k < options.light_samples && options.light_samples > 1; ++k)
-        places.back().incident.push_back({.light = &incident[k], .version = 1});
-    }
-  }
-
-  void upload(const streaming::Ready& item) { ASSERT_TRUE(residency.upload(0, item)); }
   void uploadAll() {
-    for (const auto& item : made.meshes) upload(item);
-    for (const auto& item : made.rows) upload(item);
-    for (std::size_t cell = 0; cell < made.codebooks.size(); ++cell) uploadCell(cell);
+    uploadMeshes();
+    uploadRows();
+    uploadTransfer();
   }
-  void uploadCell(std::size_t cell) {
-    if (!made.light_weights.empty()) upload(made.light_weights[cell]);
-    for (const auto& item : made.codebooks[cell]) upload(item);
-    for (const auto& plane : made.planes[cell]) upload(plane);
-  }
-  std::uint32_t shade(TransferMode mode = TransferMode::Full) {
-    gpu::Counters counters;
-    lights.update(environment, sh::Window::Off, places, counters);
-    const Result<void> shaded = glossy.shade(residency, lights, mode, counters);
-    EXPECT_TRUE(shaded) << shaded.error().line();
-    return counters.dispatches;
-  }
+  std::uint32_t shade(TransferMode mode = TransferMode::Full) { return shadeIn(mode); }
 
   static std::vector<glm::vec4> samplesOf(gpu::Arena& arena, std::uint32_t page) {
     std::vector<glm::vec4> samples(arena.page(page).byteCount() / sizeof(glm::vec4));
@@ -90,7 +51,7 @@ struct Bench {
         for (uint t = 0; t < tables.cells[i].count; ++t) {
           const diffuse::TransferRecord& record = tables.transfers[tables.cells[i].first + t];
           if (record.visibility != 0)
-            ref::projectTransfer(memory, gauntWords(record.order, bandsOf(record.outputs)), record,
+            ref::projectTransfer(memory, gauntWords(record.order, bundle::bandsOf(record.outputs)), record,
                                  tables.places, products);
           else
             diffuse::ref::projectTransfer(memory, record, tables.places, products);
@@ -106,8 +67,6 @@ struct Bench {
     }
     return difference / largest;
   }
-
-  static std::uint32_t bandsOf(std::uint32_t outputs) { return outputs == 16 ? 4 : outputs == 25 ? 5 : 6; }
 };
 
 }  // namespace lambent::effects::glossy::testing

@@ -1,0 +1,62 @@
+// Bundles in the making, and a folder for the file that vanishes with the test.
+#pragma once
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "runtime/bundle/reader.hpp"
+#include "runtime/bundle/transfer_codec.hpp"
+#include "runtime/bundle/writer.hpp"
+
+namespace lambent::bundle {
+
+class BundleFile : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = std::filesystem::temp_directory_path() / ("lambent-bundle-test-" + std::to_string(::getpid()));
+    std::filesystem::create_directories(folder_);
+    path_ = folder_ / "scene.lmb.glb";
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  std::string bytes() const {
+    std::ifstream in(path_, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
+  void replace(const std::string& bytes) const {
+    std::ofstream(path_, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  }
+  // Everything that the demo would read of the file.
+  Result<void> readAll() const {
+    auto reader = Reader::open(path_);
+    if (!reader) return failAgain(reader.error());
+    return reader->checkAll();
+  }
+
+  std::filesystem::path folder_, path_;
+};
+
+// A description and the bytes that it speaks of.
+struct Sample {
+  Description description;
+  std::vector<Blob> blobs;
+
+  // As the next payload; its priority is its place.
+  std::uint32_t add(PayloadType type, const Blob& bytes) {
+    const bool zstd = type == PayloadType::WeightPlane;
+    blobs.push_back(zstd ? compressZstd(bytes, 3) : bytes);
+    std::vector<Payload>& payloads = description.payloads;
+    payloads.push_back({type, zstd ? PayloadCodec::Zstd : PayloadCodec::Raw,
+                        static_cast<std::uint32_t>(blobs.size() - 1), bytes.size(),
+                        static_cast<std::uint32_t>(payloads.size())});
+    return static_cast<std::uint32_t>(payloads.size() - 1);
+  }
+};
+
+}  // namespace lambent::bundle
