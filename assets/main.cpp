@@ -1,4 +1,5 @@
 // lambent-assets OUT_DIR: writes the sample scenes and light probes that ship. The same bytes each time.
+#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
 #include <system_error>
@@ -28,11 +29,17 @@ Result<void> writeAll(const std::filesystem::path& folder) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 2) {
-    std::fputs("usage: lambent-assets OUT_DIR\n", stderr);
-    return 2;
+  CLI::App app("Writes the sample scenes and light probes of Lambent.", "lambent-assets");
+  std::filesystem::path folder;
+  app.add_option("OUT_DIR", folder, "folder to write them to; made if it is not there")->required();
+  app.set_version_flag("--version", "lambent-assets " LAMBENT_VERSION);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    constexpr int kWrongUsage = 2;
+    return app.exit(error) == 0 ? 0 : kWrongUsage;
   }
-  if (const Result<void> done = writeAll(argv[1]); !done) {
+  if (const Result<void> done = writeAll(folder); !done) {
     std::fprintf(stderr, "lambent-assets: %s\n", done.error().line().c_str());
     return 1;
   }
