@@ -5,6 +5,7 @@
 #include <glm/geometric.hpp>
 
 #include "runtime/bundle/transfer_codec.hpp"
+#include "runtime/bundle/volume_grid.hpp"
 
 namespace lambent::baker {
 
@@ -86,13 +87,15 @@ class Assembler {
         group.light_samples.push_back(origin + point);
       for (std::size_t c = 0; c < baked[g].samples.cells.size(); ++c) {
         const SampleCell& cell = baked[g].samples.cells[c];
-        group.cells.push_back({cell.first,
-                               cell.count,
-                               origin + cell.bounds_min,
-                               origin + cell.bounds_max,
-                               {},
-                               baked[g].light_samples.cells[c].points});
+        group.cells.push_back({.first_sample = cell.first,
+                               .sample_count = cell.count,
+                               .bounds_min = origin + cell.bounds_min,
+                               .bounds_max = origin + cell.bounds_max,
+                               .transfers = {},
+                               .light_samples = baked[g].light_samples.cells[c].points});
       }
+      if (baked[g].volume) addVolume(*baked[g].volume, planned, group);
+      if (baked[g].neighborhood) addNeighborhood(*baked[g].neighborhood, group);
       description_.groups.push_back(std::move(group));
       for (std::size_t d = 0; d < planned.draws.size(); ++d)
         addDraw(planned.draws[d], static_cast<std::uint32_t>(g), baked[g].geometry.draws[d],
@@ -112,10 +115,18 @@ class Assembler {
   void addTransfer(const std::vector<BakedGroup>& baked) {
     std::size_t most_planes = 0;
     const auto forAll = [&](const auto& visit) {
-      for (std::size_t g = 0; g < baked.size(); ++g)
-        for (std::size_t c = 0; c < baked[g].cells.size(); ++c)
-          for (std::size_t t = 0; t < baked[g].cells[c].size(); ++t)
-            visit(baked[g].cells[c][t], description_.groups[g].cells[c].transfers, t);
+      for (std::size_t g = 0; g < baked.size(); ++g) {
+        auto stored = description_.groups[g].cells.begin();
+        const auto visitCell = [&](const std::vector<CodedTransfer>& coded) {
+          for (std::size_t t = 0; t < coded.size(); ++t) visit(coded[t], stored->transfers, t);
+          ++stored;
+        };
+        for (const auto& coded : baked[g].cells) visitCell(coded);
+        if (baked[g].volume)
+          for (const CodedCell& cell : baked[g].volume->cells) visitCell(cell.transfers);
+        if (baked[g].neighborhood)
+          for (const CodedCell& cell : baked[g].neighborhood->cells) visitCell(cell.transfers);
+      }
     };
     forAll([&](const CodedTransfer& coded, auto& stored, std::size_t) {
       stored.push_back(addCodebook(coded));
@@ -154,6 +165,60 @@ class Assembler {
     const std::uint32_t index = addPayload(type, std::move(raw), priority);
     report_.transfer_bytes += blobs_.back().size();
     return index;
+  }
+
+  void addGridCells(const std::vector<CodedCell>& cells, bundle::CellKind kind, std::uint32_t light_sample,
+                    bundle::Group& group) {
+    for (const CodedCell& cell : cells) {
+      group.cells.push_back({.first_sample = group.sample_count,
+                             .sample_count = cell.count,
+                             .bounds_min = cell.bounds_min,
+                             .bounds_max = cell.bounds_max,
+                             .transfers = {},
+                             .light_samples = {light_sample},
+                             .kind = kind});
+      group.sample_count += cell.count;
+    }
+  }
+
+  void addVolume(const BakedVolume& baked, const RigidGroup& planned, bundle::Group& group) {
+    group.within = planned.within;
+    group.light_samples = {baked.light_sample};
+    const glm::mat4& m = baked.group_from_grid;
+    const glm::vec3 extent(baked.size);
+    group.bounds_min = group.bounds_max = glm::vec3(m[3]);
+    for (int corner = 0; corner < 8; ++corner) {
+      const glm::vec3 at = extent * glm::vec3(corner & 1, corner >> 1 & 1, corner >> 2);
+      const glm::vec3 place(m * glm::vec4(at, 1.0f));
+      group.bounds_min = glm::min(group.bounds_min, place);
+      group.bounds_max = glm::max(group.bounds_max, place);
+    }
+    bundle::VolumeGrid grid{.size = baked.size,
+                            .group_from_grid = m,
+                            .density = 0,
+                            .bits = baked.bits,
+                            .density_max = baked.density_max,
+                            .albedo = baked.albedo,
+                            .g = baked.g,
+                            .transfer_size = baked.transfer_size,
+                            .voxels = 0};
+    grid.density = addTransferPayload(bundle::PayloadType::Density, baked.density, kRowsPriority);
+    grid.voxels =
+        addTransferPayload(bundle::PayloadType::Voxels, bundle::encodeVoxels(baked.voxels), kRowsPriority);
+    group.volume = grid;
+    addGridCells(baked.cells, bundle::CellKind::Volume, 0, group);
+  }
+
+  // The group is taken to stand in the light of its middle.
+  void addNeighborhood(const BakedNeighborhood& baked, bundle::Group& group) {
+    const glm::vec3 center = 0.5f * (group.bounds_min + group.bounds_max);
+    const auto nearer = [&](const glm::vec3& a, const glm::vec3& b) {
+      return glm::distance(a, center) < glm::distance(b, center);
+    };
+    const auto nearest = std::min_element(group.light_samples.begin(), group.light_samples.end(), nearer);
+    group.neighborhood = {baked.size, baked.bounds_min, baked.bounds_max};
+    addGridCells(baked.cells, bundle::CellKind::Neighborhood,
+                 static_cast<std::uint32_t>(nearest - group.light_samples.begin()), group);
   }
 
   // All of a cell's transfer but the planes, which come after the codebooks of all cells.

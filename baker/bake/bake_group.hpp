@@ -2,10 +2,12 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <stop_token>
 #include <vector>
 
 #include "baker/bake/bake.hpp"
+#include "baker/bake/baked_grids.hpp"
 #include "baker/bake/ship_meshes.hpp"
 #include "baker/brdf/surface_brdfs.hpp"
 #include "baker/compress/cpca.hpp"
@@ -25,8 +27,10 @@ struct BakedGroup {
   // Per sample cell: light of the environment (of a glossy cell visibility, then bounced light), then, where
   // there are some, of the group's lights.
   std::vector<std::vector<CodedTransfer>> cells;
-  LightSamples light_samples;  // as SampleSet::positions
-  bundle::CaptureProxy proxy;  // group frame
+  LightSamples light_samples;         // as SampleSet::positions
+  bundle::CaptureProxy proxy;         // group frame
+  std::optional<BakedVolume> volume;  // then all of the above is empty
+  std::optional<BakedNeighborhood> neighborhood;
 };
 
 // tables: of the scene's glossy materials; empty where all are shown as Lambert. Adds what it did to the

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "baker/import/measured_brdf.hpp"
+#include "baker/import/volume.hpp"
 #include "runtime/base/result.hpp"
 #include "runtime/bundle/gltf_types.hpp"
 #include "runtime/bundle/mesh.hpp"
@@ -32,6 +33,13 @@ struct SceneImage {
   std::vector<std::byte> file_bytes;  // as it stands in the source
 };
 
+// extras.lambent.neighborhood of a node that starts a rigid group: asks for neighborhood transfer.
+struct NeighborhoodRequest {
+  std::uint32_t node = 0;
+  glm::uvec3 size{0};      // points; 0: as the bake sees fit
+  glm::vec3 extent{0.0f};  // of the grid, m, about the centre of the group's bounds; 0: as the bake sees fit
+};
+
 struct Scene {
   std::filesystem::path source;
   std::vector<gltf::Node> nodes;
@@ -44,7 +52,9 @@ struct Scene {
   std::vector<gltf::Camera> cameras;
   std::vector<gltf::Light> lights;
   std::vector<gltf::Animation> animations;
-  std::vector<std::string> warnings;  // what was left out, one sentence each
+  std::vector<SceneVolume> volumes;                // at most one at a node
+  std::vector<NeighborhoodRequest> neighborhoods;  // at most one for a node
+  std::vector<std::string> warnings;               // what was left out, one sentence each
 };
 
 }  // namespace lambent::baker

@@ -68,9 +68,8 @@ EffectPlan makePlan(const Scene& scene, std::span<const EffectEntry> effects) {
 }
 
 bool EffectPlan::bakes(std::string_view effect) const {
-  return std::any_of(effects.begin(), effects.end(), [&](const EffectChoice& choice) {
-    return choice.effect == effect && choice.baked;
-  });
+  return std::any_of(effects.begin(), effects.end(),
+                     [&](const EffectChoice& choice) { return choice.effect == effect && choice.baked; });
 }
 
 }  // namespace lambent::baker

@@ -1,5 +1,7 @@
 #include "baker/plan/rigid_groups.hpp"
 
+#include <algorithm>
+
 #include <Eigen/Geometry>
 #include <Eigen/SVD>
 #include <glm/gtc/matrix_transform.hpp>
@@ -43,10 +45,29 @@ class GroupFinder {
         stack.emplace_back(*child, group);
     }
     std::erase_if(groups_, [](const RigidGroup& group) { return group.draws.empty(); });
+    addVolumes();
     return std::move(groups_);
   }
 
  private:
+  // A volume that its own node moves hangs in the group which that node starts.
+  void addVolumes() {
+    const auto surface_groups = static_cast<std::ptrdiff_t>(groups_.size());
+    for (std::size_t v = 0; v < scene_.volumes.size(); ++v) {
+      const auto node = static_cast<std::int32_t>(scene_.volumes[v].node);
+      std::int32_t mover = node;
+      while (mover >= 0 && !startsRigidGroup(scene_.nodes[static_cast<std::size_t>(mover)]))
+        mover = scene_.nodes[static_cast<std::size_t>(mover)].parent;
+      const auto end = groups_.begin() + surface_groups;
+      const auto holder =
+          std::find_if(groups_.begin(), end, [&](const RigidGroup& group) { return group.root == mover; });
+      const auto within = holder == end ? -1 : static_cast<std::int32_t>(holder - groups_.begin());
+      RigidGroup& group = groups_[startGroup(node)];
+      group.volume = static_cast<std::int32_t>(v);
+      group.within = within;
+    }
+  }
+
   std::size_t startGroup(std::int32_t root) {
     const gltf::Node& node = scene_.nodes[static_cast<std::size_t>(root)];
     const glm::mat4& world = world_[static_cast<std::size_t>(root)];

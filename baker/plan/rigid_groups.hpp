@@ -31,6 +31,10 @@ struct RigidGroup {
   glm::vec3 rest_translation{0.0f};
   glm::quat rest_rotation{1.0f, 0.0f, 0.0f, 0.0f};
   std::vector<PlannedDraw> draws;
+  // A volume is a group by itself, whose root is its node: into Scene::volumes; -1: surfaces.
+  std::int32_t volume = -1;
+  // Of a volume: the group of surfaces that it never moves against, into the same list; -1: none.
+  std::int32_t within = -1;
 };
 
 // Whether the node, with all below it, moves by itself.
@@ -38,7 +42,8 @@ inline bool startsRigidGroup(const gltf::Node& node) {
   return node.animated || node.movable;
 }
 
-// Groups without geometry are left out. Draws come in the order of the scene graph.
+// Groups without geometry are left out. Draws come in the order of the scene graph; volumes come last, in the
+// order of Scene::volumes.
 std::vector<RigidGroup> findRigidGroups(const Scene& scene);
 
 }  // namespace lambent::baker

@@ -9,6 +9,7 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -24,7 +25,8 @@ inline constexpr std::uint32_t kVersionFirstLight = 1;
 inline constexpr std::uint32_t kVersionClusteredTransfer = 2;
 inline constexpr std::uint32_t kVersionLocalLight = 3;
 inline constexpr std::uint32_t kVersionGlossyTransfer = 4;
-inline constexpr std::uint32_t kVersionCurrent = kVersionGlossyTransfer;
+inline constexpr std::uint32_t kVersionVolumesAndNeighborhoods = 5;
+inline constexpr std::uint32_t kVersionCurrent = kVersionVolumesAndNeighborhoods;
 
 // A byte range of the GLB's binary chunk.
 struct View {
@@ -69,6 +71,8 @@ enum class PayloadType : std::uint8_t {
   LightWeights,  // which light samples each sample of a cell is lit from (light_weights.hpp)
   CaptureProxy,  // a group in a few triangles, as other groups see it (capture_proxy.hpp)
   BrdfTable,     // b(v) of a family of BRDFs (brdf_table.hpp)
+  Density,       // extinction of a volume at its own resolution (volume_grid.hpp)
+  Voxels,        // which voxels of its transfer grid a volume has samples at (volume_grid.hpp)
 };
 
 enum class PayloadCodec : std::uint8_t { Raw, Zstd };
@@ -107,6 +111,13 @@ struct CellTransfer {
 // Light samples that one cell may be lit from.
 inline constexpr std::uint32_t kMaxLightSamples = 64;
 
+// What the samples of a cell are points of.
+enum class CellKind : std::uint8_t {
+  Surface,
+  Volume,       // voxels of VolumeGrid: mean radiance that arrives, of which the medium scatters its albedo
+  Neighborhood  // points of NeighborhoodGrid: what the group changes in the light there, (M - I) l
+};
+
 // The unit of storage: at most 64 Ki samples.
 struct Cell {
   std::uint32_t first_sample = 0, sample_count = 0;
@@ -119,6 +130,7 @@ struct Cell {
   // list. At most kMaxLightSamples. With one entry all its samples take that one whole.
   std::vector<std::uint32_t> light_samples = {0};
   std::int32_t light_weights = -1;  // payload; -1 where there is one light sample
+  CellKind kind = CellKind::Surface;
 
   std::uint32_t outputs() const { return transfers.empty() ? 1 : transfers.front().shape.outputs; }
 };
@@ -133,6 +145,32 @@ struct GroupLight {
   glm::vec3 color{0.0f};
 };
 
+// A medium that absorbs and scatters, in a box of voxels. Density at its own resolution, for optical depth
+// and ray marching; transfer on a grid of its own over the same box, at the voxels that `voxels` lists, in
+// the order of the samples of the group's volume cells (outputs 1, or 9, 16 and 25 of anisotropic phase
+// functions: radiance that arrives, in bands). Values stand at voxel centres, are linear between them, and
+// constant in the half voxel towards the faces of the box.
+struct VolumeGrid {
+  glm::uvec3 size{1};               // voxels of the density
+  glm::mat4 group_from_grid{1.0f};  // affine; of voxel coordinates: voxel (i, j, k) fills [i, i + 1] x ...
+  std::uint32_t density = 0;        // payload
+  std::uint32_t bits = 8;           // of a density code, 8 or 16
+  float density_max = 0.0f;         // extinction of the largest code, in m^-1; code 0 is none
+  glm::vec3 albedo{1.0f};           // share of the extinction that scatters
+  float g = 0.0f;                   // Henyey-Greenstein, mean cosine, -1 < g < 1
+  glm::uvec3 transfer_size{1};      // voxels of the transfer grid
+  std::uint32_t voxels = 0;         // payload
+};
+
+// How the group changes the light around it, on a grid of points: the change (M - I) in the group's frame,
+// which goes to 0 towards the faces of the grid. Points are the samples of the group's neighborhood cells, x
+// fastest, then y, then z. Outputs: 9 (bands 0..2, all that a diffuse receiver takes), or as many bands as
+// the light has, for receivers with transfer of their own.
+struct NeighborhoodGrid {
+  glm::uvec3 size{2};                            // points, 2 or more each way
+  glm::vec3 bounds_min{0.0f}, bounds_max{0.0f};  // the first and the last point, group frame
+};
+
 // The unit of transport: nodes that never move relative to each other. Transfer is stored in the group's
 // frame: the rotation and place of its root node at rest, without scale.
 struct Group {
@@ -142,17 +180,24 @@ struct Group {
   glm::quat rest_rotation{1.0f, 0.0f, 0.0f, 0.0f};  // world_from_group at rest
   glm::vec3 bounds_min{0.0f}, bounds_max{0.0f};     // group frame
   std::uint32_t sample_count = 0;
-  std::vector<Cell> cells;         // by rising outputs: plain, then normal-mapped, then glossy
+  // Surfaces by rising outputs: plain, then normal-mapped, then glossy; then the volume, then the
+  // neighborhood.
+  std::vector<Cell> cells;
   std::vector<GroupLight> lights;  // one per light column, in their order
   // Where the light that comes in from outside is sampled, group frame: at least one point. All cells
   // together use every one.
   std::vector<glm::vec3> light_samples = {glm::vec3(0.0f)};
-  std::int32_t proxy = -1;  // payload: what other groups see of it; -1: nothing
+  std::int32_t proxy = -1;           // payload: what other groups see of it; -1: nothing
+  std::optional<VolumeGrid> volume;  // a group with a volume is nothing else
+  // Of a volume: the group that it never moves against, whose surfaces stand in its transfer; -1: none.
+  std::int32_t within = -1;
+  std::optional<NeighborhoodGrid> neighborhood;
 
-  // Samples of the cells with so many outputs; those with fewer stand before them.
+  // Surface samples of the cells with so many outputs; those with fewer stand before them.
   std::uint32_t samplesWith(std::uint32_t outputs) const {
     std::uint32_t count = 0;
-    for (const Cell& cell : cells) count += cell.outputs() == outputs ? cell.sample_count : 0;
+    for (const Cell& cell : cells)
+      if (cell.kind == CellKind::Surface && cell.outputs() == outputs) count += cell.sample_count;
     return count;
   }
 };
@@ -215,7 +260,8 @@ struct Description {
   // Of all glossy cells and draws; 0 where there are none.
   std::uint32_t glossyOutputs() const {
     for (const Group& group : groups)
-      if (!group.cells.empty() && isGlossy(group.cells.back().outputs())) return group.cells.back().outputs();
+      for (const Cell& cell : group.cells)
+        if (cell.kind == CellKind::Surface && isGlossy(cell.outputs())) return cell.outputs();
     return 0;
   }
 };

@@ -24,7 +24,7 @@ Result<Description> fromJson(const std::string& text, std::uint64_t binary_bytes
       return fail(
           file, fmt::format("has format version {}, newer than this program's {}", version, kVersionCurrent),
           "use a newer lambent or bake it again");
-    if (version >= kVersionFirstLight && version < kVersionGlossyTransfer)
+    if (version >= kVersionFirstLight && version < kVersionVolumesAndNeighborhoods)
       return fail(file,
                   fmt::format("was written by an older program (format version {}, this one reads {})",
                               version, kVersionCurrent),

@@ -5,8 +5,10 @@
 #include <optional>
 
 #include "runtime/bundle/description.hpp"
+#include "runtime/bundle/grid_json.hpp"
 #include "runtime/bundle/json_fields.hpp"
 #include "runtime/bundle/light_weights.hpp"
+#include "runtime/bundle/payload_field.hpp"
 
 namespace lambent::bundle {
 
@@ -15,8 +17,10 @@ namespace {
 constexpr std::uint32_t kMaxOrder = 8, kMaxColumns = 4096, kMaxCellSamples = 65536;
 constexpr std::uint32_t kMaxClusters = 65536;
 constexpr std::uint64_t kMaxPayloadBytes = std::uint64_t{1} << 32;  // refuse to allocate more for one payload
-constexpr std::array kPayloadTypes = {"vertexRows",   "codebook",     "clusterIds", "weightPlane",
-                                      "lightWeights", "captureProxy", "brdfTable"};
+constexpr std::array kPayloadTypes = {"vertexRows",  "codebook",     "clusterIds",
+                                      "weightPlane", "lightWeights", "captureProxy",
+                                      "brdfTable",   "density",      "voxels"};
+constexpr std::array kCellKinds = {"surface", "volume", "neighborhood"};
 constexpr std::array kBrdfFamilies = {"ggx", "anisotropicGgx", "measured"};
 // Transferred light of glossy surfaces has 4, 5 or 6 bands, and so may the light that they are given.
 constexpr std::uint32_t kMaxGlossyOrder = 6;
@@ -60,15 +64,6 @@ Json cellTransferJson(const CellTransfer& transfer) {
   return json;
 }
 
-// A payload of the type wanted, of the size wanted.
-std::uint32_t payloadIndex(const Field& field, const Description& d, PayloadType type,
-                           std::optional<std::uint64_t> raw_length) {
-  const std::uint32_t index = field.index(d.payloads.size());
-  if (d.payloads[index].type != type) field.fault("is a payload of another type");
-  if (raw_length && d.payloads[index].raw_length != *raw_length) field.fault("is a payload of another size");
-  return index;
-}
-
 std::uint32_t readOutputs(const Field& field) {
   const auto outputs = static_cast<std::uint32_t>(field.count(kMaxGlossyOrder * kMaxGlossyOrder));
   if (outputs != 1 && outputs != kMappedOutputs && outputs != 16 && outputs != 25 && outputs != 36)
@@ -83,7 +78,7 @@ std::uint32_t readChannels(const Field& field, bool may_be_none) {
   return channels;
 }
 
-TransferShape readShape(const Field& field, const std::vector<GroupLight>& lights) {
+TransferShape readShape(const Field& field, const std::vector<GroupLight>& lights, CellKind kind) {
   TransferShape shape;
   shape.order = static_cast<std::uint32_t>(field["order"].count(kMaxOrder));
   shape.light_columns = static_cast<std::uint32_t>(field["lightColumns"].count(kMaxColumns));
@@ -92,7 +87,8 @@ TransferShape readShape(const Field& field, const std::vector<GroupLight>& light
   if (shape.light_columns != 0 && shape.light_columns != lights.size())
     field["lightColumns"].fault("are not as many as the group has lights");
   shape.outputs = readOutputs(field["outputs"]);
-  const bool glossy = shape.glossy();
+  // Light transferred by matrices, of which nothing but visibility may be stored.
+  const bool glossy = shape.glossy() || kind == CellKind::Neighborhood;
   if (glossy && shape.order > kMaxGlossyOrder) field["order"].fault("is over 6 for glossy surfaces");
   shape.full_channels = readChannels(field["fullChannels"], /*may_be_none=*/true);
   // Bounced light by itself, beside the visibility, has no shadowed part.
@@ -120,9 +116,9 @@ WeightPlane readPlane(const Field& field, const Description& d, std::uint32_t la
 }
 
 CellTransfer readCellTransfer(const Field& field, const Description& d, const Group& group,
-                              std::uint32_t sample_count) {
+                              std::uint32_t sample_count, CellKind kind) {
   CellTransfer transfer;
-  transfer.shape = readShape(field, group.lights);
+  transfer.shape = readShape(field, group.lights, kind);
   transfer.clusters = static_cast<std::uint32_t>(field["clusters"].count(kMaxClusters));
   if (transfer.clusters == 0) field["clusters"].fault("is 0");
   const auto planes = field["planes"].items();
@@ -168,9 +164,10 @@ void readCellLights(const Field& field, const Description& d, const Group& group
 // the group's lights.
 void checkParts(const Field& field, const Cell& cell) {
   enum Part { Environment, Bounced, Lights };
-  const auto partOf = [](const TransferShape& shape) {
+  const auto partOf = [&](const TransferShape& shape) {
     if (shape.order == 0) return Lights;
-    return shape.glossy() && !shape.isVisibility() ? Bounced : Environment;
+    const bool matrices = shape.glossy() || cell.kind == CellKind::Neighborhood;
+    return matrices && !shape.isVisibility() ? Bounced : Environment;
   };
   for (std::size_t t = 0; t < cell.transfers.size(); ++t) {
     const TransferShape& shape = cell.transfers[t].shape;
@@ -188,14 +185,22 @@ Cell readCell(const Field& field, const Description& d, const Group& group, std:
   if (cell.first_sample != first_sample) field["firstSample"].fault("leaves a gap between cells");
   cell.sample_count = static_cast<std::uint32_t>(
       field["sampleCount"].count(std::min(kMaxCellSamples, group.sample_count - cell.first_sample)));
+  cell.kind = readWord<CellKind>(field["kind"], kCellKinds);
   cell.bounds_min = field["boundsMin"].vector<glm::vec3>();
   cell.bounds_max = field["boundsMax"].vector<glm::vec3>();
   for (const Field& entry : field["transfers"].items())
-    cell.transfers.push_back(readCellTransfer(entry, d, group, cell.sample_count));
+    cell.transfers.push_back(readCellTransfer(entry, d, group, cell.sample_count, cell.kind));
   checkParts(field["transfers"], cell);
   readCellLights(field, d, group, cell);
-  if (!group.cells.empty() && group.cells.back().outputs() > cell.outputs())
-    field.fault("has fewer outputs than the cell before it");
+  if (!group.cells.empty()) {
+    const Cell& before = group.cells.back();
+    if (before.kind > cell.kind) field["kind"].fault("is out of order");
+    if (before.kind == CellKind::Surface && cell.kind == CellKind::Surface &&
+        before.outputs() > cell.outputs())
+      field.fault("has fewer outputs than the cell before it");
+    if (before.kind == cell.kind && cell.kind != CellKind::Surface && before.outputs() != cell.outputs())
+      field.fault("has other outputs than the cell before it");
+  }
   return cell;
 }
 
@@ -213,11 +218,9 @@ GroupLight readGroupLight(const Field& field, const Description& d) {
 Json cellJson(const Cell& cell) {
   Json transfers = Json::array();
   for (const CellTransfer& transfer : cell.transfers) transfers.push_back(cellTransferJson(transfer));
-  Json json = {{"firstSample", cell.first_sample},
-               {"sampleCount", cell.sample_count},
-               {"boundsMin", vectorJson(cell.bounds_min)},
-               {"boundsMax", vectorJson(cell.bounds_max)},
-               {"transfers", transfers},
+  Json json = {{"kind", word(cell.kind, kCellKinds)},      {"firstSample", cell.first_sample},
+               {"sampleCount", cell.sample_count},         {"boundsMin", vectorJson(cell.bounds_min)},
+               {"boundsMax", vectorJson(cell.bounds_max)}, {"transfers", transfers},
                {"lightSamples", cell.light_samples}};
   if (cell.light_weights >= 0) json["lightWeights"] = cell.light_weights;
   return json;
@@ -242,6 +245,9 @@ Json groupJson(const Group& group) {
                {"cells", Json::array()}};
   if (group.node >= 0) json["node"] = group.node;
   if (group.proxy >= 0) json["proxy"] = group.proxy;
+  if (group.volume) json["volume"] = volumeJson(*group.volume);
+  if (group.within >= 0) json["within"] = group.within;
+  if (group.neighborhood) json["neighborhood"] = neighborhoodJson(*group.neighborhood);
   for (const glm::vec3& point : group.light_samples) json["lightSamples"].push_back(vectorJson(point));
   for (const GroupLight& light : group.lights) json["lights"].push_back(groupLightJson(light));
   for (const Cell& cell : group.cells) json["cells"].push_back(cellJson(cell));
@@ -274,6 +280,7 @@ Group readGroup(const Field& field, const Description& d) {
     next += group.cells.back().sample_count;
   }
   if (next != group.sample_count) field["cells"].fault("do not hold all samples of the group");
+  readGrids(field, d, group);
   // Nothing is captured for nobody. (A group without cells has one all the same.)
   std::vector<bool> used(group.light_samples.size(), group.cells.empty());
   for (const Cell& cell : group.cells)
@@ -310,7 +317,7 @@ void checkBrdfTables(const Field& field, const Description& d) {
   const std::uint32_t outputs = d.glossyOutputs();
   for (const Group& group : d.groups)
     for (const Cell& cell : group.cells)
-      if (isGlossy(cell.outputs()) && cell.outputs() != outputs)
+      if (cell.kind == CellKind::Surface && isGlossy(cell.outputs()) && cell.outputs() != outputs)
         field.fault("serve cells of different outputs");
 
   const auto has = [&](BrdfFamily family) {

@@ -214,7 +214,7 @@ Result<void> Frame::shade(World& world) {
 
 Result<void> Frame::shadeGlossy(World& world) {
   const auto& cells = world.residency().cells();
-  if (std::none_of(cells.begin(), cells.end(), [](const auto& cell) { return cell.glossy(); })) return {};
+  if (std::none_of(cells.begin(), cells.end(), [](const auto& cell) { return cell.matrices(); })) return {};
   gpu::PassTimers::Scope pass(timers_, "glossy");
   Result<void> done = glossy_.shade(world.residency(), group_lights_, options_.transfer, pass.counters());
   counts_.cells_shaded += glossy_.cellsShadedLast();

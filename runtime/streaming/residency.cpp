@@ -148,11 +148,14 @@ Result<std::uint32_t> Residency::add(const bundle::Description& description) {
                            .samples = {},
                            .light_samples = group.light_samples,
                            .proxy = {}};
+    std::uint32_t next_output = 0;
     for (const bundle::Cell& cell : group.cells) {
       ResidentCell resident_cell{.group = bundle.first_group + resident.index,
+                                 .kind = cell.kind,
                                  .first_sample = cell.first_sample,
                                  .sample_count = cell.sample_count,
                                  .outputs = cell.outputs(),
+                                 .first_output = next_output,  // from where the group's samples will lie
                                  .block = {},
                                  .transfers = {},
                                  .light_samples = cell.light_samples,
@@ -162,7 +165,9 @@ Result<std::uint32_t> Residency::add(const bundle::Description& description) {
         resident_cell.transfers.push_back(describe(transfer));
         resident.order = std::max(resident.order, transfer.shape.order);
       }
-      if (resident_cell.glossy()) resident.glossy_outputs = resident_cell.outputs;
+      next_output += resident_cell.outputs * resident_cell.sample_count;
+      if (resident_cell.kind == bundle::CellKind::Surface && bundle::isGlossy(resident_cell.outputs))
+        resident.glossy_outputs = resident_cell.outputs;
       cells_.push_back(std::move(resident_cell));
     }
     groups.push_back(resident);
@@ -202,6 +207,8 @@ Result<std::uint32_t> Residency::add(const bundle::Description& description) {
       if (!samples) return failAgain(samples.error());
       group.samples = *samples;
       samples_.clear(*samples);
+      for (std::uint32_t c = 0; c < group.cell_count; ++c)
+        cells_[group.first_cell + c].first_output += group.samples.word() / 4;
     }
     groups_.push_back(group);
   }

@@ -58,8 +58,11 @@ struct ResidentTransfer {
 
 struct ResidentCell {
   std::uint32_t group = 0;  // into groups()
+  bundle::CellKind kind = bundle::CellKind::Surface;
   std::uint32_t first_sample = 0, sample_count = 0;
   std::uint32_t outputs = 1;
+  // vec4 index, in the page of the group's samples, of output 0 of its first sample; then sample by sample.
+  std::uint32_t first_output = 0;
   gpu::Allocation block;  // transfer arena: codebooks and codes; reserved with the first of them
   std::vector<ResidentTransfer> transfers;
   std::vector<std::uint32_t> light_samples;  // of the group; light weights name them by place
@@ -70,7 +73,9 @@ struct ResidentCell {
   // Enough has arrived to look better than no shadows at all: light weights, every transfer with its codebook
   // and with planes that carry kUsableVariance of what all its planes carry.
   bool usable() const;
-  bool glossy() const { return bundle::isGlossy(outputs); }
+  // Light transferred by matrices, the glossy effect's to shade: of glossy surfaces, of neighborhoods, and of
+  // volumes with as many outputs.
+  bool matrices() const { return bundle::isGlossy(outputs) || kind == bundle::CellKind::Neighborhood; }
 };
 inline constexpr float kUsableVariance = 0.9f;
 
@@ -78,7 +83,8 @@ struct ResidentGroup {
   std::uint32_t bundle = 0, index = 0;  // in its description
   std::uint32_t order = 1, light_columns = 0;
   std::uint32_t first_cell = 0, cell_count = 0;  // into cells()
-  // Samples by their outputs, in this order: one, nine, and those of glossy surfaces.
+  // Samples of surfaces by their outputs, in this order: one, nine, and those of glossy surfaces. Those of
+  // its volume and its neighborhood lie behind them (ResidentCell::first_output).
   std::uint32_t plain_samples = 0, mapped_samples = 0;
   std::uint32_t glossy_outputs = 0;  // of its glossy samples; 0: it has none
   // A vec4 per sample and output, zero until shaded. w: 1 once it is; of glossy samples V_i, the visibility's

@@ -75,10 +75,10 @@ void Diffuse::rebuildTables(const streaming::Residency& residency, const lightin
   mode_seen_ = mode;
   tables_ = {};
   for (const streaming::ResidentCell& cell : residency.cells()) {
-    if (cell.glossy())
+    if (cell.matrices())
       tables_.addNone();
     else
-      tables_.add(residency, cell, lights, mode);
+      tables_.add(cell, lights, mode);
   }
   for (const streaming::ResidentDraw& draw : residency.draws())
     tables_.draws.push_back(describeDraw(residency, draw, lights.firstOf(draw.group), mode));

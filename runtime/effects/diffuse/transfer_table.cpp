@@ -15,7 +15,7 @@ bool takesAny(const bundle::TransferShape& shape, TransferMode mode) {
   return takesFull(shape, mode) || (mode != TransferMode::Unshadowed && shape.shadowed_channels > 0);
 }
 
-TransferRecord describeTransfer(const streaming::ResidentGroup& group, const streaming::ResidentCell& cell,
+TransferRecord describeTransfer(const streaming::ResidentCell& cell,
                                 const streaming::ResidentTransfer& transfer, TransferMode mode) {
   const bundle::TransferShape& shape = transfer.shape;
   const bool full = takesFull(shape, mode);
@@ -37,7 +37,7 @@ TransferRecord describeTransfer(const streaming::ResidentGroup& group, const str
           .first_plane = 0,
           .first_product = 0,
           .light_products = (transfer.clusters + transfer.axes) * shape.outputs,
-          .first_output = group.sampleBase(cell.outputs) + cell.outputs * cell.first_sample,
+          .first_output = cell.first_output,
           .sample_count = cell.sample_count,
           .accumulate = 0,
           .order = shape.order,
@@ -46,13 +46,13 @@ TransferRecord describeTransfer(const streaming::ResidentGroup& group, const str
 
 }  // namespace
 
-void TransferTable::add(const streaming::Residency& residency, const streaming::ResidentCell& cell,
-                        const lighting::GroupLights& lights, TransferMode mode) {
+void TransferTable::add(const streaming::ResidentCell& cell, const lighting::GroupLights& lights,
+                        TransferMode mode) {
   addNone();
   Cell& range = cells.back();
   for (const streaming::ResidentTransfer& transfer : cell.transfers) {
     if (!takesAny(transfer.shape, mode) || !transfer.codebook_resident) continue;
-    TransferRecord record = describeTransfer(residency.groups()[cell.group], cell, transfer, mode);
+    TransferRecord record = describeTransfer(cell, transfer, mode);
     record.accumulate = range.count++ > 0 ? 1 : 0;
     record.first_light = static_cast<std::uint32_t>(places.size());
     if (transfer.shape.order == 0) {

@@ -25,8 +25,7 @@ struct TransferTable {
   std::uint32_t product_count = 0;
 
   // The cell's transfers as far as they are resident; those without anything for the mode are left out.
-  void add(const streaming::Residency& residency, const streaming::ResidentCell& cell,
-           const lighting::GroupLights& lights, TransferMode mode);
+  void add(const streaming::ResidentCell& cell, const lighting::GroupLights& lights, TransferMode mode);
   // A cell that another effect shades.
   void addNone() { cells.push_back({.first = static_cast<std::uint32_t>(transfers.size()), .count = 0}); }
 };

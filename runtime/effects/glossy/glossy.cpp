@@ -24,7 +24,7 @@ std::uint32_t variantOf(std::uint32_t order) {
 
 FillRecord describeFill(const streaming::ResidentGroup& group, const streaming::ResidentCell& cell,
                         std::uint32_t light) {
-  return {.first_output = group.sampleBase(cell.outputs) + cell.outputs * cell.first_sample,
+  return {.first_output = cell.first_output,
           .output_count = cell.outputs * cell.sample_count,
           .outputs = cell.outputs,
           .light = light,
@@ -58,7 +58,7 @@ Result<void> Glossy::shade(streaming::Residency& residency, const lighting::Grou
                            TransferMode mode, gpu::Counters& counters) {
   if (residency.version() != residency_seen_ || lights.groupCount() != groups_seen_ || mode != mode_seen_) {
     any_ = std::any_of(residency.cells().begin(), residency.cells().end(),
-                       [](const streaming::ResidentCell& cell) { return cell.glossy(); });
+                       [](const streaming::ResidentCell& cell) { return cell.matrices(); });
     if (mode != mode_seen_) cells_seen_.clear();  // everything anew
     if (any_) rebuildTables(residency, lights, mode);
     residency_seen_ = residency.version();
@@ -83,8 +83,8 @@ void Glossy::rebuildTables(const streaming::Residency& residency, const lighting
   fills_.clear();
   for (const streaming::ResidentCell& cell : residency.cells()) {
     fills_.push_back(describeFill(residency.groups()[cell.group], cell, lights.firstOf(cell.group)));
-    if (cell.glossy())
-      tables_.add(residency, cell, lights, mode);
+    if (cell.matrices())
+      tables_.add(cell, lights, mode);
     else
       tables_.addNone();
   }
@@ -103,7 +103,7 @@ void Glossy::collect(const streaming::Residency& residency, const lighting::Grou
   for (gpu::WorkList& work : samples_work_) work.clear();
   for (std::uint32_t i = 0; i < tables_.cells.size(); ++i) {
     const streaming::ResidentCell& cell = residency.cells()[i];
-    if (!cell.glossy()) continue;
+    if (!cell.matrices()) continue;
     const TransferTable::Cell range = tables_.cells[i];
     const bool open = range.count == 0 || !cell.usable();
     const std::uint64_t light = open ? lights.versionOf(cell.group, 0) : lightVersion(lights, cell);

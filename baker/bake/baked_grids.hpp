@@ -1,0 +1,44 @@
+// What the bake of a volume and of a neighborhood hands to the bundle.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include <glm/mat4x4.hpp>
+#include <glm/vec3.hpp>
+
+#include "baker/compress/cpca.hpp"
+
+namespace lambent::baker {
+
+// Samples that are coded together: at most 64 Ki, in the order of the grid.
+struct CodedCell {
+  std::uint32_t count = 0;
+  glm::vec3 bounds_min{0.0f}, bounds_max{0.0f};  // group frame
+  std::vector<CodedTransfer> transfers;          // as in bundle::Cell
+};
+
+// bundle::VolumeGrid, with its payloads as values.
+struct BakedVolume {
+  glm::uvec3 size{1};
+  glm::mat4 group_from_grid{1.0f};
+  std::uint32_t bits = 8;
+  std::vector<std::byte> density;  // codes
+  float density_max = 0.0f;        // m^-1
+  glm::vec3 albedo{1.0f};
+  float g = 0.0f;
+  glm::uvec3 transfer_size{1};
+  std::vector<std::uint32_t> voxels;  // one per sample, rising
+  std::vector<CodedCell> cells;
+  glm::vec3 light_sample{0.0f};  // where the light that comes in is sampled, group frame
+};
+
+// bundle::NeighborhoodGrid.
+struct BakedNeighborhood {
+  glm::uvec3 size{2};
+  glm::vec3 bounds_min{0.0f}, bounds_max{0.0f};  // group frame
+  std::vector<CodedCell> cells;
+};
+
+}  // namespace lambent::baker
