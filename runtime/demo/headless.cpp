@@ -104,7 +104,7 @@ Result<void> runHeadless(const Options& options) {
     fmt::print("{}\n", options.headless->string());
     return {};
   }
-  report.bytes_resident = world.residency().bytesResident();
+  report.bytes_resident = world.residency().bytesResident() + frame->volumeBytes();
   report.parts = world.loadedParts();
   report.negative_pixels = frame->negativePixels();
   report.exposure_ev = frame->exposureEv();
