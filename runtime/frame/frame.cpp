@@ -232,8 +232,8 @@ Result<void> Frame::shadeVolumes(World& world) {
   counts_.volumes = static_cast<std::uint32_t>(world.residency().volumes().size());
   if (counts_.volumes == 0) return {};
   gpu::PassTimers::Scope pass(timers_, "volume");
-  Result<void> done = volume_.shade(world.residency(), group_lights_, diffuse_, glossy_, options_.transfer,
-                                    pass.counters());
+  Result<void> done =
+      volume_.shade(world.residency(), group_lights_, diffuse_, glossy_, options_.transfer, pass.counters());
   counts_.volumes_shaded = volume_.shadedLast().volumes;
   counts_.volume_slabs_written = volume_.shadedLast().slabs;
   return done;

@@ -63,7 +63,8 @@ struct StepCounts {
   std::uint32_t light_samples_written = 0;  // coefficients computed for the shaders
   std::uint32_t cells_shaded = 0, draws_shaded = 0;
   std::uint32_t shadow_cubes_drawn = 0;
-  // Volumes there are; whose light was brought into their textures, and how many outputs of it; in the picture.
+  // Volumes there are; whose light was brought into their textures, and how many outputs of it; in the
+  // picture.
   std::uint32_t volumes = 0, volumes_shaded = 0, volume_slabs_written = 0, volumes_drawn = 0;
 };
 
@@ -100,8 +101,8 @@ class Frame {
   Result<void> step(World& world, const lighting::Environment& environment, std::size_t max_captures);
   Result<void> light(World& world, const lighting::Environment& environment);
   Result<void> shade(World& world);
-  Result<void> shadeGlossy(World& world);  // no pass where nothing is glossy
-  Result<void> shadeVolumes(World& world);                          // these two: no pass without volumes
+  Result<void> shadeGlossy(World& world);   // no pass where nothing is glossy
+  Result<void> shadeVolumes(World& world);  // these two: no pass without volumes
   Result<void> marchVolumes(World& world, const spec::View& view);
   Result<void> prepareSampling(World& world, const lighting::Environment& environment,
                                gpu::Counters& counters);

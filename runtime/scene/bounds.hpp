@@ -1,7 +1,7 @@
 // Axis-aligned boxes, and those of what a registry shows in world space, metres. A box under a matrix is the
 // box around its eight corners moved, so a scene's bounds are those of its primitives' boxes at their nodes:
-// what any reader of the glTF file gets from its accessors' min and max; a volume's box is that of its voxels.
-// Orbit cameras stand by these bounds.
+// what any reader of the glTF file gets from its accessors' min and max; a volume's box is that of its
+// voxels. Orbit cameras stand by these bounds.
 #pragma once
 
 #include <limits>

@@ -65,7 +65,7 @@ struct BrdfReady {
 
 struct DensityReady {
   std::uint32_t group = 0;
-  std::vector<std::byte> codes;  // of all voxels, VolumeGrid::bits each, little endian
+  std::vector<std::byte> codes;     // of all voxels, VolumeGrid::bits each, little endian
   std::vector<float> block_maxima;  // volume_blocks.hpp
 };
 

@@ -83,8 +83,8 @@ inline constexpr float kUsableVariance = 0.9f;
 struct ResidentVolume {
   std::uint32_t group = 0;  // into groups()
   bundle::VolumeGrid grid;
-  std::uint32_t outputs = 1;  // of its samples
-  gpu::Texture density;       // red: share of grid.density_max; empty handle: not here yet
+  std::uint32_t outputs = 1;        // of its samples
+  gpu::Texture density;             // red: share of grid.density_max; empty handle: not here yet
   std::vector<float> block_maxima;  // volume_blocks.hpp; stays in memory
   gpu::Buffer voxels;  // a word per sample: its voxel of the transfer grid; empty handle: not here yet
   std::uint32_t sample_count = 0;

@@ -62,7 +62,8 @@ Needs needsOf(const bundle::Description& description) {
   for (const bundle::Group& group : description.groups) {
     needs.samples += 16 * samplesOf(group);
     for (const bundle::Cell& cell : group.cells) needs.transfer += cellBytes(cell) + kSlack;
-    if (group.volume) needs.volumes += volumeBytes(*group.volume, group.sample_count) + volumeLightBytes(group);
+    if (group.volume)
+      needs.volumes += volumeBytes(*group.volume, group.sample_count) + volumeLightBytes(group);
   }
   for (const bundle::Draw& draw : description.draws) {
     const std::uint64_t vertices = description.meshes[draw.mesh].primitives[draw.primitive].vertex_count;

@@ -242,34 +242,33 @@ std::optional<Result<Ready>> load(const bundle::Reader& reader, const Work& work
 
 std::size_t bytesOf(const Ready& ready) {
   return std::visit(
-      Overloaded{[](const MeshReady& item) {
-                   return sizeInBytes(item.data.positions) + sizeInBytes(item.data.normals) +
-                          sizeInBytes(item.data.texcoords0) + sizeInBytes(item.data.texcoords1) +
-                          sizeInBytes(item.data.colors) + sizeInBytes(item.data.tangents) +
-                          sizeInBytes(item.data.indices);
-                 },
-                 [](const ImageReady& item) { return sizeInBytes(item.rgba); },
-                 [](const RowsReady& item) {
-                   return sizeInBytes(item.rows.offsets) + sizeInBytes(item.rows.samples) +
-                          sizeInBytes(item.rows.weights);
-                 },
-                 [](const CodebookReady& item) {
-                   return sizeInBytes(item.codebook.axis_counts) + sizeInBytes(item.codebook.axes) +
-                          sizeInBytes(item.codebook.vectors) + sizeInBytes(item.positions);
-                 },
-                 [](const PlaneReady& item) { return sizeInBytes(item.codes); },
-                 [](const LightWeightsReady& item) { return sizeInBytes(item.samples); },
-                 [](const ProxyReady& item) {
-                   return sizeInBytes(item.proxy.positions) + sizeInBytes(item.proxy.triangles) +
-                          sizeInBytes(item.proxy.entries) + sizeInBytes(item.proxy.levels);
-                 },
-                 [](const BrdfReady& item) {
-                   return sizeInBytes(item.data.values) + sizeInBytes(item.texels.values);
-                 },
-                 [](const DensityReady& item) {
-                   return sizeInBytes(item.codes) + sizeInBytes(item.block_maxima);
-                 },
-                 [](const VoxelsReady& item) { return sizeInBytes(item.voxels); }},
+      Overloaded{
+          [](const MeshReady& item) {
+            return sizeInBytes(item.data.positions) + sizeInBytes(item.data.normals) +
+                   sizeInBytes(item.data.texcoords0) + sizeInBytes(item.data.texcoords1) +
+                   sizeInBytes(item.data.colors) + sizeInBytes(item.data.tangents) +
+                   sizeInBytes(item.data.indices);
+          },
+          [](const ImageReady& item) { return sizeInBytes(item.rgba); },
+          [](const RowsReady& item) {
+            return sizeInBytes(item.rows.offsets) + sizeInBytes(item.rows.samples) +
+                   sizeInBytes(item.rows.weights);
+          },
+          [](const CodebookReady& item) {
+            return sizeInBytes(item.codebook.axis_counts) + sizeInBytes(item.codebook.axes) +
+                   sizeInBytes(item.codebook.vectors) + sizeInBytes(item.positions);
+          },
+          [](const PlaneReady& item) { return sizeInBytes(item.codes); },
+          [](const LightWeightsReady& item) { return sizeInBytes(item.samples); },
+          [](const ProxyReady& item) {
+            return sizeInBytes(item.proxy.positions) + sizeInBytes(item.proxy.triangles) +
+                   sizeInBytes(item.proxy.entries) + sizeInBytes(item.proxy.levels);
+          },
+          [](const BrdfReady& item) {
+            return sizeInBytes(item.data.values) + sizeInBytes(item.texels.values);
+          },
+          [](const DensityReady& item) { return sizeInBytes(item.codes) + sizeInBytes(item.block_maxima); },
+          [](const VoxelsReady& item) { return sizeInBytes(item.voxels); }},
       ready);
 }
 

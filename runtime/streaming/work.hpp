@@ -48,10 +48,10 @@ struct VoxelsWork {
 using Work = std::variant<MeshWork, RowsWork, ImageWork, CodebookWork, PlaneWork, LightWeightsWork, ProxyWork,
                           BrdfWork, DensityWork, VoxelsWork>;
 
-// Meshes, then rows, then tables of BRDFs (without these three glossy surfaces do not show), then what volumes
-// show by, then images, then light weights, proxies, codebooks and planes: each by the priority of its payload and, where that is
-// equal, by place in the description. A codebook comes before its planes and those in their order, whatever
-// priorities say.
+// Meshes, then rows, then tables of BRDFs (without these three glossy surfaces do not show), then what
+// volumes show by, then images, then light weights, proxies, codebooks and planes: each by the priority of
+// its payload and, where that is equal, by place in the description. A codebook comes before its planes and
+// those in their order, whatever priorities say.
 std::vector<Work> workList(const bundle::Description& description);
 
 // What an item takes in the file.

@@ -126,16 +126,16 @@ inline std::uint32_t addVolume(bundle::Description& description, std::vector<bun
   }
   group.light_samples = {0.5f * (group.bounds_min + group.bounds_max)};
   group.sample_count = samples;
-  group.volume = bundle::VolumeGrid{.size = volume.size,
-                                    .group_from_grid = volume.group_from_grid,
-                                    .density = payload(bundle::PayloadType::Density, volume.codes()),
-                                    .bits = volume.bits,
-                                    .density_max = volume.density_max,
-                                    .albedo = volume.albedo,
-                                    .g = volume.g,
-                                    .transfer_size = volume.transfer_size,
-                                    .voxels = payload(bundle::PayloadType::Voxels,
-                                                      bundle::encodeVoxels(voxels))};
+  group.volume =
+      bundle::VolumeGrid{.size = volume.size,
+                         .group_from_grid = volume.group_from_grid,
+                         .density = payload(bundle::PayloadType::Density, volume.codes()),
+                         .bits = volume.bits,
+                         .density_max = volume.density_max,
+                         .albedo = volume.albedo,
+                         .g = volume.g,
+                         .transfer_size = volume.transfer_size,
+                         .voxels = payload(bundle::PayloadType::Voxels, bundle::encodeVoxels(voxels))};
   const BuiltVolume::Clusters clusters = volume.clusters();
   bundle::Cell cell;
   cell.kind = bundle::CellKind::Volume;
@@ -145,12 +145,10 @@ inline std::uint32_t addVolume(bundle::Description& description, std::vector<bun
   bundle::CellTransfer transfer;
   transfer.shape = volume.shape;
   transfer.clusters = static_cast<std::uint32_t>(clusters.codebook.clusters());
-  transfer.codebook =
-      payload(bundle::PayloadType::Codebook, bundle::encodeCodebook(clusters.codebook));
+  transfer.codebook = payload(bundle::PayloadType::Codebook, bundle::encodeCodebook(clusters.codebook));
   if (transfer.clusters > 1)
-    transfer.cluster_ids = static_cast<std::int32_t>(
-        payload(bundle::PayloadType::ClusterIds,
-                bundle::encodeClusterIds(clusters.of_sample, transfer.clusters)));
+    transfer.cluster_ids = static_cast<std::int32_t>(payload(
+        bundle::PayloadType::ClusterIds, bundle::encodeClusterIds(clusters.of_sample, transfer.clusters)));
   cell.transfers.push_back(std::move(transfer));
   group.cells.push_back(std::move(cell));
   description.groups.push_back(std::move(group));

@@ -42,9 +42,8 @@ Rectangle unite(const Rectangle& a, const Rectangle& b) {
 }
 
 bool holdsAnything(const streaming::ResidentVolume& volume) {
-  return volume.grid.density_max > 0.0f &&
-         std::any_of(volume.block_maxima.begin(), volume.block_maxima.end(),
-                     [](float share) { return share > 0.0f; });
+  return volume.grid.density_max > 0.0f && std::any_of(volume.block_maxima.begin(), volume.block_maxima.end(),
+                                                       [](float share) { return share > 0.0f; });
 }
 
 }  // namespace
@@ -149,8 +148,8 @@ void March::uploadBlocks(const streaming::Residency& residency, gpu::Counters& c
 
 void March::makeTargets(const spec::Size& size) {
   if (marched_ && marched_.desc().width == size.width && marched_.desc().height == size.height) return;
-  marched_ = gpu::Texture(
-      "marched", {.format = GL_RGBA16F, .width = size.width, .height = size.height, .layers = 2});
+  marched_ = gpu::Texture("marched",
+                          {.format = GL_RGBA16F, .width = size.width, .height = size.height, .layers = 2});
   marched_target_ = gpu::Framebuffer("marched", marched_);
 }
 

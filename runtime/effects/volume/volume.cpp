@@ -26,8 +26,7 @@ SlabLayout slabLayoutOf(const glm::uvec3& transfer_size, std::uint32_t outputs) 
   SlabLayout layout;
   layout.slabs_z = std::clamp(kMaxLightSide / transfer_size.z, 1u, outputs);
   layout.slabs_x = (outputs + layout.slabs_z - 1) / layout.slabs_z;
-  layout.texture_size = {transfer_size.x * layout.slabs_x, transfer_size.y,
-                         transfer_size.z * layout.slabs_z};
+  layout.texture_size = {transfer_size.x * layout.slabs_x, transfer_size.y, transfer_size.z * layout.slabs_z};
   return layout;
 }
 

@@ -1,6 +1,6 @@
-// The light in volumes on the GPU. The samples of a volume's cells are shaded by the diffuse effect (outputs 1
-// and 9) or the glossy one (more); this one brings them into a 3D texture per volume, where rays through the
-// volume find them (march.hpp): mean radiance that arrives at a voxel of the transfer grid, or, for phase
+// The light in volumes on the GPU. The samples of a volume's cells are shaded by the diffuse effect (outputs
+// 1 and 9) or the glossy one (more); this one brings them into a 3D texture per volume, where rays through
+// the volume find them (march.hpp): mean radiance that arrives at a voxel of the transfer grid, or, for phase
 // functions that look ahead, its spherical harmonics, convolved with the phase function. One indirect
 // dispatch per volume whose samples were shaded anew; nothing changed: none. What is not resident, and all of
 // it when unshadowed, shows the light itself. Without volumes nothing is compiled, held or dispatched.

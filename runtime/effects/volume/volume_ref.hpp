@@ -95,7 +95,8 @@ struct VolumeRay {
 };
 
 inline glm::vec3 rotated(const float (&rows)[12], const glm::vec3& v) {
-  return {glm::dot(glm::vec3(rows[0], rows[1], rows[2]), v), glm::dot(glm::vec3(rows[4], rows[5], rows[6]), v),
+  return {glm::dot(glm::vec3(rows[0], rows[1], rows[2]), v),
+          glm::dot(glm::vec3(rows[4], rows[5], rows[6]), v),
           glm::dot(glm::vec3(rows[8], rows[9], rows[10]), v)};
 }
 

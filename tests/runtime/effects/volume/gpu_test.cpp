@@ -22,8 +22,7 @@ BuiltVolume cloud(unsigned seed, std::uint32_t bits = 16, std::uint32_t outputs 
   built.has_sample = [](std::uint32_t voxel) { return voxel % 11 != 3; };
   built.shape = {.order = 3, .full_channels = 3, .outputs = outputs};
   if (outputs > 9)
-    built.shape = {.order = 3, .outputs = outputs,
-                   .visibility_bands = 3 + bundle::bandsOf(outputs) - 1};
+    built.shape = {.order = 3, .outputs = outputs, .visibility_bands = 3 + bundle::bandsOf(outputs) - 1};
   built.transfer = [shape_of = built.shape, seed](std::uint32_t voxel) {
     std::mt19937 engine(seed * 1000 + voxel);
     std::vector<float> vector(shape_of.size());
@@ -45,8 +44,8 @@ std::vector<glm::vec4> pictureOfTwin(const Bench& bench, const spec::View& view,
       const float end = depth < 1.0f ? viewZ(view, 2.0f * depth - 1.0f) / ray.direction.z : ref::kInfinity;
       const glm::vec4 found = ref::march(media, ray.origin, ray.direction, ray.begin, end);
       const float through = std::exp(-found.a);
-      texels.push_back(glm::vec4(glm::vec3(found) + through * glm::vec3(before),
-                                 1.0f - through * (1.0f - before.a)));
+      texels.push_back(
+          glm::vec4(glm::vec3(found) + through * glm::vec3(before), 1.0f - through * (1.0f - before.a)));
     }
   return texels;
 }
@@ -82,7 +81,8 @@ void expectAlike(const std::vector<glm::vec4>& found, const std::vector<glm::vec
 // A triangle before all media, of white.
 std::string_view wallText(std::string_view name) {
   if (name == "wall.vert")
-    return "void main() { gl_Position = vec4(gl_VertexID == 1 ? 0.9 : -1.0, gl_VertexID == 2 ? 0.7 : -1.0, -0.9, "
+    return "void main() { gl_Position = vec4(gl_VertexID == 1 ? 0.9 : -1.0, gl_VertexID == 2 ? 0.7 : -1.0, "
+           "-0.9, "
            "1.0); }";
   if (name == "wall.frag") return "layout(location = 0) out vec4 color; void main() { color = vec4(1.0); }";
   return {};
@@ -259,7 +259,8 @@ TEST_F(VolumeGpu, MoreVolumesThanOnePassTakesAreDrawnAll) {
     built.density_max = 3.0f;
     built.density = [](const glm::vec3&) { return 3.0f; };
     many.push_back(built);
-    stand.push_back(glm::translate(glm::mat4(1.0f), glm::vec3(0.0f, 0.0f, 0.2f * static_cast<float>(i) - 1.0f)));
+    stand.push_back(
+        glm::translate(glm::mat4(1.0f), glm::vec3(0.0f, 0.0f, 0.2f * static_cast<float>(i) - 1.0f)));
   }
   Bench bench(many, stand);
   bench.environment = *lighting::Environment::create({spec::ConstantLight{.radiance = glm::vec3(1.0f)}});

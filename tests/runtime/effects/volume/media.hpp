@@ -45,8 +45,7 @@ inline ref::Medium mediumOf(const BuiltVolume& built,
     medium.density.values.push_back(static_cast<float>(code) / (built.bits == 16 ? 65535.0f : 255.0f));
   }
   medium.block_maxima = streaming::blockMaxima(codes, built.bits, built.size);
-  medium.light.size = {medium.record.light_size[0], medium.record.light_size[1],
-                       medium.record.light_size[2]};
+  medium.light.size = {medium.record.light_size[0], medium.record.light_size[1], medium.record.light_size[2]};
   medium.light.values.clear();
   for (uint z = 0; z < medium.light.size.z; ++z)
     for (uint y = 0; y < medium.light.size.y; ++y)
@@ -72,7 +71,8 @@ inline std::function<float(const glm::vec3&)> clumps(unsigned seed, float voxels
     float most = 0.0f;
     for (const glm::vec4& ball : balls) {
       const float inside = ball.w - glm::distance(at, glm::vec3(ball));
-      const float ripple = 0.6f + 0.4f * std::sin(1.1f * at.x) * std::sin(0.9f * at.y) * std::sin(1.3f * at.z);
+      const float ripple =
+          0.6f + 0.4f * std::sin(1.1f * at.x) * std::sin(0.9f * at.y) * std::sin(1.3f * at.z);
       most = std::max(most, std::clamp(0.5f * inside, 0.0f, 1.0f) * ripple);
     }
     return most;

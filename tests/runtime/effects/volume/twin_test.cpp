@@ -146,8 +146,7 @@ TEST(VolumeTwin, ABallTransmitsTheExponentialOfItsChord) {
   for (const float offset : {0.0f, 0.3f, 0.6f, 0.8f}) {
     const glm::vec3 direction = glm::normalize(glm::vec3(0.3f, -0.2f, -1.0f));
     const glm::vec3 across = glm::normalize(glm::cross(direction, glm::vec3(0, 1, 0)));
-    const glm::vec4 found =
-        ref::march(std::span(&medium, 1), offset * across - 4.0f * direction, direction);
+    const glm::vec4 found = ref::march(std::span(&medium, 1), offset * across - 4.0f * direction, direction);
     const float expected = std::exp(-2.0f * kExtinction * std::sqrt(1.0f - offset * offset));
     EXPECT_NEAR(std::exp(-found.a), expected, 0.01f * expected) << offset;
   }
@@ -213,10 +212,10 @@ TEST(VolumeTwin, OverlappingVolumesAddTheirExtinctions) {
       glm::scale(glm::translate(glm::mat4(1.0f), glm::vec3(-1.0f)), 2.0f / glm::vec3(5, 9, 16));
   const glm::mat4 place = glm::translate(glm::mat4(1.0f), glm::vec3(0.6f, 0.3f, -0.2f)) *
                           glm::mat4_cast(glm::angleAxis(0.7f, glm::normalize(glm::vec3(1, 2, 3))));
-  const std::vector<ref::Medium> media = {mediumOf(first, whiteLight),
-                                          mediumOf(second, whiteLight, place)};
+  const std::vector<ref::Medium> media = {mediumOf(first, whiteLight), mediumOf(second, whiteLight, place)};
   const std::vector<ref::Medium> lit = {
-      media[0], mediumOf(second, [](const glm::uvec3&) { return glm::vec4(0, 0, 0, 1); }, place)};
+      media[0], mediumOf(
+                    second, [](const glm::uvec3&) { return glm::vec4(0, 0, 0, 1); }, place)};
   for (const Aim& aim : someAims(500)) {
     const glm::mat4 back = glm::inverse(place);
     const Aim turned{glm::vec3(back * glm::vec4(aim.origin, 1.0f)),
@@ -254,9 +253,9 @@ TEST(VolumeTwin, SeveralStopsAreWhatSeveralRaysWouldSee) {
   const ref::Medium medium = mediumOf(built, whiteLight);
   for (const Aim& aim : someAims(200)) {
     const float stops[] = {1.9f, 2.4f};
-    const auto both = ref::marchVolumes(
-        std::span(&medium, 1), {ref::enterVolume(medium.record, aim.origin, aim.direction, 0.0f)}, stops,
-        0.1f, 1.0f);
+    const auto both = ref::marchVolumes(std::span(&medium, 1),
+                                        {ref::enterVolume(medium.record, aim.origin, aim.direction, 0.0f)},
+                                        stops, 0.1f, 1.0f);
     for (std::size_t i = 0; i < 2; ++i) {
       const glm::vec4 one =
           ref::march(std::span(&medium, 1), aim.origin, aim.direction, 0.0f, stops[i], 0.1f);
@@ -353,9 +352,8 @@ TEST(VolumeTwin, ForwardScatteringIsBrightTowardsTheLight) {
 
 TEST(VolumeTwin, VoxelsWithoutLightDoNotDarkenTheirNeighbours) {
   const BuiltVolume built = homogeneous(1e5f);
-  const ref::Medium medium = mediumOf(built, [](const glm::uvec3& texel) {
-    return texel.x == 0 ? glm::vec4(0.0f) : glm::vec4(1.0f);
-  });
+  const ref::Medium medium = mediumOf(
+      built, [](const glm::uvec3& texel) { return texel.x == 0 ? glm::vec4(0.0f) : glm::vec4(1.0f); });
   for (const float y : {-0.7f, 0.0f, 0.3f})
     for (const float x : {-0.9f, -0.7f, 0.4f}) {
       const float seen = ref::march(std::span(&medium, 1), glm::vec3(x, y, 3.0f), glm::vec3(0, 0, -1)).r;

@@ -100,8 +100,7 @@ struct Bench {
 
   // As the twin sees volume v with the texture that the GPU wrote.
   ref::Medium mediumOf(std::size_t v, const spec::View& view) const {
-    const glm::uvec3 size =
-        slabLayoutOf(built[v].transfer_size, built[v].shape.outputs).texture_size;
+    const glm::uvec3 size = slabLayoutOf(built[v].transfer_size, built[v].shape.outputs).texture_size;
     std::vector<glm::vec4> texels(std::size_t{size.x} * size.y * size.z);
     glGetTextureImage(volume.lightOf(v).id(), 0, GL_RGBA, GL_FLOAT,
                       static_cast<GLsizei>(texels.size() * sizeof(glm::vec4)), texels.data());
@@ -127,8 +126,8 @@ inline PixelRay rayOf(const spec::View& view, std::uint32_t x, std::uint32_t y) 
   const glm::mat4& p = view.clip_from_view;
   PixelRay ray{glm::vec3(0.0f), glm::vec3(0, 0, -1), 0.0f};
   if (p[2][3] != 0.0f)
-    ray.direction = glm::normalize(
-        glm::vec3((clip.x + p[2][0]) / p[0][0], (clip.y + p[2][1]) / p[1][1], -1.0f));
+    ray.direction =
+        glm::normalize(glm::vec3((clip.x + p[2][0]) / p[0][0], (clip.y + p[2][1]) / p[1][1], -1.0f));
   else
     ray.origin = glm::vec3((clip.x - p[3][0]) / p[0][0], (clip.y - p[3][1]) / p[1][1], 0.0f);
   ray.begin = viewZ(view, -1.0f) / ray.direction.z;
@@ -136,8 +135,9 @@ inline PixelRay rayOf(const spec::View& view, std::uint32_t x, std::uint32_t y) 
 }
 
 inline spec::View orbit(float azimuth, float distance = 2.5f) {
-  return spec::orbitView({.azimuth_deg = azimuth, .elevation_deg = 20.0f, .distance_radii = distance, .fov_deg = 45.0f},
-                         glm::vec3(-1.0f), glm::vec3(1.0f), 1.0f);
+  return spec::orbitView(
+      {.azimuth_deg = azimuth, .elevation_deg = 20.0f, .distance_radii = distance, .fov_deg = 45.0f},
+      glm::vec3(-1.0f), glm::vec3(1.0f), 1.0f);
 }
 inline spec::View flat(float azimuth) {
   spec::View view = orbit(azimuth);
