@@ -243,7 +243,11 @@ Result<void> Frame::marchVolumes(World& world, const spec::View& view) {
   const auto& volumes = world.residency().volumes();
   if (volumes.empty()) return {};
   gpu::PassTimers::Scope pass(timers_, "march");
-  if (!march_) march_.emplace(effects::volume::MarchOptions{.jitter = options_.output == Output::Display});
+  if (!march_) {
+    // Pictures that are compared take half the steps, all at their places.
+    const bool linear = options_.output == Output::Linear;
+    march_.emplace(effects::volume::MarchOptions{.step_voxels = linear ? 0.5f : 1.0f, .jitter = !linear});
+  }
   if (!hdr_color_target_) hdr_color_target_ = gpu::Framebuffer("hdr color", hdr_, nullptr);
   std::vector<effects::volume::PlacedVolume> placed;
   for (std::uint32_t v = 0; v < volumes.size(); ++v)
