@@ -286,6 +286,32 @@ void RayScene::occluded(std::span<const RaySegment> segments, std::span<std::uin
   }
 }
 
+void RayScene::firstHits(std::span<const RaySegment> segments, std::span<float> distances) const {
+  assert(distances.size() == segments.size());
+  const FlushDenormals flush;
+  alignas(64) RTCRayHit16 rays;
+  alignas(64) std::array<int, kPacketWidth> valid;
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+  for (std::size_t first = 0; first < segments.size(); first += kPacketWidth) {
+    for (std::size_t k = 0; k < kPacketWidth; ++k) {
+      valid[k] = first + k < segments.size() ? -1 : 0;
+      const RaySegment& segment = segments[std::min(first + k, segments.size() - 1)];
+      RTCRay16& ray = rays.ray;
+      ray.org_x[k] = segment.origin.x, ray.org_y[k] = segment.origin.y, ray.org_z[k] = segment.origin.z;
+      ray.dir_x[k] = segment.direction.x, ray.dir_y[k] = segment.direction.y;
+      ray.dir_z[k] = segment.direction.z;
+      ray.tnear[k] = 0.0f, ray.tfar[k] = segment.length;
+      ray.time[k] = 0.0f, ray.mask[k] = ~0u, ray.flags[k] = 0;
+      rays.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
+    }
+    rtcIntersect16(valid.data(), state_->scene.get(), &context, &rays);
+    for (std::size_t k = 0; k < kPacketWidth && first + k < segments.size(); ++k)
+      distances[first + k] = rays.ray.tfar[k];
+  }
+}
+
 float RayScene::backFaceShare(std::span<const SampleOrigin> origins, const glm::mat3& frame,
                               const DirectionTable& table, std::span<float> shares) const {
   assert(!origins.empty() && shares.size() == origins.size());

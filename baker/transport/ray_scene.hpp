@@ -58,6 +58,10 @@ class RayScene {
   // blocked[i] becomes 1 where something lies between the ends of segment i, else 0.
   void occluded(std::span<const RaySegment> segments, std::span<std::uint8_t> blocked) const;
 
+  // distances[i] becomes how far segment i gets before something lies in its way, its length where nothing
+  // does. The length may be infinite.
+  void firstHits(std::span<const RaySegment> segments, std::span<float> distances) const;
+
   // Per origin: of its rays, the share whose first hit is the back of a single-sided surface. An origin with
   // a large share lies inside a body or under something. Returns the share of all rays that met anything.
   float backFaceShare(std::span<const SampleOrigin> origins, const glm::mat3& frame,
