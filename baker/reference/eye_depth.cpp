@@ -1,6 +1,7 @@
 #include "baker/reference/eye_depth.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace lambent::baker::reference {
@@ -58,6 +59,7 @@ double EyeDepth::to(double t) const {
 }
 
 double EyeDepth::place(double depth) const {
+  assert(!segments_.empty());
   auto after = std::upper_bound(segments_.begin(), segments_.end(), depth,
                                 [](double at, const Segment& s) { return at < s.depth; });
   if (after != segments_.begin()) --after;
