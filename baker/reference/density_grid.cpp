@@ -18,14 +18,17 @@ DensityGrid::DensityGrid(const SceneVolume& volume, const glm::dmat4& world_from
         const glm::ivec3 first = kBlock * glm::ivec3(x, y, z);
         const glm::uvec3 from(glm::max(first - 1, glm::ivec3(0)));
         const glm::uvec3 to(glm::min(first + kBlock, glm::ivec3(size_) - 1));
-        float most = 0.0f;
+        float least = std::numeric_limits<float>::infinity(), most = 0.0f;
         for (std::uint32_t k = from.z; k <= to.z; ++k)
           for (std::uint32_t j = from.y; j <= to.y; ++j) {
             const float* row = density_.data() + volume.index(0, j, k);
-            for (std::uint32_t i = from.x; i <= to.x; ++i) most = std::max(most, row[i]);
+            for (std::uint32_t i = from.x; i <= to.x; ++i) {
+              least = std::min(least, row[i]);
+              most = std::max(most, row[i]);
+            }
           }
         most_ = std::max(most_, most);
-        bounds_.push_back(most * (1.0f + 1e-6f));  // interpolation rounds
+        bounds_.emplace_back(least * (1.0f - 1e-6f), most * (1.0f + 1e-6f));  // interpolation rounds
       }
 }
 

@@ -14,6 +14,7 @@
 #include <glm/common.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/mat4x4.hpp>
+#include <glm/vec2.hpp>
 
 #include "baker/import/volume.hpp"
 #include "baker/reference/ray_tracer.hpp"
@@ -42,8 +43,8 @@ class DensityGrid {
   // m^-1, of a point in voxels; outside the box as at its nearest face.
   float at(const glm::dvec3& place) const;
 
-  // Calls visit(begin, end, bound) for block after block, bound in 1/t and never below the density there,
-  // until it returns false.
+  // Calls visit(begin, end, least, most) for block after block, the bounds of the density there in 1/t, until
+  // it returns false.
   template <typename Visit>
   void visitBlocks(const GridRay& ray, Visit&& visit) const;
 
@@ -57,7 +58,7 @@ class DensityGrid {
   glm::dmat3 linear_;
   glm::dvec3 shift_;
   glm::ivec3 blocks_;
-  std::vector<float> bounds_;  // by block, x fastest
+  std::vector<glm::vec2> bounds_;  // least and most, by block, x fastest
   float most_ = 0.0f;
 };
 
@@ -95,7 +96,8 @@ void DensityGrid::visitBlocks(const GridRay& ray, Visit&& visit) const {
                             static_cast<std::size_t>(blocks_.x) *
                                 (static_cast<std::size_t>(block.y) +
                                  static_cast<std::size_t>(blocks_.y) * static_cast<std::size_t>(block.z));
-      if (!visit(t, leave, double{bounds_[b]} * ray.metres)) return;
+      const glm::dvec2 bounds = ray.metres * glm::dvec2(bounds_[b]);
+      if (!visit(t, leave, bounds.x, bounds.y)) return;
       t = leave;
     }
     if (leave >= ray.end) return;

@@ -14,7 +14,7 @@ double collideWith(const DensityGrid& grid, const Ray& ray, double far, Stream& 
   const auto inside = grid.clipped(ray, 0.0, far);
   if (!inside) return far;
   double found = far, depth = random.exponential();
-  grid.visitBlocks(*inside, [&](double t, double end, double bound) {
+  grid.visitBlocks(*inside, [&](double t, double end, double /*least*/, double bound) {
     while (bound > 0.0) {
       // Collisions with a medium of the bound's density; those that the real one does not have are passed.
       const double step = depth / bound;
@@ -40,20 +40,26 @@ double transmittanceOf(const DensityGrid& grid, const Ray& ray, double far, Stre
   const auto inside = grid.clipped(ray, 0.0, far);
   if (!inside) return 1.0;
   double through = 1.0, depth = random.exponential();
-  grid.visitBlocks(*inside, [&](double t, double end, double bound) {
-    while (bound > 0.0) {
-      const double step = depth / bound;
+  const auto playRoulette = [&] {
+    if (through < kLittle) through = random.next() * kLittle < through ? kLittle : 0.0;
+    return through > 0.0;
+  };
+  grid.visitBlocks(*inside, [&](double t, double end, double least, double most) {
+    // The least density dims as it does; what there is above it is found by ratio tracking.
+    through *= std::exp(-least * (end - t));
+    if (!playRoulette()) return false;
+    const double above = most - least;
+    while (above > 0.0) {
+      const double step = depth / above;
       if (t + step >= end) {
-        depth -= (end - t) * bound;
+        depth -= (end - t) * above;
         return true;
       }
       t += step;
       depth = random.exponential();
-      const double share = double{grid.at(inside->at(t))} * inside->metres / bound;
-      through *= std::max(1.0 - share, 0.0);
-      if (through >= kLittle) continue;
-      through = random.next() * kLittle < through ? kLittle : 0.0;
-      if (through == 0.0) return false;
+      const double density = double{grid.at(inside->at(t))} * inside->metres;
+      through *= std::clamp((most - density) / above, 0.0, 1.0);
+      if (!playRoulette()) return false;
     }
     return true;
   });

@@ -1,8 +1,8 @@
 // The media of a scene, as paths meet them; where several overlap their extinctions add. Comes in: the scene,
 // all nodes at their place. Goes out: where a ray scatters next, by delta tracking (Woodcock et al. 1965),
-// and what of light gets through, by ratio tracking (Novák, Selle and Jarosz, "Residual Ratio Tracking",
-// SIGGRAPH Asia 2014); both without bias, for any density, through blocks with bounds of their own. Volumes
-// without density are left out: with such ones a scene is as without any. Any thread.
+// and what of light gets through, by residual ratio tracking (Novák, Selle and Jarosz, "Residual Ratio
+// Tracking", SIGGRAPH Asia 2014); both without bias, for any density, through blocks with bounds of their
+// own. Volumes without density are left out: with such ones a scene is as without any. Any thread.
 #pragma once
 
 #include <optional>
