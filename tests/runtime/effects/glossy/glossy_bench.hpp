@@ -34,7 +34,7 @@ struct Bench : lambent::testing::ShadingBench<Glossy> {
     std::vector<glm::vec4> products(tables.product_count);
     for (std::size_t i = 0; i < tables.cells.size(); ++i) {
       const streaming::ResidentCell& cell = residency.cells()[i];
-      if (!cell.glossy()) continue;
+      if (!cell.matrices()) continue;
       const std::vector<glm::vec4> got =
           samplesOf(residency.samples(), residency.groups()[cell.group].samples.page);
       std::vector<glm::vec4> wanted(got.size(), glm::vec4(0.0f));
