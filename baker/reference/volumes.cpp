@@ -10,7 +10,7 @@ namespace lambent::baker::reference {
 namespace {
 
 // t of the first collision with this one, or `far`.
-double collideWith(const DensityGrid& grid, const Ray& ray, double far, Stream& random) {
+double collideWith(const GridMedium& grid, const Ray& ray, double far, Stream& random) {
   const auto inside = grid.clipped(ray, 0.0, far);
   if (!inside) return far;
   double found = far, depth = random.exponential();
@@ -34,7 +34,7 @@ double collideWith(const DensityGrid& grid, const Ray& ray, double far, Stream& 
   return found;
 }
 
-double transmittanceOf(const DensityGrid& grid, const Ray& ray, double far, Stream& random) {
+double transmittanceOf(const GridMedium& grid, const Ray& ray, double far, Stream& random) {
   // Below this, roulette keeps an estimate's worth and not its cost.
   constexpr double kLittle = 0.1;
   const auto inside = grid.clipped(ray, 0.0, far);
@@ -79,7 +79,7 @@ Volumes Volumes::build(const Scene& scene, std::vector<std::string>& notices) {
       notices.push_back(volume.name + ": its node is flat; the volume is left out");
       continue;
     }
-    DensityGrid grid(volume, world_from_grid);
+    GridMedium grid(volume, world_from_grid);
     if (!grid.dark()) out.grids_.push_back(std::move(grid));
   }
   return out;

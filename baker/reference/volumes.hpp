@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "baker/import/scene.hpp"
-#include "baker/reference/density_grid.hpp"
+#include "baker/reference/grid_medium.hpp"
 #include "baker/reference/sampler.hpp"
 
 namespace lambent::baker::reference {
@@ -21,7 +21,7 @@ class Volumes {
   static Volumes build(const Scene& scene, std::vector<std::string>& notices);
 
   bool empty() const { return grids_.empty(); }
-  const std::vector<DensityGrid>& grids() const { return grids_; }
+  const std::vector<GridMedium>& grids() const { return grids_; }
   const SceneVolume& medium(std::uint32_t volume) const { return grids_[volume].volume(); }
 
   struct Collision {
@@ -34,7 +34,7 @@ class Volumes {
   double transmittance(const Ray& ray, double far, Stream& random) const;
 
  private:
-  std::vector<DensityGrid> grids_;
+  std::vector<GridMedium> grids_;
 };
 
 }  // namespace lambent::baker::reference

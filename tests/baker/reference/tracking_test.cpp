@@ -68,9 +68,9 @@ std::vector<Ray> raysThroughWild() {
           ray({0.7f, 3, 0.4f}, {0.7f, -1, 0.5f}, 0.2f), ray({0.6f, 0.3f, 0.5f}, {0.8f, 0.4f, 1}, 1)};
 }
 
-TEST(DensityGrid, IsLinearBetweenCentresAndConstantInTheHalfVoxelAtTheFaces) {
+TEST(GridMedium, IsLinearBetweenCentresAndConstantInTheHalfVoxelAtTheFaces) {
   const SceneVolume volume = medium({3, 2, 1}, [](glm::vec3 p) { return p.x * 10 + p.y; });
-  const DensityGrid grid(volume, glm::dmat4(1.0));
+  const GridMedium grid(volume, glm::dmat4(1.0));
   EXPECT_FLOAT_EQ(grid.at({0.5, 0.5, 0.5}), 5.5f);
   EXPECT_FLOAT_EQ(grid.at({1.0, 0.5, 0.1}), 10.5f);
   EXPECT_FLOAT_EQ(grid.at({1.25, 1.0, 0.9}), 13.5f);

@@ -1,11 +1,11 @@
-#include "baker/reference/density_grid.hpp"
+#include "baker/reference/grid_medium.hpp"
 
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
 namespace lambent::baker::reference {
 
-DensityGrid::DensityGrid(const SceneVolume& volume, const glm::dmat4& world_from_grid)
+GridMedium::GridMedium(const SceneVolume& volume, const glm::dmat4& world_from_grid)
     : volume_(&volume), density_(volume.density), size_(volume.size), last_(volume.size - glm::uvec3(1)) {
   const glm::dmat4 inverse = glm::inverse(world_from_grid);
   linear_ = glm::dmat3(inverse);
@@ -32,7 +32,7 @@ DensityGrid::DensityGrid(const SceneVolume& volume, const glm::dmat4& world_from
       }
 }
 
-std::optional<GridRay> DensityGrid::clipped(const Ray& ray, double begin, double end) const {
+std::optional<GridRay> GridMedium::clipped(const Ray& ray, double begin, double end) const {
   GridRay out{.origin = linear_ * glm::dvec3(ray.origin) + shift_,
               .dir = linear_ * glm::dvec3(ray.dir),
               .metres = glm::length(glm::dvec3(ray.dir)),

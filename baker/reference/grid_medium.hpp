@@ -29,10 +29,10 @@ struct GridRay {
   glm::dvec3 at(double t) const { return origin + t * dir; }
 };
 
-class DensityGrid {
+class GridMedium {
  public:
   // world_from_grid must be regular.
-  DensityGrid(const SceneVolume& volume, const glm::dmat4& world_from_grid);
+  GridMedium(const SceneVolume& volume, const glm::dmat4& world_from_grid);
 
   const SceneVolume& volume() const { return *volume_; }
   bool dark() const { return !(most_ > 0.0f); }  // nothing in it
@@ -62,7 +62,7 @@ class DensityGrid {
   float most_ = 0.0f;
 };
 
-inline float DensityGrid::at(const glm::dvec3& place) const {
+inline float GridMedium::at(const glm::dvec3& place) const {
   const glm::vec3 q = glm::clamp(glm::vec3(place) - 0.5f, glm::vec3(0.0f), last_);
   const glm::uvec3 i(q);
   const glm::vec3 f = q - glm::vec3(i);
@@ -76,7 +76,7 @@ inline float DensityGrid::at(const glm::dvec3& place) const {
 }
 
 template <typename Visit>
-void DensityGrid::visitBlocks(const GridRay& ray, Visit&& visit) const {
+void GridMedium::visitBlocks(const GridRay& ray, Visit&& visit) const {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const glm::dvec3 start = ray.at(ray.begin) / double{kBlock};
   glm::ivec3 block = glm::clamp(glm::ivec3(glm::floor(start)), glm::ivec3(0), blocks_ - 1), step(0);
