@@ -112,7 +112,7 @@ Result<void> runHeadless(const Options& options) {
       if (Result<void> finished = finishPicture(i); !finished) return finished;
   }
   if (!options.json) return {};
-  report.bytes_resident = world.residency().bytesResident();
+  report.bytes_resident = world.residency().bytesResident() + frame->volumeBytes();
   report.parts = world.loadedParts();
   report.negative_pixels = frame->negativePixels();
   report.exposure_ev = frame->exposureEv();

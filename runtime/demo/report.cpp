@@ -28,7 +28,11 @@ Json countsJson(const frame::StepCounts& counts) {
           {"light_samples_written", counts.light_samples_written},
           {"cells_shaded", counts.cells_shaded},
           {"draws_shaded", counts.draws_shaded},
-          {"shadow_cubes_drawn", counts.shadow_cubes_drawn}};
+          {"shadow_cubes_drawn", counts.shadow_cubes_drawn},
+          {"volumes", counts.volumes},
+          {"volumes_shaded", counts.volumes_shaded},
+          {"volume_slabs_written", counts.volume_slabs_written},
+          {"volumes_drawn", counts.volumes_drawn}};
 }
 
 // Of all frames but the first, which also waits for what is made once.

@@ -128,7 +128,8 @@ LitScene gatherLitScene(const World& world, float surroundings) {
     std::uint32_t near_mask = 0;
     for (std::size_t k = 0; k < scene.lights.size(); ++k) {
       bool by_harmonics = !world.litByColumn(g, light_entities[k]);
-      if (by_harmonics && within(bounds, world_from_group, scene.lights[k])) {
+      // Rays through a volume look up its samples alone, and no shadow cube.
+      if (by_harmonics && group.volume < 0 && within(bounds, world_from_group, scene.lights[k])) {
         const std::int32_t place = nearPlace(k);
         if (place >= 0) {
           near_mask |= 1u << place;
@@ -141,6 +142,14 @@ LitScene gatherLitScene(const World& world, float surroundings) {
     }
     scene.near_masks.push_back(near_mask);
     scene.groups.push_back(std::move(receiver));
+  }
+  // The surfaces that a volume stands in are in its transfer.
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    if (groups[g].volume < 0) continue;
+    if (groups[g].within >= 0)
+      scene.groups[g].body = scene.groups[static_cast<std::size_t>(groups[g].within)].body;
+    const std::size_t own = scene.groups[g].body == lighting::CapturePoint::kNoBody ? 0 : 1;
+    scene.volume_sees_body |= scene.bodies.size() > own;
   }
   return scene;
 }
