@@ -2,6 +2,7 @@
 
 #include "baker/effects/diffuse/diffuse.hpp"
 #include "baker/effects/glossy/glossy.hpp"
+#include "baker/effects/neighborhood/neighborhood.hpp"
 
 namespace lambent::baker {
 
@@ -9,6 +10,7 @@ std::span<const EffectEntry> effectList() {
   static constexpr EffectEntry kEffects[] = {
       {"diffuse", chooseDiffuse},
       {"glossy", chooseGlossy},
+      {"neighborhood", chooseNeighborhood},
   };
   return kEffects;
 }
