@@ -50,9 +50,9 @@ int main(int argc, char** argv) {
     if (std::strcmp(argv[i], "--rays") == 0 && i + 1 < argc)
       rays = static_cast<std::size_t>(std::atoi(argv[++i]));
   }
-  Scene scene = testing::sceneOf({testing::icosphere({0, 0, 0}, 1.0f, 4)});
+  Scene scene = lambent::testing::sceneOf({lambent::testing::icosphere({0, 0, 0}, 1.0f, 4)});
   if (!white) scene.materials[0].base_color = {0, 0, 0, 1};
-  const testing::Transport transport(scene);
+  const lambent::testing::Transport transport(scene);
   const auto baked = transport.bake(5, 512, white ? -1 : 0);
   const SurfaceBody body(transport.diffuse(),
                          {baked.direct.field, white ? &baked.bounced.field : nullptr, nullptr, nullptr});
@@ -72,11 +72,15 @@ int main(int argc, char** argv) {
     Progress progress;
     const auto start = std::chrono::steady_clock::now();
     const auto result = bakeNeighborhood(body, settings, progress, {});
+    progress.end();
     const double seconds = secondsSince(start);
-    const testing::DecodedNeighborhood decoded(*result->grid);
-    const testing::NeighborhoodErrors errors =
-        testing::errorsAgainst(decoded, settings.placement.receivers, 4000, [&](const glm::vec3& p) {
-          return testing::blackSphereChange(p, 1.0f, 5, decoded.shape().order_out);
+    for (const Progress::Stage& stage : progress.finished())
+      std::printf("%s %.2f s  ", stage.name.c_str(), stage.seconds);
+    std::printf("\n");
+    const lambent::testing::DecodedNeighborhood decoded(*result->grid);
+    const lambent::testing::NeighborhoodErrors errors =
+        lambent::testing::errorsAgainst(decoded, settings.placement.receivers, 4000, [&](const glm::vec3& p) {
+          return lambent::testing::blackSphereChange(p, 1.0f, 5, decoded.shape().order_out);
         });
     std::printf("%ux%ux%-4u %8.2f %8.1f %9.3f %8.2f %8.3f %8.3f %8.3f %8.2f\n", result->figures.size.x,
                 result->figures.size.y, result->figures.size.z, seconds,
