@@ -2,6 +2,7 @@
 
 #include "baker/effects/diffuse/diffuse.hpp"
 #include "baker/effects/glossy/glossy.hpp"
+#include "baker/effects/neighborhood/neighborhood.hpp"
 #include "baker/effects/volume/volume.hpp"
 
 namespace lambent::baker {
@@ -11,6 +12,7 @@ std::span<const EffectEntry> effectList() {
       {"diffuse", chooseDiffuse},
       {"glossy", chooseGlossy},
       {"volume", chooseVolume},
+      {"neighborhood", chooseNeighborhood},
   };
   return kEffects;
 }

@@ -286,29 +286,39 @@ void RayScene::occluded(std::span<const RaySegment> segments, std::span<std::uin
   }
 }
 
-void RayScene::firstHits(std::span<const RaySegment> segments, std::span<float> distances) const {
-  assert(distances.size() == segments.size());
+void RayScene::firstHits(std::span<const RaySegment> rays, std::span<FirstHit> hits) const {
+  assert(hits.size() == rays.size());
   const FlushDenormals flush;
-  alignas(64) RTCRayHit16 rays;
-  alignas(64) std::array<int, kPacketWidth> valid;
+  Packet packet;
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
-  for (std::size_t first = 0; first < segments.size(); first += kPacketWidth) {
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  RTCRay16& ray = packet.rays.ray;
+  for (std::size_t first = 0; first < rays.size(); first += kPacketWidth) {
+    forgetHits(packet.rays);
     for (std::size_t k = 0; k < kPacketWidth; ++k) {
-      valid[k] = first + k < segments.size() ? -1 : 0;
-      const RaySegment& segment = segments[std::min(first + k, segments.size() - 1)];
-      RTCRay16& ray = rays.ray;
-      ray.org_x[k] = segment.origin.x, ray.org_y[k] = segment.origin.y, ray.org_z[k] = segment.origin.z;
-      ray.dir_x[k] = segment.direction.x, ray.dir_y[k] = segment.direction.y;
-      ray.dir_z[k] = segment.direction.z;
-      ray.tnear[k] = 0.0f, ray.tfar[k] = segment.length;
+      packet.lanes.valid[k] = first + k < rays.size() ? -1 : 0;
+      const RaySegment& from = rays[std::min(first + k, rays.size() - 1)];
+      ray.org_x[k] = from.origin.x, ray.org_y[k] = from.origin.y, ray.org_z[k] = from.origin.z;
+      ray.dir_x[k] = from.direction.x, ray.dir_y[k] = from.direction.y, ray.dir_z[k] = from.direction.z;
+      ray.tnear[k] = 0.0f, ray.tfar[k] = from.length;
       ray.time[k] = 0.0f, ray.mask[k] = ~0u, ray.flags[k] = 0;
-      rays.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
     }
-    rtcIntersect16(valid.data(), state_->scene.get(), &context, &rays);
-    for (std::size_t k = 0; k < kPacketWidth && first + k < segments.size(); ++k)
-      distances[first + k] = rays.ray.tfar[k];
+    rtcIntersect16(packet.lanes.valid.data(), state_->scene.get(), &context, &packet.rays);
+    const RTCHit16& hit = packet.rays.hit;
+    for (std::size_t k = 0; k < kPacketWidth && first + k < rays.size(); ++k) {
+      FirstHit& out = hits[first + k] = {};
+      if (hit.geomID[k] == RTC_INVALID_GEOMETRY_ID) continue;
+      const SurfaceSides& sides = state_->surfaces[hit.geomID[k]];
+      const bool behind =
+          ray.dir_x[k] * hit.Ng_x[k] + ray.dir_y[k] * hit.Ng_y[k] + ray.dir_z[k] * hit.Ng_z[k] > 0.0f;
+      out = {.triangle = (behind && sides.double_sided ? sides.back : sides.front) + hit.primID[k],
+             .u = hit.u[k],
+             .v = hit.v[k],
+             .distance = ray.tfar[k],
+             .back = behind && !sides.double_sided};
+      if (behind && sides.double_sided) std::swap(out.u, out.v);  // corners 1 and 2 of a back are swapped
+    }
   }
 }
 

@@ -32,7 +32,9 @@ class Occluders {
     std::vector<RaySegment> segments(directions.size());
     for (std::size_t i = 0; i < segments.size(); ++i)
       segments[i] = {from, glm::vec3(scene_from_group_ * glm::vec4(directions[i], 0.0f)), kFar};
-    rays_->firstHits(segments, distances);
+    std::vector<FirstHit> hits(segments.size());
+    rays_->firstHits(segments, hits);
+    for (std::size_t i = 0; i < hits.size(); ++i) distances[i] = hits[i].distance;
   }
 
  private:
