@@ -36,7 +36,7 @@ struct BakedGroup {
 // tables: of the scene's glossy materials; empty where all are shown as Lambert. Adds what it did to the
 // report. Errors: no memory for the hierarchy, images that cannot be decoded, "stopped".
 Result<BakedGroup> bakeGroup(const Scene& scene, const RigidGroup& group, LightSampleCount light_samples,
-                             const BrdfTables& tables, const ShippedMeshes& meshes,
+                             const PlannedNeighborhood& neighborhood, const BrdfTables& tables, const ShippedMeshes& meshes,
                              const std::vector<std::shared_ptr<const AlphaMap>>& alpha_maps,
                              DecodedImages& images, const BakeOptions& options, Progress& progress,
                              const std::stop_token& stop, BakeReport& report);

@@ -58,6 +58,10 @@ std::map<std::string, std::string> BakeOptions::settings() const {
           {"lightSamples", light_samples == 0 ? "auto" : std::to_string(light_samples)},
           {"errorBound", fmt::format("{}", effectiveErrorBound())},
           {"glossyErrorBound", fmt::format("{}", effectiveGlossyErrorBound())},
+          {"neighborhoodGrid", neighborhood_grid == glm::uvec3(0u)
+                                   ? "auto"
+                                   : fmt::format("{}x{}x{}", neighborhood_grid.x, neighborhood_grid.y,
+                                                 neighborhood_grid.z)},
           {"maxEdge", fmt::format("{}", max_edge_m)},
           {"effects", effects}};
 }

@@ -7,6 +7,8 @@
 #include <map>
 #include <string>
 
+#include <glm/vec3.hpp>
+
 namespace lambent::baker {
 
 enum class Quality : std::uint8_t { Draft, Standard, High };
@@ -22,6 +24,9 @@ struct BakeOptions {
   float error_bound = 0.0f;  // of the coded transfer, relative RMS; 0: the quality's
   float max_edge_m = 0.0f;   // edges longer than this are split; 0: none
   int light_samples = 0;     // of each cell, 1..32; 0: auto, by how near light comes (local_light.hpp)
+  // Points of neighborhood grids along their longest, middle and shortest side, where the scene asks for no
+  // other; 0: 64 x 64 x 8 in a slab, else 32 each.
+  glm::uvec3 neighborhood_grid{0};
   std::string effects = "auto";
   unsigned threads = 0;            // 0: all
   std::uint64_t memory_bytes = 0;  // that passes may keep things in; 0: half of the machine's

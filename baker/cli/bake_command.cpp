@@ -1,7 +1,9 @@
 // lambent bake SCENE -o OUT.lmb.glb
+#include <cstdio>
 #include <cstdlib>
 #include <map>
 #include <memory>
+#include <optional>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -33,6 +35,15 @@ nlohmann::json reportJson(const BakeArguments& a, const BakeReport& r) {
     groups.push_back({{"name", group.name},
                       {"lightSamples", group.light_samples},
                       {"proxyTriangles", group.proxy_triangles}});
+  nlohmann::json neighborhoods = nlohmann::json::array();
+  for (const BakeReport::Neighborhood& n : r.neighborhoods)
+    neighborhoods.push_back({{"name", n.name},
+                             {"size", {n.size.x, n.size.y, n.size.z}},
+                             {"boundsMin", {n.bounds_min.x, n.bounds_min.y, n.bounds_min.z}},
+                             {"boundsMax", {n.bounds_max.x, n.bounds_max.y, n.bounds_max.z}},
+                             {"insidePoints", n.inside_points},
+                             {"codingError", n.error},
+                             {"changeCodingError", n.change_error}});
   return {{"output", a.output.string()},
           {"settings", a.options.settings()},
           {"vertices", r.vertices},
@@ -43,6 +54,7 @@ nlohmann::json reportJson(const BakeArguments& a, const BakeReport& r) {
           {"raysPerSecond", r.ray_seconds > 0.0 ? static_cast<double>(r.rays) / r.ray_seconds : 0.0},
           {"lights", r.lights},
           {"groups", groups},
+          {"neighborhoods", neighborhoods},
           {"passEnergy", r.pass_energy},
           {"leftOut", r.left_out},
           {"hitBytes", r.hit_bytes},
@@ -83,6 +95,9 @@ void printReport(const BakeArguments& a, const BakeReport& r) {
       bytesText(static_cast<double>(r.proxy_bytes)), bytesText(static_cast<double>(r.image_bytes)));
   fmt::print("  coding    {:.2f} % relative error of shaded radiance (bound {:.2f} %)\n",
              100.0 * r.worst_error, 100.0 * double{a.options.effectiveErrorBound()});
+  for (const BakeReport::Neighborhood& n : r.neighborhoods)
+    fmt::print("  around    {}: {} x {} x {} points, {:.3f} % of irradiance, {:.1f} % of the change\n", n.name,
+               n.size.x, n.size.y, n.size.z, 100.0 * n.error, 100.0 * n.change_error);
   if (r.worst_glossy_error > 0.0)
     fmt::print("            {:.2f} % of glossy surfaces (bound {:.2f} %)\n", 100.0 * r.worst_glossy_error,
                100.0 * double{a.options.effectiveGlossyErrorBound()});
@@ -142,6 +157,28 @@ void addLightSamplesOption(CLI::App& command, BakeOptions& options) {
       ->type_name("N|auto");
 }
 
+void addNeighborhoodGridOption(CLI::App& command, BakeOptions& options) {
+  const auto read = [](const std::string& text) -> std::optional<glm::uvec3> {
+    if (text == "auto") return glm::uvec3(0u);
+    glm::uvec3 size;
+    char rest = 0;
+    if (std::sscanf(text.c_str(), "%3ux%3ux%3u%c", &size.x, &size.y, &size.z, &rest) != 3) return std::nullopt;
+    return size;
+  };
+  command
+      .add_option_function<std::string>(
+          "--neighborhood-grid",
+          [&options, read](const std::string& text) { options.neighborhood_grid = *read(text); },
+          "Points of neighborhood grids along their longest, middle and shortest side, 2..256 each; auto "
+          "(default): 64x64x8 where receivers are on one side only, else 32x32x32")
+      ->check(CLI::Validator(
+          [read](const std::string& text) {
+            return read(text) ? std::string() : fmt::format("{} is neither auto nor like 64x64x8", text);
+          },
+          ""))
+      ->type_name("XxYxZ");
+}
+
 void addBakeCommand(CLI::App& app, Command& run) {
   auto a = std::make_shared<BakeArguments>();
   CLI::App* command = app.add_subcommand("bake", "Bake a glTF scene into a bundle");
@@ -190,6 +227,7 @@ void addBakeCommand(CLI::App& app, Command& run) {
                    "Split edges longer than this (scene units), so that large faces catch shadows")
       ->type_name("M");
   addLightSamplesOption(*command, a->options);
+  addNeighborhoodGridOption(*command, a->options);
   command->add_option("--effects", a->options.effects, "auto: what the scene calls for; or a list of effects")
       ->capture_default_str()
       ->type_name("LIST");
