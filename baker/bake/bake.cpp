@@ -12,6 +12,7 @@
 #include "baker/bake/ship_meshes.hpp"
 #include "baker/effects/diffuse/bounces.hpp"
 #include "baker/effects/effect_list.hpp"
+#include "baker/refine/refine.hpp"
 #include "baker/work/parallel.hpp"
 #include "runtime/base/atomic_file.hpp"
 
@@ -96,7 +97,18 @@ Result<BakeReport> bakeOnTheseThreads(const Scene& scene, const BakeOptions& opt
     tables = std::move(*made);
   }
 
-  auto meshes = shipMeshes(scene, plan->groups, options.max_edge_m, progress, stop);
+  auto split = splitMeshes(scene, plan->groups, options.max_edge_m);
+  if (!split) return failAgain(split.error());
+  if (const float bound = options.effectiveRefineBound(); bound > 0.0f) {
+    RefineOptions refine{
+        .bound = bound, .most_growth = options.refineGrowth(), .most_added = options.refineAdded()};
+    if (!tables.entries.empty()) refine.most_vertices = mostGlossySamples(options.glossy_order);
+    auto refined = refineMeshes(scene, plan->groups, *alpha_maps, !tables.entries.empty(), refine, *split,
+                                progress, stop);
+    if (!refined) return failAgain(refined.error());
+    report.refinement = *refined;
+  }
+  auto meshes = shipMeshes(scene, plan->groups, *split, progress, stop);
   if (!meshes) return failAgain(meshes.error());
 
   std::vector<BakedGroup> baked;

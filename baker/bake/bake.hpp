@@ -12,6 +12,7 @@
 #include "baker/bake/options.hpp"
 #include "baker/import/scene.hpp"
 #include "baker/plan/effect_plan.hpp"
+#include "baker/refine/refine.hpp"
 #include "baker/work/progress.hpp"
 #include "runtime/base/result.hpp"
 #include "runtime/bundle/description.hpp"
@@ -35,6 +36,7 @@ struct BakeReport {
     std::vector<std::uint32_t> proxy_triangles;  // of each level, the finest first; empty: no proxy
   };
   std::vector<Group> groups;
+  RefineReport refinement;
   double left_out = 0.0;  // estimate of the light that further bounces would add, relative to all
   std::vector<Progress::Stage> stages;
   std::vector<std::string> notices;  // what came out other than the plan says, a sentence each

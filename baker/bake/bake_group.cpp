@@ -145,6 +145,11 @@ std::vector<CodedTransfer> codeDiffuse(const SampleCell& cell, const SampleSet& 
 
 }  // namespace
 
+std::size_t mostGlossySamples(int glossy_order) {
+  return kMostBytesShaded /
+         (16u * static_cast<std::size_t>(glossy_order) * static_cast<std::size_t>(glossy_order));
+}
+
 Result<BakedGroup> bakeGroup(const Scene& scene, const RigidGroup& group, LightSampleCount light_samples,
                              const BrdfTables& tables, const ShippedMeshes& meshes,
                              const std::vector<std::shared_ptr<const AlphaMap>>& alpha_maps,
