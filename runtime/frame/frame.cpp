@@ -77,7 +77,7 @@ Result<void> Frame::render(World& world, const lighting::Environment& environmen
   // cubes of the lights that stand among surfaces
   if (Result<void> done = castShadows(world); !done) return done;
   // the sky as rough mirrors show it
-  if (Result<void> done = reflectSky(environment); !done) return done;
+  if (Result<void> done = reflectSky(world, environment); !done) return done;
   // surfaces, sky, blended surfaces: linear radiance
   if (Result<void> done = raster(world, environment, view); !done) return done;
   // what volumes scatter and let through
@@ -115,6 +115,8 @@ Result<void> Frame::step(World& world, const lighting::Environment& environment,
   if (Result<void> done = shadeGlossy(world); !done) return done;
   // and what of it rays through volumes look up
   if (Result<void> done = shadeVolumes(world); !done) return done;
+  // what bodies with grids change around them
+  if (Result<void> done = shadeNeighborhoods(world); !done) return done;
   // what bodies send to each other: arrives with the next step
   return capture(world, environment, max_captures);
 }
@@ -154,6 +156,7 @@ Result<void> Frame::prepareSampling(World& world, const lighting::Environment& e
 Result<void> Frame::light(World& world, const lighting::Environment& environment) {
   gpu::PassTimers::Scope pass(timers_, "light");
   lit_scene_ = gatherLitScene(world, meanRadiance(environment));
+  if (options_.neighborhoods) neighborhoods_.chooseCarriers(world, lit_scene_);
   if (Result<void> done = prepareSampling(world, environment, pass.counters()); !done) return done;
   if (incident_) {
     incident_->update(environment, lit_scene_.groups, lit_scene_.lights, options_.wait_for_captures);
@@ -223,7 +226,8 @@ Result<void> Frame::shadeGlossy(World& world) {
   const auto& cells = world.residency().cells();
   if (std::none_of(cells.begin(), cells.end(), [](const auto& cell) { return cell.matrices(); })) return {};
   gpu::PassTimers::Scope pass(timers_, "glossy");
-  Result<void> done = glossy_.shade(world.residency(), group_lights_, options_.transfer, pass.counters());
+  Result<void> done = glossy_.shade(world.residency(), group_lights_, options_.transfer, pass.counters(),
+                                    options_.neighborhoods);
   counts_.cells_shaded += glossy_.cellsShadedLast();
   return done;
 }
@@ -258,6 +262,14 @@ Result<void> Frame::marchVolumes(World& world, const spec::View& view) {
   return done;
 }
 
+Result<void> Frame::shadeNeighborhoods(World& world) {
+  if (!neighborhoods_.any()) return {};
+  gpu::PassTimers::Scope pass(timers_, "neighborhood");
+  Result<void> done = neighborhoods_.update(world, group_lights_, glossy_, pass.counters());
+  counts_.neighborhoods = neighborhoods_.counts();
+  return done;
+}
+
 Result<void> Frame::castShadows(World& world) {
   gpu::PassTimers::Scope pass(timers_, "shadows");
   Result<void> done =
@@ -266,8 +278,11 @@ Result<void> Frame::castShadows(World& world) {
   return done;
 }
 
-Result<void> Frame::reflectSky(const lighting::Environment& environment) {
+Result<void> Frame::reflectSky(const World& world, const lighting::Environment& environment) {
   if (!options_.residual || !glossy_.any() || reflected_sky_) return {};
+  if (std::ranges::none_of(world.residency().groups(),
+                           [](const streaming::ResidentGroup& group) { return group.glossy_outputs > 0; }))
+    return {};  // matrices of neighborhoods or volumes alone
   gpu::PassTimers::Scope pass(timers_, "residual");
   Result<lighting::ReflectedSky> made = lighting::ReflectedSky::make(environment, sky_, pass.counters());
   if (!made) return failAgain(made.error());
@@ -284,7 +299,8 @@ Result<void> Frame::raster(World& world, const lighting::Environment& environmen
     reflected_sky_->update(environment, static_cast<int>(order), options_.window, pass.counters());
   }
   if (Result<void> done = surfaces_.prepare(world, diffuse_, view, pass.counters(), &near_lights_,
-                                            reflected_sky_ ? &*reflected_sky_ : nullptr);
+                                            reflected_sky_ ? &*reflected_sky_ : nullptr,
+                                            neighborhoods_.any() ? &neighborhoods_ : nullptr);
       !done)
     return done;
   near_lights_.bind(view, options_.size);

@@ -17,6 +17,7 @@
 #include "runtime/effects/volume/volume.hpp"
 #include "runtime/frame/lit_scene.hpp"
 #include "runtime/frame/near_lights.hpp"
+#include "runtime/frame/neighborhoods.hpp"
 #include "runtime/frame/surfaces.hpp"
 #include "runtime/frame/tone_mapper.hpp"
 #include "runtime/frame/world.hpp"
@@ -46,6 +47,8 @@ struct FrameOptions {
   sh::Window window = sh::Window::Auto;
   // Glossy surfaces reflect what the bands of their light leave out of the sky, too.
   bool residual = true;
+  // Bodies with grids around them change the light of others by these; else by captures.
+  bool neighborhoods = true;
   std::optional<float> exposure_ev;                             // none: automatic
   std::uint64_t upload_budget_bytes = std::uint64_t{16} << 20;  // per frame
   lighting::CaptureOptions capture{.order = 0};                 // order 0: that of the groups' transfer
@@ -66,6 +69,7 @@ struct StepCounts {
   // Volumes there are; whose light was brought into their textures, and how many outputs of it; in the
   // picture.
   std::uint32_t volumes = 0, volumes_shaded = 0, volume_slabs_written = 0, volumes_drawn = 0;
+  NeighborhoodCounts neighborhoods;
 };
 
 // After so many steps a still scene is taken to be at rest: light has gone to and fro as often.
@@ -101,14 +105,16 @@ class Frame {
   Result<void> step(World& world, const lighting::Environment& environment, std::size_t max_captures);
   Result<void> light(World& world, const lighting::Environment& environment);
   Result<void> shade(World& world);
-  Result<void> shadeGlossy(World& world);   // no pass where nothing is glossy
-  Result<void> shadeVolumes(World& world);  // these two: no pass without volumes
+  Result<void> shadeGlossy(World& world);         // no pass where nothing is glossy
+  Result<void> shadeVolumes(World& world);        // these two: no pass without volumes
   Result<void> marchVolumes(World& world, const spec::View& view);
+  Result<void> shadeNeighborhoods(World& world);  // no pass without grids
   Result<void> prepareSampling(World& world, const lighting::Environment& environment,
                                gpu::Counters& counters);
   Result<void> capture(World& world, const lighting::Environment& environment, std::size_t max_captures);
   bool atRest(const World& world) const;
-  Result<void> reflectSky(const lighting::Environment& environment);  // once; no pass then
+  Result<void> reflectSky(const World& world,
+                          const lighting::Environment& environment);  // once; no pass then
   Result<void> castShadows(World& world);
   Result<void> raster(World& world, const lighting::Environment& environment, const spec::View& view);
   void toneMap();
@@ -124,6 +130,7 @@ class Frame {
   effects::diffuse::Proxies proxies_;
   LitScene lit_scene_;
   NearLights near_lights_;
+  Neighborhoods neighborhoods_;
   std::optional<lighting::ReflectedSky> reflected_sky_;  // once a glossy surface asks for it
   std::optional<lighting::IncidentLight> incident_;      // once there is something to sample
   // How the light that groups send out has changed, summed up.

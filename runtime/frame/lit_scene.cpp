@@ -75,6 +75,14 @@ bool within(const scene::Box& bounds, const glm::mat4& world_from_group, const l
 
 }  // namespace
 
+bool LitScene::needsSampling() const {
+  const auto seesOthers = [&](const lighting::IncidentGroup& group) {
+    const std::size_t own = group.body == lighting::CapturePoint::kNoBody ? 0 : 1;
+    return bodies.size() > own + group.left_out.size();
+  };
+  return !lights.empty() || std::ranges::any_of(groups, seesOthers);
+}
+
 std::vector<const bundle::CaptureProxy*> proxiesOf(const streaming::Residency& residency) {
   std::vector<const bundle::CaptureProxy*> proxies;
   for (const streaming::ResidentGroup& group : residency.groups())
@@ -100,6 +108,7 @@ LitScene gatherLitScene(const World& world, float surroundings) {
       if (const auto near = lighting::nearLightOf(scene.lights[k])) {
         near_of_light[k] = static_cast<std::int32_t>(scene.near_lights.size());
         scene.near_lights.push_back(*near);
+        scene.near_sources.push_back(k);
       }
     return near_of_light[k];
   };
@@ -143,13 +152,14 @@ LitScene gatherLitScene(const World& world, float surroundings) {
     scene.near_masks.push_back(near_mask);
     scene.groups.push_back(std::move(receiver));
   }
-  // The surfaces that a volume stands in are in its transfer.
+  // What a volume stands within is in its own transfer.
   for (std::size_t g = 0; g < groups.size(); ++g) {
-    if (groups[g].volume < 0) continue;
-    if (groups[g].within >= 0)
-      scene.groups[g].body = scene.groups[static_cast<std::size_t>(groups[g].within)].body;
-    const std::size_t own = scene.groups[g].body == lighting::CapturePoint::kNoBody ? 0 : 1;
-    scene.volume_sees_body |= scene.bodies.size() > own;
+    const std::int32_t within = world.description(groups[g].bundle).groups[groups[g].index].within;
+    if (within < 0) continue;
+    const std::size_t around = world.residency().bundles()[groups[g].bundle].first_group +
+                               static_cast<std::size_t>(within);
+    if (const std::uint32_t body = scene.groups[around].body; body != lighting::CapturePoint::kNoBody)
+      scene.groups[g].left_out.push_back(body);
   }
   return scene;
 }

@@ -21,11 +21,11 @@ struct LitScene {
   std::vector<lighting::LocalLight> lights;
   std::vector<lighting::NearLight> near_lights;  // at most kMaxNearLights
   std::vector<std::uint32_t> near_masks;         // per group: bit k for near light k
+  std::vector<std::size_t> near_sources;         // per near light: among the lights
   std::uint32_t near_left_out = 0;  // lights within bounds for which there was no place left: harmonics
-  bool volume_sees_body = false;    // one that it does not stand in
 
   // Whether anything but the environment reaches any group from outside.
-  bool needsSampling() const { return bodies.size() > 1 || !lights.empty() || volume_sees_body; }
+  bool needsSampling() const;
 };
 
 // surroundings: mean radiance, by which bodies count as bright.
