@@ -59,6 +59,7 @@ std::map<std::string, std::string> BakeOptions::settings() const {
           {"errorBound", fmt::format("{}", effectiveErrorBound())},
           {"glossyErrorBound", fmt::format("{}", effectiveGlossyErrorBound())},
           {"maxEdge", fmt::format("{}", max_edge_m)},
+          {"volumeGrid", fmt::format("{}x{}x{}", volume_grid.x, volume_grid.y, volume_grid.z)},
           {"effects", effects}};
 }
 

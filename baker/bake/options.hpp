@@ -7,6 +7,8 @@
 #include <map>
 #include <string>
 
+#include <glm/vec3.hpp>
+
 namespace lambent::baker {
 
 enum class Quality : std::uint8_t { Draft, Standard, High };
@@ -15,13 +17,14 @@ struct BakeOptions {
   static constexpr int kMostBounces = 64;
 
   Quality quality = Quality::Standard;
-  int order = 5;             // 1..8; with glossy surfaces 1..6
-  int glossy_order = 5;      // bands of the light that glossy surfaces reflect, 4..6
-  std::uint32_t rays = 0;    // per sample over its hemisphere; 0: the quality's
-  int bounces = -1;          // 0: direct light with shadows; -1: as many as the error bound asks for
-  float error_bound = 0.0f;  // of the coded transfer, relative RMS; 0: the quality's
-  float max_edge_m = 0.0f;   // edges longer than this are split; 0: none
-  int light_samples = 0;     // of each cell, 1..32; 0: auto, by how near light comes (local_light.hpp)
+  int order = 5;               // 1..8; with glossy surfaces 1..6
+  int glossy_order = 5;        // bands of the light that glossy surfaces reflect, 4..6
+  std::uint32_t rays = 0;      // per sample over its hemisphere; 0: the quality's
+  int bounces = -1;            // 0: direct light with shadows; -1: as many as the error bound asks for
+  float error_bound = 0.0f;    // of the coded transfer, relative RMS; 0: the quality's
+  float max_edge_m = 0.0f;     // edges longer than this are split; 0: none
+  int light_samples = 0;       // of each cell, 1..32; 0: auto, by how near light comes (local_light.hpp)
+  glm::uvec3 volume_grid{32};  // voxels of a volume's transfer, 1..256 along each axis
   std::string effects = "auto";
   unsigned threads = 0;            // 0: all
   std::uint64_t memory_bytes = 0;  // that passes may keep things in; 0: half of the machine's

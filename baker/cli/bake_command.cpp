@@ -1,7 +1,9 @@
 // lambent bake SCENE -o OUT.lmb.glb
+#include <charconv>
 #include <cstdlib>
 #include <map>
 #include <memory>
+#include <optional>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -33,6 +35,16 @@ nlohmann::json reportJson(const BakeArguments& a, const BakeReport& r) {
     groups.push_back({{"name", group.name},
                       {"lightSamples", group.light_samples},
                       {"proxyTriangles", group.proxy_triangles}});
+  nlohmann::json volumes = nlohmann::json::array();
+  for (const BakeReport::Volume& volume : r.volumes)
+    volumes.push_back({{"name", volume.name},
+                       {"voxels", volume.voxels},
+                       {"samples", volume.samples},
+                       {"densityBits", volume.density_bits},
+                       {"densityError", volume.density_error},
+                       {"iterations", volume.iterations},
+                       {"residual", volume.residual},
+                       {"rowBytes", volume.row_bytes}});
   return {{"output", a.output.string()},
           {"settings", a.options.settings()},
           {"vertices", r.vertices},
@@ -43,6 +55,7 @@ nlohmann::json reportJson(const BakeArguments& a, const BakeReport& r) {
           {"raysPerSecond", r.ray_seconds > 0.0 ? static_cast<double>(r.rays) / r.ray_seconds : 0.0},
           {"lights", r.lights},
           {"groups", groups},
+          {"volumes", volumes},
           {"passEnergy", r.pass_energy},
           {"leftOut", r.left_out},
           {"hitBytes", r.hit_bytes},
@@ -69,6 +82,12 @@ void printReport(const BakeArguments& a, const BakeReport& r) {
   if (!r.pass_energy.empty())
     fmt::print("  bounces   {}, the last with {:.3f} % of the direct light; {:.3f} % left out\n",
                r.pass_energy.size() - 1, 100.0 * r.pass_energy.back(), 100.0 * r.left_out);
+  for (const BakeReport::Volume& volume : r.volumes)
+    fmt::print(
+        "  volume    {}: {} voxels, {} samples, density in {} bits ({:.2f} %), scattering solved in {} "
+        "steps\n",
+        volume.name, volume.voxels, volume.samples, volume.density_bits, 100.0 * volume.density_error,
+        volume.iterations);
   std::uint64_t light_samples = 0, proxy_triangles = 0;
   for (const BakeReport::Group& group : r.groups)
     light_samples += group.light_samples,
@@ -142,6 +161,39 @@ void addLightSamplesOption(CLI::App& command, BakeOptions& options) {
       ->type_name("N|auto");
 }
 
+namespace {
+
+// "48" or "64x32x64"; nothing where it is neither.
+std::optional<glm::uvec3> gridFrom(const std::string& text) {
+  glm::uvec3 size(0);
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto [next, error] = std::from_chars(at, end, size[axis]);
+    if (error != std::errc{}) return std::nullopt;
+    if (axis == 0 && next == end) return glm::uvec3(size.x);
+    if (axis == 2) return next == end ? std::optional(size) : std::nullopt;
+    if (next == end || *next != 'x') return std::nullopt;
+    at = next + 1;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+void addVolumeGridOption(CLI::App& command, BakeOptions& options) {
+  command
+      .add_option_function<std::string>(
+          "--volume-grid", [&options](const std::string& text) { options.volume_grid = *gridFrom(text); },
+          "Voxels of the grid that a volume's transfer is baked on, 1..256 along each axis; default 32")
+      ->check(CLI::Validator(
+          [](const std::string& text) {
+            return gridFrom(text) ? std::string() : fmt::format("{} is neither N nor XxYxZ", text);
+          },
+          ""))
+      ->type_name("N|XxYxZ");
+}
+
 void addBakeCommand(CLI::App& app, Command& run) {
   auto a = std::make_shared<BakeArguments>();
   CLI::App* command = app.add_subcommand("bake", "Bake a glTF scene into a bundle");
@@ -190,6 +242,7 @@ void addBakeCommand(CLI::App& app, Command& run) {
                    "Split edges longer than this (scene units), so that large faces catch shadows")
       ->type_name("M");
   addLightSamplesOption(*command, a->options);
+  addVolumeGridOption(*command, a->options);
   command->add_option("--effects", a->options.effects, "auto: what the scene calls for; or a list of effects")
       ->capture_default_str()
       ->type_name("LIST");
