@@ -25,7 +25,7 @@ struct BakeOptions {
   float max_edge_m = 0.0f;   // edges longer than this are split; 0: none
   int light_samples = 0;     // of each cell, 1..32; 0: auto, by how near light comes (local_light.hpp)
   // Points of neighborhood grids along their longest, middle and shortest side, where the scene asks for no
-  // other; 0: 64 x 64 x 8 in a slab, else 32 each.
+  // other; 0: 64 x 64 x 8 in a slab, else 32 each; for bodies that the scene does not name a quarter of that.
   glm::uvec3 neighborhood_grid{0};
   std::string effects = "auto";
   unsigned threads = 0;            // 0: all
