@@ -14,6 +14,7 @@
 #include "baker/bake/options.hpp"
 #include "baker/import/scene.hpp"
 #include "baker/plan/effect_plan.hpp"
+#include "baker/refine/refine.hpp"
 #include "baker/work/progress.hpp"
 #include "runtime/base/result.hpp"
 #include "runtime/bundle/description.hpp"
@@ -46,6 +47,7 @@ struct BakeReport {
     double change_error = 0.0;  // relative to the change, which 99 % of the points with a change keep
   };
   std::vector<Neighborhood> neighborhoods;
+  RefineReport refinement;
   double left_out = 0.0;  // estimate of the light that further bounces would add, relative to all
   std::vector<Progress::Stage> stages;
   std::vector<std::string> notices;  // what came out other than the plan says, a sentence each

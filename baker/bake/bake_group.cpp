@@ -147,8 +147,14 @@ std::vector<CodedTransfer> codeDiffuse(const SampleCell& cell, const SampleSet& 
 
 }  // namespace
 
+std::size_t mostGlossySamples(int glossy_order) {
+  return kMostBytesShaded /
+         (16u * static_cast<std::size_t>(glossy_order) * static_cast<std::size_t>(glossy_order));
+}
+
 Result<BakedGroup> bakeGroup(const Scene& scene, const RigidGroup& group, LightSampleCount light_samples,
-                             const PlannedNeighborhood& neighborhood, const BrdfTables& tables, const ShippedMeshes& meshes,
+                             const PlannedNeighborhood& neighborhood, const BrdfTables& tables,
+                             const ShippedMeshes& meshes,
                              const std::vector<std::shared_ptr<const AlphaMap>>& alpha_maps,
                              DecodedImages& images, const BakeOptions& options, Progress& progress,
                              const std::stop_token& stop, BakeReport& report) {

@@ -14,6 +14,7 @@
 #include "baker/cli/output.hpp"
 #include "baker/import/gltf.hpp"
 #include "baker/plan/counted.hpp"
+#include "runtime/spec/numbers.hpp"
 
 namespace lambent::baker {
 
@@ -67,6 +68,12 @@ nlohmann::json reportJson(const BakeArguments& a, const BakeReport& r) {
           {"proxyBytes", r.proxy_bytes},
           {"imageBytes", r.image_bytes},
           {"notices", r.notices},
+          {"refinement",
+           {{"verticesBefore", r.refinement.vertices_before},
+            {"verticesAfter", r.refinement.vertices_after},
+            {"errorBefore", r.refinement.error_before},
+            {"errorAfter", r.refinement.error_after},
+            {"rays", r.refinement.rays}}},
           {"stages", stages}};
 }
 
@@ -75,6 +82,10 @@ void printReport(const BakeArguments& a, const BakeReport& r) {
   for (const Progress::Stage& stage : r.stages) seconds += stage.seconds;
   fmt::print("{}: {} vertices, {} triangles, {} samples in {}\n", a.output.string(), r.vertices, r.triangles,
              r.samples, durationText(seconds));
+  if (const RefineReport& refined = r.refinement; refined.vertices_after > refined.vertices_before)
+    fmt::print("  refined   {} vertices to {}: shadows between them {:.2f} % wrong, before {:.2f} %\n",
+               refined.vertices_before, refined.vertices_after, 100.0 * refined.error_after,
+               100.0 * refined.error_before);
   fmt::print("  rays      {} in {} ({} a second)\n", countText(static_cast<double>(r.rays)),
              durationText(r.ray_seconds),
              countText(r.ray_seconds > 0.0 ? static_cast<double>(r.rays) / r.ray_seconds : 0.0));
@@ -96,8 +107,8 @@ void printReport(const BakeArguments& a, const BakeReport& r) {
   fmt::print("  coding    {:.2f} % relative error of shaded radiance (bound {:.2f} %)\n",
              100.0 * r.worst_error, 100.0 * double{a.options.effectiveErrorBound()});
   for (const BakeReport::Neighborhood& n : r.neighborhoods)
-    fmt::print("  around    {}: {} x {} x {} points, {:.3f} % of irradiance, {:.1f} % of the change\n", n.name,
-               n.size.x, n.size.y, n.size.z, 100.0 * n.error, 100.0 * n.change_error);
+    fmt::print("  around    {}: {} x {} x {} points, {:.3f} % of irradiance, {:.1f} % of the change\n",
+               n.name, n.size.x, n.size.y, n.size.z, 100.0 * n.error, 100.0 * n.change_error);
   if (r.worst_glossy_error > 0.0)
     fmt::print("            {:.2f} % of glossy surfaces (bound {:.2f} %)\n", 100.0 * r.worst_glossy_error,
                100.0 * double{a.options.effectiveGlossyErrorBound()});
@@ -162,7 +173,8 @@ void addNeighborhoodGridOption(CLI::App& command, BakeOptions& options) {
     if (text == "auto") return glm::uvec3(0u);
     glm::uvec3 size;
     char rest = 0;
-    if (std::sscanf(text.c_str(), "%3ux%3ux%3u%c", &size.x, &size.y, &size.z, &rest) != 3) return std::nullopt;
+    if (std::sscanf(text.c_str(), "%3ux%3ux%3u%c", &size.x, &size.y, &size.z, &rest) != 3)
+      return std::nullopt;
     return size;
   };
   command
@@ -178,6 +190,28 @@ void addNeighborhoodGridOption(CLI::App& command, BakeOptions& options) {
           },
           ""))
       ->type_name("XxYxZ");
+}
+
+void addRefineOption(CLI::App& command, BakeOptions& options) {
+  command
+      .add_option_function<std::string>(
+          "--refine",
+          [&options](const std::string& text) {
+            options.refine_bound = text == "auto"  ? -1.0f
+                                   : text == "off" ? 0.0f
+                                                   : std::strtof(text.c_str(), nullptr);
+          },
+          "Split edges where shadows change, until interpolation errs by less than E, relative RMS; auto "
+          "(default): 0.04, 0.02 or 0.01 by quality; off: keep the vertices as they are")
+      ->check(CLI::Validator(
+          [](const std::string& text) {
+            const std::optional<float> bound = spec::parseNumber(text);
+            return text == "auto" || text == "off" || (bound && *bound > 0.0f && *bound < 1.0f)
+                       ? std::string()
+                       : fmt::format("{} is neither auto nor off nor between 0 and 1", text);
+          },
+          ""))
+      ->type_name("E|auto|off");
 }
 
 void addBakeCommand(CLI::App& app, Command& run) {
@@ -227,6 +261,7 @@ void addBakeCommand(CLI::App& app, Command& run) {
       ->add_option("--max-edge", a->options.max_edge_m,
                    "Split edges longer than this (scene units), so that large faces catch shadows")
       ->type_name("M");
+  addRefineOption(*command, a->options);
   addLightSamplesOption(*command, a->options);
   addNeighborhoodGridOption(*command, a->options);
   command->add_option("--effects", a->options.effects, "auto: what the scene calls for; or a list of effects")

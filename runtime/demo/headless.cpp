@@ -66,6 +66,7 @@ Result<void> runHeadless(const Options& options) {
                             .transfer = options.transfer,
                             .window = options.window,
                             .residual = options.residual,
+                            .neighborhoods = options.neighborhoods,
                             .exposure_ev = options.exposure_ev,
                             .capture = options.capture,
                             .captures_per_step = options.captures_per_frame,
@@ -112,7 +113,7 @@ Result<void> runHeadless(const Options& options) {
       if (Result<void> finished = finishPicture(i); !finished) return finished;
   }
   if (!options.json) return {};
-  report.bytes_resident = world.residency().bytesResident();
+  report.bytes_resident = world.residency().bytesResident() + frame->volumeBytes();
   report.parts = world.loadedParts();
   report.negative_pixels = frame->negativePixels();
   report.exposure_ev = frame->exposureEv();

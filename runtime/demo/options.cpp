@@ -28,7 +28,7 @@ const std::map<std::string, bool> kSwitchWords = {{"off", false}, {"on", true}};
 struct Words {
   std::vector<std::string> bundles, lights, fade_lights;
   std::string light_layout, camera, size = "1280x720", headless, transfer = "full", window = "auto",
-                                    residual = "on";
+                                    residual = "on", neighborhoods = "on";
   std::string rotate_light = "0", exposure = "auto", lamps = "1", fade = "0", time, step = "0.0333";
   std::uint32_t capture_size = 16, capture_subsamples = 16, capture_order = 0, captures_per_frame = 16;
   std::uint64_t max_memory = ~std::uint64_t{0};
@@ -60,6 +60,8 @@ constexpr Row kRows[] = {
     {"--window", &Words::window, "WINDOW", "Against ringing of the light: auto, off or hann"},
     {"--residual", &Words::residual, "on|off",
      "Glossy surfaces reflect what the bands of their light leave out\nof the sky"},
+    {"--neighborhoods", &Words::neighborhoods, "on|off",
+     "Bodies with grids around them shade others by these, off: by\ncaptures"},
     {"--rotate-light", &Words::rotate_light, "DEG", "Turn all lights about +Y (+Z towards +X)"},
     {"--fade", &Words::fade, "SHARE", "From the lights of --light to those of --fade-to: 0..1"},
     {"--time", &Words::time, "S",
@@ -213,6 +215,8 @@ Result<Options> understand(const Words& words) {
   if (!window) return failAgain(window.error());
   const Result<bool> residual = wordOf(kSwitchWords, "--residual", words.residual);
   if (!residual) return failAgain(residual.error());
+  const Result<bool> neighborhoods = wordOf(kSwitchWords, "--neighborhoods", words.neighborhoods);
+  if (!neighborhoods) return failAgain(neighborhoods.error());
   const Result<float> turn = spec::parseDegrees(words.rotate_light);
   if (!turn) return failAgain(turn.error());
   const std::optional<float> lamps = spec::parseNumber(words.lamps);
@@ -237,6 +241,7 @@ Result<Options> understand(const Words& words) {
   options.window = *window;
   options.window_word = words.window;
   options.residual = *residual;
+  options.neighborhoods = *neighborhoods;
   options.rotate_light_deg = *turn;
   options.frames = words.frames;
   options.json = words.json;

@@ -35,6 +35,7 @@ struct Options {
   sh::Window window = sh::Window::Auto;
   std::string window_word;
   bool residual = true;
+  bool neighborhoods = true;
   std::uint32_t frames = 1;
   float rotate_light_deg = 0.0f;
   std::optional<float> time_s;  // of the scenes' animations in the last frame; none: at rest

@@ -28,7 +28,18 @@ Json countsJson(const frame::StepCounts& counts) {
           {"light_samples_written", counts.light_samples_written},
           {"cells_shaded", counts.cells_shaded},
           {"draws_shaded", counts.draws_shaded},
-          {"shadow_cubes_drawn", counts.shadow_cubes_drawn}};
+          {"shadow_cubes_drawn", counts.shadow_cubes_drawn},
+          {"volumes", counts.volumes},
+          {"volumes_shaded", counts.volumes_shaded},
+          {"volume_slabs_written", counts.volume_slabs_written},
+          {"volumes_drawn", counts.volumes_drawn},
+          {"neighborhood_grids", counts.neighborhoods.grids},
+          {"neighborhood_grids_ready", counts.neighborhoods.ready},
+          {"neighborhood_grids_written", counts.neighborhoods.written},
+          {"neighborhood_pairs", counts.neighborhoods.pairs},
+          {"neighborhood_receivers", counts.neighborhoods.receivers},
+          {"neighborhood_arrivals", counts.neighborhoods.arrivals},
+          {"neighborhood_arrivals_left_out", counts.neighborhoods.left_out}};
 }
 
 // Of all frames but the first, which also waits for what is made once.
@@ -93,6 +104,7 @@ std::string reportJson(const Options& options, const gpu::DeviceInfo& device, co
                      {"transfer", options.transfer_word},
                      {"window", options.window_word},
                      {"residual", options.residual},
+                     {"neighborhoods", options.neighborhoods},
                      {"lamps", options.lamps},
                      {"exposure_ev", options.linear ? Json() : Json(report.exposure_ev)},
                      {"renderer", device.renderer},

@@ -62,6 +62,7 @@ Result<void> runWindowed(const Options& options) {
                                                      .transfer = options.transfer,
                                                      .window = options.window,
                                                      .residual = options.residual,
+                                                     .neighborhoods = options.neighborhoods,
                                                      .exposure_ev = options.exposure_ev,
                                                      .capture = options.capture,
                                                      .captures_per_step = options.captures_per_frame},

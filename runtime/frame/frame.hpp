@@ -13,8 +13,11 @@
 #include "runtime/effects/diffuse/diffuse.hpp"
 #include "runtime/effects/diffuse/proxies.hpp"
 #include "runtime/effects/glossy/glossy.hpp"
+#include "runtime/effects/volume/march.hpp"
+#include "runtime/effects/volume/volume.hpp"
 #include "runtime/frame/lit_scene.hpp"
 #include "runtime/frame/near_lights.hpp"
+#include "runtime/frame/neighborhoods.hpp"
 #include "runtime/frame/surfaces.hpp"
 #include "runtime/frame/tone_mapper.hpp"
 #include "runtime/frame/world.hpp"
@@ -44,6 +47,8 @@ struct FrameOptions {
   sh::Window window = sh::Window::Auto;
   // Glossy surfaces reflect what the bands of their light leave out of the sky, too.
   bool residual = true;
+  // Bodies with grids around them change the light of others by these; else by captures.
+  bool neighborhoods = true;
   std::optional<float> exposure_ev;                             // none: automatic
   std::uint64_t upload_budget_bytes = std::uint64_t{16} << 20;  // per frame
   lighting::CaptureOptions capture{.order = 0};                 // order 0: that of the groups' transfer
@@ -61,6 +66,10 @@ struct StepCounts {
   std::uint32_t light_samples_written = 0;  // coefficients computed for the shaders
   std::uint32_t cells_shaded = 0, draws_shaded = 0;
   std::uint32_t shadow_cubes_drawn = 0;
+  // Volumes there are; whose light was brought into their textures, and how many outputs of it; in the
+  // picture.
+  std::uint32_t volumes = 0, volumes_shaded = 0, volume_slabs_written = 0, volumes_drawn = 0;
+  NeighborhoodCounts neighborhoods;
 };
 
 // After so many steps a still scene is taken to be at rest: light has gone to and fro as often.
@@ -84,6 +93,8 @@ class Frame {
   float exposureEv() const { return tone_mapper_.exposureEv(); }
   gpu::PassTimers& timers() { return timers_; }
   const StepCounts& counts() const { return counts_; }
+  // Of what the frame itself keeps for volumes, beside what is resident.
+  std::uint64_t volumeBytes() const { return volume_.textureBytes(); }
   const FrameOptions& options() const { return options_; }
 
  private:
@@ -94,12 +105,16 @@ class Frame {
   Result<void> step(World& world, const lighting::Environment& environment, std::size_t max_captures);
   Result<void> light(World& world, const lighting::Environment& environment);
   Result<void> shade(World& world);
-  Result<void> shadeGlossy(World& world);  // no pass where nothing is glossy
+  Result<void> shadeGlossy(World& world);         // no pass where nothing is glossy
+  Result<void> shadeVolumes(World& world);        // these two: no pass without volumes
+  Result<void> marchVolumes(World& world, const spec::View& view);
+  Result<void> shadeNeighborhoods(World& world);  // no pass without grids
   Result<void> prepareSampling(World& world, const lighting::Environment& environment,
                                gpu::Counters& counters);
   Result<void> capture(World& world, const lighting::Environment& environment, std::size_t max_captures);
   bool atRest(const World& world) const;
-  Result<void> reflectSky(const lighting::Environment& environment);  // once; no pass then
+  Result<void> reflectSky(const World& world,
+                          const lighting::Environment& environment);  // once; no pass then
   Result<void> castShadows(World& world);
   Result<void> raster(World& world, const lighting::Environment& environment, const spec::View& view);
   void toneMap();
@@ -110,9 +125,12 @@ class Frame {
   ToneMapper tone_mapper_;
   effects::diffuse::Diffuse diffuse_;
   effects::glossy::Glossy glossy_;
+  effects::volume::Volume volume_;
+  std::optional<effects::volume::March> march_;  // once there is a volume
   effects::diffuse::Proxies proxies_;
   LitScene lit_scene_;
   NearLights near_lights_;
+  Neighborhoods neighborhoods_;
   std::optional<lighting::ReflectedSky> reflected_sky_;  // once a glossy surface asks for it
   std::optional<lighting::IncidentLight> incident_;      // once there is something to sample
   // How the light that groups send out has changed, summed up.
@@ -127,7 +145,7 @@ class Frame {
   StepCounts counts_;
   gpu::PassTimers timers_;
   gpu::Texture hdr_, depth_, picture_;
-  gpu::Framebuffer hdr_target_, picture_target_;
+  gpu::Framebuffer hdr_target_, hdr_color_target_, picture_target_;
 };
 
 }  // namespace lambent::frame

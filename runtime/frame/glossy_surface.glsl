@@ -163,6 +163,40 @@ vec3 residualLight(vec3 direction_ws, float roughness) {
 }
 #endif
 
+#ifdef LAMBENT_NEIGHBORHOODS
+// Of light in as many bands as grid and surface both have, reflected by the kernel of this view.
+Reflected reflectedChange(uint draw, vec3 position, LocalView view, vec4 weights[kTexels]) {
+  Reflected sum;
+#ifdef LAMBENT_MEASURED
+  sum.light = vec4(0.0);
+#else
+  sum.f0_light = sum.f90_light = vec4(0.0);
+#endif
+  sum.diffuse = vec4(0.0);
+  for (uint a = receivers[draw].first; a < receivers[draw].first + receivers[draw].count; ++a) {
+    vec3 place = vec4(position, 1.0) * arrivals[a].grid_from_position;
+    float share = gridShare(place, arrivals[a].grid);
+    if (share == 0.0) continue;
+    vec4 change[kCoefficients];
+    for (int k = 0; k < kCoefficients; ++k)
+      change[k] = uint(k) < arrivals[a].grid.outputs ? share * gridOutput(place, arrivals[a].grid, uint(k)) : vec4(0.0);
+    LocalView turned_view = view;
+    turned_view.tangent = vec4(view.tangent, 0.0) * arrivals[a].body_from_group;
+    turned_view.bitangent = vec4(view.bitangent, 0.0) * arrivals[a].body_from_group;
+    turned_view.normal = vec4(view.normal, 0.0) * arrivals[a].body_from_group;
+    Reflected reflected = reflectLight(turned_view, weights, change);
+#ifdef LAMBENT_MEASURED
+    sum.light += reflected.light;
+#else
+    sum.f0_light += reflected.f0_light;
+    sum.f90_light += reflected.f90_light;
+#endif
+    sum.diffuse += reflected.diffuse;
+  }
+  return sum;
+}
+#endif
+
 vec3 reflectedLight(vec3 base_color) {
   TangentFrame frame = pixelFrame();
   vec3 normal = pixelNormal(frame), to_eye = towardsEye();
@@ -174,6 +208,9 @@ vec3 reflectedLight(vec3 base_color) {
   lookUpWeights(view, 0.0, 0.0, uvec2(1u), weights);
   Reflected reflected = reflectLight(view, weights, light);
   vec3 radiance = reflected.light.rgb;
+#ifdef LAMBENT_NEIGHBORHOODS
+  radiance = withChange(radiance, reflectedChange(draws[draw_of].glossy.draw, position_mesh, view, weights).light.rgb);
+#endif
 #ifdef LAMBENT_NEAR_LIGHTS
   // As from a matte surface that sends as much towards the eye of light from all around.
   radiance += reflected.albedo * nearLight(draws[draw_of].glossy.draw, draws[draw_of].facing * frame.normal, normal);
@@ -186,14 +223,22 @@ vec3 reflectedLight(vec3 base_color) {
   Reflected reflected = reflectLight(view, weights, light);
   vec3 diffuse = diffuseAlbedo(base_color, lobes.metallic, lobes.fresnel, reflected.albedo);
   vec3 received = reflected.diffuse.rgb;
+  vec3 mirrored_light = lobes.fresnel.f0 * reflected.f0_light.rgb + lobes.fresnel.f90 * reflected.f90_light.rgb;
+#ifdef LAMBENT_NEIGHBORHOODS
+  Reflected change = reflectedChange(draws[draw_of].glossy.draw, position_mesh, view, weights);
+  received = withChange(received, change.diffuse.rgb);
+  mirrored_light =
+      withChange(mirrored_light, lobes.fresnel.f0 * change.f0_light.rgb + lobes.fresnel.f90 * change.f90_light.rgb);
+  reflected.f0_light.w += change.f0_light.w;
+  reflected.f90_light.w += change.f90_light.w;
+#endif
 #ifdef LAMBENT_NEAR_LIGHTS
   near_lobes = lobes;
   near_normal = normal;
   near_to_eye = to_eye;
   received += nearLight(draws[draw_of].glossy.draw, draws[draw_of].facing * frame.normal, normal);
 #endif
-  vec3 radiance = lobes.fresnel.f0 * reflected.f0_light.rgb + lobes.fresnel.f90 * reflected.f90_light.rgb +
-                  diffuse * received;
+  vec3 radiance = mirrored_light + diffuse * received;
 #ifdef LAMBENT_NEAR_LIGHTS
   radiance += near_highlights;
 #endif

@@ -75,6 +75,14 @@ bool within(const scene::Box& bounds, const glm::mat4& world_from_group, const l
 
 }  // namespace
 
+bool LitScene::needsSampling() const {
+  const auto seesOthers = [&](const lighting::IncidentGroup& group) {
+    const std::size_t own = group.body == lighting::CapturePoint::kNoBody ? 0 : 1;
+    return bodies.size() > own + group.left_out.size();
+  };
+  return !lights.empty() || std::ranges::any_of(groups, seesOthers);
+}
+
 std::vector<const bundle::CaptureProxy*> proxiesOf(const streaming::Residency& residency) {
   std::vector<const bundle::CaptureProxy*> proxies;
   for (const streaming::ResidentGroup& group : residency.groups())
@@ -100,6 +108,7 @@ LitScene gatherLitScene(const World& world, float surroundings) {
       if (const auto near = lighting::nearLightOf(scene.lights[k])) {
         near_of_light[k] = static_cast<std::int32_t>(scene.near_lights.size());
         scene.near_lights.push_back(*near);
+        scene.near_sources.push_back(k);
       }
     return near_of_light[k];
   };
@@ -128,7 +137,8 @@ LitScene gatherLitScene(const World& world, float surroundings) {
     std::uint32_t near_mask = 0;
     for (std::size_t k = 0; k < scene.lights.size(); ++k) {
       bool by_harmonics = !world.litByColumn(g, light_entities[k]);
-      if (by_harmonics && within(bounds, world_from_group, scene.lights[k])) {
+      // Rays through a volume look up its samples alone, and no shadow cube.
+      if (by_harmonics && group.volume < 0 && within(bounds, world_from_group, scene.lights[k])) {
         const std::int32_t place = nearPlace(k);
         if (place >= 0) {
           near_mask |= 1u << place;
@@ -141,6 +151,15 @@ LitScene gatherLitScene(const World& world, float surroundings) {
     }
     scene.near_masks.push_back(near_mask);
     scene.groups.push_back(std::move(receiver));
+  }
+  // What a volume stands within is in its own transfer.
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    const std::int32_t within = world.description(groups[g].bundle).groups[groups[g].index].within;
+    if (within < 0) continue;
+    const std::size_t around = world.residency().bundles()[groups[g].bundle].first_group +
+                               static_cast<std::size_t>(within);
+    if (const std::uint32_t body = scene.groups[around].body; body != lighting::CapturePoint::kNoBody)
+      scene.groups[g].left_out.push_back(body);
   }
   return scene;
 }

@@ -1,7 +1,7 @@
 // The scene as the lighting system sees it, gathered from the registry and what is resident: rigid groups as
 // receivers and as bodies, the lights that stand among them, and by which carrier each group has each light:
 // - the group's own column, where the light belongs to it and stands where it stood when that was baked;
-// - per pixel with a shadow cube map, where the light stands within the group's bounds;
+// - per pixel with a shadow cube map, where the light stands within the bounds of a group of surfaces;
 // - harmonics at the group's light samples otherwise.
 // Never two of them, or the light would count twice.
 #pragma once
@@ -21,10 +21,11 @@ struct LitScene {
   std::vector<lighting::LocalLight> lights;
   std::vector<lighting::NearLight> near_lights;  // at most kMaxNearLights
   std::vector<std::uint32_t> near_masks;         // per group: bit k for near light k
+  std::vector<std::size_t> near_sources;         // per near light: among the lights
   std::uint32_t near_left_out = 0;  // lights within bounds for which there was no place left: harmonics
 
   // Whether anything but the environment reaches any group from outside.
-  bool needsSampling() const { return bodies.size() > 1 || !lights.empty(); }
+  bool needsSampling() const;
 };
 
 // surroundings: mean radiance, by which bodies count as bright.

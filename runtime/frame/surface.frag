@@ -1,6 +1,7 @@
 // E/pi times albedo (factor x texture x vertex colour), or what a glossy surface makes of its light, and what the
 // surface gives off itself. Linear, not clamped;
-// alpha is coverage. With LAMBENT_NEAR_LIGHTS, lights among the surfaces add theirs per pixel.
+// alpha is coverage. With LAMBENT_NEAR_LIGHTS, lights among the surfaces add theirs per pixel, with LAMBENT_NEIGHBORHOODS
+// bodies around change what arrives.
 #include "surface_shared.h"
 
 layout(std430, binding = kBindDraws) readonly buffer Draws { SurfaceDraw draws[]; };
@@ -20,8 +21,10 @@ vec4 look(sampler2D image, vec2 at) {
 #endif
 }
 
-#if defined(LAMBENT_NORMAL_MAPPED) || defined(LAMBENT_GLOSSY)
+#if defined(LAMBENT_NORMAL_MAPPED) || defined(LAMBENT_GLOSSY) || defined(LAMBENT_NEIGHBORHOODS)
 #include "surface_normal.glsl"
+#endif
+#if defined(LAMBENT_NORMAL_MAPPED) || defined(LAMBENT_GLOSSY)
 layout(binding = kUnitNormal) uniform sampler2D normal_texture;
 layout(location = 3) in vec4 position_group;
 layout(location = 4) in vec4 normal_group;
@@ -52,13 +55,20 @@ layout(location = 6) in vec3 light[kLightCoefficients];
 #endif
 #else
 layout(location = 3) in vec3 radiance;
-#ifdef LAMBENT_NEAR_LIGHTS
+#if defined(LAMBENT_NEAR_LIGHTS) || defined(LAMBENT_NEIGHBORHOODS)
 layout(location = 4) in vec3 normal_group;  // of the side that is seen
+#endif
+#ifdef LAMBENT_NEIGHBORHOODS
+layout(location = 5) in vec3 position_mesh;
 #endif
 #endif
 
 #ifdef LAMBENT_NEAR_LIGHTS
 #include "near_surface.glsl"
+#endif
+
+#ifdef LAMBENT_NEIGHBORHOODS
+#include "neighborhood_surface.glsl"
 #endif
 
 #ifdef LAMBENT_GLOSSY
@@ -70,6 +80,13 @@ vec3 reflectedLight(vec3 base_color) {
   vec3 received = diffuseLight(light, normal);
 #else
   vec3 received = radiance;
+#endif
+#ifdef LAMBENT_NEIGHBORHOODS
+#ifdef LAMBENT_NORMAL_MAPPED
+  received = withChange(received, changeAround(draw_of, position_group.xyz, normal));
+#else
+  received = withChange(received, changeAround(draw_of, position_mesh, unit(normal_group)));
+#endif
 #endif
 #ifdef LAMBENT_NEAR_LIGHTS
 #ifdef LAMBENT_NORMAL_MAPPED

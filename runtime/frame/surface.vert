@@ -16,7 +16,7 @@ layout(location = 0) in uint draw_index;  // one per instance: the draw's base i
 layout(location = 0) flat out uint draw_of;
 layout(location = 1) out vec4 looks_at;  // in the base colour picture: xy; in the emissive one: zw
 layout(location = 2) out vec4 vertex_color;
-#if defined(LAMBENT_NORMAL_MAPPED) || defined(LAMBENT_NEAR_LIGHTS) || defined(LAMBENT_GLOSSY)
+#if defined(LAMBENT_NORMAL_MAPPED) || defined(LAMBENT_NEAR_LIGHTS) || defined(LAMBENT_GLOSSY) || defined(LAMBENT_NEIGHBORHOODS)
 #include "surface_normal.glsl"
 #endif
 #if defined(LAMBENT_NORMAL_MAPPED) || defined(LAMBENT_GLOSSY)
@@ -33,8 +33,11 @@ layout(location = 6) out vec3 light[kLightCoefficients];
 #endif
 #else
 layout(location = 3) out vec3 radiance;
-#ifdef LAMBENT_NEAR_LIGHTS
+#if defined(LAMBENT_NEAR_LIGHTS) || defined(LAMBENT_NEIGHBORHOODS)
 layout(location = 4) out vec3 normal_group;  // of the side that is seen
+#endif
+#ifdef LAMBENT_NEIGHBORHOODS
+layout(location = 5) out vec3 position_mesh;
 #endif
 #endif
 
@@ -93,9 +96,12 @@ void main() {
 #endif
 #else
   radiance = radianceAt(draws[draw_index].radiance_word + 3u * vertex);
-#ifdef LAMBENT_NEAR_LIGHTS
+#if defined(LAMBENT_NEAR_LIGHTS) || defined(LAMBENT_NEIGHBORHOODS)
   normal_group =
       draws[draw_index].facing * unit(mat3(draws[draw_index].group_from_mesh_normal) * geometry3(draws[draw_index].normals_word + 3u * vertex));
+#endif
+#ifdef LAMBENT_NEIGHBORHOODS
+  position_mesh = position;
 #endif
 #endif
   draw_of = draw_index;

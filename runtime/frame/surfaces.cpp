@@ -51,6 +51,7 @@ Result<void> Surfaces::compile(const ProgramKind& kind) {
   if (kind.normal_mapped) defines.push_back({"LAMBENT_NORMAL_MAPPED", "1"});
   if (kind.residual) defines.push_back({"LAMBENT_RESIDUAL", "1"});
   if (kind.near_lit) defines.push_back({"LAMBENT_NEAR_LIGHTS", "1"});
+  if (kind.around) defines.push_back({"LAMBENT_NEIGHBORHOODS", "1"});
   Result<gpu::Program> program = gpu::Program::create(
       "surface", {{GL_VERTEX_SHADER, "surface.vert"}, {GL_FRAGMENT_SHADER, "surface.frag"}}, kShaders,
       defines);
@@ -64,7 +65,8 @@ bool Surfaces::ready(const World& world, const effects::diffuse::Diffuse& diffus
 }
 
 void Surfaces::collect(World& world, const effects::diffuse::Diffuse& diffuse, glm::vec3 eye_ws,
-                       const NearLights* near_lights, std::vector<Item>& opaque, std::vector<Item>& blended) {
+                       const NearLights* near_lights, const Neighborhoods* neighborhoods,
+                       std::vector<Item>& opaque, std::vector<Item>& blended) {
   const streaming::Residency& residency = world.residency();
   for (std::uint32_t i = 0; i < residency.draws().size(); ++i) {
     const streaming::ResidentDraw& draw = residency.draws()[i];
@@ -76,6 +78,7 @@ void Surfaces::collect(World& world, const effects::diffuse::Diffuse& diffuse, g
                         .textures = texturesOf(world, i, records_[i]),
                         .normal_mapped = normalMapped(world, i),
                         .near_lit = near_lights != nullptr && near_lights->lightsOf(i) != 0,
+                        .around = neighborhoods != nullptr && neighborhoods->receives(i),
                         .clockwise = (glm::determinant(glm::mat3(world_from_mesh)) < 0.0f) != draw.back},
               .draw = i,
               .distance = glm::distance(eye_ws, glm::vec3(world_from_mesh * glm::vec4(mesh.center, 1.0f)))};
@@ -107,20 +110,25 @@ void Surfaces::appendRuns(const World& world, const std::vector<Item>& items, st
 
 Result<void> Surfaces::prepare(World& world, const effects::diffuse::Diffuse& diffuse, const spec::View& view,
                                gpu::Counters& counters, const NearLights* near_lights,
-                               const lighting::ReflectedSky* reflected_sky) {
+                               const lighting::ReflectedSky* reflected_sky,
+                               const Neighborhoods* neighborhoods) {
   const bool residual_same = (reflected_sky != nullptr) == (reflected_sky_ != nullptr);
   reflected_sky_ = reflected_sky;
+  neighborhoods_ = neighborhoods;
   const ViewBlock block{view.view_from_world, view.clip_from_view, eyeOf(view)};
   view_.assign(std::span<const ViewBlock>(&block, 1));
   const streaming::Residency& residency = world.residency();
   std::size_t shaded = 0;
   for (std::size_t i = 0; i < residency.draws().size(); ++i) shaded += ready(world, diffuse, i) ? 1 : 0;
   const std::uint64_t near_version = near_lights != nullptr ? near_lights->version() : 0;
+  const std::uint64_t around_version = neighborhoods != nullptr ? neighborhoods->version() : 0;
   const bool scene_same = residual_same && residency.version() == residency_seen_ &&
-                          near_version == near_seen_ && world.transformsVersion() == transforms_seen_ &&
+                          near_version == near_seen_ && around_version == around_seen_ &&
+                          world.transformsVersion() == transforms_seen_ &&
                           world.lampsVersion() == lamps_seen_ && shaded == shaded_seen_;
   if (scene_same && (blended_.empty() || view.eye_ws == eye_seen_ws_)) return {};
   near_seen_ = near_version;
+  around_seen_ = around_version;
   residency_seen_ = residency.version();
   transforms_seen_ = world.transformsVersion();
   lamps_seen_ = world.lampsVersion();
@@ -132,7 +140,7 @@ Result<void> Surfaces::prepare(World& world, const effects::diffuse::Diffuse& di
   glossy_records_.clear();
   glossy_index_.assign(records_.size(), 0);
   std::vector<Item> opaque, blended;
-  collect(world, diffuse, view.eye_ws, near_lights, opaque, blended);
+  collect(world, diffuse, view.eye_ws, near_lights, neighborhoods, opaque, blended);
   std::stable_sort(opaque.begin(), opaque.end(),
                    [](const Item& a, const Item& b) { return a.state < b.state; });
   std::stable_sort(blended.begin(), blended.end(),
@@ -161,6 +169,7 @@ void Surfaces::drawRuns(World& world, const std::vector<Run>& runs, gpu::Counter
   glBindBuffer(GL_DRAW_INDIRECT_BUFFER, commands_.buffer().id());
   glEnable(GL_CULL_FACE);  // double-sided surfaces are two draws
   if (reflected_sky_ != nullptr) reflected_sky_->bind();
+  if (neighborhoods_ != nullptr) neighborhoods_->bind();
   for (const Run& run : runs) {
     const gpu::Buffer& geometry = world.residency().geometry().page(run.state.geometry_page);
     geometry.bindStorage(kBindGeometry);

@@ -17,6 +17,7 @@
 #include "runtime/frame/draw_indices.hpp"
 #include "runtime/frame/glossy_record.hpp"
 #include "runtime/frame/near_lights.hpp"
+#include "runtime/frame/neighborhoods.hpp"
 #include "runtime/frame/surface_record.hpp"
 #include "runtime/frame/surface_shared.h"
 #include "runtime/frame/texture_units.hpp"
@@ -34,10 +35,11 @@ class Surfaces {
 
   // Brings draw records and commands up to date. With near lights, these must be updated before and bound
   // when it draws. With a reflected sky, glossy surfaces add what their few bands of light leave out; it must
-  // live until they are drawn.
+  // live until they are drawn; with neighborhoods, draws receive what bodies around change, likewise.
   Result<void> prepare(World& world, const effects::diffuse::Diffuse& diffuse, const spec::View& view,
                        gpu::Counters& counters, const NearLights* near_lights = nullptr,
-                       const lighting::ReflectedSky* reflected_sky = nullptr);
+                       const lighting::ReflectedSky* reflected_sky = nullptr,
+                       const Neighborhoods* neighborhoods = nullptr);
   void drawOpaque(World& world, gpu::Counters& counters);
   void drawBlended(World& world, gpu::Counters& counters);
 
@@ -52,6 +54,7 @@ class Surfaces {
     std::int32_t brdf_table = -1;
     bool normal_mapped = false;
     bool near_lit = false;
+    bool around = false;     // receives from neighborhoods
     bool clockwise = false;  // which winding is seen
     auto operator<=>(const State&) const = default;
   };
@@ -68,7 +71,7 @@ class Surfaces {
   Surfaces();
   // What a program is compiled for.
   struct ProgramKind {
-    bool normal_mapped = false, near_lit = false;
+    bool normal_mapped = false, near_lit = false, around = false;
     GlossyKind glossy = {};
     bool residual = false;
     auto operator<=>(const ProgramKind&) const = default;
@@ -76,6 +79,7 @@ class Surfaces {
   ProgramKind kindOf(const State& state) const {
     return {.normal_mapped = state.normal_mapped,
             .near_lit = state.near_lit,
+            .around = state.around,
             .glossy = state.glossy,
             .residual = reflected_sky_ != nullptr && state.glossy.bands > 0 &&
                         state.glossy.family != bundle::BrdfFamily::Measured};
@@ -83,7 +87,8 @@ class Surfaces {
   Result<void> compile(const ProgramKind& kind);
   bool ready(const World& world, const effects::diffuse::Diffuse& diffuse, std::size_t draw) const;
   void collect(World& world, const effects::diffuse::Diffuse& diffuse, glm::vec3 eye_ws,
-               const NearLights* near_lights, std::vector<Item>& opaque, std::vector<Item>& blended);
+               const NearLights* near_lights, const Neighborhoods* neighborhoods, std::vector<Item>& opaque,
+               std::vector<Item>& blended);
   void appendRuns(const World& world, const std::vector<Item>& items, std::vector<Run>& runs,
                   std::vector<DrawCommand>& commands) const;
   void drawRuns(World& world, const std::vector<Run>& runs, gpu::Counters& counters);
@@ -97,10 +102,11 @@ class Surfaces {
   std::vector<GlossyDraw> glossy_records_;
   std::vector<std::uint32_t> glossy_index_;  // of a draw among them
   std::vector<Run> opaque_, blended_;
-  std::uint64_t residency_seen_ = 0, transforms_seen_ = 0, lamps_seen_ = 0, near_seen_ = 0;
+  std::uint64_t residency_seen_ = 0, transforms_seen_ = 0, lamps_seen_ = 0, near_seen_ = 0, around_seen_ = 0;
   std::size_t shaded_seen_ = 0;
   glm::vec3 eye_seen_ws_{0.0f};
   const lighting::ReflectedSky* reflected_sky_ = nullptr;  // of this frame; null: no residual
+  const Neighborhoods* neighborhoods_ = nullptr;           // of this frame
 };
 
 }  // namespace lambent::frame

@@ -217,7 +217,7 @@ class PointPlanner {
     seen_.clear();
     double near_m = std::numeric_limits<double>::max();
     for (std::uint32_t b = 0; b < bodies_.size(); ++b) {
-      if (b == point.own_body || bodies_[b].proxy >= proxies_.size()) continue;
+      if (point.ignores(b) || bodies_[b].proxy >= proxies_.size()) continue;
       const ProxyBounds& bounds = proxies_[bodies_[b].proxy];
       const Sphere sphere = sphereOf(point, bodies_[b], bounds);
       if (!largeEnough(options_, sphere, bodies_[b].brightness)) continue;

@@ -2,6 +2,7 @@
 // comes out. Types only.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -41,6 +42,11 @@ struct CapturePoint {
   glm::vec3 position_ws{0.0f};
   std::uint32_t own_body = kNoBody;  // index into the bodies; does not see itself
   std::vector<LightQuery> queries{};
+  std::vector<std::uint32_t> left_out{};  // bodies that it does not see either
+
+  bool ignores(std::uint32_t body) const {
+    return body == own_body || std::find(left_out.begin(), left_out.end(), body) != left_out.end();
+  }
 };
 
 struct CapturedLight {

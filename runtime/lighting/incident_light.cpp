@@ -169,9 +169,13 @@ bool IncidentLight::somethingMoves(std::span<const IncidentGroup> groups,
   std::vector<glm::mat4> poses;
   for (const IncidentBody& body : bodies) poses.push_back(body.body.world_from_proxy);
   std::vector<glm::vec3> places;
-  for (const IncidentGroup& group : groups)
+  std::vector<std::vector<std::uint32_t>> left_out;
+  for (const IncidentGroup& group : groups) {
     places.insert(places.end(), group.samples_ws.begin(), group.samples_ws.end());
-  const bool moves = poses != bodies_before_ || places != places_before_;
+    left_out.push_back(group.left_out);
+  }
+  const bool moves = poses != bodies_before_ || places != places_before_ || left_out != left_out_before_;
+  left_out_before_ = std::move(left_out);
   bodies_before_ = std::move(poses);
   places_before_ = std::move(places);
   return moves;
@@ -182,6 +186,14 @@ bool IncidentLight::somethingMoves(std::span<const IncidentGroup> groups,
 float IncidentLight::changeAround(const Drawn& drawn, const Drawn& now, std::span<const IncidentBody> bodies,
                                   const CapturePoint& point) const {
   if (drawn.environment != now.environment || drawn.lights != now.lights) return kAnew;
+  // A body that reaches the group by another way now would count twice, or not at all.
+  if (drawn.left_out != now.left_out) {
+    const auto changed = [&](const SeenBody& seen) {
+      return std::ranges::binary_search(drawn.left_out, seen.body) !=
+             std::ranges::binary_search(now.left_out, seen.body);
+    };
+    if (std::ranges::any_of(drawn.seen, changed) || std::ranges::any_of(now.seen, changed)) return kAnew;
+  }
   float change_squared = 0.0f;
   auto then = drawn.seen.begin();
   auto here = now.seen.begin();
@@ -229,13 +241,17 @@ Result<void> IncidentLight::capture(const Environment& environment, std::span<co
   for (std::size_t g = 0; g < groups.size(); ++g)
     for (std::size_t s = 0; s < groups[g].samples_ws.size(); ++s) {
       Sample& sample = groups_[g].samples[s];
-      CapturePoint point{.position_ws = groups[g].samples_ws[s], .own_body = groups[g].body, .queries = {}};
+      CapturePoint point{.position_ws = groups[g].samples_ws[s],
+                         .own_body = groups[g].body,
+                         .queries = {},
+                         .left_out = groups[g].left_out};
       Drawn now;
       now.position_ws = point.position_ws;
       now.environment = environment.version();
       now.lights = groups_[g].lights;
+      now.left_out = groups[g].left_out;
       for (std::uint32_t b = 0; b < bodies.size(); ++b)
-        if (b != point.own_body && capture_.sees(point, bodies[b].body))
+        if (!point.ignores(b) && capture_.sees(point, bodies[b].body))
           now.seen.push_back(
               {b, bodies[b].body.world_from_proxy, bodies[b].center_ws, bodies[b].radiance_drift});
       if (now.seen.empty()) {

@@ -42,6 +42,8 @@ struct IncidentGroup {
   std::uint32_t body = CapturePoint::kNoBody;  // its own, among the bodies
   std::vector<glm::vec3> samples_ws;
   std::vector<std::uint8_t> lit_by;  // per local light, 1: by harmonics; 0: it has that light otherwise
+  // Bodies, rising, whose light and shadow reach it otherwise: they are drawn for none of its samples.
+  std::vector<std::uint32_t> left_out{};
 };
 
 struct IncidentCounts {
@@ -90,6 +92,7 @@ class IncidentLight {
     glm::vec3 position_ws{0.0f};
     std::uint64_t environment = 0, lights = 0;  // versions
     std::vector<SeenBody> seen;
+    std::vector<std::uint32_t> left_out;
     std::vector<std::int32_t> query_of_disc, query_of_light;  // into result.visible; -1: not asked
     CapturedLight result;
   };
@@ -125,7 +128,7 @@ class IncidentLight {
                     const glm::vec3& position_ws, std::span<const LocalLight> lights);
   static void askForLights(const Environment& environment, const IncidentGroup& group,
                            std::span<const LocalLight> lights, CapturePoint& point, Drawn& drawn);
-  // Since the last call: the sky, a light, a body's radiance; a body, a sample.
+  // Since the last call: the sky, a light, a body's radiance; a body, a sample, or which bodies are left out.
   bool somethingShines(const Environment& environment, std::span<const IncidentBody> bodies);
   bool somethingMoves(std::span<const IncidentGroup> groups, std::span<const IncidentBody> bodies);
   float changeAround(const Drawn& drawn, const Drawn& now, std::span<const IncidentBody> bodies,
@@ -138,6 +141,7 @@ class IncidentLight {
   std::vector<LocalLight> lights_before_;
   std::vector<glm::mat4> bodies_before_;
   std::vector<glm::vec3> places_before_;
+  std::vector<std::vector<std::uint32_t>> left_out_before_;
   std::vector<double> shine_before_;
   bool nothing_to_draw_ = false;  // when it was last looked for
   IncidentCounts counts_;

@@ -24,11 +24,13 @@ std::uint32_t variantOf(std::uint32_t order) {
 
 FillRecord describeFill(const streaming::ResidentGroup& group, const streaming::ResidentCell& cell,
                         std::uint32_t light) {
+  const bool open = cell.kind != bundle::CellKind::Neighborhood;
   return {.first_output = cell.first_output,
           .output_count = cell.outputs * cell.sample_count,
           .outputs = cell.outputs,
           .light = light,
-          .coefficients = group.order * group.order};
+          .coefficients = open ? group.order * group.order : 0,
+          .open = open ? 1u : 0u};
 }
 
 }  // namespace
@@ -55,7 +57,7 @@ Glossy::Glossy()
                     gpu::WorkList("glossy adding more work")} {}
 
 Result<void> Glossy::shade(streaming::Residency& residency, const lighting::GroupLights& lights,
-                           TransferMode mode, gpu::Counters& counters) {
+                           TransferMode mode, gpu::Counters& counters, bool neighborhoods) {
   if (residency.version() != residency_seen_ || lights.groupCount() != groups_seen_ || mode != mode_seen_) {
     any_ = std::any_of(residency.cells().begin(), residency.cells().end(),
                        [](const streaming::ResidentCell& cell) { return cell.matrices(); });
@@ -67,7 +69,7 @@ Result<void> Glossy::shade(streaming::Residency& residency, const lighting::Grou
   }
   cells_shaded_ = 0;
   if (!any_) return {};
-  collect(residency, lights);
+  collect(residency, lights, neighborhoods);
   if (cells_shaded_ == 0) return {};
   lights.bindStorage(kBindLights);
   if (Result<void> run = fill(residency, counters); !run) return run;
@@ -96,7 +98,8 @@ void Glossy::rebuildTables(const streaming::Residency& residency, const lighting
   group_shaded_.resize(residency.groups().size());
 }
 
-void Glossy::collect(const streaming::Residency& residency, const lighting::GroupLights& lights) {
+void Glossy::collect(const streaming::Residency& residency, const lighting::GroupLights& lights,
+                     bool neighborhoods) {
   visibility_work_.clear();
   dense_work_.clear();
   fill_work_.clear();
@@ -104,6 +107,7 @@ void Glossy::collect(const streaming::Residency& residency, const lighting::Grou
   for (std::uint32_t i = 0; i < tables_.cells.size(); ++i) {
     const streaming::ResidentCell& cell = residency.cells()[i];
     if (!cell.matrices()) continue;
+    if (cell.kind == bundle::CellKind::Neighborhood && !neighborhoods) continue;
     const TransferTable::Cell range = tables_.cells[i];
     const bool open = range.count == 0 || !cell.usable();
     const std::uint64_t light = open ? lights.versionOf(cell.group, 0) : lightVersion(lights, cell);

@@ -4,6 +4,7 @@
 // arena, a vec4 (l'_i in RGB, V_i) per output. Two stages (cluster, sample), each one indirect dispatch per
 // arena page and kernel over the cells whose light or codes changed; what a BRDF makes of l' is done per
 // pixel (glossy_kernel.glsl). What is not resident, and all of it when unshadowed, has the light itself.
+// Points of neighborhoods are such samples too: theirs is the change of the light, none where unshadowed.
 // Without glossy cells nothing is compiled, held or dispatched.
 #pragma once
 
@@ -32,9 +33,10 @@ class Glossy {
  public:
   Glossy();
 
-  // Brings every sample of glossy cells up to date. Errors: a kernel that does not compile on this device.
+  // Brings every sample of glossy cells up to date; those of neighborhoods only where they are asked for.
+  // Errors: a kernel that does not compile on this device.
   Result<void> shade(streaming::Residency& residency, const lighting::GroupLights& lights, TransferMode mode,
-                     gpu::Counters& counters);
+                     gpu::Counters& counters, bool neighborhoods = true);
 
   // Whether the residency had glossy cells when shade() last looked.
   bool any() const { return any_; }
@@ -58,7 +60,7 @@ class Glossy {
 
   void rebuildTables(const streaming::Residency& residency, const lighting::GroupLights& lights,
                      TransferMode mode);
-  void collect(const streaming::Residency& residency, const lighting::GroupLights& lights);
+  void collect(const streaming::Residency& residency, const lighting::GroupLights& lights, bool neighborhoods);
   Result<const gpu::Program*> program(Kernel kernel, std::uint32_t variant);
   Result<void> fill(streaming::Residency& residency, gpu::Counters& counters);
   Result<void> project(streaming::Residency& residency, gpu::Counters& counters);

@@ -27,9 +27,9 @@ vec4 projectVisibility(TransferRecord transfer, uint vector, uint output_index, 
 #ifdef LAMBENT_STAGE_FILL
 vec3 lightAt(uint index);
 
-// An open sample: all of the light, and visibility 1.
+// An open sample: all of the light, and visibility 1. Of a neighborhood: no change of either.
 vec4 openLight(FillRecord fill, uint output_index) {
   vec3 light = output_index < fill.coefficients ? lightAt(fill.light + output_index) : vec3(0.0);
-  return vec4(light, output_index == 0u ? kSqrtFourPi : 0.0);
+  return vec4(light, output_index == 0u && fill.open != 0u ? kSqrtFourPi : 0.0);
 }
 #endif

@@ -70,7 +70,7 @@ inline void shadePosition(const Memory& memory, const TransferRecord& transfer, 
 inline glm::vec4 openLight(const Memory& memory, const FillRecord& fill, uint output_index) {
   const glm::vec3 light =
       output_index < fill.coefficients ? memory.lightAt(fill.light + output_index) : glm::vec3(0.0f);
-  return {light, output_index == 0 ? kSqrtFourPi : 0.0f};
+  return {light, output_index == 0 && fill.open != 0 ? kSqrtFourPi : 0.0f};
 }
 
 }  // namespace lambent::effects::glossy::ref

@@ -21,17 +21,19 @@ LAMBENT_CONSTANT kBindFills = 2u;  // FillRecord
 // A term of the table of products takes two words: j | k << 16, and its value (sh::GauntTerm).
 LAMBENT_CONSTANT kGauntTermWords = 2u;
 
-// A cell that shows the light itself, for want of transfer or because it was asked for.
+// A cell that shows the light itself, for want of transfer or because it was asked for. One of a neighborhood changes
+// nothing then.
 struct FillRecord {
   uint first_output;   // vec4 index into the samples page
   uint output_count;   // all samples of the cell
   uint outputs;        // of a sample
   uint light;          // vec4 index of the light's first coefficient
-  uint coefficients;   // of the light
+  uint coefficients;   // of the light; 0 of a neighborhood
+  uint open;           // 1: visible in all directions; 0 of a neighborhood, which holds the change V - 1
 };
 
 #ifdef __cplusplus
 #undef LAMBENT_CONSTANT
-static_assert(sizeof(FillRecord) == 20);
+static_assert(sizeof(FillRecord) == 24);
 }  // namespace lambent::effects::glossy
 #endif

@@ -11,67 +11,9 @@
 #include "runtime/bundle/transfer_codec.hpp"
 #include "runtime/sh/zonal.hpp"
 #include "runtime/spec/image.hpp"
+#include "tests/runtime/frame/bundle_store.hpp"
 
 namespace lambent::testing {
-
-namespace {
-
-// Collects blobs; a payload's or image's view is the index of its blob.
-struct Store {
-  bundle::Description& description;
-  std::vector<bundle::Blob>& blobs;
-
-  std::uint32_t blob(bundle::Blob bytes) {
-    blobs.push_back(std::move(bytes));
-    return static_cast<std::uint32_t>(blobs.size() - 1);
-  }
-  std::uint32_t payload(bundle::PayloadType type, bundle::Blob bytes) {
-    const auto priority = static_cast<std::uint32_t>(description.payloads.size());
-    const std::uint64_t length = bytes.size();
-    description.payloads.push_back({.type = type,
-                                    .codec = bundle::PayloadCodec::Raw,
-                                    .view = blob(std::move(bytes)),
-                                    .raw_length = length,
-                                    .priority = priority});
-    return priority;
-  }
-};
-
-// One cluster: plane i carries value i, 16 bits over its range; the mean is zero.
-bundle::CellTransfer storeTransfer(Store& store, const bundle::TransferShape& shape,
-                                   const std::vector<std::vector<float>>& vectors) {
-  const std::size_t size = shape.size();
-  bundle::CellTransfer transfer;
-  transfer.shape = shape;
-  transfer.axes = shape.size();
-  transfer.error_bound = 1e-3f;
-  transfer.error = 1e-4f;
-  bundle::Codebook codebook{{shape.size()}, {}, std::vector<float>((1 + size) * size, 0.0f)};
-  std::vector<std::vector<std::uint32_t>> codes(size);
-  for (std::size_t i = 0; i < size; ++i) {
-    codebook.vectors[(1 + i) * size + i] = 1.0f;
-    float low = vectors[0][i], high = vectors[0][i];
-    for (const auto& vector : vectors) {
-      low = std::min(low, vector[i]);
-      high = std::max(high, vector[i]);
-    }
-    const float scale = (high - low) / 65535.0f;
-    codebook.axes.push_back({.offset = low, .scale = scale});
-    for (const auto& vector : vectors)
-      codes[i].push_back(scale > 0.0f ? static_cast<std::uint32_t>(std::lround((vector[i] - low) / scale))
-                                      : 0u);
-  }
-  transfer.codebook = store.payload(bundle::PayloadType::Codebook, bundle::encodeCodebook(codebook));
-  for (const auto& plane : codes)
-    transfer.planes.push_back(
-        {.payload = store.payload(bundle::PayloadType::WeightPlane, bundle::encodeWeightPlane(plane, 16)),
-         .bits = 16,
-         .count = static_cast<std::uint32_t>(plane.size()),
-         .variance = 1.0f / static_cast<float>(size)});
-  return transfer;
-}
-
-}  // namespace
 
 TransferOf openTransfer(int order) {
   return [order](const glm::vec3& normal) {
@@ -116,6 +58,11 @@ BundleBuilder& BundleBuilder::glossy(std::uint32_t bands, bundle::BrdfFamily fam
 
 BundleBuilder& BundleBuilder::lamp(const bundle::GroupLight& light, float transfer) {
   lamps_.push_back({light, transfer});
+  return *this;
+}
+
+BundleBuilder& BundleBuilder::volume(BuiltVolume volume) {
+  volumes_.push_back(std::move(volume));
   return *this;
 }
 
@@ -199,6 +146,12 @@ void BundleBuilder::write(const std::filesystem::path& path) const {
   cell.sample_count = group.sample_count;
   cell.bounds_min = group.bounds_min;
   cell.bounds_max = group.bounds_max;
+  const auto writeAll = [&] {
+    for (const BuiltVolume& volume : volumes_) addVolume(description, blobs, volume);
+    const Result<void> written = bundle::write(path, description, blobs);
+    ASSERT_TRUE(written) << written.error().line();
+  };
+  if (meshes_.empty()) return writeAll();
   const bundle::TransferShape shape{
       .order = static_cast<std::uint32_t>(order_),
       .full_channels = bounces_ ? 1u : 0u,
@@ -228,8 +181,7 @@ void BundleBuilder::write(const std::filesystem::path& path) const {
   }
   group.cells.push_back(std::move(cell));
   description.groups.push_back(std::move(group));
-  const Result<void> written = bundle::write(path, description, blobs);
-  ASSERT_TRUE(written) << written.error().line();
+  writeAll();
 }
 
 bundle::MeshData sphereMesh(int rings, int segments) {

@@ -36,7 +36,9 @@ struct RandomBundleOptions {
   std::uint32_t mapped_cells = 0;  // and so many with nine outputs
   std::uint32_t glossy_cells = 0;  // and so many of visibility, with glossy_bands² outputs
   std::uint32_t glossy_bands = 5;
-  bool bounced = false;         // of glossy cells
+  std::uint32_t neighborhood_cells = 0;  // and so many with points of a grid, neighborhood_bands² outputs
+  std::uint32_t neighborhood_bands = 3;
+  bool bounced = false;         // of glossy cells and of points
   std::uint32_t samples = 101;  // per cell, odd on purpose
   std::uint32_t vertices = 131;
   std::uint32_t light_samples = 1;    // per group, every cell uses all but the first
@@ -69,7 +71,8 @@ class BundleMaker {
  private:
   void addGroup(RandomBundle& made, const RandomBundleOptions& options, std::uint32_t g) {
     bundle::Description& description = made.description;
-    const std::uint32_t cells = options.cells + options.mapped_cells + options.glossy_cells;
+    const std::uint32_t surface_cells = options.cells + options.mapped_cells + options.glossy_cells;
+    const std::uint32_t cells = surface_cells + options.neighborhood_cells;
     const std::uint32_t glossy_outputs = options.glossy_bands * options.glossy_bands;
     bundle::Group group;
     group.node = static_cast<std::int32_t>(g);
@@ -80,10 +83,13 @@ class BundleMaker {
           {.kind = bundle::GroupLight::Kind::Material, .index = 0, .color = glm::vec3(1.0f)});
     group.light_samples.assign(options.light_samples, glm::vec3(0.0f));
     for (std::uint32_t c = 0; c < cells; ++c)
-      group.cells.push_back(makeCell(made, options, g, c,
-                                     c < options.cells                          ? 1
-                                     : c < options.cells + options.mapped_cells ? 9
-                                                                                : glossy_outputs));
+      group.cells.push_back(
+          makeCell(made, options, g, c,
+                   c < options.cells                          ? 1
+                   : c < options.cells + options.mapped_cells ? 9
+                   : c < surface_cells                        ? glossy_outputs
+                                       : options.neighborhood_bands * options.neighborhood_bands,
+                   c < surface_cells ? bundle::CellKind::Surface : bundle::CellKind::Neighborhood));
     gltf::Node node;
     node.parent_from_node = glm::mat4_cast(group.rest_rotation);
     // Scale differs by axis: normals must go by the inverse transpose.
@@ -97,7 +103,8 @@ class BundleMaker {
     if (plain > 0) addDraw(made, options, g, 1, 0, plain);
     const std::uint32_t mapped = plain + options.mapped_cells * options.samples;
     if (options.mapped_cells > 0) addDraw(made, options, g, 9, plain, mapped);
-    if (options.glossy_cells > 0) addDraw(made, options, g, glossy_outputs, mapped, group.sample_count);
+    if (options.glossy_cells > 0)
+      addDraw(made, options, g, glossy_outputs, mapped, surface_cells * options.samples);
     if (options.proxy_triangles > 0) {
       group.proxy = 0;
       made.proxies.push_back({.group = g, .proxy = makeProxy(options, group.sample_count)});
@@ -154,8 +161,9 @@ class BundleMaker {
   }
 
   bundle::Cell makeCell(RandomBundle& made, const RandomBundleOptions& options, std::uint32_t g,
-                        std::uint32_t c, std::uint32_t outputs) {
+                        std::uint32_t c, std::uint32_t outputs, bundle::CellKind kind) {
     bundle::Cell cell;
+    cell.kind = kind;
     cell.first_sample = c * options.samples;
     cell.sample_count = options.samples;
     made.codebooks.emplace_back();
@@ -178,14 +186,14 @@ class BundleMaker {
       const auto index = static_cast<std::uint32_t>(cell.transfers.size());
       cell.transfers.push_back(makeTransfer(made, options, g, c, index, part));
     };
-    if (outputs <= bundle::kMappedOutputs) {
+    if (outputs <= bundle::kMappedOutputs && kind == bundle::CellKind::Surface) {
       add(shape);
     } else {
       add({.order = options.order,
            .shadowed_channels = 1,
            .full_channels = 0,
            .outputs = outputs,
-           .visibility_bands = options.order + options.glossy_bands - 1});
+           .visibility_bands = options.order + bundle::bandsOf(outputs) - 1});
       if (options.bounced)
         add({.order = options.order, .shadowed_channels = 0, .full_channels = 3, .outputs = outputs});
     }

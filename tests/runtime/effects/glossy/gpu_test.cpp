@@ -46,6 +46,49 @@ TEST_F(GlossyGpu, MatchesItsTwinWithClustersBouncesLampsAndSeveralLightSamples) 
       }
 }
 
+TEST_F(GlossyGpu, ShadesPointsOfNeighborhoodsAlsoWhereNothingIsGlossy) {
+  lambent::testing::BundleMaker maker(39);
+  for (const std::uint32_t bands : {3u, 4u, 5u})
+    for (const bool bounced : {false, true}) {
+      Bench bench(maker, {.order = 5,
+                          .clusters = 9,
+                          .cells = 1,
+                          .neighborhood_cells = 2,
+                          .neighborhood_bands = bands,
+                          .bounced = bounced,
+                          .samples = 105});
+      bench.uploadAll();
+      bench.shade();
+      EXPECT_EQ(bench.glossy.cellsShadedLast(), 4u);
+      EXPECT_LT(bench.differenceToTwin(), 1e-4) << bands << " bands";
+      bench.shade(TransferMode::Shadowed);
+      EXPECT_LT(bench.differenceToTwin(), 1e-4) << bands << " bands";
+    }
+}
+
+TEST_F(GlossyGpu, PointsWithoutTransferChangeNothing) {
+  lambent::testing::BundleMaker maker(40);
+  Bench bench(maker, {.groups = 1, .cells = 0, .glossy_cells = 1, .neighborhood_cells = 1});
+  const auto points = [&] {
+    const streaming::ResidentCell& cell = bench.residency.cells()[1];
+    const auto page = Bench::samplesOf(bench.residency.samples(), bench.residency.groups()[0].samples.page);
+    return std::vector<glm::vec4>(page.begin() + cell.first_output,
+                                  page.begin() + cell.first_output + 9 * cell.sample_count);
+  };
+  const auto none = [](const std::vector<glm::vec4>& values) {
+    return std::ranges::all_of(values, [](const glm::vec4& value) { return value == glm::vec4(0.0f); });
+  };
+  for (const auto& item : bench.made.meshes) bench.upload(item);
+  for (const auto& item : bench.made.rows) bench.upload(item);
+  bench.shade();
+  EXPECT_TRUE(none(points())) << "nothing has arrived";
+  bench.uploadTransfer();
+  bench.shade();
+  EXPECT_FALSE(none(points()));
+  bench.shade(TransferMode::Unshadowed);
+  EXPECT_TRUE(none(points()));
+}
+
 TEST_F(GlossyGpu, ShadowedLeavesBouncedLightOut) {
   lambent::testing::BundleMaker maker(33);
   Bench bench(maker, {.groups = 1, .cells = 0, .glossy_cells = 1, .bounced = true});

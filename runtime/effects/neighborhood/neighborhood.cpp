@@ -1,0 +1,154 @@
+#include "runtime/effects/neighborhood/neighborhood.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+
+#include <glm/common.hpp>
+
+#include "lambent_effects_neighborhood_embedded.hpp"
+
+namespace lambent::effects::neighborhood {
+
+static_assert(kWriteGroupsX == gpu::WorkList::kMaxGroupsX);
+
+namespace {
+
+constexpr gpu::FindText kShaders[] = {&embedded::lambent_effects_neighborhood::find};
+
+gpu::Handle<gpu::TextureTraits> makeAtlas(const glm::uvec3& size) {
+  GLuint id = 0;
+  glCreateTextures(GL_TEXTURE_3D, 1, &id);
+  gpu::Handle<gpu::TextureTraits> texture(id);
+  glTextureStorage3D(id, 1, GL_RGBA16F, static_cast<GLsizei>(size.x), static_cast<GLsizei>(size.y),
+                     static_cast<GLsizei>(size.z));
+  for (const GLenum wrap : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R})
+    glTextureParameteri(id, wrap, GL_CLAMP_TO_EDGE);
+  glTextureParameteri(id, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+  glTextureParameteri(id, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  constexpr float kNothing[] = {0.0f, 0.0f, 0.0f, 0.0f};
+  glClearTexImage(id, 0, GL_RGBA, GL_FLOAT, kNothing);
+  constexpr std::string_view kLabel = "neighborhoods";
+  glObjectLabel(GL_TEXTURE, id, static_cast<GLsizei>(kLabel.size()), kLabel.data());
+  return texture;
+}
+
+template <typename Each>
+void forCells(const streaming::Residency& residency, const Grid& grid, const Each& each) {
+  const streaming::ResidentGroup& group = residency.groups()[grid.group];
+  for (std::uint32_t c = group.first_cell; c < group.first_cell + group.cell_count; ++c)
+    if (residency.cells()[c].kind == bundle::CellKind::Neighborhood) each(residency.cells()[c]);
+}
+
+// All points are there, as far as they look better than none.
+bool complete(const streaming::Residency& residency, const Grid& grid) {
+  std::uint64_t points = 0;
+  bool usable = true;
+  forCells(residency, grid, [&](const streaming::ResidentCell& cell) {
+    points += cell.sample_count;
+    usable &= cell.usable();
+  });
+  const glm::uvec3& size = grid.points.size;
+  return usable && points == std::uint64_t{size.x} * size.y * size.z;
+}
+
+// A power of two near the group's light, so that half floats suit light of any strength.
+float scaleOf(const lighting::GroupLights& lights, const streaming::ResidentGroup& group, std::uint32_t index) {
+  float largest = 0.0f;
+  const std::uint32_t end = lights.lampsOf(index) + group.light_columns;
+  for (std::uint32_t i = lights.firstOf(index); i < end; ++i) {
+    const glm::vec3 size = glm::abs(glm::vec3(lights.coefficients()[i]));
+    largest = std::max({largest, size.r, size.g, size.b});
+  }
+  if (!(largest > 0.0f) || !std::isfinite(largest)) return 1.0f;
+  return std::exp2(std::clamp(std::ceil(std::log2(largest)), -100.0f, 100.0f));
+}
+
+}  // namespace
+
+Neighborhood::Neighborhood() : writes_("neighborhood writes"), work_("neighborhood work") {}
+
+void Neighborhood::setGrids(std::vector<Grid> grids, const streaming::Residency& residency) {
+  const auto same = [](const Grid& a, const Grid& b) {
+    return a.group == b.group && a.points.size == b.points.size && a.points.bounds_min == b.points.bounds_min &&
+           a.points.bounds_max == b.points.bounds_max;
+  };
+  if (std::ranges::equal(grids, grids_, same)) return;
+  grids_ = std::move(grids);
+  seen_.assign(grids_.size(), 0);
+  ++version_;
+  std::vector<GridShape> shapes;
+  for (const Grid& grid : grids_) {
+    GridShape& shape = shapes.emplace_back(grid.points.size, 0);
+    forCells(residency, grid, [&](const streaming::ResidentCell& cell) { shape.outputs = cell.outputs; });
+  }
+  GLint max_side = 0;
+  glGetIntegerv(GL_MAX_3D_TEXTURE_SIZE, &max_side);
+  const AtlasLayout layout = layOutAtlas(shapes, static_cast<std::uint32_t>(max_side));
+  for (std::size_t i = 0; i < grids_.size(); ++i) {
+    grids_[i].place = layout.places[i];
+    grids_[i].ready = false;
+  }
+  atlas_size_ = layout.size;
+  atlas_ = layout.size.x > 0 ? makeAtlas(layout.size) : gpu::Handle<gpu::TextureTraits>();
+}
+
+std::uint64_t Neighborhood::bytes() const {
+  return std::uint64_t{8} * atlas_size_.x * atlas_size_.y * atlas_size_.z;
+}
+
+Result<void> Neighborhood::update(streaming::Residency& residency, const lighting::GroupLights& lights,
+                                  const glossy::Glossy& glossy, gpu::Counters& counters) {
+  written_ = 0;
+  records_.clear();
+  work_.clear();
+  for (std::size_t i = 0; i < grids_.size(); ++i) {
+    Grid& grid = grids_[i];
+    const std::uint64_t shaded = glossy.versionOf(grid.group);
+    if (grid.place.outputs == 0 || shaded == seen_[i]) continue;
+    seen_[i] = shaded;
+    ++written_;
+    const bool ready = complete(residency, grid);
+    const float scale = scaleOf(lights, residency.groups()[grid.group], grid.group);
+    if (ready != grid.ready || scale != grid.place.scale) ++version_;
+    grid.ready = ready;
+    grid.place.scale = scale;
+    const std::uint32_t page = residency.groups()[grid.group].samples.page;
+    std::uint32_t first_point = 0;
+    forCells(residency, grid, [&](const streaming::ResidentCell& cell) {
+      records_.push_back({.grid = grid.place,
+                          .first_output = cell.first_output,
+                          .first_point = first_point,
+                          .point_count = cell.sample_count,
+                          .pad = 0});
+      first_point += cell.sample_count;
+      work_.add({page}, static_cast<std::uint32_t>(records_.size() - 1), cell.outputs * cell.sample_count,
+                kWriteGroupSize);
+    });
+  }
+  return work_.empty() ? Result<void>{} : write(residency, counters);
+}
+
+Result<void> Neighborhood::write(streaming::Residency& residency, gpu::Counters& counters) {
+  if (!program_) {
+    Result<gpu::Program> made = gpu::Program::create(
+        "neighborhood write", {{GL_COMPUTE_SHADER, "neighborhood_write.comp"}}, kShaders);
+    if (!made) return failAgain(made.error());
+    program_ = std::move(*made);
+  }
+  program_->use();
+  writes_.assign(std::span<const WriteRecord>(records_));
+  counters.uploaded_bytes += records_.size() * sizeof(WriteRecord);
+  work_.upload(counters);
+  writes_.bindStorage(kBindWrites);
+  glBindImageTexture(kImageAtlas, atlas_.id(), 0, GL_TRUE, 0, GL_WRITE_ONLY, GL_RGBA16F);
+  std::size_t index = 0;
+  for (const auto& [key, items] : work_.batches()) {
+    residency.samples().page(key[0]).bindStorage(kBindWriteSamples);
+    work_.dispatch(index++, kBindWriteWork, counters);
+  }
+  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+  return {};
+}
+
+}  // namespace lambent::effects::neighborhood

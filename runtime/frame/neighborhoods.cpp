@@ -1,0 +1,204 @@
+#include "runtime/frame/neighborhoods.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
+#include <glm/matrix.hpp>
+
+#include "runtime/frame/boxes.hpp"
+#include "runtime/frame/surface_record.hpp"
+
+namespace lambent::frame {
+
+using effects::neighborhood::Arrival;
+using effects::neighborhood::Grid;
+using effects::neighborhood::Receiver;
+
+namespace {
+
+const bundle::Group& describedGroup(const World& world, std::size_t group) {
+  const streaming::ResidentGroup& resident = world.residency().groups()[group];
+  return world.description(resident.bundle).groups[resident.index];
+}
+
+// The grid's points, and a point's distance more all around.
+scene::Box boxOf(const bundle::NeighborhoodGrid& grid, bool grown) {
+  const glm::vec3 margin =
+      grown ? (grid.bounds_max - grid.bounds_min) / glm::vec3(grid.size - 1u) : glm::vec3(0.0f);
+  return {grid.bounds_min - margin, grid.bounds_max + margin};
+}
+
+bool hasSurfaces(const bundle::Group& group) {
+  return !group.volume && std::ranges::any_of(group.cells, [](const bundle::Cell& cell) {
+    return cell.kind == bundle::CellKind::Surface;
+  });
+}
+
+// Light of the group's own lamps, if it has any, goes by the grid too.
+bool carriesLamps(const bundle::Group& group) {
+  return group.lights.empty() || std::ranges::all_of(group.cells, [](const bundle::Cell& cell) {
+           return cell.kind != bundle::CellKind::Neighborhood ||
+                  std::ranges::any_of(cell.transfers, [](const bundle::CellTransfer& part) {
+                    return !part.fromEnvironment();
+                  });
+         });
+}
+
+bool nearLightCountsTwice(const LitScene& scene, std::size_t body, std::size_t receiver) {
+  for (std::size_t n = 0; n < scene.near_sources.size(); ++n)
+    if ((scene.near_masks[receiver] >> n & 1u) != 0 && scene.groups[body].lit_by[scene.near_sources[n]] != 0)
+      return true;
+  return false;
+}
+
+bool finite(const glm::dmat4& matrix) {
+  for (int column = 0; column < 4; ++column)
+    for (int row = 0; row < 4; ++row)
+      if (!std::isfinite(matrix[column][row])) return false;
+  return true;
+}
+
+// From the position that the surface pass has per pixel of this draw (surface.vert): the mesh's own, or with
+// normal maps the one turned by the matrix that surface_record.cpp makes.
+glm::dmat4 worldFromPosition(const World& world, std::size_t draw, const SurfaceDraw& record) {
+  const glm::dmat4 world_from_mesh(world.worldFromMesh(draw));
+  if (!normalMapped(world, draw)) return world_from_mesh;
+  return world_from_mesh * glm::dmat4(glm::inverse(glm::dmat3(glm::mat3(record.group_from_mesh))));
+}
+
+}  // namespace
+
+Neighborhoods::Neighborhoods() : receivers_table_("neighborhood receivers"), arrivals_table_("arrivals") {}
+
+void Neighborhoods::noticeGrids(const World& world) {
+  const auto& groups = world.residency().groups();
+  if (groups.size() == groups_seen_) return;
+  groups_seen_ = groups.size();
+  std::vector<Grid> grids;
+  for (std::uint32_t g = 0; g < groups.size(); ++g)
+    if (const auto& points = describedGroup(world, g).neighborhood)
+      grids.push_back({.group = g, .points = *points});
+  effect_.setGrids(std::move(grids), world.residency());
+}
+
+void Neighborhoods::chooseCarriers(const World& world, LitScene& scene) {
+  noticeGrids(world);
+  counts_ = {.grids = static_cast<std::uint32_t>(effect_.grids().size())};
+  std::set<std::pair<std::uint32_t, std::uint32_t>> pairs;
+  const auto group_count = static_cast<std::uint32_t>(world.residency().groups().size());
+  for (const Grid& grid : effect_.grids()) {
+    if (!grid.ready || !carriesLamps(describedGroup(world, grid.group))) continue;
+    ++counts_.ready;
+    const glm::mat4 world_from_body = world.worldFromGroup(grid.group);
+    for (std::uint32_t b = 0; b < group_count; ++b) {
+      const bool before = pairs_.contains({grid.group, b});
+      if (b == grid.group || !hasSurfaces(describedGroup(world, b)) ||
+          !meet(boxOf(grid.points, before), world_from_body, world.groupBounds(b), world.worldFromGroup(b)) ||
+          nearLightCountsTwice(scene, grid.group, b))
+        continue;
+      pairs.insert({grid.group, b});
+      std::vector<std::uint32_t>& left_out = scene.groups[b].left_out;
+      const std::uint32_t body = scene.groups[grid.group].body;
+      if (body != lighting::CapturePoint::kNoBody && !std::ranges::binary_search(left_out, body))
+        left_out.insert(std::ranges::upper_bound(left_out, body), body);
+    }
+  }
+  counts_.pairs = static_cast<std::uint32_t>(pairs.size());
+  if (pairs != pairs_) pairs_changed_ = true;
+  pairs_ = std::move(pairs);
+}
+
+Result<void> Neighborhoods::update(World& world, const lighting::GroupLights& lights,
+                                   const effects::glossy::Glossy& glossy, gpu::Counters& counters) {
+  if (Result<void> done = effect_.update(world.residency(), lights, glossy, counters); !done) return done;
+  const bool same = !pairs_changed_ && transforms_seen_ == world.transformsVersion() &&
+                    residency_seen_ == world.residency().version() && effect_seen_ == effect_.version();
+  if (!same) {
+    pairs_changed_ = false;
+    transforms_seen_ = world.transformsVersion();
+    residency_seen_ = world.residency().version();
+    effect_seen_ = effect_.version();
+    findReceivers(world);
+    receivers_table_.assign(std::span<const Receiver>(receivers_));
+    arrivals_table_.assign(std::span<const Arrival>(arrivals_));
+    counters.uploaded_bytes += receivers_.size() * sizeof(Receiver) + arrivals_.size() * sizeof(Arrival);
+  }
+  counts_.left_out = left_out_;
+  counts_.written = effect_.gridsWrittenLast();
+  counts_.arrivals = static_cast<std::uint32_t>(arrivals_.size());
+  counts_.receivers = static_cast<std::uint32_t>(
+      std::ranges::count_if(receivers_, [](const Receiver& receiver) { return receiver.count > 0; }));
+  return {};
+}
+
+void Neighborhoods::findReceivers(const World& world) {
+  const auto& draws = world.residency().draws();
+  std::vector<Receiver> receivers(
+      draws.size(), {.first = 0, .count = 0, .change_word = effects::neighborhood::kNoChange, .pad = 0});
+  arrivals_.clear();
+  left_out_ = 0;
+  struct Found {
+    double distance = 0.0;
+    Arrival arrival{};
+  };
+  for (std::uint32_t d = 0; d < draws.size() && !pairs_.empty(); ++d) {
+    const streaming::ResidentDraw& draw = draws[d];
+    if (!world.residency().meshes()[draw.mesh].block) continue;
+    const bundle::Draw& described = world.description(draw.bundle).draws[draw.index];
+    const bundle::Primitive& primitive =
+        world.description(draw.bundle).meshes[described.mesh].primitives[described.primitive];
+    const scene::Box bounds{primitive.bounds_min, primitive.bounds_max};
+    std::vector<Found> found;
+    std::optional<glm::dmat4> world_from_position;
+    for (const Grid& grid : effect_.grids()) {
+      if (!grid.ready || !pairs_.contains({grid.group, draw.group})) continue;
+      const glm::mat4 world_from_body = world.worldFromGroup(grid.group),
+                      world_from_mesh = world.worldFromMesh(d);
+      if (!meet(boxOf(grid.points, /*grown=*/false), world_from_body, bounds, world_from_mesh)) continue;
+      const glm::dvec3 low(grid.points.bounds_min), size = glm::dvec3(grid.points.bounds_max) - low;
+      glm::dmat4 grid_from_body(1.0);
+      for (int axis = 0; axis < 3; ++axis) {
+        grid_from_body[axis][axis] = (static_cast<double>(grid.points.size[axis]) - 1.0) / size[axis];
+        grid_from_body[3][axis] = -low[axis] * grid_from_body[axis][axis];
+      }
+      if (!world_from_position) world_from_position = worldFromPosition(world, d, describe(world, d));
+      const glm::dmat4 grid_from_position =
+          grid_from_body * glm::inverse(glm::dmat4(world_from_body)) * *world_from_position;
+      if (!finite(grid_from_position)) continue;  // something is flat
+      const glm::quat body_from_group =
+          glm::conjugate(world.rotationOf(grid.group)) * world.rotationOf(draw.group);
+      const glm::dvec3 middle(world_from_body *
+                              glm::vec4(0.5f * (grid.points.bounds_min + grid.points.bounds_max), 1.0f));
+      const glm::dvec3 receiver(world_from_mesh * glm::vec4(bounds.center(), 1.0f));
+      found.push_back(
+          {.distance = glm::distance(middle, receiver),
+           .arrival = {.grid_from_position = glm::mat3x4(glm::mat4(glm::transpose(grid_from_position))),
+                       .body_from_group = glm::mat3x4(glm::transpose(glm::mat3_cast(body_from_group))),
+                       .grid = grid.place}});
+    }
+    std::ranges::stable_sort(found, {}, &Found::distance);
+    if (found.size() > kMaxArrivals) {
+      left_out_ += static_cast<std::uint32_t>(found.size()) - kMaxArrivals;
+      found.resize(kMaxArrivals);
+    }
+    receivers[d].first = static_cast<std::uint32_t>(arrivals_.size());
+    receivers[d].count = static_cast<std::uint32_t>(found.size());
+    for (const Found& one : found) arrivals_.push_back(one.arrival);
+  }
+  const auto sameKind = [](const Receiver& a, const Receiver& b) {
+    return (a.count > 0) == (b.count > 0) && a.change_word == b.change_word;
+  };
+  if (!std::ranges::equal(receivers, receivers_, sameKind)) ++version_;
+  receivers_ = std::move(receivers);
+}
+
+void Neighborhoods::bind() const {
+  receivers_table_.bindStorage(effects::neighborhood::kBindReceivers);
+  arrivals_table_.bindStorage(effects::neighborhood::kBindArrivals);
+  effect_.bind();
+}
+
+}  // namespace lambent::frame
