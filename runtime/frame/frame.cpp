@@ -94,7 +94,7 @@ Result<std::uint32_t> Frame::rest(World& world, const lighting::Environment& env
 }
 
 bool Frame::atRest(const World& world) const {
-  return world.loaded() && (!incident_ || incident_->atRest());
+  return world.loaded() && (!incident_ || incident_->atRest()) && neighborhoods_.settled();
 }
 
 Result<void> Frame::step(World& world, const lighting::Environment& environment, std::size_t max_captures) {
@@ -228,7 +228,8 @@ Result<void> Frame::shadeGlossy(World& world) {
 Result<void> Frame::shadeNeighborhoods(World& world) {
   if (!neighborhoods_.any()) return {};
   gpu::PassTimers::Scope pass(timers_, "neighborhood");
-  Result<void> done = neighborhoods_.update(world, group_lights_, glossy_, pass.counters());
+  Result<void> done =
+      neighborhoods_.update(world, group_lights_, glossy_, options_.transfer, pass.counters());
   counts_.neighborhoods = neighborhoods_.counts();
   return done;
 }
