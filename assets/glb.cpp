@@ -185,6 +185,21 @@ class Writer {
     json["images"] = std::move(images);
   }
 
+  static Json extrasJson(const Node& node) {
+    Json extras = Json::object();
+    if (node.movable) extras["movable"] = true;
+    if (node.volume)
+      extras["volume"] = {{"file", node.volume->file},
+                          {"density_scale", node.volume->density_scale},
+                          {"albedo", toJson(node.volume->albedo)},
+                          {"size", toJson(node.volume->size)}};
+    if (node.neighborhood) {
+      const glm::ivec3 size = node.neighborhood->size;
+      extras["neighborhood"] = {{"size", {size.x, size.y, size.z}}};
+    }
+    return extras;
+  }
+
   void addNodes(Json& json) {
     Json nodes = Json::array(), cameras = Json::array(), roots = Json::array();
     for (const Node& node : scene_.nodes) {
@@ -194,7 +209,7 @@ class Writer {
       if (node.rotation != glm::quat(1.0f, 0.0f, 0.0f, 0.0f)) item["rotation"] = toJson(node.rotation);
       if (node.scale != 1.0f) item["scale"] = toJson(glm::vec3(node.scale));
       if (node.spot >= 0) item["extensions"] = {{"KHR_lights_punctual", {{"light", node.spot}}}};
-      if (node.movable) item["extras"] = {{"lambent", {{"movable", true}}}};
+      if (Json extras = extrasJson(node); !extras.empty()) item["extras"] = {{"lambent", std::move(extras)}};
       for (std::size_t child = 0; child < scene_.nodes.size(); ++child)
         if (scene_.nodes[child].parent == static_cast<int>(nodes.size())) item["children"].push_back(child);
       nodes.push_back(std::move(item));

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -53,6 +54,19 @@ struct Motion {
   std::vector<glm::quat> rotations;
 };
 
+// extras.lambent.volume: a medium in a box of `size` about the node's origin.
+struct Volume {
+  std::string file;
+  float density_scale = 1.0f;  // m^-1 where the file says 1
+  glm::vec3 albedo{1.0f};
+  glm::vec3 size{1.0f};  // m
+};
+
+// extras.lambent.neighborhood: points of the grid around the body.
+struct Neighborhood {
+  glm::ivec3 size{64, 64, 8};
+};
+
 struct Node {
   std::string name;
   int mesh = 0;  // into Scene::meshes, -1: none; several nodes may show one mesh
@@ -63,6 +77,8 @@ struct Node {
   int spot = -1;         // into Scene::spots
   bool movable = false;  // a rigid group of its own, though nothing moves it yet
   Motion motion{};       // empty: stands
+  std::optional<Volume> volume{};
+  std::optional<Neighborhood> neighborhood{};
 };
 
 struct Camera {

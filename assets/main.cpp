@@ -1,8 +1,9 @@
 // lambent-assets OUT_DIR: writes the sample scenes and light probes that ship. The same bytes each time.
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
 #include <system_error>
+
+#include <CLI/CLI.hpp>
 
 #include "assets/probes.hpp"
 #include "assets/scenes.hpp"
@@ -21,6 +22,7 @@ Result<void> writeAll(const std::filesystem::path& folder) {
   if (auto done = assets::writeGlb(folder / "playroom.glb", assets::playroom()); !done) return done;
   if (auto done = assets::writeGlb(folder / "field.glb", assets::field()); !done) return done;
   if (auto done = assets::writeGlb(folder / "metals.glb", assets::metals()); !done) return done;
+  if (auto done = assets::writeGlb(folder / "flight.glb", assets::flight()); !done) return done;
   constexpr std::uint32_t kProbeWidth = 512;
   if (auto done = spec::writeHdr(folder / "sky.hdr", assets::skyProbe(kProbeWidth)); !done) return done;
   return spec::writeHdr(folder / "studio.hdr", assets::studioProbe(kProbeWidth));

@@ -5,7 +5,7 @@
 // `playroom` moves: a red ball rolls along a white wall, a lamp swings over a teapot and a screen slides
 // between the two, about 20,000 vertices. `field` is 200 bodies on a lawn, 20 of them moving. `metals`
 // shines: a golden teapot, copper balls from polished to rough, brushed steel and glazed clay before a white
-// wall.
+// wall. In `flight` a flyer with a polished ring for a wing circles over hills, under a cloud.
 #pragma once
 
 #include "assets/glb.hpp"
@@ -18,6 +18,7 @@ Scene knot();
 Scene playroom();
 Scene field();
 Scene metals();
+Scene flight();
 
 // Stone tiles, seamless, `tiles` x `tiles` of two tones with joints; sRGB.
 std::vector<std::uint8_t> stonePng(int tiles, int texels_per_tile);

@@ -12,6 +12,8 @@
 #include "baker/bake/ship_meshes.hpp"
 #include "baker/effects/diffuse/bounces.hpp"
 #include "baker/effects/effect_list.hpp"
+#include "baker/effects/neighborhood/grid_placement.hpp"
+#include "baker/refine/refine.hpp"
 #include "baker/work/parallel.hpp"
 #include "runtime/base/atomic_file.hpp"
 
@@ -21,6 +23,7 @@ namespace {
 
 static_assert(BakeOptions::kMostBounces == kMostBounces);
 constexpr int kLeastGlossyOrder = 4, kMostGlossyOrder = 6;
+constexpr int kMostNeighborhoodOrder = 6;
 constexpr std::size_t kMinRays = 128, kMaxRays = 1u << 20;
 
 Result<void> checkOptions(const BakeOptions& options) {
@@ -44,6 +47,13 @@ Result<void> checkOptions(const BakeOptions& options) {
     return fail("--light-samples",
                 fmt::format("{} is not between 1 and {}", options.light_samples, kMostLightSamples),
                 "auto chooses by how near light comes");
+  const glm::uvec3 grid = options.neighborhood_grid;
+  if (grid != glm::uvec3(0u))
+    for (int axis = 0; axis < 3; ++axis)
+      if (grid[axis] < 2 || grid[axis] > kMostGridPoints)
+        return fail("--neighborhood-grid",
+                    fmt::format("{} points are not between 2 and {}", grid[axis], kMostGridPoints),
+                    "64x64x8 is usual");
   if (!(options.max_edge_m >= 0.0f && std::isfinite(options.max_edge_m)))
     return fail("--max-edge", fmt::format("{} is not a length", options.max_edge_m),
                 "give a positive number in the scene's units, or leave it out");
@@ -96,13 +106,24 @@ Result<BakeReport> bakeOnTheseThreads(const Scene& scene, const BakeOptions& opt
     tables = std::move(*made);
   }
 
-  auto meshes = shipMeshes(scene, plan->groups, options.max_edge_m, progress, stop);
+  auto split = splitMeshes(scene, plan->groups, options.max_edge_m);
+  if (!split) return failAgain(split.error());
+  if (const float bound = options.effectiveRefineBound(); bound > 0.0f) {
+    RefineOptions refine{
+        .bound = bound, .most_growth = options.refineGrowth(), .most_added = options.refineAdded()};
+    if (!tables.entries.empty()) refine.most_vertices = mostGlossySamples(options.glossy_order);
+    auto refined = refineMeshes(scene, plan->groups, *alpha_maps, !tables.entries.empty(), refine, *split,
+                                progress, stop);
+    if (!refined) return failAgain(refined.error());
+    report.refinement = *refined;
+  }
+  auto meshes = shipMeshes(scene, plan->groups, *split, progress, stop);
   if (!meshes) return failAgain(meshes.error());
 
   std::vector<BakedGroup> baked;
   for (std::size_t g = 0; g < plan->groups.size(); ++g) {
-    auto result = bakeGroup(scene, plan->groups[g], plan->light_samples[g].count, tables, *meshes,
-                            *alpha_maps, images, options, progress, stop, report);
+    auto result = bakeGroup(scene, plan->groups[g], plan->light_samples[g].count, plan->neighborhoods[g],
+                            tables, *meshes, *alpha_maps, images, options, progress, stop, report);
     if (!result) return failAgain(result.error());
     baked.push_back(std::move(*result));
   }
@@ -137,6 +158,10 @@ Result<EffectPlan> planFor(const Scene& scene, const BakeOptions& options) {
   if (plan.bakes("glossy") && options.order > kMostGlossyOrder)
     return fail("--order", fmt::format("{} is more than glossy surfaces take", options.order),
                 fmt::format("use at most {}, or --effects diffuse", kMostGlossyOrder));
+  if (plan.bakes("neighborhood") && options.order > kMostNeighborhoodOrder)
+    return fail(
+        "--order", fmt::format("{} is more than neighborhoods take", options.order),
+        fmt::format("use at most {}, or leave neighborhood out of --effects", kMostNeighborhoodOrder));
   if (options.light_samples > 0)
     for (PlannedLightSamples& planned : plan.light_samples)
       planned = {{static_cast<std::uint32_t>(options.light_samples), /*of_group=*/false}, "asked for"};

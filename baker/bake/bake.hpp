@@ -9,9 +9,12 @@
 #include <string>
 #include <vector>
 
+#include <glm/vec3.hpp>
+
 #include "baker/bake/options.hpp"
 #include "baker/import/scene.hpp"
 #include "baker/plan/effect_plan.hpp"
+#include "baker/refine/refine.hpp"
 #include "baker/work/progress.hpp"
 #include "runtime/base/result.hpp"
 #include "runtime/bundle/description.hpp"
@@ -35,6 +38,16 @@ struct BakeReport {
     std::vector<std::uint32_t> proxy_triangles;  // of each level, the finest first; empty: no proxy
   };
   std::vector<Group> groups;
+  struct Neighborhood {
+    std::string name;  // of the group
+    glm::uvec3 size{0};
+    glm::vec3 bounds_min{0.0f}, bounds_max{0.0f};  // group frame, m
+    std::uint64_t inside_points = 0;               // inside the body, continued from outside
+    double error = 0.0;         // of its codes, RMS, relative to irradiance without the body
+    double change_error = 0.0;  // relative to the change, which 99 % of the points with a change keep
+  };
+  std::vector<Neighborhood> neighborhoods;
+  RefineReport refinement;
   double left_out = 0.0;  // estimate of the light that further bounces would add, relative to all
   std::vector<Progress::Stage> stages;
   std::vector<std::string> notices;  // what came out other than the plan says, a sentence each

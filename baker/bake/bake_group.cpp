@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "baker/bake/bake_around.hpp"
 #include "baker/brdf/kernel_power.hpp"
 #include "baker/effects/diffuse/bounces.hpp"
 #include "baker/effects/diffuse/direct.hpp"
@@ -13,6 +14,7 @@
 #include "baker/effects/glossy/glossy_bounces.hpp"
 #include "baker/effects/glossy/glossy_direct.hpp"
 #include "baker/effects/glossy/payloads.hpp"
+#include "baker/effects/neighborhood/surface_body.hpp"
 #include "baker/proxy/capture_proxy.hpp"
 #include "baker/transport/ray_scene.hpp"
 #include "baker/transport/sample_areas.hpp"
@@ -145,8 +147,14 @@ std::vector<CodedTransfer> codeDiffuse(const SampleCell& cell, const SampleSet& 
 
 }  // namespace
 
+std::size_t mostGlossySamples(int glossy_order) {
+  return kMostBytesShaded /
+         (16u * static_cast<std::size_t>(glossy_order) * static_cast<std::size_t>(glossy_order));
+}
+
 Result<BakedGroup> bakeGroup(const Scene& scene, const RigidGroup& group, LightSampleCount light_samples,
-                             const BrdfTables& tables, const ShippedMeshes& meshes,
+                             const PlannedNeighborhood& neighborhood, const BrdfTables& tables,
+                             const ShippedMeshes& meshes,
                              const std::vector<std::shared_ptr<const AlphaMap>>& alpha_maps,
                              DecodedImages& images, const BakeOptions& options, Progress& progress,
                              const std::stop_token& stop, BakeReport& report) {
@@ -212,6 +220,17 @@ Result<BakedGroup> bakeGroup(const Scene& scene, const RigidGroup& group, LightS
             : codeDiffuse(cell, baked.samples, *light, grey, options, stop, report));
     if (stop.stop_requested()) return stopped();
     progress.add(cell.count);
+  }
+
+  if (neighborhood.baked && !baked.geometry.triangles.empty()) {
+    const SurfaceBody body(view, {.direct = light->direct.field,
+                                  .bounced = light->bounced ? &light->bounced->field : nullptr,
+                                  .brdfs = brdfs ? &*brdfs : nullptr,
+                                  .glossy = light->glossy ? &light->glossy->field : nullptr});
+    const Box3 bounds{baked.geometry.bounds_min, baked.geometry.bounds_max};
+    if (!bakeAround(body, bounds, baked.geometry.origin, group.name, neighborhood, options, progress, stop,
+                    report, baked.neighborhood))
+      return stopped();
   }
   return baked;
 }

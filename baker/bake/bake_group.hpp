@@ -33,10 +33,14 @@ struct BakedGroup {
   std::optional<BakedNeighborhood> neighborhood;
 };
 
+// Glossy samples that a group may have: what the runtime holds of them lies in one page.
+std::size_t mostGlossySamples(int glossy_order);
+
 // tables: of the scene's glossy materials; empty where all are shown as Lambert. Adds what it did to the
 // report. Errors: no memory for the hierarchy, images that cannot be decoded, "stopped".
 Result<BakedGroup> bakeGroup(const Scene& scene, const RigidGroup& group, LightSampleCount light_samples,
-                             const BrdfTables& tables, const ShippedMeshes& meshes,
+                             const PlannedNeighborhood& neighborhood, const BrdfTables& tables,
+                             const ShippedMeshes& meshes,
                              const std::vector<std::shared_ptr<const AlphaMap>>& alpha_maps,
                              DecodedImages& images, const BakeOptions& options, Progress& progress,
                              const std::stop_token& stop, BakeReport& report);

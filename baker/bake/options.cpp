@@ -12,12 +12,14 @@ namespace {
 struct QualityRow {
   const char* name;
   std::size_t rays;
-  float error_bound, glossy_error_bound;
+  float error_bound, glossy_error_bound, refine_bound;
+  double refine_growth;
+  std::size_t refine_added;
 };
 constexpr std::array kQualities = {
-    QualityRow{"draft", 256, 0.01f, 0.03f},
-    QualityRow{"standard", 1024, 0.003f, 0.015f},
-    QualityRow{"high", 4096, 0.001f, 0.005f},
+    QualityRow{"draft", 256, 0.01f, 0.03f, 0.04f, 1.2, 10'000},
+    QualityRow{"standard", 1024, 0.003f, 0.015f, 0.02f, 1.5, 20'000},
+    QualityRow{"high", 4096, 0.001f, 0.005f, 0.01f, 4.0, 60'000},
 };
 
 const QualityRow& row(Quality quality) {
@@ -42,6 +44,18 @@ float BakeOptions::effectiveGlossyErrorBound() const {
   return error_bound > 0.0f ? error_bound : row(quality).glossy_error_bound;
 }
 
+float BakeOptions::effectiveRefineBound() const {
+  return refine_bound >= 0.0f ? refine_bound : row(quality).refine_bound;
+}
+
+double BakeOptions::refineGrowth() const {
+  return row(quality).refine_growth;
+}
+
+std::size_t BakeOptions::refineAdded() const {
+  return row(quality).refine_added;
+}
+
 std::uint64_t BakeOptions::effectiveMemory() const {
   if (memory_bytes != 0) return memory_bytes;
   const long pages = sysconf(_SC_PHYS_PAGES), page_bytes = sysconf(_SC_PAGESIZE);
@@ -58,7 +72,12 @@ std::map<std::string, std::string> BakeOptions::settings() const {
           {"lightSamples", light_samples == 0 ? "auto" : std::to_string(light_samples)},
           {"errorBound", fmt::format("{}", effectiveErrorBound())},
           {"glossyErrorBound", fmt::format("{}", effectiveGlossyErrorBound())},
+          {"neighborhoodGrid",
+           neighborhood_grid == glm::uvec3(0u)
+               ? "auto"
+               : fmt::format("{}x{}x{}", neighborhood_grid.x, neighborhood_grid.y, neighborhood_grid.z)},
           {"maxEdge", fmt::format("{}", max_edge_m)},
+          {"refineBound", fmt::format("{}", effectiveRefineBound())},
           {"effects", effects}};
 }
 

@@ -7,6 +7,8 @@
 #include <map>
 #include <string>
 
+#include <glm/vec3.hpp>
+
 namespace lambent::baker {
 
 enum class Quality : std::uint8_t { Draft, Standard, High };
@@ -21,7 +23,13 @@ struct BakeOptions {
   int bounces = -1;          // 0: direct light with shadows; -1: as many as the error bound asks for
   float error_bound = 0.0f;  // of the coded transfer, relative RMS; 0: the quality's
   float max_edge_m = 0.0f;   // edges longer than this are split; 0: none
-  int light_samples = 0;     // of each cell, 1..32; 0: auto, by how near light comes (local_light.hpp)
+  // Points of neighborhood grids along their longest, middle and shortest side, where the scene asks for no
+  // other; 0: 64 x 64 x 8 in a slab, else 32 each.
+  glm::uvec3 neighborhood_grid{0};
+  // Where shadows change, edges are split until interpolation errs by less than this, relative RMS against
+  // open light; 0: nowhere; under 0: the quality's.
+  float refine_bound = -1.0f;
+  int light_samples = 0;  // of each cell, 1..32; 0: auto, by how near light comes (local_light.hpp)
   std::string effects = "auto";
   unsigned threads = 0;            // 0: all
   std::uint64_t memory_bytes = 0;  // that passes may keep things in; 0: half of the machine's
@@ -30,6 +38,10 @@ struct BakeOptions {
   float effectiveErrorBound() const;
   // Of glossy transfer, where bytes are dear: the same if it was given, else the quality's own.
   float effectiveGlossyErrorBound() const;
+  float effectiveRefineBound() const;
+  // How far refinement may go: times as many vertices, and so many more.
+  double refineGrowth() const;
+  std::size_t refineAdded() const;
   std::uint64_t effectiveMemory() const;
   std::map<std::string, std::string> settings() const;
 };

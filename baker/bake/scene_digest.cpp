@@ -102,6 +102,13 @@ void addNode(const gltf::Node& node, Digest& digest) {
   digest.add(node.trs->translation), digest.add(glm::vec4(q.x, q.y, q.z, q.w)), digest.add(node.trs->scale);
 }
 
+void addVolume(const SceneVolume& volume, Digest& digest) {
+  digest.addText(volume.name);
+  digest.add(volume.node), digest.add(volume.size);
+  digest.addList(volume.density);
+  digest.add(volume.node_from_grid), digest.add(volume.albedo), digest.add(volume.g);
+}
+
 }  // namespace
 
 std::uint64_t sceneDigest(const Scene& scene) {
@@ -138,6 +145,11 @@ std::uint64_t sceneDigest(const Scene& scene) {
   for (const gltf::Light& light : scene.lights) addLight(light, digest);
   digest.add(scene.animations.size());
   for (const gltf::Animation& animation : scene.animations) addAnimation(animation, digest);
+  digest.add(scene.volumes.size());
+  for (const SceneVolume& volume : scene.volumes) addVolume(volume, digest);
+  digest.add(scene.neighborhoods.size());
+  for (const NeighborhoodRequest& request : scene.neighborhoods)
+    digest.add(request.node), digest.add(request.size), digest.add(request.extent);
   return digest.value();
 }
 

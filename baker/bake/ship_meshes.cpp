@@ -83,9 +83,25 @@ std::vector<MeshLimits> limitsOf(const Scene& scene, const std::vector<RigidGrou
 
 }  // namespace
 
-Result<ShippedMeshes> shipMeshes(const Scene& scene, const std::vector<RigidGroup>& groups, float max_edge_m,
-                                 Progress& progress, std::stop_token stop) {
+Result<Meshes> splitMeshes(const Scene& scene, const std::vector<RigidGroup>& groups, float max_edge_m) {
   const std::vector<MeshLimits> limits = limitsOf(scene, groups, max_edge_m);
+  Meshes meshes(scene.meshes.size());
+  for (std::size_t m = 0; m < scene.meshes.size(); ++m)
+    for (std::size_t p = 0; p < scene.meshes[m].primitives.size(); ++p) {
+      bundle::MeshData mesh = scene.meshes[m].primitives[p].mesh;
+      if (std::isfinite(limits[m].max_edge) && !splitLongEdges(mesh, limits[m].max_edge, kMaxTriangles))
+        return fail(
+            fmt::format("{}: mesh {} primitive {}", scene.source.string(), m, p),
+            fmt::format("would have more than {} triangles with --max-edge {}", kMaxTriangles, max_edge_m),
+            "choose a longer edge");
+      meshes[m].push_back(std::move(mesh));
+    }
+  return meshes;
+}
+
+Result<ShippedMeshes> shipMeshes(const Scene& scene, const std::vector<RigidGroup>& groups,
+                                 const Meshes& meshes, Progress& progress, std::stop_token stop) {
+  const std::vector<MeshLimits> limits = limitsOf(scene, groups, /*max_edge_m=*/0.0f);
   struct Task {
     std::size_t mesh, primitive;
     std::optional<Result<EncodedMesh>> encoded;
@@ -99,15 +115,7 @@ Result<ShippedMeshes> shipMeshes(const Scene& scene, const std::vector<RigidGrou
     for (Task& task : std::span(tasks).subspan(begin, end - begin)) {
       const std::string subject =
           fmt::format("{}: mesh {} primitive {}", scene.source.string(), task.mesh, task.primitive);
-      bundle::MeshData mesh = scene.meshes[task.mesh].primitives[task.primitive].mesh;
-      if (std::isfinite(limits[task.mesh].max_edge) &&
-          !splitLongEdges(mesh, limits[task.mesh].max_edge, kMaxTriangles))
-        task.encoded = fail(
-            subject,
-            fmt::format("would have more than {} triangles with --max-edge {}", kMaxTriangles, max_edge_m),
-            "choose a longer edge");
-      else
-        task.encoded = encodeDraco(mesh, limits[task.mesh].step, subject);
+      task.encoded = encodeDraco(meshes[task.mesh][task.primitive], limits[task.mesh].step, subject);
       progress.add(1);
     }
   });

@@ -18,8 +18,13 @@ struct ShippedMeshes {
   std::vector<std::vector<bundle::MeshData>> decoded;            // [mesh][primitive]
 };
 
-// max_edge_m: edges longer than this (in the group's metres) are split; 0: none.
-Result<ShippedMeshes> shipMeshes(const Scene& scene, const std::vector<RigidGroup>& groups, float max_edge_m,
-                                 Progress& progress, std::stop_token stop);
+using Meshes = std::vector<std::vector<bundle::MeshData>>;  // [mesh][primitive]
+
+// The scene's meshes; edges longer than max_edge_m (in the group's metres) are split, 0: none. Error: too
+// many triangles.
+Result<Meshes> splitMeshes(const Scene& scene, const std::vector<RigidGroup>& groups, float max_edge_m);
+
+Result<ShippedMeshes> shipMeshes(const Scene& scene, const std::vector<RigidGroup>& groups,
+                                 const Meshes& meshes, Progress& progress, std::stop_token stop);
 
 }  // namespace lambent::baker

@@ -129,12 +129,28 @@ void sumIsotropic(const float* weights, const float* harmonics, float* out) {
   });
 }
 
+// Of a point of a GGX surface, after textures.
+struct Parameters {
+  float roughness = 1.0f, metal = 0.0f;
+  glm::vec3 base{0.0f}, f0{0.0f};
+  float f90 = 0.0f;
+};
+
+// What is left to the diffuse part: band 0 has one axis, and y_00 sqrt(4 pi) = 1, so its weight is the lobe's
+// directional albedo. `second`: where the weights of the second lobe begin.
+glm::vec3 diffuseRest(const Parameters& p, std::span<const float> weights, std::size_t second) {
+  const glm::vec3 reflected = p.f0 * weights[0] + p.f90 * weights[second];
+  const float rest = 1.0f - std::max({reflected.r, reflected.g, reflected.b});
+  return p.metal < 1.0f && rest > 0.0f ? (1.0f - p.metal) * rest * p.base : glm::vec3(0.0f);
+}
+
 }  // namespace
 
 struct SurfaceBrdfs::State {
   const GroupGeometry* geometry = nullptr;
   int order = 5;
   bool grey = true;
+  std::unique_ptr<Brdf> ggx = makeGgx(/*anisotropic=*/true);
   std::vector<Factored> tables;
   std::vector<Surface> surfaces;                 // one per draw
   std::vector<std::uint32_t> surface_of;         // triangle -> draw
@@ -155,6 +171,13 @@ struct SurfaceBrdfs::State {
 
   glm::vec3 geometricNormal(std::uint32_t triangle) const;
   glm::vec3 baseColor(const Surface& surface, std::uint32_t triangle, float u, float v) const;
+  glm::vec3 normalAt(std::uint32_t triangle, float u, float v) const;
+  Parameters parametersAt(const Surface& surface, std::uint32_t triangle, float u, float v) const;
+  // As anisotropy(); of isotropic surfaces any direction and strength 0.
+  std::pair<glm::vec3, float> leanOf(const Surface& surface, std::uint32_t triangle, float u, float v,
+                                     const glm::vec3& normal) const;
+  PointReflection reflectionAt(const Surface& surface, std::uint32_t triangle, float u, float v,
+                               const glm::vec3& to) const;
   // Direction of the longer lobe, unit, across `normal`; and strength.
   std::pair<glm::vec3, float> anisotropy(const Surface& surface, std::uint32_t triangle, float u, float v,
                                          const glm::vec3& normal) const;
@@ -169,6 +192,54 @@ glm::vec3 SurfaceBrdfs::State::geometricNormal(std::uint32_t triangle) const {
   const glm::uvec3 t = geometry->triangles[triangle];
   const glm::vec3 a = geometry->positions[t.x];
   return glm::cross(geometry->positions[t.y] - a, geometry->positions[t.z] - a);
+}
+
+glm::vec3 SurfaceBrdfs::State::normalAt(std::uint32_t triangle, float u, float v) const {
+  return unitOr(interpolated(geometry->normals, triangle, u, v),
+                unitOr(geometricNormal(triangle), {0.0f, 1.0f, 0.0f}));
+}
+
+Parameters SurfaceBrdfs::State::parametersAt(const Surface& surface, std::uint32_t triangle, float u,
+                                             float v) const {
+  const gltf::Material& material = surface.material;
+  const glm::vec4 rough_metal = data(surface.metallic_roughness, triangle, u, v);
+  Parameters p{.roughness = std::clamp(material.roughness * rough_metal.g, 0.0f, 1.0f),
+               .metal = std::clamp(material.metallic * rough_metal.b, 0.0f, 1.0f),
+               .base = baseColor(surface, triangle, u, v)};
+  const float specular = material.specular * data(surface.specular, triangle, u, v).a;
+  glm::vec3 tint = material.specular_color;
+  if (surface.specular_color.image)
+    tint *= glm::vec3(nearestTexel(*surface.specular_color.image, surface.specular_color.sampler,
+                                   texcoord(surface.specular_color.ref, triangle, u, v)));
+  p.f0 = glm::mix(specular * glm::min(material.reflectance() * tint, glm::vec3(1.0f)), p.base, p.metal);
+  p.f90 = glm::mix(specular, 1.0f, p.metal);
+  return p;
+}
+
+std::pair<glm::vec3, float> SurfaceBrdfs::State::leanOf(const Surface& surface, std::uint32_t triangle,
+                                                        float u, float v, const glm::vec3& normal) const {
+  return tables[surface.table].family == BrdfFamily::AnisotropicGgx
+             ? anisotropy(surface, triangle, u, v, normal)
+             : std::pair(anyAcross(normal), 0.0f);
+}
+
+PointReflection SurfaceBrdfs::State::reflectionAt(const Surface& surface, std::uint32_t triangle, float u,
+                                                  float v, const glm::vec3& to) const {
+  const Factored& from = tables[surface.table];
+  const glm::vec3 normal = normalAt(triangle, u, v);
+  const Parameters p = parametersAt(surface, triangle, u, v);
+  const auto [tangent, strength] = leanOf(surface, triangle, u, v, normal);
+  std::array<float, kMaxBrdfLobes * kMaxCoefficients> weights;
+  lookUpStored(from.table, frameOf(normal, tangent, to).view, p.roughness, strength, weights);
+  const BrdfFocus focus = ggx->focus({p.roughness, strength});
+  return {.normal = normal,
+          .tangent = tangent,
+          .geometric = unitOr(geometricNormal(triangle), normal),
+          .alpha_t = static_cast<float>(focus.alpha_t),
+          .alpha_b = static_cast<float>(focus.alpha_b),
+          .f0 = p.f0,
+          .f90 = p.f90,
+          .diffuse = diffuseRest(p, weights, from.table.coefficients())};
 }
 
 glm::vec3 SurfaceBrdfs::State::baseColor(const Surface& surface, std::uint32_t triangle, float u,
@@ -264,7 +335,6 @@ void SurfaceBrdfs::State::diffuseKernel(const glm::vec3& color, const glm::vec3&
 void SurfaceBrdfs::State::glossyKernel(const Surface& surface, std::uint32_t triangle, float u, float v,
                                        const glm::vec3& normal, const glm::vec3& to,
                                        std::span<float> out) const {
-  const gltf::Material& material = surface.material;
   const Factored& from = tables[surface.table];
   const auto count = static_cast<std::size_t>(sh::coefficientCount(order));
   const std::size_t stored = from.table.coefficients();
@@ -280,33 +350,16 @@ void SurfaceBrdfs::State::glossyKernel(const Surface& surface, std::uint32_t tri
     return;
   }
 
-  const glm::vec4 rough_metal = data(surface.metallic_roughness, triangle, u, v);
-  const float roughness = std::clamp(material.roughness * rough_metal.g, 0.0f, 1.0f);
-  const float metal = std::clamp(material.metallic * rough_metal.b, 0.0f, 1.0f);
-  const float specular = material.specular * data(surface.specular, triangle, u, v).a;
-  glm::vec3 tint = material.specular_color;
-  if (surface.specular_color.image)
-    tint *= glm::vec3(nearestTexel(*surface.specular_color.image, surface.specular_color.sampler,
-                                   texcoord(surface.specular_color.ref, triangle, u, v)));
-  const glm::vec3 base = baseColor(surface, triangle, u, v);
-  const glm::vec3 f0 =
-      glm::mix(specular * glm::min(material.reflectance() * tint, glm::vec3(1.0f)), base, metal);
-  const float f90 = glm::mix(specular, 1.0f, metal);
-
-  const auto [tangent, strength] = from.family == BrdfFamily::AnisotropicGgx
-                                       ? anisotropy(surface, triangle, u, v, normal)
-                                       : std::pair(anyAcross(normal), 0.0f);
+  const Parameters p = parametersAt(surface, triangle, u, v);
+  const auto [tangent, strength] = leanOf(surface, triangle, u, v, normal);
   const ViewFrame frame = frameOf(normal, tangent, to);
-  lookUpStored(from.table, frame.view, roughness, strength, weights);
+  lookUpStored(from.table, frame.view, p.roughness, strength, weights);
   expand(from, weights, frame, std::span(lobes).first(2));
   for (int c = 0; c < 3; ++c)
     for (std::size_t k = 0; k < count; ++k)
-      out[static_cast<std::size_t>(c) * count + k] = f0[c] * lobes[0][k] + f90 * lobes[1][k];
-
-  // Band 0 has one axis, and y_00 sqrt(4 pi) = 1: its weight is the lobe's directional albedo.
-  const glm::vec3 reflected = f0 * weights[0] + f90 * weights[stored];
-  const float rest = 1.0f - std::max({reflected.r, reflected.g, reflected.b});
-  if (metal < 1.0f && rest > 0.0f) diffuseKernel((1.0f - metal) * rest * base, normal, out);
+      out[static_cast<std::size_t>(c) * count + k] = p.f0[c] * lobes[0][k] + p.f90 * lobes[1][k];
+  if (const glm::vec3 rest = diffuseRest(p, weights, stored); rest != glm::vec3(0.0f))
+    diffuseKernel(rest, normal, out);
 }
 
 Result<SurfaceBrdfs> SurfaceBrdfs::load(const Scene& scene, const GroupGeometry& geometry,
@@ -382,14 +435,26 @@ void SurfaceBrdfs::exitKernel(std::uint32_t triangle, float u, float v, const gl
   assert(out.size() >= all);
   std::fill_n(out.begin(), all, 0.0f);
   const Surface& surface = state_->surfaces[state_->surface_of[triangle]];
-  const glm::vec3 area = state_->geometricNormal(triangle);
-  if (surface.material.unlit || glm::dot(area, to) <= 0.0f) return;
-  const glm::vec3 normal = unitOr(state_->interpolated(state_->geometry->normals, triangle, u, v),
-                                  unitOr(area, {0.0f, 1.0f, 0.0f}));
+  if (surface.material.unlit || glm::dot(state_->geometricNormal(triangle), to) <= 0.0f) return;
+  const glm::vec3 normal = state_->normalAt(triangle, u, v);
   if (surface.glossy)
     state_->glossyKernel(surface, triangle, u, v, normal, to, out);
   else
     state_->diffuseKernel(state_->baseColor(surface, triangle, u, v), normal, out);
+}
+
+float SurfaceBrdfs::roughness(std::uint32_t triangle, float u, float v) const {
+  const Surface& surface = state_->surfaces[state_->surface_of[triangle]];
+  if (!surface.glossy || state_->tables[surface.table].family == BrdfFamily::Measured) return 1.0f;
+  return std::clamp(surface.material.roughness * state_->data(surface.metallic_roughness, triangle, u, v).g,
+                    0.0f, 1.0f);
+}
+
+PointReflection SurfaceBrdfs::reflection(std::uint32_t triangle, float u, float v,
+                                         const glm::vec3& to) const {
+  const Surface& surface = state_->surfaces[state_->surface_of[triangle]];
+  assert(surface.glossy && state_->tables[surface.table].family != BrdfFamily::Measured);
+  return state_->reflectionAt(surface, triangle, u, v, to);
 }
 
 }  // namespace lambent::baker

@@ -34,6 +34,17 @@ struct BrdfTables {
   static Result<BrdfTables> make(const Scene& scene, int order);
 };
 
+// What a point of a glossy surface that is not measured reflects, after textures: for paths that follow a
+// highlight which is sharper than few bands carry. Directions in the group's frame.
+struct PointReflection {
+  glm::vec3 normal{0.0f, 0.0f, 1.0f}, tangent{1.0f, 0.0f, 0.0f};  // unit, across each other
+  glm::vec3 geometric{0.0f, 0.0f, 1.0f};                          // of the triangle, unit
+  float alpha_t = 1.0f, alpha_b = 1.0f;                           // GGX, along the tangent and across
+  glm::vec3 f0{0.0f};
+  float f90 = 0.0f;
+  glm::vec3 diffuse{0.0f};  // base colour (1 - metallic) (1 - directional albedo of the specular lobe)
+};
+
 class SurfaceBrdfs {
  public:
   // `geometry` outlives this. `tables` are of the same order and may go. Errors: those of decodeImage.
@@ -50,6 +61,11 @@ class SurfaceBrdfs {
   // `to` lies behind the triangle; a view above it but below the plane of the interpolated normal counts as
   // cos(theta_v) = kLeastViewCosine. From any thread; allocates nothing.
   void exitKernel(std::uint32_t triangle, float u, float v, const glm::vec3& to, std::span<float> out) const;
+
+  // Perceptual roughness of a glossy point; 1 where its BRDF is measured, or where it is matte.
+  float roughness(std::uint32_t triangle, float u, float v) const;
+  // Of a glossy point that is not measured, seen from `to` as in exitKernel.
+  PointReflection reflection(std::uint32_t triangle, float u, float v, const glm::vec3& to) const;
 
  private:
   struct State;

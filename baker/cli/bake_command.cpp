@@ -1,7 +1,9 @@
 // lambent bake SCENE -o OUT.lmb.glb
+#include <cstdio>
 #include <cstdlib>
 #include <map>
 #include <memory>
+#include <optional>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -12,6 +14,7 @@
 #include "baker/cli/output.hpp"
 #include "baker/import/gltf.hpp"
 #include "baker/plan/counted.hpp"
+#include "runtime/spec/numbers.hpp"
 
 namespace lambent::baker {
 
@@ -33,6 +36,15 @@ nlohmann::json reportJson(const BakeArguments& a, const BakeReport& r) {
     groups.push_back({{"name", group.name},
                       {"lightSamples", group.light_samples},
                       {"proxyTriangles", group.proxy_triangles}});
+  nlohmann::json neighborhoods = nlohmann::json::array();
+  for (const BakeReport::Neighborhood& n : r.neighborhoods)
+    neighborhoods.push_back({{"name", n.name},
+                             {"size", {n.size.x, n.size.y, n.size.z}},
+                             {"boundsMin", {n.bounds_min.x, n.bounds_min.y, n.bounds_min.z}},
+                             {"boundsMax", {n.bounds_max.x, n.bounds_max.y, n.bounds_max.z}},
+                             {"insidePoints", n.inside_points},
+                             {"codingError", n.error},
+                             {"changeCodingError", n.change_error}});
   return {{"output", a.output.string()},
           {"settings", a.options.settings()},
           {"vertices", r.vertices},
@@ -43,6 +55,7 @@ nlohmann::json reportJson(const BakeArguments& a, const BakeReport& r) {
           {"raysPerSecond", r.ray_seconds > 0.0 ? static_cast<double>(r.rays) / r.ray_seconds : 0.0},
           {"lights", r.lights},
           {"groups", groups},
+          {"neighborhoods", neighborhoods},
           {"passEnergy", r.pass_energy},
           {"leftOut", r.left_out},
           {"hitBytes", r.hit_bytes},
@@ -55,6 +68,12 @@ nlohmann::json reportJson(const BakeArguments& a, const BakeReport& r) {
           {"proxyBytes", r.proxy_bytes},
           {"imageBytes", r.image_bytes},
           {"notices", r.notices},
+          {"refinement",
+           {{"verticesBefore", r.refinement.vertices_before},
+            {"verticesAfter", r.refinement.vertices_after},
+            {"errorBefore", r.refinement.error_before},
+            {"errorAfter", r.refinement.error_after},
+            {"rays", r.refinement.rays}}},
           {"stages", stages}};
 }
 
@@ -63,6 +82,10 @@ void printReport(const BakeArguments& a, const BakeReport& r) {
   for (const Progress::Stage& stage : r.stages) seconds += stage.seconds;
   fmt::print("{}: {} vertices, {} triangles, {} samples in {}\n", a.output.string(), r.vertices, r.triangles,
              r.samples, durationText(seconds));
+  if (const RefineReport& refined = r.refinement; refined.vertices_after > refined.vertices_before)
+    fmt::print("  refined   {} vertices to {}: shadows between them {:.2f} % wrong, before {:.2f} %\n",
+               refined.vertices_before, refined.vertices_after, 100.0 * refined.error_after,
+               100.0 * refined.error_before);
   fmt::print("  rays      {} in {} ({} a second)\n", countText(static_cast<double>(r.rays)),
              durationText(r.ray_seconds),
              countText(r.ray_seconds > 0.0 ? static_cast<double>(r.rays) / r.ray_seconds : 0.0));
@@ -83,6 +106,9 @@ void printReport(const BakeArguments& a, const BakeReport& r) {
       bytesText(static_cast<double>(r.proxy_bytes)), bytesText(static_cast<double>(r.image_bytes)));
   fmt::print("  coding    {:.2f} % relative error of shaded radiance (bound {:.2f} %)\n",
              100.0 * r.worst_error, 100.0 * double{a.options.effectiveErrorBound()});
+  for (const BakeReport::Neighborhood& n : r.neighborhoods)
+    fmt::print("  around    {}: {} x {} x {} points, {:.3f} % of irradiance, {:.1f} % of the change\n",
+               n.name, n.size.x, n.size.y, n.size.z, 100.0 * n.error, 100.0 * n.change_error);
   if (r.worst_glossy_error > 0.0)
     fmt::print("            {:.2f} % of glossy surfaces (bound {:.2f} %)\n", 100.0 * r.worst_glossy_error,
                100.0 * double{a.options.effectiveGlossyErrorBound()});
@@ -142,6 +168,51 @@ void addLightSamplesOption(CLI::App& command, BakeOptions& options) {
       ->type_name("N|auto");
 }
 
+void addNeighborhoodGridOption(CLI::App& command, BakeOptions& options) {
+  const auto read = [](const std::string& text) -> std::optional<glm::uvec3> {
+    if (text == "auto") return glm::uvec3(0u);
+    glm::uvec3 size;
+    char rest = 0;
+    if (std::sscanf(text.c_str(), "%3ux%3ux%3u%c", &size.x, &size.y, &size.z, &rest) != 3)
+      return std::nullopt;
+    return size;
+  };
+  command
+      .add_option_function<std::string>(
+          "--neighborhood-grid",
+          [&options, read](const std::string& text) { options.neighborhood_grid = *read(text); },
+          "Points of neighborhood grids along their longest, middle and shortest side, 2..256 each; auto "
+          "(default): 64x64x8 where receivers are on one side only, else 32x32x32")
+      ->check(CLI::Validator(
+          [read](const std::string& text) {
+            return read(text) ? std::string() : fmt::format("{} is neither auto nor like 64x64x8", text);
+          },
+          ""))
+      ->type_name("XxYxZ");
+}
+
+void addRefineOption(CLI::App& command, BakeOptions& options) {
+  command
+      .add_option_function<std::string>(
+          "--refine",
+          [&options](const std::string& text) {
+            options.refine_bound = text == "auto"  ? -1.0f
+                                   : text == "off" ? 0.0f
+                                                   : std::strtof(text.c_str(), nullptr);
+          },
+          "Split edges where shadows change, until interpolation errs by less than E, relative RMS; auto "
+          "(default): 0.04, 0.02 or 0.01 by quality; off: keep the vertices as they are")
+      ->check(CLI::Validator(
+          [](const std::string& text) {
+            const std::optional<float> bound = spec::parseNumber(text);
+            return text == "auto" || text == "off" || (bound && *bound > 0.0f && *bound < 1.0f)
+                       ? std::string()
+                       : fmt::format("{} is neither auto nor off nor between 0 and 1", text);
+          },
+          ""))
+      ->type_name("E|auto|off");
+}
+
 void addBakeCommand(CLI::App& app, Command& run) {
   auto a = std::make_shared<BakeArguments>();
   CLI::App* command = app.add_subcommand("bake", "Bake a glTF scene into a bundle");
@@ -189,7 +260,9 @@ void addBakeCommand(CLI::App& app, Command& run) {
       ->add_option("--max-edge", a->options.max_edge_m,
                    "Split edges longer than this (scene units), so that large faces catch shadows")
       ->type_name("M");
+  addRefineOption(*command, a->options);
   addLightSamplesOption(*command, a->options);
+  addNeighborhoodGridOption(*command, a->options);
   command->add_option("--effects", a->options.effects, "auto: what the scene calls for; or a list of effects")
       ->capture_default_str()
       ->type_name("LIST");

@@ -24,5 +24,6 @@ void addCompareCommand(CLI::App& app, Command& run);
 
 // --light-samples, of bake and plan.
 void addLightSamplesOption(CLI::App& command, BakeOptions& options);
+void addNeighborhoodGridOption(CLI::App& command, BakeOptions& options);
 
 }  // namespace lambent::baker

@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include "baker/bake/bake.hpp"
@@ -45,6 +46,9 @@ void printJson(const Scene& scene, const EffectPlan& plan) {
                       {"lightSamples", planned.count.count},
                       {"lightSamplesOf", planned.count.of_group ? "group" : "cell"},
                       {"lightSamplesReason", planned.reason},
+                      {"neighborhood", plan.neighborhoods[g].baked},
+                      {"neighborhoodReason", plan.neighborhoods[g].reason},
+                      {"neighborhoodMatrices", plan.neighborhoods[g].matrices},
                       {"draws", group.draws.size()},
                       {"vertices", size.vertices},
                       {"triangles", size.triangles}});
@@ -72,6 +76,14 @@ void printText(const Scene& scene, const EffectPlan& plan) {
                size.vertices, size.triangles);
     fmt::print("      {}{}: {}\n", counted(count.count, "light sample"),
                count.of_group ? "" : " in each cell", reason);
+    if (const PlannedNeighborhood& around = plan.neighborhoods[g]; around.baked) {
+      std::vector<std::string> names;
+      for (const std::uint32_t receiver : around.receivers) names.push_back(plan.groups[receiver].name);
+      fmt::print("      neighborhood for {}{}: {}\n", fmt::join(names, ", "),
+                 around.matrices ? ", in all bands" : "", around.reason);
+    } else if (!around.reason.empty()) {
+      fmt::print("      no neighborhood: {}\n", around.reason);
+    }
   }
   if (!plan.near_lights.empty()) fmt::print("  near lights\n");
   for (const std::string& sentence : plan.near_lights) fmt::print("    {}\n", sentence);

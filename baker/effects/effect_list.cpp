@@ -2,6 +2,8 @@
 
 #include "baker/effects/diffuse/diffuse.hpp"
 #include "baker/effects/glossy/glossy.hpp"
+#include "baker/effects/neighborhood/neighborhood.hpp"
+#include "baker/effects/volume/volume.hpp"
 
 namespace lambent::baker {
 
@@ -9,6 +11,8 @@ std::span<const EffectEntry> effectList() {
   static constexpr EffectEntry kEffects[] = {
       {"diffuse", chooseDiffuse},
       {"glossy", chooseGlossy},
+      {"volume", chooseVolume},
+      {"neighborhood", chooseNeighborhood},
   };
   return kEffects;
 }

@@ -109,6 +109,8 @@ void checkReflection(const Object& material, const Root& root);
 void checkLights(const Root& root);
 void checkNodeExtensions(const Object& node, const Root& root);  // lights, instances
 
+void checkNodeGrids(const Object& node);  // volumes, neighborhoods
+
 void checkMeshopt(const Object& view, const Root& root);  // a bufferView coded by meshoptimizer, if it is
 void checkBuffers(const Root& root);                      // buffers, views, accessors: every byte extent
 void checkNodes(const Root& root);  // nodes, scenes, animations: one tree, all references

@@ -103,6 +103,7 @@ void checkNodes(const Root& root) {
     checkNumbers(node, "scale", 3);
     checkNumbers(node, "weights");
     checkNodeExtensions(node, root);
+    checkNodeGrids(node);
   });
   checkForest(root);
   root.forEach("scenes", "scene", [&](const Object& scene) { checkIndices(scene, "nodes", nodes); });

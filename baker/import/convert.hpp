@@ -45,6 +45,9 @@ Result<void> convertAnimations(const Document& document, const NodeMap& map, Sce
 // EXT_mesh_gpu_instancing: a child node for every instance. Last, since it adds nodes.
 Result<void> convertInstances(const Document& document, const NodeMap& map, Scene& scene);
 
+// extras.lambent.volume and extras.lambent.neighborhood: Scene::volumes, Scene::neighborhoods.
+Result<void> convertGrids(const Document& document, const NodeMap& map, Scene& scene);
+
 // Non-finite and degenerate triangles out, flat normals where there are none (or none usable), normals and
 // tangents of unit length, unused vertices out. `name` stands at the head of warnings.
 void cleanMesh(bundle::MeshData& mesh, const std::string& name, std::vector<std::string>& warnings);

@@ -70,8 +70,11 @@ Result<Scene> convert(const Document& document) {
   // and what it holds many times
   if (auto instances = convertInstances(document, *map, scene); !instances)
     return failAgain(std::move(instances.error()));
+  // clouds, and grids around bodies
+  if (auto grids = convertGrids(document, *map, scene); !grids) return failAgain(std::move(grids.error()));
   foldWarnings(scene.warnings);
-  if (scene.meshes.empty()) return fail(document.file(), "has no triangles in its scene", "give it a mesh");
+  if (scene.meshes.empty() && scene.volumes.empty())
+    return fail(document.file(), "has no triangles in its scene", "give it a mesh");
   return scene;
 }
 

@@ -28,16 +28,18 @@ void pushMidpoint(std::vector<Vector>& values, std::uint32_t a, std::uint32_t b)
   values.push_back(middle);
 }
 
+// isMarked(a, b): whether the edge between two vertices is to be halved.
+template <typename IsMarked>
 class Splitter {
  public:
-  Splitter(MeshData& mesh, double limit) : mesh_(mesh), limit_(limit) {}
+  Splitter(MeshData& mesh, IsMarked is_marked) : mesh_(mesh), is_marked_(std::move(is_marked)) {}
 
-  // How many triangles one pass would leave; as many as now if no edge is too long.
+  // How many triangles one pass would leave; as many as now if no edge is marked.
   std::size_t countAfter() const {
     std::size_t count = 0;
     for (std::size_t i = 0; i < mesh_.indices.size(); i += 3) {
       const Corners v = corners(i);
-      count += 1u + isLong(v[0], v[1]) + isLong(v[1], v[2]) + isLong(v[2], v[0]);
+      count += 1u + is_marked_(v[0], v[1]) + is_marked_(v[1], v[2]) + is_marked_(v[2], v[0]);
     }
     return count;
   }
@@ -55,12 +57,8 @@ class Splitter {
     return {mesh_.indices[i], mesh_.indices[i + 1], mesh_.indices[i + 2]};
   }
 
-  bool isLong(std::uint32_t a, std::uint32_t b) const {
-    return squaredLength(mesh_.positions[a], mesh_.positions[b]) > limit_;
-  }
-
   void split(Corners v) {
-    const std::array<bool, 3> marked{isLong(v[0], v[1]), isLong(v[1], v[2]), isLong(v[2], v[0])};
+    const std::array<bool, 3> marked{is_marked_(v[0], v[1]), is_marked_(v[1], v[2]), is_marked_(v[2], v[0])};
     const int count = marked[0] + marked[1] + marked[2];
     if (count == 0) return emit(v[0], v[1], v[2]);
     // Turned so that the odd edge out has a fixed place: the only marked one first, the only unmarked one
@@ -130,7 +128,7 @@ class Splitter {
   }
 
   MeshData& mesh_;
-  double limit_;
+  IsMarked is_marked_;
   std::vector<std::uint32_t> out_;
   std::unordered_map<std::uint64_t, std::uint32_t> midpoints_;
 };
@@ -140,7 +138,10 @@ class Splitter {
 bool splitLongEdges(bundle::MeshData& mesh, float max_edge, std::size_t max_triangles) {
   assert(max_edge > 0.0f);
   MeshData refined = mesh;
-  Splitter splitter(refined, static_cast<double>(max_edge) * static_cast<double>(max_edge));
+  const double limit = static_cast<double>(max_edge) * static_cast<double>(max_edge);
+  Splitter splitter(refined, [&](std::uint32_t a, std::uint32_t b) {
+    return squaredLength(refined.positions[a], refined.positions[b]) > limit;
+  });
   for (;;) {
     const std::size_t after = splitter.countAfter();
     if (after > max_triangles) return false;
@@ -149,6 +150,12 @@ bool splitLongEdges(bundle::MeshData& mesh, float max_edge, std::size_t max_tria
   }
   mesh = std::move(refined);
   return true;
+}
+
+void splitMarkedEdges(bundle::MeshData& mesh,
+                      const std::function<bool(std::uint32_t a, std::uint32_t b)>& marked) {
+  Splitter splitter(mesh, std::cref(marked));
+  splitter.pass(splitter.countAfter());
 }
 
 }  // namespace lambent::baker

@@ -61,7 +61,11 @@ EffectPlan makePlan(const Scene& scene, std::span<const EffectEntry> effects) {
   EffectPlan plan;
   plan.groups = findRigidGroups(scene);
   for (const EffectEntry& entry : effects) plan.effects.push_back(entry.choose(scene, plan.groups));
-  plan.light_samples = planLightSamples(scene, plan.groups);
+  if (plan.bakes("neighborhood"))
+    plan.neighborhoods = planNeighborhoods(scene, plan.groups);
+  else
+    plan.neighborhoods.resize(plan.groups.size());
+  plan.light_samples = planLightSamples(scene, plan.groups, plan.neighborhoods);
   plan.near_lights = lightsInside(scene, plan.groups);
   plan.left_out = leftOut(scene, plan.bakes("glossy"));
   return plan;

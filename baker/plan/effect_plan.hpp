@@ -10,6 +10,7 @@
 
 #include "baker/import/scene.hpp"
 #include "baker/plan/local_light.hpp"
+#include "baker/plan/neighborhoods.hpp"
 #include "baker/plan/rigid_groups.hpp"
 
 namespace lambent::baker {
@@ -29,6 +30,7 @@ struct EffectEntry {
 struct EffectPlan {
   std::vector<RigidGroup> groups;
   std::vector<EffectChoice> effects;
+  std::vector<PlannedNeighborhood> neighborhoods;  // one per group; none baked without that effect
   std::vector<PlannedLightSamples> light_samples;  // one per group
   std::vector<std::string> near_lights;            // lamps that come within groups, and how they are shown
   std::vector<std::string> left_out;  // what the scene has and the bake will not show, one sentence each

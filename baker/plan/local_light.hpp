@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "baker/import/scene.hpp"
+#include "baker/plan/neighborhoods.hpp"
 #include "baker/plan/rigid_groups.hpp"
 
 namespace lambent::baker {
@@ -29,8 +30,10 @@ struct PlannedLightSamples {
 // surfaces that give off light): under 0.05 one (light at infinity), under 0.15 four, under 0.25 eight, under
 // 0.5 sixteen, else 32. Bodies of other groups that give off no light ask by the same measure for one or
 // four. 32 too where a body of less than half its size comes within its bounds: shadows and reflections of
-// it can fall anywhere. One per group of the list.
-std::vector<PlannedLightSamples> planLightSamples(const Scene& scene, const std::vector<RigidGroup>& groups);
+// it can fall anywhere. Bodies whose neighborhoods (one per group, or none at all) carry what they do to the
+// group ask for nothing. One per group of the list.
+std::vector<PlannedLightSamples> planLightSamples(const Scene& scene, const std::vector<RigidGroup>& groups,
+                                                  const std::vector<PlannedNeighborhood>& neighborhoods = {});
 
 // Lamps of others that come within a group's bounds. One sentence each.
 std::vector<std::string> lightsInside(const Scene& scene, const std::vector<RigidGroup>& groups);

@@ -16,10 +16,17 @@ struct Box {
     min = glm::min(min, point);
     max = glm::max(max, point);
   }
+  void add(const Box& box, const glm::mat4& matrix) {
+    for (int corner = 0; corner < 8; ++corner)
+      add(glm::vec3(matrix * glm::vec4((corner & 1) ? box.max.x : box.min.x,
+                                       (corner & 2) ? box.max.y : box.min.y,
+                                       (corner & 4) ? box.max.z : box.min.z, 1.0f)));
+  }
 };
 
-// The boxes of primitives moved to their nodes, as the runtime has it (runtime/scene/bounds.hpp): not the
-// tightest box, but the one that any reader of the file's min and max gets.
+// The boxes of primitives and volumes moved to their nodes, as the runtime has it
+// (runtime/scene/bounds.hpp): not the tightest box, but the one that any reader of the file's min and max
+// gets.
 Box boundsOf(const Scene& scene, const std::vector<gltf::Node>& nodes) {
   Box all;
   const std::vector<glm::mat4> world = gltf::worldTransforms(nodes);
@@ -28,12 +35,12 @@ Box boundsOf(const Scene& scene, const std::vector<gltf::Node>& nodes) {
     for (const ScenePrimitive& primitive : scene.meshes[static_cast<std::size_t>(nodes[n].mesh)].primitives) {
       Box box;
       for (const glm::vec3& position : primitive.mesh.positions) box.add(position);
-      for (int corner = 0; corner < 8; ++corner)
-        all.add(world[n] * glm::vec4((corner & 1) ? box.max.x : box.min.x,
-                                     (corner & 2) ? box.max.y : box.min.y,
-                                     (corner & 4) ? box.max.z : box.min.z, 1.0f));
+      all.add(box, world[n]);
     }
   }
+  for (const SceneVolume& volume : scene.volumes)
+    all.add({.min = glm::vec3(0.0f), .max = glm::vec3(volume.size)},
+            world[volume.node] * volume.node_from_grid);
   return all;
 }
 
@@ -75,12 +82,23 @@ EyeRays::EyeRays(const spec::View& view, const spec::Size& size)
       size_(size),
       pixel_angle_rad_(2.0f / (view.clip_from_view[1][1] * static_cast<float>(size.height))) {}
 
-Ray EyeRays::through(std::uint32_t x, std::uint32_t y) const {
+std::pair<glm::dvec4, glm::dvec4> EyeRays::ends(std::uint32_t x, std::uint32_t y) const {
   const double clip_x = 2.0 * (x + 0.5) / size_.width - 1.0, clip_y = 1.0 - 2.0 * (y + 0.5) / size_.height;
-  const glm::dvec4 near = world_from_clip_ * glm::dvec4(clip_x, clip_y, -1.0, 1.0);
-  const glm::dvec4 far = world_from_clip_ * glm::dvec4(clip_x, clip_y, 1.0, 1.0);
+  return {world_from_clip_ * glm::dvec4(clip_x, clip_y, -1.0, 1.0),
+          world_from_clip_ * glm::dvec4(clip_x, clip_y, 1.0, 1.0)};
+}
+
+Ray EyeRays::through(std::uint32_t x, std::uint32_t y) const {
+  const auto [near, far] = ends(x, y);
   const glm::dvec3 begin = glm::dvec3(near) / near.w, end = glm::dvec3(far) / far.w;
   return {.origin = glm::vec3(begin), .dir = glm::vec3(end - begin), .far = 1.0f};
+}
+
+double EyeRays::eye(std::uint32_t x, std::uint32_t y) const {
+  // Clip space's w is the depth before a perspective eye, linear along the ray, and 1/w of the way back.
+  const auto [near, far] = ends(x, y);
+  const double deeper = 1.0 / far.w - 1.0 / near.w;
+  return deeper > 1e-9 / far.w ? -1.0 / near.w / deeper : 0.0;
 }
 
 }  // namespace lambent::baker::reference

@@ -71,6 +71,11 @@ void add(const Scene& scene, Digest& digest) {
   for (const gltf::Texture& texture : scene.textures)
     digest.add(texture.image, texture.sampler.wrap_s, texture.sampler.wrap_t, texture.sampler.mag_filter);
   for (const SceneImage& image : scene.images) digest.addList(image.file_bytes);
+  digest.add(scene.volumes.size());
+  for (const SceneVolume& volume : scene.volumes) {
+    digest.add(volume.node, volume.size, volume.node_from_grid, volume.albedo, volume.g);
+    digest.addList(volume.density);
+  }
   for (const gltf::Light& l : scene.lights)
     digest.add(l.type, l.color, l.intensity, l.range_m, l.inner_cone_rad, l.outer_cone_rad);
 }

@@ -1,8 +1,9 @@
 // Paths: what one pixel's samples see. At every vertex: one direction by the surface (matte: by the cosine),
 // weighed against one towards discs and probes, one towards each sphere and disc of light in the scene, one
 // point on an emissive triangle and one punctual light (Veach's multiple importance sampling, power
-// heuristic). With
+// heuristic). Where a volume scatters, its phase function stands in for the surface. With
 // `--band-limit IN,OUT` the first hit's answer to the open sky is exact, and paths only find what blocks it.
+// What volumes let through to the eye is exact too, so coverage has no noise.
 // All samples of a pixel that are asked for together walk in step, so that their rays travel in packets. A
 // pixel's samples belong to two independent replicas in turn, which gives the error of their mean without
 // bias. One Integrator serves all threads.
@@ -10,28 +11,11 @@
 
 #include <array>
 #include <cstdint>
-#include <vector>
 
-#include "baker/reference/camera.hpp"
-#include "baker/reference/environment.hpp"
-#include "baker/reference/lamps.hpp"
 #include "baker/reference/options.hpp"
-#include "baker/reference/ray_tracer.hpp"
-#include "baker/reference/sampler.hpp"
-#include "baker/reference/shape_lights.hpp"
+#include "baker/reference/world.hpp"
 
 namespace lambent::baker::reference {
-
-// Everything that light and rays meet.
-struct World {
-  const Surfaces& surfaces;
-  const RayTracer& rays;
-  const Environment& environment;
-  const EmissiveTriangles& emissive;
-  const std::vector<PunctualLight>& punctual;
-  const std::vector<spec::LocalLight>& shapes;
-  EyeRays eye;
-};
 
 struct PixelSum {
   std::array<glm::dvec3, 2> replicas{};  // sums over the samples of each
@@ -47,22 +31,6 @@ class Integrator {
   PixelSum pixel(std::uint32_t x, std::uint32_t y, std::uint32_t first, std::uint32_t count) const;
 
  private:
-  struct Path {
-    SurfacePoint at;
-    glm::vec3 throughput{1.0f}, sum{0.0f};
-    std::uint32_t index = 0, replica = 0;  // which point of which replica
-    glm::vec3 dir{0.0f};
-    float pdf = 0.0f;  // of dir, by the surface's own strategy
-    bool alive = true;
-  };
-  // A light's contribution that counts if nothing is in the way.
-  struct Shadow {
-    Ray ray;
-    std::size_t path;
-    glm::vec3 radiance;
-  };
-  struct Walk;  // the paths of one pixel, in step
-
   const World& world_;
   const Options& options_;
 };

@@ -6,6 +6,7 @@
 #include "baker/reference/digest.hpp"
 #include "baker/reference/film.hpp"
 #include "baker/reference/integrator.hpp"
+#include "baker/reference/volumes.hpp"
 #include "baker/work/parallel.hpp"
 #include "runtime/base/atomic_file.hpp"
 #include "runtime/bundle/keyframes.hpp"
@@ -18,8 +19,10 @@ namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
 constexpr std::uint32_t kPass = 16;  // samples of a pixel that walk together
-constexpr std::uint32_t kLimitedPass =
-    256;  // with a band limit of the kernel, which each pass integrates anew
+// With a band limit of the kernel, which each pass integrates anew.
+constexpr std::uint32_t kLimitedPass = 256;
+// With volumes: most paths end long before the last does.
+constexpr std::uint32_t kVolumePass = 64;
 // Rows between two looks at the clock and the stop token.
 constexpr std::uint32_t kRows = 32;
 constexpr auto kCheckpointEvery = std::chrono::seconds(10);
@@ -44,7 +47,7 @@ bool renderRows(const Integrator& integrator, Film& film, std::uint32_t first, s
 }
 
 // Pass by pass over the picture, with a checkpoint every few seconds and when stopped.
-Result<void> renderAll(const Integrator& integrator, Film& film, std::uint32_t spp, bool limited,
+Result<void> renderAll(const Integrator& integrator, Film& film, std::uint32_t spp, std::uint32_t together,
                        const fs::path& checkpoint, Progress& progress, const std::stop_token& stop) {
   const double seconds_before = film.seconds;
   const Clock::time_point begin = Clock::now();
@@ -55,7 +58,6 @@ Result<void> renderAll(const Integrator& integrator, Film& film, std::uint32_t s
     if (checkpoint.empty()) return {};
     return film.save(checkpoint);
   };
-  const std::uint32_t together = limited ? kLimitedPass : kPass;
   for (std::uint32_t pass = 0; pass < spp; pass += together)
     for (std::uint32_t row = 0; row < film.size().height; row += kRows) {
       const bool whole = renderRows(integrator, film, row, std::min(row + kRows, film.size().height),
@@ -130,6 +132,7 @@ Result<Report> render(const Scene& scene, const Request& request, const fs::path
                                 options.band_limit ? options.band_limit->in : 0);
   const EmissiveTriangles emissive(*surfaces);
   const std::vector<PunctualLight> punctual = punctualLights(scene);
+  const Volumes volumes = Volumes::build(scene, report.notices);
   // what an earlier run has done
   const fs::path checkpoint = checkpointOf(output);
   takeUp(film, checkpoint, force, report);
@@ -147,13 +150,15 @@ Result<Report> render(const Scene& scene, const Request& request, const fs::path
                       .emissive = emissive,
                       .punctual = punctual,
                       .shapes = shapes,
+                      .volumes = volumes,
                       .eye = EyeRays(*view, options.size)};
     std::uint64_t left = 0;
     for (std::uint32_t y = 0; y < options.size.height; ++y)
       left += std::uint64_t{options.size.width} * (options.spp - film.done(y));
     progress.begin("paths", left, "samples");
     const bool limited = options.band_limit && options.band_limit->out;
-    done = renderAll(Integrator(world, options), film, options.spp, limited, checkpoint, progress, stop);
+    const std::uint32_t together = limited ? kLimitedPass : volumes.empty() ? kPass : kVolumePass;
+    done = renderAll(Integrator(world, options), film, options.spp, together, checkpoint, progress, stop);
   });
   progress.end();
   if (!done) return failAgain(std::move(done.error()));

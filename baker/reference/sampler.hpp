@@ -3,8 +3,10 @@
 // or on interruptions. Points of one pixel fill the square evenly in every power-of-two prefix; pixels and
 // dimensions are independent of each other. Scrambling by hash: Burley, "Practical Hash-based Owen
 // Scrambling", JCGT 9(4), 2020, with Vegdahl's constants (psychopath.io, "Building a Better LK Hash", 2021).
+// Walks through media draw from streams of independent numbers beside them.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 
 #include <glm/vec2.hpp>
@@ -63,6 +65,29 @@ constexpr float unitFloat(std::uint32_t x) {
   return static_cast<float>(x >> 8) * 0x1p-24f;
 }
 
+// Avalanching hash of 64 bits (the finalizer of SplitMix64).
+constexpr std::uint64_t hash64(std::uint64_t x) {
+  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
+  x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
+  return x ^ (x >> 31);
+}
+
+// Independent numbers, one after the other, where nobody knows how many it takes: SplitMix64 (Steele, Lea and
+// Flood, "Fast Splittable Pseudorandom Number Generators", OOPSLA 2014).
+class Stream {
+ public:
+  explicit Stream(std::uint64_t key) : state_(key) {}
+  // In (0, 1).
+  double next() {
+    state_ += 0x9e3779b97f4a7c15u;
+    return (static_cast<double>(hash64(state_) >> 12) + 0.5) * 0x1p-52;
+  }
+  double exponential() { return -std::log(next()); }
+
+ private:
+  std::uint64_t state_;
+};
+
 class Sampler {
  public:
   // Replicas of a pixel are independent of each other, as pixels and seeds are.
@@ -76,6 +101,12 @@ class Sampler {
     const std::uint32_t shuffled = owenScrambled(index, key);
     return {unitFloat(reversedBits(laineKarras(shuffled, hash32(key ^ 0x68bc21ebu)))),
             unitFloat(reversedBits(laineKarras(sobolSecondReversed(shuffled), hash32(key ^ 0x02e5be93u))))};
+  }
+
+  // Beside the pairs: one for each use (`which`) that a vertex has for it.
+  Stream stream(std::uint32_t dimension, std::uint32_t index, std::uint32_t which) const {
+    const std::uint64_t place = hash64((std::uint64_t{key_} << 32) | dimension);
+    return Stream(hash64(place ^ hash64((std::uint64_t{which} << 32) | index)));
   }
 
  private:

@@ -286,6 +286,42 @@ void RayScene::occluded(std::span<const RaySegment> segments, std::span<std::uin
   }
 }
 
+void RayScene::firstHits(std::span<const RaySegment> rays, std::span<FirstHit> hits) const {
+  assert(hits.size() == rays.size());
+  const FlushDenormals flush;
+  Packet packet;
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  RTCRay16& ray = packet.rays.ray;
+  for (std::size_t first = 0; first < rays.size(); first += kPacketWidth) {
+    forgetHits(packet.rays);
+    for (std::size_t k = 0; k < kPacketWidth; ++k) {
+      packet.lanes.valid[k] = first + k < rays.size() ? -1 : 0;
+      const RaySegment& from = rays[std::min(first + k, rays.size() - 1)];
+      ray.org_x[k] = from.origin.x, ray.org_y[k] = from.origin.y, ray.org_z[k] = from.origin.z;
+      ray.dir_x[k] = from.direction.x, ray.dir_y[k] = from.direction.y, ray.dir_z[k] = from.direction.z;
+      ray.tnear[k] = 0.0f, ray.tfar[k] = from.length;
+      ray.time[k] = 0.0f, ray.mask[k] = ~0u, ray.flags[k] = 0;
+    }
+    rtcIntersect16(packet.lanes.valid.data(), state_->scene.get(), &context, &packet.rays);
+    const RTCHit16& hit = packet.rays.hit;
+    for (std::size_t k = 0; k < kPacketWidth && first + k < rays.size(); ++k) {
+      FirstHit& out = hits[first + k] = {};
+      if (hit.geomID[k] == RTC_INVALID_GEOMETRY_ID) continue;
+      const SurfaceSides& sides = state_->surfaces[hit.geomID[k]];
+      const bool behind =
+          ray.dir_x[k] * hit.Ng_x[k] + ray.dir_y[k] * hit.Ng_y[k] + ray.dir_z[k] * hit.Ng_z[k] > 0.0f;
+      out = {.triangle = (behind && sides.double_sided ? sides.back : sides.front) + hit.primID[k],
+             .u = hit.u[k],
+             .v = hit.v[k],
+             .distance = ray.tfar[k],
+             .back = behind && !sides.double_sided};
+      if (behind && sides.double_sided) std::swap(out.u, out.v);  // corners 1 and 2 of a back are swapped
+    }
+  }
+}
+
 float RayScene::backFaceShare(std::span<const SampleOrigin> origins, const glm::mat3& frame,
                               const DirectionTable& table, std::span<float> shares) const {
   assert(!origins.empty() && shares.size() == origins.size());

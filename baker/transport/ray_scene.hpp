@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <span>
 #include <vector>
@@ -32,6 +33,17 @@ struct RaySegment {
   float length;                 // up to there, exclusive
 };
 
+// What a ray of its own met first.
+struct FirstHit {
+  static constexpr std::uint32_t kNothing = 0xffffffffu;
+  std::uint32_t triangle = kNothing;  // as RayHit
+  float u = 0.0f, v = 0.0f;
+  float distance = std::numeric_limits<float>::infinity();
+  bool back = false;  // of a single-sided surface: blocks, and sends nothing
+
+  bool any() const { return triangle != kNothing; }
+};
+
 class RayScene {
  public:
   // `alpha_maps` as loadAlphaMaps gives them. Errors: Embree cannot be set up or runs out of memory.
@@ -57,6 +69,10 @@ class RayScene {
 
   // blocked[i] becomes 1 where something lies between the ends of segment i, else 0.
   void occluded(std::span<const RaySegment> segments, std::span<std::uint8_t> blocked) const;
+
+  // What each ray meets first on its stretch. Fastest where sixteen neighbours of the list go much the same
+  // way.
+  void firstHits(std::span<const RaySegment> rays, std::span<FirstHit> hits) const;
 
   // Per origin: of its rays, the share whose first hit is the back of a single-sided surface. An origin with
   // a large share lies inside a body or under something. Returns the share of all rays that met anything.

@@ -29,8 +29,13 @@ struct VertexKeyHash {
 
 VertexKey keyOf(glm::vec3 position, glm::vec3 normal, SampleKind kind) {
   const auto bits = [](float value) { return std::bit_cast<std::uint32_t>(value); };
-  return {bits(position.x), bits(position.y), bits(position.z),       bits(normal.x),
-          bits(normal.y),   bits(normal.z),   static_cast<std::uint32_t>(kind)};
+  return {bits(position.x),
+          bits(position.y),
+          bits(position.z),
+          bits(normal.x),
+          bits(normal.y),
+          bits(normal.z),
+          static_cast<std::uint32_t>(kind)};
 }
 
 // --- Morton order
@@ -138,13 +143,6 @@ float cornerAngle(glm::vec3 corner, glm::vec3 a, glm::vec3 b) {
   return std::atan2(glm::length(glm::cross(u, v)), glm::dot(u, v));
 }
 
-// How far an origin stands off its face: what float rounding of positions and rays needs, and a little of the
-// face's size; never a fixed length.
-float standOff(glm::vec3 position, float face_size) {
-  const float magnitude = std::max({std::abs(position.x), std::abs(position.y), std::abs(position.z)});
-  return 1e-4f * face_size + 4e-6f * magnitude;
-}
-
 struct Corner {
   std::uint32_t sample, triangle, corner;
 };
@@ -189,6 +187,11 @@ void findOrigins(const GroupGeometry& geometry, SampleSet& samples) {
 }
 
 }  // namespace
+
+float standOff(const glm::vec3& position, float face_size) {
+  const float magnitude = std::max({std::abs(position.x), std::abs(position.y), std::abs(position.z)});
+  return 1e-4f * face_size + 4e-6f * magnitude;
+}
 
 SampleSet buildSamples(const GroupGeometry& geometry) {
   SampleSet samples;

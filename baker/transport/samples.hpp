@@ -1,10 +1,10 @@
 // Where transfer is computed. Vertices of a group with the same position and normal share one sample whatever
-// their texture coordinates. Samples are cut into cells along a Morton curve, those of normal-mapped and those of
-// glossy draws into cells of their own, which come last; in a cell they stand in the order in which vertices first use
-// them: Draco walks over the mesh, so neighbours in memory are neighbours on the surface and rows code to
-// nearly nothing. Rays of a sample start from several origins, one for each face around the vertex: pulled a
-// little into the face and offset along its geometric normal. At concave edges anything else sees through
-// walls.
+// their texture coordinates. Samples are cut into cells along a Morton curve, those of normal-mapped and
+// those of glossy draws into cells of their own, which come last; in a cell they stand in the order in which
+// vertices first use them: Draco walks over the mesh, so neighbours in memory are neighbours on the surface
+// and rows code to nearly nothing. Rays of a sample start from several origins, one for each face around the
+// vertex: pulled a little into the face and offset along its geometric normal. At concave edges anything else
+// sees through walls.
 #pragma once
 
 #include <cstdint>
@@ -40,8 +40,9 @@ struct SampleSet {
   std::vector<SampleOrigin> origins;
   std::vector<std::uint32_t> origin_offsets;  // size() + 1; a sample without a face has none
   std::vector<SampleCell> cells;
-  std::size_t first_normal_mapped = 0;  // samples from here on belong to normal-mapped draws that are not glossy
-  std::size_t first_glossy = 0;         // and from here on to glossy ones
+  std::size_t first_normal_mapped =
+      0;                         // samples from here on belong to normal-mapped draws that are not glossy
+  std::size_t first_glossy = 0;  // and from here on to glossy ones
 
   std::size_t size() const { return positions.size(); }
   std::span<const SampleOrigin> originsOf(std::size_t sample) const {
@@ -49,6 +50,10 @@ struct SampleSet {
                                       origin_offsets[sample + 1] - origin_offsets[sample]);
   }
 };
+
+// How far an origin stands off its face: what float rounding of positions and rays needs, and a little of the
+// face's size (metres, of an edge); never a fixed length.
+float standOff(const glm::vec3& position, float face_size);
 
 SampleSet buildSamples(const GroupGeometry& geometry);
 

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "runtime/demo/camera.hpp"
+#include "runtime/demo/numbered_path.hpp"
 #include "runtime/demo/report.hpp"
 #include "runtime/demo/run.hpp"
 #include "runtime/demo/stage.hpp"
@@ -21,9 +22,12 @@ double millisecondsSince(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
-Result<void> writePicture(const frame::Frame& frame, const Options& options) {
-  if (options.linear) return spec::writeExr(*options.headless, frame.readLinear());
-  return spec::writePng(*options.headless, frame.readDisplay());
+Result<void> writePicture(const frame::Frame& frame, const Options& options, std::uint32_t number) {
+  const std::filesystem::path path = numberedPath(*options.headless, number);
+  Result<void> written =
+      options.linear ? spec::writeExr(path, frame.readLinear()) : spec::writePng(path, frame.readDisplay());
+  if (written && !options.json) fmt::print("{}\n", path.string());
+  return written;
 }
 
 // Errors of a picture that the device cannot hold are told before anything is loaded.
@@ -75,6 +79,16 @@ Result<void> runHeadless(const Options& options) {
     if (!view) return failAgain(view.error());
     return frame->render(world, stage->environment(), *view);
   };
+  // Pictures are of light that has come to rest.
+  const auto finishPicture = [&](std::uint32_t number) -> Result<void> {
+    const Result<std::uint32_t> steps = frame->rest(world, stage->environment());
+    if (!steps) return failAgain(steps.error());
+    report.rest_steps = *steps;
+    if (*steps > 0)
+      if (Result<void> rendered = render(); !rendered) return rendered;
+    return writePicture(*frame, options, number);
+  };
+  const bool every_frame = isNumbered(*options.headless);
   for (std::uint32_t i = 0; i < options.frames; ++i) {
     // Over several frames the light turns into its place and time runs up to the asked for, so that what
     // movement costs can be read off.
@@ -91,21 +105,15 @@ Result<void> runHeadless(const Options& options) {
       frame->timers().finish();
       report.first_frame = {frame->timers().latest(), frame->counts()};
     }
+    if (i + 1 == options.frames) {
+      frame->timers().finish();
+      report.last_frame = {frame->timers().latest(), frame->counts()};
+    }
+    if (every_frame || i + 1 == options.frames)
+      if (Result<void> finished = finishPicture(i); !finished) return finished;
   }
-  frame->timers().finish();
-  report.last_frame = {frame->timers().latest(), frame->counts()};
-  // The picture is of light that has come to rest.
-  const Result<std::uint32_t> steps = frame->rest(world, stage->environment());
-  if (!steps) return failAgain(steps.error());
-  report.rest_steps = *steps;
-  if (*steps > 0)
-    if (Result<void> rendered = render(); !rendered) return rendered;
-  if (Result<void> written = writePicture(*frame, options); !written) return written;
-  if (!options.json) {
-    fmt::print("{}\n", options.headless->string());
-    return {};
-  }
-  report.bytes_resident = world.residency().bytesResident();
+  if (!options.json) return {};
+  report.bytes_resident = world.residency().bytesResident() + frame->volumeBytes();
   report.parts = world.loadedParts();
   report.negative_pixels = frame->negativePixels();
   report.exposure_ev = frame->exposureEv();

@@ -51,7 +51,9 @@ constexpr Row kRows[] = {
      "orbit)"},
     {"--size", &Words::size, "WxH", "Picture or window in pixels"},
     {"--headless", &Words::headless, "OUT",
-     "Write one picture (.png tone-mapped, .exr linear) without a display"},
+     "Write one picture (.png tone-mapped, .exr linear) without a display;\nwith a run of # in its name "
+     "every "
+     "frame: out-###.png"},
     {"--transfer", &Words::transfer, "MODE",
      "Light that counts: unshadowed, shadowed (no bounces) or full;\nunshadowed, the scenes' own lights are "
      "dark"},
@@ -105,7 +107,8 @@ void declare(CLI::App& app, Words& words) {
   number("--capture-order", words.capture_order, 0, 8,
          "Bands of the light that is sampled; 0: the transfer's");
   app.add_option("--frames", words.frames,
-                 "Frames to render headless, the last one is written;\nthe light turns through "
+                 "Frames to render headless, the last one is written or, with # in\nthe name, every one; the "
+                 "light turns through "
                  "--rotate-light and time goes on over them")
       ->type_name("N")
       ->capture_default_str()

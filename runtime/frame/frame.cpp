@@ -34,7 +34,8 @@ Frame::Frame(const FrameOptions& options, lighting::Sky sky, Surfaces surfaces, 
     : options_(options),
       sky_(std::move(sky)),
       surfaces_(std::move(surfaces)),
-      tone_mapper_(std::move(tone_mapper)) {
+      tone_mapper_(std::move(tone_mapper)),
+      volume_(/*precise=*/options.output == Output::Linear) {
   resize(options.size);
 }
 
@@ -62,6 +63,7 @@ void Frame::resize(const spec::Size& size) {
       "depth",
       {.format = GL_DEPTH_COMPONENT32F, .width = size.width, .height = size.height, .samples = samples});
   hdr_target_ = gpu::Framebuffer("hdr", hdr_, &depth_);
+  hdr_color_target_ = {};
   if (options_.to_window) return;
   picture_ = gpu::Texture(
       "picture",
@@ -78,6 +80,8 @@ Result<void> Frame::render(World& world, const lighting::Environment& environmen
   if (Result<void> done = reflectSky(world, environment); !done) return done;
   // surfaces, sky, blended surfaces: linear radiance
   if (Result<void> done = raster(world, environment, view); !done) return done;
+  // what volumes scatter and let through
+  if (Result<void> done = marchVolumes(world, view); !done) return done;
   // exposure, tone curve, sRGB; negative pixels are counted and clamped here
   toneMap();
   return {};
@@ -109,6 +113,8 @@ Result<void> Frame::step(World& world, const lighting::Environment& environment,
   if (Result<void> done = shade(world); !done) return done;
   // transferred light at the samples of glossy surfaces, likewise
   if (Result<void> done = shadeGlossy(world); !done) return done;
+  // and what of it rays through volumes look up
+  if (Result<void> done = shadeVolumes(world); !done) return done;
   // what bodies with grids change around them
   if (Result<void> done = shadeNeighborhoods(world); !done) return done;
   // what bodies send to each other: arrives with the next step
@@ -196,6 +202,7 @@ Result<void> Frame::capture(World& world, const lighting::Environment& environme
       radiance.light = group_lights_.versionOf(g);
       radiance.drift += by_light ? double{group_lights_.changeOf(g)} : 1.0;
     }
+    if (!world.residency().groups()[g].proxy) continue;  // a volume's body is another group's
     if (const std::uint32_t body = lit_scene_.groups[g].body; body != lighting::CapturePoint::kNoBody)
       lit_scene_.bodies[body].radiance_drift = radiance.drift;
   }
@@ -222,6 +229,32 @@ Result<void> Frame::shadeGlossy(World& world) {
   Result<void> done = glossy_.shade(world.residency(), group_lights_, options_.transfer, pass.counters(),
                                     options_.neighborhoods);
   counts_.cells_shaded += glossy_.cellsShadedLast();
+  return done;
+}
+
+Result<void> Frame::shadeVolumes(World& world) {
+  counts_.volumes = static_cast<std::uint32_t>(world.residency().volumes().size());
+  if (counts_.volumes == 0) return {};
+  gpu::PassTimers::Scope pass(timers_, "volume");
+  Result<void> done =
+      volume_.shade(world.residency(), group_lights_, diffuse_, glossy_, options_.transfer, pass.counters());
+  counts_.volumes_shaded = volume_.shadedLast().volumes;
+  counts_.volume_slabs_written = volume_.shadedLast().slabs;
+  return done;
+}
+
+Result<void> Frame::marchVolumes(World& world, const spec::View& view) {
+  const auto& volumes = world.residency().volumes();
+  if (volumes.empty()) return {};
+  gpu::PassTimers::Scope pass(timers_, "march");
+  if (!march_) march_.emplace(effects::volume::MarchOptions{.jitter = options_.output == Output::Display});
+  if (!hdr_color_target_) hdr_color_target_ = gpu::Framebuffer("hdr color", hdr_, nullptr);
+  std::vector<effects::volume::PlacedVolume> placed;
+  for (std::uint32_t v = 0; v < volumes.size(); ++v)
+    placed.push_back({v, world.worldFromGroup(volumes[v].group)});
+  Result<void> done = march_->draw(world.residency(), volume_, placed, view,
+                                   {hdr_color_target_, depth_, options_.size}, pass.counters());
+  counts_.volumes_drawn = march_->drawnLast();
   return done;
 }
 

@@ -13,6 +13,8 @@
 #include "runtime/effects/diffuse/diffuse.hpp"
 #include "runtime/effects/diffuse/proxies.hpp"
 #include "runtime/effects/glossy/glossy.hpp"
+#include "runtime/effects/volume/march.hpp"
+#include "runtime/effects/volume/volume.hpp"
 #include "runtime/frame/lit_scene.hpp"
 #include "runtime/frame/near_lights.hpp"
 #include "runtime/frame/neighborhoods.hpp"
@@ -64,6 +66,9 @@ struct StepCounts {
   std::uint32_t light_samples_written = 0;  // coefficients computed for the shaders
   std::uint32_t cells_shaded = 0, draws_shaded = 0;
   std::uint32_t shadow_cubes_drawn = 0;
+  // Volumes there are; whose light was brought into their textures, and how many outputs of it; in the
+  // picture.
+  std::uint32_t volumes = 0, volumes_shaded = 0, volume_slabs_written = 0, volumes_drawn = 0;
   NeighborhoodCounts neighborhoods;
 };
 
@@ -88,6 +93,8 @@ class Frame {
   float exposureEv() const { return tone_mapper_.exposureEv(); }
   gpu::PassTimers& timers() { return timers_; }
   const StepCounts& counts() const { return counts_; }
+  // Of what the frame itself keeps for volumes, beside what is resident.
+  std::uint64_t volumeBytes() const { return volume_.textureBytes(); }
   const FrameOptions& options() const { return options_; }
 
  private:
@@ -99,6 +106,8 @@ class Frame {
   Result<void> light(World& world, const lighting::Environment& environment);
   Result<void> shade(World& world);
   Result<void> shadeGlossy(World& world);         // no pass where nothing is glossy
+  Result<void> shadeVolumes(World& world);        // these two: no pass without volumes
+  Result<void> marchVolumes(World& world, const spec::View& view);
   Result<void> shadeNeighborhoods(World& world);  // no pass without grids
   Result<void> prepareSampling(World& world, const lighting::Environment& environment,
                                gpu::Counters& counters);
@@ -116,6 +125,8 @@ class Frame {
   ToneMapper tone_mapper_;
   effects::diffuse::Diffuse diffuse_;
   effects::glossy::Glossy glossy_;
+  effects::volume::Volume volume_;
+  std::optional<effects::volume::March> march_;  // once there is a volume
   effects::diffuse::Proxies proxies_;
   LitScene lit_scene_;
   NearLights near_lights_;
@@ -134,7 +145,7 @@ class Frame {
   StepCounts counts_;
   gpu::PassTimers timers_;
   gpu::Texture hdr_, depth_, picture_;
-  gpu::Framebuffer hdr_target_, picture_target_;
+  gpu::Framebuffer hdr_target_, hdr_color_target_, picture_target_;
 };
 
 }  // namespace lambent::frame

@@ -78,7 +78,7 @@ bool within(const scene::Box& bounds, const glm::mat4& world_from_group, const l
 bool LitScene::needsSampling() const {
   const auto seesOthers = [&](const lighting::IncidentGroup& group) {
     const std::size_t own = group.body == lighting::CapturePoint::kNoBody ? 0 : 1;
-    return bodies.size() > own;
+    return bodies.size() > own + group.left_out.size();
   };
   return !lights.empty() || std::ranges::any_of(groups, seesOthers);
 }
@@ -137,7 +137,8 @@ LitScene gatherLitScene(const World& world, float surroundings) {
     std::uint32_t near_mask = 0;
     for (std::size_t k = 0; k < scene.lights.size(); ++k) {
       bool by_harmonics = !world.litByColumn(g, light_entities[k]);
-      if (by_harmonics && within(bounds, world_from_group, scene.lights[k])) {
+      // Rays through a volume look up its samples alone, and no shadow cube.
+      if (by_harmonics && group.volume < 0 && within(bounds, world_from_group, scene.lights[k])) {
         const std::int32_t place = nearPlace(k);
         if (place >= 0) {
           near_mask |= 1u << place;

@@ -1,7 +1,7 @@
 // The scene as the lighting system sees it, gathered from the registry and what is resident: rigid groups as
 // receivers and as bodies, the lights that stand among them, and by which carrier each group has each light:
 // - the group's own column, where the light belongs to it and stands where it stood when that was baked;
-// - per pixel with a shadow cube map, where the light stands within the group's bounds;
+// - per pixel with a shadow cube map, where the light stands within the bounds of a group of surfaces;
 // - harmonics at the group's light samples otherwise.
 // Never two of them, or the light would count twice.
 #pragma once

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <vector>
 
 namespace lambent::gpu {
 
@@ -56,6 +57,7 @@ void Table::assignBytes(std::span<const std::byte> bytes) {
 Texture::Texture(std::string_view label, const TextureDesc& desc)
     : Handle(made([&](GLuint* id) {
         glCreateTextures(desc.cube          ? GL_TEXTURE_CUBE_MAP
+                         : desc.depth > 0   ? GL_TEXTURE_3D
                          : desc.layers > 0  ? GL_TEXTURE_2D_ARRAY
                          : desc.samples > 0 ? GL_TEXTURE_2D_MULTISAMPLE
                                             : GL_TEXTURE_2D,
@@ -66,6 +68,9 @@ Texture::Texture(std::string_view label, const TextureDesc& desc)
   if (desc.samples > 0)
     glTextureStorage2DMultisample(id(), static_cast<GLsizei>(desc.samples), desc.format, width, height,
                                   GL_TRUE);
+  else if (desc.depth > 0)
+    glTextureStorage3D(id(), static_cast<GLsizei>(desc.levels), desc.format, width, height,
+                       static_cast<GLsizei>(desc.depth));
   else if (desc.layers > 0)
     glTextureStorage3D(id(), static_cast<GLsizei>(desc.levels), desc.format, width, height,
                        static_cast<GLsizei>(desc.layers));
@@ -86,6 +91,18 @@ Framebuffer::Framebuffer(std::string_view label, const Texture& color, const Tex
     : Handle(made([](GLuint* id) { glCreateFramebuffers(1, id); })) {
   glNamedFramebufferTexture(id(), GL_COLOR_ATTACHMENT0, color.id(), 0);
   if (depth != nullptr) glNamedFramebufferTexture(id(), GL_DEPTH_ATTACHMENT, depth->id(), 0);
+  setLabel(GL_FRAMEBUFFER, id(), label);
+  assert(glCheckNamedFramebufferStatus(id(), GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE);
+}
+
+Framebuffer::Framebuffer(std::string_view label, const Texture& layers)
+    : Handle(made([](GLuint* id) { glCreateFramebuffers(1, id); })) {
+  std::vector<GLenum> colors;
+  for (std::uint32_t i = 0; i < layers.desc().layers; ++i) {
+    colors.push_back(GL_COLOR_ATTACHMENT0 + i);
+    glNamedFramebufferTextureLayer(id(), colors.back(), layers.id(), 0, static_cast<GLint>(i));
+  }
+  glNamedFramebufferDrawBuffers(id(), static_cast<GLsizei>(colors.size()), colors.data());
   setLabel(GL_FRAMEBUFFER, id(), label);
   assert(glCheckNamedFramebufferStatus(id(), GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE);
 }

@@ -99,6 +99,7 @@ struct TextureDesc {
   std::uint32_t samples = 0;  // 0: single-sampled
   bool cube = false;
   std::uint32_t layers = 0;  // 0: no array
+  std::uint32_t depth = 0;   // 0: not three-dimensional
 };
 
 class Texture : public Handle<TextureTraits> {
@@ -124,6 +125,8 @@ class Framebuffer : public Handle<FramebufferTraits> {
   Framebuffer() = default;
   // `depth` may be null.
   Framebuffer(std::string_view label, const Texture& color, const Texture* depth);
+  // The layers of an array, each a colour of its own.
+  Framebuffer(std::string_view label, const Texture& layers);
 };
 
 class VertexArray : public Handle<VertexArrayTraits> {

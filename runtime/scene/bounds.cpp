@@ -14,6 +14,11 @@ Box boundsOf(const ecs::Registry& registry, const DrawItem& item) {
   return node ? transformed(item.bounds, node->world_from_node) : Box{};
 }
 
+glm::mat4 worldFromGroup(const RigidGroupComponent& group) {
+  return group.world_from_rest * glm::translate(glm::mat4(1.0f), group.rest_translation) *
+         glm::mat4_cast(group.rest_rotation);
+}
+
 }  // namespace
 
 float Box::radius() const {
@@ -50,14 +55,15 @@ Box drawBounds(const ecs::Registry& registry, ecs::Entity draw) {
 Box groupBounds(const ecs::Registry& registry, ecs::Entity entity) {
   const auto* group = registry.tryGet<RigidGroupComponent>(entity);
   if (!group) return {};
-  const glm::mat4 rest_from_group =
-      glm::translate(glm::mat4(1.0f), group->rest_translation) * glm::mat4_cast(group->rest_rotation);
-  return transformed(group->bounds, group->world_from_rest * rest_from_group);
+  return transformed(group->bounds, worldFromGroup(*group));
 }
 
 Box worldBounds(const ecs::Registry& registry) {
   Box all;
   for (auto [entity, item] : registry.view<DrawItem>()) all.add(boundsOf(registry, item));
+  for (auto [entity, group, volume] : registry.view<RigidGroupComponent, VolumeItem>())
+    all.add(transformed({glm::vec3(0.0f), glm::vec3(volume.size)},
+                        worldFromGroup(group) * volume.group_from_grid));
   return all;
 }
 

@@ -1,6 +1,7 @@
 // Axis-aligned boxes, and those of what a registry shows in world space, metres. A box under a matrix is the
 // box around its eight corners moved, so a scene's bounds are those of its primitives' boxes at their nodes:
-// what any reader of the glTF file gets from its accessors' min and max. Orbit cameras stand by these bounds.
+// what any reader of the glTF file gets from its accessors' min and max; a volume's box is that of its
+// voxels. Orbit cameras stand by these bounds.
 #pragma once
 
 #include <limits>
@@ -33,7 +34,7 @@ Box transformed(const Box& box, const glm::mat4& matrix);
 // These read WorldTransform: call updateTransforms first. Empty where an entity or what it refers to is gone.
 Box drawBounds(const ecs::Registry& registry, ecs::Entity draw);
 Box groupBounds(const ecs::Registry& registry, ecs::Entity group);
-// Of all draws.
+// Of all draws and volumes.
 Box worldBounds(const ecs::Registry& registry);
 
 }  // namespace lambent::scene

@@ -88,6 +88,12 @@ struct DrawItem {
   Box bounds;         // mesh space
 };
 
+// Beside the RigidGroupComponent of a volume: the box that it fills, in voxel coordinates from 0 to size.
+struct VolumeItem {
+  glm::mat4 group_from_grid{1.0f};
+  glm::uvec3 size{1};
+};
+
 // Beside the Transform of a node that carries a camera; looks along the node's -Z. As gltf::Camera.
 struct CameraComponent {
   std::uint32_t bundle = 0, camera = 0;

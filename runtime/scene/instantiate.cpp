@@ -120,6 +120,8 @@ class Instantiation {
         component.node = {};
       }
       registry_.emplace<RigidGroupComponent>(entity, component);
+      if (group.volume)
+        registry_.emplace<VolumeItem>(entity, VolumeItem{group.volume->group_from_grid, group.volume->size});
       registry_.emplace<Name>(entity, group.name);
       giveId(entity, nodeOrRoot(group.node), StableKind::Group, {});
     }

@@ -63,13 +63,24 @@ struct BrdfReady {
   BrdfTexels texels;
 };
 
+struct DensityReady {
+  std::uint32_t group = 0;
+  std::vector<std::byte> codes;     // of all voxels, VolumeGrid::bits each, little endian
+  std::vector<float> block_maxima;  // volume_blocks.hpp
+};
+
+struct VoxelsReady {
+  std::uint32_t group = 0;
+  std::vector<std::uint32_t> voxels;  // of the transfer grid, one per sample of the volume
+};
+
 using Ready = std::variant<MeshReady, ImageReady, RowsReady, CodebookReady, PlaneReady, LightWeightsReady,
-                           ProxyReady, BrdfReady>;
+                           ProxyReady, BrdfReady, DensityReady, VoxelsReady>;
 
 class Loader {
  public:
   // Starts `threads` workers (at least 1) on everything in the bundle: meshes and rows first, then
-  // tables of BRDFs, images, then codebooks and planes by priority.
+  // tables of BRDFs, grids of volumes, images, then codebooks and planes by priority.
   Loader(std::shared_ptr<const bundle::Reader> reader, unsigned threads);
   // Brings only what `wanted` still lists: the bundle's description with weight planes cut off (budget.hpp).
   Loader(std::shared_ptr<const bundle::Reader> reader, bundle::Description wanted, unsigned threads);

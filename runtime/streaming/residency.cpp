@@ -95,6 +95,23 @@ gpu::Texture makeTexture(const std::string& label, GLenum format, const ImageRea
   return texture;
 }
 
+// Linear between voxel centres, constant in the half voxel towards the faces.
+gpu::Texture makeDensityTexture(const bundle::VolumeGrid& grid, const std::vector<std::byte>& codes) {
+  gpu::Texture texture("density", {.format = grid.bits == 16 ? GLenum{GL_R16} : GLenum{GL_R8},
+                                   .width = grid.size.x,
+                                   .height = grid.size.y,
+                                   .depth = grid.size.z});
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  glTextureSubImage3D(texture.id(), 0, 0, 0, 0, static_cast<GLsizei>(grid.size.x),
+                      static_cast<GLsizei>(grid.size.y), static_cast<GLsizei>(grid.size.z), GL_RED,
+                      grid.bits == 16 ? GL_UNSIGNED_SHORT : GL_UNSIGNED_BYTE, codes.data());
+  for (const GLenum axis : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R})
+    glTextureParameteri(texture.id(), axis, GL_CLAMP_TO_EDGE);
+  for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
+    glTextureParameteri(texture.id(), filter, GL_LINEAR);
+  return texture;
+}
+
 }  // namespace
 
 bool ResidentCell::usable() const {
@@ -146,18 +163,21 @@ Result<std::uint32_t> Residency::add(const bundle::Description& description) {
   }
   std::vector<ResidentGroup> groups;
   for (const bundle::Group& group : description.groups) {
-    ResidentGroup resident{.bundle = bundle_index,
-                           .index = static_cast<std::uint32_t>(groups.size()),
-                           .order = 1,
-                           .light_columns = static_cast<std::uint32_t>(group.lights.size()),
-                           .first_cell = static_cast<std::uint32_t>(cells_.size()),
-                           .cell_count = static_cast<std::uint32_t>(group.cells.size()),
-                           .plain_samples = group.samplesWith(1),
-                           .mapped_samples = group.samplesWith(bundle::kMappedOutputs),
-                           .glossy_outputs = 0,
-                           .samples = {},
-                           .light_samples = group.light_samples,
-                           .proxy = {}};
+    ResidentGroup resident{
+        .bundle = bundle_index,
+        .index = static_cast<std::uint32_t>(groups.size()),
+        .order = 1,
+        .light_columns = static_cast<std::uint32_t>(group.lights.size()),
+        .first_cell = static_cast<std::uint32_t>(cells_.size()),
+        .cell_count = static_cast<std::uint32_t>(group.cells.size()),
+        .plain_samples = group.samplesWith(1),
+        .mapped_samples = group.samplesWith(bundle::kMappedOutputs),
+        .glossy_outputs = 0,
+        .samples = {},
+        .light_samples = group.light_samples,
+        .volume = -1,
+        .within = group.within < 0 ? -1 : static_cast<std::int32_t>(bundle.first_group) + group.within,
+        .proxy = {}};
     std::uint32_t next_output = 0;
     for (const bundle::Cell& cell : group.cells) {
       ResidentCell resident_cell{.group = bundle.first_group + resident.index,
@@ -179,6 +199,16 @@ Result<std::uint32_t> Residency::add(const bundle::Description& description) {
       if (resident_cell.kind == bundle::CellKind::Surface && bundle::isGlossy(resident_cell.outputs))
         resident.glossy_outputs = resident_cell.outputs;
       cells_.push_back(std::move(resident_cell));
+    }
+    if (group.volume) {
+      resident.volume = static_cast<std::int32_t>(volumes_.size());
+      ResidentVolume volume;
+      volume.group = bundle.first_group + resident.index;
+      volume.grid = *group.volume;
+      volume.outputs = group.cells.empty() ? 1 : group.cells.front().outputs();
+      volume.sample_count = group.sample_count;
+      volume.version = version_;
+      volumes_.push_back(std::move(volume));
     }
     groups.push_back(resident);
   }
@@ -381,6 +411,30 @@ Result<void> Residency::put(std::uint32_t bundle, const BrdfReady& item) {
   return {};
 }
 
+ResidentVolume& Residency::volumeOf(std::uint32_t bundle, std::uint32_t group) {
+  return volumes_[static_cast<std::size_t>(groups_[bundles_[bundle].first_group + group].volume)];
+}
+
+Result<void> Residency::put(std::uint32_t bundle, const DensityReady& item) {
+  ResidentVolume& volume = volumeOf(bundle, item.group);
+  volume.density = makeDensityTexture(volume.grid, item.codes);
+  volume.block_maxima = item.block_maxima;
+  volume.version = version_;
+  texture_bytes_ += item.codes.size();
+  return {};
+}
+
+Result<void> Residency::put(std::uint32_t bundle, const VoxelsReady& item) {
+  ResidentVolume& volume = volumeOf(bundle, item.group);
+  assert(item.voxels.size() == volume.sample_count);
+  const std::span<const std::byte> bytes = bytesOf(item.voxels);
+  volume.voxels = gpu::Buffer("voxels", std::max<std::size_t>(bytes.size(), 4));
+  volume.voxels.writeBytes(0, bytes);
+  volume.version = version_;
+  texture_bytes_ += bytes.size();
+  return {};
+}
+
 std::uint64_t Residency::bytesResident() const {
   return geometry_.bytesUsed() + transfer_.bytesUsed() + samples_.bytesUsed() + rows_.bytesUsed() +
          radiance_.bytesUsed() + texture_bytes_;
@@ -415,6 +469,8 @@ std::uint64_t Residency::uploadBytes(const Ready& item) {
     }
     std::uint64_t operator()(const ProxyReady&) const { return 0; }  // stays in memory
     std::uint64_t operator()(const BrdfReady& ready) const { return ready.texels.bytes(); }
+    std::uint64_t operator()(const DensityReady& density) const { return density.codes.size(); }
+    std::uint64_t operator()(const VoxelsReady& ready) const { return 4 * ready.voxels.size(); }
   };
   return std::visit(Size{}, item);
 }

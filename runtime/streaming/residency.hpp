@@ -80,6 +80,20 @@ struct ResidentCell {
 };
 inline constexpr float kUsableVariance = 0.9f;
 
+// The grids of a volume. Its samples are those of its group, all in volume cells.
+struct ResidentVolume {
+  std::uint32_t group = 0;  // into groups()
+  bundle::VolumeGrid grid;
+  std::uint32_t outputs = 1;        // of its samples
+  gpu::Texture density;             // red: share of grid.density_max; empty handle: not here yet
+  std::vector<float> block_maxima;  // volume_blocks.hpp; stays in memory
+  gpu::Buffer voxels;  // a word per sample: its voxel of the transfer grid; empty handle: not here yet
+  std::uint32_t sample_count = 0;
+  std::uint64_t version = 0;
+
+  bool ready() const { return density && voxels; }
+};
+
 struct ResidentGroup {
   std::uint32_t bundle = 0, index = 0;  // in its description
   std::uint32_t order = 1, light_columns = 0;
@@ -92,6 +106,8 @@ struct ResidentGroup {
   // own coefficient.
   gpu::Allocation samples;
   std::vector<glm::vec3> light_samples;  // group frame
+  std::int32_t volume = -1;              // into volumes(); -1: it is surfaces
+  std::int32_t within = -1;              // of a volume, into groups(): where it stands; -1: in none
   // What other groups see of it; stays in memory, for it is small. None: not here yet, or nothing to see.
   std::optional<bundle::CaptureProxy> proxy;
 
@@ -149,6 +165,7 @@ class Residency {
   const std::vector<ResidentGroup>& groups() const { return groups_; }
   const std::vector<ResidentCell>& cells() const { return cells_; }
   const std::vector<ResidentDraw>& draws() const { return draws_; }
+  const std::vector<ResidentVolume>& volumes() const { return volumes_; }
   // Rises with every upload; entries carry the value at which they last changed.
   std::uint64_t version() const { return version_; }
   // Rises with every capture proxy that arrives and every group that comes.
@@ -175,6 +192,9 @@ class Residency {
   Result<void> put(std::uint32_t bundle, const LightWeightsReady& item);
   Result<void> put(std::uint32_t bundle, const ProxyReady& item);
   Result<void> put(std::uint32_t bundle, const BrdfReady& item);
+  Result<void> put(std::uint32_t bundle, const DensityReady& item);
+  Result<void> put(std::uint32_t bundle, const VoxelsReady& item);
+  ResidentVolume& volumeOf(std::uint32_t bundle, std::uint32_t group);
   ResidentCell& cellOf(std::uint32_t bundle, std::uint32_t group, std::uint32_t cell);
   Result<void> reserveCell(ResidentCell& cell);
 
@@ -184,8 +204,9 @@ class Residency {
   std::vector<ResidentGroup> groups_;
   std::vector<ResidentCell> cells_;
   std::vector<ResidentDraw> draws_;
+  std::vector<ResidentVolume> volumes_;
   std::uint64_t version_ = 1, proxies_version_ = 1;
-  std::uint64_t texture_bytes_ = 0;
+  std::uint64_t texture_bytes_ = 0;  // and those of the lists of voxels
   gpu::Arena geometry_, transfer_, samples_, rows_, radiance_;
 };
 

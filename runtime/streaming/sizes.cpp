@@ -42,6 +42,16 @@ std::uint64_t samplesOf(const bundle::Group& group) {
   return count;
 }
 
+std::uint64_t volumeBytes(const bundle::VolumeGrid& grid, std::uint64_t sample_count) {
+  return std::uint64_t{grid.size.x} * grid.size.y * grid.size.z * grid.bits / 8 + 4 * sample_count;
+}
+
+std::uint64_t volumeLightBytes(const bundle::Group& group) {
+  if (!group.volume || group.cells.empty()) return 0;
+  const glm::uvec3& size = group.volume->transfer_size;
+  return std::uint64_t{8} * size.x * size.y * size.z * group.cells.front().outputs();
+}
+
 Needs needsOf(const bundle::Description& description) {
   constexpr std::uint64_t kSlack = gpu::Arena::kAlignment;
   Needs needs;
@@ -52,6 +62,8 @@ Needs needsOf(const bundle::Description& description) {
   for (const bundle::Group& group : description.groups) {
     needs.samples += 16 * samplesOf(group);
     for (const bundle::Cell& cell : group.cells) needs.transfer += cellBytes(cell) + kSlack;
+    if (group.volume)
+      needs.volumes += volumeBytes(*group.volume, group.sample_count) + volumeLightBytes(group);
   }
   for (const bundle::Draw& draw : description.draws) {
     const std::uint64_t vertices = description.meshes[draw.mesh].primitives[draw.primitive].vertex_count;

@@ -25,10 +25,15 @@ std::uint64_t cellBytes(const bundle::Cell& cell);
 // vec4s of shaded samples.
 std::uint64_t samplesOf(const bundle::Group& group);
 
-struct Needs {
-  std::uint64_t geometry = 0, transfer = 0, samples = 0, rows = 0, radiance = 0;
+// Codes of the density as the GPU has them, and the list of voxels.
+std::uint64_t volumeBytes(const bundle::VolumeGrid& grid, std::uint64_t sample_count);
+// What the light in a volume takes, in half floats: a texel per voxel of the transfer grid and output.
+std::uint64_t volumeLightBytes(const bundle::Group& group);
 
-  std::uint64_t total() const { return geometry + transfer + samples + rows + radiance; }
+struct Needs {
+  std::uint64_t geometry = 0, transfer = 0, samples = 0, rows = 0, radiance = 0, volumes = 0;
+
+  std::uint64_t total() const { return geometry + transfer + samples + rows + radiance + volumes; }
 };
 // At most so much: rows are told by their length in the file.
 Needs needsOf(const bundle::Description& description);

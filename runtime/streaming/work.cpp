@@ -7,8 +7,10 @@
 
 #include <fmt/format.h>
 
+#include "runtime/bundle/volume_grid.hpp"
 #include "runtime/streaming/image_decode.hpp"
 #include "runtime/streaming/sizes.hpp"
+#include "runtime/streaming/volume_blocks.hpp"
 
 namespace lambent::streaming {
 namespace {
@@ -125,6 +127,26 @@ class Load {
     return ProxyReady{work.group, std::move(*proxy)};
   }
 
+  Loaded operator()(const DensityWork& work) const {
+    const bundle::VolumeGrid& grid = *description_.groups[work.group].volume;
+    if (!reserve_(2 * description_.payloads[grid.density].raw_length)) return {};
+    auto codes = reader_.readPayload(grid.density);
+    if (!codes) return failAgain(codes.error());
+    std::vector<float> maxima = blockMaxima(*codes, grid.bits, grid.size);
+    return DensityReady{work.group, std::move(*codes), std::move(maxima)};
+  }
+
+  Loaded operator()(const VoxelsWork& work) const {
+    const bundle::VolumeGrid& grid = *description_.groups[work.group].volume;
+    if (!reserve_(3 * description_.payloads[grid.voxels].raw_length)) return {};
+    const auto bytes = reader_.readPayload(grid.voxels);
+    if (!bytes) return failAgain(bytes.error());
+    auto voxels =
+        bundle::decodeVoxels(*bytes, grid.transfer_size, named(fmt::format("group {}", work.group)));
+    if (!voxels) return failAgain(voxels.error());
+    return VoxelsReady{work.group, std::move(*voxels)};
+  }
+
   Loaded operator()(const BrdfWork& work) const {
     const bundle::BrdfTableEntry& entry = description_.brdf_tables[work.table];
     // Its bytes, the table and the texels: all of a size.
@@ -158,6 +180,11 @@ std::vector<Work> workList(const bundle::Description& d) {
   }
   appendByPriority(list, std::move(rows));
   for (std::uint32_t table = 0; table < d.brdf_tables.size(); ++table) list.push_back(BrdfWork{table});
+  for (std::uint32_t group = 0; group < d.groups.size(); ++group) {
+    if (!d.groups[group].volume) continue;
+    list.push_back(DensityWork{group});
+    list.push_back(VoxelsWork{group});
+  }
   for (std::uint32_t image = 0; image < d.images.size(); ++image) list.push_back(ImageWork{image});
   for (std::uint32_t group = 0; group < d.groups.size(); ++group) {
     const std::int32_t proxy = d.groups[group].proxy;
@@ -203,7 +230,9 @@ std::uint64_t bytesInFile(const bundle::Description& d, const Work& work) {
             return payload(static_cast<std::uint32_t>(cellOf(d, at).light_weights));
           },
           [&](const ProxyWork& at) { return payload(static_cast<std::uint32_t>(d.groups[at.group].proxy)); },
-          [&](const BrdfWork& at) { return payload(d.brdf_tables[at.table].payload); }},
+          [&](const BrdfWork& at) { return payload(d.brdf_tables[at.table].payload); },
+          [&](const DensityWork& at) { return payload(d.groups[at.group].volume->density); },
+          [&](const VoxelsWork& at) { return payload(d.groups[at.group].volume->voxels); }},
       work);
 }
 
@@ -213,30 +242,33 @@ std::optional<Result<Ready>> load(const bundle::Reader& reader, const Work& work
 
 std::size_t bytesOf(const Ready& ready) {
   return std::visit(
-      Overloaded{[](const MeshReady& item) {
-                   return sizeInBytes(item.data.positions) + sizeInBytes(item.data.normals) +
-                          sizeInBytes(item.data.texcoords0) + sizeInBytes(item.data.texcoords1) +
-                          sizeInBytes(item.data.colors) + sizeInBytes(item.data.tangents) +
-                          sizeInBytes(item.data.indices);
-                 },
-                 [](const ImageReady& item) { return sizeInBytes(item.rgba); },
-                 [](const RowsReady& item) {
-                   return sizeInBytes(item.rows.offsets) + sizeInBytes(item.rows.samples) +
-                          sizeInBytes(item.rows.weights);
-                 },
-                 [](const CodebookReady& item) {
-                   return sizeInBytes(item.codebook.axis_counts) + sizeInBytes(item.codebook.axes) +
-                          sizeInBytes(item.codebook.vectors) + sizeInBytes(item.positions);
-                 },
-                 [](const PlaneReady& item) { return sizeInBytes(item.codes); },
-                 [](const LightWeightsReady& item) { return sizeInBytes(item.samples); },
-                 [](const ProxyReady& item) {
-                   return sizeInBytes(item.proxy.positions) + sizeInBytes(item.proxy.triangles) +
-                          sizeInBytes(item.proxy.entries) + sizeInBytes(item.proxy.levels);
-                 },
-                 [](const BrdfReady& item) {
-                   return sizeInBytes(item.data.values) + sizeInBytes(item.texels.values);
-                 }},
+      Overloaded{
+          [](const MeshReady& item) {
+            return sizeInBytes(item.data.positions) + sizeInBytes(item.data.normals) +
+                   sizeInBytes(item.data.texcoords0) + sizeInBytes(item.data.texcoords1) +
+                   sizeInBytes(item.data.colors) + sizeInBytes(item.data.tangents) +
+                   sizeInBytes(item.data.indices);
+          },
+          [](const ImageReady& item) { return sizeInBytes(item.rgba); },
+          [](const RowsReady& item) {
+            return sizeInBytes(item.rows.offsets) + sizeInBytes(item.rows.samples) +
+                   sizeInBytes(item.rows.weights);
+          },
+          [](const CodebookReady& item) {
+            return sizeInBytes(item.codebook.axis_counts) + sizeInBytes(item.codebook.axes) +
+                   sizeInBytes(item.codebook.vectors) + sizeInBytes(item.positions);
+          },
+          [](const PlaneReady& item) { return sizeInBytes(item.codes); },
+          [](const LightWeightsReady& item) { return sizeInBytes(item.samples); },
+          [](const ProxyReady& item) {
+            return sizeInBytes(item.proxy.positions) + sizeInBytes(item.proxy.triangles) +
+                   sizeInBytes(item.proxy.entries) + sizeInBytes(item.proxy.levels);
+          },
+          [](const BrdfReady& item) {
+            return sizeInBytes(item.data.values) + sizeInBytes(item.texels.values);
+          },
+          [](const DensityReady& item) { return sizeInBytes(item.codes) + sizeInBytes(item.block_maxima); },
+          [](const VoxelsReady& item) { return sizeInBytes(item.voxels); }},
       ready);
 }
 

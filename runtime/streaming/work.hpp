@@ -39,13 +39,19 @@ struct ProxyWork {
 struct BrdfWork {
   std::uint32_t table = 0;
 };
+struct DensityWork {
+  std::uint32_t group = 0;
+};
+struct VoxelsWork {
+  std::uint32_t group = 0;
+};
 using Work = std::variant<MeshWork, RowsWork, ImageWork, CodebookWork, PlaneWork, LightWeightsWork, ProxyWork,
-                          BrdfWork>;
+                          BrdfWork, DensityWork, VoxelsWork>;
 
-// Meshes, then rows, then tables of BRDFs (without these three glossy surfaces do not show), then images,
-// then light weights, proxies, codebooks and planes: each by the priority of its payload and, where that is
-// equal, by place in the description. A codebook comes before its planes and those in their order, whatever
-// priorities say.
+// Meshes, then rows, then tables of BRDFs (without these three glossy surfaces do not show), then what
+// volumes show by, then images, then light weights, proxies, codebooks and planes: each by the priority of
+// its payload and, where that is equal, by place in the description. A codebook comes before its planes and
+// those in their order, whatever priorities say.
 std::vector<Work> workList(const bundle::Description& description);
 
 // What an item takes in the file.

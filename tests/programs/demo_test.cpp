@@ -146,6 +146,22 @@ TEST_F(DemoProgram, WritesPicturesAndPrintsWhere) {
   EXPECT_EQ(centre.a, 1.0f);
 }
 
+TEST_F(DemoProgram, ANumberedNameGetsEveryFrameEachAsThePictureByItself) {
+  if (!deviceHere()) GTEST_SKIP() << "no OpenGL 4.5 here";
+  const std::string light = bundle() + " --light sun:0,30,20,5 --size 64x64 --rotate-light ";
+  const Outcome all = run(light + "90 --frames 2 --headless " + quoted(folder / "f-##.exr"));
+  ASSERT_EQ(all.exit_code, 0) << all.err;
+  EXPECT_EQ(all.out, (folder / "f-00.exr").string() + "\n" + (folder / "f-01.exr").string() + "\n");
+  const char* const turns[] = {"45", "90"};
+  for (int i = 0; i < 2; ++i) {
+    ASSERT_EQ(run(light + turns[i] + " --headless " + quoted(folder / "one.exr")).exit_code, 0);
+    const auto one = spec::readExr(folder / "one.exr");
+    const auto frame = spec::readExr(folder / ("f-0" + std::to_string(i) + ".exr"));
+    ASSERT_TRUE(one && frame);
+    EXPECT_EQ(one->texels, frame->texels) << i;
+  }
+}
+
 TEST_F(DemoProgram, KeepsToItsMemoryAndDimsLamps) {
   if (!deviceHere()) GTEST_SKIP() << "no OpenGL 4.5 here";
   const std::filesystem::path lit = folder / "lit.lmb.glb", exr = folder / "a.exr";

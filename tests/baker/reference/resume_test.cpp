@@ -6,6 +6,7 @@
 
 #include "baker/reference/film.hpp"
 #include "tests/baker/reference/measure.hpp"
+#include "tests/baker/reference/media.hpp"
 #include "tests/support/program.hpp"
 
 namespace lambent::baker::reference {
@@ -77,6 +78,25 @@ TEST_F(Resume, BeginsAnewWhenTheWordsOrTheBytesAreOthers) {
   ASSERT_TRUE(damaged);
   EXPECT_EQ(damaged->notices.size(), 1u);
   EXPECT_EQ(damaged->image.texels, other->image.texels);
+}
+
+TEST_F(Resume, WithAVolumeEndsInTheSameBytesAndKnowsItsDensity) {
+  SceneVolume volume = testing::even(4.0f, glm::vec3(0.9f), 0.3f, {0, 0.8f, 0});
+  testing::place(scene, volume);
+  request.options = {.size = {32, 24}, .spp = 200};
+  const auto whole = folder / "whole.exr", parts = folder / "parts.exr", other = folder / "other.exr";
+  ASSERT_TRUE(renderUntil(whole, 2.0));
+  ASSERT_FALSE(renderUntil(parts, 0.3));
+  ASSERT_TRUE(std::filesystem::copy_file(checkpointOf(parts), checkpointOf(other)));
+  const auto gone_on = renderUntil(parts, 2.0);
+  ASSERT_TRUE(gone_on);
+  EXPECT_TRUE(gone_on->notices.empty());
+  EXPECT_EQ(bytesOf(parts), bytesOf(whole));
+  scene.volumes[0].density[5] += 0.1f;
+  const auto anew = renderUntil(other, 2.0);
+  ASSERT_TRUE(anew);
+  EXPECT_EQ(anew->notices.size(), 1u);
+  EXPECT_NE(bytesOf(other), bytesOf(whole));
 }
 
 TEST(Film, RestoresOnlyWhatItSaved) {

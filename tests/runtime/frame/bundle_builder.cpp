@@ -61,6 +61,11 @@ BundleBuilder& BundleBuilder::lamp(const bundle::GroupLight& light, float transf
   return *this;
 }
 
+BundleBuilder& BundleBuilder::volume(BuiltVolume volume) {
+  volumes_.push_back(std::move(volume));
+  return *this;
+}
+
 BundleBuilder& BundleBuilder::groupRotation(const glm::quat& rest_rotation) {
   rest_rotation_ = rest_rotation;
   return *this;
@@ -141,6 +146,12 @@ void BundleBuilder::write(const std::filesystem::path& path) const {
   cell.sample_count = group.sample_count;
   cell.bounds_min = group.bounds_min;
   cell.bounds_max = group.bounds_max;
+  const auto writeAll = [&] {
+    for (const BuiltVolume& volume : volumes_) addVolume(description, blobs, volume);
+    const Result<void> written = bundle::write(path, description, blobs);
+    ASSERT_TRUE(written) << written.error().line();
+  };
+  if (meshes_.empty()) return writeAll();
   const bundle::TransferShape shape{
       .order = static_cast<std::uint32_t>(order_),
       .full_channels = bounces_ ? 1u : 0u,
@@ -170,8 +181,7 @@ void BundleBuilder::write(const std::filesystem::path& path) const {
   }
   group.cells.push_back(std::move(cell));
   description.groups.push_back(std::move(group));
-  const Result<void> written = bundle::write(path, description, blobs);
-  ASSERT_TRUE(written) << written.error().line();
+  writeAll();
 }
 
 bundle::MeshData sphereMesh(int rings, int segments) {

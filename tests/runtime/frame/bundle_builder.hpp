@@ -14,6 +14,7 @@
 #include "runtime/bundle/description.hpp"
 #include "runtime/bundle/mesh.hpp"
 #include "runtime/bundle/writer.hpp"
+#include "tests/support/built_volume.hpp"
 
 namespace lambent::testing {
 
@@ -43,6 +44,8 @@ class BundleBuilder {
   // maps.
   BundleBuilder& lamp(const bundle::GroupLight& light, float transfer);
   BundleBuilder& groupRotation(const glm::quat& rest_rotation);
+  // A group of its own, after that of the meshes; without meshes the only one.
+  BundleBuilder& volume(BuiltVolume volume);
   // Returns the texture's index.
   std::int32_t addTexture(std::uint32_t width, std::uint32_t height, const std::vector<std::uint8_t>& rgba,
                           const gltf::Sampler& sampler);
@@ -66,6 +69,7 @@ class BundleBuilder {
   TransferOf transfer_;
   glm::quat rest_rotation_{1.0f, 0.0f, 0.0f, 0.0f};
   std::vector<BuiltMesh> meshes_;
+  std::vector<BuiltVolume> volumes_;
   std::vector<bundle::Blob> images_;
   std::vector<gltf::Texture> textures_;
 };

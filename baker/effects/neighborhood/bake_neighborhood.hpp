@@ -1,0 +1,40 @@
+// Neighborhood transfer of one body, from where its grid stands to codes.
+#pragma once
+
+#include <optional>
+#include <stop_token>
+
+#include "baker/bake/baked_grids.hpp"
+#include "baker/effects/neighborhood/body.hpp"
+#include "baker/effects/neighborhood/code_change.hpp"
+#include "baker/effects/neighborhood/grid_placement.hpp"
+#include "baker/work/progress.hpp"
+
+namespace lambent::baker {
+
+struct NeighborhoodSettings {
+  PlacementWish placement;  // as the body's points: from `origin`
+  glm::vec3 origin{0.0f};   // of those points in the group's frame
+  bool matrices = false;    // as many outputs as the light has bands, for receivers with transfer of their own
+  std::size_t rays = 2048;  // from each point towards the body
+  ChangeCoding coding;
+};
+
+struct NeighborhoodFigures {
+  glm::uvec3 size{0};
+  glm::vec3 bounds_min{0.0f}, bounds_max{0.0f};  // group frame
+  std::size_t inside_points = 0;                 // that were continued from outside
+  std::uint64_t rays = 0;
+  double error = 0.0, change_error = 0.0;        // as CodedChange
+};
+
+struct BakedAround {
+  std::optional<BakedNeighborhood> grid;  // none: no receiver comes within reach, or the body has no size
+  NeighborhoodFigures figures;
+};
+
+// Order of the light up to 6. Nothing if stopped. The result does not depend on the number of threads.
+std::optional<BakedAround> bakeNeighborhood(const Body& body, const NeighborhoodSettings& settings,
+                                            Progress& progress, const std::stop_token& stop);
+
+}  // namespace lambent::baker

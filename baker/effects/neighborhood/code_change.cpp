@@ -1,0 +1,132 @@
+#include "baker/effects/neighborhood/code_change.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include <glm/common.hpp>
+
+#include "baker/transport/samples.hpp"
+#include "baker/work/parallel.hpp"
+
+namespace lambent::baker {
+
+namespace {
+
+constexpr std::size_t kGrain = 256;
+constexpr int kMostAttempts = 3;
+constexpr double kFiner = 0.6;  // at least, from one attempt to the next
+
+std::vector<float> decode(const CodedTransfer& coded) {
+  std::vector<std::vector<std::uint32_t>> codes;
+  for (const CodedPlane& plane : coded.planes) codes.push_back(plane.codes);
+  return bundle::decodeTransfer(coded.shape, bundle::expand(coded.codebook), coded.cluster_of, codes);
+}
+
+// Samples [first, first + count) of the grid.
+class CellCoder {
+ public:
+  CellCoder(const GridChange& change, std::size_t first, std::size_t count, const ChangeMeter& meter)
+      : shape_(change.shape), meter_(meter), count_(count) {
+    const auto part = [&](const std::vector<float>& values, std::size_t size) {
+      return std::span(values).subspan(first * size, count * size);
+    };
+    visibility_ = part(change.visibility, shape_.visibilitySize());
+    bounced_ = part(change.bounced, shape_.bouncedSize());
+    sends_ = std::any_of(bounced_.begin(), bounced_.end(), [](float value) { return value != 0.0f; });
+  }
+
+  // Each part has half of the square error.
+  std::vector<CodedTransfer> code(double bound, const std::stop_token& stop) const {
+    const double energy = meter_.lightEnergy() * static_cast<double>(count_);
+    const auto order = static_cast<std::uint32_t>(shape_.order),
+               outputs = static_cast<std::uint32_t>(shape_.outputs());
+    const CodingSettings settings{.bound = static_cast<float>(sends_ ? bound * std::sqrt(0.5) : bound),
+                                  .shown_energy = energy,
+                                  .kernel_power = receiverPower(shape_)};
+    std::vector<CodedTransfer> coded;
+    const bundle::TransferShape visibility{
+        .order = order,
+        .outputs = outputs,
+        .visibility_bands = static_cast<std::uint32_t>(shape_.visibilityBands())};
+    coded.push_back(codeTransfer(visibility_, count_, visibility, settings, stop));
+    if (sends_ && !stop.stop_requested()) {
+      const bundle::TransferShape bounced{
+          .order = order, .shadowed_channels = 0, .full_channels = shape_.channels, .outputs = outputs};
+      coded.push_back(codeTransfer(bounced_, count_, bounced, settings, stop));
+    }
+    return coded;
+  }
+
+  // Error over change that `share` of the points with more change than `where` keep; 0 where there are none.
+  double changeError(const std::vector<CodedTransfer>& coded, double where, double share) const {
+    std::vector<float> wrong_visibility = decode(coded[0]), wrong_bounced;
+    for (std::size_t i = 0; i < wrong_visibility.size(); ++i) wrong_visibility[i] -= visibility_[i];
+    if (sends_) {
+      wrong_bounced = decode(coded[1]);
+      for (std::size_t i = 0; i < wrong_bounced.size(); ++i) wrong_bounced[i] -= bounced_[i];
+    }
+    std::vector<double> ratios(count_, -1.0);
+    parallelRanges(count_, kGrain, {}, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t p = begin; p < end; ++p) {
+        const auto of = [&](std::span<const float> visibility, std::span<const float> bounced) {
+          return meter_.measure(visibility.subspan(p * shape_.visibilitySize(), shape_.visibilitySize()),
+                                sends_ ? bounced.subspan(p * shape_.bouncedSize(), shape_.bouncedSize())
+                                       : std::span<const float>());
+        };
+        const double change = of(visibility_, bounced_);
+        if (change > where) ratios[p] = of(wrong_visibility, wrong_bounced) / change;
+      }
+    });
+    std::erase_if(ratios, [](double ratio) { return ratio < 0.0; });
+    if (ratios.empty()) return 0.0;
+    const auto at = ratios.begin() + static_cast<std::ptrdiff_t>(
+                                         std::min(share * static_cast<double>(ratios.size()),
+                                                  static_cast<double>(ratios.size() - 1)));
+    std::nth_element(ratios.begin(), at, ratios.end());
+    return *at;
+  }
+
+ private:
+  ChangeShape shape_;
+  const ChangeMeter& meter_;
+  std::size_t count_;
+  std::span<const float> visibility_, bounced_;
+  bool sends_ = false;
+};
+
+}  // namespace
+
+std::optional<CodedChange> codeChange(const GridChange& change, const GridPlacement& grid,
+                                      const glm::vec3& origin, const ChangeCoding& settings,
+                                      const std::stop_token& stop) {
+  const ChangeMeter meter(change.shape);
+  CodedChange out;
+  for (std::size_t first = 0; first < grid.count(); first += kMaxCellSamples) {
+    const std::size_t count = std::min<std::size_t>(kMaxCellSamples, grid.count() - first);
+    const CellCoder coder(change, first, count, meter);
+    CodedCell cell;
+    cell.count = static_cast<std::uint32_t>(count);
+    cell.bounds_min = cell.bounds_max = origin + grid.point(first);
+    for (std::size_t p = first; p < first + count; ++p) {
+      cell.bounds_min = glm::min(cell.bounds_min, origin + grid.point(p));
+      cell.bounds_max = glm::max(cell.bounds_max, origin + grid.point(p));
+    }
+    double bound = settings.bound, change_error = 0.0;
+    for (int attempt = 0; attempt < kMostAttempts; ++attempt) {
+      cell.transfers = coder.code(bound, stop);
+      if (stop.stop_requested()) return std::nullopt;
+      change_error = coder.changeError(cell.transfers, settings.where_changed, settings.points_within);
+      if (change_error <= settings.of_change) break;
+      bound *= std::min(kFiner, 0.95 * settings.of_change / change_error);
+    }
+    double square = 0.0;
+    for (const CodedTransfer& coded : cell.transfers) square += double{coded.error} * double{coded.error};
+    out.error = std::max(out.error, std::sqrt(square));
+    out.change_error = std::max(out.change_error, change_error);
+    out.cells.push_back(std::move(cell));
+  }
+  return out;
+}
+
+}  // namespace lambent::baker

@@ -1,0 +1,64 @@
+#include "baker/effects/neighborhood/follow_highlight.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+namespace lambent::baker {
+
+namespace {
+
+// |x| in the space where the surface has roughness 1.
+float stretched(const PointReflection& at, const glm::vec3& x) {
+  return glm::length(glm::vec3(at.alpha_t * x.x, at.alpha_b * x.y, x.z));
+}
+
+glm::vec3 visibleNormal(const PointReflection& at, const glm::vec3& v, const glm::vec2& u) {
+  const glm::vec3 round = glm::normalize(glm::vec3(at.alpha_t * v.x, at.alpha_b * v.y, v.z));
+  const float z = (1.0f - u.y) * (1.0f + round.z) - round.z;
+  const float r = std::sqrt(std::clamp(1.0f - z * z, 0.0f, 1.0f)),
+              angle = 2.0f * std::numbers::pi_v<float> * u.x;
+  const glm::vec3 cap = glm::vec3(r * std::cos(angle), r * std::sin(angle), z) + round;
+  return glm::normalize(glm::vec3(at.alpha_t * cap.x, at.alpha_b * cap.y, std::max(cap.z, 1e-12f)));
+}
+
+}  // namespace
+
+HighlightSample sampleHighlight(const PointReflection& at, const glm::vec3& to, const glm::vec2& u) {
+  const glm::vec3 bitangent = glm::cross(at.normal, at.tangent);
+  glm::vec3 v(glm::dot(to, at.tangent), glm::dot(to, bitangent), glm::dot(to, at.normal));
+  if (v.z < bundle::kLeastViewCosine) {
+    const float side = std::sqrt(v.x * v.x + v.y * v.y);
+    const float keep = std::sqrt(1.0f - bundle::kLeastViewCosine * bundle::kLeastViewCosine);
+    v = side > 0.0f ? glm::vec3(v.x / side * keep, v.y / side * keep, bundle::kLeastViewCosine)
+                    : glm::vec3(keep, 0.0f, bundle::kLeastViewCosine);
+  }
+  const glm::vec3 h = visibleNormal(at, v, u);
+  const float along = glm::dot(v, h);
+  const glm::vec3 s = 2.0f * along * h - v;
+  if (!(s.z > 0.0f)) return {};
+  const float past = std::clamp(1.0f - along, 0.0f, 1.0f), squared = past * past;
+  const float fresnel = squared * squared * past;
+  // G2/G1 of the height-correlated Smith term.
+  const float of_v = stretched(at, v);
+  const float shadowing = s.z * (v.z + of_v) / (s.z * of_v + v.z * stretched(at, s));
+  HighlightSample out{.direction = s.x * at.tangent + s.y * bitangent + s.z * at.normal,
+                      .weight = shadowing * glm::mix(at.f0, glm::vec3(at.f90), fresnel)};
+  if (const float below = glm::dot(out.direction, at.geometric); below < 0.0f)
+    out.direction -= 2.0f * below * at.geometric;
+  out.direction = glm::normalize(out.direction);
+  return out;
+}
+
+glm::vec2 choices(std::uint32_t number, std::uint32_t step) {
+  // frac(n / g) and frac(n / g²) with g³ = g + 1, in units of 2^-32; the shift is by a hash of the step.
+  std::uint32_t shift = (step + 1u) * 0x9E3779B9u;
+  shift = (shift ^ shift >> 16) * 0x7FEB352Du;
+  const std::uint32_t x = number * 3242174889u + shift, y = number * 2447445414u + (shift ^ shift << 13);
+  return {static_cast<float>(x >> 8) * 0x1p-24f, static_cast<float>(y >> 8) * 0x1p-24f};
+}
+
+}  // namespace lambent::baker

@@ -1,0 +1,139 @@
+#include "baker/effects/neighborhood/grid_change.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include "baker/effects/diffuse/fill.hpp"
+#include "baker/work/parallel.hpp"
+
+namespace lambent::baker {
+
+namespace {
+
+constexpr std::size_t kGrain = 64;
+// What counts as on the surface, of the spacing of points.
+constexpr float kOnSurface = 1e-3f;
+
+struct Back {
+  glm::vec3 point{0.0f}, normal{0.0f};
+};
+
+class Filler {
+ public:
+  Filler(const Body& body, const CapDirections& directions, const GridPlacement& grid, GridChange& change)
+      : body_(body), directions_(directions), grid_(grid), change_(change) {}
+
+  // Each point by itself: from rays, and from the back that it saw nearest.
+  bool look(std::vector<Back>& backs, Progress& progress, const std::stop_token& stop) {
+    return parallelRanges(grid_.count(), kGrain, stop, [&](std::size_t begin, std::size_t end) {
+      PointChange point(body_, directions_, change_.shape);
+      for (std::size_t p = begin; p < end && !stop.stop_requested(); ++p) {
+        point.look(grid_.point(p));
+        change_.outside[p] = !point.inside();
+        if (point.inside()) backs[p] = {point.nearestPoint(), point.nearestNormal()};
+        store(point.visibility(), change_.visibility, p);
+        store(point.bounced(), change_.bounced, p);
+      }
+      progress.add(end - begin);
+    });
+  }
+
+  // Points inside beside points outside. known[p] becomes 1 where that could be done.
+  bool continueInside(const std::vector<Back>& backs, std::vector<std::uint8_t>& known,
+                      const std::stop_token& stop) {
+    std::vector<std::size_t> border;
+    for (std::size_t p = 0; p < grid_.count(); ++p)
+      if (!change_.outside[p] && besideOutside(p)) border.push_back(p);
+    return parallelRanges(border.size(), kGrain, stop, [&](std::size_t begin, std::size_t end) {
+      PointChange on(body_, directions_, change_.shape), before(body_, directions_, change_.shape);
+      for (std::size_t b = begin; b < end; ++b) {
+        const std::size_t p = border[b];
+        const glm::vec3 spacing = grid_.spacing();
+        const float least = kOnSurface * std::min({spacing.x, spacing.y, spacing.z});
+        on.look(backs[p].point + least * backs[p].normal);
+        if (on.inside()) continue;
+        const float behind = glm::distance(backs[p].point, grid_.point(p));
+        before.look(backs[p].point + std::max(behind, least) * backs[p].normal);
+        continued(on.visibility(), before.visibility(), before.inside(), change_.visibility, p);
+        continued(on.bounced(), before.bounced(), before.inside(), change_.bounced, p);
+        known[p] = 1;
+      }
+    });
+  }
+
+  void fillRest(const std::vector<std::uint8_t>& known) {
+    const auto size = grid_.size;
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;
+    const std::size_t strides[3] = {1, size.x, std::size_t{size.x} * size.y};
+    for (std::size_t p = 0; p < grid_.count(); ++p)
+      for (int axis = 0; axis < 3; ++axis) {
+        if (p / strides[axis] % size[axis] + 1 == size[axis]) continue;
+        const std::size_t q = p + strides[axis];
+        if (!known[p] || !known[q])
+          edges.emplace_back(static_cast<std::uint32_t>(p), static_cast<std::uint32_t>(q));
+      }
+    if (edges.empty()) return;
+    fillStretchFromNeighbours(edges, known, 0, change_.shape.visibilitySize(), change_.visibility);
+    fillStretchFromNeighbours(edges, known, 0, change_.shape.bouncedSize(), change_.bounced);
+  }
+
+ private:
+  static void store(std::span<const float> values, std::vector<float>& all, std::size_t point) {
+    std::copy(values.begin(), values.end(), all.begin() + static_cast<std::ptrdiff_t>(point * values.size()));
+  }
+  static void continued(std::span<const float> on, std::span<const float> before, bool only_on,
+                        std::vector<float>& all, std::size_t point) {
+    for (std::size_t i = 0; i < on.size(); ++i)
+      all[point * on.size() + i] = only_on ? on[i] : 2.0f * on[i] - before[i];
+  }
+
+  bool besideOutside(std::size_t p) const {
+    const glm::ivec3 size(grid_.size);
+    const auto index = static_cast<int>(p);
+    const glm::ivec3 at(index % size.x, index / size.x % size.y, index / (size.x * size.y));
+    for (int z = -1; z <= 1; ++z)
+      for (int y = -1; y <= 1; ++y)
+        for (int x = -1; x <= 1; ++x) {
+          const glm::ivec3 other = glm::clamp(at + glm::ivec3(x, y, z), glm::ivec3(0), size - 1);
+          if (change_.outside[static_cast<std::size_t>(other.x + size.x * (other.y + size.y * other.z))])
+            return true;
+        }
+    return false;
+  }
+
+  const Body& body_;
+  const CapDirections& directions_;
+  const GridPlacement& grid_;
+  GridChange& change_;
+};
+
+}  // namespace
+
+std::size_t GridChange::insidePoints() const {
+  return static_cast<std::size_t>(std::count(outside.begin(), outside.end(), std::uint8_t{0}));
+}
+
+std::optional<GridChange> changeOnGrid(const Body& body, const GridPlacement& grid, const ChangeShape& shape,
+                                       std::size_t rays, Progress& progress, const std::stop_token& stop) {
+  progress.begin("neighborhood", grid.count(), "points");
+  const CapDirections directions(rays);
+  GridChange change;
+  change.shape = shape;
+  change.visibility.resize(grid.count() * shape.visibilitySize());
+  change.bounced.resize(grid.count() * shape.bouncedSize());
+  change.outside.resize(grid.count());
+  Filler filler(body, directions, grid, change);
+  std::vector<Back> backs(grid.count());
+  if (!filler.look(backs, progress, stop) || stop.stop_requested()) return std::nullopt;
+  change.rays = grid.count() * directions.size();
+  std::vector<std::uint8_t> known = change.outside;
+  if (!filler.continueInside(backs, known, stop)) return std::nullopt;
+  filler.fillRest(known);
+  return change;
+}
+
+}  // namespace lambent::baker

@@ -1,0 +1,143 @@
+#include "baker/effects/neighborhood/grid_placement.hpp"
+
+#include <algorithm>
+#include <array>
+#include <numeric>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/vector_relational.hpp>
+
+namespace lambent::baker {
+
+namespace {
+
+constexpr int kProbes = 5;      // each way over a face
+constexpr int kBisections = 7;  // of how far a face stands out: to a hundredth of kMostReach
+constexpr float kFlat = 0.5f;   // of the middle side: shorter makes a slab
+// Between where receivers come and a face that they set, in points: readers fade grids out over the last
+// point, and interpolation takes one more.
+constexpr float kBesideReceivers = 1.5f;
+constexpr float kLeastThickness = 0.1f;  // of the body's radius
+constexpr glm::uvec3 kSlab{64, 64, 8}, kAround{32, 32, 32};
+
+class Placer {
+ public:
+  Placer(const PlacementWish& wish, const std::function<double(const glm::vec3&)>& change)
+      : wish_(wish), change_(change), radius_(0.5f * glm::distance(wish.body.low, wish.body.high)) {}
+
+  std::optional<GridPlacement> place() {
+    if (!(radius_ > 0.0f)) return std::nullopt;
+    Box3 box;
+    if (wish_.extent != glm::vec3(0.0f)) {
+      const glm::vec3 middle = 0.5f * (wish_.body.low + wish_.body.high);
+      box = {middle - 0.5f * wish_.extent, middle + 0.5f * wish_.extent};
+    } else {
+      if (!reach(box)) return std::nullopt;
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+      const float lacks = kLeastThickness * radius_ - (box.high[axis] - box.low[axis]);
+      if (lacks > 0.0f) box.low[axis] -= 0.5f * lacks, box.high[axis] += 0.5f * lacks;
+    }
+    GridPlacement grid{sizeFor(box), box};
+    if (wish_.extent == glm::vec3(0.0f)) standOff(grid);
+    return grid;
+  }
+
+ private:
+  // The box that the change reaches, cut to where receivers come. False where that leaves nothing.
+  bool reach(Box3& box) {
+    const glm::vec3 most(kMostReach * radius_);
+    Box3 within{wish_.body.low - most, wish_.body.high + most};
+    if (wish_.receivers) {
+      within.low = glm::max(within.low, wish_.receivers->low);
+      within.high = glm::min(within.high, wish_.receivers->high);
+      if (!glm::all(glm::lessThanEqual(within.low, within.high))) return false;
+    }
+    box = within;
+    for (int axis = 0; axis < 3; ++axis)
+      for (const bool high : {false, true}) {
+        const float margin = marginOf(axis, high, within);
+        float& face = high ? box.high[axis] : box.low[axis];
+        const float reached = high ? wish_.body.high[axis] + margin : wish_.body.low[axis] - margin;
+        const float cut = high ? within.high[axis] : within.low[axis];
+        const bool by_receivers = wish_.receivers && (high ? cut < reached : cut > reached);
+        face = by_receivers ? cut : reached;
+        (high ? by_receivers_high_ : by_receivers_low_)[static_cast<std::size_t>(axis)] = by_receivers;
+      }
+    // Receivers that stand beyond what a face reaches are out of reach.
+    return glm::all(glm::lessThanEqual(box.low, box.high));
+  }
+
+  // How far from the body's bounds the face must stand, so that the change on it is under the bound.
+  float marginOf(int axis, bool high, const Box3& within) const {
+    float near = 0.0f, far = kMostReach * radius_;
+    for (int step = 0; step < kBisections; ++step) {
+      const float middle = 0.5f * (near + far);
+      (largestOn(axis, high, middle, within) > wish_.bound ? near : far) = middle;
+    }
+    return far;
+  }
+
+  double largestOn(int axis, bool high, float margin, const Box3& within) const {
+    const Box3 box{glm::clamp(wish_.body.low - margin, within.low, within.high),
+                   glm::clamp(wish_.body.high + margin, within.low, within.high)};
+    const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+    double largest = 0.0;
+    for (int i = 0; i < kProbes; ++i)
+      for (int j = 0; j < kProbes; ++j) {
+        glm::vec3 point;
+        point[axis] = high ? wish_.body.high[axis] + margin : wish_.body.low[axis] - margin;
+        point[u] = glm::mix(box.low[u], box.high[u], (static_cast<float>(i) + 0.5f) / kProbes);
+        point[v] = glm::mix(box.low[v], box.high[v], (static_cast<float>(j) + 0.5f) / kProbes);
+        largest = std::max(largest, change_(point));
+      }
+    return largest;
+  }
+
+  glm::uvec3 sizeFor(const Box3& box) const {
+    const glm::vec3 length = box.high - box.low;
+    std::array<int, 3> by_length;
+    std::iota(by_length.begin(), by_length.end(), 0);
+    std::stable_sort(by_length.begin(), by_length.end(), [&](int a, int b) { return length[a] > length[b]; });
+    glm::uvec3 wanted = wish_.by_length;
+    if (wanted == glm::uvec3(0u))
+      wanted = length[by_length[2]] < kFlat * length[by_length[1]] ? kSlab : kAround;
+    std::array<std::uint32_t, 3> counts{wanted.x, wanted.y, wanted.z};
+    std::sort(counts.begin(), counts.end(), std::greater<>());
+    glm::uvec3 size;
+    for (std::size_t k = 0; k < 3; ++k) size[by_length[k]] = counts[k];
+    for (int axis = 0; axis < 3; ++axis)
+      size[axis] = std::clamp(wish_.size[axis] != 0 ? wish_.size[axis] : size[axis], 2u, kMostGridPoints);
+    return size;
+  }
+
+  // Moves faces that receivers set off from them.
+  void standOff(GridPlacement& grid) const {
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto a = static_cast<std::size_t>(axis);
+      const float sides = (by_receivers_low_[a] ? 1.0f : 0.0f) + (by_receivers_high_[a] ? 1.0f : 0.0f);
+      const float cells = static_cast<float>(grid.size[axis] - 1);
+      // At least half of the side is left to the receivers.
+      const float points = std::min(kBesideReceivers, 0.25f * cells);
+      const float length = grid.box.high[axis] - grid.box.low[axis];
+      const float off = points * length / (cells - sides * points);
+      if (by_receivers_low_[a]) grid.box.low[axis] -= off;
+      if (by_receivers_high_[a]) grid.box.high[axis] += off;
+    }
+  }
+
+  const PlacementWish& wish_;
+  const std::function<double(const glm::vec3&)>& change_;
+  float radius_;
+  std::array<bool, 3> by_receivers_low_{}, by_receivers_high_{};
+};
+
+}  // namespace
+
+std::optional<GridPlacement> placeGrid(const PlacementWish& wish,
+                                       const std::function<double(const glm::vec3&)>& changeAt) {
+  return Placer(wish, changeAt).place();
+}
+
+}  // namespace lambent::baker

@@ -1,0 +1,50 @@
+// Where the points of a neighborhood grid stand: around the body as far as it changes the light by more than
+// a bound, and no further than receivers come. Where they are only below, that is a slab below.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <optional>
+
+#include <glm/vec3.hpp>
+
+namespace lambent::baker {
+
+struct Box3 {
+  glm::vec3 low{0.0f}, high{0.0f};
+};
+
+// Points x fastest, then y, then z; the first at box.low, the last at box.high.
+struct GridPlacement {
+  glm::uvec3 size{2};
+  Box3 box;
+
+  std::size_t count() const { return std::size_t{size.x} * size.y * size.z; }
+  glm::vec3 spacing() const { return (box.high - box.low) / glm::vec3(size - 1u); }
+  glm::vec3 point(std::size_t index) const {
+    const glm::vec3 at(static_cast<float>(index % size.x), static_cast<float>(index / size.x % size.y),
+                       static_cast<float>(index / (std::size_t{size.x} * size.y)));
+    return box.low + at * spacing();
+  }
+};
+
+struct PlacementWish {
+  Box3 body;                      // its bounds
+  std::optional<Box3> receivers;  // where receivers come; none: all around
+  // Points along x, y and z; 0: `by_length`.
+  glm::uvec3 size{0};
+  // Points along the longest, the middle and the shortest side; 0: 64, 64, 8 in a slab, else 32 each.
+  glm::uvec3 by_length{0};
+  glm::vec3 extent{0.0f};  // of the box, about the body's middle; 0: by reach and receivers
+  double bound = 0.01;     // change of irradiance, relative, under which a face may cut the rest off
+};
+
+inline constexpr std::uint32_t kMostGridPoints = 256;  // each way
+inline constexpr float kMostReach = 12.0f;             // of the body's radius (half its box's diagonal)
+
+// changeAt: ChangeMeter::measure at a point. Nothing where no receiver comes within reach, or the body has no
+// size.
+std::optional<GridPlacement> placeGrid(const PlacementWish& wish,
+                                       const std::function<double(const glm::vec3&)>& changeAt);
+
+}  // namespace lambent::baker

@@ -1,0 +1,261 @@
+#include "baker/effects/neighborhood/surface_body.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include <glm/geometric.hpp>
+
+#include "baker/effects/neighborhood/follow_highlight.hpp"
+#include "baker/work/parallel.hpp"
+#include "runtime/sh/basis.hpp"
+#include "runtime/sh/gaunt.hpp"
+
+namespace lambent::baker {
+
+namespace {
+
+// From here on five bands carry nine tenths of a highlight (docs/accuracy.md), and matrices of few bands say
+// what it shows.
+constexpr float kRoughEnough = 0.5f;
+// Paths of a ray that meets a highlight: a mirror needs one, and neighbouring rays share the rest.
+constexpr float kMirrorRoughness = 0.1f;
+constexpr std::size_t kRoughPaths = 2;
+constexpr int kMostReflections = 32;
+// Of the body's radius: how far from a surface paths go on.
+constexpr float kClear = 1e-5f;
+
+std::size_t pathsFor(float roughness) {
+  return roughness < kMirrorRoughness ? 1 : kRoughPaths;
+}
+
+}  // namespace
+
+SurfaceBody::SurfaceBody(const DiffuseScene& scene, const BakedSurfaces& baked)
+    : scene_(scene), brdfs_(baked.brdfs), order_(baked.direct.order) {
+  const GroupGeometry& geometry = scene.geometry;
+  centre_ = 0.5f * (geometry.bounds_min + geometry.bounds_max);
+  float square = 0.0f;
+  for (const glm::uvec3& t : geometry.triangles)
+    for (const std::uint32_t v : {t.x, t.y, t.z}) {
+      const glm::vec3 to = geometry.positions[v] - centre_;
+      square = std::max(square, glm::dot(to, to));
+    }
+  radius_ = std::sqrt(square);
+  if (!baked.bounced) return;
+
+  channels_ = baked.direct.channels;
+  const auto columns = static_cast<std::size_t>(sh::coefficientCount(order_));
+  const std::size_t samples = baked.direct.size();
+  plain_.resize(samples * channels_ * columns);
+  float* out = plain_.data();
+  for (std::size_t s = 0; s < samples; ++s)
+    for (std::size_t c = 0; c < channels_; ++c)
+      for (std::size_t i = 0; i < columns; ++i, ++out)
+        *out = baked.direct.at(s)[c * baked.direct.columns + i] +
+               baked.bounced->at(s)[c * baked.bounced->columns + i];
+  if (!brdfs_) return;
+
+  const GlossyField& field = *baked.glossy;
+  const sh::GauntTable gaunt = sh::makeGauntTable(field.order_in, field.order_out);
+  matrix_outputs_ = static_cast<std::size_t>(sh::coefficientCount(field.order_out));
+  matrix_channels_ = field.bounced.empty() ? 1 : field.channels;
+  const std::size_t size = matrix_outputs_ * columns;
+  matrices_.assign(field.size() * matrix_channels_ * size, 0.0f);
+  parallelRanges(field.size(), kSamplesPerRange, {}, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t s = begin; s < end; ++s)
+      for (std::size_t c = 0; c < matrix_channels_; ++c) {
+        const std::size_t at = (s * matrix_channels_ + c) * size;
+        const auto matrix = std::span(matrices_).subspan(at, size);
+        sh::addVisibilityMatrix(
+            gaunt, std::span(field.visibility).subspan(s * field.visibilitySize(), field.visibilitySize()),
+            matrix);
+        if (!field.bounced.empty())
+          for (std::size_t i = 0; i < size; ++i) matrix[i] += field.bounced[at + i];
+      }
+  });
+}
+
+SurfaceBody::Way SurfaceBody::wayOf(const FirstHit& hit) const {
+  if (!brdfs_ || !brdfs_->glossy(hit.triangle)) return Way::Matte;
+  return brdfs_->roughness(hit.triangle, hit.u, hit.v) < kRoughEnough ? Way::Path : Way::Kernel;
+}
+
+void SurfaceBody::addPlain(const FirstHit& hit, const glm::vec3& scale, std::span<float> out) const {
+  const glm::uvec3 t = scene_.geometry.triangles[hit.triangle];
+  const auto columns = static_cast<std::size_t>(sh::coefficientCount(order_));
+  const auto of = [&](std::uint32_t vertex) {
+    return plain_.data() + scene_.samples.vertex_sample[vertex] * channels_ * columns;
+  };
+  const float *a = of(t.x), *b = of(t.y), *c = of(t.z);
+  float* sum = out.data();
+  for (std::uint32_t channel = 0; channel < channels_; ++channel) {
+    const float factor = scale[static_cast<int>(channel)];
+    const float wa = factor * (1.0f - hit.u - hit.v), wb = factor * hit.u, wc = factor * hit.v;
+    for (std::size_t i = 0; i < columns; ++i) sum[i] += wa * a[i] + wb * b[i] + wc * c[i];
+    a += columns, b += columns, c += columns, sum += columns;
+  }
+}
+
+void SurfaceBody::addMatte(const FirstHit& hit, const glm::vec3& scale, std::span<float> out) const {
+  addPlain(hit, scale * scene_.colors.albedo(hit.triangle, hit.u, hit.v), out);
+}
+
+void SurfaceBody::addKernel(const FirstHit& hit, const glm::vec3& along, float chance, const glm::vec3& scale,
+                            std::span<float> out) const {
+  std::array<float, 3 * 36> kernel;
+  brdfs_->exitKernel(hit.triangle, hit.u, hit.v, -along, kernel);
+  const glm::uvec3 t = scene_.geometry.triangles[hit.triangle];
+  const std::uint32_t corner = chance < hit.u ? t.y : chance < hit.u + hit.v ? t.z : t.x;
+  const std::size_t sample = scene_.samples.vertex_sample[corner] - scene_.samples.first_glossy;
+  const auto columns = static_cast<std::size_t>(sh::coefficientCount(order_));
+  for (std::size_t c = 0; c < channels_; ++c) {
+    const std::size_t own = matrix_channels_ == 1 ? 0 : c;
+    const float* matrix = matrices_.data() + (sample * matrix_channels_ + own) * matrix_outputs_ * columns;
+    for (std::size_t k = 0; k < matrix_outputs_; ++k) {
+      const float factor = scale[static_cast<int>(c)] * kernel[c * matrix_outputs_ + k];
+      for (std::size_t i = 0; i < columns; ++i) out[c * columns + i] += factor * matrix[k * columns + i];
+    }
+  }
+}
+
+// What rays of a packet that met highlights find at the ends of their paths.
+class SurfaceBody::Paths {
+ public:
+  explicit Paths(const SurfaceBody& body)
+      : body_(body), columns_(static_cast<std::size_t>(sh::coefficientCount(body.order_))) {}
+
+  // From `hit`, met along `along` from `from`; what it finds is added to row `row` of the packet.
+  void start(const FirstHit& hit, const glm::vec3& from, const glm::vec3& along, std::size_t ray,
+             std::size_t row) {
+    const std::size_t count = pathsFor(body_.brdfs_->roughness(hit.triangle, hit.u, hit.v));
+    for (std::size_t p = 0; p < count; ++p)
+      paths_.push_back({.hit = hit,
+                        .from = from,
+                        .along = along,
+                        .scale = glm::vec3(1.0f / static_cast<float>(count)),
+                        .row = row,
+                        .number = static_cast<std::uint32_t>(ray * kRoughPaths + p)});
+  }
+
+  // sent: [row][channel][order²].
+  void follow(std::span<float> sent) {
+    const std::size_t row_size = body_.channels_ * columns_;
+    std::vector<RaySegment> rays;
+    std::vector<FirstHit> hits;
+    for (std::uint32_t reflection = 0; reflection < kMostReflections && !paths_.empty(); ++reflection) {
+      rays.clear();
+      std::erase_if(paths_, [&](Path& path) {
+        return !reflect(path, reflection, sent.subspan(path.row * row_size, row_size));
+      });
+      for (const Path& path : paths_)
+        rays.push_back({path.from, path.along, std::numeric_limits<float>::infinity()});
+      hits.resize(rays.size());
+      body_.scene_.rays.firstHits(rays, hits);
+      std::size_t next = 0;
+      std::erase_if(paths_, [&](Path& path) {
+        path.hit = hits[next++];
+        return !goesOn(path, reflection, sent.subspan(path.row * row_size, row_size));
+      });
+    }
+  }
+
+ private:
+  struct Path {
+    FirstHit hit;
+    glm::vec3 from, along, scale;
+    std::size_t row;
+    std::uint32_t number;
+  };
+
+  // At a highlight: adds the diffuse part, and turns the path into the highlight. False where that ends it.
+  bool reflect(Path& path, std::uint32_t reflection, std::span<float> out) const {
+    const FirstHit& hit = path.hit;
+    const PointReflection at = body_.brdfs_->reflection(hit.triangle, hit.u, hit.v, -path.along);
+    if (at.diffuse != glm::vec3(0.0f)) body_.addPlain(hit, path.scale * at.diffuse, out);
+    const HighlightSample next = sampleHighlight(at, -path.along, choices(path.number, reflection));
+    path.scale *= next.weight;
+    path.from += hit.distance * path.along + kClear * body_.radius_ * at.geometric;
+    path.along = next.direction;
+    return path.scale != glm::vec3(0.0f);
+  }
+
+  // Where the path leads: adds what it finds. True at another highlight.
+  bool goesOn(const Path& path, std::uint32_t reflection, std::span<float> out) const {
+    const FirstHit& hit = path.hit;
+    if (!hit.any()) {
+      std::array<float, sh::kMaxCoefficients> y;
+      sh::evaluate(body_.order_, path.along, y);
+      for (std::size_t c = 0; c < body_.channels_; ++c)
+        for (std::size_t i = 0; i < columns_; ++i)
+          out[c * columns_ + i] += path.scale[static_cast<int>(c)] * y[i];
+      return false;
+    }
+    if (hit.back) return false;
+    switch (body_.wayOf(hit)) {
+      case Way::Path:
+        return true;
+      case Way::Kernel:
+        body_.addKernel(hit, path.along, choices(path.number, reflection).x, path.scale, out);
+        return false;
+      case Way::Matte:
+        body_.addMatte(hit, path.scale, out);
+    }
+    return false;
+  }
+
+  const SurfaceBody& body_;
+  std::size_t columns_;
+  std::vector<Path> paths_;
+};
+
+void SurfaceBody::look(const glm::vec3& from, const DirectionPacket& along, std::size_t first_ray,
+                       bool with_light, BodyLook& out) const {
+  std::array<RaySegment, kPacketWidth> rays;
+  std::array<FirstHit, kPacketWidth> hits;
+  for (std::size_t k = 0; k < kPacketWidth; ++k)
+    rays[k] = {from, along[k], std::numeric_limits<float>::infinity()};
+  scene_.rays.firstHits(rays, hits);
+  out.sends = out.backs = 0;
+  out.nearest_back = std::numeric_limits<float>::infinity();
+  const std::size_t row_size = channels_ * static_cast<std::size_t>(sh::coefficientCount(order_));
+  std::optional<Paths> paths;
+  for (std::size_t k = 0; k < kPacketWidth; ++k) {
+    const FirstHit& hit = hits[k];
+    out.stopped[k] = hit.any() ? 1.0f : 0.0f;
+    if (!hit.any()) continue;
+    const auto bit = static_cast<std::uint16_t>(1u << k);
+    if (hit.back) {
+      out.backs |= bit;
+      if (hit.distance < out.nearest_back) {
+        out.nearest_back = hit.distance;
+        out.nearest_point = from + hit.distance * along[k];
+        const glm::uvec3 t = scene_.geometry.triangles[hit.triangle];
+        const auto& positions = scene_.geometry.positions;
+        out.nearest_normal = glm::normalize(
+            glm::cross(positions[t.y] - positions[t.x], positions[t.z] - positions[t.x]));
+      }
+      continue;
+    }
+    if (!with_light || channels_ == 0) continue;
+    out.sends |= bit;
+    const auto row = std::span(out.sent).subspan(k * row_size, row_size);
+    std::fill(row.begin(), row.end(), 0.0f);
+    switch (wayOf(hit)) {
+      case Way::Matte:
+        addMatte(hit, glm::vec3(1.0f), row);
+        break;
+      case Way::Kernel:
+        addKernel(hit, along[k], choices(static_cast<std::uint32_t>(first_ray + k), 0).x, glm::vec3(1.0f),
+                  row);
+        break;
+      case Way::Path:
+        if (!paths) paths.emplace(*this);
+        paths->start(hit, from, along[k], first_ray + k, k);
+    }
+  }
+  if (paths) paths->follow(out.sent);
+}
+
+}  // namespace lambent::baker

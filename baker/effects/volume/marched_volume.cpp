@@ -1,0 +1,56 @@
+#include "baker/effects/volume/marched_volume.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace lambent::baker {
+
+namespace {
+
+constexpr float kLongestStretch = 0.5f;  // of the shortest edge of a voxel of the transfer
+constexpr float kNothingLeft = 1e-6f;
+
+}  // namespace
+
+float MarchedVolume::look(const glm::vec3& origin, const glm::vec3& direction, float t_max,
+                          std::span<float> scattered) const {
+  const std::size_t columns = transfer_.columns(), channels = transfer_.full_channels;
+  assert(scattered.size() == 3 * columns);
+  std::fill(scattered.begin(), scattered.end(), 0.0f);
+  const TransferGrid& grid = transfer_.grid;
+  const glm::dvec3 from = grid.gridFromGroup(glm::dvec3(origin)),
+                   along = grid.gridDirection(glm::dvec3(direction));
+  const bool dark = grid.samples() == 0 || transfer_.albedo == glm::vec3(0.0f);
+  double left = 1.0, share = 0.0, moment = 0.0, window = 0.0;
+  const auto give = [&] {
+    const TransferGrid::Stencil at = grid.stencil(from + moment / share * along, /*level=*/0);
+    for (int k = 0; k < at.count; ++k) {
+      const float* vector = &transfer_.vectors[at.node[static_cast<std::size_t>(k)] * transfer_.vectorSize()];
+      const auto weight = static_cast<float>(share * at.weight[static_cast<std::size_t>(k)]);
+      // Single scattering where that is all there is, else all scatterings, of one channel or of three.
+      for (std::size_t c = 0; c < 3; ++c) {
+        const float* block = vector + (channels == 0 ? 0 : channels == 1 ? 1 : 1 + c) * columns;
+        const float factor = weight * transfer_.albedo[static_cast<int>(c)];
+        for (std::size_t i = 0; i < columns; ++i) scattered[c * columns + i] += factor * block[i];
+      }
+    }
+    share = moment = 0.0;
+  };
+  const auto longest = [&](float) { return kLongestStretch * grid.shortestEdge(); };
+  transfer_.density->march(origin, direction, t_max, longest, [&](float begin, float end, float depth) {
+    if (share > 0.0 && double{end} > window) give();
+    if (share == 0.0) window = double{begin} + kLongestStretch * double{grid.shortestEdge()};
+    const double gone = -std::expm1(-double{depth}) * left;
+    if (!dark) {
+      share += gone;
+      moment += gone * 0.5 * (double{begin} + double{end});
+    }
+    left -= gone;
+    return left > double{kNothingLeft};
+  });
+  if (share > 0.0) give();
+  return static_cast<float>(left);
+}
+
+}  // namespace lambent::baker

@@ -1,0 +1,23 @@
+// VolumeLight by marching through the density with the volume's uncoded transfer.
+#pragma once
+
+#include "baker/effects/volume/volume_light.hpp"
+#include "baker/effects/volume/volume_transfer.hpp"
+
+namespace lambent::baker {
+
+// look(): three channels; radiance = sum over stretches of tau (1 - exp(-depth)) albedo T, T with all
+// scatterings where they were baked.
+class MarchedVolume : public VolumeLight {
+ public:
+  explicit MarchedVolume(VolumeTransfer transfer) : transfer_(std::move(transfer)) {}
+
+  int order() const override { return transfer_.order; }
+  float look(const glm::vec3& origin, const glm::vec3& direction, float t_max,
+             std::span<float> scattered) const override;
+
+ private:
+  VolumeTransfer transfer_;
+};
+
+}  // namespace lambent::baker

@@ -1,0 +1,211 @@
+#include "baker/effects/volume/scatter_rows.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <tuple>
+
+#include "baker/work/parallel.hpp"
+
+namespace lambent::baker {
+
+namespace {
+
+constexpr float kLongestStretch = 0.5f;  // of the shortest edge of a voxel
+constexpr double kWindow = 0.75;         // stretches are gathered over so many voxels of their level
+constexpr double kNothingLeft = 1e-7;
+
+// Where on average a stretch of optical depth e scatters what passes it, as a share of its length.
+double middleOf(double e) {
+  if (e < 0.05) return 0.5 - e / 12.0 + e * e * e / 720.0;
+  return 1.0 / e - 1.0 / std::expm1(e);
+}
+
+}  // namespace
+
+ScatterRows::ScatterRows(const DensityField& density, const TransferGrid& grid, const Occluders& occluders,
+                         const SphereTable& table, std::span<const double> met)
+    : density_(&density),
+      grid_(&grid),
+      occluders_(&occluders),
+      table_(&table),
+      met_(met.begin(), met.end()),
+      self_(met.size()),
+      others_(met.size()),
+      chunks_((met.size() + kChunk - 1) / kChunk),
+      voxels_per_metre_(std::sqrt(4.0 * std::numbers::pi / static_cast<double>(table.size())) /
+                        double{grid.meanEdge()}) {}
+
+int ScatterRows::levelAt(double t) const {
+  const double spread = t * voxels_per_metre_;
+  return spread < 1.0 ? 0 : std::min(static_cast<int>(std::log2(spread)) + 1, grid_->levels() - 1);
+}
+
+// The row of one sample as it grows: weights of nodes, and weights of what interpolation leaves out.
+class ScatterRows::Row {
+ public:
+  explicit Row(const TransferGrid& grid) : grid_(grid), weights_(grid.nodes(), Entry{}) {}
+
+  void add(const glm::dvec3& place, int level, double share) {
+    const TransferGrid::Stencil at = grid_.stencil(place, level, /*beyond=*/true);
+    // Between two nodes at f a curve T lies under its chord by f (1 - f) / 2 T'', and a node of level l, the
+    // mean of 2^l voxels, over T by (1 - 4^-l) / 24 T''; T'' in nodes of the level.
+    const glm::dvec3 bend =
+        0.5 * at.fraction * (1.0 - at.fraction) + (1.0 - std::ldexp(1.0, -2 * level)) / 24.0;
+    for (int i = 0; i < at.count; ++i) {
+      const std::uint32_t node = at.node[static_cast<std::size_t>(i)];
+      Entry& entry = touch(node);
+      const double weight = share * at.weight[static_cast<std::size_t>(i)];
+      entry.weight += weight;
+      entry.bend += weight * bend;
+    }
+    sum_ += share;
+  }
+
+  double sum() const { return sum_; }
+
+  // Calls give(node, weight) by rising nodes, and is empty again.
+  template <typename Give>
+  void finish(const Give& give) {
+    const std::size_t touched = touched_.size();
+    for (std::size_t i = 0; i < touched; ++i) {
+      const std::uint32_t node = touched_[i];
+      const glm::dvec3 bend = weights_[node].bend;
+      for (int axis = 0; axis < 3; ++axis) {
+        // At the rim as it bends one node further in.
+        auto [before, after] = grid_.neighbors(node, axis);
+        std::int32_t middle = static_cast<std::int32_t>(node);
+        if (before < 0 && after >= 0)
+          middle = after;
+        else if (after < 0 && before >= 0)
+          middle = before;
+        std::tie(before, after) = grid_.neighbors(static_cast<std::uint32_t>(middle), axis);
+        if (before < 0 || after < 0) continue;
+        touch(static_cast<std::uint32_t>(middle)).weight += 2.0 * bend[axis];
+        touch(static_cast<std::uint32_t>(before)).weight -= bend[axis];
+        touch(static_cast<std::uint32_t>(after)).weight -= bend[axis];
+      }
+    }
+    std::sort(touched_.begin(), touched_.end());
+    for (const std::uint32_t node : touched_) {
+      give(node, weights_[node].weight);
+      weights_[node] = Entry{};
+    }
+    touched_.clear();
+    sum_ = 0.0;
+  }
+
+ private:
+  struct Entry {
+    double weight = 0.0;
+    glm::dvec3 bend{0.0};
+    bool touched = false;
+  };
+  Entry& touch(std::uint32_t node) {
+    Entry& entry = weights_[node];
+    if (!entry.touched) touched_.push_back(node), entry.touched = true;
+    return entry;
+  }
+
+  const TransferGrid& grid_;
+  std::vector<Entry> weights_;
+  std::vector<std::uint32_t> touched_;
+  double sum_ = 0.0;
+};
+
+void ScatterRows::traceRow(std::size_t p, std::vector<float>& reach, Row& row) const {
+  const glm::vec3 origin = grid_->place(p);
+  const glm::dvec3 grid_origin = grid_->gridFromGroup(glm::dvec3(origin));
+  occluders_->reach(origin, table_->directions(), reach);
+  const auto longest = [&](float t) {
+    return kLongestStretch * grid_->shortestEdge() * static_cast<float>(1 << levelAt(double{t}));
+  };
+  for (std::size_t r = 0; r < table_->size(); ++r) {
+    const glm::vec3& direction = table_->direction(r);
+    const glm::dvec3 grid_direction = grid_->gridDirection(glm::dvec3(direction));
+    double left = 1.0, share = 0.0, moment = 0.0, window = 0.0;  // of what is gathered; where it ends
+    const auto give = [&] {
+      const double t = moment / share;
+      row.add(grid_origin + t * grid_direction, levelAt(t), share);
+      share = moment = 0.0;
+    };
+    density_->march(origin, direction, reach[r], longest, [&](float from, float to, float depth) {
+      if (share > 0.0 && double{to} > window) give();
+      if (share == 0.0)
+        window = double{from} + kWindow * double{grid_->meanEdge()} * (1 << levelAt(double{from}));
+      const double gone = -std::expm1(-double{depth}) * left;
+      share += gone;
+      moment += gone * (double{from} + middleOf(double{depth}) * (double{to} - double{from}));
+      left -= gone;
+      return left > kNothingLeft;
+    });
+    if (share > 0.0) give();
+  }
+}
+
+ScatterRows::Chunk ScatterRows::trace(std::size_t begin, std::size_t end, std::span<double> self,
+                                      std::span<double> others) const {
+  Chunk chunk;
+  Row row(*grid_);
+  std::vector<float> reach(table_->size());
+  chunk.begins.push_back(0);
+  for (std::size_t p = begin; p < end; ++p) {
+    traceRow(p, reach, row);
+    const double scale = row.sum() > 0.0 ? met_[p] / row.sum() : 0.0;
+    double rest = 0.0, own = 0.0;
+    row.finish([&](std::uint32_t node, double weight) {
+      if (node == p) {
+        own = scale * weight;
+        return;
+      }
+      rest += scale * weight;
+      chunk.nodes.push_back(node);
+      chunk.weights.push_back(static_cast<float>(scale * weight));
+    });
+    chunk.begins.push_back(static_cast<std::uint32_t>(chunk.nodes.size()));
+    if (!self.empty()) self[p] = own, others[p] = rest;
+  }
+  return chunk;
+}
+
+std::optional<ScatterRows> ScatterRows::build(const DensityField& density, const TransferGrid& grid,
+                                              const Occluders& occluders, const SphereTable& table,
+                                              std::span<const double> met, std::uint64_t memory,
+                                              Progress& progress, const std::stop_token& stop) {
+  ScatterRows rows(density, grid, occluders, table, met);
+  std::atomic<std::uint64_t> bytes = 0;
+  const bool done = parallelRanges(met.size(), kChunk, stop, [&](std::size_t begin, std::size_t end) {
+    Chunk chunk = rows.trace(begin, end, rows.self_, rows.others_);
+    const std::uint64_t size = chunk.bytes();
+    if (bytes.fetch_add(size) + size <= memory) {
+      chunk.nodes.shrink_to_fit(), chunk.weights.shrink_to_fit();
+      rows.chunks_[begin / kChunk] = std::move(chunk);
+    } else {
+      bytes.fetch_sub(size);
+    }
+    progress.add(end - begin);
+  });
+  if (!done) return std::nullopt;
+  rows.bytes_ = bytes;
+  return rows;
+}
+
+bool ScatterRows::apply(std::span<float> nodes, std::span<float> out, const std::stop_token& stop) const {
+  grid_->raise(nodes, kBlockColumns);
+  return parallelRanges(samples(), kChunk, stop, [&](std::size_t begin, std::size_t end) {
+    const Chunk& kept = chunks_[begin / kChunk];
+    const Chunk traced = kept.begins.empty() ? trace(begin, end, {}, {}) : Chunk{};
+    const Chunk& chunk = kept.begins.empty() ? traced : kept;
+    for (std::size_t p = begin; p < end; ++p) {
+      float sum[kBlockColumns] = {};
+      for (std::uint32_t e = chunk.begins[p - begin]; e < chunk.begins[p - begin + 1]; ++e) {
+        const float weight = chunk.weights[e];
+        const float* from = &nodes[chunk.nodes[e] * kBlockColumns];
+        for (std::size_t i = 0; i < kBlockColumns; ++i) sum[i] += weight * from[i];
+      }
+      std::copy(sum, sum + kBlockColumns, &out[p * kBlockColumns]);
+    }
+  });
+}
+
+}  // namespace lambent::baker

@@ -1,0 +1,35 @@
+// Directions spread evenly over the whole sphere (spherical Fibonacci lattice), all of the same weight, with
+// their spherical harmonics.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+namespace lambent::baker {
+
+class SphereTable {
+ public:
+  // rays > 0; order 1..8.
+  SphereTable(std::size_t rays, int order);
+
+  std::size_t size() const { return directions_.size(); }
+  const glm::vec3& direction(std::size_t ray) const { return directions_[ray]; }
+  std::span<const glm::vec3> directions() const { return directions_; }
+  // y_i, unweighted; order² values.
+  std::span<const float> harmonics(std::size_t ray) const {
+    return std::span(harmonics_).subspan(ray * columns_, columns_);
+  }
+  // Of y_i over all directions: nearly 0 but for y_0.
+  double mean(std::size_t i) const { return means_[i]; }
+
+ private:
+  std::size_t columns_;
+  std::vector<glm::vec3> directions_;
+  std::vector<float> harmonics_;
+  std::vector<double> means_;
+};
+
+}  // namespace lambent::baker

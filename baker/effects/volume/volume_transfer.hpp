@@ -1,0 +1,62 @@
+// Transfer of a volume: at each sample of its grid the mean radiance that arrives,
+//   T = (1/4pi) int L ds,   the medium's own albedo left out,
+// per coefficient of the light: by single scattering (what the medium and the surfaces around it let
+// through), and with light that was scattered any number of times (scatter_rows.hpp), until a linear solver
+// has what remains under 1e-5 of it. Surfaces block; what they send back is not added (docs/decisions/024).
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <stop_token>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "baker/effects/volume/density_field.hpp"
+#include "baker/effects/volume/occluders.hpp"
+#include "baker/effects/volume/transfer_grid.hpp"
+#include "baker/work/progress.hpp"
+
+namespace lambent::baker {
+
+// What a bake knows of a volume before light comes in.
+struct Medium {
+  std::shared_ptr<const DensityField> density;
+  std::span<const float> values;  // that `density` was made from
+  glm::vec3 albedo{1.0f};
+};
+
+struct VolumeSettings {
+  int order = 5;                    // bands of the light, 1..8
+  std::size_t rays = 1024;          // per sample over the sphere; a quarter of them for scattered light
+  int scatterings = -1;             // after the first; 0: none, -1: all
+  glm::uvec3 grid{32};              // voxels
+  std::uint64_t memory = 1u << 30;  // for rows of weights, bytes
+};
+
+struct VolumeTransfer {
+  std::shared_ptr<const DensityField> density;
+  TransferGrid grid;
+  glm::vec3 albedo{1.0f};
+  int order = 5;
+  std::uint32_t full_channels = 0;  // 0: single scattering is all; 1: grey; 3
+  // [sample][single scattering, then with all scatterings by channel][order²]
+  std::vector<float> vectors;
+
+  std::uint64_t rays = 0;
+  int iterations = 0;     // of the solver
+  double residual = 0.0;  // that it reached, relative
+  std::uint64_t row_bytes = 0;
+
+  std::size_t columns() const { return static_cast<std::size_t>(order) * static_cast<std::size_t>(order); }
+  std::size_t vectorSize() const { return (1 + full_channels) * columns(); }
+};
+
+// Nothing if stopped. Stages: "light into volumes", "scattering", "scattered light".
+std::optional<VolumeTransfer> bakeVolumeTransfer(const Medium& medium, const VolumeSettings& settings,
+                                                 const Occluders& occluders, Progress& progress,
+                                                 const std::stop_token& stop);
+
+}  // namespace lambent::baker

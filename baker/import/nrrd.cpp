@@ -1,0 +1,252 @@
+// NRRD files (teem.sourceforge.net/nrrd/format.html): a text header up to the first empty line, then the
+// values. Three dimensions, one value in each voxel, raw encoding, in the same file; everything else is
+// refused with a word about what it is.
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <map>
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "baker/import/container.hpp"
+#include "baker/import/density_file.hpp"
+
+namespace lambent::baker {
+namespace {
+
+struct Broken {
+  std::string problem;
+  std::string mend = "save it as NRRD of three dimensions with raw encoding";
+};
+
+enum class ValueType : std::uint8_t { Float, Double, Uchar, Ushort };
+constexpr std::array<std::size_t, 4> kBytesOf{4, 8, 1, 2};
+
+std::string_view trimmed(std::string_view text) {
+  const auto space = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
+  while (!text.empty() && space(text.front())) text.remove_prefix(1);
+  while (!text.empty() && space(text.back())) text.remove_suffix(1);
+  return text;
+}
+
+std::vector<std::string_view> wordsOf(std::string_view text) {
+  std::vector<std::string_view> words;
+  for (text = trimmed(text); !text.empty(); text = trimmed(text)) {
+    const std::size_t end = std::min(text.find_first_of(" \t"), text.size());
+    words.push_back(text.substr(0, end));
+    text.remove_prefix(end);
+  }
+  return words;
+}
+
+template <typename Number>
+Number numberOf(std::string_view text, const char* field) {
+  Number value{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  bool good = error == std::errc{} && end == text.data() + text.size();
+  if constexpr (std::is_floating_point_v<Number>) good = good && std::isfinite(value);
+  if (!good)
+    throw Broken{
+        fmt::format("its field \"{}\" has \"{}\", which is not a number", field, text.substr(0, 40))};
+  return value;
+}
+
+// "(1,0,0)"
+glm::dvec3 vectorOf(std::string_view text, const char* field) {
+  glm::dvec3 vector(0.0);
+  if (text.size() < 2 || text.front() != '(' || text.back() != ')')
+    throw Broken{
+        fmt::format("its field \"{}\" has \"{}\", which is not a vector", field, text.substr(0, 40))};
+  text = text.substr(1, text.size() - 2);
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::size_t comma = text.find(',');
+    if ((comma == std::string_view::npos) != (axis == 2))
+      throw Broken{fmt::format("its field \"{}\" has a vector that is not of three numbers", field)};
+    vector[axis] = numberOf<double>(trimmed(text.substr(0, comma)), field);
+    if (axis < 2) text.remove_prefix(comma + 1);
+  }
+  return vector;
+}
+
+class Header {
+ public:
+  // Takes the header off the front of the file.
+  explicit Header(std::span<const std::byte> file) {
+    const std::string_view text(reinterpret_cast<const char*>(file.data()), file.size());
+    if (!text.starts_with("NRRD000")) throw Broken{"does not begin like an NRRD file", "name a .nrrd file"};
+    for (bool first = true;; first = false) {
+      const std::size_t end = text.find('\n', size_);
+      if (end == std::string_view::npos) throw Broken{"ends within its header"};
+      const std::string_view line = trimmed(text.substr(size_, end - size_));
+      size_ = end + 1;
+      if (line.empty()) return;
+      if (!first) add(line);
+    }
+  }
+
+  std::size_t size() const { return size_; }
+  std::optional<std::string_view> find(const std::string& name) const {
+    const auto it = fields_.find(name);
+    if (it == fields_.end()) return std::nullopt;
+    return it->second;
+  }
+  std::string_view required(const std::string& name) const {
+    const auto value = find(name);
+    if (!value) throw Broken{fmt::format("its header has no field \"{}\"", name)};
+    return *value;
+  }
+
+ private:
+  void add(std::string_view line) {
+    if (line.starts_with('#') || line.find(":=") != std::string_view::npos)
+      return;  // comments, keys of others
+    const std::size_t colon = line.find(": ");
+    if (colon == std::string_view::npos)
+      throw Broken{fmt::format("its header has the line \"{}\"", line.substr(0, 60))};
+    if (!fields_.try_emplace(std::string(line.substr(0, colon)), trimmed(line.substr(colon + 1))).second)
+      throw Broken{fmt::format("its header has the field \"{}\" twice", line.substr(0, colon))};
+  }
+
+  std::size_t size_ = 0;
+  std::map<std::string, std::string> fields_;
+};
+
+ValueType typeOf(std::string_view name) {
+  static constexpr std::pair<std::string_view, ValueType> kNames[] = {
+      {"float", ValueType::Float},
+      {"double", ValueType::Double},
+      {"uchar", ValueType::Uchar},
+      {"unsigned char", ValueType::Uchar},
+      {"uint8", ValueType::Uchar},
+      {"uint8_t", ValueType::Uchar},
+      {"ushort", ValueType::Ushort},
+      {"unsigned short", ValueType::Ushort},
+      {"unsigned short int", ValueType::Ushort},
+      {"uint16", ValueType::Ushort},
+      {"uint16_t", ValueType::Ushort}};
+  for (const auto& [known, type] : kNames)
+    if (known == name) return type;
+  throw Broken{fmt::format("has values of the type \"{}\"", name),
+               "save it as float, double, uchar or ushort"};
+}
+
+// Voxel coordinates: the first value stands at (1/2, 1/2, 1/2), at "space origin".
+glm::dmat4 placement(const Header& header) {
+  glm::dmat4 matrix(1.0);
+  if (const auto directions = header.find("space directions")) {
+    const auto words = wordsOf(*directions);
+    if (words.size() != 3) throw Broken{"its field \"space directions\" is not three vectors"};
+    for (int axis = 0; axis < 3; ++axis)
+      matrix[axis] = glm::dvec4(vectorOf(words[static_cast<std::size_t>(axis)], "space directions"), 0.0);
+  } else if (const auto spacings = header.find("spacings")) {
+    const auto words = wordsOf(*spacings);
+    if (words.size() != 3) throw Broken{"its field \"spacings\" is not three numbers"};
+    for (int axis = 0; axis < 3; ++axis)
+      matrix[axis][axis] = numberOf<double>(words[static_cast<std::size_t>(axis)], "spacings");
+  }
+  const glm::dvec4 half = 0.5 * (matrix[0] + matrix[1] + matrix[2]);
+  const auto origin = header.find("space origin");
+  const glm::dvec3 first = origin ? vectorOf(*origin, "space origin") : glm::dvec3(half);
+  matrix[3] = glm::dvec4(first - glm::dvec3(half), 1.0);
+  if (!(std::abs(glm::determinant(glm::dmat3(matrix))) > 0.0)) throw Broken{"is flat by its own placement"};
+  return matrix;
+}
+
+template <typename Stored>
+float valueAt(const std::byte* bytes, bool swapped) {
+  std::array<std::byte, sizeof(Stored)> one;
+  std::memcpy(one.data(), bytes, sizeof(Stored));
+  if (swapped) std::reverse(one.begin(), one.end());
+  Stored value;
+  std::memcpy(&value, one.data(), sizeof(Stored));
+  return static_cast<float>(value);
+}
+
+std::vector<float> valuesOf(std::span<const std::byte> bytes, ValueType type, bool swapped) {
+  const std::size_t width = kBytesOf[static_cast<std::size_t>(type)];
+  std::vector<float> values(bytes.size() / width);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const std::byte* at = &bytes[i * width];
+    switch (type) {
+      case ValueType::Float:
+        values[i] = valueAt<float>(at, swapped);
+        break;
+      case ValueType::Double:
+        values[i] = valueAt<double>(at, swapped);
+        break;
+      case ValueType::Uchar:
+        values[i] = valueAt<std::uint8_t>(at, swapped);
+        break;
+      case ValueType::Ushort:
+        values[i] = valueAt<std::uint16_t>(at, swapped);
+        break;
+    }
+  }
+  return values;
+}
+
+DensityGrid read(std::span<const std::byte> file, const std::string& subject) {
+  const Header header(file);
+  if (numberOf<std::uint32_t>(header.required("dimension"), "dimension") != 3)
+    throw Broken{fmt::format("has {} dimensions, not 3", header.required("dimension"))};
+  for (const char* elsewhere : {"data file", "datafile", "line skip", "lineskip", "byte skip", "byteskip"})
+    if (header.find(elsewhere))
+      throw Broken{
+          fmt::format("has the field \"{}\": only values that follow the header are read", elsewhere)};
+  if (header.required("encoding") != "raw")
+    throw Broken{fmt::format("has the encoding \"{}\"", header.required("encoding"))};
+  const ValueType type = typeOf(header.required("type"));
+  const std::size_t width = kBytesOf[static_cast<std::size_t>(type)];
+  bool swapped = false;
+  if (width > 1) {
+    const std::string_view endian = header.required("endian");
+    if (endian != "little" && endian != "big") throw Broken{fmt::format("has the byte order \"{}\"", endian)};
+    swapped = (endian == "little") != (std::endian::native == std::endian::little);
+  }
+  const auto sizes = wordsOf(header.required("sizes"));
+  if (sizes.size() != 3) throw Broken{"its field \"sizes\" is not three numbers"};
+  glm::u64vec3 size;
+  for (int axis = 0; axis < 3; ++axis)
+    size[axis] = numberOf<std::uint32_t>(sizes[static_cast<std::size_t>(axis)], "sizes");
+  if (auto checked = checkGridSize(size, subject); !checked)
+    throw Broken{checked.error().problem, checked.error().mend};
+
+  const std::uint64_t wanted = size.x * size.y * size.z * width, there = file.size() - header.size();
+  if (there != wanted)
+    throw Broken{fmt::format("has {} bytes of values where its sizes ask for {}", there, wanted),
+                 "take it from its source again"};
+  DensityGrid grid;
+  grid.size = glm::uvec3(size);
+  grid.file_from_grid = placement(header);
+  grid.values = valuesOf(file.subspan(header.size()), type, swapped);
+  return grid;
+}
+
+}  // namespace
+
+Result<void> checkGridSize(const glm::u64vec3& size, const std::string& subject) {
+  const bool sides =
+      std::max({size.x, size.y, size.z}) <= kMostVoxelsAlongAnAxis && std::min({size.x, size.y, size.z}) >= 1;
+  if (sides && size.x * size.y * size.z <= kMostVoxels) return {};
+  return fail(subject, fmt::format("has {} x {} x {} voxels", size.x, size.y, size.z),
+              fmt::format("save it with 1 to {} along each axis, {} at most in all", kMostVoxelsAlongAnAxis,
+                          kMostVoxels));
+}
+
+Result<DensityGrid> readNrrd(const std::filesystem::path& file) {
+  auto bytes = readBytes(file, file.string());
+  if (!bytes) return failAgain(std::move(bytes.error()));
+  try {
+    return read(*bytes, file.string());
+  } catch (const Broken& broken) {
+    return fail(file.string(), broken.problem, broken.mend);
+  }
+}
+
+}  // namespace lambent::baker

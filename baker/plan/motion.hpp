@@ -1,0 +1,76 @@
+// Where everything in a scene is at rest and along its animations: boxes of bodies, places of lamps. For the
+// parts of the plan that ask what can come near what.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/mat4x4.hpp>
+#include <glm/vec3.hpp>
+
+#include "baker/import/scene.hpp"
+#include "baker/plan/group_lights.hpp"
+#include "baker/plan/rigid_groups.hpp"
+
+namespace lambent::baker {
+
+struct Box {
+  glm::vec3 low{std::numeric_limits<float>::max()}, high{std::numeric_limits<float>::lowest()};
+
+  bool empty() const { return low.x > high.x; }
+  void add(glm::vec3 p) { low = glm::min(low, p), high = glm::max(high, p); }
+  glm::vec3 centre() const { return 0.5f * low + 0.5f * high; }
+  float halfSize() const { return empty() ? 0.0f : 0.5f * glm::distance(low, high); }
+  float distance(glm::vec3 p) const { return glm::distance(p, glm::clamp(p, low, high)); }
+  bool meets(const Box& other, float within) const {
+    return glm::all(glm::lessThanEqual(low, other.high + within)) &&
+           glm::all(glm::lessThanEqual(other.low, high + within));
+  }
+};
+
+// Can `body` move about on `other`: it is less than half its size and comes within its bounds.
+bool movesAboutOn(const Box& body, const Box& other);
+
+struct PlacedBody {
+  Box all, shining;  // shining: surfaces that give off light
+  Box medium;        // of a volume, which has no surfaces
+};
+
+struct Lamp {
+  std::uint32_t node = 0;
+  std::int32_t root = -1;  // of the group that it moves with
+  float range_m = 0.0f;
+  glm::vec3 place{0.0f};
+};
+
+// Everything at one time, in the world.
+struct Moment {
+  std::vector<PlacedBody> bodies;  // as the groups
+  std::vector<Lamp> lamps;
+  std::vector<glm::mat4> world;  // world_from_node
+};
+
+class Motion {
+ public:
+  // Both outlive this.
+  Motion(const Scene& scene, const std::vector<RigidGroup>& groups);
+
+  int times() const;
+  // 0: at rest, then along the animations.
+  Moment at(int time) const;
+  std::string lampName(const Lamp& lamp) const;
+
+ private:
+  const Scene& scene_;
+  const std::vector<RigidGroup>& groups_;
+  std::vector<std::vector<std::vector<glm::vec3>>> points_;  // mesh, primitive
+  std::vector<std::set<std::int32_t>> shining_;              // materials, by group
+  float duration_s_ = 0.0f;
+};
+
+}  // namespace lambent::baker

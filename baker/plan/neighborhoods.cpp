@@ -1,0 +1,276 @@
+#include "baker/plan/neighborhoods.hpp"
+
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+#include <glm/gtc/matrix_transform.hpp>
+
+#include "baker/plan/motion.hpp"
+
+namespace lambent::baker {
+
+namespace {
+
+// How far a body's change of the light can be told, of its half-size: 1 % of irradiance and less from there.
+constexpr float kReach = 10.0f;
+// Edges of a finely meshed receiver, of the body's half-size: about the spacing of its grid.
+constexpr float kFineEdge = 0.35f;
+constexpr std::size_t kMostClips = 4u << 20;  // triangles over all times, for one pair of groups
+constexpr std::size_t kLooks = 128;           // triangles and vertices that are asked whether they face
+
+struct Triangles {
+  std::vector<glm::vec3> corners;  // three by three, in the frame of a node
+  std::uint32_t node = 0;
+};
+
+// A convex polygon of at most 3 + 6 corners.
+struct Polygon {
+  std::array<glm::vec3, 9> corners;
+  std::size_t count = 0;
+};
+
+// The part of the polygon where sign * (x[axis] - at) <= 0.
+void clip(Polygon& polygon, int axis, float at, float sign) {
+  Polygon out;
+  for (std::size_t i = 0; i < polygon.count; ++i) {
+    const glm::vec3 &a = polygon.corners[i], &b = polygon.corners[(i + 1) % polygon.count];
+    const float over_a = sign * (a[axis] - at), over_b = sign * (b[axis] - at);
+    if (over_a <= 0.0f && out.count < out.corners.size()) out.corners[out.count++] = a;
+    if ((over_a < 0.0f) != (over_b < 0.0f) && over_a != over_b && out.count < out.corners.size())
+      out.corners[out.count++] = a + over_a / (over_a - over_b) * (b - a);
+  }
+  polygon = out;
+}
+
+// Adds what of the triangle lies in the box.
+void addWithin(const std::array<glm::vec3, 3>& triangle, const Box& box, Box& sum) {
+  const glm::vec3 low = glm::min(glm::min(triangle[0], triangle[1]), triangle[2]),
+                  high = glm::max(glm::max(triangle[0], triangle[1]), triangle[2]);
+  if (!Box{low, high}.meets(box, 0.0f)) return;
+  Polygon polygon;
+  for (const glm::vec3& corner : triangle) polygon.corners[polygon.count++] = corner;
+  for (int axis = 0; axis < 3 && polygon.count > 0; ++axis) {
+    clip(polygon, axis, box.high[axis], 1.0f);
+    clip(polygon, axis, box.low[axis], -1.0f);
+  }
+  for (std::size_t i = 0; i < polygon.count; ++i) sum.add(polygon.corners[i]);
+}
+
+class Planner {
+ public:
+  Planner(const Scene& scene, const std::vector<RigidGroup>& groups)
+      : scene_(scene), groups_(groups), motion_(scene, groups), plans_(groups.size()) {
+    for (int time = 0; time < motion_.times(); ++time) moments_.push_back(motion_.at(time));
+  }
+
+  std::vector<PlannedNeighborhood> plan() {
+    takeRequests();
+    takeVolumes();
+    takeBodies();
+    for (std::size_t k = 0; k < groups_.size(); ++k)
+      if (plans_[k].baked) findReceivers(k);
+    return std::move(plans_);
+  }
+
+ private:
+  const Box& boxOf(const Moment& moment, std::size_t group) const {
+    const PlacedBody& body = moment.bodies[group];
+    return body.medium.empty() ? body.all : body.medium;
+  }
+  Box reachOf(const Moment& moment, std::size_t k) const {
+    const Box& own = boxOf(moment, k);
+    const float reach = kReach * own.halfSize();
+    return {own.low - reach, own.high + reach};
+  }
+
+  void takeRequests() {
+    for (const NeighborhoodRequest& request : scene_.neighborhoods)
+      for (std::size_t k = 0; k < groups_.size(); ++k) {
+        if (groups_[k].root != static_cast<std::int32_t>(request.node)) continue;
+        plans_[k].baked = true;
+        plans_[k].size = request.size;
+        plans_[k].extent = request.extent;
+        plans_[k].reason = "asked for";
+      }
+  }
+
+  void takeVolumes() {
+    for (std::size_t k = 0; k < groups_.size(); ++k) {
+      if (groups_[k].volume < 0 || plans_[k].baked) continue;
+      for (const Moment& moment : moments_) {
+        const Box reach = reachOf(moment, k);
+        for (std::size_t other = 0; other < groups_.size(); ++other)
+          if (const Box& all = moment.bodies[other].all; !all.empty() && all.meets(reach, 0.0f))
+            plans_[k].baked = true;
+      }
+      plans_[k].reason = plans_[k].baked ? "a volume with surfaces in its reach"
+                                         : "a volume without surfaces in its reach";
+    }
+  }
+
+  void takeBodies() {
+    std::vector<std::pair<std::size_t, std::size_t>> found;  // body, and on what
+    for (std::size_t k = 0; k < groups_.size(); ++k) {
+      if (groups_[k].volume >= 0 || plans_[k].baked) continue;
+      if (const auto on = movesOn(k)) found.emplace_back(k, *on);
+    }
+    std::size_t dark = 0;
+    for (const auto& [k, on] : found) dark += findGroupLights(scene_, groups_[k]).empty();
+    for (const auto& [k, on] : found) {
+      PlannedNeighborhood& plan = plans_[k];
+      const std::string where = fmt::format("it can come within the bounds of {}", groups_[on].name);
+      if (!findGroupLights(scene_, groups_[k]).empty()) {
+        plan.reason = where + ", but gives off light, which light samples see and a neighborhood does not carry";
+      } else if (dark > kMostNeighborhoods) {
+        plan.reason = fmt::format("{}, but so can {} other bodies: light samples see them all", where,
+                                  dark - 1);
+      } else {
+        plan.baked = true;
+        plan.reason = where;
+      }
+    }
+  }
+
+  std::optional<std::size_t> movesOn(std::size_t k) const {
+    for (const Moment& moment : moments_)
+      for (std::size_t other = 0; other < groups_.size(); ++other)
+        if (const Box &own = moment.bodies[k].all, &all = moment.bodies[other].all;
+            other != k && !own.empty() && !all.empty() && movesAboutOn(own, all))
+          return other;
+    return std::nullopt;
+  }
+
+  std::vector<Triangles> trianglesOf(std::size_t group) const {
+    std::vector<Triangles> out;
+    for (const PlannedDraw& draw : groups_[group].draws) {
+      if (draw.back) continue;
+      const bundle::MeshData& mesh = scene_.meshes[draw.mesh].primitives[draw.primitive].mesh;
+      Triangles& part = out.emplace_back();
+      part.node = draw.node;
+      for (const std::uint32_t index : mesh.indices) part.corners.push_back(mesh.positions[index]);
+    }
+    return out;
+  }
+
+  void findReceivers(std::size_t k) {
+    PlannedNeighborhood& plan = plans_[k];
+    Box within;  // group frame
+    for (std::size_t other = 0; other < groups_.size(); ++other) {
+      if (other == k || groups_[other].draws.empty()) continue;
+      Box own;
+      addReceiver(k, other, own);
+      if (own.empty()) continue;
+      within.add(own.low), within.add(own.high);
+      plan.receivers.push_back(static_cast<std::uint32_t>(other));
+      plan.matrices = plan.matrices || hasFineTransfer(other, boxOf(moments_.front(), k).halfSize());
+    }
+    if (plan.receivers.empty()) {
+      plan.baked = false;
+      plan.reason += ", but no other group has surfaces in its reach";
+      return;
+    }
+    plan.receivers_min = within.low;
+    plan.receivers_max = within.high;
+  }
+
+  // Adds the surfaces of `other` in k's reach, at all times, in k's frame.
+  void addReceiver(std::size_t k, std::size_t other, Box& sum) const {
+    const RigidGroup& group = groups_[k];
+    const std::vector<Triangles> parts = trianglesOf(other);
+    std::size_t triangles = 1;
+    for (const Triangles& part : parts) triangles += part.corners.size() / 3;
+    const std::size_t stride = 1 + moments_.size() * triangles / kMostClips;
+    const glm::mat4 rest_from_group =
+        glm::translate(glm::mat4(1.0f), group.rest_translation) * glm::mat4_cast(group.rest_rotation);
+    for (std::size_t time = 0; time < moments_.size(); time += stride) {
+      const Moment& moment = moments_[time];
+      if (boxOf(moment, k).empty() || moment.bodies[other].all.empty() ||
+          !moment.bodies[other].all.meets(reachOf(moment, k), 0.0f))
+        continue;
+      glm::mat4 world_from_group = rest_from_group;
+      if (group.root >= 0) {
+        const auto root = static_cast<std::size_t>(group.root);
+        world_from_group = moment.world[root] * glm::inverse(moments_.front().world[root]) * rest_from_group;
+      }
+      const glm::mat4 group_from_world = glm::inverse(world_from_group);
+      Box reach;  // the body's own box, as it stands in its frame, and its reach
+      const Box& box = boxOf(moments_.front(), k);
+      const glm::mat4 group_from_rest = glm::inverse(rest_from_group);
+      for (int corner = 0; corner < 8; ++corner) {
+        const glm::vec3 at(corner & 1 ? box.high.x : box.low.x, corner & 2 ? box.high.y : box.low.y,
+                           corner & 4 ? box.high.z : box.low.z);
+        reach.add(glm::vec3(group_from_rest * glm::vec4(at, 1.0f)));
+      }
+      reach.low -= kReach * box.halfSize(), reach.high += kReach * box.halfSize();
+      for (const Triangles& part : parts) {
+        const glm::mat4 group_from_node = group_from_world * moment.world[part.node];
+        for (std::size_t i = 0; i + 2 < part.corners.size(); i += 3) {
+          std::array<glm::vec3, 3> triangle;
+          for (std::size_t c = 0; c < 3; ++c)
+            triangle[c] = glm::vec3(group_from_node * glm::vec4(part.corners[i + c], 1.0f));
+          if (std::isfinite(glm::dot(triangle[0] + triangle[1] + triangle[2], glm::vec3(1.0f))))
+            addWithin(triangle, reach, sum);
+        }
+      }
+    }
+  }
+
+  // Does its own transfer do more than its normals, and is it known about as finely as the neighborhood?
+  bool hasFineTransfer(std::size_t other, float half_size) const {
+    std::vector<std::array<glm::vec3, 3>> triangles;
+    double edges = 0.0;
+    bool glossy = false;
+    for (const PlannedDraw& draw : groups_[other].draws) {
+      const std::int32_t material = scene_.meshes[draw.mesh].primitives[draw.primitive].material;
+      glossy = glossy || (material >= 0 && !scene_.materials[static_cast<std::size_t>(material)].matte());
+    }
+    for (const Triangles& part : trianglesOf(other)) {
+      const glm::mat4& world = moments_.front().world[part.node];
+      for (std::size_t i = 0; i + 2 < part.corners.size(); i += 3) {
+        auto& triangle = triangles.emplace_back();
+        for (std::size_t c = 0; c < 3; ++c)
+          triangle[c] = glm::vec3(world * glm::vec4(part.corners[i + c], 1.0f));
+        for (std::size_t c = 0; c < 3; ++c)
+          edges += double{glm::distance(triangle[c], triangle[(c + 1) % 3])};
+      }
+    }
+    if (triangles.empty()) return false;
+    if (glossy) return true;
+    if (edges / (3.0 * static_cast<double>(triangles.size())) > double{kFineEdge * half_size}) return false;
+    return shadowsItself(triangles);
+  }
+
+  // Some triangle faces some vertex.
+  static bool shadowsItself(const std::vector<std::array<glm::vec3, 3>>& triangles) {
+    const std::size_t stride = 1 + triangles.size() / kLooks;
+    for (std::size_t a = 0; a < triangles.size(); a += stride) {
+      const auto& [p, q, r] = triangles[a];
+      const glm::vec3 area = glm::cross(q - p, r - p);
+      const float length = glm::length(area);
+      if (!(length > 0.0f)) continue;
+      for (std::size_t b = 0; b < triangles.size(); b += stride) {
+        const glm::vec3 to = triangles[b][0] - p;
+        if (glm::dot(area, to) > 0.05f * length * glm::length(to)) return true;
+      }
+    }
+    return false;
+  }
+
+  const Scene& scene_;
+  const std::vector<RigidGroup>& groups_;
+  Motion motion_;
+  std::vector<Moment> moments_;
+  std::vector<PlannedNeighborhood> plans_;
+};
+
+}  // namespace
+
+std::vector<PlannedNeighborhood> planNeighborhoods(const Scene& scene,
+                                                   const std::vector<RigidGroup>& groups) {
+  return Planner(scene, groups).plan();
+}
+
+}  // namespace lambent::baker

@@ -1,0 +1,40 @@
+// Which groups get neighborhood transfer, and for whom: those that extras.lambent.neighborhood names, volumes
+// with surfaces in reach, and bodies that move about on another group of more than twice their size. Of many
+// such bodies none: light samples that see all of them cost less than a grid for each. What a body does to the
+// groups that its neighborhood carries is left out of their light samples.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "baker/import/scene.hpp"
+#include "baker/plan/rigid_groups.hpp"
+
+namespace lambent::baker {
+
+inline constexpr std::size_t kMostNeighborhoods = 8;  // that no one asked for; volumes do not count
+
+struct PlannedNeighborhood {
+  bool baked = false;
+  std::string reason;      // a phrase, true either way; empty where nothing speaks for one
+  glm::uvec3 size{0};      // points that were asked for; 0: as the bake sees fit
+  glm::vec3 extent{0.0f};  // of the grid that was asked for, m; 0: as the bake sees fit
+  // Receivers have transfer of their own, finely enough to apply it to the light that the neighborhood
+  // changes: all bands are wanted, else the three that a diffuse receiver takes.
+  bool matrices = false;
+  std::vector<std::uint32_t> receivers;                         // groups whose surfaces come within reach
+  glm::vec3 receivers_min{0.0f}, receivers_max{0.0f};           // of those surfaces, there; group frame
+
+  bool carries(std::size_t group) const {
+    return baked && std::find(receivers.begin(), receivers.end(), group) != receivers.end();
+  }
+};
+
+// One per group. Looks at everything at rest and along the animations, as planLightSamples does.
+std::vector<PlannedNeighborhood> planNeighborhoods(const Scene& scene, const std::vector<RigidGroup>& groups);
+
+}  // namespace lambent::baker

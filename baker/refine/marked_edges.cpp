@@ -1,0 +1,92 @@
+#include "baker/refine/marked_edges.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <map>
+
+#include "baker/import/subdivide.hpp"
+
+namespace lambent::baker {
+
+namespace {
+
+std::uint64_t pairOf(std::uint32_t a, std::uint32_t b) {
+  const auto [low, high] = std::minmax(a, b);
+  return std::uint64_t{low} << 32 | high;
+}
+
+// Vertices at the very same position have one number.
+std::vector<std::uint32_t> placesIn(const GroupGeometry& geometry) {
+  std::vector<std::uint32_t> order(geometry.positions.size()), places(geometry.positions.size());
+  for (std::uint32_t v = 0; v < order.size(); ++v) order[v] = v;
+  const auto key = [&](std::uint32_t v) {
+    const glm::vec3& p = geometry.positions[v];
+    return std::array{p.x, p.y, p.z};
+  };
+  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
+  std::uint32_t place = 0;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    if (i > 0 && key(order[i]) != key(order[i - 1])) ++place;
+    places[order[i]] = place;
+  }
+  return places;
+}
+
+// Calls visit(a, b) with the vertices at the ends of every edge of every triangle.
+template <typename Visit>
+void forEdges(const bundle::MeshData& mesh, const Visit& visit) {
+  for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3)
+    for (std::size_t c = 0; c < 3; ++c) visit(mesh.indices[i + c], mesh.indices[i + (c + 1) % 3]);
+}
+
+}  // namespace
+
+MarkedEdges::MarkedEdges(const std::vector<RigidGroup>& groups, const std::vector<GroupGeometry>& geometries,
+                         const std::vector<std::vector<bundle::MeshData>>& meshes)
+    : groups_(groups), geometries_(geometries), meshes_(meshes), in_group_(groups.size()) {
+  for (const GroupGeometry& geometry : geometries) place_.push_back(placesIn(geometry));
+  for (const auto& primitives : meshes) in_mesh_.emplace_back(primitives.size());
+}
+
+std::uint64_t MarkedEdges::placesOf(std::size_t group, std::uint32_t a, std::uint32_t b) const {
+  return pairOf(place_[group][a], place_[group][b]);
+}
+
+bool MarkedEdges::mark(std::size_t group, std::uint32_t a, std::uint32_t b) {
+  return in_group_[group].insert(placesOf(group, a, b)).second;
+}
+
+// From groups to the meshes that are drawn there, and back. False once nothing is new.
+bool MarkedEdges::spread() {
+  bool any = false;
+  for (std::size_t g = 0; g < groups_.size(); ++g)
+    for (std::size_t d = 0; d < groups_[g].draws.size(); ++d) {
+      const PlannedDraw& draw = groups_[g].draws[d];
+      const std::uint32_t first = geometries_[g].draws[d].first_vertex;
+      auto& marked = in_mesh_[draw.mesh][draw.primitive];
+      if (in_group_[g].empty() && marked.empty()) continue;
+      forEdges(meshes_[draw.mesh][draw.primitive], [&](std::uint32_t a, std::uint32_t b) {
+        const std::uint64_t places = placesOf(g, first + a, first + b);
+        if (in_group_[g].contains(places))
+          any |= marked.insert(pairOf(a, b)).second;
+        else if (marked.contains(pairOf(a, b)))
+          any |= in_group_[g].insert(places).second;
+      });
+    }
+  return any;
+}
+
+void MarkedEdges::split(std::vector<std::vector<bundle::MeshData>>& meshes) {
+  while (spread()) {
+  }
+  for (std::size_t m = 0; m < in_mesh_.size(); ++m)
+    for (std::size_t p = 0; p < in_mesh_[m].size(); ++p) {
+      const auto& marked = in_mesh_[m][p];
+      if (marked.empty()) continue;
+      splitMarkedEdges(meshes[m][p],
+                       [&](std::uint32_t a, std::uint32_t b) { return marked.contains(pairOf(a, b)); });
+    }
+}
+
+}  // namespace lambent::baker

@@ -1,0 +1,293 @@
+#include "baker/refine/refine.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <numeric>
+#include <optional>
+#include <unordered_map>
+
+#include <glm/geometric.hpp>
+
+#include "baker/refine/marked_edges.hpp"
+#include "baker/refine/shadow_probe.hpp"
+#include "baker/transport/samples.hpp"
+#include "baker/work/parallel.hpp"
+
+namespace lambent::baker {
+
+namespace {
+
+// A triangle is probed at n² points, where its longest edge is n times this share of the group's diagonal.
+constexpr float kProbeSpacing = 1.0f / 24.0f;
+constexpr int kMostProbesAlong = 8;
+// Nothing is split below this share of the diagonal.
+constexpr float kShortestEdge = 1.0f / 1024.0f;
+// Of a triangle that is split, edges of at least this share of its longest.
+constexpr float kSplitShare = 0.6f;
+// A round splits triangles until what is left over has this share of the square error that is allowed, but no
+// more than this share of all of it: what the first splits show decides where the next ones go.
+constexpr double kLeftOfAllowed = 0.6, kLeftOfAll = 0.5;
+
+// Where a shadow was probed, by its bits: triangles come and go, surfaces stay where they are.
+using PointKey = std::array<std::uint32_t, 7>;
+struct PointKeyHash {
+  std::size_t operator()(const PointKey& key) const {
+    std::uint64_t hash = 0x9E3779B97F4A7C15u;
+    for (const std::uint32_t word : key) hash = (hash ^ word) * 0xD6E8FEB86659FD93u, hash ^= hash >> 32;
+    return hash;
+  }
+};
+
+PointKey keyOf(const glm::vec3& position, const glm::vec3& normal, SampleKind kind) {
+  const auto bits = [](float value) { return std::bit_cast<std::uint32_t>(value); };
+  return {bits(position.x),
+          bits(position.y),
+          bits(position.z),
+          bits(normal.x),
+          bits(normal.y),
+          bits(normal.z),
+          static_cast<std::uint32_t>(kind)};
+}
+
+// A point inside a triangle, by the weights of its corners.
+struct InnerPoint {
+  glm::vec3 weights;
+};
+
+// Middles of n² equal parts of a triangle.
+std::vector<InnerPoint> innerPoints(int n) {
+  std::vector<InnerPoint> points;
+  const float part = 1.0f / (3.0f * static_cast<float>(n));
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; i + j < n; ++j) {
+      const auto add = [&](int a, int b) {
+        const float u = static_cast<float>(a) * part, v = static_cast<float>(b) * part;
+        points.push_back({{1.0f - u - v, u, v}});
+      };
+      add(3 * i + 1, 3 * j + 1);
+      if (i + j + 1 < n) add(3 * i + 2, 3 * j + 2);
+    }
+  return points;
+}
+
+// One group through all rounds.
+class GroupRefiner {
+ public:
+  GroupRefiner(const RigidGroup& group, const ShadowProbe& probe) : group_(group), probe_(probe) {}
+
+  Result<void> prepare(const GroupGeometry& geometry, const Scene& scene,
+                       const std::vector<std::shared_ptr<const AlphaMap>>& alpha_maps) {
+    auto rays = RayScene::build(geometry, scene, alpha_maps);
+    if (!rays) return failAgain(rays.error());
+    rays_ = std::move(*rays);
+    diagonal_ = glm::distance(geometry.bounds_min, geometry.bounds_max);
+    return {};
+  }
+
+  // Area times square error of every triangle. False when stopped.
+  bool measure(const GroupGeometry& geometry, Progress& progress, const std::stop_token& stop);
+
+  double relativeError() const { return area_ > 0.0 ? std::sqrt(square_error_ / area_) : 0.0; }
+  std::uint64_t raysTraced() const { return traced_; }
+
+  // Marks edges of the worst triangles, until the rest is within the bound or `room` new vertices are spent.
+  // Returns how many edges were marked.
+  std::size_t markWorst(std::size_t group, const GroupGeometry& geometry, double bound, std::size_t& room,
+                        MarkedEdges& edges) const;
+
+ private:
+  struct Point {
+    glm::vec3 normal{0.0f};
+    SampleKind kind = SampleKind::Plain;
+    std::vector<SampleOrigin> origins;
+    std::uint32_t shadow = 0;  // into shadows_
+  };
+  std::uint32_t shadowAt(const glm::vec3& position, const glm::vec3& normal, SampleKind kind,
+                         std::span<const SampleOrigin> origins, std::vector<Point>& missing);
+
+  const RigidGroup& group_;
+  const ShadowProbe& probe_;
+  std::optional<RayScene> rays_;
+  float diagonal_ = 0.0f;
+  std::unordered_map<PointKey, std::uint32_t, PointKeyHash> known_;
+  std::vector<Shadow> shadows_;
+  std::vector<double> triangle_error_;
+  double square_error_ = 0.0, area_ = 0.0;
+  std::uint64_t traced_ = 0;
+};
+
+std::uint32_t GroupRefiner::shadowAt(const glm::vec3& position, const glm::vec3& normal, SampleKind kind,
+                                     std::span<const SampleOrigin> origins, std::vector<Point>& missing) {
+  const auto next = static_cast<std::uint32_t>(shadows_.size() + missing.size());
+  const auto [entry, is_new] = known_.try_emplace(keyOf(position, normal, kind), next);
+  if (is_new) missing.push_back({normal, kind, {origins.begin(), origins.end()}, next});
+  return entry->second;
+}
+
+float longestEdge(const GroupGeometry& geometry, const glm::uvec3& t) {
+  const glm::vec3 &a = geometry.positions[t.x], &b = geometry.positions[t.y], &c = geometry.positions[t.z];
+  return std::max({glm::distance(a, b), glm::distance(b, c), glm::distance(c, a)});
+}
+
+bool GroupRefiner::measure(const GroupGeometry& geometry, Progress& progress, const std::stop_token& stop) {
+  const SampleSet samples = buildSamples(geometry);
+  std::vector<Point> missing;
+  std::vector<std::uint32_t> of_sample(samples.size());
+  std::vector<SampleKind> kinds(samples.size());
+  for (const SampleCell& cell : samples.cells) std::fill_n(kinds.begin() + cell.first, cell.count, cell.kind);
+  for (std::size_t s = 0; s < samples.size(); ++s)
+    of_sample[s] =
+        shadowAt(samples.positions[s], samples.normals[s], kinds[s], samples.originsOf(s), missing);
+
+  struct Inner {
+    std::uint32_t triangle = 0, shadow = 0;
+    glm::vec3 weights{0.0f};
+  };
+  std::vector<Inner> inner;
+  for (std::uint32_t t = 0; t < geometry.triangles.size(); ++t) {
+    const glm::uvec3 corners = geometry.triangles[t];
+    const glm::vec3 a = geometry.positions[corners.x], b = geometry.positions[corners.y],
+                    c = geometry.positions[corners.z];
+    const glm::vec3 across = glm::cross(b - a, c - a);
+    const float twice_area = glm::length(across);
+    const glm::vec3 face = across / twice_area;
+    const SampleKind kind = kinds[samples.vertex_sample[corners.x]];
+    const int along =
+        std::clamp(static_cast<int>(std::ceil(longestEdge(geometry, corners) / (kProbeSpacing * diagonal_))),
+                   1, kMostProbesAlong);
+    for (const InnerPoint& point : innerPoints(along)) {
+      const glm::vec3 w = point.weights;
+      const glm::vec3 at = w.x * a + w.y * b + w.z * c;
+      const glm::vec3 sum = w.x * geometry.normals[corners.x] + w.y * geometry.normals[corners.y] +
+                            w.z * geometry.normals[corners.z];
+      const float length = glm::length(sum);
+      const SampleOrigin origin{at + standOff(at, std::sqrt(0.5f * twice_area)) * face, face, 1.0f};
+      inner.push_back(
+          {t, shadowAt(at, length > 0.0f ? sum / length : face, kind, std::span(&origin, 1), missing), w});
+    }
+  }
+
+  shadows_.resize(shadows_.size() + missing.size());
+  const bool finished = parallelRanges(missing.size(), 64, stop, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const Point& point = missing[i];
+      shadows_[point.shadow] = probe_.at(*rays_, point.origins, point.normal, point.kind);
+    }
+    progress.add(end - begin);
+  });
+  if (!finished) return false;
+  traced_ += missing.size() * probe_.rays();
+
+  triangle_error_.assign(geometry.triangles.size(), 0.0);
+  square_error_ = area_ = 0.0;
+  for (std::size_t first = 0; first < inner.size();) {
+    const std::uint32_t t = inner[first].triangle;
+    std::size_t last = first;
+    double sum = 0.0;
+    for (; last < inner.size() && inner[last].triangle == t; ++last) {
+      const glm::vec3 w = inner[last].weights;
+      Shadow between{};
+      for (int c = 0; c < 3; ++c) {
+        const Shadow& corner = shadows_[of_sample[samples.vertex_sample[geometry.triangles[t][c]]]];
+        for (std::size_t i = 0; i < between.size(); ++i) between[i] += w[c] * corner[i];
+      }
+      sum += double{squaredDifference(between, shadows_[inner[last].shadow])};
+    }
+    const glm::uvec3 corners = geometry.triangles[t];
+    const glm::vec3 a = geometry.positions[corners.x];
+    const double area =
+        0.5 *
+        double{glm::length(glm::cross(geometry.positions[corners.y] - a, geometry.positions[corners.z] - a))};
+    triangle_error_[t] = area * sum / static_cast<double>(last - first);
+    square_error_ += triangle_error_[t];
+    area_ += area;
+    first = last;
+  }
+  return true;
+}
+
+std::size_t GroupRefiner::markWorst(std::size_t group, const GroupGeometry& geometry, double bound,
+                                    std::size_t& room, MarkedEdges& edges) const {
+  const double allowed = bound * bound * area_;
+  if (square_error_ <= allowed) return 0;
+  std::vector<std::uint32_t> order(geometry.triangles.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::uint32_t a, std::uint32_t b) { return triangle_error_[a] > triangle_error_[b]; });
+  const double enough = std::max(kLeftOfAllowed * allowed, kLeftOfAll * square_error_);
+  double left = square_error_;
+  std::size_t marked = 0;
+  for (const std::uint32_t t : order) {
+    if (left <= enough || room < 3) break;
+    left -= triangle_error_[t];
+    const glm::uvec3 corners = geometry.triangles[t];
+    const float longest = longestEdge(geometry, corners);
+    if (longest < kShortestEdge * diagonal_) continue;
+    for (int c = 0; c < 3; ++c) {
+      const std::uint32_t a = corners[c], b = corners[(c + 1) % 3];
+      if (glm::distance(geometry.positions[a], geometry.positions[b]) < kSplitShare * longest) continue;
+      if (!edges.mark(group, a, b)) continue;
+      ++marked;
+      --room;
+    }
+  }
+  return marked;
+}
+
+std::size_t countVertices(const std::vector<std::vector<bundle::MeshData>>& meshes) {
+  std::size_t count = 0;
+  for (const auto& primitives : meshes)
+    for (const bundle::MeshData& mesh : primitives) count += mesh.positions.size();
+  return count;
+}
+
+}  // namespace
+
+Result<RefineReport> refineMeshes(const Scene& scene, const std::vector<RigidGroup>& groups,
+                                  const std::vector<std::shared_ptr<const AlphaMap>>& alpha_maps,
+                                  bool with_glossy, const RefineOptions& options,
+                                  std::vector<std::vector<bundle::MeshData>>& meshes, Progress& progress,
+                                  const std::stop_token& stop) {
+  RefineReport report;
+  report.vertices_before = countVertices(meshes);
+  const auto grown =
+      static_cast<std::size_t>(options.most_growth * static_cast<double>(report.vertices_before)) +
+      options.most_added;
+  const std::size_t most = std::min(grown, options.most_vertices);
+  const ShadowProbe probe(options.rays);
+  std::vector<GroupRefiner> refiners;
+  for (const RigidGroup& group : groups) refiners.emplace_back(group, probe);
+
+  progress.begin("refinement", 0, "probes");
+  for (int round = 0;; ++round) {
+    std::vector<GroupGeometry> geometries;
+    for (const RigidGroup& group : groups)
+      geometries.push_back(buildGroupGeometry(group, scene, meshes, with_glossy));
+    report.error_after = 0.0;
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+      if (groups[g].draws.empty()) continue;
+      if (round == 0)
+        if (auto prepared = refiners[g].prepare(geometries[g], scene, alpha_maps); !prepared)
+          return failAgain(prepared.error());
+      if (!refiners[g].measure(geometries[g], progress, stop))
+        return fail(scene.source.string(), "stopped; nothing was written");
+      report.error_after = std::max(report.error_after, refiners[g].relativeError());
+    }
+    if (round == 0) report.error_before = report.error_after;
+    report.vertices_after = countVertices(meshes);
+    if (round == options.rounds || report.vertices_after >= most) break;
+    MarkedEdges edges(groups, geometries, meshes);
+    std::size_t room = most - report.vertices_after, marked = 0;
+    for (std::size_t g = 0; g < groups.size(); ++g)
+      if (!groups[g].draws.empty())
+        marked += refiners[g].markWorst(g, geometries[g], double{options.bound}, room, edges);
+    if (marked == 0) break;
+    edges.split(meshes);
+  }
+  for (const GroupRefiner& refiner : refiners) report.rays += refiner.raysTraced();
+  return report;
+}
+
+}  // namespace lambent::baker

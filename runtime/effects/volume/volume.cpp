@@ -1,0 +1,140 @@
+#include "runtime/effects/volume/volume.hpp"
+
+#include <algorithm>
+
+#include "lambent_effects_volume_embedded.hpp"
+#include "runtime/streaming/volume_blocks.hpp"
+
+namespace lambent::effects::volume {
+
+static_assert(kBlock == streaming::kVolumeBlock && kMaxWorkGroupsX == gpu::WorkList::kMaxGroupsX);
+
+namespace {
+
+constexpr gpu::FindText kShaders[] = {&embedded::lambent_effects_volume::find};
+
+// Whether the samples of the cell hold nothing for the mode, so that the light itself is shown. The glossy
+// effect fills its own.
+bool isOpen(const streaming::ResidentCell& cell, const diffuse::TransferTable::Cell& transfers,
+            TransferMode mode) {
+  return !cell.matrices() && (mode == TransferMode::Unshadowed || !cell.usable() || transfers.count == 0);
+}
+
+}  // namespace
+
+SlabLayout slabLayoutOf(const glm::uvec3& transfer_size, std::uint32_t outputs) {
+  SlabLayout layout;
+  layout.slabs_z = std::clamp(kMaxLightSide / transfer_size.z, 1u, outputs);
+  layout.slabs_x = (outputs + layout.slabs_z - 1) / layout.slabs_z;
+  layout.texture_size = {transfer_size.x * layout.slabs_x, transfer_size.y, transfer_size.z * layout.slabs_z};
+  return layout;
+}
+
+Volume::Volume(bool precise)
+    : precise_(precise), records_table_("volume cells"), work_("volume scatter work") {}
+
+gpu::Texture Volume::makeTexture(const streaming::ResidentVolume& volume) const {
+  const glm::uvec3 size = slabLayoutOf(volume.grid.transfer_size, volume.outputs).texture_size;
+  gpu::Texture texture("light of a volume", {.format = precise_ ? GLenum{GL_RGBA32F} : GLenum{GL_RGBA16F},
+                                             .width = size.x,
+                                             .height = size.y,
+                                             .depth = size.z});
+  constexpr float kNothing[] = {0.0f, 0.0f, 0.0f, 0.0f};
+  glClearTexImage(texture.id(), 0, GL_RGBA, GL_FLOAT, kNothing);
+  for (const GLenum axis : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R})
+    glTextureParameteri(texture.id(), axis, GL_CLAMP_TO_EDGE);
+  for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
+    glTextureParameteri(texture.id(), filter, GL_LINEAR);
+  return texture;
+}
+
+void Volume::collect(const streaming::Residency& residency, const lighting::GroupLights& lights,
+                     const diffuse::Diffuse& diffuse, const glossy::Glossy& glossy, TransferMode mode) {
+  work_.clear();
+  records_.clear();
+  held_.resize(residency.volumes().size());
+  for (std::uint32_t v = 0; v < held_.size(); ++v) {
+    const streaming::ResidentVolume& volume = residency.volumes()[v];
+    const streaming::ResidentGroup& group = residency.groups()[volume.group];
+    if (!volume.ready() || volume.sample_count == 0) continue;
+    const auto first = static_cast<std::uint32_t>(records_.size());
+    Seen now{.shaded = diffuse.versionOf(volume.group) + glossy.versionOf(volume.group),
+             .light = 0,
+             .version = volume.version,
+             .open_cells = 0,
+             .mode = mode};
+    const SlabLayout layout = slabLayoutOf(volume.grid.transfer_size, volume.outputs);
+    for (std::uint32_t c = group.first_cell; c < group.first_cell + group.cell_count; ++c) {
+      const streaming::ResidentCell& cell = residency.cells()[c];
+      const bool open = isOpen(cell, diffuse.tables().cells[c], mode);
+      if (open) {
+        ++now.open_cells;
+        now.light = lights.versionOf(volume.group);
+      }
+      const glm::uvec3& size = volume.grid.transfer_size;
+      records_.push_back({.first_output = cell.first_output,
+                          .first_voxel = cell.first_sample,
+                          .sample_count = cell.sample_count,
+                          .outputs = volume.outputs,
+                          .size = {size.x, size.y, size.z},
+                          .slabs_z = layout.slabs_z,
+                          .open = open ? group.order * group.order : 0,
+                          .light = lights.firstOf(volume.group),
+                          .g = volume.grid.g,
+                          .pad = 0});
+    }
+    Held& held = held_[v];
+    if (held.light && held.seen == now) continue;
+    if (!held.light) held.light = makeTexture(volume);
+    held.seen = now;
+    ++shaded_.volumes;
+    shaded_.slabs += volume.outputs;
+    for (std::uint32_t r = first; r < records_.size(); ++r)
+      work_.add({v, group.samples.page}, r, records_[r].sample_count, kScatterGroupSize);
+  }
+}
+
+Result<void> Volume::shade(streaming::Residency& residency, const lighting::GroupLights& lights,
+                           const diffuse::Diffuse& diffuse, const glossy::Glossy& glossy, TransferMode mode,
+                           gpu::Counters& counters) {
+  shaded_ = {};
+  if (residency.volumes().empty()) return {};
+  collect(residency, lights, diffuse, glossy, mode);
+  if (work_.empty()) return {};
+  if (!program_) {
+    std::vector<gpu::Define> defines;
+    if (precise_) defines.push_back({"LAMBENT_PRECISE", "1"});
+    Result<gpu::Program> made = gpu::Program::create(
+        "volume scatter", {{GL_COMPUTE_SHADER, "volume_scatter.comp"}}, kShaders, defines);
+    if (!made) return failAgain(made.error());
+    program_ = std::move(*made);
+  }
+  program_->use();
+  work_.upload(counters);
+  records_table_.assign(std::span<const ScatterRecord>(records_));
+  counters.uploaded_bytes += records_.size() * sizeof(ScatterRecord);
+  lights.bindStorage(kBindLights);
+  records_table_.bindStorage(kBindScatter);
+  std::size_t index = 0;
+  for (const auto& [key, items] : work_.batches()) {
+    residency.volumes()[key[0]].voxels.bindStorage(kBindVoxels);
+    residency.samples().page(key[1]).bindStorage(kBindSamples);
+    glBindImageTexture(kImageLight, held_[key[0]].light.id(), 0, GL_TRUE, 0, GL_WRITE_ONLY,
+                       precise_ ? GL_RGBA32F : GL_RGBA16F);
+    work_.dispatch(index++, kBindWork, counters);
+  }
+  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
+  return {};
+}
+
+std::uint64_t Volume::textureBytes() const {
+  std::uint64_t bytes = 0;
+  for (const Held& held : held_) {
+    if (!held.light) continue;
+    const gpu::TextureDesc& desc = held.light.desc();
+    bytes += std::uint64_t{desc.width} * desc.height * desc.depth * (precise_ ? 16 : 8);
+  }
+  return bytes;
+}
+
+}  // namespace lambent::effects::volume

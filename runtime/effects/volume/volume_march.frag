@@ -1,0 +1,86 @@
+// Each pixel's ray through the volumes, as far as the surface that stands there. Into a picture of one sample a pixel at
+// once; of several, what lies before the nearest and before the farthest of its samples, for volume_composite.frag: a ray
+// is gone along once, and an edge in the mist has no halo.
+#include "volume_shared.h"
+
+layout(std430, binding = kBindMarch) readonly buffer March { MarchRecord records[]; };
+layout(std430, binding = kBindBlocks) readonly buffer Blocks { float blocks[]; };
+layout(binding = kUnitDensity) uniform sampler3D densities[LAMBENT_VOLUMES];
+layout(binding = kUnitDensity + LAMBENT_VOLUMES) uniform sampler3D lights[LAMBENT_VOLUMES];
+layout(location = 0) uniform vec4 scale;   // of clip_from_view: [0][0], [1][1], [2][2], [3][2]
+layout(location = 1) uniform vec4 offset;  // [2][0], [2][1], [3][0], [3][1]
+layout(location = 2) uniform vec2 picture_size;
+layout(location = 3) uniform bool perspective;
+layout(location = 4) uniform float step_voxels;
+
+#include "volume_march.glsl"
+
+float densityAt(int v, vec3 place) { return textureLod(densities[v], place, 0.0).r; }
+vec4 lightAt(int v, vec3 place) { return textureLod(lights[v], place, 0.0); }
+float blockMaximumAt(uint block) { return blocks[block]; }
+
+// z of what has this depth in clip space, -1..1; negative before the eye.
+float viewZ(float depth) { return perspective ? -scale.w / (depth + scale.z) : (depth - scale.w) / scale.z; }
+
+#if LAMBENT_STOPS == 1
+layout(binding = kUnitDepth) uniform sampler2D depth_picture;
+layout(location = 0) out vec4 color;
+#else
+layout(binding = kUnitDepth) uniform sampler2DMS depth_picture;
+layout(location = 0) out vec4 near;
+layout(location = 1) out vec4 far;
+#endif
+
+// In (0, 1], of a pixel the same in every frame; the hash is pcg by O'Neill, as Jarzynski and Olano 2020 give it.
+float jitterOf(uvec2 pixel) {
+  uint state = pixel.x + 65536u * pixel.y;
+  state = state * 747796405u + 2891336453u;
+  uint word = ((state >> ((state >> 28u) + 4u)) ^ state) * 277803737u;
+  word = (word >> 22u) ^ word;
+  return (float(word >> 8u) + 1.0) / 16777216.0;
+}
+
+void main() {
+  ivec2 pixel = ivec2(gl_FragCoord.xy);
+  vec2 clip = (vec2(pixel) + 0.5) / picture_size * 2.0 - 1.0;
+  vec3 origin = vec3(0.0), direction = vec3(0.0, 0.0, -1.0);
+  if (perspective)
+    direction = normalize(vec3((clip + offset.xy) / scale.xy, -1.0));
+  else
+    origin.xy = (clip - offset.zw) / scale.xy;
+  // 1 is the clear's: nothing stands there.
+  float stops[LAMBENT_STOPS];
+#if LAMBENT_STOPS == 1
+  float depth = texelFetch(depth_picture, pixel, 0).r;
+  stops[0] = depth < 1.0 ? viewZ(2.0 * depth - 1.0) / direction.z : kInfinity;
+#else
+  float nearest = 1.0, farthest = 0.0;
+  for (int i = 0; i < LAMBENT_SAMPLES; ++i) {
+    float depth = texelFetch(depth_picture, pixel, i).r;
+    nearest = min(nearest, depth);
+    farthest = max(farthest, depth);
+  }
+  stops[0] = nearest < 1.0 ? viewZ(2.0 * nearest - 1.0) / direction.z : kInfinity;
+  stops[1] = farthest < 1.0 ? viewZ(2.0 * farthest - 1.0) / direction.z : kInfinity;
+#endif
+  MarchRecord marched[LAMBENT_VOLUMES];
+  VolumeRay rays[LAMBENT_VOLUMES];
+  for (int v = 0; v < LAMBENT_VOLUMES; ++v) {
+    marched[v] = records[v];
+    rays[v] = enterVolume(marched[v], origin, direction, viewZ(-1.0) / direction.z);
+  }
+  vec4 gathered[LAMBENT_STOPS];
+#ifdef LAMBENT_JITTER
+  marchVolumes(marched, rays, stops, step_voxels, jitterOf(uvec2(pixel)), gathered);
+#else
+  marchVolumes(marched, rays, stops, step_voxels, 1.0, gathered);
+#endif
+#if LAMBENT_STOPS == 1
+  if (gathered[0].a == 0.0) discard;  // as it was, to the last bit
+  color = vec4(gathered[0].rgb, lostOf(gathered[0].a));
+#else
+  const vec3 kLargest = vec3(65504.0);  // of a half float
+  near = vec4(clamp(gathered[0].rgb, -kLargest, kLargest), exp(-gathered[0].a));
+  far = vec4(clamp(gathered[1].rgb, -kLargest, kLargest), exp(-gathered[1].a));
+#endif
+}

@@ -1,0 +1,254 @@
+// Light along a ray through up to LAMBENT_VOLUMES volumes at once: the math only, no bindings. The CPU twin is
+// volume_ref.hpp, with the same names and the same order of terms.
+//
+//   L = sum_k tau_k (1 - exp(-sigma_k d_k)) S_k + tau_end L_behind,   tau_k = exp(-sum_j<k sigma_j d_j)
+//
+// The products telescope: with S = 1 and L_behind = 1 the sum is 1 whatever the steps are. Within a step the density is
+// that of its middle, and S that of the place where, on average, the step scatters; so a step is exact where density is
+// constant and S linear, however dense it is. Where volumes overlap, their extinctions add up.
+//
+// S is the radiance that arrives, convolved with the phase function. The ray goes along d, the light that reaches its
+// start along -d, and light that arrives from s along -s: Henyey-Greenstein's cosine is dot(s, d), and
+//   S(d) = int p(dot(s, d)) L(s) ds = sum_lm g^l L_lm y_lm(d).
+// With g > 0 a medium is bright where one looks towards the light.
+#include "volume_shared.h"
+
+const float kInfinity = 1e30;
+const float kDeep = 9.2103404;  // exp(-kDeep) = 1e-4: nothing behind is seen
+const int kMaxIntervals = 8192;  // more than any ray meets
+
+// Of density and light: by place in the texture, 0..1.
+float densityAt(int v, vec3 place);
+vec4 lightAt(int v, vec3 place);
+float blockMaximumAt(uint block);  // of all volumes
+
+// 1 - exp(-x)
+float lostOf(float x) { return x < 0.02 ? x * (1.0 - x * (0.5 - x / 6.0)) : 1.0 - exp(-x); }
+
+// Where in a step of optical depth x scattering takes place on average: int t exp(-x t) dt / int exp(-x t) dt.
+float meanPlace(float x) {
+  return x < 0.3 ? 0.5 - x / 12.0 + x * x * x / 720.0 : 1.0 / x - 1.0 / (exp(min(x, 80.0)) - 1.0);
+}
+
+// A ray and a volume.
+struct VolumeRay {
+  vec3 origin;     // voxel coordinates
+  vec3 direction;  // voxels per metre of the ray
+  vec3 towards;    // unit, in the group's frame
+  float metres;    // of the group, per metre of the ray
+  float enter;     // metres; not below leave: the ray misses it
+  float leave;
+  float voxel;  // metres that the ray takes for the length of a voxel
+  // The block that the ray is in, and where it leaves it in each direction.
+  ivec3 block;
+  vec3 exits;
+  vec3 strides;
+};
+
+vec3 rotated(float rows[12], vec3 v) {
+  return vec3(dot(vec3(rows[0], rows[1], rows[2]), v), dot(vec3(rows[4], rows[5], rows[6]), v),
+              dot(vec3(rows[8], rows[9], rows[10]), v));
+}
+
+VolumeRay enterVolume(MarchRecord record, vec3 origin_vs, vec3 dir_vs, float begin) {
+  VolumeRay ray;
+  ray.origin = rotated(record.grid_from_view, origin_vs) +
+               vec3(record.grid_from_view[3], record.grid_from_view[7], record.grid_from_view[11]);
+  ray.direction = rotated(record.grid_from_view, dir_vs);
+  vec3 in_group = rotated(record.group_from_view, dir_vs);
+  ray.metres = length(in_group);
+  ray.towards = in_group / ray.metres;
+  float speed = length(ray.direction);
+  ray.voxel = 1.0 / speed;
+  ray.enter = begin;
+  ray.leave = kInfinity;
+  for (int axis = 0; axis < 3; ++axis) {
+    // Rays that are as good as parallel to a face never pass it.
+    if (abs(ray.direction[axis]) < 1e-6 * speed) ray.direction[axis] = 0.0;
+    float o = ray.origin[axis], d = ray.direction[axis], far = float(record.size[axis]);
+    if (d == 0.0) {
+      if (o < 0.0 || o > far) ray.leave = -kInfinity;
+    } else {
+      float first = -o / d, second = (far - o) / d;
+      ray.enter = max(ray.enter, min(first, second));
+      ray.leave = min(ray.leave, max(first, second));
+    }
+  }
+  vec3 place = ray.origin + ray.enter * ray.direction;
+  for (int axis = 0; axis < 3; ++axis) {
+    int last = int((record.size[axis] - 1u) / kBlock);
+    ray.block[axis] = clamp(int(floor(place[axis] / float(kBlock))), 0, last);
+    float o = ray.origin[axis], d = ray.direction[axis];
+    int border = ray.block[axis] + (d > 0.0 ? 1 : 0);
+    ray.exits[axis] = d == 0.0 ? kInfinity : (float(int(kBlock) * border) - o) / d;
+    ray.strides[axis] = d == 0.0 ? 0.0 : float(kBlock) / abs(d);
+  }
+  return ray;
+}
+
+// Follows the ray into the block in which it is at t; false: it has left the volume.
+bool followBlocks(inout VolumeRay ray, MarchRecord record, float t) {
+  while (min(ray.exits.x, min(ray.exits.y, ray.exits.z)) <= t) {
+    int axis = ray.exits.x <= min(ray.exits.y, ray.exits.z) ? 0 : ray.exits.y <= ray.exits.z ? 1 : 2;
+    ray.block[axis] += ray.direction[axis] > 0.0 ? 1 : -1;
+    ray.exits[axis] += ray.strides[axis];
+    if (ray.block[axis] < 0 || ray.block[axis] > int((record.size[axis] - 1u) / kBlock)) return false;
+  }
+  return true;
+}
+
+bool blockFilled(VolumeRay ray, MarchRecord record) {
+  uint across = (record.size[0] - 1u) / kBlock + 1u, up = (record.size[1] - 1u) / kBlock + 1u;
+  return blockMaximumAt(record.first_block + uint(ray.block.x) +
+                        across * (uint(ray.block.y) + up * uint(ray.block.z))) > 0.0;
+}
+
+// Extinction per metre of the ray.
+float extinctionAt(int v, MarchRecord record, VolumeRay ray, float t) {
+  vec3 size = vec3(record.size[0], record.size[1], record.size[2]);
+  return record.density_scale * ray.metres * densityAt(v, (ray.origin + t * ray.direction) / size);
+}
+
+#if LAMBENT_BANDS > 1
+// y_i(d), without the Condon-Shortley sign.
+void basisAt(vec3 d, uint bands, out float y[LAMBENT_BANDS * LAMBENT_BANDS]) {
+  float z2 = d.z * d.z;
+  y[0] = 0.282094792;
+  y[1] = 0.488602512 * d.y;
+  y[2] = 0.488602512 * d.z;
+  y[3] = 0.488602512 * d.x;
+#if LAMBENT_BANDS > 2
+  float c2 = d.x * d.x - d.y * d.y, s2 = 2.0 * d.x * d.y;
+  y[4] = 0.546274215 * s2;
+  y[5] = 1.09254843 * d.z * d.y;
+  y[6] = 0.946174696 * z2 - 0.315391565;
+  y[7] = 1.09254843 * d.z * d.x;
+  y[8] = 0.546274215 * c2;
+#endif
+#if LAMBENT_BANDS > 3
+  float c3 = d.x * c2 - d.y * s2, s3 = d.x * s2 + d.y * c2;
+  float p31 = 2.285229 * z2 - 0.457045799;
+  y[9] = 0.59004359 * s3;
+  y[10] = 1.44530572 * d.z * s2;
+  y[11] = p31 * d.y;
+  y[12] = d.z * (1.86588166 * z2 - 1.119529);
+  y[13] = p31 * d.x;
+  y[14] = 1.44530572 * d.z * c2;
+  y[15] = 0.59004359 * c3;
+#endif
+#if LAMBENT_BANDS > 4
+  float c4 = d.x * c3 - d.y * s3, s4 = d.x * s3 + d.y * c3;
+  float p41 = d.z * (4.6833258 * z2 - 2.00713963), p42 = 3.31161144 * z2 - 0.473087348;
+  y[16] = 0.625835735 * s4;
+  y[17] = 1.77013077 * d.z * s3;
+  y[18] = p42 * s2;
+  y[19] = p41 * d.y;
+  y[20] = (3.70249414 * z2 - 3.17356641) * z2 + 0.317356641;
+  y[21] = p41 * d.x;
+  y[22] = p42 * c2;
+  y[23] = 1.77013077 * d.z * c3;
+  y[24] = 0.625835735 * c4;
+#endif
+#if LAMBENT_BANDS > 5
+  float c5 = d.x * c4 - d.y * s4, s5 = d.x * s4 + d.y * c4;
+  float p51 = (9.51187968 * z2 - 6.34125312) * z2 + 0.452946651;
+  float p52 = d.z * (7.19030518 * z2 - 2.39676839), p53 = 4.40314469 * z2 - 0.489238299;
+  y[25] = 0.656382057 * s5;
+  y[26] = 2.07566231 * d.z * s4;
+  y[27] = p53 * s3;
+  y[28] = p52 * s2;
+  y[29] = p51 * d.y;
+  y[30] = d.z * ((7.36787031 * z2 - 8.18652257) * z2 + 1.75425484);
+  y[31] = p51 * d.x;
+  y[32] = p52 * c2;
+  y[33] = p53 * c3;
+  y[34] = 2.07566231 * d.z * c4;
+  y[35] = 0.656382057 * c5;
+#endif
+}
+#endif
+
+// S where the ray is at t. Between voxels that have light: those that have none do not share in it.
+vec3 scatteredAt(int v, MarchRecord record, VolumeRay ray, float t) {
+  vec3 size = vec3(record.size[0], record.size[1], record.size[2]);
+  vec3 transfer_size = vec3(record.transfer_size[0], record.transfer_size[1], record.transfer_size[2]);
+  vec3 light_size = vec3(record.light_size[0], record.light_size[1], record.light_size[2]);
+  // Within half a voxel of a slab's face it is the slab's last voxel, not the next slab.
+  vec3 place = clamp((ray.origin + t * ray.direction) / size * transfer_size, vec3(0.5), transfer_size - 0.5);
+  vec4 light = lightAt(v, place / light_size);
+#if LAMBENT_BANDS > 1
+  if (record.outputs > 1u) {
+    float y[LAMBENT_BANDS * LAMBENT_BANDS];
+    basisAt(ray.towards, LAMBENT_BANDS, y);
+    light.rgb *= y[0];
+    for (int j = 1; j < LAMBENT_BANDS * LAMBENT_BANDS; ++j) {
+      if (uint(j) >= record.outputs) break;
+      vec3 slab = vec3(float(uint(j) / record.slabs_z), 0.0, float(uint(j) % record.slabs_z));
+      light.rgb += y[j] * lightAt(v, (place + slab * transfer_size) / light_size).rgb;
+    }
+  }
+#endif
+  return light.a > 0.0 ? light.rgb / light.a : vec3(0.0);
+}
+
+// What was gathered before each of the stops, which rise: scattered radiance, and optical depth. Steps are `step_voxels`
+// of the finest volume there; they begin `jitter` (0..1] of a step after each block's border.
+void marchVolumes(MarchRecord records[LAMBENT_VOLUMES], VolumeRay rays[LAMBENT_VOLUMES], float stops[LAMBENT_STOPS],
+                  float step_voxels, float jitter, out vec4 gathered[LAMBENT_STOPS]) {
+  vec4 sum = vec4(0.0);
+  float t = kInfinity, last = -kInfinity;
+  for (int v = 0; v < LAMBENT_VOLUMES; ++v) {
+    if (rays[v].enter >= rays[v].leave) continue;
+    t = min(t, rays[v].enter);
+    last = max(last, rays[v].leave);
+  }
+  int stop = 0;
+  for (int interval = 0; interval < kMaxIntervals; ++interval) {
+    for (; stop < LAMBENT_STOPS && (t >= min(stops[stop], last) || sum.a > kDeep); ++stop) gathered[stop] = sum;
+    if (stop == LAMBENT_STOPS) return;
+    // As far as no volume begins or ends and none comes to another block.
+    float end = min(stops[stop], last), width = kInfinity;
+    uint filled = 0u;
+    for (int v = 0; v < LAMBENT_VOLUMES; ++v) {
+      if (t >= rays[v].leave) continue;
+      if (t < rays[v].enter) {
+        end = min(end, rays[v].enter);
+        continue;
+      }
+      if (!followBlocks(rays[v], records[v], t)) {
+        rays[v].leave = t;
+        continue;
+      }
+      end = min(min(end, rays[v].leave), min(rays[v].exits.x, min(rays[v].exits.y, rays[v].exits.z)));
+      if (!blockFilled(rays[v], records[v])) continue;
+      filled |= 1u << v;
+      width = min(width, rays[v].voxel);
+    }
+    if (filled != 0u) {
+      float steps = max(ceil((end - t) / (step_voxels * width) - 1e-3), 1.0);
+      width = (end - t) / steps;
+      if (jitter < 1.0) steps += 1.0;
+      for (float k = 0.0; k < steps && sum.a <= kDeep; k += 1.0) {
+        float a = max(t, t + (k - 1.0 + jitter) * width), b = min(end, t + (k + jitter) * width);
+        float extinction[LAMBENT_VOLUMES], all = 0.0;
+        for (int v = 0; v < LAMBENT_VOLUMES; ++v) {
+          extinction[v] = (filled >> v & 1u) != 0u ? extinctionAt(v, records[v], rays[v], 0.5 * (a + b)) : 0.0;
+          all += extinction[v];
+        }
+        float depth = all * (b - a);
+        if (!(depth > 0.0)) continue;
+        float place = a + meanPlace(depth) * (b - a);
+        vec3 light = vec3(0.0);
+        for (int v = 0; v < LAMBENT_VOLUMES; ++v) {
+          if (extinction[v] == 0.0) continue;
+          vec3 albedo = vec3(records[v].albedo[0], records[v].albedo[1], records[v].albedo[2]);
+          light += extinction[v] / all * albedo * scatteredAt(v, records[v], rays[v], place);
+        }
+        sum.rgb += exp(-sum.a) * lostOf(depth) * light;
+        sum.a += depth;
+      }
+    }
+    t = end;
+  }
+  for (; stop < LAMBENT_STOPS; ++stop) gathered[stop] = sum;
+}

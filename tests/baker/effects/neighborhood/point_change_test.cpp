@@ -1,0 +1,178 @@
+// Matrices at points in free space against closed forms.
+#include "baker/effects/neighborhood/point_change.hpp"
+
+#include "baker/effects/neighborhood/surface_body.hpp"
+#include "tests/support/neighborhood.hpp"
+
+namespace lambent::baker {
+namespace {
+
+using testing::blackSphereChange;
+using testing::ChangeMatrix;
+using testing::icosphere;
+using testing::irradianceOf;
+using testing::matrixOf;
+using testing::sceneOf;
+using testing::Transport;
+
+constexpr double kPi = std::numbers::pi;
+
+// A ball of one colour, baked, as a body.
+struct Ball {
+  explicit Ball(const glm::vec3& albedo, int order = 5)
+      : transport([&] {
+          Scene scene = sceneOf({icosphere({0, 0, 0}, 1.0f, 4)});
+          scene.materials[0].base_color = glm::vec4(albedo, 1.0f);
+          return scene;
+        }()),
+        baked(transport.bake(order, 256, albedo == glm::vec3(0.0f) ? 0 : -1)),
+        body(transport.diffuse(), {.direct = baked.direct.field,
+                                   .bounced = albedo == glm::vec3(0.0f) ? nullptr : &baked.bounced.field,
+                                   .brdfs = nullptr,
+                                   .glossy = nullptr}) {}
+  Transport transport;
+  Transport::Baked baked;
+  SurfaceBody body;
+};
+
+// In many directions, at distances from near the surface to far away.
+std::vector<glm::vec3> points() {
+  std::vector<glm::vec3> out;
+  for (const float distance : {1.01f, 1.1f, 1.3f, 2.0f, 4.0f, 8.0f})
+    for (const glm::vec3 direction : {glm::vec3(0, 1, 0), {1, 0.1f, 0.2f}, {-1, 2, 0.5f}, {0.3f, -1, -1}})
+      out.push_back(distance * glm::normalize(direction));
+  return out;
+}
+
+// E/pi at a receiver, relative to that under uniform light of radiance 1, of light l.
+double irradiance(const ChangeMatrix& matrix, int order, int order_out, const glm::vec3& normal,
+                  std::span<const float> light) {
+  std::vector<float> cosine(static_cast<std::size_t>(order_out * order_out));
+  sh::unoccludedTransfer(order_out, normal, std::span<float>(cosine));
+  double sum = 0.0;
+  const auto columns = static_cast<std::size_t>(order * order);
+  for (std::size_t i = 0; i < cosine.size(); ++i)
+    for (std::size_t j = 0; j < columns; ++j)
+      sum += double{cosine[i]} * double{matrix[i * columns + j]} * double{light[j]};
+  return sum;
+}
+
+TEST(PointChange, OfABlackSphereIsMinusTheCapThatItFills) {
+  const Ball ball(glm::vec3(0.0f));
+  const CapDirections directions(2048);
+  for (const int order_out : {3, 5}) {
+    const ChangeShape shape{.order = 5, .order_out = order_out, .channels = 0};
+    PointChange point(ball.body, directions, shape);
+    for (const glm::vec3& p : points()) {
+      point.look(p);
+      EXPECT_FALSE(point.inside());
+      const ChangeMatrix truth = blackSphereChange(p, 1.0f, 5, order_out),
+                         found = matrixOf(shape, point.visibility(), {});
+      ChangeMatrix wrong = found;
+      for (std::size_t i = 0; i < wrong.size(); ++i) wrong[i] -= truth[i];
+      const double change = irradianceOf(truth, 5, order_out), error = irradianceOf(wrong, 5, order_out);
+      EXPECT_LT(error, 0.005) << glm::length(p);
+      // Rays go to the body alone, so far away as near by.
+      EXPECT_LT(error, 0.01 * change) << glm::length(p);
+    }
+  }
+}
+
+TEST(PointChange, DimsUniformLightAtAFacingReceiverByTheSquareOfRadiusOverDistance) {
+  const Ball ball(glm::vec3(0.0f));
+  const CapDirections directions(2048);
+  const ChangeShape shape{.order = 5, .order_out = 5, .channels = 0};
+  PointChange point(ball.body, directions, shape);
+  std::vector<float> uniform(25, 0.0f);
+  uniform[0] = static_cast<float>(std::sqrt(4.0 * kPi));
+  for (const float distance : {1.5f, 2.0f, 4.0f, 8.0f}) {
+    point.look({0, distance, 0});
+    const ChangeMatrix matrix = matrixOf(shape, point.visibility(), {});
+    // Bands 5 and on of the cosine are left out: at most a few percent of what is blocked.
+    const double blocked = 1.0 / (double{distance} * double{distance});
+    EXPECT_NEAR(irradiance(matrix, 5, 5, {0, -1, 0}, uniform), -blocked, 0.04 * blocked) << distance;
+    // trace(M) = n² (1 + cos a)/2
+    double trace = 0.0;
+    for (std::size_t i = 0; i < 25; ++i) trace += double{matrix[i * 25 + i]};
+    const double cosine = std::sqrt(1.0 - blocked);
+    EXPECT_NEAR(trace, 25.0 * (0.5 * (1.0 + cosine) - 1.0), 25.0 * 0.005 * (1.0 - cosine)) << distance;
+  }
+}
+
+TEST(PointChange, GoesToNothingFarAwayAsTheSolidAngleDoes) {
+  const Ball ball(glm::vec3(0.0f));
+  const CapDirections directions(512);
+  const ChangeShape shape{.order = 5, .order_out = 3, .channels = 0};
+  PointChange point(ball.body, directions, shape);
+  const ChangeMeter meter(shape);
+  double before = 0.0;
+  for (const float distance : {10.0f, 20.0f, 40.0f, 1e4f}) {
+    point.look({0, 0, distance});
+    const double change = meter.measure(point.visibility(), {});
+    if (before > 0.0 && distance < 1e3f) {
+      EXPECT_NEAR(change / before, 0.25, 0.03);
+    }
+    EXPECT_LT(change, 1.2 / (double{distance} * double{distance}));
+    before = change;
+  }
+}
+
+TEST(PointChange, MetersWhatTheMatrixDoesToIrradiance) {
+  const Ball ball(glm::vec3(0.9f, 0.5f, 0.1f));
+  ASSERT_EQ(ball.body.channels(), 3u);
+  const CapDirections directions(512);
+  const ChangeShape shape{.order = 5, .order_out = 3, .channels = 3};
+  PointChange point(ball.body, directions, shape);
+  point.look({1.2f, 0.6f, -0.4f});
+  double square = 0.0;
+  for (std::size_t c = 0; c < 3; ++c)
+    square += std::pow(irradianceOf(matrixOf(shape, point.visibility(), point.bounced(), c), 5, 3), 2) / 3.0;
+  EXPECT_NEAR(ChangeMeter(shape).measure(point.visibility(), point.bounced()), std::sqrt(square), 1e-5);
+}
+
+TEST(PointChange, LeavesUniformLightAsItIsBesideAWhiteBody) {
+  const Ball ball(glm::vec3(1.0f));
+  ASSERT_EQ(ball.body.channels(), 1u);
+  const CapDirections directions(2048);
+  const ChangeShape shape{.order = 5, .order_out = 3, .channels = 1};
+  PointChange point(ball.body, directions, shape);
+  for (const glm::vec3& p : points()) {
+    point.look(p);
+    const ChangeMatrix matrix = matrixOf(shape, point.visibility(), point.bounced());
+    for (std::size_t i = 0; i < 9; ++i) EXPECT_NEAR(matrix[i * 25], 0.0f, 2e-3f) << i;
+  }
+}
+
+TEST(PointChange, ReflectsEachColourByItself) {
+  const glm::vec3 albedo(0.9f, 0.5f, 0.0f);
+  const Ball colored(albedo), white(glm::vec3(1.0f));
+  const CapDirections directions(512);
+  const ChangeShape grey{.order = 5, .order_out = 3, .channels = 1};
+  const ChangeShape rgb{.order = 5, .order_out = 3, .channels = 3};
+  PointChange of_colored(colored.body, directions, rgb), of_white(white.body, directions, grey);
+  for (const glm::vec3& p : points()) {
+    of_colored.look(p), of_white.look(p);
+    // A convex body does not light itself: what leaves it goes with its albedo.
+    for (std::size_t c = 0; c < 3; ++c)
+      for (std::size_t i = 0; i < 9 * 25; ++i)
+        EXPECT_NEAR(of_colored.bounced()[c * 9 * 25 + i],
+                    albedo[static_cast<int>(c)] * of_white.bounced()[i], 1e-3f);
+  }
+}
+
+TEST(PointChange, KnowsPointsInsideABodyByItsBacks) {
+  const Ball ball(glm::vec3(0.0f));
+  const CapDirections directions(256);
+  PointChange point(ball.body, directions, {.order = 5, .order_out = 3, .channels = 0});
+  for (const glm::vec3 p : {glm::vec3(0.0f), glm::vec3(0.9f, 0.1f, 0.0f)}) {
+    point.look(p);
+    EXPECT_TRUE(point.inside());
+    EXPECT_NEAR(glm::length(point.nearestPoint()), 1.0f, 2e-3f);
+    EXPECT_GT(glm::dot(point.nearestNormal(), glm::normalize(point.nearestPoint())), 0.99f);
+    // All is blocked: M = 0.
+    EXPECT_NEAR(point.visibility()[0], -std::sqrt(4.0 * kPi), 1e-4);
+  }
+}
+
+}  // namespace
+}  // namespace lambent::baker

@@ -1,0 +1,87 @@
+// Volumes as bodies, by a medium made here.
+#include "baker/effects/neighborhood/volume_body.hpp"
+
+#include "tests/support/neighborhood.hpp"
+
+namespace lambent::baker {
+namespace {
+
+using testing::ChangeMatrix;
+using testing::irradianceOf;
+using testing::matrixOf;
+
+// A homogeneous ball of radius 1 about the origin that stops light, and sends `glow` times what it stops of
+// each coefficient that is 0 in all other bands.
+class Fog : public VolumeLight {
+ public:
+  Fog(float extinction, float glow) : extinction_(extinction), glow_(glow) {}
+  int order() const override { return 5; }
+  float look(const glm::vec3& origin, const glm::vec3& direction, float t_max,
+             std::span<float> scattered) const override {
+    const double along = -glm::dot(glm::dvec3(origin), glm::dvec3(direction));
+    const double off2 = glm::dot(glm::dvec3(origin), glm::dvec3(origin)) - along * along;
+    std::fill(scattered.begin(), scattered.end(), 0.0f);
+    if (off2 >= 1.0) return 1.0f;
+    const double half = std::sqrt(1.0 - off2);
+    const double length = std::max(
+        0.0, std::min(along + half, double{t_max}) - std::max(along - half, 0.0));
+    const double through = std::exp(-double{extinction_} * length);
+    for (std::size_t c = 0; c < 3; ++c)
+      scattered[c * 25] = glow_ * static_cast<float>((1.0 - through) * 0.5 / std::sqrt(std::numbers::pi));
+    return static_cast<float>(through);
+  }
+
+ private:
+  float extinction_, glow_;
+};
+
+constexpr glm::vec3 kLow(-1.0f), kHigh(1.0f);
+
+TEST(VolumeBody, OfGreatDensityIsTheBlackSphere) {
+  const Fog fog(1e6f, 0.0f);
+  const VolumeBody body(fog, kLow, kHigh, /*scatters=*/false);
+  const CapDirections directions(4096);
+  const ChangeShape shape{.order = 5, .order_out = 3, .channels = 0};
+  PointChange point(body, directions, shape);
+  for (const glm::vec3 p : {glm::vec3(2, 0, 0), {0.5f, -1.2f, 0.3f}, {4, 4, 1}}) {
+    point.look(p);
+    ChangeMatrix wrong = matrixOf(shape, point.visibility(), {});
+    const ChangeMatrix truth = testing::blackSphereChange(p, 1.0f, 5, 3);
+    for (std::size_t i = 0; i < wrong.size(); ++i) wrong[i] -= truth[i];
+    EXPECT_LT(irradianceOf(wrong, 5, 3), 0.01 * irradianceOf(truth, 5, 3));
+  }
+}
+
+TEST(VolumeBody, LetsThroughAtItsMiddleWhatBeerAndLambertSay) {
+  for (const float extinction : {0.0f, 1e-6f, 1.0f, 4.0f}) {
+    const Fog fog(extinction, 0.0f);
+    const VolumeBody body(fog, kLow, kHigh, false);
+    const CapDirections directions(8192);
+    PointChange point(body, directions, {.order = 5, .order_out = 3, .channels = 0});
+    point.look(glm::vec3(0.0f));
+    EXPECT_FALSE(point.inside());
+    // Literature 7.8: transmittance from the middle is exp(-sigma) in all directions.
+    const double root = std::sqrt(4.0 * std::numbers::pi);
+    EXPECT_NEAR(point.visibility()[0], root * (std::exp(-double{extinction}) - 1.0), 1e-5);
+    for (std::size_t i = 1; i < point.visibility().size(); ++i)
+      EXPECT_NEAR(point.visibility()[i], 0.0f, 2e-3f);
+  }
+}
+
+TEST(VolumeBody, ThatSendsAllThatItStopsLeavesUniformLightAsItIs) {
+  const Fog fog(2.0f, 1.0f);
+  const VolumeBody body(fog, kLow, kHigh, true);
+  const CapDirections directions(1024);
+  const ChangeShape shape{.order = 5, .order_out = 3, .channels = 3};
+  PointChange point(body, directions, shape);
+  for (const glm::vec3 p : {glm::vec3(0, 0, 0), {1.2f, 0, 0}, {3, -1, 2}}) {
+    point.look(p);
+    for (std::size_t c = 0; c < 3; ++c) {
+      const ChangeMatrix matrix = matrixOf(shape, point.visibility(), point.bounced(), c);
+      for (std::size_t i = 0; i < 9; ++i) EXPECT_NEAR(matrix[i * 25], 0.0f, 1e-5f);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace lambent::baker

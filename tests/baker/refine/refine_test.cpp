@@ -1,0 +1,115 @@
+// Vertices come where shadows change and nowhere else, without a crack, the same for any number of threads.
+#include "baker/refine/refine.hpp"
+
+#include <algorithm>
+#include <map>
+
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+
+#include "baker/refine/shadow_probe.hpp"
+#include "baker/work/parallel.hpp"
+#include "tests/support/shapes.hpp"
+#include "tests/support/transport.hpp"
+
+namespace lambent::baker {
+namespace {
+
+using testing::box;
+using testing::grid;
+using testing::sceneOf;
+
+using Meshes = std::vector<std::vector<bundle::MeshData>>;
+
+struct Refined {
+  RefineReport report;
+  Meshes meshes;
+};
+
+Refined refined(const Scene& scene, const RefineOptions& options) {
+  Refined result;
+  for (const SceneMesh& mesh : scene.meshes) {
+    result.meshes.emplace_back();
+    for (const ScenePrimitive& primitive : mesh.primitives) result.meshes.back().push_back(primitive.mesh);
+  }
+  Progress progress;
+  const auto report = refineMeshes(scene, findRigidGroups(scene), {}, /*with_glossy=*/false, options,
+                                   result.meshes, progress, {});
+  EXPECT_TRUE(report) << report.error().line();
+  if (report) result.report = *report;
+  return result;
+}
+
+// A floor of two triangles, 4 x 4 m about the origin, and a slab of 1 m that floats half a metre above it.
+Scene floorUnderSlab() {
+  return sceneOf({grid({0, 0, 0}, 4.0f, 1), box({0.0f, 0.5f, 0.0f}, {1.0f, 0.05f, 1.0f}, 2)});
+}
+
+TEST(Refinement, LeavesWhatSeesAllOfTheSkyAsItIs) {
+  for (const Scene& scene : {sceneOf({grid({0, 0, 0}, 4.0f, 2)}), sceneOf({box({0, 0, 0}, {1, 2, 3}, 2)})}) {
+    const Refined result = refined(scene, {});
+    EXPECT_EQ(result.report.vertices_after, result.report.vertices_before);
+    EXPECT_LT(result.report.error_before, 1e-6);
+  }
+}
+
+TEST(Refinement, BringsTheErrorUnderTheBoundWithVerticesWhereTheShadowFalls) {
+  const Refined result = refined(floorUnderSlab(), {.bound = 0.02f});
+  EXPECT_GT(result.report.error_before, 0.05);
+  EXPECT_LT(result.report.error_after, 0.02);
+  const bundle::MeshData& floor = result.meshes[0][0];
+  EXPECT_GT(floor.positions.size(), 50u);
+  EXPECT_EQ(floor.normals.size(), floor.positions.size());
+  const auto within = [&](float reach) {
+    return std::count_if(floor.positions.begin(), floor.positions.end(),
+                         [&](const glm::vec3& p) { return std::max(std::abs(p.x), std::abs(p.z)) < reach; });
+  };
+  // A quarter of the floor.
+  EXPECT_GT(within(1.0f), static_cast<std::ptrdiff_t>(floor.positions.size()) / 2);
+}
+
+TEST(Refinement, OpensNoCrackBetweenMeshes) {
+  // Two halves of a floor as meshes of their own, the slab over one of them.
+  bundle::MeshData left = grid({-1, 0, 0}, 2.0f, 1), right = grid({1, 0, 0}, 2.0f, 1);
+  const Refined result =
+      refined(sceneOf({left, right, box({0.6f, 0.3f, 0.0f}, {1.0f, 0.05f, 1.0f}, 1)}), {.bound = 0.01f});
+  const auto onSeam = [](const bundle::MeshData& mesh) {
+    std::vector<float> z;
+    for (const glm::vec3& p : mesh.positions)
+      if (p.x == 0.0f) z.push_back(p.z);
+    std::sort(z.begin(), z.end());
+    z.erase(std::unique(z.begin(), z.end()), z.end());
+    return z;
+  };
+  EXPECT_GT(onSeam(result.meshes[0][0]).size(), 2u);
+  EXPECT_EQ(onSeam(result.meshes[0][0]), onSeam(result.meshes[1][0]));
+}
+
+TEST(Refinement, EndsWithTheVerticesThatItMayAdd) {
+  const Refined result = refined(floorUnderSlab(), {.bound = 1e-4f, .most_growth = 1.0, .most_added = 500});
+  EXPECT_GT(result.report.vertices_after, result.report.vertices_before + 250);
+  EXPECT_LE(result.report.vertices_after, result.report.vertices_before + 600);
+}
+
+TEST(Refinement, IsTheSameForAnyNumberOfThreads) {
+  Refined one, many;
+  withThreads(1, [&] { one = refined(floorUnderSlab(), {.bound = 0.02f}); });
+  withThreads(0, [&] { many = refined(floorUnderSlab(), {.bound = 0.02f}); });
+  EXPECT_EQ(one.meshes[0][0].positions, many.meshes[0][0].positions);
+  EXPECT_EQ(one.meshes[0][0].indices, many.meshes[0][0].indices);
+  EXPECT_EQ(one.report.error_after, many.report.error_after);
+}
+
+TEST(ShadowProbe, OfAClosedBoxMissesAllOfTheLight) {
+  const testing::Transport t(sceneOf({box({0, 0, 0}, {2, 2, 2}, 1)}));
+  const ShadowProbe probe(1024);
+  const SampleOrigin inside{{0.1f, 0.0f, 0.2f}, {0.0f, 1.0f, 0.0f}, 1.0f};
+  const Shadow open{};
+  for (const SampleKind kind : {SampleKind::Plain, SampleKind::Glossy})
+    EXPECT_NEAR(squaredDifference(probe.at(t.rays, std::span(&inside, 1), {0.0f, 1.0f, 0.0f}, kind), open),
+                1.0f, 0.01f)
+        << "relative to an open point";
+}
+
+}  // namespace
+}  // namespace lambent::baker

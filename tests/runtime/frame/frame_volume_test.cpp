@@ -1,0 +1,350 @@
+// Volumes in pictures with known answers, and what a frame does for them and does not.
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+#include <glm/gtc/matrix_transform.hpp>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "runtime/frame/frame.hpp"
+#include "runtime/scene/bounds.hpp"
+#include "runtime/scene/lights.hpp"
+#include "tests/runtime/frame/bundle_builder.hpp"
+#include "tests/support/gpu_context.hpp"
+
+namespace lambent::frame {
+namespace {
+
+using effects::diffuse::TransferMode;
+using testing::BuiltVolume;
+using testing::BundleBuilder;
+using testing::quadMesh;
+using testing::sphereMesh;
+
+constexpr std::uint32_t kSide = 64;
+const spec::Light kWhite = spec::ConstantLight{.radiance = glm::vec3(1.0f)};
+
+gltf::Material colored(const glm::vec4& color) {
+  gltf::Material material;
+  material.base_color = color;
+  return material;
+}
+
+FrameOptions linearOptions(const std::function<void(FrameOptions&)>& change = {}) {
+  FrameOptions options;
+  options.output = Output::Linear;
+  if (change) change(options);
+  return options;
+}
+
+// A cube of 2 m, the same everywhere.
+BuiltVolume mist(float extinction, float albedo = 1.0f) {
+  BuiltVolume volume;
+  volume.density_max = extinction;
+  volume.density = [extinction](const glm::vec3&) { return extinction; };
+  volume.albedo = glm::vec3(albedo);
+  return volume;
+}
+
+// A world with one bundle, seen straight on by an orthographic camera of 3 m, 10 m away on +Z.
+struct Stage {
+  std::filesystem::path path;
+  World world;
+  lighting::Environment environment;
+  std::optional<Frame> frame;
+  spec::View view;
+
+  Stage(const BundleBuilder& builder, const std::vector<spec::Light>& lights = {kWhite},
+        FrameOptions options = linearOptions(), bool load = true)
+      : path(std::filesystem::path(::testing::TempDir()) /
+             fmt::format("{}-{}.lmb.glb", getpid(),
+                         ::testing::UnitTest::GetInstance()->current_test_info()->name())),
+        environment(*lighting::Environment::create(lights)) {
+    builder.write(path);
+    const Result<void> opened = world.open(path);
+    EXPECT_TRUE(opened) << opened.error().line();
+    scene::addLights(world.registry(), lights);
+    gpu::Counters counters;
+    if (load) {
+      const Result<void> loaded = world.uploadAll(counters);
+      EXPECT_TRUE(loaded) << loaded.error().line();
+    }
+    world.updateTransforms();
+    options.size = {kSide, kSide};
+    Result<Frame> made = Frame::create(options, environment);
+    EXPECT_TRUE(made) << made.error().line();
+    if (made) frame.emplace(std::move(*made));
+    view.eye_ws = {0, 0, 10};
+    view.view_from_world = glm::lookAt(view.eye_ws, glm::vec3(0.0f), glm::vec3(0, 1, 0));
+    view.clip_from_view = glm::ortho(-1.5f, 1.5f, -1.5f, 1.5f, 1.0f, 20.0f);
+  }
+  ~Stage() { std::filesystem::remove(path); }
+
+  void render() {
+    const Result<void> done = frame->render(world, environment, view);
+    ASSERT_TRUE(done) << done.error().line();
+  }
+  spec::RgbaImage picture() {
+    render();
+    return frame->readLinear();
+  }
+  const gpu::PassTime* pass(const std::string& name) {
+    frame->timers().finish();
+    for (const gpu::PassTime& time : frame->timers().latest())
+      if (time.name == name) return &time;
+    return nullptr;
+  }
+};
+
+glm::vec4 at(const spec::RgbaImage& image, std::uint32_t x, std::uint32_t y) {
+  return image.texels[y * image.width + x];
+}
+glm::vec4 middle(const spec::RgbaImage& image) {
+  return at(image, kSide / 2, kSide / 2);
+}
+
+}  // namespace
+
+using FrameVolume = testing::GpuTest;
+
+TEST_F(FrameVolume, ABundleOfNothingButAVolumeIsFramedAndShows) {
+  Stage stage(BundleBuilder().volume(mist(0.7f, 0.5f)));
+  const scene::Box bounds = scene::worldBounds(stage.world.registry());
+  EXPECT_LT(glm::distance(bounds.min, glm::vec3(-1.0f)), 1e-5f);
+  EXPECT_LT(glm::distance(bounds.max, glm::vec3(1.0f)), 1e-5f);
+  const spec::RgbaImage image = stage.picture();
+  const float through = std::exp(-0.7f * 2.0f);
+  EXPECT_LT(
+      glm::distance(middle(image), glm::vec4(glm::vec3(0.5f * (1.0f - through) + through), 1.0f - through)),
+      1e-3f)
+      << "codebooks are of half floats";
+  EXPECT_EQ(at(image, 1, 1).a, 0.0f);
+  EXPECT_EQ(stage.frame->counts().volumes, 1u);
+  EXPECT_EQ(stage.frame->counts().volumes_drawn, 1u);
+}
+
+TEST_F(FrameVolume, ATurnedGroupIsBoundedByItsCorners) {
+  BuiltVolume turned = mist(1.0f);
+  turned.rest_rotation = glm::angleAxis(glm::radians(45.0f), glm::vec3(0, 0, 1));
+  turned.rest_translation = {5.0f, 0.0f, 0.0f};
+  Stage stage(BundleBuilder().volume(turned));
+  const scene::Box bounds = scene::worldBounds(stage.world.registry());
+  EXPECT_LT(glm::distance(bounds.max, glm::vec3(5.0f + std::sqrt(2.0f), std::sqrt(2.0f), 1.0f)), 1e-5f);
+}
+
+TEST_F(FrameVolume, EverythingWhiteUnderWhiteLightIsWhite) {
+  // A sphere half in the mist, a quad behind it, the sky: furnace.
+  BundleBuilder builder;
+  builder.add({sphereMesh(16, 32), colored(glm::vec4(1.0f)),
+               glm::scale(glm::translate(glm::mat4(1.0f), glm::vec3(-0.3f, 0.2f, 0.9f)), glm::vec3(0.5f))});
+  builder.add(
+      {quadMesh(), colored(glm::vec4(1.0f)), glm::translate(glm::mat4(1.0f), glm::vec3(0.7f, 0.0f, -2.0f))});
+  for (const float extinction : {1e-6f, 1.0f, 30.0f, 1e6f}) {
+    Stage stage(BundleBuilder(builder).volume(mist(extinction)));
+    const spec::RgbaImage image = stage.picture();
+    for (const glm::vec4& texel : image.texels)
+      for (int c = 0; c < 3; ++c) ASSERT_NEAR(texel[c], 1.0f, 1e-3f) << extinction;
+    EXPECT_EQ(stage.frame->negativePixels(), 0u);
+  }
+}
+
+TEST_F(FrameVolume, DimsSurfacesByWhatLiesBeforeThem) {
+  // Black mist: a white quad shows exp(-extinction x way through).
+  for (const auto& [z, way] : {std::pair{-2.0f, 2.0f}, {-0.5f, 1.5f}, {0.75f, 0.25f}, {2.0f, 0.0f}}) {
+    BundleBuilder builder;
+    builder.add({quadMesh(), colored(glm::vec4(1.0f)), glm::translate(glm::mat4(1.0f), glm::vec3(0, 0, z))});
+    Stage stage(builder.volume(mist(0.8f, 0.0f)));
+    for (const bool perspective : {false, true}) {
+      if (perspective) stage.view.clip_from_view = glm::perspective(glm::radians(10.0f), 1.0f, 1.0f, 20.0f);
+      const glm::vec4 texel = middle(stage.picture());
+      EXPECT_NEAR(texel.g, std::exp(-0.8f * way), 2e-3f) << z;
+      EXPECT_EQ(texel.a, 1.0f);
+    }
+  }
+}
+
+TEST_F(FrameVolume, BlendedSurfacesLieBehindIt) {
+  gltf::Material glass = colored({1.0f, 0.0f, 0.0f, 0.25f});
+  glass.alpha_mode = gltf::AlphaMode::Blend;
+  Stage stage(BundleBuilder().add({quadMesh(), glass}).volume(mist(0.5f, 0.0f)));
+  const float through = std::exp(-1.0f);
+  const glm::vec4 texel = middle(stage.picture());
+  EXPECT_LT(
+      glm::distance(texel, glm::vec4(through, 0.75f * through, 0.75f * through, 1.0f - through * 0.75f)),
+      2e-3f);
+}
+
+TEST_F(FrameVolume, AStillFrameOnlyMarches) {
+  Stage stage(
+      BundleBuilder().volume(mist(1.0f)),
+      {spec::SunLight{.azimuth_deg = 90, .elevation_deg = 0, .angle_deg = 30, .radiance = glm::vec3(1)}});
+  stage.render();
+  ASSERT_NE(stage.pass("volume"), nullptr);
+  ASSERT_NE(stage.pass("march"), nullptr);
+  EXPECT_EQ(stage.pass("volume")->counters.dispatches, 1u);
+  EXPECT_EQ(stage.pass("march")->counters.draws, 1u);
+  EXPECT_EQ(stage.frame->counts().volumes_shaded, 1u);
+  EXPECT_EQ(stage.frame->counts().volume_slabs_written, 1u);
+  stage.render();
+  EXPECT_EQ(stage.pass("volume")->counters.dispatches, 0u);
+  EXPECT_EQ(stage.pass("volume")->counters.uploaded_bytes, 0u);
+  EXPECT_EQ(stage.pass("shade")->counters.dispatches, 0u);
+  EXPECT_EQ(stage.frame->counts().volumes_shaded, 0u);
+  stage.view.view_from_world = glm::lookAt(glm::vec3(1, 2, 9), glm::vec3(0.0f), glm::vec3(0, 1, 0));
+  stage.render();
+  EXPECT_EQ(stage.pass("volume")->counters.dispatches, 0u) << "light in it does not depend on the camera";
+  stage.environment.setTurn(5.0f);
+  stage.render();
+  EXPECT_EQ(stage.pass("volume")->counters.dispatches, 1u);
+}
+
+TEST_F(FrameVolume, ASceneWithoutOneHasNoPassForIt) {
+  Stage stage(BundleBuilder().add({quadMesh(), colored(glm::vec4(1.0f))}));
+  stage.render();
+  EXPECT_EQ(stage.pass("volume"), nullptr);
+  EXPECT_EQ(stage.pass("march"), nullptr);
+  EXPECT_EQ(stage.frame->counts().volumes, 0u);
+  EXPECT_EQ(stage.frame->volumeBytes(), 0u);
+}
+
+TEST_F(FrameVolume, AnEmptyVolumeLeavesThePictureToTheLastBit) {
+  BundleBuilder builder;
+  builder.add({sphereMesh(12, 24), colored({0.3f, 0.5f, 0.8f, 1.0f})});
+  BuiltVolume empty = mist(1.0f);
+  empty.density = [](const glm::vec3&) { return 0.0f; };
+  Stage without(builder), with(BundleBuilder(builder).volume(empty));
+  EXPECT_EQ(with.picture().texels, without.picture().texels);
+  EXPECT_EQ(with.frame->counts().volumes_drawn, 0u);
+}
+
+TEST_F(FrameVolume, TheWordsOfTransferChooseTheBlock) {
+  BuiltVolume volume = mist(1e4f);
+  volume.shape.full_channels = 3;
+  volume.transfer = [](std::uint32_t) {
+    std::vector<float> blocks(4 * 9, 0.0f);
+    blocks[0] = 0.25f * 0.282094792f;
+    for (const int c : {1, 2, 3})
+      blocks[static_cast<std::size_t>(9 * c)] = 0.2f * static_cast<float>(c + 1) * 0.282094792f;
+    return blocks;
+  };
+  for (const auto& [mode, expected] : {std::pair{TransferMode::Full, glm::vec3(0.4f, 0.6f, 0.8f)},
+                                       {TransferMode::Shadowed, glm::vec3(0.25f)},
+                                       {TransferMode::Unshadowed, glm::vec3(1.0f)}}) {
+    Stage stage(BundleBuilder().volume(volume), {kWhite},
+                linearOptions([&](FrameOptions& options) { options.transfer = mode; }));
+    EXPECT_LT(glm::distance(glm::vec3(middle(stage.picture())), expected), 1e-3f);
+  }
+}
+
+TEST_F(FrameVolume, ForwardScatteringShowsTheSunBehindIt) {
+  BuiltVolume volume = mist(1e4f);
+  volume.g = 0.7f;
+  volume.shape = {.order = 4, .outputs = 16, .visibility_bands = 7};
+  for (const float azimuth : {0.0f, 180.0f}) {  // 180: behind the volume, the camera looks into it
+    Stage stage(BundleBuilder().volume(volume),
+                {spec::SunLight{
+                    .azimuth_deg = azimuth, .elevation_deg = 0, .angle_deg = 20, .radiance = glm::vec3(1)}},
+                linearOptions([](FrameOptions& options) { options.window = sh::Window::Off; }));
+    const sh::LightVector& light = stage.environment.light();
+    const glm::vec3 along(0, 0, -1);
+    std::array<float, 16> y{};
+    sh::evaluate(4, along, y);
+    float expected = 0.0f;
+    for (int i = 0; i < 16; ++i)
+      expected += std::pow(0.7f, static_cast<float>(sh::bandOf(i))) * y[static_cast<std::size_t>(i)] *
+                  light.c[static_cast<std::size_t>(i)].g;
+    EXPECT_NEAR(middle(stage.picture()).g, expected, 1e-3f * std::abs(expected) + 1e-4f);
+    if (azimuth == 180.0f) {
+      EXPECT_GT(expected, 3.0f * 0.282094792f * light.c[0].g) << "brighter than by isotropic scattering";
+    }
+  }
+}
+
+TEST_F(FrameVolume, ALightInsideShinesByHarmonics) {
+  // Near lights are for surfaces: rays through the mist look up no shadow cube.
+  const spec::Light lamp = spec::SphereLight{
+      .position_ws = glm::vec3(0.3f, 0.0f, 0.0f), .radius_m = 0.1f, .radiance = glm::vec3(50.0f)};
+  Stage stage(BundleBuilder().volume(mist(2.0f)), {lamp});
+  const spec::RgbaImage image = stage.picture();
+  EXPECT_EQ(stage.frame->counts().local_lights, 1u);
+  EXPECT_EQ(stage.frame->counts().near_lights, 0u);
+  EXPECT_GT(middle(image).g, 0.1f);
+  for (const glm::vec4& texel : image.texels) ASSERT_TRUE(std::isfinite(texel.g));
+}
+
+TEST_F(FrameVolume, TheSurfacesThatItStandsInAreNotCapturedAtItsLightSamples) {
+  for (const std::int32_t within : {-1, 0}) {
+    BuiltVolume volume = mist(1.0f);
+    volume.within = within;
+    Stage stage(BundleBuilder().add({sphereMesh(8, 16), colored(glm::vec4(1.0f))}).volume(volume));
+    const LitScene before = gatherLitScene(stage.world, 1.0f);
+    EXPECT_FALSE(before.needsSampling()) << "there is no body yet";
+    bundle::CaptureProxy proxy;
+    ASSERT_TRUE(stage.world.residency().upload(0, streaming::ProxyReady{0, proxy}));
+    const LitScene scene = gatherLitScene(stage.world, 1.0f);
+    ASSERT_EQ(scene.bodies.size(), 1u);
+    EXPECT_EQ(scene.groups[0].body, 0u);
+    EXPECT_EQ(scene.groups[1].body, within < 0 ? lighting::CapturePoint::kNoBody : 0u);
+    EXPECT_EQ(scene.needsSampling(), within < 0);
+  }
+}
+
+TEST_F(FrameVolume, DisplayPicturesShowTheSameThing) {
+  BundleBuilder builder;
+  builder.add({sphereMesh(16, 32), colored({0.8f, 0.5f, 0.2f, 1.0f}),
+               glm::scale(glm::translate(glm::mat4(1.0f), glm::vec3(-0.3f, 0.2f, 0.9f)), glm::vec3(0.5f))});
+  builder.volume(mist(0.9f, 0.6f));
+  Stage display(builder, {kWhite}, linearOptions([](FrameOptions& options) {
+                  options.output = Output::Display;
+                  options.exposure_ev = 0.0f;
+                }));
+  Stage linear(builder);
+  const spec::RgbaImage wanted = linear.picture();
+  display.render();
+  const spec::Rgba8Image shown = display.frame->readDisplay();
+  std::size_t compared = 0;
+  for (std::uint32_t y = 4; y < kSide; y += 5)
+    for (std::uint32_t x = 4; x < kSide; x += 5) {
+      bool edge = false;  // where neighbours differ
+      for (const auto& [dx, dy] : {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}})
+        if (x + 1 < kSide && y + 1 < kSide)
+          edge |= glm::distance(at(wanted, x, y), at(wanted, x + static_cast<std::uint32_t>(dx),
+                                                     y + static_cast<std::uint32_t>(dy))) > 0.01f;
+      if (edge) continue;
+      ++compared;
+      for (int c = 0; c < 3; ++c) {
+        // The curve of resolve.frag below its shoulder: less the specular part.
+        const glm::vec3 texel(at(wanted, x, y));
+        const float low = std::min({texel.r, texel.g, texel.b});
+        float value = texel[c] - (low < 0.08f ? low - 6.25f * low * low : 0.04f);
+        if (std::max({texel.r, texel.g, texel.b}) - 0.04f >= 0.76f) continue;
+        value = value <= 0.0031308f ? 12.92f * value : 1.055f * std::pow(value, 1.0f / 2.4f) - 0.055f;
+        EXPECT_NEAR(shown.texels[4 * (y * kSide + x) + static_cast<std::uint32_t>(c)], 255.0f * value, 2.0f)
+            << x << " " << y;
+      }
+    }
+  EXPECT_GT(compared, 60u);
+}
+
+TEST_F(FrameVolume, StreamsInWithoutEverShowingNonsense) {
+  BuiltVolume volume = mist(1.0f);
+  volume.transfer_size = glm::uvec3(6);
+  volume.shape.outputs = 9;
+  volume.g = 0.3f;
+  const auto builder = BundleBuilder().add({quadMesh(), colored(glm::vec4(1.0f))}).volume(volume);
+  Stage whole(builder);
+  const spec::RgbaImage expected = whole.picture();
+  Stage stage(builder, {kWhite},
+              linearOptions([](FrameOptions& options) { options.upload_budget_bytes = 1; }),
+              /*load=*/false);
+  for (int frame = 0; frame < 100'000 && !stage.world.loaded(); ++frame)
+    for (const glm::vec4& texel : stage.picture().texels) {
+      ASSERT_TRUE(std::isfinite(texel.g));
+      ASSERT_LE(texel.g, 1.01f);
+    }
+  ASSERT_TRUE(stage.world.loaded());
+  EXPECT_EQ(stage.picture().texels, expected.texels);
+}
+
+}  // namespace lambent::frame
