@@ -28,6 +28,7 @@ bool bakeAround(const Body& body, const Box3& bounds, const glm::vec3& origin, c
   settings.placement.size = plan.size;
   settings.placement.extent = plan.extent;
   settings.placement.by_length = options.neighborhood_grid;
+  settings.placement.few_points = !plan.asked && !plan.matrices;
   settings.coding.bound = kShareOfBound * double{options.effectiveErrorBound()};
   auto baked = bakeNeighborhood(body, settings, progress, stop);
   if (!baked) return false;

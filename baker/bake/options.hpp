@@ -24,12 +24,13 @@ struct BakeOptions {
   float error_bound = 0.0f;  // of the coded transfer, relative RMS; 0: the quality's
   float max_edge_m = 0.0f;   // edges longer than this are split; 0: none
   // Points of neighborhood grids along their longest, middle and shortest side, where the scene asks for no
-  // other; 0: 64 x 64 x 8 in a slab, else 32 each.
+  // other; 0: 64 x 64 x 8 in a slab, else 32 each; for bodies that the scene does not name a quarter of that.
   glm::uvec3 neighborhood_grid{0};
   // Where shadows change, edges are split until interpolation errs by less than this, relative RMS against
   // open light; 0: nowhere; under 0: the quality's.
   float refine_bound = -1.0f;
-  int light_samples = 0;  // of each cell, 1..32; 0: auto, by how near light comes (local_light.hpp)
+  int light_samples = 0;       // of each cell, 1..32; 0: auto, by how near light comes (local_light.hpp)
+  glm::uvec3 volume_grid{32};  // voxels of a volume's transfer, 1..256 along each axis
   std::string effects = "auto";
   unsigned threads = 0;            // 0: all
   std::uint64_t memory_bytes = 0;  // that passes may keep things in; 0: half of the machine's

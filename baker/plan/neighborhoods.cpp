@@ -90,7 +90,7 @@ class Planner {
     for (const NeighborhoodRequest& request : scene_.neighborhoods)
       for (std::size_t k = 0; k < groups_.size(); ++k) {
         if (groups_[k].root != static_cast<std::int32_t>(request.node)) continue;
-        plans_[k].baked = true;
+        plans_[k].baked = plans_[k].asked = true;
         plans_[k].size = request.size;
         plans_[k].extent = request.extent;
         plans_[k].reason = "asked for";
@@ -165,7 +165,8 @@ class Planner {
       if (own.empty()) continue;
       within.add(own.low), within.add(own.high);
       plan.receivers.push_back(static_cast<std::uint32_t>(other));
-      plan.matrices = plan.matrices || hasFineTransfer(other, boxOf(moments_.front(), k).halfSize());
+      if (plan.asked || groups_[k].volume >= 0)
+        plan.matrices = plan.matrices || hasFineTransfer(other, boxOf(moments_.front(), k).halfSize());
     }
     if (plan.receivers.empty()) {
       plan.baked = false;

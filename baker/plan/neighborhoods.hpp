@@ -20,11 +20,13 @@ inline constexpr std::size_t kMostNeighborhoods = 8;  // that no one asked for; 
 
 struct PlannedNeighborhood {
   bool baked = false;
+  bool asked = false;      // by the scene: else it is the plan's own choice, and made with fewer points
   std::string reason;      // a phrase, true either way; empty where nothing speaks for one
   glm::uvec3 size{0};      // points that were asked for; 0: as the bake sees fit
   glm::vec3 extent{0.0f};  // of the grid that was asked for, m; 0: as the bake sees fit
   // Receivers have transfer of their own, finely enough to apply it to the light that the neighborhood
-  // changes: all bands are wanted, else the three that a diffuse receiver takes.
+  // changes: all bands are wanted, else the three that a diffuse receiver takes. For what the scene asks for
+  // and for volumes: the bands cost several times as much, in the file and whenever the light changes.
   bool matrices = false;
   std::vector<std::uint32_t> receivers;                         // groups whose surfaces come within reach
   glm::vec3 receivers_min{0.0f}, receivers_max{0.0f};           // of those surfaces, there; group frame

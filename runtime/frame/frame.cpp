@@ -98,7 +98,7 @@ Result<std::uint32_t> Frame::rest(World& world, const lighting::Environment& env
 }
 
 bool Frame::atRest(const World& world) const {
-  return world.loaded() && (!incident_ || incident_->atRest());
+  return world.loaded() && (!incident_ || incident_->atRest()) && neighborhoods_.settled();
 }
 
 Result<void> Frame::step(World& world, const lighting::Environment& environment, std::size_t max_captures) {
@@ -265,7 +265,8 @@ Result<void> Frame::marchVolumes(World& world, const spec::View& view) {
 Result<void> Frame::shadeNeighborhoods(World& world) {
   if (!neighborhoods_.any()) return {};
   gpu::PassTimers::Scope pass(timers_, "neighborhood");
-  Result<void> done = neighborhoods_.update(world, group_lights_, glossy_, pass.counters());
+  Result<void> done =
+      neighborhoods_.update(world, group_lights_, glossy_, options_.transfer, pass.counters());
   counts_.neighborhoods = neighborhoods_.counts();
   return done;
 }

@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include <fmt/format.h>
+#include <glm/geometric.hpp>
 #include <glm/gtc/packing.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <glm/matrix.hpp>
@@ -72,6 +73,15 @@ glm::mat3 normalMatrix(const bundle::Group& group, const glm::mat4& world_from_m
 
 std::uint32_t mipLevels(std::uint32_t width, std::uint32_t height) {
   return static_cast<std::uint32_t>(std::bit_width(std::max(width, height)));
+}
+
+float meanEdge(const bundle::MeshData& mesh) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3)
+    for (std::size_t k = 0; k < 3; ++k)
+      sum += double{
+          glm::distance(mesh.positions[mesh.indices[i + k]], mesh.positions[mesh.indices[i + (k + 1) % 3]])};
+  return mesh.indices.empty() ? 0.0f : static_cast<float>(sum / static_cast<double>(mesh.indices.size()));
 }
 
 gpu::Texture makeTexture(const std::string& label, GLenum format, const ImageReady& image) {
@@ -277,6 +287,7 @@ Result<void> Residency::put(std::uint32_t bundle, const MeshReady& item) {
   const Result<gpu::Allocation> block = geometry_.allocate(byte_count);
   if (!block) return failAgain(block.error());
   mesh.block = *block;
+  mesh.mean_edge = meanEdge(data);
   std::uint32_t* const word_of[] = {&mesh.positions_word,    &mesh.normals_word, &mesh.texcoords_word[0],
                                     &mesh.texcoords_word[1], &mesh.colors_word,  &mesh.tangents_word,
                                     &mesh.indices_word};

@@ -20,6 +20,7 @@ constexpr float kFlat = 0.5f;   // of the middle side: shorter makes a slab
 constexpr float kBesideReceivers = 1.5f;
 constexpr float kLeastThickness = 0.1f;  // of the body's radius
 constexpr glm::uvec3 kSlab{64, 64, 8}, kAround{32, 32, 32};
+constexpr glm::uvec3 kCoarseSlab{32, 32, 8}, kCoarseAround{20, 20, 20};
 
 class Placer {
  public:
@@ -100,15 +101,17 @@ class Placer {
     std::array<int, 3> by_length;
     std::iota(by_length.begin(), by_length.end(), 0);
     std::stable_sort(by_length.begin(), by_length.end(), [&](int a, int b) { return length[a] > length[b]; });
-    glm::uvec3 wanted = wish_.by_length;
-    if (wanted == glm::uvec3(0u))
-      wanted = length[by_length[2]] < kFlat * length[by_length[1]] ? kSlab : kAround;
+    glm::uvec3 wanted = wish_.size != glm::uvec3(0u) ? wish_.size : wish_.by_length;
+    if (wanted == glm::uvec3(0u)) {
+      const bool slab = length[by_length[2]] < kFlat * length[by_length[1]];
+      wanted = slab ? (wish_.few_points ? kCoarseSlab : kSlab) : wish_.few_points ? kCoarseAround : kAround;
+    }
     std::array<std::uint32_t, 3> counts{wanted.x, wanted.y, wanted.z};
     std::sort(counts.begin(), counts.end(), std::greater<>());
     glm::uvec3 size;
     for (std::size_t k = 0; k < 3; ++k) size[by_length[k]] = counts[k];
-    for (int axis = 0; axis < 3; ++axis)
-      size[axis] = std::clamp(wish_.size[axis] != 0 ? wish_.size[axis] : size[axis], 2u, kMostGridPoints);
+    if (wish_.size != glm::uvec3(0u) && wish_.extent != glm::vec3(0.0f)) size = wish_.size;
+    for (int axis = 0; axis < 3; ++axis) size[axis] = std::clamp(size[axis], 2u, kMostGridPoints);
     return size;
   }
 

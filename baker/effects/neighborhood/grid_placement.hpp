@@ -31,10 +31,13 @@ struct GridPlacement {
 struct PlacementWish {
   Box3 body;                      // its bounds
   std::optional<Box3> receivers;  // where receivers come; none: all around
-  // Points along x, y and z; 0: `by_length`.
+  // Points that the scene asks for: with an extent along x, y and z, else as by_length, since only here it is
+  // known which side is the short one; 0: `by_length`.
   glm::uvec3 size{0};
-  // Points along the longest, the middle and the shortest side; 0: 64, 64, 8 in a slab, else 32 each.
+  // Points along the longest, the middle and the shortest side; 0: 64, 64, 8 in a slab, else 32 each; with
+  // few_points 32, 32, 8 and 20 each.
   glm::uvec3 by_length{0};
+  bool few_points = false;
   glm::vec3 extent{0.0f};  // of the box, about the body's middle; 0: by reach and receivers
   double bound = 0.01;     // change of irradiance, relative, under which a face may cut the rest off
 };

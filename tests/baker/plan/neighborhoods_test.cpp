@@ -1,0 +1,159 @@
+// Which bodies the plan gives a neighborhood, and for whom.
+#include "baker/plan/neighborhoods.hpp"
+
+#include <gtest/gtest.h>
+
+#include "baker/plan/local_light.hpp"
+#include "tests/support/shapes.hpp"
+
+namespace lambent::baker {
+namespace {
+
+using testing::grid;
+using testing::icosphere;
+using testing::sceneOf;
+
+struct Planned {
+  std::vector<RigidGroup> groups;
+  std::vector<PlannedNeighborhood> plans;
+
+  std::size_t indexOf(const std::string& name) const {
+    for (std::size_t g = 0; g < groups.size(); ++g)
+      if (groups[g].name == name) return g;
+    ADD_FAILURE() << "no group " << name;
+    return 0;
+  }
+  const PlannedNeighborhood& of(const std::string& name) const { return plans[indexOf(name)]; }
+};
+
+Planned plan(const Scene& scene) {
+  Planned out{findRigidGroups(scene), {}};
+  out.plans = planNeighborhoods(scene, out.groups);
+  return out;
+}
+
+// A floor of 20 m, and balls of radius 0.5 m that can be moved, at a height over it.
+Scene ballsOver(int balls, float height, int cells = 40) {
+  std::vector<bundle::MeshData> meshes = {grid({0, 0, 0}, 20.0f, cells)};
+  for (int b = 0; b < balls; ++b) meshes.push_back(icosphere({0, 0, 0}, 0.5f, 1));
+  Scene scene = sceneOf(meshes);
+  for (int b = 0; b < balls; ++b) {
+    gltf::Node& node = scene.nodes[static_cast<std::size_t>(b) + 1];
+    node.name = "ball " + std::to_string(b);
+    node.movable = true;
+    node.parent_from_node =
+        glm::translate(glm::mat4(1.0f), {-9.0f + 1.5f * static_cast<float>(b), height, 0.0f});
+  }
+  return scene;
+}
+
+TEST(NeighborhoodPlans, AreForBodiesOnGroupsOfMoreThanTwiceTheirSize) {
+  const Planned planned = plan(ballsOver(1, 0.5f));
+  EXPECT_TRUE(planned.of("ball 0").baked);
+  EXPECT_FALSE(planned.of("ball 0").asked);
+  EXPECT_FALSE(planned.of("static").baked);
+  EXPECT_TRUE(planned.of("ball 0").carries(planned.indexOf("static")));
+  EXPECT_NE(planned.of("ball 0").reason.find("bounds of static"), std::string::npos);
+  // High above, no one asked for it.
+  EXPECT_FALSE(plan(ballsOver(1, 3.0f)).of("ball 0").baked);
+}
+
+TEST(NeighborhoodPlans, KnowWhereReceiversStandInTheGroupsFrame) {
+  const PlannedNeighborhood& ball = plan(ballsOver(1, 0.5f)).of("ball 0");
+  EXPECT_NEAR(ball.receivers_min.y, -0.5f, 1e-4f);
+  EXPECT_NEAR(ball.receivers_max.y, -0.5f, 1e-4f);
+  EXPECT_NEAR(ball.receivers_min.x, -1.0f, 1e-4f);  // the floor ends there
+  EXPECT_GT(ball.receivers_max.x, 5.0f);
+  EXPECT_LT(ball.receivers_max.x, 10.0f);  // and its reach here, although triangles go on
+}
+
+TEST(NeighborhoodPlans, CutLargeTrianglesToTheReach) {
+  const PlannedNeighborhood &coarse = plan(ballsOver(1, 0.5f, 1)).of("ball 0"),
+                            &fine = plan(ballsOver(1, 0.5f, 40)).of("ball 0");
+  for (int axis = 0; axis < 3; ++axis) {
+    EXPECT_NEAR(coarse.receivers_min[axis], fine.receivers_min[axis], 1e-3f);
+    EXPECT_NEAR(coarse.receivers_max[axis], fine.receivers_max[axis], 1e-3f);
+  }
+}
+
+TEST(NeighborhoodPlans, FollowTheAnimation) {
+  Scene scene = ballsOver(1, 3.0f);
+  scene.nodes[1].animated = true;
+  scene.nodes[1].trs = gltf::Trs{.translation = {0, 3, 0}};
+  scene.animations = {{"way",
+                       {{.node = 1,
+                         .path = gltf::AnimationChannel::Path::Translation,
+                         .times_s = {0.0f, 2.0f},
+                         .values = {0, 3, 0, 0, 0.5f, 0}}}}};
+  const PlannedNeighborhood& ball = plan(scene).of("ball 0");
+  EXPECT_TRUE(ball.baked);
+  EXPECT_NEAR(ball.receivers_min.y, -3.0f, 1e-3f);
+  EXPECT_NEAR(ball.receivers_max.y, -0.5f, 1e-3f);
+}
+
+TEST(NeighborhoodPlans, AreForNoneOfMany) {
+  EXPECT_TRUE(plan(ballsOver(8, 0.5f)).of("ball 3").baked);
+  const Planned planned = plan(ballsOver(9, 0.5f));
+  for (const PlannedNeighborhood& one : planned.plans) EXPECT_FALSE(one.baked);
+  EXPECT_NE(planned.of("ball 3").reason.find("8 other bodies"), std::string::npos);
+}
+
+TEST(NeighborhoodPlans, AreNotForBodiesThatGiveOffLight) {
+  Scene scene = ballsOver(1, 0.5f);
+  scene.materials.push_back(scene.materials[0]);
+  scene.materials[1].emissive = glm::vec3(1.0f);
+  scene.meshes[1].primitives[0].material = 1;
+  const Planned planned = plan(scene);
+  EXPECT_FALSE(planned.of("ball 0").baked);
+  EXPECT_NE(planned.of("ball 0").reason.find("gives off light"), std::string::npos);
+}
+
+TEST(NeighborhoodPlans, TakeWhatTheSceneAsksFor) {
+  Scene scene = ballsOver(9, 2.0f);
+  scene.neighborhoods = {{.node = 2, .size = {16, 16, 4}, .extent = {8, 8, 2}}};
+  const PlannedNeighborhood& ball = plan(scene).of("ball 1");
+  EXPECT_TRUE(ball.baked);
+  EXPECT_TRUE(ball.asked);
+  EXPECT_EQ(ball.size, glm::uvec3(16, 16, 4));
+  EXPECT_EQ(ball.extent, glm::vec3(8, 8, 2));
+  // A flat floor shadows nothing: three bands are enough.
+  EXPECT_FALSE(ball.matrices);
+}
+
+TEST(NeighborhoodPlans, WantAllBandsForFineSurfacesThatShadowThemselves) {
+  const auto hilly = [](int cells) {
+    Scene scene = ballsOver(1, 3.0f, cells);
+    for (glm::vec3& p : scene.meshes[0].primitives[0].mesh.positions)
+      p.y = std::sin(1.3f * p.x) * std::cos(1.1f * p.z);
+    scene.neighborhoods = {{.node = 1}};
+    return scene;
+  };
+  EXPECT_TRUE(plan(hilly(120)).of("ball 0").matrices);
+  EXPECT_FALSE(plan(hilly(20)).of("ball 0").matrices);
+}
+
+TEST(NeighborhoodPlans, AreForVolumesWithSurfacesInReach) {
+  for (const float height : {3.0f, 300.0f}) {
+    Scene scene = sceneOf({grid({0, 0, 0}, 20.0f, 4)});
+    gltf::Node cloud;
+    cloud.name = "cloud";
+    cloud.parent_from_node = glm::translate(glm::mat4(1.0f), {0, height, 0});
+    scene.nodes.push_back(cloud);
+    scene.roots.push_back(1);
+    scene.volumes.push_back({.name = "fog", .node = 1, .size = glm::uvec3(2), .density = std::vector<float>(8, 1.0f)});
+    const Planned planned = plan(scene);
+    EXPECT_EQ(planned.of("cloud").baked, height < 10.0f);
+    EXPECT_EQ(planned.of("cloud").carries(planned.indexOf("static")), height < 10.0f);
+  }
+}
+
+TEST(NeighborhoodPlans, MakeLightSamplesForTheBodyNeedless) {
+  const Scene scene = ballsOver(1, 0.5f);
+  const Planned planned = plan(scene);
+  const std::size_t floor = planned.indexOf("static");
+  EXPECT_EQ(planLightSamples(scene, planned.groups)[floor].count.count, 32u);
+  EXPECT_EQ(planLightSamples(scene, planned.groups, planned.plans)[floor].count.count, 1u);
+}
+
+}  // namespace
+}  // namespace lambent::baker
