@@ -58,6 +58,21 @@ std::vector<std::uint32_t> proxyTriangles(const bundle::Reader& reader, const bu
   return counts;
 }
 
+const char* effectOf(const bundle::Cell& cell) {
+  if (cell.kind == bundle::CellKind::Volume) return "volume";
+  if (cell.kind == bundle::CellKind::Neighborhood) return "neighborhood";
+  return bundle::isGlossy(cell.outputs()) ? "glossy" : "diffuse";
+}
+
+// Null where there is none.
+nlohmann::json neighborhoodJson(const bundle::Group& group) {
+  if (!group.neighborhood) return nullptr;
+  const auto& [size, low, high] = *group.neighborhood;
+  return {{"size", {size.x, size.y, size.z}},
+          {"boundsMin", {low.x, low.y, low.z}},
+          {"boundsMax", {high.x, high.y, high.z}}};
+}
+
 const char* partName(const bundle::TransferShape& shape) {
   if (shape.isVisibility()) return "visibility";
   if (shape.shadowed_channels == 0) return "bounced";
@@ -72,7 +87,7 @@ void printJson(const bundle::Reader& reader, const Sizes& sizes) {
     for (const bundle::Cell& cell : group.cells)
       for (const bundle::CellTransfer& transfer : cell.transfers)
         cells.push_back({{"samples", cell.sample_count},
-                         {"effect", transfer.shape.glossy() ? "glossy" : "diffuse"},
+                         {"effect", effectOf(cell)},
                          {"light", transfer.fromEnvironment() ? "environment" : "lamps"},
                          {"outputs", transfer.shape.outputs},
                          {"visibilityBands", transfer.shape.visibility_bands},
@@ -89,6 +104,7 @@ void printJson(const bundle::Reader& reader, const Sizes& sizes) {
                       {"samples", group.sample_count},
                       {"lightSamples", group.light_samples.size()},
                       {"proxyTriangles", proxyTriangles(reader, group)},
+                      {"neighborhood", neighborhoodJson(group)},
                       {"transfer", cells}});
   }
   const nlohmann::json json = {
@@ -140,10 +156,14 @@ void printText(const bundle::Reader& reader, const Sizes& sizes) {
     const std::vector<std::uint32_t> proxy = proxyTriangles(reader, group);
     fmt::print("  {}, {}\n", counted(group.light_samples.size(), "light sample"),
                proxy.empty() ? "no proxy" : fmt::format("proxy of {} triangles", fmt::join(proxy, ", ")));
+    if (const auto& around = group.neighborhood)
+      fmt::print("  neighborhood of {} x {} x {} points, ({:.2f}, {:.2f}, {:.2f}) to ({:.2f}, {:.2f}, {:.2f})\n",
+                 around->size.x, around->size.y, around->size.z, around->bounds_min.x, around->bounds_min.y,
+                 around->bounds_min.z, around->bounds_max.x, around->bounds_max.y, around->bounds_max.z);
     for (const bundle::Cell& cell : group.cells)
       for (const bundle::CellTransfer& transfer : cell.transfers)
         fmt::print("  {} {}: {}, {} samples, {} clusters, {} planes, error {:.3f} % (bound {:.3f} %)\n",
-                   transfer.shape.glossy() ? "glossy" : "diffuse",
+                   effectOf(cell),
                    transfer.fromEnvironment() ? fmt::format("order {}", transfer.shape.order)
                                               : fmt::format("{} lamps", transfer.shape.light_columns),
                    partName(transfer.shape), cell.sample_count, transfer.clusters, transfer.planes.size(),
