@@ -39,10 +39,10 @@ Result<PictureError> comparePictures(const spec::RgbaImage& picture, const spec:
   glm::dvec3 difference_sum(0.0), reference_sum(0.0);
   std::vector<double> differences;
   for (std::size_t i = 0; i < picture.texels.size(); ++i) {
-    const int covered =
-        (picture.texels[i].w > 0.0f) + (reference.texels[i].w > 0.0f) + (second.texels[i].w > 0.0f);
-    error.pixels_apart += covered == 1 || covered == 2;
-    if (covered < 3) continue;
+    const auto [least, most] = std::minmax({picture.texels[i].w, reference.texels[i].w, second.texels[i].w});
+    // A rim that is just above the bound in one and just below in the other is not apart.
+    error.pixels_apart += most >= spec::kLeastCoverage && least < 0.5f * spec::kLeastCoverage;
+    if (!(least >= spec::kLeastCoverage)) continue;
     const glm::dvec3 x(picture.texels[i]), a(reference.texels[i]), b(second.texels[i]), mean = 0.5 * (a + b);
     if (!finite(x) || !finite(a) || !finite(b))
       return fail(

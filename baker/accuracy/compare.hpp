@@ -1,6 +1,8 @@
-// How far a picture lies from a reference, in linear radiance, over the pixels that both cover (alpha > 0 in
-// every picture; no sky, no tone map). With a second reference that was made independently (another seed),
-// the noise of the references cancels: errors are products of two differences whose noise is not correlated.
+// How far a picture lies from a reference, in linear radiance, over the pixels that both cover (alpha of at
+// least spec::kLeastCoverage in every picture; no sky, no tone map). What a cloud or a blended surface lets
+// through of the sky counts with it: it is the same in all pictures, or should be. With a second reference
+// that was made independently (another seed), the noise of the references cancels: errors are products of two
+// differences whose noise is not correlated.
 #pragma once
 
 #include <array>
@@ -14,8 +16,8 @@ namespace lambent::baker {
 
 struct PictureError {
   std::uint64_t pixels = 0;  // covered in all pictures
-  // Covered in one, sky in another: more than the odd pixel of an outline says that scene, camera or size
-  // differ.
+  // Covered in one, sky in another (less than half of kLeastCoverage): more than the odd pixel of an outline
+  // says that scene, camera or size differ.
   std::uint64_t pixels_apart = 0;
   double relative_rms =
       0.0;  // sqrt( sum (X-A)² / sum A² ); with B: sqrt( sum (X-A)(X-B) / sum AB ), 0 if negative

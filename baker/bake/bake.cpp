@@ -8,7 +8,9 @@
 #include <fmt/format.h>
 
 #include "baker/bake/assemble.hpp"
+#include "baker/bake/bake_around.hpp"
 #include "baker/bake/bake_group.hpp"
+#include "baker/bake/bake_volume.hpp"
 #include "baker/bake/ship_meshes.hpp"
 #include "baker/effects/diffuse/bounces.hpp"
 #include "baker/effects/effect_list.hpp"
@@ -24,6 +26,7 @@ namespace {
 static_assert(BakeOptions::kMostBounces == kMostBounces);
 constexpr int kLeastGlossyOrder = 4, kMostGlossyOrder = 6;
 constexpr int kMostNeighborhoodOrder = 6;
+constexpr std::uint32_t kMostVolumeGrid = 256;
 constexpr std::size_t kMinRays = 128, kMaxRays = 1u << 20;
 
 Result<void> checkOptions(const BakeOptions& options) {
@@ -54,6 +57,11 @@ Result<void> checkOptions(const BakeOptions& options) {
         return fail("--neighborhood-grid",
                     fmt::format("{} points are not between 2 and {}", grid[axis], kMostGridPoints),
                     "64x64x8 is usual");
+  for (int axis = 0; axis < 3; ++axis)
+    if (options.volume_grid[axis] < 1 || options.volume_grid[axis] > kMostVolumeGrid)
+      return fail("--volume-grid",
+                  fmt::format("{} is not between 1 and {}", options.volume_grid[axis], kMostVolumeGrid),
+                  "32 is the default");
   if (!(options.max_edge_m >= 0.0f && std::isfinite(options.max_edge_m)))
     return fail("--max-edge", fmt::format("{} is not a length", options.max_edge_m),
                 "give a positive number in the scene's units, or leave it out");
@@ -122,9 +130,15 @@ Result<BakeReport> bakeOnTheseThreads(const Scene& scene, const BakeOptions& opt
 
   std::vector<BakedGroup> baked;
   for (std::size_t g = 0; g < plan->groups.size(); ++g) {
-    auto result = bakeGroup(scene, plan->groups[g], plan->light_samples[g].count, plan->neighborhoods[g],
-                            tables, *meshes, *alpha_maps, images, options, progress, stop, report);
+    auto result =
+        plan->groups[g].volume >= 0
+            ? bakeVolume(scene, plan->groups, g, baked, *alpha_maps, options, progress, stop, report)
+            : bakeGroup(scene, plan->groups[g], plan->light_samples[g].count, plan->neighborhoods[g], tables,
+                        *meshes, *alpha_maps, images, options, progress, stop, report);
     if (!result) return failAgain(result.error());
+    if (const PlannedNeighborhood& around = plan->neighborhoods[g]; result->volume && around.baked)
+      if (!bakeAroundVolume(*result, plan->groups[g].name, around, options, progress, stop, report))
+        return stopped(scene);
     baked.push_back(std::move(*result));
   }
   if (stop.stop_requested()) return stopped(scene);
@@ -162,6 +176,10 @@ Result<EffectPlan> planFor(const Scene& scene, const BakeOptions& options) {
     return fail(
         "--order", fmt::format("{} is more than neighborhoods take", options.order),
         fmt::format("use at most {}, or leave neighborhood out of --effects", kMostNeighborhoodOrder));
+  // Volumes come last; without their effect they are not there.
+  if (!plan.bakes("volume"))
+    while (!plan.groups.empty() && plan.groups.back().volume >= 0)
+      plan.groups.pop_back(), plan.light_samples.pop_back(), plan.neighborhoods.pop_back();
   if (options.light_samples > 0)
     for (PlannedLightSamples& planned : plan.light_samples)
       planned = {{static_cast<std::uint32_t>(options.light_samples), /*of_group=*/false}, "asked for"};

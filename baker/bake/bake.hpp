@@ -48,6 +48,16 @@ struct BakeReport {
   };
   std::vector<Neighborhood> neighborhoods;
   RefineReport refinement;
+  struct Volume {
+    std::string name;
+    std::uint64_t voxels = 0, samples = 0;
+    std::uint32_t density_bits = 8;
+    double density_error = 0.0;  // of quantizing, relative RMS
+    int iterations = 0;          // of the solver for all scatterings, and what it left
+    double residual = 0.0;
+    std::uint64_t row_bytes = 0;  // that it held in memory
+  };
+  std::vector<Volume> volumes;
   double left_out = 0.0;  // estimate of the light that further bounces would add, relative to all
   std::vector<Progress::Stage> stages;
   std::vector<std::string> notices;  // what came out other than the plan says, a sentence each

@@ -11,6 +11,7 @@
 #include "baker/bake/ship_meshes.hpp"
 #include "baker/brdf/surface_brdfs.hpp"
 #include "baker/compress/cpca.hpp"
+#include "baker/effects/volume/volume_light.hpp"
 #include "baker/light_samples/light_samples.hpp"
 #include "baker/plan/group_lights.hpp"
 #include "baker/transport/alpha_map.hpp"
@@ -27,9 +28,10 @@ struct BakedGroup {
   // Per sample cell: light of the environment (of a glossy cell visibility, then bounced light), then, where
   // there are some, of the group's lights.
   std::vector<std::vector<CodedTransfer>> cells;
-  LightSamples light_samples;         // as SampleSet::positions
-  bundle::CaptureProxy proxy;         // group frame
-  std::optional<BakedVolume> volume;  // then all of the above is empty
+  LightSamples light_samples;                       // as SampleSet::positions
+  bundle::CaptureProxy proxy;                       // group frame
+  std::optional<BakedVolume> volume;                // then all of the above is empty
+  std::shared_ptr<const VolumeLight> volume_light;  // then what others see of it, before coding; group frame
   std::optional<BakedNeighborhood> neighborhood;
 };
 

@@ -78,6 +78,7 @@ std::map<std::string, std::string> BakeOptions::settings() const {
                : fmt::format("{}x{}x{}", neighborhood_grid.x, neighborhood_grid.y, neighborhood_grid.z)},
           {"maxEdge", fmt::format("{}", max_edge_m)},
           {"refineBound", fmt::format("{}", effectiveRefineBound())},
+          {"volumeGrid", fmt::format("{}x{}x{}", volume_grid.x, volume_grid.y, volume_grid.z)},
           {"effects", effects}};
 }
 

@@ -29,7 +29,8 @@ struct BakeOptions {
   // Where shadows change, edges are split until interpolation errs by less than this, relative RMS against
   // open light; 0: nowhere; under 0: the quality's.
   float refine_bound = -1.0f;
-  int light_samples = 0;  // of each cell, 1..32; 0: auto, by how near light comes (local_light.hpp)
+  int light_samples = 0;       // of each cell, 1..32; 0: auto, by how near light comes (local_light.hpp)
+  glm::uvec3 volume_grid{32};  // voxels of a volume's transfer, 1..256 along each axis
   std::string effects = "auto";
   unsigned threads = 0;            // 0: all
   std::uint64_t memory_bytes = 0;  // that passes may keep things in; 0: half of the machine's

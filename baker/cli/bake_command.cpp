@@ -1,5 +1,5 @@
 // lambent bake SCENE -o OUT.lmb.glb
-#include <cstdio>
+#include <charconv>
 #include <cstdlib>
 #include <map>
 #include <memory>
@@ -45,6 +45,16 @@ nlohmann::json reportJson(const BakeArguments& a, const BakeReport& r) {
                              {"insidePoints", n.inside_points},
                              {"codingError", n.error},
                              {"changeCodingError", n.change_error}});
+  nlohmann::json volumes = nlohmann::json::array();
+  for (const BakeReport::Volume& volume : r.volumes)
+    volumes.push_back({{"name", volume.name},
+                       {"voxels", volume.voxels},
+                       {"samples", volume.samples},
+                       {"densityBits", volume.density_bits},
+                       {"densityError", volume.density_error},
+                       {"iterations", volume.iterations},
+                       {"residual", volume.residual},
+                       {"rowBytes", volume.row_bytes}});
   return {{"output", a.output.string()},
           {"settings", a.options.settings()},
           {"vertices", r.vertices},
@@ -56,6 +66,7 @@ nlohmann::json reportJson(const BakeArguments& a, const BakeReport& r) {
           {"lights", r.lights},
           {"groups", groups},
           {"neighborhoods", neighborhoods},
+          {"volumes", volumes},
           {"passEnergy", r.pass_energy},
           {"leftOut", r.left_out},
           {"hitBytes", r.hit_bytes},
@@ -92,6 +103,12 @@ void printReport(const BakeArguments& a, const BakeReport& r) {
   if (!r.pass_energy.empty())
     fmt::print("  bounces   {}, the last with {:.3f} % of the direct light; {:.3f} % left out\n",
                r.pass_energy.size() - 1, 100.0 * r.pass_energy.back(), 100.0 * r.left_out);
+  for (const BakeReport::Volume& volume : r.volumes)
+    fmt::print(
+        "  volume    {}: {} voxels, {} samples, density in {} bits ({:.2f} %), scattering solved in {} "
+        "steps\n",
+        volume.name, volume.voxels, volume.samples, volume.density_bits, 100.0 * volume.density_error,
+        volume.iterations);
   std::uint64_t light_samples = 0, proxy_triangles = 0;
   for (const BakeReport::Group& group : r.groups)
     light_samples += group.light_samples,
@@ -168,25 +185,37 @@ void addLightSamplesOption(CLI::App& command, BakeOptions& options) {
       ->type_name("N|auto");
 }
 
+// "48" or "64x32x64"; nothing where it is neither.
+std::optional<glm::uvec3> gridFrom(const std::string& text) {
+  glm::uvec3 size(0);
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto [next, error] = std::from_chars(at, end, size[axis]);
+    if (error != std::errc{}) return std::nullopt;
+    if (axis == 0 && next == end) return glm::uvec3(size.x);
+    if (axis == 2) return next == end ? std::optional(size) : std::nullopt;
+    if (next == end || *next != 'x') return std::nullopt;
+    at = next + 1;
+  }
+  return std::nullopt;
+}
+
 void addNeighborhoodGridOption(CLI::App& command, BakeOptions& options) {
-  const auto read = [](const std::string& text) -> std::optional<glm::uvec3> {
-    if (text == "auto") return glm::uvec3(0u);
-    glm::uvec3 size;
-    char rest = 0;
-    if (std::sscanf(text.c_str(), "%3ux%3ux%3u%c", &size.x, &size.y, &size.z, &rest) != 3)
-      return std::nullopt;
-    return size;
+  const auto read = [](const std::string& text) {
+    return text == "auto" ? std::optional(glm::uvec3(0u)) : gridFrom(text);
   };
   command
       .add_option_function<std::string>(
           "--neighborhood-grid",
           [&options, read](const std::string& text) { options.neighborhood_grid = *read(text); },
           "Points of neighborhood grids along their longest, middle and shortest side, 2..256 each; auto "
-          "(default): 64x64x8 where receivers are on one side only, else 32x32x32; for bodies that the scene does "
+          "(default): 64x64x8 where receivers are on one side only, else 32x32x32; for bodies that the scene "
+          "does "
           "not name a quarter of that")
       ->check(CLI::Validator(
           [read](const std::string& text) {
-            return read(text) ? std::string() : fmt::format("{} is neither auto nor like 64x64x8", text);
+            return read(text) ? std::string() : fmt::format("{} is neither auto nor N nor XxYxZ", text);
           },
           ""))
       ->type_name("XxYxZ");
@@ -212,6 +241,19 @@ void addRefineOption(CLI::App& command, BakeOptions& options) {
           },
           ""))
       ->type_name("E|auto|off");
+}
+
+void addVolumeGridOption(CLI::App& command, BakeOptions& options) {
+  command
+      .add_option_function<std::string>(
+          "--volume-grid", [&options](const std::string& text) { options.volume_grid = *gridFrom(text); },
+          "Voxels of the grid that a volume's transfer is baked on, 1..256 along each axis; default 32")
+      ->check(CLI::Validator(
+          [](const std::string& text) {
+            return gridFrom(text) ? std::string() : fmt::format("{} is neither N nor XxYxZ", text);
+          },
+          ""))
+      ->type_name("N|XxYxZ");
 }
 
 void addBakeCommand(CLI::App& app, Command& run) {
@@ -264,6 +306,7 @@ void addBakeCommand(CLI::App& app, Command& run) {
   addRefineOption(*command, a->options);
   addLightSamplesOption(*command, a->options);
   addNeighborhoodGridOption(*command, a->options);
+  addVolumeGridOption(*command, a->options);
   command->add_option("--effects", a->options.effects, "auto: what the scene calls for; or a list of effects")
       ->capture_default_str()
       ->type_name("LIST");

@@ -22,7 +22,8 @@ void addInfoCommand(CLI::App& app, Command& run);
 void addReferenceCommand(CLI::App& app, Command& run);
 void addCompareCommand(CLI::App& app, Command& run);
 
-// --light-samples, of bake and plan.
+// --volume-grid of bake; --light-samples of bake and plan.
+void addVolumeGridOption(CLI::App& command, BakeOptions& options);
 void addLightSamplesOption(CLI::App& command, BakeOptions& options);
 void addNeighborhoodGridOption(CLI::App& command, BakeOptions& options);
 

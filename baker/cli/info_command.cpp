@@ -22,7 +22,7 @@ struct InfoArguments {
 
 struct Sizes {
   std::uint64_t mesh = 0, image = 0, rows = 0, codebooks = 0, ids = 0, planes = 0, light_weights = 0,
-                proxies = 0, brdf_tables = 0;
+                proxies = 0, brdf_tables = 0, densities = 0;
   std::uint64_t vertices = 0, triangles = 0;
 };
 
@@ -40,6 +40,8 @@ Sizes sizesOf(const bundle::Description& d) {
     if (payload.type == bundle::PayloadType::LightWeights) sizes.light_weights += length;
     if (payload.type == bundle::PayloadType::CaptureProxy) sizes.proxies += length;
     if (payload.type == bundle::PayloadType::BrdfTable) sizes.brdf_tables += length;
+    if (payload.type == bundle::PayloadType::Density || payload.type == bundle::PayloadType::Voxels)
+      sizes.densities += length;
   }
   for (const bundle::Draw& draw : d.draws) {
     const bundle::Primitive& primitive = d.meshes[draw.mesh].primitives[draw.primitive];
@@ -58,10 +60,10 @@ std::vector<std::uint32_t> proxyTriangles(const bundle::Reader& reader, const bu
   return counts;
 }
 
-const char* effectOf(const bundle::Cell& cell) {
+const char* effectName(const bundle::Cell& cell, const bundle::CellTransfer& transfer) {
   if (cell.kind == bundle::CellKind::Volume) return "volume";
   if (cell.kind == bundle::CellKind::Neighborhood) return "neighborhood";
-  return bundle::isGlossy(cell.outputs()) ? "glossy" : "diffuse";
+  return transfer.shape.glossy() ? "glossy" : "diffuse";
 }
 
 // Null where there is none.
@@ -87,7 +89,7 @@ void printJson(const bundle::Reader& reader, const Sizes& sizes) {
     for (const bundle::Cell& cell : group.cells)
       for (const bundle::CellTransfer& transfer : cell.transfers)
         cells.push_back({{"samples", cell.sample_count},
-                         {"effect", effectOf(cell)},
+                         {"effect", effectName(cell, transfer)},
                          {"light", transfer.fromEnvironment() ? "environment" : "lamps"},
                          {"outputs", transfer.shape.outputs},
                          {"visibilityBands", transfer.shape.visibility_bands},
@@ -126,6 +128,7 @@ void printJson(const bundle::Reader& reader, const Sizes& sizes) {
       {"lightWeightBytes", sizes.light_weights},
       {"proxyBytes", sizes.proxies},
       {"brdfTableBytes", sizes.brdf_tables},
+      {"densityBytes", sizes.densities},
       {"groups", groups}};
   fmt::print("{}\n", json.dump(2));
 }
@@ -150,6 +153,7 @@ void printText(const bundle::Reader& reader, const Sizes& sizes) {
   line("light weights", sizes.light_weights);
   line("proxies", sizes.proxies);
   if (!d.brdf_tables.empty()) line("BRDF tables", sizes.brdf_tables);
+  if (sizes.densities > 0) line("densities", sizes.densities);
   line("whole file", reader.fileBytes());
   for (const bundle::Group& group : d.groups) {
     fmt::print("group \"{}\": {} samples in {} cells\n", group.name, group.sample_count, group.cells.size());
@@ -157,13 +161,20 @@ void printText(const bundle::Reader& reader, const Sizes& sizes) {
     fmt::print("  {}, {}\n", counted(group.light_samples.size(), "light sample"),
                proxy.empty() ? "no proxy" : fmt::format("proxy of {} triangles", fmt::join(proxy, ", ")));
     if (const auto& around = group.neighborhood)
-      fmt::print("  neighborhood of {} x {} x {} points, ({:.2f}, {:.2f}, {:.2f}) to ({:.2f}, {:.2f}, {:.2f})\n",
-                 around->size.x, around->size.y, around->size.z, around->bounds_min.x, around->bounds_min.y,
-                 around->bounds_min.z, around->bounds_max.x, around->bounds_max.y, around->bounds_max.z);
+      fmt::print(
+          "  neighborhood of {} x {} x {} points, ({:.2f}, {:.2f}, {:.2f}) to ({:.2f}, {:.2f}, {:.2f})\n",
+          around->size.x, around->size.y, around->size.z, around->bounds_min.x, around->bounds_min.y,
+          around->bounds_min.z, around->bounds_max.x, around->bounds_max.y, around->bounds_max.z);
+    if (group.volume)
+      fmt::print(
+          "  volume of {} x {} x {} voxels in {} bits, at most {:.4g} per metre; transfer on {} x {} x {}\n",
+          group.volume->size.x, group.volume->size.y, group.volume->size.z, group.volume->bits,
+          double{group.volume->density_max}, group.volume->transfer_size.x, group.volume->transfer_size.y,
+          group.volume->transfer_size.z);
     for (const bundle::Cell& cell : group.cells)
       for (const bundle::CellTransfer& transfer : cell.transfers)
         fmt::print("  {} {}: {}, {} samples, {} clusters, {} planes, error {:.3f} % (bound {:.3f} %)\n",
-                   effectOf(cell),
+                   effectName(cell, transfer),
                    transfer.fromEnvironment() ? fmt::format("order {}", transfer.shape.order)
                                               : fmt::format("{} lamps", transfer.shape.light_columns),
                    partName(transfer.shape), cell.sample_count, transfer.clusters, transfer.planes.size(),

@@ -42,16 +42,19 @@ void printJson(const Scene& scene, const EffectPlan& plan) {
     const RigidGroup& group = plan.groups[g];
     const GroupSize size = sizeOf(scene, group);
     const PlannedLightSamples& planned = plan.light_samples[g];
-    groups.push_back({{"name", group.name},
-                      {"lightSamples", planned.count.count},
-                      {"lightSamplesOf", planned.count.of_group ? "group" : "cell"},
-                      {"lightSamplesReason", planned.reason},
-                      {"neighborhood", plan.neighborhoods[g].baked},
-                      {"neighborhoodReason", plan.neighborhoods[g].reason},
-                      {"neighborhoodMatrices", plan.neighborhoods[g].matrices},
-                      {"draws", group.draws.size()},
-                      {"vertices", size.vertices},
-                      {"triangles", size.triangles}});
+    groups.push_back(
+        {{"name", group.name},
+         {"volume", group.volume >= 0 ? scene.volumes[static_cast<std::size_t>(group.volume)].name : ""},
+         {"within", group.within >= 0 ? plan.groups[static_cast<std::size_t>(group.within)].name : ""},
+         {"lightSamples", planned.count.count},
+         {"lightSamplesOf", planned.count.of_group ? "group" : "cell"},
+         {"lightSamplesReason", planned.reason},
+         {"neighborhood", plan.neighborhoods[g].baked},
+         {"neighborhoodReason", plan.neighborhoods[g].reason},
+         {"neighborhoodMatrices", plan.neighborhoods[g].matrices},
+         {"draws", group.draws.size()},
+         {"vertices", size.vertices},
+         {"triangles", size.triangles}});
   }
   for (const EffectChoice& choice : plan.effects)
     effects.push_back({{"effect", choice.effect}, {"baked", choice.baked}, {"reason", choice.reason}});
@@ -71,6 +74,13 @@ void printText(const Scene& scene, const EffectPlan& plan) {
   for (std::size_t g = 0; g < plan.groups.size(); ++g) {
     const RigidGroup& group = plan.groups[g];
     const GroupSize size = sizeOf(scene, group);
+    if (group.volume >= 0) {
+      fmt::print("    {}: a volume{}\n", group.name,
+                 group.within < 0
+                     ? ""
+                     : " among the surfaces of " + plan.groups[static_cast<std::size_t>(group.within)].name);
+      continue;
+    }
     const auto& [count, reason] = plan.light_samples[g];
     fmt::print("    {}: {}, {} vertices, {} triangles\n", group.name, counted(group.draws.size(), "draw"),
                size.vertices, size.triangles);

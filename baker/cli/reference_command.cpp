@@ -174,11 +174,12 @@ void addReferenceCommand(CLI::App& app, Command& run) {
   command
       ->add_option("--band-limit", a->band_limit,
                    "IN: light cut to its first IN bands (1..8), spheres and discs\nas seen from each point. "
-                   "IN,OUT: and the BRDF at the\nfirst hit to OUT bands")
+                   "IN,OUT: and the BRDF or phase\nfunction at the first hit to OUT bands")
       ->type_name("IN[,OUT]");
   command
       ->add_option("--bounces", a->options.bounces,
-                   "Interreflections; 0 is direct light. Default: as many as matter")
+                   "Interreflections between surfaces. 0 is direct light, and single\nscattering in volumes; "
+                   "else volumes scatter as often as they do.\nDefault: as many as matter")
       ->type_name("N");
   command
       ->add_option("--threads", a->options.threads, "Threads; default all. The result does not depend on it")

@@ -117,7 +117,7 @@ spec::RgbaImage Film::image() const {
 std::optional<double> Film::standardError() const {
   double variances = 0.0, squares = 0.0;
   for (std::size_t i = 0; i < pixels_.size(); ++i) {
-    if (pixels_[i].alpha <= 0.0) continue;
+    if (pixels_[i].alpha < double{spec::kLeastCoverage}) continue;
     const std::uint32_t samples = done_[i / size_.width];
     if (samples < 2) return std::nullopt;
     const double second = samples / 2, first = samples - second, done = samples;

@@ -39,7 +39,8 @@ class Film {
   spec::RgbaImage image() const;
 
   // Standard error of the picture's pixels, relative as `compare` has it: sqrt(sum of variances / sum of
-  // squares) over covered pixels; from the difference of the two replicas. None where a pixel has one sample.
+  // squares) over the pixels that it counts; from the difference of the two replicas. None where a pixel has
+  // one sample.
   std::optional<double> standardError() const;
 
  private:

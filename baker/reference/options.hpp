@@ -15,7 +15,8 @@ namespace lambent::baker::reference {
 // surface sees that, however near the light may stand. Emissive surfaces and punctual lights stay whole. And,
 // where `out` is given, the BRDF times the cosine at the first hit replaced by its first `out` bands, with
 // the light below the surface's plane mirrored where something stands in the mirrored direction
-// (docs/conventions.md, "Materials").
+// (docs/conventions.md, "Materials"); and so the phase function where a volume scatters towards the eye. The
+// sky that the eye sees, through volumes too, stays whole.
 struct BandLimit {
   int in = 5;
   std::optional<int> out = {};
@@ -29,7 +30,9 @@ struct Options {
   std::uint32_t spp = 256;  // samples a pixel, 1..kMaxSpp
   std::uint32_t seed = 0;   // pictures of two seeds have independent noise
   std::optional<BandLimit> band_limit = {};
-  std::optional<std::uint32_t> bounces = {};  // interreflections: 0 is direct light; none: as many as matter
+  // Interreflections between surfaces; none: as many as matter. 0 is direct light, and single scattering in
+  // volumes; with any other number volumes scatter without a limit.
+  std::optional<std::uint32_t> bounces = {};
   float rotate_light_deg = 0.0f;
   unsigned threads = 0;  // 0: as many as the machine has
 };

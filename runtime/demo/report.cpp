@@ -39,6 +39,8 @@ Json countsJson(const frame::StepCounts& counts) {
           {"neighborhood_pairs", counts.neighborhoods.pairs},
           {"neighborhood_receivers", counts.neighborhoods.receivers},
           {"neighborhood_arrivals", counts.neighborhoods.arrivals},
+          {"neighborhood_vertex_receivers", counts.neighborhoods.vertex_receivers},
+          {"neighborhood_vertex_receivers_shaded", counts.neighborhoods.vertex_receivers_shaded},
           {"neighborhood_arrivals_left_out", counts.neighborhoods.left_out}};
 }
 

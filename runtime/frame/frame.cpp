@@ -98,7 +98,7 @@ Result<std::uint32_t> Frame::rest(World& world, const lighting::Environment& env
 }
 
 bool Frame::atRest(const World& world) const {
-  return world.loaded() && (!incident_ || incident_->atRest());
+  return world.loaded() && (!incident_ || incident_->atRest()) && neighborhoods_.settled();
 }
 
 Result<void> Frame::step(World& world, const lighting::Environment& environment, std::size_t max_captures) {
@@ -247,7 +247,11 @@ Result<void> Frame::marchVolumes(World& world, const spec::View& view) {
   const auto& volumes = world.residency().volumes();
   if (volumes.empty()) return {};
   gpu::PassTimers::Scope pass(timers_, "march");
-  if (!march_) march_.emplace(effects::volume::MarchOptions{.jitter = options_.output == Output::Display});
+  if (!march_) {
+    // Pictures that are compared take half the steps, all at their places.
+    const bool linear = options_.output == Output::Linear;
+    march_.emplace(effects::volume::MarchOptions{.step_voxels = linear ? 0.5f : 1.0f, .jitter = !linear});
+  }
   if (!hdr_color_target_) hdr_color_target_ = gpu::Framebuffer("hdr color", hdr_, nullptr);
   std::vector<effects::volume::PlacedVolume> placed;
   for (std::uint32_t v = 0; v < volumes.size(); ++v)
@@ -261,7 +265,8 @@ Result<void> Frame::marchVolumes(World& world, const spec::View& view) {
 Result<void> Frame::shadeNeighborhoods(World& world) {
   if (!neighborhoods_.any()) return {};
   gpu::PassTimers::Scope pass(timers_, "neighborhood");
-  Result<void> done = neighborhoods_.update(world, group_lights_, glossy_, pass.counters());
+  Result<void> done =
+      neighborhoods_.update(world, group_lights_, glossy_, options_.transfer, pass.counters());
   counts_.neighborhoods = neighborhoods_.counts();
   return done;
 }

@@ -156,8 +156,8 @@ LitScene gatherLitScene(const World& world, float surroundings) {
   for (std::size_t g = 0; g < groups.size(); ++g) {
     const std::int32_t within = world.description(groups[g].bundle).groups[groups[g].index].within;
     if (within < 0) continue;
-    const std::size_t around = world.residency().bundles()[groups[g].bundle].first_group +
-                               static_cast<std::size_t>(within);
+    const std::size_t around =
+        world.residency().bundles()[groups[g].bundle].first_group + static_cast<std::size_t>(within);
     if (const std::uint32_t body = scene.groups[around].body; body != lighting::CapturePoint::kNoBody)
       scene.groups[g].left_out.push_back(body);
   }

@@ -10,6 +10,7 @@
 
 #include "runtime/frame/boxes.hpp"
 #include "runtime/frame/surface_record.hpp"
+#include "runtime/frame/surface_shared.h"
 
 namespace lambent::frame {
 
@@ -61,6 +62,26 @@ bool finite(const glm::dmat4& matrix) {
   return true;
 }
 
+double scaleOf(const glm::mat4& matrix) {
+  return std::cbrt(std::abs(glm::determinant(glm::dmat3(glm::mat3(matrix)))));
+}
+
+// Whether a draw receives from the grid at its vertices, through transfer of its own: the rule at the head of
+// neighborhoods.hpp. Under coarser meshes the grid's own detail would be lost between vertices.
+bool byTransfer(const World& world, std::uint32_t draw, const Grid& grid) {
+  const streaming::ResidentDraw& resident = world.residency().draws()[draw];
+  const std::uint32_t order = world.residency().groups()[resident.group].order;
+  if (grid.place.outputs != order * order ||
+      !effects::neighborhood::hasTransfer(world.residency(), draw, order))
+    return false;
+  const glm::dvec3 spacing =
+      glm::dvec3(grid.points.bounds_max - grid.points.bounds_min) / glm::dvec3(grid.points.size - 1u);
+  const double apart = (spacing.x + spacing.y + spacing.z) / 3.0 * scaleOf(world.worldFromGroup(grid.group));
+  const double edge =
+      double{world.residency().meshes()[resident.mesh].mean_edge} * scaleOf(world.worldFromMesh(draw));
+  return edge <= apart;
+}
+
 // From the position that the surface pass has per pixel of this draw (surface.vert): the mesh's own, or with
 // normal maps the one turned by the matrix that surface_record.cpp makes.
 glm::dmat4 worldFromPosition(const World& world, std::size_t draw, const SurfaceDraw& record) {
@@ -84,8 +105,13 @@ void Neighborhoods::noticeGrids(const World& world) {
   effect_.setGrids(std::move(grids), world.residency());
 }
 
+std::size_t Neighborhoods::readyGrids() const {
+  return static_cast<std::size_t>(std::ranges::count_if(effect_.grids(), &Grid::ready));
+}
+
 void Neighborhoods::chooseCarriers(const World& world, LitScene& scene) {
   noticeGrids(world);
+  ready_when_chosen_ = readyGrids();
   counts_ = {.grids = static_cast<std::uint32_t>(effect_.grids().size())};
   std::set<std::pair<std::uint32_t, std::uint32_t>> pairs;
   const auto group_count = static_cast<std::uint32_t>(world.residency().groups().size());
@@ -112,7 +138,8 @@ void Neighborhoods::chooseCarriers(const World& world, LitScene& scene) {
 }
 
 Result<void> Neighborhoods::update(World& world, const lighting::GroupLights& lights,
-                                   const effects::glossy::Glossy& glossy, gpu::Counters& counters) {
+                                   const effects::glossy::Glossy& glossy, effects::diffuse::TransferMode mode,
+                                   gpu::Counters& counters) {
   if (Result<void> done = effect_.update(world.residency(), lights, glossy, counters); !done) return done;
   const bool same = !pairs_changed_ && transforms_seen_ == world.transformsVersion() &&
                     residency_seen_ == world.residency().version() && effect_seen_ == effect_.version();
@@ -121,11 +148,20 @@ Result<void> Neighborhoods::update(World& world, const lighting::GroupLights& li
     transforms_seen_ = world.transformsVersion();
     residency_seen_ = world.residency().version();
     effect_seen_ = effect_.version();
-    findReceivers(world);
+    findReceivers(world, mode);
+  }
+  if (Result<void> done =
+          vertex_receivers_.update(world.residency(), lights, mode, effect_, vertex_draws_, counters);
+      !done)
+    return done;
+  if (!same) {
+    takeReceivers();
     receivers_table_.assign(std::span<const Receiver>(receivers_));
     arrivals_table_.assign(std::span<const Arrival>(arrivals_));
     counters.uploaded_bytes += receivers_.size() * sizeof(Receiver) + arrivals_.size() * sizeof(Arrival);
   }
+  counts_.vertex_receivers = static_cast<std::uint32_t>(vertex_draws_.size());
+  counts_.vertex_receivers_shaded = vertex_receivers_.drawsShadedLast();
   counts_.left_out = left_out_;
   counts_.written = effect_.gridsWrittenLast();
   counts_.arrivals = static_cast<std::uint32_t>(arrivals_.size());
@@ -134,10 +170,12 @@ Result<void> Neighborhoods::update(World& world, const lighting::GroupLights& li
   return {};
 }
 
-void Neighborhoods::findReceivers(const World& world) {
+// Which draws receive how; those that do at their vertices have no room there yet.
+void Neighborhoods::findReceivers(const World& world, effects::diffuse::TransferMode mode) {
   const auto& draws = world.residency().draws();
-  std::vector<Receiver> receivers(
-      draws.size(), {.first = 0, .count = 0, .change_word = effects::neighborhood::kNoChange, .pad = 0});
+  found_.assign(draws.size(),
+                {.first = 0, .count = 0, .change_word = effects::neighborhood::kNoChange, .pad = 0});
+  vertex_draws_.clear();
   arrivals_.clear();
   left_out_ = 0;
   struct Found {
@@ -152,8 +190,10 @@ void Neighborhoods::findReceivers(const World& world) {
         world.description(draw.bundle).meshes[described.mesh].primitives[described.primitive];
     const scene::Box bounds{primitive.bounds_min, primitive.bounds_max};
     std::vector<Found> found;
+    effects::neighborhood::VertexDraw at_vertices{.draw = d, .from = {}};
     std::optional<glm::dmat4> world_from_position;
-    for (const Grid& grid : effect_.grids()) {
+    for (std::uint32_t g = 0; g < effect_.grids().size(); ++g) {
+      const Grid& grid = effect_.grids()[g];
       if (!grid.ready || !pairs_.contains({grid.group, draw.group})) continue;
       const glm::mat4 world_from_body = world.worldFromGroup(grid.group),
                       world_from_mesh = world.worldFromMesh(d);
@@ -170,12 +210,18 @@ void Neighborhoods::findReceivers(const World& world) {
       if (!finite(grid_from_position)) continue;  // something is flat
       const glm::quat body_from_group =
           glm::conjugate(world.rotationOf(grid.group)) * world.rotationOf(draw.group);
+      const glm::mat3x4 to_grid(glm::mat4(glm::transpose(grid_from_position)));
+      if (mode != effects::diffuse::TransferMode::Unshadowed && byTransfer(world, d, grid)) {
+        at_vertices.from.push_back(
+            {.grid = g, .grid_from_position = to_grid, .group_from_body = glm::conjugate(body_from_group)});
+        continue;
+      }
       const glm::dvec3 middle(world_from_body *
                               glm::vec4(0.5f * (grid.points.bounds_min + grid.points.bounds_max), 1.0f));
       const glm::dvec3 receiver(world_from_mesh * glm::vec4(bounds.center(), 1.0f));
       found.push_back(
           {.distance = glm::distance(middle, receiver),
-           .arrival = {.grid_from_position = glm::mat3x4(glm::mat4(glm::transpose(grid_from_position))),
+           .arrival = {.grid_from_position = to_grid,
                        .body_from_group = glm::mat3x4(glm::transpose(glm::mat3_cast(body_from_group))),
                        .grid = grid.place}});
     }
@@ -184,21 +230,28 @@ void Neighborhoods::findReceivers(const World& world) {
       left_out_ += static_cast<std::uint32_t>(found.size()) - kMaxArrivals;
       found.resize(kMaxArrivals);
     }
-    receivers[d].first = static_cast<std::uint32_t>(arrivals_.size());
-    receivers[d].count = static_cast<std::uint32_t>(found.size());
+    found_[d].first = static_cast<std::uint32_t>(arrivals_.size());
+    found_[d].count = static_cast<std::uint32_t>(found.size());
     for (const Found& one : found) arrivals_.push_back(one.arrival);
+    if (!at_vertices.from.empty()) vertex_draws_.push_back(std::move(at_vertices));
   }
+}
+
+void Neighborhoods::takeReceivers() {
+  for (const effects::neighborhood::VertexDraw& draw : vertex_draws_)
+    found_[draw.draw].change_word = vertex_receivers_.changeWord(draw.draw);
   const auto sameKind = [](const Receiver& a, const Receiver& b) {
     return (a.count > 0) == (b.count > 0) && a.change_word == b.change_word;
   };
-  if (!std::ranges::equal(receivers, receivers_, sameKind)) ++version_;
-  receivers_ = std::move(receivers);
+  if (!std::ranges::equal(found_, receivers_, sameKind)) ++version_;
+  receivers_ = found_;
 }
 
 void Neighborhoods::bind() const {
   receivers_table_.bindStorage(effects::neighborhood::kBindReceivers);
   arrivals_table_.bindStorage(effects::neighborhood::kBindArrivals);
   effect_.bind();
+  if (!vertex_draws_.empty()) vertex_receivers_.bindStorage(kBindRadianceChange);
 }
 
 }  // namespace lambent::frame

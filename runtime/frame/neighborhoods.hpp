@@ -8,6 +8,11 @@
 // pixel, with shadow cubes in which k stands (its shadow would count twice). Otherwise by capture. A volume's
 // grid acts on every group with surfaces, the one that it stands within included.
 //
+// A draw receives from a grid at its vertices, through transfer of its own (so that it shades itself under
+// the changed light), where the grid has all bands of that transfer, the draw is matte without a normal map,
+// its edges are at most as long, in the mean, as the grid's points are apart, and its transfer is there
+// (effects::neighborhood::hasTransfer). Otherwise per pixel, as an open surface.
+//
 // Reads where groups stand and what is resident; writes the texture of the neighborhood effect and the tables
 // of the surface pass. Without grids it holds and runs nothing. Render thread only.
 #pragma once
@@ -20,6 +25,7 @@
 #include "runtime/base/result.hpp"
 #include "runtime/effects/glossy/glossy.hpp"
 #include "runtime/effects/neighborhood/neighborhood.hpp"
+#include "runtime/effects/neighborhood/vertex_receivers.hpp"
 #include "runtime/frame/lit_scene.hpp"
 #include "runtime/frame/world.hpp"
 #include "runtime/lighting/group_lights.hpp"
@@ -30,13 +36,14 @@ namespace lambent::frame {
 inline constexpr std::uint32_t kMaxArrivals = 32;
 
 struct NeighborhoodCounts {
-  std::uint32_t grids = 0;      // there are
-  std::uint32_t ready = 0;      // have arrived
-  std::uint32_t written = 0;    // were written anew in this step
-  std::uint32_t pairs = 0;      // (body -> group) carried by grids
-  std::uint32_t receivers = 0;  // draws that receive
-  std::uint32_t arrivals = 0;   // draw by grid
-  std::uint32_t left_out = 0;   // beyond kMaxArrivals
+  std::uint32_t grids = 0;                                          // there are
+  std::uint32_t ready = 0;                                          // have arrived
+  std::uint32_t written = 0;                                        // were written anew in this step
+  std::uint32_t pairs = 0;                                          // (body -> group) carried by grids
+  std::uint32_t receivers = 0;                                      // draws that receive
+  std::uint32_t arrivals = 0;                                       // draw by grid
+  std::uint32_t left_out = 0;                                       // beyond kMaxArrivals
+  std::uint32_t vertex_receivers = 0, vertex_receivers_shaded = 0;  // draws; of these anew in this step
 };
 
 class Neighborhoods {
@@ -49,10 +56,16 @@ class Neighborhoods {
   void chooseCarriers(const World& world, LitScene& scene);
   // After the glossy effect: what was shaded goes into the texture.
   Result<void> update(World& world, const lighting::GroupLights& lights,
-                      const effects::glossy::Glossy& glossy, gpu::Counters& counters);
+                      const effects::glossy::Glossy& glossy, effects::diffuse::TransferMode mode,
+                      gpu::Counters& counters);
 
-  // Whether the draw receives per pixel.
+  // Whether no grid has become ready since carriers were chosen: else the next step shows it.
+  bool settled() const { return readyGrids() == ready_when_chosen_; }
+  // Whether the draw receives per pixel; at its vertices.
   bool receives(std::size_t draw) const { return draw < receivers_.size() && receivers_[draw].count > 0; }
+  bool receivesAtVertices(std::size_t draw) const {
+    return draw < receivers_.size() && receivers_[draw].change_word != effects::neighborhood::kNoChange;
+  }
   // Rises when draws begin or cease to receive.
   std::uint64_t version() const { return version_; }
   // For the surface pass.
@@ -63,15 +76,19 @@ class Neighborhoods {
   const std::set<std::pair<std::uint32_t, std::uint32_t>>& pairs() const { return pairs_; }
 
  private:
+  std::size_t readyGrids() const;
   void noticeGrids(const World& world);
-  void findReceivers(const World& world);
+  void takeReceivers();
+  void findReceivers(const World& world, effects::diffuse::TransferMode mode);
 
   effects::neighborhood::Neighborhood effect_;
   std::set<std::pair<std::uint32_t, std::uint32_t>> pairs_;
-  std::vector<effects::neighborhood::Receiver> receivers_;
+  std::vector<effects::neighborhood::Receiver> receivers_, found_;  // by draw; found in this step
   std::vector<effects::neighborhood::Arrival> arrivals_;
+  std::vector<effects::neighborhood::VertexDraw> vertex_draws_;
+  effects::neighborhood::VertexReceivers vertex_receivers_;
   gpu::Table receivers_table_, arrivals_table_;
-  std::size_t groups_seen_ = 0;
+  std::size_t groups_seen_ = 0, ready_when_chosen_ = 0;
   std::uint64_t transforms_seen_ = 0, residency_seen_ = 0, effect_seen_ = 0;
   bool pairs_changed_ = false;
   std::uint32_t left_out_ = 0;

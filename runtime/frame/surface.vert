@@ -12,6 +12,12 @@ layout(std430, binding = kBindGeometry) readonly buffer Geometry { uint geometry
 layout(std430, binding = kBindRadiance) readonly buffer Radiance { float radiance_of[]; };
 #endif
 
+#ifdef LAMBENT_VERTEX_CHANGE
+#include "neighborhood_shared.h"
+layout(std430, binding = kBindReceivers) readonly buffer Receivers { Receiver receivers[]; };
+layout(std430, binding = kBindRadianceChange) readonly buffer RadianceChange { float change_of[]; };
+#endif
+
 layout(location = 0) in uint draw_index;  // one per instance: the draw's base instance
 layout(location = 0) flat out uint draw_of;
 layout(location = 1) out vec4 looks_at;  // in the base colour picture: xy; in the emissive one: zw
@@ -96,6 +102,12 @@ void main() {
 #endif
 #else
   radiance = radianceAt(draws[draw_index].radiance_word + 3u * vertex);
+#ifdef LAMBENT_VERTEX_CHANGE
+  uint change_at = receivers[draw_index].change_word + 3u * vertex;
+  // As withChange in neighborhood_eval.glsl.
+  radiance = max(radiance + vec3(change_of[change_at], change_of[change_at + 1u], change_of[change_at + 2u]),
+                 min(radiance, vec3(0.0)));
+#endif
 #if defined(LAMBENT_NEAR_LIGHTS) || defined(LAMBENT_NEIGHBORHOODS)
   normal_group =
       draws[draw_index].facing * unit(mat3(draws[draw_index].group_from_mesh_normal) * geometry3(draws[draw_index].normals_word + 3u * vertex));

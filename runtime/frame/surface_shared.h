@@ -27,6 +27,7 @@ LAMBENT_CONSTANT kBindGeometry = 1u;  // arena page
 LAMBENT_CONSTANT kBindRadiance = 2u;  // arena page
 LAMBENT_CONSTANT kBindRows = 3u;      // arena page: rows of the vertices of glossy draws
 LAMBENT_CONSTANT kBindSamples = 4u;   // arena page: their samples
+LAMBENT_CONSTANT kBindRadianceChange = 3u;  // of matte draws, what bodies around change at vertices: 3 floats each
 LAMBENT_CONSTANT kAbsent = 0xffffffffu;
 
 LAMBENT_CONSTANT kUnitBaseColor = 0u;  // texture units

@@ -51,6 +51,7 @@ Result<void> Surfaces::compile(const ProgramKind& kind) {
   if (kind.normal_mapped) defines.push_back({"LAMBENT_NORMAL_MAPPED", "1"});
   if (kind.residual) defines.push_back({"LAMBENT_RESIDUAL", "1"});
   if (kind.near_lit) defines.push_back({"LAMBENT_NEAR_LIGHTS", "1"});
+  if (kind.vertices_around) defines.push_back({"LAMBENT_VERTEX_CHANGE", "1"});
   if (kind.around) defines.push_back({"LAMBENT_NEIGHBORHOODS", "1"});
   Result<gpu::Program> program = gpu::Program::create(
       "surface", {{GL_VERTEX_SHADER, "surface.vert"}, {GL_FRAGMENT_SHADER, "surface.frag"}}, kShaders,
@@ -79,6 +80,7 @@ void Surfaces::collect(World& world, const effects::diffuse::Diffuse& diffuse, g
                         .normal_mapped = normalMapped(world, i),
                         .near_lit = near_lights != nullptr && near_lights->lightsOf(i) != 0,
                         .around = neighborhoods != nullptr && neighborhoods->receives(i),
+                        .vertices_around = neighborhoods != nullptr && neighborhoods->receivesAtVertices(i),
                         .clockwise = (glm::determinant(glm::mat3(world_from_mesh)) < 0.0f) != draw.back},
               .draw = i,
               .distance = glm::distance(eye_ws, glm::vec3(world_from_mesh * glm::vec4(mesh.center, 1.0f)))};

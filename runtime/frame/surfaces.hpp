@@ -54,8 +54,9 @@ class Surfaces {
     std::int32_t brdf_table = -1;
     bool normal_mapped = false;
     bool near_lit = false;
-    bool around = false;     // receives from neighborhoods
-    bool clockwise = false;  // which winding is seen
+    bool around = false;           // receives from neighborhoods, per pixel
+    bool vertices_around = false;  // and at its vertices
+    bool clockwise = false;        // which winding is seen
     auto operator<=>(const State&) const = default;
   };
   struct Run {
@@ -71,7 +72,7 @@ class Surfaces {
   Surfaces();
   // What a program is compiled for.
   struct ProgramKind {
-    bool normal_mapped = false, near_lit = false, around = false;
+    bool normal_mapped = false, near_lit = false, around = false, vertices_around = false;
     GlossyKind glossy = {};
     bool residual = false;
     auto operator<=>(const ProgramKind&) const = default;
@@ -80,6 +81,7 @@ class Surfaces {
     return {.normal_mapped = state.normal_mapped,
             .near_lit = state.near_lit,
             .around = state.around,
+            .vertices_around = state.vertices_around,
             .glossy = state.glossy,
             .residual = reflected_sky_ != nullptr && state.glossy.bands > 0 &&
                         state.glossy.family != bundle::BrdfFamily::Measured};

@@ -29,6 +29,10 @@ struct RgbaImage {
   std::vector<glm::vec4> texels;  // alpha = coverage
 };
 
+// Pixels with less alpha than this show next to nothing but the sky: the rims of clouds, which fade for ever.
+// Figures about what is in a picture leave them out. Surfaces that are not blended have 0 or 1.
+inline constexpr float kLeastCoverage = 1.0f / 64.0f;
+
 struct Rgba8Image {
   std::uint32_t width = 0, height = 0;
   std::vector<std::uint8_t> texels;  // 4 * width * height

@@ -4,8 +4,10 @@
 #include <bit>
 #include <cassert>
 #include <cmath>
+#include <cstring>
 
 #include <fmt/format.h>
+#include <glm/geometric.hpp>
 #include <glm/gtc/packing.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <glm/matrix.hpp>
@@ -73,6 +75,15 @@ std::uint32_t mipLevels(std::uint32_t width, std::uint32_t height) {
   return static_cast<std::uint32_t>(std::bit_width(std::max(width, height)));
 }
 
+float meanEdge(const bundle::MeshData& mesh) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3)
+    for (std::size_t k = 0; k < 3; ++k)
+      sum += double{
+          glm::distance(mesh.positions[mesh.indices[i + k]], mesh.positions[mesh.indices[i + (k + 1) % 3]])};
+  return mesh.indices.empty() ? 0.0f : static_cast<float>(sum / static_cast<double>(mesh.indices.size()));
+}
+
 gpu::Texture makeTexture(const std::string& label, GLenum format, const ImageReady& image) {
   gpu::Texture texture(label, {.format = format,
                                .width = image.width,
@@ -85,16 +96,22 @@ gpu::Texture makeTexture(const std::string& label, GLenum format, const ImageRea
   return texture;
 }
 
-// Linear between voxel centres, constant in the half voxel towards the faces.
+// Linear between voxel centres, constant in the half voxel towards the faces. Codes of 8 bits too are kept in
+// 16: some devices interpolate texels of 8 bits with results of 8 bits.
 gpu::Texture makeDensityTexture(const bundle::VolumeGrid& grid, const std::vector<std::byte>& codes) {
-  gpu::Texture texture("density", {.format = grid.bits == 16 ? GLenum{GL_R16} : GLenum{GL_R8},
-                                   .width = grid.size.x,
-                                   .height = grid.size.y,
-                                   .depth = grid.size.z});
+  gpu::Texture texture("density",
+                       {.format = GL_R16, .width = grid.size.x, .height = grid.size.y, .depth = grid.size.z});
+  std::vector<std::uint16_t> words(codes.size() * 8 / grid.bits);
+  if (grid.bits == 16)
+    std::memcpy(words.data(), codes.data(), codes.size());
+  else
+    std::transform(codes.begin(), codes.end(), words.begin(), [](std::byte code) {
+      return static_cast<std::uint16_t>(257 * std::to_integer<unsigned>(code));  // 255 becomes 65535
+    });
   glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
   glTextureSubImage3D(texture.id(), 0, 0, 0, 0, static_cast<GLsizei>(grid.size.x),
                       static_cast<GLsizei>(grid.size.y), static_cast<GLsizei>(grid.size.z), GL_RED,
-                      grid.bits == 16 ? GL_UNSIGNED_SHORT : GL_UNSIGNED_BYTE, codes.data());
+                      GL_UNSIGNED_SHORT, words.data());
   for (const GLenum axis : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R})
     glTextureParameteri(texture.id(), axis, GL_CLAMP_TO_EDGE);
   for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
@@ -270,6 +287,7 @@ Result<void> Residency::put(std::uint32_t bundle, const MeshReady& item) {
   const Result<gpu::Allocation> block = geometry_.allocate(byte_count);
   if (!block) return failAgain(block.error());
   mesh.block = *block;
+  mesh.mean_edge = meanEdge(data);
   std::uint32_t* const word_of[] = {&mesh.positions_word,    &mesh.normals_word, &mesh.texcoords_word[0],
                                     &mesh.texcoords_word[1], &mesh.colors_word,  &mesh.tangents_word,
                                     &mesh.indices_word};
@@ -409,7 +427,7 @@ Result<void> Residency::put(std::uint32_t bundle, const DensityReady& item) {
   volume.density = makeDensityTexture(volume.grid, item.codes);
   volume.block_maxima = item.block_maxima;
   volume.version = version_;
-  texture_bytes_ += item.codes.size();
+  texture_bytes_ += densityBytes(volume.grid.size);
   return {};
 }
 
@@ -458,7 +476,7 @@ std::uint64_t Residency::uploadBytes(const Ready& item) {
     }
     std::uint64_t operator()(const ProxyReady&) const { return 0; }  // stays in memory
     std::uint64_t operator()(const BrdfReady& ready) const { return ready.texels.bytes(); }
-    std::uint64_t operator()(const DensityReady& density) const { return density.codes.size(); }
+    std::uint64_t operator()(const DensityReady& density) const { return density.codes.size(); }  // or twice
     std::uint64_t operator()(const VoxelsReady& ready) const { return 4 * ready.voxels.size(); }
   };
   return std::visit(Size{}, item);

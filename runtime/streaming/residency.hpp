@@ -29,6 +29,7 @@ struct ResidentMesh {
   gpu::Allocation block;  // empty: not here yet
   std::uint32_t vertex_count = 0, index_count = 0;
   glm::vec3 center{0.0f};                                // of its bounds, mesh space
+  float mean_edge = 0.0f;                                // length, mesh space; known once it is here
   std::uint32_t positions_word = 0, normals_word = 0;    // 3 floats each
   std::uint32_t texcoords_word[2] = {kAbsent, kAbsent};  // 2 floats
   std::uint32_t colors_word = kAbsent;                   // 4 x unorm16

@@ -43,7 +43,7 @@ std::uint64_t samplesOf(const bundle::Group& group) {
 }
 
 std::uint64_t volumeBytes(const bundle::VolumeGrid& grid, std::uint64_t sample_count) {
-  return std::uint64_t{grid.size.x} * grid.size.y * grid.size.z * grid.bits / 8 + 4 * sample_count;
+  return densityBytes(grid.size) + 4 * sample_count;
 }
 
 std::uint64_t volumeLightBytes(const bundle::Group& group) {

@@ -25,7 +25,11 @@ std::uint64_t cellBytes(const bundle::Cell& cell);
 // vec4s of shaded samples.
 std::uint64_t samplesOf(const bundle::Group& group);
 
-// Codes of the density as the GPU has them, and the list of voxels.
+// Of the density as the GPU has it, 16 bits a voxel.
+constexpr std::uint64_t densityBytes(const glm::uvec3& size) {
+  return std::uint64_t{2} * size.x * size.y * size.z;
+}
+// And the list of voxels.
 std::uint64_t volumeBytes(const bundle::VolumeGrid& grid, std::uint64_t sample_count);
 // What the light in a volume takes, in half floats: a texel per voxel of the transfer grid and output.
 std::uint64_t volumeLightBytes(const bundle::Group& group);

@@ -1,7 +1,8 @@
 // Neighborhoods from the scene to the file and back: right where a closed form says so, finite always.
+#include "tests/support/neighborhood.hpp"
+
 #include "baker/bake/bake.hpp"
 #include "runtime/bundle/reader.hpp"
-#include "tests/support/neighborhood.hpp"
 #include "tests/support/program.hpp"
 
 namespace lambent {
@@ -97,8 +98,8 @@ TEST_F(NeighborhoodBundle, OfABlackBallHoldsItsClosedForm) {
       if (glm::length(point) < 0.52f) continue;
       ++looked_at;
       const std::size_t size = stored->shape.visibilitySize();
-      auto wrong = testing::matrixOf(stored->shape,
-                                     std::span(stored->visibility).subspan(p * size, size), {});
+      auto wrong =
+          testing::matrixOf(stored->shape, std::span(stored->visibility).subspan(p * size, size), {});
       const auto truth = testing::blackSphereChange(point, 0.5f, 5, 3);
       for (std::size_t i = 0; i < wrong.size(); ++i) wrong[i] -= truth[i];
       // Draft: 512 rays, and codes within a third of a percent.

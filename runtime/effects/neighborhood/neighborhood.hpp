@@ -41,6 +41,8 @@ class Neighborhood {
   const std::vector<Grid>& grids() const { return grids_; }
   // Rises when a grid became ready, or lies or counts otherwise than before (Grid::place).
   std::uint64_t version() const { return version_; }
+  // Rises when the grid is written.
+  std::uint64_t writtenVersion(std::size_t grid) const { return seen_[grid]; }
   std::uint32_t gridsWrittenLast() const { return written_; }
   std::uint64_t bytes() const;  // of the texture
   void bind() const { glBindTextureUnit(kUnitAtlas, atlas_.id()); }

@@ -41,6 +41,12 @@ Rectangle unite(const Rectangle& a, const Rectangle& b) {
   return {x, y, std::max(a.x + a.width, b.x + b.width) - x, std::max(a.y + a.height, b.y + b.height) - y};
 }
 
+Rectangle grown(const Rectangle& r, const spec::Size& picture) {
+  const std::int32_t x = std::max(r.x - 1, 0), y = std::max(r.y - 1, 0);
+  return {x, y, std::min(r.x + r.width + 1, static_cast<std::int32_t>(picture.width)) - x,
+          std::min(r.y + r.height + 1, static_cast<std::int32_t>(picture.height)) - y};
+}
+
 bool holdsAnything(const streaming::ResidentVolume& volume) {
   return volume.grid.density_max > 0.0f && std::any_of(volume.block_maxima.begin(), volume.block_maxima.end(),
                                                        [](float share) { return share > 0.0f; });
@@ -225,7 +231,10 @@ Result<void> March::drawBatch(const streaming::Residency& residency, const Volum
   glDisable(GL_DEPTH_TEST);
   glDisable(GL_CULL_FACE);
   glEnable(GL_SCISSOR_TEST);
-  glScissor(rectangle.x, rectangle.y, rectangle.width, rectangle.height);
+  // A pixel more all round than is composed: devices differ by as much in where they cut off pixels of
+  // several samples.
+  const Rectangle marched = grown(rectangle, picture.size);
+  glScissor(marched.x, marched.y, marched.width, marched.height);
   const glm::mat4& p = view.clip_from_view;
   const auto setProjection = [&] {
     glUniform4f(kScale, p[0][0], p[1][1], p[2][2], p[3][2]);
@@ -260,6 +269,7 @@ Result<void> March::drawBatch(const streaming::Residency& residency, const Volum
       glDisable(GL_SCISSOR_TEST);
       return failAgain(composite.error());
     }
+    glScissor(rectangle.x, rectangle.y, rectangle.width, rectangle.height);
     blend();
     marched_.bind(kUnitMarched);
     (*composite)->use();

@@ -46,6 +46,29 @@ TEST(ComparePictures, CountsOnlyWhatAllPicturesCover) {
   EXPECT_EQ(error->median, 0.0);
 }
 
+TEST(ComparePictures, LeavesOutTheRimsOfCloudsWhereverTheyFallUnderTheBound) {
+  auto picture = filled({1, 1, 1}), reference = filled({1, 1, 1});
+  const auto fade = [&](std::size_t i, float a, float b) {
+    picture.texels[i] = glm::vec4(5, 5, 5, a);
+    reference.texels[i].w = b;
+  };
+  constexpr float kLeast = spec::kLeastCoverage;
+  fade(0, 0.9f * kLeast, 1.1f * kLeast);
+  fade(1, 1.1f * kLeast, 0.9f * kLeast);
+  fade(2, 1e-7f, 0.0f);
+  auto error = comparePictures(picture, reference, {}, "a.exr");
+  ASSERT_TRUE(error);
+  EXPECT_EQ(error->pixels, 29u);
+  EXPECT_EQ(error->pixels_apart, 0u);
+  EXPECT_EQ(error->largest, 0.0);
+  fade(2, 0.3f, 0.0f);
+  fade(3, 1.1f * kLeast, 1.0f);
+  error = comparePictures(picture, reference, {}, "a.exr");
+  EXPECT_EQ(error->pixels, 29u);
+  EXPECT_EQ(error->pixels_apart, 1u);
+  EXPECT_NEAR(error->largest, 4.0, 1e-6);
+}
+
 TEST(ComparePictures, WithTwoReferencesIsFreeOfTheirNoise) {
   // The picture is 2 % too bright, each reference has 30 % noise of its own.
   std::mt19937 random(5);

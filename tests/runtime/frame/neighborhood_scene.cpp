@@ -52,7 +52,12 @@ bundle::CaptureProxy sphereProxy(float radius) {
 }
 
 std::vector<float> openVector(const BuiltReceiver& receiver, std::uint32_t order, const glm::vec3& normal) {
-  if (receiver.outputs == 1) return openTransfer(static_cast<int>(order))(normal);
+  if (receiver.outputs == 1) {
+    std::vector<float> open = openTransfer(static_cast<int>(order))(normal), all = open;
+    for (int channel = 0; channel < 3 && receiver.full != glm::vec3(0.0f); ++channel)
+      for (const float value : open) all.push_back(receiver.full[channel] * value);
+    return all;
+  }
   const std::uint32_t columns = order * order;
   std::vector<float> vector;
   if (receiver.outputs == 9) {
@@ -124,6 +129,7 @@ void addReceiver(bundle::Description& description, Store& store, const BuiltRece
   cell.transfers.push_back(storeTransfer(
       store,
       {.order = order,
+       .full_channels = receiver.full != glm::vec3(0.0f) ? 3u : 0u,
        .outputs = receiver.outputs,
        .visibility_bands = receiver.outputs > 9 ? order + bundle::bandsOf(receiver.outputs) - 1 : 0},
       vectors));

@@ -42,6 +42,8 @@ struct BuiltReceiver {
   bundle::MeshData mesh;
   glm::mat4 group_from_mesh{1.0f};
   std::uint32_t outputs = 1;  // 1, 9 or, with a table, 25
+  // Over 0, of plain ones: transfer has a full block of three channels, so many times the open shadowed one.
+  glm::vec3 full{0.0f};
   gltf::Material material{};
   glm::vec3 place{0.0f};
   glm::quat turn{1.0f, 0.0f, 0.0f, 0.0f};

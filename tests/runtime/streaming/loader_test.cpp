@@ -38,6 +38,8 @@ struct Name {
   }
   std::string operator()(const ProxyReady& r) const { return "proxy " + join({r.group}); }
   std::string operator()(const BrdfReady& r) const { return "brdf " + join({r.table}); }
+  std::string operator()(const DensityReady& r) const { return "density " + join({r.group}); }
+  std::string operator()(const VoxelsReady& r) const { return "voxels " + join({r.group}); }
   static std::string join(std::initializer_list<std::uint32_t> numbers) {
     std::string text;
     for (const std::uint32_t n : numbers) {

@@ -305,7 +305,7 @@ TEST_F(VolumeGpu, SamplesOfAPixelEachEndAtTheirOwnSurface) {
   glDrawArrays(GL_TRIANGLES, 0, 3);
   spec::View view = flat(0.0f);
   view.view_from_world = glm::lookAt(glm::vec3(0, 0, 5), glm::vec3(0.0f), glm::vec3(0, 1, 0));
-  view.clip_from_view = glm::ortho(-0.9f, 0.9f, -0.9f, 0.9f, 0.5f, 9.0f);
+  view.clip_from_view = glm::ortho(-1.3f, 1.3f, -1.3f, 1.3f, 0.5f, 9.0f);
   bench.draw(view, {target, depth, {kSide, kSide}});
   // Resolved, a pixel is the mean of samples that are 1 (the wall) or exp(-3): only fifths of the way.
   const gpu::Texture resolved("resolved", {.format = GL_RGBA32F, .width = kSide, .height = kSide});

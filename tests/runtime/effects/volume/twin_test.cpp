@@ -197,7 +197,7 @@ TEST(VolumeTwin, JitterChangesNothingThatCanBeSeen) {
     const float jitter = static_cast<float>(++number % 16 + 1) / 16.0f;
     const float plain = std::exp(-ref::march(std::span(&medium, 1), aim.origin, aim.direction).a);
     const float jittered = std::exp(
-        -ref::march(std::span(&medium, 1), aim.origin, aim.direction, 0.0f, ref::kInfinity, 0.5f, jitter).a);
+        -ref::march(std::span(&medium, 1), aim.origin, aim.direction, 0.0f, ref::kInfinity, 1.0f, jitter).a);
     change += std::pow(plain - jittered, 2.0);
     power += std::pow(plain, 2.0);
   }

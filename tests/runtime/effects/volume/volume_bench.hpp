@@ -34,7 +34,7 @@ struct Bench {
   gpu::Counters counters;
 
   explicit Bench(std::vector<BuiltVolume> volumes, std::vector<glm::mat4> stand = {}, bool precise = true,
-                 const MarchOptions& march_options = {.jitter = false})
+                 const MarchOptions& march_options = {.step_voxels = 0.5f, .jitter = false})
       : built(std::move(volumes)),
         world_from_group(std::move(stand)),
         volume(precise),

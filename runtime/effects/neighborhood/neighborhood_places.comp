@@ -1,0 +1,13 @@
+// Turns a cell's list of positions about: where the code of each sample stands. One invocation per position.
+#include "vertex_shared.h"
+
+layout(local_size_x = kVertexGroupSize) in;
+layout(std140, binding = kBindVertexBlock) uniform Block { PlacesCell cell; };
+layout(std430, binding = kBindVertexTransfer) readonly buffer Transfer { uint page[]; };
+layout(std430, binding = kBindSamplePlaces) writeonly buffer SamplePlaces { uint sample_places[]; };
+
+void main() {
+  uint position = gl_WorkGroupID.x * kVertexGroupSize + gl_LocalInvocationID.x;
+  if (position >= cell.sample_count) return;
+  sample_places[cell.first_place + (page[cell.positions_word + position] & 0xffffu)] = position | cell.cell << 16u;
+}

@@ -1,0 +1,231 @@
+#include "runtime/effects/neighborhood/vertex_receivers.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "lambent_effects_neighborhood_embedded.hpp"
+#include "runtime/sh/rotation.hpp"
+
+namespace lambent::effects::neighborhood {
+
+namespace {
+
+constexpr gpu::FindText kShaders[] = {&embedded::lambent_effects_neighborhood::find};
+
+bool plain(const streaming::ResidentCell& cell) {
+  return cell.kind == bundle::CellKind::Surface && cell.outputs == 1;
+}
+
+std::span<const streaming::ResidentCell> cellsOf(const streaming::Residency& residency, std::uint32_t group) {
+  const streaming::ResidentGroup& resident = residency.groups()[group];
+  return std::span(residency.cells()).subspan(resident.first_cell, resident.cell_count);
+}
+
+std::uint64_t versionOf(const streaming::Residency& residency, std::uint32_t group) {
+  std::uint64_t version = 0;
+  for (const streaming::ResidentCell& cell : cellsOf(residency, group))
+    version = std::max(version, cell.version);
+  return version;
+}
+
+VertexArrival describe(const VertexDraw::From& from, const Grid& grid) {
+  VertexArrival arrival{
+      .grid_from_position = from.grid_from_position, .grid = grid.place, .turn = {}, .pad = {}};
+  const int bands = static_cast<int>(bundle::bandsOf(grid.place.outputs));
+  const sh::Rotation turn(glm::dquat(from.group_from_body), bands);
+  std::size_t entry = 0;
+  for (int l = 0; l < bands; ++l)
+    for (int i = l * l; i < (l + 1) * (l + 1); ++i)
+      for (int j = l * l; j < (l + 1) * (l + 1); ++j)
+        arrival.turn[entry++] = static_cast<float>(turn.entry(i, j));
+  return arrival;
+}
+
+GLuint groupsFor(std::uint32_t count) {
+  return (count + kVertexGroupSize - 1) / kVertexGroupSize;
+}
+
+}  // namespace
+
+bool hasTransfer(const streaming::Residency& residency, std::uint32_t index, std::uint32_t order) {
+  const streaming::ResidentDraw& draw = residency.draws()[index];
+  if (draw.outputs != 1 || !draw.rows || !draw.radiance) return false;
+  std::optional<std::uint32_t> page;
+  for (const streaming::ResidentCell& cell : cellsOf(residency, draw.group)) {
+    if (!plain(cell)) continue;
+    if (!cell.usable() || cell.transfers.front().shape.order != order || (page && *page != cell.block.page))
+      return false;
+    page = cell.block.page;
+  }
+  return page.has_value();
+}
+
+VertexReceivers::VertexReceivers()
+    : change_("radiance that bodies around change"),
+      sample_places_("places of samples"),
+      arrivals_("vertex arrivals"),
+      transfers_("receivers' transfers"),
+      planes_("receivers' planes"),
+      block_("vertex receiver") {}
+
+Result<const gpu::Program*> VertexReceivers::program(std::uint32_t order) {
+  if (const auto found = programs_.find(order); found != programs_.end()) return &found->second;
+  const char* const file = order == 0 ? "neighborhood_places.comp" : "neighborhood_vertices.comp";
+  std::vector<gpu::Define> defines;
+  if (order != 0) defines.push_back({"LAMBENT_ORDER", fmt::format("{}u", order)});
+  Result<gpu::Program> made = gpu::Program::create(fmt::format("{} order {}", file, order),
+                                                   {{GL_COMPUTE_SHADER, file}}, kShaders, defines);
+  if (!made) return failAgain(made.error());
+  return &programs_.emplace(order, std::move(*made)).first->second;
+}
+
+void VertexReceivers::bindBlock(std::span<const std::byte> bytes) {
+  block_.assignBytes(bytes);
+  glBindBufferBase(GL_UNIFORM_BUFFER, kBindVertexBlock, block_.buffer().id());
+}
+
+void VertexReceivers::layOut(const streaming::Residency& residency, std::span<const VertexDraw> draws) {
+  const bool same = draws.size() == words_.size() && std::ranges::all_of(draws, [&](const VertexDraw& draw) {
+                      return words_.contains(draw.draw);
+                    });
+  if (same) return;
+  words_.clear();
+  places_.clear();
+  seen_.clear();
+  std::uint32_t word = 0, place = 0;
+  for (const VertexDraw& receiver : draws) {
+    const streaming::ResidentDraw& draw = residency.draws()[receiver.draw];
+    words_[receiver.draw] = word;
+    word += 3 * residency.meshes()[draw.mesh].vertex_count;
+    if (places_.contains(draw.group)) continue;
+    places_[draw.group] = {.first = place, .version = 0};
+    for (const streaming::ResidentCell& cell : cellsOf(residency, draw.group))
+      if (plain(cell)) place += cell.sample_count;
+  }
+  change_.reserve(4 * std::size_t{word});
+  sample_places_.reserve(4 * std::size_t{place});
+}
+
+// Plain cells stand first in their group, so its samples are numbered as the rows have them.
+Result<void> VertexReceivers::findPlaces(streaming::Residency& residency, gpu::Counters& counters) {
+  for (auto& [group, places] : places_) {
+    const std::uint64_t version = versionOf(residency, group);
+    if (version == places.version) continue;
+    places.version = version;
+    const Result<const gpu::Program*> kernel = program(0);
+    if (!kernel) return failAgain(kernel.error());
+    (*kernel)->use();
+    sample_places_.bindStorage(kBindSamplePlaces);
+    std::uint32_t index = 0;
+    for (const streaming::ResidentCell& cell : cellsOf(residency, group)) {
+      const std::uint32_t local = index++;
+      if (!plain(cell)) continue;
+      const PlacesCell block{.positions_word = cell.transfers.front().positions_word,
+                             .sample_count = cell.sample_count,
+                             .first_place = places.first + cell.first_sample,
+                             .cell = local};
+      bindBlock(std::as_bytes(std::span(&block, 1)));
+      residency.transfer().page(cell.block.page).bindStorage(kBindVertexTransfer);
+      glDispatchCompute(groupsFor(cell.sample_count), 1, 1);
+      ++counters.dispatches;
+    }
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+  }
+  return {};
+}
+
+VertexReceivers::Seen VertexReceivers::seenNow(const streaming::Residency& residency,
+                                               const Neighborhood& effect, const VertexDraw& draw) const {
+  const streaming::ResidentDraw& resident = residency.draws()[draw.draw];
+  Seen now{.draw = resident.version,
+           .cells = versionOf(residency, resident.group),
+           .from = draw.from,
+           .written = {}};
+  for (const VertexDraw::From& from : draw.from) now.written.push_back(effect.writtenVersion(from.grid));
+  return now;
+}
+
+Result<void> VertexReceivers::update(streaming::Residency& residency, const lighting::GroupLights& lights,
+                                     diffuse::TransferMode mode, const Neighborhood& effect,
+                                     std::span<const VertexDraw> draws, gpu::Counters& counters) {
+  shaded_ = 0;
+  if (draws.empty() && words_.empty()) return {};
+  layOut(residency, draws);
+  if (mode != mode_seen_) seen_.clear();
+  mode_seen_ = mode;
+  std::vector<const VertexDraw*> dirty;
+  for (const VertexDraw& draw : draws) {
+    Seen now = seenNow(residency, effect, draw);
+    Seen& seen = seen_[draw.draw];
+    if (seen == now) continue;
+    seen = std::move(now);
+    dirty.push_back(&draw);
+  }
+  if (dirty.empty()) return {};
+  if (Result<void> done = findPlaces(residency, counters); !done) return done;
+
+  diffuse::TransferTable table;  // for its places of planes
+  std::vector<diffuse::TransferRecord> transfers;
+  std::map<std::uint32_t, std::uint32_t> first_transfer;  // by group
+  std::vector<VertexArrival> arrivals;
+  std::vector<VertexReceiver> receivers;
+  for (const VertexDraw* draw : dirty) {
+    const streaming::ResidentDraw& resident = residency.draws()[draw->draw];
+    if (!first_transfer.contains(resident.group)) {
+      first_transfer[resident.group] = static_cast<std::uint32_t>(transfers.size());
+      for (const streaming::ResidentCell& cell : cellsOf(residency, resident.group)) {
+        if (plain(cell)) table.add(cell, lights, mode);
+        transfers.push_back(plain(cell) ? table.transfers[table.cells.back().first]
+                                        : diffuse::TransferRecord{});
+      }
+    }
+    const streaming::ResidentMesh& mesh = residency.meshes()[resident.mesh];
+    receivers.push_back({.first_arrival = static_cast<std::uint32_t>(arrivals.size()),
+                         .arrival_count = static_cast<std::uint32_t>(draw->from.size()),
+                         .vertex_count = mesh.vertex_count,
+                         .positions_word = mesh.positions_word,
+                         .rows_word = resident.rows.word(),
+                         .row_entries = resident.row_entries,
+                         .first_place = places_[resident.group].first,
+                         .first_transfer = first_transfer[resident.group],
+                         .change_word = words_[draw->draw],
+                         .pad0 = 0,
+                         .pad1 = 0,
+                         .pad2 = 0});
+    for (const VertexDraw::From& from : draw->from)
+      arrivals.push_back(describe(from, effect.grids()[from.grid]));
+  }
+  arrivals_.assign(std::span<const VertexArrival>(arrivals));
+  transfers_.assign(std::span<const diffuse::TransferRecord>(transfers));
+  planes_.assign(std::span<const std::uint32_t>(table.places));
+  counters.uploaded_bytes += arrivals.size() * sizeof(VertexArrival) +
+                             transfers.size() * sizeof(diffuse::TransferRecord) + 4 * table.places.size() +
+                             receivers.size() * sizeof(VertexReceiver);
+  effect.bind();
+  for (std::size_t i = 0; i < dirty.size(); ++i) {
+    const streaming::ResidentDraw& resident = residency.draws()[dirty[i]->draw];
+    const Grid& grid = effect.grids()[dirty[i]->from.front().grid];
+    const Result<const gpu::Program*> kernel = program(bundle::bandsOf(grid.place.outputs));
+    if (!kernel) return failAgain(kernel.error());
+    (*kernel)->use();
+    const auto cells = cellsOf(residency, resident.group);
+    const auto cell = std::ranges::find_if(cells, plain);
+    arrivals_.bindStorage(kBindVertexArrivals);
+    transfers_.bindStorage(kBindVertexTransfers);
+    planes_.bindStorage(kBindVertexPlanes);
+    sample_places_.bindStorage(kBindSamplePlaces);
+    residency.transfer().page(cell->block.page).bindStorage(kBindVertexTransfer);
+    residency.rows().page(resident.rows.page).bindStorage(kBindVertexRows);
+    residency.geometry().page(residency.meshes()[resident.mesh].block.page).bindStorage(kBindVertexGeometry);
+    change_.bindStorage(kBindVertexChange);
+    bindBlock(std::as_bytes(std::span(&receivers[i], 1)));
+    glDispatchCompute(groupsFor(receivers[i].vertex_count), 1, 1);
+    ++counters.dispatches;
+  }
+  shaded_ = static_cast<std::uint32_t>(dirty.size());
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+  return {};
+}
+
+}  // namespace lambent::effects::neighborhood
