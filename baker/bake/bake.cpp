@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "baker/bake/assemble.hpp"
+#include "baker/bake/bake_around.hpp"
 #include "baker/bake/bake_group.hpp"
 #include "baker/bake/bake_volume.hpp"
 #include "baker/bake/ship_meshes.hpp"
@@ -135,6 +136,9 @@ Result<BakeReport> bakeOnTheseThreads(const Scene& scene, const BakeOptions& opt
             : bakeGroup(scene, plan->groups[g], plan->light_samples[g].count, plan->neighborhoods[g], tables,
                         *meshes, *alpha_maps, images, options, progress, stop, report);
     if (!result) return failAgain(result.error());
+    if (const PlannedNeighborhood& around = plan->neighborhoods[g]; result->volume && around.baked)
+      if (!bakeAroundVolume(*result, plan->groups[g].name, around, options, progress, stop, report))
+        return stopped(scene);
     baked.push_back(std::move(*result));
   }
   if (stop.stop_requested()) return stopped(scene);

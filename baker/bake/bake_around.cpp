@@ -1,27 +1,30 @@
 #include "baker/bake/bake_around.hpp"
 
 #include <fmt/format.h>
+#include <glm/common.hpp>
 
 #include "baker/effects/neighborhood/bake_neighborhood.hpp"
+#include "baker/effects/neighborhood/volume_body.hpp"
 
 namespace lambent::baker {
 
 namespace {
 
-// A sample of a surface has its rays over a hemisphere, a point in free space over what the body fills.
-constexpr std::size_t kRaysPerSampleRay = 2;
+// A medium has no rims that many rays would have to find, and each ray is a march.
+constexpr std::size_t kSampleRaysPerMarch = 4;
 // Of the bound on coded transfer: a neighborhood is seen against nearly open sky, where errors show.
 constexpr double kShareOfBound = 1.0 / 3.0;
 
 }  // namespace
 
 bool bakeAround(const Body& body, const Box3& bounds, const glm::vec3& origin, const std::string& name,
-                const PlannedNeighborhood& plan, const BakeOptions& options, Progress& progress,
-                const std::stop_token& stop, BakeReport& report, std::optional<BakedNeighborhood>& out) {
+                const PlannedNeighborhood& plan, std::size_t rays, const BakeOptions& options,
+                Progress& progress, const std::stop_token& stop, BakeReport& report,
+                std::optional<BakedNeighborhood>& out) {
   NeighborhoodSettings settings;
   settings.origin = origin;
   settings.matrices = plan.matrices;
-  settings.rays = kRaysPerSampleRay * options.effectiveRays();
+  settings.rays = rays;
   settings.placement.body = bounds;
   if (!plan.receivers.empty())
     settings.placement.receivers = Box3{plan.receivers_min - origin, plan.receivers_max - origin};
@@ -48,6 +51,21 @@ bool bakeAround(const Body& body, const Box3& bounds, const glm::vec3& origin, c
                                   .error = figures.error,
                                   .change_error = figures.change_error});
   return true;
+}
+
+bool bakeAroundVolume(BakedGroup& volume, const std::string& name, const PlannedNeighborhood& plan,
+                      const BakeOptions& options, Progress& progress, const std::stop_token& stop,
+                      BakeReport& report) {
+  const BakedVolume& baked = *volume.volume;
+  Box3 bounds{glm::vec3(baked.group_from_grid[3]), glm::vec3(baked.group_from_grid[3])};
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::vec3 at = glm::vec3(baked.size) * glm::vec3(corner & 1, corner >> 1 & 1, corner >> 2);
+    const glm::vec3 place(baked.group_from_grid * glm::vec4(at, 1.0f));
+    bounds = {glm::min(bounds.low, place), glm::max(bounds.high, place)};
+  }
+  const VolumeBody body(*volume.volume_light, bounds.low, bounds.high, /*scatters=*/true);
+  return bakeAround(body, bounds, glm::vec3(0.0f), name, plan, options.effectiveRays() / kSampleRaysPerMarch,
+                    options, progress, stop, report, volume.neighborhood);
 }
 
 }  // namespace lambent::baker

@@ -228,8 +228,8 @@ Result<BakedGroup> bakeGroup(const Scene& scene, const RigidGroup& group, LightS
                                   .brdfs = brdfs ? &*brdfs : nullptr,
                                   .glossy = light->glossy ? &light->glossy->field : nullptr});
     const Box3 bounds{baked.geometry.bounds_min, baked.geometry.bounds_max};
-    if (!bakeAround(body, bounds, baked.geometry.origin, group.name, neighborhood, options, progress, stop,
-                    report, baked.neighborhood))
+    if (!bakeAround(body, bounds, baked.geometry.origin, group.name, neighborhood,
+                    raysAroundSurfaces(options), options, progress, stop, report, baked.neighborhood))
       return stopped();
   }
   return baked;

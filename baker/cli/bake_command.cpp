@@ -210,7 +210,8 @@ void addNeighborhoodGridOption(CLI::App& command, BakeOptions& options) {
           "--neighborhood-grid",
           [&options, read](const std::string& text) { options.neighborhood_grid = *read(text); },
           "Points of neighborhood grids along their longest, middle and shortest side, 2..256 each; auto "
-          "(default): 64x64x8 where receivers are on one side only, else 32x32x32; for bodies that the scene does "
+          "(default): 64x64x8 where receivers are on one side only, else 32x32x32; for bodies that the scene "
+          "does "
           "not name a quarter of that")
       ->check(CLI::Validator(
           [read](const std::string& text) {

@@ -66,6 +66,15 @@ const char* effectName(const bundle::Cell& cell, const bundle::CellTransfer& tra
   return transfer.shape.glossy() ? "glossy" : "diffuse";
 }
 
+// Null where there is none.
+nlohmann::json neighborhoodJson(const bundle::Group& group) {
+  if (!group.neighborhood) return nullptr;
+  const auto& [size, low, high] = *group.neighborhood;
+  return {{"size", {size.x, size.y, size.z}},
+          {"boundsMin", {low.x, low.y, low.z}},
+          {"boundsMax", {high.x, high.y, high.z}}};
+}
+
 const char* partName(const bundle::TransferShape& shape) {
   if (shape.isVisibility()) return "visibility";
   if (shape.shadowed_channels == 0) return "bounced";
@@ -97,6 +106,7 @@ void printJson(const bundle::Reader& reader, const Sizes& sizes) {
                       {"samples", group.sample_count},
                       {"lightSamples", group.light_samples.size()},
                       {"proxyTriangles", proxyTriangles(reader, group)},
+                      {"neighborhood", neighborhoodJson(group)},
                       {"transfer", cells}});
   }
   const nlohmann::json json = {
@@ -150,6 +160,11 @@ void printText(const bundle::Reader& reader, const Sizes& sizes) {
     const std::vector<std::uint32_t> proxy = proxyTriangles(reader, group);
     fmt::print("  {}, {}\n", counted(group.light_samples.size(), "light sample"),
                proxy.empty() ? "no proxy" : fmt::format("proxy of {} triangles", fmt::join(proxy, ", ")));
+    if (const auto& around = group.neighborhood)
+      fmt::print(
+          "  neighborhood of {} x {} x {} points, ({:.2f}, {:.2f}, {:.2f}) to ({:.2f}, {:.2f}, {:.2f})\n",
+          around->size.x, around->size.y, around->size.z, around->bounds_min.x, around->bounds_min.y,
+          around->bounds_min.z, around->bounds_max.x, around->bounds_max.y, around->bounds_max.z);
     if (group.volume)
       fmt::print(
           "  volume of {} x {} x {} voxels in {} bits, at most {:.4g} per metre; transfer on {} x {} x {}\n",

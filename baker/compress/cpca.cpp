@@ -18,11 +18,12 @@ namespace lambent::baker {
 namespace {
 
 constexpr std::size_t kGrain = 512;
-constexpr std::size_t kBasisSamples = 8192;  // for the covariance of many values; of few, all samples are looked at
+constexpr std::size_t kBasisSamples =
+    8192;  // for the covariance of many values; of few, all samples are looked at
 constexpr std::size_t kFewValues = 128;
-constexpr double kTailShare = 0.05;          // of the square error allowed, for what the basis leaves out
-constexpr double kBesideLeftOut = 1.3;       // of what the basis must leave out: all square error then
-constexpr std::size_t kRun = 64;             // neighbours kept together where only some samples are taken
+constexpr double kTailShare = 0.05;     // of the square error allowed, for what the basis leaves out
+constexpr double kBesideLeftOut = 1.3;  // of what the basis must leave out: all square error then
+constexpr std::size_t kRun = 64;        // neighbours kept together where only some samples are taken
 constexpr std::size_t kLeastSearched = 4096, kSearchedPerCluster = 96;
 constexpr int kSearchRounds = 4, kFinalRounds = 3, kMostAttempts = 8;
 // What a weight counts for in the choice of axes, however little it says. A weight of a glossy sample stands
@@ -32,14 +33,15 @@ constexpr double kPlainWeightBits = 0.1, kGlossyWeightBits = 1.5;
 constexpr std::uint32_t kClusterCounts[] = {1, 4, 16, 64, 128, 256};
 
 // Runs of neighbours spread over the cell: `kept` samples or all. One of each `stride` runs, now this and now
-// that one by the golden ratio: the rows of a grid of points would else be in step with them, and whole layers
-// of it never seen.
+// that one by the golden ratio: the rows of a grid of points would else be in step with them, and whole
+// layers of it never seen.
 std::vector<std::uint32_t> someSamples(std::size_t count, std::size_t kept) {
   std::vector<std::uint32_t> samples;
   const std::size_t runs = (count + kRun - 1) / kRun, stride = std::max<std::size_t>(1, count / kept);
   for (std::size_t first = 0; first < runs; first += stride) {
     const std::uint32_t golden = static_cast<std::uint32_t>(first / stride) * 2654435769u;
-    const std::size_t run = std::min(first + static_cast<std::size_t>(std::uint64_t{golden} * stride >> 32), runs - 1);
+    const std::size_t run =
+        std::min(first + static_cast<std::size_t>(std::uint64_t{golden} * stride >> 32), runs - 1);
     for (std::size_t s = run * kRun; s < std::min(count, (run + 1) * kRun); ++s)
       samples.push_back(static_cast<std::uint32_t>(s));
   }

@@ -44,14 +44,15 @@ Motion::Motion(const Scene& scene, const std::vector<RigidGroup>& groups) : scen
   for (const RigidGroup& group : groups) {
     auto& shining = shining_.emplace_back();
     for (const PlannedLight& light : findGroupLights(scene, group))
-      if (light.kind == PlannedLight::Kind::Material)
-        shining.insert(static_cast<std::int32_t>(light.index));
+      if (light.kind == PlannedLight::Kind::Material) shining.insert(static_cast<std::int32_t>(light.index));
   }
   for (const gltf::Animation& animation : scene.animations)
     duration_s_ = std::max(duration_s_, gltf::durationOf(animation));
 }
 
-int Motion::times() const { return scene_.animations.empty() ? 1 : 1 + kTimes; }
+int Motion::times() const {
+  return scene_.animations.empty() ? 1 : 1 + kTimes;
+}
 
 Moment Motion::at(int time) const {
   std::vector<gltf::Node> nodes = scene_.nodes;

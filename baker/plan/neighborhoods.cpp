@@ -106,8 +106,8 @@ class Planner {
           if (const Box& all = moment.bodies[other].all; !all.empty() && all.meets(reach, 0.0f))
             plans_[k].baked = true;
       }
-      plans_[k].reason = plans_[k].baked ? "a volume with surfaces in its reach"
-                                         : "a volume without surfaces in its reach";
+      plans_[k].reason =
+          plans_[k].baked ? "a volume with surfaces in its reach" : "a volume without surfaces in its reach";
     }
   }
 
@@ -123,10 +123,11 @@ class Planner {
       PlannedNeighborhood& plan = plans_[k];
       const std::string where = fmt::format("it can come within the bounds of {}", groups_[on].name);
       if (!findGroupLights(scene_, groups_[k]).empty()) {
-        plan.reason = where + ", but gives off light, which light samples see and a neighborhood does not carry";
+        plan.reason =
+            where + ", but gives off light, which light samples see and a neighborhood does not carry";
       } else if (dark > kMostNeighborhoods) {
-        plan.reason = fmt::format("{}, but so can {} other bodies: light samples see them all", where,
-                                  dark - 1);
+        plan.reason =
+            fmt::format("{}, but so can {} other bodies: light samples see them all", where, dark - 1);
       } else {
         plan.baked = true;
         plan.reason = where;
@@ -137,7 +138,7 @@ class Planner {
   std::optional<std::size_t> movesOn(std::size_t k) const {
     for (const Moment& moment : moments_)
       for (std::size_t other = 0; other < groups_.size(); ++other)
-        if (const Box &own = moment.bodies[k].all, &all = moment.bodies[other].all;
+        if (const Box& own = moment.bodies[k].all, &all = moment.bodies[other].all;
             other != k && !own.empty() && !all.empty() && movesAboutOn(own, all))
           return other;
     return std::nullopt;

@@ -1,7 +1,7 @@
 // Which groups get neighborhood transfer, and for whom: those that extras.lambent.neighborhood names, volumes
 // with surfaces in reach, and bodies that move about on another group of more than twice their size. Of many
-// such bodies none: light samples that see all of them cost less than a grid for each. What a body does to the
-// groups that its neighborhood carries is left out of their light samples.
+// such bodies none: light samples that see all of them cost less than a grid for each. What a body does to
+// the groups that its neighborhood carries is left out of their light samples.
 #pragma once
 
 #include <algorithm>
@@ -28,8 +28,8 @@ struct PlannedNeighborhood {
   // changes: all bands are wanted, else the three that a diffuse receiver takes. For what the scene asks for
   // and for volumes: the bands cost several times as much, in the file and whenever the light changes.
   bool matrices = false;
-  std::vector<std::uint32_t> receivers;                         // groups whose surfaces come within reach
-  glm::vec3 receivers_min{0.0f}, receivers_max{0.0f};           // of those surfaces, there; group frame
+  std::vector<std::uint32_t> receivers;                // groups whose surfaces come within reach
+  glm::vec3 receivers_min{0.0f}, receivers_max{0.0f};  // of those surfaces, there; group frame
 
   bool carries(std::size_t group) const {
     return baked && std::find(receivers.begin(), receivers.end(), group) != receivers.end();

@@ -76,8 +76,8 @@ class DecodedNeighborhood {
   ChangeMatrix at(const glm::vec3& point, std::size_t channel = 0) const {
     const glm::vec3 place = (point - placement_.box.low) / placement_.spacing();
     std::vector<float> v(shape_.visibilitySize(), 0.0f), b(shape_.bouncedSize(), 0.0f);
-    const glm::ivec3 first = glm::clamp(glm::ivec3(glm::floor(place)), glm::ivec3(0),
-                                        glm::ivec3(placement_.size) - 2);
+    const glm::ivec3 first =
+        glm::clamp(glm::ivec3(glm::floor(place)), glm::ivec3(0), glm::ivec3(placement_.size) - 2);
     const glm::vec3 part = place - glm::vec3(first);
     for (int corner = 0; corner < 8; ++corner) {
       const glm::ivec3 off(corner & 1, corner >> 1 & 1, corner >> 2);
@@ -114,7 +114,8 @@ inline double irradianceOf(const ChangeMatrix& matrix, int order, int order_out)
   for (std::size_t i = 0; i < static_cast<std::size_t>(order_out * order_out); ++i) {
     const double out = sh::clampedCosine(sh::bandOf(static_cast<int>(i))) / std::numbers::pi;
     for (std::size_t j = 0; j < columns; ++j) {
-      const double w = out * out * baker::kBandPower[static_cast<std::size_t>(sh::bandOf(static_cast<int>(j)))];
+      const double w =
+          out * out * baker::kBandPower[static_cast<std::size_t>(sh::bandOf(static_cast<int>(j)))];
       sum += w * double{matrix[i * columns + j]} * double{matrix[i * columns + j]};
       if (i == j) light += w;
     }
@@ -146,7 +147,8 @@ inline NeighborhoodErrors errorsAgainst(const DecodedNeighborhood& grid, std::op
     ChangeMatrix wrong = grid.at(p);
     const ChangeMatrix right = truth(p);
     for (std::size_t i = 0; i < wrong.size(); ++i) wrong[i] -= right[i];
-    const double error = irradianceOf(wrong, order, order_out), change = irradianceOf(right, order, order_out);
+    const double error = irradianceOf(wrong, order, order_out),
+                 change = irradianceOf(right, order, order_out);
     errors.push_back(error);
     sum += error * error;
     if (glm::length(p) < 1.5f) near += error * error, ++near_count;

@@ -15,7 +15,7 @@ namespace lambent::baker {
 struct NeighborhoodSettings {
   PlacementWish placement;  // as the body's points: from `origin`
   glm::vec3 origin{0.0f};   // of those points in the group's frame
-  bool matrices = false;    // as many outputs as the light has bands, for receivers with transfer of their own
+  bool matrices = false;  // as many outputs as the light has bands, for receivers with transfer of their own
   std::size_t rays = 2048;  // from each point towards the body
   ChangeCoding coding;
 };
@@ -25,7 +25,7 @@ struct NeighborhoodFigures {
   glm::vec3 bounds_min{0.0f}, bounds_max{0.0f};  // group frame
   std::size_t inside_points = 0;                 // that were continued from outside
   std::uint64_t rays = 0;
-  double error = 0.0, change_error = 0.0;        // as CodedChange
+  double error = 0.0, change_error = 0.0;  // as CodedChange
 };
 
 struct BakedAround {

@@ -45,9 +45,8 @@ void CapDirections::packet(std::size_t p, const Cap& cap, DirectionPacket& out) 
     // Equal areas again: 1 - z = r² past, and sin = r sqrt(past (2 - r² past)).
     const double below = glm::dot(at, at) * cap.past;
     const double stretch = std::sqrt(std::max(0.0, cap.past * (2.0 - below)));
-    out[k] = cap.frame *
-             glm::vec3(static_cast<float>(stretch * at.x), static_cast<float>(stretch * at.y),
-                       static_cast<float>(1.0 - below));
+    out[k] = cap.frame * glm::vec3(static_cast<float>(stretch * at.x), static_cast<float>(stretch * at.y),
+                                   static_cast<float>(1.0 - below));
   }
 }
 

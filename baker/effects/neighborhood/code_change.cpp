@@ -80,9 +80,9 @@ class CellCoder {
     });
     std::erase_if(ratios, [](double ratio) { return ratio < 0.0; });
     if (ratios.empty()) return 0.0;
-    const auto at = ratios.begin() + static_cast<std::ptrdiff_t>(
-                                         std::min(share * static_cast<double>(ratios.size()),
-                                                  static_cast<double>(ratios.size() - 1)));
+    const auto at =
+        ratios.begin() + static_cast<std::ptrdiff_t>(std::min(share * static_cast<double>(ratios.size()),
+                                                              static_cast<double>(ratios.size() - 1)));
     std::nth_element(ratios.begin(), at, ratios.end());
     return *at;
   }

@@ -1,7 +1,7 @@
 // Codes the change of light on a grid: its points are samples of cells, visibility and bounced light are two
 // transfers of each. Errors are relative to the light near the body (codeTransfer's shown_energy), and as the
-// same absolute error is a large one where little changes, cells are coded finer until it is small against the
-// change too.
+// same absolute error is a large one where little changes, cells are coded finer until it is small against
+// the change too.
 #pragma once
 
 #include <stop_token>
@@ -13,10 +13,10 @@
 namespace lambent::baker {
 
 struct ChangeCoding {
-  double bound = 1e-3;           // RMS over a cell, of irradiance without the body; of both parts together
-  double of_change = 0.05;       // at a point, relative to what changes there,
-  double where_changed = 0.02;   // where that is over this share of irradiance
-  double points_within = 0.99;   // of those points so many keep `of_change`
+  double bound = 1e-3;          // RMS over a cell, of irradiance without the body; of both parts together
+  double of_change = 0.05;      // at a point, relative to what changes there,
+  double where_changed = 0.02;  // where that is over this share of irradiance
+  double points_within = 0.99;  // of those points so many keep `of_change`
 };
 
 struct CodedChange {

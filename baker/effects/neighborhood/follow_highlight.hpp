@@ -1,5 +1,5 @@
-// One step of a path through a GGX highlight: visible normals (Heitz 2018; caps after Dupuy and Benyoub 2023),
-// whose weight is F G2/G1, and so a mirror's is its reflectance.
+// One step of a path through a GGX highlight: visible normals (Heitz 2018; caps after Dupuy and Benyoub
+// 2023), whose weight is F G2/G1, and so a mirror's is its reflectance.
 #pragma once
 
 #include <cstdint>

@@ -1,8 +1,8 @@
 // How a body changes the light at all points of a grid. Points inside the body take values that continue what
 // is outside through the surface: twice the value on the surface less the one as far before it as the point
 // lies behind it. Between the last point outside and the first one inside, interpolation is then right where
-// it meets the surface; darkness does not bleed, and no halo stands around the body. Points deeper inside take
-// the mean of their neighbours.
+// it meets the surface; darkness does not bleed, and no halo stands around the body. Points deeper inside
+// take the mean of their neighbours.
 #pragma once
 
 #include <optional>

@@ -19,13 +19,14 @@ EffectChoice chooseNeighborhood(const Scene& scene, const std::vector<RigidGroup
       against = fmt::format("{}: {}", groups[k].name, plans[k].reason);
   }
   if (names.empty())
-    return {"neighborhood", false,
-            against.empty() ? "no body comes within the bounds of a group of more than twice its size"
-                            : against};
-  return {"neighborhood", true,
-          fmt::format("grids of matrices around {}: their shadows, and light that they reflect, on what comes "
-                      "near",
-                      fmt::join(names, ", "))};
+    return {
+        "neighborhood", false,
+        against.empty() ? "no body comes within the bounds of a group of more than twice its size" : against};
+  return {
+      "neighborhood", true,
+      fmt::format("grids of matrices around {}: their shadows, and light that they reflect, on what comes "
+                  "near",
+                  fmt::join(names, ", "))};
 }
 
 }  // namespace lambent::baker

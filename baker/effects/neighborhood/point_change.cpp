@@ -44,7 +44,8 @@ void PointChange::look(const glm::vec3& point) {
   for (std::size_t p = 0; p < directions_.packets(); ++p) {
     directions_.packet(p, cap_, along_);
     body_.look(point, along_, p * kPacketWidth, shape_.channels > 0, look_);
-    const bool stops = std::any_of(look_.stopped.begin(), look_.stopped.end(), [](float s) { return s != 0.0f; });
+    const bool stops =
+        std::any_of(look_.stopped.begin(), look_.stopped.end(), [](float s) { return s != 0.0f; });
     if (!stops && look_.sends == 0) continue;
     for (std::size_t k = 0; k < kPacketWidth; ++k) x[k] = along_[k].x, y[k] = along_[k].y, z[k] = along_[k].z;
     sh::evaluateBatch<float>(shape_.visibilityBands(), x.data(), y.data(), z.data(), kPacketWidth,
@@ -105,8 +106,9 @@ ChangeMeter::ChangeMeter(const ChangeShape& shape) : shape_(shape) {
       terms_.push_back({static_cast<std::uint32_t>(i * columns) + gaunt.terms[t].j, gaunt.terms[t].k,
                         gaunt.terms[t].value});
     for (std::size_t j = 0; j < columns; ++j)
-      weights_[i * columns + j] = static_cast<float>(
-          receiverPower(shape)[band_out] * kBandPower[static_cast<std::size_t>(sh::bandOf(static_cast<int>(j)))]);
+      weights_[i * columns + j] =
+          static_cast<float>(receiverPower(shape)[band_out] *
+                             kBandPower[static_cast<std::size_t>(sh::bandOf(static_cast<int>(j)))]);
     if (i < columns) light_ += double{weights_[i * columns + i]};
   }
 }

@@ -59,17 +59,17 @@ class PointChange {
   double weight_ = 0.0;  // steradians of a ray
   DirectionPacket along_{};
   BodyLook look_;
-  std::vector<float> harmonics_;                // [coefficient][ray] of a packet
-  std::vector<float> visibility_, bounced_;     // as the accessors
-  std::vector<float> sums_;                     // [output][channel * columns]
-  double backs_ = 0.0;                          // steradians
+  std::vector<float> harmonics_;             // [coefficient][ray] of a packet
+  std::vector<float> visibility_, bounced_;  // as the accessors
+  std::vector<float> sums_;                  // [output][channel * columns]
+  double backs_ = 0.0;                       // steradians
   float nearest_back_ = std::numeric_limits<float>::infinity();
   glm::vec3 nearest_point_{0.0f}, nearest_normal_{0.0f};
 };
 
 // How much errors of transferred light show at a receiver, per coefficient of each band: at a plain diffuse
-// one (A_l/pi)²; at one with transfer of its own, which applies it to all bands, the power of a transfer vector
-// half of whose sky a wall takes away.
+// one (A_l/pi)²; at one with transfer of its own, which applies it to all bands, the power of a transfer
+// vector half of whose sky a wall takes away.
 const BandPower& receiverPower(const ChangeShape& shape);
 
 // What real lights and a diffuse receiver make of a change: RMS over lights with the band power of real ones,

@@ -233,8 +233,8 @@ void SurfaceBody::look(const glm::vec3& from, const DirectionPacket& along, std:
         out.nearest_point = from + hit.distance * along[k];
         const glm::uvec3 t = scene_.geometry.triangles[hit.triangle];
         const auto& positions = scene_.geometry.positions;
-        out.nearest_normal = glm::normalize(
-            glm::cross(positions[t.y] - positions[t.x], positions[t.z] - positions[t.x]));
+        out.nearest_normal =
+            glm::normalize(glm::cross(positions[t.y] - positions[t.x], positions[t.z] - positions[t.x]));
       }
       continue;
     }

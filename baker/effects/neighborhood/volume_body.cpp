@@ -24,8 +24,8 @@ void VolumeBody::look(const glm::vec3& from, const DirectionPacket& along, std::
   const float far = glm::distance(from, centre_) + radius_;
   for (std::size_t k = 0; k < kPacketWidth; ++k) {
     const bool keep = with_light && scatters_;
-    const auto row = keep ? std::span(out.sent).subspan(k * row_size, row_size)
-                          : std::span(unwanted).first(row_size);
+    const auto row =
+        keep ? std::span(out.sent).subspan(k * row_size, row_size) : std::span(unwanted).first(row_size);
     std::fill(row.begin(), row.end(), 0.0f);
     const float through = light_.look(from, along[k], far, row);
     out.stopped[k] = 1.0f - std::clamp(through, 0.0f, 1.0f);

@@ -1,4 +1,5 @@
-// A baked volume as a body: what it lets through, and what it scatters (baker/effects/volume/volume_light.hpp).
+// A baked volume as a body: what it lets through, and what it scatters
+// (baker/effects/volume/volume_light.hpp).
 #pragma once
 
 #include "baker/effects/neighborhood/body.hpp"

@@ -22,12 +22,12 @@ bool leavesOut(const Scene& scene, const std::string& words,
 
 TEST(EffectPlan, BakesDiffuseTransferForSurfacesAndSaysWhy) {
   const EffectPlan plan = makePlan(sceneOf({grid({0, 0, 0}, 1.0f, 1)}), effectList());
-  ASSERT_EQ(plan.effects.size(), 2u);
+  ASSERT_EQ(plan.effects.size(), effectList().size());
   EXPECT_EQ(plan.effects[0].effect, "diffuse");
   EXPECT_TRUE(plan.effects[0].baked);
   EXPECT_NE(plan.effects[0].reason.find("1 draw"), std::string::npos);
   EXPECT_EQ(plan.effects[1].effect, "glossy");
-  EXPECT_FALSE(plan.effects[1].baked);
+  for (std::size_t other = 1; other < plan.effects.size(); ++other) EXPECT_FALSE(plan.effects[other].baked);
   EXPECT_TRUE(plan.left_out.empty());
 }
 

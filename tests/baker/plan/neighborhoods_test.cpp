@@ -140,7 +140,8 @@ TEST(NeighborhoodPlans, AreForVolumesWithSurfacesInReach) {
     cloud.parent_from_node = glm::translate(glm::mat4(1.0f), {0, height, 0});
     scene.nodes.push_back(cloud);
     scene.roots.push_back(1);
-    scene.volumes.push_back({.name = "fog", .node = 1, .size = glm::uvec3(2), .density = std::vector<float>(8, 1.0f)});
+    scene.volumes.push_back(
+        {.name = "fog", .node = 1, .size = glm::uvec3(2), .density = std::vector<float>(8, 1.0f)});
     const Planned planned = plan(scene);
     EXPECT_EQ(planned.of("cloud").baked, height < 10.0f);
     EXPECT_EQ(planned.of("cloud").carries(planned.indexOf("static")), height < 10.0f);

@@ -94,7 +94,8 @@ TEST(Neighborhood, IsRightAtTheBodysSurfaceAlthoughPointsLieInside) {
     return m;
   }();
   for (int i = 0; i < 200; ++i) {
-    const float z = 1.0f - 2.0f * (static_cast<float>(i) + 0.5f) / 200.0f, phi = 2.39996f * static_cast<float>(i);
+    const float z = 1.0f - 2.0f * (static_cast<float>(i) + 0.5f) / 200.0f,
+                phi = 2.39996f * static_cast<float>(i);
     const float r = std::sqrt(1.0f - z * z);
     const glm::vec3 point = 1.02f * glm::vec3(r * std::cos(phi), r * std::sin(phi), z);
     const ChangeMatrix truth = blackSphereChange(point, 1.0f, 5, 3);

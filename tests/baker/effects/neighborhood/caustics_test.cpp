@@ -26,8 +26,7 @@ bundle::MeshData ring(float height, int around) {
     }
   const auto at = [around](int i, int top) { return static_cast<std::uint32_t>(2 * (i % around) + top); };
   for (int i = 0; i < around; ++i)
-    for (const std::uint32_t index :
-         {at(i, 0), at(i + 1, 0), at(i + 1, 1), at(i, 0), at(i + 1, 1), at(i, 1)})
+    for (const std::uint32_t index : {at(i, 0), at(i + 1, 0), at(i + 1, 1), at(i, 0), at(i + 1, 1), at(i, 1)})
       mesh.indices.push_back(index);
   return mesh;
 }
@@ -95,7 +94,9 @@ TEST(Caustics, TakeTheColourOfTheMetal) {
   PointChange of_colored(colored.body, directions, {.order = 5, .order_out = 3, .channels = 3});
   // From outside, of the outer side: one reflection, at angles where Fresnel's rise towards white is small.
   of_white.look({3.0f, 0.0f, 0.5f}), of_colored.look({3.0f, 0.0f, 0.5f});
-  const auto uniform = [](const PointChange& point, std::size_t c) { return double{point.bounced()[c * 225]}; };
+  const auto uniform = [](const PointChange& point, std::size_t c) {
+    return double{point.bounced()[c * 225]};
+  };
   const double all = uniform(of_white, 0);
   EXPECT_GT(all, 0.0);
   for (std::size_t c = 0; c < 3; ++c) {

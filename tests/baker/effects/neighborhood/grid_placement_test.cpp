@@ -3,9 +3,8 @@
 
 #include <cmath>
 
-#include <gtest/gtest.h>
-
 #include <glm/geometric.hpp>
+#include <gtest/gtest.h>
 
 namespace lambent::baker {
 namespace {

@@ -155,8 +155,8 @@ TEST(PointChange, ReflectsEachColourByItself) {
     // A convex body does not light itself: what leaves it goes with its albedo.
     for (std::size_t c = 0; c < 3; ++c)
       for (std::size_t i = 0; i < 9 * 25; ++i)
-        EXPECT_NEAR(of_colored.bounced()[c * 9 * 25 + i],
-                    albedo[static_cast<int>(c)] * of_white.bounced()[i], 1e-3f);
+        EXPECT_NEAR(of_colored.bounced()[c * 9 * 25 + i], albedo[static_cast<int>(c)] * of_white.bounced()[i],
+                    1e-3f);
   }
 }
 

@@ -23,8 +23,7 @@ class Fog : public VolumeLight {
     std::fill(scattered.begin(), scattered.end(), 0.0f);
     if (off2 >= 1.0) return 1.0f;
     const double half = std::sqrt(1.0 - off2);
-    const double length = std::max(
-        0.0, std::min(along + half, double{t_max}) - std::max(along - half, 0.0));
+    const double length = std::max(0.0, std::min(along + half, double{t_max}) - std::max(along - half, 0.0));
     const double through = std::exp(-double{extinction_} * length);
     for (std::size_t c = 0; c < 3; ++c)
       scattered[c * 25] = glow_ * static_cast<float>((1.0 - through) * 0.5 / std::sqrt(std::numbers::pi));
