@@ -388,6 +388,36 @@ TEST_F(NeighborhoodFrame, ABodyIsEitherCapturedOrAroundNeverBoth) {
   EXPECT_GT(edge_by_grid, 1.1 * edge_by_capture);
 }
 
+TEST_F(NeighborhoodFrame, NothingPopsWhereCarriersChange) {
+  NeighborhoodScene scene;
+  scene.receivers = {floorOf(0.3f)};
+  scene.receivers[0].place = {6.0f, 0.0f, 0.0f};
+  // The sun shines right along the flight: by captures, the floor loses it behind the sphere.
+  const spec::Light low_sun =
+      spec::SunLight{.azimuth_deg = -90, .elevation_deg = 20, .angle_deg = 3, .radiance = glm::vec3(300.0f)};
+  scene.bodies = {sphereAt({0.0f, 1.5f, 0.0f}, 1.0f, glm::uvec3(21), glm::vec3(4.0f))};
+  scene.bodies[0].sphere_radius = 1.0f;
+  NeighborhoodStage stage(scene, {low_sun, kWhite});
+  stage.half = 8.0f;
+  stage.picture();
+  float before = -1.0f, largest = 0.0f, open = openLight(stage.environment).r;
+  std::vector<std::uint32_t> pairs;
+  for (int i = 0; i <= 60; ++i) {
+    const float x = 5.5f - 0.05f * static_cast<float>(i);
+    stage.edit("floor").translation.x = x;
+    stage.render();
+    pairs.push_back(stage.frame->counts().neighborhoods.pairs);
+    const auto column = static_cast<std::uint32_t>((x / 8.0f + 1.0f) / 2.0f * NeighborhoodStage::kSide);
+    const spec::RgbaImage image = stage.frame->readLinear();
+    const float now = image.texels[31 * NeighborhoodStage::kSide + column].r;
+    if (before >= 0.0f) largest = std::max(largest, std::abs(now - before));
+    before = now;
+  }
+  EXPECT_EQ(pairs.front(), 0u);
+  EXPECT_EQ(pairs.back(), 1u);
+  EXPECT_LT(largest, 0.1f * open) << "without the fade it is 0.2";
+}
+
 TEST_F(NeighborhoodFrame, CarriersStayForAPointsDistance) {
   NeighborhoodScene scene;
   scene.receivers = {floorOf(1.0f)};
