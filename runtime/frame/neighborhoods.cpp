@@ -254,7 +254,10 @@ void Neighborhoods::bind() const {
   receivers_table_.bindStorage(effects::neighborhood::kBindReceivers);
   arrivals_table_.bindStorage(effects::neighborhood::kBindArrivals);
   effect_.bind();
-  if (!vertex_draws_.empty()) vertex_receivers_.bindStorage(kBindRadianceChange);
+}
+
+void Neighborhoods::bindVertices() const {
+  vertex_receivers_.bindStorage(kBindRadianceChange);
 }
 
 }  // namespace lambent::frame

@@ -463,7 +463,15 @@ TEST_F(NeighborhoodFrame, FineReceiversWithAllBandsReceiveThroughTheirOwnTransfe
       floor.turn = kTurn;
       floor.group_from_mesh = glm::inverse(glm::mat4_cast(kTurn));
     }
-    scene.receivers = {floor};
+    // Beside a glossy one, whose draws have other storage bound.
+    scene.table = baker::integrateTable(*baker::makeGgx(/*anisotropic=*/false), kOrder,
+                                        {.angles = 4, .azimuths = 1, .roughnesses = 2, .strengths = 1});
+    BuiltReceiver glossy = floorOf(0.2f);
+    glossy.name = "glossy";
+    glossy.outputs = kOrder * kOrder;
+    glossy.material.metallic = 1.0f;
+    glossy.place = {3.5f, 0.5f, 3.5f};
+    scene.receivers = {glossy, floor};
     const glm::vec3 middle(0.3f, 1.5f, -0.2f);
     scene.bodies = {sphereAt(middle, 1.0f, kFine, kFineHalf)};
     scene.bodies[0].outputs = kOrder * kOrder;
@@ -472,7 +480,8 @@ TEST_F(NeighborhoodFrame, FineReceiversWithAllBandsReceiveThroughTheirOwnTransfe
     stage.half = 2.0f;
     images.push_back(stage.picture());
     EXPECT_EQ(stage.frame->counts().neighborhoods.vertex_receivers, 1u);
-    EXPECT_EQ(stage.frame->counts().neighborhoods.receivers, 0u) << "not per pixel too";
+    EXPECT_EQ(stage.frame->counts().neighborhoods.receivers, 0u)
+        << "not per pixel too; the glossy one is beyond";
     EXPECT_EQ(stage.frame->counts().neighborhoods.vertex_receivers_shaded, 0u) << "at rest";
     // Four bands receive as three do: A_3 is 0.
     const sh::LightVector light = stage.environment.light().truncated(kOrder);
