@@ -157,7 +157,6 @@ std::optional<VolumeTransfer> bakeVolumeTransfer(const Medium& medium, const Vol
                                                  const std::stop_token& stop) {
   const glm::vec3& w = medium.albedo;
   const bool black = w == glm::vec3(0.0f), grey = w.r == w.g && w.g == w.b;
-  progress.begin("light into volumes");
   VolumeTransfer out{.density = medium.density,
                      .grid = TransferGrid(*medium.density, medium.values, settings.grid),
                      .albedo = w,

@@ -1,10 +1,13 @@
 // Transfer of volumes against closed forms (literature 7.8), and what must hold whatever the numbers.
 #include <array>
 #include <numbers>
+#include <random>
 
 #include <gtest/gtest.h>
 
+#include "baker/import/procedural_cloud.hpp"
 #include "baker/work/parallel.hpp"
+#include "runtime/sh/basis.hpp"
 #include "tests/baker/effects/volume/media.hpp"
 #include "tests/support/shapes.hpp"
 #include "tests/support/transport.hpp"
@@ -176,6 +179,54 @@ TEST(VolumeTransfer, IsTheSameWithOneThreadWithTwoAndWithRowsThatDoNotFit) {
   withThreads(2, [&] { small = transferOf(fog, settings, glm::vec3(0.9f)).vectors; });
   EXPECT_EQ(one, two);
   EXPECT_EQ(one, small);
+}
+
+// What arrives at a place by random walks with delta tracking: mean radiance per coefficient, order 2.
+std::array<double, 4> walked(const DensityField& density, float largest, glm::vec3 place, double albedo,
+                             int walks) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> unit(0.0, 1.0);
+  std::array<double, 4> sum{};
+  for (int walk = 0; walk < walks; ++walk) {
+    glm::vec3 p = place;
+    double weight = 1.0;
+    glm::vec3 s;
+    for (bool out = false; !out;) {
+      const double z = 2.0 * unit(random) - 1.0, phi = 2.0 * std::numbers::pi * unit(random);
+      s = glm::vec3(glm::dvec3(std::sqrt(1.0 - z * z) * glm::dvec2(std::cos(phi), std::sin(phi)), z));
+      for (;;) {
+        p += static_cast<float>(-std::log(1.0 - unit(random)) / double{largest}) * s;
+        const glm::vec3 grid = density.gridFromGroup(p);
+        out = glm::any(glm::lessThan(grid, glm::vec3(0.0f))) ||
+              glm::any(glm::greaterThan(grid, glm::vec3(density.size())));
+        if (out || unit(random) * double{largest} < double{density.atGrid(grid)}) break;
+      }
+      if (!out) weight *= albedo;
+    }
+    std::array<float, 4> y;
+    sh::evaluate(2, s, std::span<float>(y));
+    for (std::size_t i = 0; i < 4; ++i) sum[i] += weight * double{y[i]} / walks;
+  }
+  return sum;
+}
+
+TEST(VolumeTransfer, OfACloudIsThatOfRandomWalks) {
+  const DensityGrid cloud = proceduralCloud(7);
+  std::vector<float> values = cloud.values;
+  constexpr float kLargest = 20.0f;
+  constexpr double kAlbedo = 0.95;
+  for (float& value : values) value *= kLargest;
+  const auto field = std::make_shared<DensityField>(cloud.size, values, glm::mat4(cloud.file_from_grid));
+  Progress progress;
+  const auto t = bakeVolumeTransfer({field, values, glm::vec3(static_cast<float>(kAlbedo))},
+                                    gridOf(24, 2, 512), {}, progress, {});
+  ASSERT_TRUE(t);
+  const std::size_t samples = t->grid.samples();
+  for (const std::size_t p : {samples / 7, samples / 3, samples / 2, samples * 3 / 4, samples * 6 / 7}) {
+    const auto wanted = walked(*field, kLargest, t->grid.place(p), kAlbedo, 20000);
+    for (std::size_t i = 0; i < 4; ++i)
+      EXPECT_NEAR(double{t->vectors[p * 8 + 4 + i]}, wanted[i], 0.01 * wanted[0] + 0.003) << p << " " << i;
+  }
 }
 
 // A wall in the plane x = 0: thin fog on either side sees its half of the sky.
