@@ -1,5 +1,6 @@
 // Neighborhood transfer of a ball of 5 k triangles over a floor: time and bytes of a grid, and how far what
-// interpolation reads from the coded grid is from the closed form at random points outside the ball.
+// interpolation reads from the coded grid is from the truth at random points outside the ball: the closed
+// form of a black ball, many rays for a white one.
 //   bench_neighborhood [--around] [--white] [--matrices] [--rays N]
 #include <chrono>
 #include <cstdio>
@@ -56,6 +57,7 @@ int main(int argc, char** argv) {
   const auto baked = transport.bake(5, 512, white ? -1 : 0);
   const SurfaceBody body(transport.diffuse(),
                          {baked.direct.field, white ? &baked.bounced.field : nullptr, nullptr, nullptr});
+  // change %: coding error at 99 of 100 points over the change there; the last column: all error over it.
   std::printf("%-10s %8s %8s %9s %8s %8s %8s %8s %8s\n", "grid", "s", "kB", "coding %", "change %", "RMS %",
               "p99 %", "near %", "change %");
   const std::vector<glm::uvec3> sizes =
@@ -74,13 +76,15 @@ int main(int argc, char** argv) {
     const auto result = bakeNeighborhood(body, settings, progress, {});
     progress.end();
     const double seconds = secondsSince(start);
-    for (const Progress::Stage& stage : progress.finished())
-      std::printf("%s %.2f s  ", stage.name.c_str(), stage.seconds);
-    std::printf("\n");
     const lambent::testing::DecodedNeighborhood decoded(*result->grid);
-    const lambent::testing::NeighborhoodErrors errors =
-        lambent::testing::errorsAgainst(decoded, settings.placement.receivers, 4000, [&](const glm::vec3& p) {
-          return lambent::testing::blackSphereChange(p, 1.0f, 5, decoded.shape().order_out);
+    // The black ball has a closed form; for the white one, by many rays from the very points.
+    const CapDirections many(16 * rays);
+    PointChange traced(body, many, decoded.shape());
+    const lambent::testing::NeighborhoodErrors errors = lambent::testing::errorsAgainst(
+        decoded, settings.placement.receivers, white ? 500 : 4000, [&](const glm::vec3& p) {
+          if (!white) return lambent::testing::blackSphereChange(p, 1.0f, 5, decoded.shape().order_out);
+          traced.look(p);
+          return lambent::testing::matrixOf(decoded.shape(), traced.visibility(), traced.bounced());
         });
     std::printf("%ux%ux%-4u %8.2f %8.1f %9.3f %8.2f %8.3f %8.3f %8.3f %8.2f\n", result->figures.size.x,
                 result->figures.size.y, result->figures.size.z, seconds,

@@ -66,6 +66,18 @@ void printJson(const Scene& scene, const EffectPlan& plan) {
   fmt::print("{}\n", json.dump(2));
 }
 
+void printNeighborhood(const EffectPlan& plan, std::size_t group) {
+  const PlannedNeighborhood& around = plan.neighborhoods[group];
+  if (around.baked) {
+    std::vector<std::string> names;
+    for (const std::uint32_t receiver : around.receivers) names.push_back(plan.groups[receiver].name);
+    fmt::print("      neighborhood for {}{}: {}\n", fmt::join(names, ", "),
+               around.matrices ? ", in all bands" : "", around.reason);
+  } else if (!around.reason.empty()) {
+    fmt::print("      no neighborhood: {}\n", around.reason);
+  }
+}
+
 void printText(const Scene& scene, const EffectPlan& plan) {
   fmt::print("{}\n", scene.source.string());
   for (const EffectChoice& choice : plan.effects)
@@ -79,6 +91,7 @@ void printText(const Scene& scene, const EffectPlan& plan) {
                  group.within < 0
                      ? ""
                      : " among the surfaces of " + plan.groups[static_cast<std::size_t>(group.within)].name);
+      printNeighborhood(plan, g);
       continue;
     }
     const auto& [count, reason] = plan.light_samples[g];
@@ -86,14 +99,7 @@ void printText(const Scene& scene, const EffectPlan& plan) {
                size.vertices, size.triangles);
     fmt::print("      {}{}: {}\n", counted(count.count, "light sample"),
                count.of_group ? "" : " in each cell", reason);
-    if (const PlannedNeighborhood& around = plan.neighborhoods[g]; around.baked) {
-      std::vector<std::string> names;
-      for (const std::uint32_t receiver : around.receivers) names.push_back(plan.groups[receiver].name);
-      fmt::print("      neighborhood for {}{}: {}\n", fmt::join(names, ", "),
-                 around.matrices ? ", in all bands" : "", around.reason);
-    } else if (!around.reason.empty()) {
-      fmt::print("      no neighborhood: {}\n", around.reason);
-    }
+    printNeighborhood(plan, g);
   }
   if (!plan.near_lights.empty()) fmt::print("  near lights\n");
   for (const std::string& sentence : plan.near_lights) fmt::print("    {}\n", sentence);

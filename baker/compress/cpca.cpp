@@ -18,9 +18,10 @@ namespace lambent::baker {
 namespace {
 
 constexpr std::size_t kGrain = 512;
-constexpr std::size_t kBasisSamples =
-    8192;  // for the covariance of many values; of few, all samples are looked at
-constexpr std::size_t kFewValues = 128;
+constexpr std::size_t kBasisSamples = 8192;  // at least, for the covariance of all values
+// Multiply-adds that may go into it for visibility and bounced light: where few values allow it all samples
+// are looked at, for in grids around bodies rare ones, beside the body, are like no others.
+constexpr double kBasisWork = 1.6e10;
 constexpr double kTailShare = 0.05;     // of the square error allowed, for what the basis leaves out
 constexpr double kBesideLeftOut = 1.3;  // of what the basis must leave out: all square error then
 constexpr std::size_t kRun = 64;        // neighbours kept together where only some samples are taken
@@ -180,7 +181,11 @@ CodedTransfer codeTransfer(std::span<const float> vectors, std::size_t count,
 
   // A basis for the cell: all principal components but those that hardly matter.
   double left_out = 0.0;
-  const std::size_t looked_at = shape.isVisibility() && shape.size() <= kFewValues ? count : kBasisSamples;
+  const double size = static_cast<double>(shape.size());
+  const std::size_t looked_at =
+      shape.isVisibility() || shape.shadowed_channels == 0
+          ? std::max(kBasisSamples, static_cast<std::size_t>(kBasisWork / (size * size)))
+          : kBasisSamples;
   const Spectrum spectrum = leadingSpectrum(weighted(vectors, space.roots, someSamples(count, looked_at)),
                                             kTailShare * allowed, left_out);
   // Where the components that were looked for leave out more than is allowed, the rest is coded to match.
