@@ -149,8 +149,8 @@ DensityGrid proceduralCloud(std::uint32_t seed) {
         if (outside < 0.0f) {
           // What the billows take away from the outside in, and a base that is flat but not ruled.
           const float depth = -outside - 0.055f * (1.0f - noise.billows(7.0f * p));
-          const float base = kBase + 0.012f * noise.at(9.0f * p);
-          density = glm::smoothstep(0.0f, 0.045f, depth) * glm::smoothstep(base - 0.03f, base + 0.03f, p.y);
+          const float base = kBase + 0.045f * noise.at(4.0f * p) + 0.015f * noise.at(13.0f * p);
+          density = glm::smoothstep(0.0f, 0.045f, depth) * glm::smoothstep(base - 0.05f, base + 0.08f, p.y);
         }
         grid.values.push_back(density);
       }
