@@ -103,7 +103,7 @@ Result<BakedGroup> bakeVolume(const Scene& scene, const std::vector<RigidGroup>&
     return fail(fmt::format("{}: {}", scene.source.string(), volume.name),
                 fmt::format("scatters with g = {}, and g other than 0 is not yet baked", volume.g),
                 "set g to 0");
-  progress.begin("light into volumes");
+  progress.begin("density");
   const QuantizedDensity density = quantizeDensity(volume.density);
   const glm::dmat4 group_from_world = glm::inverse(worldFromGroup(group));
   const glm::dmat4 world_from_node(gltf::worldTransforms(scene.nodes)[volume.node]);
@@ -130,7 +130,12 @@ Result<BakedGroup> bakeVolume(const Scene& scene, const std::vector<RigidGroup>&
                                 .scatterings = options.bounces,
                                 .grid = options.volume_grid,
                                 .memory = options.effectiveMemory() / 2};
+  const std::size_t stages_before = progress.finished().size();
   auto transfer = bakeVolumeTransfer(medium, settings, occluders, progress, stop);
+  progress.end();
+  const std::vector<Progress::Stage> stages = progress.finished();
+  for (const Progress::Stage& stage : std::span(stages).subspan(stages_before))
+    if (stage.unit == "samples") report.ray_seconds += stage.seconds;
   const auto stopped = [&] { return fail(scene.source.string(), "stopped; nothing was written"); };
   if (!transfer) return stopped();
 

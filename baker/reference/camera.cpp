@@ -82,23 +82,12 @@ EyeRays::EyeRays(const spec::View& view, const spec::Size& size)
       size_(size),
       pixel_angle_rad_(2.0f / (view.clip_from_view[1][1] * static_cast<float>(size.height))) {}
 
-std::pair<glm::dvec4, glm::dvec4> EyeRays::ends(std::uint32_t x, std::uint32_t y) const {
-  const double clip_x = 2.0 * (x + 0.5) / size_.width - 1.0, clip_y = 1.0 - 2.0 * (y + 0.5) / size_.height;
-  return {world_from_clip_ * glm::dvec4(clip_x, clip_y, -1.0, 1.0),
-          world_from_clip_ * glm::dvec4(clip_x, clip_y, 1.0, 1.0)};
-}
-
 Ray EyeRays::through(std::uint32_t x, std::uint32_t y) const {
-  const auto [near, far] = ends(x, y);
+  const double clip_x = 2.0 * (x + 0.5) / size_.width - 1.0, clip_y = 1.0 - 2.0 * (y + 0.5) / size_.height;
+  const glm::dvec4 near = world_from_clip_ * glm::dvec4(clip_x, clip_y, -1.0, 1.0);
+  const glm::dvec4 far = world_from_clip_ * glm::dvec4(clip_x, clip_y, 1.0, 1.0);
   const glm::dvec3 begin = glm::dvec3(near) / near.w, end = glm::dvec3(far) / far.w;
   return {.origin = glm::vec3(begin), .dir = glm::vec3(end - begin), .far = 1.0f};
-}
-
-double EyeRays::eye(std::uint32_t x, std::uint32_t y) const {
-  // Clip space's w is the depth before a perspective eye, linear along the ray, and 1/w of the way back.
-  const auto [near, far] = ends(x, y);
-  const double deeper = 1.0 / far.w - 1.0 / near.w;
-  return deeper > 1e-9 / far.w ? -1.0 / near.w / deeper : 0.0;
 }
 
 }  // namespace lambent::baker::reference

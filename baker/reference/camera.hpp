@@ -3,7 +3,6 @@
 #pragma once
 
 #include <optional>
-#include <utility>
 
 #include "baker/import/scene.hpp"
 #include "baker/reference/ray_tracer.hpp"
@@ -24,16 +23,10 @@ class EyeRays {
   EyeRays(const spec::View& view, const spec::Size& size);
   // Row 0 is the top. The ray's length 1 is the far plane.
   Ray through(std::uint32_t x, std::uint32_t y) const;
-  // Where the eye is on that ray, which begins on the near plane: media fill the space before it too. Not
-  // above 0; 0 of a parallel projection, which has no eye.
-  double eye(std::uint32_t x, std::uint32_t y) const;
   // Radians that a pixel spans in the middle, as the runtime's sky has it.
   float pixelAngle() const { return pixel_angle_rad_; }
 
  private:
-  // On the near and on the far plane, homogeneous.
-  std::pair<glm::dvec4, glm::dvec4> ends(std::uint32_t x, std::uint32_t y) const;
-
   glm::dmat4 world_from_clip_;
   spec::Size size_;
   float pixel_angle_rad_;

@@ -34,7 +34,7 @@ PixelSum Integrator::pixel(std::uint32_t x, std::uint32_t y, std::uint32_t first
   double through = 1.0;
   // Volumes before layer i, from where the one before left off.
   std::optional<EyeDepth> eye;
-  if (!world_.volumes.empty()) eye.emplace(world_.volumes, ray, world_.eye.eye(x, y), double{kInfinity});
+  if (!world_.volumes.empty()) eye.emplace(world_.volumes, ray, 0.0, double{kInfinity});
   double depth = 0.0;
   const auto passVolumes = [&](std::uint32_t i) {
     if (!eye) return;

@@ -202,7 +202,6 @@ Result<void> Frame::capture(World& world, const lighting::Environment& environme
       radiance.light = group_lights_.versionOf(g);
       radiance.drift += by_light ? double{group_lights_.changeOf(g)} : 1.0;
     }
-    if (!world.residency().groups()[g].proxy) continue;  // a volume's body is another group's
     if (const std::uint32_t body = lit_scene_.groups[g].body; body != lighting::CapturePoint::kNoBody)
       lit_scene_.bodies[body].radiance_drift = radiance.drift;
   }

@@ -111,7 +111,10 @@ std::size_t Neighborhoods::readyGrids() const {
 
 void Neighborhoods::chooseCarriers(const World& world, LitScene& scene) {
   noticeGrids(world);
+  // Carriers that change because something moves are faded; those that change with what arrives are not.
+  const bool fades = ready_when_chosen_ == readyGrids();
   ready_when_chosen_ = readyGrids();
+  for (lighting::IncidentGroup& group : scene.groups) group.fades = fades;
   counts_ = {.grids = static_cast<std::uint32_t>(effect_.grids().size())};
   std::set<std::pair<std::uint32_t, std::uint32_t>> pairs;
   const auto group_count = static_cast<std::uint32_t>(world.residency().groups().size());
@@ -251,7 +254,10 @@ void Neighborhoods::bind() const {
   receivers_table_.bindStorage(effects::neighborhood::kBindReceivers);
   arrivals_table_.bindStorage(effects::neighborhood::kBindArrivals);
   effect_.bind();
-  if (!vertex_draws_.empty()) vertex_receivers_.bindStorage(kBindRadianceChange);
+}
+
+void Neighborhoods::bindVertices() const {
+  vertex_receivers_.bindStorage(kBindRadianceChange);
 }
 
 }  // namespace lambent::frame

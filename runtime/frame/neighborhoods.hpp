@@ -68,8 +68,9 @@ class Neighborhoods {
   }
   // Rises when draws begin or cease to receive.
   std::uint64_t version() const { return version_; }
-  // For the surface pass.
+  // For the surface pass; what draws receive at their vertices in a place that glossy draws use otherwise.
   void bind() const;
+  void bindVertices() const;
   const NeighborhoodCounts& counts() const { return counts_; }
   const effects::neighborhood::Neighborhood& effect() const { return effect_; }
   // (group of the body, group that receives), of the residency.

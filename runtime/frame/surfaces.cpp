@@ -186,6 +186,7 @@ void Surfaces::drawRuns(World& world, const std::vector<Run>& runs, gpu::Counter
     } else {
       draws_.bindStorage(kBindDraws);
       world.residency().radiance().page(run.state.radiance_page).bindStorage(kBindRadiance);
+      if (run.state.vertices_around) neighborhoods_->bindVertices();
     }
     glFrontFace(run.state.clockwise ? GL_CW : GL_CCW);
     DrawIndices::draw(run.first_command, run.command_count, counters);

@@ -69,6 +69,12 @@ Result<IncidentLight> IncidentLight::create(const CaptureOptions& options, const
   return IncidentLight(std::move(*capture), options.order);
 }
 
+void IncidentLight::leaveOut(Sample& sample, const std::vector<std::uint32_t>& left_out, bool fades) {
+  if (sample.left_out == left_out) return;
+  sample.left_out = left_out;
+  sample.fade_begins = fades && sample.version != 0;
+}
+
 void IncidentLight::takeDrawn(bool wait) {
   if (requests_.empty()) return;
   std::optional<std::vector<CapturedLight>> results = capture_.take(wait);
@@ -79,6 +85,7 @@ void IncidentLight::takeDrawn(bool wait) {
     if (request.group >= groups_.size() || request.sample >= groups_[request.group].samples.size()) continue;
     Sample& sample = groups_[request.group].samples[request.sample];
     request.drawn.result = std::move((*results)[i]);
+    leaveOut(sample, request.drawn.left_out, request.drawn.fades);
     sample.drawn = std::move(request.drawn);
     sample.drawn_anew = true;
   }
@@ -112,7 +119,13 @@ void IncidentLight::updateSample(Sample& sample, const Group& group, const Envir
                                  const glm::vec3& position_ws, std::span<const LocalLight> lights) {
   ++counts_.samples;
   const bool lit = std::ranges::find(group.lit_by, std::uint8_t{1}) != group.lit_by.end();
-  if (!sample.drawn && !lit) {
+  if (sample.fade_begins) {
+    sample.fade_from = sample.plain ? environment.light().truncated(order_) : sample.light;
+    sample.fade_steps = kCarrierSteps;
+    sample.fade_begins = false;
+  }
+  const bool fading = sample.fade_steps > 0;
+  if (!sample.drawn && !lit && !fading) {
     // GroupLights itself follows the environment.
     if (!sample.plain || sample.version == 0 || sample.environment != environment.version()) ++counts_.risen;
     if (!sample.plain || sample.version == 0) ++sample.version;
@@ -124,7 +137,8 @@ void IncidentLight::updateSample(Sample& sample, const Group& group, const Envir
   // Where bodies stand around, a sky that turned waits for its capture.
   const bool new_sky = !sample.drawn && sample.environment != environment.version();
   const bool moved = lit && sample.position_ws != position_ws;
-  if (!sample.drawn_anew && !moved && !new_sky && !sample.plain && sample.lights == group.lights) return;
+  if (!sample.drawn_anew && !moved && !new_sky && !sample.plain && !fading && sample.lights == group.lights)
+    return;
   sample.drawn_anew = false;
   sample.position_ws = position_ws;
   sample.environment = environment.version();
@@ -147,6 +161,12 @@ void IncidentLight::updateSample(Sample& sample, const Group& group, const Envir
     if (group.lit_by[k] == 0) continue;
     const float share = visible(&Drawn::query_of_light, k);
     if (share > 0.0f) add(now, lightAt(lights[k], position_ws, order_), share);
+  }
+  if (fading) {
+    ++counts_.fading;
+    const float before = static_cast<float>(--sample.fade_steps) / static_cast<float>(kCarrierSteps);
+    for (std::size_t i = 0; i < sh::kMaxCoefficients; ++i)
+      now.c[i] = (1.0f - before) * now.c[i] + before * sample.fade_from.c[i];
   }
   if (!sample.plain && sample.version != 0 && !differs(now, sample.light)) return;
   sample.light = now;
@@ -250,12 +270,14 @@ Result<void> IncidentLight::capture(const Environment& environment, std::span<co
       now.environment = environment.version();
       now.lights = groups_[g].lights;
       now.left_out = groups[g].left_out;
+      now.fades = groups[g].fades;
       for (std::uint32_t b = 0; b < bodies.size(); ++b)
         if (!point.ignores(b) && capture_.sees(point, bodies[b].body))
           now.seen.push_back(
               {b, bodies[b].body.world_from_proxy, bodies[b].center_ws, bodies[b].radiance_drift});
       if (now.seen.empty()) {
         if (sample.drawn) ++counts_.waiting;  // for the next step, which finds nothing in the light's way
+        leaveOut(sample, now.left_out, now.fades && sample.drawn.has_value());
         sample.drawn_anew |= sample.drawn.has_value();
         sample.drawn.reset();
         continue;
@@ -305,7 +327,7 @@ void IncidentLight::askForLights(const Environment& environment, const IncidentG
 }
 
 bool IncidentLight::atRest() const {
-  return requests_.empty() && counts_.waiting == 0 && counts_.risen == 0;
+  return requests_.empty() && counts_.waiting == 0 && counts_.risen == 0 && counts_.fading == 0;
 }
 
 std::vector<Incident> IncidentLight::incidentOf(std::size_t group) const {

@@ -25,7 +25,9 @@
 namespace lambent::lighting {
 
 inline constexpr float kLeastChange = 1e-3f;
-inline constexpr float kMovingChange = 0.02f;                  // while things move
+inline constexpr float kMovingChange = 0.02f;  // while things move
+// Where a body begins or ceases to be left out of a group's captures, the light changes over so many steps.
+inline constexpr std::uint32_t kCarrierSteps = 8;
 inline constexpr float kRestingChange = 0.25f * kLeastChange;  // when nothing moves any more
 
 // A body, and how its radiance changes.
@@ -44,6 +46,7 @@ struct IncidentGroup {
   std::vector<std::uint8_t> lit_by;  // per local light, 1: by harmonics; 0: it has that light otherwise
   // Bodies, rising, whose light and shadow reach it otherwise: they are drawn for none of its samples.
   std::vector<std::uint32_t> left_out{};
+  bool fades = false;  // where left_out changed: over kCarrierSteps; else at once
 };
 
 struct IncidentCounts {
@@ -52,7 +55,8 @@ struct IncidentCounts {
   // Surroundings changed, but by less than is drawn while things move, or there was no more room in the step;
   // or a body is out of sight now, which needs no drawing.
   std::uint32_t waiting = 0;
-  std::uint32_t risen = 0;  // handed on new light in this step
+  std::uint32_t risen = 0;   // handed on new light in this step
+  std::uint32_t fading = 0;  // between one carrier and another
 };
 
 class IncidentLight {
@@ -93,6 +97,7 @@ class IncidentLight {
     std::uint64_t environment = 0, lights = 0;  // versions
     std::vector<SeenBody> seen;
     std::vector<std::uint32_t> left_out;
+    bool fades = false;
     std::vector<std::int32_t> query_of_disc, query_of_light;  // into result.visible; -1: not asked
     CapturedLight result;
   };
@@ -105,6 +110,11 @@ class IncidentLight {
     sh::LightVector light{1};
     glm::vec3 position_ws{0.0f};
     std::uint64_t environment = 0, lights = 0;
+    // Which bodies were left out of it, and how it goes over to that.
+    std::vector<std::uint32_t> left_out;
+    bool fade_begins = false;
+    std::uint32_t fade_steps = 0;  // still to come
+    sh::LightVector fade_from{1};
   };
   struct Group {
     std::vector<Sample> samples;
@@ -122,6 +132,7 @@ class IncidentLight {
   };
 
   IncidentLight(Capture capture, int order) : capture_(std::move(capture)), order_(order) {}
+  static void leaveOut(Sample& sample, const std::vector<std::uint32_t>& left_out, bool fades);
   void takeDrawn(bool wait);
   void noticeLights(std::span<const IncidentGroup> groups, std::span<const LocalLight> lights);
   void updateSample(Sample& sample, const Group& group, const Environment& environment,

@@ -170,21 +170,19 @@ Result<std::uint32_t> Residency::add(const bundle::Description& description) {
   }
   std::vector<ResidentGroup> groups;
   for (const bundle::Group& group : description.groups) {
-    ResidentGroup resident{
-        .bundle = bundle_index,
-        .index = static_cast<std::uint32_t>(groups.size()),
-        .order = 1,
-        .light_columns = static_cast<std::uint32_t>(group.lights.size()),
-        .first_cell = static_cast<std::uint32_t>(cells_.size()),
-        .cell_count = static_cast<std::uint32_t>(group.cells.size()),
-        .plain_samples = group.samplesWith(1),
-        .mapped_samples = group.samplesWith(bundle::kMappedOutputs),
-        .glossy_outputs = 0,
-        .samples = {},
-        .light_samples = group.light_samples,
-        .volume = -1,
-        .within = group.within < 0 ? -1 : static_cast<std::int32_t>(bundle.first_group) + group.within,
-        .proxy = {}};
+    ResidentGroup resident{.bundle = bundle_index,
+                           .index = static_cast<std::uint32_t>(groups.size()),
+                           .order = 1,
+                           .light_columns = static_cast<std::uint32_t>(group.lights.size()),
+                           .first_cell = static_cast<std::uint32_t>(cells_.size()),
+                           .cell_count = static_cast<std::uint32_t>(group.cells.size()),
+                           .plain_samples = group.samplesWith(1),
+                           .mapped_samples = group.samplesWith(bundle::kMappedOutputs),
+                           .glossy_outputs = 0,
+                           .samples = {},
+                           .light_samples = group.light_samples,
+                           .volume = -1,
+                           .proxy = {}};
     std::uint32_t next_output = 0;
     for (const bundle::Cell& cell : group.cells) {
       ResidentCell resident_cell{.group = bundle.first_group + resident.index,

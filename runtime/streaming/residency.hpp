@@ -107,7 +107,6 @@ struct ResidentGroup {
   gpu::Allocation samples;
   std::vector<glm::vec3> light_samples;  // group frame
   std::int32_t volume = -1;              // into volumes(); -1: it is surfaces
-  std::int32_t within = -1;              // of a volume, into groups(): where it stands; -1: in none
   // What other groups see of it; stays in memory, for it is small. None: not here yet, or nothing to see.
   std::optional<bundle::CaptureProxy> proxy;
 

@@ -14,24 +14,30 @@ DensityField::DensityField(const glm::uvec3& size, std::span<const float> densit
       points_(glm::ivec3(size) + 2),
       blocks_((points_ - 2 + kBlock) / kBlock) {
   assert(density.size() == std::size_t{size.x} * size.y * size.z);
-  values_.resize(static_cast<std::size_t>(points_.x) * static_cast<std::size_t>(points_.y) *
-                 static_cast<std::size_t>(points_.z));
-  filled_.assign(static_cast<std::size_t>(blocks_.x * blocks_.y * blocks_.z), 0);
   const glm::ivec3 last = glm::ivec3(size) - 1;
-  for (int z = 0; z < points_.z; ++z)
-    for (int y = 0; y < points_.y; ++y)
-      for (int x = 0; x < points_.x; ++x) {
-        const glm::uvec3 voxel(glm::clamp(glm::ivec3(x, y, z) - 1, glm::ivec3(0), last));
-        const float value =
-            density[voxel.x + std::size_t{size.x} * (voxel.y + std::size_t{size.y} * voxel.z)];
-        values_[lattice({x, y, z})] = value;
-        if (value == 0.0f) continue;
-        // All blocks with a cell at this point.
-        const glm::ivec3 point(x, y, z);
-        const glm::ivec3 low = glm::max(point - 1, 0) / kBlock, high = glm::min(point / kBlock, blocks_ - 1);
-        for (int k = low.z; k <= high.z; ++k)
-          for (int j = low.y; j <= high.y; ++j)
-            for (int i = low.x; i <= high.x; ++i) filled_[block({i, j, k})] = 1;
+  const auto at = [&](const glm::ivec3& point) {
+    const glm::uvec3 voxel(glm::clamp(point - 1, glm::ivec3(0), last));
+    return density[voxel.x + std::size_t{size.x} * (voxel.y + std::size_t{size.y} * voxel.z)];
+  };
+  brick_of_.assign(static_cast<std::size_t>(blocks_.x) * static_cast<std::size_t>(blocks_.y) *
+                       static_cast<std::size_t>(blocks_.z),
+                   -1);
+  std::vector<float> brick(kBrick);
+  for (int z = 0; z < blocks_.z; ++z)
+    for (int y = 0; y < blocks_.y; ++y)
+      for (int x = 0; x < blocks_.x; ++x) {
+        const glm::ivec3 low = kBlock * glm::ivec3(x, y, z);
+        bool any = false;
+        std::size_t i = 0;
+        for (int k = 0; k <= kBlock; ++k)
+          for (int j = 0; j <= kBlock; ++j)
+            for (int n = 0; n <= kBlock; ++n, ++i) {
+              brick[i] = at(low + glm::ivec3(n, j, k));
+              any = any || brick[i] != 0.0f;
+            }
+        if (!any) continue;
+        brick_of_[block({x, y, z})] = static_cast<std::int32_t>(bricks_.size() / kBrick);
+        bricks_.insert(bricks_.end(), brick.begin(), brick.end());
       }
 }
 
@@ -55,8 +61,10 @@ float DensityField::atGrid(const glm::vec3& grid) const {
   if (glm::any(glm::lessThan(grid, glm::vec3(0.0f))) || glm::any(glm::greaterThan(grid, glm::vec3(size_))))
     return 0.0f;
   const glm::vec3 at = grid + 0.5f;
-  const glm::ivec3 cell = glm::clamp(glm::ivec3(glm::floor(at)), glm::ivec3(0), points_ - 2);
-  return corners(cell).at(glm::clamp(at - glm::vec3(cell), 0.0f, 1.0f));
+  const glm::ivec3 cell = glm::clamp(glm::ivec3(glm::floor(at)), glm::ivec3(0), points_ - 2),
+                   b = cell / kBlock;
+  if (brick_of_[block(b)] < 0) return 0.0f;
+  return corners(brickAt(b), cell - kBlock * b).at(glm::clamp(at - glm::vec3(cell), 0.0f, 1.0f));
 }
 
 float DensityField::opticalDepth(const glm::vec3& origin, const glm::vec3& direction, float t_max) const {

@@ -18,8 +18,8 @@
 
 namespace lambent::baker {
 
-// Depth beyond which nothing is left: e^-80 is about the smallest normal float.
-inline constexpr float kOpaqueDepth = 80.0f;
+// Depth beyond which nothing is left: e^-40 is 4e-18.
+inline constexpr float kOpaqueDepth = 40.0f;
 
 class DensityField {
  public:
@@ -64,14 +64,13 @@ class DensityField {
   };
 
   bool clip(const LatticeRay& ray, float& begin, float& end) const;
-  std::size_t lattice(const glm::ivec3& p) const {
-    return static_cast<std::size_t>(p.x) +
-           static_cast<std::size_t>(points_.x) *
-               (static_cast<std::size_t>(p.y) +
-                static_cast<std::size_t>(points_.y) * static_cast<std::size_t>(p.z));
-  }
   std::size_t block(const glm::ivec3& b) const {
     return static_cast<std::size_t>(b.x + blocks_.x * (b.y + blocks_.y * b.z));
+  }
+
+  static constexpr std::size_t kBrick = (kBlock + 1) * (kBlock + 1) * (kBlock + 1);
+  const float* brickAt(const glm::ivec3& b) const {
+    return &bricks_[static_cast<std::size_t>(brick_of_[block(b)]) * kBrick];
   }
 
   struct Corners {
@@ -84,7 +83,8 @@ class DensityField {
       return ab + f.z * (cd - ab);
     }
   };
-  Corners corners(const glm::ivec3& cell) const;
+  // `inside`: the cell from its block's first.
+  Corners corners(const float* brick, const glm::ivec3& inside) const;
 
   template <typename Longest, typename Visit>
   bool marchBlock(const LatticeRay& ray, const glm::ivec3& block, float begin, float end,
@@ -92,9 +92,11 @@ class DensityField {
 
   glm::uvec3 size_;
   glm::mat4 group_from_grid_, grid_from_group_;
-  glm::ivec3 points_, blocks_;        // of the lattice; cells are one fewer
-  std::vector<float> values_;         // of the lattice
-  std::vector<std::uint8_t> filled_;  // blocks with anything in them
+  glm::ivec3 points_, blocks_;  // of the lattice; cells are one fewer
+  // Of each block that holds anything, the 9 x 9 x 9 points of its cells side by side: rays stay in it for a
+  // while.
+  std::vector<float> bricks_;
+  std::vector<std::int32_t> brick_of_;  // by block; -1: empty
 };
 
 inline DensityField::Walk::Walk(const LatticeRay& ray, float t, float side, const glm::ivec3& low,
@@ -111,11 +113,11 @@ inline DensityField::Walk::Walk(const LatticeRay& ray, float t, float side, cons
   }
 }
 
-inline DensityField::Corners DensityField::corners(const glm::ivec3& cell) const {
-  const float* p = &values_[lattice(cell)];
-  const std::size_t row = static_cast<std::size_t>(points_.x),
-                    slice = row * static_cast<std::size_t>(points_.y);
-  return {{p[0], p[1], p[row], p[row + 1], p[slice], p[slice + 1], p[slice + row], p[slice + row + 1]}};
+inline DensityField::Corners DensityField::corners(const float* brick, const glm::ivec3& inside) const {
+  constexpr int kRow = kBlock + 1, kSlice = kRow * kRow;
+  const float* p = brick + inside.x + kRow * inside.y + kSlice * inside.z;
+  return {
+      {p[0], p[1], p[kRow], p[kRow + 1], p[kSlice], p[kSlice + 1], p[kSlice + kRow], p[kSlice + kRow + 1]}};
 }
 
 template <typename Longest, typename Visit>
@@ -123,6 +125,7 @@ bool DensityField::marchBlock(const LatticeRay& ray, const glm::ivec3& block_at,
                               const Longest& longest, const Visit& visit) const {
   const glm::ivec3 low = block_at * kBlock, high = glm::min(low + (kBlock - 1), points_ - 2);
   Walk walk(ray, begin, 1.0f, low, high);
+  const float* const brick = brickAt(block_at);
   for (float t = begin; t < end;) {
     const int axis = walk.axis();
     const glm::ivec3 cell = walk.cell;
@@ -132,10 +135,10 @@ bool DensityField::marchBlock(const LatticeRay& ray, const glm::ivec3& block_at,
     // The last cell takes what rounding leaves.
     if (leave >= end || walk.cell[axis] < low[axis] || walk.cell[axis] > high[axis]) leave = end;
     if (leave <= t) continue;
-    if (const Corners values = corners(cell); !values.empty()) {
-      const auto density = [&](float at) {
-        return values.at(glm::clamp(ray.at(at) - glm::vec3(cell), 0.0f, 1.0f));
-      };
+    if (const Corners values = corners(brick, cell - low); !values.empty()) {
+      // Rounding may put a place a hair outside its cell; the line goes on there.
+      const glm::vec3 start = ray.origin - glm::vec3(cell);
+      const auto density = [&](float at) { return values.at(start + at * ray.direction); };
       for (float from = t, first = density(t); from < leave;) {
         const float step = longest(from);
         const float to = leave - from > 1.001f * step ? from + step : leave;
@@ -167,7 +170,7 @@ void DensityField::march(const glm::vec3& origin, const glm::vec3& direction, fl
     walk.next[axis] += walk.delta[axis];
     if (leave >= end || walk.cell[axis] < 0 || walk.cell[axis] >= blocks_[axis]) leave = end;
     if (leave <= t) continue;
-    if (filled_[block(at)] != 0 && !marchBlock(ray, at, t, leave, longest, visit)) return;
+    if (brick_of_[block(at)] >= 0 && !marchBlock(ray, at, t, leave, longest, visit)) return;
     t = leave;
   }
 }

@@ -46,12 +46,16 @@ class ScatterRows::Row {
  public:
   explicit Row(const TransferGrid& grid) : grid_(grid), weights_(grid.nodes(), Entry{}) {}
 
+  // resolved: 1 where a free path is not shorter than a voxel, 0 where it is much shorter. Then T changes by
+  // more than curves can follow, and only weights that are all positive keep it in range.
+  void begin(double resolved) { resolved_ = resolved; }
+
   void add(const glm::dvec3& place, int level, double share) {
-    const TransferGrid::Stencil at = grid_.stencil(place, level, /*beyond=*/true);
+    const TransferGrid::Stencil at = grid_.stencil(place, level, /*beyond=*/resolved_ > 0.5);
     // Between two nodes at f a curve T lies under its chord by f (1 - f) / 2 T'', and a node of level l, the
     // mean of 2^l voxels, over T by (1 - 4^-l) / 24 T''; T'' in nodes of the level.
     const glm::dvec3 bend =
-        0.5 * at.fraction * (1.0 - at.fraction) + (1.0 - std::ldexp(1.0, -2 * level)) / 24.0;
+        resolved_ * (0.5 * at.fraction * (1.0 - at.fraction) + (1.0 - std::ldexp(1.0, -2 * level)) / 24.0);
     for (int i = 0; i < at.count; ++i) {
       const std::uint32_t node = at.node[static_cast<std::size_t>(i)];
       Entry& entry = touch(node);
@@ -110,12 +114,15 @@ class ScatterRows::Row {
   const TransferGrid& grid_;
   std::vector<Entry> weights_;
   std::vector<std::uint32_t> touched_;
-  double sum_ = 0.0;
+  double sum_ = 0.0, resolved_ = 1.0;
 };
 
 void ScatterRows::traceRow(std::size_t p, std::vector<float>& reach, Row& row) const {
   const glm::vec3 origin = grid_->place(p);
   const glm::dvec3 grid_origin = grid_->gridFromGroup(glm::dvec3(origin));
+  const double thickness =
+      double{density_->atGrid(density_->gridFromGroup(origin))} * double{grid_->meanEdge()};
+  row.begin(1.0 - glm::smoothstep(2.0, 4.0, thickness));
   occluders_->reach(origin, table_->directions(), reach);
   const auto longest = [&](float t) {
     return kLongestStretch * grid_->shortestEdge() * static_cast<float>(1 << levelAt(double{t}));

@@ -16,6 +16,9 @@ namespace {
 constexpr std::size_t kRaysPerScatteringRay = 4, kLeastScatteringRays = 64;
 constexpr std::size_t kGrain = 16;
 constexpr double kTolerance = 1e-5;
+// Light that is scattered ten million times and never absorbed has no number: without this the system of a
+// medium that nothing gets out of is singular.
+constexpr double kLargestAlbedo = 1.0 - 1e-7;
 constexpr double kY0 = 0.28209479177387814;
 
 // What arrives unscattered, and what stands in its way.
@@ -37,13 +40,15 @@ bool lightIn(const Medium& medium, const TransferGrid& grid, const Occluders& oc
       const glm::vec3 origin = grid.place(p);
       occluders.reach(origin, table.directions(), reach);
       std::fill(lost.begin(), lost.end(), 0.0);
-      double met = 0.0, out = 0.0;
+      double met = 0.0, out = 0.0, open = 0.0;
       for (std::size_t r = 0; r < table.size(); ++r) {
         const double depth = double{medium.density->opticalDepth(origin, table.direction(r), reach[r])};
         const double clear = std::exp(-depth), gone = -std::expm1(-depth);
         met += gone;
         out += clear;
-        const double missing = std::isfinite(reach[r]) ? 1.0 : gone;
+        const bool blocked = std::isfinite(reach[r]);
+        const double missing = blocked ? 1.0 : gone;
+        open += blocked ? 0.0 : clear;
         const auto y = table.harmonics(r);
         for (std::size_t i = 0; i < columns; ++i) lost[i] += missing * double{y[i]};
       }
@@ -52,10 +57,10 @@ bool lightIn(const Medium& medium, const TransferGrid& grid, const Occluders& oc
       light.out[p] = out * share;
       // Off the closed form of an open sky (y_0, then zeros), so that thin air is exact; the sums of y_i over
       // the table, nearly 0, are put right for thick air.
-      const double missing = lost[0] * share / kY0;
+      open *= share;
       for (std::size_t i = 0; i < columns; ++i)
         light.transfer[p * columns + i] =
-            static_cast<float>(i == 0 ? kY0 * (1.0 - missing) : missing * table.mean(i) - lost[i] * share);
+            static_cast<float>(i == 0 ? kY0 * open : (1.0 - open) * table.mean(i) - lost[i] * share);
     }
     progress.add(end - begin);
   });
@@ -128,7 +133,7 @@ bool scatter(const ScatterRows& rows, const FirstLight& light, const VolumeSetti
     for (std::size_t p = 0; p < samples; ++p)
       std::copy_n(&light.transfer[p * columns + block], width, &first[p * kBlockColumns]);
     for (std::uint32_t channel = 0; channel < out.full_channels; ++channel) {
-      const double albedo = double{out.albedo[static_cast<int>(channel)]};
+      const double albedo = std::min(double{out.albedo[static_cast<int>(channel)]}, kLargestAlbedo);
       Scattering scattering(rows, out.grid, light, albedo, stop);
       const GmresResult done = settings.scatterings < 0
                                    ? scattering.solve(first, result)
@@ -152,7 +157,6 @@ std::optional<VolumeTransfer> bakeVolumeTransfer(const Medium& medium, const Vol
                                                  const std::stop_token& stop) {
   const glm::vec3& w = medium.albedo;
   const bool black = w == glm::vec3(0.0f), grey = w.r == w.g && w.g == w.b;
-  progress.begin("light into volumes");
   VolumeTransfer out{.density = medium.density,
                      .grid = TransferGrid(*medium.density, medium.values, settings.grid),
                      .albedo = w,

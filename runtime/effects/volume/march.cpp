@@ -1,11 +1,11 @@
 #include "runtime/effects/volume/march.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
+#include <glm/gtc/matrix_transform.hpp>
 #include <glm/matrix.hpp>
 #include <glm/vec4.hpp>
 
@@ -28,12 +28,9 @@ bool finite(const glm::dmat4& matrix) {
   return true;
 }
 
-std::array<float, 12> rowsOf(const glm::dmat4& affine) {
-  std::array<float, 12> rows{};
+void storeRows(const glm::dmat4& affine, glm::vec4 (&rows)[3]) {
   for (int row = 0; row < 3; ++row)
-    for (int column = 0; column < 4; ++column)
-      rows[static_cast<std::size_t>(4 * row + column)] = static_cast<float>(affine[column][row]);
-  return rows;
+    for (int column = 0; column < 4; ++column) rows[row][column] = static_cast<float>(affine[column][row]);
 }
 
 Rectangle unite(const Rectangle& a, const Rectangle& b) {
@@ -59,18 +56,18 @@ std::optional<MarchRecord> describeMarch(const streaming::ResidentVolume& volume
                                          const glm::mat4& view_from_world) {
   const glm::dmat4 view_from_group = glm::dmat4(view_from_world) * glm::dmat4(world_from_group);
   const glm::dmat4 group_from_view = glm::inverse(view_from_group);
-  const glm::dmat4 grid_from_view = glm::inverse(view_from_group * glm::dmat4(volume.grid.group_from_grid));
-  if (!finite(group_from_view) || !finite(grid_from_view)) return {};
+  const glm::dmat4 grid_from_box = glm::scale(glm::dmat4(1.0), glm::dvec3(volume.grid.size));
+  const glm::dmat4 box_from_view =
+      glm::inverse(view_from_group * glm::dmat4(volume.grid.group_from_grid) * grid_from_box);
+  if (!finite(group_from_view) || !finite(box_from_view)) return {};
   const SlabLayout layout = slabLayoutOf(volume.grid.transfer_size, volume.outputs);
   MarchRecord record{};
-  std::ranges::copy(rowsOf(grid_from_view), record.grid_from_view);
-  std::ranges::copy(rowsOf(group_from_view), record.group_from_view);
-  for (int axis = 0; axis < 3; ++axis) {
-    record.albedo[axis] = volume.grid.albedo[axis];
-    record.size[axis] = volume.grid.size[axis];
-    record.transfer_size[axis] = volume.grid.transfer_size[axis];
-    record.light_size[axis] = layout.texture_size[axis];
-  }
+  storeRows(box_from_view, record.box_from_view);
+  storeRows(group_from_view, record.group_from_view);
+  record.albedo = volume.grid.albedo;
+  record.size = volume.grid.size;
+  record.transfer_size = volume.grid.transfer_size;
+  record.light_size = layout.texture_size;
   record.density_scale = volume.grid.density_max;
   record.outputs = volume.outputs;
   record.slabs_z = layout.slabs_z;

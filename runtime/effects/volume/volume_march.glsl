@@ -32,8 +32,8 @@ float meanPlace(float x) {
 
 // A ray and a volume.
 struct VolumeRay {
-  vec3 origin;     // voxel coordinates
-  vec3 direction;  // voxels per metre of the ray
+  vec3 origin;     // in the box from 0 to 1
+  vec3 direction;  // per metre of the ray
   vec3 towards;    // unit, in the group's frame
   float metres;    // of the group, per metre of the ray
   float enter;     // metres; not below leave: the ray misses it
@@ -41,72 +41,67 @@ struct VolumeRay {
   float voxel;  // metres that the ray takes for the length of a voxel
   // The block that the ray is in, and where it leaves it in each direction.
   ivec3 block;
+  ivec3 last_block;
   vec3 exits;
   vec3 strides;
 };
 
-vec3 rotated(float rows[12], vec3 v) {
-  return vec3(dot(vec3(rows[0], rows[1], rows[2]), v), dot(vec3(rows[4], rows[5], rows[6]), v),
-              dot(vec3(rows[8], rows[9], rows[10]), v));
-}
+vec3 rotated(vec4 rows[3], vec3 v) { return vec3(dot(rows[0].xyz, v), dot(rows[1].xyz, v), dot(rows[2].xyz, v)); }
 
 VolumeRay enterVolume(MarchRecord record, vec3 origin_vs, vec3 dir_vs, float begin) {
   VolumeRay ray;
-  ray.origin = rotated(record.grid_from_view, origin_vs) +
-               vec3(record.grid_from_view[3], record.grid_from_view[7], record.grid_from_view[11]);
-  ray.direction = rotated(record.grid_from_view, dir_vs);
+  ray.origin = rotated(record.box_from_view, origin_vs) +
+               vec3(record.box_from_view[0].w, record.box_from_view[1].w, record.box_from_view[2].w);
+  ray.direction = rotated(record.box_from_view, dir_vs);
   vec3 in_group = rotated(record.group_from_view, dir_vs);
   ray.metres = length(in_group);
   ray.towards = in_group / ray.metres;
-  float speed = length(ray.direction);
+  vec3 size = vec3(record.size);
+  float speed = length(size * ray.direction);
   ray.voxel = 1.0 / speed;
-  ray.enter = begin;
-  ray.leave = kInfinity;
-  for (int axis = 0; axis < 3; ++axis) {
-    // Rays that are as good as parallel to a face never pass it.
-    if (abs(ray.direction[axis]) < 1e-6 * speed) ray.direction[axis] = 0.0;
-    float o = ray.origin[axis], d = ray.direction[axis], far = float(record.size[axis]);
-    if (d == 0.0) {
-      if (o < 0.0 || o > far) ray.leave = -kInfinity;
-    } else {
-      float first = -o / d, second = (far - o) / d;
-      ray.enter = max(ray.enter, min(first, second));
-      ray.leave = min(ray.leave, max(first, second));
-    }
-  }
-  vec3 place = ray.origin + ray.enter * ray.direction;
-  for (int axis = 0; axis < 3; ++axis) {
-    int last = int((record.size[axis] - 1u) / kBlock);
-    ray.block[axis] = clamp(int(floor(place[axis] / float(kBlock))), 0, last);
-    float o = ray.origin[axis], d = ray.direction[axis];
-    int border = ray.block[axis] + (d > 0.0 ? 1 : 0);
-    ray.exits[axis] = d == 0.0 ? kInfinity : (float(int(kBlock) * border) - o) / d;
-    ray.strides[axis] = d == 0.0 ? 0.0 : float(kBlock) / abs(d);
-  }
+  // Rays that are as good as parallel to a face never pass it.
+  bvec3 parallel = lessThan(abs(size * ray.direction), vec3(1e-6 * speed));
+  ray.direction = mix(ray.direction, vec3(0.0), parallel);
+  vec3 divisor = mix(ray.direction, vec3(1.0), parallel);
+  vec3 first = -ray.origin / divisor, second = (1.0 - ray.origin) / divisor;
+  // Between two faces that it is parallel to a ray is always, or never.
+  bvec3 between = lessThanEqual(abs(ray.origin - 0.5), vec3(0.5));
+  vec3 enter = mix(min(first, second), mix(vec3(kInfinity), vec3(-kInfinity), between), parallel);
+  vec3 leave = mix(max(first, second), mix(vec3(-kInfinity), vec3(kInfinity), between), parallel);
+  ray.enter = max(begin, max(enter.x, max(enter.y, enter.z)));
+  ray.leave = min(leave.x, min(leave.y, leave.z));
+  vec3 blocks = size / float(kBlock);
+  ray.last_block = ivec3((record.size - 1u) / kBlock);
+  ray.block = clamp(ivec3(floor((ray.origin + ray.enter * ray.direction) * blocks)), ivec3(0), ray.last_block);
+  vec3 border = vec3(ray.block) + vec3(greaterThan(ray.direction, vec3(0.0)));
+  ray.exits = mix((border / blocks - ray.origin) / divisor, vec3(kInfinity), parallel);
+  ray.strides = 1.0 / (blocks * abs(divisor));
   return ray;
 }
 
 // Follows the ray into the block in which it is at t; false: it has left the volume.
-bool followBlocks(inout VolumeRay ray, MarchRecord record, float t) {
+bool followBlocks(inout VolumeRay ray, float t) {
   while (min(ray.exits.x, min(ray.exits.y, ray.exits.z)) <= t) {
-    int axis = ray.exits.x <= min(ray.exits.y, ray.exits.z) ? 0 : ray.exits.y <= ray.exits.z ? 1 : 2;
-    ray.block[axis] += ray.direction[axis] > 0.0 ? 1 : -1;
-    ray.exits[axis] += ray.strides[axis];
-    if (ray.block[axis] < 0 || ray.block[axis] > int((record.size[axis] - 1u) / kBlock)) return false;
+    bvec3 next = bvec3(false, false, true);
+    if (ray.exits.x <= min(ray.exits.y, ray.exits.z))
+      next = bvec3(true, false, false);
+    else if (ray.exits.y <= ray.exits.z)
+      next = bvec3(false, true, false);
+    ray.block += ivec3(next) * ivec3(sign(ray.direction));
+    ray.exits += vec3(next) * ray.strides;
+    if (any(lessThan(ray.block, ivec3(0))) || any(greaterThan(ray.block, ray.last_block))) return false;
   }
   return true;
 }
 
-bool blockFilled(VolumeRay ray, MarchRecord record) {
-  uint across = (record.size[0] - 1u) / kBlock + 1u, up = (record.size[1] - 1u) / kBlock + 1u;
-  return blockMaximumAt(record.first_block + uint(ray.block.x) +
-                        across * (uint(ray.block.y) + up * uint(ray.block.z))) > 0.0;
+bool blockFilled(VolumeRay ray, uint first_block) {
+  uvec3 block = uvec3(ray.block), count = uvec3(ray.last_block + 1);
+  return blockMaximumAt(first_block + block.x + count.x * (block.y + count.y * block.z)) > 0.0;
 }
 
 // Extinction per metre of the ray.
-float extinctionAt(int v, MarchRecord record, VolumeRay ray, float t) {
-  vec3 size = vec3(record.size[0], record.size[1], record.size[2]);
-  return record.density_scale * ray.metres * densityAt(v, (ray.origin + t * ray.direction) / size);
+float extinctionAt(int v, float density_scale, VolumeRay ray, float t) {
+  return density_scale * ray.metres * densityAt(v, ray.origin + t * ray.direction);
 }
 
 #if LAMBENT_BANDS > 1
@@ -170,11 +165,9 @@ void basisAt(vec3 d, uint bands, out float y[LAMBENT_BANDS * LAMBENT_BANDS]) {
 
 // S where the ray is at t. Between voxels that have light: those that have none do not share in it.
 vec3 scatteredAt(int v, MarchRecord record, VolumeRay ray, float t) {
-  vec3 size = vec3(record.size[0], record.size[1], record.size[2]);
-  vec3 transfer_size = vec3(record.transfer_size[0], record.transfer_size[1], record.transfer_size[2]);
-  vec3 light_size = vec3(record.light_size[0], record.light_size[1], record.light_size[2]);
+  vec3 transfer_size = vec3(record.transfer_size), light_size = vec3(record.light_size);
   // Within half a voxel of a slab's face it is the slab's last voxel, not the next slab.
-  vec3 place = clamp((ray.origin + t * ray.direction) / size * transfer_size, vec3(0.5), transfer_size - 0.5);
+  vec3 place = clamp((ray.origin + t * ray.direction) * transfer_size, vec3(0.5), transfer_size - 0.5);
   vec4 light = lightAt(v, place / light_size);
 #if LAMBENT_BANDS > 1
   if (record.outputs > 1u) {
@@ -204,10 +197,19 @@ void marchVolumes(MarchRecord records[LAMBENT_VOLUMES], VolumeRay rays[LAMBENT_V
   }
   int stop = 0;
   for (int interval = 0; interval < kMaxIntervals; ++interval) {
-    for (; stop < LAMBENT_STOPS && (t >= min(stops[stop], last) || sum.a > kDeep); ++stop) gathered[stop] = sum;
+    // At most two stops: to index them would cost a trip to memory.
+    bool ended = sum.a > kDeep || t >= last;
+    if (stop == 0 && (ended || t >= stops[0])) {
+      gathered[0] = sum;
+      stop = 1;
+    }
+    if (stop == 1 && LAMBENT_STOPS == 2 && (ended || t >= stops[LAMBENT_STOPS - 1])) {
+      gathered[LAMBENT_STOPS - 1] = sum;
+      stop = 2;
+    }
     if (stop == LAMBENT_STOPS) return;
     // As far as no volume begins or ends and none comes to another block.
-    float end = min(stops[stop], last), width = kInfinity;
+    float end = min(stop == 0 ? stops[0] : stops[LAMBENT_STOPS - 1], last), width = kInfinity;
     uint filled = 0u;
     for (int v = 0; v < LAMBENT_VOLUMES; ++v) {
       if (t >= rays[v].leave) continue;
@@ -215,12 +217,12 @@ void marchVolumes(MarchRecord records[LAMBENT_VOLUMES], VolumeRay rays[LAMBENT_V
         end = min(end, rays[v].enter);
         continue;
       }
-      if (!followBlocks(rays[v], records[v], t)) {
+      if (!followBlocks(rays[v], t)) {
         rays[v].leave = t;
         continue;
       }
       end = min(min(end, rays[v].leave), min(rays[v].exits.x, min(rays[v].exits.y, rays[v].exits.z)));
-      if (!blockFilled(rays[v], records[v])) continue;
+      if (!blockFilled(rays[v], records[v].first_block)) continue;
       filled |= 1u << v;
       width = min(width, rays[v].voxel);
     }
@@ -232,7 +234,7 @@ void marchVolumes(MarchRecord records[LAMBENT_VOLUMES], VolumeRay rays[LAMBENT_V
         float a = max(t, t + (k - 1.0 + jitter) * width), b = min(end, t + (k + jitter) * width);
         float extinction[LAMBENT_VOLUMES], all = 0.0;
         for (int v = 0; v < LAMBENT_VOLUMES; ++v) {
-          extinction[v] = (filled >> v & 1u) != 0u ? extinctionAt(v, records[v], rays[v], 0.5 * (a + b)) : 0.0;
+          extinction[v] = (filled >> v & 1u) != 0u ? extinctionAt(v, records[v].density_scale, rays[v], 0.5 * (a + b)) : 0.0;
           all += extinction[v];
         }
         float depth = all * (b - a);
@@ -241,8 +243,7 @@ void marchVolumes(MarchRecord records[LAMBENT_VOLUMES], VolumeRay rays[LAMBENT_V
         vec3 light = vec3(0.0);
         for (int v = 0; v < LAMBENT_VOLUMES; ++v) {
           if (extinction[v] == 0.0) continue;
-          vec3 albedo = vec3(records[v].albedo[0], records[v].albedo[1], records[v].albedo[2]);
-          light += extinction[v] / all * albedo * scatteredAt(v, records[v], rays[v], place);
+          light += extinction[v] / all * records[v].albedo * scatteredAt(v, records[v], rays[v], place);
         }
         sum.rgb += exp(-sum.a) * lostOf(depth) * light;
         sum.a += depth;
@@ -250,5 +251,6 @@ void marchVolumes(MarchRecord records[LAMBENT_VOLUMES], VolumeRay rays[LAMBENT_V
     }
     t = end;
   }
-  for (; stop < LAMBENT_STOPS; ++stop) gathered[stop] = sum;
+  if (stop == 0) gathered[0] = sum;
+  gathered[LAMBENT_STOPS - 1] = sum;
 }

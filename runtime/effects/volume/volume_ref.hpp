@@ -90,86 +90,79 @@ inline float meanPlace(float x) {
 struct VolumeRay {
   glm::vec3 origin{0.0f}, direction{0.0f}, towards{0.0f};
   float metres = 1.0f, enter = 0.0f, leave = 0.0f, voxel = 1.0f;
-  glm::ivec3 block{0};
+  glm::ivec3 block{0}, last_block{0};
   glm::vec3 exits{0.0f}, strides{0.0f};
 };
 
-inline glm::vec3 rotated(const float (&rows)[12], const glm::vec3& v) {
-  return {glm::dot(glm::vec3(rows[0], rows[1], rows[2]), v),
-          glm::dot(glm::vec3(rows[4], rows[5], rows[6]), v),
-          glm::dot(glm::vec3(rows[8], rows[9], rows[10]), v)};
+inline glm::vec3 rotated(const glm::vec4 (&rows)[3], const glm::vec3& v) {
+  return {glm::dot(glm::vec3(rows[0]), v), glm::dot(glm::vec3(rows[1]), v), glm::dot(glm::vec3(rows[2]), v)};
 }
 
 inline VolumeRay enterVolume(const MarchRecord& record, const glm::vec3& origin_vs, const glm::vec3& dir_vs,
                              float begin) {
   VolumeRay ray;
-  ray.origin = rotated(record.grid_from_view, origin_vs) +
-               glm::vec3(record.grid_from_view[3], record.grid_from_view[7], record.grid_from_view[11]);
-  ray.direction = rotated(record.grid_from_view, dir_vs);
+  ray.origin = rotated(record.box_from_view, origin_vs) +
+               glm::vec3(record.box_from_view[0].w, record.box_from_view[1].w, record.box_from_view[2].w);
+  ray.direction = rotated(record.box_from_view, dir_vs);
   const glm::vec3 in_group = rotated(record.group_from_view, dir_vs);
   ray.metres = glm::length(in_group);
   ray.towards = in_group / ray.metres;
-  const float speed = glm::length(ray.direction);
+  const glm::vec3 size(record.size);
+  const float speed = glm::length(size * ray.direction);
   ray.voxel = 1.0f / speed;
   ray.enter = begin;
   ray.leave = kInfinity;
+  const glm::vec3 blocks = size / static_cast<float>(kBlock);
+  ray.last_block = glm::ivec3((record.size - 1u) / kBlock);
   for (int axis = 0; axis < 3; ++axis) {
-    if (std::abs(ray.direction[axis]) < 1e-6f * speed) ray.direction[axis] = 0.0f;
-    const float o = ray.origin[axis], d = ray.direction[axis], far = static_cast<float>(record.size[axis]);
+    if (std::abs(size[axis] * ray.direction[axis]) < 1e-6f * speed) ray.direction[axis] = 0.0f;
+    const float o = ray.origin[axis], d = ray.direction[axis];
     if (d == 0.0f) {
-      if (o < 0.0f || o > far) ray.leave = -kInfinity;
+      if (std::abs(o - 0.5f) > 0.5f) ray.leave = -kInfinity;
     } else {
-      const float first = -o / d, second = (far - o) / d;
+      const float first = -o / d, second = (1.0f - o) / d;
       ray.enter = std::max(ray.enter, std::min(first, second));
       ray.leave = std::min(ray.leave, std::max(first, second));
     }
   }
-  const glm::vec3 place = ray.origin + ray.enter * ray.direction;
-  constexpr auto kSide = static_cast<float>(kBlock);
+  const glm::vec3 place = (ray.origin + ray.enter * ray.direction) * blocks;
   for (int axis = 0; axis < 3; ++axis) {
-    const auto last = static_cast<float>((record.size[axis] - 1) / kBlock);
-    ray.block[axis] = static_cast<int>(std::clamp(std::floor(place[axis] / kSide), 0.0f, last));
+    const auto last = static_cast<float>(ray.last_block[axis]);
+    ray.block[axis] = static_cast<int>(std::clamp(std::floor(place[axis]), 0.0f, last));
     const float o = ray.origin[axis], d = ray.direction[axis];
-    const int border = ray.block[axis] + (d > 0.0f ? 1 : 0);
-    ray.exits[axis] = d == 0.0f ? kInfinity : (kSide * static_cast<float>(border) - o) / d;
-    ray.strides[axis] = d == 0.0f ? 0.0f : kSide / std::abs(d);
+    const auto border = static_cast<float>(ray.block[axis] + (d > 0.0f ? 1 : 0));
+    ray.exits[axis] = d == 0.0f ? kInfinity : (border / blocks[axis] - o) / d;
+    ray.strides[axis] = d == 0.0f ? 0.0f : 1.0f / (blocks[axis] * std::abs(d));
   }
   return ray;
 }
 
-inline bool followBlocks(VolumeRay& ray, const MarchRecord& record, float t) {
+inline bool followBlocks(VolumeRay& ray, float t) {
   while (std::min(ray.exits.x, std::min(ray.exits.y, ray.exits.z)) <= t) {
     const int axis = ray.exits.x <= std::min(ray.exits.y, ray.exits.z) ? 0
                      : ray.exits.y <= ray.exits.z                      ? 1
                                                                        : 2;
     ray.block[axis] += ray.direction[axis] > 0.0f ? 1 : -1;
     ray.exits[axis] += ray.strides[axis];
-    if (ray.block[axis] < 0 || ray.block[axis] > static_cast<int>((record.size[axis] - 1) / kBlock))
-      return false;
+    if (ray.block[axis] < 0 || ray.block[axis] > ray.last_block[axis]) return false;
   }
   return true;
 }
 
-inline bool blockFilled(const VolumeRay& ray, const Medium& medium) {
-  const MarchRecord& record = medium.record;
-  const uint across = (record.size[0] - 1) / kBlock + 1, up = (record.size[1] - 1) / kBlock + 1;
-  const glm::uvec3 block(ray.block);
-  return medium.block_maxima[block.x + std::size_t{across} * (block.y + std::size_t{up} * block.z)] > 0.0f;
+inline bool blockFilled(const VolumeRay& ray, std::span<const float> block_maxima) {
+  const glm::uvec3 block(ray.block), count(ray.last_block + 1);
+  return block_maxima[block.x + std::size_t{count.x} * (block.y + std::size_t{count.y} * block.z)] > 0.0f;
 }
 
 inline float extinctionAt(const Medium& medium, const VolumeRay& ray, float t) {
-  const MarchRecord& record = medium.record;
-  const glm::vec3 size(record.size[0], record.size[1], record.size[2]);
-  return record.density_scale * ray.metres * medium.density.sample((ray.origin + t * ray.direction) / size);
+  return medium.record.density_scale * ray.metres * medium.density.sample(ray.origin + t * ray.direction);
 }
 
 inline glm::vec3 scatteredAt(const Medium& medium, const VolumeRay& ray, float t) {
   const MarchRecord& record = medium.record;
-  const glm::vec3 size(record.size[0], record.size[1], record.size[2]);
-  const glm::vec3 transfer_size(record.transfer_size[0], record.transfer_size[1], record.transfer_size[2]);
-  const glm::vec3 light_size(record.light_size[0], record.light_size[1], record.light_size[2]);
-  const glm::vec3 place = glm::clamp((ray.origin + t * ray.direction) / size * transfer_size, glm::vec3(0.5f),
-                                     transfer_size - 0.5f);
+  const glm::vec3 transfer_size(record.transfer_size), light_size(record.light_size);
+  const glm::vec3 place =
+      glm::clamp((ray.origin + t * ray.direction) * transfer_size, glm::vec3(0.5f), transfer_size - 0.5f);
   glm::vec4 light = medium.light.sample(place / light_size);
   if (record.outputs > 1) {
     std::array<float, 36> y{};
@@ -212,12 +205,12 @@ inline std::vector<glm::vec4> marchVolumes(std::span<const Medium> media, std::v
         end = std::min(end, ray.enter);
         continue;
       }
-      if (!followBlocks(ray, media[v].record, t)) {
+      if (!followBlocks(ray, t)) {
         ray.leave = t;
         continue;
       }
       end = std::min(std::min(end, ray.leave), std::min(ray.exits.x, std::min(ray.exits.y, ray.exits.z)));
-      if (!blockFilled(ray, media[v])) continue;
+      if (!blockFilled(ray, media[v].block_maxima)) continue;
       filled[v] = any = true;
       width = std::min(width, ray.voxel);
     }
@@ -240,9 +233,7 @@ inline std::vector<glm::vec4> marchVolumes(std::span<const Medium> media, std::v
         glm::vec3 light(0.0f);
         for (std::size_t v = 0; v < rays.size(); ++v) {
           if (extinction[v] == 0.0f) continue;
-          const float(&albedo)[3] = media[v].record.albedo;
-          light += extinction[v] / all * glm::vec3(albedo[0], albedo[1], albedo[2]) *
-                   scatteredAt(media[v], rays[v], place);
+          light += extinction[v] / all * media[v].record.albedo * scatteredAt(media[v], rays[v], place);
         }
         sum += glm::vec4(std::exp(-sum.a) * lostOf(depth) * light, 0.0f);
         sum.a += depth;

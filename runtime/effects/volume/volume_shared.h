@@ -5,8 +5,12 @@
 #include <cstddef>
 #include <cstdint>
 
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+
 namespace lambent::effects::volume {
 using uint = std::uint32_t;
+using glm::uvec3, glm::vec3, glm::vec4;
 #define LAMBENT_CONSTANT inline constexpr uint
 #else
 #define LAMBENT_CONSTANT const uint
@@ -57,15 +61,15 @@ struct ScatterRecord {
 
 // A volume as rays meet it. Matrices are three rows of an affine map.
 struct MarchRecord {
-  float grid_from_view[12];   // voxel coordinates of the density
-  float group_from_view[12];  // turns directions; lengths go over into metres of the group
-  float albedo[3];
+  vec4 box_from_view[3];    // the volume is the box from 0 to 1
+  vec4 group_from_view[3];  // turns directions; lengths go over into metres of the group
+  vec3 albedo;
   float density_scale;  // m^-1 of the group's metre, of density 1
-  uint size[3];         // voxels of the density
+  uvec3 size;           // voxels of the density
   uint first_block;
-  uint transfer_size[3];
+  uvec3 transfer_size;
   uint outputs;
-  uint light_size[3];  // of the texture with all slabs
+  uvec3 light_size;  // of the texture with all slabs
   uint slabs_z;
 };
 

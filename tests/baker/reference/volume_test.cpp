@@ -305,10 +305,11 @@ TEST(VolumePicture, ShowsSurfacesThroughItAndFromWithin) {
   const auto from_outside = measured(scene, kFront, kBack, kDark, samples(4));
   EXPECT_NEAR(from_outside.mean.g, 2.0 * std::exp(-1.0), 1e-5);
   EXPECT_EQ(from_outside.alpha, 1.0);
+  // The near plane stands a millimetre or so before an eye that is within.
   const auto from_within = measured(scene, {0, 0, 0.25f}, {0, 0, -1}, kDark, samples(4));
-  EXPECT_NEAR(from_within.mean.g, 2.0 * std::exp(-0.5), 1e-5);
+  EXPECT_NEAR(from_within.mean.g, 2.0 * std::exp(-0.5), 3e-3);
   const auto away = measured(scene, {0, 0, 0.25f}, {0, 0, 3}, kDark, samples(4));
-  EXPECT_NEAR(away.alpha, 1.0 - std::exp(-0.5), 1e-6);
+  EXPECT_NEAR(away.alpha, 1.0 - std::exp(-0.5), 2e-3);
 }
 
 TEST(VolumePicture, OfABlendedSurfaceInsideMultipliesWhatBothLetThrough) {

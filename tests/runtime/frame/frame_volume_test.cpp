@@ -285,7 +285,9 @@ TEST_F(FrameVolume, TheSurfacesThatItStandsInAreNotCapturedAtItsLightSamples) {
     const LitScene scene = gatherLitScene(stage.world, 1.0f);
     ASSERT_EQ(scene.bodies.size(), 1u);
     EXPECT_EQ(scene.groups[0].body, 0u);
-    EXPECT_EQ(scene.groups[1].body, within < 0 ? lighting::CapturePoint::kNoBody : 0u);
+    EXPECT_EQ(scene.groups[1].body, lighting::CapturePoint::kNoBody);
+    EXPECT_EQ(scene.groups[1].left_out,
+              within < 0 ? std::vector<std::uint32_t>{} : std::vector<std::uint32_t>{0});
     EXPECT_EQ(scene.needsSampling(), within < 0);
   }
 }

@@ -106,7 +106,7 @@ TEST_F(NeighborhoodFrame, ABlackSphereOverAFloorUnderConstantLightIsTheClosedFor
   NeighborhoodStage stage(scene, {kWhite});
   const spec::RgbaImage image = stage.picture();
   // literature 7.2: E/pi = 1 - (R/d)^2 cos t, of the open floor's light. Straight below, bands 0..2 of the
-  // light, all that a matte receiver takes, leave 0.6 % of that out; the grid itself leaves less.
+  // light, all that a matte receiver takes, leave 0.86 % of that out.
   const auto closedForm = [](const glm::vec3& place) {
     const float squared = 1.5f * 1.5f + glm::dot(place, place);
     return glm::vec3(1.0f - 1.5f / (squared * std::sqrt(squared)));
@@ -388,6 +388,36 @@ TEST_F(NeighborhoodFrame, ABodyIsEitherCapturedOrAroundNeverBoth) {
   EXPECT_GT(edge_by_grid, 1.1 * edge_by_capture);
 }
 
+TEST_F(NeighborhoodFrame, NothingPopsWhereCarriersChange) {
+  NeighborhoodScene scene;
+  scene.receivers = {floorOf(0.3f)};
+  scene.receivers[0].place = {6.0f, 0.0f, 0.0f};
+  // The sun shines right along the flight: by captures, the floor loses it behind the sphere.
+  const spec::Light low_sun =
+      spec::SunLight{.azimuth_deg = -90, .elevation_deg = 20, .angle_deg = 3, .radiance = glm::vec3(300.0f)};
+  scene.bodies = {sphereAt({0.0f, 1.5f, 0.0f}, 1.0f, glm::uvec3(21), glm::vec3(4.0f))};
+  scene.bodies[0].sphere_radius = 1.0f;
+  NeighborhoodStage stage(scene, {low_sun, kWhite});
+  stage.half = 8.0f;
+  stage.picture();
+  float before = -1.0f, largest = 0.0f, open = openLight(stage.environment).r;
+  std::vector<std::uint32_t> pairs;
+  for (int i = 0; i <= 60; ++i) {
+    const float x = 5.5f - 0.05f * static_cast<float>(i);
+    stage.edit("floor").translation.x = x;
+    stage.render();
+    pairs.push_back(stage.frame->counts().neighborhoods.pairs);
+    const auto column = static_cast<std::uint32_t>((x / 8.0f + 1.0f) / 2.0f * NeighborhoodStage::kSide);
+    const spec::RgbaImage image = stage.frame->readLinear();
+    const float now = image.texels[31 * NeighborhoodStage::kSide + column].r;
+    if (before >= 0.0f) largest = std::max(largest, std::abs(now - before));
+    before = now;
+  }
+  EXPECT_EQ(pairs.front(), 0u);
+  EXPECT_EQ(pairs.back(), 1u);
+  EXPECT_LT(largest, 0.1f * open) << "without the fade it is 0.2";
+}
+
 TEST_F(NeighborhoodFrame, CarriersStayForAPointsDistance) {
   NeighborhoodScene scene;
   scene.receivers = {floorOf(1.0f)};
@@ -433,7 +463,15 @@ TEST_F(NeighborhoodFrame, FineReceiversWithAllBandsReceiveThroughTheirOwnTransfe
       floor.turn = kTurn;
       floor.group_from_mesh = glm::inverse(glm::mat4_cast(kTurn));
     }
-    scene.receivers = {floor};
+    // Beside a glossy one, whose draws have other storage bound.
+    scene.table = baker::integrateTable(*baker::makeGgx(/*anisotropic=*/false), kOrder,
+                                        {.angles = 4, .azimuths = 1, .roughnesses = 2, .strengths = 1});
+    BuiltReceiver glossy = floorOf(0.2f);
+    glossy.name = "glossy";
+    glossy.outputs = kOrder * kOrder;
+    glossy.material.metallic = 1.0f;
+    glossy.place = {3.5f, 0.5f, 3.5f};
+    scene.receivers = {glossy, floor};
     const glm::vec3 middle(0.3f, 1.5f, -0.2f);
     scene.bodies = {sphereAt(middle, 1.0f, kFine, kFineHalf)};
     scene.bodies[0].outputs = kOrder * kOrder;
@@ -442,7 +480,8 @@ TEST_F(NeighborhoodFrame, FineReceiversWithAllBandsReceiveThroughTheirOwnTransfe
     stage.half = 2.0f;
     images.push_back(stage.picture());
     EXPECT_EQ(stage.frame->counts().neighborhoods.vertex_receivers, 1u);
-    EXPECT_EQ(stage.frame->counts().neighborhoods.receivers, 0u) << "not per pixel too";
+    EXPECT_EQ(stage.frame->counts().neighborhoods.receivers, 0u)
+        << "not per pixel too; the glossy one is beyond";
     EXPECT_EQ(stage.frame->counts().neighborhoods.vertex_receivers_shaded, 0u) << "at rest";
     // Four bands receive as three do: A_3 is 0.
     const sh::LightVector light = stage.environment.light().truncated(kOrder);

@@ -19,7 +19,8 @@ struct Fog {
 
   // A box from low to high, its voxels filled by their centres.
   Fog(glm::uvec3 size, glm::vec3 low, glm::vec3 high, const std::function<float(glm::vec3)>& density) {
-    const glm::mat4 group_from_grid = glm::scale(glm::translate(glm::mat4(1.0f), low), (high - low) / glm::vec3(size));
+    const glm::mat4 group_from_grid =
+        glm::scale(glm::translate(glm::mat4(1.0f), low), (high - low) / glm::vec3(size));
     for (std::uint32_t z = 0; z < size.z; ++z)
       for (std::uint32_t y = 0; y < size.y; ++y)
         for (std::uint32_t x = 0; x < size.x; ++x)
@@ -36,7 +37,8 @@ inline Fog cube(float sigma, std::uint32_t voxels = 1) {
 }
 
 inline baker::VolumeTransfer transferOf(const Fog& fog, const baker::VolumeSettings& settings = {},
-                                        glm::vec3 albedo = glm::vec3(1.0f), const baker::Occluders& occluders = {}) {
+                                        glm::vec3 albedo = glm::vec3(1.0f),
+                                        const baker::Occluders& occluders = {}) {
   baker::Progress progress;
   auto transfer = baker::bakeVolumeTransfer(fog.medium(albedo), settings, occluders, progress, {});
   EXPECT_TRUE(transfer.has_value());
@@ -45,7 +47,8 @@ inline baker::VolumeTransfer transferOf(const Fog& fog, const baker::VolumeSetti
 
 // Mean radiance under uniform light of radiance 1 at a place, interpolated. block: 0 single scattering, 1 and
 // on all of it.
-inline double uniformAt(const baker::VolumeTransfer& t, glm::dvec3 place, std::size_t block, std::size_t i = 0) {
+inline double uniformAt(const baker::VolumeTransfer& t, glm::dvec3 place, std::size_t block,
+                        std::size_t i = 0) {
   const auto at = t.grid.stencil(t.grid.gridFromGroup(place), 0);
   double sum = 0.0;
   for (int k = 0; k < at.count; ++k)

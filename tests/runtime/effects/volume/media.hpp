@@ -45,7 +45,7 @@ inline ref::Medium mediumOf(const BuiltVolume& built,
     medium.density.values.push_back(static_cast<float>(code) / (built.bits == 16 ? 65535.0f : 255.0f));
   }
   medium.block_maxima = streaming::blockMaxima(codes, built.bits, built.size);
-  medium.light.size = {medium.record.light_size[0], medium.record.light_size[1], medium.record.light_size[2]};
+  medium.light.size = medium.record.light_size;
   medium.light.values.clear();
   for (uint z = 0; z < medium.light.size.z; ++z)
     for (uint y = 0; y < medium.light.size.y; ++y)

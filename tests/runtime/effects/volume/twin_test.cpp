@@ -361,6 +361,53 @@ TEST(VolumeTwin, VoxelsWithoutLightDoNotDarkenTheirNeighbours) {
     }
 }
 
+TEST(VolumeRectangle, HoldsEveryPixelWhoseRayMeetsTheBox) {
+  std::mt19937 engine(17);
+  const auto number = [&](float low, float high) {
+    return std::uniform_real_distribution<float>(low, high)(engine);
+  };
+  const spec::Size picture{40, 24};
+  int hits = 0, spared = 0;
+  for (int i = 0; i < 300; ++i) {
+    const BuiltVolume built = homogeneous(1.0f);
+    const glm::vec3 eye(number(-4, 4), number(-4, 4), number(-4, 4));
+    const glm::mat4 view_from_world =
+        glm::lookAt(eye, eye + glm::vec3(number(-1, 1), number(-1, 1), number(-1, 1)), glm::vec3(0, 1, 0));
+    const bool perspective = i % 3 != 0;
+    const glm::mat4 clip_from_view = perspective
+                                         ? glm::perspective(number(0.3f, 2.0f), 40.0f / 24.0f, 0.1f, 30.0f)
+                                         : glm::ortho(-2.0f, 3.0f, -1.0f, 1.5f, 0.1f, 30.0f);
+    const ref::Medium medium = mediumOf(built, whiteLight, glm::mat4(1.0f), view_from_world);
+    const Rectangle found =
+        rectangleOf(clip_from_view * view_from_world * built.group_from_grid, built.size, picture);
+    for (std::uint32_t y = 0; y < picture.height; ++y)
+      for (std::uint32_t x = 0; x < picture.width; ++x) {
+        const glm::vec2 clip = (glm::vec2(x, y) + 0.5f) / glm::vec2(40.0f, 24.0f) * 2.0f - 1.0f;
+        const glm::mat4 view_from_clip = glm::inverse(clip_from_view);
+        const glm::vec4 near = view_from_clip * glm::vec4(clip, -1.0f, 1.0f),
+                        far = view_from_clip * glm::vec4(clip, 1.0f, 1.0f);
+        const glm::vec3 begin = glm::vec3(near) / near.w, end = glm::vec3(far) / far.w;
+        const glm::vec4 gathered = ref::march(std::span(&medium, 1), begin, glm::normalize(end - begin), 0.0f,
+                                              glm::distance(begin, end));
+        const auto px = static_cast<std::int32_t>(x), py = static_cast<std::int32_t>(y);
+        const bool inside =
+            px >= found.x && px < found.x + found.width && py >= found.y && py < found.y + found.height;
+        if (gathered.a > 0.0f) {
+          ASSERT_TRUE(inside) << "view " << i;
+          ++hits;
+        }
+        spared += inside ? 0 : 1;
+      }
+  }
+  EXPECT_GT(hits, 10'000);
+  EXPECT_GT(spared, 50'000);
+}
+
+TEST(VolumeRectangle, AFlatVolumeIsNotDrawn) {
+  EXPECT_FALSE(describeMarch(testing::residentOf(homogeneous(1.0f)),
+                             glm::scale(glm::mat4(1.0f), glm::vec3(1, 0, 1)), glm::mat4(1.0f)));
+}
+
 TEST(VolumeSlabs, FitIntoATextureOfAnyDevice) {
   for (const uint side : {1u, 4u, 32u, 128u, 256u})
     for (const uint outputs : {1u, 9u, 16u, 25u, 36u}) {

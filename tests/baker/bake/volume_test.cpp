@@ -1,0 +1,126 @@
+// Volumes in the bake as a whole: what is quantized, what is refused, what is left out.
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "baker/bake/bake_volume.hpp"
+#include "runtime/bundle/reader.hpp"
+#include "tests/support/program.hpp"
+#include "tests/support/shapes.hpp"
+
+namespace lambent::baker {
+namespace {
+
+using VolumeBake = testing::ProgramTest;
+
+Scene foggy() {
+  Scene scene = testing::sceneOf({testing::grid({0, -1, 0}, 4.0f, 4)});
+  SceneVolume volume;
+  volume.name = "fog";
+  volume.node = 0;
+  volume.size = {3, 2, 2};
+  volume.density = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 255};
+  scene.volumes.push_back(volume);
+  return scene;
+}
+
+BakeOptions small() {
+  BakeOptions options;
+  options.quality = Quality::Draft;
+  options.order = 2;
+  options.volume_grid = glm::uvec3(4);
+  return options;
+}
+
+TEST(QuantizedDensity, IsExactInEightBitsWhereTheSourceHadThem) {
+  const QuantizedDensity density = quantizeDensity(std::vector<float>{0, 51, 102, 255});
+  EXPECT_EQ(density.bits, 8u);
+  EXPECT_EQ(density.largest, 255.0f);
+  EXPECT_EQ(density.values, (std::vector<float>{0, 51, 102, 255}));
+  EXPECT_EQ(density.codes,
+            (std::vector<std::byte>{std::byte{0}, std::byte{51}, std::byte{102}, std::byte{255}}));
+  EXPECT_EQ(density.error, 0.0);
+}
+
+TEST(QuantizedDensity, TakesSixteenBitsWhereOnePeakWouldDrownTheRest) {
+  std::vector<float> values(1000, 0.7f);
+  values[10] = 20.0f;
+  const QuantizedDensity density = quantizeDensity(values);
+  EXPECT_EQ(density.bits, 16u);
+  EXPECT_EQ(density.codes.size(), 2000u);
+  EXPECT_LT(density.error, 5e-4);
+  EXPECT_NEAR(density.values[0], 0.7f, 20.0f / 65535.0f);
+}
+
+TEST(QuantizedDensity, OfNothingIsNothing) {
+  const QuantizedDensity density = quantizeDensity(std::vector<float>(8, 0.0f));
+  EXPECT_EQ(density.bits, 8u);
+  EXPECT_EQ(density.largest, 0.0f);
+  EXPECT_EQ(density.values, std::vector<float>(8, 0.0f));
+}
+
+TEST_F(VolumeBake, WritesTheSameBytesWithOneThreadAndWithTwo) {
+  const auto bytesWith = [&](unsigned threads) {
+    BakeOptions options = small();
+    options.threads = threads;
+    const auto path = folder / (std::to_string(threads) + ".lmb.glb");
+    Progress progress;
+    const auto report = bake(foggy(), options, path, progress, {});
+    EXPECT_TRUE(report) << report.error().line();
+    std::ifstream file(path, std::ios::binary);
+    return std::string(std::istreambuf_iterator<char>(file), {});
+  };
+  const std::string one = bytesWith(1);
+  EXPECT_FALSE(one.empty());
+  EXPECT_TRUE(one == bytesWith(2));
+}
+
+TEST_F(VolumeBake, LeavesVolumesOutWhereTheirEffectIsNotAskedFor) {
+  BakeOptions options = small();
+  options.effects = "diffuse";
+  const auto plan = planFor(foggy(), options);
+  ASSERT_TRUE(plan);
+  EXPECT_EQ(plan->groups.size(), 1u);
+  EXPECT_EQ(plan->light_samples.size(), 1u);
+  options.effects = "auto";
+  const auto whole = planFor(foggy(), options);
+  ASSERT_TRUE(whole);
+  EXPECT_EQ(whole->groups.size(), 2u);
+  EXPECT_TRUE(whole->bakes("volume"));
+}
+
+TEST_F(VolumeBake, RefusesPhaseFunctionsThatItDoesNotBake) {
+  Scene scene = foggy();
+  scene.volumes[0].g = 0.5f;
+  Progress progress;
+  const auto report = bake(scene, small(), folder / "g.lmb.glb", progress, {});
+  ASSERT_FALSE(report);
+  EXPECT_NE(report.error().line().find("g other than 0"), std::string::npos) << report.error().line();
+}
+
+TEST_F(VolumeBake, RefusesGridsOfNoVoxelsOrTooMany) {
+  for (const std::uint32_t n : {0u, 257u}) {
+    BakeOptions options = small();
+    options.volume_grid.y = n;
+    const auto checked = checkRequest(options, folder / "a.lmb.glb");
+    ASSERT_FALSE(checked);
+    EXPECT_EQ(checked.error().subject, "--volume-grid");
+  }
+}
+
+TEST(SceneDigest, ChangesWithTheDensityTheAlbedoAndTheNeighborhood) {
+  const std::uint64_t before = sceneDigest(foggy());
+  EXPECT_EQ(before, sceneDigest(foggy()));
+  Scene scene = foggy();
+  scene.volumes[0].density[3] += 1e-3f;
+  EXPECT_NE(before, sceneDigest(scene));
+  scene = foggy();
+  scene.volumes[0].albedo.g = 0.5f;
+  EXPECT_NE(before, sceneDigest(scene));
+  scene = foggy();
+  scene.neighborhoods.push_back({});
+  EXPECT_NE(before, sceneDigest(scene));
+}
+
+}  // namespace
+}  // namespace lambent::baker
