@@ -2,25 +2,41 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <span>
 
 #include <glm/common.hpp>
 
 #include "baker/transport/samples.hpp"
 #include "baker/work/parallel.hpp"
+#include "runtime/bundle/transfer_codec.hpp"
 
 namespace lambent::baker {
 
 namespace {
 
 constexpr std::size_t kGrain = 256;
-constexpr int kMostAttempts = 3;
-constexpr double kFiner = 0.6;  // at least, from one attempt to the next
+constexpr int kMostAttempts = 4;
+constexpr double kFiner = 0.6, kLooser = 2.0;  // at least, from one attempt to the next
+constexpr int kQuickLevel = 3;                 // of zstd: files are packed with more care
 
 std::vector<float> decode(const CodedTransfer& coded) {
   std::vector<std::vector<std::uint32_t>> codes;
   for (const CodedPlane& plane : coded.planes) codes.push_back(plane.codes);
   return bundle::decodeTransfer(coded.shape, bundle::expand(coded.codebook), coded.cluster_of, codes);
+}
+
+double bytesOf(const std::vector<CodedTransfer>& coded) {
+  std::size_t bytes = 0;
+  const auto add = [&](const std::vector<std::byte>& raw) {
+    bytes += std::min(raw.size(), bundle::compressZstd(raw, kQuickLevel).size());
+  };
+  for (const CodedTransfer& part : coded) {
+    add(bundle::encodeCodebook(part.codebook));
+    add(bundle::encodeClusterIds(part.cluster_of, static_cast<std::uint32_t>(part.codebook.clusters())));
+    for (const CodedPlane& plane : part.planes) add(bundle::encodeWeightPlane(plane.codes, plane.bits));
+  }
+  return static_cast<double>(bytes);
 }
 
 // Samples [first, first + count) of the grid.
@@ -36,14 +52,14 @@ class CellCoder {
     sends_ = std::any_of(bounced_.begin(), bounced_.end(), [](float value) { return value != 0.0f; });
   }
 
-  // Each part has half of the square error.
-  std::vector<CodedTransfer> code(double bound, const std::stop_token& stop) const {
+  // Each part has half of the square error; bounced light so many times as much.
+  std::vector<CodedTransfer> code(double bound, double looser, const std::stop_token& stop) const {
     const double energy = meter_.lightEnergy() * static_cast<double>(count_);
     const auto order = static_cast<std::uint32_t>(shape_.order),
                outputs = static_cast<std::uint32_t>(shape_.outputs());
-    const CodingSettings settings{.bound = static_cast<float>(sends_ ? bound * std::sqrt(0.5) : bound),
-                                  .shown_energy = energy,
-                                  .kernel_power = receiverPower(shape_)};
+    CodingSettings settings{.bound = static_cast<float>(sends_ ? bound * std::sqrt(0.5) : bound),
+                            .shown_energy = energy,
+                            .kernel_power = receiverPower(shape_)};
     std::vector<CodedTransfer> coded;
     const bundle::TransferShape visibility{
         .order = order,
@@ -53,6 +69,7 @@ class CellCoder {
     if (sends_ && !stop.stop_requested()) {
       const bundle::TransferShape bounced{
           .order = order, .shadowed_channels = 0, .full_channels = shape_.channels, .outputs = outputs};
+      settings.bound *= static_cast<float>(looser);
       coded.push_back(codeTransfer(bounced_, count_, bounced, settings, stop));
     }
     return coded;
@@ -112,13 +129,21 @@ std::optional<CodedChange> codeChange(const GridChange& change, const GridPlacem
       cell.bounds_min = glm::min(cell.bounds_min, origin + grid.point(p));
       cell.bounds_max = glm::max(cell.bounds_max, origin + grid.point(p));
     }
-    double bound = settings.bound, change_error = 0.0;
+    double bound = settings.bound, looser = 1.0, change_error = std::numeric_limits<double>::infinity();
+    const double most_bytes = settings.most_bytes * static_cast<double>(count);
     for (int attempt = 0; attempt < kMostAttempts; ++attempt) {
-      cell.transfers = coder.code(bound, stop);
+      auto coded = coder.code(bound, looser, stop);
       if (stop.stop_requested()) return std::nullopt;
-      change_error = coder.changeError(cell.transfers, settings.where_changed, settings.points_within);
-      if (change_error <= settings.of_change) break;
-      bound *= std::min(kFiner, 0.95 * settings.of_change / change_error);
+      const double bytes = bytesOf(coded);
+      const bool fits = bytes <= most_bytes;
+      if (!fits && attempt > 0 && looser == 1.0) break;  // finer than the bytes allow: the one before stays
+      change_error = coder.changeError(coded, settings.where_changed, settings.points_within);
+      cell.transfers = std::move(coded);
+      if (fits && (looser > 1.0 || change_error <= settings.of_change)) break;
+      if (fits)
+        bound *= std::min(kFiner, 0.95 * settings.of_change / change_error);
+      else
+        looser *= std::max(kLooser, std::sqrt(bytes / most_bytes));
     }
     double square = 0.0;
     for (const CodedTransfer& coded : cell.transfers) square += double{coded.error} * double{coded.error};

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <numeric>
 
 #include <glm/common.hpp>
@@ -96,6 +97,15 @@ class Placer {
     return largest;
   }
 
+  static bool isSlab(const glm::vec3& length, const std::array<int, 3>& by_length) {
+    return length[by_length[2]] < kFlat * length[by_length[1]];
+  }
+  // About so many points, as far apart along each axis.
+  static glm::uvec3 evenly(const glm::vec3& length, float points) {
+    const float per_metre = std::cbrt(points / (length.x * length.y * length.z));
+    return glm::uvec3(glm::max(glm::round(per_metre * length), glm::vec3(2.0f)));
+  }
+
   glm::uvec3 sizeFor(const Box3& box) const {
     const glm::vec3 length = box.high - box.low;
     std::array<int, 3> by_length;
@@ -103,7 +113,7 @@ class Placer {
     std::stable_sort(by_length.begin(), by_length.end(), [&](int a, int b) { return length[a] > length[b]; });
     glm::uvec3 wanted = wish_.size != glm::uvec3(0u) ? wish_.size : wish_.by_length;
     if (wanted == glm::uvec3(0u)) {
-      const bool slab = length[by_length[2]] < kFlat * length[by_length[1]];
+      const bool slab = isSlab(length, by_length);
       wanted = slab ? (wish_.few_points ? kCoarseSlab : kSlab) : wish_.few_points ? kCoarseAround : kAround;
     }
     std::array<std::uint32_t, 3> counts{wanted.x, wanted.y, wanted.z};
@@ -111,6 +121,8 @@ class Placer {
     glm::uvec3 size;
     for (std::size_t k = 0; k < 3; ++k) size[by_length[k]] = counts[k];
     if (wish_.size != glm::uvec3(0u) && wish_.extent != glm::vec3(0.0f)) size = wish_.size;
+    if (wish_.size != glm::uvec3(0u) && wish_.extent == glm::vec3(0.0f) && !isSlab(length, by_length))
+      size = evenly(length, static_cast<float>(wanted.x) * static_cast<float>(wanted.y * wanted.z));
     for (int axis = 0; axis < 3; ++axis) size[axis] = std::clamp(size[axis], 2u, kMostGridPoints);
     return size;
   }

@@ -31,8 +31,8 @@ struct GridPlacement {
 struct PlacementWish {
   Box3 body;                      // its bounds
   std::optional<Box3> receivers;  // where receivers come; none: all around
-  // Points that the scene asks for: with an extent along x, y and z, else as by_length, since only here it is
-  // known which side is the short one; 0: `by_length`.
+  // Points that the scene asks for: with an extent along x, y and z; else in a slab by length, for only here
+  // it is known which side is the short one, and all around as many of them, evenly spread; 0: `by_length`.
   glm::uvec3 size{0};
   // Points along the longest, the middle and the shortest side; 0: 64, 64, 8 in a slab, else 32 each; with
   // few_points 32, 32, 8 and 20 each.

@@ -89,6 +89,14 @@ TEST(GridPlacements, AreAsTheSceneAsksFor) {
   EXPECT_NEAR(grid->point(1).x, -3.0f + 10.0f / 63.0f, 1e-5f);
 }
 
+TEST(GridPlacements, SpreadTheSizeThatIsAskedForEvenlyWhereThereIsNoSlab) {
+  PlacementWish wish = ball();
+  wish.size = {64, 64, 8};
+  EXPECT_EQ(placeGrid(wish, farField)->size, glm::uvec3(32));
+  wish.receivers = Box3{{-50, -4, -50}, {50, -2, 50}};
+  EXPECT_EQ(placeGrid(wish, farField)->size, glm::uvec3(64, 8, 64));
+}
+
 TEST(GridPlacements, DealCountsOutByLength) {
   PlacementWish wish = ball();
   wish.by_length = {4, 40, 20};
