@@ -83,10 +83,14 @@ TEST(GlossyTwin, FillsOpenSamplesWithTheLightAndFullVisibility) {
   const std::vector<glm::vec4> lights(9, glm::vec4(1.0f, 2.0f, 3.0f, 0.0f));
   diffuse::ref::Memory memory;
   memory.lights = lights;
-  const FillRecord fill{.first_output = 0, .output_count = 25, .outputs = 25, .light = 0, .coefficients = 9};
+  FillRecord fill{
+      .first_output = 0, .output_count = 25, .outputs = 25, .light = 0, .coefficients = 9, .open = 1};
   EXPECT_EQ(ref::openLight(memory, fill, 0), glm::vec4(1.0f, 2.0f, 3.0f, ref::kSqrtFourPi));
   EXPECT_EQ(ref::openLight(memory, fill, 8), glm::vec4(1.0f, 2.0f, 3.0f, 0.0f));
   EXPECT_EQ(ref::openLight(memory, fill, 9), glm::vec4(0.0f));
+  // Points of a neighborhood, which hold changes, change nothing.
+  fill.coefficients = fill.open = 0;
+  for (std::uint32_t i = 0; i < 25; ++i) EXPECT_EQ(ref::openLight(memory, fill, i), glm::vec4(0.0f));
 }
 
 }  // namespace lambent::effects::glossy
