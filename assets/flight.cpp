@@ -93,7 +93,7 @@ Scene flight() {
   scene.meshes = {{"land", terrainMesh(terrain, 150), kLand}};
   scene.nodes = {{.name = "land", .mesh = 0}};
 
-  constexpr float kCircle = 5.0f, kHeight = 2.2f, kScale = 1.5f;
+  constexpr float kCircle = 5.0f, kHeight = 1.35f, kScale = 1.5f;
   Mesh hull = fuselage(3.0f, 0.24f);
   append(hull, spindle({2.1f, 0.035f, 0.30f}), glm::translate(glm::mat4(1.0f), {0.0f, 0.05f, 0.15f}));
   append(hull, spindle({0.62f, 0.025f, 0.17f}), glm::translate(glm::mat4(1.0f), {0.0f, 0.08f, -1.25f}));
@@ -105,20 +105,20 @@ Scene flight() {
   flyer.translation = flyer.motion.translations.front();
   flyer.rotation = flyer.motion.rotations.front();
   flyer.scale = kScale;
-  flyer.neighborhood = Neighborhood{.size = {64, 64, 8}};
+  flyer.neighborhood = Neighborhood{.size = {64, 8, 64}, .extent = {11.0f, 4.4f, 11.0f}};
   scene.nodes.push_back(std::move(flyer));
   scene.nodes.push_back({.name = "ring wing", .mesh = 2, .translation = {0.0f, 0.06f, 0.2f}, .parent = 1});
 
   Node cloud{.name = "cloud", .mesh = -1};
-  cloud.motion = drifting({-5.0f, 8.6f, -2.0f}, {5.0f, 8.6f, -2.0f});
+  cloud.motion = drifting({-5.0f, 6.6f, -4.0f}, {5.0f, 6.6f, -4.0f});
   cloud.translation = cloud.motion.translations.front();
   cloud.volume = Volume{.file = "procedural:cloud,7",
                         .density_scale = 3.0f,
                         .albedo = glm::vec3(0.99f),
-                        .size = {9.0f, 4.0f, 7.0f}};
+                        .size = {9.0f, 3.6f, 7.0f}};
   scene.nodes.push_back(std::move(cloud));
 
-  scene.cameras = {{"main", {2.5f, 8.0f, 18.0f}, {0.0f, 2.6f, -2.0f}, 42.0f},
+  scene.cameras = {{"main", {2.5f, 8.5f, 16.5f}, {0.0f, 2.2f, -2.5f}, 44.0f},
                    {"detail", {6.5f, 5.2f, 8.5f}, {2.5f, 0.8f, 0.0f}, 40.0f}};
   return scene;
 }

@@ -195,7 +195,8 @@ class Writer {
                           {"size", toJson(node.volume->size)}};
     if (node.neighborhood) {
       const glm::ivec3 size = node.neighborhood->size;
-      extras["neighborhood"] = {{"size", {size.x, size.y, size.z}}};
+      extras["neighborhood"] = {{"size", {size.x, size.y, size.z}},
+                                {"extent", toJson(node.neighborhood->extent)}};
     }
     return extras;
   }

@@ -62,9 +62,10 @@ struct Volume {
   glm::vec3 size{1.0f};  // m
 };
 
-// extras.lambent.neighborhood: points of the grid around the body.
+// extras.lambent.neighborhood: points of the grid around the body, and how far it reaches.
 struct Neighborhood {
-  glm::ivec3 size{64, 64, 8};
+  glm::ivec3 size{64, 8, 64};
+  glm::vec3 extent{1.0f};  // m
 };
 
 struct Node {

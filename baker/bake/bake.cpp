@@ -155,6 +155,23 @@ Result<BakeReport> bakeOnTheseThreads(const Scene& scene, const BakeOptions& opt
   return report;
 }
 
+// Of so many bands none are baked: those that nobody asked for are left out, those asked for an error.
+Result<void> leaveNeighborhoods(EffectPlan& plan, int order) {
+  const std::string reason = fmt::format("{} bands of light are more than its matrices take", order);
+  for (PlannedNeighborhood& planned : plan.neighborhoods) {
+    if (!planned.baked) continue;
+    if (planned.asked)
+      return fail(
+          "--order", fmt::format("{} is more than neighborhoods take", order),
+          fmt::format("use at most {}, or leave neighborhood out of --effects", kMostNeighborhoodOrder));
+    planned.baked = false;
+    planned.reason = reason;
+  }
+  for (EffectChoice& choice : plan.effects)
+    if (choice.effect == "neighborhood") choice = {choice.effect, false, reason};
+  return {};
+}
+
 }  // namespace
 
 Result<void> checkRequest(const BakeOptions& options, const std::filesystem::path& output) {
@@ -173,9 +190,7 @@ Result<EffectPlan> planFor(const Scene& scene, const BakeOptions& options) {
     return fail("--order", fmt::format("{} is more than glossy surfaces take", options.order),
                 fmt::format("use at most {}, or --effects diffuse", kMostGlossyOrder));
   if (plan.bakes("neighborhood") && options.order > kMostNeighborhoodOrder)
-    return fail(
-        "--order", fmt::format("{} is more than neighborhoods take", options.order),
-        fmt::format("use at most {}, or leave neighborhood out of --effects", kMostNeighborhoodOrder));
+    if (Result<void> left = leaveNeighborhoods(plan, options.order); !left) return failAgain(left.error());
   // Volumes come last; without their effect they are not there.
   if (!plan.bakes("volume"))
     while (!plan.groups.empty() && plan.groups.back().volume >= 0)

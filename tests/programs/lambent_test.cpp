@@ -43,7 +43,8 @@ TEST_F(LambentProgram, HelpAndVersionAreExitCode0) {
   const std::vector<std::pair<std::string, std::vector<std::string>>> commands = {
       {"bake",
        {"SCENE", "--output", "--quality", "--order", "--rays", "--bounces", "--error", "--max-edge",
-        "--light-samples", "--effects", "--threads", "--max-memory", "--allow-outside", "--force", "--json"}},
+        "--light-samples", "--refine", "--volume-grid", "--neighborhood-grid", "--effects", "--threads",
+        "--max-memory", "--allow-outside", "--force", "--json"}},
       {"reference",
        {"SCENE", "--light", "--camera", "--output", "--spp", "--seed", "--band-limit", "--bounces", "--time",
         "--json"}},
@@ -77,6 +78,9 @@ TEST_F(LambentProgram, WrongUsageIsExitCode2AndOneLine) {
       {"bake", kHello, "-o", path("a.lmb.glb"), "--rays", "-5"},
       {"bake", kHello, "-o", path("a.lmb.glb"), "--threads", "-1"},
       {"bake", kHello, "-o", path("a.lmb.glb"), "--max-edge", "wide"},
+      {"bake", kHello, "-o", path("a.lmb.glb"), "--refine", "2"},
+      {"bake", kHello, "-o", path("a.lmb.glb"), "--volume-grid", "32x32"},
+      {"bake", kHello, "-o", path("a.lmb.glb"), "--neighborhood-grid", "fine"},
       {"bake", kHello, kHello, "-o", path("a.lmb.glb")},
       {"plan"},
       {"info"},
@@ -127,7 +131,7 @@ TEST_F(LambentProgram, BakesAgainOnlyWhenSomethingChangedOrForced) {
 }
 
 TEST_F(LambentProgram, ReportsFiguresThatAddUpAsJson) {
-  const Outcome baked = bakeHello("hello.lmb.glb", {"--json"});
+  const Outcome baked = bakeHello("hello.lmb.glb", {"--refine", "off", "--json"});
   ASSERT_EQ(baked.exit_code, 0) << baked.err;
   const json report = json::parse(baked.out);
   EXPECT_EQ(report["output"], path("hello.lmb.glb"));
@@ -147,11 +151,15 @@ TEST_F(LambentProgram, ReportsFiguresThatAddUpAsJson) {
     vertices += group["vertices"].get<std::uint64_t>();
     triangles += group["triangles"].get<std::uint64_t>();
   }
-  ASSERT_EQ(plan["effects"].size(), 2u);
+  ASSERT_EQ(plan["effects"].size(), 4u);
   EXPECT_EQ(plan["effects"][0]["effect"], "diffuse");
   EXPECT_EQ(plan["effects"][0]["baked"], true);
   EXPECT_EQ(plan["effects"][1]["effect"], "glossy");
   EXPECT_EQ(plan["effects"][1]["baked"], false);
+  EXPECT_EQ(plan["effects"][2]["effect"], "volume");
+  EXPECT_EQ(plan["effects"][2]["baked"], false);
+  EXPECT_EQ(plan["effects"][3]["effect"], "neighborhood");
+  EXPECT_EQ(plan["effects"][3]["baked"], false);
   EXPECT_FALSE(plan["effects"][0]["reason"].get<std::string>().empty());
 
   const Outcome told = lambent({"info", path("hello.lmb.glb"), "--json"});

@@ -100,7 +100,8 @@ TEST_F(HostileScene, WithAHundredthOfItsNormalsFlippedStaysInRange) {
     glm::vec3& normal = ball.normals[random() % ball.normals.size()];
     normal = -normal;
   }
-  EXPECT_GT(meanRadiance(bakeAndDecode(sceneOf({ball}))), 0.97f);
+  // Over vertices, of which refinement adds some around the flipped ones.
+  EXPECT_GT(meanRadiance(bakeAndDecode(sceneOf({ball}))), 0.96f);
 }
 
 TEST_F(HostileScene, OfSliversIsOpen) {

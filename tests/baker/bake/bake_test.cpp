@@ -59,6 +59,7 @@ Scene stage() {
 BakeOptions draft() {
   BakeOptions options;
   options.quality = Quality::Draft;
+  options.refine_bound = 0.0f;  // meshes as they come
   return options;
 }
 
@@ -207,6 +208,18 @@ TEST_F(Bake, SplitsLongEdgesSoThatAFloorOfTwoTrianglesCatchesAShadow) {
   EXPECT_GT(fine->vertices, 250u);
 }
 
+TEST_F(Bake, SplitsEdgesWhereAShadowFallsUnlessToldNotTo) {
+  const Scene scene = sceneOf({grid({0, 0, 0}, 4.0f, 1), icosphere({0, 0.8f, 0}, 0.6f, 2)});
+  BakeOptions options = draft();
+  options.refine_bound = -1.0f;
+  const auto report = bakeTo("refined.lmb.glb", scene, options);
+  ASSERT_TRUE(report) << report.error().line();
+  EXPECT_EQ(report->refinement.vertices_before, 4u + 162u);
+  EXPECT_GT(report->vertices, 4u + 162u);
+  EXPECT_EQ(report->vertices, report->refinement.vertices_after);
+  EXPECT_LT(report->refinement.error_after, options.effectiveRefineBound());
+}
+
 TEST_F(Bake, KnowsWhenABundleIsUpToDate) {
   Scene scene = stage();
   EXPECT_FALSE(isUpToDate(scene, draft(), folder_ / "stage.lmb.glb"));
@@ -288,6 +301,7 @@ TEST_F(Bake, TakesEveryOrder) {
   for (int order = 1; order <= 8; ++order) {
     BakeOptions options = draft();
     options.order = order;
+    options.effects = "diffuse";
     const auto report = bakeTo("stage.lmb.glb", stage(), options);
     ASSERT_TRUE(report) << report.error().line();
     EXPECT_LE(report->worst_error, 0.01) << order;
