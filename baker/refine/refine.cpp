@@ -1,8 +1,6 @@
 #include "baker/refine/refine.hpp"
 
 #include <algorithm>
-#include <array>
-#include <bit>
 #include <cmath>
 #include <numeric>
 #include <optional>
@@ -13,6 +11,7 @@
 #include "baker/refine/marked_edges.hpp"
 #include "baker/refine/shadow_probe.hpp"
 #include "baker/transport/samples.hpp"
+#include "baker/transport/vertex_key.hpp"
 #include "baker/work/parallel.hpp"
 
 namespace lambent::baker {
@@ -29,27 +28,6 @@ constexpr float kSplitShare = 0.6f;
 // A round splits triangles until what is left over has this share of the square error that is allowed, but no
 // more than this share of all of it: what the first splits show decides where the next ones go.
 constexpr double kLeftOfAllowed = 0.6, kLeftOfAll = 0.5;
-
-// Where a shadow was probed, by its bits: triangles come and go, surfaces stay where they are.
-using PointKey = std::array<std::uint32_t, 7>;
-struct PointKeyHash {
-  std::size_t operator()(const PointKey& key) const {
-    std::uint64_t hash = 0x9E3779B97F4A7C15u;
-    for (const std::uint32_t word : key) hash = (hash ^ word) * 0xD6E8FEB86659FD93u, hash ^= hash >> 32;
-    return hash;
-  }
-};
-
-PointKey keyOf(const glm::vec3& position, const glm::vec3& normal, SampleKind kind) {
-  const auto bits = [](float value) { return std::bit_cast<std::uint32_t>(value); };
-  return {bits(position.x),
-          bits(position.y),
-          bits(position.z),
-          bits(normal.x),
-          bits(normal.y),
-          bits(normal.z),
-          static_cast<std::uint32_t>(kind)};
-}
 
 // A point inside a triangle, by the weights of its corners.
 struct InnerPoint {
@@ -75,7 +53,7 @@ std::vector<InnerPoint> innerPoints(int n) {
 // One group through all rounds.
 class GroupRefiner {
  public:
-  GroupRefiner(const RigidGroup& group, const ShadowProbe& probe) : group_(group), probe_(probe) {}
+  explicit GroupRefiner(const ShadowProbe& probe) : probe_(probe) {}
 
   Result<void> prepare(const GroupGeometry& geometry, const Scene& scene,
                        const std::vector<std::shared_ptr<const AlphaMap>>& alpha_maps) {
@@ -107,11 +85,11 @@ class GroupRefiner {
   std::uint32_t shadowAt(const glm::vec3& position, const glm::vec3& normal, SampleKind kind,
                          std::span<const SampleOrigin> origins, std::vector<Point>& missing);
 
-  const RigidGroup& group_;
   const ShadowProbe& probe_;
   std::optional<RayScene> rays_;
   float diagonal_ = 0.0f;
-  std::unordered_map<PointKey, std::uint32_t, PointKeyHash> known_;
+  // Where shadows were probed: triangles come and go, surfaces stay where they are.
+  std::unordered_map<VertexKey, std::uint32_t, VertexKeyHash> known_;
   std::vector<Shadow> shadows_;
   std::vector<double> triangle_error_;
   double square_error_ = 0.0, area_ = 0.0;
@@ -121,7 +99,7 @@ class GroupRefiner {
 std::uint32_t GroupRefiner::shadowAt(const glm::vec3& position, const glm::vec3& normal, SampleKind kind,
                                      std::span<const SampleOrigin> origins, std::vector<Point>& missing) {
   const auto next = static_cast<std::uint32_t>(shadows_.size() + missing.size());
-  const auto [entry, is_new] = known_.try_emplace(keyOf(position, normal, kind), next);
+  const auto [entry, is_new] = known_.try_emplace(vertexKey(position, normal, kind), next);
   if (is_new) missing.push_back({normal, kind, {origins.begin(), origins.end()}, next});
   return entry->second;
 }
@@ -258,7 +236,7 @@ Result<RefineReport> refineMeshes(const Scene& scene, const std::vector<RigidGro
   const std::size_t most = std::min(grown, options.most_vertices);
   const ShadowProbe probe(options.rays);
   std::vector<GroupRefiner> refiners;
-  for (const RigidGroup& group : groups) refiners.emplace_back(group, probe);
+  for (std::size_t g = 0; g < groups.size(); ++g) refiners.emplace_back(probe);
 
   progress.begin("refinement", 0, "probes");
   for (int round = 0;; ++round) {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <numeric>
 #include <tuple>
@@ -10,33 +9,11 @@
 
 #include <glm/geometric.hpp>
 
+#include "baker/transport/vertex_key.hpp"
+
 namespace lambent::baker {
 
 namespace {
-
-// --- welding
-// ---------------------------------------------------------------------------------------------------
-
-using VertexKey = std::array<std::uint32_t, 7>;  // bits of position and normal; its kind
-
-struct VertexKeyHash {
-  std::size_t operator()(const VertexKey& key) const {
-    std::uint64_t hash = 0x9E3779B97F4A7C15u;
-    for (const std::uint32_t word : key) hash = (hash ^ word) * 0xD6E8FEB86659FD93u, hash ^= hash >> 32;
-    return hash;
-  }
-};
-
-VertexKey keyOf(glm::vec3 position, glm::vec3 normal, SampleKind kind) {
-  const auto bits = [](float value) { return std::bit_cast<std::uint32_t>(value); };
-  return {bits(position.x),
-          bits(position.y),
-          bits(position.z),
-          bits(normal.x),
-          bits(normal.y),
-          bits(normal.z),
-          static_cast<std::uint32_t>(kind)};
-}
 
 // --- Morton order
 // ----------------------------------------------------------------------------------------------
@@ -83,7 +60,7 @@ Welded weld(const GroupGeometry& geometry, SampleSet& samples) {
   for (const DrawGeometry& draw : geometry.draws)
     for (std::uint32_t v = draw.first_vertex; v < draw.first_vertex + draw.vertex_count; ++v) {
       const glm::vec3 position = geometry.positions[v], normal = geometry.normals[v];
-      const auto [entry, is_new] = seen.try_emplace(keyOf(position, normal, draw.kind),
+      const auto [entry, is_new] = seen.try_emplace(vertexKey(position, normal, draw.kind),
                                                     static_cast<std::uint32_t>(welded.positions.size()));
       if (is_new) {
         welded.positions.push_back(position);
