@@ -64,7 +64,8 @@ struct Part {
 
   std::size_t count() const { return end - begin; }
   std::span<const float> vectors() const {
-    return std::span(transfer.vectors).subspan(begin * transfer.vectorSize(), count() * transfer.vectorSize());
+    return std::span(transfer.vectors)
+        .subspan(begin * transfer.vectorSize(), count() * transfer.vectorSize());
   }
   std::span<const float> visibility() const {
     return std::span(transfer.visibility)
@@ -159,15 +160,17 @@ Result<void> checkMatrices(const std::string& what, float g, const BakeOptions& 
   const int bands = bandsOfPhase(g, options.order);
   if (bands <= 3) return {};
   if (options.order > kMostBandsOfMatrices)
-    return fail(what, fmt::format("scatters with g = {}, which is baked with at most {} bands of light", g,
-                                  kMostBandsOfMatrices),
+    return fail(what,
+                fmt::format("scatters with g = {}, which is baked with at most {} bands of light", g,
+                            kMostBandsOfMatrices),
                 fmt::format("give --order {}", kMostBandsOfMatrices));
   const glm::uvec3& grid = options.volume_grid;
   if (std::size_t{grid.x} * grid.y * grid.z > mostGlossySamples(bands))
-    return fail(what,
-                fmt::format("scatters with g = {}: a grid of {} x {} x {} voxels of {} numbers each is too large",
-                            g, grid.x, grid.y, grid.z, bands * bands),
-                fmt::format("give a --volume-grid of at most {} voxels", mostGlossySamples(bands)));
+    return fail(
+        what,
+        fmt::format("scatters with g = {}: a grid of {} x {} x {} voxels of {} numbers each is too large", g,
+                    grid.x, grid.y, grid.z, bands * bands),
+        fmt::format("give a --volume-grid of at most {} voxels", mostGlossySamples(bands)));
   return {};
 }
 

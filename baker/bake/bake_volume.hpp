@@ -11,8 +11,8 @@
 namespace lambent::baker {
 
 // groups[index] is the volume's; `baked` holds the groups before it, those of surfaces among them. Adds what
-// it did to the report. Errors: no memory for the hierarchy, a phase function that asks for more than the runtime
-// can hold, "stopped".
+// it did to the report. Errors: no memory for the hierarchy, a phase function that asks for more than the
+// runtime can hold, "stopped".
 Result<BakedGroup> bakeVolume(const Scene& scene, const std::vector<RigidGroup>& groups, std::size_t index,
                               const std::vector<BakedGroup>& baked,
                               const std::vector<std::shared_ptr<const AlphaMap>>& alpha_maps,

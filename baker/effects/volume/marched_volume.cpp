@@ -25,8 +25,8 @@ float MarchedVolume::look(const glm::vec3& origin, const glm::vec3& direction, f
   const TransferGrid& grid = transfer_.grid;
   const glm::dvec3 from = grid.gridFromGroup(glm::dvec3(origin)),
                    along = grid.gridDirection(glm::dvec3(direction));
-  // Share of each output that goes on to the ray's origin: light that arrives from along the ray goes straight
-  // on.
+  // Share of each output that goes on to the ray's origin: light that arrives from along the ray goes
+  // straight on.
   std::vector<float> shares(outputs, 1.0f);
   if (outputs > 1) {
     sh::evaluate(transfer_.bands, direction, shares);

@@ -10,6 +10,7 @@
 // which are as small as what a free path changes, so that no precision is lost in thick media.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -28,10 +29,10 @@ namespace lambent::baker {
 
 class PhaseScattering {
  public:
-  // clear: [sample][bands²], int tau y_i ds up to the outside or to surfaces, by many rays (phased_light.hpp):
-  // uniform light comes out as that says. table: of `bands` bands, at least 2 bands² rays. What rays meet is
-  // kept in `memory` bytes; what does not fit is traced again each time, with the same result. Nothing if
-  // stopped. All that is passed must outlive it.
+  // clear: [sample][bands²], int tau y_i ds up to the outside or to surfaces, by many rays
+  // (phased_light.hpp): uniform light comes out as that says. table: of `bands` bands, at least 2 bands²
+  // rays. What rays meet is kept in `memory` bytes; what does not fit is traced again each time, with the
+  // same result. Nothing if stopped. All that is passed must outlive it.
   static std::optional<PhaseScattering> build(const DensityField& density, const TransferGrid& grid,
                                               const Occluders& occluders, const SphereTable& table, int bands,
                                               float g, std::span<const float> clear, std::uint64_t memory,
@@ -51,7 +52,7 @@ class PhaseScattering {
 
  private:
   static constexpr std::size_t kChunk = 64;  // samples
-  static constexpr std::size_t kRays = 4;    // at once
+  static constexpr std::size_t kRays = 2;    // at once
   // Of stretches side by side on a ray: where on average, metres, and what share of the ray they scatter.
   struct Step {
     float t, share;
@@ -71,8 +72,16 @@ class PhaseScattering {
   bool sumUp(std::span<const float> clear, std::uint64_t memory, Progress& progress,
              const std::stop_token& stop);
   void findDuals();
+  // What a ray sees of the samples and of the nodes over them.
+  struct Seen {
+    std::vector<float> near, far;
+  };
+  static constexpr std::size_t kNear = 4;
+  std::optional<std::array<std::size_t, 3>> curveAt(std::size_t node, int axis) const;
   void bend(std::span<const float> nodes, std::span<float> bent) const;
-  void gather(std::size_t chunk, std::size_t first_ray, std::span<const float> x, std::span<const float> seen,
+  bool see(std::size_t ray, std::span<const float> x, std::span<const float> bent, std::span<float> near,
+           std::span<float> far, const std::stop_token& stop) const;
+  void gather(std::size_t chunk, std::size_t first_ray, std::span<const Seen> seen,
               std::span<float> out) const;
 
   const DensityField* density_;
@@ -85,7 +94,7 @@ class PhaseScattering {
   std::vector<float> seen_as_, duals_;
   std::vector<float> resolved_;  // of nodes: 1 where a free path is not shorter than a voxel, 0 where far
   std::vector<double> away_;
-  std::vector<float> amiss_;  // [sample][outputs]: by how much few rays miss `clear`, times y_0
+  std::vector<float> amiss_;   // [sample][outputs]: by how much few rays miss `clear`, times y_0
   std::vector<Chunk> chunks_;  // empty where not kept
   std::uint64_t bytes_ = 0;
 };

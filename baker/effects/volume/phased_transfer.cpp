@@ -139,9 +139,9 @@ bool bakePhasedTransfer(const Medium& medium, const VolumeSettings& settings, co
   if (out.bands > 3) out.visibility = std::move(light.visibility);
   if (out.full_channels == 0) return true;
 
-  const SphereTable few(std::max({kLeastScatteringRays, kRaysPerOutput * out.outputs(),
-                                  settings.rays / kRaysPerScatteringRay}),
-                        out.bands);
+  const SphereTable few(
+      std::max({kLeastScatteringRays, kRaysPerOutput * out.outputs(), settings.rays / kRaysPerScatteringRay}),
+      out.bands);
   progress.begin("scattering", samples, "samples");
   auto scattering = PhaseScattering::build(*medium.density, out.grid, occluders, few, out.bands, out.g,
                                            light.clear, settings.memory, progress, stop);

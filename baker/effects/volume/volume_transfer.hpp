@@ -75,7 +75,8 @@ struct VolumeTransfer {
   }
 };
 
-// Nothing if stopped. order is at most 6 where bandsOfPhase() is over 3. Stages: "light into volumes", "scattering", "scattered light".
+// Nothing if stopped. order is at most 6 where bandsOfPhase() is over 3. Stages: "light into volumes",
+// "scattering", "scattered light".
 std::optional<VolumeTransfer> bakeVolumeTransfer(const Medium& medium, const VolumeSettings& settings,
                                                  const Occluders& occluders, Progress& progress,
                                                  const std::stop_token& stop);
