@@ -18,13 +18,15 @@ constexpr std::size_t kRaysPerScatteringRay = 4, kLeastScatteringRays = 64, kRay
 constexpr std::size_t kGrain = 64;
 constexpr double kTolerance = 1e-5;
 constexpr double kLargestAlbedo = 1.0 - 1e-7;  // as in volume_transfer.cpp
-constexpr int kLeastKept = 6, kMostKept = 24;  // vectors of the solver
+// Vectors of the solver: by the size of the system, not by the memory of the machine, so that results do not
+// hang on that.
+constexpr std::uint64_t kSolverBytes = std::uint64_t{1} << 30, kLeastKept = 6, kMostKept = 24;
 
 // x = b + w K x for a block of columns, [sample][output][kBlockColumns], on the scale of what leaves each
 // sample.
 class PhasedSystem {
  public:
-  PhasedSystem(PhaseScattering& scattering, double albedo, std::uint64_t memory, const std::stop_token& stop)
+  PhasedSystem(PhaseScattering& scattering, double albedo, const std::stop_token& stop)
       : scattering_(scattering),
         albedo_(albedo),
         stop_(stop),
@@ -38,7 +40,7 @@ class PhasedSystem {
         scale_[p * n + i] = 1.0 / std::max(kept, 1e-30);
       }
     const std::uint64_t vector = 4 * scale_.size() * kBlockColumns;
-    kept_vectors_ = static_cast<int>(std::clamp<std::uint64_t>(memory / vector, kLeastKept, kMostKept));
+    kept_vectors_ = static_cast<int>(std::clamp(kSolverBytes / vector, kLeastKept, kMostKept));
   }
 
   GmresResult solve(std::span<const float> first, std::span<float> result) {
@@ -84,7 +86,7 @@ class PhasedSystem {
   double albedo_;
   const std::stop_token& stop_;
   std::vector<double> scale_;
-  int kept_vectors_ = kMostKept;
+  int kept_vectors_ = 0;
 };
 
 bool scatter(PhaseScattering& scattering, const VolumeSettings& settings, VolumeTransfer& out,
@@ -104,7 +106,7 @@ bool scatter(PhaseScattering& scattering, const VolumeSettings& settings, Volume
       std::copy_n(at(row, 0) + begin, width, &first[row * kBlockColumns]);
     for (std::uint32_t channel = 0; channel < out.full_channels; ++channel) {
       const double albedo = std::min(double{out.albedo[static_cast<int>(channel)]}, kLargestAlbedo);
-      PhasedSystem system(scattering, albedo, settings.memory, stop);
+      PhasedSystem system(scattering, albedo, stop);
       const GmresResult done = settings.scatterings < 0 ? system.solve(first, result)
                                                         : system.repeat(first, result, settings.scatterings);
       if (done.stopped) return false;
