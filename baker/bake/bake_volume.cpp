@@ -155,8 +155,17 @@ std::vector<CodedCell> codeCells(const VolumeTransfer& transfer, const BakeOptio
   return coded;
 }
 
-// Matrices have at most 6 bands, and what the runtime holds of a volume's shaded samples lies in one page.
-Result<void> checkMatrices(const std::string& what, float g, const BakeOptions& options) {
+}  // namespace
+
+QuantizedDensity quantizeDensity(std::span<const float> density) {
+  const float largest = density.empty() ? 0.0f : *std::max_element(density.begin(), density.end());
+  QuantizedDensity coarse = quantizedTo(density, largest, 8);
+  return coarse.error <= kDensityBound ? std::move(coarse) : quantizedTo(density, largest, 16);
+}
+
+Result<void> checkVolume(const Scene& scene, const SceneVolume& volume, const BakeOptions& options) {
+  const float g = volume.g;
+  const std::string what = fmt::format("{}: {}", scene.source.string(), volume.name);
   const int bands = bandsOfPhase(g, options.order);
   if (bands <= 3) return {};
   if (options.order > kMostBandsOfMatrices)
@@ -174,14 +183,6 @@ Result<void> checkMatrices(const std::string& what, float g, const BakeOptions& 
   return {};
 }
 
-}  // namespace
-
-QuantizedDensity quantizeDensity(std::span<const float> density) {
-  const float largest = density.empty() ? 0.0f : *std::max_element(density.begin(), density.end());
-  QuantizedDensity coarse = quantizedTo(density, largest, 8);
-  return coarse.error <= kDensityBound ? std::move(coarse) : quantizedTo(density, largest, 16);
-}
-
 Result<BakedGroup> bakeVolume(const Scene& scene, const std::vector<RigidGroup>& groups, std::size_t index,
                               const std::vector<BakedGroup>& baked,
                               const std::vector<std::shared_ptr<const AlphaMap>>& alpha_maps,
@@ -189,10 +190,6 @@ Result<BakedGroup> bakeVolume(const Scene& scene, const std::vector<RigidGroup>&
                               BakeReport& report) {
   const RigidGroup& group = groups[index];
   const SceneVolume& volume = scene.volumes[static_cast<std::size_t>(group.volume)];
-  if (auto checked =
-          checkMatrices(fmt::format("{}: {}", scene.source.string(), volume.name), volume.g, options);
-      !checked)
-    return failAgain(checked.error());
   progress.begin("density");
   const QuantizedDensity density = quantizeDensity(volume.density);
   const glm::dmat4 group_from_world = glm::inverse(worldFromGroup(group));

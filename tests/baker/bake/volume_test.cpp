@@ -118,17 +118,17 @@ TEST_F(VolumeBake, KeepsNineOutputsOfBroadPhasesAndMatricesOfNarrowOnes) {
   }
 }
 
-TEST_F(VolumeBake, RefusesNarrowPhasesWithMoreBandsOrVoxelsThanMatricesMayHave) {
+TEST(VolumePlan, RefusesNarrowPhasesWithMoreBandsOrVoxelsThanMatricesMayHave) {
   Scene scene = foggy();
   scene.volumes[0].g = 0.8f;
   const auto refusal = [&](int order, std::uint32_t voxels) {
     BakeOptions options = small();
     options.order = order;
     options.volume_grid = glm::uvec3(voxels);
-    Progress progress;
-    const auto report = bake(scene, options, folder / "g.lmb.glb", progress, {});
-    EXPECT_FALSE(report);
-    return report ? std::string() : report.error().line();
+    options.effects = "diffuse,volume";
+    const auto plan = planFor(scene, options);
+    EXPECT_FALSE(plan);
+    return plan ? std::string() : plan.error().line();
   };
   EXPECT_NE(refusal(7, 4).find("give --order 6"), std::string::npos);
   EXPECT_NE(refusal(5, 128).find("--volume-grid of at most"), std::string::npos);
