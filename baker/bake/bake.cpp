@@ -195,6 +195,11 @@ Result<EffectPlan> planFor(const Scene& scene, const BakeOptions& options) {
   if (!plan.bakes("volume"))
     while (!plan.groups.empty() && plan.groups.back().volume >= 0)
       plan.groups.pop_back(), plan.light_samples.pop_back(), plan.neighborhoods.pop_back();
+  for (const RigidGroup& group : plan.groups)
+    if (group.volume >= 0)
+      if (auto checked = checkVolume(scene, scene.volumes[static_cast<std::size_t>(group.volume)], options);
+          !checked)
+        return failAgain(checked.error());
   if (options.light_samples > 0)
     for (PlannedLightSamples& planned : plan.light_samples)
       planned = {{static_cast<std::uint32_t>(options.light_samples), /*of_group=*/false}, "asked for"};

@@ -16,6 +16,7 @@ namespace lambent::baker {
 namespace {
 
 constexpr double kDensityBound = 0.005;
+constexpr int kMostBandsOfMatrices = 6;
 constexpr std::size_t kMostSamplesInACell = std::size_t{1} << 16;
 
 glm::dmat4 worldFromGroup(const RigidGroup& group) {
@@ -56,30 +57,100 @@ glm::vec3 centreOf(const glm::uvec3& size, std::span<const float> values, const 
   return glm::vec3(glm::dmat4(group_from_grid) * glm::dvec4(grid, 1.0));
 }
 
-// Runs of samples of nearly the same length, coded one by one.
-std::vector<CodedCell> codeCells(const VolumeTransfer& transfer, float bound, Progress& progress,
-                                 const std::stop_token& stop, BakeReport& report) {
-  const std::size_t samples = transfer.grid.samples();
-  const std::size_t cells = (samples + kMostSamplesInACell - 1) / kMostSamplesInACell;
+// The vectors of some samples.
+struct Part {
+  const VolumeTransfer& transfer;
+  std::size_t begin, end;
+
+  std::size_t count() const { return end - begin; }
+  std::span<const float> vectors() const {
+    return std::span(transfer.vectors)
+        .subspan(begin * transfer.vectorSize(), count() * transfer.vectorSize());
+  }
+  std::span<const float> visibility() const {
+    return std::span(transfer.visibility)
+        .subspan(begin * transfer.visibilitySize(), count() * transfer.visibilitySize());
+  }
+  // With all scatterings less the unscattered light.
+  std::vector<float> scattered() const {
+    const std::size_t block = transfer.outputs() * transfer.columns();
+    std::vector<float> out;
+    out.reserve(count() * transfer.full_channels * block);
+    for (std::size_t p = begin; p < end; ++p) {
+      const float* const own = &transfer.vectors[p * transfer.vectorSize()];
+      for (std::size_t i = 0; i < transfer.full_channels * block; ++i)
+        out.push_back(own[block + i] - own[i % block]);
+    }
+    return out;
+  }
+};
+
+bundle::TransferShape shapeOf(const VolumeTransfer& transfer) {
   bundle::TransferShape shape;
   shape.order = static_cast<std::uint32_t>(transfer.order);
-  shape.shadowed_channels = 1;
   shape.full_channels = transfer.full_channels;
+  shape.outputs = static_cast<std::uint32_t>(transfer.outputs());
+  return shape;
+}
+
+CodedTransfer codeDense(const Part& part, float bound, const std::stop_token& stop, BakeReport& report) {
+  CodedTransfer coded =
+      codeTransfer(part.vectors(), part.count(), shapeOf(part.transfer), {.bound = bound}, stop);
+  report.worst_error = std::max(report.worst_error, double{coded.error});
+  return coded;
+}
+
+// What comes through as visibility, what is scattered as matrices; they are shown together, and errors count
+// by how much of each band goes on, g^2l.
+std::vector<CodedTransfer> codeMatrices(const Part& part, float bound, const std::stop_token& stop,
+                                        BakeReport& report) {
+  const VolumeTransfer& transfer = part.transfer;
+  bundle::TransferShape visible = shapeOf(transfer), scattered = visible;
+  visible.full_channels = 0;
+  visible.visibility_bands = static_cast<std::uint32_t>(transfer.order + transfer.bands - 1);
+  scattered.shadowed_channels = 0;
+  BandPower power;
+  for (std::size_t l = 0; l < power.size(); ++l)
+    power[l] = std::pow(double{transfer.g}, 2.0 * static_cast<double>(l));
+  std::vector<float> matrices;
+  if (transfer.full_channels > 0) matrices = part.scattered();
+  CodingSettings settings{.bound = bound,
+                          .shown_energy = transferEnergy(part.visibility(), visible, power),
+                          .kernel_power = power};
+  if (!matrices.empty()) {
+    settings.shown_energy += transferEnergy(matrices, scattered, power);
+    settings.bound *= std::sqrt(0.5f);
+  }
+  std::vector<CodedTransfer> coded;
+  coded.push_back(codeTransfer(part.visibility(), part.count(), visible, settings, stop));
+  if (!matrices.empty() && !stop.stop_requested())
+    coded.push_back(codeTransfer(matrices, part.count(), scattered, settings, stop));
+  double square = 0.0;
+  for (const CodedTransfer& each : coded) square += double{each.error} * double{each.error};
+  report.worst_glossy_error = std::max(report.worst_glossy_error, std::sqrt(square));
+  return coded;
+}
+
+// Runs of samples of nearly the same length, coded one by one.
+std::vector<CodedCell> codeCells(const VolumeTransfer& transfer, const BakeOptions& options,
+                                 Progress& progress, const std::stop_token& stop, BakeReport& report) {
+  const std::size_t samples = transfer.grid.samples();
+  const std::size_t cells = (samples + kMostSamplesInACell - 1) / kMostSamplesInACell;
   std::vector<CodedCell> coded;
   for (std::size_t c = 0; c < cells && !stop.stop_requested(); ++c) {
-    const std::size_t begin = samples * c / cells, end = samples * (c + 1) / cells;
+    const Part part{transfer, samples * c / cells, samples * (c + 1) / cells};
     CodedCell& cell = coded.emplace_back();
-    cell.count = static_cast<std::uint32_t>(end - begin);
-    cell.bounds_min = cell.bounds_max = transfer.grid.place(begin);
-    for (std::size_t p = begin; p < end; ++p) {
+    cell.count = static_cast<std::uint32_t>(part.count());
+    cell.bounds_min = cell.bounds_max = transfer.grid.place(part.begin);
+    for (std::size_t p = part.begin; p < part.end; ++p) {
       cell.bounds_min = glm::min(cell.bounds_min, transfer.grid.place(p));
       cell.bounds_max = glm::max(cell.bounds_max, transfer.grid.place(p));
     }
-    const auto vectors = std::span(transfer.vectors)
-                             .subspan(begin * transfer.vectorSize(), (end - begin) * transfer.vectorSize());
-    cell.transfers.push_back(codeTransfer(vectors, end - begin, shape, {.bound = bound}, stop));
-    report.worst_error = std::max(report.worst_error, double{cell.transfers.back().error});
-    progress.add(end - begin);
+    if (transfer.bands > 3)
+      cell.transfers = codeMatrices(part, options.effectiveGlossyErrorBound(), stop, report);
+    else
+      cell.transfers.push_back(codeDense(part, options.effectiveErrorBound(), stop, report));
+    progress.add(part.count());
   }
   return coded;
 }
@@ -92,6 +163,26 @@ QuantizedDensity quantizeDensity(std::span<const float> density) {
   return coarse.error <= kDensityBound ? std::move(coarse) : quantizedTo(density, largest, 16);
 }
 
+Result<void> checkVolume(const Scene& scene, const SceneVolume& volume, const BakeOptions& options) {
+  const float g = volume.g;
+  const std::string what = fmt::format("{}: {}", scene.source.string(), volume.name);
+  const int bands = bandsOfPhase(g, options.order);
+  if (bands <= 3) return {};
+  if (options.order > kMostBandsOfMatrices)
+    return fail(what,
+                fmt::format("scatters with g = {}, which is baked with at most {} bands of light", g,
+                            kMostBandsOfMatrices),
+                fmt::format("give --order {}", kMostBandsOfMatrices));
+  const glm::uvec3& grid = options.volume_grid;
+  if (std::size_t{grid.x} * grid.y * grid.z > mostGlossySamples(bands))
+    return fail(
+        what,
+        fmt::format("scatters with g = {}: a grid of {} x {} x {} voxels of {} numbers each is too large", g,
+                    grid.x, grid.y, grid.z, bands * bands),
+        fmt::format("give a --volume-grid of at most {} voxels", mostGlossySamples(bands)));
+  return {};
+}
+
 Result<BakedGroup> bakeVolume(const Scene& scene, const std::vector<RigidGroup>& groups, std::size_t index,
                               const std::vector<BakedGroup>& baked,
                               const std::vector<std::shared_ptr<const AlphaMap>>& alpha_maps,
@@ -99,10 +190,6 @@ Result<BakedGroup> bakeVolume(const Scene& scene, const std::vector<RigidGroup>&
                               BakeReport& report) {
   const RigidGroup& group = groups[index];
   const SceneVolume& volume = scene.volumes[static_cast<std::size_t>(group.volume)];
-  if (volume.g != 0.0f)
-    return fail(fmt::format("{}: {}", scene.source.string(), volume.name),
-                fmt::format("scatters with g = {}, and g other than 0 is not yet baked", volume.g),
-                "set g to 0");
   progress.begin("density");
   const QuantizedDensity density = quantizeDensity(volume.density);
   const glm::dmat4 group_from_world = glm::inverse(worldFromGroup(group));
@@ -124,7 +211,7 @@ Result<BakedGroup> bakeVolume(const Scene& scene, const std::vector<RigidGroup>&
   }
 
   const Medium medium{std::make_shared<DensityField>(volume.size, density.values, group_from_grid),
-                      density.values, volume.albedo};
+                      density.values, volume.albedo, volume.g};
   const VolumeSettings settings{.order = options.order,
                                 .rays = options.effectiveRays(),
                                 .scatterings = options.bounces,
@@ -153,7 +240,7 @@ Result<BakedGroup> bakeVolume(const Scene& scene, const std::vector<RigidGroup>&
                               .voxels = transfer->grid.voxels(),
                               .cells = {},
                               .light_sample = result.light_samples.points.front()};
-  result.volume->cells = codeCells(*transfer, options.effectiveErrorBound(), progress, stop, report);
+  result.volume->cells = codeCells(*transfer, options, progress, stop, report);
   if (stop.stop_requested()) return stopped();
 
   report.samples += transfer->grid.samples();

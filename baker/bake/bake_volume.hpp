@@ -10,8 +10,12 @@
 
 namespace lambent::baker {
 
+// Whether it can be baked so: phase functions that ask for matrices have at most 6 bands of light, and what
+// the runtime holds of their shaded samples lies in one page.
+Result<void> checkVolume(const Scene& scene, const SceneVolume& volume, const BakeOptions& options);
+
 // groups[index] is the volume's; `baked` holds the groups before it, those of surfaces among them. Adds what
-// it did to the report. Errors: no memory for the hierarchy, a phase function that is not baked, "stopped".
+// it did to the report. Errors: no memory for the hierarchy, "stopped".
 Result<BakedGroup> bakeVolume(const Scene& scene, const std::vector<RigidGroup>& groups, std::size_t index,
                               const std::vector<BakedGroup>& baked,
                               const std::vector<std::shared_ptr<const AlphaMap>>& alpha_maps,

@@ -68,7 +68,7 @@ Samples sampleSphere(int bands_in, int bands_out) {
 }  // namespace
 
 GauntTable makeGauntTable(int bands_in, int bands_out) {
-  assert(bands_in >= 1 && bands_in <= 6 && bands_out >= 1 && bands_out <= 6);
+  assert(bands_in >= 1 && bands_out >= 1 && bands_in + bands_out - 1 <= kMaxVisibilityBands);
   GauntTable table{.bands_in = bands_in, .bands_out = bands_out, .offsets = {0}, .terms = {}};
   const auto count = [](int bands) { return static_cast<std::size_t>(coefficientCount(bands)); };
   const std::size_t inputs = count(bands_in), outputs = count(bands_out),

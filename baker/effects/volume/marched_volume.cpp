@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <vector>
+
+#include "runtime/sh/basis.hpp"
 
 namespace lambent::baker {
 
@@ -15,12 +18,21 @@ constexpr float kNothingLeft = 1e-6f;
 
 float MarchedVolume::look(const glm::vec3& origin, const glm::vec3& direction, float t_max,
                           std::span<float> scattered) const {
-  const std::size_t columns = transfer_.columns(), channels = transfer_.full_channels;
+  const std::size_t columns = transfer_.columns(), outputs = transfer_.outputs(),
+                    channels = transfer_.full_channels;
   assert(scattered.size() == 3 * columns);
   std::fill(scattered.begin(), scattered.end(), 0.0f);
   const TransferGrid& grid = transfer_.grid;
   const glm::dvec3 from = grid.gridFromGroup(glm::dvec3(origin)),
                    along = grid.gridDirection(glm::dvec3(direction));
+  // Share of each output that goes on to the ray's origin: light that arrives from along the ray goes
+  // straight on.
+  std::vector<float> shares(outputs, 1.0f);
+  if (outputs > 1) {
+    sh::evaluate(transfer_.bands, direction, shares);
+    for (std::size_t i = 0; i < outputs; ++i)
+      shares[i] *= std::pow(transfer_.g, static_cast<float>(sh::bandOf(static_cast<int>(i))));
+  }
   const bool dark = grid.samples() == 0 || transfer_.albedo == glm::vec3(0.0f);
   double left = 1.0, share = 0.0, moment = 0.0, window = 0.0;
   const auto give = [&] {
@@ -30,9 +42,12 @@ float MarchedVolume::look(const glm::vec3& origin, const glm::vec3& direction, f
       const auto weight = static_cast<float>(share * at.weight[static_cast<std::size_t>(k)]);
       // Single scattering where that is all there is, else all scatterings, of one channel or of three.
       for (std::size_t c = 0; c < 3; ++c) {
-        const float* block = vector + (channels == 0 ? 0 : channels == 1 ? 1 : 1 + c) * columns;
-        const float factor = weight * transfer_.albedo[static_cast<int>(c)];
-        for (std::size_t i = 0; i < columns; ++i) scattered[c * columns + i] += factor * block[i];
+        const float* block = vector + (channels == 0 ? 0 : channels == 1 ? 1 : 1 + c) * outputs * columns;
+        for (std::size_t j = 0; j < outputs; ++j) {
+          const float factor = weight * shares[j] * transfer_.albedo[static_cast<int>(c)];
+          for (std::size_t i = 0; i < columns; ++i)
+            scattered[c * columns + i] += factor * block[j * columns + i];
+        }
       }
     }
     share = moment = 0.0;

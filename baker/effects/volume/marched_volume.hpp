@@ -7,7 +7,7 @@
 namespace lambent::baker {
 
 // look(): three channels; radiance = sum over stretches of tau (1 - exp(-depth)) albedo T, T with all
-// scatterings where they were baked.
+// scatterings where they were baked; of more than one band sum_lm g^l T_lm y_lm(direction) in place of T.
 class MarchedVolume : public VolumeLight {
  public:
   explicit MarchedVolume(VolumeTransfer transfer) : transfer_(std::move(transfer)) {}

@@ -12,7 +12,7 @@ namespace lambent::baker {
 
 class SphereTable {
  public:
-  // rays > 0; order 1..8.
+  // rays > 0; order 1..sh::kMaxBasisOrder.
   SphereTable(std::size_t rays, int order);
 
   std::size_t size() const { return directions_.size(); }

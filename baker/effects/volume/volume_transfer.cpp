@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "baker/effects/volume/gmres.hpp"
+#include "baker/effects/volume/phased_transfer.hpp"
 #include "baker/effects/volume/scatter_rows.hpp"
 #include "baker/effects/volume/sphere_table.hpp"
 #include "baker/work/parallel.hpp"
@@ -161,13 +162,20 @@ std::optional<VolumeTransfer> bakeVolumeTransfer(const Medium& medium, const Vol
                      .grid = TransferGrid(*medium.density, medium.values, settings.grid),
                      .albedo = w,
                      .order = settings.order,
+                     .g = medium.g,
+                     .bands = bandsOfPhase(medium.g, settings.order),
                      .full_channels = settings.scatterings == 0 || black ? 0u
                                       : grey                             ? 1u
                                                                          : 3u,
-                     .vectors = {}};
+                     .vectors = {},
+                     .visibility = {}};
   const std::size_t samples = out.grid.samples(), columns = out.columns();
   out.vectors.resize(samples * out.vectorSize());
   if (samples == 0) return out;
+  if (out.bands > 1) {
+    if (!bakePhasedTransfer(medium, settings, occluders, out, progress, stop)) return std::nullopt;
+    return out;
+  }
 
   const SphereTable table(settings.rays, settings.order);
   progress.begin("light into volumes", samples, "samples");

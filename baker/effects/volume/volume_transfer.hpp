@@ -3,6 +3,8 @@
 // per coefficient of the light: by single scattering (what the medium and the surfaces around it let
 // through), and with light that was scattered any number of times (scatter_rows.hpp), until a linear solver
 // has what remains under 1e-5 of it. Surfaces block; what they send back is not added (docs/decisions/024).
+// With a phase function that prefers directions (Henyey and Greenstein's, g not 0) the radiance that arrives,
+// in bands, in place of its mean: L_lm = int L y_lm ds, of which g^l L_lm y_lm goes on (literature 1.8).
 #pragma once
 
 #include <cstdint>
@@ -26,7 +28,15 @@ struct Medium {
   std::shared_ptr<const DensityField> density;
   std::span<const float> values;  // that `density` was made from
   glm::vec3 albedo{1.0f};
+  float g = 0.0f;  // mean cosine of the phase function, between -1 and 1
 };
+
+// Bands of arriving light that are kept: 1 where light scatters evenly, 3 up to |g| = 0.5, else as many as
+// the light has, at least 3. g^bands of the phase function's narrowest part are lost.
+inline int bandsOfPhase(float g, int order) {
+  if (g == 0.0f) return 1;
+  return order < 4 || (g <= 0.5f && g >= -0.5f) ? 3 : order;
+}
 
 struct VolumeSettings {
   int order = 5;                    // bands of the light, 1..8
@@ -41,9 +51,15 @@ struct VolumeTransfer {
   TransferGrid grid;
   glm::vec3 albedo{1.0f};
   int order = 5;
+  float g = 0.0f;
+  int bands = 1;                    // of what arrives
   std::uint32_t full_channels = 0;  // 0: single scattering is all; 1: grey; 3
-  // [sample][single scattering, then with all scatterings by channel][order²]
+  // [sample][single scattering, then with all scatterings by channel][outputs][order²]. One output: the mean
+  // radiance; more: its coefficients.
   std::vector<float> vectors;
+  // Of more than 3 bands, what is not scattered once more: how much comes through in each direction, in
+  // order + bands - 1 bands, [sample][visibility]; the first block of `vectors` follows from it.
+  std::vector<float> visibility;
 
   std::uint64_t rays = 0;
   int iterations = 0;     // of the solver
@@ -51,10 +67,16 @@ struct VolumeTransfer {
   std::uint64_t row_bytes = 0;
 
   std::size_t columns() const { return static_cast<std::size_t>(order) * static_cast<std::size_t>(order); }
-  std::size_t vectorSize() const { return (1 + full_channels) * columns(); }
+  std::size_t outputs() const { return static_cast<std::size_t>(bands) * static_cast<std::size_t>(bands); }
+  std::size_t vectorSize() const { return (1 + full_channels) * outputs() * columns(); }
+  std::size_t visibilitySize() const {
+    const auto b = static_cast<std::size_t>(order + bands - 1);
+    return b * b;
+  }
 };
 
-// Nothing if stopped. Stages: "light into volumes", "scattering", "scattered light".
+// Nothing if stopped. order is at most 6 where bandsOfPhase() is over 3. Stages: "light into volumes",
+// "scattering", "scattered light".
 std::optional<VolumeTransfer> bakeVolumeTransfer(const Medium& medium, const VolumeSettings& settings,
                                                  const Occluders& occluders, Progress& progress,
                                                  const std::stop_token& stop);

@@ -1,5 +1,6 @@
 // Volumes in the bake as a whole: what is quantized, what is refused, what is left out.
 #include <cmath>
+#include <tuple>
 
 #include <gtest/gtest.h>
 
@@ -89,13 +90,48 @@ TEST_F(VolumeBake, LeavesVolumesOutWhereTheirEffectIsNotAskedFor) {
   EXPECT_TRUE(whole->bakes("volume"));
 }
 
-TEST_F(VolumeBake, RefusesPhaseFunctionsThatItDoesNotBake) {
+TEST_F(VolumeBake, KeepsNineOutputsOfBroadPhasesAndMatricesOfNarrowOnes) {
+  for (const auto& [g, outputs, transfers] : {std::tuple{0.0f, 1u, 1u}, {-0.4f, 9u, 1u}, {0.7f, 16u, 2u}}) {
+    Scene scene = foggy();
+    scene.volumes[0].g = g;
+    BakeOptions options = small();
+    options.order = 4;
+    const auto path = folder / "phase.lmb.glb";
+    Progress progress;
+    const auto report = bake(scene, options, path, progress, {});
+    ASSERT_TRUE(report) << report.error().line();
+    const auto reader = bundle::Reader::open(path);
+    ASSERT_TRUE(reader) << reader.error().line();
+    bool found = false;
+    for (const bundle::Group& group : reader->description().groups) {
+      if (!group.volume) continue;
+      found = true;
+      EXPECT_EQ(group.volume->g, g);
+      for (const bundle::Cell& cell : group.cells) {
+        if (cell.kind != bundle::CellKind::Volume) continue;
+        ASSERT_EQ(cell.transfers.size(), transfers);
+        EXPECT_EQ(cell.outputs(), outputs);
+        EXPECT_EQ(cell.transfers[0].shape.visibility_bands, transfers == 2 ? 7u : 0u);
+      }
+    }
+    EXPECT_TRUE(found);
+  }
+}
+
+TEST(VolumePlan, RefusesNarrowPhasesWithMoreBandsOrVoxelsThanMatricesMayHave) {
   Scene scene = foggy();
-  scene.volumes[0].g = 0.5f;
-  Progress progress;
-  const auto report = bake(scene, small(), folder / "g.lmb.glb", progress, {});
-  ASSERT_FALSE(report);
-  EXPECT_NE(report.error().line().find("g other than 0"), std::string::npos) << report.error().line();
+  scene.volumes[0].g = 0.8f;
+  const auto refusal = [&](int order, std::uint32_t voxels) {
+    BakeOptions options = small();
+    options.order = order;
+    options.volume_grid = glm::uvec3(voxels);
+    options.effects = "diffuse,volume";
+    const auto plan = planFor(scene, options);
+    EXPECT_FALSE(plan);
+    return plan ? std::string() : plan.error().line();
+  };
+  EXPECT_NE(refusal(7, 4).find("give --order 6"), std::string::npos);
+  EXPECT_NE(refusal(5, 128).find("--volume-grid of at most"), std::string::npos);
 }
 
 TEST_F(VolumeBake, RefusesGridsOfNoVoxelsOrTooMany) {

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "runtime/sh/basis.hpp"
 #include "tests/baker/effects/volume/media.hpp"
 
 namespace lambent::baker {
@@ -32,6 +33,34 @@ TEST(MarchedVolume, ThatAbsorbsNothingIsNotSeenInUniformLight) {
     for (std::size_t c = 0; c < 3; ++c)
       EXPECT_NEAR(clear + scattered[4 * c] * std::sqrt(4.0f * std::numbers::pi_v<float>), 1.0f, 5e-3f);
   }
+}
+
+TEST(MarchedVolume, ThatAbsorbsNothingIsNotSeenInUniformLightWhateverItsPhase) {
+  for (const float g : {0.5f, -0.7f}) {
+    const MarchedVolume volume(transferOf(cube(4.0f), coarse(), glm::vec3(1.0f), {}, g));
+    const glm::vec3 direction = glm::normalize(glm::vec3(1.0f, 0.2f, -0.4f));
+    for (const glm::vec3& origin : {glm::vec3(0.0f), glm::vec3(-2.0f, -0.3f, 0.7f), glm::vec3(0.45f)}) {
+      std::array<float, 12> scattered;
+      const float clear = volume.look(origin, direction, 100.0f, scattered);
+      for (std::size_t c = 0; c < 3; ++c)
+        EXPECT_NEAR(clear + scattered[4 * c] * std::sqrt(4.0f * std::numbers::pi_v<float>), 1.0f, 5e-3f);
+    }
+  }
+}
+
+// Thin: along a chord of depth d of light l the volume adds d sum_i g^l(i) l_i y_i(direction), light that
+// comes towards the eye the more the more g is over 0.
+TEST(MarchedVolume, ThatIsThinScattersWhatComesFromBehindItByItsPhase) {
+  constexpr float kSigma = 1e-3f, kG = 0.6f;
+  const MarchedVolume volume(transferOf(cube(kSigma), coarse(), glm::vec3(0.5f), {}, kG));
+  const glm::vec3 direction = glm::normalize(glm::vec3(1.0f, 0.0f, 0.5f));
+  std::array<float, 12> scattered;
+  volume.look(-2.0f * direction, direction, 100.0f, scattered);
+  const float chord = std::sqrt(1.25f);
+  std::array<float, 4> y;
+  sh::evaluate(2, direction, std::span<float>(y));
+  for (std::size_t i = 0; i < 4; ++i)
+    EXPECT_NEAR(scattered[i] / (0.5f * kSigma * chord), y[i] * (i == 0 ? 1.0f : kG), 3e-3f) << i;
 }
 
 TEST(MarchedVolume, LetsThroughWhatTheChordLetsThrough) {

@@ -28,7 +28,9 @@ struct Fog {
     field = std::make_shared<baker::DensityField>(size, values, group_from_grid);
   }
 
-  baker::Medium medium(glm::vec3 albedo = glm::vec3(1.0f)) const { return {field, values, albedo}; }
+  baker::Medium medium(glm::vec3 albedo = glm::vec3(1.0f), float g = 0.0f) const {
+    return {field, values, albedo, g};
+  }
 };
 
 // [-1/2, 1/2]^3, one density.
@@ -38,9 +40,9 @@ inline Fog cube(float sigma, std::uint32_t voxels = 1) {
 
 inline baker::VolumeTransfer transferOf(const Fog& fog, const baker::VolumeSettings& settings = {},
                                         glm::vec3 albedo = glm::vec3(1.0f),
-                                        const baker::Occluders& occluders = {}) {
+                                        const baker::Occluders& occluders = {}, float g = 0.0f) {
   baker::Progress progress;
-  auto transfer = baker::bakeVolumeTransfer(fog.medium(albedo), settings, occluders, progress, {});
+  auto transfer = baker::bakeVolumeTransfer(fog.medium(albedo, g), settings, occluders, progress, {});
   EXPECT_TRUE(transfer.has_value());
   return std::move(*transfer);
 }
@@ -55,6 +57,18 @@ inline double uniformAt(const baker::VolumeTransfer& t, glm::dvec3 place, std::s
     sum += at.weight[static_cast<std::size_t>(k)] *
            double{t.vectors[at.node[static_cast<std::size_t>(k)] * t.vectorSize() + block * t.columns() + i]};
   return sum * std::sqrt(4.0 * 3.14159265358979323846);
+}
+
+// A coefficient of what arrives at a place, interpolated; per column of the light.
+inline double arrivingAt(const baker::VolumeTransfer& t, glm::dvec3 place, std::size_t block,
+                         std::size_t output, std::size_t column) {
+  const auto at = t.grid.stencil(t.grid.gridFromGroup(place), 0);
+  double sum = 0.0;
+  for (int k = 0; k < at.count; ++k)
+    sum += at.weight[static_cast<std::size_t>(k)] *
+           double{t.vectors[at.node[static_cast<std::size_t>(k)] * t.vectorSize() +
+                            (block * t.outputs() + output) * t.columns() + column]};
+  return sum;
 }
 
 }  // namespace lambent::testing

@@ -1,0 +1,311 @@
+#include "baker/effects/volume/phase_scattering.hpp"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <numbers>
+
+#include <Eigen/Dense>
+
+#include "baker/work/parallel.hpp"
+
+namespace lambent::baker {
+
+namespace {
+
+constexpr std::size_t kC = kBlockColumns;
+constexpr float kLongestStretch = 0.5f;  // of the shortest edge of a voxel
+constexpr double kWindow = 0.75;         // stretches are gathered over so many voxels of their level
+constexpr double kNothingLeft = 1e-7;
+constexpr double kY0 = 0.28209479177387814;
+constexpr std::size_t kNodeGrain = 256;
+using Columns = std::array<float, kC>;
+
+double middleOf(double e) {
+  if (e < 0.05) return 0.5 - e / 12.0 + e * e * e / 720.0;
+  return 1.0 / e - 1.0 / std::expm1(e);
+}
+
+// to += factor * from
+void add(float* to, const float* from, float factor) {
+  for (std::size_t c = 0; c < kC; ++c) to[c] += factor * from[c];
+}
+
+// What is seen of coefficients [output][kC] along a ray.
+void look(const float* coefficients, std::span<const float> as, float* out) {
+  Columns sum{};
+  for (std::size_t i = 0; i < as.size(); ++i) add(sum.data(), coefficients + i * kC, as[i]);
+  std::copy(sum.begin(), sum.end(), out);
+}
+
+}  // namespace
+
+PhaseScattering::PhaseScattering(const DensityField& density, const TransferGrid& grid,
+                                 const Occluders& occluders, const SphereTable& table, int bands, float g)
+    : density_(&density),
+      grid_(&grid),
+      occluders_(&occluders),
+      table_(&table),
+      voxels_per_metre_(std::sqrt(4.0 * std::numbers::pi / static_cast<double>(table.size())) /
+                        double{grid.meanEdge()}),
+      away_(grid.samples()),
+      chunks_((grid.samples() + kChunk - 1) / kChunk) {
+  double power = 1.0;
+  for (int l = 0; l < bands; ++l, power *= double{g})
+    for (int m = -l; m <= l; ++m) factors_.push_back(power);
+  amiss_.resize(grid.samples() * outputs());
+  resolved_.resize(grid.nodes());
+  for (std::size_t p = 0; p < grid.samples(); ++p)
+    resolved_[p] = density.atGrid(density.gridFromGroup(grid.place(p))) * grid.meanEdge();
+  grid.raise(resolved_, 1);
+  for (float& value : resolved_) value = 1.0f - glm::smoothstep(2.0f, 4.0f, value);
+  findDuals();
+}
+
+// Sums over rays are not quite integrals: y_i and y_j are not quite orthogonal on them. With the dual basis
+// light that stays where it is comes out as it was.
+void PhaseScattering::findDuals() {
+  const auto n = static_cast<Eigen::Index>(outputs()), rays = static_cast<Eigen::Index>(table_->size());
+  Eigen::MatrixXd y(n, rays);
+  for (Eigen::Index r = 0; r < rays; ++r)
+    for (Eigen::Index i = 0; i < n; ++i)
+      y(i, r) = double{table_->harmonics(static_cast<std::size_t>(r))[static_cast<std::size_t>(i)]};
+  const Eigen::MatrixXd duals = (y * y.transpose()).ldlt().solve(y);
+  for (Eigen::Index r = 0; r < rays; ++r)
+    for (Eigen::Index i = 0; i < n; ++i) {
+      duals_.push_back(static_cast<float>(duals(i, r)));
+      seen_as_.push_back(static_cast<float>(factors_[static_cast<std::size_t>(i)] * y(i, r)));
+    }
+}
+
+int PhaseScattering::levelAt(double t) const {
+  const double spread = t * voxels_per_metre_;
+  return spread < 1.0 ? 0 : std::min(std::ilogb(spread) + 1, grid_->levels() - 1);
+}
+
+PhaseScattering::Chunk PhaseScattering::trace(std::size_t chunk, std::size_t first, std::size_t end) const {
+  Chunk out;
+  std::vector<float> reach(end - first);
+  const auto longest = [&](float t) {
+    return kLongestStretch * grid_->shortestEdge() * static_cast<float>(1 << levelAt(double{t}));
+  };
+  out.begins.push_back(0);
+  for (std::size_t p = chunk * kChunk; p < std::min((chunk + 1) * kChunk, samples()); ++p) {
+    const glm::vec3 origin = grid_->place(p);
+    occluders_->reach(origin, table_->directions().subspan(first, end - first), reach);
+    for (std::size_t r = first; r < end; ++r) {
+      double left = 1.0, share = 0.0, moment = 0.0, window = 0.0;  // of what is gathered; where it ends
+      const auto give = [&] {
+        out.steps.push_back({static_cast<float>(moment / share), static_cast<float>(share)});
+        share = moment = 0.0;
+      };
+      density_->march(
+          origin, table_->direction(r), reach[r - first], longest, [&](float from, float to, float depth) {
+            if (share > 0.0 && double{to} > window) give();
+            if (share == 0.0)
+              window = double{from} + kWindow * double{grid_->meanEdge()} * (1 << levelAt(double{from}));
+            const double gone = -std::expm1(-double{depth}) * left;
+            share += gone;
+            moment += gone * (double{from} + middleOf(double{depth}) * (double{to} - double{from}));
+            left -= gone;
+            return left > kNothingLeft;
+          });
+      if (share > 0.0) give();
+      out.left.push_back(static_cast<float>(left));
+      out.begins.push_back(static_cast<std::uint32_t>(out.steps.size()));
+    }
+  }
+  return out;
+}
+
+bool PhaseScattering::sumUp(std::span<const float> clear, std::uint64_t memory, Progress& progress,
+                            const std::stop_token& stop) {
+  const std::size_t rays = table_->size(), n = outputs();
+  std::atomic<std::uint64_t> bytes = 0;
+  const bool done = parallelRanges(samples(), kChunk, stop, [&](std::size_t begin, std::size_t end) {
+    Chunk chunk = trace(begin / kChunk, 0, rays);
+    std::vector<double> out(n);
+    for (std::size_t p = begin; p < end; ++p) {
+      const glm::dvec3 from = grid_->gridFromGroup(glm::dvec3(grid_->place(p)));
+      const bool beyond = resolved_[p] > 0.5f;
+      double away = 0.0;
+      std::fill(out.begin(), out.end(), 0.0);
+      for (std::size_t r = 0; r < rays; ++r) {
+        const std::size_t ray = (p - begin) * rays + r;
+        const glm::dvec3 along = grid_->gridDirection(glm::dvec3(table_->direction(r)));
+        for (std::uint32_t s = chunk.begins[ray]; s < chunk.begins[ray + 1]; ++s) {
+          const Step& step = chunk.steps[s];
+          const double t = double{step.t};
+          const TransferGrid::Stencil at = grid_->stencil(from + t * along, levelAt(t), beyond);
+          for (std::size_t k = 0; k < static_cast<std::size_t>(at.count); ++k)
+            if (at.node[k] != p) away += double{step.share} * at.weight[k];
+        }
+        const double left = double{chunk.left[ray]};
+        away += left;
+        for (std::size_t i = 0; i < n; ++i) out[i] += left * double{duals_[r * n + i]};
+      }
+      away_[p] = away / static_cast<double>(rays);
+      for (std::size_t i = 0; i < n; ++i)
+        amiss_[p * n + i] = static_cast<float>(kY0 * (double{clear[p * n + i]} - out[i]));
+    }
+    const std::uint64_t size = chunk.bytes();
+    if (bytes.fetch_add(size) + size <= memory) {
+      chunk.steps.shrink_to_fit();
+      chunks_[begin / kChunk] = std::move(chunk);
+    } else {
+      bytes.fetch_sub(size);
+    }
+    progress.add(end - begin);
+  });
+  bytes_ = bytes;
+  return done;
+}
+
+std::optional<PhaseScattering> PhaseScattering::build(const DensityField& density, const TransferGrid& grid,
+                                                      const Occluders& occluders, const SphereTable& table,
+                                                      int bands, float g, std::span<const float> clear,
+                                                      std::uint64_t memory, Progress& progress,
+                                                      const std::stop_token& stop) {
+  PhaseScattering out(density, grid, occluders, table, bands, g);
+  if (!out.sumUp(clear, memory, progress, stop)) return std::nullopt;
+  return out;
+}
+
+// Linear interpolation of a curve lies above it (ScatterRows::Row::add), on average over where it is looked
+// up by 1/12 of the second difference, and a node of level l, a mean of 2^l voxels, by (1 - 4^-l) / 24: the
+// nodes over the samples are moved by that. Rays see the samples themselves from near, and not all over.
+void PhaseScattering::bend(std::span<const float> nodes, std::span<float> bent) const {
+  const std::size_t width = outputs() * kC, above = grid_->nodes() - samples();
+  parallelRanges(above, kNodeGrain, {}, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const std::size_t node = samples() + i;
+      float* to = &bent[i * width];
+      std::copy_n(&nodes[node * width], width, to);
+      const float amount = resolved_[node] * (1.0f / 12.0f + 1.0f / 24.0f);
+      if (amount == 0.0f) continue;
+      for (int axis = 0; axis < 3; ++axis) {
+        const auto around = curveAt(node, axis);
+        if (!around) continue;
+        const float* a = &nodes[(*around)[0] * width];
+        const float* b = &nodes[(*around)[1] * width];
+        const float* c = &nodes[(*around)[2] * width];
+        for (std::size_t k = 0; k < width; ++k) to[k] -= amount * ((a[k] - b[k]) + (c[k] - b[k]));
+      }
+    }
+  });
+}
+
+// Three nodes side by side of which the second difference counts at a node; at the rim as it bends one node
+// further in.
+std::optional<std::array<std::size_t, 3>> PhaseScattering::curveAt(std::size_t node, int axis) const {
+  auto middle = static_cast<std::uint32_t>(node);
+  const auto beside = grid_->neighbors(middle, axis);
+  if (beside.first < 0 && beside.second >= 0) middle = static_cast<std::uint32_t>(beside.second);
+  if (beside.first >= 0 && beside.second < 0) middle = static_cast<std::uint32_t>(beside.first);
+  const auto [before, after] = grid_->neighbors(middle, axis);
+  if (before < 0 || after < 0) return std::nullopt;
+  return std::array{static_cast<std::size_t>(before), std::size_t{middle}, static_cast<std::size_t>(after)};
+}
+
+// Of a ray: near: [sample][kNear][kC], as it sees the samples, then their second differences along the axes.
+// far: [node over the samples][kC].
+bool PhaseScattering::see(std::size_t ray, std::span<const float> x, std::span<const float> bent,
+                          std::span<float> near, std::span<float> far, const std::stop_token& stop) const {
+  const std::size_t n = outputs();
+  const auto as = std::span(seen_as_).subspan(ray * n, n);
+  return parallelRanges(samples(), kNodeGrain, stop,
+                        [&](std::size_t begin, std::size_t end) {
+                          for (std::size_t p = begin; p < end; ++p)
+                            look(&x[p * n * kC], as, &near[p * kNear * kC]);
+                        }) &&
+         parallelRanges(samples(), kNodeGrain, stop,
+                        [&](std::size_t begin, std::size_t end) {
+                          for (std::size_t p = begin; p < end; ++p)
+                            for (int axis = 0; axis < 3; ++axis) {
+                              float* to = &near[(p * kNear + 1 + static_cast<std::size_t>(axis)) * kC];
+                              const auto around = curveAt(p, axis);
+                              if (!around) {
+                                std::fill_n(to, kC, 0.0f);
+                                continue;
+                              }
+                              const float* a = &near[(*around)[0] * kNear * kC];
+                              const float* b = &near[(*around)[1] * kNear * kC];
+                              const float* c = &near[(*around)[2] * kNear * kC];
+                              for (std::size_t k = 0; k < kC; ++k) to[k] = (a[k] - b[k]) + (c[k] - b[k]);
+                            }
+                        }) &&
+         parallelRanges(far.size() / kC, kNodeGrain, stop, [&](std::size_t begin, std::size_t end) {
+           for (std::size_t i = begin; i < end; ++i) look(&bent[i * n * kC], as, &far[i * kC]);
+         });
+}
+
+void PhaseScattering::gather(std::size_t index, std::size_t first_ray, std::span<const Seen> seen,
+                             std::span<float> out) const {
+  const std::size_t rays = table_->size(), n = outputs();
+  const std::size_t end_ray = first_ray + seen.size();
+  const Chunk& kept = chunks_[index];
+  const bool has = !kept.begins.empty();
+  const Chunk traced = has ? Chunk{} : trace(index, first_ray, end_ray);
+  const Chunk& chunk = has ? kept : traced;
+  const std::size_t stride = has ? rays : end_ray - first_ray, offset = has ? first_ray : 0;
+  Columns sum;
+  const std::size_t begin = index * kChunk, end = std::min(begin + kChunk, samples());
+  for (std::size_t p = begin; p < end; ++p) {
+    const glm::dvec3 from = grid_->gridFromGroup(glm::dvec3(grid_->place(p)));
+    const double resolved = double{resolved_[p]};
+    for (std::size_t r = first_ray; r < end_ray; ++r) {
+      const std::size_t ray = (p - begin) * stride + offset + (r - first_ray);
+      const glm::dvec3 along = grid_->gridDirection(glm::dvec3(table_->direction(r)));
+      const Seen& by = seen[r - first_ray];
+      const float* const own = &by.near[p * kNear * kC];
+      for (std::size_t c = 0; c < kC; ++c) sum[c] = -chunk.left[ray] * own[c];
+      for (std::uint32_t s = chunk.begins[ray]; s < chunk.begins[ray + 1]; ++s) {
+        const Step& step = chunk.steps[s];
+        const double t = double{step.t};
+        const int level = levelAt(t);
+        const TransferGrid::Stencil at = grid_->stencil(from + t * along, level, resolved > 0.5);
+        const glm::vec3 bend(resolved * 0.5 * at.fraction * (1.0 - at.fraction));
+        for (std::size_t k = 0; k < static_cast<std::size_t>(at.count); ++k) {
+          const float weight = step.share * static_cast<float>(at.weight[k]);
+          if (level > 0) {
+            const float* node = &by.far[(at.node[k] - samples()) * kC];
+            for (std::size_t c = 0; c < kC; ++c) sum[c] += weight * (node[c] - own[c]);
+            continue;
+          }
+          const float* node = &by.near[at.node[k] * kNear * kC];
+          for (std::size_t c = 0; c < kC; ++c)
+            sum[c] += weight * ((node[c] - own[c]) - bend.x * node[kC + c] - bend.y * node[2 * kC + c] -
+                                bend.z * node[3 * kC + c]);
+        }
+      }
+      for (std::size_t i = 0; i < n; ++i) add(&out[(p * n + i) * kC], sum.data(), duals_[r * n + i]);
+    }
+  }
+}
+
+bool PhaseScattering::apply(std::span<const float> x, std::span<float> out, const std::stop_token& stop) {
+  const std::size_t n = outputs(), nodes = grid_->nodes(), above = nodes - samples();
+  std::vector<float> values(nodes * n * kC), bent(above * n * kC);
+  std::array<Seen, kRays> seen;
+  for (Seen& by : seen) by.near.resize(samples() * kNear * kC), by.far.resize(above * kC);
+  std::copy(x.begin(), x.end(), values.begin());
+  grid_->raise(values, n * kC);
+  bend(values, bent);
+  // What many rays say of uniform light, where few miss it.
+  for (std::size_t p = 0; p < samples(); ++p)
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t c = 0; c < kC; ++c) out[(p * n + i) * kC + c] = -amiss_[p * n + i] * x[p * n * kC + c];
+  for (std::size_t first = 0; first < table_->size(); first += kRays) {
+    const std::size_t count = std::min(kRays, table_->size() - first);
+    for (std::size_t r = 0; r < count; ++r)
+      if (!see(first + r, x, bent, seen[r].near, seen[r].far, stop)) return false;
+    if (!parallelRanges(samples(), kChunk, stop, [&](std::size_t begin, std::size_t) {
+          gather(begin / kChunk, first, std::span(seen).first(count), out);
+        }))
+      return false;
+  }
+  return true;
+}
+
+}  // namespace lambent::baker

@@ -1,0 +1,157 @@
+#include "baker/effects/volume/phased_transfer.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "baker/effects/volume/gmres.hpp"
+#include "baker/effects/volume/phase_scattering.hpp"
+#include "baker/effects/volume/phased_light.hpp"
+#include "baker/effects/volume/sphere_table.hpp"
+#include "baker/work/parallel.hpp"
+#include "runtime/sh/gaunt.hpp"
+
+namespace lambent::baker {
+
+namespace {
+
+constexpr std::size_t kRaysPerScatteringRay = 4, kLeastScatteringRays = 64, kRaysPerOutput = 6;
+constexpr std::size_t kGrain = 64;
+constexpr double kTolerance = 1e-5;
+constexpr double kLargestAlbedo = 1.0 - 1e-7;  // as in volume_transfer.cpp
+// Vectors of the solver: by the size of the system, not by the memory of the machine, so that results do not
+// hang on that.
+constexpr std::uint64_t kSolverBytes = std::uint64_t{1} << 30, kLeastKept = 6, kMostKept = 24;
+
+// x = b + w K x for a block of columns, [sample][output][kBlockColumns], on the scale of what leaves each
+// sample.
+class PhasedSystem {
+ public:
+  PhasedSystem(PhaseScattering& scattering, double albedo, const std::stop_token& stop)
+      : scattering_(scattering),
+        albedo_(albedo),
+        stop_(stop),
+        scale_(scattering.samples() * scattering.outputs()) {
+    const std::size_t n = scattering.outputs();
+    for (std::size_t p = 0; p < scattering.samples(); ++p)
+      for (std::size_t i = 0; i < n; ++i) {
+        // 1 - w g^l k_pp without the difference of two numbers near 1.
+        const double stays = albedo * scattering.factor(i);
+        const double kept = 1.0 - stays + stays * scattering.away(p);
+        scale_[p * n + i] = 1.0 / std::max(kept, 1e-30);
+      }
+    const std::uint64_t vector = 4 * scale_.size() * kBlockColumns;
+    kept_vectors_ = static_cast<int>(std::clamp(kSolverBytes / vector, kLeastKept, kMostKept));
+  }
+
+  GmresResult solve(std::span<const float> first, std::span<float> result) {
+    std::vector<float> right(first.size());
+    for (std::size_t i = 0; i < first.size(); ++i)
+      right[i] = static_cast<float>(double{first[i]} * scale_[i / kBlockColumns]);
+    std::copy(right.begin(), right.end(), result.begin());
+    return solveGmres(
+        right, result,
+        [&](std::span<const float> x, std::span<float> y) {
+          if (!scattering_.apply(x, y, stop_)) return false;
+          const std::size_t n = scattering_.outputs();
+          parallelRanges(scale_.size(), kGrain * n, {}, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t row = begin; row < end; ++row) {
+              const double away = scattering_.factor(row % n) * scattering_.away(row / n);
+              for (std::size_t i = row * kBlockColumns; i < (row + 1) * kBlockColumns; ++i)
+                y[i] = static_cast<float>(albedo_ * scale_[row] * (double{y[i]} + away * double{x[i]}));
+            }
+          });
+          return true;
+        },
+        {.tolerance = kTolerance, .restart = kept_vectors_});
+  }
+
+  // So many scatterings one after the other.
+  GmresResult repeat(std::span<const float> first, std::span<float> result, int times) {
+    std::copy(first.begin(), first.end(), result.begin());
+    std::vector<float> change(first.size());
+    const std::size_t n = scattering_.outputs();
+    for (int k = 0; k < times; ++k) {
+      if (!scattering_.apply(result, change, stop_)) return {k, 0.0, true};
+      for (std::size_t i = 0; i < first.size(); ++i) {
+        const double goes_on = scattering_.factor(i / kBlockColumns % n);
+        result[i] = static_cast<float>(double{first[i]} +
+                                       albedo_ * (goes_on * double{result[i]} + double{change[i]}));
+      }
+    }
+    return {times, 0.0, false};
+  }
+
+ private:
+  PhaseScattering& scattering_;
+  double albedo_;
+  const std::stop_token& stop_;
+  std::vector<double> scale_;
+  int kept_vectors_ = 0;
+};
+
+bool scatter(PhaseScattering& scattering, const VolumeSettings& settings, VolumeTransfer& out,
+             Progress& progress, const std::stop_token& stop) {
+  const std::size_t columns = out.columns(), block_size = out.outputs() * columns,
+                    rows = out.grid.samples() * out.outputs();
+  // Row: an output of a sample. Where its columns stand in the vectors.
+  const auto at = [&](std::size_t row, std::size_t block) {
+    return &out.vectors[row / out.outputs() * out.vectorSize() + block * block_size +
+                        row % out.outputs() * columns];
+  };
+  std::vector<float> first(rows * kBlockColumns), result(first.size());
+  for (std::size_t begin = 0; begin < columns; begin += kBlockColumns) {
+    const std::size_t width = std::min(kBlockColumns, columns - begin);
+    std::fill(first.begin(), first.end(), 0.0f);
+    for (std::size_t row = 0; row < rows; ++row)
+      std::copy_n(at(row, 0) + begin, width, &first[row * kBlockColumns]);
+    for (std::uint32_t channel = 0; channel < out.full_channels; ++channel) {
+      const double albedo = std::min(double{out.albedo[static_cast<int>(channel)]}, kLargestAlbedo);
+      PhasedSystem system(scattering, albedo, stop);
+      const GmresResult done = settings.scatterings < 0 ? system.solve(first, result)
+                                                        : system.repeat(first, result, settings.scatterings);
+      if (done.stopped) return false;
+      out.iterations = std::max(out.iterations, done.iterations);
+      out.residual = std::max(out.residual, done.residual);
+      for (std::size_t row = 0; row < rows; ++row)
+        std::copy_n(&result[row * kBlockColumns], width, at(row, 1 + channel) + begin);
+      progress.add(width);
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+bool bakePhasedTransfer(const Medium& medium, const VolumeSettings& settings, const Occluders& occluders,
+                        VolumeTransfer& out, Progress& progress, const std::stop_token& stop) {
+  const std::size_t samples = out.grid.samples();
+  const SphereTable table(settings.rays, out.order + out.bands - 1);
+  progress.begin("light into volumes", samples, "samples");
+  PhasedLight light;
+  if (!findPhasedLight(*medium.density, out.grid, occluders, table, out.bands, light, progress, stop))
+    return false;
+  out.rays = samples * table.size();
+  const sh::GauntTable products = sh::makeGauntTable(out.order, out.bands);
+  parallelRanges(samples, kGrain, {}, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t p = begin; p < end; ++p)
+      sh::addVisibilityMatrix(
+          products, std::span(light.visibility).subspan(p * light.visibility_size, light.visibility_size),
+          std::span(out.vectors).subspan(p * out.vectorSize(), out.outputs() * out.columns()));
+  });
+  if (out.bands > 3) out.visibility = std::move(light.visibility);
+  if (out.full_channels == 0) return true;
+
+  const SphereTable few(
+      std::max({kLeastScatteringRays, kRaysPerOutput * out.outputs(), settings.rays / kRaysPerScatteringRay}),
+      out.bands);
+  progress.begin("scattering", samples, "samples");
+  auto scattering = PhaseScattering::build(*medium.density, out.grid, occluders, few, out.bands, out.g,
+                                           light.clear, settings.memory, progress, stop);
+  if (!scattering) return false;
+  out.rays += samples * few.size();
+  out.row_bytes = scattering->bytes();
+  progress.begin("scattered light", out.columns() * out.full_channels, "columns");
+  return scatter(*scattering, settings, out, progress, stop);
+}
+
+}  // namespace lambent::baker

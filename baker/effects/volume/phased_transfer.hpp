@@ -1,0 +1,16 @@
+// Transfer of a volume whose phase function prefers directions: the radiance that arrives at its samples, in
+// bands. Part of bakeVolumeTransfer().
+#pragma once
+
+#include <stop_token>
+
+#include "baker/effects/volume/volume_transfer.hpp"
+
+namespace lambent::baker {
+
+// Fills vectors, visibility and figures of a transfer of more than one band; grid, order, bands and channels
+// are there. False if stopped.
+bool bakePhasedTransfer(const Medium& medium, const VolumeSettings& settings, const Occluders& occluders,
+                        VolumeTransfer& out, Progress& progress, const std::stop_token& stop);
+
+}  // namespace lambent::baker
