@@ -214,7 +214,8 @@ Result<BakedGroup> bakeVolume(const Scene& scene, const std::vector<RigidGroup>&
                       density.values, volume.albedo, volume.g};
   const VolumeSettings settings{.order = options.order,
                                 .rays = options.effectiveRays(),
-                                .scatterings = options.bounces,
+                                // As the reference: bounces are counted between surfaces, not in volumes.
+                                .scatterings = options.bounces == 0 ? 0 : -1,
                                 .grid = options.volume_grid,
                                 .memory = options.effectiveMemory() / 2};
   const std::size_t stages_before = progress.finished().size();

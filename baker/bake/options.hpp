@@ -17,10 +17,12 @@ struct BakeOptions {
   static constexpr int kMostBounces = 64;
 
   Quality quality = Quality::Standard;
-  int order = 5;             // 1..8; with glossy surfaces 1..6
-  int glossy_order = 5;      // bands of the light that glossy surfaces reflect, 4..6
-  std::uint32_t rays = 0;    // per sample over its hemisphere; 0: the quality's
-  int bounces = -1;          // 0: direct light with shadows; -1: as many as the error bound asks for
+  int order = 5;           // 1..8; with glossy surfaces 1..6
+  int glossy_order = 5;    // bands of the light that glossy surfaces reflect, 4..6
+  std::uint32_t rays = 0;  // per sample over its hemisphere; 0: the quality's
+  // Between surfaces. 0: direct light with shadows, and single scattering in volumes, which else scatter as
+  // often as they do; -1: as many as the error bound asks for.
+  int bounces = -1;
   float error_bound = 0.0f;  // of the coded transfer, relative RMS; 0: the quality's
   float max_edge_m = 0.0f;   // edges longer than this are split; 0: none
   // Points of neighborhood grids along their longest, middle and shortest side, where the scene asks for no

@@ -283,8 +283,9 @@ void addBakeCommand(CLI::App& app, Command& run) {
   command
       ->add_option(
           "--bounces", a->options.bounces,
-          "Interreflections; 0: direct light with shadows only; default: until what is left out is far "
-          "under the error bound")
+          "Interreflections between surfaces; 0: direct light with shadows only, and single scattering in "
+          "volumes, which else scatter as often as they do; default: until what is left out is far under "
+          "the error bound")
       ->check(CLI::Range(0, BakeOptions::kMostBounces))
       ->type_name("N");
   command

@@ -76,6 +76,22 @@ TEST_F(VolumeBake, WritesTheSameBytesWithOneThreadAndWithTwo) {
   EXPECT_TRUE(one == bytesWith(2));
 }
 
+// As the reference counts: a number of bounces is one of bounces between surfaces.
+TEST_F(VolumeBake, ScattersAsOftenAsItDoesHoweverFewBouncesAreAskedFor) {
+  const auto iterationsWith = [&](int bounces) {
+    BakeOptions options = small();
+    options.bounces = bounces;
+    Progress progress;
+    const auto report = bake(foggy(), options, folder / (std::to_string(bounces) + ".lmb.glb"), progress, {});
+    EXPECT_TRUE(report) << report.error().line();
+    return report && report->volumes.size() == 1 ? report->volumes[0].iterations : -1;
+  };
+  const int all = iterationsWith(-1);
+  EXPECT_GT(all, 1);
+  EXPECT_EQ(iterationsWith(1), all);
+  EXPECT_EQ(iterationsWith(0), 0);
+}
+
 TEST_F(VolumeBake, LeavesVolumesOutWhereTheirEffectIsNotAskedFor) {
   BakeOptions options = small();
   options.effects = "diffuse";
