@@ -2,7 +2,7 @@
 # Errors of what bodies change around them, against the path-traced reference:
 #   bench/neighborhood_errors.sh [-o DIR] [-b BUILD] [-s SPP] [-z SIZE] [-n BOUNCES] [-e EXTENT] [-a "BAKE OPTIONS"]
 #                                [-g "GRIDS"] KIND LIGHT... -- CAMERA...
-# KIND: a scene of bench/neighborhood_scene.py (ball, ring, hills). LIGHT: NAME=WORD+WORD..., words of --light that shine
+# KIND: a scene of bench/neighborhood_scene.py (ball, ring, hills, pair). LIGHT: NAME=WORD+WORD..., words of --light that shine
 # together, and what the table calls them. Per light, camera and size of grid: the error with the grid, without
 # (--neighborhoods off: bodies meet in captures alone), bytes of the grid in the file, and seconds that the whole bake and
 # the grid alone took. Light, and where the body is glossy its kernel at the first hit, are cut to five bands, which is

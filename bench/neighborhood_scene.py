@@ -4,7 +4,8 @@
   neighborhood_scene.py KIND OUT.glb [--color R,G,B] [--floor ALBEDO] [--grid XxYxZ] [--extent XxYxZ]
 
 KIND: ball, a matte ball above a plain floor; ring, a polished band of metal standing just above a plain floor, which
-gathers light inside; hills, the ball above hills that shade themselves. The body may move and asks for a neighborhood;
+gathers light inside; hills, the ball above hills that shade themselves; pair, two balls that nearly touch, whose shadows
+overlap. The body may move and asks for a neighborhood;
 so many points of grid, or as many as the bake gives. Cameras: "whole" sees everything, "floor" only what is below the
 body. Metres. Standard library only.
 """
@@ -157,7 +158,7 @@ def metal(color, roughness):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("kind", choices=("ball", "ring", "hills"))
+    parser.add_argument("kind", choices=("ball", "ring", "hills", "pair"))
     parser.add_argument("out", type=pathlib.Path)
     parser.add_argument("--color", metavar="R,G,B", help="of the body")
     parser.add_argument("--floor", type=float, default=0.5, help="albedo")
@@ -183,6 +184,9 @@ def main():
         document.camera("whole", (0, 3.2, 3.2), 45, 45)
     else:
         document.body("ball", ball(BALL_RADIUS), matte(color or [0.8, 0.3, 0.15]), (0, BALL_HEIGHT, 0), lambent)
+        if a.kind == "pair":
+            document.body("other ball", ball(BALL_RADIUS), matte([0.2, 0.4, 0.7]),
+                          (2.1 * BALL_RADIUS, BALL_HEIGHT, 0), lambent)
         document.camera("floor", (0, BALL_HEIGHT - 1.05 * BALL_RADIUS, 0), 90, 115)
         document.camera("whole", (0, 3.2, 4.2), 35, 45)
     document.write(a.out)
