@@ -1,6 +1,7 @@
 #include "baker/bake/assemble.hpp"
 
 #include <algorithm>
+#include <tuple>
 
 #include <glm/geometric.hpp>
 
@@ -184,17 +185,9 @@ class Assembler {
   void addVolume(const BakedVolume& baked, const RigidGroup& planned, bundle::Group& group) {
     group.within = planned.within;
     group.light_samples = {baked.light_sample};
-    const glm::mat4& m = baked.group_from_grid;
-    const glm::vec3 extent(baked.size);
-    group.bounds_min = group.bounds_max = glm::vec3(m[3]);
-    for (int corner = 0; corner < 8; ++corner) {
-      const glm::vec3 at = extent * glm::vec3(corner & 1, corner >> 1 & 1, corner >> 2);
-      const glm::vec3 place(m * glm::vec4(at, 1.0f));
-      group.bounds_min = glm::min(group.bounds_min, place);
-      group.bounds_max = glm::max(group.bounds_max, place);
-    }
+    std::tie(group.bounds_min, group.bounds_max) = baked.bounds();
     bundle::VolumeGrid grid{.size = baked.size,
-                            .group_from_grid = m,
+                            .group_from_grid = baked.group_from_grid,
                             .density = 0,
                             .bits = baked.bits,
                             .density_max = baked.density_max,

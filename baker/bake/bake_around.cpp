@@ -1,7 +1,6 @@
 #include "baker/bake/bake_around.hpp"
 
 #include <fmt/format.h>
-#include <glm/common.hpp>
 
 #include "baker/effects/neighborhood/bake_neighborhood.hpp"
 #include "baker/effects/neighborhood/volume_body.hpp"
@@ -56,16 +55,11 @@ bool bakeAround(const Body& body, const Box3& bounds, const glm::vec3& origin, c
 bool bakeAroundVolume(BakedGroup& volume, const std::string& name, const PlannedNeighborhood& plan,
                       const BakeOptions& options, Progress& progress, const std::stop_token& stop,
                       BakeReport& report) {
-  const BakedVolume& baked = *volume.volume;
-  Box3 bounds{glm::vec3(baked.group_from_grid[3]), glm::vec3(baked.group_from_grid[3])};
-  for (int corner = 0; corner < 8; ++corner) {
-    const glm::vec3 at = glm::vec3(baked.size) * glm::vec3(corner & 1, corner >> 1 & 1, corner >> 2);
-    const glm::vec3 place(baked.group_from_grid * glm::vec4(at, 1.0f));
-    bounds = {glm::min(bounds.low, place), glm::max(bounds.high, place)};
-  }
-  const VolumeBody body(*volume.volume_light, bounds.low, bounds.high, /*scatters=*/true);
-  return bakeAround(body, bounds, glm::vec3(0.0f), name, plan, options.effectiveRays() / kSampleRaysPerMarch,
-                    options, progress, stop, report, volume.neighborhood);
+  const auto [low, high] = volume.volume->bounds();
+  const VolumeBody body(*volume.volume_light, low, high, /*scatters=*/true);
+  return bakeAround(body, Box3{low, high}, glm::vec3(0.0f), name, plan,
+                    options.effectiveRays() / kSampleRaysPerMarch, options, progress, stop, report,
+                    volume.neighborhood);
 }
 
 }  // namespace lambent::baker

@@ -3,8 +3,10 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
+#include <glm/common.hpp>
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
 
@@ -32,6 +34,17 @@ struct BakedVolume {
   std::vector<std::uint32_t> voxels;  // one per sample, rising
   std::vector<CodedCell> cells;
   glm::vec3 light_sample{0.0f};  // where the light that comes in is sampled, group frame
+
+  // Around the box of voxels, group frame.
+  std::pair<glm::vec3, glm::vec3> bounds() const {
+    glm::vec3 low(group_from_grid[3]), high = low;
+    for (int corner = 1; corner < 8; ++corner) {
+      const glm::vec3 at = glm::vec3(size) * glm::vec3(corner & 1, corner >> 1 & 1, corner >> 2);
+      const glm::vec3 place(group_from_grid * glm::vec4(at, 1.0f));
+      low = glm::min(low, place), high = glm::max(high, place);
+    }
+    return {low, high};
+  }
 };
 
 // bundle::NeighborhoodGrid.

@@ -15,17 +15,9 @@ namespace lambent::baker {
 namespace {
 
 constexpr std::size_t kC = kBlockColumns;
-constexpr float kLongestStretch = 0.5f;  // of the shortest edge of a voxel
-constexpr double kWindow = 0.75;         // stretches are gathered over so many voxels of their level
-constexpr double kNothingLeft = 1e-7;
 constexpr double kY0 = 0.28209479177387814;
 constexpr std::size_t kNodeGrain = 256;
 using Columns = std::array<float, kC>;
-
-double middleOf(double e) {
-  if (e < 0.05) return 0.5 - e / 12.0 + e * e * e / 720.0;
-  return 1.0 / e - 1.0 / std::expm1(e);
-}
 
 // to += factor * from
 void add(float* to, const float* from, float factor) {
@@ -43,12 +35,10 @@ void look(const float* coefficients, std::span<const float> as, float* out) {
 
 PhaseScattering::PhaseScattering(const DensityField& density, const TransferGrid& grid,
                                  const Occluders& occluders, const SphereTable& table, int bands, float g)
-    : density_(&density),
-      grid_(&grid),
+    : grid_(&grid),
       occluders_(&occluders),
       table_(&table),
-      voxels_per_metre_(std::sqrt(4.0 * std::numbers::pi / static_cast<double>(table.size())) /
-                        double{grid.meanEdge()}),
+      steps_(density, grid, table.size()),
       away_(grid.samples()),
       chunks_((grid.samples() + kChunk - 1) / kChunk) {
   double power = 1.0;
@@ -79,39 +69,18 @@ void PhaseScattering::findDuals() {
     }
 }
 
-int PhaseScattering::levelAt(double t) const {
-  const double spread = t * voxels_per_metre_;
-  return spread < 1.0 ? 0 : std::min(std::ilogb(spread) + 1, grid_->levels() - 1);
-}
-
 PhaseScattering::Chunk PhaseScattering::trace(std::size_t chunk, std::size_t first, std::size_t end) const {
   Chunk out;
   std::vector<float> reach(end - first);
-  const auto longest = [&](float t) {
-    return kLongestStretch * grid_->shortestEdge() * static_cast<float>(1 << levelAt(double{t}));
-  };
   out.begins.push_back(0);
   for (std::size_t p = chunk * kChunk; p < std::min((chunk + 1) * kChunk, samples()); ++p) {
     const glm::vec3 origin = grid_->place(p);
     occluders_->reach(origin, table_->directions().subspan(first, end - first), reach);
     for (std::size_t r = first; r < end; ++r) {
-      double left = 1.0, share = 0.0, moment = 0.0, window = 0.0;  // of what is gathered; where it ends
-      const auto give = [&] {
-        out.steps.push_back({static_cast<float>(moment / share), static_cast<float>(share)});
-        share = moment = 0.0;
-      };
-      density_->march(
-          origin, table_->direction(r), reach[r - first], longest, [&](float from, float to, float depth) {
-            if (share > 0.0 && double{to} > window) give();
-            if (share == 0.0)
-              window = double{from} + kWindow * double{grid_->meanEdge()} * (1 << levelAt(double{from}));
-            const double gone = -std::expm1(-double{depth}) * left;
-            share += gone;
-            moment += gone * (double{from} + middleOf(double{depth}) * (double{to} - double{from}));
-            left -= gone;
-            return left > kNothingLeft;
+      const double left =
+          steps_.gather(origin, table_->direction(r), reach[r - first], [&](double t, double share) {
+            out.steps.push_back({static_cast<float>(t), static_cast<float>(share)});
           });
-      if (share > 0.0) give();
       out.left.push_back(static_cast<float>(left));
       out.begins.push_back(static_cast<std::uint32_t>(out.steps.size()));
     }
@@ -137,7 +106,7 @@ bool PhaseScattering::sumUp(std::span<const float> clear, std::uint64_t memory, 
         for (std::uint32_t s = chunk.begins[ray]; s < chunk.begins[ray + 1]; ++s) {
           const Step& step = chunk.steps[s];
           const double t = double{step.t};
-          const TransferGrid::Stencil at = grid_->stencil(from + t * along, levelAt(t), beyond);
+          const TransferGrid::Stencil at = grid_->stencil(from + t * along, steps_.levelAt(t), beyond);
           for (std::size_t k = 0; k < static_cast<std::size_t>(at.count); ++k)
             if (at.node[k] != p) away += double{step.share} * at.weight[k];
         }
@@ -263,7 +232,7 @@ void PhaseScattering::gather(std::size_t index, std::size_t first_ray, std::span
       for (std::uint32_t s = chunk.begins[ray]; s < chunk.begins[ray + 1]; ++s) {
         const Step& step = chunk.steps[s];
         const double t = double{step.t};
-        const int level = levelAt(t);
+        const int level = steps_.levelAt(t);
         const TransferGrid::Stencil at = grid_->stencil(from + t * along, level, resolved > 0.5);
         const glm::vec3 bend(resolved * 0.5 * at.fraction * (1.0 - at.fraction));
         for (std::size_t k = 0; k < static_cast<std::size_t>(at.count); ++k) {

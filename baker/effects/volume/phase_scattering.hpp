@@ -20,6 +20,7 @@
 #include "baker/effects/volume/density_field.hpp"
 #include "baker/effects/volume/gmres.hpp"
 #include "baker/effects/volume/occluders.hpp"
+#include "baker/effects/volume/ray_steps.hpp"
 #include "baker/effects/volume/scatter_rows.hpp"
 #include "baker/effects/volume/sphere_table.hpp"
 #include "baker/effects/volume/transfer_grid.hpp"
@@ -66,7 +67,6 @@ class PhaseScattering {
 
   PhaseScattering(const DensityField& density, const TransferGrid& grid, const Occluders& occluders,
                   const SphereTable& table, int bands, float g);
-  int levelAt(double t) const;
   // Rays [first, end) of the samples of a chunk.
   Chunk trace(std::size_t chunk, std::size_t first, std::size_t end) const;
   bool sumUp(std::span<const float> clear, std::uint64_t memory, Progress& progress,
@@ -84,11 +84,10 @@ class PhaseScattering {
   void gather(std::size_t chunk, std::size_t first_ray, std::span<const Seen> seen,
               std::span<float> out) const;
 
-  const DensityField* density_;
   const TransferGrid* grid_;
   const Occluders* occluders_;
   const SphereTable* table_;
-  double voxels_per_metre_;
+  RaySteps steps_;
   std::vector<double> factors_;
   // Of each ray: g^l y_i, and what makes coefficients of a sum over rays, orthonormal to y_i on these rays.
   std::vector<float> seen_as_, duals_;

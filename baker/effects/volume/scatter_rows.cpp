@@ -9,20 +9,6 @@
 
 namespace lambent::baker {
 
-namespace {
-
-constexpr float kLongestStretch = 0.5f;  // of the shortest edge of a voxel
-constexpr double kWindow = 0.75;         // stretches are gathered over so many voxels of their level
-constexpr double kNothingLeft = 1e-7;
-
-// Where on average a stretch of optical depth e scatters what passes it, as a share of its length.
-double middleOf(double e) {
-  if (e < 0.05) return 0.5 - e / 12.0 + e * e * e / 720.0;
-  return 1.0 / e - 1.0 / std::expm1(e);
-}
-
-}  // namespace
-
 ScatterRows::ScatterRows(const DensityField& density, const TransferGrid& grid, const Occluders& occluders,
                          const SphereTable& table, std::span<const double> met)
     : density_(&density),
@@ -33,13 +19,7 @@ ScatterRows::ScatterRows(const DensityField& density, const TransferGrid& grid, 
       self_(met.size()),
       others_(met.size()),
       chunks_((met.size() + kChunk - 1) / kChunk),
-      voxels_per_metre_(std::sqrt(4.0 * std::numbers::pi / static_cast<double>(table.size())) /
-                        double{grid.meanEdge()}) {}
-
-int ScatterRows::levelAt(double t) const {
-  const double spread = t * voxels_per_metre_;
-  return spread < 1.0 ? 0 : std::min(static_cast<int>(std::log2(spread)) + 1, grid_->levels() - 1);
-}
+      steps_(density, grid, table.size()) {}
 
 // The row of one sample as it grows: weights of nodes, and weights of what interpolation leaves out.
 class ScatterRows::Row {
@@ -124,29 +104,12 @@ void ScatterRows::traceRow(std::size_t p, std::vector<float>& reach, Row& row) c
       double{density_->atGrid(density_->gridFromGroup(origin))} * double{grid_->meanEdge()};
   row.begin(1.0 - glm::smoothstep(2.0, 4.0, thickness));
   occluders_->reach(origin, table_->directions(), reach);
-  const auto longest = [&](float t) {
-    return kLongestStretch * grid_->shortestEdge() * static_cast<float>(1 << levelAt(double{t}));
-  };
   for (std::size_t r = 0; r < table_->size(); ++r) {
     const glm::vec3& direction = table_->direction(r);
     const glm::dvec3 grid_direction = grid_->gridDirection(glm::dvec3(direction));
-    double left = 1.0, share = 0.0, moment = 0.0, window = 0.0;  // of what is gathered; where it ends
-    const auto give = [&] {
-      const double t = moment / share;
-      row.add(grid_origin + t * grid_direction, levelAt(t), share);
-      share = moment = 0.0;
-    };
-    density_->march(origin, direction, reach[r], longest, [&](float from, float to, float depth) {
-      if (share > 0.0 && double{to} > window) give();
-      if (share == 0.0)
-        window = double{from} + kWindow * double{grid_->meanEdge()} * (1 << levelAt(double{from}));
-      const double gone = -std::expm1(-double{depth}) * left;
-      share += gone;
-      moment += gone * (double{from} + middleOf(double{depth}) * (double{to} - double{from}));
-      left -= gone;
-      return left > kNothingLeft;
+    steps_.gather(origin, direction, reach[r], [&](double t, double share) {
+      row.add(grid_origin + t * grid_direction, steps_.levelAt(t), share);
     });
-    if (share > 0.0) give();
   }
 }
 

@@ -18,6 +18,7 @@
 
 #include "baker/effects/volume/density_field.hpp"
 #include "baker/effects/volume/occluders.hpp"
+#include "baker/effects/volume/ray_steps.hpp"
 #include "baker/effects/volume/sphere_table.hpp"
 #include "baker/effects/volume/transfer_grid.hpp"
 #include "baker/work/progress.hpp"
@@ -59,7 +60,6 @@ class ScatterRows {
   ScatterRows(const DensityField& density, const TransferGrid& grid, const Occluders& occluders,
               const SphereTable& table, std::span<const double> met);
   class Row;
-  int levelAt(double t) const;
   void traceRow(std::size_t p, std::vector<float>& reach, Row& row) const;
   // Adds the rows of some samples; self and others get their sums where given.
   Chunk trace(std::size_t begin, std::size_t end, std::span<double> self, std::span<double> others) const;
@@ -70,7 +70,7 @@ class ScatterRows {
   const SphereTable* table_;
   std::vector<double> met_, self_, others_;
   std::vector<Chunk> chunks_;  // empty where not kept
-  double voxels_per_metre_;    // over the angle between rays: distance over size of a voxel at level 0
+  RaySteps steps_;
   std::uint64_t bytes_ = 0;
 };
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <memory>
+#include <numbers>
 #include <vector>
 
 #include <glm/gtc/matrix_transform.hpp>
@@ -38,6 +39,17 @@ inline Fog cube(float sigma, std::uint32_t voxels = 1) {
   return Fog(glm::uvec3(voxels), glm::vec3(-0.5f), glm::vec3(0.5f), [sigma](glm::vec3) { return sigma; });
 }
 
+inline constexpr glm::dvec3 kCenter(0.0);
+inline const double kRoot4Pi = std::sqrt(4.0 * std::numbers::pi);
+
+inline baker::VolumeSettings gridOf(std::uint32_t n, int order = 5, std::size_t rays = 512) {
+  baker::VolumeSettings settings;
+  settings.grid = glm::uvec3(n);
+  settings.order = order;
+  settings.rays = rays;
+  return settings;
+}
+
 inline baker::VolumeTransfer transferOf(const Fog& fog, const baker::VolumeSettings& settings = {},
                                         glm::vec3 albedo = glm::vec3(1.0f),
                                         const baker::Occluders& occluders = {}, float g = 0.0f) {
@@ -56,7 +68,7 @@ inline double uniformAt(const baker::VolumeTransfer& t, glm::dvec3 place, std::s
   for (int k = 0; k < at.count; ++k)
     sum += at.weight[static_cast<std::size_t>(k)] *
            double{t.vectors[at.node[static_cast<std::size_t>(k)] * t.vectorSize() + block * t.columns() + i]};
-  return sum * std::sqrt(4.0 * 3.14159265358979323846);
+  return sum * kRoot4Pi;
 }
 
 // A coefficient of what arrives at a place, interpolated; per column of the light.

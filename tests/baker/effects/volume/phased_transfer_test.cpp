@@ -20,19 +20,11 @@ namespace {
 using testing::arrivingAt;
 using testing::cube;
 using testing::Fog;
+using testing::gridOf;
+using testing::kCenter;
+using testing::kRoot4Pi;
 using testing::transferOf;
 using testing::uniformAt;
-
-constexpr glm::dvec3 kCenter(0.0);
-const double kRoot4Pi = std::sqrt(4.0 * std::numbers::pi);
-
-VolumeSettings gridOf(std::uint32_t n, int order = 5, std::size_t rays = 512) {
-  VolumeSettings settings;
-  settings.grid = glm::uvec3(n);
-  settings.order = order;
-  settings.rays = rays;
-  return settings;
-}
 
 VolumeTransfer phased(const Fog& fog, const VolumeSettings& settings, float g, float albedo = 1.0f) {
   return transferOf(fog, settings, glm::vec3(albedo), {}, g);

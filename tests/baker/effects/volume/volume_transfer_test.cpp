@@ -17,19 +17,11 @@ namespace {
 
 using testing::cube;
 using testing::Fog;
+using testing::gridOf;
+using testing::kCenter;
+using testing::kRoot4Pi;
 using testing::transferOf;
 using testing::uniformAt;
-
-constexpr glm::dvec3 kCenter(0.0);
-const double kRoot4Pi = std::sqrt(4.0 * std::numbers::pi);
-
-VolumeSettings gridOf(std::uint32_t n, int order = 5, std::size_t rays = 512) {
-  VolumeSettings settings;
-  settings.grid = glm::uvec3(n);
-  settings.order = order;
-  settings.rays = rays;
-  return settings;
-}
 
 VolumeSettings singly(VolumeSettings settings) {
   settings.scatterings = 0;

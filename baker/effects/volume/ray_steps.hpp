@@ -1,0 +1,74 @@
+// How rays through a medium see its transfer grid: stretches of the density's own resolution, gathered over
+// less than a voxel of the level that is looked up at their distance. Rays spread: where they stand a voxel
+// apart, coarser levels tell enough.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+
+#include <glm/vec3.hpp>
+
+#include "baker/effects/volume/density_field.hpp"
+#include "baker/effects/volume/transfer_grid.hpp"
+
+namespace lambent::baker {
+
+class RaySteps {
+ public:
+  // rays: over the sphere, from each sample. Density and grid outlive this.
+  RaySteps(const DensityField& density, const TransferGrid& grid, std::size_t rays)
+      : density_(&density),
+        grid_(&grid),
+        voxels_per_metre_(std::sqrt(4.0 * std::numbers::pi / static_cast<double>(rays)) /
+                          double{grid.meanEdge()}) {}
+
+  // Of the grid, at a distance of t metres.
+  int levelAt(double t) const {
+    const double spread = t * voxels_per_metre_;
+    return spread < 1.0 ? 0 : std::min(std::ilogb(spread) + 1, grid_->levels() - 1);
+  }
+
+  // Calls give(t, share) along the ray, up to `reach` metres: the share of what passes there that the medium
+  // takes, and where on average it does. Returns what is left; with the shares 1.
+  template <typename Give>
+  double gather(const glm::vec3& origin, const glm::vec3& direction, float reach, const Give& give) const {
+    const auto longest = [&](float t) {
+      return kLongestStretch * grid_->shortestEdge() * static_cast<float>(1 << levelAt(double{t}));
+    };
+    double left = 1.0, share = 0.0, moment = 0.0, window = 0.0;  // of what is gathered; where it ends
+    density_->march(origin, direction, reach, longest, [&](float from, float to, float depth) {
+      if (share > 0.0 && double{to} > window) {
+        give(moment / share, share);
+        share = moment = 0.0;
+      }
+      if (share == 0.0)
+        window = double{from} + kWindow * double{grid_->meanEdge()} * (1 << levelAt(double{from}));
+      const double gone = -std::expm1(-double{depth}) * left;
+      share += gone;
+      moment += gone * (double{from} + middleOf(double{depth}) * (double{to} - double{from}));
+      left -= gone;
+      return left > kNothingLeft;
+    });
+    if (share > 0.0) give(moment / share, share);
+    return left;
+  }
+
+ private:
+  static constexpr float kLongestStretch = 0.5f;  // of the shortest edge of a voxel
+  static constexpr double kWindow = 0.75;         // stretches are gathered over so many voxels of their level
+  static constexpr double kNothingLeft = 1e-7;
+
+  // Where on average a stretch of optical depth e takes what passes it, as a share of its length.
+  static double middleOf(double e) {
+    if (e < 0.05) return 0.5 - e / 12.0 + e * e * e / 720.0;
+    return 1.0 / e - 1.0 / std::expm1(e);
+  }
+
+  const DensityField* density_;
+  const TransferGrid* grid_;
+  double voxels_per_metre_;  // over the angle between rays: distance over size of a voxel at level 0
+};
+
+}  // namespace lambent::baker
