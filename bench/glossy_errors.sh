@@ -31,10 +31,7 @@ mkdir -p "$out"
 
 "$build"/bin/lambent bake "$scene" -o "$out/$name.lmb.glb" --bounces "$bounces" "${options[@]}" >/dev/null
 
-percent() { # PICTURE REFERENCE1 REFERENCE2 -> relative RMS in percent
-  "$build"/bin/lambent compare "$1" "$2" --reference2 "$3" --json |
-    sed -n 's/.*"relativeRms": \([0-9.e+-]*\).*/\1/p' | awk '{ printf "%.2f", 100 * $1 }'
-}
+source "$here/bench/percent.sh"
 echo "| scene | probe | camera | five bands % | whole, without residual % | with % |"
 echo "|---|---|---|---|---|---|"
 for probe in "${probes[@]}"; do

@@ -38,10 +38,7 @@ bands=5
 [[ $kind == ring ]] && bands=5,5
 mkdir -p "$out"
 
-percent() { # PICTURE REFERENCE1 REFERENCE2 -> relative RMS in percent
-  "$build"/bin/lambent compare "$1" "$2" --reference2 "$3" --json |
-    sed -n 's/.*"relativeRms": \([0-9.e+-]*\).*/\1/p' | awk '{ printf "%.2f", 100 * $1 }'
-}
+source "$here/bench/percent.sh"
 
 figures() { # BUNDLE REPORT -> points, kB of the grid, seconds of the grid and of the whole bake, between bars
   python3 - "$@" <<'PYTHON'

@@ -34,6 +34,7 @@ cat > "$out/$name.gltf" <<END
             "extras": {"lambent": {"volume": {"file": "$file", "density_scale": $density}}}}]}
 END
 
+source "$here/bench/percent.sh"
 for camera in "$@"; do
   for seed in 1 2; do
     reference=$out/$name.${camera//[^0-9a-z-]/_}.$seed.exr
@@ -53,8 +54,6 @@ for grid in $grids; do
     stem=$out/$name.${camera//[^0-9a-z-]/_}
     "$build"/bin/lambent-demo "$bundle" --light "$light" --camera "$camera" --size "$size" --window off \
       --headless "$stem.demo.exr" >/dev/null
-    percent=$("$build"/bin/lambent compare "$stem.demo.exr" "$stem.1.exr" --reference2 "$stem.2.exr" --json |
-      sed -n 's/.*"relativeRms": \([0-9.e+-]*\).*/\1/p' | awk '{ printf "%.2f", 100 * $1 }')
-    echo "| $name | $grid³ | $seconds | $(stat -c %s "$bundle") | $camera | $percent |"
+    echo "| $name | $grid³ | $seconds | $(stat -c %s "$bundle") | $camera | $(percent "$stem.demo.exr" "$stem.1.exr" "$stem.2.exr") |"
   done
 done
