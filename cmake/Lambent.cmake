@@ -42,11 +42,15 @@ function(lambent_room name)
   target_link_libraries(lambent_${name} PUBLIC lambent_flags ${ROOM_LINK} PRIVATE ${ROOM_LINK_PRIVATE})
 endfunction()
 
-# lambent_program(NAME SOURCES file... LINK target...): an executable in bin/.
+# lambent_program(NAME SOURCES file... LINK target...): an executable in bin/. Installed, it finds its libraries in ../lib.
 function(lambent_program name)
   cmake_parse_arguments(PROGRAM "" "" "SOURCES;LINK" ${ARGN})
   add_executable(${name} ${PROGRAM_SOURCES})
   target_link_libraries(${name} PRIVATE lambent_flags ${PROGRAM_LINK})
+  # RPATH and not RUNPATH, which would count for the program's own needs only and not for those of its libraries. The same
+  # in the build folder, where there is no ../lib: CMake would hold the place with an empty path, which is the working folder.
+  set_target_properties(${name} PROPERTIES INSTALL_RPATH "$ORIGIN/../lib" BUILD_WITH_INSTALL_RPATH ON)
+  target_link_options(${name} PRIVATE "LINKER:--disable-new-dtags")
 endfunction()
 
 # lambent_embed(TARGET file...): the files' text in the binary, found by name with

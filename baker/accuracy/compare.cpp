@@ -25,8 +25,7 @@ bool finite(const glm::dvec3& v) {
 }  // namespace
 
 Result<PictureError> comparePictures(const spec::RgbaImage& picture, const spec::RgbaImage& reference,
-                                     const std::optional<spec::RgbaImage>& reference2,
-                                     const std::string& subject) {
+                                     const spec::RgbaImage* reference2, const std::string& subject) {
   const spec::RgbaImage& second = reference2 ? *reference2 : reference;
   for (const spec::RgbaImage* other : {&reference, &second})
     if (other->width != picture.width || other->height != picture.height)

@@ -7,7 +7,7 @@
 
 #include <array>
 #include <cstdint>
-#include <optional>
+#include <string>
 
 #include "runtime/base/result.hpp"
 #include "runtime/spec/image.hpp"
@@ -30,10 +30,9 @@ struct PictureError {
   double median = 0.0, percentile_95 = 0.0, percentile_99 = 0.0, largest = 0.0;
 };
 
-// Errors name `subject`: sizes that differ, values that are not finite, no pixel that all cover, a black
-// reference.
+// reference2: null where there is none. Errors name `subject`: sizes that differ, values that are not finite,
+// no pixel that all cover, a black reference.
 Result<PictureError> comparePictures(const spec::RgbaImage& picture, const spec::RgbaImage& reference,
-                                     const std::optional<spec::RgbaImage>& reference2,
-                                     const std::string& subject);
+                                     const spec::RgbaImage* reference2, const std::string& subject);
 
 }  // namespace lambent::baker

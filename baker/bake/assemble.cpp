@@ -274,12 +274,16 @@ class Assembler {
   void addDraw(const PlannedDraw& planned, std::uint32_t group, const DrawGeometry& geometry,
                const SampleSet& samples) {
     bundle::VertexRows rows;
+    rows.offsets.push_back(0);
     for (std::uint32_t v = 0; v < geometry.vertex_count; ++v) {
-      rows.offsets.push_back(v);
-      rows.samples.push_back(samples.vertex_sample[geometry.first_vertex + v]);
-      rows.weights.push_back(1.0f);
+      // Rows without a sample show what they are lit by, unshadowed (bake_unshadowed.cpp).
+      if (const std::uint32_t sample = samples.vertex_sample[geometry.first_vertex + v];
+          sample != kNoSample) {
+        rows.samples.push_back(sample);
+        rows.weights.push_back(1.0f);
+      }
+      rows.offsets.push_back(static_cast<std::uint32_t>(rows.samples.size()));
     }
-    rows.offsets.push_back(geometry.vertex_count);
     bundle::Draw draw{planned.node,
                       planned.mesh,
                       planned.primitive,

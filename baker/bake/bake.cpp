@@ -8,10 +8,12 @@
 #include <fmt/format.h>
 
 #include "baker/bake/assemble.hpp"
-#include "baker/bake/bake_around.hpp"
 #include "baker/bake/bake_group.hpp"
 #include "baker/bake/bake_volume.hpp"
+#include "baker/bake/group_keys.hpp"
+#include "baker/bake/result_bytes.hpp"
 #include "baker/bake/ship_meshes.hpp"
+#include "baker/cache/kept_ranges.hpp"
 #include "baker/effects/diffuse/bounces.hpp"
 #include "baker/effects/effect_list.hpp"
 #include "baker/effects/neighborhood/grid_placement.hpp"
@@ -91,13 +93,26 @@ Result<std::vector<EffectEntry>> effectsOf(const BakeOptions& options) {
   return chosen;
 }
 
+Result<BrdfTables> keptBrdfTables(const Scene& scene, int order, Cache* cache) {
+  Result<BrdfTables> tables;
+  const Keep keep{cache, cache ? brdfTablesKey(scene, order) : Key{}};
+  keptValue(
+      keep, [&](ByteReader& in) { return read(in, *tables); },
+      [&] {
+        tables = BrdfTables::make(scene, order);
+        return tables.has_value();
+      },
+      [&](ByteWriter& out) { write(*tables, out); });
+  return tables;
+}
+
 tl::unexpected<Error> stopped(const Scene& scene) {
   return fail(scene.source.string(), "stopped; nothing was written");
 }
 
 Result<BakeReport> bakeOnTheseThreads(const Scene& scene, const BakeOptions& options,
                                       const std::filesystem::path& output, Progress& progress,
-                                      const std::stop_token& stop) {
+                                      const std::stop_token& stop, Cache* cache) {
   BakeReport report;
   progress.begin("plan");
   const auto plan = planFor(scene, options);
@@ -109,7 +124,7 @@ Result<BakeReport> bakeOnTheseThreads(const Scene& scene, const BakeOptions& opt
   BrdfTables tables;
   if (plan->bakes("glossy")) {
     progress.begin("BRDF tables");
-    auto made = BrdfTables::make(scene, options.glossy_order);
+    auto made = keptBrdfTables(scene, options.glossy_order, cache);
     if (!made) return failAgain(made.error());
     tables = std::move(*made);
   }
@@ -121,24 +136,22 @@ Result<BakeReport> bakeOnTheseThreads(const Scene& scene, const BakeOptions& opt
         .bound = bound, .most_growth = options.refineGrowth(), .most_added = options.refineAdded()};
     if (!tables.entries.empty()) refine.most_vertices = mostGlossySamples(options.glossy_order);
     auto refined = refineMeshes(scene, plan->groups, *alpha_maps, !tables.entries.empty(), refine, *split,
-                                progress, stop);
+                                progress, stop, cache);
     if (!refined) return failAgain(refined.error());
     report.refinement = *refined;
   }
-  auto meshes = shipMeshes(scene, plan->groups, *split, progress, stop);
+  auto meshes = shipMeshes(scene, plan->groups, *split, progress, stop, cache);
   if (!meshes) return failAgain(meshes.error());
 
   std::vector<BakedGroup> baked;
   for (std::size_t g = 0; g < plan->groups.size(); ++g) {
     auto result =
         plan->groups[g].volume >= 0
-            ? bakeVolume(scene, plan->groups, g, baked, *alpha_maps, options, progress, stop, report)
+            ? bakeVolume(scene, plan->groups, g, baked, *alpha_maps, plan->neighborhoods[g], options,
+                         progress, stop, report, cache)
             : bakeGroup(scene, plan->groups[g], plan->light_samples[g].count, plan->neighborhoods[g], tables,
-                        *meshes, *alpha_maps, images, options, progress, stop, report);
+                        *meshes, *alpha_maps, images, options, progress, stop, report, cache);
     if (!result) return failAgain(result.error());
-    if (const PlannedNeighborhood& around = plan->neighborhoods[g]; result->volume && around.baked)
-      if (!bakeAroundVolume(*result, plan->groups[g].name, around, options, progress, stop, report))
-        return stopped(scene);
     baked.push_back(std::move(*result));
   }
   if (stop.stop_requested()) return stopped(scene);
@@ -152,6 +165,10 @@ Result<BakeReport> bakeOnTheseThreads(const Scene& scene, const BakeOptions& opt
   std::error_code ignored;
   report.file_bytes = std::filesystem::file_size(output, ignored);
   report.stages = progress.finished();
+  if (cache) {
+    report.cache = cache->figures();
+    if (std::string notice = cache->notice(); !notice.empty()) report.notices.push_back(std::move(notice));
+  }
   return report;
 }
 
@@ -173,6 +190,18 @@ Result<void> leaveNeighborhoods(EffectPlan& plan, int order) {
 }
 
 }  // namespace
+
+const char* reuseName(Reuse reuse) {
+  switch (reuse) {
+    case Reuse::Baked:
+      return "baked";
+    case Reuse::Regathered:
+      return "re-gathered";
+    case Reuse::Found:
+      break;
+  }
+  return "found";
+}
 
 Result<void> checkRequest(const BakeOptions& options, const std::filesystem::path& output) {
   if (auto checked = checkOptions(options); !checked) return checked;
@@ -207,13 +236,15 @@ Result<EffectPlan> planFor(const Scene& scene, const BakeOptions& options) {
 }
 
 Result<BakeReport> bake(const Scene& scene, const BakeOptions& options, const std::filesystem::path& output,
-                        Progress& progress, std::stop_token stop) {
+                        Progress& progress, std::stop_token stop, Cache* cache) {
   if (auto checked = checkRequest(options, output); !checked) return failAgain(checked.error());
   std::error_code ignored;
   if (std::filesystem::equivalent(scene.source, output, ignored))
     return fail(output.string(), "is the scene itself", "name another file for the bundle");
   std::optional<Result<BakeReport>> result;
-  withThreads(options.threads, [&] { result = bakeOnTheseThreads(scene, options, output, progress, stop); });
+  if (cache) cache->beginBake();
+  withThreads(options.threads,
+              [&] { result = bakeOnTheseThreads(scene, options, output, progress, stop, cache); });
   return std::move(*result);
 }
 

@@ -12,6 +12,7 @@
 #include <glm/vec3.hpp>
 
 #include "baker/bake/options.hpp"
+#include "baker/cache/cache.hpp"
 #include "baker/import/scene.hpp"
 #include "baker/plan/effect_plan.hpp"
 #include "baker/refine/refine.hpp"
@@ -21,8 +22,26 @@
 
 namespace lambent::baker {
 
+// How much of an effect's work on a group was done again.
+enum class Reuse : std::uint8_t {
+  Baked,       // rays were traced, at least some
+  Regathered,  // what rays had met was found; light was gathered over it anew, and coded
+  Found,       // nothing was left to do
+};
+const char* reuseName(Reuse reuse);  // "baked", "re-gathered", "found"
+
+// What the bake of one group's surfaces came to, whether it was done now or found.
+struct GroupFigures {
+  std::uint64_t filled_samples = 0, glossy_samples = 0;
+  std::uint64_t hit_bytes = 0;  // kept for the bounces
+  double worst_error = 0.0, worst_glossy_error = 0.0, left_out = 0.0;
+  std::vector<double> pass_energy;
+};
+
 struct BakeReport {
-  std::uint64_t vertices = 0, triangles = 0, samples = 0, filled_samples = 0, rays = 0;
+  std::uint64_t vertices = 0, triangles = 0, samples = 0, filled_samples = 0;
+  std::uint64_t rays = 0;       // traced in this run
+  std::uint64_t rays_kept = 0;  // that results of earlier runs stand for
   std::uint64_t file_bytes = 0, mesh_bytes = 0, transfer_bytes = 0, proxy_bytes = 0, image_bytes = 0;
   double ray_seconds = 0.0;         // of the passes that trace
   double worst_error = 0.0;         // of coded transfer, over cells; relative RMS
@@ -36,6 +55,12 @@ struct BakeReport {
     std::string name;
     std::uint64_t light_samples = 0;
     std::vector<std::uint32_t> proxy_triangles;  // of each level, the finest first; empty: no proxy
+    struct Effect {
+      std::string name;
+      Reuse reuse = Reuse::Baked;
+      std::uint64_t rays = 0, rays_kept = 0;
+    };
+    std::vector<Effect> effects;
   };
   std::vector<Group> groups;
   struct Neighborhood {
@@ -60,13 +85,16 @@ struct BakeReport {
   std::vector<Volume> volumes;
   double left_out = 0.0;  // estimate of the light that further bounces would add, relative to all
   std::vector<Progress::Stage> stages;
+  CacheFigures cache;                // what was read and written; zeros without a cache
   std::vector<std::string> notices;  // what came out other than the plan says, a sentence each
 };
 
-// Errors: options out of range, an effect that is not known, a scene that cannot be coded, an output that
-// cannot be written, "stopped" if a stop was requested.
+// cache: where results are looked up and kept, for later bakes and for this one if it is cut short; may be
+// null. The bundle is the same, byte for byte, whatever was found there. Errors: options out of range, an
+// effect that is not known, a scene that cannot be coded, an output that cannot be written, "stopped" if a
+// stop was requested.
 Result<BakeReport> bake(const Scene& scene, const BakeOptions& options, const std::filesystem::path& output,
-                        Progress& progress, std::stop_token stop);
+                        Progress& progress, std::stop_token stop, Cache* cache = nullptr);
 
 // What can be told wrong before the scene is read and rays are traced: options out of range, an effect that
 // is not known, a place that cannot be written. bake() begins with it.

@@ -6,19 +6,32 @@
 #include <string>
 
 #include "baker/bake/bake.hpp"
-#include "baker/bake/bake_group.hpp"
 #include "baker/bake/baked_grids.hpp"
+#include "baker/cache/kept_ranges.hpp"
 #include "baker/effects/neighborhood/body.hpp"
 #include "baker/effects/neighborhood/grid_placement.hpp"
 #include "baker/plan/neighborhoods.hpp"
 
 namespace lambent::baker {
 
-// bounds: of the body, from `origin`, which lies there in the group's frame. rays: from each point. Fills
-// `out`, or says in the report's notices why there is none. False if stopped.
-bool bakeAround(const Body& body, const Box3& bounds, const glm::vec3& origin, const std::string& name,
-                const PlannedNeighborhood& plan, std::size_t rays, const BakeOptions& options,
-                Progress& progress, const std::stop_token& stop, BakeReport& report,
+struct Around {
+  const std::string& name;  // of the group
+  const PlannedNeighborhood& plan;
+  glm::vec3 origin{0.0f};  // where the body's points lie from, in the group's frame
+  std::size_t rays = 0;    // from each point
+  const BakeOptions& options;
+};
+
+// body: of all that the body's answers depend on.
+Keep keepOf(const Around& around, Cache* cache, const Key& body);
+
+// What was kept, into `out`, or into the report's notices where there is none. False: it has to be baked.
+bool findAround(const Around& around, const Keep& keep, BakeReport& report,
+                std::optional<BakedNeighborhood>& out);
+
+// The same by baking it. bounds: of the body, from `origin`. False if stopped.
+bool bakeAround(const Around& around, const Body& body, const Box3& bounds, Progress& progress,
+                const std::stop_token& stop, const Keep& keep, BakeReport& report,
                 std::optional<BakedNeighborhood>& out);
 
 // A sample of a surface has its rays over a hemisphere, a point in free space over what the body fills, whose
@@ -26,10 +39,10 @@ bool bakeAround(const Body& body, const Box3& bounds, const glm::vec3& origin, c
 inline std::size_t raysAroundSurfaces(const BakeOptions& options) {
   return 2 * options.effectiveRays();
 }
-
-// The same for a volume that has just been baked. False if stopped.
-bool bakeAroundVolume(BakedGroup& volume, const std::string& name, const PlannedNeighborhood& plan,
-                      const BakeOptions& options, Progress& progress, const std::stop_token& stop,
-                      BakeReport& report);
+// A medium has no rims that many rays would have to find, and each ray is a march.
+inline std::size_t raysAroundVolumes(const BakeOptions& options) {
+  constexpr std::size_t kSampleRaysPerMarch = 4;
+  return options.effectiveRays() / kSampleRaysPerMarch;
+}
 
 }  // namespace lambent::baker

@@ -11,7 +11,6 @@
 #include "baker/bake/ship_meshes.hpp"
 #include "baker/brdf/surface_brdfs.hpp"
 #include "baker/compress/cpca.hpp"
-#include "baker/effects/volume/volume_light.hpp"
 #include "baker/light_samples/light_samples.hpp"
 #include "baker/plan/group_lights.hpp"
 #include "baker/transport/alpha_map.hpp"
@@ -28,10 +27,9 @@ struct BakedGroup {
   // Per sample cell: light of the environment (of a glossy cell visibility, then bounced light), then, where
   // there are some, of the group's lights.
   std::vector<std::vector<CodedTransfer>> cells;
-  LightSamples light_samples;                       // as SampleSet::positions
-  bundle::CaptureProxy proxy;                       // group frame
-  std::optional<BakedVolume> volume;                // then all of the above is empty
-  std::shared_ptr<const VolumeLight> volume_light;  // then what others see of it, before coding; group frame
+  LightSamples light_samples;         // as SampleSet::positions
+  bundle::CaptureProxy proxy;         // group frame
+  std::optional<BakedVolume> volume;  // then all of the above is empty
   std::optional<BakedNeighborhood> neighborhood;
 };
 
@@ -39,12 +37,13 @@ struct BakedGroup {
 std::size_t mostGlossySamples(int glossy_order);
 
 // tables: of the scene's glossy materials; empty where all are shown as Lambert. Adds what it did to the
-// report. Errors: no memory for the hierarchy, images that cannot be decoded, "stopped".
+// report. cache: may be null; what was done before with the same inputs is found there. Errors: no memory for
+// the hierarchy, images that cannot be decoded, "stopped".
 Result<BakedGroup> bakeGroup(const Scene& scene, const RigidGroup& group, LightSampleCount light_samples,
                              const PlannedNeighborhood& neighborhood, const BrdfTables& tables,
                              const ShippedMeshes& meshes,
                              const std::vector<std::shared_ptr<const AlphaMap>>& alpha_maps,
                              DecodedImages& images, const BakeOptions& options, Progress& progress,
-                             const std::stop_token& stop, BakeReport& report);
+                             const std::stop_token& stop, BakeReport& report, Cache* cache = nullptr);
 
 }  // namespace lambent::baker

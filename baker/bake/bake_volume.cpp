@@ -7,8 +7,12 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/quaternion.hpp>
 
+#include "baker/bake/bake_around.hpp"
+#include "baker/bake/result_bytes.hpp"
+#include "baker/effects/neighborhood/volume_body.hpp"
 #include "baker/effects/volume/marched_volume.hpp"
 #include "baker/effects/volume/volume_transfer.hpp"
+#include "baker/transport/geometry_key.hpp"
 #include "baker/transport/ray_scene.hpp"
 
 namespace lambent::baker {
@@ -93,17 +97,40 @@ bundle::TransferShape shapeOf(const VolumeTransfer& transfer) {
   return shape;
 }
 
-CodedTransfer codeDense(const Part& part, float bound, const std::stop_token& stop, BakeReport& report) {
+// What of a volume goes into the bundle, and what the report says of it.
+struct CodedVolume {
+  std::vector<std::uint32_t> voxels;
+  std::vector<CodedCell> cells;
+  double worst_error = 0.0, worst_glossy_error = 0.0, residual = 0.0;
+  std::uint64_t rays = 0, rays_kept = 0, row_bytes = 0;
+  int iterations = 0;
+};
+
+void write(const CodedVolume& coded, ByteWriter& out) {
+  out.addList(coded.voxels);
+  write(coded.cells, out);
+  out.add(coded.worst_error), out.add(coded.worst_glossy_error), out.add(coded.residual);
+  out.add(coded.rays + coded.rays_kept), out.add(coded.row_bytes), out.add(coded.iterations);
+}
+
+bool read(ByteReader& in, CodedVolume& coded) {
+  return in.readList(coded.voxels) && read(in, coded.cells) && in.read(coded.worst_error) &&
+         in.read(coded.worst_glossy_error) && in.read(coded.residual) && in.read(coded.rays_kept) &&
+         in.read(coded.row_bytes) && in.read(coded.iterations);
+}
+
+CodedTransfer codeDense(const Part& part, float bound, KeptCoding& coding, const std::stop_token& stop,
+                        CodedVolume& out) {
   CodedTransfer coded =
-      codeTransfer(part.vectors(), part.count(), shapeOf(part.transfer), {.bound = bound}, stop);
-  report.worst_error = std::max(report.worst_error, double{coded.error});
+      coding.code(part.vectors(), part.count(), shapeOf(part.transfer), {.bound = bound}, stop);
+  out.worst_error = std::max(out.worst_error, double{coded.error});
   return coded;
 }
 
 // What comes through as visibility, what is scattered as matrices; they are shown together, and errors count
 // by how much of each band goes on, g^2l.
-std::vector<CodedTransfer> codeMatrices(const Part& part, float bound, const std::stop_token& stop,
-                                        BakeReport& report) {
+std::vector<CodedTransfer> codeMatrices(const Part& part, float bound, KeptCoding& coding,
+                                        const std::stop_token& stop, CodedVolume& out) {
   const VolumeTransfer& transfer = part.transfer;
   bundle::TransferShape visible = shapeOf(transfer), scattered = visible;
   visible.full_channels = 0;
@@ -122,24 +149,27 @@ std::vector<CodedTransfer> codeMatrices(const Part& part, float bound, const std
     settings.bound *= std::sqrt(0.5f);
   }
   std::vector<CodedTransfer> coded;
-  coded.push_back(codeTransfer(part.visibility(), part.count(), visible, settings, stop));
+  coded.push_back(coding.code(part.visibility(), part.count(), visible, settings, stop));
   if (!matrices.empty() && !stop.stop_requested())
-    coded.push_back(codeTransfer(matrices, part.count(), scattered, settings, stop));
+    coded.push_back(coding.code(matrices, part.count(), scattered, settings, stop));
   double square = 0.0;
   for (const CodedTransfer& each : coded) square += double{each.error} * double{each.error};
-  report.worst_glossy_error = std::max(report.worst_glossy_error, std::sqrt(square));
+  out.worst_glossy_error = std::max(out.worst_glossy_error, std::sqrt(square));
   return coded;
 }
 
-// Runs of samples of nearly the same length, coded one by one.
-std::vector<CodedCell> codeCells(const VolumeTransfer& transfer, const BakeOptions& options,
-                                 Progress& progress, const std::stop_token& stop, BakeReport& report) {
+// Runs of samples of nearly the same length, coded one by one. False if stopped.
+bool codeCells(const VolumeTransfer& transfer, const BakeOptions& options, KeptCoding& coding,
+               Progress& progress, const std::stop_token& stop, CodedVolume& out) {
   const std::size_t samples = transfer.grid.samples();
   const std::size_t cells = (samples + kMostSamplesInACell - 1) / kMostSamplesInACell;
-  std::vector<CodedCell> coded;
+  out.voxels = transfer.grid.voxels();
+  out.rays = transfer.rays, out.rays_kept = transfer.rays_kept, out.row_bytes = transfer.row_bytes;
+  out.iterations = transfer.iterations, out.residual = transfer.residual;
+  progress.begin("coding", samples, "samples");
   for (std::size_t c = 0; c < cells && !stop.stop_requested(); ++c) {
     const Part part{transfer, samples * c / cells, samples * (c + 1) / cells};
-    CodedCell& cell = coded.emplace_back();
+    CodedCell& cell = out.cells.emplace_back();
     cell.count = static_cast<std::uint32_t>(part.count());
     cell.bounds_min = cell.bounds_max = transfer.grid.place(part.begin);
     for (std::size_t p = part.begin; p < part.end; ++p) {
@@ -147,12 +177,47 @@ std::vector<CodedCell> codeCells(const VolumeTransfer& transfer, const BakeOptio
       cell.bounds_max = glm::max(cell.bounds_max, transfer.grid.place(p));
     }
     if (transfer.bands > 3)
-      cell.transfers = codeMatrices(part, options.effectiveGlossyErrorBound(), stop, report);
+      cell.transfers = codeMatrices(part, options.effectiveGlossyErrorBound(), coding, stop, out);
     else
-      cell.transfers.push_back(codeDense(part, options.effectiveErrorBound(), stop, report));
+      cell.transfers.push_back(codeDense(part, options.effectiveErrorBound(), coding, stop, out));
     progress.add(part.count());
   }
-  return coded;
+  return !stop.stop_requested();
+}
+
+// Of its transfer: the medium as it ships, and the surfaces that it never moves against.
+Key transferKey(const Scene& scene, const BakedVolume& placed, const VolumeSettings& settings,
+                const GroupGeometry* within, const glm::mat4& within_from_group) {
+  KeyMaker key = KeyMaker::ofStage("volume");
+  key.addList(placed.density).add(placed.bits).add(placed.density_max).add(placed.size);
+  key.add(placed.group_from_grid).add(placed.albedo).add(placed.g);
+  key.add(settings.order).add(std::uint64_t{settings.rays}).add(settings.scatterings).add(settings.grid);
+  key.add(settings.fit_within_voxels);
+  key.add(within != nullptr);
+  if (within) {
+    addShape(*within, key);
+    addOpacity(scene, *within, key);
+    key.add(within_from_group);
+  }
+  return key.key();
+}
+
+void tell(const CodedVolume& coded, const SceneVolume& volume, const QuantizedDensity& density,
+          const std::string& name, BakeReport& report) {
+  report.worst_error = std::max(report.worst_error, coded.worst_error);
+  report.worst_glossy_error = std::max(report.worst_glossy_error, coded.worst_glossy_error);
+  report.samples += coded.voxels.size();
+  report.rays += coded.rays;
+  report.rays_kept += coded.rays_kept;
+  report.volumes.push_back({.name = volume.name,
+                            .voxels = volume.density.size(),
+                            .samples = coded.voxels.size(),
+                            .density_bits = density.bits,
+                            .density_error = density.error,
+                            .iterations = coded.iterations,
+                            .residual = coded.residual,
+                            .row_bytes = coded.row_bytes});
+  report.groups.push_back({.name = name, .light_samples = 1, .proxy_triangles = {}, .effects = {}});
 }
 
 }  // namespace
@@ -161,6 +226,25 @@ QuantizedDensity quantizeDensity(std::span<const float> density) {
   const float largest = density.empty() ? 0.0f : *std::max_element(density.begin(), density.end());
   QuantizedDensity coarse = quantizedTo(density, largest, 8);
   return coarse.error <= kDensityBound ? std::move(coarse) : quantizedTo(density, largest, 16);
+}
+
+BakedVolume placeVolume(const Scene& scene, const RigidGroup& group, const QuantizedDensity& density) {
+  const SceneVolume& volume = scene.volumes[static_cast<std::size_t>(group.volume)];
+  const glm::dmat4 group_from_world = glm::inverse(worldFromGroup(group));
+  const glm::dmat4 world_from_node(gltf::worldTransforms(scene.nodes)[volume.node]);
+  BakedVolume placed{
+      .size = volume.size,
+      .group_from_grid = glm::mat4(group_from_world * world_from_node * glm::dmat4(volume.node_from_grid)),
+      .bits = density.bits,
+      .density = density.codes,
+      .density_max = density.largest,
+      .albedo = volume.albedo,
+      .g = volume.g,
+      .transfer_size = glm::uvec3(1),
+      .voxels = {},
+      .cells = {}};
+  placed.light_sample = centreOf(volume.size, density.values, placed.group_from_grid);
+  return placed;
 }
 
 Result<void> checkVolume(const Scene& scene, const SceneVolume& volume, const BakeOptions& options) {
@@ -186,76 +270,96 @@ Result<void> checkVolume(const Scene& scene, const SceneVolume& volume, const Ba
 Result<BakedGroup> bakeVolume(const Scene& scene, const std::vector<RigidGroup>& groups, std::size_t index,
                               const std::vector<BakedGroup>& baked,
                               const std::vector<std::shared_ptr<const AlphaMap>>& alpha_maps,
-                              const BakeOptions& options, Progress& progress, const std::stop_token& stop,
-                              BakeReport& report) {
+                              const PlannedNeighborhood& neighborhood, const BakeOptions& options,
+                              Progress& progress, const std::stop_token& stop, BakeReport& report,
+                              Cache* cache) {
   const RigidGroup& group = groups[index];
   const SceneVolume& volume = scene.volumes[static_cast<std::size_t>(group.volume)];
   progress.begin("density");
   const QuantizedDensity density = quantizeDensity(volume.density);
-  const glm::dmat4 group_from_world = glm::inverse(worldFromGroup(group));
-  const glm::dmat4 world_from_node(gltf::worldTransforms(scene.nodes)[volume.node]);
-  const glm::mat4 group_from_grid(group_from_world * world_from_node * glm::dmat4(volume.node_from_grid));
-
-  // The surfaces that it never moves against, from where they lie (GroupGeometry::origin).
-  std::optional<RayScene> rays;
-  Occluders occluders;
-  if (group.within >= 0) {
-    const auto within = static_cast<std::size_t>(group.within);
-    const GroupGeometry& geometry = baked[within].geometry;
-    auto built = RayScene::build(geometry, scene, alpha_maps);
-    if (!built) return failAgain(built.error());
-    rays = std::move(*built);
-    occluders =
-        Occluders(*rays, glm::mat4(glm::translate(glm::dmat4(1.0), -glm::dvec3(geometry.origin)) *
-                                   glm::inverse(worldFromGroup(groups[within])) * worldFromGroup(group)));
-  }
-
-  const Medium medium{std::make_shared<DensityField>(volume.size, density.values, group_from_grid),
-                      density.values, volume.albedo, volume.g};
+  BakedGroup result;
+  result.volume = placeVolume(scene, group, density);
+  BakedVolume& placed = *result.volume;
+  placed.transfer_size = options.volume_grid;
+  result.light_samples.points = {placed.light_sample};
   const VolumeSettings settings{.order = options.order,
                                 .rays = options.effectiveRays(),
                                 // As the reference: bounces are counted between surfaces, not in volumes.
                                 .scatterings = options.bounces == 0 ? 0 : -1,
                                 .grid = options.volume_grid,
-                                .memory = options.effectiveMemory() / 2};
-  const std::size_t stages_before = progress.finished().size();
-  auto transfer = bakeVolumeTransfer(medium, settings, occluders, progress, stop);
-  progress.end();
-  const std::vector<Progress::Stage> stages = progress.finished();
-  for (const Progress::Stage& stage : std::span(stages).subspan(stages_before))
-    if (stage.unit == "samples") report.ray_seconds += stage.seconds;
+                                .memory = options.effectiveMemory() / 2,
+                                .fit_within_voxels = true};
+
+  // The surfaces that it never moves against, from where they lie (GroupGeometry::origin).
+  const GroupGeometry* within = nullptr;
+  glm::mat4 within_from_group(1.0f);
+  if (group.within >= 0) {
+    const auto w = static_cast<std::size_t>(group.within);
+    within = &baked[w].geometry;
+    within_from_group = glm::mat4(glm::translate(glm::dmat4(1.0), -glm::dvec3(within->origin)) *
+                                  glm::inverse(worldFromGroup(groups[w])) * worldFromGroup(group));
+  }
+  const Keep keep{cache, cache ? transferKey(scene, placed, settings, within, within_from_group) : Key{}};
+  const Keep cells_keep =
+      keep.part("cells", options.effectiveErrorBound(), options.effectiveGlossyErrorBound());
+  const Around around{group.name, neighborhood, glm::vec3(0.0f), raysAroundVolumes(options), options};
+  const Keep around_keep = keepOf(around, cache, keep.key);
+
+  CodedVolume coded;
+  KeptCoding coding(cache);
+  // Made when it is asked for: where all that follows from it is found, it is not.
+  std::shared_ptr<const VolumeLight> light;
+  Result<void> failed;
+  const auto makeLight = [&](const auto& use) {
+    std::optional<RayScene> rays;
+    Occluders occluders;
+    if (within) {
+      auto built = RayScene::build(*within, scene, alpha_maps);
+      if (!built) {
+        failed = failAgain(built.error());
+        return false;
+      }
+      rays = std::move(*built);
+      occluders = Occluders(*rays, within_from_group);
+    }
+    const Medium medium{std::make_shared<DensityField>(volume.size, density.values, placed.group_from_grid),
+                        density.values, volume.albedo, volume.g};
+    const std::size_t stages_before = progress.finished().size();
+    auto transfer = bakeVolumeTransfer(medium, settings, occluders, progress, stop, keep);
+    progress.end();
+    const std::vector<Progress::Stage> stages = progress.finished();
+    for (const Progress::Stage& stage : std::span(stages).subspan(stages_before))
+      if (stage.unit == "samples" || stage.unit == "places") report.ray_seconds += stage.seconds;
+    if (!transfer || !use(*transfer)) return false;
+    light = std::make_shared<MarchedVolume>(std::move(*transfer));
+    return true;
+  };
   const auto stopped = [&] { return fail(scene.source.string(), "stopped; nothing was written"); };
-  if (!transfer) return stopped();
+  const auto found = keptValue(
+      cells_keep, [&](ByteReader& in) { return read(in, coded); },
+      [&] {
+        coded = {};
+        return makeLight([&](const VolumeTransfer& transfer) {
+          return codeCells(transfer, options, coding, progress, stop, coded);
+        });
+      },
+      [&](ByteWriter& out) { write(coded, out); });
+  if (!failed) return failAgain(failed.error());
+  if (!found) return stopped();
+  coding.drop();
+  tell(coded, volume, density, group.name, report);
+  placed.voxels = std::move(coded.voxels);
+  placed.cells = std::move(coded.cells);
 
-  progress.begin("coding", transfer->grid.samples(), "samples");
-  BakedGroup result;
-  result.light_samples.points = {centreOf(volume.size, density.values, group_from_grid)};
-  result.volume = BakedVolume{.size = volume.size,
-                              .group_from_grid = group_from_grid,
-                              .bits = density.bits,
-                              .density = density.codes,
-                              .density_max = density.largest,
-                              .albedo = volume.albedo,
-                              .g = volume.g,
-                              .transfer_size = options.volume_grid,
-                              .voxels = transfer->grid.voxels(),
-                              .cells = {},
-                              .light_sample = result.light_samples.points.front()};
-  result.volume->cells = codeCells(*transfer, options, progress, stop, report);
-  if (stop.stop_requested()) return stopped();
-
-  report.samples += transfer->grid.samples();
-  report.rays += transfer->rays;
-  report.volumes.push_back({.name = volume.name,
-                            .voxels = volume.density.size(),
-                            .samples = transfer->grid.samples(),
-                            .density_bits = density.bits,
-                            .density_error = density.error,
-                            .iterations = transfer->iterations,
-                            .residual = transfer->residual,
-                            .row_bytes = transfer->row_bytes});
-  report.groups.push_back({.name = group.name, .light_samples = 1, .proxy_triangles = {}});
-  result.volume_light = std::make_shared<MarchedVolume>(std::move(*transfer));
+  if (!neighborhood.baked || findAround(around, around_keep, report, result.neighborhood)) return result;
+  if (!light && !makeLight([](const VolumeTransfer&) { return true; })) {
+    if (!failed) return failAgain(failed.error());
+    return stopped();
+  }
+  const auto [low, high] = placed.bounds();
+  const VolumeBody body(*light, low, high, /*scatters=*/true);
+  if (!bakeAround(around, body, Box3{low, high}, progress, stop, around_keep, report, result.neighborhood))
+    return stopped();
   return result;
 }
 

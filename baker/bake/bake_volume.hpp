@@ -19,8 +19,9 @@ Result<void> checkVolume(const Scene& scene, const SceneVolume& volume, const Ba
 Result<BakedGroup> bakeVolume(const Scene& scene, const std::vector<RigidGroup>& groups, std::size_t index,
                               const std::vector<BakedGroup>& baked,
                               const std::vector<std::shared_ptr<const AlphaMap>>& alpha_maps,
-                              const BakeOptions& options, Progress& progress, const std::stop_token& stop,
-                              BakeReport& report);
+                              const PlannedNeighborhood& neighborhood, const BakeOptions& options,
+                              Progress& progress, const std::stop_token& stop, BakeReport& report,
+                              Cache* cache);
 
 // Density as it ships.
 struct QuantizedDensity {
@@ -32,5 +33,8 @@ struct QuantizedDensity {
 };
 // 8 bits where that keeps the error under 0.5 %, else 16 (2e-5 of the largest).
 QuantizedDensity quantizeDensity(std::span<const float> density);
+
+// The volume of a group as it ships, all but its transfer.
+BakedVolume placeVolume(const Scene& scene, const RigidGroup& group, const QuantizedDensity& density);
 
 }  // namespace lambent::baker

@@ -1,58 +1,22 @@
 // What decides whether a bundle is up to date: a digest of the scene, and the settings recorded in the file.
-#include <cstring>
-#include <span>
-
 #include <fmt/format.h>
 
 #include "baker/bake/bake.hpp"
-#include "runtime/bundle/checksum.hpp"
+#include "baker/cache/key.hpp"
+#include "baker/transport/geometry_key.hpp"
 #include "runtime/bundle/reader.hpp"
 
 namespace lambent::baker {
 
 namespace {
 
-// Collects values into one digest; lists bring their length, so that no two scenes read alike.
-class Digest {
- public:
-  template <typename T>
-  requires std::is_trivially_copyable_v<T>
-  void add(const T& value) {
-    bytes_.insert(bytes_.end(), std::as_bytes(std::span(&value, 1)).begin(),
-                  std::as_bytes(std::span(&value, 1)).end());
-  }
-  template <typename T>
-  void addList(const std::vector<T>& list) {
-    add(list.size());
-    add(bundle::checksum(std::as_bytes(std::span(list))));
-  }
-  void addText(const std::string& text) {
-    add(text.size());
-    add(bundle::checksum(std::as_bytes(std::span(text))));
-  }
-  std::uint64_t value() const { return bundle::checksum(bytes_); }
-
- private:
-  std::vector<std::byte> bytes_;
-};
-
-void addMesh(const bundle::MeshData& mesh, Digest& digest) {
-  digest.addList(mesh.positions);
-  digest.addList(mesh.normals);
-  digest.addList(mesh.texcoords0);
-  digest.addList(mesh.texcoords1);
-  digest.addList(mesh.colors);
-  digest.addList(mesh.tangents);
-  digest.addList(mesh.indices);
-}
-
-void addTexture(const gltf::TextureRef& ref, Digest& digest) {
+void addTexture(const gltf::TextureRef& ref, KeyMaker& digest) {
   digest.add(ref.texture), digest.add(ref.texcoord);
   digest.add(ref.offset), digest.add(ref.scale), digest.add(ref.rotation_rad);
 }
 
 // Field by field: padding between fields has no value.
-void addMaterial(const gltf::Material& m, Digest& digest) {
+void addMaterial(const gltf::Material& m, KeyMaker& digest) {
   digest.addText(m.name);
   digest.add(m.base_color);
   addTexture(m.base_color_texture, digest);
@@ -70,19 +34,19 @@ void addMaterial(const gltf::Material& m, Digest& digest) {
   digest.add(m.alpha_mode), digest.add(m.alpha_cutoff), digest.add(m.double_sided);
 }
 
-void addCamera(const gltf::Camera& c, Digest& digest) {
+void addCamera(const gltf::Camera& c, KeyMaker& digest) {
   digest.addText(c.name);
   digest.add(c.perspective);
   for (const float value : {c.yfov_rad, c.aspect, c.xmag, c.ymag, c.znear, c.zfar}) digest.add(value);
 }
 
-void addLight(const gltf::Light& light, Digest& digest) {
+void addLight(const gltf::Light& light, KeyMaker& digest) {
   digest.addText(light.name);
   digest.add(light.type), digest.add(light.color), digest.add(light.intensity), digest.add(light.range_m);
   digest.add(light.inner_cone_rad), digest.add(light.outer_cone_rad);
 }
 
-void addAnimation(const gltf::Animation& animation, Digest& digest) {
+void addAnimation(const gltf::Animation& animation, KeyMaker& digest) {
   digest.addText(animation.name);
   digest.add(animation.channels.size());
   for (const gltf::AnimationChannel& channel : animation.channels) {
@@ -92,7 +56,7 @@ void addAnimation(const gltf::Animation& animation, Digest& digest) {
   }
 }
 
-void addNode(const gltf::Node& node, Digest& digest) {
+void addNode(const gltf::Node& node, KeyMaker& digest) {
   digest.addText(node.name);
   digest.add(node.parent), digest.addList(node.children), digest.add(node.parent_from_node);
   digest.add(node.mesh), digest.add(node.camera), digest.add(node.light);
@@ -102,7 +66,7 @@ void addNode(const gltf::Node& node, Digest& digest) {
   digest.add(node.trs->translation), digest.add(glm::vec4(q.x, q.y, q.z, q.w)), digest.add(node.trs->scale);
 }
 
-void addVolume(const SceneVolume& volume, Digest& digest) {
+void addVolume(const SceneVolume& volume, KeyMaker& digest) {
   digest.addText(volume.name);
   digest.add(volume.node), digest.add(volume.size);
   digest.addList(volume.density);
@@ -112,7 +76,7 @@ void addVolume(const SceneVolume& volume, Digest& digest) {
 }  // namespace
 
 std::uint64_t sceneDigest(const Scene& scene) {
-  Digest digest;
+  KeyMaker digest;
   digest.addText(scene.source.filename().string());
   digest.add(scene.nodes.size());
   for (const gltf::Node& node : scene.nodes) addNode(node, digest);
@@ -150,7 +114,7 @@ std::uint64_t sceneDigest(const Scene& scene) {
   digest.add(scene.neighborhoods.size());
   for (const NeighborhoodRequest& request : scene.neighborhoods)
     digest.add(request.node), digest.add(request.size), digest.add(request.extent);
-  return digest.value();
+  return digest.key().low;
 }
 
 bundle::Generator generatorOf(const Scene& scene, const BakeOptions& options) {

@@ -8,7 +8,9 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
+#include "baker/cache/kept_ranges.hpp"
 #include "baker/import/subdivide.hpp"
+#include "baker/transport/geometry_key.hpp"
 #include "baker/work/parallel.hpp"
 
 namespace lambent::baker {
@@ -81,6 +83,31 @@ std::vector<MeshLimits> limitsOf(const Scene& scene, const std::vector<RigidGrou
   return limits;
 }
 
+Result<EncodedMesh> encodeKept(const bundle::MeshData& mesh, float step, const std::string& subject,
+                               Cache* cache) {
+  Result<EncodedMesh> encoded;
+  Keep keep{cache, {}};
+  if (cache) {
+    KeyMaker key = KeyMaker::ofStage("draco");
+    addMesh(mesh, key);
+    keep.key = key.add(step).key();
+  }
+  keptValue(
+      keep,
+      [&](ByteReader& in) {
+        return in.readList(encoded->bytes) && in.read(encoded->attributes) && readMesh(in, encoded->decoded);
+      },
+      [&] {
+        encoded = encodeDraco(mesh, step, subject);
+        return encoded.has_value();
+      },
+      [&](ByteWriter& out) {
+        out.addList(encoded->bytes), out.add(encoded->attributes);
+        writeMesh(encoded->decoded, out);
+      });
+  return encoded;
+}
+
 }  // namespace
 
 Result<Meshes> splitMeshes(const Scene& scene, const std::vector<RigidGroup>& groups, float max_edge_m) {
@@ -100,7 +127,8 @@ Result<Meshes> splitMeshes(const Scene& scene, const std::vector<RigidGroup>& gr
 }
 
 Result<ShippedMeshes> shipMeshes(const Scene& scene, const std::vector<RigidGroup>& groups,
-                                 const Meshes& meshes, Progress& progress, std::stop_token stop) {
+                                 const Meshes& meshes, Progress& progress, std::stop_token stop,
+                                 Cache* cache) {
   const std::vector<MeshLimits> limits = limitsOf(scene, groups, /*max_edge_m=*/0.0f);
   struct Task {
     std::size_t mesh, primitive;
@@ -115,7 +143,7 @@ Result<ShippedMeshes> shipMeshes(const Scene& scene, const std::vector<RigidGrou
     for (Task& task : std::span(tasks).subspan(begin, end - begin)) {
       const std::string subject =
           fmt::format("{}: mesh {} primitive {}", scene.source.string(), task.mesh, task.primitive);
-      task.encoded = encodeDraco(meshes[task.mesh][task.primitive], limits[task.mesh].step, subject);
+      task.encoded = encodeKept(meshes[task.mesh][task.primitive], limits[task.mesh].step, subject, cache);
       progress.add(1);
     }
   });

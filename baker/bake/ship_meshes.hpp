@@ -5,6 +5,7 @@
 #include <stop_token>
 #include <vector>
 
+#include "baker/cache/cache.hpp"
 #include "baker/compress/draco_encode.hpp"
 #include "baker/import/scene.hpp"
 #include "baker/plan/rigid_groups.hpp"
@@ -24,7 +25,9 @@ using Meshes = std::vector<std::vector<bundle::MeshData>>;  // [mesh][primitive]
 // many triangles.
 Result<Meshes> splitMeshes(const Scene& scene, const std::vector<RigidGroup>& groups, float max_edge_m);
 
+// cache: may be null; a mesh that was coded before on the same lattice is found there.
 Result<ShippedMeshes> shipMeshes(const Scene& scene, const std::vector<RigidGroup>& groups,
-                                 const Meshes& meshes, Progress& progress, std::stop_token stop);
+                                 const Meshes& meshes, Progress& progress, std::stop_token stop,
+                                 Cache* cache = nullptr);
 
 }  // namespace lambent::baker

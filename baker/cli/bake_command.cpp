@@ -1,4 +1,4 @@
-// lambent bake SCENE -o OUT.lmb.glb
+// lambent bake SCENE -o OUT.lmb.glb, --watch DIR, --resume
 #include <charconv>
 #include <cstdlib>
 #include <map>
@@ -12,7 +12,9 @@
 #include "baker/bake/bake.hpp"
 #include "baker/cli/commands.hpp"
 #include "baker/cli/output.hpp"
+#include "baker/cli/watch.hpp"
 #include "baker/import/gltf.hpp"
+#include "baker/pipeline/journal.hpp"
 #include "baker/plan/counted.hpp"
 #include "runtime/spec/numbers.hpp"
 
@@ -22,9 +24,30 @@ namespace {
 
 struct BakeArguments {
   std::filesystem::path scene, output;
+  std::filesystem::path watch;  // a folder; empty: none
+  bool resume = false;
+  double checkpoint_s = 0.0;  // 0: as the cache has it
   BakeOptions options;
   bool force = false, json = false, allow_outside = false;
+  std::string cache;  // a folder, "off", or empty: the usual one
+  std::uint64_t cache_bytes = kCacheBytes;
 };
+
+// Without a cache a bake is as good and only slower: what is wrong with its folder is said, and no more.
+std::optional<Cache> openCache(const BakeArguments& a) {
+  if (a.cache == "off") return std::nullopt;
+  const std::filesystem::path folder =
+      a.cache.empty() ? Cache::defaultFolder() : std::filesystem::path(a.cache);
+  if (folder.empty()) return std::nullopt;
+  auto cache = Cache::open(folder, a.cache_bytes);
+  if (!cache) {
+    fmt::print(stderr, "lambent: {}; baking without it\n", cache.error().line());
+    return std::nullopt;
+  }
+  cache->setReading(!a.force);
+  if (a.checkpoint_s > 0.0) cache->setCheckpointEvery(a.checkpoint_s);
+  return std::move(*cache);
+}
 
 nlohmann::json reportJson(const BakeArguments& a, const BakeReport& r) {
   nlohmann::json stages = nlohmann::json::array();
@@ -32,10 +55,18 @@ nlohmann::json reportJson(const BakeArguments& a, const BakeReport& r) {
     stages.push_back(
         {{"stage", stage.name}, {"seconds", stage.seconds}, {"units", stage.done}, {"unit", stage.unit}});
   nlohmann::json groups = nlohmann::json::array();
-  for (const BakeReport::Group& group : r.groups)
+  for (const BakeReport::Group& group : r.groups) {
+    nlohmann::json effects = nlohmann::json::array();
+    for (const BakeReport::Group::Effect& effect : group.effects)
+      effects.push_back({{"effect", effect.name},
+                         {"work", reuseName(effect.reuse)},
+                         {"rays", effect.rays},
+                         {"raysKept", effect.rays_kept}});
     groups.push_back({{"name", group.name},
                       {"lightSamples", group.light_samples},
-                      {"proxyTriangles", group.proxy_triangles}});
+                      {"proxyTriangles", group.proxy_triangles},
+                      {"effects", effects}});
+  }
   nlohmann::json neighborhoods = nlohmann::json::array();
   for (const BakeReport::Neighborhood& n : r.neighborhoods)
     neighborhoods.push_back({{"name", n.name},
@@ -62,6 +93,7 @@ nlohmann::json reportJson(const BakeArguments& a, const BakeReport& r) {
           {"samples", r.samples},
           {"filledSamples", r.filled_samples},
           {"rays", r.rays},
+          {"raysKept", r.rays_kept},
           {"raysPerSecond", r.ray_seconds > 0.0 ? static_cast<double>(r.rays) / r.ray_seconds : 0.0},
           {"lights", r.lights},
           {"groups", groups},
@@ -84,7 +116,15 @@ nlohmann::json reportJson(const BakeArguments& a, const BakeReport& r) {
             {"verticesAfter", r.refinement.vertices_after},
             {"errorBefore", r.refinement.error_before},
             {"errorAfter", r.refinement.error_after},
-            {"rays", r.refinement.rays}}},
+            {"rays", r.refinement.rays},
+            {"raysKept", r.refinement.rays_kept}}},
+          {"cache",
+           {{"found", r.cache.found},
+            {"bytesRead", r.cache.bytes_read},
+            {"stored", r.cache.stored},
+            {"bytesWritten", r.cache.bytes_written},
+            {"damaged", r.cache.damaged},
+            {"evicted", r.cache.evicted}}},
           {"stages", stages}};
 }
 
@@ -100,6 +140,10 @@ void printReport(const BakeArguments& a, const BakeReport& r) {
   fmt::print("  rays      {} in {} ({} a second)\n", countText(static_cast<double>(r.rays)),
              durationText(r.ray_seconds),
              countText(r.ray_seconds > 0.0 ? static_cast<double>(r.rays) / r.ray_seconds : 0.0));
+  if (r.rays_kept > 0)
+    fmt::print("  kept      {} rays of earlier bakes; {} read from the cache\n",
+               countText(static_cast<double>(r.rays_kept)),
+               bytesText(static_cast<double>(r.cache.bytes_read)));
   if (!r.pass_energy.empty())
     fmt::print("  bounces   {}, the last with {:.3f} % of the direct light; {:.3f} % left out\n",
                r.pass_energy.size() - 1, 100.0 * r.pass_energy.back(), 100.0 * r.left_out);
@@ -131,17 +175,28 @@ void printReport(const BakeArguments& a, const BakeReport& r) {
                100.0 * double{a.options.effectiveGlossyErrorBound()});
 }
 
-int runBake(const BakeArguments& a) {
+// Records of bakes that were begun lie in the cache's folder.
+Journal journalOf(const std::optional<Cache>& cache) {
+  return Journal(cache ? cache->folder() / "journal" : std::filesystem::path());
+}
+
+int bakeScene(const BakeArguments& a, std::optional<Cache>& cache, const std::stop_token& stop) {
   if (const auto checked = checkRequest(a.options, a.output); !checked) return reportError(checked.error());
-  const std::stop_source stop;
-  const InterruptGuard interrupts(stop);
+  Journal::Entry record = journalOf(cache).begin({.scene = a.scene,
+                                                  .output = a.output,
+                                                  .options = a.options,
+                                                  .import = {.allow_outside = a.allow_outside}});
   Progress progress;
   progress.begin("import");
   auto scene = importScene(a.scene, {.allow_outside = a.allow_outside});
-  if (!scene) return reportError(scene.error());
+  if (!scene) {
+    record.done();
+    return reportError(scene.error());
+  }
   for (const std::string& warning : scene->warnings)
     fmt::print(stderr, "lambent: {}: {}\n", a.scene.string(), warning);
   if (!a.force && isUpToDate(*scene, a.options, a.output)) {
+    record.done();
     if (a.json)
       fmt::print("{}\n", nlohmann::json{{"output", a.output.string()}, {"upToDate", true}}.dump(2));
     else
@@ -150,8 +205,9 @@ int runBake(const BakeArguments& a) {
   }
   Result<BakeReport> report = [&] {
     const ProgressLine line(progress);
-    return bake(*scene, a.options, a.output, progress, stop.get_token());
+    return bake(*scene, a.options, a.output, progress, stop, cache ? &*cache : nullptr);
   }();
+  if (!stop.stop_requested()) record.done();  // else --resume goes on with it
   if (!report) return reportError(report.error());
   for (const std::string& notice : report->notices)
     fmt::print(stderr, "lambent: {}: {}\n", a.scene.string(), notice);
@@ -160,6 +216,51 @@ int runBake(const BakeArguments& a) {
   else
     printReport(a, *report);
   return 0;
+}
+
+// All bakes that were cut short, with the options that they had.
+int wrongUsage(const Error& error) {
+  reportError(error);
+  return 2;
+}
+
+int resumeBakes(const BakeArguments& a, std::optional<Cache>& cache, const std::stop_token& stop) {
+  if (!cache) return reportError({"--resume", "there is no cache that would tell", "leave out --cache off"});
+  const std::vector<BakeRequest> unfinished = journalOf(cache).unfinished();
+  if (unfinished.empty()) fmt::print(stderr, "lambent: no bake was cut short\n");
+  int worst = 0;
+  for (const BakeRequest& request : unfinished) {
+    if (stop.stop_requested()) break;
+    fmt::print(stderr, "lambent: going on with {} to {}\n", request.scene.string(), request.output.string());
+    BakeArguments one = a;
+    one.scene = request.scene;
+    one.output = request.output;
+    one.options = request.options;
+    one.allow_outside = request.import.allow_outside;
+    worst = std::max(worst, bakeScene(one, cache, stop));
+  }
+  return worst;
+}
+
+int runBake(const BakeArguments& a) {
+  if (!a.watch.empty()) {
+    if (!a.scene.empty() || a.resume || a.force)
+      return wrongUsage({"--watch", "is given with a scene, --resume or --force", "give it a folder alone"});
+    if (const auto checked = checkRequest(a.options, std::filesystem::temp_directory_path() / "lambent");
+        !checked)
+      return reportError(checked.error());
+    std::optional<Cache> cache = openCache(a);
+    return watchFolder({a.watch, a.output, a.options, {.allow_outside = a.allow_outside}, a.json},
+                       cache ? &*cache : nullptr);
+  }
+  if (a.scene.empty() && !a.resume)
+    return wrongUsage({"SCENE", "is missing", "name a scene, or a folder with --watch"});
+  if (a.scene.empty() != a.output.empty())
+    return wrongUsage({a.scene.empty() ? "SCENE" : "--output", "is missing", "give both"});
+  const std::stop_source stop;
+  const InterruptGuard interrupts(stop);
+  std::optional<Cache> cache = openCache(a);
+  return a.scene.empty() ? resumeBakes(a, cache, stop.get_token()) : bakeScene(a, cache, stop.get_token());
 }
 
 }  // namespace
@@ -259,8 +360,17 @@ void addVolumeGridOption(CLI::App& command, BakeOptions& options) {
 void addBakeCommand(CLI::App& app, Command& run) {
   auto a = std::make_shared<BakeArguments>();
   CLI::App* command = app.add_subcommand("bake", "Bake a glTF scene into a bundle");
-  command->add_option("SCENE", a->scene, "The scene, .gltf or .glb")->required();
-  command->add_option("-o,--output", a->output, "The bundle to write, OUT.lmb.glb")->required();
+  command->add_option("SCENE", a->scene, "The scene, .gltf or .glb");
+  command->add_option("-o,--output", a->output,
+                      "The bundle to write, OUT.lmb.glb; with --watch a folder for bundles (default: beside "
+                      "their scenes)");
+  command
+      ->add_option("--watch", a->watch,
+                   "Bake all scenes in DIR and below, then again what changes, until interrupted")
+      ->type_name("DIR");
+  command->add_flag("--resume", a->resume,
+                    "Without SCENE: finish all bakes that were cut short. With it there is no need: a bake "
+                    "always goes on from what the cache holds of it");
   const std::map<std::string, Quality> qualities = {
       {"draft", Quality::Draft}, {"standard", Quality::Standard}, {"high", Quality::High}};
   command
@@ -316,7 +426,24 @@ void addBakeCommand(CLI::App& app, Command& run) {
       ->type_name("N");
   command->add_flag("--allow-outside", a->allow_outside,
                     "Read buffers and images outside the scene's folder too");
-  command->add_flag("--force", a->force, "Bake even if the bundle is up to date");
+  command
+      ->add_option(
+          "--cache", a->cache,
+          "Folder where results are kept, so that the next bake does only what changed; off: none; default "
+          "$LAMBENT_CACHE, else $XDG_CACHE_HOME/lambent, else ~/.cache/lambent")
+      ->type_name("DIR|off");
+  command
+      ->add_option("--cache-size", a->cache_bytes,
+                   "Bytes that the cache may hold, like 8GB (default); what was not used longest goes first")
+      ->transform(CLI::AsSizeValue(/*kb_is_1000=*/false))
+      ->type_name("BYTES");
+  command
+      ->add_option("--checkpoint", a->checkpoint_s,
+                   "How many seconds of work a bake that is killed may lose, about; default 8")
+      ->check(CLI::Range(0.05, 600.0))
+      ->type_name("S");
+  command->add_flag("--force", a->force,
+                    "Bake all anew, even if the bundle is up to date and whatever the cache holds");
   command->add_flag("--json", a->json, "Print figures as JSON");
   command->callback([a, &run] { run = [a] { return runBake(*a); }; });
 }

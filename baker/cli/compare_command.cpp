@@ -1,4 +1,4 @@
-// lambent compare PICTURE.exr REFERENCE.exr [--reference2 OTHER.exr]
+// lambent compare PICTURE.exr REFERENCE.exr [--reference2 OTHER.exr] [--heat OUT.png]
 #include <memory>
 #include <optional>
 
@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "baker/accuracy/compare.hpp"
+#include "baker/accuracy/difference.hpp"
 #include "baker/cli/commands.hpp"
 #include "baker/cli/output.hpp"
 
@@ -15,24 +15,36 @@ namespace lambent::baker {
 namespace {
 
 struct CompareArguments {
-  std::filesystem::path picture, reference, reference2;
+  std::filesystem::path picture, reference, reference2, heat;
+  std::string heat_map = "signed";
+  std::optional<double> heat_range;
   bool json = false;
 };
 
-void print(const CompareArguments& a, const PictureError& e) {
+std::string heatLine(const CompareArguments& a, HeatMap map, double range) {
+  return map == HeatMap::Signed
+             ? fmt::format("{}: luminance off by -{:g} % (blue) to +{:g} % (red)", a.heat.string(),
+                           100.0 * range, 100.0 * range)
+             : fmt::format("{}: off by 0 (black) to {:g} % (light yellow)", a.heat.string(), 100.0 * range);
+}
+
+void print(const CompareArguments& a, HeatMap map, const Difference& difference) {
+  const PictureError& e = difference.figures;
   if (a.json) {
-    const nlohmann::json json = {{"picture", a.picture.string()},
-                                 {"reference", a.reference.string()},
-                                 {"noiseFree", !a.reference2.empty()},
-                                 {"pixels", e.pixels},
-                                 {"pixelsApart", e.pixels_apart},
-                                 {"relativeRms", e.relative_rms},
-                                 {"relativeSquareError", e.relative_square_error},
-                                 {"bias", e.bias},
-                                 {"median", e.median},
-                                 {"percentile95", e.percentile_95},
-                                 {"percentile99", e.percentile_99},
-                                 {"max", e.largest}};
+    nlohmann::json json = {{"picture", a.picture.string()},
+                           {"reference", a.reference.string()},
+                           {"noiseFree", !a.reference2.empty()},
+                           {"pixels", e.pixels},
+                           {"pixelsApart", e.pixels_apart},
+                           {"relativeRms", e.relative_rms},
+                           {"relativeSquareError", e.relative_square_error},
+                           {"bias", e.bias},
+                           {"median", e.median},
+                           {"percentile95", e.percentile_95},
+                           {"percentile99", e.percentile_99},
+                           {"max", e.largest}};
+    if (!a.heat.empty())
+      json["heat"] = {{"file", a.heat.string()}, {"map", a.heat_map}, {"range", difference.range}};
     fmt::print("{}\n", json.dump(2));
     return;
   }
@@ -47,9 +59,16 @@ void print(const CompareArguments& a, const PictureError& e) {
              100.0 * e.bias[2]);
   fmt::print("  pixels        median {:.3f} %, 95th {:.3f} %, 99th {:.3f} %, max {:.3f} %\n",
              100.0 * e.median, 100.0 * e.percentile_95, 100.0 * e.percentile_99, 100.0 * e.largest);
+  if (!a.heat.empty()) fmt::print("  {}\n", heatLine(a, map, difference.range));
 }
 
 int runCompare(const CompareArguments& a) {
+  constexpr int kWrongUsage = 2;
+  const auto map = parseHeatMap(a.heat_map);
+  if (!map) {
+    reportError(map.error());
+    return kWrongUsage;
+  }
   const auto picture = spec::readExr(a.picture);
   if (!picture) return reportError(picture.error());
   const auto reference = spec::readExr(a.reference);
@@ -60,9 +79,13 @@ int runCompare(const CompareArguments& a) {
     if (!second) return reportError(second.error());
     reference2 = std::move(*second);
   }
-  const auto error = comparePictures(*picture, *reference, reference2, a.picture.string());
-  if (!error) return reportError(error.error());
-  print(a, *error);
+  const auto difference = differenceOf(*picture, *reference, reference2 ? &*reference2 : nullptr,
+                                       {.map = *map, .range = a.heat_range}, a.picture.string());
+  if (!difference) return reportError(difference.error());
+  if (!a.heat.empty())
+    if (auto written = spec::writePng(a.heat, difference->heat); !written)
+      return reportError(written.error());
+  print(a, *map, *difference);
   return 0;
 }
 
@@ -77,6 +100,22 @@ void addCompareCommand(CLI::App& app, Command& run) {
       ->add_option("--reference2", a->reference2,
                    "A second, independent reference: cancels the noise of both")
       ->type_name("EXR");
+  command
+      ->add_option("--heat", a->heat,
+                   "Write where they differ as colours. Grey: neither shows the\nscene, violet: one of them")
+      ->type_name("PNG");
+  command
+      ->add_option(
+          "--heat-map", a->heat_map,
+          "signed: luminance relative to the reference's, blue too dark,\nred too bright. magnitude: of "
+          "the difference, relative to the\nreference's RMS over the picture")
+      ->capture_default_str()
+      ->type_name("MAP");
+  command
+      ->add_option("--heat-range", a->heat_range,
+                   "Where the colours end, as a share (0.1: 10 %; default: by the\npicture)")
+      ->check(CLI::PositiveNumber)
+      ->type_name("SHARE");
   command->add_flag("--json", a->json, "Print figures as JSON");
   command->callback([a, &run] { run = [a] { return runCompare(*a); }; });
 }

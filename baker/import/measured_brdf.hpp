@@ -1,6 +1,6 @@
-// Isotropic BRDFs measured at scattered directions (the Cornell Graphics Lab's text files, .brdf): read, brought from
-// spectra to linear Rec.709, kept as they stand. Materials name them by `extras.lambent.brdf`, a path beside the glTF
-// file.
+// Isotropic BRDFs measured at scattered directions (the Cornell Graphics Lab's text files, .brdf): read,
+// brought from spectra to linear Rec.709, kept as they stand. Materials name them by `extras.lambent.brdf`, a
+// path beside the glTF file.
 #pragma once
 
 #include <filesystem>

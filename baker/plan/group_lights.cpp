@@ -2,9 +2,6 @@
 
 #include <algorithm>
 
-#include <glm/gtc/matrix_transform.hpp>
-#include <glm/matrix.hpp>
-
 namespace lambent::baker {
 
 std::int32_t groupRootOf(const Scene& scene, std::uint32_t node) {
@@ -39,15 +36,12 @@ std::vector<PlannedLight> findGroupLights(const Scene& scene, const RigidGroup& 
       lights.push_back({PlannedLight::Kind::Material, index, source.emissive, glm::mat4(1.0f)});
   }
   const std::vector<glm::mat4> world = gltf::worldTransforms(scene.nodes);
-  const glm::mat4 world_from_group =
-      glm::translate(glm::mat4(1.0f), group.rest_translation) * glm::mat4_cast(group.rest_rotation);
   for (std::uint32_t n = 0; n < scene.nodes.size(); ++n) {
     if (scene.nodes[n].light < 0 || groupRootOf(scene, n) != group.root) continue;
     const gltf::Light& light = scene.lights[static_cast<std::size_t>(scene.nodes[n].light)];
     const glm::vec3 color = light.intensity * light.color;
     if (!isLit(color)) continue;
-    lights.push_back({PlannedLight::Kind::Node, n, color,
-                      group.root < 0 ? world[n] : glm::inverse(world_from_group) * world[n]});
+    lights.push_back({PlannedLight::Kind::Node, n, color, groupFromNode(scene, group, n, world)});
   }
   return lights;
 }

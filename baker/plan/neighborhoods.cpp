@@ -1,5 +1,6 @@
 #include "baker/plan/neighborhoods.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>
@@ -7,6 +8,7 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
+#include <glm/matrix.hpp>
 
 #include "baker/plan/motion.hpp"
 
@@ -24,6 +26,13 @@ constexpr std::size_t kLooks = 128;           // triangles and vertices that are
 struct Triangles {
   std::vector<glm::vec3> corners;  // three by three, in the frame of a node
   std::uint32_t node = 0;
+  bool two_sided = false, glossy = false;
+};
+
+// Surfaces in a body's reach.
+struct Within {
+  Box box;
+  FacingArea facing{};
 };
 
 // A convex polygon of at most 3 + 6 corners.
@@ -45,8 +54,9 @@ void clip(Polygon& polygon, int axis, float at, float sign) {
   polygon = out;
 }
 
-// Adds what of the triangle lies in the box.
-void addWithin(const std::array<glm::vec3, 3>& triangle, const Box& box, Box& sum) {
+// Adds what of the triangle lies in the box. mirrored: its corners run the other way round.
+void addWithin(const std::array<glm::vec3, 3>& triangle, const Triangles& of, bool mirrored, const Box& box,
+               Within& sum) {
   const glm::vec3 low = glm::min(glm::min(triangle[0], triangle[1]), triangle[2]),
                   high = glm::max(glm::max(triangle[0], triangle[1]), triangle[2]);
   if (!Box{low, high}.meets(box, 0.0f)) return;
@@ -56,7 +66,22 @@ void addWithin(const std::array<glm::vec3, 3>& triangle, const Box& box, Box& su
     clip(polygon, axis, box.high[axis], 1.0f);
     clip(polygon, axis, box.low[axis], -1.0f);
   }
-  for (std::size_t i = 0; i < polygon.count; ++i) sum.add(polygon.corners[i]);
+  glm::vec3 twice(0.0f);
+  for (std::size_t i = 0; i < polygon.count; ++i) {
+    sum.box.add(polygon.corners[i]);
+    if (i >= 2)
+      twice +=
+          glm::cross(polygon.corners[i - 1] - polygon.corners[0], polygon.corners[i] - polygon.corners[0]);
+  }
+  const float length = glm::length(twice), area = 0.5f * length;
+  if (!(length > 0.0f)) return;
+  const glm::vec3 normal = (mirrored ? -1.0f : 1.0f) / length * twice;
+  if (of.glossy) {
+    addFacingAnywhere(sum.facing, area);
+  } else {
+    addFacing(sum.facing, normal, area);
+    if (of.two_sided) addFacing(sum.facing, -normal, area);
+  }
 }
 
 class Planner {
@@ -144,13 +169,24 @@ class Planner {
     return std::nullopt;
   }
 
+  bool glossy(const PlannedDraw& draw) const {
+    const std::int32_t material = scene_.meshes[draw.mesh].primitives[draw.primitive].material;
+    return material >= 0 && !scene_.materials[static_cast<std::size_t>(material)].matte();
+  }
+
   std::vector<Triangles> trianglesOf(std::size_t group) const {
     std::vector<Triangles> out;
-    for (const PlannedDraw& draw : groups_[group].draws) {
+    const std::vector<PlannedDraw>& draws = groups_[group].draws;
+    for (const PlannedDraw& draw : draws) {
       if (draw.back) continue;
       const bundle::MeshData& mesh = scene_.meshes[draw.mesh].primitives[draw.primitive].mesh;
       Triangles& part = out.emplace_back();
       part.node = draw.node;
+      part.glossy = glossy(draw);
+      part.two_sided = std::any_of(draws.begin(), draws.end(), [&](const PlannedDraw& other) {
+        return other.back && other.node == draw.node && other.mesh == draw.mesh &&
+               other.primitive == draw.primitive;
+      });
       for (const std::uint32_t index : mesh.indices) part.corners.push_back(mesh.positions[index]);
     }
     return out;
@@ -158,13 +194,14 @@ class Planner {
 
   void findReceivers(std::size_t k) {
     PlannedNeighborhood& plan = plans_[k];
-    Box within;  // group frame
+    Within within;  // group frame
     for (std::size_t other = 0; other < groups_.size(); ++other) {
       if (other == k || groups_[other].draws.empty()) continue;
-      Box own;
+      Within own;
       addReceiver(k, other, own);
-      if (own.empty()) continue;
-      within.add(own.low), within.add(own.high);
+      if (own.box.empty()) continue;
+      within.box.add(own.box.low), within.box.add(own.box.high);
+      for (std::size_t i = 0; i < own.facing.size(); ++i) within.facing[i] += own.facing[i];
       plan.receivers.push_back(static_cast<std::uint32_t>(other));
       if (plan.asked || groups_[k].volume >= 0)
         plan.matrices = plan.matrices || hasFineTransfer(other, boxOf(moments_.front(), k).halfSize());
@@ -174,12 +211,13 @@ class Planner {
       plan.reason += ", but no other group has surfaces in its reach";
       return;
     }
-    plan.receivers_min = within.low;
-    plan.receivers_max = within.high;
+    plan.receivers_min = within.box.low;
+    plan.receivers_max = within.box.high;
+    plan.receivers_face = within.facing;
   }
 
   // Adds the surfaces of `other` in k's reach, at all times, in k's frame.
-  void addReceiver(std::size_t k, std::size_t other, Box& sum) const {
+  void addReceiver(std::size_t k, std::size_t other, Within& sum) const {
     const RigidGroup& group = groups_[k];
     const std::vector<Triangles> parts = trianglesOf(other);
     std::size_t triangles = 1;
@@ -209,12 +247,13 @@ class Planner {
       reach.low -= kReach * box.halfSize(), reach.high += kReach * box.halfSize();
       for (const Triangles& part : parts) {
         const glm::mat4 group_from_node = group_from_world * moment.world[part.node];
+        const bool mirrored = glm::determinant(glm::mat3(group_from_node)) < 0.0f;
         for (std::size_t i = 0; i + 2 < part.corners.size(); i += 3) {
           std::array<glm::vec3, 3> triangle;
           for (std::size_t c = 0; c < 3; ++c)
             triangle[c] = glm::vec3(group_from_node * glm::vec4(part.corners[i + c], 1.0f));
           if (std::isfinite(glm::dot(triangle[0] + triangle[1] + triangle[2], glm::vec3(1.0f))))
-            addWithin(triangle, reach, sum);
+            addWithin(triangle, part, mirrored, reach, sum);
         }
       }
     }
@@ -224,12 +263,9 @@ class Planner {
   bool hasFineTransfer(std::size_t other, float half_size) const {
     std::vector<std::array<glm::vec3, 3>> triangles;
     double edges = 0.0;
-    bool glossy = false;
-    for (const PlannedDraw& draw : groups_[other].draws) {
-      const std::int32_t material = scene_.meshes[draw.mesh].primitives[draw.primitive].material;
-      glossy = glossy || (material >= 0 && !scene_.materials[static_cast<std::size_t>(material)].matte());
-    }
+    bool any_glossy = false;
     for (const Triangles& part : trianglesOf(other)) {
+      any_glossy = any_glossy || part.glossy;
       const glm::mat4& world = moments_.front().world[part.node];
       for (std::size_t i = 0; i + 2 < part.corners.size(); i += 3) {
         auto& triangle = triangles.emplace_back();
@@ -240,7 +276,7 @@ class Planner {
       }
     }
     if (triangles.empty()) return false;
-    if (glossy) return true;
+    if (any_glossy) return true;
     if (edges / (3.0 * static_cast<double>(triangles.size())) > double{kFineEdge * half_size}) return false;
     return shadowsItself(triangles);
   }

@@ -12,6 +12,7 @@
 #include <glm/vec3.hpp>
 
 #include "baker/import/scene.hpp"
+#include "baker/plan/facing_area.hpp"
 #include "baker/plan/rigid_groups.hpp"
 
 namespace lambent::baker {
@@ -30,6 +31,7 @@ struct PlannedNeighborhood {
   bool matrices = false;
   std::vector<std::uint32_t> receivers;                // groups whose surfaces come within reach
   glm::vec3 receivers_min{0.0f}, receivers_max{0.0f};  // of those surfaces, there; group frame
+  FacingArea receivers_face{};  // how they face; of glossy ones, which show what is far off too, anywhere
 
   bool carries(std::size_t group) const {
     return baked && std::find(receivers.begin(), receivers.end(), group) != receivers.end();

@@ -1,10 +1,11 @@
 #include "baker/plan/rigid_groups.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include <Eigen/Geometry>
 #include <Eigen/SVD>
-#include <glm/gtc/matrix_transform.hpp>
+#include <glm/gtc/quaternion.hpp>
 
 namespace lambent::baker {
 
@@ -23,6 +24,20 @@ glm::quat polarRotation(const glm::mat4& world) {
   const Eigen::Quaterniond q(rotation);
   return glm::normalize(glm::quat(static_cast<float>(q.w()), static_cast<float>(q.x()),
                                   static_cast<float>(q.y()), static_cast<float>(q.z())));
+}
+
+// What of the root's world matrix its rotation leaves over: stretch. Taken to a millionth of each axis, so
+// that the rounding of a turned or carried root does not show: what is baked for it is found again.
+glm::dmat3 stretchOf(const glm::mat4& world, const glm::quat& rotation) {
+  constexpr int kBits = 20;
+  glm::dmat3 stretch = glm::transpose(glm::mat3_cast(glm::dquat(rotation))) * glm::dmat3(glm::mat3(world));
+  for (int column = 0; column < 3; ++column) {
+    const double length = glm::length(stretch[column]);
+    if (!(length > 0.0 && std::isfinite(length))) continue;
+    const double step = std::exp2(std::ceil(std::log2(length) - 1e-3) - kBits);
+    stretch[column] = glm::round(stretch[column] / step) * step + 0.0;
+  }
+  return stretch;
 }
 
 class GroupFinder {
@@ -81,10 +96,7 @@ class GroupFinder {
 
   void addDraws(std::uint32_t node, RigidGroup& group) {
     const auto mesh = static_cast<std::uint32_t>(scene_.nodes[node].mesh);
-    const glm::mat4 world_from_group =
-        glm::translate(glm::mat4(1.0f), group.rest_translation) * glm::mat4_cast(group.rest_rotation);
-    const glm::mat4 group_from_mesh =
-        group.root < 0 ? world_[node] : glm::inverse(world_from_group) * world_[node];
+    const glm::mat4 group_from_mesh = groupFromNode(scene_, group, node, world_);
     const auto& primitives = scene_.meshes[mesh].primitives;
     for (std::uint32_t p = 0; p < primitives.size(); ++p) {
       const std::int32_t material = primitives[p].material;
@@ -100,6 +112,20 @@ class GroupFinder {
 };
 
 }  // namespace
+
+glm::mat4 groupFromNode(const Scene& scene, const RigidGroup& group, std::uint32_t node,
+                        const std::vector<glm::mat4>& world) {
+  if (group.root < 0) return world[node];
+  glm::dmat4 root_from_node(1.0);
+  for (auto at = static_cast<std::int32_t>(node); at != group.root;) {
+    const gltf::Node& here = scene.nodes[static_cast<std::size_t>(at)];
+    root_from_node = glm::dmat4(here.parent_from_node) * root_from_node;
+    at = here.parent;
+  }
+  const glm::dmat4 group_from_root(
+      stretchOf(world[static_cast<std::size_t>(group.root)], group.rest_rotation));
+  return glm::mat4(group_from_root * root_from_node);
+}
 
 std::vector<RigidGroup> findRigidGroups(const Scene& scene) {
   return GroupFinder(scene).find();

@@ -42,6 +42,11 @@ inline bool startsRigidGroup(const gltf::Node& node) {
   return node.animated || node.movable;
 }
 
+// Where a node of a group stands in the group's frame. world: worldTransforms of the scene's nodes. Built
+// from the nodes below the root, so that it stays the same to the last bit while the group moves as a whole.
+glm::mat4 groupFromNode(const Scene& scene, const RigidGroup& group, std::uint32_t node,
+                        const std::vector<glm::mat4>& world);
+
 // Groups without geometry are left out. Draws come in the order of the scene graph; volumes come last, in the
 // order of Scene::volumes.
 std::vector<RigidGroup> findRigidGroups(const Scene& scene);

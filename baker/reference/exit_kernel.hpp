@@ -35,8 +35,8 @@ class FirstHit {
   glm::vec3 skyOfPair(const glm::vec3& dir) const;
   glm::vec3 mirrored(const glm::vec3& v) const;
 
-  // A unit direction above the plane, about in proportion to what the pair would send of the sky, and of light as
-  // bright as the sky is on average.
+  // A unit direction above the plane, about in proportion to what the pair would send of the sky, and of
+  // light as bright as the sky is on average.
   glm::vec3 sample(const glm::vec2& u) const;
   float pdf(const glm::vec3& dir) const;  // 0 below the plane
 

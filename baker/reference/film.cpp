@@ -107,10 +107,27 @@ glm::dvec3 Film::mean(std::size_t pixel) const {
 }
 
 spec::RgbaImage Film::image() const {
+  spec::RgbaImage image{
+      .width = size_.width, .height = size_.height, .texels = std::vector<glm::vec4>(pixels_.size())};
+  for (std::uint32_t y = 0; y < size_.height; ++y) putRow(y, image);
+  return image;
+}
+
+void Film::putRow(std::uint32_t y, spec::RgbaImage& image) const {
+  assert(image.width == size_.width && image.height == size_.height && done_[y] > 0);
+  for (std::size_t i = std::size_t{y} * size_.width, end = i + size_.width; i < end; ++i)
+    image.texels[i] = glm::vec4(glm::vec3(mean(i)), static_cast<float>(pixels_[i].alpha));
+}
+
+spec::RgbaImage Film::half(std::size_t replica) const {
   spec::RgbaImage image{.width = size_.width, .height = size_.height, .texels = {}};
   image.texels.reserve(pixels_.size());
-  for (std::size_t i = 0; i < pixels_.size(); ++i)
-    image.texels.emplace_back(glm::vec3(mean(i)), static_cast<float>(pixels_[i].alpha));
+  for (std::size_t i = 0; i < pixels_.size(); ++i) {
+    // Samples go to the first and the second in turn.
+    const double samples = (done_[i / size_.width] + (replica == 0 ? 1 : 0)) / 2;
+    image.texels.emplace_back(glm::vec3(pixels_[i].replicas[replica] / samples),
+                              static_cast<float>(pixels_[i].alpha));
+  }
   return image;
 }
 

@@ -37,6 +37,11 @@ class Film {
 
   // Mean radiance and coverage. Every row must have samples.
   spec::RgbaImage image() const;
+  // Into a picture of the same size.
+  void putRow(std::uint32_t y, spec::RgbaImage& image) const;
+  // The mean of one of the two replicas alone, 0 or 1: pictures with independent noise, whose mean is image()
+  // where they have as many samples each. Every row must have two samples.
+  spec::RgbaImage half(std::size_t replica) const;
 
   // Standard error of the picture's pixels, relative as `compare` has it: sqrt(sum of variances / sum of
   // squares) over the pixels that it counts; from the difference of the two replicas. None where a pixel has

@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <chrono>
 
+#include "baker/reference/camera.hpp"
 #include "baker/reference/digest.hpp"
 #include "baker/reference/film.hpp"
-#include "baker/reference/integrator.hpp"
-#include "baker/reference/volumes.hpp"
+#include "baker/reference/passes.hpp"
+#include "baker/reference/traced_scene.hpp"
 #include "baker/work/parallel.hpp"
 #include "runtime/base/atomic_file.hpp"
 #include "runtime/bundle/keyframes.hpp"
@@ -18,32 +19,10 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-constexpr std::uint32_t kPass = 16;  // samples of a pixel that walk together
-// With a band limit of the kernel, which each pass integrates anew.
-constexpr std::uint32_t kLimitedPass = 256;
-// With volumes: most paths end long before the last does.
-constexpr std::uint32_t kVolumePass = 64;
-// Rows between two looks at the clock and the stop token.
-constexpr std::uint32_t kRows = 32;
 constexpr auto kCheckpointEvery = std::chrono::seconds(10);
 
 double secondsSince(Clock::time_point begin) {
   return std::chrono::duration<double>(Clock::now() - begin).count();
-}
-
-// Rows [first, last) up to `samples` a pixel. False when stopped.
-bool renderRows(const Integrator& integrator, Film& film, std::uint32_t first, std::uint32_t last,
-                std::uint32_t samples, Progress& progress, const std::stop_token& stop) {
-  return parallelRanges(last - first, 1, stop, [&](std::size_t begin, std::size_t end) {
-    std::vector<PixelSum> row(film.size().width);
-    for (std::size_t r = begin; r < end; ++r) {
-      const std::uint32_t y = first + static_cast<std::uint32_t>(r), done = film.done(y);
-      if (done >= samples) continue;
-      for (std::uint32_t x = 0; x < row.size(); ++x) row[x] = integrator.pixel(x, y, done, samples - done);
-      film.addRow(y, samples - done, row);
-      progress.add(std::uint64_t{film.size().width} * (samples - done));
-    }
-  });
 }
 
 // Pass by pass over the picture, with a checkpoint every few seconds and when stopped.
@@ -59,8 +38,8 @@ Result<void> renderAll(const Integrator& integrator, Film& film, std::uint32_t s
     return film.save(checkpoint);
   };
   for (std::uint32_t pass = 0; pass < spp; pass += together)
-    for (std::uint32_t row = 0; row < film.size().height; row += kRows) {
-      const bool whole = renderRows(integrator, film, row, std::min(row + kRows, film.size().height),
+    for (std::uint32_t row = 0; row < film.size().height; row += kRowsAtOnce) {
+      const bool whole = addSamples(integrator, film, row, std::min(row + kRowsAtOnce, film.size().height),
                                     std::min(spp, pass + together), progress, stop);
       if (!whole || Clock::now() - saved > kCheckpointEvery)
         if (auto done = save(); !done) return done;
@@ -94,12 +73,62 @@ void takeUp(Film& film, const fs::path& checkpoint, bool force, Report& report) 
                            ": is damaged, or of another scene or other words; the picture is begun anew");
 }
 
+Result<Report> renderHere(const Scene& scene, const Request& request, const fs::path& output, bool force,
+                          Progress& progress, const std::stop_token& stop) {
+  const Options& options = request.options;
+  if (auto checked = checkOptions(options); !checked) return failAgain(std::move(checked.error()));
+  if (auto checked = checkOutput(output); !checked) return failAgain(std::move(checked.error()));
+  Report report;
+  // the light, and the scene in world space
+  progress.begin("scene");
+  auto lights = spec::loadDistantLights(request.lights);
+  if (!lights) return failAgain(std::move(lights.error()));
+  report.notices = lights->notices;
+  const std::vector<spec::LocalLight> shapes = spec::localLights(request.lights);
+  const auto traced = TracedScene::build(scene);
+  if (!traced) return failAgain(traced.error());
+  report.notices.insert(report.notices.end(), (*traced)->notices().begin(), (*traced)->notices().end());
+  const auto view = viewOf(scene, (*traced)->surfaces(), request);
+  if (!view) return failAgain(view.error());
+  Film film(options.size, digestOf(scene, *lights, shapes, *view, options));
+  const Environment environment(std::move(*lights), options.rotate_light_deg,
+                                options.band_limit ? options.band_limit->in : 0);
+  // what an earlier run has done
+  const fs::path checkpoint = checkpointOf(output);
+  takeUp(film, checkpoint, force, report);
+  std::uint64_t left = 0;
+  for (std::uint32_t y = 0; y < options.size.height; ++y)
+    left += std::uint64_t{options.size.width} * (options.spp - film.done(y));
+  // the paths
+  progress.begin("paths", left, "samples");
+  const World world = (*traced)->under(environment, shapes, EyeRays(*view, options.size));
+  auto done = renderAll(Integrator(world, options), film, options.spp, samplesInPass(options, world.volumes),
+                        checkpoint, progress, stop);
+  if (!done) return failAgain(std::move(done.error()));
+  report.image = film.image();
+  report.rays = film.rays();
+  report.seconds = film.seconds;
+  report.standard_error = film.standardError();
+  if (output.empty()) return report;
+  if (auto written = spec::writeExr(output, report.image); !written)
+    return failAgain(std::move(written.error()));
+  std::error_code ignored;
+  fs::remove(checkpoint, ignored);
+  return report;
+}
+
 }  // namespace
 
 void poseAt(Scene& scene, float time_s) {
   if (scene.animations.empty())
     scene.warnings.emplace_back("It has no animations: it looks the same at all times.");
   gltf::applyAnimations(scene.animations, time_s, scene.nodes);
+}
+
+Result<spec::View> viewOf(const Scene& scene, const Surfaces& surfaces, const Request& request) {
+  if (request.view) return *request.view;
+  return viewOf(scene, surfaces, request.nodes_at_rest.empty() ? scene.nodes : request.nodes_at_rest,
+                request.camera, request.options.size.aspect());
 }
 
 fs::path checkpointOf(const fs::path& output) {
@@ -111,66 +140,10 @@ fs::path checkpointOf(const fs::path& output) {
 
 Result<Report> render(const Scene& scene, const Request& request, const fs::path& output, bool force,
                       Progress& progress, const std::stop_token& stop) {
-  const Options& options = request.options;
-  if (auto checked = checkOptions(options); !checked) return failAgain(std::move(checked.error()));
-  if (auto checked = checkOutput(output); !checked) return failAgain(std::move(checked.error()));
-  Report report;
-  // the light, and the scene in world space
-  progress.begin("scene");
-  auto lights = spec::loadDistantLights(request.lights);
-  if (!lights) return failAgain(std::move(lights.error()));
-  report.notices = lights->notices;
-  const std::vector<spec::LocalLight> shapes = spec::localLights(request.lights);
-  auto surfaces = Surfaces::build(scene);
-  if (!surfaces) return failAgain(std::move(surfaces.error()));
-  const auto view =
-      viewOf(scene, *surfaces, request.nodes_at_rest.empty() ? scene.nodes : request.nodes_at_rest,
-             request.camera, options.size.aspect());
-  if (!view) return failAgain(view.error());
-  Film film(options.size, digestOf(scene, *lights, shapes, *view, options));
-  const Environment environment(std::move(*lights), options.rotate_light_deg,
-                                options.band_limit ? options.band_limit->in : 0);
-  const EmissiveTriangles emissive(*surfaces);
-  const std::vector<PunctualLight> punctual = punctualLights(scene);
-  const Volumes volumes = Volumes::build(scene, report.notices);
-  // what an earlier run has done
-  const fs::path checkpoint = checkpointOf(output);
-  takeUp(film, checkpoint, force, report);
-
-  Result<void> done;
-  withThreads(options.threads, [&] {
-    auto rays = RayTracer::build(*surfaces);
-    if (!rays) {
-      done = failAgain(std::move(rays.error()));
-      return;
-    }
-    const World world{.surfaces = *surfaces,
-                      .rays = *rays,
-                      .environment = environment,
-                      .emissive = emissive,
-                      .punctual = punctual,
-                      .shapes = shapes,
-                      .volumes = volumes,
-                      .eye = EyeRays(*view, options.size)};
-    std::uint64_t left = 0;
-    for (std::uint32_t y = 0; y < options.size.height; ++y)
-      left += std::uint64_t{options.size.width} * (options.spp - film.done(y));
-    progress.begin("paths", left, "samples");
-    const bool limited = options.band_limit && options.band_limit->out;
-    const std::uint32_t together = limited ? kLimitedPass : volumes.empty() ? kPass : kVolumePass;
-    done = renderAll(Integrator(world, options), film, options.spp, together, checkpoint, progress, stop);
-  });
+  Result<Report> report;
+  withThreads(request.options.threads,
+              [&] { report = renderHere(scene, request, output, force, progress, stop); });
   progress.end();
-  if (!done) return failAgain(std::move(done.error()));
-  report.image = film.image();
-  report.rays = film.rays();
-  report.seconds = film.seconds;
-  report.standard_error = film.standardError();
-  if (output.empty()) return report;
-  if (auto written = spec::writeExr(output, report.image); !written)
-    return failAgain(std::move(written.error()));
-  std::error_code ignored;
-  fs::remove(checkpoint, ignored);
   return report;
 }
 

@@ -21,12 +21,15 @@
 
 namespace lambent::baker::reference {
 
+class Surfaces;
+
 struct Request {
   std::vector<spec::Light> lights = {};
   std::optional<spec::Camera> camera = {};  // none: the file's first, else an orbit that frames the scene
   Options options = {};
   // Where the scene's nodes stand before poseAt, by which orbits stand; empty: where they stand now.
   std::vector<gltf::Node> nodes_at_rest = {};
+  std::optional<spec::View> view = {};  // counts instead of a camera: an eye that moves freely
 };
 
 struct Report {
@@ -43,6 +46,9 @@ struct Report {
 void poseAt(Scene& scene, float time_s);
 
 std::filesystem::path checkpointOf(const std::filesystem::path& output);
+
+// Where the request's eye is; the picture's size tells the aspect of a camera.
+Result<spec::View> viewOf(const Scene& scene, const Surfaces& surfaces, const Request& request);
 
 // Of the scene as its nodes stand. Without output: neither a checkpoint nor a picture on disk. force: an
 // earlier checkpoint does not count. Errors: options, a probe, a texture, no such camera, an output that

@@ -1,18 +1,21 @@
 #include "baker/refine/refine.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <functional>
 #include <numeric>
 #include <optional>
 #include <unordered_map>
 
 #include <glm/geometric.hpp>
 
+#include "baker/cache/kept_ranges.hpp"
 #include "baker/refine/marked_edges.hpp"
 #include "baker/refine/shadow_probe.hpp"
+#include "baker/transport/geometry_key.hpp"
 #include "baker/transport/samples.hpp"
 #include "baker/transport/vertex_key.hpp"
-#include "baker/work/parallel.hpp"
 
 namespace lambent::baker {
 
@@ -21,6 +24,7 @@ namespace {
 // A triangle is probed at n² points, where its longest edge is n times this share of the group's diagonal.
 constexpr float kProbeSpacing = 1.0f / 24.0f;
 constexpr int kMostProbesAlong = 8;
+constexpr std::size_t kPointsPerRange = 64;  // that are probed
 // Nothing is split below this share of the diagonal.
 constexpr float kShortestEdge = 1.0f / 1024.0f;
 // Of a triangle that is split, edges of at least this share of its longest.
@@ -55,20 +59,25 @@ class GroupRefiner {
  public:
   explicit GroupRefiner(const ShadowProbe& probe) : probe_(probe) {}
 
-  Result<void> prepare(const GroupGeometry& geometry, const Scene& scene,
-                       const std::vector<std::shared_ptr<const AlphaMap>>& alpha_maps) {
-    auto rays = RayScene::build(geometry, scene, alpha_maps);
-    if (!rays) return failAgain(rays.error());
-    rays_ = std::move(*rays);
+  // alpha_maps outlive this. The geometry is that before any split: rays are traced against it in all rounds.
+  void prepare(const GroupGeometry& geometry, const Scene& scene,
+               const std::vector<std::shared_ptr<const AlphaMap>>& alpha_maps, Cache* cache) {
     diagonal_ = glm::distance(geometry.bounds_min, geometry.bounds_max);
-    return {};
+    build_rays_ = [geometry, &scene, &alpha_maps] { return RayScene::build(geometry, scene, alpha_maps); };
+    KeyMaker key = KeyMaker::ofStage("refinement probes");
+    if (cache) {
+      addShape(geometry, key);
+      addOpacity(scene, geometry, key);
+    }
+    keep_ = {cache, key.add(std::uint64_t{probe_.rays()}).key()};
   }
 
-  // Area times square error of every triangle. False when stopped.
-  bool measure(const GroupGeometry& geometry, Progress& progress, const std::stop_token& stop);
+  // Area times square error of every triangle. Errors: no memory for the hierarchy. False when stopped.
+  Result<bool> measure(const GroupGeometry& geometry, Progress& progress, const std::stop_token& stop);
 
   double relativeError() const { return area_ > 0.0 ? std::sqrt(square_error_ / area_) : 0.0; }
   std::uint64_t raysTraced() const { return traced_; }
+  std::uint64_t raysKept() const { return rays_kept_; }
 
   // Marks edges of the worst triangles, until the rest is within the bound or `room` new vertices are spent.
   // Returns how many edges were marked.
@@ -84,16 +93,20 @@ class GroupRefiner {
   };
   std::uint32_t shadowAt(const glm::vec3& position, const glm::vec3& normal, SampleKind kind,
                          std::span<const SampleOrigin> origins, std::vector<Point>& missing);
+  // Fills in shadows_ at the missing points.
+  Result<bool> probe(const std::vector<Point>& missing, Progress& progress, const std::stop_token& stop);
 
   const ShadowProbe& probe_;
-  std::optional<RayScene> rays_;
+  Keep keep_;  // of the geometry that rays are traced against
+  std::function<Result<RayScene>()> build_rays_;
+  std::optional<RayScene> rays_;  // once something was not found
   float diagonal_ = 0.0f;
   // Where shadows were probed: triangles come and go, surfaces stay where they are.
   std::unordered_map<VertexKey, std::uint32_t, VertexKeyHash> known_;
   std::vector<Shadow> shadows_;
   std::vector<double> triangle_error_;
   double square_error_ = 0.0, area_ = 0.0;
-  std::uint64_t traced_ = 0;
+  std::uint64_t traced_ = 0, rays_kept_ = 0;
 };
 
 std::uint32_t GroupRefiner::shadowAt(const glm::vec3& position, const glm::vec3& normal, SampleKind kind,
@@ -109,7 +122,55 @@ float longestEdge(const GroupGeometry& geometry, const glm::uvec3& t) {
   return std::max({glm::distance(a, b), glm::distance(b, c), glm::distance(c, a)});
 }
 
-bool GroupRefiner::measure(const GroupGeometry& geometry, Progress& progress, const std::stop_token& stop) {
+Result<bool> GroupRefiner::probe(const std::vector<Point>& missing, Progress& progress,
+                                 const std::stop_token& stop) {
+  const std::size_t first = shadows_.size();  // of the missing ones, which are in order
+  shadows_.resize(first + missing.size());
+  Keep keep = keep_;
+  if (keep.cache) {
+    KeyMaker key;
+    key.add(keep_.key);
+    for (const Point& point : missing) key.add(point.normal).add(point.kind).addList(point.origins);
+    keep.key = key.key();
+  }
+  const auto unpack = [&](std::size_t begin, std::size_t end, ByteReader& in) {
+    return in.readInto(std::span(shadows_).subspan(first + begin, end - begin));
+  };
+  const std::uint64_t rays = missing.size() * probe_.rays();
+  if (restoreRanges(keep, missing.size(), kPointsPerRange, unpack)) {
+    progress.add(missing.size());
+    rays_kept_ += rays;
+    return true;
+  }
+  if (!rays_) {
+    auto built = build_rays_();
+    if (!built) return failAgain(built.error());
+    rays_ = std::move(*built);
+  }
+  std::atomic<std::uint64_t> traced = 0;
+  const KeptRanges kept =
+      keptRanges(keep, missing.size(), kPointsPerRange, stop,
+                 {.compute =
+                      [&](std::size_t begin, std::size_t end) {
+                        for (std::size_t i = begin; i < end; ++i) {
+                          const Point& point = missing[i];
+                          shadows_[point.shadow] = probe_.at(*rays_, point.origins, point.normal, point.kind);
+                        }
+                        traced += (end - begin) * probe_.rays();
+                        progress.add(end - begin);
+                      },
+                  .pack =
+                      [&](std::size_t begin, std::size_t end, ByteWriter& out) {
+                        out.addList(std::span<const Shadow>(shadows_).subspan(first + begin, end - begin));
+                      },
+                  .unpack = unpack});
+  traced_ += traced;
+  rays_kept_ += rays - traced;
+  return kept.finished;
+}
+
+Result<bool> GroupRefiner::measure(const GroupGeometry& geometry, Progress& progress,
+                                   const std::stop_token& stop) {
   const SampleSet samples = buildSamples(geometry);
   std::vector<Point> missing;
   std::vector<std::uint32_t> of_sample(samples.size());
@@ -147,16 +208,7 @@ bool GroupRefiner::measure(const GroupGeometry& geometry, Progress& progress, co
     }
   }
 
-  shadows_.resize(shadows_.size() + missing.size());
-  const bool finished = parallelRanges(missing.size(), 64, stop, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const Point& point = missing[i];
-      shadows_[point.shadow] = probe_.at(*rays_, point.origins, point.normal, point.kind);
-    }
-    progress.add(end - begin);
-  });
-  if (!finished) return false;
-  traced_ += missing.size() * probe_.rays();
+  if (auto probed = probe(missing, progress, stop); !probed || !*probed) return probed;
 
   triangle_error_.assign(geometry.triangles.size(), 0.0);
   square_error_ = area_ = 0.0;
@@ -221,13 +273,75 @@ std::size_t countVertices(const std::vector<std::vector<bundle::MeshData>>& mesh
   return count;
 }
 
+// What the outcome depends on: all of the meshes, since splits carry all that they have along.
+Key outcomeKey(const Scene& scene, const std::vector<RigidGroup>& groups,
+               const std::vector<GroupGeometry>& geometries, bool with_glossy, const RefineOptions& options,
+               const std::vector<std::vector<bundle::MeshData>>& meshes) {
+  KeyMaker key = KeyMaker::ofStage("refinement");
+  key.add(with_glossy).add(options.bound).add(std::uint64_t{options.rays}).add(options.rounds);
+  key.add(options.most_growth).add(std::uint64_t{options.most_added});
+  key.add(std::uint64_t{options.most_vertices}).add(std::uint64_t{meshes.size()});
+  for (const auto& primitives : meshes) {
+    key.add(std::uint64_t{primitives.size()});
+    for (const bundle::MeshData& mesh : primitives) addMesh(mesh, key);
+  }
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    key.add(std::uint64_t{groups[g].draws.size()});
+    for (const PlannedDraw& draw : groups[g].draws)
+      key.add(draw.mesh).add(draw.primitive).add(draw.back).add(draw.group_from_mesh);
+    addShape(geometries[g], key);
+    addOpacity(scene, geometries[g], key);
+  }
+  return key.key();
+}
+
+void writeOutcome(const RefineReport& report, const std::vector<std::vector<bundle::MeshData>>& meshes,
+                  ByteWriter& out) {
+  out.add(std::uint64_t{report.vertices_before}), out.add(std::uint64_t{report.vertices_after});
+  out.add(report.error_before), out.add(report.error_after), out.add(report.rays + report.rays_kept);
+  for (const auto& primitives : meshes)
+    for (const bundle::MeshData& mesh : primitives) writeMesh(mesh, out);
+}
+
+bool readOutcome(ByteReader& in, RefineReport& report, std::vector<std::vector<bundle::MeshData>>& meshes) {
+  std::uint64_t before = 0, after = 0;
+  in.read(before), in.read(after), in.read(report.error_before), in.read(report.error_after);
+  in.read(report.rays_kept);
+  std::vector<std::vector<bundle::MeshData>> found;
+  for (const auto& primitives : meshes) {
+    found.emplace_back(primitives.size());
+    for (bundle::MeshData& mesh : found.back())
+      if (!readMesh(in, mesh)) return false;
+  }
+  if (!in.atEnd()) return false;
+  report.vertices_before = before, report.vertices_after = after;
+  meshes = std::move(found);
+  return true;
+}
+
 }  // namespace
 
 Result<RefineReport> refineMeshes(const Scene& scene, const std::vector<RigidGroup>& groups,
                                   const std::vector<std::shared_ptr<const AlphaMap>>& alpha_maps,
                                   bool with_glossy, const RefineOptions& options,
                                   std::vector<std::vector<bundle::MeshData>>& meshes, Progress& progress,
-                                  const std::stop_token& stop) {
+                                  const std::stop_token& stop, Cache* cache) {
+  progress.begin("refinement", 0, "probes");
+  std::vector<GroupGeometry> geometries;
+  const auto build = [&] {
+    geometries.clear();
+    for (const RigidGroup& group : groups)
+      geometries.push_back(buildGroupGeometry(group, scene, meshes, with_glossy));
+  };
+  build();
+  Keep outcome{cache, {}};
+  if (cache) {
+    outcome.key = outcomeKey(scene, groups, geometries, with_glossy, options, meshes);
+    if (const auto bytes = cache->find(outcome.key)) {
+      ByteReader in(*bytes);
+      if (RefineReport found; readOutcome(in, found, meshes)) return found;
+    }
+  }
   RefineReport report;
   report.vertices_before = countVertices(meshes);
   const auto grown =
@@ -238,19 +352,15 @@ Result<RefineReport> refineMeshes(const Scene& scene, const std::vector<RigidGro
   std::vector<GroupRefiner> refiners;
   for (std::size_t g = 0; g < groups.size(); ++g) refiners.emplace_back(probe);
 
-  progress.begin("refinement", 0, "probes");
   for (int round = 0;; ++round) {
-    std::vector<GroupGeometry> geometries;
-    for (const RigidGroup& group : groups)
-      geometries.push_back(buildGroupGeometry(group, scene, meshes, with_glossy));
+    if (round > 0) build();
     report.error_after = 0.0;
     for (std::size_t g = 0; g < groups.size(); ++g) {
       if (groups[g].draws.empty()) continue;
-      if (round == 0)
-        if (auto prepared = refiners[g].prepare(geometries[g], scene, alpha_maps); !prepared)
-          return failAgain(prepared.error());
-      if (!refiners[g].measure(geometries[g], progress, stop))
-        return fail(scene.source.string(), "stopped; nothing was written");
+      if (round == 0) refiners[g].prepare(geometries[g], scene, alpha_maps, cache);
+      const auto measured = refiners[g].measure(geometries[g], progress, stop);
+      if (!measured) return failAgain(measured.error());
+      if (!*measured) return fail(scene.source.string(), "stopped; nothing was written");
       report.error_after = std::max(report.error_after, refiners[g].relativeError());
     }
     if (round == 0) report.error_before = report.error_after;
@@ -264,7 +374,13 @@ Result<RefineReport> refineMeshes(const Scene& scene, const std::vector<RigidGro
     if (marked == 0) break;
     edges.split(meshes);
   }
-  for (const GroupRefiner& refiner : refiners) report.rays += refiner.raysTraced();
+  for (const GroupRefiner& refiner : refiners)
+    report.rays += refiner.raysTraced(), report.rays_kept += refiner.raysKept();
+  if (cache) {
+    ByteWriter out;
+    writeOutcome(report, meshes, out);
+    cache->put(outcome.key, out.bytes());
+  }
   return report;
 }
 

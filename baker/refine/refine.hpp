@@ -10,6 +10,7 @@
 #include <stop_token>
 #include <vector>
 
+#include "baker/cache/cache.hpp"
 #include "baker/import/scene.hpp"
 #include "baker/plan/rigid_groups.hpp"
 #include "baker/transport/alpha_map.hpp"
@@ -32,15 +33,17 @@ struct RefineReport {
   std::size_t vertices_before = 0, vertices_after = 0;
   // Of the group that was worst: what interpolation over the triangles got wrong.
   double error_before = 0.0, error_after = 0.0;
-  std::uint64_t rays = 0;
+  std::uint64_t rays = 0;       // traced
+  std::uint64_t rays_kept = 0;  // that what was found in the cache stands for
 };
 
 // meshes[mesh][primitive], changed in place; the same primitives as the scene's. Draws of one mesh share its
-// splits. Errors: no memory for the hierarchy, "stopped". Deterministic for any number of threads.
+// splits. cache: may be null; keeps the outcome, and what was probed in each group. Errors: no memory for the
+// hierarchy, "stopped". Deterministic for any number of threads.
 Result<RefineReport> refineMeshes(const Scene& scene, const std::vector<RigidGroup>& groups,
                                   const std::vector<std::shared_ptr<const AlphaMap>>& alpha_maps,
                                   bool with_glossy, const RefineOptions& options,
                                   std::vector<std::vector<bundle::MeshData>>& meshes, Progress& progress,
-                                  const std::stop_token& stop);
+                                  const std::stop_token& stop, Cache* cache = nullptr);
 
 }  // namespace lambent::baker

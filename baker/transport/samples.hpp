@@ -19,6 +19,7 @@ namespace lambent::baker {
 
 inline constexpr float kPullIntoFace = 0.03f;            // share of the way to the face's centroid
 inline constexpr std::uint32_t kMaxCellSamples = 65536;  // "64 Ki samples" of the format
+inline constexpr std::uint32_t kNoSample = 0xffffffffu;  // of a vertex that is shown unshadowed
 
 // One place from which a sample's rays start.
 struct SampleOrigin {

@@ -26,4 +26,13 @@ void withThreads(unsigned threads, const std::function<void()>& job) {
   arena.execute(job);
 }
 
+void inBackground(unsigned threads, const std::function<void()>& job) {
+  const int most = tbb::info::default_concurrency();
+  const int limit =
+      threads == 0 ? std::max(most - 1, 1) : static_cast<int>(std::min(threads, static_cast<unsigned>(most)));
+  // One place is this thread's own, so that the job gets on even where all others are busy.
+  tbb::task_arena arena(limit, 1, tbb::task_arena::priority::low);
+  arena.execute(job);
+}
+
 }  // namespace lambent::baker

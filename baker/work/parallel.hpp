@@ -17,4 +17,8 @@ bool parallelRanges(std::size_t count, std::size_t grain, const std::stop_token&
 // has: as many as that.
 void withThreads(unsigned threads, const std::function<void()>& job);
 
+// As withThreads, for work beside something that must stay lively: the limit is this job's alone, and its
+// loops give way to those of other threads. 0: all of the machine but one, at least one.
+void inBackground(unsigned threads, const std::function<void()>& job);
+
 }  // namespace lambent::baker

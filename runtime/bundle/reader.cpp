@@ -113,7 +113,8 @@ Result<VertexRows> Reader::readRows(std::uint32_t index) const {
   // Samples stand by rising outputs.
   std::uint32_t first = 0;
   for (const Cell& cell : group.cells)
-    if (cell.kind == CellKind::Surface && cell.outputs() < draw.outputs) first = cell.first_sample + cell.sample_count;
+    if (cell.kind == CellKind::Surface && cell.outputs() < draw.outputs)
+      first = cell.first_sample + cell.sample_count;
   const std::uint32_t end = first + group.samplesWith(draw.outputs);
   const auto other = [&](std::uint32_t sample) { return sample < first || sample >= end; };
   if (std::any_of(rows->samples.begin(), rows->samples.end(), other))

@@ -8,6 +8,7 @@
 #include <glm/trigonometric.hpp>
 
 #include "runtime/scene/bounds.hpp"
+#include "runtime/scene/components.hpp"
 
 namespace lambent::demo {
 
@@ -37,13 +38,13 @@ scene::Box boundsOf(const frame::World& world) {
 // which is 0 for closed bodies and looks out of a stage or a room without a front.
 glm::vec3 openSide(const frame::World& world) {
   glm::vec3 sum(0.0f);
-  const auto& draws = world.residency().draws();
-  for (std::size_t i = 0; i < draws.size(); ++i) {
-    const bundle::Description& description = world.description(draws[i].bundle);
-    const bundle::Draw& draw = description.draws[draws[i].index];
+  for (auto [entity, draw] : world.registry().view<const scene::DrawItem>()) {
+    const bundle::Description& description = world.description(draw.bundle);
     const bundle::Primitive& primitive = description.meshes[draw.mesh].primitives[draw.primitive];
     const float side = draw.back ? -1.0f : 1.0f;  // two-sided surfaces cancel
-    const glm::mat3 world_from_mesh(world.worldFromMesh(i));
+    const auto* place = world.registry().tryGet<scene::WorldTransform>(draw.node);
+    if (!place) continue;
+    const glm::mat3 world_from_mesh(place->world_from_node);
     const float volume = glm::determinant(world_from_mesh);
     // Areas go by the matrix of cofactors; a mirror turns the winding back.
     if (volume != 0.0f)
@@ -73,7 +74,8 @@ Result<ViewController> ViewController::create(const frame::World& world,
     controller.orbit_ = std::get<spec::OrbitCamera>(*camera);
   } else {
     std::optional<Error> error;
-    for (std::size_t bundle = 0; bundle < world.bundleCount() && !controller.file_camera_; ++bundle) {
+    for (std::uint32_t bundle = 0; bundle < world.bundleCount() && !controller.file_camera_; ++bundle) {
+      if (!world.isOpen(bundle)) continue;
       const bundle::Description& description = world.description(bundle);
       if (!camera) {
         if (const auto node = firstCameraNode(description)) controller.file_camera_ = {bundle, *node};

@@ -52,25 +52,23 @@ Result<void> runHeadless(const Options& options) {
   Result<Stage> stage = Stage::create(options, std::move(*environment));
   if (!stage) return failAgain(stage.error());
   frame::World& world = stage->world();
+  const Result<ViewController> controller =
+      ViewController::create(world, options.camera, options.size.aspect());
+  if (!controller) return failAgain(controller.error());
+  const Result<spec::View> first_view = controller->view(world, options.size.aspect());
+  if (!first_view) return failAgain(first_view.error());
+  world.look(*first_view);
   gpu::Counters loading;
   if (Result<void> loaded = world.uploadAll(loading); !loaded) return loaded;
   report.load_ms = millisecondsSince(start);
 
-  const Result<ViewController> controller =
-      ViewController::create(world, options.camera, options.size.aspect());
-  if (!controller) return failAgain(controller.error());
-
   Result<frame::Frame> frame =
       frame::Frame::create({.size = options.size,
                             .output = options.linear ? frame::Output::Linear : frame::Output::Display,
-                            .transfer = options.transfer,
-                            .window = options.window,
-                            .residual = options.residual,
-                            .neighborhoods = options.neighborhoods,
-                            .exposure_ev = options.exposure_ev,
-                            .capture = options.capture,
-                            .captures_per_step = options.captures_per_frame,
-                            .wait_for_captures = true},
+                            .settings = options.settings,
+                            .wait_for_captures = true,
+                            .view = options.view,
+                            .overlays = options.overlays},
                            stage->environment());
   if (!frame) return failAgain(frame.error());
   const auto render = [&]() -> Result<void> {
@@ -115,6 +113,7 @@ Result<void> runHeadless(const Options& options) {
   if (!options.json) return {};
   report.bytes_resident = world.residency().bytesResident() + frame->volumeBytes();
   report.parts = world.loadedParts();
+  report.streaming = world.streaming();
   report.negative_pixels = frame->negativePixels();
   report.exposure_ev = frame->exposureEv();
   report.gl_errors = context->errors();

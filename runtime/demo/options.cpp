@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <map>
+#include <system_error>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -14,23 +15,12 @@ namespace lambent::demo {
 
 namespace {
 
-using effects::diffuse::TransferMode;
-
-const std::map<std::string, TransferMode> kTransferWords = {{"unshadowed", TransferMode::Unshadowed},
-                                                            {"shadowed", TransferMode::Shadowed},
-                                                            {"full", TransferMode::Full}};
-const std::map<std::string, sh::Window> kWindowWords = {
-    {"auto", sh::Window::Auto}, {"off", sh::Window::Off}, {"hann", sh::Window::Hann}};
-
-const std::map<std::string, bool> kSwitchWords = {{"off", false}, {"on", true}};
-
 // What CLI11 hands over, before the words are understood.
 struct Words {
   std::vector<std::string> bundles, lights, fade_lights;
-  std::string light_layout, camera, size = "1280x720", headless, transfer = "full", window = "auto",
-                                    residual = "on", neighborhoods = "on";
-  std::string rotate_light = "0", exposure = "auto", lamps = "1", fade = "0", time, step = "0.0333";
-  std::uint32_t capture_size = 16, capture_subsamples = 16, capture_order = 0, captures_per_frame = 16;
+  std::string light_layout, camera, size = "1280x720", headless, view = "final", overlay;
+  std::string rotate_light = "0", lamps = "1", fade = "0", time, step = "0.0333";
+  std::vector<std::string> settings;  // of the frame, a word for each row
   std::uint64_t max_memory = ~std::uint64_t{0};
   std::uint32_t frames = 1;
   bool json = false;
@@ -54,14 +44,12 @@ constexpr Row kRows[] = {
      "Write one picture (.png tone-mapped, .exr linear) without a display;\nwith a run of # in its name "
      "every "
      "frame: out-###.png"},
-    {"--transfer", &Words::transfer, "MODE",
-     "Light that counts: unshadowed, shadowed (no bounces) or full;\nunshadowed, the scenes' own lights are "
-     "dark"},
-    {"--window", &Words::window, "WINDOW", "Against ringing of the light: auto, off or hann"},
-    {"--residual", &Words::residual, "on|off",
-     "Glossy surfaces reflect what the bands of their light leave out\nof the sky"},
-    {"--neighborhoods", &Words::neighborhoods, "on|off",
-     "Bodies with grids around them shade others by these, off: by\ncaptures"},
+    {"--view", &Words::view, "NAME",
+     "What surfaces show: final, irradiance, transfer-dc,\ntransfer-band[:BAND], error, clusters, normals or "
+     "wireframe;\nan "
+     ".exr holds the numbers"},
+    {"--overlay", &Words::overlay, "LIST",
+     "Drawn over the picture: light-samples, neighborhoods[:AXIS,POSITION],\nvolumes, groups, lights"},
     {"--rotate-light", &Words::rotate_light, "DEG", "Turn all lights about +Y (+Z towards +X)"},
     {"--fade", &Words::fade, "SHARE", "From the lights of --light to those of --fade-to: 0..1"},
     {"--time", &Words::time, "S",
@@ -69,11 +57,27 @@ constexpr Row kRows[] = {
      "rest)"},
     {"--step", &Words::step, "S", "Seconds of animation from frame to frame, headless"},
     {"--lamps", &Words::lamps, "FACTOR", "Times the strength of the scenes' own lights; 0 switches them off"},
-    {"--exposure", &Words::exposure, "EV", "Stops above radiance 1 = white, or auto"},
 };
 
+// As help shows what an option takes.
+std::string typeOf(const frame::SettingRow& row) {
+  switch (row.kind) {
+    case frame::SettingRow::Kind::Switch:
+      return "on|off";
+    case frame::SettingRow::Kind::Choice:
+      return "WORD";
+    case frame::SettingRow::Kind::Whole:
+      return "N";
+    case frame::SettingRow::Kind::Real:
+      break;
+  }
+  return "NUMBER";
+}
+
 void declare(CLI::App& app, Words& words) {
-  app.add_option("BUNDLE", words.bundles, "Baked scenes to show (.lmb.glb)")->required()->type_name("");
+  app.add_option("BUNDLE", words.bundles, "Baked scenes to show (.lmb.glb), or folders of them")
+      ->required()
+      ->type_name("");
   app.add_option(
          "--light", words.lights,
          "Several add up: a probe file (.hdr, .exr), constant:R,G,B or\nsun:AZ,EL,ANGLE,R[,G,B] (degrees, "
@@ -91,21 +95,15 @@ void declare(CLI::App& app, Words& words) {
     CLI::Option* option = app.add_option(row.name, words.*row.field, row.help)->type_name(row.type);
     if (!(words.*row.field).empty()) option->capture_default_str();
   }
-  const auto number = [&](const char* name, std::uint32_t& value, std::uint32_t low, std::uint32_t high,
-                          const char* help) {
-    app.add_option(name, value, help)
-        ->type_name("N")
-        ->capture_default_str()
-        ->check(CLI::Range(low, high).description(""));
-  };
-  number("--capture-size", words.capture_size, 4, 64,
-         "Texels along an edge of the cube maps in which light between\nbodies is sampled");
-  number("--capture-subsamples", words.capture_subsamples, 1, 16, "Subsamples along an edge of such a texel");
-  number(
-      "--captures-per-frame", words.captures_per_frame, 1, 1'000'000,
-      "Light samples that are drawn anew in a frame at most; a picture\nwithout a window is of all of them");
-  number("--capture-order", words.capture_order, 0, 8,
-         "Bands of the light that is sampled; 0: the transfer's");
+  const frame::FrameSettings defaults;
+  for (const frame::SettingRow& row : frame::settingRows())
+    words.settings.push_back(frame::settingWord(row, defaults));
+  for (std::size_t i = 0; i < words.settings.size(); ++i) {
+    const frame::SettingRow& row = frame::settingRows()[i];
+    app.add_option("--" + std::string(row.name), words.settings[i], std::string(row.help))
+        ->type_name(typeOf(row))
+        ->capture_default_str();
+  }
   app.add_option("--frames", words.frames,
                  "Frames to render headless, the last one is written or, with # in\nthe name, every one; the "
                  "light turns through "
@@ -115,20 +113,12 @@ void declare(CLI::App& app, Words& words) {
       ->check(CLI::Range(1u, 1'000'000u).description(""));
   app.add_option(
          "--max-memory", words.max_memory,
-         "GPU memory for the scenes, in bytes or like 200MB; what has no\nroom is detail of the light "
-         "(default: no limit)")
+         "GPU memory for the scenes, in bytes or like 200MB; what the camera\nsees large comes first (default: no "
+         "limit)")
       ->type_name("BYTES")
       ->transform(CLI::AsSizeValue(/*kb_is_1000=*/false));
   app.add_flag("--json", words.json, "Report on stdout: times, counts, bytes resident");
   app.set_version_flag("--version", "lambent-demo " LAMBENT_VERSION);
-}
-
-template <typename T>
-Result<T> wordOf(const std::map<std::string, T>& words, const char* option, const std::string& word) {
-  if (const auto found = words.find(word); found != words.end()) return found->second;
-  std::string known;
-  for (const auto& [name, value] : words) known += (known.empty() ? "" : ", ") + name;
-  return fail(option, fmt::format("\"{}\" is not known", word), "give one of " + known);
 }
 
 Result<void> understandLights(const Words& words, Options& options) {
@@ -193,30 +183,42 @@ Result<void> understandPicture(const Words& words, Options& options) {
                   "name a .png (tone-mapped) or an .exr (linear)");
     options.linear = extension == ".exr";
   }
-  if (words.exposure != "auto") {
-    char* end = nullptr;
-    const float ev = std::strtof(words.exposure.c_str(), &end);
-    if (words.exposure.empty() || *end != '\0' || !(ev >= -64.0f && ev <= 64.0f))
-      return fail("--exposure", fmt::format("\"{}\" is not a number of stops", words.exposure),
-                  "give -64..64 or auto");
-    options.exposure_ev = ev;
-  }
   return {};
+}
+
+// The bundle, or those in the folder by name.
+Result<std::vector<std::filesystem::path>> bundlesIn(const std::filesystem::path& word) {
+  std::error_code error;
+  if (!std::filesystem::is_directory(word, error)) return std::vector{word};
+  std::vector<std::filesystem::path> found;
+  for (const auto& entry : std::filesystem::directory_iterator(word, error))
+    if (entry.path().string().ends_with(".lmb.glb")) found.push_back(entry.path());
+  if (error) return fail(word.string(), "cannot be read: " + error.message());
+  if (found.empty()) return fail(word.string(), "has no .lmb.glb in it", "bake a scene into it first");
+  std::ranges::sort(found);
+  return found;
 }
 
 Result<Options> understand(const Words& words) {
   Options options;
-  options.bundles.assign(words.bundles.begin(), words.bundles.end());
+  for (const std::string& word : words.bundles) {
+    const Result<std::vector<std::filesystem::path>> found = bundlesIn(word);
+    if (!found) return failAgain(found.error());
+    options.bundles.insert(options.bundles.end(), found->begin(), found->end());
+  }
   if (Result<void> done = understandLights(words, options); !done) return failAgain(done.error());
   if (Result<void> done = understandPicture(words, options); !done) return failAgain(done.error());
-  const Result<TransferMode> transfer = wordOf(kTransferWords, "--transfer", words.transfer);
-  if (!transfer) return failAgain(transfer.error());
-  const Result<sh::Window> window = wordOf(kWindowWords, "--window", words.window);
-  if (!window) return failAgain(window.error());
-  const Result<bool> residual = wordOf(kSwitchWords, "--residual", words.residual);
-  if (!residual) return failAgain(residual.error());
-  const Result<bool> neighborhoods = wordOf(kSwitchWords, "--neighborhoods", words.neighborhoods);
-  if (!neighborhoods) return failAgain(neighborhoods.error());
+  for (std::size_t i = 0; i < words.settings.size(); ++i)
+    if (Result<void> done =
+            frame::putSetting(options.settings, frame::settingRows()[i].name, words.settings[i]);
+        !done)
+      return failAgain(done.error());
+  const Result<frame::ViewChoice> view = frame::parseView(words.view);
+  if (!view) return fail("--view", view.error().problem, view.error().mend);
+  options.view = *view;
+  Result<frame::OverlayOptions> overlays = frame::parseOverlays(words.overlay);
+  if (!overlays) return fail("--overlay", overlays.error().problem, overlays.error().mend);
+  options.overlays = std::move(*overlays);
   const Result<float> turn = spec::parseDegrees(words.rotate_light);
   if (!turn) return failAgain(turn.error());
   const std::optional<float> lamps = spec::parseNumber(words.lamps);
@@ -231,17 +233,7 @@ Result<Options> understand(const Words& words) {
   const Result<float> step = understandSeconds("--step", words.step, 0.0f, 1e3f);
   if (!step) return failAgain(step.error());
   options.step_s = *step;
-  options.captures_per_frame = words.captures_per_frame;
-  options.capture = {.size = words.capture_size,
-                     .subsamples = words.capture_subsamples,
-                     .order = static_cast<int>(words.capture_order)};
   options.max_memory_bytes = words.max_memory;
-  options.transfer = *transfer;
-  options.transfer_word = words.transfer;
-  options.window = *window;
-  options.window_word = words.window;
-  options.residual = *residual;
-  options.neighborhoods = *neighborhoods;
   options.rotate_light_deg = *turn;
   options.frames = words.frames;
   options.json = words.json;

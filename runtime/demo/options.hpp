@@ -9,9 +9,9 @@
 #include <variant>
 #include <vector>
 
-#include "runtime/effects/diffuse/diffuse.hpp"
-#include "runtime/lighting/capture.hpp"
-#include "runtime/sh/window.hpp"
+#include "runtime/frame/frame_settings.hpp"
+#include "runtime/frame/overlay_options.hpp"
+#include "runtime/frame/views.hpp"
 #include "runtime/spec/camera.hpp"
 #include "runtime/spec/light.hpp"
 #include "runtime/spec/size.hpp"
@@ -30,20 +30,14 @@ struct Options {
   spec::Size size;
   std::optional<std::filesystem::path> headless;  // .png or .exr
   bool linear = false;                            // headless is .exr
-  effects::diffuse::TransferMode transfer = effects::diffuse::TransferMode::Full;
-  std::string transfer_word;
-  sh::Window window = sh::Window::Auto;
-  std::string window_word;
-  bool residual = true;
-  bool neighborhoods = true;
+  frame::FrameSettings settings;                  // an option for each row of their table
+  frame::ViewChoice view;
+  frame::OverlayOptions overlays;
   std::uint32_t frames = 1;
   float rotate_light_deg = 0.0f;
   std::optional<float> time_s;  // of the scenes' animations in the last frame; none: at rest
   float step_s = 0.0f;          // from frame to frame
-  lighting::CaptureOptions capture{.order = 0};
-  std::uint32_t captures_per_frame = 16;
-  std::optional<float> exposure_ev;                    // none: automatic
-  float lamps = 1.0f;                                  // factor on the strength of the scenes' own lights
+  float lamps = 1.0f;           // factor on the strength of the scenes' own lights
   std::uint64_t max_memory_bytes = ~std::uint64_t{0};  // of GPU memory for the bundles
   bool json = false;
 };

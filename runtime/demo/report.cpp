@@ -48,12 +48,34 @@ Json countsJson(const frame::StepCounts& counts) {
 Json frameTimesJson(std::vector<double> frame_ms) {
   if (frame_ms.size() > 1) frame_ms.erase(frame_ms.begin());
   if (frame_ms.empty()) return Json();
-  std::sort(frame_ms.begin(), frame_ms.end());
-  const double median = frame_ms[frame_ms.size() / 2];
+  frame::FrameTimes times(frame_ms.size());
+  for (const double time : frame_ms) times.add(time);
+  const double median = times.median();
   return {{"median", median},
-          {"p95", frame_ms[frame_ms.size() * 95 / 100]},
-          {"max", frame_ms.back()},
+          {"p95", times.quantile(0.95)},
+          {"max", times.worst()},
+          {"over_twice_median", times.overTwiceMedian()},
+          {"histogram_quarters_of_median", times.histogram()},
           {"frames_per_second", median > 0.0 ? 1000.0 / median : 0.0}};
+}
+
+Json streamingJson(const frame::StreamingStatus& status) {
+  constexpr const char* kStates[] = {"closed", "loading", "partial", "whole", "damaged"};
+  Json bundles = Json::array();
+  for (const frame::BundleStreaming& bundle : status.bundles)
+    bundles.push_back({{"name", bundle.name},
+                       {"state", kStates[static_cast<std::size_t>(bundle.state)]},
+                       {"bytes_whole", bundle.whole_bytes},
+                       {"bytes_wanted", bundle.wanted_bytes},
+                       {"bytes_resident", bundle.resident_bytes},
+                       {"size_seen", bundle.size}});
+  const bool limited = status.budget_bytes != ~std::uint64_t{0};
+  return {{"budget_bytes", limited ? Json(status.budget_bytes) : Json()},
+          {"bytes_resident", status.resident_bytes},
+          {"queued", status.queued},
+          {"bytes_in_flight", status.in_flight_bytes},
+          {"megabytes_per_second", status.megabytes_per_s},
+          {"bundles", bundles}};
 }
 
 Json frameJson(const FrameReport& frame) {
@@ -64,6 +86,7 @@ Json frameJson(const FrameReport& frame) {
     list.push_back({{"name", pass.name},
                     {"cpu_ms", pass.cpu_ms},
                     {"gpu_ms", pass.gpu_ms < 0.0 ? Json() : Json(pass.gpu_ms)},
+                    {"reason", pass.reason},
                     {"dispatches", pass.counters.dispatches},
                     {"draws", pass.counters.draws},
                     {"draw_calls", pass.counters.draw_calls},
@@ -83,6 +106,14 @@ Json frameJson(const FrameReport& frame) {
           {"draw_calls", total.draw_calls}};
 }
 
+// As the words of the options.
+Json settingsJson(const frame::FrameSettings& settings) {
+  Json json = Json::object();
+  for (const frame::SettingRow& row : frame::settingRows())
+    json[std::string(row.name)] = frame::settingWord(row, settings);
+  return json;
+}
+
 }  // namespace
 
 std::string reportJson(const Options& options, const gpu::DeviceInfo& device, const Report& report) {
@@ -98,15 +129,8 @@ std::string reportJson(const Options& options, const gpu::DeviceInfo& device, co
                      {"fade_to", options.fade_words},
                      {"fade", options.fade},
                      {"time_s", options.time_s ? Json(*options.time_s) : Json()},
-                     {"capture",
-                      {{"size", options.capture.size},
-                       {"subsamples", options.capture.subsamples},
-                       {"order", options.capture.order},
-                       {"per_frame", options.captures_per_frame}}},
-                     {"transfer", options.transfer_word},
-                     {"window", options.window_word},
-                     {"residual", options.residual},
-                     {"neighborhoods", options.neighborhoods},
+                     {"settings", settingsJson(options.settings)},
+                     {"view", frame::wordOf(options.view)},
                      {"lamps", options.lamps},
                      {"exposure_ev", options.linear ? Json() : Json(report.exposure_ev)},
                      {"renderer", device.renderer},
@@ -118,6 +142,7 @@ std::string reportJson(const Options& options, const gpu::DeviceInfo& device, co
                      {"bytes_in_bundles", report.parts.bytes_in_bundles},
                      {"planes_resident", report.parts.planes_resident},
                      {"planes_in_bundles", report.parts.planes_in_bundles},
+                     {"streaming", streamingJson(report.streaming)},
                      {"negative_pixels", report.negative_pixels},
                      {"frames", options.frames},
                      {"frame_ms", frameTimesJson(report.frame_ms)},

@@ -26,6 +26,7 @@ struct Report {
   double load_ms = 0.0;          // from opening the bundles until everything was resident
   std::uint64_t bytes_resident = 0;
   frame::LoadedParts parts;
+  frame::StreamingStatus streaming;
   std::uint32_t negative_pixels = 0;
   float exposure_ev = 0.0f;
   std::uint64_t gl_errors = 0;

@@ -25,7 +25,7 @@ Stage::Stage(const Options& options, lighting::Environment environment)
 Result<Stage> Stage::create(const Options& options, lighting::Environment environment) {
   Stage stage(options, std::move(environment));
   for (const std::filesystem::path& path : options.bundles)
-    if (Result<void> opened = stage.world_.open(path); !opened) return failAgain(opened.error());
+    if (const auto opened = stage.world_.open(path); !opened) return failAgain(opened.error());
   stage.world_.scaleLamps(options.lamps);
   ecs::Registry& registry = stage.world_.registry();
   scene::addLights(registry, options.lights);

@@ -1,6 +1,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -41,6 +42,17 @@ class TitleClock {
   int frames_ = 0;
 };
 
+// With what is on its way, and how much of the room is taken.
+std::string titleOf(const std::string& title, const frame::StreamingStatus& status) {
+  constexpr double kMegabyte = 1e6;
+  std::string text =
+      fmt::format("{} - {:.0f}", title, static_cast<double>(status.resident_bytes) / kMegabyte);
+  if (status.budget_bytes != ~std::uint64_t{0})
+    text += fmt::format(" of {:.0f}", static_cast<double>(status.budget_bytes) / kMegabyte);
+  text += " MB";
+  return status.queued == 0 ? text : fmt::format("{}, {} parts to come", text, status.queued);
+}
+
 }  // namespace
 
 Result<void> runWindowed(const Options& options) {
@@ -59,13 +71,9 @@ Result<void> runWindowed(const Options& options) {
   Result<frame::Frame> frame = frame::Frame::create({.size = size,
                                                      .output = frame::Output::Display,
                                                      .to_window = true,
-                                                     .transfer = options.transfer,
-                                                     .window = options.window,
-                                                     .residual = options.residual,
-                                                     .neighborhoods = options.neighborhoods,
-                                                     .exposure_ev = options.exposure_ev,
-                                                     .capture = options.capture,
-                                                     .captures_per_step = options.captures_per_frame},
+                                                     .settings = options.settings,
+                                                     .view = options.view,
+                                                     .overlays = options.overlays},
                                                     stage->environment());
   if (!frame) return failAgain(frame.error());
 
@@ -73,6 +81,7 @@ Result<void> runWindowed(const Options& options) {
   bool turning = true;
   world.setAnimationTime(options.time_s.value_or(0.0f));
   TitleClock title_clock;
+  std::set<std::string> reported;  // what is wrong with bundles, each once
   Clock::time_point last = Clock::now();
   while (true) {
     const gpu::Input input = window->poll();
@@ -97,7 +106,9 @@ Result<void> runWindowed(const Options& options) {
     if (input.light_x != 0.0f || input.light_y != 0.0f) stage->dragLight(*view, input.light_x, input.light_y);
     if (Result<void> rendered = frame->render(world, stage->environment(), *view); !rendered) return rendered;
     window->swap();
-    title_clock.tick(*window, title);
+    for (const frame::BundleError& wrong : world.errors())
+      if (reported.insert(wrong.error.line()).second) printError(wrong.error);
+    title_clock.tick(*window, titleOf(title, world.streaming()));
   }
 }
 

@@ -1,6 +1,7 @@
 #include "runtime/frame/frame.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace lambent::frame {
 
@@ -50,6 +51,33 @@ Result<Frame> Frame::create(const FrameOptions& options, const lighting::Environ
   return Frame(options, std::move(*sky), std::move(*surfaces), std::move(*tone_mapper));
 }
 
+Result<void> Frame::setSettings(const FrameSettings& settings) {
+  if (Result<void> checked = checkSettings(settings); !checked) return checked;
+  const FrameSettings before = std::exchange(options_.settings, settings);
+  if (settings == before) return {};
+  // What other ways of the light leave in the captures by small steps must not depend on which way was on.
+  if (incident_ &&
+      (settings.captures != before.captures || settings.neighborhoods != before.neighborhoods ||
+       settings.near_shadows != before.near_shadows || settings.light_samples != before.light_samples))
+    incident_->forget();
+  settled_ = false;
+  return {};
+}
+
+void Frame::forget() {
+  group_lights_.forget();
+  near_lights_.forget();
+  if (incident_) incident_->forget();
+  settled_ = false;
+  forgotten_ = true;
+}
+
+Result<std::optional<Picked>> Frame::pick(World& world, const spec::View& view, float x, float y) {
+  return picker_.pick(
+      world, surfaces_, view, options_.size, x, y,
+      {.finest_texels = options_.output == Output::Linear, .volumes = options_.settings.volumes});
+}
+
 void Frame::resize(const spec::Size& size) {
   if (hdr_ && size == options_.size) return;
   options_.size = size;
@@ -64,6 +92,7 @@ void Frame::resize(const spec::Size& size) {
       {.format = GL_DEPTH_COMPONENT32F, .width = size.width, .height = size.height, .samples = samples});
   hdr_target_ = gpu::Framebuffer("hdr", hdr_, &depth_);
   hdr_color_target_ = {};
+  overlays_.reset();
   if (options_.to_window) return;
   picture_ = gpu::Texture(
       "picture",
@@ -72,8 +101,18 @@ void Frame::resize(const spec::Size& size) {
 }
 
 Result<void> Frame::render(World& world, const lighting::Environment& environment, const spec::View& view) {
+  const auto now = std::chrono::steady_clock::now();
+  if (rendered_)
+    pacer_.frameTook(std::chrono::duration<double, std::milli>(now - *rendered_).count(), uploaded_bytes_ > 0,
+                     options_.upload_budget_bytes);
+  rendered_ = now;
+  uploaded_bytes_ = 0;
+  world.look(view);
   timers_.beginFrame();
-  if (Result<void> done = step(world, environment, options_.captures_per_step); !done) return done;
+  if (Result<void> done = step(world, environment, options_.settings.captures_per_step); !done) return done;
+  reasons_.noticeView(view, options_.size);
+  // what is seen where nothing stands, if other lights were loaded
+  updateSky(environment);
   // cubes of the lights that stand among surfaces
   if (Result<void> done = castShadows(world); !done) return done;
   // the sky as rough mirrors show it
@@ -84,12 +123,13 @@ Result<void> Frame::render(World& world, const lighting::Environment& environmen
   if (Result<void> done = marchVolumes(world, view); !done) return done;
   // exposure, tone curve, sRGB; negative pixels are counted and clamped here
   toneMap();
-  return {};
+  // what is asked for to be seen besides, as it is
+  return drawOverlays(world, environment, view);
 }
 
 Result<std::uint32_t> Frame::rest(World& world, const lighting::Environment& environment) {
   for (std::uint32_t steps = 0; steps < kMaxRestSteps; ++steps) {
-    if (atRest(world)) return steps;
+    if (atRest(world, environment)) return steps;
     timers_.beginFrame();
     constexpr std::size_t kAll = ~std::size_t{0};  // nobody waits for the next picture
     if (Result<void> done = step(world, environment, kAll); !done) return failAgain(done.error());
@@ -97,12 +137,19 @@ Result<std::uint32_t> Frame::rest(World& world, const lighting::Environment& env
   return kMaxRestSteps;
 }
 
-bool Frame::atRest(const World& world) const {
-  return world.loaded() && (!incident_ || incident_->atRest()) && neighborhoods_.settled();
+bool Frame::atRest(const World& world, const lighting::Environment& environment) const {
+  return settled_ && environment_seen_ == environment.version() && world.loaded() &&
+         (!incident_ || incident_->atRest()) && neighborhoods_.settled();
 }
 
 Result<void> Frame::step(World& world, const lighting::Environment& environment, std::size_t max_captures) {
   counts_ = {};
+  reasons_.begin();
+  reasons_.noticeSettings(options_.settings);
+  reasons_.noticeEnvironment(environment);
+  if (std::exchange(forgotten_, false)) reasons_.note(Cause::Asked, "asked for");
+  settled_ = true;
+  environment_seen_ = environment.version();
   // what has arrived goes to the GPU, within the budget
   if (Result<void> done = upload(world); !done) return done;
   // where nodes and rigid groups stand
@@ -123,29 +170,41 @@ Result<void> Frame::step(World& world, const lighting::Environment& environment,
 
 Result<void> Frame::upload(World& world) {
   gpu::PassTimers::Scope pass(timers_, "upload");
-  return world.upload(options_.upload_budget_bytes, pass.counters());
+  const std::uint64_t most = options_.upload_budget_bytes;
+  Result<void> done = world.upload(options_.pace_uploads ? pacer_.budget(most) : most, pass.counters());
+  uploaded_bytes_ += pass.counters().uploaded_bytes;
+  reasons_.noticeArrivals(world, pass.counters().uploaded_bytes);
+  pass.because(reasons_.of(static_cast<std::uint32_t>(Cause::Arrived)));
+  return done;
 }
 
 void Frame::transforms(World& world) {
   gpu::PassTimers::Scope pass(timers_, "transforms");
   world.updateTransforms();
+  world.updateMaterials();
+  reasons_.noticeWorld(world);
+  pass.because(reasons_.of(Cause::Moved | Cause::Materials));
 }
 
 Result<void> Frame::prepareSampling(World& world, const lighting::Environment& environment,
                                     gpu::Counters& counters) {
   if (!incident_ && !lit_scene_.needsSampling()) return {};
-  lighting::CaptureOptions options = options_.capture;
+  lighting::CaptureOptions options = options_.settings.capture;
   if (options.order == 0) {
+    options.order = std::max(1, capture_order_);  // never fewer again: light that was captured stays
     for (const streaming::ResidentGroup& group : world.residency().groups())
       options.order = std::max(options.order, static_cast<int>(group.order));
   }
-  if (!incident_ || options.order != capture_order_) {
+  if (!incident_) {
     auto made = lighting::IncidentLight::create(options, environment);
     if (!made) return failAgain(made.error());
     incident_ = std::move(*made);
-    capture_order_ = options.order;
+    proxies_seen_ = 0;
+  } else if (!(options == incident_->captures().options())) {
+    if (Result<void> done = incident_->renew(options, environment); !done) return done;
     proxies_seen_ = 0;
   }
+  capture_order_ = options.order;
   if (proxies_seen_ != world.residency().proxiesVersion()) {
     proxies_seen_ = world.residency().proxiesVersion();
     incident_->captures().setProxies(proxiesOf(world.residency()), counters);
@@ -155,25 +214,31 @@ Result<void> Frame::prepareSampling(World& world, const lighting::Environment& e
 
 Result<void> Frame::light(World& world, const lighting::Environment& environment) {
   gpu::PassTimers::Scope pass(timers_, "light");
-  lit_scene_ = gatherLitScene(world, meanRadiance(environment));
-  if (options_.neighborhoods) neighborhoods_.chooseCarriers(world, lit_scene_);
+  const FrameSettings& settings = options_.settings;
+  lit_scene_ = gatherLitScene(world, meanRadiance(environment),
+                              {.near_lights = settings.near_shadows, .bodies = settings.captures});
+  if (settings.neighborhoods || neighborhoods_.any())
+    neighborhoods_.chooseCarriers(world, lit_scene_, settings.neighborhoods);
+  keepFewerSamples(world);
   if (Result<void> done = prepareSampling(world, environment, pass.counters()); !done) return done;
   if (incident_) {
     incident_->update(environment, lit_scene_.groups, lit_scene_.lights, options_.wait_for_captures);
     counts_.incident = incident_->counts();
+    if (counts_.incident.arrived > 0) reasons_.note(Cause::Captured, "captures arrived");
+    if (counts_.incident.fading > 0) reasons_.note(Cause::Captured, "light fades from carrier to carrier");
   }
   std::vector<lighting::GroupPlace> places;
   for (std::size_t g = 0; g < world.residency().groups().size(); ++g) {
     const streaming::ResidentGroup& group = world.residency().groups()[g];
-    lighting::GroupPlace place{
-        .world_from_group = world.rotationOf(g), .order = group.order, .lamps = lit_scene_.lamps[g]};
-    if (incident_)
-      place.incident = incident_->incidentOf(g);
-    else
-      place.incident.resize(group.light_samples.size());
-    places.push_back(std::move(place));
+    places.push_back({.world_from_group = world.rotationOf(g),
+                      .order = group.order,
+                      .lamps = lit_scene_.lamps[g],
+                      .incident = incidentOf(world, g),
+                      .key = lit_scene_.groups[g].key});
   }
-  group_lights_.update(environment, options_.window, places, pass.counters());
+  group_lights_.update(environment, settings.window, places, pass.counters(),
+                       static_cast<int>(settings.order));
+  if (pass.counters().uploaded_bytes > 0) pass.because(reasons_.of(kLightCauses, "light"));
   counts_.groups = static_cast<std::uint32_t>(places.size());
   counts_.bodies = static_cast<std::uint32_t>(lit_scene_.bodies.size());
   counts_.local_lights = static_cast<std::uint32_t>(lit_scene_.lights.size());
@@ -181,6 +246,30 @@ Result<void> Frame::light(World& world, const lighting::Environment& environment
   counts_.near_lights_left_out = lit_scene_.near_left_out;
   counts_.light_samples_written = group_lights_.renewedSamples();
   return {};
+}
+
+// Others of a group's samples take the light of those.
+void Frame::keepFewerSamples(const World& world) {
+  const auto& groups = world.residency().groups();
+  fewer_samples_.assign(groups.size(), {});
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    if (groups[g].light_samples.size() <= options_.settings.light_samples) continue;
+    fewer_samples_[g] = fewerSamples(groups[g].light_samples, options_.settings.light_samples);
+    std::vector<glm::vec3> kept;
+    for (const std::uint32_t sample : fewer_samples_[g].kept)
+      kept.push_back(lit_scene_.groups[g].samples_ws[sample]);
+    lit_scene_.groups[g].samples_ws = std::move(kept);
+  }
+}
+
+std::vector<lighting::Incident> Frame::incidentOf(const World& world, std::size_t group) const {
+  const std::size_t count = world.residency().groups()[group].light_samples.size();
+  if (!incident_) return std::vector<lighting::Incident>(count);
+  std::vector<lighting::Incident> kept = incident_->incidentOf(group);
+  if (fewer_samples_[group].place.empty()) return kept;
+  std::vector<lighting::Incident> all;
+  for (const std::uint32_t place : fewer_samples_[group].place) all.push_back(kept[place]);
+  return all;
 }
 
 Result<void> Frame::capture(World& world, const lighting::Environment& environment,
@@ -192,7 +281,7 @@ Result<void> Frame::capture(World& world, const lighting::Environment& environme
     shaded.push_back(diffuse_.versionOf(g) + glossy_.versionOf(g));
   if (Result<void> done = proxies_.shade(world.residency(), group_lights_, shaded, pass.counters()); !done)
     return done;
-  proxy_radiance_.resize(lit_scene_.groups.size());
+  proxy_radiance_.follow(lit_scene_.groups, &lighting::IncidentGroup::key);
   for (std::size_t g = 0; g < lit_scene_.groups.size(); ++g) {
     ProxyRadiance& radiance = proxy_radiance_[g];
     if (radiance.version != proxies_.versionOf(g)) {
@@ -210,12 +299,16 @@ Result<void> Frame::capture(World& world, const lighting::Environment& environme
   counts_.incident.captured = incident_->counts().captured;
   counts_.incident.waiting = incident_->counts().waiting;
   if (counts_.incident.captured > 0) counts_.captured = incident_->captures().load();
+  if (pass.counters().dispatches > 0) pass.because(reasons_.of(kLightCauses, "light between bodies"));
   return done;
 }
 
 Result<void> Frame::shade(World& world) {
   gpu::PassTimers::Scope pass(timers_, "shade");
-  Result<void> done = diffuse_.shade(world.residency(), group_lights_, options_.transfer, pass.counters());
+  const FrameSettings& settings = options_.settings;
+  Result<void> done = diffuse_.shade(world.residency(), group_lights_, settings.transfer, pass.counters(),
+                                     {.surfaces = settings.diffuse, .volumes = settings.volumes});
+  if (pass.counters().dispatches > 0) pass.because(reasons_.of(kLightCauses, "light"));
   counts_.cells_shaded = diffuse_.shadedLast().cells;
   counts_.draws_shaded = diffuse_.shadedLast().draws;
   return done;
@@ -225,18 +318,22 @@ Result<void> Frame::shadeGlossy(World& world) {
   const auto& cells = world.residency().cells();
   if (std::none_of(cells.begin(), cells.end(), [](const auto& cell) { return cell.matrices(); })) return {};
   gpu::PassTimers::Scope pass(timers_, "glossy");
-  Result<void> done = glossy_.shade(world.residency(), group_lights_, options_.transfer, pass.counters(),
-                                    options_.neighborhoods);
+  const FrameSettings& settings = options_.settings;
+  Result<void> done = glossy_.shade(
+      world.residency(), group_lights_, settings.transfer, pass.counters(),
+      {.surfaces = settings.glossy, .volumes = settings.volumes, .neighborhoods = settings.neighborhoods});
+  if (pass.counters().dispatches > 0) pass.because(reasons_.of(kLightCauses, "light"));
   counts_.cells_shaded += glossy_.cellsShadedLast();
   return done;
 }
 
 Result<void> Frame::shadeVolumes(World& world) {
   counts_.volumes = static_cast<std::uint32_t>(world.residency().volumes().size());
-  if (counts_.volumes == 0) return {};
+  if (counts_.volumes == 0 || !options_.settings.volumes) return {};
   gpu::PassTimers::Scope pass(timers_, "volume");
-  Result<void> done =
-      volume_.shade(world.residency(), group_lights_, diffuse_, glossy_, options_.transfer, pass.counters());
+  Result<void> done = volume_.shade(world.residency(), group_lights_, diffuse_, glossy_,
+                                    options_.settings.transfer, pass.counters());
+  if (pass.counters().dispatches > 0) pass.because(reasons_.of(kLightCauses, "light"));
   counts_.volumes_shaded = volume_.shadedLast().volumes;
   counts_.volume_slabs_written = volume_.shadedLast().slabs;
   return done;
@@ -244,13 +341,16 @@ Result<void> Frame::shadeVolumes(World& world) {
 
 Result<void> Frame::marchVolumes(World& world, const spec::View& view) {
   const auto& volumes = world.residency().volumes();
-  if (volumes.empty()) return {};
+  const SurfaceView shown = options_.view.view;
+  if (volumes.empty() || !options_.settings.volumes ||
+      (shown != SurfaceView::Final && shown != SurfaceView::Wireframe))
+    return {};
   gpu::PassTimers::Scope pass(timers_, "march");
-  if (!march_) {
-    // Pictures that are compared take half the steps, all at their places.
-    const bool linear = options_.output == Output::Linear;
-    march_.emplace(effects::volume::MarchOptions{.step_voxels = linear ? 0.5f : 1.0f, .jitter = !linear});
-  }
+  pass.because(reasons_.of(kPictureCauses));
+  // Pictures that are compared take half the steps, all at their places.
+  const bool linear = options_.output == Output::Linear;
+  if (!march_) march_.emplace(effects::volume::MarchOptions{.jitter = !linear});
+  march_->setStep(options_.settings.march_step_voxels * (linear ? 0.5f : 1.0f));
   if (!hdr_color_target_) hdr_color_target_ = gpu::Framebuffer("hdr color", hdr_, nullptr);
   std::vector<effects::volume::PlacedVolume> placed;
   for (std::uint32_t v = 0; v < volumes.size(); ++v)
@@ -262,10 +362,12 @@ Result<void> Frame::marchVolumes(World& world, const spec::View& view) {
 }
 
 Result<void> Frame::shadeNeighborhoods(World& world) {
-  if (!neighborhoods_.any()) return {};
+  if (!options_.settings.neighborhoods || !neighborhoods_.any()) return {};
   gpu::PassTimers::Scope pass(timers_, "neighborhood");
   Result<void> done =
-      neighborhoods_.update(world, group_lights_, glossy_, options_.transfer, pass.counters());
+      neighborhoods_.update(world, group_lights_, glossy_, options_.settings.transfer, pass.counters());
+  if (pass.counters().dispatches > 0 || pass.counters().uploaded_bytes > 0)
+    pass.because(reasons_.of(kLightCauses, "light"));
   counts_.neighborhoods = neighborhoods_.counts();
   return done;
 }
@@ -275,11 +377,14 @@ Result<void> Frame::castShadows(World& world) {
   Result<void> done =
       near_lights_.update(world, lit_scene_.near_lights, lit_scene_.near_masks, pass.counters());
   counts_.shadow_cubes_drawn = near_lights_.cubesDrawn();
+  if (counts_.shadow_cubes_drawn > 0)
+    pass.because(reasons_.of(kLightCauses | Cause::Materials, "lights among surfaces"));
   return done;
 }
 
 Result<void> Frame::reflectSky(const World& world, const lighting::Environment& environment) {
-  if (!options_.residual || !glossy_.any() || reflected_sky_) return {};
+  if (!options_.settings.residual || !options_.settings.glossy || !glossy_.any()) return {};
+  if (reflected_sky_ && reflected_lights_ == environment.lightsVersion()) return {};
   if (std::ranges::none_of(world.residency().groups(),
                            [](const streaming::ResidentGroup& group) { return group.glossy_outputs > 0; }))
     return {};  // matrices of neighborhoods or volumes alone
@@ -287,34 +392,50 @@ Result<void> Frame::reflectSky(const World& world, const lighting::Environment& 
   Result<lighting::ReflectedSky> made = lighting::ReflectedSky::make(environment, sky_, pass.counters());
   if (!made) return failAgain(made.error());
   reflected_sky_ = std::move(*made);
+  reflected_lights_ = environment.lightsVersion();
+  pass.because(reasons_.of(static_cast<std::uint32_t>(Cause::Environment), "first needed"));
   return {};
+}
+
+void Frame::updateSky(const lighting::Environment& environment) {
+  if (sky_.upToDate(environment)) return;
+  gpu::PassTimers::Scope pass(timers_, "sky");
+  sky_.update(environment);
+  pass.because(reasons_.of(static_cast<std::uint32_t>(Cause::Environment)));
+}
+
+// Also where numbers are drawn in place of light: what is picked is found among these.
+Result<void> Frame::prepareSurfaces(World& world, const lighting::Environment& environment,
+                                    const spec::View& view, gpu::Counters& counters) {
+  surfaces_.setView(options_.view.view);
+  const FrameSettings& settings = options_.settings;
+  const bool residual = reflected_sky_ && settings.residual;
+  if (residual) {
+    std::uint32_t order = 1;
+    for (const streaming::ResidentGroup& group : world.residency().groups())
+      order = std::max(order, group.order);
+    order = std::min(order, settings.order);
+    reflected_sky_->update(environment, static_cast<int>(order), settings.window, counters);
+  }
+  return surfaces_.prepare(
+      world, diffuse_, view, counters, &near_lights_, residual ? &*reflected_sky_ : nullptr,
+      settings.neighborhoods && neighborhoods_.any() ? &neighborhoods_ : nullptr,
+      {.diffuse = settings.diffuse, .glossy = settings.glossy, .glossy_bands = settings.glossy_order});
 }
 
 Result<void> Frame::raster(World& world, const lighting::Environment& environment, const spec::View& view) {
   gpu::PassTimers::Scope pass(timers_, "raster");
-  if (reflected_sky_) {
-    std::uint32_t order = 1;
-    for (const streaming::ResidentGroup& group : world.residency().groups())
-      order = std::max(order, group.order);
-    reflected_sky_->update(environment, static_cast<int>(order), options_.window, pass.counters());
-  }
-  if (Result<void> done = surfaces_.prepare(world, diffuse_, view, pass.counters(), &near_lights_,
-                                            reflected_sky_ ? &*reflected_sky_ : nullptr,
-                                            neighborhoods_.any() ? &neighborhoods_ : nullptr);
-      !done)
-    return done;
+  pass.because(reasons_.of(kPictureCauses));
+  if (Result<void> done = prepareSurfaces(world, environment, view, pass.counters()); !done) return done;
+  if (showsTransfer(options_.view.view)) return drawNumbers(world, view, pass.counters());
+  data_view_.reset();
   near_lights_.bind(view, options_.size);
-  glBindFramebuffer(GL_FRAMEBUFFER, hdr_target_.id());
-  glViewport(0, 0, static_cast<GLsizei>(options_.size.width), static_cast<GLsizei>(options_.size.height));
-  glEnable(GL_DEPTH_TEST);
-  glDepthFunc(GL_LESS);
-  glDepthMask(GL_TRUE);
-  constexpr float kNothing[] = {0.0f, 0.0f, 0.0f, 0.0f}, kFar = 1.0f;
-  glClearNamedFramebufferfv(hdr_target_.id(), GL_COLOR, 0, kNothing);
-  glClearNamedFramebufferfv(hdr_target_.id(), GL_DEPTH, 0, &kFar);
+  clearPicture();
   surfaces_.drawOpaque(world, pass.counters());
-  sky_.draw(environment, view.view_from_world, view.clip_from_view, options_.size.height, pass.counters());
-  glDepthFunc(GL_LESS);
+  if (showsLight(options_.view.view)) {
+    sky_.draw(environment, view.view_from_world, view.clip_from_view, options_.size.height, pass.counters());
+    glDepthFunc(GL_LESS);
+  }
   surfaces_.drawBlended(world, pass.counters());
   return {};
 }
@@ -322,7 +443,8 @@ Result<void> Frame::raster(World& world, const lighting::Environment& environmen
 void Frame::toneMap() {
   gpu::PassTimers::Scope pass(timers_, "tone map");
   glBindFramebuffer(GL_FRAMEBUFFER, options_.to_window ? 0 : picture_target_.id());
-  tone_mapper_.run(hdr_, options_.exposure_ev, pass.counters());
+  pass.because(reasons_.of(kPictureCauses | Cause::Exposure));
+  tone_mapper_.run(hdr_, options_.settings.exposure_ev, pass.counters(), !showsLight(options_.view.view));
 }
 
 spec::RgbaImage Frame::readLinear() const {

@@ -1,25 +1,36 @@
 // One frame, from what has arrived to the picture: stream, transforms, light, shade, capture, raster, tone
 // map. Every pass runs only if something that it reads is newer than its last output; each is timed and
-// counts what it issued. Light that bodies throw on each other travels one step a frame. The picture goes to
-// the frame's own target, which can be read back, or to the window's framebuffer. Errors: shaders that do not
-// compile, a bundle that turns out damaged while it loads.
+// counts what it issued and says why. Light that bodies throw on each other travels one step a frame. World,
+// environment (also another object) and settings may be changed between frames as one likes. The picture goes
+// to the frame's own target, which can be read back, or to the window's framebuffer. Errors: shaders that do
+// not compile, a bundle that turns out damaged while it loads.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <optional>
 #include <vector>
 
+#include "runtime/base/by_key.hpp"
 #include "runtime/base/result.hpp"
 #include "runtime/effects/diffuse/diffuse.hpp"
 #include "runtime/effects/diffuse/proxies.hpp"
 #include "runtime/effects/glossy/glossy.hpp"
 #include "runtime/effects/volume/march.hpp"
 #include "runtime/effects/volume/volume.hpp"
+#include "runtime/frame/data_view.hpp"
+#include "runtime/frame/fewer_samples.hpp"
+#include "runtime/frame/frame_settings.hpp"
+#include "runtime/frame/frame_times.hpp"
 #include "runtime/frame/lit_scene.hpp"
 #include "runtime/frame/near_lights.hpp"
 #include "runtime/frame/neighborhoods.hpp"
+#include "runtime/frame/overlays.hpp"
+#include "runtime/frame/picker.hpp"
+#include "runtime/frame/reasons.hpp"
 #include "runtime/frame/surfaces.hpp"
 #include "runtime/frame/tone_mapper.hpp"
+#include "runtime/frame/views.hpp"
 #include "runtime/frame/world.hpp"
 #include "runtime/gpu/pass_timers.hpp"
 #include "runtime/lighting/environment.hpp"
@@ -27,7 +38,6 @@
 #include "runtime/lighting/incident_light.hpp"
 #include "runtime/lighting/reflected_sky.hpp"
 #include "runtime/lighting/sky.hpp"
-#include "runtime/sh/window.hpp"
 #include "runtime/spec/camera.hpp"
 #include "runtime/spec/image.hpp"
 #include "runtime/spec/size.hpp"
@@ -43,18 +53,14 @@ struct FrameOptions {
   spec::Size size;
   Output output = Output::Display;
   bool to_window = false;  // draw into framebuffer 0
-  effects::diffuse::TransferMode transfer = effects::diffuse::TransferMode::Full;
-  sh::Window window = sh::Window::Auto;
-  // Glossy surfaces reflect what the bands of their light leave out of the sky, too.
-  bool residual = true;
-  // Bodies with grids around them change the light of others by these; else by captures.
-  bool neighborhoods = true;
-  std::optional<float> exposure_ev;                             // none: automatic
-  std::uint64_t upload_budget_bytes = std::uint64_t{16} << 20;  // per frame
-  lighting::CaptureOptions capture{.order = 0};                 // order 0: that of the groups' transfer
-  std::uint32_t captures_per_step = 16;  // light samples that are drawn anew in a frame, at most
+  FrameSettings settings{};
+  std::uint64_t upload_budget_bytes = std::uint64_t{16} << 20;  // per frame, at most
+  // Less than that where frames would take longer than usual.
+  bool pace_uploads = true;
   // Captures arrive in the very next frame, however long that takes: the same pictures on every run.
   bool wait_for_captures = false;
+  ViewChoice view{};
+  OverlayOptions overlays{};
 };
 
 // What one step did; a still scene does nothing.
@@ -79,15 +85,38 @@ class Frame {
  public:
   static Result<Frame> create(const FrameOptions& options, const lighting::Environment& environment);
 
+  const FrameSettings& settings() const { return options_.settings; }
+  // From the next step on; only what depends on what is other than before runs again. Errors: a value out of
+  // its range (nothing is changed).
+  Result<void> setSettings(const FrameSettings& settings);
+  // The next step computes everything anew, as if all had just arrived.
+  void forget();
+
   // A step and a picture.
   Result<void> render(World& world, const lighting::Environment& environment, const spec::View& view);
   // Steps until no light changes any more, at most kMaxRestSteps; returns how many it took. No picture.
   Result<std::uint32_t> rest(World& world, const lighting::Environment& environment);
   void resize(const spec::Size& size);
+  // What is seen at a point of the picture, in pixels from its top left corner (that of pixel i, j has its
+  // middle at i + 0.5, j + 0.5); none: the sky. Of what the last picture showed. Waits for the GPU.
+  Result<std::optional<Picked>> pick(World& world, const spec::View& view, float x, float y);
+
+  // From the next picture on.
+  void setView(const ViewChoice& choice) { options_.view = choice; }
+  void setOverlays(OverlayOptions overlays) { options_.overlays = std::move(overlays); }
+  // By which the last picture is to be read.
+  ViewLegend legend() const { return data_view_ ? data_view_->legend() : legendOf(options_.view, 0.0f); }
+  // Null where no view of transfer is shown.
+  const effects::diffuse::TransferValues* transferValues() const {
+    return data_view_ ? &data_view_->values() : nullptr;
+  }
 
   // Waits for the GPU. Row 0 is the top.
   spec::RgbaImage readLinear() const;
   spec::Rgba8Image readDisplay() const;
+
+  // What the last render() left, where it does not go to the window; row 0 is the bottom.
+  const gpu::Texture& picture() const { return picture_; }
 
   std::uint32_t negativePixels() const { return tone_mapper_.negativePixels(); }
   float exposureEv() const { return tone_mapper_.exposureEv(); }
@@ -96,6 +125,8 @@ class Frame {
   // Of what the frame itself keeps for volumes, beside what is resident.
   std::uint64_t volumeBytes() const { return volume_.textureBytes(); }
   const FrameOptions& options() const { return options_; }
+  // From one render() to the next.
+  const FrameTimes& frameTimes() const { return pacer_.times(); }
 
  private:
   Frame(const FrameOptions& options, lighting::Sky sky, Surfaces surfaces, ToneMapper tone_mapper);
@@ -104,20 +135,29 @@ class Frame {
   void transforms(World& world);
   Result<void> step(World& world, const lighting::Environment& environment, std::size_t max_captures);
   Result<void> light(World& world, const lighting::Environment& environment);
+  void keepFewerSamples(const World& world);
+  std::vector<lighting::Incident> incidentOf(const World& world, std::size_t group) const;
   Result<void> shade(World& world);
-  Result<void> shadeGlossy(World& world);         // no pass where nothing is glossy
-  Result<void> shadeVolumes(World& world);        // these two: no pass without volumes
+  Result<void> shadeGlossy(World& world);   // no pass where nothing is glossy
+  Result<void> shadeVolumes(World& world);  // these two: no pass without volumes
   Result<void> marchVolumes(World& world, const spec::View& view);
   Result<void> shadeNeighborhoods(World& world);  // no pass without grids
   Result<void> prepareSampling(World& world, const lighting::Environment& environment,
                                gpu::Counters& counters);
   Result<void> capture(World& world, const lighting::Environment& environment, std::size_t max_captures);
-  bool atRest(const World& world) const;
+  bool atRest(const World& world, const lighting::Environment& environment) const;
   Result<void> reflectSky(const World& world,
-                          const lighting::Environment& environment);  // once; no pass then
+                          const lighting::Environment& environment);  // once per light; no pass then
+  void updateSky(const lighting::Environment& environment);           // no pass where it is up to date
   Result<void> castShadows(World& world);
   Result<void> raster(World& world, const lighting::Environment& environment, const spec::View& view);
+  void clearPicture();
+  Result<void> prepareSurfaces(World& world, const lighting::Environment& environment, const spec::View& view,
+                               gpu::Counters& counters);
+  // In place of light.
+  Result<void> drawNumbers(World& world, const spec::View& view, gpu::Counters& counters);
   void toneMap();
+  Result<void> drawOverlays(World& world, const lighting::Environment& environment, const spec::View& view);
 
   FrameOptions options_;
   lighting::Sky sky_;
@@ -138,11 +178,23 @@ class Frame {
     std::uint64_t version = 0, light = 0;
     double drift = 0.0;
   };
-  std::vector<ProxyRadiance> proxy_radiance_;
+  ByKey<ProxyRadiance> proxy_radiance_;
   std::uint64_t proxies_seen_ = 0;
   int capture_order_ = 0;
+  std::vector<FewerSamples> fewer_samples_;  // per group; empty: all are kept
+  std::uint64_t environment_seen_ = 0, reflected_lights_ = 0;
+  bool forgotten_ = false;
+  bool settled_ = false;  // whether a step has run since the settings changed
+  Reasons reasons_;
+  Picker picker_;
   lighting::GroupLights group_lights_;
   StepCounts counts_;
+  std::optional<DataView> data_view_;  // while a view shows transfer
+  std::optional<DataView> wires_;      // while a view shows wires
+  std::optional<Overlays> overlays_;   // while any are shown
+  UploadPacer pacer_;
+  std::optional<std::chrono::steady_clock::time_point> rendered_;  // the last time
+  std::uint64_t uploaded_bytes_ = 0;                               // since then
   gpu::PassTimers timers_;
   gpu::Texture hdr_, depth_, picture_;
   gpu::Framebuffer hdr_target_, hdr_color_target_, picture_target_;

@@ -19,6 +19,12 @@ layout(location = 8) in vec4 looks_at_lobes;
 
 #include "glossy_kernel.glsl"
 
+// Bands that count; the others are as if the light had none.
+#ifndef LAMBENT_USED_BANDS
+#define LAMBENT_USED_BANDS LAMBENT_BANDS
+#endif
+const int kUsedCoefficients = LAMBENT_USED_BANDS * LAMBENT_USED_BANDS;
+
 uvec2 brdfNodes() { return uvec2(textureSize(brdf_table, 0).xy); }
 vec4 brdfTexel(vec2 place, uint layer) {
   return textureLod(brdf_table, vec3((place + 0.5) / vec2(textureSize(brdf_table, 0).xy), float(layer)), 0.0);
@@ -48,7 +54,7 @@ void gatherLight(out vec4 light[kCoefficients]) {
       float weight = weights[corner] * float((pair >> (16u * (entry & 1u))) & 0xffffu) / 65535.0;
       uint at = draws[draw_of].glossy.first_sample + uint(kCoefficients) * rows[samples_word + entry];
       total += weight;
-      for (int k = 0; k < kCoefficients; ++k) light[k] += weight * samples[at + uint(k)];
+      for (int k = 0; k < kUsedCoefficients; ++k) light[k] += weight * samples[at + uint(k)];
     }
   }
   float scale = total > 0.0 ? 1.0 / total : 0.0;
@@ -146,7 +152,7 @@ vec3 residualLight(vec3 direction_ws, float roughness) {
   vec3 seen = reflection.shares.x * textureLod(first_reflection, direction, level).rgb +
               reflection.shares.y * textureLod(second_reflection, direction, level).rgb;
   vec4 light[kCoefficients], bands[kBands];
-  for (int k = 0; k < kCoefficients; ++k) light[k] = reflection.light[k];
+  for (int k = 0; k < kCoefficients; ++k) light[k] = k < kUsedCoefficients ? reflection.light[k] : vec4(0.0);
   bandsAt(direction_ws, light, bands);
   int low = int(min(level, reflection.shares.z - 1.0));
   float share = level - float(low);
@@ -179,7 +185,7 @@ Reflected reflectedChange(uint draw, vec3 position, LocalView view, vec4 weights
     if (share == 0.0) continue;
     vec4 change[kCoefficients];
     for (int k = 0; k < kCoefficients; ++k)
-      change[k] = uint(k) < arrivals[a].grid.outputs ? share * gridOutput(place, arrivals[a].grid, uint(k)) : vec4(0.0);
+      change[k] = k < kUsedCoefficients && uint(k) < arrivals[a].grid.outputs ? share * gridOutput(place, arrivals[a].grid, uint(k)) : vec4(0.0);
     LocalView turned_view = view;
     turned_view.tangent = vec4(view.tangent, 0.0) * arrivals[a].body_from_group;
     turned_view.bitangent = vec4(view.bitangent, 0.0) * arrivals[a].body_from_group;
@@ -211,6 +217,13 @@ vec3 reflectedLight(vec3 base_color) {
 #ifdef LAMBENT_NEIGHBORHOODS
   radiance = withChange(radiance, reflectedChange(draws[draw_of].glossy.draw, position_mesh, view, weights).light.rgb);
 #endif
+#ifdef LAMBENT_VIEW_IRRADIANCE
+  radiance = reflected.diffuse.rgb;
+#ifdef LAMBENT_NEIGHBORHOODS
+  radiance = withChange(radiance, reflectedChange(draws[draw_of].glossy.draw, position_mesh, view, weights).diffuse.rgb);
+#endif
+  reflected.albedo = vec3(1.0);
+#endif
 #ifdef LAMBENT_NEAR_LIGHTS
   // As from a matte surface that sends as much towards the eye of light from all around.
   radiance += reflected.albedo * nearLight(draws[draw_of].glossy.draw, draws[draw_of].facing * frame.normal, normal);
@@ -237,6 +250,9 @@ vec3 reflectedLight(vec3 base_color) {
   near_normal = normal;
   near_to_eye = to_eye;
   received += nearLight(draws[draw_of].glossy.draw, draws[draw_of].facing * frame.normal, normal);
+#endif
+#ifdef LAMBENT_VIEW_IRRADIANCE
+  return received;
 #endif
   vec3 radiance = mirrored_light + diffuse * received;
 #ifdef LAMBENT_NEAR_LIGHTS

@@ -90,7 +90,7 @@ std::vector<const bundle::CaptureProxy*> proxiesOf(const streaming::Residency& r
   return proxies;
 }
 
-LitScene gatherLitScene(const World& world, float surroundings) {
+LitScene gatherLitScene(const World& world, float surroundings, const LitSceneOptions& options) {
   LitScene scene;
   const ecs::Registry& registry = world.registry();
   const auto& groups = world.residency().groups();
@@ -120,9 +120,11 @@ LitScene gatherLitScene(const World& world, float surroundings) {
     const scene::Box& bounds = world.groupBounds(g);
     scene.lamps.push_back(world.lampsOf(g));
     lighting::IncidentGroup receiver;
+    receiver.key = world.keyOf(g);
+    receiver.samples = group.id;
     for (const glm::vec3& sample : group.light_samples)
       receiver.samples_ws.emplace_back(world_from_group * glm::vec4(sample, 1.0f));
-    if (group.proxy) {
+    if (group.proxy && options.bodies) {
       receiver.body = static_cast<std::uint32_t>(scene.bodies.size());
       const glm::vec3 center = bounds.empty() ? glm::vec3(0.0f) : bounds.center();
       const float peak = group.light_columns > 0 ? peakEmission(*group.proxy, scene.lamps.back()) : 0.0f;
@@ -132,13 +134,15 @@ LitScene gatherLitScene(const World& world, float surroundings) {
                                        .brightness = std::clamp(brightness, 1.0f, kMaxBrightness)},
                               .center_ws = glm::vec3(world_from_group * glm::vec4(center, 1.0f)),
                               .radius_m = bounds.radius() * largestScale(world_from_group),
-                              .radiance_drift = 0.0});
+                              .radiance_drift = 0.0,
+                              .key = receiver.key});
     }
     std::uint32_t near_mask = 0;
     for (std::size_t k = 0; k < scene.lights.size(); ++k) {
       bool by_harmonics = !world.litByColumn(g, light_entities[k]);
       // Rays through a volume look up its samples alone, and no shadow cube.
-      if (by_harmonics && group.volume < 0 && within(bounds, world_from_group, scene.lights[k])) {
+      if (by_harmonics && options.near_lights && group.volume < 0 &&
+          within(bounds, world_from_group, scene.lights[k])) {
         const std::int32_t place = nearPlace(k);
         if (place >= 0) {
           near_mask |= 1u << place;
@@ -157,7 +161,7 @@ LitScene gatherLitScene(const World& world, float surroundings) {
     const std::int32_t within = world.description(groups[g].bundle).groups[groups[g].index].within;
     if (within < 0) continue;
     const std::size_t around =
-        world.residency().bundles()[groups[g].bundle].first_group + static_cast<std::size_t>(within);
+        world.residency().bundles()[groups[g].bundle].first.groups + static_cast<std::size_t>(within);
     if (const std::uint32_t body = scene.groups[around].body; body != lighting::CapturePoint::kNoBody)
       scene.groups[g].left_out.push_back(body);
   }

@@ -28,9 +28,14 @@ struct LitScene {
   bool needsSampling() const;
 };
 
+struct LitSceneOptions {
+  bool near_lights = true;  // else all lights that stand in the scene go by harmonics
+  bool bodies = true;       // else groups neither light nor shadow each other
+};
+
 // surroundings: mean radiance, by which bodies count as bright.
 // radiance_drift of the bodies is for the frame to say.
-LitScene gatherLitScene(const World& world, float surroundings);
+LitScene gatherLitScene(const World& world, float surroundings, const LitSceneOptions& options = {});
 
 // The proxies of the groups that have one, in the order of the bodies.
 std::vector<const bundle::CaptureProxy*> proxiesOf(const streaming::Residency& residency);

@@ -91,9 +91,10 @@ bool reaches(const NearLight& light, const scene::Box& from_light) {
 }  // namespace
 
 bool NearLights::Caster::operator==(const Caster& other) const {
-  return draw == other.draw && world_from_mesh == other.world_from_mesh && block.page == other.block.page &&
+  return id == other.id && world_from_mesh == other.world_from_mesh && block.page == other.block.page &&
          block.offset == other.block.offset && block.byte_count == other.block.byte_count &&
-         masked == other.masked && image_arrived == other.image_arrived;
+         masked == other.masked && image_arrived == other.image_arrived && alpha == other.alpha &&
+         alpha_cutoff == other.alpha_cutoff;
 }
 
 NearLights::NearLights(const NearOptions& options)
@@ -176,10 +177,15 @@ void NearLights::collectCasters(const World& world) {
         scene::drawBounds(world.registry(), world.instance(draw.bundle).draws[draw.index]);
     if (bounds.empty()) continue;
     Caster caster{.draw = i,
+                  .id = draw.id,
                   .world_from_mesh = world.worldFromMesh(i),
                   .bounds_ws = bounds,
                   .block = mesh.block,
                   .masked = material.alpha_mode == gltf::AlphaMode::Mask};
+    if (caster.masked) {
+      caster.alpha = material.base_color.a;
+      caster.alpha_cutoff = material.alpha_cutoff;
+    }
     if (const std::int32_t texture = material.base_color_texture.texture; caster.masked && texture >= 0) {
       const streaming::ResidentBundle& bundle = residency.bundles()[draw.bundle];
       const std::int32_t image = bundle.textures[static_cast<std::size_t>(texture)].image;
@@ -190,11 +196,13 @@ void NearLights::collectCasters(const World& world) {
 }
 
 std::vector<std::uint32_t> NearLights::findChanged(World& world) {
-  const bool world_same =
-      world.residency().version() == residency_seen_ && world.transformsVersion() == transforms_seen_;
+  const bool world_same = world.residency().version() == residency_seen_ &&
+                          world.transformsVersion() == transforms_seen_ &&
+                          world.materialsVersion() == materials_seen_;
   if (!world_same) collectCasters(world);
   residency_seen_ = world.residency().version();
   transforms_seen_ = world.transformsVersion();
+  materials_seen_ = world.materialsVersion();
   std::vector<std::uint32_t> changed;
   for (std::uint32_t k = 0; k < lights_.size(); ++k) {
     Cube& cube = cubes_[k];

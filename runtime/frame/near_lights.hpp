@@ -51,6 +51,10 @@ class NearLights {
   bool any() const { return any_; }
   // Rises when lightsOf changes for any draw.
   std::uint64_t version() const { return version_; }
+  // All cubes are drawn anew.
+  void forget() {
+    for (Cube& cube : cubes_) cube.drawn = false;
+  }
   // How many cubes the last update drew.
   std::uint32_t cubesDrawn() const { return cubes_drawn_; }
   std::uint64_t bytesResident() const;
@@ -59,10 +63,12 @@ class NearLights {
   // What is drawn into a cube; the same casters make the same cube.
   struct Caster {
     std::uint32_t draw = 0;
+    std::uint64_t id = 0;  // of the draw
     glm::mat4 world_from_mesh{1.0f};
     scene::Box bounds_ws;
     gpu::Allocation block;
     bool masked = false, image_arrived = false;
+    float alpha = 1.0f, alpha_cutoff = 0.0f;  // of masked ones
     bool operator==(const Caster& other) const;
   };
   struct Cube {  // as last drawn
@@ -117,7 +123,7 @@ class NearLights {
   bool any_ = false;
   std::uint64_t version_ = 0;
   std::uint32_t cubes_drawn_ = 0;
-  std::uint64_t residency_seen_ = 0, transforms_seen_ = 0;
+  std::uint64_t residency_seen_ = 0, transforms_seen_ = 0, materials_seen_ = 0;
 };
 
 }  // namespace lambent::frame

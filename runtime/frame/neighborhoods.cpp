@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
 
 #include <glm/geometric.hpp>
@@ -95,24 +96,39 @@ glm::dmat4 worldFromPosition(const World& world, std::size_t draw, const Surface
 Neighborhoods::Neighborhoods() : receivers_table_("neighborhood receivers"), arrivals_table_("arrivals") {}
 
 void Neighborhoods::noticeGrids(const World& world) {
+  if (world.residency().structureVersion() == structure_seen_) return;
+  structure_seen_ = world.residency().structureVersion();
   const auto& groups = world.residency().groups();
-  if (groups.size() == groups_seen_) return;
-  groups_seen_ = groups.size();
+  std::map<std::uint64_t, std::uint32_t> now;  // by key
   std::vector<Grid> grids;
-  for (std::uint32_t g = 0; g < groups.size(); ++g)
+  for (std::uint32_t g = 0; g < groups.size(); ++g) {
+    now[world.keyOf(g)] = g;
     if (const auto& points = describedGroup(world, g).neighborhood)
-      grids.push_back({.group = g, .points = *points});
+      grids.push_back({.group = g, .id = groups[g].id, .key = world.keyOf(g), .points = *points});
+  }
   effect_.setGrids(std::move(grids), world.residency());
+  std::set<std::pair<std::uint32_t, std::uint32_t>> pairs;
+  for (const auto& [body, receiver] : pairs_) {
+    const auto body_now = now.find(group_keys_[body]), receiver_now = now.find(group_keys_[receiver]);
+    if (body_now != now.end() && receiver_now != now.end())
+      pairs.insert({body_now->second, receiver_now->second});
+  }
+  pairs_ = std::move(pairs);
+  pairs_changed_ = true;
+  group_keys_.clear();
+  for (std::uint32_t g = 0; g < groups.size(); ++g) group_keys_.push_back(world.keyOf(g));
 }
 
 std::size_t Neighborhoods::readyGrids() const {
   return static_cast<std::size_t>(std::ranges::count_if(effect_.grids(), &Grid::ready));
 }
 
-void Neighborhoods::chooseCarriers(const World& world, LitScene& scene) {
+void Neighborhoods::chooseCarriers(const World& world, LitScene& scene, bool on) {
   noticeGrids(world);
-  // Carriers that change because something moves are faded; those that change with what arrives are not.
-  const bool fades = ready_when_chosen_ == readyGrids();
+  // Carriers that change because something moves are faded; those that change with what arrives, or because
+  // somebody asked for it, are not.
+  const bool fades = ready_when_chosen_ == readyGrids() && on == on_;
+  on_ = on;
   ready_when_chosen_ = readyGrids();
   for (lighting::IncidentGroup& group : scene.groups) group.fades = fades;
   counts_ = {.grids = static_cast<std::uint32_t>(effect_.grids().size())};
@@ -121,6 +137,7 @@ void Neighborhoods::chooseCarriers(const World& world, LitScene& scene) {
   for (const Grid& grid : effect_.grids()) {
     if (!grid.ready || !carriesLamps(describedGroup(world, grid.group))) continue;
     ++counts_.ready;
+    if (!on) continue;
     const glm::mat4 world_from_body = world.worldFromGroup(grid.group);
     for (std::uint32_t b = 0; b < group_count; ++b) {
       const bool before = pairs_.contains({grid.group, b});
@@ -145,12 +162,14 @@ Result<void> Neighborhoods::update(World& world, const lighting::GroupLights& li
                                    gpu::Counters& counters) {
   if (Result<void> done = effect_.update(world.residency(), lights, glossy, counters); !done) return done;
   const bool same = !pairs_changed_ && transforms_seen_ == world.transformsVersion() &&
-                    residency_seen_ == world.residency().version() && effect_seen_ == effect_.version();
+                    residency_seen_ == world.residency().version() && effect_seen_ == effect_.version() &&
+                    mode_seen_ == mode;
   if (!same) {
     pairs_changed_ = false;
     transforms_seen_ = world.transformsVersion();
     residency_seen_ = world.residency().version();
     effect_seen_ = effect_.version();
+    mode_seen_ = mode;
     findReceivers(world, mode);
   }
   if (Result<void> done =

@@ -52,8 +52,9 @@ class Neighborhoods {
 
   // Whether any group has a grid.
   bool any() const { return !effect_.grids().empty(); }
-  // Before the light: notices new bundles, chooses carriers, and leaves bodies out of captures.
-  void chooseCarriers(const World& world, LitScene& scene);
+  // Before the light: notices new bundles, chooses carriers, and leaves bodies out of captures. Off: no pair
+  // is carried by grids, at once.
+  void chooseCarriers(const World& world, LitScene& scene, bool on = true);
   // After the glossy effect: what was shaded goes into the texture.
   Result<void> update(World& world, const lighting::GroupLights& lights,
                       const effects::glossy::Glossy& glossy, effects::diffuse::TransferMode mode,
@@ -89,9 +90,11 @@ class Neighborhoods {
   std::vector<effects::neighborhood::VertexDraw> vertex_draws_;
   effects::neighborhood::VertexReceivers vertex_receivers_;
   gpu::Table receivers_table_, arrivals_table_;
-  std::size_t groups_seen_ = 0, ready_when_chosen_ = 0;
-  std::uint64_t transforms_seen_ = 0, residency_seen_ = 0, effect_seen_ = 0;
-  bool pairs_changed_ = false;
+  std::vector<std::uint64_t> group_keys_;  // what indices of groups mean in pairs_
+  std::size_t ready_when_chosen_ = 0;
+  effects::diffuse::TransferMode mode_seen_ = effects::diffuse::TransferMode::Full;
+  std::uint64_t structure_seen_ = 0, transforms_seen_ = 0, residency_seen_ = 0, effect_seen_ = 0;
+  bool pairs_changed_ = false, on_ = true;
   std::uint32_t left_out_ = 0;
   std::uint64_t version_ = 1;
   NeighborhoodCounts counts_;

@@ -1,7 +1,8 @@
 // E/pi times albedo (factor x texture x vertex colour), or what a glossy surface makes of its light, and what the
 // surface gives off itself. Linear, not clamped;
 // alpha is coverage. With LAMBENT_NEAR_LIGHTS, lights among the surfaces add theirs per pixel, with LAMBENT_NEIGHBORHOODS
-// bodies around change what arrives.
+// bodies around change what arrives. With LAMBENT_DARK nothing is reflected: the effect that shades it is off. LAMBENT_VIEW_IRRADIANCE:
+// what arrives, E/pi; LAMBENT_VIEW_NORMALS: where the surface faces (views.hpp).
 #include "surface_shared.h"
 
 layout(std430, binding = kBindDraws) readonly buffer Draws { SurfaceDraw draws[]; };
@@ -21,7 +22,7 @@ vec4 look(sampler2D image, vec2 at) {
 #endif
 }
 
-#if defined(LAMBENT_NORMAL_MAPPED) || defined(LAMBENT_GLOSSY) || defined(LAMBENT_NEIGHBORHOODS)
+#if defined(LAMBENT_NORMAL_MAPPED) || defined(LAMBENT_GLOSSY) || defined(LAMBENT_NEIGHBORHOODS) || defined(LAMBENT_VIEW_NORMALS)
 #include "surface_normal.glsl"
 #endif
 #if defined(LAMBENT_NORMAL_MAPPED) || defined(LAMBENT_GLOSSY)
@@ -55,7 +56,7 @@ layout(location = 6) in vec3 light[kLightCoefficients];
 #endif
 #else
 layout(location = 3) in vec3 radiance;
-#if defined(LAMBENT_NEAR_LIGHTS) || defined(LAMBENT_NEIGHBORHOODS)
+#if defined(LAMBENT_NEAR_LIGHTS) || defined(LAMBENT_NEIGHBORHOODS) || defined(LAMBENT_VIEW_NORMALS)
 layout(location = 4) in vec3 normal_group;  // of the side that is seen
 #endif
 #ifdef LAMBENT_NEIGHBORHOODS
@@ -95,7 +96,31 @@ vec3 reflectedLight(vec3 base_color) {
   received += nearLight(draw_of, normal_group, normal_group);
 #endif
 #endif
+#ifdef LAMBENT_VIEW_IRRADIANCE
+  return received;
+#endif
   return received * base_color;
+}
+#endif
+
+#ifdef LAMBENT_VIEW_NORMALS
+#include "view_colors.glsl"
+
+vec3 normalColor() {
+#if defined(LAMBENT_NORMAL_MAPPED) || defined(LAMBENT_GLOSSY)
+  vec3 normal = pixelNormal(pixelFrame());
+#else
+  vec3 normal = unit(normal_group);
+#endif
+  // world_from_mesh = world_from_group group_from_mesh; what is flat has no inverse and stays as it is.
+  mat3 group_from_mesh = mat3(draws[draw_of].group_from_mesh);
+  if (abs(determinant(group_from_mesh)) > 1e-18)
+    normal = unit(mat3(draws[draw_of].world_from_mesh) * inverse(group_from_mesh) * normal);
+#ifdef LAMBENT_FINEST_TEXELS
+  return 0.5 * normal + 0.5;
+#else
+  return displayed(0.5 * normal + 0.5);
+#endif
 }
 #endif
 
@@ -105,10 +130,18 @@ void main() {
   vec3 emission = draws[draw_of].emission.rgb;
   if (draws[draw_of].emissive_texture.set != kAbsent) emission *= look(emissive_texture, looks_at.zw).rgb;
   vec3 reflected = reflectedLight(albedo.rgb);
+#ifndef LAMBENT_VIEW_IRRADIANCE
   if (draws[draw_of].unlit != 0u) reflected = albedo.rgb;  // the base colour as it is
+#endif
 
   uint mode = draws[draw_of].alpha_mode;
   if (mode == kAlphaMask && albedo.a < draws[draw_of].alpha_cutoff) discard;
   float alpha = mode == kAlphaBlend ? albedo.a : 1.0;
+#ifdef LAMBENT_VIEW_NORMALS
+  color = vec4(normalColor(), 1.0);
+#elif defined(LAMBENT_VIEW_IRRADIANCE)
+  color = vec4(reflected, 1.0);
+#else
   color = vec4(reflected + emission, alpha);
+#endif
 }

@@ -8,7 +8,7 @@ layout(std140, binding = kBindView) uniform ViewBlock {
 };
 layout(std430, binding = kBindDraws) readonly buffer Draws { SurfaceDraw draws[]; };
 layout(std430, binding = kBindGeometry) readonly buffer Geometry { uint geometry[]; };
-#ifndef LAMBENT_GLOSSY
+#if !defined(LAMBENT_GLOSSY) && !defined(LAMBENT_DARK)
 layout(std430, binding = kBindRadiance) readonly buffer Radiance { float radiance_of[]; };
 #endif
 
@@ -22,7 +22,7 @@ layout(location = 0) in uint draw_index;  // one per instance: the draw's base i
 layout(location = 0) flat out uint draw_of;
 layout(location = 1) out vec4 looks_at;  // in the base colour picture: xy; in the emissive one: zw
 layout(location = 2) out vec4 vertex_color;
-#if defined(LAMBENT_NORMAL_MAPPED) || defined(LAMBENT_NEAR_LIGHTS) || defined(LAMBENT_GLOSSY) || defined(LAMBENT_NEIGHBORHOODS)
+#if defined(LAMBENT_NORMAL_MAPPED) || defined(LAMBENT_NEAR_LIGHTS) || defined(LAMBENT_GLOSSY) || defined(LAMBENT_NEIGHBORHOODS) || defined(LAMBENT_VIEW_NORMALS)
 #include "surface_normal.glsl"
 #endif
 #if defined(LAMBENT_NORMAL_MAPPED) || defined(LAMBENT_GLOSSY)
@@ -39,7 +39,7 @@ layout(location = 6) out vec3 light[kLightCoefficients];
 #endif
 #else
 layout(location = 3) out vec3 radiance;
-#if defined(LAMBENT_NEAR_LIGHTS) || defined(LAMBENT_NEIGHBORHOODS)
+#if defined(LAMBENT_NEAR_LIGHTS) || defined(LAMBENT_NEIGHBORHOODS) || defined(LAMBENT_VIEW_NORMALS)
 layout(location = 4) out vec3 normal_group;  // of the side that is seen
 #endif
 #ifdef LAMBENT_NEIGHBORHOODS
@@ -49,7 +49,7 @@ layout(location = 5) out vec3 position_mesh;
 
 vec2 geometry2(uint at) { return vec2(uintBitsToFloat(geometry[at]), uintBitsToFloat(geometry[at + 1u])); }
 vec3 geometry3(uint at) { return vec3(geometry2(at), uintBitsToFloat(geometry[at + 2u])); }
-#ifndef LAMBENT_GLOSSY
+#if !defined(LAMBENT_GLOSSY) && !defined(LAMBENT_DARK)
 vec3 radianceAt(uint at) { return vec3(radiance_of[at], radiance_of[at + 1u], radiance_of[at + 2u]); }
 #endif
 
@@ -100,6 +100,8 @@ void main() {
   uint words = 3u * kLightCoefficients;
   for (uint j = 0u; j < kLightCoefficients; ++j) light[j] = radianceAt(draws[draw_index].radiance_word + words * vertex + 3u * j);
 #endif
+#elif defined(LAMBENT_DARK)
+  radiance = vec3(0.0);
 #else
   radiance = radianceAt(draws[draw_index].radiance_word + 3u * vertex);
 #ifdef LAMBENT_VERTEX_CHANGE
@@ -108,7 +110,7 @@ void main() {
   radiance = max(radiance + vec3(change_of[change_at], change_of[change_at + 1u], change_of[change_at + 2u]),
                  min(radiance, vec3(0.0)));
 #endif
-#if defined(LAMBENT_NEAR_LIGHTS) || defined(LAMBENT_NEIGHBORHOODS)
+#if defined(LAMBENT_NEAR_LIGHTS) || defined(LAMBENT_NEIGHBORHOODS) || defined(LAMBENT_VIEW_NORMALS)
   normal_group =
       draws[draw_index].facing * unit(mat3(draws[draw_index].group_from_mesh_normal) * geometry3(draws[draw_index].normals_word + 3u * vertex));
 #endif

@@ -31,10 +31,7 @@ TextureSlot slotOf(const gltf::TextureRef& texture, const streaming::ResidentMes
 }
 
 const gltf::Material& materialOf(const World& world, std::size_t draw) {
-  static const gltf::Material kDefault;
-  const streaming::ResidentDraw& resident = world.residency().draws()[draw];
-  const auto& materials = world.residency().bundles()[resident.bundle].materials;
-  return resident.material >= 0 ? materials[static_cast<std::size_t>(resident.material)] : kDefault;
+  return world.material(draw);
 }
 
 glm::vec3 emissionOf(const World& world, std::size_t draw) {

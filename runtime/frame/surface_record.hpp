@@ -26,7 +26,7 @@ struct SurfaceTextures {
 // How a mesh looks into a texture; absent where it lacks the coordinates.
 TextureSlot slotOf(const gltf::TextureRef& texture, const streaming::ResidentMesh& mesh);
 
-// Valid while the draw's bundle is; of a draw without a material glTF's default.
+// As it is now; valid while the draw's bundle is.
 const gltf::Material& materialOf(const World& world, std::size_t draw);
 
 // Radiance that the surface gives off, before its texture.

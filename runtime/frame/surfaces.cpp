@@ -1,6 +1,7 @@
 #include "runtime/frame/surfaces.hpp"
 
 #include <algorithm>
+#include <cstring>
 
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
@@ -48,11 +49,14 @@ Result<void> Surfaces::compile(const ProgramKind& kind) {
   std::vector<gpu::Define> defines;
   if (kind.glossy.bands > 0) defines = definesOf(kind.glossy);
   if (finest_texels_) defines.push_back({"LAMBENT_FINEST_TEXELS", "1"});
+  if (kind.dark) defines.push_back({"LAMBENT_DARK", "1"});
   if (kind.normal_mapped) defines.push_back({"LAMBENT_NORMAL_MAPPED", "1"});
   if (kind.residual) defines.push_back({"LAMBENT_RESIDUAL", "1"});
   if (kind.near_lit) defines.push_back({"LAMBENT_NEAR_LIGHTS", "1"});
   if (kind.vertices_around) defines.push_back({"LAMBENT_VERTEX_CHANGE", "1"});
   if (kind.around) defines.push_back({"LAMBENT_NEIGHBORHOODS", "1"});
+  if (kind.view == SurfaceView::Irradiance) defines.push_back({"LAMBENT_VIEW_IRRADIANCE", "1"});
+  if (kind.view == SurfaceView::Normals) defines.push_back({"LAMBENT_VIEW_NORMALS", "1"});
   Result<gpu::Program> program = gpu::Program::create(
       "surface", {{GL_VERTEX_SHADER, "surface.vert"}, {GL_FRAGMENT_SHADER, "surface.frag"}}, kShaders,
       defines);
@@ -61,7 +65,12 @@ Result<void> Surfaces::compile(const ProgramKind& kind) {
   return {};
 }
 
+bool Surfaces::dark(const World& world, std::size_t draw) const {
+  return !(world.residency().draws()[draw].glossy() ? options_.glossy : options_.diffuse);
+}
+
 bool Surfaces::ready(const World& world, const effects::diffuse::Diffuse& diffuse, std::size_t draw) const {
+  if (dark(world, draw)) return bool(world.residency().meshes()[world.residency().draws()[draw].mesh].block);
   return world.residency().draws()[draw].glossy() ? glossyReady(world, draw) : diffuse.shaded(draw);
 }
 
@@ -69,9 +78,11 @@ void Surfaces::collect(World& world, const effects::diffuse::Diffuse& diffuse, g
                        const NearLights* near_lights, const Neighborhoods* neighborhoods,
                        std::vector<Item>& opaque, std::vector<Item>& blended) {
   const streaming::Residency& residency = world.residency();
+  shown_.assign(residency.draws().size(), 0);
   for (std::uint32_t i = 0; i < residency.draws().size(); ++i) {
     const streaming::ResidentDraw& draw = residency.draws()[i];
     if (!ready(world, diffuse, i)) continue;
+    shown_[i] = 1;
     const streaming::ResidentMesh& mesh = residency.meshes()[draw.mesh];
     const glm::mat4& world_from_mesh = records_[i].world_from_mesh;
     Item item{.state = {.geometry_page = mesh.block.page,
@@ -84,8 +95,12 @@ void Surfaces::collect(World& world, const effects::diffuse::Diffuse& diffuse, g
                         .clockwise = (glm::determinant(glm::mat3(world_from_mesh)) < 0.0f) != draw.back},
               .draw = i,
               .distance = glm::distance(eye_ws, glm::vec3(world_from_mesh * glm::vec4(mesh.center, 1.0f)))};
-    if (draw.glossy()) {
-      item.state.glossy = glossyKindOf(world, i);
+    if (dark(world, i)) {
+      item.state.dark = true;
+      item.state.radiance_page = 0;
+      item.state.normal_mapped = item.state.near_lit = item.state.around = item.state.vertices_around = false;
+    } else if (draw.glossy()) {
+      item.state.glossy = glossyKindOf(world, i, options_.glossy_bands);
       item.state.bundle = draw.bundle;
       item.state.brdf_table = brdfTableOf(world, i);
       item.state.rows_page = draw.rows.page;
@@ -113,7 +128,9 @@ void Surfaces::appendRuns(const World& world, const std::vector<Item>& items, st
 Result<void> Surfaces::prepare(World& world, const effects::diffuse::Diffuse& diffuse, const spec::View& view,
                                gpu::Counters& counters, const NearLights* near_lights,
                                const lighting::ReflectedSky* reflected_sky,
-                               const Neighborhoods* neighborhoods) {
+                               const Neighborhoods* neighborhoods, const SurfaceOptions& options) {
+  const bool options_same = options == options_;
+  options_ = options;
   const bool residual_same = (reflected_sky != nullptr) == (reflected_sky_ != nullptr);
   reflected_sky_ = reflected_sky;
   neighborhoods_ = neighborhoods;
@@ -124,16 +141,19 @@ Result<void> Surfaces::prepare(World& world, const effects::diffuse::Diffuse& di
   for (std::size_t i = 0; i < residency.draws().size(); ++i) shaded += ready(world, diffuse, i) ? 1 : 0;
   const std::uint64_t near_version = near_lights != nullptr ? near_lights->version() : 0;
   const std::uint64_t around_version = neighborhoods != nullptr ? neighborhoods->version() : 0;
-  const bool scene_same = residual_same && residency.version() == residency_seen_ &&
-                          near_version == near_seen_ && around_version == around_seen_ &&
-                          world.transformsVersion() == transforms_seen_ &&
+  const bool scene_same = residual_same && options_same && view_shown_ == view_seen_ &&
+                          world.materialsVersion() == materials_seen_ &&
+                          residency.version() == residency_seen_ && near_version == near_seen_ &&
+                          around_version == around_seen_ && world.transformsVersion() == transforms_seen_ &&
                           world.lampsVersion() == lamps_seen_ && shaded == shaded_seen_;
   if (scene_same && (blended_.empty() || view.eye_ws == eye_seen_ws_)) return {};
+  view_seen_ = view_shown_;
   near_seen_ = near_version;
   around_seen_ = around_version;
   residency_seen_ = residency.version();
   transforms_seen_ = world.transformsVersion();
   lamps_seen_ = world.lampsVersion();
+  materials_seen_ = world.materialsVersion();
   shaded_seen_ = shaded;
   eye_seen_ws_ = view.eye_ws;
 
@@ -155,14 +175,36 @@ Result<void> Surfaces::prepare(World& world, const effects::diffuse::Diffuse& di
   for (const std::vector<Run>* runs : {&opaque_, &blended_})
     for (const Run& run : *runs)
       if (Result<void> done = compile(kindOf(run.state)); !done) return done;
-  draws_.assign(std::span<const SurfaceDraw>(records_));
-  if (!glossy_records_.empty()) glossy_draws_.assign(std::span<const GlossyDraw>(glossy_records_));
-  commands_.assign(std::span<const DrawCommand>(commands));
-  counters.uploaded_bytes += records_.size() * sizeof(SurfaceDraw) +
-                             glossy_records_.size() * sizeof(GlossyDraw) +
-                             commands.size() * sizeof(DrawCommand);
+  upload(draws_, records_, records_uploaded_, counters);
+  upload(glossy_draws_, glossy_records_, glossy_uploaded_, counters);
+  upload(commands_, commands, commands_uploaded_, counters);
   indices_.reserve(records_.size());
   return {};
+}
+
+template <typename Record>
+void Surfaces::upload(gpu::Table& table, const std::vector<Record>& records, std::vector<Record>& uploaded,
+                      gpu::Counters& counters) {
+  const auto same = [&](std::size_t i) {
+    return std::memcmp(&records[i], &uploaded[i], sizeof(Record)) == 0;
+  };
+  if (records.size() != uploaded.size()) {
+    table.assign(std::span<const Record>(records));
+    counters.uploaded_bytes += records.size() * sizeof(Record);
+  } else {
+    for (std::size_t first = 0; first < records.size();) {
+      if (same(first)) {
+        ++first;
+        continue;
+      }
+      std::size_t end = first + 1;
+      while (end < records.size() && !same(end)) ++end;
+      table.buffer().write(first * sizeof(Record), std::span(records).subspan(first, end - first));
+      counters.uploaded_bytes += (end - first) * sizeof(Record);
+      first = end;
+    }
+  }
+  uploaded = records;
 }
 
 void Surfaces::drawRuns(World& world, const std::vector<Run>& runs, gpu::Counters& counters) {
@@ -183,6 +225,8 @@ void Surfaces::drawRuns(World& world, const std::vector<Run>& runs, gpu::Counter
       world.residency().rows().page(run.state.rows_page).bindStorage(kBindRows);
       world.residency().samples().page(run.state.samples_page).bindStorage(kBindSamples);
       units_.bindGlossy(world, run.state.textures, run.state.bundle, run.state.brdf_table);
+    } else if (run.state.dark) {
+      draws_.bindStorage(kBindDraws);
     } else {
       draws_.bindStorage(kBindDraws);
       world.residency().radiance().page(run.state.radiance_page).bindStorage(kBindRadiance);

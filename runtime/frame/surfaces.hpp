@@ -2,8 +2,8 @@
 // culling allow, blended ones afterwards from back to front. Reads the arenas; writes the bound framebuffer.
 // Back faces of single-sided materials are culled, as glTF asks; mirrored nodes turn their winding. Draws
 // that near lights shine on and glossy ones have programs of their own, compiled when the first of them
-// comes; glossy ones are shaded here altogether, per pixel. Errors: shaders that do not compile on this
-// device.
+// comes; glossy ones are shaded here altogether, per pixel. Of records and commands only those that are other
+// than before go to the GPU. Errors: shaders that do not compile on this device.
 #pragma once
 
 #include <compare>
@@ -21,12 +21,19 @@
 #include "runtime/frame/surface_record.hpp"
 #include "runtime/frame/surface_shared.h"
 #include "runtime/frame/texture_units.hpp"
+#include "runtime/frame/views.hpp"
 #include "runtime/frame/world.hpp"
 #include "runtime/gpu/program.hpp"
 #include "runtime/lighting/reflected_sky.hpp"
 #include "runtime/spec/camera.hpp"
 
 namespace lambent::frame {
+
+struct SurfaceOptions {
+  bool diffuse = true, glossy = true;  // off: such surfaces reflect nothing
+  std::uint32_t glossy_bands = 8;      // that glossy ones reflect, at most
+  bool operator==(const SurfaceOptions&) const = default;
+};
 
 class Surfaces {
  public:
@@ -39,7 +46,12 @@ class Surfaces {
   Result<void> prepare(World& world, const effects::diffuse::Diffuse& diffuse, const spec::View& view,
                        gpu::Counters& counters, const NearLights* near_lights = nullptr,
                        const lighting::ReflectedSky* reflected_sky = nullptr,
-                       const Neighborhoods* neighborhoods = nullptr);
+                       const Neighborhoods* neighborhoods = nullptr, const SurfaceOptions& options = {});
+  // Whether the last prepare() took the draw into the picture.
+  bool shows(std::size_t draw) const { return draw < shown_.size() && shown_[draw] != 0; }
+  // What surfaces show from the next prepare() on: Irradiance and Normals have programs of their own,
+  // compiled when they are asked for; all others are drawn as Final.
+  void setView(SurfaceView view) { view_shown_ = view; }
   void drawOpaque(World& world, gpu::Counters& counters);
   void drawBlended(World& world, gpu::Counters& counters);
 
@@ -53,6 +65,7 @@ class Surfaces {
     std::uint32_t bundle = 0, rows_page = 0, samples_page = 0;
     std::int32_t brdf_table = -1;
     bool normal_mapped = false;
+    bool dark = false;  // reflects nothing
     bool near_lit = false;
     bool around = false;           // receives from neighborhoods, per pixel
     bool vertices_around = false;  // and at its vertices
@@ -72,27 +85,36 @@ class Surfaces {
   Surfaces();
   // What a program is compiled for.
   struct ProgramKind {
-    bool normal_mapped = false, near_lit = false, around = false, vertices_around = false;
+    bool normal_mapped = false, dark = false, near_lit = false, around = false, vertices_around = false;
     GlossyKind glossy = {};
     bool residual = false;
+    SurfaceView view = SurfaceView::Final;
     auto operator<=>(const ProgramKind&) const = default;
   };
   ProgramKind kindOf(const State& state) const {
+    const bool other = view_shown_ == SurfaceView::Irradiance || view_shown_ == SurfaceView::Normals;
     return {.normal_mapped = state.normal_mapped,
+            .dark = state.dark,
             .near_lit = state.near_lit,
             .around = state.around,
             .vertices_around = state.vertices_around,
             .glossy = state.glossy,
-            .residual = reflected_sky_ != nullptr && state.glossy.bands > 0 &&
-                        state.glossy.family != bundle::BrdfFamily::Measured};
+            .residual = !other && reflected_sky_ != nullptr && state.glossy.bands > 0 &&
+                        state.glossy.family != bundle::BrdfFamily::Measured,
+            .view = other ? view_shown_ : SurfaceView::Final};
   }
   Result<void> compile(const ProgramKind& kind);
+  bool dark(const World& world, std::size_t draw) const;
   bool ready(const World& world, const effects::diffuse::Diffuse& diffuse, std::size_t draw) const;
   void collect(World& world, const effects::diffuse::Diffuse& diffuse, glm::vec3 eye_ws,
                const NearLights* near_lights, const Neighborhoods* neighborhoods, std::vector<Item>& opaque,
                std::vector<Item>& blended);
   void appendRuns(const World& world, const std::vector<Item>& items, std::vector<Run>& runs,
                   std::vector<DrawCommand>& commands) const;
+  // Of a table, what is other than before; all of it where its size is.
+  template <typename Record>
+  static void upload(gpu::Table& table, const std::vector<Record>& records, std::vector<Record>& uploaded,
+                     gpu::Counters& counters);
   void drawRuns(World& world, const std::vector<Run>& runs, gpu::Counters& counters);
 
   bool finest_texels_ = false;
@@ -100,13 +122,18 @@ class Surfaces {
   TextureUnits units_;
   DrawIndices indices_;
   gpu::Table draws_, glossy_draws_, commands_, view_;
-  std::vector<SurfaceDraw> records_;
-  std::vector<GlossyDraw> glossy_records_;
+  std::vector<SurfaceDraw> records_, records_uploaded_;
+  std::vector<GlossyDraw> glossy_records_, glossy_uploaded_;
+  std::vector<DrawCommand> commands_uploaded_;
+  std::vector<std::uint8_t> shown_;  // by draw
+  SurfaceOptions options_;
   std::vector<std::uint32_t> glossy_index_;  // of a draw among them
   std::vector<Run> opaque_, blended_;
-  std::uint64_t residency_seen_ = 0, transforms_seen_ = 0, lamps_seen_ = 0, near_seen_ = 0, around_seen_ = 0;
+  std::uint64_t residency_seen_ = 0, transforms_seen_ = 0, lamps_seen_ = 0, near_seen_ = 0, around_seen_ = 0,
+                materials_seen_ = 0;
   std::size_t shaded_seen_ = 0;
   glm::vec3 eye_seen_ws_{0.0f};
+  SurfaceView view_shown_ = SurfaceView::Final, view_seen_ = SurfaceView::Final;
   const lighting::ReflectedSky* reflected_sky_ = nullptr;  // of this frame; null: no residual
   const Neighborhoods* neighborhoods_ = nullptr;           // of this frame
 };

@@ -37,7 +37,8 @@ Result<ToneMapper> ToneMapper::create(std::uint32_t samples, bool linear) {
   return mapper;
 }
 
-void ToneMapper::run(const gpu::Texture& hdr, std::optional<float> exposure_ev, gpu::Counters& counters) {
+void ToneMapper::run(const gpu::Texture& hdr, std::optional<float> exposure_ev, gpu::Counters& counters,
+                     bool as_is) {
   hdr.bind(0);
   glBindSampler(0, 0);
   exposure_.bindStorage(0);
@@ -46,6 +47,7 @@ void ToneMapper::run(const gpu::Texture& hdr, std::optional<float> exposure_ev, 
   glDispatchCompute(1, 1, 1);
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
   resolve_.use();
+  glUniform1ui(0, as_is ? 1u : 0u);
   glBindVertexArray(no_vertices_.id());
   glDisable(GL_DEPTH_TEST);
   glDrawArrays(GL_TRIANGLES, 0, 3);

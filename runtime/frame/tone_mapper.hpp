@@ -18,8 +18,12 @@ class ToneMapper {
   // linear: no exposure, no curve, alpha kept.
   static Result<ToneMapper> create(std::uint32_t samples, bool linear);
 
-  // exposure_ev: stops above radiance 1 = white; none: metered from the picture.
-  void run(const gpu::Texture& hdr, std::optional<float> exposure_ev, gpu::Counters& counters);
+  // exposure_ev: stops above radiance 1 = white; none: metered from the picture. as_is: what is there are
+  // colours, not light; they are coded and nothing else. Linear pictures are always so.
+  void run(const gpu::Texture& hdr, std::optional<float> exposure_ev, gpu::Counters& counters,
+           bool as_is = false);
+  // What the last run multiplied radiance with, as Exposure of hdr_input.glsl.
+  void bindExposure(GLuint binding) const { exposure_.bindStorage(binding); }
 
   // Of the last run; wait for the GPU.
   std::uint32_t negativePixels() const;

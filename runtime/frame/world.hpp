@@ -1,12 +1,18 @@
 // The bundles that are shown: their readers, loaders, entities and what of them is on the GPU. open() makes a
 // bundle's entities at once and starts loading; upload() brings over what has arrived, within a budget;
-// groups and draws are then asked for in the order of the residency's tables. Render thread only. Errors name
-// the bundle.
+// groups and draws are then asked for in the order of the residency's tables. A bundle keeps its slot until
+// it is closed; replace() brings another file beside it and swaps that in when it is whole. Render thread
+// only. What goes wrong with a bundle while it loads is told by status() and errors(), and the others are
+// shown.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
+#include <deque>
 #include <filesystem>
 #include <memory>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "runtime/base/result.hpp"
@@ -16,14 +22,17 @@
 #include "runtime/scene/animation.hpp"
 #include "runtime/scene/components.hpp"
 #include "runtime/scene/instantiate.hpp"
+#include "runtime/spec/camera.hpp"
 #include "runtime/streaming/loader.hpp"
+#include "runtime/streaming/parts.hpp"
 #include "runtime/streaming/residency.hpp"
 
 namespace lambent::frame {
 
 struct WorldOptions {
-  // Of GPU memory that the bundles may take together. Weight planes that have no room stay away: first those
-  // of the bundles opened last. What is needed to show surfaces at all is always brought.
+  // Of GPU memory that the bundles may take together; what the camera sees large comes first (interest.hpp).
+  // Only a replacement on its way lies beside that, and the surfaces of one bundle that are more by
+  // themselves.
   std::uint64_t max_resident_bytes = ~std::uint64_t{0};
 };
 
@@ -33,16 +42,84 @@ struct LoadedParts {
   std::uint64_t planes_resident = 0, planes_in_bundles = 0;
 };
 
+struct OpenOptions {
+  // What StableIds call the bundle by, whatever file it is in; empty: its path.
+  std::string bundle_id{};
+  // Of those with the same id; none: the first that is free.
+  std::optional<std::uint32_t> instance{};
+};
+
+struct BundleStatus {
+  enum class State {
+    Closed,
+    Loading,
+    Partial,  // all that there is room for is here
+    Whole,
+    Damaged  // what came before the error is shown
+  };
+  State state = State::Closed;
+  std::filesystem::path path;  // of what is shown
+  std::string bundle_id;
+  std::uint32_t instance = 0;
+  std::filesystem::path replacement;  // on its way; empty: none
+  std::optional<Error> error;         // of what is shown, else of the last replacement, which was given up
+};
+
+struct BundleError {
+  std::uint32_t bundle = 0;
+  Error error;
+};
+
+struct BundleStreaming {
+  std::uint32_t bundle = 0;
+  std::string name;  // of the file
+  // Of GPU memory: all of it, what is wanted now, what is here.
+  std::uint64_t whole_bytes = 0, wanted_bytes = 0, resident_bytes = 0;
+  float size = 0.0f;  // as the camera sees it: what is larger comes first
+  BundleStatus::State state = BundleStatus::State::Closed;
+};
+
+struct StreamingStatus {
+  std::uint64_t budget_bytes = 0;  // all bits: without limit
+  std::uint64_t resident_bytes = 0;
+  std::uint32_t queued = 0;  // items that are wanted and not here
+  std::uint64_t in_flight_bytes = 0;
+  double megabytes_per_s = 0.0;  // over the last second or so
+  std::vector<BundleStreaming> bundles;
+};
+
 class World {
  public:
-  explicit World(const WorldOptions& options = {}) : room_bytes_(options.max_resident_bytes) {}
+  explicit World(const WorldOptions& options = {}) : max_resident_bytes_(options.max_resident_bytes) {}
 
-  Result<void> open(const std::filesystem::path& path);
+  // Returns the bundle's slot: the first that is free. Errors: a file that is no bundle; nothing has changed
+  // then.
+  Result<std::uint32_t> open(const std::filesystem::path& path, const OpenOptions& options = {});
+  // Its entities, its memory and what was on its way. Others keep their slots.
+  void close(std::uint32_t bundle);
+  // Shows what is in this file in the place of the bundle, once all of it is here, in one frame; until then
+  // the old one stays, and for good if the file turns out damaged. What was changed by hand stays
+  // (exchange.hpp), and entities that are in both stay the same. Whatever else was to replace the bundle is
+  // given up. Errors: a file that is no bundle; also in status().
+  Result<void> replace(std::uint32_t bundle, const std::filesystem::path& path);
+
+  // Slots, closed ones among them: these have no description and no instance.
+  std::size_t bundleCount() const { return bundles_.size(); }
+  bool isOpen(std::uint32_t bundle) const { return bundle < bundles_.size() && bundles_[bundle].has_value(); }
+  BundleStatus status(std::uint32_t bundle) const;
+  std::vector<BundleError> errors() const;
+
+  // From where the world is seen: what is larger in sight is brought first, and stays where there is no room
+  // for all. Without it all bundles are alike.
+  void look(const spec::View& view) { view_ = view; }
+  StreamingStatus streaming() const;
 
   // Up to about `budget_bytes` of what is ready; never waits.
   Result<void> upload(std::uint64_t budget_bytes, gpu::Counters& counters);
-  // Waits until everything is resident.
+  // Waits until everything is resident that there is room for, and every replacement is shown. Errors: the
+  // first of errors(), after all else has come.
   Result<void> uploadAll(gpu::Counters& counters);
+  // Nothing is on its way.
   bool loaded() const;
   LoadedParts loadedParts() const;
 
@@ -52,7 +129,17 @@ class World {
   void setAnimationTime(float time_s);
   std::uint64_t transformsVersion() const { return registry_.version<scene::WorldTransform>(); }
 
+  // Takes over what was changed in MaterialComponents; each that was touched gives a new version.
+  void updateMaterials();
+  std::uint64_t materialsVersion() const { return materials_version_; }
+  // As it is now, and as the bundle was baked with; of draws without a material glTF's default.
+  const gltf::Material& material(std::size_t draw) const;
+  const gltf::Material& bakedMaterial(std::size_t draw) const;
+
   // In the order of residency().groups() and draws().
+  // By which a group is known: that of a replaced bundle has the key of the one whose entity it shares, and
+  // no other group ever has it.
+  std::uint64_t keyOf(std::size_t group) const;
   // Where the group's frame stands now, with scale if it has any since it was baked.
   glm::mat4 worldFromGroup(std::size_t group) const;
   // Group frame, as baked.
@@ -77,29 +164,94 @@ class World {
   ecs::Registry& registry() { return registry_; }
   const ecs::Registry& registry() const { return registry_; }
   const bundle::Description& description(std::size_t bundle) const {
-    return bundles_[bundle].reader->description();
+    return bundles_[bundle]->reader->description();
   }
-  const scene::SceneInstance& instance(std::size_t bundle) const { return bundles_[bundle].instance; }
-  std::size_t bundleCount() const { return bundles_.size(); }
+  const scene::SceneInstance& instance(std::size_t bundle) const { return bundles_[bundle]->instance; }
 
  private:
+  // Steps on their way, in the order in which they were asked for.
+  struct Piece {
+    std::uint32_t unit = 0;
+    std::size_t items = 0;  // still to come
+    bool begun = false;
+    std::uint64_t bytes = 0;
+  };
+  struct Batch {
+    streaming::Loader loader;
+    std::deque<Piece> pieces;
+  };
+  struct Replacement {
+    std::shared_ptr<const bundle::Reader> reader;
+    streaming::Parts parts;
+    std::vector<std::uint32_t> steps;  // of each unit that are brought
+    streaming::Loader loader;
+    streaming::Residency::Staged staged = 0;
+  };
   struct Bundle {
     std::shared_ptr<const bundle::Reader> reader;
-    streaming::Loader loader;
+    scene::InstantiateOptions options;
     scene::SceneInstance instance;
     std::vector<glm::mat4> world_from_node_at_rest;
+    streaming::Parts parts;
+    std::vector<float> size;                   // by unit, as the camera sees it
+    std::vector<std::uint32_t> target, steps;  // by unit: that should be here, that are
+    std::optional<Batch> batch;
+    std::uint64_t bytes_read = 0;           // before the batch
+    std::vector<gltf::Material> materials;  // as they are now
+    std::optional<Replacement> replacement;
+    std::optional<Error> error, replacement_error;
   };
+  static Error inBundle(const bundle::Reader& reader, const Error& error);
+  bool limited() const { return max_resident_bytes_ != ~std::uint64_t{0}; }
+  std::uint32_t freeInstance(const std::string& bundle_id) const;
+  void setParts(Bundle& bundle, streaming::Parts parts) const;
+  std::vector<std::uint32_t> stepsForReplacement(std::uint32_t slot, const streaming::Parts& parts) const;
+  void dropReplacement(Bundle& bundle);
+  void uploadReplacement(Bundle& bundle, std::uint64_t& budget_bytes, gpu::Counters& counters);
+  void swapIn(std::uint32_t slot);
+  // What is kept per group and draw, after the residency's tables have changed.
+  void rebuildTables();
+
+  // Following the camera: what should be here; what goes; what is asked for; what has come.
+  void chooseTargets();
+  void seeBundle(Bundle& bundle) const;
+  void evict(std::uint32_t slot);
+  void dropTo(std::uint32_t slot, std::uint32_t unit, std::uint32_t steps);
+  void cancelBatch(std::uint32_t slot);
+  void retire(Bundle& bundle);
+  void request();
+  bool startBatch(std::uint32_t slot);
+  void takeFrom(std::uint32_t slot, std::uint64_t& budget_bytes, gpu::Counters& counters);
+  std::uint64_t bytesTaken() const;  // by what is here or on its way
+  static bool settled(const Bundle& bundle) {
+    return bundle.error || (bundle.steps == bundle.target && !bundle.batch);
+  }
+  void measureRate(std::uint64_t bytes);
   std::vector<scene::AnimatedBundle> animatedBundles() const;
   const scene::RigidGroupComponent* rigidGroup(std::size_t group) const;
   bool inPlace(std::size_t group, std::size_t column) const;
-  Result<std::uint64_t> uploadFrom(std::uint32_t bundle, std::uint64_t budget_bytes, gpu::Counters& counters);
 
   ecs::Registry registry_;
   streaming::Residency residency_;
-  std::vector<Bundle> bundles_;
-  std::vector<ecs::Entity> lamp_of_draw_;  // none: not a lamp of its group
+  std::vector<std::optional<Bundle>> bundles_;  // by slot
+  std::vector<ecs::Entity> lamp_of_draw_;       // none: not a lamp of its group
   std::vector<scene::Box> group_bounds_;
-  std::uint64_t room_bytes_;  // left for bundles yet to be opened
+  std::uint64_t materials_seen_ = 0, materials_version_ = 1;
+  std::uint64_t max_resident_bytes_;
+  std::optional<spec::View> view_;
+  struct Chosen {  // for what
+    std::optional<spec::View> view;
+    std::uint64_t transforms = 0, bundles = 0;
+  };
+  Chosen chosen_;
+  std::uint64_t bundles_version_ = 1;       // rises when one is opened, closed or replaced
+  std::vector<streaming::Loader> retired_;  // until their workers have ended
+  struct Rate {
+    std::chrono::steady_clock::time_point since = std::chrono::steady_clock::now();
+    std::uint64_t bytes = 0;
+    double megabytes_per_s = 0.0;
+  };
+  Rate rate_;
 };
 
 }  // namespace lambent::frame

@@ -66,26 +66,54 @@ void Arena::setPageBytes(std::uint64_t page_bytes) {
   page_bytes_ = std::clamp(alignUp(page_bytes), kAlignment, kMaxPageBytes);
 }
 
+std::optional<Allocation> Arena::allocateIn(std::uint32_t page, std::uint64_t byte_count) {
+  const std::uint64_t aligned = alignUp(std::max<std::uint64_t>(byte_count, 1));
+  const auto offset = pages_[page].list.allocate(aligned);
+  if (!offset) return {};
+  bytes_used_ += aligned;
+  return Allocation{.page = page, .offset = *offset, .byte_count = aligned};
+}
+
+std::uint32_t Arena::makePage(std::uint64_t byte_count) {
+  auto page = std::ranges::find_if(pages_, [](const Page& one) { return !one.buffer; });
+  if (page == pages_.end()) page = pages_.insert(page, Page{});
+  const auto index = static_cast<std::uint32_t>(page - pages_.begin());
+  *page = {Buffer(fmt::format("{} page {}", label_, index), byte_count), FreeList(byte_count)};
+  return index;
+}
+
 Result<Allocation> Arena::allocate(std::uint64_t byte_count) {
   const std::uint64_t aligned = alignUp(std::max<std::uint64_t>(byte_count, 1));
   if (aligned > kMaxPageBytes)
     return fail(label_, fmt::format("{} bytes in one piece; a page holds {}", byte_count, kMaxPageBytes),
                 "split the mesh or the group");
   for (std::uint32_t i = 0; i < pages_.size(); ++i)
-    if (const auto offset = pages_[i].list.allocate(aligned)) {
-      bytes_used_ += aligned;
-      return Allocation{.page = i, .offset = *offset, .byte_count = aligned};
-    }
-  const std::uint64_t page_bytes = std::max(page_bytes_, aligned);
-  pages_.push_back(
-      {Buffer(fmt::format("{} page {}", label_, pages_.size()), page_bytes), FreeList(page_bytes)});
-  return allocate(byte_count);
+    if (const auto found = allocateIn(i, byte_count)) return *found;
+  return *allocateIn(makePage(std::max(page_bytes_, aligned)), byte_count);
+}
+
+Result<Allocation> Arena::allocateWithRoom(std::uint64_t byte_count, std::uint64_t room) {
+  const std::uint64_t wanted = alignUp(std::max<std::uint64_t>({byte_count, room, 1}));
+  if (wanted > kMaxPageBytes)
+    return fail(label_, fmt::format("{} bytes in one page; a page holds {}", wanted, kMaxPageBytes),
+                "split the mesh or the group");
+  for (std::uint32_t i = 0; i < pages_.size(); ++i)
+    if (pages_[i].list.largestFree() >= wanted) return *allocateIn(i, byte_count);
+  return *allocateIn(makePage(std::max(page_bytes_, wanted)), byte_count);
 }
 
 void Arena::release(const Allocation& allocation) {
   assert(allocation.page < pages_.size());
-  pages_[allocation.page].list.release(allocation.offset, allocation.byte_count);
+  Page& page = pages_[allocation.page];
+  page.list.release(allocation.offset, allocation.byte_count);
   bytes_used_ -= allocation.byte_count;
+  if (page.list.freeBytes() == page.buffer.byteCount()) page = {};
+}
+
+std::uint64_t Arena::bytesReserved() const {
+  std::uint64_t bytes = 0;
+  for (const Page& page : pages_) bytes += page.buffer ? page.buffer.byteCount() : 0;
+  return bytes;
 }
 
 void Arena::write(const Allocation& allocation, std::uint64_t offset, std::span<const std::byte> bytes) {
@@ -97,6 +125,13 @@ void Arena::clear(const Allocation& allocation) {
   glClearNamedBufferSubData(
       pages_[allocation.page].buffer.id(), GL_R32UI, static_cast<GLintptr>(allocation.offset),
       static_cast<GLsizeiptr>(allocation.byte_count), GL_RED_INTEGER, GL_UNSIGNED_INT, nullptr);
+}
+
+void Arena::copy(const Allocation& from, const Allocation& to) {
+  assert(from.byte_count <= to.byte_count);
+  glCopyNamedBufferSubData(pages_[from.page].buffer.id(), pages_[to.page].buffer.id(),
+                           static_cast<GLintptr>(from.offset), static_cast<GLintptr>(to.offset),
+                           static_cast<GLsizeiptr>(from.byte_count));
 }
 
 }  // namespace lambent::gpu

@@ -46,22 +46,32 @@ class Arena {
 
   // Pages are made when first needed, as large as page_bytes. Takes at least one byte.
   Result<Allocation> allocate(std::uint64_t byte_count);
+  // In a page where `room` bytes in one piece are free for what is to lie beside it.
+  Result<Allocation> allocateWithRoom(std::uint64_t byte_count, std::uint64_t room);
+  // None where the page has no room in one piece.
+  std::optional<Allocation> allocateIn(std::uint32_t page, std::uint64_t byte_count);
+  // A page that nothing lies in any more goes at once.
   void release(const Allocation& allocation);
   void write(const Allocation& allocation, std::uint64_t offset, std::span<const std::byte> bytes);
-  void clear(const Allocation& allocation);  // to zero
+  void clear(const Allocation& allocation);                 // to zero
+  void copy(const Allocation& from, const Allocation& to);  // on the GPU; `to` is as large
 
   // Lowers or raises the size of pages made from now on, up to kMaxPageBytes: a small scene needs no large
   // page.
   void setPageBytes(std::uint64_t page_bytes);
   const Buffer& page(std::uint32_t index) const { return pages_[index].buffer; }
+  // Pages up to this one; some in between may be empty handles.
   std::uint32_t pageCount() const { return static_cast<std::uint32_t>(pages_.size()); }
   std::uint64_t bytesUsed() const { return bytes_used_; }
+  std::uint64_t bytesReserved() const;  // of all pages
 
  private:
   struct Page {
-    Buffer buffer;
-    FreeList list;
+    Buffer buffer;  // empty handle: the page has gone, its place is used again
+    FreeList list{0};
   };
+  std::uint32_t makePage(std::uint64_t byte_count);
+
   std::string label_;
   std::uint64_t page_bytes_;
   std::uint64_t bytes_used_ = 0;

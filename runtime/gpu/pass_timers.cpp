@@ -1,11 +1,14 @@
 #include "runtime/gpu/pass_timers.hpp"
 
+#include <utility>
+
 namespace lambent::gpu {
 
 PassTimers::Scope::Scope(PassTimers& timers, std::string_view name)
     : timers_(timers), group_(name), pass_(timers.frames_[timers.current_].passes.size()) {
   Frame& frame = timers.frames_[timers.current_];
-  frame.passes.push_back({.name = std::string(name), .cpu_ms = 0.0, .gpu_ms = -1.0, .counters = {}});
+  frame.passes.push_back(
+      {.name = std::string(name), .cpu_ms = 0.0, .gpu_ms = -1.0, .counters = {}, .reason = {}});
   while (frame.queries.size() < 2 * frame.passes.size()) {
     GLuint id = 0;
     glCreateQueries(GL_TIMESTAMP, 1, &id);
@@ -24,6 +27,10 @@ PassTimers::Scope::~Scope() {
 
 Counters& PassTimers::Scope::counters() {
   return timers_.frames_[timers_.current_].passes[pass_].counters;
+}
+
+void PassTimers::Scope::because(std::string reason) {
+  timers_.frames_[timers_.current_].passes[pass_].reason = std::move(reason);
 }
 
 void PassTimers::beginFrame() {

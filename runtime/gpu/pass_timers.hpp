@@ -1,6 +1,6 @@
 // How long each pass of a frame takes, on the CPU and on the GPU. A pass is a scope; GPU times are timestamp
 // queries kept in a ring and read when they are there, a few frames later, so that asking never makes the CPU
-// wait. Also counts what each pass issued. Times in milliseconds.
+// wait. Also counts what each pass issued, and says why it had anything to do. Times in milliseconds.
 #pragma once
 
 #include <array>
@@ -17,6 +17,7 @@ struct PassTime {
   double cpu_ms = 0.0;
   double gpu_ms = -1.0;  // -1: not known
   Counters counters;
+  std::string reason{};  // what changed; empty: nothing, the pass was up to date
 };
 
 class PassTimers {
@@ -29,6 +30,7 @@ class PassTimers {
     Scope(const Scope&) = delete;
     Scope& operator=(const Scope&) = delete;
     Counters& counters();
+    void because(std::string reason);
 
    private:
     PassTimers& timers_;

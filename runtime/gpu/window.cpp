@@ -33,6 +33,9 @@ struct Window::State {
     if (key == GLFW_KEY_R) input.reset = true;
     if (key == GLFW_KEY_SPACE) input.pause = true;
   }
+  static void onDrop(GLFWwindow* window, int count, const char** paths) {
+    for (int i = 0; i < count; ++i) of(window).pending.dropped.emplace_back(paths[i]);
+  }
   static void onMove(GLFWwindow* window, double x, double y) {
     State& state = of(window);
     int width = 1, height = 1;
@@ -80,6 +83,7 @@ Result<Window> Window::create(const std::string& title, std::uint32_t width, std
   glfwSetScrollCallback(state->window, &State::onScroll);
   glfwSetKeyCallback(state->window, &State::onKey);
   glfwSetCursorPosCallback(state->window, &State::onMove);
+  glfwSetDropCallback(state->window, &State::onDrop);
   Result<Context> context = Context::attachToCurrent(options);
   if (!context) return failAgain(context.error());
   state->context = std::move(*context);
@@ -88,6 +92,10 @@ Result<Window> Window::create(const std::string& title, std::uint32_t width, std
 
 const Context& Window::context() const {
   return *state_->context;
+}
+
+GLFWwindow* Window::handle() const {
+  return state_->window;
 }
 
 Input Window::poll() {

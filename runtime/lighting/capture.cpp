@@ -471,6 +471,16 @@ std::optional<std::vector<CapturedLight>> Capture::take(bool wait) {
   return lights;
 }
 
+Capture::Texels Capture::texels() const {
+  Texels texels{.points = std::vector<std::uint32_t>(run_.uncovered.size()),
+                .records = &points_.buffer(),
+                .texels = &texels_.buffer(),
+                .values = &values_.buffer()};
+  for (std::uint32_t p = 0; p < run_.records.size(); ++p)
+    if (run_.records[p] != kNoRecord) texels.points[run_.records[p]] = p;
+  return texels;
+}
+
 sh::LightVector Capture::skyThroughTexels(const Environment& environment, const glm::mat3& world_from_light) {
   sky_.makeTurned(environment, world_from_light, weights_);
   std::vector<glm::vec4> sky(static_cast<std::size_t>(sh::coefficientCount(options_.order)));

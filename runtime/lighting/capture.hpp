@@ -61,6 +61,15 @@ class Capture {
     std::uint64_t triangles = 0, pixels = 0;
   };
   const Load& load() const { return load_; }
+  // Texels of the last run, for pictures of what points see: those that a body may show in. They stay until
+  // the next run.
+  struct Texels {
+    std::vector<std::uint32_t> points;     // of each record, which of the points given
+    const gpu::Buffer* records = nullptr;  // capture::PointRecord
+    const gpu::Buffer* texels = nullptr;   // capture::TexelRecord: which of the cube
+    const gpu::Buffer* values = nullptr;   // vec4: mean radiance of bodies; share that they hide
+  };
+  Texels texels() const;
   // The sky as it comes through the texels, turned in any way, without the correction to the exact light:
   // measures the texels. Waits for the GPU; not to be called while pending().
   sh::LightVector skyThroughTexels(const Environment& environment, const glm::mat3& world_from_light);

@@ -97,7 +97,7 @@ Result<CaptureSky> CaptureSky::create(const CaptureOptions& options, const Envir
                                  kShaders, defines);
   if (!program) return failAgain(program.error());
   sky.light_program_ = std::move(*program);
-  for (std::size_t i = 0; i < Environment::kSets; ++i) sky.probes_[i] = probeCube(environment.set(i).probes);
+  sky.takeLights(environment);
   sky.sampler_ = gpu::Sampler(GL_CLAMP_TO_EDGE, GL_CLAMP_TO_EDGE, GL_LINEAR, GL_LINEAR_MIPMAP_LINEAR);
   const std::size_t texels = std::size_t{6} * options.size * options.size,
                     coefficients = static_cast<std::size_t>(sh::coefficientCount(options.order));
@@ -105,6 +105,12 @@ Result<CaptureSky> CaptureSky::create(const CaptureOptions& options, const Envir
   sky.weights_ = gpu::Buffer("capture sky weights", texels * ((coefficients + 3) / 4) * sizeof(glm::vec4));
   sky.light_ = gpu::Buffer("capture sky light", coefficients * sizeof(glm::vec4));
   return sky;
+}
+
+void CaptureSky::takeLights(const Environment& environment) {
+  if (lights_ == environment.lightsVersion()) return;
+  lights_ = environment.lightsVersion();
+  for (std::size_t i = 0; i < Environment::kSets; ++i) probes_[i] = probeCube(environment.set(i).probes);
 }
 
 bool CaptureSky::update(const Environment& environment, const gpu::Buffer& weights, gpu::Counters& counters) {
@@ -117,6 +123,7 @@ bool CaptureSky::update(const Environment& environment, const gpu::Buffer& weigh
 
 void CaptureSky::makeTurned(const Environment& environment, const glm::mat3& world_from_light,
                             const gpu::Buffer& weights) {
+  takeLights(environment);
   version_ = 0;
   const glm::mat3 light_from_world = glm::transpose(world_from_light);
   // Two subsamples to a texel: with one, the filter's triangles would not add up evenly over a turned probe,

@@ -1,7 +1,7 @@
 // The sky as the light capture sees it: one small cube in world axes for all points, box-filtered, without
 // suns. Comes in: an environment. Goes out: per texel (order of sh/cube_map.hpp) its
 // radiance and the weights that take it to harmonics, and the sum of both, made anew by two
-// dispatches when the environment turned or faded. Errors: shaders that
+// dispatches when the environment turned, faded or is another. Errors: shaders that
 // do not compile on this device.
 #pragma once
 
@@ -36,6 +36,8 @@ class CaptureSky {
   const gpu::Buffer& light() const { return light_; }
 
  private:
+  void takeLights(const Environment& environment);
+
   CaptureOptions options_;
   gpu::Program program_, light_program_;
   std::array<gpu::Texture, Environment::kSets> probes_;  // in the lights' own frame, float32, with mip maps
@@ -43,6 +45,7 @@ class CaptureSky {
   gpu::Buffer texels_, weights_, light_;
   gpu::Handle<gpu::TextureTraits> texels_view_, weights_view_;
   std::uint64_t version_ = 0;  // of the environment that the cube shows; 0: of none
+  std::uint64_t lights_ = 0;   // version of those in the probes' cubes
 };
 
 }  // namespace lambent::lighting

@@ -1,11 +1,36 @@
 #include "runtime/lighting/environment.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <span>
 
+#include "runtime/bundle/checksum.hpp"
 #include "runtime/spec/rotate.hpp"
 
 namespace lambent::lighting {
+
+namespace {
+
+// Checksums and sizes go in as they are; what is given by reference by its own checksum.
+class Seal {
+ public:
+  template <typename T>
+  void add(const T& value) {
+    static_assert(std::has_unique_object_representations_v<T> || std::is_floating_point_v<T>);
+    const auto bytes = std::bit_cast<std::array<std::byte, sizeof(T)>>(value);
+    bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
+  }
+  void add(const glm::vec3& v) {
+    for (int i = 0; i < 3; ++i) add(v[i]);
+  }
+  std::uint64_t value() const { return std::max<std::uint64_t>(bundle::checksum(bytes_), 1); }
+
+ private:
+  std::vector<std::byte> bytes_;
+};
+
+}  // namespace
 
 Result<Environment> Environment::create(const std::vector<spec::Light>& lights,
                                         const std::vector<spec::Light>& second_lights) {
@@ -21,8 +46,30 @@ Result<Environment> Environment::create(const std::vector<spec::Light>& lights,
     environment.notices_.insert(environment.notices_.end(), set.lights.notices.begin(),
                                 set.lights.notices.end());
   }
+  environment.seal();
   environment.mix();
   return environment;
+}
+
+void Environment::seal() {
+  Seal seal;
+  for (const Set& set : sets_) {
+    seal.add(set.lights.constant);
+    seal.add(set.lights.discs.size());
+    for (const Disc& disc : set.lights.discs) {
+      seal.add(disc.direction);
+      seal.add(disc.radius_rad);
+      seal.add(disc.radiance);
+    }
+    seal.add(set.lights.probes.size());
+    for (const spec::Probe& probe : set.lights.probes) {
+      seal.add(static_cast<std::uint32_t>(probe.layout));
+      seal.add(probe.image.width);
+      seal.add(probe.image.height);
+      seal.add(bundle::checksum(std::as_bytes(std::span(probe.image.texels))));
+    }
+  }
+  lights_version_ = seal.value();
 }
 
 glm::mat3 Environment::worldFromLight() const {
@@ -49,7 +96,10 @@ void Environment::mix() {
   }
   sky_light_ = spec::turned(sky, turn_degrees_);
   light_ = spec::turned(sky + discs, turn_degrees_);
-  ++version_;
+  Seal seal;
+  seal.add(lights_version_);
+  for (const float value : {turn_degrees_, fade_, intensity_}) seal.add(value);
+  version_ = seal.value();
 }
 
 void Environment::setTurn(float degrees) {

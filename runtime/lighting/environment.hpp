@@ -1,8 +1,9 @@
 // The light at infinity: probes, suns and constants added up, in one or two sets to fade between, turned
 // together about +Y. Comes in: the lights as parsed; those that stand in the scene are passed over. Goes out:
 // light vectors of order 8 in world space (probes projected once when loaded, suns in closed form), the suns
-// as discs, and what the sky shows. Fading and turning mix what was projected once. No GL. Errors: those of
-// loading a probe.
+// as discs, and what the sky shows. Fading and turning mix what was projected once. Whoever follows one
+// environment may be given another at any time: versions tell what they say, not how often it was changed.
+// No GL. Errors: those of loading a probe.
 #pragma once
 
 #include <array>
@@ -28,7 +29,7 @@ class Environment {
   static Result<Environment> create(const std::vector<spec::Light>& lights,
                                     const std::vector<spec::Light>& second_lights = {});
 
-  // Each gives a new version where it changes something. Values that are not finite change nothing.
+  // Each gives another version where it changes something. Values that are not finite change nothing.
   // Positive turns take +Z to +X.
   void setTurn(float degrees);
   // 0: the first set alone, 1: the second; between them (1 - fade) of the one and fade of the other. Clamped.
@@ -46,7 +47,11 @@ class Environment {
   const sh::LightVector& skyLight() const { return sky_light_; }  // without the discs of suns
   // The suns of both sets, always as many and in the same order; dark ones have radiance 0.
   const std::vector<Disc>& discs() const { return discs_; }
+  // Of all that is said above, a checksum: of two environments, also of two objects, the same where they are
+  // the same light, and else another (but for one chance in 2^64). Never 0.
   std::uint64_t version() const { return version_; }
+  // Of what was loaded, likewise: turning, fading and dimming leave it as it is.
+  std::uint64_t lightsVersion() const { return lights_version_; }
 
   // As loaded: the lights' own frame, whole radiance.
   const spec::DistantLights& set(std::size_t index) const { return sets_[index].lights; }
@@ -62,13 +67,14 @@ class Environment {
   };
   Environment() = default;
   void mix();
+  void seal();  // says what was loaded
 
   std::array<Set, kSets> sets_;
   std::vector<std::string> notices_;
   float turn_degrees_ = 0.0f, fade_ = 0.0f, intensity_ = 1.0f;
   sh::LightVector light_, sky_light_;
   std::vector<Disc> discs_;
-  std::uint64_t version_ = 0;
+  std::uint64_t version_ = 0, lights_version_ = 0;
 };
 
 }  // namespace lambent::lighting

@@ -27,16 +27,28 @@ float changeBetween(std::span<const glm::vec3> before, std::span<const glm::vec3
 }  // namespace
 
 void GroupLights::layOut(std::span<const GroupPlace> groups) {
-  groups_.assign(groups.size(), {});
-  std::uint32_t first = 0;
+  groups_.follow(groups, &GroupPlace::key);
+  std::vector<glm::vec4> coefficients;
   for (std::size_t i = 0; i < groups.size(); ++i) {
-    groups_[i].first = first;
-    groups_[i].samples.resize(groups[i].incident.size());
-    groups_[i].lamps.resize(groups[i].lamps.size());
-    first += kStride * static_cast<std::uint32_t>(groups[i].incident.size()) +
-             static_cast<std::uint32_t>(groups[i].lamps.size());
+    const std::size_t samples = groups[i].incident.size(), lamps = groups[i].lamps.size();
+    Group& group = groups_[i];
+    const auto first = static_cast<std::uint32_t>(coefficients.size());
+    coefficients.resize(first + kStride * samples + lamps, glm::vec4(0.0f));
+    if (group.version != 0 && sameShape(groups[i], group)) {
+      std::copy_n(coefficients_.begin() + group.first, kStride * samples + lamps,
+                  coefficients.begin() + first);
+    } else {
+      group = {};
+      group.samples.resize(samples);
+      group.lamps.resize(lamps);
+    }
+    group.first = first;
   }
-  coefficients_.assign(first, glm::vec4(0.0f));
+  coefficients_ = std::move(coefficients);
+}
+
+bool GroupLights::sameShape(const GroupPlace& place, const Group& group) {
+  return place.lamps.size() == group.lamps.size() && place.incident.size() == group.samples.size();
 }
 
 bool GroupLights::updateLamps(Group& group, const GroupPlace& place) {
@@ -51,15 +63,14 @@ bool GroupLights::updateLamps(Group& group, const GroupPlace& place) {
 }
 
 void GroupLights::update(const Environment& environment, sh::Window window,
-                         std::span<const GroupPlace> groups, gpu::Counters& counters) {
-  // Blocks move when groups come, and with them their lamps: all are written again.
-  if (!std::ranges::equal(groups, groups_, [](const GroupPlace& a, const Group& b) {
-        return a.lamps.size() == b.lamps.size() && a.incident.size() == b.samples.size();
-      }))
-    layOut(groups);
+                         std::span<const GroupPlace> groups, gpu::Counters& counters, int max_order) {
+  // Blocks move when groups come and go.
+  const bool same_groups = std::ranges::equal(groups, groups_.keys(), {}, &GroupPlace::key) &&
+                           std::ranges::equal(groups, groups_, sameShape);
+  if (!same_groups) layOut(groups);
   const bool environment_changed = environment.version() != environment_version_;
-  const bool window_changed = window != window_;
-  bool any_changed = false;
+  const bool window_changed = window != window_ || max_order != max_order_;
+  bool any_changed = !same_groups;
   renewed_ = 0;
   std::array<std::optional<sh::LightVector>, sh::kMaxOrder + 1> windowed_environment;
   for (std::size_t i = 0; i < groups.size(); ++i) {
@@ -69,7 +80,7 @@ void GroupLights::update(const Environment& environment, sh::Window window,
     const bool cut_anew = window_changed || group.order != place.order;
     group.world_from_group = place.world_from_group;
     group.order = place.order;
-    const auto order = static_cast<int>(place.order);
+    const auto order = static_cast<int>(place.order), bands = std::min(order, max_order);
     std::optional<sh::Rotation> rotation;
     group.change = 0.0f;
     bool changed = updateLamps(group, place);
@@ -92,9 +103,10 @@ void GroupLights::update(const Environment& environment, sh::Window window,
       if (!same_light || cut_anew) {
         auto& shared = windowed_environment[place.order];
         if (from_environment && !shared)
-          shared = sh::applyWindow(environment.light().truncated(order), window);
+          shared = sh::applyWindow(environment.light().truncated(bands), window).truncated(order);
         const sh::LightVector light_ws =
-            from_environment ? *shared : sh::applyWindow(incident.light->truncated(order), window);
+            from_environment ? *shared
+                             : sh::applyWindow(incident.light->truncated(bands), window).truncated(order);
         group.change = std::max(group.change, changeBetween(sample.light_ws.c, light_ws.c));
         sample.light_ws = light_ws;
       }
@@ -107,6 +119,7 @@ void GroupLights::update(const Environment& environment, sh::Window window,
   }
   environment_version_ = environment.version();
   window_ = window;
+  max_order_ = max_order;
   if (!any_changed || coefficients_.empty()) return;
   table_.assign(std::span<const glm::vec4>(coefficients_));
   counters.uploaded_bytes += coefficients_.size() * sizeof(glm::vec4);

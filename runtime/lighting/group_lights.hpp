@@ -13,6 +13,7 @@
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
+#include "runtime/base/by_key.hpp"
 #include "runtime/gpu/objects.hpp"
 #include "runtime/lighting/environment.hpp"
 #include "runtime/sh/window.hpp"
@@ -31,6 +32,7 @@ struct GroupPlace {
   // Lights that belong to the group, one per light column of its transfer: colour times strength.
   std::vector<glm::vec3> lamps{};
   std::vector<Incident> incident = {{}};  // per light sample
+  std::uint64_t key = 0;                  // by which the group is known again when others come and go
 };
 
 class GroupLights {
@@ -39,9 +41,12 @@ class GroupLights {
 
   GroupLights() : table_("group lights") {}
 
-  // Does nothing if neither the environment, the window nor any group changed.
+  // Does nothing if neither the environment, the window, max_order nor any group changed. max_order: bands of
+  // the light that count, at most; the window is that of as many, and higher ones are 0.
   void update(const Environment& environment, sh::Window window, std::span<const GroupPlace> groups,
-              gpu::Counters& counters);
+              gpu::Counters& counters, int max_order = sh::kMaxOrder);
+  // All counts as new in the next update.
+  void forget() { groups_.clear(); }
 
   std::size_t groupCount() const { return groups_.size(); }
   // vec4 indices: of a light sample's coefficients, of the group's own lights.
@@ -81,13 +86,15 @@ class GroupLights {
     std::uint64_t version = 0, lamps_version = 0;
     float change = 0.0f;
   };
+  static bool sameShape(const GroupPlace& place, const Group& group);
   void layOut(std::span<const GroupPlace> groups);
   bool updateLamps(Group& group, const GroupPlace& place);
 
-  std::vector<Group> groups_;
+  ByKey<Group> groups_;
   std::vector<glm::vec4> coefficients_;
   std::uint64_t environment_version_ = 0;
   sh::Window window_ = sh::Window::Off;
+  int max_order_ = sh::kMaxOrder;
   std::uint64_t version_ = 0;
   std::uint32_t renewed_ = 0;
   gpu::Table table_;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 #include <glm/geometric.hpp>
 
@@ -13,6 +14,8 @@ namespace lambent::lighting {
 
 namespace {
 
+constexpr std::uint64_t kNoVersion = ~std::uint64_t{0};
+constexpr std::size_t kGone = ~std::size_t{0};
 constexpr float kAnew = std::numeric_limits<float>::infinity();
 
 bool differs(const sh::LightVector& now, const sh::LightVector& before) {
@@ -69,6 +72,22 @@ Result<IncidentLight> IncidentLight::create(const CaptureOptions& options, const
   return IncidentLight(std::move(*capture), options.order);
 }
 
+Result<void> IncidentLight::renew(const CaptureOptions& options, const Environment& environment) {
+  Result<Capture> capture = Capture::create(options, environment);
+  if (!capture) return failAgain(capture.error());
+  capture_ = std::move(*capture);
+  order_ = options.order;
+  requests_.clear();
+  forget();
+  return {};
+}
+
+void IncidentLight::forget() {
+  ++renewal_;
+  nothing_to_draw_ = false;
+  counts_.waiting = std::max(counts_.waiting, 1u);  // not at rest before it was looked for
+}
+
 void IncidentLight::leaveOut(Sample& sample, const std::vector<std::uint32_t>& left_out, bool fades) {
   if (sample.left_out == left_out) return;
   sample.left_out = left_out;
@@ -79,23 +98,93 @@ void IncidentLight::takeDrawn(bool wait) {
   if (requests_.empty()) return;
   std::optional<std::vector<CapturedLight>> results = capture_.take(wait);
   if (!results) return;
+  counts_.arrived = static_cast<std::uint32_t>(requests_.size());
   for (std::size_t i = 0; i < requests_.size(); ++i) {
     Request& request = requests_[i];
-    // Groups may have gone since.
+    // Groups and their samples may have gone since.
     if (request.group >= groups_.size() || request.sample >= groups_[request.group].samples.size()) continue;
     Sample& sample = groups_[request.group].samples[request.sample];
     request.drawn.result = std::move((*results)[i]);
     leaveOut(sample, request.drawn.left_out, request.drawn.fades);
+    sample.renewed = sample.drawn && sample.drawn->renewal != request.drawn.renewal;
     sample.drawn = std::move(request.drawn);
     sample.drawn_anew = true;
   }
   requests_.clear();
 }
 
-void IncidentLight::noticeLights(std::span<const IncidentGroup> groups, std::span<const LocalLight> lights) {
-  groups_.resize(groups.size());
+// Samples of a group that was baked anew begin with the light of what was nearest to them.
+void IncidentLight::renewSamples(Group& group, const IncidentGroup& now) {
+  std::vector<Sample> samples(now.samples_ws.size());
+  std::uint64_t version = 0;
+  for (const Sample& sample : group.samples) version = std::max(version, sample.version);
+  for (std::size_t s = 0; s < samples.size() && !group.samples.empty(); ++s) {
+    const auto nearest = std::ranges::min_element(
+        group.places_ws, {}, [&](const glm::vec3& place) { return glm::distance(place, now.samples_ws[s]); });
+    samples[s] = group.samples[static_cast<std::size_t>(nearest - group.places_ws.begin())];
+    if (samples[s].version != 0) samples[s].version = version + 1;
+  }
+  group.samples = std::move(samples);
+}
+
+void IncidentLight::followGroups(std::span<const IncidentGroup> groups) {
+  const std::vector<std::uint64_t> before = groups_.keys();
+  if (groups_.follow(groups, &IncidentGroup::key))
+    for (Request& request : requests_) {
+      if (request.group >= before.size()) continue;
+      const auto now = std::ranges::find(groups, before[request.group], &IncidentGroup::key);
+      request.group = now == groups.end() ? kGone : static_cast<std::size_t>(now - groups.begin());
+    }
   for (std::size_t g = 0; g < groups.size(); ++g) {
-    groups_[g].samples.resize(groups[g].samples_ws.size());
+    Group& group = groups_[g];
+    if (group.samples_seen != groups[g].samples || group.samples.size() != groups[g].samples_ws.size()) {
+      renewSamples(group, groups[g]);
+      for (Request& request : requests_)
+        if (request.group == g) request.group = kGone;
+    }
+    group.samples_seen = groups[g].samples;
+    group.places_ws = groups[g].samples_ws;
+  }
+}
+
+// Bodies of all that is kept, by their indices from now on. Those that went stand behind all others.
+void IncidentLight::followBodies(std::span<const IncidentBody> bodies) {
+  if (std::ranges::equal(bodies, body_keys_, {}, &IncidentBody::key)) return;
+  std::vector<std::uint32_t> now(body_keys_.size(), CapturePoint::kNoBody);
+  std::vector<bool> taken(bodies.size(), false);
+  for (std::size_t b = 0; b < body_keys_.size(); ++b)
+    for (std::size_t i = 0; i < bodies.size(); ++i)
+      if (!taken[i] && bodies[i].key == body_keys_[b]) {
+        now[b] = static_cast<std::uint32_t>(i);
+        taken[i] = true;
+        break;
+      }
+  const auto place = [&](std::uint32_t body) {
+    return body < now.size() ? now[body] : CapturePoint::kNoBody;
+  };
+  const auto renumber = [&](std::vector<std::uint32_t>& left_out) {
+    for (std::uint32_t& body : left_out) body = place(body);
+    std::erase(left_out, CapturePoint::kNoBody);
+    std::ranges::sort(left_out);
+  };
+  const auto renumberDrawn = [&](Drawn& drawn) {
+    for (SeenBody& seen : drawn.seen) seen.body = place(seen.body);
+    std::ranges::stable_sort(drawn.seen, {}, &SeenBody::body);
+    renumber(drawn.left_out);
+  };
+  for (Group& group : groups_)
+    for (Sample& sample : group.samples) {
+      renumber(sample.left_out);
+      if (sample.drawn) renumberDrawn(*sample.drawn);
+    }
+  for (Request& request : requests_) renumberDrawn(request.drawn);
+  body_keys_.clear();
+  for (const IncidentBody& body : bodies) body_keys_.push_back(body.key);
+}
+
+void IncidentLight::noticeLights(std::span<const IncidentGroup> groups, std::span<const LocalLight> lights) {
+  followGroups(groups);
+  for (std::size_t g = 0; g < groups.size(); ++g) {
     bool changed = groups_[g].lit_by != groups[g].lit_by || lights.size() != lights_before_.size();
     for (std::size_t k = 0; k < lights.size() && !changed; ++k)
       changed = groups[g].lit_by[k] != 0 && lights[k] != lights_before_[k];
@@ -128,7 +217,7 @@ void IncidentLight::updateSample(Sample& sample, const Group& group, const Envir
   if (!sample.drawn && !lit && !fading) {
     // GroupLights itself follows the environment.
     if (!sample.plain || sample.version == 0 || sample.environment != environment.version()) ++counts_.risen;
-    if (!sample.plain || sample.version == 0) ++sample.version;
+    if (!sample.plain || sample.version == 0) sample.version = ++version_;
     sample.plain = true;
     sample.drawn_anew = false;
     sample.environment = environment.version();
@@ -168,15 +257,18 @@ void IncidentLight::updateSample(Sample& sample, const Group& group, const Envir
     for (std::size_t i = 0; i < sh::kMaxCoefficients; ++i)
       now.c[i] = (1.0f - before) * now.c[i] + before * sample.fade_from.c[i];
   }
-  if (!sample.plain && sample.version != 0 && !differs(now, sample.light)) return;
+  const bool renewed = std::exchange(sample.renewed, false);
+  if (!renewed && !sample.plain && sample.version != 0 && !differs(now, sample.light)) return;
   sample.light = now;
   sample.plain = false;
-  ++sample.version;
+  sample.version = ++version_;
   ++counts_.risen;
 }
 
 bool IncidentLight::somethingShines(const Environment& environment, std::span<const IncidentBody> bodies) {
-  std::vector<double> shine = {static_cast<double>(environment.version())};
+  // In halves, which are exact.
+  std::vector<double> shine = {static_cast<double>(environment.version() >> 32),
+                               static_cast<double>(environment.version() & 0xffffffffu)};
   for (const Group& group : groups_) shine.push_back(static_cast<double>(group.lights));
   for (const IncidentBody& body : bodies) shine.push_back(body.radiance_drift);
   const bool changed = shine != shine_before_;
@@ -205,7 +297,8 @@ bool IncidentLight::somethingMoves(std::span<const IncidentGroup> groups,
 // drawn anew.
 float IncidentLight::changeAround(const Drawn& drawn, const Drawn& now, std::span<const IncidentBody> bodies,
                                   const CapturePoint& point) const {
-  if (drawn.environment != now.environment || drawn.lights != now.lights) return kAnew;
+  if (drawn.environment != now.environment || drawn.lights != now.lights || drawn.renewal != now.renewal)
+    return kAnew;
   // A body that reaches the group by another way now would count twice, or not at all.
   if (drawn.left_out != now.left_out) {
     const auto changed = [&](const SeenBody& seen) {
@@ -252,6 +345,7 @@ Result<void> IncidentLight::capture(const Environment& environment, std::span<co
                                     const gpu::Buffer& triangle_radiance, std::size_t max_samples,
                                     gpu::Counters& counters) {
   counts_.captured = 0;
+  followBodies(bodies);
   if (!requests_.empty()) return {};  // the last one is still on its way
   const bool moves = somethingMoves(groups, bodies), shines = somethingShines(environment, bodies);
   if (!moves && !shines && nothing_to_draw_) return {};
@@ -269,6 +363,7 @@ Result<void> IncidentLight::capture(const Environment& environment, std::span<co
       now.position_ws = point.position_ws;
       now.environment = environment.version();
       now.lights = groups_[g].lights;
+      now.renewal = renewal_;
       now.left_out = groups[g].left_out;
       now.fades = groups[g].fades;
       for (std::uint32_t b = 0; b < bodies.size(); ++b)

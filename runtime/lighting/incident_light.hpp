@@ -16,6 +16,7 @@
 #include <glm/gtc/quaternion.hpp>
 #include <glm/vec3.hpp>
 
+#include "runtime/base/by_key.hpp"
 #include "runtime/base/result.hpp"
 #include "runtime/lighting/capture.hpp"
 #include "runtime/lighting/environment.hpp"
@@ -37,6 +38,7 @@ struct IncidentBody {
   float radius_m = 0.0f;
   // Sum of all changes of its radiance so far, each as a share of what it was.
   double radiance_drift = 0.0;
+  std::uint64_t key = 0;  // by which it is known again when others come and go
 };
 
 // A rigid group as a receiver.
@@ -46,12 +48,15 @@ struct IncidentGroup {
   std::vector<std::uint8_t> lit_by;  // per local light, 1: by harmonics; 0: it has that light otherwise
   // Bodies, rising, whose light and shadow reach it otherwise: they are drawn for none of its samples.
   std::vector<std::uint32_t> left_out{};
-  bool fades = false;  // where left_out changed: over kCarrierSteps; else at once
+  bool fades = false;         // where left_out changed: over kCarrierSteps; else at once
+  std::uint64_t key = 0;      // by which it is known again when others come and go
+  std::uint64_t samples = 0;  // another number: its samples are others than before, not the same that moved
 };
 
 struct IncidentCounts {
   std::uint32_t samples = 0;   // light samples there are
   std::uint32_t captured = 0;  // drawn in this step
+  std::uint32_t arrived = 0;   // whose captures arrived in this step
   // Surroundings changed, but by less than is drawn while things move, or there was no more room in the step;
   // or a body is out of sight now, which needs no drawing.
   std::uint32_t waiting = 0;
@@ -62,6 +67,14 @@ struct IncidentCounts {
 class IncidentLight {
  public:
   static Result<IncidentLight> create(const CaptureOptions& options, const Environment& environment);
+
+  // Captures of other options from now on: what is on its way is dropped, and all samples that see a body are
+  // drawn anew; until then they keep the light that they have. Proxies must be given anew. Errors: options
+  // out of range.
+  Result<void> renew(const CaptureOptions& options, const Environment& environment);
+
+  // All samples that see a body are drawn anew.
+  void forget();
 
   Capture& captures() { return capture_; }
   const Capture& captures() const { return capture_; }
@@ -95,6 +108,7 @@ class IncidentLight {
   struct Drawn {
     glm::vec3 position_ws{0.0f};
     std::uint64_t environment = 0, lights = 0;  // versions
+    std::uint32_t renewal = 0;                  // of the captures
     std::vector<SeenBody> seen;
     std::vector<std::uint32_t> left_out;
     bool fades = false;
@@ -104,8 +118,9 @@ class IncidentLight {
   struct Sample {
     std::optional<Drawn> drawn;  // none: it sees no body
     bool drawn_anew = false;     // and that is not in `light` yet
+    bool renewed = false;        // by captures of other options: however little it changes
     // What was handed on last, and of which inputs it was made.
-    std::uint64_t version = 0;  // 0: nothing yet
+    std::uint64_t version = 0;  // 0: nothing yet; no two samples ever have the same
     bool plain = true;          // the environment's own light
     sh::LightVector light{1};
     glm::vec3 position_ws{0.0f};
@@ -118,6 +133,8 @@ class IncidentLight {
   };
   struct Group {
     std::vector<Sample> samples;
+    std::uint64_t samples_seen = 0;    // IncidentGroup::samples
+    std::vector<glm::vec3> places_ws;  // of the samples
     std::vector<std::uint8_t> lit_by;
     std::uint64_t lights = 0;  // rises when a light that lights it changed, or which ones do
   };
@@ -134,6 +151,9 @@ class IncidentLight {
   IncidentLight(Capture capture, int order) : capture_(std::move(capture)), order_(order) {}
   static void leaveOut(Sample& sample, const std::vector<std::uint32_t>& left_out, bool fades);
   void takeDrawn(bool wait);
+  void followGroups(std::span<const IncidentGroup> groups);
+  static void renewSamples(Group& group, const IncidentGroup& now);
+  void followBodies(std::span<const IncidentBody> bodies);
   void noticeLights(std::span<const IncidentGroup> groups, std::span<const LocalLight> lights);
   void updateSample(Sample& sample, const Group& group, const Environment& environment,
                     const glm::vec3& position_ws, std::span<const LocalLight> lights);
@@ -147,8 +167,11 @@ class IncidentLight {
 
   Capture capture_;
   int order_;
-  std::vector<Group> groups_;
-  std::vector<Request> requests_;  // on their way
+  ByKey<Group> groups_;
+  std::vector<std::uint64_t> body_keys_;  // what indices of bodies mean in all that is kept
+  std::vector<Request> requests_;         // on their way
+  std::uint64_t version_ = 0;             // the last that a sample was given
+  std::uint32_t renewal_ = 0;
   std::vector<LocalLight> lights_before_;
   std::vector<glm::mat4> bodies_before_;
   std::vector<glm::vec3> places_before_;

@@ -76,16 +76,23 @@ Result<Sky> Sky::create(const Environment& environment) {
       "sky", {{GL_VERTEX_SHADER, "sky.vert"}, {GL_FRAGMENT_SHADER, "sky.frag"}}, kShaders);
   if (!program) return failAgain(program.error());
   sky.program_ = std::move(*program);
+  sky.no_vertices_ = gpu::VertexArray("sky");
+  sky.update(environment);
+  return sky;
+}
+
+bool Sky::update(const Environment& environment) {
+  if (upToDate(environment)) return false;
+  lights_ = environment.lightsVersion();
   std::vector<DiscRecord> discs;
   for (std::size_t i = 0; i < Environment::kSets; ++i) {
-    sky.cubes_[i] = skyCube(environment.set(i));
+    cubes_[i] = skyCube(environment.set(i));
     for (const Disc& disc : environment.set(i).discs)
       discs.push_back({{disc.direction, disc.radius_rad}, disc.radiance, static_cast<float>(i)});
   }
-  sky.disc_count_ = static_cast<std::uint32_t>(discs.size());
-  sky.discs_.assign(std::span<const DiscRecord>(discs));
-  sky.no_vertices_ = gpu::VertexArray("sky");
-  return sky;
+  disc_count_ = static_cast<std::uint32_t>(discs.size());
+  discs_.assign(std::span<const DiscRecord>(discs));
+  return true;
 }
 
 void Sky::draw(const Environment& environment, const glm::mat4& view_from_world,

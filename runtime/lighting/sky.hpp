@@ -1,8 +1,8 @@
 // What the camera sees where nothing stands: the environment's own radiance, not its spherical harmonics.
 // Probes and constants are resampled once into a cube map per set of lights (half floats, clamped to what
 // those hold); suns stay analytic discs with an edge one pixel wide. Turned, faded and scaled as the
-// environment is when it is drawn. Drawn behind everything, with alpha 0: the sky covers
-// nothing. Errors: shaders that do not compile on this device.
+// environment is when it is drawn, and resampled anew when update() meets other lights. Drawn behind
+// everything, with alpha 0: the sky covers nothing. Errors: shaders that do not compile on this device.
 #pragma once
 
 #include <array>
@@ -20,6 +20,9 @@ class Sky {
  public:
   static Result<Sky> create(const Environment& environment);
 
+  bool upToDate(const Environment& environment) const { return lights_ == environment.lightsVersion(); }
+  // Does nothing unless other lights were loaded since; true if it did.
+  bool update(const Environment& environment);
   // Into the bound framebuffer, where its depth is still that of the clear. Only the rotation of
   // view_from_world is used.
   void draw(const Environment& environment, const glm::mat4& view_from_world, const glm::mat4& clip_from_view,
@@ -36,6 +39,7 @@ class Sky {
   gpu::Table discs_;
   gpu::VertexArray no_vertices_;
   std::uint32_t disc_count_ = 0;
+  std::uint64_t lights_ = 0;  // version
 };
 
 }  // namespace lambent::lighting

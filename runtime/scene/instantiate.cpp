@@ -7,6 +7,7 @@
 
 #include "runtime/scene/affine.hpp"
 #include "runtime/scene/components.hpp"
+#include "runtime/scene/materials.hpp"
 #include "runtime/scene/stable_id.hpp"
 #include "runtime/scene/transforms.hpp"
 
@@ -27,6 +28,7 @@ class Instantiation {
     makeDraws();
     makeLamps();
     makeAnimations();
+    makeMaterials();
     return std::move(instance_);
   }
 
@@ -184,6 +186,17 @@ class Instantiation {
     }
   }
 
+  void makeMaterials() {
+    for (std::uint32_t i = 0; i < description_.materials.size(); ++i) {
+      const gltf::Material& material = description_.materials[i];
+      const ecs::Entity entity = registry_.create();
+      instance_.materials.push_back(entity);
+      registry_.emplace<MaterialComponent>(entity, materialComponent(material, options_.bundle_index, i));
+      registry_.emplace<Name>(entity, material.name);
+      giveId(entity, instance_.root, StableKind::Material, material.name);
+    }
+  }
+
   ecs::Entity nodeOrRoot(std::int32_t node) const {
     return node < 0 ? instance_.root : instance_.nodes[static_cast<std::size_t>(node)];
   }
@@ -220,7 +233,8 @@ void destroyInstance(ecs::Registry& registry, const SceneInstance& instance) {
   for (const auto& lamps : instance.lamps) {
     for (const ecs::Entity entity : lamps) registry.destroy(entity);
   }
-  for (const auto* list : {&instance.animations, &instance.draws, &instance.groups, &instance.nodes}) {
+  for (const auto* list :
+       {&instance.materials, &instance.animations, &instance.draws, &instance.groups, &instance.nodes}) {
     for (const ecs::Entity entity : *list) registry.destroy(entity);
   }
   registry.destroy(instance.root);

@@ -1,8 +1,8 @@
 // A bundle's description as entities: one root that places the whole, one entity per node (Name, StableId,
 // Transform, CameraComponent and LocalLightComponent where it carries one), one per rigid group, per draw,
-// per emissive material in a group that it lights, and per animation. Several bundles, and one bundle several
-// times under different instance numbers, may stand in one registry. Payloads are not touched: streaming
-// brings them.
+// per emissive material in a group that it lights, per animation, and per material. Several bundles, and one
+// bundle several times under different instance numbers, may stand in one registry. Payloads are not touched:
+// streaming brings them.
 #pragma once
 
 #include <cstdint>
@@ -31,6 +31,7 @@ struct SceneInstance {
   // LocalLightComponent for a lamp.
   std::vector<std::vector<ecs::Entity>> lamps;
   std::vector<ecs::Entity> animations;
+  std::vector<ecs::Entity> materials;
 };
 
 // World matrices and groups are up to date on return (updateTransforms has run over the registry). The

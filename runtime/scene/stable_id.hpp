@@ -15,7 +15,7 @@ struct StableId {
   auto operator<=>(const StableId&) const = default;
 };
 
-enum class StableKind : std::uint8_t { Node = 1, Group, Draw, Lamp, Animation };
+enum class StableKind : std::uint8_t { Node = 1, Group, Draw, Lamp, Animation, Material };
 
 // The root entity of an instance.
 StableId instanceId(std::string_view bundle_id, std::uint32_t instance);

@@ -25,7 +25,8 @@ struct GauntTable {
   int visibilityBands() const { return bands_in + bands_out - 1; }
 };
 
-// Bands from 1, both together at most 12. Exact to float rounding (by quadrature in double that integrates such polynomials exactly).
+// Bands from 1, both together at most 12. Exact to float rounding (by quadrature in double that integrates
+// such polynomials exactly).
 GauntTable makeGauntTable(int bands_in, int bands_out);
 
 // matrix[i * bands_in² + j] += Σ_k Γ_ijk V_k.

@@ -1,6 +1,7 @@
 #include "runtime/streaming/loader.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <condition_variable>
 #include <exception>
 #include <limits>
@@ -29,21 +30,24 @@ struct Loader::State {
     std::size_t held = 0;  // bytes reserved, then those of `ready`
   };
 
-  State(std::shared_ptr<const bundle::Reader> bundle, bundle::Description wanted_parts, unsigned thread_count)
-      : reader(std::move(bundle)),
-        description(std::move(wanted_parts)),
-        work(workList(description)),
-        slots(work.size()) {
-    const std::size_t wanted = std::min<std::size_t>(std::max(thread_count, 1u), work.size());
-    for (std::size_t i = 0; i < wanted; ++i) workers.emplace_back([this] { runWorker(); });
+  State(std::shared_ptr<const bundle::Reader> bundle, std::vector<Work> wanted, unsigned thread_count)
+      : reader(std::move(bundle)), work(std::move(wanted)), slots(work.size()) {
+    working = std::min<std::size_t>(std::max(thread_count, 1u), work.size());
+    for (std::size_t i = 0, count = working; i < count; ++i)
+      workers.emplace_back([this] {
+        runWorker();
+        --working;
+      });
   }
 
-  ~State() {
+  ~State() { stop(); }  // the workers join as `workers` is destroyed
+
+  void stop() {
     {
       const std::lock_guard lock(mutex);
       stopping = true;
     }
-    room.notify_all();  // the workers join as `workers` is destroyed
+    room.notify_all();
   }
 
   // --- workers ---
@@ -61,7 +65,7 @@ struct Loader::State {
       {
         const std::lock_guard lock(mutex);
         if (*loaded) {
-          bytes_read += bytesInFile(description, work[at]);
+          bytes_read += bytesInFile(reader->description(), work[at]);
           hold(at, bytesOf(**loaded));
           slots[at].ready = std::move(**loaded);
         } else {
@@ -118,7 +122,6 @@ struct Loader::State {
   }
 
   const std::shared_ptr<const bundle::Reader> reader;
-  const bundle::Description description;  // of what is wanted
   const std::vector<Work> work;
 
   mutable std::mutex mutex;      // guards all below
@@ -133,13 +136,14 @@ struct Loader::State {
   std::uint64_t bytes_read = 0;
   bool stopping = false;
 
+  std::atomic<std::size_t> working = 0;
   std::vector<std::jthread> workers;  // last: they use all above
 };
 
 Loader::Loader(std::shared_ptr<const bundle::Reader> reader, unsigned threads)
-    : Loader(reader, reader->description(), threads) {}
-Loader::Loader(std::shared_ptr<const bundle::Reader> reader, bundle::Description wanted, unsigned threads)
-    : state_(std::make_unique<State>(std::move(reader), std::move(wanted), threads)) {}
+    : Loader(reader, workList(reader->description()), threads) {}
+Loader::Loader(std::shared_ptr<const bundle::Reader> reader, std::vector<Work> work, unsigned threads)
+    : state_(std::make_unique<State>(std::move(reader), std::move(work), threads)) {}
 Loader::~Loader() = default;
 Loader::Loader(Loader&&) noexcept = default;
 Loader& Loader::operator=(Loader&&) noexcept = default;
@@ -176,6 +180,14 @@ bool Loader::finished() const {
 std::optional<Error> Loader::error() const {
   const std::lock_guard lock(state_->mutex);
   return state_->failureIsFirst() ? std::optional(state_->failure) : std::nullopt;
+}
+
+void Loader::stop() {
+  state_->stop();
+}
+
+bool Loader::idle() const {
+  return state_->working == 0;
 }
 
 std::uint64_t Loader::bytesRead() const {

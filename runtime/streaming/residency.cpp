@@ -9,8 +9,6 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 #include <glm/gtc/packing.hpp>
-#include <glm/gtc/quaternion.hpp>
-#include <glm/matrix.hpp>
 
 #include "runtime/streaming/sizes.hpp"
 
@@ -23,25 +21,10 @@ std::span<const std::byte> bytesOf(const std::vector<T>& values) {
   return std::as_bytes(std::span(values));
 }
 
-std::uint32_t words(std::uint64_t byte_count) {
-  return static_cast<std::uint32_t>((byte_count + 3) / 4);
-}
-
 // Small bundles share a page.
 constexpr std::uint64_t kMinPageBytes = std::uint64_t{1} << 20;
 
-ResidentTransfer describe(const bundle::CellTransfer& transfer) {
-  ResidentTransfer resident;
-  resident.shape = transfer.shape;
-  resident.clusters = transfer.clusters;
-  resident.axes = transfer.axes;
-  for (const bundle::WeightPlane& plane : transfer.planes)
-    resident.planes.push_back(
-        {.word = 0, .bits = plane.bits, .count = plane.count, .variance = plane.variance});
-  return resident;
-}
-
-// Places everything of a cell from `word` on; returns the word after.
+// Places all of a cell but its planes from `word` on; returns the word after.
 std::uint32_t layOut(ResidentCell& cell, std::uint32_t word) {
   if (cell.light_samples.size() > 1) {
     cell.light_weights_word = word;
@@ -54,21 +37,21 @@ std::uint32_t layOut(ResidentCell& cell, std::uint32_t word) {
     transfer.vectors_word = transfer.weights_word + 2 * vectors;
     transfer.positions_word = transfer.vectors_word + vectors * transfer.shape.size();
     word = transfer.positions_word + cell.sample_count;
-    for (ResidentPlane& plane : transfer.planes) {
-      plane.word = word;
-      word += words(std::uint64_t{plane.count} * plane.bits / 8);
-    }
   }
   return word;
 }
 
-// Normals go by the inverse transpose; the group's own placement has no scale. A flattened mesh has no
-// inverse: its normals then go by the matrix itself, which keeps them finite.
-glm::mat3 normalMatrix(const bundle::Group& group, const glm::mat4& world_from_mesh) {
-  const glm::mat3 linear = glm::mat3_cast(glm::conjugate(group.rest_rotation)) * glm::mat3(world_from_mesh);
-  const float determinant = glm::determinant(linear);
-  if (determinant == 0.0f || !std::isfinite(1.0f / determinant)) return linear;
-  return glm::transpose(glm::inverse(linear));
+std::uint64_t planeBytesOf(const ResidentPlane& plane) {
+  return planeBytes({.payload = 0, .bits = plane.bits, .count = plane.count, .variance = plane.variance});
+}
+
+// What a cell takes with all planes.
+std::uint64_t wholeBytes(ResidentCell cell) {
+  constexpr std::uint64_t kBlock = gpu::Arena::kAlignment;
+  std::uint64_t bytes = (4ull * layOut(cell, 0) + kBlock - 1) / kBlock * kBlock;
+  for (const ResidentTransfer& transfer : cell.transfers)
+    for (const ResidentPlane& plane : transfer.planes) bytes += planeBytesOf(plane);
+  return bytes;
 }
 
 std::uint32_t mipLevels(std::uint32_t width, std::uint32_t height) {
@@ -119,22 +102,16 @@ gpu::Texture makeDensityTexture(const bundle::VolumeGrid& grid, const std::vecto
   return texture;
 }
 
-}  // namespace
-
-bool ResidentCell::usable() const {
-  if (!light_weights_resident) return false;
-  for (const ResidentTransfer& transfer : transfers) {
-    if (!transfer.codebook_resident) return false;
-    if (transfer.planes_resident == transfer.planes.size()) continue;
-    float all = 0.0f, here = 0.0f;
-    for (std::size_t i = 0; i < transfer.planes.size(); ++i) {
-      all += transfer.planes[i].variance;
-      if (i < transfer.planes_resident) here += transfer.planes[i].variance;
-    }
-    if (here < kUsableVariance * all || here == 0.0f) return false;
-  }
-  return !transfers.empty();
+ResidentCell& cellOf(ResidentTables& tables, const ResidentBundle& bundle, std::uint32_t group,
+                     std::uint32_t cell) {
+  return tables.cells[tables.groups[bundle.first.groups + group].first_cell + cell];
 }
+
+ResidentVolume& volumeOf(ResidentTables& tables, const ResidentBundle& bundle, std::uint32_t group) {
+  return tables.volumes[static_cast<std::size_t>(tables.groups[bundle.first.groups + group].volume)];
+}
+
+}  // namespace
 
 Residency::Residency(std::uint64_t max_page_bytes)
     : max_page_bytes_(max_page_bytes),
@@ -144,98 +121,7 @@ Residency::Residency(std::uint64_t max_page_bytes)
       rows_("rows"),
       radiance_("radiance") {}
 
-Result<std::uint32_t> Residency::add(const bundle::Description& description) {
-  const auto bundle_index = static_cast<std::uint32_t>(bundles_.size());
-  ResidentBundle bundle{.materials = description.materials,
-                        .textures = description.textures,
-                        .images = std::vector<gpu::Texture>(description.images.size()),
-                        .linear_images = std::vector<gpu::Texture>(description.images.size()),
-                        .image_uses = imageUses(description),
-                        .brdf_families = {},
-                        .brdf_tables = std::vector<BrdfTexture>(description.brdf_tables.size()),
-                        .first_group = static_cast<std::uint32_t>(groups_.size()),
-                        .first_draw = static_cast<std::uint32_t>(draws_.size()),
-                        .first_mesh = {}};
-  for (const bundle::BrdfTableEntry& entry : description.brdf_tables)
-    bundle.brdf_families.push_back(entry.family);
-  for (const bundle::Mesh& mesh : description.meshes) {
-    bundle.first_mesh.push_back(static_cast<std::uint32_t>(meshes_.size()));
-    for (const bundle::Primitive& primitive : mesh.primitives) {
-      ResidentMesh resident;
-      resident.vertex_count = primitive.vertex_count;
-      resident.index_count = primitive.index_count;
-      resident.center = 0.5f * (primitive.bounds_min + primitive.bounds_max);
-      meshes_.push_back(resident);
-    }
-  }
-  std::vector<ResidentGroup> groups;
-  for (const bundle::Group& group : description.groups) {
-    ResidentGroup resident{.bundle = bundle_index,
-                           .index = static_cast<std::uint32_t>(groups.size()),
-                           .order = 1,
-                           .light_columns = static_cast<std::uint32_t>(group.lights.size()),
-                           .first_cell = static_cast<std::uint32_t>(cells_.size()),
-                           .cell_count = static_cast<std::uint32_t>(group.cells.size()),
-                           .plain_samples = group.samplesWith(1),
-                           .mapped_samples = group.samplesWith(bundle::kMappedOutputs),
-                           .glossy_outputs = 0,
-                           .samples = {},
-                           .light_samples = group.light_samples,
-                           .volume = -1,
-                           .proxy = {}};
-    std::uint32_t next_output = 0;
-    for (const bundle::Cell& cell : group.cells) {
-      ResidentCell resident_cell{.group = bundle.first_group + resident.index,
-                                 .kind = cell.kind,
-                                 .first_sample = cell.first_sample,
-                                 .sample_count = cell.sample_count,
-                                 .outputs = cell.outputs(),
-                                 .first_output = next_output,  // from where the group's samples will lie
-                                 .block = {},
-                                 .transfers = {},
-                                 .light_samples = cell.light_samples,
-                                 .light_weights_resident = cell.light_samples.size() == 1,
-                                 .version = version_};
-      for (const bundle::CellTransfer& transfer : cell.transfers) {
-        resident_cell.transfers.push_back(describe(transfer));
-        resident.order = std::max(resident.order, transfer.shape.order);
-      }
-      next_output += resident_cell.outputs * resident_cell.sample_count;
-      if (resident_cell.kind == bundle::CellKind::Surface && bundle::isGlossy(resident_cell.outputs))
-        resident.glossy_outputs = resident_cell.outputs;
-      cells_.push_back(std::move(resident_cell));
-    }
-    if (group.volume) {
-      resident.volume = static_cast<std::int32_t>(volumes_.size());
-      ResidentVolume volume;
-      volume.group = bundle.first_group + resident.index;
-      volume.grid = *group.volume;
-      volume.outputs = group.cells.empty() ? 1 : group.cells.front().outputs();
-      volume.sample_count = group.sample_count;
-      volume.version = version_;
-      volumes_.push_back(std::move(volume));
-    }
-    groups.push_back(resident);
-  }
-  const std::vector<glm::mat4> world_from_node = gltf::worldTransforms(description.nodes);
-  for (std::uint32_t i = 0; i < description.draws.size(); ++i) {
-    const bundle::Draw& draw = description.draws[i];
-    const std::uint32_t mesh = bundle.first_mesh[draw.mesh] + draw.primitive;
-    draws_.push_back(
-        {.bundle = bundle_index,
-         .index = i,
-         .group = bundle.first_group + draw.group,
-         .mesh = mesh,
-         .material = description.meshes[draw.mesh].primitives[draw.primitive].material,
-         .back = draw.back,
-         .outputs = draw.outputs,
-         .group_from_mesh_normal = (draw.back ? -1.0f : 1.0f) *
-                                   normalMatrix(description.groups[draw.group], world_from_node[draw.node]),
-         .rows = {},
-         .row_entries = 0,
-         .radiance = {},
-         .version = version_});
-  }
+Result<ResidentTables> Residency::make(const bundle::Description& description) {
   const Needs needs = needsOf(description);
   const auto page_bytes = [&](std::uint64_t need) {
     return std::min(std::max(need, kMinPageBytes), max_page_bytes_);
@@ -245,33 +131,104 @@ Result<std::uint32_t> Residency::add(const bundle::Description& description) {
   samples_.setPageBytes(page_bytes(needs.samples));
   rows_.setPageBytes(page_bytes(needs.rows));
   radiance_.setPageBytes(page_bytes(needs.radiance));
-  for (ResidentGroup& group : groups) {
+  ResidentTables tables = tablesOf(description, ++version_, next_id_);
+  for (ResidentGroup& group : tables.groups) {
     const std::uint64_t sample_count = samplesOf(description.groups[group.index]);
-    if (sample_count > 0) {
-      const Result<gpu::Allocation> samples = samples_.allocate(16 * sample_count);
-      if (!samples) return failAgain(samples.error());
-      group.samples = *samples;
-      samples_.clear(*samples);
-      for (std::uint32_t c = 0; c < group.cell_count; ++c)
-        cells_[group.first_cell + c].first_output += group.samples.word() / 4;
+    if (sample_count == 0) continue;
+    const Result<gpu::Allocation> samples = samples_.allocate(16 * sample_count);
+    if (!samples) {
+      release(tables);
+      return failAgain(samples.error());
     }
-    groups_.push_back(group);
+    group.samples = *samples;
+    samples_.clear(*samples);
+    for (std::uint32_t c = 0; c < group.cell_count; ++c)
+      tables.cells[group.first_cell + c].first_output += group.samples.word() / 4;
   }
-  bundles_.push_back(std::move(bundle));
+  return tables;
+}
+
+void Residency::release(const ResidentTables& tables) {
+  const auto give_back = [](gpu::Arena& arena, const gpu::Allocation& block) {
+    if (block) arena.release(block);
+  };
+  for (const ResidentMesh& mesh : tables.meshes) give_back(geometry_, mesh.block);
+  for (const ResidentGroup& group : tables.groups) give_back(samples_, group.samples);
+  for (const ResidentCell& cell : tables.cells) {
+    give_back(transfer_, cell.block);
+    for (const ResidentTransfer& transfer : cell.transfers)
+      for (const ResidentPlane& plane : transfer.planes) give_back(transfer_, plane.block);
+  }
+  for (const ResidentDraw& draw : tables.draws) {
+    give_back(rows_, draw.rows);
+    give_back(radiance_, draw.radiance);
+  }
+}
+
+void Residency::structureChanged() {
   ++version_;
+  ++structure_version_;
   ++proxies_version_;
-  return bundle_index;
+}
+
+Result<std::uint32_t> Residency::add(const bundle::Description& description) {
+  const auto empty = std::ranges::find(tables_.bundles, false, &ResidentBundle::present);
+  const auto slot = static_cast<std::uint32_t>(empty - tables_.bundles.begin());
+  if (const Result<void> added = add(description, slot); !added) return failAgain(added.error());
+  return slot;
+}
+
+Result<void> Residency::add(const bundle::Description& description, std::uint32_t slot) {
+  Result<ResidentTables> made = make(description);
+  if (!made) return failAgain(made.error());
+  insert(tables_, slot, std::move(*made));
+  structureChanged();
+  return {};
+}
+
+void Residency::remove(std::uint32_t bundle) {
+  release(extract(tables_, bundle));
+  structureChanged();
+}
+
+Result<Residency::Staged> Residency::stage(const bundle::Description& description) {
+  Result<ResidentTables> made = make(description);
+  if (!made) return failAgain(made.error());
+  staged_.emplace(next_staged_, std::move(*made));
+  return next_staged_++;
+}
+
+void Residency::discard(Staged staged) {
+  release(staged_.at(staged));
+  staged_.erase(staged);
+}
+
+void Residency::show(Staged staged, std::uint32_t bundle) {
+  const ResidentTables old = present(bundle) ? extract(tables_, bundle) : ResidentTables{};
+  insert(tables_, bundle, std::move(staged_.at(staged)));
+  staged_.erase(staged);
+  release(old);
+  structureChanged();
 }
 
 Result<void> Residency::upload(std::uint32_t bundle, const Ready& item) {
-  assert(bundle < bundles_.size());
+  assert(bundle < tables_.bundles.size() && tables_.bundles[bundle].present);
   ++version_;
-  return std::visit([&](const auto& ready) { return put(bundle, ready); }, item);
+  if (std::holds_alternative<ProxyReady>(item)) ++proxies_version_;
+  const At at{tables_, tables_.bundles[bundle]};
+  return std::visit([&](const auto& ready) { return put(at, ready); }, item);
 }
 
-Result<void> Residency::put(std::uint32_t bundle, const MeshReady& item) {
-  const std::uint32_t index = bundles_[bundle].first_mesh[item.mesh] + item.primitive;
-  ResidentMesh& mesh = meshes_[index];
+Result<void> Residency::uploadStaged(Staged staged, const Ready& item) {
+  ++version_;
+  ResidentTables& tables = staged_.at(staged);
+  const At at{tables, tables.bundles.front()};
+  return std::visit([&](const auto& ready) { return put(at, ready); }, item);
+}
+
+Result<void> Residency::put(At at, const MeshReady& item) {
+  const std::uint32_t index = at.bundle.first.meshes + at.bundle.first_primitive[item.mesh] + item.primitive;
+  ResidentMesh& mesh = at.tables.meshes[index];
   const bundle::MeshData& data = item.data;
   assert(data.positions.size() == mesh.vertex_count && data.indices.size() == mesh.index_count);
   std::vector<std::uint64_t> colors;
@@ -296,7 +253,7 @@ Result<void> Residency::put(std::uint32_t bundle, const MeshReady& item) {
     geometry_.write(mesh.block, offset, parts[i]);
     offset += parts[i].size();
   }
-  for (ResidentDraw& draw : draws_) {
+  for (ResidentDraw& draw : at.tables.draws) {
     if (draw.mesh != index) continue;
     draw.version = version_;
     if (draw.glossy()) continue;
@@ -308,21 +265,22 @@ Result<void> Residency::put(std::uint32_t bundle, const MeshReady& item) {
   return {};
 }
 
-Result<void> Residency::put(std::uint32_t bundle, const ImageReady& item) {
-  ResidentBundle& owner = bundles_[bundle];
+Result<void> Residency::put(At at, const ImageReady& item) {
+  ResidentBundle& owner = at.bundle;
   const ImageUse use = owner.image_uses[item.image];
-  const std::string label = fmt::format("image {}.{}", bundle, item.image);
+  const std::string label = fmt::format("image {}", item.image);
   if (use.color) owner.images[item.image] = makeTexture(label, GL_SRGB8_ALPHA8, item);
   if (use.linear) owner.linear_images[item.image] = makeTexture(label + " linear", GL_RGBA8, item);
-  texture_bytes_ += std::uint64_t{use.copies()} * item.width * item.height * 4 * 4 / 3;
+  owner.texture_bytes += std::uint64_t{use.copies()} * item.width * item.height * 4 * 4 / 3;
   return {};
 }
 
-Result<void> Residency::put(std::uint32_t bundle, const RowsReady& item) {
-  ResidentDraw& draw = draws_[bundles_[bundle].first_draw + item.draw];
+Result<void> Residency::put(At at, const RowsReady& item) {
+  ResidentDraw& draw = at.tables.draws[at.bundle.first.draws + item.draw];
   const bundle::VertexRows& rows = item.rows;
   const std::size_t entries = rows.samples.size();
-  assert(rows.offsets.size() == meshes_[draw.mesh].vertex_count + 1u && rows.weights.size() == entries);
+  assert(rows.offsets.size() == at.tables.meshes[draw.mesh].vertex_count + 1u &&
+         rows.weights.size() == entries);
   std::vector<std::uint16_t> weights(entries);
   std::transform(rows.weights.begin(), rows.weights.end(), weights.begin(),
                  [](float weight) { return glm::packUnorm1x16(weight); });
@@ -338,21 +296,36 @@ Result<void> Residency::put(std::uint32_t bundle, const RowsReady& item) {
   return {};
 }
 
-ResidentCell& Residency::cellOf(std::uint32_t bundle, std::uint32_t group, std::uint32_t cell) {
-  return cells_[groups_[bundles_[bundle].first_group + group].first_cell + cell];
-}
-
 Result<void> Residency::reserveCell(ResidentCell& cell) {
   if (cell.block) return {};
-  const Result<gpu::Allocation> block = transfer_.allocate(4ull * layOut(cell, 0));
+  const Result<gpu::Allocation> block = transfer_.allocateWithRoom(4ull * layOut(cell, 0), wholeBytes(cell));
   if (!block) return failAgain(block.error());
   cell.block = *block;
   layOut(cell, block->word());
   return {};
 }
 
-Result<void> Residency::put(std::uint32_t bundle, const CodebookReady& item) {
-  ResidentCell& cell = cellOf(bundle, item.group, item.cell);
+Result<void> Residency::moveCell(ResidentCell& cell) {
+  const Result<gpu::Allocation> block = transfer_.allocateWithRoom(cell.block.byte_count, wholeBytes(cell));
+  if (!block) return failAgain(block.error());
+  const auto move = [&](gpu::Allocation& from, const gpu::Allocation& to) {
+    transfer_.copy(from, to);
+    transfer_.release(from);
+    from = to;
+  };
+  move(cell.block, *block);
+  layOut(cell, cell.block.word());
+  for (ResidentTransfer& transfer : cell.transfers)
+    for (ResidentPlane& plane : transfer.planes) {
+      if (!plane.block) continue;
+      move(plane.block, *transfer_.allocateIn(cell.block.page, planeBytesOf(plane)));
+      plane.word = plane.block.word();
+    }
+  return {};
+}
+
+Result<void> Residency::put(At at, const CodebookReady& item) {
+  ResidentCell& cell = cellOf(at.tables, at.bundle, item.group, item.cell);
   if (Result<void> reserved = reserveCell(cell); !reserved) return reserved;
   ResidentTransfer& transfer = cell.transfers[item.transfer];
   const bundle::Codebook& codebook = item.codebook;
@@ -378,20 +351,28 @@ Result<void> Residency::put(std::uint32_t bundle, const CodebookReady& item) {
   return {};
 }
 
-Result<void> Residency::put(std::uint32_t bundle, const PlaneReady& item) {
-  ResidentCell& cell = cellOf(bundle, item.group, item.cell);
+Result<void> Residency::put(At at, const PlaneReady& item) {
+  ResidentCell& cell = cellOf(at.tables, at.bundle, item.group, item.cell);
   if (Result<void> reserved = reserveCell(cell); !reserved) return reserved;
   ResidentTransfer& transfer = cell.transfers[item.transfer];
   // The loader delivers the planes of a cell in order, so what is here is always a prefix.
   assert(item.plane == transfer.planes_resident);
-  transfer_.write(cell.block, 4ull * (transfer.planes[item.plane].word - cell.block.word()), item.codes);
+  ResidentPlane& plane = transfer.planes[item.plane];
+  std::optional<gpu::Allocation> block = transfer_.allocateIn(cell.block.page, planeBytesOf(plane));
+  if (!block) {  // others have filled the page
+    if (Result<void> moved = moveCell(cell); !moved) return moved;
+    block = transfer_.allocateIn(cell.block.page, planeBytesOf(plane));
+  }
+  plane.block = *block;
+  plane.word = block->word();
+  transfer_.write(plane.block, 0, item.codes);
   transfer.planes_resident = item.plane + 1;
   cell.version = version_;
   return {};
 }
 
-Result<void> Residency::put(std::uint32_t bundle, const LightWeightsReady& item) {
-  ResidentCell& cell = cellOf(bundle, item.group, item.cell);
+Result<void> Residency::put(At at, const LightWeightsReady& item) {
+  ResidentCell& cell = cellOf(at.tables, at.bundle, item.group, item.cell);
   if (Result<void> reserved = reserveCell(cell); !reserved) return reserved;
   assert(item.samples.size() == cell.sample_count && cell.light_samples.size() > 1);
   static_assert(sizeof(bundle::LightWeights) == 4 * kLightWeightWords);
@@ -401,53 +382,63 @@ Result<void> Residency::put(std::uint32_t bundle, const LightWeightsReady& item)
   return {};
 }
 
-Result<void> Residency::put(std::uint32_t bundle, const ProxyReady& item) {
-  groups_[bundles_[bundle].first_group + item.group].proxy = item.proxy;
-  ++proxies_version_;
+Result<void> Residency::put(At at, const ProxyReady& item) {
+  at.tables.groups[at.bundle.first.groups + item.group].proxy = item.proxy;
   return {};
 }
 
-Result<void> Residency::put(std::uint32_t bundle, const BrdfReady& item) {
+Result<void> Residency::put(At at, const BrdfReady& item) {
   Result<BrdfTexture> made =
       makeBrdfTexture(item.data, item.texels, fmt::format("BRDF table {}", item.table));
   if (!made) return failAgain(made.error());
-  bundles_[bundle].brdf_tables[item.table] = std::move(*made);
-  texture_bytes_ += item.texels.bytes();
+  at.bundle.brdf_tables[item.table] = std::move(*made);
+  at.bundle.texture_bytes += item.texels.bytes();
   return {};
 }
 
-ResidentVolume& Residency::volumeOf(std::uint32_t bundle, std::uint32_t group) {
-  return volumes_[static_cast<std::size_t>(groups_[bundles_[bundle].first_group + group].volume)];
-}
-
-Result<void> Residency::put(std::uint32_t bundle, const DensityReady& item) {
-  ResidentVolume& volume = volumeOf(bundle, item.group);
+Result<void> Residency::put(At at, const DensityReady& item) {
+  ResidentVolume& volume = volumeOf(at.tables, at.bundle, item.group);
   volume.density = makeDensityTexture(volume.grid, item.codes);
   volume.block_maxima = item.block_maxima;
   volume.version = version_;
-  texture_bytes_ += densityBytes(volume.grid.size);
+  at.bundle.texture_bytes += densityBytes(volume.grid.size);
   return {};
 }
 
-Result<void> Residency::put(std::uint32_t bundle, const VoxelsReady& item) {
-  ResidentVolume& volume = volumeOf(bundle, item.group);
+Result<void> Residency::put(At at, const VoxelsReady& item) {
+  ResidentVolume& volume = volumeOf(at.tables, at.bundle, item.group);
   assert(item.voxels.size() == volume.sample_count);
   const std::span<const std::byte> bytes = bytesOf(item.voxels);
   volume.voxels = gpu::Buffer("voxels", std::max<std::size_t>(bytes.size(), 4));
   volume.voxels.writeBytes(0, bytes);
   volume.version = version_;
-  texture_bytes_ += bytes.size();
+  at.bundle.texture_bytes += bytes.size();
   return {};
 }
 
+void Residency::forgetShading() {
+  ++version_;
+  for (ResidentCell& cell : tables_.cells) cell.version = version_;
+  for (ResidentDraw& draw : tables_.draws) draw.version = version_;
+}
+
 std::uint64_t Residency::bytesResident() const {
-  return geometry_.bytesUsed() + transfer_.bytesUsed() + samples_.bytesUsed() + rows_.bytesUsed() +
-         radiance_.bytesUsed() + texture_bytes_;
+  std::uint64_t bytes = 0;
+  for (const gpu::Arena* arena : arenas()) bytes += arena->bytesUsed();
+  for (const ResidentBundle& bundle : tables_.bundles) bytes += bundle.texture_bytes;
+  for (const auto& [staged, tables] : staged_) bytes += tables.bundles.front().texture_bytes;
+  return bytes;
+}
+
+std::uint64_t Residency::bytesReserved() const {
+  std::uint64_t bytes = 0;
+  for (const gpu::Arena* arena : arenas()) bytes += arena->bytesReserved();
+  return bytes;
 }
 
 std::uint64_t Residency::planesResident() const {
   std::uint64_t planes = 0;
-  for (const ResidentCell& cell : cells_)
+  for (const ResidentCell& cell : tables_.cells)
     for (const ResidentTransfer& transfer : cell.transfers) planes += transfer.planes_resident;
   return planes;
 }

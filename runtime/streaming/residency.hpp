@@ -1,173 +1,68 @@
 // What of the loaded bundles lies on the GPU, and where. add() makes the tables of a bundle, upload() takes
 // what the Loader hands on, one item at a time, and puts it into arenas and textures; nothing else writes
-// there. Effects and the frame read the tables: each entry has a version that rises when something that it
-// refers to arrived. Render thread only. Errors: a mesh or a group too large for one page (128 MiB), named.
+// there. A bundle may also be staged: brought beside those that are shown, and put in the place of one of
+// them when it is whole. Effects and the frame read the tables (resident_tables.hpp). Render thread only.
+// Errors: a mesh or a group too large for one page (128 MiB), named.
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
-#include <optional>
-#include <string>
 #include <vector>
-
-#include <glm/mat3x3.hpp>
 
 #include "runtime/base/result.hpp"
 #include "runtime/bundle/description.hpp"
 #include "runtime/gpu/arena.hpp"
-#include "runtime/gpu/objects.hpp"
-#include "runtime/streaming/brdf_texture.hpp"
-#include "runtime/streaming/image_uses.hpp"
 #include "runtime/streaming/loader.hpp"
+#include "runtime/streaming/resident_tables.hpp"
 
 namespace lambent::streaming {
-
-// A primitive of a mesh: one block of the geometry arena. Words are from the start of the page; 0xffffffff:
-// absent.
-struct ResidentMesh {
-  static constexpr std::uint32_t kAbsent = 0xffffffffu;
-  gpu::Allocation block;  // empty: not here yet
-  std::uint32_t vertex_count = 0, index_count = 0;
-  glm::vec3 center{0.0f};                                // of its bounds, mesh space
-  float mean_edge = 0.0f;                                // length, mesh space; known once it is here
-  std::uint32_t positions_word = 0, normals_word = 0;    // 3 floats each
-  std::uint32_t texcoords_word[2] = {kAbsent, kAbsent};  // 2 floats
-  std::uint32_t colors_word = kAbsent;                   // 4 x unorm16
-  std::uint32_t tangents_word = kAbsent;                 // 4 floats
-  std::uint32_t indices_word = 0;                        // uint32
-};
-
-struct ResidentPlane {
-  std::uint32_t word = 0;  // codes in the cell's block, in the order of positions
-  std::uint32_t bits = 8;
-  std::uint32_t count = 0;
-  float variance = 0.0f;
-};
-
-// Words of the cell's block; diffuse_shared.h has the layout.
-struct ResidentTransfer {
-  bundle::TransferShape shape;
-  std::uint32_t clusters = 1, axes = 0;
-  std::uint32_t clusters_word = 0;   // per cluster: its first vector, its number of axes
-  std::uint32_t weights_word = 0;    // per vector: offset and scale of its weight; 1 and 0 of a mean
-  std::uint32_t vectors_word = 0;    // shape.size() floats each: of every cluster the mean, then the axes
-  std::uint32_t positions_word = 0;  // per position: sample of the cell | cluster << 16
-  std::vector<ResidentPlane> planes;
-  bool codebook_resident = false;
-  std::uint32_t planes_resident = 0;  // a prefix of `planes`
-};
-
-struct ResidentCell {
-  std::uint32_t group = 0;  // into groups()
-  bundle::CellKind kind = bundle::CellKind::Surface;
-  std::uint32_t first_sample = 0, sample_count = 0;
-  std::uint32_t outputs = 1;
-  // vec4 index, in the page of the group's samples, of output 0 of its first sample; then sample by sample.
-  std::uint32_t first_output = 0;
-  gpu::Allocation block;  // transfer arena: codebooks and codes; reserved with the first of them
-  std::vector<ResidentTransfer> transfers;
-  std::vector<std::uint32_t> light_samples;  // of the group; light weights name them by place
-  std::uint32_t light_weights_word = 0;      // per sample two words: four places, four weights of 255
-  bool light_weights_resident = false;       // always, where there is one light sample
-  std::uint64_t version = 0;
-
-  // Enough has arrived to look better than no shadows at all: light weights, every transfer with its codebook
-  // and with planes that carry kUsableVariance of what all its planes carry.
-  bool usable() const;
-  // Light transferred by matrices, the glossy effect's to shade: of glossy surfaces, of neighborhoods, and of
-  // volumes with as many outputs.
-  bool matrices() const { return bundle::isGlossy(outputs) || kind == bundle::CellKind::Neighborhood; }
-};
-inline constexpr float kUsableVariance = 0.9f;
-
-// The grids of a volume. Its samples are those of its group, all in volume cells.
-struct ResidentVolume {
-  std::uint32_t group = 0;  // into groups()
-  bundle::VolumeGrid grid;
-  std::uint32_t outputs = 1;        // of its samples
-  gpu::Texture density;             // red: share of grid.density_max; empty handle: not here yet
-  std::vector<float> block_maxima;  // volume_blocks.hpp; stays in memory
-  gpu::Buffer voxels;  // a word per sample: its voxel of the transfer grid; empty handle: not here yet
-  std::uint32_t sample_count = 0;
-  std::uint64_t version = 0;
-
-  bool ready() const { return density && voxels; }
-};
-
-struct ResidentGroup {
-  std::uint32_t bundle = 0, index = 0;  // in its description
-  std::uint32_t order = 1, light_columns = 0;
-  std::uint32_t first_cell = 0, cell_count = 0;  // into cells()
-  // Samples of surfaces by their outputs, in this order: one, nine, and those of glossy surfaces. Those of
-  // its volume and its neighborhood lie behind them (ResidentCell::first_output).
-  std::uint32_t plain_samples = 0, mapped_samples = 0;
-  std::uint32_t glossy_outputs = 0;  // of its glossy samples; 0: it has none
-  // A vec4 per sample and output, zero until shaded. w: 1 once it is; of glossy samples V_i, the visibility's
-  // own coefficient.
-  gpu::Allocation samples;
-  std::vector<glm::vec3> light_samples;  // group frame
-  std::int32_t volume = -1;              // into volumes(); -1: it is surfaces
-  // What other groups see of it; stays in memory, for it is small. None: not here yet, or nothing to see.
-  std::optional<bundle::CaptureProxy> proxy;
-
-  // vec4 index of output o of sample s in the page: sampleBase(outputs) + outputs * s + o. May wrap round.
-  std::uint32_t sampleBase(std::uint32_t outputs) const {
-    const std::uint32_t plain = outputs > 1 ? (outputs - 1) * plain_samples : 0;
-    const std::uint32_t mapped =
-        bundle::isGlossy(outputs) ? (outputs - bundle::kMappedOutputs) * mapped_samples : 0;
-    return samples.word() / 4 - plain - mapped;
-  }
-};
-
-struct ResidentDraw {
-  std::uint32_t bundle = 0, index = 0;     // in its description
-  std::uint32_t group = 0, mesh = 0;       // into groups() and meshes()
-  std::int32_t material = -1;              // of the bundle
-  bool back = false;                       // the back of a double-sided surface
-  std::uint32_t outputs = 1;               // 9: normal-mapped; more: glossy
-  glm::mat3 group_from_mesh_normal{1.0f};  // of a back, negated
-  gpu::Allocation
-      rows;  // vertex_count + 1 offsets, row_entries samples, row_entries unorm16 weights; empty: not here
-  std::uint32_t row_entries = 0;
-  gpu::Allocation
-      radiance;  // radianceWords(outputs) floats per vertex, once the mesh is here; none where glossy
-  std::uint64_t version = 0;
-
-  bool glossy() const { return bundle::isGlossy(outputs); }
-};
-
-struct ResidentBundle {
-  std::vector<gltf::Material> materials;
-  std::vector<gltf::Texture> textures;
-  // By image; empty handle: not here yet. Colours are decoded from sRGB where they are looked up, numbers are
-  // not; an image that serves as both lies in both, for each way of reading it has mip levels of its own.
-  std::vector<gpu::Texture> images, linear_images;
-  std::vector<ImageUse> image_uses;
-  std::vector<bundle::BrdfFamily> brdf_families;  // of the tables
-  std::vector<BrdfTexture> brdf_tables;           // without a texture: not here yet
-  // Where the bundle's own indices start in the tables.
-  std::uint32_t first_group = 0, first_draw = 0;
-  std::vector<std::uint32_t> first_mesh;  // of each mesh's first primitive
-};
 
 class Residency {
  public:
   // Pages are as large as a bundle needs, up to max_page_bytes.
   explicit Residency(std::uint64_t max_page_bytes = gpu::Arena::kMaxPageBytes);
 
-  // Returns the bundle's index. The description may lack planes that the budget has no room for (budget.hpp).
+  // Returns the bundle's slot: the first that is empty.
   Result<std::uint32_t> add(const bundle::Description& description);
+  // Into this one, which must be empty.
+  Result<void> add(const bundle::Description& description, std::uint32_t slot);
   Result<void> upload(std::uint32_t bundle, const Ready& item);
+  // Samples and radiance were written by others: cells and draws get new versions, so that whoever shades
+  // them does it anew.
+  void forgetShading();
+  // Gives back all that it took. The slot is empty until the next add(); those of others stay.
+  void remove(std::uint32_t bundle);
+  // Whether the slot holds a bundle.
+  bool present(std::uint32_t slot) const {
+    return slot < tables_.bundles.size() && tables_.bundles[slot].present;
+  }
+  // How many planes of a transfer to keep.
+  using PlanesToKeep = std::function<std::uint32_t(std::uint32_t cell, std::uint32_t transfer)>;
+  void dropPlanes(std::uint32_t bundle, std::uint32_t group, const PlanesToKeep& keep);
+  // All of the group's transfer, light weights too: it is shown without shadows from now on.
+  void dropTransfer(std::uint32_t bundle, std::uint32_t group);
 
-  const std::vector<ResidentBundle>& bundles() const { return bundles_; }
-  const std::vector<ResidentMesh>& meshes() const { return meshes_; }
-  const std::vector<ResidentGroup>& groups() const { return groups_; }
-  const std::vector<ResidentCell>& cells() const { return cells_; }
-  const std::vector<ResidentDraw>& draws() const { return draws_; }
-  const std::vector<ResidentVolume>& volumes() const { return volumes_; }
+  // A bundle that is not in the tables yet, named by what stage() returns.
+  using Staged = std::uint32_t;
+  Result<Staged> stage(const bundle::Description& description);
+  Result<void> uploadStaged(Staged staged, const Ready& item);
+  void discard(Staged staged);
+  // In the place of `bundle`, which goes; the slot may be empty.
+  void show(Staged staged, std::uint32_t bundle);
+
+  // By slot; some may be empty.
+  const std::vector<ResidentBundle>& bundles() const { return tables_.bundles; }
+  const std::vector<ResidentMesh>& meshes() const { return tables_.meshes; }
+  const std::vector<ResidentGroup>& groups() const { return tables_.groups; }
+  const std::vector<ResidentCell>& cells() const { return tables_.cells; }
+  const std::vector<ResidentDraw>& draws() const { return tables_.draws; }
+  const std::vector<ResidentVolume>& volumes() const { return tables_.volumes; }
   // Rises with every upload; entries carry the value at which they last changed.
   std::uint64_t version() const { return version_; }
-  // Rises with every capture proxy that arrives and every group that comes.
+  // Rises when entries come or go: indices into the tables are others then.
+  std::uint64_t structureVersion() const { return structure_version_; }
+  // Rises with every capture proxy that arrives and every group that comes or goes.
   std::uint64_t proxiesVersion() const { return proxies_version_; }
 
   gpu::Arena& geometry() { return geometry_; }
@@ -176,36 +71,48 @@ class Residency {
   gpu::Arena& rows() { return rows_; }
   gpu::Arena& radiance() { return radiance_; }
 
-  // What is in use on the GPU: arenas and textures.
+  // What is in use on the GPU: arenas and textures, staged bundles included.
   std::uint64_t bytesResident() const;
+  // What the arenas hold for it, with what is free in their pages.
+  std::uint64_t bytesReserved() const;
   std::uint64_t planesResident() const;
   // Bytes of an item as they are uploaded.
   static std::uint64_t uploadBytes(const Ready& item);
 
  private:
-  Result<void> put(std::uint32_t bundle, const MeshReady& item);
-  Result<void> put(std::uint32_t bundle, const ImageReady& item);
-  Result<void> put(std::uint32_t bundle, const RowsReady& item);
-  Result<void> put(std::uint32_t bundle, const CodebookReady& item);
-  Result<void> put(std::uint32_t bundle, const PlaneReady& item);
-  Result<void> put(std::uint32_t bundle, const LightWeightsReady& item);
-  Result<void> put(std::uint32_t bundle, const ProxyReady& item);
-  Result<void> put(std::uint32_t bundle, const BrdfReady& item);
-  Result<void> put(std::uint32_t bundle, const DensityReady& item);
-  Result<void> put(std::uint32_t bundle, const VoxelsReady& item);
-  ResidentVolume& volumeOf(std::uint32_t bundle, std::uint32_t group);
-  ResidentCell& cellOf(std::uint32_t bundle, std::uint32_t group, std::uint32_t cell);
+  Result<ResidentTables> make(const bundle::Description& description);
+  void release(const ResidentTables& tables);
+  void structureChanged();
+  std::vector<const gpu::Arena*> arenas() const {
+    return {&geometry_, &transfer_, &samples_, &rows_, &radiance_};
+  }
+  // Into the tables that hold the bundle.
+  struct At {
+    ResidentTables& tables;
+    ResidentBundle& bundle;
+  };
+  Result<void> put(At at, const MeshReady& item);
+  Result<void> put(At at, const ImageReady& item);
+  Result<void> put(At at, const RowsReady& item);
+  Result<void> put(At at, const CodebookReady& item);
+  Result<void> put(At at, const PlaneReady& item);
+  Result<void> put(At at, const LightWeightsReady& item);
+  Result<void> put(At at, const ProxyReady& item);
+  Result<void> put(At at, const BrdfReady& item);
+  Result<void> put(At at, const DensityReady& item);
+  Result<void> put(At at, const VoxelsReady& item);
   Result<void> reserveCell(ResidentCell& cell);
+  // To a page that has room for all of it.
+  Result<void> moveCell(ResidentCell& cell);
+  // Shades all of the group anew, from nothing.
+  void forgetShading(const ResidentGroup& group);
 
   std::uint64_t max_page_bytes_;
-  std::vector<ResidentBundle> bundles_;
-  std::vector<ResidentMesh> meshes_;
-  std::vector<ResidentGroup> groups_;
-  std::vector<ResidentCell> cells_;
-  std::vector<ResidentDraw> draws_;
-  std::vector<ResidentVolume> volumes_;
-  std::uint64_t version_ = 1, proxies_version_ = 1;
-  std::uint64_t texture_bytes_ = 0;  // and those of the lists of voxels
+  ResidentTables tables_;
+  std::map<Staged, ResidentTables> staged_;
+  Staged next_staged_ = 0;
+  std::uint64_t next_id_ = 1;
+  std::uint64_t version_ = 1, structure_version_ = 1, proxies_version_ = 1;
   gpu::Arena geometry_, transfer_, samples_, rows_, radiance_;
 };
 

@@ -1,5 +1,7 @@
 #include "runtime/streaming/sizes.hpp"
 
+#include <algorithm>
+
 #include "runtime/gpu/arena.hpp"
 
 namespace lambent::streaming {
@@ -19,7 +21,9 @@ std::uint64_t vertexBytes(const bundle::DracoAttributes& attributes) {
 }  // namespace
 
 std::uint64_t planeBytes(const bundle::WeightPlane& plane) {
-  return (std::uint64_t{plane.count} * plane.bits / 8 + 3) / 4 * 4;
+  constexpr std::uint64_t kBlock = gpu::Arena::kAlignment;
+  const std::uint64_t bytes = std::uint64_t{plane.count} * plane.bits / 8;
+  return std::max((bytes + kBlock - 1) / kBlock * kBlock, kBlock);
 }
 
 std::uint64_t codebookBytesOnGpu(const bundle::CellTransfer& transfer, std::uint32_t sample_count) {

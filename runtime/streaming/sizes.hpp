@@ -1,5 +1,5 @@
 // What a bundle takes on the GPU, told from its description: in each arena, in bytes. Residency makes its
-// pages no larger, and the budget (budget.hpp) counts by it.
+// pages no larger, and what follows the camera (parts.hpp) counts by it.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@ constexpr std::uint32_t radianceWords(std::uint32_t outputs) {
 // Of a sample, where its cell is lit from several light samples.
 inline constexpr std::uint32_t kLightWeightWords = 2;
 
-// Codes of a plane, rounded up to whole words.
+// Codes of a plane, a block of its own.
 std::uint64_t planeBytes(const bundle::WeightPlane& plane);
 // The codebook as the kernels read it (diffuse_shared.h), and the positions of the samples.
 std::uint64_t codebookBytesOnGpu(const bundle::CellTransfer& transfer, std::uint32_t sample_count);

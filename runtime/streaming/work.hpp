@@ -11,7 +11,7 @@
 
 #include "runtime/base/result.hpp"
 #include "runtime/bundle/reader.hpp"
-#include "runtime/streaming/loader.hpp"
+#include "runtime/streaming/ready.hpp"
 
 namespace lambent::streaming {
 

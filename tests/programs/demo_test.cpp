@@ -77,6 +77,10 @@ TEST_F(DemoProgram, WrongUsageIsExitCode2AndOneLine) {
                                 "a.glb --camera orbit:1",
                                 "a.glb --transfer some",
                                 "a.glb --window foggy",
+                                "a.glb --view transfer",
+                                "a.glb --view clusters:1",
+                                "a.glb --overlay lights,fog",
+                                "a.glb --overlay neighborhoods:w,0.5",
                                 "a.glb --headless a.jpg",
                                 "a.glb --exposure bright",
                                 "a.glb --frames 0",
@@ -93,6 +97,8 @@ TEST_F(DemoProgram, WrongUsageIsExitCode2AndOneLine) {
                                 "a.glb --capture-size 3",
                                 "a.glb --capture-subsamples 17",
                                 "a.glb --capture-order 9",
+                                "a.glb --order 0",
+                                "a.glb --glossy some",
                                 "a.glb --light sphere:0,1,0,-1,1",
                                 "a.glb --no-such-option"}) {
     const Outcome outcome = run(arguments);
@@ -106,13 +112,12 @@ TEST_F(DemoProgram, HelpAndVersionAreExitCode0) {
   EXPECT_EQ(run("--version").exit_code, 0);
   const Outcome help = run("--help");
   EXPECT_EQ(help.exit_code, 0);
-  for (const char* option : {"--light",         "--light-layout", "--camera",
-                             "--size",          "--headless",     "--transfer",
-                             "--window",        "--frames",       "--rotate-light",
-                             "--exposure",      "--lamps",        "--max-memory",
-                             "--fade-to",       "--fade",         "--time",
-                             "--step",          "--capture-size", "--capture-subsamples",
-                             "--capture-order", "--json",         "--version"})
+  for (const char* option :
+       {"--light",         "--light-layout", "--camera", "--size",         "--headless",
+        "--transfer",      "--window",       "--view",   "--overlay",      "--frames",
+        "--rotate-light",  "--exposure",     "--lamps",  "--max-memory",   "--fade-to",
+        "--fade",          "--time",         "--step",   "--capture-size", "--capture-subsamples",
+        "--capture-order", "--json",         "--version"})
     EXPECT_NE(help.out.find(option), std::string::npos) << option;
 }
 
@@ -243,6 +248,10 @@ TEST_F(DemoProgram, ReportsAsJson) {
   EXPECT_EQ(dispatches("first_frame"), 3);
   EXPECT_EQ(dispatches("last_frame"), 0) << "a still frame shades nothing";
   for (const auto& pass : report["last_frame"]["passes"]) EXPECT_TRUE(pass["gpu_ms"].is_number()) << pass;
+  for (const auto& pass : report["last_frame"]["passes"]) EXPECT_EQ(pass["reason"], "") << "a still frame";
+  EXPECT_EQ(report["first_frame"]["passes"][2]["name"], "light");
+  EXPECT_EQ(report["first_frame"]["passes"][2]["reason"], "first frame");
+  EXPECT_EQ(report["settings"]["window"], "auto");
   EXPECT_EQ(report["first_frame"]["counts"]["light_samples_written"], 1);
   EXPECT_EQ(report["last_frame"]["counts"]["light_samples_written"], 0);
   EXPECT_EQ(report["last_frame"]["counts"]["cells_shaded"], 0);

@@ -41,16 +41,18 @@ TEST_F(LambentProgram, HelpAndVersionAreExitCode0) {
   const Outcome help = lambent({"--help"});
   EXPECT_EQ(help.exit_code, 0);
   const std::vector<std::pair<std::string, std::vector<std::string>>> commands = {
-      {"bake",
-       {"SCENE", "--output", "--quality", "--order", "--rays", "--bounces", "--error", "--max-edge",
-        "--light-samples", "--refine", "--volume-grid", "--neighborhood-grid", "--effects", "--threads",
-        "--max-memory", "--allow-outside", "--force", "--json"}},
+      {"bake", {"SCENE",           "--output",     "--quality",     "--order",
+                "--rays",          "--bounces",    "--error",       "--max-edge",
+                "--light-samples", "--refine",     "--volume-grid", "--neighborhood-grid",
+                "--effects",       "--threads",    "--max-memory",  "--allow-outside",
+                "--cache",         "--cache-size", "--force",       "--json"}},
       {"reference",
        {"SCENE", "--light", "--camera", "--output", "--spp", "--seed", "--band-limit", "--bounces", "--time",
         "--json"}},
       {"plan", {"SCENE", "--effects", "--light-samples", "--json"}},
       {"info", {"BUNDLE", "--json"}},
-      {"compare", {"PICTURE", "REFERENCE", "--reference2", "--json"}}};
+      {"compare",
+       {"PICTURE", "REFERENCE", "--reference2", "--heat", "--heat-map", "--heat-range", "--json"}}};
   for (const auto& [command, options] : commands) {
     EXPECT_NE(help.out.find(command), std::string::npos) << command;
     const Outcome about = lambent({command, "--help"});
@@ -201,6 +203,14 @@ TEST_F(LambentProgram, ComparesPictures) {
   EXPECT_EQ(same.exit_code, 0) << same.err;
   EXPECT_EQ(json::parse(same.out)["relativeRms"], 0.0);
   EXPECT_GT(json::parse(same.out)["pixels"], 1000);
+  EXPECT_EQ(fileCount(), 0);
+  const Outcome heat =
+      lambent({"compare", picture, picture, "--heat", path("heat.png"), "--heat-map", "magnitude"});
+  EXPECT_EQ(heat.exit_code, 0) << heat.err;
+  EXPECT_NE(heat.out.find("heat.png"), std::string::npos) << heat.out;
+  EXPECT_TRUE(bytesOf(folder / "heat.png").starts_with("\x89PNG"));
+  for (const auto& wrong : {std::pair("--heat-map", "rainbow"), std::pair("--heat-range", "0")})
+    EXPECT_EQ(lambent({"compare", picture, picture, wrong.first, wrong.second}).exit_code, 2) << wrong.first;
   const Outcome lost = lambent({"compare", picture, path("lost.exr")});
   EXPECT_EQ(lost.exit_code, 1);
   expectOneLine(lost, "lambent", "lost.exr");
@@ -367,6 +377,40 @@ TEST_F(LambentProgram, BundlesPassTheKhronosValidator) {
                               {path("hello.lmb.glb"), path("gallery.lmb.glb")});
   if (outcome.exit_code == 77) GTEST_SKIP() << outcome.out;
   EXPECT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
+}
+
+// Killed as soon as so many results lie in the cache, at whatever it was at that moment.
+TEST_F(LambentProgram, GoesOnWhereItWasKilled) {
+  const std::string cache = path("cache");
+  const std::vector<std::string> options = {"--rays", "4096", "--cache", cache};
+  ASSERT_EQ(bakeHello("whole.lmb.glb", {"--rays", "4096"}).exit_code, 0);
+  const auto entries = [&] {
+    std::ptrdiff_t count = 0;
+    std::error_code ignored;
+    for (std::filesystem::recursive_directory_iterator at(cache, ignored), end; !ignored && at != end;
+         at.increment(ignored))
+      count += at->path().extension() == ".entry";
+    return count;
+  };
+  for (const std::ptrdiff_t enough : {1, 6}) {
+    std::vector<std::string> arguments = {"bake",      kHello,  "-o",        path("killed.lmb.glb"),
+                                          "--quality", "draft", "--threads", "1"};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    const ::pid_t id = start(LAMBENT_PROGRAM, arguments);
+    int status = 0;
+    while (entries() < enough && ::waitpid(id, &status, WNOHANG) == 0)
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    ::kill(id, SIGKILL);
+    ::waitpid(id, &status, 0);
+    EXPECT_FALSE(std::filesystem::exists(path("killed.lmb.glb")));
+  }
+  std::vector<std::string> rest = options;
+  rest.push_back("--json");
+  const Outcome resumed = bakeHello("resumed.lmb.glb", rest);
+  ASSERT_EQ(resumed.exit_code, 0) << resumed.err;
+  const json report = json::parse(resumed.out);
+  EXPECT_GT(report["refinement"]["raysKept"].get<double>(), 0.0);
+  EXPECT_TRUE(bytesOf(path("resumed.lmb.glb")) == bytesOf(path("whole.lmb.glb")));
 }
 
 }  // namespace lambent

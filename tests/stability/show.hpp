@@ -23,7 +23,8 @@ namespace lambent::testing {
 // A baked scene in a world, with a light, drawn in the little.
 class Show {
  public:
-  Show(const assets::Scene& source, const std::vector<spec::Light>& lights, int light_samples = 0)
+  Show(const assets::Scene& source, const std::vector<spec::Light>& lights, int light_samples = 0,
+       std::optional<int> bounces = {})
       : environment(*lighting::Environment::create(lights)) {
     const auto folder =
         std::filesystem::path(::testing::TempDir()) /
@@ -36,10 +37,11 @@ class Show {
     baker::BakeOptions options;
     options.quality = baker::Quality::Draft;
     options.light_samples = light_samples;
+    if (bounces) options.bounces = *bounces;
     baker::Progress progress;
     const auto report = baker::bake(*scene, options, bundle, progress, {});
     EXPECT_TRUE(report) << report.error().line();
-    const Result<void> opened = world.open(bundle);
+    const Result<std::uint32_t> opened = world.open(bundle);
     EXPECT_TRUE(opened) << opened.error().line();
     gpu::Counters counters;
     EXPECT_TRUE(world.uploadAll(counters));
@@ -47,7 +49,7 @@ class Show {
     frame::FrameOptions frame_options;
     frame_options.size = {kSide, kSide};
     frame_options.output = frame::Output::Linear;
-    frame_options.window = sh::Window::Off;
+    frame_options.settings.window = sh::Window::Off;
     frame_options.wait_for_captures = true;
     auto made = frame::Frame::create(frame_options, environment);
     EXPECT_TRUE(made) << made.error().line();

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <csignal>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -45,6 +46,8 @@ class ProgramTest : public ::testing::Test {
     folder = std::filesystem::path(::testing::TempDir()) /
              fmt::format("{}-{}-{}", ::getpid(), test->test_suite_name(), test->name());
     std::filesystem::create_directories(folder);
+    // What other runs left behind must not answer for this one.
+    ::setenv("LAMBENT_CACHE", "off", /*overwrite=*/1);
   }
   void TearDown() override { std::filesystem::remove_all(folder); }
 
@@ -82,7 +85,6 @@ class ProgramTest : public ::testing::Test {
 
   std::filesystem::path folder;
 
- private:
   std::filesystem::path log(const char* name) const {
     return folder.parent_path() / (folder.filename().string() + "." + name);
   }

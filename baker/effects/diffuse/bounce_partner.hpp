@@ -10,6 +10,7 @@
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 
+#include "baker/cache/kept_ranges.hpp"
 #include "baker/effects/diffuse/hits.hpp"
 #include "baker/effects/diffuse/transfer_field.hpp"
 #include "baker/transport/direction_table.hpp"
@@ -30,9 +31,10 @@ class BouncePartner {
   virtual void addExit(const GatherHit& hit, const glm::uvec3& corners, const glm::vec3& to, float chance,
                        float weight, std::span<float> sum) const = 0;
   // One pass over its samples. `before` and `now` are the plain transfer of all samples; `now` gets what
-  // follows at its own. False if stopped.
+  // follows at its own. keep: of this pass. False if stopped.
   virtual bool gather(int bounce, bool thinly, const ExitRadiance& exit, const TransferField& before,
-                      TransferField& now, Progress& progress, const std::stop_token& stop) = 0;
+                      TransferField& now, Progress& progress, const std::stop_token& stop,
+                      const Keep& keep) = 0;
   // Makes what was gathered last the state of the pass before.
   virtual void advance() = 0;
   // RMS of what was gathered last (at first: of pass 0), for each source of light: the environment, then each

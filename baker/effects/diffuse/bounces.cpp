@@ -8,9 +8,9 @@
 #include <glm/geometric.hpp>
 
 #include "baker/compress/light_weights.hpp"
+#include "baker/effects/diffuse/field_bytes.hpp"
 #include "baker/effects/diffuse/fill.hpp"
 #include "baker/transport/frame.hpp"
-#include "baker/work/parallel.hpp"
 #include "runtime/sh/basis.hpp"
 #include "runtime/sh/rotation.hpp"
 
@@ -148,7 +148,7 @@ double tailOf(const std::vector<double>& before, const std::vector<double>& now,
 std::optional<BounceResult> bakeBounces(const DirectPass& pass, const DirectResult& direct,
                                         const DiffuseScene& scene, const BounceSettings& settings,
                                         Progress& progress, const std::stop_token& stop,
-                                        BouncePartner* partner) {
+                                        BouncePartner* partner, const Keep& keep) {
   const ExitRadiance exit(scene.geometry, scene.samples, partner);
   const Gather gather(pass, direct, scene, exit);
   BounceResult result{
@@ -167,19 +167,43 @@ std::optional<BounceResult> bakeBounces(const DirectPass& pass, const DirectResu
   };
   std::vector<double> energy = energiesOf(before), all = energy;
   const std::vector<double> first = energy;
+  // In bytes to keep: the pass of plain samples, and of normal-mapped ones the sum of all passes so far.
+  const std::size_t own = before.vectorSize(), of_mapped = result.mapped.vectorSize();
+  const auto mappedOf = [&](std::size_t sample) {
+    return std::max(sample, scene.samples.first_normal_mapped) - scene.samples.first_normal_mapped;
+  };
   const int most = settings.bounces < 0 ? kMostBounces : settings.bounces;
   for (int bounce = 1; bounce <= most; ++bounce) {
     progress.begin(fmt::format("bounce {}", bounce), scene.samples.size(), "samples");
     TransferField now = zeroLike(before);
     const bool thinly = shareOf(energy, all) < kShareToThin;
-    const bool finished = parallelRanges(
-        scene.samples.first_glossy, kSamplesPerRange, stop, [&](std::size_t begin, std::size_t end) {
-          gather.range(bounce, thinly, begin, end, before, now, result.mapped);
-          progress.add(end - begin);
-        });
-    if (!finished) return std::nullopt;
+    const Keep keep_pass = keep.part("pass", bounce);
+    const KeptRanges kept =
+        keptRanges(keep_pass, scene.samples.first_glossy, kSamplesPerRange, stop,
+                   {.compute =
+                        [&](std::size_t begin, std::size_t end) {
+                          gather.range(bounce, thinly, begin, end, before, now, result.mapped);
+                          progress.add(end - begin);
+                        },
+                    .pack =
+                        [&](std::size_t begin, std::size_t end, ByteWriter& out) {
+                          writeStretch(now.vectors, begin * own, end * own, out);
+                          writeStretch(result.mapped.vectors, mappedOf(begin) * of_mapped,
+                                       mappedOf(end) * of_mapped, out);
+                        },
+                    .unpack =
+                        [&](std::size_t begin, std::size_t end, ByteReader& in) {
+                          progress.add(end - begin);
+                          return readStretch(in, begin * own, end * own, now.vectors) &&
+                                 readStretch(in, mappedOf(begin) * of_mapped, mappedOf(end) * of_mapped,
+                                             result.mapped.vectors);
+                        }},
+                   KeepWhen::Due);
+    if (!kept.finished) return std::nullopt;
     if (any_filled) fillFromNeighbours(edges, direct.looks.valid, now);
-    if (partner && !partner->gather(bounce, thinly, exit, before, now, progress, stop)) return std::nullopt;
+    if (partner &&
+        !partner->gather(bounce, thinly, exit, before, now, progress, stop, keep_pass.part("glossy")))
+      return std::nullopt;
     add(now, result.field);
 
     const std::vector<double> energy_before = std::exchange(energy, energiesOf(now));
@@ -198,6 +222,15 @@ std::optional<BounceResult> bakeBounces(const DirectPass& pass, const DirectResu
     fillStretchFromNeighbours(edges, direct.looks.valid, scene.samples.first_normal_mapped,
                               result.mapped.vectorSize(), result.mapped.vectors);
   return result;
+}
+
+void dropBounces(const DiffuseScene& scene, const Keep& keep) {
+  const std::size_t plain = scene.samples.first_glossy, glossy = scene.samples.size() - plain;
+  for (int bounce = 1; bounce <= kMostBounces; ++bounce) {
+    const Keep pass = keep.part("pass", bounce);
+    dropRanges(pass, plain, kSamplesPerRange);
+    dropRanges(pass.part("glossy"), glossy, kSamplesPerRange);
+  }
 }
 
 }  // namespace lambent::baker

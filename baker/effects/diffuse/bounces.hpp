@@ -32,10 +32,12 @@ struct BounceResult {
 };
 
 // Nothing if stopped. Stages "bounce 1", "bounce 2", ... of `progress`, counting samples. `partner` may be
-// null.
+// null. keep: of all that the passes read; what they came to is kept there until dropBounces(), for a bake
+// that is cut short.
 std::optional<BounceResult> bakeBounces(const DirectPass& pass, const DirectResult& direct,
                                         const DiffuseScene& scene, const BounceSettings& settings,
                                         Progress& progress, const std::stop_token& stop,
-                                        BouncePartner* partner = nullptr);
+                                        BouncePartner* partner = nullptr, const Keep& keep = {});
+void dropBounces(const DiffuseScene& scene, const Keep& keep);
 
 }  // namespace lambent::baker

@@ -2,13 +2,15 @@
 
 #include <algorithm>
 #include <atomic>
+#include <numeric>
 #include <utility>
 
 #include <glm/geometric.hpp>
 
+#include "baker/effects/diffuse/field_bytes.hpp"
 #include "baker/effects/diffuse/fill.hpp"
+#include "baker/effects/diffuse/hit_bytes.hpp"
 #include "baker/transport/frame.hpp"
-#include "baker/work/parallel.hpp"
 #include "runtime/sh/rotation.hpp"
 
 namespace lambent::baker {
@@ -47,6 +49,8 @@ class DirectPass::Walk {
 
   // Transfer of the sample that was looked at.
   void project(std::span<float> scalar, std::span<float> incident) {
+    std::fill(scalar.begin(), scalar.end(), 0.0f);
+    std::fill(incident.begin(), incident.end(), 0.0f);
     const std::size_t bands = static_cast<std::size_t>(sh::coefficientCount(pass_.settings_.order));
     local_.resize(bands);
     hemisphere_->projection().project(look_.blocked(), local_);
@@ -68,7 +72,7 @@ class DirectPass::Walk {
     if (!incident.empty()) turnIncident(incident);
   }
 
-  void keepHits(RangeHits& out) const { look_.keepHits(pass_.scene_.geometry, pass_.scene_.colors, out); }
+  void keepHits(RangeHits& out) const { look_.keepHits(out); }
 
  private:
   // The environment's columns of the nine numbers, in the group's frame but for the outputs.
@@ -145,30 +149,82 @@ std::uint64_t DirectPass::bake(std::size_t begin, std::size_t end, const std::st
 
 void DirectPass::traceAgain(std::size_t begin, std::size_t end, RangeHits& hits) const {
   hits.traceAgain(Walk(*this), begin, end);
+  paintHits(scene_.geometry, scene_.samples, scene_.colors, hits);
 }
 
 std::optional<DirectResult> bakeDirect(const DirectPass& pass, const DiffuseScene& scene, Progress& progress,
-                                       const std::stop_token& stop) {
+                                       const std::stop_token& stop, const Keep& keep) {
   const std::size_t count = scene.samples.size(), own = scene.samples.first_glossy;
-  const std::size_t mapped = own - scene.samples.first_normal_mapped;
+  const std::size_t first_mapped = scene.samples.first_normal_mapped, mapped = own - first_mapped;
   const DirectSettings& settings = pass.settings();
   DirectResult result{.field = makeField(count, settings.order, 1, pass.channels(), pass.columns()),
                       .mapped = makeField(mapped, settings.order, kIncident, pass.channels(), pass.columns()),
                       .looks = {std::vector<std::uint8_t>(count, 0), std::vector<std::uint8_t>(count, 0)},
                       .hits = HitStore(own, settings.keep_hits ? settings.hit_memory : 0)};
+  const std::size_t ranges = (own + kSamplesPerRange - 1) / kSamplesPerRange;
+  std::vector<std::uint64_t> rays(ranges, 0);
+  std::vector<std::vector<std::byte>> unpainted(ranges);  // hits, until they are written
   std::atomic<std::uint64_t> traced = 0;
-  const bool finished = parallelRanges(own, kSamplesPerRange, stop, [&](std::size_t begin, std::size_t end) {
-    RangeHits hits;
-    traced += pass.bake(begin, end, stop, result.field, result.mapped, result.looks, hits);
-    if (settings.keep_hits) result.hits.offer(begin / kSamplesPerRange, std::move(hits));
-    progress.add(end - begin);
-  });
-  if (!finished) return std::nullopt;
+  const auto offer = [&](std::size_t range, RangeHits&& hits) {
+    paintHits(scene.geometry, scene.samples, scene.colors, hits);
+    result.hits.offer(range, std::move(hits));
+  };
+  const bool grey_lights = scene.colors.greyEmission();
+  const auto mappedOf = [&](std::size_t sample) { return std::max(sample, first_mapped) - first_mapped; };
+  const KeptRanges kept = keptRanges(
+      keep, own, kSamplesPerRange, stop,
+      {.compute =
+           [&](std::size_t begin, std::size_t end) {
+             const std::size_t range = begin / kSamplesPerRange;
+             RangeHits hits;
+             rays[range] = pass.bake(begin, end, stop, result.field, result.mapped, result.looks, hits);
+             traced += rays[range];
+             progress.add(end - begin);
+             if (!settings.keep_hits || stop.stop_requested()) return;
+             if (keep.cache) {
+               ByteWriter bytes;
+               writeHits(hits, bytes);
+               unpainted[range] = bytes.take();
+             }
+             offer(range, std::move(hits));
+           },
+       .pack =
+           [&](std::size_t begin, std::size_t end, ByteWriter& out) {
+             const std::size_t range = begin / kSamplesPerRange;
+             out.add(rays[range]);
+             writeStretch(result.looks.valid, begin, end, out);
+             writeStretch(result.looks.closely, begin, end, out);
+             writeDirect(result.field, grey_lights, begin, end, out);
+             writeDirect(result.mapped, grey_lights, mappedOf(begin), mappedOf(end), out);
+             // What had no room in memory is traced again when it is asked for, now and then.
+             const bool with_hits = settings.keep_hits && result.hits.range(range).kept;
+             out.add(with_hits);
+             const std::vector<std::byte> hits = std::exchange(unpainted[range], {});
+             if (with_hits) out.addBytes(hits);
+           },
+       .unpack =
+           [&](std::size_t begin, std::size_t end, ByteReader& in) {
+             const std::size_t range = begin / kSamplesPerRange;
+             bool with_hits = false;
+             RangeHits hits;
+             if (!in.read(rays[range]) || !readStretch(in, begin, end, result.looks.valid) ||
+                 !readStretch(in, begin, end, result.looks.closely) ||
+                 !readDirect(in, grey_lights, begin, end, result.field) ||
+                 !readDirect(in, grey_lights, mappedOf(begin), mappedOf(end), result.mapped) ||
+                 !in.read(with_hits) ||
+                 (with_hits && !readHits(in, end - begin, scene.geometry.triangles.size(), hits)))
+               return false;
+             if (with_hits) offer(range, std::move(hits));
+             progress.add(end - begin);
+             return true;
+           }});
+  if (!kept.finished) return std::nullopt;
   result.field.rays = traced;
+  result.rays_kept = std::accumulate(rays.begin(), rays.end(), std::uint64_t{0}) - traced;
   const auto edges = sampleEdges(scene.geometry, scene.samples);
   result.field.filled_samples = fillFromNeighbours(edges, result.looks.valid, result.field);
-  fillStretchFromNeighbours(edges, result.looks.valid, scene.samples.first_normal_mapped,
-                            result.mapped.vectorSize(), result.mapped.vectors);
+  fillStretchFromNeighbours(edges, result.looks.valid, first_mapped, result.mapped.vectorSize(),
+                            result.mapped.vectors);
   return result;
 }
 

@@ -10,6 +10,7 @@
 #include <span>
 #include <stop_token>
 
+#include "baker/cache/kept_ranges.hpp"
 #include "baker/effects/diffuse/emitters.hpp"
 #include "baker/effects/diffuse/hemisphere.hpp"
 #include "baker/effects/diffuse/hits.hpp"
@@ -64,11 +65,11 @@ class DirectPass {
   const GlanceTables& glances() const { return glances_; }
 
   // Samples [begin, end): transfer into the fields (`mapped` holds the normal-mapped samples alone), how each
-  // looked, and what its rays met. Returns the rays traced. Leaves the rest of them when a stop
-  // is requested: a million rays a sample take seconds a range.
+  // looked, and what its rays met, not painted yet (paintHits). Returns the rays traced. Leaves the rest of
+  // them when a stop is requested: a million rays a sample take seconds a range.
   std::uint64_t bake(std::size_t begin, std::size_t end, const std::stop_token& stop, TransferField& field,
                      TransferField& mapped, SampleLooks& looks, RangeHits& hits) const;
-  // The hits alone, as bake() gave them.
+  // The hits alone, as bake() gave them and painted.
   void traceAgain(std::size_t begin, std::size_t end, RangeHits& hits) const;
 
  private:
@@ -86,12 +87,15 @@ struct DirectResult {
   TransferField field;   // outputs 1, all samples
   TransferField mapped;  // outputs 9, SampleSet::first_normal_mapped up to first_glossy
   SampleLooks looks;
-  HitStore hits;  // of the samples up to first_glossy
+  HitStore hits;                // of the samples up to first_glossy
+  std::uint64_t rays_kept = 0;  // that what was found in the cache stands for
 };
 
 // Nothing if stopped. The result does not depend on the number of threads. Progress counts samples. Glossy
-// samples are left at 0 and not looked at: bakeGlossyDirect fills them in.
+// samples are left at 0 and not looked at: bakeGlossyDirect fills them in. keep: its key is of all that rays
+// ask for (geometry, what lets rays through, lamps, the settings but for memory); not of what surfaces
+// reflect.
 std::optional<DirectResult> bakeDirect(const DirectPass& pass, const DiffuseScene& scene, Progress& progress,
-                                       const std::stop_token& stop);
+                                       const std::stop_token& stop, const Keep& keep = {});
 
 }  // namespace lambent::baker

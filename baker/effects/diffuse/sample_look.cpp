@@ -1,6 +1,7 @@
 #include "baker/effects/diffuse/sample_look.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include <glm/geometric.hpp>
 
@@ -41,18 +42,34 @@ std::uint32_t SampleLook::look(const DirectionTable& table, bool wants_hits, Bel
   return traced;
 }
 
-void SampleLook::keepHits(const GroupGeometry& geometry, const SurfaceColors& colors, RangeHits& out) const {
-  for (const RayHit& hit : hits_) {
-    const glm::vec3 albedo = colors.albedo(hit.triangle, hit.u, hit.v);
-    // What is glossy and black still mirrors.
-    if (albedo == glm::vec3(0.0f) &&
-        samples_.vertex_sample[geometry.triangles[hit.triangle].x] < samples_.first_glossy)
-      continue;
-    GatherHit kept{
-        .triangle = hit.triangle, .ray = hit.ray, .u = GatherHit::unorm(hit.u), .v = GatherHit::unorm(hit.v)};
-    for (int c = 0; c < 3; ++c) kept.albedo[c] = GatherHit::unorm(albedo[c]);
-    out.hits.push_back(kept);
+void SampleLook::keepHits(RangeHits& out) const {
+  for (const RayHit& hit : hits_)
+    out.hits.push_back({.triangle = hit.triangle,
+                        .ray = hit.ray,
+                        .u = GatherHit::unorm(hit.u),
+                        .v = GatherHit::unorm(hit.v)});
+}
+
+void paintHits(const GroupGeometry& geometry, const SampleSet& samples, const SurfaceColors& colors,
+               RangeHits& hits) {
+  std::size_t left = 0;
+  for (std::size_t s = 0; s + 1 < hits.offsets.size(); ++s) {
+    const std::size_t begin = std::exchange(hits.offsets[s], static_cast<std::uint32_t>(left));
+    for (std::size_t h = begin; h < hits.offsets[s + 1]; ++h) {
+      GatherHit hit = hits.hits[h];
+      // At the place that is kept, so that a colour is the same whether the hit was traced or found.
+      const glm::vec3 albedo = colors.albedo(hit.triangle, static_cast<float>(hit.u) * (1.0f / 65535.0f),
+                                             static_cast<float>(hit.v) * (1.0f / 65535.0f));
+      // What is glossy and black still mirrors.
+      if (albedo == glm::vec3(0.0f) &&
+          samples.vertex_sample[geometry.triangles[hit.triangle].x] < samples.first_glossy)
+        continue;
+      for (int c = 0; c < 3; ++c) hit.albedo[c] = GatherHit::unorm(albedo[c]);
+      hits.hits[left++] = hit;
+    }
   }
+  if (!hits.offsets.empty()) hits.offsets.back() = static_cast<std::uint32_t>(left);
+  hits.hits.resize(left);
 }
 
 // The origins of a sample that do not lie inside something, weights made to sum to 1; all of them, and

@@ -42,8 +42,8 @@ class SampleLook {
   std::span<const std::uint16_t> blocked() const { return blocked_; }
   std::span<const RayHit> hits() const { return hits_; }
 
-  // Appends the hits to `out`, but for those on surfaces that reflect nothing.
-  void keepHits(const GroupGeometry& geometry, const SurfaceColors& colors, RangeHits& out) const;
+  // Appends the hits to `out`, without colours (paintHits).
+  void keepHits(RangeHits& out) const;
 
  private:
   bool outsideOrigins(std::size_t sample);
@@ -57,5 +57,9 @@ class SampleLook {
   std::vector<std::uint16_t> blocked_;
   std::vector<RayHit> hits_;
 };
+
+// Looks up what the surfaces that were met reflect. Hits on those that reflect nothing are left out.
+void paintHits(const GroupGeometry& geometry, const SampleSet& samples, const SurfaceColors& colors,
+               RangeHits& hits);
 
 }  // namespace lambent::baker

@@ -9,6 +9,7 @@
 #include <glm/geometric.hpp>
 
 #include "baker/compress/light_weights.hpp"
+#include "baker/effects/diffuse/field_bytes.hpp"
 #include "baker/effects/diffuse/fill.hpp"
 #include "baker/transport/frame.hpp"
 #include "baker/work/parallel.hpp"
@@ -227,32 +228,48 @@ void GlossyBounces::addExit(const GatherHit& hit, const glm::uvec3& corners, con
 }
 
 bool GlossyBounces::gather(int bounce, bool thinly, const ExitRadiance& exit, const TransferField& before,
-                           TransferField& now, Progress& progress, const std::stop_token& stop) {
+                           TransferField& now, Progress& progress, const std::stop_token& stop,
+                           const Keep& keep) {
   const std::size_t first = pass_.first();
   const double share = shareOfBefore();
   now_ = zero();
   now_.environment.values.assign(pass_.size() * now_.environment.sampleSize(), 0.0f);
   now_.lights.values.assign(pass_.size() * now_.lights.sampleSize(), 0.0f);
-  const bool gathered =
-      parallelRanges(pass_.size(), kSamplesPerRange, stop, [&](std::size_t begin, std::size_t end) {
-        RangeHits again;
-        const RangeHits* hits = &direct_.hits.range(begin / kSamplesPerRange);
-        if (!hits->kept) {
-          pass_.traceAgain(begin, end, again);
-          hits = &again;
-        }
-        Walk walk(*this, before);
-        for (std::size_t s = begin; s < end; ++s) {
-          const std::size_t sample = first + s;
-          const GlossyHemisphere& hemisphere = pass_.hemisphereOf(plain_.looks.closely[sample] != 0);
-          const ExitToSample to_sample(exit, hemisphere.table(), pass_.scene().samples.normals[sample],
-                                       sample, bounce, thinly);
-          walk.gather(sample, hits->of(s - begin), raysTogether(share, hemisphere.table().size()), bounce,
-                      hemisphere, to_sample, s, now_);
-        }
-        progress.add(end - begin);
-      });
-  if (!gathered) return false;
+  const auto gatherRange = [&](std::size_t begin, std::size_t end) {
+    RangeHits again;
+    const RangeHits* hits = &direct_.hits.range(begin / kSamplesPerRange);
+    if (!hits->kept) {
+      pass_.traceAgain(begin, end, again);
+      hits = &again;
+    }
+    Walk walk(*this, before);
+    for (std::size_t s = begin; s < end; ++s) {
+      const std::size_t sample = first + s;
+      const GlossyHemisphere& hemisphere = pass_.hemisphereOf(plain_.looks.closely[sample] != 0);
+      const ExitToSample to_sample(exit, hemisphere.table(), pass_.scene().samples.normals[sample], sample,
+                                   bounce, thinly);
+      walk.gather(sample, hits->of(s - begin), raysTogether(share, hemisphere.table().size()), bounce,
+                  hemisphere, to_sample, s, now_);
+    }
+    progress.add(end - begin);
+  };
+  const std::size_t environment = now_.environment.sampleSize(), lights = now_.lights.sampleSize();
+  const KeptRanges kept = keptRanges(
+      keep, pass_.size(), kSamplesPerRange, stop,
+      {.compute = gatherRange,
+       .pack =
+           [&](std::size_t begin, std::size_t end, ByteWriter& out) {
+             writeStretch(now_.environment.values, begin * environment, end * environment, out);
+             writeStretch(now_.lights.values, begin * lights, end * lights, out);
+           },
+       .unpack =
+           [&](std::size_t begin, std::size_t end, ByteReader& in) {
+             progress.add(end - begin);
+             return readStretch(in, begin * environment, end * environment, now_.environment.values) &&
+                    readStretch(in, begin * lights, end * lights, now_.lights.values);
+           }},
+      KeepWhen::Due);
+  if (!kept.finished) return false;
   if (!edges_.empty()) {
     fillStretchFromNeighbours(edges_, plain_.looks.valid, first, now_.environment.sampleSize(),
                               now_.environment.values);

@@ -41,7 +41,7 @@ class GlossyBounces : public BouncePartner {
   void addExit(const GatherHit& hit, const glm::uvec3& corners, const glm::vec3& to, float chance,
                float weight, std::span<float> sum) const override;
   bool gather(int bounce, bool thinly, const ExitRadiance& exit, const TransferField& before,
-              TransferField& now, Progress& progress, const std::stop_token& stop) override;
+              TransferField& now, Progress& progress, const std::stop_token& stop, const Keep& keep) override;
   void advance() override;
   std::vector<double> energies() const override { return energies_; }
 

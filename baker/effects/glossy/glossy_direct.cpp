@@ -3,8 +3,12 @@
 #include <algorithm>
 #include <atomic>
 #include <cassert>
+#include <numeric>
+#include <utility>
 
+#include "baker/effects/diffuse/field_bytes.hpp"
 #include "baker/effects/diffuse/fill.hpp"
+#include "baker/effects/diffuse/hit_bytes.hpp"
 #include "baker/effects/diffuse/sample_look.hpp"
 #include "baker/work/parallel.hpp"
 #include "runtime/sh/basis.hpp"
@@ -85,6 +89,7 @@ class GlossyPass::Walk {
 
   // values: [channel][output][light]
   void receiveLights(std::size_t channels, std::size_t lights, std::span<float> values) {
+    std::fill(values.begin(), values.end(), 0.0f);
     if (look_.origins().empty()) return;
     const std::size_t even = hemisphere_->evenOutputs();
     lights_local_.assign(channels * even * lights, 0.0f);
@@ -100,7 +105,7 @@ class GlossyPass::Walk {
                   values.subspan(c * outputs * lights), lights);
   }
 
-  void keepHits(RangeHits& out) const { look_.keepHits(pass_.scene_.geometry, pass_.scene_.colors, out); }
+  void keepHits(RangeHits& out) const { look_.keepHits(out); }
 
  private:
   const GlossyPass& pass_;
@@ -153,6 +158,7 @@ std::uint64_t GlossyPass::bake(std::size_t begin, std::size_t end, const std::st
 
 void GlossyPass::traceAgain(std::size_t begin, std::size_t end, RangeHits& hits) const {
   hits.traceAgain(Walk(*this), begin, end);
+  paintHits(scene_.geometry, scene_.samples, scene_.colors, hits);
 }
 
 void plainTransfer(int order_out, glm::vec3 normal, std::span<const float> matrix, std::span<float> out) {
@@ -165,7 +171,7 @@ void plainTransfer(int order_out, glm::vec3 normal, std::span<const float> matri
 
 std::optional<GlossyDirect> bakeGlossyDirect(const GlossyPass& pass, std::size_t hit_memory,
                                              DirectResult& direct, Progress& progress,
-                                             const std::stop_token& stop) {
+                                             const std::stop_token& stop, const Keep& keep) {
   const SampleSet& samples = pass.scene().samples;
   const std::size_t count = pass.size();
   const bool keep_hits = pass.plain().settings().keep_hits;
@@ -176,15 +182,74 @@ std::optional<GlossyDirect> bakeGlossyDirect(const GlossyPass& pass, std::size_t
   field.visibility.resize(count * field.visibilitySize());
   field.lights_shadowed.resize(count * field.channels * outputs * lights);
   progress.begin("glossy shadows", count, "samples");
+  const std::size_t ranges = (count + kSamplesPerRange - 1) / kSamplesPerRange;
+  std::vector<std::uint64_t> rays(ranges, 0);
+  std::vector<std::vector<std::byte>> unpainted(ranges);  // hits, until they are written
   std::atomic<std::uint64_t> traced = 0;
-  const bool looked = parallelRanges(count, kSamplesPerRange, stop, [&](std::size_t begin, std::size_t end) {
-    RangeHits hits;
-    traced += pass.bake(begin, end, stop, field, direct.looks, hits);
-    if (keep_hits) result.hits.offer(begin / kSamplesPerRange, std::move(hits));
-    progress.add(end - begin);
-  });
-  if (!looked) return std::nullopt;
+  const auto offer = [&](std::size_t range, RangeHits&& hits) {
+    paintHits(pass.scene().geometry, samples, pass.scene().colors, hits);
+    result.hits.offer(range, std::move(hits));
+  };
+  const std::size_t first = pass.first(), seen = field.visibilitySize();
+  // Of grey lamps the first channel stands for all (field_bytes.hpp).
+  const std::size_t channel = outputs * lights, per_sample = field.channels * channel,
+                    kept_lights = pass.scene().colors.greyEmission() ? channel : per_sample;
+  const KeptRanges kept = keptRanges(
+      keep, count, kSamplesPerRange, stop,
+      {.compute =
+           [&](std::size_t begin, std::size_t end) {
+             const std::size_t range = begin / kSamplesPerRange;
+             RangeHits hits;
+             rays[range] = pass.bake(begin, end, stop, field, direct.looks, hits);
+             traced += rays[range];
+             progress.add(end - begin);
+             if (!keep_hits || stop.stop_requested()) return;
+             if (keep.cache) {
+               ByteWriter bytes;
+               writeHits(hits, bytes);
+               unpainted[range] = bytes.take();
+             }
+             offer(range, std::move(hits));
+           },
+       .pack =
+           [&](std::size_t begin, std::size_t end, ByteWriter& out) {
+             const std::size_t range = begin / kSamplesPerRange;
+             out.add(rays[range]);
+             writeStretch(direct.looks.valid, first + begin, first + end, out);
+             writeStretch(direct.looks.closely, first + begin, first + end, out);
+             writeStretch(field.visibility, begin * seen, end * seen, out);
+             for (std::size_t s = begin; s < end; ++s)
+               writeStretch(field.lights_shadowed, s * per_sample, s * per_sample + kept_lights, out);
+             const bool with_hits = keep_hits && result.hits.range(range).kept;
+             out.add(with_hits);
+             const std::vector<std::byte> hits = std::exchange(unpainted[range], {});
+             if (with_hits) out.addBytes(hits);
+           },
+       .unpack =
+           [&](std::size_t begin, std::size_t end, ByteReader& in) {
+             const std::size_t range = begin / kSamplesPerRange;
+             bool with_hits = false;
+             RangeHits hits;
+             in.read(rays[range]);
+             readStretch(in, first + begin, first + end, direct.looks.valid);
+             readStretch(in, first + begin, first + end, direct.looks.closely);
+             readStretch(in, begin * seen, end * seen, field.visibility);
+             for (std::size_t s = begin; s < end; ++s) {
+               const std::size_t at = s * per_sample;
+               if (!readStretch(in, at, at + kept_lights, field.lights_shadowed)) return false;
+               for (std::size_t from = at + kept_lights; from < at + per_sample; ++from)
+                 field.lights_shadowed[from] = field.lights_shadowed[from - kept_lights];
+             }
+             if (!in.read(with_hits) ||
+                 (with_hits && !readHits(in, end - begin, pass.scene().geometry.triangles.size(), hits)))
+               return false;
+             if (with_hits) offer(range, std::move(hits));
+             progress.add(end - begin);
+             return true;
+           }});
+  if (!kept.finished) return std::nullopt;
   result.rays = traced;
+  result.rays_kept = std::accumulate(rays.begin(), rays.end(), std::uint64_t{0}) - traced;
   const auto first_valid = direct.looks.valid.begin() + static_cast<std::ptrdiff_t>(pass.first());
   if (std::find(first_valid, direct.looks.valid.end(), std::uint8_t{0}) != direct.looks.valid.end()) {
     const auto edges = sampleEdges(pass.scene().geometry, samples);

@@ -48,15 +48,16 @@ struct GlossyDirect {
   GlossyField field;  // visibility and lights_shadowed
   HitStore hits;      // from first_glossy on
   std::uint64_t rays = 0;
+  std::uint64_t rays_kept = 0;  // that what was found in the cache stands for
   std::uint32_t filled_samples = 0;
 };
 
 // Nothing if stopped. Also fills in the glossy samples of direct.field and direct.looks. Stage "glossy
 // shadows" of `progress`, counting samples. hit_memory: bytes. The result does not depend on the number of
-// threads.
+// threads. keep: as for bakeDirect.
 std::optional<GlossyDirect> bakeGlossyDirect(const GlossyPass& pass, std::size_t hit_memory,
                                              DirectResult& direct, Progress& progress,
-                                             const std::stop_token& stop);
+                                             const std::stop_token& stop, const Keep& keep = {});
 
 // What a sample's matrix in the group's frame gives at a Lambert receiver with its normal:
 // out[column] = Σ_k (A_l/pi) y_k(n) matrix[k * columns + column].

@@ -5,15 +5,18 @@
 #include <stop_token>
 
 #include "baker/bake/baked_grids.hpp"
+#include "baker/cache/kept_ranges.hpp"
 #include "baker/effects/neighborhood/body.hpp"
 #include "baker/effects/neighborhood/code_change.hpp"
 #include "baker/effects/neighborhood/grid_placement.hpp"
+#include "baker/plan/facing_area.hpp"
 #include "baker/work/progress.hpp"
 
 namespace lambent::baker {
 
 struct NeighborhoodSettings {
   PlacementWish placement;  // as the body's points: from `origin`
+  FacingArea facing{};      // of the receivers; none: anywhere
   glm::vec3 origin{0.0f};   // of those points in the group's frame
   bool matrices = false;  // as many outputs as the light has bands, for receivers with transfer of their own
   std::size_t rays = 2048;  // from each point towards the body
@@ -24,8 +27,9 @@ struct NeighborhoodFigures {
   glm::uvec3 size{0};
   glm::vec3 bounds_min{0.0f}, bounds_max{0.0f};  // group frame
   std::size_t inside_points = 0;                 // that were continued from outside
-  std::uint64_t rays = 0;
-  double error = 0.0, change_error = 0.0;  // as CodedChange
+  std::uint64_t rays = 0;                        // traced in this run
+  std::uint64_t rays_kept = 0;                   // that results of earlier runs stand for
+  double error = 0.0, change_error = 0.0;        // as CodedChange
 };
 
 struct BakedAround {
@@ -33,8 +37,12 @@ struct BakedAround {
   NeighborhoodFigures figures;
 };
 
-// Order of the light up to 6. Nothing if stopped. The result does not depend on the number of threads.
+// Order of the light up to 6. Nothing if stopped. The result does not depend on the number of threads. keep:
+// of body and settings.
 std::optional<BakedAround> bakeNeighborhood(const Body& body, const NeighborhoodSettings& settings,
-                                            Progress& progress, const std::stop_token& stop);
+                                            Progress& progress, const std::stop_token& stop,
+                                            const Keep& keep = {});
+// What that kept, without asking for the body.
+std::optional<BakedAround> findNeighborhood(const Keep& keep);
 
 }  // namespace lambent::baker

@@ -53,7 +53,8 @@ class CellCoder {
   }
 
   // Each part has half of the square error; bounced light so many times as much.
-  std::vector<CodedTransfer> code(double bound, double looser, const std::stop_token& stop) const {
+  std::vector<CodedTransfer> code(double bound, double looser, KeptCoding& coding,
+                                  const std::stop_token& stop) const {
     const double energy = meter_.lightEnergy() * static_cast<double>(count_);
     const auto order = static_cast<std::uint32_t>(shape_.order),
                outputs = static_cast<std::uint32_t>(shape_.outputs());
@@ -65,12 +66,12 @@ class CellCoder {
         .order = order,
         .outputs = outputs,
         .visibility_bands = static_cast<std::uint32_t>(shape_.visibilityBands())};
-    coded.push_back(codeTransfer(visibility_, count_, visibility, settings, stop));
+    coded.push_back(coding.code(visibility_, count_, visibility, settings, stop));
     if (sends_ && !stop.stop_requested()) {
       const bundle::TransferShape bounced{
           .order = order, .shadowed_channels = 0, .full_channels = shape_.channels, .outputs = outputs};
       settings.bound *= static_cast<float>(looser);
-      coded.push_back(codeTransfer(bounced_, count_, bounced, settings, stop));
+      coded.push_back(coding.code(bounced_, count_, bounced, settings, stop));
     }
     return coded;
   }
@@ -116,7 +117,7 @@ class CellCoder {
 
 std::optional<CodedChange> codeChange(const GridChange& change, const GridPlacement& grid,
                                       const glm::vec3& origin, const ChangeCoding& settings,
-                                      const std::stop_token& stop) {
+                                      KeptCoding& coding, const std::stop_token& stop) {
   const ChangeMeter meter(change.shape);
   CodedChange out;
   for (std::size_t first = 0; first < grid.count(); first += kMaxCellSamples) {
@@ -132,7 +133,7 @@ std::optional<CodedChange> codeChange(const GridChange& change, const GridPlacem
     double bound = settings.bound, looser = 1.0, change_error = std::numeric_limits<double>::infinity();
     const double most_bytes = settings.most_bytes * static_cast<double>(count);
     for (int attempt = 0; attempt < kMostAttempts; ++attempt) {
-      auto coded = coder.code(bound, looser, stop);
+      auto coded = coder.code(bound, looser, coding, stop);
       if (stop.stop_requested()) return std::nullopt;
       const double bytes = bytesOf(coded);
       const bool fits = bytes <= most_bytes;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "baker/bake/baked_grids.hpp"
+#include "baker/compress/kept_transfer.hpp"
 #include "baker/effects/neighborhood/grid_change.hpp"
 
 namespace lambent::baker {
@@ -31,6 +32,6 @@ struct CodedChange {
 // origin: added to the points for the cells' bounds. Nothing if stopped.
 std::optional<CodedChange> codeChange(const GridChange& change, const GridPlacement& grid,
                                       const glm::vec3& origin, const ChangeCoding& settings,
-                                      const std::stop_token& stop);
+                                      KeptCoding& coding, const std::stop_token& stop);
 
 }  // namespace lambent::baker

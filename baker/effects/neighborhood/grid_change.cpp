@@ -22,25 +22,49 @@ struct Back {
   glm::vec3 point{0.0f}, normal{0.0f};
 };
 
+}  // namespace
+
+template <>
+inline constexpr bool kPlainBytes<Back> = sizeof(Back) == 6 * sizeof(float);
+
+namespace {
+
 class Filler {
  public:
   Filler(const Body& body, const CapDirections& directions, const GridPlacement& grid, GridChange& change)
       : body_(body), directions_(directions), grid_(grid), change_(change) {}
 
   // Each point by itself: from rays, and from the back that it saw nearest.
-  bool look(std::vector<Back>& backs, Progress& progress, const std::stop_token& stop) {
-    return parallelRanges(grid_.count(), kGrain, stop, [&](std::size_t begin, std::size_t end) {
+  bool look(std::vector<Back>& backs, Progress& progress, const std::stop_token& stop, const Keep& keep) {
+    const auto compute = [&](std::size_t begin, std::size_t end) {
       PointChange point(body_, directions_, change_.shape);
-      for (std::size_t p = begin; p < end && !stop.stop_requested(); ++p) {
+      for (std::size_t p = begin; p < end; ++p) {
         point.look(grid_.point(p));
         change_.outside[p] = !point.inside();
         if (point.inside()) backs[p] = {point.nearestPoint(), point.nearestNormal()};
         store(point.visibility(), change_.visibility, p);
         store(point.bounced(), change_.bounced, p);
       }
+      traced_ += end - begin;
       progress.add(end - begin);
-    });
+    };
+    const auto pack = [&](std::size_t begin, std::size_t end, ByteWriter& out) {
+      out.addList(std::span<const std::uint8_t>(change_.outside).subspan(begin, end - begin));
+      out.addList(std::span<const Back>(backs).subspan(begin, end - begin));
+      out.addList(std::span<const float>(visibilityOf(begin, end)));
+      out.addList(std::span<const float>(bouncedOf(begin, end)));
+    };
+    const auto unpack = [&](std::size_t begin, std::size_t end, ByteReader& in) {
+      if (!in.readInto(std::span(change_.outside).subspan(begin, end - begin)) ||
+          !in.readInto(std::span(backs).subspan(begin, end - begin)) ||
+          !in.readInto(visibilityOf(begin, end)) || !in.readInto(bouncedOf(begin, end)))
+        return false;
+      progress.add(end - begin);
+      return true;
+    };
+    return keptRanges(keep, grid_.count(), kGrain, stop, {compute, pack, unpack}, KeepWhen::Due).finished;
   }
+  std::size_t pointsTraced() const { return traced_; }
 
   // Points inside beside points outside. known[p] becomes 1 where that could be done.
   bool continueInside(const std::vector<Back>& backs, std::vector<std::uint8_t>& known,
@@ -91,6 +115,15 @@ class Filler {
       all[point * on.size() + i] = only_on ? on[i] : 2.0f * on[i] - before[i];
   }
 
+  std::span<float> visibilityOf(std::size_t begin, std::size_t end) {
+    const std::size_t size = change_.shape.visibilitySize();
+    return std::span(change_.visibility).subspan(begin * size, (end - begin) * size);
+  }
+  std::span<float> bouncedOf(std::size_t begin, std::size_t end) {
+    const std::size_t size = change_.shape.bouncedSize();
+    return std::span(change_.bounced).subspan(begin * size, (end - begin) * size);
+  }
+
   bool besideOutside(std::size_t p) const {
     const glm::ivec3 size(grid_.size);
     const auto index = static_cast<int>(p);
@@ -109,6 +142,7 @@ class Filler {
   const CapDirections& directions_;
   const GridPlacement& grid_;
   GridChange& change_;
+  std::atomic<std::size_t> traced_ = 0;
 };
 
 }  // namespace
@@ -118,7 +152,8 @@ std::size_t GridChange::insidePoints() const {
 }
 
 std::optional<GridChange> changeOnGrid(const Body& body, const GridPlacement& grid, const ChangeShape& shape,
-                                       std::size_t rays, Progress& progress, const std::stop_token& stop) {
+                                       std::size_t rays, Progress& progress, const std::stop_token& stop,
+                                       const Keep& keep) {
   progress.begin("neighborhood", grid.count(), "points");
   const CapDirections directions(rays);
   GridChange change;
@@ -128,12 +163,17 @@ std::optional<GridChange> changeOnGrid(const Body& body, const GridPlacement& gr
   change.outside.resize(grid.count());
   Filler filler(body, directions, grid, change);
   std::vector<Back> backs(grid.count());
-  if (!filler.look(backs, progress, stop) || stop.stop_requested()) return std::nullopt;
-  change.rays = grid.count() * directions.size();
+  if (!filler.look(backs, progress, stop, keep) || stop.stop_requested()) return std::nullopt;
+  change.rays = filler.pointsTraced() * directions.size();
+  change.rays_kept = (grid.count() - filler.pointsTraced()) * directions.size();
   std::vector<std::uint8_t> known = change.outside;
   if (!filler.continueInside(backs, known, stop)) return std::nullopt;
   filler.fillRest(known);
   return change;
+}
+
+void dropChange(const Keep& keep, std::size_t points) {
+  dropRanges(keep, points, kGrain);
 }
 
 }  // namespace lambent::baker

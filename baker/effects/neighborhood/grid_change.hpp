@@ -8,6 +8,7 @@
 #include <optional>
 #include <stop_token>
 
+#include "baker/cache/kept_ranges.hpp"
 #include "baker/effects/neighborhood/grid_placement.hpp"
 #include "baker/effects/neighborhood/point_change.hpp"
 #include "baker/work/progress.hpp"
@@ -18,7 +19,8 @@ struct GridChange {
   ChangeShape shape;
   std::vector<float> visibility, bounced;  // point after point, as PointChange has them
   std::vector<std::uint8_t> outside;       // per point: 1, or 0 for one whose values were continued
-  std::uint64_t rays = 0;                  // from the points; paths come on top
+  std::uint64_t rays = 0;                  // from the points, traced in this run; paths come on top
+  std::uint64_t rays_kept = 0;
 
   std::size_t insidePoints() const;
 };
@@ -26,6 +28,9 @@ struct GridChange {
 // Nothing if stopped. Stage "neighborhood" of `progress`, counting points. The result does not depend on the
 // number of threads.
 std::optional<GridChange> changeOnGrid(const Body& body, const GridPlacement& grid, const ChangeShape& shape,
-                                       std::size_t rays, Progress& progress, const std::stop_token& stop);
+                                       std::size_t rays, Progress& progress, const std::stop_token& stop,
+                                       const Keep& keep = {});
+// What it kept.
+void dropChange(const Keep& keep, std::size_t points);
 
 }  // namespace lambent::baker

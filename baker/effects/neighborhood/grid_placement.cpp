@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 
 #include <glm/common.hpp>
@@ -20,6 +21,8 @@ constexpr float kFlat = 0.5f;   // of the middle side: shorter makes a slab
 // point, and interpolation takes one more.
 constexpr float kBesideReceivers = 1.5f;
 constexpr float kLeastThickness = 0.1f;  // of the body's radius
+constexpr std::uint32_t kFlatLayers =
+    5;  // a cell to either side of the receivers' plane, and one to fade out
 constexpr glm::uvec3 kSlab{64, 64, 8}, kAround{32, 32, 32};
 constexpr glm::uvec3 kCoarseSlab{32, 32, 8}, kCoarseAround{20, 20, 20};
 
@@ -106,6 +109,23 @@ class Placer {
     return glm::uvec3(glm::max(glm::round(per_metre * length), glm::vec3(2.0f)));
   }
 
+  bool flatAlong(int axis) const {
+    return wish_.receivers &&
+           wish_.receivers->high[axis] - wish_.receivers->low[axis] <= kLeastThickness * radius_;
+  }
+  // As many points, in layers of which the middle one lies in the plane of the receivers.
+  static glm::uvec3 inFewLayers(glm::uvec3 size) {
+    std::uint32_t* const counts[] = {&size.x, &size.y, &size.z};
+    std::uint32_t& layers = **std::min_element(std::begin(counts), std::end(counts),
+                                               [](const auto* a, const auto* b) { return *a < *b; });
+    if (layers <= kFlatLayers) return size;
+    const float finer = std::sqrt(static_cast<float>(layers) / static_cast<float>(kFlatLayers));
+    layers = kFlatLayers;
+    for (std::uint32_t* count : counts)
+      if (count != &layers) *count = static_cast<std::uint32_t>(finer * static_cast<float>(*count));
+    return size;
+  }
+
   glm::uvec3 sizeFor(const Box3& box) const {
     const glm::vec3 length = box.high - box.low;
     std::array<int, 3> by_length;
@@ -116,6 +136,8 @@ class Placer {
       const bool slab = isSlab(length, by_length);
       wanted = slab ? (wish_.few_points ? kCoarseSlab : kSlab) : wish_.few_points ? kCoarseAround : kAround;
     }
+    const bool dealt = wish_.extent == glm::vec3(0.0f) && wish_.by_length == glm::uvec3(0u);
+    if (dealt && isSlab(length, by_length) && flatAlong(by_length[2])) wanted = inFewLayers(wanted);
     std::array<std::uint32_t, 3> counts{wanted.x, wanted.y, wanted.z};
     std::sort(counts.begin(), counts.end(), std::greater<>());
     glm::uvec3 size;

@@ -35,7 +35,8 @@ struct PlacementWish {
   // it is known which side is the short one, and all around as many of them, evenly spread; 0: `by_length`.
   glm::uvec3 size{0};
   // Points along the longest, the middle and the shortest side; 0: 64, 64, 8 in a slab, else 32 each; with
-  // few_points 32, 32, 8 and 20 each.
+  // few_points 32, 32, 8 and 20 each. Where receivers are flat and no extent is given, slabs have their
+  // points in five layers, closer together.
   glm::uvec3 by_length{0};
   bool few_points = false;
   glm::vec3 extent{0.0f};  // of the box, about the body's middle; 0: by reach and receivers

@@ -1,6 +1,7 @@
 // Linear systems x = G x + b for many right sides at once, each column by itself, by restarted GMRES (Saad
 // and Schultz 1986). Rows are unknowns, kBlockColumns columns side by side. Sums run in a fixed order: the
-// same result for any number of threads.
+// same result for any number of threads. What long runs have found so far is kept where a cache is given, and
+// a later run goes on from there with the same result.
 #pragma once
 
 #include <cstddef>
@@ -8,12 +9,15 @@
 #include <span>
 #include <stop_token>
 
+#include "baker/cache/kept_ranges.hpp"
+
 namespace lambent::baker {
 
 struct GmresSettings {
   double tolerance = 1e-5;    // of the residual, relative to b, RMS over all columns
   int most_iterations = 400;  // applications of G
   int restart = 24;           // vectors that are kept
+  Keep keep{};                // of b, G and the settings: checkpoints
 };
 
 struct GmresResult {

@@ -88,36 +88,50 @@ PhaseScattering::Chunk PhaseScattering::trace(std::size_t chunk, std::size_t fir
   return out;
 }
 
-bool PhaseScattering::sumUp(std::span<const float> clear, std::uint64_t memory, Progress& progress,
-                            const std::stop_token& stop) {
+void PhaseScattering::sumUp(std::span<const float> clear, const Chunk& chunk, std::size_t begin,
+                            std::size_t end) {
   const std::size_t rays = table_->size(), n = outputs();
-  std::atomic<std::uint64_t> bytes = 0;
-  const bool done = parallelRanges(samples(), kChunk, stop, [&](std::size_t begin, std::size_t end) {
-    Chunk chunk = trace(begin / kChunk, 0, rays);
-    std::vector<double> out(n);
-    for (std::size_t p = begin; p < end; ++p) {
-      const glm::dvec3 from = grid_->gridFromGroup(glm::dvec3(grid_->place(p)));
-      const bool beyond = resolved_[p] > 0.5f;
-      double away = 0.0;
-      std::fill(out.begin(), out.end(), 0.0);
-      for (std::size_t r = 0; r < rays; ++r) {
-        const std::size_t ray = (p - begin) * rays + r;
-        const glm::dvec3 along = grid_->gridDirection(glm::dvec3(table_->direction(r)));
-        for (std::uint32_t s = chunk.begins[ray]; s < chunk.begins[ray + 1]; ++s) {
-          const Step& step = chunk.steps[s];
-          const double t = double{step.t};
-          const TransferGrid::Stencil at = grid_->stencil(from + t * along, steps_.levelAt(t), beyond);
-          for (std::size_t k = 0; k < static_cast<std::size_t>(at.count); ++k)
-            if (at.node[k] != p) away += double{step.share} * at.weight[k];
-        }
-        const double left = double{chunk.left[ray]};
-        away += left;
-        for (std::size_t i = 0; i < n; ++i) out[i] += left * double{duals_[r * n + i]};
+  std::vector<double> out(n);
+  for (std::size_t p = begin; p < end; ++p) {
+    const glm::dvec3 from = grid_->gridFromGroup(glm::dvec3(grid_->place(p)));
+    const bool beyond = resolved_[p] > 0.5f;
+    double away = 0.0;
+    std::fill(out.begin(), out.end(), 0.0);
+    for (std::size_t r = 0; r < rays; ++r) {
+      const std::size_t ray = (p - begin) * rays + r;
+      const glm::dvec3 along = grid_->gridDirection(glm::dvec3(table_->direction(r)));
+      for (std::uint32_t s = chunk.begins[ray]; s < chunk.begins[ray + 1]; ++s) {
+        const RayStep& step = chunk.steps[s];
+        const double t = double{step.t};
+        const TransferGrid::Stencil at = grid_->stencil(from + t * along, steps_.levelAt(t), beyond);
+        for (std::size_t k = 0; k < static_cast<std::size_t>(at.count); ++k)
+          if (at.node[k] != p) away += double{step.share} * at.weight[k];
       }
-      away_[p] = away / static_cast<double>(rays);
-      for (std::size_t i = 0; i < n; ++i)
-        amiss_[p * n + i] = static_cast<float>(kY0 * (double{clear[p * n + i]} - out[i]));
+      const double left = double{chunk.left[ray]};
+      away += left;
+      for (std::size_t i = 0; i < n; ++i) out[i] += left * double{duals_[r * n + i]};
     }
+    away_[p] = away / static_cast<double>(rays);
+    for (std::size_t i = 0; i < n; ++i)
+      amiss_[p * n + i] = static_cast<float>(kY0 * (double{clear[p * n + i]} - out[i]));
+  }
+}
+
+// As trace() makes them, or empty.
+bool PhaseScattering::fits(const Chunk& chunk, std::size_t samples) const {
+  if (chunk.begins.empty()) return chunk.steps.empty() && chunk.left.empty();
+  const std::size_t rays = samples * table_->size();
+  return chunk.begins.size() == rays + 1 && chunk.left.size() == rays && chunk.begins.front() == 0 &&
+         chunk.begins.back() == chunk.steps.size() &&
+         std::is_sorted(chunk.begins.begin(), chunk.begins.end());
+}
+
+bool PhaseScattering::sumUpAll(std::span<const float> clear, std::uint64_t memory, Progress& progress,
+                               const std::stop_token& stop, const Keep& keep) {
+  const std::size_t n = outputs();
+  std::atomic<std::uint64_t> bytes = 0;
+  std::atomic<std::size_t> traced = 0;
+  const auto offer = [&](std::size_t begin, std::size_t end, Chunk&& chunk) {
     const std::uint64_t size = chunk.bytes();
     if (bytes.fetch_add(size) + size <= memory) {
       chunk.steps.shrink_to_fit();
@@ -126,18 +140,50 @@ bool PhaseScattering::sumUp(std::span<const float> clear, std::uint64_t memory, 
       bytes.fetch_sub(size);
     }
     progress.add(end - begin);
-  });
+  };
+  const KeptRanges kept =
+      keptRanges(keep, samples(), kChunk, stop,
+                 {.compute =
+                      [&](std::size_t begin, std::size_t end) {
+                        Chunk chunk = trace(begin / kChunk, 0, table_->size());
+                        sumUp(clear, chunk, begin, end);
+                        traced += end - begin;
+                        offer(begin, end, std::move(chunk));
+                      },
+                  // What has no room in memory is not kept either, but for the sums.
+                  .pack =
+                      [&](std::size_t begin, std::size_t end, ByteWriter& out) {
+                        out.addList(std::span<const double>(away_).subspan(begin, end - begin));
+                        out.addList(std::span<const float>(amiss_).subspan(begin * n, (end - begin) * n));
+                        const Chunk& chunk = chunks_[begin / kChunk];
+                        out.addList(chunk.begins);
+                        out.addList(chunk.steps);
+                        out.addList(chunk.left);
+                      },
+                  .unpack =
+                      [&](std::size_t begin, std::size_t end, ByteReader& in) {
+                        Chunk chunk;
+                        if (!in.readInto(std::span(away_).subspan(begin, end - begin)) ||
+                            !in.readInto(std::span(amiss_).subspan(begin * n, (end - begin) * n)) ||
+                            !in.readList(chunk.begins) || !in.readList(chunk.steps) ||
+                            !in.readList(chunk.left) || !fits(chunk, end - begin))
+                          return false;
+                        offer(begin, end, std::move(chunk));
+                        return true;
+                      }},
+                 KeepWhen::Due);
   bytes_ = bytes;
-  return done;
+  samples_traced_ = traced;
+  return kept.finished;
 }
 
 std::optional<PhaseScattering> PhaseScattering::build(const DensityField& density, const TransferGrid& grid,
                                                       const Occluders& occluders, const SphereTable& table,
                                                       int bands, float g, std::span<const float> clear,
                                                       std::uint64_t memory, Progress& progress,
-                                                      const std::stop_token& stop) {
+                                                      const std::stop_token& stop, const Keep& keep) {
   PhaseScattering out(density, grid, occluders, table, bands, g);
-  if (!out.sumUp(clear, memory, progress, stop)) return std::nullopt;
+  if (!out.sumUpAll(clear, memory, progress, stop, keep)) return std::nullopt;
   return out;
 }
 
@@ -230,7 +276,7 @@ void PhaseScattering::gather(std::size_t index, std::size_t first_ray, std::span
       const float* const own = &by.near[p * kNear * kC];
       for (std::size_t c = 0; c < kC; ++c) sum[c] = -chunk.left[ray] * own[c];
       for (std::uint32_t s = chunk.begins[ray]; s < chunk.begins[ray + 1]; ++s) {
-        const Step& step = chunk.steps[s];
+        const RayStep& step = chunk.steps[s];
         const double t = double{step.t};
         const int level = steps_.levelAt(t);
         const TransferGrid::Stencil at = grid_->stencil(from + t * along, level, resolved > 0.5);

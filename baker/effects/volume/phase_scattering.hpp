@@ -17,6 +17,7 @@
 #include <stop_token>
 #include <vector>
 
+#include "baker/cache/kept_ranges.hpp"
 #include "baker/effects/volume/density_field.hpp"
 #include "baker/effects/volume/gmres.hpp"
 #include "baker/effects/volume/occluders.hpp"
@@ -28,6 +29,13 @@
 
 namespace lambent::baker {
 
+// Of stretches side by side on a ray: where on average, metres, and what share of the ray they scatter.
+struct RayStep {
+  float t, share;
+};
+template <>
+inline constexpr bool kPlainBytes<RayStep> = true;
+
 class PhaseScattering {
  public:
   // clear: [sample][bands²], int tau y_i ds up to the outside or to surfaces, by many rays
@@ -37,7 +45,12 @@ class PhaseScattering {
   static std::optional<PhaseScattering> build(const DensityField& density, const TransferGrid& grid,
                                               const Occluders& occluders, const SphereTable& table, int bands,
                                               float g, std::span<const float> clear, std::uint64_t memory,
-                                              Progress& progress, const std::stop_token& stop);
+                                              Progress& progress, const std::stop_token& stop,
+                                              const Keep& keep = {});
+  // Removes what build() kept.
+  static void drop(const Keep& keep, std::size_t samples) { dropRanges(keep, samples, kChunk); }
+  // Samples whose rays were traced in this run; the others were kept.
+  std::size_t samplesTraced() const { return samples_traced_; }
 
   std::size_t samples() const { return grid_->samples(); }
   std::size_t outputs() const { return factors_.size(); }
@@ -54,13 +67,9 @@ class PhaseScattering {
  private:
   static constexpr std::size_t kChunk = 64;  // samples
   static constexpr std::size_t kRays = 2;    // at once
-  // Of stretches side by side on a ray: where on average, metres, and what share of the ray they scatter.
-  struct Step {
-    float t, share;
-  };
   struct Chunk {
     std::vector<std::uint32_t> begins;  // [sample][ray], and one more
-    std::vector<Step> steps;
+    std::vector<RayStep> steps;
     std::vector<float> left;  // [sample][ray]: gets out, or to a surface
     std::uint64_t bytes() const { return 4 * (begins.size() + left.size()) + 8 * steps.size(); }
   };
@@ -69,8 +78,11 @@ class PhaseScattering {
                   const SphereTable& table, int bands, float g);
   // Rays [first, end) of the samples of a chunk.
   Chunk trace(std::size_t chunk, std::size_t first, std::size_t end) const;
-  bool sumUp(std::span<const float> clear, std::uint64_t memory, Progress& progress,
-             const std::stop_token& stop);
+  // Of one chunk, from what its rays met.
+  void sumUp(std::span<const float> clear, const Chunk& chunk, std::size_t begin, std::size_t end);
+  bool fits(const Chunk& chunk, std::size_t samples) const;
+  bool sumUpAll(std::span<const float> clear, std::uint64_t memory, Progress& progress,
+                const std::stop_token& stop, const Keep& keep);
   void findDuals();
   // What a ray sees of the samples and of the nodes over them.
   struct Seen {
@@ -96,6 +108,7 @@ class PhaseScattering {
   std::vector<float> amiss_;   // [sample][outputs]: by how much few rays miss `clear`, times y_0
   std::vector<Chunk> chunks_;  // empty where not kept
   std::uint64_t bytes_ = 0;
+  std::size_t samples_traced_ = 0;
 };
 
 }  // namespace lambent::baker

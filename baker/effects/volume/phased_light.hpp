@@ -8,6 +8,7 @@
 #include <stop_token>
 #include <vector>
 
+#include "baker/cache/kept_ranges.hpp"
 #include "baker/effects/volume/density_field.hpp"
 #include "baker/effects/volume/occluders.hpp"
 #include "baker/effects/volume/sphere_table.hpp"
@@ -18,13 +19,16 @@ namespace lambent::baker {
 
 struct PhasedLight {
   std::size_t visibility_size = 0;
-  std::vector<float> visibility;  // [sample][visibility_size]: tau_k = int tau y_k ds
-  std::vector<float> clear;       // [sample][bands²]: the same of the medium alone, up to the surfaces
+  std::vector<float> visibility;   // [sample][visibility_size]: tau_k = int tau y_k ds
+  std::vector<float> clear;        // [sample][bands²]: the same of the medium alone, up to the surfaces
+  std::size_t samples_traced = 0;  // in this run; the others were kept
 };
 
 // table: of order + bands - 1 bands. False if stopped.
 bool findPhasedLight(const DensityField& density, const TransferGrid& grid, const Occluders& occluders,
                      const SphereTable& table, int bands, PhasedLight& light, Progress& progress,
-                     const std::stop_token& stop);
+                     const std::stop_token& stop, const Keep& keep = {});
+// What it kept.
+void dropPhasedLight(const Keep& keep, std::size_t samples);
 
 }  // namespace lambent::baker

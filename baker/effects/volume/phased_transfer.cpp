@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "baker/effects/volume/gmres.hpp"
+#include "baker/effects/volume/keep_solved.hpp"
 #include "baker/effects/volume/phase_scattering.hpp"
 #include "baker/effects/volume/phased_light.hpp"
 #include "baker/effects/volume/sphere_table.hpp"
@@ -14,10 +15,9 @@ namespace lambent::baker {
 
 namespace {
 
-constexpr std::size_t kRaysPerScatteringRay = 4, kLeastScatteringRays = 64, kRaysPerOutput = 6;
+constexpr std::size_t kLeastScatteringRays = 64, kRaysPerOutput = 6;
 constexpr std::size_t kGrain = 64;
 constexpr double kTolerance = 1e-5;
-constexpr double kLargestAlbedo = 1.0 - 1e-7;  // as in volume_transfer.cpp
 // Vectors of the solver: by the size of the system, not by the memory of the machine, so that results do not
 // hang on that.
 constexpr std::uint64_t kSolverBytes = std::uint64_t{1} << 30, kLeastKept = 6, kMostKept = 24;
@@ -43,7 +43,7 @@ class PhasedSystem {
     kept_vectors_ = static_cast<int>(std::clamp(kSolverBytes / vector, kLeastKept, kMostKept));
   }
 
-  GmresResult solve(std::span<const float> first, std::span<float> result) {
+  GmresResult solve(std::span<const float> first, std::span<float> result, const Keep& keep) {
     std::vector<float> right(first.size());
     for (std::size_t i = 0; i < first.size(); ++i)
       right[i] = static_cast<float>(double{first[i]} * scale_[i / kBlockColumns]);
@@ -62,7 +62,7 @@ class PhasedSystem {
           });
           return true;
         },
-        {.tolerance = kTolerance, .restart = kept_vectors_});
+        {.tolerance = kTolerance, .restart = kept_vectors_, .keep = keep});
   }
 
   // So many scatterings one after the other.
@@ -90,7 +90,7 @@ class PhasedSystem {
 };
 
 bool scatter(PhaseScattering& scattering, const VolumeSettings& settings, VolumeTransfer& out,
-             Progress& progress, const std::stop_token& stop) {
+             Progress& progress, const std::stop_token& stop, const Keep& keep) {
   const std::size_t columns = out.columns(), block_size = out.outputs() * columns,
                     rows = out.grid.samples() * out.outputs();
   // Row: an output of a sample. Where its columns stand in the vectors.
@@ -107,8 +107,10 @@ bool scatter(PhaseScattering& scattering, const VolumeSettings& settings, Volume
     for (std::uint32_t channel = 0; channel < out.full_channels; ++channel) {
       const double albedo = std::min(double{out.albedo[static_cast<int>(channel)]}, kLargestAlbedo);
       PhasedSystem system(scattering, albedo, stop);
-      const GmresResult done = settings.scatterings < 0 ? system.solve(first, result)
-                                                        : system.repeat(first, result, settings.scatterings);
+      const GmresResult done = keepSolved(keep.part("block", begin, channel), result, [&](const Keep& part) {
+        return settings.scatterings < 0 ? system.solve(first, result, part)
+                                        : system.repeat(first, result, settings.scatterings);
+      });
       if (done.stopped) return false;
       out.iterations = std::max(out.iterations, done.iterations);
       out.residual = std::max(out.residual, done.residual);
@@ -123,14 +125,17 @@ bool scatter(PhaseScattering& scattering, const VolumeSettings& settings, Volume
 }  // namespace
 
 bool bakePhasedTransfer(const Medium& medium, const VolumeSettings& settings, const Occluders& occluders,
-                        VolumeTransfer& out, Progress& progress, const std::stop_token& stop) {
+                        VolumeTransfer& out, Progress& progress, const std::stop_token& stop,
+                        const Keep& keep) {
   const std::size_t samples = out.grid.samples();
   const SphereTable table(settings.rays, out.order + out.bands - 1);
   progress.begin("light into volumes", samples, "samples");
   PhasedLight light;
-  if (!findPhasedLight(*medium.density, out.grid, occluders, table, out.bands, light, progress, stop))
+  if (!findPhasedLight(*medium.density, out.grid, occluders, table, out.bands, light, progress, stop,
+                       keep.part("light")))
     return false;
-  out.rays = samples * table.size();
+  out.rays = light.samples_traced * table.size();
+  out.rays_kept = (samples - light.samples_traced) * table.size();
   const sh::GauntTable products = sh::makeGauntTable(out.order, out.bands);
   parallelRanges(samples, kGrain, {}, [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; ++p)
@@ -146,12 +151,18 @@ bool bakePhasedTransfer(const Medium& medium, const VolumeSettings& settings, co
       out.bands);
   progress.begin("scattering", samples, "samples");
   auto scattering = PhaseScattering::build(*medium.density, out.grid, occluders, few, out.bands, out.g,
-                                           light.clear, settings.memory, progress, stop);
+                                           light.clear, settings.memory, progress, stop, keep.part("rows"));
   if (!scattering) return false;
-  out.rays += samples * few.size();
+  out.rays += scattering->samplesTraced() * few.size();
+  out.rays_kept += (samples - scattering->samplesTraced()) * few.size();
   out.row_bytes = scattering->bytes();
   progress.begin("scattered light", out.columns() * out.full_channels, "columns");
-  return scatter(*scattering, settings, out, progress, stop);
+  return scatter(*scattering, settings, out, progress, stop, keep);
+}
+
+void dropPhasedParts(const Keep& keep, std::size_t samples) {
+  dropPhasedLight(keep.part("light"), samples);
+  PhaseScattering::drop(keep.part("rows"), samples);
 }
 
 }  // namespace lambent::baker

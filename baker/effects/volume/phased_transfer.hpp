@@ -11,6 +11,9 @@ namespace lambent::baker {
 // Fills vectors, visibility and figures of a transfer of more than one band; grid, order, bands and channels
 // are there. False if stopped.
 bool bakePhasedTransfer(const Medium& medium, const VolumeSettings& settings, const Occluders& occluders,
-                        VolumeTransfer& out, Progress& progress, const std::stop_token& stop);
+                        VolumeTransfer& out, Progress& progress, const std::stop_token& stop,
+                        const Keep& keep = {});
+// Its checkpoints, but for the solver's.
+void dropPhasedParts(const Keep& keep, std::size_t samples);
 
 }  // namespace lambent::baker

@@ -97,15 +97,15 @@ class ScatterRows::Row {
   double sum_ = 0.0, resolved_ = 1.0;
 };
 
-void ScatterRows::traceRow(std::size_t p, std::vector<float>& reach, Row& row) const {
-  const glm::vec3 origin = grid_->place(p);
+void ScatterRows::traceRow(const glm::vec3& origin, const SphereTable& table, std::vector<float>& reach,
+                           Row& row) const {
   const glm::dvec3 grid_origin = grid_->gridFromGroup(glm::dvec3(origin));
   const double thickness =
       double{density_->atGrid(density_->gridFromGroup(origin))} * double{grid_->meanEdge()};
   row.begin(1.0 - glm::smoothstep(2.0, 4.0, thickness));
-  occluders_->reach(origin, table_->directions(), reach);
-  for (std::size_t r = 0; r < table_->size(); ++r) {
-    const glm::vec3& direction = table_->direction(r);
+  occluders_->reach(origin, table.directions(), reach);
+  for (std::size_t r = 0; r < table.size(); ++r) {
+    const glm::vec3& direction = table.direction(r);
     const glm::dvec3 grid_direction = grid_->gridDirection(glm::dvec3(direction));
     steps_.gather(origin, direction, reach[r], [&](double t, double share) {
       row.add(grid_origin + t * grid_direction, steps_.levelAt(t), share);
@@ -120,7 +120,7 @@ ScatterRows::Chunk ScatterRows::trace(std::size_t begin, std::size_t end, std::s
   std::vector<float> reach(table_->size());
   chunk.begins.push_back(0);
   for (std::size_t p = begin; p < end; ++p) {
-    traceRow(p, reach, row);
+    traceRow(grid_->place(p), *table_, reach, row);
     const double scale = row.sum() > 0.0 ? met_[p] / row.sum() : 0.0;
     double rest = 0.0, own = 0.0;
     row.finish([&](std::uint32_t node, double weight) {
@@ -138,14 +138,33 @@ ScatterRows::Chunk ScatterRows::trace(std::size_t begin, std::size_t end, std::s
   return chunk;
 }
 
+ScatterRows::Gather::Gather(const ScatterRows& rows)
+    : rows_(rows), row_(std::make_unique<Row>(*rows.grid_)) {}
+ScatterRows::Gather::~Gather() = default;
+
+void ScatterRows::Gather::look(const glm::vec3& place, const SphereTable& table, double met,
+                               std::span<const std::vector<float>> nodes, std::span<float> out) {
+  reach_.resize(table.size());
+  rows_.traceRow(place, table, reach_, *row_);
+  const double scale = row_->sum() > 0.0 ? met / row_->sum() : 0.0;
+  std::fill(out.begin(), out.end(), 0.0f);
+  row_->finish([&](std::uint32_t node, double weight) {
+    const auto share = static_cast<float>(scale * weight);
+    for (std::size_t b = 0; b < nodes.size(); ++b)
+      for (std::size_t i = 0; i < kBlockColumns; ++i)
+        out[b * kBlockColumns + i] += share * nodes[b][node * kBlockColumns + i];
+  });
+}
+
 std::optional<ScatterRows> ScatterRows::build(const DensityField& density, const TransferGrid& grid,
                                               const Occluders& occluders, const SphereTable& table,
                                               std::span<const double> met, std::uint64_t memory,
-                                              Progress& progress, const std::stop_token& stop) {
+                                              Progress& progress, const std::stop_token& stop,
+                                              const Keep& keep) {
   ScatterRows rows(density, grid, occluders, table, met);
   std::atomic<std::uint64_t> bytes = 0;
-  const bool done = parallelRanges(met.size(), kChunk, stop, [&](std::size_t begin, std::size_t end) {
-    Chunk chunk = rows.trace(begin, end, rows.self_, rows.others_);
+  std::atomic<std::size_t> traced = 0;
+  const auto offer = [&](std::size_t begin, std::size_t end, Chunk&& chunk) {
     const std::uint64_t size = chunk.bytes();
     if (bytes.fetch_add(size) + size <= memory) {
       chunk.nodes.shrink_to_fit(), chunk.weights.shrink_to_fit();
@@ -154,10 +173,48 @@ std::optional<ScatterRows> ScatterRows::build(const DensityField& density, const
       bytes.fetch_sub(size);
     }
     progress.add(end - begin);
-  });
-  if (!done) return std::nullopt;
+  };
+  const KeptRanges kept =
+      keptRanges(keep, met.size(), kChunk, stop,
+                 {.compute =
+                      [&](std::size_t begin, std::size_t end) {
+                        traced += end - begin;
+                        offer(begin, end, rows.trace(begin, end, rows.self_, rows.others_));
+                      },
+                  // What has no room in memory is not kept either, but for the sums.
+                  .pack =
+                      [&](std::size_t begin, std::size_t end, ByteWriter& out) {
+                        out.addList(std::span<const double>(rows.self_).subspan(begin, end - begin));
+                        out.addList(std::span<const double>(rows.others_).subspan(begin, end - begin));
+                        const Chunk& chunk = rows.chunks_[begin / kChunk];
+                        out.addList(chunk.begins);
+                        out.addList(chunk.nodes);
+                        out.addList(chunk.weights);
+                      },
+                  .unpack =
+                      [&](std::size_t begin, std::size_t end, ByteReader& in) {
+                        Chunk chunk;
+                        if (!in.readInto(std::span(rows.self_).subspan(begin, end - begin)) ||
+                            !in.readInto(std::span(rows.others_).subspan(begin, end - begin)) ||
+                            !in.readList(chunk.begins) || !in.readList(chunk.nodes) ||
+                            !in.readList(chunk.weights) || !chunk.fits(end - begin, grid.nodes()))
+                          return false;
+                        offer(begin, end, std::move(chunk));
+                        return true;
+                      }},
+                 KeepWhen::Due);
+  if (!kept.finished) return std::nullopt;
   rows.bytes_ = bytes;
+  rows.samples_traced_ = traced;
   return rows;
+}
+
+// As trace() makes them, or empty.
+bool ScatterRows::Chunk::fits(std::size_t rows, std::size_t nodes_there) const {
+  if (begins.empty()) return nodes.empty() && weights.empty();
+  return begins.size() == rows + 1 && begins.front() == 0 && begins.back() == nodes.size() &&
+         weights.size() == nodes.size() && std::is_sorted(begins.begin(), begins.end()) &&
+         std::all_of(nodes.begin(), nodes.end(), [&](std::uint32_t node) { return node < nodes_there; });
 }
 
 bool ScatterRows::apply(std::span<float> nodes, std::span<float> out, const std::stop_token& stop) const {

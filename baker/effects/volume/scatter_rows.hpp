@@ -11,11 +11,13 @@
 
 #include <atomic>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <stop_token>
 #include <vector>
 
+#include "baker/cache/kept_ranges.hpp"
 #include "baker/effects/volume/density_field.hpp"
 #include "baker/effects/volume/occluders.hpp"
 #include "baker/effects/volume/ray_steps.hpp"
@@ -29,6 +31,8 @@ namespace lambent::baker {
 inline constexpr std::size_t kBlockColumns = 32;
 
 class ScatterRows {
+  class Row;
+
  public:
   // met: of each sample, the share of light going out (or coming in) that the medium meets before it gets out
   // or to a surface: rows sum to that. Rows are kept in at most `memory` bytes; those that do not fit are
@@ -36,7 +40,12 @@ class ScatterRows {
   static std::optional<ScatterRows> build(const DensityField& density, const TransferGrid& grid,
                                           const Occluders& occluders, const SphereTable& table,
                                           std::span<const double> met, std::uint64_t memory,
-                                          Progress& progress, const std::stop_token& stop);
+                                          Progress& progress, const std::stop_token& stop,
+                                          const Keep& keep = {});
+  // Samples of which rows were traced in this run; the others were kept.
+  std::size_t samplesTraced() const { return samples_traced_; }
+  // Removes what build() kept.
+  static void drop(const Keep& keep, std::size_t samples) { dropRanges(keep, samples, kChunk); }
 
   std::size_t samples() const { return self_.size(); }
   // Of a sample: k_pp, the sum of the others, what reaches the outside or a surface.
@@ -47,6 +56,22 @@ class ScatterRows {
   // levels are filled here. False if stopped.
   bool apply(std::span<float> nodes, std::span<float> out, const std::stop_token& stop) const;
 
+  // Scattered light at places that are no samples. One per thread.
+  class Gather {
+   public:
+    explicit Gather(const ScatterRows& rows);
+    ~Gather();
+    // One scattering: what comes along the table's rays, which meet `met` of the medium. nodes: blocks of
+    // columns as for apply(), their upper levels filled (TransferGrid::raise); out: a block after the other.
+    void look(const glm::vec3& place, const SphereTable& table, double met,
+              std::span<const std::vector<float>> nodes, std::span<float> out);
+
+   private:
+    const ScatterRows& rows_;
+    std::unique_ptr<Row> row_;
+    std::vector<float> reach_;
+  };
+
   std::uint64_t bytes() const { return bytes_; }
 
  private:
@@ -55,12 +80,12 @@ class ScatterRows {
     std::vector<std::uint32_t> begins, nodes;
     std::vector<float> weights;
     std::uint64_t bytes() const { return 4 * (begins.size() + nodes.size() + weights.size()); }
+    bool fits(std::size_t rows, std::size_t nodes_there) const;
   };
 
   ScatterRows(const DensityField& density, const TransferGrid& grid, const Occluders& occluders,
               const SphereTable& table, std::span<const double> met);
-  class Row;
-  void traceRow(std::size_t p, std::vector<float>& reach, Row& row) const;
+  void traceRow(const glm::vec3& origin, const SphereTable& table, std::vector<float>& reach, Row& row) const;
   // Adds the rows of some samples; self and others get their sums where given.
   Chunk trace(std::size_t begin, std::size_t end, std::span<double> self, std::span<double> others) const;
 
@@ -72,6 +97,7 @@ class ScatterRows {
   std::vector<Chunk> chunks_;  // empty where not kept
   RaySteps steps_;
   std::uint64_t bytes_ = 0;
+  std::size_t samples_traced_ = 0;
 };
 
 }  // namespace lambent::baker

@@ -6,14 +6,15 @@
 #include <span>
 #include <vector>
 
+#include <glm/gtc/quaternion.hpp>
 #include <glm/vec3.hpp>
 
 namespace lambent::baker {
 
 class SphereTable {
  public:
-  // rays > 0; order 1..sh::kMaxBasisOrder.
-  SphereTable(std::size_t rays, int order);
+  // rays > 0; order 1..sh::kMaxBasisOrder. Turned, so that tables beside each other look elsewhere.
+  SphereTable(std::size_t rays, int order, const glm::dquat& turn = glm::dquat(1.0, 0.0, 0.0, 0.0));
 
   std::size_t size() const { return directions_.size(); }
   const glm::vec3& direction(std::size_t ray) const { return directions_[ray]; }

@@ -1,77 +1,83 @@
 #include "baker/effects/volume/volume_transfer.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
+#include "baker/effects/volume/first_light.hpp"
+#include "baker/effects/volume/fit_within_voxels.hpp"
 #include "baker/effects/volume/gmres.hpp"
+#include "baker/effects/volume/keep_solved.hpp"
 #include "baker/effects/volume/phased_transfer.hpp"
 #include "baker/effects/volume/scatter_rows.hpp"
 #include "baker/effects/volume/sphere_table.hpp"
 #include "baker/work/parallel.hpp"
-#include "runtime/sh/basis.hpp"
 
 namespace lambent::baker {
 
 namespace {
 
-constexpr std::size_t kRaysPerScatteringRay = 4, kLeastScatteringRays = 64;
+constexpr std::size_t kLeastScatteringRays = 64;
 constexpr std::size_t kGrain = 16;
 constexpr double kTolerance = 1e-5;
-// Light that is scattered ten million times and never absorbed has no number: without this the system of a
-// medium that nothing gets out of is singular.
-constexpr double kLargestAlbedo = 1.0 - 1e-7;
-constexpr double kY0 = 0.28209479177387814;
 
 // What arrives unscattered, and what stands in its way.
-struct FirstLight {
+struct FirstLights {
   std::vector<float> transfer;   // [sample][order²]
   std::vector<double> met, out;  // share of the directions whose light the medium meets, and the rest
 };
 
+// rays: of those that were not kept.
 bool lightIn(const Medium& medium, const TransferGrid& grid, const Occluders& occluders,
-             const SphereTable& table, std::size_t columns, FirstLight& light, Progress& progress,
-             const std::stop_token& stop) {
+             const SphereTable& table, std::size_t columns, FirstLights& light, std::uint64_t& rays,
+             Progress& progress, const std::stop_token& stop, const Keep& keep) {
   light.transfer.resize(grid.samples() * columns);
   light.met.resize(grid.samples());
   light.out.resize(grid.samples());
-  return parallelRanges(grid.samples(), kGrain, stop, [&](std::size_t begin, std::size_t end) {
-    std::vector<float> reach(table.size());
-    std::vector<double> lost(columns);
-    for (std::size_t p = begin; p < end; ++p) {
-      const glm::vec3 origin = grid.place(p);
-      occluders.reach(origin, table.directions(), reach);
-      std::fill(lost.begin(), lost.end(), 0.0);
-      double met = 0.0, out = 0.0, open = 0.0;
-      for (std::size_t r = 0; r < table.size(); ++r) {
-        const double depth = double{medium.density->opticalDepth(origin, table.direction(r), reach[r])};
-        const double clear = std::exp(-depth), gone = -std::expm1(-depth);
-        met += gone;
-        out += clear;
-        const bool blocked = std::isfinite(reach[r]);
-        const double missing = blocked ? 1.0 : gone;
-        open += blocked ? 0.0 : clear;
-        const auto y = table.harmonics(r);
-        for (std::size_t i = 0; i < columns; ++i) lost[i] += missing * double{y[i]};
-      }
-      const double share = 1.0 / static_cast<double>(table.size());
-      light.met[p] = met * share;
-      light.out[p] = out * share;
-      // Off the closed form of an open sky (y_0, then zeros), so that thin air is exact; the sums of y_i over
-      // the table, nearly 0, are put right for thick air.
-      open *= share;
-      for (std::size_t i = 0; i < columns; ++i)
-        light.transfer[p * columns + i] =
-            static_cast<float>(i == 0 ? kY0 * open : (1.0 - open) * table.mean(i) - lost[i] * share);
-    }
-    progress.add(end - begin);
-  });
+  std::atomic<std::uint64_t> traced = 0;
+  const auto parts = [&](std::size_t begin, std::size_t end, const auto& visit) {
+    const std::size_t count = end - begin;
+    return visit(std::span(light.transfer).subspan(begin * columns, count * columns)) &&
+           visit(std::span(light.met).subspan(begin, count)) &&
+           visit(std::span(light.out).subspan(begin, count));
+  };
+  const KeptRanges kept =
+      keptRanges(keep, grid.samples(), kGrain, stop,
+                 {.compute =
+                      [&](std::size_t begin, std::size_t end) {
+                        FirstLight first(*medium.density, occluders);
+                        for (std::size_t p = begin; p < end; ++p) {
+                          const Arrival arrival = first.look(
+                              grid.place(p), table, std::span(light.transfer).subspan(p * columns, columns));
+                          light.met[p] = arrival.met;
+                          light.out[p] = arrival.out;
+                        }
+                        traced += (end - begin) * table.size();
+                        progress.add(end - begin);
+                      },
+                  .pack =
+                      [&](std::size_t begin, std::size_t end, ByteWriter& out) {
+                        parts(begin, end, [&]<typename T>(std::span<T> part) {
+                          out.addList(std::span<const T>(part));
+                          return true;
+                        });
+                      },
+                  .unpack =
+                      [&](std::size_t begin, std::size_t end, ByteReader& in) {
+                        if (!parts(begin, end, [&](auto part) { return in.readInto(part); })) return false;
+                        progress.add(end - begin);
+                        return true;
+                      }},
+                 KeepWhen::Due);
+  rays += traced;
+  return kept.finished;
 }
 
 // T = T0 + w K T for a block of columns, on the diagonal's scale: what a sample keeps to itself is taken out
 // of the iteration, so that thick media converge too. result, first: [sample][kBlockColumns].
 class Scattering {
  public:
-  Scattering(const ScatterRows& rows, const TransferGrid& grid, const FirstLight& light, double albedo,
+  Scattering(const ScatterRows& rows, const TransferGrid& grid, const FirstLights& light, double albedo,
              const std::stop_token& stop)
       : rows_(rows),
         albedo_(albedo),
@@ -85,7 +91,7 @@ class Scattering {
     }
   }
 
-  GmresResult solve(std::span<const float> first, std::span<float> result) {
+  GmresResult solve(std::span<const float> first, std::span<float> result, const Keep& keep) {
     std::vector<float> right(first.size());
     for (std::size_t i = 0; i < first.size(); ++i)
       right[i] = static_cast<float>(double{first[i]} * scale_[i / kBlockColumns]);
@@ -98,7 +104,7 @@ class Scattering {
                           y[i] = static_cast<float>(albedo_ * scale_[i / kBlockColumns] * double{y[i]});
                         return true;
                       },
-                      {.tolerance = kTolerance});
+                      {.tolerance = kTolerance, .keep = keep});
   }
 
   // So many scatterings one after the other.
@@ -124,8 +130,8 @@ class Scattering {
   std::vector<double> scale_;
 };
 
-bool scatter(const ScatterRows& rows, const FirstLight& light, const VolumeSettings& settings,
-             VolumeTransfer& out, Progress& progress, const std::stop_token& stop) {
+bool scatter(const ScatterRows& rows, const FirstLights& light, const VolumeSettings& settings,
+             VolumeTransfer& out, Progress& progress, const std::stop_token& stop, const Keep& keep) {
   const std::size_t columns = out.columns(), samples = out.grid.samples();
   std::vector<float> first(samples * kBlockColumns), result(first.size());
   for (std::size_t block = 0; block < columns; block += kBlockColumns) {
@@ -136,9 +142,10 @@ bool scatter(const ScatterRows& rows, const FirstLight& light, const VolumeSetti
     for (std::uint32_t channel = 0; channel < out.full_channels; ++channel) {
       const double albedo = std::min(double{out.albedo[static_cast<int>(channel)]}, kLargestAlbedo);
       Scattering scattering(rows, out.grid, light, albedo, stop);
-      const GmresResult done = settings.scatterings < 0
-                                   ? scattering.solve(first, result)
-                                   : scattering.repeat(first, result, settings.scatterings);
+      const GmresResult done = keepSolved(keep.part("block", block, channel), result, [&](const Keep& at) {
+        return settings.scatterings < 0 ? scattering.solve(first, result, at)
+                                        : scattering.repeat(first, result, settings.scatterings);
+      });
       if (done.stopped) return false;
       out.iterations = std::max(out.iterations, done.iterations);
       out.residual = std::max(out.residual, done.residual);
@@ -151,11 +158,61 @@ bool scatter(const ScatterRows& rows, const FirstLight& light, const VolumeSetti
   return true;
 }
 
+// Checkpoints of what is all there now.
+void dropParts(const Keep& keep, const VolumeTransfer& transfer) {
+  if (!keep.cache) return;
+  const std::size_t samples = transfer.grid.samples();
+  if (transfer.bands > 1) {
+    dropPhasedParts(keep, samples);
+  } else {
+    dropRanges(keep.part("light"), samples, kGrain);
+    ScatterRows::drop(keep.part("rows"), samples);
+    dropWithinVoxels(keep.part("within voxels"), *transfer.density, transfer.grid);
+  }
+  for (std::size_t block = 0; block < transfer.columns(); block += kBlockColumns)
+    for (std::uint32_t channel = 0; channel < transfer.full_channels; ++channel)
+      dropSolved(keep.part("block", block, channel));
+}
+
+bool bakeTransfer(const Medium& medium, const VolumeSettings& settings, const Occluders& occluders,
+                  VolumeTransfer& out, Progress& progress, const std::stop_token& stop, const Keep& keep) {
+  const std::size_t samples = out.grid.samples(), columns = out.columns();
+  out.vectors.resize(samples * out.vectorSize());
+  if (samples == 0) return true;
+  if (out.bands > 1) return bakePhasedTransfer(medium, settings, occluders, out, progress, stop, keep);
+
+  const SphereTable table(settings.rays, settings.order);
+  progress.begin("light into volumes", samples, "samples");
+  FirstLights light;
+  if (!lightIn(medium, out.grid, occluders, table, columns, light, out.rays, progress, stop,
+               keep.part("light")))
+    return false;
+  out.rays_kept = samples * table.size() - out.rays;
+  for (std::size_t p = 0; p < samples; ++p)
+    std::copy_n(&light.transfer[p * columns], columns, &out.vectors[p * out.vectorSize()]);
+  const auto fit = [&](const ScatterRows* rows) {
+    return !settings.fit_within_voxels || fitWithinVoxels(medium, settings, occluders, rows, out, progress,
+                                                          stop, keep.part("within voxels"));
+  };
+  if (out.full_channels == 0) return fit(nullptr);
+
+  const SphereTable few(std::max(kLeastScatteringRays, settings.rays / kRaysPerScatteringRay), 1);
+  progress.begin("scattering", samples, "samples");
+  const auto rows = ScatterRows::build(*medium.density, out.grid, occluders, few, light.met, settings.memory,
+                                       progress, stop, keep.part("rows"));
+  if (!rows) return false;
+  out.rays += rows->samplesTraced() * few.size();
+  out.rays_kept += (samples - rows->samplesTraced()) * few.size();
+  out.row_bytes = rows->bytes();
+  progress.begin("scattered light", columns * out.full_channels, "columns");
+  return scatter(*rows, light, settings, out, progress, stop, keep) && fit(&*rows);
+}
+
 }  // namespace
 
 std::optional<VolumeTransfer> bakeVolumeTransfer(const Medium& medium, const VolumeSettings& settings,
                                                  const Occluders& occluders, Progress& progress,
-                                                 const std::stop_token& stop) {
+                                                 const std::stop_token& stop, const Keep& keep) {
   const glm::vec3& w = medium.albedo;
   const bool black = w == glm::vec3(0.0f), grey = w.r == w.g && w.g == w.b;
   VolumeTransfer out{.density = medium.density,
@@ -169,32 +226,25 @@ std::optional<VolumeTransfer> bakeVolumeTransfer(const Medium& medium, const Vol
                                                                          : 3u,
                      .vectors = {},
                      .visibility = {}};
-  const std::size_t samples = out.grid.samples(), columns = out.columns();
-  out.vectors.resize(samples * out.vectorSize());
-  if (samples == 0) return out;
-  if (out.bands > 1) {
-    if (!bakePhasedTransfer(medium, settings, occluders, out, progress, stop)) return std::nullopt;
-    return out;
-  }
-
-  const SphereTable table(settings.rays, settings.order);
-  progress.begin("light into volumes", samples, "samples");
-  FirstLight light;
-  if (!lightIn(medium, out.grid, occluders, table, columns, light, progress, stop)) return std::nullopt;
-  out.rays = samples * table.size();
-  for (std::size_t p = 0; p < samples; ++p)
-    std::copy_n(&light.transfer[p * columns], columns, &out.vectors[p * out.vectorSize()]);
-  if (out.full_channels == 0) return out;
-
-  const SphereTable few(std::max(kLeastScatteringRays, settings.rays / kRaysPerScatteringRay), 1);
-  progress.begin("scattering", samples, "samples");
-  const auto rows = ScatterRows::build(*medium.density, out.grid, occluders, few, light.met, settings.memory,
-                                       progress, stop);
-  if (!rows) return std::nullopt;
-  out.rays += samples * few.size();
-  out.row_bytes = rows->bytes();
-  progress.begin("scattered light", columns * out.full_channels, "columns");
-  if (!scatter(*rows, light, settings, out, progress, stop)) return std::nullopt;
+  const std::size_t samples = out.grid.samples(),
+                    visibility = out.bands > 3 ? samples * out.visibilitySize() : 0;
+  const std::optional<bool> found = keptValue(
+      keep.part("transfer"),
+      [&](ByteReader& in) {
+        return in.readList(out.vectors) && out.vectors.size() == samples * out.vectorSize() &&
+               in.readList(out.visibility) && out.visibility.size() == visibility && in.read(out.rays_kept) &&
+               in.read(out.iterations) && in.read(out.residual) && in.read(out.row_bytes);
+      },
+      [&] {
+        out.vectors.clear(), out.visibility.clear(), out.rays_kept = 0;
+        return bakeTransfer(medium, settings, occluders, out, progress, stop, keep);
+      },
+      [&](ByteWriter& to) {
+        to.addList(out.vectors), to.addList(out.visibility), to.add(out.rays + out.rays_kept);
+        to.add(out.iterations), to.add(out.residual), to.add(out.row_bytes);
+      });
+  if (!found) return std::nullopt;
+  if (!*found) dropParts(keep, out);
   return out;
 }
 

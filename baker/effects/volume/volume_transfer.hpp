@@ -3,6 +3,8 @@
 // per coefficient of the light: by single scattering (what the medium and the surfaces around it let
 // through), and with light that was scattered any number of times (scatter_rows.hpp), until a linear solver
 // has what remains under 1e-5 of it. Surfaces block; what they send back is not added (docs/decisions/024).
+// Where free paths are shorter than voxels, samples are not what is at their centres, but what interpolates
+// best to what is at many places (fit_within_voxels.hpp).
 // With a phase function that prefers directions (Henyey and Greenstein's, g not 0) the radiance that arrives,
 // in bands, in place of its mean: L_lm = int L y_lm ds, of which g^l L_lm y_lm goes on (literature 1.8).
 #pragma once
@@ -16,6 +18,7 @@
 
 #include <glm/vec3.hpp>
 
+#include "baker/cache/kept_ranges.hpp"
 #include "baker/effects/volume/density_field.hpp"
 #include "baker/effects/volume/occluders.hpp"
 #include "baker/effects/volume/transfer_grid.hpp"
@@ -38,12 +41,20 @@ inline int bandsOfPhase(float g, int order) {
   return order < 4 || (g <= 0.5f && g >= -0.5f) ? 3 : order;
 }
 
+// Light that is scattered ten million times and never absorbed has no number: without this the system of a
+// medium that nothing gets out of is singular.
+inline constexpr double kLargestAlbedo = 1.0 - 1e-7;
+
+inline constexpr std::size_t kRaysPerScatteringRay = 4;  // of those that look for unscattered light
+
 struct VolumeSettings {
   int order = 5;                    // bands of the light, 1..8
   std::size_t rays = 1024;          // per sample over the sphere; a quarter of them for scattered light
   int scatterings = -1;             // after the first; 0: none, -1: all
   glm::uvec3 grid{32};              // voxels
   std::uint64_t memory = 1u << 30;  // for rows of weights, bytes
+  // Samples are what interpolates best to the light within voxels, in place of the light at their centres.
+  bool fit_within_voxels = false;
 };
 
 struct VolumeTransfer {
@@ -61,9 +72,10 @@ struct VolumeTransfer {
   // order + bands - 1 bands, [sample][visibility]; the first block of `vectors` follows from it.
   std::vector<float> visibility;
 
-  std::uint64_t rays = 0;
-  int iterations = 0;     // of the solver
-  double residual = 0.0;  // that it reached, relative
+  std::uint64_t rays = 0;       // traced in this run
+  std::uint64_t rays_kept = 0;  // that results of earlier runs stand for
+  int iterations = 0;           // of the solver
+  double residual = 0.0;        // that it reached, relative
   std::uint64_t row_bytes = 0;
 
   std::size_t columns() const { return static_cast<std::size_t>(order) * static_cast<std::size_t>(order); }
@@ -76,9 +88,9 @@ struct VolumeTransfer {
 };
 
 // Nothing if stopped. order is at most 6 where bandsOfPhase() is over 3. Stages: "light into volumes",
-// "scattering", "scattered light".
+// "scattering", "scattered light", "light within voxels". keep: of medium, settings and occluders.
 std::optional<VolumeTransfer> bakeVolumeTransfer(const Medium& medium, const VolumeSettings& settings,
                                                  const Occluders& occluders, Progress& progress,
-                                                 const std::stop_token& stop);
+                                                 const std::stop_token& stop, const Keep& keep = {});
 
 }  // namespace lambent::baker

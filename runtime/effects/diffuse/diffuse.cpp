@@ -53,7 +53,7 @@ Diffuse::Diffuse()
       vertices_work_("diffuse vertices work") {}
 
 Result<void> Diffuse::shade(streaming::Residency& residency, const lighting::GroupLights& lights,
-                            TransferMode mode, gpu::Counters& counters) {
+                            TransferMode mode, gpu::Counters& counters, const ShadedKinds& kinds) {
   if (residency.version() != residency_seen_ || lights.groupCount() != groups_seen_ || mode != mode_seen_) {
     if (mode != mode_seen_) {  // everything anew
       cells_seen_.clear();
@@ -62,8 +62,9 @@ Result<void> Diffuse::shade(streaming::Residency& residency, const lighting::Gro
     rebuildTables(residency, lights, mode);
   }
   shaded_ = {};
-  collectCells(residency, lights);
-  collectDraws(residency, lights);
+  collectCells(residency, lights, kinds);
+  vertices_work_.clear();
+  if (kinds.surfaces) collectDraws(residency, lights);
   if (Result<void> run = runCells(residency, lights, counters); !run) return run;
   return runDraws(residency, lights, counters);
 }
@@ -86,12 +87,13 @@ void Diffuse::rebuildTables(const streaming::Residency& residency, const lightin
   places_table_.assign(std::span<const std::uint32_t>(tables_.places));
   draws_table_.assign(std::span<const DrawRecord>(tables_.draws));
   products_.reserve(tables_.product_count * sizeof(glm::vec4));
-  cells_seen_.resize(residency.cells().size());
-  draws_seen_.resize(residency.draws().size());
-  group_shaded_.resize(residency.groups().size());
+  cells_seen_.follow(residency.cells(), &streaming::ResidentCell::id);
+  draws_seen_.follow(residency.draws(), &streaming::ResidentDraw::id);
+  group_shaded_.follow(residency.groups(), &streaming::ResidentGroup::id);
 }
 
-void Diffuse::collectCells(const streaming::Residency& residency, const lighting::GroupLights& lights) {
+void Diffuse::collectCells(const streaming::Residency& residency, const lighting::GroupLights& lights,
+                           const ShadedKinds& kinds) {
   project_work_.clear();
   samples_work_.clear();
   adding_work_.clear();
@@ -99,7 +101,7 @@ void Diffuse::collectCells(const streaming::Residency& residency, const lighting
   for (std::uint32_t i = 0; i < tables_.cells.size(); ++i) {
     const streaming::ResidentCell& cell = residency.cells()[i];
     const TransferTable::Cell range = tables_.cells[i];
-    if (!cell.usable() || range.count == 0) continue;
+    if (!kinds.has(cell.kind) || !cell.usable() || range.count == 0) continue;
     Seen& seen = cells_seen_[i];
     const std::uint64_t light = lightVersion(lights, cell);
     if (seen.version == cell.version && seen.light == light) continue;
@@ -120,7 +122,6 @@ void Diffuse::collectCells(const streaming::Residency& residency, const lighting
 }
 
 void Diffuse::collectDraws(const streaming::Residency& residency, const lighting::GroupLights& lights) {
-  vertices_work_.clear();
   for (std::uint32_t i = 0; i < tables_.draws.size(); ++i) {
     const streaming::ResidentDraw& draw = residency.draws()[i];
     if (!draw.radiance) continue;
@@ -208,7 +209,7 @@ Result<void> Diffuse::runDraws(streaming::Residency& residency, const lighting::
     (*kernel)->use();
     // A page that no draw of the batch has anything in yet may not exist: any buffer will do in its place.
     const auto bind = [&](gpu::Arena& arena, std::uint32_t page, std::uint32_t binding) {
-      if (page < arena.pageCount())
+      if (page < arena.pageCount() && arena.page(page))
         arena.page(page).bindStorage(binding);
       else
         draws_table_.bindStorage(binding);

@@ -11,6 +11,7 @@
 #include <map>
 #include <vector>
 
+#include "runtime/base/by_key.hpp"
 #include "runtime/base/result.hpp"
 #include "runtime/effects/diffuse/diffuse_shared.h"
 #include "runtime/effects/diffuse/transfer_table.hpp"
@@ -32,7 +33,7 @@ class Diffuse {
 
   // Brings every resident draw up to date. Errors: a kernel that does not compile on this device.
   Result<void> shade(streaming::Residency& residency, const lighting::GroupLights& lights, TransferMode mode,
-                     gpu::Counters& counters);
+                     gpu::Counters& counters, const ShadedKinds& kinds = {});
 
   // Rises when samples of the group were shaded.
   std::uint64_t versionOf(std::size_t group) const {
@@ -55,7 +56,8 @@ class Diffuse {
 
   void rebuildTables(const streaming::Residency& residency, const lighting::GroupLights& lights,
                      TransferMode mode);
-  void collectCells(const streaming::Residency& residency, const lighting::GroupLights& lights);
+  void collectCells(const streaming::Residency& residency, const lighting::GroupLights& lights,
+                    const ShadedKinds& kinds);
   void collectDraws(const streaming::Residency& residency, const lighting::GroupLights& lights);
   Result<const gpu::Program*> program(Stage stage, std::uint32_t kind, std::uint32_t outputs);
   Result<void> runSamples(streaming::Residency& residency, const gpu::WorkList& work,
@@ -71,8 +73,8 @@ class Diffuse {
   gpu::Table transfers_table_, places_table_, draws_table_, products_;
   // A cell's first transfer writes its samples, the second adds to them.
   gpu::WorkList project_work_, samples_work_, adding_work_, vertices_work_;
-  std::vector<Seen> cells_seen_, draws_seen_;
-  std::vector<std::uint64_t> group_shaded_;  // rises when a cell of the group was shaded
+  ByKey<Seen> cells_seen_, draws_seen_;
+  ByKey<std::uint64_t> group_shaded_;  // rises when a cell of the group was shaded
   std::uint64_t residency_seen_ = 0;
   std::size_t groups_seen_ = 0;
   TransferMode mode_seen_ = TransferMode::Full;

@@ -70,7 +70,8 @@ void Proxies::rebuildTables(const streaming::Residency& residency, const lightin
     }
     groups_.push_back(record);
   }
-  seen_.assign(groups_.size(), {});
+  seen_.follow(residency.groups(), &streaming::ResidentGroup::id);
+  for (std::size_t g = 0; g < seen_.size(); ++g) seen_[g].written = false;
   groups_table_.assign(std::span<const ProxyGroupRecord>(groups_));
   triangles_table_.assign(std::span<const ProxyTriangleRecord>(triangles_));
   entries_table_.assign(std::span<const ProxyEntryRecord>(entries_));
@@ -90,8 +91,9 @@ Result<void> Proxies::shade(streaming::Residency& residency, const lighting::Gro
     if (groups_[g].triangle_count == 0 || !group.samples) continue;
     Seen& seen = seen_[g];
     const std::uint64_t samples = shaded[g], light = lights.versionOf(g);
-    if (seen.version != 0 && seen.samples == samples && seen.light == light) continue;
-    seen = {.samples = samples, .light = light, .version = seen.version + 1};
+    const bool same = seen.version != 0 && seen.samples == samples && seen.light == light;
+    if (same && seen.written) continue;
+    seen = {.samples = samples, .light = light, .version = same ? seen.version : ++version_, .written = true};
     work_.add({group.samples.page}, g, groups_[g].triangle_count, kWorkGroupSize);
   }
   if (work_.empty()) return {};

@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "runtime/base/by_key.hpp"
 #include "runtime/base/result.hpp"
 #include "runtime/effects/diffuse/diffuse_shared.h"
 #include "runtime/gpu/program.hpp"
@@ -28,7 +29,7 @@ class Proxies {
                      std::span<const std::uint64_t> shaded, gpu::Counters& counters);
 
   const gpu::Buffer& radiance() const { return radiance_.buffer(); }
-  // Rises when what the group sends out was computed anew.
+  // Another number when what the group sends out was computed anew; never that of another group.
   std::uint64_t versionOf(std::size_t group) const { return seen_[group].version; }
 
   // As uploaded, for the CPU twin.
@@ -39,6 +40,7 @@ class Proxies {
  private:
   struct Seen {
     std::uint64_t samples = 0, light = 0, version = 0;
+    bool written = false;  // where the table has it now
   };
   void rebuildTables(const streaming::Residency& residency, const lighting::GroupLights& lights);
 
@@ -46,8 +48,8 @@ class Proxies {
   std::vector<ProxyGroupRecord> groups_;  // index: residency group
   std::vector<ProxyTriangleRecord> triangles_;
   std::vector<ProxyEntryRecord> entries_;
-  std::vector<Seen> seen_;
-  std::uint64_t proxies_seen_ = 0;
+  ByKey<Seen> seen_;
+  std::uint64_t proxies_seen_ = 0, version_ = 0;
   std::size_t lights_seen_ = 0;
   gpu::Table groups_table_, triangles_table_, entries_table_, radiance_;
   gpu::WorkList work_;

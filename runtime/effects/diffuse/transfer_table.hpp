@@ -15,6 +15,17 @@ namespace lambent::effects::diffuse {
 // the groups' own lights are dark: without transfer there is no telling where their light goes.
 enum class TransferMode { Unshadowed, Shadowed, Full };
 
+// Whose samples are shaded; what is left out keeps what it last had, and catches up when it is asked for.
+struct ShadedKinds {
+  bool surfaces = true, volumes = true, neighborhoods = true;
+
+  bool has(bundle::CellKind kind) const {
+    return kind == bundle::CellKind::Surface  ? surfaces
+           : kind == bundle::CellKind::Volume ? volumes
+                                              : neighborhoods;
+  }
+};
+
 struct TransferTable {
   struct Cell {
     std::uint32_t first = 0, count = 0;  // into transfers

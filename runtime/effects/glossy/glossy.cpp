@@ -57,19 +57,19 @@ Glossy::Glossy()
                     gpu::WorkList("glossy adding more work")} {}
 
 Result<void> Glossy::shade(streaming::Residency& residency, const lighting::GroupLights& lights,
-                           TransferMode mode, gpu::Counters& counters, bool neighborhoods) {
+                           TransferMode mode, gpu::Counters& counters, const ShadedKinds& kinds) {
   if (residency.version() != residency_seen_ || lights.groupCount() != groups_seen_ || mode != mode_seen_) {
     any_ = std::any_of(residency.cells().begin(), residency.cells().end(),
                        [](const streaming::ResidentCell& cell) { return cell.matrices(); });
     if (mode != mode_seen_) cells_seen_.clear();  // everything anew
-    if (any_) rebuildTables(residency, lights, mode);
+    rebuildTables(residency, lights, mode);
     residency_seen_ = residency.version();
     groups_seen_ = lights.groupCount();
     mode_seen_ = mode;
   }
   cells_shaded_ = 0;
   if (!any_) return {};
-  collect(residency, lights, neighborhoods);
+  collect(residency, lights, kinds);
   if (cells_shaded_ == 0) return {};
   lights.bindStorage(kBindLights);
   if (Result<void> run = fill(residency, counters); !run) return run;
@@ -83,6 +83,9 @@ void Glossy::rebuildTables(const streaming::Residency& residency, const lighting
                            TransferMode mode) {
   tables_ = {};
   fills_.clear();
+  cells_seen_.follow(residency.cells(), &streaming::ResidentCell::id);
+  group_shaded_.follow(residency.groups(), &streaming::ResidentGroup::id);
+  if (!any_) return;
   for (const streaming::ResidentCell& cell : residency.cells()) {
     fills_.push_back(describeFill(residency.groups()[cell.group], cell, lights.firstOf(cell.group)));
     if (cell.matrices())
@@ -94,20 +97,17 @@ void Glossy::rebuildTables(const streaming::Residency& residency, const lighting
   places_table_.assign(std::span<const std::uint32_t>(tables_.places));
   fills_table_.assign(std::span<const FillRecord>(fills_));
   products_.reserve(tables_.product_count * sizeof(glm::vec4));
-  cells_seen_.resize(residency.cells().size());
-  group_shaded_.resize(residency.groups().size());
 }
 
 void Glossy::collect(const streaming::Residency& residency, const lighting::GroupLights& lights,
-                     bool neighborhoods) {
+                     const ShadedKinds& kinds) {
   visibility_work_.clear();
   dense_work_.clear();
   fill_work_.clear();
   for (gpu::WorkList& work : samples_work_) work.clear();
   for (std::uint32_t i = 0; i < tables_.cells.size(); ++i) {
     const streaming::ResidentCell& cell = residency.cells()[i];
-    if (!cell.matrices()) continue;
-    if (cell.kind == bundle::CellKind::Neighborhood && !neighborhoods) continue;
+    if (!cell.matrices() || !kinds.has(cell.kind)) continue;
     const TransferTable::Cell range = tables_.cells[i];
     const bool open = range.count == 0 || !cell.usable();
     const std::uint64_t light = open ? lights.versionOf(cell.group, 0) : lightVersion(lights, cell);

@@ -13,6 +13,7 @@
 #include <map>
 #include <vector>
 
+#include "runtime/base/by_key.hpp"
 #include "runtime/base/result.hpp"
 #include "runtime/effects/diffuse/transfer_table.hpp"
 #include "runtime/effects/glossy/glossy_shared.h"
@@ -23,6 +24,7 @@
 
 namespace lambent::effects::glossy {
 
+using diffuse::ShadedKinds;
 using diffuse::TransferMode;
 using diffuse::TransferTable;
 
@@ -33,10 +35,10 @@ class Glossy {
  public:
   Glossy();
 
-  // Brings every sample of glossy cells up to date; those of neighborhoods only where they are asked for.
+  // Brings every sample of glossy cells up to date, of those kinds that are asked for.
   // Errors: a kernel that does not compile on this device.
   Result<void> shade(streaming::Residency& residency, const lighting::GroupLights& lights, TransferMode mode,
-                     gpu::Counters& counters, bool neighborhoods = true);
+                     gpu::Counters& counters, const ShadedKinds& kinds = {});
 
   // Whether the residency had glossy cells when shade() last looked.
   bool any() const { return any_; }
@@ -60,7 +62,8 @@ class Glossy {
 
   void rebuildTables(const streaming::Residency& residency, const lighting::GroupLights& lights,
                      TransferMode mode);
-  void collect(const streaming::Residency& residency, const lighting::GroupLights& lights, bool neighborhoods);
+  void collect(const streaming::Residency& residency, const lighting::GroupLights& lights,
+               const ShadedKinds& kinds);
   Result<const gpu::Program*> program(Kernel kernel, std::uint32_t variant);
   Result<void> fill(streaming::Residency& residency, gpu::Counters& counters);
   Result<void> project(streaming::Residency& residency, gpu::Counters& counters);
@@ -73,8 +76,8 @@ class Glossy {
   gpu::Table transfers_table_, places_table_, products_, fills_table_;
   gpu::WorkList visibility_work_, dense_work_, fill_work_;
   std::array<gpu::WorkList, kMaxTransfers> samples_work_;
-  std::vector<Seen> cells_seen_;
-  std::vector<std::uint64_t> group_shaded_;
+  ByKey<Seen> cells_seen_;
+  ByKey<std::uint64_t> group_shaded_;
   std::uint64_t residency_seen_ = 0;
   std::size_t groups_seen_ = 0;
   TransferMode mode_seen_ = TransferMode::Full;

@@ -18,7 +18,8 @@ AtlasLayout layOutAtlas(std::span<const GridShape> shapes, std::uint32_t max_sid
   std::uint32_t shelf_y = 0, shelf_height = 0, next_z = 0;
   for (const std::size_t i : order) {
     const GridShape& shape = shapes[i];
-    if (glm::max(shape.size.x, glm::max(shape.size.y, shape.size.z)) > max_side || shape.outputs == 0) continue;
+    if (glm::max(shape.size.x, glm::max(shape.size.y, shape.size.z)) > max_side || shape.outputs == 0)
+      continue;
     const std::uint32_t per_column = std::min(shape.outputs, max_side / shape.size.z);
     const std::uint32_t columns = (shape.outputs + per_column - 1) / per_column;
     const std::uint64_t height = std::uint64_t{columns} * shape.size.y;
@@ -43,8 +44,8 @@ AtlasLayout layOutAtlas(std::span<const GridShape> shapes, std::uint32_t max_sid
                         .first_z = z,
                         .slabs_per_column = per_column,
                         .scale = 1.0f};
-    layout.size = glm::max(layout.size,
-                           glm::uvec3(shape.size.x, y + static_cast<std::uint32_t>(height), next_z));
+    layout.size =
+        glm::max(layout.size, glm::uvec3(shape.size.x, y + static_cast<std::uint32_t>(height), next_z));
   }
   return layout;
 }

@@ -19,8 +19,8 @@ struct GridShape {
 };
 
 struct AtlasLayout {
-  glm::uvec3 size{0};               // texels; 0: nothing was placed
-  std::vector<GridPlace> places;    // one per shape; outputs 0: there was no room
+  glm::uvec3 size{0};             // texels; 0: nothing was placed
+  std::vector<GridPlace> places;  // one per shape; outputs 0: there was no room
 };
 
 // max_side: of a 3D texture on this device; OpenGL 4.5 promises 2048. Large grids first.

@@ -53,7 +53,8 @@ bool complete(const streaming::Residency& residency, const Grid& grid) {
 }
 
 // A power of two near the group's light, so that half floats suit light of any strength.
-float scaleOf(const lighting::GroupLights& lights, const streaming::ResidentGroup& group, std::uint32_t index) {
+float scaleOf(const lighting::GroupLights& lights, const streaming::ResidentGroup& group,
+              std::uint32_t index) {
   float largest = 0.0f;
   const std::uint32_t end = lights.lampsOf(index) + group.light_columns;
   for (std::uint32_t i = lights.firstOf(index); i < end; ++i) {
@@ -70,11 +71,14 @@ Neighborhood::Neighborhood() : writes_("neighborhood writes"), work_("neighborho
 
 void Neighborhood::setGrids(std::vector<Grid> grids, const streaming::Residency& residency) {
   const auto same = [](const Grid& a, const Grid& b) {
-    return a.group == b.group && a.points.size == b.points.size && a.points.bounds_min == b.points.bounds_min &&
+    return a.id == b.id && a.points.size == b.points.size && a.points.bounds_min == b.points.bounds_min &&
            a.points.bounds_max == b.points.bounds_max;
   };
-  if (std::ranges::equal(grids, grids_, same)) return;
-  grids_ = std::move(grids);
+  if (std::ranges::equal(grids, grids_, same)) {
+    for (std::size_t i = 0; i < grids_.size(); ++i) grids_[i].group = grids[i].group;
+    return;
+  }
+  std::swap(grids, grids_);
   seen_.assign(grids_.size(), 0);
   ++version_;
   std::vector<GridShape> shapes;
@@ -88,6 +92,11 @@ void Neighborhood::setGrids(std::vector<Grid> grids, const streaming::Residency&
   for (std::size_t i = 0; i < grids_.size(); ++i) {
     grids_[i].place = layout.places[i];
     grids_[i].ready = false;
+    for (const Grid& before : grids) {
+      if (before.key != grids_[i].key || !before.ready || layout.places[i].outputs == 0) continue;
+      grids_[i].ready = complete(residency, grids_[i]);
+      grids_[i].place.scale = before.place.scale;
+    }
   }
   atlas_size_ = layout.size;
   atlas_ = layout.size.x > 0 ? makeAtlas(layout.size) : gpu::Handle<gpu::TextureTraits>();

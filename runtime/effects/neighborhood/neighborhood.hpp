@@ -23,6 +23,8 @@ namespace lambent::effects::neighborhood {
 
 struct Grid {
   std::uint32_t group = 0;  // of the residency: whose
+  std::uint64_t id = 0;     // of that group
+  std::uint64_t key = 0;    // the same for one that takes the place of another
   bundle::NeighborhoodGrid points;
   GridPlace place{};   // outputs 0: no room on this device
   bool ready = false;  // all of it has arrived and is written
@@ -32,7 +34,8 @@ class Neighborhood {
  public:
   Neighborhood();
 
-  // Which groups have grids; the texture is made anew if they are others than before.
+  // Which groups have grids; the texture is made anew if they are others than before. One whose place a grid
+  // takes that has all arrived, or that stays, is ready still: update() writes it before anybody looks it up.
   void setGrids(std::vector<Grid> grids, const streaming::Residency& residency);
   // Brings the texture up to date with the shaded points.
   Result<void> update(streaming::Residency& residency, const lighting::GroupLights& lights,

@@ -23,7 +23,9 @@ struct Atlas {
   std::vector<glm::vec4> texels;
 
   Atlas(std::size_t w, std::size_t h, std::size_t d) : width(w), height(h), depth(d), texels(w * h * d) {}
-  glm::vec4& texel(std::size_t x, std::size_t y, std::size_t z) { return texels[(z * height + y) * width + x]; }
+  glm::vec4& texel(std::size_t x, std::size_t y, std::size_t z) {
+    return texels[(z * height + y) * width + x];
+  }
   const glm::vec4& texel(std::size_t x, std::size_t y, std::size_t z) const {
     return texels[(z * height + y) * width + x];
   }
@@ -55,7 +57,8 @@ inline void write(Atlas& atlas, const WriteRecord& cell, std::span<const glm::ve
   const auto half = [](float value) { return glm::unpackHalf1x16(glm::packHalf1x16(value)); };
   for (uint element = 0; element < cell.point_count * cell.grid.outputs; ++element) {
     const uint point = cell.first_point + element % cell.point_count, slab = element / cell.point_count;
-    const glm::vec4 change = samples[cell.first_output + cell.grid.outputs * (point - cell.first_point) + slab];
+    const glm::vec4 change =
+        samples[cell.first_output + cell.grid.outputs * (point - cell.first_point) + slab];
     const uint x = point % cell.grid.size_x, row = point / cell.grid.size_x;
     const uint y = row % cell.grid.size_y, z = row / cell.grid.size_y;
     const glm::vec3 light = glm::clamp(glm::vec3(change) / cell.grid.scale, -6e4f, 6e4f);
@@ -72,15 +75,14 @@ inline glm::vec3 lastOf(const GridPlace& grid) {
 
 inline float gridShare(const glm::vec3& place, const GridPlace& grid) {
   const glm::vec3 last = lastOf(grid);
-  const glm::vec3 t = glm::clamp(
-      glm::min(place, last - place) / glm::min(glm::vec3(1.0f), 0.5f * last), 0.0f, 1.0f);
+  const glm::vec3 t =
+      glm::clamp(glm::min(place, last - place) / glm::min(glm::vec3(1.0f), 0.5f * last), 0.0f, 1.0f);
   const glm::vec3 rise = t * t * (3.0f - 2.0f * t);
   return rise.x * rise.y * rise.z;
 }
 
 inline glm::vec4 gridOutput(const Atlas& atlas, const glm::vec3& place, const GridPlace& grid, uint slab) {
-  const glm::vec3 first(0.0f,
-                        static_cast<float>(grid.first_y + grid.size_y * (slab / grid.slabs_per_column)),
+  const glm::vec3 first(0.0f, static_cast<float>(grid.first_y + grid.size_y * (slab / grid.slabs_per_column)),
                         static_cast<float>(grid.first_z + grid.size_z * (slab % grid.slabs_per_column)));
   return glm::vec4(glm::vec3(grid.scale), 1.0f) *
          atlas.at(first + glm::clamp(place, glm::vec3(0.0f), lastOf(grid)) + 0.5f);

@@ -151,6 +151,12 @@ Result<void> VertexReceivers::update(streaming::Residency& residency, const ligh
                                      std::span<const VertexDraw> draws, gpu::Counters& counters) {
   shaded_ = 0;
   if (draws.empty() && words_.empty()) return {};
+  if (structure_seen_ != residency.structureVersion()) {  // all indices are others
+    structure_seen_ = residency.structureVersion();
+    words_.clear();
+    places_.clear();
+    seen_.clear();
+  }
   layOut(residency, draws);
   if (mode != mode_seen_) seen_.clear();
   mode_seen_ = mode;

@@ -78,6 +78,7 @@ class VertexReceivers {
   std::map<std::uint32_t, Seen> seen_;              // by draw
   diffuse::TransferMode mode_seen_ = diffuse::TransferMode::Full;
   gpu::Table change_, sample_places_, arrivals_, transfers_, planes_, block_;
+  std::uint64_t structure_seen_ = 0;
   std::uint32_t shaded_ = 0;
 };
 

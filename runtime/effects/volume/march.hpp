@@ -58,6 +58,7 @@ Rectangle rectangleOf(const glm::mat4& clip_from_grid, const glm::uvec3& size, c
 class March {
  public:
   explicit March(const MarchOptions& options);
+  void setStep(float step_voxels) { options_.step_voxels = step_voxels; }
 
   Result<void> draw(const streaming::Residency& residency, const Volume& light,
                     std::span<const PlacedVolume> volumes, const spec::View& view, const Picture& picture,

@@ -52,7 +52,6 @@ void Volume::collect(const streaming::Residency& residency, const lighting::Grou
                      const diffuse::Diffuse& diffuse, const glossy::Glossy& glossy, TransferMode mode) {
   work_.clear();
   records_.clear();
-  held_.resize(residency.volumes().size());
   for (std::uint32_t v = 0; v < held_.size(); ++v) {
     const streaming::ResidentVolume& volume = residency.volumes()[v];
     const streaming::ResidentGroup& group = residency.groups()[volume.group];
@@ -98,6 +97,7 @@ Result<void> Volume::shade(streaming::Residency& residency, const lighting::Grou
                            const diffuse::Diffuse& diffuse, const glossy::Glossy& glossy, TransferMode mode,
                            gpu::Counters& counters) {
   shaded_ = {};
+  held_.follow(residency.volumes(), &streaming::ResidentVolume::id);
   if (residency.volumes().empty()) return {};
   collect(residency, lights, diffuse, glossy, mode);
   if (work_.empty()) return {};

@@ -1,6 +1,8 @@
 // Which bodies the plan gives a neighborhood, and for whom.
 #include "baker/plan/neighborhoods.hpp"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "baker/plan/local_light.hpp"
@@ -74,6 +76,26 @@ TEST(NeighborhoodPlans, CutLargeTrianglesToTheReach) {
     EXPECT_NEAR(coarse.receivers_min[axis], fine.receivers_min[axis], 1e-3f);
     EXPECT_NEAR(coarse.receivers_max[axis], fine.receivers_max[axis], 1e-3f);
   }
+}
+
+TEST(NeighborhoodPlans, KnowHowReceiversFaceInTheGroupsFrame) {
+  // Area times y_k of the normal; y_2 is along z, y_1 along y.
+  const auto along = [](const FacingArea& facing, std::size_t k) {
+    return facing[k] / facing[0] / std::sqrt(3.0f);
+  };
+  Scene scene = ballsOver(1, 0.5f);
+  const FacingArea up = plan(scene).of("ball 0").receivers_face;
+  EXPECT_NEAR(along(up, 1), 1.0f, 1e-4f);
+  EXPECT_NEAR(along(up, 2), 0.0f, 1e-4f);
+  const PlannedNeighborhood ball = plan(scene).of("ball 0");
+  const glm::vec3 reach = ball.receivers_max - ball.receivers_min;
+  EXPECT_NEAR(up[0] / 0.28209479f, reach.x * reach.z, 1e-3f * reach.x * reach.z);
+  // As the ball stands, the floor faces along its z.
+  scene.nodes[1].parent_from_node =
+      scene.nodes[1].parent_from_node * glm::rotate(glm::mat4(1.0f), 1.57079633f, glm::vec3(-1, 0, 0));
+  const FacingArea turned = plan(scene).of("ball 0").receivers_face;
+  EXPECT_NEAR(std::abs(along(turned, 2)), 1.0f, 1e-3f);
+  EXPECT_NEAR(along(turned, 1), 0.0f, 1e-3f);
 }
 
 TEST(NeighborhoodPlans, FollowTheAnimation) {

@@ -58,6 +58,27 @@ TEST(RigidGroups, FrameIsRotationAndPlaceWithoutScale) {
   }
 }
 
+TEST(RigidGroups, KeepTheirGeometryToTheLastBitWhileTheyMoveAsAWhole) {
+  Scene scene = family();
+  scene.nodes[0].movable = true;
+  scene.nodes[1].parent_from_node = glm::translate(glm::mat4(1.0f), {0.1f, 0.7f, -0.3f}) *
+                                    glm::mat4_cast(glm::angleAxis(0.3f, glm::vec3(0, 1, 0)));
+  scene.nodes[2].parent_from_node = glm::scale(glm::mat4(1.0f), glm::vec3(0.37f, 1.1f, 2.9f));
+  const auto stand = [&](glm::vec3 place, float angle, glm::vec3 scale) {
+    const glm::quat turn = glm::angleAxis(angle, glm::normalize(glm::vec3(1, 2, -1)));
+    scene.nodes[0].parent_from_node =
+        glm::translate(glm::mat4(1.0f), place) * glm::mat4_cast(turn) * glm::scale(glm::mat4(1.0f), scale);
+    return findRigidGroups(scene).at(0).draws;
+  };
+  for (const glm::vec3 scale : {glm::vec3(1.0f), glm::vec3(0.3f)}) {
+    const auto here = stand({0, 0, 0}, 0.0f, scale);
+    for (const auto& there : {stand({123.4f, -0.001f, 7}, 0.0f, scale), stand({0, 1, 0}, 2.1f, scale),
+                              stand({-3, 5, 1e4f}, -0.4f, scale)})
+      for (std::size_t d = 0; d < here.size(); ++d)
+        EXPECT_EQ(here[d].group_from_mesh, there[d].group_from_mesh) << d;
+  }
+}
+
 TEST(RigidGroups, DoubleSidedSurfacesAreDrawnFromBothSides) {
   Scene scene = family();
   scene.materials[0].double_sided = true;

@@ -163,6 +163,8 @@ void BundleBuilder::write(const std::filesystem::path& path) const {
          .name = family_ == bundle::BrdfFamily::Measured ? "measured.brdf" : "",
          .payload = store.payload(bundle::PayloadType::BrdfTable, bundle::encodeBrdfTable(table_))});
   cell.transfers.push_back(storeTransfer(store, shape, vectors));
+  cell.transfers.back().error_bound = 0.02f;
+  cell.transfers.back().error = 0.0125f;  // what views say of it
   if (!lamps_.empty()) {
     const bundle::TransferShape lamp_shape{.order = 0,
                                            .light_columns = static_cast<std::uint32_t>(lamps_.size())};

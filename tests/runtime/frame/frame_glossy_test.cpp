@@ -50,7 +50,7 @@ struct Stage {
         environment(*lighting::Environment::create(lights)),
         size(picture_size) {
     builder.write(path);
-    const Result<void> opened = world.open(path);
+    const Result<std::uint32_t> opened = world.open(path);
     EXPECT_TRUE(opened) << opened.error().line();
     if (!opened) return;
     gpu::Counters counters;
@@ -59,8 +59,8 @@ struct Stage {
     FrameOptions options;
     options.size = size;
     options.output = output;
-    options.residual = residual;
-    options.window = sh::Window::Off;
+    options.settings.residual = residual;
+    options.settings.window = sh::Window::Off;
     Result<Frame> made = Frame::create(options, environment);
     EXPECT_TRUE(made) << made.error().line();
     if (made) frame.emplace(std::move(*made));

@@ -50,7 +50,7 @@ struct Stage {
         world(world_options),
         environment(*lighting::Environment::create(lights)) {
     builder.write(path);
-    const Result<void> opened = world.open(path);
+    const Result<std::uint32_t> opened = world.open(path);
     EXPECT_TRUE(opened) << opened.error().line();
     if (!opened) return;
     if (load) {
@@ -150,7 +150,7 @@ TEST_F(FrameTest, AStillFrameShadesAndUploadsNothing) {
 
 TEST_F(FrameTest, TheSunLightsTheSideThatFacesItAlsoInTurnedGroupsAndUnderATurnedLight) {
   FrameOptions options = kLinear;
-  options.window = sh::Window::Off;  // E/pi of the side that faces it is 8 sin(20 degrees)², 0.94
+  options.settings.window = sh::Window::Off;  // E/pi of the side that faces it is 8 sin(20 degrees)², 0.94
   const auto builder = BundleBuilder(5)
                            .groupRotation(glm::angleAxis(1.1f, glm::normalize(glm::vec3(1, 2, -1))))
                            .add({sphereMesh(24, 48), colored(glm::vec4(1.0f))});
@@ -192,7 +192,7 @@ TEST_F(FrameTest, LightsEachSideOfATwoSidedCardForItself) {
   for (const auto transfer :
        {effects::diffuse::TransferMode::Full, effects::diffuse::TransferMode::Unshadowed}) {
     auto options = kLinear;
-    options.transfer = transfer;
+    options.settings.transfer = transfer;
     Stage stage(
         BundleBuilder().add({quadMesh(), both}),
         {spec::SunLight{.azimuth_deg = 0, .elevation_deg = 0, .angle_deg = 20, .radiance = glm::vec3(5)}},
@@ -265,7 +265,7 @@ TEST_F(FrameTest, CountsNegativePixelsAndKeepsTheirSignInLinearPictures) {
 TEST_F(FrameTest, DisplayPicturesShowNegativePixelsAsBlack) {
   const auto dark = [](const glm::vec3&) { return std::vector<float>(9, -0.1f); };
   FrameOptions options;
-  options.exposure_ev = 0.0f;
+  options.settings.exposure_ev = 0.0f;
   Stage stage(BundleBuilder().transfer(dark).add({quadMesh(), colored(glm::vec4(1.0f))}), {kWhite}, options);
   stage.render();
   const spec::Rgba8Image image = stage.frame->readDisplay();
@@ -275,7 +275,7 @@ TEST_F(FrameTest, DisplayPicturesShowNegativePixelsAsBlack) {
 
 TEST_F(FrameTest, DisplayPicturesAreExposedAndOpaque) {
   FrameOptions options;
-  options.exposure_ev = 0.0f;
+  options.settings.exposure_ev = 0.0f;
   Stage stage(BundleBuilder().add({sphereMesh(12, 24), colored(glm::vec4(glm::vec3(0.5f), 1.0f))}), {kWhite},
               options);
   stage.render();
@@ -357,7 +357,7 @@ TEST_F(FrameTest, TheWordsOfTransferChooseTheBlock) {
                                        {TransferMode::Shadowed, 0.25f},
                                        {TransferMode::Unshadowed, 1.0f}}) {
     FrameOptions options = kLinear;
-    options.transfer = mode;
+    options.settings.transfer = mode;
     Stage stage(builder, {kWhite}, options);
     EXPECT_NEAR(at(stage.picture(), 32, 32).g, expected, 1e-3f) << "codes of 16 bits";
   }

@@ -62,7 +62,7 @@ struct Stage {
                          ::testing::UnitTest::GetInstance()->current_test_info()->name())),
         environment(*lighting::Environment::create(lights)) {
     builder.write(path);
-    const Result<void> opened = world.open(path);
+    const Result<std::uint32_t> opened = world.open(path);
     EXPECT_TRUE(opened) << opened.error().line();
     scene::addLights(world.registry(), lights);
     gpu::Counters counters;
@@ -232,7 +232,7 @@ TEST_F(FrameVolume, TheWordsOfTransferChooseTheBlock) {
                                        {TransferMode::Shadowed, glm::vec3(0.25f)},
                                        {TransferMode::Unshadowed, glm::vec3(1.0f)}}) {
     Stage stage(BundleBuilder().volume(volume), {kWhite},
-                linearOptions([&](FrameOptions& options) { options.transfer = mode; }));
+                linearOptions([&](FrameOptions& options) { options.settings.transfer = mode; }));
     EXPECT_LT(glm::distance(glm::vec3(middle(stage.picture())), expected), 1e-3f);
   }
 }
@@ -245,7 +245,7 @@ TEST_F(FrameVolume, ForwardScatteringShowsTheSunBehindIt) {
     Stage stage(BundleBuilder().volume(volume),
                 {spec::SunLight{
                     .azimuth_deg = azimuth, .elevation_deg = 0, .angle_deg = 20, .radiance = glm::vec3(1)}},
-                linearOptions([](FrameOptions& options) { options.window = sh::Window::Off; }));
+                linearOptions([](FrameOptions& options) { options.settings.window = sh::Window::Off; }));
     const sh::LightVector& light = stage.environment.light();
     const glm::vec3 along(0, 0, -1);
     std::array<float, 16> y{};
@@ -299,7 +299,7 @@ TEST_F(FrameVolume, DisplayPicturesShowTheSameThing) {
   builder.volume(mist(0.9f, 0.6f));
   Stage display(builder, {kWhite}, linearOptions([](FrameOptions& options) {
                   options.output = Output::Display;
-                  options.exposure_ev = 0.0f;
+                  options.settings.exposure_ev = 0.0f;
                 }));
   Stage linear(builder);
   const spec::RgbaImage wanted = linear.picture();

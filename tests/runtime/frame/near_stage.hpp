@@ -82,7 +82,7 @@ struct Stage {
         environment(*lighting::Environment::create({spec::ConstantLight{.radiance = glm::vec3(sky)}})),
         near_lights(options) {
     builder.write(path);
-    const Result<void> opened = world.open(path);
+    const Result<std::uint32_t> opened = world.open(path);
     EXPECT_TRUE(opened) << opened.error().line();
     gpu::Counters counters;
     const Result<void> loaded = world.uploadAll(counters);

@@ -38,7 +38,7 @@ struct NeighborhoodStage {
                          ::testing::UnitTest::GetInstance()->current_test_info()->name())),
         environment(*lighting::Environment::create(lights)) {
     scene.write(path);
-    const Result<void> opened = world.open(path);
+    const Result<std::uint32_t> opened = world.open(path);
     EXPECT_TRUE(opened) << opened.error().line();
     if (!opened) std::abort();
     gpu::Counters counters;
@@ -47,9 +47,9 @@ struct NeighborhoodStage {
     frame::FrameOptions options;
     options.size = {kSide, kSide};
     options.output = frame::Output::Linear;
-    options.window = sh::Window::Off;
-    options.residual = false;
-    options.neighborhoods = neighborhoods;
+    options.settings.window = sh::Window::Off;
+    options.settings.residual = false;
+    options.settings.neighborhoods = neighborhoods;
     options.wait_for_captures = true;
     Result<frame::Frame> made = frame::Frame::create(options, environment);
     EXPECT_TRUE(made) << made.error().line();

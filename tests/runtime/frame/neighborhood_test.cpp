@@ -168,7 +168,7 @@ TEST_F(NeighborhoodFrame, UnshadowedChangesNothing) {
   scene.bodies = {sphereAt({0.0f, 1.5f, 0.0f})};
   NeighborhoodStage stage(scene, {kWhite});
   FrameOptions options = stage.frame->options();
-  options.transfer = effects::diffuse::TransferMode::Unshadowed;
+  options.settings.transfer = effects::diffuse::TransferMode::Unshadowed;
   stage.frame.emplace(*Frame::create(options, stage.environment));
   EXPECT_LT(worst(stage, stage.picture(), 4.0f, [](const glm::vec3&) { return glm::vec3(1.0f); }), 2e-4);
 }

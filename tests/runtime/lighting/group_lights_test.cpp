@@ -76,6 +76,26 @@ TEST_F(GroupLightsTest, ALampThatChangesIsNewLightForItsGroupOnly) {
   EXPECT_EQ(lights.coefficients()[lights.firstOf(1) + 64], glm::vec4(0, 0, 5, 0));
 }
 
+TEST_F(GroupLightsTest, BandsThatDoNotCountAreZeroAndTheWindowIsThatOfTheOthers) {
+  GroupLights lights;
+  gpu::Counters counters;
+  const Environment environment = sunAlong(90);
+  const sh::LightVector captured = sunAlong(30).light();
+  const std::vector<GroupPlace> places = {{.order = 5, .incident = {{}, {&captured, 1}}}};
+  lights.update(environment, sh::Window::Auto, places, counters);
+  const std::uint64_t before = lights.versionOf(0);
+  lights.update(environment, sh::Window::Auto, places, counters, /*max_order=*/3);
+  EXPECT_GT(lights.versionOf(0), before);
+  const sh::LightVector expected[] = {sh::applyWindow(environment.light().truncated(3), sh::Window::Auto),
+                                      sh::applyWindow(captured.truncated(3), sh::Window::Auto)};
+  for (std::size_t sample = 0; sample < 2; ++sample)
+    for (std::size_t i = 0; i < 64; ++i)
+      EXPECT_LT(glm::distance(glm::vec3(lights.coefficients()[lights.firstOf(0, sample) + i]),
+                              i < 9 ? expected[sample].c[i] : glm::vec3(0.0f)),
+                1e-5f)
+          << i;
+}
+
 TEST_F(GroupLightsTest, HaveNewVersionsOnlyWhereSomethingChanged) {
   GroupLights lights;
   gpu::Counters counters;

@@ -1,6 +1,7 @@
 #include "runtime/scene/instantiate.hpp"
 
 #include <cmath>
+#include <limits>
 #include <set>
 #include <string>
 #include <string_view>
@@ -10,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "runtime/scene/components.hpp"
+#include "runtime/scene/materials.hpp"
 #include "runtime/scene/stable_id.hpp"
 #include "runtime/scene/transforms.hpp"
 
@@ -103,7 +105,7 @@ TEST(Instantiate, EntitiesSayWhatTheDescriptionSays) {
   const Hall hall;
   ecs::Registry registry;
   const SceneInstance scene = instance(registry, hall.d);
-  EXPECT_EQ(registry.entityCount(), 1 + 5 + 2 + 6u);
+  EXPECT_EQ(registry.entityCount(), 1 + 5 + 2 + 6 + 2u);
   const auto world = gltf::worldTransforms(hall.d.nodes);
   for (std::size_t i = 0; i < world.size(); ++i) {
     const glm::mat4& found = registry.get<WorldTransform>(scene.nodes[i]).world_from_node;
@@ -120,6 +122,31 @@ TEST(Instantiate, EntitiesSayWhatTheDescriptionSays) {
   EXPECT_EQ(registry.get<CameraComponent>(nodeOf(scene, hall.eye)).yfov_rad, 0.5f);
   EXPECT_EQ(registry.get<Name>(nodeOf(scene, hall.top)).value, "top");
   EXPECT_LT(registry.get<Transform>(nodeOf(scene, hall.top)).scale.x, 0.0f) << "a mirror stays one";
+}
+
+TEST(Instantiate, GivesEachMaterialAnEntityThatSaysWhatItIs) {
+  Hall hall;
+  gltf::Material& baked = hall.d.materials[1];
+  baked.name = "glow";
+  baked.base_color = {0.1f, 0.2f, 0.3f, 0.4f};
+  baked.roughness = 0.25f;
+  baked.emissive = {5.0f, 0.0f, 0.0f};
+  ecs::Registry registry;
+  const SceneInstance scene = instance(registry, hall.d);
+  ASSERT_EQ(scene.materials.size(), 2u);
+  EXPECT_EQ(registry.get<Name>(scene.materials[1]).value, "glow");
+  auto& component = registry.get<MaterialComponent>(scene.materials[1]);
+  const gltf::Material same = withComponent(baked, component);
+  EXPECT_EQ(same.base_color, baked.base_color);
+  EXPECT_EQ(same.roughness, baked.roughness);
+  EXPECT_EQ(same.emissive, baked.emissive);
+  component.roughness = 7.0f;
+  component.base_color = {0.5f, std::numeric_limits<float>::quiet_NaN(), 0.5f};
+  component.emission_strength = 2.0f;
+  const gltf::Material changed = withComponent(baked, component);
+  EXPECT_EQ(changed.roughness, baked.roughness) << "out of range";
+  EXPECT_EQ(changed.base_color, baked.base_color) << "no colour";
+  EXPECT_EQ(changed.emissive, 2.0f * baked.emissive);
 }
 
 TEST(Instantiate, BoundsAreThoseOfTheBoxesWhereTheyStand) {
@@ -210,7 +237,7 @@ TEST(StableId, IsOneForEachEntityAndTheSameInEverySession) {
   const SceneInstance a = instance(first, hall.d), b = instance(second, hall.d);
   std::set<StableId> ids;
   for (auto [entity, id] : first.view<StableId>()) EXPECT_TRUE(ids.insert(id).second);
-  EXPECT_EQ(ids.size(), 14u);
+  EXPECT_EQ(ids.size(), 16u);
   for (auto [entity, id] : second.view<StableId>()) EXPECT_TRUE(ids.contains(id));
   EXPECT_EQ(first.get<StableId>(a.draws[2]), second.get<StableId>(b.draws[2]));
   // Written down once: a change would orphan every world file.
@@ -256,7 +283,7 @@ TEST(Instantiate, GivesEachLightOfAGroupAnEntityThatKeepsItsId) {
   hall.d.groups[1].lights = {{Kind::Material, 1, {5.0f, 0.0f, 0.0f}}};
   ecs::Registry registry, again;
   const SceneInstance scene = instance(registry, hall.d);
-  EXPECT_EQ(registry.entityCount(), 1 + 5 + 2 + 6 + 2u) << "a lamp is its node";
+  EXPECT_EQ(registry.entityCount(), 1 + 5 + 2 + 6 + 2 + 2u) << "a lamp is its node";
   ASSERT_EQ(scene.lamps.size(), 2u);
   ASSERT_EQ(scene.lamps[0].size(), 2u);
   EXPECT_EQ(scene.lamps[0][0], nodeOf(scene, hall.eye));

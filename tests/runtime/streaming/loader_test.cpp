@@ -15,7 +15,7 @@
 
 #include "runtime/bundle/transfer_codec.hpp"
 #include "runtime/bundle/writer.hpp"
-#include "runtime/streaming/budget.hpp"
+#include "runtime/streaming/parts.hpp"
 #include "tests/runtime/streaming/sample_bundle.hpp"
 
 namespace lambent::streaming {
@@ -270,39 +270,52 @@ TEST_F(LoaderTest, RefusesRowsOfANormalMappedDrawIntoPlainSamples) {
       << loader.error()->line();
 }
 
-TEST_F(LoaderTest, BringsWhatTheBudgetHasRoomForAndAlwaysAllButPlanes) {
+TEST_F(LoaderTest, BringsThePartsThatAreAskedForInTheirOrder) {
+  write(testing::sampleBundle());
+  Loader loader(open(), {ImageWork{1}, MeshWork{1, 1}, CodebookWork{1, 0, 0}, PlaneWork{1, 0, 0, 0}}, 2);
+  EXPECT_EQ(names(drain(loader, 1 << 20)),
+            (std::vector<std::string>{"image 1", "mesh 1.1", "codebook 1.0.0", "plane 1.0.0.0"}));
+}
+
+TEST_F(LoaderTest, IsIdleSoonAfterItWasStopped) {
+  write(testing::manyImages(40, 1024));
+  Loader loader(open(), 3);
+  loader.waitForMore();
+  EXPECT_FALSE(loader.idle()) << "there is more than its memory holds";
+  loader.stop();
+  for (int i = 0; i < 10'000 && !loader.idle(); ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  EXPECT_TRUE(loader.idle());
+}
+
+TEST_F(LoaderTest, PartsOfABundleAreAllOfItEachOnceInAnOrderThatShows) {
   write(testing::sampleBundle());
   const auto reader = open();
-  const std::uint64_t everything = withinBudget(*reader, ~std::uint64_t{0})->bytes;
-  const auto taken = [&](std::uint64_t max_bytes) {
-    const auto kept = withinBudget(*reader, max_bytes);
-    EXPECT_TRUE(kept);
-    Loader loader(reader, kept->description, 2);
-    auto found = names(drain(loader, 1 << 20));
-    EXPECT_FALSE(loader.error());
-    return found;
-  };
-  EXPECT_EQ(taken(everything), kInOrder);
-  std::vector<std::string> expected = kInOrder;
-  expected.pop_back();
-  EXPECT_EQ(taken(everything - 1), expected) << "the last of all stays away";
-  std::vector<std::string> without_planes;
-  for (const std::string& name : kInOrder)
-    if (!name.starts_with("plane")) without_planes.push_back(name);
-  EXPECT_EQ(taken(0), without_planes);
-  // In between it is a prefix of the order, and within its limit.
-  std::size_t before = 0;
-  for (std::uint64_t cut = 4000; cut > 0; cut -= 100) {
-    const auto kept = withinBudget(*reader, everything - cut);
-    ASSERT_TRUE(kept);
-    const std::size_t planes = taken(everything - cut).size() - without_planes.size();
-    if (planes > 0) {
-      EXPECT_LE(kept->bytes, everything - cut);
+  const auto parts = partsOf(*reader, /*exact=*/true);
+  ASSERT_TRUE(parts) << parts.error().line();
+  ASSERT_EQ(parts->units.size(), 1 + reader->description().groups.size());
+  std::vector<Work> all;
+  for (const Unit& unit : parts->units)
+    for (const Step& step : unit) {
+      EXPECT_GT(step.bytes, 0u);
+      all.insert(all.end(), step.work.begin(), step.work.end());
     }
-    EXPECT_GE(planes, before);
-    before = planes;
+  Loader loader(reader, all, 2);
+  std::vector<std::string> found = names(drain(loader, 1 << 20));
+  EXPECT_FALSE(loader.error());
+  std::vector<std::string> expected = kInOrder;
+  std::ranges::sort(found);
+  std::ranges::sort(expected);
+  EXPECT_EQ(found, expected);
+  for (std::uint32_t g = 0; g + 1 < parts->units.size(); ++g) {
+    const bundle::Group& group = reader->description().groups[g];
+    for (std::uint32_t c = 0; c < group.cells.size(); ++c)
+      for (std::uint32_t t = 0; t < group.cells[c].transfers.size(); ++t) {
+        const auto steps = static_cast<std::uint32_t>(parts->units[1 + g].size());
+        EXPECT_EQ(parts->planesIn(g, steps, c, t), group.cells[c].transfers[t].planes.size());
+        EXPECT_EQ(parts->planesIn(g, 1, c, t), 0u) << "codebooks first";
+      }
   }
-  EXPECT_GT(before, 0u);
 }
 
 TEST_F(LoaderTest, FinishesAnEmptyBundleAtOnce) {

@@ -61,6 +61,24 @@ TEST(GridPlacements, KeepSomeThicknessOverAFlatFloor) {
   EXPECT_GT(grid->box.high.y, -0.95f);
 }
 
+TEST(GridPlacements, HaveTheirPointsInFewLayersOverAFlatFloorAndOneOfThemInIt) {
+  PlacementWish wish = ball();
+  wish.receivers = Box3{{-50, -2, -50}, {50, -2, 50}};
+  for (const glm::uvec3& size : {glm::uvec3(0), glm::uvec3(64, 64, 8)}) {
+    wish.size = size;
+    const auto grid = placeGrid(wish, farField);
+    ASSERT_TRUE(grid.has_value());
+    EXPECT_EQ(grid->size, glm::uvec3(80, 5, 80));
+    EXPECT_LE(grid->count(), 64u * 64u * 8u);
+    EXPECT_NEAR(grid->box.low.y + 2.0f * grid->spacing().y, -2.0f, 1e-5f);
+  }
+  wish.size = {16, 16, 4};  // few enough as it is
+  EXPECT_EQ(placeGrid(wish, farField)->size, glm::uvec3(16, 4, 16));
+  wish.size = {64, 64, 8};
+  wish.extent = {8, 8, 1};
+  EXPECT_EQ(placeGrid(wish, farField)->size, glm::uvec3(64, 64, 8));
+}
+
 TEST(GridPlacements, AreNoneWhereReceiversAreOutOfReach) {
   PlacementWish wish = ball();
   wish.receivers = Box3{{-50, -300, -50}, {50, -200, 50}};

@@ -1,0 +1,134 @@
+#include "baker/bake/bake_unshadowed.hpp"
+
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "baker/bake/assemble.hpp"
+#include "baker/bake/bake_group.hpp"
+#include "baker/bake/bake_volume.hpp"
+#include "baker/bake/ship_meshes.hpp"
+#include "baker/effects/volume/volume_transfer.hpp"
+#include "baker/work/parallel.hpp"
+
+namespace lambent::baker {
+
+namespace {
+
+constexpr float kY00 = 0.282094792f;
+// Of codes of a single vector: next to nothing to save.
+constexpr float kBound = 1e-5f;
+constexpr std::uint32_t kDenseBands =
+    3;  // outputs of so many bands are stored as they are, more as visibility
+
+// What a place that sees everything has: of one output the mean of the light, of more the light itself.
+CodedTransfer openTransfer(int order, std::uint32_t outputs) {
+  bundle::TransferShape shape;
+  shape.order = static_cast<std::uint32_t>(order);
+  shape.outputs = outputs;
+  const bool as_visibility = outputs > kDenseBands * kDenseBands;
+  if (as_visibility) shape.visibility_bands = shape.order + bundle::bandsOf(outputs) - 1;
+  std::vector<float> vector(shape.size(), 0.0f);
+  if (as_visibility)
+    vector[0] = std::sqrt(4.0f * std::numbers::pi_v<float>);  // V = 1
+  else if (outputs == 1)
+    vector[0] = kY00;
+  else
+    for (std::uint32_t j = 0; j < std::min(outputs, shape.columns()); ++j)
+      vector[j * shape.columns() + j] = 1.0f;
+  return codeTransfer(vector, 1, shape, {.bound = kBound});
+}
+
+// A cell of one sample in the middle of the group.
+void addSample(BakedGroup& group, SampleKind kind, CodedTransfer transfer) {
+  const glm::vec3 center = group.light_samples.points.front();
+  const auto first = static_cast<std::uint32_t>(group.samples.positions.size());
+  group.samples.positions.push_back(center);
+  group.samples.cells.push_back({first, 1, center, center, kind});
+  group.light_samples.cells.push_back({{0}, {}});
+  group.cells.push_back({std::move(transfer)});
+}
+
+BakedGroup openSurfaces(const Scene& scene, const RigidGroup& group, const ShippedMeshes& meshes,
+                        bool with_glossy, const BakeOptions& options) {
+  BakedGroup baked;
+  baked.geometry = buildGroupGeometry(group, scene, meshes.decoded, with_glossy);
+  baked.light_samples.points = {0.5f * (baked.geometry.bounds_min + baked.geometry.bounds_max)};
+  // Of no vertex: it says how many bands of light the group takes.
+  addSample(baked, SampleKind::Plain, openTransfer(options.order, 1));
+  baked.samples.vertex_sample.assign(baked.geometry.positions.size(), kNoSample);
+  for (const DrawGeometry& draw : baked.geometry.draws) {
+    if (draw.kind != SampleKind::Glossy) continue;
+    if (baked.samples.size() == 1)
+      addSample(baked, SampleKind::Glossy,
+                openTransfer(options.order,
+                             static_cast<std::uint32_t>(options.glossy_order * options.glossy_order)));
+    const auto first = baked.samples.vertex_sample.begin() + static_cast<std::ptrdiff_t>(draw.first_vertex);
+    std::fill(first, first + static_cast<std::ptrdiff_t>(draw.vertex_count), 1u);
+  }
+  return baked;
+}
+
+// One voxel fills the box.
+BakedGroup openVolume(const Scene& scene, const RigidGroup& group, const BakeOptions& options) {
+  const SceneVolume& volume = scene.volumes[static_cast<std::size_t>(group.volume)];
+  BakedGroup baked;
+  baked.volume = placeVolume(scene, group, quantizeDensity(volume.density));
+  baked.light_samples.points = {baked.volume->light_sample};
+  const auto bands = static_cast<std::uint32_t>(bandsOfPhase(volume.g, options.order));
+  CodedCell& cell = baked.volume->cells.emplace_back();
+  cell.count = 1;
+  cell.bounds_min = cell.bounds_max = baked.volume->light_sample;
+  cell.transfers.push_back(openTransfer(options.order, bands * bands));
+  baked.volume->voxels = {0};
+  return baked;
+}
+
+Result<BakeReport> bakeOnTheseThreads(const Scene& scene, const BakeOptions& options,
+                                      const std::filesystem::path& output, Progress& progress,
+                                      const std::stop_token& stop) {
+  BakeReport report;
+  progress.begin("plan");
+  const auto plan = planFor(scene, options);
+  if (!plan) return failAgain(plan.error());
+  // Making tables takes longer than anything here: glossy surfaces are Lambert until they are there.
+  const BrdfTables tables;
+  auto split = splitMeshes(scene, plan->groups, options.max_edge_m);
+  if (!split) return failAgain(split.error());
+  auto meshes = shipMeshes(scene, plan->groups, *split, progress, stop);
+  if (!meshes) return failAgain(meshes.error());
+
+  progress.begin("writing");
+  std::vector<BakedGroup> baked;
+  for (const RigidGroup& group : plan->groups) {
+    baked.push_back(group.volume >= 0
+                        ? openVolume(scene, group, options)
+                        : openSurfaces(scene, group, *meshes, !tables.entries.empty(), options));
+    report.vertices += baked.back().geometry.positions.size();
+    report.triangles += baked.back().geometry.triangles.size();
+  }
+  AssembledBundle bundle =
+      assemble(scene, options, *plan, tables, std::move(*meshes), std::move(baked), report);
+  bundle.description.generator.settings["transfer"] = "none";
+  if (stop.stop_requested()) return fail(scene.source.string(), "stopped; nothing was written");
+  if (auto written = bundle::write(output, std::move(bundle.description), bundle.blobs); !written)
+    return failAgain(written.error());
+  progress.end();
+  std::error_code ignored;
+  report.file_bytes = std::filesystem::file_size(output, ignored);
+  report.stages = progress.finished();
+  return report;
+}
+
+}  // namespace
+
+Result<BakeReport> bakeUnshadowed(const Scene& scene, const BakeOptions& options,
+                                  const std::filesystem::path& output, Progress& progress,
+                                  std::stop_token stop) {
+  if (auto checked = checkRequest(options, output); !checked) return failAgain(checked.error());
+  std::optional<Result<BakeReport>> result;
+  withThreads(options.threads, [&] { result = bakeOnTheseThreads(scene, options, output, progress, stop); });
+  return std::move(*result);
+}
+
+}  // namespace lambent::baker

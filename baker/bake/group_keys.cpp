@@ -1,0 +1,127 @@
+#include "baker/bake/group_keys.hpp"
+
+#include "baker/transport/geometry_key.hpp"
+
+namespace lambent::baker {
+
+namespace {
+
+const gltf::Material* materialOf(const Scene& scene, const DrawGeometry& draw) {
+  return draw.material < 0 ? nullptr : &scene.materials[static_cast<std::size_t>(draw.material)];
+}
+
+// At unit strength: where it comes from, and the texture's share.
+void addLights(const Scene& scene, const GroupGeometry& geometry, std::span<const PlannedLight> lights,
+               KeyMaker& key) {
+  key.addText("lights").add(std::uint64_t{lights.size()});
+  for (const PlannedLight& light : lights) {
+    key.add(light.kind);
+    if (light.kind == PlannedLight::Kind::Node) {
+      const gltf::Node& node = scene.nodes[light.index];
+      const gltf::Light& source = scene.lights[static_cast<std::size_t>(node.light)];
+      key.add(light.group_from_node).add(geometry.origin);
+      key.add(source.type).add(source.range_m).add(source.inner_cone_rad).add(source.outer_cone_rad);
+      continue;
+    }
+    const gltf::Material& material = scene.materials[light.index];
+    addTexture(scene, material.emissive_texture.texture, key);
+    const bool textured = material.emissive_texture.texture >= 0;
+    for (std::uint32_t d = 0; d < geometry.draws.size(); ++d) {
+      const DrawGeometry& draw = geometry.draws[d];
+      if (draw.material != static_cast<std::int32_t>(light.index)) continue;
+      key.add(d);
+      if (textured)
+        key.addList(std::span(geometry.emissive_texcoords).subspan(draw.first_vertex, draw.vertex_count));
+    }
+  }
+}
+
+void addColors(const Scene& scene, const GroupGeometry& geometry, KeyMaker& key) {
+  key.addText("colors").addList(geometry.texcoords).addList(geometry.colors);
+  for (const DrawGeometry& draw : geometry.draws) {
+    const gltf::Material* material = materialOf(scene, draw);
+    key.add(material != nullptr);
+    if (!material) continue;
+    key.add(material->base_color).add(material->unlit);
+    addTexture(scene, material->base_color_texture.texture, key);
+  }
+}
+
+// How glossy surfaces reflect (SurfaceBrdfs), beside their base colours.
+void addReflection(const Scene& scene, const GroupGeometry& geometry, int order, KeyMaker& key) {
+  bool any = false;
+  for (const DrawGeometry& draw : geometry.draws) any |= draw.kind == SampleKind::Glossy;
+  key.addText("reflection").add(any);
+  if (!any) return;
+  key.add(order).addList(geometry.texcoord_sets[0]).addList(geometry.texcoord_sets[1]);
+  key.addList(geometry.tangents);
+  for (const DrawGeometry& draw : geometry.draws) {
+    const gltf::Material* m = materialOf(scene, draw);
+    if (!m || draw.kind != SampleKind::Glossy) continue;
+    key.add(m->metallic).add(m->roughness).add(m->ior).add(m->specular).add(m->specular_color);
+    key.add(m->anisotropy).add(m->anisotropy_rotation_rad);
+    for (const gltf::TextureRef* ref : {&m->metallic_roughness_texture, &m->specular_texture,
+                                        &m->specular_color_texture, &m->anisotropy_texture})
+      addTextureRef(scene, *ref, key);
+    // Its coordinates alone: they tell the tangent.
+    const gltf::TextureRef& normal = m->normal_texture;
+    key.add(normal.texture >= 0).add(normal.texcoord).add(normal.offset).add(normal.scale);
+    key.add(normal.rotation_rad).add(m->brdf >= 0);
+    if (m->brdf >= 0) key.addList(scene.brdfs[static_cast<std::size_t>(m->brdf)].measurements);
+  }
+}
+
+}  // namespace
+
+GroupKeys groupKeys(const Scene& scene, const GroupGeometry& geometry, std::span<const PlannedLight> lights,
+                    LightSampleCount light_samples, const BakeOptions& options) {
+  GroupKeys keys;
+  {
+    KeyMaker key = KeyMaker::ofStage("light samples");
+    addShape(geometry, key);
+    keys.light_samples = key.add(light_samples.count).add(light_samples.of_group).key();
+  }
+  KeyMaker surfaces = KeyMaker::ofStage("surfaces");
+  addShape(geometry, surfaces);
+  addOpacity(scene, geometry, surfaces);
+  addLights(scene, geometry, lights, surfaces);
+  const Key seen = surfaces.key();
+  addColors(scene, geometry, surfaces);
+  const Key colored = surfaces.key();
+  addReflection(scene, geometry, options.glossy_order, surfaces);
+  const Key reflecting = surfaces.key();
+
+  keys.proxy = KeyMaker::ofStage("proxy").add(reflecting).key();
+  keys.rays = KeyMaker::ofStage("rays")
+                  .add(seen)
+                  .add(options.order)
+                  .add(std::uint64_t{options.effectiveRays()})
+                  .add(options.bounces != 0)
+                  .key();
+  keys.glossy_rays = KeyMaker::ofStage("glossy rays").add(keys.rays).add(options.glossy_order).key();
+  keys.bounces = KeyMaker::ofStage("bounces").add(keys.glossy_rays).add(colored).add(reflecting).key();
+  keys.cells = KeyMaker::ofStage("cells")
+                   .add(keys.bounces)
+                   .add(options.bounces)
+                   .add(options.effectiveErrorBound())
+                   .add(options.effectiveGlossyErrorBound())
+                   .key();
+  return keys;
+}
+
+Key brdfTablesKey(const Scene& scene, int order) {
+  KeyMaker key = KeyMaker::ofStage("BRDF tables");
+  key.add(order);
+  for (const gltf::Material& material : scene.materials) {
+    key.add(material.matte());
+    if (material.matte()) continue;
+    const bundle::BrdfFamily family = bundle::brdfFamilyOf(material);
+    key.add(family);
+    if (family != bundle::BrdfFamily::Measured) continue;
+    const MeasuredBrdf& brdf = scene.brdfs[static_cast<std::size_t>(material.brdf)];
+    key.add(material.brdf).addText(brdf.name).addList(brdf.measurements);
+  }
+  return key.key();
+}
+
+}  // namespace lambent::baker

@@ -1,0 +1,101 @@
+// Values to bytes and back, for what a cache keeps: as they lie in memory, lists with their length before.
+// Not a file format: entries are read by the very program that wrote them (key.hpp). Reading checks every
+// length; the first thing that does not fit makes all that follows fail, so that one look at ok() is enough.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "baker/cache/key.hpp"
+
+namespace lambent::baker {
+
+class ByteWriter {
+ public:
+  template <PlainBytes T>
+  void add(const T& value) {
+    append(std::as_bytes(std::span(&value, 1)));
+  }
+  template <PlainBytes T>
+  void addList(std::span<const T> list) {
+    add(std::uint64_t{list.size()});
+    append(std::as_bytes(list));
+  }
+  template <PlainBytes T>
+  void addList(const std::vector<T>& list) {
+    addList(std::span<const T>(list));
+  }
+  void addText(std::string_view text) { addList(std::span<const char>(text)); }
+  // What another writer wrote.
+  void addBytes(std::span<const std::byte> bytes) { append(bytes); }
+
+  std::size_t size() const { return bytes_.size(); }
+  std::span<const std::byte> bytes() const { return bytes_; }
+  std::vector<std::byte> take() { return std::exchange(bytes_, {}); }
+
+ private:
+  void append(std::span<const std::byte> bytes);
+
+  std::vector<std::byte> bytes_;
+};
+
+class ByteReader {
+ public:
+  explicit ByteReader(std::span<const std::byte> bytes) : left_(bytes) {}
+
+  template <PlainBytes T>
+  bool read(T& value) {
+    return copy(std::as_writable_bytes(std::span(&value, 1)));
+  }
+  template <PlainBytes T>
+  bool readList(std::vector<T>& list) {
+    std::uint64_t count = 0;
+    if (!read(count) || count > left_.size() / sizeof(T)) return failed();
+    list.resize(static_cast<std::size_t>(count));
+    return copy(std::as_writable_bytes(std::span(list)));
+  }
+  // A list that must have just the length of `list`.
+  template <PlainBytes T>
+  bool readInto(std::span<T> list) {
+    std::uint64_t count = 0;
+    if (!read(count) || count != list.size()) return failed();
+    return copy(std::as_writable_bytes(list));
+  }
+  bool readText(std::string& text) {
+    std::uint64_t count = 0;
+    if (!read(count) || count > left_.size()) return failed();
+    text.resize(static_cast<std::size_t>(count));
+    return copy(std::as_writable_bytes(std::span(text)));
+  }
+  // The next `count` bytes as a reader of their own.
+  ByteReader part(std::uint64_t count) {
+    if (count > left_.size()) {
+      failed();
+      return ByteReader({});
+    }
+    const auto bytes = left_.first(static_cast<std::size_t>(count));
+    left_ = left_.subspan(bytes.size());
+    return ByteReader(bytes);
+  }
+
+  bool ok() const { return ok_; }
+  bool atEnd() const { return ok_ && left_.empty(); }
+
+ private:
+  bool failed() {
+    ok_ = false;
+    left_ = {};
+    return false;
+  }
+  bool copy(std::span<std::byte> to);
+
+  std::span<const std::byte> left_;
+  bool ok_ = true;
+};
+
+}  // namespace lambent::baker

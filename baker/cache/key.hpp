@@ -1,0 +1,81 @@
+// Names of what is kept: a digest of everything that a result depends on. Whoever keeps a result adds its
+// true inputs, all of them and nothing else, to a KeyMaker; equal keys then mean equal results, to the byte.
+// Keys of stages begin with a digest of the program itself, so that other code, another compiler or other
+// flags never meet entries of before. 128 bits of XXH3: against accidents, not against forgery.
+#pragma once
+
+#include <array>
+#include <compare>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+#include <glm/fwd.hpp>
+
+namespace lambent::baker {
+
+struct Key {
+  std::uint64_t high = 0, low = 0;
+
+  std::string hex() const;  // 32 digits
+  friend auto operator<=>(const Key&, const Key&) = default;
+};
+
+// Types whose bytes are their value: no padding, no pointers. Structs of floats are listed by whoever keeps
+// them.
+template <typename T>
+inline constexpr bool kPlainBytes =
+    std::has_unique_object_representations_v<T> || std::is_floating_point_v<T>;
+template <glm::length_t L, typename T, glm::qualifier Q>
+inline constexpr bool kPlainBytes<glm::vec<L, T, Q>> = kPlainBytes<T>;
+template <glm::length_t C, glm::length_t R, typename T, glm::qualifier Q>
+inline constexpr bool kPlainBytes<glm::mat<C, R, T, Q>> = kPlainBytes<T>;
+template <typename T, std::size_t N>
+inline constexpr bool kPlainBytes<std::array<T, N>> = kPlainBytes<T>;
+
+template <typename T>
+concept PlainBytes = std::is_trivially_copyable_v<T> && !std::is_pointer_v<T> && kPlainBytes<T>;
+
+class KeyMaker {
+ public:
+  KeyMaker();  // of values alone
+  // Of a stage's result: the program and the stage's name come first.
+  static KeyMaker ofStage(std::string_view stage);
+  KeyMaker(KeyMaker&&) noexcept;
+  KeyMaker& operator=(KeyMaker&&) noexcept;
+  ~KeyMaker();
+
+  template <PlainBytes T>
+  KeyMaker& add(const T& value) {
+    return addBytes(std::as_bytes(std::span(&value, 1)));
+  }
+  // Lists and texts bring their length, so that no two sequences of values read alike.
+  template <PlainBytes T>
+  KeyMaker& addList(std::span<const T> list) {
+    return add(std::uint64_t{list.size()}).addBytes(std::as_bytes(list));
+  }
+  template <PlainBytes T>
+  KeyMaker& addList(const std::vector<T>& list) {
+    return addList(std::span<const T>(list));
+  }
+  KeyMaker& addText(std::string_view text) { return addList(std::span<const char>(text)); }
+
+  // Of what was added so far.
+  Key key() const;
+
+ private:
+  KeyMaker& addBytes(std::span<const std::byte> bytes);
+
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+// Of the sources of the baker and of what it uses, of the compiler and of its flags.
+std::string_view programDigest();
+
+}  // namespace lambent::baker

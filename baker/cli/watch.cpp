@@ -1,0 +1,149 @@
+#include "baker/cli/watch.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <map>
+#include <string>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "baker/cli/output.hpp"
+#include "baker/pipeline/bake_queue.hpp"
+#include "baker/pipeline/source_watch.hpp"
+
+namespace lambent::baker {
+
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+constexpr std::chrono::milliseconds kTurn{100};
+
+class FolderBakes {
+ public:
+  FolderBakes(const WatchArguments& arguments, BakeQueue& queue) : arguments_(arguments), queue_(queue) {}
+
+  // One line for whatever happens.
+  void say(const char* event, const fs::path& scene, const std::string& text,
+           json more = json::object()) const {
+    if (arguments_.json) {
+      more["event"] = event;
+      if (!scene.empty()) more["scene"] = scene.string();
+      fmt::print("{}\n", more.dump(-1, ' ', false, json::error_handler_t::replace));
+    } else {
+      fmt::print("{}\n", scene.empty() ? text : scene.string() + ": " + text);
+    }
+    std::fflush(stdout);
+  }
+
+  void take(const WatchEvent& event) {
+    switch (event.kind) {
+      case WatchEvent::Kind::Found:
+      case WatchEvent::Kind::Changed:
+        return add(event.scene);
+      case WatchEvent::Kind::Broken:
+        return say("broken", event.scene, event.error->line() + "; waiting for it to change",
+                   {{"error", event.error->line()}});
+      case WatchEvent::Kind::Removed:
+        if (const auto job = jobs_.find(event.scene); job != jobs_.end()) queue_.cancel(job->second);
+        std::erase_if(scene_of_, [&](const auto& entry) { return entry.second == event.scene; });
+        return say("removed", event.scene, "is gone; its bundle stays");
+    }
+  }
+
+  void take(const BakeEvent& event) const {
+    const std::vector<JobState> states = queue_.states();
+    const auto state =
+        std::find_if(states.begin(), states.end(), [&](const JobState& s) { return s.id == event.job; });
+    if (state == states.end()) return;
+    const fs::path& scene = state->request.scene;
+    const std::string output = state->request.output.string();
+    switch (event.kind) {
+      case BakeEvent::Kind::Began:
+        return say("baking", scene, "baking", {{"output", output}});
+      case BakeEvent::Kind::Failed:
+        if (state->error)
+          say("failed", scene, state->error->line(), {{"output", output}, {"error", state->error->line()}});
+        return;
+      case BakeEvent::Kind::Cancelled:
+        return;  // because the scene is gone, which was said
+      case BakeEvent::Kind::Bundle:
+        break;
+    }
+    for (const std::string& warning : state->warnings)
+      fmt::print(stderr, "lambent: {}: {}\n", scene.string(), warning);
+    if (state->up_to_date) return say("upToDate", scene, output + " is up to date", {{"output", output}});
+    if (!state->report) return;
+    const BakeReport& report = *state->report;
+    say("baked", scene,
+        fmt::format("{} in {}, {}", output, durationText(state->seconds),
+                    bytesText(static_cast<double>(report.file_bytes))),
+        {{"output", output},
+         {"seconds", state->seconds},
+         {"fileBytes", report.file_bytes},
+         {"vertices", report.vertices},
+         {"rays", report.rays},
+         {"raysKept", report.rays_kept}});
+  }
+
+ private:
+  void add(const fs::path& scene) {
+    const fs::path output = outputOf(scene);
+    const auto [entry, added] = scene_of_.try_emplace(output, scene);
+    if (!added && entry->second != scene) {
+      const std::string why = fmt::format("would be baked to {}, where {} is; rename one of them",
+                                          output.string(), entry->second.string());
+      return say("failed", scene, why, {{"output", output.string()}, {"error", why}});
+    }
+    std::error_code ignored;  // the bake says that it cannot write
+    fs::create_directories(output.parent_path(), ignored);
+    jobs_.insert_or_assign(
+        scene,
+        queue_.add(
+            {.scene = scene, .output = output, .options = arguments_.options, .import = arguments_.import}));
+  }
+
+  fs::path outputOf(const fs::path& scene) const {
+    const fs::path name = scene.stem().string() + ".lmb.glb";
+    if (arguments_.output.empty()) return scene.parent_path() / name;
+    return (arguments_.output / scene.parent_path().lexically_relative(arguments_.folder))
+               .lexically_normal() /
+           name;
+  }
+
+  const WatchArguments& arguments_;
+  BakeQueue& queue_;
+  std::map<fs::path, JobId> jobs_;
+  std::map<fs::path, fs::path> scene_of_;  // by output
+};
+
+}  // namespace
+
+int watchFolder(const WatchArguments& arguments, Cache* cache) {
+  std::error_code failed;
+  if (!fs::is_directory(arguments.folder, failed))
+    return reportError(
+        {arguments.folder.string(), "is no folder", "give --watch a folder of .gltf or .glb files"});
+  const std::stop_source stop;
+  const InterruptGuard interrupts(stop);
+  SourceWatch watch({arguments.folder}, {.import = arguments.import});
+  BakeQueue queue({.work_folder = cache ? cache->folder() : fs::path(), .cache = cache, .previews = false});
+  FolderBakes bakes(arguments, queue);
+  bakes.say("watching", {}, "watching " + arguments.folder.string() + "; interrupt to end",
+            {{"folder", arguments.folder.string()}});
+  while (!stop.stop_requested()) {
+    for (const WatchEvent& event : watch.takeEvents()) bakes.take(event);
+    queue.waitForEvents(kTurn);
+    for (const BakeEvent& event : queue.takeEvents()) bakes.take(event);
+  }
+  const bool cut_short = queue.busy();
+  bakes.say("ended", {},
+            cut_short ? "ended; what was cut short goes on with the next bake, or --resume" : "ended",
+            {{"cutShort", cut_short}});
+  return 0;
+}
+
+}  // namespace lambent::baker

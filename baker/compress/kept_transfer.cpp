@@ -1,0 +1,68 @@
+#include "baker/compress/kept_transfer.hpp"
+
+namespace lambent::baker {
+
+template <>
+inline constexpr bool kPlainBytes<bundle::AxisCode> = sizeof(bundle::AxisCode) == 2 * sizeof(float);
+
+void write(const CodedTransfer& coded, ByteWriter& out) {
+  const bundle::SharedCodebook& book = coded.codebook;
+  out.add(coded.shape), out.add(coded.error);
+  out.addList(book.axis_counts), out.addList(book.axes);
+  out.addList(book.value_scales), out.addList(book.basis_scales), out.add(book.mean_scale);
+  out.addList(book.basis), out.addList(book.means), out.addList(book.directions);
+  out.addList(coded.cluster_of);
+  out.add(std::uint64_t{coded.planes.size()});
+  for (const CodedPlane& plane : coded.planes) {
+    out.add(plane.bits), out.add(plane.variance);
+    // Codes have at most 16 bits.
+    out.addList(std::vector<std::uint16_t>(plane.codes.begin(), plane.codes.end()));
+  }
+}
+
+bool read(ByteReader& in, CodedTransfer& coded) {
+  bundle::SharedCodebook& book = coded.codebook;
+  std::uint64_t planes = 0;
+  in.read(coded.shape), in.read(coded.error);
+  in.readList(book.axis_counts), in.readList(book.axes);
+  in.readList(book.value_scales), in.readList(book.basis_scales), in.read(book.mean_scale);
+  in.readList(book.basis), in.readList(book.means), in.readList(book.directions);
+  in.readList(coded.cluster_of);
+  if (!in.read(planes)) return false;
+  std::vector<std::uint16_t> codes;
+  for (std::uint64_t p = 0; p < planes; ++p) {
+    CodedPlane& plane = coded.planes.emplace_back();
+    if (!in.read(plane.bits) || !in.read(plane.variance) || !in.readList(codes)) return false;
+    plane.codes.assign(codes.begin(), codes.end());
+  }
+  return true;
+}
+
+CodedTransfer KeptCoding::code(std::span<const float> vectors, std::size_t count,
+                               const bundle::TransferShape& shape, const CodingSettings& settings,
+                               const std::stop_token& stop) {
+  Keep keep{cache_, {}};
+  if (cache_) {
+    KeyMaker key = KeyMaker::ofStage("coding");
+    key.add(shape).addList(vectors).add(settings.bound).add(settings.shown_energy);
+    keep.key = key.add(settings.kernel_power).key();
+    kept_.push_back(keep.key);
+  }
+  CodedTransfer coded;
+  keptValue(
+      keep, [&](ByteReader& in) { return read(in, coded); },
+      [&] {
+        coded = codeTransfer(vectors, count, shape, settings, stop);
+        return !stop.stop_requested();
+      },
+      [&](ByteWriter& out) { write(coded, out); });
+  return coded;
+}
+
+void KeptCoding::drop() {
+  if (cache_)
+    for (const Key& key : kept_) cache_->drop(key);
+  kept_.clear();
+}
+
+}  // namespace lambent::baker

@@ -1,0 +1,161 @@
+#include "baker/effects/volume/fit_within_voxels.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <numbers>
+
+#include <glm/gtc/quaternion.hpp>
+
+#include "baker/effects/volume/first_light.hpp"
+#include "baker/effects/volume/grid_fit.hpp"
+#include "baker/work/parallel.hpp"
+
+namespace lambent::baker {
+
+namespace {
+
+constexpr std::size_t kPlacesPerVoxel = 8;
+constexpr std::size_t kLeastRays = 16;
+constexpr float kThin = 0.25f;  // optical depth of a voxel whose centre tells enough
+constexpr std::size_t kGrain = 64;
+constexpr std::size_t kTogether = 1u << 13;  // places whose light is kept at a time
+
+struct Place {
+  glm::vec3 point{0.0f};  // group frame
+  float density = 0.0f;
+};
+
+// In [0, 1): the fractions of n times the roots of x^4 = x + 1, evenly spread in three dimensions (Roberts
+// 2018).
+glm::dvec3 spread(std::size_t n) {
+  constexpr double kRoot = 1.2207440846057596;
+  const double k = static_cast<double>(n) + 0.5;
+  return glm::fract(k * glm::dvec3(1.0 / kRoot, 1.0 / (kRoot * kRoot), 1.0 / (kRoot * kRoot * kRoot)));
+}
+
+// One in each eighth of each voxel that is not thin, where there is density.
+std::vector<Place> placesIn(const DensityField& density, const TransferGrid& grid) {
+  std::vector<Place> out;
+  const glm::dvec3 scale = glm::dvec3(density.size()) / glm::dvec3(grid.size());
+  for (std::size_t q = 0; q < grid.samples(); ++q) {
+    const std::uint32_t v = grid.voxels()[q];
+    const glm::uvec3& n = grid.size();
+    const glm::dvec3 corner(v % n.x, v / n.x % n.y, v / (n.x * n.y));
+    const std::size_t first = out.size();
+    float most = 0.0f;
+    for (std::size_t k = 0; k < kPlacesPerVoxel; ++k) {
+      const glm::dvec3 eighth(k & 1, k >> 1 & 1, k >> 2);
+      const glm::vec3 at(scale * (corner + 0.5 * (eighth + spread(q * kPlacesPerVoxel + k))));
+      const float here = density.atGrid(at);
+      if (!(here > 0.0f)) continue;
+      out.push_back({glm::vec3(density.groupFromGrid() * glm::vec4(at, 1.0f)), here});
+      most = std::max(most, here);
+    }
+    if (most * grid.meanEdge() <= kThin) out.resize(first);
+  }
+  return out;
+}
+
+// Tables of few rays, each turned otherwise: a voxel's places look everywhere together.
+std::vector<SphereTable> turnedTables(std::size_t rays, int order) {
+  std::vector<SphereTable> out;
+  for (std::size_t k = 0; k < kPlacesPerVoxel; ++k) {
+    const glm::dvec3 at = spread(k);
+    const double z = 2.0 * at.x - 1.0, phi = 2.0 * std::numbers::pi * at.y;
+    const double across = std::sqrt(1.0 - z * z);
+    const glm::dvec3 axis(across * std::cos(phi), across * std::sin(phi), z);
+    out.emplace_back(std::max(kLeastRays, rays / kPlacesPerVoxel), order,
+                     glm::angleAxis(2.0 * std::numbers::pi * at.z, axis));
+  }
+  return out;
+}
+
+// All scatterings at the nodes, in blocks of columns, a channel's after the other's.
+std::vector<std::vector<float>> blocksOf(const VolumeTransfer& transfer) {
+  std::vector<std::vector<float>> out;
+  const std::size_t columns = transfer.columns(), width = transfer.vectorSize();
+  for (std::uint32_t channel = 0; channel < transfer.full_channels; ++channel)
+    for (std::size_t first = 0; first < columns; first += kBlockColumns) {
+      auto& block = out.emplace_back(transfer.grid.nodes() * kBlockColumns, 0.0f);
+      for (std::size_t q = 0; q < transfer.grid.samples(); ++q)
+        std::copy_n(&transfer.vectors[q * width + (1 + channel) * columns + first],
+                    std::min(kBlockColumns, columns - first), &block[q * kBlockColumns]);
+      transfer.grid.raise(block, kBlockColumns);
+    }
+  return out;
+}
+
+}  // namespace
+
+bool fitWithinVoxels(const Medium& medium, const VolumeSettings& settings, const Occluders& occluders,
+                     const ScatterRows* rows, VolumeTransfer& out, Progress& progress,
+                     const std::stop_token& stop, const Keep& keep) {
+  const std::vector<Place> places = placesIn(*medium.density, out.grid);
+  if (places.empty()) return true;
+  progress.begin("light within voxels", places.size(), "places");
+  const std::size_t columns = out.columns(), width = out.vectorSize();
+  const std::size_t blocks = (columns + kBlockColumns - 1) / kBlockColumns;
+  const std::vector<SphereTable> many = turnedTables(settings.rays, settings.order),
+                                 few = turnedTables(settings.rays / kRaysPerScatteringRay, 1);
+  const std::vector<std::vector<float>> nodes = blocksOf(out);
+  GridFit fit(out.grid, width, out.vectors);
+  std::vector<float> values(kTogether * width);
+  std::vector<double> weights(kTogether);
+  std::atomic<std::size_t> traced = 0;
+  for (std::size_t start = 0; start < places.size(); start += kTogether) {
+    const std::size_t count = std::min(kTogether, places.size() - start);
+    const auto compute = [&](std::size_t begin, std::size_t end) {
+      FirstLight first(*medium.density, occluders);
+      std::optional<ScatterRows::Gather> gather;
+      if (rows != nullptr) gather.emplace(*rows);
+      std::vector<float> scattered(nodes.size() * kBlockColumns);
+      for (std::size_t k = begin; k < end; ++k) {
+        const Place& place = places[start + k];
+        const std::size_t table = (start + k) % kPlacesPerVoxel;
+        const std::span<float> value = std::span(values).subspan(k * width, width);
+        const Arrival arrival = first.look(place.point, many[table], value.first(columns));
+        weights[k] = double{place.density} * arrival.out;
+        if (gather) gather->look(place.point, few[table], arrival.met, nodes, scattered);
+        for (std::uint32_t channel = 0; channel < out.full_channels; ++channel) {
+          const double albedo = std::min(double{out.albedo[static_cast<int>(channel)]}, kLargestAlbedo);
+          for (std::size_t i = 0; i < columns; ++i)
+            value[(1 + channel) * columns + i] = static_cast<float>(
+                double{value[i]} + albedo * double{scattered[channel * blocks * kBlockColumns + i]});
+        }
+      }
+      traced += end - begin;
+      progress.add(end - begin);
+    };
+    const auto pack = [&](std::size_t begin, std::size_t end, ByteWriter& to) {
+      to.addList(std::span<const float>(values).subspan(begin * width, (end - begin) * width));
+      to.addList(std::span<const double>(weights).subspan(begin, end - begin));
+    };
+    const auto unpack = [&](std::size_t begin, std::size_t end, ByteReader& in) {
+      if (!in.readInto(std::span(values).subspan(begin * width, (end - begin) * width)) ||
+          !in.readInto(std::span(weights).subspan(begin, end - begin)))
+        return false;
+      progress.add(end - begin);
+      return true;
+    };
+    if (!keptRanges(keep.part("places", start), count, kGrain, stop, {compute, pack, unpack}, KeepWhen::Due)
+             .finished)
+      return false;
+    for (std::size_t k = 0; k < count; ++k)
+      fit.add(places[start + k].point, weights[k], std::span(values).subspan(k * width, width));
+  }
+  const std::uint64_t rays = many.front().size() + (rows != nullptr ? few.front().size() : 0);
+  out.rays += traced * rays;
+  out.rays_kept += (places.size() - traced) * rays;
+  const std::vector<float> change = fit.solve();
+  for (std::size_t i = 0; i < change.size(); ++i) out.vectors[i] += change[i];
+  return true;
+}
+
+void dropWithinVoxels(const Keep& keep, const DensityField& density, const TransferGrid& grid) {
+  const std::size_t places = placesIn(density, grid).size();
+  for (std::size_t start = 0; start < places; start += kTogether)
+    dropRanges(keep.part("places", start), std::min(kTogether, places - start), kGrain);
+}
+
+}  // namespace lambent::baker

@@ -1,0 +1,61 @@
+// What somebody changed of a scene after it was imported, so that it can be baked or traced as it is looked
+// at: where nodes stand, what materials reflect, what lamps give. Comes in: the scene as its file has it.
+// Goes out: the same scene, edited. Parts are meant by index and name: where a file has changed since, an
+// edit follows its name, and one that no longer means anything is passed over with a warning in the scene.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <glm/mat4x4.hpp>
+#include <glm/vec3.hpp>
+
+#include "baker/import/scene.hpp"
+
+namespace lambent::baker {
+
+struct SceneEdits {
+  struct Node {
+    std::uint32_t index = 0;
+    std::string name;
+    glm::mat4 parent_from_node{1.0f};
+    bool operator==(const Node&) const = default;
+  };
+  // As gltf::Material; none: as in the file.
+  struct Material {
+    std::uint32_t index = 0;
+    std::string name;
+    std::optional<glm::vec3> base_color, emissive, specular_color;
+    std::optional<float> alpha, metallic, roughness, ior, specular, anisotropy, anisotropy_rotation,
+        normal_scale, alpha_cutoff;
+    std::optional<std::int32_t> brdf;
+    bool operator==(const Material&) const = default;
+  };
+  // As gltf::Light, by the node that carries it.
+  struct Light {
+    std::uint32_t node = 0;
+    std::string name;  // of the node
+    glm::vec3 color{1.0f};
+    float intensity = 1.0f, range_m = 0.0f, inner_cone_rad = 0.0f, outer_cone_rad = 0.785398f;
+    bool operator==(const Light&) const = default;
+  };
+  std::vector<Node> nodes;
+  std::vector<Material> materials;
+  std::vector<Light> lights;
+
+  bool empty() const { return nodes.empty() && materials.empty() && lights.empty(); }
+  bool operator==(const SceneEdits&) const = default;
+};
+
+// Both, `above` where both say something.
+SceneEdits::Material overlaid(SceneEdits::Material below, const SceneEdits::Material& above);
+
+void applyEdits(const SceneEdits& edits, Scene& scene);
+
+// As JSON, for journals and world files; nothing where a text is none.
+std::string editsText(const SceneEdits& edits);
+std::optional<SceneEdits> readEdits(const std::string& text);
+
+}  // namespace lambent::baker

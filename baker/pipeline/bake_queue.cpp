@@ -1,0 +1,401 @@
+#include "baker/pipeline/bake_queue.hpp"
+
+#include <algorithm>
+#include <condition_variable>
+#include <exception>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <thread>
+#include <utility>
+
+#include "baker/import/gltf.hpp"
+#include "baker/pipeline/job_estimate.hpp"
+#include "baker/pipeline/journal.hpp"
+
+namespace lambent::baker {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kPreviewFolder = "previews";
+// Previews of programs that were killed.
+constexpr std::chrono::hours kPreviewsKept{24 * 7};
+
+// What a job does next. A trial is the final bake with little time.
+enum class Step : std::uint8_t { Trial, Unshadowed, Coarse, Final };
+
+Rung rungOf(Step step) {
+  if (step == Step::Unshadowed) return Rung::Unshadowed;
+  return step == Step::Coarse ? Rung::Coarse : Rung::Final;
+}
+
+struct Job {
+  JobState state;
+  std::uint64_t asked = 0;  // rises with every request: the newest comes first
+  Step step = Step::Final;
+  bool tried = false;  // the trial
+  bool begun = false;
+  Journal::Entry record;
+  StageSeconds expected;                     // of the final bake
+  std::shared_ptr<const Progress> progress;  // of what runs
+
+  // What appears soonest comes first.
+  int rank() const {
+    switch (step) {
+      case Step::Unshadowed:
+        return 0;
+      case Step::Trial:
+        return tried || !state.reached ? 0 : 1;
+      case Step::Coarse:
+        return 2;
+      case Step::Final:
+        return 3;
+    }
+    return 3;
+  }
+};
+
+// Asks to stop when its time is over.
+class Deadline {
+ public:
+  Deadline(std::stop_source stop, std::chrono::milliseconds time)
+      : thread_([stop, time](const std::stop_token& done) mutable {
+          std::mutex lock;
+          std::condition_variable_any waiting;
+          std::unique_lock hold(lock);
+          if (!waiting.wait_for(hold, done, time, [&] { return done.stop_requested(); })) stop.request_stop();
+        }) {}
+
+ private:
+  std::jthread thread_;
+};
+
+void removeOldPreviews(const fs::path& folder) {
+  std::error_code failed;
+  const auto old = fs::file_time_type::clock::now() - kPreviewsKept;
+  for (fs::directory_iterator at(folder, failed), end; !failed && at != end; at.increment(failed)) {
+    std::error_code gone;
+    if (fs::last_write_time(at->path(), gone) < old && !gone) fs::remove(at->path(), gone);
+  }
+}
+
+double rateOf(const Progress::Stage& stage) {
+  return stage.seconds > 0.0 ? static_cast<double>(stage.done) / stage.seconds : 0.0;
+}
+
+double total(std::span<const Progress::Stage> stages) {
+  double seconds = 0.0;
+  for (const Progress::Stage& stage : stages) seconds += stage.seconds;
+  return seconds;
+}
+
+}  // namespace
+
+struct BakeQueue::Impl {
+  explicit Impl(QueueSettings given)
+      : settings(std::move(given)),
+        journal(settings.work_folder.empty() ? fs::path() : settings.work_folder / kJournalFolder) {
+    settings.previews = settings.previews && !settings.work_folder.empty();
+    if (!settings.previews) return;
+    std::error_code failed;
+    fs::create_directories(settings.work_folder / kPreviewFolder, failed);
+    if (failed) settings.previews = false;
+    removeOldPreviews(settings.work_folder / kPreviewFolder);
+  }
+
+  QueueSettings settings;
+  Journal journal;
+
+  mutable std::mutex lock;
+  std::condition_variable_any changed;   // for the worker
+  std::condition_variable_any happened;  // for whoever waits for events
+  std::vector<std::shared_ptr<Job>> jobs;
+  std::vector<BakeEvent> events;
+  std::uint64_t asked = 0;
+  std::uint32_t last_id = 0;
+  Job* running = nullptr;
+  std::stop_source running_stop;
+
+  // The worker's own: the scene that it used last.
+  struct Held {
+    std::uint64_t asked = 0;
+    std::shared_ptr<const Scene> scene;
+  } held;
+
+  std::jthread worker;  // last: stops before the rest goes
+
+  fs::path placeOf(const Job& job, Rung rung) const {
+    if (rung == Rung::Final) return job.state.request.output;
+    return settings.work_folder / kPreviewFolder /
+           (requestKey(job.state.request) + "-" + rungName(rung) + ".lmb.glb");
+  }
+
+  void removePreviews(const Job& job) const {
+    if (!settings.previews) return;
+    for (const Rung rung : {Rung::Unshadowed, Rung::Coarse}) {
+      std::error_code ignored;
+      fs::remove(placeOf(job, rung), ignored);
+    }
+  }
+
+  void tell(BakeEvent::Kind kind, const Job& job, Rung rung = Rung::Final, fs::path bundle = {}) {
+    events.push_back({kind, job.state.id, rung, std::move(bundle)});
+    happened.notify_all();
+  }
+
+  std::shared_ptr<Job> find(JobId id) const {
+    const auto found = std::ranges::find_if(jobs, [&](const auto& job) { return job->state.id == id; });
+    return found == jobs.end() ? nullptr : *found;
+  }
+
+  Step firstStep(const BakeRequest& request) const {
+    if (!settings.previews) return Step::Final;
+    // Where a bundle is, most of what it takes to bake it again is in the cache, as a rule.
+    std::error_code ignored;
+    return settings.cache != nullptr && fs::exists(request.output, ignored) ? Step::Trial : Step::Unshadowed;
+  }
+
+  void start(Job& job, BakeRequest request) {
+    const JobId id = job.state.id;
+    job.state = {};
+    job.state.id = id;
+    job.state.request = std::move(request);
+    job.asked = ++asked;
+    job.step = firstStep(job.state.request);
+    job.tried = job.begun = false;
+    job.state.rung = rungOf(job.step);
+  }
+
+  std::shared_ptr<Job> next() const {
+    std::shared_ptr<Job> best;
+    for (const auto& job : jobs) {
+      if (job->state.phase != JobPhase::Waiting) continue;
+      if (!best || job->rank() < best->rank() || (job->rank() == best->rank() && job->asked > best->asked))
+        best = job;
+    }
+    return best;
+  }
+
+  JobState snapshot(const Job& job) const;
+  void work(const std::stop_token& stop);
+  void turn(const std::shared_ptr<Job>& job, std::unique_lock<std::mutex>& hold,
+            const std::stop_token& closing);
+  Result<std::shared_ptr<const Scene>> sceneOf(const BakeRequest& request, std::uint64_t asked_then);
+};
+
+JobState BakeQueue::Impl::snapshot(const Job& job) const {
+  JobState state = job.state;
+  if (state.phase == JobPhase::Done) {
+    state.fraction = 1.0;
+    state.seconds_left = 0.0;
+  }
+  std::vector<Progress::Stage> finished;
+  if (job.progress) {
+    state.stage = job.progress->now();
+    state.units_per_s = rateOf(state.stage);
+    finished = job.progress->finished();
+    state.seconds += total(finished) + state.stage.seconds;
+  }
+  const bool going = state.phase == JobPhase::Waiting || state.phase == JobPhase::Importing ||
+                     state.phase == JobPhase::Baking;
+  if (!going || job.expected.empty()) return state;
+  // Only the final bake counts; rungs before it are short.
+  const bool at_final = job.progress && state.rung == Rung::Final;
+  if (!at_final) finished.clear();
+  const double left = secondsLeft(job.expected, finished, at_final ? state.stage : Progress::Stage{});
+  state.seconds_left = left;
+  if (left + state.seconds > 0.0)
+    state.fraction = std::max(state.fraction, state.seconds / (state.seconds + left));
+  return state;
+}
+
+Result<std::shared_ptr<const Scene>> BakeQueue::Impl::sceneOf(const BakeRequest& request,
+                                                              std::uint64_t asked_then) {
+  if (held.asked == asked_then && held.scene) return held.scene;
+  held = {};
+  auto scene = importScene(request.scene, request.import);
+  if (!scene) return failAgain(scene.error());
+  applyEdits(request.edits, *scene);
+  held = {asked_then, std::make_shared<const Scene>(std::move(*scene))};
+  return held.scene;
+}
+
+void BakeQueue::Impl::turn(const std::shared_ptr<Job>& job, std::unique_lock<std::mutex>& hold,
+                           const std::stop_token& closing) {
+  const std::uint64_t asked_then = job->asked;
+  const BakeRequest request = job->state.request;
+  const Step step = job->step;
+  const Rung rung = rungOf(step);
+  const auto progress = std::make_shared<Progress>();
+  std::stop_source stop;
+  running = job.get();
+  running_stop = stop;
+  job->progress = progress;
+  job->state.rung = rung;
+  job->state.phase = JobPhase::Importing;
+  if (!job->begun) tell(BakeEvent::Kind::Began, *job);
+  const bool record = !job->begun;
+  job->begun = true;
+  const fs::path place = placeOf(*job, rung);
+  if (record) job->record = {};  // of the content before
+  hold.unlock();
+
+  const std::stop_callback stop_too(closing, [stop]() mutable { stop.request_stop(); });
+  Journal::Entry entry;
+  if (record) entry = journal.begin(request);
+  bool up_to_date = false;
+  std::vector<std::string> warnings;
+  const Result<BakeReport> result = [&]() -> Result<BakeReport> {
+    try {
+      if (auto checked = checkRequest(request.options, request.output); !checked)
+        return failAgain(checked.error());
+      progress->begin("import");
+      const auto scene = sceneOf(request, asked_then);
+      if (!scene) return failAgain(scene.error());
+      warnings = (*scene)->warnings;
+      {
+        const std::lock_guard again(lock);
+        if (job->asked == asked_then) {
+          job->state.phase = JobPhase::Baking;
+          if (job->expected.empty()) job->expected = guessSeconds(**scene, request.options);
+        }
+      }
+      if (record && isUpToDate(**scene, request.options, request.output)) {
+        up_to_date = true;
+        return BakeReport{};
+      }
+      std::optional<Deadline> deadline;
+      if (step == Step::Trial) deadline.emplace(stop, settings.trial);
+      return bakeRung(rung, **scene, request.options, place, *progress, stop.get_token(), settings.cache);
+    } catch (const std::exception& failure) {  // out of memory, most likely
+      return fail(request.scene.string(), failure.what(), "free some memory or bake the scene in parts");
+    }
+  }();
+  progress->end();
+
+  hold.lock();
+  running = nullptr;
+  if (job->asked != asked_then) {  // added anew or cancelled meanwhile
+    if (job->state.phase == JobPhase::Cancelled) entry.done();
+    return;
+  }
+  if (record) job->record = std::move(entry);
+  JobState& state = job->state;
+  const std::vector<Progress::Stage> stages = progress->finished();
+  state.fraction = snapshot(*job).fraction;
+  state.seconds += total(stages);
+  job->progress = nullptr;
+  state.warnings = warnings;
+  if (!result) {
+    if (!stop.stop_requested()) {
+      state.phase = JobPhase::Failed;
+      state.error = result.error();
+      job->record.done();
+      tell(BakeEvent::Kind::Failed, *job, rung);
+      return;
+    }
+    // Cut short: to be gone on with, but after a trial what can be shown sooner comes first.
+    state.phase = JobPhase::Waiting;
+    if (step == Step::Trial) {
+      job->tried = true;
+      job->step = state.reached ? Step::Coarse : Step::Unshadowed;
+      state.rung = rungOf(job->step);
+    }
+    return;
+  }
+  state.reached = up_to_date ? Rung::Final : rung;
+  state.up_to_date = up_to_date;
+  state.bundle = up_to_date ? request.output : place;
+  if (!up_to_date) state.report = *result;
+  state.warnings.insert(state.warnings.end(), result->notices.begin(), result->notices.end());
+  tell(BakeEvent::Kind::Bundle, *job, *state.reached, state.bundle);
+  if (state.reached >= request.last) {
+    if (!up_to_date) job->expected = sumSeconds(stages);  // for the next time
+    state.phase = JobPhase::Done;
+    job->record.done();
+    return;
+  }
+  if (rung == Rung::Coarse)
+    job->expected = scaleSeconds(stages, rungOptions(Rung::Coarse, request.options), request.options);
+  state.phase = JobPhase::Waiting;
+  job->step = rung == Rung::Coarse ? Step::Final : job->tried ? Step::Coarse : Step::Trial;
+  state.rung = rungOf(job->step);
+}
+
+void BakeQueue::Impl::work(const std::stop_token& stop) {
+  std::unique_lock hold(lock);
+  while (changed.wait(hold, stop, [&] { return next() != nullptr; }) && !stop.stop_requested())
+    turn(next(), hold, stop);
+}
+
+BakeQueue::BakeQueue(QueueSettings settings) : impl_(std::make_unique<Impl>(std::move(settings))) {
+  impl_->worker = std::jthread([impl = impl_.get()](const std::stop_token& stop) { impl->work(stop); });
+}
+
+BakeQueue::~BakeQueue() {
+  impl_->worker.request_stop();
+  impl_->worker.join();
+  for (const auto& job : impl_->jobs) impl_->removePreviews(*job);
+}
+
+JobId BakeQueue::add(BakeRequest request) {
+  const std::lock_guard hold(impl_->lock);
+  const std::string key = requestKey(request);
+  const auto same = std::ranges::find_if(
+      impl_->jobs, [&](const auto& job) { return requestKey(job->state.request) == key; });
+  std::shared_ptr<Job> job;
+  if (same != impl_->jobs.end()) {
+    job = *same;
+  } else {
+    job = impl_->jobs.emplace_back(std::make_shared<Job>());
+    job->state.id = {++impl_->last_id};
+  }
+  impl_->start(*job, std::move(request));
+  // What runs goes on later from where it is, if that is kept; and not at all if its scene has changed.
+  const Job* const running = impl_->running;
+  if (running != nullptr &&
+      (running == job.get() || (impl_->settings.cache != nullptr && job->rank() < running->rank())))
+    impl_->running_stop.request_stop();
+  impl_->changed.notify_all();
+  return job->state.id;
+}
+
+void BakeQueue::cancel(JobId id) {
+  const std::lock_guard hold(impl_->lock);
+  const std::shared_ptr<Job> job = impl_->find(id);
+  if (!job || job->state.phase == JobPhase::Done || job->state.phase == JobPhase::Failed ||
+      job->state.phase == JobPhase::Cancelled)
+    return;
+  if (impl_->running == job.get()) impl_->running_stop.request_stop();
+  job->asked = ++impl_->asked;  // what still runs is not told
+  job->state.phase = JobPhase::Cancelled;
+  job->progress = nullptr;
+  job->record.done();
+  impl_->tell(BakeEvent::Kind::Cancelled, *job);
+}
+
+std::vector<JobState> BakeQueue::states() const {
+  const std::lock_guard hold(impl_->lock);
+  std::vector<JobState> states;
+  for (const auto& job : impl_->jobs) states.push_back(impl_->snapshot(*job));
+  return states;
+}
+
+std::vector<BakeEvent> BakeQueue::takeEvents() {
+  const std::lock_guard hold(impl_->lock);
+  return std::exchange(impl_->events, {});
+}
+
+bool BakeQueue::busy() const {
+  const std::lock_guard hold(impl_->lock);
+  return impl_->running != nullptr || impl_->next() != nullptr;
+}
+
+void BakeQueue::waitForEvents(std::chrono::milliseconds time) {
+  std::unique_lock hold(impl_->lock);
+  impl_->happened.wait_for(hold, time, [&] { return !impl_->events.empty(); });
+}
+
+}  // namespace lambent::baker

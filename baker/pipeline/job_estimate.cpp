@@ -1,0 +1,107 @@
+#include "baker/pipeline/job_estimate.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace lambent::baker {
+
+namespace {
+
+// Of one core or so: only to say something before anything is known.
+constexpr double kGuessedRaysPerSecond = 3e6, kGuessedCodedPerSecond = 2e4;
+// Each pass has less light to carry on, and fewer samples that it counts for.
+constexpr int kGuessedBounces = 4;
+
+bool isBounce(const std::string& stage) {
+  return stage.starts_with("bounce ");
+}
+
+// Whose time goes with the rays of a sample.
+bool goesWithRays(const std::string& stage) {
+  return isBounce(stage) || stage == "direct light" || stage == "glossy shadows" || stage == "paths" ||
+         stage == "light into volumes" || stage == "scattering" || stage == "neighborhood";
+}
+
+double cells(const glm::uvec3& grid) {
+  return std::max(1.0, double(grid.x) * double(grid.y) * double(grid.z));
+}
+
+// Of a stage under other options; rough, each for a reason that its name says.
+double growth(const std::string& stage, const BakeOptions& of, const BakeOptions& to) {
+  const double rays = static_cast<double>(to.effectiveRays()) / static_cast<double>(of.effectiveRays());
+  const double voxels = cells(to.volume_grid) / cells(of.volume_grid);
+  if (stage == "scattering" || stage == "scattered light")
+    return voxels * (stage == "scattering" ? rays : voxels);
+  if (stage == "light into volumes") return rays * voxels;
+  if (goesWithRays(stage)) return rays;
+  if (stage.starts_with("coding"))
+    return std::sqrt(double{of.effectiveErrorBound()} / double{to.effectiveErrorBound()});
+  return 1.0;
+}
+
+}  // namespace
+
+StageSeconds guessSeconds(const Scene& scene, const BakeOptions& options) {
+  double vertices = 0.0;
+  for (const SceneMesh& mesh : scene.meshes)
+    for (const ScenePrimitive& primitive : mesh.primitives)
+      vertices += static_cast<double>(primitive.mesh.positions.size());
+  const double direct = vertices * static_cast<double>(options.effectiveRays()) / kGuessedRaysPerSecond;
+  StageSeconds seconds = {{"direct light", direct}, {"coding", vertices / kGuessedCodedPerSecond}};
+  const int bounces = options.bounces < 0 ? kGuessedBounces : options.bounces;
+  for (int bounce = 1; bounce <= bounces; ++bounce) seconds[fmt::format("bounce {}", bounce)] = 0.3 * direct;
+  return seconds;
+}
+
+StageSeconds sumSeconds(std::span<const Progress::Stage> stages) {
+  StageSeconds seconds;
+  for (const Progress::Stage& stage : stages) seconds[stage.name] += stage.seconds;
+  return seconds;
+}
+
+StageSeconds scaleSeconds(std::span<const Progress::Stage> stages, const BakeOptions& of,
+                          const BakeOptions& to) {
+  StageSeconds seconds;
+  for (const Progress::Stage& stage : stages)
+    seconds[stage.name] += stage.seconds * growth(stage.name, of, to);
+  // More passes than there were cost about what the last one did.
+  const int bounces = to.bounces < 0 ? kGuessedBounces : to.bounces;
+  for (int bounce = 2; bounce <= bounces; ++bounce) {
+    const auto before = seconds.find(fmt::format("bounce {}", bounce - 1));
+    if (before != seconds.end()) seconds.try_emplace(fmt::format("bounce {}", bounce), before->second);
+  }
+  return seconds;
+}
+
+double secondsLeft(const StageSeconds& expected, std::span<const Progress::Stage> finished,
+                   const Progress::Stage& now) {
+  const StageSeconds spent = sumSeconds(finished);
+  const auto spentOn = [&](const std::string& stage) {
+    const auto found = spent.find(stage);
+    return found == spent.end() ? 0.0 : found->second;
+  };
+  // Which bounce was the last shows when something else begins.
+  bool past_bounces = !isBounce(now.name);
+  if (past_bounces)
+    past_bounces = std::any_of(finished.begin(), finished.end(),
+                               [](const Progress::Stage& stage) { return isBounce(stage.name); });
+  double left = 0.0;
+  for (const auto& [stage, seconds] : expected) {
+    if (stage == now.name || (isBounce(stage) && past_bounces)) continue;
+    left += std::max(0.0, seconds - spentOn(stage));
+  }
+  const auto found = expected.find(now.name);
+  const double this_one = found == expected.end() ? 0.0 : std::max(0.0, found->second - spentOn(now.name));
+  // By its own rate, once that says something, and at least what is expected of later groups.
+  if (now.total > 0 && now.done > 0 && now.seconds > 0.2) {
+    const double rate = static_cast<double>(now.done) / now.seconds;
+    const double own = static_cast<double>(now.total - std::min(now.done, now.total)) / rate;
+    const double of_others = std::max(0.0, this_one - now.seconds - own);
+    return left + own + of_others;
+  }
+  return left + std::max(0.0, this_one - now.seconds);
+}
+
+}  // namespace lambent::baker

@@ -1,0 +1,226 @@
+#include "baker/pipeline/source_watch.hpp"
+
+#include <algorithm>
+#include <condition_variable>
+#include <exception>
+#include <map>
+#include <mutex>
+#include <set>
+#include <string_view>
+#include <thread>
+#include <utility>
+
+#include "baker/import/gltf.hpp"
+
+namespace lambent::baker {
+
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+// What tells one content of a file from another.
+struct Stamp {
+  bool there = false;
+  std::uintmax_t size = 0;
+  fs::file_time_type time{};
+  bool operator==(const Stamp&) const = default;
+};
+
+Stamp stampOf(const fs::path& file) {
+  std::error_code failed;
+  Stamp stamp;
+  stamp.size = fs::file_size(file, failed);
+  if (failed) return {};
+  stamp.time = fs::last_write_time(file, failed);
+  stamp.there = !failed;
+  return stamp.there ? stamp : Stamp{};
+}
+
+std::vector<Stamp> stampsOf(const std::vector<fs::path>& files) {
+  std::vector<Stamp> stamps;
+  for (const fs::path& file : files) stamps.push_back(stampOf(file));
+  return stamps;
+}
+
+struct Watched {
+  std::vector<fs::path> files;  // the scene first
+  std::vector<Stamp> stamps;
+  Clock::time_point moved;  // when they last changed
+  std::optional<Clock::time_point> missing;
+  std::optional<Clock::time_point> failing;  // since when what lies there does not import
+  std::optional<Error> error;
+  bool dirty = true, told = false, complained = false;
+};
+
+// Images stay encoded at import, and a PNG that is cut off would only fail in the bake.
+bool cutOff(const SceneImage& image) {
+  if (image.mime_type != "image/png") return false;
+  constexpr std::size_t kTail = 64;
+  const std::size_t count = std::min(kTail, image.file_bytes.size());
+  const auto* const tail =
+      reinterpret_cast<const char*>(image.file_bytes.data() + image.file_bytes.size() - count);
+  return std::string_view(tail, count).find("IEND") == std::string_view::npos;
+}
+
+Result<void> tryImport(const fs::path& path, const ImportOptions& options) {
+  try {
+    const auto scene = importScene(path, options);
+    if (!scene) return failAgain(scene.error());
+    for (const SceneImage& image : scene->images)
+      if (cutOff(image))
+        return fail(path.string(), "its image \"" + image.name + "\" is cut off", "write it again");
+    return {};
+  } catch (const std::exception& failure) {  // out of memory, most likely
+    return fail(path.string(), failure.what(), "free some memory");
+  }
+}
+
+// The scenes of a folder and below; hidden folders are nobody's business.
+void collect(const fs::path& folder, std::set<fs::path>& scenes) {
+  std::error_code failed;
+  fs::recursive_directory_iterator at(folder, fs::directory_options::skip_permission_denied, failed), end;
+  for (; !failed && at != end; at.increment(failed)) {
+    std::error_code gone;
+    if (at->is_directory(gone)) {
+      if (at->path().filename().string().starts_with('.')) at.disable_recursion_pending();
+    } else if (isSceneFile(at->path())) {
+      scenes.insert(at->path());
+    }
+  }
+}
+
+}  // namespace
+
+struct SourceWatch::Impl {
+  WatchSettings settings;
+  mutable std::mutex lock;
+  std::condition_variable_any changed;
+  std::vector<fs::path> sources;
+  std::vector<WatchEvent> events;
+  std::map<fs::path, Watched> watched;  // the thread's own
+  std::jthread thread;                  // last: stops before the rest goes
+
+  void tell(WatchEvent::Kind kind, const fs::path& scene, std::optional<Error> error = {}) {
+    const std::lock_guard hold(lock);
+    events.push_back({kind, scene, std::move(error)});
+  }
+
+  void run(const std::stop_token& stop) {
+    std::unique_lock hold(lock);
+    while (!stop.stop_requested()) {
+      const std::vector<fs::path> now = sources;
+      hold.unlock();
+      look(now, stop);
+      hold.lock();
+      changed.wait_for(hold, stop, settings.look_every, [&] { return sources != now; });
+    }
+  }
+
+  void look(const std::vector<fs::path>& from, const std::stop_token& stop);
+  bool gone(const fs::path& scene, Watched& state, bool listed);
+  void check(const fs::path& scene, Watched& state);
+};
+
+void SourceWatch::Impl::look(const std::vector<fs::path>& from, const std::stop_token& stop) {
+  std::set<fs::path> scenes;
+  for (const fs::path& source : from) {
+    std::error_code failed;
+    if (fs::is_directory(source, failed))
+      collect(source, scenes);
+    else if (fs::exists(source, failed))
+      scenes.insert(source);
+  }
+  for (const fs::path& scene : scenes)
+    if (const auto [entry, added] = watched.try_emplace(scene); added) {
+      entry->second.files = {scene};
+      entry->second.moved = Clock::now();
+    }
+  for (auto at = watched.begin(); at != watched.end() && !stop.stop_requested();) {
+    if (gone(at->first, at->second, scenes.contains(at->first))) {
+      at = watched.erase(at);
+    } else {
+      if (!at->second.missing) check(at->first, at->second);
+      ++at;
+    }
+  }
+}
+
+// Programs that replace a file may remove it first.
+bool SourceWatch::Impl::gone(const fs::path& scene, Watched& state, bool listed) {
+  if (listed) {
+    state.missing.reset();
+    return false;
+  }
+  if (!state.missing) state.missing = Clock::now();
+  if (Clock::now() - *state.missing < settings.still_for) return false;
+  if (state.told) tell(WatchEvent::Kind::Removed, scene);
+  return true;
+}
+
+void SourceWatch::Impl::check(const fs::path& scene, Watched& state) {
+  const Clock::time_point now = Clock::now();
+  if (std::vector<Stamp> stamps = stampsOf(state.files); stamps != state.stamps) {
+    if (state.stamps.empty() || stamps.front() != state.stamps.front()) {
+      state.files = sourceFiles(scene);  // it may name others now
+      stamps = stampsOf(state.files);
+    }
+    state.stamps = std::move(stamps);
+    state.moved = now;
+    state.dirty = true;
+    state.error.reset();
+    state.failing.reset();
+    state.complained = false;  // something else may be wrong with it now
+    return;
+  }
+  if (!state.dirty || now - state.moved < settings.still_for) return;
+  // What failed once is tried again only when it is time to complain: a time stamp may be coarse.
+  const bool overdue = state.failing && now - *state.failing >= settings.complain_after;
+  if (state.error && !(overdue && !state.complained)) return;
+  const Result<void> imported = tryImport(scene, settings.import);
+  std::vector<fs::path> files = sourceFiles(scene);
+  if (files != state.files ||
+      stampsOf(files) != state.stamps) {  // moved meanwhile, or named what was not known
+    state.files = std::move(files);
+    state.stamps = stampsOf(state.files);
+    state.moved = now;
+    return;
+  }
+  if (!imported) {
+    state.error = imported.error();
+    if (!state.failing) state.failing = now;
+    if (overdue && !std::exchange(state.complained, true)) tell(WatchEvent::Kind::Broken, scene, state.error);
+    return;
+  }
+  state.dirty = state.complained = false;
+  state.failing.reset();
+  state.error.reset();
+  tell(std::exchange(state.told, true) ? WatchEvent::Kind::Changed : WatchEvent::Kind::Found, scene);
+}
+
+SourceWatch::SourceWatch(std::vector<fs::path> sources, WatchSettings settings)
+    : impl_(std::make_unique<Impl>()) {
+  impl_->settings = settings;
+  impl_->sources = std::move(sources);
+  impl_->thread = std::jthread([impl = impl_.get()](const std::stop_token& stop) { impl->run(stop); });
+}
+
+SourceWatch::SourceWatch(std::vector<fs::path> sources) : SourceWatch(std::move(sources), WatchSettings{}) {}
+
+SourceWatch::~SourceWatch() {
+  impl_->thread.request_stop();
+  impl_->thread.join();
+}
+
+void SourceWatch::setSources(std::vector<fs::path> sources) {
+  const std::lock_guard hold(impl_->lock);
+  impl_->sources = std::move(sources);
+  impl_->changed.notify_all();
+}
+
+std::vector<WatchEvent> SourceWatch::takeEvents() {
+  const std::lock_guard hold(impl_->lock);
+  return std::exchange(impl_->events, {});
+}
+
+}  // namespace lambent::baker

@@ -1,0 +1,36 @@
+// Light from infinity as it was read last, since reading probes and making them ready to be sampled takes
+// long, and most pictures that follow each other have the same light. One thread.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "baker/reference/environment.hpp"
+#include "baker/reference/options.hpp"
+#include "runtime/spec/light.hpp"
+
+namespace lambent::baker::reference {
+
+class LightCache {
+ public:
+  using FromInfinity = std::variant<spec::ProbeLight, spec::ConstantLight, spec::SunLight>;
+
+  // By the lights' words: a probe's file that changed since is not read again. Errors: those of loading a
+  // probe.
+  Result<std::shared_ptr<const Environment>> environment(const std::vector<spec::Light>& lights,
+                                                         const Options& options);
+  // What was repaired in the probes.
+  const std::vector<std::string>& notices() const { return distant_.notices; }
+
+ private:
+  std::optional<std::vector<FromInfinity>> lights_;  // that distant_ is of; none: of none
+  spec::DistantLights distant_;
+  float turn_deg_ = 0.0f;
+  int band_limit_ = 0;
+  std::shared_ptr<const Environment> environment_;  // of all these; null: of none
+};
+
+}  // namespace lambent::baker::reference

@@ -1,0 +1,74 @@
+#include "baker/transport/geometry_key.hpp"
+
+namespace lambent::baker {
+
+namespace {
+
+template <typename T>
+std::span<const T> ofDraw(const std::vector<T>& of_vertices, const DrawGeometry& draw) {
+  return std::span(of_vertices).subspan(draw.first_vertex, draw.vertex_count);
+}
+
+}  // namespace
+
+void addShape(const GroupGeometry& geometry, KeyMaker& key) {
+  key.addText("shape");
+  key.addList(geometry.positions).addList(geometry.normals).addList(geometry.triangles);
+  key.add(std::uint64_t{geometry.draws.size()});
+  for (const DrawGeometry& draw : geometry.draws) {
+    key.add(draw.first_vertex).add(draw.vertex_count).add(draw.first_triangle).add(draw.triangle_count);
+    key.add(draw.back).add(draw.kind);
+  }
+}
+
+void addOpacity(const Scene& scene, const GroupGeometry& geometry, KeyMaker& key) {
+  key.addText("opacity");
+  for (const DrawGeometry& draw : geometry.draws) {
+    key.add(draw.material >= 0);
+    if (draw.material < 0) continue;
+    const gltf::Material& material = scene.materials[static_cast<std::size_t>(draw.material)];
+    key.add(material.double_sided).add(material.alpha_mode);
+    if (material.alpha_mode != gltf::AlphaMode::Mask) continue;
+    key.add(material.alpha_cutoff).add(material.base_color.w);
+    addTexture(scene, material.base_color_texture.texture, key);
+    key.addList(ofDraw(geometry.texcoords, draw)).addList(ofDraw(geometry.colors, draw));
+  }
+}
+
+void addTexture(const Scene& scene, std::int32_t texture, KeyMaker& key) {
+  key.add(texture >= 0);
+  if (texture < 0) return;
+  const gltf::Texture& source = scene.textures[static_cast<std::size_t>(texture)];
+  key.add(source.sampler.wrap_s).add(source.sampler.wrap_t);
+  key.add(source.sampler.mag_filter).add(source.sampler.min_filter);
+  key.add(source.image >= 0);
+  if (source.image < 0) return;
+  const SceneImage& image = scene.images[static_cast<std::size_t>(source.image)];
+  key.addText(image.mime_type).addList(image.file_bytes);
+}
+
+void addTextureRef(const Scene& scene, const gltf::TextureRef& ref, KeyMaker& key) {
+  addTexture(scene, ref.texture, key);
+  key.add(ref.texcoord).add(ref.offset).add(ref.scale).add(ref.rotation_rad);
+}
+
+void addMesh(const bundle::MeshData& mesh, KeyMaker& key) {
+  key.addList(mesh.positions).addList(mesh.normals);
+  key.addList(mesh.texcoords0).addList(mesh.texcoords1);
+  key.addList(mesh.colors).addList(mesh.tangents).addList(mesh.indices);
+}
+
+void writeMesh(const bundle::MeshData& mesh, ByteWriter& out) {
+  out.addList(mesh.positions), out.addList(mesh.normals);
+  out.addList(mesh.texcoords0), out.addList(mesh.texcoords1);
+  out.addList(mesh.colors), out.addList(mesh.tangents), out.addList(mesh.indices);
+}
+
+bool readMesh(ByteReader& in, bundle::MeshData& mesh) {
+  in.readList(mesh.positions), in.readList(mesh.normals);
+  in.readList(mesh.texcoords0), in.readList(mesh.texcoords1);
+  in.readList(mesh.colors), in.readList(mesh.tangents);
+  return in.readList(mesh.indices);
+}
+
+}  // namespace lambent::baker

@@ -1,0 +1,78 @@
+# What `cmake --install` and `cpack` put together (docs/packaging.md): the component runtime, lambent-demo with a scene and
+# skies to show, and the component tools, lambent and, where it is built, lambent-editor. Both carry their libraries.
+
+set(LAMBENT_PACKAGE_SCENE gallery CACHE STRING "Sample scene that the runtime package shows; baked while packing")
+set(LAMBENT_RUNTIME_PROGRAMS lambent-demo)
+set(LAMBENT_TOOL_PROGRAMS lambent lambent-editor)
+
+# Left to the system, and not looked into: the loader, glibc and the compiler's libraries must be as new as the newest user in
+# the process, and that may be the OpenGL driver; zlib is everywhere.
+set(LAMBENT_SYSTEM_LIBRARIES "^ld-linux" "^lib(c|m|dl|pthread|rt|resolv|util|anl|mvec)\\.so" "^lib(stdc\\+\\+|gcc_s|z)\\.so")
+# And what a program shares with the driver and the display server. Whoever shows something must take the system's; lambent
+# never does, only what reads its pictures links these, and so it has them in a folder that no other program looks into.
+set(LAMBENT_DISPLAY_LIBRARIES
+  "^lib(GL|EGL|OpenGL|GLX|GLdispatch|GLESv2|glapi|gbm|drm)[-_a-z0-9]*\\.so" "^libudev\\.so"
+  "^lib(X11|Xau|Xdmcp|Xext|Xfixes|Xrender|Xrandr|Xi|Xcursor|Xinerama|xcb|xkbcommon|wayland|bsd|md)[-_a-zA-Z0-9]*\\.so")
+set(LAMBENT_HEADLESS_PROGRAMS lambent)
+set_target_properties(${LAMBENT_HEADLESS_PROGRAMS} PROPERTIES INSTALL_RPATH "$ORIGIN/../lib;$ORIGIN/../lib/headless")
+
+# Debian's names of what leaves no library behind, only code in the programs.
+set(LAMBENT_COMPILED_INTO_runtime libcli11-dev libexpected-dev libglm-dev libstb-dev nlohmann-json3-dev)
+set(LAMBENT_COMPILED_INTO_tools ${LAMBENT_COMPILED_INTO_runtime} libeigen3-dev libimgui-dev libtinygltf-dev)
+
+# lambent_package(COMPONENT target...): programs to bin/, what they link to lib/.
+function(lambent_package component)
+  set(programs "")
+  set(headless "")
+  foreach(target ${ARGN})
+    if(TARGET ${target})
+      install(TARGETS ${target} RUNTIME DESTINATION bin COMPONENT ${component})
+      list(APPEND programs "$<TARGET_FILE:${target}>")
+      if(target IN_LIST LAMBENT_HEADLESS_PROGRAMS)
+        list(APPEND headless "$<TARGET_FILE:${target}>")
+      endif()
+    endif()
+  endforeach()
+  install(CODE "
+    set(PROGRAMS \"${programs}\")
+    set(HEADLESS_PROGRAMS \"${headless}\")
+    set(SYSTEM_LIBRARIES [[${LAMBENT_SYSTEM_LIBRARIES}]])
+    set(DISPLAY_LIBRARIES [[${LAMBENT_DISPLAY_LIBRARIES}]])
+    set(COMPILED_IN \"${LAMBENT_COMPILED_INTO_${component}}\")
+    set(NOTICES \"share/doc/lambent/${component}\")
+    include([[${PROJECT_SOURCE_DIR}/cmake/package/libraries.cmake]])" COMPONENT ${component})
+  install(FILES "${PROJECT_SOURCE_DIR}/LICENSE" DESTINATION "share/doc/lambent" COMPONENT ${component})
+  configure_file("${PROJECT_SOURCE_DIR}/cmake/package/${component}.txt.in" "${CMAKE_BINARY_DIR}/package/${component}.txt" @ONLY)
+  install(FILES "${CMAKE_BINARY_DIR}/package/${component}.txt" DESTINATION . RENAME README-${component}.txt COMPONENT ${component})
+endfunction()
+
+lambent_package(runtime ${LAMBENT_RUNTIME_PROGRAMS})
+lambent_package(tools ${LAMBENT_TOOL_PROGRAMS})
+
+# Something to show at once, baked as scripts/demo does; lambent bakes again only what changed.
+set(bundle "${CMAKE_BINARY_DIR}/package/${LAMBENT_PACKAGE_SCENE}.lmb.glb")
+install(CODE "
+  execute_process(COMMAND \"$<TARGET_FILE:lambent>\" bake \"${CMAKE_BINARY_DIR}/assets/${LAMBENT_PACKAGE_SCENE}.glb\"
+                          -o \"${bundle}\" --rays 512 --bounces 4
+                  OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)" COMPONENT runtime)
+install(FILES "${bundle}" DESTINATION share/lambent/scenes COMPONENT runtime)
+install(FILES "${CMAKE_BINARY_DIR}/assets/sky.hdr" "${CMAKE_BINARY_DIR}/assets/studio.hdr"
+  DESTINATION share/lambent/probes COMPONENT runtime)
+install(DIRECTORY "${CMAKE_BINARY_DIR}/assets/" DESTINATION share/lambent/scenes COMPONENT tools FILES_MATCHING PATTERN "*.glb")
+install(FILES "${CMAKE_BINARY_DIR}/assets/sky.hdr" "${CMAKE_BINARY_DIR}/assets/studio.hdr"
+  DESTINATION share/lambent/probes COMPONENT tools)
+
+set(CPACK_GENERATOR TGZ)
+set(CPACK_THREADS 0)
+set(CPACK_PACKAGE_NAME lambent)
+set(CPACK_PACKAGE_VERSION "${PROJECT_VERSION}")
+set(platform "${PROJECT_VERSION}-${CMAKE_SYSTEM_NAME}-${CMAKE_SYSTEM_PROCESSOR}")
+# The folder that both archives unpack to: side by side they share their libraries.
+set(CPACK_PACKAGE_FILE_NAME "lambent-${platform}")
+set(CPACK_ARCHIVE_COMPONENT_INSTALL ON)
+set(CPACK_COMPONENTS_GROUPING IGNORE)
+set(CPACK_COMPONENTS_ALL runtime tools)
+set(CPACK_COMPONENT_INCLUDE_TOPLEVEL_DIRECTORY ON)
+set(CPACK_ARCHIVE_RUNTIME_FILE_NAME "lambent-demo-${platform}")
+set(CPACK_ARCHIVE_TOOLS_FILE_NAME "lambent-tools-${platform}")
+include(CPack)

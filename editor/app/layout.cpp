@@ -1,0 +1,122 @@
+#include "editor/app/layout.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include <imgui.h>
+
+#include "editor/panels/panel.hpp"
+
+namespace lambent::editor {
+
+namespace {
+
+constexpr float kEdge = 5.0f;  // pixels that can be grabbed
+constexpr float kLeastShare = 0.08f, kMostShare = 0.6f;
+constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
+                                    ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoTitleBar |
+                                    ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus;
+
+struct Area {
+  ImVec2 at, size;
+};
+
+void drawDock(const char* id, Dock dock, const Area& area, std::string& tab, Session& session, Ui& ui) {
+  ImGui::SetNextWindowPos(area.at);
+  ImGui::SetNextWindowSize(area.size);
+  ImGui::Begin(id, nullptr, kFixed);
+  if (ImGui::BeginTabBar("tabs", ImGuiTabBarFlags_FittingPolicyScroll)) {
+    for (const Panel& panel : panelList()) {
+      if (panel.dock != dock) continue;
+      const bool raise = session.raise_tabs && tab == panel.name;
+      const bool open = ImGui::BeginTabItem(panel.name, nullptr, raise ? ImGuiTabItemFlags_SetSelected : 0);
+      ui.mark(std::string("tab.") + panel.name);
+      if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", panel.help);
+      if (!open) continue;
+      if (!session.raise_tabs) tab = panel.name;
+      ImGui::BeginChild("panel");
+      panel.draw(session, ui);
+      ImGui::EndChild();
+      ImGui::EndTabItem();
+    }
+    ImGui::EndTabBar();
+  }
+  ImGui::End();
+}
+
+// An edge between two areas; returns by how many pixels it was dragged.
+float drawEdge(const char* id, const Area& area, bool upright) {
+  ImGui::SetNextWindowPos(area.at);
+  ImGui::SetNextWindowSize(area.size);
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(0.0f, 0.0f));
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, ImVec2(1.0f, 1.0f));
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 0.0f);
+  ImGui::Begin(id, nullptr, kFixed | ImGuiWindowFlags_NoScrollbar);
+  ImGui::InvisibleButton("edge", area.size);
+  const bool active = ImGui::IsItemActive();
+  if (active || ImGui::IsItemHovered())
+    ImGui::SetMouseCursor(upright ? ImGuiMouseCursor_ResizeEW : ImGuiMouseCursor_ResizeNS);
+  ImGui::End();
+  ImGui::PopStyleVar(3);
+  if (!active) return 0.0f;
+  return upright ? ImGui::GetIO().MouseDelta.x : ImGui::GetIO().MouseDelta.y;
+}
+
+// What was asked for comes up, and its dock with it.
+void raisePanel(Session& session, const std::string& wanted) {
+  Preferences& p = session.preferences;
+  for (const Panel& panel : panelList()) {
+    if (wanted != panel.name) continue;
+    (panel.dock == Dock::Left ? p.left_tab : panel.dock == Dock::Right ? p.right_tab : p.bottom_tab) = wanted;
+    (panel.dock == Dock::Left    ? p.show_left
+     : panel.dock == Dock::Right ? p.show_right
+                                 : p.show_bottom) = true;
+    session.raise_tabs = true;
+    return;
+  }
+  session.log.warn("there is no panel \"" + wanted + "\"");
+}
+
+}  // namespace
+
+void drawLayout(Session& session, Ui& ui) {
+  drawMenus(session, ui);
+  for (const std::string& wanted : std::exchange(session.wanted_panels, {})) raisePanel(session, wanted);
+  const float top = ImGui::GetFrameHeight();
+  const ImVec2 screen = ImGui::GetIO().DisplaySize;
+  Preferences& p = session.preferences;
+  const float height = std::max(1.0f, screen.y - top);
+  const float left = p.show_left ? p.left * screen.x : 0.0f;
+  const float right = p.show_right ? p.right * screen.x : 0.0f;
+  const float bottom = p.show_bottom ? p.bottom * height : 0.0f;
+  const float middle = std::max(1.0f, screen.x - left - right);
+  const auto share = [](float value) { return std::clamp(value, kLeastShare, kMostShare); };
+
+  ImGui::SetNextWindowPos(ImVec2(left, top));
+  ImGui::SetNextWindowSize(ImVec2(middle, std::max(1.0f, height - bottom)));
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(0.0f, 0.0f));
+  ImGui::Begin("view", nullptr, kFixed | ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
+  ImGui::PopStyleVar();
+  drawViewport(session, ui);
+  ImGui::End();
+
+  if (p.show_left) {
+    drawDock("left", Dock::Left, {{0.0f, top}, {left, height}}, p.left_tab, session, ui);
+    p.left = share(p.left + drawEdge("left edge", {{left - kEdge, top}, {kEdge, height}}, true) / screen.x);
+  }
+  if (p.show_right) {
+    drawDock("right", Dock::Right, {{screen.x - right, top}, {right, height}}, p.right_tab, session, ui);
+    p.right =
+        share(p.right - drawEdge("right edge", {{screen.x - right, top}, {kEdge, height}}, true) / screen.x);
+  }
+  if (p.show_bottom) {
+    const float at = top + height - bottom;
+    drawDock("bottom", Dock::Bottom, {{left, at}, {middle, bottom}}, p.bottom_tab, session, ui);
+    p.bottom = share(p.bottom - drawEdge("bottom edge", {{left, at}, {middle, kEdge}}, false) / height);
+  }
+  session.raise_tabs = false;
+  drawDialogs(session, ui);
+  drawToasts(session, ui);
+}
+
+}  // namespace lambent::editor

@@ -1,0 +1,19 @@
+// lambent-editor: opens, bakes and lights scenes. Exit codes: 0 done, 1 failed, 2 wrong usage.
+#include <exception>
+
+#include "editor/app/options.hpp"
+#include "editor/app/run.hpp"
+
+int main(int argc, char** argv) {
+  using namespace lambent;
+  try {
+    const auto parsed = editor::parseOptions(argc, argv);
+    if (const int* exit_code = std::get_if<int>(&parsed)) return *exit_code;
+    const Result<void> done = editor::run(std::get<editor::Options>(parsed));
+    if (done) return 0;
+    editor::printError(done.error());
+  } catch (const std::exception& error) {  // out of memory, mostly
+    editor::printError({.subject = "stopped", .problem = error.what(), .mend = {}});
+  }
+  return 1;
+}

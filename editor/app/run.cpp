@@ -1,0 +1,89 @@
+#include "editor/app/run.hpp"
+
+#include <chrono>
+#include <cstdio>
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include "editor/app/layout.hpp"
+#include "editor/script/script.hpp"
+#include "runtime/base/atomic_file.hpp"
+
+namespace lambent::editor {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr double kRestWaitSeconds = 0.1;  // between looks at files and bakes while nothing moves
+constexpr double kActiveSeconds = 0.5;    // after input, for widgets that move on their own
+
+Result<std::optional<Script>> loadScript(const Options& options) {
+  if (!options.script) return std::nullopt;
+  const auto text = readTextFile(*options.script);
+  if (!text) return failAgain(text.error());
+  auto lines = parseScript(*options.script, *text);
+  if (!lines) return failAgain(lines.error());
+  const bool json = options.json;
+  return Script(*options.script, std::move(*lines), [json](const std::string& answer) {
+    if (!json) return;
+    fmt::print("{}\n", answer);
+    std::fflush(stdout);
+  });
+}
+
+}  // namespace
+
+Result<void> run(const Options& options) {
+  auto script = loadScript(options);
+  if (!script) return failAgain(script.error());
+  const std::filesystem::path remembered = options.remember ? preferencesFile() : std::filesystem::path{};
+  Preferences preferences = loadPreferences(remembered);
+  if (options.width > 0) preferences.width = options.width, preferences.height = options.height;
+  if (options.scale > 0.0f) preferences.scale = options.scale;
+
+  auto window = gpu::Window::create("Lambent", static_cast<std::uint32_t>(preferences.width),
+                                    static_cast<std::uint32_t>(preferences.height), {});
+  if (!window)
+    return fail(window.error().subject, window.error().problem,
+                "start it where there is a display, or under xvfb-run");
+  auto session = Session::create(options.session, std::move(preferences));
+  if (!session) return failAgain(session.error());
+  Session& s = **session;
+  Ui ui(*window, s.preferences.scale);
+  s.clipboard.put_system = [](const std::string& text) { ImGui::SetClipboardText(text.c_str()); };
+  s.clipboard.get_system = [] {
+    const char* text = ImGui::GetClipboardText();
+    return std::string(text ? text : "");
+  };
+
+  Clock::time_point last = Clock::now();
+  bool moving = true;
+  while (!s.quit) {
+    const ScriptedInput* scripted = *script ? (*script)->step(s, ui) : nullptr;
+    if (*script && (*script)->done() && scripted == nullptr) break;
+    const bool wait = !moving && !*script && ui.sinceInput() > kActiveSeconds;
+    ui.begin(wait ? kRestWaitSeconds : 0.0, scripted);
+    if (ui.closeRequested()) {
+      ui.refuseClose();
+      s.askToQuit();
+    }
+    for (const std::filesystem::path& file : ui.takeDropped()) s.openLogged(file);
+    const auto now = Clock::now();
+    s.update(std::chrono::duration<double>(now - last).count());
+    last = now;
+    drawLayout(s, ui);
+    moving = s.moving();
+    ui.end();
+    if (s.titleChanged()) window->setTitle(s.title());
+  }
+  std::uint32_t width = 0, height = 0;
+  window->framebufferSize(width, height);
+  s.preferences.width = static_cast<int>(width), s.preferences.height = static_cast<int>(height);
+  savePreferences(remembered, s.preferences);
+  if (*script && (*script)->failed()) return failAgain((*script)->error());
+  return {};
+}
+
+}  // namespace lambent::editor

@@ -1,0 +1,91 @@
+#include <array>
+
+#include "editor/commands/rows.hpp"
+
+namespace lambent::editor {
+
+namespace {
+
+Answer bake(Session& session, Words words) {
+  const auto entry = findScene(session, words.empty() ? std::string() : words[0]);
+  if (!entry) return failAgain(entry.error());
+  return answerOf(session.scenes.bake(*entry, session.editsOf(*entry)));
+}
+
+Answer bakeAll(Session& session, Words) {
+  for (std::size_t i = 0; i < session.scenes.entries().size(); ++i) {
+    if (session.scenes.entries()[i].source.empty()) continue;
+    if (auto asked = session.scenes.bake(i, session.editsOf(i)); !asked) return failAgain(asked.error());
+  }
+  return nullptr;
+}
+
+Answer cancel(Session& session, Words words) {
+  if (!words.empty()) {
+    const auto entry = findScene(session, words[0]);
+    if (!entry) return failAgain(entry.error());
+    session.scenes.cancel(*entry);
+    return nullptr;
+  }
+  for (std::size_t i = 0; i < session.scenes.entries().size(); ++i) session.scenes.cancel(i);
+  return nullptr;
+}
+
+Answer option(Session& session, Words words) {
+  const auto entry = findScene(session, words.size() > 2 ? words[2] : std::string());
+  if (!entry) return failAgain(entry.error());
+  return answerOf(session.scenes.setOption(*entry, words[0], words[1]));
+}
+
+bool baking(const Session& session) {
+  return session.scenes.busy();
+}
+bool anyOpen(const Session& session) {
+  return !session.scenes.entries().empty();
+}
+
+constexpr std::array kRows = {
+    Command{.id = "bake",
+            .title = "Bake",
+            .menu = "Bake",
+            .shortcut = "F7",
+            .help = "Bake the scene at hand with what was edited; what did not change is not traced again",
+            .arguments = "[SCENE]",
+            .most_words = 1,
+            .run = &bake,
+            .enabled = &anyOpen},
+    Command{.id = "bake-all",
+            .title = "Bake all",
+            .menu = "Bake",
+            .shortcut = "Shift+F7",
+            .help = "Bake all scenes with what was edited",
+            .arguments = "",
+            .run = &bakeAll,
+            .enabled = &anyOpen},
+    Command{.id = "cancel",
+            .title = "Cancel",
+            .menu = "Bake",
+            .shortcut = "Ctrl+F7",
+            .help = "Stop baking; what was done is kept, and the next bake goes on from there",
+            .arguments = "[SCENE]",
+            .most_words = 1,
+            .run = &cancel,
+            .enabled = &baking},
+    Command{.id = "bake-option",
+            .title = "",
+            .menu = "Bake",
+            .shortcut = "",
+            .help = "An option of `lambent bake` for a scene: quality, order, rays, bounces, ...",
+            .arguments = "NAME VALUE [SCENE]",
+            .least_words = 2,
+            .most_words = 3,
+            .run = &option},
+};
+
+}  // namespace
+
+std::span<const Command> bakeCommands() {
+  return kRows;
+}
+
+}  // namespace lambent::editor

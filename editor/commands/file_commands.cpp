@@ -1,0 +1,163 @@
+#include <array>
+
+#include "editor/commands/rows.hpp"
+
+namespace lambent::editor {
+
+namespace {
+
+std::filesystem::path startFolder(const Session& session) {
+  std::error_code ignored;
+  if (!session.worldFile().empty()) return session.worldFile().parent_path();
+  if (!session.preferences.recent.empty())
+    return std::filesystem::path(session.preferences.recent.front()).parent_path();
+  return std::filesystem::current_path(ignored);
+}
+
+Answer open(Session& session, Words words) {
+  if (!words.empty()) {
+    for (const std::string& file : words)
+      if (auto opened = session.open(file); !opened) return failAgain(opened.error());
+    return nullptr;
+  }
+  Dialog ask;
+  ask.kind = Dialog::Kind::OpenFile;
+  ask.title = "Open";
+  ask.endings = {".gltf", ".glb", ".json"};
+  ask.folder = startFolder(session);
+  ask.yes = "Open";
+  ask.answered = [](Session& s, const std::string& file) { s.openLogged(file); };
+  session.dialog = std::move(ask);
+  return nullptr;
+}
+
+Answer watch(Session& session, Words words) {
+  if (!words.empty()) return answerOf(session.open(words[0]));
+  Dialog ask;
+  ask.kind = Dialog::Kind::Folder;
+  ask.title = "Open and watch a folder";
+  ask.folder = startFolder(session);
+  ask.yes = "Watch";
+  ask.answered = [](Session& s, const std::string& folder) { s.openLogged(folder); };
+  session.dialog = std::move(ask);
+  return nullptr;
+}
+
+Answer saveAs(Session& session, Words words) {
+  if (!words.empty()) return answerOf(session.save(words[0]), {{"file", words[0]}});
+  Dialog ask;
+  ask.kind = Dialog::Kind::SaveFile;
+  ask.title = "Save the world";
+  ask.endings = {".json"};
+  ask.folder = startFolder(session);
+  ask.name = session.worldFile().empty() ? "world.json" : session.worldFile().filename().string();
+  ask.yes = "Save";
+  ask.answered = [](Session& s, const std::string& file) {
+    std::filesystem::path path = file;
+    if (path.extension() != ".json") path += ".json";
+    if (auto saved = s.save(path); !saved) s.log.error(saved.error());
+  };
+  session.dialog = std::move(ask);
+  return nullptr;
+}
+
+Answer save(Session& session, Words words) {
+  if (words.empty() && !session.worldFile().empty())
+    return answerOf(session.save(session.worldFile()), {{"file", session.worldFile().string()}});
+  return saveAs(session, words);
+}
+
+Answer newWorld(Session& session, Words) {
+  session.unlessUnsaved("The world has edits that are not saved. Begin a new one without them?",
+                        [](Session& s) { s.newWorld(); });
+  return nullptr;
+}
+
+Answer close(Session& session, Words words) {
+  const auto entry = findScene(session, words.empty() ? std::string() : words[0]);
+  if (!entry) return failAgain(entry.error());
+  session.scenes.close(*entry);
+  return nullptr;
+}
+
+Answer quit(Session& session, Words) {
+  session.askToQuit();
+  return nullptr;
+}
+
+bool anyOpen(const Session& session) {
+  return !session.scenes.entries().empty();
+}
+
+constexpr std::size_t kMany = 1000;
+
+constexpr std::array kRows = {
+    Command{.id = "new",
+            .title = "New world",
+            .menu = "File",
+            .shortcut = "Ctrl+N",
+            .help = "Close everything and begin anew",
+            .arguments = "",
+            .run = &newWorld},
+    Command{.id = "open",
+            .title = "Open...",
+            .menu = "File",
+            .shortcut = "Ctrl+O",
+            .help = "Open scenes (.gltf, .glb), bundles (.lmb.glb) or a world (.json)",
+            .arguments = "FILE...",
+            .least_words = 1,
+            .most_words = kMany,
+            .run = &open},
+    Command{.id = "watch",
+            .title = "Open and watch a folder...",
+            .menu = "File",
+            .shortcut = "Ctrl+Shift+O",
+            .help = "Open all scenes of a folder, and bake what comes or changes there",
+            .arguments = "FOLDER",
+            .least_words = 1,
+            .most_words = 1,
+            .run = &watch},
+    separator("File"),
+    Command{.id = "save",
+            .title = "Save world",
+            .menu = "File",
+            .shortcut = "Ctrl+S",
+            .help = "Save what was edited, and which bundles stand here",
+            .arguments = "[FILE]",
+            .most_words = 1,
+            .run = &save},
+    Command{.id = "save-as",
+            .title = "Save world as...",
+            .menu = "File",
+            .shortcut = "Ctrl+Shift+S",
+            .help = "Save the world under another name",
+            .arguments = "FILE",
+            .least_words = 1,
+            .most_words = 1,
+            .run = &saveAs},
+    separator("File"),
+    Command{.id = "close",
+            .title = "Close scene",
+            .menu = "File",
+            .shortcut = "Ctrl+W",
+            .help = "Take the scene that is selected out of the world; its files stay",
+            .arguments = "[SCENE]",
+            .most_words = 1,
+            .run = &close,
+            .enabled = &anyOpen},
+    Command{.id = "quit",
+            .title = "Quit",
+            .menu = "File",
+            .shortcut = "Ctrl+Q",
+            .help = "End the editor; bakes go on where they were when it starts again",
+            .arguments = "",
+            .run = &quit},
+};
+
+}  // namespace
+
+std::span<const Command> fileCommands() {
+  return kRows;
+}
+
+}  // namespace lambent::editor

@@ -1,0 +1,127 @@
+#include <array>
+
+#include "editor/commands/rows.hpp"
+#include "runtime/spec/light.hpp"
+
+namespace lambent::editor {
+
+namespace {
+
+Result<std::string> fromInfinity(const std::string& word) {
+  const auto light = spec::parseLight(word);
+  if (!light) return failAgain(light.error());
+  if (!spec::localLights(std::vector{*light}).empty())
+    return fail(word, "stands in the scene", "create-sphere and create-disc put lights there");
+  if (const auto* probe = std::get_if<spec::ProbeLight>(&*light)) {
+    std::error_code ignored;
+    if (!std::filesystem::exists(probe->file, ignored))
+      return fail(word, "is not there", "name an .hdr or .exr file");
+  }
+  return word;
+}
+
+Answer addLight(Session& session, Words words) {
+  const auto word = fromInfinity(words[0]);
+  if (!word) return failAgain(word.error());
+  session.editWorld("add light", [&](WorldState& world) { world.lights.push_back(*word); });
+  return nullptr;
+}
+
+Answer removeLight(Session& session, Words words) {
+  const auto& lights = session.document.world().lights;
+  const std::size_t index =
+      words[0].find_first_not_of("0123456789") == std::string::npos ? std::stoul(words[0]) : lights.size();
+  if (index >= lights.size())
+    return fail("remove-light", "there is no light " + words[0], fmt::format("there are {}", lights.size()));
+  session.editWorld("remove light", [&](WorldState& world) {
+    world.lights.erase(world.lights.begin() + static_cast<std::ptrdiff_t>(index));
+  });
+  return nullptr;
+}
+
+// In place of the probe there is, else of all that there is: a probe brings its own sun.
+Answer probe(Session& session, Words words) {
+  if (words.empty()) {
+    Dialog ask;
+    ask.kind = Dialog::Kind::OpenFile;
+    ask.title = "Light from a probe";
+    ask.endings = {".hdr", ".exr"};
+    std::error_code ignored;
+    ask.folder = std::filesystem::current_path(ignored);
+    ask.answered = [](Session& s, const std::string& file) {
+      if (auto done = runCommand(s, "probe", std::array{file}); !done) s.log.error(done.error());
+    };
+    session.dialog = std::move(ask);
+    return nullptr;
+  }
+  const auto word = fromInfinity(words[0]);
+  if (!word) return failAgain(word.error());
+  session.editWorld("probe " + std::filesystem::path(*word).stem().string(), [&](WorldState& world) {
+    for (std::string& light : world.lights)
+      if (const auto parsed = spec::parseLight(light);
+          parsed && std::holds_alternative<spec::ProbeLight>(*parsed)) {
+        light = *word;
+        return;
+      }
+    world.lights = {*word};
+  });
+  return nullptr;
+}
+
+Answer probeFolder(Session& session, Words words) {
+  if (!words.empty()) {
+    session.probes.addFolder(words[0]);
+    return nullptr;
+  }
+  Dialog ask;
+  ask.kind = Dialog::Kind::Folder;
+  ask.title = "Folder of probes";
+  std::error_code ignored;
+  ask.folder = std::filesystem::current_path(ignored);
+  ask.answered = [](Session& s, const std::string& folder) { s.probes.addFolder(folder); };
+  session.dialog = std::move(ask);
+  return nullptr;
+}
+
+Answer lights(Session& session, Words words) {
+  std::vector<std::string> checked;
+  for (const std::string& given : words) {
+    const auto word = fromInfinity(given);
+    if (!word) return failAgain(word.error());
+    checked.push_back(*word);
+  }
+  session.editWorld("lights", [&](WorldState& world) { world.lights = checked; });
+  return nullptr;
+}
+
+Answer exposure(Session& session, Words words) {
+  std::optional<float> ev;
+  if (words[0] != "auto") {
+    char* end = nullptr;
+    ev = std::strtof(words[0].c_str(), &end);
+    if (*end != '\0' || !(*ev >= -64.0f && *ev <= 64.0f))
+      return fail("exposure", words[0] + " is not a number of stops", "give -64..64 or auto");
+  }
+  session.editWorld("exposure", [&](WorldState& world) { world.exposure_ev = ev; });
+  return nullptr;
+}
+
+constexpr std::size_t kMany = 100;
+
+constexpr std::array kRows = {
+    scripted("lights", "The lights from infinity, in place of those there are", "LIGHT...", 1, kMany,
+             &lights),
+    scripted("add-light", "One more light from infinity", "LIGHT", 1, 1, &addLight),
+    scripted("remove-light", "Take one away, counted from 0", "NUMBER", 1, 1, &removeLight),
+    scripted("probe", "Light from this probe; without a name a dialog asks", "[FILE]", 0, 1, &probe),
+    scripted("probe-folder", "Show the probes of a folder", "[FOLDER]", 0, 1, &probeFolder),
+    scripted("exposure", "Stops above radiance 1 = white", "EV|auto", 1, 1, &exposure),
+};
+
+}  // namespace
+
+std::span<const Command> lightCommands() {
+  return kRows;
+}
+
+}  // namespace lambent::editor

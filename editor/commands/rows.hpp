@@ -1,0 +1,50 @@
+// The rows of the command list by subject: one file each, joined in command_list.cpp.
+#pragma once
+
+#include <string>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "editor/commands/command.hpp"
+#include "editor/session/names.hpp"
+#include "editor/session/session.hpp"
+
+namespace lambent::editor {
+
+std::span<const Command> fileCommands();
+std::span<const Command> editCommands();
+std::span<const Command> createCommands();
+std::span<const Command> viewCommands();
+std::span<const Command> lightCommands();
+std::span<const Command> bakeCommands();
+std::span<const Command> helpCommands();
+std::span<const Command> stateCommands();  // for scripts: what is there
+
+using Answer = Result<nlohmann::json>;
+
+// A line between items of a menu.
+constexpr Command separator(const char* menu) {
+  return {.id = "", .title = "-", .menu = menu, .shortcut = "", .help = "", .arguments = ""};
+}
+
+// For scripts alone: no item in a menu, no key.
+constexpr Command scripted(const char* id, const char* help, const char* arguments, std::size_t least,
+                           std::size_t most, Answer (*run)(Session&, Words)) {
+  return {.id = id,
+          .title = "",
+          .menu = "Script",
+          .shortcut = "",
+          .help = help,
+          .arguments = arguments,
+          .least_words = least,
+          .most_words = most,
+          .run = run};
+}
+
+inline Answer answerOf(const Result<void>& done, nlohmann::json answer = nullptr) {
+  if (!done) return failAgain(done.error());
+  return answer;
+}
+
+}  // namespace lambent::editor

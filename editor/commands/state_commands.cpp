@@ -1,0 +1,252 @@
+// What scripts ask and set: the state as JSON, fields by name.
+#include <array>
+
+#include "editor/commands/rows.hpp"
+#include "editor/document/actions.hpp"
+#include "runtime/frame/frame_settings.hpp"
+#include "runtime/spec/numbers.hpp"
+
+namespace lambent::editor {
+
+namespace {
+
+using nlohmann::json;
+
+json valueJson(const scene::Value& value) {
+  if (const auto* flag = std::get_if<bool>(&value)) return *flag;
+  if (const auto* whole = std::get_if<std::int32_t>(&value)) return *whole;
+  if (const auto* number = std::get_if<float>(&value)) return *number;
+  if (const auto* v = std::get_if<glm::vec3>(&value)) return {v->x, v->y, v->z};
+  if (const auto* q = std::get_if<glm::quat>(&value)) return {q->x, q->y, q->z, q->w};
+  if (const auto* text = std::get_if<std::string>(&value)) return *text;
+  return std::get<scene::Word>(value).text;
+}
+
+// Numbers, one word each.
+Result<scene::Value> readValue(const scene::FieldInfo& field, Words words) {
+  const auto wrong = [&](const char* wanted) {
+    return fail(std::string(field.name), fmt::format("\"{}\" is no value of it", fmt::join(words, " ")),
+                wanted);
+  };
+  std::vector<float> numbers;
+  for (const std::string& word : words)
+    if (const auto number = spec::parseNumber(word)) numbers.push_back(*number);
+  const bool all_numbers = numbers.size() == words.size();
+  using Kind = scene::ValueKind;
+  switch (field.kind) {
+    case Kind::Flag:
+      if (words.size() != 1 || (words[0] != "true" && words[0] != "false"))
+        return wrong("give true or false");
+      return scene::Value(words[0] == "true");
+    case Kind::Whole:
+      if (!all_numbers || numbers.size() != 1) return wrong("give a whole number");
+      return scene::Value(static_cast<std::int32_t>(numbers[0]));
+    case Kind::Number:
+      if (!all_numbers || numbers.size() != 1) return wrong("give a number");
+      return scene::Value(numbers[0]);
+    case Kind::Vector:
+      if (!all_numbers || numbers.size() != 3) return wrong("give three numbers");
+      return scene::Value(glm::vec3(numbers[0], numbers[1], numbers[2]));
+    case Kind::Rotation:
+      if (!all_numbers || numbers.size() != 4) return wrong("give x, y, z and w");
+      return scene::Value(glm::quat(numbers[3], numbers[0], numbers[1], numbers[2]));
+    case Kind::Text:
+      return scene::Value(words.empty() ? std::string() : words[0]);
+    case Kind::Word:
+      return scene::Value(scene::Word{words.empty() ? std::string() : words[0]});
+  }
+  return wrong("give a value");
+}
+
+// "Light.strength" or "ball:Light.strength": of the selection, or of what is named.
+struct Place {
+  std::vector<ecs::Entity> entities;
+  const scene::FieldInfo* field = nullptr;
+};
+Result<Place> placeOf(Session& session, const std::string& word) {
+  Place place;
+  const std::size_t colon = word.rfind(':'), dot = word.rfind('.');
+  if (dot == std::string::npos)
+    return fail(word, "is no field", "give COMPONENT.FIELD or NAME:COMPONENT.FIELD");
+  const std::size_t begin = colon == std::string::npos ? 0 : colon + 1;
+  if (colon == std::string::npos) {
+    place.entities = session.selection.entities(session.document);
+    if (place.entities.empty())
+      return fail(word, "nothing is selected", "select first, or give NAME:COMPONENT.FIELD");
+  } else {
+    const auto found = findEntities(session, word.substr(0, colon));
+    if (!found) return failAgain(found.error());
+    place.entities = *found;
+  }
+  const auto field = scene::findField(word.substr(begin, dot - begin), word.substr(dot + 1));
+  if (!field) return failAgain(field.error());
+  place.field = *field;
+  return place;
+}
+
+Answer set(Session& session, Words words) {
+  const auto place = placeOf(session, words[0]);
+  if (!place) return failAgain(place.error());
+  const auto value = readValue(*place->field, words.subspan(1));
+  if (!value) return failAgain(value.error());
+  std::vector<FieldEdit> edits;
+  for (const ecs::Entity entity : place->entities)
+    edits.push_back({entity, place->field->component, place->field->name, *value});
+  return answerOf(session.history.setFields(edits));
+}
+
+Answer get(Session& session, Words words) {
+  const auto place = placeOf(session, words[0]);
+  if (!place) return failAgain(place.error());
+  const ecs::Entity entity = place->entities.back();
+  const scene::ComponentInfo* component = scene::findComponent(place->field->component);
+  if (!component->has(session.document.registry(), entity))
+    return fail(words[0], session.document.nameOf(entity) + " has no " + std::string(component->name));
+  return valueJson(place->field->get(session.document.registry(), entity));
+}
+
+Answer inspect(Session& session, Words words) {
+  ecs::Entity entity = session.selection.primaryEntity(session.document);
+  if (!words.empty()) {
+    const auto found = findEntities(session, words[0]);
+    if (!found) return failAgain(found.error());
+    entity = found->back();
+  }
+  if (!session.document.registry().alive(entity))
+    return fail("inspect", "nothing is selected", "select first");
+  json components = json::object();
+  for (const scene::ComponentInfo& component : scene::components()) {
+    if (!component.has(session.document.registry(), entity)) continue;
+    json fields = json::object();
+    for (const scene::FieldInfo& field : component.fields)
+      fields[std::string(field.name)] = valueJson(field.get(session.document.registry(), entity));
+    components[std::string(component.name)] = fields;
+  }
+  return json{{"name", session.document.nameOf(entity)},
+              {"id", idText(session.document.idOf(entity))},
+              {"created", session.document.created(entity)},
+              {"components", components}};
+}
+
+json jobJson(const baker::JobState& job) {
+  json to = {{"phase", baker::phaseName(job.phase)},
+             {"fraction", job.fraction},
+             {"seconds", job.seconds},
+             {"upToDate", job.up_to_date}};
+  if (job.reached) to["reached"] = baker::rungName(*job.reached);
+  if (job.error) to["error"] = job.error->line();
+  if (job.report) to["rays"] = job.report->rays;
+  return to;
+}
+
+Answer state(Session& session, Words) {
+  json scenes = json::array();
+  for (std::size_t i = 0; i < session.scenes.entries().size(); ++i) {
+    const SceneEntry& entry = session.scenes.entries()[i];
+    json row = {{"id", entry.id},
+                {"source", entry.source.string()},
+                {"bundle", entry.bundle.string()},
+                {"shown", entry.shown.string()},
+                {"open", entry.slot.has_value()},
+                {"needsRebake", session.needsRebake(i)}};
+    if (const auto job = session.scenes.jobOf(i)) row["bake"] = jobJson(*job);
+    scenes.push_back(std::move(row));
+  }
+  json selected = json::array();
+  for (const ecs::Entity entity : session.selection.entities(session.document))
+    selected.push_back(session.document.nameOf(entity));
+  const frame::StepCounts& counts = session.stage.frame().counts();
+  json settings = json::object();
+  for (const frame::SettingRow& row : frame::settingRows())
+    settings[std::string(row.name)] = frame::settingWord(row, session.stage.frame().settings());
+  return json{{"scenes", scenes},
+              {"selected", selected},
+              {"lights", session.document.world().lights},
+              {"view", frame::wordOf(session.viewing.surfaceView())},
+              {"eye", poseWord(session.viewing.goal)},
+              {"undo", session.history.undoName()},
+              {"redo", session.history.redoName()},
+              {"modified", session.history.modified()},
+              {"world", session.worldFile().string()},
+              {"settings", settings},
+              {"bytesResident", session.stage.world().residency().bytesResident()},
+              {"groups", counts.groups},
+              {"negativePixels", session.stage.frame().negativePixels()},
+              {"exposureEv", session.stage.frame().exposureEv()},
+              {"atRest", session.atRest()},
+              {"errors", session.log.errors()}};
+}
+
+Answer reference(Session& session, Words) {
+  json answer = {{"notice", session.reference.notice()}};
+  if (const auto now = session.reference.snapshot()) answer["samples"] = now->spp;
+  if (const auto& difference = session.reference.difference()) {
+    const baker::PictureError& e = difference->figures;
+    answer["relativeRms"] = e.relative_rms;
+    answer["bias"] = e.bias;
+    answer["percentile99"] = e.percentile_99;
+    answer["pixels"] = e.pixels;
+  }
+  return answer;
+}
+
+Answer passes(Session& session, Words) {
+  json rows = json::array();
+  for (const gpu::PassTime& pass : session.stage.frame().timers().latest())
+    rows.push_back(
+        {{"pass", pass.name}, {"cpuMs", pass.cpu_ms}, {"gpuMs", pass.gpu_ms}, {"reason", pass.reason}});
+  return rows;
+}
+
+Answer tree(Session& session, Words words) {
+  session.tree.filter = words.empty() ? std::string() : words[0];
+  json rows = json::array();
+  for (const TreeRow& row : session.treeRowsNow())
+    if (row.matches)
+      rows.push_back({{"name", row.name}, {"kind", row.kind}, {"depth", row.depth}, {"id", idText(row.id)}});
+  return rows;
+}
+
+Answer logEntries(Session& session, Words) {
+  constexpr std::array kWords = {"note", "warning", "error"};
+  json rows = json::array();
+  for (const LogEntry& entry : session.log.entries())
+    rows.push_back({{"severity", kWords[static_cast<std::size_t>(entry.severity)]}, {"text", entry.text}});
+  return rows;
+}
+
+Answer plan(Session& session, Words) {
+  const auto entry = session.entryAtHand();
+  if (!entry || session.scenes.entries()[*entry].source.empty())
+    return fail("plan", "no scene is open", "open a .gltf or .glb file");
+  const SceneEntry& scene = session.scenes.entries()[*entry];
+  const auto* made = session.plans.find(scene.source, scene.options);
+  if (!made) return json{{"ready", false}};
+  if (!*made) return failAgain(made->error());
+  json effects = json::array();
+  for (const baker::EffectChoice& choice : (*made)->plan.effects)
+    effects.push_back({{"effect", choice.effect}, {"baked", choice.baked}, {"reason", choice.reason}});
+  return json{{"ready", true}, {"effects", effects}, {"groups", (*made)->plan.groups.size()}};
+}
+
+constexpr std::size_t kMany = 16;
+
+constexpr std::array kRows = {
+    scripted("state", "Everything at a glance", "", 0, 0, &state),
+    scripted("inspect", "All components of an entity", "[NAME]", 0, 1, &inspect),
+    scripted("get", "A field of what is selected or named", "[NAME:]COMPONENT.FIELD", 1, 1, &get),
+    scripted("set", "The same, given a value", "[NAME:]COMPONENT.FIELD VALUE...", 2, kMany, &set),
+    scripted("tree", "What the scene tree shows, searched", "[SEARCH]", 0, 1, &tree),
+    scripted("reference", "The reference beside: samples, difference", "", 0, 0, &reference),
+    scripted("passes", "Passes of the last frame, their times and why they ran", "", 0, 0, &passes),
+    scripted("plan", "What the bake of the scene at hand simulates", "", 0, 0, &plan),
+    scripted("log", "Notices and errors", "", 0, 0, &logEntries),
+};
+
+}  // namespace
+
+std::span<const Command> stateCommands() {
+  return kRows;
+}
+
+}  // namespace lambent::editor

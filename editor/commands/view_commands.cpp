@@ -1,0 +1,288 @@
+#include <array>
+
+#include "editor/commands/rows.hpp"
+#include "runtime/frame/frame_settings.hpp"
+#include "runtime/spec/numbers.hpp"
+
+namespace lambent::editor {
+
+namespace {
+
+using frame::SurfaceView;
+
+Answer setView(Session& session, Words words) {
+  const auto choice = frame::parseView(words[0]);
+  if (!choice) return failAgain(choice.error());
+  session.viewing.setView(session, *choice);
+  return nullptr;
+}
+
+template <SurfaceView View>
+Answer show(Session& session, Words) {
+  frame::ViewChoice choice = session.viewing.surfaceView();
+  choice.view = View;
+  session.viewing.setView(session, choice);
+  return nullptr;
+}
+template <SurfaceView View>
+bool shows(const Session& session) {
+  return session.viewing.surfaceView().view == View;
+}
+
+Answer setSetting(Session& session, std::string name, std::string word) {
+  frame::FrameSettings settings = session.stage.frame().settings();
+  if (auto put = frame::putSetting(settings, name, word); !put) return failAgain(put.error());
+  session.editWorld(name, [&](WorldState& world) { world.settings[name] = std::move(word); });
+  session.viewing.changed = true;
+  return nullptr;
+}
+Answer setting(Session& session, Words words) {
+  return setSetting(session, words[0], words[1]);
+}
+
+constexpr std::array kTransfers = {"unshadowed", "shadowed", "full"};
+template <std::size_t Mode>
+Answer transfer(Session& session, Words) {
+  return setSetting(session, "transfer", kTransfers[Mode]);
+}
+template <std::size_t Mode>
+bool transfers(const Session& session) {
+  return static_cast<std::size_t>(session.stage.frame().settings().transfer) == Mode;
+}
+
+template <GizmoMode Mode>
+Answer mode(Session& session, Words) {
+  session.viewing.gizmo.options.mode = Mode;
+  session.viewing.show_gizmos = true;
+  return nullptr;
+}
+template <GizmoMode Mode>
+bool isMode(const Session& session) {
+  return session.viewing.show_gizmos && session.viewing.gizmo.options.mode == Mode;
+}
+Answer space(Session& session, Words) {
+  GizmoSpace& now = session.viewing.gizmo.options.space;
+  now = now == GizmoSpace::World ? GizmoSpace::Local : GizmoSpace::World;
+  return nullptr;
+}
+bool isLocal(const Session& session) {
+  return session.viewing.gizmo.options.space == GizmoSpace::Local;
+}
+Answer gizmos(Session& session, Words) {
+  session.viewing.show_gizmos = !session.viewing.show_gizmos;
+  return nullptr;
+}
+bool gizmosShown(const Session& session) {
+  return session.viewing.show_gizmos;
+}
+
+Answer snap(Session& session, Words words) {
+  const auto metres = spec::parseNumber(words[0]);
+  if (!metres || *metres < 0.0f) return fail("snap", words[0] + " is not a step", "give metres, 0 for none");
+  GizmoOptions& options = session.viewing.gizmo.options;
+  options.snap_m = *metres;
+  options.snap_deg = *metres > 0.0f ? 15.0f : 0.0f;
+  options.snap_scale = *metres > 0.0f ? 0.1f : 0.0f;
+  return nullptr;
+}
+
+Answer frameSelected(Session& session, Words) {
+  session.viewing.frame(session, session.selectionBounds());
+  return nullptr;
+}
+Answer frameAll(Session& session, Words) {
+  session.viewing.frame(session, {});
+  return nullptr;
+}
+Answer camera(Session& session, Words words) {
+  return answerOf(session.viewing.setCamera(session, words[0]));
+}
+Answer ortho(Session& session, Words) {
+  session.viewing.goal.orthographic = session.viewing.pose.orthographic = !session.viewing.goal.orthographic;
+  session.viewing.changed = true;
+  return nullptr;
+}
+bool isOrtho(const Session& session) {
+  return session.viewing.goal.orthographic;
+}
+
+template <SplitView Split>
+Answer split(Session& session, Words) {
+  SplitView& now = session.reference.split;
+  now = now == Split ? SplitView::Off : Split;
+  session.viewing.changed = true;
+  return nullptr;
+}
+template <SplitView Split>
+bool isSplit(const Session& session) {
+  return session.reference.split == Split;
+}
+Answer samples(Session& session, Words words) {
+  const auto number = spec::parseNumber(words[0]);
+  if (!number || *number < 1.0f || *number > 1e6f)
+    return fail("reference-samples", words[0] + " is not a number of samples", "give 1..1000000");
+  session.reference.spp = static_cast<std::uint32_t>(*number);
+  return nullptr;
+}
+Answer bands(Session& session, Words words) {
+  if (words[0] == "off") {
+    session.reference.band_limit.reset();
+    return nullptr;
+  }
+  const auto number = spec::parseNumber(words[0]);
+  if (!number || *number < 1.0f || *number > 8.0f)
+    return fail("reference-bands", words[0] + " is not a number of bands", "give 1..8, or off");
+  session.reference.band_limit = static_cast<int>(*number);
+  return nullptr;
+}
+
+template <bool frame::OverlayOptions::*Switch>
+Answer overlay(Session& session, Words) {
+  session.viewing.overlays.*Switch = !(session.viewing.overlays.*Switch);
+  session.viewing.changed = true;
+  return nullptr;
+}
+template <bool frame::OverlayOptions::*Switch>
+bool hasOverlay(const Session& session) {
+  return session.viewing.overlays.*Switch;
+}
+
+Answer play(Session& session, Words) {
+  session.viewing.playing = !session.viewing.playing;
+  return nullptr;
+}
+bool plays(const Session& session) {
+  return session.viewing.playing;
+}
+Answer time(Session& session, Words words) {
+  const auto seconds = spec::parseNumber(words[0]);
+  if (!seconds || *seconds < 0.0f) return fail("time", words[0] + " is not a time", "give seconds");
+  session.viewing.animation_s = *seconds;
+  session.stage.world().setAnimationTime(*seconds);
+  session.viewing.changed = true;
+  return nullptr;
+}
+
+template <bool Preferences::*Switch>
+Answer dock(Session& session, Words) {
+  session.preferences.*Switch = !(session.preferences.*Switch);
+  return nullptr;
+}
+template <bool Preferences::*Switch>
+bool docked(const Session& session) {
+  return session.preferences.*Switch;
+}
+
+Answer panel(Session& session, Words words) {
+  session.wanted_panels.push_back(words[0]);
+  return nullptr;
+}
+
+using Run = Result<nlohmann::json> (*)(Session&, Words);
+using Is = bool (*)(const Session&);
+
+constexpr Command toggle(const char* id, const char* title, const char* shortcut, const char* help, Run run,
+                         Is is) {
+  return {.id = id,
+          .title = title,
+          .menu = "View",
+          .shortcut = shortcut,
+          .help = help,
+          .arguments = "",
+          .run = run,
+          .checked = is};
+}
+using O = frame::OverlayOptions;
+
+constexpr std::array kRows = {
+    toggle("view-final", "Final", "1", "The light as it is", &show<SurfaceView::Final>,
+           &shows<SurfaceView::Final>),
+    toggle("view-irradiance", "Irradiance", "2", "What arrives at surfaces, without their own colour",
+           &show<SurfaceView::Irradiance>, &shows<SurfaceView::Irradiance>),
+    toggle("view-dc", "Transfer, DC", "3", "What of uniform light arrives", &show<SurfaceView::TransferDc>,
+           &shows<SurfaceView::TransferDc>),
+    toggle("view-band", "Transfer, one band", "4", "Energy of one band of the transfer",
+           &show<SurfaceView::TransferBand>, &shows<SurfaceView::TransferBand>),
+    toggle("view-error", "Coding error", "5", "What coding the transfer costs, as the bake measured it",
+           &show<SurfaceView::ErrorEstimate>, &shows<SurfaceView::ErrorEstimate>),
+    toggle("view-clusters", "Clusters", "6", "Which samples are coded together",
+           &show<SurfaceView::ClusterIds>, &shows<SurfaceView::ClusterIds>),
+    toggle("view-normals", "Normals", "7", "Shading normals", &show<SurfaceView::Normals>,
+           &shows<SurfaceView::Normals>),
+    toggle("view-wireframe", "Wireframe", "8", "The triangles over the picture",
+           &show<SurfaceView::Wireframe>, &shows<SurfaceView::Wireframe>),
+    scripted("view", "What surfaces show", "NAME[:BAND]", 1, 1, &setView),
+    separator("View"),
+    toggle("unshadowed", "Unshadowed", "Shift+1", "Light without shadows or bounces", &transfer<0>,
+           &transfers<0>),
+    toggle("shadowed", "Shadowed", "Shift+2", "With shadows, without bounces", &transfer<1>, &transfers<1>),
+    toggle("full", "Shadows and bounces", "Shift+3", "All that was baked", &transfer<2>, &transfers<2>),
+    scripted("setting", "A setting of the frame, as the panel has them", "NAME VALUE", 2, 2, &setting),
+    separator("View"),
+    toggle("split", "Reference beside", "F8",
+           "The path-traced picture beside this one, refined in the background", &split<SplitView::Beside>,
+           &isSplit<SplitView::Beside>),
+    toggle("heat", "Difference from the reference", "Shift+F8", "Where the picture differs, and by how much",
+           &split<SplitView::Heat>, &isSplit<SplitView::Heat>),
+    scripted("reference-samples", "Samples a pixel at which the reference ends", "N", 1, 1, &samples),
+    scripted("reference-bands", "Light of the reference in so many bands only", "N|off", 1, 1, &bands),
+    separator("View"),
+    toggle("overlay-light-samples", "Light samples", "",
+           "What is captured where, and its harmonics as a ball", &overlay<&O::light_samples>,
+           &hasOverlay<&O::light_samples>),
+    toggle("overlay-neighborhoods", "Neighborhood slices", "", "What bodies change around them",
+           &overlay<&O::neighborhoods>, &hasOverlay<&O::neighborhoods>),
+    toggle("overlay-volumes", "Volume bounds", "", "The boxes of volumes", &overlay<&O::volumes>,
+           &hasOverlay<&O::volumes>),
+    toggle("overlay-groups", "Group bounds", "", "The boxes of rigid groups", &overlay<&O::groups>,
+           &hasOverlay<&O::groups>),
+    toggle("overlay-lights", "Lights", "", "Where lights stand, and where they shine", &overlay<&O::lights>,
+           &hasOverlay<&O::lights>),
+    separator("View"),
+    toggle("move", "Move", "W", "Handles that move what is selected", &mode<GizmoMode::Move>,
+           &isMode<GizmoMode::Move>),
+    toggle("turn", "Turn", "E", "Handles that turn what is selected", &mode<GizmoMode::Rotate>,
+           &isMode<GizmoMode::Rotate>),
+    toggle("scale", "Scale", "R", "Handles that scale what is selected", &mode<GizmoMode::Scale>,
+           &isMode<GizmoMode::Scale>),
+    toggle("local-axes", "Local axes", "X", "Handles along the axes of what is selected, not of the world",
+           &space, &isLocal),
+    toggle("gizmos", "Handles", "G", "Show handles at all", &gizmos, &gizmosShown),
+    scripted("snap", "Steps of a drag in metres (and 15 degrees, a tenth); 0: none", "METRES", 1, 1, &snap),
+    separator("View"),
+    Command{.id = "frame",
+            .title = "Frame selection",
+            .menu = "View",
+            .shortcut = "F",
+            .help = "What is selected fills the picture",
+            .arguments = "",
+            .run = &frameSelected},
+    Command{.id = "frame-all",
+            .title = "Frame all",
+            .menu = "View",
+            .shortcut = "Home",
+            .help = "All fills the picture",
+            .arguments = "",
+            .run = &frameAll},
+    toggle("orthographic", "Orthographic", "O", "A view without perspective", &ortho, &isOrtho),
+    scripted("camera", "Look from there: orbit:AZ,EL,DIST,FOV, pose:... or a camera's name", "CAMERA", 1, 1,
+             &camera),
+    toggle("play", "Play animations", "Space", "Animations run", &play, &plays),
+    scripted("time", "Where animations stand", "SECONDS", 1, 1, &time),
+    separator("View"),
+    toggle("left-panels", "Left panels", "", "The scene tree", &dock<&Preferences::show_left>,
+           &docked<&Preferences::show_left>),
+    toggle("right-panels", "Right panels", "", "Inspector, light, settings", &dock<&Preferences::show_right>,
+           &docked<&Preferences::show_right>),
+    toggle("bottom-panels", "Bottom panels", "", "Bakes, cost, streaming, log",
+           &dock<&Preferences::show_bottom>, &docked<&Preferences::show_bottom>),
+    scripted("panel", "Bring a panel up", "NAME", 1, 1, &panel),
+};
+
+}  // namespace
+
+std::span<const Command> viewCommands() {
+  return kRows;
+}
+
+}  // namespace lambent::editor

@@ -1,0 +1,165 @@
+#include "editor/document/document.hpp"
+
+#include <algorithm>
+#include <random>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "runtime/scene/affine.hpp"
+#include "runtime/scene/components.hpp"
+#include "runtime/scene/reflection.hpp"
+
+namespace lambent::editor {
+
+StableId environmentId() {
+  return scene::instanceId("environment", 0);
+}
+
+std::string idText(StableId id) {
+  return fmt::format("{:016x}", id.value);
+}
+
+std::optional<StableId> parseId(std::string_view text) {
+  if (text.size() != 16) return std::nullopt;
+  StableId id;
+  for (const char c : text) {
+    const bool digit = c >= '0' && c <= '9', letter = c >= 'a' && c <= 'f';
+    if (!digit && !letter) return std::nullopt;
+    id.value = id.value << 4 | static_cast<std::uint64_t>(digit ? c - '0' : c - 'a' + 10);
+  }
+  return id;
+}
+
+Document::Document(ecs::Registry& registry, std::optional<std::uint64_t> seed) : registry_(&registry) {
+  if (seed) {
+    seed_ = *seed;
+  } else {
+    std::random_device source;
+    seed_ = std::uint64_t{source()} << 32 | source();
+  }
+}
+
+void Document::attach(ecs::Registry& registry) {
+  registry_ = &registry;
+  entities_.clear();
+  indexed_version_ = 0;
+}
+
+void Document::setWorld(WorldState world) {
+  if (world == world_) return;
+  world_ = std::move(world);
+  ++world_version_;
+}
+
+void Document::index() const {
+  entities_.clear();
+  for (auto [entity, id] : std::as_const(*registry_).view<StableId>()) entities_.emplace(id.value, entity);
+  indexed_version_ = registry_->version<StableId>();
+}
+
+ecs::Entity Document::find(StableId id) const {
+  if (id == kNoId) return {};
+  const auto lookUp = [&]() -> ecs::Entity {
+    const auto found = entities_.find(id.value);
+    if (found == entities_.end()) return {};
+    const StableId* there = registry_->tryGet<StableId>(found->second);
+    return there && *there == id ? found->second : ecs::Entity{};
+  };
+  if (const ecs::Entity entity = lookUp()) return entity;
+  if (indexed_version_ == registry_->version<StableId>()) return {};
+  index();
+  return lookUp();
+}
+
+StableId Document::idOf(ecs::Entity entity) const {
+  const StableId* id = registry_->tryGet<StableId>(entity);
+  return id ? *id : kNoId;
+}
+
+StableId Document::newId() {
+  for (;;) {
+    const StableId id = scene::childId({seed_}, scene::StableKind::Node, "created", given_++);
+    if (id != kNoId && !find(id)) return id;
+  }
+}
+
+StableId Document::adopt(ecs::Entity entity) {
+  if (const StableId id = idOf(entity); id != kNoId) return id;
+  const bool environment = registry_->has<scene::EnvironmentComponent>(entity) && !find(environmentId());
+  const StableId id = environment ? environmentId() : newId();
+  registry_->emplace<StableId>(entity, id);
+  if (!environment) registry_->emplace<Created>(entity);
+  entities_[id.value] = entity;
+  return id;
+}
+
+void Document::adoptAll() {
+  for (const ecs::Entity entity : registry_->entities()) {
+    const auto all = scene::components();
+    if (std::any_of(all.begin(), all.end(), [&](const auto& row) { return row.has(*registry_, entity); }))
+      adopt(entity);
+  }
+}
+
+std::string Document::nameOf(ecs::Entity entity) const {
+  const scene::Name* name = registry_->tryGet<scene::Name>(entity);
+  if (name && !name->value.empty()) return name->value;
+  return "entity " + idText(idOf(entity));
+}
+
+std::string Document::nameOf(StableId id) const {
+  const ecs::Entity entity = find(id);
+  return entity ? nameOf(entity) : "entity " + idText(id);
+}
+
+ecs::Entity parentOf(const ecs::Registry& registry, ecs::Entity entity) {
+  const auto* place = registry.tryGet<scene::Transform>(entity);
+  return place && registry.alive(place->parent) ? place->parent : ecs::Entity{};
+}
+
+bool isBelow(const ecs::Registry& registry, ecs::Entity entity, ecs::Entity ancestor) {
+  for (; entity; entity = parentOf(registry, entity)) {
+    if (entity == ancestor) return true;
+  }
+  return false;
+}
+
+std::vector<ecs::Entity> withDescendants(const ecs::Registry& registry,
+                                         const std::vector<ecs::Entity>& entities) {
+  std::unordered_map<std::uint32_t, std::vector<ecs::Entity>> children;
+  for (auto [entity, place] : registry.view<scene::Transform>()) {
+    if (const ecs::Entity parent = parentOf(registry, entity)) children[parent.index].push_back(entity);
+  }
+  std::unordered_map<std::uint32_t, bool> seen;
+  std::vector<ecs::Entity> all;
+  // Those that hang below others of the list come with these.
+  for (const ecs::Entity start : entities) {
+    const bool below = std::any_of(entities.begin(), entities.end(), [&](ecs::Entity other) {
+      return other != start && isBelow(registry, start, other);
+    });
+    if (below || seen[start.index]) continue;
+    std::vector<ecs::Entity> open{start};
+    while (!open.empty()) {
+      const ecs::Entity entity = open.back();
+      open.pop_back();
+      if (std::exchange(seen[entity.index], true)) continue;
+      all.push_back(entity);
+      std::vector<ecs::Entity> below_it = children[entity.index];
+      std::sort(below_it.begin(), below_it.end(), std::greater<>());
+      open.insert(open.end(), below_it.begin(), below_it.end());
+    }
+  }
+  return all;
+}
+
+glm::mat4 worldFromNode(const ecs::Registry& registry, ecs::Entity entity) {
+  glm::mat4 matrix(1.0f);
+  for (; entity; entity = parentOf(registry, entity)) {
+    if (const auto* place = registry.tryGet<scene::Transform>(entity))
+      matrix = scene::localMatrix(*place) * matrix;
+  }
+  return matrix;
+}
+
+}  // namespace lambent::editor

@@ -1,0 +1,259 @@
+#include "editor/document/tree.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <map>
+#include <unordered_map>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "runtime/scene/components.hpp"
+#include "runtime/scene/reflection.hpp"
+
+namespace lambent::editor {
+namespace {
+
+std::string lower(std::string_view text) {
+  std::string low(text);
+  // Letters of ASCII; others count as they are.
+  for (char& c : low) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return low;
+}
+
+// Which bundle an entity belongs to while the program runs.
+std::optional<std::uint32_t> bundleOf(const ecs::Registry& registry, ecs::Entity entity) {
+  if (const auto* group = registry.tryGet<scene::RigidGroupComponent>(entity)) return group->bundle;
+  if (const auto* draw = registry.tryGet<scene::DrawItem>(entity)) return draw->bundle;
+  if (registry.has<Created>(entity)) return std::nullopt;  // its camera's bundle says nothing
+  for (const scene::ComponentInfo& component : scene::components()) {
+    if (const auto bundle = component.bundle(registry, entity)) return bundle;
+  }
+  return std::nullopt;
+}
+
+class TreeBuilder {
+ public:
+  TreeBuilder(const Document& document, const TreeQuery& query)
+      : document_(document), registry_(document.registry()), query_(query), filter_(query.filter) {}
+
+  std::vector<TreeRow> run() {
+    findRoots();
+    std::vector<ecs::Entity> tops;
+    for (const ecs::Entity entity : registry_.entities()) {
+      if (!listed(entity)) continue;
+      const ecs::Entity parent = parentRow(entity);
+      (parent ? children_[parent.index] : tops).push_back(entity);
+    }
+    // Depth first, without recursion: hierarchies may be of any depth.
+    std::vector<std::pair<ecs::Entity, std::uint32_t>> open;
+    for (auto top = tops.rbegin(); top != tops.rend(); ++top) open.emplace_back(*top, 0u);
+    while (!open.empty()) {
+      const auto [entity, depth] = open.back();
+      open.pop_back();
+      if (!std::exchange(seen_[entity.index], true)) visit(entity, depth, open);
+    }
+    if (!filter_.empty()) keepMatches();
+    return std::move(rows_);
+  }
+
+ private:
+  bool listed(ecs::Entity entity) const {
+    const bool part =
+        registry_.has<scene::DrawItem>(entity) ||
+        (registry_.has<scene::RigidGroupComponent>(entity) && !registry_.has<scene::VolumeItem>(entity));
+    if (part) return query_.show_parts;
+    if (registry_.has<StableId>(entity)) return true;
+    const auto all = scene::components();
+    return std::any_of(all.begin(), all.end(), [&](const auto& row) { return row.has(registry_, entity); });
+  }
+
+  // The entities that place whole bundles; groups by bundle and number.
+  void findRoots() {
+    const auto take = [&](std::uint32_t bundle, ecs::Entity node) {
+      // Up to the highest that nobody made by hand: roots may hang below other things.
+      ecs::Entity root;
+      for (ecs::Entity at = node; at && !registry_.has<Created>(at); at = parentOf(registry_, at)) root = at;
+      if (root) roots_.try_emplace(bundle, root);
+    };
+    for (auto [entity, group] : registry_.view<scene::RigidGroupComponent>()) {
+      groups_[{group.bundle, group.group}] = entity;
+      take(group.bundle, group.node);
+    }
+    for (auto [entity, draw] : registry_.view<scene::DrawItem>()) take(draw.bundle, draw.node);
+  }
+
+  ecs::Entity parentRow(ecs::Entity entity) const {
+    if (registry_.has<scene::Transform>(entity)) return parentOf(registry_, entity);
+    ecs::Entity parent;
+    if (const auto* draw = registry_.tryGet<scene::DrawItem>(entity)) parent = draw->node;
+    if (const auto* group = registry_.tryGet<scene::RigidGroupComponent>(entity)) parent = group->node;
+    if (const auto* lamp = registry_.tryGet<scene::LampComponent>(entity)) {
+      const auto group = groups_.find({lamp->bundle, lamp->group});
+      if (group != groups_.end()) {
+        // Below the group where groups are shown, else below its node.
+        parent = listed(group->second) ? group->second
+                                       : registry_.get<scene::RigidGroupComponent>(group->second).node;
+      }
+    }
+    if (registry_.alive(parent)) return parent;
+    if (const auto bundle = bundleOf(registry_, entity)) {
+      if (const auto root = roots_.find(*bundle); root != roots_.end()) return root->second;
+    }
+    return {};
+  }
+
+  void visit(ecs::Entity entity, std::uint32_t depth,
+             std::vector<std::pair<ecs::Entity, std::uint32_t>>& open) {
+    TreeRow row;
+    row.entity = entity;
+    row.id = document_.idOf(entity);
+    row.depth = depth;
+    row.kind = kind(entity);
+    row.name = name(entity, row.kind);
+    const auto below = children_.find(entity.index);
+    row.has_children = below != children_.end();
+    row.open = !query_.closed.contains(row.id) || !filter_.empty();
+    row.matches = filter_.matches(document_, entity, row.name, row.kind);
+    const bool descend = row.has_children && row.open;
+    rows_.push_back(std::move(row));
+    if (!descend) return;
+    for (auto child = below->second.rbegin(); child != below->second.rend(); ++child)
+      open.emplace_back(*child, depth + 1);
+  }
+
+  std::string_view kind(ecs::Entity entity) const {
+    const bool root =
+        std::any_of(roots_.begin(), roots_.end(), [&](const auto& entry) { return entry.second == entity; });
+    return root ? "bundle" : kindWordOf(registry_, entity);
+  }
+
+  std::string name(ecs::Entity entity, std::string_view kind_word) const {
+    if (const auto* own = registry_.tryGet<scene::Name>(entity); own && !own->value.empty())
+      return own->value;
+    if (const auto* draw = registry_.tryGet<scene::DrawItem>(entity))
+      return fmt::format("primitive {}{}", draw->primitive, draw->back ? " (back)" : "");
+    return fmt::format("({})", kind_word);
+  }
+
+  // From the last row up: what matches keeps those above it.
+  void keepMatches() {
+    std::vector<TreeRow> kept;
+    std::uint32_t wanted_depth = 0;  // rows of less depth than this stand above one that is kept
+    for (auto row = rows_.rbegin(); row != rows_.rend(); ++row) {
+      const bool above = row->depth < wanted_depth;
+      if (!row->matches && !above) continue;
+      wanted_depth = row->depth;
+      kept.push_back(std::move(*row));
+    }
+    std::reverse(kept.begin(), kept.end());
+    rows_ = std::move(kept);
+    for (std::size_t i = 0; i < rows_.size(); ++i)
+      rows_[i].has_children = i + 1 < rows_.size() && rows_[i + 1].depth > rows_[i].depth;
+  }
+
+  const Document& document_;
+  const ecs::Registry& registry_;
+  const TreeQuery& query_;
+  TreeFilter filter_;
+  std::map<std::uint32_t, ecs::Entity> roots_;
+  std::map<std::pair<std::uint32_t, std::uint32_t>, ecs::Entity> groups_;
+  std::unordered_map<std::uint32_t, std::vector<ecs::Entity>> children_;
+  std::unordered_map<std::uint32_t, bool> seen_;
+  std::vector<TreeRow> rows_;
+};
+
+}  // namespace
+
+std::vector<TreeRow> treeRows(const Document& document, const TreeQuery& query) {
+  return TreeBuilder(document, query).run();
+}
+
+std::uint64_t treeVersion(const ecs::Registry& registry) {
+  // Not the version of Transforms, which rises with every step of an animation: who hangs below whom.
+  std::uint64_t sum = registry.version<StableId>() + registry.version<Created>() +
+                      registry.version<scene::Name>() + registry.version<scene::DrawItem>();
+  const auto mix = [&](std::uint64_t part) { sum = (sum ^ part) * 0x9e3779b97f4a7c15u + (sum >> 29); };
+  for (auto [entity, place] : registry.view<scene::Transform>()) {
+    mix(std::uint64_t{entity.index} << 32 | entity.generation);
+    mix(std::uint64_t{place.parent.index} << 32 | place.parent.generation);
+    mix(std::uint64_t{registry.has<scene::LocalLightComponent>(entity)} << 1 |
+        std::uint64_t{registry.has<scene::CameraComponent>(entity)});
+  }
+  return sum;
+}
+
+std::string_view kindWordOf(const ecs::Registry& registry, ecs::Entity entity) {
+  if (registry.has<scene::DrawItem>(entity)) return "draw";
+  if (registry.has<scene::VolumeItem>(entity)) return "volume";
+  if (registry.has<scene::RigidGroupComponent>(entity)) return "group";
+  // In the order in which the more telling comes first.
+  constexpr std::pair<std::string_view, std::string_view> kKinds[] = {
+      {"Light", "light"},         {"Lamp", "lamp"},         {"Camera", "camera"},
+      {"Animation", "animation"}, {"Material", "material"}, {"Environment", "environment"},
+      {"Transform", "node"}};
+  for (const auto& [component, kind] : kKinds) {
+    const scene::ComponentInfo* info = scene::findComponent(component);
+    if (info && info->has(registry, entity)) return kind;
+  }
+  return "entity";
+}
+
+TreeFilter::TreeFilter(std::string_view text) {
+  for (std::size_t at = 0; at < text.size();) {
+    if (text[at] == ' ' || text[at] == '\t') {
+      ++at;
+      continue;
+    }
+    Term term;
+    bool quoted = false;
+    std::string word;
+    for (; at < text.size() && (quoted || (text[at] != ' ' && text[at] != '\t')); ++at) {
+      if (text[at] == '"')
+        quoted = !quoted;
+      else
+        word += text[at];
+    }
+    if (word.size() > 1 && word.front() == '-') {
+      term.negative = true;
+      word.erase(0, 1);
+    }
+    word = lower(word);
+    constexpr std::pair<std::string_view, Term::Of> kPrefixes[] = {
+        {"type:", Term::Of::Kind}, {"has:", Term::Of::Component}, {"id:", Term::Of::Id}};
+    for (const auto& [prefix, of] : kPrefixes) {
+      if (!word.starts_with(prefix)) continue;
+      term.of = of;
+      word.erase(0, prefix.size());
+      break;
+    }
+    term.text = std::move(word);
+    if (!term.text.empty()) terms_.push_back(std::move(term));
+  }
+}
+
+bool TreeFilter::matches(const Document& document, ecs::Entity entity, std::string_view name,
+                         std::string_view kind) const {
+  return std::all_of(terms_.begin(), terms_.end(), [&](const Term& term) {
+    const bool holds = [&] {
+      switch (term.of) {
+        case Term::Of::Name:
+          return lower(name).find(term.text) != std::string::npos;
+        case Term::Of::Kind:
+          return kind == term.text;
+        case Term::Of::Id:
+          return idText(document.idOf(entity)).starts_with(term.text);
+        case Term::Of::Component: {
+          const auto all = scene::components();
+          return std::any_of(all.begin(), all.end(), [&](const scene::ComponentInfo& row) {
+            return lower(row.name) == term.text && row.has(document.registry(), entity);
+          });
+        }
+      }
+      return false;
+    }();
+    return holds != term.negative;
+  });
+}
+
+}  // namespace lambent::editor

@@ -1,0 +1,410 @@
+#include "editor/document/world_file.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <set>
+#include <system_error>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "editor/document/value_json.hpp"
+#include "runtime/base/atomic_file.hpp"
+#include "runtime/scene/lights.hpp"
+#include "runtime/scene/reflection.hpp"
+#include "runtime/spec/camera.hpp"
+#include "runtime/spec/light.hpp"
+
+namespace lambent::editor {
+namespace {
+
+constexpr const char* kMark = "lambent_world";
+
+const scene::ComponentInfo& environmentInfo() {
+  return *scene::findComponent("Environment");
+}
+
+// ---- reading
+
+class WorldReader {
+ public:
+  explicit WorldReader(const ReadJson& document) : top_(document, "") {}
+
+  WorldFile run() {
+    readVersion();
+    if (top_.has("bundles")) readBundles(top_.at("bundles"));
+    if (top_.has("environment")) readEnvironment(top_.at("environment"));
+    if (top_.has("camera")) {
+      world_.state.camera = top_.at("camera").text();
+      if (const auto camera = spec::parseCamera(world_.state.camera); !camera)
+        top_.at("camera").fault(camera.error().problem, camera.error().mend);
+    }
+    if (top_.has("settings")) world_.state.settings = top_.at("settings").table();
+    if (top_.has("view")) world_.state.view = top_.at("view").table();
+    if (top_.has("entities")) readEntities(top_.at("entities"));
+    UnknownFields unknown = top_.unknown(
+        {kMark, "bundles", "environment", "camera", "settings", "view", "entities"}, world_.notices);
+    world_.unknown.merge(unknown);
+    return std::move(world_);
+  }
+
+ private:
+  void readVersion() {
+    if (!top_.has(kMark))
+      throw JsonFault{kMark, "is missing", "this is no world file; save one with the editor"};
+    const std::uint64_t version = top_.at(kMark).count(~std::uint32_t{0});
+    if (version == 0) top_.at(kMark).fault("is 0, and there is no such version");
+    if (version > kWorldFileVersion)
+      top_.at(kMark).fault(
+          fmt::format("is version {}; this program reads up to {}", version, kWorldFileVersion),
+          "open it with a newer one");
+  }
+
+  void readBundles(const Place& list) {
+    std::set<std::pair<std::string, std::uint32_t>> seen;
+    for (const Place& place : list.items()) {
+      BundleEntry entry;
+      entry.path = place.at("path").text();
+      if (entry.path.empty()) place.at("path").fault("is empty", "name a bundle file");
+      entry.id = place.has("id") ? place.at("id").text() : entry.path;
+      if (entry.id.empty()) place.at("id").fault("is empty", "leave it out to take the path");
+      if (place.has("instance"))
+        entry.instance = static_cast<std::uint32_t>(place.at("instance").count(~std::uint32_t{0}));
+      if (place.has("source")) entry.source = place.at("source").text();
+      if (place.has("bake_options")) entry.bake_options = place.at("bake_options").table();
+      entry.unknown = place.unknown({"path", "id", "instance", "source", "bake_options"}, world_.notices);
+      if (!seen.emplace(entry.id, entry.instance).second)
+        place.fault(fmt::format("is \"{}\", instance {}, for the second time", entry.id, entry.instance),
+                    "give it another instance number");
+      world_.state.bundles.push_back(std::move(entry));
+    }
+  }
+
+  std::vector<std::string> readLights(const Place& environment, const char* key) {
+    if (!environment.has(key)) return {};
+    std::vector<std::string> words;
+    for (const Place& place : environment.at(key).items()) {
+      const std::string word = place.text();
+      const Result<spec::Light> light = spec::parseLight(word);
+      if (!light) place.fault(light.error().problem, light.error().mend);
+      if (!spec::localLights({&*light, 1}).empty())
+        place.fault("is a light that stands in the scene", "make it an entity with a Light");
+      words.push_back(word);
+    }
+    return words;
+  }
+
+  void readEnvironment(const Place& place) {
+    world_.state.lights = readLights(place, "lights");
+    world_.state.fade_lights = readLights(place, "fade_lights");
+    if (place.has("exposure")) world_.state.exposure_ev = place.at("exposure").number();
+    std::set<std::string> known{"lights", "fade_lights", "exposure"};
+    // Through the table, so that fields of the component need no mention here.
+    ecs::Registry scratch;
+    const ecs::Entity entity = scratch.create();
+    scratch.emplace<scene::EnvironmentComponent>(entity);
+    for (const scene::FieldInfo& field : environmentInfo().fields) {
+      const std::string name(field.name);
+      known.insert(name);
+      if (place.has(name)) field.restore(scratch, entity, place.at(name).value(field));
+    }
+    world_.environment = scratch.get<scene::EnvironmentComponent>(entity);
+    for (auto& [key, value] : place.unknown(known, world_.notices))
+      world_.unknown["environment/" + key] = value;
+  }
+
+  void readEntities(const Place& table) {
+    for (const auto& [key, place] : table.members()) {
+      const auto id = parseId(key);
+      if (!id || *id == kNoId) place.fault("has a name that is not 16 hexadecimal digits");
+      EntityOverride entry;
+      entry.id = *id;
+      if (place.has("created")) entry.created = place.at("created").flag();
+      if (place.has("name")) entry.name = place.at("name").text();
+      if (place.has("parent")) entry.parent = readParent(place.at("parent"));
+      if (place.has("components")) readComponents(place.at("components"), entry);
+      UnknownFields unknown = place.unknown({"created", "name", "parent", "components"}, world_.notices);
+      entry.unknown.merge(unknown);
+      for (const FieldOverride& field : entry.fields) {
+        if (entry.created && field.field->component == "Name" && field.field->name == "name")
+          entry.name = std::get<std::string>(field.value);
+      }
+      world_.entities.push_back(std::move(entry));
+    }
+    std::sort(world_.entities.begin(), world_.entities.end(),
+              [](const auto& a, const auto& b) { return a.id < b.id; });
+  }
+
+  StableId readParent(const Place& place) {
+    if (place.json().is_null()) return kNoId;
+    const auto id = parseId(place.text());
+    if (!id || *id == kNoId) place.fault("is not 16 hexadecimal digits, nor null for the world");
+    return *id;
+  }
+
+  void readComponents(const Place& components, EntityOverride& entry) {
+    const auto keep = [&](const std::string& key, const Place& place) {
+      entry.unknown["components/" + key] = place.json().dump();
+      world_.notices.push_back(place.way() + " is not known to this version; it is kept as it is");
+    };
+    std::vector<std::pair<const scene::ComponentInfo*, Place>> known;
+    for (const auto& [name, place] : components.members()) {
+      const scene::ComponentInfo* info = scene::findComponent(name);
+      if (!info) {
+        keep(name, place);
+        continue;
+      }
+      if (entry.created && !info->addable) place.fault("cannot be made by hand: it comes with a bundle");
+      known.emplace_back(info, place);
+    }
+    // In the table's order, whatever the file's is.
+    std::sort(known.begin(), known.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    for (const auto& [info, place] : known) {
+      if (entry.created) entry.components.push_back(info);
+      for (const auto& [name, value] : place.members()) {
+        if (!info->field(name)) keep(std::string(info->name) + "/" + name, value);
+      }
+      for (const scene::FieldInfo& field : info->fields) {
+        const std::string name(field.name);
+        if (place.has(name)) entry.fields.push_back({&field, place.at(name).value(field)});
+      }
+    }
+  }
+
+  Place top_;
+  WorldFile world_;
+};
+
+// ---- writing
+
+// Lists of numbers and words on one line, everything else on lines of its own.
+void write(std::string& out, const Json& value, std::size_t depth) {
+  const bool flat = value.is_primitive() || value.empty() ||
+                    (value.is_array() && std::all_of(value.begin(), value.end(),
+                                                     [](const Json& part) { return part.is_number(); }));
+  if (flat) {
+    out += value.dump(-1, ' ', false, Json::error_handler_t::replace);
+    return;
+  }
+  const std::string inner(2 * (depth + 1), ' ');
+  out += value.is_array() ? "[" : "{";
+  bool first = true;
+  for (const auto& [key, part] : value.items()) {
+    out += first ? "\n" : ",\n";
+    first = false;
+    out += inner;
+    if (value.is_object()) out += Json(key).dump(-1, ' ', false, Json::error_handler_t::replace) + ": ";
+    write(out, part, depth + 1);
+  }
+  out += '\n';
+  out.append(2 * depth, ' ');
+  out += value.is_array() ? ']' : '}';
+}
+
+Json table(const std::map<std::string, std::string>& values) {
+  Json json = Json::object();
+  for (const auto& [key, value] : values) json[key] = value;
+  return json;
+}
+
+Json bundleJson(const BundleEntry& entry) {
+  Json json = Json::object();
+  json["path"] = entry.path;
+  json["id"] = entry.id;
+  json["instance"] = entry.instance;
+  if (!entry.source.empty()) json["source"] = entry.source;
+  if (!entry.bake_options.empty()) json["bake_options"] = table(entry.bake_options);
+  putUnknown(json, entry.unknown);
+  return json;
+}
+
+UnknownFields below(const UnknownFields& all, const std::string& prefix) {
+  UnknownFields part;
+  for (const auto& [key, value] : all)
+    if (key.starts_with(prefix)) part[key.substr(prefix.size())] = value;
+  return part;
+}
+
+UnknownFields here(const UnknownFields& all) {
+  UnknownFields part;
+  for (const auto& [key, value] : all)
+    if (key.find('/') == std::string::npos) part[key] = value;
+  return part;
+}
+
+Result<Json> entityJson(const EntityOverride& entry) {
+  Json json = Json::object();
+  if (entry.created)
+    json["created"] = true;
+  else if (!entry.name.empty())
+    json["name"] = entry.name;
+  if (entry.parent) json["parent"] = *entry.parent == kNoId ? Json(nullptr) : Json(idText(*entry.parent));
+  Json components = Json::object();
+  for (const scene::ComponentInfo* component : entry.components)
+    components[std::string(component->name)] = Json::object();
+  for (const FieldOverride& field : entry.fields) {
+    // What a file would be refused for is not written.
+    Result<Json> value = valueJson(field.value);
+    const Result<void> good = field.field->check(field.value);
+    if (!value || !good) {
+      const Error& error = good ? value.error() : good.error();
+      return fail(fmt::format("{}.{} of {}", field.field->component, field.field->name, entry.name),
+                  error.problem, "change it before saving");
+    }
+    components[std::string(field.field->component)][std::string(field.field->name)] = std::move(*value);
+  }
+  for (const auto& [key, text] : below(entry.unknown, "components/")) {
+    const auto slash = key.find('/');
+    Json& owner = slash == std::string::npos ? components : components[key.substr(0, slash)];
+    putUnknown(owner, {{slash == std::string::npos ? key : key.substr(slash + 1), text}});
+  }
+  if (!components.empty()) json["components"] = std::move(components);
+  putUnknown(json, here(entry.unknown));
+  return json;
+}
+
+Result<Json> environmentJson(const WorldFile& world) {
+  Json json = Json::object();
+  json["lights"] = world.state.lights;
+  json["fade_lights"] = world.state.fade_lights;
+  ecs::Registry scratch;
+  const ecs::Entity entity = scratch.create();
+  scratch.emplace<scene::EnvironmentComponent>(entity, world.environment);
+  for (const scene::FieldInfo& field : environmentInfo().fields) {
+    Result<Json> value = valueJson(field.get(scratch, entity));
+    if (!value)
+      return fail(fmt::format("environment.{}", field.name), value.error().problem, "set it to a number");
+    json[std::string(field.name)] = std::move(*value);
+  }
+  if (world.state.exposure_ev) {
+    Result<Json> exposure = valueJson(*world.state.exposure_ev);
+    if (!exposure) return fail("environment.exposure", exposure.error().problem, "set it to a number");
+    json["exposure"] = std::move(*exposure);
+  }
+  putUnknown(json, below(world.unknown, "environment/"));
+  return json;
+}
+
+}  // namespace
+
+Result<WorldFile> parseWorld(std::string_view text, const std::string& subject) {
+  const Result<ReadJson> json = parseJson(text, subject);
+  if (!json) return failAgain(json.error());
+  if (!json->is_object()) return fail(subject, "is no world file", "save one with the editor");
+  try {
+    return WorldReader(*json).run();
+  } catch (const JsonFault& fault) {
+    return fail(subject, fault.place + " " + fault.problem, fault.mend);
+  }
+}
+
+Result<std::string> worldText(const WorldFile& world) {
+  Json json = Json::object();
+  json[kMark] = kWorldFileVersion;
+  json["bundles"] = Json::array();
+  for (const BundleEntry& entry : world.state.bundles) json["bundles"].push_back(bundleJson(entry));
+  Result<Json> environment = environmentJson(world);
+  if (!environment) return failAgain(environment.error());
+  json["environment"] = std::move(*environment);
+  if (!world.state.camera.empty()) json["camera"] = world.state.camera;
+  json["settings"] = table(world.state.settings);
+  if (!world.state.view.empty()) json["view"] = table(world.state.view);
+  // By id: the object is made at once, since look-ups in one that keeps its order walk it.
+  Json::object_t entities;
+  for (const EntityOverride& entry : world.entities) {
+    Result<Json> entity = entityJson(entry);
+    if (!entity) return failAgain(entity.error());
+    entities.push_back({idText(entry.id), std::move(*entity)});
+  }
+  json["entities"] = std::move(entities);
+  putUnknown(json, here(world.unknown));
+  std::string out;
+  write(out, json, 0);
+  return out + "\n";
+}
+
+std::filesystem::path resolvePath(const std::filesystem::path& world_path, std::string_view path) {
+  return (world_path.parent_path() / std::filesystem::path(path)).lexically_normal();
+}
+
+std::string pathInWorld(const std::filesystem::path& world_path, const std::filesystem::path& file) {
+  std::error_code ignored;
+  const auto folder = std::filesystem::absolute(world_path, ignored).lexically_normal().parent_path();
+  const auto there = std::filesystem::absolute(file, ignored).lexically_normal();
+  const auto relative = there.lexically_relative(folder);
+  return (relative.empty() ? there : relative).generic_string();
+}
+
+std::string resolveLight(const std::filesystem::path& world_path, const std::string& word) {
+  const Result<spec::Light> light = spec::parseLight(word);
+  const auto* probe = light ? std::get_if<spec::ProbeLight>(&*light) : nullptr;
+  return probe ? resolvePath(world_path, probe->file.generic_string()).string() : word;
+}
+
+Result<WorldFile> loadWorldFile(const std::filesystem::path& path) {
+  const Result<std::string> text = readTextFile(path);
+  if (!text) return failAgain(text.error());
+  Result<WorldFile> world = parseWorld(*text, path.string());
+  if (!world) return world;
+  for (std::size_t i = 0; i < world->state.bundles.size(); ++i) {
+    const std::filesystem::path file = resolvePath(path, world->state.bundles[i].path);
+    std::error_code ignored;
+    if (!std::filesystem::is_regular_file(file, ignored))
+      return fail(path.string(), fmt::format("bundles[{}].path: there is no file {}", i, file.string()),
+                  "bake it again, or mend the path");
+  }
+  return world;
+}
+
+Result<void> saveWorldFile(const std::filesystem::path& path, const WorldFile& world) {
+  const Result<std::string> text = worldText(world);
+  if (!text) return fail(path.string(), text.error().line());
+  Result<AtomicFile> file = AtomicFile::open(path);
+  if (!file) return failAgain(file.error());
+  if (const Result<void> written = file->write(*text); !written) return written;
+  return file->commit();
+}
+
+WorldFile captureWorld(Document& document, const Baseline& baseline, const WorldFile* kept) {
+  WorldFile world;
+  world.state = document.world();
+  world.entities = captureOverrides(document, baseline);
+  for (auto [entity, environment] : std::as_const(document.registry()).view<scene::EnvironmentComponent>())
+    world.environment = environment;
+  if (!kept) return world;
+  world.unknown = kept->unknown;
+  const auto by_id = [](const EntityOverride& a, const EntityOverride& b) { return a.id < b.id; };
+  Overrides more;
+  for (const EntityOverride& old : kept->entities) {
+    const auto found = std::lower_bound(world.entities.begin(), world.entities.end(), old, by_id);
+    if (found != world.entities.end() && found->id == old.id) {
+      found->unknown = old.unknown;
+    } else if (!old.created && !document.find(old.id)) {
+      // Its bundle came without it this time; the edit waits, as long as the bundles are the same.
+      if (kept->state.bundles == world.state.bundles) more.push_back(old);
+    } else if (!old.created && !old.unknown.empty()) {
+      EntityOverride& rest = more.emplace_back();
+      rest.id = old.id;
+      rest.name = old.name;
+      rest.unknown = old.unknown;
+    }
+  }
+  std::move(more.begin(), more.end(), std::back_inserter(world.entities));
+  std::sort(world.entities.begin(), world.entities.end(), by_id);
+  return world;
+}
+
+ApplyReport applyWorld(Document& document, const WorldFile& world) {
+  document.setWorld(world.state);
+  ecs::Registry& registry = document.registry();
+  bool found = false;
+  for (auto [entity, environment] : std::as_const(registry).view<scene::EnvironmentComponent>()) {
+    registry.edit<scene::EnvironmentComponent>(entity) = world.environment;
+    document.adopt(entity);
+    found = true;
+  }
+  if (!found) document.adopt(scene::addEnvironment(registry, world.environment));
+  return applyOverrides(document, world.entities);
+}
+
+}  // namespace lambent::editor

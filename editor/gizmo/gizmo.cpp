@@ -1,0 +1,421 @@
+#include "editor/gizmo/gizmo.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+#include <glm/trigonometric.hpp>
+
+#include "editor/gizmo/shapes2d.hpp"
+
+namespace lambent::editor {
+namespace {
+
+constexpr double kFarthest = 100.0;  // distances to the eye that one drag may go, near vanishing points
+constexpr double kLeastFactor = 1e-3;
+
+int axisIndex(Handle handle) {
+  return static_cast<int>(handle) - static_cast<int>(Handle::X);
+}
+bool isAxis(Handle handle) {
+  return handle == Handle::X || handle == Handle::Y || handle == Handle::Z;
+}
+bool isPlane(Handle handle) {
+  return handle == Handle::YZ || handle == Handle::ZX || handle == Handle::XY;
+}
+// The axis that a plane's handle stands across: YZ has X.
+int planeAxis(Handle handle) {
+  return static_cast<int>(handle) - static_cast<int>(Handle::YZ);
+}
+double snapped(double value, double step) {
+  return step > 0.0 ? std::round(value / step) * step : value;
+}
+// Orthonormal, e1 x e2 = axis.
+std::pair<glm::dvec3, glm::dvec3> across(const glm::dvec3& axis) {
+  const glm::dvec3 other = std::abs(axis.y) < 0.9 ? glm::dvec3(0.0, 1.0, 0.0) : glm::dvec3(1.0, 0.0, 0.0);
+  const glm::dvec3 e1 = glm::normalize(glm::cross(other, axis));
+  return {e1, glm::cross(axis, e1)};
+}
+
+}  // namespace
+
+std::string_view handleWord(Handle handle) {
+  constexpr std::string_view kWords[] = {"none", "x", "y", "z", "yz", "zx", "xy", "screen"};
+  return kWords[static_cast<std::size_t>(handle)];
+}
+
+std::optional<Handle> parseHandle(std::string_view word) {
+  for (const Handle handle : kHandles)
+    if (handleWord(handle) == word) return handle;
+  return std::nullopt;
+}
+
+void Gizmo::setTargets(std::vector<GizmoTarget> targets) {
+  if (!dragging()) targets_ = std::move(targets);
+}
+
+void Gizmo::setView(const spec::View& view, const Viewport& viewport) {
+  projection_ = Projection(view, viewport);
+}
+
+// ---- where the handles stand
+
+glm::dvec3 Gizmo::pivot() const {
+  if (dragging()) return start_.pivot + moved_;
+  if (options.pivot != GizmoPivot::Center) return originOf(targets_.back());
+  glm::dvec3 sum(0.0);
+  for (const GizmoTarget& target : targets_) sum += originOf(target);
+  return sum / static_cast<double>(targets_.size());
+}
+
+glm::dmat3 Gizmo::axes() const {
+  if (dragging()) return start_.axes;
+  return options.space == GizmoSpace::Local ? axesOf(targets_.back()) : glm::dmat3(1.0);
+}
+
+double Gizmo::sizeMetres() const {
+  const double scale = projection_.pixelsPerMetre(pivot());
+  return scale > 0.0 ? options.size_px / scale : 0.0;
+}
+
+glm::dvec3 Gizmo::turnAxis(Handle handle) const {
+  return isAxis(handle) ? axes()[axisIndex(handle)] : projection_.toEye(pivot());
+}
+
+std::optional<glm::dvec2> Gizmo::screenDirection(const glm::dvec3& direction) const {
+  const auto from = projection_.toScreen(pivot());
+  const auto to = projection_.toScreen(pivot() + 0.01 * sizeMetres() * direction);
+  if (!from || !to) return std::nullopt;
+  const double length = glm::length(*to - *from);
+  if (!(length > 0.0)) return std::nullopt;
+  return (*to - *from) / length;
+}
+
+bool Gizmo::shown(Handle handle) const {
+  constexpr double kLeast = 0.15;  // of its size: an axis from its end, a plane edge on
+  if (handle == Handle::None || targets_.empty() || !(sizeMetres() > 0.0)) return false;
+  if (dragging()) return handle == active_;
+  if (isPlane(handle)) {
+    if (options.mode != GizmoMode::Move) return false;
+    const glm::dmat3 a = axes();
+    const int n = planeAxis(handle);
+    const glm::dvec3 normal = glm::cross(a[(n + 1) % 3], a[(n + 2) % 3]);
+    return std::abs(glm::dot(normal, projection_.toEye(pivot()))) > kLeast;
+  }
+  if (isAxis(handle) && options.mode != GizmoMode::Rotate) {
+    const auto from = projection_.toScreen(pivot());
+    const auto to = projection_.toScreen(pivot() + sizeMetres() * axes()[axisIndex(handle)]);
+    return from && to && glm::length(*to - *from) > kLeast * options.size_px;
+  }
+  return true;
+}
+
+std::vector<Gizmo::Shape> Gizmo::ring(Handle handle) const {
+  constexpr int kParts = 96;
+  const glm::dvec3 center = pivot(), axis = turnAxis(handle), to_eye = projection_.toEye(center);
+  const auto [e1, e2] = across(axis);
+  const double radius = sizeMetres() * (handle == Handle::Screen ? 1.25 : 1.0);
+  // The half that faces the viewer, or all of it where it lies in the picture.
+  const bool whole = std::abs(glm::dot(axis, to_eye)) > 0.98 || dragging();
+  std::vector<Shape> shapes(1);
+  for (int i = 0; i <= kParts; ++i) {
+    const double angle = 2.0 * std::numbers::pi * i / kParts;
+    const glm::dvec3 offset = std::cos(angle) * e1 + std::sin(angle) * e2;
+    const auto pixel = projection_.toScreen(center + radius * offset);
+    if (pixel && (whole || glm::dot(offset, to_eye) > -1e-3))
+      shapes.back().points.push_back(*pixel);
+    else if (!shapes.back().points.empty())
+      shapes.emplace_back();
+  }
+  return shapes;
+}
+
+std::vector<Gizmo::Shape> Gizmo::shapes(Handle handle) const {
+  if (!shown(handle)) return {};
+  if (options.mode == GizmoMode::Rotate) return ring(handle);
+  const glm::dvec3 center = pivot();
+  const glm::dmat3 a = axes();
+  const double size = sizeMetres();
+  std::vector<glm::dvec3> corners;
+  Shape shape;
+  if (isAxis(handle)) {
+    corners = {center + 0.18 * size * a[axisIndex(handle)], center + size * a[axisIndex(handle)]};
+  } else if (isPlane(handle)) {
+    const glm::dvec3 u = a[(planeAxis(handle) + 1) % 3], v = a[(planeAxis(handle) + 2) % 3];
+    for (const auto& [s, t] : {std::pair{0.35, 0.35}, {0.6, 0.35}, {0.6, 0.6}, {0.35, 0.6}})
+      corners.push_back(center + size * (s * u + t * v));
+    shape.filled = true;
+  } else {
+    for (int i = 0; i < 12; ++i) {
+      const double angle = 2.0 * std::numbers::pi * i / 12;
+      corners.push_back(center +
+                        0.08 * size *
+                            (std::cos(angle) * projection_.right() + std::sin(angle) * projection_.up()));
+    }
+    shape.filled = true;
+  }
+  for (const glm::dvec3& corner : corners) {
+    const auto pixel = projection_.toScreen(corner);
+    if (!pixel) return {};
+    shape.points.push_back(*pixel);
+  }
+  return {shape};
+}
+
+double Gizmo::distance(Handle handle, const glm::dvec2& pixel) const {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const Shape& shape : shapes(handle))
+    nearest = std::min(
+        nearest, shape.filled ? distanceToPolygon(shape.points, pixel) : distanceToLine(shape.points, pixel));
+  return nearest;
+}
+
+// ---- what the pointer is over
+
+Handle Gizmo::hit(glm::vec2 pixel) const {
+  // What is small comes first where several are as near.
+  constexpr Handle kOrder[] = {Handle::Screen, Handle::X,  Handle::Y, Handle::Z,
+                               Handle::XY,     Handle::YZ, Handle::ZX};
+  Handle best = Handle::None;
+  double nearest = options.hit_px;
+  for (const Handle handle : kOrder) {
+    const double away = distance(handle, glm::dvec2(pixel));
+    if (away < nearest) {
+      nearest = away;
+      best = handle;
+    }
+  }
+  return best;
+}
+
+void Gizmo::hover(glm::vec2 pixel) {
+  hovered_ = dragging() ? active_ : hit(pixel);
+}
+
+std::optional<glm::vec2> Gizmo::pivotScreenPoint() const {
+  if (targets_.empty()) return std::nullopt;
+  const auto pixel = projection_.toScreen(pivot());
+  return pixel ? std::optional(glm::vec2(*pixel)) : std::nullopt;
+}
+
+std::optional<glm::vec2> Gizmo::handleScreenPoint(Handle handle) const {
+  std::optional<glm::vec2> best;
+  double margin = -1.0;
+  for (const Shape& shape : shapes(handle)) {
+    for (const glm::dvec2& candidate : samplesOf(shape.points, shape.filled)) {
+      if (hit(glm::vec2(candidate)) != handle) continue;
+      double free = std::numeric_limits<double>::max();
+      for (const Handle other : kHandles)
+        if (other != handle) free = std::min(free, distance(other, candidate));
+      if (free <= margin) continue;
+      margin = free;
+      best = glm::vec2(candidate);
+    }
+  }
+  return best;
+}
+
+// ---- dragging
+
+bool Gizmo::press(glm::vec2 pixel) {
+  return press(hit(pixel), pixel);
+}
+
+bool Gizmo::press(Handle handle, glm::vec2 pixel) {
+  if (dragging() || !shown(handle)) return false;
+  start_ = {};
+  start_.pivot = pivot();
+  start_.axes = axes();
+  start_.size_m = sizeMetres();
+  start_.pixel = glm::dvec2(pixel);
+  start_.turn_axis = turnAxis(handle);
+  start_.edge_on =
+      handle != Handle::Screen && std::abs(glm::dot(start_.turn_axis, projection_.toEye(start_.pivot))) < 0.2;
+  moved_ = glm::dvec3(0.0);
+  factors_ = glm::dvec3(1.0);
+  turned_rad_ = turn_rad_ = 0.0;
+  active_ = handle;
+  if (options.mode == GizmoMode::Rotate) {
+    last_angle_ = angleAt(start_.pixel).value_or(0.0);
+  } else if (isAxis(handle)) {
+    const glm::dvec3 axis = start_.axes[axisIndex(handle)];
+    if (const auto u = screenDirection(axis))
+      start_.along = projection_.alongLine(start_.pivot, axis, *u, glm::dot(*u, start_.pixel)).value_or(0.0);
+  } else {
+    const glm::dvec3 normal = isPlane(handle) ? glm::cross(start_.axes[(planeAxis(handle) + 1) % 3],
+                                                           start_.axes[(planeAxis(handle) + 2) % 3])
+                                              : projection_.back();
+    const Ray ray = projection_.ray(start_.pixel);
+    const auto t = Projection::hitPlane(ray, start_.pivot, normal);
+    start_.point = t ? ray.origin + *t * ray.direction : start_.pivot;
+  }
+  return true;
+}
+
+void Gizmo::dragMove(const glm::dvec2& pixel, bool free) {
+  const double step = free ? 0.0 : options.snap_m;
+  const double limit = kFarthest * start_.size_m * projection_.viewport().height / options.size_px;
+  if (isAxis(active_)) {
+    const glm::dvec3 axis = start_.axes[axisIndex(active_)];
+    const auto u = screenDirection(axis);
+    const auto t = u ? projection_.alongLine(start_.pivot, axis, *u, glm::dot(*u, pixel)) : std::nullopt;
+    if (t) moved_ = snapped(std::clamp(*t - start_.along, -limit, limit), step) * axis;
+    return;
+  }
+  const int n = isPlane(active_) ? planeAxis(active_) : 0;
+  const glm::dvec3 normal =
+      isPlane(active_) ? glm::cross(start_.axes[(n + 1) % 3], start_.axes[(n + 2) % 3]) : projection_.back();
+  const Ray ray = projection_.ray(pixel);
+  const auto t = Projection::hitPlane(ray, start_.point, normal);
+  if (!t) return;  // beyond the plane's horizon: where it was last
+  const glm::dvec3 delta = ray.origin + *t * ray.direction - start_.point;
+  if (glm::length(delta) > limit) return;
+  glm::dvec3 steps = glm::inverse(start_.axes) * delta;
+  for (int i = 0; i < 3; ++i) steps[i] = snapped(steps[i], step);
+  moved_ = start_.axes * steps;
+}
+
+std::optional<double> Gizmo::angleAt(const glm::dvec2& pixel) const {
+  if (active_ == Handle::Screen) {
+    const auto center = projection_.toScreen(start_.pivot);
+    if (!center || pixel == *center) return std::nullopt;
+    return std::atan2(center->y - pixel.y, pixel.x - center->x);
+  }
+  if (start_.edge_on) {
+    // What stands before the pivot moves along axis x line of sight.
+    const auto tangent = screenDirection(glm::cross(start_.turn_axis, projection_.toEye(start_.pivot)));
+    if (!tangent) return std::nullopt;
+    return glm::dot(*tangent, pixel - start_.pixel) / options.size_px;
+  }
+  const Ray ray = projection_.ray(pixel);
+  const auto t = Projection::hitPlane(ray, start_.pivot, start_.turn_axis);
+  if (!t) return std::nullopt;
+  const glm::dvec3 offset = ray.origin + *t * ray.direction - start_.pivot;
+  const auto [e1, e2] = across(start_.turn_axis);
+  return std::atan2(glm::dot(offset, e2), glm::dot(offset, e1));
+}
+
+void Gizmo::dragTurn(const glm::dvec2& pixel, bool free) {
+  if (const auto angle = angleAt(pixel)) {
+    const double step = *angle - last_angle_;
+    // Turns add up beyond a full one.
+    turn_rad_ += start_.edge_on ? step : std::remainder(step, 2.0 * std::numbers::pi);
+    last_angle_ = *angle;
+  }
+  turned_rad_ = snapped(turn_rad_, free ? 0.0 : glm::radians(double{options.snap_deg}));
+}
+
+void Gizmo::dragScale(const glm::dvec2& pixel, bool free) {
+  double factor = 1.0;
+  if (isAxis(active_)) {
+    const glm::dvec3 axis = start_.axes[axisIndex(active_)];
+    const auto u = screenDirection(axis);
+    const auto t = u ? projection_.alongLine(start_.pivot, axis, *u, glm::dot(*u, pixel)) : std::nullopt;
+    if (!t || std::abs(start_.along) < 1e-3 * start_.size_m) return;
+    factor = *t / start_.along;
+  } else {
+    const glm::dvec2 way = pixel - start_.pixel;
+    factor = std::exp2((way.x - way.y) / options.size_px);  // right and up: larger
+  }
+  const double step = free ? 0.0 : options.snap_scale;
+  factor = std::clamp(snapped(factor, step), std::max(step, kLeastFactor), 1.0 / kLeastFactor);
+  factors_ = glm::dvec3(isAxis(active_) ? 1.0 : factor);
+  if (isAxis(active_)) factors_[axisIndex(active_)] = factor;
+}
+
+std::vector<scene::Transform> Gizmo::drag(glm::vec2 pixel, bool free) {
+  if (!dragging()) return {};
+  const glm::dvec2 at(pixel);
+  if (options.mode == GizmoMode::Move) dragMove(at, free);
+  if (options.mode == GizmoMode::Rotate) dragTurn(at, free);
+  if (options.mode == GizmoMode::Scale) dragScale(at, free);
+  std::vector<scene::Transform> result;
+  for (const GizmoTarget& target : targets_) {
+    const bool each = options.pivot == GizmoPivot::Each;
+    const glm::dvec3 about = each ? originOf(target) : start_.pivot;
+    const bool own_axes = each && options.space == GizmoSpace::Local;
+    const glm::dmat3 axes_ws = own_axes ? axesOf(target) : start_.axes;
+    switch (options.mode) {
+      case GizmoMode::Move:
+        result.push_back(movedBy(target, moved_));
+        break;
+      case GizmoMode::Rotate:
+        result.push_back(turnedBy(
+            target, about, own_axes && isAxis(active_) ? axes_ws[axisIndex(active_)] : start_.turn_axis,
+            turned_rad_));
+        break;
+      case GizmoMode::Scale:
+        // Evenly is the same in all axes, and needs no shear.
+        result.push_back(options.space == GizmoSpace::Local || active_ == Handle::Screen
+                             ? scaledLocally(target, about, axes_ws, factors_)
+                             : scaledInWorld(target, about, factors_));
+        break;
+    }
+  }
+  return result;
+}
+
+void Gizmo::release() {
+  active_ = Handle::None;
+}
+
+std::vector<scene::Transform> Gizmo::cancel() {
+  std::vector<scene::Transform> before;
+  if (dragging())
+    for (const GizmoTarget& target : targets_) before.push_back(target.local);
+  release();
+  return before;
+}
+
+std::string Gizmo::readout() const {
+  if (!dragging()) return {};
+  const std::string_view word = handleWord(active_);
+  switch (options.mode) {
+    case GizmoMode::Move: {
+      if (isAxis(active_))
+        return fmt::format("{} {:+.3f} m", word, glm::dot(moved_, start_.axes[axisIndex(active_)]));
+      return fmt::format("{} {:+.3f}, {:+.3f}, {:+.3f} m", word, moved_.x, moved_.y, moved_.z);
+    }
+    case GizmoMode::Rotate:
+      return fmt::format("{} {:+.1f} deg", word, glm::degrees(turned_rad_));
+    case GizmoMode::Scale:
+      return fmt::format("{} x {:.3f}", word, factors_[isAxis(active_) ? axisIndex(active_) : 0]);
+  }
+  return {};
+}
+
+// ---- painting
+
+Painting Gizmo::paint() const {
+  constexpr std::uint32_t kColors[] = {rgba(230, 70, 70), rgba(100, 190, 70), rgba(70, 120, 235)};
+  constexpr std::uint32_t kLit = rgba(255, 215, 60), kNeutral = rgba(220, 220, 220);
+  Painting painting;
+  // Planes first: axes lie over them.
+  constexpr Handle kOrder[] = {Handle::XY, Handle::YZ, Handle::ZX,    Handle::X,
+                               Handle::Y,  Handle::Z,  Handle::Screen};
+  for (const Handle handle : kOrder) {
+    std::uint32_t color = kNeutral;
+    if (isAxis(handle)) color = kColors[axisIndex(handle)];
+    if (isPlane(handle)) color = kColors[planeAxis(handle)];
+    const bool lit = handle == hovered_ || handle == active_;
+    if (lit) color = kLit;
+    if (isPlane(handle)) color = (color & 0x00ffffffu) | (lit ? 0xc0000000u : 0x70000000u);
+    for (const Shape& shape : shapes(handle)) {
+      if (shape.points.size() < 2) continue;
+      Stroke& stroke = painting.emplace_back();
+      stroke.points.assign(shape.points.begin(), shape.points.end());
+      stroke.color = color;
+      stroke.width_px = lit ? 3.5f : 2.5f;
+      stroke.filled = stroke.closed = shape.filled;
+      if (isAxis(handle) && options.mode != GizmoMode::Rotate)
+        painting.push_back(tip(shape.points[0], shape.points[1], options.mode == GizmoMode::Move, color));
+    }
+  }
+  return painting;
+}
+
+}  // namespace lambent::editor

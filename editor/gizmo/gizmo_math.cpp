@@ -1,0 +1,117 @@
+// What drags do to one target.
+#include <cmath>
+
+#include <glm/ext/matrix_transform.hpp>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+#include "editor/gizmo/gizmo.hpp"
+#include "runtime/scene/affine.hpp"
+
+namespace lambent::editor {
+namespace {
+
+// Whether the parent turns, mirrors and scales evenly, so that a turn of the world is a turn in it.
+bool isSimilarity(const glm::dmat3& linear) {
+  const glm::dmat3 square = glm::transpose(linear) * linear;
+  const double size = (square[0][0] + square[1][1] + square[2][2]) / 3.0;
+  if (!(size > 0.0)) return false;
+  for (int column = 0; column < 3; ++column) {
+    for (int row = 0; row < 3; ++row) {
+      const double expected = column == row ? size : 0.0;
+      if (std::abs(square[column][row] - expected) > 1e-5 * size) return false;
+    }
+  }
+  return true;
+}
+
+bool invertible(const glm::dmat3& linear) {
+  const double volume = std::abs(glm::determinant(linear));
+  const double size = glm::length(linear[0]) * glm::length(linear[1]) * glm::length(linear[2]);
+  return volume > 1e-12 * size && size > 0.0;
+}
+
+}  // namespace
+
+glm::dvec3 originOf(const GizmoTarget& target) {
+  return glm::dvec3(glm::dmat4(target.world_from_parent) * glm::dvec4(target.local.translation, 1.0));
+}
+
+glm::dmat3 axesOf(const GizmoTarget& target) {
+  glm::dmat3 axes(glm::dmat4(target.world_from_parent) * glm::dmat4(scene::localMatrix(target.local)));
+  for (int i = 0; i < 3; ++i) {
+    const double length = glm::length(axes[i]);
+    if (!(length > 0.0)) return glm::dmat3(1.0);
+    axes[i] /= length;
+  }
+  // Nearly flat by its shear: its axes say nothing.
+  return std::abs(glm::determinant(axes)) > 1e-3 ? axes : glm::dmat3(1.0);
+}
+
+scene::Transform movedBy(const GizmoTarget& target, const glm::dvec3& delta_ws) {
+  scene::Transform moved = target.local;
+  const glm::dmat3 linear{glm::mat3(target.world_from_parent)};
+  if (!invertible(linear)) return moved;  // a flat parent: there is no way to follow
+  moved.translation = glm::vec3(glm::dvec3(target.local.translation) + glm::inverse(linear) * delta_ws);
+  return moved;
+}
+
+scene::Transform turnedBy(const GizmoTarget& target, const glm::dvec3& pivot_ws, const glm::dvec3& axis_ws,
+                          double angle_rad) {
+  const glm::dmat3 linear{glm::mat3(target.world_from_parent)};
+  if (!invertible(linear)) return target.local;
+  const glm::dmat3 turn(glm::rotate(glm::dmat4(1.0), angle_rad, axis_ws));
+  const glm::dvec3 origin = originOf(target);
+  scene::Transform turned = movedBy(target, pivot_ws + turn * (origin - pivot_ws) - origin);
+  const glm::dmat3 parent_turn = glm::inverse(linear) * turn * linear;
+  if (isSimilarity(linear)) {
+    // A rotation again; scale and shear are not touched.
+    turned.rotation = glm::quat(
+        glm::normalize(glm::quat_cast(parent_turn) * glm::normalize(glm::dquat(target.local.rotation))));
+    return turned;
+  }
+  glm::dmat4 matrix(scene::localMatrix(target.local));
+  for (int column = 0; column < 3; ++column)
+    matrix[column] = glm::dvec4(parent_turn * glm::dvec3(matrix[column]), 0.0);
+  const glm::vec3 translation = turned.translation;
+  scene::setLocalMatrix(turned, glm::mat4(matrix));
+  turned.translation = translation;
+  return turned;
+}
+
+scene::Transform scaledLocally(const GizmoTarget& target, const glm::dvec3& pivot_ws, const glm::dmat3& axes,
+                               const glm::dvec3& factors) {
+  const glm::dvec3 origin = originOf(target);
+  const glm::dvec3 place = pivot_ws + axes * (factors * (glm::inverse(axes) * (origin - pivot_ws)));
+  scene::Transform scaled = movedBy(target, place - origin);
+  scaled.scale = glm::vec3(glm::dvec3(target.local.scale) * factors);
+  // Columns are scaled, so that shears of one by another keep their look.
+  const glm::dvec3 f = factors;
+  if (f.x != 0.0 && f.y != 0.0) {
+    scaled.shear.x = static_cast<float>(target.local.shear.x * f.y / f.x);
+    scaled.shear.y = static_cast<float>(target.local.shear.y * f.z / f.x);
+    scaled.shear.z = static_cast<float>(target.local.shear.z * f.z / f.y);
+  }
+  return scaled;
+}
+
+scene::Transform scaledInWorld(const GizmoTarget& target, const glm::dvec3& pivot_ws,
+                               const glm::dvec3& factors) {
+  const glm::dmat4 world_from_parent(target.world_from_parent);
+  const glm::dmat3 linear(world_from_parent);
+  if (!invertible(linear)) return target.local;
+  const glm::dvec3 origin = originOf(target);
+  scene::Transform scaled = movedBy(target, pivot_ws + factors * (origin - pivot_ws) - origin);
+  glm::dmat3 stretch(1.0);
+  for (int axis = 0; axis < 3; ++axis) stretch[axis][axis] = factors[axis];
+  const glm::dmat3 parent_stretch = glm::inverse(linear) * stretch * linear;
+  glm::dmat4 matrix(scene::localMatrix(target.local));
+  for (int column = 0; column < 3; ++column)
+    matrix[column] = glm::dvec4(parent_stretch * glm::dvec3(matrix[column]), 0.0);
+  const glm::vec3 translation = scaled.translation;
+  scene::setLocalMatrix(scaled, glm::mat4(matrix));
+  scaled.translation = translation;
+  return scaled;
+}
+
+}  // namespace lambent::editor

@@ -1,0 +1,82 @@
+// Handles of one light: its radius, range, cones and strength, dragged in the picture. Comes in: the light,
+// where its node stands (its scale changes nothing), a view, pixels; goes out: the light as it is to be now,
+// inside the ranges of its fields. Also the direction of a sun, dragged over the sky. Moving and turning a
+// light is the Gizmo's.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <glm/mat4x4.hpp>
+#include <glm/vec2.hpp>
+
+#include "editor/gizmo/painting.hpp"
+#include "editor/gizmo/projection.hpp"
+#include "runtime/base/result.hpp"
+#include "runtime/scene/components.hpp"
+
+namespace lambent::editor {
+
+enum class LightHandle : std::uint8_t { None, Radius, Range, InnerCone, OuterCone, Strength };
+inline constexpr std::array kLightHandles = {LightHandle::Radius, LightHandle::Range, LightHandle::InnerCone,
+                                             LightHandle::OuterCone, LightHandle::Strength};
+std::string_view lightHandleWord(LightHandle handle);  // the field that it sets: "radius", "inner_cone"
+
+class LightGizmo {
+ public:
+  float hit_px = 8.0f;
+  float size_px = 70.0f;  // of cones and stalks that have no size in metres
+
+  // Every frame; the light is not taken over while dragging.
+  void setLight(const scene::LocalLightComponent& light, const glm::mat4& world_from_node);
+  void setView(const spec::View& view, const Viewport& viewport);
+
+  LightHandle hit(glm::vec2 pixel) const;
+  void hover(glm::vec2 pixel) { hovered_ = hit(pixel); }
+  bool press(glm::vec2 pixel);
+  bool press(LightHandle handle, glm::vec2 pixel);
+  bool dragging() const { return active_ != LightHandle::None; }
+  LightHandle active() const { return active_; }
+  scene::LocalLightComponent drag(glm::vec2 pixel);
+  void release() { active_ = LightHandle::None; }
+  scene::LocalLightComponent cancel();
+
+  // Where the handle is taken; none if this kind of light has none, or it is not seen.
+  std::optional<glm::vec2> handleScreenPoint(LightHandle handle) const;
+  Painting paint() const;
+
+ private:
+  std::optional<glm::dvec3> handlePoint(LightHandle handle) const;
+  std::optional<double> valueAt(LightHandle handle, const glm::dvec2& pixel) const;
+  std::vector<glm::dvec3> circle(const glm::dvec3& center, const glm::dvec3& normal, double radius) const;
+  double coneLength() const;
+  glm::dvec3 coneSide() const;  // unit, across the cone, the way its handles stand
+
+  Projection projection_;
+  scene::LocalLightComponent light_, start_;
+  glm::dvec3 center_{0.0}, forward_{0.0, 0.0, -1.0};
+  LightHandle hovered_ = LightHandle::None, active_ = LightHandle::None;
+  glm::dvec2 start_pixel_{0.0};
+  double start_value_ = 0.0;  // what the pointer's place stood for when it was taken
+};
+
+// ---- a sun on the sky
+
+struct SkyDirection {
+  float azimuth_deg = 0.0f, elevation_deg = 0.0f;
+};
+// Where the pixel looks, as sun: words have it. rotation_deg: the environment's; the sun of a turned
+// environment has the azimuth of its word plus that.
+SkyDirection skyDirection(const Projection& projection, glm::vec2 pixel, float rotation_deg);
+// The pixel at which such a sun is seen; none behind the eye, and in orthographic views, which see one
+// direction only.
+std::optional<glm::vec2> sunScreenPoint(const Projection& projection, const SkyDirection& direction,
+                                        float rotation_deg);
+// "sun:AZ,EL,..." with other angles, all else as it was written. Error: the word is no sun.
+Result<std::string> withSunDirection(std::string_view word, const SkyDirection& direction);
+
+}  // namespace lambent::editor

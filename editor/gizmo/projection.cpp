@@ -1,0 +1,87 @@
+#include "editor/gizmo/projection.hpp"
+
+#include <cmath>
+
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+#include <glm/vec4.hpp>
+
+namespace lambent::editor {
+
+Projection::Projection(const spec::View& view, const Viewport& viewport) : viewport_(viewport) {
+  const glm::dmat4 view_from_world(view.view_from_world), clip_from_view(view.clip_from_view);
+  clip_from_world_ = clip_from_view * view_from_world;
+  world_from_clip_ = glm::inverse(clip_from_world_);
+  const glm::dmat4 world_from_view = glm::inverse(view_from_world);
+  right_ = glm::normalize(glm::dvec3(world_from_view[0]));
+  up_ = glm::normalize(glm::dvec3(world_from_view[1]));
+  back_ = glm::normalize(glm::dvec3(world_from_view[2]));
+  eye_ = glm::dvec3(world_from_view[3]);
+  perspective_ = clip_from_view[2][3] != 0.0;
+}
+
+glm::dvec3 Projection::pixelHomogeneous(const glm::dvec4& point) const {
+  const glm::dvec4 clip = clip_from_world_ * point;
+  const double width = viewport_.width, height = viewport_.height;
+  return {(0.5 * width + viewport_.x) * clip.w + 0.5 * width * clip.x,
+          (0.5 * height + viewport_.y) * clip.w - 0.5 * height * clip.y, clip.w};
+}
+
+std::optional<glm::dvec2> Projection::toScreen(const glm::dvec3& point_ws) const {
+  const glm::dvec3 pixel = pixelHomogeneous(glm::dvec4(point_ws, 1.0));
+  if (!(pixel.z > 1e-9)) return std::nullopt;
+  return glm::dvec2(pixel) / pixel.z;
+}
+
+Ray Projection::ray(const glm::dvec2& pixel) const {
+  const double x = 2.0 * (pixel.x - viewport_.x) / viewport_.width - 1.0;
+  const double y = 1.0 - 2.0 * (pixel.y - viewport_.y) / viewport_.height;
+  // The near and the far plane are both in front of the eye.
+  const glm::dvec4 near_h = world_from_clip_ * glm::dvec4(x, y, -1.0, 1.0);
+  const glm::dvec4 far_h = world_from_clip_ * glm::dvec4(x, y, 1.0, 1.0);
+  const glm::dvec3 near_ws = glm::dvec3(near_h) / near_h.w, far_ws = glm::dvec3(far_h) / far_h.w;
+  if (perspective_) return {eye_, glm::normalize(far_ws - eye_)};
+  // From the eye's plane: what stands before the near plane is in front, too.
+  const glm::dvec3 direction = -back_;
+  return {near_ws + direction * glm::dot(eye_ - near_ws, direction), direction};
+}
+
+glm::dvec3 Projection::toEye(const glm::dvec3& point_ws) const {
+  if (!perspective_) return back_;
+  const glm::dvec3 way = eye_ - point_ws;
+  const double length = glm::length(way);
+  return length > 0.0 ? way / length : back_;
+}
+
+double Projection::pixelsPerMetre(const glm::dvec3& point_ws) const {
+  const glm::dvec3 here = pixelHomogeneous(glm::dvec4(point_ws, 1.0));
+  if (!(here.z > 1e-9)) return 0.0;
+  // Along the camera's up: the same depth, so the same w.
+  const glm::dvec3 step = pixelHomogeneous(glm::dvec4(up_, 0.0));
+  return std::abs(step.y) / here.z;
+}
+
+std::optional<double> Projection::alongLine(const glm::dvec3& p, const glm::dvec3& d, const glm::dvec2& u,
+                                            double coordinate) const {
+  // The pixel of p + t d is (P.xy + t D.xy) / (P.z + t D.z), so
+  // u.(P.xy + t D.xy) = coordinate (P.z + t D.z), linear in t.
+  const glm::dvec3 at = pixelHomogeneous(glm::dvec4(p, 1.0)), along = pixelHomogeneous(glm::dvec4(d, 0.0));
+  const double slope = glm::dot(u, glm::dvec2(along)) - coordinate * along.z;
+  const double rest = coordinate * at.z - glm::dot(u, glm::dvec2(at));
+  if (std::abs(slope) < 1e-9 * (std::abs(rest) + at.z)) return std::nullopt;
+  const double t = rest / slope;
+  // At the vanishing point and beyond it the pixel means no place on the line.
+  if (!(at.z + t * along.z > 1e-4 * at.z)) return std::nullopt;
+  return t;
+}
+
+std::optional<double> Projection::hitPlane(const Ray& ray, const glm::dvec3& point,
+                                           const glm::dvec3& normal) {
+  const double slope = glm::dot(ray.direction, normal);
+  if (std::abs(slope) < 1e-6) return std::nullopt;
+  const double t = glm::dot(point - ray.origin, normal) / slope;
+  if (!(t > 0.0)) return std::nullopt;
+  return t;
+}
+
+}  // namespace lambent::editor

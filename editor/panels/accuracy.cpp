@@ -1,0 +1,117 @@
+#include <algorithm>
+#include <array>
+#include <cfloat>
+
+#include <fmt/format.h>
+#include <imgui.h>
+#include <nlohmann/json.hpp>
+
+#include "editor/commands/command.hpp"
+#include "editor/panels/panel.hpp"
+#include "runtime/frame/frame_settings.hpp"
+
+namespace lambent::editor {
+
+namespace {
+
+double milliseconds(const frame::KnobPoint& point) {
+  return point.gpu_ms > 0.0 ? point.gpu_ms : point.cpu_ms;
+}
+
+std::string errorText(double error) {
+  return error <= 0.0 ? "none" : fmt::format("{:.2g} %", 100.0 * error);
+}
+
+// Error over values, drawn small; time in the tooltip.
+void drawSweep(const frame::SettingRow& row, const std::vector<frame::KnobPoint>& points) {
+  std::vector<float> errors;
+  std::string table = fmt::format("{:>10}  {:>10}  {:>8}\n", row.name, "error", "ms");
+  for (const frame::KnobPoint& point : points) {
+    errors.push_back(static_cast<float>(100.0 * point.error));
+    table += fmt::format("{:>10.4g}  {:>10}  {:>8.2f}\n", point.value, errorText(point.error),
+                         milliseconds(point));
+  }
+  ImGui::PlotLines("##sweep", errors.data(), static_cast<int>(errors.size()), 0, nullptr, 0.0f, FLT_MAX,
+                   ImVec2(130.0f, 24.0f));
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", table.c_str());
+}
+
+// The knob itself beside its cost.
+void drawKnob(Session& session, Ui& ui, const frame::SettingRow& row) {
+  frame::FrameSettings settings = session.stage.frame().settings();
+  const double value = row.get(settings);
+  double to = value;
+  bool changed = false;
+  ImGui::SetNextItemWidth(-1.0f);
+  using Kind = frame::SettingRow::Kind;
+  if (row.kind == Kind::Switch) {
+    bool on = value != 0.0;
+    changed = ImGui::Checkbox("##knob", &on);
+    to = on ? 1.0 : 0.0;
+  } else {
+    float shown = static_cast<float>(value);
+    changed =
+        ImGui::SliderFloat("##knob", &shown, static_cast<float>(row.least), static_cast<float>(row.greatest),
+                           frame::settingWord(row, settings).c_str(), ImGuiSliderFlags_AlwaysClamp);
+    to = row.kind == Kind::Real ? double{shown} : std::round(double{shown});
+  }
+  ui.mark(fmt::format("accuracy.{}", row.name));
+  if (ImGui::IsItemActivated()) session.beginDrag(std::string(row.label));
+  if (changed && to != value) {
+    row.put(settings, to);
+    const std::array words = {std::string(row.name), frame::settingWord(row, settings)};
+    if (auto done = runCommand(session, "setting", words); !done) session.log.error(done.error());
+  }
+  if (ImGui::IsItemDeactivated()) session.endDrag();
+}
+
+}  // namespace
+
+void drawAccuracy(Session& session, Ui& ui) {
+  if (ImGui::Button(session.knobs.busy() ? "Measuring..." : "Measure in this view"))
+    session.knobs.measureAll();
+  ui.mark("accuracy.measure");
+  ImGui::SameLine();
+  ImGui::TextDisabled(
+      "error against the knob's finest value, same view at rest; times of a frame that shades everything");
+  constexpr ImGuiTableFlags kTable = ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersInnerV |
+                                     ImGuiTableFlags_ScrollY | ImGuiTableFlags_Resizable;
+  if (!ImGui::BeginTable("knobs", 6, kTable)) return;
+  ImGui::TableSetupColumn("Knob", ImGuiTableColumnFlags_WidthStretch, 0.24f);
+  ImGui::TableSetupColumn("Value", ImGuiTableColumnFlags_WidthStretch, 0.26f);
+  ImGui::TableSetupColumn("Error", ImGuiTableColumnFlags_WidthFixed, 75.0f);
+  ImGui::TableSetupColumn("ms now", ImGuiTableColumnFlags_WidthFixed, 60.0f);
+  ImGui::TableSetupColumn("ms finest", ImGuiTableColumnFlags_WidthFixed, 65.0f);
+  ImGui::TableSetupColumn("Error over values", ImGuiTableColumnFlags_WidthFixed, 190.0f);
+  ImGui::TableSetupScrollFreeze(0, 1);
+  ImGui::TableHeadersRow();
+  for (const frame::SettingRow& row : frame::settingRows()) {
+    if (!row.finest) continue;
+    const auto found = session.knobs.rows().find(row.name);
+    ImGui::PushID(row.name.data());
+    ImGui::TableNextRow();
+    ImGui::TableNextColumn();
+    ImGui::TextUnformatted(std::string(row.label).c_str());
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", std::string(row.help).c_str());
+    ImGui::TableNextColumn();
+    drawKnob(session, ui, row);
+    const bool known = found != session.knobs.rows().end() && !found->second.cost.now.passes.empty();
+    ImGui::TableNextColumn();
+    if (known) ImGui::TextUnformatted(errorText(found->second.cost.now.error).c_str());
+    ImGui::TableNextColumn();
+    if (known) ImGui::Text("%.2f", milliseconds(found->second.cost.now));
+    ImGui::TableNextColumn();
+    if (known) ImGui::Text("%.2f", milliseconds(found->second.cost.finest));
+    ImGui::TableNextColumn();
+    if (found != session.knobs.rows().end() && !found->second.sweep.empty()) {
+      drawSweep(row, found->second.sweep);
+      ImGui::SameLine();
+    }
+    if (ImGui::SmallButton("Sweep")) session.knobs.sweep(std::string(row.name));
+    ui.mark(fmt::format("accuracy.sweep.{}", row.name));
+    ImGui::PopID();
+  }
+  ImGui::EndTable();
+}
+
+}  // namespace lambent::editor

@@ -1,0 +1,87 @@
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include "editor/panels/panel.hpp"
+#include "editor/panels/text.hpp"
+
+namespace lambent::editor {
+
+namespace {
+
+void milliseconds(double value) {
+  if (value < 0.0)
+    ImGui::TextDisabled("-");
+  else
+    ImGui::Text("%.2f", value);
+}
+
+void drawPasses(const std::vector<gpu::PassTime>& passes) {
+  constexpr ImGuiTableFlags kTable =
+      ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersInnerV | ImGuiTableFlags_Resizable;
+  if (!ImGui::BeginTable("passes", 7, kTable)) return;
+  ImGui::TableSetupColumn("Pass", ImGuiTableColumnFlags_WidthFixed, 100.0f);
+  ImGui::TableSetupColumn("CPU ms", ImGuiTableColumnFlags_WidthFixed, 60.0f);
+  ImGui::TableSetupColumn("GPU ms", ImGuiTableColumnFlags_WidthFixed, 60.0f);
+  ImGui::TableSetupColumn("Dispatches", ImGuiTableColumnFlags_WidthFixed, 75.0f);
+  ImGui::TableSetupColumn("Draws", ImGuiTableColumnFlags_WidthFixed, 50.0f);
+  ImGui::TableSetupColumn("Uploaded", ImGuiTableColumnFlags_WidthFixed, 75.0f);
+  ImGui::TableSetupColumn("Why it ran", ImGuiTableColumnFlags_WidthStretch);
+  ImGui::TableHeadersRow();
+  double cpu = 0.0, gpu = 0.0;
+  for (const gpu::PassTime& pass : passes) {
+    cpu += pass.cpu_ms, gpu += std::max(0.0, pass.gpu_ms);
+    ImGui::TableNextRow();
+    ImGui::TableNextColumn();
+    ImGui::TextUnformatted(pass.name.c_str());
+    ImGui::TableNextColumn();
+    milliseconds(pass.cpu_ms);
+    ImGui::TableNextColumn();
+    milliseconds(pass.gpu_ms);
+    ImGui::TableNextColumn();
+    ImGui::Text("%llu", static_cast<unsigned long long>(pass.counters.dispatches));
+    ImGui::TableNextColumn();
+    ImGui::Text("%llu", static_cast<unsigned long long>(pass.counters.draws));
+    ImGui::TableNextColumn();
+    ImGui::TextUnformatted(bytesText(static_cast<double>(pass.counters.uploaded_bytes)).c_str());
+    ImGui::TableNextColumn();
+    if (pass.reason.empty())
+      ImGui::TextDisabled("nothing to do");
+    else
+      ImGui::TextUnformatted(pass.reason.c_str());
+  }
+  ImGui::TableNextRow();
+  ImGui::TableNextColumn();
+  ImGui::TextUnformatted("all");
+  ImGui::TableNextColumn();
+  milliseconds(cpu);
+  ImGui::TableNextColumn();
+  milliseconds(gpu);
+  ImGui::EndTable();
+}
+
+}  // namespace
+
+void drawCost(Session& session, Ui& ui) {
+  const frame::StepCounts& counts = session.stage.frame().counts();
+  const auto number = [](const char* label, std::uint64_t value) {
+    ImGui::SameLine(0.0f, 18.0f);
+    ImGui::TextDisabled("%s", label);
+    ImGui::SameLine();
+    ImGui::Text("%llu", static_cast<unsigned long long>(value));
+  };
+  ImGui::Text("%s on the GPU",
+              bytesText(static_cast<double>(session.stage.world().residency().bytesResident() +
+                                            session.stage.frame().volumeBytes()))
+                  .c_str());
+  ui.mark("cost.bytes");
+  number("groups", counts.groups), number("light samples written", counts.light_samples_written);
+  number("captured", counts.incident.captured), number("cells shaded", counts.cells_shaded);
+  number("draws shaded", counts.draws_shaded), number("shadow cubes", counts.shadow_cubes_drawn);
+  number("volumes shaded", counts.volumes_shaded), number("grids", counts.neighborhoods.grids);
+  ImGui::BeginChild("table");
+  drawPasses(session.stage.frame().timers().latest());
+  ImGui::EndChild();
+  ui.mark("cost.passes");
+}
+
+}  // namespace lambent::editor

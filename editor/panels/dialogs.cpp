@@ -1,0 +1,130 @@
+#include <algorithm>
+
+#include <imgui.h>
+#include <imgui_stdlib.h>
+
+#include "editor/panels/colors.hpp"
+#include "editor/panels/panel.hpp"
+
+namespace lambent::editor {
+
+namespace {
+
+using Kind = Dialog::Kind;
+
+bool shown(const Dialog& dialog, const std::filesystem::directory_entry& entry) {
+  const std::string name = entry.path().filename().string();
+  if (name.starts_with('.')) return false;
+  std::error_code ignored;
+  if (entry.is_directory(ignored)) return true;
+  if (dialog.kind == Kind::Folder) return false;
+  return dialog.endings.empty() ||
+         std::any_of(dialog.endings.begin(), dialog.endings.end(),
+                     [&](const std::string& ending) { return name.ends_with(ending); });
+}
+
+std::vector<std::filesystem::directory_entry> listing(const Dialog& dialog) {
+  std::vector<std::filesystem::directory_entry> entries;
+  std::error_code ignored;
+  for (const auto& entry : std::filesystem::directory_iterator(dialog.folder, ignored))
+    if (shown(dialog, entry)) entries.push_back(entry);
+  std::sort(entries.begin(), entries.end(), [](const auto& a, const auto& b) {
+    std::error_code none;
+    const bool folder_a = a.is_directory(none), folder_b = b.is_directory(none);
+    return folder_a != folder_b ? folder_a : a.path().filename() < b.path().filename();
+  });
+  return entries;
+}
+
+// Returns whether a file was chosen by a double click.
+bool drawFiles(Dialog& dialog, Ui& ui) {
+  bool chosen = false;
+  std::string folder = dialog.folder.string();
+  ImGui::SetNextItemWidth(-60.0f);
+  if (ImGui::InputText("##folder", &folder, ImGuiInputTextFlags_EnterReturnsTrue)) dialog.folder = folder;
+  ui.mark("dialog.folder");
+  ImGui::SameLine();
+  if (ImGui::Button("Up")) dialog.folder = dialog.folder.parent_path();
+  ui.mark("dialog.up");
+  ImGui::BeginChild("files", ImVec2(0.0f, 260.0f), true);
+  std::filesystem::path enter;
+  for (const auto& entry : listing(dialog)) {
+    std::error_code ignored;
+    const bool is_folder = entry.is_directory(ignored);
+    const std::string name = entry.path().filename().string();
+    if (ImGui::Selectable((is_folder ? name + "/" : name).c_str(), dialog.name == name,
+                          ImGuiSelectableFlags_AllowDoubleClick | ImGuiSelectableFlags_DontClosePopups)) {
+      const bool twice = ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left);
+      if (is_folder && twice)
+        enter = entry.path();
+      else if (!is_folder || dialog.kind == Kind::Folder)
+        dialog.name = name, chosen = twice && !is_folder;
+    }
+    ui.mark("dialog." + name);
+  }
+  ImGui::EndChild();
+  if (!enter.empty()) dialog.folder = enter, dialog.name.clear();
+  ImGui::SetNextItemWidth(-1.0f);
+  if (ImGui::InputTextWithHint("##name", dialog.kind == Kind::Folder ? "this folder" : "file", &dialog.name,
+                               ImGuiInputTextFlags_EnterReturnsTrue))
+    chosen = true;
+  ui.mark("dialog.name");
+  return chosen;
+}
+
+std::string answerOf(const Dialog& dialog) {
+  if (dialog.kind == Kind::Text) return dialog.name;
+  if (dialog.kind == Kind::Confirm) return {};
+  const std::filesystem::path name(dialog.name);
+  return (name.is_absolute() ? name : dialog.folder / name).string();
+}
+
+}  // namespace
+
+void drawDialogs(Session& session, Ui& ui) {
+  if (!session.dialog) return;
+  // What is asked may ask again: the dialog at hand is a copy from here on.
+  Dialog& dialog = *session.dialog;
+  const std::string title = dialog.title + "###dialog";
+  if (!ImGui::IsPopupOpen(title.c_str())) ImGui::OpenPopup(title.c_str());
+  ImGui::SetNextWindowSize(
+      ImVec2(dialog.kind == Kind::Confirm || dialog.kind == Kind::Text ? 420.0f : 620.0f, 0.0f));
+  const ImVec2 screen = ImGui::GetIO().DisplaySize;
+  ImGui::SetNextWindowPos(ImVec2(0.5f * screen.x, 0.4f * screen.y), ImGuiCond_Appearing, ImVec2(0.5f, 0.5f));
+  if (!ImGui::BeginPopupModal(title.c_str(), nullptr, ImGuiWindowFlags_NoSavedSettings)) return;
+  bool yes = false, no = false, third = false;
+  if (!dialog.question.empty()) {
+    const float wrap = ImGui::GetContentRegionAvail().x;
+    const float height = ImGui::CalcTextSize(dialog.question.c_str(), nullptr, false, wrap).y + 8.0f;
+    ImGui::BeginChild("question", ImVec2(0.0f, std::min(height, 0.7f * screen.y)));
+    ImGui::TextWrapped("%s", dialog.question.c_str());
+    ImGui::EndChild();
+  }
+  if (dialog.kind == Kind::Text) {
+    ImGui::SetNextItemWidth(-1.0f);
+    yes = ImGui::InputText("##text", &dialog.name, ImGuiInputTextFlags_EnterReturnsTrue);
+    ui.mark("dialog.text");
+  } else if (dialog.kind != Kind::Confirm) {
+    yes = drawFiles(dialog, ui);
+  }
+  yes |= ImGui::Button(dialog.yes.c_str(), ImVec2(110.0f, 0.0f));
+  ui.mark("dialog.yes");
+  if (!dialog.third.empty()) {
+    ImGui::SameLine();
+    third = ImGui::Button(dialog.third.c_str(), ImVec2(110.0f, 0.0f));
+    ui.mark("dialog.third");
+  }
+  ImGui::SameLine();
+  no = ImGui::Button(dialog.no.c_str(), ImVec2(110.0f, 0.0f)) ||
+       ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape));
+  ui.mark("dialog.no");
+  if (yes || no || third) ImGui::CloseCurrentPopup();
+  ImGui::EndPopup();
+  if (!yes && !no && !third) return;
+  const Dialog answered = std::move(dialog);
+  session.dialog.reset();
+  if (yes && answered.answered) answered.answered(session, answerOf(answered));
+  if (third && answered.third_chosen) answered.third_chosen(session);
+}
+
+}  // namespace lambent::editor

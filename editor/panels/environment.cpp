@@ -1,0 +1,187 @@
+#include <array>
+#include <cstdio>
+
+#include <fmt/format.h>
+#include <imgui.h>
+#include <nlohmann/json.hpp>
+
+#include "editor/commands/command.hpp"
+#include "editor/panels/panel.hpp"
+#include "editor/session/probe_shelf.hpp"
+#include "runtime/spec/light.hpp"
+
+namespace lambent::editor {
+
+namespace {
+
+constexpr float kThumbWidth = 128.0f, kThumbHeight = 64.0f;
+
+void run(Session& session, const char* command, std::initializer_list<std::string> words) {
+  const std::vector<std::string> list(words);
+  if (auto done = runCommand(session, command, list); !done) session.log.error(done.error());
+}
+
+void setWord(Session& session, std::size_t index, std::string word) {
+  session.editWorld("light from outside", [&](WorldState& world) { world.lights[index] = std::move(word); });
+}
+
+std::string sunWord(const spec::SunLight& sun) {
+  return fmt::format("sun:{:.7g},{:.7g},{:.7g},{:.7g},{:.7g},{:.7g}", sun.azimuth_deg, sun.elevation_deg,
+                     sun.angle_deg, sun.radiance.r, sun.radiance.g, sun.radiance.b);
+}
+std::string constantWord(const glm::vec3& radiance) {
+  return fmt::format("constant:{:.7g},{:.7g},{:.7g}", radiance.r, radiance.g, radiance.b);
+}
+
+// A drag of a widget is one step of the history.
+void asOneStep(Session& session, const char* name) {
+  if (ImGui::IsItemActivated()) session.beginDrag(name);
+  if (ImGui::IsItemDeactivated()) session.endDrag();
+}
+
+// Radiance as a colour and a strength: suns are far brighter than a colour picker goes.
+bool editRadiance(Session& session, Ui& ui, const std::string& mark, glm::vec3& radiance) {
+  float strength = std::max({radiance.r, radiance.g, radiance.b, 1e-6f});
+  glm::vec3 color = radiance / strength;
+  bool changed = ImGui::ColorEdit3("colour", &color.x, ImGuiColorEditFlags_Float);
+  asOneStep(session, "colour of light");
+  ui.mark(mark + ".colour");
+  changed |= ImGui::DragFloat("radiance", &strength, 0.01f * std::max(0.1f, strength), 0.0f, 1e7f, "%.4g",
+                              ImGuiSliderFlags_AlwaysClamp);
+  asOneStep(session, "strength of light");
+  ui.mark(mark + ".radiance");
+  if (changed) radiance = strength * color;
+  return changed;
+}
+
+void drawSun(Session& session, Ui& ui, std::size_t index, spec::SunLight sun) {
+  const std::string mark = fmt::format("environment.{}", index);
+  bool changed = ImGui::DragFloat("azimuth", &sun.azimuth_deg, 0.5f, -360.0f, 360.0f, "%.1f deg");
+  asOneStep(session, "turn of sun");
+  ui.mark(mark + ".azimuth");
+  changed |= ImGui::DragFloat("elevation", &sun.elevation_deg, 0.25f, -90.0f, 90.0f, "%.1f deg",
+                              ImGuiSliderFlags_AlwaysClamp);
+  asOneStep(session, "height of sun");
+  ui.mark(mark + ".elevation");
+  changed |= ImGui::DragFloat("radius", &sun.angle_deg, 0.05f, 0.05f, 180.0f, "%.2f deg",
+                              ImGuiSliderFlags_AlwaysClamp);
+  asOneStep(session, "size of sun");
+  ui.mark(mark + ".radius");
+  changed |= editRadiance(session, ui, mark, sun.radiance);
+  if (changed) setWord(session, index, sunWord(sun));
+}
+
+void drawLight(Session& session, Ui& ui, std::size_t index, const std::string& word) {
+  const auto light = spec::parseLight(word);
+  const std::string mark = fmt::format("environment.{}", index);
+  const std::string title = !light                                           ? word
+                            : std::holds_alternative<spec::SunLight>(*light) ? "Sun"
+                            : std::holds_alternative<spec::ConstantLight>(*light)
+                                ? "Constant"
+                                : "Probe " + std::filesystem::path(word).filename().string();
+  ImGui::PushID(static_cast<int>(index));
+  const bool open = ImGui::CollapsingHeader(
+      title.c_str(), ImGuiTreeNodeFlags_DefaultOpen | ImGuiTreeNodeFlags_AllowItemOverlap);
+  ui.mark(mark);
+  ImGui::SameLine(ImGui::GetWindowWidth() - 34.0f);
+  if (ImGui::SmallButton("x")) run(session, "remove-light", {std::to_string(index)});
+  ui.mark(mark + ".remove");
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("Take this light away");
+  if (open && light) {
+    if (const auto* sun = std::get_if<spec::SunLight>(&*light)) drawSun(session, ui, index, *sun);
+    if (const auto* constant = std::get_if<spec::ConstantLight>(&*light)) {
+      glm::vec3 radiance = constant->radiance;
+      if (editRadiance(session, ui, mark, radiance)) setWord(session, index, constantWord(radiance));
+    }
+    if (std::holds_alternative<spec::ProbeLight>(*light)) ImGui::TextWrapped("%s", word.c_str());
+  }
+  ImGui::PopID();
+}
+
+void drawShelf(Session& session, Ui& ui) {
+  if (!ImGui::CollapsingHeader("Probes", ImGuiTreeNodeFlags_DefaultOpen)) return;
+  session.probes.update(session.document.world().lights, session.scenes);
+  if (session.probes.probes().empty())
+    ImGui::TextDisabled("None beside the open files; add a folder of .hdr or .exr files.");
+  const float room = ImGui::GetContentRegionAvail().x;
+  const int columns = std::max(1, static_cast<int>(room / (kThumbWidth + 10.0f)));
+  int column = 0;
+  for (const ProbeShelf::Probe& probe : session.probes.probes()) {
+    ImGui::PushID(probe.file.c_str());
+    ImGui::BeginGroup();
+    const auto id = reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(probe.thumbnail.id()));
+    const std::string name = probe.file.stem().string();
+    if (probe.thumbnail
+            ? ImGui::ImageButton(id, ImVec2(kThumbWidth, kThumbHeight), ImVec2(0, 0), ImVec2(1, 1), 1)
+            : ImGui::Button(probe.error.empty() ? "..." : "cannot be read",
+                            ImVec2(kThumbWidth, kThumbHeight)))
+      run(session, "probe", {probe.file.string()});
+    ui.mark("probe." + name);
+    if (ImGui::IsItemHovered())
+      ImGui::SetTooltip(
+          "%s\n%s", probe.file.string().c_str(),
+          probe.error.empty() ? "Click: the light from outside is this probe" : probe.error.c_str());
+    ImGui::TextDisabled("%.18s", name.c_str());
+    ImGui::EndGroup();
+    if (++column % columns != 0) ImGui::SameLine();
+    ImGui::PopID();
+  }
+  ImGui::NewLine();
+  if (ImGui::Button("Add folder of probes...")) run(session, "probe-folder", {});
+  ui.mark("environment.probe-folder");
+}
+
+void drawStand(Session& session, Ui& ui) {
+  const ecs::Entity entity = session.stage.environmentEntity();
+  const ecs::Registry& registry = session.document.registry();
+  const auto number = [&](const char* field, const char* label, float least, float most, const char* format) {
+    const auto found = scene::findField("Environment", field);
+    if (!found) return;
+    float value = std::get<float>((*found)->get(registry, entity));
+    if (ImGui::SliderFloat(label, &value, least, most, format))
+      if (auto done = session.history.setField(entity, "Environment", field, value); !done)
+        session.log.error(done.error());
+    asOneStep(session, label);
+    ui.mark(fmt::format("environment.{}", field));
+  };
+  number("rotation", "turn", -180.0f, 180.0f, "%.1f deg");
+  number("intensity", "intensity", 0.0f, 4.0f, "%.3f");
+  if (!session.document.world().fade_lights.empty()) number("fade", "fade", 0.0f, 1.0f, "%.3f");
+  std::optional<float> exposure = session.document.world().exposure_ev;
+  bool automatic = !exposure.has_value();
+  if (ImGui::Checkbox("automatic exposure", &automatic))
+    session.editWorld("exposure", [&](WorldState& world) {
+      world.exposure_ev = automatic ? std::nullopt : std::optional(session.stage.frame().exposureEv());
+    });
+  ui.mark("environment.automatic");
+  if (automatic) {
+    ImGui::SameLine();
+    ImGui::TextDisabled("%.2f EV", session.stage.frame().exposureEv());
+    return;
+  }
+  float ev = *exposure;
+  if (ImGui::SliderFloat("exposure", &ev, -12.0f, 12.0f, "%.2f EV"))
+    session.editWorld("exposure", [&](WorldState& world) { world.exposure_ev = ev; });
+  asOneStep(session, "exposure");
+  ui.mark("environment.exposure");
+}
+
+}  // namespace
+
+void drawEnvironment(Session& session, Ui& ui) {
+  drawStand(session, ui);
+  ImGui::Separator();
+  const std::vector<std::string> lights = session.document.world().lights;
+  for (std::size_t i = 0; i < lights.size(); ++i) drawLight(session, ui, i, lights[i]);
+  if (ImGui::Button("Add sun")) run(session, "add-light", {"sun:35,45,6,30,28,25"});
+  ui.mark("environment.add-sun");
+  ImGui::SameLine();
+  if (ImGui::Button("Add constant")) run(session, "add-light", {"constant:0.3,0.35,0.45"});
+  ui.mark("environment.add-constant");
+  ImGui::SameLine();
+  if (ImGui::Button("Add probe...")) run(session, "probe", {});
+  ui.mark("environment.add-probe");
+  drawShelf(session, ui);
+}
+
+}  // namespace lambent::editor

@@ -1,0 +1,82 @@
+#include <ctime>
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include "editor/panels/colors.hpp"
+#include "editor/panels/panel.hpp"
+
+namespace lambent::editor {
+
+namespace {
+
+constexpr std::chrono::milliseconds kToastAge{6000};
+constexpr std::size_t kMostToasts = 4;
+constexpr float kToastWidth = 420.0f;
+
+}  // namespace
+
+ImVec4 severityColor(Severity severity) {
+  switch (severity) {
+    case Severity::Error:
+      return kErrorColor;
+    case Severity::Warning:
+      return kWarningColor;
+    case Severity::Note:
+      break;
+  }
+  return kNoteColor;
+}
+
+void drawLog(Session& session, Ui& ui) {
+  const auto entries = session.log.entries();
+  if (ImGui::Button("Clear")) session.log.clear();
+  ui.mark("log.clear");
+  ImGui::SameLine();
+  if (ImGui::Button("Copy all")) {
+    std::string text;
+    for (const LogEntry& entry : entries) text += entry.text + "\n";
+    ImGui::SetClipboardText(text.c_str());
+  }
+  ui.mark("log.copy");
+  ImGui::BeginChild("entries");
+  for (const LogEntry& entry : entries) {
+    const std::time_t when = std::chrono::system_clock::to_time_t(entry.when);
+    ImGui::TextDisabled("%s", fmt::format("{:%H:%M:%S}", fmt::localtime(when)).c_str());
+    ImGui::SameLine();
+    ImGui::PushStyleColor(ImGuiCol_Text, severityColor(entry.severity));
+    const std::string times = entry.times > 1 ? fmt::format(" ({} times)", entry.times) : std::string();
+    ImGui::TextWrapped("%s%s", entry.text.c_str(), times.c_str());
+    ImGui::PopStyleColor();
+  }
+  if (ImGui::GetScrollY() >= ImGui::GetScrollMaxY()) ImGui::SetScrollHereY(1.0f);
+  ImGui::EndChild();
+}
+
+void drawToasts(Session& session, Ui& ui) {
+  auto recent = session.log.recent(kToastAge);
+  if (recent.size() > kMostToasts)
+    recent.erase(recent.begin(), recent.end() - static_cast<std::ptrdiff_t>(kMostToasts));
+  const ImVec2 screen = ImGui::GetIO().DisplaySize;
+  float bottom = screen.y - 12.0f;
+  for (std::size_t i = recent.size(); i-- > 0;) {
+    const LogEntry& entry = recent[i];
+    ImGui::SetNextWindowPos(ImVec2(screen.x - 12.0f, bottom), ImGuiCond_Always, ImVec2(1.0f, 1.0f));
+    ImGui::SetNextWindowSize(ImVec2(kToastWidth, 0.0f));
+    ImGui::SetNextWindowBgAlpha(0.94f);
+    ImGui::PushStyleColor(ImGuiCol_Border, severityColor(entry.severity));
+    const std::string id = fmt::format("##toast{}", entry.number);
+    ImGui::Begin(id.c_str(), nullptr,
+                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoFocusOnAppearing |
+                     ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                     ImGuiWindowFlags_NoInputs);
+    ImGui::TextWrapped("%s", entry.text.c_str());
+    bottom -= ImGui::GetWindowHeight() + 8.0f;
+    ImGui::End();
+    ImGui::PopStyleColor();
+  }
+  if (!recent.empty()) ui.mark("toasts", {{screen.x - kToastWidth, bottom}, {screen.x, screen.y}});
+}
+
+}  // namespace lambent::editor

@@ -1,0 +1,156 @@
+#include "editor/panels/manipulate.hpp"
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+#include <imgui.h>
+
+namespace lambent::editor {
+
+namespace {
+
+constexpr float kClickPixels = 4.0f;  // a press that moves no further is a click
+
+void paint(const Painting& painting, const Viewport& viewport) {
+  ImDrawList* canvas = ImGui::GetWindowDrawList();
+  canvas->PushClipRect(ImVec2(viewport.x, viewport.y),
+                       ImVec2(viewport.x + viewport.width, viewport.y + viewport.height), true);
+  for (const Stroke& stroke : painting) {
+    std::vector<ImVec2> points;
+    for (const glm::vec2& point : stroke.points) points.emplace_back(point.x, point.y);
+    const int count = static_cast<int>(points.size());
+    if (stroke.filled)
+      canvas->AddConvexPolyFilled(points.data(), count, stroke.color);
+    else
+      canvas->AddPolyline(points.data(), count, stroke.color, stroke.closed ? ImDrawFlags_Closed : 0,
+                          stroke.width_px);
+  }
+  canvas->PopClipRect();
+}
+
+// The Transform's fields of one entity.
+void addEdits(ecs::Entity entity, const scene::Transform& to, std::vector<FieldEdit>& edits) {
+  edits.push_back({entity, "Transform", "translation", to.translation});
+  edits.push_back({entity, "Transform", "rotation", to.rotation});
+  edits.push_back({entity, "Transform", "scale", to.scale});
+  edits.push_back({entity, "Transform", "shear", to.shear});
+}
+
+void setTransforms(Session& session, const std::vector<ecs::Entity>& entities,
+                   const std::vector<scene::Transform>& to) {
+  std::vector<FieldEdit> edits;
+  for (std::size_t i = 0; i < to.size(); ++i) addEdits(entities[i], to[i], edits);
+  if (edits.empty()) return;
+  if (auto done = session.history.setFields(edits); !done) session.log.error(done.error());
+}
+
+void setLight(Session& session, ecs::Entity entity, const scene::LocalLightComponent& to) {
+  const FieldEdit edits[] = {{entity, "Light", "strength", to.strength},
+                             {entity, "Light", "radius", to.radius_m},
+                             {entity, "Light", "range", to.range_m},
+                             {entity, "Light", "inner_cone", to.inner_cone_rad},
+                             {entity, "Light", "outer_cone", to.outer_cone_rad}};
+  if (auto done = session.history.setFields(edits); !done) session.log.error(done.error());
+}
+
+void pick(Session& session, const Viewport& viewport, glm::vec2 pixel) {
+  const float scale = session.viewing.scaleNow();
+  const auto picked =
+      session.stage.frame().pick(session.stage.world(), session.viewing.shown_view,
+                                 scale * (pixel.x - viewport.x), scale * (pixel.y - viewport.y));
+  if (!picked) return session.log.error(picked.error());
+  const ImGuiIO& io = ImGui::GetIO();
+  if (!*picked) {
+    if (!io.KeyCtrl && !io.KeyShift) session.selection.clear();
+    return;
+  }
+  const StableId id = session.document.idOf((*picked)->node);
+  if (io.KeyCtrl || io.KeyShift)
+    session.selection.toggle(id);
+  else
+    session.selection.set(id);
+}
+
+std::vector<GizmoTarget> targetsOf(const Session& session, const std::vector<ecs::Entity>& entities) {
+  const ecs::Registry& registry = session.document.registry();
+  std::vector<GizmoTarget> targets;
+  for (const ecs::Entity entity : entities) {
+    const ecs::Entity parent = parentOf(registry, entity);
+    targets.push_back({registry.get<scene::Transform>(entity),
+                       registry.alive(parent) ? worldFromNode(registry, parent) : glm::mat4(1.0f)});
+  }
+  return targets;
+}
+
+void markHandles(const Session& session, Ui& ui) {
+  const auto mark = [&](const std::string& name, const std::optional<glm::vec2>& at) {
+    if (at) ui.mark(name, {*at - glm::vec2(1.0f), *at + glm::vec2(1.0f)});
+  };
+  for (const Handle handle : kHandles)
+    mark("gizmo." + std::string(handleWord(handle)), session.viewing.gizmo.handleScreenPoint(handle));
+  for (const LightHandle handle : kLightHandles)
+    mark("light." + std::string(lightHandleWord(handle)),
+         session.viewing.light_gizmo.handleScreenPoint(handle));
+  mark("gizmo.pivot", session.viewing.gizmo.pivotScreenPoint());
+}
+
+}  // namespace
+
+void manipulate(Session& session, Ui& ui, const Viewport& viewport, bool hovered) {
+  Viewing& viewing = session.viewing;
+  if (!viewing.show_gizmos) return;
+  const ImGuiIO& io = ImGui::GetIO();
+  const glm::vec2 pixel(io.MousePos.x, io.MousePos.y);
+  ecs::Registry& registry = session.document.registry();
+  std::vector<ecs::Entity> entities = session.selection.topmost(session.document);
+  std::erase_if(entities, [&](ecs::Entity entity) { return !registry.has<scene::Transform>(entity); });
+  Gizmo& gizmo = viewing.gizmo;
+  LightGizmo& light_gizmo = viewing.light_gizmo;
+  gizmo.setView(viewing.shown_view, viewport);
+  light_gizmo.setView(viewing.shown_view, viewport);
+  gizmo.setTargets(targetsOf(session, entities));
+  const ecs::Entity primary = session.selection.primaryEntity(session.document);
+  const auto* light = registry.tryGet<scene::LocalLightComponent>(primary);
+  const bool light_handles = light && registry.has<scene::Transform>(primary);
+  if (light_handles) light_gizmo.setLight(*light, worldFromNode(registry, primary));
+
+  const bool eye_moves = io.KeyAlt;
+  if (hovered && !gizmo.dragging() && !light_gizmo.dragging()) {
+    gizmo.hover(pixel);
+    if (light_handles) light_gizmo.hover(pixel);
+  }
+  if (hovered && ImGui::IsMouseClicked(ImGuiMouseButton_Left) && !eye_moves) {
+    if (light_handles && light_gizmo.press(pixel))
+      session.history.begin("light of " + session.document.nameOf(primary));
+    else if (gizmo.press(pixel))
+      session.history.begin(fmt::format("{} of {}",
+                                        gizmo.options.mode == GizmoMode::Move     ? "move"
+                                        : gizmo.options.mode == GizmoMode::Rotate ? "turn"
+                                                                                  : "scale",
+                                        session.document.nameOf(primary)));
+  }
+  if (gizmo.dragging() || light_gizmo.dragging()) {
+    if (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape))) {
+      gizmo.release(), light_gizmo.release();
+      session.history.cancel();
+    } else if (ImGui::IsMouseDown(ImGuiMouseButton_Left)) {
+      if (light_gizmo.dragging())
+        setLight(session, primary, light_gizmo.drag(pixel));
+      else
+        setTransforms(session, entities, gizmo.drag(pixel, io.KeyCtrl));
+    } else {
+      gizmo.release(), light_gizmo.release();
+      session.history.commit();
+    }
+  } else if (hovered && ImGui::IsMouseReleased(ImGuiMouseButton_Left) && !eye_moves &&
+             ImGui::GetIO().MouseDragMaxDistanceSqr[0] <= kClickPixels * kClickPixels) {
+    pick(session, viewport, pixel);
+  }
+  paint(gizmo.paint(), viewport);
+  if (light_handles) paint(light_gizmo.paint(), viewport);
+  if (const std::string text = gizmo.readout(); !text.empty())
+    ImGui::GetWindowDrawList()->AddText(ImVec2(pixel.x + 16.0f, pixel.y + 12.0f), IM_COL32_WHITE,
+                                        text.c_str());
+  markHandles(session, ui);
+}
+
+}  // namespace lambent::editor

@@ -1,0 +1,86 @@
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include "editor/panels/colors.hpp"
+#include "editor/panels/panel.hpp"
+
+namespace lambent::editor {
+
+namespace {
+
+void sentence(const std::string& text) {
+  ImGui::Bullet();
+  ImGui::TextWrapped("%s", text.c_str());
+}
+
+void drawEffects(const baker::EffectPlan& plan) {
+  for (const baker::EffectChoice& choice : plan.effects) {
+    ImGui::PushStyleColor(ImGuiCol_Text,
+                          choice.baked ? kGoodColor : ImGui::GetStyle().Colors[ImGuiCol_TextDisabled]);
+    ImGui::Text("%s: %s", choice.effect.c_str(), choice.baked ? "baked" : "not baked");
+    ImGui::PopStyleColor();
+    ImGui::Indent();
+    ImGui::TextWrapped("%s", choice.reason.c_str());
+    ImGui::Unindent();
+  }
+}
+
+void drawGroup(const baker::EffectPlan& plan, std::size_t g) {
+  const baker::RigidGroup& group = plan.groups[g];
+  if (!ImGui::TreeNode(group.name.empty() ? "(no name)" : group.name.c_str())) return;
+  if (group.volume >= 0) {
+    sentence("a volume");
+  } else {
+    const auto& [count, reason] = plan.light_samples[g];
+    sentence(fmt::format("{} draws", group.draws.size()));
+    sentence(fmt::format("light from outside at {} points of {}: {}", count.count,
+                         count.of_group ? "the group" : "each cell", reason));
+  }
+  const baker::PlannedNeighborhood& around = plan.neighborhoods[g];
+  if (!around.reason.empty())
+    sentence(fmt::format("{}: {}", around.baked ? "neighborhood" : "no neighborhood", around.reason));
+  ImGui::TreePop();
+}
+
+}  // namespace
+
+void drawPlan(Session& session, Ui& ui) {
+  const auto entry = session.entryAtHand();
+  if (!entry) {
+    ImGui::TextDisabled("Open a scene to see what its bake simulates, and why.");
+    return;
+  }
+  const SceneEntry& scene = session.scenes.entries()[*entry];
+  if (scene.source.empty()) {
+    ImGui::TextDisabled("%s is a bundle alone: its plan was made when it was baked.", scene.id.c_str());
+    return;
+  }
+  const Result<ScenePlan>* made = session.plans.find(scene.source, scene.options);
+  if (!made) {
+    ImGui::TextDisabled("Reads the scene...");
+    return;
+  }
+  if (!*made) {
+    ImGui::TextColored(kErrorColor, "%s", made->error().line().c_str());
+    return;
+  }
+  const baker::EffectPlan& plan = (*made)->plan;
+  ImGui::TextUnformatted(scene.source.filename().string().c_str());
+  ui.mark("plan.scene");
+  drawEffects(plan);
+  if (ImGui::CollapsingHeader("Rigid groups", ImGuiTreeNodeFlags_DefaultOpen))
+    for (std::size_t g = 0; g < plan.groups.size(); ++g) {
+      ImGui::PushID(static_cast<int>(g));
+      drawGroup(plan, g);
+      ImGui::PopID();
+    }
+  const auto list = [](const char* title, const std::vector<std::string>& sentences) {
+    if (sentences.empty() || !ImGui::CollapsingHeader(title, ImGuiTreeNodeFlags_DefaultOpen)) return;
+    for (const std::string& text : sentences) sentence(text);
+  };
+  list("Lamps that come near", plan.near_lights);
+  list("Left out", plan.left_out);
+  list("Warnings of the import", (*made)->warnings);
+}
+
+}  // namespace lambent::editor

@@ -1,0 +1,114 @@
+#include <fmt/format.h>
+#include <imgui.h>
+#include <imgui_stdlib.h>
+
+#include "editor/document/tree.hpp"
+#include "editor/panels/panel.hpp"
+
+namespace lambent::editor {
+
+namespace {
+
+// A letter stands for a picture; colours tell kinds apart at a glance.
+struct KindLook {
+  std::string_view kind;
+  const char* sign;
+  ImU32 color;
+};
+constexpr KindLook kLooks[] = {
+    {"bundle", "B", IM_COL32(220, 160, 80, 255)},      {"node", "n", IM_COL32(150, 150, 150, 255)},
+    {"light", "L", IM_COL32(250, 220, 110, 255)},      {"lamp", "L", IM_COL32(250, 190, 110, 255)},
+    {"camera", "C", IM_COL32(130, 180, 240, 255)},     {"draw", "d", IM_COL32(120, 160, 120, 255)},
+    {"group", "G", IM_COL32(150, 210, 150, 255)},      {"volume", "V", IM_COL32(180, 170, 230, 255)},
+    {"animation", "A", IM_COL32(230, 140, 180, 255)},  {"material", "M", IM_COL32(120, 200, 200, 255)},
+    {"environment", "E", IM_COL32(120, 170, 250, 255)}};
+
+void drawSign(std::string_view kind) {
+  for (const KindLook& look : kLooks)
+    if (look.kind == kind) {
+      ImGui::TextColored(ImGui::ColorConvertU32ToFloat4(look.color), "%s", look.sign);
+      if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", std::string(kind).c_str());
+      return;
+    }
+  ImGui::TextDisabled("-");
+}
+
+void select(Session& session, const std::vector<TreeRow>& rows, const TreeRow& row) {
+  const ImGuiIO& io = ImGui::GetIO();
+  if (io.KeyShift) {
+    std::vector<StableId> ids;
+    for (const TreeRow& r : rows) ids.push_back(r.id);
+    session.selection.range(ids, row.id);
+  } else if (io.KeyCtrl) {
+    session.selection.toggle(row.id);
+  } else {
+    session.selection.set(row.id);
+  }
+  session.viewing.changed = true;
+}
+
+void drawRow(Session& session, Ui& ui, TreeQuery& query, const std::vector<TreeRow>& rows,
+             const TreeRow& row) {
+  ImGui::PushID(static_cast<int>(row.id.value ^ row.id.value >> 32));
+  const float indent = 12.0f * static_cast<float>(row.depth);
+  ImGui::SetCursorPosX(ImGui::GetCursorPosX() + indent);
+  if (row.has_children) {
+    if (ImGui::ArrowButton("open", row.open ? ImGuiDir_Down : ImGuiDir_Right)) {
+      if (row.open)
+        query.closed.insert(row.id);
+      else
+        query.closed.erase(row.id);
+    }
+  } else {
+    ImGui::Dummy(ImVec2(ImGui::GetFrameHeight(), ImGui::GetFrameHeight()));
+  }
+  ImGui::SameLine(0.0f, 4.0f);
+  drawSign(row.kind);
+  ImGui::SameLine(0.0f, 6.0f);
+  if (!row.matches) ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyle().Colors[ImGuiCol_TextDisabled]);
+  if (ImGui::Selectable(row.name.c_str(), session.selection.contains(row.id))) select(session, rows, row);
+  if (!row.matches) ImGui::PopStyleColor();
+  ui.mark("scene." + row.name);
+  if (ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left))
+    session.viewing.frame(session, session.selectionBounds());
+  if (ImGui::BeginDragDropSource()) {
+    ImGui::SetDragDropPayload("entity", &row.id, sizeof row.id);
+    ImGui::TextUnformatted(row.name.c_str());
+    ImGui::EndDragDropSource();
+  }
+  if (ImGui::BeginDragDropTarget()) {
+    if (const ImGuiPayload* payload = ImGui::AcceptDragDropPayload("entity")) {
+      const StableId moved = *static_cast<const StableId*>(payload->Data);
+      const ecs::Entity child[] = {session.document.find(moved)};
+      if (auto done = session.history.reparent(child, row.entity, /*keep_place=*/true); !done)
+        session.log.error(done.error());
+    }
+    ImGui::EndDragDropTarget();
+  }
+  ImGui::PopID();
+}
+
+}  // namespace
+
+void drawSceneTree(Session& session, Ui& ui) {
+  TreeQuery& query = session.tree;
+  ImGui::SetNextItemWidth(-1.0f);
+  ImGui::InputTextWithHint("##search", "search: ball, type:light, has:Lamp", &query.filter);
+  ui.mark("scene.search");
+  ImGui::Checkbox("draws and groups", &query.show_parts);
+  ui.mark("scene.parts");
+  ImGui::SameLine();
+  ImGui::TextDisabled("%zu selected", session.selection.ids().size());
+  const std::vector<TreeRow>& rows = session.treeRowsNow();
+  ImGui::BeginChild("rows");
+  ImGuiListClipper clipper;
+  clipper.Begin(static_cast<int>(rows.size()));
+  while (clipper.Step())
+    for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i)
+      drawRow(session, ui, query, rows, rows[static_cast<std::size_t>(i)]);
+  if (ImGui::IsWindowHovered() && ImGui::IsMouseClicked(ImGuiMouseButton_Left) && !ImGui::IsAnyItemHovered())
+    session.selection.clear();
+  ImGui::EndChild();
+}
+
+}  // namespace lambent::editor

@@ -1,0 +1,100 @@
+#include <array>
+
+#include <fmt/format.h>
+#include <imgui.h>
+#include <nlohmann/json.hpp>
+
+#include "editor/commands/command.hpp"
+#include "editor/panels/panel.hpp"
+#include "runtime/frame/frame_settings.hpp"
+
+namespace lambent::editor {
+
+namespace {
+
+void put(Session& session, const frame::SettingRow& row, const frame::FrameSettings& settings) {
+  const std::array words = {std::string(row.name), frame::settingWord(row, settings)};
+  if (auto done = runCommand(session, "setting", words); !done) session.log.error(done.error());
+}
+
+void drawRow(Session& session, Ui& ui, const frame::SettingRow& row) {
+  using Kind = frame::SettingRow::Kind;
+  frame::FrameSettings settings = session.stage.frame().settings();
+  const double value = row.get(settings);
+  const std::string label(row.label), name(row.name);
+  bool changed = false;
+  double to = value;
+  ImGui::PushID(name.c_str());
+  if (row.kind == Kind::Switch) {
+    bool on = value != 0.0;
+    changed = ImGui::Checkbox(label.c_str(), &on);
+    to = on ? 1.0 : 0.0;
+  } else if (row.kind == Kind::Choice) {
+    ImGui::SetNextItemWidth(0.45f * ImGui::GetContentRegionAvail().x);
+    if (ImGui::BeginCombo(label.c_str(), frame::settingWord(row, settings).c_str())) {
+      for (std::size_t i = 0; i < row.words.size(); ++i)
+        if (ImGui::Selectable(std::string(row.words[i]).c_str(), static_cast<double>(i) == value))
+          to = static_cast<double>(i), changed = true;
+      ImGui::EndCombo();
+    }
+  } else if (row.kind == Kind::Whole) {
+    ImGui::SetNextItemWidth(0.45f * ImGui::GetContentRegionAvail().x);
+    int whole = static_cast<int>(value);
+    changed =
+        ImGui::SliderInt(label.c_str(), &whole, static_cast<int>(row.least), static_cast<int>(row.greatest),
+                         frame::settingWord(row, settings).c_str(), ImGuiSliderFlags_AlwaysClamp);
+    to = whole;
+  } else if (row.name != "exposure") {  // stands in the environment's panel
+    ImGui::SetNextItemWidth(0.45f * ImGui::GetContentRegionAvail().x);
+    float real = static_cast<float>(value);
+    changed = ImGui::SliderFloat(label.c_str(), &real, static_cast<float>(row.least),
+                                 static_cast<float>(row.greatest), "%.3g", ImGuiSliderFlags_AlwaysClamp);
+    to = double{real};
+  } else {
+    ImGui::PopID();
+    return;
+  }
+  ui.mark("setting." + name);
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", std::string(row.help).c_str());
+  if (ImGui::IsItemActivated()) session.beginDrag(label);
+  if (changed) {
+    row.put(settings, to);
+    put(session, row, settings);
+  }
+  if (ImGui::IsItemDeactivated()) session.endDrag();
+  ImGui::PopID();
+}
+
+// Where the slice through neighborhoods lies, while it is shown.
+void drawSlice(Session& session, Ui& ui) {
+  constexpr std::array kAxes = {"x", "y", "z"};
+  frame::NeighborhoodSlice& slice = session.viewing.overlays.slice;
+  ImGui::SetNextItemWidth(0.45f * ImGui::GetContentRegionAvail().x);
+  bool changed = ImGui::Combo("slice across", &slice.axis, kAxes.data(), static_cast<int>(kAxes.size()));
+  ui.mark("slice.axis");
+  ImGui::SetNextItemWidth(0.45f * ImGui::GetContentRegionAvail().x);
+  changed |= ImGui::SliderFloat("place of the slice", &slice.position, 0.0f, 1.0f, "%.2f",
+                                ImGuiSliderFlags_AlwaysClamp);
+  ui.mark("slice.position");
+  if (changed) session.viewing.changed = true;
+}
+
+}  // namespace
+
+void drawSettings(Session& session, Ui& ui) {
+  for (const frame::SettingRow& row : frame::settingRows()) drawRow(session, ui, row);
+  ImGui::Separator();
+  ImGui::SetNextItemWidth(0.45f * ImGui::GetContentRegionAvail().x);
+  if (ImGui::SliderFloat("pixels of the picture", &session.viewing.render_scale, 0.25f, 2.0f, "%.2f",
+                         ImGuiSliderFlags_AlwaysClamp))
+    session.viewing.changed = true;
+  ui.mark("setting.pixels");
+  if (ImGui::IsItemHovered())
+    ImGui::SetTooltip("For each pixel of the window along an edge: less is faster, more is smoother");
+  if (session.viewing.overlays.neighborhoods) drawSlice(session, ui);
+  if (ImGui::Button("All to their defaults"))
+    session.editWorld("settings to default", [](WorldState& world) { world.settings.clear(); });
+  ui.mark("setting.defaults");
+}
+
+}  // namespace lambent::editor

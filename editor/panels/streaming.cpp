@@ -1,0 +1,99 @@
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include "editor/panels/colors.hpp"
+#include "editor/panels/panel.hpp"
+#include "editor/panels/text.hpp"
+
+namespace lambent::editor {
+
+namespace {
+
+const char* stateWord(frame::BundleStatus::State state) {
+  using State = frame::BundleStatus::State;
+  switch (state) {
+    case State::Closed:
+      return "closed";
+    case State::Loading:
+      return "loading";
+    case State::Partial:
+      return "as far as there is room";
+    case State::Whole:
+      return "whole";
+    case State::Damaged:
+      return "damaged";
+  }
+  return "";
+}
+
+void drawTimes(const frame::FrameTimes& times) {
+  const std::vector<std::size_t> bins = times.histogram();
+  std::vector<float> heights(bins.begin(), bins.end());
+  ImGui::PlotHistogram("##times", heights.data(), static_cast<int>(heights.size()), 0, nullptr, 0.0f, FLT_MAX,
+                       ImVec2(ImGui::GetContentRegionAvail().x, 70.0f));
+  if (ImGui::IsItemHovered())
+    ImGui::SetTooltip("Frames by their time, in quarters of the median; the last bar: all beyond");
+  ImGui::Text("median %.1f ms, worst %.1f ms, %zu of %zu over twice the median", times.median(),
+              times.worst(), times.overTwiceMedian(), times.count());
+}
+
+void drawBundles(const frame::StreamingStatus& status, Ui& ui) {
+  constexpr ImGuiTableFlags kTable =
+      ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersInnerV | ImGuiTableFlags_ScrollY;
+  if (!ImGui::BeginTable("bundles", 4, kTable)) return;
+  ImGui::TableSetupColumn("Bundle", ImGuiTableColumnFlags_WidthStretch, 0.3f);
+  ImGui::TableSetupColumn("Resident", ImGuiTableColumnFlags_WidthStretch, 0.4f);
+  ImGui::TableSetupColumn("Size in view", ImGuiTableColumnFlags_WidthFixed, 90.0f);
+  ImGui::TableSetupColumn("State", ImGuiTableColumnFlags_WidthStretch, 0.3f);
+  ImGui::TableSetupScrollFreeze(0, 1);
+  ImGui::TableHeadersRow();
+  for (const frame::BundleStreaming& bundle : status.bundles) {
+    ImGui::TableNextRow();
+    ImGui::TableNextColumn();
+    ImGui::TextUnformatted(bundle.name.c_str());
+    ImGui::TableNextColumn();
+    const double whole = static_cast<double>(std::max<std::uint64_t>(bundle.whole_bytes, 1));
+    ImGui::ProgressBar(
+        static_cast<float>(static_cast<double>(bundle.resident_bytes) / whole), ImVec2(-1.0f, 0.0f),
+        fmt::format("{} of {}, {} wanted", bytesText(static_cast<double>(bundle.resident_bytes)),
+                    bytesText(static_cast<double>(bundle.whole_bytes)),
+                    bytesText(static_cast<double>(bundle.wanted_bytes)))
+            .c_str());
+    ImGui::TableNextColumn();
+    ImGui::Text("%.2f", static_cast<double>(bundle.size));
+    ImGui::TableNextColumn();
+    ImGui::TextUnformatted(stateWord(bundle.state));
+  }
+  ImGui::EndTable();
+  ui.mark("streaming.bundles");
+}
+
+}  // namespace
+
+void drawStreaming(Session& session, Ui& ui) {
+  const frame::StreamingStatus status = session.stage.world().streaming();
+  const bool limited = status.budget_bytes != ~std::uint64_t{0};
+  const double resident = static_cast<double>(status.resident_bytes);
+  ImGui::BeginChild("figures", ImVec2(0.38f * ImGui::GetContentRegionAvail().x, 0.0f));
+  if (limited)
+    ImGui::ProgressBar(
+        static_cast<float>(resident / static_cast<double>(status.budget_bytes)), ImVec2(-1.0f, 0.0f),
+        fmt::format("{} of {}", bytesText(resident), bytesText(static_cast<double>(status.budget_bytes)))
+            .c_str());
+  else
+    ImGui::Text("%s on the GPU, without a limit (--max-memory)", bytesText(resident).c_str());
+  ui.mark("streaming.budget");
+  ImGui::Text("%u parts wanted, %s on their way, %.1f MB/s", status.queued,
+              bytesText(static_cast<double>(status.in_flight_bytes)).c_str(), status.megabytes_per_s);
+  ui.mark("streaming.queue");
+  drawTimes(session.stage.times());
+  ImGui::EndChild();
+  ImGui::SameLine();
+  ImGui::BeginChild("list");
+  drawBundles(status, ui);
+  ImGui::EndChild();
+}
+
+}  // namespace lambent::editor

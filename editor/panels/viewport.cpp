@@ -1,0 +1,143 @@
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include "editor/panels/colors.hpp"
+#include "editor/panels/manipulate.hpp"
+#include "editor/panels/panel.hpp"
+
+namespace lambent::editor {
+
+namespace {
+
+constexpr float kBarWidth = 3.0f;
+constexpr float kFlyFast = 4.0f;
+
+ImTextureID handleOf(const gpu::Texture& texture) {
+  return reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(texture.id()));
+}
+
+// What the pointer and the keys do to the eye.
+void moveEye(Session& session, const Viewport& viewport, bool hovered) {
+  const ImGuiIO& io = ImGui::GetIO();
+  CameraInput input;
+  input.height_px = viewport.height;
+  input.seconds = io.DeltaTime;
+  const glm::vec2 delta(io.MouseDelta.x, io.MouseDelta.y);
+  const bool active = ImGui::IsItemActive();
+  session.viewing.flying = false;
+  if (active && ImGui::IsMouseDown(ImGuiMouseButton_Middle)) {
+    (io.KeyShift ? input.pan_px : input.orbit_px) = delta;
+  } else if (active && io.KeyAlt && ImGui::IsMouseDown(ImGuiMouseButton_Left)) {
+    (io.KeyShift ? input.pan_px : input.orbit_px) = delta;
+  } else if (active && ImGui::IsMouseDown(ImGuiMouseButton_Right)) {
+    input.look_px = delta;
+    const auto held = [](int low) { return ImGui::IsKeyDown(low) ? 1.0f : 0.0f; };
+    input.fly = {held('D') - held('A'), held('E') - held('Q'), held('W') - held('S')};
+    input.fly_speed = io.KeyShift ? kFlyFast : 1.0f;
+    session.viewing.flying = input.fly != glm::vec3(0.0f);
+  }
+  if (hovered) input.dolly = io.MouseWheel;
+  const bool any = input.orbit_px != glm::vec2(0.0f) || input.look_px != glm::vec2(0.0f) ||
+                   input.pan_px != glm::vec2(0.0f) || input.dolly != 0.0f || session.viewing.flying;
+  if (any) session.viewing.move(session, input);
+}
+
+void drawPicture(Session& session, const ImVec2& low, const ImVec2& high) {
+  ImDrawList* canvas = ImGui::GetWindowDrawList();
+  // The frame's pictures begin at the bottom.
+  canvas->AddImage(handleOf(session.stage.frame().picture()), low, high, ImVec2(0.0f, 1.0f),
+                   ImVec2(1.0f, 0.0f));
+  const ReferenceView& reference = session.reference;
+  if (!reference.on() || !reference.picture()) return;
+  const float at = low.x + reference.split_at * (high.x - low.x);
+  canvas->AddImage(handleOf(reference.picture()), ImVec2(at, low.y), high, ImVec2(reference.split_at, 0.0f),
+                   ImVec2(1.0f, 1.0f));
+  canvas->AddLine(ImVec2(at, low.y), ImVec2(at, high.y), IM_COL32(255, 255, 255, 200), kBarWidth);
+}
+
+// The edge between both pictures can be dragged.
+bool dragSplit(Session& session, Ui& ui, const ImVec2& low, const ImVec2& high) {
+  if (!session.reference.on()) return false;
+  const float width = high.x - low.x, at = low.x + session.reference.split_at * width;
+  ImGui::SetCursorScreenPos(ImVec2(at - 5.0f, low.y));
+  ImGui::InvisibleButton("split", ImVec2(10.0f, high.y - low.y));
+  ui.mark("split");
+  ImGui::SetItemAllowOverlap();
+  const bool active = ImGui::IsItemActive(), hovered = ImGui::IsItemHovered();
+  if (active || hovered) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
+  if (active)
+    session.reference.split_at = std::clamp((ImGui::GetIO().MousePos.x - low.x) / width, 0.0f, 1.0f);
+  return active || hovered;
+}
+
+void textOver(const ImVec2& at, const std::string& text, ImU32 color = IM_COL32(235, 235, 235, 255)) {
+  ImDrawList* canvas = ImGui::GetWindowDrawList();
+  const ImVec2 size = ImGui::CalcTextSize(text.c_str());
+  canvas->AddRectFilled(ImVec2(at.x - 5.0f, at.y - 2.0f), ImVec2(at.x + size.x + 5.0f, at.y + size.y + 2.0f),
+                        IM_COL32(0, 0, 0, 150), 3.0f);
+  canvas->AddText(at, color, text.c_str());
+}
+
+void drawLegends(Session& session, Ui& ui, const ImVec2& low, const ImVec2& high) {
+  const auto& view = session.viewing.surfaceView();
+  std::string left = std::string(frame::rowOf(view.view).label);
+  const frame::ViewLegend legend = session.stage.frame().legend();
+  if (legend.colors == frame::ViewColors::Scale)
+    left = fmt::format("{}: {:.3g} (dark) to {:.3g} (bright) {}", legend.name, legend.min, legend.max,
+                       legend.unit);
+  if (view.view != frame::SurfaceView::Final || session.reference.on())
+    textOver(ImVec2(low.x + 12.0f, low.y + 10.0f), left);
+  if (!session.reference.on()) return;
+  const ReferenceView& reference = session.reference;
+  std::string right = reference.split == SplitView::Heat ? "Difference" : "Reference";
+  right += ": " + reference.notice();
+  textOver(ImVec2(low.x + reference.split_at * (high.x - low.x) + 12.0f, low.y + 10.0f), right);
+  if (const auto& difference = reference.difference()) {
+    const baker::PictureError& e = difference->figures;
+    std::string figures =
+        fmt::format("relative RMS {:.2f} %   bias {:+.2f} {:+.2f} {:+.2f} %   99th percentile {:.1f} %",
+                    100.0 * e.relative_rms, 100.0 * e.bias[0], 100.0 * e.bias[1], 100.0 * e.bias[2],
+                    100.0 * e.percentile_99);
+    if (reference.split == SplitView::Heat)
+      figures +=
+          fmt::format("   colours to {}{:.0f} %", reference.heat_map == baker::HeatMap::Signed ? "±" : "",
+                      100.0 * difference->range);
+    textOver(ImVec2(low.x + 12.0f, high.y - 26.0f), figures);
+    ui.mark("difference", {{low.x, high.y - 26.0f}, {high.x, high.y}});
+  }
+}
+
+void drawEmpty(const ImVec2& low, const ImVec2& high) {
+  const char* text = "Drop a glTF scene here, or File > Open";
+  const ImVec2 size = ImGui::CalcTextSize(text);
+  textOver(ImVec2(0.5f * (low.x + high.x - size.x), 0.5f * (low.y + high.y - size.y)), text);
+}
+
+}  // namespace
+
+void drawViewport(Session& session, Ui& ui) {
+  const ImVec2 low = ImGui::GetCursorScreenPos();
+  const ImVec2 room = ImGui::GetContentRegionAvail();
+  const ImVec2 high(low.x + std::max(16.0f, room.x), low.y + std::max(16.0f, room.y));
+  const Viewport viewport{low.x, low.y, high.x - low.x, high.y - low.y};
+  const float scale = session.viewing.scaleNow();
+  session.render({static_cast<std::uint32_t>(std::max(16.0f, scale * viewport.width)),
+                  static_cast<std::uint32_t>(std::max(16.0f, scale * viewport.height))});
+  drawPicture(session, low, high);
+  const bool over_split = dragSplit(session, ui, low, high);
+
+  ImGui::SetCursorScreenPos(low);
+  ImGui::InvisibleButton("picture", ImVec2(viewport.width, viewport.height),
+                         ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight |
+                             ImGuiButtonFlags_MouseButtonMiddle);
+  ui.mark("viewport");
+  const bool hovered = ImGui::IsItemHovered();
+  moveEye(session, viewport, hovered);
+  if (!over_split) manipulate(session, ui, viewport, hovered);
+  drawLegends(session, ui, low, high);
+  if (session.scenes.entries().empty()) drawEmpty(low, high);
+}
+
+}  // namespace lambent::editor

@@ -1,0 +1,68 @@
+// Scripts that drive the editor (--script FILE): a line is a command of the command list with its words, or
+// one of those that act on the window as a hand would: click and drag at marks, keys, text, wheel, files
+// dropped onto the window, screenshots; or waits. Each frame takes the script on until a line has to wait.
+// Answers are JSON, a line each; a line that fails ends the script unless it begins with "try".
+// docs/editor.md lists the lines.
+#pragma once
+
+#include <chrono>
+#include <deque>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "editor/ui/ui.hpp"
+#include "runtime/base/result.hpp"
+
+namespace lambent::editor {
+
+class Session;
+
+struct ScriptLine {
+  std::size_t number = 0;  // in the file, from 1
+  bool may_fail = false;
+  std::vector<std::string> words;  // the first is the command
+};
+
+// Words are parted by blanks; "..." keeps blanks, and \" and \\ inside; # begins a comment.
+Result<std::vector<ScriptLine>> parseScript(const std::filesystem::path& name, const std::string& text);
+
+class Script {
+ public:
+  Script(std::filesystem::path name, std::vector<ScriptLine> lines, std::function<void(std::string)> answer);
+
+  // Before a frame: what is held and typed in it, none where the script is over or does not touch the window.
+  const ScriptedInput* step(Session& session, Ui& ui);
+  bool done() const { return at_ >= lines_.size() && queue_.empty(); }
+  bool failed() const { return error_.has_value(); }
+  // Of the line that failed.
+  const Error& error() const { return *error_; }
+
+ private:
+  enum class Progress { Done, Waits };
+  Result<Progress> run(const ScriptLine& line, Session& session, Ui& ui, nlohmann::json& answer);
+  Result<Progress> wait(const ScriptLine& line, Session& session);
+  Result<glm::vec2> placeOf(const std::string& mark, const Ui& ui) const;
+  void glide(glm::vec2 to, const ScriptedInput& held);
+  void tap(const ScriptedInput& pressed);
+  void finish(const ScriptLine& line, const nlohmann::json& answer, const Error* error);
+
+  std::filesystem::path name_;
+  std::vector<ScriptLine> lines_;
+  std::function<void(std::string)> answer_;
+  std::size_t at_ = 0;
+  std::optional<Error> error_;
+  bool started_ = false;  // the line at hand has queued its input, or begun to wait
+  std::uint32_t frames_ = 0;
+  std::chrono::steady_clock::time_point since_;
+  std::deque<ScriptedInput> queue_;  // one a frame
+  std::optional<glm::vec2> pointer_;
+  ScriptedInput now_;
+  nlohmann::json last_;  // answer
+};
+
+}  // namespace lambent::editor

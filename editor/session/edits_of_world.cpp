@@ -1,0 +1,123 @@
+// What of a bundle's entities differs from its file, as edits of the scene that it is baked from.
+#include <algorithm>
+#include <cmath>
+
+#include "editor/session/session.hpp"
+#include "runtime/scene/affine.hpp"
+#include "runtime/scene/components.hpp"
+#include "runtime/scene/materials.hpp"
+
+namespace lambent::editor {
+
+namespace {
+
+// Of matrices that were taken apart and put together again.
+constexpr float kRounding = 1e-5f;
+
+bool differs(const glm::mat4& a, const glm::mat4& b) {
+  for (int column = 0; column < 4; ++column)
+    for (int row = 0; row < 4; ++row)
+      if (std::abs(a[column][row] - b[column][row]) > kRounding * std::max(1.0f, std::abs(b[column][row])))
+        return true;
+  return false;
+}
+
+void addNodes(const ecs::Registry& registry, const bundle::Description& description,
+              const scene::SceneInstance& instance, baker::SceneEdits& edits) {
+  for (std::uint32_t i = 0; i < description.nodes.size(); ++i) {
+    const gltf::Node& node = description.nodes[i];
+    const auto* transform = registry.tryGet<scene::Transform>(instance.nodes[i]);
+    if (!transform || node.animated) continue;
+    const glm::mat4 now = scene::localMatrix(*transform);
+    if (differs(now, node.parent_from_node)) edits.nodes.push_back({i, node.name, now});
+  }
+}
+
+void addLights(const ecs::Registry& registry, const bundle::Description& description,
+               const scene::SceneInstance& instance, baker::SceneEdits& edits) {
+  for (std::uint32_t i = 0; i < description.nodes.size(); ++i) {
+    const gltf::Node& node = description.nodes[i];
+    const auto* now = registry.tryGet<scene::LocalLightComponent>(instance.nodes[i]);
+    if (!now || node.light < 0) continue;
+    const gltf::Light& light = description.lights[static_cast<std::size_t>(node.light)];
+    const float intensity = now->enabled ? now->strength : 0.0f;
+    if (now->color == light.color && intensity == light.intensity && now->range_m == light.range_m &&
+        now->inner_cone_rad == light.inner_cone_rad && now->outer_cone_rad == light.outer_cone_rad)
+      continue;
+    edits.lights.push_back(
+        {i, node.name, now->color, intensity, now->range_m, now->inner_cone_rad, now->outer_cone_rad});
+  }
+}
+
+template <typename T>
+void addIf(const T& now, const T& before, std::optional<T>& edit, bool& any) {
+  if (now == before) return;
+  edit = now;
+  any = true;
+}
+
+void addMaterials(const ecs::Registry& registry, const bundle::Description& description,
+                  const scene::SceneInstance& instance, baker::SceneEdits& edits) {
+  for (std::uint32_t i = 0; i < instance.materials.size(); ++i) {
+    const auto* now = registry.tryGet<scene::MaterialComponent>(instance.materials[i]);
+    if (!now) continue;
+    const gltf::Material& was = description.materials[i];
+    baker::SceneEdits::Material edit;
+    edit.index = i, edit.name = was.name;
+    bool any = false;
+    addIf(now->base_color, glm::vec3(was.base_color), edit.base_color, any);
+    addIf(now->metallic, was.metallic, edit.metallic, any);
+    addIf(now->roughness, was.roughness, edit.roughness, any);
+    addIf(now->anisotropy, was.anisotropy, edit.anisotropy, any);
+    addIf(now->anisotropy_rotation_rad, was.anisotropy_rotation_rad, edit.anisotropy_rotation, any);
+    addIf(now->ior, was.ior, edit.ior, any);
+    addIf(now->specular, was.specular, edit.specular, any);
+    addIf(now->specular_color, was.specular_color, edit.specular_color, any);
+    addIf(now->alpha, was.base_color.a, edit.alpha, any);
+    addIf(now->brdf, was.brdf, edit.brdf, any);
+    addIf(scene::withComponent(was, *now).emissive, was.emissive, edit.emissive, any);
+    addIf(now->normal_scale, was.normal_scale, edit.normal_scale, any);
+    addIf(now->alpha_cutoff, was.alpha_cutoff, edit.alpha_cutoff, any);
+    if (any) edits.materials.push_back(std::move(edit));
+  }
+}
+
+template <typename Edit>
+void keepOthers(const std::vector<Edit>& baked, std::vector<Edit>& edits, std::uint32_t Edit::*index) {
+  for (const Edit& old : baked)
+    if (std::none_of(edits.begin(), edits.end(), [&](const Edit& edit) { return edit.*index == old.*index; }))
+      edits.push_back(old);
+}
+
+void keepMaterials(const std::vector<baker::SceneEdits::Material>& baked,
+                   std::vector<baker::SceneEdits::Material>& edits) {
+  for (const baker::SceneEdits::Material& old : baked) {
+    const auto same =
+        std::find_if(edits.begin(), edits.end(), [&](const auto& edit) { return edit.index == old.index; });
+    if (same == edits.end())
+      edits.push_back(old);
+    else
+      *same = baker::overlaid(old, *same);
+  }
+}
+
+}  // namespace
+
+baker::SceneEdits Session::editsOf(std::size_t entry) const {
+  const SceneEntry& scene = scenes.entries()[entry];
+  if (!scene.slot) return scene.edits;
+  baker::SceneEdits edits;
+  const ecs::Registry& registry = document.registry();
+  const bundle::Description& description = stage.world().description(*scene.slot);
+  const scene::SceneInstance& instance = stage.world().instance(*scene.slot);
+  addNodes(registry, description, instance, edits);
+  addLights(registry, description, instance, edits);
+  addMaterials(registry, description, instance, edits);
+  // What is shown may have been baked with edits itself: those that were not edited again still hold.
+  keepOthers(scene.shown_edits.nodes, edits.nodes, &baker::SceneEdits::Node::index);
+  keepOthers(scene.shown_edits.lights, edits.lights, &baker::SceneEdits::Light::node);
+  keepMaterials(scene.shown_edits.materials, edits.materials);
+  return edits;
+}
+
+}  // namespace lambent::editor

@@ -1,0 +1,47 @@
+// What the editor has to say: notices and errors, each a line that says what to do, kept for the log panel
+// and shown for a while as toasts. Safe from any thread, for bakes and loaders report from theirs.
+#pragma once
+
+#include <chrono>
+#include <deque>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "runtime/base/result.hpp"
+
+namespace lambent::editor {
+
+enum class Severity : std::uint8_t { Note, Warning, Error };
+
+struct LogEntry {
+  Severity severity = Severity::Note;
+  std::string text;
+  std::chrono::system_clock::time_point when;  // of the latest, where it came several times
+  std::uint32_t times = 1;                     // in a row
+  std::uint64_t number = 0;                    // rises
+};
+
+class Log {
+ public:
+  static constexpr std::size_t kMostEntries = 2000;  // the oldest go
+
+  void note(std::string text) { add(Severity::Note, std::move(text)); }
+  void warn(std::string text) { add(Severity::Warning, std::move(text)); }
+  void error(const lambent::Error& error) { add(Severity::Error, error.line()); }
+  void add(Severity severity, std::string text);
+  void clear();
+
+  std::vector<LogEntry> entries() const;
+  // Newer than `age`, the latest last.
+  std::vector<LogEntry> recent(std::chrono::milliseconds age) const;
+  // Since the start; clear() does not take them back.
+  std::uint64_t errors() const;
+
+ private:
+  mutable std::mutex lock_;
+  std::deque<LogEntry> entries_;
+  std::uint64_t next_ = 0, errors_ = 0;
+};
+
+}  // namespace lambent::editor

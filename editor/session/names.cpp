@@ -1,0 +1,51 @@
+#include "editor/session/names.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "editor/session/session.hpp"
+
+namespace lambent::editor {
+
+Result<std::vector<ecs::Entity>> findEntities(const Session& session, const std::string& word) {
+  TreeQuery query;
+  query.filter =
+      word.find(':') == std::string::npos && word.find(' ') != std::string::npos ? "\"" + word + "\"" : word;
+  std::vector<ecs::Entity> whole, part;
+  for (const TreeRow& row : treeRows(session.document, query)) {
+    if (!row.matches) continue;
+    part.push_back(row.entity);
+    if (row.name == word) whole.push_back(row.entity);
+  }
+  if (!whole.empty()) return whole;
+  if (!part.empty()) return part;
+  return fail(word, "nothing of that name is there", "\"tree\" lists all there is");
+}
+
+Result<std::size_t> findScene(const Session& session, const std::string& word) {
+  const auto& entries = session.scenes.entries();
+  if (word.empty()) {
+    if (const auto entry = session.entryAtHand()) return *entry;
+    return fail("scene", "none is open", "open one first");
+  }
+  std::vector<std::string> known;
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    if (entries[i].id == word || std::to_string(i) == word) return i;
+    known.push_back(entries[i].id);
+  }
+  return fail(word, "is no open scene", fmt::format("open are: {}", fmt::join(known, ", ")));
+}
+
+std::string freshName(const Session& session, const std::string& stem) {
+  std::vector<std::string> names;
+  for (const auto [entity, name] : session.document.registry().view<const scene::Name>())
+    names.push_back(name.value);
+  std::string name = stem;
+  for (int count = 2; std::find(names.begin(), names.end(), name) != names.end(); ++count)
+    name = fmt::format("{} {}", stem, count);
+  return name;
+}
+
+}  // namespace lambent::editor

@@ -1,0 +1,29 @@
+// What the editor remembers from one day to the next: the layout, recent files, panel switches. A small JSON
+// file, $XDG_CONFIG_HOME/lambent/editor.json; a damaged or missing one means defaults, and saving never fails
+// loudly: the layout is not worth an error.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace lambent::editor {
+
+struct Preferences {
+  int width = 1600, height = 950;  // of the window
+  // Shares of the window that the side columns and the bottom row take.
+  float left = 0.17f, right = 0.24f, bottom = 0.24f;
+  std::string left_tab = "Scene", right_tab = "Inspector", bottom_tab = "Bakes";
+  bool show_left = true, show_right = true, show_bottom = true;
+  float scale = 1.0f;  // of text and widgets
+  std::vector<std::string> recent;
+
+  void addRecent(const std::filesystem::path& file);
+};
+
+// Empty where neither XDG_CONFIG_HOME nor HOME is set: nothing is remembered then.
+std::filesystem::path preferencesFile();
+Preferences loadPreferences(const std::filesystem::path& file);
+void savePreferences(const std::filesystem::path& file, const Preferences& preferences);
+
+}  // namespace lambent::editor

@@ -1,0 +1,188 @@
+#include "editor/session/reference_view.hpp"
+
+#include <fmt/format.h>
+
+#include "baker/import/gltf.hpp"
+#include "editor/session/reference_scene.hpp"
+#include "editor/session/session.hpp"
+
+namespace lambent::editor {
+
+namespace {
+
+bool sameView(const spec::View& a, const spec::View& b) {
+  return a.view_from_world == b.view_from_world && a.clip_from_view == b.clip_from_view;
+}
+
+gpu::Texture textureOf(const char* label, spec::Size size, GLenum format) {
+  return gpu::Texture(label, {.format = format, .width = size.width, .height = size.height});
+}
+
+}  // namespace
+
+bool ReferenceView::done() const {
+  if (!on() || error_) return true;
+  if (!tracer_) return false;
+  using Phase = baker::reference::ProgressivePhase;
+  const auto status = tracer_->status();
+  return status.phase == Phase::Failed ||
+         (status.phase == Phase::Finished && seen_ && seen_->generation == status.generation);
+}
+
+std::shared_ptr<const baker::reference::Snapshot> ReferenceView::snapshot() const {
+  return tracer_ ? tracer_->snapshot() : nullptr;
+}
+
+std::string ReferenceView::notice() const {
+  if (error_) return error_->line();
+  if (!tracer_) return coming_.valid() ? "reads the scene" : "";
+  const auto status = tracer_->status();
+  if (status.error) return status.error->line();
+  if (status.phase == baker::reference::ProgressivePhase::Preparing) return "builds the scene";
+  const auto now = tracer_->snapshot();
+  if (!now) return "begins";
+  if (now->spp == 0) return fmt::format("coarse, 1/{}", now->coarseness);
+  return now->noise ? fmt::format("{} samples a pixel, noise {:.2f} %", now->spp, 100.0 * *now->noise)
+                    : fmt::format("{} samples a pixel", now->spp);
+}
+
+// The scene is read and edited on another thread; until it is there the old one is traced.
+void ReferenceView::followScene(Session& session, std::size_t entry) {
+  const SceneEntry& scene = session.scenes.entries()[entry];
+  if (scene.source.empty()) {
+    error_ = Error{scene.id, "is a bundle alone: there is no scene to trace", "open its .gltf or .glb file"};
+    return;
+  }
+  std::error_code ignored;
+  ReferenceLamps lamps = lampsOf(session.stage.world().registry(), session.document);
+  SceneKey key{scene.source, std::filesystem::last_write_time(scene.source, ignored), session.editsOf(entry),
+               lamps.text(), session.viewing.animation_s};
+  if (coming_.valid() && coming_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
+    auto made = coming_.get();
+    if (made) {
+      scene_ = std::move(*made);
+      error_.reset();
+      eye_key_.reset();
+    } else {
+      error_ = made.error();
+    }
+  }
+  if (scene_key_ == key || coming_.valid()) return;
+  scene_key_ = key;
+  coming_ = std::async(std::launch::async, [key, lamps = std::move(lamps)]() -> Result<ScenePointer> {
+    try {
+      auto imported = baker::importScene(key.source, {});
+      if (!imported) return failAgain(imported.error());
+      auto made = std::make_shared<baker::Scene>(std::move(*imported));
+      baker::reference::poseAt(*made, key.animation_s);
+      baker::applyEdits(key.edits, *made);
+      addLamps(lamps, *made);
+      return ScenePointer(std::move(made));
+    } catch (const std::exception& failure) {
+      return fail(key.source.string(), failure.what(), "free some memory");
+    }
+  });
+}
+
+void ReferenceView::followEye(Session& session) {
+  const EyeKey key{session.viewing.shown_view, session.viewing.size, session.stage.environment().version(),
+                   spp, band_limit};
+  const bool same = eye_key_ && sameView(eye_key_->view, key.view) &&
+                    eye_key_->size.width == key.size.width && eye_key_->size.height == key.size.height &&
+                    eye_key_->lights == key.lights && eye_key_->spp == key.spp &&
+                    eye_key_->band_limit == key.band_limit;
+  if (same) return;
+  const bool new_scene = !eye_key_;
+  eye_key_ = key;
+  baker::reference::Request request;
+  request.lights = scaledLights(session.stage.lights(), session.stage.environment().intensity());
+  for (spec::Light& shape : shapesOf(session.stage.world().registry(), session.document))
+    request.lights.push_back(std::move(shape));
+  request.view = key.view;
+  request.options.size = key.size;
+  request.options.spp = spp;
+  request.options.rotate_light_deg = session.stage.environment().turnDegrees();
+  if (band_limit) request.options.band_limit = baker::reference::BandLimit{.in = *band_limit, .out = {}};
+  if (!tracer_)
+    tracer_ = std::make_unique<baker::reference::ProgressiveReference>(scene_, std::move(request));
+  else if (new_scene)
+    tracer_->restart(scene_, std::move(request));
+  else
+    tracer_->restart(std::move(request));
+  difference_.reset();
+}
+
+Result<spec::RgbaImage> ReferenceView::linearPicture(Session& session, const spec::View& view,
+                                                     spec::Size size) {
+  if (!linear_) {
+    auto made =
+        frame::Frame::create({.size = size, .output = frame::Output::Linear, .wait_for_captures = true},
+                             session.stage.environment());
+    if (!made) return failAgain(made.error());
+    linear_ = std::move(*made);
+  }
+  linear_->resize(size);
+  if (auto set = linear_->setSettings(session.stage.frame().settings()); !set) return failAgain(set.error());
+  if (auto drawn = linear_->render(session.stage.world(), session.stage.environment(), view); !drawn)
+    return failAgain(drawn.error());
+  return linear_->readLinear();
+}
+
+void ReferenceView::show(Session& session, const baker::reference::Snapshot& snapshot) {
+  const spec::Size size{snapshot.image.width, snapshot.image.height};
+  radiance_ = textureOf("reference", size, GL_RGBA32F);
+  glTextureSubImage2D(radiance_.id(), 0, 0, 0, static_cast<GLsizei>(size.width),
+                      static_cast<GLsizei>(size.height), GL_RGBA, GL_FLOAT, snapshot.image.texels.data());
+  if (!tone_mapper_) {
+    auto made = frame::ToneMapper::create(/*samples=*/0, /*linear=*/false);
+    if (!made) return session.log.error(made.error());
+    tone_mapper_ = std::move(*made);
+  }
+  shown_ = textureOf("reference, shown", size, GL_RGBA8);
+  shown_target_ = gpu::Framebuffer("reference, shown", shown_, nullptr);
+  glBindFramebuffer(GL_FRAMEBUFFER, shown_target_.id());
+  glViewport(0, 0, static_cast<GLsizei>(size.width), static_cast<GLsizei>(size.height));
+  gpu::Counters counters;
+  tone_mapper_->run(radiance_, session.stage.frame().exposureEv(), counters);
+  if (snapshot.spp == 0 || !session.stage.atRest()) return;
+
+  const auto picture = linearPicture(session, eye_key_->view, size);
+  if (!picture) return session.log.error(picture.error());
+  const bool halves = snapshot.halves[0].width > 0 && snapshot.halves[1].width > 0;
+  auto difference =
+      baker::differenceOf(*picture, halves ? snapshot.halves[0] : snapshot.image,
+                          halves ? &snapshot.halves[1] : nullptr, {.map = heat_map}, "reference");
+  if (!difference) {
+    error_ = difference.error();
+    return;
+  }
+  difference_ = std::move(*difference);
+  heat_ = textureOf("heat map", size, GL_RGBA8);
+  glTextureSubImage2D(heat_.id(), 0, 0, 0, static_cast<GLsizei>(size.width),
+                      static_cast<GLsizei>(size.height), GL_RGBA, GL_UNSIGNED_BYTE,
+                      difference_->heat.texels.data());
+}
+
+void ReferenceView::update(Session& session) {
+  if (!on()) {
+    tracer_.reset(), scene_.reset(), seen_.reset(), difference_.reset(), linear_.reset();
+    scene_key_.reset(), eye_key_.reset(), error_.reset();
+    return;
+  }
+  const auto entry = session.entryAtHand();
+  if (!entry) {
+    error_ = Error{"reference", "there is no scene to trace", "open a .gltf or .glb file"};
+    return;
+  }
+  followScene(session, *entry);
+  if (!scene_ || session.viewing.size.width == 0) return;
+  followEye(session);
+  const auto now = tracer_->snapshot();
+  const float exposure_ev = session.stage.frame().exposureEv();
+  if (!now || (now == seen_ && exposure_ev == seen_exposure_ev_ && (difference_ || !session.stage.atRest())))
+    return;
+  show(session, *now);
+  seen_ = now, seen_exposure_ev_ = exposure_ev;
+}
+
+}  // namespace lambent::editor

@@ -1,0 +1,322 @@
+#include "editor/session/scenes.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "baker/bake/bake.hpp"
+#include "baker/pipeline/journal.hpp"
+
+namespace lambent::editor {
+
+namespace {
+
+constexpr const char* kBundleEnd = ".lmb.glb";
+constexpr const char* kEditsOption = "edits";  // of world files
+
+bool isBundle(const std::filesystem::path& path) {
+  return path.filename().string().ends_with(kBundleEnd);
+}
+
+std::filesystem::path plain(const std::filesystem::path& path) {
+  std::error_code ignored;
+  const std::filesystem::path absolute = std::filesystem::absolute(path, ignored);
+  return (ignored ? path : absolute).lexically_normal();
+}
+
+bool writable(const std::filesystem::path& folder) {
+  std::error_code ignored;
+  const auto rights = std::filesystem::status(folder, ignored).permissions();
+  using std::filesystem::perms;
+  return !ignored &&
+         (rights & (perms::owner_write | perms::group_write | perms::others_write)) != perms::none;
+}
+
+std::vector<std::filesystem::path> filesIn(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> files;
+  std::error_code ignored;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, ignored))
+    if (entry.is_regular_file(ignored) && (isBundle(entry.path()) || baker::isSceneFile(entry.path())))
+      files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+}  // namespace
+
+Scenes::Scenes(frame::World& world, Log& log, SceneSettings settings)
+    : world_(world), log_(log), settings_(std::move(settings)) {
+  if (settings_.cache_folder.empty()) settings_.cache_folder = baker::Cache::defaultFolder();
+  if (!settings_.cache_folder.empty()) {
+    auto cache = baker::Cache::open(settings_.cache_folder, settings_.cache_bytes);
+    if (cache)
+      cache_ = std::move(*cache);
+    else
+      log_.warn(cache.error().line() + "; bakes keep nothing");
+  }
+  queue_ = std::make_unique<baker::BakeQueue>(baker::QueueSettings{
+      .work_folder = settings_.cache_folder, .cache = cache_ ? &*cache_ : nullptr, .previews = true});
+}
+
+Scenes::~Scenes() {
+  watch_.reset();
+  queue_.reset();  // before the cache that it writes to
+}
+
+SceneEntry* Scenes::find(const std::filesystem::path& source) {
+  const auto found = std::find_if(entries_.begin(), entries_.end(), [&](const SceneEntry& entry) {
+    return (!entry.source.empty() && entry.source == source) || entry.bundle == source;
+  });
+  return found == entries_.end() ? nullptr : &*found;
+}
+
+std::optional<std::size_t> Scenes::entryOf(std::uint32_t slot) const {
+  for (std::size_t i = 0; i < entries_.size(); ++i)
+    if (entries_[i].slot == slot) return i;
+  return std::nullopt;
+}
+
+std::optional<baker::JobState> Scenes::jobOf(std::size_t entry) const {
+  if (!entries_[entry].job) return std::nullopt;
+  for (baker::JobState& state : queue_->states())
+    if (state.id == *entries_[entry].job) return std::move(state);
+  return std::nullopt;
+}
+
+// The file's name without its ends; counted where another bundle has it.
+std::string Scenes::idFor(const std::filesystem::path& bundle) const {
+  std::string stem = bundle.filename().string();
+  if (stem.ends_with(kBundleEnd)) stem.resize(stem.size() - std::string_view(kBundleEnd).size());
+  std::string id = stem;
+  const auto taken = [&] {
+    return std::any_of(entries_.begin(), entries_.end(), [&](const SceneEntry& e) { return e.id == id; });
+  };
+  for (int count = 2; taken(); ++count) id = fmt::format("{}-{}", stem, count);
+  return id;
+}
+
+std::filesystem::path Scenes::bundleFor(const std::filesystem::path& scene) const {
+  std::filesystem::path folder = settings_.output_folder;
+  if (folder.empty()) folder = scene.parent_path();
+  if (!writable(folder) && !settings_.cache_folder.empty()) folder = settings_.cache_folder / "bundles";
+  std::error_code ignored;
+  std::filesystem::create_directories(folder, ignored);
+  return folder / (scene.stem().string() + kBundleEnd);
+}
+
+Result<void> Scenes::open(const std::filesystem::path& path) {
+  const std::filesystem::path place = plain(path);
+  std::error_code ignored;
+  if (std::filesystem::is_directory(place, ignored)) return openFolder(place);
+  if (!std::filesystem::exists(place, ignored))
+    return fail(path.string(), "is not there", "check the name, or drop the file onto the window");
+  if (find(place)) return fail(path.string(), "is open already", "close it first to open it anew");
+  if (isBundle(place)) return openBundle(place, idFor(place));
+  if (baker::isSceneFile(place)) return openScene(place, idFor(bundleFor(place)), {});
+  return fail(path.string(), "is no scene, bundle or folder",
+              "open .gltf, .glb, .lmb.glb or a folder of them");
+}
+
+Result<void> Scenes::open(const BundleEntry& entry, const std::filesystem::path& folder) {
+  const std::filesystem::path bundle = plain(folder / entry.path);
+  std::error_code ignored;
+  if (!entry.source.empty()) {
+    const std::filesystem::path source = plain(folder / entry.source);
+    const auto edits = entry.bake_options.find(kEditsOption);
+    const auto read = edits == entry.bake_options.end() ? std::nullopt : baker::readEdits(edits->second);
+    if (std::filesystem::exists(source, ignored))
+      return openScene(source, entry.id, read.value_or(baker::SceneEdits{}));
+  }
+  if (!std::filesystem::exists(bundle, ignored))
+    return fail(bundle.string(), "is not there", "bake it again, or take it out of the world file");
+  return openBundle(bundle, entry.id);
+}
+
+Result<void> Scenes::openBundle(const std::filesystem::path& bundle, std::string id) {
+  SceneEntry entry{.bundle = bundle, .id = std::move(id), .shown = bundle, .options = settings_.options};
+  const auto slot = world_.open(bundle, {.bundle_id = entry.id});
+  if (!slot) return failAgain(slot.error());
+  entry.slot = *slot;
+  entries_.push_back(std::move(entry));
+  ++version_;
+  return {};
+}
+
+Result<void> Scenes::openScene(const std::filesystem::path& scene, std::string id, baker::SceneEdits edits) {
+  SceneEntry entry{.source = scene,
+                   .bundle = bundleFor(scene),
+                   .id = std::move(id),
+                   .shown = {},
+                   .options = settings_.options,
+                   .edits = edits,
+                   .shown_edits = std::move(edits)};
+  std::error_code ignored;
+  // What is there already is shown meanwhile, of today's content or not.
+  if (std::filesystem::exists(entry.bundle, ignored)) {
+    if (const auto slot = world_.open(entry.bundle, {.bundle_id = entry.id}))
+      entry.slot = *slot, entry.shown = entry.bundle;
+  }
+  entries_.push_back(std::move(entry));
+  ++version_;
+  request(entries_.back());
+  watch();
+  return {};
+}
+
+Result<void> Scenes::openFolder(const std::filesystem::path& folder) {
+  const auto files = filesIn(folder);
+  if (files.empty()) log_.note(folder.string() + ": no scenes yet; what comes is opened");
+  for (const std::filesystem::path& file : files) {
+    if (find(file)) continue;
+    // The bundle of a scene of the folder comes with the scene.
+    const bool of_scene = isBundle(file) && std::any_of(files.begin(), files.end(), [&](const auto& other) {
+                            return baker::isSceneFile(other) && bundleFor(other) == file;
+                          });
+    if (of_scene) continue;
+    if (auto opened = open(file); !opened) log_.error(opened.error());
+  }
+  if (std::find(watched_.begin(), watched_.end(), folder) == watched_.end()) watched_.push_back(folder);
+  watch();
+  return {};
+}
+
+void Scenes::request(SceneEntry& entry) {
+  entry.job = queue_->add({.scene = entry.source,
+                           .output = entry.bundle,
+                           .options = entry.options,
+                           .edits = entry.edits,
+                           .last = settings_.bake ? baker::Rung::Final : baker::Rung::Unshadowed});
+}
+
+void Scenes::watch() {
+  std::vector<std::filesystem::path> sources = watched_;
+  for (const SceneEntry& entry : entries_)
+    if (!entry.source.empty()) sources.push_back(entry.source);
+  if (watch_)
+    watch_->setSources(std::move(sources));
+  else
+    watch_ = std::make_unique<baker::SourceWatch>(std::move(sources));
+}
+
+void Scenes::show(SceneEntry& entry, const std::filesystem::path& bundle) {
+  entry.shown = bundle;
+  ++version_;
+  if (entry.slot) {
+    if (auto replaced = world_.replace(*entry.slot, bundle); !replaced) log_.error(replaced.error());
+    return;
+  }
+  const auto slot = world_.open(bundle, {.bundle_id = entry.id});
+  if (slot)
+    entry.slot = *slot;
+  else
+    log_.error(slot.error());
+}
+
+void Scenes::take(const baker::BakeEvent& event) {
+  const auto found = std::find_if(entries_.begin(), entries_.end(),
+                                  [&](const SceneEntry& entry) { return entry.job == event.job; });
+  if (found == entries_.end()) return;
+  using Kind = baker::BakeEvent::Kind;
+  const auto job = jobOf(static_cast<std::size_t>(found - entries_.begin()));
+  if (event.kind == Kind::Failed && job && job->error) log_.error(*job->error);
+  if (event.kind == Kind::Cancelled) log_.note(found->source.filename().string() + ": bake cancelled");
+  if (event.kind != Kind::Bundle) return;
+  if (job && event.rung == baker::Rung::Final)
+    for (const std::string& warning : job->warnings)
+      log_.warn(found->source.filename().string() + ": " + warning);
+  // A bundle with transfer is not given up for one without.
+  if (event.rung == baker::Rung::Unshadowed && found->slot && found->shown == found->bundle) return;
+  if (job) found->shown_edits = job->request.edits;
+  show(*found, event.bundle);
+  if (event.rung == baker::Rung::Final)
+    log_.note(
+        fmt::format("{}: baked in {:.0f} s", found->bundle.filename().string(), job ? job->seconds : 0.0));
+}
+
+void Scenes::take(const baker::WatchEvent& event) {
+  using Kind = baker::WatchEvent::Kind;
+  const std::filesystem::path scene = plain(event.scene);
+  SceneEntry* entry = find(scene);
+  if (event.kind == Kind::Broken && event.error) {
+    log_.error(*event.error);
+  } else if (event.kind == Kind::Removed && entry) {
+    log_.warn(scene.string() + ": is gone; its bundle stays");
+  } else if (event.kind == Kind::Found && !entry) {
+    if (auto opened = open(scene); !opened) log_.error(opened.error());
+  } else if (event.kind == Kind::Changed && entry) {
+    log_.note(scene.filename().string() + ": has changed");
+    request(*entry);
+  }
+}
+
+bool Scenes::update() {
+  const std::uint64_t before = version_;
+  idle_updates_ = queue_->busy() ? 0 : idle_updates_ + 1;
+  for (const baker::BakeEvent& event : queue_->takeEvents()) take(event);
+  if (watch_)
+    for (const baker::WatchEvent& event : watch_->takeEvents()) take(event);
+  return version_ != before;
+}
+
+Result<void> Scenes::bake(std::size_t index, baker::SceneEdits edits) {
+  SceneEntry& entry = entries_[index];
+  if (entry.source.empty())
+    return fail(entry.bundle.string(), "has no scene to be baked from", "open its .gltf or .glb file");
+  entry.edits = std::move(edits);
+  entry.job = queue_->add(
+      {.scene = entry.source, .output = entry.bundle, .options = entry.options, .edits = entry.edits});
+  return {};
+}
+
+void Scenes::cancel(std::size_t entry) {
+  if (entries_[entry].job) queue_->cancel(*entries_[entry].job);
+}
+
+bool Scenes::busy() const {
+  return queue_->busy() || idle_updates_ < 2;
+}
+
+std::size_t Scenes::resume() {
+  std::size_t count = 0;
+  if (settings_.cache_folder.empty()) return count;
+  for (const baker::BakeRequest& request :
+       baker::Journal(settings_.cache_folder / baker::kJournalFolder).unfinished()) {
+    if (find(plain(request.scene))) continue;
+    log_.note(request.scene.filename().string() + ": goes on where an earlier session stopped");
+    if (auto opened = open(request.scene); !opened) log_.error(opened.error());
+    ++count;
+  }
+  return count;
+}
+
+void Scenes::close(std::size_t index) {
+  cancel(index);
+  if (entries_[index].slot) world_.close(*entries_[index].slot);
+  entries_.erase(entries_.begin() + static_cast<std::ptrdiff_t>(index));
+  ++version_;
+  watch();
+}
+
+void Scenes::closeAll() {
+  watched_.clear();
+  while (!entries_.empty()) close(entries_.size() - 1);
+}
+
+std::vector<BundleEntry> Scenes::state(const std::filesystem::path& folder) const {
+  const auto relative = [&](const std::filesystem::path& path) {
+    const std::filesystem::path way = path.lexically_relative(plain(folder));
+    return (way.empty() ? path : way).generic_string();
+  };
+  std::vector<BundleEntry> bundles;
+  for (const SceneEntry& entry : entries_) {
+    BundleEntry& bundle = bundles.emplace_back();
+    bundle.path = relative(entry.bundle);
+    bundle.id = entry.id;
+    if (!entry.source.empty()) bundle.source = relative(entry.source);
+    bundle.bake_options = entry.options.settings();
+    if (!entry.edits.empty()) bundle.bake_options[kEditsOption] = baker::editsText(entry.edits);
+  }
+  return bundles;
+}
+
+}  // namespace lambent::editor

@@ -1,0 +1,89 @@
+#include "editor/session/stage.hpp"
+
+#include <algorithm>
+
+#include "runtime/frame/frame_settings.hpp"
+#include "runtime/scene/lights.hpp"
+#include "runtime/spec/light.hpp"
+
+namespace lambent::editor {
+
+namespace {
+
+constexpr spec::Size kFirstSize{1280, 720};
+
+Result<std::vector<spec::Light>> parseLights(const std::vector<std::string>& words) {
+  std::vector<spec::Light> lights;
+  for (const std::string& word : words) {
+    auto light = spec::parseLight(word);
+    if (!light) return failAgain(light.error());
+    lights.push_back(std::move(*light));
+  }
+  return lights;
+}
+
+}  // namespace
+
+Stage::Stage(frame::World world, lighting::Environment environment, frame::Frame frame)
+    : world_(std::move(world)), environment_(std::move(environment)), frame_(std::move(frame)) {
+  environment_entity_ = scene::addEnvironment(world_.registry());
+}
+
+Result<Stage> Stage::create(std::uint64_t max_memory_bytes) {
+  auto environment = lighting::Environment::create({});
+  if (!environment) return failAgain(environment.error());
+  auto frame = frame::Frame::create({.size = kFirstSize, .output = frame::Output::Display}, *environment);
+  if (!frame) return failAgain(frame.error());
+  return Stage(frame::World({.max_resident_bytes = max_memory_bytes}), std::move(*environment),
+               std::move(*frame));
+}
+
+Result<void> Stage::followLights(const WorldState& state) {
+  if (state.lights == words_ && state.fade_lights == fade_words_) return {};
+  // Tried once: words that fail are not read again in every frame.
+  words_ = state.lights, fade_words_ = state.fade_lights;
+  auto lights = parseLights(state.lights);
+  if (!lights) return failAgain(lights.error());
+  const auto fade_lights = parseLights(state.fade_lights);
+  if (!fade_lights) return failAgain(fade_lights.error());
+  auto environment = lighting::Environment::create(*lights, *fade_lights);
+  if (!environment) return failAgain(environment.error());
+  environment_ = std::move(*environment);
+  lights_ = std::move(*lights);
+  followEnvironment();
+  return {};
+}
+
+std::vector<Error> Stage::follow(const WorldState& state) {
+  std::vector<Error> errors;
+  if (auto done = followLights(state); !done) errors.push_back(done.error());
+  frame::FrameSettings settings;
+  for (const auto& [name, word] : state.settings)
+    if (auto put = frame::putSetting(settings, name, word); !put) errors.push_back(put.error());
+  settings.exposure_ev = state.exposure_ev;
+  if (settings == frame_.settings()) return errors;
+  if (auto done = frame_.setSettings(settings); !done) errors.push_back(done.error());
+  return errors;
+}
+
+void Stage::followEnvironment() {
+  const auto* component = world_.registry().tryGet<scene::EnvironmentComponent>(environment_entity_);
+  if (!component) return;
+  environment_.setTurn(component->rotation_deg);
+  environment_.setFade(component->fade);
+  environment_.setIntensity(component->intensity);
+}
+
+Result<void> Stage::render(const spec::View& view, spec::Size size) {
+  if (size.width != frame_.options().size.width || size.height != frame_.options().size.height)
+    frame_.resize(size);
+  followEnvironment();
+  world_.updateTransforms();
+  if (auto done = frame_.render(world_, environment_, view); !done) return done;
+  const frame::StepCounts& counts = frame_.counts();
+  at_rest_ = world_.loaded() && counts.incident.captured == 0 && counts.incident.waiting == 0 &&
+             counts.cells_shaded == 0 && counts.draws_shaded == 0;
+  return {};
+}
+
+}  // namespace lambent::editor

@@ -1,0 +1,274 @@
+#include "runtime/frame/frame_settings.hpp"
+
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "runtime/spec/numbers.hpp"
+
+namespace lambent::frame {
+
+namespace {
+
+using Kind = SettingRow::Kind;
+
+// As the enums count.
+constexpr std::array<std::string_view, 3> kTransferWords = {"unshadowed", "shadowed", "full"};
+constexpr std::array<std::string_view, 3> kWindowWords = {"off", "hann", "auto"};
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+template <auto Member>
+constexpr SettingRow switchRow(std::string_view name, std::string_view label, std::optional<double> finest,
+                               std::string_view help) {
+  return {.name = name,
+          .label = label,
+          .kind = Kind::Switch,
+          .finest = finest,
+          .help = help,
+          .get = [](const FrameSettings& settings) { return settings.*Member ? 1.0 : 0.0; },
+          .put = [](FrameSettings& settings, double value) { settings.*Member = value != 0.0; }};
+}
+
+// Member: of the settings, a number or an enum.
+template <auto Member>
+double getNumber(const FrameSettings& settings) {
+  return static_cast<double>(settings.*Member);
+}
+template <auto Member>
+void putNumber(FrameSettings& settings, double value) {
+  using T = std::remove_reference_t<decltype(settings.*Member)>;
+  if constexpr (std::is_enum_v<T>)
+    settings.*Member = static_cast<T>(static_cast<int>(value));
+  else
+    settings.*Member = static_cast<T>(value);
+}
+// Member: of the capture's options.
+template <auto Member>
+double getCapture(const FrameSettings& settings) {
+  return static_cast<double>(settings.capture.*Member);
+}
+template <auto Member>
+void putCapture(FrameSettings& settings, double value) {
+  settings.capture.*Member = static_cast<std::remove_reference_t<decltype(settings.capture.*Member)>>(value);
+}
+
+using S = FrameSettings;
+using C = lighting::CaptureOptions;
+
+const std::array kRows = {
+    SettingRow{.name = "transfer",
+               .label = "light that counts",
+               .kind = Kind::Choice,
+               .greatest = 2.0,
+               .words = kTransferWords,
+               .finest = 2.0,
+               .help =
+                   "Light that counts: unshadowed, shadowed (no bounces) or full;\nunshadowed, the scenes' "
+                   "own lights are dark",
+               .get = getNumber<&S::transfer>,
+               .put = putNumber<&S::transfer>},
+    SettingRow{.name = "window",
+               .label = "window",
+               .kind = Kind::Choice,
+               .greatest = 2.0,
+               .words = kWindowWords,
+               .help = "Against ringing of the light: auto, off or hann",
+               .get = getNumber<&S::window>,
+               .put = putNumber<&S::window>},
+    SettingRow{.name = "order",
+               .label = "bands of light",
+               .kind = Kind::Whole,
+               .least = 1.0,
+               .greatest = sh::kMaxOrder,
+               .finest = sh::kMaxOrder,
+               .help = "Bands of the light that count, at most",
+               .get = getNumber<&S::order>,
+               .put = putNumber<&S::order>},
+    SettingRow{.name = "glossy-order",
+               .label = "bands on glossy surfaces",
+               .kind = Kind::Whole,
+               .least = 1.0,
+               .greatest = sh::kMaxOrder,
+               .finest = sh::kMaxOrder,
+               .help = "Bands that glossy surfaces reflect, at most",
+               .get = getNumber<&S::glossy_order>,
+               .put = putNumber<&S::glossy_order>},
+    switchRow<&S::diffuse>("diffuse", "matte surfaces", 1.0, "Light on matte surfaces"),
+    switchRow<&S::glossy>("glossy", "glossy surfaces", 1.0, "Light on glossy surfaces"),
+    switchRow<&S::volumes>("volumes", "volumes", 1.0, "Clouds, smoke and other media"),
+    switchRow<&S::residual>("residual", "sharp reflections of the sky", 1.0,
+                            "Glossy surfaces reflect what the bands of their light leave out\nof the sky"),
+    switchRow<&S::neighborhoods>("neighborhoods", "neighborhoods", 1.0,
+                                 "Bodies with grids around them shade others by these, off: by\ncaptures"),
+    switchRow<&S::near_shadows>("near-shadows", "near lights", 1.0,
+                                "Lights among the surfaces shine per pixel with shadow cubes, off:\nby "
+                                "harmonics"),
+    switchRow<&S::captures>("captures", "light between bodies", 1.0,
+                            "Bodies light and shadow each other as they stand now"),
+    SettingRow{.name = "capture-size",
+               .label = "texels of captures",
+               .kind = Kind::Whole,
+               .least = 4.0,
+               .greatest = 64.0,
+               .finest = 64.0,
+               .help = "Texels along an edge of the cube maps in which light between\nbodies is sampled",
+               .get = getCapture<&C::size>,
+               .put = putCapture<&C::size>},
+    SettingRow{.name = "capture-subsamples",
+               .label = "subsamples of a texel",
+               .kind = Kind::Whole,
+               .least = 1.0,
+               .greatest = 16.0,
+               .finest = 16.0,
+               .help = "Subsamples along an edge of such a texel",
+               .get = getCapture<&C::subsamples>,
+               .put = putCapture<&C::subsamples>},
+    SettingRow{.name = "capture-order",
+               .label = "bands of captures",
+               .kind = Kind::Whole,
+               .greatest = sh::kMaxOrder,
+               .zero = "auto",
+               .finest = 0.0,
+               .help = "Bands of the light that is sampled; 0: the transfer's",
+               .get = getCapture<&C::order>,
+               .put = putCapture<&C::order>},
+    SettingRow{.name = "captures-per-frame",
+               .label = "captures in a frame",
+               .kind = Kind::Whole,
+               .least = 1.0,
+               .greatest = 1e6,
+               .help =
+                   "Light samples that are drawn anew in a frame at most; a picture\nwithout a window is of "
+                   "all of them",
+               .get = getNumber<&S::captures_per_step>,
+               .put = putNumber<&S::captures_per_step>},
+    SettingRow{.name = "light-samples",
+               .label = "light samples of a group",
+               .kind = Kind::Whole,
+               .least = 1.0,
+               .greatest = S::kAllLightSamples,
+               .finest = S::kAllLightSamples,
+               .help = "Places at which the light of a group is sampled, at most",
+               .get = getNumber<&S::light_samples>,
+               .put = putNumber<&S::light_samples>},
+    SettingRow{.name = "march-step",
+               .label = "steps through volumes",
+               .kind = Kind::Real,
+               .least = 0.125,
+               .greatest = 8.0,
+               .finest = 0.125,
+               .help = "Voxels that a ray through a volume goes at a step; linear\npictures take half of it",
+               .get = getNumber<&S::march_step_voxels>,
+               .put = putNumber<&S::march_step_voxels>},
+    SettingRow{.name = "exposure",
+               .label = "exposure",
+               .kind = Kind::Real,
+               .least = -64.0,
+               .greatest = 64.0,
+               .not_a_number = "auto",
+               .help = "Stops above radiance 1 = white, or auto",
+               .get =
+                   [](const S& settings) {
+                     return settings.exposure_ev ? static_cast<double>(*settings.exposure_ev) : kNone;
+                   },
+               .put =
+                   [](S& settings, double value) {
+                     settings.exposure_ev.reset();
+                     if (!std::isnan(value)) settings.exposure_ev = static_cast<float>(value);
+                   }}};
+
+std::string rangeOf(const SettingRow& row) {
+  std::string range;
+  if (row.kind == Kind::Choice || row.kind == Kind::Switch) {
+    static constexpr std::array<std::string_view, 2> kSwitchWords = {"off", "on"};
+    const std::span<const std::string_view> words =
+        row.kind == Kind::Choice ? row.words : std::span<const std::string_view>(kSwitchWords);
+    for (const std::string_view word : words) range += fmt::format("{}{}", range.empty() ? "" : ", ", word);
+    return "one of " + range;
+  }
+  range = fmt::format("{}..{}", row.least, row.greatest);
+  if (!row.not_a_number.empty()) range += fmt::format(" or {}", row.not_a_number);
+  return range;
+}
+
+}  // namespace
+
+std::span<const SettingRow> settingRows() {
+  return kRows;
+}
+
+const SettingRow* findSetting(std::string_view name) {
+  for (const SettingRow& row : kRows)
+    if (row.name == name) return &row;
+  return nullptr;
+}
+
+std::string settingWord(const SettingRow& row, const FrameSettings& settings) {
+  const double value = row.get(settings);
+  switch (row.kind) {
+    case Kind::Switch:
+      return value != 0.0 ? "on" : "off";
+    case Kind::Choice:
+      return std::string(row.words[static_cast<std::size_t>(value)]);
+    case Kind::Whole:
+      break;
+    case Kind::Real:
+      if (std::isnan(value)) return std::string(row.not_a_number);
+      return fmt::format("{}", static_cast<float>(value));
+  }
+  return fmt::format("{}", static_cast<std::int64_t>(value));
+}
+
+Result<double> parseSetting(const SettingRow& row, std::string_view word) {
+  const auto unknown = [&] {
+    return fail("--" + std::string(row.name), fmt::format("\"{}\" is not known", word),
+                "give " + rangeOf(row));
+  };
+  if (row.kind == Kind::Switch) {
+    if (word != "on" && word != "off") return unknown();
+    return word == "on" ? 1.0 : 0.0;
+  }
+  if (row.kind == Kind::Choice) {
+    for (std::size_t i = 0; i < row.words.size(); ++i)
+      if (row.words[i] == word) return static_cast<double>(i);
+    return unknown();
+  }
+  if (!row.zero.empty() && word == row.zero) return 0.0;
+  if (!row.not_a_number.empty() && word == row.not_a_number) return kNone;
+  const std::optional<float> value = spec::parseNumber(word);
+  if (!value) return unknown();
+  return static_cast<double>(*value);
+}
+
+Result<void> putSetting(const SettingRow& row, FrameSettings& settings, double value) {
+  const bool none = std::isnan(value) && !row.not_a_number.empty();
+  const bool whole = row.kind == Kind::Real || value == std::floor(value);
+  if (!none && !(value >= row.least && value <= row.greatest && whole))
+    return fail("--" + std::string(row.name), fmt::format("{} is out of its range", value),
+                "give " + rangeOf(row));
+  row.put(settings, value);
+  return {};
+}
+
+Result<void> putSetting(FrameSettings& settings, std::string_view name, std::string_view word) {
+  const SettingRow* row = findSetting(name);
+  if (row == nullptr) {
+    std::string known;
+    for (const SettingRow& one : kRows) known += fmt::format("{}{}", known.empty() ? "" : ", ", one.name);
+    return fail(std::string(name), "is no setting of the frame", "give one of " + known);
+  }
+  const Result<double> value = parseSetting(*row, word);
+  if (!value) return failAgain(value.error());
+  return putSetting(*row, settings, *value);
+}
+
+Result<void> checkSettings(const FrameSettings& settings) {
+  FrameSettings copy = settings;
+  for (const SettingRow& row : kRows)
+    if (Result<void> done = putSetting(row, copy, row.get(settings)); !done) return done;
+  return {};
+}
+
+}  // namespace lambent::frame

@@ -1,0 +1,36 @@
+// Boxes and the glyphs of lights as lines, for overlays and for a gizmo. Comes in: boxes and where they
+// stand, lights as components. Goes out: lines in world space, appended. No GL; any thread; no errors: what
+// is empty adds nothing.
+#pragma once
+
+#include <vector>
+
+#include <glm/mat4x4.hpp>
+#include <glm/vec4.hpp>
+
+#include "runtime/frame/lit_scene.hpp"
+#include "runtime/frame/neighborhoods.hpp"
+#include "runtime/frame/overlay_options.hpp"
+#include "runtime/frame/world.hpp"
+#include "runtime/scene/bounds.hpp"
+#include "runtime/scene/components.hpp"
+
+namespace lambent::frame {
+
+// The twelve edges.
+void appendBox(const scene::Box& box, const glm::mat4& world_from_box, const glm::vec4& color,
+               std::vector<OverlayLine>& lines);
+
+// Outlines of spheres and discs at their size, a cone for a spot, an arrow for light from infinity, a star
+// for a point; size_m is the length of what has none of its own. Lights shine along the node's -Z.
+void appendLight(const scene::LocalLightComponent& light, const glm::mat4& world_from_node, float size_m,
+                 const glm::vec4& color, std::vector<OverlayLine>& lines);
+
+// How large signs are drawn in this world, metres.
+float signSize(const World& world);
+
+// Everything that the options ask for and lines can show, those of the options included.
+std::vector<OverlayLine> linesOf(const World& world, const Neighborhoods& neighborhoods,
+                                 const OverlayOptions& options);
+
+}  // namespace lambent::frame

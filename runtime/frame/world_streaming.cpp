@@ -1,0 +1,297 @@
+// What of the bundles is on the GPU, by what the camera sees: World's part that follows it.
+#include <algorithm>
+#include <thread>
+#include <tuple>
+
+#include "runtime/frame/world.hpp"
+#include "runtime/scene/bounds.hpp"
+#include "runtime/streaming/interest.hpp"
+
+namespace lambent::frame {
+
+namespace {
+
+// Asked for at once, and on the GPU in one piece: little, for the camera may turn meanwhile.
+constexpr std::uint64_t kBatchBytes = std::uint64_t{8} << 20;
+constexpr std::uint32_t kBatches = 2;  // on their way, each of one bundle
+
+std::uint64_t bytesOf(const streaming::Parts& parts, const std::vector<std::uint32_t>& steps) {
+  std::uint64_t bytes = 0;
+  for (std::size_t u = 0; u < parts.units.size(); ++u)
+    for (std::uint32_t s = 0; s < steps[u]; ++s) bytes += parts.units[u][s].bytes;
+  return bytes;
+}
+
+std::vector<std::uint32_t> allSteps(const streaming::Parts& parts) {
+  std::vector<std::uint32_t> steps;
+  for (const streaming::Unit& unit : parts.units) steps.push_back(static_cast<std::uint32_t>(unit.size()));
+  return steps;
+}
+
+struct Next {
+  float worth = 0.0f;
+  std::uint32_t unit = 0, step = 0;
+};
+
+// What is missing, the most worth first.
+std::vector<Next> missing(const streaming::Parts& parts, const std::vector<float>& size,
+                          const std::vector<std::uint32_t>& have, const std::vector<std::uint32_t>& target) {
+  std::vector<Next> list;
+  for (std::uint32_t u = 0; u < parts.units.size(); ++u)
+    for (std::uint32_t s = have[u]; s < target[u]; ++s)
+      list.push_back({size[u] * streaming::worthOf(u, s, parts.units[u].size()), u, s});
+  std::ranges::sort(list, [](const Next& a, const Next& b) {
+    return std::tuple(-a.worth, a.unit, a.step) < std::tuple(-b.worth, b.unit, b.step);
+  });
+  return list;
+}
+
+bool same(const spec::View& a, const spec::View& b) {
+  return a.eye_ws == b.eye_ws && a.view_from_world == b.view_from_world &&
+         a.clip_from_view == b.clip_from_view;
+}
+
+}  // namespace
+
+void World::setParts(Bundle& bundle, streaming::Parts parts) const {
+  bundle.parts = std::move(parts);
+  bundle.size.assign(bundle.parts.units.size(), 1.0f);
+  bundle.steps.assign(bundle.parts.units.size(), 0);
+  bundle.target = limited() ? bundle.steps : allSteps(bundle.parts);
+}
+
+void World::seeBundle(Bundle& bundle) const {
+  constexpr float kLeast = 1e-12f;
+  bundle.size.assign(bundle.parts.units.size(), view_ ? kLeast : 1.0f);
+  if (!view_) return;
+  // What is drawn of a group; volumes fill its bounds.
+  std::vector<scene::Box> boxes(bundle.instance.groups.size());
+  const bundle::Description& description = bundle.reader->description();
+  for (std::size_t d = 0; d < description.draws.size(); ++d)
+    boxes[description.draws[d].group].add(scene::drawBounds(registry_, bundle.instance.draws[d]));
+  for (std::size_t g = 0; g < boxes.size(); ++g) {
+    const scene::Box box =
+        boxes[g].empty() ? scene::groupBounds(registry_, bundle.instance.groups[g]) : boxes[g];
+    if (box.empty()) continue;
+    bundle.size[1 + g] = std::max(streaming::sizeSeen(*view_, box.center(), box.radius()), kLeast);
+    bundle.size[0] = std::max(bundle.size[0], bundle.size[1 + g]);
+  }
+}
+
+void World::chooseTargets() {
+  const bool same_view =
+      view_.has_value() == chosen_.view.has_value() && (!view_ || same(*view_, *chosen_.view));
+  if (same_view && chosen_.transforms == transformsVersion() && chosen_.bundles == bundles_version_) return;
+  chosen_ = {.view = view_, .transforms = transformsVersion(), .bundles = bundles_version_};
+  const bool waiting =
+      std::ranges::any_of(bundles_, [](const auto& bundle) { return bundle && !settled(*bundle); });
+  if (!limited() && !waiting) return;  // all of it is here and stays
+  std::vector<streaming::Interest> interests;
+  for (std::optional<Bundle>& bundle : bundles_) {
+    if (!bundle) continue;
+    seeBundle(*bundle);
+    if (limited()) interests.push_back({&bundle->parts, bundle->size, bundle->target});
+  }
+  if (!limited()) return;
+  streaming::choose(interests, max_resident_bytes_);
+  auto chosen = interests.begin();
+  for (std::optional<Bundle>& bundle : bundles_)
+    if (bundle) bundle->target = std::move((chosen++)->target);
+}
+
+std::vector<std::uint32_t> World::stepsForReplacement(std::uint32_t slot,
+                                                      const streaming::Parts& parts) const {
+  if (!limited()) return allSteps(parts);
+  std::vector<streaming::Interest> interests;
+  std::size_t place = 0;
+  for (std::uint32_t i = 0; i < bundles_.size(); ++i) {
+    if (!bundles_[i]) continue;
+    if (i == slot) place = interests.size();
+    interests.push_back({&bundles_[i]->parts, bundles_[i]->size, bundles_[i]->target});
+  }
+  // As large in sight as the old one; what there is more of, as large as all of it.
+  streaming::Interest& one = interests[place];
+  one.parts = &parts;
+  one.size.resize(parts.units.size(), one.size.front());
+  one.target.resize(parts.units.size(), 0);
+  streaming::choose(interests, max_resident_bytes_);
+  return one.target;
+}
+
+std::uint64_t World::bytesTaken() const {
+  std::uint64_t bytes = 0;
+  for (const std::optional<Bundle>& bundle : bundles_) {
+    if (!bundle) continue;
+    bytes += bytesOf(bundle->parts, bundle->steps);
+    if (bundle->batch)
+      for (const Piece& piece : bundle->batch->pieces) bytes += piece.bytes;
+  }
+  return bytes;
+}
+
+void World::retire(Bundle& bundle) {
+  if (!bundle.batch) return;
+  bundle.bytes_read += bundle.batch->loader.bytesRead();
+  bundle.batch->loader.stop();
+  retired_.push_back(std::move(bundle.batch->loader));
+  bundle.batch.reset();
+}
+
+void World::dropTo(std::uint32_t slot, std::uint32_t unit, std::uint32_t steps) {
+  Bundle& bundle = *bundles_[slot];
+  bundle.steps[unit] = steps;
+  const std::uint32_t group = unit - 1;
+  if (steps == 0)
+    residency_.dropTransfer(slot, group);
+  else
+    residency_.dropPlanes(slot, group, [&](std::uint32_t cell, std::uint32_t transfer) {
+      return bundle.parts.planesIn(group, steps, cell, transfer);
+    });
+}
+
+void World::cancelBatch(std::uint32_t slot) {
+  Bundle& bundle = *bundles_[slot];
+  if (!bundle.batch) return;
+  const Piece front = bundle.batch->pieces.front();
+  retire(bundle);
+  if (front.begun && front.unit != 0) dropTo(slot, front.unit, bundle.steps[front.unit]);
+}
+
+// What is here or comes and should not.
+void World::evict(std::uint32_t slot) {
+  Bundle& bundle = *bundles_[slot];
+  if (bundle.target.front() == 0) {
+    if (!residency_.present(slot)) return;
+    retire(bundle);
+    residency_.remove(slot);
+    std::ranges::fill(bundle.steps, 0u);
+    rebuildTables();
+    return;
+  }
+  if (bundle.batch) {
+    std::vector<std::uint32_t> coming = bundle.steps;
+    for (const Piece& piece : bundle.batch->pieces) ++coming[piece.unit];
+    for (std::size_t u = 0; u < coming.size(); ++u)
+      if (coming[u] > bundle.target[u]) {
+        cancelBatch(slot);
+        break;
+      }
+  }
+  for (std::uint32_t u = 1; u < bundle.steps.size(); ++u)
+    if (bundle.steps[u] > bundle.target[u]) dropTo(slot, u, bundle.target[u]);
+}
+
+bool World::startBatch(std::uint32_t slot) {
+  Bundle& bundle = *bundles_[slot];
+  std::uint64_t taken = bytesTaken(), bytes = 0;
+  const std::vector<Next> list = missing(bundle.parts, bundle.size, bundle.steps, bundle.target);
+  const auto fits = [&](const Next& next) {
+    return !limited() || taken == 0 ||
+           taken + bundle.parts.units[next.unit][next.step].bytes <= max_resident_bytes_;
+  };
+  if (list.empty() || !fits(list.front())) return false;
+  if (!residency_.present(slot)) {
+    if (const Result<void> added = residency_.add(bundle.reader->description(), slot); !added) {
+      bundle.error = inBundle(*bundle.reader, added.error());
+      return false;
+    }
+    rebuildTables();
+  }
+  std::vector<streaming::Work> work;
+  std::deque<Piece> pieces;
+  for (const Next& next : list) {
+    const streaming::Step& step = bundle.parts.units[next.unit][next.step];
+    if (!fits(next)) break;
+    if (!pieces.empty() && (bytes + step.bytes > kBatchBytes || pieces.front().unit == 0)) break;
+    if (step.work.empty()) {  // a bundle that shows nothing
+      ++bundle.steps[next.unit];
+      continue;
+    }
+    taken += step.bytes;
+    bytes += step.bytes;
+    work.insert(work.end(), step.work.begin(), step.work.end());
+    pieces.push_back({.unit = next.unit, .items = step.work.size(), .bytes = step.bytes});
+  }
+  if (pieces.empty()) return false;
+  const unsigned threads = std::max(1u, std::thread::hardware_concurrency() / kBatches);
+  bundle.batch.emplace(Batch{.loader = streaming::Loader(bundle.reader, std::move(work), threads),
+                             .pieces = std::move(pieces)});
+  return true;
+}
+
+void World::request() {
+  const auto running =
+      std::ranges::count_if(bundles_, [](const auto& bundle) { return bundle && bundle->batch; });
+  struct Waiting {
+    float worth;
+    std::uint32_t slot;
+  };
+  std::vector<Waiting> waiting;
+  for (std::uint32_t i = 0; i < bundles_.size(); ++i) {
+    if (!bundles_[i] || bundles_[i]->batch || settled(*bundles_[i])) continue;
+    const Bundle& bundle = *bundles_[i];
+    const std::vector<Next> next = missing(bundle.parts, bundle.size, bundle.steps, bundle.target);
+    if (!next.empty()) waiting.push_back({next.front().worth, i});
+  }
+  std::ranges::stable_sort(waiting, [](const Waiting& a, const Waiting& b) { return a.worth > b.worth; });
+  auto room = static_cast<std::ptrdiff_t>(kBatches) - running;
+  for (const Waiting& one : waiting) {
+    if (room <= 0) break;
+    if (startBatch(one.slot)) --room;
+  }
+}
+
+void World::takeFrom(std::uint32_t slot, std::uint64_t& budget_bytes, gpu::Counters& counters) {
+  Bundle& bundle = *bundles_[slot];
+  for (const streaming::Ready& item : bundle.batch->loader.take(budget_bytes)) {
+    const std::uint64_t bytes = streaming::Residency::uploadBytes(item);
+    budget_bytes -= std::min(budget_bytes, bytes);
+    counters.uploaded_bytes += bytes;
+    if (const Result<void> done = residency_.upload(slot, item); !done) {
+      bundle.error = inBundle(*bundle.reader, done.error());
+      break;
+    }
+    Piece& piece = bundle.batch->pieces.front();
+    piece.begun = true;
+    if (--piece.items > 0) continue;
+    ++bundle.steps[piece.unit];
+    bundle.batch->pieces.pop_front();
+  }
+  if (const auto error = bundle.batch->loader.error()) bundle.error = *error;
+  if (bundle.error || bundle.batch->pieces.empty()) retire(bundle);
+}
+
+void World::measureRate(std::uint64_t bytes) {
+  constexpr double kWindow_s = 0.5;
+  rate_.bytes += bytes;
+  const auto now = std::chrono::steady_clock::now();
+  const double seconds = std::chrono::duration<double>(now - rate_.since).count();
+  if (seconds < kWindow_s) return;
+  rate_ = {.since = now, .bytes = 0, .megabytes_per_s = 1e-6 * static_cast<double>(rate_.bytes) / seconds};
+}
+
+StreamingStatus World::streaming() const {
+  StreamingStatus status{.budget_bytes = max_resident_bytes_,
+                         .resident_bytes = residency_.bytesResident(),
+                         .megabytes_per_s = rate_.megabytes_per_s,
+                         .bundles = {}};
+  for (std::uint32_t i = 0; i < bundles_.size(); ++i) {
+    if (!bundles_[i]) continue;
+    const Bundle& bundle = *bundles_[i];
+    status.bundles.push_back({.bundle = i,
+                              .name = bundle.reader->path().filename().string(),
+                              .whole_bytes = bytesOf(bundle.parts, allSteps(bundle.parts)),
+                              .wanted_bytes = bytesOf(bundle.parts, bundle.target),
+                              .resident_bytes = bytesOf(bundle.parts, bundle.steps),
+                              .size = bundle.size.front(),
+                              .state = this->status(i).state});
+    if (bundle.batch)
+      for (const Piece& piece : bundle.batch->pieces) status.in_flight_bytes += piece.bytes;
+    for (std::size_t u = 0; u < bundle.steps.size(); ++u)
+      for (std::uint32_t s = bundle.steps[u]; s < bundle.target[u]; ++s)
+        status.queued += static_cast<std::uint32_t>(bundle.parts.units[u][s].work.size());
+  }
+  return status;
+}
+
+}  // namespace lambent::frame

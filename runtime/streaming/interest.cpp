@@ -1,0 +1,85 @@
+#include "runtime/streaming/interest.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <tuple>
+
+#include <glm/geometric.hpp>
+#include <glm/gtc/matrix_access.hpp>
+
+namespace lambent::streaming {
+
+namespace {
+
+// What a step is worth, against the last share of planes of what is seen as large: surfaces are kept until
+// something is sqrt(64) times larger in sight.
+constexpr float kSurfaces = 64.0f, kCodebooks = 16.0f, kFirstPlanes = 8.0f, kLastPlanes = 1.0f;
+// What was chosen before is worth more.
+constexpr float kStays = 1.5f;
+static_assert(kSurfaces > kStays * kCodebooks && kCodebooks > kStays * kFirstPlanes);
+
+constexpr float kOutOfSight = 0.1f;  // the camera may turn at any moment
+constexpr float kLargest = 100.0f;   // standing in it, or near enough
+
+struct Candidate {
+  float worth = 0.0f;
+  std::uint32_t bundle = 0, unit = 0, step = 0;
+  std::uint64_t bytes = 0;
+};
+
+}  // namespace
+
+float worthOf(std::uint32_t unit, std::uint32_t step, std::size_t steps) {
+  if (unit == 0) return kSurfaces;
+  if (step == 0) return kCodebooks;
+  const float share = static_cast<float>(step - 1) / static_cast<float>(std::max<std::size_t>(steps - 1, 1));
+  return kFirstPlanes + share * (kLastPlanes - kFirstPlanes);
+}
+
+float sizeSeen(const spec::View& view, const glm::vec3& center_ws, float radius_m) {
+  const float distance = std::max(glm::distance(view.eye_ws, center_ws) - radius_m, 0.0f);
+  const float size = distance > 0.0f ? radius_m / distance : std::numeric_limits<float>::infinity();
+  float seen = std::min(size * size, kLargest);
+  const glm::mat4 clip_from_world = view.clip_from_view * view.view_from_world;
+  const glm::vec4 w = glm::row(clip_from_world, 3);
+  for (int axis = 0; axis < 2; ++axis)
+    for (const float sign : {1.0f, -1.0f}) {
+      const glm::vec4 plane = w + sign * glm::row(clip_from_world, axis);
+      const float normal = glm::length(glm::vec3(plane));
+      if (normal > 0.0f && glm::dot(plane, glm::vec4(center_ws, 1.0f)) < -radius_m * normal)
+        return kOutOfSight * seen;
+    }
+  return seen;
+}
+
+void choose(std::span<Interest> bundles, std::uint64_t max_bytes) {
+  std::vector<Candidate> candidates;
+  for (std::uint32_t b = 0; b < bundles.size(); ++b) {
+    Interest& bundle = bundles[b];
+    for (std::uint32_t u = 0; u < bundle.parts->units.size(); ++u) {
+      const Unit& unit = bundle.parts->units[u];
+      for (std::uint32_t s = 0; s < unit.size(); ++s) {
+        const float stays = s < bundle.target[u] ? kStays : 1.0f;
+        candidates.push_back({stays * bundle.size[u] * worthOf(u, s, unit.size()), b, u, s, unit[s].bytes});
+      }
+    }
+    std::ranges::fill(bundle.target, 0u);
+  }
+  std::ranges::sort(candidates, [](const Candidate& a, const Candidate& b) {
+    return std::tuple(-a.worth, a.bundle, a.unit, a.step) < std::tuple(-b.worth, b.bundle, b.unit, b.step);
+  });
+  std::uint64_t taken = 0;
+  for (const Candidate& candidate : candidates) {
+    Interest& bundle = bundles[candidate.bundle];
+    // Where a step had no room, those that come after it have nothing to stand on.
+    if (bundle.target[candidate.unit] != candidate.step) continue;
+    if (candidate.unit != 0 && bundle.target[0] == 0) continue;
+    if (taken + candidate.bytes > max_bytes && taken > 0) continue;
+    taken += candidate.bytes;
+    ++bundle.target[candidate.unit];
+  }
+}
+
+}  // namespace lambent::streaming

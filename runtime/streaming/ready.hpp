@@ -1,0 +1,75 @@
+// What the loader hands on, item by item: parts of a bundle, read, checked and decoded, as residency.hpp puts
+// them on the GPU. Types only.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <variant>
+#include <vector>
+
+#include "runtime/bundle/capture_proxy.hpp"
+#include "runtime/bundle/light_weights.hpp"
+#include "runtime/bundle/mesh.hpp"
+#include "runtime/bundle/reader.hpp"
+#include "runtime/streaming/brdf_texture.hpp"
+
+namespace lambent::streaming {
+
+struct MeshReady {
+  std::uint32_t mesh = 0, primitive = 0;
+  bundle::MeshData data;
+};
+
+struct ImageReady {
+  std::uint32_t image = 0;
+  std::uint32_t width = 0, height = 0;
+  std::vector<std::uint8_t> rgba;  // row 0 at the top; colour sRGB-coded
+};
+
+struct RowsReady {
+  std::uint32_t draw = 0;
+  bundle::VertexRows rows;
+};
+
+struct CodebookReady {
+  std::uint32_t group = 0, cell = 0, transfer = 0;  // transfer: index into Cell::diffuse
+  bundle::Codebook codebook;
+  std::vector<std::uint32_t> positions;  // in the order of the codes: sample of the cell | cluster << 16
+};
+
+struct PlaneReady {
+  std::uint32_t group = 0, cell = 0, transfer = 0, plane = 0;
+  std::vector<std::byte> codes;  // as the GPU reads them: bits per position, little endian
+};
+
+struct LightWeightsReady {
+  std::uint32_t group = 0, cell = 0;
+  std::vector<bundle::LightWeights> samples;
+};
+
+struct ProxyReady {
+  std::uint32_t group = 0;
+  bundle::CaptureProxy proxy;
+};
+
+struct BrdfReady {
+  std::uint32_t table = 0;  // of Description::brdf_tables
+  bundle::BrdfTable data;
+  BrdfTexels texels;
+};
+
+struct DensityReady {
+  std::uint32_t group = 0;
+  std::vector<std::byte> codes;     // of all voxels, VolumeGrid::bits each, little endian
+  std::vector<float> block_maxima;  // volume_blocks.hpp
+};
+
+struct VoxelsReady {
+  std::uint32_t group = 0;
+  std::vector<std::uint32_t> voxels;  // of the transfer grid, one per sample of the volume
+};
+
+using Ready = std::variant<MeshReady, ImageReady, RowsReady, CodebookReady, PlaneReady, LightWeightsReady,
+                           ProxyReady, BrdfReady, DensityReady, VoxelsReady>;
+
+}  // namespace lambent::streaming

@@ -1,0 +1,248 @@
+#include "runtime/streaming/resident_tables.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <iterator>
+
+#include <glm/gtc/quaternion.hpp>
+#include <glm/matrix.hpp>
+
+#include "runtime/bundle/gltf_types.hpp"
+
+namespace lambent::streaming {
+
+namespace {
+
+ResidentTransfer describe(const bundle::CellTransfer& transfer) {
+  ResidentTransfer resident;
+  resident.shape = transfer.shape;
+  resident.clusters = transfer.clusters;
+  resident.axes = transfer.axes;
+  for (const bundle::WeightPlane& plane : transfer.planes)
+    resident.planes.push_back(
+        {.block = {}, .bits = plane.bits, .count = plane.count, .variance = plane.variance});
+  return resident;
+}
+
+// Normals go by the inverse transpose; the group's own placement has no scale. A flattened mesh has no
+// inverse: its normals then go by the matrix itself, which keeps them finite.
+glm::mat3 normalMatrix(const bundle::Group& group, const glm::mat4& world_from_mesh) {
+  const glm::mat3 linear = glm::mat3_cast(glm::conjugate(group.rest_rotation)) * glm::mat3(world_from_mesh);
+  const float determinant = glm::determinant(linear);
+  if (determinant == 0.0f || !std::isfinite(1.0f / determinant)) return linear;
+  return glm::transpose(glm::inverse(linear));
+}
+
+ResidentCell describe(const bundle::Cell& cell, std::uint32_t first_output) {
+  ResidentCell resident{.kind = cell.kind,
+                        .first_sample = cell.first_sample,
+                        .sample_count = cell.sample_count,
+                        .outputs = cell.outputs(),
+                        .first_output = first_output,  // from where the group's samples will lie
+                        .block = {},
+                        .transfers = {},
+                        .light_samples = cell.light_samples,
+                        .light_weights_resident = cell.light_samples.size() == 1};
+  for (const bundle::CellTransfer& transfer : cell.transfers)
+    resident.transfers.push_back(describe(transfer));
+  return resident;
+}
+
+ResidentGroup describe(const bundle::Group& group) {
+  ResidentGroup resident;
+  resident.light_columns = static_cast<std::uint32_t>(group.lights.size());
+  resident.cell_count = static_cast<std::uint32_t>(group.cells.size());
+  resident.plain_samples = group.samplesWith(1);
+  resident.mapped_samples = group.samplesWith(bundle::kMappedOutputs);
+  resident.light_samples = group.light_samples;
+  for (const bundle::Cell& cell : group.cells) {
+    for (const bundle::CellTransfer& transfer : cell.transfers)
+      resident.order = std::max(resident.order, transfer.shape.order);
+    if (cell.kind == bundle::CellKind::Surface && bundle::isGlossy(cell.outputs()))
+      resident.glossy_outputs = cell.outputs();
+  }
+  return resident;
+}
+
+ResidentVolume describeVolume(const bundle::Group& group) {
+  ResidentVolume volume;
+  volume.grid = *group.volume;
+  volume.outputs = group.cells.empty() ? 1 : group.cells.front().outputs();
+  volume.sample_count = group.sample_count;
+  return volume;
+}
+
+TableSizes sizesOf(const ResidentTables& tables) {
+  const auto size = [](const auto& table) { return static_cast<std::uint32_t>(table.size()); };
+  return {size(tables.meshes), size(tables.groups), size(tables.cells), size(tables.draws),
+          size(tables.volumes)};
+}
+
+TableSizes sum(const TableSizes& a, const TableSizes& b) {
+  return {a.meshes + b.meshes, a.groups + b.groups, a.cells + b.cells, a.draws + b.draws,
+          a.volumes + b.volumes};
+}
+
+// Numbers wrap round: adding this takes away.
+TableSizes negative(const TableSizes& a) {
+  return {0u - a.meshes, 0u - a.groups, 0u - a.cells, 0u - a.draws, 0u - a.volumes};
+}
+
+// What the entries from `begin` on say of places in the tables, after these have moved.
+void shift(ResidentTables& tables, const TableSizes& begin, const TableSizes& by) {
+  for (std::size_t i = begin.groups; i < tables.groups.size(); ++i) {
+    ResidentGroup& group = tables.groups[i];
+    group.first_cell += by.cells;
+    if (group.volume >= 0) group.volume += static_cast<std::int32_t>(by.volumes);
+  }
+  for (std::size_t i = begin.cells; i < tables.cells.size(); ++i) tables.cells[i].group += by.groups;
+  for (std::size_t i = begin.volumes; i < tables.volumes.size(); ++i) tables.volumes[i].group += by.groups;
+  for (std::size_t i = begin.draws; i < tables.draws.size(); ++i) {
+    tables.draws[i].group += by.groups;
+    tables.draws[i].mesh += by.meshes;
+  }
+}
+
+void setSlot(ResidentTables& one, std::uint32_t slot) {
+  for (ResidentGroup& group : one.groups) group.bundle = slot;
+  for (ResidentDraw& draw : one.draws) draw.bundle = slot;
+}
+
+template <class Entry>
+void insertAt(std::vector<Entry>& into, std::uint32_t place, std::vector<Entry>& entries) {
+  into.insert(into.begin() + place, std::make_move_iterator(entries.begin()),
+              std::make_move_iterator(entries.end()));
+}
+
+template <class Entry>
+std::vector<Entry> takeFrom(std::vector<Entry>& from, std::uint32_t place, std::uint32_t count) {
+  const auto begin = from.begin() + place, end = begin + count;
+  std::vector<Entry> taken(std::make_move_iterator(begin), std::make_move_iterator(end));
+  from.erase(begin, end);
+  return taken;
+}
+
+}  // namespace
+
+bool ResidentCell::usable() const {
+  if (!light_weights_resident) return false;
+  for (const ResidentTransfer& transfer : transfers) {
+    if (!transfer.codebook_resident) return false;
+    if (transfer.planes_resident == transfer.planes.size()) continue;
+    float all = 0.0f, here = 0.0f;
+    for (std::size_t i = 0; i < transfer.planes.size(); ++i) {
+      all += transfer.planes[i].variance;
+      if (i < transfer.planes_resident) here += transfer.planes[i].variance;
+    }
+    if (here < kUsableVariance * all || here == 0.0f) return false;
+  }
+  return !transfers.empty();
+}
+
+ResidentTables tablesOf(const bundle::Description& description, std::uint64_t version,
+                        std::uint64_t& next_id) {
+  ResidentTables tables;
+  ResidentBundle bundle;
+  bundle.present = true;
+  bundle.materials = description.materials;
+  bundle.textures = description.textures;
+  bundle.images = std::vector<gpu::Texture>(description.images.size());
+  bundle.linear_images = std::vector<gpu::Texture>(description.images.size());
+  bundle.image_uses = imageUses(description);
+  bundle.brdf_tables = std::vector<BrdfTexture>(description.brdf_tables.size());
+  for (const bundle::BrdfTableEntry& entry : description.brdf_tables)
+    bundle.brdf_families.push_back(entry.family);
+  for (const bundle::Mesh& mesh : description.meshes) {
+    bundle.first_primitive.push_back(static_cast<std::uint32_t>(tables.meshes.size()));
+    for (const bundle::Primitive& primitive : mesh.primitives) {
+      ResidentMesh resident;
+      resident.vertex_count = primitive.vertex_count;
+      resident.index_count = primitive.index_count;
+      resident.center = 0.5f * (primitive.bounds_min + primitive.bounds_max);
+      tables.meshes.push_back(resident);
+    }
+  }
+  for (const bundle::Group& group : description.groups) {
+    const auto index = static_cast<std::uint32_t>(tables.groups.size());
+    ResidentGroup& resident = tables.groups.emplace_back(describe(group));
+    resident.id = next_id++;
+    resident.index = index;
+    resident.first_cell = static_cast<std::uint32_t>(tables.cells.size());
+    std::uint32_t next_output = 0;
+    for (const bundle::Cell& cell : group.cells) {
+      ResidentCell& made = tables.cells.emplace_back(describe(cell, next_output));
+      made.id = next_id++;
+      made.group = index;
+      made.version = version;
+      next_output += made.outputs * made.sample_count;
+    }
+    if (!group.volume) continue;
+    resident.volume = static_cast<std::int32_t>(tables.volumes.size());
+    ResidentVolume& volume = tables.volumes.emplace_back(describeVolume(group));
+    volume.id = next_id++;
+    volume.group = index;
+    volume.version = version;
+  }
+  const std::vector<glm::mat4> world_from_node = gltf::worldTransforms(description.nodes);
+  for (const bundle::Draw& draw : description.draws) {
+    ResidentDraw& made = tables.draws.emplace_back();
+    made.id = next_id++;
+    made.index = static_cast<std::uint32_t>(tables.draws.size() - 1);
+    made.group = draw.group;
+    made.mesh = bundle.first_primitive[draw.mesh] + draw.primitive;
+    made.material = description.meshes[draw.mesh].primitives[draw.primitive].material;
+    made.back = draw.back;
+    made.outputs = draw.outputs;
+    made.group_from_mesh_normal =
+        (draw.back ? -1.0f : 1.0f) * normalMatrix(description.groups[draw.group], world_from_node[draw.node]);
+    made.version = version;
+  }
+  bundle.count = sizesOf(tables);
+  tables.bundles.push_back(std::move(bundle));
+  return tables;
+}
+
+void insert(ResidentTables& tables, std::uint32_t slot, ResidentTables one) {
+  assert(one.bundles.size() == 1);
+  while (tables.bundles.size() <= slot) {
+    const TableSizes end = sizesOf(tables);
+    tables.bundles.emplace_back().first = end;
+  }
+  assert(!tables.bundles[slot].present);
+  const TableSizes at = tables.bundles[slot].first, count = one.bundles.front().count;
+  setSlot(one, slot);
+  shift(one, {}, at);
+  shift(tables, at, count);
+  insertAt(tables.meshes, at.meshes, one.meshes);
+  insertAt(tables.groups, at.groups, one.groups);
+  insertAt(tables.cells, at.cells, one.cells);
+  insertAt(tables.draws, at.draws, one.draws);
+  insertAt(tables.volumes, at.volumes, one.volumes);
+  for (std::size_t b = slot + 1u; b < tables.bundles.size(); ++b)
+    tables.bundles[b].first = sum(tables.bundles[b].first, count);
+  tables.bundles[slot] = std::move(one.bundles.front());
+  tables.bundles[slot].first = at;
+}
+
+ResidentTables extract(ResidentTables& tables, std::uint32_t slot) {
+  const TableSizes at = tables.bundles[slot].first, count = tables.bundles[slot].count;
+  ResidentTables one;
+  one.bundles.push_back(std::move(tables.bundles[slot]));
+  one.bundles.front().first = {};
+  one.meshes = takeFrom(tables.meshes, at.meshes, count.meshes);
+  one.groups = takeFrom(tables.groups, at.groups, count.groups);
+  one.cells = takeFrom(tables.cells, at.cells, count.cells);
+  one.draws = takeFrom(tables.draws, at.draws, count.draws);
+  one.volumes = takeFrom(tables.volumes, at.volumes, count.volumes);
+  setSlot(one, 0);
+  shift(one, {}, negative(at));
+  shift(tables, at, negative(count));
+  tables.bundles[slot] = {};
+  tables.bundles[slot].first = at;
+  for (std::size_t b = slot + 1u; b < tables.bundles.size(); ++b)
+    tables.bundles[b].first = sum(tables.bundles[b].first, negative(count));
+  return one;
+}
+
+}  // namespace lambent::streaming

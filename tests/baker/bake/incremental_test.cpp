@@ -1,0 +1,289 @@
+// Baking again: the bundle is the same whatever a cache holds, and only what changed is done.
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <random>
+#include <thread>
+
+#include <gtest/gtest.h>
+
+#include "baker/bake/bake.hpp"
+#include "baker/cache/cache.hpp"
+#include "tests/support/shapes.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace lambent::baker {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::box;
+using testing::grid;
+using testing::icosphere;
+using testing::sceneOf;
+using testing::TemporaryFolder;
+
+constexpr std::size_t kFloor = 0, kPolished = 1, kLamp = 2, kBrushed = 3;  // materials
+
+// A floor with a box that hides a part of it from the sky, a lamp above, a polished body; and a movable ball
+// on a movable brushed plate. Grey all over.
+Scene stage() {
+  Scene scene = sceneOf({grid({0, 0, 0}, 4.0f, 12), box({-0.8f, 0.45f, 0}, {1, 1, 1}, 4),
+                         grid({0, 0, 0}, 0.5f, 2), icosphere({0.9f, 0.3f, 0.9f}, 0.4f, 2),
+                         icosphere({0, 0.5f, 0}, 0.4f, 2), box({0, 0, 0}, {1.2f, 0.1f, 1.2f}, 3)});
+  scene.materials.resize(4, scene.materials[0]);
+  scene.materials[kFloor].base_color = glm::vec4(0.6f, 0.6f, 0.6f, 1.0f);
+  scene.materials[kPolished].metallic = 1.0f;
+  scene.materials[kPolished].roughness = 0.4f;
+  scene.materials[kLamp].emissive = glm::vec3(3.0f);
+  scene.materials[kLamp].double_sided = true;
+  scene.materials[kBrushed].metallic = 1.0f;
+  scene.materials[kBrushed].roughness = 0.5f;
+  scene.meshes[2].primitives[0].material = kLamp;
+  scene.meshes[3].primitives[0].material = kPolished;
+  scene.meshes[5].primitives[0].material = kBrushed;
+  scene.nodes[2].parent_from_node = glm::translate(glm::mat4(1.0f), {0.5f, 2.0f, 0});
+  scene.nodes[5].movable = true;
+  scene.nodes[5].name = "plate";
+  scene.nodes[5].parent_from_node = glm::translate(glm::mat4(1.0f), {5.0f, 0.6f, 0});
+  scene.nodes[5].children = {4};
+  scene.nodes[4].parent = 5;
+  std::erase(scene.roots, 4);
+  return scene;
+}
+
+BakeOptions draft() {
+  BakeOptions options;
+  options.quality = Quality::Draft;
+  options.rays = 128;
+  options.glossy_order = 4;
+  options.bounces = 2;
+  options.effects = "diffuse,glossy";  // neighborhoods look at what others do
+  return options;
+}
+
+class BakeAgain : public ::testing::Test {
+ protected:
+  struct Baked {
+    std::string bytes;
+    BakeReport report;
+    std::uint64_t rays() const { return report.rays + report.refinement.rays; }
+    // Of an effect on a group.
+    Reuse of(const std::string& group, const std::string& effect) const {
+      for (const BakeReport::Group& g : report.groups)
+        for (const auto& e : g.effects)
+          if (g.name == group && e.name == effect) return e.reuse;
+      ADD_FAILURE() << group << " has no " << effect;
+      return Reuse::Baked;
+    }
+  };
+  Cache openCache(const std::string& name = "cache") const {
+    auto cache = Cache::open(folder_.path() / name);
+    EXPECT_TRUE(cache);
+    return std::move(*cache);
+  }
+  Baked bakeWith(Cache* cache, const Scene& scene, const BakeOptions& options = draft()) const {
+    Progress progress;
+    const fs::path out = folder_.path() / "out.lmb.glb";
+    auto report = bake(scene, options, out, progress, {}, cache);
+    EXPECT_TRUE(report) << report.error().line();
+    std::ifstream in(out, std::ios::binary);
+    return {{std::istreambuf_iterator<char>(in), {}}, std::move(*report)};
+  }
+  // Bakes with what is in the cache, and again without: the bundles must be the same.
+  Baked bakeBoth(Cache& cache, const Scene& scene, const BakeOptions& options = draft()) const {
+    Baked with = bakeWith(&cache, scene, options);
+    EXPECT_TRUE(with.bytes == bakeWith(nullptr, scene, options).bytes);
+    return with;
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(BakeAgain, WritesTheSameBundleWithoutAColdAndAWarmCache) {
+  Cache cache = openCache();
+  const Baked cold = bakeBoth(cache, stage());
+  EXPECT_GT(cold.rays(), 0u);
+  EXPECT_EQ(cold.report.rays_kept, 0u);
+  EXPECT_EQ(cold.of("static", "glossy"), Reuse::Baked);
+  const Baked warm = bakeWith(&cache, stage());
+  EXPECT_TRUE(warm.bytes == cold.bytes);
+  EXPECT_EQ(warm.rays(), 0u);
+  EXPECT_EQ(warm.report.rays_kept, cold.report.rays);
+  EXPECT_EQ(warm.report.refinement.rays_kept, cold.report.refinement.rays);
+  EXPECT_EQ(warm.of("static", "diffuse"), Reuse::Found);
+  // What is reported is what the bundle holds, found or not.
+  EXPECT_EQ(warm.report.worst_error, cold.report.worst_error);
+  EXPECT_EQ(warm.report.worst_glossy_error, cold.report.worst_glossy_error);
+  EXPECT_EQ(warm.report.pass_energy, cold.report.pass_energy);
+  EXPECT_EQ(warm.report.filled_samples, cold.report.filled_samples);
+  EXPECT_EQ(warm.report.refinement.vertices_after, cold.report.refinement.vertices_after);
+}
+
+TEST_F(BakeAgain, DoesAllAnewWhenItMayNotReadAndKeepsIt) {
+  Cache cache = openCache();
+  const Baked first = bakeWith(&cache, stage());
+  cache.setReading(false);
+  const Baked forced = bakeWith(&cache, stage());
+  EXPECT_EQ(forced.rays(), first.rays());
+  EXPECT_TRUE(forced.bytes == first.bytes);
+}
+
+TEST_F(BakeAgain, TracesNoRayForAnAlbedo) {
+  Cache cache = openCache();
+  bakeWith(&cache, stage());
+  Scene scene = stage();
+  scene.materials[kFloor].base_color = glm::vec4(0.7f, 0.5f, 0.3f, 1.0f);  // of grey light becomes coloured
+  const Baked floor = bakeBoth(cache, scene);
+  EXPECT_EQ(floor.rays(), 0u);
+  EXPECT_EQ(floor.of("static", "diffuse"), Reuse::Regathered);
+  EXPECT_EQ(floor.of("static", "glossy"), Reuse::Regathered);
+
+  scene.materials[kFloor].base_color = glm::vec4(0.0f, 0.0f, 0.0f, 1.0f);  // reflects nothing
+  EXPECT_EQ(bakeBoth(cache, scene).rays(), 0u);
+
+  scene = stage();
+  scene.materials[kBrushed].base_color = glm::vec4(0.9f, 0.7f, 0.2f, 1.0f);
+  scene.materials[kBrushed].roughness = 0.6f;
+  const Baked brushed = bakeBoth(cache, scene);
+  EXPECT_EQ(brushed.rays(), 0u);
+  EXPECT_EQ(brushed.of("static", "glossy"), Reuse::Found);
+  EXPECT_EQ(brushed.of("plate", "glossy"), Reuse::Regathered);
+
+  // Neither names nor the strength of a lamp are in what is baked.
+  scene = stage();
+  scene.materials[kLamp].emissive = glm::vec3(5.0f, 1.0f, 0.5f);
+  scene.materials[kFloor].name = "a floor";
+  scene.nodes[0].name = "below";
+  const Baked renamed = bakeBoth(cache, scene);
+  EXPECT_EQ(renamed.rays(), 0u);
+  EXPECT_EQ(renamed.of("static", "diffuse"), Reuse::Found);
+}
+
+TEST_F(BakeAgain, TracesOnlyTheGroupInWhichANodeMoved) {
+  Cache cache = openCache();
+  const Baked first = bakeWith(&cache, stage());
+  Scene scene = stage();
+  scene.nodes[1].parent_from_node = glm::translate(glm::mat4(1.0f), {0.1f, 0.0f, 0.2f});
+  const Baked moved = bakeBoth(cache, scene);
+  EXPECT_EQ(moved.of("static", "diffuse"), Reuse::Baked);
+  EXPECT_EQ(moved.of("plate", "diffuse"), Reuse::Found);
+  EXPECT_EQ(moved.of("plate", "glossy"), Reuse::Found);
+
+  scene = stage();
+  scene.nodes[4].parent_from_node = glm::translate(glm::mat4(1.0f), {0.05f, 0.0f, 0.0f});
+  const Baked ball = bakeBoth(cache, scene);
+  EXPECT_EQ(ball.of("static", "diffuse"), Reuse::Found);
+  EXPECT_EQ(ball.of("plate", "diffuse"), Reuse::Baked);
+
+  // A group that moves as a whole is where it is, and nothing more.
+  scene = stage();
+  scene.nodes[5].parent_from_node =
+      glm::rotate(glm::translate(glm::mat4(1.0f), {5.3f, 0.7f, 0.1f}), 0.3f, {0.0f, 1.0f, 0.0f});
+  const Baked carried = bakeBoth(cache, scene);
+  EXPECT_EQ(carried.rays(), 0u);
+  EXPECT_EQ(carried.of("plate", "diffuse"), Reuse::Found);
+  EXPECT_FALSE(carried.bytes == first.bytes);
+}
+
+TEST_F(BakeAgain, TracesOneOfTenGroups) {
+  std::vector<bundle::MeshData> meshes;
+  for (int i = 0; i < 10; ++i)
+    meshes.push_back(
+        testing::joined(box({0, 0, 0}, {1, 0.2f, 1}, 2 + i % 3), icosphere({0, 0.5f, 0}, 0.3f, 1)));
+  Scene scene = sceneOf(meshes);
+  for (int i = 0; i < 10; ++i) {
+    gltf::Node& node = scene.nodes[static_cast<std::size_t>(i)];
+    node.movable = true;
+    node.name = std::to_string(i);
+    node.parent_from_node = glm::translate(glm::mat4(1.0f), {3.0f * static_cast<float>(i), 0, 0});
+  }
+  Cache cache = openCache();
+  const Baked all = bakeWith(&cache, scene);
+  for (glm::vec3& p : scene.meshes[4].primitives[0].mesh.positions) p.y *= 1.5f;
+  const Baked one = bakeBoth(cache, scene);
+  for (int i = 0; i < 10; ++i)
+    EXPECT_EQ(one.of(std::to_string(i), "diffuse"), i == 4 ? Reuse::Baked : Reuse::Found) << i;
+  EXPECT_LT(one.report.rays, all.report.rays / 2);
+  EXPECT_GT(one.report.refinement.rays_kept, one.report.refinement.rays);
+}
+
+// Runs a bake and asks it to stop once so many units of work are done.
+bool stopsAfter(std::uint64_t units, const Scene& scene, const fs::path& out, Cache& cache) {
+  Progress progress;
+  std::stop_source stop;
+  const std::jthread watch([&](const std::stop_token& ended) {
+    while (!ended.stop_requested()) {
+      std::uint64_t done = progress.now().done;
+      for (const Progress::Stage& stage : progress.finished()) done += stage.done;
+      if (done >= units) return void(stop.request_stop());
+      std::this_thread::sleep_for(std::chrono::microseconds(100));
+    }
+  });
+  return !bake(scene, draft(), out, progress, stop.get_token(), &cache).has_value();
+}
+
+TEST_F(BakeAgain, EndsInTheSameBundleWhereverItWasStopped) {
+  const Scene scene = stage();
+  const Baked whole = bakeWith(nullptr, scene);
+  std::uint64_t units = 0;
+  for (const Progress::Stage& stage : whole.report.stages) units += stage.done;
+  std::mt19937 random(7);
+  const fs::path out = folder_.path() / "stopped.lmb.glb";
+  int stopped = 0;
+  for (int run = 0; run < 4; ++run) {
+    Cache cache = openCache("cache" + std::to_string(run));
+    cache.setCheckpointEvery(run % 2 == 0 ? 0.0 : 1e9);
+    const std::uint64_t after = random() % units;
+    stopped += stopsAfter(after, scene, out, cache);
+    EXPECT_TRUE(bakeWith(&cache, scene).bytes == whole.bytes) << "stopped after " << after;
+  }
+  EXPECT_GT(stopped, 1);
+
+  // Again and again, each time a little further: what was done is not done again.
+  Cache cache = openCache();
+  cache.setCheckpointEvery(0.0);
+  int runs = 0;
+  while (stopsAfter(units / 3 + units / 5 * static_cast<std::uint64_t>(runs), scene, out, cache))
+    ASSERT_LT(++runs, 60);
+  const Baked rest = bakeWith(&cache, scene);
+  EXPECT_TRUE(rest.bytes == whole.bytes);
+  EXPECT_EQ(rest.rays(), 0u);
+}
+
+TEST_F(BakeAgain, EndsInTheSameBundleFromAnyRemainsOfACache) {
+  const Scene scene = stage();
+  const Baked whole = bakeWith(nullptr, scene);
+  std::mt19937 random(3);
+  for (int run = 0; run < 3; ++run) {
+    const std::string name = "cache" + std::to_string(run);
+    {
+      Cache cache = openCache(name);
+      cache.setCheckpointEvery(0.0);
+      bakeWith(&cache, scene);
+    }
+    for (const auto& at : fs::recursive_directory_iterator(folder_.path() / name)) {
+      if (!at.is_regular_file()) continue;
+      const auto dice = random() % 4;
+      if (dice < 2) fs::remove(at.path());
+      if (dice == 2) fs::resize_file(at.path(), fs::file_size(at.path()) * (random() % 100) / 100);
+    }
+    Cache cache = openCache(name);
+    EXPECT_TRUE(bakeWith(&cache, scene).bytes == whole.bytes) << run;
+  }
+}
+
+TEST_F(BakeAgain, TracesAgainWhatHadNoRoomInMemory) {
+  BakeOptions small = draft();
+  small.memory_bytes = 100'000;
+  Cache cache = openCache();
+  const Baked cold = bakeBoth(cache, stage(), small);
+  EXPECT_TRUE(cold.bytes == bakeWith(nullptr, stage()).bytes);
+  Scene scene = stage();
+  scene.materials[kFloor].base_color = glm::vec4(0.2f, 0.5f, 0.3f, 1.0f);
+  bakeBoth(cache, scene, small);
+}
+
+}  // namespace
+}  // namespace lambent::baker

@@ -1,0 +1,100 @@
+// Transfer grids that are too coarse for their medium.
+#include "baker/effects/volume/fit_within_voxels.hpp"
+
+#include <array>
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "baker/effects/volume/first_light.hpp"
+#include "baker/effects/volume/grid_fit.hpp"
+#include "baker/effects/volume/marched_volume.hpp"
+#include "tests/baker/effects/volume/media.hpp"
+
+namespace lambent::baker {
+namespace {
+
+using testing::cube;
+using testing::Fog;
+using testing::gridOf;
+using testing::kRoot4Pi;
+using testing::transferOf;
+
+// A place in the cube, spread evenly.
+glm::vec3 placeOf(int k) {
+  return glm::fract(static_cast<float>(k) * glm::vec3(0.8191725f, 0.6710436f, 0.5497005f)) - 0.5f;
+}
+
+TEST(GridFit, FindsWhatTheGridCanShowAndLeavesAloneWhatNoPlaceIsNear) {
+  const Fog fog = cube(1.0f);
+  const TransferGrid grid(*fog.field, fog.values, glm::uvec3(6));
+  const auto plane = [](const glm::vec3& p) { return 2.0f - p.x + 3.0f * p.y + 0.5f * p.z; };
+  std::vector<float> samples(2 * grid.samples(), 7.0f);
+  GridFit fit(grid, 2, samples);
+  for (int k = 0; k < 3000; ++k)
+    if (glm::vec3 p = placeOf(k); p.x < 0.0f) {
+      // In the half voxels at the faces all that interpolate are constant.
+      p = glm::clamp(p, glm::vec3(-5.0f / 12.0f), glm::vec3(5.0f / 12.0f));
+      fit.add(p, 1.0 + p.y, std::array{plane(p), 7.0f});
+    }
+  const std::vector<float> change = fit.solve();
+  for (std::size_t q = 0; q < grid.samples(); ++q) {
+    const glm::vec3 p = grid.place(q);
+    // Of 5: what comes in holds a little.
+    if (p.x < -0.1f) {
+      EXPECT_NEAR(7.0f + change[2 * q], plane(p), 0.15f);
+    }
+    if (p.x > 0.1f) {
+      EXPECT_EQ(change[2 * q], 0.0f);
+    }
+    EXPECT_NEAR(change[2 * q + 1], 0.0f, 1e-5f);
+  }
+}
+
+// Light of one scattering that goes out of a cube of optical depth 16 on a grid of 8, two free paths a voxel,
+// against fine steps with rays of their own.
+TEST(FitWithinVoxels, BringsWhatGoesOutOfAMediumOfShortFreePathsNearer) {
+  constexpr float kSigma = 16.0f;
+  const Fog fog = cube(kSigma);
+  const SphereTable rays(1024, 2);
+  const Occluders none;
+  FirstLight first(*fog.field, none);
+  std::array<double, 2> wrong{}, bias{};
+  for (const bool fitted : {false, true}) {
+    VolumeSettings settings = gridOf(8, 2, 1024);
+    settings.scatterings = 0;
+    settings.fit_within_voxels = fitted;
+    const MarchedVolume volume(transferOf(fog, settings));
+    for (int k = 0; k < 30; ++k) {
+      const glm::vec3 enters = glm::vec3(0.9f, 0.9f, 0.0f) * placeOf(k) + glm::vec3(0.0f, 0.0f, 0.5f);
+      const glm::vec3 along = glm::normalize(glm::vec3(0.3f, -0.2f, -1.0f));
+      double light = 0.0;
+      constexpr int kSteps = 40;
+      constexpr double kStep = 8.0 / kSteps;  // of optical depth
+      for (int step = 0; step < kSteps; ++step) {
+        const double depth = (step + 0.5) * kStep;
+        std::array<float, 4> arrives;
+        first.look(enters + static_cast<float>(depth / double{kSigma}) * along, rays, arrives);
+        light += std::exp(-depth) * kStep * double{arrives[0]} * kRoot4Pi;
+      }
+      std::array<float, 12> scattered;
+      volume.look(enters - along, along, 100.0f, scattered);
+      const double error = double{scattered[0]} * kRoot4Pi / light - 1.0;
+      wrong[fitted] += error * error / 30.0, bias[fitted] += error / 30.0;
+    }
+  }
+  EXPECT_LT(wrong[1], 0.6 * wrong[0]) << wrong[0];
+  EXPECT_LT(std::abs(bias[1]), 0.5 * std::abs(bias[0])) << bias[0];
+}
+
+TEST(FitWithinVoxels, LeavesThinMediaAlone) {
+  const Fog fog = cube(2.0f);
+  VolumeTransfer transfer = transferOf(fog, gridOf(9, 2, 256));
+  const std::vector<float> before = transfer.vectors;
+  Progress progress;
+  ASSERT_TRUE(fitWithinVoxels(fog.medium(), gridOf(9, 2, 256), {}, nullptr, transfer, progress, {}));
+  EXPECT_EQ(transfer.vectors, before);
+}
+
+}  // namespace
+}  // namespace lambent::baker

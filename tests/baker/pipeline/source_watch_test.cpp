@@ -1,0 +1,152 @@
+// Changes are told once they are whole; until then nothing happens.
+#include "baker/pipeline/source_watch.hpp"
+
+#include <algorithm>
+
+#include "tests/baker/pipeline/pipeline_test.hpp"
+
+namespace lambent::baker {
+namespace {
+
+using Kind = WatchEvent::Kind;
+
+class SourceWatchTest : public testing::PipelineTest {
+ protected:
+  static WatchSettings quick() {
+    WatchSettings settings;
+    settings.look_every = std::chrono::milliseconds(10);
+    settings.still_for = std::chrono::milliseconds(60);
+    settings.complain_after = std::chrono::milliseconds(300);
+    return settings;
+  }
+  // Waits for the next event; a Kind that nobody asks for where none comes.
+  std::optional<WatchEvent> next(SourceWatch& watch,
+                                 std::chrono::milliseconds within = std::chrono::seconds(20)) {
+    eventually(
+        [&] {
+          for (WatchEvent& event : watch.takeEvents()) waiting_.push_back(std::move(event));
+          return !waiting_.empty();
+        },
+        within);
+    if (waiting_.empty()) return std::nullopt;
+    WatchEvent first = std::move(waiting_.front());
+    waiting_.erase(waiting_.begin());
+    return first;
+  }
+  std::string sceneBytes(const assets::Scene& scene) const {
+    write(folder / ".scene", scene);
+    return bytesOf(folder / ".scene");
+  }
+  static constexpr std::chrono::milliseconds kQuiet{250};
+
+ private:
+  std::vector<WatchEvent> waiting_;
+};
+
+// A triangle in a buffer of its own.
+std::string gltfText(const std::string& buffer) {
+  return R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+             "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+             "buffers": [{"uri": ")" +
+         buffer + R"(", "byteLength": 36}], "bufferViews": [{"buffer": 0, "byteLength": 36}],
+             "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3",
+                            "min": [0, 0, 0], "max": [1, 1, 0]}]})";
+}
+
+std::string triangleBytes(float height) {
+  const float positions[] = {0, 0, 0, 1, 0, 0, 0, height, 0};
+  return {reinterpret_cast<const char*>(positions), sizeof(positions)};
+}
+
+}  // namespace
+
+TEST_F(SourceWatchTest, AHalfWrittenSceneIsToldOnlyOnceItIsWhole) {
+  const std::string bytes = sceneBytes(assets::hello());
+  const std::filesystem::path file = folder / "hello.glb";
+  writeBytes(file, bytes);
+  SourceWatch watch({folder}, quick());
+  auto event = next(watch);
+  ASSERT_TRUE(event);
+  EXPECT_EQ(event->kind, Kind::Found);
+  EXPECT_EQ(event->scene, file);
+  const std::string other = sceneBytes(assets::knot());
+  for (const double share : {0.0, 0.001, 0.3, 0.9, 0.999}) {
+    writeBytes(file, other.substr(0, static_cast<std::size_t>(share * static_cast<double>(other.size()))));
+    const auto early = next(watch, std::chrono::milliseconds(150));
+    EXPECT_FALSE(early) << share;
+  }
+  writeBytes(file, other);
+  event = next(watch);
+  ASSERT_TRUE(event);
+  EXPECT_EQ(event->kind, Kind::Changed);
+  EXPECT_FALSE(next(watch, kQuiet)) << "one change, one event";
+}
+
+TEST_F(SourceWatchTest, WhatStaysBrokenIsToldOnceAndMendedIsToldAgain) {
+  const std::filesystem::path file = folder / "hello.glb";
+  const std::string bytes = sceneBytes(assets::hello());
+  writeBytes(file, bytes.substr(0, bytes.size() / 2));
+  SourceWatch watch({folder}, quick());
+  auto event = next(watch);
+  ASSERT_TRUE(event);
+  EXPECT_EQ(event->kind, Kind::Broken);
+  ASSERT_TRUE(event->error);
+  EXPECT_FALSE(next(watch, kQuiet));
+  writeBytes(file, bytes);
+  event = next(watch);
+  ASSERT_TRUE(event);
+  EXPECT_EQ(event->kind, Kind::Found);
+}
+
+TEST_F(SourceWatchTest, ABufferThatAFileNamesBelongsToTheScene) {
+  const std::filesystem::path scene = folder / "a.gltf", buffer = folder / "tri angle.bin";
+  writeBytes(scene, gltfText("tri%20angle.bin"));
+  SourceWatch watch({folder}, quick());
+  EXPECT_FALSE(next(watch, std::chrono::milliseconds(150))) << "its buffer is not there yet";
+  writeBytes(buffer, triangleBytes(1.0f).substr(0, 20));
+  writeBytes(buffer, triangleBytes(1.0f));
+  auto event = next(watch);
+  ASSERT_TRUE(event);
+  if (event->kind == Kind::Broken) event = next(watch);  // on a machine that stood still for a while
+  ASSERT_TRUE(event);
+  EXPECT_EQ(event->kind, Kind::Found);
+  EXPECT_FALSE(next(watch, kQuiet));
+  writeBytes(buffer, triangleBytes(2.0f) + "    ");
+  event = next(watch);
+  ASSERT_TRUE(event);
+  EXPECT_EQ(event->kind, Kind::Changed);
+  EXPECT_EQ(event->scene, scene);
+}
+
+TEST_F(SourceWatchTest, ARemovedSceneIsToldAndBundlesAndHiddenFilesAreNoScenes) {
+  const std::string bytes = sceneBytes(assets::hello());
+  std::filesystem::create_directories(folder / "deep" / "er");
+  writeBytes(folder / "hello.lmb.glb", bytes);
+  writeBytes(folder / ".hidden.glb", bytes);
+  writeBytes(folder / "deep" / "er" / "hello.glb", bytes);
+  SourceWatch watch({folder}, quick());
+  auto event = next(watch);
+  ASSERT_TRUE(event);
+  EXPECT_EQ(event->scene, folder / "deep" / "er" / "hello.glb");
+  std::filesystem::remove(event->scene);
+  event = next(watch);
+  ASSERT_TRUE(event);
+  EXPECT_EQ(event->kind, Kind::Removed);
+  EXPECT_FALSE(next(watch, kQuiet));
+}
+
+TEST_F(SourceWatchTest, FilesThatASceneNamesAreFoundWithoutCheckingIt) {
+  writeBytes(folder / "a.gltf", R"({"buffers": [{"uri": "a.bin"}, {"uri": "data:;base64,AA=="}, {}, 3],
+      "images": [{"uri": "textures/stone.png"}, {"bufferView": 0}],
+      "materials": [{"extras": {"lambent": {"brdf": "red.brdf"}}}, {"extras": 1}],
+      "nodes": [{"extras": {"lambent": {"volume": {"file": "cloud.vdb"}}}},
+                {"extras": {"lambent": {"volume": {"file": "procedural:cloud,1"}}}}]})");
+  const auto files = sourceFiles(folder / "a.gltf");
+  const std::vector<std::filesystem::path> wanted = {folder / "a.gltf", folder / "a.bin",
+                                                     folder / "textures/stone.png", folder / "cloud.vdb",
+                                                     folder / "red.brdf"};
+  EXPECT_EQ(files, wanted);
+  EXPECT_EQ(sourceFiles(folder / "missing.gltf").size(), 1u);
+}
+
+}  // namespace lambent::baker

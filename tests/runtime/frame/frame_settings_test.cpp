@@ -1,0 +1,127 @@
+// The table of settings, and what a changed material leaves to a rebake.
+#include "runtime/frame/frame_settings.hpp"
+
+#include <cmath>
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "runtime/frame/fewer_samples.hpp"
+#include "runtime/frame/glossy_record.hpp"
+#include "runtime/frame/material_rebake.hpp"
+
+namespace lambent::frame {
+namespace {
+
+TEST(FrameSettings, RowsGiveBackWhatIsPutAndStartAtTheDefaults) {
+  std::set<std::string_view> names;
+  for (const SettingRow& row : settingRows()) {
+    EXPECT_TRUE(names.insert(row.name).second) << row.name;
+    FrameSettings settings;
+    const double before = row.get(settings);
+    for (const double value : {row.least, row.greatest, row.finest.value_or(row.least)}) {
+      ASSERT_TRUE(putSetting(row, settings, value)) << row.name << " " << value;
+      EXPECT_EQ(row.get(settings), value) << row.name;
+      const Result<double> again = parseSetting(row, settingWord(row, settings));
+      ASSERT_TRUE(again) << row.name;
+      EXPECT_EQ(*again, value) << row.name;
+    }
+    for (const double value : {row.least - 1.0, row.greatest + 1.0})
+      EXPECT_FALSE(putSetting(row, settings, value)) << row.name;
+    EXPECT_FALSE(parseSetting(row, "much")) << row.name;
+    ASSERT_TRUE(putSetting(row, settings, before));
+    EXPECT_EQ(settings, FrameSettings{}) << row.name << " changes nothing else";
+  }
+  FrameSettings settings;
+  EXPECT_FALSE(putSetting(*findSetting("order"), settings, 2.5)) << "whole numbers only";
+}
+
+TEST(FrameSettings, WordsAreThoseOfTheCommandLine) {
+  FrameSettings settings;
+  ASSERT_TRUE(putSetting(settings, "transfer", "shadowed"));
+  ASSERT_TRUE(putSetting(settings, "residual", "off"));
+  ASSERT_TRUE(putSetting(settings, "capture-order", "auto"));
+  ASSERT_TRUE(putSetting(settings, "exposure", "-1.5"));
+  EXPECT_EQ(settings.transfer, effects::diffuse::TransferMode::Shadowed);
+  EXPECT_FALSE(settings.residual);
+  EXPECT_EQ(settings.exposure_ev, -1.5f);
+  ASSERT_TRUE(putSetting(settings, "exposure", "auto"));
+  EXPECT_FALSE(settings.exposure_ev);
+  const Result<void> unknown = putSetting(settings, "sharpness", "1");
+  ASSERT_FALSE(unknown);
+  EXPECT_NE(unknown.error().line().find("march-step"), std::string::npos) << "names those that there are";
+}
+
+TEST(FewerSamples, StandAllOverTheGroupAndTakeTheNearest) {
+  std::vector<glm::vec3> line;
+  for (int i = 0; i < 10; ++i) line.emplace_back(static_cast<float>(i), 0.0f, 0.0f);
+  const FewerSamples three = fewerSamples(line, 3);
+  EXPECT_EQ(three.kept, (std::vector<std::uint32_t>{0, 4, 9}));
+  EXPECT_EQ(three.place, (std::vector<std::uint32_t>{0, 0, 0, 1, 1, 1, 1, 2, 2, 2}));
+  EXPECT_EQ(fewerSamples(line, 10).kept.size(), 10u);
+  EXPECT_EQ(fewerSamples(line, 1).place, std::vector<std::uint32_t>(10, 0));
+  EXPECT_EQ(fewerSamples(std::vector<glm::vec3>(4, glm::vec3(1.0f)), 3).kept.size(), 1u)
+      << "all at one place";
+}
+
+TEST(BrdfChoice, IsThatOfTheMaterialNowWhereThereIsATableForIt) {
+  using Family = bundle::BrdfFamily;
+  const Family all[] = {Family::Measured, Family::Ggx, Family::AnisotropicGgx, Family::Measured};
+  const Family isotropic[] = {Family::Ggx}, brushed[] = {Family::AnisotropicGgx},
+               measured[] = {Family::Measured};
+  gltf::Material plain, along, paint, other_paint;
+  along.anisotropy = 0.5f;
+  paint.brdf = 0;
+  other_paint.brdf = 3;
+  EXPECT_EQ(brdfChoiceOf(all, plain, paint).table, 1);
+  EXPECT_EQ(brdfChoiceOf(all, along, plain).table, 2);
+  EXPECT_EQ(brdfChoiceOf(all, other_paint, plain).table, 3);
+  EXPECT_EQ(brdfChoiceOf(all, other_paint, plain).family, Family::Measured);
+  EXPECT_EQ(brdfChoiceOf(isotropic, along, plain).family, Family::Ggx) << "its anisotropy does not show";
+  EXPECT_EQ(brdfChoiceOf(brushed, plain, along).family, Family::AnisotropicGgx) << "of strength 0";
+  EXPECT_EQ(brdfChoiceOf(measured, plain, paint).table, 0) << "no factors without a table: as baked";
+  EXPECT_EQ(brdfChoiceOf(isotropic, paint, plain).table, 0);
+  EXPECT_EQ(brdfChoiceOf({}, plain, plain).table, -1);
+}
+
+TEST(MaterialRebake, SaysWhatDoesNotShow) {
+  gltf::Material baked;
+  baked.metallic = 0.0f;
+  const auto fields = [&](const gltf::Material& now, const MaterialUse& use) {
+    std::set<std::string> found;
+    for (const RebakeReason& reason : needsRebake(now, baked, use)) {
+      EXPECT_EQ(reason.sentence.back(), '.');
+      found.insert(reason.field + (reason.shows ? " nearly" : ""));
+    }
+    return found;
+  };
+  const MaterialUse direct{.matte = true}, bounced{.matte = true, .bounces = true, .seen = true};
+  const MaterialUse shiny{.glossy = true, .tables = {bundle::BrdfFamily::Ggx}};
+  using Fields = std::set<std::string>;
+  gltf::Material now = baked;
+  EXPECT_EQ(fields(now, bounced), Fields{}) << "nothing changed";
+  now.base_color = {0.5f, 0.2f, 0.1f, 1.0f};
+  EXPECT_EQ(fields(now, direct), Fields{}) << "direct light on a matte surface is exact";
+  EXPECT_EQ(fields(now, bounced), Fields{"base_color nearly"});
+  now = baked;
+  now.roughness = 0.4f;
+  EXPECT_EQ(fields(now, direct), Fields{"roughness"});
+  now.alpha_mode = baked.alpha_mode = gltf::AlphaMode::Mask;
+  now.alpha_cutoff = 0.7f;
+  EXPECT_EQ(fields(now, direct), (Fields{"roughness", "alpha_cutoff nearly"}));
+  baked.roughness = 0.5f;
+  now = baked;
+  now.roughness = 0.2f;
+  EXPECT_EQ(fields(now, shiny), Fields{}) << "the table has all roughnesses";
+  now.anisotropy = 0.5f;
+  EXPECT_EQ(fields(now, shiny), Fields{"anisotropy"});
+  now = baked;
+  now.brdf = 2;
+  EXPECT_EQ(fields(now, shiny), Fields{"brdf"});
+  now = baked;
+  now.emissive = glm::vec3(1.0f);
+  EXPECT_EQ(fields(now, shiny), Fields{"emission nearly"});
+}
+
+}  // namespace
+}  // namespace lambent::frame

@@ -1,0 +1,244 @@
+// What may change while a scene is shown: settings, materials, the light; and what frames say about it.
+#include <limits>
+
+#include <glm/geometric.hpp>
+#include <glm/gtc/matrix_transform.hpp>
+#include <gtest/gtest.h>
+
+#include "baker/brdf/brdf.hpp"
+#include "runtime/sh/image_layout.hpp"
+#include "runtime/spec/image.hpp"
+#include "tests/runtime/frame/live_stage.hpp"
+#include "tests/support/gpu_context.hpp"
+
+namespace lambent::frame {
+namespace {
+
+using testing::BundleBuilder;
+using testing::farthest;
+using testing::LiveStage;
+using testing::quadMesh;
+using testing::sphereMesh;
+
+const spec::Light kWhite = spec::ConstantLight{.radiance = glm::vec3(1.0f)};
+const spec::Light kSun = spec::SunLight{
+    .azimuth_deg = 60, .elevation_deg = 35, .angle_deg = 8, .radiance = glm::vec3(30.0f, 25.0f, 20.0f)};
+
+gltf::Material colored(glm::vec4 color) {
+  gltf::Material material;
+  material.base_color = color;
+  material.metallic = 0.0f;  // and roughness 1: matte
+  return material;
+}
+
+gltf::Material metal(glm::vec3 color, float roughness) {
+  gltf::Material material;
+  material.base_color = glm::vec4(color, 1.0f);
+  material.roughness = roughness;
+  return material;
+}
+
+BundleBuilder glossyBall(const gltf::Material& material) {
+  static const bundle::BrdfTable table =
+      baker::integrateTable(*baker::makeGgx(/*anisotropic=*/false), 5,
+                            {.angles = 8, .azimuths = 1, .roughnesses = 5, .strengths = 1});
+  BundleBuilder builder(5);
+  builder.add({sphereMesh(24, 48), material}).glossy(5, bundle::BrdfFamily::Ggx, table);
+  return builder;
+}
+
+// A ball whose transfer tells blocks and bands apart, and a cloud beside it.
+BundleBuilder ballAndCloud() {
+  BundleBuilder builder(5);
+  builder.bounces().transfer([](const glm::vec3& normal) {
+    const std::vector<float> open = testing::openTransfer(5)(normal);
+    std::vector<float> blocks;
+    for (const float factor : {0.5f, 0.75f})
+      for (const float value : open) blocks.push_back(factor * value);
+    return blocks;
+  });
+  builder.add({sphereMesh(12, 24), colored({0.8f, 0.6f, 0.4f, 1.0f})});
+  testing::BuiltVolume cloud;
+  cloud.group_from_grid = glm::translate(glm::mat4(1.0f), glm::vec3(0.5f, -1.0f, 0.5f)) *
+                          glm::scale(glm::mat4(1.0f), glm::vec3(0.25f));
+  cloud.density = [](const glm::vec3& at) { return at.x > 3.0f && at.x < 5.0f ? 1.0f : 0.1f; };
+  builder.volume(cloud);
+  return builder;
+}
+
+}  // namespace
+
+using LiveFrame = testing::GpuTest;
+
+TEST_F(LiveFrame, AChangedColorIsWhatABundleOfThatColorShows) {
+  LiveStage live(BundleBuilder().add({sphereMesh(12, 24), colored({0.2f, 0.9f, 0.1f, 1.0f})}), {kSun});
+  live.picture();
+  live.editMaterial(0).base_color = {0.7f, 0.3f, 0.5f};
+  live.editMaterial(0).emission = {0.1f, 0.2f, 0.3f};
+  const auto found = live.picture();
+  gltf::Material wanted = colored({0.7f, 0.3f, 0.5f, 1.0f});
+  wanted.emissive = {0.1f, 0.2f, 0.3f};
+  LiveStage baked(BundleBuilder().add({sphereMesh(12, 24), wanted}), {kSun});
+  EXPECT_EQ(farthest(found, baked.picture()), 0.0f);
+}
+
+TEST_F(LiveFrame, AChangedLobeIsWhatABundleOfThatLobeShows) {
+  LiveStage live(glossyBall(metal(glm::vec3(0.9f), 0.7f)), {kSun});
+  const auto before = live.picture();
+  scene::MaterialComponent& material = live.editMaterial(0);
+  material.base_color = {0.9f, 0.5f, 0.2f};
+  material.roughness = 0.3f;
+  material.metallic = 0.5f;
+  material.ior = 1.8f;
+  const auto found = live.picture();
+  EXPECT_GT(farthest(found, before), 0.1f);
+  gltf::Material wanted = metal({0.9f, 0.5f, 0.2f}, 0.3f);
+  wanted.metallic = 0.5f;
+  wanted.ior = 1.8f;
+  LiveStage baked(glossyBall(wanted), {kSun});
+  EXPECT_EQ(farthest(found, baked.picture()), 0.0f);
+}
+
+TEST_F(LiveFrame, OnlyTheChangedMaterialGoesToTheGpuAndNothingIsShaded) {
+  BundleBuilder builder;
+  for (int i = 0; i < 10; ++i)
+    builder.add({quadMesh(), colored(glm::vec4(1.0f)),
+                 glm::translate(glm::mat4(1.0f), glm::vec3(static_cast<float>(i), 0, 0))});
+  LiveStage stage(builder, {kWhite});
+  stage.picture();
+  stage.editMaterial(3).base_color = glm::vec3(0.5f);
+  stage.render();
+  EXPECT_EQ(stage.pass("raster")->counters.uploaded_bytes, sizeof(SurfaceDraw));
+  EXPECT_EQ(stage.pass("shade")->counters.dispatches, 0u);
+  EXPECT_EQ(stage.reason("raster"), "a material changed");
+  stage.editMaterial(3).roughness = std::numeric_limits<float>::quiet_NaN();
+  stage.render();
+  EXPECT_EQ(stage.pass("raster")->counters.uploaded_bytes, 0u) << "no number, no change";
+}
+
+TEST_F(LiveFrame, AnisotropyWithoutATableStillShowsTheSurface) {
+  LiveStage stage(glossyBall(metal(glm::vec3(0.9f), 0.5f)), {kSun});
+  const auto before = stage.picture();
+  stage.editMaterial(0).anisotropy = 0.5f;
+  EXPECT_EQ(farthest(stage.picture(), before), 0.0f);
+  stage.editMaterial(0).brdf = 3;
+  EXPECT_EQ(farthest(stage.picture(), before), 0.0f) << "no such table: as it was baked";
+}
+
+TEST_F(LiveFrame, EverySettingComesBackToTheSamePicture) {
+  FrameSettings plain;
+  plain.exposure_ev = 0.0f;
+  const std::pair<const char*, const char*> changes[] = {
+      {"transfer", "unshadowed"}, {"transfer", "shadowed"}, {"window", "off"},        {"order", "2"},
+      {"diffuse", "off"},         {"volumes", "off"},       {"march-step", "4"},      {"light-samples", "1"},
+      {"captures", "off"},        {"near-shadows", "off"},  {"neighborhoods", "off"}, {"capture-size", "8"}};
+  LiveStage stage(ballAndCloud(), {kSun}, plain);
+  const auto before = stage.picture();
+  for (const auto& [name, word] : changes) {
+    const std::string was = settingWord(*findSetting(name), stage.frame->settings());
+    stage.set(name, word);
+    const auto other = stage.picture();
+    const bool shows = std::string_view(name) == "transfer" || std::string_view(name) == "window" ||
+                       std::string_view(name) == "order" || std::string_view(name) == "diffuse" ||
+                       std::string_view(name) == "volumes" || std::string_view(name) == "march-step";
+    EXPECT_EQ(farthest(other, before) > 1e-4f, shows) << name;
+    stage.set(name, was);
+    EXPECT_EQ(farthest(stage.picture(), before), 0.0f) << name << " back to " << was;
+  }
+  LiveStage glossy(glossyBall(metal(glm::vec3(0.9f), 0.5f)), {kSun}, plain);
+  const auto shiny = glossy.picture();
+  for (const auto& [name, word] : {std::pair{"glossy", "off"}, {"residual", "off"}, {"glossy-order", "3"}}) {
+    const std::string was = settingWord(*findSetting(name), glossy.frame->settings());
+    glossy.set(name, word);
+    EXPECT_GT(farthest(glossy.picture(), shiny), 1e-3f) << name;
+    glossy.set(name, was);
+    EXPECT_EQ(farthest(glossy.picture(), shiny), 0.0f) << name;
+  }
+}
+
+TEST_F(LiveFrame, WhatIsOffIsBlackAndCostsNothing) {
+  LiveStage stage(BundleBuilder().add({sphereMesh(12, 24), colored(glm::vec4(1.0f))}), {kSun});
+  stage.set("diffuse", "off");
+  const auto picture = stage.picture();
+  EXPECT_EQ(picture[32 * 64 + 32], glm::vec4(0, 0, 0, 1));
+  stage.environment.setTurn(30.0f);
+  stage.render();
+  EXPECT_EQ(stage.pass("shade")->counters.dispatches, 0u);
+  stage.set("diffuse", "on");
+  const auto back = stage.picture();
+  LiveStage fresh(BundleBuilder().add({sphereMesh(12, 24), colored(glm::vec4(1.0f))}), {kSun});
+  fresh.environment.setTurn(30.0f);
+  EXPECT_EQ(farthest(back, fresh.picture()), 0.0f) << "it catches up";
+}
+
+TEST_F(LiveFrame, BandsThatDoNotCountAreAsIfTheTransferHadNone) {
+  FrameSettings sharp;
+  sharp.window = sh::Window::Off;
+  LiveStage many(BundleBuilder(5).add({sphereMesh(12, 24), colored(glm::vec4(1.0f))}), {kSun}, sharp);
+  LiveStage few(BundleBuilder(3).add({sphereMesh(12, 24), colored(glm::vec4(1.0f))}), {kSun}, sharp);
+  const auto all = many.picture(), expected = few.picture();
+  EXPECT_GT(farthest(all, expected), 0.01f);
+  many.set("order", "3");
+  EXPECT_LT(farthest(many.picture(), expected), 2e-4f) << "codes of 16 bits";
+}
+
+TEST_F(LiveFrame, AnotherProbeIsAsIfItHadBeenThereFromTheStart) {
+  spec::RgbImage image{.width = 64, .height = 32, .texels = {}};
+  for (int i = 0; i < 64 * 32; ++i)
+    image.texels.push_back(
+        0.5f + 0.4f * glm::vec3(sh::texelDirection(sh::ImageLayout::LatLong, 64, 32, i % 64, i / 64)));
+  const auto file = std::filesystem::path(::testing::TempDir()) / fmt::format("{}-other.hdr", getpid());
+  ASSERT_TRUE(spec::writeHdr(file, image));
+  const std::vector<spec::Light> probe = {spec::ProbeLight{.file = file, .layout = {}}, kSun};
+  for (const auto& builder : {glossyBall(metal(glm::vec3(0.9f), 0.2f)), ballAndCloud()}) {
+    LiveStage swapped(builder, {kWhite});
+    swapped.picture();
+    swapped.environment = *lighting::Environment::create(probe);
+    const auto found = swapped.picture();
+    LiveStage fresh(builder, probe);
+    EXPECT_EQ(farthest(found, fresh.picture()), 0.0f);
+  }
+  std::filesystem::remove(file);
+}
+
+TEST_F(LiveFrame, PassesSayWhyTheyRanAndAStillSceneSaysNothing) {
+  LiveStage stage(BundleBuilder().add({sphereMesh(12, 24), colored(glm::vec4(1.0f))}), {kSun});
+  stage.render();
+  EXPECT_EQ(stage.reason("shade"), "first frame");
+  stage.picture();
+  stage.frame->timers().finish();
+  for (const gpu::PassTime& pass : stage.frame->timers().latest()) EXPECT_EQ(pass.reason, "") << pass.name;
+  stage.environment.setTurn(10.0f);
+  stage.render();
+  for (const char* pass : {"light", "shade", "raster", "tone map"})
+    EXPECT_EQ(stage.reason(pass), "light turned") << pass;
+  EXPECT_EQ(stage.reason("transforms"), "");
+  stage.camera.azimuth_deg += 5.0f;
+  stage.render();
+  EXPECT_EQ(stage.reason("raster"), "camera");
+  EXPECT_EQ(stage.reason("shade"), "");
+  auto& registry = stage.world.registry();
+  registry.edit<scene::Transform>(stage.world.instance(0).root).translation.x += 1.0f;
+  stage.world.updateTransforms();
+  stage.render();
+  EXPECT_EQ(stage.reason("transforms"), "a group moved");
+  stage.set("window", "hann");
+  stage.render();
+  EXPECT_EQ(stage.reason("shade"), "window: hann");
+  stage.set("exposure", "1");
+  stage.render();
+  EXPECT_EQ(stage.reason("shade"), "");
+  EXPECT_EQ(stage.reason("tone map"), "exposure: 1");
+}
+
+TEST_F(LiveFrame, SettingsOutOfRangeChangeNothing) {
+  LiveStage stage(BundleBuilder().add({sphereMesh(12, 24), colored(glm::vec4(1.0f))}), {kSun});
+  FrameSettings settings = stage.frame->settings();
+  settings.order = 9;
+  const Result<void> set = stage.frame->setSettings(settings);
+  ASSERT_FALSE(set);
+  EXPECT_NE(set.error().line().find("order"), std::string::npos);
+  EXPECT_EQ(stage.frame->settings(), FrameSettings{});
+}
+
+}  // namespace lambent::frame

@@ -1,0 +1,193 @@
+// Overlays: their words, what they draw where, and that they leave the rest of the picture alone.
+#include "runtime/frame/overlays.hpp"
+
+#include <glm/geometric.hpp>
+#include <glm/gtc/matrix_transform.hpp>
+#include <gtest/gtest.h>
+
+#include "runtime/frame/overlay_lines.hpp"
+#include "runtime/scene/lights.hpp"
+#include "tests/runtime/frame/view_stage.hpp"
+
+namespace lambent::frame {
+namespace {
+
+using testing::BundleBuilder;
+using testing::linearOptions;
+using testing::quadMesh;
+using testing::sphereMesh;
+using testing::ViewStage;
+
+// Pixels that the two pictures differ in.
+std::vector<std::size_t> changes(const spec::RgbaImage& a, const spec::RgbaImage& b) {
+  std::vector<std::size_t> found;
+  for (std::size_t i = 0; i < a.texels.size(); ++i)
+    if (a.texels[i] != b.texels[i]) found.push_back(i);
+  return found;
+}
+
+}  // namespace
+
+TEST(OverlayWords, AListNamesThemAndSaysWhereTheSliceLies) {
+  const auto both = parseOverlays("neighborhoods:z,0.25,lights");
+  ASSERT_TRUE(both) << both.error().line();
+  EXPECT_TRUE(both->neighborhoods && both->lights);
+  EXPECT_FALSE(both->groups || both->volumes || both->light_samples);
+  EXPECT_EQ(both->slice.axis, 2);
+  EXPECT_EQ(both->slice.position, 0.25f);
+  EXPECT_FALSE(parseOverlays("")->any());
+  for (const OverlayRow& row : overlayRows()) EXPECT_TRUE((*parseOverlays(row.name)).*row.flag) << row.name;
+  for (const char* wrong :
+       {"light", "lights:x,0.5", "neighborhoods:", "neighborhoods:w,0.5", "neighborhoods:x",
+        "neighborhoods:x,2", "neighborhoods:x,0.5lights", "lights,,"}) {
+    const auto options = parseOverlays(wrong);
+    ASSERT_FALSE(options) << wrong;
+    EXPECT_NE(options.error().mend.find("light-samples"), std::string::npos);
+  }
+}
+
+TEST(OverlayLines, ABoxHasItsTwelveEdgesWhereItStands) {
+  std::vector<OverlayLine> lines;
+  appendBox(scene::Box{glm::vec3(-1.0f), glm::vec3(1.0f, 2.0f, 3.0f)},
+            glm::translate(glm::mat4(1.0f), {5.0f, 0.0f, 0.0f}), glm::vec4(1.0f), lines);
+  ASSERT_EQ(lines.size(), 12u);
+  float sum = 0.0f;
+  scene::Box around;
+  for (const OverlayLine& line : lines) {
+    sum += glm::distance(line.from_ws, line.to_ws);
+    around.add(line.from_ws);
+    around.add(line.to_ws);
+  }
+  EXPECT_FLOAT_EQ(sum, 4.0f * (2.0f + 3.0f + 4.0f));
+  EXPECT_EQ(around.min, glm::vec3(4.0f, -1.0f, -1.0f));
+  EXPECT_EQ(around.max, glm::vec3(6.0f, 2.0f, 3.0f));
+  appendBox({}, glm::mat4(1.0f), glm::vec4(1.0f), lines);
+  EXPECT_EQ(lines.size(), 12u) << "an empty one has none";
+}
+
+TEST(OverlayLines, GlyphsOfLightsHaveTheirSizeAndPointWhereTheyShine) {
+  using Kind = scene::LocalLightComponent::Kind;
+  const glm::mat4 place = glm::translate(glm::mat4(1.0f), {0.0f, 4.0f, 0.0f});
+  const auto boundsOf = [&](const scene::LocalLightComponent& light) {
+    std::vector<OverlayLine> lines;
+    appendLight(light, place, 1.0f, glm::vec4(1.0f), lines);
+    scene::Box bounds;
+    for (const OverlayLine& line : lines) {
+      bounds.add(line.from_ws);
+      bounds.add(line.to_ws);
+    }
+    return bounds;
+  };
+  const scene::Box sphere = boundsOf({.kind = Kind::Sphere, .radius_m = 0.75f});
+  EXPECT_NEAR(sphere.max.x - sphere.min.x, 1.5f, 0.01f);
+  EXPECT_NEAR(sphere.center().y, 4.0f, 1e-3f);
+  const scene::Box disc = boundsOf({.kind = Kind::Disc, .radius_m = 2.0f});
+  EXPECT_NEAR(disc.max.x, 2.0f, 0.01f);
+  EXPECT_NEAR(disc.max.z, 0.0f, 1e-4f) << "nothing behind it";
+  EXPECT_NEAR(disc.min.z, -2.0f, 1e-4f) << "its arrow";
+  const float angle = 0.5f;
+  const scene::Box spot = boundsOf({.kind = Kind::Spot, .outer_cone_rad = angle});
+  EXPECT_NEAR(spot.max.x / -spot.min.z, std::tan(angle), 0.01f);
+  EXPECT_NEAR(spot.max.z, 0.0f, 1e-4f);
+  EXPECT_LT(boundsOf({.kind = Kind::Directional}).min.z, -1.0f);
+  const scene::Box point = boundsOf({.kind = Kind::Point});
+  EXPECT_NEAR(point.center().z, 0.0f, 1e-4f);
+  EXPECT_NEAR(point.max.y - 4.0f, 0.5f, 1e-4f);
+}
+
+using OverlayTest = testing::GpuTest;
+
+TEST_F(OverlayTest, TheBallOfALightSampleHasConstantRadianceUnderConstantLight) {
+  // The sample of the written bundle stands at the origin, in front of a quad, whichever way its group lies.
+  const glm::vec3 radiance(0.25f, 0.5f, 2.0f);
+  const glm::mat4 away = glm::translate(glm::mat4(1.0f), {0.0f, 0.0f, -0.5f});
+  ViewStage stage(BundleBuilder(5)
+                      .add({quadMesh(), {}, away})
+                      .groupRotation(glm::angleAxis(1.0f, glm::vec3(0, 0.6f, 0.8f))),
+                  {spec::ConstantLight{.radiance = radiance}}, linearOptions());
+  OverlayOptions shown;
+  shown.light_samples = true;
+  stage.frame->setOverlays(shown);
+  stage.camera.fov_deg = 8.0f;
+  stage.render();
+  OverlayOptions nothing;
+  const spec::RgbaImage with = stage.frame->readLinear();
+  stage.frame->setOverlays(nothing);
+  const spec::RgbaImage without = stage.picture();
+  std::size_t ball = 0, edges = 0;
+  for (const std::size_t i : changes(with, without)) {
+    ASSERT_EQ(with.texels[i].a, without.texels[i].a) << "alpha is the scene's coverage";
+    // The cube's faces show the same, and its edges are dark.
+    if (with.texels[i].r < 0.9f * radiance.r) {
+      ++edges;
+      continue;
+    }
+    ++ball;
+    ASSERT_LT(glm::distance(glm::vec3(with.texels[i]), radiance), 2e-3f);
+  }
+  EXPECT_GT(ball, 5u);
+  EXPECT_GT(edges, 2u);
+}
+
+TEST_F(OverlayTest, WithoutOverlaysThePictureIsTheSameToTheBitAndThereIsNoPass) {
+  for (const Output output : {Output::Linear, Output::Display}) {
+    FrameOptions options;
+    options.output = output;
+    ViewStage stage(BundleBuilder().add({sphereMesh(12, 24), {}}),
+                    {spec::ConstantLight{.radiance = glm::vec3(1.0f)}}, options);
+    scene::addLights(stage.world.registry(), std::vector<spec::Light>{spec::SphereLight{
+                                                 .position_ws = {0.0f, 0.0f, 1.2f}, .radius_m = 0.3f}});
+    const auto picture = [&] {
+      stage.render();
+      return output == Output::Linear ? std::vector<std::uint8_t>{} : stage.frame->readDisplay().texels;
+    };
+    const auto linear = [&] {
+      return output == Output::Linear ? stage.frame->readLinear().texels : std::vector<glm::vec4>{};
+    };
+    const auto before = picture();
+    const auto before_linear = linear();
+    OverlayOptions shown;
+    shown.light_samples = shown.groups = shown.lights = true;
+    stage.frame->setOverlays(shown);
+    const bool same = picture() == before;
+    EXPECT_FALSE(same && linear() == before_linear);
+    stage.frame->setOverlays({});
+    EXPECT_EQ(picture(), before);
+    EXPECT_EQ(linear(), before_linear);
+    stage.frame->timers().finish();
+    for (const gpu::PassTime& pass : stage.frame->timers().latest()) EXPECT_NE(pass.name, "overlays");
+  }
+}
+
+TEST_F(OverlayTest, LinesAreHiddenByWhatStandsBeforeThemButForATrace) {
+  // A line from left to right behind the sphere, and one before it.
+  const auto lineAt = [](float z) {
+    OverlayOptions options;
+    options.lines.push_back(
+        {.from_ws = {-1.0f, 0.0f, z}, .to_ws = {1.0f, 0.0f, z}, .color = {1, 0, 0, 1}, .width_px = 3.0f});
+    return options;
+  };
+  ViewStage stage(BundleBuilder().add({sphereMesh(12, 24), {}}),
+                  {spec::ConstantLight{.radiance = glm::vec3(1.0f)}}, linearOptions());
+  const spec::RgbaImage bare = stage.picture();
+  const std::size_t middle = 32 * 64 + 32;
+  stage.frame->setOverlays(lineAt(1.2f));
+  const spec::RgbaImage before = stage.picture();
+  EXPECT_LT(glm::distance(glm::vec3(before.texels[middle]), glm::vec3(1.0f, 0.0f, 0.0f)), 1e-3f);
+  stage.frame->setOverlays(lineAt(-1.2f));
+  const spec::RgbaImage behind = stage.picture();
+  EXPECT_NE(behind.texels[middle], bare.texels[middle]);
+  EXPECT_GT(behind.texels[middle].g, 0.6f) << "mostly the white sphere";
+  // A line that reaches behind the eye is cut, not turned about: it stays in its half of the picture.
+  OverlayOptions through;
+  through.lines.push_back({.from_ws = {0.0f, -0.9f, -3.0f},
+                           .to_ws = {0.0f, -0.9f, 40.0f},
+                           .color = {1, 0, 0, 1},
+                           .width_px = 3.0f});
+  stage.frame->setOverlays(through);
+  const auto changed = changes(stage.picture(), bare);
+  EXPECT_GT(changed.size(), 10u);
+  for (const std::size_t i : changed) EXPECT_GE(i / 64, 31u);
+}
+
+}  // namespace lambent::frame

@@ -1,0 +1,96 @@
+#include "runtime/streaming/interest.hpp"
+
+#include <numeric>
+
+#include <glm/ext/matrix_clip_space.hpp>
+#include <glm/ext/matrix_transform.hpp>
+#include <gtest/gtest.h>
+
+namespace lambent::streaming {
+namespace {
+
+// Surfaces of 100 bytes; one group, codebooks of 20, ten shares of planes of 10.
+Parts smallParts() {
+  Parts parts;
+  parts.units = {{{.work = {}, .bytes = 100}}, {{.work = {}, .bytes = 20}}};
+  for (int i = 0; i < 10; ++i) parts.units[1].push_back({.work = {}, .bytes = 10});
+  return parts;
+}
+
+struct Scene {
+  Parts parts = smallParts();
+  std::vector<Interest> bundles;
+
+  explicit Scene(const std::vector<float>& sizes) {
+    for (const float size : sizes) bundles.push_back({&parts, {size, size}, {0, 0}});
+  }
+  void see(const std::vector<float>& sizes) {
+    for (std::size_t i = 0; i < sizes.size(); ++i) bundles[i].size = {sizes[i], sizes[i]};
+  }
+  std::uint64_t bytes() const {
+    std::uint64_t sum = 0;
+    for (const Interest& bundle : bundles)
+      for (std::size_t u = 0; u < 2; ++u)
+        for (std::uint32_t s = 0; s < bundle.target[u]; ++s) sum += parts.units[u][s].bytes;
+    return sum;
+  }
+  std::vector<std::vector<std::uint32_t>> targets() const {
+    std::vector<std::vector<std::uint32_t>> list;
+    for (const Interest& bundle : bundles) list.push_back(bundle.target);
+    return list;
+  }
+};
+
+using Targets = std::vector<std::vector<std::uint32_t>>;
+
+}  // namespace
+
+TEST(Interest, TakesAllWhereThereIsRoomAndNeverMoreThanTheBudget) {
+  const std::vector<float> sizes = {1.0f, 0.01f, 0.3f, 1e-9f};
+  Scene all(sizes);
+  choose(all.bundles, 4 * 220);
+  EXPECT_EQ(all.targets(), Targets(4, {1, 11}));
+  for (std::uint64_t budget = 100; budget < 900; budget += 7) {
+    Scene scene(sizes);
+    choose(scene.bundles, budget);
+    EXPECT_LE(scene.bytes(), budget);
+    EXPECT_EQ(scene.bundles[0].target[0], 1u) << "the largest is always shown";
+  }
+}
+
+TEST(Interest, LargerInSightComesFirstAndSurfacesBeforeShadowsBeforeDetail) {
+  Scene scene({1.0f, 0.5f});
+  choose(scene.bundles, 250);
+  EXPECT_EQ(scene.targets(), (Targets{{1, 2}, {1, 1}})) << "a share of planes to the larger one";
+  Scene far({1.0f, 1e-3f});
+  choose(far.bundles, 250);
+  EXPECT_EQ(far.targets(), (Targets{{1, 11}, {0, 0}})) << "planes of what is near before what is a dot";
+}
+
+TEST(Interest, StaysUntilSomethingElseIsClearlyLarger) {
+  Scene scene({1.0f, 1.0f, 0.9f});
+  choose(scene.bundles, 500);
+  const Targets before = scene.targets();
+  for (int i = 0; i < 20; ++i) {
+    scene.see({1.0f, i % 2 == 0 ? 0.9f : 1.1f, i % 2 == 0 ? 1.1f : 0.9f});
+    choose(scene.bundles, 500);
+    ASSERT_EQ(scene.targets(), before) << i;
+  }
+  scene.see({1.0f, 0.2f, 3.0f});
+  choose(scene.bundles, 500);
+  EXPECT_NE(scene.targets(), before);
+}
+
+TEST(Interest, SizeIsByAngleAndLessBehindTheCamera) {
+  spec::View view;
+  view.eye_ws = {0.0f, 0.0f, 0.0f};
+  view.clip_from_view = glm::perspective(0.8f, 1.5f, 0.1f, 1000.0f);
+  const float near = sizeSeen(view, {0, 0, -11}, 1.0f), far = sizeSeen(view, {0, 0, -21}, 1.0f),
+              behind = sizeSeen(view, {0, 0, 11}, 1.0f), inside = sizeSeen(view, {0, 0, 0.5f}, 1.0f);
+  EXPECT_NEAR(near, 0.01f, 1e-5f);
+  EXPECT_NEAR(far, 0.25f * near, 1e-5f);
+  EXPECT_LT(behind, 0.2f * near);
+  EXPECT_GT(inside, 10.0f);
+}
+
+}  // namespace lambent::streaming
