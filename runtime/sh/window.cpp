@@ -18,7 +18,7 @@ namespace {
 
 constexpr int kDirections = 1024;
 constexpr float kGuard = 1e-5f;    // of the mean radiance: what the search aims above 0, for rounding
-constexpr float kWorthIt = 5e-6f;  // of blend: a step that gains less is too long
+constexpr float kWorthIt = 2e-5f;  // of blend: a step that gains less is too long
 constexpr float kHopeless =
     1e-6f;  // mean over largest coefficient: below it a channel has no mean to speak of
 
@@ -145,7 +145,7 @@ struct SearchPoints {
 
 // The highest first; of points about one summit only the highest, as one climb will do for all of them.
 std::vector<std::pair<float, glm::vec3>> summits(const Channel& channel) {
-  constexpr std::size_t kMostSummits = 8;
+  constexpr std::size_t kMostSummits = 5;
   constexpr float kApart = 0.97f;  // cosine of 0.25 rad, over twice the distance between points
   const SearchPoints& points = SearchPoints::get();
   std::array<float, kDirections> as_is{}, lifted{};
@@ -172,13 +172,8 @@ std::vector<std::pair<float, glm::vec3>> summits(const Channel& channel) {
 }
 
 float leastBlend(const Channel& channel) {
-  constexpr float kMostGain =
-      0.04f;  // of a climb from the nearest point; seen up to 0.033 among 10,000 lights
   float best = 0;
-  for (const auto& [blend, dir] : summits(channel)) {
-    if (blend + kMostGain < best) break;
-    best = std::max(best, climb(channel, dir, blend));
-  }
+  for (const auto& [blend, dir] : summits(channel)) best = std::max(best, climb(channel, dir, blend));
   return best;
 }
 
