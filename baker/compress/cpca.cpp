@@ -120,13 +120,23 @@ Clustering fromSome(const Points& points, std::uint32_t clusters, double budget,
                 least_bits);
 }
 
-// The number of clusters that codes to the fewest bytes, by estimates from some of the samples.
-Clustering search(const Points& points, double budget, double least_bits, const std::stop_token& stop) {
+// Of means and axes, decoded.
+std::size_t expandedBytes(const std::vector<Cluster>& clusters, const bundle::TransferShape& shape) {
+  std::size_t vectors = clusters.size();
+  for (const Cluster& cluster : clusters) vectors += static_cast<std::size_t>(cluster.kept);
+  return vectors * shape.size() * sizeof(float);
+}
+
+// The number of clusters that codes to the fewest bytes, by estimates from some of the samples; at most so
+// many.
+Clustering search(const Points& points, double budget, double least_bits, const auto& fits,
+                  std::uint32_t most, const std::stop_token& stop) {
   Clustering best;
   double fewest = std::numeric_limits<double>::infinity();
   for (const std::uint32_t clusters : kClusterCounts) {
-    if (stop.stop_requested()) break;
+    if (stop.stop_requested() || clusters > most) break;
     Clustering tried = fromSome(points, clusters, budget, -1, least_bits);
+    if (clusters > 1 && !fits(tried)) break;
     const double bytes = expectedBytes(tried.clusters, tried.step, static_cast<double>(points.cols()));
     if (bytes >= fewest) break;
     fewest = bytes;
@@ -150,6 +160,7 @@ CodedTransfer fitToBound(std::span<const float> vectors, const Points& points, C
   double step = found.step;
   for (int attempt = 0; attempt < kMostAttempts && !stop.stop_requested(); ++attempt) {
     if (settings.axes < 0) keepAxes(found.clusters, step);
+    if (attempt > 0 && expandedBytes(found.clusters, shape) > settings.most_expanded_bytes) break;
     CodedTransfer coded = quantize(points, found.ids, found.clusters, basis, shape, step);
     coded.error = static_cast<float>(
         radianceError(vectors, decode(coded), shape, settings.shown_energy, settings.kernel_power));
@@ -208,13 +219,22 @@ CodedTransfer codeTransfer(std::span<const float> vectors, std::size_t count,
 
   const double least_bits = shape.glossy() ? kGlossyWeightBits : kPlainWeightBits;
   const Points points = coordinates(vectors, space.roots, basis);
-  const Clustering few = settings.clusters > 0
-                             ? fromSome(points, settings.clusters, budget, settings.axes, least_bits)
-                             : search(points, budget, least_bits, stop);
+  const auto fits = [&](const Clustering& one) {
+    return expandedBytes(one.clusters, shape) <= settings.most_expanded_bytes;
+  };
+  const auto clustered = [&](std::uint32_t most) {
+    const Clustering few = settings.clusters > 0
+                               ? fromSome(points, settings.clusters, budget, settings.axes, least_bits)
+                               : search(points, budget, least_bits, fits, most, stop);
+    if (stop.stop_requested()) return Clustering{};
+    return refine(points, assignClusters(points, few.clusters, few.step, {}), budget, settings.axes,
+                  kFinalRounds, /*held_out=*/false, least_bits);
+  };
+  Clustering found = clustered(std::numeric_limits<std::uint32_t>::max());
+  // What some of the samples foretold may be too little.
+  while (settings.clusters == 0 && found.clusters.size() > 1 && !fits(found))
+    found = clustered(static_cast<std::uint32_t>(found.clusters.size() / 2));
   if (stop.stop_requested()) return {};
-  Clustering found =
-      refine(points, assignClusters(points, few.clusters, few.step, {}), budget, settings.axes, kFinalRounds,
-             /*held_out=*/false, least_bits);
   return fitToBound(vectors, points, found, basis, shape, settings, bound * std::sqrt(reachable / allowed),
                     stop);
 }

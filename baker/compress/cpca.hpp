@@ -40,6 +40,9 @@ struct CodingSettings {
   float bound = 0.005f;        // > 0
   std::uint32_t clusters = 0;  // 0: whatever codes to the fewest bytes
   int axes = -1;               // of every cluster, whatever the bound; -1: as many as it takes
+  // Of means and axes as they lie on the GPU, where all of a cell is in one page of 128 MiB (gpu::Arena):
+  // clusters are as few as that takes, and the bound is missed where one alone is too large.
+  std::size_t most_expanded_bytes = std::size_t{64} << 20;
   // Over 0: what errors are relative to, in place of the vectors' own energy (transferEnergy): visibility and
   // bounced light are shown together.
   double shown_energy = 0.0;

@@ -60,25 +60,42 @@ float blendOf(float as_is, float lifted) {
 
 // One channel of the light, relative to its mean, as it is and under the positive kernel; 0 beyond its order.
 struct Channel {
+  std::array<float, kMaxCoefficients> plain{}, smooth{};
+};
+
+// Those channels of a light that differ: what is asked for is the blend of the one that needs most.
+struct Channels {
   static constexpr std::size_t kLanes = 8;  // sums side by side, for the compiler to make vectors of
   int order;
-  std::array<float, kMaxCoefficients> plain{}, smooth{};
+  std::size_t count = 0;
+  std::array<Channel, 3> at{};
+
+  std::size_t coefficients() const { return static_cast<std::size_t>(coefficientCount(order)); }
+
+  void add(const Channel& channel) {
+    const auto same = [&](const Channel& other) { return other.plain == channel.plain; };
+    if (std::none_of(at.begin(), at.begin() + static_cast<std::ptrdiff_t>(count), same))
+      at[count++] = channel;
+  }
 
   float blendTowards(const glm::vec3& dir) const {
     std::array<float, kMaxCoefficients> y{};
     evaluate(order, dir, y);
-    const auto count = static_cast<std::size_t>(coefficientCount(order));
-    std::array<float, kLanes> as_is{}, lifted{};
-    for (std::size_t i = 0; i < count; i += kLanes)
-      for (std::size_t k = 0; k < kLanes; ++k) {
-        as_is[k] += plain[i + k] * y[i + k];
-        lifted[k] += smooth[i + k] * y[i + k];
-      }
-    return blendOf(std::accumulate(as_is.begin(), as_is.end(), 0.0f),
-                   std::accumulate(lifted.begin(), lifted.end(), 0.0f));
+    float blend = 0;
+    for (std::size_t c = 0; c < count; ++c) {
+      std::array<float, kLanes> as_is{}, lifted{};
+      for (std::size_t i = 0; i < coefficients(); i += kLanes)
+        for (std::size_t k = 0; k < kLanes; ++k) {
+          as_is[k] += at[c].plain[i + k] * y[i + k];
+          lifted[k] += at[c].smooth[i + k] * y[i + k];
+        }
+      blend = std::max(blend, blendOf(std::accumulate(as_is.begin(), as_is.end(), 0.0f),
+                                      std::accumulate(lifted.begin(), lifted.end(), 0.0f)));
+    }
+    return blend;
   }
 };
-static_assert(kMaxCoefficients % Channel::kLanes == 0);
+static_assert(kMaxCoefficients % Channels::kLanes == 0);
 
 // Where a parabola through three values a step apart has its summit, in (-step, step); towards the larger
 // side where it has none.
@@ -90,7 +107,7 @@ float summitOf(float before, float here, float after, float step) {
 
 // Ascent over the sphere by crosses of shrinking steps and the parabolas through them: the blend is smooth,
 // and what a step along the flat crest of a ring leaves out is worth nothing.
-float climb(const Channel& channel, glm::vec3 dir, float best) {
+float climb(const Channels& channels, glm::vec3 dir, float best) {
   for (float step = 0.05f; step > 2e-3f;) {
     const glm::vec3 across =
         glm::normalize(glm::cross(dir, std::abs(dir.x) < 0.7f ? glm::vec3(1, 0, 0) : glm::vec3(0, 1, 0)));
@@ -99,7 +116,7 @@ float climb(const Channel& channel, glm::vec3 dir, float best) {
     const float here = best;
     const auto look = [&](const glm::vec3& offset) {
       const glm::vec3 candidate = glm::normalize(dir + offset);
-      const float blend = channel.blendTowards(candidate);
+      const float blend = channels.blendTowards(candidate);
       if (blend > best) {
         best = blend;
         next = candidate;
@@ -144,21 +161,24 @@ struct SearchPoints {
 };
 
 // The highest first; of points about one summit only the highest, as one climb will do for all of them.
-std::vector<std::pair<float, glm::vec3>> summits(const Channel& channel) {
+std::vector<std::pair<float, glm::vec3>> summits(const Channels& channels) {
   constexpr std::size_t kMostSummits = 5;
   constexpr float kApart = 0.97f;  // cosine of 0.25 rad, over twice the distance between points
   const SearchPoints& points = SearchPoints::get();
-  std::array<float, kDirections> as_is{}, lifted{};
-  const auto count = static_cast<std::size_t>(coefficientCount(channel.order));
-  for (std::size_t i = 0; i < count; ++i)
-    for (std::size_t k = 0; k < kDirections; ++k) {
-      as_is[k] += channel.plain[i] * points.basis[i][k];
-      lifted[k] += channel.smooth[i] * points.basis[i][k];
-    }
+  std::array<float, kDirections> blends{};
+  for (std::size_t c = 0; c < channels.count; ++c) {
+    std::array<float, kDirections> as_is{}, lifted{};
+    for (std::size_t i = 0; i < channels.coefficients(); ++i)
+      for (std::size_t k = 0; k < kDirections; ++k) {
+        as_is[k] += channels.at[c].plain[i] * points.basis[i][k];
+        lifted[k] += channels.at[c].smooth[i] * points.basis[i][k];
+      }
+    for (std::size_t k = 0; k < kDirections; ++k)
+      blends[k] = std::max(blends[k], blendOf(as_is[k], lifted[k]));
+  }
   std::vector<std::pair<float, glm::vec3>> candidates;
   for (std::size_t k = 0; k < kDirections; ++k)
-    if (const float blend = blendOf(as_is[k], lifted[k]); blend > 0)
-      candidates.emplace_back(blend, points.directions[k]);
+    if (blends[k] > 0) candidates.emplace_back(blends[k], points.directions[k]);
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const auto& a, const auto& b) { return a.first > b.first; });
   std::vector<std::pair<float, glm::vec3>> kept;
@@ -171,9 +191,9 @@ std::vector<std::pair<float, glm::vec3>> summits(const Channel& channel) {
   return kept;
 }
 
-float leastBlend(const Channel& channel) {
+float leastBlend(const Channels& channels) {
   float best = 0;
-  for (const auto& [blend, dir] : summits(channel)) best = std::max(best, climb(channel, dir, blend));
+  for (const auto& [blend, dir] : summits(channels)) best = std::max(best, climb(channels, dir, blend));
   return best;
 }
 
@@ -212,10 +232,9 @@ BandWeights integratedPositiveWeights(int order) {
 }
 
 double blendFor(const LightVector& light, const BandWeights& kernel) {
-  float blend = 0;
-  Channel last{.order = light.order};
+  Channels channels{.order = light.order};
   for (int k = 0; k < 3; ++k) {
-    Channel channel{.order = light.order};
+    Channel channel;
     const float mean = light.c[0][k] * 0.28209479f;  // of the radiance: c_0 y_00
     float largest = 0;
     for (std::size_t i = 0; i < light.coefficients().size(); ++i) {
@@ -224,11 +243,9 @@ double blendFor(const LightVector& light, const BandWeights& kernel) {
       channel.plain[i] = light.c[i][k] / mean;
       channel.smooth[i] = kernel[static_cast<std::size_t>(bandOf(static_cast<int>(i)))] * channel.plain[i];
     }
-    if (channel.plain == last.plain) continue;  // grey light, or of one colour
-    if (light.c[0][k] > kHopeless * largest) blend = std::max(blend, leastBlend(channel));
-    last = channel;
+    if (light.c[0][k] > kHopeless * largest) channels.add(channel);
   }
-  return double{blend};
+  return double{leastBlend(channels)};
 }
 
 }  // namespace

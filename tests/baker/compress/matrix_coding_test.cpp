@@ -144,6 +144,37 @@ TEST(MatrixCoding, BoundsBouncedLightRelativeToAllThatIsShown) {
   }
 }
 
+// On the GPU all of a cell lies in one page: a bundle that is larger is one that nobody can show.
+TEST(MatrixCoding, KeepsToItsMemoryWithFewerClusters) {
+  // Sixteen heaps, of the same three directions each: as clusters 16 x (1 + 3) vectors, as one about 1 + 18.
+  constexpr std::size_t kCount = 16000, kHeaps = 16;
+  const std::uint32_t size = kVisibility.size();
+  std::mt19937 random(29);
+  std::normal_distribution<float> normal;
+  std::vector<float> parts(size * (kHeaps + 3)), vectors;
+  for (float& value : parts) value = normal(random);
+  for (std::size_t s = 0; s < kCount; ++s) {
+    const std::array<float, 3> along = {normal(random), normal(random), normal(random)};
+    for (std::size_t i = 0; i < size; ++i) {
+      float value = 2.0f * parts[size * (s * kHeaps / kCount) + i];
+      for (std::size_t k = 0; k < 3; ++k) value += along[k] * parts[size * (kHeaps + k) + i];
+      vectors.push_back(value);
+    }
+  }
+  const auto expanded = [&](const CodedTransfer& coded) {
+    std::size_t count = coded.codebook.axis_counts.size();
+    for (const auto axes : coded.codebook.axis_counts) count += axes;
+    return count * size * sizeof(float);
+  };
+  const CodedTransfer free = codeTransfer(vectors, kCount, kVisibility, {.bound = 0.01f});
+  const std::size_t most = 32 * size * sizeof(float);
+  ASSERT_GT(expanded(free), most) << "or nothing is asked of the other";
+  const CodedTransfer coded =
+      codeTransfer(vectors, kCount, kVisibility, {.bound = 0.01f, .most_expanded_bytes = most});
+  EXPECT_LE(expanded(coded), most);
+  EXPECT_LE(coded.error, 0.0101f) << "with more axes in each";
+}
+
 TEST(MatrixCoding, NeverGetsWorseWithMoreAxesWhereTheAssignmentStays) {
   const Points points = pointsOf(wanderingVisibility(2000, 5), 81);
   for (const std::uint32_t count : {1u, 8u, 64u}) {
