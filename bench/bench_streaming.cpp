@@ -11,8 +11,11 @@
 #include <cstdlib>
 #include <ctime>
 #include <filesystem>
+#include <functional>
 #include <optional>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -109,7 +112,20 @@ struct Flight {
   frame::FrameTimes times, cpu_times;
   std::uint64_t most_bytes = 0, least_bytes = ~std::uint64_t{0}, uploaded = 0;
   std::size_t brought = 0;  // frames that uploaded something
+  // Where the time of the slowest frames went: milliseconds, and the passes that took most.
+  std::vector<std::pair<double, std::string>> slowest{};
 };
+
+// "upload 12.1 (gpu 0.3), glossy 4.0 (gpu 9.1)": passes of over a twentieth of the frame.
+std::string dearest(std::span<const gpu::PassTime> passes, double frame_ms) {
+  std::string text;
+  for (const gpu::PassTime& pass : passes) {
+    const double gpu_ms = std::max(pass.gpu_ms, 0.0);
+    if (std::max(pass.cpu_ms, gpu_ms) < 0.05 * frame_ms) continue;
+    text += fmt::format("{}{} {:.1f} (gpu {:.1f})", text.empty() ? "" : ", ", pass.name, pass.cpu_ms, gpu_ms);
+  }
+  return text;
+}
 
 Flight fly(const Words& words, Row& row, const lighting::Environment& environment, bool load_first) {
   frame::FrameOptions options;
@@ -134,8 +150,9 @@ Flight fly(const Words& words, Row& row, const lighting::Environment& environmen
     const auto start = std::chrono::steady_clock::now();
     const std::clock_t cpu_start = std::clock();
     render(static_cast<float>(i) / static_cast<float>(words.frames - 1));
-    flight.times.add(
-        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
+    const double wall_ms =
+        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    flight.times.add(wall_ms);
     flight.cpu_times.add(1e3 * static_cast<double>(std::clock() - cpu_start) / CLOCKS_PER_SEC);
     const std::uint64_t bytes = row.world.residency().bytesResident();
     flight.most_bytes = std::max(flight.most_bytes, bytes);
@@ -146,6 +163,9 @@ Flight fly(const Words& words, Row& row, const lighting::Environment& environmen
         flight.uploaded += pass.counters.uploaded_bytes;
         flight.brought += pass.counters.uploaded_bytes > 0 ? 1u : 0u;
       }
+    flight.slowest.emplace_back(wall_ms, dearest(frame->timers().latest(), wall_ms));
+    std::ranges::sort(flight.slowest, std::ranges::greater());
+    if (flight.slowest.size() > 5) flight.slowest.pop_back();
   }
   for (const frame::BundleError& wrong : row.world.errors()) stop(wrong.error);
   return flight;
@@ -171,6 +191,7 @@ void print(const std::string& name, const Flight& flight) {
              static_cast<double>(flight.uploaded) / kMegabyte, flight.brought);
   print("wall", flight.times);
   print("CPU of all threads", flight.cpu_times);
+  for (const auto& [wall_ms, passes] : flight.slowest) fmt::print("  slow: {:.1f} ms: {}\n", wall_ms, passes);
   std::fflush(stdout);
 }
 
