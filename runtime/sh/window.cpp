@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <numeric>
-#include <utility>
 #include <vector>
 
 #include <glm/common.hpp>
@@ -16,7 +14,7 @@ namespace lambent::sh {
 
 namespace {
 
-constexpr int kDirections = 1024;
+constexpr std::size_t kDirections = 1024;
 constexpr float kGuard = 1e-5f;    // of the mean radiance: what the search aims above 0, for rounding
 constexpr float kWorthIt = 2e-5f;  // of blend: a step that gains less is too long
 constexpr float kHopeless =
@@ -63,9 +61,16 @@ struct Channel {
   std::array<float, kMaxCoefficients> plain{}, smooth{};
 };
 
+constexpr std::size_t kLanes = 8;  // sums side by side, for the compiler to make vectors of
+
+float sum(std::array<float, kLanes> lanes) {
+  for (std::size_t half = kLanes / 2; half > 0; half /= 2)
+    for (std::size_t k = 0; k < half; ++k) lanes[k] += lanes[k + half];
+  return lanes[0];
+}
+
 // Those channels of a light that differ: what is asked for is the blend of the one that needs most.
 struct Channels {
-  static constexpr std::size_t kLanes = 8;  // sums side by side, for the compiler to make vectors of
   int order;
   std::size_t count = 0;
   std::array<Channel, 3> at{};
@@ -89,13 +94,12 @@ struct Channels {
           as_is[k] += at[c].plain[i + k] * y[i + k];
           lifted[k] += at[c].smooth[i + k] * y[i + k];
         }
-      blend = std::max(blend, blendOf(std::accumulate(as_is.begin(), as_is.end(), 0.0f),
-                                      std::accumulate(lifted.begin(), lifted.end(), 0.0f)));
+      blend = std::max(blend, blendOf(sum(as_is), sum(lifted)));
     }
     return blend;
   }
 };
-static_assert(kMaxCoefficients % Channels::kLanes == 0);
+static_assert(kMaxCoefficients % kLanes == 0);
 
 // Where a parabola through three values a step apart has its summit, in (-step, step); towards the larger
 // side where it has none.
@@ -135,22 +139,27 @@ float climb(const Channels& channels, glm::vec3 dir, float best) {
 }
 
 // Spherical Fibonacci points: no poles or seams, 0.11 rad apart, where bands up to 7 have no room to hide a
-// minimum. Their basis functions one after the other, so that all points of a light are a product of a
-// matrix.
+// minimum. Their basis functions lie by tiles of points, within a tile by function: the sums of a tile stay
+// in registers.
 struct SearchPoints {
-  std::array<glm::vec3, kDirections> directions;
-  std::vector<std::array<float, kDirections>> basis{kMaxCoefficients};
+  static constexpr std::size_t kTile = 32;
+  struct Tile {
+    std::array<std::array<float, kTile>, kMaxCoefficients> basis;
+    std::array<glm::vec3, kTile> directions;
+  };
+  std::vector<Tile> tiles{kDirections / kTile};
 
   SearchPoints() {
-    for (int k = 0; k < kDirections; ++k) {
-      const double z = 1 - (2.0 * k + 1) / kDirections, r = std::sqrt(1 - z * z);
-      const double turn = std::numbers::pi * (3 - std::sqrt(5.0)) * k;
-      const auto at = static_cast<std::size_t>(k);
-      directions[at] = {static_cast<float>(r * std::cos(turn)), static_cast<float>(r * std::sin(turn)),
-                        static_cast<float>(z)};
+    for (std::size_t k = 0; k < kDirections; ++k) {
+      const double z = 1 - (2.0 * static_cast<double>(k) + 1) / kDirections, r = std::sqrt(1 - z * z);
+      const double turn = std::numbers::pi * (3 - std::sqrt(5.0)) * static_cast<double>(k);
+      const glm::vec3 dir(static_cast<float>(r * std::cos(turn)), static_cast<float>(r * std::sin(turn)),
+                          static_cast<float>(z));
+      Tile& tile = tiles[k / kTile];
+      tile.directions[k % kTile] = dir;
       std::array<float, kMaxCoefficients> y;
-      evaluate(kMaxOrder, directions[at], y);
-      for (std::size_t i = 0; i < basis.size(); ++i) basis[i][at] = y[i];
+      evaluate(kMaxOrder, dir, y);
+      for (std::size_t i = 0; i < y.size(); ++i) tile.basis[i][k % kTile] = y[i];
     }
   }
 
@@ -160,33 +169,44 @@ struct SearchPoints {
   }
 };
 
+struct Summit {
+  float blend;
+  glm::vec3 dir;
+};
+
+// Where the light has to be lifted at all.
+std::vector<Summit> lifted(const Channels& channels) {
+  constexpr std::size_t kTile = SearchPoints::kTile;
+  std::vector<Summit> found;
+  for (const SearchPoints::Tile& tile : SearchPoints::get().tiles) {
+    std::array<float, kTile> blends{};
+    for (std::size_t c = 0; c < channels.count; ++c) {
+      std::array<float, kTile> as_is{}, smooth{};
+      for (std::size_t i = 0; i < channels.coefficients(); ++i) {
+        const float* y = tile.basis[i].data();
+        const float of_plain = channels.at[c].plain[i], of_smooth = channels.at[c].smooth[i];
+        for (std::size_t k = 0; k < kTile; ++k) {
+          as_is[k] += of_plain * y[k];
+          smooth[k] += of_smooth * y[k];
+        }
+      }
+      for (std::size_t k = 0; k < kTile; ++k) blends[k] = std::max(blends[k], blendOf(as_is[k], smooth[k]));
+    }
+    for (std::size_t k = 0; k < kTile; ++k)
+      if (blends[k] > 0) found.push_back({blends[k], tile.directions[k]});
+  }
+  return found;
+}
+
 // The highest first; of points about one summit only the highest, as one climb will do for all of them.
-std::vector<std::pair<float, glm::vec3>> summits(const Channels& channels) {
+std::vector<Summit> summits(const Channels& channels) {
   constexpr std::size_t kMostSummits = 5;
   constexpr float kApart = 0.97f;  // cosine of 0.25 rad, over twice the distance between points
-  const SearchPoints& points = SearchPoints::get();
-  std::array<float, kDirections> blends{};
-  for (std::size_t c = 0; c < channels.count; ++c) {
-    std::array<float, kDirections> as_is{}, lifted{};
-    for (std::size_t i = 0; i < channels.coefficients(); ++i)
-      for (std::size_t k = 0; k < kDirections; ++k) {
-        as_is[k] += channels.at[c].plain[i] * points.basis[i][k];
-        lifted[k] += channels.at[c].smooth[i] * points.basis[i][k];
-      }
-    for (std::size_t k = 0; k < kDirections; ++k)
-      blends[k] = std::max(blends[k], blendOf(as_is[k], lifted[k]));
-  }
-  std::vector<std::pair<float, glm::vec3>> candidates;
-  for (std::size_t k = 0; k < kDirections; ++k)
-    if (blends[k] > 0) candidates.emplace_back(blends[k], points.directions[k]);
-  std::stable_sort(candidates.begin(), candidates.end(),
-                   [](const auto& a, const auto& b) { return a.first > b.first; });
-  std::vector<std::pair<float, glm::vec3>> kept;
-  for (const auto& candidate : candidates) {
-    const auto near = [&](const auto& summit) { return glm::dot(summit.second, candidate.second) > kApart; };
-    if (std::any_of(kept.begin(), kept.end(), near)) continue;
-    kept.push_back(candidate);
-    if (kept.size() == kMostSummits) break;
+  std::vector<Summit> points = lifted(channels), kept;
+  while (kept.size() < kMostSummits && !points.empty()) {
+    const Summit highest = *std::ranges::max_element(points, {}, &Summit::blend);
+    kept.push_back(highest);
+    std::erase_if(points, [&](const Summit& point) { return glm::dot(point.dir, highest.dir) > kApart; });
   }
   return kept;
 }
