@@ -2,13 +2,14 @@
 // frame, each texel the mean over the lobe about its direction. Probes by equal shares of the lobe, each
 // looked up as wide as it is; discs of suns apart and exactly, for no such look-up finds them.
 #include "reflected_shared.h"
+#include "cube_texel.glsl"
 
 layout(local_size_x = kReflectedGroup, local_size_y = kReflectedGroup) in;
 layout(location = 0) uniform int size;    // of the level
 layout(location = 1) uniform vec2 lobe;   // alpha, scale; alpha 0: a mirror
 layout(location = 2) uniform int shares;  // of the lobe that look at the sky
 layout(location = 3) uniform uint disc_count;
-layout(binding = 0) uniform samplerCube sky;
+layout(binding = 0) uniform samplerCube sky;  // reflected_source.comp: times solid angle, and that
 layout(binding = 0, rgba16f) writeonly uniform imageCube reflected;
 layout(std430, binding = kBindLobe) readonly buffer Lobe {
   float angles[];
@@ -22,30 +23,18 @@ const float kGoldenAngle = 2.39996323;
 const int kAllShares = 256, kDiscPoints = 48;
 const float kLargestHalf = 65504.0;
 
-// Unnormalised direction through the texel's centre, as runtime/sh/cube_map.hpp has it.
-vec3 texelDirection(ivec3 texel) {
-  vec2 at = (2.0 * vec2(texel.xy) + 1.0) / float(size) - 1.0;
-  switch (texel.z) {
-    case 0:
-      return vec3(1.0, -at.y, -at.x);
-    case 1:
-      return vec3(-1.0, -at.y, at.x);
-    case 2:
-      return vec3(at.x, 1.0, at.y);
-    case 3:
-      return vec3(at.x, -1.0, -at.y);
-    case 4:
-      return vec3(at.x, -at.y, 1.0);
-  }
-  return vec3(-at.x, -at.y, -1.0);
-}
-
 // Two unit vectors across unit n [Duff et al., Building an orthonormal basis, revisited, 2017].
 mat3 frameAbout(vec3 n) {
   float facing = n.z >= 0.0 ? 1.0 : -1.0;
   float a = -1.0 / (facing + n.z), b = n.x * n.y * a;
   return mat3(vec3(1.0 + facing * n.x * n.x * a, facing * b, -facing * n.x),
               vec3(b, facing + n.y * n.y * a, -n.y), n);
+}
+
+// The mean over what a mip level holds there.
+vec3 meanOfSky(vec3 direction, float level) {
+  vec4 weighted = textureLod(sky, direction, level);
+  return weighted.rgb / weighted.a;
 }
 
 float density(float cos_theta) {
@@ -56,13 +45,13 @@ float density(float cos_theta) {
 vec3 skyThrough(mat3 frame) {
   float texels = float(textureSize(sky, 0).x);
   float texel_angle = 4.0 * kPi / (6.0 * texels * texels);
-  if (lobe.x == 0.0) return textureLod(sky, frame[2], max(log2(texels / float(size)), 0.0)).rgb;
+  if (lobe.x == 0.0) return meanOfSky(frame[2], max(log2(texels / float(size)), 0.0));
   vec3 sum = vec3(0.0);
   for (int i = 0; i < shares; ++i) {
     float theta = angles[(2 * i + 1) * kAllShares / (2 * shares)], phi = kGoldenAngle * float(i);
     vec3 direction = frame * vec3(sin(theta) * vec2(cos(phi), sin(phi)), cos(theta));
     float wide = 1.0 / (float(shares) * max(density(cos(theta)), 1e-6));
-    sum += textureLod(sky, direction, max(0.5 * log2(wide / texel_angle) + 0.5, 0.0)).rgb;
+    sum += meanOfSky(direction, max(0.5 * log2(wide / texel_angle) + 0.5, 0.0));
   }
   return sum / float(shares);
 }
@@ -97,7 +86,7 @@ float shareOfDisc(float apart, float radius) {
 void main() {
   ivec3 texel = ivec3(gl_GlobalInvocationID);
   if (texel.x >= size || texel.y >= size) return;
-  mat3 frame = frameAbout(normalize(texelDirection(texel)));
+  mat3 frame = frameAbout(normalize(cubeTexelDirection(texel, size)));
   vec3 sum = skyThrough(frame);
   for (uint i = 0u; i < disc_count; ++i) {
     vec3 to_disc = discs[i].direction_and_radius.xyz;

@@ -25,20 +25,26 @@ int sharesOf(std::uint32_t level) {
 constexpr GLint kSize = 0, kLobe = 1, kSkyShares = 2, kDiscCount = 3;
 
 // The sky with all its mip levels, so that wide looks are cheap.
-gpu::Texture withLevels(const gpu::Texture& sky) {
+gpu::Texture withLevels(const gpu::Texture& sky, const gpu::Program& program, gpu::Counters& counters) {
   const std::uint32_t size = sky.desc().width;
-  gpu::Texture copy("sky to reflect", {.format = GL_RGBA16F,
-                                       .width = size,
-                                       .height = size,
-                                       .levels = static_cast<std::uint32_t>(std::bit_width(size)),
-                                       .cube = true});
-  const auto side = static_cast<GLsizei>(size);
-  glCopyImageSubData(sky.id(), GL_TEXTURE_CUBE_MAP, 0, 0, 0, 0, copy.id(), GL_TEXTURE_CUBE_MAP, 0, 0, 0, 0,
-                     side, side, 6);
-  glGenerateTextureMipmap(copy.id());
-  glTextureParameteri(copy.id(), GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
-  glTextureParameteri(copy.id(), GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-  return copy;
+  gpu::Texture weighted("sky to reflect", {.format = GL_RGBA16F,
+                                           .width = size,
+                                           .height = size,
+                                           .levels = static_cast<std::uint32_t>(std::bit_width(size)),
+                                           .cube = true});
+  program.use();
+  sky.bind(0);
+  glBindSampler(0, 0);
+  glUniform1i(kSize, static_cast<GLint>(size));
+  glBindImageTexture(0, weighted.id(), 0, GL_TRUE, 0, GL_WRITE_ONLY, GL_RGBA16F);
+  const std::uint32_t groups = (size + kReflectedGroup - 1) / kReflectedGroup;
+  glDispatchCompute(groups, groups, 6);
+  ++counters.dispatches;
+  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT);
+  glGenerateTextureMipmap(weighted.id());
+  glTextureParameteri(weighted.id(), GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+  glTextureParameteri(weighted.id(), GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  return weighted;
 }
 
 // Suns are sharper than probes.
@@ -54,6 +60,9 @@ Result<ReflectedSky> ReflectedSky::make(const Environment& environment, const Sk
   Result<gpu::Program> program =
       gpu::Program::create("reflected sky", {{GL_COMPUTE_SHADER, "reflected_sky.comp"}}, kShaders);
   if (!program) return failAgain(program.error());
+  Result<gpu::Program> weigh =
+      gpu::Program::create("reflected source", {{GL_COMPUTE_SHADER, "reflected_source.comp"}}, kShaders);
+  if (!weigh) return failAgain(weigh.error());
   ReflectedSky made;
   std::vector<ReflectedLobe> lobes;
   for (std::uint32_t level = 0; level < kReflectedLevels; ++level) {
@@ -63,10 +72,9 @@ Result<ReflectedSky> ReflectedSky::make(const Environment& environment, const Sk
   }
   gpu::Table angles("lobe"), discs_table("reflected discs");
   glEnable(GL_TEXTURE_CUBE_MAP_SEAMLESS);
-  program->use();
   for (std::size_t set = 0; set < Environment::kSets; ++set) {
     const spec::DistantLights& lights = environment.set(set);
-    const gpu::Texture source = withLevels(sky.cube(set));
+    const gpu::Texture source = withLevels(sky.cube(set), *weigh, counters);
     const std::uint32_t size = sizeFor(lights, source);
     made.cubes_[set] = gpu::Texture(
         "reflected sky",
@@ -79,6 +87,7 @@ Result<ReflectedSky> ReflectedSky::make(const Environment& environment, const Sk
       discs.push_back({{disc.direction, disc.radius_rad}, {disc.radiance, 0.0f}});
     discs_table.assign(std::span<const ReflectedDisc>(discs));
     discs_table.bindStorage(kBindDiscs);
+    program->use();
     source.bind(0);
     glBindSampler(0, 0);
     for (std::uint32_t level = 0; level < kReflectedLevels; ++level) {

@@ -1,6 +1,7 @@
 #include "runtime/lighting/sky.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <future>
 
 #include <glm/common.hpp>
@@ -29,13 +30,15 @@ struct DiscRecord {
 };
 static_assert(sizeof(DiscRecord) == 32);
 
-// About one texel of the cube per texel of the probe; a constant needs no more than one.
+// About one texel of the cube per texel of the probe; a constant needs no more than one. A power of two:
+// reflections look into mip levels, and halves of odd sizes leave a row of texels out (a lamp may stand in
+// it).
 std::uint32_t cubeSize(const spec::DistantLights& lights) {
   std::uint32_t size = 1;
   for (const spec::Probe& probe : lights.probes) {
     const std::uint32_t width = probe.image.width;
     const std::uint32_t wanted = probe.layout == sh::ImageLayout::VerticalCross ? width / 3 : width / 4;
-    size = std::max(size, std::clamp(wanted, 16u, 1024u));
+    size = std::max(size, std::bit_ceil(std::clamp(wanted, 16u, 1024u)));
   }
   return size;
 }

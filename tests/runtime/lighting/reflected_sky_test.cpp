@@ -156,6 +156,52 @@ TEST_F(ReflectedSkyTest, LightOfFewBandsLeavesNothing) {
   }
 }
 
+// Lamps along the edges of cube faces, in a probe that asks for cubes of 125 texels: blurred, all of their
+// light is still there.
+TEST_F(ReflectedSkyTest, LampsInAProbeOfAnySizeKeepTheirPower) {
+  const std::filesystem::path path =
+      std::filesystem::path(::testing::TempDir()) / (std::to_string(::getpid()) + "-lamps.exr");
+  constexpr std::uint32_t kWidth = 500, kHeight = 250;
+  constexpr double kLampRadius = 0.02;
+  spec::RgbaImage image{.width = kWidth, .height = kHeight, .texels = {}};
+  double power = 0.0;
+  for (std::uint32_t y = 0; y < kHeight; ++y)
+    for (std::uint32_t x = 0; x < kWidth; ++x) {
+      const double azimuth = ((x + 0.5) / kWidth - 0.5) * 2.0 * kPi, polar = (y + 0.5) / kHeight * kPi;
+      const glm::dvec3 d(std::sin(polar) * std::cos(azimuth), std::cos(polar),
+                         std::sin(polar) * std::sin(azimuth));
+      double radiance = 0.05;
+      for (const glm::dvec3& lamp : {glm::dvec3(1, 0.2, 0.995), glm::dvec3(0.995, -0.3, -1),
+                                     glm::dvec3(-1, 0.995, 0.4), glm::dvec3(-0.3, -0.995, 1)})
+        if (glm::dot(d, glm::normalize(lamp)) > std::cos(kLampRadius)) radiance = 200.0;
+      image.texels.emplace_back(glm::vec3(static_cast<float>(radiance)), 1.0f);
+      power += radiance * std::sin(polar) * (kPi / kHeight) * (2.0 * kPi / kWidth);
+    }
+  ASSERT_TRUE(spec::writeExr(path, image));
+  const auto environment = Environment::create({spec::ProbeLight{.file = path, .layout = {}}});
+  std::filesystem::remove(path);
+  ASSERT_TRUE(environment) << environment.error().line();
+  const auto sky = Sky::create(*environment);
+  ASSERT_TRUE(sky);
+  gpu::Counters counters;
+  const auto reflected = ReflectedSky::make(*environment, *sky, counters);
+  ASSERT_TRUE(reflected);
+  for (std::uint32_t level = 2; level < kReflectedLevels; ++level) {
+    const std::vector<glm::vec4> texels = levelOf(reflected->cube(0), level);
+    const auto side = static_cast<int>(reflected->cube(0).desc().width >> level);
+    double sum = 0.0, whole = 0.0;
+    for (int i = 0; i < 6 * side * side; ++i) {
+      // A point of the cube's face lies so far from the centre: the angle of a texel falls with its cube.
+      const double u = (2.0 * (i % side) + 1.0) / side - 1.0,
+                   v = (2.0 * (i / side % side) + 1.0) / side - 1.0;
+      const double angle = std::pow(1.0 + u * u + v * v, -1.5);
+      sum += angle * static_cast<double>(texels[static_cast<std::size_t>(i)].g);
+      whole += angle;
+    }
+    EXPECT_NEAR(4.0 * kPi * sum / whole / power, 1.0, 0.05) << "level " << level;
+  }
+}
+
 TEST_F(ReflectedSkyTest, TurningFadingAndDimmingOnlyMixAnew) {
   auto environment = Environment::create({spec::ConstantLight{.radiance = {1, 2, 3}}},
                                          {spec::ConstantLight{.radiance = {0, 0, 8}}});
