@@ -203,6 +203,32 @@ Reflected reflectedChange(uint draw, vec3 position, LocalView view, vec4 weights
 }
 #endif
 
+#if defined(LAMBENT_RESIDUAL) && !defined(LAMBENT_MEASURED)
+// Brushed metal reflects a fan: round lobes of its narrow roughness about the view mirrored in normals that lean along the
+// tangent, by equal shares of the slopes of GGX (their marginal is s = a u / sqrt(1 - u^2), u even in -1..1).
+vec3 residualOver(Lobes lobes, vec3 normal, vec3 to_eye) {
+  const int kShares = 12;
+  float narrow = lobes.roughness * lobes.roughness, wide = mix(narrow, 1.0, lobes.anisotropy * lobes.anisotropy);
+  float fan = sqrt(max(wide * wide - narrow * narrow, 0.0));
+  mat3 group_from_world = mat3(draws[draw_of].glossy.group_from_world);
+  if (fan < 0.05) return residualLight(reflect(-to_eye, normal) * group_from_world, lobes.roughness);  // by the transpose
+  float between = fan / float(kShares);  // of one share to the next, halved: wide enough to leave no gaps
+  float roughness = sqrt(sqrt(narrow * narrow + between * between));
+  vec3 sum = vec3(0.0);
+  float weights = 0.0;
+  for (int i = 0; i < kShares; ++i) {
+    float u = (2.0 * float(i) + 1.0) / float(kShares) - 1.0;
+    vec3 leaning = normalize(normal + fan * u * inversesqrt(1.0 - u * u) * lobes.tangent);
+    vec3 mirrored = reflect(-to_eye, leaning);
+    float weight = max(dot(leaning, to_eye), 0.0) * step(0.0, dot(mirrored, normal));
+    if (weight <= 0.0) continue;
+    sum += weight * residualLight(mirrored * group_from_world, roughness);
+    weights += weight;
+  }
+  return weights > 0.0 ? sum / weights : vec3(0.0);
+}
+#endif
+
 vec3 reflectedLight(vec3 base_color) {
   TangentFrame frame = pixelFrame();
   vec3 normal = pixelNormal(frame), to_eye = towardsEye();
@@ -265,8 +291,7 @@ vec3 reflectedLight(vec3 base_color) {
   float seen = f0 * reflected.f0_light.w + lobes.fresnel.f90 * reflected.f90_light.w;
   float open = f0 * reflected.albedo.x + lobes.fresnel.f90 * reflected.albedo.y;
   float visibility = clamp(seen / max(open, 1e-6), 0.0, 1.0);
-  vec3 mirrored = reflect(-to_eye, normal) * mat3(draws[draw_of].glossy.group_from_world);  // by the transpose
-  radiance += visibility * rho * residualLight(mirrored, lobes.roughness);
+  radiance += visibility * rho * residualOver(lobes, normal, to_eye);
 #endif
 #endif
   return radiance;
