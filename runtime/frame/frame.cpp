@@ -354,7 +354,8 @@ Result<void> Frame::marchVolumes(World& world, const spec::View& view) {
   if (!hdr_color_target_) hdr_color_target_ = gpu::Framebuffer("hdr color", hdr_, nullptr);
   std::vector<effects::volume::PlacedVolume> placed;
   for (std::uint32_t v = 0; v < volumes.size(); ++v)
-    placed.push_back({v, world.worldFromGroup(volumes[v].group)});
+    if (world.showsSurfaces(world.residency().groups()[volumes[v].group].bundle))
+      placed.push_back({v, world.worldFromGroup(volumes[v].group)});
   Result<void> done = march_->draw(world.residency(), volume_, placed, view,
                                    {hdr_color_target_, depth_, options_.size}, pass.counters());
   counts_.volumes_drawn = march_->drawnLast();
@@ -432,6 +433,13 @@ Result<void> Frame::raster(World& world, const lighting::Environment& environmen
   near_lights_.bind(view, options_.size);
   clearPicture();
   surfaces_.drawOpaque(world, pass.counters());
+  if (options_.view.view == SurfaceView::Final || options_.view.view == SurfaceView::Wireframe) {
+    if (Result<void> done =
+            stand_ins_.prepare(world, environment, lit_scene_.lights, options_.settings, pass.counters());
+        !done)
+      return done;
+    stand_ins_.draw(view, pass.counters());
+  }
   if (showsLight(options_.view.view)) {
     sky_.draw(environment, view.view_from_world, view.clip_from_view, options_.size.height, pass.counters());
     glDepthFunc(GL_LESS);

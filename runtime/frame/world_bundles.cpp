@@ -45,6 +45,7 @@ Result<std::uint32_t> World::open(const std::filesystem::path& path, const OpenO
                 .size = {},
                 .target = {},
                 .steps = {},
+                .proxies = {},
                 .batch = {},
                 .materials = {},
                 .replacement = {},
@@ -68,6 +69,7 @@ Result<std::uint32_t> World::open(const std::filesystem::path& path, const OpenO
   if (slot == bundles_.size()) bundles_.emplace_back();
   bundles_[slot].emplace(std::move(bundle));
   ++bundles_version_;
+  ++stand_ins_version_;
   rebuildTables();
   return slot;
 }
@@ -80,6 +82,7 @@ void World::close(std::uint32_t bundle) {
   if (residency_.present(bundle)) residency_.remove(bundle);
   bundles_[bundle].reset();
   ++bundles_version_;
+  ++stand_ins_version_;
   scene::updateTransforms(registry_);
   rebuildTables();
 }
@@ -108,6 +111,7 @@ Result<void> World::replace(std::uint32_t bundle, const std::filesystem::path& p
   old.replacement.emplace(Replacement{
       .reader = reader,
       .parts = std::move(*parts),
+      .proxies = Proxies(reader->description().groups.size()),
       .steps = std::move(steps),
       .loader = streaming::Loader(reader, std::move(work), std::max(1u, std::thread::hardware_concurrency())),
       .staged = *staged});
@@ -128,6 +132,8 @@ void World::uploadReplacement(Bundle& bundle, std::uint64_t& budget_bytes, gpu::
     const std::uint64_t bytes = streaming::Residency::uploadBytes(item);
     budget_bytes -= std::min(budget_bytes, bytes);
     counters.uploaded_bytes += bytes;
+    if (const auto* ready = std::get_if<streaming::ProxyReady>(&item))
+      next.proxies[ready->group] = ready->proxy;
     if (const Result<void> done = residency_.uploadStaged(next.staged, item); !done) {
       bundle.replacement_error = inBundle(*next.reader, done.error());
       break;
@@ -142,7 +148,7 @@ void World::swapIn(std::uint32_t slot) {
   Replacement next = std::move(*bundle.replacement);
   bundle.replacement.reset();
   retire(bundle);
-  if (next.steps.front() > 0) {
+  if (hasSurfaces(next.parts, next.steps)) {
     residency_.show(next.staged, slot);
   } else {  // nothing of it is wanted now
     residency_.discard(next.staged);
@@ -155,12 +161,14 @@ void World::swapIn(std::uint32_t slot) {
   bundle.world_from_node_at_rest = gltf::worldTransforms(now.nodes);
   setParts(bundle, std::move(next.parts));
   bundle.steps = next.steps;
+  bundle.proxies = std::move(next.proxies);
   if (limited()) bundle.target = next.steps;
   bundle.bytes_read = next.loader.bytesRead();
   bundle.materials = now.materials;
   bundle.error.reset();
   retired_.push_back(std::move(next.loader));
   ++bundles_version_;
+  ++stand_ins_version_;
   rebuildTables();
   playAnimations(0.0f);  // nodes that stood where the old one's animations put them
 }

@@ -6,6 +6,7 @@
 #include "runtime/frame/world.hpp"
 #include "runtime/scene/bounds.hpp"
 #include "runtime/streaming/interest.hpp"
+#include "runtime/streaming/sizes.hpp"
 
 namespace lambent::frame {
 
@@ -20,6 +21,12 @@ std::uint64_t bytesOf(const streaming::Parts& parts, const std::vector<std::uint
   for (std::size_t u = 0; u < parts.units.size(); ++u)
     for (std::uint32_t s = 0; s < steps[u]; ++s) bytes += parts.units[u][s].bytes;
   return bytes;
+}
+
+Shown shownOf(const streaming::Parts& parts, const std::vector<std::uint32_t>& steps) {
+  if (steps.front() < parts.surfaceSteps())
+    return parts.hasStandIn() && steps.front() > 0 ? Shown::StandIn : Shown::Nothing;
+  return std::ranges::equal(steps, parts.units, {}, {}, &streaming::Unit::size) ? Shown::Full : Shown::Partly;
 }
 
 std::vector<std::uint32_t> allSteps(const streaming::Parts& parts) {
@@ -40,6 +47,10 @@ std::vector<Next> missing(const streaming::Parts& parts, const std::vector<float
   for (std::uint32_t u = 0; u < parts.units.size(); ++u)
     for (std::uint32_t s = have[u]; s < target[u]; ++s)
       list.push_back({size[u] * streaming::worthOf(u, s, parts.units[u].size()), u, s});
+  // Stand-ins of all bundles come before anything else.
+  constexpr float kStandInsFirst = 1e6f;
+  for (Next& next : list)
+    if (next.unit == 0 && next.step + 1 < parts.surfaceSteps()) next.worth *= kStandInsFirst;
   std::ranges::sort(list, [](const Next& a, const Next& b) {
     return std::tuple(-a.worth, a.unit, a.step) < std::tuple(-b.worth, b.unit, b.step);
   });
@@ -160,12 +171,9 @@ void World::cancelBatch(std::uint32_t slot) {
 // What is here or comes and should not.
 void World::evict(std::uint32_t slot) {
   Bundle& bundle = *bundles_[slot];
-  if (bundle.target.front() == 0) {
-    if (!residency_.present(slot)) return;
-    retire(bundle);
-    residency_.remove(slot);
-    std::ranges::fill(bundle.steps, 0u);
-    rebuildTables();
+  if (!hasSurfaces(bundle.parts, bundle.target)) {
+    if (residency_.present(slot)) endSurfaces(slot);
+    if (bundle.target.front() == 0) dropStandIn(bundle);
     return;
   }
   if (bundle.batch) {
@@ -190,12 +198,12 @@ bool World::startBatch(std::uint32_t slot) {
            taken + bundle.parts.units[next.unit][next.step].bytes <= max_resident_bytes_;
   };
   if (list.empty() || !fits(list.front())) return false;
-  if (!residency_.present(slot)) {
-    if (const Result<void> added = residency_.add(bundle.reader->description(), slot); !added) {
-      bundle.error = inBundle(*bundle.reader, added.error());
+  const bool stands_in = list.front().unit == 0 && list.front().step + 1 < bundle.parts.surfaceSteps();
+  if (!stands_in && !residency_.present(slot)) {
+    if (const Result<void> begun = beginSurfaces(slot); !begun) {
+      bundle.error = inBundle(*bundle.reader, begun.error());
       return false;
     }
-    rebuildTables();
   }
   std::vector<streaming::Work> work;
   std::deque<Piece> pieces;
@@ -205,6 +213,7 @@ bool World::startBatch(std::uint32_t slot) {
     if (!pieces.empty() && (bytes + step.bytes > kBatchBytes || pieces.front().unit == 0)) break;
     if (step.work.empty()) {  // a bundle that shows nothing
       ++bundle.steps[next.unit];
+      ++stand_ins_version_;
       continue;
     }
     taken += step.bytes;
@@ -247,7 +256,7 @@ void World::takeFrom(std::uint32_t slot, std::uint64_t& budget_bytes, gpu::Count
     const std::uint64_t bytes = streaming::Residency::uploadBytes(item);
     budget_bytes -= std::min(budget_bytes, bytes);
     counters.uploaded_bytes += bytes;
-    if (const Result<void> done = residency_.upload(slot, item); !done) {
+    if (const Result<void> done = accept(slot, item); !done) {
       bundle.error = inBundle(*bundle.reader, done.error());
       break;
     }
@@ -255,6 +264,7 @@ void World::takeFrom(std::uint32_t slot, std::uint64_t& budget_bytes, gpu::Count
     piece.begun = true;
     if (--piece.items > 0) continue;
     ++bundle.steps[piece.unit];
+    if (piece.unit == 0) ++stand_ins_version_;
     bundle.batch->pieces.pop_front();
   }
   if (const auto error = bundle.batch->loader.error()) bundle.error = *error;
@@ -275,6 +285,12 @@ StreamingStatus World::streaming() const {
                          .resident_bytes = residency_.bytesResident(),
                          .megabytes_per_s = rate_.megabytes_per_s,
                          .bundles = {}};
+  for (const StandIn& stand_in : standIns())
+    for (std::uint32_t g = 0; g < stand_in.proxies.size(); ++g)
+      if (const auto& proxy = stand_in.proxies[g])
+        status.stand_in_bytes += streaming::kStandInGroupBytes +
+                                 streaming::kStandInTriangleBytes * proxy->levels.front().triangle_count;
+  status.resident_bytes += status.stand_in_bytes;
   for (std::uint32_t i = 0; i < bundles_.size(); ++i) {
     if (!bundles_[i]) continue;
     const Bundle& bundle = *bundles_[i];
@@ -284,7 +300,8 @@ StreamingStatus World::streaming() const {
                               .wanted_bytes = bytesOf(bundle.parts, bundle.target),
                               .resident_bytes = bytesOf(bundle.parts, bundle.steps),
                               .size = bundle.size.front(),
-                              .state = this->status(i).state});
+                              .state = this->status(i).state,
+                              .shown = shownOf(bundle.parts, bundle.steps)});
     if (bundle.batch)
       for (const Piece& piece : bundle.batch->pieces) status.in_flight_bytes += piece.bytes;
     for (std::size_t u = 0; u < bundle.steps.size(); ++u)

@@ -20,6 +20,8 @@ constexpr float kSurfaces = 64.0f, kCodebooks = 16.0f, kFirstPlanes = 8.0f, kLas
 constexpr float kStays = 1.5f;
 static_assert(kSurfaces > kStays * kCodebooks && kCodebooks > kStays * kFirstPlanes);
 
+constexpr std::uint64_t kStandInShare = 4;  // of the memory, one part of so many comes first
+
 constexpr float kOutOfSight = 0.1f;  // the camera may turn at any moment
 constexpr float kLargest = 100.0f;   // standing in it, or near enough
 
@@ -71,15 +73,28 @@ void choose(std::span<Interest> bundles, std::uint64_t max_bytes) {
     return std::tuple(-a.worth, a.bundle, a.unit, a.step) < std::tuple(-b.worth, b.bundle, b.unit, b.step);
   });
   std::uint64_t taken = 0;
-  for (const Candidate& candidate : candidates) {
+  const auto take = [&](const Candidate& candidate, std::uint64_t most) {
     Interest& bundle = bundles[candidate.bundle];
     // Where a step had no room, those that come after it have nothing to stand on.
-    if (bundle.target[candidate.unit] != candidate.step) continue;
-    if (candidate.unit != 0 && bundle.target[0] == 0) continue;
-    if (taken + candidate.bytes > max_bytes && taken > 0) continue;
+    if (bundle.target[candidate.unit] != candidate.step) return;
+    if (candidate.unit != 0 && bundle.target[0] != bundle.parts->surfaceSteps()) return;
+    if (taken + candidate.bytes > most) return;
     taken += candidate.bytes;
     ++bundle.target[candidate.unit];
-  }
+  };
+  const auto isStandIn = [&](const Candidate& candidate) {
+    return candidate.unit == 0 && candidate.step + 1 < bundles[candidate.bundle].parts->surfaceSteps();
+  };
+  const auto largest = std::ranges::find_if(
+      candidates, [&](const Candidate& candidate) { return candidate.unit == 0 && !isStandIn(candidate); });
+  if (largest == candidates.end()) return;
+  constexpr std::uint64_t kInAnyCase = ~std::uint64_t{0};
+  for (const Candidate& candidate : candidates)
+    if (candidate.bundle == largest->bundle && candidate.unit == 0) take(candidate, kInAnyCase);
+  const std::uint64_t with_stand_ins = std::min(max_bytes, taken + max_bytes / kStandInShare);
+  for (const Candidate& candidate : candidates)
+    if (isStandIn(candidate)) take(candidate, with_stand_ins);
+  for (const Candidate& candidate : candidates) take(candidate, max_bytes);
 }
 
 }  // namespace lambent::streaming

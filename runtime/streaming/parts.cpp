@@ -53,11 +53,11 @@ std::uint32_t Parts::planesIn(std::uint32_t group, std::uint32_t steps, std::uin
   return count;
 }
 
-Result<Parts> partsOf(const bundle::Reader& reader, bool exact) {
+Result<Parts> partsOf(const bundle::Reader& reader, bool limited) {
   const bundle::Description& d = reader.description();
   Parts parts;
   parts.units.resize(1 + d.groups.size());
-  Step& base = parts.units.front().emplace_back();
+  Step stand_in, base;
   std::vector<Step> codebooks(d.groups.size());
   std::vector<std::vector<PlaneWork>> planes(d.groups.size());
   for (const Work& work : workList(d)) {
@@ -67,6 +67,8 @@ Result<Parts> partsOf(const bundle::Reader& reader, bool exact) {
       add(codebooks[codebook->group], work, 0);
     } else if (const auto* weights = std::get_if<LightWeightsWork>(&work)) {
       add(codebooks[weights->group], work, 0);
+    } else if (const auto* proxy = std::get_if<ProxyWork>(&work); proxy != nullptr && limited) {
+      add(stand_in, work, standInBytes(d, proxy->group));
     } else {
       add(base, work, 0);
     }
@@ -74,11 +76,13 @@ Result<Parts> partsOf(const bundle::Reader& reader, bool exact) {
   Needs needs = needsOf(d);
   needs.transfer = 0;
   base.bytes = needs.total();
-  if (exact) {
+  if (limited) {
     const Result<std::uint64_t> textures = textureBytes(reader);
     if (!textures) return failAgain(textures.error());
     base.bytes += *textures;
   }
+  if (!stand_in.work.empty()) parts.units.front().push_back(std::move(stand_in));
+  parts.units.front().push_back(std::move(base));
   for (std::uint32_t g = 0; g < d.groups.size(); ++g) {
     if (codebooks[g].work.empty()) continue;
     for (const bundle::Cell& cell : d.groups[g].cells) {
