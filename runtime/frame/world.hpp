@@ -202,9 +202,11 @@ class World {
   // Steps on their way, in the order in which they were asked for.
   struct Piece {
     std::uint32_t unit = 0;
+    std::vector<streaming::Work> work;
     std::size_t items = 0;  // still to come
     bool begun = false;
     std::uint64_t bytes = 0;
+    std::uint32_t steps = 1;  // of an image it may bring several at once
   };
   struct Batch {
     streaming::Loader loader;
@@ -254,6 +256,7 @@ class World {
   void retire(Bundle& bundle);
   void request();
   bool startBatch(std::uint32_t slot);
+  void countOne(Bundle& bundle);  // of the items of its batch has come
   void takeFrom(std::uint32_t slot, std::uint64_t& budget_bytes, gpu::Counters& counters);
   std::uint64_t bytesTaken() const;  // by what is here or on its way
   static bool settled(const Bundle& bundle) {

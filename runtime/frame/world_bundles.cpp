@@ -104,10 +104,7 @@ Result<void> World::replace(std::uint32_t bundle, const std::filesystem::path& p
   const Result<streaming::Residency::Staged> staged = residency_.stage(reader->description());
   if (!staged) return giveUp(inBundle(*reader, staged.error()));
   std::vector<std::uint32_t> steps = stepsForReplacement(bundle, *parts);
-  std::vector<streaming::Work> work;
-  for (std::size_t u = 0; u < steps.size(); ++u)
-    for (std::uint32_t s = 0; s < steps[u]; ++s)
-      work.insert(work.end(), parts->units[u][s].work.begin(), parts->units[u][s].work.end());
+  std::vector<streaming::Work> work = parts->workOf(steps);
   old.replacement.emplace(Replacement{
       .reader = reader,
       .parts = std::move(*parts),
@@ -196,6 +193,7 @@ Result<void> World::uploadAll(gpu::Counters& counters) {
   // What has come in one call makes room for what the next one asks for; where both bring nothing and have
   // nothing on its way, nothing comes any more.
   constexpr int kIdleCalls = 2;
+  chooseTargets();  // the camera may look elsewhere than when all had come
   for (int idle = 0; !loaded() && idle < kIdleCalls;) {
     const std::uint64_t before = residency_.version();
     if (Result<void> done = upload(kPieceBytes, counters); !done) return done;

@@ -46,7 +46,7 @@ std::vector<Next> missing(const streaming::Parts& parts, const std::vector<float
   std::vector<Next> list;
   for (std::uint32_t u = 0; u < parts.units.size(); ++u)
     for (std::uint32_t s = have[u]; s < target[u]; ++s)
-      list.push_back({size[u] * streaming::worthOf(u, s, parts.units[u].size()), u, s});
+      list.push_back({streaming::worthOf(parts, u, s, size[u]), u, s});
   // Stand-ins of all bundles come before anything else.
   constexpr float kStandInsFirst = 1e6f;
   for (Next& next : list)
@@ -87,6 +87,9 @@ void World::seeBundle(Bundle& bundle) const {
     bundle.size[1 + g] = std::max(streaming::sizeSeen(*view_, box.center(), box.radius()), kLeast);
     bundle.size[0] = std::max(bundle.size[0], bundle.size[1 + g]);
   }
+  for (std::size_t u = bundle.parts.firstImageUnit(); u < bundle.size.size(); ++u)
+    for (const std::uint32_t group : bundle.parts.imageOf(u).groups)
+      bundle.size[u] = std::max(bundle.size[u], bundle.size[1 + group]);
 }
 
 void World::chooseTargets() {
@@ -144,6 +147,7 @@ void World::retire(Bundle& bundle) {
   if (!bundle.batch) return;
   bundle.bytes_read += bundle.batch->loader.bytesRead();
   bundle.batch->loader.stop();
+  residency_.cancelImage(bundle.options.bundle_index);
   retired_.push_back(std::move(bundle.batch->loader));
   bundle.batch.reset();
 }
@@ -151,6 +155,11 @@ void World::retire(Bundle& bundle) {
 void World::dropTo(std::uint32_t slot, std::uint32_t unit, std::uint32_t steps) {
   Bundle& bundle = *bundles_[slot];
   bundle.steps[unit] = steps;
+  if (bundle.parts.isImage(unit)) {
+    residency_.dropLevels(slot, static_cast<std::uint32_t>(unit - bundle.parts.firstImageUnit()),
+                          bundle.parts.levelsIn(unit, steps));
+    return;
+  }
   const std::uint32_t group = unit - 1;
   if (steps == 0)
     residency_.dropTransfer(slot, group);
@@ -178,7 +187,7 @@ void World::evict(std::uint32_t slot) {
   }
   if (bundle.batch) {
     std::vector<std::uint32_t> coming = bundle.steps;
-    for (const Piece& piece : bundle.batch->pieces) ++coming[piece.unit];
+    for (const Piece& piece : bundle.batch->pieces) coming[piece.unit] += piece.steps;
     for (std::size_t u = 0; u < coming.size(); ++u)
       if (coming[u] > bundle.target[u]) {
         cancelBatch(slot);
@@ -205,7 +214,6 @@ bool World::startBatch(std::uint32_t slot) {
       return false;
     }
   }
-  std::vector<streaming::Work> work;
   std::deque<Piece> pieces;
   for (const Next& next : list) {
     const streaming::Step& step = bundle.parts.units[next.unit][next.step];
@@ -218,10 +226,18 @@ bool World::startBatch(std::uint32_t slot) {
     }
     taken += step.bytes;
     bytes += step.bytes;
-    work.insert(work.end(), step.work.begin(), step.work.end());
-    pieces.push_back({.unit = next.unit, .items = step.work.size(), .bytes = step.bytes});
+    const auto coarser = std::ranges::find(pieces, next.unit, &Piece::unit);
+    if (bundle.parts.isImage(next.unit) && coarser != pieces.end()) {  // the finer level brings all
+      coarser->work = step.work;
+      coarser->bytes += step.bytes;
+      ++coarser->steps;
+      continue;
+    }
+    pieces.push_back({.unit = next.unit, .work = step.work, .items = step.work.size(), .bytes = step.bytes});
   }
   if (pieces.empty()) return false;
+  std::vector<streaming::Work> work;
+  for (const Piece& piece : pieces) work.insert(work.end(), piece.work.begin(), piece.work.end());
   const unsigned threads = std::max(1u, std::thread::hardware_concurrency() / kBatches);
   bundle.batch.emplace(Batch{.loader = streaming::Loader(bundle.reader, std::move(work), threads),
                              .pieces = std::move(pieces)});
@@ -250,22 +266,46 @@ void World::request() {
   }
 }
 
+void World::countOne(Bundle& bundle) {
+  Piece& piece = bundle.batch->pieces.front();
+  piece.begun = true;
+  if (--piece.items > 0) return;
+  bundle.steps[piece.unit] += piece.steps;
+  if (piece.unit == 0) ++stand_ins_version_;
+  bundle.batch->pieces.pop_front();
+}
+
 void World::takeFrom(std::uint32_t slot, std::uint64_t& budget_bytes, gpu::Counters& counters) {
   Bundle& bundle = *bundles_[slot];
-  for (const streaming::Ready& item : bundle.batch->loader.take(budget_bytes)) {
-    const std::uint64_t bytes = streaming::Residency::uploadBytes(item);
+  const auto spend = [&](std::uint64_t bytes) {
     budget_bytes -= std::min(budget_bytes, bytes);
     counters.uploaded_bytes += bytes;
+  };
+  // What is large comes over several frames.
+  const auto comes = [&] {
+    if (!residency_.imageComes(slot)) return false;
+    spend(residency_.continueImage(slot, budget_bytes));
+    if (residency_.imageComes(slot)) return true;
+    countOne(bundle);
+    return false;
+  };
+  if (comes()) return;
+  std::vector<streaming::Ready> items = bundle.batch->loader.take(budget_bytes);
+  for (streaming::Ready& item : items) {
+    const std::uint64_t bytes = streaming::Residency::uploadBytes(item);
+    // What is larger than the budget comes alone.
+    if (auto* image = std::get_if<streaming::ImageReady>(&item);
+        image != nullptr && bytes > budget_bytes && items.size() == 1) {
+      residency_.beginImage(slot, std::move(*image));
+      if (comes()) return;
+      continue;
+    }
+    spend(bytes);
     if (const Result<void> done = accept(slot, item); !done) {
       bundle.error = inBundle(*bundle.reader, done.error());
       break;
     }
-    Piece& piece = bundle.batch->pieces.front();
-    piece.begun = true;
-    if (--piece.items > 0) continue;
-    ++bundle.steps[piece.unit];
-    if (piece.unit == 0) ++stand_ins_version_;
-    bundle.batch->pieces.pop_front();
+    countOne(bundle);
   }
   if (const auto error = bundle.batch->loader.error()) bundle.error = *error;
   if (bundle.error || bundle.batch->pieces.empty()) retire(bundle);

@@ -16,6 +16,11 @@ namespace {
 // What a step is worth, against the last share of planes of what is seen as large: surfaces are kept until
 // something is sqrt(64) times larger in sight.
 constexpr float kSurfaces = 64.0f, kCodebooks = 16.0f, kFirstPlanes = 8.0f, kLastPlanes = 1.0f;
+// A level of a texture, whose texels are no smaller than pixels; of smaller ones as much less as they are
+// smaller.
+constexpr float kTexels = 8.0f;
+// What a sphere of size 1 measures across in a picture of 1080 rows and 50 degrees.
+constexpr float kPixels = 2300.0f;
 // What was chosen before is worth more.
 constexpr float kStays = 1.5f;
 static_assert(kSurfaces > kStays * kCodebooks && kCodebooks > kStays * kFirstPlanes);
@@ -33,11 +38,18 @@ struct Candidate {
 
 }  // namespace
 
-float worthOf(std::uint32_t unit, std::uint32_t step, std::size_t steps) {
-  if (unit == 0) return kSurfaces;
-  if (step == 0) return kCodebooks;
+float worthOf(const Parts& parts, std::uint32_t unit, std::uint32_t step, float size) {
+  if (unit == 0) return size * kSurfaces;
+  if (parts.isImage(unit)) {
+    const Parts::Image& image = parts.imageOf(unit);
+    const std::uint32_t side = std::max(image.width, image.height) >> (image.coarse - 1 - step);
+    const float pixels_a_texel = kPixels * std::sqrt(size) / static_cast<float>(side);
+    return size * kTexels * std::min(pixels_a_texel * pixels_a_texel, 1.0f);
+  }
+  if (step == 0) return size * kCodebooks;
+  const std::size_t steps = parts.units[unit].size();
   const float share = static_cast<float>(step - 1) / static_cast<float>(std::max<std::size_t>(steps - 1, 1));
-  return kFirstPlanes + share * (kLastPlanes - kFirstPlanes);
+  return size * (kFirstPlanes + share * (kLastPlanes - kFirstPlanes));
 }
 
 float sizeSeen(const spec::View& view, const glm::vec3& center_ws, float radius_m) {
@@ -64,7 +76,7 @@ void choose(std::span<Interest> bundles, std::uint64_t max_bytes) {
       const Unit& unit = bundle.parts->units[u];
       for (std::uint32_t s = 0; s < unit.size(); ++s) {
         const float stays = s < bundle.target[u] ? kStays : 1.0f;
-        candidates.push_back({stays * bundle.size[u] * worthOf(u, s, unit.size()), b, u, s, unit[s].bytes});
+        candidates.push_back({stays * worthOf(*bundle.parts, u, s, bundle.size[u]), b, u, s, unit[s].bytes});
       }
     }
     std::ranges::fill(bundle.target, 0u);
