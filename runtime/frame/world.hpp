@@ -33,8 +33,8 @@ namespace lambent::frame {
 
 struct WorldOptions {
   // Of GPU memory that the bundles may take together; what the camera sees large comes first (interest.hpp).
-  // Only a replacement on its way lies beside that, and the surfaces of one bundle that are more by
-  // themselves.
+  // Beside that lie only a replacement on its way, a texture while it becomes finer, and the surfaces of one
+  // bundle that are more by themselves.
   std::uint64_t max_resident_bytes = ~std::uint64_t{0};
 };
 
