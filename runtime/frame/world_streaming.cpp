@@ -202,8 +202,10 @@ bool World::startBatch(std::uint32_t slot) {
   Bundle& bundle = *bundles_[slot];
   std::uint64_t taken = bytesTaken(), bytes = 0;
   const std::vector<Next> list = missing(bundle.parts, bundle.size, bundle.steps, bundle.target);
+  // The surfaces of what is largest have room in any case.
+  const bool only_stand_ins = std::ranges::none_of(residency_.bundles(), &streaming::ResidentBundle::present);
   const auto fits = [&](const Next& next) {
-    return !limited() || taken == 0 ||
+    return !limited() || only_stand_ins ||
            taken + bundle.parts.units[next.unit][next.step].bytes <= max_resident_bytes_;
   };
   if (list.empty() || !fits(list.front())) return false;

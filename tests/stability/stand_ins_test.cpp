@@ -209,6 +209,25 @@ TEST_F(StandIns, GiveWayInOneFrameAndAreNeverSeenTogetherWithTheSurfaces) {
   EXPECT_TRUE(std::ranges::equal(at_once.picture().texels, expected.texels)) << "bit for bit";
 }
 
+TEST_F(StandIns, LeaveTheLargestToItsSurfacesHoweverLittleRoomThereIs) {
+  Place place({near, far}, 1);
+  place.picture();
+  EXPECT_EQ(place.shown(0), Shown::Partly);
+  EXPECT_EQ(place.shown(1), Shown::Nothing);
+}
+
+TEST_F(StandIns, AreThoseOfTheReplacementOnceItHasCome) {
+  Place place({near, far}, tight());
+  const Right before(place.picture());
+  ASSERT_TRUE(place.world.replace(1, far));
+  EXPECT_EQ(Right(place.picture()).covered, before.covered);
+  EXPECT_EQ(place.shown(1), Shown::StandIn);
+  ASSERT_TRUE(place.world.replace(1, near));  // there is room for all of it
+  EXPECT_EQ(Right(place.picture()).pixels, 0u) << "it is on the left";
+  EXPECT_EQ(place.shown(1), Shown::Full);
+  EXPECT_TRUE(place.world.errors().empty());
+}
+
 TEST_F(StandIns, FollowTheLightAndTheirPlace) {
   Place place({near, far}, tight());
   const Right before(place.picture());
