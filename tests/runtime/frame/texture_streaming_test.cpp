@@ -105,7 +105,7 @@ TEST_F(TextureStreaming, BytesFallWithTheBudgetAndThePictureStaysNear) {
     EXPECT_GE(finest(stage, 0), finest(stage, 2)) << "what is near has the finer one";
     EXPECT_GE(finest(stage, 2), streaming::kCoarseSide);
     const double error = relativeRms(image, expected);
-    EXPECT_LT(error, 0.06) << "a share of one in " << share;
+    EXPECT_LT(error, 0.03) << "a share of one in " << share;
     EXPECT_GE(error, before);
     before = error;
   }
