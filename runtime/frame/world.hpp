@@ -105,6 +105,7 @@ struct StreamingStatus {
 // A bundle whose surfaces are not here: by group, as others see it; none: nothing to see.
 struct StandIn {
   std::uint32_t bundle = 0;
+  std::uint64_t id = 0;  // of these proxies; no others ever have it
   std::span<const std::optional<bundle::CaptureProxy>> proxies;
 };
 
@@ -230,6 +231,7 @@ class World {
     std::vector<float> size;                   // by unit, as the camera sees it
     std::vector<std::uint32_t> target, steps;  // by unit: that should be here, that are
     Proxies proxies;                           // of its stand-in
+    std::uint64_t proxies_id = 0;
     std::optional<Batch> batch;
     std::uint64_t bytes_read = 0;           // before the batch
     std::vector<gltf::Material> materials;  // as they are now
@@ -290,7 +292,7 @@ class World {
   };
   Chosen chosen_;
   std::uint64_t bundles_version_ = 1;  // rises when one is opened, closed or replaced
-  std::uint64_t stand_ins_version_ = 1;
+  std::uint64_t stand_ins_version_ = 1, next_proxies_id_ = 1;
   std::vector<streaming::Loader> retired_;  // until their workers have ended
   struct Rate {
     std::chrono::steady_clock::time_point since = std::chrono::steady_clock::now();

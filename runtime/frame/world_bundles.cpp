@@ -159,6 +159,7 @@ void World::swapIn(std::uint32_t slot) {
   setParts(bundle, std::move(next.parts));
   bundle.steps = next.steps;
   bundle.proxies = std::move(next.proxies);
+  bundle.proxies_id = next_proxies_id_++;
   if (limited()) bundle.target = next.steps;
   bundle.bytes_read = next.loader.bytesRead();
   bundle.materials = now.materials;

@@ -15,7 +15,7 @@ std::vector<StandIn> World::standIns() const {
     if (!bundles_[slot]) continue;
     const Bundle& bundle = *bundles_[slot];
     if (bundle.parts.hasStandIn() && bundle.steps.front() > 0 && !hasSurfaces(bundle.parts, bundle.steps))
-      list.push_back({.bundle = slot, .proxies = bundle.proxies});
+      list.push_back({.bundle = slot, .id = bundle.proxies_id, .proxies = bundle.proxies});
   }
   return list;
 }
@@ -33,6 +33,7 @@ Result<void> World::accept(std::uint32_t slot, const streaming::Ready& item) {
   if (ready == nullptr || !bundle.parts.hasStandIn()) return residency_.upload(slot, item);
   bundle.proxies.resize(bundle.reader->description().groups.size());
   bundle.proxies[ready->group] = ready->proxy;
+  bundle.proxies_id = next_proxies_id_++;
   return {};
 }
 
