@@ -2,9 +2,11 @@
 // [--share S] [--copies N] [--frames N] [--size WxH] [--light LIGHT]. Opens every bundle N times, side by
 // side along X, and flies past them twice: with room for all, all of it here, and with room for a share S of
 // that, streaming. Prints for both how long frames took: median, worst, how many took over twice the median,
-// and as a histogram; and what was resident. Wall time of a frame until the GPU is done, and the CPU time of
-// all threads in it, which says what a frame costs where others use the machine too.
+// and as a histogram; what was resident, and how bundles were shown. Wall time of a frame until the GPU is
+// done, and the CPU time of all threads in it, which says what a frame costs where others use the machine
+// too.
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -110,6 +112,7 @@ struct Row {
 
 struct Flight {
   frame::FrameTimes times, cpu_times;
+  std::array<std::size_t, 4> shown{};  // bundles in frames, by frame::Shown
   std::uint64_t most_bytes = 0, least_bytes = ~std::uint64_t{0}, uploaded = 0;
   std::size_t brought = 0;  // frames that uploaded something
   // Where the time of the slowest frames went: milliseconds, and the passes that took most.
@@ -154,7 +157,10 @@ Flight fly(const Words& words, Row& row, const lighting::Environment& environmen
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
     flight.times.add(wall_ms);
     flight.cpu_times.add(1e3 * static_cast<double>(std::clock() - cpu_start) / CLOCKS_PER_SEC);
-    const std::uint64_t bytes = row.world.residency().bytesResident();
+    const frame::StreamingStatus status = row.world.streaming();
+    const std::uint64_t bytes = status.resident_bytes;
+    for (const frame::BundleStreaming& bundle : status.bundles)
+      ++flight.shown[static_cast<std::size_t>(bundle.shown)];
     flight.most_bytes = std::max(flight.most_bytes, bytes);
     flight.least_bytes = std::min(flight.least_bytes, bytes);
     frame->timers().finish();
@@ -189,6 +195,14 @@ void print(const std::string& name, const Flight& flight) {
              static_cast<double>(flight.least_bytes) / kMegabyte,
              static_cast<double>(flight.most_bytes) / kMegabyte,
              static_cast<double>(flight.uploaded) / kMegabyte, flight.brought);
+  double all = 0.0;
+  for (const std::size_t shown : flight.shown) all += static_cast<double>(shown);
+  const auto percent = [&](frame::Shown shown) {
+    return 100.0 * static_cast<double>(flight.shown[static_cast<std::size_t>(shown)]) / all;
+  };
+  fmt::print("  bundles shown in full {:.1f} %, partly {:.1f} %, by stand-ins {:.1f} %, not {:.1f} %\n",
+             percent(frame::Shown::Full), percent(frame::Shown::Partly), percent(frame::Shown::StandIn),
+             percent(frame::Shown::Nothing));
   print("wall", flight.times);
   print("CPU of all threads", flight.cpu_times);
   for (const auto& [wall_ms, passes] : flight.slowest) fmt::print("  slow: {:.1f} ms: {}\n", wall_ms, passes);

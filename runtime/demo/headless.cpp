@@ -111,9 +111,9 @@ Result<void> runHeadless(const Options& options) {
       if (Result<void> finished = finishPicture(i); !finished) return finished;
   }
   if (!options.json) return {};
-  report.bytes_resident = world.residency().bytesResident() + frame->volumeBytes();
   report.parts = world.loadedParts();
   report.streaming = world.streaming();
+  report.bytes_resident = report.streaming.resident_bytes + frame->volumeBytes();
   report.negative_pixels = frame->negativePixels();
   report.exposure_ev = frame->exposureEv();
   report.gl_errors = context->errors();

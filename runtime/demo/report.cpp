@@ -60,11 +60,13 @@ Json frameTimesJson(std::vector<double> frame_ms) {
 }
 
 Json streamingJson(const frame::StreamingStatus& status) {
+  constexpr const char* kShown[] = {"nothing", "stand-in", "partly", "full"};
   constexpr const char* kStates[] = {"closed", "loading", "partial", "whole", "damaged"};
   Json bundles = Json::array();
   for (const frame::BundleStreaming& bundle : status.bundles)
     bundles.push_back({{"name", bundle.name},
                        {"state", kStates[static_cast<std::size_t>(bundle.state)]},
+                       {"shown", kShown[static_cast<std::size_t>(bundle.shown)]},
                        {"bytes_whole", bundle.whole_bytes},
                        {"bytes_wanted", bundle.wanted_bytes},
                        {"bytes_resident", bundle.resident_bytes},
@@ -72,6 +74,11 @@ Json streamingJson(const frame::StreamingStatus& status) {
   const bool limited = status.budget_bytes != ~std::uint64_t{0};
   return {{"budget_bytes", limited ? Json(status.budget_bytes) : Json()},
           {"bytes_resident", status.resident_bytes},
+          {"bytes_of_stand_ins", status.stand_in_bytes},
+          {"shown_in_full", status.count(frame::Shown::Full)},
+          {"shown_partly", status.count(frame::Shown::Partly)},
+          {"shown_as_stand_ins", status.count(frame::Shown::StandIn)},
+          {"not_shown", status.count(frame::Shown::Nothing)},
           {"queued", status.queued},
           {"bytes_in_flight", status.in_flight_bytes},
           {"megabytes_per_second", status.megabytes_per_s},

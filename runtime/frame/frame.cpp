@@ -23,12 +23,6 @@ std::vector<Texel> flipped(const std::vector<Texel>& texels, std::size_t row_len
   return result;
 }
 
-float meanRadiance(const lighting::Environment& environment) {
-  constexpr float kMeanOfBandZero = 0.28209479f;  // y_00
-  const glm::vec3 mean = kMeanOfBandZero * environment.light().c[0];
-  return std::max({mean.r, mean.g, mean.b, 0.0f});
-}
-
 }  // namespace
 
 Frame::Frame(const FrameOptions& options, lighting::Sky sky, Surfaces surfaces, ToneMapper tone_mapper)
@@ -186,123 +180,6 @@ void Frame::transforms(World& world) {
   pass.because(reasons_.of(Cause::Moved | Cause::Materials));
 }
 
-Result<void> Frame::prepareSampling(World& world, const lighting::Environment& environment,
-                                    gpu::Counters& counters) {
-  if (!incident_ && !lit_scene_.needsSampling()) return {};
-  lighting::CaptureOptions options = options_.settings.capture;
-  if (options.order == 0) {
-    options.order = std::max(1, capture_order_);  // never fewer again: light that was captured stays
-    for (const streaming::ResidentGroup& group : world.residency().groups())
-      options.order = std::max(options.order, static_cast<int>(group.order));
-  }
-  if (!incident_) {
-    auto made = lighting::IncidentLight::create(options, environment);
-    if (!made) return failAgain(made.error());
-    incident_ = std::move(*made);
-    proxies_seen_ = 0;
-  } else if (!(options == incident_->captures().options())) {
-    if (Result<void> done = incident_->renew(options, environment); !done) return done;
-    proxies_seen_ = 0;
-  }
-  capture_order_ = options.order;
-  if (proxies_seen_ != world.residency().proxiesVersion()) {
-    proxies_seen_ = world.residency().proxiesVersion();
-    incident_->captures().setProxies(proxiesOf(world.residency()), counters);
-  }
-  return {};
-}
-
-Result<void> Frame::light(World& world, const lighting::Environment& environment) {
-  gpu::PassTimers::Scope pass(timers_, "light");
-  const FrameSettings& settings = options_.settings;
-  lit_scene_ = gatherLitScene(world, meanRadiance(environment),
-                              {.near_lights = settings.near_shadows, .bodies = settings.captures});
-  if (settings.neighborhoods || neighborhoods_.any())
-    neighborhoods_.chooseCarriers(world, lit_scene_, settings.neighborhoods);
-  keepFewerSamples(world);
-  if (Result<void> done = prepareSampling(world, environment, pass.counters()); !done) return done;
-  if (incident_) {
-    incident_->update(environment, lit_scene_.groups, lit_scene_.lights, options_.wait_for_captures);
-    counts_.incident = incident_->counts();
-    if (counts_.incident.arrived > 0) reasons_.note(Cause::Captured, "captures arrived");
-    if (counts_.incident.fading > 0) reasons_.note(Cause::Captured, "light fades from carrier to carrier");
-  }
-  std::vector<lighting::GroupPlace> places;
-  for (std::size_t g = 0; g < world.residency().groups().size(); ++g) {
-    const streaming::ResidentGroup& group = world.residency().groups()[g];
-    places.push_back({.world_from_group = world.rotationOf(g),
-                      .order = group.order,
-                      .lamps = lit_scene_.lamps[g],
-                      .incident = incidentOf(world, g),
-                      .key = lit_scene_.groups[g].key});
-  }
-  group_lights_.update(environment, settings.window, places, pass.counters(),
-                       static_cast<int>(settings.order));
-  if (pass.counters().uploaded_bytes > 0) pass.because(reasons_.of(kLightCauses, "light"));
-  counts_.groups = static_cast<std::uint32_t>(places.size());
-  counts_.bodies = static_cast<std::uint32_t>(lit_scene_.bodies.size());
-  counts_.local_lights = static_cast<std::uint32_t>(lit_scene_.lights.size());
-  counts_.near_lights = static_cast<std::uint32_t>(lit_scene_.near_lights.size());
-  counts_.near_lights_left_out = lit_scene_.near_left_out;
-  counts_.light_samples_written = group_lights_.renewedSamples();
-  return {};
-}
-
-// Others of a group's samples take the light of those.
-void Frame::keepFewerSamples(const World& world) {
-  const auto& groups = world.residency().groups();
-  fewer_samples_.assign(groups.size(), {});
-  for (std::size_t g = 0; g < groups.size(); ++g) {
-    if (groups[g].light_samples.size() <= options_.settings.light_samples) continue;
-    fewer_samples_[g] = fewerSamples(groups[g].light_samples, options_.settings.light_samples);
-    std::vector<glm::vec3> kept;
-    for (const std::uint32_t sample : fewer_samples_[g].kept)
-      kept.push_back(lit_scene_.groups[g].samples_ws[sample]);
-    lit_scene_.groups[g].samples_ws = std::move(kept);
-  }
-}
-
-std::vector<lighting::Incident> Frame::incidentOf(const World& world, std::size_t group) const {
-  const std::size_t count = world.residency().groups()[group].light_samples.size();
-  if (!incident_) return std::vector<lighting::Incident>(count);
-  std::vector<lighting::Incident> kept = incident_->incidentOf(group);
-  if (fewer_samples_[group].place.empty()) return kept;
-  std::vector<lighting::Incident> all;
-  for (const std::uint32_t place : fewer_samples_[group].place) all.push_back(kept[place]);
-  return all;
-}
-
-Result<void> Frame::capture(World& world, const lighting::Environment& environment,
-                            std::size_t max_captures) {
-  gpu::PassTimers::Scope pass(timers_, "capture");
-  if (!incident_) return {};
-  std::vector<std::uint64_t> shaded;
-  for (std::size_t g = 0; g < world.residency().groups().size(); ++g)
-    shaded.push_back(diffuse_.versionOf(g) + glossy_.versionOf(g));
-  if (Result<void> done = proxies_.shade(world.residency(), group_lights_, shaded, pass.counters()); !done)
-    return done;
-  proxy_radiance_.follow(lit_scene_.groups, &lighting::IncidentGroup::key);
-  for (std::size_t g = 0; g < lit_scene_.groups.size(); ++g) {
-    ProxyRadiance& radiance = proxy_radiance_[g];
-    if (radiance.version != proxies_.versionOf(g)) {
-      radiance.version = proxies_.versionOf(g);
-      // Shaded for another reason than light or a turn: all of it may be different.
-      const bool by_light = group_lights_.versionOf(g) != radiance.light;
-      radiance.light = group_lights_.versionOf(g);
-      radiance.drift += by_light ? double{group_lights_.changeOf(g)} : 1.0;
-    }
-    if (const std::uint32_t body = lit_scene_.groups[g].body; body != lighting::CapturePoint::kNoBody)
-      lit_scene_.bodies[body].radiance_drift = radiance.drift;
-  }
-  Result<void> done = incident_->capture(environment, lit_scene_.groups, lit_scene_.bodies, lit_scene_.lights,
-                                         proxies_.radiance(), max_captures, pass.counters());
-  counts_.incident.captured = incident_->counts().captured;
-  counts_.incident.waiting = incident_->counts().waiting;
-  if (counts_.incident.captured > 0) counts_.captured = incident_->captures().load();
-  if (pass.counters().dispatches > 0) pass.because(reasons_.of(kLightCauses, "light between bodies"));
-  return done;
-}
-
 Result<void> Frame::shade(World& world) {
   gpu::PassTimers::Scope pass(timers_, "shade");
   const FrameSettings& settings = options_.settings;
@@ -354,7 +231,8 @@ Result<void> Frame::marchVolumes(World& world, const spec::View& view) {
   if (!hdr_color_target_) hdr_color_target_ = gpu::Framebuffer("hdr color", hdr_, nullptr);
   std::vector<effects::volume::PlacedVolume> placed;
   for (std::uint32_t v = 0; v < volumes.size(); ++v)
-    placed.push_back({v, world.worldFromGroup(volumes[v].group)});
+    if (world.showsSurfaces(world.residency().groups()[volumes[v].group].bundle))
+      placed.push_back({v, world.worldFromGroup(volumes[v].group)});
   Result<void> done = march_->draw(world.residency(), volume_, placed, view,
                                    {hdr_color_target_, depth_, options_.size}, pass.counters());
   counts_.volumes_drawn = march_->drawnLast();
@@ -432,6 +310,13 @@ Result<void> Frame::raster(World& world, const lighting::Environment& environmen
   near_lights_.bind(view, options_.size);
   clearPicture();
   surfaces_.drawOpaque(world, pass.counters());
+  if (options_.view.view == SurfaceView::Final || options_.view.view == SurfaceView::Wireframe) {
+    if (Result<void> done =
+            stand_ins_.prepare(world, environment, lit_scene_.lights, options_.settings, pass.counters());
+        !done)
+      return done;
+    stand_ins_.draw(view, pass.counters());
+  }
   if (showsLight(options_.view.view)) {
     sky_.draw(environment, view.view_from_world, view.clip_from_view, options_.size.height, pass.counters());
     glDepthFunc(GL_LESS);

@@ -28,6 +28,7 @@
 #include "runtime/frame/overlays.hpp"
 #include "runtime/frame/picker.hpp"
 #include "runtime/frame/reasons.hpp"
+#include "runtime/frame/stand_ins.hpp"
 #include "runtime/frame/surfaces.hpp"
 #include "runtime/frame/tone_mapper.hpp"
 #include "runtime/frame/views.hpp"
@@ -170,6 +171,7 @@ class Frame {
   effects::diffuse::Proxies proxies_;
   LitScene lit_scene_;
   NearLights near_lights_;
+  StandIns stand_ins_;
   Neighborhoods neighborhoods_;
   std::optional<lighting::ReflectedSky> reflected_sky_;  // once a glossy surface asks for it
   std::optional<lighting::IncidentLight> incident_;      // once there is something to sample

@@ -62,7 +62,10 @@ float peakEmission(const bundle::CaptureProxy& proxy, const std::vector<glm::vec
   return peak;
 }
 
-bool within(const scene::Box& bounds, const glm::mat4& world_from_group, const lighting::LocalLight& light) {
+}  // namespace
+
+bool standsWithin(const scene::Box& bounds, const glm::mat4& world_from_group,
+                  const lighting::LocalLight& light) {
   if (bounds.empty() || light.kind == lighting::LocalLight::Kind::Directional) return false;
   const float scale = largestScale(world_from_group);
   const float determinant = glm::determinant(glm::mat3(world_from_group));
@@ -72,8 +75,6 @@ bool within(const scene::Box& bounds, const glm::mat4& world_from_group, const l
   return glm::all(glm::greaterThan(place, bounds.min - reach)) &&
          glm::all(glm::lessThan(place, bounds.max + reach));
 }
-
-}  // namespace
 
 bool LitScene::needsSampling() const {
   const auto seesOthers = [&](const lighting::IncidentGroup& group) {
@@ -142,7 +143,7 @@ LitScene gatherLitScene(const World& world, float surroundings, const LitSceneOp
       bool by_harmonics = !world.litByColumn(g, light_entities[k]);
       // Rays through a volume look up its samples alone, and no shadow cube.
       if (by_harmonics && options.near_lights && group.volume < 0 &&
-          within(bounds, world_from_group, scene.lights[k])) {
+          standsWithin(bounds, world_from_group, scene.lights[k])) {
         const std::int32_t place = nearPlace(k);
         if (place >= 0) {
           near_mask |= 1u << place;

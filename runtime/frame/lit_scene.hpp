@@ -37,6 +37,10 @@ struct LitSceneOptions {
 // radiance_drift of the bodies is for the frame to say.
 LitScene gatherLitScene(const World& world, float surroundings, const LitSceneOptions& options = {});
 
+// Whether a light that stands in the scene is within a group's bounds, which are in its frame.
+bool standsWithin(const scene::Box& bounds, const glm::mat4& world_from_group,
+                  const lighting::LocalLight& light);
+
 // The proxies of the groups that have one, in the order of the bodies.
 std::vector<const bundle::CaptureProxy*> proxiesOf(const streaming::Residency& residency);
 

@@ -93,7 +93,7 @@ bool reaches(const NearLight& light, const scene::Box& from_light) {
 bool NearLights::Caster::operator==(const Caster& other) const {
   return id == other.id && world_from_mesh == other.world_from_mesh && block.page == other.block.page &&
          block.offset == other.block.offset && block.byte_count == other.block.byte_count &&
-         masked == other.masked && image_arrived == other.image_arrived && alpha == other.alpha &&
+         masked == other.masked && image_levels == other.image_levels && alpha == other.alpha &&
          alpha_cutoff == other.alpha_cutoff;
 }
 
@@ -189,7 +189,8 @@ void NearLights::collectCasters(const World& world) {
     if (const std::int32_t texture = material.base_color_texture.texture; caster.masked && texture >= 0) {
       const streaming::ResidentBundle& bundle = residency.bundles()[draw.bundle];
       const std::int32_t image = bundle.textures[static_cast<std::size_t>(texture)].image;
-      caster.image_arrived = image >= 0 && bool(bundle.images[static_cast<std::size_t>(image)]);
+      if (image >= 0 && bundle.images[static_cast<std::size_t>(image)])
+        caster.image_levels = bundle.images[static_cast<std::size_t>(image)].desc().levels;
     }
     casters_.push_back(caster);
   }

@@ -67,7 +67,8 @@ class NearLights {
     glm::mat4 world_from_mesh{1.0f};
     scene::Box bounds_ws;
     gpu::Allocation block;
-    bool masked = false, image_arrived = false;
+    bool masked = false;
+    std::uint32_t image_levels = 0;           // that have arrived
     float alpha = 1.0f, alpha_cutoff = 0.0f;  // of masked ones
     bool operator==(const Caster& other) const;
   };

@@ -70,6 +70,7 @@ bool Surfaces::dark(const World& world, std::size_t draw) const {
 }
 
 bool Surfaces::ready(const World& world, const effects::diffuse::Diffuse& diffuse, std::size_t draw) const {
+  if (!world.showsSurfaces(world.residency().draws()[draw].bundle)) return false;  // something stands in
   if (dark(world, draw)) return bool(world.residency().meshes()[world.residency().draws()[draw].mesh].block);
   return world.residency().draws()[draw].glossy() ? glossyReady(world, draw) : diffuse.shaded(draw);
 }

@@ -79,10 +79,13 @@ std::uint64_t World::keyOf(std::size_t group) const {
   return std::uint64_t{entity.generation} << 32 | entity.index;
 }
 
+const scene::RigidGroupComponent* World::rigidGroup(std::uint32_t bundle, std::uint32_t group) const {
+  return registry_.tryGet<scene::RigidGroupComponent>(bundles_[bundle]->instance.groups[group]);
+}
+
 const scene::RigidGroupComponent* World::rigidGroup(std::size_t group) const {
   const streaming::ResidentGroup& resident = residency_.groups()[group];
-  return registry_.tryGet<scene::RigidGroupComponent>(
-      bundles_[resident.bundle]->instance.groups[resident.index]);
+  return rigidGroup(resident.bundle, resident.index);
 }
 
 glm::quat World::rotationOf(std::size_t group) const {
@@ -91,25 +94,30 @@ glm::quat World::rotationOf(std::size_t group) const {
 }
 
 glm::mat4 World::worldFromGroup(std::size_t group) const {
-  const auto* rigid = rigidGroup(group);
+  const streaming::ResidentGroup& resident = residency_.groups()[group];
+  return worldFromGroup(resident.bundle, resident.index);
+}
+
+glm::mat4 World::worldFromGroup(std::uint32_t bundle, std::uint32_t group) const {
+  const auto* rigid = rigidGroup(bundle, group);
   if (!rigid) return glm::mat4(1.0f);
   glm::mat4 rest = glm::mat4_cast(rigid->rest_rotation);
   rest[3] = glm::vec4(rigid->rest_translation, 1.0f);
   return rigid->world_from_rest * rest;
 }
 
-bool World::inPlace(std::size_t group, std::size_t column) const {
-  const streaming::ResidentGroup& resident = residency_.groups()[group];
-  const Bundle& bundle = *bundles_[resident.bundle];
-  const bundle::GroupLight& light = bundle.reader->description().groups[resident.index].lights[column];
+bool World::inPlace(std::uint32_t slot, std::uint32_t group, std::size_t column) const {
+  const Bundle& bundle = *bundles_[slot];
+  const bundle::Group& described = bundle.reader->description().groups[group];
+  const bundle::GroupLight& light = described.lights[column];
   if (light.kind == bundle::GroupLight::Kind::Material) return true;
   const auto* now = registry_.tryGet<scene::WorldTransform>(bundle.instance.nodes[light.index]);
-  const auto* rigid = rigidGroup(group);
+  const auto* rigid = rigidGroup(slot, group);
   if (!now || !rigid) return false;
   const glm::mat4 expected = rigid->world_from_rest * bundle.world_from_node_at_rest[light.index];
   // Rounding of matrices that were composed another way round.
   constexpr float kTolerance = 1e-4f;
-  const scene::Box& bounds = group_bounds_[group];
+  const scene::Box bounds{described.bounds_min, described.bounds_max};
   const float size = bounds.empty() ? 0.0f : bounds.radius();
   if (glm::distance(glm::vec3(expected[3]), glm::vec3(now->world_from_node[3])) > kTolerance * size)
     return false;
@@ -123,9 +131,13 @@ bool World::inPlace(std::size_t group, std::size_t column) const {
 
 std::vector<glm::vec3> World::lampsOf(std::size_t group) const {
   const streaming::ResidentGroup& resident = residency_.groups()[group];
+  return lampsOf(resident.bundle, resident.index);
+}
+
+std::vector<glm::vec3> World::lampsOf(std::uint32_t bundle, std::uint32_t group) const {
   std::vector<glm::vec3> lamps;
-  for (const ecs::Entity lamp : bundles_[resident.bundle]->instance.lamps[resident.index])
-    lamps.push_back(inPlace(group, lamps.size()) ? radianceOf(registry_, lamp) : glm::vec3(0.0f));
+  for (const ecs::Entity lamp : bundles_[bundle]->instance.lamps[group])
+    lamps.push_back(inPlace(bundle, group, lamps.size()) ? radianceOf(registry_, lamp) : glm::vec3(0.0f));
   return lamps;
 }
 
@@ -133,7 +145,7 @@ bool World::litByColumn(std::size_t group, ecs::Entity light) const {
   const streaming::ResidentGroup& resident = residency_.groups()[group];
   const auto& lamps = bundles_[resident.bundle]->instance.lamps[resident.index];
   for (std::size_t k = 0; k < lamps.size(); ++k)
-    if (lamps[k] == light) return inPlace(group, k);
+    if (lamps[k] == light) return inPlace(resident.bundle, resident.index, k);
   return false;
 }
 

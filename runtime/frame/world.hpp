@@ -12,10 +12,12 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "runtime/base/result.hpp"
+#include "runtime/bundle/capture_proxy.hpp"
 #include "runtime/bundle/reader.hpp"
 #include "runtime/ecs/registry.hpp"
 #include "runtime/lighting/group_lights.hpp"
@@ -31,8 +33,8 @@ namespace lambent::frame {
 
 struct WorldOptions {
   // Of GPU memory that the bundles may take together; what the camera sees large comes first (interest.hpp).
-  // Only a replacement on its way lies beside that, and the surfaces of one bundle that are more by
-  // themselves.
+  // Beside that lie only a replacement on its way, a texture while it becomes finer, and the surfaces of one
+  // bundle that are more by themselves.
   std::uint64_t max_resident_bytes = ~std::uint64_t{0};
 };
 
@@ -70,6 +72,14 @@ struct BundleError {
   Error error;
 };
 
+// How a bundle is in the picture.
+enum class Shown : std::uint8_t {
+  Nothing,
+  StandIn,  // its groups as others see them: a few triangles, without shadows
+  Partly,   // its surfaces, of whose transfer something is missing
+  Full
+};
+
 struct BundleStreaming {
   std::uint32_t bundle = 0;
   std::string name;  // of the file
@@ -77,15 +87,26 @@ struct BundleStreaming {
   std::uint64_t whole_bytes = 0, wanted_bytes = 0, resident_bytes = 0;
   float size = 0.0f;  // as the camera sees it: what is larger comes first
   BundleStatus::State state = BundleStatus::State::Closed;
+  Shown shown = Shown::Nothing;
 };
 
 struct StreamingStatus {
-  std::uint64_t budget_bytes = 0;  // all bits: without limit
-  std::uint64_t resident_bytes = 0;
+  std::uint64_t budget_bytes = 0;    // all bits: without limit
+  std::uint64_t resident_bytes = 0;  // stand-ins among them
+  std::uint64_t stand_in_bytes = 0;
   std::uint32_t queued = 0;  // items that are wanted and not here
   std::uint64_t in_flight_bytes = 0;
   double megabytes_per_s = 0.0;  // over the last second or so
   std::vector<BundleStreaming> bundles;
+
+  std::size_t count(Shown shown) const;
+};
+
+// A bundle whose surfaces are not here: by group, as others see it; none: nothing to see.
+struct StandIn {
+  std::uint32_t bundle = 0;
+  std::uint64_t id = 0;  // of these proxies; no others ever have it
+  std::span<const std::optional<bundle::CaptureProxy>> proxies;
 };
 
 class World {
@@ -113,6 +134,13 @@ class World {
   // for all. Without it all bundles are alike.
   void look(const spec::View& view) { view_ = view; }
   StreamingStatus streaming() const;
+
+  // Where room is limited, surfaces are shown from when all of a bundle's are here, and something stands in
+  // for them until then: never both. Valid until the world changes.
+  std::vector<StandIn> standIns() const;
+  // Rises when others stand in.
+  std::uint64_t standInsVersion() const { return stand_ins_version_; }
+  bool showsSurfaces(std::uint32_t bundle) const;
 
   // Up to about `budget_bytes` of what is ready; never waits.
   Result<void> upload(std::uint64_t budget_bytes, gpu::Counters& counters);
@@ -142,11 +170,14 @@ class World {
   std::uint64_t keyOf(std::size_t group) const;
   // Where the group's frame stands now, with scale if it has any since it was baked.
   glm::mat4 worldFromGroup(std::size_t group) const;
+  // Of a group of a bundle's description, resident or not: the same.
+  glm::mat4 worldFromGroup(std::uint32_t bundle, std::uint32_t group) const;
   // Group frame, as baked.
   const scene::Box& groupBounds(std::size_t group) const { return group_bounds_[group]; }
   // What the group's own lights give now, by light column. A lamp that was moved out of its place in the
   // group gives nothing here: its column no longer holds.
   std::vector<glm::vec3> lampsOf(std::size_t group) const;
+  std::vector<glm::vec3> lampsOf(std::uint32_t bundle, std::uint32_t group) const;
   // Whether the light is one of the group's own and stands in its place.
   bool litByColumn(std::size_t group, ecs::Entity light) const;
   glm::quat rotationOf(std::size_t group) const;
@@ -172,17 +203,21 @@ class World {
   // Steps on their way, in the order in which they were asked for.
   struct Piece {
     std::uint32_t unit = 0;
+    std::vector<streaming::Work> work;
     std::size_t items = 0;  // still to come
     bool begun = false;
     std::uint64_t bytes = 0;
+    std::uint32_t steps = 1;  // of an image it may bring several at once
   };
   struct Batch {
     streaming::Loader loader;
     std::deque<Piece> pieces;
   };
+  using Proxies = std::vector<std::optional<bundle::CaptureProxy>>;  // by group
   struct Replacement {
     std::shared_ptr<const bundle::Reader> reader;
     streaming::Parts parts;
+    Proxies proxies;
     std::vector<std::uint32_t> steps;  // of each unit that are brought
     streaming::Loader loader;
     streaming::Residency::Staged staged = 0;
@@ -195,6 +230,8 @@ class World {
     streaming::Parts parts;
     std::vector<float> size;                   // by unit, as the camera sees it
     std::vector<std::uint32_t> target, steps;  // by unit: that should be here, that are
+    Proxies proxies;                           // of its stand-in
+    std::uint64_t proxies_id = 0;
     std::optional<Batch> batch;
     std::uint64_t bytes_read = 0;           // before the batch
     std::vector<gltf::Material> materials;  // as they are now
@@ -221,6 +258,7 @@ class World {
   void retire(Bundle& bundle);
   void request();
   bool startBatch(std::uint32_t slot);
+  void countOne(Bundle& bundle);  // of the items of its batch has come
   void takeFrom(std::uint32_t slot, std::uint64_t& budget_bytes, gpu::Counters& counters);
   std::uint64_t bytesTaken() const;  // by what is here or on its way
   static bool settled(const Bundle& bundle) {
@@ -228,8 +266,17 @@ class World {
   }
   void measureRate(std::uint64_t bytes);
   std::vector<scene::AnimatedBundle> animatedBundles() const;
+  const scene::RigidGroupComponent* rigidGroup(std::uint32_t bundle, std::uint32_t group) const;
   const scene::RigidGroupComponent* rigidGroup(std::size_t group) const;
-  bool inPlace(std::size_t group, std::size_t column) const;
+  bool inPlace(std::uint32_t bundle, std::uint32_t group, std::size_t column) const;
+  // Stand-ins.
+  static bool hasSurfaces(const streaming::Parts& parts, const std::vector<std::uint32_t>& steps) {
+    return steps.front() == parts.surfaceSteps();
+  }
+  Result<void> accept(std::uint32_t slot, const streaming::Ready& item);
+  Result<void> beginSurfaces(std::uint32_t slot);
+  void endSurfaces(std::uint32_t slot);
+  void dropStandIn(Bundle& bundle);
 
   ecs::Registry registry_;
   streaming::Residency residency_;
@@ -244,7 +291,8 @@ class World {
     std::uint64_t transforms = 0, bundles = 0;
   };
   Chosen chosen_;
-  std::uint64_t bundles_version_ = 1;       // rises when one is opened, closed or replaced
+  std::uint64_t bundles_version_ = 1;  // rises when one is opened, closed or replaced
+  std::uint64_t stand_ins_version_ = 1, next_proxies_id_ = 1;
   std::vector<streaming::Loader> retired_;  // until their workers have ended
   struct Rate {
     std::chrono::steady_clock::time_point since = std::chrono::steady_clock::now();

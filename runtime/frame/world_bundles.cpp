@@ -45,6 +45,7 @@ Result<std::uint32_t> World::open(const std::filesystem::path& path, const OpenO
                 .size = {},
                 .target = {},
                 .steps = {},
+                .proxies = {},
                 .batch = {},
                 .materials = {},
                 .replacement = {},
@@ -68,6 +69,7 @@ Result<std::uint32_t> World::open(const std::filesystem::path& path, const OpenO
   if (slot == bundles_.size()) bundles_.emplace_back();
   bundles_[slot].emplace(std::move(bundle));
   ++bundles_version_;
+  ++stand_ins_version_;
   rebuildTables();
   return slot;
 }
@@ -80,6 +82,7 @@ void World::close(std::uint32_t bundle) {
   if (residency_.present(bundle)) residency_.remove(bundle);
   bundles_[bundle].reset();
   ++bundles_version_;
+  ++stand_ins_version_;
   scene::updateTransforms(registry_);
   rebuildTables();
 }
@@ -101,13 +104,11 @@ Result<void> World::replace(std::uint32_t bundle, const std::filesystem::path& p
   const Result<streaming::Residency::Staged> staged = residency_.stage(reader->description());
   if (!staged) return giveUp(inBundle(*reader, staged.error()));
   std::vector<std::uint32_t> steps = stepsForReplacement(bundle, *parts);
-  std::vector<streaming::Work> work;
-  for (std::size_t u = 0; u < steps.size(); ++u)
-    for (std::uint32_t s = 0; s < steps[u]; ++s)
-      work.insert(work.end(), parts->units[u][s].work.begin(), parts->units[u][s].work.end());
+  std::vector<streaming::Work> work = parts->workOf(steps);
   old.replacement.emplace(Replacement{
       .reader = reader,
       .parts = std::move(*parts),
+      .proxies = Proxies(reader->description().groups.size()),
       .steps = std::move(steps),
       .loader = streaming::Loader(reader, std::move(work), std::max(1u, std::thread::hardware_concurrency())),
       .staged = *staged});
@@ -128,6 +129,8 @@ void World::uploadReplacement(Bundle& bundle, std::uint64_t& budget_bytes, gpu::
     const std::uint64_t bytes = streaming::Residency::uploadBytes(item);
     budget_bytes -= std::min(budget_bytes, bytes);
     counters.uploaded_bytes += bytes;
+    if (const auto* ready = std::get_if<streaming::ProxyReady>(&item))
+      next.proxies[ready->group] = ready->proxy;
     if (const Result<void> done = residency_.uploadStaged(next.staged, item); !done) {
       bundle.replacement_error = inBundle(*next.reader, done.error());
       break;
@@ -142,7 +145,7 @@ void World::swapIn(std::uint32_t slot) {
   Replacement next = std::move(*bundle.replacement);
   bundle.replacement.reset();
   retire(bundle);
-  if (next.steps.front() > 0) {
+  if (hasSurfaces(next.parts, next.steps)) {
     residency_.show(next.staged, slot);
   } else {  // nothing of it is wanted now
     residency_.discard(next.staged);
@@ -155,12 +158,15 @@ void World::swapIn(std::uint32_t slot) {
   bundle.world_from_node_at_rest = gltf::worldTransforms(now.nodes);
   setParts(bundle, std::move(next.parts));
   bundle.steps = next.steps;
+  bundle.proxies = std::move(next.proxies);
+  bundle.proxies_id = next_proxies_id_++;
   if (limited()) bundle.target = next.steps;
   bundle.bytes_read = next.loader.bytesRead();
   bundle.materials = now.materials;
   bundle.error.reset();
   retired_.push_back(std::move(next.loader));
   ++bundles_version_;
+  ++stand_ins_version_;
   rebuildTables();
   playAnimations(0.0f);  // nodes that stood where the old one's animations put them
 }
@@ -188,6 +194,7 @@ Result<void> World::uploadAll(gpu::Counters& counters) {
   // What has come in one call makes room for what the next one asks for; where both bring nothing and have
   // nothing on its way, nothing comes any more.
   constexpr int kIdleCalls = 2;
+  chooseTargets();  // the camera may look elsewhere than when all had come
   for (int idle = 0; !loaded() && idle < kIdleCalls;) {
     const std::uint64_t before = residency_.version();
     if (Result<void> done = upload(kPieceBytes, counters); !done) return done;

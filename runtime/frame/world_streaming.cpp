@@ -6,6 +6,7 @@
 #include "runtime/frame/world.hpp"
 #include "runtime/scene/bounds.hpp"
 #include "runtime/streaming/interest.hpp"
+#include "runtime/streaming/sizes.hpp"
 
 namespace lambent::frame {
 
@@ -20,6 +21,12 @@ std::uint64_t bytesOf(const streaming::Parts& parts, const std::vector<std::uint
   for (std::size_t u = 0; u < parts.units.size(); ++u)
     for (std::uint32_t s = 0; s < steps[u]; ++s) bytes += parts.units[u][s].bytes;
   return bytes;
+}
+
+Shown shownOf(const streaming::Parts& parts, const std::vector<std::uint32_t>& steps) {
+  if (steps.front() < parts.surfaceSteps())
+    return parts.hasStandIn() && steps.front() > 0 ? Shown::StandIn : Shown::Nothing;
+  return std::ranges::equal(steps, parts.units, {}, {}, &streaming::Unit::size) ? Shown::Full : Shown::Partly;
 }
 
 std::vector<std::uint32_t> allSteps(const streaming::Parts& parts) {
@@ -39,7 +46,11 @@ std::vector<Next> missing(const streaming::Parts& parts, const std::vector<float
   std::vector<Next> list;
   for (std::uint32_t u = 0; u < parts.units.size(); ++u)
     for (std::uint32_t s = have[u]; s < target[u]; ++s)
-      list.push_back({size[u] * streaming::worthOf(u, s, parts.units[u].size()), u, s});
+      list.push_back({streaming::worthOf(parts, u, s, size[u]), u, s});
+  // Stand-ins of all bundles come before anything else.
+  constexpr float kStandInsFirst = 1e6f;
+  for (Next& next : list)
+    if (next.unit == 0 && next.step + 1 < parts.surfaceSteps()) next.worth *= kStandInsFirst;
   std::ranges::sort(list, [](const Next& a, const Next& b) {
     return std::tuple(-a.worth, a.unit, a.step) < std::tuple(-b.worth, b.unit, b.step);
   });
@@ -76,6 +87,9 @@ void World::seeBundle(Bundle& bundle) const {
     bundle.size[1 + g] = std::max(streaming::sizeSeen(*view_, box.center(), box.radius()), kLeast);
     bundle.size[0] = std::max(bundle.size[0], bundle.size[1 + g]);
   }
+  for (std::size_t u = bundle.parts.firstImageUnit(); u < bundle.size.size(); ++u)
+    for (const std::uint32_t group : bundle.parts.imageOf(u).groups)
+      bundle.size[u] = std::max(bundle.size[u], bundle.size[1 + group]);
 }
 
 void World::chooseTargets() {
@@ -133,6 +147,7 @@ void World::retire(Bundle& bundle) {
   if (!bundle.batch) return;
   bundle.bytes_read += bundle.batch->loader.bytesRead();
   bundle.batch->loader.stop();
+  residency_.cancelImage(bundle.options.bundle_index);
   retired_.push_back(std::move(bundle.batch->loader));
   bundle.batch.reset();
 }
@@ -140,6 +155,11 @@ void World::retire(Bundle& bundle) {
 void World::dropTo(std::uint32_t slot, std::uint32_t unit, std::uint32_t steps) {
   Bundle& bundle = *bundles_[slot];
   bundle.steps[unit] = steps;
+  if (bundle.parts.isImage(unit)) {
+    residency_.dropLevels(slot, static_cast<std::uint32_t>(unit - bundle.parts.firstImageUnit()),
+                          bundle.parts.levelsIn(unit, steps));
+    return;
+  }
   const std::uint32_t group = unit - 1;
   if (steps == 0)
     residency_.dropTransfer(slot, group);
@@ -160,17 +180,14 @@ void World::cancelBatch(std::uint32_t slot) {
 // What is here or comes and should not.
 void World::evict(std::uint32_t slot) {
   Bundle& bundle = *bundles_[slot];
-  if (bundle.target.front() == 0) {
-    if (!residency_.present(slot)) return;
-    retire(bundle);
-    residency_.remove(slot);
-    std::ranges::fill(bundle.steps, 0u);
-    rebuildTables();
+  if (!hasSurfaces(bundle.parts, bundle.target)) {
+    if (residency_.present(slot)) endSurfaces(slot);
+    if (bundle.target.front() == 0) dropStandIn(bundle);
     return;
   }
   if (bundle.batch) {
     std::vector<std::uint32_t> coming = bundle.steps;
-    for (const Piece& piece : bundle.batch->pieces) ++coming[piece.unit];
+    for (const Piece& piece : bundle.batch->pieces) coming[piece.unit] += piece.steps;
     for (std::size_t u = 0; u < coming.size(); ++u)
       if (coming[u] > bundle.target[u]) {
         cancelBatch(slot);
@@ -185,19 +202,20 @@ bool World::startBatch(std::uint32_t slot) {
   Bundle& bundle = *bundles_[slot];
   std::uint64_t taken = bytesTaken(), bytes = 0;
   const std::vector<Next> list = missing(bundle.parts, bundle.size, bundle.steps, bundle.target);
+  // The surfaces of what is largest have room in any case.
+  const bool only_stand_ins = std::ranges::none_of(residency_.bundles(), &streaming::ResidentBundle::present);
   const auto fits = [&](const Next& next) {
-    return !limited() || taken == 0 ||
+    return !limited() || only_stand_ins ||
            taken + bundle.parts.units[next.unit][next.step].bytes <= max_resident_bytes_;
   };
   if (list.empty() || !fits(list.front())) return false;
-  if (!residency_.present(slot)) {
-    if (const Result<void> added = residency_.add(bundle.reader->description(), slot); !added) {
-      bundle.error = inBundle(*bundle.reader, added.error());
+  const bool stands_in = list.front().unit == 0 && list.front().step + 1 < bundle.parts.surfaceSteps();
+  if (!stands_in && !residency_.present(slot)) {
+    if (const Result<void> begun = beginSurfaces(slot); !begun) {
+      bundle.error = inBundle(*bundle.reader, begun.error());
       return false;
     }
-    rebuildTables();
   }
-  std::vector<streaming::Work> work;
   std::deque<Piece> pieces;
   for (const Next& next : list) {
     const streaming::Step& step = bundle.parts.units[next.unit][next.step];
@@ -205,14 +223,23 @@ bool World::startBatch(std::uint32_t slot) {
     if (!pieces.empty() && (bytes + step.bytes > kBatchBytes || pieces.front().unit == 0)) break;
     if (step.work.empty()) {  // a bundle that shows nothing
       ++bundle.steps[next.unit];
+      ++stand_ins_version_;
       continue;
     }
     taken += step.bytes;
     bytes += step.bytes;
-    work.insert(work.end(), step.work.begin(), step.work.end());
-    pieces.push_back({.unit = next.unit, .items = step.work.size(), .bytes = step.bytes});
+    const auto coarser = std::ranges::find(pieces, next.unit, &Piece::unit);
+    if (bundle.parts.isImage(next.unit) && coarser != pieces.end()) {  // the finer level brings all
+      coarser->work = step.work;
+      coarser->bytes += step.bytes;
+      ++coarser->steps;
+      continue;
+    }
+    pieces.push_back({.unit = next.unit, .work = step.work, .items = step.work.size(), .bytes = step.bytes});
   }
   if (pieces.empty()) return false;
+  std::vector<streaming::Work> work;
+  for (const Piece& piece : pieces) work.insert(work.end(), piece.work.begin(), piece.work.end());
   const unsigned threads = std::max(1u, std::thread::hardware_concurrency() / kBatches);
   bundle.batch.emplace(Batch{.loader = streaming::Loader(bundle.reader, std::move(work), threads),
                              .pieces = std::move(pieces)});
@@ -241,21 +268,46 @@ void World::request() {
   }
 }
 
+void World::countOne(Bundle& bundle) {
+  Piece& piece = bundle.batch->pieces.front();
+  piece.begun = true;
+  if (--piece.items > 0) return;
+  bundle.steps[piece.unit] += piece.steps;
+  if (piece.unit == 0) ++stand_ins_version_;
+  bundle.batch->pieces.pop_front();
+}
+
 void World::takeFrom(std::uint32_t slot, std::uint64_t& budget_bytes, gpu::Counters& counters) {
   Bundle& bundle = *bundles_[slot];
-  for (const streaming::Ready& item : bundle.batch->loader.take(budget_bytes)) {
-    const std::uint64_t bytes = streaming::Residency::uploadBytes(item);
+  const auto spend = [&](std::uint64_t bytes) {
     budget_bytes -= std::min(budget_bytes, bytes);
     counters.uploaded_bytes += bytes;
-    if (const Result<void> done = residency_.upload(slot, item); !done) {
+  };
+  // What is large comes over several frames.
+  const auto comes = [&] {
+    if (!residency_.imageComes(slot)) return false;
+    spend(residency_.continueImage(slot, budget_bytes));
+    if (residency_.imageComes(slot)) return true;
+    countOne(bundle);
+    return false;
+  };
+  if (comes()) return;
+  std::vector<streaming::Ready> items = bundle.batch->loader.take(budget_bytes);
+  for (streaming::Ready& item : items) {
+    const std::uint64_t bytes = streaming::Residency::uploadBytes(item);
+    // What is larger than the budget comes alone.
+    if (auto* image = std::get_if<streaming::ImageReady>(&item);
+        image != nullptr && bytes > budget_bytes && items.size() == 1) {
+      residency_.beginImage(slot, std::move(*image));
+      if (comes()) return;
+      continue;
+    }
+    spend(bytes);
+    if (const Result<void> done = accept(slot, item); !done) {
       bundle.error = inBundle(*bundle.reader, done.error());
       break;
     }
-    Piece& piece = bundle.batch->pieces.front();
-    piece.begun = true;
-    if (--piece.items > 0) continue;
-    ++bundle.steps[piece.unit];
-    bundle.batch->pieces.pop_front();
+    countOne(bundle);
   }
   if (const auto error = bundle.batch->loader.error()) bundle.error = *error;
   if (bundle.error || bundle.batch->pieces.empty()) retire(bundle);
@@ -275,6 +327,12 @@ StreamingStatus World::streaming() const {
                          .resident_bytes = residency_.bytesResident(),
                          .megabytes_per_s = rate_.megabytes_per_s,
                          .bundles = {}};
+  for (const StandIn& stand_in : standIns())
+    for (std::uint32_t g = 0; g < stand_in.proxies.size(); ++g)
+      if (const auto& proxy = stand_in.proxies[g])
+        status.stand_in_bytes += streaming::kStandInGroupBytes +
+                                 streaming::kStandInTriangleBytes * proxy->levels.front().triangle_count;
+  status.resident_bytes += status.stand_in_bytes;
   for (std::uint32_t i = 0; i < bundles_.size(); ++i) {
     if (!bundles_[i]) continue;
     const Bundle& bundle = *bundles_[i];
@@ -284,7 +342,8 @@ StreamingStatus World::streaming() const {
                               .wanted_bytes = bytesOf(bundle.parts, bundle.target),
                               .resident_bytes = bytesOf(bundle.parts, bundle.steps),
                               .size = bundle.size.front(),
-                              .state = this->status(i).state});
+                              .state = this->status(i).state,
+                              .shown = shownOf(bundle.parts, bundle.steps)});
     if (bundle.batch)
       for (const Piece& piece : bundle.batch->pieces) status.in_flight_bytes += piece.bytes;
     for (std::size_t u = 0; u < bundle.steps.size(); ++u)

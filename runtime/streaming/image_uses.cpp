@@ -1,5 +1,7 @@
 #include "runtime/streaming/image_uses.hpp"
 
+#include <algorithm>
+
 namespace lambent::streaming {
 
 namespace {
@@ -36,6 +38,21 @@ std::vector<ImageUse> imageUses(const bundle::Description& description) {
   }
   for (ImageUse& use : uses) use.color |= !use.linear;
   return uses;
+}
+
+std::vector<std::uint32_t> imagesOf(const bundle::Description& description, std::int32_t material) {
+  std::vector<std::uint32_t> images;
+  if (material < 0) return images;
+  const gltf::Material& of = description.materials[static_cast<std::size_t>(material)];
+  for (const gltf::TextureRef* reference :
+       {&of.base_color_texture, &of.emissive_texture, &of.normal_texture, &of.metallic_roughness_texture,
+        &of.specular_texture, &of.specular_color_texture, &of.anisotropy_texture}) {
+    if (reference->texture < 0) continue;
+    const std::int32_t image = description.textures[static_cast<std::size_t>(reference->texture)].image;
+    if (image >= 0 && std::ranges::find(images, static_cast<std::uint32_t>(image)) == images.end())
+      images.push_back(static_cast<std::uint32_t>(image));
+  }
+  return images;
 }
 
 }  // namespace lambent::streaming

@@ -2,6 +2,7 @@
 // numbers.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "runtime/bundle/description.hpp"
@@ -18,5 +19,8 @@ struct ImageUse {
 // By image. Textures that only glossy surfaces read count where a glossy draw has the material. What no
 // material names may yet be asked for: as colour, the usual.
 std::vector<ImageUse> imageUses(const bundle::Description& description);
+
+// That the material names, none twice; -1: none.
+std::vector<std::uint32_t> imagesOf(const bundle::Description& description, std::int32_t material);
 
 }  // namespace lambent::streaming

@@ -16,9 +16,16 @@ namespace {
 // What a step is worth, against the last share of planes of what is seen as large: surfaces are kept until
 // something is sqrt(64) times larger in sight.
 constexpr float kSurfaces = 64.0f, kCodebooks = 16.0f, kFirstPlanes = 8.0f, kLastPlanes = 1.0f;
+// A level of a texture, whose texels are no smaller than pixels; of smaller ones as much less as they are
+// smaller.
+constexpr float kTexels = 8.0f;
+// What a sphere of size 1 measures across in a picture of 1080 rows and 50 degrees.
+constexpr float kPixels = 2300.0f;
 // What was chosen before is worth more.
 constexpr float kStays = 1.5f;
 static_assert(kSurfaces > kStays * kCodebooks && kCodebooks > kStays * kFirstPlanes);
+
+constexpr std::uint64_t kStandInShare = 4;  // of the memory, one part of so many comes first
 
 constexpr float kOutOfSight = 0.1f;  // the camera may turn at any moment
 constexpr float kLargest = 100.0f;   // standing in it, or near enough
@@ -31,11 +38,18 @@ struct Candidate {
 
 }  // namespace
 
-float worthOf(std::uint32_t unit, std::uint32_t step, std::size_t steps) {
-  if (unit == 0) return kSurfaces;
-  if (step == 0) return kCodebooks;
+float worthOf(const Parts& parts, std::uint32_t unit, std::uint32_t step, float size) {
+  if (unit == 0) return size * kSurfaces;
+  if (parts.isImage(unit)) {
+    const Parts::Image& image = parts.imageOf(unit);
+    const std::uint32_t side = std::max(image.width, image.height) >> (image.coarse - 1 - step);
+    const float pixels_a_texel = kPixels * std::sqrt(size) / static_cast<float>(side);
+    return size * kTexels * std::min(pixels_a_texel * pixels_a_texel, 1.0f);
+  }
+  if (step == 0) return size * kCodebooks;
+  const std::size_t steps = parts.units[unit].size();
   const float share = static_cast<float>(step - 1) / static_cast<float>(std::max<std::size_t>(steps - 1, 1));
-  return kFirstPlanes + share * (kLastPlanes - kFirstPlanes);
+  return size * (kFirstPlanes + share * (kLastPlanes - kFirstPlanes));
 }
 
 float sizeSeen(const spec::View& view, const glm::vec3& center_ws, float radius_m) {
@@ -62,7 +76,7 @@ void choose(std::span<Interest> bundles, std::uint64_t max_bytes) {
       const Unit& unit = bundle.parts->units[u];
       for (std::uint32_t s = 0; s < unit.size(); ++s) {
         const float stays = s < bundle.target[u] ? kStays : 1.0f;
-        candidates.push_back({stays * bundle.size[u] * worthOf(u, s, unit.size()), b, u, s, unit[s].bytes});
+        candidates.push_back({stays * worthOf(*bundle.parts, u, s, bundle.size[u]), b, u, s, unit[s].bytes});
       }
     }
     std::ranges::fill(bundle.target, 0u);
@@ -71,15 +85,28 @@ void choose(std::span<Interest> bundles, std::uint64_t max_bytes) {
     return std::tuple(-a.worth, a.bundle, a.unit, a.step) < std::tuple(-b.worth, b.bundle, b.unit, b.step);
   });
   std::uint64_t taken = 0;
-  for (const Candidate& candidate : candidates) {
+  const auto take = [&](const Candidate& candidate, std::uint64_t most) {
     Interest& bundle = bundles[candidate.bundle];
     // Where a step had no room, those that come after it have nothing to stand on.
-    if (bundle.target[candidate.unit] != candidate.step) continue;
-    if (candidate.unit != 0 && bundle.target[0] == 0) continue;
-    if (taken + candidate.bytes > max_bytes && taken > 0) continue;
+    if (bundle.target[candidate.unit] != candidate.step) return;
+    if (candidate.unit != 0 && bundle.target[0] != bundle.parts->surfaceSteps()) return;
+    if (taken + candidate.bytes > most) return;
     taken += candidate.bytes;
     ++bundle.target[candidate.unit];
-  }
+  };
+  const auto isStandIn = [&](const Candidate& candidate) {
+    return candidate.unit == 0 && candidate.step + 1 < bundles[candidate.bundle].parts->surfaceSteps();
+  };
+  const auto largest = std::ranges::find_if(
+      candidates, [&](const Candidate& candidate) { return candidate.unit == 0 && !isStandIn(candidate); });
+  if (largest == candidates.end()) return;
+  constexpr std::uint64_t kInAnyCase = ~std::uint64_t{0};
+  for (const Candidate& candidate : candidates)
+    if (candidate.bundle == largest->bundle && candidate.unit == 0) take(candidate, kInAnyCase);
+  const std::uint64_t with_stand_ins = std::min(max_bytes, taken + max_bytes / kStandInShare);
+  for (const Candidate& candidate : candidates)
+    if (isStandIn(candidate)) take(candidate, with_stand_ins);
+  for (const Candidate& candidate : candidates) take(candidate, max_bytes);
 }
 
 }  // namespace lambent::streaming

@@ -7,6 +7,7 @@
 #include "runtime/gpu/arena.hpp"
 #include "runtime/streaming/brdf_texture.hpp"
 #include "runtime/streaming/image_decode.hpp"
+#include "runtime/streaming/image_levels.hpp"
 #include "runtime/streaming/image_uses.hpp"
 #include "runtime/streaming/sizes.hpp"
 
@@ -17,23 +18,50 @@ namespace {
 // A group's planes come in so many shares: each is shaded with the next frame, and so are all its vertices.
 constexpr std::size_t kShares = 12;
 
-Result<std::uint64_t> textureBytes(const bundle::Reader& reader) {
+Result<std::vector<Parts::Image>> describeImages(const bundle::Reader& reader) {
+  const bundle::Description& d = reader.description();
+  std::vector<Parts::Image> images;
+  for (const bundle::Image& image : d.images) {
+    const auto file = reader.readView(image.view);
+    if (!file) return failAgain(file.error());
+    const auto size = imageSize(*file, reader.path().string() + ": image \"" + image.name + "\"");
+    if (!size) return failAgain(size.error());
+    images.push_back(
+        {.width = size->width, .height = size->height, .coarse = coarseLevel(*size), .groups = {}});
+  }
+  for (const bundle::Draw& draw : d.draws)
+    for (const std::uint32_t image : imagesOf(d, d.meshes[draw.mesh].primitives[draw.primitive].material)) {
+      std::vector<std::uint32_t>& groups = images[image].groups;
+      if (std::ranges::find(groups, draw.group) == groups.end()) groups.push_back(draw.group);
+    }
+  return images;
+}
+
+Result<std::uint64_t> tableBytes(const bundle::Reader& reader) {
   const bundle::Description& d = reader.description();
   std::uint64_t bytes = 0;
-  const std::vector<ImageUse> uses = imageUses(d);
-  for (std::size_t i = 0; i < d.images.size(); ++i) {
-    const auto file = reader.readView(d.images[i].view);
-    if (!file) return failAgain(file.error());
-    const auto size = imageSize(*file, reader.path().string() + ": image \"" + d.images[i].name + "\"");
-    if (!size) return failAgain(size.error());
-    bytes += uses[i].copies() * size->rgbaBytes() * 4 / 3;
-  }
   for (std::uint32_t i = 0; i < d.brdf_tables.size(); ++i) {
     const auto table = reader.readBrdfTable(i);
     if (!table) return failAgain(table.error());
     bytes += packBrdf(*table).bytes();
   }
   return bytes;
+}
+
+std::uint64_t levelBytes(const Parts::Image& image, std::uint32_t level) {
+  return textureBytes(sizeAt({image.width, image.height}, level));
+}
+
+// The first unit has the coarse levels, and a unit of its own the others.
+void addImages(Parts& parts, Step& base, const std::vector<ImageUse>& uses) {
+  for (std::uint32_t i = 0; i < parts.images.size(); ++i) {
+    const Parts::Image& image = parts.images[i];
+    base.bytes += uses[i].copies() * levelBytes(image, image.coarse);
+    Unit& unit = parts.units.emplace_back();
+    for (std::uint32_t level = image.coarse; level-- > 0;)
+      unit.push_back({.work = {ImageWork{i, level}},
+                      .bytes = uses[i].copies() * (levelBytes(image, level) - levelBytes(image, level + 1))});
+  }
 }
 
 void add(Step& step, const Work& work, std::uint64_t bytes) {
@@ -53,11 +81,29 @@ std::uint32_t Parts::planesIn(std::uint32_t group, std::uint32_t steps, std::uin
   return count;
 }
 
-Result<Parts> partsOf(const bundle::Reader& reader, bool exact) {
+std::uint32_t Parts::levelsIn(std::size_t unit, std::uint32_t steps) const {
+  const Image& image = imageOf(unit);
+  return levelCount({image.width, image.height}) - (image.coarse - steps);
+}
+
+std::vector<Work> Parts::workOf(const std::vector<std::uint32_t>& steps) const {
+  std::vector<Work> work;
+  for (std::size_t u = 0; u < units.size(); ++u)
+    for (std::uint32_t s = isImage(u) && steps[u] > 0 ? steps[u] - 1 : 0; s < steps[u]; ++s)
+      work.insert(work.end(), units[u][s].work.begin(), units[u][s].work.end());
+  return work;
+}
+
+Result<Parts> partsOf(const bundle::Reader& reader, bool limited) {
   const bundle::Description& d = reader.description();
   Parts parts;
   parts.units.resize(1 + d.groups.size());
-  Step& base = parts.units.front().emplace_back();
+  if (limited) {
+    Result<std::vector<Parts::Image>> images = describeImages(reader);
+    if (!images) return failAgain(images.error());
+    parts.images = std::move(*images);
+  }
+  Step stand_in, base;
   std::vector<Step> codebooks(d.groups.size());
   std::vector<std::vector<PlaneWork>> planes(d.groups.size());
   for (const Work& work : workList(d)) {
@@ -67,6 +113,10 @@ Result<Parts> partsOf(const bundle::Reader& reader, bool exact) {
       add(codebooks[codebook->group], work, 0);
     } else if (const auto* weights = std::get_if<LightWeightsWork>(&work)) {
       add(codebooks[weights->group], work, 0);
+    } else if (const auto* proxy = std::get_if<ProxyWork>(&work); proxy != nullptr && limited) {
+      add(stand_in, work, standInBytes(d, proxy->group));
+    } else if (const auto* image = std::get_if<ImageWork>(&work); image != nullptr && limited) {
+      add(base, ImageWork{image->image, parts.images[image->image].coarse}, 0);
     } else {
       add(base, work, 0);
     }
@@ -74,11 +124,14 @@ Result<Parts> partsOf(const bundle::Reader& reader, bool exact) {
   Needs needs = needsOf(d);
   needs.transfer = 0;
   base.bytes = needs.total();
-  if (exact) {
-    const Result<std::uint64_t> textures = textureBytes(reader);
-    if (!textures) return failAgain(textures.error());
-    base.bytes += *textures;
+  if (limited) {
+    const Result<std::uint64_t> tables = tableBytes(reader);
+    if (!tables) return failAgain(tables.error());
+    base.bytes += *tables;
+    addImages(parts, base, imageUses(d));
   }
+  if (!stand_in.work.empty()) parts.units.front().push_back(std::move(stand_in));
+  parts.units.front().push_back(std::move(base));
   for (std::uint32_t g = 0; g < d.groups.size(); ++g) {
     if (codebooks[g].work.empty()) continue;
     for (const bundle::Cell& cell : d.groups[g].cells) {

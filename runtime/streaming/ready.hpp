@@ -20,10 +20,13 @@ struct MeshReady {
   bundle::MeshData data;
 };
 
+// The image from one of its levels on, the finest that is wanted.
 struct ImageReady {
   std::uint32_t image = 0;
-  std::uint32_t width = 0, height = 0;
-  std::vector<std::uint8_t> rgba;  // row 0 at the top; colour sRGB-coded
+  std::uint32_t width = 0, height = 0;  // of that level
+  std::vector<std::uint8_t> rgba;       // row 0 at the top; colour sRGB-coded
+  // Means of numbers, where those of colours are others and the image serves as both; else empty.
+  std::vector<std::uint8_t> linear{};
 };
 
 struct RowsReady {

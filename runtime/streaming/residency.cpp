@@ -1,7 +1,6 @@
 #include "runtime/streaming/residency.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cassert>
 #include <cmath>
 #include <cstring>
@@ -54,10 +53,6 @@ std::uint64_t wholeBytes(ResidentCell cell) {
   return bytes;
 }
 
-std::uint32_t mipLevels(std::uint32_t width, std::uint32_t height) {
-  return static_cast<std::uint32_t>(std::bit_width(std::max(width, height)));
-}
-
 float meanEdge(const bundle::MeshData& mesh) {
   double sum = 0.0;
   for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3)
@@ -65,18 +60,6 @@ float meanEdge(const bundle::MeshData& mesh) {
       sum += double{
           glm::distance(mesh.positions[mesh.indices[i + k]], mesh.positions[mesh.indices[i + (k + 1) % 3]])};
   return mesh.indices.empty() ? 0.0f : static_cast<float>(sum / static_cast<double>(mesh.indices.size()));
-}
-
-gpu::Texture makeTexture(const std::string& label, GLenum format, const ImageReady& image) {
-  gpu::Texture texture(label, {.format = format,
-                               .width = image.width,
-                               .height = image.height,
-                               .levels = mipLevels(image.width, image.height)});
-  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-  glTextureSubImage2D(texture.id(), 0, 0, 0, static_cast<GLsizei>(image.width),
-                      static_cast<GLsizei>(image.height), GL_RGBA, GL_UNSIGNED_BYTE, image.rgba.data());
-  glGenerateTextureMipmap(texture.id());
-  return texture;
 }
 
 // Linear between voxel centres, constant in the half voxel towards the faces. Codes of 8 bits too are kept in
@@ -187,6 +170,7 @@ Result<void> Residency::add(const bundle::Description& description, std::uint32_
 }
 
 void Residency::remove(std::uint32_t bundle) {
+  coming_images_.erase(bundle);
   release(extract(tables_, bundle));
   structureChanged();
 }
@@ -204,6 +188,7 @@ void Residency::discard(Staged staged) {
 }
 
 void Residency::show(Staged staged, std::uint32_t bundle) {
+  coming_images_.erase(bundle);
   const ResidentTables old = present(bundle) ? extract(tables_, bundle) : ResidentTables{};
   insert(tables_, bundle, std::move(staged_.at(staged)));
   staged_.erase(staged);
@@ -262,16 +247,6 @@ Result<void> Residency::put(At at, const MeshReady& item) {
     if (!radiance) return failAgain(radiance.error());
     draw.radiance = *radiance;
   }
-  return {};
-}
-
-Result<void> Residency::put(At at, const ImageReady& item) {
-  ResidentBundle& owner = at.bundle;
-  const ImageUse use = owner.image_uses[item.image];
-  const std::string label = fmt::format("image {}", item.image);
-  if (use.color) owner.images[item.image] = makeTexture(label, GL_SRGB8_ALPHA8, item);
-  if (use.linear) owner.linear_images[item.image] = makeTexture(label + " linear", GL_RGBA8, item);
-  owner.texture_bytes += std::uint64_t{use.copies()} * item.width * item.height * 4 * 4 / 3;
   return {};
 }
 
@@ -427,7 +402,7 @@ std::uint64_t Residency::bytesResident() const {
   for (const gpu::Arena* arena : arenas()) bytes += arena->bytesUsed();
   for (const ResidentBundle& bundle : tables_.bundles) bytes += bundle.texture_bytes;
   for (const auto& [staged, tables] : staged_) bytes += tables.bundles.front().texture_bytes;
-  return bytes;
+  return bytes + comingBytes();
 }
 
 std::uint64_t Residency::bytesReserved() const {
@@ -450,7 +425,9 @@ std::uint64_t Residency::uploadBytes(const Ready& item) {
              8ull * mesh.data.texcoords1.size() + 8ull * mesh.data.colors.size() +
              16ull * mesh.data.tangents.size() + 4ull * mesh.data.indices.size();
     }
-    std::uint64_t operator()(const ImageReady& image) const { return image.rgba.size(); }
+    std::uint64_t operator()(const ImageReady& image) const {
+      return image.rgba.size() + image.linear.size();
+    }
     std::uint64_t operator()(const RowsReady& rows) const {
       return 4ull * rows.rows.offsets.size() + 6ull * rows.rows.samples.size();
     }

@@ -40,6 +40,15 @@ class Residency {
   // How many planes of a transfer to keep.
   using PlanesToKeep = std::function<std::uint32_t(std::uint32_t cell, std::uint32_t transfer)>;
   void dropPlanes(std::uint32_t bundle, std::uint32_t group, const PlanesToKeep& keep);
+  // An image in place of a coarser one, some rows at a time; shown when it is whole. One at a time of each
+  // bundle.
+  void beginImage(std::uint32_t bundle, ImageReady item);
+  bool imageComes(std::uint32_t bundle) const { return coming_images_.contains(bundle); }
+  // At most about so many bytes more of it; returns how many.
+  std::uint64_t continueImage(std::uint32_t bundle, std::uint64_t max_bytes);
+  void cancelImage(std::uint32_t bundle) { coming_images_.erase(bundle); }
+  // Keeps the coarsest of its mip levels, so many.
+  void dropLevels(std::uint32_t bundle, std::uint32_t image, std::uint32_t levels);
   // All of the group's transfer, light weights too: it is shown without shadows from now on.
   void dropTransfer(std::uint32_t bundle, std::uint32_t group);
 
@@ -71,7 +80,7 @@ class Residency {
   gpu::Arena& rows() { return rows_; }
   gpu::Arena& radiance() { return radiance_; }
 
-  // What is in use on the GPU: arenas and textures, staged bundles included.
+  // What is in use on the GPU: arenas and textures, staged bundles and images on their way included.
   std::uint64_t bytesResident() const;
   // What the arenas hold for it, with what is free in their pages.
   std::uint64_t bytesReserved() const;
@@ -91,6 +100,15 @@ class Residency {
     ResidentTables& tables;
     ResidentBundle& bundle;
   };
+  struct ImageUpload {
+    ImageReady item;  // of one that comes in pieces
+    gpu::Texture color, linear;
+    std::uint32_t rows_done = 0;
+  };
+  static ImageUpload begin(const ResidentBundle& owner, const ImageReady& item);
+  static void write(ImageUpload& upload, const ImageReady& item, std::uint32_t rows);
+  static void finish(ResidentBundle& owner, ImageUpload upload, std::uint32_t image);
+  std::uint64_t comingBytes() const;
   Result<void> put(At at, const MeshReady& item);
   Result<void> put(At at, const ImageReady& item);
   Result<void> put(At at, const RowsReady& item);
@@ -111,6 +129,7 @@ class Residency {
   ResidentTables tables_;
   std::map<Staged, ResidentTables> staged_;
   Staged next_staged_ = 0;
+  std::map<std::uint32_t, ImageUpload> coming_images_;  // by bundle
   std::uint64_t next_id_ = 1;
   std::uint64_t version_ = 1, structure_version_ = 1, proxies_version_ = 1;
   gpu::Arena geometry_, transfer_, samples_, rows_, radiance_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "runtime/bundle/capture_proxy.hpp"
 #include "runtime/gpu/arena.hpp"
 
 namespace lambent::streaming {
@@ -54,6 +55,17 @@ std::uint64_t volumeLightBytes(const bundle::Group& group) {
   if (!group.volume || group.cells.empty()) return 0;
   const glm::uvec3& size = group.volume->transfer_size;
   return std::uint64_t{8} * size.x * size.y * size.z * group.cells.front().outputs();
+}
+
+std::uint64_t standInBytes(const bundle::Description& description, std::uint32_t group) {
+  const std::int32_t payload = description.groups[group].proxy;
+  if (payload < 0) return 0;
+  // Emission, corners, light and flags of a triangle: what a payload has at least of each (format.md).
+  constexpr std::uint64_t kStoredBytes = 12 + 6 + 2 + 1;
+  const std::uint64_t stored =
+      description.payloads[static_cast<std::size_t>(payload)].raw_length / kStoredBytes;
+  return kStandInGroupBytes +
+         kStandInTriangleBytes * std::min<std::uint64_t>(stored, bundle::kMaxProxyTriangles);
 }
 
 Needs needsOf(const bundle::Description& description) {

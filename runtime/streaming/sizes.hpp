@@ -34,6 +34,10 @@ std::uint64_t volumeBytes(const bundle::VolumeGrid& grid, std::uint64_t sample_c
 // What the light in a volume takes, in half floats: a texel per voxel of the transfer grid and output.
 std::uint64_t volumeLightBytes(const bundle::Group& group);
 
+// Of a group that is drawn by its capture proxy alone (frame/stand_ins.hpp), at most.
+inline constexpr std::uint64_t kStandInTriangleBytes = 64, kStandInGroupBytes = 208;
+std::uint64_t standInBytes(const bundle::Description& description, std::uint32_t group);
+
 struct Needs {
   std::uint64_t geometry = 0, transfer = 0, samples = 0, rows = 0, radiance = 0, volumes = 0;
 

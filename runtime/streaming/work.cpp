@@ -9,6 +9,8 @@
 
 #include "runtime/bundle/volume_grid.hpp"
 #include "runtime/streaming/image_decode.hpp"
+#include "runtime/streaming/image_levels.hpp"
+#include "runtime/streaming/image_uses.hpp"
 #include "runtime/streaming/sizes.hpp"
 #include "runtime/streaming/volume_blocks.hpp"
 
@@ -81,7 +83,12 @@ class Load {
     if (!reserve_(size->rgbaBytes())) return {};
     auto rgba = decodeRgba(*file, subject);
     if (!rgba) return failAgain(rgba.error());
-    return ImageReady{work.image, size->width, size->height, std::move(*rgba)};
+    if (work.level == 0) return ImageReady{work.image, size->width, size->height, std::move(*rgba)};
+    const ImageUse use = imageUses(description_)[work.image];
+    const ImageSize small = sizeAt(*size, work.level);
+    ImageReady ready{work.image, small.width, small.height, shrink(*rgba, *size, work.level, use.color)};
+    if (use.color && use.linear) ready.linear = shrink(*rgba, *size, work.level, /*color=*/false);
+    return ready;
   }
 
   Loaded operator()(const CodebookWork& work) const {
@@ -249,7 +256,7 @@ std::size_t bytesOf(const Ready& ready) {
                    sizeInBytes(item.data.colors) + sizeInBytes(item.data.tangents) +
                    sizeInBytes(item.data.indices);
           },
-          [](const ImageReady& item) { return sizeInBytes(item.rgba); },
+          [](const ImageReady& item) { return sizeInBytes(item.rgba) + sizeInBytes(item.linear); },
           [](const RowsReady& item) {
             return sizeInBytes(item.rows.offsets) + sizeInBytes(item.rows.samples) +
                    sizeInBytes(item.rows.weights);

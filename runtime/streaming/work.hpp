@@ -23,6 +23,7 @@ struct RowsWork {
 };
 struct ImageWork {
   std::uint32_t image = 0;
+  std::uint32_t level = 0;  // the finest that is wanted
 };
 struct CodebookWork {
   std::uint32_t group = 0, cell = 0, transfer = 0;

@@ -188,6 +188,8 @@ TEST_F(DemoProgram, KeepsToItsMemoryAndDimsLamps) {
   EXPECT_NEAR(centre(" --lamps 0.25").second, 0.25f, 1e-3f);
   const auto [cut, still_bright] = centre(" --max-memory 1kB");
   EXPECT_EQ(cut["planes_resident"], 0);
+  EXPECT_EQ(cut["streaming"]["shown_partly"], 1);
+  EXPECT_EQ(whole["streaming"]["shown_in_full"], 1);
   EXPECT_LT(cut["bytes_loaded"], whole["bytes_loaded"]);
   EXPECT_LE(whole["bytes_loaded"], whole["bytes_in_bundles"]);
   EXPECT_LT(cut["bytes_resident"], whole["bytes_resident"]);

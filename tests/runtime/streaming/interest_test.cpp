@@ -67,6 +67,46 @@ TEST(Interest, LargerInSightComesFirstAndSurfacesBeforeShadowsBeforeDetail) {
   EXPECT_EQ(far.targets(), (Targets{{1, 11}, {0, 0}})) << "planes of what is near before what is a dot";
 }
 
+TEST(Interest, StandInsComeBeforeAnythingButTheLargestUpToAQuarterOfTheMemory) {
+  const std::vector<float> sizes = {1e-4f, 1.0f, 0.5f, 1e-3f, 1e-2f, 1e-5f};
+  Scene scene(sizes);
+  scene.parts.units[0].insert(scene.parts.units[0].begin(), Step{.work = {}, .bytes = 10});
+  choose(scene.bundles, 400);
+  for (const Interest& bundle : scene.bundles) EXPECT_GE(bundle.target[0], 1u);
+  EXPECT_EQ(scene.bundles[1].target[0], 2u);
+  EXPECT_EQ(scene.bundles[2].target[0], 2u) << "what is left goes by worth";
+  EXPECT_LE(scene.bytes(), 400u);
+
+  Scene tight(sizes);
+  tight.parts = scene.parts;
+  choose(tight.bundles, 135);
+  EXPECT_EQ(tight.targets(), (Targets{{0, 0}, {2, 0}, {1, 0}, {0, 0}, {1, 0}, {0, 0}}))
+      << "the largest, then the stand-ins of those that are next";
+  choose(tight.bundles, 50);
+  EXPECT_EQ(tight.targets(), (Targets{{0, 0}, {2, 0}, {0, 0}, {0, 0}, {0, 0}, {0, 0}})) << "in any case";
+}
+
+TEST(Interest, TexturesHaveTheTexelsThatAreSeenAndNoMoreWhereOthersAskForMemory) {
+  // Levels of 128 to 4096 texels a side over the 64 that come with the surfaces.
+  Parts parts = smallParts();
+  parts.images.push_back({.width = 4096, .height = 4096, .coarse = 6, .groups = {0}});
+  parts.units.emplace_back();
+  for (std::uint64_t bytes = 4; bytes <= 4096; bytes *= 4)
+    parts.units.back().push_back({.work = {}, .bytes = bytes});
+  const auto levels = [&](float size, std::uint64_t max_bytes) {
+    std::vector<Interest> bundles(2, {&parts, std::vector<float>(3, size), {0, 0, 0}});
+    bundles[1].size.assign(3, 0.25f * size);  // half as large in the picture
+    choose(bundles, max_bytes);
+    return std::vector{bundles[0].target[2], bundles[1].target[2]};
+  };
+  EXPECT_EQ(levels(0.05f, 100'000), (std::vector{6u, 6u})) << "room for all";
+  EXPECT_EQ(levels(0.05f, 2 * 220 + 2 * 84), (std::vector{3u, 3u})) << "512 texels: 514 pixels, and 257";
+  EXPECT_EQ(levels(0.05f, 2 * 220 + 84 + 340), (std::vector{4u, 3u})) << "the nearer one first";
+  const auto finest = [&](float size) { return worthOf(parts, 2, 5, size) / size; };
+  EXPECT_LT(finest(0.01f), 0.25f * finest(0.1f)) << "texels smaller than pixels count for less";
+  EXPECT_EQ(finest(4.0f), finest(16.0f)) << "larger ones all the same";
+}
+
 TEST(Interest, StaysUntilSomethingElseIsClearlyLarger) {
   Scene scene({1.0f, 1.0f, 0.9f});
   choose(scene.bundles, 500);

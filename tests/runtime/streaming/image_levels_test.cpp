@@ -1,0 +1,70 @@
+#include "runtime/streaming/image_levels.hpp"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+namespace lambent::streaming {
+
+namespace {
+
+std::vector<std::uint8_t> texels(const ImageSize& size, auto&& value) {
+  std::vector<std::uint8_t> rgba;
+  for (std::uint32_t y = 0; y < size.height; ++y)
+    for (std::uint32_t x = 0; x < size.width; ++x)
+      for (std::uint32_t c = 0; c < 4; ++c) rgba.push_back(value(x, y, c));
+  return rgba;
+}
+
+}  // namespace
+
+TEST(ImageLevels, AreAsOpenGlCountsAndRoundsThem) {
+  const ImageSize size{300, 17};
+  EXPECT_EQ(levelCount(size), 9u);
+  EXPECT_EQ(sizeAt(size, 0).width, 300u);
+  EXPECT_EQ(sizeAt(size, 2).width, 75u);
+  EXPECT_EQ(sizeAt(size, 2).height, 4u);
+  EXPECT_EQ(sizeAt(size, 8).width, 1u);
+  EXPECT_EQ(sizeAt(size, 8).height, 1u);
+  EXPECT_EQ(coarseLevel(size), 3u) << "37 x 2";
+  EXPECT_EQ(coarseLevel({64, 64}), 0u);
+  EXPECT_EQ(coarseLevel({65, 1}), 1u);
+}
+
+TEST(ImageLevels, MeansOfColoursAreOfTheirLightAndOfNumbersOfTheirCodes) {
+  const ImageSize size{8, 8};
+  const auto chequered = texels(
+      size, [](auto x, auto y, auto) { return static_cast<std::uint8_t>((x + y) % 2 == 0 ? 255 : 0); });
+  const auto color = shrink(chequered, size, 1, /*color=*/true);
+  const auto numbers = shrink(chequered, size, 1, /*color=*/false);
+  ASSERT_EQ(color.size(), 4u * 4 * 4);
+  for (std::size_t i = 0; i < color.size(); ++i) {
+    EXPECT_EQ(color[i], i % 4 == 3 ? 128 : 188) << "half the light is code 188, coverage is a number";
+    EXPECT_EQ(numbers[i], 128);
+  }
+}
+
+TEST(ImageLevels, OfAnySizeKeepTheMeanAndWhatIsEven) {
+  for (const ImageSize size : {ImageSize{7, 5}, ImageSize{1, 9}, ImageSize{16, 3}, ImageSize{33, 64}})
+    for (std::uint32_t level = 1; level < levelCount(size); ++level) {
+      const auto even =
+          texels(size, [](auto, auto, auto c) { return static_cast<std::uint8_t>(40 + 60 * c); });
+      const ImageSize small = sizeAt(size, level);
+      for (const bool color : {true, false}) {
+        const auto found = shrink(even, size, level, color);
+        ASSERT_EQ(found.size(), small.rgbaBytes());
+        for (std::size_t i = 0; i < found.size(); ++i) ASSERT_EQ(found[i], 40 + 60 * (i % 4));
+      }
+      const auto ramp = texels(
+          size, [](auto x, auto y, auto) { return static_cast<std::uint8_t>((37 * x + 11 * y) % 256); });
+      const auto meanOf = [](const std::vector<std::uint8_t>& values) {
+        double sum = 0.0;
+        for (const std::uint8_t value : values) sum += value;
+        return sum / static_cast<double>(values.size());
+      };
+      EXPECT_NEAR(meanOf(shrink(ramp, size, level, /*color=*/false)), meanOf(ramp), 0.5)
+          << size.width << " x " << size.height << ", level " << level;
+    }
+}
+
+}  // namespace lambent::streaming
