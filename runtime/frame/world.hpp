@@ -273,7 +273,7 @@ class World {
   static bool hasSurfaces(const streaming::Parts& parts, const std::vector<std::uint32_t>& steps) {
     return steps.front() == parts.surfaceSteps();
   }
-  Result<void> accept(std::uint32_t slot, const streaming::Ready& item);
+  Result<void> accept(std::uint32_t slot, streaming::Ready item);
   Result<void> beginSurfaces(std::uint32_t slot);
   void endSurfaces(std::uint32_t slot);
   void dropStandIn(Bundle& bundle);

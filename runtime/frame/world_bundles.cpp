@@ -125,13 +125,13 @@ void World::dropReplacement(Bundle& bundle) {
 
 void World::uploadReplacement(Bundle& bundle, std::uint64_t& budget_bytes, gpu::Counters& counters) {
   Replacement& next = *bundle.replacement;
-  for (const streaming::Ready& item : next.loader.take(budget_bytes)) {
+  for (streaming::Ready& item : next.loader.take(budget_bytes)) {
     const std::uint64_t bytes = streaming::Residency::uploadBytes(item);
     budget_bytes -= std::min(budget_bytes, bytes);
     counters.uploaded_bytes += bytes;
     if (const auto* ready = std::get_if<streaming::ProxyReady>(&item))
       next.proxies[ready->group] = ready->proxy;
-    if (const Result<void> done = residency_.uploadStaged(next.staged, item); !done) {
+    if (const Result<void> done = residency_.uploadStaged(next.staged, std::move(item)); !done) {
       bundle.replacement_error = inBundle(*next.reader, done.error());
       break;
     }

@@ -27,12 +27,12 @@ bool World::showsSurfaces(std::uint32_t slot) const {
 }
 
 // Proxies stay here, for when the surfaces go; others also see them where these are.
-Result<void> World::accept(std::uint32_t slot, const streaming::Ready& item) {
+Result<void> World::accept(std::uint32_t slot, streaming::Ready item) {
   Bundle& bundle = *bundles_[slot];
-  const auto* ready = std::get_if<streaming::ProxyReady>(&item);
-  if (ready == nullptr || !bundle.parts.hasStandIn()) return residency_.upload(slot, item);
+  auto* ready = std::get_if<streaming::ProxyReady>(&item);
+  if (ready == nullptr || !bundle.parts.hasStandIn()) return residency_.upload(slot, std::move(item));
   bundle.proxies.resize(bundle.reader->description().groups.size());
-  bundle.proxies[ready->group] = ready->proxy;
+  bundle.proxies[ready->group] = std::move(ready->proxy);
   bundle.proxies_id = next_proxies_id_++;
   return {};
 }

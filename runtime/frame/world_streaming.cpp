@@ -147,7 +147,7 @@ void World::retire(Bundle& bundle) {
   if (!bundle.batch) return;
   bundle.bytes_read += bundle.batch->loader.bytesRead();
   bundle.batch->loader.stop();
-  residency_.cancelImage(bundle.options.bundle_index);
+  residency_.cancel(bundle.options.bundle_index);
   retired_.push_back(std::move(bundle.batch->loader));
   bundle.batch.reset();
 }
@@ -285,29 +285,37 @@ void World::takeFrom(std::uint32_t slot, std::uint64_t& budget_bytes, gpu::Count
   };
   // What is large comes over several frames.
   const auto comes = [&] {
-    if (!residency_.imageComes(slot)) return false;
-    spend(residency_.continueImage(slot, budget_bytes));
-    if (residency_.imageComes(slot)) return true;
+    if (!residency_.comes(slot)) return false;
+    const Result<std::uint64_t> bytes = residency_.proceed(slot, budget_bytes);
+    if (!bytes) {
+      bundle.error = inBundle(*bundle.reader, bytes.error());
+      return false;
+    }
+    spend(*bytes);
+    if (residency_.comes(slot)) return true;
     countOne(bundle);
     return false;
   };
   if (comes()) return;
-  std::vector<streaming::Ready> items = bundle.batch->loader.take(budget_bytes);
+  std::vector<streaming::Ready> items;
+  if (!bundle.error) items = bundle.batch->loader.take(budget_bytes);
   for (streaming::Ready& item : items) {
     const std::uint64_t bytes = streaming::Residency::uploadBytes(item);
     // What is larger than the budget comes alone.
-    if (auto* image = std::get_if<streaming::ImageReady>(&item);
-        image != nullptr && bytes > budget_bytes && items.size() == 1) {
-      residency_.beginImage(slot, std::move(*image));
-      if (comes()) return;
-      continue;
-    }
-    spend(bytes);
-    if (const Result<void> done = accept(slot, item); !done) {
+    const bool in_pieces =
+        bytes > budget_bytes && items.size() == 1 && streaming::Residency::comesInPieces(item);
+    if (!in_pieces) spend(bytes);
+    const Result<void> done =
+        in_pieces ? residency_.begin(slot, std::move(item)) : accept(slot, std::move(item));
+    if (!done) {
       bundle.error = inBundle(*bundle.reader, done.error());
       break;
     }
-    countOne(bundle);
+    if (in_pieces) {
+      if (comes()) return;
+    } else {
+      countOne(bundle);
+    }
   }
   if (const auto error = bundle.batch->loader.error()) bundle.error = *error;
   if (bundle.error || bundle.batch->pieces.empty()) retire(bundle);

@@ -53,15 +53,6 @@ std::uint64_t wholeBytes(ResidentCell cell) {
   return bytes;
 }
 
-float meanEdge(const bundle::MeshData& mesh) {
-  double sum = 0.0;
-  for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3)
-    for (std::size_t k = 0; k < 3; ++k)
-      sum += double{
-          glm::distance(mesh.positions[mesh.indices[i + k]], mesh.positions[mesh.indices[i + (k + 1) % 3]])};
-  return mesh.indices.empty() ? 0.0f : static_cast<float>(sum / static_cast<double>(mesh.indices.size()));
-}
-
 // Linear between voxel centres, constant in the half voxel towards the faces. Codes of 8 bits too are kept in
 // 16: some devices interpolate texels of 8 bits with results of 8 bits.
 gpu::Texture makeDensityTexture(const bundle::VolumeGrid& grid, const std::vector<std::byte>& codes) {
@@ -83,11 +74,6 @@ gpu::Texture makeDensityTexture(const bundle::VolumeGrid& grid, const std::vecto
   for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
     glTextureParameteri(texture.id(), filter, GL_LINEAR);
   return texture;
-}
-
-ResidentCell& cellOf(ResidentTables& tables, const ResidentBundle& bundle, std::uint32_t group,
-                     std::uint32_t cell) {
-  return tables.cells[tables.groups[bundle.first.groups + group].first_cell + cell];
 }
 
 ResidentVolume& volumeOf(ResidentTables& tables, const ResidentBundle& bundle, std::uint32_t group) {
@@ -170,7 +156,7 @@ Result<void> Residency::add(const bundle::Description& description, std::uint32_
 }
 
 void Residency::remove(std::uint32_t bundle) {
-  coming_images_.erase(bundle);
+  cancel(bundle);
   release(extract(tables_, bundle));
   structureChanged();
 }
@@ -188,7 +174,7 @@ void Residency::discard(Staged staged) {
 }
 
 void Residency::show(Staged staged, std::uint32_t bundle) {
-  coming_images_.erase(bundle);
+  cancel(bundle);
   const ResidentTables old = present(bundle) ? extract(tables_, bundle) : ResidentTables{};
   insert(tables_, bundle, std::move(staged_.at(staged)));
   staged_.erase(staged);
@@ -196,58 +182,19 @@ void Residency::show(Staged staged, std::uint32_t bundle) {
   structureChanged();
 }
 
-Result<void> Residency::upload(std::uint32_t bundle, const Ready& item) {
+Result<void> Residency::upload(std::uint32_t bundle, Ready item) {
   assert(bundle < tables_.bundles.size() && tables_.bundles[bundle].present);
   ++version_;
   if (std::holds_alternative<ProxyReady>(item)) ++proxies_version_;
   const At at{tables_, tables_.bundles[bundle]};
-  return std::visit([&](const auto& ready) { return put(at, ready); }, item);
+  return std::visit([&](auto& ready) { return put(at, std::move(ready)); }, item);
 }
 
-Result<void> Residency::uploadStaged(Staged staged, const Ready& item) {
+Result<void> Residency::uploadStaged(Staged staged, Ready item) {
   ++version_;
   ResidentTables& tables = staged_.at(staged);
   const At at{tables, tables.bundles.front()};
-  return std::visit([&](const auto& ready) { return put(at, ready); }, item);
-}
-
-Result<void> Residency::put(At at, const MeshReady& item) {
-  const std::uint32_t index = at.bundle.first.meshes + at.bundle.first_primitive[item.mesh] + item.primitive;
-  ResidentMesh& mesh = at.tables.meshes[index];
-  const bundle::MeshData& data = item.data;
-  assert(data.positions.size() == mesh.vertex_count && data.indices.size() == mesh.index_count);
-  std::vector<std::uint64_t> colors;
-  colors.reserve(data.colors.size());
-  for (const glm::vec4& color : data.colors) colors.push_back(glm::packUnorm4x16(color));
-  const std::span<const std::byte> parts[] = {
-      bytesOf(data.positions), bytesOf(data.normals),  bytesOf(data.texcoords0), bytesOf(data.texcoords1),
-      bytesOf(colors),         bytesOf(data.tangents), bytesOf(data.indices)};
-  std::uint64_t byte_count = 0;
-  for (const auto& part : parts) byte_count += part.size();
-  const Result<gpu::Allocation> block = geometry_.allocate(byte_count);
-  if (!block) return failAgain(block.error());
-  mesh.block = *block;
-  mesh.mean_edge = meanEdge(data);
-  std::uint32_t* const word_of[] = {&mesh.positions_word,    &mesh.normals_word, &mesh.texcoords_word[0],
-                                    &mesh.texcoords_word[1], &mesh.colors_word,  &mesh.tangents_word,
-                                    &mesh.indices_word};
-  std::uint64_t offset = 0;
-  for (std::size_t i = 0; i < std::size(parts); ++i) {
-    if (parts[i].empty()) continue;
-    *word_of[i] = mesh.block.word() + static_cast<std::uint32_t>(offset / 4);
-    geometry_.write(mesh.block, offset, parts[i]);
-    offset += parts[i].size();
-  }
-  for (ResidentDraw& draw : at.tables.draws) {
-    if (draw.mesh != index) continue;
-    draw.version = version_;
-    if (draw.glossy()) continue;
-    const Result<gpu::Allocation> radiance =
-        radiance_.allocate(4ull * radianceWords(draw.outputs) * mesh.vertex_count);
-    if (!radiance) return failAgain(radiance.error());
-    draw.radiance = *radiance;
-  }
-  return {};
+  return std::visit([&](auto& ready) { return put(at, std::move(ready)); }, item);
 }
 
 Result<void> Residency::put(At at, const RowsReady& item) {
@@ -296,33 +243,6 @@ Result<void> Residency::moveCell(ResidentCell& cell) {
       move(plane.block, *transfer_.allocateIn(cell.block.page, planeBytesOf(plane)));
       plane.word = plane.block.word();
     }
-  return {};
-}
-
-Result<void> Residency::put(At at, const CodebookReady& item) {
-  ResidentCell& cell = cellOf(at.tables, at.bundle, item.group, item.cell);
-  if (Result<void> reserved = reserveCell(cell); !reserved) return reserved;
-  ResidentTransfer& transfer = cell.transfers[item.transfer];
-  const bundle::Codebook& codebook = item.codebook;
-  assert(codebook.clusters() == transfer.clusters && codebook.axes.size() == transfer.axes &&
-         item.positions.size() == cell.sample_count);
-  std::vector<std::uint32_t> clusters;
-  std::vector<bundle::AxisCode> weights;
-  for (std::size_t c = 0, axis = 0; c < codebook.clusters(); ++c) {
-    const std::uint32_t axes = codebook.axis_counts[c];
-    clusters.insert(clusters.end(), {static_cast<std::uint32_t>(weights.size()), axes});
-    weights.push_back({.offset = 1.0f, .scale = 0.0f});  // the mean
-    for (std::uint32_t j = 0; j < axes; ++j) weights.push_back(codebook.axes[axis++]);
-  }
-  const auto write = [&](std::uint32_t word, std::span<const std::byte> bytes) {
-    transfer_.write(cell.block, 4ull * (word - cell.block.word()), bytes);
-  };
-  write(transfer.clusters_word, bytesOf(clusters));
-  write(transfer.weights_word, bytesOf(weights));
-  write(transfer.vectors_word, bytesOf(codebook.vectors));
-  write(transfer.positions_word, bytesOf(item.positions));
-  transfer.codebook_resident = true;
-  cell.version = version_;
   return {};
 }
 

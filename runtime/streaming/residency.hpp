@@ -27,7 +27,7 @@ class Residency {
   Result<std::uint32_t> add(const bundle::Description& description);
   // Into this one, which must be empty.
   Result<void> add(const bundle::Description& description, std::uint32_t slot);
-  Result<void> upload(std::uint32_t bundle, const Ready& item);
+  Result<void> upload(std::uint32_t bundle, Ready item);
   // Samples and radiance were written by others: cells and draws get new versions, so that whoever shades
   // them does it anew.
   void forgetShading();
@@ -40,13 +40,14 @@ class Residency {
   // How many planes of a transfer to keep.
   using PlanesToKeep = std::function<std::uint32_t(std::uint32_t cell, std::uint32_t transfer)>;
   void dropPlanes(std::uint32_t bundle, std::uint32_t group, const PlanesToKeep& keep);
-  // An image in place of a coarser one, some rows at a time; shown when it is whole. One at a time of each
-  // bundle.
-  void beginImage(std::uint32_t bundle, ImageReady item);
-  bool imageComes(std::uint32_t bundle) const { return coming_images_.contains(bundle); }
+  // What is larger than a frame has room for comes in pieces and is shown when it is whole: an image in place
+  // of a coarser one, a mesh, the means and axes of a transfer. One at a time of each bundle.
+  static bool comesInPieces(const Ready& item);
+  Result<void> begin(std::uint32_t bundle, Ready item);
+  bool comes(std::uint32_t bundle) const { return coming_.contains(bundle); }
   // At most about so many bytes more of it; returns how many.
-  std::uint64_t continueImage(std::uint32_t bundle, std::uint64_t max_bytes);
-  void cancelImage(std::uint32_t bundle) { coming_images_.erase(bundle); }
+  Result<std::uint64_t> proceed(std::uint32_t bundle, std::uint64_t max_bytes);
+  void cancel(std::uint32_t bundle);
   // Keeps the coarsest of its mip levels, so many.
   void dropLevels(std::uint32_t bundle, std::uint32_t image, std::uint32_t levels);
   // All of the group's transfer, light weights too: it is shown without shadows from now on.
@@ -55,7 +56,7 @@ class Residency {
   // A bundle that is not in the tables yet, named by what stage() returns.
   using Staged = std::uint32_t;
   Result<Staged> stage(const bundle::Description& description);
-  Result<void> uploadStaged(Staged staged, const Ready& item);
+  Result<void> uploadStaged(Staged staged, Ready item);
   void discard(Staged staged);
   // In the place of `bundle`, which goes; the slot may be empty.
   void show(Staged staged, std::uint32_t bundle);
@@ -108,11 +109,29 @@ class Residency {
   static ImageUpload begin(const ResidentBundle& owner, const ImageReady& item);
   static void write(ImageUpload& upload, const ImageReady& item, std::uint32_t rows);
   static void finish(ResidentBundle& owner, ImageUpload upload, std::uint32_t image);
+  struct MeshUpload {
+    MeshReady item;
+    std::vector<std::uint64_t> colors;
+    gpu::Allocation block;
+    std::uint64_t bytes_done = 0;
+  };
+  struct CodebookUpload {
+    CodebookReady item;
+    std::uint64_t bytes_done = 0;  // of its vectors
+  };
+  using Coming = std::variant<ImageUpload, MeshUpload, CodebookUpload>;
+  std::uint64_t proceed(ImageUpload& upload, std::uint64_t max_bytes);
+  std::uint64_t proceed(MeshUpload& upload, std::uint64_t max_bytes);
+  std::uint64_t proceed(At at, CodebookUpload& upload, std::uint64_t max_bytes);
+  Result<MeshUpload> begin(MeshReady item);
+  Result<void> finish(At at, const MeshUpload& upload);
+  Result<void> writeTables(At at, const CodebookReady& item);
+  void finish(At at, const CodebookUpload& upload);
   std::uint64_t comingBytes() const;
-  Result<void> put(At at, const MeshReady& item);
+  Result<void> put(At at, MeshReady item);
   Result<void> put(At at, const ImageReady& item);
   Result<void> put(At at, const RowsReady& item);
-  Result<void> put(At at, const CodebookReady& item);
+  Result<void> put(At at, CodebookReady item);
   Result<void> put(At at, const PlaneReady& item);
   Result<void> put(At at, const LightWeightsReady& item);
   Result<void> put(At at, const ProxyReady& item);
@@ -129,7 +148,7 @@ class Residency {
   ResidentTables tables_;
   std::map<Staged, ResidentTables> staged_;
   Staged next_staged_ = 0;
-  std::map<std::uint32_t, ImageUpload> coming_images_;  // by bundle
+  std::map<std::uint32_t, Coming> coming_;  // by bundle
   std::uint64_t next_id_ = 1;
   std::uint64_t version_ = 1, structure_version_ = 1, proxies_version_ = 1;
   gpu::Arena geometry_, transfer_, samples_, rows_, radiance_;

@@ -39,9 +39,6 @@ void writeRows(const gpu::Texture& texture, const std::vector<std::uint8_t>& rgb
                       rgba.data() + std::size_t{4} * width * first);
 }
 
-// However little a frame may bring: else a large image would not come at all.
-constexpr std::uint64_t kLeastBytes = std::uint64_t{64} << 10;
-
 std::string labelOf(std::uint32_t image) {
   return fmt::format("image {}", image);
 }
@@ -86,28 +83,12 @@ Result<void> Residency::put(At at, const ImageReady& item) {
   return {};
 }
 
-void Residency::beginImage(std::uint32_t bundle, ImageReady item) {
-  ImageUpload upload = begin(tables_.bundles[bundle], item);
-  upload.item = std::move(item);
-  coming_images_.insert_or_assign(bundle, std::move(upload));
-}
-
-std::uint64_t Residency::continueImage(std::uint32_t bundle, std::uint64_t max_bytes) {
-  const auto found = coming_images_.find(bundle);
-  if (found == coming_images_.end()) return 0;
-  ImageUpload& upload = found->second;
+std::uint64_t Residency::proceed(ImageUpload& upload, std::uint64_t max_bytes) {
   const ImageReady& item = upload.item;
   const std::uint64_t bytes = (item.rgba.size() + item.linear.size()) / item.height;
   const std::uint32_t left = item.height - upload.rows_done;
-  const auto rows = static_cast<std::uint32_t>(
-      std::clamp<std::uint64_t>(std::max(max_bytes, kLeastBytes) / bytes, 1, left));
+  const auto rows = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(max_bytes / bytes, 1, left));
   write(upload, item, rows);
-  if (rows == left) {
-    ++version_;
-    const std::uint32_t image = item.image;
-    finish(tables_.bundles[bundle], std::move(upload), image);
-    coming_images_.erase(found);
-  }
   return rows * bytes;
 }
 
@@ -124,7 +105,9 @@ void Residency::dropLevels(std::uint32_t bundle, std::uint32_t image, std::uint3
 
 std::uint64_t Residency::comingBytes() const {
   std::uint64_t bytes = 0;
-  for (const auto& [bundle, upload] : coming_images_) bytes += bytesOf(upload.color) + bytesOf(upload.linear);
+  for (const auto& [bundle, coming] : coming_)
+    if (const auto* upload = std::get_if<ImageUpload>(&coming))
+      bytes += bytesOf(upload->color) + bytesOf(upload->linear);
   return bytes;
 }
 

@@ -172,6 +172,11 @@ struct ResidentTables {
   std::vector<ResidentVolume> volumes;
 };
 
+inline ResidentCell& cellOf(ResidentTables& tables, const ResidentBundle& bundle, std::uint32_t group,
+                            std::uint32_t cell) {
+  return tables.cells[tables.groups[bundle.first.groups + group].first_cell + cell];
+}
+
 // Of one bundle, with nothing of it here yet; ids from next_id on, which rises.
 ResidentTables tablesOf(const bundle::Description& description, std::uint64_t version,
                         std::uint64_t& next_id);

@@ -293,6 +293,41 @@ TEST_F(DiffuseGpu, UnshadowedModeLeavesTransferAside) {
   EXPECT_LT(bench.differenceToTwin(), 1e-3);
 }
 
+TEST_F(DiffuseGpu, WhatComesInPiecesIsShadedAsWhatComesWhole) {
+  testing::BundleMaker maker(16);
+  Bench bench(maker, {.order = 8,
+                      .full_channels = 3,
+                      .planes = 30,
+                      .clusters = 24,
+                      .groups = 1,
+                      .cells = 1,
+                      .vertices = 4001});
+  std::uint32_t pieces = 0, items = 0;
+  const auto bring = [&](const streaming::Ready& item) {
+    ASSERT_TRUE(bench.residency.begin(0, item));
+    for (++items; bench.residency.comes(0); ++pieces) {
+      const Result<std::uint64_t> bytes = bench.residency.proceed(0, /*max_bytes=*/70'000);
+      ASSERT_TRUE(bytes);
+      ASSERT_LE(*bytes, 70'000u);
+    }
+  };
+  for (const auto& item : bench.made.meshes) bring(item);
+  bench.uploadRows();
+  for (std::size_t cell = 0; cell < bench.made.codebooks.size(); ++cell) {
+    for (const auto& item : bench.made.codebooks[cell]) bring(item);
+    for (const auto& plane : bench.made.planes[cell]) bench.upload(plane);
+  }
+  EXPECT_GT(pieces, items + 2) << "or nothing was cut";
+  bench.shade();
+  EXPECT_LT(bench.differenceToTwin(), 1e-3);
+
+  // What is cancelled leaves nothing behind.
+  const std::uint64_t before = bench.residency.bytesResident();
+  ASSERT_TRUE(bench.residency.begin(0, bench.made.meshes.front()));
+  bench.residency.cancel(0);
+  EXPECT_EQ(bench.residency.bytesResident(), before);
+}
+
 TEST_F(DiffuseGpu, RunsOnlyWhenLightRotationOrResidencyChanged) {
   testing::BundleMaker maker(15);
   Bench bench(maker, {});

@@ -1,0 +1,231 @@
+// What a frame may have no room for comes in pieces: meshes and codebooks here, textures in
+// residency_images.cpp. It counts once it is whole. What comes at once takes the same way, in one piece.
+#include <algorithm>
+#include <array>
+#include <cassert>
+
+#include <glm/geometric.hpp>
+#include <glm/gtc/packing.hpp>
+
+#include "runtime/streaming/residency.hpp"
+#include "runtime/streaming/sizes.hpp"
+
+namespace lambent::streaming {
+
+namespace {
+
+// However little a frame may bring: else what is large would not come at all.
+constexpr std::uint64_t kLeastBytes = std::uint64_t{64} << 10;
+constexpr std::uint64_t kAll = ~std::uint64_t{0};
+
+template <typename T>
+std::span<const std::byte> bytesOf(const std::vector<T>& values) {
+  return std::as_bytes(std::span(values));
+}
+
+float meanEdge(const bundle::MeshData& mesh) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3)
+    for (std::size_t k = 0; k < 3; ++k)
+      sum += double{
+          glm::distance(mesh.positions[mesh.indices[i + k]], mesh.positions[mesh.indices[i + (k + 1) % 3]])};
+  return mesh.indices.empty() ? 0.0f : static_cast<float>(sum / static_cast<double>(mesh.indices.size()));
+}
+
+// The attributes of a mesh as they lie one after the other in its block.
+constexpr std::size_t kMeshParts = 7;
+using MeshParts = std::array<std::span<const std::byte>, kMeshParts>;
+
+MeshParts partsOf(const bundle::MeshData& data, const std::vector<std::uint64_t>& colors) {
+  return {bytesOf(data.positions), bytesOf(data.normals),  bytesOf(data.texcoords0), bytesOf(data.texcoords1),
+          bytesOf(colors),         bytesOf(data.tangents), bytesOf(data.indices)};
+}
+
+std::uint64_t bytesOf(const MeshParts& parts) {
+  std::uint64_t bytes = 0;
+  for (const std::span<const std::byte> part : parts) bytes += part.size();
+  return bytes;
+}
+
+}  // namespace
+
+bool Residency::comesInPieces(const Ready& item) {
+  return std::holds_alternative<ImageReady>(item) || std::holds_alternative<MeshReady>(item) ||
+         std::holds_alternative<CodebookReady>(item);
+}
+
+Result<void> Residency::begin(std::uint32_t bundle, Ready item) {
+  assert(comesInPieces(item) && !comes(bundle));
+  const At at{tables_, tables_.bundles[bundle]};
+  if (auto* image = std::get_if<ImageReady>(&item)) {
+    ImageUpload upload = begin(at.bundle, *image);
+    upload.item = std::move(*image);
+    coming_.emplace(bundle, std::move(upload));
+  } else if (auto* mesh = std::get_if<MeshReady>(&item)) {
+    Result<MeshUpload> upload = begin(std::move(*mesh));
+    if (!upload) return failAgain(upload.error());
+    coming_.emplace(bundle, std::move(*upload));
+  } else if (auto* codebook = std::get_if<CodebookReady>(&item)) {
+    if (Result<void> written = writeTables(at, *codebook); !written) return written;
+    coming_.emplace(bundle, CodebookUpload{std::move(*codebook)});
+  }
+  return {};
+}
+
+Result<std::uint64_t> Residency::proceed(std::uint32_t bundle, std::uint64_t max_bytes) {
+  const auto found = coming_.find(bundle);
+  if (found == coming_.end()) return 0;
+  const At at{tables_, tables_.bundles[bundle]};
+  max_bytes = std::max(max_bytes, kLeastBytes);
+  std::uint64_t bytes = 0;
+  Result<void> done;
+  const auto whole = [&] {
+    ++version_;
+    return std::move(coming_.extract(found).mapped());
+  };
+  if (auto* image = std::get_if<ImageUpload>(&found->second)) {
+    bytes = proceed(*image, max_bytes);
+    if (image->rows_done == image->item.height) {
+      auto upload = std::get<ImageUpload>(whole());
+      finish(at.bundle, std::move(upload), upload.item.image);
+    }
+  } else if (auto* mesh = std::get_if<MeshUpload>(&found->second)) {
+    bytes = proceed(*mesh, max_bytes);
+    if (mesh->bytes_done == bytesOf(partsOf(mesh->item.data, mesh->colors)))
+      done = finish(at, std::get<MeshUpload>(whole()));
+  } else if (auto* codebook = std::get_if<CodebookUpload>(&found->second)) {
+    bytes = proceed(at, *codebook, max_bytes);
+    if (codebook->bytes_done == bytesOf(codebook->item.codebook.vectors).size())
+      finish(at, std::get<CodebookUpload>(whole()));
+  }
+  if (!done) return failAgain(done.error());
+  return bytes;
+}
+
+void Residency::cancel(std::uint32_t bundle) {
+  const auto found = coming_.find(bundle);
+  if (found == coming_.end()) return;
+  // Textures go by themselves, and the blocks of cells are the cells'.
+  if (const auto* mesh = std::get_if<MeshUpload>(&found->second)) geometry_.release(mesh->block);
+  coming_.erase(found);
+}
+
+// --- meshes
+// -------------------------------------------------------------------------------------------------------
+
+Result<Residency::MeshUpload> Residency::begin(MeshReady item) {
+  MeshUpload upload{.item = std::move(item), .colors = {}, .block = {}};
+  upload.colors.reserve(upload.item.data.colors.size());
+  for (const glm::vec4& color : upload.item.data.colors) upload.colors.push_back(glm::packUnorm4x16(color));
+  const Result<gpu::Allocation> block = geometry_.allocate(bytesOf(partsOf(upload.item.data, upload.colors)));
+  if (!block) return failAgain(block.error());
+  upload.block = *block;
+  return upload;
+}
+
+std::uint64_t Residency::proceed(MeshUpload& upload, std::uint64_t max_bytes) {
+  const std::uint64_t before = upload.bytes_done;
+  std::uint64_t first = 0;  // of the part
+  for (const std::span<const std::byte> part : partsOf(upload.item.data, upload.colors)) {
+    const std::uint64_t left = max_bytes - (upload.bytes_done - before);
+    if (const std::uint64_t from = upload.bytes_done - first; left > 0 && from < part.size()) {
+      const std::uint64_t count = std::min<std::uint64_t>(left, part.size() - from);
+      geometry_.write(upload.block, upload.bytes_done, part.subspan(from, count));
+      upload.bytes_done += count;
+    }
+    first += part.size();
+    if (upload.bytes_done < first) break;
+  }
+  return upload.bytes_done - before;
+}
+
+Result<void> Residency::finish(At at, const MeshUpload& upload) {
+  const MeshReady& item = upload.item;
+  const std::uint32_t index = at.bundle.first.meshes + at.bundle.first_primitive[item.mesh] + item.primitive;
+  ResidentMesh& mesh = at.tables.meshes[index];
+  assert(item.data.positions.size() == mesh.vertex_count && item.data.indices.size() == mesh.index_count);
+  mesh.block = upload.block;
+  mesh.mean_edge = meanEdge(item.data);
+  const std::array<std::uint32_t*, kMeshParts> word_of = {
+      &mesh.positions_word, &mesh.normals_word,  &mesh.texcoords_word[0], &mesh.texcoords_word[1],
+      &mesh.colors_word,    &mesh.tangents_word, &mesh.indices_word};
+  const MeshParts parts = partsOf(item.data, upload.colors);
+  std::uint64_t offset = 0;
+  for (std::size_t i = 0; i < kMeshParts; ++i) {
+    if (parts[i].empty()) continue;
+    *word_of[i] = mesh.block.word() + static_cast<std::uint32_t>(offset / 4);
+    offset += parts[i].size();
+  }
+  for (ResidentDraw& draw : at.tables.draws) {
+    if (draw.mesh != index) continue;
+    draw.version = version_;
+    if (draw.glossy()) continue;
+    const Result<gpu::Allocation> radiance =
+        radiance_.allocate(4ull * radianceWords(draw.outputs) * mesh.vertex_count);
+    if (!radiance) return failAgain(radiance.error());
+    draw.radiance = *radiance;
+  }
+  return {};
+}
+
+Result<void> Residency::put(At at, MeshReady item) {
+  Result<MeshUpload> upload = begin(std::move(item));
+  if (!upload) return failAgain(upload.error());
+  proceed(*upload, kAll);
+  return finish(at, *upload);
+}
+
+// --- codebooks
+// ----------------------------------------------------------------------------------------------------
+
+// All but the vectors, which are nearly all of it.
+Result<void> Residency::writeTables(At at, const CodebookReady& item) {
+  ResidentCell& cell = cellOf(at.tables, at.bundle, item.group, item.cell);
+  if (Result<void> reserved = reserveCell(cell); !reserved) return reserved;
+  const ResidentTransfer& transfer = cell.transfers[item.transfer];
+  const bundle::Codebook& codebook = item.codebook;
+  assert(codebook.clusters() == transfer.clusters && codebook.axes.size() == transfer.axes &&
+         item.positions.size() == cell.sample_count);
+  std::vector<std::uint32_t> clusters;
+  std::vector<bundle::AxisCode> weights;
+  for (std::size_t c = 0, axis = 0; c < codebook.clusters(); ++c) {
+    const std::uint32_t axes = codebook.axis_counts[c];
+    clusters.insert(clusters.end(), {static_cast<std::uint32_t>(weights.size()), axes});
+    weights.push_back({.offset = 1.0f, .scale = 0.0f});  // the mean
+    for (std::uint32_t j = 0; j < axes; ++j) weights.push_back(codebook.axes[axis++]);
+  }
+  const auto write = [&](std::uint32_t word, std::span<const std::byte> bytes) {
+    transfer_.write(cell.block, 4ull * (word - cell.block.word()), bytes);
+  };
+  write(transfer.clusters_word, bytesOf(clusters));
+  write(transfer.weights_word, bytesOf(weights));
+  write(transfer.positions_word, bytesOf(item.positions));
+  return {};
+}
+
+std::uint64_t Residency::proceed(At at, CodebookUpload& upload, std::uint64_t max_bytes) {
+  const CodebookReady& item = upload.item;
+  const ResidentCell& cell = cellOf(at.tables, at.bundle, item.group, item.cell);
+  const std::span<const std::byte> left = bytesOf(item.codebook.vectors).subspan(upload.bytes_done);
+  const std::span<const std::byte> piece = left.first(std::min<std::uint64_t>(max_bytes, left.size()));
+  const std::uint32_t first_word = cell.transfers[item.transfer].vectors_word - cell.block.word();
+  transfer_.write(cell.block, 4ull * first_word + upload.bytes_done, piece);
+  upload.bytes_done += piece.size();
+  return piece.size();
+}
+
+void Residency::finish(At at, const CodebookUpload& upload) {
+  ResidentCell& cell = cellOf(at.tables, at.bundle, upload.item.group, upload.item.cell);
+  cell.transfers[upload.item.transfer].codebook_resident = true;
+  cell.version = version_;
+}
+
+Result<void> Residency::put(At at, CodebookReady item) {
+  if (Result<void> written = writeTables(at, item); !written) return written;
+  CodebookUpload upload{std::move(item)};
+  proceed(at, upload, kAll);
+  finish(at, upload);
+  return {};
+}
+
+}  // namespace lambent::streaming
