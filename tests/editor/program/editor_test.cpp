@@ -307,6 +307,7 @@ expect /errors 0
 // What the reference has of it must be as strong, as turned and in the same places.
 TEST_F(EditorProgram, HoldsItsPictureAgainstTheReference) {
   std::filesystem::copy(path("hello.glb"), path("again.glb"));
+  size = "600x400";
   const Played played =
       play(fmt::format(R"(
 lights {2}
@@ -318,8 +319,11 @@ set environment:Environment.rotation 100
 select again
 set Transform.translation 2.2 0.1 0
 frame-all
+left-panels
+right-panels
 bottom-panels
-reference-samples 32
+setting window off
+reference-samples 16
 reference-bands 5
 split
 wait rest 60
