@@ -99,9 +99,12 @@ void Session::render(spec::Size size) {
   const auto view = viewing.view(*this, size);
   if (!view) return log.error(view.error());
   viewing.shown_view = *view;
-  const bool moved = view->view_from_world != view_drawn_.view_from_world ||
-                     view->clip_from_view != view_drawn_.clip_from_view || edits_drawn_ != editsVersion();
   const bool resized = size.width != size_drawn_.width || size.height != size_drawn_.height;
+  // Another size has another aspect, by a pixel at least. That is no movement: where whole pictures take
+  // long, the next would be drawn coarse for it, at another size again, and so on for ever.
+  const bool moved = view->view_from_world != view_drawn_.view_from_world ||
+                     (!resized && view->clip_from_view != view_drawn_.clip_from_view) ||
+                     edits_drawn_ != editsVersion();
   if (moved || resized || !stage.atRest() || viewing.changed) frames_to_draw_ = 1;
   if (!moved && !viewing.playing && !history.open()) viewing.settle();
   if (frames_to_draw_ > 0 || viewing.playing) {
