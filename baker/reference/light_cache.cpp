@@ -1,8 +1,12 @@
 #include "baker/reference/light_cache.hpp"
 
 #include <algorithm>
+#include <functional>
+#include <iterator>
 #include <type_traits>
 #include <utility>
+
+#include "baker/reference/request_lights.hpp"
 
 namespace lambent::baker::reference {
 
@@ -27,6 +31,10 @@ bool same(const std::vector<LightCache::FromInfinity>& a, const std::vector<Ligh
   });
 }
 
+bool standsInScene(const spec::Light& light) {
+  return std::holds_alternative<spec::SphereLight>(light) || std::holds_alternative<spec::DiscLight>(light);
+}
+
 // A sphere or disc that is dragged through the scene leaves the sky as it is.
 std::vector<LightCache::FromInfinity> fromInfinity(const std::vector<spec::Light>& lights) {
   std::vector<LightCache::FromInfinity> out;
@@ -43,20 +51,31 @@ std::vector<LightCache::FromInfinity> fromInfinity(const std::vector<spec::Light
 }  // namespace
 
 Result<std::shared_ptr<const Environment>> LightCache::environment(const std::vector<spec::Light>& lights,
+                                                                   const std::vector<float>& factors,
                                                                    const Options& options) {
   std::vector<FromInfinity> wanted = fromInfinity(lights);
   if (!lights_ || !same(*lights_, wanted)) {
     lights_.reset(), environment_.reset();
-    auto loaded = spec::loadDistantLights(lights);
+    std::vector<spec::Light> distant;
+    std::copy_if(lights.begin(), lights.end(), std::back_inserter(distant), std::not_fn(standsInScene));
+    auto loaded = loadEach(distant);
     if (!loaded) return failAgain(std::move(loaded.error()));
-    distant_ = std::move(*loaded);
+    loaded_ = std::move(*loaded);
     lights_ = std::move(wanted);
   }
+  // Spheres and discs among the lights may have moved the factors of the others.
+  std::vector<float> of_loaded;
+  for (std::size_t i = 0; i < lights.size(); ++i)
+    if (!standsInScene(lights[i])) of_loaded.push_back(i < factors.size() ? factors[i] : 1.0f);
   const int band_limit = options.band_limit ? options.band_limit->in : 0;
-  if (!environment_ || turn_deg_ != options.rotate_light_deg || band_limit_ != band_limit) {
+  if (!environment_ || factors_ != of_loaded || turn_deg_ != options.rotate_light_deg ||
+      band_limit_ != band_limit) {
+    factors_ = std::move(of_loaded);
     turn_deg_ = options.rotate_light_deg;
     band_limit_ = band_limit;
-    environment_ = std::make_shared<const Environment>(distant_, turn_deg_, band_limit_);
+    spec::DistantLights distant = together(loaded_, factors_);
+    notices_ = distant.notices;
+    environment_ = std::make_shared<const Environment>(std::move(distant), turn_deg_, band_limit_);
   }
   return environment_;
 }

@@ -10,6 +10,7 @@
 
 #include "baker/reference/environment.hpp"
 #include "baker/reference/options.hpp"
+#include "runtime/spec/distant_lights.hpp"
 #include "runtime/spec/light.hpp"
 
 namespace lambent::baker::reference {
@@ -18,16 +19,19 @@ class LightCache {
  public:
   using FromInfinity = std::variant<spec::ProbeLight, spec::ConstantLight, spec::SunLight>;
 
-  // By the lights' words: a probe's file that changed since is not read again. Errors: those of loading a
-  // probe.
+  // By the lights' words: a probe's file that changed since is not read again. factors: Request's. Errors:
+  // those of loading a probe.
   Result<std::shared_ptr<const Environment>> environment(const std::vector<spec::Light>& lights,
+                                                         const std::vector<float>& factors,
                                                          const Options& options);
   // What was repaired in the probes.
-  const std::vector<std::string>& notices() const { return distant_.notices; }
+  const std::vector<std::string>& notices() const { return notices_; }
 
  private:
-  std::optional<std::vector<FromInfinity>> lights_;  // that distant_ is of; none: of none
-  spec::DistantLights distant_;
+  std::optional<std::vector<FromInfinity>> lights_;  // that loaded_ is of; none: of none
+  std::vector<spec::DistantLights> loaded_;          // each, whole
+  std::vector<std::string> notices_;
+  std::vector<float> factors_;
   float turn_deg_ = 0.0f;
   int band_limit_ = 0;
   std::shared_ptr<const Environment> environment_;  // of all these; null: of none

@@ -7,6 +7,7 @@
 #include "baker/reference/digest.hpp"
 #include "baker/reference/film.hpp"
 #include "baker/reference/passes.hpp"
+#include "baker/reference/request_lights.hpp"
 #include "baker/reference/traced_scene.hpp"
 #include "baker/work/parallel.hpp"
 #include "runtime/base/atomic_file.hpp"
@@ -81,17 +82,18 @@ Result<Report> renderHere(const Scene& scene, const Request& request, const fs::
   Report report;
   // the light, and the scene in world space
   progress.begin("scene");
-  auto lights = spec::loadDistantLights(request.lights);
-  if (!lights) return failAgain(std::move(lights.error()));
-  report.notices = lights->notices;
+  const auto loaded = loadEach(request.lights);
+  if (!loaded) return failAgain(loaded.error());
+  spec::DistantLights lights = together(*loaded, request.light_factors);
+  report.notices = lights.notices;
   const std::vector<spec::LocalLight> shapes = spec::localLights(request.lights);
   const auto traced = TracedScene::build(scene);
   if (!traced) return failAgain(traced.error());
   report.notices.insert(report.notices.end(), (*traced)->notices().begin(), (*traced)->notices().end());
   const auto view = viewOf(scene, (*traced)->surfaces(), request);
   if (!view) return failAgain(view.error());
-  Film film(options.size, digestOf(scene, *lights, shapes, *view, options));
-  const Environment environment(std::move(*lights), options.rotate_light_deg,
+  Film film(options.size, digestOf(scene, lights, shapes, *view, options));
+  const Environment environment(std::move(lights), options.rotate_light_deg,
                                 options.band_limit ? options.band_limit->in : 0);
   // what an earlier run has done
   const fs::path checkpoint = checkpointOf(output);

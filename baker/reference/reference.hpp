@@ -30,6 +30,8 @@ struct Request {
   // Where the scene's nodes stand before poseAt, by which orbits stand; empty: where they stand now.
   std::vector<gltf::Node> nodes_at_rest = {};
   std::optional<spec::View> view = {};  // counts instead of a camera: an eye that moves freely
+  // By which the radiance of each light from infinity is multiplied; of lights beyond the list 1.
+  std::vector<float> light_factors = {};
 };
 
 struct Report {

@@ -76,7 +76,7 @@ Answer newWorld(Session& session, Words) {
 Answer close(Session& session, Words words) {
   const auto entry = findScene(session, words.empty() ? std::string() : words[0]);
   if (!entry) return failAgain(entry.error());
-  session.scenes.close(*entry);
+  session.scene_steps.close(*entry);
   return nullptr;
 }
 
@@ -140,7 +140,7 @@ constexpr std::array kRows = {
             .title = "Close scene",
             .menu = "File",
             .shortcut = "Ctrl+W",
-            .help = "Take the scene that is selected out of the world; its files stay",
+            .help = "Take the scene that is selected out of the world; its files stay, undo brings it back",
             .arguments = "[SCENE]",
             .most_words = 1,
             .run = &close,

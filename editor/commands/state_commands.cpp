@@ -166,7 +166,7 @@ Answer state(Session& session, Words) {
               {"eye", poseWord(session.viewing.goal)},
               {"undo", session.history.undoName()},
               {"redo", session.history.redoName()},
-              {"modified", session.history.modified()},
+              {"modified", session.modified()},
               {"world", session.worldFile().string()},
               {"settings", settings},
               {"bytesResident", session.stage.world().residency().bytesResident()},

@@ -25,6 +25,10 @@ void History::run(Change change) {
   std::vector<std::string> missing;
   apply(change, true, missing);
   assert(missing.empty() && "an edit of something that is not there");
+  keep(std::move(change));
+}
+
+void History::keep(Change change) {
   ++version_;
   if (const auto* field = std::get_if<FieldChange>(&change)) {
     const auto [place, is_new] = joinable_.try_emplace({field->entity, field->field}, current_.size());
@@ -88,7 +92,8 @@ void History::apply(const Change& change, bool forth, std::vector<std::string>& 
             for (std::size_t i = 0; i < info.fields.size(); ++i)
               info.fields[i].restore(registry, entity, component.values.values[i]);
           },
-          [&](const WorldChange& world) { document_.setWorld(forth ? world.after : world.before); }},
+          [&](const WorldChange& world) { document_.setWorld(forth ? world.after : world.before); },
+          [&](const std::shared_ptr<OutsideChange>& outside) { outside->carryOut(forth, missing); }},
       change);
 }
 
@@ -139,6 +144,8 @@ std::size_t History::bytesOf(const Change& change) {
     for (const WorldState* state : {&world->before, &world->after})
       bytes += 64 * (state->settings.size() + state->view.size() + state->lights.size()) +
                512 * state->bundles.size();
+  } else if (const auto* outside = std::get_if<std::shared_ptr<OutsideChange>>(&change)) {
+    bytes += (*outside)->bytes();
   }
   return bytes;
 }
@@ -210,6 +217,15 @@ std::vector<std::string> History::stepNames() const {
 
 bool History::modified() const {
   return !current_.empty() || !saved_ || *saved_ != forgotten_ + done_;
+}
+
+bool History::modifiedInside() const {
+  if (!current_.empty() || !saved_) return modified();
+  const auto saved = static_cast<std::size_t>(*saved_ - forgotten_);
+  for (std::size_t i = std::min(saved, done_); i < std::max(saved, done_); ++i)
+    for (const Change& change : steps_[i].changes)
+      if (!std::holds_alternative<std::shared_ptr<OutsideChange>>(change)) return true;
+  return false;
 }
 
 void History::markSaved() {

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <deque>
 #include <map>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -35,6 +36,17 @@ struct Replay {
   bool done = false;  // there was a step
   std::string name;   // its name
   std::vector<std::string> missing;
+};
+
+// A change of something that the document does not hold (which scenes are open), undone by whoever does hold
+// it.
+class OutsideChange {
+ public:
+  virtual ~OutsideChange() = default;
+  // forth: does it again, else takes it back. What cannot be done any more is named among the missing.
+  virtual void carryOut(bool forth, std::vector<std::string>& missing) = 0;
+  // What it takes of memory, about.
+  virtual std::size_t bytes() const = 0;
 };
 
 class History {
@@ -69,6 +81,8 @@ class History {
   Result<void> removeComponent(ecs::Entity entity, std::string_view component);
   // Environment, settings, camera, list of bundles. The program follows Document::worldVersion().
   void setWorld(WorldState world, std::string name);
+  // What has been done outside just now.
+  void did(std::shared_ptr<OutsideChange> change, std::string name);
 
   // ---- steps of several edits; they nest, and the outermost is the step
   void begin(std::string name);
@@ -87,7 +101,8 @@ class History {
   std::vector<std::string> stepNames() const;
   std::size_t stepsDone() const { return done_; }
 
-  bool modified() const;  // since markSaved()
+  bool modified() const;        // since markSaved()
+  bool modifiedInside() const;  // by more than changes outside
   void markSaved();
   void clear();  // forgets all steps; what is there counts as saved
   std::size_t bytes() const { return bytes_; }
@@ -115,7 +130,8 @@ class History {
   struct WorldChange {
     WorldState before, after;
   };
-  using Change = std::variant<FieldChange, ParentChange, EntityChange, ComponentChange, WorldChange>;
+  using Change = std::variant<FieldChange, ParentChange, EntityChange, ComponentChange, WorldChange,
+                              std::shared_ptr<OutsideChange>>;
   struct Step {
     std::string name;
     std::vector<Change> changes;
@@ -131,7 +147,8 @@ class History {
   void beginEdit(std::string name);  // begin() and commit() of a single edit
   void endEdit();
   Result<void> editFields(std::span<const FieldEdit> edits, std::string name, bool in_range);
-  void run(Change change);  // carries it out and puts it into the open step
+  void run(Change change);   // carries it out and puts it into the open step
+  void keep(Change change);  // puts it there
   void apply(const Change& change, bool forth, std::vector<std::string>& missing);
   // Changes that hang an entity elsewhere; the Transform's where the place is kept.
   Result<std::vector<Change>> moves(ecs::Entity entity, ecs::Entity parent, bool keep_place);

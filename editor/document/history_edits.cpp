@@ -254,4 +254,10 @@ void History::setWorld(WorldState world, std::string name) {
   endEdit();
 }
 
+void History::did(std::shared_ptr<OutsideChange> change, std::string name) {
+  beginEdit(std::move(name));
+  keep(std::move(change));
+  endEdit();
+}
+
 }  // namespace lambent::editor

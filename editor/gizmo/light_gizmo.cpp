@@ -5,16 +5,11 @@
 #include <numbers>
 #include <utility>
 
-#include <fmt/format.h>
 #include <glm/ext/matrix_transform.hpp>
 #include <glm/geometric.hpp>
-#include <glm/trigonometric.hpp>
 
 #include "editor/gizmo/shapes2d.hpp"
 #include "runtime/scene/reflection.hpp"
-#include "runtime/spec/light.hpp"
-#include "runtime/spec/numbers.hpp"
-#include "runtime/spec/rotate.hpp"
 
 namespace lambent::editor {
 namespace {
@@ -274,36 +269,6 @@ std::vector<glm::dvec3> LightGizmo::circle(const glm::dvec3& center, const glm::
     points.push_back(center + radius * (std::cos(angle) * e1 + std::sin(angle) * e2));
   }
   return points;
-}
-
-// ---- a sun on the sky
-
-SkyDirection skyDirection(const Projection& projection, glm::vec2 pixel, float rotation_deg) {
-  const glm::dvec3 d = projection.ray(glm::dvec2(pixel)).direction;
-  const double azimuth = glm::degrees(std::atan2(d.x, d.z)) - rotation_deg;
-  return {static_cast<float>(std::remainder(azimuth, 360.0)),
-          static_cast<float>(glm::degrees(std::asin(std::clamp(d.y, -1.0, 1.0))))};
-}
-
-std::optional<glm::vec2> sunScreenPoint(const Projection& projection, const SkyDirection& direction,
-                                        float rotation_deg) {
-  if (!projection.perspective()) return std::nullopt;
-  const glm::vec3 d =
-      spec::directionFromAzimuthElevation(direction.azimuth_deg + rotation_deg, direction.elevation_deg);
-  const auto pixel = projection.toScreen(projection.eye() + glm::dvec3(d));
-  return pixel ? std::optional(glm::vec2(*pixel)) : std::nullopt;
-}
-
-Result<std::string> withSunDirection(std::string_view word, const SkyDirection& direction) {
-  const Result<spec::Light> light = spec::parseLight(word);
-  if (!light) return failAgain(light.error());
-  if (!std::holds_alternative<spec::SunLight>(*light))
-    return fail(fmt::format("light \"{}\"", word), "is no sun", "write sun:AZ,EL,ANGLE,R[,G,B]");
-  // All but the first two numbers stays as it is written.
-  const std::size_t second = word.find(','), rest = word.find(',', second + 1);
-  const auto rounded = [](float degrees) { return std::round(degrees * 1000.0f) / 1000.0f; };
-  return fmt::format("sun:{},{}{}", rounded(direction.azimuth_deg), rounded(direction.elevation_deg),
-                     word.substr(rest));
 }
 
 }  // namespace lambent::editor

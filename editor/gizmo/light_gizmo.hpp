@@ -1,13 +1,11 @@
 // Handles of one light: its radius, range, cones and strength, dragged in the picture. Comes in: the light,
 // where its node stands (its scale changes nothing), a view, pixels; goes out: the light as it is to be now,
-// inside the ranges of its fields. Also the direction of a sun, dragged over the sky. Moving and turning a
-// light is the Gizmo's.
+// inside the ranges of its fields. Moving and turning a light is the Gizmo's, a sun on the sky SunGizmo's.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <optional>
-#include <string>
 #include <string_view>
 #include <vector>
 
@@ -16,7 +14,6 @@
 
 #include "editor/gizmo/painting.hpp"
 #include "editor/gizmo/projection.hpp"
-#include "runtime/base/result.hpp"
 #include "runtime/scene/components.hpp"
 
 namespace lambent::editor {
@@ -63,20 +60,5 @@ class LightGizmo {
   glm::dvec2 start_pixel_{0.0};
   double start_value_ = 0.0;  // what the pointer's place stood for when it was taken
 };
-
-// ---- a sun on the sky
-
-struct SkyDirection {
-  float azimuth_deg = 0.0f, elevation_deg = 0.0f;
-};
-// Where the pixel looks, as sun: words have it. rotation_deg: the environment's; the sun of a turned
-// environment has the azimuth of its word plus that.
-SkyDirection skyDirection(const Projection& projection, glm::vec2 pixel, float rotation_deg);
-// The pixel at which such a sun is seen; none behind the eye, and in orthographic views, which see one
-// direction only.
-std::optional<glm::vec2> sunScreenPoint(const Projection& projection, const SkyDirection& direction,
-                                        float rotation_deg);
-// "sun:AZ,EL,..." with other angles, all else as it was written. Error: the word is no sun.
-Result<std::string> withSunDirection(std::string_view word, const SkyDirection& direction);
 
 }  // namespace lambent::editor

@@ -91,6 +91,15 @@ void markHandles(const Session& session, Ui& ui) {
     mark("light." + std::string(lightHandleWord(handle)),
          session.viewing.light_gizmo.handleScreenPoint(handle));
   mark("gizmo.pivot", session.viewing.gizmo.pivotScreenPoint());
+  for (std::size_t sun = 0; sun < session.viewing.sun_gizmo.count(); ++sun)
+    if (const auto at = session.viewing.sun_gizmo.place(sun))
+      mark(sun == 0 ? "sun.handle" : fmt::format("sun.handle.{}", sun + 1), at->pixel);
+}
+
+void addReadout(const glm::vec2& pixel, const std::string& text) {
+  if (!text.empty())
+    ImGui::GetWindowDrawList()->AddText(ImVec2(pixel.x + 16.0f, pixel.y + 12.0f), IM_COL32_WHITE,
+                                        text.c_str());
 }
 
 }  // namespace
@@ -112,33 +121,50 @@ void manipulate(Session& session, Ui& ui, const Viewport& viewport, bool hovered
   const auto* light = registry.tryGet<scene::LocalLightComponent>(primary);
   const bool light_handles = light && registry.has<scene::Transform>(primary);
   if (light_handles) light_gizmo.setLight(*light, worldFromNode(registry, primary));
+  SunGizmo& sun_gizmo = viewing.sun_gizmo;
+  const std::vector<SunOnSky> suns = sunsOf(session);
+  sun_gizmo.setView(viewing.shown_view, viewport);
+  std::vector<glm::vec3> towards;
+  for (const SunOnSky& sun : suns) towards.push_back(sun.towards_ws);
+  sun_gizmo.setSuns(std::move(towards));
 
   const bool eye_moves = io.KeyAlt;
-  if (hovered && !gizmo.dragging() && !light_gizmo.dragging()) {
+  const auto dragging = [&] { return gizmo.dragging() || light_gizmo.dragging() || sun_gizmo.dragging(); };
+  const auto release = [&] { gizmo.release(), light_gizmo.release(), sun_gizmo.release(); };
+  if (hovered && !dragging()) {
     gizmo.hover(pixel);
+    sun_gizmo.hover(pixel);
     if (light_handles) light_gizmo.hover(pixel);
   }
   if (hovered && ImGui::IsMouseClicked(ImGuiMouseButton_Left) && !eye_moves) {
-    if (light_handles && light_gizmo.press(pixel))
+    if (sun_gizmo.press(pixel)) {
+      viewing.sun_taken = suns[*sun_gizmo.active()];
+      session.history.begin("turn of " + viewing.sun_taken->name);
+    } else if (light_handles && light_gizmo.press(pixel)) {
       session.history.begin("light of " + session.document.nameOf(primary));
-    else if (gizmo.press(pixel))
+    } else if (gizmo.press(pixel)) {
       session.history.begin(fmt::format("{} of {}",
                                         gizmo.options.mode == GizmoMode::Move     ? "move"
                                         : gizmo.options.mode == GizmoMode::Rotate ? "turn"
                                                                                   : "scale",
                                         session.document.nameOf(primary)));
+    }
   }
-  if (gizmo.dragging() || light_gizmo.dragging()) {
+  if (dragging()) {
     if (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape))) {
-      gizmo.release(), light_gizmo.release();
+      release();
       session.history.cancel();
     } else if (ImGui::IsMouseDown(ImGuiMouseButton_Left)) {
-      if (light_gizmo.dragging())
+      if (sun_gizmo.dragging()) {
+        // A click alone does not fetch one from beyond the border.
+        if (io.MouseDragMaxDistanceSqr[0] > 0.0f) moveSun(session, *viewing.sun_taken, sun_gizmo.drag(pixel));
+      } else if (light_gizmo.dragging()) {
         setLight(session, primary, light_gizmo.drag(pixel));
-      else
+      } else {
         setTransforms(session, entities, gizmo.drag(pixel, io.KeyCtrl));
+      }
     } else {
-      gizmo.release(), light_gizmo.release();
+      release();
       session.history.commit();
     }
   } else if (hovered && ImGui::IsMouseReleased(ImGuiMouseButton_Left) && !eye_moves &&
@@ -147,9 +173,9 @@ void manipulate(Session& session, Ui& ui, const Viewport& viewport, bool hovered
   }
   paint(gizmo.paint(), viewport);
   if (light_handles) paint(light_gizmo.paint(), viewport);
-  if (const std::string text = gizmo.readout(); !text.empty())
-    ImGui::GetWindowDrawList()->AddText(ImVec2(pixel.x + 16.0f, pixel.y + 12.0f), IM_COL32_WHITE,
-                                        text.c_str());
+  paint(sun_gizmo.paint(), viewport);
+  addReadout(pixel, gizmo.readout());
+  if (const auto sun = sun_gizmo.active()) addReadout(pixel, sunReadout(session, suns[*sun]));
   markHandles(session, ui);
 }
 

@@ -82,6 +82,9 @@ void drawRow(Session& session, Ui& ui, TreeQuery& query, const std::vector<TreeR
       const ecs::Entity child[] = {session.document.find(moved)};
       if (auto done = session.history.reparent(child, row.entity, /*keep_place=*/true); !done)
         session.log.error(done.error());
+      else if (!session.document.created(child[0]))
+        session.log.note(row.name + " carries " + session.document.nameOf(moved) +
+                         " in this world; a bake takes over where it stands, and keeps the scene's own tree");
     }
     ImGui::EndDragDropTarget();
   }

@@ -1,37 +1,14 @@
 // What of a bundle's entities differs from its file, as edits of the scene that it is baked from.
 #include <algorithm>
-#include <cmath>
 
+#include "editor/session/node_edits.hpp"
 #include "editor/session/session.hpp"
-#include "runtime/scene/affine.hpp"
 #include "runtime/scene/components.hpp"
 #include "runtime/scene/materials.hpp"
 
 namespace lambent::editor {
 
 namespace {
-
-// Of matrices that were taken apart and put together again.
-constexpr float kRounding = 1e-5f;
-
-bool differs(const glm::mat4& a, const glm::mat4& b) {
-  for (int column = 0; column < 4; ++column)
-    for (int row = 0; row < 4; ++row)
-      if (std::abs(a[column][row] - b[column][row]) > kRounding * std::max(1.0f, std::abs(b[column][row])))
-        return true;
-  return false;
-}
-
-void addNodes(const ecs::Registry& registry, const bundle::Description& description,
-              const scene::SceneInstance& instance, baker::SceneEdits& edits) {
-  for (std::uint32_t i = 0; i < description.nodes.size(); ++i) {
-    const gltf::Node& node = description.nodes[i];
-    const auto* transform = registry.tryGet<scene::Transform>(instance.nodes[i]);
-    if (!transform || node.animated) continue;
-    const glm::mat4 now = scene::localMatrix(*transform);
-    if (differs(now, node.parent_from_node)) edits.nodes.push_back({i, node.name, now});
-  }
-}
 
 void addLights(const ecs::Registry& registry, const bundle::Description& description,
                const scene::SceneInstance& instance, baker::SceneEdits& edits) {
@@ -110,7 +87,7 @@ baker::SceneEdits Session::editsOf(std::size_t entry) const {
   const ecs::Registry& registry = document.registry();
   const bundle::Description& description = stage.world().description(*scene.slot);
   const scene::SceneInstance& instance = stage.world().instance(*scene.slot);
-  addNodes(registry, description, instance, edits);
+  addNodeEdits(registry, description, instance, edits);
   addLights(registry, description, instance, edits);
   addMaterials(registry, description, instance, edits);
   // What is shown may have been baked with edits itself: those that were not edited again still hold.

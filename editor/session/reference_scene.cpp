@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
+#include "baker/import/gltf.hpp"
+#include "baker/import/join_scenes.hpp"
+#include "baker/reference/reference.hpp"
 #include "runtime/scene/components.hpp"
 
 namespace lambent::editor {
@@ -86,13 +89,19 @@ std::vector<spec::Light> shapesOf(const ecs::Registry& registry, const Document&
   return shapes;
 }
 
-std::vector<spec::Light> scaledLights(const std::vector<spec::Light>& lights, float intensity) {
-  std::vector<spec::Light> scaled = lights;
-  for (spec::Light& light : scaled) {
-    if (auto* constant = std::get_if<spec::ConstantLight>(&light)) constant->radiance *= intensity;
-    if (auto* sun = std::get_if<spec::SunLight>(&light)) sun->radiance *= intensity;
+Result<baker::Scene> makeReferenceScene(const std::vector<ReferencePart>& parts, const ReferenceLamps& lamps,
+                                        float animation_s) {
+  baker::Scene all;
+  for (const ReferencePart& part : parts) {
+    auto scene = baker::importScene(part.source, {});
+    if (!scene) return failAgain(scene.error());
+    baker::reference::poseAt(*scene, animation_s);
+    baker::applyEdits(part.edits, *scene);
+    if (all.source.empty()) all.source = part.source;
+    baker::joinScene(std::move(*scene), part.name, part.world_from_scene, all);
   }
-  return scaled;
+  addLamps(lamps, all);
+  return all;
 }
 
 }  // namespace lambent::editor

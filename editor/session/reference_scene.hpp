@@ -1,15 +1,27 @@
-// What a path-traced picture needs of the world beside its scene's file: lights that a person has put there,
-// and the strength of the sky.
+// What a path-traced picture needs of the world: its scenes as they are edited and where they stand, and the
+// lights that a person has put there.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
 #include "baker/import/scene.hpp"
+#include "baker/import/scene_edits.hpp"
 #include "editor/document/document.hpp"
 #include "runtime/spec/light.hpp"
 
 namespace lambent::editor {
+
+// A scene that is shown.
+struct ReferencePart {
+  std::filesystem::path source;
+  std::filesystem::file_time_type time;
+  std::string name;
+  baker::SceneEdits edits;
+  glm::mat4 world_from_scene{1.0f};
+  bool operator==(const ReferencePart&) const = default;
+};
 
 struct ReferenceLamps {
   struct Lamp {
@@ -25,10 +37,12 @@ struct ReferenceLamps {
 ReferenceLamps lampsOf(const ecs::Registry& registry, const Document& document);
 void addLamps(const ReferenceLamps& lamps, baker::Scene& scene);
 
+// All of them as one, as the animations have them; takes a while, on any thread. Errors: those of importing
+// one.
+Result<baker::Scene> makeReferenceScene(const std::vector<ReferencePart>& parts, const ReferenceLamps& lamps,
+                                        float animation_s);
+
 // Spheres and discs of light that a person has put into the world.
 std::vector<spec::Light> shapesOf(const ecs::Registry& registry, const Document& document);
-
-// Suns and constants times `intensity`; probes have none, and stay.
-std::vector<spec::Light> scaledLights(const std::vector<spec::Light>& lights, float intensity);
 
 }  // namespace lambent::editor

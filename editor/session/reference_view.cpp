@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "baker/import/gltf.hpp"
-#include "editor/session/reference_scene.hpp"
 #include "editor/session/session.hpp"
 
 namespace lambent::editor {
@@ -12,6 +10,41 @@ namespace {
 
 bool sameView(const spec::View& a, const spec::View& b) {
   return a.view_from_world == b.view_from_world && a.clip_from_view == b.clip_from_view;
+}
+
+// All that is shown, or why that cannot be traced.
+Result<std::vector<ReferencePart>> partsOf(const Session& session) {
+  std::vector<ReferencePart> parts;
+  const auto& entries = session.scenes.entries();
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    if (entries[i].source.empty())
+      return fail(entries[i].id, "is a bundle alone: there is no scene to trace",
+                  "open its .gltf or .glb file in its place");
+    if (!entries[i].slot) continue;  // not shown yet
+    const scene::SceneInstance& instance = session.stage.world().instance(*entries[i].slot);
+    std::error_code ignored;
+    parts.push_back({.source = entries[i].source,
+                     .time = std::filesystem::last_write_time(entries[i].source, ignored),
+                     .name = entries[i].id,
+                     .edits = session.editsOf(i),
+                     .world_from_scene = worldFromNode(session.document.registry(), instance.root)});
+  }
+  return parts;
+}
+
+// Each light from outside, and how strong it is now.
+struct Sky {
+  std::vector<spec::Light> lights;
+  std::vector<float> factors;
+};
+Sky skyOf(const Stage& stage) {
+  Sky sky;
+  for (std::size_t set = 0; set < lighting::Environment::kSets; ++set)
+    for (const spec::Light& light : set == 0 ? stage.lights() : stage.fadeLights()) {
+      sky.lights.push_back(light);
+      sky.factors.push_back(stage.environment().shareOf(set));
+    }
+  return sky;
 }
 
 gpu::Texture textureOf(const char* label, spec::Size size, GLenum format) {
@@ -46,17 +79,17 @@ std::string ReferenceView::notice() const {
                     : fmt::format("{} samples a pixel", now->spp);
 }
 
-// The scene is read and edited on another thread; until it is there the old one is traced.
-void ReferenceView::followScene(Session& session, std::size_t entry) {
-  const SceneEntry& scene = session.scenes.entries()[entry];
-  if (scene.source.empty()) {
-    error_ = Error{scene.id, "is a bundle alone: there is no scene to trace", "open its .gltf or .glb file"};
+// The scenes are read and edited on another thread; until they are there the old ones are traced.
+void ReferenceView::followScene(Session& session) {
+  auto parts = partsOf(session);
+  if (!parts) {
+    error_ = parts.error();
+    scene_key_.reset();  // once it can be traced again, it is read anew, and the error goes
     return;
   }
-  std::error_code ignored;
+  if (parts->empty()) return;  // nothing is shown yet
   ReferenceLamps lamps = lampsOf(session.stage.world().registry(), session.document);
-  SceneKey key{scene.source, std::filesystem::last_write_time(scene.source, ignored), session.editsOf(entry),
-               lamps.text(), session.viewing.animation_s};
+  SceneKey key{std::move(*parts), lamps.text(), session.viewing.animation_s};
   if (coming_.valid() && coming_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
     auto made = coming_.get();
     if (made) {
@@ -71,15 +104,11 @@ void ReferenceView::followScene(Session& session, std::size_t entry) {
   scene_key_ = key;
   coming_ = std::async(std::launch::async, [key, lamps = std::move(lamps)]() -> Result<ScenePointer> {
     try {
-      auto imported = baker::importScene(key.source, {});
-      if (!imported) return failAgain(imported.error());
-      auto made = std::make_shared<baker::Scene>(std::move(*imported));
-      baker::reference::poseAt(*made, key.animation_s);
-      baker::applyEdits(key.edits, *made);
-      addLamps(lamps, *made);
-      return ScenePointer(std::move(made));
+      auto made = makeReferenceScene(key.parts, lamps, key.animation_s);
+      if (!made) return failAgain(made.error());
+      return ScenePointer(std::make_shared<const baker::Scene>(std::move(*made)));
     } catch (const std::exception& failure) {
-      return fail(key.source.string(), failure.what(), "free some memory");
+      return fail("reference", failure.what(), "free some memory");
     }
   });
 }
@@ -95,7 +124,9 @@ void ReferenceView::followEye(Session& session) {
   const bool new_scene = !eye_key_;
   eye_key_ = key;
   baker::reference::Request request;
-  request.lights = scaledLights(session.stage.lights(), session.stage.environment().intensity());
+  Sky sky = skyOf(session.stage);
+  request.lights = std::move(sky.lights);
+  request.light_factors = std::move(sky.factors);
   for (spec::Light& shape : shapesOf(session.stage.world().registry(), session.document))
     request.lights.push_back(std::move(shape));
   request.view = key.view;
@@ -169,12 +200,12 @@ void ReferenceView::update(Session& session) {
     scene_key_.reset(), eye_key_.reset(), error_.reset();
     return;
   }
-  const auto entry = session.entryAtHand();
-  if (!entry) {
+  if (session.scenes.entries().empty()) {
     error_ = Error{"reference", "there is no scene to trace", "open a .gltf or .glb file"};
+    scene_key_.reset();
     return;
   }
-  followScene(session, *entry);
+  followScene(session);
   if (!scene_ || session.viewing.size.width == 0) return;
   followEye(session);
   const auto now = tracer_->snapshot();

@@ -1,7 +1,7 @@
-// The path-traced picture beside the runtime's: traced in the background from the scene at hand as the world
-// has it (moved nodes, edited materials, lights and eye), finer pass by pass, and held against the runtime's
-// own linear picture of the same eye. Anything that changes begins it anew. Main thread; tracing happens
-// elsewhere. What cannot be traced says so in notice().
+// The path-traced picture beside the runtime's: traced in the background from all scenes that are shown, as
+// the world has them (where they stand, moved nodes, edited materials, lights and eye), finer pass by pass,
+// and held against the runtime's own linear picture of the same eye. Anything that changes begins it anew.
+// Main thread; tracing happens elsewhere. What cannot be traced says so in notice().
 #pragma once
 
 #include <cstdint>
@@ -9,10 +9,11 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "baker/accuracy/difference.hpp"
-#include "baker/import/scene_edits.hpp"
 #include "baker/reference/progressive.hpp"
+#include "editor/session/reference_scene.hpp"
 #include "runtime/frame/frame.hpp"
 #include "runtime/frame/tone_mapper.hpp"
 #include "runtime/gpu/objects.hpp"
@@ -47,9 +48,7 @@ class ReferenceView {
  private:
   // What the scene that is traced was made of.
   struct SceneKey {
-    std::filesystem::path source;
-    std::filesystem::file_time_type time;
-    baker::SceneEdits edits;
+    std::vector<ReferencePart> parts;
     std::string lamps;  // what else was put into it, as text
     float animation_s = 0.0f;
     bool operator==(const SceneKey&) const = default;
@@ -62,7 +61,7 @@ class ReferenceView {
     std::optional<int> band_limit;
   };
   using ScenePointer = std::shared_ptr<const baker::Scene>;
-  void followScene(Session& session, std::size_t entry);
+  void followScene(Session& session);
   void followEye(Session& session);
   void show(Session& session, const baker::reference::Snapshot& snapshot);
   Result<spec::RgbaImage> linearPicture(Session& session, const spec::View& view, spec::Size size);

@@ -175,9 +175,18 @@ Result<void> Scenes::openFolder(const std::filesystem::path& folder) {
     if (of_scene) continue;
     if (auto opened = open(file); !opened) log_.error(opened.error());
   }
+  watchFolder(folder);
+  return {};
+}
+
+void Scenes::watchFolder(const std::filesystem::path& folder) {
   if (std::find(watched_.begin(), watched_.end(), folder) == watched_.end()) watched_.push_back(folder);
   watch();
-  return {};
+}
+
+void Scenes::unwatchFolder(const std::filesystem::path& folder) {
+  std::erase(watched_, folder);
+  watch();
 }
 
 void Scenes::request(SceneEntry& entry) {
@@ -233,6 +242,14 @@ void Scenes::take(const baker::BakeEvent& event) {
         fmt::format("{}: baked in {:.0f} s", found->bundle.filename().string(), job ? job->seconds : 0.0));
 }
 
+// Of a folder, and not by itself: one that was closed meanwhile stays closed.
+bool Scenes::isWatched(const std::filesystem::path& scene) const {
+  return std::any_of(watched_.begin(), watched_.end(), [&](const std::filesystem::path& folder) {
+    const std::filesystem::path way = scene.lexically_relative(folder);
+    return !way.empty() && *way.begin() != "..";
+  });
+}
+
 void Scenes::take(const baker::WatchEvent& event) {
   using Kind = baker::WatchEvent::Kind;
   const std::filesystem::path scene = plain(event.scene);
@@ -241,7 +258,7 @@ void Scenes::take(const baker::WatchEvent& event) {
     log_.error(*event.error);
   } else if (event.kind == Kind::Removed && entry) {
     log_.warn(scene.string() + ": is gone; its bundle stays");
-  } else if (event.kind == Kind::Found && !entry) {
+  } else if (event.kind == Kind::Found && !entry && isWatched(scene)) {
     if (auto opened = open(scene); !opened) log_.error(opened.error());
   } else if (event.kind == Kind::Changed && entry) {
     log_.note(scene.filename().string() + ": has changed");
@@ -295,6 +312,27 @@ void Scenes::close(std::size_t index) {
   entries_.erase(entries_.begin() + static_cast<std::ptrdiff_t>(index));
   ++version_;
   watch();
+}
+
+Result<void> Scenes::reopen(SceneEntry entry, std::size_t place) {
+  entry.slot.reset(), entry.job.reset(), entry.shown.clear();
+  std::error_code ignored;
+  const bool source = !entry.source.empty() && std::filesystem::exists(entry.source, ignored);
+  if (std::filesystem::exists(entry.bundle, ignored)) {
+    const auto slot = world_.open(entry.bundle, {.bundle_id = entry.id});
+    if (slot)
+      entry.slot = *slot, entry.shown = entry.bundle;
+    else if (!source)
+      return failAgain(slot.error());
+  } else if (!source) {
+    return fail(entry.bundle.string(), "is not there", "put it back, then undo or redo again");
+  }
+  const auto at = entries_.insert(
+      entries_.begin() + static_cast<std::ptrdiff_t>(std::min(place, entries_.size())), std::move(entry));
+  ++version_;
+  if (source) request(*at);
+  watch();
+  return {};
 }
 
 void Scenes::closeAll() {

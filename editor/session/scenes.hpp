@@ -51,6 +51,11 @@ class Scenes {
   Result<void> open(const BundleEntry& entry, const std::filesystem::path& folder);
   void close(std::size_t entry);
   void closeAll();
+  // What was closed, at its place again: what is on disk is shown, and baked with what it was baked with.
+  // Errors: neither its bundle nor its scene is there any more.
+  Result<void> reopen(SceneEntry entry, std::size_t place);
+  void watchFolder(const std::filesystem::path& folder);
+  void unwatchFolder(const std::filesystem::path& folder);
 
   // What bakes and files did since the last call. Returns whether anything changed.
   bool update();
@@ -82,6 +87,7 @@ class Scenes {
   void take(const baker::BakeEvent& event);
   void take(const baker::WatchEvent& event);
   void watch();
+  bool isWatched(const std::filesystem::path& scene) const;
   void request(SceneEntry& entry);
   std::string idFor(const std::filesystem::path& bundle) const;
   std::filesystem::path bundleFor(const std::filesystem::path& scene) const;

@@ -76,6 +76,7 @@ void Session::followDocument() {
 void Session::update(double seconds) {
   if (scenes.update()) {
     document.adoptAll();
+    scene_steps.update();
     frames_to_draw_ = 1;
   }
   std::vector<std::string> wrong;
@@ -98,9 +99,12 @@ void Session::render(spec::Size size) {
   const auto view = viewing.view(*this, size);
   if (!view) return log.error(view.error());
   viewing.shown_view = *view;
-  const bool moved = view->view_from_world != view_drawn_.view_from_world ||
-                     view->clip_from_view != view_drawn_.clip_from_view || edits_drawn_ != editsVersion();
   const bool resized = size.width != size_drawn_.width || size.height != size_drawn_.height;
+  // Another size has another aspect, by a pixel at least. That is no movement: where whole pictures take
+  // long, the next would be drawn coarse for it, at another size again, and so on for ever.
+  const bool moved = view->view_from_world != view_drawn_.view_from_world ||
+                     (!resized && view->clip_from_view != view_drawn_.clip_from_view) ||
+                     edits_drawn_ != editsVersion();
   if (moved || resized || !stage.atRest() || viewing.changed) frames_to_draw_ = 1;
   if (!moved && !viewing.playing && !history.open()) viewing.settle();
   if (frames_to_draw_ > 0 || viewing.playing) {
@@ -125,9 +129,29 @@ bool Session::moving() const {
          (reference.on() && !reference.done()) || viewing.flying || knobs.busy();
 }
 
+// Of the residency, those that hold anything that is selected.
+std::vector<std::uint32_t> Session::selectedGroups() const {
+  std::vector<std::uint32_t> found;
+  const ecs::Registry& registry = document.registry();
+  const std::vector<ecs::Entity> selected = selection.entities(document);
+  const auto& groups = stage.world().residency().groups();
+  const auto add = [&](const scene::RigidGroupComponent& group) {
+    for (std::uint32_t i = 0; i < groups.size(); ++i)
+      if (groups[i].bundle == group.bundle && groups[i].index == group.group) found.push_back(i);
+  };
+  for (const ecs::Entity entity : selected)
+    if (const auto* group = registry.tryGet<scene::RigidGroupComponent>(entity)) add(*group);
+  for (const auto [draw, item] : registry.view<const scene::DrawItem>())
+    for (const ecs::Entity entity : selected)
+      if (draw == entity || isBelow(registry, item.node, entity))
+        if (const auto* group = registry.tryGet<scene::RigidGroupComponent>(item.group)) add(*group);
+  return found;
+}
+
 // What is asked for, and a box around what is selected.
 frame::OverlayOptions Session::overlaysNow() const {
   frame::OverlayOptions overlays = viewing.overlays;
+  if (overlays.neighborhoods) overlays.foremost_groups = selectedGroups();
   if (!viewing.show_gizmos) return overlays;
   const scene::Box box = selectionBounds();
   if (box.empty()) return overlays;
@@ -156,9 +180,8 @@ void Session::openLogged(const std::filesystem::path& path) {
 Result<void> Session::open(const std::filesystem::path& path) {
   if (path.extension() == ".json") return openWorld(path);
   const bool first = scenes.entries().empty();
-  if (auto opened = scenes.open(path); !opened) return opened;
+  if (auto opened = scene_steps.open(path); !opened) return opened;
   preferences.addRecent(path);
-  document.adoptAll();
   if (first) viewing.frame_when_loaded = true;
   return {};
 }
@@ -204,6 +227,7 @@ Result<void> Session::save(const std::filesystem::path& path) {
 
 void Session::newWorld() {
   scenes.closeAll();
+  scene_steps.clear();
   selection.clear();
   const auto made = document.registry().view<const Created>();
   std::vector<ecs::Entity> created;
@@ -220,8 +244,12 @@ void Session::newWorld() {
   viewing.frame_when_loaded = true;
 }
 
+bool Session::modified() const {
+  return world_file_.empty() ? history.modifiedInside() : history.modified();
+}
+
 void Session::unlessUnsaved(std::string question, std::function<void(Session&)> then) {
-  if (!history.modified()) return then(*this);
+  if (!modified()) return then(*this);
   Dialog ask;
   ask.kind = Dialog::Kind::Confirm;
   ask.title = "Not saved";
@@ -247,16 +275,21 @@ void Session::askToQuit() {
 // ---- the world
 
 const Baseline& Session::baseline() {
-  if (baseline_of_ == scenes.version()) return baseline_;
   std::vector<BaselineBundle> bundles;
+  // A bundle that takes another's place does so some frames after the scenes' version has risen.
+  std::pair<std::uint64_t, std::vector<const void*>> of{scenes.version(), {}};
   for (const SceneEntry& entry : scenes.entries())
-    if (entry.slot) bundles.push_back({&stage.world().description(*entry.slot), entry.id, 0});
+    if (entry.slot) {
+      bundles.push_back({&stage.world().description(*entry.slot), entry.id, 0});
+      of.second.push_back(bundles.back().description);
+    }
+  if (of == baseline_of_) return baseline_;
   auto made = Baseline::create(bundles);
   if (made)
     baseline_ = std::move(*made);
   else
     log.error(made.error());
-  baseline_of_ = scenes.version();
+  baseline_of_ = std::move(of);
   return baseline_;
 }
 
@@ -365,7 +398,7 @@ bool Session::loaded() const {
 std::string Session::title() const {
   std::string name = world_file_.empty() ? "untitled" : world_file_.filename().string();
   if (world_file_.empty() && scenes.entries().size() == 1) name = scenes.entries().front().id;
-  return fmt::format("{}{} - Lambent", name, history.modified() ? "*" : "");
+  return fmt::format("{}{} - Lambent", name, modified() ? "*" : "");
 }
 
 bool Session::titleChanged() {

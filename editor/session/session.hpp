@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "editor/document/baseline.hpp"
@@ -24,6 +25,7 @@
 #include "editor/session/preferences.hpp"
 #include "editor/session/probe_shelf.hpp"
 #include "editor/session/reference_view.hpp"
+#include "editor/session/scene_steps.hpp"
 #include "editor/session/scenes.hpp"
 #include "editor/session/stage.hpp"
 #include "editor/session/viewing.hpp"
@@ -75,6 +77,8 @@ class Session {
   Result<void> save(const std::filesystem::path& path);
   void newWorld();
   const std::filesystem::path& worldFile() const { return world_file_; }
+  // Whether something would be lost. What is merely open in a world that has no file is not.
+  bool modified() const;
   // Asks first where something is not saved.
   void askToQuit();
   // After a question whether what is not saved may be lost.
@@ -122,6 +126,7 @@ class Session {
   Scenes scenes;
   Document document;
   History history;
+  SceneSteps scene_steps{*this};
   Selection selection;
   Viewing viewing;
   ReferenceView reference;
@@ -140,6 +145,7 @@ class Session {
   Result<void> openWorld(const std::filesystem::path& path);
   void followDocument();
   frame::OverlayOptions overlaysNow() const;
+  std::vector<std::uint32_t> selectedGroups() const;
   std::uint64_t editsVersion() const;
   void keepWorldState();
 
@@ -160,7 +166,8 @@ class Session {
   std::optional<Rebake> rebake_of_;
   std::vector<std::string> rebake_;
   Baseline baseline_;
-  std::uint64_t baseline_of_ = 0;  // version of the scenes
+  // Version of the scenes, and the descriptions.
+  std::pair<std::uint64_t, std::vector<const void*>> baseline_of_{0, {}};
   // What the last picture was of.
   std::uint64_t edits_drawn_ = 0;
   spec::View view_drawn_;

@@ -44,12 +44,12 @@ Result<void> Stage::followLights(const WorldState& state) {
   words_ = state.lights, fade_words_ = state.fade_lights;
   auto lights = parseLights(state.lights);
   if (!lights) return failAgain(lights.error());
-  const auto fade_lights = parseLights(state.fade_lights);
+  auto fade_lights = parseLights(state.fade_lights);
   if (!fade_lights) return failAgain(fade_lights.error());
   auto environment = lighting::Environment::create(*lights, *fade_lights);
   if (!environment) return failAgain(environment.error());
   environment_ = std::move(*environment);
-  lights_ = std::move(*lights);
+  lights_ = std::move(*lights), fade_lights_ = std::move(*fade_lights);
   followEnvironment();
   return {};
 }

@@ -29,6 +29,7 @@ class Stage {
   // The lights from infinity as they are now: what the document says, or what was there before if that
   // cannot be loaded.
   const std::vector<spec::Light>& lights() const { return lights_; }
+  const std::vector<spec::Light>& fadeLights() const { return fade_lights_; }
 
   // Lights, settings and exposure as `state` has them. Errors: words that are not known, probes that cannot
   // be read; all the others are followed.
@@ -51,7 +52,7 @@ class Stage {
   frame::Frame frame_;
   ecs::Entity environment_entity_;
   std::vector<std::string> words_, fade_words_;
-  std::vector<spec::Light> lights_;
+  std::vector<spec::Light> lights_, fade_lights_;
   frame::FrameTimes times_;
   bool at_rest_ = false;
 };

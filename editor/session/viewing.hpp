@@ -12,6 +12,8 @@
 #include "editor/gizmo/camera_control.hpp"
 #include "editor/gizmo/gizmo.hpp"
 #include "editor/gizmo/light_gizmo.hpp"
+#include "editor/gizmo/sun_gizmo.hpp"
+#include "editor/session/suns.hpp"
 #include "runtime/frame/overlays.hpp"
 #include "runtime/frame/views.hpp"
 #include "runtime/spec/size.hpp"
@@ -29,6 +31,8 @@ class Viewing {
   CameraPose pose, goal;  // the eye eases from the one to the other
   Gizmo gizmo;
   LightGizmo light_gizmo;
+  SunGizmo sun_gizmo;
+  std::optional<SunOnSky> sun_taken;  // as it stood when its drag began
   bool show_gizmos = true;
   frame::OverlayOptions overlays;
   float render_scale = 1.0f;  // pixels of the picture for each of the window

@@ -7,6 +7,8 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "runtime/frame/boxes.hpp"
+
 namespace lambent::frame {
 
 namespace {
@@ -16,6 +18,7 @@ using Kind = scene::LocalLightComponent::Kind;
 constexpr glm::vec4 kGroupColor{1.0f, 0.72f, 0.25f, 0.9f};
 constexpr glm::vec4 kVolumeColor{0.35f, 0.85f, 0.95f, 0.95f};
 constexpr glm::vec4 kNeighborhoodColor{0.78f, 0.6f, 1.0f, 0.95f};
+constexpr glm::vec4 kFaintNeighborhoodColor{0.78f, 0.6f, 1.0f, 0.25f};
 constexpr int kCircleSteps = 48;
 
 struct Glyph {
@@ -139,8 +142,45 @@ float signSize(const World& world) {
   return radius > 0.0f ? 0.05f * radius : 0.05f;
 }
 
+std::vector<bool> drawnWhole(const std::vector<PlacedBox>& boxes, const glm::vec3& eye) {
+  const auto distance = [&](const PlacedBox& box) {
+    return glm::length(glm::vec3(box.world_from_box * glm::vec4(box.box.center(), 1.0f)) - eye);
+  };
+  std::vector<bool> whole;
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    bool foremost = true;
+    for (std::size_t other = 0; other < boxes.size() && foremost; ++other) {
+      const PlacedBox &a = boxes[i], &b = boxes[other];
+      if (other == i || !meet(a.box, a.world_from_box, b.box, b.world_from_box)) continue;
+      // Of two at the same distance the first.
+      foremost = !b.wanted && (other < i ? distance(a) < distance(b) : distance(a) <= distance(b));
+    }
+    whole.push_back(foremost || boxes[i].wanted);
+  }
+  return whole;
+}
+
+std::vector<std::uint32_t> foremostNeighborhoods(const World& world, const Neighborhoods& neighborhoods,
+                                                 const OverlayOptions& options, const glm::vec3& eye) {
+  std::vector<std::uint32_t> groups;
+  std::vector<PlacedBox> boxes;
+  for (const auto& grid : neighborhoods.effect().grids()) {
+    if (!options.shows(grid.group)) continue;
+    groups.push_back(grid.group);
+    boxes.push_back(
+        {.box = {grid.points.bounds_min, grid.points.bounds_max},
+         .world_from_box = world.worldFromGroup(grid.group),
+         .wanted = std::ranges::find(options.foremost_groups, grid.group) != options.foremost_groups.end()});
+  }
+  const std::vector<bool> whole = drawnWhole(boxes, eye);
+  std::vector<std::uint32_t> foremost;
+  for (std::size_t i = 0; i < groups.size(); ++i)
+    if (whole[i]) foremost.push_back(groups[i]);
+  return foremost;
+}
+
 std::vector<OverlayLine> linesOf(const World& world, const Neighborhoods& neighborhoods,
-                                 const OverlayOptions& options) {
+                                 const OverlayOptions& options, const glm::vec3& eye) {
   std::vector<OverlayLine> lines = options.lines;
   const streaming::Residency& residency = world.residency();
   for (std::uint32_t g = 0; g < residency.groups().size(); ++g) {
@@ -154,13 +194,17 @@ std::vector<OverlayLine> linesOf(const World& world, const Neighborhoods& neighb
                 kVolumeColor, lines);
     }
   }
-  if (options.neighborhoods)
+  if (options.neighborhoods) {
+    const std::vector<std::uint32_t> foremost = foremostNeighborhoods(world, neighborhoods, options, eye);
     for (const auto& grid : neighborhoods.effect().grids()) {
       if (!options.shows(grid.group)) continue;
+      const bool whole = std::ranges::find(foremost, grid.group) != foremost.end();
       const scene::Box box{grid.points.bounds_min, grid.points.bounds_max};
-      appendBox(box, world.worldFromGroup(grid.group), kNeighborhoodColor, lines);
-      appendSlice(box, world.worldFromGroup(grid.group), options.slice, lines);
+      appendBox(box, world.worldFromGroup(grid.group), whole ? kNeighborhoodColor : kFaintNeighborhoodColor,
+                lines);
+      if (whole) appendSlice(box, world.worldFromGroup(grid.group), options.slice, lines);
     }
+  }
   if (options.lights) {
     const float size = signSize(world);
     for (auto [entity, light] : world.registry().view<const scene::LocalLightComponent>()) {

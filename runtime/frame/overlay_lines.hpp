@@ -3,6 +3,7 @@
 // is empty adds nothing.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include <glm/mat4x4.hpp>
@@ -29,8 +30,21 @@ void appendLight(const scene::LocalLightComponent& light, const glm::mat4& world
 // How large signs are drawn in this world, metres.
 float signSize(const World& world);
 
+struct PlacedBox {
+  scene::Box box;
+  glm::mat4 world_from_box{1.0f};
+  bool wanted = false;
+};
+// Whether each of the boxes is drawn whole: those that are wanted, and of the others those that meet neither
+// a wanted one nor one that is nearer to the eye by its middle. For boxes that overlap, which together would
+// hide each other.
+std::vector<bool> drawnWhole(const std::vector<PlacedBox>& boxes, const glm::vec3& eye);
+// The groups whose neighborhoods are drawn whole (OverlayOptions::foremost_groups), with their slices.
+std::vector<std::uint32_t> foremostNeighborhoods(const World& world, const Neighborhoods& neighborhoods,
+                                                 const OverlayOptions& options, const glm::vec3& eye);
+
 // Everything that the options ask for and lines can show, those of the options included.
 std::vector<OverlayLine> linesOf(const World& world, const Neighborhoods& neighborhoods,
-                                 const OverlayOptions& options);
+                                 const OverlayOptions& options, const glm::vec3& eye);
 
 }  // namespace lambent::frame

@@ -48,6 +48,9 @@ struct OverlayOptions {
   bool lights = false;
   // Of light samples, neighborhoods, volumes and groups, these of the residency; empty: all.
   std::vector<std::uint32_t> selected_groups{};
+  // Of neighborhoods that overlap, those of these groups are drawn whole; of the others, and where none is
+  // given, the one nearest to the eye. The rest are faint boxes without slices.
+  std::vector<std::uint32_t> foremost_groups{};
   std::vector<OverlayLine> lines{};
   bool operator==(const OverlayOptions&) const = default;
 

@@ -1,5 +1,7 @@
 #include "runtime/frame/overlays.hpp"
 
+#include <algorithm>
+
 #include <glm/gtc/quaternion.hpp>
 #include <glm/matrix.hpp>
 
@@ -107,8 +109,11 @@ Result<void> Overlays::drawSlices(const OverlayOptions& options, const OverlaySc
                                   gpu::Counters& counters) {
   if (!options.neighborhoods) return {};
   std::vector<SliceRecord> records;
+  const std::vector<std::uint32_t> foremost =
+      foremostNeighborhoods(scene.world, scene.neighborhoods, options, scene.view.eye_ws);
   for (const effects::neighborhood::Grid& grid : scene.neighborhoods.effect().grids()) {
-    if (!grid.ready || grid.place.outputs == 0 || !options.shows(grid.group)) continue;
+    if (!grid.ready || grid.place.outputs == 0) continue;
+    if (std::ranges::find(foremost, grid.group) == foremost.end()) continue;
     const glm::vec3 size = glm::vec3(grid.points.size) - 1.0f;
     glm::mat4 body_from_place(1.0f);
     for (int axis = 0; axis < 3; ++axis)
@@ -154,7 +159,7 @@ Result<void> Overlays::drawSlices(const OverlayOptions& options, const OverlaySc
 Result<void> Overlays::drawLines(const OverlayOptions& options, const OverlayScene& scene,
                                  gpu::Counters& counters) {
   std::vector<LineRecord> records;
-  for (const OverlayLine& line : linesOf(scene.world, scene.neighborhoods, options))
+  for (const OverlayLine& line : linesOf(scene.world, scene.neighborhoods, options, scene.view.eye_ws))
     records.push_back({.from_and_width = glm::vec4(line.from_ws, line.width_px),
                        .to = glm::vec4(line.to_ws, 0.0f),
                        .color = line.color});

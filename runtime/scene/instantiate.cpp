@@ -228,15 +228,21 @@ Result<SceneInstance> instantiate(ecs::Registry& registry, const bundle::Descrip
   return Instantiation(registry, description, options).run();
 }
 
+// From the last that was made to the first: indices are used again latest first, so a bundle that comes back
+// has the order that it had, by which trees show it.
 void destroyInstance(ecs::Registry& registry, const SceneInstance& instance) {
-  // Lamps may be nodes: what is destroyed twice is destroyed once.
-  for (const auto& lamps : instance.lamps) {
-    for (const ecs::Entity entity : lamps) registry.destroy(entity);
-  }
-  for (const auto* list :
-       {&instance.materials, &instance.animations, &instance.draws, &instance.groups, &instance.nodes}) {
-    for (const ecs::Entity entity : *list) registry.destroy(entity);
-  }
+  const auto destroyAll = [&](const std::vector<ecs::Entity>& list) {
+    for (auto entity = list.rbegin(); entity != list.rend(); ++entity) registry.destroy(*entity);
+  };
+  destroyAll(instance.materials);
+  destroyAll(instance.animations);
+  // Lamps that are nodes go with these.
+  for (auto lamps = instance.lamps.rbegin(); lamps != instance.lamps.rend(); ++lamps)
+    for (auto lamp = lamps->rbegin(); lamp != lamps->rend(); ++lamp)
+      if (registry.tryGet<LampComponent>(*lamp)) registry.destroy(*lamp);
+  destroyAll(instance.draws);
+  destroyAll(instance.groups);
+  destroyAll(instance.nodes);
   registry.destroy(instance.root);
 }
 

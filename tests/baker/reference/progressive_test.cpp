@@ -2,12 +2,14 @@
 #include "baker/reference/progressive.hpp"
 
 #include <chrono>
+#include <filesystem>
 #include <thread>
 
 #include <gtest/gtest.h>
 
 #include "baker/reference/enlarge.hpp"
 #include "baker/reference/light_cache.hpp"
+#include "runtime/spec/image.hpp"
 #include "tests/baker/reference/measure.hpp"
 #include "tests/baker/reference/media.hpp"
 
@@ -204,16 +206,36 @@ TEST(LightCache, ReadsAgainOnlyWhatChanged) {
   LightCache cache;
   std::vector<spec::Light> lights = {testing::uniform(0.3f), spec::SphereLight{}};
   Options options;
-  const auto first = *cache.environment(lights, options);
+  const auto first = *cache.environment(lights, {}, options);
   std::get<spec::SphereLight>(lights[1]).radius_m = 2.0f;
-  EXPECT_EQ(*cache.environment(lights, options), first) << "a sphere in the scene is no sky";
+  EXPECT_EQ(*cache.environment(lights, {1.0f, 7.0f}, options), first) << "a sphere in the scene is no sky";
   options.rotate_light_deg = 20.0f;
-  const auto turned = *cache.environment(lights, options);
+  const auto turned = *cache.environment(lights, {}, options);
   EXPECT_NE(turned, first);
   options.band_limit = BandLimit{.in = 3, .out = {}};
-  EXPECT_NE(*cache.environment(lights, options), turned);
+  EXPECT_NE(*cache.environment(lights, {}, options), turned);
   lights[0] = testing::uniform(2.0f);
-  EXPECT_EQ((*cache.environment(lights, options))->shown({0, 1, 0}, 0.01f), glm::vec3(2.0f));
+  EXPECT_EQ((*cache.environment(lights, {}, options))->shown({0, 1, 0}, 0.01f), glm::vec3(2.0f));
+}
+
+TEST(LightCache, LightsAreAsStrongAsTheirFactorsSay) {
+  const auto file = std::filesystem::path(::testing::TempDir()) / "factor-probe.exr";
+  spec::RgbaImage probe{8, 4, std::vector<glm::vec4>(32, glm::vec4(0.5f, 1.0f, 2.0f, 1.0f))};
+  ASSERT_TRUE(spec::writeExr(file, probe));
+  LightCache cache;
+  const std::vector<spec::Light> lights = {spec::SphereLight{}, testing::uniform(1.0f),
+                                           spec::ProbeLight{.file = file, .layout = {}}};
+  const auto sky = [&](const std::vector<float>& factors) {
+    const auto environment = *cache.environment(lights, factors, {});
+    EXPECT_EQ(environment->shown({0, -1, 0}, 0.01f), environment->look({0, -1, 0}).radiance);
+    return environment->shown({0, -1, 0}, 0.01f);
+  };
+  EXPECT_EQ(sky({}), glm::vec3(1.5f, 2.0f, 3.0f));
+  EXPECT_EQ(sky({9.0f, 0.5f, 2.0f}), glm::vec3(1.5f, 2.5f, 4.5f));
+  EXPECT_EQ(sky({9.0f, 0.0f}), glm::vec3(0.5f, 1.0f, 2.0f));
+  // The file is read once: it may go meanwhile.
+  std::filesystem::remove(file);
+  EXPECT_EQ(sky({9.0f, 0.0f, 4.0f}), glm::vec3(2.0f, 4.0f, 8.0f));
 }
 
 TEST(Enlarged, LiesWhereThePictureDid) {

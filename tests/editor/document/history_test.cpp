@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <memory>
 #include <random>
 #include <string>
 #include <vector>
@@ -317,6 +318,39 @@ TEST_F(Editing, DestroyedEntitiesComeBackWithChildrenAndTheirIds) {
   history.undo();
   EXPECT_EQ(firstDifference(before, everything(document)), "");
   EXPECT_TRUE(document.find(bulb_id));
+}
+
+TEST_F(Editing, ChangesOutsideAreStepsAmongTheOthers) {
+  struct Door : OutsideChange {
+    explicit Door(bool& open_now) : open(open_now) {}
+    void carryOut(bool forth, std::vector<std::string>& missing) override {
+      if (open == forth) missing.push_back("the door");
+      open = forth;
+    }
+    std::size_t bytes() const override { return 1000; }
+    bool& open;
+  };
+  bool open = true;
+  history.did(std::make_shared<Door>(open), "opening");
+  EXPECT_TRUE(history.modified());
+  EXPECT_FALSE(history.modifiedInside());
+  EXPECT_GE(history.bytes(), 1000u);
+  const float before = strength(world.node("lamp"));
+  ASSERT_TRUE(history.setField(world.node("lamp"), "Light", "strength", 9.0f));
+  EXPECT_TRUE(history.modifiedInside());
+  history.markSaved();
+  history.undo();
+  EXPECT_TRUE(history.modifiedInside()) << "the file has 9";
+  EXPECT_EQ(strength(world.node("lamp")), before);
+  EXPECT_TRUE(open);
+  EXPECT_EQ(history.undo().name, "opening");
+  EXPECT_FALSE(open);
+  history.redo(), history.redo();
+  EXPECT_TRUE(open);
+  EXPECT_FALSE(history.modified());
+  history.undo();
+  open = false;  // by somebody else
+  EXPECT_EQ(history.undo().missing, std::vector<std::string>{"the door"});
 }
 
 }  // namespace

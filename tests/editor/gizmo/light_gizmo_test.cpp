@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include "editor/gizmo/camera_control.hpp"
-#include "runtime/spec/light.hpp"
 #include "views.hpp"
 
 namespace lambent::editor {
@@ -84,22 +83,6 @@ TEST(LightGizmo, StrengthDoublesByTheSameWayEachTime) {
   EXPECT_FLOAT_EQ(gizmo.drag(*grab + glm::vec2(0.0f, 40.0f)).strength, 1.0f);
   EXPECT_LE(gizmo.drag(*grab - glm::vec2(0.0f, 9000.0f)).strength, 1e9f) << "within the field's range";
   EXPECT_FALSE(gizmo.handleScreenPoint(LightHandle::Radius)) << "a directional light has none";
-}
-
-TEST(LightGizmo, ASunIsDraggedToWhereThePixelLooks) {
-  const Projection projection(lookAt({1.0f, 2.0f, 3.0f}, {0.0f, 2.5f, 0.0f}, true), kViewport);
-  for (const float rotation : {0.0f, 75.0f, -200.0f}) {
-    const glm::vec2 pixel(300.0f, 120.0f);
-    const SkyDirection there = skyDirection(projection, pixel, rotation);
-    const auto seen = sunScreenPoint(projection, there, rotation);
-    ASSERT_TRUE(seen);
-    EXPECT_LT(glm::length(*seen - pixel), 0.01f);
-  }
-  const Result<std::string> word = withSunDirection("sun:35,45,6,100,92,80", {-170.5f, 12.25f});
-  ASSERT_TRUE(word);
-  EXPECT_EQ(*word, "sun:-170.5,12.25,6,100,92,80");
-  EXPECT_TRUE(spec::parseLight(*word));
-  EXPECT_FALSE(withSunDirection("constant:1,1,1", {}));
 }
 
 }  // namespace

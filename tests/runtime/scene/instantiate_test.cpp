@@ -329,6 +329,21 @@ TEST(Instantiate, TwiceNeedsAnotherInstanceNumberAndDestructionTakesOnlyItsOwn) 
   EXPECT_TRUE(worldBounds(registry).empty());
 }
 
+TEST(Instantiate, WhatIsClosedAndComesBackHasItsOrderAgain) {
+  const Hall hall;
+  ecs::Registry registry;
+  const auto order = [](const SceneInstance& scene) {
+    std::vector<std::uint32_t> indices = {scene.root.index};
+    for (const auto* list : {&scene.nodes, &scene.groups, &scene.draws, &scene.animations, &scene.materials})
+      for (const ecs::Entity entity : *list) indices.push_back(entity.index);
+    return indices;
+  };
+  const SceneInstance first = instance(registry, hall.d);
+  const std::vector<std::uint32_t> before = order(first);
+  destroyInstance(registry, first);
+  EXPECT_EQ(order(instance(registry, hall.d)), before);
+}
+
 template <class Component>
 class DeclaredFields : public ::testing::Test {};
 using Components = ::testing::Types<Name, Transform, CameraComponent, EnvironmentComponent, LampComponent,

@@ -1,0 +1,37 @@
+#include "baker/reference/request_lights.hpp"
+
+#include <utility>
+
+namespace lambent::baker::reference {
+
+Result<std::vector<spec::DistantLights>> loadEach(const std::vector<spec::Light>& lights) {
+  std::vector<spec::DistantLights> each;
+  for (const spec::Light& light : lights) {
+    auto loaded = spec::loadDistantLights({light});
+    if (!loaded) return failAgain(std::move(loaded.error()));
+    each.push_back(std::move(*loaded));
+  }
+  return each;
+}
+
+spec::DistantLights together(const std::vector<spec::DistantLights>& each,
+                             const std::vector<float>& factors) {
+  spec::DistantLights all;
+  for (std::size_t i = 0; i < each.size(); ++i) {
+    const float factor = i < factors.size() ? factors[i] : 1.0f;
+    all.constant += factor * each[i].constant;
+    for (spec::Disc disc : each[i].discs) {
+      disc.radiance *= factor;
+      all.discs.push_back(disc);
+    }
+    for (const spec::Probe& probe : each[i].probes) {
+      all.probes.push_back(probe);
+      if (factor != 1.0f)
+        for (glm::vec3& texel : all.probes.back().image.texels) texel *= factor;
+    }
+    all.notices.insert(all.notices.end(), each[i].notices.begin(), each[i].notices.end());
+  }
+  return all;
+}
+
+}  // namespace lambent::baker::reference

@@ -1,0 +1,29 @@
+// Whether two matrices stand for the same place, up to the rounding of matrices that were taken apart and put
+// together again. One rule for all that asks: what counts as moved is an edit of the next bake, and the other
+// way round.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/mat4x4.hpp>
+
+namespace lambent::editor {
+
+// Places may differ by 10 um, or in 10^-5 of their distance from the origin; turns and scales in 10^-5 of the
+// largest number of theirs.
+inline bool samePlace(const glm::mat4& a, const glm::mat4& b) {
+  constexpr float kRounding = 1e-5f, kMetre = 1.0f;
+  float axes = 0.0f, place = kMetre;
+  for (int row = 0; row < 3; ++row) {
+    place = std::max(place, std::abs(b[3][row]));
+    for (int column = 0; column < 3; ++column) axes = std::max(axes, std::abs(b[column][row]));
+  }
+  for (int column = 0; column < 4; ++column)
+    for (int row = 0; row < 4; ++row)
+      if (!(std::abs(a[column][row] - b[column][row]) <= kRounding * (column < 3 ? axes : place)))
+        return false;
+  return true;
+}
+
+}  // namespace lambent::editor
