@@ -76,6 +76,7 @@ bool bakeAround(const Around& around, const Body& body, const Box3& bounds, Prog
   settings.placement.extent = plan.extent;
   settings.placement.by_length = around.options.neighborhood_grid;
   settings.placement.few_points = !plan.asked && !plan.matrices;
+  settings.fit_between_points = true;
   settings.coding.bound = kShareOfBound * double{around.options.effectiveErrorBound()};
   auto baked = bakeNeighborhood(body, settings, progress, stop, keep);
   if (!baked) return false;

@@ -2,6 +2,7 @@
 #include "tests/support/neighborhood.hpp"
 
 #include "baker/bake/bake.hpp"
+#include "baker/effects/neighborhood/fit_between_points.hpp"
 #include "runtime/bundle/reader.hpp"
 #include "tests/support/program.hpp"
 
@@ -18,9 +19,7 @@ struct Stored {
   baker::ChangeShape shape;
   std::vector<float> visibility, bounced;
 
-  glm::vec3 point(std::size_t index) const {
-    return baker::GridPlacement{grid.size, {grid.bounds_min, grid.bounds_max}}.point(index);
-  }
+  baker::GridPlacement placement() const { return {grid.size, {grid.bounds_min, grid.bounds_max}}; }
 };
 
 class NeighborhoodBundle : public testing::ProgramTest {
@@ -92,16 +91,26 @@ TEST_F(NeighborhoodBundle, OfABlackBallHoldsItsClosedForm) {
     ASSERT_TRUE(stored.has_value());
     EXPECT_TRUE(stored->bounced.empty());
     EXPECT_EQ(std::size_t{stored->grid.size.x} * stored->grid.size.y * stored->grid.size.z, 12u * 12u * 6u);
+    // As a bake stores it: fitted to what is between the points.
+    const baker::GridPlacement placement = stored->placement();
+    constexpr std::size_t kMatrix = 9 * 25;
+    std::vector<float> truth;
+    std::vector<std::uint8_t> outside;
+    for (std::size_t p = 0; p < placement.count(); ++p) {
+      const glm::vec3 point = placement.point(p) - off;
+      outside.push_back(glm::length(point) < 0.5f ? 0 : 1);
+      const auto change = testing::blackSphereChange(point, 0.5f, 5, 3);
+      truth.insert(truth.end(), change.begin(), change.end());
+    }
+    baker::fitBetweenPoints(placement, outside, kMatrix, truth);
     int looked_at = 0;
-    for (std::size_t p = 0; p < 12u * 12u * 6u; ++p) {
-      const glm::vec3 point = stored->point(p) - off;
-      if (glm::length(point) < 0.52f) continue;
+    for (std::size_t p = 0; p < placement.count(); ++p) {
+      if (glm::length(placement.point(p) - off) < 0.52f) continue;
       ++looked_at;
       const std::size_t size = stored->shape.visibilitySize();
       auto wrong =
           testing::matrixOf(stored->shape, std::span(stored->visibility).subspan(p * size, size), {});
-      const auto truth = testing::blackSphereChange(point, 0.5f, 5, 3);
-      for (std::size_t i = 0; i < wrong.size(); ++i) wrong[i] -= truth[i];
+      for (std::size_t i = 0; i < wrong.size(); ++i) wrong[i] -= truth[p * kMatrix + i];
       // Draft: 512 rays, and codes within a third of a percent.
       EXPECT_LT(testing::irradianceOf(wrong, 5, 3), 0.02) << p;
     }

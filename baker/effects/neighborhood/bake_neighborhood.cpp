@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "baker/effects/neighborhood/fit_between_points.hpp"
 #include "baker/effects/neighborhood/receiver_meter.hpp"
 
 namespace lambent::baker {
@@ -71,6 +72,11 @@ std::optional<Changed> changeAround(const Body& body, const NeighborhoodSettings
   if (!out.grid) return out;
   out.change = changeOnGrid(body, *out.grid, shape, settings.rays, progress, stop, keep.part("change"));
   if (!out.change) return std::nullopt;
+  if (settings.fit_between_points) {
+    GridChange& change = *out.change;
+    fitBetweenPoints(*out.grid, change.outside, shape.visibilitySize(), change.visibility);
+    fitBetweenPoints(*out.grid, change.outside, shape.bouncedSize(), change.bounced);
+  }
   return out;
 }
 

@@ -20,6 +20,9 @@ struct NeighborhoodSettings {
   glm::vec3 origin{0.0f};   // of those points in the group's frame
   bool matrices = false;  // as many outputs as the light has bands, for receivers with transfer of their own
   std::size_t rays = 2048;  // from each point towards the body
+  // Points hold what interpolates best to the change between them (fit_between_points.hpp), in place of the
+  // change at them.
+  bool fit_between_points = false;
   ChangeCoding coding;
 };
 

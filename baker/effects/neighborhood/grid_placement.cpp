@@ -44,7 +44,7 @@ class Placer {
       const float lacks = kLeastThickness * radius_ - (box.high[axis] - box.low[axis]);
       if (lacks > 0.0f) box.low[axis] -= 0.5f * lacks, box.high[axis] += 0.5f * lacks;
     }
-    GridPlacement grid{sizeFor(box), box};
+    GridPlacement grid = dealt(box);
     if (wish_.extent == glm::vec3(0.0f)) standOff(grid);
     return grid;
   }
@@ -126,7 +126,8 @@ class Placer {
     return size;
   }
 
-  glm::uvec3 sizeFor(const Box3& box) const {
+  // How many points stand where in the box.
+  GridPlacement dealt(const Box3& box) const {
     const glm::vec3 length = box.high - box.low;
     std::array<int, 3> by_length;
     std::iota(by_length.begin(), by_length.end(), 0);
@@ -136,17 +137,20 @@ class Placer {
       const bool slab = isSlab(length, by_length);
       wanted = slab ? (wish_.few_points ? kCoarseSlab : kSlab) : wish_.few_points ? kCoarseAround : kAround;
     }
-    const bool dealt = wish_.extent == glm::vec3(0.0f) && wish_.by_length == glm::uvec3(0u);
-    if (dealt && isSlab(length, by_length) && flatAlong(by_length[2])) wanted = inFewLayers(wanted);
+    const bool few_layers = wish_.extent == glm::vec3(0.0f) && wish_.by_length == glm::uvec3(0u) &&
+                            isSlab(length, by_length) && flatAlong(by_length[2]);
+    if (few_layers) wanted = inFewLayers(wanted);
     std::array<std::uint32_t, 3> counts{wanted.x, wanted.y, wanted.z};
     std::sort(counts.begin(), counts.end(), std::greater<>());
-    glm::uvec3 size;
-    for (std::size_t k = 0; k < 3; ++k) size[by_length[k]] = counts[k];
-    if (wish_.size != glm::uvec3(0u) && wish_.extent != glm::vec3(0.0f)) size = wish_.size;
+    GridPlacement grid{.size = {}, .box = box};
+    for (std::size_t k = 0; k < 3; ++k) grid.size[by_length[k]] = counts[k];
+    if (wish_.size != glm::uvec3(0u) && wish_.extent != glm::vec3(0.0f)) grid.size = wish_.size;
     if (wish_.size != glm::uvec3(0u) && wish_.extent == glm::vec3(0.0f) && !isSlab(length, by_length))
-      size = evenly(length, static_cast<float>(wanted.x) * static_cast<float>(wanted.y * wanted.z));
-    for (int axis = 0; axis < 3; ++axis) size[axis] = std::clamp(size[axis], 2u, kMostGridPoints);
-    return size;
+      grid.size = evenly(length, static_cast<float>(wanted.x) * static_cast<float>(wanted.y * wanted.z));
+    for (int axis = 0; axis < 3; ++axis) grid.size[axis] = std::clamp(grid.size[axis], 2u, kMostGridPoints);
+    // An odd number of layers has one in the middle, where the receivers are.
+    if (few_layers) grid.on_layer[by_length[2]] = grid.size[by_length[2]] % 2 == 1;
+    return grid;
   }
 
   // Moves faces that receivers set off from them.

@@ -6,6 +6,7 @@
 #include <functional>
 #include <optional>
 
+#include <glm/ext/vector_bool3.hpp>
 #include <glm/vec3.hpp>
 
 namespace lambent::baker {
@@ -18,6 +19,8 @@ struct Box3 {
 struct GridPlacement {
   glm::uvec3 size{2};
   Box3 box;
+  // Receivers stand on a layer of points: nothing is interpolated along this axis.
+  glm::bvec3 on_layer{false};
 
   std::size_t count() const { return std::size_t{size.x} * size.y * size.z; }
   glm::vec3 spacing() const { return (box.high - box.low) / glm::vec3(size - 1u); }

@@ -76,6 +76,21 @@ TEST(Neighborhood, OfABlackSphereHoldsTheClosedFormAtItsPointsAfterCoding) {
   }
 }
 
+TEST(Neighborhood, IsCloserBetweenItsPointsWhereTheyHoldWhatInterpolatesBest) {
+  Made made(icosphere({0, 0, 0}, 1.0f, 3));
+  made.settings.placement.receivers = Box3{{-20, -3, -20}, {20, -1.3f, 20}};
+  made.settings.placement.by_length = {24, 24, 6};
+  const auto errorOf = [&](bool fit) {
+    made.settings.fit_between_points = fit;
+    const DecodedNeighborhood grid(*made.bake().grid);
+    const auto truth = [](const glm::vec3& p) { return blackSphereChange(p, 1.0f, 5, 3); };
+    return testing::errorsAgainst(grid, made.settings.placement.receivers, 2000, truth).rms;
+  };
+  const double without = errorOf(false);
+  EXPECT_GT(without, 1e-3);
+  EXPECT_LT(errorOf(true), 0.7 * without);
+}
+
 TEST(Neighborhood, IsRightAtTheBodysSurfaceAlthoughPointsLieInside) {
   // Points inside are dark, and interpolation reaches for them. Close to the surface, all around.
   Made made(icosphere({0, 0, 0}, 1.0f, 4));

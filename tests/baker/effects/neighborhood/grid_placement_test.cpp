@@ -71,9 +71,11 @@ TEST(GridPlacements, HaveTheirPointsInFewLayersOverAFlatFloorAndOneOfThemInIt) {
     EXPECT_EQ(grid->size, glm::uvec3(80, 5, 80));
     EXPECT_LE(grid->count(), 64u * 64u * 8u);
     EXPECT_NEAR(grid->box.low.y + 2.0f * grid->spacing().y, -2.0f, 1e-5f);
+    EXPECT_EQ(grid->on_layer, glm::bvec3(false, true, false));
   }
   wish.size = {16, 16, 4};  // few enough as it is
   EXPECT_EQ(placeGrid(wish, farField)->size, glm::uvec3(16, 4, 16));
+  EXPECT_EQ(placeGrid(wish, farField)->on_layer, glm::bvec3(false)) << "the floor is between two layers";
   wish.size = {64, 64, 8};
   wish.extent = {8, 8, 1};
   EXPECT_EQ(placeGrid(wish, farField)->size, glm::uvec3(64, 64, 8));
