@@ -278,7 +278,8 @@ TEST(Glossy, LimitedKernelsMirrorWhatLiesBelowSmoothNormalsInThem) {
     const glm::vec3 normal = glm::normalize(glm::vec3(lean, 1.0f, 0.0f));
     for (glm::vec3& n : scene.meshes[0].primitives[0].mesh.normals) n = normal;
     addWall(scene);
-    const glm::vec3 eye = kPlace + glm::vec3(1.0f, 1.2f, 0.2f);
+    // Near where the sun is mirrored.
+    const glm::vec3 eye = kPlace + glm::vec3(0.4f, 1.0f, 1.0f);
     SurfacePoint point;
     point.shading = normal;
     point.glossy = true;
@@ -293,7 +294,7 @@ TEST(Glossy, LimitedKernelsMirrorWhatLiesBelowSmoothNormalsInThem) {
     });
     const auto seen = measured(scene, eye, kPlace, {kSun}, limited(1024, 5, 5));
     EXPECT_NEAR(seen.mean.g, expected, 4.0 * seen.error.g + 4e-3 * std::abs(expected)) << lean;
-    EXPECT_LT(seen.error.g, 0.02 * std::abs(expected)) << lean;
+    EXPECT_LT(seen.error.g, 0.05 * std::abs(expected)) << lean;
   }
 }
 
