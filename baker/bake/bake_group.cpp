@@ -112,7 +112,7 @@ std::optional<Transported> transport(const DiffuseScene& scene, const SurfaceBrd
 }
 
 // Visibility and bounced light are shown together: errors of both are relative to both, and each may have as
-// much.
+// much. A bound that was asked for is kept at any price.
 std::vector<CodedTransfer> codeGlossy(const SampleCell& cell, const GlossyField& field,
                                       const BandPower& kernel_power, bool grey_emission,
                                       const BakeOptions& options, const std::stop_token& stop,
@@ -128,9 +128,13 @@ std::vector<CodedTransfer> codeGlossy(const SampleCell& cell, const GlossyField&
     const bool environment = part.shape.order > 0;
     const float bound = options.effectiveGlossyErrorBound() /
                         (environment ? std::sqrt(static_cast<float>(shown_parts)) : 1.0f);
-    coded.push_back(coding.code(
-        part.vectors, cell.count, part.shape,
-        {.bound = bound, .shown_energy = environment ? shown : 0.0, .kernel_power = kernel_power}, stop));
+    coded.push_back(
+        coding.code(part.vectors, cell.count, part.shape,
+                    {.bound = bound,
+                     .most_components = options.error_bound > 0.0f ? kAllComponents : kUsualComponents,
+                     .shown_energy = environment ? shown : 0.0,
+                     .kernel_power = kernel_power},
+                    stop));
     const double error = coded.back().error;
     if (environment)
       square += error * error;

@@ -198,7 +198,7 @@ CodedTransfer codeTransfer(std::span<const float> vectors, std::size_t count,
           ? std::max(kBasisSamples, static_cast<std::size_t>(kBasisWork / (size * size)))
           : kBasisSamples;
   const Spectrum spectrum = leadingSpectrum(weighted(vectors, space.roots, someSamples(count, looked_at)),
-                                            kTailShare * allowed, left_out);
+                                            kTailShare * allowed, settings.most_components, left_out);
   // Where the components that were looked for leave out more than is allowed, the rest is coded to match.
   const double reachable = std::max(allowed, kBesideLeftOut * left_out);
   const double budget = 0.9 * (reachable - left_out);  // the rest: rounding of basis, means and axes

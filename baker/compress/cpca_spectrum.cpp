@@ -17,10 +17,6 @@ constexpr Eigen::Index kBlock = 256;        // samples gathered for one matrix p
 constexpr Eigen::Index kShortPoints = 320;  // up to here all components cost little
 constexpr Eigen::Index kFirstSketch = 64;   // components looked for at first; then twice as many, and so on
 
-// So many at most: light between sharp metals has no leading components, and all of it would cost more than
-// the rest together, of bytes and of time when light changes.
-constexpr Eigen::Index kWidestSketch = 128;
-
 // A number with mean 0 and variance 1 from a counter (splitmix64); two-valued numbers sketch as well as
 // normal ones.
 float sign(std::uint64_t counter) {
@@ -53,11 +49,13 @@ Eigen::MatrixXf orthonormal(const Eigen::MatrixXf& columns) {
 
 }  // namespace
 
-Spectrum leadingSpectrum(const Points& points, double tail, double& left_out) {
+Spectrum leadingSpectrum(const Points& points, double tail, Eigen::Index most, double& left_out) {
   double energy = 0.0;
   for (Eigen::Index s = 0; s < points.cols(); ++s) energy += points.col(s).cast<double>().squaredNorm();
   energy /= static_cast<double>(points.cols());
-  for (Eigen::Index width = kFirstSketch; points.rows() > kShortPoints; width *= 2) {
+  for (Eigen::Index width = std::min(kFirstSketch, most);
+       points.rows() > kShortPoints && (width < points.rows() / 2 || width == most);
+       width = std::min(2 * width, most)) {
     Eigen::MatrixXf sketch(points.rows(), width);
     for (Eigen::Index i = 0; i < sketch.size(); ++i) sketch.data()[i] = sign(static_cast<std::uint64_t>(i));
     // One turn more than the range asks for: the components that matter little come out as well.
@@ -67,7 +65,7 @@ Spectrum leadingSpectrum(const Points& points, double tail, double& left_out) {
     Spectrum found = spectrumOf(secondMoment(inside, {}, {}));
     left_out = std::max(0.0, energy - found.variances.sum());
     // The last ones found are found badly.
-    if (width < kWidestSketch && left_out + found.variances.tail(width / 8).sum() > tail) continue;
+    if (width < most && left_out + found.variances.tail(width / 8).sum() > tail) continue;
     found.axes = range.cast<double>() * found.axes;
     return found;
   }

@@ -22,10 +22,10 @@ struct Spectrum {
 Spectrum spectrumOf(const Eigen::MatrixXd& covariance);
 
 // The leading components of E[x xᵀ] about zero, as many as it takes to leave out a mean square of at most
-// `tail` (some more may come), all where points are short; but never more than 128 of long ones. Those
+// `tail` (some more may come), all where points are short; but never more than `most` of long ones. Those
 // (matrices) by a randomised range finder (Halko, Martinsson, Tropp 2011, algorithm 4.4) with hashed instead
 // of random numbers. In `left_out`: the mean square that is in none of the components returned.
-Spectrum leadingSpectrum(const Points& points, double tail, double& left_out);
+Spectrum leadingSpectrum(const Points& points, double tail, Eigen::Index most, double& left_out);
 
 // Mean over `members` (all samples where empty) of x xᵀ; x about `centre` where that is not empty.
 Eigen::MatrixXd secondMoment(const Points& points, std::span<const std::uint32_t> members,

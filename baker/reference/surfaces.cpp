@@ -240,6 +240,7 @@ SurfacePoint Surfaces::pointAt(const Hit& hit, const glm::vec3& dir) const {
   if (point.blocked) return point;
   point.shading = unitOr(interpolated(normals_, hit), point.geometric);
   const glm::vec3 normal = point.shading;
+  point.smooth = normal;
   if (material.normal_texture.texture >= 0) point.shading = mappedNormal(hit, point.shading);
   const glm::vec4 color = baseColor(hit);
   point.albedo = glm::vec3(color);
@@ -248,6 +249,7 @@ SurfacePoint Surfaces::pointAt(const Hit& hit, const glm::vec3& dir) const {
   if (back) {
     point.geometric = -point.geometric;
     point.shading = -point.shading;
+    point.smooth = -point.smooth;
   }
   point.glossy = !material.matte();
   if (point.glossy) point.reflector = reflectorAt(hit, point, normal, -dir);

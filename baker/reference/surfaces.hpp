@@ -41,6 +41,7 @@ struct SurfacePoint {
   glm::vec3 position{0.0f};
   glm::vec3 geometric{0.0f};  // unit; decides which directions are above the horizon
   glm::vec3 shading{0.0f};    // unit; in the cosine only
+  glm::vec3 smooth{0.0f};     // the same before normal maps bend it
   glm::vec3 albedo{0.0f};     // base colour; of a matte surface all there is to reflect
   bool glossy = false;        // reflects by `reflector`
   Reflector reflector;        // towards where it was looked at from

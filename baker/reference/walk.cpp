@@ -35,7 +35,7 @@ Walk::Scattering Walk::scattering(const Path& path, const glm::vec3& dir, bool f
   const SurfacePoint& at = path.at;
   if (path.in_medium) return phase(path, glm::dot(path.dir, dir), first);
   if (glm::dot(at.geometric, dir) <= 0.0f) return {};
-  if (first && limited) return {limited->kernelOfPair(dir), limited->pdf(dir)};
+  if (first && limited) return {limited->kernelOfAll(dir), limited->pdf(dir)};
   if (at.glossy) {
     const glm::vec3 local = at.reflector.toLocal(dir);
     return {at.reflector.value(local), at.reflector.pdf(local)};
@@ -106,7 +106,7 @@ void Walk::scatter(bool first) {
     } else if (first && limited) {
       path.dir = limited->sample(u);
       path.pdf = limited->pdf(path.dir);
-      path.throughput *= limited->kernelOfPair(path.dir) / path.pdf;
+      path.throughput *= limited->kernelOfAll(path.dir) / path.pdf;
     } else if (path.at.glossy) {
       const Reflector& reflector = path.at.reflector;
       const float choice = draw(path, kLobe).x;

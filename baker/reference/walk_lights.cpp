@@ -76,8 +76,8 @@ void Walk::lightFromPunctual(std::size_t p, bool first) {
     if (left >= 0.0f || !(share > 0.0f)) continue;
     const bool near = std::isfinite(beam->distance);
     glm::vec3 to = near ? world.punctual[i].position - path.at.origin() : beam->to_light;
-    // Below the plane what stands in the mirrored direction is in the way.
-    if (first && limited && glm::dot(path.at.geometric, to) < 0.0f) to = limited->mirrored(to);
+    // Below the surface what stands in the mirrored direction is in the way.
+    if (first && limited) to = limited->rayFor(to);
     addShadow(p, to, near ? kShadowReach : kInfinity, radiance * (sum / share), kToPunctual);
     return;
   }
@@ -119,7 +119,7 @@ sh::LightVector Walk::shapesFrom(const glm::vec3& point) const {
 }
 
 void Walk::takeSky(Path& path) const {
-  path.sum -= limited->skyOfPair(path.dir) / path.pdf;
+  path.sum -= limited->skyOfAll(path.dir) / path.pdf;
 }
 
 void Walk::addSky(Path& path, bool first) {

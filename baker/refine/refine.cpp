@@ -1,6 +1,7 @@
 #include "baker/refine/refine.hpp"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <functional>
@@ -16,6 +17,7 @@
 #include "baker/transport/geometry_key.hpp"
 #include "baker/transport/samples.hpp"
 #include "baker/transport/vertex_key.hpp"
+#include "baker/work/parallel.hpp"
 
 namespace lambent::baker {
 
@@ -75,7 +77,7 @@ class GroupRefiner {
   // Area times square error of every triangle. Errors: no memory for the hierarchy. False when stopped.
   Result<bool> measure(const GroupGeometry& geometry, Progress& progress, const std::stop_token& stop);
 
-  double relativeError() const { return area_ > 0.0 ? std::sqrt(square_error_ / area_) : 0.0; }
+  double relativeError() const { return area_ > 0.0 ? std::sqrt(std::max(0.0, square_error_) / area_) : 0.0; }
   std::uint64_t raysTraced() const { return traced_; }
   std::uint64_t raysKept() const { return rays_kept_; }
 
@@ -89,11 +91,14 @@ class GroupRefiner {
     glm::vec3 normal{0.0f};
     SampleKind kind = SampleKind::Plain;
     std::vector<SampleOrigin> origins;
-    std::uint32_t shadow = 0;  // into shadows_
+    std::uint32_t shadow = 0;  // place in masks_
   };
   std::uint32_t shadowAt(const glm::vec3& position, const glm::vec3& normal, SampleKind kind,
                          std::span<const SampleOrigin> origins, std::vector<Point>& missing);
-  // Fills in shadows_ at the missing points.
+  std::span<const std::uint16_t> masksAt(std::uint32_t shadow) const {
+    return std::span(masks_).subspan(shadow * probe_.packets(), probe_.packets());
+  }
+  // Fills in masks_ at the missing points.
   Result<bool> probe(const std::vector<Point>& missing, Progress& progress, const std::stop_token& stop);
 
   const ShadowProbe& probe_;
@@ -103,7 +108,8 @@ class GroupRefiner {
   float diagonal_ = 0.0f;
   // Where shadows were probed: triangles come and go, surfaces stay where they are.
   std::unordered_map<VertexKey, std::uint32_t, VertexKeyHash> known_;
-  std::vector<Shadow> shadows_;
+  std::vector<std::uint16_t> masks_;  // ShadowProbe::packets() each
+  std::vector<std::uint8_t> seen_;    // by anybody
   std::vector<double> triangle_error_;
   double square_error_ = 0.0, area_ = 0.0;
   std::uint64_t traced_ = 0, rays_kept_ = 0;
@@ -111,7 +117,7 @@ class GroupRefiner {
 
 std::uint32_t GroupRefiner::shadowAt(const glm::vec3& position, const glm::vec3& normal, SampleKind kind,
                                      std::span<const SampleOrigin> origins, std::vector<Point>& missing) {
-  const auto next = static_cast<std::uint32_t>(shadows_.size() + missing.size());
+  const auto next = static_cast<std::uint32_t>(seen_.size() + missing.size());
   const auto [entry, is_new] = known_.try_emplace(vertexKey(position, normal, kind), next);
   if (is_new) missing.push_back({normal, kind, {origins.begin(), origins.end()}, next});
   return entry->second;
@@ -124,8 +130,12 @@ float longestEdge(const GroupGeometry& geometry, const glm::uvec3& t) {
 
 Result<bool> GroupRefiner::probe(const std::vector<Point>& missing, Progress& progress,
                                  const std::stop_token& stop) {
-  const std::size_t first = shadows_.size();  // of the missing ones, which are in order
-  shadows_.resize(first + missing.size());
+  const std::size_t size = probe_.packets(), first = seen_.size();  // missing ones are in order
+  seen_.resize(first + missing.size());
+  masks_.resize(seen_.size() * size);
+  const auto masksOf = [&](std::size_t begin, std::size_t end) {
+    return std::span(masks_).subspan((first + begin) * size, (end - begin) * size);
+  };
   Keep keep = keep_;
   if (keep.cache) {
     KeyMaker key;
@@ -134,7 +144,8 @@ Result<bool> GroupRefiner::probe(const std::vector<Point>& missing, Progress& pr
     keep.key = key.key();
   }
   const auto unpack = [&](std::size_t begin, std::size_t end, ByteReader& in) {
-    return in.readInto(std::span(shadows_).subspan(first + begin, end - begin));
+    return in.readInto(masksOf(begin, end)) &&
+           in.readInto(std::span(seen_).subspan(first + begin, end - begin));
   };
   const std::uint64_t rays = missing.size() * probe_.rays();
   if (restoreRanges(keep, missing.size(), kPointsPerRange, unpack)) {
@@ -154,14 +165,16 @@ Result<bool> GroupRefiner::probe(const std::vector<Point>& missing, Progress& pr
                       [&](std::size_t begin, std::size_t end) {
                         for (std::size_t i = begin; i < end; ++i) {
                           const Point& point = missing[i];
-                          shadows_[point.shadow] = probe_.at(*rays_, point.origins, point.normal, point.kind);
+                          seen_[point.shadow] =
+                              probe_.look(*rays_, point.origins, point.normal, point.kind, masksOf(i, i + 1));
                         }
                         traced += (end - begin) * probe_.rays();
                         progress.add(end - begin);
                       },
                   .pack =
                       [&](std::size_t begin, std::size_t end, ByteWriter& out) {
-                        out.addList(std::span<const Shadow>(shadows_).subspan(first + begin, end - begin));
+                        out.addList(std::span<const std::uint16_t>(masksOf(begin, end)));
+                        out.addList(std::span<const std::uint8_t>(seen_).subspan(first + begin, end - begin));
                       },
                   .unpack = unpack});
   traced_ += traced;
@@ -182,7 +195,8 @@ Result<bool> GroupRefiner::measure(const GroupGeometry& geometry, Progress& prog
 
   struct Inner {
     std::uint32_t triangle = 0, shadow = 0;
-    glm::vec3 weights{0.0f};
+    glm::vec3 weights{0.0f}, normal{0.0f};
+    SampleKind kind = SampleKind::Plain;
   };
   std::vector<Inner> inner;
   for (std::uint32_t t = 0; t < geometry.triangles.size(); ++t) {
@@ -202,13 +216,37 @@ Result<bool> GroupRefiner::measure(const GroupGeometry& geometry, Progress& prog
       const glm::vec3 sum = w.x * geometry.normals[corners.x] + w.y * geometry.normals[corners.y] +
                             w.z * geometry.normals[corners.z];
       const float length = glm::length(sum);
-      const SampleOrigin origin{at + standOff(at, std::sqrt(0.5f * twice_area)) * face, face, 1.0f};
-      inner.push_back(
-          {t, shadowAt(at, length > 0.0f ? sum / length : face, kind, std::span(&origin, 1), missing), w});
+      const glm::vec3 normal = length > 0.0f ? sum / length : face;
+      const SampleOrigin origin{at + standOff(at, std::sqrt(0.5f * twice_area)) * face, face, 1.0f,
+                                reachOf(std::sqrt(twice_area), geometry)};
+      inner.push_back({t, shadowAt(at, normal, kind, std::span(&origin, 1), missing), w, normal, kind});
     }
   }
 
   if (auto probed = probe(missing, progress, stop); !probed || !*probed) return probed;
+
+  std::vector<double> error_at(inner.size());
+  // What nobody sees has no error; what nobody sees from takes the place of its neighbours (fill.hpp).
+  const auto measureAt = [&](std::size_t i) {
+    const Inner& point = inner[i];
+    std::array<HiddenFrom, 3> corners;
+    float shares = 0.0f;
+    for (int c = 0; c < 3; ++c) {
+      const std::uint32_t sample = samples.vertex_sample[geometry.triangles[point.triangle][c]],
+                          shadow = of_sample[sample];
+      HiddenFrom& corner = corners[static_cast<std::size_t>(c)];
+      corner = {masksAt(shadow), samples.normals[sample], seen_[shadow] != 0 ? point.weights[c] : 0.0f};
+      shares += corner.share;
+    }
+    if (seen_[point.shadow] == 0 || !(shares > 0.0f)) return 0.0;
+    for (HiddenFrom& corner : corners) corner.share /= shares;
+    return probe_.squareError(corners, {masksAt(point.shadow), point.normal}, point.kind);
+  };
+  const bool measured =
+      parallelRanges(inner.size(), kPointsPerRange, stop, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) error_at[i] = measureAt(i);
+      });
+  if (!measured) return false;
 
   triangle_error_.assign(geometry.triangles.size(), 0.0);
   square_error_ = area_ = 0.0;
@@ -216,15 +254,7 @@ Result<bool> GroupRefiner::measure(const GroupGeometry& geometry, Progress& prog
     const std::uint32_t t = inner[first].triangle;
     std::size_t last = first;
     double sum = 0.0;
-    for (; last < inner.size() && inner[last].triangle == t; ++last) {
-      const glm::vec3 w = inner[last].weights;
-      Shadow between{};
-      for (int c = 0; c < 3; ++c) {
-        const Shadow& corner = shadows_[of_sample[samples.vertex_sample[geometry.triangles[t][c]]]];
-        for (std::size_t i = 0; i < between.size(); ++i) between[i] += w[c] * corner[i];
-      }
-      sum += double{squaredDifference(between, shadows_[inner[last].shadow])};
-    }
+    for (; last < inner.size() && inner[last].triangle == t; ++last) sum += error_at[last];
     const glm::uvec3 corners = geometry.triangles[t];
     const glm::vec3 a = geometry.positions[corners.x];
     const double area =

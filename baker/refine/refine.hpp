@@ -20,7 +20,7 @@ namespace lambent::baker {
 
 struct RefineOptions {
   float bound = 0.01f;     // on the error of each group: relative RMS over its surface, against open light
-  std::size_t rays = 256;  // per probe, over the sphere
+  std::size_t rays = 512;  // per probe, over the sphere
   int rounds = 12;         // at most
   // The scene never gets more vertices than so many times as it had and so many more, nor more than so many
   // in all.

@@ -1,12 +1,15 @@
 #include "baker/refine/shadow_probe.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numbers>
 
 #include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
 
 #include "baker/compress/light_weights.hpp"
+#include "baker/transport/frame.hpp"
 #include "runtime/sh/basis.hpp"
 #include "runtime/sh/gaunt.hpp"
 #include "runtime/sh/zonal.hpp"
@@ -15,94 +18,133 @@ namespace lambent::baker {
 
 namespace {
 
-// Both halves of the sphere by the points of one.
-DirectionTable sphereTable(std::size_t rays) {
-  DirectionTable table = uniformTable(rays / 2);
-  const std::size_t half = table.size();
-  for (std::size_t i = 0; i < half; ++i) {
-    table.x.push_back(-table.x[i]);
-    table.y.push_back(-table.y[i]);
-    table.z.push_back(-table.z[i]);
-  }
+// Of the light, and of what surfaces make of it; visibility then shows in all bands that tie the two.
+constexpr int kOrder = 5, kVisibilityBands = 2 * kOrder - 1;
+constexpr std::size_t kPlainValues = kOrder * kOrder, kGlossyValues = kVisibilityBands * kVisibilityBands;
+
+// Both halves of the sphere by the points of one, turned by `turn`.
+void addSphere(const DirectionTable& half, const glm::mat3& turn, DirectionTable& table) {
+  for (const float sign : {1.0f, -1.0f})
+    for (std::size_t i = 0; i < half.size(); ++i) {
+      const glm::vec3 d = turn * (sign * glm::vec3(half.x[i], half.y[i], half.z[i]));
+      table.x.push_back(d.x), table.y.push_back(d.y), table.z.push_back(d.z);
+    }
+}
+
+DirectionTable twoSpheres(std::size_t rays) {
+  const DirectionTable half = uniformTable(rays / 4);
+  DirectionTable table;
+  addSphere(half, glm::mat3(1.0f), table);
+  // Any turn that brings no axis near another.
+  const glm::vec3 a = glm::normalize(glm::vec3(0.46f, 0.71f, 0.53f)),
+                  b = glm::normalize(glm::cross(a, glm::vec3(0.8f, -0.1f, 0.6f)));
+  addSphere(half, glm::mat3(b, glm::cross(a, b), a), table);
   return table;
 }
 
-using Roots = std::array<double, kShadowOrder * kShadowOrder>;
-
 // Errors of irradiance by the power of light in each band, relative to an open point's.
-Roots irradianceRoots() {
+std::vector<double> irradianceRoots() {
   double open = 0.0;
-  for (int l = 0; l < kShadowOrder; ++l) {
+  for (int l = 0; l < kOrder; ++l) {
     const double cosine = sh::clampedCosine(l) / std::numbers::pi;
     open +=
         kBandPower[static_cast<std::size_t>(l)] * cosine * cosine * (2 * l + 1) / (4.0 * std::numbers::pi);
   }
-  Roots roots{};
-  for (std::size_t i = 0; i < roots.size(); ++i)
-    roots[i] = std::sqrt(kBandPower[static_cast<std::size_t>(sh::bandOf(static_cast<int>(i)))] / open);
+  std::vector<double> roots;
+  for (std::size_t i = 0; i < kPlainValues; ++i)
+    roots.push_back(std::sqrt(kBandPower[static_cast<std::size_t>(sh::bandOf(static_cast<int>(i)))] / open));
   return roots;
 }
 
 // Errors of visibility by what its products with lights show to lobes (CodingSettings), likewise.
-Roots visibilityRoots() {
-  const sh::GauntTable table = sh::makeGauntTable(kShadowOrder, kShadowOrder);
-  Roots powers{};
+std::vector<double> visibilityRoots() {
+  const sh::GauntTable table = sh::makeGauntTable(kOrder, kOrder);
+  std::vector<double> roots(kGlossyValues, 0.0);
   double open = 0.0;
-  for (std::size_t i = 0; i < powers.size(); ++i) {
+  for (std::size_t i = 0; i < kPlainValues; ++i) {
     const auto band = static_cast<std::size_t>(sh::bandOf(static_cast<int>(i)));
     open += kLobePower[band] * kBandPower[band];
     for (std::uint32_t t = table.offsets[i]; t < table.offsets[i + 1]; ++t) {
       const sh::GauntTerm& term = table.terms[t];
-      if (term.k < powers.size())
-        powers[term.k] += kLobePower[band] * kBandPower[static_cast<std::size_t>(sh::bandOf(term.j))] *
-                          double{term.value} * double{term.value};
+      roots[term.k] += kLobePower[band] * kBandPower[static_cast<std::size_t>(sh::bandOf(term.j))] *
+                       double{term.value} * double{term.value};
     }
   }
-  Roots roots{};
-  for (std::size_t k = 0; k < roots.size(); ++k) roots[k] = std::sqrt(powers[k] / open);
+  for (double& root : roots) root = std::sqrt(root / open);
   return roots;
 }
 
 }  // namespace
 
-ShadowProbe::ShadowProbe(std::size_t rays) : directions_(sphereTable(rays)) {
-  const Roots irradiance = irradianceRoots(), visibility = visibilityRoots();
-  const double solid_angle = 4.0 * std::numbers::pi / static_cast<double>(directions_.size());
+ShadowProbe::ShadowProbe(std::size_t rays) : directions_(twoSpheres(rays)) {
+  const std::vector<double> irradiance = irradianceRoots(), visibility = visibilityRoots();
+  const double solid_angle = 8.0 * std::numbers::pi / static_cast<double>(directions_.size());  // of one half
+  std::vector<double> basis(kGlossyValues);
   for (std::size_t r = 0; r < directions_.size(); ++r) {
-    std::array<double, kShadowOrder * kShadowOrder> basis;
-    sh::evaluate(kShadowOrder, glm::dvec3(directions_.x[r], directions_.y[r], directions_.z[r]), basis);
-    Shadow of_irradiance, of_visibility;
-    for (std::size_t i = 0; i < basis.size(); ++i) {
-      of_irradiance[i] = static_cast<float>(irradiance[i] * basis[i] * solid_angle / std::numbers::pi);
-      of_visibility[i] = static_cast<float>(visibility[i] * basis[i] * solid_angle);
-    }
-    irradiance_.push_back(of_irradiance);
-    visibility_.push_back(of_visibility);
+    sh::evaluate<double>(kVisibilityBands, double{directions_.x[r]}, double{directions_.y[r]},
+                         double{directions_.z[r]}, basis);
+    for (std::size_t i = 0; i < kPlainValues; ++i)
+      irradiance_.push_back(static_cast<float>(irradiance[i] * basis[i] * solid_angle / std::numbers::pi));
+    for (std::size_t i = 0; i < kGlossyValues; ++i)
+      visibility_.push_back(static_cast<float>(visibility[i] * basis[i] * solid_angle));
   }
 }
 
-Shadow ShadowProbe::at(const RayScene& scene, std::span<const SampleOrigin> origins, const glm::vec3& normal,
-                       SampleKind kind) const {
-  Shadow shadow{};
-  if (origins.empty()) return shadow;
+std::span<const float> ShadowProbe::row(std::size_t direction, bool plain) const {
+  return plain ? std::span(irradiance_).subspan(direction * kPlainValues, kPlainValues)
+               : std::span(visibility_).subspan(direction * kGlossyValues, kGlossyValues);
+}
+
+bool ShadowProbe::look(const RayScene& scene, std::span<const SampleOrigin> origins, const glm::vec3& normal,
+                       SampleKind kind, std::span<std::uint16_t> masks) const {
+  std::fill(masks.begin(), masks.end(), std::uint16_t{0});
+  SeenOrigins seen;
+  findSeenOrigins(origins, glm::mat3(localFrame(glm::normalize(glm::dvec3(normal)))), scene, glances_, seen);
+  if (!seen.valid) return false;
+  if (kind == SampleKind::Plain) {
+    scene.trace(seen.origins, glm::mat3(1.0f), directions_, masks, BelowHorizon::Blocked);
+    return true;
+  }
+  DirectionTable above = directions_;
+  for (std::size_t r = 0; r < above.size(); ++r) {
+    const float height = above.x[r] * normal.x + above.y[r] * normal.y + above.z[r] * normal.z;
+    if (height >= 0.0f) continue;
+    above.x[r] -= 2.0f * height * normal.x;
+    above.y[r] -= 2.0f * height * normal.y;
+    above.z[r] -= 2.0f * height * normal.z;
+  }
+  scene.trace(seen.origins, glm::mat3(1.0f), above, masks, BelowHorizon::Mirrored);
+  return true;
+}
+
+double ShadowProbe::squareError(std::span<const HiddenFrom, 3> corners, const HiddenFrom& truth,
+                                SampleKind kind) const {
   const bool plain = kind == SampleKind::Plain;
-  std::vector<std::uint16_t> masks(directions_.packets());
-  scene.trace(origins, glm::mat3(1.0f), directions_, masks,
-              plain ? BelowHorizon::Blocked : BelowHorizon::Mirrored);
-  for (std::size_t p = 0; p < masks.size(); ++p) {
-    if (masks[p] == 0) continue;
-    for (std::size_t k = 0; k < kPacketWidth; ++k) {
-      if ((masks[p] >> k & 1) == 0) continue;
+  std::array<std::array<float, kGlossyValues>, 2> wrong{};
+  for (std::size_t p = 0; p < packets(); ++p) {
+    const unsigned in_any = corners[0].masks[p] | corners[1].masks[p] | corners[2].masks[p] | truth.masks[p],
+                   in_all = corners[0].masks[p] & corners[1].masks[p] & corners[2].masks[p] & truth.masks[p];
+    // What is hidden from all of them makes no difference, but where their cosines differ.
+    for (unsigned left = plain ? in_any : in_any & ~in_all; left != 0; left &= left - 1) {
+      const auto k = static_cast<std::size_t>(std::countr_zero(left));
       const std::size_t r = p * kPacketWidth + k;
-      float weight = 1.0f;
-      if (plain)
-        weight =
-            std::max(0.0f, glm::dot(normal, glm::vec3(directions_.x[r], directions_.y[r], directions_.z[r])));
-      const Shadow& row = plain ? irradiance_[r] : visibility_[r];
-      for (std::size_t i = 0; i < shadow.size(); ++i) shadow[i] += weight * row[i];
+      const glm::vec3 direction(directions_.x[r], directions_.y[r], directions_.z[r]);
+      const auto hidden = [&](const HiddenFrom& point) {
+        if ((point.masks[p] >> k & 1) == 0) return 0.0f;
+        return plain ? std::max(0.0f, glm::dot(point.normal, direction)) : 1.0f;
+      };
+      float off = -hidden(truth);
+      for (const HiddenFrom& corner : corners) off += corner.share * hidden(corner);
+      if (off == 0.0f) continue;
+      const std::span<const float> from = row(r, plain);
+      auto& to = wrong[r < directions_.size() / 2 ? 0 : 1];
+      for (std::size_t i = 0; i < from.size(); ++i) to[i] += off * from[i];
     }
   }
-  return shadow;
+  double error = 0.0;
+  for (std::size_t i = 0; i < (plain ? kPlainValues : kGlossyValues); ++i)
+    error += double{wrong[0][i]} * double{wrong[1][i]};
+  return error;
 }
 
 }  // namespace lambent::baker

@@ -1,6 +1,6 @@
-// What is hidden from a point of a surface, in a few numbers that can be compared with those of its
-// neighbours: the transfer that interpolation over triangles gets wrong. All points look in the same
-// directions, so that neighbours which see the same differ by nothing.
+// What is hidden from a point of a surface, a bit for each of many directions, and how wrong it is to show a
+// mixture of other points' in its place: the transfer that interpolation over triangles gets wrong. All
+// points look in the same directions, so that neighbours which see the same differ by nothing.
 #pragma once
 
 #include <array>
@@ -12,35 +12,44 @@
 #include <glm/vec3.hpp>
 
 #include "baker/transport/ray_scene.hpp"
+#include "baker/transport/seen_origins.hpp"
 
 namespace lambent::baker {
 
-inline constexpr int kShadowOrder = 5;
-// Of what is hidden, coefficients in spherical harmonics scaled so that the squared difference of two points
-// is the mean squared error, over real lights, of showing one in place of the other, relative to the light of
-// an open point.
-using Shadow = std::array<float, kShadowOrder * kShadowOrder>;
+// What one point sees, and by what share it counts in a mixture.
+struct HiddenFrom {
+  std::span<const std::uint16_t> masks;  // ShadowProbe::packets() of them
+  glm::vec3 normal{0.0f};                // unit, of shading
+  float share = 1.0f;
+};
 
 class ShadowProbe {
  public:
-  // rays over the whole sphere, rounded up to whole packets of each half.
+  // rays over the whole sphere, rounded up to whole packets of each of its quarters.
   explicit ShadowProbe(std::size_t rays);
 
-  // Of a plain sample the irradiance that is hidden from its normal; of others the visibility itself,
-  // mirrored below the faces. Points without an origin are taken as open.
-  Shadow at(const RayScene& scene, std::span<const SampleOrigin> origins, const glm::vec3& normal,
-            SampleKind kind) const;
   std::size_t rays() const { return directions_.size(); }
+  std::size_t packets() const { return directions_.packets(); }
+
+  // Fills in which directions are hidden: of a plain sample those below its faces too, of a glossy or
+  // normal-mapped one what lies below its normal is mirrored, as its transfer has it. False if it is nowhere
+  // where anybody could see it.
+  bool look(const RayScene& scene, std::span<const SampleOrigin> origins, const glm::vec3& normal,
+            SampleKind kind, std::span<std::uint16_t> masks) const;
+
+  // The mean square error, over real lights, of showing the mixture of `corners` in place of `truth`,
+  // relative to the light of an open point: of the irradiance, or of what glossy surfaces reflect. Free of
+  // the noise of too few rays on average, for which it may come out a little below 0.
+  double squareError(std::span<const HiddenFrom, 3> corners, const HiddenFrom& truth, SampleKind kind) const;
 
  private:
-  DirectionTable directions_;
-  std::vector<Shadow> irradiance_, visibility_;  // what each direction adds, before the cosine
-};
+  // Harmonics of a direction, scaled so that the square of their sum over what is wrongly hidden is an error.
+  std::span<const float> row(std::size_t direction, bool plain) const;
 
-inline float squaredDifference(const Shadow& a, const Shadow& b) {
-  float sum = 0.0f;
-  for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
-  return sum;
-}
+  DirectionTable directions_;  // two halves of the table with a pattern of their own: errors are products of
+                               // what one and what the other shows
+  GlanceTables glances_;
+  std::vector<float> irradiance_, visibility_;
+};
 
 }  // namespace lambent::baker

@@ -55,8 +55,9 @@ inline std::size_t startOf(std::size_t ray, glm::vec3 direction, std::span<const
   return origin;
 }
 
-// What a direction below the horizons of all origins sees: nothing, or what the mirror image in the plane of
-// the origin dealt to it sees (docs/conventions.md, "Exit kernel").
+// What a direction below the horizon of the origin dealt to it sees: what it sees from another that it is
+// above, and nothing if there is none; or what its mirror image in that origin's plane sees
+// (docs/conventions.md, "Exit kernel"), as everywhere on the face that the origin stands for.
 enum class BelowHorizon { Blocked, Mirrored };
 
 inline glm::vec3 mirroredAbove(glm::vec3 direction, const SampleOrigin& origin) {
@@ -90,7 +91,9 @@ void fillPacket(std::size_t p, std::span<const SampleOrigin> origins, const Orig
   }
   for (std::size_t k = 0; k < kPacketWidth; ++k) {
     const glm::vec3 direction(ray.dir_x[k], ray.dir_y[k], ray.dir_z[k]);
-    const std::size_t origin = startOf(first + k, direction, origins, dealer);
+    const std::size_t origin = below == BelowHorizon::Mirrored
+                                   ? dealer.pick(first + k)
+                                   : startOf(first + k, direction, origins, dealer);
     const SampleOrigin& start = origins[origin];
     ray.org_x[k] = start.position.x;
     ray.org_y[k] = start.position.y;

@@ -10,6 +10,7 @@
 
 #include <embree3/rtcore.h>
 
+#include "baker/transport/folds.hpp"
 #include "baker/transport/ray_packets.hpp"
 
 #if defined(__SSE2__)
@@ -113,7 +114,8 @@ RayScene::~RayScene() = default;
 namespace {
 
 // One Embree geometry of its own buffers for a draw; null if Embree has no memory for it.
-RTCGeometry makeGeometry(RTCDevice device, const GroupGeometry& group, const DrawGeometry& draw) {
+RTCGeometry makeGeometry(RTCDevice device, const GroupGeometry& group, const DrawGeometry& draw,
+                         std::span<const std::uint8_t> folds) {
   RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
   void* vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
                                            sizeof(glm::vec3), draw.vertex_count);
@@ -125,7 +127,9 @@ RTCGeometry makeGeometry(RTCDevice device, const GroupGeometry& group, const Dra
   }
   std::memcpy(vertices, &group.positions[draw.first_vertex], draw.vertex_count * sizeof(glm::vec3));
   for (std::uint32_t t = 0; t < draw.triangle_count; ++t)
-    indices[t] = group.triangles[draw.first_triangle + t] - draw.first_vertex;
+    indices[t] = folds[draw.first_triangle + t] != 0
+                     ? glm::uvec3(0)  // a triangle of no size, which no ray meets
+                     : group.triangles[draw.first_triangle + t] - draw.first_vertex;
   return geometry;
 }
 
@@ -154,13 +158,14 @@ Result<RayScene> RayScene::build(const GroupGeometry& group, const Scene& scene,
   state->scene.reset(rtcNewScene(state->device.get()));
   rtcSetSceneBuildQuality(state->scene.get(), RTC_BUILD_QUALITY_HIGH);
 
+  const std::vector<std::uint8_t> folds = findFolds(group);
   for (std::size_t d = 0; d < group.draws.size(); ++d) {
     const DrawGeometry& draw = group.draws[d];
     const gltf::Material* material =
         draw.material < 0 ? nullptr : &scene.materials[static_cast<std::size_t>(draw.material)];
     if (draw.back || draw.triangle_count == 0) continue;  // the front's triangles stand for both sides
     if (material && material->alpha_mode == gltf::AlphaMode::Blend) continue;
-    RTCGeometry geometry = makeGeometry(state->device.get(), group, draw);
+    RTCGeometry geometry = makeGeometry(state->device.get(), group, draw, folds);
     if (!geometry) return fail("Embree", "has not enough memory for the scene", "bake it in parts");
     if (material && material->alpha_mode == gltf::AlphaMode::Mask) {
       state->masked.push_back(maskedDraw(group, draw, alpha_maps[static_cast<std::size_t>(draw.material)]));
@@ -322,8 +327,8 @@ void RayScene::firstHits(std::span<const RaySegment> rays, std::span<FirstHit> h
   }
 }
 
-float RayScene::backFaceShare(std::span<const SampleOrigin> origins, const glm::mat3& frame,
-                              const DirectionTable& table, std::span<float> shares) const {
+float RayScene::meet(std::span<const SampleOrigin> origins, const glm::mat3& frame,
+                     const DirectionTable& table, std::span<MetShares> shares) const {
   assert(!origins.empty() && shares.size() == origins.size());
   const FlushDenormals flush;
   const OriginDealer dealer(origins);
@@ -331,7 +336,7 @@ float RayScene::backFaceShare(std::span<const SampleOrigin> origins, const glm::
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  std::vector<std::uint32_t> rays(origins.size(), 0), backs(origins.size(), 0);
+  std::vector<std::uint32_t> rays(origins.size(), 0), backs(origins.size(), 0), near(origins.size(), 0);
   std::uint32_t traced = 0, met = 0;
   for (std::size_t p = 0; p < table.packets(); ++p) {
     fillPacket(p, origins, dealer, frame, table, packet.rays.ray, packet.lanes);
@@ -339,19 +344,24 @@ float RayScene::backFaceShare(std::span<const SampleOrigin> origins, const glm::
     rtcIntersect16(packet.lanes.valid.data(), state_->scene.get(), &context, &packet.rays);
     for (std::size_t k = 0; k < kPacketWidth; ++k) {
       if (!packet.lanes.valid[k]) continue;
-      ++rays[packet.lanes.origin[k]];
+      const std::size_t origin = packet.lanes.origin[k];
+      ++rays[origin];
       const RTCHit16& hit = packet.rays.hit;
       ++traced;
-      met += hit.geomID[k] != RTC_INVALID_GEOMETRY_ID;
-      if (hit.geomID[k] == RTC_INVALID_GEOMETRY_ID || state_->surfaces[hit.geomID[k]].double_sided) continue;
+      if (hit.geomID[k] == RTC_INVALID_GEOMETRY_ID) continue;
+      ++met;
       const RTCRay16& ray = packet.rays.ray;
+      near[origin] += ray.tfar[k] < origins[origin].reach;
+      if (state_->surfaces[hit.geomID[k]].double_sided) continue;
       const float along =
           ray.dir_x[k] * hit.Ng_x[k] + ray.dir_y[k] * hit.Ng_y[k] + ray.dir_z[k] * hit.Ng_z[k];
-      backs[packet.lanes.origin[k]] += along > 0.0f;
+      backs[origin] += along > 0.0f;
     }
   }
-  for (std::size_t o = 0; o < origins.size(); ++o)
-    shares[o] = rays[o] == 0 ? 0.0f : static_cast<float>(backs[o]) / static_cast<float>(rays[o]);
+  for (std::size_t o = 0; o < origins.size(); ++o) {
+    const float share = rays[o] == 0 ? 0.0f : 1.0f / static_cast<float>(rays[o]);
+    shares[o] = {share * static_cast<float>(backs[o]), share * static_cast<float>(near[o])};
+  }
   return traced == 0 ? 0.0f : static_cast<float>(met) / static_cast<float>(traced);
 }
 

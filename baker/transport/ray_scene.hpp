@@ -1,7 +1,7 @@
 // Visibility inside one rigid group, by Embree. All rays of one sample go in packets of sixteen sorted
 // directions: measured, that is 1.2 to 2.8 times as fast as single rays or one direction over many samples.
-// Calls are safe from any thread. Surfaces: solid ones and single-sided back faces block; alphaMode MASK
-// blocks where its alpha says so; alphaMode BLEND blocks nothing.
+// Calls are safe from any thread. Surfaces: solid ones and single-sided back faces block, but no folds
+// (folds.hpp); alphaMode MASK blocks where its alpha says so; alphaMode BLEND blocks nothing.
 #pragma once
 
 #include <cstdint>
@@ -44,6 +44,12 @@ struct FirstHit {
   bool any() const { return triangle != kNothing; }
 };
 
+// Of the rays of an origin, the shares whose first hit is the back of a single-sided surface, and whose first
+// hit is nearer than the origin's reach.
+struct MetShares {
+  float back = 0.0f, near = 0.0f;
+};
+
 class RayScene {
  public:
   // `alpha_maps` as loadAlphaMaps gives them. Errors: Embree cannot be set up or runs out of memory.
@@ -74,10 +80,9 @@ class RayScene {
   // way.
   void firstHits(std::span<const RaySegment> rays, std::span<FirstHit> hits) const;
 
-  // Per origin: of its rays, the share whose first hit is the back of a single-sided surface. An origin with
-  // a large share lies inside a body or under something. Returns the share of all rays that met anything.
-  float backFaceShare(std::span<const SampleOrigin> origins, const glm::mat3& frame,
-                      const DirectionTable& table, std::span<float> shares) const;
+  // Per origin: what its rays met. Returns the share of all rays that met anything.
+  float meet(std::span<const SampleOrigin> origins, const glm::mat3& frame, const DirectionTable& table,
+             std::span<MetShares> shares) const;
 
  private:
   struct State;

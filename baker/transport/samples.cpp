@@ -115,6 +115,8 @@ void placeSamples(const GroupGeometry& geometry, SampleSet& samples) {
 // --- origins
 // ---------------------------------------------------------------------------------------------------
 
+constexpr float kLongestReach = 0.01f;  // share of the group's diagonal
+
 float cornerAngle(glm::vec3 corner, glm::vec3 a, glm::vec3 b) {
   const glm::vec3 u = a - corner, v = b - corner;
   return std::atan2(glm::length(glm::cross(u, v)), glm::dot(u, v));
@@ -136,6 +138,14 @@ void findOrigins(const GroupGeometry& geometry, SampleSet& samples) {
   std::stable_sort(corners.begin(), corners.end(),
                    [](const Corner& a, const Corner& b) { return a.sample < b.sample; });
 
+  std::vector<std::uint8_t> faces_up(samples.size(), 0);  // any face of the sample
+  for (const Corner& corner : corners) {
+    const glm::uvec3 triangle = geometry.triangles[corner.triangle];
+    const glm::vec3 p = geometry.positions[triangle.x];
+    const glm::vec3 area_normal =
+        glm::cross(geometry.positions[triangle.y] - p, geometry.positions[triangle.z] - p);
+    if (glm::dot(area_normal, samples.normals[corner.sample]) > 0.0f) faces_up[corner.sample] = 1;
+  }
   for (const Corner& corner : corners) {
     const glm::uvec3 triangle = geometry.triangles[corner.triangle];
     const int c = static_cast<int>(corner.corner);
@@ -147,8 +157,12 @@ void findOrigins(const GroupGeometry& geometry, SampleSet& samples) {
     const float angle = cornerAngle(p, q, r);
     if (!(twice_area > 0.0f) || !(angle > 0.0f)) continue;  // a degenerate face has no inside to stand on
     const glm::vec3 normal = area_normal / twice_area;
+    if (faces_up[corner.sample] != 0 && !(glm::dot(normal, samples.normals[corner.sample]) > 0.0f)) continue;
     const glm::vec3 pulled = p + kPullIntoFace * ((p + q + r) / 3.0f - p);
-    samples.origins.push_back({pulled + standOff(p, std::sqrt(0.5f * twice_area)) * normal, normal, angle});
+    samples.origins.push_back({.position = pulled + standOff(p, std::sqrt(0.5f * twice_area)) * normal,
+                               .geometric_normal = normal,
+                               .weight = angle,
+                               .reach = reachOf(std::sqrt(twice_area), geometry)});
     ++samples.origin_offsets[corner.sample + 1];
   }
   std::partial_sum(samples.origin_offsets.begin(), samples.origin_offsets.end(),
@@ -168,6 +182,10 @@ void findOrigins(const GroupGeometry& geometry, SampleSet& samples) {
 float standOff(const glm::vec3& position, float face_size) {
   const float magnitude = std::max({std::abs(position.x), std::abs(position.y), std::abs(position.z)});
   return 1e-4f * face_size + 4e-6f * magnitude;
+}
+
+float reachOf(float face_size, const GroupGeometry& geometry) {
+  return std::min(face_size, kLongestReach * glm::distance(geometry.bounds_min, geometry.bounds_max));
 }
 
 SampleSet buildSamples(const GroupGeometry& geometry) {

@@ -4,7 +4,8 @@
 // vertices first use them: Draco walks over the mesh, so neighbours in memory are neighbours on the surface
 // and rows code to nearly nothing. Rays of a sample start from several origins, one for each face around the
 // vertex: pulled a little into the face and offset along its geometric normal. At concave edges anything else
-// sees through walls.
+// sees through walls. Faces that turn their back to the vertex' normal, folds of a scanned skin, have none,
+// unless all do: what they see is seen by nobody.
 #pragma once
 
 #include <cstdint>
@@ -26,6 +27,9 @@ struct SampleOrigin {
   glm::vec3 position;          // as GroupGeometry::positions
   glm::vec3 geometric_normal;  // unit; rays below it are blocked
   float weight;                // the corner's angle; origins of one sample sum to 1
+  // As far as the face is wide, but never far of the whole: what hides all of the sky from nearer than this
+  // lies on the face, and not all over it.
+  float reach = 0.0f;
 };
 
 struct SampleCell {
@@ -55,6 +59,9 @@ struct SampleSet {
 // How far an origin stands off its face: what float rounding of positions and rays needs, and a little of the
 // face's size (metres, of an edge); never a fixed length.
 float standOff(const glm::vec3& position, float face_size);
+
+// SampleOrigin::reach.
+float reachOf(float face_size, const GroupGeometry& geometry);
 
 SampleSet buildSamples(const GroupGeometry& geometry);
 

@@ -12,15 +12,10 @@
 #include "baker/transport/direction_table.hpp"
 #include "baker/transport/ray_scene.hpp"
 #include "baker/transport/samples.hpp"
+#include "baker/transport/seen_origins.hpp"
 #include "baker/transport/surface_colors.hpp"
 
 namespace lambent::baker {
-
-// A few rays to see whether an origin lies inside something, or much is in the way.
-struct GlanceTables {
-  DirectionTable glance, look;
-  GlanceTables();
-};
 
 class SampleLook {
  public:
@@ -34,10 +29,10 @@ class SampleLook {
   std::uint32_t look(const DirectionTable& table, bool wants_hits,
                      BelowHorizon below = BelowHorizon::Blocked);
 
-  bool valid() const { return valid_; }      // false: lies inside something, or has no face
-  bool closely() const { return closely_; }  // much is in the way: to be looked at with twice the rays
+  bool valid() const { return seen_.valid; }      // false: lies inside or under something, or has no face
+  bool closely() const { return seen_.closely; }  // much is in the way: to be looked at with twice the rays
   const glm::dmat3& frame() const { return frame_; }  // group_from_local
-  std::span<const SampleOrigin> origins() const { return origins_; }
+  std::span<const SampleOrigin> origins() const { return seen_.origins; }
   // Bit k of blocked()[p]: ray 16 p + k.
   std::span<const std::uint16_t> blocked() const { return blocked_; }
   std::span<const RayHit> hits() const { return hits_; }
@@ -46,14 +41,12 @@ class SampleLook {
   void keepHits(RangeHits& out) const;
 
  private:
-  bool outsideOrigins(std::size_t sample);
-
   const SampleSet& samples_;
   const RayScene& rays_;
   const GlanceTables& glances_;
   glm::dmat3 frame_{1.0};
-  bool valid_ = false, closely_ = false, mostly_blocked_ = false;
-  std::vector<SampleOrigin> origins_;
+  bool mostly_blocked_ = false;
+  SeenOrigins seen_;
   std::vector<std::uint16_t> blocked_;
   std::vector<RayHit> hits_;
 };

@@ -226,7 +226,7 @@ TEST(MatrixCoding, FindsTheLeadingComponentsOfLongMatrices) {
   const Points points = pointsOf(bouncedMatrices(700, 17, 1e-4f), kBounced.size());
   double left_out = -1.0;
   const double energy = double{points.squaredNorm()} / 700.0;
-  const Spectrum leading = leadingSpectrum(points, 1e-3 * energy, left_out);
+  const Spectrum leading = leadingSpectrum(points, 1e-3 * energy, 128, left_out);
   ASSERT_GE(leading.variances.size(), 6);
   ASSERT_LT(leading.variances.size(), static_cast<Eigen::Index>(kBounced.size()));
   EXPECT_NEAR((leading.variances.sum() + left_out) / energy, 1.0, 1e-4);
@@ -236,6 +236,20 @@ TEST(MatrixCoding, FindsTheLeadingComponentsOfLongMatrices) {
   const Eigen::MatrixXf best = leading.axes.leftCols(6).cast<float>();
   const Points rest = points - best * (best.transpose() * points);
   EXPECT_LT(double{rest.squaredNorm()} / 700.0, 1e-3 * energy) << "six parts were mixed";
+}
+
+TEST(MatrixCoding, KeepsABoundWithoutLeadingComponentsWhereAllOfThemMayBeTaken) {
+  bundle::TransferShape grey = kBounced;
+  grey.full_channels = 1;
+  std::mt19937 random(23);
+  std::normal_distribution<float> normal;
+  std::vector<float> vectors(600 * grey.size());
+  for (float& value : vectors) value = normal(random);
+  const auto error = [&](std::uint32_t most) {
+    return codeTransfer(vectors, 600, grey, {.bound = 0.1f, .clusters = 1, .most_components = most}).error;
+  };
+  EXPECT_GT(error(kUsualComponents), 0.5f);
+  EXPECT_LE(error(kAllComponents), 0.1f);
 }
 
 TEST(MatrixCoding, StaysFiniteAndTheSameOnDegenerateInput) {

@@ -224,9 +224,8 @@ TEST(Glossy, LimitedKernelsSeeAClosedSkyAboveAndBelow) {
   }
 }
 
-TEST(Glossy, LimitedKernelsSeeAWallInFrontOfHalfTheSky) {
-  // A black wall stands over all directions with x < 0, and so does its image below.
-  Scene scene = floorOf(glossy(1.0f, 0.5f));
+// A black wall that stands over all directions with x < 0.
+void addWall(Scene& scene) {
   bundle::MeshData wall;
   wall.positions = {{0, -1, -500.0f}, {0, 500.0f, -500.0f}, {0, 500.0f, 500.0f}, {0, -1, 500.0f}};
   wall.normals.assign(4, {1, 0, 0});
@@ -239,23 +238,64 @@ TEST(Glossy, LimitedKernelsSeeAWallInFrontOfHalfTheSky) {
   black.base_color = glm::vec4(0, 0, 0, 1);
   black.double_sided = true;
   testing::paint(scene, 1, black);
-  const glm::vec3 eye = kPlace + glm::vec3(1.0f, 0.6f, 0.2f);
+}
+
+// Radiance of the sun's five bands that a kernel gets from the directions that `open` admits.
+template <typename Open>
+double received(const sh::LightVector& kernel, const Open& open) {
   const auto light = spec::loadDistantLights({kSun})->lightVector().truncated(5);
-  const sh::LightVector kernel = kernelOf(glossy(1.0f, 0.5f), glm::normalize(eye - kPlace), 5);
   constexpr int kRows = 400, kColumns = 800;
-  double expected = 0.0;
+  double sum = 0.0;
   for (int r = 0; r < kRows; ++r)
     for (int c = 0; c < kColumns; ++c) {
       const glm::vec3 s = sphereDirection(
           {(static_cast<float>(r) + 0.5f) / kRows, (static_cast<float>(c) + 0.5f) / kColumns});
-      if (s.x > 0.0f)
-        expected += double{kernel.evaluate(s).g} * double{light.evaluate(s).g} * 4.0 * std::numbers::pi /
-                    (kRows * kColumns);
+      if (open(s))
+        sum += double{kernel.evaluate(s).g} * double{light.evaluate(s).g} * 4.0 * std::numbers::pi /
+               (kRows * kColumns);
     }
+  return sum;
+}
+
+TEST(Glossy, LimitedKernelsSeeAWallInFrontOfHalfTheSky) {
+  // And its image below.
+  Scene scene = floorOf(glossy(1.0f, 0.5f));
+  addWall(scene);
+  const glm::vec3 eye = kPlace + glm::vec3(1.0f, 0.6f, 0.2f);
+  const double expected = received(kernelOf(glossy(1.0f, 0.5f), glm::normalize(eye - kPlace), 5),
+                                   [](const glm::vec3& s) { return s.x > 0.0f; });
   const auto seen = measured(scene, eye, kPlace, {kSun}, limited(1024, 5, 5));
   // Rays start a little above the place, and the floor's kernel is good to 0.1 %.
   EXPECT_NEAR(seen.mean.g, expected, 4.0 * seen.error.g + 4e-3 * std::abs(expected));
   EXPECT_LT(seen.error.g, 0.02 * std::abs(expected));
+}
+
+TEST(Glossy, LimitedKernelsMirrorWhatLiesBelowSmoothNormalsInThem) {
+  // As the surfaces of a bundle do. Above a normal that leans away from the wall all is open that does not
+  // point to the wall, what dips below the floor too: its mirror image in the floor does not, either.
+  for (const float lean : {0.4f, -0.4f}) {
+    Scene scene = floorOf(glossy(1.0f, 0.5f));
+    const glm::vec3 normal = glm::normalize(glm::vec3(lean, 1.0f, 0.0f));
+    for (glm::vec3& n : scene.meshes[0].primitives[0].mesh.normals) n = normal;
+    addWall(scene);
+    // Near where the sun is mirrored.
+    const glm::vec3 eye = kPlace + glm::vec3(0.4f, 1.0f, 1.0f);
+    SurfacePoint point;
+    point.shading = normal;
+    point.glossy = true;
+    point.reflector.world_from_local = frameAbout(normal);
+    point.reflector.view = point.reflector.toLocal(glm::normalize(eye - kPlace));
+    point.reflector.f0 = glm::vec3(glossy(1.0f, 0.5f).base_color);
+    point.reflector.f90 = 1.0f;
+    point.reflector.alpha = ggxAlpha(0.5f, 0.0f);
+    const double expected = received(exitKernel(point, 5, 1, 1 << 16), [&](const glm::vec3& s) {
+      const float height = glm::dot(s, normal);
+      return (height < 0.0f ? s - 2.0f * height * normal : s).x > 0.0f;
+    });
+    const auto seen = measured(scene, eye, kPlace, {kSun}, limited(1024, 5, 5));
+    EXPECT_NEAR(seen.mean.g, expected, 4.0 * seen.error.g + 4e-3 * std::abs(expected)) << lean;
+    EXPECT_LT(seen.error.g, 0.05 * std::abs(expected)) << lean;
+  }
 }
 
 TEST(Glossy, LimitedKernelsTakePunctualLightsByTheirDirection) {

@@ -69,18 +69,18 @@ TEST(RayScene, SeesBacksOnlyFromInsideASolid) {
   Scene scene = sceneOf({box({0, 0, 0}, {2, 2, 2}, 2)});
   const DirectionTable table = cosineTable(64);
   const SampleOrigin inside{{0, 0, 0}, {0, 1, 0}, 1.0f}, outside{{0, 1.001f, 0}, {0, 1, 0}, 1.0f};
-  float share = 0.0f;
+  MetShares met;
   {
     const Transport t(scene);
-    t.rays.backFaceShare(std::span(&inside, 1), upright(), table, std::span(&share, 1));
-    EXPECT_EQ(share, 1.0f);
-    t.rays.backFaceShare(std::span(&outside, 1), upright(), table, std::span(&share, 1));
-    EXPECT_EQ(share, 0.0f);
+    t.rays.meet(std::span(&inside, 1), upright(), table, std::span(&met, 1));
+    EXPECT_EQ(met.back, 1.0f);
+    t.rays.meet(std::span(&outside, 1), upright(), table, std::span(&met, 1));
+    EXPECT_EQ(met.back, 0.0f);
   }
   scene.materials[0].double_sided = true;  // then there is no back
   const Transport t(scene);
-  t.rays.backFaceShare(std::span(&inside, 1), upright(), table, std::span(&share, 1));
-  EXPECT_EQ(share, 0.0f);
+  t.rays.meet(std::span(&inside, 1), upright(), table, std::span(&met, 1));
+  EXPECT_EQ(met.back, 0.0f);
 }
 
 TEST(RayScene, TellsWhatBlockedRaysMetInBothWaysAlike) {
