@@ -17,9 +17,9 @@ struct QualityRow {
   std::size_t refine_added;
 };
 constexpr std::array kQualities = {
-    QualityRow{"draft", 256, 0.01f, 0.03f, 0.04f, 1.2, 10'000},
-    QualityRow{"standard", 1024, 0.003f, 0.015f, 0.02f, 1.5, 20'000},
-    QualityRow{"high", 4096, 0.001f, 0.005f, 0.01f, 4.0, 60'000},
+    QualityRow{"draft", 256, 0.01f, 0.03f, 0.02f, 1.2, 10'000},
+    QualityRow{"standard", 1024, 0.003f, 0.015f, 0.014f, 1.5, 20'000},
+    QualityRow{"high", 4096, 0.001f, 0.005f, 0.007f, 4.0, 60'000},
 };
 
 const QualityRow& row(Quality quality) {

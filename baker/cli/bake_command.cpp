@@ -332,7 +332,7 @@ void addRefineOption(CLI::App& command, BakeOptions& options) {
                                                    : std::strtof(text.c_str(), nullptr);
           },
           "Split edges where shadows change, until interpolation errs by less than E, relative RMS; auto "
-          "(default): 0.04, 0.02 or 0.01 by quality; off: keep the vertices as they are")
+          "(default): 0.02, 0.014 or 0.007 by quality; off: keep the vertices as they are")
       ->check(CLI::Validator(
           [](const std::string& text) {
             const std::optional<float> bound = spec::parseNumber(text);

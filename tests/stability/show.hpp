@@ -24,7 +24,7 @@ namespace lambent::testing {
 class Show {
  public:
   Show(const assets::Scene& source, const std::vector<spec::Light>& lights, int light_samples = 0,
-       std::optional<int> bounces = {})
+       std::optional<int> bounces = {}, float error_bound = 0.0f)
       : environment(*lighting::Environment::create(lights)) {
     const auto folder =
         std::filesystem::path(::testing::TempDir()) /
@@ -38,6 +38,7 @@ class Show {
     options.quality = baker::Quality::Draft;
     options.light_samples = light_samples;
     if (bounces) options.bounces = *bounces;
+    options.error_bound = error_bound;
     baker::Progress progress;
     const auto report = baker::bake(*scene, options, bundle, progress, {});
     EXPECT_TRUE(report) << report.error().line();
