@@ -24,10 +24,11 @@ class EndToEndBake : public ProgramTest {
     return options;
   }
 
-  std::vector<DecodedDraw> bakeAndDecode(const baker::Scene& scene) const {
+  std::vector<DecodedDraw> bakeAndDecode(const baker::Scene& scene,
+                                         const baker::BakeOptions& settings = options()) const {
     const std::filesystem::path path = folder / "scene.lmb.glb";
     baker::Progress progress;
-    const auto report = baker::bake(scene, options(), path, progress, {});
+    const auto report = baker::bake(scene, settings, path, progress, {});
     EXPECT_TRUE(report) << report.error().line();
     if (!report) return {};
     auto draws = decodeBundle(path);
