@@ -378,6 +378,10 @@ Result<RefineReport> refineMeshes(const Scene& scene, const std::vector<RigidGro
       static_cast<std::size_t>(options.most_growth * static_cast<double>(report.vertices_before)) +
       options.most_added;
   const std::size_t most = std::min(grown, options.most_vertices);
+  if (report.vertices_before >= most) {  // no look is worth its rays where nothing may be split
+    report.vertices_after = report.vertices_before;
+    return report;
+  }
   const ShadowProbe probe(options.rays);
   std::vector<GroupRefiner> refiners;
   for (std::size_t g = 0; g < groups.size(); ++g) refiners.emplace_back(probe);
