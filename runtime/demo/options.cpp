@@ -111,10 +111,9 @@ void declare(CLI::App& app, Words& words) {
       ->type_name("N")
       ->capture_default_str()
       ->check(CLI::Range(1u, 1'000'000u).description(""));
-  app.add_option(
-         "--max-memory", words.max_memory,
-         "GPU memory for the scenes, in bytes or like 200MB; what the camera\nsees large comes first (default: no "
-         "limit)")
+  app.add_option("--max-memory", words.max_memory,
+                 "GPU memory for the scenes, in bytes or like 200MB; what the camera\nsees large comes first "
+                 "(default: no limit)")
       ->type_name("BYTES")
       ->transform(CLI::AsSizeValue(/*kb_is_1000=*/false));
   app.add_flag("--json", words.json, "Report on stdout: times, counts, bytes resident");
