@@ -1,15 +1,13 @@
 #include "baker/effects/diffuse/direct.hpp"
 
 #include <algorithm>
-#include <atomic>
-#include <numeric>
 #include <utility>
 
 #include <glm/geometric.hpp>
 
 #include "baker/effects/diffuse/field_bytes.hpp"
 #include "baker/effects/diffuse/fill.hpp"
-#include "baker/effects/diffuse/hit_bytes.hpp"
+#include "baker/effects/diffuse/traced_ranges.hpp"
 #include "baker/transport/frame.hpp"
 #include "runtime/sh/rotation.hpp"
 
@@ -161,66 +159,41 @@ std::optional<DirectResult> bakeDirect(const DirectPass& pass, const DiffuseScen
                       .mapped = makeField(mapped, settings.order, kIncident, pass.channels(), pass.columns()),
                       .looks = {std::vector<std::uint8_t>(count, 0), std::vector<std::uint8_t>(count, 0)},
                       .hits = HitStore(own, settings.keep_hits ? settings.hit_memory : 0)};
-  const std::size_t ranges = (own + kSamplesPerRange - 1) / kSamplesPerRange;
-  std::vector<std::uint64_t> rays(ranges, 0);
-  std::vector<std::vector<std::byte>> unpainted(ranges);  // hits, until they are written
-  std::atomic<std::uint64_t> traced = 0;
-  const auto offer = [&](std::size_t range, RangeHits&& hits) {
-    paintHits(scene.geometry, scene.samples, scene.colors, hits);
-    result.hits.offer(range, std::move(hits));
-  };
+  TracedRanges ranges(scene, own, settings.keep_hits, keep.cache != nullptr, result.hits);
   const bool grey_lights = scene.colors.greyEmission();
   const auto mappedOf = [&](std::size_t sample) { return std::max(sample, first_mapped) - first_mapped; };
-  const KeptRanges kept = keptRanges(
-      keep, own, kSamplesPerRange, stop,
-      {.compute =
-           [&](std::size_t begin, std::size_t end) {
-             const std::size_t range = begin / kSamplesPerRange;
-             RangeHits hits;
-             rays[range] = pass.bake(begin, end, stop, result.field, result.mapped, result.looks, hits);
-             traced += rays[range];
-             progress.add(end - begin);
-             if (!settings.keep_hits || stop.stop_requested()) return;
-             if (keep.cache) {
-               ByteWriter bytes;
-               writeHits(hits, bytes);
-               unpainted[range] = bytes.take();
-             }
-             offer(range, std::move(hits));
-           },
-       .pack =
-           [&](std::size_t begin, std::size_t end, ByteWriter& out) {
-             const std::size_t range = begin / kSamplesPerRange;
-             out.add(rays[range]);
-             writeStretch(result.looks.valid, begin, end, out);
-             writeStretch(result.looks.closely, begin, end, out);
-             writeDirect(result.field, grey_lights, begin, end, out);
-             writeDirect(result.mapped, grey_lights, mappedOf(begin), mappedOf(end), out);
-             // What had no room in memory is traced again when it is asked for, now and then.
-             const bool with_hits = settings.keep_hits && result.hits.range(range).kept;
-             out.add(with_hits);
-             const std::vector<std::byte> hits = std::exchange(unpainted[range], {});
-             if (with_hits) out.addBytes(hits);
-           },
-       .unpack =
-           [&](std::size_t begin, std::size_t end, ByteReader& in) {
-             const std::size_t range = begin / kSamplesPerRange;
-             bool with_hits = false;
-             RangeHits hits;
-             if (!in.read(rays[range]) || !readStretch(in, begin, end, result.looks.valid) ||
-                 !readStretch(in, begin, end, result.looks.closely) ||
-                 !readDirect(in, grey_lights, begin, end, result.field) ||
-                 !readDirect(in, grey_lights, mappedOf(begin), mappedOf(end), result.mapped) ||
-                 !in.read(with_hits) ||
-                 (with_hits && !readHits(in, end - begin, scene.geometry.triangles.size(), hits)))
-               return false;
-             if (with_hits) offer(range, std::move(hits));
-             progress.add(end - begin);
-             return true;
-           }});
+  const KeptRanges kept =
+      keptRanges(keep, own, kSamplesPerRange, stop,
+                 {.compute =
+                      [&](std::size_t begin, std::size_t end) {
+                        RangeHits hits;
+                        const std::uint64_t rays =
+                            pass.bake(begin, end, stop, result.field, result.mapped, result.looks, hits);
+                        ranges.add(begin / kSamplesPerRange, rays, std::move(hits), stop);
+                        progress.add(end - begin);
+                      },
+                  .pack =
+                      [&](std::size_t begin, std::size_t end, ByteWriter& out) {
+                        writeStretch(result.looks.valid, begin, end, out);
+                        writeStretch(result.looks.closely, begin, end, out);
+                        writeDirect(result.field, grey_lights, begin, end, out);
+                        writeDirect(result.mapped, grey_lights, mappedOf(begin), mappedOf(end), out);
+                        ranges.pack(begin / kSamplesPerRange, out);
+                      },
+                  .unpack =
+                      [&](std::size_t begin, std::size_t end, ByteReader& in) {
+                        if (!readStretch(in, begin, end, result.looks.valid) ||
+                            !readStretch(in, begin, end, result.looks.closely) ||
+                            !readDirect(in, grey_lights, begin, end, result.field) ||
+                            !readDirect(in, grey_lights, mappedOf(begin), mappedOf(end), result.mapped) ||
+                            !ranges.unpack(begin / kSamplesPerRange, end - begin, in))
+                          return false;
+                        progress.add(end - begin);
+                        return true;
+                      }});
   if (!kept.finished) return std::nullopt;
-  result.field.rays = traced;
-  result.rays_kept = std::accumulate(rays.begin(), rays.end(), std::uint64_t{0}) - traced;
+  result.field.rays = ranges.raysTraced();
+  result.rays_kept = ranges.raysUnpacked();
   const auto edges = sampleEdges(scene.geometry, scene.samples);
   result.field.filled_samples = fillFromNeighbours(edges, result.looks.valid, result.field);
   fillStretchFromNeighbours(edges, result.looks.valid, first_mapped, result.mapped.vectorSize(),

@@ -1,15 +1,13 @@
 #include "baker/effects/glossy/glossy_direct.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cassert>
-#include <numeric>
 #include <utility>
 
 #include "baker/effects/diffuse/field_bytes.hpp"
 #include "baker/effects/diffuse/fill.hpp"
-#include "baker/effects/diffuse/hit_bytes.hpp"
 #include "baker/effects/diffuse/sample_look.hpp"
+#include "baker/effects/diffuse/traced_ranges.hpp"
 #include "baker/work/parallel.hpp"
 #include "runtime/sh/basis.hpp"
 #include "runtime/sh/rotation.hpp"
@@ -182,14 +180,7 @@ std::optional<GlossyDirect> bakeGlossyDirect(const GlossyPass& pass, std::size_t
   field.visibility.resize(count * field.visibilitySize());
   field.lights_shadowed.resize(count * field.channels * outputs * lights);
   progress.begin("glossy shadows", count, "samples");
-  const std::size_t ranges = (count + kSamplesPerRange - 1) / kSamplesPerRange;
-  std::vector<std::uint64_t> rays(ranges, 0);
-  std::vector<std::vector<std::byte>> unpainted(ranges);  // hits, until they are written
-  std::atomic<std::uint64_t> traced = 0;
-  const auto offer = [&](std::size_t range, RangeHits&& hits) {
-    paintHits(pass.scene().geometry, samples, pass.scene().colors, hits);
-    result.hits.offer(range, std::move(hits));
-  };
+  TracedRanges ranges(pass.scene(), count, keep_hits, keep.cache != nullptr, result.hits);
   const std::size_t first = pass.first(), seen = field.visibilitySize();
   // Of grey lamps the first channel stands for all (field_bytes.hpp).
   const std::size_t channel = outputs * lights, per_sample = field.channels * channel,
@@ -198,39 +189,22 @@ std::optional<GlossyDirect> bakeGlossyDirect(const GlossyPass& pass, std::size_t
       keep, count, kSamplesPerRange, stop,
       {.compute =
            [&](std::size_t begin, std::size_t end) {
-             const std::size_t range = begin / kSamplesPerRange;
              RangeHits hits;
-             rays[range] = pass.bake(begin, end, stop, field, direct.looks, hits);
-             traced += rays[range];
+             const std::uint64_t rays = pass.bake(begin, end, stop, field, direct.looks, hits);
+             ranges.add(begin / kSamplesPerRange, rays, std::move(hits), stop);
              progress.add(end - begin);
-             if (!keep_hits || stop.stop_requested()) return;
-             if (keep.cache) {
-               ByteWriter bytes;
-               writeHits(hits, bytes);
-               unpainted[range] = bytes.take();
-             }
-             offer(range, std::move(hits));
            },
        .pack =
            [&](std::size_t begin, std::size_t end, ByteWriter& out) {
-             const std::size_t range = begin / kSamplesPerRange;
-             out.add(rays[range]);
              writeStretch(direct.looks.valid, first + begin, first + end, out);
              writeStretch(direct.looks.closely, first + begin, first + end, out);
              writeStretch(field.visibility, begin * seen, end * seen, out);
              for (std::size_t s = begin; s < end; ++s)
                writeStretch(field.lights_shadowed, s * per_sample, s * per_sample + kept_lights, out);
-             const bool with_hits = keep_hits && result.hits.range(range).kept;
-             out.add(with_hits);
-             const std::vector<std::byte> hits = std::exchange(unpainted[range], {});
-             if (with_hits) out.addBytes(hits);
+             ranges.pack(begin / kSamplesPerRange, out);
            },
        .unpack =
            [&](std::size_t begin, std::size_t end, ByteReader& in) {
-             const std::size_t range = begin / kSamplesPerRange;
-             bool with_hits = false;
-             RangeHits hits;
-             in.read(rays[range]);
              readStretch(in, first + begin, first + end, direct.looks.valid);
              readStretch(in, first + begin, first + end, direct.looks.closely);
              readStretch(in, begin * seen, end * seen, field.visibility);
@@ -240,16 +214,13 @@ std::optional<GlossyDirect> bakeGlossyDirect(const GlossyPass& pass, std::size_t
                for (std::size_t from = at + kept_lights; from < at + per_sample; ++from)
                  field.lights_shadowed[from] = field.lights_shadowed[from - kept_lights];
              }
-             if (!in.read(with_hits) ||
-                 (with_hits && !readHits(in, end - begin, pass.scene().geometry.triangles.size(), hits)))
-               return false;
-             if (with_hits) offer(range, std::move(hits));
+             if (!ranges.unpack(begin / kSamplesPerRange, end - begin, in)) return false;
              progress.add(end - begin);
              return true;
            }});
   if (!kept.finished) return std::nullopt;
-  result.rays = traced;
-  result.rays_kept = std::accumulate(rays.begin(), rays.end(), std::uint64_t{0}) - traced;
+  result.rays = ranges.raysTraced();
+  result.rays_kept = ranges.raysUnpacked();
   const auto first_valid = direct.looks.valid.begin() + static_cast<std::ptrdiff_t>(pass.first());
   if (std::find(first_valid, direct.looks.valid.end(), std::uint8_t{0}) != direct.looks.valid.end()) {
     const auto edges = sampleEdges(pass.scene().geometry, samples);

@@ -1,0 +1,60 @@
+#include "baker/effects/diffuse/traced_ranges.hpp"
+
+#include <numeric>
+#include <utility>
+
+#include "baker/effects/diffuse/hit_bytes.hpp"
+#include "baker/effects/diffuse/sample_look.hpp"
+
+namespace lambent::baker {
+
+TracedRanges::TracedRanges(const DiffuseScene& scene, std::size_t samples, bool keep_hits, bool packed,
+                           HitStore& store)
+    : scene_(scene),
+      store_(store),
+      keep_hits_(keep_hits),
+      packed_(packed),
+      rays_((samples + kSamplesPerRange - 1) / kSamplesPerRange, 0),
+      unpainted_(rays_.size()) {}
+
+void TracedRanges::offer(std::size_t range, RangeHits&& hits) {
+  paintHits(scene_.geometry, scene_.samples, scene_.colors, hits);
+  store_.offer(range, std::move(hits));
+}
+
+void TracedRanges::add(std::size_t range, std::uint64_t rays, RangeHits&& hits, const std::stop_token& stop) {
+  rays_[range] = rays;
+  traced_ += rays;
+  if (!keep_hits_ || stop.stop_requested()) return;
+  if (packed_) {
+    ByteWriter bytes;
+    writeHits(hits, bytes);
+    unpainted_[range] = bytes.take();
+  }
+  offer(range, std::move(hits));
+}
+
+void TracedRanges::pack(std::size_t range, ByteWriter& out) {
+  out.add(rays_[range]);
+  // What had no room in memory is traced again when it is asked for, now and then.
+  const bool with_hits = keep_hits_ && store_.range(range).kept;
+  out.add(with_hits);
+  const std::vector<std::byte> hits = std::exchange(unpainted_[range], {});
+  if (with_hits) out.addBytes(hits);
+}
+
+bool TracedRanges::unpack(std::size_t range, std::size_t samples, ByteReader& in) {
+  bool with_hits = false;
+  RangeHits hits;
+  if (!in.read(rays_[range]) || !in.read(with_hits) ||
+      (with_hits && !readHits(in, samples, scene_.geometry.triangles.size(), hits)))
+    return false;
+  if (with_hits) offer(range, std::move(hits));
+  return true;
+}
+
+std::uint64_t TracedRanges::raysUnpacked() const {
+  return std::accumulate(rays_.begin(), rays_.end(), std::uint64_t{0}) - traced_;
+}
+
+}  // namespace lambent::baker
