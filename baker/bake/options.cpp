@@ -15,11 +15,12 @@ struct QualityRow {
   float error_bound, glossy_error_bound, refine_bound;
   double refine_growth;
   std::size_t refine_added;
+  bool fits_glossy;
 };
 constexpr std::array kQualities = {
-    QualityRow{"draft", 256, 0.01f, 0.03f, 0.02f, 1.2, 10'000},
-    QualityRow{"standard", 1024, 0.003f, 0.015f, 0.014f, 1.5, 20'000},
-    QualityRow{"high", 4096, 0.001f, 0.005f, 0.007f, 4.0, 60'000},
+    QualityRow{"draft", 256, 0.01f, 0.03f, 0.02f, 1.2, 10'000, false},
+    QualityRow{"standard", 1024, 0.003f, 0.015f, 0.014f, 1.5, 20'000, true},
+    QualityRow{"high", 4096, 0.001f, 0.005f, 0.007f, 4.0, 60'000, true},
 };
 
 const QualityRow& row(Quality quality) {
@@ -46,6 +47,14 @@ float BakeOptions::effectiveGlossyErrorBound() const {
 
 float BakeOptions::effectiveRefineBound() const {
   return refine_bound >= 0.0f ? refine_bound : row(quality).refine_bound;
+}
+
+bool BakeOptions::fitsMatte() const {
+  return fit.value_or(false);
+}
+
+bool BakeOptions::fitsGlossy() const {
+  return fit.value_or(row(quality).fits_glossy);
 }
 
 double BakeOptions::refineGrowth() const {
@@ -78,6 +87,9 @@ std::map<std::string, std::string> BakeOptions::settings() const {
                : fmt::format("{}x{}x{}", neighborhood_grid.x, neighborhood_grid.y, neighborhood_grid.z)},
           {"maxEdge", fmt::format("{}", max_edge_m)},
           {"refineBound", fmt::format("{}", effectiveRefineBound())},
+          {"fit", fitsMatte()    ? "on"
+                  : fitsGlossy() ? "glossy"
+                                 : "off"},
           {"volumeGrid", fmt::format("{}x{}x{}", volume_grid.x, volume_grid.y, volume_grid.z)},
           {"effects", effects}};
 }
