@@ -22,7 +22,7 @@ struct MeshData {
   // By which normals count where they are interpolated, above 0 and at most 1; empty: all 1. The mean of two
   // normals is shorter than they are, and a vertex that splits an edge keeps that: else the two halves of the
   // edge would turn from one normal to the other in another way than the whole did.
-  std::vector<float> normal_weights;
+  std::vector<float> normal_weights = {};
   std::vector<glm::vec2> texcoords0;   // may be empty
   std::vector<glm::vec2> texcoords1;   // may be empty
   std::vector<glm::vec4> colors;       // linear, 0..1; may be empty
