@@ -1,8 +1,8 @@
 // Pictures in and out of files. Read: light images (.hdr Radiance RGBE, .exr OpenEXR scanline or tiled, half
 // or float) and our own pictures back. Written: PNG (8 bits, as given: tone mapping and sRGB come before),
-// linear EXR (float32 RGBA), Radiance. Row 0 is the top. Values are linear Rec.709. Files are written whole
-// or not at all. Errors name the file and say whether it is missing, of another type, truncated, damaged or
-// absurdly large; nothing throws.
+// linear EXR (float32 RGBA, depths), Radiance. Row 0 is the top. Values are linear Rec.709. Files are written
+// whole or not at all. Errors name the file and say whether it is missing, of another type, truncated,
+// damaged or absurdly large; nothing throws.
 #pragma once
 
 #include <cstdint>

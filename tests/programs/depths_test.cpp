@@ -14,7 +14,7 @@ namespace {
 using testing::Outcome;
 
 // All around it something is seen at nearly the same distance (2 %): one surface, and not edge on, where the
-// rounding of positions (14 bits or so of the scene's size) would move depths by far more than itself.
+// rounding of positions (16 bits over a group) would move depths by far more than itself.
 bool isInsideASurface(const spec::RgbaImage& image, std::size_t pixel) {
   const std::size_t x = pixel % image.width, y = pixel / image.width;
   if (x == 0 || y == 0 || x + 1 == image.width || y + 1 == image.height) return false;
