@@ -3,7 +3,8 @@
 #   bench/glossy_errors.sh [-o DIR] [-b BUILD] [-s SPP] [-z SIZE] [-n BOUNCES] [-a "BAKE OPTIONS"] SCENE.glb PROBE.hdr... -- CAMERA...
 # Per probe and camera: against light and first-hit kernel both cut to five bands, which is what a perfect renderer of
 # order 5 would show; then against the whole light and BRDF, without and with what order 5 cannot carry (--residual).
-# Each free of the reference's noise by two seeds (lambent compare --reference2). BOUNCES 3 if not said, no window.
+# Each free of the reference's noise by two seeds (lambent compare --reference2); "same surfaces" is five bands without the
+# pixels in which picture and reference show different ones. BOUNCES 3 if not said, no window.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 
@@ -16,11 +17,11 @@ while getopts "o:b:s:z:n:a:" option; do
     z) size=$OPTARG ;;
     n) bounces=$OPTARG ;;
     a) read -ra options <<< "$OPTARG" ;;
-    *) sed -n 2,7p "$0" >&2; exit 2 ;;
+    *) sed -n 2,8p "$0" >&2; exit 2 ;;
   esac
 done
 shift $((OPTIND - 1))
-(($# >= 3)) || { sed -n 2,7p "$0" >&2; exit 2; }
+(($# >= 3)) || { sed -n 2,8p "$0" >&2; exit 2; }
 scene=$1; shift
 probes=()
 while (($# > 0)) && [[ $1 != -- ]]; do probes+=("$1"); shift; done
@@ -32,8 +33,8 @@ mkdir -p "$out"
 "$build"/bin/lambent bake "$scene" -o "$out/$name.lmb.glb" --bounces "$bounces" "${options[@]}" >/dev/null
 
 source "$here/bench/percent.sh"
-echo "| scene | probe | camera | five bands % | whole, without residual % | with % |"
-echo "|---|---|---|---|---|---|"
+echo "| scene | probe | camera | five bands % | same surfaces % | whole, without residual % | with % |"
+echo "|---|---|---|---|---|---|---|"
 for probe in "${probes[@]}"; do
   for camera in "${cameras[@]}"; do
     stem="$out/$name.b$bounces.$(basename "${probe%.*}").${camera//[^0-9a-z-]/_}"
@@ -52,6 +53,7 @@ for probe in "${probes[@]}"; do
     done
     echo "| $name | $(basename "${probe%.*}") | $camera |" \
       "$(percent "$stem.off.exr" "$stem.five1.exr" "$stem.five2.exr") |" \
+      "$(same_surface_percent "$stem.off.exr" "$stem.five1.exr" "$stem.five2.exr") |" \
       "$(percent "$stem.off.exr" "$stem.whole1.exr" "$stem.whole2.exr") |" \
       "$(percent "$stem.on.exr" "$stem.whole1.exr" "$stem.whole2.exr") |"
   done

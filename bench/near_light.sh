@@ -62,7 +62,7 @@ if all(a - radius < p < b + radius for a, b, p in zip(low, high, place)):
 print("sphere:" + ",".join(f"{v:.6g}" for v in (*place, radius, 1 / sine**2)))
 PYTHON
 }
-figure() { sed -n "s/.*\"$2\": \([0-9.e+-]*\).*/\1/p" "$1"; }
+figure() { sed -n "s/^  \"$2\": \([0-9.e+-]*\).*/\1/p" "$1"; }
 
 csv=$out/near_light.csv
 echo "scene,bounces,ratio,samples,error1,error2,error3,error,whole" > "$csv"

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <vector>
 
 #include <fmt/format.h>
@@ -22,6 +23,28 @@ bool finite(const glm::dvec3& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
+// Nothing (infinity) is the same as nothing; what is not a number is the same as none.
+bool sameDepth(float a, float b) {
+  return a == b || std::abs(a - b) <= kSameDepth * std::min(a, b);
+}
+
+bool haveDepths(std::initializer_list<const spec::RgbaImage*> pictures) {
+  return std::ranges::none_of(pictures, [](const spec::RgbaImage* p) { return p->depths.empty(); });
+}
+
+// relative_rms is of this.
+struct Sums {
+  double squares = 0.0, energy = 0.0;
+  std::uint64_t pixels = 0;
+
+  void add(const glm::dvec3& x, const glm::dvec3& a, const glm::dvec3& b) {
+    squares += glm::dot(x - a, x - b);
+    energy += glm::dot(a, b);
+    ++pixels;
+  }
+  double relativeRms() const { return std::sqrt(std::max(squares, 0.0) / energy); }
+};
+
 }  // namespace
 
 Result<PictureError> comparePictures(const spec::RgbaImage& picture, const spec::RgbaImage& reference,
@@ -34,9 +57,11 @@ Result<PictureError> comparePictures(const spec::RgbaImage& picture, const spec:
                               other->width, other->height),
                   "draw both with the same --size");
   PictureError error;
-  double squares = 0.0, noise_squares = 0.0, energy = 0.0;
+  Sums all, same_surface;
+  double noise_squares = 0.0;
   glm::dvec3 difference_sum(0.0), reference_sum(0.0);
   std::vector<double> differences;
+  const bool depths = haveDepths({&picture, &reference, &second});
   for (std::size_t i = 0; i < picture.texels.size(); ++i) {
     const auto [least, most] = std::minmax({picture.texels[i].w, reference.texels[i].w, second.texels[i].w});
     // A rim that is just above the bound in one and just below in the other is not apart.
@@ -48,27 +73,32 @@ Result<PictureError> comparePictures(const spec::RgbaImage& picture, const spec:
           subject,
           fmt::format("or its reference is not finite at pixel {}, {}", i % picture.width, i / picture.width),
           "draw it again");
-    squares += glm::dot(x - a, x - b);
+    all.add(x, a, b);
+    if (depths && sameDepth(picture.depths[i], reference.depths[i]) &&
+        sameDepth(picture.depths[i], second.depths[i]) && sameDepth(reference.depths[i], second.depths[i]))
+      same_surface.add(x, a, b);
     // With d the error and p, q the noise of A and B, (d - p)(d - q) strays by -d (p + q) + pq. Its variance
     // is that of (d - (p + q)/2)(p - q), which can be seen.
     const double noise = glm::dot(x - mean, a - b);
     noise_squares += noise * noise;
-    energy += glm::dot(a, b);
     difference_sum += x - mean;
     reference_sum += mean;
     differences.push_back(glm::length(x - mean));
   }
   if (differences.empty())
     return fail(subject, "covers no pixel that its reference covers", "use the same camera for both");
-  if (!(energy > 0.0)) return fail(subject, "has a black reference", "use a light that reaches the scene");
+  if (!(all.energy > 0.0))
+    return fail(subject, "has a black reference", "use a light that reaches the scene");
 
-  error.pixels = differences.size();
-  error.relative_rms = std::sqrt(std::max(squares, 0.0) / energy);
-  error.relative_square_error = std::sqrt(noise_squares) / energy;
+  error.pixels = all.pixels;
+  error.relative_rms = all.relativeRms();
+  if (depths) error.pixels_of_other_surfaces = all.pixels - same_surface.pixels;
+  if (same_surface.energy > 0.0) error.same_surface_rms = same_surface.relativeRms();
+  error.relative_square_error = std::sqrt(noise_squares) / all.energy;
   for (int k = 0; k < 3; ++k)
     error.bias[static_cast<std::size_t>(k)] =
         reference_sum[k] != 0.0 ? difference_sum[k] / reference_sum[k] : 0.0;
-  const double scale = std::sqrt(energy / static_cast<double>(error.pixels));
+  const double scale = std::sqrt(all.energy / static_cast<double>(error.pixels));
   error.median = percentile(differences, 0.5) / scale;
   error.percentile_95 = percentile(differences, 0.95) / scale;
   error.percentile_99 = percentile(differences, 0.99) / scale;

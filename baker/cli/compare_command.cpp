@@ -43,6 +43,10 @@ void print(const CompareArguments& a, HeatMap map, const Difference& difference)
                            {"percentile95", e.percentile_95},
                            {"percentile99", e.percentile_99},
                            {"max", e.largest}};
+    if (e.pixels_of_other_surfaces)
+      json["sameSurface"] = {
+          {"relativeRms", e.same_surface_rms ? nlohmann::json(*e.same_surface_rms) : nlohmann::json()},
+          {"pixelsLeftOut", *e.pixels_of_other_surfaces}};
     if (!a.heat.empty())
       json["heat"] = {{"file", a.heat.string()}, {"map", a.heat_map}, {"range", difference.range}};
     fmt::print("{}\n", json.dump(2));
@@ -55,6 +59,11 @@ void print(const CompareArguments& a, HeatMap map, const Difference& difference)
              a.reference2.empty() ? ", the reference's own noise included"
              : drowned            ? ", drowned in the references' noise: give them more --spp"
                                   : ", free of the references' noise");
+  if (e.pixels_of_other_surfaces)
+    fmt::print(
+        "  same surfaces {}; {} pixels show another surface\n",
+        e.same_surface_rms ? fmt::format("{:.3f} %", 100.0 * *e.same_surface_rms) : "none that are lit",
+        *e.pixels_of_other_surfaces);
   fmt::print("  bias          R {:+.3f} %, G {:+.3f} %, B {:+.3f} %\n", 100.0 * e.bias[0], 100.0 * e.bias[1],
              100.0 * e.bias[2]);
   fmt::print("  pixels        median {:.3f} %, 95th {:.3f} %, 99th {:.3f} %, max {:.3f} %\n",

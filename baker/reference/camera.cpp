@@ -79,6 +79,7 @@ Result<spec::View> viewOf(const Scene& scene, const Surfaces& surfaces,
 
 EyeRays::EyeRays(const spec::View& view, const spec::Size& size)
     : world_from_clip_(glm::inverse(glm::dmat4(view.clip_from_view) * glm::dmat4(view.view_from_world))),
+      view_from_world_(view.view_from_world),
       size_(size),
       pixel_angle_rad_(2.0f / (view.clip_from_view[1][1] * static_cast<float>(size.height))) {}
 
@@ -88,6 +89,10 @@ Ray EyeRays::through(std::uint32_t x, std::uint32_t y) const {
   const glm::dvec4 far = world_from_clip_ * glm::dvec4(clip_x, clip_y, 1.0, 1.0);
   const glm::dvec3 begin = glm::dvec3(near) / near.w, end = glm::dvec3(far) / far.w;
   return {.origin = glm::vec3(begin), .dir = glm::vec3(end - begin), .far = 1.0f};
+}
+
+double EyeRays::depthOf(const glm::dvec3& point_ws) const {
+  return -(view_from_world_ * glm::dvec4(point_ws, 1.0)).z;
 }
 
 }  // namespace lambent::baker::reference

@@ -23,11 +23,13 @@ class EyeRays {
   EyeRays(const spec::View& view, const spec::Size& size);
   // Row 0 is the top. The ray's length 1 is the far plane.
   Ray through(std::uint32_t x, std::uint32_t y) const;
+  // Of a point of the world along the camera's axis, metres.
+  double depthOf(const glm::dvec3& point_ws) const;
   // Radians that a pixel spans in the middle, as the runtime's sky has it.
   float pixelAngle() const { return pixel_angle_rad_; }
 
  private:
-  glm::dmat4 world_from_clip_;
+  glm::dmat4 world_from_clip_, view_from_world_;
   spec::Size size_;
   float pixel_angle_rad_;
 };

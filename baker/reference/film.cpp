@@ -15,7 +15,8 @@ namespace lambent::baker::reference {
 namespace {
 
 constexpr std::uint32_t kMagic = 0x5052424c;  // "LBRP"
-constexpr std::uint32_t kVersionFirst = 1, kVersionCurrent = kVersionFirst;
+constexpr std::uint32_t kVersionDepths = 2;   // pixels with depths; 1 had none
+constexpr std::uint32_t kVersionCurrent = kVersionDepths;
 
 struct Header {
   std::uint32_t magic = kMagic, version = kVersionCurrent;
@@ -45,7 +46,7 @@ Film::Film(const spec::Size& size, std::uint64_t digest)
       done_(size.height, 0),
       rays_(size.height, 0),
       pixels_(std::size_t{size.width} * size.height) {
-  static_assert(sizeof(Pixel) == 7 * sizeof(double));
+  static_assert(sizeof(Pixel) == 8 * sizeof(double));
 }
 
 void Film::addRow(std::uint32_t y, std::uint32_t count, std::span<const PixelSum> pixels) {
@@ -54,6 +55,7 @@ void Film::addRow(std::uint32_t y, std::uint32_t count, std::span<const PixelSum
     Pixel& pixel = pixels_[std::size_t{y} * size_.width + x];
     for (std::size_t r = 0; r < 2; ++r) pixel.replicas[r] += pixels[x].replicas[r];
     pixel.alpha = pixels[x].alpha;
+    pixel.depth = pixels[x].depth;
     rays_[y] += pixels[x].rays;
   }
   done_[y] += count;
@@ -107,26 +109,32 @@ glm::dvec3 Film::mean(std::size_t pixel) const {
 }
 
 spec::RgbaImage Film::image() const {
-  spec::RgbaImage image{
-      .width = size_.width, .height = size_.height, .texels = std::vector<glm::vec4>(pixels_.size())};
+  spec::RgbaImage image{.width = size_.width,
+                        .height = size_.height,
+                        .texels = std::vector<glm::vec4>(pixels_.size()),
+                        .depths = std::vector<float>(pixels_.size())};
   for (std::uint32_t y = 0; y < size_.height; ++y) putRow(y, image);
   return image;
 }
 
 void Film::putRow(std::uint32_t y, spec::RgbaImage& image) const {
   assert(image.width == size_.width && image.height == size_.height && done_[y] > 0);
-  for (std::size_t i = std::size_t{y} * size_.width, end = i + size_.width; i < end; ++i)
+  for (std::size_t i = std::size_t{y} * size_.width, end = i + size_.width; i < end; ++i) {
     image.texels[i] = glm::vec4(glm::vec3(mean(i)), static_cast<float>(pixels_[i].alpha));
+    if (!image.depths.empty()) image.depths[i] = static_cast<float>(pixels_[i].depth);
+  }
 }
 
 spec::RgbaImage Film::half(std::size_t replica) const {
   spec::RgbaImage image{.width = size_.width, .height = size_.height, .texels = {}};
   image.texels.reserve(pixels_.size());
+  image.depths.reserve(pixels_.size());
   for (std::size_t i = 0; i < pixels_.size(); ++i) {
     // Samples go to the first and the second in turn.
     const double samples = (done_[i / size_.width] + (replica == 0 ? 1 : 0)) / 2;
     image.texels.emplace_back(glm::vec3(pixels_[i].replicas[replica] / samples),
                               static_cast<float>(pixels_[i].alpha));
+    image.depths.push_back(static_cast<float>(pixels_[i].depth));
   }
   return image;
 }

@@ -35,9 +35,9 @@ class Film {
   // Takes over what `path` holds. False, with nothing changed, where it is damaged or of another digest.
   bool restore(const std::filesystem::path& path);
 
-  // Mean radiance and coverage. Every row must have samples.
+  // Mean radiance, coverage and depths. Every row must have samples.
   spec::RgbaImage image() const;
-  // Into a picture of the same size.
+  // Into a picture of the same size; depths only where it has any.
   void putRow(std::uint32_t y, spec::RgbaImage& image) const;
   // The mean of one of the two replicas alone, 0 or 1: pictures with independent noise, whose mean is image()
   // where they have as many samples each. Every row must have two samples.
@@ -51,7 +51,7 @@ class Film {
  private:
   struct Pixel {
     glm::dvec3 replicas[2]{};
-    double alpha = 0.0;
+    double alpha = 0.0, depth = 0.0;
   };
   glm::dvec3 mean(std::size_t pixel) const;
 

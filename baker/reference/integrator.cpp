@@ -27,10 +27,16 @@ PixelSum Integrator::pixel(std::uint32_t x, std::uint32_t y, std::uint32_t first
   const auto addPaths = [&](double weight) {
     for (const Path& path : walk.paths) out.replicas[path.replica] += weight * glm::dvec3(path.sum);
   };
+  const auto blended = [&](const Hit& hit) {
+    return world_.surfaces.surfaces()[hit.surface].material.alpha_mode == gltf::AlphaMode::Blend;
+  };
   const Ray ray = world_.eye.through(x, y);
   std::vector<Hit> layers;
   world_.rays.visible(ray, layers);
   out.rays = 1;
+  // Whatever stands before it: the runtime's depth buffer knows neither blended surfaces nor volumes.
+  if (!layers.empty() && !blended(layers.back()))
+    out.depth = world_.eye.depthOf(glm::dvec3(ray.origin) + double{layers.back().t} * glm::dvec3(ray.dir));
   double through = 1.0;
   // Volumes before layer i, from where the one before left off.
   std::optional<EyeDepth> eye;
@@ -50,9 +56,8 @@ PixelSum Integrator::pixel(std::uint32_t x, std::uint32_t y, std::uint32_t first
   for (; layer < layers.size() && through > 0.0; ++layer) {
     passVolumes(layer);
     const SurfacePoint point = world_.surfaces.pointAt(layers[layer], ray.dir);
-    const bool blend =
-        world_.surfaces.surfaces()[layers[layer].surface].material.alpha_mode == gltf::AlphaMode::Blend;
-    const double weight = through * (blend ? std::clamp(double{point.alpha}, 0.0, 1.0) : 1.0);
+    const double weight =
+        through * (blended(layers[layer]) ? std::clamp(double{point.alpha}, 0.0, 1.0) : 1.0);
     through -= weight;
     if (weight <= 0.0) continue;
     addAlike(weight * glm::dvec3(point.unlit ? point.albedo : point.emitted));

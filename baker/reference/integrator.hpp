@@ -11,6 +11,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 
 #include "baker/reference/options.hpp"
 #include "baker/reference/world.hpp"
@@ -20,6 +21,8 @@ namespace lambent::baker::reference {
 struct PixelSum {
   std::array<glm::dvec3, 2> replicas{};  // sums over the samples of each
   double alpha = 0.0;                    // coverage, not a sum
+  // Along the camera's axis, of the first surface that is not blended; metres, not a sum.
+  double depth = std::numeric_limits<double>::infinity();
   std::uint64_t rays = 0;
 };
 

@@ -70,8 +70,9 @@ void takeUp(Film& film, const fs::path& checkpoint, bool force, Report& report) 
       report.resumed_samples = std::min(report.resumed_samples, film.done(y));
     return;
   }
-  report.notices.push_back(checkpoint.string() +
-                           ": is damaged, or of another scene or other words; the picture is begun anew");
+  report.notices.push_back(
+      checkpoint.string() +
+      ": is damaged, or of another version, scene or other words; the picture is begun anew");
 }
 
 Result<Report> renderHere(const Scene& scene, const Request& request, const fs::path& output, bool force,

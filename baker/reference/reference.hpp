@@ -1,9 +1,9 @@
 // A path-traced picture of a glTF scene, to measure the runtime against: the same scene, lights, camera and
 // conventions, but an integrator, a sampler and rays of its own, so that a mistake in the bake cannot hide in
 // both. Comes in: the scene, the lights and camera as parsed, options. Goes out: OUT.exr, linear float32
-// RGBA, signed, alpha = coverage; of volumes what they take away of what is behind. While it works,
-// OUT.exr.partial holds what is done; asked again in the same words, the work goes on from there and ends in
-// the same bytes. The same bytes too for any number of threads.
+// RGBA, signed, alpha = coverage, of volumes what they take away of what is behind; and depths. While it
+// works, OUT.exr.partial holds what is done; asked again in the same words, the work goes on from there and
+// ends in the same bytes. The same bytes too for any number of threads.
 #pragma once
 
 #include <filesystem>

@@ -1,6 +1,7 @@
 #include "runtime/frame/frame.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 namespace lambent::frame {
@@ -21,6 +22,20 @@ std::vector<Texel> flipped(const std::vector<Texel>& texels, std::size_t row_len
     std::copy_n(texels.begin() + static_cast<std::ptrdiff_t>(begin), row_length,
                 result.end() - static_cast<std::ptrdiff_t>(begin + row_length));
   return result;
+}
+
+// Distances along the view axis of what a depth buffer holds; of perspectives and parallel projections, which
+// both map z to (a z + b) / (c z + d).
+std::vector<float> linearDepths(std::vector<float> window_depths, const glm::mat4& clip_from_view) {
+  const double a = clip_from_view[2][2], b = clip_from_view[3][2], c = clip_from_view[2][3],
+               d = clip_from_view[3][3];
+  constexpr float kFar = 1.0f;  // what clearPicture() leaves
+  for (float& depth : window_depths) {
+    const double clip_z = 2.0 * double{depth} - 1.0;
+    depth = depth < kFar ? static_cast<float>((b - d * clip_z) / (a - c * clip_z))
+                         : std::numeric_limits<float>::infinity();
+  }
+  return window_depths;
 }
 
 }  // namespace
@@ -100,6 +115,7 @@ Result<void> Frame::render(World& world, const lighting::Environment& environmen
     pacer_.frameTook(std::chrono::duration<double, std::milli>(now - *rendered_).count(), uploaded_bytes_ > 0,
                      options_.upload_budget_bytes);
   rendered_ = now;
+  clip_from_view_ = view.clip_from_view;
   uploaded_bytes_ = 0;
   world.look(view);
   timers_.beginFrame();
@@ -336,9 +352,15 @@ spec::RgbaImage Frame::readLinear() const {
   std::vector<glm::vec4> texels(std::size_t{options_.size.width} * options_.size.height);
   glGetTextureImage(picture_.id(), 0, GL_RGBA, GL_FLOAT,
                     static_cast<GLsizei>(texels.size() * sizeof(glm::vec4)), texels.data());
-  return {.width = options_.size.width,
-          .height = options_.size.height,
-          .texels = flipped(texels, options_.size.width)};
+  spec::RgbaImage image{.width = options_.size.width,
+                        .height = options_.size.height,
+                        .texels = flipped(texels, options_.size.width)};
+  if (options_.output != Output::Linear) return image;  // depths of several samples a pixel
+  std::vector<float> depths(texels.size());
+  glGetTextureImage(depth_.id(), 0, GL_DEPTH_COMPONENT, GL_FLOAT,
+                    static_cast<GLsizei>(depths.size() * sizeof(float)), depths.data());
+  image.depths = linearDepths(flipped(depths, options_.size.width), clip_from_view_);
+  return image;
 }
 
 spec::Rgba8Image Frame::readDisplay() const {

@@ -112,7 +112,8 @@ class Frame {
     return data_view_ ? &data_view_->values() : nullptr;
   }
 
-  // Waits for the GPU. Row 0 is the top.
+  // Waits for the GPU. Row 0 is the top. Linear pictures have depths, of what wrote to the depth buffer: in
+  // views of transfer blended surfaces too, with overlays the signs of light samples.
   spec::RgbaImage readLinear() const;
   spec::Rgba8Image readDisplay() const;
 
@@ -197,6 +198,7 @@ class Frame {
   UploadPacer pacer_;
   std::optional<std::chrono::steady_clock::time_point> rendered_;  // the last time
   std::uint64_t uploaded_bytes_ = 0;                               // since then
+  glm::mat4 clip_from_view_{1.0f};                                 // of the last picture
   gpu::PassTimers timers_;
   gpu::Texture hdr_, depth_, picture_;
   gpu::Framebuffer hdr_target_, hdr_color_target_, picture_target_;

@@ -1,6 +1,9 @@
 // OpenEXR in and out. The library throws; nothing that it throws leaves this file.
+#include <algorithm>
+#include <cassert>
 #include <cstring>
 #include <exception>
+#include <limits>
 
 #include <Imath/ImathBox.h>
 #include <OpenEXR/ImfChannelList.h>
@@ -16,6 +19,9 @@
 namespace lambent::spec {
 
 namespace {
+
+// As OpenEXR's standard names have it.
+constexpr char kDepthChannel[] = "Z";
 
 // A file in memory, so that the real one is written whole or not at all.
 class MemoryStream : public Imf::OStream {
@@ -53,20 +59,18 @@ bool isWholeChannel(const Imf::ChannelList& channels, const char* name) {
 }
 
 // The display window is the picture; the data window, where values are stored, may be smaller or larger.
-RgbaImage toDisplayWindow(const std::vector<glm::vec4>& data, const Imath::Box2i& from,
-                          const Imath::Box2i& to) {
-  RgbaImage image{static_cast<std::uint32_t>(extent(to.min.x, to.max.x)),
-                  static_cast<std::uint32_t>(extent(to.min.y, to.max.y)),
-                  {}};
-  image.texels.assign(std::size_t{image.width} * image.height, glm::vec4(0.0f));
-  const std::size_t data_width = extent(from.min.x, from.max.x);
+template <typename Value>
+std::vector<Value> toDisplayWindow(std::vector<Value> data, const Imath::Box2i& from, const Imath::Box2i& to,
+                                   const Value& outside) {
+  if (from == to) return data;
+  const std::size_t data_width = extent(from.min.x, from.max.x), width = extent(to.min.x, to.max.x);
+  std::vector<Value> values(width * extent(to.min.y, to.max.y), outside);
   for (int y = std::max(from.min.y, to.min.y); y <= std::min(from.max.y, to.max.y); ++y)
     for (int x = std::max(from.min.x, to.min.x); x <= std::min(from.max.x, to.max.x); ++x)
-      image.texels[static_cast<std::size_t>(y - to.min.y) * image.width +
-                   static_cast<std::size_t>(x - to.min.x)] =
+      values[static_cast<std::size_t>(y - to.min.y) * width + static_cast<std::size_t>(x - to.min.x)] =
           data[static_cast<std::size_t>(y - from.min.y) * data_width +
                static_cast<std::size_t>(x - from.min.x)];
-  return image;
+  return values;
 }
 
 Result<RgbaImage> readOpened(Imf::InputFile& file, const std::filesystem::path& path,
@@ -87,28 +91,35 @@ Result<RgbaImage> readOpened(Imf::InputFile& file, const std::filesystem::path& 
     return fail(path.string(), "has no channels R, G and B (it has " + channelNames(channels) + ")",
                 "save it as RGB at full resolution");
 
-  std::vector<glm::vec4> texels(extent(data.min.x, data.max.x) * extent(data.min.y, data.max.y));
+  const std::size_t count = extent(data.min.x, data.max.x) * extent(data.min.y, data.max.y);
+  std::vector<glm::vec4> texels(count);
+  std::vector<float> depths(isWholeChannel(channels, kDepthChannel) ? count : 0);
   Imf::FrameBuffer target;
-  const auto slice = [&](const char* name, int component, double where_missing) {
-    target.insert(name, Imf::Slice::Make(Imf::FLOAT, reinterpret_cast<float*>(texels.data()) + component,
-                                         data, sizeof(glm::vec4), 0, 1, 1, where_missing));
+  const auto slice = [&](const char* name, float* values, std::size_t stride, double where_missing) {
+    target.insert(name, Imf::Slice::Make(Imf::FLOAT, values, data, stride, 0, 1, 1, where_missing));
+  };
+  const auto color = [&](const char* name, int component, double where_missing) {
+    slice(name, reinterpret_cast<float*>(texels.data()) + component, sizeof(glm::vec4), where_missing);
   };
   if (rgb) {
-    slice("R", 0, 0.0);
-    slice("G", 1, 0.0);
-    slice("B", 2, 0.0);
+    color("R", 0, 0.0);
+    color("G", 1, 0.0);
+    color("B", 2, 0.0);
   } else {
-    slice("Y", 0, 0.0);
+    color("Y", 0, 0.0);
   }
-  slice("A", 3, 1.0);
+  color("A", 3, 1.0);
+  if (!depths.empty()) slice(kDepthChannel, depths.data(), sizeof(float), 0.0);
   file.setFrameBuffer(target);
   file.readPixels(data.min.y, data.max.y);
   if (grey)
     for (glm::vec4& texel : texels) texel.y = texel.z = texel.x;
-  if (data == display)
-    return RgbaImage{static_cast<std::uint32_t>(extent(data.min.x, data.max.x)),
-                     static_cast<std::uint32_t>(extent(data.min.y, data.max.y)), std::move(texels)};
-  return toDisplayWindow(texels, data, display);
+  RgbaImage image{.width = static_cast<std::uint32_t>(extent(display.min.x, display.max.x)),
+                  .height = static_cast<std::uint32_t>(extent(display.min.y, display.max.y)),
+                  .texels = toDisplayWindow(std::move(texels), data, display, glm::vec4(0.0f))};
+  if (!depths.empty())
+    image.depths = toDisplayWindow(std::move(depths), data, display, std::numeric_limits<float>::infinity());
+  return image;
 }
 
 }  // namespace
@@ -132,6 +143,7 @@ Result<RgbaImage> readExr(const std::filesystem::path& path) {
 }
 
 Result<void> writeExr(const std::filesystem::path& path, const RgbaImage& image) {
+  assert(image.depths.empty() || image.depths.size() == image.texels.size());
   MemoryStream stream;
   try {
     Imf::Header header(static_cast<int>(image.width), static_cast<int>(image.height));
@@ -143,6 +155,10 @@ Result<void> writeExr(const std::filesystem::path& path, const RgbaImage& image)
       header.channels().insert(name, Imf::Channel(Imf::FLOAT));
       const float* base = reinterpret_cast<const float*>(image.texels.data()) + component;
       source.insert(name, Imf::Slice::Make(Imf::FLOAT, base, window, sizeof(glm::vec4)));
+    }
+    if (!image.depths.empty()) {
+      header.channels().insert(kDepthChannel, Imf::Channel(Imf::FLOAT));
+      source.insert(kDepthChannel, Imf::Slice::Make(Imf::FLOAT, image.depths.data(), window, sizeof(float)));
     }
     Imf::OutputFile file(stream, header, /*numThreads=*/0);
     file.setFrameBuffer(source);

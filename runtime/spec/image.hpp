@@ -1,8 +1,8 @@
 // Pictures in and out of files. Read: light images (.hdr Radiance RGBE, .exr OpenEXR scanline or tiled, half
 // or float) and our own pictures back. Written: PNG (8 bits, as given: tone mapping and sRGB come before),
-// linear EXR (float32 RGBA), Radiance. Row 0 is the top. Values are linear Rec.709. Files are written whole
-// or not at all. Errors name the file and say whether it is missing, of another type, truncated, damaged or
-// absurdly large; nothing throws.
+// linear EXR (float32 RGBA, depths), Radiance. Row 0 is the top. Values are linear Rec.709. Files are written
+// whole or not at all. Errors name the file and say whether it is missing, of another type, truncated,
+// damaged or absurdly large; nothing throws.
 #pragma once
 
 #include <cstdint>
@@ -27,6 +27,9 @@ struct RgbImage {
 struct RgbaImage {
   std::uint32_t width = 0, height = 0;
   std::vector<glm::vec4> texels;  // alpha = coverage
+  // Of the first surface that is not blended: distance along the view axis, not along the ray, metres;
+  // infinite where there is none. width * height of them, or empty: not known.
+  std::vector<float> depths = {};
 };
 
 // Pixels with less alpha than this show next to nothing but the sky: the rims of clouds, which fade for ever.
@@ -41,7 +44,9 @@ struct Rgba8Image {
 // .hdr or .exr, told apart by the bytes, not the name. Values come as they are, NaN and infinities included.
 Result<RgbImage> readLightImage(const std::filesystem::path& path);
 
-Result<RgbaImage> readExr(const std::filesystem::path& path);  // alpha 1 where the file has none
+// Alpha is 1 where the file has none; depths are its channel Z, if it has that.
+Result<RgbaImage> readExr(const std::filesystem::path& path);
+// Depths, where there are any, as the channel Z.
 Result<void> writeExr(const std::filesystem::path& path, const RgbaImage& image);
 
 Result<RgbImage> readHdr(const std::filesystem::path& path);

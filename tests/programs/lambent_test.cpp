@@ -203,6 +203,7 @@ TEST_F(LambentProgram, ComparesPictures) {
   EXPECT_EQ(same.exit_code, 0) << same.err;
   EXPECT_EQ(json::parse(same.out)["relativeRms"], 0.0);
   EXPECT_GT(json::parse(same.out)["pixels"], 1000);
+  EXPECT_FALSE(json::parse(same.out).contains("sameSurface")) << "a picture without depths";
   EXPECT_EQ(fileCount(), 0);
   const Outcome heat =
       lambent({"compare", picture, picture, "--heat", path("heat.png"), "--heat-map", "magnitude"});

@@ -116,6 +116,101 @@ TEST(ComparePictures, OfATexturedErrorRecoversItUnderNoiseThatIsLarger) {
   EXPECT_GT(comparePictures(picture, a, nullptr, "a.exr")->relative_rms, 0.19);
 }
 
+constexpr float kNone = std::numeric_limits<float>::infinity();
+
+// The same, with a surface at this distance in all pixels.
+spec::RgbaImage filledAt(float depth, glm::vec3 color) {
+  auto image = filled(color);
+  image.depths.assign(image.texels.size(), depth);
+  return image;
+}
+
+TEST(ComparePictures, LeavesOutPixelsWhoseDepthsDifferAndSaysHowMany) {
+  // Three pixels show another surface, in another colour, each in another picture; five show the same one 10
+  // % too bright.
+  auto picture = filledAt(2.0f, {1, 1, 1}), a = picture, b = picture;
+  const auto another = [](spec::RgbaImage& image, std::size_t i, float depth) {
+    image.texels[i] = glm::vec4(3, 3, 3, 1);
+    image.depths[i] = depth;
+  };
+  for (std::size_t i = 0; i < 5; ++i) picture.texels[i] = glm::vec4(1.1f, 1.1f, 1.1f, 1);
+  another(picture, 5, 2.01f);
+  another(a, 6, 1.0f);
+  another(b, 7, kNone);
+  const auto error = comparePictures(picture, a, &b, "a.exr");
+  ASSERT_TRUE(error) << error.error().line();
+  EXPECT_EQ(error->pixels, 32u);
+  EXPECT_EQ(error->pixels_of_other_surfaces, 3u);
+  ASSERT_TRUE(error->same_surface_rms);
+  EXPECT_NEAR(*error->same_surface_rms, std::sqrt(5 * 0.01 / 29.0), 1e-6);
+}
+
+TEST(ComparePictures, TellsSurfacesApartByDepthAloneHoweverLargeTheError) {
+  auto picture = filledAt(2.0f, {1, 1, 1});
+  const auto reference = picture;
+  picture.texels[3] = glm::vec4(50, 50, 50, 1);
+  picture.depths[4] = 3.0f;  // of the same colour
+  picture.depths[5] = std::nextafter(2.0f * (1.0f + kSameDepth), 0.0f);
+  picture.depths[6] = 2.0f / (1.0f + 1.01f * kSameDepth);
+  const auto error = comparePictures(picture, reference, nullptr, "a.exr");
+  ASSERT_TRUE(error);
+  EXPECT_EQ(error->pixels_of_other_surfaces, 2u) << "pixels 4 and 6";
+  EXPECT_NEAR(*error->same_surface_rms, 49.0 / std::sqrt(30.0), 1e-5);
+}
+
+TEST(ComparePictures, TakesNothingForTheSameAsNothing) {
+  // As behind a blended surface, or in a cloud.
+  auto picture = filledAt(kNone, {1, 1, 1});
+  const auto reference = picture;
+  picture.depths[0] = 1e30f;
+  picture.depths[1] = std::numeric_limits<float>::quiet_NaN();
+  const auto error = comparePictures(picture, reference, &reference, "a.exr");
+  ASSERT_TRUE(error);
+  EXPECT_EQ(error->pixels_of_other_surfaces, 2u);
+  EXPECT_EQ(error->same_surface_rms, 0.0);
+}
+
+TEST(ComparePictures, CountsOtherSurfacesOnlyWhereAllPicturesCover) {
+  auto picture = filledAt(2.0f, {1, 1, 1});
+  const auto reference = picture;
+  picture.texels[3].w = 0.0f;
+  picture.depths[3] = kNone;
+  const auto error = comparePictures(picture, reference, nullptr, "a.exr");
+  ASSERT_TRUE(error);
+  EXPECT_EQ(error->pixels_apart, 1u);
+  EXPECT_EQ(error->pixels_of_other_surfaces, 0u);
+}
+
+TEST(ComparePictures, HasNoFigureOfTheSameSurfaceWhereThereIsNone) {
+  const auto error = comparePictures(filledAt(2.0f, {1, 1, 1}), filledAt(3.0f, {1, 1, 1}), nullptr, "a.exr");
+  ASSERT_TRUE(error);
+  EXPECT_EQ(error->pixels_of_other_surfaces, 32u);
+  EXPECT_FALSE(error->same_surface_rms);
+}
+
+TEST(ComparePictures, GivesTheSameFiguresOfAllPixelsWithAndWithoutDepths) {
+  auto picture = filledAt(2.0f, {1.1f, 1, 1}), a = filledAt(2.0f, {1, 1, 1}), b = a;
+  picture.texels[9] = glm::vec4(7, 8, 9, 1);
+  picture.depths[9] = 1.0f;
+  b.texels[11].y = 1.5f;
+  const auto with = comparePictures(picture, a, &b, "a.exr");
+  for (spec::RgbaImage* without : {&b, &a, &picture}) {
+    without->depths.clear();
+    const auto error = comparePictures(picture, a, &b, "a.exr");
+    ASSERT_TRUE(with && error);
+    EXPECT_FALSE(error->pixels_of_other_surfaces);
+    EXPECT_FALSE(error->same_surface_rms);
+    EXPECT_EQ(error->pixels, with->pixels);
+    EXPECT_EQ(error->relative_rms, with->relative_rms);
+    EXPECT_EQ(error->relative_square_error, with->relative_square_error);
+    EXPECT_EQ(error->bias, with->bias);
+    EXPECT_EQ(error->median, with->median);
+    EXPECT_EQ(error->percentile_99, with->percentile_99);
+    EXPECT_EQ(error->largest, with->largest);
+  }
+  EXPECT_EQ(with->pixels_of_other_surfaces, 1u);
+}
+
 TEST(ComparePictures, RefusesWhatCannotBeCompared) {
   const auto white = filled({1, 1, 1});
   EXPECT_FALSE(comparePictures(white, filled({1, 1, 1}, 4, 8), nullptr, "a.exr"));

@@ -58,6 +58,7 @@ class Progressive : public ::testing::Test {
     EXPECT_EQ(snapshot->coarseness, 1u);
     const Report expected = rendered(scene, request);
     EXPECT_EQ(snapshot->image.texels, expected.image.texels);
+    EXPECT_EQ(snapshot->image.depths, expected.image.depths);
     EXPECT_EQ(snapshot->noise, expected.standard_error);
   }
 
@@ -94,6 +95,8 @@ TEST_F(Progressive, GivesTwoIndependentHalvesWhoseMeanIsThePicture) {
   const auto snapshot = reference.snapshot();
   const auto& [a, b] = snapshot->halves;
   ASSERT_EQ(a.texels.size(), snapshot->image.texels.size());
+  EXPECT_EQ(a.depths, snapshot->image.depths);
+  EXPECT_EQ(b.depths, snapshot->image.depths);
   double apart = 0.0, energy = 0.0;
   for (std::size_t i = 0; i < a.texels.size(); ++i) {
     const glm::dvec3 mean = 0.5 * (glm::dvec3(a.texels[i]) + glm::dvec3(b.texels[i]));

@@ -1,10 +1,12 @@
 // Interrupted work goes on from its checkpoint and ends in the same bytes.
 #include <fstream>
+#include <limits>
 #include <thread>
 
 #include <gtest/gtest.h>
 
 #include "baker/reference/film.hpp"
+#include "runtime/bundle/checksum.hpp"
 #include "tests/baker/reference/measure.hpp"
 #include "tests/baker/reference/media.hpp"
 #include "tests/support/program.hpp"
@@ -102,7 +104,7 @@ TEST_F(Resume, WithAVolumeEndsInTheSameBytesAndKnowsItsDensity) {
 TEST(Film, RestoresOnlyWhatItSaved) {
   const auto path = std::filesystem::path(::testing::TempDir()) / fmt::format("film-{}.partial", ::getpid());
   const std::vector<PixelSum> row = {
-      {.replicas = {glm::dvec3(1, 2, 3), glm::dvec3(3, 2, 1)}, .alpha = 1, .rays = 7},
+      {.replicas = {glm::dvec3(1, 2, 3), glm::dvec3(3, 2, 1)}, .alpha = 1, .depth = 2.5, .rays = 7},
       {.replicas = {glm::dvec3(0.5), glm::dvec3(-0.5)}, .alpha = 0.25, .rays = 9}};
   Film film({2, 1}, 42);
   film.addRow(0, 4, row);
@@ -112,6 +114,8 @@ TEST(Film, RestoresOnlyWhatItSaved) {
   EXPECT_TRUE(same.restore(path));
   EXPECT_EQ(same.image().texels, film.image().texels);
   EXPECT_EQ(same.image().texels[0], glm::vec4(1, 1, 1, 1));
+  EXPECT_EQ(same.image().depths, (std::vector<float>{2.5f, std::numeric_limits<float>::infinity()}));
+  EXPECT_EQ(same.half(1).depths, same.image().depths);
   EXPECT_EQ(same.rays(), 16u);
   EXPECT_EQ(same.done(0), 4u);
   EXPECT_EQ(same.seconds, 1.5);
@@ -126,6 +130,37 @@ TEST(Film, RestoresOnlyWhatItSaved) {
     EXPECT_FALSE(same.restore(path)) << at;
   }
   EXPECT_EQ(same.done(0), 4u) << "unchanged";
+  std::filesystem::remove(path);
+}
+
+// Version 1 had no depths: 56 bytes a pixel.
+TEST(Film, RefusesCheckpointsOfTheVersionBefore) {
+  const auto path = std::filesystem::path(::testing::TempDir()) / fmt::format("old-{}.partial", ::getpid());
+  const auto writeFilm = [&](std::uint32_t version, std::size_t doubles_a_pixel) {
+    std::string bytes = "LBRP";
+    const auto put = [&](const auto& value) {
+      bytes.append(reinterpret_cast<const char*>(&value), sizeof(value));
+    };
+    put(version);
+    put(std::uint64_t{42});  // digest
+    put(std::uint32_t{2});
+    put(std::uint32_t{1});
+    put(1.5);               // seconds
+    put(std::uint32_t{4});  // samples done of the one row
+    put(std::uint64_t{16});
+    for (std::size_t i = 0; i < 2 * doubles_a_pixel; ++i) put(0.25);
+    put(bundle::checksum(std::as_bytes(std::span(bytes))));
+    testing::writeBytes(path, bytes);
+  };
+  Film film({2, 1}, 42);
+  writeFilm(1, 7);
+  EXPECT_FALSE(film.restore(path));
+  writeFilm(1, 8);
+  EXPECT_FALSE(film.restore(path));
+  EXPECT_EQ(film.done(0), 0u) << "unchanged";
+  writeFilm(2, 8);
+  EXPECT_TRUE(film.restore(path)) << "so that it was not refused for something else";
+  EXPECT_EQ(film.done(0), 4u);
   std::filesystem::remove(path);
 }
 

@@ -12,6 +12,7 @@
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfInputFile.h>
 #include <OpenEXR/ImfOutputFile.h>
 #include <OpenEXR/ImfTiledOutputFile.h>
 #include <gtest/gtest.h>
@@ -123,6 +124,29 @@ TEST_F(SpecImage, ExrRoundTripIsExactAndKeepsNonFiniteValues) {
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 1);  // no part file left behind
 }
 
+TEST_F(SpecImage, ExrKeepsDepthsAndHasTheirChannelOnlyWhereThereAreAny) {
+  RgbaImage image{3, 2, std::vector<glm::vec4>(6, glm::vec4(0.5f))};
+  const fs::path with = folder_ / "with.exr", without = folder_ / "without.exr";
+  ASSERT_TRUE(writeExr(without, image));
+  image.depths = {1.5f, 1e-6f, std::numeric_limits<float>::infinity(), 0.1f, 3e5f, 2.0f};
+  ASSERT_TRUE(writeExr(with, image));
+  const auto channels = [](const fs::path& path) {
+    const Imf::InputFile file(path.c_str());
+    std::string names;
+    for (auto it = file.header().channels().begin(); it != file.header().channels().end(); ++it)
+      names += it.name();
+    return names;
+  };
+  EXPECT_EQ(channels(with), "ABGRZ");
+  EXPECT_EQ(channels(without), "ABGR");
+  const Result<RgbaImage> back = readExr(with), bare = readExr(without);
+  ASSERT_TRUE(back && bare);
+  EXPECT_EQ(back->texels, image.texels);
+  EXPECT_EQ(back->depths, image.depths);
+  EXPECT_EQ(bare->texels, image.texels);
+  EXPECT_TRUE(bare->depths.empty());
+}
+
 // A tiled half-float picture with a data window that reaches over the display window on one side and stops
 // short on the other.
 TEST_F(SpecImage, ExrReadsTiledHalfFloatsAndOffsetDataWindows) {
@@ -136,7 +160,7 @@ TEST_F(SpecImage, ExrReadsTiledHalfFloatsAndOffsetDataWindows) {
   header.compression() = Imf::PIZ_COMPRESSION;
   header.setTileDescription(Imf::TileDescription(4, 4));
   Imf::FrameBuffer source;
-  for (const char* name : {"R", "G", "B"}) {
+  for (const char* name : {"R", "G", "B", "Z"}) {
     header.channels().insert(name, Imf::Channel(Imf::HALF));
     source.insert(name, Imf::Slice::Make(Imf::HALF, grey.data(), data));
   }
@@ -151,6 +175,10 @@ TEST_F(SpecImage, ExrReadsTiledHalfFloatsAndOffsetDataWindows) {
   EXPECT_EQ(image->texels[8 * 3 + 4], glm::vec4(34, 34, 34, 1));  // row 3, column 4
   EXPECT_EQ(image->texels[8 * 1 + 4], glm::vec4(0));              // above the data window
   EXPECT_EQ(image->texels[8 * 3 + 6], glm::vec4(0));              // right of it
+  ASSERT_EQ(image->depths.size(), 64u);
+  EXPECT_EQ(image->depths[8 * 3 + 4], 34.0f);
+  EXPECT_EQ(image->depths[8 * 1 + 4], std::numeric_limits<float>::infinity());
+  EXPECT_EQ(image->depths[8 * 3 + 6], std::numeric_limits<float>::infinity());
 }
 
 TEST_F(SpecImage, ExrTakesGreyAndNamesTheChannelsOfOthers) {
@@ -239,7 +267,10 @@ TEST_F(SpecImage, BrokenHdrFilesGiveErrors) {
 TEST_F(SpecImage, BrokenExrFilesGiveErrors) {
   const fs::path path = folder_ / "whole.exr";
   RgbaImage image{32, 8, {}};
-  for (const glm::vec3 texel : noise(32, 8, 2).texels) image.texels.emplace_back(texel, 1.0f);
+  for (const glm::vec3 texel : noise(32, 8, 2).texels) {
+    image.texels.emplace_back(texel, 1.0f);
+    image.depths.push_back(texel.x);
+  }
   ASSERT_TRUE(writeExr(path, image));
   breakInEveryWay(folder_ / "broken.exr", read(path), 7);
 }
