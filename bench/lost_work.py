@@ -2,6 +2,7 @@
 """What kill -9 costs a bake, by stage: a table of seconds of work that the next start has to do again.
 
   bench/lost_work.py [--build BUILD] [--least S] [--only STAGE,...] [--keep DIR] SCENE.glb [-- options of lambent bake]
+  bench/lost_work.py --at S,S,... [--build BUILD] [--keep DIR] SCENE.glb [-- options of lambent bake]
 
 Bakes the scene once without a break, and notes when each stage begins and when the cache's folder gets an entry. Then
 bakes it again from an empty cache, kills it in every stage of at least S seconds (2), at the worst moment: just before
@@ -10,7 +11,12 @@ the end of the longest time without a new entry, and starts it again each time. 
   lost = time of the new start until it is in that stage + time in that stage, of both runs - time in it without a break
 
 in seconds of the clock and of all cores. The stages before are found in the cache; what reading them takes is part of
-what is lost. The last run must leave the very bytes of the bake that nobody touched. Linux; standard library only.
+what is lost. The last run must leave the very bytes of the bake that nobody touched.
+
+--at is for bakes that take hours: each start is killed after so many seconds, and lost is how long the next one takes
+until it stands where that one stood, by stage and percent of it. Nothing is run to its end, no bytes are compared.
+
+Linux; standard library only.
 Run it on a machine that does nothing else. --keep DIR leaves bundle, reports and caches there.
 """
 import argparse
@@ -43,6 +49,7 @@ class Run:
 
     def __init__(self, command, report, entries_of=None):
         self.stages = []  # (name, s of the clock, s of all cores), as they begin
+        self.at = ("", 0.0)  # stage, and percent where that is known
         self.entries = {}  # file: s of the clock
         master, slave = pty.openpty()  # the program tells its stages to terminals only
         self.began, began = time.monotonic(), time.time()
@@ -72,6 +79,7 @@ class Run:
             self.said = (self.said + got.decode("utf-8", "replace"))[-2000:]
             for match in LINE.finditer(text):
                 name = match.group(1).strip()
+                self.at = (name, float(match.group(2) or 0.0))
                 if self.stages and self.stages[-1][0] == name:
                     continue
                 try:
@@ -114,17 +122,33 @@ class Run:
         return self
 
     def kill_in(self, stage, after):
-        """False where the stage was over, or never came."""
+        """False where it came too late, or the stage never came."""
         with self.entered:
             self.entered.wait_for(lambda: self.over or any(s[0] == stage for s in self.stages))
             began = next((s[1] for s in self.stages if s[0] == stage), None)
-        if began is not None:
-            time.sleep(max(0.0, self.began + began + after - time.monotonic()))
-        in_it = bool(self.stages) and self.stages[-1][0] == stage
-        if in_it:
-            os.kill(self.process.pid, signal.SIGKILL)  # it is not waited for yet, so the number is still its own
+        while began is not None and self.stages[-1][0] == stage and time.monotonic() < self.began + began + after:
+            time.sleep(0.02)
+        in_it = began is not None and self.stages[-1][0] == stage
+        os.kill(self.process.pid, signal.SIGKILL)  # it is not waited for yet, so the number is still its own
         self._end()
         return in_it and self.process.returncode == -signal.SIGKILL
+
+    def seconds_until(self, place):
+        """Of the clock and of all cores, until it is in that stage and as far in it, or in a later one."""
+        stage, percent = place
+        while not self.over:
+            reached = any(s[0] == stage for s in self.stages) and (self.at[0] != stage or self.at[1] >= percent)
+            if reached:
+                return time.monotonic() - self.began, cpu_seconds(self.process.pid)
+            time.sleep(0.05)
+        raise SystemExit(f"lost_work.py: the bake ended:\n{self.said}")
+
+    def kill_at(self, seconds):
+        time.sleep(max(0.0, self.began + seconds - time.monotonic()))
+        at = self.at
+        os.kill(self.process.pid, signal.SIGKILL)
+        self._end()
+        return at
 
     def spans(self):
         """name: (begin, end) of the clock and of all cores; of a name that comes twice, the last."""
@@ -143,11 +167,24 @@ def longest_gap(run, begin, end):
     return best
 
 
+def kill_after(start, moments):
+    print("| killed after, s | in | lost, s | lost, s of all cores |\n|---|---|---|---|", flush=True)
+    run = start("killed", "killed-cache")
+    for after in moments:
+        stage, percent = run.kill_at(after)
+        run = start("killed", "killed-cache")
+        lost = run.seconds_until((stage, percent))
+        where = f"{stage}, {percent:.1f} %" if percent else stage
+        print(f"| {after:.0f} | {where} | {lost[0]:.1f} | {lost[1]:.1f} |", flush=True)
+    run.kill_at(0.0)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--build", default="build/release")
     parser.add_argument("--least", type=float, default=2.0)
     parser.add_argument("--only", default="")
+    parser.add_argument("--at", type=lambda text: [float(s) for s in text.split(",")])
     parser.add_argument("--keep", type=pathlib.Path)
     parser.add_argument("scene")
     parser.add_argument("options", nargs="*")
@@ -164,6 +201,8 @@ def main():
         for name in ("whole", "killed"):
             shutil.rmtree(folder / f"{name}-cache", ignore_errors=True)
             (folder / f"{name}.lmb.glb").unlink(missing_ok=True)
+        if a.at:
+            return kill_after(start, a.at)
         whole = start("whole", "whole-cache", watched=True).finish()
         shutil.rmtree(folder / "whole-cache")
         spans = whole.spans()
@@ -187,10 +226,13 @@ def main():
 
         for stage, gap, after in chosen:
             run = start("killed", "killed-cache")
-            if not run.kill_in(stage, after):
-                raise SystemExit(f"lost_work.py: \"{stage}\" was over sooner than in the bake before; try again")
+            in_it = run.kill_in(stage, after)
             if last:
                 row(run)
+            last = None
+            if not in_it:
+                print(f"| {stage} | | | was over sooner than before | | |", flush=True)
+                continue
             wall, cpu = run.spans()[stage]
             last = (stage, gap, after, (wall[1] - wall[0], cpu[1] - cpu[0]))
         run = start("killed", "killed-cache").finish()
