@@ -143,6 +143,20 @@ TEST_F(EditorProgram, BakesTheScenesOfAWorldWithTheOptionsThatItWasSavedWith) {
   EXPECT_EQ(scene["bake"]["upToDate"], true) << "or it was baked with other options than the bundle has";
 }
 
+TEST_F(EditorProgram, ReachesEachOfSeveralMarksWithOneName) {
+  const Played played =
+      play(fmt::format("open {}\nwait loaded\ncreate-sphere 1 2 0\nrename lamp\ncreate-sphere -1 2 0\n"
+                       "rename lamp\nwait frames 3\nmarks\nclick scene.lamp\nget Transform.translation\n"
+                       "click scene.lamp#2\nget Transform.translation\n",
+                       path("hello.glb")),
+           {"--no-bake"});
+  ASSERT_EQ(played.outcome.exit_code, 0) << told(played.outcome);
+  const auto places = played.all("get Transform.translation");
+  ASSERT_EQ(places.size(), 2u);
+  EXPECT_NEAR(std::abs(places[0][0].get<double>()), 1.0, 1e-6);
+  EXPECT_NEAR(places[0][0].get<double>(), -places[1][0].get<double>(), 1e-6) << "not the same twice";
+}
+
 TEST_F(EditorProgram, TakesADroppedSceneAndShowsItBeforeItIsBaked) {
   const Played played =
       play(fmt::format("drop {0}\nwait frames 3\nwait loaded 60\nstate\nwait baked 240\nstate\n"
