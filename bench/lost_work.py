@@ -6,7 +6,8 @@
 
 Bakes the scene once without a break, and notes when each stage begins and when the cache's folder gets an entry. Then
 bakes it again from an empty cache, kills it in every stage of at least S seconds (2), at the worst moment: just before
-the end of the longest time without a new entry, and starts it again each time. Of the stage of a kill
+the end of the longest time without a new entry, told by seconds of all cores, and starts it again each time. Of the stage of
+a kill
 
   lost = time of the new start until it is in that stage + time in that stage, of both runs - time in it without a break
 
@@ -51,6 +52,7 @@ class Run:
         self.stages = []  # (name, s of the clock, s of all cores), as they begin
         self.at = ("", 0.0)  # stage, and percent where that is known
         self.entries = {}  # file: s of the clock
+        self.clock = []  # (s of the clock, s of all cores)
         master, slave = pty.openpty()  # the program tells its stages to terminals only
         self.began, began = time.monotonic(), time.time()
         with open(report, "w") as out:
@@ -97,6 +99,10 @@ class Run:
 
     def _watch(self, folder, began):
         while self.reader.is_alive():
+            try:
+                self.clock.append((time.monotonic() - self.began, cpu_seconds(self.process.pid)))
+            except (OSError, IndexError):
+                break  # it has just ended
             for root, _, files in os.walk(folder):
                 for name in files:
                     if name.endswith(".entry") and name not in self.entries:
@@ -121,13 +127,20 @@ class Run:
             raise SystemExit(f"lost_work.py: the bake failed:\n{self.said}")
         return self
 
+    def cores_at(self, seconds):
+        """s of all cores by then."""
+        return max((cpu for wall, cpu in self.clock if wall <= seconds), default=0.0)
+
     def kill_in(self, stage, after):
         """False where it came too late, or the stage never came."""
         with self.entered:
             self.entered.wait_for(lambda: self.over or any(s[0] == stage for s in self.stages))
-            began = next((s[1] for s in self.stages if s[0] == stage), None)
-        while began is not None and self.stages[-1][0] == stage and time.monotonic() < self.began + began + after:
-            time.sleep(0.02)
+            began = next((s[2] for s in self.stages if s[0] == stage), None)
+        try:
+            while began is not None and self.stages[-1][0] == stage and cpu_seconds(self.process.pid) < began + after:
+                time.sleep(0.02)
+        except (OSError, IndexError):
+            pass  # it has just ended
         in_it = began is not None and self.stages[-1][0] == stage
         os.kill(self.process.pid, signal.SIGKILL)  # it is not waited for yet, so the number is still its own
         self._end()
@@ -208,13 +221,14 @@ def main():
         spans = whole.spans()
         print(f"without a break {whole.wall:.1f} s, {whole.cpu:.1f} s of all cores\n", flush=True)
         chosen = []
-        for name, ((begin, end), _) in spans.items():
+        for name, ((begin, end), (cores, _)) in spans.items():
             if end - begin < a.least or (a.only and name not in a.only.split(",")):
                 continue
             gap, at = longest_gap(whole, begin, end)
-            chosen.append((name, gap, max(0.2, at - begin - BEFORE_THE_END_S)))
+            chosen.append((name, gap, max(0.1, whole.cores_at(at - BEFORE_THE_END_S) - cores)))
 
-        print("| stage | s | longest without an entry, s | killed after, s | lost, s | lost, s of all cores |")
+        print("| stage | s | longest without an entry, s | killed after, s of all cores | lost, s "
+              "| lost, s of all cores |")
         print("|---|---|---|---|---|---|", flush=True)
         last = None  # (stage, gap, killed after, time in it before the kill)
 
