@@ -51,7 +51,7 @@ class Run:
     def __init__(self, command, report, entries_of=None):
         self.stages = []  # (name, s of the clock, s of all cores), as they begin
         self.at = ("", 0.0)  # stage, and percent where that is known
-        self.entries = {}  # file: s of the clock
+        self.entries = set()  # (file, s of the clock): a checkpoint may be written again and again
         self.clock = []  # (s of the clock, s of all cores)
         master, slave = pty.openpty()  # the program tells its stages to terminals only
         self.began, began = time.monotonic(), time.time()
@@ -105,11 +105,11 @@ class Run:
                 break  # it has just ended
             for root, _, files in os.walk(folder):
                 for name in files:
-                    if name.endswith(".entry") and name not in self.entries:
+                    if name.endswith(".entry"):
                         try:
-                            self.entries[name] = os.stat(os.path.join(root, name)).st_mtime - began
+                            self.entries.add((name, os.stat(os.path.join(root, name)).st_mtime - began))
                         except OSError:
-                            pass
+                            pass  # it is gone, having done its work
             time.sleep(0.2)
 
     def _end(self):
@@ -171,7 +171,7 @@ class Run:
 
 def longest_gap(run, begin, end):
     """Without an entry, of those that reach into a stage: its length, and where it ends in the stage."""
-    times = sorted(t for t in run.entries.values() if t < end)
+    times = sorted(t for _, t in run.entries if t < end)
     marks = [0.0] + times + [end]
     best = (0.0, end)
     for first, second in zip(marks, marks[1:]):
