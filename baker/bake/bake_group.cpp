@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "baker/bake/bake_around.hpp"
+#include "baker/bake/fit_vertices.hpp"
 #include "baker/bake/group_keys.hpp"
 #include "baker/bake/result_bytes.hpp"
 #include "baker/brdf/kernel_power.hpp"
@@ -72,6 +73,10 @@ std::optional<Transported> transport(const DiffuseScene& scene, const SurfaceBrd
   figures.ray_seconds += progress.now().seconds;
   figures.rays = direct->field.rays, figures.rays_kept = direct->rays_kept;
   group.filled_samples = direct->field.filled_samples;
+  FitFigures fitted;
+  if (options.fitsMatte() && !fitDiffuse(pass, scene, *direct, progress, stop, {cache, keys.rays}, fitted))
+    return std::nullopt;
+  figures.rays += fitted.rays, figures.rays_kept += fitted.rays_kept;
   group.hit_bytes = direct->hits.bytes();
   Transported light{std::move(*direct), std::nullopt, std::nullopt};
 
@@ -84,6 +89,11 @@ std::optional<Transported> transport(const DiffuseScene& scene, const SurfaceBrd
     figures.ray_seconds += progress.now().seconds;
     figures.glossy_rays = light.glossy->rays, figures.glossy_rays_kept = light.glossy->rays_kept;
     group.filled_samples += light.glossy->filled_samples;
+    FitFigures fitted_glossy;
+    if (options.fitsGlossy() && !fitGlossy(*glossy_pass, light.direct, *light.glossy, progress, stop,
+                                           {cache, keys.glossy_rays}, fitted_glossy))
+      return std::nullopt;
+    figures.glossy_rays += fitted_glossy.rays, figures.glossy_rays_kept += fitted_glossy.rays_kept;
     group.hit_bytes = std::max<std::uint64_t>(group.hit_bytes, light.glossy->hits.bytes());
     group.glossy_samples = light.glossy->field.size();
   }

@@ -99,7 +99,13 @@ GroupKeys groupKeys(const Scene& scene, const GroupGeometry& geometry, std::span
                   .add(options.bounces != 0)
                   .key();
   keys.glossy_rays = KeyMaker::ofStage("glossy rays").add(keys.rays).add(options.glossy_order).key();
-  keys.bounces = KeyMaker::ofStage("bounces").add(keys.glossy_rays).add(colored).add(reflecting).key();
+  keys.bounces = KeyMaker::ofStage("bounces")
+                     .add(keys.glossy_rays)
+                     .add(colored)
+                     .add(reflecting)
+                     .add(options.fitsMatte())
+                     .add(options.fitsGlossy())
+                     .key();
   keys.cells = KeyMaker::ofStage("cells")
                    .add(keys.bounces)
                    .add(options.bounces)

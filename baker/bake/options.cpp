@@ -17,11 +17,12 @@ struct QualityRow {
   float error_bound, glossy_error_bound, refine_bound;
   double refine_growth;
   std::size_t refine_added;
+  bool fits_glossy;
 };
 constexpr std::array kQualities = {
-    QualityRow{"draft", 256, 0.01f, 0.03f, 0.02f, 1.2, 10'000},
-    QualityRow{"standard", 1024, 0.003f, 0.015f, 0.014f, 1.5, 20'000},
-    QualityRow{"high", 4096, 0.001f, 0.005f, 0.007f, 4.0, 60'000},
+    QualityRow{"draft", 256, 0.01f, 0.03f, 0.02f, 1.2, 10'000, false},
+    QualityRow{"standard", 1024, 0.003f, 0.015f, 0.014f, 1.5, 20'000, true},
+    QualityRow{"high", 4096, 0.001f, 0.005f, 0.007f, 4.0, 60'000, true},
 };
 
 const QualityRow& row(Quality quality) {
@@ -67,6 +68,14 @@ float BakeOptions::effectiveRefineBound() const {
   return refine_bound >= 0.0f ? refine_bound : row(quality).refine_bound;
 }
 
+bool BakeOptions::fitsMatte() const {
+  return fit.value_or(false);
+}
+
+bool BakeOptions::fitsGlossy() const {
+  return fit.value_or(row(quality).fits_glossy);
+}
+
 double BakeOptions::refineGrowth() const {
   return row(quality).refine_growth;
 }
@@ -97,6 +106,9 @@ std::map<std::string, std::string> BakeOptions::settings() const {
                : fmt::format("{}x{}x{}", neighborhood_grid.x, neighborhood_grid.y, neighborhood_grid.z)},
           {"maxEdge", fmt::format("{}", max_edge_m)},
           {"refineBound", fmt::format("{}", effectiveRefineBound())},
+          {"fit", fitsMatte()    ? "on"
+                  : fitsGlossy() ? "glossy"
+                                 : "off"},
           {"volumeGrid", fmt::format("{}x{}x{}", volume_grid.x, volume_grid.y, volume_grid.z)},
           {"effects", effects}};
 }
@@ -126,11 +138,18 @@ std::optional<BakeOptions> BakeOptions::fromSettings(const std::map<std::string,
     BakeOptions options = all;
     options.quality = quality;
     const QualityRow& usual = row(quality);
-    int asked = 3;  // for other than is usual
+    int asked = 4;  // for other than is usual
     if (all.rays == usual.rays) options.rays = 0, --asked;
     if (all.error_bound == usual.error_bound && glossy_bound == usual.glossy_error_bound)
       options.error_bound = 0.0f, --asked;
     if (all.refine_bound == usual.refine_bound) options.refine_bound = -1.0f, --asked;
+    const std::string_view fit = find("fit");
+    if (fit == (usual.fits_glossy ? "glossy" : "off"))
+      --asked;
+    else if (fit == "on" || fit == "off")
+      options.fit = fit == "on";
+    else
+      continue;  // "glossy" is not to be had with this quality, other words with none
     if (best && asked >= fewest) continue;
     fewest = asked;
     best = options;

@@ -195,7 +195,7 @@ glm::vec3 SurfaceBrdfs::State::geometricNormal(std::uint32_t triangle) const {
 }
 
 glm::vec3 SurfaceBrdfs::State::normalAt(std::uint32_t triangle, float u, float v) const {
-  return unitOr(interpolated(geometry->normals, triangle, u, v),
+  return unitOr(interpolatedNormal(*geometry, geometry->triangles[triangle], {1.0f - u - v, u, v}),
                 unitOr(geometricNormal(triangle), {0.0f, 1.0f, 0.0f}));
 }
 

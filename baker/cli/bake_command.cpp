@@ -322,6 +322,20 @@ void addNeighborhoodGridOption(CLI::App& command, BakeOptions& options) {
       ->type_name("XxYxZ");
 }
 
+void addFitOption(CLI::App& command, BakeOptions& options) {
+  command
+      .add_option_function<std::string>(
+          "--fit",
+          [&options](const std::string& text) {
+            options.fit = text == "auto" ? std::optional<bool>() : std::optional(text == "on");
+          },
+          "Fit direct light at vertices to what rays from inside the faces see, so that interpolation "
+          "shows faces best: on, off (what the vertices see) or auto (default): on glossy surfaces, but for "
+          "drafts")
+      ->check(CLI::IsMember({"auto", "on", "off"}))
+      ->type_name("auto|on|off");
+}
+
 void addRefineOption(CLI::App& command, BakeOptions& options) {
   command
       .add_option_function<std::string>(
@@ -415,6 +429,7 @@ void addBakeCommand(CLI::App& app, Command& run) {
                    "Split edges longer than this (scene units), so that large faces catch shadows")
       ->type_name("M");
   addRefineOption(*command, a->options);
+  addFitOption(*command, a->options);
   addLightSamplesOption(*command, a->options);
   addNeighborhoodGridOption(*command, a->options);
   addVolumeGridOption(*command, a->options);

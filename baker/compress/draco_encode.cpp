@@ -92,6 +92,14 @@ std::vector<glm::u16vec4> quantizeColors(std::span<const glm::vec4> colors) {
   return quantized;
 }
 
+std::vector<glm::vec<1, std::uint8_t>> quantizeWeights(std::span<const float> weights) {
+  std::vector<glm::vec<1, std::uint8_t>> quantized;
+  quantized.reserve(weights.size());
+  for (const float weight : weights)
+    quantized.emplace_back(static_cast<std::uint8_t>(std::lround(std::clamp(weight * 255.0f, 1.0f, 255.0f))));
+  return quantized;
+}
+
 bundle::DracoAttributes addAttributes(draco::Mesh& out, const bundle::MeshData& mesh,
                                       const std::vector<glm::vec3>& positions) {
   using Attribute = draco::GeometryAttribute;
@@ -107,6 +115,9 @@ bundle::DracoAttributes addAttributes(draco::Mesh& out, const bundle::MeshData& 
     ids.color0 = addAttribute(out, Attribute::COLOR, draco::DT_UINT16, true, quantizeColors(mesh.colors));
   if (!mesh.tangents.empty())
     ids.tangent = addAttribute(out, Attribute::GENERIC, draco::DT_FLOAT32, false, mesh.tangents);
+  if (!mesh.normal_weights.empty())
+    ids.normal_weight =
+        addAttribute(out, Attribute::GENERIC, draco::DT_UINT8, true, quantizeWeights(mesh.normal_weights));
   return ids;
 }
 
@@ -146,7 +157,8 @@ void setQuantization(draco::ExpertEncoder& encoder, const draco::Mesh& mesh, int
         encoder.SetAttributeQuantization(i, kTexcoordBits);
         break;
       case draco::GeometryAttribute::GENERIC:
-        encoder.SetAttributeQuantization(i, kTangentBits);
+        if (mesh.attribute(i)->data_type() == draco::DT_FLOAT32)
+          encoder.SetAttributeQuantization(i, kTangentBits);
         break;
       default:
         break;

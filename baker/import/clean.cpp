@@ -72,6 +72,7 @@ void gatherVertices(MeshData& mesh, std::span<const std::uint32_t> sources) {
   };
   gather(mesh.positions);
   gather(mesh.normals);
+  gather(mesh.normal_weights);
   gather(mesh.texcoords0);
   gather(mesh.texcoords1);
   gather(mesh.colors);

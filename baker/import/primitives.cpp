@@ -94,7 +94,8 @@ Result<DracoSource> dracoSource(const Document& document, const tinygltf::Primit
                                  .texcoord0 = source.id("TEXCOORD_0"),
                                  .texcoord1 = source.id("TEXCOORD_1"),
                                  .color0 = source.id("COLOR_0"),
-                                 .tangent = tangents ? source.id("TANGENT") : -1};
+                                 .tangent = tangents ? source.id("TANGENT") : -1,
+                                 .normal_weight = source.id("_NORMAL_WEIGHT")};  // of a bundle
   const auto position = primitive.attributes.find("POSITION");
   const int indices = indexAccessor(primitive);
   if (position == primitive.attributes.end() || source.announced.attributes.position < 0 || indices < 0)

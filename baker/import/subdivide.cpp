@@ -112,11 +112,14 @@ class Splitter {
     pushMidpoint(mesh_.texcoords1, low, high);
     pushMidpoint(mesh_.colors, low, high);
     if (!mesh_.normals.empty()) {
-      const glm::vec3 sum = mesh_.normals[low] + mesh_.normals[high];
-      const float length = glm::length(sum);
-      const glm::vec3 normal =
-          length > 1e-6f ? sum / length : mesh_.normals[low];  // opposite normals have no mean
-      mesh_.normals.push_back(normal);
+      // Weighted, so that interpolation over the parts is that over the whole (MeshData::normal_weights).
+      mesh_.normal_weights.resize(next, 1.0f);
+      const glm::vec3 mean = 0.5f * (mesh_.normal_weights[low] * mesh_.normals[low] +
+                                     mesh_.normal_weights[high] * mesh_.normals[high]);
+      const float length = glm::length(mean);
+      const bool any = length > 1e-6f;  // opposite normals have no mean
+      mesh_.normals.push_back(any ? mean / length : mesh_.normals[low]);
+      mesh_.normal_weights.push_back(any ? length : mesh_.normal_weights[low]);
     }
     if (!mesh_.tangents.empty()) {
       const glm::vec4 first = mesh_.tangents[low];

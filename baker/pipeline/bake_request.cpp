@@ -38,6 +38,7 @@ json optionsJson(const BakeOptions& o) {
           {"maxEdge", o.max_edge_m},
           {"neighborhoodGrid", gridJson(o.neighborhood_grid)},
           {"refineBound", o.refine_bound},
+          {"fit", o.fit ? json(*o.fit) : json()},
           {"lightSamples", o.light_samples},
           {"volumeGrid", gridJson(o.volume_grid)},
           {"effects", o.effects},
@@ -59,6 +60,7 @@ BakeOptions readOptions(const json& value) {
   value.at("maxEdge").get_to(o.max_edge_m);
   o.neighborhood_grid = readGrid(value.at("neighborhoodGrid"));
   value.at("refineBound").get_to(o.refine_bound);
+  if (const json& fit = value.at("fit"); !fit.is_null()) o.fit = fit.get<bool>();
   value.at("lightSamples").get_to(o.light_samples);
   o.volume_grid = readGrid(value.at("volumeGrid"));
   value.at("effects").get_to(o.effects);

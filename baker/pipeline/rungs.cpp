@@ -29,6 +29,7 @@ BakeOptions rungOptions(Rung rung, const BakeOptions& asked) {
   options.bounces = asked.bounces == 0 ? 0 : 1;
   options.error_bound = std::max(kCoarseErrorBound, asked.effectiveErrorBound());
   options.refine_bound = 0.0f;
+  options.fit = false;
   options.volume_grid = glm::min(asked.volume_grid, glm::uvec3(kCoarseVolumeGrid));
   options.neighborhood_grid = asked.neighborhood_grid == glm::uvec3(0u)
                                   ? kCoarseNeighborhoodGrid

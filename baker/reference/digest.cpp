@@ -61,7 +61,8 @@ void add(const Scene& scene, Digest& digest) {
     for (const ScenePrimitive& primitive : mesh.primitives) {
       const bundle::MeshData& data = primitive.mesh;
       digest.add(primitive.material);
-      digest.addList(data.positions), digest.addList(data.normals), digest.addList(data.texcoords0);
+      digest.addList(data.positions), digest.addList(data.normals), digest.addList(data.normal_weights);
+      digest.addList(data.texcoords0);
       digest.addList(data.texcoords1), digest.addList(data.colors), digest.addList(data.tangents);
       digest.addList(data.indices);
     }

@@ -70,7 +70,8 @@ Result<Surfaces> Surfaces::build(const Scene& scene) {
       for (std::size_t v = 0; v < count; ++v) {
         out.positions_.emplace_back(matrix * glm::dvec4(mesh.positions[v], 1.0));
         const glm::dvec3 normal = cofactors * glm::dvec3(mesh.normals[v]);
-        out.normals_.push_back(unitOr(mirrored ? -normal : normal, glm::dvec3(0.0, 1.0, 0.0)));
+        const float weight = mesh.normal_weights.size() == count ? mesh.normal_weights[v] : 1.0f;
+        out.normals_.push_back(weight * unitOr(mirrored ? -normal : normal, glm::dvec3(0.0, 1.0, 0.0)));
         const bool has_tangent = mesh.tangents.size() == count;
         out.tangents_.push_back(
             has_tangent ? glm::vec4(unitOr(linear * glm::dvec3(mesh.tangents[v]), {}), mesh.tangents[v].w)

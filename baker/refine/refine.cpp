@@ -14,6 +14,7 @@
 #include "baker/cache/kept_ranges.hpp"
 #include "baker/refine/marked_edges.hpp"
 #include "baker/refine/shadow_probe.hpp"
+#include "baker/transport/face_points.hpp"
 #include "baker/transport/geometry_key.hpp"
 #include "baker/transport/samples.hpp"
 #include "baker/transport/vertex_key.hpp"
@@ -201,25 +202,14 @@ Result<bool> GroupRefiner::measure(const GroupGeometry& geometry, Progress& prog
   std::vector<Inner> inner;
   for (std::uint32_t t = 0; t < geometry.triangles.size(); ++t) {
     const glm::uvec3 corners = geometry.triangles[t];
-    const glm::vec3 a = geometry.positions[corners.x], b = geometry.positions[corners.y],
-                    c = geometry.positions[corners.z];
-    const glm::vec3 across = glm::cross(b - a, c - a);
-    const float twice_area = glm::length(across);
-    const glm::vec3 face = across / twice_area;
     const SampleKind kind = kinds[samples.vertex_sample[corners.x]];
     const int along =
         std::clamp(static_cast<int>(std::ceil(longestEdge(geometry, corners) / (kProbeSpacing * diagonal_))),
                    1, kMostProbesAlong);
     for (const InnerPoint& point : innerPoints(along)) {
-      const glm::vec3 w = point.weights;
-      const glm::vec3 at = w.x * a + w.y * b + w.z * c;
-      const glm::vec3 sum = w.x * geometry.normals[corners.x] + w.y * geometry.normals[corners.y] +
-                            w.z * geometry.normals[corners.z];
-      const float length = glm::length(sum);
-      const glm::vec3 normal = length > 0.0f ? sum / length : face;
-      const SampleOrigin origin{at + standOff(at, std::sqrt(0.5f * twice_area)) * face, face, 1.0f,
-                                reachOf(std::sqrt(twice_area), geometry)};
-      inner.push_back({t, shadowAt(at, normal, kind, std::span(&origin, 1), missing), w, normal, kind});
+      const FacePoint at = facePoint(geometry, corners, point.weights);
+      inner.push_back({t, shadowAt(at.position, at.normal, kind, std::span(&at.origin, 1), missing),
+                       point.weights, at.normal, kind});
     }
   }
 

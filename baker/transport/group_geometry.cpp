@@ -71,6 +71,7 @@ void append(const PlannedDraw& draw, const bundle::MeshData& mesh, const gltf::M
     // Adding 0 turns -0 into 0: samples are welded by their bits.
     geometry.positions.push_back(glm::vec3(placed - glm::dvec3(geometry.origin)) + 0.0f);
     geometry.normals.push_back(side * unitOr(normal_matrix * mesh.normals[v], {0.0f, 1.0f, 0.0f}) + 0.0f);
+    geometry.normal_weights.push_back(mesh.normal_weights.empty() ? 1.0f : mesh.normal_weights[v]);
     geometry.texcoords.push_back(texcoordOf(base, mesh, v));
     geometry.emissive_texcoords.push_back(texcoordOf(emissive, mesh, v));
     geometry.colors.push_back(mesh.colors.empty() ? glm::vec4(1.0f) : mesh.colors[v]);
@@ -107,6 +108,14 @@ glm::vec3 originOf(const RigidGroup& group, const std::vector<std::vector<bundle
 }
 
 }  // namespace
+
+glm::vec3 interpolatedNormal(const GroupGeometry& geometry, const glm::uvec3& corners,
+                             const glm::vec3& shares) {
+  glm::vec3 sum(0.0f);
+  for (int c = 0; c < 3; ++c)
+    sum += shares[c] * geometry.normal_weights[corners[c]] * geometry.normals[corners[c]];
+  return unitOr(sum, glm::vec3(0.0f));
+}
 
 GroupGeometry buildGroupGeometry(const RigidGroup& group, const Scene& scene,
                                  const std::vector<std::vector<bundle::MeshData>>& decoded,

@@ -34,9 +34,10 @@ struct DrawGeometry {
 };
 
 struct GroupGeometry {
-  glm::vec3 origin{0.0f};            // group frame, metres: 0 unless the group stands far away
-  std::vector<glm::vec3> positions;  // from `origin`, along the group frame's axes
-  std::vector<glm::vec3> normals;    // unit; of back draws negated
+  glm::vec3 origin{0.0f};             // group frame, metres: 0 unless the group stands far away
+  std::vector<glm::vec3> positions;   // from `origin`, along the group frame's axes
+  std::vector<glm::vec3> normals;     // unit; of back draws negated
+  std::vector<float> normal_weights;  // MeshData's, 1 where it has none
   std::vector<glm::vec2>
       texcoords;  // of the material's base-colour texture, transformed; 0 where it has none
   std::vector<glm::vec2> emissive_texcoords;  // of its emissive texture
@@ -51,6 +52,10 @@ struct GroupGeometry {
   std::vector<DrawGeometry> draws;               // in the order of RigidGroup::draws
   glm::vec3 bounds_min{0.0f}, bounds_max{0.0f};  // from `origin`
 };
+
+// Between the corners of a triangle, by their shares; unit, or 0 where they cancel.
+glm::vec3 interpolatedNormal(const GroupGeometry& geometry, const glm::uvec3& corners,
+                             const glm::vec3& shares);
 
 // decoded[mesh][primitive] is what ships. with_glossy: materials that are not matte have glossy samples; else
 // all are Lambert.

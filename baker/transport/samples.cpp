@@ -198,6 +198,7 @@ SampleSet buildSamples(const GroupGeometry& geometry) {
 std::vector<std::pair<std::uint32_t, std::uint32_t>> sampleEdges(const GroupGeometry& geometry,
                                                                  const SampleSet& samples) {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;
+  if (samples.vertex_sample.empty()) return edges;
   edges.reserve(geometry.triangles.size() * 3);
   for (const glm::uvec3& triangle : geometry.triangles)
     for (int c = 0; c < 3; ++c) {

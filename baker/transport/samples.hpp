@@ -65,7 +65,8 @@ float reachOf(float face_size, const GroupGeometry& geometry);
 
 SampleSet buildSamples(const GroupGeometry& geometry);
 
-// Pairs of samples that share an edge of a face, each once as (smaller, larger), sorted.
+// Pairs of samples that share an edge of a face, each once as (smaller, larger), sorted. None where samples
+// are not of vertices.
 std::vector<std::pair<std::uint32_t, std::uint32_t>> sampleEdges(const GroupGeometry& geometry,
                                                                  const SampleSet& samples);
 

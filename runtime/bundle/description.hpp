@@ -26,7 +26,8 @@ inline constexpr std::uint32_t kVersionClusteredTransfer = 2;
 inline constexpr std::uint32_t kVersionLocalLight = 3;
 inline constexpr std::uint32_t kVersionGlossyTransfer = 4;
 inline constexpr std::uint32_t kVersionVolumesAndNeighborhoods = 5;
-inline constexpr std::uint32_t kVersionCurrent = kVersionVolumesAndNeighborhoods;
+inline constexpr std::uint32_t kVersionWeightedNormals = 6;
+inline constexpr std::uint32_t kVersionCurrent = kVersionWeightedNormals;
 
 // A byte range of the GLB's binary chunk.
 struct View {
@@ -37,7 +38,8 @@ struct View {
 
 // Attributes of a Draco mesh: the unique id of each, -1 where absent.
 struct DracoAttributes {
-  std::int32_t position = -1, normal = -1, texcoord0 = -1, texcoord1 = -1, color0 = -1, tangent = -1;
+  std::int32_t position = -1, normal = -1, texcoord0 = -1, texcoord1 = -1, color0 = -1, tangent = -1,
+               normal_weight = -1;
 };
 
 struct Primitive {

@@ -36,6 +36,7 @@ constexpr std::array kAttributes = {
     AttributeName{"TEXCOORD_1", &DracoAttributes::texcoord1, 5126, "VEC2"},
     AttributeName{"COLOR_0", &DracoAttributes::color0, 5123, "VEC4"},
     AttributeName{"TANGENT", &DracoAttributes::tangent, 5126, "VEC4"},
+    AttributeName{"_NORMAL_WEIGHT", &DracoAttributes::normal_weight, 5121, "SCALAR"},
 };
 
 Json primitiveJson(const Primitive& primitive, Json& accessors) {
@@ -48,7 +49,7 @@ Json primitiveJson(const Primitive& primitive, Json& accessors) {
       accessor["min"] = vectorJson(primitive.bounds_min);
       accessor["max"] = vectorJson(primitive.bounds_max);
     }
-    if (attribute.component_type == 5123) accessor["normalized"] = true;
+    if (attribute.component_type != 5126) accessor["normalized"] = true;
     attributes[attribute.name] = accessors.size();
     draco[attribute.name] = id;
     accessors.push_back(std::move(accessor));

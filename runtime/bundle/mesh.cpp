@@ -7,6 +7,7 @@
 
 #include <draco/compression/decode.h>
 #include <fmt/format.h>
+#include <glm/ext/vector_float1.hpp>
 #include <xxhash.h>
 
 namespace lambent::bundle {
@@ -143,6 +144,13 @@ Result<MeshData> extract(const draco::Mesh& mesh, const DracoAttributes& attribu
     done = take(data.texcoords1, attributes.texcoord1, "texture coordinates");
   if (done && attributes.color0 >= 0) done = take(data.colors, attributes.color0, "colours");
   if (done && attributes.tangent >= 0) done = take(data.tangents, attributes.tangent, "tangents");
+  if (done && attributes.normal_weight >= 0) {
+    std::vector<glm::vec1> weights;
+    done = take(weights, attributes.normal_weight, "weights of normals");
+    if (done && data.normals.empty())
+      done = fail(subject, "has weights of normals, but no normals", kReencode);
+    for (const glm::vec1& weight : weights) data.normal_weights.push_back(glm::clamp(weight.x, 1e-3f, 1.0f));
+  }
   if (done) done = normalize(data.normals, subject);
   if (done) done = normalize(data.tangents, subject);
   if (!done) return failAgain(std::move(done.error()));
@@ -202,6 +210,11 @@ Result<std::vector<glm::vec4>> decodeDracoAttribute(std::span<const std::byte> b
   return withDecoded<std::vector<glm::vec4>>(bytes, primitive, subject, [&](const draco::Mesh& mesh) {
     return readAttribute<glm::vec4>(mesh, id, name.c_str(), subject);
   });
+}
+
+void weighNormals(MeshData& mesh) {
+  for (std::size_t i = 0; i < mesh.normal_weights.size(); ++i) mesh.normals[i] *= mesh.normal_weights[i];
+  mesh.normal_weights.clear();
 }
 
 std::uint64_t meshDigest(const MeshData& mesh) {

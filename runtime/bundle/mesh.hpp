@@ -17,8 +17,12 @@
 namespace lambent::bundle {
 
 struct MeshData {
-  std::vector<glm::vec3> positions;    // mesh space
-  std::vector<glm::vec3> normals;      // unit length
+  std::vector<glm::vec3> positions;  // mesh space
+  std::vector<glm::vec3> normals;    // unit length
+  // By which normals count where they are interpolated, above 0 and at most 1; empty: all 1. The mean of two
+  // normals is shorter than they are, and a vertex that splits an edge keeps that: else the two halves of the
+  // edge would turn from one normal to the other in another way than the whole did.
+  std::vector<float> normal_weights;
   std::vector<glm::vec2> texcoords0;   // may be empty
   std::vector<glm::vec2> texcoords1;   // may be empty
   std::vector<glm::vec4> colors;       // linear, 0..1; may be empty
@@ -36,6 +40,9 @@ Result<MeshData> decodeDraco(std::span<const std::byte> bytes, const Primitive& 
 Result<std::vector<glm::vec4>> decodeDracoAttribute(std::span<const std::byte> bytes,
                                                     const Primitive& primitive, std::int32_t id,
                                                     const std::string& name, const std::string& subject);
+
+// Normals times their weights, as vertices hand them to pixels; the weights are empty then.
+void weighNormals(MeshData& mesh);
 
 // XXH3-64 over positions and indices: transfer belongs to exactly this mesh.
 std::uint64_t meshDigest(const MeshData& mesh);

@@ -49,6 +49,13 @@ layout(location = 5) out vec3 position_mesh;
 
 vec2 geometry2(uint at) { return vec2(uintBitsToFloat(geometry[at]), uintBitsToFloat(geometry[at + 1u])); }
 vec3 geometry3(uint at) { return vec3(geometry2(at), uintBitsToFloat(geometry[at + 2u])); }
+// In the group's frame, as long as its weight: pixels bring what is between to unit length.
+#if defined(LAMBENT_NORMAL_MAPPED) || defined(LAMBENT_NEAR_LIGHTS) || defined(LAMBENT_GLOSSY) || defined(LAMBENT_NEIGHBORHOODS) || defined(LAMBENT_VIEW_NORMALS)
+vec3 weightedNormal(uint vertex) {
+  vec3 normal = geometry3(draws[draw_index].normals_word + 3u * vertex);
+  return length(normal) * unit(mat3(draws[draw_index].group_from_mesh_normal) * normal);
+}
+#endif
 #if !defined(LAMBENT_GLOSSY) && !defined(LAMBENT_DARK)
 vec3 radianceAt(uint at) { return vec3(radiance_of[at], radiance_of[at + 1u], radiance_of[at + 2u]); }
 #endif
@@ -76,7 +83,7 @@ void main() {
   }
 #if defined(LAMBENT_NORMAL_MAPPED) || defined(LAMBENT_GLOSSY)
   mat3 group_from_mesh = mat3(draws[draw_index].group_from_mesh);
-  vec3 normal = unit(mat3(draws[draw_index].group_from_mesh_normal) * geometry3(draws[draw_index].normals_word + 3u * vertex));
+  vec3 normal = weightedNormal(vertex);
   vec2 normal_at = LOOKED_AT(normal_texture);
 #ifdef LAMBENT_GLOSSY
   // Tangents follow from the normal map's coordinates or else from the mesh's own.
@@ -112,7 +119,7 @@ void main() {
 #endif
 #if defined(LAMBENT_NEAR_LIGHTS) || defined(LAMBENT_NEIGHBORHOODS) || defined(LAMBENT_VIEW_NORMALS)
   normal_group =
-      draws[draw_index].facing * unit(mat3(draws[draw_index].group_from_mesh_normal) * geometry3(draws[draw_index].normals_word + 3u * vertex));
+      draws[draw_index].facing * weightedNormal(vertex);
 #endif
 #ifdef LAMBENT_NEIGHBORHOODS
   position_mesh = position;

@@ -62,6 +62,7 @@ class Load {
       return {};
     auto mesh = reader_.readMesh(work.mesh, work.primitive);
     if (!mesh) return failAgain(mesh.error());
+    bundle::weighNormals(*mesh);
     return MeshReady{work.mesh, work.primitive, std::move(*mesh)};
   }
 

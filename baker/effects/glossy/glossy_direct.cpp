@@ -167,6 +167,33 @@ void plainTransfer(int order_out, glm::vec3 normal, std::span<const float> matri
     for (std::size_t i = 0; i < out.size(); ++i) out[i] += kernel[k] * matrix[k * out.size() + i];
 }
 
+bool plainFromGlossy(const GlossyPass& pass, const GlossyField& field, DirectResult& direct,
+                     const std::stop_token& stop) {
+  const std::size_t outputs = squared(field.order_out), columns = squared(field.order_in),
+                    lights = field.light_columns;
+  return parallelRanges(pass.size(), kSamplesPerRange, stop, [&](std::size_t begin, std::size_t end) {
+    std::vector<float> matrix(outputs * columns);
+    for (std::size_t s = begin; s < end; ++s) {
+      std::fill(matrix.begin(), matrix.end(), 0.0f);
+      sh::addVisibilityMatrix(
+          pass.gaunt(),
+          std::span(field.visibility).subspan(s * field.visibilitySize(), field.visibilitySize()), matrix);
+      const glm::vec3 normal = pass.scene().samples.normals[pass.first() + s];
+      const auto out = direct.field.at(pass.first() + s);
+      plainTransfer(field.order_out, normal, matrix, out.first(columns));
+      for (std::size_t c = 0; c < field.channels; ++c) {
+        std::copy_n(out.begin(), columns,
+                    out.begin() + static_cast<std::ptrdiff_t>(c * direct.field.columns));
+        if (lights > 0)
+          plainTransfer(field.order_out, normal,
+                        std::span(field.lights_shadowed)
+                            .subspan((s * field.channels + c) * outputs * lights, outputs * lights),
+                        out.subspan(c * direct.field.columns + columns, lights));
+      }
+    }
+  });
+}
+
 std::optional<GlossyDirect> bakeGlossyDirect(const GlossyPass& pass, std::size_t hit_memory,
                                              DirectResult& direct, Progress& progress,
                                              const std::stop_token& stop, const Keep& keep) {
@@ -175,8 +202,7 @@ std::optional<GlossyDirect> bakeGlossyDirect(const GlossyPass& pass, std::size_t
   const bool keep_hits = pass.plain().settings().keep_hits;
   GlossyDirect result{.field = pass.shape(), .hits = HitStore(count, keep_hits ? hit_memory : 0)};
   GlossyField& field = result.field;
-  const std::size_t outputs = squared(field.order_out), columns = squared(field.order_in),
-                    lights = field.light_columns;
+  const std::size_t outputs = squared(field.order_out), lights = field.light_columns;
   field.visibility.resize(count * field.visibilitySize());
   field.lights_shadowed.resize(count * field.channels * outputs * lights);
   progress.begin("glossy shadows", count, "samples");
@@ -231,28 +257,7 @@ std::optional<GlossyDirect> bakeGlossyDirect(const GlossyPass& pass, std::size_t
     if (lights > 0) fill(field.channels * outputs * lights, field.lights_shadowed);
   }
 
-  const bool derived = parallelRanges(count, kSamplesPerRange, stop, [&](std::size_t begin, std::size_t end) {
-    std::vector<float> matrix(outputs * columns);
-    for (std::size_t s = begin; s < end; ++s) {
-      std::fill(matrix.begin(), matrix.end(), 0.0f);
-      sh::addVisibilityMatrix(
-          pass.gaunt(),
-          std::span(field.visibility).subspan(s * field.visibilitySize(), field.visibilitySize()), matrix);
-      const glm::vec3 normal = samples.normals[pass.first() + s];
-      const auto out = direct.field.at(pass.first() + s);
-      plainTransfer(field.order_out, normal, matrix, out.first(columns));
-      for (std::size_t c = 0; c < field.channels; ++c) {
-        std::copy_n(out.begin(), columns,
-                    out.begin() + static_cast<std::ptrdiff_t>(c * direct.field.columns));
-        if (lights > 0)
-          plainTransfer(field.order_out, normal,
-                        std::span(field.lights_shadowed)
-                            .subspan((s * field.channels + c) * outputs * lights, outputs * lights),
-                        out.subspan(c * direct.field.columns + columns, lights));
-      }
-    }
-  });
-  if (!derived) return std::nullopt;
+  if (!plainFromGlossy(pass, field, direct, stop)) return std::nullopt;
   return result;
 }
 

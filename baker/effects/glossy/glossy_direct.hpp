@@ -59,6 +59,10 @@ std::optional<GlossyDirect> bakeGlossyDirect(const GlossyPass& pass, std::size_t
                                              DirectResult& direct, Progress& progress,
                                              const std::stop_token& stop, const Keep& keep = {});
 
+// Fills in the glossy samples of direct.field from visibility and lights. False if stopped.
+bool plainFromGlossy(const GlossyPass& pass, const GlossyField& field, DirectResult& direct,
+                     const std::stop_token& stop);
+
 // What a sample's matrix in the group's frame gives at a Lambert receiver with its normal:
 // out[column] = Σ_k (A_l/pi) y_k(n) matrix[k * columns + column].
 void plainTransfer(int order_out, glm::vec3 normal, std::span<const float> matrix, std::span<float> out);

@@ -29,6 +29,11 @@ TEST(BakeOptions, ComeBackFromTheSettingsThatABundleRecords) {
   other.max_edge_m = 0.1f;
   other.neighborhood_grid = {64, 48, 8}, other.volume_grid = {16, 24, 32}, other.effects = "diffuse,glossy";
   expectBack(other, Quality::High);
+  for (const bool fit : {false, true}) {
+    other.fit = fit;
+    expectBack(other, Quality::High);
+  }
+  other.fit = std::nullopt;
   other.rays = 777;
   expectBack(other, Quality::High);
   other.error_bound = 0.0123f, other.refine_bound = 0.0f;  // nothing of a quality is left

@@ -117,6 +117,35 @@ TEST(SplitLongEdges, InterpolatesAttributesAndKeepsNormalsUnit) {
               0.0f);
 }
 
+TEST(SplitLongEdges, TurnsNormalsOverThePartsAsOverTheWhole) {
+  // Normals that differ by up to 100 degrees, as at the corners of coarse scans.
+  MeshData whole;
+  whole.positions = {{0.0f, 0.0f, 0.0f}, {1.0f, 0.0f, 0.0f}, {0.0f, 1.0f, 0.0f}};
+  whole.normals = {glm::normalize(glm::vec3(-0.9f, -0.2f, 0.5f)), glm::normalize(glm::vec3(0.8f, 0.1f, 0.6f)),
+                   glm::normalize(glm::vec3(0.1f, 0.9f, 0.4f))};
+  whole.indices = {0, 1, 2};
+  MeshData parts = whole;
+  ASSERT_TRUE(splitLongEdges(parts, 0.2f, 10'000));
+  ASSERT_EQ(parts.normal_weights.size(), parts.normals.size());
+  const auto interpolated = [](const MeshData& mesh, std::size_t triangle, const glm::vec3& shares) {
+    glm::vec3 sum(0.0f);
+    for (int c = 0; c < 3; ++c) {
+      const std::uint32_t v = mesh.indices[triangle + static_cast<std::size_t>(c)];
+      sum += shares[c] * (mesh.normal_weights.empty() ? 1.0f : mesh.normal_weights[v]) * mesh.normals[v];
+    }
+    return glm::normalize(sum);
+  };
+  for (std::size_t i = 0; i < parts.indices.size(); i += 3)
+    for (const glm::vec3 shares :
+         {glm::vec3(0.6f, 0.3f, 0.1f), glm::vec3(1.0f / 3.0f), glm::vec3(0.05f, 0.05f, 0.9f)}) {
+      glm::vec3 p(0.0f);
+      for (int c = 0; c < 3; ++c)
+        p += shares[c] * parts.positions[parts.indices[i + static_cast<std::size_t>(c)]];
+      const glm::vec3 in_whole(1.0f - p.x - p.y, p.x, p.y);
+      EXPECT_LT(glm::distance(interpolated(parts, i, shares), interpolated(whole, 0, in_whole)), 1e-5f);
+    }
+}
+
 TEST(SplitLongEdges, ChangesNothingWhereEdgesAreShortOrTheGuardSteps) {
   MeshData mesh = box({1, 1, 1});
   const MeshData before = mesh;

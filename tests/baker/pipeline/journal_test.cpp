@@ -29,6 +29,7 @@ TEST_F(JournalTest, KeepsEveryOptionOfARequest) {
                    .max_edge_m = 0.1f,
                    .neighborhood_grid = {3, 4, 5},
                    .refine_bound = 0.07f,
+                   .fit = false,
                    .light_samples = 9,
                    .volume_grid = {6, 7, 8},
                    .effects = "diffuse,glossy",

@@ -126,6 +126,29 @@ TEST(DracoMesh, NormalsAreUnitAndWithinATwentiethOfADegree) {
   EXPECT_LT(worst * 180.0 / std::numbers::pi, 0.05);
 }
 
+TEST(DracoMesh, WeightsOfNormalsKeepWithinHalfOf255thsAndNormalsTakeThem) {
+  MeshData mesh = bump(12);
+  std::map<Key, float> weight_at;
+  for (std::size_t i = 0; i < mesh.normals.size(); ++i) {
+    mesh.normal_weights.push_back(0.2f +
+                                  0.8f * static_cast<float>(i) / static_cast<float>(mesh.normals.size()));
+    weight_at[bits(glm::round(mesh.positions[i] / kStep) * kStep + 0.0f)] = mesh.normal_weights[i];
+  }
+  EncodedMesh out = encoded(mesh);
+  ASSERT_EQ(out.decoded.normal_weights.size(), out.decoded.normals.size());
+  for (std::size_t i = 0; i < out.decoded.normals.size(); ++i) {
+    EXPECT_NEAR(glm::length(out.decoded.normals[i]), 1.0f, 1e-6f);
+    EXPECT_NEAR(out.decoded.normal_weights[i], weight_at.at(bits(out.decoded.positions[i])),
+                0.5f / 255.0f + 1e-6f);
+  }
+  const std::vector<float> weights = out.decoded.normal_weights;
+  weighNormals(out.decoded);
+  EXPECT_TRUE(out.decoded.normal_weights.empty());
+  for (std::size_t i = 0; i < weights.size(); ++i)
+    EXPECT_NEAR(glm::length(out.decoded.normals[i]), weights[i], 1e-6f);
+  EXPECT_TRUE(encoded(bump(12)).decoded.normal_weights.empty());  // where nothing was split
+}
+
 TEST(DracoMesh, TexcoordsAndColorsKeepTheirBounds) {
   MeshData mesh = bump(12);
   for (std::size_t i = 0; i < mesh.positions.size(); ++i) {

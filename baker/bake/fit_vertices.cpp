@@ -1,0 +1,106 @@
+#include "baker/bake/fit_vertices.hpp"
+
+#include <algorithm>
+
+#include "baker/effects/diffuse/vertex_fit.hpp"
+#include "baker/transport/face_points.hpp"
+
+namespace lambent::baker {
+
+namespace {
+
+Keep keepInside(const Keep& keep, std::span<const std::uint32_t> triangles) {
+  KeyMaker key = KeyMaker::ofStage("inside faces");
+  key.add(keep.key).addList(triangles);
+  return {keep.cache, key.key()};
+}
+
+// The same rays as at the vertices, and nothing of what they meet.
+DirectSettings settingsInside(const DirectSettings& settings) {
+  DirectSettings inside = settings;
+  inside.keep_hits = false;
+  inside.hit_memory = 0;
+  return inside;
+}
+
+DiffuseScene withSamples(const DiffuseScene& scene, const SampleSet& samples) {
+  return {scene.scene, scene.geometry, samples, scene.rays, scene.colors, scene.lights};
+}
+
+// Values of a stretch, `width` each, to what rays from inside the faces found.
+struct Part {
+  std::size_t width;
+  std::span<const float> at_points;
+  std::span<float> values;
+};
+
+}  // namespace
+
+bool fitDiffuse(const DirectPass& pass, const DiffuseScene& scene, DirectResult& direct, Progress& progress,
+                const std::stop_token& stop, const Keep& keep, FitFigures& figures) {
+  const SampleStretch plain{0, scene.samples.first_normal_mapped},
+      mapped{scene.samples.first_normal_mapped, scene.samples.first_glossy};
+  const std::size_t width = direct.field.vectorSize();
+  const auto fieldOf = [&](const SampleStretch& stretch) {
+    return std::span(direct.field.vectors).subspan(stretch.begin * width, stretch.size() * width);
+  };
+  std::vector<std::uint32_t> triangles;
+  for (const SampleStretch& stretch : {plain, mapped}) {
+    const auto own = changingTriangles(scene.geometry, scene.samples, stretch, width, fieldOf(stretch));
+    triangles.insert(triangles.end(), own.begin(), own.end());
+  }
+  if (triangles.empty()) return true;
+  const FacePoints points = facePoints(scene.geometry, scene.samples, triangles);
+  progress.begin("inside faces", points.samples.size(), "samples");
+  const DiffuseScene inside = withSamples(scene, points.samples);
+  const auto found = bakeDirect(DirectPass(inside, settingsInside(pass.settings())), inside, progress, stop,
+                                keepInside(keep, triangles));
+  if (!found) return false;
+  figures.points += points.samples.size();
+  figures.rays += found->field.rays, figures.rays_kept += found->rays_kept;
+  const auto fit = [&](const SampleStretch& stretch, const SampleStretch& of_points,
+                       std::initializer_list<Part> parts) {
+    const VertexFit vertices(scene.geometry, scene.samples, stretch, points, of_points, found->looks.valid);
+    return std::all_of(parts.begin(), parts.end(), [&](const Part& part) {
+      return vertices.apply(part.width, part.at_points, part.values, stop);
+    });
+  };
+  const SampleStretch plain_points{0, points.samples.first_normal_mapped},
+      mapped_points{points.samples.first_normal_mapped, points.samples.size()};
+  const auto foundIn = [&](const SampleStretch& stretch) {
+    return std::span(found->field.vectors).subspan(stretch.begin * width, stretch.size() * width);
+  };
+  return fit(plain, plain_points, {{width, foundIn(plain_points), fieldOf(plain)}}) &&
+         fit(mapped, mapped_points,
+             {{width, foundIn(mapped_points), fieldOf(mapped)},
+              {direct.mapped.vectorSize(), found->mapped.vectors, direct.mapped.vectors}});
+}
+
+bool fitGlossy(const GlossyPass& pass, DirectResult& direct, GlossyDirect& glossy, Progress& progress,
+               const std::stop_token& stop, const Keep& keep, FitFigures& figures) {
+  const DiffuseScene& scene = pass.scene();
+  GlossyField& field = glossy.field;
+  const SampleStretch stretch{scene.samples.first_glossy, scene.samples.size()};
+  const auto triangles =
+      changingTriangles(scene.geometry, scene.samples, stretch, field.visibilitySize(), field.visibility);
+  if (triangles.empty()) return true;
+  const FacePoints points = facePoints(scene.geometry, scene.samples, triangles);
+  const DiffuseScene inside = withSamples(scene, points.samples);
+  const DirectPass plain_pass(inside, settingsInside(pass.plain().settings()));
+  const GlossyPass glossy_pass(plain_pass, inside, field.order_out);
+  auto plain = bakeDirect(plain_pass, inside, progress, stop);  // of no sample: shapes
+  if (!plain) return false;
+  const auto found = bakeGlossyDirect(glossy_pass, 0, *plain, progress, stop, keepInside(keep, triangles));
+  if (!found) return false;
+  figures.points += points.samples.size();
+  figures.rays += found->rays, figures.rays_kept += found->rays_kept;
+  const VertexFit vertices(scene.geometry, scene.samples, stretch, points, {0, points.samples.size()},
+                           plain->looks.valid);
+  if (!vertices.apply(field.visibilitySize(), found->field.visibility, field.visibility, stop)) return false;
+  if (field.light_columns > 0 && !vertices.apply(field.lights_shadowed.size() / field.size(),
+                                                 found->field.lights_shadowed, field.lights_shadowed, stop))
+    return false;
+  return plainFromGlossy(pass, field, direct, stop);
+}
+
+}  // namespace lambent::baker

@@ -1,0 +1,29 @@
+// Direct light at the vertices as interpolation over faces shows it best: rays from inside the faces over
+// which it changes, and a least-squares fit to what they see (effects/diffuse/vertex_fit.hpp). Bounces gather
+// from the fitted values, and add what they bring at the vertices.
+#pragma once
+
+#include <cstdint>
+#include <stop_token>
+
+#include "baker/cache/kept_ranges.hpp"
+#include "baker/effects/diffuse/direct.hpp"
+#include "baker/effects/glossy/glossy_direct.hpp"
+#include "baker/work/progress.hpp"
+
+namespace lambent::baker {
+
+struct FitFigures {
+  std::size_t points = 0;  // inside faces
+  std::uint64_t rays = 0, rays_kept = 0;
+};
+
+// Of plain and normal-mapped samples. keep: that of the rays of the vertices. False if stopped. Stage "inside
+// faces" of `progress`, counting samples. The result does not depend on the number of threads.
+bool fitDiffuse(const DirectPass& pass, const DiffuseScene& scene, DirectResult& direct, Progress& progress,
+                const std::stop_token& stop, const Keep& keep, FitFigures& figures);
+// Of glossy samples; their plain transfer follows.
+bool fitGlossy(const GlossyPass& pass, DirectResult& direct, GlossyDirect& glossy, Progress& progress,
+               const std::stop_token& stop, const Keep& keep, FitFigures& figures);
+
+}  // namespace lambent::baker

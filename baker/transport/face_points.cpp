@@ -1,0 +1,55 @@
+#include "baker/transport/face_points.hpp"
+
+#include <cmath>
+
+#include <glm/geometric.hpp>
+
+namespace lambent::baker {
+
+FacePoint facePoint(const GroupGeometry& geometry, const glm::uvec3& corners, const glm::vec3& weights) {
+  const glm::vec3 a = geometry.positions[corners.x], b = geometry.positions[corners.y],
+                  c = geometry.positions[corners.z];
+  const glm::vec3 across = glm::cross(b - a, c - a);
+  const float twice_area = glm::length(across);
+  const glm::vec3 face = across / twice_area;
+  const glm::vec3 at = weights.x * a + weights.y * b + weights.z * c;
+  const glm::vec3 normal = interpolatedNormal(geometry, corners, weights);
+  return {.position = at,
+          .normal = normal == glm::vec3(0.0f) ? face : normal,
+          .origin = {.position = at + standOff(at, std::sqrt(0.5f * twice_area)) * face,
+                     .geometric_normal = face,
+                     .weight = 1.0f,
+                     .reach = reachOf(std::sqrt(twice_area), geometry)}};
+}
+
+FacePoints facePoints(const GroupGeometry& geometry, const SampleSet& samples,
+                      std::span<const std::uint32_t> triangles) {
+  FacePoints points;
+  SampleSet& set = points.samples;
+  set.origin_offsets.push_back(0);
+  const auto append = [&](std::size_t first, std::size_t end) {
+    for (const std::uint32_t t : triangles) {
+      const glm::uvec3 corners = geometry.triangles[t];
+      const std::uint32_t sample = samples.vertex_sample[corners.x];
+      if (sample < first || sample >= end) continue;
+      const glm::vec3 a = geometry.positions[corners.x];
+      if (!(glm::length(glm::cross(geometry.positions[corners.y] - a, geometry.positions[corners.z] - a)) >
+            0.0f))
+        continue;
+      const FacePoint point = facePoint(geometry, corners, glm::vec3(1.0f / 3.0f));
+      points.triangles.push_back(t);
+      set.positions.push_back(point.position);
+      set.normals.push_back(point.normal);
+      if (glm::dot(point.normal, point.origin.geometric_normal) > 0.0f) set.origins.push_back(point.origin);
+      set.origin_offsets.push_back(static_cast<std::uint32_t>(set.origins.size()));
+    }
+  };
+  append(0, samples.first_normal_mapped);
+  set.first_normal_mapped = set.size();
+  append(samples.first_normal_mapped, samples.first_glossy);
+  set.first_glossy = set.size();
+  append(samples.first_glossy, samples.size());
+  return points;
+}
+
+}  // namespace lambent::baker

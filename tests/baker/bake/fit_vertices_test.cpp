@@ -1,0 +1,161 @@
+#include "baker/bake/fit_vertices.hpp"
+
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "baker/transport/face_points.hpp"
+#include "baker/work/parallel.hpp"
+#include "tests/support/glossy_transport.hpp"
+#include "tests/support/shapes.hpp"
+
+namespace lambent::baker {
+namespace {
+
+using testing::Transport;
+
+// A box on a coarse floor, matte or of metal.
+Scene boxOnFloor(float metallic) {
+  Scene scene = testing::sceneOf({testing::grid({0.0f, 0.0f, 0.0f}, 4.0f, 10),
+                                  testing::box({0.13f, 0.4f, -0.21f}, {0.7f, 0.8f, 0.7f}, 3)});
+  scene.materials[0].metallic = metallic;
+  scene.materials[0].roughness = metallic > 0.0f ? 0.3f : 1.0f;
+  return scene;
+}
+
+// Points of faces other than those that the fit looks from, and what interpolation over the samples is off
+// there, relative to what is there: root mean square, weighted by area.
+class Truth {
+ public:
+  explicit Truth(const Transport& t) : t_(t) {
+    std::mt19937 random(5);
+    std::uniform_real_distribution<float> uniform;
+    for (std::uint32_t i = 0; i < t.geometry.triangles.size(); ++i) {
+      const float root = std::sqrt(uniform(random)), along = uniform(random);
+      const glm::vec3 shares(1.0f - root, root * (1.0f - along), root * along);
+      const glm::uvec3 corners = t.geometry.triangles[i];
+      const FacePoint point = facePoint(t.geometry, corners, shares);
+      shares_.push_back(shares);
+      areas_.push_back(
+          0.5f * glm::length(glm::cross(t.geometry.positions[corners.y] - t.geometry.positions[corners.x],
+                                        t.geometry.positions[corners.z] - t.geometry.positions[corners.x])));
+      points.positions.push_back(point.position);
+      points.normals.push_back(point.normal);
+      points.origins.push_back(point.origin);
+    }
+    for (std::uint32_t i = 0; i <= points.size(); ++i) points.origin_offsets.push_back(i);
+    const bool glossy = t.samples.first_glossy == 0;
+    points.first_normal_mapped = points.first_glossy = glossy ? 0 : points.size();
+  }
+
+  double error(std::size_t width, std::span<const float> truth, const std::vector<std::uint8_t>& valid,
+               std::span<const float> samples) const {
+    double wrong = 0.0, all = 0.0;
+    for (std::size_t i = 0; i < shares_.size(); ++i) {
+      if (valid[i] == 0) continue;
+      for (std::size_t k = 0; k < width; ++k) {
+        double shown = 0.0;
+        for (int c = 0; c < 3; ++c)
+          shown += double{shares_[i][c]} *
+                   double{samples[t_.samples.vertex_sample[t_.geometry.triangles[i][c]] * width + k]};
+        const double is = truth[i * width + k];
+        wrong += double{areas_[i]} * (shown - is) * (shown - is);
+        all += double{areas_[i]} * is * is;
+      }
+    }
+    return std::sqrt(wrong / all);
+  }
+
+  SampleSet points;
+
+ private:
+  const Transport& t_;
+  std::vector<glm::vec3> shares_;
+  std::vector<float> areas_;
+};
+
+DiffuseScene withSamples(const Transport& t, const SampleSet& samples) {
+  return {t.scene, t.geometry, samples, t.rays, t.colors, t.lights};
+}
+
+constexpr std::size_t kRays = 1024, kTrueRays = 4096;
+
+TEST(FitVertices, ShowsVisibilityOverFacesOfMetalBetterThanWhatTheVerticesSee) {
+  const Transport t(boxOnFloor(1.0f), /*with_glossy=*/true);
+  ASSERT_EQ(t.samples.first_glossy, 0u);
+  const Truth truth(t);
+  const DiffuseScene true_view = withSamples(t, truth.points);
+  const DirectPass true_plain(true_view, {.order = 5, .rays = kTrueRays});
+  const GlossyPass true_pass(true_plain, true_view, 5);
+  Progress progress;
+  auto there = bakeDirect(true_plain, true_view, progress, {});
+  const auto seen = bakeGlossyDirect(true_pass, 0, *there, progress, {});
+
+  const auto bakeFitted = [&](unsigned threads) {
+    const DiffuseScene view = t.diffuse();
+    const DirectPass plain(view, {.order = 5, .rays = kRays});
+    const GlossyPass pass(plain, view, 5);
+    std::pair<GlossyField, GlossyField> out;
+    withThreads(threads, [&] {
+      auto direct = bakeDirect(plain, view, progress, {});
+      auto glossy = bakeGlossyDirect(pass, 0, *direct, progress, {});
+      out.first = glossy->field;
+      FitFigures figures;
+      EXPECT_TRUE(fitGlossy(pass, *direct, *glossy, progress, {}, {}, figures));
+      EXPECT_GT(figures.points, 0u);
+      EXPECT_LT(figures.points, t.geometry.triangles.size());  // far from the box all see the same
+      out.second = glossy->field;
+    });
+    return out;
+  };
+  const auto [before, after] = bakeFitted(0);
+  const auto errorOf = [&](const GlossyField& field) {
+    return truth.error(field.visibilitySize(), seen->field.visibility, there->looks.valid, field.visibility);
+  };
+  RecordProperty("before", std::to_string(errorOf(before)));
+  RecordProperty("after", std::to_string(errorOf(after)));
+  EXPECT_LT(errorOf(after), 0.9 * errorOf(before));
+  EXPECT_EQ(bakeFitted(1).second.visibility, after.visibility);
+}
+
+TEST(FitVertices, ShowsIrradianceOverMatteFacesBetterThanWhatTheVerticesSee) {
+  const Transport t(boxOnFloor(0.0f));
+  const Truth truth(t);
+  const DiffuseScene view = t.diffuse(), true_view = withSamples(t, truth.points);
+  Progress progress;
+  const auto there =
+      bakeDirect(DirectPass(true_view, {.order = 5, .rays = kTrueRays}), true_view, progress, {});
+  const DirectPass pass(view, {.order = 5, .rays = kRays});
+  auto direct = bakeDirect(pass, view, progress, {});
+  const auto error = [&] {
+    return truth.error(direct->field.vectorSize(), there->field.vectors, there->looks.valid,
+                       direct->field.vectors);
+  };
+  const double before = error();
+  FitFigures figures;
+  ASSERT_TRUE(fitDiffuse(pass, view, *direct, progress, {}, {}, figures));
+  RecordProperty("before", std::to_string(before));
+  RecordProperty("after", std::to_string(error()));
+  EXPECT_LT(error(), 0.9 * before);
+}
+
+TEST(FitVertices, LeavesAnOpenBodyOfMetalAsItIsAndTracesNothing) {
+  Scene scene = testing::sceneOf({testing::icosphere({0.0f, 0.0f, 0.0f}, 1.0f, 3)});
+  scene.materials[0].metallic = 1.0f;
+  scene.materials[0].roughness = 0.3f;
+  const Transport t(scene, /*with_glossy=*/true);
+  const DiffuseScene view = t.diffuse();
+  const DirectPass plain(view, {.order = 5, .rays = 256});
+  const GlossyPass pass(plain, view, 5);
+  Progress progress;
+  auto direct = bakeDirect(plain, view, progress, {});
+  auto glossy = bakeGlossyDirect(pass, 0, *direct, progress, {});
+  const std::vector<float> before = glossy->field.visibility;
+  FitFigures figures;
+  ASSERT_TRUE(fitGlossy(pass, *direct, *glossy, progress, {}, {}, figures));
+  EXPECT_EQ(glossy->field.visibility, before);
+  EXPECT_EQ(figures.rays, 0u);
+}
+
+}  // namespace
+}  // namespace lambent::baker
