@@ -1,6 +1,8 @@
 #include "baker/bake/options.hpp"
 
 #include <array>
+#include <charconv>
+#include <string_view>
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -25,6 +27,23 @@ constexpr std::array kQualities = {
 
 const QualityRow& row(Quality quality) {
   return kQualities[static_cast<std::size_t>(quality)];
+}
+
+// All of the text, or nothing.
+template <typename T>
+bool readAll(std::string_view text, T& value) {
+  const char* const end = text.data() + text.size();
+  const auto [at, error] = std::from_chars(text.data(), end, value);
+  return error == std::errc{} && at == end;
+}
+
+bool readGrid(std::string_view text, glm::uvec3& grid) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::size_t end = axis < 2 ? text.find('x') : text.size();
+    if (end == std::string_view::npos || !readAll(text.substr(0, end), grid[axis])) return false;
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return true;
 }
 
 }  // namespace
@@ -92,6 +111,50 @@ std::map<std::string, std::string> BakeOptions::settings() const {
                                  : "off"},
           {"volumeGrid", fmt::format("{}x{}x{}", volume_grid.x, volume_grid.y, volume_grid.z)},
           {"effects", effects}};
+}
+
+std::optional<BakeOptions> BakeOptions::fromSettings(const std::map<std::string, std::string>& settings) {
+  const auto find = [&](const char* name) -> std::string_view {
+    const auto found = settings.find(name);
+    return found == settings.end() ? std::string_view() : std::string_view(found->second);
+  };
+  BakeOptions all;
+  float glossy_bound = 0.0f;
+  const auto readOr = [&](const char* name, const char* word, auto& value) {
+    return find(name) == word || readAll(find(name), value);
+  };
+  if (!readAll(find("order"), all.order) || !readAll(find("glossyOrder"), all.glossy_order) ||
+      !readAll(find("rays"), all.rays) || !readOr("bounces", "auto", all.bounces) ||
+      !readOr("lightSamples", "auto", all.light_samples) || !readAll(find("errorBound"), all.error_bound) ||
+      !readAll(find("glossyErrorBound"), glossy_bound) || !readAll(find("maxEdge"), all.max_edge_m) ||
+      !readAll(find("refineBound"), all.refine_bound) || !readGrid(find("volumeGrid"), all.volume_grid) ||
+      !(find("neighborhoodGrid") == "auto" || readGrid(find("neighborhoodGrid"), all.neighborhood_grid)) ||
+      !settings.contains("effects"))
+    return std::nullopt;
+  all.effects = find("effects");
+  std::optional<BakeOptions> best;
+  int fewest = 0;
+  for (const Quality quality : {Quality::Draft, Quality::Standard, Quality::High}) {
+    BakeOptions options = all;
+    options.quality = quality;
+    const QualityRow& usual = row(quality);
+    int asked = 4;  // for other than is usual
+    if (all.rays == usual.rays) options.rays = 0, --asked;
+    if (all.error_bound == usual.error_bound && glossy_bound == usual.glossy_error_bound)
+      options.error_bound = 0.0f, --asked;
+    if (all.refine_bound == usual.refine_bound) options.refine_bound = -1.0f, --asked;
+    const std::string_view fit = find("fit");
+    if (fit == (usual.fits_glossy ? "glossy" : "off"))
+      --asked;
+    else if (fit == "on" || fit == "off")
+      options.fit = fit == "on";
+    else
+      continue;  // "glossy" is not to be had with this quality, other words with none
+    if (best && asked >= fewest) continue;
+    fewest = asked;
+    best = options;
+  }
+  return best;
 }
 
 }  // namespace lambent::baker

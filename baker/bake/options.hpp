@@ -53,6 +53,10 @@ struct BakeOptions {
   std::size_t refineAdded() const;
   std::uint64_t effectiveMemory() const;
   std::map<std::string, std::string> settings() const;
+  // Options with those settings, of the quality that they differ from least; names that settings() does not
+  // have are passed over. Nothing where one is missing or is no value of its kind. threads and memory are the
+  // usual ones.
+  static std::optional<BakeOptions> fromSettings(const std::map<std::string, std::string>& settings);
 };
 
 const char* qualityName(Quality quality);

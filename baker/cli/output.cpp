@@ -27,7 +27,7 @@ std::string progressText(const Progress::Stage& stage) {
   std::string text = stage.name;
   if (stage.total == 0) return fmt::format("{} ({})", text, durationText(stage.seconds));
   const double done = static_cast<double>(stage.done), total = static_cast<double>(stage.total);
-  text += fmt::format(" {:3.0f} %", 100.0 * done / total);
+  text += fmt::format(" {:5.1f} %", 100.0 * done / total);
   if (stage.done == 0 || stage.seconds <= 0.0) return text;
   const double rate = done / stage.seconds;
   return text +

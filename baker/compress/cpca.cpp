@@ -4,9 +4,11 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include <Eigen/Cholesky>
 
+#include "baker/compress/coding_state.hpp"
 #include "baker/compress/cpca_clusters.hpp"
 #include "baker/compress/cpca_quantize.hpp"
 #include "baker/compress/cpca_space.hpp"
@@ -98,51 +100,11 @@ struct Clustering {
   double step = 0.0;
 };
 
-// Iterative PCA: fits and moves samples in turn.
-Clustering refine(const Points& points, ClusterIds ids, double budget, int axes, int rounds, bool held_out,
-                  double least_bits) {
-  Clustering found{std::move(ids), {}, 0.0};
-  for (int round = 0;; ++round) {
-    found.clusters = fitClusters(points, found.ids, held_out, least_bits);
-    found.step = stepFor(found.clusters, budget);
-    if (axes >= 0) keepSoMany(found.clusters, axes);
-    if (round == rounds || found.clusters.size() == 1) return found;
-    found.ids = assignClusters(points, found.clusters, found.step, found.ids);
-  }
-}
-
-Clustering fromSome(const Points& points, std::uint32_t clusters, double budget, int axes,
-                    double least_bits) {
-  const auto count = static_cast<std::size_t>(points.cols());
-  const auto some = someSamples(count, std::max(kLeastSearched, kSearchedPerCluster * clusters));
-  const Points searched = columnsOf(points, some);
-  return refine(searched, seedClusters(searched, clusters), budget, axes, kSearchRounds, some.size() < count,
-                least_bits);
-}
-
 // Of means and axes, decoded.
 std::size_t expandedBytes(const std::vector<Cluster>& clusters, const bundle::TransferShape& shape) {
   std::size_t vectors = clusters.size();
   for (const Cluster& cluster : clusters) vectors += static_cast<std::size_t>(cluster.kept);
   return vectors * shape.size() * sizeof(float);
-}
-
-// The number of clusters that codes to the fewest bytes, by estimates from some of the samples; at most so
-// many.
-Clustering search(const Points& points, double budget, double least_bits, const auto& fits,
-                  std::uint32_t most, const std::stop_token& stop) {
-  Clustering best;
-  double fewest = std::numeric_limits<double>::infinity();
-  for (const std::uint32_t clusters : kClusterCounts) {
-    if (stop.stop_requested() || clusters > most) break;
-    Clustering tried = fromSome(points, clusters, budget, -1, least_bits);
-    if (clusters > 1 && !fits(tried)) break;
-    const double bytes = expectedBytes(tried.clusters, tried.step, static_cast<double>(points.cols()));
-    if (bytes >= fewest) break;
-    fewest = bytes;
-    best = std::move(tried);
-  }
-  return best;
 }
 
 std::vector<float> decode(const CodedTransfer& coded) {
@@ -151,92 +113,218 @@ std::vector<float> decode(const CodedTransfer& coded) {
   return bundle::decodeTransfer(coded.shape, bundle::expand(coded.codebook), coded.cluster_of, codes);
 }
 
+// One transfer, step by step: what is known after each is the state, from which another run goes on.
+class Coder {
+ public:
+  Coder(std::span<const float> vectors, const bundle::TransferShape& shape, const CodingSettings& settings,
+        const std::stop_token& stop, CodingCheckpoint checkpoint)
+      : vectors_(vectors),
+        shape_(shape),
+        settings_(settings),
+        stop_(stop),
+        checkpoint_(std::move(checkpoint)),
+        count_(vectors.size() / shape.size()),
+        space_(weightedSpace(vectors, shape, settings.shown_energy, settings.kernel_power)),
+        least_bits_(shape.glossy() ? kGlossyWeightBits : kPlainWeightBits) {
+    const double bound = double{settings.bound};
+    allowed_ = bound * bound * space_.blocks / static_cast<double>(count_);
+  }
+
+  CodedTransfer code() {
+    const bool goes_on = checkpoint_.restore(count_, state_);
+    if (!goes_on) findBasis();
+    if (state_.basis.basis_scales.empty()) return dark();
+    if (goes_on ? stop_.stop_requested() : stopped()) return {};
+    points_ = coordinates(vectors_, space_.roots, state_.basis);
+    Clustering found;
+    for (;;) {
+      if (state_.step == CodingState::Step::Search && !searchAndAssign()) return {};
+      auto clustered = refine(points_, settings_.axes, kFinalRounds, /*held_out=*/false);
+      if (!clustered) return {};
+      found = std::move(*clustered);
+      if (state_.step == CodingState::Step::Fit || settings_.clusters > 0 || found.clusters.size() == 1 ||
+          fits(found))
+        break;
+      // What some of the samples foretold is too little.
+      state_.most_clusters = static_cast<std::uint32_t>(found.clusters.size() / 2);
+      beginSearch();
+    }
+    if (state_.step != CodingState::Step::Fit) {
+      state_.step = CodingState::Step::Fit;
+      state_.quantum = found.step;
+      if (stopped()) return {};
+    }
+    return fitToBound(found);
+  }
+
+ private:
+  // After a step of the work: keeps the state, where that is to be. True where the work ends here.
+  bool stopped() {
+    const bool stop = stop_.stop_requested();
+    checkpoint_.save(state_, stop);
+    return stop;
+  }
+  void beginSearch() {
+    state_.step = CodingState::Step::Search;
+    state_.tried = 0;
+    state_.fewest_bytes = std::numeric_limits<double>::infinity();
+    state_.best = state_.rounds = {};
+  }
+  bool fits(const Clustering& one) const {
+    return expandedBytes(one.clusters, shape_) <= settings_.most_expanded_bytes;
+  }
+  double errorOf(const CodedTransfer& coded) const {
+    return radianceError(vectors_, decode(coded), shape_, settings_.shown_energy, settings_.kernel_power);
+  }
+
+  void findBasis();
+  CodedTransfer dark() const;
+  // Iterative PCA: fits and moves samples in turn, from where state_.rounds is. Nothing if stopped.
+  std::optional<Clustering> refine(const Points& points, int axes, std::uint32_t rounds, bool held_out);
+  Clustering fitted(const Points& points, ClusterIds ids, int axes, bool held_out) const;
+  std::optional<Clustering> fromSome(std::uint32_t clusters, int axes);
+  std::vector<std::uint32_t> searchedSamples(std::uint32_t clusters) const {
+    return someSamples(count_, std::max(kLeastSearched, kSearchedPerCluster * clusters));
+  }
+  std::optional<Clustering> search();
+  // Assigns all samples to clusters that were found from some. False if stopped.
+  bool searchAndAssign();
+  CodedTransfer fitToBound(Clustering& found);
+
+  std::span<const float> vectors_;
+  const bundle::TransferShape& shape_;
+  const CodingSettings& settings_;
+  const std::stop_token& stop_;
+  CodingCheckpoint checkpoint_;
+  std::size_t count_;
+  WeightedSpace space_;
+  double least_bits_, allowed_ = 0.0;
+  Points points_;
+  CodingState state_;
+};
+
+// A basis for the cell: all principal components but those that hardly matter.
+void Coder::findBasis() {
+  double left_out = 0.0;
+  const double size = static_cast<double>(shape_.size());
+  const std::size_t looked_at =
+      shape_.isVisibility() || shape_.shadowed_channels == 0
+          ? std::max(kBasisSamples, static_cast<std::size_t>(kBasisWork / (size * size)))
+          : kBasisSamples;
+  const Spectrum spectrum = leadingSpectrum(weighted(vectors_, space_.roots, someSamples(count_, looked_at)),
+                                            kTailShare * allowed_, settings_.most_components, left_out);
+  // Where the components that were looked for leave out more than is allowed, the rest is coded to match.
+  state_.reachable = std::max(allowed_, kBesideLeftOut * left_out);
+  state_.budget = 0.9 * (state_.reachable - left_out);  // the rest: rounding of basis, means and axes
+  Eigen::Index rank = spectrum.variances.size();
+  for (double tail = left_out;
+       rank > 0 && (tail += spectrum.variances(rank - 1)) <= left_out + kTailShare * allowed_;)
+    --rank;
+  const double step = std::sqrt(12.0 * state_.budget / static_cast<double>(std::max<Eigen::Index>(rank, 1)));
+  state_.basis = roundedBasis(spectrum.axes.leftCols(rank), spectrum.variances, space_.roots, step);
+  beginSearch();
+}
+
+CodedTransfer Coder::dark() const {
+  CodedTransfer coded{shape_, state_.basis, std::vector<std::uint32_t>(count_, 0), {}, 0.0f};
+  coded.codebook.axis_counts = {0};
+  coded.error = static_cast<float>(errorOf(coded));
+  return coded;
+}
+
+Clustering Coder::fitted(const Points& points, ClusterIds ids, int axes, bool held_out) const {
+  Clustering found{std::move(ids), {}, 0.0};
+  found.clusters = fitClusters(points, found.ids, held_out, least_bits_);
+  found.step = stepFor(found.clusters, state_.budget);
+  if (axes >= 0) keepSoMany(found.clusters, axes);
+  return found;
+}
+
+std::optional<Clustering> Coder::refine(const Points& points, int axes, std::uint32_t rounds, bool held_out) {
+  Rounds& at = state_.rounds;
+  for (;;) {
+    Clustering found = fitted(points, at.ids, axes, held_out);
+    if (at.next >= rounds || found.clusters.size() == 1) {
+      at = {found.ids, rounds};
+      return found;
+    }
+    at = {assignClusters(points, found.clusters, found.step, found.ids), at.next + 1};
+    if (stopped()) return std::nullopt;
+  }
+}
+
+std::optional<Clustering> Coder::fromSome(std::uint32_t clusters, int axes) {
+  const auto some = searchedSamples(clusters);
+  const Points searched = columnsOf(points_, some);
+  if (state_.rounds.ids.empty()) state_.rounds = {seedClusters(searched, clusters), 0};
+  return refine(searched, axes, kSearchRounds, some.size() < count_);
+}
+
+// The number of clusters that codes to the fewest bytes, by estimates from some of the samples.
+std::optional<Clustering> Coder::search() {
+  Clustering best;
+  if (!state_.best.ids.empty()) {
+    const auto some = searchedSamples(kClusterCounts[state_.tried - 1]);
+    best = fitted(columnsOf(points_, some), state_.best.ids, -1, some.size() < count_);
+  }
+  for (; state_.tried < std::size(kClusterCounts); ++state_.tried, state_.rounds = {}) {
+    const std::uint32_t clusters = kClusterCounts[state_.tried];
+    if (clusters > state_.most_clusters) break;
+    auto tried = fromSome(clusters, -1);
+    if (!tried) return std::nullopt;
+    if (clusters > 1 && !fits(*tried)) break;
+    const double bytes = expectedBytes(tried->clusters, tried->step, static_cast<double>(count_));
+    if (bytes >= state_.fewest_bytes) break;
+    state_.fewest_bytes = bytes;
+    state_.best = state_.rounds;
+    best = std::move(*tried);
+  }
+  return best;
+}
+
+bool Coder::searchAndAssign() {
+  const auto few = settings_.clusters > 0 ? fromSome(settings_.clusters, settings_.axes) : search();
+  if (!few) return false;
+  state_.rounds = {assignClusters(points_, few->clusters, few->step, {}), 0};
+  state_.step = CodingState::Step::Refine;
+  return !stopped();
+}
+
 // Steps are planned by what errors and bits are expected to be; here they are measured, and the step made as
 // large as the bound allows.
-CodedTransfer fitToBound(std::span<const float> vectors, const Points& points, Clustering& found,
-                         const bundle::SharedCodebook& basis, const bundle::TransferShape& shape,
-                         const CodingSettings& settings, double bound, const std::stop_token& stop) {
-  CodedTransfer best;
-  double step = found.step;
-  for (int attempt = 0; attempt < kMostAttempts && !stop.stop_requested(); ++attempt) {
-    if (settings.axes < 0) keepAxes(found.clusters, step);
-    if (attempt > 0 && expandedBytes(found.clusters, shape) > settings.most_expanded_bytes) break;
-    CodedTransfer coded = quantize(points, found.ids, found.clusters, basis, shape, step);
-    coded.error = static_cast<float>(
-        radianceError(vectors, decode(coded), shape, settings.shown_energy, settings.kernel_power));
+CodedTransfer Coder::fitToBound(Clustering& found) {
+  const double bound = double{settings_.bound} * std::sqrt(state_.reachable / allowed_);
+  CodedTransfer& best = state_.coded;
+  while (state_.attempt < kMostAttempts) {
+    if (settings_.axes < 0) keepAxes(found.clusters, state_.quantum);
+    if (state_.attempt > 0 && expandedBytes(found.clusters, shape_) > settings_.most_expanded_bytes) break;
+    CodedTransfer coded = quantize(points_, found.ids, found.clusters, state_.basis, shape_, state_.quantum);
+    coded.error = static_cast<float>(errorOf(coded));
     const float error = coded.error;
     const bool met = double{error} <= bound, met_before = double{best.error} <= bound;
     // The larger error is the smaller code, among those that keep the bound.
-    if (attempt == 0 || (met ? !met_before || coded.error > best.error : coded.error < best.error))
+    if (state_.attempt == 0 || (met ? !met_before || coded.error > best.error : coded.error < best.error))
       best = std::move(coded);
-    if (settings.axes >= 0) break;  // no step makes up for axes that are left out
+    if (settings_.axes >= 0) break;  // no step makes up for axes that are left out
     if (met && double{best.error} > 0.98 * bound) break;
     if (best.planes.empty() && met) break;  // nothing left to save
     // Part of the error does not follow the step (rounded means and axes, the weaker of the two blocks): what
     // is missing has to come from the rest, so go down twice as far as the ratio says.
     const double ratio = 0.995 * bound / std::max(double{error}, 1e-12);
-    step *= std::clamp(met ? ratio : ratio * ratio, 0.3, 1.5);
+    state_.quantum *= std::clamp(met ? ratio : ratio * ratio, 0.3, 1.5);
+    ++state_.attempt;
+    if (stopped()) return {};
   }
-  return best;
+  return std::move(best);
 }
 
 }  // namespace
 
-CodedTransfer codeTransfer(std::span<const float> vectors, std::size_t count,
+CodedTransfer codeTransfer(std::span<const float> vectors, [[maybe_unused]] std::size_t count,
                            const bundle::TransferShape& shape, const CodingSettings& settings,
-                           const std::stop_token& stop) {
+                           const std::stop_token& stop, const Keep& keep) {
   assert(count > 0 && vectors.size() == count * shape.size() && settings.bound > 0.0f);
-  const WeightedSpace space = weightedSpace(vectors, shape, settings.shown_energy, settings.kernel_power);
-  const double bound = double{settings.bound};
-  const double allowed = bound * bound * space.blocks / static_cast<double>(count);
-
-  // A basis for the cell: all principal components but those that hardly matter.
-  double left_out = 0.0;
-  const double size = static_cast<double>(shape.size());
-  const std::size_t looked_at =
-      shape.isVisibility() || shape.shadowed_channels == 0
-          ? std::max(kBasisSamples, static_cast<std::size_t>(kBasisWork / (size * size)))
-          : kBasisSamples;
-  const Spectrum spectrum = leadingSpectrum(weighted(vectors, space.roots, someSamples(count, looked_at)),
-                                            kTailShare * allowed, settings.most_components, left_out);
-  // Where the components that were looked for leave out more than is allowed, the rest is coded to match.
-  const double reachable = std::max(allowed, kBesideLeftOut * left_out);
-  const double budget = 0.9 * (reachable - left_out);  // the rest: rounding of basis, means and axes
-  Eigen::Index rank = spectrum.variances.size();
-  for (double tail = left_out;
-       rank > 0 && (tail += spectrum.variances(rank - 1)) <= left_out + kTailShare * allowed;)
-    --rank;
-  const double step = std::sqrt(12.0 * budget / static_cast<double>(std::max<Eigen::Index>(rank, 1)));
-  const bundle::SharedCodebook basis =
-      roundedBasis(spectrum.axes.leftCols(rank), spectrum.variances, space.roots, step);
-  if (rank == 0) {  // dark
-    CodedTransfer coded{shape, basis, std::vector<std::uint32_t>(count, 0), {}, 0.0f};
-    coded.codebook.axis_counts = {0};
-    coded.error = static_cast<float>(
-        radianceError(vectors, decode(coded), shape, settings.shown_energy, settings.kernel_power));
-    return coded;
-  }
-
-  const double least_bits = shape.glossy() ? kGlossyWeightBits : kPlainWeightBits;
-  const Points points = coordinates(vectors, space.roots, basis);
-  const auto fits = [&](const Clustering& one) {
-    return expandedBytes(one.clusters, shape) <= settings.most_expanded_bytes;
-  };
-  const auto clustered = [&](std::uint32_t most) {
-    const Clustering few = settings.clusters > 0
-                               ? fromSome(points, settings.clusters, budget, settings.axes, least_bits)
-                               : search(points, budget, least_bits, fits, most, stop);
-    if (stop.stop_requested()) return Clustering{};
-    return refine(points, assignClusters(points, few.clusters, few.step, {}), budget, settings.axes,
-                  kFinalRounds, /*held_out=*/false, least_bits);
-  };
-  Clustering found = clustered(std::numeric_limits<std::uint32_t>::max());
-  // What some of the samples foretold may be too little.
-  while (settings.clusters == 0 && found.clusters.size() > 1 && !fits(found))
-    found = clustered(static_cast<std::uint32_t>(found.clusters.size() / 2));
-  if (stop.stop_requested()) return {};
-  return fitToBound(vectors, points, found, basis, shape, settings, bound * std::sqrt(reachable / allowed),
-                    stop);
+  return Coder(vectors, shape, settings, stop, CodingCheckpoint(keep)).code();
 }
 
 }  // namespace lambent::baker

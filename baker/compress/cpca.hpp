@@ -17,6 +17,7 @@
 #include <stop_token>
 #include <vector>
 
+#include "baker/cache/kept_ranges.hpp"
 #include "baker/compress/light_weights.hpp"
 #include "runtime/bundle/codebook.hpp"
 
@@ -60,10 +61,12 @@ double transferEnergy(std::span<const float> vectors, const bundle::TransferShap
                       const BandPower& kernel_power = kLobePower);
 
 // vectors: `count` times shape.size() values, count > 0; all finite. Stops early, with an unusable result,
-// when asked to.
+// when asked to. keep: of all of the above; how far the work has come is kept there when a checkpoint is due
+// and when it is stopped, and the next call goes on from there. It stays until CodingCheckpoint::drop
+// (coding_state.hpp); kept_transfer.hpp does all that.
 CodedTransfer codeTransfer(std::span<const float> vectors, std::size_t count,
                            const bundle::TransferShape& shape, const CodingSettings& settings,
-                           const std::stop_token& stop = {});
+                           const std::stop_token& stop = {}, const Keep& keep = {});
 
 // The error that codeTransfer bounds: of the worse of the two blocks.
 double radianceError(std::span<const float> truth, std::span<const float> coded,

@@ -1,16 +1,27 @@
 #include "baker/compress/kept_transfer.hpp"
 
+#include "baker/compress/coding_state.hpp"
+
 namespace lambent::baker {
 
 template <>
 inline constexpr bool kPlainBytes<bundle::AxisCode> = sizeof(bundle::AxisCode) == 2 * sizeof(float);
 
-void write(const CodedTransfer& coded, ByteWriter& out) {
-  const bundle::SharedCodebook& book = coded.codebook;
-  out.add(coded.shape), out.add(coded.error);
+void write(const bundle::SharedCodebook& book, ByteWriter& out) {
   out.addList(book.axis_counts), out.addList(book.axes);
   out.addList(book.value_scales), out.addList(book.basis_scales), out.add(book.mean_scale);
   out.addList(book.basis), out.addList(book.means), out.addList(book.directions);
+}
+
+bool read(ByteReader& in, bundle::SharedCodebook& book) {
+  return in.readList(book.axis_counts) && in.readList(book.axes) && in.readList(book.value_scales) &&
+         in.readList(book.basis_scales) && in.read(book.mean_scale) && in.readList(book.basis) &&
+         in.readList(book.means) && in.readList(book.directions);
+}
+
+void write(const CodedTransfer& coded, ByteWriter& out) {
+  out.add(coded.shape), out.add(coded.error);
+  write(coded.codebook, out);
   out.addList(coded.cluster_of);
   out.add(std::uint64_t{coded.planes.size()});
   for (const CodedPlane& plane : coded.planes) {
@@ -21,12 +32,9 @@ void write(const CodedTransfer& coded, ByteWriter& out) {
 }
 
 bool read(ByteReader& in, CodedTransfer& coded) {
-  bundle::SharedCodebook& book = coded.codebook;
   std::uint64_t planes = 0;
   in.read(coded.shape), in.read(coded.error);
-  in.readList(book.axis_counts), in.readList(book.axes);
-  in.readList(book.value_scales), in.readList(book.basis_scales), in.read(book.mean_scale);
-  in.readList(book.basis), in.readList(book.means), in.readList(book.directions);
+  read(in, coded.codebook);
   in.readList(coded.cluster_of);
   if (!in.read(planes)) return false;
   std::vector<std::uint16_t> codes;
@@ -50,13 +58,14 @@ CodedTransfer KeptCoding::code(std::span<const float> vectors, std::size_t count
     kept_.push_back(keep.key);
   }
   CodedTransfer coded;
-  keptValue(
+  const auto found = keptValue(
       keep, [&](ByteReader& in) { return read(in, coded); },
       [&] {
-        coded = codeTransfer(vectors, count, shape, settings, stop);
+        coded = codeTransfer(vectors, count, shape, settings, stop, keep);
         return !stop.stop_requested();
       },
       [&](ByteWriter& out) { write(coded, out); });
+  if (found == false) CodingCheckpoint(keep).drop();  // made, and kept as a whole
   return coded;
 }
 

@@ -1,5 +1,5 @@
-// Coded transfer as bytes to keep (baker/cache), and coding that may be cut short between one transfer and
-// the next: what was coded is found by the next run of the same work.
+// Coded transfer as bytes to keep (baker/cache), and coding that may be cut short anywhere: what was coded is
+// found by the next run of the same work, and what was being coded goes on from its last checkpoint.
 #pragma once
 
 #include <span>
@@ -11,6 +11,8 @@
 
 namespace lambent::baker {
 
+void write(const bundle::SharedCodebook& book, ByteWriter& out);
+bool read(ByteReader& in, bundle::SharedCodebook& book);
 void write(const CodedTransfer& coded, ByteWriter& out);
 // False, and any part changed, where the bytes are no such result.
 bool read(ByteReader& in, CodedTransfer& coded);

@@ -148,6 +148,7 @@ Answer state(Session& session, Words) {
                 {"bundle", entry.bundle.string()},
                 {"shown", entry.shown.string()},
                 {"open", entry.slot.has_value()},
+                {"bakeOptions", entry.options.settings()},
                 {"needsRebake", session.needsRebake(i)}};
     if (const auto job = session.scenes.jobOf(i)) row["bake"] = jobJson(*job);
     scenes.push_back(std::move(row));

@@ -112,7 +112,7 @@ Result<void> Scenes::open(const std::filesystem::path& path) {
     return fail(path.string(), "is not there", "check the name, or drop the file onto the window");
   if (find(place)) return fail(path.string(), "is open already", "close it first to open it anew");
   if (isBundle(place)) return openBundle(place, idFor(place));
-  if (baker::isSceneFile(place)) return openScene(place, idFor(bundleFor(place)), {});
+  if (baker::isSceneFile(place)) return openScene(place, idFor(bundleFor(place)), settings_.options, {});
   return fail(path.string(), "is no scene, bundle or folder",
               "open .gltf, .glb, .lmb.glb or a folder of them");
 }
@@ -125,7 +125,7 @@ Result<void> Scenes::open(const BundleEntry& entry, const std::filesystem::path&
     const auto edits = entry.bake_options.find(kEditsOption);
     const auto read = edits == entry.bake_options.end() ? std::nullopt : baker::readEdits(edits->second);
     if (std::filesystem::exists(source, ignored))
-      return openScene(source, entry.id, read.value_or(baker::SceneEdits{}));
+      return openScene(source, entry.id, optionsOf(entry), read.value_or(baker::SceneEdits{}));
   }
   if (!std::filesystem::exists(bundle, ignored))
     return fail(bundle.string(), "is not there", "bake it again, or take it out of the world file");
@@ -142,12 +142,30 @@ Result<void> Scenes::openBundle(const std::filesystem::path& bundle, std::string
   return {};
 }
 
-Result<void> Scenes::openScene(const std::filesystem::path& scene, std::string id, baker::SceneEdits edits) {
+// As the world was saved with; how this machine bakes is no part of it. What cannot be read, as of a version
+// with other options, is said, and baked as any other scene.
+baker::BakeOptions Scenes::optionsOf(const BundleEntry& entry) {
+  std::map<std::string, std::string> words = entry.bake_options;
+  words.erase(kEditsOption);
+  if (words.empty()) return settings_.options;
+  auto options = baker::BakeOptions::fromSettings(words);
+  if (!options) {
+    log_.warn(entry.id +
+              ": the world file's bake_options are not those of this version; the usual ones are taken");
+    return settings_.options;
+  }
+  options->threads = settings_.options.threads;
+  options->memory_bytes = settings_.options.memory_bytes;
+  return *options;
+}
+
+Result<void> Scenes::openScene(const std::filesystem::path& scene, std::string id,
+                               const baker::BakeOptions& options, baker::SceneEdits edits) {
   SceneEntry entry{.source = scene,
                    .bundle = bundleFor(scene),
                    .id = std::move(id),
                    .shown = {},
-                   .options = settings_.options,
+                   .options = options,
                    .edits = edits,
                    .shown_edits = std::move(edits)};
   std::error_code ignored;

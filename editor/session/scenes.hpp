@@ -80,7 +80,9 @@ class Scenes {
   std::uint64_t version() const { return version_; }
 
  private:
-  Result<void> openScene(const std::filesystem::path& scene, std::string id, baker::SceneEdits edits);
+  baker::BakeOptions optionsOf(const BundleEntry& entry);
+  Result<void> openScene(const std::filesystem::path& scene, std::string id,
+                         const baker::BakeOptions& options, baker::SceneEdits edits);
   Result<void> openBundle(const std::filesystem::path& bundle, std::string id);
   Result<void> openFolder(const std::filesystem::path& folder);
   void show(SceneEntry& entry, const std::filesystem::path& bundle);

@@ -46,9 +46,7 @@ Result<void> Stage::followLights(const WorldState& state) {
   if (!lights) return failAgain(lights.error());
   auto fade_lights = parseLights(state.fade_lights);
   if (!fade_lights) return failAgain(fade_lights.error());
-  auto environment = lighting::Environment::create(*lights, *fade_lights);
-  if (!environment) return failAgain(environment.error());
-  environment_ = std::move(*environment);
+  if (auto done = environment_.setLights(*lights, *fade_lights); !done) return done;
   lights_ = std::move(*lights), fade_lights_ = std::move(*fade_lights);
   followEnvironment();
   return {};

@@ -1,7 +1,9 @@
 #include "editor/ui/ui.hpp"
 
 #include <algorithm>
+#include <cstdint>
 #include <map>
+#include <string>
 #include <utility>
 
 #include <imgui.h>
@@ -18,6 +20,7 @@ namespace lambent::editor {
 
 struct Ui::State {
   std::map<std::string, Rectangle, std::less<>> marks, marks_before;
+  std::map<std::string, std::uint32_t, std::less<>> marked;  // how often a name was given in this frame
   std::vector<std::filesystem::path> dropped;
   double last_input = 0.0;
   bool picture_wanted = false;
@@ -99,6 +102,7 @@ void Ui::begin(double wait_s, const ScriptedInput* scripted) {
   }
   state_->scripted_before = scripted != nullptr;
   state_->marks_before = std::exchange(state_->marks, {});
+  state_->marked.clear();
   ImGui::NewFrame();
   if (anyInput(io)) state_->last_input = ImGui::GetTime();
 }
@@ -135,7 +139,12 @@ void Ui::mark(std::string_view name) {
   mark(name, {{low.x, low.y}, {high.x, high.y}});
 }
 void Ui::mark(std::string_view name, const Rectangle& where) {
-  state_->marks.insert_or_assign(std::string(name), where);
+  std::uint32_t& times = state_->marked[std::string(name)];
+  std::string own(name);
+  if (++times > 1) own += '#' + std::to_string(times);
+  // Somebody may be called like the second of another name.
+  while (!state_->marks.try_emplace(own, where).second)
+    own = std::string(name) + '#' + std::to_string(++times);
 }
 
 std::optional<Rectangle> Ui::find(std::string_view name) const {

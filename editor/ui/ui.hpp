@@ -53,7 +53,8 @@ class Ui {
   // As if dropped onto the window.
   void drop(std::filesystem::path file);
 
-  // Of the last widget, under this name until it is not drawn any more.
+  // Of the last widget, under this name until it is not drawn any more. Of several with one name, the first
+  // has it, the others are NAME#2, NAME#3, ... in the order in which they are drawn.
   void mark(std::string_view name);
   void mark(std::string_view name, const Rectangle& where);
   // Of the last whole frame.

@@ -4,8 +4,12 @@
 #include <bit>
 #include <cmath>
 #include <span>
+#include <system_error>
+#include <utility>
 
 #include "runtime/bundle/checksum.hpp"
+#include "runtime/sh/projection.hpp"
+#include "runtime/sh/zonal.hpp"
 #include "runtime/spec/rotate.hpp"
 
 namespace lambent::lighting {
@@ -32,23 +36,76 @@ class Seal {
 
 }  // namespace
 
+Environment::ProbeSource Environment::sourceOf(const spec::ProbeLight& light) {
+  std::error_code code;  // a file that is not there is told of by whoever reads it
+  ProbeSource source{light.file, light.layout, std::filesystem::last_write_time(light.file, code), 0};
+  source.bytes = std::filesystem::file_size(light.file, code);
+  return source;
+}
+
 Result<Environment> Environment::create(const std::vector<spec::Light>& lights,
                                         const std::vector<spec::Light>& second_lights) {
   Environment environment;
-  const std::array<const std::vector<spec::Light>*, kSets> given = {&lights, &second_lights};
-  for (std::size_t i = 0; i < kSets; ++i) {
-    Result<spec::DistantLights> loaded = spec::loadDistantLights(*given[i]);
-    if (!loaded) return failAgain(loaded.error());
-    Set& set = environment.sets_[i];
-    set.lights = std::move(*loaded);
-    set.sky = set.lights.skyVector();
-    set.discs = set.lights.discVector();
-    environment.notices_.insert(environment.notices_.end(), set.lights.notices.begin(),
-                                set.lights.notices.end());
-  }
-  environment.seal();
-  environment.mix();
+  if (auto done = environment.setLights(lights, second_lights); !done) return failAgain(done.error());
   return environment;
+}
+
+Result<void> Environment::setLights(const std::vector<spec::Light>& lights,
+                                    const std::vector<spec::Light>& second_lights) {
+  const std::array<const std::vector<spec::Light>*, kSets> given = {&lights, &second_lights};
+  // Where the probes come from, in their order: a set and a place in it, or, of kSets, a place in `loaded`.
+  std::vector<std::array<std::size_t, 2>> origins;
+  std::vector<LoadedProbe> loaded;
+  std::array<std::vector<bool>, kSets> taken;
+  for (std::size_t i = 0; i < kSets; ++i) taken[i].assign(sets_[i].known.size(), false);
+  const auto findKnown = [&](const ProbeSource& source) -> std::optional<std::array<std::size_t, 2>> {
+    for (std::size_t i = 0; i < kSets; ++i)
+      for (std::size_t k = 0; k < sets_[i].known.size(); ++k)
+        if (!taken[i][k] && sets_[i].known[k].source == source) return std::array{i, k};
+    return std::nullopt;
+  };
+  for (const auto* list : given)
+    for (const spec::Light& light : *list) {
+      const auto* file = std::get_if<spec::ProbeLight>(&light);
+      if (!file) continue;
+      ProbeSource source = sourceOf(*file);
+      if (const auto at = findKnown(source)) {
+        taken[(*at)[0]][(*at)[1]] = true;
+        origins.push_back(*at);
+        continue;
+      }
+      Result<spec::Probe> probe = spec::loadProbe(*file);
+      if (!probe) return failAgain(probe.error());
+      origins.push_back({kSets, loaded.size()});
+      KnownProbe known{std::move(source),
+                       sh::projectImage(sh::kMaxOrder, probe->layout, static_cast<int>(probe->image.width),
+                                        static_cast<int>(probe->image.height), probe->image.texels),
+                       bundle::checksum(std::as_bytes(std::span(probe->image.texels)))};
+      loaded.push_back({std::move(*probe), std::move(known)});
+    }
+
+  std::array<Set, kSets> sets;
+  auto origin = origins.begin();
+  for (std::size_t i = 0; i < kSets; ++i) {
+    Set& set = sets[i];
+    Result<spec::DistantLights> made = spec::loadDistantLights(*given[i], [&](const spec::ProbeLight&) {
+      const auto [from, place] = *origin++;
+      set.known.push_back(std::move(from == kSets ? loaded[place].known : sets_[from].known[place]));
+      return Result<spec::Probe>(
+          std::move(from == kSets ? loaded[place].probe : sets_[from].lights.probes[place]));
+    });
+    set.lights = std::move(*made);  // nothing was left to read
+    set.sky = sh::constantLight(sh::kMaxOrder, set.lights.constant);
+    for (const KnownProbe& known : set.known) set.sky += known.sky;
+    set.discs = set.lights.discVector();
+  }
+  sets_ = std::move(sets);
+  notices_.clear();
+  for (const Set& set : sets_)
+    notices_.insert(notices_.end(), set.lights.notices.begin(), set.lights.notices.end());
+  seal();
+  mix();
+  return {};
 }
 
 void Environment::seal() {
@@ -62,11 +119,12 @@ void Environment::seal() {
       seal.add(disc.radiance);
     }
     seal.add(set.lights.probes.size());
-    for (const spec::Probe& probe : set.lights.probes) {
+    for (std::size_t k = 0; k < set.lights.probes.size(); ++k) {
+      const spec::Probe& probe = set.lights.probes[k];
       seal.add(static_cast<std::uint32_t>(probe.layout));
       seal.add(probe.image.width);
       seal.add(probe.image.height);
-      seal.add(bundle::checksum(std::as_bytes(std::span(probe.image.texels))));
+      seal.add(set.known[k].checksum);
     }
   }
   lights_version_ = seal.value();

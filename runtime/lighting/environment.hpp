@@ -8,6 +8,8 @@
 
 #include <array>
 #include <cstdint>
+#include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,6 +30,11 @@ class Environment {
 
   static Result<Environment> create(const std::vector<spec::Light>& lights,
                                     const std::vector<spec::Light>& second_lights = {});
+  // Shines with these in place of its own; turn, fade and intensity stay. Probes that it has, of files that
+  // did not change since, are neither read nor projected again. Errors: those of create(); nothing is changed
+  // then.
+  Result<void> setLights(const std::vector<spec::Light>& lights,
+                         const std::vector<spec::Light>& second_lights = {});
 
   // Each gives another version where it changes something. Values that are not finite change nothing.
   // Positive turns take +Z to +X.
@@ -61,9 +68,29 @@ class Environment {
   const std::vector<std::string>& notices() const { return notices_; }
 
  private:
+  // What a probe was loaded from.
+  struct ProbeSource {
+    std::filesystem::path file;
+    std::optional<sh::ImageLayout> layout;
+    std::filesystem::file_time_type written{};
+    std::uintmax_t bytes = 0;
+    bool operator==(const ProbeSource&) const = default;
+  };
+  static ProbeSource sourceOf(const spec::ProbeLight& light);
+  // What takes long to say of a probe.
+  struct KnownProbe {
+    ProbeSource source;
+    sh::LightVector sky;
+    std::uint64_t checksum = 0;  // of its texels
+  };
+  struct LoadedProbe {
+    spec::Probe probe;
+    KnownProbe known;
+  };
   struct Set {
     spec::DistantLights lights;
-    sh::LightVector sky, discs;  // in the lights' own frame
+    std::vector<KnownProbe> known;  // as lights.probes
+    sh::LightVector sky, discs;     // in the lights' own frame
   };
   Environment() = default;
   void mix();

@@ -9,7 +9,8 @@
 
 namespace lambent::spec {
 
-Result<DistantLights> loadDistantLights(const std::vector<Light>& lights) {
+Result<DistantLights> loadDistantLights(const std::vector<Light>& lights,
+                                        const std::function<Result<Probe>(const ProbeLight&)>& load) {
   DistantLights out;
   for (const Light& light : lights) {
     if (const auto* constant = std::get_if<ConstantLight>(&light)) {
@@ -19,7 +20,7 @@ Result<DistantLights> loadDistantLights(const std::vector<Light>& lights) {
                            .radius_rad = glm::radians(sun->angle_deg),
                            .radiance = sun->radiance});
     } else if (const auto* file = std::get_if<ProbeLight>(&light)) {
-      Result<Probe> probe = loadProbe(*file);
+      Result<Probe> probe = load(*file);
       if (!probe) return failAgain(probe.error());
       if (probe->texels_not_finite > 0)
         out.notices.push_back(file->file.string() + ": " + std::to_string(probe->texels_not_finite) +

@@ -5,6 +5,7 @@
 // probe.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -36,7 +37,10 @@ struct DistantLights {
   sh::LightVector discVector() const;
 };
 
-Result<DistantLights> loadDistantLights(const std::vector<Light>& lights);
+// load: where probes come from.
+Result<DistantLights> loadDistantLights(
+    const std::vector<Light>& lights,
+    const std::function<Result<Probe>(const ProbeLight&)>& load = loadProbe);
 
 // Light that was turned by `degrees` about +Y, as lightRotation() turns directions.
 sh::LightVector turned(const sh::LightVector& light, float degrees);

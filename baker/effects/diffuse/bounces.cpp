@@ -64,15 +64,10 @@ class Gather {
   void range(int bounce, bool thinly, std::size_t begin, std::size_t end, const TransferField& before,
              TransferField& now, TransferField& mapped) const {
     std::vector<GatherHit> thinned;
-    RangeHits again;
-    const RangeHits* hits = &direct_.hits.range(begin / kSamplesPerRange);
-    if (!hits->kept) {
-      pass_.traceAgain(begin, end, again);
-      hits = &again;
-    }
+    const StoredHits hits(direct_.hits, pass_, begin, end);
     const std::size_t first_mapped = scene_.samples.first_normal_mapped;
     for (std::size_t s = begin; s < end; ++s) {
-      auto own = hits->of(s - begin);
+      auto own = hits.of(s);
       const Hemisphere& hemisphere = pass_.hemisphereOf(s, direct_.looks.closely[s] != 0);
       float scale = 1.0f;
       if (thinly) scale = thinHits(bounce, hemisphere, own, thinned);
@@ -179,7 +174,7 @@ std::optional<BounceResult> bakeBounces(const DirectPass& pass, const DirectResu
     const bool thinly = shareOf(energy, all) < kShareToThin;
     const Keep keep_pass = keep.part("pass", bounce);
     const KeptRanges kept =
-        keptRanges(keep_pass, scene.samples.first_glossy, kSamplesPerRange, stop,
+        keptRanges(keep_pass, scene.samples.first_glossy, kSamplesGathered, stop,
                    {.compute =
                         [&](std::size_t begin, std::size_t end) {
                           gather.range(bounce, thinly, begin, end, before, now, result.mapped);
@@ -228,8 +223,8 @@ void dropBounces(const DiffuseScene& scene, const Keep& keep) {
   const std::size_t plain = scene.samples.first_glossy, glossy = scene.samples.size() - plain;
   for (int bounce = 1; bounce <= kMostBounces; ++bounce) {
     const Keep pass = keep.part("pass", bounce);
-    dropRanges(pass, plain, kSamplesPerRange);
-    dropRanges(pass.part("glossy"), glossy, kSamplesPerRange);
+    dropRanges(pass, plain, kSamplesGathered);
+    dropRanges(pass.part("glossy"), glossy, kSamplesGathered);
   }
 }
 

@@ -15,6 +15,10 @@
 namespace lambent::baker {
 
 inline constexpr std::size_t kSamplesPerRange = 256;
+// Of a range, in one piece of a pass that gathers: between glossy surfaces that see nothing but each other a
+// sample takes 35 ms, and what a killed bake had begun is lost.
+inline constexpr std::size_t kSamplesGathered = 32;
+static_assert(kSamplesPerRange % kSamplesGathered == 0);
 
 struct GatherHit {
   std::uint32_t triangle = 0, ray = 0;
@@ -86,6 +90,30 @@ class HitStore {
   std::vector<RangeHits> ranges_;
   std::size_t limit_bytes_ = 0;
   std::atomic<std::size_t> held_ = 0;
+};
+
+// Of samples [begin, end), all of one range: as the store has them, or traced again by the pass that found
+// them.
+class StoredHits {
+ public:
+  // Store and pass outlive it.
+  template <typename Pass>
+  StoredHits(const HitStore& store, const Pass& pass, std::size_t begin, std::size_t end)
+      : hits_(&store.range(begin / kSamplesPerRange)), first_(begin - begin % kSamplesPerRange) {
+    if (hits_->kept) return;
+    pass.traceAgain(begin, end, again_);
+    hits_ = &again_;
+    first_ = begin;
+  }
+  StoredHits(const StoredHits&) = delete;
+  StoredHits& operator=(const StoredHits&) = delete;
+
+  std::span<const GatherHit> of(std::size_t sample) const { return hits_->of(sample - first_); }
+
+ private:
+  const RangeHits* hits_;
+  std::size_t first_;  // sample whose hits come first in it
+  RangeHits again_;
 };
 
 }  // namespace lambent::baker

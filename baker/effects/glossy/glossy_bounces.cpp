@@ -236,26 +236,21 @@ bool GlossyBounces::gather(int bounce, bool thinly, const ExitRadiance& exit, co
   now_.environment.values.assign(pass_.size() * now_.environment.sampleSize(), 0.0f);
   now_.lights.values.assign(pass_.size() * now_.lights.sampleSize(), 0.0f);
   const auto gatherRange = [&](std::size_t begin, std::size_t end) {
-    RangeHits again;
-    const RangeHits* hits = &direct_.hits.range(begin / kSamplesPerRange);
-    if (!hits->kept) {
-      pass_.traceAgain(begin, end, again);
-      hits = &again;
-    }
+    const StoredHits hits(direct_.hits, pass_, begin, end);
     Walk walk(*this, before);
     for (std::size_t s = begin; s < end; ++s) {
       const std::size_t sample = first + s;
       const GlossyHemisphere& hemisphere = pass_.hemisphereOf(plain_.looks.closely[sample] != 0);
       const ExitToSample to_sample(exit, hemisphere.table(), pass_.scene().samples.normals[sample], sample,
                                    bounce, thinly);
-      walk.gather(sample, hits->of(s - begin), raysTogether(share, hemisphere.table().size()), bounce,
-                  hemisphere, to_sample, s, now_);
+      walk.gather(sample, hits.of(s), raysTogether(share, hemisphere.table().size()), bounce, hemisphere,
+                  to_sample, s, now_);
     }
     progress.add(end - begin);
   };
   const std::size_t environment = now_.environment.sampleSize(), lights = now_.lights.sampleSize();
   const KeptRanges kept = keptRanges(
-      keep, pass_.size(), kSamplesPerRange, stop,
+      keep, pass_.size(), kSamplesGathered, stop,
       {.compute = gatherRange,
        .pack =
            [&](std::size_t begin, std::size_t end, ByteWriter& out) {

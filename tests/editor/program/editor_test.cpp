@@ -128,6 +128,35 @@ screenshot {2}
   EXPECT_EQ(second.answer("state")["scenes"][0]["bake"]["upToDate"], true);
 }
 
+TEST_F(EditorProgram, BakesTheScenesOfAWorldWithTheOptionsThatItWasSavedWith) {
+  const Played first =
+      play(fmt::format("open {0}\nbake-option rays 300\nbake-option bounces 1\nbake\nwait baked 240\n"
+                       "save {1}\nstate\n",
+                       path("hello.glb"), path("world.json")));
+  ASSERT_EQ(first.outcome.exit_code, 0) << told(first.outcome);
+  const Played second = play(fmt::format("open {}\nwait baked 240\nstate\n", path("world.json")));
+  ASSERT_EQ(second.outcome.exit_code, 0) << told(second.outcome);
+  const json& before = first.answer("state")["scenes"][0];
+  const json& scene = second.answer("state")["scenes"][0];
+  EXPECT_EQ(scene["bakeOptions"]["rays"], "300") << scene.dump();
+  EXPECT_EQ(scene["bakeOptions"], before["bakeOptions"]);
+  EXPECT_EQ(scene["bake"]["upToDate"], true) << "or it was baked with other options than the bundle has";
+}
+
+TEST_F(EditorProgram, ReachesEachOfSeveralMarksWithOneName) {
+  const Played played =
+      play(fmt::format("open {}\nwait loaded\ncreate-sphere 1 2 0\nrename lamp\ncreate-sphere -1 2 0\n"
+                       "rename lamp\nwait frames 3\nmarks\nclick scene.lamp\nget Transform.translation\n"
+                       "click scene.lamp#2\nget Transform.translation\n",
+                       path("hello.glb")),
+           {"--no-bake"});
+  ASSERT_EQ(played.outcome.exit_code, 0) << told(played.outcome);
+  const auto places = played.all("get Transform.translation");
+  ASSERT_EQ(places.size(), 2u);
+  EXPECT_NEAR(std::abs(places[0][0].get<double>()), 1.0, 1e-6);
+  EXPECT_NEAR(places[0][0].get<double>(), -places[1][0].get<double>(), 1e-6) << "not the same twice";
+}
+
 TEST_F(EditorProgram, TakesADroppedSceneAndShowsItBeforeItIsBaked) {
   const Played played =
       play(fmt::format("drop {0}\nwait frames 3\nwait loaded 60\nstate\nwait baked 240\nstate\n"

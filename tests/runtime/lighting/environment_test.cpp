@@ -1,5 +1,6 @@
 #include "runtime/lighting/environment.hpp"
 
+#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <limits>
@@ -134,6 +135,58 @@ TEST(Environment, ProjectsAProbeToItsMeanRadiance) {
   // for readers that take RGBE mantissas at the middle of their steps.
   const glm::vec3 mean = environment->light().c[0] / 3.5449077f;
   EXPECT_NEAR(glm::dot(mean, glm::vec3(0.2126f, 0.7152f, 0.0722f)), 0.885f, 0.004f);
+}
+
+// A picture of one radiance.
+void writeProbe(const std::filesystem::path& file, float radiance) {
+  const spec::RgbaImage image{
+      .width = 8, .height = 4, .texels = std::vector<glm::vec4>(32, glm::vec4(radiance))};
+  ASSERT_TRUE(spec::writeExr(file, image));
+}
+
+TEST(Environment, ReadsAProbeAgainOnlyWhenItsFileChanged) {
+  const auto file = std::filesystem::path(::testing::TempDir()) / "lambent-environment-again.exr";
+  writeProbe(file, 1.0f);
+  const auto written = std::filesystem::last_write_time(file);
+  const auto withSun = [&](float azimuth) {
+    return std::vector<spec::Light>{
+        spec::ProbeLight{.file = file, .layout = {}},
+        spec::SunLight{.azimuth_deg = azimuth, .elevation_deg = 25, .angle_deg = 5}};
+  };
+  auto environment = Environment::create(withSun(20), withSun(-20));
+  ASSERT_TRUE(environment) << environment.error().line();
+  environment->setFade(0.25f);
+  environment->setTurn(30.0f);
+  // What is there now cannot be read, but seems the same: whoever needs no look does not notice.
+  const auto bytes = std::filesystem::file_size(file);
+  std::filesystem::resize_file(file, 0);
+  std::filesystem::resize_file(file, bytes);
+  std::filesystem::last_write_time(file, written);
+  ASSERT_FALSE(Environment::create(withSun(21)));
+  ASSERT_TRUE(environment->setLights(withSun(21), withSun(-21)));
+  EXPECT_EQ(environment->fade(), 0.25f);
+  EXPECT_EQ(environment->turnDegrees(), 30.0f);
+
+  // The same light as of one that was made of these.
+  writeProbe(file, 1.0f);
+  auto made = Environment::create(withSun(21), withSun(-21));
+  ASSERT_TRUE(made);
+  EXPECT_EQ(environment->lightsVersion(), made->lightsVersion());
+  made->setFade(0.25f);
+  made->setTurn(30.0f);
+  EXPECT_EQ(environment->version(), made->version());
+  for (std::size_t i = 0; i < 64; ++i) EXPECT_EQ(environment->light().c[i], made->light().c[i]);
+
+  // Another picture under its name is read; what cannot be read changes nothing.
+  writeProbe(file, 2.0f);
+  std::filesystem::last_write_time(file, written + std::chrono::seconds(5));
+  ASSERT_TRUE(environment->setLights(withSun(21), withSun(-21)));
+  EXPECT_NE(environment->lightsVersion(), made->lightsVersion());
+  const std::uint64_t version = environment->version();
+  std::filesystem::remove(file);
+  EXPECT_FALSE(environment->setLights(withSun(22)));
+  EXPECT_EQ(environment->version(), version);
+  EXPECT_EQ(environment->discs().size(), 2u);
 }
 
 TEST(Environment, NamesAProbeThatIsNotThere) {
