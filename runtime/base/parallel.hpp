@@ -7,9 +7,9 @@
 
 namespace lambent {
 
-// Calls part(i) for all i below count and returns when all are done. A thread is begun for each `worth` parts
-// beyond the first, up to the number of processors: as many as take several times longer than beginning a
-// thread (30 microseconds). Parts must not throw.
+// Calls part(i) for all i below count and returns when all are done. The caller works, too; a helper is
+// called for each `worth` parts beyond the first as many, up to the number of processors (16 at most). Nobody
+// waits for a helper that other programs keep from beginning. From any thread; parts must not throw.
 void inParallel(std::size_t count, std::size_t worth, const std::function<void(std::size_t)>& part);
 
 }  // namespace lambent
