@@ -1,10 +1,10 @@
 // Frames of a flight along many bundles that take more memory than there is: bench_streaming FOLDER|BUNDLE...
-// [--share S] [--copies N] [--frames N] [--size WxH] [--light LIGHT]. Opens every bundle N times, side by
-// side along X, and flies past them twice: with room for all, all of it here, and with room for a share S of
-// that, streaming. Prints for both how long frames took: median, worst, how many took over twice the median,
-// and as a histogram; what was resident, and how bundles were shown. Wall time of a frame until the GPU is
-// done, and the CPU time of all threads in it, which says what a frame costs where others use the machine
-// too.
+// [--share S] [--copies N] [--frames N] [--size WxH] [--light LIGHT] [--log FILE]. Opens every bundle N
+// times, side by side along X, and flies past them twice: with room for all, all of it here, and with room
+// for a share S of that, streaming. Prints for both how long frames took: median, worst, how many took over
+// twice the median, and as a histogram; what was resident, and how bundles were shown. Wall time of a frame
+// until the GPU is done, and the CPU time of all threads in it, which says what a frame costs where others
+// use the machine too.
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -13,7 +13,9 @@
 #include <cstdlib>
 #include <ctime>
 #include <filesystem>
+#include <fstream>
 #include <functional>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -41,6 +43,7 @@ struct Words {
   int copies = 1, frames = 300;
   spec::Size size{640, 360};
   std::string light = "constant:1,1,1";
+  std::string log;  // file; empty: none
 };
 
 void stop(const Error& error) {
@@ -61,6 +64,8 @@ Words understand(int argc, char** argv) {
       words.frames = std::max(2, std::atoi(value().c_str()));
     else if (word == "--light")
       words.light = value();
+    else if (word == "--log")
+      words.log = value();
     else if (word == "--size") {
       const Result<spec::Size> size = spec::parseSize(value());
       if (!size) stop(size.error());
@@ -115,6 +120,8 @@ struct Flight {
   std::array<std::size_t, 4> shown{};  // bundles in frames, by frame::Shown
   std::uint64_t most_bytes = 0, least_bytes = ~std::uint64_t{0}, uploaded = 0;
   std::size_t brought = 0;  // frames that uploaded something
+  // By pass: milliseconds of the CPU in each frame that had it.
+  std::map<std::string, frame::FrameTimes> passes{};
   // Where the time of the slowest frames went: milliseconds, and the passes that took most.
   std::vector<std::pair<double, std::string>> slowest{};
 };
@@ -128,6 +135,16 @@ std::string dearest(std::span<const gpu::PassTime> passes, double frame_ms) {
     text += fmt::format("{}{} {:.1f} (gpu {:.1f})", text.empty() ? "" : ", ", pass.name, pass.cpu_ms, gpu_ms);
   }
   return text;
+}
+
+// Of CLOCK_MONOTONIC, which profilers can be told to take too.
+double seconds(std::chrono::steady_clock::time_point time) {
+  return std::chrono::duration<double>(time.time_since_epoch()).count();
+}
+
+void openLog(const Words& words) {
+  if (words.log.empty()) return;
+  if (std::ofstream log(words.log); !log) stop({words.log, "cannot be written", "give a path to a file"});
 }
 
 Flight fly(const Words& words, Row& row, const lighting::Environment& environment, bool load_first) {
@@ -153,8 +170,11 @@ Flight fly(const Words& words, Row& row, const lighting::Environment& environmen
     const auto start = std::chrono::steady_clock::now();
     const std::clock_t cpu_start = std::clock();
     render(static_cast<float>(i) / static_cast<float>(words.frames - 1));
-    const double wall_ms =
-        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    const auto end = std::chrono::steady_clock::now();
+    const double wall_ms = std::chrono::duration<double, std::milli>(end - start).count();
+    if (!words.log.empty())
+      std::ofstream(words.log, std::ios::app) << fmt::format(
+          "{} {} {:.6f} {:.6f}\n", load_first ? "resident" : "streaming", i, seconds(start), seconds(end));
     flight.times.add(wall_ms);
     flight.cpu_times.add(1e3 * static_cast<double>(std::clock() - cpu_start) / CLOCKS_PER_SEC);
     const frame::StreamingStatus status = row.world.streaming();
@@ -164,11 +184,13 @@ Flight fly(const Words& words, Row& row, const lighting::Environment& environmen
     flight.most_bytes = std::max(flight.most_bytes, bytes);
     flight.least_bytes = std::min(flight.least_bytes, bytes);
     frame->timers().finish();
-    for (const gpu::PassTime& pass : frame->timers().latest())
+    for (const gpu::PassTime& pass : frame->timers().latest()) {
+      flight.passes.try_emplace(pass.name, empty).first->second.add(pass.cpu_ms);
       if (pass.name == "upload") {
         flight.uploaded += pass.counters.uploaded_bytes;
         flight.brought += pass.counters.uploaded_bytes > 0 ? 1u : 0u;
       }
+    }
     flight.slowest.emplace_back(wall_ms, dearest(frame->timers().latest(), wall_ms));
     std::ranges::sort(flight.slowest, std::ranges::greater());
     if (flight.slowest.size() > 5) flight.slowest.pop_back();
@@ -205,6 +227,9 @@ void print(const std::string& name, const Flight& flight) {
              percent(frame::Shown::Nothing));
   print("wall", flight.times);
   print("CPU of all threads", flight.cpu_times);
+  for (const auto& [pass, times] : flight.passes)
+    fmt::print("  CPU of {}: median {:.2f} ms, 95 % under {:.2f} ms, worst {:.2f} ms\n", pass, times.median(),
+               times.quantile(0.95), times.worst());
   for (const auto& [wall_ms, passes] : flight.slowest) fmt::print("  slow: {:.1f} ms: {}\n", wall_ms, passes);
   std::fflush(stdout);
 }
@@ -213,6 +238,7 @@ void print(const std::string& name, const Flight& flight) {
 
 int main(int argc, char** argv) {
   const Words words = understand(argc, argv);
+  openLog(words);
   Result<gpu::Context> context = gpu::Context::createHeadless();
   if (!context) stop(context.error());
   const Result<spec::Light> light = spec::parseLight(words.light);

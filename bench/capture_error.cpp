@@ -229,9 +229,13 @@ void printTimes() {
                .queries = {{.direction = glm::normalize(glm::vec3(1, 1, 0)), .angular_radius_rad = 0.05f}}});
         }
         double best = 1e30, best_cpu = 1e30, seen = 0;
-        for (const CapturePoint& p : points)
-          for (std::uint32_t b = 0; b < bodies.size(); ++b)
-            seen += b != p.own_body && capture.sees(p, bodies[b]) ? 1.0 / 200 : 0;
+        for (std::uint32_t b = 0; b < bodies.size(); ++b) {
+          const lighting::capture::BodySphere sphere = capture.sphereOf(bodies[b]);
+          for (const CapturePoint& p : points)
+            seen += b != p.own_body && lighting::capture::sees(capture.options(), p.position_ws, sphere)
+                        ? 1.0 / 200
+                        : 0;
+        }
         for (int i = 0; i < 5; ++i) {
           const auto start = Clock::now();
           const std::clock_t cpu_start = std::clock();

@@ -36,7 +36,8 @@ Result<void> Frame::prepareSampling(World& world, const lighting::Environment& e
   capture_order_ = options.order;
   if (proxies_seen_ != world.residency().proxiesVersion()) {
     proxies_seen_ = world.residency().proxiesVersion();
-    incident_->captures().setProxies(proxiesOf(world.residency()), counters);
+    const BodyProxies bodies = proxiesOf(world.residency());
+    incident_->captures().setProxies(bodies.proxies, counters, bodies.keys);
   }
   return {};
 }

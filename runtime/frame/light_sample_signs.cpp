@@ -141,7 +141,8 @@ Result<void> LightSampleSigns::capture(const OverlayScene& scene, gpu::Counters&
   if (cubes_ && seen == seen_ && shine == shine_seen_) return {};
   if (proxies_seen_ != residency.proxiesVersion()) {
     proxies_seen_ = residency.proxiesVersion();
-    capture_->setProxies(proxiesOf(residency), counters);
+    const BodyProxies known = proxiesOf(residency);
+    capture_->setProxies(known.proxies, counters, known.keys);
   }
   seen_ = std::move(seen);
   shine_seen_ = std::move(shine);

@@ -84,11 +84,14 @@ bool LitScene::needsSampling() const {
   return !lights.empty() || std::ranges::any_of(groups, seesOthers);
 }
 
-std::vector<const bundle::CaptureProxy*> proxiesOf(const streaming::Residency& residency) {
-  std::vector<const bundle::CaptureProxy*> proxies;
+BodyProxies proxiesOf(const streaming::Residency& residency) {
+  BodyProxies bodies;
   for (const streaming::ResidentGroup& group : residency.groups())
-    if (group.proxy) proxies.push_back(&*group.proxy);
-  return proxies;
+    if (group.proxy) {
+      bodies.proxies.push_back(&*group.proxy);
+      bodies.keys.push_back(group.id);
+    }
+  return bodies;
 }
 
 LitScene gatherLitScene(const World& world, float surroundings, const LitSceneOptions& options) {

@@ -41,7 +41,11 @@ LitScene gatherLitScene(const World& world, float surroundings, const LitSceneOp
 bool standsWithin(const scene::Box& bounds, const glm::mat4& world_from_group,
                   const lighting::LocalLight& light);
 
-// The proxies of the groups that have one, in the order of the bodies.
-std::vector<const bundle::CaptureProxy*> proxiesOf(const streaming::Residency& residency);
+// The proxies of the groups that have one, in the order of the bodies, and the ids of the groups.
+struct BodyProxies {
+  std::vector<const bundle::CaptureProxy*> proxies;
+  std::vector<std::uint64_t> keys;
+};
+BodyProxies proxiesOf(const streaming::Residency& residency);
 
 }  // namespace lambent::frame

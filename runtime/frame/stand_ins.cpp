@@ -7,7 +7,6 @@
 
 #include "lambent_frame_embedded.hpp"
 #include "runtime/frame/lit_scene.hpp"
-#include "runtime/sh/window.hpp"
 #include "runtime/streaming/sizes.hpp"
 
 namespace lambent::frame {
@@ -124,16 +123,17 @@ void StandIns::light(const World& world, const lighting::Environment& environmen
                      gpu::Counters& counters) {
   std::vector<StandInGroup> groups(bodies_.size());
   // As groups have it that nothing else shines on, once for each order.
-  std::array<std::optional<sh::LightVector>, sh::kMaxOrder + 1> windowed;
+  std::array<std::optional<sh::LightVector>, sh::kMaxOrder + 1> windowed{};
   for (std::size_t slot = 0; slot < bodies_.size(); ++slot) {
     const Body& place = bodies_[slot];
     if (!place.triangles) continue;
     const bundle::Group& described = world.description(place.bundle).groups[place.group];
     const std::uint32_t order = std::min(orderOf(described), settings.order);
-    if (!windowed[order])
-      windowed[order] =
-          sh::applyWindow(environment.light().truncated(static_cast<int>(order)), settings.window)
-              .truncated(kBands);
+    if (!windowed[order]) {
+      const sh::LightVector all = environment.light().truncated(static_cast<int>(order));
+      windows_[order].follow(all, settings.window);
+      windowed[order] = sh::applyWeights(all, windows_[order].weights()).truncated(kBands);
+    }
     sh::LightVector light = *windowed[order];
     StandInGroup& record = groups[slot];
     record.world_from_group = world.worldFromGroup(place.bundle, place.group);

@@ -6,6 +6,7 @@
 // Errors: shaders that do not compile on this device.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -21,6 +22,7 @@
 #include "runtime/gpu/program.hpp"
 #include "runtime/lighting/environment.hpp"
 #include "runtime/lighting/local_light.hpp"
+#include "runtime/sh/kept_window.hpp"
 #include "runtime/spec/camera.hpp"
 
 namespace lambent::frame {
@@ -69,6 +71,7 @@ class StandIns {
   std::map<std::pair<std::uint64_t, std::uint32_t>, std::uint32_t> slots_;  // by id and group
   std::map<std::uint32_t, Batch> batches_;                                  // by page
   std::vector<StandInGroup> groups_;                                        // as uploaded
+  std::array<sh::KeptWindow, sh::kMaxOrder + 1> windows_;                   // of the environment, by order
   std::optional<Seen> seen_;
   gpu::Arena triangles_;
   gpu::Table groups_table_, view_;

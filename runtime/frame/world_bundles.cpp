@@ -125,16 +125,37 @@ void World::dropReplacement(Bundle& bundle) {
 
 void World::uploadReplacement(Bundle& bundle, std::uint64_t& budget_bytes, gpu::Counters& counters) {
   Replacement& next = *bundle.replacement;
-  for (streaming::Ready& item : next.loader.take(budget_bytes)) {
-    const std::uint64_t bytes = streaming::Residency::uploadBytes(item);
+  const auto spend = [&](std::uint64_t bytes) {
     budget_bytes -= std::min(budget_bytes, bytes);
     counters.uploaded_bytes += bytes;
+  };
+  // What is large comes over several frames.
+  const auto proceed = [&] {
+    const Result<std::uint64_t> bytes = residency_.proceedStaged(next.staged, budget_bytes);
+    if (bytes)
+      spend(*bytes);
+    else
+      bundle.replacement_error = inBundle(*next.reader, bytes.error());
+  };
+  if (residency_.comesStaged(next.staged)) proceed();
+  std::vector<streaming::Ready> items;
+  if (!bundle.replacement_error && !residency_.comesStaged(next.staged) && budget_bytes > 0)
+    items = next.loader.take(budget_bytes);
+  for (streaming::Ready& item : items) {
+    const std::uint64_t bytes = streaming::Residency::uploadBytes(item);
     if (const auto* ready = std::get_if<streaming::ProxyReady>(&item))
       next.proxies[ready->group] = ready->proxy;
-    if (const Result<void> done = residency_.uploadStaged(next.staged, std::move(item)); !done) {
+    // What is larger than the budget comes alone.
+    const bool in_pieces =
+        bytes > budget_bytes && items.size() == 1 && streaming::Residency::comesInPieces(item);
+    if (!in_pieces) spend(bytes);
+    const Result<void> done = in_pieces ? residency_.beginStaged(next.staged, std::move(item))
+                                        : residency_.uploadStaged(next.staged, std::move(item));
+    if (!done) {
       bundle.replacement_error = inBundle(*next.reader, done.error());
       break;
     }
+    if (in_pieces) proceed();
   }
   if (const auto error = next.loader.error()) bundle.replacement_error = *error;
   if (bundle.replacement_error) dropReplacement(bundle);
@@ -183,7 +204,8 @@ Result<void> World::upload(std::uint64_t budget_bytes, gpu::Counters& counters) 
   for (std::uint32_t i = 0; i < bundles_.size(); ++i) {
     if (!bundles_[i] || !bundles_[i]->replacement) continue;
     if (budget_bytes > 0) uploadReplacement(*bundles_[i], budget_bytes, counters);
-    if (bundles_[i]->replacement && isWhole(bundles_[i]->replacement->loader)) swapIn(i);
+    const std::optional<Replacement>& next = bundles_[i]->replacement;
+    if (next && isWhole(next->loader) && !residency_.comesStaged(next->staged)) swapIn(i);
   }
   measureRate(counters.uploaded_bytes - uploaded_before);
   return {};

@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 #include <string>
+#include <unordered_map>
 
 #include <glm/geometric.hpp>
 #include <glm/mat4x4.hpp>
@@ -13,7 +14,7 @@
 #include <glm/vec4.hpp>
 
 #include "lambent_lighting_embedded.hpp"
-#include "runtime/lighting/capture_closed.hpp"
+#include "runtime/base/parallel.hpp"
 #include "runtime/lighting/capture_combine.hpp"
 #include "runtime/lighting/capture_shared.h"
 #include "runtime/lighting/capture_table.hpp"
@@ -32,75 +33,6 @@ constexpr GLint kClipFromPixel = 0, kDepth = 1;
 constexpr GLint kFirstTexel = 0, kTexelCount = 1, kFirstWord = 2, kWordCount = 3, kSubsamples = 4;
 constexpr GLint kFirstPoint = 0;
 constexpr std::uint32_t kNoRecord = 0xffffffffu;
-
-using Vertex = std::array<std::uint32_t, 4>;  // position as bits of floats, surface id
-
-bool finite(const glm::vec3& v) {
-  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
-
-// The vertices of one level. A triangle's id comes from its last corner, so each triangle needs one that is
-// last in no other; of closed meshes, with half as many vertices as triangles, about half are doubled. Black
-// last corners are shared by all triangles that end there.
-class LevelVertices {
- public:
-  LevelVertices(const bundle::CaptureProxy& proxy, std::vector<Vertex>& vertices)
-      : proxy_(proxy),
-        vertices_(vertices),
-        first_(vertices.size()),
-        slots_(proxy.positions.size(), kNone),
-        black_(proxy.positions.size(), kNone) {}
-
-  // Turns the corners so that few vertices are doubled; goes out: as vertices of the level.
-  std::array<std::uint32_t, 3> add(std::uint32_t surface_id, std::array<std::uint32_t, 3>& corners) {
-    for (int turn = 0; turn < 3 && !isFree(corners[2]); ++turn)
-      std::rotate(corners.begin(), corners.begin() + 1, corners.end());
-    std::uint32_t last = slots_[corners[2]];
-    if (!isFree(corners[2])) {
-      last = make(corners[2], 0);
-    } else if (last == kNone) {
-      last = slots_[corners[2]] = make(corners[2], 0);
-    }
-    vertices_[first_ + last][3] = surface_id;
-    std::array<std::uint32_t, 3> added{0, 0, last};
-    for (const std::size_t k : {0u, 1u}) {
-      if (slots_[corners[k]] == kNone) slots_[corners[k]] = make(corners[k], 0);
-      added[k] = slots_[corners[k]];
-    }
-    return added;
-  }
-  std::uint32_t black(std::uint32_t corner) {
-    if (black_[corner] == kNone) black_[corner] = make(corner, kBlackId);
-    return black_[corner];
-  }
-
- private:
-  static constexpr std::uint32_t kNone = 0xffffffffu;
-
-  bool isFree(std::uint32_t corner) const {
-    return slots_[corner] == kNone || vertices_[first_ + slots_[corner]][3] == 0;
-  }
-  std::uint32_t make(std::uint32_t corner, std::uint32_t surface_id) {
-    const glm::vec3& p = proxy_.positions[corner];
-    vertices_.push_back({std::bit_cast<std::uint32_t>(p.x), std::bit_cast<std::uint32_t>(p.y),
-                         std::bit_cast<std::uint32_t>(p.z), surface_id});
-    return static_cast<std::uint32_t>(vertices_.size() - 1 - first_);
-  }
-
-  const bundle::CaptureProxy& proxy_;
-  std::vector<Vertex>& vertices_;
-  std::size_t first_;
-  std::vector<std::uint32_t> slots_, black_;  // per position of the proxy
-};
-// Three corners of its own and a black one for each triangle.
-static_assert(4 * bundle::kMaxProxyTriangles <= 1u << kVertexBits);
-
-glm::dvec4 planeOf(const bundle::CaptureProxy& proxy, const bundle::ProxyTriangle& triangle) {
-  const glm::dvec3 a(proxy.positions[triangle.vertices[0]]), b(proxy.positions[triangle.vertices[1]]),
-      c(proxy.positions[triangle.vertices[2]]);
-  const glm::dvec3 normal = glm::cross(b - a, c - a);
-  return {normal, -glm::dot(normal, a)};
-}
 
 void put(float (&row)[4], const glm::dvec4& value) {
   for (int i = 0; i < 4; ++i) row[i] = static_cast<float>(value[i]);
@@ -128,6 +60,40 @@ DrawRecord drawRecord(const CaptureOptions& options, const Tile& tile, const Cap
   record.tile_y = tile.y | (tile.y + tile.texels.height() * options.subsamples) << 16;
   return record;
 }
+
+enum class Side : std::uint8_t { None, Bright, Dark };
+
+// Which side of a body's triangles a point sees. Told here, so that dark sides that cannot show need not be
+// drawn; once for a point and a body, however many faces of its cube the body shows on.
+class SidesSeen {
+ public:
+  explicit SidesSeen(std::size_t bodies) : bodies_(bodies) {}
+
+  std::span<const Side> look(const Draw& draw, const PreparedLevel& level, std::uint32_t point,
+                             const CaptureBody& body, const glm::vec3& point_ws) {
+    Body& seen = bodies_[draw.body];
+    if (seen.point == point) return seen.sides;
+    if (seen.point == kNone) seen.proxy_from_world = glm::inverse(glm::dmat4(body.world_from_proxy));
+    seen.point = point;
+    seen.sides.clear();
+    const glm::dvec4 point_proxy = seen.proxy_from_world * glm::dvec4(glm::dvec3(point_ws), 1.0);
+    for (const LevelTriangle& triangle : level.triangles) {
+      const bool bright = glm::dot(triangle.plane, point_proxy) > 0.0;
+      const bool hidden = !bright && (triangle.front_only || (level.closed && draw.from_outside));
+      seen.sides.push_back(hidden ? Side::None : bright ? Side::Bright : Side::Dark);
+    }
+    return seen.sides;
+  }
+
+ private:
+  static constexpr std::uint32_t kNone = 0xffffffffu;
+  struct Body {
+    std::uint32_t point = kNone;  // of which the sides are
+    glm::dmat4 proxy_from_world{1.0};
+    std::vector<Side> sides;
+  };
+  std::vector<Body> bodies_;
+};
 
 }  // namespace
 
@@ -180,40 +146,45 @@ Result<Capture> Capture::create(const CaptureOptions& options, const Environment
   return capture;
 }
 
-void Capture::setProxies(std::span<const bundle::CaptureProxy* const> proxies, gpu::Counters& counters) {
-  proxies_.clear();
+void Capture::setProxies(std::span<const bundle::CaptureProxy* const> proxies, gpu::Counters& counters,
+                         std::span<const std::uint64_t> keys) {
+  std::unordered_map<std::uint64_t, std::shared_ptr<const PreparedProxy>> known;
+  for (const Proxy& proxy : proxies_)
+    if (proxy.key) known.emplace(*proxy.key, proxy.prepared);
+  proxies_.assign(proxies.size(), {});
+  std::vector<std::size_t> unknown;
+  for (std::size_t i = 0; i < proxies.size(); ++i) {
+    if (!keys.empty()) proxies_[i].key = keys[i];
+    const auto found = keys.empty() ? known.end() : known.find(keys[i]);
+    if (found != known.end())
+      proxies_[i].prepared = found->second;
+    else
+      unknown.push_back(i);
+  }
+  constexpr std::size_t kWorthAThread = 2;  // a tenth of a millisecond each and more
+  inParallel(unknown.size(), kWorthAThread, [&](std::size_t i) {
+    proxies_[unknown[i]].prepared =
+        std::make_shared<const PreparedProxy>(PreparedProxy::of(*proxies[unknown[i]]));
+  });
   bounds_.clear();
   triangle_count_ = 0;
   std::vector<Vertex> vertices;
-  for (const bundle::CaptureProxy* proxy : proxies) {
-    bounds_.push_back(ProxyBounds::of(*proxy));
-    Proxy made{.first_triangle = triangle_count_, .levels = {}};
-    for (const bundle::ProxyLevel& level : proxy->levels) {
-      Level& drawn = made.levels.emplace_back();
-      drawn.first_vertex = static_cast<std::uint32_t>(vertices.size());
-      drawn.closed = isClosed(*proxy, level);
-      LevelVertices level_vertices(*proxy, vertices);
-      for (std::uint32_t t = level.first_triangle; t < level.first_triangle + level.triangle_count; ++t) {
-        const bundle::ProxyTriangle& triangle = proxy->triangles[t];
-        const auto usable = [&](std::uint32_t v) { return finite(proxy->positions[v]); };
-        if (!std::all_of(triangle.vertices.begin(), triangle.vertices.end(), usable)) continue;
-        std::array<std::uint32_t, 3> corners = triangle.vertices;
-        LevelTriangle& added = drawn.triangles.emplace_back();
-        added.corners = level_vertices.add(triangle_count_ + t + 1, corners);
-        added.front_only = triangle.front_only;
-        if (!triangle.front_only) added.black = level_vertices.black(corners[2]);
-        added.plane = planeOf(*proxy, triangle);
-      }
+  for (Proxy& made : proxies_) {
+    made.first_triangle = triangle_count_;
+    made.first_vertex = static_cast<std::uint32_t>(vertices.size());
+    for (Vertex vertex : made.prepared->vertices) {
+      if (vertex[3] != 0 && vertex[3] != kBlackId) vertex[3] += triangle_count_;
+      vertices.push_back(vertex);
     }
-    proxies_.push_back(std::move(made));
-    triangle_count_ += static_cast<std::uint32_t>(proxy->triangles.size());
+    bounds_.push_back(made.prepared->bounds);
+    triangle_count_ += made.prepared->triangle_count;
   }
   vertices_.assign(std::span<const Vertex>(vertices));
   counters.uploaded_bytes += vertices.size() * sizeof(Vertex);
 }
 
-bool Capture::sees(const CapturePoint& point, const CaptureBody& body) const {
-  return body.proxy < bounds_.size() && capture::sees(options_, point, body, bounds_[body.proxy]);
+capture::BodySphere Capture::sphereOf(const CaptureBody& body) const {
+  return body.proxy < bounds_.size() ? capture::BodySphere::of(body, bounds_[body.proxy]) : BodySphere{};
 }
 
 Result<void> Capture::run(const Environment& environment, std::span<const CaptureBody> bodies,
@@ -294,6 +265,7 @@ void Capture::upload(const Plan& plan, std::span<const CaptureBody> bodies,
   std::vector<std::uint32_t> indices;
   draws.reserve(plan.draws.size());
   page_indices_.assign(plan.pages.size(), {});
+  SidesSeen sides_of(bodies.size());
   for (std::size_t i = 0; i < plan.pages.size(); ++i) {
     const Page& page = plan.pages[i];
     for (std::uint32_t p = page.first_point, d = page.first_draw; p < page.first_point + page.point_count;
@@ -305,22 +277,22 @@ void Capture::upload(const Plan& plan, std::span<const CaptureBody> bodies,
         const CaptureBody& body = bodies[draw.body];
         DrawRecord& record = draws.emplace_back(drawRecord(options_, plan.tiles[draw.tile], body, planned,
                                                            points[planned.point].position_ws, page.height));
-        record.first_vertex = proxies_[body.proxy].levels[draw.level].first_vertex;
+        const Proxy& proxy = proxies_[body.proxy];
+        record.first_vertex = proxy.first_vertex + proxy.prepared->levels[draw.level].first_vertex;
       }
     }
     std::vector<std::uint32_t> dark;
     page_indices_[i].first_bright = static_cast<std::uint32_t>(indices.size());
     for (std::uint32_t d = page.first_draw; d < page.first_draw + page.draw_count; ++d) {
       const Draw& draw = plan.draws[d];
-      const CaptureBody& body = bodies[draw.body];
-      const Level& level = proxies_[body.proxy].levels[draw.level];
-      // Told here which side is seen, so that dark sides that cannot show need not be drawn.
-      const glm::dvec4 point_proxy =
-          glm::inverse(glm::dmat4(body.world_from_proxy)) *
-          glm::dvec4(glm::dvec3(points[plan.tiles[draw.tile].point].position_ws), 1.0);
-      for (const LevelTriangle& triangle : level.triangles) {
-        const bool bright = glm::dot(triangle.plane, point_proxy) > 0.0;
-        if (!bright && (triangle.front_only || (level.closed && draw.from_outside))) continue;
+      const PreparedLevel& level = proxies_[bodies[draw.body].proxy].prepared->levels[draw.level];
+      const std::uint32_t point = plan.tiles[draw.tile].point;
+      const std::span<const Side> sides =
+          sides_of.look(draw, level, point, bodies[draw.body], points[point].position_ws);
+      for (std::size_t t = 0; t < sides.size(); ++t) {
+        if (sides[t] == Side::None) continue;
+        const LevelTriangle& triangle = level.triangles[t];
+        const bool bright = sides[t] == Side::Bright;
         const std::uint32_t last = bright ? triangle.corners[2] : triangle.black;
         for (const std::uint32_t v : {triangle.corners[0], triangle.corners[1], last})
           (bright ? indices : dark).push_back(d << kVertexBits | v);

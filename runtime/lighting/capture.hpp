@@ -8,6 +8,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -20,6 +21,7 @@
 #include "runtime/gpu/objects.hpp"
 #include "runtime/gpu/program.hpp"
 #include "runtime/lighting/capture_plan.hpp"
+#include "runtime/lighting/capture_prepared.hpp"
 #include "runtime/lighting/capture_queries.hpp"
 #include "runtime/lighting/capture_readback.hpp"
 #include "runtime/lighting/capture_scene.hpp"
@@ -34,13 +36,16 @@ class Capture {
   static Result<Capture> create(const CaptureOptions& options, const Environment& environment);
   const CaptureOptions& options() const { return options_; }
 
-  // All proxies anew; triangles are numbered through them in their order. Not to be called while pending().
-  void setProxies(std::span<const bundle::CaptureProxy* const> proxies, gpu::Counters& counters);
+  // All proxies; triangles are numbered through them in their order. Not to be called while pending(). keys:
+  // empty, or one for each proxy that no other proxy ever has; what was made of one that was given before is
+  // used again.
+  void setProxies(std::span<const bundle::CaptureProxy* const> proxies, gpu::Counters& counters,
+                  std::span<const std::uint64_t> keys = {});
   std::uint32_t firstTriangle(std::size_t proxy) const { return proxies_[proxy].first_triangle; }
   std::uint32_t triangleCount() const { return triangle_count_; }
 
-  // Whether a body at this place would be drawn at all for this point.
-  bool sees(const CapturePoint& point, const CaptureBody& body) const;
+  // As capture::sees() takes it, with options(): whether a point would have the body drawn at all.
+  capture::BodySphere sphereOf(const CaptureBody& body) const;
 
   // Draws and projects; per page of cube maps at most two draws (surfaces with and without a dark side)
   // and two dispatches, and two when the environment changed. triangle_radiance: vec4 per triangle;
@@ -75,21 +80,10 @@ class Capture {
   sh::LightVector skyThroughTexels(const Environment& environment, const glm::mat3& world_from_light);
 
  private:
-  struct LevelTriangle {
-    // Vertices of the level. The last one names the surface: that of the bright side, or black.
-    std::array<std::uint32_t, 3> corners{};
-    std::uint32_t black = 0;  // of a triangle that is there from behind: its last corner, black
-    bool front_only = false;
-    glm::dvec4 plane{0.0};  // proxy frame; over 0 on the bright side
-  };
-  struct Level {
-    std::uint32_t first_vertex = 0;
-    std::vector<LevelTriangle> triangles;
-    bool closed = false;  // seen from outside, no dark side can show
-  };
   struct Proxy {
-    std::uint32_t first_triangle = 0;
-    std::vector<Level> levels;
+    std::optional<std::uint64_t> key;
+    std::shared_ptr<const capture::PreparedProxy> prepared;
+    std::uint32_t first_triangle = 0, first_vertex = 0;
   };
   struct PageIndices {
     std::uint32_t first_bright = 0, first_dark = 0, end = 0;

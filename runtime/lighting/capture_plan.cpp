@@ -37,31 +37,25 @@ struct Sphere {
   double scale = 0;
 };
 
-Sphere sphereOf(const CapturePoint& point, const CaptureBody& body, const ProxyBounds& bounds) {
-  const glm::dmat4 m(body.world_from_proxy);
-  double squared = 0;
-  for (int column = 0; column < 3; ++column)
-    squared = std::max(squared, glm::dot(glm::dvec3(m[column]), glm::dvec3(m[column])));
-  Sphere sphere;
-  sphere.scale = std::sqrt(squared);
-  sphere.radius_m = sphere.scale * static_cast<double>(bounds.radius_m);
-  sphere.centre = glm::dvec3(m * glm::dvec4(bounds.centre, 1.0)) - glm::dvec3(point.position_ws);
-  const double sum = sphere.radius_m + glm::dot(sphere.centre, sphere.centre);
-  if (!std::isfinite(sum)) sphere.radius_m = 0;
-  return sphere;
+Sphere seenFrom(const glm::vec3& position_ws, const BodySphere& body) {
+  return {.centre = body.centre_ws - glm::dvec3(position_ws), .radius_m = body.radius_m, .scale = body.scale};
 }
 
-bool largeEnough(const CaptureOptions& options, const Sphere& sphere, float brightness) {
-  if (!(sphere.radius_m > 0)) return false;
-  const double squared = glm::dot(sphere.centre, sphere.centre);
-  if (squared <= sphere.radius_m * sphere.radius_m) return true;
-  // 2 pi (1 - cos a), written so that small a keep their digits.
-  const double sine_squared = sphere.radius_m * sphere.radius_m / squared;
-  const double solid_angle_sr =
-      2 * std::numbers::pi * sine_squared / (1 + std::sqrt(std::max(0.0, 1 - sine_squared)));
-  const double texel_sr = 4 * std::numbers::pi / (6.0 * options.size * options.size);
+bool largeEnough(const CaptureOptions& options, const glm::dvec3& centre, double radius_m, float brightness) {
+  const double squared = glm::dot(centre, centre), radius_squared = radius_m * radius_m;
+  if (!(radius_m > 0) || !std::isfinite(radius_m + squared)) return false;
+  if (squared <= radius_squared) return true;
+  // The solid angle, 2 pi (1 - cos a), is between pi sin² a and twice that: mostly enough to know. A texel's
+  // is 4 pi over their number. Both times their number, squared / pi.
   const double brighter = brightness > 1.0f ? static_cast<double>(brightness) : 1.0;
-  return solid_angle_sr * brighter >= kCullShare * texel_sr;
+  const double texels = 6.0 * options.size * options.size;
+  const double least = texels * radius_squared * brighter, needed = 4 * kCullShare * squared;
+  constexpr double kClearly = 1 + 1e-9;
+  if (2 * least * kClearly < needed) return false;
+  if (least > needed * kClearly) return true;
+  // Written so that small a keep their digits.
+  const double sine_squared = radius_squared / squared;
+  return 2 * least >= needed * (1 + std::sqrt(std::max(0.0, 1 - sine_squared)));
 }
 
 std::uint32_t levelFor(const CaptureOptions& options, const Sphere& sphere, const ProxyBounds& bounds) {
@@ -78,15 +72,20 @@ std::uint32_t levelFor(const CaptureOptions& options, const Sphere& sphere, cons
 
 using Corners = std::array<glm::dvec3, 8>;
 
-Corners cornersOf(const CapturePoint& point, const CaptureBody& body, const ProxyBounds& bounds) {
+Corners cornersOf(const CaptureBody& body, const ProxyBounds& bounds) {
   const glm::dmat4 m(body.world_from_proxy);
   Corners corners;
   for (std::size_t i = 0; i < corners.size(); ++i) {
     const glm::dvec4 at((i & 1 ? bounds.highest : bounds.lowest).x,
                         (i & 2 ? bounds.highest : bounds.lowest).y,
                         (i & 4 ? bounds.highest : bounds.lowest).z, 1.0);
-    corners[i] = glm::dvec3(m * at) - glm::dvec3(point.position_ws);
+    corners[i] = glm::dvec3(m * at);
   }
+  return corners;
+}
+
+Corners seenFrom(const glm::vec3& position_ws, Corners corners) {
+  for (glm::dvec3& corner : corners) corner -= glm::dvec3(position_ws);
   return corners;
 }
 
@@ -119,7 +118,10 @@ std::optional<TexelRect> rectOf(std::uint32_t size, std::uint32_t face, const Sp
                                 const Corners& corners) {
   const glm::dmat3& from_world = faceFromWorld(face);
   const glm::dvec3 c = from_world * sphere.centre;
-  if (c.z <= -sphere.radius_m) return std::nullopt;
+  // Wholly behind one of the planes through the point that bound the face, or behind the point.
+  const double beyond = std::numbers::sqrt2 * sphere.radius_m * (1 + 1e-9);
+  if (c.z <= -sphere.radius_m || std::abs(c.x) - c.z > beyond || std::abs(c.y) - c.z > beyond)
+    return std::nullopt;
   Interval sc = circleInterval(c.x, c.z, sphere.radius_m), tc = circleInterval(c.y, c.z, sphere.radius_m);
 
   // The box about the body, cut off close before the point; its projection is the hull of its corners.
@@ -210,18 +212,23 @@ class PointPlanner {
  public:
   PointPlanner(const CaptureOptions& options, std::span<const ProxyBounds> proxies,
                std::span<const CaptureBody> bodies, Plan& plan)
-      : options_(options), proxies_(proxies), bodies_(bodies), plan_(plan) {}
+      : options_(options), proxies_(proxies), bodies_(bodies), plan_(plan) {
+    for (const CaptureBody& body : bodies) {
+      const bool known = body.proxy < proxies.size();
+      spheres_.push_back(known ? BodySphere::of(body, proxies[body.proxy]) : BodySphere{});
+      corners_.push_back(known ? cornersOf(body, proxies[body.proxy]) : Corners{});
+    }
+  }
 
   void add(std::uint32_t index, const CapturePoint& point) {
     if (!finite(point.position_ws)) return;
     seen_.clear();
     double near_m = std::numeric_limits<double>::max();
     for (std::uint32_t b = 0; b < bodies_.size(); ++b) {
-      if (point.ignores(b) || bodies_[b].proxy >= proxies_.size()) continue;
+      if (!sees(options_, point.position_ws, spheres_[b]) || point.ignores(b)) continue;
       const ProxyBounds& bounds = proxies_[bodies_[b].proxy];
-      const Sphere sphere = sphereOf(point, bodies_[b], bounds);
-      if (!largeEnough(options_, sphere, bodies_[b].brightness)) continue;
-      const Corners corners = cornersOf(point, bodies_[b], bounds);
+      const Sphere sphere = seenFrom(point.position_ws, spheres_[b]);
+      const Corners corners = seenFrom(point.position_ws, corners_[b]);
       const double distance_m = boxDistance(corners);
       seen_.push_back({b, levelFor(options_, sphere, bounds), distance_m > kOutsideShare * sphere.radius_m,
                        sphere, corners});
@@ -264,6 +271,8 @@ class PointPlanner {
   std::span<const ProxyBounds> proxies_;
   std::span<const CaptureBody> bodies_;
   Plan& plan_;
+  std::vector<BodySphere> spheres_;  // by body
+  std::vector<Corners> corners_;     // by body, world
   std::vector<Seen> seen_;
   std::vector<std::pair<const Seen*, TexelRect>> on_face_;
   std::vector<TexelRect> rects_;
@@ -336,9 +345,20 @@ ProxyBounds ProxyBounds::of(const bundle::CaptureProxy& proxy) {
   return bounds;
 }
 
-bool sees(const CaptureOptions& options, const CapturePoint& point, const CaptureBody& body,
-          const ProxyBounds& bounds) {
-  return finite(point.position_ws) && largeEnough(options, sphereOf(point, body, bounds), body.brightness);
+BodySphere BodySphere::of(const CaptureBody& body, const ProxyBounds& bounds) {
+  const glm::dmat4 m(body.world_from_proxy);
+  double squared = 0;
+  for (int column = 0; column < 3; ++column)
+    squared = std::max(squared, glm::dot(glm::dvec3(m[column]), glm::dvec3(m[column])));
+  const double scale = std::sqrt(squared);
+  return {.centre_ws = glm::dvec3(m * glm::dvec4(bounds.centre, 1.0)),
+          .radius_m = scale * static_cast<double>(bounds.radius_m),
+          .scale = scale,
+          .brightness = body.brightness};
+}
+
+bool sees(const CaptureOptions& options, const glm::vec3& position_ws, const BodySphere& body) {
+  return largeEnough(options, body.centre_ws - glm::dvec3(position_ws), body.radius_m, body.brightness);
 }
 
 const glm::dmat3& faceFromWorld(std::uint32_t face) {
@@ -363,9 +383,10 @@ std::uint32_t faceOf(const glm::dvec3& direction) {
 
 std::optional<TexelRect> faceRect(std::uint32_t size, std::uint32_t face, const CapturePoint& point,
                                   const CaptureBody& body, const ProxyBounds& bounds) {
-  const Sphere sphere = sphereOf(point, body, bounds);
-  if (!(sphere.radius_m > 0)) return std::nullopt;
-  return rectOf(size, face, sphere, cornersOf(point, body, bounds));
+  const Sphere sphere = seenFrom(point.position_ws, BodySphere::of(body, bounds));
+  if (!(sphere.radius_m > 0) || !std::isfinite(sphere.radius_m + glm::dot(sphere.centre, sphere.centre)))
+    return std::nullopt;
+  return rectOf(size, face, sphere, seenFrom(point.position_ws, cornersOf(body, bounds)));
 }
 
 Plan plan(const CaptureOptions& options, std::span<const ProxyBounds> proxies,

@@ -69,9 +69,18 @@ inline constexpr std::uint32_t kAtlasWidth = 2048, kAtlasHeight = 4096;
 // So that a dispatch stays below the 65535 work groups that OpenGL promises.
 inline constexpr std::uint32_t kMaxPointsOfPage = 65535, kMaxTexelsOfPage = 1u << 21;
 
+// A sphere around a body, and how bright it is: enough to tell whether a point sees it.
+struct BodySphere {
+  glm::dvec3 centre_ws{0.0};
+  double radius_m = 0;  // 0: there is nothing to see
+  double scale = 0;     // of the body against its proxy
+  float brightness = 1.0f;
+
+  static BodySphere of(const CaptureBody& body, const ProxyBounds& bounds);
+};
+
 // Whether the body is drawn at all for a point.
-bool sees(const CaptureOptions& options, const CapturePoint& point, const CaptureBody& body,
-          const ProxyBounds& bounds);
+bool sees(const CaptureOptions& options, const glm::vec3& position_ws, const BodySphere& body);
 
 // Rows: face coordinates (sc w, tc w, w) of world directions; see sh::cubeFaceDirection.
 const glm::dmat3& faceFromWorld(std::uint32_t face);

@@ -2,9 +2,11 @@
 // Comes in: the environment, and per group its rotation in the world, the order of its transfer, what arrives
 // at its light samples and what its own lights give now. Goes out: per group 64 coefficients of vec4 for each
 // light sample (zeros above order²), then the group's own lights, and versions that rise when these change.
-// Windowed (the environment once per order), then rotated per group.
+// Windowed (the environment once per order, a light of the same shape as before not anew), then rotated per
+// group.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -16,7 +18,7 @@
 #include "runtime/base/by_key.hpp"
 #include "runtime/gpu/objects.hpp"
 #include "runtime/lighting/environment.hpp"
-#include "runtime/sh/window.hpp"
+#include "runtime/sh/kept_window.hpp"
 
 namespace lambent::lighting {
 
@@ -46,7 +48,10 @@ class GroupLights {
   void update(const Environment& environment, sh::Window window, std::span<const GroupPlace> groups,
               gpu::Counters& counters, int max_order = sh::kMaxOrder);
   // All counts as new in the next update.
-  void forget() { groups_.clear(); }
+  void forget() {
+    groups_.clear();
+    environment_windows_ = {};
+  }
 
   std::size_t groupCount() const { return groups_.size(); }
   // vec4 indices: of a light sample's coefficients, of the group's own lights.
@@ -75,6 +80,7 @@ class GroupLights {
     bool from_environment = false;
     std::uint64_t seen = 0;  // version of the light it was computed from
     std::uint64_t version = 0;
+    sh::KeptWindow window;
     sh::LightVector light_ws{1};  // windowed
   };
   struct Group {
@@ -86,11 +92,22 @@ class GroupLights {
     std::uint64_t version = 0, lamps_version = 0;
     float change = 0.0f;
   };
-  static bool sameShape(const GroupPlace& place, const Group& group);
+  // A light sample to be written.
+  struct Renewal {
+    std::size_t group = 0, sample = 0;
+    bool light = false;  // also its light is new, not only the frame it is in
+  };
+  static bool sameLayout(const GroupPlace& place, const Group& group);
+  // Those whose windows are to be searched for, on several threads: each is for itself.
+  void followWindows(const Environment& environment, sh::Window window, std::span<const GroupPlace> groups,
+                     std::span<const Renewal> renewals);
+  void write(const Environment& environment, std::span<const GroupPlace> groups,
+             std::span<const Renewal> renewals);
   void layOut(std::span<const GroupPlace> groups);
   bool updateLamps(Group& group, const GroupPlace& place);
 
   ByKey<Group> groups_;
+  std::array<sh::KeptWindow, sh::kMaxOrder + 1> environment_windows_;  // by the groups' order
   std::vector<glm::vec4> coefficients_;
   std::uint64_t environment_version_ = 0;
   sh::Window window_ = sh::Window::Off;

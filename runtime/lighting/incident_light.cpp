@@ -2,8 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <numbers>
+#include <functional>
 #include <utility>
 
 #include <glm/geometric.hpp>
@@ -16,7 +15,6 @@ namespace {
 
 constexpr std::uint64_t kNoVersion = ~std::uint64_t{0};
 constexpr std::size_t kGone = ~std::size_t{0};
-constexpr float kAnew = std::numeric_limits<float>::infinity();
 
 bool differs(const sh::LightVector& now, const sh::LightVector& before) {
   double change = 0.0, power = 0.0;
@@ -30,38 +28,6 @@ bool differs(const sh::LightVector& now, const sh::LightVector& before) {
 
 void add(sh::LightVector& sum, const sh::LightVector& light, float factor) {
   for (std::size_t i = 0; i < sh::kMaxCoefficients; ++i) sum.c[i] += factor * light.c[i];
-}
-
-// Columns of rotation and scale: how far points at unit distance from the origin may have moved.
-float turnBetween(const glm::mat4& a, const glm::mat4& b) {
-  float turn = 0.0f;
-  for (int column = 0; column < 3; ++column)
-    turn = std::max(turn, glm::distance(glm::vec3(a[column]), glm::vec3(b[column])));
-  return turn;
-}
-
-// How a body's sphere moved as seen from a sample.
-struct BodyChange {
-  float half_angle = 0.0f, angle = 0.0f;  // radians
-};
-
-BodyChange changeOf(float radius, const glm::vec3& offset_before, const glm::vec3& offset_after, float turn) {
-  constexpr float kPi = std::numbers::pi_v<float>;
-  const float moved = glm::distance(offset_before, offset_after) + radius * turn;
-  const float distance = std::min(glm::length(offset_before), glm::length(offset_after));
-  // Inside its sphere anything may have happened.
-  if (distance <= radius) return {.half_angle = kPi, .angle = moved > 0.0f ? kPi : 0.0f};
-  return {.half_angle = std::asin(radius / distance), .angle = moved / (distance - radius)};
-}
-
-// Whether a body in this direction may hide part of a light that was asked for.
-bool passesLight(const CapturePoint& point, const glm::vec3& towards, float half_angle) {
-  const float distance = glm::length(towards);
-  return std::ranges::any_of(point.queries, [&](const LightQuery& query) {
-    const float reach = half_angle + query.angular_radius_rad;
-    return reach >= std::numbers::pi_v<float> || distance == 0.0f ||
-           glm::dot(query.direction, towards) > distance * std::cos(reach);
-  });
 }
 
 }  // namespace
@@ -293,53 +259,6 @@ bool IncidentLight::somethingMoves(std::span<const IncidentGroup> groups,
   return moves;
 }
 
-// How much of the light at the sample changed since it was drawn, as an estimate; infinite if it has to be
-// drawn anew.
-float IncidentLight::changeAround(const Drawn& drawn, const Drawn& now, std::span<const IncidentBody> bodies,
-                                  const CapturePoint& point) const {
-  if (drawn.environment != now.environment || drawn.lights != now.lights || drawn.renewal != now.renewal)
-    return kAnew;
-  // A body that reaches the group by another way now would count twice, or not at all.
-  if (drawn.left_out != now.left_out) {
-    const auto changed = [&](const SeenBody& seen) {
-      return std::ranges::binary_search(drawn.left_out, seen.body) !=
-             std::ranges::binary_search(now.left_out, seen.body);
-    };
-    if (std::ranges::any_of(drawn.seen, changed) || std::ranges::any_of(now.seen, changed)) return kAnew;
-  }
-  float change_squared = 0.0f;
-  auto then = drawn.seen.begin();
-  auto here = now.seen.begin();
-  while (then != drawn.seen.end() || here != now.seen.end()) {
-    const bool gone = here == now.seen.end() || (then != drawn.seen.end() && then->body < here->body);
-    const bool come = !gone && (then == drawn.seen.end() || here->body < then->body);
-    const SeenBody& before = come ? *here : *then;
-    const SeenBody& after = gone ? *then : *here;
-    if (before.body >= bodies.size()) return kAnew;
-    const IncidentBody& body = bodies[before.body];
-    const BodyChange moved =
-        changeOf(body.radius_m, before.center_ws - drawn.position_ws, after.center_ws - now.position_ws,
-                 turnBetween(before.world_from_proxy, after.world_from_proxy));
-    const bool other = gone || come;
-    if (moved.angle > 0.0f || other) {
-      if (passesLight(point, after.center_ws - now.position_ws, moved.half_angle + moved.angle)) return kAnew;
-    }
-    // A body that fills a share of the sphere makes up so much of the light's mean, and n times as much of n
-    // bands of it (|y(d)|² = n²/4pi), up to all of it. Turned by an angle, it differs from itself by about
-    // n/2 times the angle (the parallax of a delta light), until it is another altogether.
-    const auto bands = static_cast<float>(order_);
-    constexpr float kOther = std::numbers::sqrt2_v<float>;
-    const float parallax = other ? kOther : std::min(0.5f * bands * moved.angle, kOther);
-    const auto drift = static_cast<float>(after.radiance_drift - before.radiance_drift);
-    const float share = std::min(0.5f * (1.0f - std::cos(moved.half_angle)) * bands, 1.0f);
-    const float part = share * body.body.brightness * (parallax + drift);
-    change_squared += part * part;  // some brighten, some darken
-    if (!come) ++then;
-    if (!gone) ++here;
-  }
-  return std::sqrt(change_squared);
-}
-
 Result<void> IncidentLight::capture(const Environment& environment, std::span<const IncidentGroup> groups,
                                     std::span<const IncidentBody> bodies, std::span<const LocalLight> lights,
                                     const gpu::Buffer& triangle_radiance, std::size_t max_samples,
@@ -351,42 +270,32 @@ Result<void> IncidentLight::capture(const Environment& environment, std::span<co
   if (!moves && !shines && nothing_to_draw_) return {};
   counts_.waiting = 0;
   const float least_change = moves ? kMovingChange : kRestingChange;
+  noticeBodies(bodies);
   std::vector<Wanted> wanted;
-  for (std::size_t g = 0; g < groups.size(); ++g)
-    for (std::size_t s = 0; s < groups[g].samples_ws.size(); ++s) {
+  std::vector<std::uint32_t> seen;
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    const IncidentGroup& group = groups[g];
+    const std::vector<bool> ignored = ignoredBy(group, bodies.size());
+    for (std::size_t s = 0; s < group.samples_ws.size(); ++s) {
       Sample& sample = groups_[g].samples[s];
-      CapturePoint point{.position_ws = groups[g].samples_ws[s],
-                         .own_body = groups[g].body,
-                         .queries = {},
-                         .left_out = groups[g].left_out};
-      Drawn now;
-      now.position_ws = point.position_ws;
-      now.environment = environment.version();
-      now.lights = groups_[g].lights;
-      now.renewal = renewal_;
-      now.left_out = groups[g].left_out;
-      now.fades = groups[g].fades;
-      for (std::uint32_t b = 0; b < bodies.size(); ++b)
-        if (!point.ignores(b) && capture_.sees(point, bodies[b].body))
-          now.seen.push_back(
-              {b, bodies[b].body.world_from_proxy, bodies[b].center_ws, bodies[b].radiance_drift});
-      if (now.seen.empty()) {
+      seeFrom(group.samples_ws[s], ignored, seen);
+      if (seen.empty()) {
         if (sample.drawn) ++counts_.waiting;  // for the next step, which finds nothing in the light's way
-        leaveOut(sample, now.left_out, now.fades && sample.drawn.has_value());
+        leaveOut(sample, group.left_out, group.fades && sample.drawn.has_value());
         sample.drawn_anew |= sample.drawn.has_value();
         sample.drawn.reset();
         continue;
       }
-      askForLights(environment, groups[g], lights, point, now);
-      const float change = sample.drawn ? changeAround(*sample.drawn, now, bodies, point) : kAnew;
+      const float change =
+          sample.drawn ? changeAround(*sample.drawn, environment, g, group, s, seen, lights) : kWhollyChanged;
       if (change > least_change)
-        wanted.push_back({change, {g, s, std::move(now)}, std::move(point)});
+        wanted.push_back({change, g, s});
       else if (change > kRestingChange)
         ++counts_.waiting;
     }
+  }
   // What changed most first; the others have their turn soon, for what they wait for adds up.
-  std::stable_sort(wanted.begin(), wanted.end(),
-                   [](const Wanted& a, const Wanted& b) { return a.change > b.change; });
+  std::ranges::stable_sort(wanted, std::ranges::greater(), &Wanted::change);
   if (wanted.size() > max_samples) {
     counts_.waiting += static_cast<std::uint32_t>(wanted.size() - max_samples);
     wanted.resize(max_samples);
@@ -395,13 +304,114 @@ Result<void> IncidentLight::capture(const Environment& environment, std::span<co
   if (wanted.empty()) return {};
   counts_.captured = static_cast<std::uint32_t>(wanted.size());
   std::vector<CapturePoint> points;
-  for (Wanted& one : wanted) {
-    points.push_back(std::move(one.point));
-    requests_.push_back(std::move(one.request));
+  for (const Wanted& one : wanted) {
+    const IncidentGroup& group = groups[one.group];
+    CapturePoint& point = points.emplace_back(CapturePoint{.position_ws = group.samples_ws[one.sample],
+                                                           .own_body = group.body,
+                                                           .queries = {},
+                                                           .left_out = group.left_out});
+    Drawn now;
+    now.position_ws = point.position_ws;
+    now.environment = environment.version();
+    now.lights = groups_[one.group].lights;
+    now.renewal = renewal_;
+    now.left_out = group.left_out;
+    now.fades = group.fades;
+    seeFrom(point.position_ws, ignoredBy(group, bodies.size()), seen);
+    for (const std::uint32_t body : seen) now.seen.push_back({body, bodies_[body].pose});
+    askForLights(environment, group, lights, point, now);
+    requests_.push_back({one.group, one.sample, std::move(now)});
   }
   std::vector<CaptureBody> placed;
   for (const IncidentBody& body : bodies) placed.push_back(body.body);
   return capture_.run(environment, placed, points, triangle_radiance, counters);
+}
+
+void IncidentLight::noticeBodies(std::span<const IncidentBody> bodies) {
+  bodies_.follow(bodies, &IncidentBody::key);
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    const IncidentBody& now = bodies[b];
+    Body& body = bodies_[b];
+    body.sphere = capture_.sphereOf(now.body);
+    body.radius_m = now.radius_m;
+    body.brightness = now.body.brightness;
+    BodyPose& pose = body.pose;
+    if (pose.version != 0 && pose.world_from_proxy == now.body.world_from_proxy &&
+        pose.center_ws == now.center_ws && pose.radiance_drift == now.radiance_drift)
+      continue;
+    pose = {.version = ++body_version_,
+            .world_from_proxy = now.body.world_from_proxy,
+            .center_ws = now.center_ws,
+            .radiance_drift = now.radiance_drift};
+  }
+}
+
+std::vector<bool> IncidentLight::ignoredBy(const IncidentGroup& group, std::size_t bodies) {
+  std::vector<bool> ignored(bodies, false);
+  if (group.body < bodies) ignored[group.body] = true;
+  for (const std::uint32_t body : group.left_out)
+    if (body < bodies) ignored[body] = true;
+  return ignored;
+}
+
+void IncidentLight::seeFrom(const glm::vec3& position_ws, const std::vector<bool>& ignored,
+                            std::vector<std::uint32_t>& seen) const {
+  seen.clear();
+  for (std::uint32_t b = 0; b < bodies_.size(); ++b)
+    if (!ignored[b] && capture::sees(capture_.options(), position_ws, bodies_[b].sphere)) seen.push_back(b);
+}
+
+// How much of the light at the sample changed since it was drawn, as an estimate; infinite if it has to be
+// drawn anew.
+float IncidentLight::changeAround(const Drawn& drawn, const Environment& environment, std::size_t g,
+                                  const IncidentGroup& group, std::size_t sample,
+                                  std::span<const std::uint32_t> seen,
+                                  std::span<const LocalLight> lights) const {
+  if (drawn.environment != environment.version() || drawn.lights != groups_[g].lights ||
+      drawn.renewal != renewal_)
+    return kWhollyChanged;
+  // A body that reaches the group by another way now would count twice, or not at all.
+  if (drawn.left_out != group.left_out) {
+    const auto changed = [&](std::uint32_t body) {
+      return std::ranges::binary_search(drawn.left_out, body) !=
+             std::ranges::binary_search(group.left_out, body);
+    };
+    if (std::ranges::any_of(drawn.seen, changed, &SeenBody::body) || std::ranges::any_of(seen, changed))
+      return kWhollyChanged;
+  }
+  const glm::vec3& position_ws = group.samples_ws[sample];
+  const bool stays = drawn.position_ws == position_ws;
+  std::optional<CapturePoint> point;  // what it would ask for; made when something changed
+  float change_squared = 0.0f;
+  auto then = drawn.seen.begin();
+  auto here = seen.begin();
+  while (then != drawn.seen.end() || here != seen.end()) {
+    const bool gone = here == seen.end() || (then != drawn.seen.end() && then->body < *here);
+    const bool come = !gone && (then == drawn.seen.end() || *here < then->body);
+    const std::uint32_t index = come ? *here : then->body;
+    if (index >= bodies_.size()) return kWhollyChanged;
+    const Body& body = bodies_[index];
+    const bool same = !gone && !come && stays && then->pose.version == body.pose.version;
+    if (!same) {
+      const BodyPose& before = come ? body.pose : then->pose;
+      const BodyPose& after = gone ? then->pose : body.pose;
+      const BodyChange change = changeOf(before, drawn.position_ws, after, position_ws, body.radius_m);
+      if (change.angle > 0.0f || gone || come) {
+        if (!point) {
+          Drawn asked;
+          point.emplace(CapturePoint{.position_ws = position_ws, .queries = {}, .left_out = {}});
+          askForLights(environment, group, lights, *point, asked);
+        }
+        if (passesLight(point->queries, after.center_ws - position_ws, change.half_angle + change.angle))
+          return kWhollyChanged;
+      }
+      const float part = shareOfLight(change, gone || come, order_) * body.brightness;
+      change_squared += part * part;  // some brighten, some darken
+    }
+    if (!come) ++then;
+    if (!gone) ++here;
+  }
+  return std::sqrt(change_squared);
 }
 
 void IncidentLight::askForLights(const Environment& environment, const IncidentGroup& group,

@@ -21,6 +21,7 @@
 #include "runtime/lighting/capture.hpp"
 #include "runtime/lighting/environment.hpp"
 #include "runtime/lighting/group_lights.hpp"
+#include "runtime/lighting/incident_change.hpp"
 #include "runtime/lighting/local_light.hpp"
 
 namespace lambent::lighting {
@@ -97,12 +98,14 @@ class IncidentLight {
   const IncidentCounts& counts() const { return counts_; }
 
  private:
-  // A body as it stood when a sample's surroundings were drawn.
   struct SeenBody {
     std::uint32_t body = 0;
-    glm::mat4 world_from_proxy{1.0f};
-    glm::vec3 center_ws{0.0f};
-    double radiance_drift = 0.0;
+    BodyPose pose;  // when the sample's surroundings were drawn
+  };
+  struct Body {
+    BodyPose pose;
+    capture::BodySphere sphere;
+    float radius_m = 0.0f, brightness = 1.0f;
   };
   // What a sample's surroundings were drawn from, and what came out.
   struct Drawn {
@@ -144,8 +147,7 @@ class IncidentLight {
   };
   struct Wanted {
     float change = 0.0f;
-    Request request;
-    CapturePoint point;
+    std::size_t group = 0, sample = 0;
   };
 
   IncidentLight(Capture capture, int order) : capture_(std::move(capture)), order_(order) {}
@@ -162,13 +164,21 @@ class IncidentLight {
   // Since the last call: the sky, a light, a body's radiance; a body, a sample, or which bodies are left out.
   bool somethingShines(const Environment& environment, std::span<const IncidentBody> bodies);
   bool somethingMoves(std::span<const IncidentGroup> groups, std::span<const IncidentBody> bodies);
-  float changeAround(const Drawn& drawn, const Drawn& now, std::span<const IncidentBody> bodies,
-                     const CapturePoint& point) const;
+  void noticeBodies(std::span<const IncidentBody> bodies);
+  static std::vector<bool> ignoredBy(const IncidentGroup& group, std::size_t bodies);
+  // Bodies that are drawn for a point there, rising.
+  void seeFrom(const glm::vec3& position_ws, const std::vector<bool>& ignored,
+               std::vector<std::uint32_t>& seen) const;
+  float changeAround(const Drawn& drawn, const Environment& environment, std::size_t g,
+                     const IncidentGroup& group, std::size_t sample, std::span<const std::uint32_t> seen,
+                     std::span<const LocalLight> lights) const;
 
   Capture capture_;
   int order_;
   ByKey<Group> groups_;
   std::vector<std::uint64_t> body_keys_;  // what indices of bodies mean in all that is kept
+  ByKey<Body> bodies_;                    // as they stood when it was last looked for changes
+  std::uint64_t body_version_ = 0;        // the last that a pose was given
   std::vector<Request> requests_;         // on their way
   std::uint64_t version_ = 0;             // the last that a sample was given
   std::uint32_t renewal_ = 0;

@@ -169,11 +169,13 @@ Result<Residency::Staged> Residency::stage(const bundle::Description& descriptio
 }
 
 void Residency::discard(Staged staged) {
+  cancel(Whose{true, staged});
   release(staged_.at(staged));
   staged_.erase(staged);
 }
 
 void Residency::show(Staged staged, std::uint32_t bundle) {
+  assert(!comesStaged(staged));
   cancel(bundle);
   const ResidentTables old = present(bundle) ? extract(tables_, bundle) : ResidentTables{};
   insert(tables_, bundle, std::move(staged_.at(staged)));
@@ -192,9 +194,8 @@ Result<void> Residency::upload(std::uint32_t bundle, Ready item) {
 
 Result<void> Residency::uploadStaged(Staged staged, Ready item) {
   ++version_;
-  ResidentTables& tables = staged_.at(staged);
-  const At at{tables, tables.bundles.front()};
-  return std::visit([&](auto& ready) { return put(at, std::move(ready)); }, item);
+  const At into = at({true, staged});
+  return std::visit([&](auto& ready) { return put(into, std::move(ready)); }, item);
 }
 
 Result<void> Residency::put(At at, const RowsReady& item) {

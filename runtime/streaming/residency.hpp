@@ -5,6 +5,7 @@
 // Errors: a mesh or a group too large for one page (128 MiB), named.
 #pragma once
 
+#include <compare>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -44,7 +45,7 @@ class Residency {
   // of a coarser one, a mesh, the means and axes of a transfer. One at a time of each bundle.
   static bool comesInPieces(const Ready& item);
   Result<void> begin(std::uint32_t bundle, Ready item);
-  bool comes(std::uint32_t bundle) const { return coming_.contains(bundle); }
+  bool comes(std::uint32_t bundle) const { return coming_.contains({false, bundle}); }
   // At most about so many bytes more of it; returns how many.
   Result<std::uint64_t> proceed(std::uint32_t bundle, std::uint64_t max_bytes);
   void cancel(std::uint32_t bundle);
@@ -58,7 +59,11 @@ class Residency {
   Result<Staged> stage(const bundle::Description& description);
   Result<void> uploadStaged(Staged staged, Ready item);
   void discard(Staged staged);
-  // In the place of `bundle`, which goes; the slot may be empty.
+  // As begin(), comes(), proceed(): pieces of what is staged.
+  Result<void> beginStaged(Staged staged, Ready item);
+  bool comesStaged(Staged staged) const { return coming_.contains({true, staged}); }
+  Result<std::uint64_t> proceedStaged(Staged staged, std::uint64_t max_bytes);
+  // In the place of `bundle`, which goes; the slot may be empty. Nothing of it may still be coming.
   void show(Staged staged, std::uint32_t bundle);
 
   // By slot; some may be empty.
@@ -120,6 +125,15 @@ class Residency {
     std::uint64_t bytes_done = 0;  // of its vectors
   };
   using Coming = std::variant<ImageUpload, MeshUpload, CodebookUpload>;
+  struct Whose {
+    bool staged = false;
+    std::uint32_t index = 0;  // slot, or Staged
+    auto operator<=>(const Whose&) const = default;
+  };
+  At at(const Whose& whose);
+  Result<void> begin(const Whose& whose, Ready item);
+  Result<std::uint64_t> proceed(const Whose& whose, std::uint64_t max_bytes);
+  void cancel(const Whose& whose);
   std::uint64_t proceed(ImageUpload& upload, std::uint64_t max_bytes);
   std::uint64_t proceed(MeshUpload& upload, std::uint64_t max_bytes);
   std::uint64_t proceed(At at, CodebookUpload& upload, std::uint64_t max_bytes);
@@ -148,7 +162,7 @@ class Residency {
   ResidentTables tables_;
   std::map<Staged, ResidentTables> staged_;
   Staged next_staged_ = 0;
-  std::map<std::uint32_t, Coming> coming_;  // by bundle
+  std::map<Whose, Coming> coming_;
   std::uint64_t next_id_ = 1;
   std::uint64_t version_ = 1, structure_version_ = 1, proxies_version_ = 1;
   gpu::Arena geometry_, transfer_, samples_, rows_, radiance_;

@@ -54,28 +54,53 @@ bool Residency::comesInPieces(const Ready& item) {
          std::holds_alternative<CodebookReady>(item);
 }
 
+Residency::At Residency::at(const Whose& whose) {
+  ResidentTables& tables = whose.staged ? staged_.at(whose.index) : tables_;
+  return {tables, tables.bundles[whose.staged ? 0 : whose.index]};
+}
+
 Result<void> Residency::begin(std::uint32_t bundle, Ready item) {
-  assert(comesInPieces(item) && !comes(bundle));
-  const At at{tables_, tables_.bundles[bundle]};
+  return begin(Whose{false, bundle}, std::move(item));
+}
+
+Result<void> Residency::beginStaged(Staged staged, Ready item) {
+  return begin(Whose{true, staged}, std::move(item));
+}
+
+Result<std::uint64_t> Residency::proceed(std::uint32_t bundle, std::uint64_t max_bytes) {
+  return proceed(Whose{false, bundle}, max_bytes);
+}
+
+Result<std::uint64_t> Residency::proceedStaged(Staged staged, std::uint64_t max_bytes) {
+  return proceed(Whose{true, staged}, max_bytes);
+}
+
+void Residency::cancel(std::uint32_t bundle) {
+  cancel(Whose{false, bundle});
+}
+
+Result<void> Residency::begin(const Whose& whose, Ready item) {
+  assert(comesInPieces(item) && !coming_.contains(whose));
+  const At into = at(whose);
   if (auto* image = std::get_if<ImageReady>(&item)) {
-    ImageUpload upload = begin(at.bundle, *image);
+    ImageUpload upload = begin(into.bundle, *image);
     upload.item = std::move(*image);
-    coming_.emplace(bundle, std::move(upload));
+    coming_.emplace(whose, std::move(upload));
   } else if (auto* mesh = std::get_if<MeshReady>(&item)) {
     Result<MeshUpload> upload = begin(std::move(*mesh));
     if (!upload) return failAgain(upload.error());
-    coming_.emplace(bundle, std::move(*upload));
+    coming_.emplace(whose, std::move(*upload));
   } else if (auto* codebook = std::get_if<CodebookReady>(&item)) {
-    if (Result<void> written = writeTables(at, *codebook); !written) return written;
-    coming_.emplace(bundle, CodebookUpload{std::move(*codebook)});
+    if (Result<void> written = writeTables(into, *codebook); !written) return written;
+    coming_.emplace(whose, CodebookUpload{std::move(*codebook)});
   }
   return {};
 }
 
-Result<std::uint64_t> Residency::proceed(std::uint32_t bundle, std::uint64_t max_bytes) {
-  const auto found = coming_.find(bundle);
+Result<std::uint64_t> Residency::proceed(const Whose& whose, std::uint64_t max_bytes) {
+  const auto found = coming_.find(whose);
   if (found == coming_.end()) return 0;
-  const At at{tables_, tables_.bundles[bundle]};
+  const At into = at(whose);
   max_bytes = std::max(max_bytes, kLeastBytes);
   std::uint64_t bytes = 0;
   Result<void> done;
@@ -87,23 +112,23 @@ Result<std::uint64_t> Residency::proceed(std::uint32_t bundle, std::uint64_t max
     bytes = proceed(*image, max_bytes);
     if (image->rows_done == image->item.height) {
       auto upload = std::get<ImageUpload>(whole());
-      finish(at.bundle, std::move(upload), upload.item.image);
+      finish(into.bundle, std::move(upload), upload.item.image);
     }
   } else if (auto* mesh = std::get_if<MeshUpload>(&found->second)) {
     bytes = proceed(*mesh, max_bytes);
     if (mesh->bytes_done == bytesOf(partsOf(mesh->item.data, mesh->colors)))
-      done = finish(at, std::get<MeshUpload>(whole()));
+      done = finish(into, std::get<MeshUpload>(whole()));
   } else if (auto* codebook = std::get_if<CodebookUpload>(&found->second)) {
-    bytes = proceed(at, *codebook, max_bytes);
+    bytes = proceed(into, *codebook, max_bytes);
     if (codebook->bytes_done == bytesOf(codebook->item.codebook.vectors).size())
-      finish(at, std::get<CodebookUpload>(whole()));
+      finish(into, std::get<CodebookUpload>(whole()));
   }
   if (!done) return failAgain(done.error());
   return bytes;
 }
 
-void Residency::cancel(std::uint32_t bundle) {
-  const auto found = coming_.find(bundle);
+void Residency::cancel(const Whose& whose) {
+  const auto found = coming_.find(whose);
   if (found == coming_.end()) return;
   // Textures go by themselves, and the blocks of cells are the cells'.
   if (const auto* mesh = std::get_if<MeshUpload>(&found->second)) geometry_.release(mesh->block);

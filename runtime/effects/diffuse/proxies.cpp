@@ -34,44 +34,52 @@ Proxies::Proxies()
       radiance_("proxy radiance"),
       work_("proxy work") {}
 
+void Proxies::makeRecords(const streaming::ResidentGroup& group, Seen& seen) {
+  seen.made = true;
+  const bundle::CaptureProxy& proxy = *group.proxy;
+  seen.triangles.reserve(proxy.triangles.size());
+  for (const bundle::ProxyTriangle& triangle : proxy.triangles) {
+    const glm::vec3 normal = normalOf(proxy, triangle);
+    seen.triangles.push_back(
+        {.normal = {normal.x, normal.y, normal.z},
+         .first_entry = triangle.first_entry,
+         .emission = {triangle.emission.r, triangle.emission.g, triangle.emission.b},
+         .entry_count = triangle.entry_count,
+         .lamp = triangle.light < 0 ? kNoLamp : static_cast<std::uint32_t>(triangle.light),
+         .pad = {}});
+  }
+  seen.entries.reserve(proxy.entries.size());
+  for (const bundle::ProxyEntry& entry : proxy.entries) {
+    const std::uint32_t outputs = outputsOf(group, entry.sample);
+    seen.entries.push_back({.reflectance = {entry.reflectance.r, entry.reflectance.g, entry.reflectance.b},
+                            .sample_index = group.sampleBase(outputs) + outputs * entry.sample,
+                            .outputs = outputs,
+                            .pad = {}});
+  }
+}
+
 void Proxies::rebuildTables(const streaming::Residency& residency, const lighting::GroupLights& lights) {
   groups_.clear();
   triangles_.clear();
   entries_.clear();
+  seen_.follow(residency.groups(), &streaming::ResidentGroup::id);
   for (std::size_t g = 0; g < residency.groups().size(); ++g) {
     const streaming::ResidentGroup& group = residency.groups()[g];
-    ProxyGroupRecord record{.first_triangle = static_cast<std::uint32_t>(triangles_.size()),
-                            .triangle_count = 0,
-                            .light = lights.firstOf(g),
-                            .lamps = lights.lampsOf(g),
-                            .order = group.order,
-                            .pad = {}};
-    if (group.proxy) {
-      const bundle::CaptureProxy& proxy = *group.proxy;
-      record.triangle_count = static_cast<std::uint32_t>(proxy.triangles.size());
-      const auto first_entry = static_cast<std::uint32_t>(entries_.size());
-      for (const bundle::ProxyTriangle& triangle : proxy.triangles) {
-        const glm::vec3 normal = normalOf(proxy, triangle);
-        triangles_.push_back(
-            {.normal = {normal.x, normal.y, normal.z},
-             .first_entry = first_entry + triangle.first_entry,
-             .emission = {triangle.emission.r, triangle.emission.g, triangle.emission.b},
-             .entry_count = triangle.entry_count,
-             .lamp = triangle.light < 0 ? kNoLamp : static_cast<std::uint32_t>(triangle.light),
-             .pad = {}});
-      }
-      for (const bundle::ProxyEntry& entry : proxy.entries) {
-        const std::uint32_t outputs = outputsOf(group, entry.sample);
-        entries_.push_back({.reflectance = {entry.reflectance.r, entry.reflectance.g, entry.reflectance.b},
-                            .sample_index = group.sampleBase(outputs) + outputs * entry.sample,
-                            .outputs = outputs,
-                            .pad = {}});
-      }
-    }
-    groups_.push_back(record);
+    Seen& seen = seen_[g];
+    seen.written = false;
+    if (group.proxy && !seen.made) makeRecords(group, seen);
+    const auto first = static_cast<std::uint32_t>(triangles_.size());
+    const auto first_entry = static_cast<std::uint32_t>(entries_.size());
+    triangles_.insert(triangles_.end(), seen.triangles.begin(), seen.triangles.end());
+    for (std::size_t t = first; t < triangles_.size(); ++t) triangles_[t].first_entry += first_entry;
+    entries_.insert(entries_.end(), seen.entries.begin(), seen.entries.end());
+    groups_.push_back({.first_triangle = first,
+                       .triangle_count = static_cast<std::uint32_t>(seen.triangles.size()),
+                       .light = lights.firstOf(g),
+                       .lamps = lights.lampsOf(g),
+                       .order = group.order,
+                       .pad = {}});
   }
-  seen_.follow(residency.groups(), &streaming::ResidentGroup::id);
-  for (std::size_t g = 0; g < seen_.size(); ++g) seen_[g].written = false;
   groups_table_.assign(std::span<const ProxyGroupRecord>(groups_));
   triangles_table_.assign(std::span<const ProxyTriangleRecord>(triangles_));
   entries_table_.assign(std::span<const ProxyEntryRecord>(entries_));
@@ -93,7 +101,10 @@ Result<void> Proxies::shade(streaming::Residency& residency, const lighting::Gro
     const std::uint64_t samples = shaded[g], light = lights.versionOf(g);
     const bool same = seen.version != 0 && seen.samples == samples && seen.light == light;
     if (same && seen.written) continue;
-    seen = {.samples = samples, .light = light, .version = same ? seen.version : ++version_, .written = true};
+    if (!same) seen.version = ++version_;
+    seen.samples = samples;
+    seen.light = light;
+    seen.written = true;
     work_.add({group.samples.page}, g, groups_[g].triangle_count, kWorkGroupSize);
   }
   if (work_.empty()) return {};

@@ -41,7 +41,12 @@ class Proxies {
   struct Seen {
     std::uint64_t samples = 0, light = 0, version = 0;
     bool written = false;  // where the table has it now
+    // The proxy's, by themselves: entries from 0 on. Made when it comes.
+    bool made = false;
+    std::vector<ProxyTriangleRecord> triangles;
+    std::vector<ProxyEntryRecord> entries;
   };
+  static void makeRecords(const streaming::ResidentGroup& group, Seen& seen);
   void rebuildTables(const streaming::Residency& residency, const lighting::GroupLights& lights);
 
   std::optional<gpu::Program> program_;

@@ -57,6 +57,43 @@ TEST_F(CaptureRuns, DrawsAndDispatchesDependOnPagesOnly) {
   EXPECT_EQ(counters.dispatches, 4u) << "two of them for the sky";
 }
 
+TEST_F(CaptureRuns, ProxiesThatAreKnownAgainAreDrawnAsIfTheyWereNew) {
+  const Environment environment = uniformSky(1);
+  const bundle::CaptureProxy cube = cubeProxy(), square = squareProxy(), disc = discProxy(20);
+  using Proxies = std::vector<const bundle::CaptureProxy*>;
+  auto known = Capture::create({.size = 8, .order = 4}, environment);
+  ASSERT_TRUE(known);
+  // They come one by one, change places and go.
+  const std::vector<std::pair<Proxies, std::vector<std::uint64_t>>> steps = {
+      {{&cube}, {1}},
+      {{&square, &cube}, {2, 1}},
+      {{&square, &disc, &cube}, {2, 3, 1}},
+      {{&cube, &disc, &cube}, {1, 3, 4}},
+      {{&disc, &square}, {3, 5}}};
+  for (const auto& [proxies, keys] : steps) {
+    auto anew = Capture::create({.size = 8, .order = 4}, environment);
+    ASSERT_TRUE(anew);
+    known->setProxies(proxies, counters, keys);
+    anew->setProxies(proxies, counters);
+    ASSERT_EQ(known->triangleCount(), anew->triangleCount());
+    std::vector<glm::vec4> shine;
+    for (std::uint32_t i = 0; i < known->triangleCount(); ++i) shine.emplace_back(0.1f * float(i), 1, 2, 0);
+    gpu::Buffer radiance("radiance", shine.size() * sizeof(glm::vec4));
+    radiance.write(0, std::span<const glm::vec4>(shine));
+    std::vector<CaptureBody> bodies;
+    for (std::uint32_t i = 0; i < proxies.size(); ++i) {
+      EXPECT_EQ(known->firstTriangle(i), anew->firstTriangle(i));
+      bodies.push_back({i, facing({2.0f * static_cast<float>(i) - 2, 2, 1}, {}, 1)});
+    }
+    const CapturePoint points[] = {{}};
+    ASSERT_TRUE(known->run(environment, bodies, points, radiance, counters));
+    ASSERT_TRUE(anew->run(environment, bodies, points, radiance, counters));
+    const auto found = *known->take(true), expected = *anew->take(true);
+    EXPECT_EQ(found[0].light.c, expected[0].light.c);
+    EXPECT_GT(squaredError(found[0].light, environment.light().truncated(4)), 1e-3) << "bodies are seen";
+  }
+}
+
 TEST_F(CaptureRuns, ManyPagesGiveTheLightOfOne) {
   Scene scene{.proxies = {cubeProxy()}, .bodies = {{0, glm::translate(glm::mat4(1), glm::vec3(1.5f, 0, 0))}}};
   for (int i = 0; i < 60; ++i) scene.points.push_back({.position_ws = {0, 0.01f * static_cast<float>(i), 0}});

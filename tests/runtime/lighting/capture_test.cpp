@@ -301,7 +301,7 @@ TEST_F(CaptureTest, SmallBodiesAreLeftOutUnlessTheyAreBright) {
   const auto seen = [&](double degrees, float brightness) {
     CaptureBody body = discBody(0, {}, {0, 1, 0}, degrees * std::numbers::pi / 180, 10);
     body.brightness = brightness;
-    return capture::sees(options, {}, body, bounds);
+    return capture::sees(options, glm::vec3(0.0f), capture::BodySphere::of(body, bounds));
   };
   EXPECT_FALSE(seen(1.4, 1));
   EXPECT_TRUE(seen(1.5, 1));

@@ -1,5 +1,7 @@
 #include "runtime/lighting/group_lights.hpp"
 
+#include <cmath>
+
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
@@ -60,6 +62,36 @@ TEST_F(GroupLightsTest, LightSamplesHaveVersionsOfTheirOwn) {
   EXPECT_EQ(lights.versionOf(1, 0), own);
   EXPECT_GT(lights.versionOf(1, 1), captured);
   EXPECT_GT(lights.versionOf(1), all);
+}
+
+TEST_F(GroupLightsTest, ManyWindowsAtOnceAreThoseOfEachByItselfAndScaledLightsKeepThem) {
+  GroupLights lights;
+  gpu::Counters counters;
+  const Environment environment = sunAlong(90);
+  std::vector<sh::LightVector> arriving;  // small lights, which ring
+  for (int i = 0; i < 60; ++i) {
+    const float turn = 0.1f * static_cast<float>(i);
+    arriving.push_back(sh::discLight(5, {std::cos(turn), 0, std::sin(turn)}, 0.05 + 0.01 * i, {1, 2, 3}));
+    arriving.back().c[0] += 0.1f * turn;
+  }
+  std::vector<GroupPlace> places = {{.order = 5, .incident = {}, .key = 1}};
+  std::uint64_t version = 0;
+  for (const sh::LightVector& light : arriving) places[0].incident.push_back({&light, ++version});
+  lights.update(environment, sh::Window::Auto, places, counters);
+  for (std::size_t s = 0; s < arriving.size(); ++s) {
+    const sh::LightVector expected = sh::applyWindow(arriving[s], sh::Window::Auto);
+    ASSERT_NE(expected.c, arriving[s].c);
+    for (std::size_t i = 0; i < 25; ++i)
+      EXPECT_LT(glm::distance(glm::vec3(lights.coefficients()[64 * s + i]), expected.c[i]), 1e-6f);
+  }
+  const std::vector<glm::vec4> before(lights.coefficients().begin(), lights.coefficients().end());
+  for (std::size_t s = 0; s < arriving.size(); ++s) {
+    arriving[s] *= 2.0f;
+    places[0].incident[s].version = ++version;
+  }
+  lights.update(environment, sh::Window::Auto, places, counters);
+  EXPECT_EQ(lights.renewedSamples(), 60u);
+  for (std::size_t i = 0; i < before.size(); ++i) EXPECT_EQ(lights.coefficients()[i], 2.0f * before[i]);
 }
 
 TEST_F(GroupLightsTest, ALampThatChangesIsNewLightForItsGroupOnly) {

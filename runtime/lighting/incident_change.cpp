@@ -1,0 +1,58 @@
+#include "runtime/lighting/incident_change.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <glm/geometric.hpp>
+
+namespace lambent::lighting {
+
+namespace {
+
+// Columns of rotation and scale: how far points at unit distance from the origin may have moved.
+float turnBetween(const glm::mat4& a, const glm::mat4& b) {
+  float turn = 0.0f;
+  for (int column = 0; column < 3; ++column)
+    turn = std::max(turn, glm::distance(glm::vec3(a[column]), glm::vec3(b[column])));
+  return turn;
+}
+
+}  // namespace
+
+BodyChange changeOf(const BodyPose& before, const glm::vec3& place_before, const BodyPose& after,
+                    const glm::vec3& place_after, float radius_m) {
+  constexpr float kPi = std::numbers::pi_v<float>;
+  const auto drift = static_cast<float>(after.radiance_drift - before.radiance_drift);
+  const glm::vec3 offset_before = before.center_ws - place_before,
+                  offset_after = after.center_ws - place_after;
+  const float moved = glm::distance(offset_before, offset_after) +
+                      radius_m * turnBetween(before.world_from_proxy, after.world_from_proxy);
+  const float distance = std::min(glm::length(offset_before), glm::length(offset_after));
+  // Inside its sphere anything may have happened.
+  if (distance <= radius_m) return {.half_angle = kPi, .angle = moved > 0.0f ? kPi : 0.0f, .drift = drift};
+  return {
+      .half_angle = std::asin(radius_m / distance), .angle = moved / (distance - radius_m), .drift = drift};
+}
+
+float shareOfLight(const BodyChange& change, bool other, int order) {
+  // A body that fills a share of the sphere makes up so much of the light's mean, and n times as much of n
+  // bands of it (|y(d)|² = n²/4pi), up to all of it. Turned by an angle, it differs from itself by about
+  // n/2 times the angle (the parallax of a delta light), until it is another altogether.
+  const auto bands = static_cast<float>(order);
+  constexpr float kOther = std::numbers::sqrt2_v<float>;
+  const float parallax = other ? kOther : std::min(0.5f * bands * change.angle, kOther);
+  const float share = std::min(0.5f * (1.0f - std::cos(change.half_angle)) * bands, 1.0f);
+  return share * (parallax + change.drift);
+}
+
+bool passesLight(std::span<const LightQuery> queries, const glm::vec3& towards, float half_angle) {
+  const float distance = glm::length(towards);
+  return std::ranges::any_of(queries, [&](const LightQuery& query) {
+    const float reach = half_angle + query.angular_radius_rad;
+    return reach >= std::numbers::pi_v<float> || distance == 0.0f ||
+           glm::dot(query.direction, towards) > distance * std::cos(reach);
+  });
+}
+
+}  // namespace lambent::lighting
