@@ -46,6 +46,11 @@ bool readGrid(std::string_view text, glm::uvec3& grid) {
   return true;
 }
 
+// How far refinement may go, in words.
+std::string refineMost(const QualityRow& row) {
+  return fmt::format("{} x + {}", row.refine_growth, row.refine_added);
+}
+
 }  // namespace
 
 const char* qualityName(Quality quality) {
@@ -106,6 +111,7 @@ std::map<std::string, std::string> BakeOptions::settings() const {
                : fmt::format("{}x{}x{}", neighborhood_grid.x, neighborhood_grid.y, neighborhood_grid.z)},
           {"maxEdge", fmt::format("{}", max_edge_m)},
           {"refineBound", fmt::format("{}", effectiveRefineBound())},
+          {"refineMost", refineMost(row(quality))},
           {"fit", fitsMatte()    ? "on"
                   : fitsGlossy() ? "glossy"
                                  : "off"},
@@ -138,6 +144,7 @@ std::optional<BakeOptions> BakeOptions::fromSettings(const std::map<std::string,
     BakeOptions options = all;
     options.quality = quality;
     const QualityRow& usual = row(quality);
+    if (find("refineMost") != refineMost(usual)) continue;
     int asked = 4;  // for other than is usual
     if (all.rays == usual.rays) options.rays = 0, --asked;
     if (all.error_bound == usual.error_bound && glossy_bound == usual.glossy_error_bound)
