@@ -73,27 +73,32 @@ std::optional<Transported> transport(const DiffuseScene& scene, const SurfaceBrd
   figures.ray_seconds += progress.now().seconds;
   figures.rays = direct->field.rays, figures.rays_kept = direct->rays_kept;
   group.filled_samples = direct->field.filled_samples;
-  FitFigures fitted;
-  if (options.fitsMatte() && !fitDiffuse(pass, scene, *direct, progress, stop, {cache, keys.rays}, fitted))
-    return std::nullopt;
-  figures.rays += fitted.rays, figures.rays_kept += fitted.rays_kept;
+  if (options.fitsMatte()) {
+    const auto fit = fitDiffuse(pass, scene, *direct, progress, stop, {cache, keys.rays});
+    if (!fit) return std::nullopt;
+    figures.ray_seconds += fit->ray_seconds;
+    figures.rays += fit->rays, figures.rays_kept += fit->rays_kept;
+  }
   group.hit_bytes = direct->hits.bytes();
   Transported light{std::move(*direct), std::nullopt, std::nullopt};
 
   std::optional<GlossyPass> glossy_pass;
   if (any_glossy) {
     glossy_pass.emplace(pass, scene, options.glossy_order);
+    progress.begin("glossy shadows", glossy_pass->size(), "samples");
     light.glossy =
         bakeGlossyDirect(*glossy_pass, hit_memory, light.direct, progress, stop, {cache, keys.glossy_rays});
     if (!light.glossy) return std::nullopt;
     figures.ray_seconds += progress.now().seconds;
     figures.glossy_rays = light.glossy->rays, figures.glossy_rays_kept = light.glossy->rays_kept;
     group.filled_samples += light.glossy->filled_samples;
-    FitFigures fitted_glossy;
-    if (options.fitsGlossy() && !fitGlossy(*glossy_pass, light.direct, *light.glossy, progress, stop,
-                                           {cache, keys.glossy_rays}, fitted_glossy))
-      return std::nullopt;
-    figures.glossy_rays += fitted_glossy.rays, figures.glossy_rays_kept += fitted_glossy.rays_kept;
+    if (options.fitsGlossy()) {
+      const auto fit =
+          fitGlossy(*glossy_pass, light.direct, *light.glossy, progress, stop, {cache, keys.glossy_rays});
+      if (!fit) return std::nullopt;
+      figures.ray_seconds += fit->ray_seconds;
+      figures.glossy_rays += fit->rays, figures.glossy_rays_kept += fit->rays_kept;
+    }
     group.hit_bytes = std::max<std::uint64_t>(group.hit_bytes, light.glossy->hits.bytes());
     group.glossy_samples = light.glossy->field.size();
   }

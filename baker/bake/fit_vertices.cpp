@@ -36,8 +36,8 @@ struct Part {
 
 }  // namespace
 
-bool fitDiffuse(const DirectPass& pass, const DiffuseScene& scene, DirectResult& direct, Progress& progress,
-                const std::stop_token& stop, const Keep& keep, FitFigures& figures) {
+std::optional<FitFigures> fitDiffuse(const DirectPass& pass, const DiffuseScene& scene, DirectResult& direct,
+                                     Progress& progress, const std::stop_token& stop, const Keep& keep) {
   const SampleStretch plain{0, scene.samples.first_normal_mapped},
       mapped{scene.samples.first_normal_mapped, scene.samples.first_glossy};
   const std::size_t width = direct.field.vectorSize();
@@ -49,15 +49,15 @@ bool fitDiffuse(const DirectPass& pass, const DiffuseScene& scene, DirectResult&
     const auto own = changingTriangles(scene.geometry, scene.samples, stretch, width, fieldOf(stretch));
     triangles.insert(triangles.end(), own.begin(), own.end());
   }
-  if (triangles.empty()) return true;
+  if (triangles.empty()) return FitFigures{};
   const FacePoints points = facePoints(scene.geometry, scene.samples, triangles);
   progress.begin("inside faces", points.samples.size(), "samples");
   const DiffuseScene inside = withSamples(scene, points.samples);
   const auto found = bakeDirect(DirectPass(inside, settingsInside(pass.settings())), inside, progress, stop,
                                 keepInside(keep, triangles));
-  if (!found) return false;
-  figures.points += points.samples.size();
-  figures.rays += found->field.rays, figures.rays_kept += found->rays_kept;
+  if (!found) return std::nullopt;
+  const FitFigures figures{points.samples.size(), found->field.rays, found->rays_kept,
+                           progress.now().seconds};
   const auto fit = [&](const SampleStretch& stretch, const SampleStretch& of_points,
                        std::initializer_list<Part> parts) {
     const VertexFit vertices(scene.geometry, scene.samples, stretch, points, of_points, found->looks.valid);
@@ -70,37 +70,40 @@ bool fitDiffuse(const DirectPass& pass, const DiffuseScene& scene, DirectResult&
   const auto foundIn = [&](const SampleStretch& stretch) {
     return std::span(found->field.vectors).subspan(stretch.begin * width, stretch.size() * width);
   };
-  return fit(plain, plain_points, {{width, foundIn(plain_points), fieldOf(plain)}}) &&
-         fit(mapped, mapped_points,
-             {{width, foundIn(mapped_points), fieldOf(mapped)},
-              {direct.mapped.vectorSize(), found->mapped.vectors, direct.mapped.vectors}});
+  const bool fitted = fit(plain, plain_points, {{width, foundIn(plain_points), fieldOf(plain)}}) &&
+                      fit(mapped, mapped_points,
+                          {{width, foundIn(mapped_points), fieldOf(mapped)},
+                           {direct.mapped.vectorSize(), found->mapped.vectors, direct.mapped.vectors}});
+  return fitted ? std::optional(figures) : std::nullopt;
 }
 
-bool fitGlossy(const GlossyPass& pass, DirectResult& direct, GlossyDirect& glossy, Progress& progress,
-               const std::stop_token& stop, const Keep& keep, FitFigures& figures) {
+std::optional<FitFigures> fitGlossy(const GlossyPass& pass, DirectResult& direct, GlossyDirect& glossy,
+                                    Progress& progress, const std::stop_token& stop, const Keep& keep) {
   const DiffuseScene& scene = pass.scene();
   GlossyField& field = glossy.field;
   const SampleStretch stretch{scene.samples.first_glossy, scene.samples.size()};
   const auto triangles =
       changingTriangles(scene.geometry, scene.samples, stretch, field.visibilitySize(), field.visibility);
-  if (triangles.empty()) return true;
+  if (triangles.empty()) return FitFigures{};
   const FacePoints points = facePoints(scene.geometry, scene.samples, triangles);
   const DiffuseScene inside = withSamples(scene, points.samples);
   const DirectPass plain_pass(inside, settingsInside(pass.plain().settings()));
   const GlossyPass glossy_pass(plain_pass, inside, field.order_out);
+  progress.begin("inside faces", points.samples.size(), "samples");
   auto plain = bakeDirect(plain_pass, inside, progress, stop);  // of no sample: shapes
-  if (!plain) return false;
+  if (!plain) return std::nullopt;
   const auto found = bakeGlossyDirect(glossy_pass, 0, *plain, progress, stop, keepInside(keep, triangles));
-  if (!found) return false;
-  figures.points += points.samples.size();
-  figures.rays += found->rays, figures.rays_kept += found->rays_kept;
+  if (!found) return std::nullopt;
+  const FitFigures figures{points.samples.size(), found->rays, found->rays_kept, progress.now().seconds};
   const VertexFit vertices(scene.geometry, scene.samples, stretch, points, {0, points.samples.size()},
                            plain->looks.valid);
-  if (!vertices.apply(field.visibilitySize(), found->field.visibility, field.visibility, stop)) return false;
-  if (field.light_columns > 0 && !vertices.apply(field.lights_shadowed.size() / field.size(),
-                                                 found->field.lights_shadowed, field.lights_shadowed, stop))
-    return false;
-  return plainFromGlossy(pass, field, direct, stop);
+  const auto fit = [&](std::vector<float>& values, const std::vector<float>& at_points) {
+    return values.empty() || vertices.apply(values.size() / field.size(), at_points, values, stop);
+  };
+  const bool fitted = fit(field.visibility, found->field.visibility) &&
+                      fit(field.lights_shadowed, found->field.lights_shadowed) &&
+                      plainFromGlossy(pass, field, direct, stop);
+  return fitted ? std::optional(figures) : std::nullopt;
 }
 
 }  // namespace lambent::baker

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <stop_token>
 
 #include "baker/cache/kept_ranges.hpp"
@@ -16,14 +17,15 @@ namespace lambent::baker {
 struct FitFigures {
   std::size_t points = 0;  // inside faces
   std::uint64_t rays = 0, rays_kept = 0;
+  double ray_seconds = 0.0;
 };
 
-// Of plain and normal-mapped samples. keep: that of the rays of the vertices. False if stopped. Stage "inside
-// faces" of `progress`, counting samples. The result does not depend on the number of threads.
-bool fitDiffuse(const DirectPass& pass, const DiffuseScene& scene, DirectResult& direct, Progress& progress,
-                const std::stop_token& stop, const Keep& keep, FitFigures& figures);
+// Of plain and normal-mapped samples. keep: that of the rays of the vertices. Nothing if stopped. Stage
+// "inside faces" of `progress`, counting samples. The result does not depend on the number of threads.
+std::optional<FitFigures> fitDiffuse(const DirectPass& pass, const DiffuseScene& scene, DirectResult& direct,
+                                     Progress& progress, const std::stop_token& stop, const Keep& keep = {});
 // Of glossy samples; their plain transfer follows.
-bool fitGlossy(const GlossyPass& pass, DirectResult& direct, GlossyDirect& glossy, Progress& progress,
-               const std::stop_token& stop, const Keep& keep, FitFigures& figures);
+std::optional<FitFigures> fitGlossy(const GlossyPass& pass, DirectResult& direct, GlossyDirect& glossy,
+                                    Progress& progress, const std::stop_token& stop, const Keep& keep = {});
 
 }  // namespace lambent::baker

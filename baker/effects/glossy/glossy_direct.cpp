@@ -205,7 +205,6 @@ std::optional<GlossyDirect> bakeGlossyDirect(const GlossyPass& pass, std::size_t
   const std::size_t outputs = squared(field.order_out), lights = field.light_columns;
   field.visibility.resize(count * field.visibilitySize());
   field.lights_shadowed.resize(count * field.channels * outputs * lights);
-  progress.begin("glossy shadows", count, "samples");
   TracedRanges ranges(pass.scene(), count, keep_hits, keep.cache != nullptr, result.hits);
   const std::size_t first = pass.first(), seen = field.visibilitySize();
   // Of grey lamps the first channel stands for all (field_bytes.hpp).

@@ -52,8 +52,8 @@ struct GlossyDirect {
   std::uint32_t filled_samples = 0;
 };
 
-// Nothing if stopped. Also fills in the glossy samples of direct.field and direct.looks. Stage "glossy
-// shadows" of `progress`, counting samples. hit_memory: bytes. The result does not depend on the number of
+// Nothing if stopped. Also fills in the glossy samples of direct.field and direct.looks. Progress counts
+// samples. hit_memory: bytes. The result does not depend on the number of
 // threads. keep: as for bakeDirect.
 std::optional<GlossyDirect> bakeGlossyDirect(const GlossyPass& pass, std::size_t hit_memory,
                                              DirectResult& direct, Progress& progress,

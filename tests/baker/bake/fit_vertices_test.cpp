@@ -100,10 +100,10 @@ TEST(FitVertices, ShowsVisibilityOverFacesOfMetalBetterThanWhatTheVerticesSee) {
       auto direct = bakeDirect(plain, view, progress, {});
       auto glossy = bakeGlossyDirect(pass, 0, *direct, progress, {});
       out.first = glossy->field;
-      FitFigures figures;
-      EXPECT_TRUE(fitGlossy(pass, *direct, *glossy, progress, {}, {}, figures));
-      EXPECT_GT(figures.points, 0u);
-      EXPECT_LT(figures.points, t.geometry.triangles.size());  // far from the box all see the same
+      const auto figures = fitGlossy(pass, *direct, *glossy, progress, {});
+      ASSERT_TRUE(figures);
+      EXPECT_GT(figures->points, 0u);
+      EXPECT_LT(figures->points, t.geometry.triangles.size());  // far from the box all see the same
       out.second = glossy->field;
     });
     return out;
@@ -132,8 +132,7 @@ TEST(FitVertices, ShowsIrradianceOverMatteFacesBetterThanWhatTheVerticesSee) {
                        direct->field.vectors);
   };
   const double before = error();
-  FitFigures figures;
-  ASSERT_TRUE(fitDiffuse(pass, view, *direct, progress, {}, {}, figures));
+  ASSERT_TRUE(fitDiffuse(pass, view, *direct, progress, {}));
   RecordProperty("before", std::to_string(before));
   RecordProperty("after", std::to_string(error()));
   EXPECT_LT(error(), 0.9 * before);
@@ -151,10 +150,10 @@ TEST(FitVertices, LeavesAnOpenBodyOfMetalAsItIsAndTracesNothing) {
   auto direct = bakeDirect(plain, view, progress, {});
   auto glossy = bakeGlossyDirect(pass, 0, *direct, progress, {});
   const std::vector<float> before = glossy->field.visibility;
-  FitFigures figures;
-  ASSERT_TRUE(fitGlossy(pass, *direct, *glossy, progress, {}, {}, figures));
+  const auto figures = fitGlossy(pass, *direct, *glossy, progress, {});
+  ASSERT_TRUE(figures);
   EXPECT_EQ(glossy->field.visibility, before);
-  EXPECT_EQ(figures.rays, 0u);
+  EXPECT_EQ(figures->rays, 0u);
 }
 
 }  // namespace
