@@ -20,8 +20,9 @@ bool isBounce(const std::string& stage) {
 
 // Whose time goes with the rays of a sample.
 bool goesWithRays(const std::string& stage) {
-  return isBounce(stage) || stage == "direct light" || stage == "glossy shadows" || stage == "paths" ||
-         stage == "light into volumes" || stage == "scattering" || stage == "neighborhood";
+  return isBounce(stage) || stage == "direct light" || stage == "glossy shadows" || stage == "inside faces" ||
+         stage == "paths" || stage == "light into volumes" || stage == "scattering" ||
+         stage == "neighborhood";
 }
 
 double cells(const glm::uvec3& grid) {
@@ -66,6 +67,10 @@ StageSeconds scaleSeconds(std::span<const Progress::Stage> stages, const BakeOpt
   StageSeconds seconds;
   for (const Progress::Stage& stage : stages)
     seconds[stage.name] += stage.seconds * growth(stage.name, of, to);
+  // Triangles are twice as many as vertices, and most of them may be looked from.
+  const auto shadows = seconds.find("glossy shadows");
+  if (shadows != seconds.end() && to.fitsGlossy() && !of.fitsGlossy())
+    seconds.try_emplace("inside faces", 2.0 * shadows->second);
   // More passes than there were cost about what the last one did.
   const int bounces = to.bounces < 0 ? kGuessedBounces : to.bounces;
   for (int bounce = 2; bounce <= bounces; ++bounce) {
