@@ -43,7 +43,8 @@ Timed run(const GroupWorkload& work, const ExitKernels& kernels, bool hits) {
   Timed timed;
   auto start = std::clock();
   auto direct = bakeDirect(plain, view, progress, {});
-  auto seen = bakeGlossyDirect(glossy, std::size_t{4} << 30, *direct, progress, {});
+  auto seen = bakeGlossyDirect(glossy, std::size_t{4} << 30, direct->looks, progress, {});
+  plainFromGlossy(glossy, seen->field, *direct, {});
   timed.direct_seconds = secondsSince(start);
   timed.rays = static_cast<double>(direct->field.rays + seen->rays);
   if (!hits) return timed;

@@ -86,19 +86,19 @@ std::optional<Transported> transport(const DiffuseScene& scene, const SurfaceBrd
   if (any_glossy) {
     glossy_pass.emplace(pass, scene, options.glossy_order);
     progress.begin("glossy shadows", glossy_pass->size(), "samples");
-    light.glossy =
-        bakeGlossyDirect(*glossy_pass, hit_memory, light.direct, progress, stop, {cache, keys.glossy_rays});
+    light.glossy = bakeGlossyDirect(*glossy_pass, hit_memory, light.direct.looks, progress, stop,
+                                    {cache, keys.glossy_rays});
     if (!light.glossy) return std::nullopt;
     figures.ray_seconds += progress.now().seconds;
     figures.glossy_rays = light.glossy->rays, figures.glossy_rays_kept = light.glossy->rays_kept;
     group.filled_samples += light.glossy->filled_samples;
     if (options.fitsGlossy()) {
-      const auto fit =
-          fitGlossy(*glossy_pass, light.direct, *light.glossy, progress, stop, {cache, keys.glossy_rays});
+      const auto fit = fitGlossy(*glossy_pass, *light.glossy, progress, stop, {cache, keys.glossy_rays});
       if (!fit) return std::nullopt;
       figures.ray_seconds += fit->ray_seconds;
       figures.glossy_rays += fit->rays, figures.glossy_rays_kept += fit->rays_kept;
     }
+    if (!plainFromGlossy(*glossy_pass, light.glossy->field, light.direct, stop)) return std::nullopt;
     group.hit_bytes = std::max<std::uint64_t>(group.hit_bytes, light.glossy->hits.bytes());
     group.glossy_samples = light.glossy->field.size();
   }

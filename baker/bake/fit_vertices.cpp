@@ -77,8 +77,8 @@ std::optional<FitFigures> fitDiffuse(const DirectPass& pass, const DiffuseScene&
   return fitted ? std::optional(figures) : std::nullopt;
 }
 
-std::optional<FitFigures> fitGlossy(const GlossyPass& pass, DirectResult& direct, GlossyDirect& glossy,
-                                    Progress& progress, const std::stop_token& stop, const Keep& keep) {
+std::optional<FitFigures> fitGlossy(const GlossyPass& pass, GlossyDirect& glossy, Progress& progress,
+                                    const std::stop_token& stop, const Keep& keep) {
   const DiffuseScene& scene = pass.scene();
   GlossyField& field = glossy.field;
   const SampleStretch stretch{scene.samples.first_glossy, scene.samples.size()};
@@ -90,19 +90,18 @@ std::optional<FitFigures> fitGlossy(const GlossyPass& pass, DirectResult& direct
   const DirectPass plain_pass(inside, settingsInside(pass.plain().settings()));
   const GlossyPass glossy_pass(plain_pass, inside, field.order_out);
   progress.begin("inside faces", points.samples.size(), "samples");
-  auto plain = bakeDirect(plain_pass, inside, progress, stop);  // of no sample: shapes
-  if (!plain) return std::nullopt;
-  const auto found = bakeGlossyDirect(glossy_pass, 0, *plain, progress, stop, keepInside(keep, triangles));
+  SampleLooks looks{std::vector<std::uint8_t>(points.samples.size(), 0),
+                    std::vector<std::uint8_t>(points.samples.size(), 0)};
+  const auto found = bakeGlossyDirect(glossy_pass, 0, looks, progress, stop, keepInside(keep, triangles));
   if (!found) return std::nullopt;
   const FitFigures figures{points.samples.size(), found->rays, found->rays_kept, progress.now().seconds};
   const VertexFit vertices(scene.geometry, scene.samples, stretch, points, {0, points.samples.size()},
-                           plain->looks.valid);
+                           looks.valid);
   const auto fit = [&](std::vector<float>& values, const std::vector<float>& at_points) {
     return values.empty() || vertices.apply(values.size() / field.size(), at_points, values, stop);
   };
   const bool fitted = fit(field.visibility, found->field.visibility) &&
-                      fit(field.lights_shadowed, found->field.lights_shadowed) &&
-                      plainFromGlossy(pass, field, direct, stop);
+                      fit(field.lights_shadowed, found->field.lights_shadowed);
   return fitted ? std::optional(figures) : std::nullopt;
 }
 

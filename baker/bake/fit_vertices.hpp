@@ -24,8 +24,8 @@ struct FitFigures {
 // "inside faces" of `progress`, counting samples. The result does not depend on the number of threads.
 std::optional<FitFigures> fitDiffuse(const DirectPass& pass, const DiffuseScene& scene, DirectResult& direct,
                                      Progress& progress, const std::stop_token& stop, const Keep& keep = {});
-// Of glossy samples; their plain transfer follows.
-std::optional<FitFigures> fitGlossy(const GlossyPass& pass, DirectResult& direct, GlossyDirect& glossy,
-                                    Progress& progress, const std::stop_token& stop, const Keep& keep = {});
+// Of glossy samples.
+std::optional<FitFigures> fitGlossy(const GlossyPass& pass, GlossyDirect& glossy, Progress& progress,
+                                    const std::stop_token& stop, const Keep& keep = {});
 
 }  // namespace lambent::baker

@@ -16,6 +16,7 @@
 #include "baker/refine/shadow_probe.hpp"
 #include "baker/transport/face_points.hpp"
 #include "baker/transport/geometry_key.hpp"
+#include "baker/transport/sample_areas.hpp"
 #include "baker/transport/samples.hpp"
 #include "baker/transport/vertex_key.hpp"
 #include "baker/work/parallel.hpp"
@@ -246,10 +247,7 @@ Result<bool> GroupRefiner::measure(const GroupGeometry& geometry, Progress& prog
     double sum = 0.0;
     for (; last < inner.size() && inner[last].triangle == t; ++last) sum += error_at[last];
     const glm::uvec3 corners = geometry.triangles[t];
-    const glm::vec3 a = geometry.positions[corners.x];
-    const double area =
-        0.5 *
-        double{glm::length(glm::cross(geometry.positions[corners.y] - a, geometry.positions[corners.z] - a))};
+    const double area = triangleArea(geometry, corners);
     triangle_error_[t] = area * sum / static_cast<double>(last - first);
     square_error_ += triangle_error_[t];
     area_ += area;

@@ -4,6 +4,8 @@
 
 #include <glm/geometric.hpp>
 
+#include "baker/transport/sample_areas.hpp"
+
 namespace lambent::baker {
 
 FacePoint facePoint(const GroupGeometry& geometry, const glm::uvec3& corners, const glm::vec3& weights) {
@@ -32,10 +34,7 @@ FacePoints facePoints(const GroupGeometry& geometry, const SampleSet& samples,
       const glm::uvec3 corners = geometry.triangles[t];
       const std::uint32_t sample = samples.vertex_sample[corners.x];
       if (sample < first || sample >= end) continue;
-      const glm::vec3 a = geometry.positions[corners.x];
-      if (!(glm::length(glm::cross(geometry.positions[corners.y] - a, geometry.positions[corners.z] - a)) >
-            0.0f))
-        continue;
+      if (!(triangleArea(geometry, corners) > 0.0)) continue;
       const FacePoint point = facePoint(geometry, corners, glm::vec3(1.0f / 3.0f));
       points.triangles.push_back(t);
       set.positions.push_back(point.position);

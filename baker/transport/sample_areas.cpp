@@ -4,6 +4,12 @@
 
 namespace lambent::baker {
 
+double triangleArea(const GroupGeometry& geometry, const glm::uvec3& corners) {
+  const glm::vec3 a = geometry.positions[corners.x];
+  return 0.5 * double{glm::length(
+                   glm::cross(geometry.positions[corners.y] - a, geometry.positions[corners.z] - a))};
+}
+
 std::vector<float> sampleAreas(const GroupGeometry& geometry, const SampleSet& samples) {
   std::vector<float> areas(samples.size(), 0.0f);
   for (const glm::uvec3& triangle : geometry.triangles) {

@@ -8,6 +8,9 @@
 
 namespace lambent::baker {
 
+// Square metres.
+double triangleArea(const GroupGeometry& geometry, const glm::uvec3& corners);
+
 // Square metres; a third of each triangle goes to each of its corners. Both sides of a double-sided surface
 // count.
 std::vector<float> sampleAreas(const GroupGeometry& geometry, const SampleSet& samples);

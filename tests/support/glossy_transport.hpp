@@ -37,8 +37,9 @@ inline GlossyBake bakeGlossy(const Transport& t, const baker::ExitKernels& kerne
   baker::Progress progress;
   auto direct = baker::bakeDirect(plain, view, progress, {});
   EXPECT_TRUE(direct.has_value());
-  auto glossy = baker::bakeGlossyDirect(pass, settings.hit_memory, *direct, progress, {});
+  auto glossy = baker::bakeGlossyDirect(pass, settings.hit_memory, direct->looks, progress, {});
   EXPECT_TRUE(glossy.has_value());
+  EXPECT_TRUE(baker::plainFromGlossy(pass, glossy->field, *direct, {}));
   GlossyBake bake{std::move(*direct), std::move(*glossy), {}};
   if (settings.bounces == 0) return bake;
   baker::GlossyBounces partner(pass, kernels, bake.direct, bake.glossy);

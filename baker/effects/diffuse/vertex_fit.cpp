@@ -1,14 +1,13 @@
 #include "baker/effects/diffuse/vertex_fit.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <numeric>
 
 #include <Eigen/IterativeLinearSolvers>
 #include <Eigen/SparseCore>
-#include <glm/geometric.hpp>
 
+#include "baker/transport/sample_areas.hpp"
 #include "baker/work/parallel.hpp"
 
 namespace lambent::baker {
@@ -23,12 +22,6 @@ constexpr double kLeastChange = 1e-6;
 constexpr double kOfCorner = 1.0 / 12.0, kOfCentroid = 3.0 / 4.0;
 // Far below the noise of rays; mass matrices take some ten steps.
 constexpr double kTolerance = 1e-4;
-
-double areaOf(const GroupGeometry& geometry, const glm::uvec3& corners) {
-  const glm::vec3 a = geometry.positions[corners.x];
-  return 0.5 * double{glm::length(
-                   glm::cross(geometry.positions[corners.y] - a, geometry.positions[corners.z] - a))};
-}
 
 glm::uvec3 samplesOf(const SampleSet& samples, const glm::uvec3& corners) {
   return {samples.vertex_sample[corners.x], samples.vertex_sample[corners.y],
@@ -55,7 +48,7 @@ std::vector<std::uint32_t> changingTriangles(const GroupGeometry& geometry, cons
         sum += ab * ab + bc * bc + ca * ca;
         all += double{a[i]} * double{a[i]} + double{b[i]} * double{b[i]} + double{c[i]} * double{c[i]};
       }
-      if (sum > kLeastChange * all) change[t] = areaOf(geometry, geometry.triangles[t]) * sum;
+      if (sum > kLeastChange * all) change[t] = triangleArea(geometry, geometry.triangles[t]) * sum;
     }
   });
   std::vector<std::uint32_t> order(count);
@@ -92,7 +85,7 @@ VertexFit::VertexFit(const GroupGeometry& geometry, const SampleSet& samples, Sa
   for (const glm::uvec3& triangle : geometry.triangles) {
     const glm::uvec3 corners = samplesOf(samples, triangle);
     if (corners.x < stretch.begin || corners.x >= stretch.end) continue;
-    const double area = areaOf(geometry, triangle);
+    const double area = triangleArea(geometry, triangle);
     if (!(area > 0.0)) continue;
     for (int a = 0; a < 3; ++a)
       for (int b = 0; b < 3; ++b)
@@ -113,7 +106,7 @@ VertexFit::VertexFit(const GroupGeometry& geometry, const SampleSet& samples, Sa
     const glm::uvec3 triangle = geometry.triangles[points.triangles[p]];
     system->points.push_back({samplesOf(samples, triangle) - glm::uvec3(static_cast<unsigned>(stretch.begin)),
                               static_cast<std::uint32_t>(p - points_stretch.begin),
-                              kOfCentroid * areaOf(geometry, triangle)});
+                              kOfCentroid * triangleArea(geometry, triangle)});
   }
   system_ = std::move(system);
 }

@@ -195,7 +195,7 @@ bool plainFromGlossy(const GlossyPass& pass, const GlossyField& field, DirectRes
 }
 
 std::optional<GlossyDirect> bakeGlossyDirect(const GlossyPass& pass, std::size_t hit_memory,
-                                             DirectResult& direct, Progress& progress,
+                                             SampleLooks& looks, Progress& progress,
                                              const std::stop_token& stop, const Keep& keep) {
   const SampleSet& samples = pass.scene().samples;
   const std::size_t count = pass.size();
@@ -215,14 +215,14 @@ std::optional<GlossyDirect> bakeGlossyDirect(const GlossyPass& pass, std::size_t
       {.compute =
            [&](std::size_t begin, std::size_t end) {
              RangeHits hits;
-             const std::uint64_t rays = pass.bake(begin, end, stop, field, direct.looks, hits);
+             const std::uint64_t rays = pass.bake(begin, end, stop, field, looks, hits);
              ranges.add(begin / kSamplesPerRange, rays, std::move(hits), stop);
              progress.add(end - begin);
            },
        .pack =
            [&](std::size_t begin, std::size_t end, ByteWriter& out) {
-             writeStretch(direct.looks.valid, first + begin, first + end, out);
-             writeStretch(direct.looks.closely, first + begin, first + end, out);
+             writeStretch(looks.valid, first + begin, first + end, out);
+             writeStretch(looks.closely, first + begin, first + end, out);
              writeStretch(field.visibility, begin * seen, end * seen, out);
              for (std::size_t s = begin; s < end; ++s)
                writeStretch(field.lights_shadowed, s * per_sample, s * per_sample + kept_lights, out);
@@ -230,8 +230,8 @@ std::optional<GlossyDirect> bakeGlossyDirect(const GlossyPass& pass, std::size_t
            },
        .unpack =
            [&](std::size_t begin, std::size_t end, ByteReader& in) {
-             readStretch(in, first + begin, first + end, direct.looks.valid);
-             readStretch(in, first + begin, first + end, direct.looks.closely);
+             readStretch(in, first + begin, first + end, looks.valid);
+             readStretch(in, first + begin, first + end, looks.closely);
              readStretch(in, begin * seen, end * seen, field.visibility);
              for (std::size_t s = begin; s < end; ++s) {
                const std::size_t at = s * per_sample;
@@ -246,17 +246,16 @@ std::optional<GlossyDirect> bakeGlossyDirect(const GlossyPass& pass, std::size_t
   if (!kept.finished) return std::nullopt;
   result.rays = ranges.raysTraced();
   result.rays_kept = ranges.raysUnpacked();
-  const auto first_valid = direct.looks.valid.begin() + static_cast<std::ptrdiff_t>(pass.first());
-  if (std::find(first_valid, direct.looks.valid.end(), std::uint8_t{0}) != direct.looks.valid.end()) {
+  const auto first_valid = looks.valid.begin() + static_cast<std::ptrdiff_t>(pass.first());
+  if (std::find(first_valid, looks.valid.end(), std::uint8_t{0}) != looks.valid.end()) {
     const auto edges = sampleEdges(pass.scene().geometry, samples);
     const auto fill = [&](std::size_t size, std::vector<float>& values) {
-      return fillStretchFromNeighbours(edges, direct.looks.valid, pass.first(), size, values);
+      return fillStretchFromNeighbours(edges, looks.valid, pass.first(), size, values);
     };
     result.filled_samples = fill(field.visibilitySize(), field.visibility);
     if (lights > 0) fill(field.channels * outputs * lights, field.lights_shadowed);
   }
 
-  if (!plainFromGlossy(pass, field, direct, stop)) return std::nullopt;
   return result;
 }
 

@@ -52,11 +52,11 @@ struct GlossyDirect {
   std::uint32_t filled_samples = 0;
 };
 
-// Nothing if stopped. Also fills in the glossy samples of direct.field and direct.looks. Progress counts
-// samples. hit_memory: bytes. The result does not depend on the number of
-// threads. keep: as for bakeDirect.
+// Nothing if stopped. Also fills in the glossy samples of `looks`, which is that of all samples. Progress
+// counts samples. hit_memory: bytes. The result does not depend on the number of threads. keep: as for
+// bakeDirect.
 std::optional<GlossyDirect> bakeGlossyDirect(const GlossyPass& pass, std::size_t hit_memory,
-                                             DirectResult& direct, Progress& progress,
+                                             SampleLooks& looks, Progress& progress,
                                              const std::stop_token& stop, const Keep& keep = {});
 
 // Fills in the glossy samples of direct.field from visibility and lights. False if stopped.

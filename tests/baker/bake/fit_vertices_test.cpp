@@ -89,7 +89,7 @@ TEST(FitVertices, ShowsVisibilityOverFacesOfMetalBetterThanWhatTheVerticesSee) {
   const GlossyPass true_pass(true_plain, true_view, 5);
   Progress progress;
   auto there = bakeDirect(true_plain, true_view, progress, {});
-  const auto seen = bakeGlossyDirect(true_pass, 0, *there, progress, {});
+  const auto seen = bakeGlossyDirect(true_pass, 0, there->looks, progress, {});
 
   const auto bakeFitted = [&](unsigned threads) {
     const DiffuseScene view = t.diffuse();
@@ -98,9 +98,9 @@ TEST(FitVertices, ShowsVisibilityOverFacesOfMetalBetterThanWhatTheVerticesSee) {
     std::pair<GlossyField, GlossyField> out;
     withThreads(threads, [&] {
       auto direct = bakeDirect(plain, view, progress, {});
-      auto glossy = bakeGlossyDirect(pass, 0, *direct, progress, {});
+      auto glossy = bakeGlossyDirect(pass, 0, direct->looks, progress, {});
       out.first = glossy->field;
-      const auto figures = fitGlossy(pass, *direct, *glossy, progress, {});
+      const auto figures = fitGlossy(pass, *glossy, progress, {});
       ASSERT_TRUE(figures);
       EXPECT_GT(figures->points, 0u);
       EXPECT_LT(figures->points, t.geometry.triangles.size());  // far from the box all see the same
@@ -148,9 +148,9 @@ TEST(FitVertices, LeavesAnOpenBodyOfMetalAsItIsAndTracesNothing) {
   const GlossyPass pass(plain, view, 5);
   Progress progress;
   auto direct = bakeDirect(plain, view, progress, {});
-  auto glossy = bakeGlossyDirect(pass, 0, *direct, progress, {});
+  auto glossy = bakeGlossyDirect(pass, 0, direct->looks, progress, {});
   const std::vector<float> before = glossy->field.visibility;
-  const auto figures = fitGlossy(pass, *direct, *glossy, progress, {});
+  const auto figures = fitGlossy(pass, *glossy, progress, {});
   ASSERT_TRUE(figures);
   EXPECT_EQ(glossy->field.visibility, before);
   EXPECT_EQ(figures->rays, 0u);

@@ -1,12 +1,12 @@
 // Coding that is cut short: stopped at each of its checkpoints, one after the other, it comes to the same
 // codes.
 #include <filesystem>
-#include <random>
 #include <thread>
 
 #include <gtest/gtest.h>
 
 #include "baker/compress/kept_transfer.hpp"
+#include "tests/support/heaps.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace lambent::baker {
@@ -15,22 +15,8 @@ namespace {
 constexpr std::size_t kCount = 6000, kHeaps = 24;
 constexpr bundle::TransferShape kVisibility{.order = 5, .outputs = 25, .visibility_bands = 9};
 
-// Heaps of neighbours, each around a mean of its own and along three directions that all share.
 std::vector<float> heaps() {
-  const std::uint32_t size = kVisibility.size();
-  std::mt19937 random(31);
-  std::normal_distribution<float> normal;
-  std::vector<float> parts(size * (kHeaps + 3)), vectors;
-  for (float& value : parts) value = normal(random);
-  for (std::size_t s = 0; s < kCount; ++s) {
-    const std::array<float, 3> along = {normal(random), normal(random), normal(random)};
-    for (std::size_t i = 0; i < size; ++i) {
-      float value = 2.0f * parts[size * (s * kHeaps / kCount) + i];
-      for (std::size_t k = 0; k < 3; ++k) value += along[k] * parts[size * (kHeaps + k) + i];
-      vectors.push_back(value);
-    }
-  }
-  return vectors;
+  return testing::heaps(kCount, kHeaps, kVisibility.size(), 31);
 }
 
 std::vector<std::byte> bytesOf(const CodedTransfer& coded) {

@@ -13,6 +13,7 @@
 #include "baker/compress/light_weights.hpp"
 #include "runtime/sh/basis.hpp"
 #include "runtime/sh/gaunt.hpp"
+#include "tests/support/heaps.hpp"
 
 namespace lambent::baker {
 namespace {
@@ -149,18 +150,7 @@ TEST(MatrixCoding, KeepsToItsMemoryWithFewerClusters) {
   // Sixteen heaps, of the same three directions each: as clusters 16 x (1 + 3) vectors, as one about 1 + 18.
   constexpr std::size_t kCount = 16000, kHeaps = 16;
   const std::uint32_t size = kVisibility.size();
-  std::mt19937 random(29);
-  std::normal_distribution<float> normal;
-  std::vector<float> parts(size * (kHeaps + 3)), vectors;
-  for (float& value : parts) value = normal(random);
-  for (std::size_t s = 0; s < kCount; ++s) {
-    const std::array<float, 3> along = {normal(random), normal(random), normal(random)};
-    for (std::size_t i = 0; i < size; ++i) {
-      float value = 2.0f * parts[size * (s * kHeaps / kCount) + i];
-      for (std::size_t k = 0; k < 3; ++k) value += along[k] * parts[size * (kHeaps + k) + i];
-      vectors.push_back(value);
-    }
-  }
+  const std::vector<float> vectors = testing::heaps(kCount, kHeaps, size, 29);
   const auto expanded = [&](const CodedTransfer& coded) {
     std::size_t count = coded.codebook.axis_counts.size();
     for (const auto axes : coded.codebook.axis_counts) count += axes;

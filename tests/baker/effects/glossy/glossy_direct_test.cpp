@@ -257,7 +257,7 @@ TEST(GlossyDirect, StopsWhenAsked) {
   std::stop_source stop;
   stop.request_stop();
   EXPECT_FALSE(
-      bakeGlossyDirect(GlossyPass(plain, view, 5), 0, *direct, progress, stop.get_token()).has_value());
+      bakeGlossyDirect(GlossyPass(plain, view, 5), 0, direct->looks, progress, stop.get_token()).has_value());
 }
 
 }  // namespace
