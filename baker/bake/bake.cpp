@@ -132,8 +132,10 @@ Result<BakeReport> bakeOnTheseThreads(const Scene& scene, const BakeOptions& opt
   auto split = splitMeshes(scene, plan->groups, options.max_edge_m);
   if (!split) return failAgain(split.error());
   if (const float bound = options.effectiveRefineBound(); bound > 0.0f) {
-    RefineOptions refine{
-        .bound = bound, .most_growth = options.refineGrowth(), .most_added = options.refineAdded()};
+    RefineOptions refine{.bound = bound,
+                         .most_growth = options.refineGrowth(),
+                         .most_added = options.refineAdded(),
+                         .most_fans = options.refineFans()};
     if (!tables.entries.empty()) refine.most_vertices = mostGlossySamples(options.glossy_order);
     auto refined = refineMeshes(scene, plan->groups, *alpha_maps, !tables.entries.empty(), refine, *split,
                                 progress, stop, cache);

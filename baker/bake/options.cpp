@@ -17,12 +17,13 @@ struct QualityRow {
   float error_bound, glossy_error_bound, refine_bound;
   double refine_growth;
   std::size_t refine_added;
+  double refine_fans;
   bool fits_glossy;
 };
 constexpr std::array kQualities = {
-    QualityRow{"draft", 256, 0.01f, 0.03f, 0.02f, 1.2, 10'000, false},
-    QualityRow{"standard", 1024, 0.003f, 0.015f, 0.014f, 1.5, 20'000, true},
-    QualityRow{"high", 4096, 0.001f, 0.005f, 0.007f, 4.0, 60'000, true},
+    QualityRow{"draft", 256, 0.01f, 0.03f, 0.02f, 1.2, 10'000, 0.0, false},
+    QualityRow{"standard", 1024, 0.003f, 0.015f, 0.014f, 1.5, 20'000, 0.5, true},
+    QualityRow{"high", 4096, 0.001f, 0.005f, 0.007f, 4.0, 60'000, 0.5, true},
 };
 
 const QualityRow& row(Quality quality) {
@@ -48,7 +49,7 @@ bool readGrid(std::string_view text, glm::uvec3& grid) {
 
 // How far refinement may go, in words.
 std::string refineMost(const QualityRow& row) {
-  return fmt::format("{} x + {}", row.refine_growth, row.refine_added);
+  return fmt::format("{} x + {}, fans {} x", row.refine_growth, row.refine_added, row.refine_fans);
 }
 
 }  // namespace
@@ -87,6 +88,10 @@ double BakeOptions::refineGrowth() const {
 
 std::size_t BakeOptions::refineAdded() const {
   return row(quality).refine_added;
+}
+
+double BakeOptions::refineFans() const {
+  return row(quality).refine_fans;
 }
 
 std::uint64_t BakeOptions::effectiveMemory() const {

@@ -51,6 +51,7 @@ struct BakeOptions {
   // How far refinement may go: times as many vertices, and so many more.
   double refineGrowth() const;
   std::size_t refineAdded() const;
+  double refineFans() const;  // values apart at glossy vertices, by vertices
   std::uint64_t effectiveMemory() const;
   std::map<std::string, std::string> settings() const;
   // Options with those settings, of the quality that they differ from least; names that settings() does not

@@ -114,6 +114,7 @@ nlohmann::json reportJson(const BakeArguments& a, const BakeReport& r) {
           {"refinement",
            {{"verticesBefore", r.refinement.vertices_before},
             {"verticesAfter", r.refinement.vertices_after},
+            {"fans", r.refinement.fans},
             {"errorBefore", r.refinement.error_before},
             {"errorAfter", r.refinement.error_after},
             {"rays", r.refinement.rays},
@@ -134,9 +135,10 @@ void printReport(const BakeArguments& a, const BakeReport& r) {
   fmt::print("{}: {} vertices, {} triangles, {} samples in {}\n", a.output.string(), r.vertices, r.triangles,
              r.samples, durationText(seconds));
   if (const RefineReport& refined = r.refinement; refined.vertices_after > refined.vertices_before)
-    fmt::print("  refined   {} vertices to {}: shadows between them {:.2f} % wrong, before {:.2f} %\n",
+    fmt::print("  refined   {} vertices to {}: shadows between them {:.2f} % wrong, before {:.2f} %{}\n",
                refined.vertices_before, refined.vertices_after, 100.0 * refined.error_after,
-               100.0 * refined.error_before);
+               100.0 * refined.error_before,
+               refined.fans > 0 ? fmt::format("; {} more values where faces disagree", refined.fans) : "");
   fmt::print("  rays      {} in {} ({} a second)\n", countText(static_cast<double>(r.rays)),
              durationText(r.ray_seconds),
              countText(r.ray_seconds > 0.0 ? static_cast<double>(r.rays) / r.ray_seconds : 0.0));

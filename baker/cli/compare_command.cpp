@@ -1,4 +1,4 @@
-// lambent compare PICTURE.exr REFERENCE.exr [--reference2 OTHER.exr] [--heat OUT.png]
+// lambent compare PICTURE.exr REFERENCE.exr [--reference2 OTHER.exr] [--shrink N] [--heat OUT.png]
 #include <memory>
 #include <optional>
 
@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "baker/accuracy/difference.hpp"
+#include "baker/accuracy/shrink.hpp"
 #include "baker/cli/commands.hpp"
 #include "baker/cli/output.hpp"
 
@@ -18,6 +19,7 @@ struct CompareArguments {
   std::filesystem::path picture, reference, reference2, heat;
   std::string heat_map = "signed";
   std::optional<double> heat_range;
+  std::uint32_t shrink = 1;
   bool json = false;
 };
 
@@ -34,6 +36,7 @@ void print(const CompareArguments& a, HeatMap map, const Difference& difference)
     nlohmann::json json = {{"picture", a.picture.string()},
                            {"reference", a.reference.string()},
                            {"noiseFree", !a.reference2.empty()},
+                           {"shrink", a.shrink},
                            {"pixels", e.pixels},
                            {"pixelsApart", e.pixels_apart},
                            {"relativeRms", e.relative_rms},
@@ -71,6 +74,11 @@ void print(const CompareArguments& a, HeatMap map, const Difference& difference)
   if (!a.heat.empty()) fmt::print("  {}\n", heatLine(a, map, difference.range));
 }
 
+Result<spec::RgbaImage> readShrunk(const std::filesystem::path& file, std::uint32_t by) {
+  auto picture = spec::readExr(file);
+  return picture ? shrunk(*picture, by, file.string()) : failAgain(std::move(picture.error()));
+}
+
 int runCompare(const CompareArguments& a) {
   constexpr int kWrongUsage = 2;
   const auto map = parseHeatMap(a.heat_map);
@@ -78,13 +86,13 @@ int runCompare(const CompareArguments& a) {
     reportError(map.error());
     return kWrongUsage;
   }
-  const auto picture = spec::readExr(a.picture);
+  const auto picture = readShrunk(a.picture, a.shrink);
   if (!picture) return reportError(picture.error());
-  const auto reference = spec::readExr(a.reference);
+  const auto reference = readShrunk(a.reference, a.shrink);
   if (!reference) return reportError(reference.error());
   std::optional<spec::RgbaImage> reference2;
   if (!a.reference2.empty()) {
-    auto second = spec::readExr(a.reference2);
+    auto second = readShrunk(a.reference2, a.shrink);
     if (!second) return reportError(second.error());
     reference2 = std::move(*second);
   }
@@ -109,6 +117,12 @@ void addCompareCommand(CLI::App& app, Command& run) {
       ->add_option("--reference2", a->reference2,
                    "A second, independent reference: cancels the noise of both")
       ->type_name("EXR");
+  command
+      ->add_option("--shrink", a->shrink,
+                   "Compare means of N x N pixels, as a screen shows a picture of\nso many samples a pixel")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 64))
+      ->type_name("N");
   command
       ->add_option("--heat", a->heat,
                    "Write where they differ as colours. Grey: neither shows the\nscene, violet: one of them")

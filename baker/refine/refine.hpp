@@ -27,11 +27,14 @@ struct RefineOptions {
   double most_growth = 1.5;
   std::size_t most_added = 20'000;
   std::size_t most_vertices = std::size_t{1} << 31;
+  // Fans that may be added to the vertices of glossy surfaces, by vertices after all splits (fans.hpp).
+  double most_fans = 0.0;
 };
 
 struct RefineReport {
   std::size_t vertices_before = 0, vertices_after = 0;
-  // Of the group that was worst: what interpolation over the triangles got wrong.
+  std::size_t fans = 0;  // values beyond one for each position and normal
+  // Of the group that was worst, before fans: what interpolation over the triangles got wrong.
   double error_before = 0.0, error_after = 0.0;
   std::uint64_t rays = 0;       // traced
   std::uint64_t rays_kept = 0;  // that what was found in the cache stands for

@@ -21,6 +21,7 @@ namespace {
 // Of the light, and of what surfaces make of it; visibility then shows in all bands that tie the two.
 constexpr int kOrder = 5, kVisibilityBands = 2 * kOrder - 1;
 constexpr std::size_t kPlainValues = kOrder * kOrder, kGlossyValues = kVisibilityBands * kVisibilityBands;
+static_assert(kGlossyValues == ShadowProbe::kMostValues);
 
 // Both halves of the sphere by the points of one, turned by `turn`.
 void addSphere(const DirectionTable& half, const glm::mat3& turn, DirectionTable& table) {
@@ -117,10 +118,10 @@ bool ShadowProbe::look(const RayScene& scene, std::span<const SampleOrigin> orig
   return true;
 }
 
-double ShadowProbe::squareError(std::span<const HiddenFrom, 3> corners, const HiddenFrom& truth,
-                                SampleKind kind) const {
+ShadowProbe::Difference ShadowProbe::difference(std::span<const HiddenFrom, 3> corners,
+                                                const HiddenFrom& truth, SampleKind kind) const {
   const bool plain = kind == SampleKind::Plain;
-  std::array<std::array<float, kGlossyValues>, 2> wrong{};
+  Difference wrong{};
   for (std::size_t p = 0; p < packets(); ++p) {
     const unsigned in_any = corners[0].masks[p] | corners[1].masks[p] | corners[2].masks[p] | truth.masks[p],
                    in_all = corners[0].masks[p] & corners[1].masks[p] & corners[2].masks[p] & truth.masks[p];
@@ -141,9 +142,12 @@ double ShadowProbe::squareError(std::span<const HiddenFrom, 3> corners, const Hi
       for (std::size_t i = 0; i < from.size(); ++i) to[i] += off * from[i];
     }
   }
+  return wrong;
+}
+
+double ShadowProbe::squareError(const Difference& difference) {
   double error = 0.0;
-  for (std::size_t i = 0; i < (plain ? kPlainValues : kGlossyValues); ++i)
-    error += double{wrong[0][i]} * double{wrong[1][i]};
+  for (std::size_t i = 0; i < kMostValues; ++i) error += double{difference[0][i]} * double{difference[1][i]};
   return error;
 }
 

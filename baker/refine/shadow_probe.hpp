@@ -37,10 +37,15 @@ class ShadowProbe {
   bool look(const RayScene& scene, std::span<const SampleOrigin> origins, const glm::vec3& normal,
             SampleKind kind, std::span<std::uint16_t> masks) const;
 
-  // The mean square error, over real lights, of showing the mixture of `corners` in place of `truth`,
+  // What the mixture of `corners` hides more than `truth` does, by what both halves of the directions show.
+  // The product of both is the mean square error, over real lights, of showing the one in place of the other,
   // relative to the light of an open point: of the irradiance, or of what glossy surfaces reflect. Free of
   // the noise of too few rays on average, for which it may come out a little below 0.
-  double squareError(std::span<const HiddenFrom, 3> corners, const HiddenFrom& truth, SampleKind kind) const;
+  static constexpr std::size_t kMostValues = 81;  // fewer for plain samples, the rest 0
+  using Difference = std::array<std::array<float, kMostValues>, 2>;
+  Difference difference(std::span<const HiddenFrom, 3> corners, const HiddenFrom& truth,
+                        SampleKind kind) const;
+  static double squareError(const Difference& difference);
 
  private:
   // Harmonics of a direction, scaled so that the square of their sum over what is wrongly hidden is an error.

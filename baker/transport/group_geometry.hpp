@@ -38,6 +38,7 @@ struct GroupGeometry {
   std::vector<glm::vec3> positions;   // from `origin`, along the group frame's axes
   std::vector<glm::vec3> normals;     // unit; of back draws negated
   std::vector<float> normal_weights;  // MeshData's, 1 where it has none
+  std::vector<std::uint8_t> fans;     // MeshData's, 0 where it has none
   std::vector<glm::vec2>
       texcoords;  // of the material's base-colour texture, transformed; 0 where it has none
   std::vector<glm::vec2> emissive_texcoords;  // of its emissive texture

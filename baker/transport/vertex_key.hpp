@@ -13,7 +13,7 @@
 
 namespace lambent::baker {
 
-using VertexKey = std::array<std::uint32_t, 7>;
+using VertexKey = std::array<std::uint32_t, 8>;
 
 struct VertexKeyHash {
   std::size_t operator()(const VertexKey& key) const {
@@ -23,7 +23,8 @@ struct VertexKeyHash {
   }
 };
 
-inline VertexKey vertexKey(const glm::vec3& position, const glm::vec3& normal, SampleKind kind) {
+inline VertexKey vertexKey(const glm::vec3& position, const glm::vec3& normal, SampleKind kind,
+                           std::uint8_t fan = 0) {
   const auto bits = [](float value) { return std::bit_cast<std::uint32_t>(value); };
   return {bits(position.x),
           bits(position.y),
@@ -31,7 +32,8 @@ inline VertexKey vertexKey(const glm::vec3& position, const glm::vec3& normal, S
           bits(normal.x),
           bits(normal.y),
           bits(normal.z),
-          static_cast<std::uint32_t>(kind)};
+          static_cast<std::uint32_t>(kind),
+          fan};
 }
 
 }  // namespace lambent::baker

@@ -27,7 +27,8 @@ inline constexpr std::uint32_t kVersionLocalLight = 3;
 inline constexpr std::uint32_t kVersionGlossyTransfer = 4;
 inline constexpr std::uint32_t kVersionVolumesAndNeighborhoods = 5;
 inline constexpr std::uint32_t kVersionWeightedNormals = 6;
-inline constexpr std::uint32_t kVersionCurrent = kVersionWeightedNormals;
+inline constexpr std::uint32_t kVersionFans = 7;
+inline constexpr std::uint32_t kVersionCurrent = kVersionFans;
 
 // A byte range of the GLB's binary chunk.
 struct View {
@@ -39,7 +40,7 @@ struct View {
 // Attributes of a Draco mesh: the unique id of each, -1 where absent.
 struct DracoAttributes {
   std::int32_t position = -1, normal = -1, texcoord0 = -1, texcoord1 = -1, color0 = -1, tangent = -1,
-               normal_weight = -1;
+               normal_weight = -1, fan = -1;
 };
 
 struct Primitive {

@@ -28,15 +28,17 @@ struct AttributeName {
   std::int32_t DracoAttributes::*id;
   int component_type;
   const char* type;
+  bool normalized = false;
 };
 constexpr std::array kAttributes = {
     AttributeName{"POSITION", &DracoAttributes::position, 5126, "VEC3"},
     AttributeName{"NORMAL", &DracoAttributes::normal, 5126, "VEC3"},
     AttributeName{"TEXCOORD_0", &DracoAttributes::texcoord0, 5126, "VEC2"},
     AttributeName{"TEXCOORD_1", &DracoAttributes::texcoord1, 5126, "VEC2"},
-    AttributeName{"COLOR_0", &DracoAttributes::color0, 5123, "VEC4"},
+    AttributeName{"COLOR_0", &DracoAttributes::color0, 5123, "VEC4", true},
     AttributeName{"TANGENT", &DracoAttributes::tangent, 5126, "VEC4"},
-    AttributeName{"_NORMAL_WEIGHT", &DracoAttributes::normal_weight, 5121, "SCALAR"},
+    AttributeName{"_NORMAL_WEIGHT", &DracoAttributes::normal_weight, 5121, "SCALAR", true},
+    AttributeName{"_FAN", &DracoAttributes::fan, 5121, "SCALAR"},
 };
 
 Json primitiveJson(const Primitive& primitive, Json& accessors) {
@@ -49,7 +51,7 @@ Json primitiveJson(const Primitive& primitive, Json& accessors) {
       accessor["min"] = vectorJson(primitive.bounds_min);
       accessor["max"] = vectorJson(primitive.bounds_max);
     }
-    if (attribute.component_type != 5126) accessor["normalized"] = true;
+    if (attribute.normalized) accessor["normalized"] = true;
     attributes[attribute.name] = accessors.size();
     draco[attribute.name] = id;
     accessors.push_back(std::move(accessor));

@@ -23,6 +23,9 @@ struct MeshData {
   // normals is shorter than they are, and a vertex that splits an edge keeps that: else the two halves of the
   // edge would turn from one normal to the other in another way than the whole did.
   std::vector<float> normal_weights = {};
+  // Vertices of one position and normal hold transfer of their own where these differ, each of the faces
+  // around that use it (a fan of them); empty: all 0.
+  std::vector<std::uint8_t> fans = {};
   std::vector<glm::vec2> texcoords0;   // may be empty
   std::vector<glm::vec2> texcoords1;   // may be empty
   std::vector<glm::vec4> colors;       // linear, 0..1; may be empty

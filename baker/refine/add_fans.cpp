@@ -1,0 +1,90 @@
+#include "baker/refine/add_fans.hpp"
+
+#include <map>
+#include <unordered_map>
+#include <utility>
+
+#include "baker/refine/fans.hpp"
+#include "baker/transport/vertex_key.hpp"
+
+namespace lambent::baker {
+
+namespace {
+
+// A primitive whose vertices may be split into fans.
+struct FanSource {
+  std::size_t mesh, primitive, group, draw;
+  std::vector<std::uint32_t> faces;  // of the mesh, of each triangle of the draw
+};
+
+// What is drawn at many places would cost transfer at each of them: at most front and back of one.
+std::vector<FanSource> fanSources(const std::vector<RigidGroup>& groups,
+                                  const std::vector<GroupGeometry>& geometries,
+                                  const std::vector<std::vector<bundle::MeshData>>& meshes) {
+  std::map<std::pair<std::size_t, std::size_t>, int> fronts;
+  for (const RigidGroup& group : groups)
+    for (const PlannedDraw& draw : group.draws)
+      if (!draw.back) ++fronts[{draw.mesh, draw.primitive}];
+  std::vector<FanSource> sources;
+  for (std::size_t g = 0; g < groups.size(); ++g)
+    for (std::size_t d = 0; d < groups[g].draws.size(); ++d) {
+      const PlannedDraw& draw = groups[g].draws[d];
+      const DrawGeometry& drawn = geometries[g].draws[d];
+      if (draw.back || fronts[{draw.mesh, draw.primitive}] != 1) continue;
+      if (drawn.kind != SampleKind::Glossy) continue;
+      FanSource source{draw.mesh, draw.primitive, g, d, {}};
+      const bundle::MeshData& mesh = meshes[draw.mesh][draw.primitive];
+      std::uint32_t t = drawn.first_triangle;
+      for (std::uint32_t f = 0;
+           f < mesh.indices.size() / 3 && t < drawn.first_triangle + drawn.triangle_count; ++f) {
+        // Triangles without area were left out; mirrored ones are turned.
+        if (geometries[g].triangles[t].x != drawn.first_vertex + mesh.indices[3 * f]) continue;
+        const glm::uvec3& rest = geometries[g].triangles[t];
+        const std::uint32_t b = drawn.first_vertex + mesh.indices[3 * f + 1],
+                            c = drawn.first_vertex + mesh.indices[3 * f + 2];
+        if (!(rest.y == b && rest.z == c) && !(rest.y == c && rest.z == b)) continue;
+        source.faces.push_back(f);
+        ++t;
+      }
+      sources.push_back(std::move(source));
+    }
+  return sources;
+}
+
+}  // namespace
+
+std::size_t addFans(const std::vector<RigidGroup>& groups, const std::vector<GroupGeometry>& geometries,
+                    const std::vector<GroupRefiner>& refiners, double bound, std::size_t most,
+                    std::vector<std::vector<bundle::MeshData>>& meshes) {
+  const std::vector<FanSource> sources = fanSources(groups, geometries, meshes);
+  FaceLacks lacks{.width = GroupRefiner::kLackValues};
+  std::size_t stars = 0;
+  for (const FanSource& source : sources) {
+    refiners[source.group].addLacks(geometries[source.group].draws[source.draw], lacks);
+    const bundle::MeshData& mesh = meshes[source.mesh][source.primitive];
+    std::unordered_map<VertexKey, std::uint32_t, VertexKeyHash> known;
+    for (const std::uint32_t face : source.faces)
+      for (std::size_t c = 0; c < 3; ++c) {
+        const std::uint32_t v = mesh.indices[3 * face + c];
+        const auto [entry, is_new] =
+            known.try_emplace(vertexKey(mesh.positions[v], mesh.normals[v], SampleKind::Plain),
+                              static_cast<std::uint32_t>(stars));
+        if (is_new) ++stars;
+        lacks.corner_stars.push_back(entry->second);
+      }
+  }
+  double area = 0.0;
+  for (const double a : lacks.areas) area += a;
+  const Fans fans = chooseFans(std::move(lacks), stars, bound * bound * area, most);
+  std::size_t next = 0;
+  for (const FanSource& source : sources) {
+    bundle::MeshData& mesh = meshes[source.mesh][source.primitive];
+    std::vector<std::uint8_t> of_corner(mesh.indices.size(), 0);
+    for (const std::uint32_t face : source.faces)
+      for (std::size_t c = 0; c < 3; ++c) of_corner[3 * face + c] = fans.of_corner[next++];
+    if (fans.added > 0) splitIntoFans(mesh, of_corner);
+  }
+  return fans.added;
+}
+
+}  // namespace lambent::baker

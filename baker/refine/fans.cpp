@@ -1,0 +1,238 @@
+#include "baker/refine/fans.hpp"
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <numeric>
+#include <utility>
+
+namespace lambent::baker {
+
+namespace {
+
+// Poles of fans with more faces than this are left alone.
+constexpr std::size_t kMostFaces = 32;
+// Each pass takes the splits that gain at least this share of what those of the pass before did.
+constexpr double kStep = 0.6;
+constexpr int kPasses = 24;
+// To settle shared values: changes fall by half a sweep and more.
+constexpr int kSweeps = 4;
+constexpr double kGainOfFan = 3.0 / 8.0;
+constexpr float kChangeAtMiddle = 0.5f;  // of the mean over a fan, when its corners changed
+
+// What is lacked over some faces: their area and the sums of area times both estimates.
+struct Sum {
+  double area = 0.0;
+  std::vector<double> values;
+};
+
+double productOf(const Sum& sum) {
+  const std::size_t half = sum.values.size() / 2;
+  if (!(sum.area > 0.0)) return 0.0;
+  double product = 0.0;
+  for (std::size_t i = 0; i < half; ++i) product += sum.values[i] * sum.values[half + i];
+  return product / sum.area;  // area times product of the means
+}
+
+class FanChooser {
+ public:
+  FanChooser(FaceLacks lacks, std::size_t stars) : lacks_(std::move(lacks)), offsets_(stars + 1, 0) {
+    fans_.of_corner.assign(lacks_.corner_stars.size(), 0);
+    for (const std::uint32_t star : lacks_.corner_stars) ++offsets_[star + 1];
+    std::partial_sum(offsets_.begin(), offsets_.end(), offsets_.begin());
+    corners_.resize(lacks_.corner_stars.size());
+    std::vector<std::uint32_t> next(offsets_.begin(), offsets_.end() - 1);
+    for (std::uint32_t c = 0; c < corners_.size(); ++c) corners_[next[lacks_.corner_stars[c]]++] = c;
+    of_star_.assign(stars, 1);
+  }
+
+  Fans choose(double enough, std::size_t most) {
+    for (int sweep = 0; sweep < kSweeps; ++sweep) settle();
+    double least = greatestGain();
+    for (int pass = 0; pass < kPasses && least > 0.0; ++pass) {
+      least *= kStep;
+      for (std::size_t star = 0; star < of_star_.size(); ++star) {
+        if (fans_.added >= most) return std::move(fans_);
+        splitStar(star, least);
+      }
+      settle();
+      if (left() <= enough) break;
+    }
+    return std::move(fans_);
+  }
+
+ private:
+  std::span<const std::uint32_t> cornersOf(std::size_t star) const {
+    return std::span(corners_).subspan(offsets_[star], offsets_[star + 1] - offsets_[star]);
+  }
+  std::span<float> lack(std::uint32_t corner) {
+    return std::span(lacks_.values).subspan(corner / 3 * 2 * lacks_.width, 2 * lacks_.width);
+  }
+  double areaOf(std::uint32_t corner) const { return lacks_.areas[corner / 3]; }
+
+  Sum sumOf(std::span<const std::uint32_t> corners) {
+    Sum sum{0.0, std::vector<double>(2 * lacks_.width, 0.0)};
+    for (const std::uint32_t corner : corners) {
+      const double area = areaOf(corner);
+      sum.area += area;
+      const auto values = lack(corner);
+      for (std::size_t i = 0; i < values.size(); ++i) sum.values[i] += area * double{values[i]};
+    }
+    return sum;
+  }
+
+  // The best change of these corners alike.
+  void change(std::span<const std::uint32_t> corners) {
+    const Sum sum = sumOf(corners);
+    if (!(sum.area > 0.0)) return;
+    for (const std::uint32_t corner : corners) {
+      const auto values = lack(corner);
+      for (std::size_t i = 0; i < values.size(); ++i)
+        values[i] -= kChangeAtMiddle * static_cast<float>(sum.values[i] / sum.area);
+    }
+  }
+
+  std::vector<std::uint32_t> fanOf(std::size_t star, std::uint8_t fan) const {
+    std::vector<std::uint32_t> own;
+    for (const std::uint32_t corner : cornersOf(star))
+      if (fans_.of_corner[corner] == fan) own.push_back(corner);
+    return own;
+  }
+
+  void settle() {
+    for (std::size_t star = 0; star < of_star_.size(); ++star)
+      for (std::uint8_t fan = 0; fan < of_star_[star]; ++fan) change(fanOf(star, fan));
+  }
+
+  double left() {
+    double sum = 0.0;
+    for (std::size_t face = 0; face < lacks_.size(); ++face) {
+      const auto corner = static_cast<std::uint32_t>(3 * face);
+      sum += productOf(sumOf(std::span(&corner, 1)));
+    }
+    return sum;
+  }
+
+  double greatestGain() {
+    double most = 0.0;
+    for (std::size_t star = 0; star < of_star_.size(); ++star) most = std::max(most, mostOf(cornersOf(star)));
+    return kGainOfFan * most;
+  }
+
+  // No split of these gains more than that, but for noise.
+  double mostOf(std::span<const std::uint32_t> corners) {
+    if (corners.size() < 2 || corners.size() > kMostFaces) return 0.0;
+    double most = 0.0;
+    for (const std::uint32_t& corner : corners)
+      most += std::max(0.0, productOf(sumOf(std::span(&corner, 1))));
+    return most;
+  }
+
+  // Whether any of these faces around a star share an edge there.
+  bool touch(std::size_t star, std::span<const std::uint32_t> a, std::span<const std::uint32_t> b) const {
+    const auto neighbours = [&](std::uint32_t corner) {
+      const std::uint32_t face = corner / 3 * 3;
+      return std::array{lacks_.corner_stars[face + (corner + 1) % 3],
+                        lacks_.corner_stars[face + (corner + 2) % 3]};
+    };
+    for (const std::uint32_t ca : a)
+      for (const std::uint32_t cb : b)
+        for (const std::uint32_t na : neighbours(ca))
+          for (const std::uint32_t nb : neighbours(cb))
+            if (na == nb && na != star) return true;
+    return false;
+  }
+
+  // Two parts of a fan, joined from single faces by least loss (Ward); what that split gains.
+  double partsOf(std::size_t star, std::span<const std::uint32_t> corners,
+                 std::vector<std::uint32_t>& apart) {
+    struct Part {
+      Sum sum;
+      double product;
+      std::vector<std::uint32_t> corners;
+    };
+    std::vector<Part> parts;
+    for (const std::uint32_t& corner : corners) {
+      Sum sum = sumOf(std::span(&corner, 1));
+      const double product = productOf(sum);
+      parts.push_back({std::move(sum), product, {corner}});
+    }
+    const auto joined = [](const Sum& a, const Sum& b) {
+      Sum sum = a;
+      sum.area += b.area;
+      for (std::size_t i = 0; i < sum.values.size(); ++i) sum.values[i] += b.values[i];
+      return sum;
+    };
+    while (parts.size() > 2) {
+      std::size_t best_a = 0, best_b = 0;
+      double least = 0.0;
+      for (std::size_t a = 0; a < parts.size(); ++a)
+        for (std::size_t b = a + 1; b < parts.size(); ++b) {
+          if (!touch(star, parts[a].corners, parts[b].corners)) continue;
+          const double loss =
+              parts[a].product + parts[b].product - productOf(joined(parts[a].sum, parts[b].sum));
+          if (best_b == 0 || loss < least) least = loss, best_a = a, best_b = b;
+        }
+      if (best_b == 0) return 0.0;  // surfaces that only touch at the vertex
+      parts[best_a].sum = joined(parts[best_a].sum, parts[best_b].sum);
+      parts[best_a].product = productOf(parts[best_a].sum);
+      parts[best_a].corners.insert(parts[best_a].corners.end(), parts[best_b].corners.begin(),
+                                   parts[best_b].corners.end());
+      parts.erase(parts.begin() + static_cast<std::ptrdiff_t>(best_b));
+    }
+    apart = parts[1].corners;
+    return kGainOfFan * (parts[0].product + parts[1].product - productOf(joined(parts[0].sum, parts[1].sum)));
+  }
+
+  void splitStar(std::size_t star, double least) {
+    if (of_star_[star] == 255) return;
+    for (std::uint8_t fan = 0; fan < of_star_[star]; ++fan) {
+      const std::vector<std::uint32_t> own = fanOf(star, fan);
+      if (kGainOfFan * mostOf(own) < least) continue;
+      std::vector<std::uint32_t> apart;
+      if (partsOf(star, own, apart) < least) continue;
+      for (const std::uint32_t corner : apart) fans_.of_corner[corner] = of_star_[star];
+      ++of_star_[star];
+      ++fans_.added;
+      change(apart);
+      change(fanOf(star, fan));
+      return;
+    }
+  }
+
+  FaceLacks lacks_;
+  Fans fans_;
+  std::vector<std::uint32_t> offsets_, corners_;  // corners of each star
+  std::vector<std::uint8_t> of_star_;             // fans
+};
+
+}  // namespace
+
+Fans chooseFans(FaceLacks lacks, std::size_t stars, double enough, std::size_t most) {
+  return FanChooser(std::move(lacks), stars).choose(enough, most);
+}
+
+void splitIntoFans(bundle::MeshData& mesh, std::span<const std::uint8_t> of_corner) {
+  const auto copy = [](auto& values, std::uint32_t vertex) {
+    if (values.empty()) return;
+    const auto value = values[vertex];  // the list may move
+    values.push_back(value);
+  };
+  if (std::all_of(of_corner.begin(), of_corner.end(), [](std::uint8_t fan) { return fan == 0; })) return;
+  mesh.fans.resize(mesh.positions.size(), 0);
+  std::map<std::pair<std::uint32_t, std::uint8_t>, std::uint32_t> copies;
+  for (std::size_t c = 0; c < mesh.indices.size(); ++c) {
+    if (of_corner[c] == 0) continue;
+    const std::uint32_t vertex = mesh.indices[c];
+    const auto [entry, is_new] =
+        copies.try_emplace({vertex, of_corner[c]}, static_cast<std::uint32_t>(mesh.positions.size()));
+    mesh.indices[c] = entry->second;
+    if (!is_new) continue;
+    copy(mesh.positions, vertex), copy(mesh.normals, vertex), copy(mesh.normal_weights, vertex);
+    copy(mesh.texcoords0, vertex), copy(mesh.texcoords1, vertex);
+    copy(mesh.colors, vertex), copy(mesh.tangents, vertex);
+    mesh.fans.push_back(of_corner[c]);
+  }
+}
+
+}  // namespace lambent::baker

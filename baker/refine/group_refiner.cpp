@@ -1,0 +1,258 @@
+#include "baker/refine/group_refiner.hpp"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <numeric>
+
+#include <glm/geometric.hpp>
+
+#include "baker/transport/face_points.hpp"
+#include "baker/transport/geometry_key.hpp"
+#include "baker/transport/sample_areas.hpp"
+#include "baker/work/parallel.hpp"
+
+namespace lambent::baker {
+
+namespace {
+
+// A triangle is probed at n² points, where its longest edge is n times this share of the group's diagonal.
+constexpr float kProbeSpacing = 1.0f / 24.0f;
+constexpr int kMostProbesAlong = 8;
+constexpr std::size_t kPointsPerRange = 64;  // that are probed
+// Nothing is split below this share of the diagonal.
+constexpr float kShortestEdge = 1.0f / 1024.0f;
+// Of a triangle that is split, edges of at least this share of its longest.
+constexpr float kSplitShare = 0.6f;
+// A round splits triangles until what is left over has this share of the square error that is allowed, but no
+// more than this share of all of it: what the first splits show decides where the next ones go.
+constexpr double kLeftOfAllowed = 0.6, kLeftOfAll = 0.5;
+
+// A point inside a triangle, by the weights of its corners.
+struct InnerPoint {
+  glm::vec3 weights;
+};
+
+// Middles of n² equal parts of a triangle.
+std::vector<InnerPoint> innerPoints(int n) {
+  std::vector<InnerPoint> points;
+  const float part = 1.0f / (3.0f * static_cast<float>(n));
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; i + j < n; ++j) {
+      const auto add = [&](int a, int b) {
+        const float u = static_cast<float>(a) * part, v = static_cast<float>(b) * part;
+        points.push_back({{1.0f - u - v, u, v}});
+      };
+      add(3 * i + 1, 3 * j + 1);
+      if (i + j + 1 < n) add(3 * i + 2, 3 * j + 2);
+    }
+  return points;
+}
+
+float longestEdge(const GroupGeometry& geometry, const glm::uvec3& t) {
+  const glm::vec3 &a = geometry.positions[t.x], &b = geometry.positions[t.y], &c = geometry.positions[t.z];
+  return std::max({glm::distance(a, b), glm::distance(b, c), glm::distance(c, a)});
+}
+
+}  // namespace
+
+void GroupRefiner::prepare(const GroupGeometry& geometry, const Scene& scene,
+                           const std::vector<std::shared_ptr<const AlphaMap>>& alpha_maps, Cache* cache) {
+  diagonal_ = glm::distance(geometry.bounds_min, geometry.bounds_max);
+  build_rays_ = [geometry, &scene, &alpha_maps] { return RayScene::build(geometry, scene, alpha_maps); };
+  KeyMaker key = KeyMaker::ofStage("refinement probes");
+  if (cache) {
+    addShape(geometry, key);
+    addOpacity(scene, geometry, key);
+  }
+  keep_ = {cache, key.add(std::uint64_t{probe_.rays()}).key()};
+}
+
+std::uint32_t GroupRefiner::shadowAt(const glm::vec3& position, const glm::vec3& normal, SampleKind kind,
+                                     std::span<const SampleOrigin> origins, std::vector<Point>& missing) {
+  const auto next = static_cast<std::uint32_t>(seen_.size() + missing.size());
+  const auto [entry, is_new] = known_.try_emplace(vertexKey(position, normal, kind), next);
+  if (is_new) missing.push_back({normal, kind, {origins.begin(), origins.end()}, next});
+  return entry->second;
+}
+
+Result<bool> GroupRefiner::probe(const std::vector<Point>& missing, Progress& progress,
+                                 const std::stop_token& stop) {
+  const std::size_t size = probe_.packets(), first = seen_.size();  // missing ones are in order
+  seen_.resize(first + missing.size());
+  masks_.resize(seen_.size() * size);
+  const auto masksOf = [&](std::size_t begin, std::size_t end) {
+    return std::span(masks_).subspan((first + begin) * size, (end - begin) * size);
+  };
+  Keep keep = keep_;
+  if (keep.cache) {
+    KeyMaker key;
+    key.add(keep_.key);
+    for (const Point& point : missing) key.add(point.normal).add(point.kind).addList(point.origins);
+    keep.key = key.key();
+  }
+  const auto unpack = [&](std::size_t begin, std::size_t end, ByteReader& in) {
+    return in.readInto(masksOf(begin, end)) &&
+           in.readInto(std::span(seen_).subspan(first + begin, end - begin));
+  };
+  const std::uint64_t rays = missing.size() * probe_.rays();
+  if (restoreRanges(keep, missing.size(), kPointsPerRange, unpack)) {
+    progress.add(missing.size());
+    rays_kept_ += rays;
+    return true;
+  }
+  if (!rays_) {
+    auto built = build_rays_();
+    if (!built) return failAgain(built.error());
+    rays_ = std::move(*built);
+  }
+  std::atomic<std::uint64_t> traced = 0;
+  const KeptRanges kept =
+      keptRanges(keep, missing.size(), kPointsPerRange, stop,
+                 {.compute =
+                      [&](std::size_t begin, std::size_t end) {
+                        for (std::size_t i = begin; i < end; ++i) {
+                          const Point& point = missing[i];
+                          seen_[point.shadow] =
+                              probe_.look(*rays_, point.origins, point.normal, point.kind, masksOf(i, i + 1));
+                        }
+                        traced += (end - begin) * probe_.rays();
+                        progress.add(end - begin);
+                      },
+                  .pack =
+                      [&](std::size_t begin, std::size_t end, ByteWriter& out) {
+                        out.addList(std::span<const std::uint16_t>(masksOf(begin, end)));
+                        out.addList(std::span<const std::uint8_t>(seen_).subspan(first + begin, end - begin));
+                      },
+                  .unpack = unpack});
+  traced_ += traced;
+  rays_kept_ += rays - traced;
+  return kept.finished;
+}
+
+Result<bool> GroupRefiner::measure(const GroupGeometry& geometry, Progress& progress,
+                                   const std::stop_token& stop) {
+  const SampleSet samples = buildSamples(geometry);
+  std::vector<Point> missing;
+  std::vector<std::uint32_t> of_sample(samples.size());
+  std::vector<SampleKind> kinds(samples.size());
+  for (const SampleCell& cell : samples.cells) std::fill_n(kinds.begin() + cell.first, cell.count, cell.kind);
+  for (std::size_t s = 0; s < samples.size(); ++s)
+    of_sample[s] =
+        shadowAt(samples.positions[s], samples.normals[s], kinds[s], samples.originsOf(s), missing);
+
+  struct Inner {
+    std::uint32_t triangle = 0, shadow = 0;
+    glm::vec3 weights{0.0f}, normal{0.0f};
+    SampleKind kind = SampleKind::Plain;
+  };
+  std::vector<Inner> inner;
+  for (std::uint32_t t = 0; t < geometry.triangles.size(); ++t) {
+    const glm::uvec3 corners = geometry.triangles[t];
+    const SampleKind kind = kinds[samples.vertex_sample[corners.x]];
+    const int along =
+        std::clamp(static_cast<int>(std::ceil(longestEdge(geometry, corners) / (kProbeSpacing * diagonal_))),
+                   1, kMostProbesAlong);
+    for (const InnerPoint& point : innerPoints(along)) {
+      const FacePoint at = facePoint(geometry, corners, point.weights);
+      inner.push_back({t, shadowAt(at.position, at.normal, kind, std::span(&at.origin, 1), missing),
+                       point.weights, at.normal, kind});
+    }
+  }
+
+  if (auto probed = probe(missing, progress, stop); !probed || !*probed) return probed;
+
+  std::vector<double> error_at(inner.size());
+  std::vector<float> lack_at(inner.size() * 2 * kLackValues);
+  std::vector<std::uint8_t> seen_at(inner.size(), 0);
+  // What nobody sees has no error; what nobody sees from takes the place of its neighbours (fill.hpp).
+  const auto measureAt = [&](std::size_t i) {
+    const Inner& point = inner[i];
+    std::array<HiddenFrom, 3> corners;
+    float shares = 0.0f;
+    for (int c = 0; c < 3; ++c) {
+      const std::uint32_t sample = samples.vertex_sample[geometry.triangles[point.triangle][c]],
+                          shadow = of_sample[sample];
+      HiddenFrom& corner = corners[static_cast<std::size_t>(c)];
+      corner = {masksAt(shadow), samples.normals[sample], seen_[shadow] != 0 ? point.weights[c] : 0.0f};
+      shares += corner.share;
+    }
+    if (seen_[point.shadow] == 0 || !(shares > 0.0f)) return 0.0;
+    for (HiddenFrom& corner : corners) corner.share /= shares;
+    const auto wrong = probe_.difference(corners, {masksAt(point.shadow), point.normal}, point.kind);
+    seen_at[i] = 1;
+    for (std::size_t half = 0; half < 2; ++half)
+      for (std::size_t k = 0; k < kLackValues; ++k)
+        lack_at[(2 * i + half) * kLackValues + k] = wrong[half][k];
+    return ShadowProbe::squareError(wrong);
+  };
+  const bool measured =
+      parallelRanges(inner.size(), kPointsPerRange, stop, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) error_at[i] = measureAt(i);
+      });
+  if (!measured) return false;
+
+  triangle_error_.assign(geometry.triangles.size(), 0.0);
+  triangle_area_.assign(geometry.triangles.size(), 0.0);
+  triangle_lack_.assign(geometry.triangles.size() * 2 * kLackValues, 0.0f);
+  square_error_ = area_ = 0.0;
+  for (std::size_t first = 0; first < inner.size();) {
+    const std::uint32_t t = inner[first].triangle;
+    std::size_t last = first;
+    double sum = 0.0;
+    for (; last < inner.size() && inner[last].triangle == t; ++last) sum += error_at[last];
+    const glm::uvec3 corners = geometry.triangles[t];
+    const double area = triangleArea(geometry, corners);
+    triangle_error_[t] = area * sum / static_cast<double>(last - first);
+    square_error_ += triangle_error_[t];
+    area_ += area;
+    const auto counted = std::count(seen_at.begin() + static_cast<std::ptrdiff_t>(first),
+                                    seen_at.begin() + static_cast<std::ptrdiff_t>(last), 1);
+    if (counted > 0) triangle_area_[t] = area;
+    for (std::size_t i = first; i < last; ++i)
+      for (std::size_t k = 0; k < 2 * kLackValues; ++k)
+        triangle_lack_[t * 2 * kLackValues + k] +=
+            lack_at[i * 2 * kLackValues + k] / static_cast<float>(std::max<std::ptrdiff_t>(counted, 1));
+    first = last;
+  }
+  return true;
+}
+
+void GroupRefiner::addLacks(const DrawGeometry& draw, FaceLacks& lacks) const {
+  const std::size_t size = 2 * kLackValues;
+  const auto from = std::span(triangle_lack_).subspan(draw.first_triangle * size, draw.triangle_count * size);
+  const auto areas = std::span(triangle_area_).subspan(draw.first_triangle, draw.triangle_count);
+  lacks.values.insert(lacks.values.end(), from.begin(), from.end());
+  lacks.areas.insert(lacks.areas.end(), areas.begin(), areas.end());
+}
+
+std::size_t GroupRefiner::markWorst(std::size_t group, const GroupGeometry& geometry, double bound,
+                                    std::size_t& room, MarkedEdges& edges) const {
+  const double allowed = bound * bound * area_;
+  if (square_error_ <= allowed) return 0;
+  std::vector<std::uint32_t> order(geometry.triangles.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::uint32_t a, std::uint32_t b) { return triangle_error_[a] > triangle_error_[b]; });
+  const double enough = std::max(kLeftOfAllowed * allowed, kLeftOfAll * square_error_);
+  double left = square_error_;
+  std::size_t marked = 0;
+  for (const std::uint32_t t : order) {
+    if (left <= enough || room < 3) break;
+    left -= triangle_error_[t];
+    const glm::uvec3 corners = geometry.triangles[t];
+    const float longest = longestEdge(geometry, corners);
+    if (longest < kShortestEdge * diagonal_) continue;
+    for (int c = 0; c < 3; ++c) {
+      const std::uint32_t a = corners[c], b = corners[(c + 1) % 3];
+      if (glm::distance(geometry.positions[a], geometry.positions[b]) < kSplitShare * longest) continue;
+      if (!edges.mark(group, a, b)) continue;
+      ++marked;
+      --room;
+    }
+  }
+  return marked;
+}
+
+}  // namespace lambent::baker
