@@ -15,10 +15,9 @@ constexpr std::size_t kMostFaces = 32;
 // Each pass takes the splits that gain at least this share of what those of the pass before did.
 constexpr double kStep = 0.6;
 constexpr int kPasses = 24;
-// To settle shared values: changes fall by half a sweep and more.
-constexpr int kSweeps = 4;
+// Over all fans, to settle values before any is split: what is left falls by half a sweep and more.
+constexpr int kSweeps = 6;
 constexpr double kGainOfFan = 3.0 / 8.0;
-constexpr float kChangeAtMiddle = 0.5f;  // of the mean over a fan, when its corners changed
 
 // What is lacked over some faces: their area and the sums of area times both estimates.
 struct Sum {
@@ -44,6 +43,7 @@ class FanChooser {
     std::vector<std::uint32_t> next(offsets_.begin(), offsets_.end() - 1);
     for (std::uint32_t c = 0; c < corners_.size(); ++c) corners_[next[lacks_.corner_stars[c]]++] = c;
     of_star_.assign(stars, 1);
+    changes_.assign(stars, std::vector<float>(2 * lacks_.width, 0.0f));
   }
 
   Fans choose(double enough, std::size_t most) {
@@ -81,14 +81,17 @@ class FanChooser {
     return sum;
   }
 
-  // The best change of these corners alike.
-  void change(std::span<const std::uint32_t> corners) {
-    const Sum sum = sumOf(corners);
+  // Changes the value of a fan by what is best while all others stay: 3/2 of the mean of r less half of what
+  // it was changed by before.
+  void settle(std::size_t star, std::uint8_t fan) {
+    const std::vector<std::uint32_t> own = fanOf(star, fan);
+    const Sum sum = sumOf(own);
     if (!(sum.area > 0.0)) return;
-    for (const std::uint32_t corner : corners) {
-      const auto values = lack(corner);
-      for (std::size_t i = 0; i < values.size(); ++i)
-        values[i] -= kChangeAtMiddle * static_cast<float>(sum.values[i] / sum.area);
+    const auto so_far = std::span(changes_[star]).subspan(fan * 2 * lacks_.width, 2 * lacks_.width);
+    for (std::size_t i = 0; i < so_far.size(); ++i) {
+      const float change = 1.5f * static_cast<float>(sum.values[i] / sum.area) - 0.5f * so_far[i];
+      so_far[i] += change;
+      for (const std::uint32_t corner : own) lack(corner)[i] -= change / 3.0f;
     }
   }
 
@@ -101,7 +104,7 @@ class FanChooser {
 
   void settle() {
     for (std::size_t star = 0; star < of_star_.size(); ++star)
-      for (std::uint8_t fan = 0; fan < of_star_[star]; ++fan) change(fanOf(star, fan));
+      for (std::uint8_t fan = 0; fan < of_star_[star]; ++fan) settle(star, fan);
   }
 
   double left() {
@@ -194,8 +197,11 @@ class FanChooser {
       for (const std::uint32_t corner : apart) fans_.of_corner[corner] = of_star_[star];
       ++of_star_[star];
       ++fans_.added;
-      change(apart);
-      change(fanOf(star, fan));
+      const auto whole = std::span(changes_[star]).subspan(fan * 2 * lacks_.width, 2 * lacks_.width);
+      const std::vector<float> inherited(whole.begin(), whole.end());
+      changes_[star].insert(changes_[star].end(), inherited.begin(), inherited.end());
+      settle(star, static_cast<std::uint8_t>(of_star_[star] - 1));
+      settle(star, fan);
       return;
     }
   }
@@ -204,6 +210,7 @@ class FanChooser {
   Fans fans_;
   std::vector<std::uint32_t> offsets_, corners_;  // corners of each star
   std::vector<std::uint8_t> of_star_;             // fans
+  std::vector<std::vector<float>> changes_;       // of each star: [fan][estimate][width]
 };
 
 }  // namespace

@@ -6,8 +6,8 @@
 // What is minimised is the fit of the vertices (effects/diffuse/vertex_fit.hpp): with r_f what interpolation
 // lacks at the middle of face f and d_c the change of the value at each of its corners,
 //   sum_f A_f (3/4 |r_f - (d_1 + d_2 + d_3) / 3|² + 1/12 (|d_1|² + |d_2|² + |d_3|²)).
-// Corners of one fan change alike; the best change of one fan alone is 3/2 of the mean of r over its faces,
-// and gains 3/8 A |mean|². A split gains what its parts gain more than the whole.
+// Corners of one fan change alike. While all else stays, a split of a fan gains 3/8 of the area times square by
+// which the means of r over its parts differ from that over the whole.
 #pragma once
 
 #include <cstddef>
