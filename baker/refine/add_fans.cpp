@@ -53,9 +53,11 @@ std::vector<FanSource> fanSources(const std::vector<RigidGroup>& groups,
 
 }  // namespace
 
-std::size_t addFans(const std::vector<RigidGroup>& groups, const std::vector<GroupGeometry>& geometries,
-                    const std::vector<GroupRefiner>& refiners, double bound, std::size_t most,
-                    std::vector<std::vector<bundle::MeshData>>& meshes) {
+std::optional<std::size_t> addFans(const std::vector<RigidGroup>& groups,
+                                   const std::vector<GroupGeometry>& geometries,
+                                   const std::vector<GroupRefiner>& refiners, double bound, std::size_t most,
+                                   std::vector<std::vector<bundle::MeshData>>& meshes,
+                                   const std::stop_token& stop) {
   const std::vector<FanSource> sources = fanSources(groups, geometries, meshes);
   FaceLacks lacks{.width = GroupRefiner::kLackValues};
   std::size_t stars = 0;
@@ -75,7 +77,8 @@ std::size_t addFans(const std::vector<RigidGroup>& groups, const std::vector<Gro
   }
   double area = 0.0;
   for (const double a : lacks.areas) area += a;
-  const Fans fans = chooseFans(std::move(lacks), stars, bound * bound * area, most);
+  const Fans fans = chooseFans(std::move(lacks), stars, bound * bound * area, most, stop);
+  if (stop.stop_requested()) return std::nullopt;
   std::size_t next = 0;
   for (const FanSource& source : sources) {
     bundle::MeshData& mesh = meshes[source.mesh][source.primitive];

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
+#include <stop_token>
 #include <vector>
 
 #include "baker/plan/rigid_groups.hpp"
@@ -13,10 +15,12 @@
 namespace lambent::baker {
 
 // By what the refiners measured last, of groups and geometries as they are now, over all meshes where it
-// gains most: until the relative error that is left is `bound`, or `most` fans were added. Returns how many
-// were.
-std::size_t addFans(const std::vector<RigidGroup>& groups, const std::vector<GroupGeometry>& geometries,
-                    const std::vector<GroupRefiner>& refiners, double bound, std::size_t most,
-                    std::vector<std::vector<bundle::MeshData>>& meshes);
+// gains most: until the relative error that is left is `bound`, or `most` fans were added. How many were;
+// nothing if stopped.
+std::optional<std::size_t> addFans(const std::vector<RigidGroup>& groups,
+                                   const std::vector<GroupGeometry>& geometries,
+                                   const std::vector<GroupRefiner>& refiners, double bound, std::size_t most,
+                                   std::vector<std::vector<bundle::MeshData>>& meshes,
+                                   const std::stop_token& stop);
 
 }  // namespace lambent::baker

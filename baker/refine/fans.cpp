@@ -46,10 +46,10 @@ class FanChooser {
     changes_.assign(stars, std::vector<float>(2 * lacks_.width, 0.0f));
   }
 
-  Fans choose(double enough, std::size_t most) {
-    for (int sweep = 0; sweep < kSweeps; ++sweep) settle();
+  Fans choose(double enough, std::size_t most, const std::stop_token& stop) {
+    for (int sweep = 0; sweep < kSweeps && !stop.stop_requested(); ++sweep) settle();
     double least = greatestGain();
-    for (int pass = 0; pass < kPasses && least > 0.0; ++pass) {
+    for (int pass = 0; pass < kPasses && least > 0.0 && !stop.stop_requested(); ++pass) {
       least *= kStep;
       for (std::size_t star = 0; star < of_star_.size(); ++star) {
         if (fans_.added >= most) return std::move(fans_);
@@ -215,8 +215,9 @@ class FanChooser {
 
 }  // namespace
 
-Fans chooseFans(FaceLacks lacks, std::size_t stars, double enough, std::size_t most) {
-  return FanChooser(std::move(lacks), stars).choose(enough, most);
+Fans chooseFans(FaceLacks lacks, std::size_t stars, double enough, std::size_t most,
+                const std::stop_token& stop) {
+  return FanChooser(std::move(lacks), stars).choose(enough, most, stop);
 }
 
 void splitIntoFans(bundle::MeshData& mesh, std::span<const std::uint8_t> of_corner) {

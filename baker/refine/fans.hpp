@@ -6,13 +6,14 @@
 // What is minimised is the fit of the vertices (effects/diffuse/vertex_fit.hpp): with r_f what interpolation
 // lacks at the middle of face f and d_c the change of the value at each of its corners,
 //   sum_f A_f (3/4 |r_f - (d_1 + d_2 + d_3) / 3|² + 1/12 (|d_1|² + |d_2|² + |d_3|²)).
-// Corners of one fan change alike. While all else stays, a split of a fan gains 3/8 of the area times square by
-// which the means of r over its parts differ from that over the whole.
+// Corners of one fan change alike. While all else stays, a split of a fan gains 3/8 of the area times square
+// by which the means of r over its parts differ from that over the whole.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <stop_token>
 #include <vector>
 
 #include "runtime/bundle/mesh.hpp"
@@ -36,7 +37,9 @@ struct Fans {
 
 // Splits where it gains most, until area times square error of what is left is at most `enough`, or `most`
 // fans were added. stars: how many there are.
-Fans chooseFans(FaceLacks lacks, std::size_t stars, double enough, std::size_t most);
+// Deterministic; fewer if stopped.
+Fans chooseFans(FaceLacks lacks, std::size_t stars, double enough, std::size_t most,
+                const std::stop_token& stop = {});
 
 // Gives fans their vertices: the corners of a vertex that have another fan than 0 get copies of it.
 // of_corner: of mesh.indices.

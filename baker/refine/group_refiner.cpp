@@ -142,11 +142,6 @@ Result<bool> GroupRefiner::measure(const GroupGeometry& geometry, Progress& prog
     of_sample[s] =
         shadowAt(samples.positions[s], samples.normals[s], kinds[s], samples.originsOf(s), missing);
 
-  struct Inner {
-    std::uint32_t triangle = 0, shadow = 0;
-    glm::vec3 weights{0.0f}, normal{0.0f};
-    SampleKind kind = SampleKind::Plain;
-  };
   std::vector<Inner> inner;
   for (std::uint32_t t = 0; t < geometry.triangles.size(); ++t) {
     const glm::uvec3 corners = geometry.triangles[t];
@@ -164,7 +159,7 @@ Result<bool> GroupRefiner::measure(const GroupGeometry& geometry, Progress& prog
   if (auto probed = probe(missing, progress, stop); !probed || !*probed) return probed;
 
   std::vector<double> error_at(inner.size());
-  std::vector<float> lack_at(inner.size() * 2 * kLackValues);
+  std::vector<float> lack_at(for_fans_ ? inner.size() * 2 * kLackValues : 0);
   std::vector<std::uint8_t> seen_at(inner.size(), 0);
   // What nobody sees has no error; what nobody sees from takes the place of its neighbours (fill.hpp).
   const auto measureAt = [&](std::size_t i) {
@@ -182,9 +177,9 @@ Result<bool> GroupRefiner::measure(const GroupGeometry& geometry, Progress& prog
     for (HiddenFrom& corner : corners) corner.share /= shares;
     const auto wrong = probe_.difference(corners, {masksAt(point.shadow), point.normal}, point.kind);
     seen_at[i] = 1;
-    for (std::size_t half = 0; half < 2; ++half)
-      for (std::size_t k = 0; k < kLackValues; ++k)
-        lack_at[(2 * i + half) * kLackValues + k] = wrong[half][k];
+    if (for_fans_)
+      for (std::size_t half = 0; half < 2; ++half)
+        std::copy_n(wrong[half].begin(), kLackValues, lack_at.begin() + (2 * i + half) * kLackValues);
     return ShadowProbe::squareError(wrong);
   };
   const bool measured =
@@ -194,8 +189,6 @@ Result<bool> GroupRefiner::measure(const GroupGeometry& geometry, Progress& prog
   if (!measured) return false;
 
   triangle_error_.assign(geometry.triangles.size(), 0.0);
-  triangle_area_.assign(geometry.triangles.size(), 0.0);
-  triangle_lack_.assign(geometry.triangles.size() * 2 * kLackValues, 0.0f);
   square_error_ = area_ = 0.0;
   for (std::size_t first = 0; first < inner.size();) {
     const std::uint32_t t = inner[first].triangle;
@@ -207,16 +200,27 @@ Result<bool> GroupRefiner::measure(const GroupGeometry& geometry, Progress& prog
     triangle_error_[t] = area * sum / static_cast<double>(last - first);
     square_error_ += triangle_error_[t];
     area_ += area;
-    const auto counted = std::count(seen_at.begin() + static_cast<std::ptrdiff_t>(first),
-                                    seen_at.begin() + static_cast<std::ptrdiff_t>(last), 1);
-    if (counted > 0) triangle_area_[t] = area;
-    for (std::size_t i = first; i < last; ++i)
-      for (std::size_t k = 0; k < 2 * kLackValues; ++k)
-        triangle_lack_[t * 2 * kLackValues + k] +=
-            lack_at[i * 2 * kLackValues + k] / static_cast<float>(std::max<std::ptrdiff_t>(counted, 1));
     first = last;
   }
+  if (for_fans_) keepLacks(geometry, inner, seen_at, lack_at);
   return true;
+}
+
+// The mean over the points of a triangle that somebody sees.
+void GroupRefiner::keepLacks(const GroupGeometry& geometry, std::span<const Inner> inner,
+                             std::span<const std::uint8_t> seen, std::span<const float> lacks) {
+  constexpr std::size_t kSize = 2 * kLackValues;
+  triangle_area_.assign(geometry.triangles.size(), 0.0);
+  triangle_lack_.assign(geometry.triangles.size() * kSize, 0.0f);
+  for (std::size_t first = 0, last = 0; first < inner.size(); first = last) {
+    const std::uint32_t t = inner[first].triangle;
+    float counted = 0.0f;
+    for (last = first; last < inner.size() && inner[last].triangle == t; ++last) counted += seen[last];
+    if (counted == 0.0f) continue;
+    triangle_area_[t] = triangleArea(geometry, geometry.triangles[t]);
+    for (std::size_t i = first; i < last; ++i)
+      for (std::size_t k = 0; k < kSize; ++k) triangle_lack_[t * kSize + k] += lacks[i * kSize + k] / counted;
+  }
 }
 
 void GroupRefiner::addLacks(const DrawGeometry& draw, FaceLacks& lacks) const {

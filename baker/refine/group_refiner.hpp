@@ -26,7 +26,9 @@ namespace lambent::baker {
 
 class GroupRefiner {
  public:
-  explicit GroupRefiner(const ShadowProbe& probe) : probe_(probe) {}
+  // for_fans: also keeps what addLacks() gives, 300 bytes a triangle and as much for each probe while
+  // measuring.
+  GroupRefiner(const ShadowProbe& probe, bool for_fans) : probe_(probe), for_fans_(for_fans) {}
 
   // alpha_maps outlive this. The geometry is that before any split: rays are traced against it in all rounds.
   void prepare(const GroupGeometry& geometry, const Scene& scene,
@@ -56,6 +58,13 @@ class GroupRefiner {
     std::vector<SampleOrigin> origins;
     std::uint32_t shadow = 0;  // place in masks_
   };
+  struct Inner {  // a point inside a triangle
+    std::uint32_t triangle = 0, shadow = 0;
+    glm::vec3 weights{0.0f}, normal{0.0f};  // of the corners; of shading
+    SampleKind kind = SampleKind::Plain;
+  };
+  void keepLacks(const GroupGeometry& geometry, std::span<const Inner> inner,
+                 std::span<const std::uint8_t> seen, std::span<const float> lacks);
   std::uint32_t shadowAt(const glm::vec3& position, const glm::vec3& normal, SampleKind kind,
                          std::span<const SampleOrigin> origins, std::vector<Point>& missing);
   std::span<const std::uint16_t> masksAt(std::uint32_t shadow) const {
@@ -65,6 +74,7 @@ class GroupRefiner {
   Result<bool> probe(const std::vector<Point>& missing, Progress& progress, const std::stop_token& stop);
 
   const ShadowProbe& probe_;
+  bool for_fans_;
   Keep keep_;  // of the geometry that rays are traced against
   std::function<Result<RayScene>()> build_rays_;
   std::optional<RayScene> rays_;  // once something was not found

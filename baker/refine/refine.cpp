@@ -105,7 +105,7 @@ Result<RefineReport> refineMeshes(const Scene& scene, const std::vector<RigidGro
   }
   const ShadowProbe probe(options.rays);
   std::vector<GroupRefiner> refiners;
-  for (std::size_t g = 0; g < groups.size(); ++g) refiners.emplace_back(probe);
+  for (std::size_t g = 0; g < groups.size(); ++g) refiners.emplace_back(probe, options.most_fans > 0.0);
 
   for (int round = 0;; ++round) {
     if (round > 0) build();
@@ -132,8 +132,12 @@ Result<RefineReport> refineMeshes(const Scene& scene, const std::vector<RigidGro
   const std::size_t most_fans =
       std::min(static_cast<std::size_t>(options.most_fans * static_cast<double>(report.vertices_after)),
                options.most_vertices - std::min(options.most_vertices, report.vertices_after));
-  if (most_fans > 0)
-    report.fans = addFans(groups, geometries, refiners, kFanShare * double{options.bound}, most_fans, meshes);
+  if (most_fans > 0) {
+    const auto fans =
+        addFans(groups, geometries, refiners, kFanShare * double{options.bound}, most_fans, meshes, stop);
+    if (!fans) return fail(scene.source.string(), "stopped; nothing was written");
+    report.fans = *fans;
+  }
   report.vertices_after = countVertices(meshes);
   for (const GroupRefiner& refiner : refiners)
     report.rays += refiner.raysTraced(), report.rays_kept += refiner.raysKept();
