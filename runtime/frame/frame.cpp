@@ -141,8 +141,8 @@ Result<std::uint32_t> Frame::rest(World& world, const lighting::Environment& env
   for (std::uint32_t steps = 0; steps < kMaxRestSteps; ++steps) {
     if (atRest(world, environment)) return steps;
     timers_.beginFrame();
-    constexpr std::size_t kAll = ~std::size_t{0};  // nobody waits for the next picture
-    if (Result<void> done = step(world, environment, kAll); !done) return failAgain(done.error());
+    // nobody waits for the next picture
+    if (Result<void> done = step(world, environment, kAllCaptures); !done) return failAgain(done.error());
   }
   return kMaxRestSteps;
 }

@@ -184,6 +184,9 @@ class Frame {
   ByKey<ProxyRadiance> proxy_radiance_;
   std::uint64_t proxies_seen_ = 0;
   int capture_order_ = 0;
+  static constexpr std::size_t kAllCaptures = ~std::size_t{0};
+  std::uint64_t structure_captured_ = 0;     // of the residency, when captures were last asked for
+  bool captures_waited_ = false;             // for one step, as the structure had changed
   std::vector<FewerSamples> fewer_samples_;  // per group; empty: all are kept
   std::uint64_t environment_seen_ = 0, reflected_lights_ = 0;
   bool forgotten_ = false;

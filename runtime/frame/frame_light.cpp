@@ -1,5 +1,6 @@
 // What arrives at the groups' light samples in Frame's steps, and what bodies send to each other.
 #include <algorithm>
+#include <utility>
 
 #include "runtime/frame/frame.hpp"
 
@@ -124,6 +125,12 @@ Result<void> Frame::capture(World& world, const lighting::Environment& environme
     if (const std::uint32_t body = lit_scene_.groups[g].body; body != lighting::CapturePoint::kNoBody)
       lit_scene_.bodies[body].radiance_drift = radiance.drift;
   }
+  // What came or went has its price in this step. Captures that it asks for begin with the next one, unless
+  // everything is asked for at once.
+  const std::uint64_t structure = world.residency().structureVersion();
+  const bool changed = std::exchange(structure_captured_, structure) != structure;
+  captures_waited_ = changed && !captures_waited_ && max_captures != kAllCaptures;
+  if (captures_waited_) max_captures = 0;
   Result<void> done = incident_->capture(environment, lit_scene_.groups, lit_scene_.bodies, lit_scene_.lights,
                                          proxies_.radiance(), max_captures, pass.counters());
   counts_.incident.captured = incident_->counts().captured;

@@ -51,7 +51,9 @@ StandInTriangle describe(const bundle::CaptureProxy& proxy, const bundle::ProxyT
 }  // namespace
 
 StandIns::StandIns()
-    : triangles_("stand-ins", kPageBytes), groups_table_("stand-in groups"), view_("stand-in view") {}
+    : triangles_("stand-ins", kPageBytes, std::make_shared<gpu::Staging>(kPageBytes)),
+      groups_table_("stand-in groups"),
+      view_("stand-in view") {}
 
 void StandIns::write(Body& body, std::uint32_t slot, const bundle::CaptureProxy& proxy,
                      gpu::Counters& counters) {

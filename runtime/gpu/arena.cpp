@@ -58,7 +58,12 @@ std::uint64_t FreeList::largestFree() const {
   return largest;
 }
 
-Arena::Arena(std::string label, std::uint64_t page_bytes) : label_(std::move(label)) {
+bool Arena::isEmpty(const Page& page) {
+  return page.buffer && page.list.freeBytes() == page.buffer.byteCount();
+}
+
+Arena::Arena(std::string label, std::uint64_t page_bytes, std::shared_ptr<Staging> staging)
+    : label_(std::move(label)), staging_(std::move(staging)) {
   setPageBytes(page_bytes);
 }
 
@@ -75,10 +80,13 @@ std::optional<Allocation> Arena::allocateIn(std::uint32_t page, std::uint64_t by
 }
 
 std::uint32_t Arena::makePage(std::uint64_t byte_count) {
+  for (Page& page : pages_)
+    if (isEmpty(page)) page = {};  // too small, it seems
   auto page = std::ranges::find_if(pages_, [](const Page& one) { return !one.buffer; });
   if (page == pages_.end()) page = pages_.insert(page, Page{});
   const auto index = static_cast<std::uint32_t>(page - pages_.begin());
-  *page = {Buffer(fmt::format("{} page {}", label_, index), byte_count), FreeList(byte_count)};
+  *page = {Buffer(fmt::format("{} page {}", label_, index), byte_count, WrittenBy::Gpu),
+           FreeList(byte_count)};
   return index;
 }
 
@@ -107,7 +115,9 @@ void Arena::release(const Allocation& allocation) {
   Page& page = pages_[allocation.page];
   page.list.release(allocation.offset, allocation.byte_count);
   bytes_used_ -= allocation.byte_count;
-  if (page.list.freeBytes() == page.buffer.byteCount()) page = {};
+  if (!isEmpty(page)) return;
+  for (Page& other : pages_)
+    if (&other != &page && isEmpty(other)) other = {};
 }
 
 std::uint64_t Arena::bytesReserved() const {
@@ -118,13 +128,11 @@ std::uint64_t Arena::bytesReserved() const {
 
 void Arena::write(const Allocation& allocation, std::uint64_t offset, std::span<const std::byte> bytes) {
   assert(offset + bytes.size() <= allocation.byte_count);
-  pages_[allocation.page].buffer.writeBytes(allocation.offset + offset, bytes);
+  staging_->write(pages_[allocation.page].buffer, allocation.offset + offset, bytes);
 }
 
 void Arena::clear(const Allocation& allocation) {
-  glClearNamedBufferSubData(
-      pages_[allocation.page].buffer.id(), GL_R32UI, static_cast<GLintptr>(allocation.offset),
-      static_cast<GLsizeiptr>(allocation.byte_count), GL_RED_INTEGER, GL_UNSIGNED_INT, nullptr);
+  staging_->clear(pages_[allocation.page].buffer, allocation.offset, allocation.byte_count);
 }
 
 void Arena::copy(const Allocation& from, const Allocation& to) {

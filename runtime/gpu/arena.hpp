@@ -6,12 +6,14 @@
 
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "runtime/base/result.hpp"
 #include "runtime/gpu/objects.hpp"
+#include "runtime/gpu/staging.hpp"
 
 namespace lambent::gpu {
 
@@ -42,7 +44,9 @@ class Arena {
   static constexpr std::uint64_t kMaxPageBytes = std::uint64_t{128} << 20;
   static constexpr std::uint64_t kAlignment = 16;
 
-  explicit Arena(std::string label, std::uint64_t page_bytes = kMaxPageBytes);
+  // Several arenas may share what their bytes come through.
+  explicit Arena(std::string label, std::uint64_t page_bytes = kMaxPageBytes,
+                 std::shared_ptr<Staging> staging = std::make_shared<Staging>());
 
   // Pages are made when first needed, as large as page_bytes. Takes at least one byte.
   Result<Allocation> allocate(std::uint64_t byte_count);
@@ -50,7 +54,8 @@ class Arena {
   Result<Allocation> allocateWithRoom(std::uint64_t byte_count, std::uint64_t room);
   // None where the page has no room in one piece.
   std::optional<Allocation> allocateIn(std::uint32_t page, std::uint64_t byte_count);
-  // A page that nothing lies in any more goes at once.
+  // Of pages that nothing lies in any more one stays until another one is made: what goes makes room for
+  // what comes, and memory that is asked for anew is not had at once.
   void release(const Allocation& allocation);
   void write(const Allocation& allocation, std::uint64_t offset, std::span<const std::byte> bytes);
   void clear(const Allocation& allocation);                 // to zero
@@ -70,10 +75,12 @@ class Arena {
     Buffer buffer;  // empty handle: the page has gone, its place is used again
     FreeList list{0};
   };
+  static bool isEmpty(const Page& page);
   std::uint32_t makePage(std::uint64_t byte_count);
 
   std::string label_;
   std::uint64_t page_bytes_;
+  std::shared_ptr<Staging> staging_;
   std::uint64_t bytes_used_ = 0;
   std::vector<Page> pages_;
 };

@@ -21,10 +21,11 @@ GLuint made(Create create) {
 
 }  // namespace
 
-Buffer::Buffer(std::string_view label, std::size_t byte_count)
+Buffer::Buffer(std::string_view label, std::size_t byte_count, WrittenBy writer)
     : Handle(made([](GLuint* id) { glCreateBuffers(1, id); })), byte_count_(byte_count) {
   assert(byte_count > 0);
-  glNamedBufferStorage(id(), static_cast<GLsizeiptr>(byte_count), nullptr, GL_DYNAMIC_STORAGE_BIT);
+  glNamedBufferStorage(id(), static_cast<GLsizeiptr>(byte_count), nullptr,
+                       writer == WrittenBy::Cpu ? GL_DYNAMIC_STORAGE_BIT : 0);
   setLabel(GL_BUFFER, id(), label);
 }
 

@@ -50,14 +50,17 @@ struct VertexArrayTraits {
   static void destroy(GLuint id) { glDeleteVertexArrays(1, &id); }
 };
 
+// Who writes into a buffer. What only the GPU writes (shaders, copies) stays in its own memory.
+enum class WrittenBy { Cpu, Gpu };
+
 class Buffer : public Handle<BufferTraits> {
  public:
   Buffer() = default;
-  Buffer(std::string_view label, std::size_t byte_count);
+  Buffer(std::string_view label, std::size_t byte_count, WrittenBy writer = WrittenBy::Cpu);
 
   std::size_t byteCount() const { return byte_count_; }
-  void writeBytes(std::size_t offset, std::span<const std::byte> bytes);
-  void readBytes(std::size_t offset, std::span<std::byte> bytes) const;  // waits for the GPU
+  void writeBytes(std::size_t offset, std::span<const std::byte> bytes);  // WrittenBy::Cpu alone
+  void readBytes(std::size_t offset, std::span<std::byte> bytes) const;   // waits for the GPU
   template <typename T>
   void write(std::size_t offset, std::span<const T> values) {
     writeBytes(offset, std::as_bytes(values));

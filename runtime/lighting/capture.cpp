@@ -69,30 +69,36 @@ class SidesSeen {
  public:
   explicit SidesSeen(std::size_t bodies) : bodies_(bodies) {}
 
+  // Of points one after the other. What is returned lives until the next call.
   std::span<const Side> look(const Draw& draw, const PreparedLevel& level, std::uint32_t point,
                              const CaptureBody& body, const glm::vec3& point_ws) {
+    if (point != point_) sides_.clear();
+    point_ = point;
     Body& seen = bodies_[draw.body];
-    if (seen.point == point) return seen.sides;
+    const auto sidesOf = [&] { return std::span(sides_).subspan(seen.first, level.triangles.size()); };
+    if (seen.point == point) return sidesOf();
     if (seen.point == kNone) seen.proxy_from_world = glm::inverse(glm::dmat4(body.world_from_proxy));
     seen.point = point;
-    seen.sides.clear();
+    seen.first = sides_.size();
     const glm::dvec4 point_proxy = seen.proxy_from_world * glm::dvec4(glm::dvec3(point_ws), 1.0);
     for (const LevelTriangle& triangle : level.triangles) {
       const bool bright = glm::dot(triangle.plane, point_proxy) > 0.0;
       const bool hidden = !bright && (triangle.front_only || (level.closed && draw.from_outside));
-      seen.sides.push_back(hidden ? Side::None : bright ? Side::Bright : Side::Dark);
+      sides_.push_back(hidden ? Side::None : bright ? Side::Bright : Side::Dark);
     }
-    return seen.sides;
+    return sidesOf();
   }
 
  private:
   static constexpr std::uint32_t kNone = 0xffffffffu;
   struct Body {
     std::uint32_t point = kNone;  // of which the sides are
+    std::size_t first = 0;        // of its sides
     glm::dmat4 proxy_from_world{1.0};
-    std::vector<Side> sides;
   };
   std::vector<Body> bodies_;
+  std::uint32_t point_ = kNone;
+  std::vector<Side> sides_;  // of all bodies that the point sees
 };
 
 }  // namespace
@@ -262,7 +268,8 @@ void Capture::upload(const Plan& plan, std::span<const CaptureBody> bodies,
   run_.word_count = lookups.size() / kLookupsPerWord;
 
   std::vector<DrawRecord> draws;
-  std::vector<std::uint32_t> indices;
+  std::vector<std::uint32_t>&indices = bright_then_dark_, &dark = dark_;
+  indices.clear();
   draws.reserve(plan.draws.size());
   page_indices_.assign(plan.pages.size(), {});
   SidesSeen sides_of(bodies.size());
@@ -281,7 +288,7 @@ void Capture::upload(const Plan& plan, std::span<const CaptureBody> bodies,
         record.first_vertex = proxy.first_vertex + proxy.prepared->levels[draw.level].first_vertex;
       }
     }
-    std::vector<std::uint32_t> dark;
+    dark.clear();
     page_indices_[i].first_bright = static_cast<std::uint32_t>(indices.size());
     for (std::uint32_t d = page.first_draw; d < page.first_draw + page.draw_count; ++d) {
       const Draw& draw = plan.draws[d];

@@ -122,6 +122,8 @@ class Capture {
   std::vector<capture::ProxyBounds> bounds_;
   std::uint32_t triangle_count_ = 0;
   std::vector<PageIndices> page_indices_;
+  // What is drawn, until it is uploaded; kept for their memory.
+  std::vector<std::uint32_t> bright_then_dark_, dark_;
 
   bool pending_ = false;
   Run run_;

@@ -7,6 +7,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "runtime/base/parallel.hpp"
 #include "runtime/sh/zonal.hpp"
 
 namespace lambent::lighting {
@@ -272,26 +273,18 @@ Result<void> IncidentLight::capture(const Environment& environment, std::span<co
   const float least_change = moves ? kMovingChange : kRestingChange;
   noticeBodies(bodies);
   std::vector<Wanted> wanted;
-  std::vector<std::uint32_t> seen;
-  for (std::size_t g = 0; g < groups.size(); ++g) {
-    const IncidentGroup& group = groups[g];
-    const std::vector<bool> ignored = ignoredBy(group, bodies.size());
-    for (std::size_t s = 0; s < group.samples_ws.size(); ++s) {
-      Sample& sample = groups_[g].samples[s];
-      seeFrom(group.samples_ws[s], ignored, seen);
-      if (seen.empty()) {
-        if (sample.drawn) ++counts_.waiting;  // for the next step, which finds nothing in the light's way
-        leaveOut(sample, group.left_out, group.fades && sample.drawn.has_value());
-        sample.drawn_anew |= sample.drawn.has_value();
-        sample.drawn.reset();
-        continue;
-      }
-      const float change =
-          sample.drawn ? changeAround(*sample.drawn, environment, g, group, s, seen, lights) : kWhollyChanged;
-      if (change > least_change)
-        wanted.push_back({change, g, s});
-      else if (change > kRestingChange)
-        ++counts_.waiting;
+  for (const Wanted& look : lookAround(environment, groups, lights)) {
+    const IncidentGroup& group = groups[look.group];
+    Sample& sample = groups_[look.group].samples[look.sample];
+    if (look.change < 0.0f) {
+      if (sample.drawn) ++counts_.waiting;  // for the next step, which finds nothing in the light's way
+      leaveOut(sample, group.left_out, group.fades && sample.drawn.has_value());
+      sample.drawn_anew |= sample.drawn.has_value();
+      sample.drawn.reset();
+    } else if (look.change > least_change) {
+      wanted.push_back(look);
+    } else if (look.change > kRestingChange) {
+      ++counts_.waiting;
     }
   }
   // What changed most first; the others have their turn soon, for what they wait for adds up.
@@ -304,6 +297,7 @@ Result<void> IncidentLight::capture(const Environment& environment, std::span<co
   if (wanted.empty()) return {};
   counts_.captured = static_cast<std::uint32_t>(wanted.size());
   std::vector<CapturePoint> points;
+  std::vector<std::uint32_t> seen;
   for (const Wanted& one : wanted) {
     const IncidentGroup& group = groups[one.group];
     CapturePoint& point = points.emplace_back(CapturePoint{.position_ws = group.samples_ws[one.sample],
@@ -359,6 +353,30 @@ void IncidentLight::seeFrom(const glm::vec3& position_ws, const std::vector<bool
   seen.clear();
   for (std::uint32_t b = 0; b < bodies_.size(); ++b)
     if (!ignored[b] && capture::sees(capture_.options(), position_ws, bodies_[b].sphere)) seen.push_back(b);
+}
+
+// All samples, with how much of their light changed; where no body is seen a negative number.
+std::vector<IncidentLight::Wanted> IncidentLight::lookAround(const Environment& environment,
+                                                             std::span<const IncidentGroup> groups,
+                                                             std::span<const LocalLight> lights) const {
+  std::vector<Wanted> looks;
+  std::vector<std::vector<bool>> ignored;
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    ignored.push_back(ignoredBy(groups[g], bodies_.size()));
+    for (std::size_t s = 0; s < groups[g].samples_ws.size(); ++s) looks.push_back({-1.0f, g, s});
+  }
+  constexpr std::size_t kWorthAThread = 256;  // a millisecond where there are two hundred bodies
+  inParallel(looks.size(), kWorthAThread, [&](std::size_t i) {
+    Wanted& look = looks[i];
+    const IncidentGroup& group = groups[look.group];
+    std::vector<std::uint32_t> seen;
+    seeFrom(group.samples_ws[look.sample], ignored[look.group], seen);
+    if (seen.empty()) return;
+    const std::optional<Drawn>& drawn = groups_[look.group].samples[look.sample].drawn;
+    look.change = drawn ? changeAround(*drawn, environment, look.group, group, look.sample, seen, lights)
+                        : kWhollyChanged;
+  });
+  return looks;
 }
 
 // How much of the light at the sample changed since it was drawn, as an estimate; infinite if it has to be

@@ -169,6 +169,8 @@ class IncidentLight {
   // Bodies that are drawn for a point there, rising.
   void seeFrom(const glm::vec3& position_ws, const std::vector<bool>& ignored,
                std::vector<std::uint32_t>& seen) const;
+  std::vector<Wanted> lookAround(const Environment& environment, std::span<const IncidentGroup> groups,
+                                 std::span<const LocalLight> lights) const;
   float changeAround(const Drawn& drawn, const Environment& environment, std::size_t g,
                      const IncidentGroup& group, std::size_t sample, std::span<const std::uint32_t> seen,
                      std::span<const LocalLight> lights) const;

@@ -1,15 +1,14 @@
 #include "runtime/streaming/loader.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <condition_variable>
 #include <exception>
 #include <limits>
 #include <mutex>
 #include <new>
-#include <thread>
 #include <utility>
 
+#include "runtime/base/kept_threads.hpp"
 #include "runtime/streaming/work.hpp"
 
 namespace lambent::streaming {
@@ -34,13 +33,19 @@ struct Loader::State {
       : reader(std::move(bundle)), work(std::move(wanted)), slots(work.size()) {
     working = std::min<std::size_t>(std::max(thread_count, 1u), work.size());
     for (std::size_t i = 0, count = working; i < count; ++i)
-      workers.emplace_back([this] {
+      onKeptThread([this] {
         runWorker();
+        const std::lock_guard lock(mutex);
         --working;
+        ended.notify_all();  // under the lock: who waits for it destroys this
       });
   }
 
-  ~State() { stop(); }  // the workers join as `workers` is destroyed
+  ~State() {
+    stop();
+    std::unique_lock lock(mutex);
+    ended.wait(lock, [&] { return working == 0; });
+  }
 
   void stop() {
     {
@@ -135,9 +140,8 @@ struct Loader::State {
   Error failure;
   std::uint64_t bytes_read = 0;
   bool stopping = false;
-
-  std::atomic<std::size_t> working = 0;
-  std::vector<std::jthread> workers;  // last: they use all above
+  std::size_t working = 0;        // workers that have not ended
+  std::condition_variable ended;  // one has
 };
 
 Loader::Loader(std::shared_ptr<const bundle::Reader> reader, unsigned threads)
@@ -187,6 +191,7 @@ void Loader::stop() {
 }
 
 bool Loader::idle() const {
+  const std::lock_guard lock(state_->mutex);
   return state_->working == 0;
 }
 

@@ -18,6 +18,7 @@ namespace lambent::streaming {
 struct MeshReady {
   std::uint32_t mesh = 0, primitive = 0;
   bundle::MeshData data;
+  float mean_edge = 0.0f;  // length of the triangles' edges, mesh space
 };
 
 // The image from one of its levels on, the finest that is wanted.

@@ -7,7 +7,6 @@
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
-#include <glm/gtc/packing.hpp>
 
 #include "runtime/streaming/sizes.hpp"
 
@@ -84,11 +83,11 @@ ResidentVolume& volumeOf(ResidentTables& tables, const ResidentBundle& bundle, s
 
 Residency::Residency(std::uint64_t max_page_bytes)
     : max_page_bytes_(max_page_bytes),
-      geometry_("geometry"),
-      transfer_("transfer"),
-      samples_("samples"),
-      rows_("rows"),
-      radiance_("radiance") {}
+      geometry_("geometry", gpu::Arena::kMaxPageBytes, staging_),
+      transfer_("transfer", gpu::Arena::kMaxPageBytes, staging_),
+      samples_("samples", gpu::Arena::kMaxPageBytes, staging_),
+      rows_("rows", gpu::Arena::kMaxPageBytes, staging_),
+      radiance_("radiance", gpu::Arena::kMaxPageBytes, staging_) {}
 
 Result<ResidentTables> Residency::make(const bundle::Description& description) {
   const Needs needs = needsOf(description);
@@ -205,8 +204,10 @@ Result<void> Residency::put(At at, const RowsReady& item) {
   assert(rows.offsets.size() == at.tables.meshes[draw.mesh].vertex_count + 1u &&
          rows.weights.size() == entries);
   std::vector<std::uint16_t> weights(entries);
-  std::transform(rows.weights.begin(), rows.weights.end(), weights.begin(),
-                 [](float weight) { return glm::packUnorm1x16(weight); });
+  // To the nearest; a loop that becomes vector code, which glm::packUnorm1x16 does not.
+  std::transform(rows.weights.begin(), rows.weights.end(), weights.begin(), [](float weight) {
+    return static_cast<std::uint16_t>(std::clamp(weight, 0.0f, 1.0f) * 65535.0f + 0.5f);
+  });
   const std::uint64_t samples_at = 4ull * rows.offsets.size(), weights_at = samples_at + 4ull * entries;
   const Result<gpu::Allocation> block = rows_.allocate(weights_at + 2 * entries);
   if (!block) return failAgain(block.error());

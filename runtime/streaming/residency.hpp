@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <memory>
 #include <vector>
 
 #include "runtime/base/result.hpp"
@@ -165,6 +166,7 @@ class Residency {
   std::map<Whose, Coming> coming_;
   std::uint64_t next_id_ = 1;
   std::uint64_t version_ = 1, structure_version_ = 1, proxies_version_ = 1;
+  std::shared_ptr<gpu::Staging> staging_ = std::make_shared<gpu::Staging>();
   gpu::Arena geometry_, transfer_, samples_, rows_, radiance_;
 };
 

@@ -4,7 +4,6 @@
 #include <array>
 #include <cassert>
 
-#include <glm/geometric.hpp>
 #include <glm/gtc/packing.hpp>
 
 #include "runtime/streaming/residency.hpp"
@@ -21,15 +20,6 @@ constexpr std::uint64_t kAll = ~std::uint64_t{0};
 template <typename T>
 std::span<const std::byte> bytesOf(const std::vector<T>& values) {
   return std::as_bytes(std::span(values));
-}
-
-float meanEdge(const bundle::MeshData& mesh) {
-  double sum = 0.0;
-  for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3)
-    for (std::size_t k = 0; k < 3; ++k)
-      sum += double{
-          glm::distance(mesh.positions[mesh.indices[i + k]], mesh.positions[mesh.indices[i + (k + 1) % 3]])};
-  return mesh.indices.empty() ? 0.0f : static_cast<float>(sum / static_cast<double>(mesh.indices.size()));
 }
 
 // The attributes of a mesh as they lie one after the other in its block.
@@ -170,7 +160,7 @@ Result<void> Residency::finish(At at, const MeshUpload& upload) {
   ResidentMesh& mesh = at.tables.meshes[index];
   assert(item.data.positions.size() == mesh.vertex_count && item.data.indices.size() == mesh.index_count);
   mesh.block = upload.block;
-  mesh.mean_edge = meanEdge(item.data);
+  mesh.mean_edge = item.mean_edge;
   const std::array<std::uint32_t*, kMeshParts> word_of = {
       &mesh.positions_word, &mesh.normals_word,  &mesh.texcoords_word[0], &mesh.texcoords_word[1],
       &mesh.colors_word,    &mesh.tangents_word, &mesh.indices_word};

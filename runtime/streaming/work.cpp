@@ -6,6 +6,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <glm/geometric.hpp>
 
 #include "runtime/bundle/volume_grid.hpp"
 #include "runtime/streaming/image_decode.hpp"
@@ -16,6 +17,15 @@
 
 namespace lambent::streaming {
 namespace {
+
+float meanEdge(const bundle::MeshData& mesh) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3)
+    for (std::size_t k = 0; k < 3; ++k)
+      sum += double{
+          glm::distance(mesh.positions[mesh.indices[i + k]], mesh.positions[mesh.indices[i + (k + 1) % 3]])};
+  return mesh.indices.empty() ? 0.0f : static_cast<float>(sum / static_cast<double>(mesh.indices.size()));
+}
 
 template <class... Fs>
 struct Overloaded : Fs... {
@@ -63,7 +73,8 @@ class Load {
     auto mesh = reader_.readMesh(work.mesh, work.primitive);
     if (!mesh) return failAgain(mesh.error());
     bundle::weighNormals(*mesh);
-    return MeshReady{work.mesh, work.primitive, std::move(*mesh)};
+    const float mean_edge = meanEdge(*mesh);
+    return MeshReady{work.mesh, work.primitive, std::move(*mesh), mean_edge};
   }
 
   Loaded operator()(const RowsWork& work) const {

@@ -268,8 +268,9 @@ class GlossySurface : public testing::GpuTest {
         largest = std::max<double>(largest, glm::length(expected));
         difference = std::max<double>(difference, glm::distance(expected, glm::vec3(picture[y * kSize + x])));
       }
-    // Hardware interpolates the table with 8 bits between nodes.
-    EXPECT_LT(difference, 4e-3 * largest) << what;
+    // Hardware interpolates the table with 8 bits between nodes: 0.6 % on an H100, which agrees to 0.003 %
+    // where the shader interpolates by itself.
+    EXPECT_LT(difference, 1e-2 * largest) << what;
     EXPECT_GT(largest, 0.1);
   }
 };

@@ -96,6 +96,30 @@ TEST_F(Device, ArenaKeepsWhatItIsGivenAndOpensPagesAsNeeded) {
   EXPECT_FALSE(arena.allocate(Arena::kMaxPageBytes + 1));
 }
 
+TEST_F(Device, BytesThatAreStagedArriveWhereAndInWhichOrderTheyWereWritten) {
+  Staging staging(4096);  // in parts of 256 bytes: what follows goes round it many times
+  const Buffer buffer("test", 20'000, WrittenBy::Gpu);
+  std::vector<std::uint32_t> values(5000), back(5000);
+  for (std::uint32_t round = 0; round < 3; ++round) {
+    for (std::uint32_t i = 0; i < values.size(); ++i) values[i] = round * 10'000 + i;
+    staging.write(buffer, 0, std::as_bytes(std::span(values)));
+    staging.write(buffer, 400, std::as_bytes(std::span(values).first(33)));  // over what went before
+    std::copy_n(values.begin(), 33, values.begin() + 100);
+    buffer.read(0, std::span(back));
+    EXPECT_EQ(back, values);
+  }
+  const Buffer large("test", 5'000'000, WrittenBy::Gpu);
+  const std::vector<std::uint32_t> ones(1'250'000, 1);
+  Staging wide;
+  wide.write(large, 0, std::as_bytes(std::span(ones)));
+  wide.clear(large, 16, 4'000'000);
+  std::vector<std::uint32_t> result(ones.size());
+  large.read(0, std::span(result));
+  EXPECT_EQ(std::count(result.begin(), result.begin() + 4, 1u), 4);
+  EXPECT_EQ(std::count(result.begin() + 4, result.begin() + 1'000'004, 0u), 1'000'000);
+  EXPECT_EQ(std::count(result.begin() + 1'000'004, result.end(), 1u), 249'996);
+}
+
 TEST_F(Device, TimesPassesWithoutLosingThem) {
   PassTimers timers;
   for (int frame = 0; frame < 6; ++frame) {
