@@ -84,7 +84,7 @@ std::optional<Transported> transport(const DiffuseScene& scene, const SurfaceBrd
 
   std::optional<GlossyPass> glossy_pass;
   if (any_glossy) {
-    glossy_pass.emplace(pass, scene, options.glossy_order);
+    glossy_pass.emplace(pass, scene, options.exitOrder());
     progress.begin("glossy shadows", glossy_pass->size(), "samples");
     light.glossy = bakeGlossyDirect(*glossy_pass, hit_memory, light.direct.looks, progress, stop,
                                     {cache, keys.glossy_rays});
@@ -110,7 +110,7 @@ std::optional<Transported> transport(const DiffuseScene& scene, const SurfaceBrd
     kernels = {.grey = brdfs->grey(),
                .at = [brdfs](std::uint32_t triangle, float u, float v, const glm::vec3& to,
                              std::span<float> out) { brdfs->exitKernel(triangle, u, v, to, out); }};
-    partner.emplace(*glossy_pass, kernels, light.direct, *light.glossy);
+    partner.emplace(*glossy_pass, kernels, light.direct, *light.glossy, options.glossy_order);
   }
   const double tail = kTailShare * double{options.effectiveErrorBound()};
   light.bounced = bakeBounces(pass, light.direct, scene, {options.bounces, tail}, progress, stop,
@@ -310,7 +310,7 @@ Result<BakedGroup> bakeGroup(const Scene& scene, const RigidGroup& group, LightS
   const DiffuseScene view{scene, baked.geometry, baked.samples, *rays, *colors, baked.lights};
   std::optional<SurfaceBrdfs> brdfs;
   if (any_glossy) {
-    auto loaded = SurfaceBrdfs::load(scene, baked.geometry, tables, images, options.glossy_order);
+    auto loaded = SurfaceBrdfs::load(scene, baked.geometry, tables, images, options.exitOrder());
     if (!loaded) return failAgain(loaded.error());
     brdfs = std::move(*loaded);
   }
@@ -341,9 +341,11 @@ Result<BakedGroup> bakeGroup(const Scene& scene, const RigidGroup& group, LightS
   }
 
   if (any_around && !around_found) {
+    std::optional<SurfaceBrdfs> shown;
+    if (brdfs) shown = brdfs->firstBands(options.glossy_order);
     const SurfaceBody body(view, {.direct = light->direct.field,
                                   .bounced = light->bounced ? &light->bounced->field : nullptr,
-                                  .brdfs = brdfs ? &*brdfs : nullptr,
+                                  .brdfs = shown ? &*shown : nullptr,
                                   .glossy = light->glossy ? &light->glossy->field : nullptr});
     const Box3 bounds{baked.geometry.bounds_min, baked.geometry.bounds_max};
     if (!bakeAround(around, body, bounds, progress, stop, around_keep, report, baked.neighborhood))
