@@ -126,10 +126,12 @@ std::optional<Transported> transport(const DiffuseScene& scene, const SurfaceBrd
   return light;
 }
 
-// Visibility and bounced light are shown together: errors of both are relative to both, and each may have as
-// much. A bound that was asked for is kept at any price; where few components cannot keep the qualities' own,
-// all of them may miss it by as much as kLoose says.
+// Of the qualities' own bounds, which nobody asked for by name: where few components leave out more than so
+// many times as much, all of them are coded to that.
 constexpr float kLoose = 4.0f;
+
+// Visibility and bounced light are shown together: errors of both are relative to both, and each may have as
+// much. A bound that was asked for is kept at any price.
 std::vector<CodedTransfer> codeGlossy(const SampleCell& cell, const GlossyField& field,
                                       const BandPower& kernel_power, bool grey_emission,
                                       const BakeOptions& options, const std::stop_token& stop,
