@@ -49,7 +49,7 @@ Timed run(const GroupWorkload& work, const ExitKernels& kernels, bool hits) {
   timed.rays = static_cast<double>(direct->field.rays + seen->rays);
   if (!hits) return timed;
   start = std::clock();
-  GlossyBounces partner(glossy, kernels, *direct, *seen);
+  GlossyBounces partner(glossy, kernels, *direct, *seen, 5);
   bakeBounces(plain, *direct, view, {.bounces = 1}, progress, {}, glossy.size() > 0 ? &partner : nullptr);
   timed.bounce_seconds = secondsSince(start);
   return timed;
@@ -67,7 +67,7 @@ int main(int argc, char** argv) {
       /*with_glossy=*/true);
   DecodedImages images(glossy->scene);
   static const SurfaceBrdfs brdfs = orExit(SurfaceBrdfs::load(
-      glossy->scene, glossy->geometry, orExit(BrdfTables::make(glossy->scene, 5)), images, 5));
+      glossy->scene, glossy->geometry, orExit(BrdfTables::make(glossy->scene, 5, 5)), images, 5));
   static const ExitKernels kernels{
       brdfs.grey(), [](std::uint32_t triangle, float u, float v, const glm::vec3& to, std::span<float> out) {
         brdfs.exitKernel(triangle, u, v, to, out);

@@ -77,7 +77,7 @@ GlossyField transport(const GroupWorkload& work, const SurfaceBrdfs& brdfs, cons
     const ExitKernels kernels{.grey = brdfs.grey(),
                               .at = [&](std::uint32_t triangle, float u, float v, const glm::vec3& to,
                                         std::span<float> out) { brdfs.exitKernel(triangle, u, v, to, out); }};
-    GlossyBounces bounces(pass, kernels, *direct, *glossy);
+    GlossyBounces bounces(pass, kernels, *direct, *glossy, kOrder);
     bakeBounces(plain, *direct, view, {options.bounces, 1e-3}, progress, {}, &bounces);
     bounces.finish();
   }
@@ -119,7 +119,7 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "%s: has no glossy material; see bench/with_material.py\n", options.scene);
     return 1;
   }
-  const BrdfTables tables = orExit(BrdfTables::make(work->scene, kOrder));
+  const BrdfTables tables = orExit(BrdfTables::make(work->scene, kOrder, kOrder));
   DecodedImages images(work->scene);
   const SurfaceBrdfs brdfs = orExit(SurfaceBrdfs::load(work->scene, work->geometry, tables, images, kOrder));
   const GlossyField field = transport(*work, brdfs, options);

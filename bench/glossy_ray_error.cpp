@@ -49,7 +49,7 @@ Baked bakeWith(const GroupWorkload& work, const ExitKernels& kernels, std::size_
   plainFromGlossy(glossy, seen->field, *direct, {});
   baked.direct_seconds = secondsSince(start);
   start = Clock::now();
-  GlossyBounces partner(glossy, kernels, *direct, *seen);
+  GlossyBounces partner(glossy, kernels, *direct, *seen, kOrder);
   const auto bounced = bakeBounces(plain, *direct, view, {.bounces = bounces}, progress, {}, &partner);
   partner.finish();
   baked.bounce_seconds = secondsSince(start);
@@ -87,7 +87,7 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "%s: has no glossy material; see bench/with_material.py\n", argv[1]);
     return 1;
   }
-  const BrdfTables tables = orExit(BrdfTables::make(work->scene, kOrder));
+  const BrdfTables tables = orExit(BrdfTables::make(work->scene, kOrder, kOrder));
   DecodedImages images(work->scene);
   const SurfaceBrdfs brdfs = orExit(SurfaceBrdfs::load(work->scene, work->geometry, tables, images, kOrder));
   const ExitKernels kernels{

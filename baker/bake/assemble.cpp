@@ -236,7 +236,8 @@ class Assembler {
     for (const BrdfTables::Entry& entry : tables_.entries) {
       description_.brdf_tables.push_back({entry.family, entry.name, 0});
       description_.brdf_tables.back().payload = addTransferPayload(
-          bundle::PayloadType::BrdfTable, bundle::encodeBrdfTable(entry.table), kCodebookPriority);
+          bundle::PayloadType::BrdfTable,
+          bundle::encodeBrdfTable(firstBands(entry.table, options_.glossy_order)), kCodebookPriority);
     }
     for (std::size_t m = 0; m < description_.materials.size(); ++m)
       if (description_.materials[m].brdf >= 0 && !tables_.entries.empty())

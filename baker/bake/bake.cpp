@@ -93,13 +93,14 @@ Result<std::vector<EffectEntry>> effectsOf(const BakeOptions& options) {
   return chosen;
 }
 
-Result<BrdfTables> keptBrdfTables(const Scene& scene, int order, Cache* cache) {
+Result<BrdfTables> keptBrdfTables(const Scene& scene, const BakeOptions& options, Cache* cache) {
   Result<BrdfTables> tables;
-  const Keep keep{cache, cache ? brdfTablesKey(scene, order) : Key{}};
+  const int order = options.exitOrder(), shipped = options.glossy_order;
+  const Keep keep{cache, cache ? brdfTablesKey(scene, order, shipped) : Key{}};
   keptValue(
       keep, [&](ByteReader& in) { return read(in, *tables); },
       [&] {
-        tables = BrdfTables::make(scene, order);
+        tables = BrdfTables::make(scene, order, shipped);
         return tables.has_value();
       },
       [&](ByteWriter& out) { write(*tables, out); });
@@ -124,7 +125,7 @@ Result<BakeReport> bakeOnTheseThreads(const Scene& scene, const BakeOptions& opt
   BrdfTables tables;
   if (plan->bakes("glossy")) {
     progress.begin("BRDF tables");
-    auto made = keptBrdfTables(scene, options.glossy_order, cache);
+    auto made = keptBrdfTables(scene, options, cache);
     if (!made) return failAgain(made.error());
     tables = std::move(*made);
   }

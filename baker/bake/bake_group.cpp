@@ -84,7 +84,7 @@ std::optional<Transported> transport(const DiffuseScene& scene, const SurfaceBrd
 
   std::optional<GlossyPass> glossy_pass;
   if (any_glossy) {
-    glossy_pass.emplace(pass, scene, options.glossy_order);
+    glossy_pass.emplace(pass, scene, options.exitOrder());
     progress.begin("glossy shadows", glossy_pass->size(), "samples");
     light.glossy = bakeGlossyDirect(*glossy_pass, hit_memory, light.direct.looks, progress, stop,
                                     {cache, keys.glossy_rays});
@@ -110,7 +110,7 @@ std::optional<Transported> transport(const DiffuseScene& scene, const SurfaceBrd
     kernels = {.grey = brdfs->grey(),
                .at = [brdfs](std::uint32_t triangle, float u, float v, const glm::vec3& to,
                              std::span<float> out) { brdfs->exitKernel(triangle, u, v, to, out); }};
-    partner.emplace(*glossy_pass, kernels, light.direct, *light.glossy);
+    partner.emplace(*glossy_pass, kernels, light.direct, *light.glossy, options.glossy_order);
   }
   const double tail = kTailShare * double{options.effectiveErrorBound()};
   light.bounced = bakeBounces(pass, light.direct, scene, {options.bounces, tail}, progress, stop,
@@ -126,6 +126,10 @@ std::optional<Transported> transport(const DiffuseScene& scene, const SurfaceBrd
   return light;
 }
 
+// Of the qualities' own bounds, which nobody asked for by name: where few components leave out more than so
+// many times as much, all of them are coded to that.
+constexpr float kLoose = 4.0f;
+
 // Visibility and bounced light are shown together: errors of both are relative to both, and each may have as
 // much. A bound that was asked for is kept at any price.
 std::vector<CodedTransfer> codeGlossy(const SampleCell& cell, const GlossyField& field,
@@ -134,6 +138,7 @@ std::vector<CodedTransfer> codeGlossy(const SampleCell& cell, const GlossyField&
                                       KeptCoding& coding, GroupFigures& figures) {
   std::vector<CodedTransfer> coded;
   const std::vector<CellVectors> parts = glossyCellVectors(cell, field, grey_emission);
+  const bool asked = options.error_bound > 0.0f;
   double shown = 0.0;
   std::size_t shown_parts = 0;
   for (const CellVectors& part : parts)
@@ -143,13 +148,13 @@ std::vector<CodedTransfer> codeGlossy(const SampleCell& cell, const GlossyField&
     const bool environment = part.shape.order > 0;
     const float bound = options.effectiveGlossyErrorBound() /
                         (environment ? std::sqrt(static_cast<float>(shown_parts)) : 1.0f);
-    coded.push_back(
-        coding.code(part.vectors, cell.count, part.shape,
-                    {.bound = bound,
-                     .most_components = options.error_bound > 0.0f ? kAllComponents : kUsualComponents,
-                     .shown_energy = environment ? shown : 0.0,
-                     .kernel_power = kernel_power},
-                    stop));
+    coded.push_back(coding.code(part.vectors, cell.count, part.shape,
+                                {.bound = bound,
+                                 .most_components = asked ? kAllComponents : kUsualComponents,
+                                 .loose_bound = asked ? 0.0f : kLoose * bound,
+                                 .shown_energy = environment ? shown : 0.0,
+                                 .kernel_power = kernel_power},
+                                stop));
     const double error = coded.back().error;
     if (environment)
       square += error * error;
@@ -310,7 +315,7 @@ Result<BakedGroup> bakeGroup(const Scene& scene, const RigidGroup& group, LightS
   const DiffuseScene view{scene, baked.geometry, baked.samples, *rays, *colors, baked.lights};
   std::optional<SurfaceBrdfs> brdfs;
   if (any_glossy) {
-    auto loaded = SurfaceBrdfs::load(scene, baked.geometry, tables, images, options.glossy_order);
+    auto loaded = SurfaceBrdfs::load(scene, baked.geometry, tables, images, options.exitOrder());
     if (!loaded) return failAgain(loaded.error());
     brdfs = std::move(*loaded);
   }
@@ -341,9 +346,11 @@ Result<BakedGroup> bakeGroup(const Scene& scene, const RigidGroup& group, LightS
   }
 
   if (any_around && !around_found) {
+    std::optional<SurfaceBrdfs> shown;
+    if (brdfs) shown = brdfs->firstBands(options.glossy_order);
     const SurfaceBody body(view, {.direct = light->direct.field,
                                   .bounced = light->bounced ? &light->bounced->field : nullptr,
-                                  .brdfs = brdfs ? &*brdfs : nullptr,
+                                  .brdfs = shown ? &*shown : nullptr,
                                   .glossy = light->glossy ? &light->glossy->field : nullptr});
     const Box3 bounds{baked.geometry.bounds_min, baked.geometry.bounds_max};
     if (!bakeAround(around, body, bounds, progress, stop, around_keep, report, baked.neighborhood))

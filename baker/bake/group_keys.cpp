@@ -88,7 +88,7 @@ GroupKeys groupKeys(const Scene& scene, const GroupGeometry& geometry, std::span
   const Key seen = surfaces.key();
   addColors(scene, geometry, surfaces);
   const Key colored = surfaces.key();
-  addReflection(scene, geometry, options.glossy_order, surfaces);
+  addReflection(scene, geometry, options.exitOrder(), surfaces);
   const Key reflecting = surfaces.key();
 
   keys.proxy = KeyMaker::ofStage("proxy").add(reflecting).key();
@@ -98,11 +98,12 @@ GroupKeys groupKeys(const Scene& scene, const GroupGeometry& geometry, std::span
                   .add(std::uint64_t{options.effectiveRays()})
                   .add(options.bounces != 0)
                   .key();
-  keys.glossy_rays = KeyMaker::ofStage("glossy rays").add(keys.rays).add(options.glossy_order).key();
+  keys.glossy_rays = KeyMaker::ofStage("glossy rays").add(keys.rays).add(options.exitOrder()).key();
   keys.bounces = KeyMaker::ofStage("bounces")
                      .add(keys.glossy_rays)
                      .add(colored)
                      .add(reflecting)
+                     .add(options.glossy_order)
                      .add(options.fitsMatte())
                      .add(options.fitsGlossy())
                      .key();
@@ -115,9 +116,9 @@ GroupKeys groupKeys(const Scene& scene, const GroupGeometry& geometry, std::span
   return keys;
 }
 
-Key brdfTablesKey(const Scene& scene, int order) {
+Key brdfTablesKey(const Scene& scene, int order, int shipped) {
   KeyMaker key = KeyMaker::ofStage("BRDF tables");
-  key.add(order);
+  key.add(order).add(shipped);
   for (const gltf::Material& material : scene.materials) {
     key.add(material.matte());
     if (material.matte()) continue;

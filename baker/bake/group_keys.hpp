@@ -26,6 +26,6 @@ GroupKeys groupKeys(const Scene& scene, const GroupGeometry& geometry, std::span
                     LightSampleCount light_samples, const BakeOptions& options);
 
 // Of the tables of b(v) of a scene's glossy materials.
-Key brdfTablesKey(const Scene& scene, int order);
+Key brdfTablesKey(const Scene& scene, int order, int shipped);
 
 }  // namespace lambent::baker

@@ -1,11 +1,14 @@
 #include "baker/bake/options.hpp"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <string_view>
 
 #include <fmt/format.h>
 #include <unistd.h>
+
+#include "runtime/sh/gaunt.hpp"
 
 namespace lambent::baker {
 
@@ -68,6 +71,13 @@ float BakeOptions::effectiveErrorBound() const {
 
 float BakeOptions::effectiveGlossyErrorBound() const {
   return error_bound > 0.0f ? error_bound : row(quality).glossy_error_bound;
+}
+
+int BakeOptions::exitOrder() const {
+  // All that visibility is known for beside so many bands of light.
+  constexpr int kMostExitOrder = 7;
+  return bounces == 0 ? glossy_order
+                      : std::max(glossy_order, std::min(kMostExitOrder, sh::kMaxVisibilityBands + 1 - order));
 }
 
 float BakeOptions::effectiveRefineBound() const {

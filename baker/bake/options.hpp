@@ -46,6 +46,10 @@ struct BakeOptions {
   // Of glossy transfer, where bytes are dear: the same if it was given, else the quality's own.
   float effectiveGlossyErrorBound() const;
   float effectiveRefineBound() const;
+  // Bands of the light at points that rays meet, of which what leaves them is made: more than glossyOrder,
+  // since a kernel meets edges of shadows there that few bands do not have; 4..7. Without bounces
+  // glossyOrder.
+  int exitOrder() const;
   bool fitsMatte() const;
   bool fitsGlossy() const;
   // How far refinement may go: times as many vertices, and so many more.

@@ -58,10 +58,11 @@ void integrateView(const Brdf& brdf, const BrdfParameters& at, const bundle::Brd
 struct BrdfGrid {
   std::uint32_t angles = 2, azimuths = 1, roughnesses = 1, strengths = 1;
 };
+// For tables of which `order` bands are shipped.
 BrdfGrid gridFor(const Brdf& brdf, int order);
 
 // b(v) over the whole grid, by integration that follows the lobe however narrow it is; 0.1 % or better.
-// Deterministic, on all threads.
+// Deterministic, on all threads. order 1..7.
 bundle::BrdfTable integrateTable(const Brdf& brdf, int order);
 bundle::BrdfTable integrateTable(const Brdf& brdf, int order, const BrdfGrid& grid);
 

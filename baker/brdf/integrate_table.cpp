@@ -21,7 +21,7 @@ using bundle::BrdfTable;
 using bundle::kLeastViewCosine;
 using bundle::kMaxBrdfLobes;
 
-constexpr int kMaxBands = 6;
+constexpr int kMaxBands = 7;
 // Directions of a view: leave 0.03 % (isotropic) and 0.08 % (not) in the mean over views and roughness.
 constexpr std::size_t kDirections = 4096, kAnisotropicDirections = 2048;
 

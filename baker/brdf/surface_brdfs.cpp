@@ -23,7 +23,7 @@ using bundle::BrdfView;
 using bundle::kLeastViewCosine;
 using bundle::kMaxBrdfLobes;
 
-constexpr std::size_t kMaxBands = 6, kMaxCoefficients = kMaxBands * kMaxBands;
+constexpr std::size_t kMaxBands = 7, kMaxCoefficients = kMaxBands * kMaxBands;
 using Kernel = std::array<float, kMaxCoefficients>;
 
 struct Texture {
@@ -107,7 +107,7 @@ ViewFrame frameOf(const glm::vec3& normal, const glm::vec3& tangent, const glm::
   return frame;
 }
 
-// Of all directions of a factored function: at most 2 * 6 - 1.
+// Of all directions of a factored function: at most 2 * 7 - 1.
 constexpr std::size_t kAxisLanes = 16;
 
 // out_k of band l = Σ_i weights[i] harmonics[k][i].
@@ -148,7 +148,6 @@ glm::vec3 diffuseRest(const Parameters& p, std::span<const float> weights, std::
 
 struct SurfaceBrdfs::State {
   const GroupGeometry* geometry = nullptr;
-  int order = 5;
   bool grey = true;
   std::unique_ptr<Brdf> ggx = makeGgx(/*anisotropic=*/true);
   std::vector<Factored> tables;
@@ -181,11 +180,11 @@ struct SurfaceBrdfs::State {
   // Direction of the longer lobe, unit, across `normal`; and strength.
   std::pair<glm::vec3, float> anisotropy(const Surface& surface, std::uint32_t triangle, float u, float v,
                                          const glm::vec3& normal) const;
-  void expand(const Factored& factored, std::span<const float> weights, const ViewFrame& frame,
+  void expand(const Factored& factored, int order, std::span<const float> weights, const ViewFrame& frame,
               std::span<Kernel> lobes) const;
-  void diffuseKernel(const glm::vec3& color, const glm::vec3& normal, std::span<float> out) const;
-  void glossyKernel(const Surface& surface, std::uint32_t triangle, float u, float v, const glm::vec3& normal,
-                    const glm::vec3& to, std::span<float> out) const;
+  void diffuseKernel(const glm::vec3& color, int order, const glm::vec3& normal, std::span<float> out) const;
+  void glossyKernel(const Surface& surface, int order, std::uint32_t triangle, float u, float v,
+                    const glm::vec3& normal, const glm::vec3& to, std::span<float> out) const;
 };
 
 glm::vec3 SurfaceBrdfs::State::geometricNormal(std::uint32_t triangle) const {
@@ -289,8 +288,8 @@ std::pair<glm::vec3, float> SurfaceBrdfs::State::anisotropy(const Surface& surfa
 }
 
 // As ZonalFactors::expand, of all lobes at once: every axis in a lane of its own.
-void SurfaceBrdfs::State::expand(const Factored& from, std::span<const float> weights, const ViewFrame& frame,
-                                 std::span<Kernel> lobes) const {
+void SurfaceBrdfs::State::expand(const Factored& from, int order, std::span<const float> weights,
+                                 const ViewFrame& frame, std::span<Kernel> lobes) const {
   const std::size_t count = from.table.coefficients();
   const auto axes = from.factors.axes();
   alignas(32) std::array<float, kAxisLanes> x{}, y{}, z{};
@@ -305,7 +304,7 @@ void SurfaceBrdfs::State::expand(const Factored& from, std::span<const float> we
     const float* own = weights.data() + lobe * count;
     if (!from.table.isotropic()) {
       std::size_t at = 0;
-      for (std::size_t l = 0; l < from.table.order; at += 2 * l + 1, ++l)
+      for (std::size_t l = 0; l < static_cast<std::size_t>(order); at += 2 * l + 1, ++l)
         sumAxes(own + at, 2 * l + 1, l, harmonics.data(), lobes[lobe].data());
       continue;
     }
@@ -316,13 +315,16 @@ void SurfaceBrdfs::State::expand(const Factored& from, std::span<const float> we
       case 5:
         sumIsotropic<5>(own, harmonics.data(), lobes[lobe].data());
         break;
-      default:
+      case 6:
         sumIsotropic<6>(own, harmonics.data(), lobes[lobe].data());
+        break;
+      default:
+        sumIsotropic<7>(own, harmonics.data(), lobes[lobe].data());
     }
   }
 }
 
-void SurfaceBrdfs::State::diffuseKernel(const glm::vec3& color, const glm::vec3& normal,
+void SurfaceBrdfs::State::diffuseKernel(const glm::vec3& color, int order, const glm::vec3& normal,
                                         std::span<float> out) const {
   const auto count = static_cast<std::size_t>(sh::coefficientCount(order));
   Kernel y;
@@ -332,8 +334,8 @@ void SurfaceBrdfs::State::diffuseKernel(const glm::vec3& color, const glm::vec3&
       out[static_cast<std::size_t>(c) * count + k] += color[c] * cosine[k] * y[k];
 }
 
-void SurfaceBrdfs::State::glossyKernel(const Surface& surface, std::uint32_t triangle, float u, float v,
-                                       const glm::vec3& normal, const glm::vec3& to,
+void SurfaceBrdfs::State::glossyKernel(const Surface& surface, int order, std::uint32_t triangle, float u,
+                                       float v, const glm::vec3& normal, const glm::vec3& to,
                                        std::span<float> out) const {
   const Factored& from = tables[surface.table];
   const auto count = static_cast<std::size_t>(sh::coefficientCount(order));
@@ -344,7 +346,7 @@ void SurfaceBrdfs::State::glossyKernel(const Surface& surface, std::uint32_t tri
   if (from.family == BrdfFamily::Measured) {
     const ViewFrame frame = frameOf(normal, anyAcross(normal), to);
     lookUpStored(from.table, frame.view, 0.0f, 0.0f, weights);
-    expand(from, weights, frame, lobes);
+    expand(from, order, weights, frame, lobes);
     for (std::size_t c = 0; c < 3; ++c)
       std::copy_n(lobes[c].begin(), count, out.begin() + static_cast<std::ptrdiff_t>(c * count));
     return;
@@ -354,19 +356,18 @@ void SurfaceBrdfs::State::glossyKernel(const Surface& surface, std::uint32_t tri
   const auto [tangent, strength] = leanOf(surface, triangle, u, v, normal);
   const ViewFrame frame = frameOf(normal, tangent, to);
   lookUpStored(from.table, frame.view, p.roughness, strength, weights);
-  expand(from, weights, frame, std::span(lobes).first(2));
+  expand(from, order, weights, frame, std::span(lobes).first(2));
   for (int c = 0; c < 3; ++c)
     for (std::size_t k = 0; k < count; ++k)
       out[static_cast<std::size_t>(c) * count + k] = p.f0[c] * lobes[0][k] + p.f90 * lobes[1][k];
   if (const glm::vec3 rest = diffuseRest(p, weights, stored); rest != glm::vec3(0.0f))
-    diffuseKernel(rest, normal, out);
+    diffuseKernel(rest, order, normal, out);
 }
 
 Result<SurfaceBrdfs> SurfaceBrdfs::load(const Scene& scene, const GroupGeometry& geometry,
                                         const BrdfTables& tables, DecodedImages& images, int order) {
   auto state = std::make_shared<State>();
   state->geometry = &geometry;
-  state->order = order;
   for (int l = 0; l < order; ++l)
     for (int k = l * l; k < (l + 1) * (l + 1); ++k)
       state->cosine[static_cast<std::size_t>(k)] =
@@ -418,7 +419,7 @@ Result<SurfaceBrdfs> SurfaceBrdfs::load(const Scene& scene, const GroupGeometry&
                 static_cast<std::uint32_t>(state->surfaces.size()));
     state->surfaces.push_back(std::move(surface));
   }
-  return SurfaceBrdfs(std::move(state));
+  return SurfaceBrdfs(std::move(state), order);
 }
 
 bool SurfaceBrdfs::glossy(std::uint32_t triangle) const {
@@ -431,16 +432,16 @@ bool SurfaceBrdfs::grey() const {
 
 void SurfaceBrdfs::exitKernel(std::uint32_t triangle, float u, float v, const glm::vec3& to,
                               std::span<float> out) const {
-  const auto all = 3 * static_cast<std::size_t>(sh::coefficientCount(state_->order));
+  const auto all = 3 * static_cast<std::size_t>(sh::coefficientCount(order_));
   assert(out.size() >= all);
   std::fill_n(out.begin(), all, 0.0f);
   const Surface& surface = state_->surfaces[state_->surface_of[triangle]];
   if (surface.material.unlit || glm::dot(state_->geometricNormal(triangle), to) <= 0.0f) return;
   const glm::vec3 normal = state_->normalAt(triangle, u, v);
   if (surface.glossy)
-    state_->glossyKernel(surface, triangle, u, v, normal, to, out);
+    state_->glossyKernel(surface, order_, triangle, u, v, normal, to, out);
   else
-    state_->diffuseKernel(state_->baseColor(surface, triangle, u, v), normal, out);
+    state_->diffuseKernel(state_->baseColor(surface, triangle, u, v), order_, normal, out);
 }
 
 float SurfaceBrdfs::roughness(std::uint32_t triangle, float u, float v) const {

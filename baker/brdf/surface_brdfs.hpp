@@ -30,9 +30,13 @@ struct BrdfTables {
   std::vector<Entry> entries;
   std::vector<std::int32_t> of_material;  // place in `entries`; -1: matte
 
-  // order: bands of the transferred light, 4..6. Errors: a measured BRDF that has too few directions.
-  static Result<BrdfTables> make(const Scene& scene, int order);
+  // order: bands, 4..7, the first `shipped` of which (4..6) will be in the bundle. Errors: a measured BRDF
+  // that has too few directions.
+  static Result<BrdfTables> make(const Scene& scene, int order, int shipped);
 };
+
+// Of at most as many bands as the table has.
+bundle::BrdfTable firstBands(const bundle::BrdfTable& table, int order);
 
 // What a point of a glossy surface that is not measured reflects, after textures: for paths that follow a
 // highlight which is sharper than few bands carry. Directions in the group's frame.
@@ -50,6 +54,9 @@ class SurfaceBrdfs {
   // `geometry` outlives this. `tables` are of the same order and may go. Errors: those of decodeImage.
   static Result<SurfaceBrdfs> load(const Scene& scene, const GroupGeometry& geometry,
                                    const BrdfTables& tables, DecodedImages& images, int order);
+
+  // The same surfaces, of whose kernels only so many bands are given; at most as many as were loaded.
+  SurfaceBrdfs firstBands(int order) const { return {state_, order}; }
 
   // Not matte, and with glossy samples: a draw of a glossy material whose samples were planned as Lambert's
   // is matte.
@@ -69,8 +76,9 @@ class SurfaceBrdfs {
 
  private:
   struct State;
-  explicit SurfaceBrdfs(std::shared_ptr<const State> state) : state_(std::move(state)) {}
+  SurfaceBrdfs(std::shared_ptr<const State> state, int order) : state_(std::move(state)), order_(order) {}
   std::shared_ptr<const State> state_;
+  int order_;
 };
 
 }  // namespace lambent::baker

@@ -211,14 +211,20 @@ void Coder::findBasis() {
       shape_.isVisibility() || shape_.shadowed_channels == 0
           ? std::max(kBasisSamples, static_cast<std::size_t>(kBasisWork / (size * size)))
           : kBasisSamples;
-  const Spectrum spectrum = leadingSpectrum(weighted(vectors_, space_.roots, someSamples(count_, looked_at)),
-                                            kTailShare * allowed_, settings_.most_components, left_out);
+  const Points some = weighted(vectors_, space_.roots, someSamples(count_, looked_at));
+  Spectrum spectrum = leadingSpectrum(some, kTailShare * allowed_, settings_.most_components, left_out);
   // Where the components that were looked for leave out more than is allowed, the rest is coded to match.
   state_.reachable = std::max(allowed_, kBesideLeftOut * left_out);
+  const double looseness = double{settings_.loose_bound} / double{settings_.bound};
+  double tail_allowed = kTailShare * allowed_;
+  if (const double loose = looseness * looseness * allowed_; loose > allowed_ && state_.reachable > loose) {
+    tail_allowed = kTailShare * loose;
+    spectrum = leadingSpectrum(some, tail_allowed, kAllComponents, left_out);
+    state_.reachable = std::max(loose, kBesideLeftOut * left_out);
+  }
   state_.budget = 0.9 * (state_.reachable - left_out);  // the rest: rounding of basis, means and axes
   Eigen::Index rank = spectrum.variances.size();
-  for (double tail = left_out;
-       rank > 0 && (tail += spectrum.variances(rank - 1)) <= left_out + kTailShare * allowed_;)
+  for (double tail = left_out; rank > 0 && (tail += spectrum.variances(rank - 1)) <= left_out + tail_allowed;)
     --rank;
   const double step = std::sqrt(12.0 * state_.budget / static_cast<double>(std::max<Eigen::Index>(rank, 1)));
   state_.basis = roundedBasis(spectrum.axes.leftCols(rank), spectrum.variances, space_.roots, step);

@@ -38,7 +38,9 @@ struct CodedTransfer {
 };
 
 // Light between sharp metals has no leading components, and all of it costs more than the rest together, of
-// bytes and of time when light changes: the bound is missed rather than take more than these.
+// bytes and of time when light changes: the bound is missed rather than take more than these to keep it. But
+// once so few leave out much, many of them told roughly say more, byte for byte, than few told exactly: see
+// CodingSettings::loose_bound.
 inline constexpr std::uint32_t kUsualComponents = 128, kAllComponents = 1u << 16;
 
 struct CodingSettings {
@@ -46,6 +48,8 @@ struct CodingSettings {
   std::uint32_t clusters = 0;  // 0: whatever codes to the fewest bytes
   int axes = -1;               // of every cluster, whatever the bound; -1: as many as it takes
   std::uint32_t most_components = kUsualComponents;  // of long vectors (matrices)
+  // Over `bound`: what is kept, with all components, where most_components leave out more than this.
+  float loose_bound = 0.0f;
   // Of means and axes as they lie on the GPU, where all of a cell is in one page of 128 MiB (gpu::Arena):
   // clusters are as few as that takes, and the bound is missed where one alone is too large.
   std::size_t most_expanded_bytes = std::size_t{64} << 20;

@@ -53,7 +53,7 @@ CodedTransfer KeptCoding::code(std::span<const float> vectors, std::size_t count
   if (cache_) {
     KeyMaker key = KeyMaker::ofStage("coding");
     key.add(shape).addList(vectors).add(settings.bound).add(settings.shown_energy);
-    key.add(settings.most_components).add(settings.most_expanded_bytes);
+    key.add(settings.most_components).add(settings.loose_bound).add(settings.most_expanded_bytes);
     keep.key = key.add(settings.kernel_power).key();
     kept_.push_back(keep.key);
   }

@@ -16,7 +16,7 @@ namespace lambent::sh {
 
 class ZonalFactors {
  public:
-  // order 1..6.
+  // order 1..7.
   static ZonalFactors isotropic(int order);
   static ZonalFactors anisotropic(int order);
 

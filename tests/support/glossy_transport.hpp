@@ -19,6 +19,7 @@ struct GlossyBake {
 
 struct GlossyBakeSettings {
   int order = 5, order_out = 5;
+  int exit_order = 0;  // of the kernels; 0: order_out
   std::size_t rays = 512;
   int bounces = 0;
   std::size_t hit_memory = std::size_t{1} << 30;
@@ -33,7 +34,8 @@ inline GlossyBake bakeGlossy(const Transport& t, const baker::ExitKernels& kerne
                                        .keep_hits = settings.bounces != 0,
                                        .hit_memory = settings.hit_memory,
                                        .colored_kernels = !kernels.grey});
-  const baker::GlossyPass pass(plain, view, settings.order_out);
+  const baker::GlossyPass pass(plain, view,
+                               settings.exit_order > 0 ? settings.exit_order : settings.order_out);
   baker::Progress progress;
   auto direct = baker::bakeDirect(plain, view, progress, {});
   EXPECT_TRUE(direct.has_value());
@@ -42,7 +44,7 @@ inline GlossyBake bakeGlossy(const Transport& t, const baker::ExitKernels& kerne
   EXPECT_TRUE(baker::plainFromGlossy(pass, glossy->field, *direct, {}));
   GlossyBake bake{std::move(*direct), std::move(*glossy), {}};
   if (settings.bounces == 0) return bake;
-  baker::GlossyBounces partner(pass, kernels, bake.direct, bake.glossy);
+  baker::GlossyBounces partner(pass, kernels, bake.direct, bake.glossy, settings.order_out);
   auto bounced = baker::bakeBounces(plain, bake.direct, view, {settings.bounces, settings.tail_error},
                                     progress, {}, &partner);
   EXPECT_TRUE(bounced.has_value());

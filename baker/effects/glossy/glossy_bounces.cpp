@@ -20,7 +20,7 @@ namespace lambent::baker {
 
 namespace {
 
-constexpr std::size_t kMostOutputs = 36;
+constexpr std::size_t kMostOutputs = 36, kMostKernel = 49;  // of what arrives, and of what leaves
 // Hits whose radiance is added to a matrix at once.
 constexpr std::size_t kBlock = 8;
 
@@ -40,12 +40,12 @@ std::uint32_t raysTogether(double share, std::size_t rays) {
   return together;
 }
 
-// For each of `Kernels` kernels, `outputs` values each and one after the other:
+// For each of `Kernels` kernels, one every `stride` values, of which `outputs` count:
 //   out[n * out_stride + i] += weight Σ_k kernel_n[k] matrix[k * Columns + i].
 // In vectors by hand: left alone, the sums go through memory.
 template <std::size_t Columns, std::size_t Kernels>
-void contract(const float* kernels, std::size_t outputs, const float* matrix, float weight, float* out,
-              std::size_t out_stride) {
+void contract(const float* kernels, std::size_t stride, std::size_t outputs, const float* matrix,
+              float weight, float* out, std::size_t out_stride) {
   typedef float Eight __attribute__((vector_size(32)));
   constexpr std::size_t kWhole = Columns / 8, kRest = Columns % 8;
   Eight sums[Kernels][kWhole] = {};
@@ -54,11 +54,11 @@ void contract(const float* kernels, std::size_t outputs, const float* matrix, fl
     for (std::size_t w = 0; w < kWhole; ++w) {
       Eight row;
       std::memcpy(&row, matrix + 8 * w, sizeof(row));
-      for (std::size_t n = 0; n < Kernels; ++n) sums[n][w] += kernels[n * outputs + k] * row;
+      for (std::size_t n = 0; n < Kernels; ++n) sums[n][w] += kernels[n * stride + k] * row;
     }
     for (std::size_t i = 0; i < kRest; ++i)
       for (std::size_t n = 0; n < Kernels; ++n)
-        rest[i][n] += kernels[n * outputs + k] * matrix[8 * kWhole + i];
+        rest[i][n] += kernels[n * stride + k] * matrix[8 * kWhole + i];
   }
   for (std::size_t n = 0; n < Kernels; ++n, out += out_stride) {
     for (std::size_t w = 0; w < kWhole; ++w)
@@ -68,20 +68,20 @@ void contract(const float* kernels, std::size_t outputs, const float* matrix, fl
 }
 
 template <std::size_t Kernels>
-void contract(const float* kernels, std::size_t outputs, const float* matrix, std::size_t columns,
-              float weight, float* out, std::size_t out_stride) {
+void contract(const float* kernels, std::size_t stride, std::size_t outputs, const float* matrix,
+              std::size_t columns, float weight, float* out, std::size_t out_stride) {
   switch (columns) {
     case 16:
-      return contract<16, Kernels>(kernels, outputs, matrix, weight, out, out_stride);
+      return contract<16, Kernels>(kernels, stride, outputs, matrix, weight, out, out_stride);
     case 25:
-      return contract<25, Kernels>(kernels, outputs, matrix, weight, out, out_stride);
+      return contract<25, Kernels>(kernels, stride, outputs, matrix, weight, out, out_stride);
     case 36:
-      return contract<36, Kernels>(kernels, outputs, matrix, weight, out, out_stride);
+      return contract<36, Kernels>(kernels, stride, outputs, matrix, weight, out, out_stride);
     default:
       for (std::size_t n = 0; n < Kernels; ++n)
         for (std::size_t k = 0; k < outputs; ++k)
           for (std::size_t i = 0; i < columns; ++i)
-            out[n * out_stride + i] += weight * kernels[n * outputs + k] * matrix[k * columns + i];
+            out[n * out_stride + i] += weight * kernels[n * stride + k] * matrix[k * columns + i];
   }
 }
 
@@ -93,14 +93,15 @@ class GlossyBounces::Walk {
   Walk(const GlossyBounces& bounces, const TransferField& before)
       : pass_(bounces.pass_),
         before_(before),
-        outputs_from_local_(glm::dmat3(1.0), bounces.direct_.field.order_out),
+        outputs_from_local_(glm::dmat3(1.0), bounces.order_out_),
+        even_(evenHarmonicCount(bounces.order_out_)),
         exits_(kBlock * before.vectorSize()) {}
 
   // Of one sample. Hits of rays in a row of `together` (raysTogether) share what leaves one of them.
   void gather(std::size_t sample, std::span<const GatherHit> hits, std::uint32_t together, int bounce,
               const GlossyHemisphere& hemisphere, const ExitToSample& exit, std::size_t s, State& now) {
     if (hits.empty()) return;
-    const std::size_t stride = before_.vectorSize(), even = hemisphere.evenOutputs();
+    const std::size_t stride = before_.vectorSize(), even = even_;
     local_.assign(even * stride, 0.0f);
     std::fill(exits_.begin(), exits_.end(), 0.0f);
     std::size_t filled = 0;
@@ -155,20 +156,25 @@ class GlossyBounces::Walk {
   const GlossyPass& pass_;
   const TransferField& before_;
   sh::Rotation outputs_from_local_;
+  std::size_t even_;  // outputs in a sample's own frame
   std::vector<float> exits_, local_;
   std::array<std::array<float, kBlock>, kMostOutputs> weights_{};  // of each output: of the block's hits
 };
 
 GlossyBounces::GlossyBounces(const GlossyPass& pass, const ExitKernels& kernels, const DirectResult& plain,
-                             GlossyDirect& direct)
-    : pass_(pass), kernels_(kernels), plain_(plain), direct_(direct) {
+                             GlossyDirect& direct, int order_out)
+    : pass_(pass), kernels_(kernels), plain_(plain), direct_(direct), order_out_(order_out) {
   const GlossyField& field = direct.field;
-  assert(sh::coefficientCount(field.order_out) <= static_cast<int>(kMostOutputs));
+  assert(order_out <= field.order_out);
+  assert(sh::coefficientCount(order_out) <= static_cast<int>(kMostOutputs));
+  assert(sh::coefficientCount(field.order_out) <= static_cast<int>(kMostKernel));
   const auto first = plain.looks.valid.begin() + static_cast<std::ptrdiff_t>(pass.first());
   if (std::find(first, plain.looks.valid.end(), std::uint8_t{0}) != plain.looks.valid.end())
     edges_ = sampleEdges(pass.scene().geometry, pass.scene().samples);
   now_ = zero();
   now_.environment.channels = 1;  // what is not reflected has no colour
+  now_.environment.outputs = now_.lights.outputs =
+      static_cast<std::size_t>(sh::coefficientCount(field.order_out));
   now_.environment.values.assign(pass.size() * now_.environment.sampleSize(), 0.0f);
   now_.lights.values = field.lights_shadowed;
   parallelRanges(pass.size(), kSamplesPerRange, {}, [&](std::size_t begin, std::size_t end) {
@@ -185,7 +191,7 @@ GlossyBounces::GlossyBounces(const GlossyPass& pass, const ExitKernels& kernels,
 
 GlossyBounces::State GlossyBounces::zero() const {
   const GlossyField& field = direct_.field;
-  const auto outputs = static_cast<std::size_t>(sh::coefficientCount(field.order_out));
+  const auto outputs = static_cast<std::size_t>(sh::coefficientCount(order_out_));
   const auto columns = static_cast<std::size_t>(sh::coefficientCount(field.order_in));
   return {.environment = {.channels = field.channels, .outputs = outputs, .columns = columns, .values = {}},
           .lights = {
@@ -196,22 +202,23 @@ void GlossyBounces::addExit(const GatherHit& hit, const glm::uvec3& corners, con
                             float chance, float weight, std::span<float> sum) const {
   const float u = static_cast<float>(hit.u) * (1.0f / 65535.0f),
               v = static_cast<float>(hit.v) * (1.0f / 65535.0f);
-  const std::size_t outputs = before_.environment.outputs, columns = before_.environment.columns;
+  const std::size_t outputs = before_.environment.outputs, columns = before_.environment.columns,
+                    stride = static_cast<std::size_t>(sh::coefficientCount(direct_.field.order_out));
   const std::uint32_t picked = chance < u ? corners.y : chance < u + v ? corners.z : corners.x;
   // On its way while the kernel is made.
   if (const auto matrix = before_.environment.at(picked - pass_.first()); chance >= 0.0f)
     for (std::size_t i = 0; i < matrix.size(); i += 16) __builtin_prefetch(matrix.data() + i);
-  std::array<float, 3 * kMostOutputs> kernel;
-  kernels_.at(hit.triangle, u, v, to, std::span(kernel).first(3 * outputs));
+  std::array<float, 3 * kMostKernel> kernel;
+  kernels_.at(hit.triangle, u, v, to, std::span(kernel).first(3 * stride));
   const std::size_t channels = direct_.field.channels, lights = before_.lights.columns;
   const auto of = [&](const GlossyMatrices& matrices, std::size_t s, float share, std::size_t first) {
     float* out = sum.data() + first;
     if (matrices.channels < channels)  // one for all: read once
-      return contract<3>(kernel.data(), outputs, matrices.at(s).data(), matrices.columns, share, out,
+      return contract<3>(kernel.data(), stride, outputs, matrices.at(s).data(), matrices.columns, share, out,
                          columns + lights);
     for (std::size_t c = 0; c < channels; ++c, out += columns + lights)
-      contract<1>(kernel.data() + c * outputs, outputs, matrices.matrix(s, c).data(), matrices.columns, share,
-                  out, 0);
+      contract<1>(kernel.data() + c * stride, stride, outputs, matrices.matrix(s, c).data(), matrices.columns,
+                  share, out, 0);
   };
   const auto add = [&](std::uint32_t corner, float share) {
     const std::size_t s = corner - pass_.first();
@@ -281,7 +288,8 @@ bool GlossyBounces::gather(int bounce, bool thinly, const ExitRadiance& exit, co
 }
 
 bool GlossyBounces::take(const State& state, TransferField* plain, const std::stop_token& stop) {
-  const std::size_t columns = state.environment.columns, lights = state.lights.columns;
+  const std::size_t columns = state.environment.columns, lights = state.lights.columns,
+                    outputs = static_cast<std::size_t>(sh::coefficientCount(order_out_));  // that count
   std::vector<float> power(columns);
   for (std::size_t i = 0; i < columns; ++i)
     power[i] = static_cast<float>(kBandPower[static_cast<std::size_t>(sh::bandOf(static_cast<int>(i)))]);
@@ -293,25 +301,29 @@ bool GlossyBounces::take(const State& state, TransferField* plain, const std::st
   const auto plainOf = [&](const GlossyMatrices& matrices, std::size_t s, std::size_t first_column) {
     const auto out = plain->at(pass_.first() + s);
     for (std::size_t c = 0; c < plain->channels; ++c)
-      plainTransfer(direct_.field.order_out, pass_.scene().samples.normals[pass_.first() + s],
-                    matrices.matrix(s, c), out.subspan(c * plain->columns + first_column, matrices.columns));
+      plainTransfer(order_out_, pass_.scene().samples.normals[pass_.first() + s], matrices.matrix(s, c),
+                    out.subspan(c * plain->columns + first_column, matrices.columns));
   };
   const bool taken =
       parallelRanges(pass_.size(), kSamplesPerRange, stop, [&](std::size_t begin, std::size_t end) {
         std::vector<double>& sums = parts[begin / kSamplesPerRange];
         for (std::size_t s = begin; s < end; ++s) {
-          const auto environment = state.environment.at(s), of_lights = state.lights.at(s);
-          for (std::size_t row = 0; row < environment.size(); row += columns) {
-            float sum = 0.0f;
-            for (std::size_t i = 0; i < columns; ++i)
-              sum += power[i] * environment[row + i] * environment[row + i];
-            sums[0] += double{sum};
+          for (std::size_t c = 0; c < state.environment.channels; ++c) {
+            const auto matrix = state.environment.matrix(s, c).first(outputs * columns);
+            for (std::size_t row = 0; row < matrix.size(); row += columns) {
+              float sum = 0.0f;
+              for (std::size_t i = 0; i < columns; ++i) sum += power[i] * matrix[row + i] * matrix[row + i];
+              sums[0] += double{sum};
+            }
           }
-          for (std::size_t at = 0; at < of_lights.size(); ++at)
-            sums[1 + at % lights] += double{of_lights[at]} * double{of_lights[at]};
+          for (std::size_t c = 0; lights > 0 && c < state.lights.channels; ++c) {
+            const auto matrix = state.lights.matrix(s, c).first(outputs * lights);
+            for (std::size_t at = 0; at < matrix.size(); ++at)
+              sums[1 + at % lights] += double{matrix[at]} * double{matrix[at]};
+          }
           if (!plain) continue;
-          add(environment, sum_.environment.at(s));
-          add(of_lights, sum_.lights.at(s));
+          add(state.environment.at(s), sum_.environment.at(s));
+          add(state.lights.at(s), sum_.lights.at(s));
           plainOf(state.environment, s, 0);
           if (lights > 0) plainOf(state.lights, s, columns);
         }
@@ -342,6 +354,7 @@ void GlossyBounces::advance() {
 void GlossyBounces::finish() {
   before_ = {}, now_ = {};
   GlossyField& field = direct_.field;
+  field.keepBands(order_out_);
   field.bounced = std::move(sum_.environment.values);
   field.lights_full = std::move(sum_.lights.values);
   if (field.lights_full.empty())

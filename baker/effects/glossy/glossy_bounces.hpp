@@ -1,10 +1,14 @@
 // Light between matte and glossy surfaces, both ways (Sloan 2002, section 4, passes b >= 1): what leaves a
 // glossy point q towards p is c(q, v)^T M_q^(b-1), c its exit kernel; what a glossy sample receives along d
 // is added to M_p^b as w (y_i(d) + y_i(mirrored d)). Goes along with bakeBounces as its partner:
-//   GlossyBounces glossy(pass, kernels, direct, glossy_direct);
+//   GlossyBounces glossy(pass, kernels, direct, glossy_direct, order_out);
 //   bakeBounces(plain_pass, direct, scene, settings, progress, stop, &glossy);
-//   glossy.finish();   // glossy_direct.field has `bounced` and `lights_full`
-// Memory at its most: three times `bounced` (2.5 KB x channels per sample for 5 x 5).
+//   glossy.finish();   // glossy_direct.field has `bounced` and `lights_full`, all of order_out bands
+// What leaves a point after direct light is made of all bands that the pass has, which may be more than
+// order_out: the kernel of a sharp surface meets edges of shadows there, which few bands do not have
+// (decisions/049). What later passes bring has order_out bands.
+// Memory at its most: twice `bounced` (2.5 KB x channels per sample for 5 x 5), and once more, or in the
+// first pass what a matrix of the pass's bands takes (4.9 KB for 7 x 5).
 #pragma once
 
 #include "baker/effects/diffuse/bounces.hpp"
@@ -34,9 +38,10 @@ struct GlossyMatrices {
 
 class GlossyBounces : public BouncePartner {
  public:
-  // All outlive this. `kernels` answer for the triangles of glossy draws.
+  // All outlive this. `kernels` answer for the triangles of glossy draws, in as many bands as `direct` has;
+  // order_out: at most as many.
   GlossyBounces(const GlossyPass& pass, const ExitKernels& kernels, const DirectResult& plain,
-                GlossyDirect& direct);
+                GlossyDirect& direct, int order_out);
 
   void addExit(const GatherHit& hit, const glm::uvec3& corners, const glm::vec3& to, float chance,
                float weight, std::span<float> sum) const override;
@@ -45,8 +50,8 @@ class GlossyBounces : public BouncePartner {
   void advance() override;
   std::vector<double> energies() const override { return energies_; }
 
-  // After the passes: moves their sums into the field. Without a pass `bounced` stays empty, and lights_full
-  // is lights_shadowed.
+  // After the passes: cuts the field to order_out bands and moves their sums into it. Without a pass
+  // `bounced` stays empty, and lights_full is lights_shadowed.
   void finish();
 
  private:
@@ -55,6 +60,7 @@ class GlossyBounces : public BouncePartner {
   struct State {
     GlossyMatrices environment, lights;
   };
+  // Of order_out bands, without samples.
   State zero() const;
   // What follows from `state`: its energies, and where asked for plain transfer in `plain` and the sum so
   // far.
@@ -67,6 +73,7 @@ class GlossyBounces : public BouncePartner {
   const ExitKernels& kernels_;
   const DirectResult& plain_;
   GlossyDirect& direct_;
+  int order_out_;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> edges_;  // empty where no sample is filled
   State before_, now_, sum_;
   std::vector<double> energies_, first_energies_;

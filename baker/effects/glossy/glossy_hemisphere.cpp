@@ -15,10 +15,6 @@ namespace {
 
 constexpr double kTwoPi = 2.0 * std::numbers::pi;
 
-std::size_t evenCountOf(int order) {
-  return static_cast<std::size_t>(order * (order + 1) / 2);
-}
-
 std::vector<std::uint16_t> evenHarmonics(int order) {
   std::vector<std::uint16_t> even;
   for (int l = 0; l < order; ++l)
@@ -34,7 +30,7 @@ std::vector<double> exactWeights(const Eigen::MatrixXd& even, int order) {
   const Eigen::Index rays = even.cols();
   const double each = 1.0 / static_cast<double>(rays);
   for (int bands = order; bands > 1; --bands) {
-    const auto rows = static_cast<Eigen::Index>(evenCountOf(bands));
+    const auto rows = static_cast<Eigen::Index>(evenHarmonicCount(bands));
     const auto basis = even.topRows(rows);
     Eigen::VectorXd wrong = -each * basis.rowwise().sum();
     wrong(0) += 0.5 * std::numbers::inv_sqrtpi;
@@ -52,7 +48,7 @@ GlossyHemisphere::GlossyHemisphere(std::size_t rays, int visibility_bands, int o
     : table_(uniformTable(rays)),
       order_out_(order_out),
       even_(evenHarmonics(visibility_bands)),
-      even_outputs_(evenCountOf(order_out)) {
+      even_outputs_(evenHarmonicCount(order_out)) {
   assert(order_out <= visibility_bands && visibility_bands <= sh::kMaxBasisOrder);
   Eigen::MatrixXd even(static_cast<Eigen::Index>(even_.size()), static_cast<Eigen::Index>(table_.size()));
   std::vector<double> all(static_cast<std::size_t>(sh::coefficientCount(visibility_bands)));

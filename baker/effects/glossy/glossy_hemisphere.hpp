@@ -5,6 +5,7 @@
 // easy (decisions/021).
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -15,6 +16,11 @@
 #include "runtime/sh/rotation.hpp"
 
 namespace lambent::baker {
+
+// Of so many bands.
+constexpr std::size_t evenHarmonicCount(int order) {
+  return static_cast<std::size_t>(order * (order + 1) / 2);
+}
 
 class GlossyHemisphere {
  public:

@@ -13,7 +13,7 @@
 namespace lambent::baker {
 
 struct GlossyField {
-  int order_in = 5, order_out = 5;
+  int order_in = 5, order_out = 5;  // while bounces are baked, order_out is that of what leaves points
   std::uint32_t channels = 1;       // of bounced light and of the lights: 1 or 3
   std::uint32_t light_columns = 0;  // lights of the group
   std::uint32_t first_sample = 0;   // SampleSet::first_glossy
@@ -31,6 +31,8 @@ struct GlossyField {
     return static_cast<std::size_t>(visibilityBands() * visibilityBands());
   }
   std::size_t size() const { return visibility.size() / visibilitySize(); }
+  // Drops the bands from `order` on, at most order_out, of visibility and lights_shadowed.
+  void keepBands(int order);
 };
 
 }  // namespace lambent::baker

@@ -59,7 +59,7 @@ struct Square {
     tables.of_material = {material.matte() ? -1 : 0};
     if (!material.matte()) tables.entries.push_back(material.anisotropy > 0.0f ? brushed() : round());
     if (material.brdf >= 0) {
-      auto own = BrdfTables::make(scene, kOrder);
+      auto own = BrdfTables::make(scene, kOrder, kOrder);
       ASSERT_TRUE(own) << own.error().line();
       tables = std::move(*own);
     }
@@ -364,7 +364,7 @@ TEST(SurfaceBrdfs, ShareOneTableOfEachKind) {
   brushed.anisotropy = 0.4f;
   scene.materials = {materialOf({1, 1, 1}, 0.0f, 1.0f), materialOf({1, 0, 0}, 1.0f, 0.2f),
                      materialOf({1, 1, 0}, 0.0f, 0.7f), brushed, brushed};
-  const auto tables = BrdfTables::make(scene, 4);
+  const auto tables = BrdfTables::make(scene, 4, 4);
   ASSERT_TRUE(tables);
   EXPECT_EQ(tables->of_material, (std::vector<std::int32_t>{-1, 0, 0, 1, 1}));
   ASSERT_EQ(tables->entries.size(), 2u);
@@ -374,7 +374,7 @@ TEST(SurfaceBrdfs, ShareOneTableOfEachKind) {
   EXPECT_EQ(tables->entries[1].table.order, 4u);
 
   scene.materials.resize(1);
-  const auto none = BrdfTables::make(scene, 4);
+  const auto none = BrdfTables::make(scene, 4, 4);
   ASSERT_TRUE(none);
   EXPECT_TRUE(none->entries.empty());
 }

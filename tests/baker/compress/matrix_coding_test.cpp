@@ -235,11 +235,19 @@ TEST(MatrixCoding, KeepsABoundWithoutLeadingComponentsWhereAllOfThemMayBeTaken) 
   std::normal_distribution<float> normal;
   std::vector<float> vectors(600 * grey.size());
   for (float& value : vectors) value = normal(random);
-  const auto error = [&](std::uint32_t most) {
-    return codeTransfer(vectors, 600, grey, {.bound = 0.1f, .clusters = 1, .most_components = most}).error;
+  const auto error = [&](std::uint32_t most, float loose) {
+    return codeTransfer(vectors, 600, grey,
+                        {.bound = 0.1f, .clusters = 1, .most_components = most, .loose_bound = loose})
+        .error;
   };
-  EXPECT_GT(error(kUsualComponents), 0.5f);
-  EXPECT_LE(error(kAllComponents), 0.1f);
+  const float few = error(kUsualComponents, 0.0f);
+  EXPECT_GT(few, 0.5f);
+  EXPECT_LE(error(kAllComponents, 0.0f), 0.1f);
+  // All of them, told roughly, where few leave out more than that; few where they leave out less.
+  const float loose = error(kUsualComponents, 0.4f);
+  EXPECT_LE(loose, 0.4f);
+  EXPECT_GT(loose, 0.35f);
+  EXPECT_EQ(error(kUsualComponents, 0.99f), few);
 }
 
 TEST(MatrixCoding, StaysFiniteAndTheSameOnDegenerateInput) {

@@ -54,7 +54,7 @@ double apart(const Scene& scene) {
   DecodedImages images(scene);
   const GroupGeometry geometry =
       buildGroupGeometry(group, scene, {{scene.meshes[0].primitives[0].mesh}}, /*with_glossy=*/true);
-  const auto tables = BrdfTables::make(scene, kOrder);
+  const auto tables = BrdfTables::make(scene, kOrder, kOrder);
   EXPECT_TRUE(tables) << (tables ? "" : tables.error().line());
   const auto brdfs = SurfaceBrdfs::load(scene, geometry, *tables, images, kOrder);
   EXPECT_TRUE(brdfs);

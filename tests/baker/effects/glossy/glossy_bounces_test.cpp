@@ -212,6 +212,86 @@ TEST(GlossyBounces, HaveThreeChannelsWhereKernelsAreColoured) {
   EXPECT_EQ(transfer[50], 0.0f);
 }
 
+// What leaves a point is its kernel times what it sees, in as many bands as the kernel has.
+TEST(GlossyBounces, LightLeavesByAllBandsOfTheKernel) {
+  constexpr int kExit = 7;
+  const Transport t(corner(true, true), true);
+  // All light of one direction, as far as so many bands tell it.
+  const glm::vec3 from = glm::normalize(glm::vec3(-0.3f, 1.0f, 0.0f));
+  std::array<float, kExit * kExit> lobe{};
+  sh::evaluate(kExit, from, lobe);
+  const ExitKernels kernels{
+      .grey = true, .at = [&](std::uint32_t, float, float, const glm::vec3&, std::span<float> out) {
+        for (std::size_t c = 0; c < 3; ++c)
+          std::copy(lobe.begin(), lobe.end(), out.begin() + static_cast<std::ptrdiff_t>(c * lobe.size()));
+      }};
+  const DiffuseScene view = t.diffuse();
+  const DirectPass plain(view,
+                         {.order = 5, .rays = 4096, .keep_hits = true, .hit_memory = std::size_t{1} << 30});
+  const GlossyPass pass(plain, view, kExit);
+  Progress progress;
+  auto direct = bakeDirect(plain, view, progress, {});
+  auto glossy = bakeGlossyDirect(pass, std::size_t{1} << 30, direct->looks, progress, {});
+  const GlossyBounces bounces(pass, kernels, *direct, *glossy, 5);
+
+  const std::size_t sample = t.sampleAt({-1.0f / 3.0f, 0.0f, 0.0f});
+  ASSERT_LT(sample, t.samples.size());
+  std::array<float, 25> left{};
+  const auto corner_sample = static_cast<std::uint32_t>(sample);
+  bounces.addExit({}, {corner_sample, corner_sample, corner_sample}, {0, 1, 0}, -1.0f, 1.0f, left);
+
+  // Evenly over the upper half; what lies below has the mirror image's shadow.
+  constexpr std::size_t kDirections = 1u << 16;
+  std::vector<RaySegment> ways;
+  for (std::size_t k = 0; k < kDirections; ++k) {
+    const double height = (static_cast<double>(k) + 0.5) / kDirections, r = std::sqrt(1.0 - height * height),
+                 turn = 2.39996322972865332 * static_cast<double>(k);
+    ways.push_back({t.samples.positions[sample] + glm::vec3(0, 1e-4f, 0),
+                    glm::vec3(r * std::cos(turn), height, r * std::sin(turn)),
+                    std::numeric_limits<float>::infinity()});
+  }
+  std::vector<std::uint8_t> blocked(ways.size());
+  view.rays.occluded(ways, blocked);
+  std::array<double, 25> expected{};
+  std::array<float, kExit * kExit> y{};
+  double lost = 0.0;  // what five bands of the kernel would leave out, at most
+  for (std::size_t k = 0; k < kDirections; ++k) {
+    if (blocked[k]) continue;
+    for (const float side : {1.0f, -1.0f}) {
+      sh::evaluate(kExit, ways[k].direction * glm::vec3(1, side, 1), y);
+      double value = 0.0, beyond = 0.0;
+      for (std::size_t i = 0; i < y.size(); ++i) (i < 25 ? value : beyond) += double{lobe[i]} * double{y[i]};
+      value += beyond;
+      for (std::size_t i = 0; i < expected.size(); ++i)
+        expected[i] += value * double{y[i]} * 2.0 * double{kPi} / kDirections;
+      lost += beyond * double{y[0]} * 2.0 * double{kPi} / kDirections;
+    }
+  }
+  for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_NEAR(double{left[i]}, expected[i], 0.01) << i;
+  EXPECT_GT(std::abs(lost), 0.02);  // so that the test can tell
+}
+
+TEST(GlossyBounces, WithMoreBandsForWhatLeavesHaveAsManyAsWereAskedFor) {
+  // Lambert surfaces have next to nothing in the bands above.
+  const Transport t(corner(true, false), true);
+  const auto few = bakeGlossy(t, lambertKernels(t), {.rays = 512, .bounces = 3}),
+             more = bakeGlossy(t, lambertKernels(t, 7), {.exit_order = 7, .rays = 512, .bounces = 3});
+  EXPECT_EQ(more.glossy.field.order_out, 5);
+  ASSERT_EQ(more.glossy.field.visibility.size(), few.glossy.field.visibility.size());
+  ASSERT_EQ(more.glossy.field.bounced.size(), few.glossy.field.bounced.size());
+  const auto difference = [](const std::vector<float>& a, const std::vector<float>& b) {
+    double square = 0.0, all = 0.0;
+    for (std::size_t i = 0; i < a.size(); ++i)
+      square += double{a[i] - b[i]} * double{a[i] - b[i]}, all += double{b[i]} * double{b[i]};
+    return std::sqrt(square / all);
+  };
+  EXPECT_LT(difference(more.glossy.field.visibility, few.glossy.field.visibility), 0.01);
+  EXPECT_LT(difference(more.glossy.field.bounced, few.glossy.field.bounced), 0.02);
+  EXPECT_LT(difference(more.bounced.field.vectors, few.bounced.field.vectors), 0.02);
+  for (std::size_t b = 0; b < few.bounced.energy.size(); ++b)
+    EXPECT_NEAR(more.bounced.energy[b], few.bounced.energy[b], 0.01);
+}
+
 TEST(GlossyBounces, OfNoneLeaveTheFieldWithoutThem) {
   const Transport t(corner(true, false), true);
   const auto baked = bakeGlossy(t, lambertKernels(t), {.rays = 128});
@@ -225,7 +305,7 @@ TEST(GlossyBounces, OfRealMetalsNeverAddUpToMoreThanTheLightThatCame) {
     scene.materials[0].roughness = roughness;
     const Transport t(scene, true);
     DecodedImages images(scene);
-    const auto tables = BrdfTables::make(scene, 5);
+    const auto tables = BrdfTables::make(scene, 5, 5);
     ASSERT_TRUE(tables.has_value());
     const auto brdfs = SurfaceBrdfs::load(t.scene, t.geometry, *tables, images, 5);
     ASSERT_TRUE(brdfs.has_value());
@@ -286,14 +366,15 @@ TEST(GlossyBounces, OfFewBandsOfLightAreTheFirstColumnsOfThoseOfMany) {
 
 TEST(GlossyBounces, AreTheSameForAnyMemoryAndNumberOfThreads) {
   const Transport t(corner(true, false), true);
-  const auto kept = bakeGlossy(t, lambertKernels(t), {.rays = 128, .bounces = 3});
+  const auto kept = bakeGlossy(t, lambertKernels(t, 7), {.exit_order = 7, .rays = 128, .bounces = 3});
   EXPECT_GT(kept.glossy.hits.bytes(), 0u);
-  const auto again = bakeGlossy(t, lambertKernels(t), {.rays = 128, .bounces = 3, .hit_memory = 0});
+  const auto again =
+      bakeGlossy(t, lambertKernels(t, 7), {.exit_order = 7, .rays = 128, .bounces = 3, .hit_memory = 0});
   EXPECT_EQ(again.glossy.hits.bytes(), 0u);
   EXPECT_EQ(kept.glossy.field.bounced, again.glossy.field.bounced);
   EXPECT_EQ(kept.bounced.field.vectors, again.bounced.field.vectors);
   withThreads(1, [&] {
-    const auto one = bakeGlossy(t, lambertKernels(t), {.rays = 128, .bounces = 3});
+    const auto one = bakeGlossy(t, lambertKernels(t, 7), {.exit_order = 7, .rays = 128, .bounces = 3});
     EXPECT_EQ(kept.glossy.field.bounced, one.glossy.field.bounced);
     EXPECT_EQ(kept.bounced.field.vectors, one.bounced.field.vectors);
   });

@@ -43,7 +43,7 @@ struct Metal {
         }()),
         transport(scene, true),
         images(transport.scene),
-        tables(std::move(*BrdfTables::make(transport.scene, 5))),
+        tables(std::move(*BrdfTables::make(transport.scene, 5, 5))),
         brdfs(std::move(*SurfaceBrdfs::load(transport.scene, transport.geometry, tables, images, 5))),
         baked(testing::bakeGlossy(
             transport,
