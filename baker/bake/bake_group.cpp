@@ -127,7 +127,8 @@ std::optional<Transported> transport(const DiffuseScene& scene, const SurfaceBrd
 }
 
 // Of the qualities' own bounds, which nobody asked for by name: where few components leave out more than so
-// many times as much, all of them are coded to that. It takes minutes, so not for drafts.
+// many times as much, all of them are coded to that. It takes many times as long as all else, so at high
+// quality only.
 constexpr float kLoose = 4.0f;
 
 // Visibility and bounced light are shown together: errors of both are relative to both, and each may have as
@@ -139,7 +140,7 @@ std::vector<CodedTransfer> codeGlossy(const SampleCell& cell, const GlossyField&
   std::vector<CodedTransfer> coded;
   const std::vector<CellVectors> parts = glossyCellVectors(cell, field, grey_emission);
   const bool asked = options.error_bound > 0.0f;
-  const bool loosely = !asked && options.quality != Quality::Draft;
+  const bool loosely = !asked && options.quality == Quality::High;
   double shown = 0.0;
   std::size_t shown_parts = 0;
   for (const CellVectors& part : parts)
