@@ -126,11 +126,6 @@ std::optional<Transported> transport(const DiffuseScene& scene, const SurfaceBrd
   return light;
 }
 
-// Of the qualities' own bounds, which nobody asked for by name: where few components leave out more than so
-// many times as much, all of them are coded to that. It takes many times as long as all else, so at high
-// quality only.
-constexpr float kLoose = 4.0f;
-
 // Visibility and bounced light are shown together: errors of both are relative to both, and each may have as
 // much. A bound that was asked for is kept at any price.
 std::vector<CodedTransfer> codeGlossy(const SampleCell& cell, const GlossyField& field,
@@ -139,8 +134,6 @@ std::vector<CodedTransfer> codeGlossy(const SampleCell& cell, const GlossyField&
                                       KeptCoding& coding, GroupFigures& figures) {
   std::vector<CodedTransfer> coded;
   const std::vector<CellVectors> parts = glossyCellVectors(cell, field, grey_emission);
-  const bool asked = options.error_bound > 0.0f;
-  const bool loosely = !asked && options.quality == Quality::High;
   double shown = 0.0;
   std::size_t shown_parts = 0;
   for (const CellVectors& part : parts)
@@ -150,13 +143,14 @@ std::vector<CodedTransfer> codeGlossy(const SampleCell& cell, const GlossyField&
     const bool environment = part.shape.order > 0;
     const float bound = options.effectiveGlossyErrorBound() /
                         (environment ? std::sqrt(static_cast<float>(shown_parts)) : 1.0f);
-    coded.push_back(coding.code(part.vectors, cell.count, part.shape,
-                                {.bound = bound,
-                                 .most_components = asked ? kAllComponents : kUsualComponents,
-                                 .loose_bound = loosely ? kLoose * bound : 0.0f,
-                                 .shown_energy = environment ? shown : 0.0,
-                                 .kernel_power = kernel_power},
-                                stop));
+    coded.push_back(
+        coding.code(part.vectors, cell.count, part.shape,
+                    {.bound = bound,
+                     .most_components = options.error_bound > 0.0f ? kAllComponents : kUsualComponents,
+                     .loose_bound = options.glossyLooseness() * bound,
+                     .shown_energy = environment ? shown : 0.0,
+                     .kernel_power = kernel_power},
+                    stop));
     const double error = coded.back().error;
     if (environment)
       square += error * error;

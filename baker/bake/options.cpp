@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "runtime/sh/gaunt.hpp"
+#include "runtime/sh/zonal_factors.hpp"
 
 namespace lambent::baker {
 
@@ -22,11 +23,12 @@ struct QualityRow {
   std::size_t refine_added;
   double refine_fans;
   bool fits_glossy;
+  float glossy_looseness;
 };
 constexpr std::array kQualities = {
-    QualityRow{"draft", 256, 0.01f, 0.03f, 0.02f, 1.2, 10'000, 0.0, false},
-    QualityRow{"standard", 1024, 0.003f, 0.015f, 0.014f, 1.5, 20'000, 0.5, true},
-    QualityRow{"high", 4096, 0.001f, 0.005f, 0.007f, 4.0, 60'000, 0.5, true},
+    QualityRow{"draft", 256, 0.01f, 0.03f, 0.02f, 1.2, 10'000, 0.0, false, 0.0f},
+    QualityRow{"standard", 1024, 0.003f, 0.015f, 0.014f, 1.5, 20'000, 0.5, true, 0.0f},
+    QualityRow{"high", 4096, 0.001f, 0.005f, 0.007f, 4.0, 60'000, 0.5, true, 4.0f},
 };
 
 const QualityRow& row(Quality quality) {
@@ -73,11 +75,15 @@ float BakeOptions::effectiveGlossyErrorBound() const {
   return error_bound > 0.0f ? error_bound : row(quality).glossy_error_bound;
 }
 
+float BakeOptions::glossyLooseness() const {
+  return error_bound > 0.0f ? 0.0f : row(quality).glossy_looseness;
+}
+
 int BakeOptions::exitOrder() const {
   // All that visibility is known for beside so many bands of light.
-  constexpr int kMostExitOrder = 7;
-  return bounces == 0 ? glossy_order
-                      : std::max(glossy_order, std::min(kMostExitOrder, sh::kMaxVisibilityBands + 1 - order));
+  return bounces == 0
+             ? glossy_order
+             : std::max(glossy_order, std::min(sh::kMaxFactoredOrder, sh::kMaxVisibilityBands + 1 - order));
 }
 
 float BakeOptions::effectiveRefineBound() const {

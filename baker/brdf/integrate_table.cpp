@@ -12,6 +12,7 @@
 #include "baker/brdf/brdf.hpp"
 #include "baker/work/parallel.hpp"
 #include "runtime/sh/basis.hpp"
+#include "runtime/sh/zonal_factors.hpp"
 
 namespace lambent::baker {
 
@@ -21,7 +22,7 @@ using bundle::BrdfTable;
 using bundle::kLeastViewCosine;
 using bundle::kMaxBrdfLobes;
 
-constexpr int kMaxBands = 7;
+constexpr int kMaxBands = sh::kMaxFactoredOrder;
 // Directions of a view: leave 0.03 % (isotropic) and 0.08 % (not) in the mean over views and roughness.
 constexpr std::size_t kDirections = 4096, kAnisotropicDirections = 2048;
 

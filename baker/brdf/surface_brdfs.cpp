@@ -23,7 +23,7 @@ using bundle::BrdfView;
 using bundle::kLeastViewCosine;
 using bundle::kMaxBrdfLobes;
 
-constexpr std::size_t kMaxBands = 7, kMaxCoefficients = kMaxBands * kMaxBands;
+constexpr std::size_t kMaxBands = sh::kMaxFactoredOrder, kMaxCoefficients = kMaxBands * kMaxBands;
 using Kernel = std::array<float, kMaxCoefficients>;
 
 struct Texture {

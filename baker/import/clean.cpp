@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "baker/import/convert.hpp"
+#include "baker/import/gather_vertices.hpp"
 
 namespace lambent::baker {
 namespace {
@@ -59,24 +60,6 @@ std::size_t dropDegenerate(MeshData& mesh) {
   const glm::dvec3 diagonal = high - low;
   const double least = 2.0 * kDegenerateArea * glm::dot(diagonal, diagonal);
   return dropTriangles(mesh, [&](std::size_t i) { return glm::length(areaVector(mesh, i)) > least; });
-}
-
-// The vertices of `mesh` in the order of `sources`; the list of sources may repeat or leave out.
-void gatherVertices(MeshData& mesh, std::span<const std::uint32_t> sources) {
-  const auto gather = [&](auto& values) {
-    if (values.empty()) return;
-    std::remove_reference_t<decltype(values)> gathered;
-    gathered.reserve(sources.size());
-    for (const std::uint32_t v : sources) gathered.push_back(values[v]);
-    values = std::move(gathered);
-  };
-  gather(mesh.positions);
-  gather(mesh.normals);
-  gather(mesh.normal_weights);
-  gather(mesh.texcoords0);
-  gather(mesh.texcoords1);
-  gather(mesh.colors);
-  gather(mesh.tangents);
 }
 
 void dropUnusedVertices(MeshData& mesh) {

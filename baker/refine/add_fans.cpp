@@ -1,6 +1,7 @@
 #include "baker/refine/add_fans.hpp"
 
 #include <map>
+#include <span>
 #include <unordered_map>
 #include <utility>
 
@@ -14,13 +15,12 @@ namespace {
 // A primitive whose vertices may be split into fans.
 struct FanSource {
   std::size_t mesh, primitive, group, draw;
-  std::vector<std::uint32_t> faces;  // of the mesh, of each triangle of the draw
+  std::span<const std::uint32_t> faces;  // of the mesh, of each triangle of the draw
 };
 
 // What is drawn at many places would cost transfer at each of them: at most front and back of one.
 std::vector<FanSource> fanSources(const std::vector<RigidGroup>& groups,
-                                  const std::vector<GroupGeometry>& geometries,
-                                  const std::vector<std::vector<bundle::MeshData>>& meshes) {
+                                  const std::vector<GroupGeometry>& geometries) {
   std::map<std::pair<std::size_t, std::size_t>, int> fronts;
   for (const RigidGroup& group : groups)
     for (const PlannedDraw& draw : group.draws)
@@ -32,21 +32,9 @@ std::vector<FanSource> fanSources(const std::vector<RigidGroup>& groups,
       const DrawGeometry& drawn = geometries[g].draws[d];
       if (draw.back || fronts[{draw.mesh, draw.primitive}] != 1) continue;
       if (drawn.kind != SampleKind::Glossy) continue;
-      FanSource source{draw.mesh, draw.primitive, g, d, {}};
-      const bundle::MeshData& mesh = meshes[draw.mesh][draw.primitive];
-      std::uint32_t t = drawn.first_triangle;
-      for (std::uint32_t f = 0;
-           f < mesh.indices.size() / 3 && t < drawn.first_triangle + drawn.triangle_count; ++f) {
-        // Triangles without area were left out; mirrored ones are turned.
-        if (geometries[g].triangles[t].x != drawn.first_vertex + mesh.indices[3 * f]) continue;
-        const glm::uvec3& rest = geometries[g].triangles[t];
-        const std::uint32_t b = drawn.first_vertex + mesh.indices[3 * f + 1],
-                            c = drawn.first_vertex + mesh.indices[3 * f + 2];
-        if (!(rest.y == b && rest.z == c) && !(rest.y == c && rest.z == b)) continue;
-        source.faces.push_back(f);
-        ++t;
-      }
-      sources.push_back(std::move(source));
+      sources.push_back(
+          {draw.mesh, draw.primitive, g, d,
+           std::span(geometries[g].mesh_faces).subspan(drawn.first_triangle, drawn.triangle_count)});
     }
   return sources;
 }
@@ -58,7 +46,7 @@ std::optional<std::size_t> addFans(const std::vector<RigidGroup>& groups,
                                    const std::vector<GroupRefiner>& refiners, double bound, std::size_t most,
                                    std::vector<std::vector<bundle::MeshData>>& meshes,
                                    const std::stop_token& stop) {
-  const std::vector<FanSource> sources = fanSources(groups, geometries, meshes);
+  const std::vector<FanSource> sources = fanSources(groups, geometries);
   FaceLacks lacks{.width = GroupRefiner::kLackValues};
   std::size_t stars = 0;
   for (const FanSource& source : sources) {
@@ -85,7 +73,7 @@ std::optional<std::size_t> addFans(const std::vector<RigidGroup>& groups,
     std::vector<std::uint8_t> of_corner(mesh.indices.size(), 0);
     for (const std::uint32_t face : source.faces)
       for (std::size_t c = 0; c < 3; ++c) of_corner[3 * face + c] = fans.of_corner[next++];
-    if (fans.added > 0) splitIntoFans(mesh, of_corner);
+    splitIntoFans(mesh, of_corner);
   }
   return fans.added;
 }

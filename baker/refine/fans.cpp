@@ -6,6 +6,8 @@
 #include <numeric>
 #include <utility>
 
+#include "baker/import/gather_vertices.hpp"
+
 namespace lambent::baker {
 
 namespace {
@@ -107,27 +109,34 @@ class FanChooser {
       for (std::uint8_t fan = 0; fan < of_star_[star]; ++fan) settle(star, fan);
   }
 
-  double left() {
+  // Area times square error of one face.
+  double errorOf(std::size_t face) const {
+    const double area = lacks_.areas[face];
+    const float* values = lacks_.values.data() + face * 2 * lacks_.width;
+    if (!(area > 0.0)) return 0.0;
+    double product = 0.0;
+    for (std::size_t i = 0; i < lacks_.width; ++i)
+      product += area * double{values[i]} * (area * double{values[lacks_.width + i]});
+    return product / area;
+  }
+
+  double left() const {
     double sum = 0.0;
-    for (std::size_t face = 0; face < lacks_.size(); ++face) {
-      const auto corner = static_cast<std::uint32_t>(3 * face);
-      sum += productOf(sumOf(std::span(&corner, 1)));
-    }
+    for (std::size_t face = 0; face < lacks_.size(); ++face) sum += errorOf(face);
     return sum;
   }
 
-  double greatestGain() {
+  double greatestGain() const {
     double most = 0.0;
     for (std::size_t star = 0; star < of_star_.size(); ++star) most = std::max(most, mostOf(cornersOf(star)));
     return kGainOfFan * most;
   }
 
   // No split of these gains more than that, but for noise.
-  double mostOf(std::span<const std::uint32_t> corners) {
+  double mostOf(std::span<const std::uint32_t> corners) const {
     if (corners.size() < 2 || corners.size() > kMostFaces) return 0.0;
     double most = 0.0;
-    for (const std::uint32_t& corner : corners)
-      most += std::max(0.0, productOf(sumOf(std::span(&corner, 1))));
+    for (const std::uint32_t corner : corners) most += std::max(0.0, errorOf(corner / 3));
     return most;
   }
 
@@ -221,26 +230,23 @@ Fans chooseFans(FaceLacks lacks, std::size_t stars, double enough, std::size_t m
 }
 
 void splitIntoFans(bundle::MeshData& mesh, std::span<const std::uint8_t> of_corner) {
-  const auto copy = [](auto& values, std::uint32_t vertex) {
-    if (values.empty()) return;
-    const auto value = values[vertex];  // the list may move
-    values.push_back(value);
-  };
-  if (std::all_of(of_corner.begin(), of_corner.end(), [](std::uint8_t fan) { return fan == 0; })) return;
-  mesh.fans.resize(mesh.positions.size(), 0);
+  std::vector<std::uint32_t> sources(mesh.positions.size());
+  std::iota(sources.begin(), sources.end(), 0u);
+  std::vector<std::uint8_t> fans(sources.size(), 0);
   std::map<std::pair<std::uint32_t, std::uint8_t>, std::uint32_t> copies;
   for (std::size_t c = 0; c < mesh.indices.size(); ++c) {
     if (of_corner[c] == 0) continue;
     const std::uint32_t vertex = mesh.indices[c];
     const auto [entry, is_new] =
-        copies.try_emplace({vertex, of_corner[c]}, static_cast<std::uint32_t>(mesh.positions.size()));
+        copies.try_emplace({vertex, of_corner[c]}, static_cast<std::uint32_t>(sources.size()));
     mesh.indices[c] = entry->second;
     if (!is_new) continue;
-    copy(mesh.positions, vertex), copy(mesh.normals, vertex), copy(mesh.normal_weights, vertex);
-    copy(mesh.texcoords0, vertex), copy(mesh.texcoords1, vertex);
-    copy(mesh.colors, vertex), copy(mesh.tangents, vertex);
-    mesh.fans.push_back(of_corner[c]);
+    sources.push_back(vertex);
+    fans.push_back(of_corner[c]);
   }
+  if (copies.empty()) return;
+  gatherVertices(mesh, sources);
+  mesh.fans = std::move(fans);
 }
 
 }  // namespace lambent::baker

@@ -88,6 +88,7 @@ void append(const PlannedDraw& draw, const bundle::MeshData& mesh, const gltf::M
     if (glm::cross(b - a, c - a) == glm::vec3(0.0f))
       continue;  // no surface: rays must not come to depend on it
     geometry.triangles.push_back(triangle);
+    geometry.mesh_faces.push_back(static_cast<std::uint32_t>(i / 3));
     ++out.triangle_count;
   }
   geometry.draws.push_back(out);

@@ -50,6 +50,7 @@ struct GroupGeometry {
   std::array<std::vector<glm::vec2>, 2> texcoord_sets;
   std::vector<glm::vec4> tangents;
   std::vector<glm::uvec3> triangles;             // into positions; of back draws corners 1 and 2 are swapped
+  std::vector<std::uint32_t> mesh_faces;         // of each triangle: which it is in its draw's mesh
   std::vector<DrawGeometry> draws;               // in the order of RigidGroup::draws
   glm::vec3 bounds_min{0.0f}, bounds_max{0.0f};  // from `origin`
 };

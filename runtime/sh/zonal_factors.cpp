@@ -14,7 +14,6 @@ namespace lambent::sh {
 
 namespace {
 
-constexpr int kMaxFactoredOrder = 7;
 constexpr int kMaxAxes = 2 * kMaxFactoredOrder - 1;
 
 struct AxisAngles {

@@ -14,9 +14,11 @@
 
 namespace lambent::sh {
 
+inline constexpr int kMaxFactoredOrder = 7;
+
 class ZonalFactors {
  public:
-  // order 1..7.
+  // order 1..kMaxFactoredOrder.
   static ZonalFactors isotropic(int order);
   static ZonalFactors anisotropic(int order);
 

@@ -15,12 +15,14 @@
 #include "baker/work/parallel.hpp"
 #include "runtime/sh/basis.hpp"
 #include "runtime/sh/rotation.hpp"
+#include "runtime/sh/zonal_factors.hpp"
 
 namespace lambent::baker {
 
 namespace {
 
-constexpr std::size_t kMostOutputs = 36, kMostKernel = 49;  // of what arrives, and of what leaves
+constexpr std::size_t kMostOutputs = 36,                        // of what arrives
+    kMostKernel = sh::coefficientCount(sh::kMaxFactoredOrder);  // and of what leaves
 // Hits whose radiance is added to a matrix at once.
 constexpr std::size_t kBlock = 8;
 
