@@ -21,8 +21,9 @@ namespace {
 
 constexpr std::size_t kGrain = 512;
 constexpr std::size_t kBasisSamples = 8192;  // at least, for the covariance of all values
-// Multiply-adds that may go into it for visibility and bounced light: where few values allow it all samples
-// are looked at, for in grids around bodies rare ones, beside the body, are like no others.
+// Multiply-adds that may go into it for visibility, bounced light and lamps: where few values allow it all
+// samples are looked at, for in grids around bodies rare ones, beside the body, are like no others, and few
+// samples next to a lamp hold nearly all of its energy.
 constexpr double kBasisWork = 1.6e10;
 constexpr double kTailShare = 0.05;     // of the square error allowed, for what the basis leaves out
 constexpr double kBesideLeftOut = 1.3;  // of what the basis must leave out: all square error then
@@ -208,7 +209,7 @@ void Coder::findBasis() {
   double left_out = 0.0;
   const double size = static_cast<double>(shape_.size());
   const std::size_t looked_at =
-      shape_.isVisibility() || shape_.shadowed_channels == 0
+      shape_.isVisibility() || shape_.shadowed_channels == 0 || shape_.light_columns > 0
           ? std::max(kBasisSamples, static_cast<std::size_t>(kBasisWork / (size * size)))
           : kBasisSamples;
   const Points some = weighted(vectors_, space_.roots, someSamples(count_, looked_at));

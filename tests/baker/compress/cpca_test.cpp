@@ -145,6 +145,22 @@ TEST(ClusteredCoding, OfLightsAloneWorksWithoutAnEnvironment) {
   EXPECT_LE(coded.error, 0.01f);
 }
 
+TEST(ClusteredCoding, OfLampsKnowsTheFewSamplesNextToThem) {
+  const auto shape = shapeOf(0, 1, 0, 25, 1);
+  const std::size_t count = 60'000;
+  std::vector<float> vectors(count * shape.size());
+  std::mt19937 random(21);
+  std::normal_distribution<float> normal;
+  for (std::size_t s = 0; s < count; ++s)
+    for (std::size_t i = 0; i < shape.size(); ++i)
+      vectors[s * shape.size() + i] = s % 7'001 == 5'000 ? normal(random)
+                                      : i == s % 3       ? 1e-4f * normal(random)
+                                                         : 0.0f;
+  const CodedTransfer coded = code(vectors, shape, 0.003f);
+  expectSound(coded, count);
+  EXPECT_LE(coded.error, 0.003f);
+}
+
 TEST(ClusteredCoding, AnyPrefixRendersAndMoreIsBetter) {
   const auto shape = shapeOf(5, 1, 3);
   const auto vectors = bumpyTransfer(900, shape, 9);
