@@ -43,21 +43,27 @@ bool readAll(std::string_view text, T& value) {
   return error == std::errc{} && at == end;
 }
 
-bool readGrid(std::string_view text, glm::uvec3& grid) {
-  for (int axis = 0; axis < 3; ++axis) {
-    const std::size_t end = axis < 2 ? text.find('x') : text.size();
-    if (end == std::string_view::npos || !readAll(text.substr(0, end), grid[axis])) return false;
-    text.remove_prefix(std::min(end + 1, text.size()));
-  }
-  return true;
-}
-
 // How far refinement may go, in words.
 std::string refineMost(const QualityRow& row) {
   return fmt::format("{} x + {}, fans {} x", row.refine_growth, row.refine_added, row.refine_fans);
 }
 
 }  // namespace
+
+std::optional<glm::uvec3> gridSizeFrom(std::string_view text) {
+  glm::uvec3 size(0);
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto [next, error] = std::from_chars(at, end, size[axis]);
+    if (error != std::errc{}) return std::nullopt;
+    if (axis == 0 && next == end) return glm::uvec3(size.x);
+    if (axis == 2) return next == end ? std::optional(size) : std::nullopt;
+    if (next == end || *next != 'x') return std::nullopt;
+    at = next + 1;
+  }
+  return std::nullopt;
+}
 
 const char* qualityName(Quality quality) {
   return row(quality).name;
@@ -150,12 +156,17 @@ std::optional<BakeOptions> BakeOptions::fromSettings(const std::map<std::string,
   const auto readOr = [&](const char* name, const char* word, auto& value) {
     return find(name) == word || readAll(find(name), value);
   };
+  const auto readGrid = [&](const char* name, glm::uvec3& grid) {
+    const auto read = gridSizeFrom(find(name));
+    grid = read.value_or(grid);
+    return read.has_value();
+  };
   if (!readAll(find("order"), all.order) || !readAll(find("glossyOrder"), all.glossy_order) ||
       !readAll(find("rays"), all.rays) || !readOr("bounces", "auto", all.bounces) ||
       !readOr("lightSamples", "auto", all.light_samples) || !readAll(find("errorBound"), all.error_bound) ||
       !readAll(find("glossyErrorBound"), glossy_bound) || !readAll(find("maxEdge"), all.max_edge_m) ||
-      !readAll(find("refineBound"), all.refine_bound) || !readGrid(find("volumeGrid"), all.volume_grid) ||
-      !(find("neighborhoodGrid") == "auto" || readGrid(find("neighborhoodGrid"), all.neighborhood_grid)) ||
+      !readAll(find("refineBound"), all.refine_bound) || !readGrid("volumeGrid", all.volume_grid) ||
+      !(find("neighborhoodGrid") == "auto" || readGrid("neighborhoodGrid", all.neighborhood_grid)) ||
       !settings.contains("effects"))
     return std::nullopt;
   all.effects = find("effects");

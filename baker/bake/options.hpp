@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include <glm/vec3.hpp>
 
@@ -69,5 +70,8 @@ struct BakeOptions {
 };
 
 const char* qualityName(Quality quality);
+
+// Points or voxels along each axis, as people write them: "48" or "64x32x64"; nothing where it is neither.
+std::optional<glm::uvec3> gridSizeFrom(std::string_view text);
 
 }  // namespace lambent::baker

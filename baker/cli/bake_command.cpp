@@ -1,5 +1,4 @@
 // lambent bake SCENE -o OUT.lmb.glb, --watch DIR, --resume
-#include <charconv>
 #include <cstdlib>
 #include <map>
 #include <memory>
@@ -291,25 +290,9 @@ void addLightSamplesOption(CLI::App& command, BakeOptions& options) {
       ->type_name("N|auto");
 }
 
-// "48" or "64x32x64"; nothing where it is neither.
-std::optional<glm::uvec3> gridFrom(const std::string& text) {
-  glm::uvec3 size(0);
-  const char* at = text.data();
-  const char* const end = at + text.size();
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto [next, error] = std::from_chars(at, end, size[axis]);
-    if (error != std::errc{}) return std::nullopt;
-    if (axis == 0 && next == end) return glm::uvec3(size.x);
-    if (axis == 2) return next == end ? std::optional(size) : std::nullopt;
-    if (next == end || *next != 'x') return std::nullopt;
-    at = next + 1;
-  }
-  return std::nullopt;
-}
-
 void addNeighborhoodGridOption(CLI::App& command, BakeOptions& options) {
   const auto read = [](const std::string& text) {
-    return text == "auto" ? std::optional(glm::uvec3(0u)) : gridFrom(text);
+    return text == "auto" ? std::optional(glm::uvec3(0u)) : gridSizeFrom(text);
   };
   command
       .add_option_function<std::string>(
@@ -366,11 +349,11 @@ void addRefineOption(CLI::App& command, BakeOptions& options) {
 void addVolumeGridOption(CLI::App& command, BakeOptions& options) {
   command
       .add_option_function<std::string>(
-          "--volume-grid", [&options](const std::string& text) { options.volume_grid = *gridFrom(text); },
+          "--volume-grid", [&options](const std::string& text) { options.volume_grid = *gridSizeFrom(text); },
           "Voxels of the grid that a volume's transfer is baked on, 1..256 along each axis; default 32")
       ->check(CLI::Validator(
           [](const std::string& text) {
-            return gridFrom(text) ? std::string() : fmt::format("{} is neither N nor XxYxZ", text);
+            return gridSizeFrom(text) ? std::string() : fmt::format("{} is neither N nor XxYxZ", text);
           },
           ""))
       ->type_name("N|XxYxZ");

@@ -10,50 +10,45 @@
 
 namespace lambent {
 
-namespace {
-
-class KeptThreads {
- public:
-  static KeptThreads& get() {
-    static KeptThreads threads;
-    return threads;
-  }
-  void run(std::function<void()> work) {
-    const std::lock_guard lock(mutex_);
-    work_.push_back(std::move(work));
-    if (work_.size() > waiting_)
-      threads_.emplace_back([this](const std::stop_token& stop) { serve(stop); });
+struct KeptThreads::State {
+  void run(std::function<void()> next) {
+    const std::lock_guard lock(mutex);
+    work.push_back(std::move(next));
+    if (work.size() > waiting)
+      threads.emplace_back([this](const std::stop_token& stop) { serve(stop); });
     else
-      called_.notify_one();
+      called.notify_one();
   }
 
- private:
   void serve(const std::stop_token& stop) {
-    std::unique_lock lock(mutex_);
+    std::unique_lock lock(mutex);
     for (;;) {
-      ++waiting_;
-      const bool found = called_.wait(lock, stop, [&] { return !work_.empty(); });
-      --waiting_;
-      if (!found) return;
-      const std::function<void()> work = std::move(work_.front());
-      work_.pop_front();
+      ++waiting;
+      called.wait(lock, stop, [&] { return !work.empty(); });
+      --waiting;
+      if (work.empty()) return;
+      const std::function<void()> next = std::move(work.front());
+      work.pop_front();
       lock.unlock();
-      work();
+      next();
       lock.lock();
     }
   }
 
-  std::mutex mutex_;  // guards all below but the threads' own
-  std::condition_variable_any called_;
-  std::deque<std::function<void()>> work_;  // that no thread has taken yet
-  std::size_t waiting_ = 0;                 // threads, for work
-  std::vector<std::jthread> threads_;       // last: they use all above
+  std::mutex mutex;  // guards all below but the threads' own
+  std::condition_variable_any called;
+  std::deque<std::function<void()>> work;  // that no thread has taken yet
+  std::size_t waiting = 0;                 // threads, for work
+  std::vector<std::jthread> threads;       // last: they use all above
 };
 
-}  // namespace
+KeptThreads::KeptThreads() : state_(std::make_unique<State>()) {}
+KeptThreads::~KeptThreads() = default;
+KeptThreads::KeptThreads(KeptThreads&&) noexcept = default;
+KeptThreads& KeptThreads::operator=(KeptThreads&&) noexcept = default;
 
-void onKeptThread(std::function<void()> work) {
-  KeptThreads::get().run(std::move(work));
+void KeptThreads::run(std::function<void()> work) {
+  state_->run(std::move(work));
 }
 
 }  // namespace lambent

@@ -3,11 +3,24 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 
 namespace lambent {
 
-// Calls work() on a thread of its own, one that has nothing to do if there is any, at once and not after
-// other work. work must end before the program does, and must not throw. From any thread.
-void onKeptThread(std::function<void()> work);
+class KeptThreads {
+ public:
+  KeptThreads();
+  ~KeptThreads();  // after all work
+  KeptThreads(KeptThreads&&) noexcept;
+  KeptThreads& operator=(KeptThreads&&) noexcept;
+
+  // Calls work() on a thread of its own, one that has nothing to do if there is any, at once and not after
+  // other work. work must not throw. From any thread.
+  void run(std::function<void()> work);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
 
 }  // namespace lambent

@@ -280,6 +280,7 @@ class World {
 
   ecs::Registry registry_;
   streaming::Residency residency_;
+  KeptThreads threads_;                         // of the loaders below
   std::vector<std::optional<Bundle>> bundles_;  // by slot
   std::vector<ecs::Entity> lamp_of_draw_;       // none: not a lamp of its group
   std::vector<scene::Box> group_bounds_;

@@ -105,13 +105,14 @@ Result<void> World::replace(std::uint32_t bundle, const std::filesystem::path& p
   if (!staged) return giveUp(inBundle(*reader, staged.error()));
   std::vector<std::uint32_t> steps = stepsForReplacement(bundle, *parts);
   std::vector<streaming::Work> work = parts->workOf(steps);
-  old.replacement.emplace(Replacement{
-      .reader = reader,
-      .parts = std::move(*parts),
-      .proxies = Proxies(reader->description().groups.size()),
-      .steps = std::move(steps),
-      .loader = streaming::Loader(reader, std::move(work), std::max(1u, std::thread::hardware_concurrency())),
-      .staged = *staged});
+  old.replacement.emplace(
+      Replacement{.reader = reader,
+                  .parts = std::move(*parts),
+                  .proxies = Proxies(reader->description().groups.size()),
+                  .steps = std::move(steps),
+                  .loader = streaming::Loader(reader, std::move(work), threads_,
+                                              std::max(1u, std::thread::hardware_concurrency())),
+                  .staged = *staged});
   return {};
 }
 

@@ -240,8 +240,8 @@ bool World::startBatch(std::uint32_t slot) {
   if (pieces.empty()) return false;
   std::vector<streaming::Work> work;
   for (const Piece& piece : pieces) work.insert(work.end(), piece.work.begin(), piece.work.end());
-  const unsigned threads = std::max(1u, std::thread::hardware_concurrency() / kBatches);
-  bundle.batch.emplace(Batch{.loader = streaming::Loader(bundle.reader, std::move(work), threads),
+  const unsigned workers = std::max(1u, std::thread::hardware_concurrency() / kBatches);
+  bundle.batch.emplace(Batch{.loader = streaming::Loader(bundle.reader, std::move(work), threads_, workers),
                              .pieces = std::move(pieces)});
   return true;
 }

@@ -8,7 +8,6 @@
 #include <new>
 #include <utility>
 
-#include "runtime/base/kept_threads.hpp"
 #include "runtime/streaming/work.hpp"
 
 namespace lambent::streaming {
@@ -29,11 +28,12 @@ struct Loader::State {
     std::size_t held = 0;  // bytes reserved, then those of `ready`
   };
 
-  State(std::shared_ptr<const bundle::Reader> bundle, std::vector<Work> wanted, unsigned thread_count)
+  State(std::shared_ptr<const bundle::Reader> bundle, std::vector<Work> wanted, KeptThreads& threads,
+        unsigned workers)
       : reader(std::move(bundle)), work(std::move(wanted)), slots(work.size()) {
-    working = std::min<std::size_t>(std::max(thread_count, 1u), work.size());
+    working = std::min<std::size_t>(std::max(workers, 1u), work.size());
     for (std::size_t i = 0, count = working; i < count; ++i)
-      onKeptThread([this] {
+      threads.run([this] {
         runWorker();
         const std::lock_guard lock(mutex);
         --working;
@@ -144,10 +144,11 @@ struct Loader::State {
   std::condition_variable ended;  // one has
 };
 
-Loader::Loader(std::shared_ptr<const bundle::Reader> reader, unsigned threads)
-    : Loader(reader, workList(reader->description()), threads) {}
-Loader::Loader(std::shared_ptr<const bundle::Reader> reader, std::vector<Work> work, unsigned threads)
-    : state_(std::make_unique<State>(std::move(reader), std::move(work), threads)) {}
+Loader::Loader(std::shared_ptr<const bundle::Reader> reader, KeptThreads& threads, unsigned workers)
+    : Loader(reader, workList(reader->description()), threads, workers) {}
+Loader::Loader(std::shared_ptr<const bundle::Reader> reader, std::vector<Work> work, KeptThreads& threads,
+               unsigned workers)
+    : state_(std::make_unique<State>(std::move(reader), std::move(work), threads, workers)) {}
 Loader::~Loader() = default;
 Loader::Loader(Loader&&) noexcept = default;
 Loader& Loader::operator=(Loader&&) noexcept = default;

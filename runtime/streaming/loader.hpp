@@ -10,6 +10,7 @@
 #include <optional>
 #include <vector>
 
+#include "runtime/base/kept_threads.hpp"
 #include "runtime/base/result.hpp"
 #include "runtime/bundle/reader.hpp"
 #include "runtime/streaming/ready.hpp"
@@ -19,11 +20,12 @@ namespace lambent::streaming {
 
 class Loader {
  public:
-  // Starts `threads` workers (at least 1) on everything in the bundle: meshes and rows first, then
-  // tables of BRDFs, grids of volumes, images, then codebooks and planes by priority.
-  Loader(std::shared_ptr<const bundle::Reader> reader, unsigned threads);
+  // Starts `workers` (at least 1) on everything in the bundle: meshes and rows first, then tables of BRDFs,
+  // grids of volumes, images, then codebooks and planes by priority. They end before `threads` do.
+  Loader(std::shared_ptr<const bundle::Reader> reader, KeptThreads& threads, unsigned workers);
   // Brings these parts alone, in this order.
-  Loader(std::shared_ptr<const bundle::Reader> reader, std::vector<Work> work, unsigned threads);
+  Loader(std::shared_ptr<const bundle::Reader> reader, std::vector<Work> work, KeptThreads& threads,
+         unsigned workers);
   ~Loader();  // stops the workers after the item in hand
   Loader(Loader&&) noexcept;
   Loader& operator=(Loader&&) noexcept;

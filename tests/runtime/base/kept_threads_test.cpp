@@ -10,11 +10,12 @@
 namespace lambent {
 
 TEST(KeptThreads, WorkThatWaitsForOtherWorkIsAllDone) {
+  KeptThreads threads;
   for (int round = 0; round < 50; ++round) {
     constexpr int kCount = 9;
     std::latch all_run(kCount), ended(kCount);
     for (int i = 0; i < kCount; ++i)
-      onKeptThread([&] {
+      threads.run([&] {
         all_run.arrive_and_wait();  // would wait for ever if one stood behind another
         ended.count_down();
       });
@@ -23,11 +24,12 @@ TEST(KeptThreads, WorkThatWaitsForOtherWorkIsAllDone) {
 }
 
 TEST(KeptThreads, OneAfterTheOtherTakesNoMoreThreads) {
+  KeptThreads kept;
   std::mutex mutex;
   std::set<std::thread::id> threads;
   for (int i = 0; i < 300; ++i) {
     std::latch ended(1);
-    onKeptThread([&] {
+    kept.run([&] {
       {
         const std::lock_guard lock(mutex);
         threads.insert(std::this_thread::get_id());

@@ -110,6 +110,8 @@ class LoaderTest : public ::testing::Test {
     file.put(byte);
   }
 
+  KeptThreads threads_;
+
  private:
   testing::TemporaryFolder folder_;
 };
@@ -117,7 +119,7 @@ class LoaderTest : public ::testing::Test {
 TEST_F(LoaderTest, DeliversByPriorityWhatWasWritten) {
   const Sample sample = testing::sampleBundle();
   write(sample);
-  Loader loader(open(), 2);
+  Loader loader(open(), threads_, 2);
   const auto items = drain(loader, 1 << 20);
   EXPECT_EQ(names(items), kInOrder);
   EXPECT_FALSE(loader.error());
@@ -163,7 +165,7 @@ TEST_F(LoaderTest, GivesTheSameSequenceForAnyNumberOfThreadsAndAnyBudget) {
   write(testing::sampleBundle());
   for (const unsigned threads : {0u, 1u, 3u, 16u, 64u}) {
     for (const std::size_t budget : {std::size_t{1}, std::size_t{5000}, std::size_t{1} << 30}) {
-      Loader loader(open(), threads);
+      Loader loader(open(), threads_, threads);
       EXPECT_EQ(names(drain(loader, budget)), kInOrder) << threads << " threads";
     }
   }
@@ -171,7 +173,7 @@ TEST_F(LoaderTest, GivesTheSameSequenceForAnyNumberOfThreadsAndAnyBudget) {
 
 TEST_F(LoaderTest, TakesAtLeastOneItemAndNoMoreThanTheBudgetBeyond) {
   write(testing::manyImages(6, 64));  // 16 KiB each
-  Loader loader(open(), 1);
+  Loader loader(open(), threads_, 1);
   std::size_t taken = 0;
   while (!loader.finished()) {
     loader.waitForMore();
@@ -186,7 +188,7 @@ TEST_F(LoaderTest, TakesAtLeastOneItemAndNoMoreThanTheBudgetBeyond) {
 TEST_F(LoaderTest, DecodesNoFurtherAheadThanItsMemory) {
   constexpr std::uint32_t kThreads = 4;
   write(testing::manyImages(48, 1024));  // 4 MiB each: 192 MiB in all, of which 64 fit
-  Loader loader(open(), kThreads);
+  Loader loader(open(), threads_, kThreads);
   loader.waitForMore();
   // Time to go too far; how far it gets is bounded however long this is.
   std::this_thread::sleep_for(std::chrono::milliseconds(500));
@@ -200,7 +202,7 @@ TEST_F(LoaderTest, IsDestroyedMidWayWithoutHanging) {
   write(testing::manyImages(40, 1024));  // more than its memory: workers wait for room
   const auto reader = open();
   for (int take = 0; take < 4; ++take) {
-    Loader loader(reader, 4);
+    Loader loader(reader, threads_, 4);
     for (int i = 0; i < take; ++i) {
       loader.waitForMore();
       loader.take(1);
@@ -218,7 +220,7 @@ TEST_F(LoaderTest, StopsAtADamagedPayloadAndNamesTheFileWhateverTheThreads) {
   const std::vector<std::string> before(kInOrder.begin(), kInOrder.begin() + 10);
   std::string first_line;
   for (const unsigned threads : {1u, 8u}) {
-    Loader loader(open(), threads);
+    Loader loader(open(), threads_, threads);
     EXPECT_EQ(names(drain(loader, 1 << 20)), before);
     ASSERT_TRUE(loader.error());
     const std::string line = loader.error()->line();
@@ -235,7 +237,7 @@ TEST_F(LoaderTest, NamesTheImageThatCannotBeDecoded) {
   bundle::Blob& blob = sample.blobs[sample.description.images[1].view];
   blob.assign(blob.size(), std::byte{'x'});
   write(sample);
-  Loader loader(open(), 2);
+  Loader loader(open(), threads_, 2);
   EXPECT_EQ(drain(loader, 1 << 20).size(), 8u);
   ASSERT_TRUE(loader.error());
   EXPECT_NE(loader.error()->line().find(path().string() + ": image 1 \"leaf\""), std::string::npos)
@@ -251,7 +253,7 @@ TEST_F(LoaderTest, RefusesClustersThatContradictThePlanes) {
   sample.description.payloads[static_cast<std::uint32_t>(transfer.cluster_ids)].codec =
       bundle::PayloadCodec::Raw;
   write(sample);
-  Loader loader(open(), 2);
+  Loader loader(open(), threads_, 2);
   EXPECT_EQ(drain(loader, 1 << 20).size(), 9u);
   ASSERT_TRUE(loader.error());
   EXPECT_NE(loader.error()->line().find("group 1 cell 0: has weight planes of other sizes"),
@@ -263,7 +265,7 @@ TEST_F(LoaderTest, RefusesRowsOfANormalMappedDrawIntoPlainSamples) {
   Sample sample = testing::sampleBundle();
   sample.description.draws[0].outputs = 9;
   write(sample);
-  Loader loader(open(), 2);
+  Loader loader(open(), threads_, 2);
   drain(loader, 1 << 20);
   ASSERT_TRUE(loader.error());
   EXPECT_NE(loader.error()->line().find("draw 0: takes samples"), std::string::npos)
@@ -272,14 +274,15 @@ TEST_F(LoaderTest, RefusesRowsOfANormalMappedDrawIntoPlainSamples) {
 
 TEST_F(LoaderTest, BringsThePartsThatAreAskedForInTheirOrder) {
   write(testing::sampleBundle());
-  Loader loader(open(), {ImageWork{1}, MeshWork{1, 1}, CodebookWork{1, 0, 0}, PlaneWork{1, 0, 0, 0}}, 2);
+  Loader loader(open(), {ImageWork{1}, MeshWork{1, 1}, CodebookWork{1, 0, 0}, PlaneWork{1, 0, 0, 0}},
+                threads_, 2);
   EXPECT_EQ(names(drain(loader, 1 << 20)),
             (std::vector<std::string>{"image 1", "mesh 1.1", "codebook 1.0.0", "plane 1.0.0.0"}));
 }
 
 TEST_F(LoaderTest, IsIdleSoonAfterItWasStopped) {
   write(testing::manyImages(40, 1024));
-  Loader loader(open(), 3);
+  Loader loader(open(), threads_, 3);
   loader.waitForMore();
   EXPECT_FALSE(loader.idle()) << "there is more than its memory holds";
   loader.stop();
@@ -301,7 +304,7 @@ TEST_F(LoaderTest, PartsOfABundleAreAllOfItEachOnceInAnOrderThatShows) {
       EXPECT_GT(step.bytes, 0u);
       all.insert(all.end(), step.work.begin(), step.work.end());
     }
-  Loader loader(reader, all, 2);
+  Loader loader(reader, all, threads_, 2);
   std::vector<std::string> found = names(drain(loader, 1 << 20));
   EXPECT_FALSE(loader.error());
   std::vector<std::string> expected = kInOrder;
@@ -321,7 +324,7 @@ TEST_F(LoaderTest, PartsOfABundleAreAllOfItEachOnceInAnOrderThatShows) {
 
 TEST_F(LoaderTest, FinishesAnEmptyBundleAtOnce) {
   write(Sample{});
-  Loader loader(open(), 4);
+  Loader loader(open(), threads_, 4);
   EXPECT_TRUE(loader.finished());
   loader.waitForMore();
   EXPECT_TRUE(loader.take(1 << 20).empty());

@@ -46,6 +46,7 @@ class VolumeLoading : public ::testing::Test {
   }
 
   testing::TemporaryFolder folder_;
+  KeptThreads threads_;
 };
 
 }  // namespace
@@ -56,7 +57,7 @@ TEST_F(VolumeLoading, BringsGridsAsTheyWereWrittenBeforeImagesAndTransfer) {
     BuiltVolume volume = waves();
     volume.bits = bits;
     const std::uint32_t group = lambent::testing::addVolume(sample.description, sample.blobs, volume);
-    Loader loader(write(sample), 3);
+    Loader loader(write(sample), threads_, 3);
     const std::vector<Ready> items = drain(loader);
     ASSERT_FALSE(loader.error()) << loader.error()->line();
     const auto placeOf = [&](const auto& is) {
@@ -86,7 +87,7 @@ TEST_F(VolumeLoading, RefusesVoxelsThatAreNotInOrder) {
   std::swap(voxels[3], voxels[9]);
   const bundle::VolumeGrid& grid = *sample.description.groups[group].volume;
   sample.blobs[sample.description.payloads[grid.voxels].view] = bundle::encodeVoxels(voxels);
-  Loader loader(write(sample), 2);
+  Loader loader(write(sample), threads_, 2);
   drain(loader);
   ASSERT_TRUE(loader.error());
   EXPECT_NE(loader.error()->line().find("voxels"), std::string::npos) << loader.error()->line();
