@@ -47,8 +47,8 @@ struct BakeOptions {
   // Of glossy transfer, where bytes are dear: the same if it was given, else the quality's own.
   float effectiveGlossyErrorBound() const;
   // Where few components of bounced light leave out more than so many times that bound, all of them are coded
-  // to as much; 0: never, as with a bound that was given, which is kept at any price. It takes many times as
-  // long as all else, so at high quality only.
+  // to as much; 0: never, as with a bound that was given, which is kept at any price, and for drafts: it may
+  // take as long as all else.
   float glossyLooseness() const;
   float effectiveRefineBound() const;
   // Bands of the light at points that rays meet, of which what leaves them is made: more than glossyOrder,

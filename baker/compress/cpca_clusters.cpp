@@ -65,6 +65,30 @@ void keepAxesOf(Cluster& cluster, double step) {
   }
 }
 
+// Of a block of samples that begins with sample `begin`, by cluster: those that may belong there, for it is
+// near, or was their own before, or that of the sample before. distances: column per sample.
+std::vector<std::vector<std::uint32_t>> candidates(const Eigen::MatrixXf& distances,
+                                                   std::span<const std::uint32_t> before, std::size_t begin) {
+  std::vector<std::vector<std::uint32_t>> samples(static_cast<std::size_t>(distances.rows()));
+  std::vector<std::uint32_t> order(samples.size());
+  for (std::uint32_t s = 0; s < distances.cols(); ++s) {
+    const auto own = distances.col(s);
+    std::iota(order.begin(), order.end(), 0u);
+    const auto last = order.begin() + static_cast<std::ptrdiff_t>(std::min(kNearest, order.size()));
+    std::partial_sort(order.begin(), last, order.end(), [&](std::uint32_t a, std::uint32_t b) {
+      return own(a) != own(b) ? own(a) < own(b) : a < b;
+    });
+    const auto add = [&](std::uint32_t c) {
+      if (samples[c].empty() || samples[c].back() != s) samples[c].push_back(s);
+    };
+    std::for_each(order.begin(), last, add);
+    if (before.empty()) continue;
+    add(before[begin + s]);
+    if (begin + s > 0) add(before[begin + s - 1]);
+  }
+  return samples;
+}
+
 }  // namespace
 
 double axisGrid(Eigen::Index rank, double variance, double step) {
@@ -122,11 +146,11 @@ std::vector<Cluster> fitClusters(const Points& points, ClusterIds& ids, bool hel
     Eigen::VectorXd sum = Eigen::VectorXd::Zero(points.rows());
     for (const std::uint32_t s : own) sum += points.col(s).cast<double>();
     cluster.mean = (sum / cluster.count).cast<float>();
-    const Spectrum spectrum = spectrumOf(secondMoment(points, own, cluster.mean));
+    const Spectrum spectrum = spectrumAbout(points, own, cluster.mean);
     cluster.axes = spectrum.axes.cast<float>();
     cluster.variances = spectrum.variances;
     // Differences between neighbours of the cluster, along the axes.
-    Eigen::VectorXd squares = Eigen::VectorXd::Zero(points.rows());
+    Eigen::VectorXd squares = Eigen::VectorXd::Zero(cluster.axes.cols());
     Points block(points.rows(), static_cast<Eigen::Index>(kBlock));
     for (std::size_t first = 1; first < own.size(); first += kBlock) {
       const std::size_t last = std::min(own.size(), first + kBlock);
@@ -182,7 +206,6 @@ double stepFor(std::vector<Cluster>& clusters, double budget) {
 ClusterIds assignClusters(const Points& points, const std::vector<Cluster>& clusters, double step,
                           std::span<const std::uint32_t> before) {
   struct Prepared {
-    Eigen::MatrixXf axes;    // kept ones, transposed
     Eigen::VectorXf spread;  // price of a weight's distance from 0
     float cost = 0.0f;
   };
@@ -194,7 +217,6 @@ ClusterIds assignClusters(const Points& points, const std::vector<Cluster>& clus
   for (std::size_t c = 0; c < clusters.size(); ++c) {
     const Cluster& cluster = clusters[c];
     means.col(static_cast<Eigen::Index>(c)) = cluster.mean;
-    prepared[c].axes = cluster.axes.leftCols(cluster.kept).transpose();
     prepared[c].spread.resize(cluster.kept);
     double cost = 0.0;
     for (Eigen::Index j = 0; j < cluster.kept; ++j) {
@@ -215,41 +237,31 @@ ClusterIds assignClusters(const Points& points, const std::vector<Cluster>& clus
   const Eigen::VectorXf norms = means.colwise().squaredNorm();
   ClusterIds ids(static_cast<std::size_t>(points.cols()));
   parallelRanges(ids.size(), kGrain, {}, [&](std::size_t begin, std::size_t end) {
-    const Eigen::MatrixXf near =
-        (-2.0f * means.transpose() *
-         points.middleCols(static_cast<Eigen::Index>(begin), static_cast<Eigen::Index>(end - begin)))
-            .colwise() +
-        norms;
-    std::vector<std::uint32_t> order(clusters.size());
-    Eigen::VectorXf off, weights;
-    for (std::size_t s = begin; s < end; ++s) {
-      const auto distances = near.col(static_cast<Eigen::Index>(s - begin));
-      std::iota(order.begin(), order.end(), 0u);
-      const std::size_t tried = std::min(kNearest, order.size());
-      std::partial_sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(tried), order.end(),
-                        [&](std::uint32_t a, std::uint32_t b) {
-                          return distances(a) != distances(b) ? distances(a) < distances(b) : a < b;
-                        });
-      float best = std::numeric_limits<float>::infinity();
-      const auto point = points.col(static_cast<Eigen::Index>(s));
-      const auto consider = [&](std::uint32_t c) {
-        off = point - clusters[c].mean;
-        weights.noalias() = prepared[c].axes * off;
-        float cost = off.squaredNorm() - weights.squaredNorm() + prepared[c].cost +
-                     weights.cwiseAbs2().dot(prepared[c].spread);
+    const auto block =
+        points.middleCols(static_cast<Eigen::Index>(begin), static_cast<Eigen::Index>(end - begin));
+    const auto tried = candidates((-2.0f * means.transpose() * block).colwise() + norms, before, begin);
+    std::vector<float> best(end - begin, std::numeric_limits<float>::infinity());
+    Eigen::MatrixXf off, weights;
+    for (std::uint32_t c = 0; c < clusters.size(); ++c) {
+      const std::vector<std::uint32_t>& samples = tried[c];
+      const auto count = static_cast<Eigen::Index>(samples.size());
+      if (count == 0) continue;
+      off.resize(points.rows(), count);
+      for (Eigen::Index m = 0; m < count; ++m)
+        off.col(m) = block.col(samples[static_cast<std::size_t>(m)]) - clusters[c].mean;
+      weights.noalias() = clusters[c].axes.leftCols(clusters[c].kept).transpose() * off;
+      for (Eigen::Index m = 0; m < count; ++m) {
+        const std::uint32_t in_block = samples[static_cast<std::size_t>(m)];
+        const std::size_t s = begin + in_block;
+        float cost = off.col(m).squaredNorm() - weights.col(m).squaredNorm() + prepared[c].cost +
+                     weights.col(m).cwiseAbs2().dot(prepared[c].spread);
         // Neighbours in one cluster cost almost nothing to name.
         if (!before.empty() &&
             !((s > 0 && before[s - 1] == c) || (s + 1 < before.size() && before[s + 1] == c)))
           cost += name;
-        if (cost < best || (cost == best && c < ids[s])) {
-          best = cost;
-          ids[s] = c;
-        }
-      };
-      for (std::size_t t = 0; t < tried; ++t) consider(order[t]);
-      if (!before.empty()) {
-        consider(before[s]);
-        if (s > 0) consider(before[s - 1]);
+        if (cost >= best[in_block]) continue;
+        best[in_block] = cost;
+        ids[s] = c;
       }
     }
   });

@@ -17,7 +17,7 @@ namespace lambent::baker {
 struct Cluster {
   double count = 0.0;
   Eigen::VectorXf mean;
-  Eigen::MatrixXf axes;        // all, by falling variance
+  Eigen::MatrixXf axes;        // all that samples of the cluster span, by falling variance
   Eigen::VectorXd variances;   // of the weights of each axis
   Eigen::VectorXd innovation;  // mean square of what a weight's predecessor does not foretell
   Eigen::Index kept = 0;       // axes worth their bits at the step that keepAxes was given

@@ -1,6 +1,7 @@
 #include "baker/compress/cpca_spectrum.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -16,6 +17,7 @@ namespace {
 constexpr Eigen::Index kBlock = 256;        // samples gathered for one matrix product
 constexpr Eigen::Index kShortPoints = 320;  // up to here all components cost little
 constexpr Eigen::Index kFirstSketch = 64;   // components looked for at first; then twice as many, and so on
+constexpr double kOnlyRounding = 1e-12;     // of the largest variance: points are floats
 
 // A number with mean 0 and variance 1 from a counter (splitmix64); two-valued numbers sketch as well as
 // normal ones.
@@ -47,6 +49,15 @@ Eigen::MatrixXf orthonormal(const Eigen::MatrixXf& columns) {
   return qr.householderQ() * Eigen::MatrixXf::Identity(columns.rows(), columns.cols());
 }
 
+// Of each, the largest coordinate is positive.
+void setSigns(Eigen::MatrixXd& axes) {
+  for (Eigen::Index j = 0; j < axes.cols(); ++j) {
+    Eigen::Index largest = 0;
+    axes.col(j).cwiseAbs().maxCoeff(&largest);
+    if (axes(largest, j) < 0.0) axes.col(j) *= -1.0;
+  }
+}
+
 }  // namespace
 
 Spectrum leadingSpectrum(const Points& points, double tail, Eigen::Index most, double& left_out) {
@@ -76,11 +87,29 @@ Spectrum leadingSpectrum(const Points& points, double tail, Eigen::Index most, d
 Spectrum spectrumOf(const Eigen::MatrixXd& covariance) {
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(covariance);
   Spectrum spectrum{solver.eigenvectors().rowwise().reverse(), solver.eigenvalues().reverse().cwiseMax(0.0)};
-  for (Eigen::Index j = 0; j < spectrum.axes.cols(); ++j) {
-    Eigen::Index largest = 0;
-    spectrum.axes.col(j).cwiseAbs().maxCoeff(&largest);
-    if (spectrum.axes(largest, j) < 0.0) spectrum.axes.col(j) *= -1.0;
-  }
+  setSigns(spectrum.axes);
+  return spectrum;
+}
+
+Spectrum spectrumAbout(const Points& points, std::span<const std::uint32_t> members,
+                       const Eigen::VectorXf& centre) {
+  const auto count = static_cast<Eigen::Index>(members.size());
+  if (count >= points.rows()) return spectrumOf(secondMoment(points, members, centre));
+  // With x/sqrt(count) as columns of X, X Xᵀ and the smaller Xᵀ X have the same eigenvalues but for zeros,
+  // and where v is an eigenvector of the second, X v is one of the first.
+  Eigen::MatrixXd own(points.rows(), count);
+  for (Eigen::Index m = 0; m < count; ++m)
+    own.col(m) = (points.col(members[static_cast<std::size_t>(m)]) - centre).cast<double>();
+  own /= std::sqrt(static_cast<double>(count));
+  Eigen::MatrixXd products = Eigen::MatrixXd::Zero(count, count);
+  products.selfadjointView<Eigen::Lower>().rankUpdate(own.transpose());
+  Spectrum spectrum = spectrumOf(products.selfadjointView<Eigen::Lower>());
+  Eigen::Index some = 0;
+  while (some < count && spectrum.variances(some) > kOnlyRounding * spectrum.variances(0)) ++some;
+  spectrum.variances.conservativeResize(some);
+  spectrum.axes = own * spectrum.axes.leftCols(some);
+  spectrum.axes.colwise().normalize();
+  setSigns(spectrum.axes);
   return spectrum;
 }
 

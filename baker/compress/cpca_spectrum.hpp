@@ -27,6 +27,11 @@ Spectrum spectrumOf(const Eigen::MatrixXd& covariance);
 // of random numbers. In `left_out`: the mean square that is in none of the components returned.
 Spectrum leadingSpectrum(const Points& points, double tail, Eigen::Index most, double& left_out);
 
+// Of members (one at least) about `centre`, their mean. Where they are fewer than coordinates there are no
+// more axes than they span: none whose variance is only rounding.
+Spectrum spectrumAbout(const Points& points, std::span<const std::uint32_t> members,
+                       const Eigen::VectorXf& centre);
+
 // Mean over `members` (all samples where empty) of x xᵀ; x about `centre` where that is not empty.
 Eigen::MatrixXd secondMoment(const Points& points, std::span<const std::uint32_t> members,
                              const Eigen::VectorXf& centre);
