@@ -17,6 +17,7 @@
 #include "baker/effects/diffuse/payloads.hpp"
 #include "baker/effects/glossy/glossy_bounces.hpp"
 #include "baker/effects/glossy/glossy_direct.hpp"
+#include "baker/effects/glossy/inside_faces.hpp"
 #include "baker/effects/glossy/payloads.hpp"
 #include "baker/effects/neighborhood/surface_body.hpp"
 #include "baker/proxy/capture_proxy.hpp"
@@ -46,6 +47,7 @@ struct Transported {
   DirectResult direct;
   std::optional<GlossyDirect> glossy;  // where there are glossy samples
   std::optional<BounceResult> bounced;
+  std::size_t inside_faces = 0;  // glossy samples at which bounces were gathered beside those of vertices
 };
 
 // What making it cost, and what it came to.
@@ -99,7 +101,8 @@ std::optional<Transported> transport(const DiffuseScene& scene, const SurfaceBrd
       figures.glossy_rays += fit->rays, figures.glossy_rays_kept += fit->rays_kept;
     }
     if (!plainFromGlossy(*glossy_pass, light.glossy->field, light.direct, stop)) return std::nullopt;
-    group.hit_bytes = std::max<std::uint64_t>(group.hit_bytes, light.glossy->hits.bytes());
+    const std::uint64_t inside = light.glossy->inside ? light.glossy->inside->hits().bytes() : 0;
+    group.hit_bytes = std::max<std::uint64_t>(group.hit_bytes, light.glossy->hits.bytes() + inside);
     group.glossy_samples = light.glossy->field.size();
   }
   if (!bounces) return light;
@@ -119,6 +122,8 @@ std::optional<Transported> transport(const DiffuseScene& scene, const SurfaceBrd
   if (partner) {
     partner->finish();
     light.glossy->hits = HitStore();
+    if (light.glossy->inside) light.inside_faces = light.glossy->inside->size();
+    light.glossy->inside.reset();
   }
   light.direct.hits = HitStore();
   group.pass_energy = light.bounced->energy;
@@ -352,7 +357,7 @@ Result<BakedGroup> bakeGroup(const Scene& scene, const RigidGroup& group, LightS
     if (!bakeAround(around, body, bounds, progress, stop, around_keep, report, baked.neighborhood))
       return stopped();
   }
-  if (cache && options.bounces != 0) dropBounces(view, {cache, keys.bounces});
+  if (cache && options.bounces != 0) dropBounces(view, light->inside_faces, {cache, keys.bounces});
   return baked;
 }
 

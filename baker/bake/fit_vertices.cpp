@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "baker/effects/diffuse/vertex_fit.hpp"
+#include "baker/effects/glossy/inside_faces.hpp"
 #include "baker/transport/face_points.hpp"
 
 namespace lambent::baker {
@@ -21,10 +22,6 @@ DirectSettings settingsInside(const DirectSettings& settings) {
   inside.keep_hits = false;
   inside.hit_memory = 0;
   return inside;
-}
-
-DiffuseScene withSamples(const DiffuseScene& scene, const SampleSet& samples) {
-  return {scene.scene, scene.geometry, samples, scene.rays, scene.colors, scene.lights};
 }
 
 // Values of a stretch, `width` each, to what rays from inside the faces found.
@@ -52,7 +49,7 @@ std::optional<FitFigures> fitDiffuse(const DirectPass& pass, const DiffuseScene&
   if (triangles.empty()) return FitFigures{};
   const FacePoints points = facePoints(scene.geometry, scene.samples, triangles);
   progress.begin("inside faces", points.samples.size(), "samples");
-  const DiffuseScene inside = withSamples(scene, points.samples);
+  const DiffuseScene inside = scene.withSamples(points.samples);
   const auto found = bakeDirect(DirectPass(inside, settingsInside(pass.settings())), inside, progress, stop,
                                 keepInside(keep, triangles));
   if (!found) return std::nullopt;
@@ -85,24 +82,16 @@ std::optional<FitFigures> fitGlossy(const GlossyPass& pass, GlossyDirect& glossy
   const auto triangles =
       changingTriangles(scene.geometry, scene.samples, stretch, field.visibilitySize(), field.visibility);
   if (triangles.empty()) return FitFigures{};
-  const FacePoints points = facePoints(scene.geometry, scene.samples, triangles);
-  const DiffuseScene inside = withSamples(scene, points.samples);
-  const DirectPass plain_pass(inside, settingsInside(pass.plain().settings()));
-  const GlossyPass glossy_pass(plain_pass, inside, field.order_out);
-  progress.begin("inside faces", points.samples.size(), "samples");
-  SampleLooks looks{std::vector<std::uint8_t>(points.samples.size(), 0),
-                    std::vector<std::uint8_t>(points.samples.size(), 0)};
-  const auto found = bakeGlossyDirect(glossy_pass, 0, looks, progress, stop, keepInside(keep, triangles));
+  const auto inside = std::make_shared<GlossyInsideFaces>(pass, triangles);
+  progress.begin("inside faces", inside->size(), "samples");
+  const auto found = inside->look(glossy.hits.bytesLeft(), progress, stop, keepInside(keep, triangles));
   if (!found) return std::nullopt;
-  const FitFigures figures{points.samples.size(), found->rays, found->rays_kept, progress.now().seconds};
-  const VertexFit vertices(scene.geometry, scene.samples, stretch, points, {0, points.samples.size()},
-                           looks.valid);
-  const auto fit = [&](std::vector<float>& values, const std::vector<float>& at_points) {
-    return values.empty() || vertices.apply(values.size() / field.size(), at_points, values, stop);
-  };
-  const bool fitted = fit(field.visibility, found->field.visibility) &&
-                      fit(field.lights_shadowed, found->field.lights_shadowed);
-  return fitted ? std::optional(figures) : std::nullopt;
+  const FitFigures figures{inside->size(), found->rays, found->rays_kept, progress.now().seconds};
+  if (!inside->fit(found->field.visibility, field.visibility, stop) ||
+      !inside->fit(found->field.lights_shadowed, field.lights_shadowed, stop))
+    return std::nullopt;
+  if (pass.plain().settings().keep_hits) glossy.inside = inside;
+  return figures;
 }
 
 }  // namespace lambent::baker

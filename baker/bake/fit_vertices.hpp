@@ -1,6 +1,6 @@
 // Direct light at the vertices as interpolation over faces shows it best: rays from inside the faces over
 // which it changes, and a least-squares fit to what they see (effects/diffuse/vertex_fit.hpp). Bounces gather
-// from the fitted values, and add what they bring at the vertices.
+// from the fitted values; what they bring to matte samples is added at the vertices.
 #pragma once
 
 #include <cstdint>
@@ -24,7 +24,8 @@ struct FitFigures {
 // "inside faces" of `progress`, counting samples. The result does not depend on the number of threads.
 std::optional<FitFigures> fitDiffuse(const DirectPass& pass, const DiffuseScene& scene, DirectResult& direct,
                                      Progress& progress, const std::stop_token& stop, const Keep& keep = {});
-// Of glossy samples.
+// Of glossy samples. Where hits are kept for bounces, those of the points are, too, in what is left of the
+// memory for hits, and glossy.inside has them.
 std::optional<FitFigures> fitGlossy(const GlossyPass& pass, GlossyDirect& glossy, Progress& progress,
                                     const std::stop_token& stop, const Keep& keep = {});
 

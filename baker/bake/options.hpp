@@ -33,8 +33,9 @@ struct BakeOptions {
   // Where shadows change, edges are split until interpolation errs by less than this, relative RMS against
   // open light; 0: nowhere; under 0: the quality's.
   float refine_bound = -1.0f;
-  // Direct light at vertices is what interpolation over the faces shows best (bake/fit_vertices.hpp), not
-  // what the vertices see; none: of glossy surfaces, but for drafts.
+  // Light at vertices is what interpolation over the faces shows best (bake/fit_vertices.hpp), not what the
+  // vertices see: of glossy surfaces direct and bounced light, of matte ones direct light; none: of glossy
+  // surfaces alone, but for drafts.
   std::optional<bool> fit = {};
   int light_samples = 0;       // of each cell, 1..32; 0: auto, by how near light comes (local_light.hpp)
   glm::uvec3 volume_grid{32};  // voxels of a volume's transfer, 1..256 along each axis

@@ -317,9 +317,9 @@ void addFitOption(CLI::App& command, BakeOptions& options) {
           [&options](const std::string& text) {
             options.fit = text == "auto" ? std::optional<bool>() : std::optional(text == "on");
           },
-          "Fit direct light at vertices to what rays from inside the faces see, so that interpolation "
-          "shows faces best: on, off (what the vertices see) or auto (default): on glossy surfaces, but for "
-          "drafts")
+          "Fit light at vertices to what rays from inside the faces see, so that interpolation shows faces "
+          "best, of matte surfaces direct light alone: on, off (what the vertices see) or auto (default): on "
+          "glossy surfaces, but for drafts")
       ->check(CLI::IsMember({"auto", "on", "off"}))
       ->type_name("auto|on|off");
 }

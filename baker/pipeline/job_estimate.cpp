@@ -67,15 +67,22 @@ StageSeconds scaleSeconds(std::span<const Progress::Stage> stages, const BakeOpt
   StageSeconds seconds;
   for (const Progress::Stage& stage : stages)
     seconds[stage.name] += stage.seconds * growth(stage.name, of, to);
-  // Triangles are twice as many as vertices, and most of them may be looked from.
-  const auto shadows = seconds.find("glossy shadows");
-  if (shadows != seconds.end() && to.fitsGlossy() && !of.fitsGlossy())
-    seconds.try_emplace("inside faces", 2.0 * shadows->second);
   // More passes than there were cost about what the last one did.
   const int bounces = to.bounces < 0 ? kGuessedBounces : to.bounces;
-  for (int bounce = 2; bounce <= bounces; ++bounce) {
-    const auto before = seconds.find(fmt::format("bounce {}", bounce - 1));
-    if (before != seconds.end()) seconds.try_emplace(fmt::format("bounce {}", bounce), before->second);
+  for (int bounce = 2; bounce <= bounces; ++bounce)
+    for (const char* where : {"", " inside faces"}) {
+      const auto before = seconds.find(fmt::format("bounce {}{}", bounce - 1, where));
+      if (before != seconds.end())
+        seconds.try_emplace(fmt::format("bounce {}{}", bounce, where), before->second);
+    }
+  // Triangles are twice as many as vertices, and most of them may be looked from.
+  const auto shadows = seconds.find("glossy shadows");
+  if (shadows == seconds.end() || !to.fitsGlossy() || of.fitsGlossy()) return seconds;
+  seconds.try_emplace("inside faces", 2.0 * shadows->second);
+  for (int bounce = 1; bounce <= bounces; ++bounce) {
+    const auto found = seconds.find(fmt::format("bounce {}", bounce));
+    if (found != seconds.end())
+      seconds.try_emplace(fmt::format("bounce {} inside faces", bounce), 2.0 * found->second);
   }
   return seconds;
 }

@@ -44,6 +44,7 @@ Result<SurfaceColors> SurfaceColors::load(const Scene& scene, const GroupGeometr
         .emissive_texture = {},
         .light = kNoLight,
         .colored_vertices = false,
+        .glossy = draw.kind == SampleKind::Glossy,
         .base_alpha = material.base_color.w,
         .alpha_cutoff = material.alpha_mode == gltf::AlphaMode::Mask ? material.alpha_cutoff : 0.0f,
         .alpha_mode = material.alpha_mode};

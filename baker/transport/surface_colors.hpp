@@ -33,6 +33,8 @@ class SurfaceColors {
   float coverage(std::uint32_t triangle, float u, float v) const;
   // Column of the light that this triangle gives off; kNoLight where it gives off none.
   std::uint32_t lightOf(std::uint32_t triangle) const { return surfaceOf(triangle).light; }
+  // Has glossy samples: reflects even where it is black.
+  bool glossy(std::uint32_t triangle) const { return surfaceOf(triangle).glossy; }
 
   // Red, green and blue are the same wherever light is reflected or given off at unit strength: one channel
   // of transfer tells all.
@@ -49,7 +51,7 @@ class SurfaceColors {
     glm::vec3 base_color{0.0f};
     Texture base_texture, emissive_texture;
     std::uint32_t light = kNoLight;
-    bool colored_vertices = false;
+    bool colored_vertices = false, glossy = false;
     float base_alpha = 1.0f, alpha_cutoff = 0.0f;  // cutoff 0: not cut out
     gltf::AlphaMode alpha_mode = gltf::AlphaMode::Opaque;
   };

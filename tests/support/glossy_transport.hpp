@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "baker/effects/glossy/glossy_bounces.hpp"
+#include "baker/effects/glossy/inside_faces.hpp"
 #include "runtime/sh/zonal.hpp"
 #include "tests/support/shapes.hpp"
 #include "tests/support/transport.hpp"
@@ -15,7 +16,11 @@ struct GlossyBake {
   baker::DirectResult direct;
   baker::GlossyDirect glossy;  // with bounces, all of its field
   baker::BounceResult bounced;
+  std::size_t hits_inside = 0;  // bytes, of points inside faces
 };
+
+// What is gathered inside all faces, too, and fitted.
+enum class Fit { Nothing, DirectLight, AllLight };
 
 struct GlossyBakeSettings {
   int order = 5, order_out = 5;
@@ -24,6 +29,7 @@ struct GlossyBakeSettings {
   int bounces = 0;
   std::size_t hit_memory = std::size_t{1} << 30;
   double tail_error = 1e-3;
+  Fit fit = Fit::Nothing;
 };
 
 inline GlossyBake bakeGlossy(const Transport& t, const baker::ExitKernels& kernels,
@@ -41,6 +47,16 @@ inline GlossyBake bakeGlossy(const Transport& t, const baker::ExitKernels& kerne
   EXPECT_TRUE(direct.has_value());
   auto glossy = baker::bakeGlossyDirect(pass, settings.hit_memory, direct->looks, progress, {});
   EXPECT_TRUE(glossy.has_value());
+  if (settings.fit != Fit::Nothing) {
+    std::vector<std::uint32_t> triangles;
+    for (std::uint32_t i = 0; i < t.geometry.triangles.size(); ++i)
+      if (t.samples.vertex_sample[t.geometry.triangles[i].x] >= t.samples.first_glossy)
+        triangles.push_back(i);
+    const auto inside = std::make_shared<baker::GlossyInsideFaces>(pass, triangles);
+    const auto found = inside->look(glossy->hits.bytesLeft(), progress, {}, {});
+    EXPECT_TRUE(found && inside->fit(found->field.visibility, glossy->field.visibility, {}));
+    if (settings.fit == Fit::AllLight) glossy->inside = inside;
+  }
   EXPECT_TRUE(baker::plainFromGlossy(pass, glossy->field, *direct, {}));
   GlossyBake bake{std::move(*direct), std::move(*glossy), {}};
   if (settings.bounces == 0) return bake;
@@ -50,6 +66,8 @@ inline GlossyBake bakeGlossy(const Transport& t, const baker::ExitKernels& kerne
   EXPECT_TRUE(bounced.has_value());
   partner.finish();
   bake.bounced = std::move(*bounced);
+  if (bake.glossy.inside) bake.hits_inside = bake.glossy.inside->hits().bytes();
+  bake.glossy.inside.reset();  // it refers to the pass
   return bake;
 }
 

@@ -219,12 +219,13 @@ std::optional<BounceResult> bakeBounces(const DirectPass& pass, const DirectResu
   return result;
 }
 
-void dropBounces(const DiffuseScene& scene, const Keep& keep) {
+void dropBounces(const DiffuseScene& scene, std::size_t inside_faces, const Keep& keep) {
   const std::size_t plain = scene.samples.first_glossy, glossy = scene.samples.size() - plain;
   for (int bounce = 1; bounce <= kMostBounces; ++bounce) {
     const Keep pass = keep.part("pass", bounce);
     dropRanges(pass, plain, kSamplesGathered);
     dropRanges(pass.part("glossy"), glossy, kSamplesGathered);
+    dropRanges(pass.part("glossy").part("inside faces"), inside_faces, kSamplesGathered);
   }
 }
 

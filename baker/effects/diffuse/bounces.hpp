@@ -38,6 +38,7 @@ std::optional<BounceResult> bakeBounces(const DirectPass& pass, const DirectResu
                                         const DiffuseScene& scene, const BounceSettings& settings,
                                         Progress& progress, const std::stop_token& stop,
                                         BouncePartner* partner = nullptr, const Keep& keep = {});
-void dropBounces(const DiffuseScene& scene, const Keep& keep);
+// inside_faces: samples of the partner there.
+void dropBounces(const DiffuseScene& scene, std::size_t inside_faces, const Keep& keep);
 
 }  // namespace lambent::baker

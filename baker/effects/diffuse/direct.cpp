@@ -147,7 +147,7 @@ std::uint64_t DirectPass::bake(std::size_t begin, std::size_t end, const std::st
 
 void DirectPass::traceAgain(std::size_t begin, std::size_t end, RangeHits& hits) const {
   hits.traceAgain(Walk(*this), begin, end);
-  paintHits(scene_.geometry, scene_.samples, scene_.colors, hits);
+  paintHits(scene_.colors, hits);
 }
 
 std::optional<DirectResult> bakeDirect(const DirectPass& pass, const DiffuseScene& scene, Progress& progress,

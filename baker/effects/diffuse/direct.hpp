@@ -32,6 +32,10 @@ struct DiffuseScene {
   const RayScene& rays;
   const SurfaceColors& colors;
   std::span<const PlannedLight> lights;
+
+  DiffuseScene withSamples(const SampleSet& others) const {
+    return {scene, geometry, others, rays, colors, lights};
+  }
 };
 
 struct DirectSettings {

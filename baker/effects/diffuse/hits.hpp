@@ -85,6 +85,7 @@ class HitStore {
   }
   const RangeHits& range(std::size_t index) const { return ranges_[index]; }
   std::size_t bytes() const { return held_; }
+  std::size_t bytesLeft() const { return limit_bytes_ - held_; }
 
  private:
   std::vector<RangeHits> ranges_;

@@ -42,8 +42,7 @@ void SampleLook::keepHits(RangeHits& out) const {
                         .v = GatherHit::unorm(hit.v)});
 }
 
-void paintHits(const GroupGeometry& geometry, const SampleSet& samples, const SurfaceColors& colors,
-               RangeHits& hits) {
+void paintHits(const SurfaceColors& colors, RangeHits& hits) {
   std::size_t left = 0;
   for (std::size_t s = 0; s + 1 < hits.offsets.size(); ++s) {
     const std::size_t begin = std::exchange(hits.offsets[s], static_cast<std::uint32_t>(left));
@@ -53,9 +52,7 @@ void paintHits(const GroupGeometry& geometry, const SampleSet& samples, const Su
       const glm::vec3 albedo = colors.albedo(hit.triangle, static_cast<float>(hit.u) * (1.0f / 65535.0f),
                                              static_cast<float>(hit.v) * (1.0f / 65535.0f));
       // What is glossy and black still mirrors.
-      if (albedo == glm::vec3(0.0f) &&
-          samples.vertex_sample[geometry.triangles[hit.triangle].x] < samples.first_glossy)
-        continue;
+      if (albedo == glm::vec3(0.0f) && !colors.glossy(hit.triangle)) continue;
       for (int c = 0; c < 3; ++c) hit.albedo[c] = GatherHit::unorm(albedo[c]);
       hits.hits[left++] = hit;
     }

@@ -52,7 +52,6 @@ class SampleLook {
 };
 
 // Looks up what the surfaces that were met reflect. Hits on those that reflect nothing are left out.
-void paintHits(const GroupGeometry& geometry, const SampleSet& samples, const SurfaceColors& colors,
-               RangeHits& hits);
+void paintHits(const SurfaceColors& colors, RangeHits& hits);
 
 }  // namespace lambent::baker

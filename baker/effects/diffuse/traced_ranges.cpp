@@ -18,7 +18,7 @@ TracedRanges::TracedRanges(const DiffuseScene& scene, std::size_t samples, bool 
       unpainted_(rays_.size()) {}
 
 void TracedRanges::offer(std::size_t range, RangeHits&& hits) {
-  paintHits(scene_.geometry, scene_.samples, scene_.colors, hits);
+  paintHits(scene_.colors, hits);
   store_.offer(range, std::move(hits));
 }
 

@@ -6,11 +6,13 @@
 #include <cmath>
 #include <cstring>
 
+#include <fmt/format.h>
 #include <glm/geometric.hpp>
 
 #include "baker/compress/light_weights.hpp"
 #include "baker/effects/diffuse/field_bytes.hpp"
 #include "baker/effects/diffuse/fill.hpp"
+#include "baker/effects/glossy/inside_faces.hpp"
 #include "baker/transport/frame.hpp"
 #include "baker/work/parallel.hpp"
 #include "runtime/sh/basis.hpp"
@@ -92,11 +94,11 @@ void contract(const float* kernels, std::size_t stride, std::size_t outputs, con
 // One thread's way through a range of samples.
 class GlossyBounces::Walk {
  public:
-  Walk(const GlossyBounces& bounces, const TransferField& before)
-      : pass_(bounces.pass_),
+  Walk(const GlossyPass& pass, int order_out, const TransferField& before)
+      : pass_(pass),
         before_(before),
-        outputs_from_local_(glm::dmat3(1.0), bounces.order_out_),
-        even_(evenHarmonicCount(bounces.order_out_)),
+        outputs_from_local_(glm::dmat3(1.0), order_out),
+        even_(evenHarmonicCount(order_out)),
         exits_(kBlock * before.vectorSize()) {}
 
   // Of one sample. Hits of rays in a row of `together` (raysTogether) share what leaves one of them.
@@ -236,51 +238,68 @@ void GlossyBounces::addExit(const GatherHit& hit, const glm::uvec3& corners, con
   }
 }
 
-bool GlossyBounces::gather(int bounce, bool thinly, const ExitRadiance& exit, const TransferField& before,
-                           TransferField& now, Progress& progress, const std::stop_token& stop,
-                           const Keep& keep) {
-  const std::size_t first = pass_.first();
+bool GlossyBounces::gatherAt(const Receivers& at, const Bounce& bounce, State& now, Progress& progress,
+                             const std::stop_token& stop, const Keep& keep) const {
+  const std::size_t first = at.pass.first();
   const double share = shareOfBefore();
-  now_ = zero();
-  now_.environment.values.assign(pass_.size() * now_.environment.sampleSize(), 0.0f);
-  now_.lights.values.assign(pass_.size() * now_.lights.sampleSize(), 0.0f);
+  now = zero();
+  now.environment.values.assign(at.pass.size() * now.environment.sampleSize(), 0.0f);
+  now.lights.values.assign(at.pass.size() * now.lights.sampleSize(), 0.0f);
   const auto gatherRange = [&](std::size_t begin, std::size_t end) {
-    const StoredHits hits(direct_.hits, pass_, begin, end);
-    Walk walk(*this, before);
+    const StoredHits hits(at.hits, at.pass, begin, end);
+    Walk walk(at.pass, order_out_, bounce.before);
     for (std::size_t s = begin; s < end; ++s) {
       const std::size_t sample = first + s;
-      const GlossyHemisphere& hemisphere = pass_.hemisphereOf(plain_.looks.closely[sample] != 0);
-      const ExitToSample to_sample(exit, hemisphere.table(), pass_.scene().samples.normals[sample], sample,
-                                   bounce, thinly);
-      walk.gather(sample, hits.of(s), raysTogether(share, hemisphere.table().size()), bounce, hemisphere,
-                  to_sample, s, now_);
+      const GlossyHemisphere& hemisphere = at.pass.hemisphereOf(at.looks.closely[sample] != 0);
+      const ExitToSample to_sample(bounce.exit, hemisphere.table(), at.pass.scene().samples.normals[sample],
+                                   sample, bounce.number, bounce.thinly);
+      walk.gather(sample, hits.of(s), raysTogether(share, hemisphere.table().size()), bounce.number,
+                  hemisphere, to_sample, s, now);
     }
     progress.add(end - begin);
   };
-  const std::size_t environment = now_.environment.sampleSize(), lights = now_.lights.sampleSize();
+  const std::size_t environment = now.environment.sampleSize(), lights = now.lights.sampleSize();
   const KeptRanges kept = keptRanges(
-      keep, pass_.size(), kSamplesGathered, stop,
+      keep, at.pass.size(), kSamplesGathered, stop,
       {.compute = gatherRange,
        .pack =
            [&](std::size_t begin, std::size_t end, ByteWriter& out) {
-             writeStretch(now_.environment.values, begin * environment, end * environment, out);
-             writeStretch(now_.lights.values, begin * lights, end * lights, out);
+             writeStretch(now.environment.values, begin * environment, end * environment, out);
+             writeStretch(now.lights.values, begin * lights, end * lights, out);
            },
        .unpack =
            [&](std::size_t begin, std::size_t end, ByteReader& in) {
              progress.add(end - begin);
-             return readStretch(in, begin * environment, end * environment, now_.environment.values) &&
-                    readStretch(in, begin * lights, end * lights, now_.lights.values);
+             return readStretch(in, begin * environment, end * environment, now.environment.values) &&
+                    readStretch(in, begin * lights, end * lights, now.lights.values);
            }},
       KeepWhen::Due);
-  if (!kept.finished) return false;
+  return kept.finished;
+}
+
+bool GlossyBounces::fitInside(const Bounce& bounce, Progress& progress, const std::stop_token& stop,
+                              const Keep& keep) {
+  const GlossyInsideFaces& inside = *direct_.inside;
+  progress.begin(fmt::format("bounce {} inside faces", bounce.number), inside.size(), "samples");
+  State there;
+  return gatherAt({inside.pass(), inside.hits(), inside.looks()}, bounce, there, progress, stop, keep) &&
+         inside.fit(there.environment.values, now_.environment.values, stop) &&
+         inside.fit(there.lights.values, now_.lights.values, stop);
+}
+
+bool GlossyBounces::gather(int number, bool thinly, const ExitRadiance& exit, const TransferField& before,
+                           TransferField& now, Progress& progress, const std::stop_token& stop,
+                           const Keep& keep) {
+  const Bounce bounce{number, thinly, exit, before};
+  if (!gatherAt({pass_, direct_.hits, plain_.looks}, bounce, now_, progress, stop, keep)) return false;
   if (!edges_.empty()) {
-    fillStretchFromNeighbours(edges_, plain_.looks.valid, first, now_.environment.sampleSize(),
+    fillStretchFromNeighbours(edges_, plain_.looks.valid, pass_.first(), now_.environment.sampleSize(),
                               now_.environment.values);
     if (now_.lights.columns > 0)
-      fillStretchFromNeighbours(edges_, plain_.looks.valid, first, now_.lights.sampleSize(),
+      fillStretchFromNeighbours(edges_, plain_.looks.valid, pass_.first(), now_.lights.sampleSize(),
                                 now_.lights.values);
   }
+  if (direct_.inside && !fitInside(bounce, progress, stop, keep.part("inside faces"))) return false;
   if (sum_.environment.values.empty()) {
     sum_ = zero();
     sum_.environment.values.assign(now_.environment.values.size(), 0.0f);

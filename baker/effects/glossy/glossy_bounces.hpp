@@ -7,8 +7,11 @@
 // What leaves a point after direct light is made of all bands that the pass has, which may be more than
 // order_out: the kernel of a sharp surface meets edges of shadows there, which few bands do not have
 // (decisions/049). What later passes bring has order_out bands.
-// Memory at its most: twice `bounced` (2.5 KB x channels per sample for 5 x 5), and once more, or in the
-// first pass what a matrix of the pass's bands takes (4.9 KB for 7 x 5).
+// Where direct light was fitted to points inside faces, what each pass brings is fitted to what it brings
+// there, before the next one begins. Memory at its most: twice `bounced` (2.5 KB x channels per sample for 5
+// x 5), and once more, or in the first pass what a matrix of the pass's bands takes (4.9 KB for 7 x 5); and
+// as much as `bounced` for the points inside faces while a pass is fitted to them, in the first one in place
+// of one of the two.
 #pragma once
 
 #include "baker/effects/diffuse/bounces.hpp"
@@ -56,12 +59,30 @@ class GlossyBounces : public BouncePartner {
 
  private:
   class Walk;
+  // One pass.
+  struct Bounce {
+    int number;  // from 1 on
+    bool thinly;
+    const ExitRadiance& exit;
+    const TransferField& before;
+  };
+  // Where it gathers, and what the rays met there.
+  struct Receivers {
+    const GlossyPass& pass;
+    const HitStore& hits;
+    const SampleLooks& looks;
+  };
   // Of the environment, and of the lights of the group.
   struct State {
     GlossyMatrices environment, lights;
   };
   // Of order_out bands, without samples.
   State zero() const;
+  // What the pass brings to all samples of `at`; 0 where these see nothing. False if stopped.
+  bool gatherAt(const Receivers& at, const Bounce& bounce, State& now, Progress& progress,
+                const std::stop_token& stop, const Keep& keep) const;
+  // now_ is fitted to what it brings to the points inside faces.
+  bool fitInside(const Bounce& bounce, Progress& progress, const std::stop_token& stop, const Keep& keep);
   // What follows from `state`: its energies, and where asked for plain transfer in `plain` and the sum so
   // far.
   bool take(const State& state, TransferField* plain, const std::stop_token& stop);

@@ -156,7 +156,7 @@ std::uint64_t GlossyPass::bake(std::size_t begin, std::size_t end, const std::st
 
 void GlossyPass::traceAgain(std::size_t begin, std::size_t end, RangeHits& hits) const {
   hits.traceAgain(Walk(*this), begin, end);
-  paintHits(scene_.geometry, scene_.samples, scene_.colors, hits);
+  paintHits(scene_.colors, hits);
 }
 
 void plainTransfer(int order_out, glm::vec3 normal, std::span<const float> matrix, std::span<float> out) {

@@ -4,6 +4,7 @@
 //   t = Σ_k (A_l/pi) y_k(n) M_k.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <stop_token>
 
@@ -45,12 +46,16 @@ class GlossyPass {
   sh::GauntTable gaunt_;
 };
 
+class GlossyInsideFaces;
+
 struct GlossyDirect {
   GlossyField field;  // visibility and lights_shadowed
   HitStore hits;      // from first_glossy on
   std::uint64_t rays = 0;
   std::uint64_t rays_kept = 0;  // that what was found in the cache stands for
   std::uint32_t filled_samples = 0;
+  // Where it was fitted to points inside faces: these. Bounces are gathered there, too.
+  std::shared_ptr<const GlossyInsideFaces> inside = {};
 };
 
 // Nothing if stopped. Also fills in the glossy samples of `looks`, which is that of all samples. Progress

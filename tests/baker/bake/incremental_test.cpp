@@ -59,6 +59,7 @@ BakeOptions draft() {
   options.rays = 128;
   options.glossy_order = 4;
   options.bounces = 2;
+  options.fit = true;
   options.effects = "diffuse,glossy";  // neighborhoods look at what others do
   return options;
 }

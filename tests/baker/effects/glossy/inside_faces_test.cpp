@@ -1,0 +1,105 @@
+// Bounces that are gathered inside faces, too, and values at vertices fitted to what arrives there.
+#include "baker/effects/glossy/inside_faces.hpp"
+
+#include <algorithm>
+
+#include "baker/work/parallel.hpp"
+#include "tests/support/glossy_transport.hpp"
+
+namespace lambent::baker {
+namespace {
+
+using testing::bakeGlossy;
+using testing::Fit;
+using testing::flipped;
+using testing::GlossyBake;
+using testing::glossyScene;
+using testing::grid;
+using testing::icosphere;
+using testing::lambertKernels;
+using testing::Transport;
+using testing::uniformRadiance;
+
+// A floor and a ceiling, each of n x n cells, open at the sides.
+Scene slot(int n) {
+  return glossyScene({grid({0, 0, 0}, 1.0f, n), flipped(grid({0, 0.4f, 0}, 1.0f, n))});
+}
+
+// Bounced light at samples of `fine` against interpolation over the faces of `coarse`, both `width` values a
+// sample: relative RMS.
+double error(const Transport& coarse, const std::vector<float>& values, const Transport& fine,
+             const std::vector<float>& truth, std::size_t width) {
+  double wrong = 0.0, all = 0.0;
+  for (std::size_t s = 0; s < fine.samples.size(); ++s) {
+    const glm::vec3 at = fine.samples.positions[s];
+    for (const glm::uvec3& t : coarse.geometry.triangles) {
+      const glm::vec3 a = coarse.geometry.positions[t.x], b = coarse.geometry.positions[t.y],
+                      c = coarse.geometry.positions[t.z], across = glm::cross(b - a, c - a);
+      const float area = glm::dot(across, across);
+      if (coarse.geometry.normals[t.x] != fine.samples.normals[s]) continue;
+      const glm::vec3 shares(glm::dot(across, glm::cross(b - at, c - at)) / area,
+                             glm::dot(across, glm::cross(c - at, a - at)) / area,
+                             glm::dot(across, glm::cross(a - at, b - at)) / area);
+      if (std::min({shares.x, shares.y, shares.z}) < -1e-4f) continue;
+      for (std::size_t i = 0; i < width; ++i) {
+        double shown = 0.0;
+        for (int k = 0; k < 3; ++k)
+          shown += double{shares[k]} * double{values[coarse.samples.vertex_sample[t[k]] * width + i]};
+        const double is = truth[s * width + i];
+        wrong += (shown - is) * (shown - is), all += is * is;
+      }
+      break;
+    }
+  }
+  return std::sqrt(wrong / all);
+}
+
+TEST(GlossyInsideFaces, ABounceFittedThereIsThatOfAFinerMeshMoreThanWhatTheVerticesSee) {
+  const Transport coarse(slot(5), true), fine(slot(40), true);
+  const auto baked = [](const Transport& t, Fit fit) {
+    return bakeGlossy(t, lambertKernels(t), {.rays = 1024, .bounces = 1, .fit = fit}).glossy.field.bounced;
+  };
+  const std::vector<float> truth = baked(fine, Fit::Nothing);
+  const double without = error(coarse, baked(coarse, Fit::DirectLight), fine, truth, 625),
+               with = error(coarse, baked(coarse, Fit::AllLight), fine, truth, 625);
+  RecordProperty("without", std::to_string(without));
+  RecordProperty("with", std::to_string(with));
+  EXPECT_LT(with, 0.75 * without);
+}
+
+TEST(GlossyInsideFaces, OfAWhiteFurnaceLeaveUniformLightAsItIs) {
+  // All is white, above a white floor and beside it: of uniform light nothing is lost.
+  const Transport t(glossyScene({icosphere({0.3f, 0.1f, 0.1f}, 0.3f, 2), grid({0, -0.5f, 0}, 2.0f, 8)}),
+                    true);
+  const auto baked = bakeGlossy(t, lambertKernels(t),
+                                {.order = 4, .rays = 256, .bounces = kMostBounces, .fit = Fit::AllLight});
+  const GlossyField& field = baked.glossy.field;
+  for (std::size_t s = 0; s < field.size(); ++s) {
+    if (t.samples.originsOf(s).empty()) continue;
+    EXPECT_NEAR(uniformRadiance(baked.direct.field.at(s)) + uniformRadiance(baked.bounced.field.at(s)), 1.0f,
+                3e-3f);
+  }
+}
+
+TEST(GlossyInsideFaces, GiveTheSameBouncesForAnyMemoryAndNumberOfThreads) {
+  const Transport t(slot(8), true);
+  const auto baked = [&](std::size_t memory) {
+    return bakeGlossy(
+        t, lambertKernels(t, 7),
+        {.exit_order = 7, .rays = 128, .bounces = 3, .hit_memory = memory, .fit = Fit::AllLight});
+  };
+  const GlossyBake all = baked(std::size_t{1} << 30);
+  EXPECT_GT(all.hits_inside, 0u);
+  // Room for the vertices' hits and some of the points'; for none.
+  for (const std::size_t memory : {all.glossy.hits.bytes() + all.hits_inside / 2, std::size_t{0}}) {
+    const GlossyBake again = baked(memory);
+    EXPECT_LE(again.glossy.hits.bytes() + again.hits_inside, memory);
+    EXPECT_EQ(again.glossy.field.bounced, all.glossy.field.bounced);
+    EXPECT_EQ(again.bounced.field.vectors, all.bounced.field.vectors);
+  }
+  withThreads(1,
+              [&] { EXPECT_EQ(baked(std::size_t{1} << 30).glossy.field.bounced, all.glossy.field.bounced); });
+}
+
+}  // namespace
+}  // namespace lambent::baker
