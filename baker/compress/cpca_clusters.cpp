@@ -16,7 +16,8 @@ constexpr std::size_t kGrain = 1024;
 constexpr std::size_t kBlock = 256;     // samples gathered for one matrix product
 constexpr double kFewestMembers = 8.0;  // of a cluster; its mean and name are not worth it for fewer
 constexpr double kNamingPrice = 2.0;    // a change of cluster also breaks the prediction of weights
-constexpr std::size_t kNearest = 8;     // clusters tried per sample, by distance to their means
+constexpr double kLeastAxisShare = 0.2, kMostAxisShare = 1.5;
+constexpr std::size_t kNearest = 8;  // clusters tried per sample, by distance to their means
 
 // Entropy of a Gaussian weight of this variance in steps, and what the weight costs besides.
 double weightBits(double variance, double step, double least_bits) {
@@ -26,9 +27,9 @@ double weightBits(double variance, double step, double least_bits) {
 
 // Bits in the codebook of a unit vector known well enough for weights of this variance (axisGrid): those of
 // an integer of typical size, for each coordinate.
-double axisBits(Eigen::Index rank, double variance, double step) {
+double axisBits(Eigen::Index rank, double variance, double step, double count) {
   const auto coordinates = static_cast<double>(rank);
-  const double typical = 1.0 / (std::sqrt(coordinates) * axisGrid(rank, variance, step));
+  const double typical = 1.0 / (std::sqrt(coordinates) * axisGrid(rank, variance, step, count));
   return 40.0 + coordinates * (0.5 + 1.1 * std::log2(1.0 + typical));
 }
 
@@ -59,7 +60,7 @@ void keepAxesOf(Cluster& cluster, double step) {
     if (variance <= noise) break;
     const double bits =
         cluster.count * weightBits(std::min(variance, cluster.innovation(j)), step, cluster.least_bits) +
-        axisBits(cluster.axes.rows(), variance, step);
+        axisBits(cluster.axes.rows(), variance, step, cluster.count);
     if (cluster.count * (variance - noise) <= price * bits) break;
     cluster.kept = j + 1;
   }
@@ -91,8 +92,9 @@ std::vector<std::vector<std::uint32_t>> candidates(const Eigen::MatrixXf& distan
 
 }  // namespace
 
-double axisGrid(Eigen::Index rank, double variance, double step) {
-  return step * std::sqrt(0.2 / (static_cast<double>(rank) * variance));
+double axisGrid(Eigen::Index rank, double variance, double step, double count) {
+  const double share = std::clamp(static_cast<double>(rank) / count, kLeastAxisShare, kMostAxisShare);
+  return step * std::sqrt(share / (static_cast<double>(rank) * variance));
 }
 
 ClusterIds seedClusters(const Points& points, std::uint32_t clusters) {
@@ -276,7 +278,7 @@ double expectedBytes(const std::vector<Cluster>& clusters, double step, double c
     for (Eigen::Index j = 0; j < cluster.kept; ++j)
       bits += share * weightBits(std::min(cluster.variances(j), cluster.innovation(j)), step,
                                  cluster.least_bits) +
-              axisBits(cluster.axes.rows(), cluster.variances(j), step);
+              axisBits(cluster.axes.rows(), cluster.variances(j), step, share);
     bits += 8.0 * static_cast<double>(cluster.mean.size());
   }
   bits += count * 0.4 * std::log2(static_cast<double>(clusters.size()));

@@ -35,9 +35,10 @@ ClusterIds seedClusters(const Points& points, std::uint32_t clusters);
 std::vector<Cluster> fitClusters(const Points& points, ClusterIds& ids, bool held_out,
                                  double least_bits = 0.1);
 
-// How finely coordinates of a unit axis have to be known whose weights have this variance: errors of the
-// axis, times its weights, add a fifth to what quantization of the weights leaves.
-double axisGrid(Eigen::Index rank, double variance, double step);
+// How finely coordinates of a unit axis have to be known whose `count` weights have this variance. A bit less
+// on each number, coordinate or weight, should add the same error: so errors of the axis, times its weights,
+// add rank/count of what quantization of the weights leaves, within 0.2 and 1.5.
+double axisGrid(Eigen::Index rank, double variance, double step, double count);
 
 // Decides which axes are worth their bits.
 void keepAxes(std::vector<Cluster>& clusters, double step);

@@ -39,12 +39,12 @@ CodedCluster codeCluster(const Points& points, std::span<const std::uint32_t> me
     coded.mean.push_back(rounded(double{cluster.mean(r)} / mean_grid));
     mean(r) = mean_grid * coded.mean.back();
   }
-  // Axes on grids whose errors, times the weights, stay well under the quantization of the weights.
+  // Axes on grids whose errors, times the weights, suit the quantization of the weights.
   Eigen::MatrixXd axes(rank, cluster.kept);
   Eigen::VectorXd scales(cluster.kept);
   for (Eigen::Index j = 0; j < cluster.kept; ++j) {
     const double grid =
-        coarse(std::max(axisGrid(rank, cluster.variances(j), step), 2.0 / kLargestCoordinate));
+        coarse(std::max(axisGrid(rank, cluster.variances(j), step, cluster.count), 2.0 / kLargestCoordinate));
     scales(j) = step * grid;
     for (Eigen::Index r = 0; r < rank; ++r) {
       coded.directions.push_back(rounded(double{cluster.axes(r, j)} / grid));

@@ -105,5 +105,18 @@ TEST(Clusters, TakeASampleAmongOthersAsTheyTakeItAlone) {
   EXPECT_GT(moved, 30u) << "not just the nearest means";
 }
 
+TEST(Clusters, KnowAxesOfFewWeightsMoreRoughly) {
+  // What errors of the axis add to those of its weights, as a share: rank coordinates, each off by grid²/12,
+  // times the mean square weight.
+  const auto share = [](double count) {
+    const double grid = axisGrid(600, 0.3, 0.01, count);
+    return 600.0 * grid * grid * 0.3 / (0.01 * 0.01);
+  };
+  EXPECT_NEAR(share(600.0), 1.0, 1e-9);
+  EXPECT_NEAR(share(1200.0), 0.5, 1e-9);
+  EXPECT_NEAR(share(1.0), 1.5, 1e-9);
+  EXPECT_NEAR(share(1e6), 0.2, 1e-9);
+}
+
 }  // namespace
 }  // namespace lambent::baker
