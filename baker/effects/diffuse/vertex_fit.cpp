@@ -132,7 +132,8 @@ VertexFit::VertexFit(const GroupGeometry& geometry, const SampleSet& samples, Sa
   system->mass.setFromTriplets(terms.begin(), terms.end());
   for (Eigen::Index s = 0; s < size; ++s) {
     const float diagonal = system->mass.coeff(s, s);
-    system->over_diagonal.push_back(diagonal > 0.0f ? 1.0f / diagonal : 0.0f);  // of no face: stays
+    // Of no face, or of none whose area is a number to reckon with: stays.
+    system->over_diagonal.push_back(std::isnormal(diagonal) ? 1.0f / diagonal : 0.0f);
   }
   for (std::size_t p = points_stretch.begin; p < points_stretch.end; ++p) {
     if (valid[p] == 0) continue;
