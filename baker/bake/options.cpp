@@ -27,8 +27,8 @@ struct QualityRow {
 };
 constexpr std::array kQualities = {
     QualityRow{"draft", 256, 0.01f, 0.03f, 0.02f, 1.2, 10'000, 0.0, false, 0.0f},
-    QualityRow{"standard", 1024, 0.003f, 0.015f, 0.014f, 1.5, 20'000, 0.5, true, 2.0f},
-    QualityRow{"high", 4096, 0.001f, 0.005f, 0.007f, 4.0, 60'000, 0.5, true, 4.0f},
+    QualityRow{"standard", 1024, 0.003f, 0.015f, 0.014f, 1.5, 20'000, 0.5, true, 1.5f},
+    QualityRow{"high", 4096, 0.001f, 0.005f, 0.007f, 4.0, 60'000, 0.5, true, 3.0f},
 };
 
 const QualityRow& row(Quality quality) {
