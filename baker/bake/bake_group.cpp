@@ -144,16 +144,18 @@ std::vector<CodedTransfer> codeGlossy(const SampleCell& cell, const GlossyField&
   std::vector<CodedTransfer> coded;
   const std::vector<CellVectors> parts = glossyCellVectors(cell, field, grey_emission);
   double shown = 0.0;
-  std::size_t shown_parts = 0;
-  for (const CellVectors& part : parts)
-    if (part.shape.order > 0) shown += transferEnergy(part.vectors, part.shape, kernel_power), ++shown_parts;
+  bool any_bounced = false;
+  for (const CellVectors& part : parts) {
+    if (part.shape.order == 0) continue;  // the group's lights
+    shown += transferEnergy(part.vectors, part.shape, kernel_power);
+    any_bounced |= !part.shape.isVisibility();
+  }
   double square = 0.0;
   for (const CellVectors& part : parts) {
     const bool environment = part.shape.order > 0;
-    const float share = !environment || shown_parts == 1 ? 1.0f
-                        : part.shape.isVisibility()      ? kOfVisibility
-                                                         : std::sqrt(1.0f - kOfVisibility * kOfVisibility),
-                bound = share * options.effectiveGlossyErrorBound();
+    float bound = options.effectiveGlossyErrorBound();
+    if (environment && any_bounced)
+      bound *= part.shape.isVisibility() ? kOfVisibility : std::sqrt(1.0f - kOfVisibility * kOfVisibility);
     coded.push_back(
         coding.code(part.vectors, cell.count, part.shape,
                     {.bound = bound,
