@@ -23,8 +23,7 @@ namespace lambent::baker {
 
 namespace {
 
-constexpr std::size_t kMostOutputs = 36,                        // of what arrives
-    kMostKernel = sh::coefficientCount(sh::kMaxFactoredOrder);  // and of what leaves
+constexpr std::size_t kMostOutputs = sh::coefficientCount(sh::kMaxFactoredOrder);
 // Hits whose radiance is added to a matrix at once.
 constexpr std::size_t kBlock = 8;
 
@@ -170,15 +169,12 @@ GlossyBounces::GlossyBounces(const GlossyPass& pass, const ExitKernels& kernels,
     : pass_(pass), kernels_(kernels), plain_(plain), direct_(direct), order_out_(order_out) {
   const GlossyField& field = direct.field;
   assert(order_out <= field.order_out);
-  assert(sh::coefficientCount(order_out) <= static_cast<int>(kMostOutputs));
-  assert(sh::coefficientCount(field.order_out) <= static_cast<int>(kMostKernel));
+  assert(sh::coefficientCount(field.order_out) <= static_cast<int>(kMostOutputs));
   const auto first = plain.looks.valid.begin() + static_cast<std::ptrdiff_t>(pass.first());
   if (std::find(first, plain.looks.valid.end(), std::uint8_t{0}) != plain.looks.valid.end())
     edges_ = sampleEdges(pass.scene().geometry, pass.scene().samples);
-  now_ = zero();
+  now_ = zero(field.order_out);
   now_.environment.channels = 1;  // what is not reflected has no colour
-  now_.environment.outputs = now_.lights.outputs =
-      static_cast<std::size_t>(sh::coefficientCount(field.order_out));
   now_.environment.values.assign(pass.size() * now_.environment.sampleSize(), 0.0f);
   now_.lights.values = field.lights_shadowed;
   parallelRanges(pass.size(), kSamplesPerRange, {}, [&](std::size_t begin, std::size_t end) {
@@ -193,9 +189,9 @@ GlossyBounces::GlossyBounces(const GlossyPass& pass, const ExitKernels& kernels,
   advance();
 }
 
-GlossyBounces::State GlossyBounces::zero() const {
+GlossyBounces::State GlossyBounces::zero(int order) const {
   const GlossyField& field = direct_.field;
-  const auto outputs = static_cast<std::size_t>(sh::coefficientCount(order_out_));
+  const auto outputs = static_cast<std::size_t>(sh::coefficientCount(order));
   const auto columns = static_cast<std::size_t>(sh::coefficientCount(field.order_in));
   return {.environment = {.channels = field.channels, .outputs = outputs, .columns = columns, .values = {}},
           .lights = {
@@ -212,7 +208,7 @@ void GlossyBounces::addExit(const GatherHit& hit, const glm::uvec3& corners, con
   // On its way while the kernel is made.
   if (const auto matrix = before_.environment.at(picked - pass_.first()); chance >= 0.0f)
     for (std::size_t i = 0; i < matrix.size(); i += 16) __builtin_prefetch(matrix.data() + i);
-  std::array<float, 3 * kMostKernel> kernel;
+  std::array<float, 3 * kMostOutputs> kernel;
   kernels_.at(hit.triangle, u, v, to, std::span(kernel).first(3 * stride));
   const std::size_t channels = direct_.field.channels, lights = before_.lights.columns;
   const auto of = [&](const GlossyMatrices& matrices, std::size_t s, float share, std::size_t first) {
@@ -242,12 +238,12 @@ bool GlossyBounces::gatherAt(const Receivers& at, const Bounce& bounce, State& n
                              const std::stop_token& stop, const Keep& keep) const {
   const std::size_t first = at.pass.first();
   const double share = shareOfBefore();
-  now = zero();
+  now = zero(direct_.field.order_out);
   now.environment.values.assign(at.pass.size() * now.environment.sampleSize(), 0.0f);
   now.lights.values.assign(at.pass.size() * now.lights.sampleSize(), 0.0f);
   const auto gatherRange = [&](std::size_t begin, std::size_t end) {
     const StoredHits hits(at.hits, at.pass, begin, end);
-    Walk walk(at.pass, order_out_, bounce.before);
+    Walk walk(at.pass, direct_.field.order_out, bounce.before);
     for (std::size_t s = begin; s < end; ++s) {
       const std::size_t sample = first + s;
       const GlossyHemisphere& hemisphere = at.pass.hemisphereOf(at.looks.closely[sample] != 0);
@@ -301,9 +297,9 @@ bool GlossyBounces::gather(int number, bool thinly, const ExitRadiance& exit, co
   }
   if (direct_.inside && !fitInside(bounce, progress, stop, keep.part("inside faces"))) return false;
   if (sum_.environment.values.empty()) {
-    sum_ = zero();
-    sum_.environment.values.assign(now_.environment.values.size(), 0.0f);
-    sum_.lights.values.assign(now_.lights.values.size(), 0.0f);
+    sum_ = zero(order_out_);
+    sum_.environment.values.assign(pass_.size() * sum_.environment.sampleSize(), 0.0f);
+    sum_.lights.values.assign(pass_.size() * sum_.lights.sampleSize(), 0.0f);
   }
   return take(now_, &now, stop);
 }
@@ -316,8 +312,12 @@ bool GlossyBounces::take(const State& state, TransferField* plain, const std::st
     power[i] = static_cast<float>(kBandPower[static_cast<std::size_t>(sh::bandOf(static_cast<int>(i)))]);
   const std::size_t ranges = (pass_.size() + kSamplesPerRange - 1) / kSamplesPerRange;
   std::vector<std::vector<double>> parts(ranges, std::vector<double>(1 + lights, 0.0));
-  const auto add = [](std::span<const float> part, std::span<float> sum) {
-    for (std::size_t i = 0; i < part.size(); ++i) sum[i] += part[i];
+  const auto add = [](const GlossyMatrices& part, std::size_t s, GlossyMatrices& sum) {
+    for (std::size_t c = 0; c < sum.channels; ++c) {
+      const auto from = part.matrix(s, c);
+      const auto to = sum.at(s).subspan(c * sum.matrixSize(), sum.matrixSize());
+      for (std::size_t i = 0; i < to.size(); ++i) to[i] += from[i];
+    }
   };
   const auto plainOf = [&](const GlossyMatrices& matrices, std::size_t s, std::size_t first_column) {
     const auto out = plain->at(pass_.first() + s);
@@ -343,8 +343,8 @@ bool GlossyBounces::take(const State& state, TransferField* plain, const std::st
               sums[1 + at % lights] += double{matrix[at]} * double{matrix[at]};
           }
           if (!plain) continue;
-          add(state.environment.at(s), sum_.environment.at(s));
-          add(state.lights.at(s), sum_.lights.at(s));
+          add(state.environment, s, sum_.environment);
+          add(state.lights, s, sum_.lights);
           plainOf(state.environment, s, 0);
           if (lights > 0) plainOf(state.lights, s, columns);
         }

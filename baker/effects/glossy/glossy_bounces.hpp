@@ -4,14 +4,13 @@
 //   GlossyBounces glossy(pass, kernels, direct, glossy_direct, order_out);
 //   bakeBounces(plain_pass, direct, scene, settings, progress, stop, &glossy);
 //   glossy.finish();   // glossy_direct.field has `bounced` and `lights_full`, all of order_out bands
-// What leaves a point after direct light is made of all bands that the pass has, which may be more than
-// order_out: the kernel of a sharp surface meets edges of shadows there, which few bands do not have
-// (decisions/049). What later passes bring has order_out bands.
+// Passes bring and take all bands that `direct` has, which may be more than order_out: the kernel of a sharp
+// surface meets edges of shadows where light leaves, which few bands do not have (decisions/049, 054). Their
+// sum has order_out bands.
 // Where direct light was fitted to points inside faces, what each pass brings is fitted to what it brings
-// there, before the next one begins. Memory at its most: twice `bounced` (2.5 KB x channels per sample for 5
-// x 5), and once more, or in the first pass what a matrix of the pass's bands takes (4.9 KB for 7 x 5); and
-// as much as `bounced` for the points inside faces while a pass is fitted to them, in the first one in place
-// of one of the two.
+// there, before the next one begins. Memory at its most: `bounced` (2.5 KB x channels per sample for 5 x 5),
+// and twice a matrix of all bands (4.9 KB x channels for 7 x 5) for each sample, the first pass included;
+// and one for each of the points inside faces while a pass is fitted to them.
 #pragma once
 
 #include "baker/effects/diffuse/bounces.hpp"
@@ -76,8 +75,8 @@ class GlossyBounces : public BouncePartner {
   struct State {
     GlossyMatrices environment, lights;
   };
-  // Of order_out bands, without samples.
-  State zero() const;
+  // Without samples.
+  State zero(int order) const;
   // What the pass brings to all samples of `at`; 0 where these see nothing. False if stopped.
   bool gatherAt(const Receivers& at, const Bounce& bounce, State& now, Progress& progress,
                 const std::stop_token& stop, const Keep& keep) const;

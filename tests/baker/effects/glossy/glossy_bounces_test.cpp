@@ -271,6 +271,25 @@ TEST(GlossyBounces, LightLeavesByAllBandsOfTheKernel) {
   EXPECT_GT(std::abs(lost), 0.02);  // so that the test can tell
 }
 
+// Kernels that have nothing in the bands that are kept: a second pass has light only if the first one brought
+// it in the bands above.
+TEST(GlossyBounces, LightOfLaterPassesLeavesByAllBandsOfTheKernel) {
+  constexpr int kExit = 7;
+  const Transport t(corner(true, true), true);
+  std::array<float, kExit * kExit> lobe{};
+  sh::evaluate(kExit, glm::normalize(glm::vec3(1.0f, 2.0f, 0.5f)), lobe);
+  std::fill_n(lobe.begin(), 25, 0.0f);
+  const ExitKernels kernels{
+      .grey = true, .at = [&](std::uint32_t, float, float, const glm::vec3&, std::span<float> out) {
+        for (std::size_t c = 0; c < 3; ++c)
+          std::copy(lobe.begin(), lobe.end(), out.begin() + static_cast<std::ptrdiff_t>(c * lobe.size()));
+      }};
+  const auto baked = bakeGlossy(t, kernels, {.exit_order = kExit, .rays = 512, .bounces = 2});
+  ASSERT_EQ(baked.bounced.energy.size(), 3u);
+  EXPECT_GT(baked.bounced.energy[1], 0.05);
+  EXPECT_GT(baked.bounced.energy[2], 0.002);
+}
+
 TEST(GlossyBounces, WithMoreBandsForWhatLeavesHaveAsManyAsWereAskedFor) {
   // Lambert surfaces have next to nothing in the bands above.
   const Transport t(corner(true, false), true);
