@@ -16,6 +16,8 @@ namespace {
 
 // How bright what stands in the way is taken to be, against the sky.
 constexpr float kReflected = 0.3f;
+// Directions are drawn from this height on: nearer to the horizon rounding decides on which side they are.
+constexpr float kLeastHeight = 1e-5f;
 
 float total(const glm::vec3& v) {
   return std::abs(v.r) + std::abs(v.g) + std::abs(v.b);
@@ -154,8 +156,8 @@ glm::vec3 FirstHit::skyOfAll(const glm::vec3& ray) const {
 glm::vec3 FirstHit::sample(const glm::vec2& u) const {
   const auto [r, height] = cellOf(rows_, u.x);
   const auto [c, turn] = cellOf(columns_[r], u.y);
-  return aboveTriangle(
-      directionAt((static_cast<float>(r) + height) / kRows, (static_cast<float>(c) + turn) / kColumns));
+  return aboveTriangle(directionAt(std::max((static_cast<float>(r) + height) / kRows, kLeastHeight),
+                                   (static_cast<float>(c) + turn) / kColumns));
 }
 
 float FirstHit::pdf(const glm::vec3& ray) const {

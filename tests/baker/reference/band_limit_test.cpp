@@ -1,6 +1,8 @@
 // --band-limit: light as the runtime's light vector has it, in closed form where nothing is in its way.
 #include <gtest/gtest.h>
 
+#include "baker/reference/exit_kernel.hpp"
+#include "baker/reference/warp.hpp"
 #include "runtime/sh/local_light.hpp"
 #include "runtime/sh/zonal.hpp"
 #include "runtime/spec/distant_lights.hpp"
@@ -70,6 +72,25 @@ TEST(BandLimit, IsSignedAndTurnsWithTheLight) {
   for (std::size_t i = 0; i < 9; ++i) expected += double{transfer[i]} * double{light.c[i].g};
   EXPECT_LT(expected, -0.01);
   expectMean(measured(wall, {0.3f, 3, 0.4f}, {0.1f, 1, 0.2f}, {sun}, options), expected);
+}
+
+TEST(BandLimit, DirectionsDrawnOnTheHorizonHaveADensity) {
+  sh::LightVector light{.order = 5};
+  light.c[0] = glm::vec3(1.0f);
+  for (std::uint32_t n = 0; n < 64; ++n) {
+    const float turn = 2.39996323f * static_cast<float>(n);
+    SurfacePoint point;
+    point.smooth = point.shading = sphereDirection({(static_cast<float>(n) + 0.5f) / 64.0f, turn});
+    point.geometric = glm::normalize(point.smooth + 0.3f * glm::vec3(std::sin(turn), 0.2f, std::cos(turn)));
+    point.albedo = glm::vec3(1.0f);
+    const FirstHit hit(point, 5, light, n);
+    for (std::uint32_t i = 0; i < 256; ++i) {
+      const glm::vec3 ray = hit.sample({0.0f, (static_cast<float>(i) + 0.5f) / 256.0f});
+      if (glm::dot(ray, point.geometric) > 0.0f) {
+        ASSERT_GT(hit.pdf(ray), 0.0f) << n << ' ' << i;
+      }
+    }
+  }
 }
 
 // Σ_k c_k l_k of a matte white plane that looks up.
