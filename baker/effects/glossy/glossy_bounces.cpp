@@ -43,12 +43,12 @@ std::uint32_t raysTogether(double share, std::size_t rays) {
   return together;
 }
 
-// For each of `Kernels` kernels, one every `stride` values, of which `outputs` count:
+// For each of `Kernels` kernels of `outputs` values, one after the other:
 //   out[n * out_stride + i] += weight Σ_k kernel_n[k] matrix[k * Columns + i].
 // In vectors by hand: left alone, the sums go through memory.
 template <std::size_t Columns, std::size_t Kernels>
-void contract(const float* kernels, std::size_t stride, std::size_t outputs, const float* matrix,
-              float weight, float* out, std::size_t out_stride) {
+void contract(const float* kernels, std::size_t outputs, const float* matrix, float weight, float* out,
+              std::size_t out_stride) {
   typedef float Eight __attribute__((vector_size(32)));
   constexpr std::size_t kWhole = Columns / 8, kRest = Columns % 8;
   Eight sums[Kernels][kWhole] = {};
@@ -57,11 +57,11 @@ void contract(const float* kernels, std::size_t stride, std::size_t outputs, con
     for (std::size_t w = 0; w < kWhole; ++w) {
       Eight row;
       std::memcpy(&row, matrix + 8 * w, sizeof(row));
-      for (std::size_t n = 0; n < Kernels; ++n) sums[n][w] += kernels[n * stride + k] * row;
+      for (std::size_t n = 0; n < Kernels; ++n) sums[n][w] += kernels[n * outputs + k] * row;
     }
     for (std::size_t i = 0; i < kRest; ++i)
       for (std::size_t n = 0; n < Kernels; ++n)
-        rest[i][n] += kernels[n * stride + k] * matrix[8 * kWhole + i];
+        rest[i][n] += kernels[n * outputs + k] * matrix[8 * kWhole + i];
   }
   for (std::size_t n = 0; n < Kernels; ++n, out += out_stride) {
     for (std::size_t w = 0; w < kWhole; ++w)
@@ -71,20 +71,20 @@ void contract(const float* kernels, std::size_t stride, std::size_t outputs, con
 }
 
 template <std::size_t Kernels>
-void contract(const float* kernels, std::size_t stride, std::size_t outputs, const float* matrix,
-              std::size_t columns, float weight, float* out, std::size_t out_stride) {
+void contract(const float* kernels, std::size_t outputs, const float* matrix, std::size_t columns,
+              float weight, float* out, std::size_t out_stride) {
   switch (columns) {
     case 16:
-      return contract<16, Kernels>(kernels, stride, outputs, matrix, weight, out, out_stride);
+      return contract<16, Kernels>(kernels, outputs, matrix, weight, out, out_stride);
     case 25:
-      return contract<25, Kernels>(kernels, stride, outputs, matrix, weight, out, out_stride);
+      return contract<25, Kernels>(kernels, outputs, matrix, weight, out, out_stride);
     case 36:
-      return contract<36, Kernels>(kernels, stride, outputs, matrix, weight, out, out_stride);
+      return contract<36, Kernels>(kernels, outputs, matrix, weight, out, out_stride);
     default:
       for (std::size_t n = 0; n < Kernels; ++n)
         for (std::size_t k = 0; k < outputs; ++k)
           for (std::size_t i = 0; i < columns; ++i)
-            out[n * out_stride + i] += weight * kernels[n * stride + k] * matrix[k * columns + i];
+            out[n * out_stride + i] += weight * kernels[n * outputs + k] * matrix[k * columns + i];
   }
 }
 
@@ -93,18 +93,17 @@ void contract(const float* kernels, std::size_t stride, std::size_t outputs, con
 // One thread's way through a range of samples.
 class GlossyBounces::Walk {
  public:
-  Walk(const GlossyPass& pass, int order_out, const TransferField& before)
+  Walk(const GlossyPass& pass, const TransferField& before)
       : pass_(pass),
         before_(before),
-        outputs_from_local_(glm::dmat3(1.0), order_out),
-        even_(evenHarmonicCount(order_out)),
+        outputs_from_local_(glm::dmat3(1.0), pass.shape().order_out),
         exits_(kBlock * before.vectorSize()) {}
 
   // Of one sample. Hits of rays in a row of `together` (raysTogether) share what leaves one of them.
   void gather(std::size_t sample, std::span<const GatherHit> hits, std::uint32_t together, int bounce,
               const GlossyHemisphere& hemisphere, const ExitToSample& exit, std::size_t s, State& now) {
     if (hits.empty()) return;
-    const std::size_t stride = before_.vectorSize(), even = even_;
+    const std::size_t stride = before_.vectorSize(), even = hemisphere.evenOutputs();
     local_.assign(even * stride, 0.0f);
     std::fill(exits_.begin(), exits_.end(), 0.0f);
     std::size_t filled = 0;
@@ -159,7 +158,6 @@ class GlossyBounces::Walk {
   const GlossyPass& pass_;
   const TransferField& before_;
   sh::Rotation outputs_from_local_;
-  std::size_t even_;  // outputs in a sample's own frame
   std::vector<float> exits_, local_;
   std::array<std::array<float, kBlock>, kMostOutputs> weights_{};  // of each output: of the block's hits
 };
@@ -173,7 +171,7 @@ GlossyBounces::GlossyBounces(const GlossyPass& pass, const ExitKernels& kernels,
   const auto first = plain.looks.valid.begin() + static_cast<std::ptrdiff_t>(pass.first());
   if (std::find(first, plain.looks.valid.end(), std::uint8_t{0}) != plain.looks.valid.end())
     edges_ = sampleEdges(pass.scene().geometry, pass.scene().samples);
-  now_ = zero(field.order_out);
+  now_ = zero(field.order_out, 0);
   now_.environment.channels = 1;  // what is not reflected has no colour
   now_.environment.values.assign(pass.size() * now_.environment.sampleSize(), 0.0f);
   now_.lights.values = field.lights_shadowed;
@@ -189,36 +187,40 @@ GlossyBounces::GlossyBounces(const GlossyPass& pass, const ExitKernels& kernels,
   advance();
 }
 
-GlossyBounces::State GlossyBounces::zero(int order) const {
+GlossyBounces::State GlossyBounces::zero(int order, std::size_t samples) const {
   const GlossyField& field = direct_.field;
-  const auto outputs = static_cast<std::size_t>(sh::coefficientCount(order));
-  const auto columns = static_cast<std::size_t>(sh::coefficientCount(field.order_in));
-  return {.environment = {.channels = field.channels, .outputs = outputs, .columns = columns, .values = {}},
-          .lights = {
-              .channels = field.channels, .outputs = outputs, .columns = field.light_columns, .values = {}}};
+  const auto matrices = [&](std::size_t columns) {
+    GlossyMatrices zero{.channels = field.channels,
+                        .outputs = static_cast<std::size_t>(sh::coefficientCount(order)),
+                        .columns = columns,
+                        .values = {}};
+    zero.values.assign(samples * zero.sampleSize(), 0.0f);
+    return zero;
+  };
+  return {.environment = matrices(static_cast<std::size_t>(sh::coefficientCount(field.order_in))),
+          .lights = matrices(field.light_columns)};
 }
 
 void GlossyBounces::addExit(const GatherHit& hit, const glm::uvec3& corners, const glm::vec3& to,
                             float chance, float weight, std::span<float> sum) const {
   const float u = static_cast<float>(hit.u) * (1.0f / 65535.0f),
               v = static_cast<float>(hit.v) * (1.0f / 65535.0f);
-  const std::size_t outputs = before_.environment.outputs, columns = before_.environment.columns,
-                    stride = static_cast<std::size_t>(sh::coefficientCount(direct_.field.order_out));
+  const std::size_t outputs = before_.environment.outputs, columns = before_.environment.columns;
   const std::uint32_t picked = chance < u ? corners.y : chance < u + v ? corners.z : corners.x;
   // On its way while the kernel is made.
   if (const auto matrix = before_.environment.at(picked - pass_.first()); chance >= 0.0f)
     for (std::size_t i = 0; i < matrix.size(); i += 16) __builtin_prefetch(matrix.data() + i);
   std::array<float, 3 * kMostOutputs> kernel;
-  kernels_.at(hit.triangle, u, v, to, std::span(kernel).first(3 * stride));
+  kernels_.at(hit.triangle, u, v, to, std::span(kernel).first(3 * outputs));
   const std::size_t channels = direct_.field.channels, lights = before_.lights.columns;
   const auto of = [&](const GlossyMatrices& matrices, std::size_t s, float share, std::size_t first) {
     float* out = sum.data() + first;
     if (matrices.channels < channels)  // one for all: read once
-      return contract<3>(kernel.data(), stride, outputs, matrices.at(s).data(), matrices.columns, share, out,
+      return contract<3>(kernel.data(), outputs, matrices.at(s).data(), matrices.columns, share, out,
                          columns + lights);
     for (std::size_t c = 0; c < channels; ++c, out += columns + lights)
-      contract<1>(kernel.data() + c * stride, stride, outputs, matrices.matrix(s, c).data(), matrices.columns,
-                  share, out, 0);
+      contract<1>(kernel.data() + c * outputs, outputs, matrices.matrix(s, c).data(), matrices.columns, share,
+                  out, 0);
   };
   const auto add = [&](std::uint32_t corner, float share) {
     const std::size_t s = corner - pass_.first();
@@ -238,12 +240,10 @@ bool GlossyBounces::gatherAt(const Receivers& at, const Bounce& bounce, State& n
                              const std::stop_token& stop, const Keep& keep) const {
   const std::size_t first = at.pass.first();
   const double share = shareOfBefore();
-  now = zero(direct_.field.order_out);
-  now.environment.values.assign(at.pass.size() * now.environment.sampleSize(), 0.0f);
-  now.lights.values.assign(at.pass.size() * now.lights.sampleSize(), 0.0f);
+  now = zero(direct_.field.order_out, at.pass.size());
   const auto gatherRange = [&](std::size_t begin, std::size_t end) {
     const StoredHits hits(at.hits, at.pass, begin, end);
-    Walk walk(at.pass, direct_.field.order_out, bounce.before);
+    Walk walk(at.pass, bounce.before);
     for (std::size_t s = begin; s < end; ++s) {
       const std::size_t sample = first + s;
       const GlossyHemisphere& hemisphere = at.pass.hemisphereOf(at.looks.closely[sample] != 0);
@@ -296,11 +296,7 @@ bool GlossyBounces::gather(int number, bool thinly, const ExitRadiance& exit, co
                                 now_.lights.values);
   }
   if (direct_.inside && !fitInside(bounce, progress, stop, keep.part("inside faces"))) return false;
-  if (sum_.environment.values.empty()) {
-    sum_ = zero(order_out_);
-    sum_.environment.values.assign(pass_.size() * sum_.environment.sampleSize(), 0.0f);
-    sum_.lights.values.assign(pass_.size() * sum_.lights.sampleSize(), 0.0f);
-  }
+  if (sum_.environment.values.empty()) sum_ = zero(order_out_, pass_.size());
   return take(now_, &now, stop);
 }
 

@@ -75,8 +75,8 @@ class GlossyBounces : public BouncePartner {
   struct State {
     GlossyMatrices environment, lights;
   };
-  // Without samples.
-  State zero(int order) const;
+  // Of `order` bands.
+  State zero(int order, std::size_t samples) const;
   // What the pass brings to all samples of `at`; 0 where these see nothing. False if stopped.
   bool gatherAt(const Receivers& at, const Bounce& bounce, State& now, Progress& progress,
                 const std::stop_token& stop, const Keep& keep) const;

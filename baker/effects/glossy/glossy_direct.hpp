@@ -70,7 +70,7 @@ bool plainFromGlossy(const GlossyPass& pass, const GlossyField& field, DirectRes
                      const std::stop_token& stop);
 
 // What a sample's matrix in the group's frame gives at a Lambert receiver with its normal:
-// out[column] = Σ_k (A_l/pi) y_k(n) matrix[k * columns + column].
+// out[column] = Σ_k (A_l/pi) y_k(n) matrix[k * columns + column], of the matrix's first order_out² rows.
 void plainTransfer(int order_out, glm::vec3 normal, std::span<const float> matrix, std::span<float> out);
 
 }  // namespace lambent::baker

@@ -212,6 +212,15 @@ TEST(GlossyBounces, HaveThreeChannelsWhereKernelsAreColoured) {
   EXPECT_EQ(transfer[50], 0.0f);
 }
 
+// Every point reflects by `kernel`, whatever the direction.
+ExitKernels everywhere(std::span<const float> kernel) {
+  return {.grey = true, .at = [kernel](std::uint32_t, float, float, const glm::vec3&, std::span<float> out) {
+            for (std::size_t c = 0; c < 3; ++c)
+              std::copy(kernel.begin(), kernel.end(),
+                        out.begin() + static_cast<std::ptrdiff_t>(c * kernel.size()));
+          }};
+}
+
 // What leaves a point is its kernel times what it sees, in as many bands as the kernel has.
 TEST(GlossyBounces, LightLeavesByAllBandsOfTheKernel) {
   constexpr int kExit = 7;
@@ -220,11 +229,7 @@ TEST(GlossyBounces, LightLeavesByAllBandsOfTheKernel) {
   const glm::vec3 from = glm::normalize(glm::vec3(-0.3f, 1.0f, 0.0f));
   std::array<float, kExit * kExit> lobe{};
   sh::evaluate(kExit, from, lobe);
-  const ExitKernels kernels{
-      .grey = true, .at = [&](std::uint32_t, float, float, const glm::vec3&, std::span<float> out) {
-        for (std::size_t c = 0; c < 3; ++c)
-          std::copy(lobe.begin(), lobe.end(), out.begin() + static_cast<std::ptrdiff_t>(c * lobe.size()));
-      }};
+  const ExitKernels kernels = everywhere(lobe);
   const DiffuseScene view = t.diffuse();
   const DirectPass plain(view,
                          {.order = 5, .rays = 4096, .keep_hits = true, .hit_memory = std::size_t{1} << 30});
@@ -279,11 +284,7 @@ TEST(GlossyBounces, LightOfLaterPassesLeavesByAllBandsOfTheKernel) {
   std::array<float, kExit * kExit> lobe{};
   sh::evaluate(kExit, glm::normalize(glm::vec3(1.0f, 2.0f, 0.5f)), lobe);
   std::fill_n(lobe.begin(), 25, 0.0f);
-  const ExitKernels kernels{
-      .grey = true, .at = [&](std::uint32_t, float, float, const glm::vec3&, std::span<float> out) {
-        for (std::size_t c = 0; c < 3; ++c)
-          std::copy(lobe.begin(), lobe.end(), out.begin() + static_cast<std::ptrdiff_t>(c * lobe.size()));
-      }};
+  const ExitKernels kernels = everywhere(lobe);
   const auto baked = bakeGlossy(t, kernels, {.exit_order = kExit, .rays = 512, .bounces = 2});
   ASSERT_EQ(baked.bounced.energy.size(), 3u);
   EXPECT_GT(baked.bounced.energy[1], 0.05);
