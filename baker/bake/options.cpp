@@ -24,12 +24,14 @@ struct QualityRow {
   double refine_fans;
   bool fits_glossy;
   float glossy_looseness;
+  int exit_bands;  // of exitOrder(), beside five of light
 };
 constexpr std::array kQualities = {
-    QualityRow{"draft", 256, 0.01f, 0.03f, 0.02f, 1.2, 10'000, 0.0, false, 0.0f},
-    QualityRow{"standard", 1024, 0.003f, 0.015f, 0.014f, 1.5, 20'000, 0.5, true, 1.5f},
-    QualityRow{"high", 4096, 0.001f, 0.005f, 0.007f, 4.0, 60'000, 0.5, true, 3.0f},
+    QualityRow{"draft", 256, 0.01f, 0.03f, 0.02f, 1.2, 10'000, 0.0, false, 0.0f, 7},
+    QualityRow{"standard", 1024, 0.003f, 0.015f, 0.014f, 1.5, 20'000, 0.5, true, 1.5f, 7},
+    QualityRow{"high", 4096, 0.001f, 0.005f, 0.007f, 4.0, 60'000, 0.5, true, 3.0f, 9},
 };
+static_assert(kQualities.back().exit_bands <= sh::kMaxFactoredOrder);
 
 const QualityRow& row(Quality quality) {
   return kQualities[static_cast<std::size_t>(quality)];
@@ -86,10 +88,10 @@ float BakeOptions::glossyLooseness() const {
 }
 
 int BakeOptions::exitOrder() const {
-  // All that visibility is known for beside so many bands of light.
+  // No more than visibility is known for beside so many bands of light.
   return bounces == 0
              ? glossy_order
-             : std::max(glossy_order, std::min(sh::kMaxFactoredOrder, sh::kMaxVisibilityBands + 1 - order));
+             : std::max(glossy_order, std::min(row(quality).exit_bands, sh::kMaxVisibilityBands + 1 - order));
 }
 
 float BakeOptions::effectiveRefineBound() const {

@@ -53,7 +53,7 @@ struct BakeOptions {
   float glossyLooseness() const;
   float effectiveRefineBound() const;
   // Bands of the light at points that rays meet, of which what leaves them is made: more than glossyOrder,
-  // since a kernel meets edges of shadows there that few bands do not have; 4..7. Without bounces
+  // since a kernel meets edges of shadows there that few bands do not have; 4..9, by quality. Without bounces
   // glossyOrder.
   int exitOrder() const;
   bool fitsMatte() const;

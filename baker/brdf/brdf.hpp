@@ -62,7 +62,7 @@ struct BrdfGrid {
 BrdfGrid gridFor(const Brdf& brdf, int order);
 
 // b(v) over the whole grid, by integration that follows the lobe however narrow it is; 0.1 % or better.
-// Deterministic, on all threads. order 1..7.
+// Deterministic, on all threads. order 1..9.
 bundle::BrdfTable integrateTable(const Brdf& brdf, int order);
 bundle::BrdfTable integrateTable(const Brdf& brdf, int order, const BrdfGrid& grid);
 

@@ -107,8 +107,8 @@ ViewFrame frameOf(const glm::vec3& normal, const glm::vec3& tangent, const glm::
   return frame;
 }
 
-// Of all directions of a factored function: at most 2 * 7 - 1.
-constexpr std::size_t kAxisLanes = 16;
+// Of all directions of a factored function, in whole vectors.
+constexpr std::size_t kAxisLanes = (2 * sh::kMaxFactoredOrder - 1 + 7) / 8 * 8;
 
 // out_k of band l = Σ_i weights[i] harmonics[k][i].
 inline void sumAxes(const float* weights, std::size_t axes, std::size_t l, const float* harmonics,
@@ -298,7 +298,7 @@ void SurfaceBrdfs::State::expand(const Factored& from, int order, std::span<cons
     const glm::vec3 axis = axes[i].x * frame.x + axes[i].y * frame.y + axes[i].z * frame.z;
     x[i] = axis.x, y[i] = axis.y, z[i] = axis.z;
   }
-  const std::size_t lanes = axes.size() <= kAxisLanes / 2 ? kAxisLanes / 2 : kAxisLanes;
+  const std::size_t lanes = (axes.size() + 7) / 8 * 8;
   sh::evaluateBatch<float>(order, x.data(), y.data(), z.data(), lanes, harmonics.data(), kAxisLanes);
   for (std::size_t lobe = 0; lobe < lobes.size(); ++lobe) {
     const float* own = weights.data() + lobe * count;
@@ -308,19 +308,9 @@ void SurfaceBrdfs::State::expand(const Factored& from, int order, std::span<cons
         sumAxes(own + at, 2 * l + 1, l, harmonics.data(), lobes[lobe].data());
       continue;
     }
-    switch (order) {
-      case 4:
-        sumIsotropic<4>(own, harmonics.data(), lobes[lobe].data());
-        break;
-      case 5:
-        sumIsotropic<5>(own, harmonics.data(), lobes[lobe].data());
-        break;
-      case 6:
-        sumIsotropic<6>(own, harmonics.data(), lobes[lobe].data());
-        break;
-      default:
-        sumIsotropic<7>(own, harmonics.data(), lobes[lobe].data());
-    }
+    sh::detail::unrolled(std::make_integer_sequence<int, sh::kMaxFactoredOrder>{}, [&](auto band) {
+      if (order == band + 1) sumIsotropic<band + 1>(own, harmonics.data(), lobes[lobe].data());
+    });
   }
 }
 

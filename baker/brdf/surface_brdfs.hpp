@@ -30,7 +30,7 @@ struct BrdfTables {
   std::vector<Entry> entries;
   std::vector<std::int32_t> of_material;  // place in `entries`; -1: matte
 
-  // order: bands, 4..7, the first `shipped` of which (4..6) will be in the bundle. Errors: a measured BRDF
+  // order: bands, 4..9, the first `shipped` of which (4..6) will be in the bundle. Errors: a measured BRDF
   // that has too few directions.
   static Result<BrdfTables> make(const Scene& scene, int order, int shipped);
 };

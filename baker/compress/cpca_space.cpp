@@ -165,7 +165,8 @@ double radianceError(std::span<const float> truth, std::span<const float> coded,
     // Where the truth has no energy there is nothing to be relative to: the error counts as it is.
     for (std::size_t i = block.first; i < block.last; ++i)
       sum += (roots[i] > 0.0 ? roots[i] * roots[i] : 1.0) * off[i];
-    if (!(std::sqrt(sum) <= worst)) worst = std::sqrt(sum);  // NaN is the worst
+    // NaN is the worst, and stays.
+    if (const double own = std::sqrt(sum); std::isnan(own) || own > worst) worst = own;
   }
   return worst;
 }

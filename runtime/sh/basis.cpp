@@ -26,30 +26,9 @@ void evaluateMany(const T* xs, const T* ys, const T* zs, std::size_t count, T* o
 template <typename F>
 void withOrder(int order, F&& f) {
   assert(order >= 1 && order <= kMaxBasisOrder);
-  switch (order) {
-    case 1:
-      return f(std::integral_constant<int, 1>{});
-    case 2:
-      return f(std::integral_constant<int, 2>{});
-    case 3:
-      return f(std::integral_constant<int, 3>{});
-    case 4:
-      return f(std::integral_constant<int, 4>{});
-    case 5:
-      return f(std::integral_constant<int, 5>{});
-    case 6:
-      return f(std::integral_constant<int, 6>{});
-    case 7:
-      return f(std::integral_constant<int, 7>{});
-    case 8:
-      return f(std::integral_constant<int, 8>{});
-    case 9:
-      return f(std::integral_constant<int, 9>{});
-    case 10:
-      return f(std::integral_constant<int, 10>{});
-    case 11:
-      return f(std::integral_constant<int, 11>{});
-  }
+  detail::unrolled(std::make_integer_sequence<int, kMaxBasisOrder>{}, [&](auto index) {
+    if (order == index + 1) f(std::integral_constant<int, index + 1>{});
+  });
 }
 
 }  // namespace

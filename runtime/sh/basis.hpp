@@ -19,7 +19,7 @@ namespace lambent::sh {
 
 constexpr int kMaxOrder = 8;  // of light and everything that is stored for it
 constexpr int kMaxBasisOrder =
-    11;  // of the functions and rotations: visibility in 6 + 6 - 1 bands (gaunt.hpp)
+    13;  // of the functions and rotations: visibility in 5 + 9 - 1 bands (gaunt.hpp)
 
 constexpr int coefficientCount(int order) {
   return order * order;

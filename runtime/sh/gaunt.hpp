@@ -9,7 +9,7 @@
 
 namespace lambent::sh {
 
-inline constexpr int kMaxVisibilityBands = 11;  // 6 + 6 - 1
+inline constexpr int kMaxVisibilityBands = 13;  // 5 + 9 - 1
 
 struct GauntTerm {
   std::uint16_t j = 0, k = 0;  // of the light and of the visibility
@@ -25,7 +25,7 @@ struct GauntTable {
   int visibilityBands() const { return bands_in + bands_out - 1; }
 };
 
-// Bands from 1, both together at most 12. Exact to float rounding (by quadrature in double that integrates
+// Bands from 1, both together at most 14. Exact to float rounding (by quadrature in double that integrates
 // such polynomials exactly).
 GauntTable makeGauntTable(int bands_in, int bands_out);
 

@@ -22,11 +22,17 @@ struct AxisAngles {
 
 // After z. Found by random descent on the worst condition number of the band matrices y_lm(a_i) up to band 5,
 // each with its first axes: 2.1 in the plane, 3.5 on the sphere (zonal_factors_test.cpp prints them); then
-// likewise for band 6, the others as they were: 2.7 and 11.7. An axis and its opposite do equally well, so
-// all stand on the upper side.
-constexpr std::array<AxisAngles, 6> kInPlane = {
-    {{70.877, 0}, {48.465, 180}, {35.135, 0}, {78.412, 180}, {23.305, 180}, {53.072, 0}}};
-constexpr std::array<AxisAngles, 12> kOnSphere = {{{50.897, 336.283},
+// likewise for bands 6 to 8, each with the others as they were: 2.7, 3.7 and 2.8; 11.7, 7.8 and 8.4. An axis
+// and its opposite do equally well, so all stand on the upper side.
+constexpr std::array<AxisAngles, 8> kInPlane = {{{70.877, 0},
+                                                 {48.465, 180},
+                                                 {35.135, 0},
+                                                 {78.412, 180},
+                                                 {23.305, 180},
+                                                 {53.072, 0},
+                                                 {63.550, 180},
+                                                 {14.400, 0}}};
+constexpr std::array<AxisAngles, 16> kOnSphere = {{{50.897, 336.283},
                                                    {63.950, 97.713},
                                                    {86.128, 268.301},
                                                    {52.917, 58.666},
@@ -37,7 +43,11 @@ constexpr std::array<AxisAngles, 12> kOnSphere = {{{50.897, 336.283},
                                                    {60.488, 272.484},
                                                    {40.970, 239.161},
                                                    {56.490, 169.457},
-                                                   {77.150, 143.975}}};
+                                                   {77.150, 143.975},
+                                                   {89.900, 46.772},
+                                                   {85.606, 160.510},
+                                                   {47.222, 264.439},
+                                                   {31.317, 100.561}}};
 
 glm::dvec3 directionOf(const AxisAngles& axis) {
   const double theta = axis.theta_deg * std::numbers::pi / 180, phi = axis.phi_deg * std::numbers::pi / 180;

@@ -14,7 +14,7 @@
 
 namespace lambent::sh {
 
-inline constexpr int kMaxFactoredOrder = 7;
+inline constexpr int kMaxFactoredOrder = 9;
 
 class ZonalFactors {
  public:

@@ -19,7 +19,7 @@ namespace lambent::baker {
 // on.
 class GlossyPass {
  public:
-  // Rays, order (in), channels and lights are those of `plain`, which outlives this. Orders 4..7, and of both
+  // Rays, order (in), channels and lights are those of `plain`, which outlives this. Orders 4..9, and of both
   // together at most sh::kMaxVisibilityBands + 1.
   GlossyPass(const DirectPass& plain, const DiffuseScene& scene, int order_out);
 

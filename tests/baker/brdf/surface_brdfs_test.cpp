@@ -12,6 +12,7 @@
 
 #include "runtime/sh/basis.hpp"
 #include "runtime/sh/zonal.hpp"
+#include "runtime/sh/zonal_factors.hpp"
 #include "tests/baker/brdf/quadrature.hpp"
 #include "tests/runtime/sh/sphere.hpp"
 #include "tests/support/shapes.hpp"
@@ -22,8 +23,8 @@ namespace {
 using sh::testing::Random;
 using testing::kPi;
 
-constexpr int kOrder = 5;
-constexpr std::size_t kCount = 25;
+constexpr int kOrder = sh::kMaxFactoredOrder;  // the sharpest that bakes ask for
+constexpr std::size_t kCount = sh::coefficientCount(kOrder);
 
 // A turned square of one material, tangent where u rises, and its kernels.
 struct Square {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <random>
 
@@ -319,6 +320,14 @@ TEST(RadianceError, IsRelativeToTheBlockAndTakesTheWorse) {
   coded[1] += 1.2f;  // of an energy of 24
   EXPECT_NEAR(radianceError(truth, coded, shape), 1.2 / std::sqrt(24.0), 1e-6);
   EXPECT_EQ(radianceError(truth, truth, shape), 0.0);
+}
+
+TEST(RadianceError, OfWhatIsNotANumberIsNone) {
+  const auto shape = shapeOf(1, 1, 3);
+  std::vector<float> truth = {1, 2, 2, 2, 1, 2, 2, 2}, coded = truth;
+  truth[0] = std::numeric_limits<float>::quiet_NaN();  // of the first block; the second errs
+  coded[1] += 1.2f;
+  EXPECT_TRUE(std::isnan(radianceError(truth, coded, shape)));
 }
 
 TEST(RadianceError, WeighsBandsAsLightDoes) {

@@ -49,7 +49,7 @@ TEST(Gaunt, HasTheKnownNumberOfTermsInEqualBands) {
 
 // Selection rules: l_k between |l_i - l_j| and l_i + l_j, even sum.
 TEST(Gaunt, IsOrderedSymmetricAndObeysTheTriangleRule) {
-  for (const auto& [in, out] : {std::pair{5, 5}, {6, 6}, {5, 4}, {4, 6}, {1, 3}}) {
+  for (const auto& [in, out] : {std::pair{5, 5}, {6, 6}, {5, 4}, {4, 6}, {1, 3}, {5, 9}}) {
     const GauntTable table = makeGauntTable(in, out);
     for (std::size_t i = 0; i < countOf(out); ++i) {
       for (std::uint32_t t = table.offsets[i]; t < table.offsets[i + 1]; ++t) {
@@ -106,7 +106,7 @@ TEST(Gaunt, TakesFullVisibilityToTheIdentity) {
 // (V L)_i against quadrature of the product itself.
 TEST(Gaunt, MultipliesAsQuadratureDoes) {
   Random random(11);
-  for (const auto& [in, out] : {std::pair{2, 2}, {4, 4}, {5, 5}, {5, 3}, {4, 6}, {6, 6}}) {
+  for (const auto& [in, out] : {std::pair{2, 2}, {4, 4}, {5, 5}, {5, 3}, {4, 6}, {6, 6}, {5, 9}}) {
     const GauntTable table = makeGauntTable(in, out);
     const auto light = randomFunction(random, in),
                visibility = randomFunction(random, table.visibilityBands());

@@ -294,22 +294,24 @@ TEST(GlossyBounces, LightOfLaterPassesLeavesByAllBandsOfTheKernel) {
 TEST(GlossyBounces, WithMoreBandsForWhatLeavesHaveAsManyAsWereAskedFor) {
   // Lambert surfaces have next to nothing in the bands above.
   const Transport t(corner(true, false), true);
-  const auto few = bakeGlossy(t, lambertKernels(t), {.rays = 512, .bounces = 3}),
-             more = bakeGlossy(t, lambertKernels(t, 7), {.exit_order = 7, .rays = 512, .bounces = 3});
-  EXPECT_EQ(more.glossy.field.order_out, 5);
-  ASSERT_EQ(more.glossy.field.visibility.size(), few.glossy.field.visibility.size());
-  ASSERT_EQ(more.glossy.field.bounced.size(), few.glossy.field.bounced.size());
+  const auto few = bakeGlossy(t, lambertKernels(t), {.rays = 512, .bounces = 3});
   const auto difference = [](const std::vector<float>& a, const std::vector<float>& b) {
     double square = 0.0, all = 0.0;
     for (std::size_t i = 0; i < a.size(); ++i)
       square += double{a[i] - b[i]} * double{a[i] - b[i]}, all += double{b[i]} * double{b[i]};
     return std::sqrt(square / all);
   };
-  EXPECT_LT(difference(more.glossy.field.visibility, few.glossy.field.visibility), 0.01);
-  EXPECT_LT(difference(more.glossy.field.bounced, few.glossy.field.bounced), 0.02);
-  EXPECT_LT(difference(more.bounced.field.vectors, few.bounced.field.vectors), 0.02);
-  for (std::size_t b = 0; b < few.bounced.energy.size(); ++b)
-    EXPECT_NEAR(more.bounced.energy[b], few.bounced.energy[b], 0.01);
+  for (const int exit : {7, 9}) {
+    const auto more = bakeGlossy(t, lambertKernels(t, exit), {.exit_order = exit, .rays = 512, .bounces = 3});
+    EXPECT_EQ(more.glossy.field.order_out, 5);
+    ASSERT_EQ(more.glossy.field.visibility.size(), few.glossy.field.visibility.size());
+    ASSERT_EQ(more.glossy.field.bounced.size(), few.glossy.field.bounced.size());
+    EXPECT_LT(difference(more.glossy.field.visibility, few.glossy.field.visibility), 0.01) << exit;
+    EXPECT_LT(difference(more.glossy.field.bounced, few.glossy.field.bounced), 0.02) << exit;
+    EXPECT_LT(difference(more.bounced.field.vectors, few.bounced.field.vectors), 0.02) << exit;
+    for (std::size_t b = 0; b < few.bounced.energy.size(); ++b)
+      EXPECT_NEAR(more.bounced.energy[b], few.bounced.energy[b], 0.01) << exit;
+  }
 }
 
 TEST(GlossyBounces, OfNoneLeaveTheFieldWithoutThem) {
