@@ -210,13 +210,6 @@ bool findCells(const Keep& keep, std::vector<std::vector<CodedTransfer>>& cells,
   return false;
 }
 
-bool isANumber(const std::vector<std::vector<CodedTransfer>>& cells) {
-  for (const std::vector<CodedTransfer>& cell : cells)
-    for (const CodedTransfer& coded : cell)
-      if (!std::isfinite(coded.error)) return false;
-  return true;
-}
-
 // What the report says of a group, and of what its effects cost.
 void tell(const TransportFigures& figures, bool found, bool any_diffuse, bool any_glossy,
           BakeReport::Group& group, BakeReport& report) {
@@ -354,11 +347,6 @@ Result<BakedGroup> bakeGroup(const Scene& scene, const RigidGroup& group, LightS
       if (stop.stop_requested()) return stopped();
       progress.add(cell.count);
     }
-    // No scene that was let in should come to this; a bundle of it could not be loaded.
-    if (!isANumber(baked.cells))
-      return fail(scene.source.string(),
-                  fmt::format("what rigid group \"{}\" reflects is not a number", group.name),
-                  "this is a fault of the program: please report it with the scene");
     tell(work, found, baked.samples.first_glossy > 0, any_glossy, figures, report);
     if (cache) keepCells(cells_keep, baked.cells, work);
     coding.drop();

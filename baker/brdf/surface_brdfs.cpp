@@ -10,6 +10,7 @@
 #include <glm/geometric.hpp>
 
 #include "runtime/sh/basis.hpp"
+#include "runtime/sh/with_order.hpp"
 #include "runtime/sh/zonal.hpp"
 #include "runtime/sh/zonal_factors.hpp"
 
@@ -107,8 +108,12 @@ ViewFrame frameOf(const glm::vec3& normal, const glm::vec3& tangent, const glm::
   return frame;
 }
 
-// Of all directions of a factored function, in whole vectors.
-constexpr std::size_t kAxisLanes = (2 * sh::kMaxFactoredOrder - 1 + 7) / 8 * 8;
+constexpr std::size_t inWholeVectors(std::size_t lanes) {
+  return (lanes + 7) / 8 * 8;
+}
+
+// Of all directions of a factored function.
+constexpr std::size_t kAxisLanes = inWholeVectors(2 * sh::kMaxFactoredOrder - 1);
 
 // out_k of band l = Σ_i weights[i] harmonics[k][i].
 inline void sumAxes(const float* weights, std::size_t axes, std::size_t l, const float* harmonics,
@@ -298,7 +303,7 @@ void SurfaceBrdfs::State::expand(const Factored& from, int order, std::span<cons
     const glm::vec3 axis = axes[i].x * frame.x + axes[i].y * frame.y + axes[i].z * frame.z;
     x[i] = axis.x, y[i] = axis.y, z[i] = axis.z;
   }
-  const std::size_t lanes = (axes.size() + 7) / 8 * 8;
+  const std::size_t lanes = inWholeVectors(axes.size());
   sh::evaluateBatch<float>(order, x.data(), y.data(), z.data(), lanes, harmonics.data(), kAxisLanes);
   for (std::size_t lobe = 0; lobe < lobes.size(); ++lobe) {
     const float* own = weights.data() + lobe * count;
@@ -308,9 +313,8 @@ void SurfaceBrdfs::State::expand(const Factored& from, int order, std::span<cons
         sumAxes(own + at, 2 * l + 1, l, harmonics.data(), lobes[lobe].data());
       continue;
     }
-    sh::detail::unrolled(std::make_integer_sequence<int, sh::kMaxFactoredOrder>{}, [&](auto band) {
-      if (order == band + 1) sumIsotropic<band + 1>(own, harmonics.data(), lobes[lobe].data());
-    });
+    sh::withOrder<sh::kMaxFactoredOrder>(
+        order, [&](auto bands) { sumIsotropic<bands>(own, harmonics.data(), lobes[lobe].data()); });
   }
 }
 

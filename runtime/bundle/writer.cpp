@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -38,12 +39,23 @@ std::span<const std::byte> bytesOf(const T& words) {
   return std::as_bytes(std::span(words));
 }
 
+bool isANumber(const CellTransfer& transfer) {
+  return std::isfinite(transfer.error) &&
+         std::all_of(transfer.planes.begin(), transfer.planes.end(),
+                     [](const WeightPlane& plane) { return std::isfinite(plane.variance); });
+}
+
 }  // namespace
 
 Result<void> write(const std::filesystem::path& path, Description description,
                    const std::vector<Blob>& blobs) {
   assert(std::none_of(blobs.begin(), blobs.end(), [](const Blob& blob) { return blob.empty(); }) &&
          "glTF has no empty bufferViews");
+  for (const Group& group : description.groups)
+    for (const Cell& cell : group.cells)
+      if (!std::all_of(cell.transfers.begin(), cell.transfers.end(), isANumber))
+        return fail(path.string(), fmt::format("the transfer of group \"{}\" is not a number", group.name),
+                    "this is a fault of the program: please report it with the scene");
   std::vector<Blob> animations;  // their views come last
   for (const gltf::Animation& animation : description.animations)
     animations.push_back(animationBytes(animation));

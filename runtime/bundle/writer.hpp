@@ -15,7 +15,8 @@ using Blob = std::vector<std::byte>;
 
 // `description.views` is filled here: blobs[i] becomes view i; the keyframes of the animations, which have at
 // least one channel with keys each, follow in views of their own. The file appears whole or not at all.
-// The same description and blobs give the same bytes.
+// The same description and blobs give the same bytes. Errors: transfer that is not a number, which no reader
+// takes; more than a GLB can hold; a file that cannot be written.
 Result<void> write(const std::filesystem::path& path, Description description,
                    const std::vector<Blob>& blobs);
 

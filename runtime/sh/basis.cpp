@@ -2,6 +2,8 @@
 
 #include <cassert>
 
+#include "runtime/sh/with_order.hpp"
+
 namespace lambent::sh {
 
 namespace {
@@ -22,28 +24,19 @@ void evaluateMany(const T* xs, const T* ys, const T* zs, std::size_t count, T* o
                          [=](int i, T value) { out[static_cast<std::size_t>(i) * stride + k] = value; });
 }
 
-// Calls f with std::integral_constant<int, order>.
-template <typename F>
-void withOrder(int order, F&& f) {
-  assert(order >= 1 && order <= kMaxBasisOrder);
-  detail::unrolled(std::make_integer_sequence<int, kMaxBasisOrder>{}, [&](auto index) {
-    if (order == index + 1) f(std::integral_constant<int, index + 1>{});
-  });
-}
-
 }  // namespace
 
 template <std::floating_point T>
 void evaluate(int order, T x, T y, T z, std::type_identity_t<std::span<T>> out) {
   assert(out.size() >= static_cast<std::size_t>(coefficientCount(order)));
-  withOrder(order, [&](auto fixed) { evaluateOne<fixed>(x, y, z, out.data()); });
+  withOrder<kMaxBasisOrder>(order, [&](auto fixed) { evaluateOne<fixed>(x, y, z, out.data()); });
 }
 
 template <std::floating_point T>
 void evaluateBatch(int order, const T* xs, const T* ys, const T* zs, std::size_t count, T* out,
                    std::size_t stride) {
   assert(stride >= count);
-  withOrder(order, [&](auto fixed) { evaluateMany<fixed>(xs, ys, zs, count, out, stride); });
+  withOrder<kMaxBasisOrder>(order, [&](auto fixed) { evaluateMany<fixed>(xs, ys, zs, count, out, stride); });
 }
 
 template void evaluate<float>(int, float, float, float, std::span<float>);

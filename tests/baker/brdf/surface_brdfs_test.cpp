@@ -226,6 +226,20 @@ TEST(SurfaceBrdfs, TurnAnisotropicLobesWithTangentAndRotation) {
     }
 }
 
+TEST(SurfaceBrdfs, OfFewerBandsAreTheFirstOfAll) {
+  const Square square(materialOf({0.9f, 0.6f, 0.3f}, 1.0f, 0.5f), 8);
+  const glm::dvec3 v = direction(0.35, 2.2);
+  const auto all = square.kernel(v);
+  for (int order = 4; order < kOrder; ++order) {
+    const auto count = static_cast<std::size_t>(sh::coefficientCount(order));
+    std::vector<float> few(3 * count);
+    square.brdfs->firstBands(order).exitKernel(0, 0.3f, 0.3f, glm::vec3(square.turn * v), few);
+    for (std::size_t c = 0; c < 3; ++c)
+      for (std::size_t k = 0; k < count; ++k)
+        EXPECT_NEAR(few[c * count + k], all[c * kCount + k], 1e-5f) << order << " bands, " << k;
+  }
+}
+
 TEST(SurfaceBrdfs, OfMatteSurfacesAreLamberts) {
   gltf::Material matte = materialOf({0.7f, 0.5f, 0.2f}, 0.0f, 1.0f);
   const Square square(matte);

@@ -1,4 +1,5 @@
 // The container: what is written comes back, and nothing damaged gets through.
+#include <cmath>
 #include <cstddef>
 #include <cstring>
 
@@ -192,6 +193,18 @@ TEST_F(BundleFile, GivesBackLightSamplesAndProxies) {
   EXPECT_EQ(reader->description().groups[1].light_samples.size(), 1u);
   EXPECT_TRUE(reader->readProxy(1)->levels.empty());
   EXPECT_TRUE(reader->checkAll());
+}
+
+TEST_F(BundleFile, IsNotWrittenOfTransferThatIsNotANumber) {
+  for (const bool of_plane : {false, true}) {
+    Sample sample = sampleBundle();
+    CellTransfer& transfer = sample.description.groups[0].cells[0].transfers[0];
+    (of_plane ? transfer.planes.at(0).variance : transfer.error) = std::nanf("");
+    const auto written = write(path_, sample.description, sample.blobs);
+    ASSERT_FALSE(written);
+    EXPECT_NE(written.error().line().find("not a number"), std::string::npos);
+    EXPECT_FALSE(std::filesystem::exists(path_));
+  }
 }
 
 TEST_F(BundleFile, IsTheSameBytesTwice) {
