@@ -83,8 +83,8 @@ sh::LightVector exitKernel(const SurfacePoint& point, int order, std::uint32_t s
 FirstHit::FirstHit(const SurfacePoint& point, int order, const sh::LightVector& light, std::uint32_t seed)
     : kernel_(exitKernel(point, order, seed)),
       light_(light),
-      frame_(frameAbout(point.smooth)),
-      triangle_(point.geometric) {
+      horizons_(point.horizons()),
+      frame_(frameAbout(point.smooth)) {
   for (std::size_t k = 0; k < kernel_.c.size(); ++k) open_ += kernel_.c[k] * light_.c[k];
   float energy = 0.0f;
   for (const glm::vec3& l : light_.c) energy += glm::dot(l, l) / 3.0f;
@@ -112,26 +112,6 @@ glm::vec3 FirstHit::directionAt(float height, float turn) const {
   return glm::normalize(frame_ * glm::vec3(r * std::cos(angle), r * std::sin(angle), height));
 }
 
-glm::vec3 FirstHit::mirrored(const glm::vec3& v) const {
-  return v - 2.0f * glm::dot(v, frame_[2]) * frame_[2];
-}
-
-glm::vec3 FirstHit::aboveTriangle(const glm::vec3& v) const {
-  const float height = glm::dot(v, triangle_);
-  return height < 0.0f ? v - 2.0f * height * triangle_ : v;
-}
-
-glm::vec3 FirstHit::rayFor(const glm::vec3& dir) const {
-  return aboveTriangle(glm::dot(dir, frame_[2]) < 0.0f ? mirrored(dir) : dir);
-}
-
-template <typename Visit>
-void FirstHit::forAbove(const glm::vec3& ray, const Visit& visit) const {
-  const glm::vec3 hidden = ray - 2.0f * glm::dot(ray, triangle_) * triangle_;
-  if (glm::dot(ray, frame_[2]) > 0.0f) visit(ray);
-  if (glm::dot(hidden, frame_[2]) > 0.0f) visit(hidden);
-}
-
 glm::vec3 FirstHit::kernelOfPair(const glm::vec3& dir) const {
   return kernel_.evaluate(dir) + kernel_.evaluate(mirrored(dir));
 }
@@ -143,27 +123,28 @@ glm::vec3 FirstHit::skyOfPair(const glm::vec3& dir) const {
 
 glm::vec3 FirstHit::kernelOfAll(const glm::vec3& ray) const {
   glm::vec3 sum(0.0f);
-  forAbove(ray, [&](const glm::vec3& dir) { sum += kernelOfPair(dir); });
+  horizons_.forAbove(ray, [&](const glm::vec3& dir) { sum += kernelOfPair(dir); });
   return sum;
 }
 
 glm::vec3 FirstHit::skyOfAll(const glm::vec3& ray) const {
   glm::vec3 sum(0.0f);
-  forAbove(ray, [&](const glm::vec3& dir) { sum += skyOfPair(dir); });
+  horizons_.forAbove(ray, [&](const glm::vec3& dir) { sum += skyOfPair(dir); });
   return sum;
 }
 
 glm::vec3 FirstHit::sample(const glm::vec2& u) const {
   const auto [r, height] = cellOf(rows_, u.x);
   const auto [c, turn] = cellOf(columns_[r], u.y);
-  return aboveTriangle(directionAt(std::max((static_cast<float>(r) + height) / kRows, kLeastHeight),
-                                   (static_cast<float>(c) + turn) / kColumns));
+  const glm::vec3 dir = directionAt(std::max((static_cast<float>(r) + height) / kRows, kLeastHeight),
+                                    (static_cast<float>(c) + turn) / kColumns);
+  return Horizons::above(dir, horizons_.triangle);
 }
 
 float FirstHit::pdf(const glm::vec3& ray) const {
-  if (!(glm::dot(ray, triangle_) > 0.0f)) return 0.0f;
+  if (!(glm::dot(ray, horizons_.triangle) > 0.0f)) return 0.0f;
   float sum = 0.0f;
-  forAbove(ray, [&](const glm::vec3& dir) { sum += pdfOfPair(dir); });
+  horizons_.forAbove(ray, [&](const glm::vec3& dir) { sum += pdfOfPair(dir); });
   return sum;
 }
 

@@ -11,6 +11,7 @@
 #include <glm/mat3x3.hpp>
 #include <glm/vec2.hpp>
 
+#include "baker/reference/horizons.hpp"
 #include "baker/reference/surfaces.hpp"
 #include "runtime/sh/light_vector.hpp"
 
@@ -21,10 +22,7 @@ namespace lambent::baker::reference {
 sh::LightVector exitKernel(const SurfacePoint& point, int order, std::uint32_t seed,
                            std::uint32_t points = 1024);
 
-// Two planes: of the smooth normal, in which directions below it are mirrored to those above, and of the
-// triangle, in which those of the latter are that the triangle itself would hide. Rays start above the
-// triangle, and each stands for the directions that see what it sees: itself and the one that the triangle
-// would hide, where they are above the smooth plane, and the mirror images of those.
+// Rays start above the triangle, and each stands for the directions that see what it sees (horizons.hpp).
 class FirstHit {
  public:
   // `light` is all light from infinity as seen from the point.
@@ -38,7 +36,7 @@ class FirstHit {
   // What all of them would have sent from infinity.
   glm::vec3 skyOfAll(const glm::vec3& ray) const;
   // The ray that tells what a direction sees, of the same length.
-  glm::vec3 rayFor(const glm::vec3& dir) const;
+  glm::vec3 rayFor(const glm::vec3& dir) const { return horizons_.rayFor(dir); }
 
   // A unit direction above the triangle, about in proportion to what all would send of the sky, and of light
   // as bright as the sky is on average.
@@ -51,19 +49,15 @@ class FirstHit {
 
   // In the smooth plane's frame.
   glm::vec3 directionAt(float height, float turn) const;
-  glm::vec3 mirrored(const glm::vec3& v) const;
-  glm::vec3 aboveTriangle(const glm::vec3& v) const;
+  glm::vec3 mirrored(const glm::vec3& dir) const { return Horizons::mirrored(dir, horizons_.smooth); }
   glm::vec3 kernelOfPair(const glm::vec3& dir) const;
   glm::vec3 skyOfPair(const glm::vec3& dir) const;
   float pdfOfPair(const glm::vec3& dir) const;
-  // Calls visit(dir) with the directions above the smooth plane that a ray stands for.
-  template <typename Visit>
-  void forAbove(const glm::vec3& ray, const Visit& visit) const;
 
   sh::LightVector kernel_, light_;
   glm::vec3 open_{0.0f};
+  Horizons horizons_;
   glm::mat3 frame_{1.0f};                // about the smooth normal
-  glm::vec3 triangle_{0.0f};             // its normal
   std::array<float, kRows + 1> rows_{};  // cumulated, from 0 to 1
   std::array<std::array<float, kColumns + 1>, kRows> columns_{};
 };

@@ -14,6 +14,7 @@
 #include "baker/import/scene.hpp"
 #include "baker/reference/albedo_table.hpp"
 #include "baker/reference/brdf.hpp"
+#include "baker/reference/horizons.hpp"
 #include "baker/reference/measured.hpp"
 #include "baker/reference/textures.hpp"
 
@@ -52,6 +53,7 @@ struct SurfacePoint {
   bool blocked = false;
 
   glm::vec3 origin() const { return position + offset * geometric; }
+  Horizons horizons() const { return {smooth, geometric}; }
 };
 
 class Surfaces {

@@ -34,14 +34,33 @@ std::uint32_t Walk::pageSeed(bool in_volume, std::uint32_t layer, std::uint32_t 
 Walk::Scattering Walk::scattering(const Path& path, const glm::vec3& dir, bool first) const {
   const SurfacePoint& at = path.at;
   if (path.in_medium) return phase(path, glm::dot(path.dir, dir), first);
-  if (glm::dot(at.geometric, dir) <= 0.0f) return {};
-  if (first && limited) return {limited->kernelOfAll(dir), limited->pdf(dir)};
-  if (at.glossy) {
+  if (at.glossy && !(first && limited)) {
     const glm::vec3 local = at.reflector.toLocal(dir);
     return {at.reflector.value(local), at.reflector.pdf(local)};
   }
+  if (glm::dot(at.geometric, dir) <= 0.0f) return {};
+  if (first && limited) return {limited->kernelOfAll(dir), limited->pdf(dir)};
   const float value = std::max(glm::dot(at.shading, dir), 0.0f) / kPi;
   return {glm::vec3(value), value};
+}
+
+Walk::Scattering Walk::ofRay(const Path& path, const glm::vec3& ray, bool first) const {
+  if (path.in_medium || !path.at.glossy || (first && limited)) return scattering(path, ray, first);
+  if (glm::dot(path.at.geometric, ray) <= 0.0f) return {};
+  Scattering sum;
+  const auto add = [&](const glm::vec3& dir) {
+    const Scattering s = scattering(path, dir, first);
+    sum.value += s.value, sum.pdf += s.pdf;
+  };
+  path.at.horizons().forAbove(ray, [&](const glm::vec3& dir) {
+    add(dir);
+    add(Horizons::mirrored(dir, path.at.smooth));
+  });
+  return sum;
+}
+
+glm::vec3 Walk::rayFor(const Path& path, const glm::vec3& dir, bool first) const {
+  return !path.in_medium && (path.at.glossy || (first && limited)) ? path.at.horizons().rayFor(dir) : dir;
 }
 
 Walk::Scattering Walk::phase(const Path& path, float cosine, bool first) const {
@@ -78,7 +97,6 @@ void Walk::scatterToEye(const EyeDepth& eye, const Ray& ray, std::uint32_t layer
 }
 
 void Walk::walk(bool in_volume, std::uint32_t layer) {
-  const bool emission_later = !world.emissive.empty() || !(world.shapes.empty() || shapesAreSky());
   for (std::uint32_t vertex = 0; anyAlive(); ++vertex) {
     turnTo(in_volume, layer, vertex);
     for (Path& path : paths)
@@ -86,7 +104,7 @@ void Walk::walk(bool in_volume, std::uint32_t layer) {
     if (vertex > kFirstRoulette) playRoulette();
     gatherLights(vertex == 0);
     scatter(vertex == 0);
-    if (world.volumes.empty() && vertex == mostReflections() && !emission_later) {
+    if (world.volumes.empty() && vertex == mostReflections() && !findsLights()) {
       if (!world.environment.dark() || shapesAreSky()) lookAtSky(vertex == 0);
       return;
     }
@@ -104,20 +122,21 @@ void Walk::scatter(bool first) {
     if (path.in_medium) {
       scatterInMedium(path, u, first);
     } else if (first && limited) {
-      path.dir = limited->sample(u);
-      path.pdf = limited->pdf(path.dir);
+      const glm::vec3 dir = limited->sample(u);
+      path.go(dir, limited->pdf(dir));
       path.throughput *= limited->kernelOfAll(path.dir) / path.pdf;
     } else if (path.at.glossy) {
       const Reflector& reflector = path.at.reflector;
       const float choice = draw(path, kLobe).x;
-      path.dir = glm::normalize(reflector.world_from_local * reflector.sample(choice, u));
-      const Scattering s = scattering(path, path.dir, first);
-      path.pdf = s.pdf;
+      const glm::vec3 dir = glm::normalize(reflector.world_from_local * reflector.sample(choice, u));
+      const Scattering s = scattering(path, dir, first);
+      path.go(dir, s.pdf);
       path.throughput *= s.pdf > 0.0f ? s.value / s.pdf : glm::vec3(0.0f);
+      path.dir = rayFor(path, dir, first);
+      if (findsLights()) path.ray_pdf = ofRay(path, path.dir, first).pdf;
     } else {
       const glm::vec3 local = cosineDirection(u);
-      path.dir = glm::normalize(frameAbout(path.at.shading) * local);
-      path.pdf = local.z / kPi;
+      path.go(glm::normalize(frameAbout(path.at.shading) * local), local.z / kPi);
     }
     path.alive = (path.in_medium || glm::dot(path.at.geometric, path.dir) > 0.0f) &&
                  (path.throughput != glm::vec3(0.0f) || (first && limited));
@@ -136,8 +155,7 @@ void Walk::scatterInMedium(Path& path, const glm::vec2& u, bool first) const {
   else
     dir = sphereDirection({2.0f * u.x - 1.0f, u.y});
   const Scattering s = phase(path, glm::dot(path.dir, dir), first);
-  path.dir = dir;
-  path.pdf = s.pdf;
+  path.go(dir, s.pdf);
   path.throughput *= s.value / s.pdf;
 }
 

@@ -50,12 +50,20 @@ struct Path {
   glm::vec3 throughput{1.0f}, sum{0.0f};
   std::uint32_t index = 0, replica = 0;  // which point of which replica
   glm::vec3 dir{0.0f};                   // that led here, in a medium; that leads on, once it is drawn
-  float pdf = 0.0f;                      // of dir, by the surface's own strategy
+  // What the surface takes dir for, which is its mirror image where the surface would hide it (horizons.hpp).
+  glm::vec3 towards{0.0f};
+  float pdf = 0.0f;      // of towards, by the surface's own strategy
+  float ray_pdf = 0.0f;  // of dir, by all that it is taken for; only where findsLights()
   bool alive = true;
   bool in_medium = false;         // where it stands
   float g = 0.0f;                 // of the medium
   bool scattered = false;         // in a medium, at any vertex
   std::uint32_t reflections = 0;  // surfaces that it has met since its first vertex
+
+  void go(const glm::vec3& where, float density) {
+    dir = towards = where;
+    pdf = ray_pdf = density;
+  }
 };
 // A light's contribution that counts if nothing is in the way.
 struct Shadow {
@@ -106,6 +114,12 @@ struct Walk {
     float pdf = 0.0f;
   };
   Scattering scattering(const Path& path, const glm::vec3& dir, bool first) const;
+  // Of what stands in the way of a ray: of all directions that see it.
+  Scattering ofRay(const Path& path, const glm::vec3& ray, bool first) const;
+  // The ray that tells what a direction sees, of the same length.
+  glm::vec3 rayFor(const Path& path, const glm::vec3& dir, bool first) const;
+  // Whether paths can find what shines at a place of its own.
+  bool findsLights() const { return !world.emissive.empty() || !(world.shapes.empty() || shapesAreSky()); }
   // Of the phase function the first OUT bands are as much a kernel as those of a BRDF, and drawn half from
   // the whole, half evenly.
   bool phaseIsLimited(bool first) const { return first && options.band_limit && options.band_limit->out; }

@@ -17,7 +17,7 @@ void Walk::lightFromSky(std::size_t p, bool first) {
   if (s.value == glm::vec3(0.0f)) return;
   const Environment::Look sky = world.environment.look(dir);
   if (!(sky.pdf > 0.0f)) return;
-  addShadow(p, dir, kInfinity,
+  addShadow(p, rayFor(path, dir, first), kInfinity,
             path.throughput * sky.radiance * (s.value / sky.pdf * powerHeuristic(sky.pdf, s.pdf)), kToSky);
 }
 
@@ -31,7 +31,7 @@ void Walk::lightFromEmissive(std::size_t p, bool first) {
   const float facing = -glm::dot(sample.normal, dir);
   if (facing == 0.0f || (facing < 0.0f && !sample.double_sided)) return;
   const float pdf = sample.per_area * distance2 / std::abs(facing);
-  const Scattering s = scattering(path, dir, first);
+  const Scattering s = ofRay(path, dir, first);
   addShadow(
       p, to, kShadowReach,
       path.throughput * world.surfaces.emittedAt(sample.hit) * (s.value / pdf * powerHeuristic(pdf, s.pdf)),
@@ -45,7 +45,7 @@ void Walk::lightFromShapes(std::size_t p, bool first) {
     const glm::vec2 u = draw(path, (i + 1) * kPerShape);
     const auto way = sampleShape(world.shapes[i], path.at.origin(), u);
     if (!way) continue;
-    const Scattering s = scattering(path, way->dir, first);
+    const Scattering s = ofRay(path, way->dir, first);
     addShadow(p, way->dir, way->distance * kShadowReach,
               path.throughput * way->radiance * (s.value / way->pdf * powerHeuristic(way->pdf, s.pdf)),
               kToShapes + i);
@@ -76,9 +76,8 @@ void Walk::lightFromPunctual(std::size_t p, bool first) {
     if (left >= 0.0f || !(share > 0.0f)) continue;
     const bool near = std::isfinite(beam->distance);
     glm::vec3 to = near ? world.punctual[i].position - path.at.origin() : beam->to_light;
-    // Below the surface what stands in the mirrored direction is in the way.
-    if (first && limited) to = limited->rayFor(to);
-    addShadow(p, to, near ? kShadowReach : kInfinity, radiance * (sum / share), kToPunctual);
+    addShadow(p, rayFor(path, to, first), near ? kShadowReach : kInfinity, radiance * (sum / share),
+              kToPunctual);
     return;
   }
 }
@@ -124,10 +123,10 @@ void Walk::takeSky(Path& path) const {
 
 void Walk::addSky(Path& path, bool first) {
   if (first && limited) return;
-  Environment::Look sky = world.environment.look(path.dir);
+  Environment::Look sky = world.environment.look(path.towards);
   if (shapesAreSky())
     sky.radiance +=
-        (first && !path.in_medium ? first_shapes : shapesFrom(path.at.origin())).evaluate(path.dir);
+        (first && !path.in_medium ? first_shapes : shapesFrom(path.at.origin())).evaluate(path.towards);
   const float weight = world.environment.sampled() ? powerHeuristic(path.pdf, sky.pdf) : 1.0f;
   path.sum += path.throughput * sky.radiance * weight;
 }
@@ -137,7 +136,7 @@ void Walk::addShapes(Path& path, float far) const {
   for (const spec::LocalLight& shape : world.shapes)
     if (const auto way = lookAtShape(shape, path.at.origin(), path.dir);
         way && way->distance * kShadowReach < far)
-      path.sum += path.throughput * way->radiance * powerHeuristic(path.pdf, way->pdf);
+      path.sum += path.throughput * way->radiance * powerHeuristic(path.ray_pdf, way->pdf);
 }
 
 void Walk::addEmitted(Path& path, const Hit& hit, const SurfacePoint& there) const {
@@ -145,9 +144,9 @@ void Walk::addEmitted(Path& path, const Hit& hit, const SurfacePoint& there) con
   const glm::vec3 to = there.position - path.at.origin();
   const float facing = std::abs(glm::dot(there.geometric, path.dir));
   const float per_area = world.emissive.perArea(hit);
-  const float weight = per_area > 0.0f
-                           ? powerHeuristic(path.pdf, per_area * glm::dot(to, to) / std::max(facing, 1e-12f))
-                           : 1.0f;
+  const float weight =
+      per_area > 0.0f ? powerHeuristic(path.ray_pdf, per_area * glm::dot(to, to) / std::max(facing, 1e-12f))
+                      : 1.0f;
   path.sum += path.throughput * there.emitted * weight;
 }
 
