@@ -45,12 +45,11 @@ HighlightSample sampleHighlight(const PointReflection& at, const glm::vec3& to, 
   // G2/G1 of the height-correlated Smith term.
   const float of_v = stretched(at, v);
   const float shadowing = s.z * (v.z + of_v) / (s.z * of_v + v.z * stretched(at, s));
-  HighlightSample out{.direction = s.x * at.tangent + s.y * bitangent + s.z * at.normal,
-                      .weight = shadowing * glm::mix(at.f0, glm::vec3(at.f90), fresnel)};
-  if (const float below = glm::dot(out.direction, at.geometric); below < 0.0f)
-    out.direction -= 2.0f * below * at.geometric;
-  out.direction = glm::normalize(out.direction);
-  return out;
+  const glm::vec3 direction = glm::normalize(s.x * at.tangent + s.y * bitangent + s.z * at.normal);
+  const float below = std::min(glm::dot(direction, at.geometric), 0.0f);
+  return {.direction = direction,
+          .ray = glm::normalize(direction - 2.0f * below * at.geometric),
+          .weight = shadowing * glm::mix(at.f0, glm::vec3(at.f90), fresnel)};
 }
 
 glm::vec2 choices(std::uint32_t number, std::uint32_t step) {

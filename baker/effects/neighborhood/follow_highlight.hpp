@@ -12,12 +12,14 @@
 namespace lambent::baker {
 
 struct HighlightSample {
-  glm::vec3 direction{0.0f};  // unit, group frame, above the triangle
-  glm::vec3 weight{0.0f};     // f cos / pdf
+  glm::vec3 direction{0.0f};  // unit, group frame, above the plane of the normal: where light comes from
+  // What stands there is what this one meets: the same, or its mirror image where the triangle hides it
+  // (docs/conventions.md, "Materials").
+  glm::vec3 ray{0.0f};
+  glm::vec3 weight{0.0f};  // f cos / pdf
 };
 
-// to: unit, towards where the light is wanted; u from the unit square. A direction that a smooth normal leads
-// below the triangle is taken to the other side of its plane: the surface loses nothing.
+// to: unit, towards where the light is wanted; u from the unit square.
 HighlightSample sampleHighlight(const PointReflection& at, const glm::vec3& to, const glm::vec2& u);
 
 // Evenly spread over the unit square for the numbers in a row: R2, the generalised golden ratio (Roberts

@@ -135,6 +135,7 @@ class SurfaceBody::Paths {
                         .from = from,
                         .along = along,
                         .scale = glm::vec3(1.0f / static_cast<float>(count)),
+                        .towards = along,
                         .row = row,
                         .number = static_cast<std::uint32_t>(ray * kRoughPaths + p)});
   }
@@ -165,6 +166,7 @@ class SurfaceBody::Paths {
   struct Path {
     FirstHit hit;
     glm::vec3 from, along, scale;
+    glm::vec3 towards;  // what the highlight took `along` for
     std::size_t row;
     std::uint32_t number;
   };
@@ -177,7 +179,7 @@ class SurfaceBody::Paths {
     const HighlightSample next = sampleHighlight(at, -path.along, choices(path.number, reflection));
     path.scale *= next.weight;
     path.from += hit.distance * path.along + kClear * body_.radius_ * at.geometric;
-    path.along = next.direction;
+    path.along = next.ray, path.towards = next.direction;
     return path.scale != glm::vec3(0.0f);
   }
 
@@ -186,7 +188,7 @@ class SurfaceBody::Paths {
     const FirstHit& hit = path.hit;
     if (!hit.any()) {
       std::array<float, sh::kMaxCoefficients> y;
-      sh::evaluate(body_.order_, path.along, y);
+      sh::evaluate(body_.order_, path.towards, y);
       for (std::size_t c = 0; c < body_.channels_; ++c)
         for (std::size_t i = 0; i < columns_; ++i)
           out[c * columns_ + i] += path.scale[static_cast<int>(c)] * y[i];

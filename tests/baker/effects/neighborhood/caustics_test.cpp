@@ -140,6 +140,20 @@ TEST(HighlightSamples, OfAMirrorGoTheOtherWayWithItsReflectance) {
     }
 }
 
+TEST(HighlightSamples, OfALeaningNormalLookAtTheMirrorImageOfWhatTheTriangleHides) {
+  PointReflection at;
+  at.alpha_t = at.alpha_b = 1e-3f;
+  at.f0 = glm::vec3(1.0f);
+  at.f90 = 1.0f;
+  const float lean = glm::radians(20.0f), low = glm::radians(15.0f);
+  at.geometric = {-std::sin(lean), 0, std::cos(lean)};
+  // Leaves the mirror 5 degrees below the triangle, and is seen 5 degrees above it.
+  const HighlightSample next = sampleHighlight(at, {-std::cos(low), 0, std::sin(low)}, choices(0, 0));
+  EXPECT_LT(glm::distance(next.direction, glm::vec3(std::cos(low), 0, std::sin(low))), 0.02f);
+  EXPECT_NEAR(glm::dot(next.ray, at.geometric), std::sin(glm::radians(5.0f)), 0.01f);
+  EXPECT_NEAR(next.weight.r, 1.0f, 1e-2f);
+}
+
 TEST(HighlightSamples, AddUpToTheDirectionalAlbedoOfTheTable) {
   // ∫ f cos by these samples against Brdf::value over a fine grid of directions.
   const auto ggx = makeGgx(false);
