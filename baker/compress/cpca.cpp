@@ -137,25 +137,27 @@ class Coder {
     if (state_.basis.basis_scales.empty()) return dark();
     if (goes_on ? stop_.stop_requested() : stopped()) return {};
     points_ = coordinates(vectors_, space_.roots, state_.basis);
-    Clustering found;
     for (;;) {
       if (state_.step == CodingState::Step::Search && !searchAndAssign()) return {};
       auto clustered = refine(points_, settings_.axes, kFinalRounds, /*held_out=*/false);
       if (!clustered) return {};
-      found = std::move(*clustered);
-      if (state_.step == CodingState::Step::Fit || settings_.clusters > 0 || found.clusters.size() == 1 ||
-          fits(found))
-        break;
-      // What some of the samples foretold is too little.
+      Clustering found = std::move(*clustered);
+      const bool fewer = settings_.clusters == 0 && found.clusters.size() > 1;
+      if (state_.step == CodingState::Step::Fit || !fewer || fits(found)) {
+        if (state_.step != CodingState::Step::Fit) {
+          state_.step = CodingState::Step::Fit;
+          state_.attempt = 0;
+          state_.quantum = found.step;
+          if (stopped()) return {};
+        }
+        const bool fitted = fitToBound(found);
+        if (stop_.stop_requested()) return {};
+        if (fitted || !fewer) return std::move(state_.coded);
+      }
+      // What some of the samples foretold is too little, or what was planned for the bound.
       state_.most_clusters = static_cast<std::uint32_t>(found.clusters.size() / 2);
       beginSearch();
     }
-    if (state_.step != CodingState::Step::Fit) {
-      state_.step = CodingState::Step::Fit;
-      state_.quantum = found.step;
-      if (stopped()) return {};
-    }
-    return fitToBound(found);
   }
 
  private:
@@ -190,7 +192,9 @@ class Coder {
   std::optional<Clustering> search();
   // Assigns all samples to clusters that were found from some. False if stopped.
   bool searchAndAssign();
-  CodedTransfer fitToBound(Clustering& found);
+  // The best codes are left in state_.coded. False where the memory for means and axes ended before the bound
+  // was reached. Also if stopped.
+  bool fitToBound(Clustering& found);
 
   std::span<const float> vectors_;
   const bundle::TransferShape& shape_;
@@ -299,12 +303,12 @@ bool Coder::searchAndAssign() {
 
 // Steps are planned by what errors and bits are expected to be; here they are measured, and the step made as
 // large as the bound allows.
-CodedTransfer Coder::fitToBound(Clustering& found) {
+bool Coder::fitToBound(Clustering& found) {
   const double bound = double{settings_.bound} * std::sqrt(state_.reachable / allowed_);
   CodedTransfer& best = state_.coded;
   while (state_.attempt < kMostAttempts) {
     if (settings_.axes < 0) keepAxes(found.clusters, state_.quantum);
-    if (state_.attempt > 0 && expandedBytes(found.clusters, shape_) > settings_.most_expanded_bytes) break;
+    if (state_.attempt > 0 && !fits(found)) return double{best.error} <= bound;
     CodedTransfer coded = quantize(points_, found.ids, found.clusters, state_.basis, shape_, state_.quantum);
     coded.error = static_cast<float>(errorOf(coded));
     const float error = coded.error;
@@ -320,9 +324,9 @@ CodedTransfer Coder::fitToBound(Clustering& found) {
     const double ratio = 0.995 * bound / std::max(double{error}, 1e-12);
     state_.quantum *= std::clamp(met ? ratio : ratio * ratio, 0.3, 1.5);
     ++state_.attempt;
-    if (stopped()) return {};
+    if (stopped()) return false;
   }
-  return std::move(best);
+  return true;
 }
 
 }  // namespace
