@@ -139,23 +139,17 @@ class Coder {
     points_ = coordinates(vectors_, space_.roots, state_.basis);
     for (;;) {
       if (state_.step == CodingState::Step::Search && !searchAndAssign()) return {};
-      auto clustered = refine(points_, settings_.axes, kFinalRounds, /*held_out=*/false);
-      if (!clustered) return {};
-      Clustering found = std::move(*clustered);
-      const bool fewer = settings_.clusters == 0 && found.clusters.size() > 1;
-      if (state_.step == CodingState::Step::Fit || !fewer || fits(found)) {
-        if (state_.step != CodingState::Step::Fit) {
-          state_.step = CodingState::Step::Fit;
-          state_.attempt = 0;
-          state_.quantum = found.step;
-          if (stopped()) return {};
-        }
-        const bool fitted = fitToBound(found);
-        if (stop_.stop_requested()) return {};
-        if (fitted || !fewer) return std::move(state_.coded);
+      auto found = refine(points_, settings_.axes, kFinalRounds, /*held_out=*/false);
+      if (!found) return {};
+      const bool fewer = settings_.clusters == 0 && found->clusters.size() > 1;
+      if (state_.step == CodingState::Step::Fit || !fewer || fits(*found)) {
+        if (state_.step != CodingState::Step::Fit && !beginFit(found->step)) return {};
+        const auto fitted = fitToBound(*found);
+        if (!fitted) return {};
+        if (*fitted || !fewer) return std::move(state_.coded);
       }
       // What some of the samples foretold is too little, or what was planned for the bound.
-      state_.most_clusters = static_cast<std::uint32_t>(found.clusters.size() / 2);
+      state_.most_clusters = static_cast<std::uint32_t>(found->clusters.size() / 2);
       beginSearch();
     }
   }
@@ -172,6 +166,14 @@ class Coder {
     state_.tried = 0;
     state_.fewest_bytes = std::numeric_limits<double>::infinity();
     state_.best = state_.rounds = {};
+    state_.coded = {};
+  }
+  // False if stopped.
+  bool beginFit(double step) {
+    state_.step = CodingState::Step::Fit;
+    state_.attempt = 0;
+    state_.quantum = step;
+    return !stopped();
   }
   bool fits(const Clustering& one) const {
     return expandedBytes(one.clusters, shape_) <= settings_.most_expanded_bytes;
@@ -193,8 +195,8 @@ class Coder {
   // Assigns all samples to clusters that were found from some. False if stopped.
   bool searchAndAssign();
   // The best codes are left in state_.coded. False where the memory for means and axes ended before the bound
-  // was reached. Also if stopped.
-  bool fitToBound(Clustering& found);
+  // was reached. Nothing if stopped.
+  std::optional<bool> fitToBound(Clustering& found);
 
   std::span<const float> vectors_;
   const bundle::TransferShape& shape_;
@@ -303,7 +305,7 @@ bool Coder::searchAndAssign() {
 
 // Steps are planned by what errors and bits are expected to be; here they are measured, and the step made as
 // large as the bound allows.
-bool Coder::fitToBound(Clustering& found) {
+std::optional<bool> Coder::fitToBound(Clustering& found) {
   const double bound = double{settings_.bound} * std::sqrt(state_.reachable / allowed_);
   CodedTransfer& best = state_.coded;
   while (state_.attempt < kMostAttempts) {
@@ -324,7 +326,7 @@ bool Coder::fitToBound(Clustering& found) {
     const double ratio = 0.995 * bound / std::max(double{error}, 1e-12);
     state_.quantum *= std::clamp(met ? ratio : ratio * ratio, 0.3, 1.5);
     ++state_.attempt;
-    if (stopped()) return false;
+    if (stopped()) return std::nullopt;
   }
   return true;
 }

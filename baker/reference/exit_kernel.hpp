@@ -35,8 +35,6 @@ class FirstHit {
   glm::vec3 kernelOfAll(const glm::vec3& ray) const;
   // What all of them would have sent from infinity.
   glm::vec3 skyOfAll(const glm::vec3& ray) const;
-  // The ray that tells what a direction sees, of the same length.
-  glm::vec3 rayFor(const glm::vec3& dir) const { return horizons_.rayFor(dir); }
 
   // A unit direction above the triangle, about in proportion to what all would send of the sky, and of light
   // as bright as the sky is on average.

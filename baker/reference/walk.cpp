@@ -34,19 +34,20 @@ std::uint32_t Walk::pageSeed(bool in_volume, std::uint32_t layer, std::uint32_t 
 Walk::Scattering Walk::scattering(const Path& path, const glm::vec3& dir, bool first) const {
   const SurfacePoint& at = path.at;
   if (path.in_medium) return phase(path, glm::dot(path.dir, dir), first);
-  if (at.glossy && !(first && limited)) {
+  if (at.glossy) {
     const glm::vec3 local = at.reflector.toLocal(dir);
     return {at.reflector.value(local), at.reflector.pdf(local)};
   }
   if (glm::dot(at.geometric, dir) <= 0.0f) return {};
-  if (first && limited) return {limited->kernelOfAll(dir), limited->pdf(dir)};
   const float value = std::max(glm::dot(at.shading, dir), 0.0f) / kPi;
   return {glm::vec3(value), value};
 }
 
 Walk::Scattering Walk::ofRay(const Path& path, const glm::vec3& ray, bool first) const {
-  if (path.in_medium || !path.at.glossy || (first && limited)) return scattering(path, ray, first);
+  if (path.in_medium) return scattering(path, ray, first);
   if (glm::dot(path.at.geometric, ray) <= 0.0f) return {};
+  if (first && limited) return {limited->kernelOfAll(ray), limited->pdf(ray)};
+  if (!path.at.glossy) return scattering(path, ray, first);
   Scattering sum;
   const auto add = [&](const glm::vec3& dir) {
     const Scattering s = scattering(path, dir, first);

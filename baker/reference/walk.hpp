@@ -113,8 +113,10 @@ struct Walk {
     glm::vec3 value{0.0f};
     float pdf = 0.0f;
   };
+  // Of one direction, by the whole BRDF.
   Scattering scattering(const Path& path, const glm::vec3& dir, bool first) const;
-  // Of what stands in the way of a ray: of all directions that see it.
+  // Of what stands in the way of a ray: of all directions that see it, at the first vertex with what
+  // --band-limit leaves of the BRDF.
   Scattering ofRay(const Path& path, const glm::vec3& ray, bool first) const;
   // The ray that tells what a direction sees, of the same length.
   glm::vec3 rayFor(const Path& path, const glm::vec3& dir, bool first) const;

@@ -135,7 +135,6 @@ class SurfaceBody::Paths {
                         .from = from,
                         .along = along,
                         .scale = glm::vec3(1.0f / static_cast<float>(count)),
-                        .towards = along,
                         .row = row,
                         .number = static_cast<std::uint32_t>(ray * kRoughPaths + p)});
   }
@@ -166,7 +165,7 @@ class SurfaceBody::Paths {
   struct Path {
     FirstHit hit;
     glm::vec3 from, along, scale;
-    glm::vec3 towards;  // what the highlight took `along` for
+    glm::vec3 towards{0.0f};  // what the last highlight took `along` for
     std::size_t row;
     std::uint32_t number;
   };

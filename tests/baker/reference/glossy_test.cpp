@@ -177,14 +177,9 @@ TEST(Glossy, SurfacesAreSeenInEachOther) {
   // matte floor.
   Scene scene = floorOf(glossy(1.0f, 0.0f));
   scene.materials[0].base_color = glm::vec4(1.0f);
-  Scene lamp = sceneOf({testing::flipped(testing::grid({0, 1, 0}, 8.0f, 1))});
   gltf::Material shining = testing::matte();
   shining.emissive = glm::vec3(3.0f);
-  scene.meshes.push_back(lamp.meshes[0]);
-  scene.nodes.push_back(lamp.nodes[0]);
-  scene.nodes.back().mesh = 1;
-  scene.roots.push_back(1);
-  testing::paint(scene, 1, shining);
+  testing::add(scene, testing::flipped(testing::grid({0, 1, 0}, 8.0f, 1)), shining);
   const auto seen = measured(scene, kPlace + glm::vec3(0.3f, 0.5f, 0.2f), kPlace, {}, samples(64, 0));
   EXPECT_NEAR(seen.mean.g, 3.0, 0.01);
 }
@@ -192,12 +187,7 @@ TEST(Glossy, SurfacesAreSeenInEachOther) {
 // A floor and a ceiling so wide that it hides the sky.
 Scene underCeiling(const gltf::Material& floor, const gltf::Material& ceiling) {
   Scene scene = floorOf(floor);
-  Scene above = sceneOf({testing::flipped(testing::grid({0, 1, 0}, 1e3f, 1))});
-  scene.meshes.push_back(above.meshes[0]);
-  scene.nodes.push_back(above.nodes[0]);
-  scene.nodes.back().mesh = 1;
-  scene.roots.push_back(1);
-  testing::paint(scene, 1, ceiling);
+  testing::add(scene, testing::flipped(testing::grid({0, 1, 0}, 1e3f, 1)), ceiling);
   return scene;
 }
 
@@ -230,14 +220,10 @@ void addWall(Scene& scene) {
   wall.positions = {{0, -1, -500.0f}, {0, 500.0f, -500.0f}, {0, 500.0f, 500.0f}, {0, -1, 500.0f}};
   wall.normals.assign(4, {1, 0, 0});
   wall.indices = {0, 1, 2, 0, 2, 3};
-  scene.meshes.push_back({"", {{wall, 0}}});
-  scene.nodes.push_back({});
-  scene.nodes.back().mesh = 1;
-  scene.roots.push_back(1);
   gltf::Material black = testing::matte();
   black.base_color = glm::vec4(0, 0, 0, 1);
   black.double_sided = true;
-  testing::paint(scene, 1, black);
+  testing::add(scene, wall, black);
 }
 
 // Radiance of the sun's five bands that a kernel gets from the directions that `open` admits.

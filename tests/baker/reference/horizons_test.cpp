@@ -11,6 +11,7 @@
 namespace lambent::baker::reference {
 namespace {
 
+using testing::add;
 using testing::Ggx;
 using testing::measured;
 using testing::samples;
@@ -43,14 +44,6 @@ Scene floorThatLeans(const gltf::Material& material, float degrees) {
   for (glm::vec3& n : floor.meshes[0].primitives[0].mesh.normals) n = leaning(degrees);
   floor.materials = {material};
   return floor;
-}
-
-void add(Scene& scene, const bundle::MeshData& mesh, const gltf::Material& material) {
-  scene.roots.push_back(static_cast<std::int32_t>(scene.nodes.size()));
-  scene.nodes.push_back({});
-  scene.nodes.back().mesh = static_cast<std::int32_t>(scene.meshes.size());
-  scene.meshes.push_back({"", {{mesh, 0}}});
-  testing::paint(scene, scene.meshes.size() - 1, material);
 }
 
 // At x = 1, on the floor, 2 m high, looking towards -X.

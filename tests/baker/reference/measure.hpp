@@ -82,6 +82,15 @@ inline void paint(baker::Scene& scene, std::size_t mesh, const gltf::Material& m
   scene.materials.push_back(material);
 }
 
+// Under a node of its own, where it lies.
+inline void add(baker::Scene& scene, const bundle::MeshData& mesh, const gltf::Material& material) {
+  scene.roots.push_back(static_cast<std::int32_t>(scene.nodes.size()));
+  scene.nodes.push_back({});
+  scene.nodes.back().mesh = static_cast<std::int32_t>(scene.meshes.size());
+  scene.meshes.push_back({"", {{mesh, 0}}});
+  paint(scene, scene.meshes.size() - 1, material);
+}
+
 // Each triangle with its own, flat normals.
 inline bundle::MeshData flat(const bundle::MeshData& mesh) {
   bundle::MeshData out;
