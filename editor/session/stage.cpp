@@ -59,6 +59,7 @@ std::vector<Error> Stage::follow(const WorldState& state) {
   for (const auto& [name, word] : state.settings)
     if (auto put = frame::putSetting(settings, name, word); !put) errors.push_back(put.error());
   settings.exposure_ev = state.exposure_ev;
+  environment_.setMostKeys(settings.mostKeys());
   if (settings == frame_.settings()) return errors;
   if (auto done = frame_.setSettings(settings); !done) errors.push_back(done.error());
   return errors;

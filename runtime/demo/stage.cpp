@@ -15,6 +15,7 @@ Result<lighting::Environment> loadEnvironment(const Options& options) {
   Result<lighting::Environment> environment =
       lighting::Environment::create(options.lights, options.fade_lights);
   if (!environment) return failAgain(environment.error());
+  environment->setMostKeys(options.settings.mostKeys());
   for (const std::string& notice : environment->notices()) fmt::print(stderr, "lambent-demo: {}\n", notice);
   return environment;
 }

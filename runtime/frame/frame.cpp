@@ -76,6 +76,7 @@ Result<void> Frame::setSettings(const FrameSettings& settings) {
 void Frame::forget() {
   group_lights_.forget();
   near_lights_.forget();
+  key_shadows_.forget();
   if (incident_) incident_->forget();
   settled_ = false;
   forgotten_ = true;
@@ -125,6 +126,8 @@ Result<void> Frame::render(World& world, const lighting::Environment& environmen
   updateSky(environment);
   // cubes of the lights that stand among surfaces
   if (Result<void> done = castShadows(world); !done) return done;
+  // shadow maps of key lights over what is seen
+  if (Result<void> done = castKeyShadows(world, environment, view); !done) return done;
   // the sky as rough mirrors show it
   if (Result<void> done = reflectSky(world, environment); !done) return done;
   // surfaces, sky, blended surfaces: linear radiance
@@ -276,6 +279,20 @@ Result<void> Frame::castShadows(World& world) {
   return done;
 }
 
+Result<void> Frame::castKeyShadows(World& world, const lighting::Environment& environment,
+                                   const spec::View& view) {
+  counts_.key_lights = static_cast<std::uint32_t>(environment.keys().size());
+  if (environment.keys().empty() && !key_shadows_.any()) return {};
+  gpu::PassTimers::Scope pass(timers_, "key shadows");
+  const std::span<const spec::Disc> keys = keysApart() ? environment.keys() : std::span<const spec::Disc>();
+  Result<void> done = key_shadows_.update(world, keys, view,
+                                          {.finest = options_.settings.key_size,
+                                           .samples = options_.settings.key_samples},
+                                          pass.counters());
+  if (key_shadows_.mapsDrawn() > 0) pass.because(reasons_.of(kPictureCauses));
+  return done;
+}
+
 Result<void> Frame::reflectSky(const World& world, const lighting::Environment& environment) {
   if (!options_.settings.residual || !options_.settings.glossy || !glossy_.any()) return {};
   if (reflected_sky_ && reflected_lights_ == environment.lightsVersion()) return {};
@@ -314,7 +331,10 @@ Result<void> Frame::prepareSurfaces(World& world, const lighting::Environment& e
   return surfaces_.prepare(
       world, diffuse_, view, counters, &near_lights_, residual ? &*reflected_sky_ : nullptr,
       settings.neighborhoods && neighborhoods_.any() ? &neighborhoods_ : nullptr,
-      {.diffuse = settings.diffuse, .glossy = settings.glossy, .glossy_bands = settings.glossy_order});
+      {.diffuse = settings.diffuse,
+       .glossy = settings.glossy,
+       .glossy_bands = settings.glossy_order,
+       .key_lights = key_shadows_.any()});
 }
 
 Result<void> Frame::raster(World& world, const lighting::Environment& environment, const spec::View& view) {
@@ -324,6 +344,7 @@ Result<void> Frame::raster(World& world, const lighting::Environment& environmen
   if (showsTransfer(options_.view.view)) return drawNumbers(world, view, pass.counters());
   data_view_.reset();
   near_lights_.bind(view, options_.size);
+  key_shadows_.bind(view, options_.size);
   clearPicture();
   surfaces_.drawOpaque(world, pass.counters());
   if (options_.view.view == SurfaceView::Final || options_.view.view == SurfaceView::Wireframe) {

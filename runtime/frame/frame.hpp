@@ -22,6 +22,7 @@
 #include "runtime/frame/fewer_samples.hpp"
 #include "runtime/frame/frame_settings.hpp"
 #include "runtime/frame/frame_times.hpp"
+#include "runtime/frame/key_shadows.hpp"
 #include "runtime/frame/lit_scene.hpp"
 #include "runtime/frame/near_lights.hpp"
 #include "runtime/frame/neighborhoods.hpp"
@@ -73,6 +74,7 @@ struct StepCounts {
   std::uint32_t light_samples_written = 0;  // coefficients computed for the shaders
   std::uint32_t cells_shaded = 0, draws_shaded = 0;
   std::uint32_t shadow_cubes_drawn = 0;
+  std::uint32_t key_lights = 0;  // that shine
   // Volumes there are; whose light was brought into their textures, and how many outputs of it; in the
   // picture.
   std::uint32_t volumes = 0, volumes_shaded = 0, volume_slabs_written = 0, volumes_drawn = 0;
@@ -126,6 +128,7 @@ class Frame {
   const StepCounts& counts() const { return counts_; }
   // Of what the frame itself keeps for volumes, beside what is resident.
   std::uint64_t volumeBytes() const { return volume_.textureBytes(); }
+  const KeyShadows& keyShadows() const { return key_shadows_; }
   const FrameOptions& options() const { return options_; }
   // From one render() to the next.
   const FrameTimes& frameTimes() const { return pacer_.times(); }
@@ -152,6 +155,9 @@ class Frame {
                           const lighting::Environment& environment);  // once per light; no pass then
   void updateSky(const lighting::Environment& environment);           // no pass where it is up to date
   Result<void> castShadows(World& world);
+  // Direct light of key lights comes by shadow maps; unshadowed light has no use for them.
+  bool keysApart() const { return options_.settings.transfer != effects::diffuse::TransferMode::Unshadowed; }
+  Result<void> castKeyShadows(World& world, const lighting::Environment& environment, const spec::View& view);
   Result<void> raster(World& world, const lighting::Environment& environment, const spec::View& view);
   void clearPicture();
   Result<void> prepareSurfaces(World& world, const lighting::Environment& environment, const spec::View& view,
@@ -172,6 +178,7 @@ class Frame {
   effects::diffuse::Proxies proxies_;
   LitScene lit_scene_;
   NearLights near_lights_;
+  KeyShadows key_shadows_;
   StandIns stand_ins_;
   Neighborhoods neighborhoods_;
   std::optional<lighting::ReflectedSky> reflected_sky_;  // once a glossy surface asks for it

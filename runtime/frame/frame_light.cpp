@@ -65,7 +65,8 @@ Result<void> Frame::light(World& world, const lighting::Environment& environment
                       .order = group.order,
                       .lamps = lit_scene_.lamps[g],
                       .incident = incidentOf(world, g),
-                      .key = lit_scene_.groups[g].key});
+                      .key = lit_scene_.groups[g].key,
+                      .parted = keysApart() && group.volume < 0});
   }
   group_lights_.update(environment, settings.window, places, pass.counters(),
                        static_cast<int>(settings.order));

@@ -77,6 +77,38 @@ const std::array kRows = {
                .help = "Against ringing of the light: auto, off or hann",
                .get = getNumber<&S::window>,
                .put = putNumber<&S::window>},
+    SettingRow{.name = "keys",
+               .label = "key lights",
+               .kind = Kind::Whole,
+               .greatest = 32.0,
+               .zero = "off",
+               .not_a_number = "auto",
+               .finest = 32.0,
+               .help = "Suns and lamps at infinity that shine by shadow maps, at most: auto,\noff or a number",
+               .get = [](const S& settings) { return settings.keys ? static_cast<double>(*settings.keys) : kNone; },
+               .put =
+                   [](S& settings, double value) {
+                     settings.keys.reset();
+                     if (!std::isnan(value)) settings.keys = static_cast<std::uint32_t>(value);
+                   }},
+    SettingRow{.name = "key-size",
+               .label = "texels of key shadows",
+               .kind = Kind::Whole,
+               .least = 256.0,
+               .greatest = 8192.0,
+               .finest = 8192.0,
+               .help = "Texels along an edge of the finest shadow map of a key light",
+               .get = getNumber<&S::key_size>,
+               .put = putNumber<&S::key_size>},
+    SettingRow{.name = "key-samples",
+               .label = "rays to a key light",
+               .kind = Kind::Whole,
+               .least = 4.0,
+               .greatest = 128.0,
+               .finest = 128.0,
+               .help = "Rays of a pixel to a key light",
+               .get = getNumber<&S::key_samples>,
+               .put = putNumber<&S::key_samples>},
     SettingRow{.name = "order",
                .label = "bands of light",
                .kind = Kind::Whole,
@@ -207,6 +239,7 @@ const SettingRow* findSetting(std::string_view name) {
 
 std::string settingWord(const SettingRow& row, const FrameSettings& settings) {
   const double value = row.get(settings);
+  if (std::isnan(value)) return std::string(row.not_a_number);
   switch (row.kind) {
     case Kind::Switch:
       return value != 0.0 ? "on" : "off";
@@ -215,7 +248,6 @@ std::string settingWord(const SettingRow& row, const FrameSettings& settings) {
     case Kind::Whole:
       break;
     case Kind::Real:
-      if (std::isnan(value)) return std::string(row.not_a_number);
       return fmt::format("{}", static_cast<float>(value));
   }
   return fmt::format("{}", static_cast<std::int64_t>(value));

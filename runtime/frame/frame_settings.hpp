@@ -22,6 +22,13 @@ namespace lambent::frame {
 struct FrameSettings {
   effects::diffuse::TransferMode transfer = effects::diffuse::TransferMode::Full;
   sh::Window window = sh::Window::Auto;
+  // Key lights that each set of lights from infinity may have, at most; 0: none, all light goes by bands. Whoever
+  // owns the environment hands it on (lighting::Environment::setMostKeys).
+  std::optional<std::uint32_t> keys;  // none: as many as pay
+  std::uint32_t mostKeys() const { return keys.value_or(kAutoKeys); }
+  // Of shadow maps of key lights: texels along an edge of the finest, rays to a light.
+  std::uint32_t key_size = 4096;
+  std::uint32_t key_samples = 32;
   // Bands of the light that count, at most: higher ones are 0, as if the light had none.
   std::uint32_t order = sh::kMaxOrder;
   // Of the light that glossy surfaces weigh by their BRDF; what is left out of the sky is the residual's.
@@ -48,6 +55,7 @@ struct FrameSettings {
   std::optional<float> exposure_ev;  // none: automatic
 
   static constexpr std::uint32_t kAllLightSamples = 4096;
+  static constexpr std::uint32_t kAutoKeys = 16;
   bool operator==(const FrameSettings&) const = default;
 };
 

@@ -113,27 +113,43 @@ Lobes lobesAt(vec3 base_color, TangentFrame frame, vec3 normal) {
 }
 #endif
 
-#ifdef LAMBENT_NEAR_LIGHTS
+#if defined(LAMBENT_NEAR_LIGHTS) || defined(LAMBENT_KEY_LIGHTS)
 #ifdef LAMBENT_MEASURED
-vec3 nearReflectance(vec3 to_light, float spread) { return vec3(0.0); }
+vec3 lightReflectance(vec3 to_light, float spread) { return vec3(0.0); }
 #else
 // Of this pixel.
-Lobes near_lobes = Lobes(0.0, 1.0, 0.0, vec3(0.0), Fresnel(vec3(0.0), 0.0));
-vec3 near_normal = vec3(0.0), near_to_eye = vec3(0.0);
+Lobes light_lobes = Lobes(0.0, 1.0, 0.0, vec3(0.0), Fresnel(vec3(0.0), 0.0));
+vec3 light_normal = vec3(0.0), light_to_eye = vec3(0.0);
 
-// f of docs/conventions.md, "Materials", without anisotropy. The light's extent widens the lobe, in half vectors by half.
-vec3 nearReflectance(vec3 to_light, float spread) {
-  float alpha = max(near_lobes.roughness * near_lobes.roughness, 1e-3);
-  float squared = min(alpha * alpha + 0.25 * spread * spread, 1.0);
-  float nv = max(dot(near_normal, near_to_eye), kLeastViewCosine), nl = max(dot(near_normal, to_light), 1e-3);
-  vec3 h = unit(near_to_eye + to_light);
-  float nh = clamp(dot(near_normal, h), 0.0, 1.0), vh = clamp(dot(near_to_eye, h), 0.0, 1.0);
-  float root = nh * nh * (squared - 1.0) + 1.0;
-  float distribution = squared / (root * root);  // times pi
-  float shadowing = 0.5 / (nl * sqrt(nv * nv * (1.0 - squared) + squared) + nv * sqrt(nl * nl * (1.0 - squared) + squared));
+// f of docs/conventions.md, "Materials". The light's extent widens the lobe, in half vectors by half.
+vec3 lightReflectance(vec3 to_light, float spread) {
+  float narrow = max(light_lobes.roughness * light_lobes.roughness, 1e-3);
+  float wide = mix(narrow, 1.0, light_lobes.anisotropy * light_lobes.anisotropy);
+  // Slopes along the tangent, across it, and 1 along the normal.
+  vec3 alpha = vec3(sqrt(min(wide * wide + 0.25 * spread * spread, 1.0)), sqrt(min(narrow * narrow + 0.25 * spread * spread, 1.0)), 1.0);
+  float nv = max(dot(light_normal, light_to_eye), kLeastViewCosine), nl = max(dot(light_normal, to_light), 1e-3);
+  vec3 h = unit(light_to_eye + to_light), across = cross(light_normal, light_lobes.tangent);
+  bool round_lobe = light_lobes.tangent == vec3(0.0);
+  float nh = clamp(dot(light_normal, h), 0.0, 1.0), vh = clamp(dot(light_to_eye, h), 0.0, 1.0);
+  float root, view_width, light_width;
+  if (round_lobe) {
+    float squared = alpha.y * alpha.y;
+    root = (1.0 - nh * nh) / squared + nh * nh;
+    view_width = sqrt(nv * nv * (1.0 - squared) + squared);
+    light_width = sqrt(nl * nl * (1.0 - squared) + squared);
+  } else {
+    vec3 t = light_lobes.tangent;
+    vec3 slopes = vec3(dot(t, h), dot(across, h), nh) / alpha;
+    root = dot(slopes, slopes);
+    view_width = length(alpha * vec3(dot(t, light_to_eye), dot(across, light_to_eye), nv));
+    light_width = length(alpha * vec3(dot(t, to_light), dot(across, to_light), nl));
+  }
+  float distribution = 1.0 / (alpha.x * alpha.y * root * root);  // times pi
+  if (round_lobe) distribution = 1.0 / (alpha.y * alpha.y * root * root);
+  float shadowing = 0.5 / (nl * view_width + nv * light_width);
   float edge = 1.0 - vh, edge2 = edge * edge;
   return distribution * shadowing *
-         (near_lobes.fresnel.f0 + (near_lobes.fresnel.f90 - near_lobes.fresnel.f0) * edge2 * edge2 * edge);
+         (light_lobes.fresnel.f0 + (light_lobes.fresnel.f90 - light_lobes.fresnel.f0) * edge2 * edge2 * edge);
 }
 #endif
 #endif
@@ -250,6 +266,9 @@ vec3 reflectedLight(vec3 base_color) {
 #endif
   reflected.albedo = vec3(1.0);
 #endif
+#ifdef LAMBENT_KEY_LIGHTS
+  radiance += reflected.albedo * keyLight(draw_of, normal);
+#endif
 #ifdef LAMBENT_NEAR_LIGHTS
   // As from a matte surface that sends as much towards the eye of light from all around.
   radiance += reflected.albedo * nearLight(draws[draw_of].glossy.draw, draws[draw_of].facing * frame.normal, normal);
@@ -271,10 +290,15 @@ vec3 reflectedLight(vec3 base_color) {
   reflected.f0_light.w += change.f0_light.w;
   reflected.f90_light.w += change.f90_light.w;
 #endif
+#if defined(LAMBENT_NEAR_LIGHTS) || defined(LAMBENT_KEY_LIGHTS)
+  light_lobes = lobes;
+  light_normal = normal;
+  light_to_eye = to_eye;
+#endif
+#ifdef LAMBENT_KEY_LIGHTS
+  received += keyLight(draw_of, normal);
+#endif
 #ifdef LAMBENT_NEAR_LIGHTS
-  near_lobes = lobes;
-  near_normal = normal;
-  near_to_eye = to_eye;
   received += nearLight(draws[draw_of].glossy.draw, draws[draw_of].facing * frame.normal, normal);
 #endif
 #ifdef LAMBENT_VIEW_IRRADIANCE
@@ -283,6 +307,9 @@ vec3 reflectedLight(vec3 base_color) {
   vec3 radiance = mirrored_light + diffuse * received;
 #ifdef LAMBENT_NEAR_LIGHTS
   radiance += near_highlights;
+#endif
+#ifdef LAMBENT_KEY_LIGHTS
+  radiance += key_highlights;
 #endif
 #ifdef LAMBENT_RESIDUAL
   // By the share of the sky that the lobe sees, as far as few bands can tell: (c . V) / (c . 1).

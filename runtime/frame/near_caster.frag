@@ -6,16 +6,12 @@ layout(std140, binding = kBindShadowFace) uniform FaceBlock { ShadowFace face; }
 layout(location = 0) in vec3 from_light;
 #ifdef LAMBENT_MASKED
 layout(std430, binding = kBindDraws) readonly buffer Draws { SurfaceDraw draws[]; };
-layout(binding = kUnitBaseColor) uniform sampler2D base_color_texture;
-layout(location = 1) flat in uint draw_of;
-layout(location = 2) in vec3 looks_at;
+#include "mask_hole.glsl"
 #endif
 
 void main() {
 #ifdef LAMBENT_MASKED
-  float alpha = draws[draw_of].base_color.a * looks_at.z;
-  if (draws[draw_of].base_color_texture.set != kAbsent) alpha *= texture(base_color_texture, looks_at.xy).a;
-  if (alpha < draws[draw_of].alpha_cutoff) discard;
+  if (inHole()) discard;
 #endif
   float distance_m = length(from_light);
   if (distance_m < face.hole) discard;

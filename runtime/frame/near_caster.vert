@@ -9,8 +9,7 @@ layout(std140, binding = kBindShadowFace) uniform FaceBlock { ShadowFace face; }
 layout(location = 0) in uint draw_index;
 layout(location = 0) out vec3 from_light;
 #ifdef LAMBENT_MASKED
-layout(location = 1) flat out uint draw_of;
-layout(location = 2) out vec3 looks_at;  // z: the vertex colour's alpha
+#include "masked_caster.glsl"
 #endif
 
 vec2 geometry2(uint at) { return vec2(uintBitsToFloat(geometry[at]), uintBitsToFloat(geometry[at + 1u])); }
@@ -22,14 +21,7 @@ void main() {
   vec3 position = vec3(geometry2(at), uintBitsToFloat(geometry[at + 2u]));
   from_light = (draw.world_from_mesh * vec4(position, 1.0)).xyz - face.position;
 #ifdef LAMBENT_MASKED
-  draw_of = draw_index;
-  looks_at = vec3(0.0, 0.0, 1.0);
-  TextureSlot slot = draw.base_color_texture;
-  if (slot.set != kAbsent) {
-    uint word = slot.set == 1u ? draw.texcoords1_word : draw.texcoords0_word;
-    looks_at.xy = slot.texture_from_coordinates * vec3(geometry2(word + 2u * vertex), 1.0);
-  }
-  if (draw.colors_word != kAbsent) looks_at.z = unpackUnorm2x16(geometry[draw.colors_word + 2u * vertex + 1u]).y;
+  lookUpMask(draw_index, vertex);
 #endif
   // No far plane; the fragment stage writes depth.
   float ahead = dot(face.forward, from_light);

@@ -90,22 +90,12 @@ bool reaches(const NearLight& light, const scene::Box& from_light) {
 
 }  // namespace
 
-bool NearLights::Caster::operator==(const Caster& other) const {
-  return id == other.id && world_from_mesh == other.world_from_mesh && block.page == other.block.page &&
-         block.offset == other.block.offset && block.byte_count == other.block.byte_count &&
-         masked == other.masked && image_levels == other.image_levels && alpha == other.alpha &&
-         alpha_cutoff == other.alpha_cutoff;
-}
-
 NearLights::NearLights(const NearOptions& options)
     : options_{.size = std::clamp(options.size, 16u, 4096u),
                .samples = std::clamp(options.samples, 1u, 256u)},
       block_("near lights"),
       draws_table_("near draws"),
-      records_("caster draws"),
-      commands_("caster commands"),
-      faces_("shadow faces"),
-      indices_("shadow casters") {}
+      faces_("shadow faces") {}
 
 Result<void> NearLights::compile() {
   if (programs_[0]) return {};
@@ -164,55 +154,17 @@ void NearLights::updateMasks(const World& world, std::span<const std::uint32_t> 
   counters.uploaded_bytes += bytes;
 }
 
-void NearLights::collectCasters(const World& world) {
-  const streaming::Residency& residency = world.residency();
-  casters_.clear();
-  for (std::uint32_t i = 0; i < residency.draws().size(); ++i) {
-    const streaming::ResidentDraw& draw = residency.draws()[i];
-    if (draw.back) continue;  // the front's triangles stand for both sides (decisions/003)
-    const streaming::ResidentMesh& mesh = residency.meshes()[draw.mesh];
-    const gltf::Material& material = materialOf(world, i);
-    if (!mesh.block || material.alpha_mode == gltf::AlphaMode::Blend) continue;
-    const scene::Box bounds =
-        scene::drawBounds(world.registry(), world.instance(draw.bundle).draws[draw.index]);
-    if (bounds.empty()) continue;
-    Caster caster{.draw = i,
-                  .id = draw.id,
-                  .world_from_mesh = world.worldFromMesh(i),
-                  .bounds_ws = bounds,
-                  .block = mesh.block,
-                  .masked = material.alpha_mode == gltf::AlphaMode::Mask};
-    if (caster.masked) {
-      caster.alpha = material.base_color.a;
-      caster.alpha_cutoff = material.alpha_cutoff;
-    }
-    if (const std::int32_t texture = material.base_color_texture.texture; caster.masked && texture >= 0) {
-      const streaming::ResidentBundle& bundle = residency.bundles()[draw.bundle];
-      const std::int32_t image = bundle.textures[static_cast<std::size_t>(texture)].image;
-      if (image >= 0 && bundle.images[static_cast<std::size_t>(image)])
-        caster.image_levels = bundle.images[static_cast<std::size_t>(image)].desc().levels;
-    }
-    casters_.push_back(caster);
-  }
-}
-
 std::vector<std::uint32_t> NearLights::findChanged(World& world) {
-  const bool world_same = world.residency().version() == residency_seen_ &&
-                          world.transformsVersion() == transforms_seen_ &&
-                          world.materialsVersion() == materials_seen_;
-  if (!world_same) collectCasters(world);
-  residency_seen_ = world.residency().version();
-  transforms_seen_ = world.transformsVersion();
-  materials_seen_ = world.materialsVersion();
+  const bool world_same = !casters_.follow(world);
   std::vector<std::uint32_t> changed;
   for (std::uint32_t k = 0; k < lights_.size(); ++k) {
     Cube& cube = cubes_[k];
     const NearLight& light = lights_[k];
     const bool light_same = cube.drawn && sameShadows(cube.light, light);
     if ((lights_used_ >> k & 1u) == 0 || (light_same && world_same)) continue;
-    std::vector<Caster> casters;
+    std::vector<ShadowCaster> casters;
     float reach = 0.0f;
-    for (const Caster& caster : casters_) {
+    for (const ShadowCaster& caster : casters_.all()) {
       const scene::Box box = around(caster.bounds_ws, light.position_ws);
       if (!reaches(light, box)) continue;
       casters.push_back(caster);
@@ -259,94 +211,30 @@ void NearLights::makeRoom(std::uint32_t rows) {
   for (Cube& cube : cubes_) cube.drawn = false;  // what was drawn is lost
 }
 
-void NearLights::appendRuns(const World& world, std::uint32_t light, std::vector<Run>& runs,
-                            std::vector<DrawCommand>& commands) const {
-  const streaming::Residency& residency = world.residency();
-  struct Item {
-    State state;
-    const Caster* caster;
-  };
-  std::vector<Item> items;
-  for (const Caster& caster : cubes_[light].casters) {
-    Item item{.state = {.geometry_page = caster.block.page, .masked = caster.masked, .textures = {}},
-              .caster = &caster};
-    if (caster.masked) {
-      const std::int32_t texture = materialOf(world, caster.draw).base_color_texture.texture;
-      if (texture >= 0)
-        item.state.textures = {.bundle = static_cast<std::int32_t>(residency.draws()[caster.draw].bundle),
-                               .base_color = texture};
-    }
-    items.push_back(item);
-  }
-  std::stable_sort(items.begin(), items.end(),
-                   [](const Item& a, const Item& b) { return a.state < b.state; });
-  for (std::uint32_t face = 0; face < kFaces; ++face) {
-    const std::uint32_t tile = kFaces * light + face;
-    for (const Item& item : items) {
-      if (!faceMeets(faceAxes(face), around(item.caster->bounds_ws, cubes_[light].light.position_ws)))
-        continue;
-      if (runs.empty() || runs.back().tile != tile || runs.back().state != item.state)
-        runs.push_back({tile, item.state, static_cast<std::uint32_t>(commands.size()), 0});
-      ++runs.back().command_count;
-      const streaming::ResidentMesh& mesh = residency.meshes()[residency.draws()[item.caster->draw].mesh];
-      commands.push_back({mesh.index_count, 1, mesh.indices_word, 0, item.caster->draw});
-    }
-  }
-}
-
 void NearLights::drawCubes(World& world, const std::vector<std::uint32_t>& changed, gpu::Counters& counters) {
-  const streaming::Residency& residency = world.residency();
-  std::vector<SurfaceDraw> records;
-  records.reserve(residency.draws().size());
-  for (std::size_t i = 0; i < residency.draws().size(); ++i) records.push_back(describe(world, i));
-  std::vector<Run> runs;
-  std::vector<DrawCommand> commands;
+  std::vector<ShadowCasters::Tile> tiles;
   std::vector<std::byte> faces(kFaces * kNearLights * kFaceStride);
   for (const std::uint32_t k : changed) {
-    appendRuns(world, k, runs, commands);
+    Cube& cube = cubes_[k];
     for (std::uint32_t face = 0; face < kFaces; ++face) {
-      const ShadowFace block = faceOf(cubes_[k].light, cubes_[k].reach, face);
-      std::memcpy(faces.data() + (kFaces * k + face) * kFaceStride, &block, sizeof(block));
+      ShadowCasters::Tile& tile = tiles.emplace_back(ShadowCasters::Tile{.x = face * options_.size,
+                                                                         .y = k * options_.size,
+                                                                         .size = options_.size,
+                                                                         .view = (kFaces * k + face) * kFaceStride,
+                                                                         .casters = {}});
+      for (const ShadowCaster& caster : cube.casters)
+        if (faceMeets(faceAxes(face), around(caster.bounds_ws, cube.light.position_ws)))
+          tile.casters.push_back(&caster);
+      const ShadowFace block = faceOf(cube.light, cube.reach, face);
+      std::memcpy(faces.data() + tile.view, &block, sizeof(block));
     }
-  }
-  records_.assign(std::span<const SurfaceDraw>(records));
-  commands_.assign(std::span<const DrawCommand>(commands));
-  faces_.assign(std::span<const std::byte>(faces));
-  indices_.reserve(records.size());
-  counters.uploaded_bytes +=
-      records.size() * sizeof(SurfaceDraw) + commands.size() * sizeof(DrawCommand) + faces.size();
-
-  const auto size = static_cast<GLsizei>(options_.size);
-  glBindFramebuffer(GL_FRAMEBUFFER, target_.id());
-  glEnable(GL_DEPTH_TEST);
-  glDepthFunc(GL_LESS);
-  glDepthMask(GL_TRUE);
-  glDisable(GL_BLEND);
-  glDisable(GL_CULL_FACE);  // surfaces stop light from both sides, as in the bake
-  glEnable(GL_SCISSOR_TEST);
-  for (const std::uint32_t k : changed) {
-    glScissor(0, static_cast<GLint>(k) * size, 6 * size, size);
-    constexpr float kFar = 1.0f;
-    glClearNamedFramebufferfv(target_.id(), GL_DEPTH, 0, &kFar);
-    cubes_[k].drawn = true;
+    cube.drawn = true;
     ++cubes_drawn_;
   }
-  glDisable(GL_SCISSOR_TEST);
-  records_.bindStorage(kBindDraws);
-  glBindBuffer(GL_DRAW_INDIRECT_BUFFER, commands_.buffer().id());
-  for (const Run& run : runs) {
-    const auto light = static_cast<GLint>(run.tile / kFaces), face = static_cast<GLint>(run.tile % kFaces);
-    glViewport(face * size, light * size, size, size);
-    glBindBufferRange(GL_UNIFORM_BUFFER, kBindShadowFace, faces_.buffer().id(),
-                      static_cast<GLintptr>(run.tile * kFaceStride), sizeof(ShadowFace));
-    const gpu::Buffer& geometry = world.residency().geometry().page(run.state.geometry_page);
-    geometry.bindStorage(kBindGeometry);
-    indices_.bind(geometry);
-    programs_[run.state.masked ? 1 : 0].use();
-    if (run.state.masked) units_.bind(world, run.state.textures);
-    DrawIndices::draw(run.first_command, run.command_count, counters);
-  }
-  units_.unbindSamplers();
+  faces_.assign(std::span<const std::byte>(faces));
+  counters.uploaded_bytes += faces.size();
+  glBindFramebuffer(GL_FRAMEBUFFER, target_.id());
+  casters_.draw(world, tiles, programs_, faces_.buffer(), sizeof(ShadowFace), kBindShadowFace, counters);
 }
 
 void NearLights::bind(const spec::View& view, const spec::Size& size) {

@@ -29,7 +29,7 @@ vec3 turned(vec4 turn, vec3 v) { return nearUnit(v + 2.0 * cross(turn.xyz, cross
 
 #ifdef LAMBENT_GLOSSY
 // pi times the specular f towards the eye of light from this direction, group frame, that spreads over so many radians.
-vec3 nearReflectance(vec3 to_light, float spread);
+vec3 lightReflectance(vec3 to_light, float spread);
 vec3 near_highlights = vec3(0.0);  // of the last nearLight
 #endif
 
@@ -55,7 +55,7 @@ vec3 nearLight(uint draw, vec3 smooth_normal, vec3 shading_normal) {
     bool wide = near_lights[k].kind == kNearSphere || near_lights[k].kind == kNearDisc;
     float spread = wide ? atan(near_lights[k].radius, length(to_light)) : 0.0;
     vec3 to_light_group = turned(vec4(-turn.xyz, turn.w), nearUnit(to_light));
-    near_highlights += min(received * nearReflectance(to_light_group, spread), vec3(kLargestShown));
+    near_highlights += min(received * lightReflectance(to_light_group, spread), vec3(kLargestShown));
 #endif
   }
 #ifdef LAMBENT_FINEST_TEXELS

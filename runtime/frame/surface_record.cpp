@@ -47,12 +47,14 @@ SurfaceDraw describe(const World& world, std::size_t draw) {
   const streaming::ResidentMesh& mesh = world.residency().meshes()[resident.mesh];
   const gltf::Material& material = materialOf(world, draw);
   const float facing = resident.back ? -1.0f : 1.0f;
+  const glm::quat turn = world.rotationOf(resident.group);
   const glm::mat3 front_normal = facing * resident.group_from_mesh_normal;
   // Unlit surfaces give off nothing but their base colour (KHR_materials_unlit).
   const glm::vec3 emission = material.unlit ? glm::vec3(0.0f) : emissionOf(world, draw);
   return {.world_from_mesh = world.worldFromMesh(draw),
           .group_from_mesh = glm::mat3x4(directionMatrix(front_normal)),
           .group_from_mesh_normal = glm::mat3x4(front_normal),
+          .world_from_group = {turn.x, turn.y, turn.z, turn.w},
           .base_color = material.base_color,
           .emission = glm::vec4(emission, 0.0f),
           .base_color_texture = slotOf(material.base_color_texture, mesh),

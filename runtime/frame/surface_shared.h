@@ -79,6 +79,7 @@ struct SurfaceDraw {
   mat4 world_from_mesh;
   mat3x4 group_from_mesh;         // directions along the surface; columns padded as std430 has them
   mat3x4 group_from_mesh_normal;  // of the front, also in draws of the back
+  vec4 world_from_group;  // quaternion, xyz then w
   vec4 base_color;
   vec4 emission;  // radiance; w unused
   TextureSlot base_color_texture;
@@ -107,10 +108,10 @@ struct GlossyDraw {
   SurfaceDraw surface;
   GlossyPart glossy;
 };
-static_assert(sizeof(GlossyPart) == 256 && offsetof(GlossyPart, metallic) == 192 && sizeof(GlossyDraw) == 592 &&
-              offsetof(GlossyDraw, glossy) == 336);
+static_assert(sizeof(GlossyPart) == 256 && offsetof(GlossyPart, metallic) == 192 && sizeof(GlossyDraw) == 608 &&
+              offsetof(GlossyDraw, glossy) == 352);
 static_assert(sizeof(TextureSlot) == 32 && offsetof(TextureSlot, set) == 24);
-static_assert(sizeof(SurfaceDraw) == 336 && offsetof(SurfaceDraw, base_color) == 160 &&
-              offsetof(SurfaceDraw, base_color_texture) == 192 && offsetof(SurfaceDraw, normal_scale) == 288);
+static_assert(sizeof(SurfaceDraw) == 352 && offsetof(SurfaceDraw, base_color) == 176 &&
+              offsetof(SurfaceDraw, base_color_texture) == 208 && offsetof(SurfaceDraw, normal_scale) == 304);
 }  // namespace lambent::frame
 #endif

@@ -53,6 +53,7 @@ Result<void> Surfaces::compile(const ProgramKind& kind) {
   if (kind.normal_mapped) defines.push_back({"LAMBENT_NORMAL_MAPPED", "1"});
   if (kind.residual) defines.push_back({"LAMBENT_RESIDUAL", "1"});
   if (kind.near_lit) defines.push_back({"LAMBENT_NEAR_LIGHTS", "1"});
+  if (kind.key_lit) defines.push_back({"LAMBENT_KEY_LIGHTS", "1"});
   if (kind.vertices_around) defines.push_back({"LAMBENT_VERTEX_CHANGE", "1"});
   if (kind.around) defines.push_back({"LAMBENT_NEIGHBORHOODS", "1"});
   if (kind.view == SurfaceView::Irradiance) defines.push_back({"LAMBENT_VIEW_IRRADIANCE", "1"});
@@ -91,6 +92,7 @@ void Surfaces::collect(World& world, const effects::diffuse::Diffuse& diffuse, g
                         .textures = texturesOf(world, i, records_[i]),
                         .normal_mapped = normalMapped(world, i),
                         .near_lit = near_lights != nullptr && near_lights->lightsOf(i) != 0,
+                        .key_lit = options_.key_lights && records_[i].unlit == 0,
                         .around = neighborhoods != nullptr && neighborhoods->receives(i),
                         .vertices_around = neighborhoods != nullptr && neighborhoods->receivesAtVertices(i),
                         .clockwise = (glm::determinant(glm::mat3(world_from_mesh)) < 0.0f) != draw.back},
@@ -99,7 +101,7 @@ void Surfaces::collect(World& world, const effects::diffuse::Diffuse& diffuse, g
     if (dark(world, i)) {
       item.state.dark = true;
       item.state.radiance_page = 0;
-      item.state.normal_mapped = item.state.near_lit = item.state.around = item.state.vertices_around = false;
+      item.state.normal_mapped = item.state.near_lit = item.state.key_lit = item.state.around = item.state.vertices_around = false;
     } else if (draw.glossy()) {
       item.state.glossy = glossyKindOf(world, i, options_.glossy_bands);
       item.state.bundle = draw.bundle;

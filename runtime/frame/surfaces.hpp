@@ -32,6 +32,7 @@ namespace lambent::frame {
 struct SurfaceOptions {
   bool diffuse = true, glossy = true;  // off: such surfaces reflect nothing
   std::uint32_t glossy_bands = 8;      // that glossy ones reflect, at most
+  bool key_lights = false;             // KeyShadows are bound when surfaces are drawn
   bool operator==(const SurfaceOptions&) const = default;
 };
 
@@ -66,7 +67,7 @@ class Surfaces {
     std::int32_t brdf_table = -1;
     bool normal_mapped = false;
     bool dark = false;  // reflects nothing
-    bool near_lit = false;
+    bool near_lit = false, key_lit = false;
     bool around = false;           // receives from neighborhoods, per pixel
     bool vertices_around = false;  // and at its vertices
     bool clockwise = false;        // which winding is seen
@@ -85,7 +86,7 @@ class Surfaces {
   Surfaces();
   // What a program is compiled for.
   struct ProgramKind {
-    bool normal_mapped = false, dark = false, near_lit = false, around = false, vertices_around = false;
+    bool normal_mapped = false, dark = false, near_lit = false, key_lit = false, around = false, vertices_around = false;
     GlossyKind glossy = {};
     bool residual = false;
     SurfaceView view = SurfaceView::Final;
@@ -96,6 +97,7 @@ class Surfaces {
     return {.normal_mapped = state.normal_mapped,
             .dark = state.dark,
             .near_lit = state.near_lit,
+            .key_lit = state.key_lit,
             .around = state.around,
             .vertices_around = state.vertices_around,
             .glossy = state.glossy,

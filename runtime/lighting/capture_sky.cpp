@@ -34,18 +34,18 @@ constexpr std::uint32_t kLargestProbeCube = 512;
 
 // At least a texel of the cube per texel of the probe, as far as memory goes; a power of two for the mip
 // maps.
-std::uint32_t probeCubeSize(const std::vector<spec::Probe>& probes) {
+std::uint32_t probeCubeSize(const std::vector<const spec::Probe*>& probes) {
   std::uint32_t size = 1;
-  for (const spec::Probe& probe : probes) {
-    const std::uint32_t width = probe.image.width;
-    const std::uint32_t wanted = probe.layout == sh::ImageLayout::VerticalCross ? width / 3 : width / 4;
+  for (const spec::Probe* probe : probes) {
+    const std::uint32_t width = probe->image.width;
+    const std::uint32_t wanted = probe->layout == sh::ImageLayout::VerticalCross ? width / 3 : width / 4;
     size = std::max(size, std::bit_ceil(std::clamp(wanted, 16u, kLargestProbeCube)));
   }
   return size;
 }
 
 // Means over 2 x 2 places of each texel.
-std::vector<glm::vec4> faceTexels(const std::vector<spec::Probe>& probes, int face, std::uint32_t size) {
+std::vector<glm::vec4> faceTexels(const std::vector<const spec::Probe*>& probes, int face, std::uint32_t size) {
   constexpr double kPlaces[] = {0.25, 0.75};
   std::vector<glm::vec4> texels;
   texels.reserve(std::size_t{size} * size);
@@ -56,7 +56,7 @@ std::vector<glm::vec4> faceTexels(const std::vector<spec::Probe>& probes, int fa
         for (const double u : kPlaces) {
           const glm::vec3 dir(
               glm::normalize(sh::cubeFaceDirection(face, 2 * (x + u) / size - 1, 2 * (y + v) / size - 1)));
-          for (const spec::Probe& probe : probes) sum += 0.25f * spec::radiance(probe, dir);
+          for (const spec::Probe* probe : probes) sum += 0.25f * spec::radiance(*probe, dir);
         }
       texels.emplace_back(sum, 0.0f);
     }
@@ -64,7 +64,7 @@ std::vector<glm::vec4> faceTexels(const std::vector<spec::Probe>& probes, int fa
 }
 
 // In the lights' own frame, with mip maps.
-gpu::Texture probeCube(const std::vector<spec::Probe>& probes) {
+gpu::Texture probeCube(const std::vector<const spec::Probe*>& probes) {
   const std::uint32_t size = probeCubeSize(probes);
   gpu::Texture cube("capture probes", {.format = GL_RGBA32F,
                                        .width = size,
@@ -110,7 +110,7 @@ Result<CaptureSky> CaptureSky::create(const CaptureOptions& options, const Envir
 void CaptureSky::takeLights(const Environment& environment) {
   if (lights_ == environment.lightsVersion()) return;
   lights_ = environment.lightsVersion();
-  for (std::size_t i = 0; i < Environment::kSets; ++i) probes_[i] = probeCube(environment.set(i).probes);
+  for (std::size_t i = 0; i < Environment::kSets; ++i) probes_[i] = probeCube(environment.restOf(i).probes);
 }
 
 bool CaptureSky::update(const Environment& environment, const gpu::Buffer& weights, gpu::Counters& counters) {

@@ -95,9 +95,7 @@ Result<void> Environment::setLights(const std::vector<spec::Light>& lights,
           std::move(from == kSets ? loaded[place].probe : sets_[from].lights.probes[place]));
     });
     set.lights = std::move(*made);  // nothing was left to read
-    set.sky = sh::constantLight(sh::kMaxOrder, set.lights.constant);
-    for (const KnownProbe& known : set.known) set.sky += known.sky;
-    set.discs = set.lights.discVector();
+    part(set);
   }
   sets_ = std::move(sets);
   notices_.clear();
@@ -108,8 +106,40 @@ Result<void> Environment::setLights(const std::vector<spec::Light>& lights,
   return {};
 }
 
+void Environment::part(Set& set) const {
+  set.parted = partLights(set.lights, {.most = most_keys_});
+  set.sky = sh::constantLight(sh::kMaxOrder, set.lights.constant);
+  for (std::size_t k = 0; k < set.known.size(); ++k) {
+    const std::optional<spec::Probe>& rest = set.parted.probes[k];
+    set.sky += rest ? sh::projectImage(sh::kMaxOrder, rest->layout, static_cast<int>(rest->image.width),
+                                       static_cast<int>(rest->image.height), rest->image.texels)
+                    : set.known[k].sky;
+  }
+  set.discs = spec::discVector(set.parted.discs);
+  set.keys = spec::discVector(set.parted.keys);
+}
+
+void Environment::setMostKeys(std::uint32_t most) {
+  if (most == most_keys_) return;
+  most_keys_ = most;
+  for (Set& set : sets_) part(set);
+  seal();
+  mix();
+}
+
+Environment::Rest Environment::restOf(std::size_t index) const {
+  const Set& set = sets_[index];
+  Rest rest{.probes = {}, .constant = set.lights.constant, .discs = set.parted.discs};
+  for (std::size_t k = 0; k < set.lights.probes.size(); ++k) {
+    const std::optional<spec::Probe>& parted = set.parted.probes[k];
+    rest.probes.push_back(parted ? &*parted : &set.lights.probes[k]);
+  }
+  return rest;
+}
+
 void Environment::seal() {
   Seal seal;
+  seal.add(most_keys_);
   for (const Set& set : sets_) {
     seal.add(set.lights.constant);
     seal.add(set.lights.discs.size());
@@ -141,19 +171,27 @@ float Environment::shareOf(std::size_t index) const {
 // Always from the light as loaded: no error gathers over turns and fades.
 void Environment::mix() {
   const glm::mat3 world_from_light = worldFromLight();
-  sh::LightVector sky{.order = sh::kMaxOrder}, discs{.order = sh::kMaxOrder};
+  sh::LightVector sky{.order = sh::kMaxOrder}, discs{.order = sh::kMaxOrder}, keys{.order = sh::kMaxOrder};
   discs_.clear();
+  const auto place = [&](const std::vector<Disc>& unturned, float share) {
+    for (const Disc& disc : unturned)
+      discs_.push_back({.direction = world_from_light * disc.direction,
+                        .radius_rad = disc.radius_rad,
+                        .radiance = share * disc.radiance});
+  };
   for (std::size_t i = 0; i < kSets; ++i) {
     const float share = shareOf(i);
     sky += share * sets_[i].sky;
     discs += share * sets_[i].discs;
-    for (const Disc& disc : sets_[i].lights.discs)
-      discs_.push_back({.direction = world_from_light * disc.direction,
-                        .radius_rad = disc.radius_rad,
-                        .radiance = share * disc.radiance});
+    keys += share * sets_[i].keys;
+    place(sets_[i].parted.discs, share);
   }
+  first_key_ = discs_.size();
+  for (std::size_t i = 0; i < kSets; ++i) place(sets_[i].parted.keys, shareOf(i));
   sky_light_ = spec::turned(sky, turn_degrees_);
-  light_ = spec::turned(sky + discs, turn_degrees_);
+  key_light_ = spec::turned(keys, turn_degrees_);
+  rest_light_ = spec::turned(sky + discs, turn_degrees_);
+  light_ = rest_light_ + key_light_;
   Seal seal;
   seal.add(lights_version_);
   for (const float value : {turn_degrees_, fade_, intensity_}) seal.add(value);

@@ -1,7 +1,9 @@
 // The light at infinity: probes, suns and constants added up, in one or two sets to fade between, turned
 // together about +Y. Comes in: the lights as parsed; those that stand in the scene are passed over. Goes out:
 // light vectors of order 8 in world space (probes projected once when loaded, suns in closed form), the suns
-// as discs, and what the sky shows. Fading and turning mix what was projected once. Whoever follows one
+// as discs, and what the sky shows. Fading and turning mix what was projected once. If key lights are asked
+// for, the light is parted once when it is loaded (key_lights.hpp): surfaces take the direct light of key
+// lights by shadow maps, and the rest, which few bands carry, by transfer. Whoever follows one
 // environment may be given another at any time: versions tell what they say, not how often it was changed.
 // No GL. Errors: those of loading a probe.
 #pragma once
@@ -10,6 +12,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -17,6 +20,7 @@
 #include <glm/vec3.hpp>
 
 #include "runtime/base/result.hpp"
+#include "runtime/lighting/key_lights.hpp"
 #include "runtime/sh/light_vector.hpp"
 #include "runtime/spec/distant_lights.hpp"
 
@@ -36,6 +40,10 @@ class Environment {
   Result<void> setLights(const std::vector<spec::Light>& lights,
                          const std::vector<spec::Light>& second_lights = {});
 
+  // How many key lights each set may have at most; 0, the default of this class: none. Parts the light anew
+  // if it changes.
+  void setMostKeys(std::uint32_t most);
+
   // Each gives another version where it changes something. Values that are not finite change nothing.
   // Positive turns take +Z to +X.
   void setTurn(float degrees);
@@ -51,9 +59,13 @@ class Environment {
 
   // Now: world space, turned, faded, times the intensity.
   const sh::LightVector& light() const { return light_; }         // all of it
-  const sh::LightVector& skyLight() const { return sky_light_; }  // without the discs of suns
-  // The suns of both sets, always as many and in the same order; dark ones have radiance 0.
+  const sh::LightVector& skyLight() const { return sky_light_; }  // without any disc
+  const sh::LightVector& keyLight() const { return key_light_; }  // of the key lights alone
+  const sh::LightVector& restLight() const { return rest_light_; }  // light() without that
+  // The suns of both sets, key lights last, always as many and in the same order; dark ones have radiance 0.
   const std::vector<Disc>& discs() const { return discs_; }
+  std::span<const Disc> keys() const { return std::span(discs_).subspan(first_key_); }
+  bool isKey(std::size_t disc) const { return disc >= first_key_; }
   // Of all that is said above, a checksum: of two environments, also of two objects, the same where they are
   // the same light, and else another (but for one chance in 2^64). Never 0.
   std::uint64_t version() const { return version_; }
@@ -62,6 +74,14 @@ class Environment {
 
   // As loaded: the lights' own frame, whole radiance.
   const spec::DistantLights& set(std::size_t index) const { return sets_[index].lights; }
+  // The same without the key lights: probes without their peaks, and the discs that are none.
+  struct Rest {
+    std::vector<const spec::Probe*> probes;
+    glm::vec3 constant{0.0f};
+    std::span<const Disc> discs;
+  };
+  Rest restOf(std::size_t index) const;
+  const std::vector<Disc>& keysOf(std::size_t index) const { return sets_[index].parted.keys; }
   // By what set() is multiplied now.
   float shareOf(std::size_t index) const;
   // What was repaired in the probes; a sentence each.
@@ -90,17 +110,21 @@ class Environment {
   struct Set {
     spec::DistantLights lights;
     std::vector<KnownProbe> known;  // as lights.probes
-    sh::LightVector sky, discs;     // in the lights' own frame
+    PartedLights parted;
+    sh::LightVector sky, discs, keys;  // in the lights' own frame; sky: probes and the constant without peaks
   };
   Environment() = default;
+  void part(Set& set) const;
   void mix();
   void seal();  // says what was loaded
 
   std::array<Set, kSets> sets_;
   std::vector<std::string> notices_;
   float turn_degrees_ = 0.0f, fade_ = 0.0f, intensity_ = 1.0f;
-  sh::LightVector light_, sky_light_;
+  std::uint32_t most_keys_ = 0;
+  sh::LightVector light_, sky_light_, key_light_, rest_light_;
   std::vector<Disc> discs_;
+  std::size_t first_key_ = 0;
   std::uint64_t version_ = 0, lights_version_ = 0;
 };
 

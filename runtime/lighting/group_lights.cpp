@@ -77,9 +77,11 @@ void GroupLights::update(const Environment& environment, sh::Window window,
     Group& group = groups_[i];
     const GroupPlace& place = groups[i];
     const bool turned = group.world_from_group != place.world_from_group;
-    const bool cut_anew = window_changed || group.order != place.order;
+    const bool cut_anew =
+        window_changed || group.order != place.order || group.parted != place.parted;
     group.world_from_group = place.world_from_group;
     group.order = place.order;
+    group.parted = place.parted;
     group.change = 0.0f;
     bool changed = updateLamps(group, place);
     for (std::size_t k = 0; k < place.incident.size(); ++k) {
@@ -100,6 +102,7 @@ void GroupLights::update(const Environment& environment, sh::Window window,
   }
   renewed_ = static_cast<std::uint32_t>(renewals.size());
   environment_version_ = environment.version();
+  has_keys_ = !environment.keys().empty();
   window_ = window;
   max_order_ = max_order;
   followWindows(environment, window, groups, renewals);
@@ -107,6 +110,20 @@ void GroupLights::update(const Environment& environment, sh::Window window,
   if (!any_changed || coefficients_.empty()) return;
   table_.assign(std::span<const glm::vec4>(coefficients_));
   counters.uploaded_bytes += coefficients_.size() * sizeof(glm::vec4);
+}
+
+sh::LightVector GroupLights::lightOf(const Environment& environment, const GroupPlace& place,
+                                     std::size_t sample) {
+  const Incident& incident = place.incident[sample];
+  if (place.parted) return incident.light != nullptr ? *incident.light : environment.restLight();
+  return incident.light != nullptr ? *incident.light + *incident.key : environment.light();
+}
+
+sh::LightVector GroupLights::keyLightOf(const Environment& environment, const GroupPlace& place,
+                                        std::size_t sample) {
+  if (!place.parted) return sh::LightVector(1);
+  const Incident& incident = place.incident[sample];
+  return incident.key != nullptr ? *incident.key : environment.keyLight();
 }
 
 void GroupLights::followWindows(const Environment& environment, sh::Window window,
@@ -118,22 +135,25 @@ void GroupLights::followWindows(const Environment& environment, sh::Window windo
     sh::LightVector light;
   };
   std::vector<Search> searches;
-  const auto follow = [&](sh::KeptWindow& kept, const sh::LightVector& light) {
-    if (!kept.fits(light, window)) searches.push_back({&kept, light});
-  };
-  std::array<bool, sh::kMaxOrder + 1> followed{};
+  std::array<bool, 2 * (sh::kMaxOrder + 1)> followed{};
   for (const Renewal& renewal : renewals) {
     if (!renewal.light) continue;
     const GroupPlace& place = groups[renewal.group];
+    const bool from_environment = place.incident[renewal.sample].light == nullptr;
+    if (from_environment && std::exchange(followed[environmentWindow(place)], true)) continue;
+    sh::KeptWindow& kept = windowOf(renewal, place);
     const int bands = std::min(static_cast<int>(place.order), max_order_);
-    const sh::LightVector* incident = place.incident[renewal.sample].light;
-    if (incident != nullptr)
-      follow(groups_[renewal.group].samples[renewal.sample].window, incident->truncated(bands));
-    else if (!std::exchange(followed[place.order], true))
-      follow(environment_windows_[place.order], environment.light().truncated(bands));
+    const sh::LightVector light = lightOf(environment, place, renewal.sample).truncated(bands);
+    if (!kept.fits(light, window)) searches.push_back({&kept, light});
   }
   inParallel(searches.size(), kWorthAThread,
              [&](std::size_t i) { searches[i].kept->follow(searches[i].light, window); });
+}
+
+sh::KeptWindow& GroupLights::windowOf(const Renewal& renewal, const GroupPlace& place) {
+  if (place.incident[renewal.sample].light != nullptr)
+    return groups_[renewal.group].samples[renewal.sample].window;
+  return environment_windows_[environmentWindow(place)];
 }
 
 void GroupLights::write(const Environment& environment, std::span<const GroupPlace> groups,
@@ -146,21 +166,28 @@ void GroupLights::write(const Environment& environment, std::span<const GroupPla
     Sample& sample = group.samples[renewal.sample];
     const int order = static_cast<int>(place.order), bands = std::min(order, max_order_);
     if (renewal.light) {
-      const sh::LightVector* incident = place.incident[renewal.sample].light;
-      const sh::KeptWindow& window = incident != nullptr ? sample.window : environment_windows_[place.order];
-      const sh::LightVector& light = incident != nullptr ? *incident : environment.light();
+      const sh::BandWeights& weights = windowOf(renewal, place).weights();
       const sh::LightVector light_ws =
-          sh::applyWeights(light.truncated(bands), window.weights()).truncated(order);
-      group.change = std::max(group.change, changeBetween(sample.light_ws.c, light_ws.c));
+          sh::applyWeights(lightOf(environment, place, renewal.sample).truncated(bands), weights)
+              .truncated(order);
+      const sh::LightVector key_ws =
+          keyLightOf(environment, place, renewal.sample).truncated(bands).truncated(order);
+      group.change = std::max(group.change,
+                              changeBetween((sample.light_ws + sample.key_ws).c, (light_ws + key_ws).c));
       sample.light_ws = light_ws;
+      sample.key_ws = key_ws;
     }
     if (!rotation || rotation_of != renewal.group) {
       rotation_of = renewal.group;
       rotation.emplace(glm::conjugate(glm::dquat(place.world_from_group)), order);
     }
-    const sh::LightVector light_group = rotation->apply(sample.light_ws);
+    const auto put = [&](const sh::LightVector& light_ws, std::size_t first) {
+      const sh::LightVector light_group = rotation->apply(light_ws);
+      for (std::size_t c = 0; c < kBlock; ++c) coefficients_[first + c] = glm::vec4(light_group.c[c], 0.0f);
+    };
     const std::size_t first = group.first + kStride * renewal.sample;
-    for (std::size_t c = 0; c < kStride; ++c) coefficients_[first + c] = glm::vec4(light_group.c[c], 0.0f);
+    put(sample.light_ws, first);
+    put(sample.key_ws, first + kBlock);
   }
 }
 

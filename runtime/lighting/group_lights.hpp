@@ -1,9 +1,9 @@
 // The light of each rigid group on the GPU, in the group's own frame: what effects multiply transfer with.
 // Comes in: the environment, and per group its rotation in the world, the order of its transfer, what arrives
-// at its light samples and what its own lights give now. Goes out: per group 64 coefficients of vec4 for each
-// light sample (zeros above order²), then the group's own lights, and versions that rise when these change.
-// Windowed (the environment once per order, a light of the same shape as before not anew), then rotated per
-// group.
+// at its light samples and what its own lights give now. Goes out: per group and light sample two blocks of 64
+// coefficients of vec4 (zeros above order²), the light without key lights and that of key lights alone, then
+// the group's own lights, and versions that rise when these change. The first block is windowed (the
+// environment once per order, a light of the same shape as before not anew); both are rotated per group.
 #pragma once
 
 #include <array>
@@ -24,8 +24,9 @@ namespace lambent::lighting {
 
 // What arrives at a light sample, world axes.
 struct Incident {
-  const sh::LightVector* light = nullptr;  // null: the environment's, nothing in its way
-  std::uint64_t version = 0;               // of `light`
+  const sh::LightVector* light = nullptr;  // without key lights; null: the environment's, nothing in its way
+  const sh::LightVector* key = nullptr;    // of key lights alone, likewise
+  std::uint64_t version = 0;               // of both
 };
 
 struct GroupPlace {
@@ -35,11 +36,14 @@ struct GroupPlace {
   std::vector<glm::vec3> lamps{};
   std::vector<Incident> incident = {{}};  // per light sample
   std::uint64_t key = 0;                  // by which the group is known again when others come and go
+  // Key lights stand apart, for their direct light comes by shadow maps. Else transfer brings all of them.
+  bool parted = true;
 };
 
 class GroupLights {
  public:
-  static constexpr std::uint32_t kStride = sh::kMaxCoefficients;  // vec4s of a light sample
+  static constexpr std::uint32_t kBlock = sh::kMaxCoefficients;  // vec4s of one light
+  static constexpr std::uint32_t kStride = 2 * kBlock;           // of a light sample: without keys, keys alone
 
   GroupLights() : table_("group lights") {}
 
@@ -54,7 +58,10 @@ class GroupLights {
   }
 
   std::size_t groupCount() const { return groups_.size(); }
-  // vec4 indices: of a light sample's coefficients, of the group's own lights.
+  // Whether there are key lights; without them their blocks are 0.
+  bool hasKeys() const { return has_keys_; }
+  // vec4 indices: of a light sample's coefficients (those of its key lights kBlock behind them), of the
+  // group's own lights.
   std::uint32_t firstOf(std::size_t group, std::size_t sample = 0) const {
     return groups_[group].first + kStride * static_cast<std::uint32_t>(sample);
   }
@@ -81,11 +88,12 @@ class GroupLights {
     std::uint64_t seen = 0;  // version of the light it was computed from
     std::uint64_t version = 0;
     sh::KeptWindow window;
-    sh::LightVector light_ws{1};  // windowed
+    sh::LightVector light_ws{1}, key_ws{1};  // the first windowed
   };
   struct Group {
     glm::quat world_from_group{1.0f, 0.0f, 0.0f, 0.0f};
     std::uint32_t order = 0;
+    bool parted = true;
     std::vector<glm::vec3> lamps;
     std::vector<Sample> samples;
     std::uint32_t first = 0;
@@ -101,19 +109,30 @@ class GroupLights {
   // Those whose windows are to be searched for, on several threads: each is for itself.
   void followWindows(const Environment& environment, sh::Window window, std::span<const GroupPlace> groups,
                      std::span<const Renewal> renewals);
+  // What arrives at a light sample, world axes: without key lights (all of it where they are not apart), and
+  // of them.
+  static sh::LightVector lightOf(const Environment& environment, const GroupPlace& place, std::size_t sample);
+  static sh::LightVector keyLightOf(const Environment& environment, const GroupPlace& place,
+                                    std::size_t sample);
+  // Which of environment_windows_ a place goes by.
+  static std::size_t environmentWindow(const GroupPlace& place) {
+    return 2 * std::size_t{place.order} + (place.parted ? 1 : 0);
+  }
+  sh::KeptWindow& windowOf(const Renewal& renewal, const GroupPlace& place);
   void write(const Environment& environment, std::span<const GroupPlace> groups,
              std::span<const Renewal> renewals);
   void layOut(std::span<const GroupPlace> groups);
   bool updateLamps(Group& group, const GroupPlace& place);
 
   ByKey<Group> groups_;
-  std::array<sh::KeptWindow, sh::kMaxOrder + 1> environment_windows_;  // by the groups' order
+  std::array<sh::KeptWindow, 2 * (sh::kMaxOrder + 1)> environment_windows_;  // see environmentWindow()
   std::vector<glm::vec4> coefficients_;
   std::uint64_t environment_version_ = 0;
   sh::Window window_ = sh::Window::Off;
   int max_order_ = sh::kMaxOrder;
   std::uint64_t version_ = 0;
   std::uint32_t renewed_ = 0;
+  bool has_keys_ = false;
   gpu::Table table_;
 };
 

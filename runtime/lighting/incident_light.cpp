@@ -17,12 +17,15 @@ namespace {
 constexpr std::uint64_t kNoVersion = ~std::uint64_t{0};
 constexpr std::size_t kGone = ~std::size_t{0};
 
-bool differs(const sh::LightVector& now, const sh::LightVector& before) {
+// Whether either part of a light, without and of key lights, changed by more than a little of the whole.
+bool differs(const sh::LightVector& now, const sh::LightVector& key, const sh::LightVector& before,
+             const sh::LightVector& key_before) {
   double change = 0.0, power = 0.0;
   for (std::size_t i = 0; i < sh::kMaxCoefficients; ++i) {
-    const glm::dvec3 a(now.c[i]), b(before.c[i]);
-    change += glm::dot(a - b, a - b);
-    power += glm::dot(b, b);
+    const glm::dvec3 rest_change(now.c[i] - before.c[i]), key_change(key.c[i] - key_before.c[i]),
+        whole(before.c[i] + key_before.c[i]);
+    change += glm::dot(rest_change, rest_change) + glm::dot(key_change, key_change);
+    power += glm::dot(whole, whole);
   }
   return change > double{kLeastChange} * double{kLeastChange} * power;
 }
@@ -176,7 +179,8 @@ void IncidentLight::updateSample(Sample& sample, const Group& group, const Envir
   ++counts_.samples;
   const bool lit = std::ranges::find(group.lit_by, std::uint8_t{1}) != group.lit_by.end();
   if (sample.fade_begins) {
-    sample.fade_from = sample.plain ? environment.light().truncated(order_) : sample.light;
+    sample.fade_from = sample.plain ? environment.restLight().truncated(order_) : sample.light;
+    sample.fade_from_key = sample.plain ? environment.keyLight().truncated(order_) : sample.key;
     sample.fade_steps = kCarrierSteps;
     sample.fade_begins = false;
   }
@@ -205,13 +209,14 @@ void IncidentLight::updateSample(Sample& sample, const Group& group, const Envir
     const std::int32_t query = ((*sample.drawn).*queries)[index];
     return query < 0 ? 1.0f : sample.drawn->result.visible[static_cast<std::size_t>(query)];
   };
-  sh::LightVector now(order_);
+  sh::LightVector now(order_), key(order_);
   add(now, sample.drawn ? sample.drawn->result.light : environment.skyLight().truncated(order_), 1.0f);
   for (std::size_t i = 0; i < environment.discs().size(); ++i) {
     const spec::Disc& disc = environment.discs()[i];
     const float share = visible(&Drawn::query_of_disc, i);
     if (share > 0.0f && disc.radiance != glm::vec3(0.0f))
-      add(now, sh::discLight(order_, disc.direction, double{disc.radius_rad}, disc.radiance), share);
+      add(environment.isKey(i) ? key : now,
+          sh::discLight(order_, disc.direction, double{disc.radius_rad}, disc.radiance), share);
   }
   for (std::size_t k = 0; k < lights.size(); ++k) {
     if (group.lit_by[k] == 0) continue;
@@ -221,12 +226,15 @@ void IncidentLight::updateSample(Sample& sample, const Group& group, const Envir
   if (fading) {
     ++counts_.fading;
     const float before = static_cast<float>(--sample.fade_steps) / static_cast<float>(kCarrierSteps);
-    for (std::size_t i = 0; i < sh::kMaxCoefficients; ++i)
+    for (std::size_t i = 0; i < sh::kMaxCoefficients; ++i) {
       now.c[i] = (1.0f - before) * now.c[i] + before * sample.fade_from.c[i];
+      key.c[i] = (1.0f - before) * key.c[i] + before * sample.fade_from_key.c[i];
+    }
   }
   const bool renewed = std::exchange(sample.renewed, false);
-  if (!renewed && !sample.plain && sample.version != 0 && !differs(now, sample.light)) return;
+  if (!renewed && !sample.plain && sample.version != 0 && !differs(now, key, sample.light, sample.key)) return;
   sample.light = now;
+  sample.key = key;
   sample.plain = false;
   sample.version = ++version_;
   ++counts_.risen;
@@ -456,7 +464,9 @@ bool IncidentLight::atRest() const {
 std::vector<Incident> IncidentLight::incidentOf(std::size_t group) const {
   std::vector<Incident> incident;
   for (const Sample& sample : groups_[group].samples)
-    incident.push_back({.light = sample.plain ? nullptr : &sample.light, .version = sample.version});
+    incident.push_back({.light = sample.plain ? nullptr : &sample.light,
+                        .key = sample.plain ? nullptr : &sample.key,
+                        .version = sample.version});
   return incident;
 }
 

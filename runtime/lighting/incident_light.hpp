@@ -125,14 +125,14 @@ class IncidentLight {
     // What was handed on last, and of which inputs it was made.
     std::uint64_t version = 0;  // 0: nothing yet; no two samples ever have the same
     bool plain = true;          // the environment's own light
-    sh::LightVector light{1};
+    sh::LightVector light{1}, key{1};  // without key lights, and of these as far as no body hides them
     glm::vec3 position_ws{0.0f};
     std::uint64_t environment = 0, lights = 0;
     // Which bodies were left out of it, and how it goes over to that.
     std::vector<std::uint32_t> left_out;
     bool fade_begins = false;
     std::uint32_t fade_steps = 0;  // still to come
-    sh::LightVector fade_from{1};
+    sh::LightVector fade_from{1}, fade_from_key{1};
   };
   struct Group {
     std::vector<Sample> samples;

@@ -48,7 +48,7 @@ gpu::Texture withLevels(const gpu::Texture& sky, const gpu::Program& program, gp
 }
 
 // Suns are sharper than probes.
-std::uint32_t sizeFor(const spec::DistantLights& lights, const gpu::Texture& sky) {
+std::uint32_t sizeFor(const Environment::Rest& lights, const gpu::Texture& sky) {
   if (!lights.discs.empty()) return kLargestSize;
   return std::clamp(std::bit_ceil(sky.desc().width), kLeastSize, kLargestSize);
 }
@@ -73,8 +73,10 @@ Result<ReflectedSky> ReflectedSky::make(const Environment& environment, const Sk
   gpu::Table angles("lobe"), discs_table("reflected discs");
   glEnable(GL_TEXTURE_CUBE_MAP_SEAMLESS);
   for (std::size_t set = 0; set < Environment::kSets; ++set) {
-    const spec::DistantLights& lights = environment.set(set);
-    const gpu::Texture source = withLevels(sky.cube(set), *weigh, counters);
+    const Environment::Rest lights = environment.restOf(set);
+    const bool whole = environment.keysOf(set).empty();
+    const gpu::Texture rest = whole ? gpu::Texture() : skyCube(lights.probes, lights.constant);
+    const gpu::Texture source = withLevels(whole ? sky.cube(set) : rest, *weigh, counters);
     const std::uint32_t size = sizeFor(lights, source);
     made.cubes_[set] = gpu::Texture(
         "reflected sky",
@@ -119,7 +121,7 @@ void ReflectedSky::update(const Environment& environment, int order, sh::Window 
   values_.shares = {environment.shareOf(0), environment.shareOf(1), static_cast<float>(kReflectedLevels - 1),
                     0.0f};
   const sh::LightVector light =
-      sh::applyWindow(environment.light().truncated(order), window).truncated(sh::kMaxOrder);
+      sh::applyWindow(environment.restLight().truncated(order), window).truncated(sh::kMaxOrder);
   for (std::size_t k = 0; k < kReflectionCoefficients; ++k) values_.light[k] = glm::vec4(light.c[k], 0.0f);
   block_.assign(std::span<const ReflectionValues>(&values_, 1));
   counters.uploaded_bytes += sizeof(values_);

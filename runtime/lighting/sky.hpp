@@ -6,6 +6,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 
 #include <glm/mat4x4.hpp>
 
@@ -15,6 +16,9 @@
 #include "runtime/lighting/environment.hpp"
 
 namespace lambent::lighting {
+
+// Probes and a constant in their own frame, resampled: about one texel of the cube per texel of the probes.
+gpu::Texture skyCube(std::span<const spec::Probe* const> probes, glm::vec3 constant);
 
 class Sky {
  public:

@@ -32,7 +32,7 @@ Result<DistantLights> loadDistantLights(const std::vector<Light>& lights,
 }
 
 sh::LightVector DistantLights::lightVector() const {
-  return skyVector() + discVector();
+  return skyVector() + discVector(discs);
 }
 
 sh::LightVector DistantLights::skyVector() const {
@@ -43,7 +43,7 @@ sh::LightVector DistantLights::skyVector() const {
   return light;
 }
 
-sh::LightVector DistantLights::discVector() const {
+sh::LightVector discVector(std::span<const Disc> discs) {
   sh::LightVector light{.order = sh::kMaxOrder};
   for (const Disc& disc : discs)
     light +=

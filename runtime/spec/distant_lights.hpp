@@ -6,6 +6,7 @@
 #pragma once
 
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,9 @@ struct Disc {
   glm::vec3 radiance{0.0f};
 };
 
+// Bands 0..7 of all of them, in closed form.
+sh::LightVector discVector(std::span<const Disc> discs);
+
 struct DistantLights {
   std::vector<Probe> probes;
   std::vector<Disc> discs;
@@ -34,7 +38,6 @@ struct DistantLights {
   // As bands 0..7: probes projected texel by texel, discs and the constant in closed form.
   sh::LightVector lightVector() const;  // all of it
   sh::LightVector skyVector() const;    // probes and the constant
-  sh::LightVector discVector() const;
 };
 
 // load: where probes come from.

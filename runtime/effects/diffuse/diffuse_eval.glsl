@@ -4,6 +4,8 @@
 // defines the fetches that the stage's functions declare.
 #include "diffuse_shared.h"
 
+const vec3 kLuminance = vec3(0.2126, 0.7152, 0.0722);  // Rec. 709
+
 #ifndef LAMBENT_STAGE_SAMPLES
 vec3 lightAt(uint index);  // coefficient of the light in the group's frame, RGB
 #endif
@@ -11,19 +13,29 @@ vec3 lightAt(uint index);  // coefficient of the light in the group's frame, RGB
 #ifdef LAMBENT_STAGE_PROJECT
 float vectorAt(uint word);  // of the transfer page
 
-// One output of a mean or axis times the light whose coefficients start at `light`: one value per colour channel.
-vec3 projectOnLight(TransferRecord transfer, uint vector, uint output_index, uint columns, uint light) {
+// A stretch of `columns` values from this word on times the light from this index on, plus as much of the light that
+// lies kKeyBlock behind it: one value per colour channel.
+vec3 timesLight(uint at, uint channels, uint stride, uint columns, uint light, float rest, float key) {
   vec3 sum = vec3(0.0);
-  uint at = transfer.vectors_word + vector * transfer.vector_size + transfer.first_value + output_index * columns;
-  if (transfer.channels == 1u) {
-    for (uint i = 0u; i < columns; ++i) sum += vectorAt(at + i) * lightAt(light + i);
-  } else {
-    uint stride = transfer.outputs * columns;
-    for (uint i = 0u; i < columns; ++i)
-      sum += vec3(vectorAt(at + i), vectorAt(at + stride + i), vectorAt(at + 2u * stride + i)) *
-             lightAt(light + i);
+  for (uint i = 0u; i < columns; ++i) {
+    vec3 arriving = rest * lightAt(light + i);
+    if (key != 0.0) arriving += key * lightAt(light + kKeyBlock + i);
+    vec3 value = vec3(vectorAt(at + i));
+    if (channels > 1u) value.gb = vec2(vectorAt(at + stride + i), vectorAt(at + 2u * stride + i));
+    sum += value * arriving;
   }
   return sum;
+}
+
+// One output of a mean or axis times the light whose coefficients start at `light`: one value per colour channel. Light
+// that comes straight from key lights is not in it; its luminance is w.
+vec4 projectOnLight(TransferRecord transfer, uint vector, uint output_index, uint columns, uint light) {
+  uint first = transfer.vectors_word + vector * transfer.vector_size + output_index * columns;
+  uint stride = transfer.outputs * columns;
+  vec3 sum = timesLight(first + transfer.first_value, transfer.channels, stride, columns, light, 1.0, float(transfer.bounced));
+  if (transfer.straight_channels == 0u) return vec4(sum, 0.0);
+  vec3 straight = timesLight(first, transfer.straight_channels, stride, columns, light, 0.0, 1.0);
+  return vec4(sum - float(transfer.bounced) * straight, dot(straight, kLuminance));
 }
 #endif
 
@@ -32,7 +44,9 @@ vec3 projectOnLight(TransferRecord transfer, uint vector, uint output_index, uin
 #endif
 
 #if defined(LAMBENT_STAGE_VERTICES) || defined(LAMBENT_STAGE_PROXIES)
-vec4 sampleAt(uint index);  // shaded sample, w = resident
+vec4 sampleAt(uint index);  // shaded sample, w > 0: resident
+
+float shadedShare(vec4 shaded) { return shaded.w > 0.0 ? 1.0 : 0.0; }
 
 // A_l / pi, A_l the clamped cosine's weights: pi, 2pi/3, pi/4, 0, -pi/24, 0, pi/64 (Ramamoorthi and Hanrahan 2001).
 float clampedCosineOverPi(int l) {
@@ -98,8 +112,8 @@ vec3 vertexRadiance(DrawRecord draw, uint vertex, vec3 normal, int order) {
     for (uint i = rowWordAt(draw.rows_word + vertex); i < end; ++i) {
       RowEntry entry = rowEntryAt(draw, i);
       vec4 shaded = sampleAt(draw.first_sample + entry.sample_index);
-      sum += entry.weight * shaded.w * shaded.rgb;
-      resident += entry.weight * shaded.w;
+      sum += entry.weight * shadedShare(shaded) * shaded.rgb;
+      resident += entry.weight * shadedShare(shaded);
       total += entry.weight;
     }
   }
@@ -117,7 +131,7 @@ void vertexLight(DrawRecord draw, uint vertex, out vec3 light[kMappedOutputs]) {
     for (uint i = rowWordAt(draw.rows_word + vertex); i < end; ++i) {
       RowEntry entry = rowEntryAt(draw, i);
       uint first = draw.first_sample + kMappedOutputs * entry.sample_index;
-      float shaded = sampleAt(first).w;
+      float shaded = shadedShare(sampleAt(first));
       for (uint j = 0u; j < kMappedOutputs; ++j) light[j] += entry.weight * shaded * sampleAt(first + j).rgb;
       resident += entry.weight * shaded;
       total += entry.weight;
@@ -133,28 +147,56 @@ void vertexLight(DrawRecord draw, uint vertex, out vec3 light[kMappedOutputs]) {
 
 ProxyEntryRecord proxyEntryAt(uint index);
 
-// E/pi at a normal, of nine outputs of a sample.
-vec3 mappedRadiance(uint first, vec3 normal) {
-  vec3 light[kMappedOutputs];
-  for (uint j = 0u; j < kMappedOutputs; ++j) light[j] = sampleAt(first + j).rgb;
-  return diffuseLight(light, normal);
+// E/pi at a normal, of nine outputs of a sample; in w that straight from key lights, as luminance.
+vec4 mappedRadiance(uint first, vec3 normal) {
+  vec3 light[kMappedOutputs], straight[kMappedOutputs];
+  for (uint j = 0u; j < kMappedOutputs; ++j) {
+    vec4 value = sampleAt(first + j);
+    light[j] = value.rgb;
+    straight[j] = vec3(value.w - 1.0);
+  }
+  return vec4(diffuseLight(light, normal), diffuseLight(straight, normal).r);
+}
+
+// Glossy samples know how much of the sky each direction sees; key lights are taken to stand at their mean direction.
+float keyVisibility(uint first, vec3 direction) {
+  vec3 visibility[kMappedOutputs];
+  for (uint j = 0u; j < kMappedOutputs; ++j) visibility[j] = vec3(sampleAt(first + j).w);
+  const float kBack[9] = float[9](1.0, 1.5, 1.5, 1.5, 4.0, 4.0, 4.0, 4.0, 4.0);  // pi / A_l: the bands as they are
+  for (uint j = 0u; j < kMappedOutputs; ++j) visibility[j] *= kBack[j];
+  return clamp(diffuseLight(visibility, direction).r, 0.0, 1.0);
 }
 
 // What a proxy's triangle sends out. Samples that are not shaded yet count as unshadowed; truncated light may be
 // negative somewhere, a surface never gives that on.
 vec3 proxyRadiance(ProxyGroupRecord group, ProxyTriangleRecord triangle) {
   vec3 normal = vec3(triangle.normal[0], triangle.normal[1], triangle.normal[2]);
+  uint key = group.light + kKeyBlock;
+  float key_luminance = dot(lightAt(key), kLuminance);
+  vec3 tint = key_luminance > 0.0 ? lightAt(key) / key_luminance : vec3(0.0);
+  vec3 towards_key = vec3(dot(lightAt(key + 3u), kLuminance), dot(lightAt(key + 1u), kLuminance), dot(lightAt(key + 2u), kLuminance));
   vec3 sum = vec3(0.0), waiting = vec3(0.0);
   for (uint i = triangle.first_entry; i < triangle.first_entry + triangle.entry_count; ++i) {
     ProxyEntryRecord entry = proxyEntryAt(i);
     vec3 reflectance = vec3(entry.reflectance[0], entry.reflectance[1], entry.reflectance[2]);
     vec4 shaded = sampleAt(entry.sample_index);
-    if (shaded.w == 0.0 && entry.outputs <= kMappedOutputs)  // glossy samples are never without light
+    if (entry.outputs > kMappedOutputs) {  // glossy samples are never without light
+      sum += reflectance * mappedRadiance(entry.sample_index, normal).rgb;
+      if (key_luminance > 0.0)
+        sum += reflectance * keyVisibility(entry.sample_index, normalize(towards_key)) *
+               max(unshadowedRadiance(normal, key, int(group.order)), vec3(0.0));
+    } else if (shaded.w == 0.0) {
       waiting += reflectance;
-    else
-      sum += reflectance * (entry.outputs == 1u ? shaded.rgb : mappedRadiance(entry.sample_index, normal));
+    } else {
+      vec4 received = entry.outputs == 1u ? vec4(shaded.rgb, shaded.w - 1.0) : mappedRadiance(entry.sample_index, normal);
+      sum += reflectance * (received.rgb + max(received.w, 0.0) * tint);
+    }
   }
-  if (waiting != vec3(0.0)) sum += waiting * unshadowedRadiance(normal, group.light, int(group.order));
+  if (waiting != vec3(0.0)) {
+    vec3 open = unshadowedRadiance(normal, group.light, int(group.order));
+    if (key_luminance > 0.0) open += unshadowedRadiance(normal, key, int(group.order));
+    sum += waiting * open;
+  }
   sum = max(sum, vec3(0.0));
   if (triangle.lamp != kNoLamp)
     sum += vec3(triangle.emission[0], triangle.emission[1], triangle.emission[2]) * lightAt(group.lamps + triangle.lamp);

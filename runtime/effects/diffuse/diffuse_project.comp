@@ -9,5 +9,5 @@ vec4 projected(TransferRecord transfer, uint vector, uint output_index, uint lig
 #else
   uint columns = transfer.columns;
 #endif
-  return vec4(projectOnLight(transfer, vector, output_index, columns, light), 0.0);
+  return projectOnLight(transfer, vector, output_index, columns, light);
 }

@@ -73,17 +73,35 @@ inline glm::vec3 unshadowedRadiance(const Memory& memory, glm::vec3 normal, uint
   return sum;
 }
 
-inline glm::vec3 projectOnLight(const Memory& memory, const TransferRecord& transfer, uint vector,
-                                uint output_index, uint light) {
+inline constexpr glm::vec3 kLuminance{0.2126f, 0.7152f, 0.0722f};
+
+inline glm::vec3 timesLight(const Memory& memory, uint at, uint channels, uint stride, uint columns, uint light,
+                            float rest, float key) {
   glm::vec3 sum(0.0f);
-  const uint columns = transfer.columns, stride = transfer.channels == 1 ? 0 : transfer.outputs * columns;
-  const uint at =
-      transfer.vectors_word + vector * transfer.vector_size + transfer.first_value + output_index * columns;
-  for (uint i = 0; i < columns; ++i)
-    sum += glm::vec3(memory.floatAt(at + i), memory.floatAt(at + stride + i),
-                     memory.floatAt(at + 2 * stride + i)) *
-           memory.lightAt(light + i);
+  for (uint i = 0; i < columns; ++i) {
+    glm::vec3 arriving = rest * memory.lightAt(light + i);
+    if (key != 0.0f) arriving += key * memory.lightAt(light + kKeyBlock + i);
+    glm::vec3 value(memory.floatAt(at + i));
+    if (channels > 1) {
+      value.g = memory.floatAt(at + stride + i);
+      value.b = memory.floatAt(at + 2 * stride + i);
+    }
+    sum += value * arriving;
+  }
   return sum;
+}
+
+inline glm::vec4 projectOnLight(const Memory& memory, const TransferRecord& transfer, uint vector,
+                                uint output_index, uint light) {
+  const uint columns = transfer.columns, stride = transfer.outputs * columns;
+  const uint first = transfer.vectors_word + vector * transfer.vector_size + output_index * columns;
+  const auto bounced = static_cast<float>(transfer.bounced);
+  const glm::vec3 sum = timesLight(memory, first + transfer.first_value, transfer.channels, stride, columns,
+                                   light, 1.0f, bounced);
+  if (transfer.straight_channels == 0) return glm::vec4(sum, 0.0f);
+  const glm::vec3 straight =
+      timesLight(memory, first, transfer.straight_channels, stride, columns, light, 0.0f, 1.0f);
+  return glm::vec4(sum - bounced * straight, glm::dot(straight, kLuminance));
 }
 
 inline uint codeOf(const Memory& memory, uint codes, uint position) {
@@ -142,7 +160,7 @@ void projectClusters(const Memory& memory, const TransferRecord& transfer, std::
 inline void projectTransfer(const Memory& memory, const TransferRecord& transfer,
                             std::span<const uint> places, std::span<glm::vec4> products) {
   const auto projected = [&](uint vector, uint output_index, uint light) {
-    return glm::vec4(projectOnLight(memory, transfer, vector, output_index, light), 0.0f);
+    return projectOnLight(memory, transfer, vector, output_index, light);
   };
   projectClusters(memory, transfer, places, projected, products);
 }
@@ -177,20 +195,24 @@ inline void shadePosition(const Memory& memory, const TransferRecord& transfer, 
                           std::span<const glm::vec4> products, uint position, std::span<glm::vec4> samples) {
   const CodedSample at = codedSampleAt(memory, transfer, position);
   for (uint j = 0; j < transfer.outputs; ++j) {
-    glm::vec3 light(0.0f);
+    glm::vec4 light(0.0f);
     for (uint k = 0; k < kLightsPerSample; ++k) {
       const LightShare share = lightShareOf(memory, transfer, at.sample_index, k);
       uint product = transfer.first_product + transfer.light_products * share.light +
                      transfer.outputs * at.cluster.first + j;
-      light += share.weight * glm::vec3(products[product]);
+      light += share.weight * products[product];
       for (uint axis = 0; axis < at.cluster.axes; ++axis) {
         product += transfer.outputs;
         light += static_cast<float>(codeOf(memory, places[transfer.first_plane + axis], position)) *
-                 share.weight * glm::vec3(products[product]);
+                 share.weight * products[product];
       }
     }
     glm::vec4& out = samples[transfer.first_output + transfer.outputs * at.sample_index + j];
-    out = glm::vec4(transfer.accumulate != 0 ? light + glm::vec3(out) : light, 1.0f);
+    if (transfer.accumulate != 0)
+      light += out;
+    else
+      light.w = 1.0f + (j == 0 ? std::max(light.w, 0.0f) : light.w);
+    out = light;
   }
 }
 
@@ -206,6 +228,10 @@ inline RowEntry rowEntryAt(const Memory& memory, const DrawRecord& draw, uint en
           memory.rowWordAt(samples_word + entry)};
 }
 
+inline float shadedShare(const glm::vec4& shaded) {
+  return shaded.w > 0.0f ? 1.0f : 0.0f;
+}
+
 inline glm::vec3 vertexRadiance(const Memory& memory, const DrawRecord& draw, uint vertex, glm::vec3 normal,
                                 int order) {
   glm::vec3 sum(0.0f);
@@ -215,8 +241,8 @@ inline glm::vec3 vertexRadiance(const Memory& memory, const DrawRecord& draw, ui
     for (uint i = memory.rowWordAt(draw.rows_word + vertex); i < end; ++i) {
       const RowEntry entry = rowEntryAt(memory, draw, i);
       const glm::vec4 shaded = memory.sampleAt(draw.first_sample + entry.sample_index);
-      sum += entry.weight * shaded.w * glm::vec3(shaded);
-      resident += entry.weight * shaded.w;
+      sum += entry.weight * shadedShare(shaded) * glm::vec3(shaded);
+      resident += entry.weight * shadedShare(shaded);
       total += entry.weight;
     }
   }
@@ -235,7 +261,7 @@ inline MappedLight vertexLight(const Memory& memory, const DrawRecord& draw, uin
     for (uint i = memory.rowWordAt(draw.rows_word + vertex); i < end; ++i) {
       const RowEntry entry = rowEntryAt(memory, draw, i);
       const uint first = draw.first_sample + kMappedOutputs * entry.sample_index;
-      const float shaded = memory.sampleAt(first).w;
+      const float shaded = shadedShare(memory.sampleAt(first));
       for (uint j = 0; j < kMappedOutputs; ++j)
         light[j] += entry.weight * shaded * glm::vec3(memory.sampleAt(first + j));
       resident += entry.weight * shaded;
@@ -260,28 +286,56 @@ inline glm::vec3 shadeVertex(const Memory& memory, const DrawRecord& draw, uint 
 }
 
 // Stage d.
-inline glm::vec3 mappedRadiance(const Memory& memory, uint first, glm::vec3 normal) {
-  std::array<glm::vec3, kMappedOutputs> light;
-  for (uint j = 0; j < kMappedOutputs; ++j) light[j] = glm::vec3(memory.sampleAt(first + j));
-  return diffuseLight(light, normal);
+inline glm::vec4 mappedRadiance(const Memory& memory, uint first, glm::vec3 normal) {
+  std::array<glm::vec3, kMappedOutputs> light, straight;
+  for (uint j = 0; j < kMappedOutputs; ++j) {
+    const glm::vec4 value = memory.sampleAt(first + j);
+    light[j] = glm::vec3(value);
+    straight[j] = glm::vec3(value.w - 1.0f);
+  }
+  return glm::vec4(diffuseLight(light, normal), diffuseLight(straight, normal).r);
+}
+
+inline float keyVisibility(const Memory& memory, uint first, glm::vec3 direction) {
+  constexpr std::array<float, kMappedOutputs> kBack = {1.0f, 1.5f, 1.5f, 1.5f, 4.0f, 4.0f, 4.0f, 4.0f, 4.0f};
+  std::array<glm::vec3, kMappedOutputs> visibility;
+  for (uint j = 0; j < kMappedOutputs; ++j)
+    visibility[j] = glm::vec3(kBack[j] * memory.sampleAt(first + j).w);
+  return std::clamp(diffuseLight(visibility, direction).r, 0.0f, 1.0f);
 }
 
 inline glm::vec3 proxyRadiance(const Memory& memory, const ProxyGroupRecord& group,
                                const ProxyTriangleRecord& triangle,
                                std::span<const ProxyEntryRecord> entries) {
   const glm::vec3 normal(triangle.normal[0], triangle.normal[1], triangle.normal[2]);
+  const uint key = group.light + kKeyBlock;
+  const int order = static_cast<int>(group.order);
+  const auto keyAt = [&](uint i) { return glm::dot(memory.lightAt(key + i), kLuminance); };
+  const float key_luminance = keyAt(0);
+  const glm::vec3 tint = key_luminance > 0.0f ? memory.lightAt(key) / key_luminance : glm::vec3(0.0f);
+  const glm::vec3 towards_key(keyAt(3), keyAt(1), keyAt(2));
   glm::vec3 sum(0.0f), waiting(0.0f);
   for (const ProxyEntryRecord& entry : entries.subspan(triangle.first_entry, triangle.entry_count)) {
     const glm::vec3 reflectance(entry.reflectance[0], entry.reflectance[1], entry.reflectance[2]);
     const glm::vec4 shaded = memory.sampleAt(entry.sample_index);
-    if (shaded.w == 0.0f && entry.outputs <= kMappedOutputs)
+    if (entry.outputs > kMappedOutputs) {
+      sum += reflectance * glm::vec3(mappedRadiance(memory, entry.sample_index, normal));
+      if (key_luminance > 0.0f)
+        sum += reflectance * keyVisibility(memory, entry.sample_index, glm::normalize(towards_key)) *
+               glm::max(unshadowedRadiance(memory, normal, key, order), glm::vec3(0.0f));
+    } else if (shaded.w == 0.0f) {
       waiting += reflectance;
-    else
-      sum += reflectance *
-             (entry.outputs == 1 ? glm::vec3(shaded) : mappedRadiance(memory, entry.sample_index, normal));
+    } else {
+      const glm::vec4 received = entry.outputs == 1 ? glm::vec4(glm::vec3(shaded), shaded.w - 1.0f)
+                                                    : mappedRadiance(memory, entry.sample_index, normal);
+      sum += reflectance * (glm::vec3(received) + std::max(received.w, 0.0f) * tint);
+    }
   }
-  if (waiting != glm::vec3(0.0f))
-    sum += waiting * unshadowedRadiance(memory, normal, group.light, static_cast<int>(group.order));
+  if (waiting != glm::vec3(0.0f)) {
+    glm::vec3 open = unshadowedRadiance(memory, normal, group.light, order);
+    if (key_luminance > 0.0f) open += unshadowedRadiance(memory, normal, key, order);
+    sum += waiting * open;
+  }
   sum = glm::max(sum, glm::vec3(0.0f));
   if (triangle.lamp != kNoLamp)
     sum += glm::vec3(triangle.emission[0], triangle.emission[1], triangle.emission[2]) *

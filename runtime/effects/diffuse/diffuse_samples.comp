@@ -24,7 +24,7 @@ void main() {
   if (position >= transfer.sample_count) return;
   CodedSample at = codedSampleAt(transfer, position);
   uint product = transfer.first_product + LAMBENT_OUTPUTS * at.first;
-  vec3 light[LAMBENT_OUTPUTS];
+  vec4 light[LAMBENT_OUTPUTS];  // w: straight from key lights
 #ifdef LAMBENT_MANY_LIGHTS
   uint products_of[kLightsPerSample];
   float weight[kLightsPerSample];
@@ -36,27 +36,30 @@ void main() {
     products_of[k] = product + transfer.light_products * share.light;
     light_count = k + 1u;
   }
-  for (uint j = 0u; j < LAMBENT_OUTPUTS; ++j) light[j] = vec3(0.0);
+  for (uint j = 0u; j < LAMBENT_OUTPUTS; ++j) light[j] = vec4(0.0);
   for (uint k = 0u; k < light_count; ++k)
-    for (uint j = 0u; j < LAMBENT_OUTPUTS; ++j) light[j] += weight[k] * products[products_of[k] + j].rgb;
+    for (uint j = 0u; j < LAMBENT_OUTPUTS; ++j) light[j] += weight[k] * products[products_of[k] + j];
   for (uint axis = 0u; axis < at.axes; ++axis) {
     float code = float(codeOf(places[transfer.first_plane + axis], position));
     for (uint k = 0u; k < light_count; ++k) {
       products_of[k] += LAMBENT_OUTPUTS;
-      for (uint j = 0u; j < LAMBENT_OUTPUTS; ++j) light[j] += code * weight[k] * products[products_of[k] + j].rgb;
+      for (uint j = 0u; j < LAMBENT_OUTPUTS; ++j) light[j] += code * weight[k] * products[products_of[k] + j];
     }
   }
 #else
-  for (uint j = 0u; j < LAMBENT_OUTPUTS; ++j) light[j] = products[product + j].rgb;
+  for (uint j = 0u; j < LAMBENT_OUTPUTS; ++j) light[j] = products[product + j];
   for (uint axis = 0u; axis < at.axes; ++axis) {
     product += LAMBENT_OUTPUTS;
     float code = float(codeOf(places[transfer.first_plane + axis], position));
-    for (uint j = 0u; j < LAMBENT_OUTPUTS; ++j) light[j] += code * products[product + j].rgb;
+    for (uint j = 0u; j < LAMBENT_OUTPUTS; ++j) light[j] += code * products[product + j];
   }
 #endif
   uint out_index = transfer.first_output + LAMBENT_OUTPUTS * at.sample_index;
   for (uint j = 0u; j < LAMBENT_OUTPUTS; ++j) {
-    if (transfer.accumulate != 0u) light[j] += samples[out_index + j].rgb;
-    samples[out_index + j] = vec4(light[j], 1.0);
+    if (transfer.accumulate != 0u)
+      light[j] += samples[out_index + j];
+    else
+      light[j].w = 1.0 + (j == 0u ? max(light[j].w, 0.0) : light[j].w);
+    samples[out_index + j] = light[j];
   }
 }

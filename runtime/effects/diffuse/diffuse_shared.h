@@ -14,12 +14,12 @@ using uint = std::uint32_t;
 #endif
 
 LAMBENT_CONSTANT kBindWork = 0u;       // WorkItem per work group
-LAMBENT_CONSTANT kBindLights = 1u;     // vec4 per coefficient: per group kLightStride for each light sample, then its own
+LAMBENT_CONSTANT kBindLights = 1u;     // vec4 per coefficient: per group kLightStride for each light sample, then its own lights
 LAMBENT_CONSTANT kBindTransfers = 2u;  // TransferRecord
 LAMBENT_CONSTANT kBindPlaces = 3u;     // of a transfer: where its planes and its lights lie
 LAMBENT_CONSTANT kBindProducts = 4u;   // vec4: a vector times the light, scaled to be multiplied by the code itself
 LAMBENT_CONSTANT kBindTransfer = 5u;   // arena page: codebooks (float), positions and codes
-LAMBENT_CONSTANT kBindSamples = 6u;    // arena page: vec4 per sample and output, w = 1 where it has been shaded
+LAMBENT_CONSTANT kBindSamples = 6u;    // arena page: vec4 per sample and output; w: see below
 LAMBENT_CONSTANT kBindDraws = 2u;      // DrawRecord
 LAMBENT_CONSTANT kBindRows = 3u;       // arena page: rows of vertices
 LAMBENT_CONSTANT kBindGeometry = 4u;   // arena page: normals among others
@@ -33,7 +33,8 @@ LAMBENT_CONSTANT kWorkGroupSize = 64u;
 LAMBENT_CONSTANT kLanesPerUnit = 16u;  // of the project stage: a unit is one output of one cluster
 LAMBENT_CONSTANT kUnitsPerGroup = kWorkGroupSize / kLanesPerUnit;
 LAMBENT_CONSTANT kMaxWorkGroupsX = 65535u;  // what OpenGL 4.5 promises; longer lists fold into y
-LAMBENT_CONSTANT kLightStride = 64u;        // 8 bands of a light sample; the group's own light columns follow the last
+LAMBENT_CONSTANT kKeyBlock = 64u;           // 8 bands of a light sample without key lights, then 8 of key lights alone
+LAMBENT_CONSTANT kLightStride = 2u * kKeyBlock;  // of a light sample; the group's own light columns follow the last
 LAMBENT_CONSTANT kLightsPerSample = 4u;     // light samples that one sample of a cell is lit from
 LAMBENT_CONSTANT kMappedOutputs = 9u;       // of samples and draws with normal maps: light of bands 0..2
 LAMBENT_CONSTANT kCodes16Bit = 0x80000000u;  // 16-bit codes, else 8-bit
@@ -47,6 +48,10 @@ struct WorkItem {
   uint first;
 };
 #endif
+
+// Of a shaded sample w is 1 plus what arrives straight from key lights by harmonics, as luminance, in the first
+// output at least 0; of one that was not shaded yet it is 0. Surfaces take that light by shadow maps, per pixel; capture
+// proxies have no pixels and send it on from here.
 
 // One transfer of a cell, as far as it is resident, and which block of it counts. Words are of the transfer page:
 //   clusters   per cluster two uints: its first vector, its number of axes
@@ -80,6 +85,10 @@ struct TransferRecord {
   uint accumulate;  // 1: adds to what another transfer of the cell has written
   uint order;       // bands of the environment's light; 0: the group's own lights
   uint visibility;  // 1: the vectors are visibility, to be multiplied with the light (glossy_eval.glsl)
+  // With key lights: 1 if bounced light is in the block that counts, so that key lights are among its light; and how
+  // many channels at the start of a vector carry light without bounces, by which key lights do not arrive here.
+  uint bounced;
+  uint straight_channels;
 };
 
 struct DrawRecord {
@@ -125,7 +134,7 @@ struct ProxyEntryRecord {
 #ifdef __cplusplus
 #undef LAMBENT_CONSTANT
 static_assert(sizeof(ProxyGroupRecord) == 32 && sizeof(ProxyTriangleRecord) == 48 && sizeof(ProxyEntryRecord) == 32);
-static_assert(sizeof(TransferRecord) == 88 && offsetof(TransferRecord, first_product) == 60 &&
+static_assert(sizeof(TransferRecord) == 96 && offsetof(TransferRecord, first_product) == 60 &&
               offsetof(TransferRecord, accumulate) == 76);
 static_assert(sizeof(DrawRecord) == 96 && offsetof(DrawRecord, light) == 48 && offsetof(DrawRecord, outputs) == 80);
 }  // namespace lambent::effects::diffuse

@@ -16,7 +16,8 @@ bool takesAny(const bundle::TransferShape& shape, TransferMode mode) {
 }
 
 TransferRecord describeTransfer(const streaming::ResidentCell& cell,
-                                const streaming::ResidentTransfer& transfer, TransferMode mode) {
+                                const streaming::ResidentTransfer& transfer, TransferMode mode,
+                                bool has_keys) {
   const bundle::TransferShape& shape = transfer.shape;
   const bool full = takesFull(shape, mode);
   const bool several = shape.order > 0 && cell.light_samples.size() > 1;
@@ -41,7 +42,9 @@ TransferRecord describeTransfer(const streaming::ResidentCell& cell,
           .sample_count = cell.sample_count,
           .accumulate = 0,
           .order = shape.order,
-          .visibility = shape.isVisibility() ? 1u : 0u};
+          .visibility = shape.isVisibility() ? 1u : 0u,
+          .bounced = full && has_keys && shape.order > 0 ? 1u : 0u,
+          .straight_channels = has_keys && shape.order > 0 ? shape.shadowed_channels : 0};
 }
 
 }  // namespace
@@ -52,7 +55,7 @@ void TransferTable::add(const streaming::ResidentCell& cell, const lighting::Gro
   Cell& range = cells.back();
   for (const streaming::ResidentTransfer& transfer : cell.transfers) {
     if (!takesAny(transfer.shape, mode) || !transfer.codebook_resident) continue;
-    TransferRecord record = describeTransfer(cell, transfer, mode);
+    TransferRecord record = describeTransfer(cell, transfer, mode, lights.hasKeys());
     record.accumulate = range.count++ > 0 ? 1 : 0;
     record.first_light = static_cast<std::uint32_t>(places.size());
     if (transfer.shape.order == 0) {

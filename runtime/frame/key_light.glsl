@@ -1,0 +1,154 @@
+// How much of a key light a point sees, by the light's shadow map. key_light_ref.hpp is the same on the CPU, term by
+// term. Who includes this says what lies in the map: keyDepth(texel), keyBlockers(texel, level). Points and directions are
+// in view space, metres; places on a map are in texels of the texture that holds all maps.
+#include "key_shared.h"
+#include "near_light.glsl"
+
+// What is nearer to the light than the receiver's plane by less than these texels' width does not shadow it: rounding,
+// and faces that meet within a texel.
+const float kKeyBiasTexels = 1.5;
+const float kLeastFacing = 0.02;   // cosine below which the receiver's plane is taken to lean no more
+const float kSharpTexels = 0.8;    // a penumbra narrower than this is that of the texels
+const float kOneHeight = 0.1;      // heights that differ by less than this share are one
+const int kKeyNarrowing = 3;
+
+float keyDepth(ivec2 texel);                // 0..1
+vec2 keyBlockers(ivec2 texel, int level);   // least and greatest depth, 0..1
+
+struct KeyReceiver {
+  vec2 place;
+  float depth;  // below the map's top, metres
+  vec2 slope;   // metres of depth per texel along the receiver's plane
+  float bias;
+  bool above;   // all of the disc stands over the plane
+};
+
+KeyReceiver keyReceiver(KeyRecord key, vec3 position, vec3 normal) {
+  KeyReceiver receiver;
+  receiver.place = vec2(dot(key.right.xyz, position) + key.right.w, dot(key.up.xyz, position) + key.up.w);
+  receiver.depth = key.towards.w - dot(key.towards.xyz, position);
+  float facing = dot(normal, key.towards.xyz);
+  vec2 along = vec2(dot(normal, key.right.xyz), dot(normal, key.up.xyz)) / (key.scale.xy * key.scale.xy);
+  receiver.slope = along / max(facing, kLeastFacing);
+  receiver.bias = kKeyBiasTexels / min(key.scale.x, key.scale.y) + 1e-6 * key.scale.z;
+  receiver.above = facing >= key.radiance.w;
+  return receiver;
+}
+
+// Least and greatest depth, metres, of all that lies within so many texels of a place; maybe of a little more.
+vec2 blockerBounds(KeyRecord key, vec2 place, vec2 reach) {
+  float widest = max(reach.x, reach.y) * 2.0 / float(kBlockerTexels);
+  float tile = key.tile.z - key.tile.x + 1.0;
+  int last = int(log2(tile / float(kBlockerTexels)) + 0.5);
+  int level = clamp(int(ceil(log2(max(widest, 1.0)))), 0, last);
+  float texels = float(kBlockerTexels << level);
+  ivec2 least = ivec2(key.tile.xy / texels), most = ivec2(key.tile.zw / texels);
+  ivec2 from = clamp(ivec2(floor((place - reach) / texels)), least, most);
+  ivec2 to = clamp(ivec2(floor((place + reach) / texels)), from, most);
+  vec2 bounds = keyBlockers(from, level);
+  for (int i = 1; i < 4; ++i) {
+    ivec2 texel = ivec2((i & 1) == 1 ? to.x : from.x, i >> 1 == 1 ? to.y : from.y);
+    if (texel == from) continue;
+    vec2 other = keyBlockers(texel, level);
+    bounds = vec2(min(bounds.x, other.x), max(bounds.y, other.y));
+  }
+  return key.scale.z * bounds;
+}
+
+// How high above the receiver what stands in a texel is, along the light; 0: it does not stand in the way.
+float blockerHeight(KeyRecord key, KeyReceiver receiver, ivec2 texel) {
+  texel = clamp(texel, ivec2(key.tile.xy), ivec2(key.tile.zw));
+  float depth = key.scale.z * keyDepth(texel);
+  float plane = receiver.depth + dot(receiver.slope, vec2(texel) + 0.5 - receiver.place);
+  if (depth >= plane - receiver.bias) return 0.0;
+  return max(receiver.depth - depth, 0.5 * receiver.bias);
+}
+
+// Of a light without width: between the four texels about the place.
+float texelVisible(KeyRecord key, KeyReceiver receiver) {
+  vec2 corner = floor(receiver.place - 0.5), part = receiver.place - 0.5 - corner;
+  float visible = 0.0;
+  for (int i = 0; i < 4; ++i) {
+    vec2 side = vec2(float(i & 1), float(i >> 1));
+    vec2 share = side * part + (1.0 - side) * (1.0 - part);
+    if (blockerHeight(key, receiver, ivec2(corner + side)) == 0.0) visible += share.x * share.y;
+  }
+  return visible;
+}
+
+// Where on the unit disc the i-th of so many points lies [Vogel 1979].
+vec2 keyPoint(int i, int count) {
+  float angle = 2.39996323 * float(i);
+  return sqrt((float(i) + 0.5) / float(count)) * vec2(cos(angle), sin(angle));
+}
+
+// The mean height of what stands in the cone from the receiver to the disc, and how many of the points found something;
+// after Fernando, Percentage-closer soft shadows, 2005. `reach` is how high blockers may stand.
+vec2 meanBlocker(KeyRecord key, KeyReceiver receiver, float reach, int count) {
+  vec2 sum = vec2(0.0);
+  for (int i = 0; i < count; ++i) {
+    vec2 at = keyPoint(i, count);
+    float height = blockerHeight(key, receiver, ivec2(floor(receiver.place + reach * key.scale.w * key.scale.xy * at)));
+    // Within the cone at its own height, by a texel's width at most beside it.
+    if (height > 0.0 && reach * length(at) * key.scale.w <= height * key.scale.w + receiver.bias) sum += vec2(height, 1.0);
+  }
+  return sum.y > 0.0 ? vec2(sum.x / sum.y, sum.y) : vec2(0.0);
+}
+
+// Whether something stands on the way to a point of the disc: looked up where the ray passes the mean height, and where
+// it passes the height that was found there.
+bool rayBlocked(KeyRecord key, KeyReceiver receiver, float height, vec2 at) {
+  vec2 per_metre = key.scale.w * key.scale.xy * at;
+  float found = blockerHeight(key, receiver, ivec2(floor(receiver.place + height * per_metre)));
+  if (found == 0.0) return false;
+  if (abs(found - height) < kOneHeight * height) return true;
+  return blockerHeight(key, receiver, ivec2(floor(receiver.place + found * per_metre))) > 0.0;
+}
+
+// The share of the disc's light that arrives at a point with this normal of its triangle and this normal for shading.
+float keyVisible(KeyRecord key, vec3 position, vec3 normal, vec3 shading_normal, int samples) {
+  if (dot(normal, key.towards.xyz) <= -key.radiance.w) return 0.0;
+  KeyReceiver receiver = keyReceiver(key, position, normal);
+  float height = 0.0, reach = receiver.depth;
+  bool open = false;
+  // What may stand in the way lies in a cone; the highest thing in it says how wide the cone is at most.
+  for (int i = 0; i < kKeyNarrowing; ++i) {
+    vec2 bounds = blockerBounds(key, receiver.place, reach * key.scale.w * key.scale.xy + 1.0);
+    float lean = dot(abs(receiver.slope), reach * key.scale.w * key.scale.xy + 1.0);
+    if (bounds.x >= receiver.depth - receiver.bias) {
+      open = true;
+      break;
+    }
+    if (bounds.y < receiver.depth - lean - receiver.bias) return 0.0;
+    float lower = receiver.depth - bounds.x;
+    if (lower > 0.9 * reach) break;
+    reach = lower;
+  }
+  if (open && receiver.above) return 1.0;
+  vec3 right = normalize(key.right.xyz), up = normalize(key.up.xyz);
+  if (!open) {
+    float widest = reach * key.scale.w * max(key.scale.x, key.scale.y);
+    if (widest < kSharpTexels && receiver.above) return texelVisible(key, receiver);
+    vec2 mean = meanBlocker(key, receiver, reach, max(samples / 2, 4));
+    height = mean.x;
+    if (height == 0.0 && receiver.above) return 1.0;
+    if (height * key.scale.w * max(key.scale.x, key.scale.y) < kSharpTexels && receiver.above)
+      return texelVisible(key, receiver);
+  }
+  float visible = 0.0, all = 0.0;
+  for (int i = 0; i < samples; ++i) {
+    vec2 at = keyPoint(i, samples);
+    vec3 ray = key.towards.xyz + key.scale.w * (at.x * right + at.y * up);
+    float weight = max(dot(shading_normal, ray), 0.0);
+    all += weight;
+    if (weight <= 0.0 || dot(normal, ray) <= 0.0) continue;
+    if (height > 0.0 && rayBlocked(key, receiver, height, at)) continue;
+    visible += weight;
+  }
+  return all > 0.0 ? visible / all : 0.0;
+}
+
+// E/pi of the whole disc for radiance 1.
+float keyShare(KeyRecord key, vec3 shading_normal) {
+  return sphereShare(dot(shading_normal, key.towards.xyz), 1.0 / key.radiance.w);
+}

@@ -1,0 +1,10 @@
+// Whether a fragment of a masked caster of shadows is a hole. After draws[].
+layout(binding = kUnitBaseColor) uniform sampler2D base_color_texture;
+layout(location = 1) flat in uint draw_of;
+layout(location = 2) in vec3 looks_at;
+
+bool inHole() {
+  float alpha = draws[draw_of].base_color.a * looks_at.z;
+  if (draws[draw_of].base_color_texture.set != kAbsent) alpha *= texture(base_color_texture, looks_at.xy).a;
+  return alpha < draws[draw_of].alpha_cutoff;
+}

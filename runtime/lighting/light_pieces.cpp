@@ -1,0 +1,177 @@
+#include "runtime/lighting/light_pieces.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <numeric>
+
+#include <glm/geometric.hpp>
+
+namespace lambent::lighting {
+
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr int kShifts = 4, kRounds = 8;
+constexpr std::size_t kSeeds = 64;  // more than pieces wanted
+// Discs side by side leave gaps; a piece takes the light in the gaps around it too.
+constexpr double kReach = 1.25;
+
+LightPiece pieceFrom(const LightMoment& sum) {
+  return {sum.direction(), sum.flux, sum.radius()};
+}
+
+// Moves each piece to the middle of what is nearer to it than to any other, again and again: k-means.
+template <typename Owner>
+void settle(std::span<const LightPoint> points, std::vector<LightPiece>& pieces, Owner&& owner) {
+  for (int round = 0; round < kRounds; ++round) {
+    std::vector<LightMoment> sums(pieces.size());
+    for (const LightPoint& point : points)
+      if (const std::optional<std::size_t> i = owner(point.dir)) sums[*i].add(point.dir, point.flux);
+    for (std::size_t i = 0; i < pieces.size(); ++i)
+      if (sums[i].flux > 0.0) pieces[i] = pieceFrom(sums[i]);
+  }
+}
+
+std::optional<std::size_t> nearest(std::span<const LightPiece> pieces, const glm::dvec3& dir,
+                                   double cos_reach) {
+  std::optional<std::size_t> found;
+  for (std::size_t i = 0; i < pieces.size(); ++i)
+    if (const double cosine = glm::dot(pieces[i].dir, dir); cosine >= cos_reach) {
+      cos_reach = cosine;
+      found = i;
+    }
+  return found;
+}
+
+}  // namespace
+
+glm::dvec3 LightMoment::direction() const {
+  const double length = glm::length(moment);
+  return length > 0.0 ? moment / length : glm::dvec3(0.0, 1.0, 0.0);
+}
+
+double LightMoment::radius() const {
+  if (flux <= 0.0) return 0.0;
+  return std::acos(std::clamp(2.0 * glm::length(moment) / flux - 1.0, -1.0, 1.0));
+}
+
+std::optional<std::size_t> pieceOf(std::span<const LightPiece> pieces, const PieceLimits& limits,
+                                   const glm::dvec3& dir) {
+  return nearest(pieces, dir, std::cos(std::min(kReach * limits.radius_rad, kPi)));
+}
+
+// Seeds are the brightest points that no piece has; each moves uphill to the middle of the light around it
+// and takes that. There are more seeds than pieces wanted, since a wide piece need not have a bright point.
+std::vector<LightPiece> gatherPieces(std::span<const LightPoint> points, const PieceLimits& limits) {
+  std::vector<std::uint32_t> order(points.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::uint32_t a, std::uint32_t b) { return points[a].flux > points[b].flux; });
+  std::vector<std::uint32_t> open = order;
+  std::vector<LightPiece> pieces;
+  const double cos_radius = std::cos(std::min(limits.radius_rad, kPi));
+  double left = 0.0;
+  for (const LightPoint& point : points) left += point.flux;
+  while (!open.empty() && left > limits.least_flux && pieces.size() < kSeeds + limits.most) {
+    glm::dvec3 middle = points[open.front()].dir;
+    LightMoment sum;
+    for (int shift = 0; shift < kShifts; ++shift) {
+      sum = {};
+      for (const std::uint32_t i : open)
+        if (glm::dot(points[i].dir, middle) >= cos_radius) sum.add(points[i].dir, points[i].flux);
+      if (sum.flux <= 0.0) break;
+      if (shift + 1 < kShifts) middle = sum.direction();
+    }
+    const std::size_t before = open.size();
+    const std::uint32_t seed = open.front();
+    std::erase_if(
+        open, [&](std::uint32_t i) { return i == seed || glm::dot(points[i].dir, middle) >= cos_radius; });
+    left -= sum.flux;
+    if (sum.flux > limits.least_flux) pieces.push_back(pieceFrom(sum));
+    if (open.size() == before) break;
+  }
+
+  const auto rank = [&] {
+    std::vector<std::pair<double, LightPiece>> ranked;
+    for (const LightPiece& piece : pieces)
+      if (piece.flux > limits.least_flux)
+        ranked.emplace_back(piece.flux * discLoss(limits.order, piece.radius_rad), piece);
+    std::stable_sort(ranked.begin(), ranked.end(),
+                     [](const auto& a, const auto& b) { return a.first > b.first; });
+    pieces.clear();
+    for (const auto& [loss, piece] : ranked)
+      if (pieces.size() < limits.most) pieces.push_back(piece);
+  };
+  rank();
+  settle(points, pieces, [&](const glm::dvec3& dir) { return pieceOf(pieces, limits, dir); });
+  rank();
+  return pieces;
+}
+
+namespace {
+
+std::vector<LightPoint> spiral(const LightPiece& disc, std::size_t count) {
+  const auto& [dir, flux, radius_rad] = disc;
+  const glm::dvec3 side = std::abs(dir.y) < 0.9 ? glm::dvec3(0, 1, 0) : glm::dvec3(1, 0, 0);
+  const glm::dvec3 right = glm::normalize(glm::cross(dir, side)), up = glm::cross(right, dir);
+  const double golden_angle = kPi * (3.0 - std::sqrt(5.0));
+  const double half = std::sin(radius_rad / 2), depth = 2 * half * half;  // 1 - cos(radius)
+  std::vector<LightPoint> points(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const double below = depth * (static_cast<double>(i) + 0.5) / static_cast<double>(count);
+    const double out = std::sqrt(below * (2.0 - below)), angle = golden_angle * static_cast<double>(i);
+    points[i].dir =
+        glm::normalize((1.0 - below) * dir + out * (std::cos(angle) * right + std::sin(angle) * up));
+    points[i].flux = flux / static_cast<double>(count);
+    points[i].at = FluxGrid::place(points[i].dir);
+  }
+  return points;
+}
+
+std::vector<DiscPiece> dividedInto(const LightPiece& disc, std::size_t count) {
+  const std::vector<LightPoint> points = spiral(disc, 256 * count);
+  std::vector<LightPiece> pieces;
+  for (const LightPoint& point : spiral(disc, count)) pieces.push_back({point.dir, point.flux, 0.0});
+  settle(points, pieces, [&](const glm::dvec3& dir) { return nearest(pieces, dir, -1.0); });
+  std::vector<DiscPiece> divided(count);
+  std::vector<LightMoment> sums(count);
+  for (const LightPoint& point : points) {
+    const std::size_t i = nearest(pieces, point.dir, -1.0).value_or(0);
+    sums[i].add(point.dir, point.flux);
+    divided[i].points.push_back(point);
+  }
+  for (std::size_t i = 0; i < count; ++i) divided[i].piece = pieceFrom(sums[i]);
+  return divided;
+}
+
+}  // namespace
+
+double solidAngle(double radius_rad) {
+  const double half = std::sin(std::min(radius_rad, kPi) / 2);
+  return 4 * kPi * half * half;
+}
+
+std::vector<LightPoint> discPoints(const LightPiece& disc) {
+  return spiral(disc, 64 + static_cast<std::size_t>(solidAngle(disc.radius_rad) / 3e-4));
+}
+
+void addDisc(FluxGrid& grid, const LightPiece& disc, double factor) {
+  for (const LightPoint& point : discPoints(disc)) grid.add(point.at, factor * point.flux);
+}
+
+// Never into two halves, which are not round at all.
+std::vector<DiscPiece> dividedDisc(const LightPiece& disc, const DiscDivision& division) {
+  const std::size_t most = std::max<std::size_t>(division.most, 3);
+  const double areas = std::ceil(solidAngle(disc.radius_rad) / solidAngle(division.radius_rad));
+  for (auto count = static_cast<std::size_t>(std::clamp(areas, 3.0, static_cast<double>(most)));; ++count) {
+    std::vector<DiscPiece> pieces = dividedInto(disc, count);
+    FluxGrid misshapen;
+    addDisc(misshapen, disc);
+    for (const DiscPiece& part : pieces) addDisc(misshapen, part.piece, -1.0);
+    if (count == most || std::sqrt(misshapen.lostPower(1)) <= division.allowed) return pieces;
+  }
+}
+
+}  // namespace lambent::lighting
