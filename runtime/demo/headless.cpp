@@ -117,6 +117,9 @@ Result<void> runHeadless(const Options& options) {
   report.negative_pixels = frame->negativePixels();
   report.exposure_ev = frame->exposureEv();
   report.gl_errors = context->errors();
+  const std::span<const spec::Disc> keys = stage->environment().keys();
+  report.keys.assign(keys.begin(), keys.end());
+  report.key_shadow_bytes = frame->keyShadows().bytesResident();
   fmt::print("{}\n", reportJson(options, context->info(), report));
   return {};
 }

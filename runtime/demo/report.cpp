@@ -1,7 +1,10 @@
 #include "runtime/demo/report.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <functional>
 
+#include <glm/trigonometric.hpp>
 #include <nlohmann/json.hpp>
 
 namespace lambent::demo {
@@ -29,6 +32,8 @@ Json countsJson(const frame::StepCounts& counts) {
           {"cells_shaded", counts.cells_shaded},
           {"draws_shaded", counts.draws_shaded},
           {"shadow_cubes_drawn", counts.shadow_cubes_drawn},
+          {"key_lights", counts.key_lights},
+          {"key_maps_drawn", counts.key_maps_drawn},
           {"volumes", counts.volumes},
           {"volumes_shaded", counts.volumes_shaded},
           {"volume_slabs_written", counts.volume_slabs_written},
@@ -113,6 +118,22 @@ Json frameJson(const FrameReport& frame) {
           {"draw_calls", total.draw_calls}};
 }
 
+// Brightest first, as lights are given: azimuth 0 stands on +Z, 90 on +X.
+Json keysJson(std::vector<spec::Disc> keys) {
+  const auto flux = [](const spec::Disc& key) {
+    const float half = std::sin(0.5f * key.radius_rad);
+    return half * half * (key.radiance.r + key.radiance.g + key.radiance.b);
+  };
+  std::ranges::stable_sort(keys, std::ranges::greater(), flux);
+  Json list = Json::array();
+  for (const spec::Disc& key : keys)
+    list.push_back({{"azimuth_deg", glm::degrees(std::atan2(key.direction.x, key.direction.z))},
+                    {"elevation_deg", glm::degrees(std::asin(std::clamp(key.direction.y, -1.0f, 1.0f)))},
+                    {"radius_deg", glm::degrees(key.radius_rad)},
+                    {"radiance", {key.radiance.r, key.radiance.g, key.radiance.b}}});
+  return list;
+}
+
 // As the words of the options.
 Json settingsJson(const frame::FrameSettings& settings) {
   Json json = Json::object();
@@ -132,6 +153,8 @@ std::string reportJson(const Options& options, const gpu::DeviceInfo& device, co
                      {"picture", options.headless ? Json(options.headless->string()) : Json()},
                      {"size", {options.size.width, options.size.height}},
                      {"lights", options.light_words},
+                     {"key_lights", keysJson(report.keys)},
+                     {"key_shadow_bytes", report.key_shadow_bytes},
                      {"rotate_light_deg", options.rotate_light_deg},
                      {"fade_to", options.fade_words},
                      {"fade", options.fade},

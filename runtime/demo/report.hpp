@@ -30,6 +30,8 @@ struct Report {
   std::uint32_t negative_pixels = 0;
   float exposure_ev = 0.0f;
   std::uint64_t gl_errors = 0;
+  std::vector<spec::Disc> keys;  // of the last frame, world axes
+  std::uint64_t key_shadow_bytes = 0;
 };
 
 std::string reportJson(const Options& options, const gpu::DeviceInfo& device, const Report& report);

@@ -289,6 +289,7 @@ Result<void> Frame::castKeyShadows(World& world, const lighting::Environment& en
                                           {.finest = options_.settings.key_size,
                                            .samples = options_.settings.key_samples},
                                           pass.counters());
+  counts_.key_maps_drawn = key_shadows_.mapsDrawn();
   if (key_shadows_.mapsDrawn() > 0) pass.because(reasons_.of(kPictureCauses));
   return done;
 }

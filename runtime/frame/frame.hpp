@@ -74,7 +74,7 @@ struct StepCounts {
   std::uint32_t light_samples_written = 0;  // coefficients computed for the shaders
   std::uint32_t cells_shaded = 0, draws_shaded = 0;
   std::uint32_t shadow_cubes_drawn = 0;
-  std::uint32_t key_lights = 0;  // that shine
+  std::uint32_t key_lights = 0, key_maps_drawn = 0;
   // Volumes there are; whose light was brought into their textures, and how many outputs of it; in the
   // picture.
   std::uint32_t volumes = 0, volumes_shaded = 0, volume_slabs_written = 0, volumes_drawn = 0;

@@ -21,7 +21,7 @@ namespace lambent::frame {
 
 struct FrameSettings {
   effects::diffuse::TransferMode transfer = effects::diffuse::TransferMode::Full;
-  sh::Window window = sh::Window::Auto;
+  sh::Window window = sh::Window::Off;
   // Key lights that each set of lights from infinity may have, at most; 0: none, all light goes by bands. Whoever
   // owns the environment hands it on (lighting::Environment::setMostKeys).
   std::optional<std::uint32_t> keys;  // none: as many as pay

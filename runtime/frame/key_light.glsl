@@ -10,6 +10,7 @@ const float kKeyBiasTexels = 1.5;
 const float kLeastFacing = 0.02;   // cosine below which the receiver's plane is taken to lean no more
 const float kSharpTexels = 0.8;    // a penumbra narrower than this is that of the texels
 const float kOneHeight = 0.1;      // heights that differ by less than this share are one
+const int kKeySteps = 3;           // of the search along a ray
 const int kKeyNarrowing = 3;
 
 float keyDepth(ivec2 texel);                // 0..1
@@ -82,34 +83,58 @@ vec2 keyPoint(int i, int count) {
   return sqrt((float(i) + 0.5) / float(count)) * vec2(cos(angle), sin(angle));
 }
 
-// The mean height of what stands in the cone from the receiver to the disc, and how many of the points found something;
-// after Fernando, Percentage-closer soft shadows, 2005. `reach` is how high blockers may stand.
-vec2 meanBlocker(KeyRecord key, KeyReceiver receiver, float reach, int count) {
-  vec2 sum = vec2(0.0);
+// The heights at which most of what stands in the cone from the receiver to the disc stands: one or two, as in
+// near_shadow.glsl; 0: nothing was found. After Fernando, Percentage-closer soft shadows, 2005, which has one.
+struct KeyLayers {
+  float low, high;
+};
+
+// `reach` is how high blockers may stand.
+KeyLayers keyLayers(KeyRecord key, KeyReceiver receiver, float reach, int count) {
+  float found = 0.0;
+  vec3 powers = vec3(0.0);  // of height, summed
   for (int i = 0; i < count; ++i) {
+    // Closer together towards the receiver's own ray, where low blockers are.
     vec2 at = keyPoint(i, count);
+    at *= i == 0 ? 0.0 : length(at) * length(at);
     float height = blockerHeight(key, receiver, ivec2(floor(receiver.place + reach * key.scale.w * key.scale.xy * at)));
     // Within the cone at its own height, by a texel's width at most beside it.
-    if (height > 0.0 && reach * length(at) * key.scale.w <= height * key.scale.w + receiver.bias) sum += vec2(height, 1.0);
+    if (height == 0.0 || reach * length(at) * key.scale.w > height * key.scale.w + receiver.bias) continue;
+    float relative = height / reach;
+    found += 1.0;
+    powers += vec3(relative, relative * relative, relative * relative * relative);
   }
-  return sum.y > 0.0 ? vec2(sum.x / sum.y, sum.y) : vec2(0.0);
+  if (found == 0.0) return KeyLayers(0.0, 0.0);
+  vec3 moments = powers / found;
+  float variance = moments.y - moments.x * moments.x;
+  if (variance < kOneHeight * kOneHeight * moments.x * moments.x) return KeyLayers(reach * moments.x, reach * moments.x);
+  float deviation = sqrt(variance);
+  float third = moments.z - 3.0 * moments.x * moments.y + 2.0 * moments.x * moments.x * moments.x;
+  float half_skew = 0.5 * third / (variance * deviation), root = sqrt(1.0 + half_skew * half_skew);
+  float low = clamp(moments.x + deviation * (half_skew - root), 0.02 * moments.x, 1.0);
+  float high = clamp(moments.x + deviation * (half_skew + root), low, 1.0);
+  return KeyLayers(reach * low, reach * high);
 }
 
-// Whether something stands on the way to a point of the disc: looked up where the ray passes the mean height, and where
-// it passes the height that was found there.
+// Whether something stands on the way to a point of the disc: looked for where the ray passes this height, then where it
+// passes the height that was found there.
 bool rayBlocked(KeyRecord key, KeyReceiver receiver, float height, vec2 at) {
   vec2 per_metre = key.scale.w * key.scale.xy * at;
-  float found = blockerHeight(key, receiver, ivec2(floor(receiver.place + height * per_metre)));
-  if (found == 0.0) return false;
-  if (abs(found - height) < kOneHeight * height) return true;
-  return blockerHeight(key, receiver, ivec2(floor(receiver.place + found * per_metre))) > 0.0;
+  for (int i = 0; i < kKeySteps; ++i) {
+    float found = blockerHeight(key, receiver, ivec2(floor(receiver.place + height * per_metre)));
+    if (found == 0.0) return false;
+    if (abs(found - height) < kOneHeight * height) return true;
+    height = found;
+  }
+  return true;
 }
 
 // The share of the disc's light that arrives at a point with this normal of its triangle and this normal for shading.
 float keyVisible(KeyRecord key, vec3 position, vec3 normal, vec3 shading_normal, int samples) {
   if (dot(normal, key.towards.xyz) <= -key.radiance.w) return 0.0;
   KeyReceiver receiver = keyReceiver(key, position, normal);
-  float height = 0.0, reach = receiver.depth;
+  float reach = receiver.depth;
+  KeyLayers layers = KeyLayers(0.0, 0.0);
   bool open = false;
   // What may stand in the way lies in a cone; the highest thing in it says how wide the cone is at most.
   for (int i = 0; i < kKeyNarrowing; ++i) {
@@ -129,10 +154,9 @@ float keyVisible(KeyRecord key, vec3 position, vec3 normal, vec3 shading_normal,
   if (!open) {
     float widest = reach * key.scale.w * max(key.scale.x, key.scale.y);
     if (widest < kSharpTexels && receiver.above) return texelVisible(key, receiver);
-    vec2 mean = meanBlocker(key, receiver, reach, max(samples / 2, 4));
-    height = mean.x;
-    if (height == 0.0 && receiver.above) return 1.0;
-    if (height * key.scale.w * max(key.scale.x, key.scale.y) < kSharpTexels && receiver.above)
+    layers = keyLayers(key, receiver, reach, samples);
+    if (layers.low == 0.0 && receiver.above) return 1.0;
+    if (layers.high * key.scale.w * max(key.scale.x, key.scale.y) < kSharpTexels && receiver.above)
       return texelVisible(key, receiver);
   }
   float visible = 0.0, all = 0.0;
@@ -142,7 +166,8 @@ float keyVisible(KeyRecord key, vec3 position, vec3 normal, vec3 shading_normal,
     float weight = max(dot(shading_normal, ray), 0.0);
     all += weight;
     if (weight <= 0.0 || dot(normal, ray) <= 0.0) continue;
-    if (height > 0.0 && rayBlocked(key, receiver, height, at)) continue;
+    if (layers.low > 0.0 && rayBlocked(key, receiver, layers.low, at)) continue;
+    if (layers.high > layers.low && rayBlocked(key, receiver, layers.high, at)) continue;
     visible += weight;
   }
   return all > 0.0 ? visible / all : 0.0;

@@ -17,6 +17,7 @@ namespace {
 constexpr gpu::FindText kShaders[] = {&embedded::lambent_frame::find};
 constexpr std::size_t kViewStride = 256;  // OpenGL 4.5 asks for no larger alignment of uniform blocks
 constexpr std::uint32_t kLeastSize = 256;
+constexpr std::uint64_t kFinestTiles = 2;  // all maps together take no more texels than so many of the finest
 constexpr double kMargin = 0.05;  // around what is seen: the camera may move a little before a map is drawn anew
 constexpr double kWasted = 4.0;   // a map that shows so many times the area that is seen is drawn anew
 // As in key_blockers.comp.
@@ -33,6 +34,11 @@ bool shines(const spec::Disc& light) {
   const float sum = light.radiance.x + light.radiance.y + light.radiance.z;
   return std::isfinite(sum) && light.radiance != glm::vec3(0.0f) && light.radius_rad > 0.0f &&
          light.radius_rad < 1.0f;
+}
+
+float fluxOf(const spec::Disc& light) {
+  const float half = std::sin(0.5f * light.radius_rad);
+  return half * half * (light.radiance.r + light.radiance.g + light.radiance.b);
 }
 
 double tangentOf(const spec::Disc& light) {
@@ -87,8 +93,23 @@ void KeyShadows::layOut(std::span<const spec::Disc> keys) {
     if (shines(key) && maps.size() < kMostKeyLights)
       maps.push_back(
           {.light = key, .size = sizeFor(key.radius_rad, options_.finest), .region = {}, .casters = {}});
+  const auto texels = [](const Map& map) { return std::uint64_t{map.size} * map.size; };
+  std::uint64_t sum = 0;
+  for (const Map& map : maps) sum += texels(map);
+  // The faint ones give way first.
+  std::vector<Map*> faintest;
+  for (Map& map : maps) faintest.push_back(&map);
+  std::ranges::stable_sort(faintest, std::ranges::less(), [](const Map* map) { return fluxOf(map->light); });
+  const std::uint64_t most = kFinestTiles * options_.finest * options_.finest;
+  for (std::uint32_t size = options_.finest; size > kLeastSize && sum > most; size /= 2)
+    for (Map* map : faintest)
+      if (sum > most && map->size == size) {
+        sum -= 3 * texels(*map) / 4;
+        map->size /= 2;
+      }
   std::ranges::stable_sort(maps, std::ranges::greater(), &Map::size);
-  const std::uint32_t width = maps.empty() ? 0 : maps.front().size;
+  const auto side = static_cast<std::uint32_t>(std::sqrt(static_cast<double>(sum)));
+  const std::uint32_t width = maps.empty() ? 0 : std::max(maps.front().size, std::bit_ceil(side));
   std::uint32_t x = 0, y = 0, row_height = 0;
   for (Map& map : maps) {
     if (x + map.size > width) {
@@ -113,11 +134,11 @@ void KeyShadows::layOut(std::span<const spec::Disc> keys) {
   maps_ = std::move(maps);
   if (same_texture || maps_.empty()) return;
   depths_ = gpu::Texture("key shadows", {.format = GL_DEPTH_COMPONENT32F, .width = width, .height = height});
-  const std::uint32_t finest = std::bit_width(width / kBlockerTexels);
+  const std::uint32_t levels = std::bit_width(width / kBlockerTexels);
   blockers_ = gpu::Texture("key blockers", {.format = GL_RG32F,
                                             .width = width / kBlockerTexels,
                                             .height = height / kBlockerTexels,
-                                            .levels = finest});
+                                            .levels = levels});
   GLuint id = 0;
   glCreateFramebuffers(1, &id);
   target_ = gpu::Handle<gpu::FramebufferTraits>(id);
