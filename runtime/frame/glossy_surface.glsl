@@ -115,14 +115,49 @@ Lobes lobesAt(vec3 base_color, TangentFrame frame, vec3 normal) {
 
 #if defined(LAMBENT_NEAR_LIGHTS) || defined(LAMBENT_KEY_LIGHTS)
 #ifdef LAMBENT_MEASURED
-vec3 lightReflectance(vec3 to_light, float spread) { return vec3(0.0); }
+// Of this pixel.
+LocalView light_view;
+vec4 light_weights[kTexels];
+
+// The harmonics in a direction: light of a point there. Cartesian recurrences, as in diffuse_eval.glsl.
+void pointLight(vec3 d, out vec4 light[kCoefficients]) {
+  float c = 1.0, s = 0.0, sectoral = 0.28209479;
+  for (int m = 0; m < kBands; ++m) {
+    if (m > 0) {
+      float next_c = d.x * c - d.y * s;
+      s = d.x * s + d.y * c;
+      c = next_c;
+      sectoral *= m == 1 ? sqrt(3.0) : sqrt(float(2 * m + 1) / float(2 * m));
+    }
+    float p = sectoral, before = 0.0;
+    for (int l = m; l < kBands; ++l) {
+      if (l > m) {
+        float factor = sqrt(float(4 * l * l - 1) / float(l * l - m * m));
+        float back = l == m + 1 ? 0.0 : factor * sqrt(float((l - 1) * (l - 1) - m * m) / float(4 * (l - 1) * (l - 1) - 1));
+        float next = factor * d.z * p - back * before;
+        before = p;
+        p = next;
+      }
+      light[l * (l + 1) + m] = vec4(p * c);
+      if (m > 0) light[l * (l + 1) - m] = vec4(p * s);
+    }
+  }
+}
+
+// As far as the table's bands carry it.
+vec3 lightReflectance(vec3 to_light, float spread) {
+  vec4 light[kCoefficients];
+  pointLight(to_light, light);
+  return 3.14159265 * max(reflectLight(light_view, light_weights, light).light.rgb, vec3(0.0)) /
+         max(dot(light_view.normal, to_light), 0.05);
+}
 #else
 // Of this pixel.
 Lobes light_lobes = Lobes(0.0, 1.0, 0.0, vec3(0.0), Fresnel(vec3(0.0), 0.0));
 vec3 light_normal = vec3(0.0), light_to_eye = vec3(0.0);
 
-// f of docs/conventions.md, "Materials". The light's extent widens the lobe, in half vectors by half.
-vec3 lightReflectance(vec3 to_light, float spread) {
+// f of docs/conventions.md, "Materials". A light's extent widens the lobe, in half vectors by half.
+vec3 lobeReflectance(vec3 to_light, float spread) {
   float narrow = max(light_lobes.roughness * light_lobes.roughness, 1e-3);
   float wide = mix(narrow, 1.0, light_lobes.anisotropy * light_lobes.anisotropy);
   // Slopes along the tangent, across it, and 1 along the normal.
@@ -150,6 +185,23 @@ vec3 lightReflectance(vec3 to_light, float spread) {
   float edge = 1.0 - vh, edge2 = edge * edge;
   return distribution * shadowing *
          (light_lobes.fresnel.f0 + (light_lobes.fresnel.f90 - light_lobes.fresnel.f0) * edge2 * edge2 * edge);
+}
+
+// A lobe that is sharper than the light shows the light's shape: the mean over points on its disc, weighed by cosine.
+vec3 lightReflectance(vec3 to_light, float spread) {
+  const int kPoints = 24;
+  float alpha = light_lobes.roughness * light_lobes.roughness;
+  if (spread < 0.5 * alpha) return lobeReflectance(to_light, spread);
+  vec3 s = perpendicular(to_light), t = cross(to_light, s), sum = vec3(0.0);
+  float width = tan(min(spread, 1.4)), weights = 0.0;
+  for (int i = 0; i < kPoints; ++i) {
+    float angle = 2.39996323 * float(i), place = width * sqrt((float(i) + 0.5) / float(kPoints));
+    vec3 towards = normalize(to_light + place * (cos(angle) * s + sin(angle) * t));
+    float weight = max(dot(light_normal, towards), 0.0);
+    if (weight > 0.0) sum += weight * lobeReflectance(towards, spread * inversesqrt(float(kPoints)));
+    weights += weight;
+  }
+  return weights > 0.0 ? sum / weights : vec3(0.0);
 }
 #endif
 #endif
@@ -267,7 +319,10 @@ vec3 reflectedLight(vec3 base_color) {
   reflected.albedo = vec3(1.0);
 #endif
 #ifdef LAMBENT_KEY_LIGHTS
-  radiance += reflected.albedo * keyLight(draw_of, normal);
+  light_view = view;
+  light_weights = weights;
+  keyLight(draw_of, normal);
+  radiance += key_highlights;
 #endif
 #ifdef LAMBENT_NEAR_LIGHTS
   // As from a matte surface that sends as much towards the eye of light from all around.

@@ -60,9 +60,11 @@ vec2 blockerBounds(KeyRecord key, vec2 place, vec2 reach) {
 float blockerHeight(KeyRecord key, KeyReceiver receiver, ivec2 texel) {
   texel = clamp(texel, ivec2(key.tile.xy), ivec2(key.tile.zw));
   float depth = key.scale.z * keyDepth(texel);
-  float plane = receiver.depth + dot(receiver.slope, vec2(texel) + 0.5 - receiver.place);
-  if (depth >= plane - receiver.bias) return 0.0;
-  return max(receiver.depth - depth, 0.5 * receiver.bias);
+  float falls = dot(receiver.slope, vec2(texel) + 0.5 - receiver.place);
+  // What is lower than the receiver is no blocker, also where its plane falls steeply: the floor before a wall that
+  // light grazes, or nothing, where the map ends.
+  float limit = receiver.depth + min(falls, 0.0) - receiver.bias;
+  return depth < limit ? receiver.depth - depth : 0.0;
 }
 
 // Of a light without width: between the four texels about the place.
@@ -130,10 +132,11 @@ bool rayBlocked(KeyRecord key, KeyReceiver receiver, float height, vec2 at) {
 }
 
 // The share of the disc's light that arrives at a point with this normal of its triangle and this normal for shading.
-float keyVisible(KeyRecord key, vec3 position, vec3 normal, vec3 shading_normal, int samples) {
+float keyVisible(KeyRecord key, vec3 position, vec3 normal, vec3 shading_normal) {
   if (dot(normal, key.towards.xyz) <= -key.radiance.w) return 0.0;
   KeyReceiver receiver = keyReceiver(key, position, normal);
   float reach = receiver.depth;
+  int rays = int(key.rays);
   KeyLayers layers = KeyLayers(0.0, 0.0);
   bool open = false;
   // What may stand in the way lies in a cone; the highest thing in it says how wide the cone is at most.
@@ -154,14 +157,14 @@ float keyVisible(KeyRecord key, vec3 position, vec3 normal, vec3 shading_normal,
   if (!open) {
     float widest = reach * key.scale.w * max(key.scale.x, key.scale.y);
     if (widest < kSharpTexels && receiver.above) return texelVisible(key, receiver);
-    layers = keyLayers(key, receiver, reach, samples);
+    layers = keyLayers(key, receiver, reach, rays);
     if (layers.low == 0.0 && receiver.above) return 1.0;
     if (layers.high * key.scale.w * max(key.scale.x, key.scale.y) < kSharpTexels && receiver.above)
       return texelVisible(key, receiver);
   }
   float visible = 0.0, all = 0.0;
-  for (int i = 0; i < samples; ++i) {
-    vec2 at = keyPoint(i, samples);
+  for (int i = 0; i < rays; ++i) {
+    vec2 at = keyPoint(i, rays);
     vec3 ray = key.towards.xyz + key.scale.w * (at.x * right + at.y * up);
     float weight = max(dot(shading_normal, ray), 0.0);
     all += weight;

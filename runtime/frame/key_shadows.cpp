@@ -17,6 +17,7 @@ namespace {
 constexpr gpu::FindText kShaders[] = {&embedded::lambent_frame::find};
 constexpr std::size_t kViewStride = 256;  // OpenGL 4.5 asks for no larger alignment of uniform blocks
 constexpr std::uint32_t kLeastSize = 256;
+constexpr std::uint32_t kLeastRays = 6;
 constexpr std::uint64_t kFinestTiles = 2;  // all maps together take no more texels than so many of the finest
 constexpr double kMargin = 0.05;  // around what is seen: the camera may move a little before a map is drawn anew
 constexpr double kWasted = 4.0;   // a map that shows so many times the area that is seen is drawn anew
@@ -278,6 +279,14 @@ void KeyShadows::bind(const spec::View& view, const spec::Size& size) {
   const glm::dmat4 view_from_world(view.view_from_world), world_from_view = glm::inverse(view_from_world);
   const glm::dmat3 turn(view_from_world);
   const glm::dvec3 eye(world_from_view[3]);
+  // Errors of a light that is a part of all weigh little, and fall with the number of rays: this shares rays out so
+  // that their sum of squares is least.
+  float all_flux = 0.0f;
+  for (const Map& map : maps_) all_flux += fluxOf(map.light);
+  const auto raysFor = [&](float part) {
+    const float rays = 2.0f * static_cast<float>(options_.samples) * std::cbrt(part * part);
+    return std::clamp(static_cast<std::uint32_t>(rays), std::min(kLeastRays, options_.samples), options_.samples);
+  };
   std::uint32_t count = 0;
   for (const Map& map : maps_) {
     if (!map.drawn) continue;
@@ -293,14 +302,15 @@ void KeyShadows::bind(const spec::View& view, const spec::Size& size) {
     record.radiance = glm::vec4(map.light.radiance, std::sin(map.light.radius_rad));
     record.tile = glm::vec4(map.x, map.y, map.x + map.size - 1, map.y + map.size - 1);
     record.scale = glm::vec4(scale, region.range, std::tan(map.light.radius_rad));
+    record.rays = raysFor(fluxOf(map.light) / all_flux);
   }
   block.view = {.view_from_clip = glm::mat4(glm::inverse(glm::dmat4(view.clip_from_view))),
                 .view_from_world = glm::mat4(glm::mat3(view.view_from_world)),
                 .picture = glm::vec4(size.width, size.height, 0, 0),
                 .count = count,
-                .samples = options_.samples,
                 .pad0 = 0,
-                .pad1 = 0};
+                .pad1 = 0,
+                .pad2 = 0};
   block_.assign(std::span<const Block>(&block, 1));
   glBindBufferBase(GL_UNIFORM_BUFFER, kBindKeyLights, block_.buffer().id());
   depths_.bind(kUnitKeyShadows);

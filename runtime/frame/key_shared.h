@@ -37,6 +37,8 @@ struct KeyRecord {
   vec4 radiance;  // w: sine of the disc's angular radius
   vec4 tile;      // first texel, last texel: places are clamped to their centres
   vec4 scale;     // texels per metre along right and up; w: tangent of the angular radius; z: range of depth
+  uint rays;      // to the disc, from a point in its penumbra
+  uint pad0, pad1, pad2;
 };
 
 struct KeyView {
@@ -44,8 +46,7 @@ struct KeyView {
   mat4 view_from_world;  // rotation
   vec4 picture;          // width, height in pixels
   uint count;
-  uint samples;  // rays to a disc, at most
-  uint pad0, pad1;
+  uint pad0, pad1, pad2;
 };
 
 // Of a map while it is drawn: clip coordinates from the world.
@@ -55,6 +56,6 @@ struct KeyMapView {
 
 #ifdef __cplusplus
 #undef LAMBENT_CONSTANT
-static_assert(sizeof(KeyRecord) == 96 && sizeof(KeyView) == 160 && offsetof(KeyView, count) == 144);
+static_assert(sizeof(KeyRecord) == 112 && sizeof(KeyView) == 160 && offsetof(KeyView, count) == 144);
 }  // namespace lambent::frame
 #endif

@@ -48,7 +48,7 @@ vec3 keyLight(uint draw, vec3 shading_normal) {
   for (uint k = 0u; k < key_view.count; ++k) {
     float share = keyShare(key_lights[k], shaded);
     if (share <= 0.0) continue;
-    float visible = keyVisible(key_lights[k], position, normal, shaded, int(key_view.samples));
+    float visible = keyVisible(key_lights[k], position, normal, shaded);
     if (visible <= 0.0) continue;
     vec3 received = visible * share * key_lights[k].radiance.rgb;
     sum += received;
