@@ -192,6 +192,14 @@ vec3 lightReflectance(vec3 to_light, float spread) {
   const int kPoints = 24;
   float alpha = light_lobes.roughness * light_lobes.roughness;
   if (spread < 0.5 * alpha) return lobeReflectance(to_light, spread);
+  if (light_lobes.anisotropy == 0.0 && spread > 6.0 * alpha) {
+    // Almost a mirror: the share of the lobe, as GGX spreads its slopes, that falls on the disc's side of its edge.
+    float angle = acos(clamp(dot(reflect(-light_to_eye, light_normal), to_light), -1.0, 1.0));
+    float beyond = (spread - angle) / max(2.0 * alpha, 2e-3), inside = 0.5 + 0.5 * beyond * inversesqrt(1.0 + beyond * beyond);
+    float edge = 1.0 - clamp(dot(light_normal, light_to_eye), 0.0, 1.0), edge2 = edge * edge;
+    vec3 fresnel = light_lobes.fresnel.f0 + (light_lobes.fresnel.f90 - light_lobes.fresnel.f0) * edge2 * edge2 * edge;
+    return inside * fresnel / max(sphereShare(dot(light_normal, to_light), 1.0 / sin(spread)), 1e-6);
+  }
   vec3 s = perpendicular(to_light), t = cross(to_light, s), sum = vec3(0.0);
   float width = tan(min(spread, 1.4)), weights = 0.0;
   for (int i = 0; i < kPoints; ++i) {
@@ -211,6 +219,30 @@ vec3 lightReflectance(vec3 to_light, float spread) {
 layout(std140, binding = kBindReflection) uniform ReflectionBlock { ReflectionValues reflection; };
 layout(binding = kUnitFirstReflection) uniform samplerCube first_reflection;
 layout(binding = kUnitSecondReflection) uniform samplerCube second_reflection;
+#ifdef LAMBENT_KEY_LIGHTS
+layout(binding = kUnitFirstWhole) uniform samplerCube first_whole;
+layout(binding = kUnitSecondWhole) uniform samplerCube second_whole;
+
+// What a rough mirror shows of key lights in their true shape.
+vec3 keyPicture(vec3 direction_ws, float roughness) {
+  float level = reflection.shares.z * pow(roughness, 2.0 / 3.0);
+  vec3 direction = mat3(reflection.light_from_world) * direction_ws;
+  vec3 first = textureLod(first_whole, direction, level).rgb - textureLod(first_reflection, direction, level).rgb;
+  vec3 second = textureLod(second_whole, direction, level).rgb - textureLod(second_reflection, direction, level).rgb;
+  return max(reflection.shares.x * first + reflection.shares.y * second, vec3(0.0));
+}
+
+// Highlights by discs, or of a mirror that is sharp enough to tell what the discs are pieces of, by that.
+vec3 keyHighlights(Lobes lobes, vec3 mirrored_ws, vec3 rho) {
+  const float kSharp = 0.05, kRough = 0.12;  // alpha
+  float alpha = lobes.roughness * lobes.roughness;
+  float pictured = lobes.anisotropy != 0.0 ? 0.0 : reflection.shares.w * (1.0 - smoothstep(kSharp, kRough, alpha));
+  if (pictured == 0.0) return key_highlights;
+  float open = dot(key_open_highlights, vec3(1.0)), seen = dot(key_highlights, vec3(1.0));
+  float visible = open > 0.0 ? clamp(seen / open, 0.0, 1.0) : 1.0;
+  return mix(key_highlights, visible * rho * keyPicture(mirrored_ws, lobes.roughness), pictured);
+}
+#endif
 
 // What a rough mirror shows of the sky besides the bands that the surface has of it: P(L) - P(L_n). The bands scale
 // between levels as the levels themselves mix, so that light of few bands leaves nothing. Signed.
@@ -363,7 +395,7 @@ vec3 reflectedLight(vec3 base_color) {
 #ifdef LAMBENT_NEAR_LIGHTS
   radiance += near_highlights;
 #endif
-#ifdef LAMBENT_KEY_LIGHTS
+#if defined(LAMBENT_KEY_LIGHTS) && !defined(LAMBENT_RESIDUAL)
   radiance += key_highlights;
 #endif
 #ifdef LAMBENT_RESIDUAL
@@ -374,6 +406,10 @@ vec3 reflectedLight(vec3 base_color) {
   float open = f0 * reflected.albedo.x + lobes.fresnel.f90 * reflected.albedo.y;
   float visibility = clamp(seen / max(open, 1e-6), 0.0, 1.0);
   radiance += visibility * rho * residualOver(lobes, normal, to_eye);
+#ifdef LAMBENT_KEY_LIGHTS
+  vec3 mirrored_ws = reflect(-to_eye, normal) * mat3(draws[draw_of].glossy.group_from_world);  // by the transpose
+  radiance += keyHighlights(lobes, mirrored_ws, rho);
+#endif
 #endif
 #endif
   return radiance;

@@ -35,7 +35,8 @@ vec3 groupFromView(uint draw, vec3 v) {
 
 // pi times the specular f towards the eye of light from this direction, group frame, that spreads over so many radians.
 vec3 lightReflectance(vec3 to_light, float spread);
-vec3 key_highlights = vec3(0.0);  // of the last keyLight
+vec3 key_highlights = vec3(0.0);       // of the last keyLight
+vec3 key_open_highlights = vec3(0.0);  // the same as if nothing were in the way
 #endif
 
 // Group frame, of the side that is seen: the normal that the surface is shaded by.
@@ -48,12 +49,13 @@ vec3 keyLight(uint draw, vec3 shading_normal) {
   for (uint k = 0u; k < key_view.count; ++k) {
     float share = keyShare(key_lights[k], shaded);
     if (share <= 0.0) continue;
+    vec3 open = share * key_lights[k].radiance.rgb;
     float visible = keyVisible(key_lights[k], position, normal, shaded);
-    if (visible <= 0.0) continue;
-    vec3 received = visible * share * key_lights[k].radiance.rgb;
-    sum += received;
+    sum += visible * open;
 #ifdef LAMBENT_GLOSSY
-    key_highlights += received * lightReflectance(groupFromView(draw, key_lights[k].towards.xyz), asin(key_lights[k].radiance.w));
+    vec3 highlight = open * lightReflectance(groupFromView(draw, key_lights[k].towards.xyz), asin(key_lights[k].radiance.w));
+    key_highlights += visible * highlight;
+    key_open_highlights += highlight;
 #endif
   }
   return sum;

@@ -22,6 +22,8 @@ LAMBENT_CONSTANT kReflectedLevels = 7u;        // of roughness, along the mip le
 LAMBENT_CONSTANT kBindReflection = 5u;         // uniform block ReflectionBlock
 LAMBENT_CONSTANT kUnitFirstReflection = 9u;    // texture units: of the first set of lights
 LAMBENT_CONSTANT kUnitSecondReflection = 10u;  // and of the second
+LAMBENT_CONSTANT kUnitFirstWhole = 14u;        // the same with key lights, where these are wide
+LAMBENT_CONSTANT kUnitSecondWhole = 15u;
 LAMBENT_CONSTANT kReflectionCoefficients = 36u;
 
 // Made by reflected_sky.comp, one level of one cube at a time.
@@ -37,7 +39,7 @@ struct ReflectedDisc {
 // The block as std140 has it.
 struct ReflectionValues {
   mat4 light_from_world;
-  vec4 shares;  // of the two sets; z: the last level
+  vec4 shares;  // of the two sets; z: the last level; w: 1 where there are pictures with key lights
   vec4
       bands[2u * kReflectedLevels];  // by what the lobe of each level scales bands 0..5, six of eight numbers
   vec4 light[kReflectionCoefficients];  // the light that surfaces have in bands, world axes

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <span>
 #include <vector>
 
 #include <glm/matrix.hpp>
@@ -47,13 +48,29 @@ gpu::Texture withLevels(const gpu::Texture& sky, const gpu::Program& program, gp
   return weighted;
 }
 
-// Suns are sharper than probes.
-std::uint32_t sizeFor(const Environment::Rest& lights, const gpu::Texture& sky) {
-  if (!lights.discs.empty()) return kLargestSize;
-  return std::clamp(std::bit_ceil(sky.desc().width), kLeastSize, kLargestSize);
+// Key lights wider than this are pieces of something with a shape of its own.
+constexpr float kWideKey_rad = 0.06f;
+
+bool hasWideKeys(const Environment& environment) {
+  float wide = 0.0f, all = 0.0f;
+  for (std::size_t set = 0; set < Environment::kSets; ++set)
+    for (const Disc& key : environment.keysOf(set)) {
+      const float flux = key.radius_rad * key.radius_rad * (key.radiance.r + key.radiance.g + key.radiance.b);
+      all += flux;
+      if (key.radius_rad > kWideKey_rad) wide += flux;
+    }
+  return wide > 0.5f * all;
 }
 
 }  // namespace
+
+struct ReflectedSky::Source {
+  const gpu::Texture& sky;       // its own frame
+  std::span<const Disc> discs;
+  bool pictured = false;         // else all that is not a disc is constant
+  const gpu::Program &program, &weigh;
+  std::span<const ReflectedLobe> lobes;
+};
 
 Result<ReflectedSky> ReflectedSky::make(const Environment& environment, const Sky& sky,
                                         gpu::Counters& counters) {
@@ -70,45 +87,58 @@ Result<ReflectedSky> ReflectedSky::make(const Environment& environment, const Sk
     for (std::uint32_t l = 0; l < 8; ++l)
       made.values_.bands[2 * level + l / 4][static_cast<int>(l % 4)] = lobes.back().bands[l];
   }
-  gpu::Table angles("lobe"), discs_table("reflected discs");
-  glEnable(GL_TEXTURE_CUBE_MAP_SEAMLESS);
+  made.has_whole_ = hasWideKeys(environment);
   for (std::size_t set = 0; set < Environment::kSets; ++set) {
-    const Environment::Rest lights = environment.restOf(set);
-    const bool whole = environment.keysOf(set).empty();
-    const gpu::Texture rest = whole ? gpu::Texture() : skyCube(lights.probes, lights.constant);
-    const gpu::Texture source = withLevels(whole ? sky.cube(set) : rest, *weigh, counters);
-    const std::uint32_t size = sizeFor(lights, source);
-    made.cubes_[set] = gpu::Texture(
-        "reflected sky",
-        {.format = GL_RGBA16F, .width = size, .height = size, .levels = kReflectedLevels, .cube = true});
-    const gpu::Texture& cube = made.cubes_[set];
-    glTextureParameteri(cube.id(), GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
-    glTextureParameteri(cube.id(), GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-    std::vector<ReflectedDisc> discs;
-    for (const Disc& disc : lights.discs)
-      discs.push_back({{disc.direction, disc.radius_rad}, {disc.radiance, 0.0f}});
-    discs_table.assign(std::span<const ReflectedDisc>(discs));
-    discs_table.bindStorage(kBindDiscs);
-    program->use();
-    source.bind(0);
-    glBindSampler(0, 0);
-    for (std::uint32_t level = 0; level < kReflectedLevels; ++level) {
-      const ReflectedLobe& lobe = lobes[level];
-      const std::uint32_t side = std::max(size >> level, 1u);
-      angles.assign(std::span<const float>(lobe.angles_rad));
-      angles.bindStorage(kBindLobe);
-      glUniform1i(kSize, static_cast<GLint>(side));
-      glUniform2f(kLobe, lobe.alpha, lobe.scale);
-      glUniform1i(kSkyShares, lights.probes.empty() ? 1 : sharesOf(level));
-      glUniform1ui(kDiscCount, static_cast<GLuint>(discs.size()));
-      glBindImageTexture(0, cube.id(), static_cast<GLint>(level), GL_TRUE, 0, GL_WRITE_ONLY, GL_RGBA16F);
-      const std::uint32_t groups = (side + kReflectedGroup - 1) / kReflectedGroup;
-      glDispatchCompute(groups, groups, 6);
-      ++counters.dispatches;
-    }
+    const spec::DistantLights& lights = environment.set(set);
+    const Environment::Rest rest = environment.restOf(set);
+    const bool parted = !environment.keysOf(set).empty();
+    const gpu::Texture rest_sky = parted ? skyCube(rest.probes, rest.constant) : gpu::Texture();
+    const auto prefilterOf = [&](const gpu::Texture& source, std::span<const Disc> discs) {
+      return prefilter({source, discs, !lights.probes.empty(), *program, *weigh, lobes}, counters);
+    };
+    made.cubes_[set] = prefilterOf(parted ? rest_sky : sky.cube(set), rest.discs);
+    if (made.has_whole_) made.whole_[set] = prefilterOf(sky.cube(set), lights.discs);
   }
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
   return made;
+}
+
+gpu::Texture ReflectedSky::prefilter(const Source& from, gpu::Counters& counters) {
+  gpu::Table angles("lobe"), discs_table("reflected discs");
+  glEnable(GL_TEXTURE_CUBE_MAP_SEAMLESS);
+  const gpu::Texture source = withLevels(from.sky, from.weigh, counters);
+  // Suns are sharper than probes.
+  const std::uint32_t size = from.discs.empty()
+                                 ? std::clamp(std::bit_ceil(source.desc().width), kLeastSize, kLargestSize)
+                                 : kLargestSize;
+  gpu::Texture cube(
+      "reflected sky",
+      {.format = GL_RGBA16F, .width = size, .height = size, .levels = kReflectedLevels, .cube = true});
+  glTextureParameteri(cube.id(), GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+  glTextureParameteri(cube.id(), GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  std::vector<ReflectedDisc> discs;
+  for (const Disc& disc : from.discs)
+    discs.push_back({{disc.direction, disc.radius_rad}, {disc.radiance, 0.0f}});
+  discs_table.assign(std::span<const ReflectedDisc>(discs));
+  discs_table.bindStorage(kBindDiscs);
+  from.program.use();
+  source.bind(0);
+  glBindSampler(0, 0);
+  for (std::uint32_t level = 0; level < kReflectedLevels; ++level) {
+    const ReflectedLobe& lobe = from.lobes[level];
+    const std::uint32_t side = std::max(size >> level, 1u);
+    angles.assign(std::span<const float>(lobe.angles_rad));
+    angles.bindStorage(kBindLobe);
+    glUniform1i(kSize, static_cast<GLint>(side));
+    glUniform2f(kLobe, lobe.alpha, lobe.scale);
+    glUniform1i(kSkyShares, from.pictured ? sharesOf(level) : 1);
+    glUniform1ui(kDiscCount, static_cast<GLuint>(discs.size()));
+    glBindImageTexture(0, cube.id(), static_cast<GLint>(level), GL_TRUE, 0, GL_WRITE_ONLY, GL_RGBA16F);
+    const std::uint32_t groups = (side + kReflectedGroup - 1) / kReflectedGroup;
+    glDispatchCompute(groups, groups, 6);
+    ++counters.dispatches;
+  }
+  return cube;
 }
 
 void ReflectedSky::update(const Environment& environment, int order, sh::Window window,
@@ -119,7 +149,7 @@ void ReflectedSky::update(const Environment& environment, int order, sh::Window 
   window_seen_ = window;
   values_.light_from_world = glm::mat4(glm::transpose(environment.worldFromLight()));
   values_.shares = {environment.shareOf(0), environment.shareOf(1), static_cast<float>(kReflectedLevels - 1),
-                    0.0f};
+                    has_whole_ ? 1.0f : 0.0f};
   const sh::LightVector light =
       sh::applyWindow(environment.restLight().truncated(order), window).truncated(sh::kMaxOrder);
   for (std::size_t k = 0; k < kReflectionCoefficients; ++k) values_.light[k] = glm::vec4(light.c[k], 0.0f);
@@ -131,6 +161,10 @@ void ReflectedSky::bind() const {
   glBindBufferBase(GL_UNIFORM_BUFFER, kBindReflection, block_.buffer().id());
   cubes_[0].bind(kUnitFirstReflection);
   cubes_[1].bind(kUnitSecondReflection);
+  (has_whole_ ? whole_ : cubes_)[0].bind(kUnitFirstWhole);
+  (has_whole_ ? whole_ : cubes_)[1].bind(kUnitSecondWhole);
+  glBindSampler(kUnitFirstWhole, 0);
+  glBindSampler(kUnitSecondWhole, 0);
   glBindSampler(kUnitFirstReflection, 0);
   glBindSampler(kUnitSecondReflection, 0);
   glEnable(GL_TEXTURE_CUBE_MAP_SEAMLESS);
