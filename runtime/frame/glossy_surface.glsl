@@ -198,7 +198,9 @@ vec3 lightReflectance(vec3 to_light, float spread) {
     float beyond = (spread - angle) / max(2.0 * alpha, 2e-3), inside = 0.5 + 0.5 * beyond * inversesqrt(1.0 + beyond * beyond);
     float edge = 1.0 - clamp(dot(light_normal, light_to_eye), 0.0, 1.0), edge2 = edge * edge;
     vec3 fresnel = light_lobes.fresnel.f0 + (light_lobes.fresnel.f90 - light_lobes.fresnel.f0) * edge2 * edge2 * edge;
-    return inside * fresnel / max(sphereShare(dot(light_normal, to_light), 1.0 / sin(spread)), 1e-6);
+    vec3 at_edge = inside * fresnel / max(sphereShare(dot(light_normal, to_light), 1.0 / sin(spread)), 1e-6);
+    // Its edge is taken to be straight; from afar the disc is a point.
+    return mix(at_edge, lobeReflectance(to_light, 0.0), smoothstep(1.2, 2.0, angle / spread));
   }
   vec3 s = perpendicular(to_light), t = cross(to_light, s), sum = vec3(0.0);
   float width = tan(min(spread, 1.4)), weights = 0.0;

@@ -54,8 +54,9 @@ Diffuse::Diffuse()
 
 Result<void> Diffuse::shade(streaming::Residency& residency, const lighting::GroupLights& lights,
                             TransferMode mode, gpu::Counters& counters, const ShadedKinds& kinds) {
-  if (residency.version() != residency_seen_ || lights.groupCount() != groups_seen_ || mode != mode_seen_) {
-    if (mode != mode_seen_) {  // everything anew
+  const bool same_way = mode == mode_seen_ && lights.hasKeys() == keys_seen_;
+  if (residency.version() != residency_seen_ || lights.groupCount() != groups_seen_ || !same_way) {
+    if (!same_way) {  // everything anew
       cells_seen_.clear();
       draws_seen_.clear();
     }
@@ -74,6 +75,7 @@ void Diffuse::rebuildTables(const streaming::Residency& residency, const lightin
   residency_seen_ = residency.version();
   groups_seen_ = lights.groupCount();
   mode_seen_ = mode;
+  keys_seen_ = lights.hasKeys();
   tables_ = {};
   for (const streaming::ResidentCell& cell : residency.cells()) {
     if (cell.matrices())

@@ -78,6 +78,7 @@ class Diffuse {
   std::uint64_t residency_seen_ = 0;
   std::size_t groups_seen_ = 0;
   TransferMode mode_seen_ = TransferMode::Full;
+  bool keys_seen_ = false;
   Shaded shaded_;
 };
 

@@ -58,14 +58,16 @@ Glossy::Glossy()
 
 Result<void> Glossy::shade(streaming::Residency& residency, const lighting::GroupLights& lights,
                            TransferMode mode, gpu::Counters& counters, const ShadedKinds& kinds) {
-  if (residency.version() != residency_seen_ || lights.groupCount() != groups_seen_ || mode != mode_seen_) {
+  const bool same_way = mode == mode_seen_ && lights.hasKeys() == keys_seen_;
+  if (residency.version() != residency_seen_ || lights.groupCount() != groups_seen_ || !same_way) {
     any_ = std::any_of(residency.cells().begin(), residency.cells().end(),
                        [](const streaming::ResidentCell& cell) { return cell.matrices(); });
-    if (mode != mode_seen_) cells_seen_.clear();  // everything anew
+    if (!same_way) cells_seen_.clear();  // everything anew
     rebuildTables(residency, lights, mode);
     residency_seen_ = residency.version();
     groups_seen_ = lights.groupCount();
     mode_seen_ = mode;
+    keys_seen_ = lights.hasKeys();
   }
   cells_shaded_ = 0;
   if (!any_) return {};

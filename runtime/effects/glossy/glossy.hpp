@@ -81,6 +81,7 @@ class Glossy {
   std::uint64_t residency_seen_ = 0;
   std::size_t groups_seen_ = 0;
   TransferMode mode_seen_ = TransferMode::Full;
+  bool keys_seen_ = false;
   std::uint32_t cells_shaded_ = 0;
   bool any_ = false;
 };
