@@ -8,6 +8,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "runtime/frame/quality.hpp"
 #include "runtime/spec/numbers.hpp"
 #include "runtime/spec/rotate.hpp"
 
@@ -18,7 +19,7 @@ namespace {
 // What CLI11 hands over, before the words are understood.
 struct Words {
   std::vector<std::string> bundles, lights, fade_lights;
-  std::string light_layout, camera, size = "1280x720", headless, view = "final", overlay;
+  std::string light_layout, camera, size = "1280x720", headless, view = "final", overlay, quality = "default";
   std::string rotate_light = "0", lamps = "1", fade = "0", time, step = "0.0333";
   std::vector<std::string> settings;  // of the frame, a word for each row
   std::uint64_t max_memory = ~std::uint64_t{0};
@@ -97,13 +98,18 @@ void declare(CLI::App& app, Words& words) {
   }
   const frame::FrameSettings defaults;
   for (const frame::SettingRow& row : frame::settingRows())
-    words.settings.push_back(frame::settingWord(row, defaults));
+    words.settings.emplace_back();  // not given: as --quality has it
   for (std::size_t i = 0; i < words.settings.size(); ++i) {
     const frame::SettingRow& row = frame::settingRows()[i];
     app.add_option("--" + std::string(row.name), words.settings[i], std::string(row.help))
         ->type_name(typeOf(row))
-        ->capture_default_str();
+        ->default_str(frame::settingWord(row, defaults));
   }
+  app.add_option("--quality", words.quality,
+                 "low, default or high: how many key lights there are and how finely\nthey shadow; single "
+                 "options go before it")
+      ->type_name("WORD")
+      ->capture_default_str();
   app.add_option("--frames", words.frames,
                  "Frames to render headless, the last one is written or, with # in\nthe name, every one; the "
                  "light turns through "
@@ -207,11 +213,16 @@ Result<Options> understand(const Words& words) {
   }
   if (Result<void> done = understandLights(words, options); !done) return failAgain(done.error());
   if (Result<void> done = understandPicture(words, options); !done) return failAgain(done.error());
-  for (std::size_t i = 0; i < words.settings.size(); ++i)
+  const Result<frame::FrameSettings> settings = frame::settingsOfQuality(words.quality);
+  if (!settings) return failAgain(settings.error());
+  options.settings = *settings;
+  for (std::size_t i = 0; i < words.settings.size(); ++i) {
+    if (words.settings[i].empty()) continue;
     if (Result<void> done =
             frame::putSetting(options.settings, frame::settingRows()[i].name, words.settings[i]);
         !done)
       return failAgain(done.error());
+  }
   const Result<frame::ViewChoice> view = frame::parseView(words.view);
   if (!view) return fail("--view", view.error().problem, view.error().mend);
   options.view = *view;
