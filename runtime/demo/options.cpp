@@ -97,8 +97,7 @@ void declare(CLI::App& app, Words& words) {
     if (!(words.*row.field).empty()) option->capture_default_str();
   }
   const frame::FrameSettings defaults;
-  for (const frame::SettingRow& row : frame::settingRows())
-    words.settings.emplace_back();  // not given: as --quality has it
+  words.settings.resize(frame::settingRows().size());  // empty: not given, as --quality has it
   for (std::size_t i = 0; i < words.settings.size(); ++i) {
     const frame::SettingRow& row = frame::settingRows()[i];
     app.add_option("--" + std::string(row.name), words.settings[i], std::string(row.help))
