@@ -10,6 +10,7 @@ const float kKeyBiasTexels = 1.5;
 const float kLeastFacing = 0.02;   // cosine below which the receiver's plane is taken to lean no more
 const float kSharpTexels = 0.8;    // a penumbra narrower than this is that of the texels
 const float kOneHeight = 0.1;      // heights that differ by less than this share are one
+const int kLeastSearch = 20;       // points of the search for blockers: too few would miss what is small
 const int kKeySteps = 3;           // of the search along a ray
 const int kKeyNarrowing = 3;
 
@@ -157,7 +158,7 @@ float keyVisible(KeyRecord key, vec3 position, vec3 normal, vec3 shading_normal)
   if (!open) {
     float widest = reach * key.scale.w * max(key.scale.x, key.scale.y);
     if (widest < kSharpTexels && receiver.above) return texelVisible(key, receiver);
-    layers = keyLayers(key, receiver, reach, rays);
+    layers = keyLayers(key, receiver, reach, max(rays, kLeastSearch));
     if (layers.low == 0.0 && receiver.above) return 1.0;
     if (layers.high * key.scale.w * max(key.scale.x, key.scale.y) < kSharpTexels && receiver.above)
       return texelVisible(key, receiver);

@@ -54,8 +54,7 @@ glm::vec2 blockerBounds(const Map& map, const KeyRecord& key, glm::vec2 place, g
   const int last = static_cast<int>(std::log2(tile / static_cast<float>(kBlockerTexels)) + 0.5f);
   const int level = std::clamp(static_cast<int>(std::ceil(std::log2(std::max(widest, 1.0f)))), 0, last);
   const auto texels = static_cast<float>(kBlockerTexels << level);
-  const glm::ivec2 least(glm::vec2(key.tile) / texels),
-      most(glm::vec2(key.tile.z, key.tile.w) / texels);
+  const glm::ivec2 least(glm::vec2(key.tile) / texels), most(glm::vec2(key.tile.z, key.tile.w) / texels);
   const glm::ivec2 from = glm::clamp(glm::ivec2(glm::floor((place - reach) / texels)), least, most);
   const glm::ivec2 to = glm::clamp(glm::ivec2(glm::floor((place + reach) / texels)), from, most);
   glm::vec2 bounds = map.keyBlockers(from, level);
@@ -156,8 +155,7 @@ float keyVisible(const Map& map, const KeyRecord& key, glm::vec3 position, glm::
   KeyLayers layers{0.0f, 0.0f};
   bool open = false;
   for (int i = 0; i < kKeyNarrowing; ++i) {
-    const glm::vec2 bounds =
-        blockerBounds(map, key, receiver.place, reach * key.scale.w * scale + 1.0f);
+    const glm::vec2 bounds = blockerBounds(map, key, receiver.place, reach * key.scale.w * scale + 1.0f);
     const float lean = glm::dot(glm::abs(receiver.slope), reach * key.scale.w * scale + 1.0f);
     if (bounds.x >= receiver.depth - receiver.bias) {
       open = true;

@@ -17,7 +17,7 @@ namespace {
 constexpr gpu::FindText kShaders[] = {&embedded::lambent_frame::find};
 constexpr std::size_t kViewStride = 256;  // OpenGL 4.5 asks for no larger alignment of uniform blocks
 constexpr std::uint32_t kLeastSize = 256;
-constexpr std::uint32_t kLeastRays = 6;
+constexpr std::uint32_t kLeastRays = 8;
 constexpr std::uint64_t kFinestTiles = 2;  // all maps together take no more texels than so many of the finest
 constexpr double kMargin = 0.05;  // around what is seen: the camera may move a little before a map is drawn anew
 constexpr double kWasted = 4.0;   // a map that shows so many times the area that is seen is drawn anew
