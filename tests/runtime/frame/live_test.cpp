@@ -129,7 +129,7 @@ TEST_F(LiveFrame, EverySettingComesBackToTheSamePicture) {
   FrameSettings plain;
   plain.exposure_ev = 0.0f;
   const std::pair<const char*, const char*> changes[] = {
-      {"transfer", "unshadowed"}, {"transfer", "shadowed"}, {"window", "off"},        {"order", "2"},
+      {"transfer", "unshadowed"}, {"transfer", "shadowed"}, {"window", "hann"},       {"order", "2"},
       {"diffuse", "off"},         {"volumes", "off"},       {"march-step", "4"},      {"light-samples", "1"},
       {"captures", "off"},        {"near-shadows", "off"},  {"neighborhoods", "off"}, {"capture-size", "8"}};
   LiveStage stage(ballAndCloud(), {kSun}, plain);

@@ -58,6 +58,7 @@ Scene makeScene(lambent::testing::BundleMaker& maker, const GlossyKind& kind, bo
   surface = {.world_from_mesh = glm::mat4(1.0f),
              .group_from_mesh = glm::mat3x4(1.0f),
              .group_from_mesh_normal = glm::mat3x4(1.0f),
+             .world_from_group = glm::vec4(0, 0, 0, 1),
              .base_color = {0.8f, 0.5f, 0.3f, 1.0f},
              .emission = glm::vec4(0.1f, 0.0f, 0.0f, 0.0f),
              .base_color_texture = slotOf(false),

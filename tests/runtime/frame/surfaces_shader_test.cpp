@@ -51,6 +51,7 @@ SurfaceDraw plainRecord() {
   return {.world_from_mesh = glm::mat4(1.0f),
           .group_from_mesh = glm::mat3x4(1.0f),
           .group_from_mesh_normal = glm::mat3x4(1.0f),
+          .world_from_group = glm::vec4(0, 0, 0, 1),
           .base_color = glm::vec4(1.0f),
           .emission = glm::vec4(0.0f),
           .base_color_texture = none,

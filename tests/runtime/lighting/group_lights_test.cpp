@@ -30,16 +30,19 @@ TEST_F(GroupLightsTest, GiveEachGroupTheLightInItsOwnFrame) {
                                 .lamps = {{1, 2, 3}, {4, 0, 0}}}};
   lights.update(sunAlong(90), sh::Window::Off, places, counters);
   EXPECT_EQ(lights.firstOf(0), 0u);
-  EXPECT_EQ(lights.firstOf(1), 64u);
-  ASSERT_EQ(lights.coefficients().size(), 64u + 64u + 2u);
+  constexpr std::uint32_t kStride = GroupLights::kStride;
+  EXPECT_EQ(lights.firstOf(1), kStride);
+  ASSERT_EQ(lights.coefficients().size(), 2 * kStride + 2);
+  EXPECT_FALSE(lights.hasKeys());
   const sh::LightVector upright = sunAlong(90).light().truncated(5),
                         turned = sunAlong(0).light().truncated(4);
   for (std::size_t i = 0; i < 64; ++i) {
     EXPECT_LT(glm::distance(glm::vec3(lights.coefficients()[i]), upright.c[i]), 1e-5f);
-    EXPECT_LT(glm::distance(glm::vec3(lights.coefficients()[64 + i]), turned.c[i]), 1e-5f);
+    EXPECT_LT(glm::distance(glm::vec3(lights.coefficients()[kStride + i]), turned.c[i]), 1e-5f);
+    EXPECT_EQ(lights.coefficients()[GroupLights::kBlock + i], glm::vec4(0.0f)) << "no key lights";
   }
-  EXPECT_EQ(lights.coefficients()[128], glm::vec4(1, 2, 3, 0)) << "lamps follow, as they are";
-  EXPECT_EQ(lights.coefficients()[129], glm::vec4(4, 0, 0, 0));
+  EXPECT_EQ(lights.coefficients()[2 * kStride], glm::vec4(1, 2, 3, 0)) << "lamps follow, as they are";
+  EXPECT_EQ(lights.coefficients()[2 * kStride + 1], glm::vec4(4, 0, 0, 0));
 }
 
 TEST_F(GroupLightsTest, LightSamplesHaveVersionsOfTheirOwn) {
@@ -47,13 +50,14 @@ TEST_F(GroupLightsTest, LightSamplesHaveVersionsOfTheirOwn) {
   gpu::Counters counters;
   const Environment environment = sunAlong(90);
   const sh::LightVector other = sunAlong(0).light();
-  std::vector<GroupPlace> places = {{.order = 3},
-                                    {.order = 3, .lamps = {{1, 1, 1}}, .incident = {{}, {&other, 1}}}};
+  std::vector<GroupPlace> places = {
+      {.order = 3}, {.order = 3, .lamps = {{1, 1, 1}}, .incident = {{}, {.light = &other, .version = 1}}}};
   lights.update(environment, sh::Window::Off, places, counters);
-  EXPECT_EQ(lights.firstOf(1, 1), 128u);
-  EXPECT_EQ(lights.lampsOf(1), 192u);
+  constexpr std::uint32_t kStride = GroupLights::kStride;
+  EXPECT_EQ(lights.firstOf(1, 1), 2 * kStride);
+  EXPECT_EQ(lights.lampsOf(1), 3 * kStride);
   EXPECT_EQ(lights.renewedSamples(), 3u);
-  EXPECT_LT(glm::distance(glm::vec3(lights.coefficients()[128]), other.c[0]), 1e-6f);
+  EXPECT_LT(glm::distance(glm::vec3(lights.coefficients()[2 * kStride]), other.c[0]), 1e-6f);
   const std::uint64_t own = lights.versionOf(1, 0), captured = lights.versionOf(1, 1),
                       all = lights.versionOf(1);
   places[1].incident[1].version = 2;
@@ -76,13 +80,15 @@ TEST_F(GroupLightsTest, ManyWindowsAtOnceAreThoseOfEachByItselfAndScaledLightsKe
   }
   std::vector<GroupPlace> places = {{.order = 5, .incident = {}, .key = 1}};
   std::uint64_t version = 0;
-  for (const sh::LightVector& light : arriving) places[0].incident.push_back({&light, ++version});
+  for (const sh::LightVector& light : arriving)
+    places[0].incident.push_back({.light = &light, .version = ++version});
   lights.update(environment, sh::Window::Auto, places, counters);
   for (std::size_t s = 0; s < arriving.size(); ++s) {
     const sh::LightVector expected = sh::applyWindow(arriving[s], sh::Window::Auto);
     ASSERT_NE(expected.c, arriving[s].c);
     for (std::size_t i = 0; i < 25; ++i)
-      EXPECT_LT(glm::distance(glm::vec3(lights.coefficients()[64 * s + i]), expected.c[i]), 1e-6f);
+      EXPECT_LT(glm::distance(glm::vec3(lights.coefficients()[GroupLights::kStride * s + i]), expected.c[i]),
+                1e-6f);
   }
   const std::vector<glm::vec4> before(lights.coefficients().begin(), lights.coefficients().end());
   for (std::size_t s = 0; s < arriving.size(); ++s) {
@@ -105,7 +111,7 @@ TEST_F(GroupLightsTest, ALampThatChangesIsNewLightForItsGroupOnly) {
   lights.update(environment, sh::Window::Auto, places, counters);
   EXPECT_EQ(lights.versionOf(0), first);
   EXPECT_GT(lights.versionOf(1), second);
-  EXPECT_EQ(lights.coefficients()[lights.firstOf(1) + 64], glm::vec4(0, 0, 5, 0));
+  EXPECT_EQ(lights.coefficients()[lights.lampsOf(1)], glm::vec4(0, 0, 5, 0));
 }
 
 TEST_F(GroupLightsTest, BandsThatDoNotCountAreZeroAndTheWindowIsThatOfTheOthers) {
@@ -113,7 +119,7 @@ TEST_F(GroupLightsTest, BandsThatDoNotCountAreZeroAndTheWindowIsThatOfTheOthers)
   gpu::Counters counters;
   const Environment environment = sunAlong(90);
   const sh::LightVector captured = sunAlong(30).light();
-  const std::vector<GroupPlace> places = {{.order = 5, .incident = {{}, {&captured, 1}}}};
+  const std::vector<GroupPlace> places = {{.order = 5, .incident = {{}, {.light = &captured, .version = 1}}}};
   lights.update(environment, sh::Window::Auto, places, counters);
   const std::uint64_t before = lights.versionOf(0);
   lights.update(environment, sh::Window::Auto, places, counters, /*max_order=*/3);

@@ -35,7 +35,20 @@ struct Bench : testing::ShadingBench<Diffuse> {
     return pages;
   }
 
-  // Largest difference to the twin relative to the largest value there is.
+  // A sun that few bands cannot carry; what arrives at light samples of their own has one as well.
+  void shineByKeyLights() {
+    environment.setMostKeys(16);
+    ASSERT_TRUE(environment.setLights(
+        {spec::SunLight{
+             .azimuth_deg = 30, .elevation_deg = 40, .angle_deg = 2, .radiance = {3000.0f, 2000.0f, 1000.0f}},
+         spec::ConstantLight{.radiance = {0.2f, 0.3f, 0.5f}}}));
+    ASSERT_FALSE(environment.keys().empty());
+    for (lighting::GroupPlace& place : places)
+      for (std::size_t k = 0; k < place.incident.size(); ++k)
+        if (place.incident[k].light != nullptr) place.incident[k].key = &incident[(k + 1) % incident.size()];
+  }
+
+  // Largest difference to the twin relative to the largest value there is, of vertices and of samples.
   double differenceToTwin() {
     const Pages transfer = pagesOf(residency.transfer()), rows = pagesOf(residency.rows()),
                 geometry = pagesOf(residency.geometry()), radiance = pagesOf(residency.radiance());
@@ -59,6 +72,15 @@ struct Bench : testing::ShadingBench<Diffuse> {
       }
     }
     double difference = 0.0, largest = 0.0;
+    const Pages shaded = pagesOf(residency.samples());
+    for (std::size_t page = 0; page < samples.size(); ++page)
+      for (std::size_t i = 0; i < samples[page].size(); ++i)
+        for (int k = 0; k < 4 && samples[page][i] != glm::vec4(0.0f); ++k) {
+          const double wanted = double{samples[page][i][k]};
+          const double got = double{std::bit_cast<float>(shaded[page][4 * i + static_cast<std::size_t>(k)])};
+          largest = std::max(largest, std::abs(wanted));
+          difference = std::max(difference, std::abs(got - wanted));
+        }
     for (std::size_t i = 0; i < tables.draws.size(); ++i) {
       const streaming::ResidentDraw& resident = residency.draws()[i];
       const DrawRecord& draw = tables.draws[i];
@@ -130,6 +152,51 @@ TEST_F(DiffuseGpu, MatchesItsTwinWithClustersLampsBothBlocksAndNormalMaps) {
       }
 }
 
+TEST_F(DiffuseGpu, MatchesItsTwinWhereKeyLightsStandApart) {
+  testing::BundleMaker maker(24);
+  for (const std::uint32_t full : {0u, 1u, 3u})
+    for (const std::uint32_t shadowed : {1u, 3u})
+      for (const std::uint32_t lights : {1u, 5u}) {
+        Bench bench(maker, {.order = 5,
+                            .shadowed_channels = shadowed,
+                            .full_channels = full,
+                            .clusters = 3,
+                            .lamps = 2,
+                            .cells = 1,
+                            .mapped_cells = 1,
+                            .samples = 222,
+                            .light_samples = lights});
+        bench.shineByKeyLights();
+        bench.uploadMeshes();
+        bench.uploadRows();
+        bench.uploadTransfer(4);
+        for (const TransferMode mode : {TransferMode::Full, TransferMode::Shadowed}) {
+          bench.shade(mode);
+          EXPECT_LT(bench.differenceToTwin(), 1e-3)
+              << shadowed << " and " << full << " channels, " << lights << " lights";
+          for (const TransferRecord& record : bench.diffuse.tables().transfers) {
+            EXPECT_EQ(record.bounced, record.order > 0 && mode == TransferMode::Full && full > 0 ? 1u : 0u);
+            EXPECT_EQ(record.straight_channels, record.order > 0 ? shadowed : 0u);
+          }
+        }
+        bench.environment.setTurn(33.0f);
+        bench.shade();
+        EXPECT_LT(bench.differenceToTwin(), 1e-3) << "turned";
+        // And back to where there are none.
+        bench.environment.setMostKeys(0);
+        for (lighting::GroupPlace& place : bench.places)
+          for (lighting::Incident& incident : place.incident) incident.key = nullptr;
+        bench.shade();
+        EXPECT_LT(bench.differenceToTwin(), 1e-3) << "no key lights";
+        for (const TransferRecord& record : bench.diffuse.tables().transfers) EXPECT_EQ(record.bounced, 0u);
+        bench.shineByKeyLights();
+        bench.shade();
+        EXPECT_LT(bench.differenceToTwin(), 1e-3) << "they are back";
+        for (const TransferRecord& record : bench.diffuse.tables().transfers)
+          EXPECT_EQ(record.bounced, record.order > 0 && full > 0 ? 1u : 0u);
+      }
+}
+
 TEST_F(DiffuseGpu, BlendsSeveralLightSamplesAsItsTwin) {
   testing::BundleMaker maker(21);
   for (const std::uint32_t lights : {3u, 33u})
@@ -178,8 +245,15 @@ TEST_F(DiffuseGpu, ProxiesSendOutWhatTheirSamplesReceive) {
   bench.uploadMeshes();
   bench.uploadRows();
   for (const auto& item : bench.made.proxies) bench.upload(item);
-  for (const bool transfer_here : {false, true}) {
-    if (transfer_here) bench.uploadTransfer(7);
+  enum class Step { Waiting, Arrived, KeyLights };
+  for (const Step step : {Step::Waiting, Step::Arrived, Step::KeyLights}) {
+    const bool transfer_here = step != Step::Waiting;
+    if (step == Step::Arrived) bench.uploadTransfer(7);
+    if (step == Step::KeyLights) {
+      bench.shineByKeyLights();
+      for (lighting::GroupPlace& place : bench.places)
+        for (lighting::Incident& incident : place.incident) ++incident.version;
+    }
     bench.shade();
     gpu::Counters counters;
     ASSERT_TRUE(bench.proxies.shade(bench.residency, bench.lights, bench.shadedGroups(), counters));
@@ -199,7 +273,8 @@ TEST_F(DiffuseGpu, ProxiesSendOutWhatTheirSamplesReceive) {
         const glm::vec3 expected =
             ref::proxyRadiance(memory, group, bench.proxies.triangles()[t], bench.proxies.entries());
         EXPECT_LT(glm::distance(glm::vec3(radiance[t]), expected), 1e-3f * (1.0f + glm::length(expected)))
-            << "triangle " << t << (transfer_here ? " with" : " without") << " transfer";
+            << "triangle " << t << (transfer_here ? " with" : " without") << " transfer"
+            << (step == Step::KeyLights ? " and key lights" : "");
       }
     }
     counters = {};

@@ -11,11 +11,12 @@
 namespace lambent::effects::diffuse {
 namespace {
 
-std::vector<glm::vec4> randomLight(testing::BundleMaker& maker, int order) {
+// Of one light sample: without key lights, and of key lights alone, if there are any.
+std::vector<glm::vec4> randomLight(testing::BundleMaker& maker, int order, bool keys = false) {
   std::vector<glm::vec4> light(kLightStride, glm::vec4(0.0f));
-  for (int i = 0; i < order * order; ++i)
-    light[static_cast<std::size_t>(i)] = {maker.uniform(-1, 1), maker.uniform(-1, 1), maker.uniform(-1, 1),
-                                          0.0f};
+  for (const uint first : keys ? std::vector{0u, kKeyBlock} : std::vector{0u})
+    for (uint i = 0; i < static_cast<uint>(order * order); ++i)
+      light[first + i] = {maker.uniform(-1, 1), maker.uniform(-1, 1), maker.uniform(-1, 1), 0.0f};
   return light;
 }
 
@@ -47,7 +48,7 @@ struct Page {
   std::vector<uint> words, places;
   TransferRecord record{};
 
-  Page(const testing::RandomBundle& made, std::size_t transfer_index, bool full) {
+  Page(const testing::RandomBundle& made, std::size_t transfer_index, bool full, bool keys = false) {
     const bundle::CellTransfer& transfer = made.description.groups[0].cells[0].transfers[transfer_index];
     const bundle::TransferShape& shape = transfer.shape;
     const bundle::Codebook& codebook = made.codebooks[0][transfer_index].codebook;
@@ -79,7 +80,9 @@ struct Page {
               .sample_count = static_cast<uint>(positions.size()),
               .accumulate = transfer_index > 0 ? 1u : 0u,
               .order = shape.order,
-              .visibility = 0};
+              .visibility = 0,
+              .bounced = full && keys && shape.order > 0 ? 1u : 0u,
+              .straight_channels = keys && shape.order > 0 ? shape.shadowed_channels : 0u};
     uint vector = 0;
     for (const uint axes : codebook.axis_counts) {
       words.insert(words.end(), {vector, axes});
@@ -132,10 +135,11 @@ std::vector<std::vector<std::uint32_t>> codesOf(const testing::RandomBundle& mad
   return all;
 }
 
-// What all transfers of the cell give, decoded the plain way: [sample][output].
-std::vector<glm::vec3> decodedTimesLight(const testing::RandomBundle& made,
+// What all transfers of the cell give, decoded the plain way: [sample][output]. Of key lights the bounces
+// alone, full less shadowed; w: 1 and the luminance of what they give straight.
+std::vector<glm::vec4> decodedTimesLight(const testing::RandomBundle& made,
                                          const std::vector<glm::vec4>& light, bool full) {
-  std::vector<glm::vec3> out;
+  std::vector<glm::vec4> out;
   for (std::size_t t = 0; t < made.codebooks[0].size(); ++t) {
     const bundle::TransferShape& shape = made.description.groups[0].cells[0].transfers[t].shape;
     const auto& positions = made.codebooks[0][t].positions;
@@ -143,28 +147,40 @@ std::vector<glm::vec3> decodedTimesLight(const testing::RandomBundle& made,
     for (const std::uint32_t place : positions) cluster_of[place & 0xffff] = place >> 16;
     const std::vector<float> vectors =
         bundle::decodeTransfer(shape, made.codebooks[0][t].codebook, cluster_of, codesOf(made, t));
-    out.resize(positions.size() * shape.outputs, glm::vec3(0.0f));
+    if (out.empty()) out.resize(positions.size() * shape.outputs, glm::vec4(0, 0, 0, 1));
+    // Coefficient i of what arrives at a sample, of the block that begins so far behind the first.
+    const auto arriving = [&](std::size_t s, std::uint32_t block, std::uint32_t i) {
+      if (shape.order == 0) return block == 0 ? glm::vec3(light[Page::lampsOf(made) + i]) : glm::vec3(0.0f);
+      if (made.light_weights.empty()) return glm::vec3(light[block + i]);
+      const bundle::LightWeights& weights = made.light_weights[0].samples[s];
+      glm::vec3 sum(0.0f);
+      for (std::size_t k = 0; k < 4; ++k)
+        sum += static_cast<float>(weights.weight[k]) / 255.0f *
+               glm::vec3(light[kLightStride * weights.light[k] + block + i]);
+      return sum;
+    };
+    const auto times = [&](std::size_t s, std::uint32_t j, std::uint32_t first, std::uint32_t channels,
+                           std::uint32_t block) {
+      glm::vec3 sum(0.0f);
+      for (std::uint32_t c = 0; c < 3 && channels > 0; ++c)
+        for (std::uint32_t i = 0; i < shape.columns(); ++i) {
+          const std::uint32_t channel = first + (channels == 3 ? c : 0);
+          sum[static_cast<int>(c)] +=
+              vectors[s * shape.size() + (channel * shape.outputs + j) * shape.columns() + i] *
+              arriving(s, block, i)[static_cast<int>(c)];
+        }
+      return sum;
+    };
     const std::uint32_t first = full ? shape.shadowed_channels : 0;
     const std::uint32_t channels = full ? shape.full_channels : shape.shadowed_channels;
     for (std::size_t s = 0; s < positions.size(); ++s)
-      for (std::uint32_t j = 0; j < shape.outputs; ++j)
-        for (std::uint32_t c = 0; c < 3; ++c)
-          for (std::uint32_t i = 0; i < shape.columns(); ++i) {
-            const std::uint32_t channel = first + (channels == 3 ? c : 0);
-            float arriving = 0.0f;
-            if (shape.order == 0) {
-              arriving = light[Page::lampsOf(made) + i][static_cast<int>(c)];
-            } else if (made.light_weights.empty()) {
-              arriving = light[i][static_cast<int>(c)];
-            } else {
-              const bundle::LightWeights& weights = made.light_weights[0].samples[s];
-              for (std::size_t k = 0; k < 4; ++k)
-                arriving += static_cast<float>(weights.weight[k]) / 255.0f *
-                            light[kLightStride * weights.light[k] + i][static_cast<int>(c)];
-            }
-            out[s * shape.outputs + j][static_cast<int>(c)] +=
-                vectors[s * shape.size() + (channel * shape.outputs + j) * shape.columns() + i] * arriving;
-          }
+      for (std::uint32_t j = 0; j < shape.outputs; ++j) {
+        const glm::vec3 straight = times(s, j, 0, shape.shadowed_channels, kKeyBlock);
+        glm::vec3 sum = times(s, j, first, channels, 0);
+        if (full) sum += times(s, j, first, channels, kKeyBlock) - straight;
+        const float luminance = glm::dot(straight, ref::kLuminance);
+        out[s * shape.outputs + j] += glm::vec4(sum, j == 0 ? std::max(luminance, 0.0f) : luminance);
+      }
   }
   return out;
 }
@@ -173,47 +189,88 @@ std::vector<glm::vec3> decodedTimesLight(const testing::RandomBundle& made,
 
 TEST(DiffuseTwin, ShadesSamplesAsDecodedTransferTimesLight) {
   testing::BundleMaker maker(4);
-  for (const std::uint32_t clusters : {1u, 3u, 300u})
-    for (const std::uint32_t lights : {1u, 7u})
-      for (const std::uint32_t lamps : {0u, 5u})
-        for (const bool mapped : {false, true})
-          for (const bool full : {false, true}) {
-            const testing::RandomBundle made = maker.make({.order = 3,
-                                                           .shadowed_channels = mapped ? 3u : 1u,
-                                                           .full_channels = mapped ? 1u : 3u,
-                                                           .planes = 5,
-                                                           .clusters = clusters,
-                                                           .lamps = lamps,
-                                                           .groups = 1,
-                                                           .cells = mapped ? 0u : 1u,
-                                                           .mapped_cells = mapped ? 1u : 0u,
-                                                           .light_samples = lights});
-            std::vector<glm::vec4> light = randomLight(maker, 3);
-            for (std::uint32_t k = 2; k < lights; ++k) {
-              const std::vector<glm::vec4> more = randomLight(maker, 3);
-              light.insert(light.end(), more.begin(), more.end());
+  for (const bool keys : {false, true})
+    for (const std::uint32_t clusters : {1u, 3u, 300u})
+      for (const std::uint32_t lights : {1u, 7u})
+        for (const std::uint32_t lamps : {0u, 5u})
+          for (const bool mapped : {false, true})
+            for (const bool full : {false, true}) {
+              const testing::RandomBundle made = maker.make({.order = 3,
+                                                             .shadowed_channels = mapped ? 3u : 1u,
+                                                             .full_channels = mapped ? 1u : 3u,
+                                                             .planes = 5,
+                                                             .clusters = clusters,
+                                                             .lamps = lamps,
+                                                             .groups = 1,
+                                                             .cells = mapped ? 0u : 1u,
+                                                             .mapped_cells = mapped ? 1u : 0u,
+                                                             .light_samples = lights});
+              std::vector<glm::vec4> light = randomLight(maker, 3, keys);
+              for (std::uint32_t k = 2; k < lights; ++k) {
+                const std::vector<glm::vec4> more = randomLight(maker, 3, keys);
+                light.insert(light.end(), more.begin(), more.end());
+              }
+              for (std::uint32_t k = 0; k < lamps; ++k)
+                light.emplace_back(maker.uniform(0, 1), maker.uniform(0, 1), maker.uniform(0, 1), 0.0f);
+              const std::vector<glm::vec4> expected = decodedTimesLight(made, light, full);
+              std::vector<glm::vec4> samples(expected.size(), glm::vec4(0.0f));
+              for (std::size_t t = 0; t < made.codebooks[0].size(); ++t) {
+                const Page page(made, t, full, keys);
+                ref::Memory memory;
+                memory.lights = light;
+                memory.transfer = page.words;
+                std::vector<glm::vec4> products(lights * page.words.size());
+                ref::projectTransfer(memory, page.record, page.places, products);
+                for (uint p = 0; p < page.record.sample_count; ++p)
+                  ref::shadePosition(memory, page.record, page.places, products, p, samples);
+              }
+              for (std::size_t i = 0; i < samples.size(); ++i) {
+                // Values are of size 1, sums of 100 floats.
+                EXPECT_LT(glm::distance(samples[i], expected[i]), 1e-4f)
+                    << clusters << " clusters, " << lights << " lights" << (keys ? ", key lights" : "");
+                if (!keys) {
+                  EXPECT_EQ(samples[i].w, 1.0f);
+                }
+              }
             }
-            for (std::uint32_t k = 0; k < lamps; ++k)
-              light.emplace_back(maker.uniform(0, 1), maker.uniform(0, 1), maker.uniform(0, 1), 0.0f);
-            const std::vector<glm::vec3> expected = decodedTimesLight(made, light, full);
-            std::vector<glm::vec4> samples(expected.size(), glm::vec4(0.0f));
-            for (std::size_t t = 0; t < made.codebooks[0].size(); ++t) {
-              const Page page(made, t, full);
-              ref::Memory memory;
-              memory.lights = light;
-              memory.transfer = page.words;
-              std::vector<glm::vec4> products(lights * page.words.size());
-              ref::projectTransfer(memory, page.record, page.places, products);
-              for (uint p = 0; p < page.record.sample_count; ++p)
-                ref::shadePosition(memory, page.record, page.places, products, p, samples);
-            }
-            for (std::size_t i = 0; i < samples.size(); ++i) {
-              // Values are of size 1, sums of 100 floats.
-              EXPECT_LT(glm::distance(glm::vec3(samples[i]), expected[i]), 1e-4f)
-                  << clusters << " clusters, " << lights << " lights";
-              EXPECT_EQ(samples[i].w, 1.0f);
-            }
-          }
+}
+
+TEST(DiffuseTwin, OfKeyLightsOnlyTheBouncesArriveAndBouncesWithATransferOfTheirOwnAlone) {
+  // As the plain sum above, by hand: one column, one vector, no codes.
+  std::vector<glm::vec4> light(kLightStride, glm::vec4(0.0f));
+  light[0] = {1.0f, 2.0f, 3.0f, 0.0f};
+  light[kKeyBlock] = {10.0f, 20.0f, 40.0f, 0.0f};
+  constexpr float kShadowed = 0.5f;
+  constexpr glm::vec3 kFull(0.75f, 1.0f, 1.25f);
+  std::vector<uint> words;
+  for (const float value : {kShadowed, kFull.r, kFull.g, kFull.b})
+    words.push_back(std::bit_cast<uint>(value));
+  ref::Memory memory;
+  memory.lights = light;
+  memory.transfer = words;
+  const auto project = [&](const TransferRecord& record) {
+    return ref::projectOnLight(memory, record, 0, 0, 0);
+  };
+  TransferRecord record{};
+  record.columns = record.outputs = record.order = 1;
+  record.channels = 3;
+  record.vector_size = 4;
+  record.first_value = 1;
+  const glm::vec3 rest(light[0]), key(light[kKeyBlock]);
+  EXPECT_EQ(project(record), glm::vec4(kFull * rest, 0.0f)) << "no key lights";
+  record.bounced = 1;
+  record.straight_channels = 1;
+  EXPECT_EQ(project(record),
+            glm::vec4(kFull * (rest + key) - kShadowed * key, glm::dot(kShadowed * key, ref::kLuminance)));
+  record.channels = 1;  // without bounces
+  record.first_value = 0;
+  record.bounced = 0;
+  EXPECT_EQ(project(record), glm::vec4(kShadowed * rest, glm::dot(kShadowed * key, ref::kLuminance)));
+  record.channels = 3;  // bounces that have a transfer of their own: nothing of it is straight
+  record.first_value = 1;
+  record.bounced = 1;
+  record.straight_channels = 0;
+  EXPECT_EQ(project(record), glm::vec4(kFull * (rest + key), 0.0f));
 }
 
 TEST(DiffuseTwin, MappedLightOfAnUnshadowedVertexIsTheLight) {

@@ -1,0 +1,31 @@
+// Runs key_light.glsl on cases from a buffer, with a shadow map that key_shader_test.cpp made up.
+#include "near_shared.h"
+#include "key_shared.h"
+#include "key_light.glsl"
+
+layout(local_size_x = 64) in;
+
+struct Case {
+  KeyRecord key;
+  vec4 position;
+  vec4 normal;
+  vec4 shading_normal;
+};
+layout(std430, binding = 0) readonly buffer Cases { Case cases[]; };
+layout(std430, binding = 1) writeonly buffer Results { vec4 results[]; };
+layout(location = 0) uniform uint count;
+layout(binding = 0) uniform sampler2D depths;
+layout(binding = 1) uniform sampler2D blockers;
+
+float keyDepth(ivec2 texel) { return texelFetch(depths, texel, 0).r; }
+vec2 keyBlockers(ivec2 texel, int level) { return texelFetch(blockers, texel, level).rg; }
+
+void main() {
+  uint i = gl_GlobalInvocationID.x;
+  if (i >= count) return;
+  Case c = cases[i];
+  KeyReceiver receiver = keyReceiver(c.key, c.position.xyz, c.normal.xyz);
+  results[i] = vec4(keyVisible(c.key, c.position.xyz, c.normal.xyz, c.shading_normal.xyz),
+                    keyShare(c.key, c.shading_normal.xyz),
+                    blockerBounds(c.key, receiver.place, vec2(c.position.w)));
+}
