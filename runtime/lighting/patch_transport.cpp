@@ -68,7 +68,7 @@ const std::array<glm::vec3, kLinks>& linkDirections(LinkSpread spread) {
 }
 
 LinkFrame linkFrame(const glm::vec3& n) {
-  const float facing = n.z >= 0.0f ? 1.0f : -1.0f;
+  const float facing = n.z >= kFrameTurnsOver ? 1.0f : -1.0f;
   const float a = -1.0f / (facing + n.z), b = n.x * n.y * a;
   return {.x = {1.0f + facing * n.x * n.x * a, facing * b, -facing * n.x},
           .y = {b, facing + n.y * n.y * a, -n.y},

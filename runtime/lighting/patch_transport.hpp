@@ -32,7 +32,9 @@ struct LinkFrame {
   glm::vec3 x, y, z;
   glm::vec3 turned(const glm::vec3& v) const { return v.x * x + v.y * y + v.z * z; }
 };
-// By the normal alone (Duff and others 2017); lamp_gather.comp has the same.
+// By the normal alone (Duff and others 2017); lamp_gather.comp has the same. It turns over at a height that walls
+// do not have, so that rounding changes nothing.
+inline constexpr float kFrameTurnsOver = -0.37f;
 LinkFrame linkFrame(const glm::vec3& normal);
 
 struct SurfacePoint {

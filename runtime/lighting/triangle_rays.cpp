@@ -24,6 +24,12 @@ void TriangleSet::add(const RayTriangle& triangle) {
   front_only_.push_back(triangle.front_only ? 1 : 0);
 }
 
+RayTriangle TriangleSet::operator[](std::size_t index) const {
+  RayTriangle triangle{.corners = {}, .front_only = front_only_[index] != 0};
+  for (std::size_t k = 0; k < 9; ++k) triangle.corners[k / 3][static_cast<int>(k % 3)] = corners_[k][index];
+  return triangle;
+}
+
 RaysFrom::RaysFrom(const TriangleSet& set, float least_distance)
     : set_(set), least_distance_(least_distance) {
   for (std::vector<float>& plane : planes_) plane.resize(set.size());

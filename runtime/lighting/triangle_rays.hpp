@@ -17,6 +17,7 @@ namespace lambent::lighting {
 struct RayTriangle {
   std::array<glm::vec3, 3> corners{};  // counter-clockwise from the front
   bool front_only = false;             // rays that come from behind pass through it
+  bool operator==(const RayTriangle&) const = default;
 };
 
 // By coordinate, so that a loop over triangles takes several at a time.
@@ -24,6 +25,7 @@ class TriangleSet {
  public:
   void add(const RayTriangle& triangle);
   std::size_t size() const { return count_; }
+  RayTriangle operator[](std::size_t index) const;
 
  private:
   friend class RaysFrom;
