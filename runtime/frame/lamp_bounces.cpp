@@ -81,6 +81,7 @@ std::vector<lighting::RayTriangle> LampBounces::othersAround(const World& world,
     const lighting::IncidentBody& other = scene.bodies[body];
     if (glm::distance(room.center_ws, other.center_ws) > room.radius_m + other.radius_m) continue;
     const bundle::CaptureProxy& proxy = *world.residency().groups()[g].proxy;
+    if (proxy.levels.empty()) continue;
     const bundle::ProxyLevel& level = proxy.levels[std::min(kOtherLevel, proxy.levels.size() - 1)];
     const glm::mat4 group_from_other = group_from_world * other.body.world_from_proxy;
     for (std::uint32_t t = 0; t < level.triangle_count; ++t) {
@@ -139,10 +140,10 @@ void LampBounces::ask(World& world, std::size_t group) {
       });
 }
 
-void LampBounces::take(const World& world, std::size_t group, bool wait) {
+bool LampBounces::take(const World& world, std::size_t group, bool wait) {
   Room& room = rooms_[group];
-  if (!room.coming.valid()) return;
-  if (!wait && room.coming.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
+  if (!room.coming.valid()) return false;
+  if (!wait && room.coming.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return false;
   Made made = room.coming.get();
   if (!room.room.transport()) room.room = LampRoom(std::move(made.transport));
   const auto& draws = world.residency().draws();
@@ -153,6 +154,7 @@ void LampBounces::take(const World& world, std::size_t group, bool wait) {
     draw.links = gpu::Buffer("lamp links", std::max<std::size_t>(4, 2 * links.patches.size()));
     draw.links.write(0, std::span<const std::uint16_t>(links.patches));
   }
+  return true;
 }
 
 Result<void> LampBounces::update(World& world, const LitScene& scene, bool on, bool wait,
@@ -173,10 +175,8 @@ Result<void> LampBounces::update(World& world, const LitScene& scene, bool on, b
     std::vector<lighting::NearLight> lamps;
     if (groups[g].proxy && g < scene.near_masks.size()) lamps = lampsIn(scene, g);
     if (!lamps.empty()) {
-      const bool linked_before = !room.coming.valid();
       ask(world, g);
-      take(world, g, wait);
-      changed |= !linked_before || !room.coming.valid();
+      changed |= take(world, g, wait);
     }
     if (room.coming.valid()) ++counts_.rooms_to_come;
     if (!room.room.transport()) continue;

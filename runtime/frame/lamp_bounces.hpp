@@ -97,7 +97,8 @@ class LampBounces {
   static std::vector<lighting::RayTriangle> othersAround(const World& world, const LitScene& scene,
                                                          std::size_t group);
   void ask(World& world, std::size_t group);
-  void take(const World& world, std::size_t group, bool wait);
+  // Whether anything came.
+  bool take(const World& world, std::size_t group, bool wait);
   static Points pointsOf(World& world, std::size_t draw);
   bool lit(const World& world, std::size_t draw) const;
   void layOut(const World& world);

@@ -164,20 +164,40 @@ std::vector<glm::vec3> PatchTransport::bounce(std::span<const float> direct) con
   return given_off;
 }
 
+glm::vec3 PatchTransport::startNear(const SurfacePoint& point) const {
+  const Patch* nearest = nullptr;
+  float least = std::numeric_limits<float>::infinity();
+  for (const Patch& patch : patches_.all()) {
+    const float facing = glm::dot(patch.normal, point.normal);
+    const float away = glm::distance(patch.points[0], point.position) * (2.0f - facing);
+    if (facing < 0.3f || away >= least) continue;
+    least = away;
+    nearest = &patch;
+  }
+  return nearest != nullptr ? patches_.inFront(nearest->points[0], nearest->normal) : point.position;
+}
+
 std::vector<std::uint16_t> PatchTransport::link(std::span<const SurfacePoint> points, LinkSpread spread) const {
   const auto& directions = linkDirections(spread);
   std::vector<std::uint16_t> links(kLinks * points.size());
   inParallel(blocksOf(points.size()), 2, [&](std::size_t block) {
     RaysFrom rays(patches_.triangles(), 1e-5f * patches_.extent());
-    for (std::size_t i = block * kBlock; i < std::min(points.size(), (block + 1) * kBlock); ++i) {
-      rays.moveTo(patches_.inFront(points[i].position, points[i].normal), points[i].normal);
+    // Returns how many of the rays meet the back of something.
+    const auto linkFrom = [&](const glm::vec3& origin, std::size_t i) {
       const LinkFrame frame = linkFrame(points[i].normal);
+      rays.moveTo(origin, points[i].normal);
+      std::size_t backs = 0;
       for (std::size_t k = 0; k < kLinks; ++k) {
         const std::optional<RayHit> hit = rays.first(frame.turned(directions[k]));
+        backs += hit && hit->back ? 1 : 0;
         const std::size_t patch = hit && !hit->back ? patches_.patchAt(*hit) : patches_.size();
         links[kLinks * i + k] = static_cast<std::uint16_t>(patch);
       }
-    }
+      return backs;
+    };
+    for (std::size_t i = block * kBlock; i < std::min(points.size(), (block + 1) * kBlock); ++i)
+      if (linkFrom(patches_.inFront(points[i].position, points[i].normal), i) > kLinks / 2)
+        linkFrom(startNear(points[i]), i);
   });
   return links;
 }

@@ -54,8 +54,9 @@ class PatchTransport {
   // times its albedo; until the next bounce would add less than 1 / 10 000.
   std::vector<glm::vec3> bounce(std::span<const float> direct) const;
 
-  // kLinks patches to each point; one that meets nothing, or the back of something, has patches().size().
-  // On several threads.
+  // kLinks patches to each point; one that meets nothing, or the back of something, has patches().size(). A
+  // point that lies behind the proxy, so that it sees backs for the most part, takes the view of the nearest
+  // patch that faces alike. On several threads.
   std::vector<std::uint16_t> link(std::span<const SurfacePoint> points, LinkSpread spread) const;
 
   // Of each triangle of all levels of the proxy, the mean of what its patches give off. Those of coarser
@@ -70,6 +71,8 @@ class PatchTransport {
     float share = 0.0f;  // of the rays
   };
   void findShares();
+  // Where the rays of a point behind the proxy may start.
+  glm::vec3 startNear(const SurfacePoint& point) const;
   void findNearest(const bundle::CaptureProxy& proxy);
 
   Patches patches_;
