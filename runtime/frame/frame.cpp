@@ -169,6 +169,8 @@ Result<void> Frame::step(World& world, const lighting::Environment& environment,
   transforms(world);
   // what arrives at each light sample, windowed and turned into its group's frame
   if (Result<void> done = light(world, environment); !done) return done;
+  // what surfaces send on of the lights that stand among them
+  if (Result<void> done = bounceLamps(world); !done) return done;
   // E/pi at every vertex whose light or transfer is new
   if (Result<void> done = shade(world); !done) return done;
   // transferred light at the samples of glossy surfaces, likewise
@@ -272,7 +274,7 @@ Result<void> Frame::shadeNeighborhoods(World& world) {
 Result<void> Frame::castShadows(World& world) {
   gpu::PassTimers::Scope pass(timers_, "shadows");
   Result<void> done =
-      near_lights_.update(world, lit_scene_.near_lights, lit_scene_.near_masks, pass.counters());
+      near_lights_.update(world, lit_scene_.near_lights, lit_scene_.near_masks, pass.counters(), &lamp_bounces_);
   counts_.shadow_cubes_drawn = near_lights_.cubesDrawn();
   if (counts_.shadow_cubes_drawn > 0)
     pass.because(reasons_.of(kLightCauses | Cause::Materials, "lights among surfaces"));

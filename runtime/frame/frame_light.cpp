@@ -1,5 +1,6 @@
 // What arrives at the groups' light samples in Frame's steps, and what bodies send to each other.
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "runtime/frame/frame.hpp"
@@ -80,6 +81,18 @@ Result<void> Frame::light(World& world, const lighting::Environment& environment
   return {};
 }
 
+Result<void> Frame::bounceLamps(World& world) {
+  if (lit_scene_.near_lights.empty() && !lamp_bounces_.any()) return {};
+  gpu::PassTimers::Scope pass(timers_, "lamp bounces");
+  const FrameSettings& settings = options_.settings;
+  const bool on = settings.lamp_bounces && settings.transfer == effects::diffuse::TransferMode::Full;
+  Result<void> done =
+      lamp_bounces_.update(world, lit_scene_, on, options_.wait_for_captures, pass.counters());
+  counts_.lamp_bounces = lamp_bounces_.counts();
+  if (pass.counters().uploaded_bytes > 0) pass.because(reasons_.of(kLightCauses, "lights among surfaces"));
+  return done;
+}
+
 // Others of a group's samples take the light of those.
 void Frame::keepFewerSamples(const World& world) {
   const auto& groups = world.residency().groups();
@@ -111,7 +124,10 @@ Result<void> Frame::capture(World& world, const lighting::Environment& environme
   std::vector<std::uint64_t> shaded;
   for (std::size_t g = 0; g < world.residency().groups().size(); ++g)
     shaded.push_back(diffuse_.versionOf(g) + glossy_.versionOf(g));
-  if (Result<void> done = proxies_.shade(world.residency(), group_lights_, shaded, pass.counters()); !done)
+  std::vector<effects::diffuse::AddedRadiance> added;
+  for (std::size_t g = 0; g < shaded.size(); ++g)
+    added.push_back({.triangles = lamp_bounces_.sentBy(g), .version = lamp_bounces_.versionOf(g)});
+  if (Result<void> done = proxies_.shade(world.residency(), group_lights_, shaded, pass.counters(), added); !done)
     return done;
   proxy_radiance_.follow(lit_scene_.groups, &lighting::IncidentGroup::key);
   for (std::size_t g = 0; g < lit_scene_.groups.size(); ++g) {
@@ -120,8 +136,13 @@ Result<void> Frame::capture(World& world, const lighting::Environment& environme
       radiance.version = proxies_.versionOf(g);
       // Shaded for another reason than light or a turn: all of it may be different.
       const bool by_light = group_lights_.versionOf(g) != radiance.light;
+      const double lamps = lamp_bounces_.driftOf(g);
+      const bool by_lamps = lamps != radiance.lamps;
       radiance.light = group_lights_.versionOf(g);
-      radiance.drift += by_light ? double{group_lights_.changeOf(g)} : 1.0;
+      if (by_light) radiance.drift += double{group_lights_.changeOf(g)};
+      if (by_lamps) radiance.drift += std::min(std::abs(lamps - radiance.lamps), 1.0);
+      if (!by_light && !by_lamps) radiance.drift += 1.0;
+      radiance.lamps = lamps;
     }
     if (const std::uint32_t body = lit_scene_.groups[g].body; body != lighting::CapturePoint::kNoBody)
       lit_scene_.bodies[body].radiance_drift = radiance.drift;

@@ -35,6 +35,21 @@ vec3 cornerPosition(uint corner) {
   return vec3(uintBitsToFloat(geometry[at]), uintBitsToFloat(geometry[at + 1u]), uintBitsToFloat(geometry[at + 2u]));
 }
 
+#ifdef LAMBENT_NEAR_LIGHTS
+layout(std430, binding = kBindGlossyBounced) readonly buffer Bounced { float bounced_of[]; };
+
+// What surfaces around send on of near lights: light of bands 0..2 at the corners.
+void addBounces(uvec3 corners, vec3 weights, inout vec4 light[kCoefficients]) {
+  uint word = near_draws[draws[draw_of].glossy.draw].bounced_word;
+  if (word == kNoBounces) return;
+  for (int corner = 0; corner < 3; ++corner)
+    for (int k = 0; k < min(kUsedCoefficients, 9); ++k) {
+      uint at = word + 3u * (9u * corners[corner] + uint(k));
+      light[k].rgb += weights[corner] * vec3(bounced_of[at], bounced_of[at + 1u], bounced_of[at + 2u]);
+    }
+}
+#endif
+
 // A row as it lies in the page is what the diffuse effect reads (diffuse_eval.glsl). A vertex without any sample leaves
 // the pixel to the others.
 void gatherLight(out vec4 light[kCoefficients]) {
@@ -59,6 +74,9 @@ void gatherLight(out vec4 light[kCoefficients]) {
   }
   float scale = total > 0.0 ? 1.0 / total : 0.0;
   for (int k = 0; k < kCoefficients; ++k) light[k] *= scale;
+#ifdef LAMBENT_NEAR_LIGHTS
+  addBounces(corners, weights, light);
+#endif
 }
 
 // Group frame, unit.

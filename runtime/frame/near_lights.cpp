@@ -10,6 +10,7 @@
 
 #include "lambent_frame_embedded.hpp"
 #include "runtime/frame/near_faces.hpp"
+#include "runtime/frame/near_record.hpp"
 
 namespace lambent::frame {
 
@@ -23,45 +24,10 @@ constexpr float kNearPlane_m = 2e-3f;
 constexpr float kLightSurface = 1.01f;  // what a spherical lamp is made of may be this much larger than it
 static_assert(kNearLights == lighting::kMaxNearLights);
 
-bool hasExtent(const NearLight& light) {
-  return light.kind == NearLight::Kind::Sphere || light.kind == NearLight::Kind::Disc;
-}
-
-bool hasDirection(const NearLight& light) {
-  return light.kind == NearLight::Kind::Spot || light.kind == NearLight::Kind::Disc;
-}
-
-// A light with a number that is none is dark.
-bool shines(const NearLight& light) {
-  const auto finite = [](glm::vec3 v) { return std::isfinite(v.x + v.y + v.z); };
-  return finite(light.power) && finite(light.position_ws) && finite(light.direction_ws) &&
-         light.power != glm::vec3(0.0f) &&
-         (!hasExtent(light) || (light.radius_m > 0.0f && std::isfinite(light.radius_m)));
-}
-
-// Where its light ends; surfaces with an extent shine without end.
-float rangeOf(const NearLight& light) {
-  return !hasExtent(light) && light.range_m > 0.0f ? light.range_m : std::numeric_limits<float>::infinity();
-}
-
 // Whether both have the same shadows, whatever their colour and cones.
 bool sameShadows(const NearLight& a, const NearLight& b) {
   return a.kind == b.kind && a.position_ws == b.position_ws && a.radius_m == b.radius_m &&
          a.range_m == b.range_m && (!hasDirection(a) || a.direction_ws == b.direction_ws);
-}
-
-NearRecord recordOf(const NearLight& light, float reach) {
-  const float inner = std::cos(light.inner_cone_rad), outer = std::cos(light.outer_cone_rad);
-  return {.position = light.position_ws,
-          .reach = reach,
-          .direction = light.direction_ws,
-          .kind = static_cast<uint>(light.kind),
-          .power = light.power,
-          .radius = light.radius_m,
-          .cos_outer = outer,
-          .cone_scale = 1.0f / std::max(0.001f, inner - outer),
-          .range = std::isinf(rangeOf(light)) ? 0.0f : light.range_m,
-          .pad = 0.0f};
 }
 
 ShadowFace faceOf(const NearLight& light, float reach, std::uint32_t face) {
@@ -95,7 +61,10 @@ NearLights::NearLights(const NearOptions& options)
                .samples = std::clamp(options.samples, 1u, 256u)},
       block_("near lights"),
       draws_table_("near draws"),
-      faces_("shadow faces") {}
+      faces_("shadow faces"),
+      no_bounces_("no bounces") {
+  no_bounces_.reserve(16);
+}
 
 Result<void> NearLights::compile() {
   if (programs_[0]) return {};
@@ -122,7 +91,8 @@ void NearLights::updateMasks(const World& world, std::span<const std::uint32_t> 
   Masks masks{.of_group = {mask_of_group.begin(), mask_of_group.end()},
               .shining = shining,
               .residency = residency.version(),
-              .transforms = world.transformsVersion()};
+              .transforms = world.transformsVersion(),
+              .bounces = bounces_ != nullptr ? bounces_->layoutVersion() : 0};
   if (masks == masks_seen_) return;
   masks_seen_ = std::move(masks);
   std::vector<NearDraw> draws;
@@ -135,9 +105,9 @@ void NearLights::updateMasks(const World& world, std::span<const std::uint32_t> 
       const bool lit = group < mask_of_group.size() && !materialOf(world, i).unlit;
       draws.push_back({.world_from_group = {turn.x, turn.y, turn.z, turn.w},
                        .lights = lit ? mask_of_group[group] & shining : 0u,
+                       .bounced_word = bounces_ != nullptr ? bounces_->wordOf(i) : kNoBounces,
                        .pad0 = 0,
-                       .pad1 = 0,
-                       .pad2 = 0});
+                       .pad1 = 0});
     }
   }
   const bool same_lights =
@@ -182,8 +152,10 @@ std::vector<std::uint32_t> NearLights::findChanged(World& world) {
 }
 
 Result<void> NearLights::update(World& world, std::span<const NearLight> lights,
-                                std::span<const std::uint32_t> mask_of_group, gpu::Counters& counters) {
+                                std::span<const std::uint32_t> mask_of_group, gpu::Counters& counters,
+                                const LampBounces* bounces) {
   cubes_drawn_ = 0;
+  bounces_ = bounces;
   const std::span<const NearLight> kept = lights.first(std::min<std::size_t>(lights.size(), kNearLights));
   lights_.assign(kept.begin(), kept.end());
   for (NearLight& light : lights_)
@@ -255,6 +227,14 @@ void NearLights::bind(const spec::View& view, const spec::Size& size) {
   glBindBufferBase(GL_UNIFORM_BUFFER, kBindNearLights, block_.buffer().id());
   draws_table_.bindStorage(kBindNearDraws);
   shadows_.bind(kUnitNearShadows);
+}
+
+void NearLights::bindBounces(bool glossy) const {
+  const std::uint32_t binding = glossy ? kBindGlossyBounced : kBindBounced;
+  if (bounces_ != nullptr && bounces_->any())
+    bounces_->bindStorage(binding);
+  else
+    no_bounces_.bindStorage(binding);
 }
 
 std::uint64_t NearLights::bytesResident() const {

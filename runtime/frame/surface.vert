@@ -47,6 +47,18 @@ layout(location = 5) out vec3 position_mesh;
 #endif
 #endif
 
+#if defined(LAMBENT_NEAR_LIGHTS) && !defined(LAMBENT_GLOSSY)
+#include "near_shared.h"
+layout(std430, binding = kBindNearDraws) readonly buffer NearDraws { NearDraw near_draws[]; };
+layout(std430, binding = kBindBounced) readonly buffer Bounced { float bounced_of[]; };
+vec3 bouncedAt(uint place) {
+  uint at = near_draws[draw_index].bounced_word;
+  if (at == kNoBounces) return vec3(0.0);
+  at += 3u * place;
+  return vec3(bounced_of[at], bounced_of[at + 1u], bounced_of[at + 2u]);
+}
+#endif
+
 vec2 geometry2(uint at) { return vec2(uintBitsToFloat(geometry[at]), uintBitsToFloat(geometry[at + 1u])); }
 vec3 geometry3(uint at) { return vec3(geometry2(at), uintBitsToFloat(geometry[at + 2u])); }
 // In the group's frame, as long as its weight: pixels bring what is between to unit length.
@@ -106,6 +118,9 @@ void main() {
 #ifndef LAMBENT_GLOSSY
   uint words = 3u * kLightCoefficients;
   for (uint j = 0u; j < kLightCoefficients; ++j) light[j] = radianceAt(draws[draw_index].radiance_word + words * vertex + 3u * j);
+#ifdef LAMBENT_NEAR_LIGHTS
+  for (uint j = 0u; j < kLightCoefficients; ++j) light[j] += bouncedAt(kLightCoefficients * vertex + j);
+#endif
 #endif
 #elif defined(LAMBENT_DARK)
   radiance = vec3(0.0);
@@ -116,6 +131,9 @@ void main() {
   // As withChange in neighborhood_eval.glsl.
   radiance = max(radiance + vec3(change_of[change_at], change_of[change_at + 1u], change_of[change_at + 2u]),
                  min(radiance, vec3(0.0)));
+#endif
+#ifdef LAMBENT_NEAR_LIGHTS
+  radiance += bouncedAt(vertex);
 #endif
 #if defined(LAMBENT_NEAR_LIGHTS) || defined(LAMBENT_KEY_LIGHTS) || defined(LAMBENT_NEIGHBORHOODS) || defined(LAMBENT_VIEW_NORMALS)
   normal_group =

@@ -137,6 +137,7 @@ Result<void> Surfaces::prepare(World& world, const effects::diffuse::Diffuse& di
   const bool residual_same = (reflected_sky != nullptr) == (reflected_sky_ != nullptr);
   reflected_sky_ = reflected_sky;
   neighborhoods_ = neighborhoods;
+  near_lights_ = near_lights;
   const ViewBlock block{view.view_from_world, view.clip_from_view, eyeOf(view)};
   view_.assign(std::span<const ViewBlock>(&block, 1));
   const streaming::Residency& residency = world.residency();
@@ -235,6 +236,7 @@ void Surfaces::drawRuns(World& world, const std::vector<Run>& runs, gpu::Counter
       world.residency().radiance().page(run.state.radiance_page).bindStorage(kBindRadiance);
       if (run.state.vertices_around) neighborhoods_->bindVertices();
     }
+    if (run.state.near_lit) near_lights_->bindBounces(run.state.glossy.bands > 0);
     glFrontFace(run.state.clockwise ? GL_CW : GL_CCW);
     DrawIndices::draw(run.first_command, run.command_count, counters);
   }

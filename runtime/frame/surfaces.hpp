@@ -138,6 +138,7 @@ class Surfaces {
   SurfaceView view_shown_ = SurfaceView::Final, view_seen_ = SurfaceView::Final;
   const lighting::ReflectedSky* reflected_sky_ = nullptr;  // of this frame; null: no residual
   const Neighborhoods* neighborhoods_ = nullptr;           // of this frame
+  const NearLights* near_lights_ = nullptr;                // likewise
 };
 
 }  // namespace lambent::frame

@@ -8,6 +8,7 @@ layout(std430, binding = kBindProxyGroups) readonly buffer Groups { ProxyGroupRe
 layout(std430, binding = kBindProxyTriangles) readonly buffer Triangles { ProxyTriangleRecord triangles[]; };
 layout(std430, binding = kBindProxyEntries) readonly buffer Entries { ProxyEntryRecord entries[]; };
 layout(std430, binding = kBindProxyRadiance) writeonly buffer Radiance { vec4 radiance[]; };
+layout(std430, binding = kBindProxyAdded) readonly buffer Added { vec4 added[]; };
 layout(std430, binding = kBindSamples) readonly buffer Samples { vec4 samples[]; };
 
 #define LAMBENT_STAGE_PROXIES
@@ -24,5 +25,5 @@ void main() {
   uint place = work[index].first + gl_LocalInvocationID.x;
   if (place >= group.triangle_count) return;
   uint triangle = group.first_triangle + place;
-  radiance[triangle] = vec4(proxyRadiance(group, triangles[triangle]), 0.0);
+  radiance[triangle] = vec4(proxyRadiance(group, triangles[triangle]) + added[triangle].rgb, 0.0);
 }

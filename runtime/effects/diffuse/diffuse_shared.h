@@ -28,6 +28,7 @@ LAMBENT_CONSTANT kBindProxyGroups = 2u;     // ProxyGroupRecord
 LAMBENT_CONSTANT kBindProxyTriangles = 3u;  // ProxyTriangleRecord
 LAMBENT_CONSTANT kBindProxyEntries = 4u;    // ProxyEntryRecord
 LAMBENT_CONSTANT kBindProxyRadiance = 5u;   // vec4 per triangle
+LAMBENT_CONSTANT kBindProxyAdded = 7u;      // likewise: what it sends out besides
 
 LAMBENT_CONSTANT kWorkGroupSize = 64u;
 LAMBENT_CONSTANT kLanesPerUnit = 16u;  // of the project stage: a unit is one output of one cluster

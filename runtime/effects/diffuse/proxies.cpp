@@ -1,6 +1,9 @@
 #include "runtime/effects/diffuse/proxies.hpp"
 
+#include <algorithm>
+
 #include <glm/geometric.hpp>
+#include <glm/vec4.hpp>
 
 #include "lambent_effects_diffuse_embedded.hpp"
 
@@ -31,6 +34,7 @@ Proxies::Proxies()
     : groups_table_("proxy groups"),
       triangles_table_("proxy triangles"),
       entries_table_("proxy entries"),
+      added_table_("proxy radiance from near lights"),
       radiance_("proxy radiance"),
       work_("proxy work") {}
 
@@ -84,10 +88,24 @@ void Proxies::rebuildTables(const streaming::Residency& residency, const lightin
   triangles_table_.assign(std::span<const ProxyTriangleRecord>(triangles_));
   entries_table_.assign(std::span<const ProxyEntryRecord>(entries_));
   radiance_.reserve(triangles_.size() * sizeof(glm::vec4));
+  added_ = true;  // to be written anew
+}
+
+void Proxies::writeAdded(std::span<const AddedRadiance> added, gpu::Counters& counters) {
+  const bool any = std::ranges::any_of(added, [](const AddedRadiance& one) { return !one.triangles.empty(); });
+  if (!any && !added_) return;  // it is 0 already
+  added_ = any;
+  std::vector<glm::vec4> values(triangles_.size(), glm::vec4(0.0f));
+  for (std::size_t g = 0; g < std::min(added.size(), groups_.size()); ++g)
+    for (std::size_t t = 0; t < std::min<std::size_t>(added[g].triangles.size(), groups_[g].triangle_count); ++t)
+      values[groups_[g].first_triangle + t] = glm::vec4(added[g].triangles[t], 0.0f);
+  added_table_.assign(std::span<const glm::vec4>(values));
+  counters.uploaded_bytes += values.size() * sizeof(glm::vec4);
 }
 
 Result<void> Proxies::shade(streaming::Residency& residency, const lighting::GroupLights& lights,
-                            std::span<const std::uint64_t> shaded, gpu::Counters& counters) {
+                            std::span<const std::uint64_t> shaded, gpu::Counters& counters,
+                            std::span<const AddedRadiance> added) {
   if (residency.proxiesVersion() != proxies_seen_ || lights.coefficients().size() != lights_seen_) {
     proxies_seen_ = residency.proxiesVersion();
     lights_seen_ = lights.coefficients().size();
@@ -99,11 +117,14 @@ Result<void> Proxies::shade(streaming::Residency& residency, const lighting::Gro
     if (groups_[g].triangle_count == 0 || !group.samples) continue;
     Seen& seen = seen_[g];
     const std::uint64_t samples = shaded[g], light = lights.versionOf(g);
-    const bool same = seen.version != 0 && seen.samples == samples && seen.light == light;
+    const std::uint64_t brought = g < added.size() ? added[g].version : 0;
+    const bool same =
+        seen.version != 0 && seen.samples == samples && seen.light == light && seen.added == brought;
     if (same && seen.written) continue;
     if (!same) seen.version = ++version_;
     seen.samples = samples;
     seen.light = light;
+    seen.added = brought;
     seen.written = true;
     work_.add({group.samples.page}, g, groups_[g].triangle_count, kWorkGroupSize);
   }
@@ -115,11 +136,13 @@ Result<void> Proxies::shade(streaming::Residency& residency, const lighting::Gro
     program_ = std::move(*made);
   }
   work_.upload(counters);
+  writeAdded(added, counters);
   program_->use();
   lights.bindStorage(kBindLights);
   groups_table_.bindStorage(kBindProxyGroups);
   triangles_table_.bindStorage(kBindProxyTriangles);
   entries_table_.bindStorage(kBindProxyEntries);
+  added_table_.bindStorage(kBindProxyAdded);
   radiance_.bindStorage(kBindProxyRadiance);
   std::size_t index = 0;
   for (const auto& [key, items] : work_.batches()) {

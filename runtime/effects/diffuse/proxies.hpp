@@ -10,6 +10,8 @@
 #include <span>
 #include <vector>
 
+#include <glm/vec3.hpp>
+
 #include "runtime/base/by_key.hpp"
 #include "runtime/base/result.hpp"
 #include "runtime/effects/diffuse/diffuse_shared.h"
@@ -20,13 +22,21 @@
 
 namespace lambent::effects::diffuse {
 
+// What a group's triangles send out besides: light that reached them per pixel, and not by transfer.
+struct AddedRadiance {
+  std::span<const glm::vec3> triangles;  // empty: none
+  std::uint64_t version = 0;             // another number when it changed
+};
+
 class Proxies {
  public:
   Proxies();
 
-  // shaded: per group, a number that rises when samples of it are shaded, by whatever effect.
+  // shaded: per group, a number that rises when samples of it are shaded, by whatever effect. added: per group,
+  // or nothing at all.
   Result<void> shade(streaming::Residency& residency, const lighting::GroupLights& lights,
-                     std::span<const std::uint64_t> shaded, gpu::Counters& counters);
+                     std::span<const std::uint64_t> shaded, gpu::Counters& counters,
+                     std::span<const AddedRadiance> added = {});
 
   const gpu::Buffer& radiance() const { return radiance_.buffer(); }
   // Another number when what the group sends out was computed anew; never that of another group.
@@ -39,7 +49,7 @@ class Proxies {
 
  private:
   struct Seen {
-    std::uint64_t samples = 0, light = 0, version = 0;
+    std::uint64_t samples = 0, light = 0, added = 0, version = 0;
     bool written = false;  // where the table has it now
     // The proxy's, by themselves: entries from 0 on. Made when it comes.
     bool made = false;
@@ -48,6 +58,7 @@ class Proxies {
   };
   static void makeRecords(const streaming::ResidentGroup& group, Seen& seen);
   void rebuildTables(const streaming::Residency& residency, const lighting::GroupLights& lights);
+  void writeAdded(std::span<const AddedRadiance> added, gpu::Counters& counters);
 
   std::optional<gpu::Program> program_;
   std::vector<ProxyGroupRecord> groups_;  // index: residency group
@@ -56,7 +67,8 @@ class Proxies {
   ByKey<Seen> seen_;
   std::uint64_t proxies_seen_ = 0, version_ = 0;
   std::size_t lights_seen_ = 0;
-  gpu::Table groups_table_, triangles_table_, entries_table_, radiance_;
+  bool added_ = false;  // whether the table of what is added may hold anything
+  gpu::Table groups_table_, triangles_table_, entries_table_, added_table_, radiance_;
   gpu::WorkList work_;
 };
 

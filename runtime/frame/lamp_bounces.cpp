@@ -1,0 +1,287 @@
+#include "runtime/frame/lamp_bounces.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <span>
+#include <utility>
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+#include <glm/vec4.hpp>
+
+#include "lambent_frame_embedded.hpp"
+#include "runtime/frame/near_record.hpp"
+#include "runtime/frame/surface_record.hpp"
+
+namespace lambent::frame {
+
+static_assert(kLampLinks == lighting::kLinks);
+
+namespace {
+
+constexpr gpu::FindText kShaders[] = {&embedded::lambent_frame::find};
+constexpr std::size_t kOtherLevel = 1;  // of the proxies of what stands in the light
+
+std::uint32_t outputsOf(const streaming::ResidentDraw& draw) {
+  return draw.outputs == 1 ? 1 : bundle::kMappedOutputs;
+}
+
+lighting::LinkSpread spreadOf(const streaming::ResidentDraw& draw) {
+  return outputsOf(draw) == 1 ? lighting::LinkSpread::Cosine : lighting::LinkSpread::Hemisphere;
+}
+
+std::vector<glm::vec3> readVectors(const gpu::Buffer& page, std::uint32_t word, std::uint32_t count) {
+  std::vector<glm::vec3> values(count);
+  page.read(4 * std::size_t{word}, std::span(values));
+  return values;
+}
+
+glm::vec3 unit(const glm::vec3& v) {
+  const float length = glm::length(v);
+  return length > 0.0f ? v / length : glm::vec3(0.0f, 1.0f, 0.0f);
+}
+
+}  // namespace
+
+LampBounces::LampBounces()
+    : patches_("lamp patches"),
+      bounced_("lamp light at vertices"),
+      directions_("lamp link directions"),
+      block_("lamp draw") {}
+
+void LampBounces::drop() {
+  if (counts_.rooms > 0 || !words_.empty()) ++layout_version_;
+  rooms_.clear();
+  draws_.clear();
+  words_.clear();
+  counts_ = {};
+}
+
+std::vector<lighting::NearLight> LampBounces::lampsIn(const LitScene& scene, std::size_t group) {
+  std::vector<lighting::NearLight> lamps;
+  for (std::size_t k = 0; k < scene.near_lights.size(); ++k)
+    if ((scene.near_masks[group] >> k & 1u) != 0 && shines(scene.near_lights[k]))
+      lamps.push_back(scene.near_lights[k]);
+  return lamps;
+}
+
+// Bodies that are near enough to take light from the group's surfaces.
+std::vector<lighting::RayTriangle> LampBounces::othersAround(const World& world, const LitScene& scene,
+                                                             std::size_t group) {
+  const std::uint32_t own = scene.groups[group].body;
+  if (own == lighting::CapturePoint::kNoBody) return {};
+  const lighting::IncidentBody& room = scene.bodies[own];
+  const glm::mat4 group_from_world = glm::inverse(world.worldFromGroup(group));
+  std::vector<lighting::RayTriangle> triangles;
+  for (std::size_t g = 0; g < scene.groups.size(); ++g) {
+    const std::uint32_t body = scene.groups[g].body;
+    if (body == own || body == lighting::CapturePoint::kNoBody) continue;
+    const lighting::IncidentBody& other = scene.bodies[body];
+    if (glm::distance(room.center_ws, other.center_ws) > room.radius_m + other.radius_m) continue;
+    const bundle::CaptureProxy& proxy = *world.residency().groups()[g].proxy;
+    if (proxy.levels.empty()) continue;
+    const bundle::ProxyLevel& level = proxy.levels[std::min(kOtherLevel, proxy.levels.size() - 1)];
+    const glm::mat4 group_from_other = group_from_world * other.body.world_from_proxy;
+    for (std::uint32_t t = 0; t < level.triangle_count; ++t) {
+      const bundle::ProxyTriangle& from = proxy.triangles[level.first_triangle + t];
+      lighting::RayTriangle& triangle = triangles.emplace_back();
+      triangle.front_only = from.front_only;
+      for (std::size_t k = 0; k < 3; ++k)
+        triangle.corners[k] = group_from_other * glm::vec4(proxy.positions[from.vertices[k]], 1.0f);
+    }
+  }
+  return triangles;
+}
+
+LampBounces::Points LampBounces::pointsOf(World& world, std::size_t index) {
+  const streaming::ResidentDraw& draw = world.residency().draws()[index];
+  const streaming::ResidentMesh& mesh = world.residency().meshes()[draw.mesh];
+  const gpu::Buffer& page = world.residency().geometry().page(mesh.block.page);
+  const glm::mat4 group_from_mesh =
+      glm::inverse(world.worldFromGroup(draw.group)) * world.worldFromMesh(index);
+  const std::vector<glm::vec3> positions = readVectors(page, mesh.positions_word, mesh.vertex_count);
+  const std::vector<glm::vec3> normals = readVectors(page, mesh.normals_word, mesh.vertex_count);
+  Points points{.draw = draw.id, .points = {}, .spread = spreadOf(draw)};
+  points.points.reserve(mesh.vertex_count);
+  for (std::size_t v = 0; v < mesh.vertex_count; ++v)
+    points.points.push_back({.position = glm::vec3(group_from_mesh * glm::vec4(positions[v], 1.0f)),
+                             .normal = unit(draw.group_from_mesh_normal * normals[v])});
+  return points;
+}
+
+bool LampBounces::lit(const World& world, std::size_t draw) const {
+  const streaming::ResidentDraw& resident = world.residency().draws()[draw];
+  return !rooms_[resident.group].room.givenOff().empty() && !materialOf(world, draw).unlit;
+}
+
+// Everything that the group needs and does not have, as one piece of work.
+void LampBounces::ask(World& world, std::size_t group) {
+  Room& room = rooms_[group];
+  if (room.coming.valid()) return;
+  const auto& draws = world.residency().draws();
+  std::vector<Points> points;
+  for (std::size_t i = 0; i < draws.size(); ++i) {
+    if (draws[i].group != group || draws_[i].asked) continue;
+    if (!world.residency().meshes()[draws[i].mesh].block || materialOf(world, i).unlit) continue;
+    draws_[i].asked = true;
+    points.push_back(pointsOf(world, i));
+  }
+  if (room.room.transport() && points.empty()) return;
+  room.coming = std::async(
+      std::launch::async, [transport = room.room.transport(), points = std::move(points),
+                           proxy = *world.residency().groups()[group].proxy]() mutable {
+        Made made{.transport = std::move(transport), .links = {}};
+        if (!made.transport) made.transport = std::make_shared<const lighting::PatchTransport>(proxy);
+        for (const Points& draw : points)
+          made.links.push_back({draw.draw, made.transport->link(draw.points, draw.spread)});
+        return made;
+      });
+}
+
+bool LampBounces::take(const World& world, std::size_t group, bool wait) {
+  Room& room = rooms_[group];
+  if (!room.coming.valid()) return false;
+  if (!wait && room.coming.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return false;
+  Made made = room.coming.get();
+  if (!room.room.transport()) room.room = LampRoom(std::move(made.transport));
+  const auto& draws = world.residency().draws();
+  for (Made::Links& links : made.links) {
+    const auto found = std::ranges::find(draws, links.draw, &streaming::ResidentDraw::id);
+    if (found == draws.end()) continue;
+    Draw& draw = draws_[static_cast<std::size_t>(found - draws.begin())];
+    draw.links = gpu::Buffer("lamp links", std::max<std::size_t>(4, 2 * links.patches.size()));
+    draw.links.write(0, std::span<const std::uint16_t>(links.patches));
+  }
+  return true;
+}
+
+Result<void> LampBounces::update(World& world, const LitScene& scene, bool on, bool wait,
+                                 gpu::Counters& counters) {
+  const auto& groups = world.residency().groups();
+  counts_ = {};
+  bool any = false;
+  for (const std::uint32_t mask : scene.near_masks) any |= mask != 0;
+  if (!on || (!any && rooms_.size() == 0)) {
+    drop();
+    return {};
+  }
+  const bool groups_moved = rooms_.follow(groups, &streaming::ResidentGroup::id);
+  const bool draws_moved = draws_.follow(world.residency().draws(), &streaming::ResidentDraw::id);
+  bool changed = groups_moved || draws_moved;
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    Room& room = rooms_[g];
+    std::vector<lighting::NearLight> lamps;
+    if (groups[g].proxy && g < scene.near_masks.size()) lamps = lampsIn(scene, g);
+    if (!lamps.empty()) {
+      ask(world, g);
+      changed |= take(world, g, wait);
+    }
+    if (room.coming.valid()) ++counts_.rooms_to_come;
+    if (!room.room.transport()) continue;
+    room.room.light(lamps, world.worldFromGroup(g), lamps.empty() ? std::vector<lighting::RayTriangle>()
+                                                                  : othersAround(world, scene, g));
+    counts_.lamps_bounced += room.room.bouncedLast();
+    if (!room.room.givenOff().empty()) {
+      ++counts_.rooms;
+      counts_.patches += static_cast<std::uint32_t>(room.room.givenOff().size());
+    }
+    if (room.seen == room.room.version()) continue;
+    room.seen = room.room.version();
+    room.version = ++version_;
+    room.sent.clear();
+    if (!room.room.givenOff().empty()) room.sent = room.room.transport()->byTriangle(room.room.givenOff());
+    changed = true;
+  }
+  if (!changed) return {};
+  layOut(world);
+  uploadPatches(counters);
+  return gather(world, counters);
+}
+
+void LampBounces::layOut(const World& world) {
+  const auto& draws = world.residency().draws();
+  std::vector<std::uint32_t> words(draws.size(), kNothing);
+  std::uint32_t word = 0;
+  for (std::size_t i = 0; i < draws.size(); ++i) {
+    if (!draws_[i].links || !lit(world, i)) continue;
+    words[i] = word;
+    word += 3 * outputsOf(draws[i]) * world.residency().meshes()[draws[i].mesh].vertex_count;
+  }
+  if (words == words_) return;
+  words_ = std::move(words);
+  ++layout_version_;
+  for (Draw& draw : draws_) draw.gathered = 0;
+  bounced_.reserve(std::max<std::size_t>(16, 4 * std::size_t{word}));
+}
+
+// Behind the patches of each group one that is dark, for links that meet nothing.
+void LampBounces::uploadPatches(gpu::Counters& counters) {
+  std::vector<glm::vec4> patches;
+  for (Room& room : rooms_) {
+    if (room.room.givenOff().empty()) continue;
+    room.first_patch = static_cast<std::uint32_t>(patches.size());
+    for (const glm::vec3& radiance : room.room.givenOff()) patches.emplace_back(radiance, 0.0f);
+    patches.emplace_back(0.0f);
+  }
+  if (patches.empty()) return;
+  patches_.assign(std::span<const glm::vec4>(patches));
+  counters.uploaded_bytes += patches.size() * sizeof(glm::vec4);
+}
+
+Result<const gpu::Program*> LampBounces::program(std::uint32_t outputs) {
+  if (const auto found = programs_.find(outputs); found != programs_.end()) return &found->second;
+  const std::vector<gpu::Define> defines = {{"LAMBENT_OUTPUTS", std::to_string(outputs)}};
+  Result<gpu::Program> made = gpu::Program::create(fmt::format("lamp_gather.comp outputs {}", outputs),
+                                                   {{GL_COMPUTE_SHADER, "lamp_gather.comp"}}, kShaders, defines);
+  if (!made) return failAgain(made.error());
+  if (outputs > 1) {
+    std::vector<glm::vec4> directions;
+    for (const glm::vec3& direction : lighting::linkDirections(lighting::LinkSpread::Hemisphere))
+      directions.emplace_back(direction, 0.0f);
+    directions_.assign(std::span<const glm::vec4>(directions));
+  }
+  return &programs_.emplace(outputs, std::move(*made)).first->second;
+}
+
+Result<void> LampBounces::gather(World& world, gpu::Counters& counters) {
+  const auto& draws = world.residency().draws();
+  for (std::size_t i = 0; i < draws.size(); ++i) {
+    const Room& room = rooms_[draws[i].group];
+    if (words_[i] == kNothing || draws_[i].gathered == room.version) continue;
+    draws_[i].gathered = room.version;
+    const Result<const gpu::Program*> kernel = program(outputsOf(draws[i]));
+    if (!kernel) return failAgain(kernel.error());
+    (*kernel)->use();
+    const streaming::ResidentMesh& mesh = world.residency().meshes()[draws[i].mesh];
+    const LampDraw block{.group_from_mesh_normal = glm::mat3x4(draws[i].group_from_mesh_normal),
+                         .first_patch = room.first_patch,
+                         .vertex_count = mesh.vertex_count,
+                         .bounced_word = words_[i],
+                         .normals_word = mesh.normals_word};
+    block_.assign(std::span<const LampDraw>(&block, 1));
+    glBindBufferBase(GL_UNIFORM_BUFFER, kBindLampDraw, block_.buffer().id());
+    draws_[i].links.bindStorage(kBindLampLinks);
+    patches_.bindStorage(kBindLampPatches);
+    bounced_.bindStorage(kBindLampBounced);
+    if (outputsOf(draws[i]) > 1) {
+      world.residency().geometry().page(mesh.block.page).bindStorage(kBindLampGeometry);
+      directions_.bindStorage(kBindLampDirections);
+    }
+    glDispatchCompute((mesh.vertex_count + kLampGroupSize - 1) / kLampGroupSize, 1, 1);
+    ++counters.dispatches;
+    ++counts_.draws_gathered;
+    counters.uploaded_bytes += sizeof(block);
+  }
+  if (counts_.draws_gathered > 0) glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+  return {};
+}
+
+std::uint64_t LampBounces::bytesResident() const {
+  std::uint64_t bytes = patches_.buffer().byteCount() + bounced_.buffer().byteCount();
+  for (const Draw& draw : draws_) bytes += draw.links.byteCount();
+  return bytes;
+}
+
+}  // namespace lambent::frame

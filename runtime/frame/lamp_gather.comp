@@ -1,0 +1,60 @@
+// One invocation per vertex: the mean of what the patches give off that its links go to. That is E/pi where the links
+// are distributed as the cosine; with LAMBENT_OUTPUTS 9 they go to all sides of the hemisphere alike, and what arrives
+// is light of bands 0..2. The CPU twin is lighting::PatchTransport and the test beside it.
+#include "lamp_shared.h"
+
+layout(local_size_x = kLampGroupSize) in;
+layout(std140, binding = kBindLampDraw) uniform Block { LampDraw draw; };
+layout(std430, binding = kBindLampLinks) readonly buffer Links { uint links[]; };
+layout(std430, binding = kBindLampPatches) readonly buffer Patches { vec4 patches[]; };
+layout(std430, binding = kBindLampBounced) writeonly buffer Bounced { float bounced[]; };
+#if LAMBENT_OUTPUTS > 1
+layout(std430, binding = kBindLampGeometry) readonly buffer Geometry { float geometry[]; };
+layout(std430, binding = kBindLampDirections) readonly buffer Directions { vec4 directions[]; };
+#endif
+
+const float kFrameTurnsOver = -0.37;  // as in patch_transport.hpp
+const float kTwoPi = 6.2831853;
+
+vec3 patchAt(uint vertex, uint link) {
+  uint word = links[(kLampLinks * vertex + link) >> 1u];
+  return patches[draw.first_patch + ((word >> (16u * (link & 1u))) & 0xffffu)].rgb;
+}
+
+void put(uint vertex, uint output_index, vec3 light) {
+  uint at = draw.bounced_word + 3u * (uint(LAMBENT_OUTPUTS) * vertex + output_index);
+  bounced[at] = light.r;
+  bounced[at + 1u] = light.g;
+  bounced[at + 2u] = light.b;
+}
+
+void main() {
+  uint vertex = gl_GlobalInvocationID.x;
+  if (vertex >= draw.vertex_count) return;
+#if LAMBENT_OUTPUTS == 1
+  vec3 sum = vec3(0.0);
+  for (uint link = 0u; link < kLampLinks; ++link) sum += patchAt(vertex, link);
+  put(vertex, 0u, sum / float(kLampLinks));
+#else
+  uint at = draw.normals_word + 3u * vertex;
+  vec3 n = normalize(mat3(draw.group_from_mesh_normal) * vec3(geometry[at], geometry[at + 1u], geometry[at + 2u]));
+  float facing = n.z >= kFrameTurnsOver ? 1.0 : -1.0;
+  float a = -1.0 / (facing + n.z), b = n.x * n.y * a;
+  mat3 frame = mat3(vec3(1.0 + facing * n.x * n.x * a, facing * b, -facing * n.x), vec3(b, facing + n.y * n.y * a, -n.y), n);
+  vec3 sums[9] = vec3[9](vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0));
+  for (uint link = 0u; link < kLampLinks; ++link) {
+    vec3 s = frame * directions[link].xyz;
+    vec3 radiance = kTwoPi / float(kLampLinks) * patchAt(vertex, link);
+    sums[0] += 0.28209479 * radiance;
+    sums[1] += 0.48860251 * s.y * radiance;
+    sums[2] += 0.48860251 * s.z * radiance;
+    sums[3] += 0.48860251 * s.x * radiance;
+    sums[4] += 1.09254843 * s.x * s.y * radiance;
+    sums[5] += 1.09254843 * s.y * s.z * radiance;
+    sums[6] += 0.31539157 * (3.0 * s.z * s.z - 1.0) * radiance;
+    sums[7] += 1.09254843 * s.x * s.z * radiance;
+    sums[8] += 0.54627422 * (s.x * s.x - s.y * s.y) * radiance;
+  }
+  for (uint j = 0u; j < 9u; ++j) put(vertex, j, sums[j]);
+#endif
+}

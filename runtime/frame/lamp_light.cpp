@@ -1,0 +1,126 @@
+#include "runtime/frame/lamp_light.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
+
+#include "runtime/base/parallel.hpp"
+#include "runtime/frame/near_light_ref.hpp"
+#include "runtime/frame/near_record.hpp"
+
+namespace lambent::frame {
+
+namespace {
+
+using lighting::NearLight;
+using lighting::Patch;
+
+constexpr std::size_t kLampPoints = 16;    // of lamps with an extent
+constexpr float kLightSurface = 1.01f;     // as in near_lights.cpp
+constexpr float kAlmost = 1.0f - 1e-4f;    // of the way to a patch: not the patch itself
+
+// Points all over a disc of radius 1, and how far each is before or behind it in a ball (golden angle).
+std::vector<glm::vec3> ballPoints() {
+  std::vector<glm::vec3> points;
+  for (std::size_t i = 0; i < kLampPoints; ++i) {
+    const float height = 1.0f - (2.0f * static_cast<float>(i) + 1.0f) / static_cast<float>(kLampPoints);
+    const float ring = std::sqrt(1.0f - height * height);
+    const float turn = 2.0f * std::numbers::pi_v<float> * std::numbers::phi_v<float> * static_cast<float>(i);
+    // On the sphere and halfway in, in turn: so the points are about even as any side sees them.
+    const float radius = i % 2 == 0 ? 0.9f : 0.5f;
+    points.push_back(radius * glm::vec3(ring * std::cos(turn), ring * std::sin(turn), height));
+  }
+  return points;
+}
+
+std::vector<glm::vec3> lampPoints(const NearLight& light) {
+  if (!hasExtent(light)) return {light.position_ws};
+  std::vector<glm::vec3> points;
+  if (light.kind == NearLight::Kind::Sphere) {
+    for (const glm::vec3& point : ballPoints()) points.push_back(light.position_ws + light.radius_m * point);
+    return points;
+  }
+  glm::vec3 s, t;
+  ref::nearBasis(light.direction_ws, s, t);
+  for (std::size_t i = 0; i < kLampPoints; ++i) {
+    const float radius = std::sqrt((static_cast<float>(i) + 0.5f) / static_cast<float>(kLampPoints));
+    const float turn = 2.0f * std::numbers::pi_v<float> * std::numbers::phi_v<float> * static_cast<float>(i);
+    points.push_back(light.position_ws +
+                     light.radius_m * radius * (std::cos(turn) * s + std::sin(turn) * t));
+  }
+  return points;
+}
+
+// What stands in the way of the lamp's light. What is no larger than a spherical lamp and within it is the lamp.
+lighting::TriangleSet blockersOf(const NearLight& light, const lighting::Patches& patches,
+                                 std::span<const lighting::RayTriangle> others,
+                                 const glm::mat4& world_from_group) {
+  const auto isLamp = [&](const lighting::RayTriangle& triangle) {
+    return light.kind == NearLight::Kind::Sphere &&
+           std::ranges::all_of(triangle.corners, [&](const glm::vec3& corner) {
+             const glm::vec3 corner_ws(world_from_group * glm::vec4(corner, 1.0f));
+             return glm::distance(corner_ws, light.position_ws) <= kLightSurface * light.radius_m;
+           });
+  };
+  lighting::TriangleSet blockers;
+  for (std::size_t t = 0; t < patches.triangles().size(); ++t)
+    if (const lighting::RayTriangle own = patches.triangles()[t]; !isLamp(own)) blockers.add(own);
+  for (const lighting::RayTriangle& other : others)
+    if (!isLamp(other)) blockers.add(other);
+  return blockers;
+}
+
+}  // namespace
+
+std::vector<float> lampOnPatches(const NearLight& lamp, const lighting::Patches& patches,
+                                 std::span<const lighting::RayTriangle> others,
+                                 const glm::mat4& world_from_group) {
+  NearLight light = lamp;
+  if (const float length = glm::length(light.direction_ws); length > 0.0f) light.direction_ws /= length;
+  const NearRecord record = recordOf(light, 0.0f);
+  const std::vector<Patch>& all = patches.all();
+  const glm::mat4 group_from_world = glm::inverse(world_from_group);
+  const glm::mat3 world_from_normal = glm::transpose(glm::mat3(group_from_world));
+
+  constexpr std::size_t kPoints = lighting::kPatchPoints;
+  std::vector<glm::vec3> points_ws;  // a little above their patches
+  std::vector<float> shares;         // without blockers
+  for (const Patch& patch : all) {
+    const glm::vec3 normal_ws = ref::nearUnit(world_from_normal * patch.normal);
+    for (const glm::vec3& point : patch.points) {
+      points_ws.emplace_back(world_from_group * glm::vec4(point, 1.0f));
+      shares.push_back(ref::nearShare(record, normal_ws, light.position_ws - points_ws.back()));
+    }
+  }
+
+  // From each point of the lamp to all points of patches that it shines on.
+  const std::vector<glm::vec3> lamp_points = lampPoints(light);
+  const lighting::TriangleSet blockers = blockersOf(light, patches, others, world_from_group);
+  std::vector<std::vector<std::uint8_t>> seen(lamp_points.size());
+  inParallel(lamp_points.size(), 1, [&](std::size_t l) {
+    const glm::vec3 from(group_from_world * glm::vec4(lamp_points[l], 1.0f));
+    lighting::RaysFrom rays(blockers, 1e-5f * patches.extent());
+    rays.moveTo(from);
+    seen[l].assign(shares.size(), 0);
+    for (std::size_t i = 0; i < shares.size(); ++i) {
+      if (shares[i] <= 0.0f) continue;
+      const glm::vec3 way = all[i / kPoints].points[i % kPoints] - from;
+      seen[l][i] = rays.blocked(way, kAlmost) ? 0 : 1;
+    }
+  });
+
+  std::vector<float> direct(all.size(), 0.0f);
+  for (std::size_t i = 0; i < shares.size(); ++i) {
+    std::uint32_t count = 0;
+    for (const std::vector<std::uint8_t>& from_point : seen) count += from_point[i];
+    direct[i / kPoints] += shares[i] * static_cast<float>(count) /
+                           static_cast<float>(lamp_points.size() * kPoints);
+  }
+  return direct;
+}
+
+}  // namespace lambent::frame

@@ -1,0 +1,225 @@
+#include "runtime/lighting/patch_transport.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include "runtime/base/parallel.hpp"
+
+namespace lambent::lighting {
+
+namespace {
+
+constexpr std::size_t kRaysPerPoint = 64;  // of a point of a patch
+constexpr float kDone = 1e-4f;
+constexpr int kMaxBounces = 256;
+constexpr std::size_t kBlock = 64;  // points of one part of the work
+
+// The R2 sequence (Roberts 2018), which fills the square evenly for any number of points.
+std::array<float, 2> evenPoint(std::size_t index) {
+  constexpr double kA = 0.7548776662466927, kB = 0.5698402909980532;
+  const auto i = static_cast<double>(index) + 1.0;
+  const double x = i * kA, y = i * kB;
+  return {static_cast<float>(x - std::floor(x)), static_cast<float>(y - std::floor(y))};
+}
+
+// Malley's method: the height above the disc.  pdf = cos/pi
+glm::vec3 cosineDirection(float u, float v) {
+  const float radius = std::sqrt(u), angle = 2.0f * std::numbers::pi_v<float> * v;
+  return {radius * std::cos(angle), radius * std::sin(angle), std::sqrt(std::max(1.0f - u, 0.0f))};
+}
+
+// pdf = 1/(2 pi)
+glm::vec3 hemisphereDirection(float u, float v) {
+  const float radius = std::sqrt(std::max(1.0f - u * u, 0.0f)), angle = 2.0f * std::numbers::pi_v<float> * v;
+  return {radius * std::cos(angle), radius * std::sin(angle), u};
+}
+
+std::array<glm::vec3, kLinks> directionsOf(LinkSpread spread) {
+  std::array<glm::vec3, kLinks> directions{};
+  for (std::size_t i = 0; i < kLinks; ++i) {
+    // A spiral by the golden angle (Vogel 1979).
+    const float u = (static_cast<float>(i) + 0.5f) / static_cast<float>(kLinks);
+    const float v = static_cast<float>(i) * (std::numbers::phi_v<float> - 1.0f);
+    directions[i] = spread == LinkSpread::Cosine ? cosineDirection(u, v) : hemisphereDirection(u, v);
+  }
+  return directions;
+}
+
+std::size_t blocksOf(std::size_t count) {
+  return (count + kBlock - 1) / kBlock;
+}
+
+float largest(const glm::vec3& v) {
+  return std::max({v.r, v.g, v.b});
+}
+
+}  // namespace
+
+const std::array<glm::vec3, kLinks>& linkDirections(LinkSpread spread) {
+  static const std::array<glm::vec3, kLinks> cosine = directionsOf(LinkSpread::Cosine);
+  static const std::array<glm::vec3, kLinks> hemisphere = directionsOf(LinkSpread::Hemisphere);
+  return spread == LinkSpread::Cosine ? cosine : hemisphere;
+}
+
+LinkFrame linkFrame(const glm::vec3& n) {
+  const float facing = n.z >= kFrameTurnsOver ? 1.0f : -1.0f;
+  const float a = -1.0f / (facing + n.z), b = n.x * n.y * a;
+  return {.x = {1.0f + facing * n.x * n.x * a, facing * b, -facing * n.x},
+          .y = {b, facing + n.y * n.y * a, -n.y},
+          .z = n};
+}
+
+PatchTransport::PatchTransport(const bundle::CaptureProxy& proxy, std::size_t most)
+    : patches_(proxy, most) {
+  findShares();
+  findNearest(proxy);
+}
+
+void PatchTransport::findShares() {
+  const std::size_t count = patches_.size();
+  std::vector<std::vector<Share>> rows(count);
+  inParallel(blocksOf(count), 1, [&](std::size_t block) {
+    RaysFrom rays(patches_.triangles(), 1e-5f * patches_.extent());
+    std::vector<std::uint32_t> met;
+    for (std::size_t i = block * kBlock; i < std::min(count, (block + 1) * kBlock); ++i) {
+      const Patch& patch = patches_.all()[i];
+      const LinkFrame frame = linkFrame(patch.normal);
+      met.clear();
+      for (std::size_t p = 0; p < kPatchPoints; ++p) {
+        rays.moveTo(patches_.inFront(patch.points[p], patch.normal), patch.normal);
+        for (std::size_t k = 0; k < kRaysPerPoint; ++k) {
+          // The points of a patch share out one even set, and so do neighbours, in part.
+          const std::size_t place = p * kRaysPerPoint + k;
+          const auto [even, turn] = evenPoint(place + 37 * i);
+          const float u = (static_cast<float>(place) + even) / static_cast<float>(kPatchPoints * kRaysPerPoint);
+          const auto hit = rays.first(frame.turned(cosineDirection(u, turn)));
+          if (hit && !hit->back) met.push_back(static_cast<std::uint32_t>(patches_.patchAt(*hit)));
+        }
+      }
+      std::ranges::sort(met);
+      constexpr float kOne = 1.0f / static_cast<float>(kPatchPoints * kRaysPerPoint);
+      for (const std::uint32_t other : met) {
+        if (rows[i].empty() || rows[i].back().patch != other) rows[i].push_back({.patch = other, .share = 0.0f});
+        rows[i].back().share += kOne;
+      }
+    }
+  });
+  first_share_.push_back(0);
+  for (const std::vector<Share>& row : rows) {
+    shares_.insert(shares_.end(), row.begin(), row.end());
+    first_share_.push_back(static_cast<std::uint32_t>(shares_.size()));
+  }
+}
+
+void PatchTransport::findNearest(const bundle::CaptureProxy& proxy) {
+  for (std::size_t level = 1; level < proxy.levels.size(); ++level) {
+    bundle::CaptureProxy coarse = proxy;
+    coarse.levels = {proxy.levels[level]};
+    const Patches whole(coarse, 1);  // a patch to each triangle
+    for (const Patch& triangle : whole.all()) {
+      auto& nearest = nearest_.emplace_back();
+      for (std::size_t p = 0; p < kPatchPoints; ++p) {
+        float least = std::numeric_limits<float>::infinity();
+        for (std::uint32_t i = 0; i < patches_.size(); ++i) {
+          const Patch& patch = patches_.all()[i];
+          const float away = glm::distance(triangle.points[p], patch.points[0]);
+          // One that faces another way is as good as one that is farther off.
+          const float turned = 0.5f * patches_.extent() * (1.0f - glm::dot(triangle.normal, patch.normal));
+          if (away + turned >= least) continue;
+          least = away + turned;
+          nearest[p] = i;
+        }
+      }
+    }
+  }
+}
+
+std::vector<glm::vec3> PatchTransport::bounce(std::span<const float> direct) const {
+  std::vector<glm::vec3> given_off(patches_.size());
+  float brightest = 0.0f;
+  for (std::size_t i = 0; i < patches_.size(); ++i) {
+    given_off[i] = patches_.all()[i].albedo * direct[i];
+    brightest = std::max(brightest, largest(given_off[i]));
+  }
+  if (brightest == 0.0f) return given_off;
+  // Gauss and Seidel's way: what is new counts at once.
+  for (int bounces = 0; bounces < kMaxBounces; ++bounces) {
+    float change = 0.0f;
+    for (std::size_t i = 0; i < patches_.size(); ++i) {
+      glm::vec3 received(direct[i]);
+      for (std::uint32_t s = first_share_[i]; s < first_share_[i + 1]; ++s)
+        received += shares_[s].share * given_off[shares_[s].patch];
+      const glm::vec3 now = patches_.all()[i].albedo * received;
+      change = std::max(change, largest(glm::abs(now - given_off[i])));
+      given_off[i] = now;
+    }
+    if (change <= kDone * brightest) break;
+  }
+  return given_off;
+}
+
+glm::vec3 PatchTransport::startNear(const SurfacePoint& point) const {
+  const Patch* nearest = nullptr;
+  float least = std::numeric_limits<float>::infinity();
+  for (const Patch& patch : patches_.all()) {
+    const float facing = glm::dot(patch.normal, point.normal);
+    const float away = glm::distance(patch.points[0], point.position) * (2.0f - facing);
+    if (facing < 0.3f || away >= least) continue;
+    least = away;
+    nearest = &patch;
+  }
+  return nearest != nullptr ? patches_.inFront(nearest->points[0], nearest->normal) : point.position;
+}
+
+std::vector<std::uint16_t> PatchTransport::link(std::span<const SurfacePoint> points, LinkSpread spread) const {
+  const auto& directions = linkDirections(spread);
+  std::vector<std::uint16_t> links(kLinks * points.size());
+  inParallel(blocksOf(points.size()), 2, [&](std::size_t block) {
+    RaysFrom rays(patches_.triangles(), 1e-5f * patches_.extent());
+    // Returns how many of the rays meet the back of something.
+    const auto linkFrom = [&](const glm::vec3& origin, std::size_t i) {
+      const LinkFrame frame = linkFrame(points[i].normal);
+      rays.moveTo(origin, points[i].normal);
+      std::size_t backs = 0;
+      for (std::size_t k = 0; k < kLinks; ++k) {
+        const std::optional<RayHit> hit = rays.first(frame.turned(directions[k]));
+        backs += hit && hit->back ? 1 : 0;
+        const std::size_t patch = hit && !hit->back ? patches_.patchAt(*hit) : patches_.size();
+        links[kLinks * i + k] = static_cast<std::uint16_t>(patch);
+      }
+      return backs;
+    };
+    for (std::size_t i = block * kBlock; i < std::min(points.size(), (block + 1) * kBlock); ++i)
+      if (linkFrom(patches_.inFront(points[i].position, points[i].normal), i) > kLinks / 2)
+        linkFrom(startNear(points[i]), i);
+  });
+  return links;
+}
+
+std::vector<glm::vec3> PatchTransport::byTriangle(std::span<const glm::vec3> given_off) const {
+  std::vector<glm::vec3> triangles;
+  for (std::size_t t = 0; t < patches_.triangles().size(); ++t) {
+    glm::vec3 sum(0.0f);
+    for (std::size_t i = 0; i < patches_.countOf(t); ++i) sum += given_off[patches_.firstOf(t) + i];
+    triangles.push_back(sum / static_cast<float>(patches_.countOf(t)));
+  }
+  for (const auto& nearest : nearest_) {
+    glm::vec3 sum(0.0f);
+    for (const std::uint32_t patch : nearest) sum += given_off[patch];
+    triangles.push_back(sum / static_cast<float>(kPatchPoints));
+  }
+  return triangles;
+}
+
+std::uint64_t PatchTransport::bytes() const {
+  return patches_.size() * sizeof(Patch) + shares_.size() * sizeof(Share) + 4 * first_share_.size() +
+         nearest_.size() * sizeof(nearest_.front());
+}
+
+}  // namespace lambent::lighting

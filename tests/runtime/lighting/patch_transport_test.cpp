@@ -1,0 +1,194 @@
+#include "runtime/lighting/patch_transport.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstring>
+#include <numeric>
+
+#include <gtest/gtest.h>
+
+#include "tests/runtime/lighting/rooms.hpp"
+
+namespace lambent::lighting {
+
+using testing::RoomBuilder;
+
+namespace {
+
+constexpr float kPi = std::numbers::pi_v<float>;
+
+// E/pi straight from a point light of one candela, nothing in its way.
+std::vector<float> litFrom(const Patches& patches, const glm::vec3& light) {
+  std::vector<float> direct;
+  for (const Patch& patch : patches.all()) {
+    float sum = 0.0f;
+    for (const glm::vec3& point : patch.points) {
+      const glm::vec3 to = light - point;
+      const float d2 = glm::dot(to, to);
+      sum += std::max(glm::dot(to, patch.normal), 0.0f) / (d2 * std::sqrt(d2)) / kPi;
+    }
+    direct.push_back(sum / static_cast<float>(kPatchPoints));
+  }
+  return direct;
+}
+
+double wholeOf(const Patches& patches, const std::vector<float>& received) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < patches.size(); ++i) sum += double{patches.all()[i].area} * received[i];
+  return sum;
+}
+
+// What arrives at all patches after bounces, by the light that they give off: E/pi.
+std::vector<float> receivedAll(const Patches& patches, const std::vector<glm::vec3>& given_off) {
+  std::vector<float> received;
+  for (std::size_t i = 0; i < patches.size(); ++i)
+    received.push_back(given_off[i].r / patches.all()[i].albedo.r);
+  return received;
+}
+
+glm::vec3 gathered(const std::vector<std::uint16_t>& links, std::size_t point,
+                   const std::vector<glm::vec3>& given_off) {
+  glm::vec3 sum(0.0f);
+  for (std::size_t k = 0; k < kLinks; ++k)
+    if (const std::uint16_t patch = links[kLinks * point + k]; patch < given_off.size()) sum += given_off[patch];
+  return sum / static_cast<float>(kLinks);
+}
+
+}  // namespace
+
+TEST(PatchTransport, InAClosedSphereBouncesAddAlbedoOverOneMinusAlbedo) {
+  for (const float albedo : {0.2f, 0.5f, 0.8f}) {
+    const PatchTransport transport(RoomBuilder().sphere(10, 14, glm::vec3(albedo)).proxy());
+    const Patches& patches = transport.patches();
+    const std::vector<float> direct = litFrom(patches, {0, 0, 0});
+    const std::vector<float> all = receivedAll(patches, transport.bounce(direct));
+    const double ratio = wholeOf(patches, all) / wholeOf(patches, direct) - 1.0;
+    EXPECT_NEAR(ratio / (albedo / (1.0 - albedo)), 1.0, 0.01) << albedo;
+    for (std::size_t i = 0; i < all.size(); ++i)
+      ASSERT_NEAR((all[i] - direct[i]) / direct[i], albedo / (1.0f - albedo), 0.05f * albedo / (1.0f - albedo)) << i;
+  }
+}
+
+TEST(PatchTransport, InAClosedBoxTheSameHoldsOfTheWholeWhereverTheLampStands) {
+  for (const glm::vec3& lamp : {glm::vec3(1, 1.2f, 1.5f), glm::vec3(0.3f, 2.0f, 0.4f)}) {
+    const PatchTransport transport(
+        RoomBuilder().box({0, 0, 0}, {2, 2.4f, 3}, glm::vec3(0.6f)).proxy());
+    const Patches& patches = transport.patches();
+    const std::vector<float> direct = litFrom(patches, lamp);
+    const std::vector<float> all = receivedAll(patches, transport.bounce(direct));
+    EXPECT_NEAR((wholeOf(patches, all) / wholeOf(patches, direct) - 1.0) / 1.5, 1.0, 0.03);
+  }
+}
+
+TEST(PatchTransport, AFurnaceStaysUniform) {
+  // Every patch gives off 1 by itself and reflects half: 2 everywhere, whatever the shape of the room.
+  const PatchTransport transport(RoomBuilder().box({0, 0, 0}, {1, 5, 2}, glm::vec3(0.5f)).proxy());
+  const std::vector<float> direct(transport.patches().size(), 2.0f);
+  for (const glm::vec3& radiance : transport.bounce(direct)) ASSERT_NEAR(radiance.g, 2.0f, 0.002f);
+  const std::vector<SurfacePoint> points = {{{0.5f, 0, 1}, {0, 1, 0}}, {{0, 0, 0}, {0, 1, 0}}, {{1, 5, 2}, {-1, 0, 0}}};
+  const auto links = transport.link(points, LinkSpread::Cosine);
+  for (std::size_t p = 0; p < points.size(); ++p)
+    EXPECT_NEAR(gathered(links, p, transport.bounce(direct)).g, 2.0f, 0.002f) << p;
+}
+
+TEST(PatchTransport, BouncesKeepTheColoursOfTheWalls) {
+  RoomBuilder room;
+  room.wall({0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {1, 1, 1});     // floor, facing up
+  room.wall({0, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0.8f, 0, 0});  // a red wall that faces it
+  const PatchTransport transport(room.proxy());
+  const Patches& patches = transport.patches();
+  std::vector<float> direct(patches.size());
+  for (std::size_t i = 0; i < patches.size(); ++i) direct[i] = patches.all()[i].normal.x > 0.5f ? 1.0f : 0.0f;
+  const auto given_off = transport.bounce(direct);
+  const std::vector<SurfacePoint> points = {{{0.05f, 0, 0.5f}, {0, 1, 0}}, {{0.9f, 0, 0.5f}, {0, 1, 0}}};
+  const auto links = transport.link(points, LinkSpread::Cosine);
+  const glm::vec3 near = gathered(links, 0, given_off), far = gathered(links, 1, given_off);
+  EXPECT_GT(near.r, 2.0f * far.r);
+  EXPECT_EQ(near.g, 0.0f);
+  EXPECT_GT(far.r, 0.0f);
+}
+
+TEST(PatchTransport, AtTheFootOfAWallHalfOfWhatIsSeenIsTheWall) {
+  RoomBuilder room;
+  room.wall({0, 0, 0}, {0, 0, 4}, {4, 0, 0}, {1, 1, 1});
+  room.wall({0, 0, 0}, {0, 4, 0}, {0, 0, 4}, {1, 1, 1});
+  const PatchTransport transport(room.proxy());
+  const Patches& patches = transport.patches();
+  std::vector<glm::vec3> given_off(patches.size(), glm::vec3(0.0f));
+  for (std::size_t i = 0; i < patches.size(); ++i)
+    if (patches.all()[i].normal.x > 0.5f) given_off[i] = glm::vec3(1.0f);
+  // Vertices lie on the edge itself, or by rounding behind it.
+  for (const float x : {-0.004f, 0.0f, 0.001f}) {
+    const std::vector<SurfacePoint> points = {{{x, -0.002f, 2}, {0, 1, 0}}};
+    EXPECT_NEAR(gathered(transport.link(points, LinkSpread::Cosine), 0, given_off).r, 0.5f, 0.04f) << x;
+  }
+}
+
+TEST(PatchTransport, NothingGoesThroughAWallToTheBoxBeside) {
+  RoomBuilder room;
+  room.box({0, 0, 0}, {1, 1, 1}, glm::vec3(0.7f)).box({1, 0, 0}, {2, 1, 1}, glm::vec3(0.7f));
+  const PatchTransport transport(room.proxy());
+  const Patches& patches = transport.patches();
+  std::vector<float> direct = litFrom(patches, {0.5f, 0.5f, 0.5f});
+  for (std::size_t i = 0; i < patches.size(); ++i) {
+    const Patch& patch = patches.all()[i];
+    const bool beside = patch.points[0].x > 1.0001f || (patch.points[0].x > 0.9999f && patch.normal.x > 0.5f);
+    if (beside) direct[i] = 0.0f;
+  }
+  const auto given_off = transport.bounce(direct);
+  for (std::size_t i = 0; i < patches.size(); ++i) {
+    if (direct[i] != 0.0f) continue;
+    ASSERT_EQ(given_off[i], glm::vec3(0.0f)) << i;
+  }
+}
+
+TEST(PatchTransport, TheSameRoomGivesTheSameBytes) {
+  const bundle::CaptureProxy proxy = RoomBuilder().sphere(9, 12, glm::vec3(0.4f, 0.5f, 0.6f)).proxy();
+  const PatchTransport one(proxy), other(proxy);
+  const auto direct = litFrom(one.patches(), {0.2f, 0.1f, -0.3f});
+  const auto a = one.bounce(direct), b = other.bounce(direct);
+  ASSERT_EQ(a.size(), b.size());
+  EXPECT_EQ(std::memcmp(a.data(), b.data(), a.size() * sizeof(glm::vec3)), 0);
+  // And twice the light gives twice the light, to the bit.
+  std::vector<float> twice = direct;
+  for (float& value : twice) value *= 2.0f;
+  const auto doubled = one.bounce(twice);
+  for (std::size_t i = 0; i < a.size(); ++i) ASSERT_EQ(doubled[i], 2.0f * a[i]);
+}
+
+TEST(PatchTransport, PatchesOfATriangleAreFoundByWhereARayMeetsIt) {
+  const Patches patches(RoomBuilder().box({0, 0, 0}, {3, 2, 1}, glm::vec3(0.5f)).proxy(), 500);
+  EXPECT_LE(patches.size(), 500u);
+  EXPECT_GE(patches.size(), 400u);
+  RaysFrom rays(patches.triangles(), 1e-5f);
+  rays.moveTo({1.3f, 0.9f, 0.45f});
+  for (std::size_t i = 0; i < patches.size(); ++i)
+    for (const glm::vec3& point : patches.all()[i].points) {
+      const auto hit = rays.first(point - glm::vec3(1.3f, 0.9f, 0.45f));
+      ASSERT_TRUE(hit);
+      ASSERT_EQ(patches.patchAt(*hit), i);
+    }
+}
+
+TEST(PatchTransport, DISABLED_Cost) {
+  const bundle::CaptureProxy proxy = RoomBuilder().sphere(10, 14, glm::vec3(0.5f)).proxy();
+  const auto now = [] { return std::chrono::steady_clock::now(); };
+  const auto ms = [](auto d) { return std::chrono::duration<double, std::milli>(d).count(); };
+  auto start = now();
+  const PatchTransport transport(proxy);
+  std::printf("%zu triangles, %zu patches, %.1f KiB: %.1f ms\n", transport.patches().triangles().size(),
+              transport.patches().size(), static_cast<double>(transport.bytes()) / 1024.0, ms(now() - start));
+  std::vector<SurfacePoint> points;
+  for (const Patch& patch : transport.patches().all())
+    for (int k = 0; k < 10; ++k) points.push_back({patch.points[0], patch.normal});
+  start = now();
+  const auto links = transport.link(points, LinkSpread::Cosine);
+  std::printf("%zu points linked: %.1f ms\n", points.size(), ms(now() - start));
+  const auto direct = litFrom(transport.patches(), {0.4f, 0.1f, 0});
+  start = now();
+  (void)transport.bounce(direct);
+  std::printf("bounced: %.2f ms\n", ms(now() - start));
+}
+
+}  // namespace lambent::lighting
