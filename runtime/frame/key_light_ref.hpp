@@ -16,10 +16,11 @@
 
 namespace lambent::frame::ref {
 
-inline constexpr float kKeyBiasTexels = 1.5f;
+inline constexpr float kKeyBiasTexels = 0.5f;
 inline constexpr float kLeastFacing = 0.02f;
 inline constexpr float kSharpTexels = 0.8f;
 inline constexpr float kOneHeight = 0.1f;
+inline constexpr int kLeastSearch = 20;
 inline constexpr int kKeySteps = 3;
 inline constexpr int kKeyNarrowing = 3;
 
@@ -171,7 +172,7 @@ float keyVisible(const Map& map, const KeyRecord& key, glm::vec3 position, glm::
   if (!open) {
     const float widest = reach * key.scale.w * std::max(key.scale.x, key.scale.y);
     if (widest < kSharpTexels && receiver.above) return texelVisible(map, key, receiver);
-    layers = keyLayers(map, key, receiver, reach, rays);
+    layers = keyLayers(map, key, receiver, reach, std::max(rays, kLeastSearch));
     if (layers.low == 0.0f && receiver.above) return 1.0f;
     if (layers.high * key.scale.w * std::max(key.scale.x, key.scale.y) < kSharpTexels && receiver.above)
       return texelVisible(map, key, receiver);
