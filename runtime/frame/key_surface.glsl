@@ -39,6 +39,8 @@ vec3 key_highlights = vec3(0.0);       // of the last keyLight
 vec3 key_open_highlights = vec3(0.0);  // the same as if nothing were in the way
 #endif
 
+vec3 key_open = vec3(0.0);  // of the last keyLight: as if nothing were in the way
+
 // Group frame, of the side that is seen: the normal that the surface is shaded by.
 vec3 keyLight(uint draw, vec3 shading_normal) {
   vec3 position = keyPixelPosition();
@@ -50,6 +52,7 @@ vec3 keyLight(uint draw, vec3 shading_normal) {
     float share = keyShare(key_lights[k], shaded);
     if (share <= 0.0) continue;
     vec3 open = share * key_lights[k].radiance.rgb;
+    key_open += open;
     float visible = keyVisible(key_lights[k], position, normal, shaded);
     sum += visible * open;
 #ifdef LAMBENT_GLOSSY

@@ -163,13 +163,14 @@ Result<void> Neighborhoods::update(World& world, const lighting::GroupLights& li
   if (Result<void> done = effect_.update(world.residency(), lights, glossy, counters); !done) return done;
   const bool same = !pairs_changed_ && transforms_seen_ == world.transformsVersion() &&
                     residency_seen_ == world.residency().version() && effect_seen_ == effect_.version() &&
-                    mode_seen_ == mode;
+                    mode_seen_ == mode && keys_seen_ == lights.hasKeys();
   if (!same) {
     pairs_changed_ = false;
     transforms_seen_ = world.transformsVersion();
     residency_seen_ = world.residency().version();
     effect_seen_ = effect_.version();
     mode_seen_ = mode;
+    keys_seen_ = lights.hasKeys();
     findReceivers(world, mode);
   }
   if (Result<void> done =
@@ -233,7 +234,9 @@ void Neighborhoods::findReceivers(const World& world, effects::diffuse::Transfer
       const glm::quat body_from_group =
           glm::conjugate(world.rotationOf(grid.group)) * world.rotationOf(draw.group);
       const glm::mat3x4 to_grid(glm::mat4(glm::transpose(grid_from_position)));
-      if (mode != effects::diffuse::TransferMode::Unshadowed && byTransfer(world, d, grid)) {
+      // Volumes have no shadow maps: pixels, which know their key lights, take what volumes leave of these.
+      const bool whole = keys_seen_ && world.residency().groups()[grid.group].volume >= 0;
+      if (!whole && mode != effects::diffuse::TransferMode::Unshadowed && byTransfer(world, d, grid)) {
         at_vertices.from.push_back(
             {.grid = g, .grid_from_position = to_grid, .group_from_body = glm::conjugate(body_from_group)});
         continue;
@@ -245,7 +248,11 @@ void Neighborhoods::findReceivers(const World& world, effects::diffuse::Transfer
           {.distance = glm::distance(middle, receiver),
            .arrival = {.grid_from_position = to_grid,
                        .body_from_group = glm::mat3x4(glm::transpose(glm::mat3_cast(body_from_group))),
-                       .grid = grid.place}});
+                       .grid = grid.place,
+                       .whole = whole ? 1u : 0u,
+                       .pad0 = 0,
+                       .pad1 = 0,
+                       .pad2 = 0}});
     }
     std::ranges::stable_sort(found, {}, &Found::distance);
     if (found.size() > kMaxArrivals) {

@@ -93,6 +93,7 @@ class Neighborhoods {
   std::vector<std::uint64_t> group_keys_;  // what indices of groups mean in pairs_
   std::size_t ready_when_chosen_ = 0;
   effects::diffuse::TransferMode mode_seen_ = effects::diffuse::TransferMode::Full;
+  bool keys_seen_ = false;
   std::uint64_t structure_seen_ = 0, transforms_seen_ = 0, residency_seen_ = 0, effect_seen_ = 0;
   bool pairs_changed_ = false, on_ = true;
   std::uint32_t left_out_ = 0;

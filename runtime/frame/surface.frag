@@ -107,9 +107,15 @@ vec3 reflectedLight(vec3 base_color) {
 #endif
 #ifdef LAMBENT_KEY_LIGHTS
 #ifdef LAMBENT_NORMAL_MAPPED
-  received += keyLight(draw_of, normal);
+  vec3 straight = keyLight(draw_of, normal);
 #else
-  received += keyLight(draw_of, unit(normal_group));
+  vec3 straight = keyLight(draw_of, unit(normal_group));
+#endif
+#ifdef LAMBENT_NEIGHBORHOODS
+  // A volume takes the same share of the key lights that arrive here as it would of all of them.
+  received = (received + straight) * max(1.0 + change_of_all / max(received + key_open, vec3(1e-6)), vec3(0.0));
+#else
+  received += straight;
 #endif
 #endif
 #ifdef LAMBENT_VIEW_IRRADIANCE

@@ -54,6 +54,8 @@ struct Arrival {
   mat3x4 grid_from_position;
   mat3x4 body_from_group;
   GridPlace grid;
+  uint whole;  // 1: what changes is all light, key lights too, which have no shadow map of this body
+  uint pad0, pad1, pad2;
 };
 
 struct Receiver {
@@ -66,7 +68,7 @@ LAMBENT_CONSTANT kNoChange = 0xffffffffu;
 
 #ifdef __cplusplus
 #undef LAMBENT_CONSTANT
-static_assert(sizeof(GridPlace) == 32 && sizeof(WriteRecord) == 48 && sizeof(Arrival) == 128 && sizeof(Receiver) == 16);
+static_assert(sizeof(GridPlace) == 32 && sizeof(WriteRecord) == 48 && sizeof(Arrival) == 144 && sizeof(Receiver) == 16);
 static_assert(offsetof(Arrival, grid) == 96);
 }  // namespace lambent::effects::neighborhood
 #endif
