@@ -18,6 +18,10 @@ namespace lambent::lighting {
 
 namespace {
 
+// Bands show a wider disc better than the pieces that it would be divided into (docs/pictures/penumbra.png).
+constexpr float kWidestDisc_rad = 0.79f;
+
+
 constexpr double kPi = std::numbers::pi;
 // How far pieces reach where as many small ones as there may be do not suffice: from the largest radius to
 // the widest.
@@ -98,7 +102,7 @@ void Parting::divideDiscs() {
   for (std::size_t source = 0; source < lights_.discs.size(); ++source) {
     const spec::Disc& disc = lights_.discs[source];
     const LightPiece whole = pieceOfDisc(disc);
-    if (whole.flux <= 0.0) continue;
+    if (whole.flux <= 0.0 || disc.radius_rad > kWidestDisc_rad) continue;
     const double value = luminance(disc.radiance);
     const auto lossAsFlux = [&](const LightPiece& piece) {
       return piece.flux * discLoss(options_.order, piece.radius_rad);
