@@ -6,7 +6,7 @@
 
 // What is nearer to the light than the receiver's plane by less than these texels' width does not shadow it: rounding,
 // and faces that meet within a texel.
-const float kKeyBiasTexels = 0.5;
+const float kKeyBiasTexels = 1.0;
 const float kLeastFacing = 0.02;   // cosine below which the receiver's plane is taken to lean no more
 const float kSharpTexels = 0.8;    // a penumbra narrower than this is that of the texels
 const float kOneHeight = 0.1;      // heights that differ by less than this share are one

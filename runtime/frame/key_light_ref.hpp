@@ -16,7 +16,7 @@
 
 namespace lambent::frame::ref {
 
-inline constexpr float kKeyBiasTexels = 0.5f;
+inline constexpr float kKeyBiasTexels = 1.0f;
 inline constexpr float kLeastFacing = 0.02f;
 inline constexpr float kSharpTexels = 0.8f;
 inline constexpr float kOneHeight = 0.1f;
