@@ -273,8 +273,8 @@ Result<void> Frame::shadeNeighborhoods(World& world) {
 
 Result<void> Frame::castShadows(World& world) {
   gpu::PassTimers::Scope pass(timers_, "shadows");
-  Result<void> done =
-      near_lights_.update(world, lit_scene_.near_lights, lit_scene_.near_masks, pass.counters(), &lamp_bounces_);
+  Result<void> done = near_lights_.update(world, lit_scene_.near_lights, lit_scene_.near_masks,
+                                          pass.counters(), &lamp_bounces_);
   counts_.shadow_cubes_drawn = near_lights_.cubesDrawn();
   if (counts_.shadow_cubes_drawn > 0)
     pass.because(reasons_.of(kLightCauses | Cause::Materials, "lights among surfaces"));
@@ -287,10 +287,9 @@ Result<void> Frame::castKeyShadows(World& world, const lighting::Environment& en
   if (environment.keys().empty() && !key_shadows_.any()) return {};
   gpu::PassTimers::Scope pass(timers_, "key shadows");
   const std::span<const spec::Disc> keys = keysApart() ? environment.keys() : std::span<const spec::Disc>();
-  Result<void> done = key_shadows_.update(world, keys, view,
-                                          {.finest = options_.settings.key_size,
-                                           .samples = options_.settings.key_samples},
-                                          pass.counters());
+  Result<void> done = key_shadows_.update(
+      world, keys, view, {.finest = options_.settings.key_size, .samples = options_.settings.key_samples},
+      pass.counters());
   counts_.key_maps_drawn = key_shadows_.mapsDrawn();
   if (key_shadows_.mapsDrawn() > 0) pass.because(reasons_.of(kPictureCauses));
   return done;
@@ -331,13 +330,13 @@ Result<void> Frame::prepareSurfaces(World& world, const lighting::Environment& e
     order = std::min(order, settings.order);
     reflected_sky_->update(environment, static_cast<int>(order), settings.window, counters);
   }
-  return surfaces_.prepare(
-      world, diffuse_, view, counters, &near_lights_, residual ? &*reflected_sky_ : nullptr,
-      settings.neighborhoods && neighborhoods_.any() ? &neighborhoods_ : nullptr,
-      {.diffuse = settings.diffuse,
-       .glossy = settings.glossy,
-       .glossy_bands = settings.glossy_order,
-       .key_lights = key_shadows_.any()});
+  return surfaces_.prepare(world, diffuse_, view, counters, &near_lights_,
+                           residual ? &*reflected_sky_ : nullptr,
+                           settings.neighborhoods && neighborhoods_.any() ? &neighborhoods_ : nullptr,
+                           {.diffuse = settings.diffuse,
+                            .glossy = settings.glossy,
+                            .glossy_bands = settings.glossy_order,
+                            .key_lights = key_shadows_.any()});
 }
 
 Result<void> Frame::raster(World& world, const lighting::Environment& environment, const spec::View& view) {

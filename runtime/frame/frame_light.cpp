@@ -127,7 +127,8 @@ Result<void> Frame::capture(World& world, const lighting::Environment& environme
   std::vector<effects::diffuse::AddedRadiance> added;
   for (std::size_t g = 0; g < shaded.size(); ++g)
     added.push_back({.triangles = lamp_bounces_.sentBy(g), .version = lamp_bounces_.versionOf(g)});
-  if (Result<void> done = proxies_.shade(world.residency(), group_lights_, shaded, pass.counters(), added); !done)
+  if (Result<void> done = proxies_.shade(world.residency(), group_lights_, shaded, pass.counters(), added);
+      !done)
     return done;
   proxy_radiance_.follow(lit_scene_.groups, &lighting::IncidentGroup::key);
   for (std::size_t g = 0; g < lit_scene_.groups.size(); ++g) {

@@ -77,20 +77,21 @@ const std::array kRows = {
                .help = "Against ringing of the light: auto, off or hann",
                .get = getNumber<&S::window>,
                .put = putNumber<&S::window>},
-    SettingRow{.name = "keys",
-               .label = "key lights",
-               .kind = Kind::Whole,
-               .greatest = 32.0,
-               .zero = "off",
-               .not_a_number = "auto",
-               .finest = 32.0,
-               .help = "Suns and lamps at infinity that shine by shadow maps, at most: auto,\noff or a number",
-               .get = [](const S& settings) { return settings.keys ? static_cast<double>(*settings.keys) : kNone; },
-               .put =
-                   [](S& settings, double value) {
-                     settings.keys.reset();
-                     if (!std::isnan(value)) settings.keys = static_cast<std::uint32_t>(value);
-                   }},
+    SettingRow{
+        .name = "keys",
+        .label = "key lights",
+        .kind = Kind::Whole,
+        .greatest = 32.0,
+        .zero = "off",
+        .not_a_number = "auto",
+        .finest = 32.0,
+        .help = "Suns and lamps at infinity that shine by shadow maps, at most: auto,\noff or a number",
+        .get = [](const S& settings) { return settings.keys ? static_cast<double>(*settings.keys) : kNone; },
+        .put =
+            [](S& settings, double value) {
+              settings.keys.reset();
+              if (!std::isnan(value)) settings.keys = static_cast<std::uint32_t>(value);
+            }},
     SettingRow{.name = "key-size",
                .label = "texels of key shadows",
                .kind = Kind::Whole,

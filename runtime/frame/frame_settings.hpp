@@ -22,8 +22,8 @@ namespace lambent::frame {
 struct FrameSettings {
   effects::diffuse::TransferMode transfer = effects::diffuse::TransferMode::Full;
   sh::Window window = sh::Window::Off;
-  // Key lights that each set of lights from infinity may have, at most; 0: none, all light goes by bands. Whoever
-  // owns the environment hands it on (lighting::Environment::setMostKeys).
+  // Key lights that each set of lights from infinity may have, at most; 0: none, all light goes by bands.
+  // Whoever owns the environment hands it on (lighting::Environment::setMostKeys).
   std::optional<std::uint32_t> keys;  // none: as many as pay
   std::uint32_t mostKeys() const { return keys.value_or(kAutoKeys); }
   // Of shadow maps of key lights: texels along an edge of the finest, rays to a light.

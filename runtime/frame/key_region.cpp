@@ -54,9 +54,8 @@ std::vector<glm::dvec3> seenCorners(const scene::Box& box, const glm::mat4& clip
   const Planes planes = planesOf(box, glm::dmat4(clip_from_world));
   const double doubt = 1e-6 * (double{box.radius()} + glm::length(glm::dvec3(box.center()))) + 1e-9;
   const auto inside = [&](glm::dvec3 p) {
-    return std::ranges::all_of(planes, [&](const glm::dvec4& plane) {
-      return glm::dot(plane, glm::dvec4(p, 1.0)) >= -doubt;
-    });
+    return std::ranges::all_of(
+        planes, [&](const glm::dvec4& plane) { return glm::dot(plane, glm::dvec4(p, 1.0)) >= -doubt; });
   };
   // A convex body's corners are among the points where three of its planes meet.
   for (std::size_t i = 0; i < planes.size(); ++i)

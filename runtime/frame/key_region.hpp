@@ -1,5 +1,5 @@
-// Which part of the world a key light's shadow map must show: the part that is seen, as the light sees it, and
-// what stands between that and the light. World axes, metres. No GL.
+// Which part of the world a key light's shadow map must show: the part that is seen, as the light sees it,
+// and what stands between that and the light. World axes, metres. No GL.
 #pragma once
 
 #include <optional>
@@ -16,8 +16,8 @@ namespace lambent::frame {
 // The corners of what is both in the box and in the camera's view; empty where nothing is.
 std::vector<glm::dvec3> seenCorners(const scene::Box& box, const glm::mat4& clip_from_world);
 
-// An orthographic view along `towards` (unit, to the light): right, up and towards are right-handed. Places run
-// from min to max along right and up, depth from `top` downwards over `range`.
+// An orthographic view along `towards` (unit, to the light): right, up and towards are right-handed. Places
+// run from min to max along right and up, depth from `top` downwards over `range`.
 struct KeyRegion {
   glm::dvec3 right{1, 0, 0}, up{0, 1, 0}, towards{0, 0, 1};
   glm::dvec2 min{0.0}, max{0.0};

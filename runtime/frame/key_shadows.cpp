@@ -19,8 +19,9 @@ constexpr std::size_t kViewStride = 256;  // OpenGL 4.5 asks for no larger align
 constexpr std::uint32_t kLeastSize = 256;
 constexpr std::uint32_t kLeastRays = 8;
 constexpr std::uint64_t kFinestTiles = 2;  // all maps together take no more texels than so many of the finest
-constexpr double kMargin = 0.05;  // around what is seen: the camera may move a little before a map is drawn anew
-constexpr double kWasted = 4.0;   // a map that shows so many times the area that is seen is drawn anew
+constexpr double kMargin =
+    0.05;  // around what is seen: the camera may move a little before a map is drawn anew
+constexpr double kWasted = 4.0;  // a map that shows so many times the area that is seen is drawn anew
 // As in key_blockers.comp.
 constexpr GLint kFirst = 0, kSize = 1, kLevel = 2;
 
@@ -60,7 +61,8 @@ glm::mat4 clipFromWorld(const KeyRegion& region) {
   const double depth = 2.0 / region.range;
   const glm::dmat4 rows(glm::dvec4(scale.x * region.right, -scale.x * region.min.x - 1.0),
                         glm::dvec4(scale.y * region.up, -scale.y * region.min.y - 1.0),
-                        glm::dvec4(-depth * region.towards, depth * region.top - 1.0), glm::dvec4(0, 0, 0, 1));
+                        glm::dvec4(-depth * region.towards, depth * region.top - 1.0),
+                        glm::dvec4(0, 0, 0, 1));
   return glm::mat4(glm::transpose(rows));
 }
 
@@ -86,8 +88,8 @@ Result<void> KeyShadows::compile() {
   return {};
 }
 
-// Large tiles first, each row as high as its first: tiles lie at multiples of their own size, so that levels of the
-// pyramid never mix two of them.
+// Large tiles first, each row as high as its first: tiles lie at multiples of their own size, so that levels
+// of the pyramid never mix two of them.
 void KeyShadows::layOut(std::span<const spec::Disc> keys) {
   std::vector<Map> maps;
   for (const spec::Disc& key : keys)
@@ -126,7 +128,8 @@ void KeyShadows::layOut(std::span<const spec::Disc> keys) {
   const std::uint32_t height = y + row_height;
   const bool same_texture = depths_ && depths_.desc().width == width && depths_.desc().height == height;
   for (std::size_t k = 0; k < maps.size() && same_texture; ++k)
-    if (k < maps_.size() && maps_[k].x == maps[k].x && maps_[k].y == maps[k].y && maps_[k].size == maps[k].size) {
+    if (k < maps_.size() && maps_[k].x == maps[k].x && maps_[k].y == maps[k].y &&
+        maps_[k].size == maps[k].size) {
       const spec::Disc light = maps[k].light;
       maps[k] = std::move(maps_[k]);
       maps[k].drawn &= sameShape(maps[k].light, light);
@@ -231,8 +234,8 @@ void KeyShadows::drawMaps(World& world, const std::vector<std::size_t>& changed,
   std::vector<std::byte> views(kViewStride * changed.size());
   for (std::size_t i = 0; i < changed.size(); ++i) {
     const Map& map = maps_[changed[i]];
-    ShadowCasters::Tile& tile = tiles.emplace_back(
-        ShadowCasters::Tile{.x = map.x, .y = map.y, .size = map.size, .view = kViewStride * i, .casters = {}});
+    ShadowCasters::Tile& tile = tiles.emplace_back(ShadowCasters::Tile{
+        .x = map.x, .y = map.y, .size = map.size, .view = kViewStride * i, .casters = {}});
     for (const ShadowCaster& caster : map.casters) tile.casters.push_back(&caster);
     const KeyMapView block{clipFromWorld(map.region)};
     std::memcpy(views.data() + tile.view, &block, sizeof(block));
@@ -279,13 +282,14 @@ void KeyShadows::bind(const spec::View& view, const spec::Size& size) {
   const glm::dmat4 view_from_world(view.view_from_world), world_from_view = glm::inverse(view_from_world);
   const glm::dmat3 turn(view_from_world);
   const glm::dvec3 eye(world_from_view[3]);
-  // Errors of a light that is a part of all weigh little, and fall with the number of rays: this shares rays out so
-  // that their sum of squares is least.
+  // Errors of a light that is a part of all weigh little, and fall with the number of rays: this shares rays
+  // out so that their sum of squares is least.
   float all_flux = 0.0f;
   for (const Map& map : maps_) all_flux += fluxOf(map.light);
   const auto raysFor = [&](float part) {
     const float rays = 2.0f * static_cast<float>(options_.samples) * std::cbrt(part * part);
-    return std::clamp(static_cast<std::uint32_t>(rays), std::min(kLeastRays, options_.samples), options_.samples);
+    return std::clamp(static_cast<std::uint32_t>(rays), std::min(kLeastRays, options_.samples),
+                      options_.samples);
   };
   std::uint32_t count = 0;
   for (const Map& map : maps_) {

@@ -1,9 +1,9 @@
-// Direct light of key lights (lighting/key_lights.hpp) on surfaces: a shadow map for each, which shows the part of
-// the world that is seen, and what the surface pass reads to shade by them. A map is drawn again only when its
-// light turned, something that it sees moved, arrived or went, or the camera sees what it does not show. Maps are
-// tiles of one depth texture: sharp lights have fine ones, wide lights, which blur, coarse ones. Beside them lies a
-// pyramid of the least and greatest depths, by which most pixels are told to be wholly lit or wholly in shadow.
-// Render thread only. Errors: shaders that do not compile on this device.
+// Direct light of key lights (lighting/key_lights.hpp) on surfaces: a shadow map for each, which shows the
+// part of the world that is seen, and what the surface pass reads to shade by them. A map is drawn again only
+// when its light turned, something that it sees moved, arrived or went, or the camera sees what it does not
+// show. Maps are tiles of one depth texture: sharp lights have fine ones, wide lights, which blur, coarse
+// ones. Beside them lies a pyramid of the least and greatest depths, by which most pixels are told to be
+// wholly lit or wholly in shadow. Render thread only. Errors: shaders that do not compile on this device.
 #pragma once
 
 #include <array>

@@ -129,15 +129,14 @@ void LampBounces::ask(World& world, std::size_t group) {
     points.push_back(pointsOf(world, i));
   }
   if (room.room.transport() && points.empty()) return;
-  room.coming = std::async(
-      std::launch::async, [transport = room.room.transport(), points = std::move(points),
-                           proxy = *world.residency().groups()[group].proxy]() mutable {
-        Made made{.transport = std::move(transport), .links = {}};
-        if (!made.transport) made.transport = std::make_shared<const lighting::PatchTransport>(proxy);
-        for (const Points& draw : points)
-          made.links.push_back({draw.draw, made.transport->link(draw.points, draw.spread)});
-        return made;
-      });
+  room.coming = std::async(std::launch::async, [transport = room.room.transport(), points = std::move(points),
+                                                proxy = *world.residency().groups()[group].proxy]() mutable {
+    Made made{.transport = std::move(transport), .links = {}};
+    if (!made.transport) made.transport = std::make_shared<const lighting::PatchTransport>(proxy);
+    for (const Points& draw : points)
+      made.links.push_back({draw.draw, made.transport->link(draw.points, draw.spread)});
+    return made;
+  });
 }
 
 bool LampBounces::take(const World& world, std::size_t group, bool wait) {
@@ -180,8 +179,8 @@ Result<void> LampBounces::update(World& world, const LitScene& scene, bool on, b
     }
     if (room.coming.valid()) ++counts_.rooms_to_come;
     if (!room.room.transport()) continue;
-    room.room.light(lamps, world.worldFromGroup(g), lamps.empty() ? std::vector<lighting::RayTriangle>()
-                                                                  : othersAround(world, scene, g));
+    room.room.light(lamps, world.worldFromGroup(g),
+                    lamps.empty() ? std::vector<lighting::RayTriangle>() : othersAround(world, scene, g));
     counts_.lamps_bounced += room.room.bouncedLast();
     if (!room.room.givenOff().empty()) {
       ++counts_.rooms;
@@ -233,8 +232,9 @@ void LampBounces::uploadPatches(gpu::Counters& counters) {
 Result<const gpu::Program*> LampBounces::program(std::uint32_t outputs) {
   if (const auto found = programs_.find(outputs); found != programs_.end()) return &found->second;
   const std::vector<gpu::Define> defines = {{"LAMBENT_OUTPUTS", std::to_string(outputs)}};
-  Result<gpu::Program> made = gpu::Program::create(fmt::format("lamp_gather.comp outputs {}", outputs),
-                                                   {{GL_COMPUTE_SHADER, "lamp_gather.comp"}}, kShaders, defines);
+  Result<gpu::Program> made =
+      gpu::Program::create(fmt::format("lamp_gather.comp outputs {}", outputs),
+                           {{GL_COMPUTE_SHADER, "lamp_gather.comp"}}, kShaders, defines);
   if (!made) return failAgain(made.error());
   if (outputs > 1) {
     std::vector<glm::vec4> directions;

@@ -1,11 +1,11 @@
-// Bounces of near lights: what the surfaces of a rigid group send on of the light of lamps among them, at every
-// vertex of the group that these light, beside what transfer brings there. Comes in: the world and the scene as
-// the lighting system sees it. Goes out: per vertex E/pi (of surfaces with normal maps and glossy ones light of
-// bands 0..2), which the raster adds, and per triangle of the group's capture proxy what others see of it.
-// When a lamp first comes into a group, form factors and links are made on worker threads; the frames go on
-// without bounces until they are there. What changes nothing costs nothing: a lamp that moves is bounced anew
-// on the CPU (LampRoom) and gathered on the GPU, one dispatch for each draw. Errors: a kernel that does not
-// compile on this device.
+// Bounces of near lights: what the surfaces of a rigid group send on of the light of lamps among them, at
+// every vertex of the group that these light, beside what transfer brings there. Comes in: the world and the
+// scene as the lighting system sees it. Goes out: per vertex E/pi (of surfaces with normal maps and glossy
+// ones light of bands 0..2), which the raster adds, and per triangle of the group's capture proxy what others
+// see of it. When a lamp first comes into a group, form factors and links are made on worker threads; the
+// frames go on without bounces until they are there. What changes nothing costs nothing: a lamp that moves is
+// bounced anew on the CPU (LampRoom) and gathered on the GPU, one dispatch for each draw. Errors: a kernel
+// that does not compile on this device.
 #pragma once
 
 #include <cstdint>
@@ -27,11 +27,11 @@
 namespace lambent::frame {
 
 struct LampBounceCounts {
-  std::uint32_t rooms = 0;            // groups whose surfaces send on light of near lights
-  std::uint32_t patches = 0;          // of all of them
-  std::uint32_t rooms_to_come = 0;    // whose form factors or links are being made
-  std::uint32_t lamps_bounced = 0;    // in the last update
-  std::uint32_t draws_gathered = 0;   // likewise
+  std::uint32_t rooms = 0;           // groups whose surfaces send on light of near lights
+  std::uint32_t patches = 0;         // of all of them
+  std::uint32_t rooms_to_come = 0;   // whose form factors or links are being made
+  std::uint32_t lamps_bounced = 0;   // in the last update
+  std::uint32_t draws_gathered = 0;  // likewise
 };
 
 class LampBounces {
@@ -88,7 +88,7 @@ class LampBounces {
   };
   struct Draw {
     bool asked = false;
-    gpu::Buffer links;  // empty handle: not here yet
+    gpu::Buffer links;           // empty handle: not here yet
     std::uint64_t gathered = 0;  // the version of its room
   };
   void drop();

@@ -19,9 +19,9 @@ namespace {
 using lighting::NearLight;
 using lighting::Patch;
 
-constexpr std::size_t kLampPoints = 16;    // of lamps with an extent
-constexpr float kLightSurface = 1.01f;     // as in near_lights.cpp
-constexpr float kAlmost = 1.0f - 1e-4f;    // of the way to a patch: not the patch itself
+constexpr std::size_t kLampPoints = 16;  // of lamps with an extent
+constexpr float kLightSurface = 1.01f;   // as in near_lights.cpp
+constexpr float kAlmost = 1.0f - 1e-4f;  // of the way to a patch: not the patch itself
 
 // Points all over a disc of radius 1, and how far each is before or behind it in a ball (golden angle).
 std::vector<glm::vec3> ballPoints() {
@@ -49,13 +49,13 @@ std::vector<glm::vec3> lampPoints(const NearLight& light) {
   for (std::size_t i = 0; i < kLampPoints; ++i) {
     const float radius = std::sqrt((static_cast<float>(i) + 0.5f) / static_cast<float>(kLampPoints));
     const float turn = 2.0f * std::numbers::pi_v<float> * std::numbers::phi_v<float> * static_cast<float>(i);
-    points.push_back(light.position_ws +
-                     light.radius_m * radius * (std::cos(turn) * s + std::sin(turn) * t));
+    points.push_back(light.position_ws + light.radius_m * radius * (std::cos(turn) * s + std::sin(turn) * t));
   }
   return points;
 }
 
-// What stands in the way of the lamp's light. What is no larger than a spherical lamp and within it is the lamp.
+// What stands in the way of the lamp's light. What is no larger than a spherical lamp and within it is the
+// lamp.
 lighting::TriangleSet blockersOf(const NearLight& light, const lighting::Patches& patches,
                                  std::span<const lighting::RayTriangle> others,
                                  const glm::mat4& world_from_group) {
@@ -117,8 +117,8 @@ std::vector<float> lampOnPatches(const NearLight& lamp, const lighting::Patches&
   for (std::size_t i = 0; i < shares.size(); ++i) {
     std::uint32_t count = 0;
     for (const std::vector<std::uint8_t>& from_point : seen) count += from_point[i];
-    direct[i / kPoints] += shares[i] * static_cast<float>(count) /
-                           static_cast<float>(lamp_points.size() * kPoints);
+    direct[i / kPoints] +=
+        shares[i] * static_cast<float>(count) / static_cast<float>(lamp_points.size() * kPoints);
   }
   return direct;
 }

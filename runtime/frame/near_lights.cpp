@@ -189,11 +189,12 @@ void NearLights::drawCubes(World& world, const std::vector<std::uint32_t>& chang
   for (const std::uint32_t k : changed) {
     Cube& cube = cubes_[k];
     for (std::uint32_t face = 0; face < kFaces; ++face) {
-      ShadowCasters::Tile& tile = tiles.emplace_back(ShadowCasters::Tile{.x = face * options_.size,
-                                                                         .y = k * options_.size,
-                                                                         .size = options_.size,
-                                                                         .view = (kFaces * k + face) * kFaceStride,
-                                                                         .casters = {}});
+      ShadowCasters::Tile& tile =
+          tiles.emplace_back(ShadowCasters::Tile{.x = face * options_.size,
+                                                 .y = k * options_.size,
+                                                 .size = options_.size,
+                                                 .view = (kFaces * k + face) * kFaceStride,
+                                                 .casters = {}});
       for (const ShadowCaster& caster : cube.casters)
         if (faceMeets(faceAxes(face), around(caster.bounds_ws, cube.light.position_ws)))
           tile.casters.push_back(&caster);

@@ -37,8 +37,8 @@ class NearLights {
 
   // Lights beyond the first kMaxNearLights are left out. mask_of_group, in the order of residency().groups(),
   // says with bit k that light k lights the group's draws; groups beyond its end have none. After
-  // World::updateTransforms. With bounces, which must be up to date and live until the surfaces are drawn, these
-  // add what other surfaces send on. Changes the bound framebuffer, viewport and program.
+  // World::updateTransforms. With bounces, which must be up to date and live until the surfaces are drawn,
+  // these add what other surfaces send on. Changes the bound framebuffer, viewport and program.
   Result<void> update(World& world, std::span<const lighting::NearLight> lights,
                       std::span<const std::uint32_t> mask_of_group, gpu::Counters& counters,
                       const LampBounces* bounces = nullptr);

@@ -58,13 +58,12 @@ ShadowCasters::State ShadowCasters::stateOf(const World& world, const ShadowCast
   if (!caster.masked) return state;
   const std::int32_t texture = materialOf(world, caster.draw).base_color_texture.texture;
   const std::uint32_t bundle = world.residency().draws()[caster.draw].bundle;
-  if (texture >= 0)
-    state.textures = {.bundle = static_cast<std::int32_t>(bundle), .base_color = texture};
+  if (texture >= 0) state.textures = {.bundle = static_cast<std::int32_t>(bundle), .base_color = texture};
   return state;
 }
 
-void ShadowCasters::appendRuns(const World& world, const Tile& tile, std::size_t index, std::vector<Run>& runs,
-                               std::vector<DrawCommand>& commands) {
+void ShadowCasters::appendRuns(const World& world, const Tile& tile, std::size_t index,
+                               std::vector<Run>& runs, std::vector<DrawCommand>& commands) {
   struct Item {
     State state;
     std::uint32_t draw = 0;

@@ -1,6 +1,6 @@
-// What stops light: all resident opaque and masked draws of a world, both sides of each, and how they are drawn
-// into tiles of a depth texture. Shadow cubes of near lights and shadow maps of key lights are made of them.
-// Render thread only; no errors of its own.
+// What stops light: all resident opaque and masked draws of a world, both sides of each, and how they are
+// drawn into tiles of a depth texture. Shadow cubes of near lights and shadow maps of key lights are made of
+// them. Render thread only; no errors of its own.
 #pragma once
 
 #include <array>
@@ -50,8 +50,8 @@ class ShadowCasters {
   };
   // For opaque casters and for masked ones.
   using Programs = std::array<gpu::Program, 2>;
-  // Clears the tiles of the bound framebuffer's depth to 1 and draws them. views: uniform blocks of view_bytes,
-  // bound to view_binding tile by tile. Changes viewport, scissor, depth and culling state.
+  // Clears the tiles of the bound framebuffer's depth to 1 and draws them. views: uniform blocks of
+  // view_bytes, bound to view_binding tile by tile. Changes viewport, scissor, depth and culling state.
   void draw(World& world, std::span<const Tile> tiles, const Programs& programs, const gpu::Buffer& views,
             std::size_t view_bytes, GLuint view_binding, gpu::Counters& counters);
 

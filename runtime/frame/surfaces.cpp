@@ -101,7 +101,8 @@ void Surfaces::collect(World& world, const effects::diffuse::Diffuse& diffuse, g
     if (dark(world, i)) {
       item.state.dark = true;
       item.state.radiance_page = 0;
-      item.state.normal_mapped = item.state.near_lit = item.state.key_lit = item.state.around = item.state.vertices_around = false;
+      item.state.normal_mapped = item.state.near_lit = item.state.key_lit = item.state.around =
+          item.state.vertices_around = false;
     } else if (draw.glossy()) {
       item.state.glossy = glossyKindOf(world, i, options_.glossy_bands);
       item.state.bundle = draw.bundle;

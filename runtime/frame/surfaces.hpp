@@ -86,7 +86,8 @@ class Surfaces {
   Surfaces();
   // What a program is compiled for.
   struct ProgramKind {
-    bool normal_mapped = false, dark = false, near_lit = false, key_lit = false, around = false, vertices_around = false;
+    bool normal_mapped = false, dark = false, near_lit = false, key_lit = false, around = false,
+         vertices_around = false;
     GlossyKind glossy = {};
     bool residual = false;
     SurfaceView view = SurfaceView::Final;

@@ -45,7 +45,8 @@ std::uint32_t probeCubeSize(const std::vector<const spec::Probe*>& probes) {
 }
 
 // Means over 2 x 2 places of each texel.
-std::vector<glm::vec4> faceTexels(const std::vector<const spec::Probe*>& probes, int face, std::uint32_t size) {
+std::vector<glm::vec4> faceTexels(const std::vector<const spec::Probe*>& probes, int face,
+                                  std::uint32_t size) {
   constexpr double kPlaces[] = {0.25, 0.75};
   std::vector<glm::vec4> texels;
   texels.reserve(std::size_t{size} * size);

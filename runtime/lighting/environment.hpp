@@ -58,9 +58,9 @@ class Environment {
   glm::mat3 worldFromLight() const;
 
   // Now: world space, turned, faded, times the intensity.
-  const sh::LightVector& light() const { return light_; }         // all of it
-  const sh::LightVector& skyLight() const { return sky_light_; }  // without any disc
-  const sh::LightVector& keyLight() const { return key_light_; }  // of the key lights alone
+  const sh::LightVector& light() const { return light_; }           // all of it
+  const sh::LightVector& skyLight() const { return sky_light_; }    // without any disc
+  const sh::LightVector& keyLight() const { return key_light_; }    // of the key lights alone
   const sh::LightVector& restLight() const { return rest_light_; }  // light() without that
   // The suns of both sets, key lights last, always as many and in the same order; dark ones have radiance 0.
   const std::vector<Disc>& discs() const { return discs_; }

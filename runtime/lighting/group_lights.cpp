@@ -77,8 +77,7 @@ void GroupLights::update(const Environment& environment, sh::Window window,
     Group& group = groups_[i];
     const GroupPlace& place = groups[i];
     const bool turned = group.world_from_group != place.world_from_group;
-    const bool cut_anew =
-        window_changed || group.order != place.order || group.parted != place.parted;
+    const bool cut_anew = window_changed || group.order != place.order || group.parted != place.parted;
     group.world_from_group = place.world_from_group;
     group.order = place.order;
     group.parted = place.parted;
@@ -172,8 +171,8 @@ void GroupLights::write(const Environment& environment, std::span<const GroupPla
               .truncated(order);
       const sh::LightVector key_ws =
           keyLightOf(environment, place, renewal.sample).truncated(bands).truncated(order);
-      group.change = std::max(group.change,
-                              changeBetween((sample.light_ws + sample.key_ws).c, (light_ws + key_ws).c));
+      group.change =
+          std::max(group.change, changeBetween((sample.light_ws + sample.key_ws).c, (light_ws + key_ws).c));
       sample.light_ws = light_ws;
       sample.key_ws = key_ws;
     }

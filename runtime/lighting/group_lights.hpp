@@ -1,8 +1,8 @@
 // The light of each rigid group on the GPU, in the group's own frame: what effects multiply transfer with.
 // Comes in: the environment, and per group its rotation in the world, the order of its transfer, what arrives
-// at its light samples and what its own lights give now. Goes out: per group and light sample two blocks of 64
-// coefficients of vec4 (zeros above order²), the light without key lights and that of key lights alone, then
-// the group's own lights, and versions that rise when these change. The first block is windowed (the
+// at its light samples and what its own lights give now. Goes out: per group and light sample two blocks of
+// 64 coefficients of vec4 (zeros above order²), the light without key lights and that of key lights alone,
+// then the group's own lights, and versions that rise when these change. The first block is windowed (the
 // environment once per order, a light of the same shape as before not anew); both are rotated per group.
 #pragma once
 
@@ -43,7 +43,7 @@ struct GroupPlace {
 class GroupLights {
  public:
   static constexpr std::uint32_t kBlock = sh::kMaxCoefficients;  // vec4s of one light
-  static constexpr std::uint32_t kStride = 2 * kBlock;           // of a light sample: without keys, keys alone
+  static constexpr std::uint32_t kStride = 2 * kBlock;  // of a light sample: without keys, keys alone
 
   GroupLights() : table_("group lights") {}
 

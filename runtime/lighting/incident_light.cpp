@@ -232,7 +232,8 @@ void IncidentLight::updateSample(Sample& sample, const Group& group, const Envir
     }
   }
   const bool renewed = std::exchange(sample.renewed, false);
-  if (!renewed && !sample.plain && sample.version != 0 && !differs(now, key, sample.light, sample.key)) return;
+  if (!renewed && !sample.plain && sample.version != 0 && !differs(now, key, sample.light, sample.key))
+    return;
   sample.light = now;
   sample.key = key;
   sample.plain = false;

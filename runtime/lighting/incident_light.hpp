@@ -123,8 +123,8 @@ class IncidentLight {
     bool drawn_anew = false;     // and that is not in `light` yet
     bool renewed = false;        // by captures of other options: however little it changes
     // What was handed on last, and of which inputs it was made.
-    std::uint64_t version = 0;  // 0: nothing yet; no two samples ever have the same
-    bool plain = true;          // the environment's own light
+    std::uint64_t version = 0;         // 0: nothing yet; no two samples ever have the same
+    bool plain = true;                 // the environment's own light
     sh::LightVector light{1}, key{1};  // without key lights, and of these as far as no body hides them
     glm::vec3 position_ws{0.0f};
     std::uint64_t environment = 0, lights = 0;

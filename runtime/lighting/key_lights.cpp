@@ -21,7 +21,6 @@ namespace {
 // Bands show a wider disc better than the pieces that it would be divided into (docs/pictures/penumbra.png).
 constexpr float kWidestDisc_rad = 0.79f;
 
-
 constexpr double kPi = std::numbers::pi;
 // How far pieces reach where as many small ones as there may be do not suffice: from the largest radius to
 // the widest.

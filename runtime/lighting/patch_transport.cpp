@@ -75,8 +75,7 @@ LinkFrame linkFrame(const glm::vec3& n) {
           .z = n};
 }
 
-PatchTransport::PatchTransport(const bundle::CaptureProxy& proxy, std::size_t most)
-    : patches_(proxy, most) {
+PatchTransport::PatchTransport(const bundle::CaptureProxy& proxy, std::size_t most) : patches_(proxy, most) {
   findShares();
   findNearest(proxy);
 }
@@ -97,7 +96,8 @@ void PatchTransport::findShares() {
           // The points of a patch share out one even set, and so do neighbours, in part.
           const std::size_t place = p * kRaysPerPoint + k;
           const auto [even, turn] = evenPoint(place + 37 * i);
-          const float u = (static_cast<float>(place) + even) / static_cast<float>(kPatchPoints * kRaysPerPoint);
+          const float u =
+              (static_cast<float>(place) + even) / static_cast<float>(kPatchPoints * kRaysPerPoint);
           const auto hit = rays.first(frame.turned(cosineDirection(u, turn)));
           if (hit && !hit->back) met.push_back(static_cast<std::uint32_t>(patches_.patchAt(*hit)));
         }
@@ -105,7 +105,8 @@ void PatchTransport::findShares() {
       std::ranges::sort(met);
       constexpr float kOne = 1.0f / static_cast<float>(kPatchPoints * kRaysPerPoint);
       for (const std::uint32_t other : met) {
-        if (rows[i].empty() || rows[i].back().patch != other) rows[i].push_back({.patch = other, .share = 0.0f});
+        if (rows[i].empty() || rows[i].back().patch != other)
+          rows[i].push_back({.patch = other, .share = 0.0f});
         rows[i].back().share += kOne;
       }
     }
@@ -177,7 +178,8 @@ glm::vec3 PatchTransport::startNear(const SurfacePoint& point) const {
   return nearest != nullptr ? patches_.inFront(nearest->points[0], nearest->normal) : point.position;
 }
 
-std::vector<std::uint16_t> PatchTransport::link(std::span<const SurfacePoint> points, LinkSpread spread) const {
+std::vector<std::uint16_t> PatchTransport::link(std::span<const SurfacePoint> points,
+                                                LinkSpread spread) const {
   const auto& directions = linkDirections(spread);
   std::vector<std::uint16_t> links(kLinks * points.size());
   inParallel(blocksOf(points.size()), 2, [&](std::size_t block) {

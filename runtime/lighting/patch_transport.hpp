@@ -1,9 +1,9 @@
 // How light goes between the patches of a rigid group, and from them to the points of its surfaces. Form
 // factors are shares of rays: a patch sends rays, distributed as the cosine, from several of its points and
-// receives what the patches give off that they meet first (a gathering radiosity; Cohen and Greenberg 1985 for
-// the equations). Points of surfaces have links, one for each of their rays: the patch that it meets. Both are
-// made once; then light is bounced by sums alone. All rays are fixed, so the same group gives the same numbers
-// on any number of threads. Radiance of matte surfaces: what leaves is albedo times E/pi. No GL.
+// receives what the patches give off that they meet first (a gathering radiosity; Cohen and Greenberg 1985
+// for the equations). Points of surfaces have links, one for each of their rays: the patch that it meets.
+// Both are made once; then light is bounced by sums alone. All rays are fixed, so the same group gives the
+// same numbers on any number of threads. Radiance of matte surfaces: what leaves is albedo times E/pi. No GL.
 #pragma once
 
 #include <array>
@@ -32,8 +32,8 @@ struct LinkFrame {
   glm::vec3 x, y, z;
   glm::vec3 turned(const glm::vec3& v) const { return v.x * x + v.y * y + v.z * z; }
 };
-// By the normal alone (Duff and others 2017); lamp_gather.comp has the same. It turns over at a height that walls
-// do not have, so that rounding changes nothing.
+// By the normal alone (Duff and others 2017); lamp_gather.comp has the same. It turns over at a height that
+// walls do not have, so that rounding changes nothing.
 inline constexpr float kFrameTurnsOver = -0.37f;
 LinkFrame linkFrame(const glm::vec3& normal);
 

@@ -103,8 +103,7 @@ std::size_t Patches::patchAt(const RayHit& hit) const {
   const auto row = std::min(static_cast<std::uint32_t>(y), n - 1);
   const auto column = std::min(static_cast<std::uint32_t>(x), n - 1 - row);
   const bool has_upper = column + row < n - 1;
-  const bool upper =
-      has_upper && (x - static_cast<float>(column)) + (y - static_cast<float>(row)) > 1.0f;
+  const bool upper = has_upper && (x - static_cast<float>(column)) + (y - static_cast<float>(row)) > 1.0f;
   return split.first + placeOf(n, column, row, upper);
 }
 

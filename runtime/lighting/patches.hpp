@@ -1,5 +1,5 @@
-// The surfaces of a rigid group as patches that send light to each other: the triangles of its capture proxy's
-// finest level, split into smaller ones of about the same area. A patch sends out one radiance in all
+// The surfaces of a rigid group as patches that send light to each other: the triangles of its capture
+// proxy's finest level, split into smaller ones of about the same area. A patch sends out one radiance in all
 // directions. Group frame. No GL.
 #pragma once
 

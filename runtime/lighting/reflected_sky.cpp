@@ -65,9 +65,9 @@ bool hasWideKeys(const Environment& environment) {
 }  // namespace
 
 struct ReflectedSky::Source {
-  const gpu::Texture& sky;       // its own frame
+  const gpu::Texture& sky;  // its own frame
   std::span<const Disc> discs;
-  bool pictured = false;         // else all that is not a disc is constant
+  bool pictured = false;  // else all that is not a disc is constant
   const gpu::Program &program, &weigh;
   std::span<const ReflectedLobe> lobes;
 };

@@ -1,11 +1,11 @@
 // What rough mirrors show of the sky beyond the few bands that surfaces have of its light: P(L) - P(L_n),
-// prefiltered by the round lobe of reflected_lobe.hpp. L is the light without key lights, whose highlights surfaces
-// shade by their discs; where key lights are wide, pieces of windows or soft boxes, their true shape is kept in
-// second pictures, of all the light, for mirrors that are sharp enough to tell. P(L) stands in a cube map per set of lights, roughness
-// along its mip levels, in the lights' own frame: made once, for turning, fading and dimming only mix it
-// anew. P(L_n) has n bands, each scaled by the lobe's, and is taken off where a surface looks
-// (glossy_surface.glsl), so that light of few bands leaves nothing. Render thread only. Errors: a kernel that
-// does not compile on this device.
+// prefiltered by the round lobe of reflected_lobe.hpp. L is the light without key lights, whose highlights
+// surfaces shade by their discs; where key lights are wide, pieces of windows or soft boxes, their true shape
+// is kept in second pictures, of all the light, for mirrors that are sharp enough to tell. P(L) stands in a
+// cube map per set of lights, roughness along its mip levels, in the lights' own frame: made once, for
+// turning, fading and dimming only mix it anew. P(L_n) has n bands, each scaled by the lobe's, and is taken
+// off where a surface looks (glossy_surface.glsl), so that light of few bands leaves nothing. Render thread
+// only. Errors: a kernel that does not compile on this device.
 #pragma once
 
 #include <array>

@@ -43,8 +43,8 @@ std::uint32_t cubeSize(std::span<const spec::Probe* const> probes) {
   return size;
 }
 
-std::vector<std::uint64_t> faceTexels(std::span<const spec::Probe* const> probes, glm::vec3 constant, int face,
-                                      std::uint32_t size) {
+std::vector<std::uint64_t> faceTexels(std::span<const spec::Probe* const> probes, glm::vec3 constant,
+                                      int face, std::uint32_t size) {
   std::vector<std::uint64_t> texels;
   texels.reserve(std::size_t{size} * size);
   for (std::uint32_t y = 0; y < size; ++y)
@@ -65,7 +65,8 @@ gpu::Texture skyCube(std::span<const spec::Probe* const> probes, glm::vec3 const
   gpu::Texture cube("sky", {.format = GL_RGBA16F, .width = size, .height = size, .cube = true});
   std::vector<std::future<std::vector<std::uint64_t>>> faces;
   for (int face = 0; face < 6; ++face)
-    faces.push_back(std::async(std::launch::async, [&, face] { return faceTexels(probes, constant, face, size); }));
+    faces.push_back(
+        std::async(std::launch::async, [&, face] { return faceTexels(probes, constant, face, size); }));
   for (int face = 0; face < 6; ++face)
     glTextureSubImage3D(cube.id(), 0, 0, 0, face, static_cast<GLsizei>(size), static_cast<GLsizei>(size), 1,
                         GL_RGBA, GL_HALF_FLOAT, faces[static_cast<std::size_t>(face)].get().data());

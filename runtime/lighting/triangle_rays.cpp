@@ -46,7 +46,8 @@ void RaysFrom::moveTo(const glm::vec3& origin) {
 void RaysFrom::moveTo(const glm::vec3& origin, const glm::vec3& normal) {
   count_ = 0;
   const auto corner = [&](std::size_t k, std::size_t i) {
-    return glm::vec3(set_.corners_[3 * k][i], set_.corners_[3 * k + 1][i], set_.corners_[3 * k + 2][i]) - origin;
+    return glm::vec3(set_.corners_[3 * k][i], set_.corners_[3 * k + 1][i], set_.corners_[3 * k + 2][i]) -
+           origin;
   };
   for (std::size_t i = 0; i < set_.size(); ++i) {
     const glm::vec3 a = corner(0, i), b = corner(1, i), c = corner(2, i);

@@ -1,7 +1,8 @@
 // Rays among a few hundred triangles, of which many start at the same point. For such a point each triangle
 // gives three planes through the point and its edges; a ray hits the triangle that it passes on the same side
-// of all three. This takes a few instructions per triangle, eight of them at a time, and beats a tree of boxes
-// as long as there are no more than a capture proxy has. No state is shared, any number of threads. No GL.
+// of all three. This takes a few instructions per triangle, eight of them at a time, and beats a tree of
+// boxes as long as there are no more than a capture proxy has. No state is shared, any number of threads. No
+// GL.
 #pragma once
 
 #include <array>

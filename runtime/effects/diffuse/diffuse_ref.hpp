@@ -75,8 +75,8 @@ inline glm::vec3 unshadowedRadiance(const Memory& memory, glm::vec3 normal, uint
 
 inline constexpr glm::vec3 kLuminance{0.2126f, 0.7152f, 0.0722f};
 
-inline glm::vec3 timesLight(const Memory& memory, uint at, uint channels, uint stride, uint columns, uint light,
-                            float rest, float key) {
+inline glm::vec3 timesLight(const Memory& memory, uint at, uint channels, uint stride, uint columns,
+                            uint light, float rest, float key) {
   glm::vec3 sum(0.0f);
   for (uint i = 0; i < columns; ++i) {
     glm::vec3 arriving = rest * memory.lightAt(light + i);

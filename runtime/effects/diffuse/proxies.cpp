@@ -92,12 +92,14 @@ void Proxies::rebuildTables(const streaming::Residency& residency, const lightin
 }
 
 void Proxies::writeAdded(std::span<const AddedRadiance> added, gpu::Counters& counters) {
-  const bool any = std::ranges::any_of(added, [](const AddedRadiance& one) { return !one.triangles.empty(); });
+  const bool any =
+      std::ranges::any_of(added, [](const AddedRadiance& one) { return !one.triangles.empty(); });
   if (!any && !added_) return;  // it is 0 already
   added_ = any;
   std::vector<glm::vec4> values(triangles_.size(), glm::vec4(0.0f));
   for (std::size_t g = 0; g < std::min(added.size(), groups_.size()); ++g)
-    for (std::size_t t = 0; t < std::min<std::size_t>(added[g].triangles.size(), groups_[g].triangle_count); ++t)
+    for (std::size_t t = 0; t < std::min<std::size_t>(added[g].triangles.size(), groups_[g].triangle_count);
+         ++t)
       values[groups_[g].first_triangle + t] = glm::vec4(added[g].triangles[t], 0.0f);
   added_table_.assign(std::span<const glm::vec4>(values));
   counters.uploaded_bytes += values.size() * sizeof(glm::vec4);

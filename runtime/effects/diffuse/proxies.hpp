@@ -32,8 +32,8 @@ class Proxies {
  public:
   Proxies();
 
-  // shaded: per group, a number that rises when samples of it are shaded, by whatever effect. added: per group,
-  // or nothing at all.
+  // shaded: per group, a number that rises when samples of it are shaded, by whatever effect. added: per
+  // group, or nothing at all.
   Result<void> shade(streaming::Residency& residency, const lighting::GroupLights& lights,
                      std::span<const std::uint64_t> shaded, gpu::Counters& counters,
                      std::span<const AddedRadiance> added = {});

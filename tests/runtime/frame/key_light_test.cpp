@@ -266,8 +266,8 @@ TEST(KeyLight, AWallThatLightGrazesIsLitDownToTheFloor) {
         return nearer(toPlane(ray, glm::dvec3(kUp), 0.0), toBox(ray, {{-3, -3, -1}, {0, 3, 1}}));
       });
       Random random;
-      // Nearer to the floor than a quarter of a texel, the texel between both may take a little: a bias of one texel
-      // is the price of walls that let no light through at their foot.
+      // Nearer to the floor than a quarter of a texel, the texel between both may take a little: a bias of
+      // one texel is the price of walls that let no light through at their foot.
       const float foot = 0.25f / key.scale.x;
       for (int i = 0; i < 200; ++i) {
         const glm::vec3 place(0.0f, random.number(-0.3f, 0.3f),

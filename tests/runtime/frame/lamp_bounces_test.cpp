@@ -44,9 +44,7 @@ struct RoomStage : LiveStage {
     world.registry().emplace<scene::LocalLightComponent>(lamp, scene::LocalLightComponent{.strength = 4.0f});
   }
   scene::LocalLightComponent& light() { return world.registry().edit<scene::LocalLightComponent>(lamp); }
-  void moveLamp(const glm::vec3& place) {
-    world.registry().edit<scene::Transform>(lamp).translation = place;
-  }
+  void moveLamp(const glm::vec3& place) { world.registry().edit<scene::Transform>(lamp).translation = place; }
 };
 
 // Mean over the middle of the picture, which the far side of the sphere fills.
@@ -74,7 +72,8 @@ TEST_F(LampBouncesTest, InAClosedSphereTheyAddAlbedoOverOneMinusAlbedo) {
     stage.set("lamp-bounces", "off");
     const double without = middleOf(stage.picture());
     EXPECT_NEAR(without, kAlbedo * 4.0 / 3.14159, 0.03) << "E/pi of 4 cd at 1 m";
-    EXPECT_NEAR((with / without - 1.0) / (kAlbedo / (1.0 - kAlbedo)), 1.0, 0.03) << (mapped ? "mapped" : "plain");
+    EXPECT_NEAR((with / without - 1.0) / (kAlbedo / (1.0 - kAlbedo)), 1.0, 0.03)
+        << (mapped ? "mapped" : "plain");
   }
 }
 
@@ -101,8 +100,7 @@ TEST_F(LampBouncesTest, DimmedItIsHalfAndSwitchedOffItIsBlack) {
   const auto full = stage.picture();
   stage.light().strength = 2.0f;
   const auto half = stage.picture();
-  for (std::size_t i = 0; i < full.size(); ++i)
-    ASSERT_NEAR(half[i].g, 0.5f * full[i].g, 1e-6f * full[i].g);
+  for (std::size_t i = 0; i < full.size(); ++i) ASSERT_NEAR(half[i].g, 0.5f * full[i].g, 1e-6f * full[i].g);
   stage.light().enabled = false;
   for (const glm::vec4& texel : stage.picture()) ASSERT_EQ(glm::vec3(texel), glm::vec3(0.0f));
 }

@@ -60,12 +60,13 @@ TEST(LampLight, AllLightOfALampArrivesInAClosedRoom) {
   NearLight sphere = point;
   sphere.kind = NearLight::Kind::Sphere;
   sphere.radius_m = 0.3f;  // flux pi L 4 pi r²
-  EXPECT_NEAR(received(patches, lampOnPatches(sphere, patches, {}, glm::mat4(1.0f)), kPi * 4.0 * kPi * 0.09), 1.0,
-              0.01);
+  EXPECT_NEAR(received(patches, lampOnPatches(sphere, patches, {}, glm::mat4(1.0f)), kPi * 4.0 * kPi * 0.09),
+              1.0, 0.01);
   NearLight disc = sphere;
   disc.kind = NearLight::Kind::Disc;
   disc.direction_ws = {0, -2, 0};  // of any length
-  EXPECT_NEAR(received(patches, lampOnPatches(disc, patches, {}, glm::mat4(1.0f)), kPi * kPi * 0.09), 1.0, 0.01);
+  EXPECT_NEAR(received(patches, lampOnPatches(disc, patches, {}, glm::mat4(1.0f)), kPi * kPi * 0.09), 1.0,
+              0.01);
   NearLight spot = point;
   spot.kind = NearLight::Kind::Spot;
   spot.direction_ws = {1, 0, 0};
@@ -99,8 +100,8 @@ TEST(LampLight, WhatIsNoLargerThanTheLampAndWithinItCastsNoShadow) {
   bulb.kind = NearLight::Kind::Sphere;
   bulb.radius_m = 0.1f;
   const auto shadowBy = [&](float half) {
-    const lighting::RayTriangle plate{
-        .corners = {glm::vec3(-half, 0.95f, -half), glm::vec3(half, 0.95f, -half), glm::vec3(0, 0.95f, half)}};
+    const lighting::RayTriangle plate{.corners = {glm::vec3(-half, 0.95f, -half),
+                                                  glm::vec3(half, 0.95f, -half), glm::vec3(0, 0.95f, half)}};
     return received(patches, lampOnPatches(bulb, patches, std::span(&plate, 1), glm::mat4(1.0f)), 1.0) /
            received(patches, lampOnPatches(bulb, patches, {}, glm::mat4(1.0f)), 1.0);
   };
@@ -114,7 +115,8 @@ TEST(LampRoom, WhatARoomSendsOnIsAlbedoOverOneMinusAlbedoOfTheLamp) {
     shine(room, {pointLamp({1, 1.2f, 1.5f})});
     double flux = 0.0;
     const auto& patches = room.transport()->patches().all();
-    for (std::size_t i = 0; i < patches.size(); ++i) flux += std::numbers::pi * patches[i].area * room.givenOff()[i].g;
+    for (std::size_t i = 0; i < patches.size(); ++i)
+      flux += std::numbers::pi * patches[i].area * room.givenOff()[i].g;
     EXPECT_NEAR(flux / (4.0 * kPi) / (albedo / (1.0 - albedo)), 1.0, 0.03);
   }
 }
@@ -200,10 +202,9 @@ TEST(LampRoom, ATurnedAndScaledRoomTakesTheSameShareOfLight) {
   LampRoom plain = boxRoom(), placed = boxRoom();
   shine(plain, {pointLamp({1, 2, 1})});
   // Twice the size: a quarter of the irradiance.
-  const glm::mat4 world_from_group =
-      glm::translate(glm::mat4(1.0f), glm::vec3(3, -1, 2)) *
-      glm::rotate(glm::mat4(1.0f), 0.7f, glm::normalize(glm::vec3(1, 2, 3))) *
-      glm::scale(glm::mat4(1.0f), glm::vec3(2.0f));
+  const glm::mat4 world_from_group = glm::translate(glm::mat4(1.0f), glm::vec3(3, -1, 2)) *
+                                     glm::rotate(glm::mat4(1.0f), 0.7f, glm::normalize(glm::vec3(1, 2, 3))) *
+                                     glm::scale(glm::mat4(1.0f), glm::vec3(2.0f));
   const std::vector<NearLight> lamp = {pointLamp(glm::vec3(world_from_group * glm::vec4(1, 2, 1, 1)))};
   placed.light(lamp, world_from_group, {});
   for (std::size_t i = 0; i < plain.givenOff().size(); ++i)

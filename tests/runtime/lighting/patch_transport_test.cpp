@@ -51,7 +51,8 @@ glm::vec3 gathered(const std::vector<std::uint16_t>& links, std::size_t point,
                    const std::vector<glm::vec3>& given_off) {
   glm::vec3 sum(0.0f);
   for (std::size_t k = 0; k < kLinks; ++k)
-    if (const std::uint16_t patch = links[kLinks * point + k]; patch < given_off.size()) sum += given_off[patch];
+    if (const std::uint16_t patch = links[kLinks * point + k]; patch < given_off.size())
+      sum += given_off[patch];
   return sum / static_cast<float>(kLinks);
 }
 
@@ -66,14 +67,15 @@ TEST(PatchTransport, InAClosedSphereBouncesAddAlbedoOverOneMinusAlbedo) {
     const double ratio = wholeOf(patches, all) / wholeOf(patches, direct) - 1.0;
     EXPECT_NEAR(ratio / (albedo / (1.0 - albedo)), 1.0, 0.01) << albedo;
     for (std::size_t i = 0; i < all.size(); ++i)
-      ASSERT_NEAR((all[i] - direct[i]) / direct[i], albedo / (1.0f - albedo), 0.05f * albedo / (1.0f - albedo)) << i;
+      ASSERT_NEAR((all[i] - direct[i]) / direct[i], albedo / (1.0f - albedo),
+                  0.05f * albedo / (1.0f - albedo))
+          << i;
   }
 }
 
 TEST(PatchTransport, InAClosedBoxTheSameHoldsOfTheWholeWhereverTheLampStands) {
   for (const glm::vec3& lamp : {glm::vec3(1, 1.2f, 1.5f), glm::vec3(0.3f, 2.0f, 0.4f)}) {
-    const PatchTransport transport(
-        RoomBuilder().box({0, 0, 0}, {2, 2.4f, 3}, glm::vec3(0.6f)).proxy());
+    const PatchTransport transport(RoomBuilder().box({0, 0, 0}, {2, 2.4f, 3}, glm::vec3(0.6f)).proxy());
     const Patches& patches = transport.patches();
     const std::vector<float> direct = litFrom(patches, lamp);
     const std::vector<float> all = receivedAll(patches, transport.bounce(direct));
@@ -86,7 +88,8 @@ TEST(PatchTransport, AFurnaceStaysUniform) {
   const PatchTransport transport(RoomBuilder().box({0, 0, 0}, {1, 5, 2}, glm::vec3(0.5f)).proxy());
   const std::vector<float> direct(transport.patches().size(), 2.0f);
   for (const glm::vec3& radiance : transport.bounce(direct)) ASSERT_NEAR(radiance.g, 2.0f, 0.002f);
-  const std::vector<SurfacePoint> points = {{{0.5f, 0, 1}, {0, 1, 0}}, {{0, 0, 0}, {0, 1, 0}}, {{1, 5, 2}, {-1, 0, 0}}};
+  const std::vector<SurfacePoint> points = {
+      {{0.5f, 0, 1}, {0, 1, 0}}, {{0, 0, 0}, {0, 1, 0}}, {{1, 5, 2}, {-1, 0, 0}}};
   const auto links = transport.link(points, LinkSpread::Cosine);
   for (std::size_t p = 0; p < points.size(); ++p)
     EXPECT_NEAR(gathered(links, p, transport.bounce(direct)).g, 2.0f, 0.002f) << p;
