@@ -1,7 +1,6 @@
 #include "runtime/lighting/patch_transport.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstring>
 #include <numeric>
@@ -172,26 +171,6 @@ TEST(PatchTransport, PatchesOfATriangleAreFoundByWhereARayMeetsIt) {
       ASSERT_TRUE(hit);
       ASSERT_EQ(patches.patchAt(*hit), i);
     }
-}
-
-TEST(PatchTransport, DISABLED_Cost) {
-  const bundle::CaptureProxy proxy = RoomBuilder().sphere(10, 14, glm::vec3(0.5f)).proxy();
-  const auto now = [] { return std::chrono::steady_clock::now(); };
-  const auto ms = [](auto d) { return std::chrono::duration<double, std::milli>(d).count(); };
-  auto start = now();
-  const PatchTransport transport(proxy);
-  std::printf("%zu triangles, %zu patches, %.1f KiB: %.1f ms\n", transport.patches().triangles().size(),
-              transport.patches().size(), static_cast<double>(transport.bytes()) / 1024.0, ms(now() - start));
-  std::vector<SurfacePoint> points;
-  for (const Patch& patch : transport.patches().all())
-    for (int k = 0; k < 10; ++k) points.push_back({patch.points[0], patch.normal});
-  start = now();
-  const auto links = transport.link(points, LinkSpread::Cosine);
-  std::printf("%zu points linked: %.1f ms\n", points.size(), ms(now() - start));
-  const auto direct = litFrom(transport.patches(), {0.4f, 0.1f, 0});
-  start = now();
-  (void)transport.bounce(direct);
-  std::printf("bounced: %.2f ms\n", ms(now() - start));
 }
 
 }  // namespace lambent::lighting
