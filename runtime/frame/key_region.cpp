@@ -70,6 +70,17 @@ std::vector<glm::dvec3> seenCorners(const scene::Box& box, const glm::mat4& clip
   return corners;
 }
 
+void KeyRegion::enclose(std::span<const glm::dvec3> seen, double tan_radius) {
+  min = glm::dvec2(std::numeric_limits<double>::infinity());
+  max = -min;
+  for (const glm::dvec3& p : seen) {
+    const glm::dvec2 place(glm::dot(right, p), glm::dot(up, p));
+    const double reach = tan_radius * (top - glm::dot(towards, p));
+    min = glm::min(min, place - reach);
+    max = glm::max(max, place + reach);
+  }
+}
+
 bool KeyRegion::holds(const KeyRegion& other) const {
   const double doubt = 1e-6 * (max.x - min.x + max.y - min.y);
   return right == other.right && up == other.up && towards == other.towards &&
@@ -92,18 +103,11 @@ std::optional<KeyRegion> regionOf(std::span<const glm::dvec3> seen, glm::dvec3 t
     const double angle = 0.5 * std::numbers::pi * turn / kTurns;
     KeyRegion region{.right = std::cos(angle) * first + std::sin(angle) * second, .towards = towards};
     region.up = glm::cross(towards, region.right);
-    region.min = glm::dvec2(std::numeric_limits<double>::infinity());
-    region.max = -region.min;
-    for (const glm::dvec3& p : seen) {
-      const glm::dvec2 place(glm::dot(region.right, p), glm::dot(region.up, p));
-      const double reach = tan_radius * (top - glm::dot(towards, p));
-      region.min = glm::min(region.min, place - reach);
-      region.max = glm::max(region.max, place + reach);
-    }
+    region.top = top;
+    region.range = top - bottom;
+    region.enclose(seen, tan_radius);
     if (!best || region.area() < 0.999 * best->area()) best = region;
   }
-  best->top = top;
-  best->range = top - bottom;
   return best;
 }
 

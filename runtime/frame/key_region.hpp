@@ -23,6 +23,8 @@ struct KeyRegion {
   glm::dvec2 min{0.0}, max{0.0};
   double top = 0.0, range = 0.0;
 
+  // Makes min and max the least that show these points, with all that may stand in their light up to `top`.
+  void enclose(std::span<const glm::dvec3> seen, double tan_radius);
   // Whether all that `other` shows lies within.
   bool holds(const KeyRegion& other) const;
   double area() const { return (max.x - min.x) * (max.y - min.y); }

@@ -166,17 +166,9 @@ std::vector<std::size_t> KeyShadows::findChanged(World& world, const spec::View&
     const double least = 1e-6 * std::max({size.x, size.y, wanted->range, 1e-3});
     const auto holds = [&] {
       KeyRegion turned = *wanted;  // as the map's own axes have it
-      const double tangent = tangentOf(map.light);
       turned.right = map.region.right;
       turned.up = map.region.up;
-      turned.min = glm::dvec2(std::numeric_limits<double>::infinity());
-      turned.max = -turned.min;
-      for (const glm::dvec3& p : seen) {
-        const glm::dvec2 place(glm::dot(turned.right, p), glm::dot(turned.up, p));
-        const double reach = tangent * (turned.top - glm::dot(turned.towards, p));
-        turned.min = glm::min(turned.min, place - reach);
-        turned.max = glm::max(turned.max, place + reach);
-      }
+      turned.enclose(seen, tangentOf(map.light));
       return map.region.holds(turned) && map.region.area() < kWasted * wanted->area();
     };
     std::vector<ShadowCaster> casters;
