@@ -169,8 +169,8 @@ Result<void> Frame::step(World& world, const lighting::Environment& environment,
   transforms(world);
   // what arrives at each light sample, windowed and turned into its group's frame
   if (Result<void> done = light(world, environment); !done) return done;
-  // what surfaces send on of the lights that stand among them
-  if (Result<void> done = bounceLamps(world); !done) return done;
+  // what surfaces send on of the lights that stand among them, and of key lights
+  if (Result<void> done = bounce(world, environment); !done) return done;
   // E/pi at every vertex whose light or transfer is new
   if (Result<void> done = shade(world); !done) return done;
   // transferred light at the samples of glossy surfaces, likewise
@@ -274,7 +274,7 @@ Result<void> Frame::shadeNeighborhoods(World& world) {
 Result<void> Frame::castShadows(World& world) {
   gpu::PassTimers::Scope pass(timers_, "shadows");
   Result<void> done = near_lights_.update(world, lit_scene_.near_lights, lit_scene_.near_masks,
-                                          pass.counters(), &lamp_bounces_);
+                                          pass.counters());
   counts_.shadow_cubes_drawn = near_lights_.cubesDrawn();
   if (counts_.shadow_cubes_drawn > 0)
     pass.because(reasons_.of(kLightCauses | Cause::Materials, "lights among surfaces"));
@@ -333,6 +333,7 @@ Result<void> Frame::prepareSurfaces(World& world, const lighting::Environment& e
   return surfaces_.prepare(world, diffuse_, view, counters, &near_lights_,
                            residual ? &*reflected_sky_ : nullptr,
                            settings.neighborhoods && neighborhoods_.any() ? &neighborhoods_ : nullptr,
+                           patch_bounces_.any() ? &patch_bounces_ : nullptr,
                            {.diffuse = settings.diffuse,
                             .glossy = settings.glossy,
                             .glossy_bands = settings.glossy_order,

@@ -23,7 +23,7 @@
 #include "runtime/frame/frame_settings.hpp"
 #include "runtime/frame/frame_times.hpp"
 #include "runtime/frame/key_shadows.hpp"
-#include "runtime/frame/lamp_bounces.hpp"
+#include "runtime/frame/patch_bounces.hpp"
 #include "runtime/frame/lit_scene.hpp"
 #include "runtime/frame/near_lights.hpp"
 #include "runtime/frame/neighborhoods.hpp"
@@ -75,7 +75,7 @@ struct StepCounts {
   std::uint32_t light_samples_written = 0;  // coefficients computed for the shaders
   std::uint32_t cells_shaded = 0, draws_shaded = 0;
   std::uint32_t shadow_cubes_drawn = 0;
-  LampBounceCounts lamp_bounces;
+  PatchBounceCounts patch_bounces;
   std::uint32_t key_lights = 0, key_maps_drawn = 0;
   // Volumes there are; whose light was brought into their textures, and how many outputs of it; in the
   // picture.
@@ -130,7 +130,7 @@ class Frame {
   const StepCounts& counts() const { return counts_; }
   // Of what the frame itself keeps for volumes, beside what is resident.
   std::uint64_t volumeBytes() const { return volume_.textureBytes(); }
-  std::uint64_t lampBounceBytes() const { return lamp_bounces_.bytesResident(); }
+  std::uint64_t patchBounceBytes() const { return patch_bounces_.bytesResident(); }
   const KeyShadows& keyShadows() const { return key_shadows_; }
   const FrameOptions& options() const { return options_; }
   // From one render() to the next.
@@ -146,7 +146,7 @@ class Frame {
   void keepFewerSamples(const World& world);
   std::vector<lighting::Incident> incidentOf(const World& world, std::size_t group) const;
   Result<void> shade(World& world);
-  Result<void> bounceLamps(World& world);   // no pass without near lights
+  Result<void> bounce(World& world, const lighting::Environment& environment);   // no pass without near lights
   Result<void> shadeGlossy(World& world);   // no pass where nothing is glossy
   Result<void> shadeVolumes(World& world);  // these two: no pass without volumes
   Result<void> marchVolumes(World& world, const spec::View& view);
@@ -182,7 +182,7 @@ class Frame {
   effects::diffuse::Proxies proxies_;
   LitScene lit_scene_;
   NearLights near_lights_;
-  LampBounces lamp_bounces_;
+  PatchBounces patch_bounces_;
   KeyShadows key_shadows_;
   StandIns stand_ins_;
   Neighborhoods neighborhoods_;

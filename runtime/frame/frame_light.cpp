@@ -81,15 +81,17 @@ Result<void> Frame::light(World& world, const lighting::Environment& environment
   return {};
 }
 
-Result<void> Frame::bounceLamps(World& world) {
-  if (lit_scene_.near_lights.empty() && !lamp_bounces_.any()) return {};
-  gpu::PassTimers::Scope pass(timers_, "lamp bounces");
+Result<void> Frame::bounce(World& world, const lighting::Environment& environment) {
+  const std::span<const spec::Disc> keys = keysApart() ? environment.keys() : std::span<const spec::Disc>();
+  if (lit_scene_.near_lights.empty() && keys.empty() && !patch_bounces_.any()) return {};
+  gpu::PassTimers::Scope pass(timers_, "patch bounces");
   const FrameSettings& settings = options_.settings;
-  const bool on = settings.lamp_bounces && settings.transfer == effects::diffuse::TransferMode::Full;
-  Result<void> done =
-      lamp_bounces_.update(world, lit_scene_, on, options_.wait_for_captures, pass.counters());
-  counts_.lamp_bounces = lamp_bounces_.counts();
-  if (pass.counters().uploaded_bytes > 0) pass.because(reasons_.of(kLightCauses, "lights among surfaces"));
+  const bool on = settings.patch_bounces && settings.transfer == effects::diffuse::TransferMode::Full;
+  Result<void> done = patch_bounces_.update(world, lit_scene_, {.keys = keys, .bands = &group_lights_}, on,
+                                            options_.wait_for_captures, pass.counters());
+  counts_.patch_bounces = patch_bounces_.counts();
+  if (pass.counters().uploaded_bytes > 0)
+    pass.because(reasons_.of(kLightCauses, "lights that patches send on"));
   return done;
 }
 
@@ -126,7 +128,7 @@ Result<void> Frame::capture(World& world, const lighting::Environment& environme
     shaded.push_back(diffuse_.versionOf(g) + glossy_.versionOf(g));
   std::vector<effects::diffuse::AddedRadiance> added;
   for (std::size_t g = 0; g < shaded.size(); ++g)
-    added.push_back({.triangles = lamp_bounces_.sentBy(g), .version = lamp_bounces_.versionOf(g)});
+    added.push_back({.triangles = patch_bounces_.sentBy(g), .version = patch_bounces_.versionOf(g)});
   if (Result<void> done = proxies_.shade(world.residency(), group_lights_, shaded, pass.counters(), added);
       !done)
     return done;
@@ -137,7 +139,7 @@ Result<void> Frame::capture(World& world, const lighting::Environment& environme
       radiance.version = proxies_.versionOf(g);
       // Shaded for another reason than light or a turn: all of it may be different.
       const bool by_light = group_lights_.versionOf(g) != radiance.light;
-      const double lamps = lamp_bounces_.driftOf(g);
+      const double lamps = patch_bounces_.driftOf(g);
       const bool by_lamps = lamps != radiance.lamps;
       radiance.light = group_lights_.versionOf(g);
       if (by_light) radiance.drift += double{group_lights_.changeOf(g)};

@@ -138,7 +138,7 @@ const std::array kRows = {
     switchRow<&S::near_shadows>("near-shadows", "near lights", 1.0,
                                 "Lights among the surfaces shine per pixel with shadow cubes, off:\nby "
                                 "harmonics"),
-    switchRow<&S::lamp_bounces>("lamp-bounces", "bounces of near lights", 1.0,
+    switchRow<&S::patch_bounces>("patch-bounces", "bounces of near lights", 1.0,
                                 "Surfaces send on the light of lights among them"),
     switchRow<&S::captures>("captures", "light between bodies", 1.0,
                             "Bodies light and shadow each other as they stand now"),

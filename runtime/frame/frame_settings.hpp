@@ -44,7 +44,7 @@ struct FrameSettings {
   // Lights among the surfaces shine per pixel, with shadow cubes; else by harmonics.
   bool near_shadows = true;
   // And what the surfaces around them send on of their light arrives too.
-  bool lamp_bounces = true;
+  bool patch_bounces = true;
   // Bodies light and shadow each other as they stand now; else only as they were baked.
   bool captures = true;
 

@@ -35,13 +35,12 @@ vec3 cornerPosition(uint corner) {
   return vec3(uintBitsToFloat(geometry[at]), uintBitsToFloat(geometry[at + 1u]), uintBitsToFloat(geometry[at + 2u]));
 }
 
-#ifdef LAMBENT_NEAR_LIGHTS
+#ifdef LAMBENT_BOUNCES
 layout(std430, binding = kBindGlossyBounced) readonly buffer Bounced { float bounced_of[]; };
 
-// What surfaces around send on of near lights: light of bands 0..2 at the corners.
+// What patches send on: light of bands 0..2 at the corners.
 void addBounces(uvec3 corners, vec3 weights, inout vec4 light[kCoefficients]) {
-  uint word = near_draws[draws[draw_of].glossy.draw].bounced_word;
-  if (word == kNoBounces) return;
+  uint word = draws[draw_of].bounced_word;
   for (int corner = 0; corner < 3; ++corner)
     for (int k = 0; k < min(kUsedCoefficients, 9); ++k) {
       uint at = word + 3u * (9u * corners[corner] + uint(k));
@@ -74,7 +73,7 @@ void gatherLight(out vec4 light[kCoefficients]) {
   }
   float scale = total > 0.0 ? 1.0 / total : 0.0;
   for (int k = 0; k < kCoefficients; ++k) light[k] *= scale;
-#ifdef LAMBENT_NEAR_LIGHTS
+#ifdef LAMBENT_BOUNCES
   addBounces(corners, weights, light);
 #endif
 }

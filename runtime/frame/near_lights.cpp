@@ -61,10 +61,7 @@ NearLights::NearLights(const NearOptions& options)
                .samples = std::clamp(options.samples, 1u, 256u)},
       block_("near lights"),
       draws_table_("near draws"),
-      faces_("shadow faces"),
-      no_bounces_("no bounces") {
-  no_bounces_.reserve(16);
-}
+      faces_("shadow faces") {}
 
 Result<void> NearLights::compile() {
   if (programs_[0]) return {};
@@ -91,8 +88,7 @@ void NearLights::updateMasks(const World& world, std::span<const std::uint32_t> 
   Masks masks{.of_group = {mask_of_group.begin(), mask_of_group.end()},
               .shining = shining,
               .residency = residency.version(),
-              .transforms = world.transformsVersion(),
-              .bounces = bounces_ != nullptr ? bounces_->layoutVersion() : 0};
+              .transforms = world.transformsVersion()};
   if (masks == masks_seen_) return;
   masks_seen_ = std::move(masks);
   std::vector<NearDraw> draws;
@@ -105,9 +101,9 @@ void NearLights::updateMasks(const World& world, std::span<const std::uint32_t> 
       const bool lit = group < mask_of_group.size() && !materialOf(world, i).unlit;
       draws.push_back({.world_from_group = {turn.x, turn.y, turn.z, turn.w},
                        .lights = lit ? mask_of_group[group] & shining : 0u,
-                       .bounced_word = bounces_ != nullptr ? bounces_->wordOf(i) : kNoBounces,
                        .pad0 = 0,
-                       .pad1 = 0});
+                       .pad1 = 0,
+                       .pad2 = 0});
     }
   }
   const bool same_lights =
@@ -152,10 +148,8 @@ std::vector<std::uint32_t> NearLights::findChanged(World& world) {
 }
 
 Result<void> NearLights::update(World& world, std::span<const NearLight> lights,
-                                std::span<const std::uint32_t> mask_of_group, gpu::Counters& counters,
-                                const LampBounces* bounces) {
+                                std::span<const std::uint32_t> mask_of_group, gpu::Counters& counters) {
   cubes_drawn_ = 0;
-  bounces_ = bounces;
   const std::span<const NearLight> kept = lights.first(std::min<std::size_t>(lights.size(), kNearLights));
   lights_.assign(kept.begin(), kept.end());
   for (NearLight& light : lights_)
@@ -228,14 +222,6 @@ void NearLights::bind(const spec::View& view, const spec::Size& size) {
   glBindBufferBase(GL_UNIFORM_BUFFER, kBindNearLights, block_.buffer().id());
   draws_table_.bindStorage(kBindNearDraws);
   shadows_.bind(kUnitNearShadows);
-}
-
-void NearLights::bindBounces(bool glossy) const {
-  const std::uint32_t binding = glossy ? kBindGlossyBounced : kBindBounced;
-  if (bounces_ != nullptr && bounces_->any())
-    bounces_->bindStorage(binding);
-  else
-    no_bounces_.bindStorage(binding);
 }
 
 std::uint64_t NearLights::bytesResident() const {

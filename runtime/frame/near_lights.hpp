@@ -14,7 +14,6 @@
 #include <glm/mat4x4.hpp>
 
 #include "runtime/base/result.hpp"
-#include "runtime/frame/lamp_bounces.hpp"
 #include "runtime/frame/near_shared.h"
 #include "runtime/frame/shadow_casters.hpp"
 #include "runtime/frame/world.hpp"
@@ -37,18 +36,13 @@ class NearLights {
 
   // Lights beyond the first kMaxNearLights are left out. mask_of_group, in the order of residency().groups(),
   // says with bit k that light k lights the group's draws; groups beyond its end have none. After
-  // World::updateTransforms. With bounces, which must be up to date and live until the surfaces are drawn,
-  // these add what other surfaces send on. Changes the bound framebuffer, viewport and program.
+  // World::updateTransforms. Changes the bound framebuffer, viewport and program.
   Result<void> update(World& world, std::span<const lighting::NearLight> lights,
-                      std::span<const std::uint32_t> mask_of_group, gpu::Counters& counters,
-                      const LampBounces* bounces = nullptr);
+                      std::span<const std::uint32_t> mask_of_group, gpu::Counters& counters);
 
   // What the surface shaders read, for a picture of this size seen so. Before Surfaces draws; nothing is
   // bound where no draw is lit.
   void bind(const spec::View& view, const spec::Size& size);
-
-  // For a run of draws that lightsOf() says are lit.
-  void bindBounces(bool glossy) const;
 
   // Bit k: the residency's draw is lit by light k.
   std::uint32_t lightsOf(std::size_t draw) const { return draw < draws_.size() ? draws_[draw].lights : 0; }
@@ -73,7 +67,7 @@ class NearLights {
   struct Masks {
     std::vector<std::uint32_t> of_group;
     std::uint32_t shining = 0;
-    std::uint64_t residency = 0, transforms = 0, bounces = 0;
+    std::uint64_t residency = 0, transforms = 0;
     bool operator==(const Masks&) const = default;
   };
   void updateMasks(const World& world, std::span<const std::uint32_t> mask_of_group, gpu::Counters& counters);
@@ -94,8 +88,6 @@ class NearLights {
   std::vector<NearDraw> draws_;
   Masks masks_seen_;  // what draws_ follows from
   std::vector<lighting::NearLight> lights_;
-  const LampBounces* bounces_ = nullptr;  // of this frame
-  gpu::Table no_bounces_;
   std::uint32_t lights_used_ = 0;  // that shine on any group
   bool any_ = false;
   std::uint64_t version_ = 0;

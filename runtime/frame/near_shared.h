@@ -22,10 +22,6 @@ using glm::vec4;
 LAMBENT_CONSTANT kBindNearLights = 3u;   // uniform block NearBlock
 LAMBENT_CONSTANT kBindShadowFace = 4u;   // uniform block ShadowFace
 LAMBENT_CONSTANT kBindNearDraws = 5u;    // NearDraw
-// Per vertex 3 floats, or with normal maps and of glossy draws 27, as the radiance of vertices is.
-LAMBENT_CONSTANT kBindBounced = 4u;        // of matte draws
-LAMBENT_CONSTANT kBindGlossyBounced = 2u;  // of glossy ones, which have another buffer there
-LAMBENT_CONSTANT kNoBounces = 0xffffffffu;
 LAMBENT_CONSTANT kUnitNearShadows = 8u;  // texture unit of the shadow cubes
 
 LAMBENT_CONSTANT kNearLights = 4u;  // lighting::kMaxNearLights
@@ -60,8 +56,7 @@ struct NearView {
 struct NearDraw {
   vec4 world_from_group;  // quaternion, xyz then w
   uint lights;            // bit k: lit by light k
-  uint bounced_word;      // where the light begins that surfaces send on of theirs (lamp_bounces.hpp); kNoBounces: none
-  uint pad0, pad1;
+  uint pad0, pad1, pad2;
 };
 
 // One face of one cube, as it is drawn.

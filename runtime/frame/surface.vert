@@ -47,14 +47,10 @@ layout(location = 5) out vec3 position_mesh;
 #endif
 #endif
 
-#if defined(LAMBENT_NEAR_LIGHTS) && !defined(LAMBENT_GLOSSY)
-#include "near_shared.h"
-layout(std430, binding = kBindNearDraws) readonly buffer NearDraws { NearDraw near_draws[]; };
+#if defined(LAMBENT_BOUNCES) && !defined(LAMBENT_GLOSSY)
 layout(std430, binding = kBindBounced) readonly buffer Bounced { float bounced_of[]; };
 vec3 bouncedAt(uint place) {
-  uint at = near_draws[draw_index].bounced_word;
-  if (at == kNoBounces) return vec3(0.0);
-  at += 3u * place;
+  uint at = draws[draw_index].bounced_word + 3u * place;
   return vec3(bounced_of[at], bounced_of[at + 1u], bounced_of[at + 2u]);
 }
 #endif
@@ -118,7 +114,7 @@ void main() {
 #ifndef LAMBENT_GLOSSY
   uint words = 3u * kLightCoefficients;
   for (uint j = 0u; j < kLightCoefficients; ++j) light[j] = radianceAt(draws[draw_index].radiance_word + words * vertex + 3u * j);
-#ifdef LAMBENT_NEAR_LIGHTS
+#ifdef LAMBENT_BOUNCES
   for (uint j = 0u; j < kLightCoefficients; ++j) light[j] += bouncedAt(kLightCoefficients * vertex + j);
 #endif
 #endif
@@ -132,7 +128,7 @@ void main() {
   radiance = max(radiance + vec3(change_of[change_at], change_of[change_at + 1u], change_of[change_at + 2u]),
                  min(radiance, vec3(0.0)));
 #endif
-#ifdef LAMBENT_NEAR_LIGHTS
+#ifdef LAMBENT_BOUNCES
   radiance += bouncedAt(vertex);
 #endif
 #if defined(LAMBENT_NEAR_LIGHTS) || defined(LAMBENT_KEY_LIGHTS) || defined(LAMBENT_NEIGHBORHOODS) || defined(LAMBENT_VIEW_NORMALS)

@@ -71,7 +71,11 @@ SurfaceDraw describe(const World& world, std::size_t draw) {
           .radiance_word = resident.radiance.word(),
           .alpha_mode = static_cast<uint>(material.alpha_mode),
           .alpha_cutoff = material.alpha_cutoff,
-          .unlit = material.unlit ? 1u : 0u};
+          .unlit = material.unlit ? 1u : 0u,
+          .bounced_word = kAbsent,
+          .pad0 = 0,
+          .pad1 = 0,
+          .pad2 = 0};
 }
 
 SurfaceTextures texturesOf(const World& world, std::size_t draw, const SurfaceDraw& record) {

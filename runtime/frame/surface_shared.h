@@ -28,6 +28,9 @@ LAMBENT_CONSTANT kBindRadiance = 2u;  // arena page
 LAMBENT_CONSTANT kBindRows = 3u;      // arena page: rows of the vertices of glossy draws
 LAMBENT_CONSTANT kBindSamples = 4u;   // arena page: their samples
 LAMBENT_CONSTANT kBindRadianceChange = 3u;  // of matte draws, what bodies around change at vertices: 3 floats each
+// What patches send on (patch_bounces.hpp): per vertex 3 floats, or with normal maps and of glossy draws 27.
+LAMBENT_CONSTANT kBindBounced = 4u;        // of matte draws
+LAMBENT_CONSTANT kBindGlossyBounced = 2u;  // of glossy ones, which have another buffer there
 LAMBENT_CONSTANT kAbsent = 0xffffffffu;
 
 LAMBENT_CONSTANT kUnitBaseColor = 0u;  // texture units
@@ -97,6 +100,8 @@ struct SurfaceDraw {
   uint alpha_mode;
   float alpha_cutoff;
   uint unlit;
+  uint bounced_word;  // where its bounced light begins; kAbsent: none
+  uint pad0, pad1, pad2;
 #ifdef LAMBENT_GLOSSY
   GlossyPart glossy;
 #endif
@@ -108,10 +113,10 @@ struct GlossyDraw {
   SurfaceDraw surface;
   GlossyPart glossy;
 };
-static_assert(sizeof(GlossyPart) == 256 && offsetof(GlossyPart, metallic) == 192 && sizeof(GlossyDraw) == 608 &&
-              offsetof(GlossyDraw, glossy) == 352);
+static_assert(sizeof(GlossyPart) == 256 && offsetof(GlossyPart, metallic) == 192 && sizeof(GlossyDraw) == 624 &&
+              offsetof(GlossyDraw, glossy) == 368);
 static_assert(sizeof(TextureSlot) == 32 && offsetof(TextureSlot, set) == 24);
-static_assert(sizeof(SurfaceDraw) == 352 && offsetof(SurfaceDraw, base_color) == 176 &&
+static_assert(sizeof(SurfaceDraw) == 368 && offsetof(SurfaceDraw, base_color) == 176 &&
               offsetof(SurfaceDraw, base_color_texture) == 208 && offsetof(SurfaceDraw, normal_scale) == 304);
 }  // namespace lambent::frame
 #endif

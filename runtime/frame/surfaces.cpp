@@ -53,6 +53,7 @@ Result<void> Surfaces::compile(const ProgramKind& kind) {
   if (kind.normal_mapped) defines.push_back({"LAMBENT_NORMAL_MAPPED", "1"});
   if (kind.residual) defines.push_back({"LAMBENT_RESIDUAL", "1"});
   if (kind.near_lit) defines.push_back({"LAMBENT_NEAR_LIGHTS", "1"});
+  if (kind.bounces) defines.push_back({"LAMBENT_BOUNCES", "1"});
   if (kind.key_lit) defines.push_back({"LAMBENT_KEY_LIGHTS", "1"});
   if (kind.vertices_around) defines.push_back({"LAMBENT_VERTEX_CHANGE", "1"});
   if (kind.around) defines.push_back({"LAMBENT_NEIGHBORHOODS", "1"});
@@ -93,6 +94,7 @@ void Surfaces::collect(World& world, const effects::diffuse::Diffuse& diffuse, g
                         .normal_mapped = normalMapped(world, i),
                         .near_lit = near_lights != nullptr && near_lights->lightsOf(i) != 0,
                         .key_lit = options_.key_lights && records_[i].unlit == 0,
+                        .bounces = records_[i].bounced_word != kAbsent,
                         .around = neighborhoods != nullptr && neighborhoods->receives(i),
                         .vertices_around = neighborhoods != nullptr && neighborhoods->receivesAtVertices(i),
                         .clockwise = (glm::determinant(glm::mat3(world_from_mesh)) < 0.0f) != draw.back},
@@ -101,8 +103,8 @@ void Surfaces::collect(World& world, const effects::diffuse::Diffuse& diffuse, g
     if (dark(world, i)) {
       item.state.dark = true;
       item.state.radiance_page = 0;
-      item.state.normal_mapped = item.state.near_lit = item.state.key_lit = item.state.around =
-          item.state.vertices_around = false;
+      item.state.normal_mapped = item.state.near_lit = item.state.key_lit = item.state.bounces =
+          item.state.around = item.state.vertices_around = false;
     } else if (draw.glossy()) {
       item.state.glossy = glossyKindOf(world, i, options_.glossy_bands);
       item.state.bundle = draw.bundle;
@@ -132,13 +134,14 @@ void Surfaces::appendRuns(const World& world, const std::vector<Item>& items, st
 Result<void> Surfaces::prepare(World& world, const effects::diffuse::Diffuse& diffuse, const spec::View& view,
                                gpu::Counters& counters, const NearLights* near_lights,
                                const lighting::ReflectedSky* reflected_sky,
-                               const Neighborhoods* neighborhoods, const SurfaceOptions& options) {
+                               const Neighborhoods* neighborhoods, const PatchBounces* bounces,
+                               const SurfaceOptions& options) {
   const bool options_same = options == options_;
   options_ = options;
   const bool residual_same = (reflected_sky != nullptr) == (reflected_sky_ != nullptr);
   reflected_sky_ = reflected_sky;
   neighborhoods_ = neighborhoods;
-  near_lights_ = near_lights;
+  bounces_ = bounces;
   const ViewBlock block{view.view_from_world, view.clip_from_view, eyeOf(view)};
   view_.assign(std::span<const ViewBlock>(&block, 1));
   const streaming::Residency& residency = world.residency();
@@ -146,15 +149,18 @@ Result<void> Surfaces::prepare(World& world, const effects::diffuse::Diffuse& di
   for (std::size_t i = 0; i < residency.draws().size(); ++i) shaded += ready(world, diffuse, i) ? 1 : 0;
   const std::uint64_t near_version = near_lights != nullptr ? near_lights->version() : 0;
   const std::uint64_t around_version = neighborhoods != nullptr ? neighborhoods->version() : 0;
+  const std::uint64_t bounces_version = bounces != nullptr ? bounces->layoutVersion() : 0;
   const bool scene_same = residual_same && options_same && view_shown_ == view_seen_ &&
                           world.materialsVersion() == materials_seen_ &&
                           residency.version() == residency_seen_ && near_version == near_seen_ &&
-                          around_version == around_seen_ && world.transformsVersion() == transforms_seen_ &&
+                          around_version == around_seen_ && bounces_version == bounces_seen_ &&
+                          world.transformsVersion() == transforms_seen_ &&
                           world.lampsVersion() == lamps_seen_ && shaded == shaded_seen_;
   if (scene_same && (blended_.empty() || view.eye_ws == eye_seen_ws_)) return {};
   view_seen_ = view_shown_;
   near_seen_ = near_version;
   around_seen_ = around_version;
+  bounces_seen_ = bounces_version;
   residency_seen_ = residency.version();
   transforms_seen_ = world.transformsVersion();
   lamps_seen_ = world.lampsVersion();
@@ -163,7 +169,10 @@ Result<void> Surfaces::prepare(World& world, const effects::diffuse::Diffuse& di
   eye_seen_ws_ = view.eye_ws;
 
   records_.clear();
-  for (std::size_t i = 0; i < residency.draws().size(); ++i) records_.push_back(describe(world, i));
+  for (std::size_t i = 0; i < residency.draws().size(); ++i) {
+    records_.push_back(describe(world, i));
+    if (bounces != nullptr) records_.back().bounced_word = bounces->wordOf(i);
+  }
   glossy_records_.clear();
   glossy_index_.assign(records_.size(), 0);
   std::vector<Item> opaque, blended;
@@ -237,7 +246,8 @@ void Surfaces::drawRuns(World& world, const std::vector<Run>& runs, gpu::Counter
       world.residency().radiance().page(run.state.radiance_page).bindStorage(kBindRadiance);
       if (run.state.vertices_around) neighborhoods_->bindVertices();
     }
-    if (run.state.near_lit) near_lights_->bindBounces(run.state.glossy.bands > 0);
+    if (run.state.bounces)
+      bounces_->bindStorage(run.state.glossy.bands > 0 ? kBindGlossyBounced : kBindBounced);
     glFrontFace(run.state.clockwise ? GL_CW : GL_CCW);
     DrawIndices::draw(run.first_command, run.command_count, counters);
   }

@@ -18,6 +18,7 @@
 #include "runtime/frame/glossy_record.hpp"
 #include "runtime/frame/near_lights.hpp"
 #include "runtime/frame/neighborhoods.hpp"
+#include "runtime/frame/patch_bounces.hpp"
 #include "runtime/frame/surface_record.hpp"
 #include "runtime/frame/surface_shared.h"
 #include "runtime/frame/texture_units.hpp"
@@ -43,11 +44,13 @@ class Surfaces {
 
   // Brings draw records and commands up to date. With near lights, these must be updated before and bound
   // when it draws. With a reflected sky, glossy surfaces add what their few bands of light leave out; it must
-  // live until they are drawn; with neighborhoods, draws receive what bodies around change, likewise.
+  // live until they are drawn; with neighborhoods, draws receive what bodies around change, likewise, and
+  // with bounces what patches send on.
   Result<void> prepare(World& world, const effects::diffuse::Diffuse& diffuse, const spec::View& view,
                        gpu::Counters& counters, const NearLights* near_lights = nullptr,
                        const lighting::ReflectedSky* reflected_sky = nullptr,
-                       const Neighborhoods* neighborhoods = nullptr, const SurfaceOptions& options = {});
+                       const Neighborhoods* neighborhoods = nullptr, const PatchBounces* bounces = nullptr,
+                       const SurfaceOptions& options = {});
   // Whether the last prepare() took the draw into the picture.
   bool shows(std::size_t draw) const { return draw < shown_.size() && shown_[draw] != 0; }
   // What surfaces show from the next prepare() on: Irradiance and Normals have programs of their own,
@@ -67,7 +70,7 @@ class Surfaces {
     std::int32_t brdf_table = -1;
     bool normal_mapped = false;
     bool dark = false;  // reflects nothing
-    bool near_lit = false, key_lit = false;
+    bool near_lit = false, key_lit = false, bounces = false;
     bool around = false;           // receives from neighborhoods, per pixel
     bool vertices_around = false;  // and at its vertices
     bool clockwise = false;        // which winding is seen
@@ -86,8 +89,8 @@ class Surfaces {
   Surfaces();
   // What a program is compiled for.
   struct ProgramKind {
-    bool normal_mapped = false, dark = false, near_lit = false, key_lit = false, around = false,
-         vertices_around = false;
+    bool normal_mapped = false, dark = false, near_lit = false, key_lit = false, bounces = false,
+         around = false, vertices_around = false;
     GlossyKind glossy = {};
     bool residual = false;
     SurfaceView view = SurfaceView::Final;
@@ -99,6 +102,7 @@ class Surfaces {
             .dark = state.dark,
             .near_lit = state.near_lit,
             .key_lit = state.key_lit,
+            .bounces = state.bounces,
             .around = state.around,
             .vertices_around = state.vertices_around,
             .glossy = state.glossy,
@@ -133,13 +137,13 @@ class Surfaces {
   std::vector<std::uint32_t> glossy_index_;  // of a draw among them
   std::vector<Run> opaque_, blended_;
   std::uint64_t residency_seen_ = 0, transforms_seen_ = 0, lamps_seen_ = 0, near_seen_ = 0, around_seen_ = 0,
-                materials_seen_ = 0;
+                materials_seen_ = 0, bounces_seen_ = 0;
   std::size_t shaded_seen_ = 0;
   glm::vec3 eye_seen_ws_{0.0f};
   SurfaceView view_shown_ = SurfaceView::Final, view_seen_ = SurfaceView::Final;
   const lighting::ReflectedSky* reflected_sky_ = nullptr;  // of this frame; null: no residual
   const Neighborhoods* neighborhoods_ = nullptr;           // of this frame
-  const NearLights* near_lights_ = nullptr;                // likewise
+  const PatchBounces* bounces_ = nullptr;                  // likewise
 };
 
 }  // namespace lambent::frame

@@ -1,6 +1,6 @@
 // A light that stands among the surfaces of a rigid group, where light from infinity cannot describe it: its
 // direct light is shaded per pixel with a shadow cube map, and what the surfaces send on of it comes by
-// patches and links (frame/lamp_bounces.hpp).
+// patches and links (frame/patch_bounces.hpp).
 #pragma once
 
 #include <cstdint>

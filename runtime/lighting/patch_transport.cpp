@@ -10,6 +10,8 @@
 #include <glm/geometric.hpp>
 
 #include "runtime/base/parallel.hpp"
+#include "runtime/sh/basis.hpp"
+#include "runtime/sh/zonal.hpp"
 
 namespace lambent::lighting {
 
@@ -75,35 +77,46 @@ LinkFrame linkFrame(const glm::vec3& n) {
           .z = n};
 }
 
-PatchTransport::PatchTransport(const bundle::CaptureProxy& proxy, std::size_t most) : patches_(proxy, most) {
+PatchTransport::PatchTransport(const bundle::CaptureProxy& proxy, std::size_t most, int order)
+    : patches_(proxy, most), order_(order) {
   findShares();
   findNearest(proxy);
+  bounced_ = meanBounced();
 }
 
 void PatchTransport::findShares() {
-  const std::size_t count = patches_.size();
+  constexpr float kOne = 1.0f / static_cast<float>(kPatchPoints * kRaysPerPoint);
+  const std::size_t count = patches_.size(), terms = static_cast<std::size_t>(order_ * order_);
   std::vector<std::vector<Share>> rows(count);
+  transfer_.resize(terms * count);
   inParallel(blocksOf(count), 1, [&](std::size_t block) {
     RaysFrom rays(patches_.triangles(), 1e-5f * patches_.extent());
     std::vector<std::uint32_t> met;
+    std::vector<float> basis(terms);
     for (std::size_t i = block * kBlock; i < std::min(count, (block + 1) * kBlock); ++i) {
       const Patch& patch = patches_.all()[i];
       const LinkFrame frame = linkFrame(patch.normal);
       met.clear();
+      // What rays meet is taken off the closed form, so that open patches have it exactly.
+      const std::span<float> transfer = std::span(transfer_).subspan(terms * i, terms);
+      sh::unoccludedTransfer(order_, patch.normal, transfer);
       for (std::size_t p = 0; p < kPatchPoints; ++p) {
-        rays.moveTo(patches_.inFront(patch.points[p], patch.normal), patch.normal);
+        rays.moveTo(patch.origins[p], patch.normal);
         for (std::size_t k = 0; k < kRaysPerPoint; ++k) {
           // The points of a patch share out one even set, and so do neighbours, in part.
           const std::size_t place = p * kRaysPerPoint + k;
           const auto [even, turn] = evenPoint(place + 37 * i);
           const float u =
               (static_cast<float>(place) + even) / static_cast<float>(kPatchPoints * kRaysPerPoint);
-          const auto hit = rays.first(frame.turned(cosineDirection(u, turn)));
-          if (hit && !hit->back) met.push_back(static_cast<std::uint32_t>(patches_.patchAt(*hit)));
+          const glm::vec3 direction = frame.turned(cosineDirection(u, turn));
+          const auto hit = rays.first(direction);
+          if (!hit) continue;
+          if (!hit->back) met.push_back(static_cast<std::uint32_t>(patches_.patchAt(*hit)));
+          sh::evaluate(order_, direction, basis);
+          for (std::size_t c = 0; c < terms; ++c) transfer[c] -= kOne * basis[c];
         }
       }
       std::ranges::sort(met);
-      constexpr float kOne = 1.0f / static_cast<float>(kPatchPoints * kRaysPerPoint);
       for (const std::uint32_t other : met) {
         if (rows[i].empty() || rows[i].back().patch != other)
           rows[i].push_back({.patch = other, .share = 0.0f});
@@ -141,19 +154,45 @@ void PatchTransport::findNearest(const bundle::CaptureProxy& proxy) {
   }
 }
 
+glm::vec3 PatchTransport::direct(std::size_t patch, std::span<const glm::vec4> light) const {
+  const std::size_t terms = static_cast<std::size_t>(order_ * order_);
+  glm::vec3 sum(0.0f);
+  for (std::size_t c = 0; c < terms; ++c) sum += transfer_[terms * patch + c] * glm::vec3(light[c]);
+  return sum;
+}
+
+float PatchTransport::meanBounced() const {
+  const std::vector<glm::vec3> given_off = bounce(std::vector<glm::vec3>(patches_.size(), glm::vec3(1.0f)));
+  double bounced = 0.0, area = 0.0;
+  for (std::size_t i = 0; i < patches_.size(); ++i) {
+    glm::vec3 received(0.0f);
+    for (std::uint32_t s = first_share_[i]; s < first_share_[i + 1]; ++s)
+      received += shares_[s].share * given_off[shares_[s].patch];
+    bounced += double{patches_.all()[i].area} * double{largest(received)};
+    area += double{patches_.all()[i].area};
+  }
+  return area > 0.0 ? static_cast<float>(bounced / area) : 0.0f;
+}
+
 std::vector<glm::vec3> PatchTransport::bounce(std::span<const float> direct) const {
+  std::vector<glm::vec3> grey;
+  for (const float value : direct) grey.emplace_back(value);
+  return bounce(grey);
+}
+
+std::vector<glm::vec3> PatchTransport::bounce(std::span<const glm::vec3> direct) const {
   std::vector<glm::vec3> given_off(patches_.size());
   float brightest = 0.0f;
   for (std::size_t i = 0; i < patches_.size(); ++i) {
     given_off[i] = patches_.all()[i].albedo * direct[i];
-    brightest = std::max(brightest, largest(given_off[i]));
+    brightest = std::max(brightest, largest(glm::abs(given_off[i])));
   }
   if (brightest == 0.0f) return given_off;
   // Gauss and Seidel's way: what is new counts at once.
   for (int bounces = 0; bounces < kMaxBounces; ++bounces) {
     float change = 0.0f;
     for (std::size_t i = 0; i < patches_.size(); ++i) {
-      glm::vec3 received(direct[i]);
+      glm::vec3 received = direct[i];
       for (std::uint32_t s = first_share_[i]; s < first_share_[i + 1]; ++s)
         received += shares_[s].share * given_off[shares_[s].patch];
       const glm::vec3 now = patches_.all()[i].albedo * received;
@@ -220,8 +259,8 @@ std::vector<glm::vec3> PatchTransport::byTriangle(std::span<const glm::vec3> giv
 }
 
 std::uint64_t PatchTransport::bytes() const {
-  return patches_.size() * sizeof(Patch) + shares_.size() * sizeof(Share) + 4 * first_share_.size() +
-         nearest_.size() * sizeof(nearest_.front());
+  return patches_.size() * sizeof(Patch) + 4 * transfer_.size() + shares_.size() * sizeof(Share) +
+         4 * first_share_.size() + nearest_.size() * sizeof(nearest_.front());
 }
 
 }  // namespace lambent::lighting

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
 
 #include "runtime/lighting/patches.hpp"
 
@@ -32,7 +33,7 @@ struct LinkFrame {
   glm::vec3 x, y, z;
   glm::vec3 turned(const glm::vec3& v) const { return v.x * x + v.y * y + v.z * z; }
 };
-// By the normal alone (Duff and others 2017); lamp_gather.comp has the same. It turns over at a height that
+// By the normal alone (Duff and others 2017); patch_gather.comp has the same. It turns over at a height that
 // walls do not have, so that rounding changes nothing.
 inline constexpr float kFrameTurnsOver = -0.37f;
 LinkFrame linkFrame(const glm::vec3& normal);
@@ -45,14 +46,23 @@ struct SurfacePoint {
 class PatchTransport {
  public:
   PatchTransport() = default;
-  // On several threads.
-  explicit PatchTransport(const bundle::CaptureProxy& proxy, std::size_t most = kMaxPatches);
+  // order: bands of light from infinity that direct() knows. Works on several threads.
+  explicit PatchTransport(const bundle::CaptureProxy& proxy, std::size_t most = kMaxPatches, int order = 5);
 
   const Patches& patches() const { return patches_; }
+  int order() const { return order_; }
 
-  // What each patch gives off when `direct` (E/pi) falls on it: that, and what it receives from the others,
-  // times its albedo; until the next bounce would add less than 1 / 10 000.
+  // What each patch gives off when `direct` (E/pi, also below 0) falls on it: that, and what it receives from
+  // the others, times its albedo; until the next bounce would add less than 1 / 10 000.
+  std::vector<glm::vec3> bounce(std::span<const glm::vec3> direct) const;
   std::vector<glm::vec3> bounce(std::span<const float> direct) const;
+
+  // E/pi at a patch straight from light at infinity of which order² coefficients are known: the transfer
+  // vector without bounces, by the same rays as the form factors (Sloan 2002, eq. 4).
+  glm::vec3 direct(std::size_t patch, std::span<const glm::vec4> light) const;
+
+  // What bounces add where 1 falls on every patch straight: the mean over their area. An open shape has 0.
+  float bounced() const { return bounced_; }
 
   // kLinks patches to each point; one that meets nothing, or the back of something, has patches().size(). A
   // point that lies behind the proxy, so that it sees backs for the most part, takes the view of the nearest
@@ -71,11 +81,15 @@ class PatchTransport {
     float share = 0.0f;  // of the rays
   };
   void findShares();
+  float meanBounced() const;
   // Where the rays of a point behind the proxy may start.
   glm::vec3 startNear(const SurfacePoint& point) const;
   void findNearest(const bundle::CaptureProxy& proxy);
 
   Patches patches_;
+  int order_ = 5;
+  float bounced_ = 0.0f;
+  std::vector<float> transfer_;             // order² for each patch
   std::vector<Share> shares_;               // patch after patch
   std::vector<std::uint32_t> first_share_;  // of each patch, and the end
   // Of the triangles of coarser levels, four patches each.

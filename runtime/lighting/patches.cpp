@@ -93,6 +93,8 @@ Patches::Patches(const bundle::CaptureProxy& proxy, std::size_t most) {
         patch.albedo = albedo;
       }
   }
+  for (Patch& patch : patches_)
+    for (std::size_t k = 0; k < kPatchPoints; ++k) patch.origins[k] = inFront(patch.points[k], patch.normal);
 }
 
 std::size_t Patches::patchAt(const RayHit& hit) const {

@@ -19,7 +19,8 @@ inline constexpr std::size_t kMaxPatches = 1024;
 inline constexpr std::size_t kPatchPoints = 4;
 
 struct Patch {
-  std::array<glm::vec3, kPatchPoints> points{};  // each stands for a quarter of its area
+  std::array<glm::vec3, kPatchPoints> points{};   // each stands for a quarter of its area
+  std::array<glm::vec3, kPatchPoints> origins{};  // where rays from them may start
   glm::vec3 normal{0.0f, 1.0f, 0.0f};
   float area = 0.0f;
   glm::vec3 albedo{0.0f};

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "runtime/sh/zonal.hpp"
 #include "tests/runtime/lighting/rooms.hpp"
 
 namespace lambent::lighting {
@@ -171,6 +172,43 @@ TEST(PatchTransport, PatchesOfATriangleAreFoundByWhereARayMeetsIt) {
       ASSERT_TRUE(hit);
       ASSERT_EQ(patches.patchAt(*hit), i);
     }
+}
+
+TEST(PatchTransport, AnOpenPatchHasTheClosedFormOfItsDirectTransfer) {
+  const glm::vec3 normal = glm::normalize(glm::vec3(1, 2, 3));
+  const LinkFrame frame = linkFrame(normal);
+  const PatchTransport transport(RoomBuilder().wall({0, 0, 0}, frame.x, frame.y, {1, 1, 1}).proxy(), 8, 4);
+  std::vector<float> expected(16);
+  sh::unoccludedTransfer(4, normal, expected);
+  for (std::size_t c = 0; c < 16; ++c) {
+    std::vector<glm::vec4> light(16, glm::vec4(0.0f));
+    light[c] = glm::vec4(1, 2, 3, 0);
+    EXPECT_NEAR(transport.direct(0, light).y, 2.0f * expected[c], 1e-6f) << c;
+  }
+  EXPECT_EQ(transport.bounced(), 0.0f);
+}
+
+TEST(PatchTransport, UnderAWallHalfOfTheSkyIsLeft) {
+  RoomBuilder room;
+  room.wall({-50, 0, -50}, {0, 0, 100}, {50, 0, 0}, {0.5f, 0.5f, 0.5f});  // a floor before
+  room.wall({0, 0, -50}, {0, 100, 0}, {0, 0, 100}, {0.5f, 0.5f, 0.5f});   // a high wall that faces +x
+  const PatchTransport transport(room.proxy(), 512, 3);
+  std::vector<glm::vec4> light(9, glm::vec4(0.0f));
+  light[0] = glm::vec4(1.0f / 0.28209479f);
+  for (std::size_t i = 0; i < transport.patches().size(); ++i) {
+    const float seen = transport.direct(i, light).r;
+    EXPECT_GE(seen, 0.45f);
+    EXPECT_LE(seen, 1.0f + 1e-5f);
+  }
+}
+
+TEST(PatchTransport, InAClosedSphereAllIsBounced) {
+  const PatchTransport transport(RoomBuilder().sphere(10, 14, glm::vec3(0.5f)).proxy());
+  EXPECT_NEAR(transport.bounced(), 1.0f, 0.01f);
+  std::vector<glm::vec4> light(25, glm::vec4(0.0f));
+  light[0] = glm::vec4(1.0f / 0.28209479f);
+  for (std::size_t i = 0; i < transport.patches().size(); ++i)
+    ASSERT_NEAR(transport.direct(i, light).g, 0.0f, 1e-4f);
 }
 
 }  // namespace lambent::lighting

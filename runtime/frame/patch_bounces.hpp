@@ -1,11 +1,12 @@
-// Bounces of near lights: what the surfaces of a rigid group send on of the light of lamps among them, at
-// every vertex of the group that these light, beside what transfer brings there. Comes in: the world and the
-// scene as the lighting system sees it. Goes out: per vertex E/pi (of surfaces with normal maps and glossy
-// ones light of bands 0..2), which the raster adds, and per triangle of the group's capture proxy what others
-// see of it. When a lamp first comes into a group, form factors and links are made on worker threads; the
-// frames go on without bounces until they are there. What changes nothing costs nothing: a lamp that moves is
-// bounced anew on the CPU (LampRoom) and gathered on the GPU, one dispatch for each draw. Errors: a kernel
-// that does not compile on this device.
+// Bounces by patches: what the surfaces of a rigid group send on of lamps among them, and of key lights what
+// the bands of transfer get wrong. Comes in: the world, the scene as the lighting system sees it, the key
+// lights and what the light probes have of them. Goes out: per vertex E/pi (of surfaces with normal maps and
+// glossy ones light of bands 0..2), which the raster adds to what transfer brings, and per triangle of the
+// group's capture proxy what others see of it. When a group first needs them, form factors and links are made
+// on worker threads; the frames go on without them until they are there. Open shapes, whose surfaces hardly
+// see each other, have none for key lights. What changes nothing costs nothing: a light that moves is bounced
+// anew on the CPU (PatchRoom) and gathered on the GPU, one dispatch for each draw. Errors: a kernel that does
+// not compile on this device.
 #pragma once
 
 #include <cstdint>
@@ -17,31 +18,38 @@
 
 #include "runtime/base/by_key.hpp"
 #include "runtime/base/result.hpp"
-#include "runtime/frame/lamp_room.hpp"
-#include "runtime/frame/lamp_shared.h"
 #include "runtime/frame/lit_scene.hpp"
+#include "runtime/frame/patch_room.hpp"
+#include "runtime/frame/patch_shared.h"
 #include "runtime/frame/world.hpp"
 #include "runtime/gpu/objects.hpp"
 #include "runtime/gpu/program.hpp"
+#include "runtime/lighting/group_lights.hpp"
 
 namespace lambent::frame {
 
-struct LampBounceCounts {
-  std::uint32_t rooms = 0;           // groups whose surfaces send on light of near lights
+struct PatchBounceCounts {
+  std::uint32_t rooms = 0;           // groups whose patches send on light
   std::uint32_t patches = 0;         // of all of them
   std::uint32_t rooms_to_come = 0;   // whose form factors or links are being made
-  std::uint32_t lamps_bounced = 0;   // in the last update
+  std::uint32_t lights_bounced = 0;  // in the last update
   std::uint32_t draws_gathered = 0;  // likewise
 };
 
-class LampBounces {
+struct PatchLights {
+  std::span<const spec::Disc> keys;              // world; none: their bounced light is left to the bands
+  const lighting::GroupLights* bands = nullptr;  // in which the keys stand apart
+};
+
+class PatchBounces {
  public:
   static constexpr std::uint32_t kNothing = 0xffffffffu;
 
-  LampBounces();
+  PatchBounces();
 
   // wait: for form factors and links, rather than going on without them. Without `on` it holds nothing.
-  Result<void> update(World& world, const LitScene& scene, bool on, bool wait, gpu::Counters& counters);
+  Result<void> update(World& world, const LitScene& scene, const PatchLights& lights, bool on, bool wait,
+                      gpu::Counters& counters);
 
   // Where the light of a draw's first vertex lies, in words; kNothing: it has none.
   std::uint32_t wordOf(std::size_t draw) const { return draw < words_.size() ? words_[draw] : kNothing; }
@@ -62,7 +70,7 @@ class LampBounces {
   // By how much of itself it has changed so far, summed up.
   double driftOf(std::size_t group) const { return group < rooms_.size() ? rooms_[group].room.drift() : 0.0; }
 
-  const LampBounceCounts& counts() const { return counts_; }
+  const PatchBounceCounts& counts() const { return counts_; }
   std::uint64_t bytesResident() const;
 
  private:
@@ -80,7 +88,7 @@ class LampBounces {
     std::vector<Links> links;
   };
   struct Room {  // by group
-    LampRoom room;
+    PatchRoom room;
     std::future<Made> coming;
     std::vector<glm::vec3> sent;
     std::uint64_t version = 0, seen = 0;  // ours, and the room's
@@ -92,11 +100,14 @@ class LampBounces {
     std::uint64_t gathered = 0;  // the version of its room
   };
   void drop();
-  // Lamps that shine on the group.
-  static std::vector<lighting::NearLight> lampsIn(const LitScene& scene, std::size_t group);
+  // Lamps that shine on the group, and key lights if its surfaces see enough of each other.
+  RoomLights lightsIn(const World& world, const LitScene& scene, const PatchLights& lights,
+                      std::size_t group) const;
   static std::vector<lighting::RayTriangle> othersAround(const World& world, const LitScene& scene,
                                                          std::size_t group);
-  void ask(World& world, std::size_t group);
+  void ask(World& world, std::size_t group, bool links);
+  // Asks for what the group needs of its lights and takes what came. Whether anything did.
+  bool prepare(World& world, const LitScene& scene, const PatchLights& lights, std::size_t group, bool wait);
   // Whether anything came.
   bool take(const World& world, std::size_t group, bool wait);
   static Points pointsOf(World& world, std::size_t draw);
@@ -112,7 +123,7 @@ class LampBounces {
   std::uint64_t layout_version_ = 0, version_ = 0;
   std::map<std::uint32_t, gpu::Program> programs_;  // by outputs
   gpu::Table patches_, bounced_, directions_, block_;
-  LampBounceCounts counts_;
+  PatchBounceCounts counts_;
 };
 
 }  // namespace lambent::frame

@@ -1,4 +1,4 @@
-#include "runtime/frame/lamp_light.hpp"
+#include "runtime/frame/patch_light.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -22,6 +22,11 @@ using lighting::Patch;
 constexpr std::size_t kLampPoints = 16;  // of lamps with an extent
 constexpr float kLightSurface = 1.01f;   // as in near_lights.cpp
 constexpr float kAlmost = 1.0f - 1e-4f;  // of the way to a patch: not the patch itself
+constexpr std::size_t kPoints = lighting::kPatchPoints;
+// Discs at infinity are widened to this, so that bounced light does not flicker while they turn. It is less
+// than a patch sees of its neighbours.
+constexpr float kLeastRadius_rad = 0.02f;
+constexpr float kAtInfinity = 1e4f;  // lengths of the patches' extent
 
 // Points all over a disc of radius 1, and how far each is before or behind it in a ball (golden angle).
 std::vector<glm::vec3> ballPoints() {
@@ -52,6 +57,22 @@ std::vector<glm::vec3> lampPoints(const NearLight& light) {
     points.push_back(light.position_ws + light.radius_m * radius * (std::cos(turn) * s + std::sin(turn) * t));
   }
   return points;
+}
+
+// Unit directions to points all over a disc at infinity.
+std::vector<glm::vec3> raysTo(const spec::Disc& key) {
+  const float radius = std::max(key.radius_rad, kLeastRadius_rad);
+  const std::size_t count = radius < 0.05f ? 4 : kLampPoints;
+  glm::vec3 s, t;
+  ref::nearBasis(key.direction, s, t);
+  std::vector<glm::vec3> rays;
+  for (std::size_t i = 0; i < count; ++i) {
+    const float away =
+        std::sqrt((static_cast<float>(i) + 0.5f) / static_cast<float>(count)) * std::sin(radius);
+    const float turn = 2.0f * std::numbers::pi_v<float> * std::numbers::phi_v<float> * static_cast<float>(i);
+    rays.push_back(ref::nearUnit(key.direction + away * (std::cos(turn) * s + std::sin(turn) * t)));
+  }
+  return rays;
 }
 
 // What stands in the way of the lamp's light. What is no larger than a spherical lamp and within it is the
@@ -86,7 +107,6 @@ std::vector<float> lampOnPatches(const NearLight& lamp, const lighting::Patches&
   const glm::mat4 group_from_world = glm::inverse(world_from_group);
   const glm::mat3 world_from_normal = glm::transpose(glm::mat3(group_from_world));
 
-  constexpr std::size_t kPoints = lighting::kPatchPoints;
   std::vector<glm::vec3> points_ws;  // a little above their patches
   std::vector<float> shares;         // without blockers
   for (const Patch& patch : all) {
@@ -120,6 +140,43 @@ std::vector<float> lampOnPatches(const NearLight& lamp, const lighting::Patches&
     direct[i / kPoints] +=
         shares[i] * static_cast<float>(count) / static_cast<float>(lamp_points.size() * kPoints);
   }
+  return direct;
+}
+
+std::vector<std::vector<float>> keysOnPatches(std::span<const spec::Disc> keys,
+                                              const lighting::Patches& patches,
+                                              std::span<const lighting::RayTriangle> others) {
+  lighting::TriangleSet blockers;
+  for (std::size_t t = 0; t < patches.triangles().size(); ++t) blockers.add(patches.triangles()[t]);
+  for (const lighting::RayTriangle& other : others) blockers.add(other);
+  std::vector<std::vector<glm::vec3>> rays_to;
+  for (const spec::Disc& key : keys) rays_to.push_back(raysTo(key));
+
+  std::vector<std::vector<float>> direct(keys.size(), std::vector<float>(patches.size(), 0.0f));
+  constexpr std::size_t kBlock = 32;  // patches of one part of the work
+  inParallel((patches.size() + kBlock - 1) / kBlock, 1, [&](std::size_t block) {
+    lighting::RaysFrom rays(blockers, 1e-5f * patches.extent());
+    for (std::size_t i = block * kBlock; i < std::min(patches.size(), (block + 1) * kBlock); ++i) {
+      const Patch& patch = patches.all()[i];
+      for (const glm::vec3& origin : patch.origins) {
+        bool moved = false;
+        for (std::size_t k = 0; k < keys.size(); ++k) {
+          const float share = ref::sphereShare(glm::dot(patch.normal, keys[k].direction),
+                                               1.0f / std::sin(keys[k].radius_rad));
+          if (share <= 0.0f) continue;
+          if (!moved) rays.moveTo(origin, patch.normal);
+          moved = true;
+          float seen = 0.0f, all = 0.0f;
+          for (const glm::vec3& ray : rays_to[k]) {
+            const float cosine = std::max(glm::dot(ray, patch.normal), 0.0f);
+            all += cosine;
+            if (cosine > 0.0f && !rays.blocked(ray, kAtInfinity * patches.extent())) seen += cosine;
+          }
+          if (all > 0.0f) direct[k][i] += share * seen / (all * static_cast<float>(kPoints));
+        }
+      }
+    }
+  });
   return direct;
 }
 

@@ -1,6 +1,6 @@
 // Pictures of a closed sphere with a lamp at its centre: E is the same everywhere, and bounces multiply it by
 // 1 / (1 - albedo).
-#include "runtime/frame/lamp_bounces.hpp"
+#include "runtime/frame/patch_bounces.hpp"
 
 #include <cmath>
 #include <cstring>
@@ -12,7 +12,7 @@
 
 namespace lambent::frame {
 
-using LampBouncesTest = testing::GpuTest;
+using PatchBouncesTest = testing::GpuTest;
 using testing::BuiltMesh;
 using testing::BundleBuilder;
 using testing::LiveStage;
@@ -58,7 +58,7 @@ double middleOf(const std::vector<glm::vec4>& picture) {
 
 }  // namespace
 
-TEST_F(LampBouncesTest, InAClosedSphereTheyAddAlbedoOverOneMinusAlbedo) {
+TEST_F(PatchBouncesTest, InAClosedSphereTheyAddAlbedoOverOneMinusAlbedo) {
   for (const bool mapped : {false, true}) {
     BundleBuilder builder;
     builder.add(insideOfSphere());
@@ -68,8 +68,8 @@ TEST_F(LampBouncesTest, InAClosedSphereTheyAddAlbedoOverOneMinusAlbedo) {
     }
     RoomStage stage(builder);
     const double with = middleOf(stage.picture());
-    EXPECT_EQ(stage.frame->counts().lamp_bounces.rooms, 1u);
-    stage.set("lamp-bounces", "off");
+    EXPECT_EQ(stage.frame->counts().patch_bounces.rooms, 1u);
+    stage.set("patch-bounces", "off");
     const double without = middleOf(stage.picture());
     EXPECT_NEAR(without, kAlbedo * 4.0 / 3.14159, 0.03) << "E/pi of 4 cd at 1 m";
     EXPECT_NEAR((with / without - 1.0) / (kAlbedo / (1.0 - kAlbedo)), 1.0, 0.03)
@@ -77,25 +77,25 @@ TEST_F(LampBouncesTest, InAClosedSphereTheyAddAlbedoOverOneMinusAlbedo) {
   }
 }
 
-TEST_F(LampBouncesTest, WhatDoesNotChangeIsNeitherBouncedNorGathered) {
+TEST_F(PatchBouncesTest, WhatDoesNotChangeIsNeitherBouncedNorGathered) {
   RoomStage stage(BundleBuilder().add(insideOfSphere()));
   (void)stage.picture();
   stage.render();
-  const auto pass = stage.pass("lamp bounces");
+  const auto pass = stage.pass("patch bounces");
   ASSERT_TRUE(pass);
   EXPECT_EQ(pass->counters.dispatches, 0u);
   EXPECT_EQ(pass->counters.uploaded_bytes, 0u);
-  EXPECT_EQ(stage.frame->counts().lamp_bounces.lamps_bounced, 0u);
+  EXPECT_EQ(stage.frame->counts().patch_bounces.lights_bounced, 0u);
   stage.light().strength = 2.0f;
   stage.render();
-  EXPECT_EQ(stage.frame->counts().lamp_bounces.lamps_bounced, 0u) << "dimmed";
-  EXPECT_EQ(stage.frame->counts().lamp_bounces.draws_gathered, 1u);
+  EXPECT_EQ(stage.frame->counts().patch_bounces.lights_bounced, 0u) << "dimmed";
+  EXPECT_EQ(stage.frame->counts().patch_bounces.draws_gathered, 1u);
   stage.moveLamp({0.1f, 0, 0});
   stage.render();
-  EXPECT_EQ(stage.frame->counts().lamp_bounces.lamps_bounced, 1u) << "moved";
+  EXPECT_EQ(stage.frame->counts().patch_bounces.lights_bounced, 1u) << "moved";
 }
 
-TEST_F(LampBouncesTest, DimmedItIsHalfAndSwitchedOffItIsBlack) {
+TEST_F(PatchBouncesTest, DimmedItIsHalfAndSwitchedOffItIsBlack) {
   RoomStage stage(BundleBuilder().add(insideOfSphere()));
   const auto full = stage.picture();
   stage.light().strength = 2.0f;
@@ -105,7 +105,7 @@ TEST_F(LampBouncesTest, DimmedItIsHalfAndSwitchedOffItIsBlack) {
   for (const glm::vec4& texel : stage.picture()) ASSERT_EQ(glm::vec3(texel), glm::vec3(0.0f));
 }
 
-TEST_F(LampBouncesTest, MovedAndMovedBackThePictureIsTheSameToTheByte) {
+TEST_F(PatchBouncesTest, MovedAndMovedBackThePictureIsTheSameToTheByte) {
   RoomStage stage(BundleBuilder().add(insideOfSphere()));
   const auto before = stage.picture();
   stage.moveLamp({0.4f, 0.2f, -0.3f});
@@ -114,12 +114,12 @@ TEST_F(LampBouncesTest, MovedAndMovedBackThePictureIsTheSameToTheByte) {
   EXPECT_EQ(stage.picture(), before);
 }
 
-TEST_F(LampBouncesTest, OutsideOfTheRoomTheLampLeavesNothingInIt) {
+TEST_F(PatchBouncesTest, OutsideOfTheRoomTheLampLeavesNothingInIt) {
   RoomStage stage(BundleBuilder().add(insideOfSphere()));
   (void)stage.picture();
   stage.moveLamp({15, 0, 0});  // the bundle says that the room is 10 m wide to each side
   (void)stage.picture();
-  EXPECT_EQ(stage.frame->counts().lamp_bounces.rooms, 0u);
+  EXPECT_EQ(stage.frame->counts().patch_bounces.rooms, 0u);
   EXPECT_EQ(stage.frame->counts().near_lights, 0u);
 }
 

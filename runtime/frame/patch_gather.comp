@@ -1,23 +1,23 @@
 // One invocation per vertex: the mean of what the patches give off that its links go to. That is E/pi where the links
 // are distributed as the cosine; with LAMBENT_OUTPUTS 9 they go to all sides of the hemisphere alike, and what arrives
 // is light of bands 0..2. The CPU twin is lighting::PatchTransport and the test beside it.
-#include "lamp_shared.h"
+#include "patch_shared.h"
 
-layout(local_size_x = kLampGroupSize) in;
-layout(std140, binding = kBindLampDraw) uniform Block { LampDraw draw; };
-layout(std430, binding = kBindLampLinks) readonly buffer Links { uint links[]; };
-layout(std430, binding = kBindLampPatches) readonly buffer Patches { vec4 patches[]; };
-layout(std430, binding = kBindLampBounced) writeonly buffer Bounced { float bounced[]; };
+layout(local_size_x = kPatchGroupSize) in;
+layout(std140, binding = kBindPatchDraw) uniform Block { PatchDraw draw; };
+layout(std430, binding = kBindPatchLinks) readonly buffer Links { uint links[]; };
+layout(std430, binding = kBindPatches) readonly buffer Patches { vec4 patches[]; };
+layout(std430, binding = kBindPatchBounced) writeonly buffer Bounced { float bounced[]; };
 #if LAMBENT_OUTPUTS > 1
-layout(std430, binding = kBindLampGeometry) readonly buffer Geometry { float geometry[]; };
-layout(std430, binding = kBindLampDirections) readonly buffer Directions { vec4 directions[]; };
+layout(std430, binding = kBindPatchGeometry) readonly buffer Geometry { float geometry[]; };
+layout(std430, binding = kBindPatchDirections) readonly buffer Directions { vec4 directions[]; };
 #endif
 
 const float kFrameTurnsOver = -0.37;  // as in patch_transport.hpp
 const float kTwoPi = 6.2831853;
 
 vec3 patchAt(uint vertex, uint link) {
-  uint word = links[(kLampLinks * vertex + link) >> 1u];
+  uint word = links[(kPatchLinks * vertex + link) >> 1u];
   return patches[draw.first_patch + ((word >> (16u * (link & 1u))) & 0xffffu)].rgb;
 }
 
@@ -33,8 +33,8 @@ void main() {
   if (vertex >= draw.vertex_count) return;
 #if LAMBENT_OUTPUTS == 1
   vec3 sum = vec3(0.0);
-  for (uint link = 0u; link < kLampLinks; ++link) sum += patchAt(vertex, link);
-  put(vertex, 0u, sum / float(kLampLinks));
+  for (uint link = 0u; link < kPatchLinks; ++link) sum += patchAt(vertex, link);
+  put(vertex, 0u, sum / float(kPatchLinks));
 #else
   uint at = draw.normals_word + 3u * vertex;
   vec3 n = normalize(mat3(draw.group_from_mesh_normal) * vec3(geometry[at], geometry[at + 1u], geometry[at + 2u]));
@@ -42,9 +42,9 @@ void main() {
   float a = -1.0 / (facing + n.z), b = n.x * n.y * a;
   mat3 frame = mat3(vec3(1.0 + facing * n.x * n.x * a, facing * b, -facing * n.x), vec3(b, facing + n.y * n.y * a, -n.y), n);
   vec3 sums[9] = vec3[9](vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0));
-  for (uint link = 0u; link < kLampLinks; ++link) {
+  for (uint link = 0u; link < kPatchLinks; ++link) {
     vec3 s = frame * directions[link].xyz;
-    vec3 radiance = kTwoPi / float(kLampLinks) * patchAt(vertex, link);
+    vec3 radiance = kTwoPi / float(kPatchLinks) * patchAt(vertex, link);
     sums[0] += 0.28209479 * radiance;
     sums[1] += 0.48860251 * s.y * radiance;
     sums[2] += 0.48860251 * s.z * radiance;

@@ -1,5 +1,5 @@
 // Rooms with lamps in them, on the CPU: known answers, and what costs nothing.
-#include "runtime/frame/lamp_room.hpp"
+#include "runtime/frame/patch_room.hpp"
 
 #include <cmath>
 #include <cstring>
@@ -8,7 +8,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
 
-#include "runtime/frame/lamp_light.hpp"
+#include "runtime/frame/patch_light.hpp"
 #include "tests/runtime/lighting/rooms.hpp"
 
 namespace lambent::frame {
@@ -29,14 +29,14 @@ NearLight pointLamp(glm::vec3 position, glm::vec3 power = glm::vec3(1.0f)) {
   return light;
 }
 
-LampRoom boxRoom(float albedo = 0.5f) {
-  return LampRoom(std::make_shared<const PatchTransport>(
+PatchRoom boxRoom(float albedo = 0.5f) {
+  return PatchRoom(std::make_shared<const PatchTransport>(
       RoomBuilder().box({0, 0, 0}, {2, 2.4f, 3}, glm::vec3(albedo)).proxy()));
 }
 
-void shine(LampRoom& room, std::vector<NearLight> lamps,
+void shine(PatchRoom& room, std::vector<NearLight> lamps,
            const std::vector<lighting::RayTriangle>& others = {}) {
-  room.light(lamps, glm::mat4(1.0f), others);
+  room.light({.lamps = std::move(lamps)}, glm::mat4(1.0f), others);
 }
 
 bool sameBytes(const std::vector<glm::vec3>& a, const std::vector<glm::vec3>& b) {
@@ -109,9 +109,9 @@ TEST(LampLight, WhatIsNoLargerThanTheLampAndWithinItCastsNoShadow) {
   EXPECT_LT(shadowBy(0.5f), 0.5);
 }
 
-TEST(LampRoom, WhatARoomSendsOnIsAlbedoOverOneMinusAlbedoOfTheLamp) {
+TEST(PatchRoom, WhatARoomSendsOnIsAlbedoOverOneMinusAlbedoOfTheLamp) {
   for (const float albedo : {0.3f, 0.7f}) {
-    LampRoom room = boxRoom(albedo);
+    PatchRoom room = boxRoom(albedo);
     shine(room, {pointLamp({1, 1.2f, 1.5f})});
     double flux = 0.0;
     const auto& patches = room.transport()->patches().all();
@@ -121,8 +121,8 @@ TEST(LampRoom, WhatARoomSendsOnIsAlbedoOverOneMinusAlbedoOfTheLamp) {
   }
 }
 
-TEST(LampRoom, DimmingIsLinearToTheBitAndBouncesNothingAnew) {
-  LampRoom room = boxRoom();
+TEST(PatchRoom, DimmingIsLinearToTheBitAndBouncesNothingAnew) {
+  PatchRoom room = boxRoom();
   shine(room, {pointLamp({1, 2, 1}, {4, 2, 1})});
   EXPECT_EQ(room.bouncedLast(), 1u);
   const std::vector<glm::vec3> full = room.givenOff();
@@ -133,8 +133,8 @@ TEST(LampRoom, DimmingIsLinearToTheBitAndBouncesNothingAnew) {
   for (std::size_t i = 0; i < full.size(); ++i) ASSERT_EQ(room.givenOff()[i], 0.25f * full[i]);
 }
 
-TEST(LampRoom, TwoLampsGiveTheSumOfBoth) {
-  LampRoom room = boxRoom(), first = boxRoom(), second = boxRoom();
+TEST(PatchRoom, TwoLampsGiveTheSumOfBoth) {
+  PatchRoom room = boxRoom(), first = boxRoom(), second = boxRoom();
   const NearLight a = pointLamp({1, 2, 1}, {4, 2, 1}), b = pointLamp({0.3f, 1, 2.6f}, {1, 3, 5});
   shine(room, {a, b});
   shine(first, {a});
@@ -144,8 +144,8 @@ TEST(LampRoom, TwoLampsGiveTheSumOfBoth) {
       ASSERT_FLOAT_EQ(room.givenOff()[i][k], first.givenOff()[i][k] + second.givenOff()[i][k]);
 }
 
-TEST(LampRoom, WhatStandsStillIsNewOnlyOnce) {
-  LampRoom room = boxRoom();
+TEST(PatchRoom, WhatStandsStillIsNewOnlyOnce) {
+  PatchRoom room = boxRoom();
   const std::vector<NearLight> lamps = {pointLamp({1, 2, 1}), pointLamp({0.5f, 0.5f, 0.5f})};
   shine(room, lamps);
   const std::uint64_t version = room.version();
@@ -158,16 +158,16 @@ TEST(LampRoom, WhatStandsStillIsNewOnlyOnce) {
   EXPECT_GT(room.version(), version);
 }
 
-TEST(LampRoom, SwitchedOffItSendsOnNothing) {
-  LampRoom room = boxRoom();
+TEST(PatchRoom, SwitchedOffItSendsOnNothing) {
+  PatchRoom room = boxRoom();
   shine(room, {pointLamp({1, 2, 1})});
   EXPECT_FALSE(room.givenOff().empty());
   shine(room, {});
   EXPECT_TRUE(room.givenOff().empty());
 }
 
-TEST(LampRoom, ALampThatComesBackGivesTheSameBytes) {
-  LampRoom room = boxRoom();
+TEST(PatchRoom, ALampThatComesBackGivesTheSameBytes) {
+  PatchRoom room = boxRoom();
   shine(room, {pointLamp({1, 2, 1})});
   const std::vector<glm::vec3> before = room.givenOff();
   shine(room, {pointLamp({1, 2, 1.1f})});
@@ -177,8 +177,8 @@ TEST(LampRoom, ALampThatComesBackGivesTheSameBytes) {
   EXPECT_TRUE(sameBytes(before, room.givenOff()));
 }
 
-TEST(LampRoom, WhatElseStandsInTheLightTakesItAway) {
-  LampRoom room = boxRoom();
+TEST(PatchRoom, WhatElseStandsInTheLightTakesItAway) {
+  PatchRoom room = boxRoom();
   shine(room, {pointLamp({1, 2.3f, 1.5f})});
   const std::vector<glm::vec3> open = room.givenOff();
   // A lid right below the lamp.
@@ -198,17 +198,114 @@ TEST(LampRoom, WhatElseStandsInTheLightTakesItAway) {
   EXPECT_EQ(room.bouncedLast(), 0u);
 }
 
-TEST(LampRoom, ATurnedAndScaledRoomTakesTheSameShareOfLight) {
-  LampRoom plain = boxRoom(), placed = boxRoom();
+TEST(PatchRoom, ATurnedAndScaledRoomTakesTheSameShareOfLight) {
+  PatchRoom plain = boxRoom(), placed = boxRoom();
   shine(plain, {pointLamp({1, 2, 1})});
   // Twice the size: a quarter of the irradiance.
   const glm::mat4 world_from_group = glm::translate(glm::mat4(1.0f), glm::vec3(3, -1, 2)) *
                                      glm::rotate(glm::mat4(1.0f), 0.7f, glm::normalize(glm::vec3(1, 2, 3))) *
                                      glm::scale(glm::mat4(1.0f), glm::vec3(2.0f));
   const std::vector<NearLight> lamp = {pointLamp(glm::vec3(world_from_group * glm::vec4(1, 2, 1, 1)))};
-  placed.light(lamp, world_from_group, {});
+  placed.light({.lamps = lamp}, world_from_group, {});
   for (std::size_t i = 0; i < plain.givenOff().size(); ++i)
     ASSERT_NEAR(4.0f * placed.givenOff()[i].r, plain.givenOff()[i].r, 0.02f * plain.givenOff()[i].r);
+}
+
+namespace {
+
+constexpr int kOrder = 5;
+
+spec::Disc sunAt(const glm::vec3& direction, float radius_rad = 0.05f) {
+  return {.direction = glm::normalize(direction),
+          .radius_rad = radius_rad,
+          .radiance = glm::vec3(10.0f, 5.0f, 2.0f)};
+}
+
+// What transfer takes for the key lights at an open light probe.
+KeyBands bandsOf(const std::vector<spec::Disc>& keys, const glm::vec3& position) {
+  KeyBands bands{.position = position, .light = {}};
+  for (const glm::vec3& c : spec::discVector(keys).c) bands.light.emplace_back(c, 0.0f);
+  return bands;
+}
+
+// What the patches give off of what their own bands say of a light.
+std::vector<glm::vec3> givenOffByBands(const PatchTransport& transport, const KeyBands& bands) {
+  std::vector<glm::vec3> direct;
+  for (std::size_t i = 0; i < transport.patches().size(); ++i)
+    direct.push_back(transport.direct(i, bands.light));
+  return transport.bounce(direct);
+}
+
+// Closed but for one of its sides, and lit through it.
+PatchRoom openRoom() {
+  RoomBuilder builder;
+  builder.box({0, 0, 0}, {2, 2, 2}, glm::vec3(0.5f));
+  bundle::CaptureProxy proxy = builder.proxy();
+  proxy.triangles.resize(10);  // the last wall is the ceiling
+  proxy.levels[0].triangle_count = 10;
+  return PatchRoom(std::make_shared<const PatchTransport>(proxy, lighting::kMaxPatches, kOrder));
+}
+
+}  // namespace
+
+TEST(PatchRoom, WithTheirBandsKeyLightsFallWhereTheirRaysDo) {
+  PatchRoom room = openRoom();
+  const std::vector<spec::Disc> keys = {sunAt({0, 0.8f, 0.6f})};
+  const KeyBands bands = bandsOf(keys, {1, 1, 1});
+  room.light({.keys = keys, .bands = {bands}}, glm::mat4(1.0f), {});
+  const PatchTransport& transport = *room.transport();
+  const std::vector<glm::vec3> by_bands = givenOffByBands(transport, bands);
+  const std::vector<std::vector<float>> by_rays = keysOnPatches(keys, transport.patches(), {});
+  const std::vector<glm::vec3> all = transport.bounce(by_rays[0]);
+  double straight = 0.0;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const lighting::Patch& patch = transport.patches().all()[i];
+    for (int c = 0; c < 3; ++c)
+      ASSERT_NEAR(room.givenOff()[i][c] + by_bands[i][c], all[i][c] * keys[0].radiance[c], 1e-3f) << i;
+    if (patch.normal.y > 0.9f || patch.normal.z > 0.9f)
+      straight += double{patch.area} * by_rays[0][i];
+    else
+      EXPECT_LT(by_rays[0][i], 1e-4f) << "a wall that the sun does not reach";
+  }
+  // What comes through the opening: 4 m² under a cosine of 0.8, E/pi = sin² cos.
+  const double sine = std::sin(0.05);
+  EXPECT_NEAR(straight / (4.0 * 0.8 * sine * sine), 1.0, 0.01);
+}
+
+TEST(PatchRoom, InAClosedRoomKeyLightsAndTheirBandsLeaveNothing) {
+  PatchRoom room = boxRoom(0.8f);
+  const std::vector<spec::Disc> keys = {sunAt({0.3f, 0.6f, 0.8f}), sunAt({-1, 0.1f, 0.2f}, 0.3f)};
+  room.light({.keys = keys, .bands = {bandsOf(keys, {1, 1, 1})}}, glm::mat4(1.0f), {});
+  const double open = 10.0 * std::pow(std::sin(0.3), 2);
+  for (const glm::vec3& radiance : room.givenOff()) ASSERT_NEAR(radiance.r, 0.0f, 0.05 * open);
+}
+
+TEST(PatchRoom, KeyLightsThatAreBlockedByOtherBodiesAreTakenOff) {
+  PatchRoom room = openRoom();
+  const std::vector<spec::Disc> keys = {sunAt({0, 0.8f, 0.6f})};
+  const KeyBands bands = bandsOf(keys, {1, 1, 1});
+  const lighting::RayTriangle lid{
+      .corners = {glm::vec3(-20, 3, -20), glm::vec3(20, 3, -20), glm::vec3(0, 3, 40)}};
+  room.light({.keys = keys, .bands = {bands}}, glm::mat4(1.0f), std::span(&lid, 1));
+  const std::vector<glm::vec3> by_bands = givenOffByBands(*room.transport(), bands);
+  for (std::size_t i = 0; i < by_bands.size(); ++i)
+    ASSERT_NEAR(room.givenOff()[i].g + by_bands[i].g, 0.0f, 1e-4f) << i;
+}
+
+TEST(PatchRoom, AKeyLightThatIsDimmedIsNotBouncedAnew) {
+  PatchRoom room = openRoom();
+  std::vector<spec::Disc> keys = {sunAt({0, 0.8f, 0.6f}), sunAt({0.3f, 0.2f, 0.9f})};
+  room.light({.keys = keys, .bands = {bandsOf(keys, {1, 1, 1})}}, glm::mat4(1.0f), {});
+  EXPECT_EQ(room.bouncedLast(), 2u);
+  keys[0].radiance *= 0.5f;
+  room.light({.keys = keys, .bands = {bandsOf(keys, {1, 1, 1})}}, glm::mat4(1.0f), {});
+  EXPECT_EQ(room.bouncedLast(), 0u);
+  keys[1].direction = glm::normalize(glm::vec3(0.31f, 0.2f, 0.9f));
+  room.light({.keys = keys, .bands = {bandsOf(keys, {1, 1, 1})}}, glm::mat4(1.0f), {});
+  EXPECT_EQ(room.bouncedLast(), 1u);
+  const std::uint64_t version = room.version();
+  room.light({.keys = keys, .bands = {bandsOf(keys, {1, 1, 1})}}, glm::mat4(1.0f), {});
+  EXPECT_EQ(room.version(), version);
 }
 
 }  // namespace lambent::frame

@@ -1,4 +1,4 @@
-#include "runtime/frame/lamp_bounces.hpp"
+#include "runtime/frame/patch_bounces.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -17,12 +17,14 @@
 
 namespace lambent::frame {
 
-static_assert(kLampLinks == lighting::kLinks);
+static_assert(kPatchLinks == lighting::kLinks);
 
 namespace {
 
 constexpr gpu::FindText kShaders[] = {&embedded::lambent_frame::find};
 constexpr std::size_t kOtherLevel = 1;  // of the proxies of what stands in the light
+// Where bounces add less to light that falls on all of a group alike, bands suffice for key lights.
+constexpr float kWorthPatches = 0.02f;
 
 std::uint32_t outputsOf(const streaming::ResidentDraw& draw) {
   return draw.outputs == 1 ? 1 : bundle::kMappedOutputs;
@@ -45,13 +47,13 @@ glm::vec3 unit(const glm::vec3& v) {
 
 }  // namespace
 
-LampBounces::LampBounces()
+PatchBounces::PatchBounces()
     : patches_("lamp patches"),
       bounced_("lamp light at vertices"),
       directions_("lamp link directions"),
       block_("lamp draw") {}
 
-void LampBounces::drop() {
+void PatchBounces::drop() {
   if (counts_.rooms > 0 || !words_.empty()) ++layout_version_;
   rooms_.clear();
   draws_.clear();
@@ -59,17 +61,33 @@ void LampBounces::drop() {
   counts_ = {};
 }
 
-std::vector<lighting::NearLight> LampBounces::lampsIn(const LitScene& scene, std::size_t group) {
-  std::vector<lighting::NearLight> lamps;
-  for (std::size_t k = 0; k < scene.near_lights.size(); ++k)
-    if ((scene.near_masks[group] >> k & 1u) != 0 && shines(scene.near_lights[k]))
-      lamps.push_back(scene.near_lights[k]);
-  return lamps;
+RoomLights PatchBounces::lightsIn(const World& world, const LitScene& scene, const PatchLights& lights,
+                                  std::size_t group) const {
+  RoomLights found;
+  if (group < scene.near_masks.size())
+    for (std::size_t k = 0; k < scene.near_lights.size(); ++k)
+      if ((scene.near_masks[group] >> k & 1u) != 0 && shines(scene.near_lights[k]))
+        found.lamps.push_back(scene.near_lights[k]);
+  const auto& transport = rooms_[group].room.transport();
+  const streaming::ResidentGroup& resident = world.residency().groups()[group];
+  if (lights.keys.empty() || resident.volume >= 0 || !transport || transport->bounced() < kWorthPatches)
+    return found;
+  const glm::quat group_from_world = glm::conjugate(world.rotationOf(group));
+  for (spec::Disc key : lights.keys) {
+    key.direction = group_from_world * key.direction;
+    found.keys.push_back(key);
+  }
+  for (std::size_t s = 0; s < resident.light_samples.size(); ++s) {
+    const std::span<const glm::vec4> bands = lights.bands->coefficients().subspan(
+        lights.bands->firstOf(group, s) + lighting::GroupLights::kBlock, lighting::GroupLights::kBlock);
+    found.bands.push_back({.position = resident.light_samples[s], .light = {bands.begin(), bands.end()}});
+  }
+  return found;
 }
 
 // Bodies that are near enough to take light from the group's surfaces.
-std::vector<lighting::RayTriangle> LampBounces::othersAround(const World& world, const LitScene& scene,
-                                                             std::size_t group) {
+std::vector<lighting::RayTriangle> PatchBounces::othersAround(const World& world, const LitScene& scene,
+                                                              std::size_t group) {
   const std::uint32_t own = scene.groups[group].body;
   if (own == lighting::CapturePoint::kNoBody) return {};
   const lighting::IncidentBody& room = scene.bodies[own];
@@ -95,7 +113,7 @@ std::vector<lighting::RayTriangle> LampBounces::othersAround(const World& world,
   return triangles;
 }
 
-LampBounces::Points LampBounces::pointsOf(World& world, std::size_t index) {
+PatchBounces::Points PatchBounces::pointsOf(World& world, std::size_t index) {
   const streaming::ResidentDraw& draw = world.residency().draws()[index];
   const streaming::ResidentMesh& mesh = world.residency().meshes()[draw.mesh];
   const gpu::Buffer& page = world.residency().geometry().page(mesh.block.page);
@@ -111,40 +129,43 @@ LampBounces::Points LampBounces::pointsOf(World& world, std::size_t index) {
   return points;
 }
 
-bool LampBounces::lit(const World& world, std::size_t draw) const {
+bool PatchBounces::lit(const World& world, std::size_t draw) const {
   const streaming::ResidentDraw& resident = world.residency().draws()[draw];
   return !rooms_[resident.group].room.givenOff().empty() && !materialOf(world, draw).unlit;
 }
 
 // Everything that the group needs and does not have, as one piece of work.
-void LampBounces::ask(World& world, std::size_t group) {
+void PatchBounces::ask(World& world, std::size_t group, bool links) {
   Room& room = rooms_[group];
   if (room.coming.valid()) return;
   const auto& draws = world.residency().draws();
   std::vector<Points> points;
-  for (std::size_t i = 0; i < draws.size(); ++i) {
+  for (std::size_t i = 0; links && i < draws.size(); ++i) {
     if (draws[i].group != group || draws_[i].asked) continue;
     if (!world.residency().meshes()[draws[i].mesh].block || materialOf(world, i).unlit) continue;
     draws_[i].asked = true;
     points.push_back(pointsOf(world, i));
   }
   if (room.room.transport() && points.empty()) return;
+  const streaming::ResidentGroup& resident = world.residency().groups()[group];
   room.coming = std::async(std::launch::async, [transport = room.room.transport(), points = std::move(points),
-                                                proxy = *world.residency().groups()[group].proxy]() mutable {
+                                                proxy = *resident.proxy,
+                                                order = static_cast<int>(resident.order)]() mutable {
     Made made{.transport = std::move(transport), .links = {}};
-    if (!made.transport) made.transport = std::make_shared<const lighting::PatchTransport>(proxy);
+    if (!made.transport)
+      made.transport = std::make_shared<const lighting::PatchTransport>(proxy, lighting::kMaxPatches, order);
     for (const Points& draw : points)
       made.links.push_back({draw.draw, made.transport->link(draw.points, draw.spread)});
     return made;
   });
 }
 
-bool LampBounces::take(const World& world, std::size_t group, bool wait) {
+bool PatchBounces::take(const World& world, std::size_t group, bool wait) {
   Room& room = rooms_[group];
   if (!room.coming.valid()) return false;
   if (!wait && room.coming.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return false;
   Made made = room.coming.get();
-  if (!room.room.transport()) room.room = LampRoom(std::move(made.transport));
+  if (!room.room.transport()) room.room = PatchRoom(std::move(made.transport));
   const auto& draws = world.residency().draws();
   for (Made::Links& links : made.links) {
     const auto found = std::ranges::find(draws, links.draw, &streaming::ResidentDraw::id);
@@ -156,11 +177,27 @@ bool LampBounces::take(const World& world, std::size_t group, bool wait) {
   return true;
 }
 
-Result<void> LampBounces::update(World& world, const LitScene& scene, bool on, bool wait,
-                                 gpu::Counters& counters) {
+bool PatchBounces::prepare(World& world, const LitScene& scene, const PatchLights& lights, std::size_t group,
+                           bool wait) {
+  if (!world.residency().groups()[group].proxy) return false;
+  bool came = false;
+  // First the form factors of a group that has key lights alone: they say whether links are worth having.
+  for (int stage = 0; stage < 2; ++stage) {
+    const bool links = !lightsIn(world, scene, lights, group).none();
+    const bool surfaces = world.residency().groups()[group].volume < 0;
+    if (!links && (lights.keys.empty() || !surfaces || rooms_[group].room.transport())) return came;
+    ask(world, group, links);
+    if (!take(world, group, wait)) return came;
+    came = true;
+  }
+  return came;
+}
+
+Result<void> PatchBounces::update(World& world, const LitScene& scene, const PatchLights& lights, bool on,
+                                  bool wait, gpu::Counters& counters) {
   const auto& groups = world.residency().groups();
   counts_ = {};
-  bool any = false;
+  bool any = !lights.keys.empty();
   for (const std::uint32_t mask : scene.near_masks) any |= mask != 0;
   if (!on || (!any && rooms_.size() == 0)) {
     drop();
@@ -171,17 +208,13 @@ Result<void> LampBounces::update(World& world, const LitScene& scene, bool on, b
   bool changed = groups_moved || draws_moved;
   for (std::size_t g = 0; g < groups.size(); ++g) {
     Room& room = rooms_[g];
-    std::vector<lighting::NearLight> lamps;
-    if (groups[g].proxy && g < scene.near_masks.size()) lamps = lampsIn(scene, g);
-    if (!lamps.empty()) {
-      ask(world, g);
-      changed |= take(world, g, wait);
-    }
+    changed |= prepare(world, scene, lights, g, wait);
     if (room.coming.valid()) ++counts_.rooms_to_come;
     if (!room.room.transport()) continue;
-    room.room.light(lamps, world.worldFromGroup(g),
-                    lamps.empty() ? std::vector<lighting::RayTriangle>() : othersAround(world, scene, g));
-    counts_.lamps_bounced += room.room.bouncedLast();
+    const RoomLights found = lightsIn(world, scene, lights, g);
+    room.room.light(found, world.worldFromGroup(g),
+                    found.none() ? std::vector<lighting::RayTriangle>() : othersAround(world, scene, g));
+    counts_.lights_bounced += room.room.bouncedLast();
     if (!room.room.givenOff().empty()) {
       ++counts_.rooms;
       counts_.patches += static_cast<std::uint32_t>(room.room.givenOff().size());
@@ -199,7 +232,7 @@ Result<void> LampBounces::update(World& world, const LitScene& scene, bool on, b
   return gather(world, counters);
 }
 
-void LampBounces::layOut(const World& world) {
+void PatchBounces::layOut(const World& world) {
   const auto& draws = world.residency().draws();
   std::vector<std::uint32_t> words(draws.size(), kNothing);
   std::uint32_t word = 0;
@@ -216,7 +249,7 @@ void LampBounces::layOut(const World& world) {
 }
 
 // Behind the patches of each group one that is dark, for links that meet nothing.
-void LampBounces::uploadPatches(gpu::Counters& counters) {
+void PatchBounces::uploadPatches(gpu::Counters& counters) {
   std::vector<glm::vec4> patches;
   for (Room& room : rooms_) {
     if (room.room.givenOff().empty()) continue;
@@ -229,12 +262,12 @@ void LampBounces::uploadPatches(gpu::Counters& counters) {
   counters.uploaded_bytes += patches.size() * sizeof(glm::vec4);
 }
 
-Result<const gpu::Program*> LampBounces::program(std::uint32_t outputs) {
+Result<const gpu::Program*> PatchBounces::program(std::uint32_t outputs) {
   if (const auto found = programs_.find(outputs); found != programs_.end()) return &found->second;
   const std::vector<gpu::Define> defines = {{"LAMBENT_OUTPUTS", std::to_string(outputs)}};
   Result<gpu::Program> made =
-      gpu::Program::create(fmt::format("lamp_gather.comp outputs {}", outputs),
-                           {{GL_COMPUTE_SHADER, "lamp_gather.comp"}}, kShaders, defines);
+      gpu::Program::create(fmt::format("patch_gather.comp outputs {}", outputs),
+                           {{GL_COMPUTE_SHADER, "patch_gather.comp"}}, kShaders, defines);
   if (!made) return failAgain(made.error());
   if (outputs > 1) {
     std::vector<glm::vec4> directions;
@@ -245,7 +278,7 @@ Result<const gpu::Program*> LampBounces::program(std::uint32_t outputs) {
   return &programs_.emplace(outputs, std::move(*made)).first->second;
 }
 
-Result<void> LampBounces::gather(World& world, gpu::Counters& counters) {
+Result<void> PatchBounces::gather(World& world, gpu::Counters& counters) {
   const auto& draws = world.residency().draws();
   for (std::size_t i = 0; i < draws.size(); ++i) {
     const Room& room = rooms_[draws[i].group];
@@ -255,21 +288,21 @@ Result<void> LampBounces::gather(World& world, gpu::Counters& counters) {
     if (!kernel) return failAgain(kernel.error());
     (*kernel)->use();
     const streaming::ResidentMesh& mesh = world.residency().meshes()[draws[i].mesh];
-    const LampDraw block{.group_from_mesh_normal = glm::mat3x4(draws[i].group_from_mesh_normal),
-                         .first_patch = room.first_patch,
-                         .vertex_count = mesh.vertex_count,
-                         .bounced_word = words_[i],
-                         .normals_word = mesh.normals_word};
-    block_.assign(std::span<const LampDraw>(&block, 1));
-    glBindBufferBase(GL_UNIFORM_BUFFER, kBindLampDraw, block_.buffer().id());
-    draws_[i].links.bindStorage(kBindLampLinks);
-    patches_.bindStorage(kBindLampPatches);
-    bounced_.bindStorage(kBindLampBounced);
+    const PatchDraw block{.group_from_mesh_normal = glm::mat3x4(draws[i].group_from_mesh_normal),
+                          .first_patch = room.first_patch,
+                          .vertex_count = mesh.vertex_count,
+                          .bounced_word = words_[i],
+                          .normals_word = mesh.normals_word};
+    block_.assign(std::span<const PatchDraw>(&block, 1));
+    glBindBufferBase(GL_UNIFORM_BUFFER, kBindPatchDraw, block_.buffer().id());
+    draws_[i].links.bindStorage(kBindPatchLinks);
+    patches_.bindStorage(kBindPatches);
+    bounced_.bindStorage(kBindPatchBounced);
     if (outputsOf(draws[i]) > 1) {
-      world.residency().geometry().page(mesh.block.page).bindStorage(kBindLampGeometry);
-      directions_.bindStorage(kBindLampDirections);
+      world.residency().geometry().page(mesh.block.page).bindStorage(kBindPatchGeometry);
+      directions_.bindStorage(kBindPatchDirections);
     }
-    glDispatchCompute((mesh.vertex_count + kLampGroupSize - 1) / kLampGroupSize, 1, 1);
+    glDispatchCompute((mesh.vertex_count + kPatchGroupSize - 1) / kPatchGroupSize, 1, 1);
     ++counters.dispatches;
     ++counts_.draws_gathered;
     counters.uploaded_bytes += sizeof(block);
@@ -278,7 +311,7 @@ Result<void> LampBounces::gather(World& world, gpu::Counters& counters) {
   return {};
 }
 
-std::uint64_t LampBounces::bytesResident() const {
+std::uint64_t PatchBounces::bytesResident() const {
   std::uint64_t bytes = patches_.buffer().byteCount() + bounced_.buffer().byteCount();
   for (const Draw& draw : draws_) bytes += draw.links.byteCount();
   return bytes;
