@@ -10,6 +10,7 @@
 
 #include "runtime/frame/boxes.hpp"
 #include "runtime/frame/near_choice.hpp"
+#include "runtime/frame/near_record.hpp"
 #include "runtime/scene/affine.hpp"
 
 namespace lambent::frame {
@@ -69,7 +70,8 @@ std::vector<float> nearnessOf(const World& world, std::span<const lighting::Loca
   for (std::size_t g = 0; g < groups.size(); ++g) {
     if (groups[g].volume >= 0) continue;
     for (std::size_t k = 0; k < lights.size(); ++k)
-      if (!world.litByColumn(g, entities[k]))
+      if (const auto near = lighting::nearLightOf(lights[k]);
+          near && shines(*near) && !world.litByColumn(g, entities[k]))
         nearness[k] =
             std::min(nearness[k], radiiFrom(world.groupBounds(g), world.worldFromGroup(g), lights[k]));
   }

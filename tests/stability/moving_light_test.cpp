@@ -70,6 +70,9 @@ TEST_F(MovingLight, ABlockerBetweenLampAndStatueDarkensTheStatue) {
   add(scene, "screen", assets::box({-1, -0.02f, -1}, {1, 0.02f, 1}, 0.25f), glm::vec3(0.02f), {10, 3, 0},
       true);
   Show show(scene, {constantLight(0.0f)}, 1);
+  frame::FrameSettings settings = show.frame->settings();
+  settings.near_radii = 0.0f;  // this is about captures
+  ASSERT_TRUE(show.frame->setSettings(settings));
   show.add({.kind = Kind::Sphere, .strength = 50.0f, .radius_m = 0.8f}, {0, 6, 0});
   const glm::vec3 eye(0.8f, 1.2f, 1.5f), top(0, 0.3f, 0);
   const float lit = show.patch(eye, top).g;
