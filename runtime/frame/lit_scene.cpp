@@ -78,16 +78,18 @@ std::vector<float> nearnessOf(const World& world, std::span<const lighting::Loca
   return nearness;
 }
 
-// Whether the group stands within another that has this light by a column, and has a grid by which it takes
-// light from it: then the light must be in what the grid is multiplied with.
-bool shadesColumn(const World& world, std::size_t group, ecs::Entity light) {
+// Whether the group stands within another that has this light by a column, or between both, and has a grid by
+// which it takes light from it: then the light must be in what the grid is multiplied with.
+bool shadesColumn(const World& world, std::size_t group, ecs::Entity light, const glm::vec3& light_ws) {
   const auto& groups = world.residency().groups();
   if (!world.description(groups[group].bundle).groups[groups[group].index].neighborhood) return false;
-  for (std::size_t g = 0; g < groups.size(); ++g)
-    if (g != group && groups[g].volume < 0 && world.litByColumn(g, light) &&
-        meet(world.groupBounds(group), world.worldFromGroup(group), world.groupBounds(g),
-             world.worldFromGroup(g)))
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    if (g == group || groups[g].volume >= 0 || !world.litByColumn(g, light)) continue;
+    scene::Box lit = world.groupBounds(g);
+    lit.add(glm::vec3(glm::inverse(world.worldFromGroup(g)) * glm::vec4(light_ws, 1.0f)));
+    if (meet(world.groupBounds(group), world.worldFromGroup(group), lit, world.worldFromGroup(g)))
       return true;
+  }
   return false;
 }
 
@@ -173,7 +175,8 @@ LitScene gatherLitScene(const World& world, float surroundings, const LitSceneOp
           pixel_mask |= bit;
           by_harmonics = bit == 0;
           scene.near_left_out += bit == 0 ? 1 : 0;
-        } else if (bit != 0 && options.near_radii > 0.0f && !shadesColumn(world, g, light_entities[k])) {
+        } else if (bit != 0 && options.near_radii > 0.0f &&
+                   !shadesColumn(world, g, light_entities[k], scene.lights[k].position_ws)) {
           pixel_mask |= bit;
           apart = shares[k];
         }
