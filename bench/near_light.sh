@@ -82,7 +82,7 @@ for ratio in "${ratios[@]}"; do
     done
     for count in "${counts[@]}"; do
       stem=$out/$name.$ratio.$camera.$count
-      "$build"/bin/lambent-demo "$out/$name.$count.lmb.glb" "${words[@]}" --window off --headless "$stem.exr" >/dev/null
+      "$build"/bin/lambent-demo "$out/$name.$count.lmb.glb" "${words[@]}" --window off --near-radii 0 --headless "$stem.exr" >/dev/null
       for limit in 5 whole; do
         "$build"/bin/lambent compare "$stem.exr" "$out/$name.$ratio.$camera.$limit.1.exr" \
           --reference2 "$out/$name.$ratio.$camera.$limit.2.exr" --json > "$stem.$limit.json"
@@ -111,7 +111,7 @@ panels=()
 for panel in 1 32 reference; do
   picture=$out/$name.panel.$panel.exr
   if [[ $panel != reference ]]; then
-    "$build"/bin/lambent-demo "$out/$name.$panel.lmb.glb" "${words[@]}" --window off --headless "$picture" >/dev/null
+    "$build"/bin/lambent-demo "$out/$name.$panel.lmb.glb" "${words[@]}" --window off --near-radii 0 --headless "$picture" >/dev/null
   elif [[ ! -e $picture ]]; then
     "$build"/bin/lambent reference "$scene" "${words[@]}" --band-limit 5 --bounces "$bounces" --spp 1024 -o "$picture" >/dev/null
   fi

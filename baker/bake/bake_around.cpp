@@ -10,6 +10,9 @@ namespace {
 
 // Of the bound on coded transfer: a neighborhood is seen against nearly open sky, where errors show.
 constexpr double kShareOfBound = 1.0 / 3.0;
+// Of the change on the faces of grids around bodies that are moved by hand: these have no more points than
+// others, and lie close around the body, where its contact with what it stands on shows.
+constexpr double kBoundByHand = 0.03;
 
 void tell(const Around& around, BakedAround baked, BakeReport& report,
           std::optional<BakedNeighborhood>& out) {
@@ -34,7 +37,7 @@ void tell(const Around& around, BakedAround baked, BakeReport& report,
 
 // Of the surfaces that come within reach, from the origin.
 std::optional<Box3> receiversOf(const Around& around) {
-  if (around.plan.receivers.empty()) return std::nullopt;
+  if (around.plan.receivers.empty() || around.plan.by_hand) return std::nullopt;
   return Box3{around.plan.receivers_min - around.origin, around.plan.receivers_max - around.origin};
 }
 
@@ -45,7 +48,11 @@ Keep keepOf(const Around& around, Cache* cache, const Key& body) {
   const std::optional<Box3> receivers = receiversOf(around);
   KeyMaker key = KeyMaker::ofStage("neighborhood");
   key.add(body).add(around.origin).add(std::uint64_t{around.rays});
-  key.add(around.plan.asked).add(around.plan.matrices).add(around.plan.size).add(around.plan.extent);
+  key.add(around.plan.asked)
+      .add(around.plan.by_hand)
+      .add(around.plan.matrices)
+      .add(around.plan.size)
+      .add(around.plan.extent);
   key.add(receivers.has_value());
   if (receivers) key.add(receivers->low).add(receivers->high);
   key.add(around.plan.receivers_face);
@@ -75,6 +82,7 @@ bool bakeAround(const Around& around, const Body& body, const Box3& bounds, Prog
   settings.placement.size = plan.size;
   settings.placement.extent = plan.extent;
   settings.placement.by_length = around.options.neighborhood_grid;
+  if (plan.by_hand) settings.placement.bound = kBoundByHand;
   settings.placement.few_points = !plan.asked && !plan.matrices;
   settings.fit_between_points = true;
   settings.coding.bound = kShareOfBound * double{around.options.effectiveErrorBound()};

@@ -108,7 +108,7 @@ std::vector<std::string> lightsInside(const Scene& scene, const std::vector<Rigi
         if (!known.emplace(lamp.node, g).second) continue;
         std::string sentence = fmt::format(
             "{} can stand among the surfaces of {}: direct light per pixel by a shadow cube map, its bounces "
-            "left out.",
+            "by patches.",
             motion.lampName(lamp), groups[g].name);
         sentence[0] = 'T';
         sentences.push_back(std::move(sentence));

@@ -31,9 +31,12 @@ std::vector<glm::vec3> outerPoints(const bundle::MeshData& mesh) {
 
 }  // namespace
 
+bool muchSmaller(const Box& body, const Box& other) {
+  return body.halfSize() < kMuchSmaller * other.halfSize();
+}
+
 bool movesAboutOn(const Box& body, const Box& other) {
-  const float half = other.halfSize();
-  return body.halfSize() < kMuchSmaller * half && body.meets(other, kTouch * half);
+  return muchSmaller(body, other) && body.meets(other, kTouch * other.halfSize());
 }
 
 Motion::Motion(const Scene& scene, const std::vector<RigidGroup>& groups) : scene_(scene), groups_(groups) {

@@ -33,7 +33,9 @@ struct Box {
   }
 };
 
-// Can `body` move about on `other`: it is less than half its size and comes within its bounds.
+// Less than half the size of the other.
+bool muchSmaller(const Box& body, const Box& other);
+// Can `body` move about on `other`: it is much smaller and comes within its bounds.
 bool movesAboutOn(const Box& body, const Box& other);
 
 struct PlacedBody {

@@ -155,9 +155,45 @@ class Planner {
             fmt::format("{}, but so can {} other bodies: light samples see them all", where, dark - 1);
       } else {
         plan.baked = true;
+        plan.by_hand = movedByHand(k);
         plan.reason = where;
       }
     }
+    if (dark <= kMostNeighborhoods) takeBodiesByHand(dark);
+  }
+
+  // Bodies that stand elsewhere at rest. They must not cost those their grids that move about anyway.
+  void takeBodiesByHand(std::size_t dark) {
+    std::vector<std::size_t> found;
+    for (std::size_t k = 0; k < groups_.size(); ++k)
+      if (plans_[k].reason.empty() && movedByHand(k) && largerThan(k) &&
+          findGroupLights(scene_, groups_[k]).empty())
+        found.push_back(k);
+    for (const std::size_t k : found) {
+      PlannedNeighborhood& plan = plans_[k];
+      plan.baked = plan.by_hand = dark + found.size() <= kMostNeighborhoods;
+      plan.reason = fmt::format("it can be moved by hand onto {}", groups_[*largerThan(k)].name);
+      if (!plan.baked)
+        plan.reason +=
+            fmt::format(", but so can {} other bodies: light samples see them all", dark + found.size() - 1);
+    }
+  }
+
+  // Its file says that it may move, and no animation says where.
+  bool movedByHand(std::size_t k) const {
+    if (groups_[k].root < 0 || groups_[k].volume >= 0) return false;
+    const gltf::Node& node = scene_.nodes[static_cast<std::size_t>(groups_[k].root)];
+    return node.movable && !node.animated;
+  }
+
+  // A group of surfaces of more than twice its size.
+  std::optional<std::size_t> largerThan(std::size_t k) const {
+    const Box& own = moments_.front().bodies[k].all;
+    for (std::size_t other = 0; other < groups_.size(); ++other)
+      if (const Box& all = moments_.front().bodies[other].all;
+          other != k && !own.empty() && !all.empty() && muchSmaller(own, all))
+        return other;
+    return std::nullopt;
   }
 
   std::optional<std::size_t> movesOn(std::size_t k) const {
@@ -206,6 +242,10 @@ class Planner {
       if (plan.asked || groups_[k].volume >= 0)
         plan.matrices = plan.matrices || hasFineTransfer(other, boxOf(moments_.front(), k).halfSize());
     }
+    if (plan.by_hand) {
+      addReceiversByHand(k);
+      return;
+    }
     if (plan.receivers.empty()) {
       plan.baked = false;
       plan.reason += ", but no other group has surfaces in its reach";
@@ -214,6 +254,19 @@ class Planner {
     plan.receivers_min = within.box.low;
     plan.receivers_max = within.box.high;
     plan.receivers_face = within.facing;
+  }
+
+  // Everything that it may be moved onto, and surfaces that face anywhere.
+  void addReceiversByHand(std::size_t k) {
+    PlannedNeighborhood& plan = plans_[k];
+    const Box& own = moments_.front().bodies[k].all;
+    for (std::uint32_t other = 0; other < groups_.size(); ++other)
+      if (other != k && !groups_[other].draws.empty() &&
+          muchSmaller(own, moments_.front().bodies[other].all) &&
+          std::ranges::find(plan.receivers, other) == plan.receivers.end())
+        plan.receivers.push_back(other);
+    std::ranges::sort(plan.receivers);
+    addFacingAnywhere(plan.receivers_face, 1.0f);
   }
 
   // Adds the surfaces of `other` in k's reach, at all times, in k's frame.

@@ -67,7 +67,8 @@ Result<void> Frame::setSettings(const FrameSettings& settings) {
   // What other ways of the light leave in the captures by small steps must not depend on which way was on.
   if (incident_ &&
       (settings.captures != before.captures || settings.neighborhoods != before.neighborhoods ||
-       settings.near_shadows != before.near_shadows || settings.light_samples != before.light_samples))
+       settings.near_shadows != before.near_shadows || settings.near_radii != before.near_radii ||
+       settings.light_samples != before.light_samples))
     incident_->forget();
   settled_ = false;
   return {};
@@ -273,7 +274,7 @@ Result<void> Frame::shadeNeighborhoods(World& world) {
 
 Result<void> Frame::castShadows(World& world) {
   gpu::PassTimers::Scope pass(timers_, "shadows");
-  Result<void> done = near_lights_.update(world, lit_scene_.near_lights, lit_scene_.near_masks,
+  Result<void> done = near_lights_.update(world, lit_scene_.near_lights, lit_scene_.pixel_masks,
                                           pass.counters());
   counts_.shadow_cubes_drawn = near_lights_.cubesDrawn();
   if (counts_.shadow_cubes_drawn > 0)

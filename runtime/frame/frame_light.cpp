@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "runtime/frame/apart_shadows.hpp"
 #include "runtime/frame/frame.hpp"
 
 namespace lambent::frame {
@@ -48,10 +49,13 @@ Result<void> Frame::light(World& world, const lighting::Environment& environment
   gpu::PassTimers::Scope pass(timers_, "light");
   const FrameSettings& settings = options_.settings;
   lit_scene_ = gatherLitScene(world, meanRadiance(environment),
-                              {.near_lights = settings.near_shadows, .bodies = settings.captures});
+                              {.near_lights = settings.near_shadows,
+                               .near_radii = keysApart() ? settings.near_radii : 0.0f,
+                               .bodies = settings.captures});
   if (settings.neighborhoods || neighborhoods_.any())
     neighborhoods_.chooseCarriers(world, lit_scene_, settings.neighborhoods);
   keepFewerSamples(world);
+  hideApart(lit_scene_, proxiesOf(world.residency()).proxies);
   if (Result<void> done = prepareSampling(world, environment, pass.counters()); !done) return done;
   if (incident_) {
     incident_->update(environment, lit_scene_.groups, lit_scene_.lights, options_.wait_for_captures);

@@ -138,6 +138,17 @@ const std::array kRows = {
     switchRow<&S::near_shadows>("near-shadows", "near lights", 1.0,
                                 "Lights among the surfaces shine per pixel with shadow cubes, off:\nby "
                                 "harmonics"),
+    SettingRow{
+        .name = "near-radii",
+        .label = "radii of near lights",
+        .kind = Kind::Real,
+        .greatest = 1000.0,
+        .finest = 1000.0,
+        .help =
+            "Lights beside a body shine per pixel, too, nearer to its middle\nthan so many of its radii; 0: "
+            "only lights within its bounds",
+        .get = getNumber<&S::near_radii>,
+        .put = putNumber<&S::near_radii>},
     switchRow<&S::patch_bounces>("patch-bounces", "bounces of near lights", 1.0,
                                 "Surfaces send on the light of lights among them"),
     switchRow<&S::captures>("captures", "light between bodies", 1.0,

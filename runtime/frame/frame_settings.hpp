@@ -43,6 +43,8 @@ struct FrameSettings {
   bool neighborhoods = true;
   // Lights among the surfaces shine per pixel, with shadow cubes; else by harmonics.
   bool near_shadows = true;
+  // So do those that stand beside a group: nearer to its middle than so many of its radii. 0: none.
+  float near_radii = 6.0f;
   // And what the surfaces around them send on of their light arrives too.
   bool patch_bounces = true;
   // Bodies light and shadow each other as they stand now; else only as they were baked.

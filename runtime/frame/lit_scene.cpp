@@ -2,10 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <span>
 
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
-#include <glm/vector_relational.hpp>
+
+#include "runtime/frame/boxes.hpp"
+#include "runtime/frame/near_choice.hpp"
+#include "runtime/frame/near_record.hpp"
+#include "runtime/scene/affine.hpp"
 
 namespace lambent::frame {
 
@@ -45,12 +51,6 @@ lighting::LocalLight describe(const scene::LocalLightComponent& light, const glm
           .outer_cone_rad = light.outer_cone_rad};
 }
 
-float largestScale(const glm::mat4& matrix) {
-  float scale = 0.0f;
-  for (int column = 0; column < 3; ++column) scale = std::max(scale, glm::length(glm::vec3(matrix[column])));
-  return scale;
-}
-
 // The most that a triangle of it gives off by itself.
 float peakEmission(const bundle::CaptureProxy& proxy, const std::vector<glm::vec3>& lamps) {
   float peak = 0.0f;
@@ -62,19 +62,38 @@ float peakEmission(const bundle::CaptureProxy& proxy, const std::vector<glm::vec
   return peak;
 }
 
-}  // namespace
-
-bool standsWithin(const scene::Box& bounds, const glm::mat4& world_from_group,
-                  const lighting::LocalLight& light) {
-  if (bounds.empty() || light.kind == lighting::LocalLight::Kind::Directional) return false;
-  const float scale = largestScale(world_from_group);
-  const float determinant = glm::determinant(glm::mat3(world_from_group));
-  if (determinant == 0.0f || !std::isfinite(1.0f / determinant)) return false;
-  const glm::vec3 place(glm::inverse(world_from_group) * glm::vec4(light.position_ws, 1.0f));
-  const float reach = light.extent_m() / scale;
-  return glm::all(glm::greaterThan(place, bounds.min - reach)) &&
-         glm::all(glm::lessThan(place, bounds.max + reach));
+// How near each light comes to any group of surfaces that does not have it by a column.
+std::vector<float> nearnessOf(const World& world, std::span<const lighting::LocalLight> lights,
+                              std::span<const ecs::Entity> entities) {
+  std::vector<float> nearness(lights.size(), std::numeric_limits<float>::infinity());
+  const auto& groups = world.residency().groups();
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    if (groups[g].volume >= 0) continue;
+    for (std::size_t k = 0; k < lights.size(); ++k)
+      if (const auto near = lighting::nearLightOf(lights[k]);
+          near && shines(*near) && !world.litByColumn(g, entities[k]))
+        nearness[k] =
+            std::min(nearness[k], radiiFrom(world.groupBounds(g), world.worldFromGroup(g), lights[k]));
+  }
+  return nearness;
 }
+
+// Whether the group stands within another that has this light by a column, or between both, and has a grid by
+// which it takes light from it: then the light must be in what the grid is multiplied with.
+bool shadesColumn(const World& world, std::size_t group, ecs::Entity light, const glm::vec3& light_ws) {
+  const auto& groups = world.residency().groups();
+  if (!world.description(groups[group].bundle).groups[groups[group].index].neighborhood) return false;
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    if (g == group || groups[g].volume >= 0 || !world.litByColumn(g, light)) continue;
+    scene::Box lit = world.groupBounds(g);
+    lit.add(glm::vec3(glm::inverse(world.worldFromGroup(g)) * glm::vec4(light_ws, 1.0f)));
+    if (meet(world.groupBounds(group), world.worldFromGroup(group), lit, world.worldFromGroup(g)))
+      return true;
+  }
+  return false;
+}
+
+}  // namespace
 
 bool LitScene::needsSampling() const {
   const auto seesOthers = [&](const lighting::IncidentGroup& group) {
@@ -106,16 +125,19 @@ LitScene gatherLitScene(const World& world, float surroundings, const LitSceneOp
     scene.lights.push_back(describe(light, place ? place->world_from_node : glm::mat4(1.0f)));
     light_entities.push_back(entity);
   }
+  std::vector<float> shares(scene.lights.size(), 0.0f);
+  if (options.near_lights)
+    shares = nearShares(nearnessOf(world, scene.lights, light_entities), options.near_radii);
   std::vector<std::int32_t> near_of_light(scene.lights.size(), -1);
-  const auto nearPlace = [&](std::size_t k) {
-    if (near_of_light[k] < 0 && scene.near_lights.size() < lighting::kMaxNearLights)
-      if (const auto near = lighting::nearLightOf(scene.lights[k])) {
-        near_of_light[k] = static_cast<std::int32_t>(scene.near_lights.size());
-        scene.near_lights.push_back(*near);
-        scene.near_sources.push_back(k);
-      }
-    return near_of_light[k];
-  };
+  for (std::size_t k = 0; k < scene.lights.size(); ++k) {
+    if (shares[k] <= 0.0f) continue;
+    std::optional<lighting::NearLight> near = lighting::nearLightOf(scene.lights[k]);
+    if (!near) continue;
+    near->power *= shares[k];
+    near_of_light[k] = static_cast<std::int32_t>(scene.near_lights.size());
+    scene.near_lights.push_back(*near);
+    scene.near_sources.push_back(k);
+  }
 
   std::uint32_t proxy_index = 0;
   for (std::size_t g = 0; g < groups.size(); ++g) {
@@ -137,27 +159,33 @@ LitScene gatherLitScene(const World& world, float surroundings, const LitSceneOp
                                        .world_from_proxy = world_from_group,
                                        .brightness = std::clamp(brightness, 1.0f, kMaxBrightness)},
                               .center_ws = glm::vec3(world_from_group * glm::vec4(center, 1.0f)),
-                              .radius_m = bounds.radius() * largestScale(world_from_group),
+                              .radius_m = bounds.radius() * scene::largestScale(world_from_group),
                               .radiance_drift = 0.0,
                               .key = receiver.key});
     }
-    std::uint32_t near_mask = 0;
+    std::uint32_t near_mask = 0, pixel_mask = 0;
     for (std::size_t k = 0; k < scene.lights.size(); ++k) {
       bool by_harmonics = !world.litByColumn(g, light_entities[k]);
+      float apart = 0.0f;
+      const std::uint32_t bit = near_of_light[k] >= 0 ? 1u << near_of_light[k] : 0u;
       // Rays through a volume look up its samples alone, and no shadow cube.
-      if (by_harmonics && options.near_lights && group.volume < 0 &&
-          standsWithin(bounds, world_from_group, scene.lights[k])) {
-        const std::int32_t place = nearPlace(k);
-        if (place >= 0) {
-          near_mask |= 1u << place;
-          by_harmonics = false;
-        } else {
-          ++scene.near_left_out;
+      if (by_harmonics && options.near_lights && group.volume < 0) {
+        if (radiiFrom(bounds, world_from_group, scene.lights[k]) == 0.0f) {
+          near_mask |= bit;
+          pixel_mask |= bit;
+          by_harmonics = bit == 0;
+          scene.near_left_out += bit == 0 ? 1 : 0;
+        } else if (bit != 0 && options.near_radii > 0.0f &&
+                   !shadesColumn(world, g, light_entities[k], scene.lights[k].position_ws)) {
+          pixel_mask |= bit;
+          apart = shares[k];
         }
       }
       receiver.lit_by.push_back(by_harmonics ? 1 : 0);
+      receiver.apart.push_back(apart);
     }
     scene.near_masks.push_back(near_mask);
+    scene.pixel_masks.push_back(pixel_mask);
     scene.groups.push_back(std::move(receiver));
   }
   // What a volume stands within is in its own transfer.

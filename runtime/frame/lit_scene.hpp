@@ -1,9 +1,14 @@
 // The scene as the lighting system sees it, gathered from the registry and what is resident: rigid groups as
 // receivers and as bodies, the lights that stand among them, and by which carrier each group has each light:
 // - the group's own column, where the light belongs to it and stands where it stood when that was baked;
-// - per pixel with a shadow cube map, where the light stands within the bounds of a group of surfaces;
+// - per pixel with a shadow cube map, where the light stands within the bounds of a group of surfaces; what
+//   its surfaces send on comes by patches;
+// - per pixel likewise, where the light stands beside any group, within some of its radii: then on all groups
+//   of surfaces, so that what stands between them casts shadows once; what surfaces send on goes by harmonics
+//   at the group's light samples, apart, as key lights do. On its way out of that distance the light goes
+//   over to the next carrier bit by bit;
 // - harmonics at the group's light samples otherwise.
-// Never two of them, or the light would count twice.
+// Of each path of light exactly one, or it would count twice.
 #pragma once
 
 #include <cstdint>
@@ -19,8 +24,9 @@ struct LitScene {
   std::vector<std::vector<glm::vec3>> lamps;    // per group, what its own lights give now, by light column
   std::vector<lighting::IncidentBody> bodies;
   std::vector<lighting::LocalLight> lights;
-  std::vector<lighting::NearLight> near_lights;  // at most kMaxNearLights
-  std::vector<std::uint32_t> near_masks;         // per group: bit k for near light k
+  std::vector<lighting::NearLight> near_lights;  // at most kMaxNearLights, as strong as they shine per pixel
+  std::vector<std::uint32_t> near_masks;         // per group: bit k if near light k stands within its bounds
+  std::vector<std::uint32_t> pixel_masks;        // per group: bit k if near light k shines on it per pixel
   std::vector<std::size_t> near_sources;         // per near light: among the lights
   std::uint32_t near_left_out = 0;  // lights within bounds for which there was no place left: harmonics
 
@@ -30,16 +36,13 @@ struct LitScene {
 
 struct LitSceneOptions {
   bool near_lights = true;  // else all lights that stand in the scene go by harmonics
+  float near_radii = 0.0f;  // lights nearer to a group's middle than so many of its radii stand beside it
   bool bodies = true;       // else groups neither light nor shadow each other
 };
 
 // surroundings: mean radiance, by which bodies count as bright.
 // radiance_drift of the bodies is for the frame to say.
 LitScene gatherLitScene(const World& world, float surroundings, const LitSceneOptions& options = {});
-
-// Whether a light that stands in the scene is within a group's bounds, which are in its frame.
-bool standsWithin(const scene::Box& bounds, const glm::mat4& world_from_group,
-                  const lighting::LocalLight& light);
 
 // The proxies of the groups that have one, in the order of the bodies, and the ids of the groups.
 struct BodyProxies {

@@ -4,8 +4,8 @@
 // One carrier for each ordered pair (k -> B). By the grid of k, where all of this holds: the grid has
 // arrived; B has surfaces and is another group than k; B's bounds meet the grid's box (once carried, they
 // need only meet the box grown by a point's distance all around, so that nothing flips to and fro); k has no
-// lamps of its own, or the grid carries them; no lamp that lights k stands so near to B that B has it per
-// pixel, with shadow cubes in which k stands (its shadow would count twice). Otherwise by capture. A volume's
+// lamps of its own, or the grid carries them; of no lamp do k and B have other shares per pixel, with shadow
+// cubes in which k stands (its shadow would count twice, or not at all). Otherwise by capture. A volume's
 // grid acts on every group with surfaces, the one that it stands within included.
 //
 // A draw receives from a grid at its vertices, through transfer of its own (so that it shades itself under

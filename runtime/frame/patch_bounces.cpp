@@ -25,6 +25,7 @@ constexpr gpu::FindText kShaders[] = {&embedded::lambent_frame::find};
 constexpr std::size_t kOtherLevel = 1;  // of the proxies of what stands in the light
 // Where bounces add less to light that falls on all of a group alike, bands suffice for key lights.
 constexpr float kWorthPatches = 0.02f;
+constexpr float kFarAway = 1e3f;  // radii of a room, where key lights are
 
 std::uint32_t outputsOf(const streaming::ResidentDraw& draw) {
   return draw.outputs == 1 ? 1 : bundle::kMappedOutputs;
@@ -38,6 +39,13 @@ std::vector<glm::vec3> readVectors(const gpu::Buffer& page, std::uint32_t word, 
   std::vector<glm::vec3> values(count);
   page.read(4 * std::size_t{word}, std::span(values));
   return values;
+}
+
+float distanceToSegment(const glm::vec3& point, const glm::vec3& from, const glm::vec3& to) {
+  const glm::vec3 way = to - from;
+  const float length2 = glm::dot(way, way);
+  const float along = length2 > 0.0f ? std::clamp(glm::dot(point - from, way) / length2, 0.0f, 1.0f) : 0.0f;
+  return glm::distance(point, from + along * way);
 }
 
 glm::vec3 unit(const glm::vec3& v) {
@@ -61,17 +69,32 @@ void PatchBounces::drop() {
   counts_ = {};
 }
 
+// Lamps that stand within the group's bounds have patches in any case.
+std::uint32_t PatchBounces::within(const LitScene& scene, std::size_t group) {
+  return group < scene.near_masks.size() ? scene.near_masks[group] : 0u;
+}
+
+std::uint32_t PatchBounces::beside(const LitScene& scene, std::size_t group) {
+  return group < scene.pixel_masks.size() ? scene.pixel_masks[group] & ~within(scene, group) : 0u;
+}
+
+bool PatchBounces::apart(const World& world, const LitScene& scene, const PatchLights& lights,
+                         std::size_t group) {
+  return world.residency().groups()[group].volume < 0 &&
+         (!lights.keys.empty() || (lights.bands->hasKeys() && beside(scene, group) != 0));
+}
+
 RoomLights PatchBounces::lightsIn(const World& world, const LitScene& scene, const PatchLights& lights,
                                   std::size_t group) const {
-  RoomLights found;
-  if (group < scene.near_masks.size())
-    for (std::size_t k = 0; k < scene.near_lights.size(); ++k)
-      if ((scene.near_masks[group] >> k & 1u) != 0 && shines(scene.near_lights[k]))
-        found.lamps.push_back(scene.near_lights[k]);
   const auto& transport = rooms_[group].room.transport();
   const streaming::ResidentGroup& resident = world.residency().groups()[group];
-  if (lights.keys.empty() || resident.volume >= 0 || !transport || transport->bounced() < kWorthPatches)
-    return found;
+  const bool by_bands =
+      apart(world, scene, lights, group) && transport && transport->bounced() >= kWorthPatches;
+  RoomLights found;
+  const std::uint32_t lamps = within(scene, group) | (by_bands ? beside(scene, group) : 0u);
+  for (std::size_t k = 0; k < scene.near_lights.size(); ++k)
+    if ((lamps >> k & 1u) != 0 && shines(scene.near_lights[k])) found.lamps.push_back(scene.near_lights[k]);
+  if (!by_bands) return found;
   const glm::quat group_from_world = glm::conjugate(world.rotationOf(group));
   for (spec::Disc key : lights.keys) {
     key.direction = group_from_world * key.direction;
@@ -85,19 +108,29 @@ RoomLights PatchBounces::lightsIn(const World& world, const LitScene& scene, con
   return found;
 }
 
-// Bodies that are near enough to take light from the group's surfaces.
+// Bodies that may stand between the group's surfaces and its lights.
 std::vector<lighting::RayTriangle> PatchBounces::othersAround(const World& world, const LitScene& scene,
-                                                              std::size_t group) {
+                                                              std::size_t group, const RoomLights& lights) {
+  if (lights.none()) return {};
   const std::uint32_t own = scene.groups[group].body;
   if (own == lighting::CapturePoint::kNoBody) return {};
   const lighting::IncidentBody& room = scene.bodies[own];
   const glm::mat4 group_from_world = glm::inverse(world.worldFromGroup(group));
+  std::vector<glm::vec3> ends;  // of ways from the room to its lights
+  for (const lighting::NearLight& lamp : lights.lamps) ends.push_back(lamp.position_ws);
+  for (const spec::Disc& key : lights.keys)
+    ends.push_back(room.center_ws + kFarAway * room.radius_m * (world.rotationOf(group) * key.direction));
+  const auto inTheWay = [&](const lighting::IncidentBody& other) {
+    return std::ranges::any_of(ends, [&](const glm::vec3& end) {
+      return distanceToSegment(other.center_ws, room.center_ws, end) <= room.radius_m + other.radius_m;
+    });
+  };
   std::vector<lighting::RayTriangle> triangles;
   for (std::size_t g = 0; g < scene.groups.size(); ++g) {
     const std::uint32_t body = scene.groups[g].body;
     if (body == own || body == lighting::CapturePoint::kNoBody) continue;
     const lighting::IncidentBody& other = scene.bodies[body];
-    if (glm::distance(room.center_ws, other.center_ws) > room.radius_m + other.radius_m) continue;
+    if (!inTheWay(other)) continue;
     const bundle::CaptureProxy& proxy = *world.residency().groups()[g].proxy;
     if (proxy.levels.empty()) continue;
     const bundle::ProxyLevel& level = proxy.levels[std::min(kOtherLevel, proxy.levels.size() - 1)];
@@ -184,8 +217,7 @@ bool PatchBounces::prepare(World& world, const LitScene& scene, const PatchLight
   // First the form factors of a group that has key lights alone: they say whether links are worth having.
   for (int stage = 0; stage < 2; ++stage) {
     const bool links = !lightsIn(world, scene, lights, group).none();
-    const bool surfaces = world.residency().groups()[group].volume < 0;
-    if (!links && (lights.keys.empty() || !surfaces || rooms_[group].room.transport())) return came;
+    if (!links && (!apart(world, scene, lights, group) || rooms_[group].room.transport())) return came;
     ask(world, group, links);
     if (!take(world, group, wait)) return came;
     came = true;
@@ -198,7 +230,7 @@ Result<void> PatchBounces::update(World& world, const LitScene& scene, const Pat
   const auto& groups = world.residency().groups();
   counts_ = {};
   bool any = !lights.keys.empty();
-  for (const std::uint32_t mask : scene.near_masks) any |= mask != 0;
+  for (const std::uint32_t mask : scene.pixel_masks) any |= mask != 0;
   if (!on || (!any && rooms_.size() == 0)) {
     drop();
     return {};
@@ -212,8 +244,7 @@ Result<void> PatchBounces::update(World& world, const LitScene& scene, const Pat
     if (room.coming.valid()) ++counts_.rooms_to_come;
     if (!room.room.transport()) continue;
     const RoomLights found = lightsIn(world, scene, lights, g);
-    room.room.light(found, world.worldFromGroup(g),
-                    found.none() ? std::vector<lighting::RayTriangle>() : othersAround(world, scene, g));
+    room.room.light(found, world.worldFromGroup(g), othersAround(world, scene, g, found));
     counts_.lights_bounced += room.room.bouncedLast();
     if (!room.room.givenOff().empty()) {
       ++counts_.rooms;

@@ -100,11 +100,16 @@ class PatchBounces {
     std::uint64_t gathered = 0;  // the version of its room
   };
   void drop();
-  // Lamps that shine on the group, and key lights if its surfaces see enough of each other.
+  // Near lights, a bit each, within the group's bounds, and others that shine on it per pixel.
+  static std::uint32_t within(const LitScene& scene, std::size_t group);
+  static std::uint32_t beside(const LitScene& scene, std::size_t group);
+  // Whether transfer brings bounced light of lights that shine per pixel: key lights, and lamps beside.
+  static bool apart(const World& world, const LitScene& scene, const PatchLights& lights, std::size_t group);
+  // Lamps that shine on the group, and what stands apart if its surfaces see enough of each other.
   RoomLights lightsIn(const World& world, const LitScene& scene, const PatchLights& lights,
                       std::size_t group) const;
   static std::vector<lighting::RayTriangle> othersAround(const World& world, const LitScene& scene,
-                                                         std::size_t group);
+                                                         std::size_t group, const RoomLights& lights);
   void ask(World& world, std::size_t group, bool links);
   // Asks for what the group needs of its lights and takes what came. Whether anything did.
   bool prepare(World& world, const LitScene& scene, const PatchLights& lights, std::size_t group, bool wait);

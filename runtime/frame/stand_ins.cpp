@@ -7,6 +7,7 @@
 
 #include "lambent_frame_embedded.hpp"
 #include "runtime/frame/lit_scene.hpp"
+#include "runtime/frame/near_choice.hpp"
 #include "runtime/streaming/sizes.hpp"
 
 namespace lambent::frame {

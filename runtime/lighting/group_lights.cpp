@@ -25,6 +25,13 @@ float changeBetween(std::span<const glm::vec3> before, std::span<const glm::vec3
   return power > 0.0 ? static_cast<float>(std::min(std::sqrt(change / power), 1.0)) : 0.0f;
 }
 
+// Lamps that stand apart give light, and so have a band 0.
+bool hasLampsApart(const GroupPlace& place) {
+  return place.parted && std::ranges::any_of(place.incident, [](const Incident& incident) {
+           return incident.key != nullptr && incident.key->c[0] != glm::vec3(0.0f);
+         });
+}
+
 }  // namespace
 
 void GroupLights::layOut(std::span<const GroupPlace> groups) {
@@ -101,7 +108,7 @@ void GroupLights::update(const Environment& environment, sh::Window window,
   }
   renewed_ = static_cast<std::uint32_t>(renewals.size());
   environment_version_ = environment.version();
-  has_keys_ = !environment.keys().empty();
+  has_keys_ = !environment.keys().empty() || std::ranges::any_of(groups, hasLampsApart);
   window_ = window;
   max_order_ = max_order;
   followWindows(environment, window, groups, renewals);

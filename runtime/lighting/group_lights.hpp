@@ -1,7 +1,8 @@
 // The light of each rigid group on the GPU, in the group's own frame: what effects multiply transfer with.
 // Comes in: the environment, and per group its rotation in the world, the order of its transfer, what arrives
 // at its light samples and what its own lights give now. Goes out: per group and light sample two blocks of
-// 64 coefficients of vec4 (zeros above order²), the light without key lights and that of key lights alone,
+// 64 coefficients of vec4 (zeros above order²), the light without key lights and that of key lights alone
+// (and of lamps whose straight light comes per pixel, too),
 // then the group's own lights, and versions that rise when these change. The first block is windowed (the
 // environment once per order, a light of the same shape as before not anew); both are rotated per group.
 #pragma once
@@ -25,7 +26,7 @@ namespace lambent::lighting {
 // What arrives at a light sample, world axes.
 struct Incident {
   const sh::LightVector* light = nullptr;  // without key lights; null: the environment's, nothing in its way
-  const sh::LightVector* key = nullptr;    // of key lights alone, likewise
+  const sh::LightVector* key = nullptr;    // of key lights and lamps that stand apart, likewise
   std::uint64_t version = 0;               // of both
 };
 
@@ -36,7 +37,8 @@ struct GroupPlace {
   std::vector<glm::vec3> lamps{};
   std::vector<Incident> incident = {{}};  // per light sample
   std::uint64_t key = 0;                  // by which the group is known again when others come and go
-  // Key lights stand apart, for their direct light comes by shadow maps. Else transfer brings all of them.
+  // Key lights stand apart, for their direct light comes by shadow maps, and so do lamps. Else transfer
+  // brings all of them.
   bool parted = true;
 };
 
@@ -58,7 +60,7 @@ class GroupLights {
   }
 
   std::size_t groupCount() const { return groups_.size(); }
-  // Whether there are key lights; without them their blocks are 0.
+  // Whether there are key lights, or lamps that stand apart; without them their blocks are 0.
   bool hasKeys() const { return has_keys_; }
   // vec4 indices: of a light sample's coefficients (those of its key lights kBlock behind them), of the
   // group's own lights.

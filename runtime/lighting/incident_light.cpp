@@ -155,10 +155,12 @@ void IncidentLight::followBodies(std::span<const IncidentBody> bodies) {
 void IncidentLight::noticeLights(std::span<const IncidentGroup> groups, std::span<const LocalLight> lights) {
   followGroups(groups);
   for (std::size_t g = 0; g < groups.size(); ++g) {
-    bool changed = groups_[g].lit_by != groups[g].lit_by || lights.size() != lights_before_.size();
+    bool changed = groups_[g].lit_by != groups[g].lit_by || groups_[g].apart != groups[g].apart ||
+                   lights.size() != lights_before_.size();
     for (std::size_t k = 0; k < lights.size() && !changed; ++k)
       changed = groups[g].lit_by[k] != 0 && lights[k] != lights_before_[k];
     groups_[g].lit_by = groups[g].lit_by;
+    groups_[g].apart = groups[g].apart;
     if (changed) ++groups_[g].lights;
   }
   lights_before_.assign(lights.begin(), lights.end());
@@ -171,11 +173,15 @@ void IncidentLight::update(const Environment& environment, std::span<const Incid
   noticeLights(groups, lights);
   for (std::size_t g = 0; g < groups.size(); ++g)
     for (std::size_t s = 0; s < groups[g].samples_ws.size(); ++s)
-      updateSample(groups_[g].samples[s], groups_[g], environment, groups[g].samples_ws[s], lights);
+      updateSample(groups_[g].samples[s], groups_[g], environment, groups[g].samples_ws[s], lights,
+                   groups[g].open.empty()
+                       ? std::span<const float>()
+                       : std::span(groups[g].open).subspan(s * lights.size(), lights.size()));
 }
 
 void IncidentLight::updateSample(Sample& sample, const Group& group, const Environment& environment,
-                                 const glm::vec3& position_ws, std::span<const LocalLight> lights) {
+                                 const glm::vec3& position_ws, std::span<const LocalLight> lights,
+                                 std::span<const float> open) {
   ++counts_.samples;
   const bool lit = std::ranges::find(group.lit_by, std::uint8_t{1}) != group.lit_by.end();
   if (sample.fade_begins) {
@@ -197,12 +203,14 @@ void IncidentLight::updateSample(Sample& sample, const Group& group, const Envir
   // Where bodies stand around, a sky that turned waits for its capture.
   const bool new_sky = !sample.drawn && sample.environment != environment.version();
   const bool moved = lit && sample.position_ws != position_ws;
-  if (!sample.drawn_anew && !moved && !new_sky && !sample.plain && !fading && sample.lights == group.lights)
+  if (!sample.drawn_anew && !moved && !new_sky && !sample.plain && !fading && sample.lights == group.lights &&
+      std::ranges::equal(sample.open, open))
     return;
   sample.drawn_anew = false;
   sample.position_ws = position_ws;
   sample.environment = environment.version();
   sample.lights = group.lights;
+  sample.open.assign(open.begin(), open.end());
 
   const auto visible = [&](const std::vector<std::int32_t> Drawn::*queries, std::size_t index) {
     if (!sample.drawn || index >= ((*sample.drawn).*queries).size()) return 1.0f;
@@ -221,7 +229,11 @@ void IncidentLight::updateSample(Sample& sample, const Group& group, const Envir
   for (std::size_t k = 0; k < lights.size(); ++k) {
     if (group.lit_by[k] == 0) continue;
     const float share = visible(&Drawn::query_of_light, k);
-    if (share > 0.0f) add(now, lightAt(lights[k], position_ws, order_), share);
+    if (share <= 0.0f) continue;
+    const sh::LightVector light = lightAt(lights[k], position_ws, order_);
+    const float apart = k < group.apart.size() ? group.apart[k] : 0.0f;
+    add(now, light, (1.0f - apart) * share);
+    if (apart > 0.0f) add(key, light, apart * share * (open.empty() ? 1.0f : open[k]));
   }
   if (fading) {
     ++counts_.fading;
@@ -454,8 +466,13 @@ void IncidentLight::askForLights(const Environment& environment, const IncidentG
           .direction = disc.direction, .angular_radius_rad = disc.radius_rad, .radiance = disc.radiance};
     ask(query, drawn.query_of_disc);
   }
-  for (std::size_t k = 0; k < lights.size(); ++k)
-    ask(group.lit_by[k] != 0 ? queryOf(lights[k], point.position_ws) : std::nullopt, drawn.query_of_light);
+  for (std::size_t k = 0; k < lights.size(); ++k) {
+    std::optional<LightQuery> query;
+    if (group.lit_by[k] != 0) query = queryOf(lights[k], point.position_ws);
+    // The shape of what stands apart is not among the light without it.
+    if (query && k < group.apart.size()) query->radiance *= 1.0f - group.apart[k];
+    ask(query, drawn.query_of_light);
+  }
 }
 
 bool IncidentLight::atRest() const {

@@ -1,6 +1,7 @@
 // What arrives at every light sample, step by step. A sample that sees no body of another group and no local
 // light has the environment's own light. Others have it from a capture (sky and bodies) plus the suns and
-// local lights in closed form, each times the share of it that no body hides. Captures are drawn for samples
+// local lights in closed form, each times the share of it that no body hides; what of these comes per pixel
+// is handed on with the key lights. Captures are drawn for samples
 // whose surroundings changed: the sky turned, a light moved, or bodies moved or shine differently by so much
 // that the light may have changed by kMovingChange of itself; what amounts to less is caught up with when
 // everything stands still. The light of a sample is handed on only if it changed by more than kLeastChange of
@@ -47,6 +48,11 @@ struct IncidentGroup {
   std::uint32_t body = CapturePoint::kNoBody;  // its own, among the bodies
   std::vector<glm::vec3> samples_ws;
   std::vector<std::uint8_t> lit_by;  // per local light, 1: by harmonics; 0: it has that light otherwise
+  // Per local light of these: how much of its straight light comes per pixel, 0..1. As much of it stands
+  // with the key lights, of which transfer brings what bounces alone. Empty: nothing of any.
+  std::vector<float> apart{};
+  // Of such light the share that bodies of left_out let through, by sample, then light. Empty: all of it.
+  std::vector<float> open{};
   // Bodies, rising, whose light and shadow reach it otherwise: they are drawn for none of its samples.
   std::vector<std::uint32_t> left_out{};
   bool fades = false;         // where left_out changed: over kCarrierSteps; else at once
@@ -123,11 +129,13 @@ class IncidentLight {
     bool drawn_anew = false;     // and that is not in `light` yet
     bool renewed = false;        // by captures of other options: however little it changes
     // What was handed on last, and of which inputs it was made.
-    std::uint64_t version = 0;         // 0: nothing yet; no two samples ever have the same
-    bool plain = true;                 // the environment's own light
-    sh::LightVector light{1}, key{1};  // without key lights, and of these as far as no body hides them
+    std::uint64_t version = 0;  // 0: nothing yet; no two samples ever have the same
+    bool plain = true;          // the environment's own light
+    // Without key lights and lamps that stand apart, and of these as far as no body hides them.
+    sh::LightVector light{1}, key{1};
     glm::vec3 position_ws{0.0f};
     std::uint64_t environment = 0, lights = 0;
+    std::vector<float> open;
     // Which bodies were left out of it, and how it goes over to that.
     std::vector<std::uint32_t> left_out;
     bool fade_begins = false;
@@ -139,6 +147,7 @@ class IncidentLight {
     std::uint64_t samples_seen = 0;    // IncidentGroup::samples
     std::vector<glm::vec3> places_ws;  // of the samples
     std::vector<std::uint8_t> lit_by;
+    std::vector<float> apart;
     std::uint64_t lights = 0;  // rises when a light that lights it changed, or which ones do
   };
   struct Request {
@@ -158,7 +167,8 @@ class IncidentLight {
   void followBodies(std::span<const IncidentBody> bodies);
   void noticeLights(std::span<const IncidentGroup> groups, std::span<const LocalLight> lights);
   void updateSample(Sample& sample, const Group& group, const Environment& environment,
-                    const glm::vec3& position_ws, std::span<const LocalLight> lights);
+                    const glm::vec3& position_ws, std::span<const LocalLight> lights,
+                    std::span<const float> open);
   static void askForLights(const Environment& environment, const IncidentGroup& group,
                            std::span<const LocalLight> lights, CapturePoint& point, Drawn& drawn);
   // Since the last call: the sky, a light, a body's radiance; a body, a sample, or which bodies are left out.

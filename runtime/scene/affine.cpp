@@ -1,8 +1,11 @@
 #include "runtime/scene/affine.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
+
+#include <glm/geometric.hpp>
 
 #include "runtime/scene/components.hpp"
 
@@ -82,6 +85,12 @@ void setLocalMatrix(Transform& transform, const glm::mat4& parent_from_node) {
   transform.scale = glm::vec3(scale);
   transform.shear = glm::vec3(
       glm::dvec3(ratio(part[1][0], scale.x), ratio(part[2][0], scale.x), ratio(part[2][1], scale.y)));
+}
+
+float largestScale(const glm::mat4& matrix) {
+  float scale = 0.0f;
+  for (int column = 0; column < 3; ++column) scale = std::max(scale, glm::length(glm::vec3(matrix[column])));
+  return scale;
 }
 
 std::optional<glm::quat> polarRotation(const glm::dmat3& linear) {

@@ -19,6 +19,9 @@ glm::mat4 localMatrix(const Transform& transform);
 // stays.
 void setLocalMatrix(Transform& transform, const glm::mat4& parent_from_node);
 
+// How much it stretches at most along an axis of its frame.
+float largestScale(const glm::mat4& matrix);
+
 // The orthogonal factor of `linear` = Q S, S symmetric and positive: the rotation nearest to it (Higham 1986,
 // Newton iteration in double). None where the matrix is singular or mirrors.
 std::optional<glm::quat> polarRotation(const glm::dmat3& linear);

@@ -70,6 +70,9 @@ TEST_F(MovingLight, ABlockerBetweenLampAndStatueDarkensTheStatue) {
   add(scene, "screen", assets::box({-1, -0.02f, -1}, {1, 0.02f, 1}, 0.25f), glm::vec3(0.02f), {10, 3, 0},
       true);
   Show show(scene, {constantLight(0.0f)}, 1);
+  frame::FrameSettings settings = show.frame->settings();
+  settings.near_radii = 0.0f;  // this is about captures
+  ASSERT_TRUE(show.frame->setSettings(settings));
   show.add({.kind = Kind::Sphere, .strength = 50.0f, .radius_m = 0.8f}, {0, 6, 0});
   const glm::vec3 eye(0.8f, 1.2f, 1.5f), top(0, 0.3f, 0);
   const float lit = show.patch(eye, top).g;
@@ -81,6 +84,35 @@ TEST_F(MovingLight, ABlockerBetweenLampAndStatueDarkensTheStatue) {
   EXPECT_LT(show.patch(eye, top).g, 0.02f * lit);
   show.move("screen", {0, 9, 0});
   EXPECT_NEAR(show.patch(eye, top).g / lit, 1.0f, 0.05f) << "behind the lamp it hides nothing";
+}
+
+TEST_F(MovingLight, ABodyTakesTheLightOfALampThatIsBakedIntoTheFloorItStandsOn) {
+  assets::Scene scene = named("lamp");
+  add(scene, "floor", floorOf(2.0f, 0.1f), glm::vec3(1.0f), {0, 0, 0}, false);
+  add(scene, "body", assets::box({-0.25f, 0, -0.25f}, {0.25f, 0.5f, 0.25f}, 0.1f), glm::vec3(0.0f),
+      {0.3f, 0, 9}, true);
+  scene.spots = {{.name = "bulb",
+                  .color = glm::vec3(1.0f),
+                  .intensity_cd = 10.0f,
+                  .inner_cone_deg = 60,
+                  .outer_cone_deg = 80}};
+  scene.nodes.push_back({.name = "bulb",
+                         .mesh = -1,
+                         .translation = {-0.8f, 1.4f, 0},
+                         .rotation = glm::angleAxis(-0.5f * std::numbers::pi_v<float>, glm::vec3(1, 0, 0)),
+                         .spot = 0});
+  Show show(scene, {constantLight(0.0f)}, 1);
+  // Behind the body, as the lamp sees it, and well before it. A column knows nothing of bodies that come, so
+  // their grids must, also where the lamp stands close beside the body.
+  const glm::vec3 eye(1.5f, 2.0f, 0.3f), other_eye(-1.5f, 2.0f, 0.3f), behind(0.65f, 0, 0),
+      before(-0.6f, 0, 0);
+  const float lit = show.patch(eye, behind).g, open = show.patch(other_eye, before).g;
+  EXPECT_GT(lit, 0.3f);
+  for (const float height : {0.0f, 0.15f}) {
+    show.move("body", {0.3f, height, 0});
+    EXPECT_LT(show.patch(eye, behind).g, 0.75f * lit) << "lifted by " << height;
+    EXPECT_NEAR(show.patch(other_eye, before).g, open, 0.1f * open) << "lifted by " << height;
+  }
 }
 
 TEST_F(MovingLight, AnEmissiveMeshThatMovesLightsByItsFormFactor) {

@@ -134,7 +134,7 @@ TEST(LightsInside, AreThoseWhoseWayMeetsAGroupsBounds) {
   ASSERT_EQ(sentences().size(), 1u);
   EXPECT_EQ(sentences()[0],
             "The light of torch can stand among the surfaces of static: direct light per pixel by a shadow "
-            "cube map, its bounces left out.");
+            "cube map, its bounces by patches.");
   // One that is fixed to the group is baked, not near.
   scene.animations.clear();
   scene.nodes[1].animated = scene.nodes[1].movable = false;

@@ -49,6 +49,12 @@ Scene ballsOver(int balls, float height, int cells = 40) {
   return scene;
 }
 
+// As if animations moved them, and no hand.
+Scene rolling(Scene scene) {
+  for (std::size_t n = 1; n < scene.nodes.size(); ++n) scene.nodes[n].animated = true;
+  return scene;
+}
+
 TEST(NeighborhoodPlans, AreForBodiesOnGroupsOfMoreThanTwiceTheirSize) {
   const Planned planned = plan(ballsOver(1, 0.5f));
   EXPECT_TRUE(planned.of("ball 0").baked);
@@ -57,11 +63,11 @@ TEST(NeighborhoodPlans, AreForBodiesOnGroupsOfMoreThanTwiceTheirSize) {
   EXPECT_TRUE(planned.of("ball 0").carries(planned.indexOf("static")));
   EXPECT_NE(planned.of("ball 0").reason.find("bounds of static"), std::string::npos);
   // High above, no one asked for it.
-  EXPECT_FALSE(plan(ballsOver(1, 3.0f)).of("ball 0").baked);
+  EXPECT_FALSE(plan(rolling(ballsOver(1, 3.0f))).of("ball 0").baked);
 }
 
 TEST(NeighborhoodPlans, KnowWhereReceiversStandInTheGroupsFrame) {
-  const PlannedNeighborhood& ball = plan(ballsOver(1, 0.5f)).of("ball 0");
+  const PlannedNeighborhood& ball = plan(rolling(ballsOver(1, 0.5f))).of("ball 0");
   EXPECT_NEAR(ball.receivers_min.y, -0.5f, 1e-4f);
   EXPECT_NEAR(ball.receivers_max.y, -0.5f, 1e-4f);
   EXPECT_NEAR(ball.receivers_min.x, -1.0f, 1e-4f);  // the floor ends there
@@ -70,8 +76,8 @@ TEST(NeighborhoodPlans, KnowWhereReceiversStandInTheGroupsFrame) {
 }
 
 TEST(NeighborhoodPlans, CutLargeTrianglesToTheReach) {
-  const PlannedNeighborhood &coarse = plan(ballsOver(1, 0.5f, 1)).of("ball 0"),
-                            &fine = plan(ballsOver(1, 0.5f, 40)).of("ball 0");
+  const PlannedNeighborhood &coarse = plan(rolling(ballsOver(1, 0.5f, 1))).of("ball 0"),
+                            &fine = plan(rolling(ballsOver(1, 0.5f, 40))).of("ball 0");
   for (int axis = 0; axis < 3; ++axis) {
     EXPECT_NEAR(coarse.receivers_min[axis], fine.receivers_min[axis], 1e-3f);
     EXPECT_NEAR(coarse.receivers_max[axis], fine.receivers_max[axis], 1e-3f);
@@ -83,7 +89,7 @@ TEST(NeighborhoodPlans, KnowHowReceiversFaceInTheGroupsFrame) {
   const auto along = [](const FacingArea& facing, std::size_t k) {
     return facing[k] / facing[0] / std::sqrt(3.0f);
   };
-  Scene scene = ballsOver(1, 0.5f);
+  Scene scene = rolling(ballsOver(1, 0.5f));
   const FacingArea up = plan(scene).of("ball 0").receivers_face;
   EXPECT_NEAR(along(up, 1), 1.0f, 1e-4f);
   EXPECT_NEAR(along(up, 2), 0.0f, 1e-4f);
@@ -111,6 +117,28 @@ TEST(NeighborhoodPlans, FollowTheAnimation) {
   EXPECT_TRUE(ball.baked);
   EXPECT_NEAR(ball.receivers_min.y, -3.0f, 1e-3f);
   EXPECT_NEAR(ball.receivers_max.y, -0.5f, 1e-3f);
+}
+
+TEST(NeighborhoodPlans, AreForBodiesThatCanBeMovedByHandWhereverTheyStand) {
+  const Planned planned = plan(ballsOver(1, 3.0f));
+  const PlannedNeighborhood& ball = planned.of("ball 0");
+  EXPECT_TRUE(ball.baked);
+  EXPECT_TRUE(ball.by_hand);
+  EXPECT_TRUE(ball.carries(planned.indexOf("static")));
+  EXPECT_EQ(ball.reason, "it can be moved by hand onto static");
+  EXPECT_TRUE(plan(ballsOver(1, 0.5f)).of("ball 0").by_hand) << "also where it stands on the floor";
+  EXPECT_FALSE(plan(rolling(ballsOver(1, 0.5f))).of("ball 0").by_hand);
+  for (std::size_t k = 1; k < ball.receivers_face.size(); ++k)
+    EXPECT_EQ(ball.receivers_face[k], 0.0f) << "surfaces may face anywhere";
+}
+
+TEST(NeighborhoodPlans, OfBodiesMovedByHandCostThoseThatMoveAboutNothing) {
+  Scene scene = ballsOver(9, 0.5f);
+  scene.nodes[9].parent_from_node[3].y = 3.0f;
+  const Planned planned = plan(scene);
+  EXPECT_TRUE(planned.of("ball 3").baked);
+  EXPECT_FALSE(planned.of("ball 8").baked);
+  EXPECT_NE(planned.of("ball 8").reason.find("8 other bodies"), std::string::npos);
 }
 
 TEST(NeighborhoodPlans, AreForNoneOfMany) {

@@ -117,7 +117,7 @@ TEST_F(PatchBouncesTest, MovedAndMovedBackThePictureIsTheSameToTheByte) {
 TEST_F(PatchBouncesTest, OutsideOfTheRoomTheLampLeavesNothingInIt) {
   RoomStage stage(BundleBuilder().add(insideOfSphere()));
   (void)stage.picture();
-  stage.moveLamp({15, 0, 0});  // the bundle says that the room is 10 m wide to each side
+  stage.moveLamp({150, 0, 0});  // the bundle says that the room is 10 m wide to each side
   (void)stage.picture();
   EXPECT_EQ(stage.frame->counts().patch_bounces.rooms, 0u);
   EXPECT_EQ(stage.frame->counts().near_lights, 0u);
