@@ -122,11 +122,12 @@ void Session::render(spec::Size size) {
   }
   reference.update(*this);
   knobs.update(*this);
+  qualities.update(*this);
 }
 
 bool Session::moving() const {
   return frames_to_draw_ > 0 || (viewing.playing && viewing.hasAnimations(*this)) || !stage.atRest() ||
-         (reference.on() && !reference.done()) || viewing.flying || knobs.busy();
+         (reference.on() && !reference.done()) || viewing.flying || !measured();
 }
 
 // Of the residency, those that hold anything that is selected.
