@@ -96,7 +96,7 @@ void drawQuality(Session& session, Ui& ui) {
   if (rows.empty()) return;
   constexpr ImGuiTableFlags kTable = ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersInnerV;
   if (ImGui::BeginTable("qualities", 5, kTable)) {
-    for (const char* title : {"", "shadows ms", "raster ms", "all ms", "off high"})
+    for (const char* title : {"", "shadows", "raster", "all", "off high"})
       ImGui::TableSetupColumn(title);
     ImGui::TableHeadersRow();
     for (const QualityStudy::Row& row : rows) {
@@ -118,7 +118,7 @@ void drawQuality(Session& session, Ui& ui) {
   }
   const spec::Size size = session.qualities.size();
   const bool here = session.qualities.view().view_from_world == session.viewing.shown_view.view_from_world;
-  ImGui::TextDisabled("at %u x %u%s", size.width, size.height, here ? "" : ", in another view");
+  ImGui::TextDisabled("milliseconds at %u x %u%s", size.width, size.height, here ? "" : ", in another view");
 }
 
 // Where the slice through neighborhoods lies, while it is shown.
