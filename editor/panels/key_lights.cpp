@@ -49,8 +49,10 @@ void drawTable(Session& session, Ui& ui, const std::vector<KeyLight>& keys) {
     ImGui::TableNextColumn();
     const std::string azimuth = fmt::format("{:.1f}", key.azimuth_deg);
     if (ImGui::Selectable(azimuth.c_str(), at_hand == i,
-                          ImGuiSelectableFlags_SpanAllColumns | ImGuiSelectableFlags_AllowItemOverlap))
+                          ImGuiSelectableFlags_SpanAllColumns | ImGuiSelectableFlags_AllowItemOverlap)) {
       at_hand = at_hand == i ? std::nullopt : std::optional(i);
+      session.viewing.changed = true;  // the overlay shows its box
+    }
     ui.mark(fmt::format("key.{}", i));
     ImGui::TableNextColumn();
     ImGui::Text("%.1f", double{key.elevation_deg});

@@ -96,8 +96,7 @@ void drawQuality(Session& session, Ui& ui) {
   if (rows.empty()) return;
   constexpr ImGuiTableFlags kTable = ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersInnerV;
   if (ImGui::BeginTable("qualities", 5, kTable)) {
-    for (const char* title : {"", "shadows", "raster", "all", "off high"})
-      ImGui::TableSetupColumn(title);
+    for (const char* title : {"", "shadows", "raster", "all", "off high"}) ImGui::TableSetupColumn(title);
     ImGui::TableHeadersRow();
     for (const QualityStudy::Row& row : rows) {
       ImGui::TableNextRow();

@@ -153,6 +153,7 @@ std::vector<std::uint32_t> Session::selectedGroups() const {
 frame::OverlayOptions Session::overlaysNow() const {
   frame::OverlayOptions overlays = viewing.overlays;
   if (overlays.neighborhoods) overlays.foremost_groups = selectedGroups();
+  overlays.key = viewing.key_at_hand;
   if (!viewing.show_gizmos) return overlays;
   const scene::Box box = selectionBounds();
   if (box.empty()) return overlays;

@@ -86,7 +86,8 @@ std::array<glm::vec3, 8> cornersOf(const KeyRegion& region) {
 }
 
 void appendKeys(std::span<const spec::Disc> keys, std::span<const KeyShadows::ShownRegion> regions,
-                const scene::Box& world, const spec::View& view, std::vector<OverlayLine>& lines) {
+                std::optional<std::size_t> chosen, const scene::Box& world, const spec::View& view,
+                std::vector<OverlayLine>& lines) {
   float most = 0.0f;
   for (const spec::Disc& key : keys) most = std::max(most, fluxOf(key));
   const auto alphaOf = [&](const spec::Disc& key) {
@@ -100,7 +101,15 @@ void appendKeys(std::span<const spec::Disc> keys, std::span<const KeyShadows::Sh
     if (perspective) appendOutline(key, view, distance, color, lines);
     if (!world.empty()) appendArrow(key, world, color, lines);
   }
-  for (const KeyShadows::ShownRegion& shown : regions) {
+  std::vector<KeyShadows::ShownRegion> boxes(regions.begin(), regions.end());
+  if (chosen && *chosen < keys.size())
+    std::erase_if(boxes, [&](const KeyShadows::ShownRegion& shown) {
+      return shown.light.direction != keys[*chosen].direction;
+    });
+  std::ranges::stable_sort(boxes, std::ranges::greater(),
+                           [](const KeyShadows::ShownRegion& shown) { return fluxOf(shown.light); });
+  boxes.resize(std::min(boxes.size(), kMostBoxes));
+  for (const KeyShadows::ShownRegion& shown : boxes) {
     const std::array<glm::vec3, 8> corners = cornersOf(shown.region);
     const glm::vec4 color(colorOf(shown.light), 0.7f * alphaOf(shown.light));
     for (std::size_t i = 0; i < corners.size(); ++i)

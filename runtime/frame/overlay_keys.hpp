@@ -1,10 +1,13 @@
 // Key lights at infinity as lines for an overlay. Comes in: the key lights, what their shadow maps show, the
 // bounds of the world and the view. Goes out: lines in world space, appended: for each key light its outline
-// on the sky, an arrow that points into the world the way that it shines, and the box that its shadow map
-// shows. Weak key lights are fainter than strong ones, and dark ones are grey. No GL; any thread; no errors.
+// on the sky, an arrow that points into the world the way that it shines, and of some the box that the shadow
+// map shows. Weak key lights are fainter than strong ones, and dark ones are grey. No GL; any thread; no
+// errors.
 #pragma once
 
 #include <array>
+#include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -23,7 +26,10 @@ std::array<glm::vec3, 8> cornersOf(const KeyRegion& region);
 
 // keys: world axes. The outline has the key light's angular radius, and at least 1 degree; parallel views see
 // one direction only, and have none.
+// chosen: the one of the keys whose box is drawn; none: those of the kMostBoxes strongest.
+inline constexpr std::size_t kMostBoxes = 4;
 void appendKeys(std::span<const spec::Disc> keys, std::span<const KeyShadows::ShownRegion> regions,
-                const scene::Box& world, const spec::View& view, std::vector<OverlayLine>& lines);
+                std::optional<std::size_t> chosen, const scene::Box& world, const spec::View& view,
+                std::vector<OverlayLine>& lines);
 
 }  // namespace lambent::frame

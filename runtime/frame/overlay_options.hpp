@@ -52,6 +52,9 @@ struct OverlayOptions {
   // Of neighborhoods that overlap, those of these groups are drawn whole; of the others, and where none is
   // given, the one nearest to the eye. The rest are faint boxes without slices.
   std::vector<std::uint32_t> foremost_groups{};
+  // Of key lights, in the order of Environment::keys(): the one whose shadow map's box is drawn. None: those
+  // of the strongest few, since more would hide each other.
+  std::optional<std::size_t> key{};
   std::vector<OverlayLine> lines{};
   bool operator==(const OverlayOptions&) const = default;
 

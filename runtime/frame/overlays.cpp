@@ -162,7 +162,7 @@ Result<void> Overlays::drawLines(const OverlayOptions& options, const OverlaySce
   std::vector<LineRecord> records;
   std::vector<OverlayLine> lines = linesOf(scene.world, scene.neighborhoods, options, scene.view.eye_ws);
   if (options.keys)
-    appendKeys(scene.environment.keys(), scene.key_shadows.regions(),
+    appendKeys(scene.environment.keys(), scene.key_shadows.regions(), options.key,
                scene::worldBounds(scene.world.registry()), scene.view, lines);
   for (const OverlayLine& line : lines)
     records.push_back({.from_and_width = glm::vec4(line.from_ws, line.width_px),

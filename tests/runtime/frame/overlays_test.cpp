@@ -92,7 +92,7 @@ TEST(OverlayKeys, AKeyLightHasItsOutlineOnTheSkyAnArrowTheWayItShinesAndItsBox) 
   const spec::View view =
       spec::orbitView({.distance_radii = 3.0f, .fov_deg = 40.0f}, world.min, world.max, 1.0f);
   std::vector<OverlayLine> lines;
-  appendKeys(std::vector{sun}, {}, world, view, lines);
+  appendKeys(std::vector{sun}, {}, {}, world, view, lines);
   std::size_t outline = 0, arrow = 0;
   for (const OverlayLine& line : lines) {
     const glm::vec3 from = glm::normalize(line.from_ws - view.eye_ws),
@@ -109,18 +109,45 @@ TEST(OverlayKeys, AKeyLightHasItsOutlineOnTheSkyAnArrowTheWayItShinesAndItsBox) 
   spec::View parallel = view;
   parallel.clip_from_view = glm::ortho(-2.0f, 2.0f, -2.0f, 2.0f, 0.1f, 10.0f);
   std::vector<OverlayLine> without_sky;
-  appendKeys(std::vector{sun}, {}, world, parallel, without_sky);
+  appendKeys(std::vector{sun}, {}, {}, world, parallel, without_sky);
   EXPECT_LT(without_sky.size(), 10u);
   // One that is dark is grey and fainter; a map adds the twelve edges of its box.
   std::vector<OverlayLine> both;
   KeyShadows::ShownRegion map{.light = sun, .region = {}, .texels = 256};
   map.region.max = glm::dvec2(1.0);
   map.region.range = 2.0;
-  appendKeys(std::vector{sun, dark}, std::vector{map}, world, view, both);
+  appendKeys(std::vector{sun, dark}, std::vector{map}, {}, world, view, both);
   EXPECT_EQ(both.size(), 2 * lines.size() + 12);
   const OverlayLine& of_dark = both[lines.size()];
   EXPECT_EQ(of_dark.color.r, of_dark.color.b);
   EXPECT_LT(of_dark.color.a, both[0].color.a);
+}
+
+TEST(OverlayKeys, OfManyKeyLightsTheStrongestHaveBoxesOrTheOneThatIsChosen) {
+  std::vector<spec::Disc> keys;
+  std::vector<KeyShadows::ShownRegion> maps;
+  for (int i = 0; i < 9; ++i) {
+    keys.push_back({.direction = glm::normalize(glm::vec3(i, 5, 1)),
+                    .radius_rad = 0.05f,
+                    .radiance = glm::vec3(static_cast<float>(10 + i))});
+    KeyRegion region;
+    region.max = glm::dvec2(1.0 + i);  // tells the boxes apart
+    region.range = 1.0;
+    maps.push_back({.light = keys.back(), .region = region, .texels = 256});
+  }
+  const scene::Box world{glm::vec3(-1.0f), glm::vec3(1.0f)};
+  const auto drawn = [&](std::span<const KeyShadows::ShownRegion> regions,
+                         std::optional<std::size_t> chosen) {
+    std::vector<OverlayLine> lines;
+    appendKeys(keys, regions, chosen, world, {}, lines);
+    return lines;
+  };
+  const std::size_t without = drawn({}, {}).size();
+  const std::vector<OverlayLine> all = drawn(maps, {}), one = drawn(maps, 3);
+  EXPECT_EQ(all.size(), without + 12 * kMostBoxes);
+  ASSERT_EQ(one.size(), without + 12);
+  EXPECT_EQ(all[without].to_ws.x, 9.0f) << "the strongest";
+  EXPECT_EQ(one[without].to_ws.x, 4.0f) << "the fourth";
 }
 
 TEST(OverlayLines, OfBoxesThatOverlapTheWantedOrElseTheNearestIsDrawnWhole) {
