@@ -50,9 +50,9 @@ std::vector<LightCache::FromInfinity> fromInfinity(const std::vector<spec::Light
 
 }  // namespace
 
-Result<std::shared_ptr<const Environment>> LightCache::environment(const std::vector<spec::Light>& lights,
-                                                                   const std::vector<float>& factors,
-                                                                   const Options& options) {
+Result<std::shared_ptr<const Environment>> LightCache::environment(
+    const std::vector<spec::Light>& lights, const std::vector<float>& factors, const Options& options,
+    const std::shared_ptr<const spec::DistantLights>& more) {
   std::vector<FromInfinity> wanted = fromInfinity(lights);
   if (!lights_ || !same(*lights_, wanted)) {
     lights_.reset(), environment_.reset();
@@ -69,11 +69,13 @@ Result<std::shared_ptr<const Environment>> LightCache::environment(const std::ve
     if (!standsInScene(lights[i])) of_loaded.push_back(i < factors.size() ? factors[i] : 1.0f);
   const int band_limit = options.band_limit ? options.band_limit->in : 0;
   if (!environment_ || factors_ != of_loaded || turn_deg_ != options.rotate_light_deg ||
-      band_limit_ != band_limit) {
+      band_limit_ != band_limit || more_ != more) {
+    more_ = more;
     factors_ = std::move(of_loaded);
     turn_deg_ = options.rotate_light_deg;
     band_limit_ = band_limit;
     spec::DistantLights distant = together(loaded_, factors_);
+    addLights(distant, more_.get());
     notices_ = distant.notices;
     environment_ = std::make_shared<const Environment>(std::move(distant), turn_deg_, band_limit_);
   }

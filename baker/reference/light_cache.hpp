@@ -19,11 +19,11 @@ class LightCache {
  public:
   using FromInfinity = std::variant<spec::ProbeLight, spec::ConstantLight, spec::SunLight>;
 
-  // By the lights' words: a probe's file that changed since is not read again. factors: Request's. Errors:
-  // those of loading a probe.
-  Result<std::shared_ptr<const Environment>> environment(const std::vector<spec::Light>& lights,
-                                                         const std::vector<float>& factors,
-                                                         const Options& options);
+  // By the lights' words: a probe's file that changed since is not read again. factors, more: Request's.
+  // Errors: those of loading a probe.
+  Result<std::shared_ptr<const Environment>> environment(
+      const std::vector<spec::Light>& lights, const std::vector<float>& factors, const Options& options,
+      const std::shared_ptr<const spec::DistantLights>& more = {});
   // What was repaired in the probes.
   const std::vector<std::string>& notices() const { return notices_; }
 
@@ -32,6 +32,7 @@ class LightCache {
   std::vector<spec::DistantLights> loaded_;          // each, whole
   std::vector<std::string> notices_;
   std::vector<float> factors_;
+  std::shared_ptr<const spec::DistantLights> more_;
   float turn_deg_ = 0.0f;
   int band_limit_ = 0;
   std::shared_ptr<const Environment> environment_;  // of all these; null: of none

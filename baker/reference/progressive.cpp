@@ -125,7 +125,8 @@ class ProgressiveReference::Worker {
     const Request& request = job.request;
     const Options& options = request.options;
     if (auto checked = checkOptions(options); !checked) return failAgain(std::move(checked.error()));
-    auto environment = lights_.environment(request.lights, request.light_factors, options);
+    auto environment =
+        lights_.environment(request.lights, request.light_factors, options, request.more_light);
     if (!environment) return failAgain(std::move(environment.error()));
     if (auto built = build(job.scene); !built) return failAgain(std::move(built.error()));
     const auto view = viewOf(*traced_scene_, traced_->surfaces(), request);

@@ -86,6 +86,7 @@ Result<Report> renderHere(const Scene& scene, const Request& request, const fs::
   const auto loaded = loadEach(request.lights);
   if (!loaded) return failAgain(loaded.error());
   spec::DistantLights lights = together(*loaded, request.light_factors);
+  addLights(lights, request.more_light.get());
   report.notices = lights.notices;
   const std::vector<spec::LocalLight> shapes = spec::localLights(request.lights);
   const auto traced = TracedScene::build(scene);

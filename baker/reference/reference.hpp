@@ -7,6 +7,8 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
+#include <optional>
 #include <stop_token>
 #include <string>
 #include <vector>
@@ -16,6 +18,7 @@
 #include "baker/work/progress.hpp"
 #include "runtime/base/result.hpp"
 #include "runtime/spec/camera.hpp"
+#include "runtime/spec/distant_lights.hpp"
 #include "runtime/spec/image.hpp"
 #include "runtime/spec/light.hpp"
 
@@ -32,6 +35,9 @@ struct Request {
   std::optional<spec::View> view = {};  // counts instead of a camera: an eye that moves freely
   // By which the radiance of each light from infinity is multiplied; of lights beyond the list 1.
   std::vector<float> light_factors = {};
+  // Light from infinity beside that of `lights`, in the lights' own frame: what no word says, as key lights
+  // that were moved.
+  std::shared_ptr<const spec::DistantLights> more_light = {};
 };
 
 struct Report {

@@ -34,4 +34,11 @@ spec::DistantLights together(const std::vector<spec::DistantLights>& each,
   return all;
 }
 
+void addLights(spec::DistantLights& lights, const spec::DistantLights* more) {
+  if (more == nullptr) return;
+  lights.constant += more->constant;
+  lights.discs.insert(lights.discs.end(), more->discs.begin(), more->discs.end());
+  lights.probes.insert(lights.probes.end(), more->probes.begin(), more->probes.end());
+}
+
 }  // namespace lambent::baker::reference

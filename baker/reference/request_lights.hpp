@@ -14,4 +14,7 @@ Result<std::vector<spec::DistantLights>> loadEach(const std::vector<spec::Light>
 // factors: by light; those beyond the list are 1.
 spec::DistantLights together(const std::vector<spec::DistantLights>& each, const std::vector<float>& factors);
 
+// Adds what `more` has, if there is any.
+void addLights(spec::DistantLights& lights, const spec::DistantLights* more);
+
 }  // namespace lambent::baker::reference

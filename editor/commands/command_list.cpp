@@ -8,7 +8,7 @@ std::span<const Command> commandList() {
   static const std::vector<Command> list = [] {
     std::vector<Command> all;
     for (const auto rows : {fileCommands(), editCommands(), createCommands(), viewCommands(), lightCommands(),
-                            bakeCommands(), helpCommands(), stateCommands()})
+                            keyCommands(), bakeCommands(), helpCommands(), stateCommands()})
       all.insert(all.end(), rows.begin(), rows.end());
     return all;
   }();

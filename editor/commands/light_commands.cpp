@@ -1,6 +1,8 @@
+#include <algorithm>
 #include <array>
 
 #include "editor/commands/rows.hpp"
+#include "editor/session/key_lights.hpp"
 #include "runtime/spec/light.hpp"
 
 namespace lambent::editor {
@@ -33,9 +35,9 @@ Answer removeLight(Session& session, Words words) {
       words[0].find_first_not_of("0123456789") == std::string::npos ? std::stoul(words[0]) : lights.size();
   if (index >= lights.size())
     return fail("remove-light", "there is no light " + words[0], fmt::format("there are {}", lights.size()));
-  session.editWorld("remove light", [&](WorldState& world) {
-    world.lights.erase(world.lights.begin() + static_cast<std::ptrdiff_t>(index));
-  });
+  std::vector<std::string> left = lights;
+  left.erase(left.begin() + static_cast<std::ptrdiff_t>(index));
+  session.editWorld("remove light", [&](WorldState& world) { replaceLights(session, world, left); });
   return nullptr;
 }
 
@@ -57,13 +59,16 @@ Answer probe(Session& session, Words words) {
   const auto word = fromInfinity(words[0]);
   if (!word) return failAgain(word.error());
   session.editWorld("probe " + std::filesystem::path(*word).stem().string(), [&](WorldState& world) {
-    for (std::string& light : world.lights)
-      if (const auto parsed = spec::parseLight(light);
-          parsed && std::holds_alternative<spec::ProbeLight>(*parsed)) {
-        light = *word;
-        return;
-      }
-    world.lights = {*word};
+    std::vector<std::string> with = world.lights;
+    const auto there = std::ranges::find_if(with, [](const std::string& light) {
+      const auto parsed = spec::parseLight(light);
+      return parsed && std::holds_alternative<spec::ProbeLight>(*parsed);
+    });
+    if (there != with.end())
+      *there = *word;
+    else
+      with = {*word};
+    replaceLights(session, world, std::move(with));
   });
   return nullptr;
 }
@@ -90,7 +95,7 @@ Answer lights(Session& session, Words words) {
     if (!word) return failAgain(word.error());
     checked.push_back(*word);
   }
-  session.editWorld("lights", [&](WorldState& world) { world.lights = checked; });
+  session.editWorld("lights", [&](WorldState& world) { replaceLights(session, world, checked); });
   return nullptr;
 }
 

@@ -17,6 +17,7 @@ std::span<const Command> editCommands();
 std::span<const Command> createCommands();
 std::span<const Command> viewCommands();
 std::span<const Command> lightCommands();
+std::span<const Command> keyCommands();
 std::span<const Command> bakeCommands();
 std::span<const Command> helpCommands();
 std::span<const Command> stateCommands();  // for scripts: what is there

@@ -13,6 +13,7 @@
 #include "runtime/scene/lights.hpp"
 #include "runtime/scene/reflection.hpp"
 #include "runtime/spec/camera.hpp"
+#include "runtime/spec/key_edit.hpp"
 #include "runtime/spec/light.hpp"
 
 namespace lambent::editor {
@@ -98,7 +99,14 @@ class WorldReader {
     world_.state.lights = readLights(place, "lights");
     world_.state.fade_lights = readLights(place, "fade_lights");
     if (place.has("exposure")) world_.state.exposure_ev = place.at("exposure").number();
-    std::set<std::string> known{"lights", "fade_lights", "exposure"};
+    if (place.has("key_edits"))
+      for (const Place& edit : place.at("key_edits").items()) {
+        const std::string word = edit.text();
+        if (const auto parsed = spec::parseKeyEdit(word); !parsed)
+          edit.fault(parsed.error().problem, parsed.error().mend);
+        world_.state.key_edits.push_back(word);
+      }
+    std::set<std::string> known{"lights", "fade_lights", "key_edits", "exposure"};
     // Through the table, so that fields of the component need no mention here.
     ecs::Registry scratch;
     const ecs::Entity entity = scratch.create();
@@ -267,6 +275,7 @@ Result<Json> environmentJson(const WorldFile& world) {
   Json json = Json::object();
   json["lights"] = world.state.lights;
   json["fade_lights"] = world.state.fade_lights;
+  if (!world.state.key_edits.empty()) json["key_edits"] = world.state.key_edits;
   ecs::Registry scratch;
   const ecs::Entity entity = scratch.create();
   scratch.emplace<scene::EnvironmentComponent>(entity, world.environment);

@@ -181,6 +181,7 @@ void drawEnvironment(Session& session, Ui& ui) {
   ImGui::SameLine();
   if (ImGui::Button("Add probe...")) run(session, "probe", {});
   ui.mark("environment.add-probe");
+  drawKeyLights(session, ui);
   drawShelf(session, ui);
 }
 

@@ -81,7 +81,7 @@ std::vector<GizmoTarget> targetsOf(const Session& session, const std::vector<ecs
   return targets;
 }
 
-void markHandles(const Session& session, Ui& ui) {
+void markHandles(const Session& session, Ui& ui, const std::vector<SunOnSky>& suns) {
   const auto mark = [&](const std::string& name, const std::optional<glm::vec2>& at) {
     if (at) ui.mark(name, {*at - glm::vec2(1.0f), *at + glm::vec2(1.0f)});
   };
@@ -92,8 +92,12 @@ void markHandles(const Session& session, Ui& ui) {
          session.viewing.light_gizmo.handleScreenPoint(handle));
   mark("gizmo.pivot", session.viewing.gizmo.pivotScreenPoint());
   for (std::size_t sun = 0; sun < session.viewing.sun_gizmo.count(); ++sun)
-    if (const auto at = session.viewing.sun_gizmo.place(sun))
-      mark(sun == 0 ? "sun.handle" : fmt::format("sun.handle.{}", sun + 1), at->pixel);
+    if (const auto at = session.viewing.sun_gizmo.place(sun)) {
+      if (sun < suns.size() && suns[sun].key)
+        mark(fmt::format("key.{}.handle", *suns[sun].key), at->pixel);
+      else
+        mark(sun == 0 ? "sun.handle" : fmt::format("sun.handle.{}", sun + 1), at->pixel);
+    }
 }
 
 void addReadout(const glm::vec2& pixel, const std::string& text) {
@@ -139,6 +143,7 @@ void manipulate(Session& session, Ui& ui, const Viewport& viewport, bool hovered
   if (hovered && ImGui::IsMouseClicked(ImGuiMouseButton_Left) && !eye_moves) {
     if (sun_gizmo.press(pixel)) {
       viewing.sun_taken = suns[*sun_gizmo.active()];
+      if (viewing.sun_taken->key) viewing.key_at_hand = viewing.sun_taken->key;
       session.history.begin("turn of " + viewing.sun_taken->name);
     } else if (light_handles && light_gizmo.press(pixel)) {
       session.history.begin("light of " + session.document.nameOf(primary));
@@ -176,7 +181,7 @@ void manipulate(Session& session, Ui& ui, const Viewport& viewport, bool hovered
   paint(sun_gizmo.paint(), viewport);
   addReadout(pixel, gizmo.readout());
   if (const auto sun = sun_gizmo.active()) addReadout(pixel, sunReadout(session, suns[*sun]));
-  markHandles(session, ui);
+  markHandles(session, ui, suns);
 }
 
 }  // namespace lambent::editor

@@ -25,6 +25,7 @@ std::span<const Panel> panelList();
 void drawSceneTree(Session& session, Ui& ui);
 void drawInspector(Session& session, Ui& ui);
 void drawEnvironment(Session& session, Ui& ui);
+void drawKeyLights(Session& session, Ui& ui);  // a part of the environment's
 void drawSettings(Session& session, Ui& ui);
 void drawPlan(Session& session, Ui& ui);
 void drawBakes(Session& session, Ui& ui);

@@ -7,6 +7,7 @@
 #include "editor/commands/command.hpp"
 #include "editor/panels/panel.hpp"
 #include "runtime/frame/frame_settings.hpp"
+#include "runtime/frame/quality.hpp"
 
 namespace lambent::editor {
 
@@ -65,6 +66,60 @@ void drawRow(Session& session, Ui& ui, const frame::SettingRow& row) {
   ImGui::PopID();
 }
 
+// How many key lights there are and how finely they shadow, by one word; what that costs and loses here.
+void drawQuality(Session& session, Ui& ui) {
+  const std::string now(frame::qualityOf(session.stage.frame().settings()));
+  ImGui::SetNextItemWidth(0.45f * ImGui::GetContentRegionAvail().x);
+  const bool open = ImGui::BeginCombo("quality", now.empty() ? "own" : now.c_str());
+  ui.mark("quality");
+  if (ImGui::IsItemHovered())
+    ImGui::SetTooltip("How many key lights there are and how finely they shadow: time against error");
+  if (open) {
+    for (const std::string_view name : frame::qualityNames()) {
+      const std::string word(name);
+      if (ImGui::Selectable(word.c_str(), word == now))
+        if (auto done = runCommand(session, "quality", std::array{word}); !done)
+          session.log.error(done.error());
+      ui.mark("quality." + word);
+    }
+    ImGui::EndCombo();
+  }
+  ImGui::SameLine();
+  if (ImGui::Button(session.qualities.busy() ? "Measuring..." : "Measure")) session.qualities.measure();
+  ui.mark("quality.measure");
+  if (ImGui::IsItemHovered())
+    ImGui::SetTooltip(
+        "Draws this view at each quality: times of a frame that draws everything anew, and how\n"
+        "far its light lies from that at high quality. The reference beside (F8) tells the error\n"
+        "of the picture itself.");
+  const auto& rows = session.qualities.rows();
+  if (rows.empty()) return;
+  constexpr ImGuiTableFlags kTable = ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersInnerV;
+  if (ImGui::BeginTable("qualities", 5, kTable)) {
+    for (const char* title : {"", "shadows", "raster", "all", "off high"}) ImGui::TableSetupColumn(title);
+    ImGui::TableHeadersRow();
+    for (const QualityStudy::Row& row : rows) {
+      ImGui::TableNextRow();
+      ImGui::TableNextColumn();
+      ImGui::TextUnformatted(row.quality.c_str());
+      for (const double ms :
+           {row.cost.milliseconds("key shadows"), row.cost.milliseconds("raster"), row.cost.milliseconds()}) {
+        ImGui::TableNextColumn();
+        ImGui::Text("%.1f", ms);
+      }
+      ImGui::TableNextColumn();
+      if (&row == &rows.back())
+        ImGui::TextUnformatted("-");
+      else
+        ImGui::Text("%.2g %%", 100.0 * row.error);
+    }
+    ImGui::EndTable();
+  }
+  const spec::Size size = session.qualities.size();
+  const bool here = session.qualities.view().view_from_world == session.viewing.shown_view.view_from_world;
+  ImGui::TextDisabled("milliseconds at %u x %u%s", size.width, size.height, here ? "" : ", in another view");
+}
+
 // Where the slice through neighborhoods lies, while it is shown.
 void drawSlice(Session& session, Ui& ui) {
   constexpr std::array kAxes = {"x", "y", "z"};
@@ -82,6 +137,8 @@ void drawSlice(Session& session, Ui& ui) {
 }  // namespace
 
 void drawSettings(Session& session, Ui& ui) {
+  drawQuality(session, ui);
+  ImGui::Separator();
   for (const frame::SettingRow& row : frame::settingRows()) drawRow(session, ui, row);
   ImGui::Separator();
   ImGui::SetNextItemWidth(0.45f * ImGui::GetContentRegionAvail().x);

@@ -30,7 +30,8 @@ struct Waiting {
 constexpr std::array kWaits = {Waiting{"loaded", [](const Session& s) { return s.loaded(); }},
                                Waiting{"baked", [](const Session& s) { return s.baked(); }},
                                Waiting{"rest", [](const Session& s) { return s.atRest(); }},
-                               Waiting{"reference", [](const Session& s) { return s.referenceDone(); }}};
+                               Waiting{"reference", [](const Session& s) { return s.referenceDone(); }},
+                               Waiting{"measured", [](const Session& s) { return s.measured(); }}};
 
 Result<float> numberFrom(const ScriptLine& line, std::size_t index) {
   if (const auto number = spec::parseNumber(line.words[index])) return *number;
@@ -116,7 +117,7 @@ Result<Script::Progress> Script::wait(const ScriptLine& line, Session& session) 
       std::find_if(kWaits.begin(), kWaits.end(), [&](const Waiting& w) { return kind == w.word; });
   if (found == kWaits.end())
     return fail("wait", fmt::format("\"{}\" is not known", kind),
-                "wait for loaded, baked, rest, reference, frames N or seconds S");
+                "wait for loaded, baked, rest, reference, measured, frames N or seconds S");
   double most = kMostWaitSeconds;
   if (line.words.size() > 2) {
     const auto given = numberFrom(line, 2);

@@ -1,5 +1,7 @@
 #include "editor/session/reference_view.hpp"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "editor/session/session.hpp"
@@ -30,6 +32,31 @@ Result<std::vector<ReferencePart>> partsOf(const Session& session) {
                      .world_from_scene = worldFromNode(session.document.registry(), instance.root)});
   }
   return parts;
+}
+
+// Where key lights are edited, no words say what there is.
+bool hasEditedKeys(const lighting::Environment& environment) {
+  return std::ranges::any_of(environment.foundKeys(),
+                             [](const lighting::Environment::FoundKey& key) { return key.edit.has_value(); });
+}
+
+std::shared_ptr<const spec::DistantLights> editedLight(const lighting::Environment& environment) {
+  auto light = std::make_shared<spec::DistantLights>();
+  for (std::size_t set = 0; set < lighting::Environment::kSets; ++set) {
+    const float share = environment.shareOf(set);
+    const lighting::Environment::Shown shown = environment.shownOf(set);
+    light->constant += share * shown.constant;
+    for (spec::Disc disc : shown.discs) {
+      disc.radiance *= share;
+      light->discs.push_back(disc);
+    }
+    if (share == 0.0f) continue;
+    for (const spec::Probe* probe : shown.probes) {
+      light->probes.push_back(*probe);
+      for (glm::vec3& texel : light->probes.back().image.texels) texel *= share;
+    }
+  }
+  return light;
 }
 
 // Each light from outside, and how strong it is now.
@@ -124,9 +151,15 @@ void ReferenceView::followEye(Session& session) {
   const bool new_scene = !eye_key_;
   eye_key_ = key;
   baker::reference::Request request;
-  Sky sky = skyOf(session.stage);
-  request.lights = std::move(sky.lights);
-  request.light_factors = std::move(sky.factors);
+  if (hasEditedKeys(session.stage.environment())) {
+    if (edited_light_of_ != key.lights) edited_light_ = editedLight(session.stage.environment());
+    edited_light_of_ = key.lights;
+    request.more_light = edited_light_;
+  } else {
+    Sky sky = skyOf(session.stage);
+    request.lights = std::move(sky.lights);
+    request.light_factors = std::move(sky.factors);
+  }
   for (spec::Light& shape : shapesOf(session.stage.world().registry(), session.document))
     request.lights.push_back(std::move(shape));
   request.view = key.view;

@@ -70,6 +70,9 @@ class ReferenceView {
   std::optional<EyeKey> eye_key_;
   std::future<Result<ScenePointer>> coming_;
   ScenePointer scene_;
+  // The light with edited key lights, and the version that it is of: an eye that moves needs it again.
+  std::shared_ptr<const spec::DistantLights> edited_light_;
+  std::uint64_t edited_light_of_ = 0;
   std::optional<Error> error_;
   std::unique_ptr<baker::reference::ProgressiveReference> tracer_;
   std::shared_ptr<const baker::reference::Snapshot> seen_;

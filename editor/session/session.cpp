@@ -122,11 +122,12 @@ void Session::render(spec::Size size) {
   }
   reference.update(*this);
   knobs.update(*this);
+  qualities.update(*this);
 }
 
 bool Session::moving() const {
   return frames_to_draw_ > 0 || (viewing.playing && viewing.hasAnimations(*this)) || !stage.atRest() ||
-         (reference.on() && !reference.done()) || viewing.flying || knobs.busy();
+         (reference.on() && !reference.done()) || viewing.flying || !measured();
 }
 
 // Of the residency, those that hold anything that is selected.
@@ -152,6 +153,7 @@ std::vector<std::uint32_t> Session::selectedGroups() const {
 frame::OverlayOptions Session::overlaysNow() const {
   frame::OverlayOptions overlays = viewing.overlays;
   if (overlays.neighborhoods) overlays.foremost_groups = selectedGroups();
+  overlays.key = viewing.key_at_hand;
   if (!viewing.show_gizmos) return overlays;
   const scene::Box box = selectionBounds();
   if (box.empty()) return overlays;

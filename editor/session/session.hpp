@@ -24,6 +24,7 @@
 #include "editor/session/plans.hpp"
 #include "editor/session/preferences.hpp"
 #include "editor/session/probe_shelf.hpp"
+#include "editor/session/quality_study.hpp"
 #include "editor/session/reference_view.hpp"
 #include "editor/session/scene_steps.hpp"
 #include "editor/session/scenes.hpp"
@@ -65,6 +66,8 @@ class Session {
 
   // Once a frame: what bakes, files, animations and edits did since the last.
   void update(double seconds);
+  // What the document says is on stage: for commands that ask about the stage right after an edit.
+  void followDocument();
   // Draws the view in `size` pixels, if anything moved; a failure is logged once.
   void render(spec::Size size);
   // Whether frames have to go on without input.
@@ -115,6 +118,7 @@ class Session {
   bool loaded() const;
   bool baked() const { return !scenes.busy() && loaded(); }
   bool atRest() const { return loaded() && stage.atRest(); }
+  bool measured() const { return !knobs.busy() && !qualities.busy(); }
   bool referenceDone() const { return reference.done(); }
   std::string title() const;
   bool titleChanged();
@@ -133,6 +137,7 @@ class Session {
   Plans plans;
   ProbeShelf probes;
   KnobStudy knobs;
+  QualityStudy qualities;
   TreeQuery tree;
   Clipboard clipboard;
   std::optional<Dialog> dialog;            // at most one
@@ -143,7 +148,6 @@ class Session {
  private:
   Session(const SessionOptions& options, Preferences preferences, Stage stage);
   Result<void> openWorld(const std::filesystem::path& path);
-  void followDocument();
   frame::OverlayOptions overlaysNow() const;
   std::vector<std::uint32_t> selectedGroups() const;
   std::uint64_t editsVersion() const;

@@ -4,6 +4,7 @@
 
 #include "runtime/frame/frame_settings.hpp"
 #include "runtime/scene/lights.hpp"
+#include "runtime/spec/key_edit.hpp"
 #include "runtime/spec/light.hpp"
 
 namespace lambent::editor {
@@ -55,6 +56,15 @@ Result<void> Stage::followLights(const WorldState& state) {
 std::vector<Error> Stage::follow(const WorldState& state) {
   std::vector<Error> errors;
   if (auto done = followLights(state); !done) errors.push_back(done.error());
+  std::vector<spec::KeyEdit> key_edits;
+  for (const std::string& word : state.key_edits) {
+    const auto edit = spec::parseKeyEdit(word);
+    if (edit)
+      key_edits.push_back(*edit);
+    else
+      errors.push_back(edit.error());
+  }
+  environment_.setKeyEdits(std::move(key_edits));
   frame::FrameSettings settings;
   for (const auto& [name, word] : state.settings)
     if (auto put = frame::putSetting(settings, name, word); !put) errors.push_back(put.error());

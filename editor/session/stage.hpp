@@ -31,8 +31,8 @@ class Stage {
   const std::vector<spec::Light>& lights() const { return lights_; }
   const std::vector<spec::Light>& fadeLights() const { return fade_lights_; }
 
-  // Lights, settings and exposure as `state` has them. Errors: words that are not known, probes that cannot
-  // be read; all the others are followed.
+  // Lights, edits of key lights, settings and exposure as `state` has them. Errors: words that are not known,
+  // probes that cannot be read; all the others are followed.
   std::vector<Error> follow(const WorldState& state);
   // Fields of the EnvironmentComponent.
   void followEnvironment();

@@ -8,6 +8,7 @@
 #include <glm/matrix.hpp>
 
 #include "editor/gizmo/sun_gizmo.hpp"
+#include "editor/session/key_lights.hpp"
 #include "editor/session/session.hpp"
 #include "runtime/scene/affine.hpp"
 #include "runtime/scene/components.hpp"
@@ -31,10 +32,23 @@ void addSunsOfWords(const Session& session, std::vector<SunOnSky>& suns) {
     if (sun)
       suns.push_back({.name = "sun",
                       .light = i,
+                      .key = {},
                       .entity = {},
                       .towards_ws = towardsSun({sun->azimuth_deg, sun->elevation_deg}, turnOf(session)),
                       .world_from_node = glm::mat4(1.0f)});
   }
+}
+
+void addKeyLights(const Session& session, std::vector<SunOnSky>& suns) {
+  const std::vector<KeyLight> keys = keyLightsOf(session);
+  for (std::size_t i = 0; i < keys.size(); ++i)
+    if (keys[i].in_probe)
+      suns.push_back({.name = "key light",
+                      .light = {},
+                      .key = i,
+                      .entity = {},
+                      .towards_ws = keys[i].towards_ws,
+                      .world_from_node = glm::mat4(1.0f)});
 }
 
 }  // namespace
@@ -43,7 +57,10 @@ std::vector<SunOnSky> sunsOf(const Session& session) {
   std::vector<SunOnSky> suns;
   const ecs::Registry& registry = session.document.registry();
   for (const ecs::Entity entity : session.selection.entities(session.document)) {
-    if (entity == session.stage.environmentEntity()) addSunsOfWords(session, suns);
+    if (entity == session.stage.environmentEntity()) {
+      addSunsOfWords(session, suns);
+      addKeyLights(session, suns);
+    }
     const auto* light = registry.tryGet<scene::LocalLightComponent>(entity);
     if (!light || light->kind != scene::LocalLightComponent::Kind::Directional) continue;
     if (!registry.has<scene::Transform>(entity)) continue;
@@ -52,6 +69,7 @@ std::vector<SunOnSky> sunsOf(const Session& session) {
     if (const glm::vec3 back(place[2]); glm::length(back) > 0.0f)
       suns.push_back({.name = session.document.nameOf(entity),
                       .light = {},
+                      .key = {},
                       .entity = entity,
                       .towards_ws = glm::normalize(back),
                       .world_from_node = place});
@@ -65,6 +83,10 @@ void moveSun(Session& session, const SunOnSky& start, const glm::vec3& towards_w
                                        skyDirection(towards_ws, turnOf(session)));
     if (!word) return session.log.error(word.error());
     session.editWorld("turn of sun", [&](WorldState& world) { world.lights[*start.light] = *word; });
+    return;
+  }
+  if (start.key) {
+    if (auto moved = moveKeyLight(session, *start.key, towards_ws); !moved) session.log.error(moved.error());
     return;
   }
   const ecs::Registry& registry = session.document.registry();

@@ -32,7 +32,8 @@ class Viewing {
   Gizmo gizmo;
   LightGizmo light_gizmo;
   SunGizmo sun_gizmo;
-  std::optional<SunOnSky> sun_taken;  // as it stood when its drag began
+  std::optional<SunOnSky> sun_taken;       // as it stood when its drag began
+  std::optional<std::size_t> key_at_hand;  // of Environment::keys(): whose fields are shown
   bool show_gizmos = true;
   frame::OverlayOptions overlays;
   float render_scale = 1.0f;  // pixels of the picture for each of the window

@@ -18,7 +18,7 @@ namespace {
 
 // What CLI11 hands over, before the words are understood.
 struct Words {
-  std::vector<std::string> bundles, lights, fade_lights;
+  std::vector<std::string> bundles, lights, fade_lights, key_edits;
   std::string light_layout, camera, size = "1280x720", headless, view = "final", overlay, quality = "default";
   std::string rotate_light = "0", lamps = "1", fade = "0", time, step = "0.0333";
   std::vector<std::string> settings;  // of the frame, a word for each row
@@ -50,7 +50,7 @@ constexpr Row kRows[] = {
      "wireframe;\nan "
      ".exr holds the numbers"},
     {"--overlay", &Words::overlay, "LIST",
-     "Drawn over the picture: light-samples, neighborhoods[:AXIS,POSITION],\nvolumes, groups, lights"},
+     "Drawn over the picture: light-samples, neighborhoods[:AXIS,POSITION],\nvolumes, groups, lights, keys"},
     {"--rotate-light", &Words::rotate_light, "DEG", "Turn all lights about +Y (+Z towards +X)"},
     {"--fade", &Words::fade, "SHARE", "From the lights of --light to those of --fade-to: 0..1"},
     {"--time", &Words::time, "S",
@@ -90,6 +90,13 @@ void declare(CLI::App& app, Words& words) {
   app.add_option("--fade-to", words.fade_lights,
                  "Lights from infinity to fade to, see --fade; several add up")
       ->type_name("LIGHT")
+      ->take_all()
+      ->expected(1);
+  app.add_option(
+         "--edit-key", words.key_edits,
+         "key:AZ,EL,TO_AZ,TO_EL,R[,G,B]: the key light that was found in a\nprobe at AZ,EL stands at "
+         "TO_AZ,TO_EL and shines by these factors\n(--json lists the key lights); several edit several")
+      ->type_name("EDIT")
       ->take_all()
       ->expected(1);
   for (const Row& row : kRows) {
@@ -151,6 +158,11 @@ Result<void> understandLights(const Words& words, Options& options) {
   if (Result<void> done = understandAll(words.fade_lights, options.fade_lights); !done) return done;
   if (!spec::localLights(options.fade_lights).empty())
     return fail("--fade-to", "takes lights from infinity only", "give spheres and discs with --light");
+  for (const std::string& word : words.key_edits) {
+    const Result<spec::KeyEdit> edit = spec::parseKeyEdit(word);
+    if (!edit) return failAgain(edit.error());
+    options.key_edits.push_back(*edit);
+  }
   const std::optional<float> fade = spec::parseNumber(words.fade);
   if (!fade || *fade < 0.0f || *fade > 1.0f)
     return fail("--fade", fmt::format("\"{}\" is not a share", words.fade), "give 0..1");

@@ -13,6 +13,7 @@
 #include "runtime/frame/overlay_options.hpp"
 #include "runtime/frame/views.hpp"
 #include "runtime/spec/camera.hpp"
+#include "runtime/spec/key_edit.hpp"
 #include "runtime/spec/light.hpp"
 #include "runtime/spec/size.hpp"
 
@@ -24,6 +25,7 @@ struct Options {
   std::vector<std::string> light_words;  // as given, for reports
   std::vector<spec::Light> fade_lights;  // a second set of lights from infinity
   std::vector<std::string> fade_words;
+  std::vector<spec::KeyEdit> key_edits;
   float fade = 0.0f;                   // towards it, 0..1
   bool default_light = false;          // none was given
   std::optional<spec::Camera> camera;  // none: the file's first camera, else an orbit

@@ -1,5 +1,6 @@
 #include "runtime/demo/stage.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -16,6 +17,11 @@ Result<lighting::Environment> loadEnvironment(const Options& options) {
       lighting::Environment::create(options.lights, options.fade_lights);
   if (!environment) return failAgain(environment.error());
   environment->setMostKeys(options.settings.mostKeys());
+  environment->setKeyEdits(options.key_edits);
+  for (const spec::KeyEdit& edit : options.key_edits)
+    if (std::ranges::none_of(environment->foundKeys(),
+                             [&](const lighting::Environment::FoundKey& key) { return key.edit == edit; }))
+      fmt::print(stderr, "lambent-demo: {}: no key light was found there\n", spec::keyEditWord(edit));
   for (const std::string& notice : environment->notices()) fmt::print(stderr, "lambent-demo: {}\n", notice);
   return environment;
 }

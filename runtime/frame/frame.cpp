@@ -298,7 +298,8 @@ Result<void> Frame::castKeyShadows(World& world, const lighting::Environment& en
 
 Result<void> Frame::reflectSky(const World& world, const lighting::Environment& environment) {
   if (!options_.settings.residual || !options_.settings.glossy || !glossy_.any()) return {};
-  if (reflected_sky_ && reflected_lights_ == environment.lightsVersion()) return {};
+  const std::uint64_t source = lighting::ReflectedSky::sourceVersion(environment);
+  if (reflected_sky_ && reflected_lights_ == source) return {};
   if (std::ranges::none_of(world.residency().groups(),
                            [](const streaming::ResidentGroup& group) { return group.glossy_outputs > 0; }))
     return {};  // matrices of neighborhoods or volumes alone
@@ -306,7 +307,7 @@ Result<void> Frame::reflectSky(const World& world, const lighting::Environment& 
   Result<lighting::ReflectedSky> made = lighting::ReflectedSky::make(environment, sky_, pass.counters());
   if (!made) return failAgain(made.error());
   reflected_sky_ = std::move(*made);
-  reflected_lights_ = environment.lightsVersion();
+  reflected_lights_ = source;
   pass.because(reasons_.of(static_cast<std::uint32_t>(Cause::Environment), "first needed"));
   return {};
 }

@@ -10,6 +10,9 @@ namespace {
 constexpr double kLonger = 1.35;  // than the median: too much was brought
 constexpr double kGrow = 1.1, kShrink = 0.5;
 constexpr double kFirstBytes = 1 << 20, kLeastBytes = 128 << 10;
+// However slow frames are: else a scene whose frames take seconds once it is there would take minutes to
+// come.
+constexpr double kLeastBytesPerSecond = 8 << 20;
 
 }  // namespace
 
@@ -57,8 +60,9 @@ void UploadPacer::frameTook(double milliseconds, bool uploaded, std::uint64_t mo
   // A frame that brought nothing says nothing of what bringing costs.
   if (uploaded && times_.count() > 0) {
     const bool longer = milliseconds > kLonger * times_.median();
-    bytes_ = std::clamp(bytes_ * (longer ? kShrink : kGrow), kLeastBytes,
-                        std::max(kLeastBytes, static_cast<double>(most_bytes)));
+    const double most = std::max(kLeastBytes, static_cast<double>(most_bytes));
+    const double least = std::clamp(1e-3 * milliseconds * kLeastBytesPerSecond, kLeastBytes, most);
+    bytes_ = std::clamp(bytes_ * (longer ? kShrink : kGrow), least, most);
   }
   times_.add(milliseconds);
 }

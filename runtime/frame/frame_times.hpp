@@ -34,7 +34,8 @@ class FrameTimes {
 };
 
 // The bytes to upload in a frame, from how long frames take: half of what it was after one that took much
-// longer than usual, a little more after each that did not.
+// longer than usual, a little more after each that did not; never so little that slow frames starve what
+// loads.
 class UploadPacer {
  public:
   std::uint64_t budget(std::uint64_t most_bytes) const;

@@ -49,8 +49,8 @@ Result<void> Frame::drawOverlays(World& world, const lighting::Environment& envi
     if (!wires) return {};
     return wires_->drawWires(world, view, pass.counters());
   };
-  const OverlayScene scene{world,          environment, sky_,         lit_scene_, group_lights_,
-                           neighborhoods_, proxies_,    tone_mapper_, view,       options_.size};
+  const OverlayScene scene{world,        environment, sky_,         lit_scene_, group_lights_, neighborhoods_,
+                           key_shadows_, proxies_,    tone_mapper_, view,       options_.size};
   if (Result<void> done = overlays_->draw(options_.overlays, scene, drawWires, pass.counters()); !done)
     return done;
   glBindFramebuffer(GL_FRAMEBUFFER, options_.to_window ? 0 : picture_target_.id());

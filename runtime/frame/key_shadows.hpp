@@ -45,6 +45,13 @@ class KeyShadows {
   std::uint32_t mapsDrawn() const { return maps_drawn_; }  // by the last update
   std::uint32_t mapCount() const { return static_cast<std::uint32_t>(maps_.size()); }
   std::uint64_t bytesResident() const;
+  // What each map shows that is drawn, for who looks at it.
+  struct ShownRegion {
+    spec::Disc light;  // world axes
+    KeyRegion region;
+    std::uint32_t texels = 0;  // along an edge
+  };
+  std::vector<ShownRegion> regions() const;
   void forget() {
     for (Map& map : maps_) map.drawn = false;
   }

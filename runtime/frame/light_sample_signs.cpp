@@ -174,8 +174,12 @@ Result<void> LightSampleSigns::capture(const OverlayScene& scene, gpu::Counters&
 void LightSampleSigns::draw(const OverlayScene& scene, gpu::Counters& counters) {
   if (signs_.empty()) return;
   std::vector<DiscRecord> discs;
-  for (const lighting::Disc& disc : scene.environment.discs())
-    discs.push_back({glm::vec4(disc.direction, disc.radius_rad), glm::vec4(disc.radiance, 0.0f)});
+  // Key lights that were found in a picture are in the sky's cube already.
+  const glm::mat3 world_from_light = scene.environment.worldFromLight();
+  for (std::size_t i = 0; i < lighting::Environment::kSets; ++i)
+    for (const lighting::Disc& disc : scene.environment.shownOf(i).discs)
+      discs.push_back({glm::vec4(world_from_light * disc.direction, disc.radius_rad),
+                       glm::vec4(scene.environment.shareOf(i) * disc.radiance, 0.0f)});
   const auto disc_count = static_cast<GLuint>(discs.size());
   if (discs.empty()) discs.emplace_back();
   discs_.assign(std::span<const DiscRecord>(discs));
@@ -187,7 +191,7 @@ void LightSampleSigns::draw(const OverlayScene& scene, gpu::Counters& counters) 
     cubes_.bindStorage(kBindCubes);
   else
     discs_.bindStorage(kBindCubes);  // not read
-  const glm::mat3 light_from_world = glm::transpose(scene.environment.worldFromLight());
+  const glm::mat3 light_from_world = glm::transpose(world_from_light);
   glUniformMatrix3fv(kLightFromWorld, 1, GL_FALSE, glm::value_ptr(light_from_world));
   glUniform2f(kShares, scene.environment.shareOf(0), scene.environment.shareOf(1));
   glUniform1ui(kDiscCount, disc_count);

@@ -11,7 +11,7 @@ namespace lambent::frame {
 
 namespace {
 
-constexpr std::array<OverlayRow, 5> kRows = {{
+constexpr std::array<OverlayRow, 6> kRows = {{
     {"light-samples", "Light samples",
      "where light is sampled: what is captured there as a cube, the harmonics as a ball",
      &OverlayOptions::light_samples},
@@ -21,6 +21,8 @@ constexpr std::array<OverlayRow, 5> kRows = {{
     {"volumes", "Volumes", "boxes of volumes", &OverlayOptions::volumes},
     {"groups", "Groups", "boxes of rigid groups", &OverlayOptions::groups},
     {"lights", "Lights", "lights that stand in the scene", &OverlayOptions::lights},
+    {"keys", "Key lights", "key lights at infinity: where they stand, and what their shadow maps show",
+     &OverlayOptions::keys},
 }};
 
 }  // namespace

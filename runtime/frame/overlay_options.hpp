@@ -1,10 +1,10 @@
 // What is drawn over a picture that is done: light samples as cubes and balls, slices through neighborhoods,
-// boxes of volumes and groups, lights as glyphs, wires of the triangles, and lines that a caller adds. Comes
-// in: the world as the frame shows it. Goes out: a layer with the depth of the scene in it, laid over the
-// tone-mapped picture, which keeps its exposure, its alpha and, with all overlays off, every bit; parts
-// behind something show faintly. A frame without overlays holds, compiles and dispatches nothing for them.
-// Render thread only. Errors: shaders that do not compile on this device. docs/views.md says how to read
-// them.
+// boxes of volumes and groups, lights as glyphs, key lights with what their shadow maps show, wires of the
+// triangles, and lines that a caller adds. Comes in: the world as the frame shows it. Goes out: a layer with
+// the depth of the scene in it, laid over the tone-mapped picture, which keeps its exposure, its alpha and,
+// with all overlays off, every bit; parts behind something show faintly. A frame without overlays holds,
+// compiles and dispatches nothing for them. Render thread only. Errors: shaders that do not compile on this
+// device. docs/views.md says how to read them.
 #pragma once
 
 #include <cstdint>
@@ -46,15 +46,21 @@ struct OverlayOptions {
   bool volumes = false;
   bool groups = false;
   bool lights = false;
+  bool keys = false;
   // Of light samples, neighborhoods, volumes and groups, these of the residency; empty: all.
   std::vector<std::uint32_t> selected_groups{};
   // Of neighborhoods that overlap, those of these groups are drawn whole; of the others, and where none is
   // given, the one nearest to the eye. The rest are faint boxes without slices.
   std::vector<std::uint32_t> foremost_groups{};
+  // Of key lights, in the order of Environment::keys(): the one whose shadow map's box is drawn. None: those
+  // of the strongest few, since more would hide each other.
+  std::optional<std::size_t> key{};
   std::vector<OverlayLine> lines{};
   bool operator==(const OverlayOptions&) const = default;
 
-  bool any() const { return light_samples || neighborhoods || volumes || groups || lights || !lines.empty(); }
+  bool any() const {
+    return light_samples || neighborhoods || volumes || groups || lights || keys || !lines.empty();
+  }
   bool shows(std::uint32_t group) const;
 };
 

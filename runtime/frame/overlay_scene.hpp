@@ -2,6 +2,7 @@
 #pragma once
 
 #include "runtime/effects/diffuse/proxies.hpp"
+#include "runtime/frame/key_shadows.hpp"
 #include "runtime/frame/lit_scene.hpp"
 #include "runtime/frame/neighborhoods.hpp"
 #include "runtime/frame/tone_mapper.hpp"
@@ -21,6 +22,7 @@ struct OverlayScene {
   const LitScene& lit_scene;
   const lighting::GroupLights& lights;
   const Neighborhoods& neighborhoods;
+  const KeyShadows& key_shadows;
   const effects::diffuse::Proxies& proxies;
   const ToneMapper& tone_mapper;
   const spec::View& view;

@@ -7,6 +7,7 @@
 
 #include "lambent_frame_embedded.hpp"
 #include "runtime/effects/neighborhood/neighborhood_shared.h"
+#include "runtime/frame/overlay_keys.hpp"
 #include "runtime/frame/overlay_lines.hpp"
 #include "runtime/frame/overlay_slice_shared.h"
 #include "runtime/frame/surface_shared.h"
@@ -159,7 +160,11 @@ Result<void> Overlays::drawSlices(const OverlayOptions& options, const OverlaySc
 Result<void> Overlays::drawLines(const OverlayOptions& options, const OverlayScene& scene,
                                  gpu::Counters& counters) {
   std::vector<LineRecord> records;
-  for (const OverlayLine& line : linesOf(scene.world, scene.neighborhoods, options, scene.view.eye_ws))
+  std::vector<OverlayLine> lines = linesOf(scene.world, scene.neighborhoods, options, scene.view.eye_ws);
+  if (options.keys)
+    appendKeys(scene.environment.keys(), scene.key_shadows.regions(), options.key,
+               scene::worldBounds(scene.world.registry()), scene.view, lines);
+  for (const OverlayLine& line : lines)
     records.push_back({.from_and_width = glm::vec4(line.from_ws, line.width_px),
                        .to = glm::vec4(line.to_ws, 0.0f),
                        .color = line.color});

@@ -1,5 +1,6 @@
 #include "runtime/frame/quality.hpp"
 
+#include <algorithm>
 #include <array>
 
 #include <fmt/format.h>
@@ -9,6 +10,7 @@ namespace lambent::frame {
 namespace {
 
 constexpr std::array<std::string_view, 3> kNames = {"low", "default", "high"};
+constexpr std::array<std::string_view, 3> kSettings = {"keys", "key-size", "key-samples"};
 
 }  // namespace
 
@@ -16,8 +18,17 @@ std::span<const std::string_view> qualityNames() {
   return kNames;
 }
 
-Result<FrameSettings> settingsOfQuality(std::string_view name) {
-  FrameSettings settings;
+std::span<const std::string_view> qualitySettings() {
+  return kSettings;
+}
+
+Result<void> putQuality(FrameSettings& settings, std::string_view name) {
+  if (std::ranges::find(kNames, name) == kNames.end())
+    return fail("quality", fmt::format("\"{}\" is not known", name), "give low, default or high");
+  const FrameSettings defaults;
+  settings.keys = defaults.keys;
+  settings.key_size = defaults.key_size;
+  settings.key_samples = defaults.key_samples;
   if (name == "low") {
     settings.keys = 4;
     settings.key_size = 2048;
@@ -26,10 +37,23 @@ Result<FrameSettings> settingsOfQuality(std::string_view name) {
     settings.keys = 32;
     settings.key_size = 8192;
     settings.key_samples = 64;
-  } else if (name != "default") {
-    return fail("--quality", fmt::format("\"{}\" is not known", name), "give low, default or high");
   }
+  return {};
+}
+
+Result<FrameSettings> settingsOfQuality(std::string_view name) {
+  FrameSettings settings;
+  if (Result<void> put = putQuality(settings, name); !put)
+    return fail("--quality", put.error().problem, put.error().mend);
   return settings;
+}
+
+std::string_view qualityOf(const FrameSettings& settings) {
+  for (const std::string_view name : kNames) {
+    FrameSettings of_quality = settings;
+    if (putQuality(of_quality, name) && of_quality == settings) return name;
+  }
+  return {};
 }
 
 }  // namespace lambent::frame

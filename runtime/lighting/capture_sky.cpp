@@ -109,8 +109,8 @@ Result<CaptureSky> CaptureSky::create(const CaptureOptions& options, const Envir
 }
 
 void CaptureSky::takeLights(const Environment& environment) {
-  if (lights_ == environment.lightsVersion()) return;
-  lights_ = environment.lightsVersion();
+  if (lights_ == environment.restVersion()) return;
+  lights_ = environment.restVersion();
   for (std::size_t i = 0; i < Environment::kSets; ++i) probes_[i] = probeCube(environment.restOf(i).probes);
 }
 

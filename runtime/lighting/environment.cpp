@@ -7,6 +7,8 @@
 #include <system_error>
 #include <utility>
 
+#include <glm/geometric.hpp>
+
 #include "runtime/bundle/checksum.hpp"
 #include "runtime/sh/projection.hpp"
 #include "runtime/sh/zonal.hpp"
@@ -15,6 +17,10 @@
 namespace lambent::lighting {
 
 namespace {
+
+// Up to so far beside it, or within its disc, an edit still means a key light: other settings part the same
+// picture a little differently.
+constexpr float kSameKey_rad = 0.01f;
 
 // Checksums and sizes go in as they are; what is given by reference by its own checksum.
 class Seal {
@@ -98,6 +104,7 @@ Result<void> Environment::setLights(const std::vector<spec::Light>& lights,
     part(set);
   }
   sets_ = std::move(sets);
+  for (std::size_t i = 0; i < kSets; ++i) applyEdits(i);
   notices_.clear();
   for (const Set& set : sets_)
     notices_.insert(notices_.end(), set.lights.notices.begin(), set.lights.notices.end());
@@ -116,13 +123,63 @@ void Environment::part(Set& set) const {
                     : set.known[k].sky;
   }
   set.discs = spec::discVector(set.parted.discs);
-  set.keys = spec::discVector(set.parted.keys);
+  set.edits.clear();
+  set.pictures.clear();
+}
+
+void Environment::applyEdits(std::size_t index) {
+  Set& set = sets_[index];
+  const std::size_t count = set.parted.keys.size();
+  std::vector<std::optional<spec::KeyEdit>> edits(count);
+  for (const spec::KeyEdit& edit : key_edits_) {
+    if (edit.set != index) continue;
+    std::optional<std::size_t> nearest;
+    float least_rad = 0.0f;
+    for (std::size_t k = 0; k < count; ++k) {
+      if (!set.parted.origins[k].in_probe) continue;
+      const Disc& key = set.parted.keys[k];
+      const float angle_rad = std::acos(std::clamp(glm::dot(key.direction, edit.found), -1.0f, 1.0f));
+      if (angle_rad > std::max(kSameKey_rad, key.radius_rad) || (nearest && angle_rad >= least_rad)) continue;
+      nearest = k;
+      least_rad = angle_rad;
+    }
+    if (nearest) edits[*nearest] = edit;
+  }
+  set.key_discs = set.parted.keys;
+  bool same_pictures = set.edits.size() == count && set.pictures.size() == set.lights.probes.size();
+  for (std::size_t k = 0; k < count; ++k) {
+    same_pictures = same_pictures && set.edits[k].has_value() == edits[k].has_value();
+    if (!edits[k]) continue;
+    set.key_discs[k].direction = edits[k]->towards;
+    set.key_discs[k].radiance *= edits[k]->factor;
+  }
+  set.edits = std::move(edits);
+  set.keys = spec::discVector(set.key_discs);
+  if (same_pictures) return;
+  set.pictures.assign(set.lights.probes.size(), std::nullopt);
+  for (const KeyTexel& texel : set.parted.texels) {
+    if (!set.edits[texel.key]) continue;
+    std::optional<spec::Probe>& picture = set.pictures[texel.probe];
+    if (!picture) picture = set.lights.probes[texel.probe];
+    picture->image.texels[texel.texel] = set.parted.probes[texel.probe]->image.texels[texel.texel];
+  }
+}
+
+void Environment::setKeyEdits(std::vector<spec::KeyEdit> edits) {
+  if (edits == key_edits_) return;
+  key_edits_ = std::move(edits);
+  for (std::size_t i = 0; i < kSets; ++i) applyEdits(i);
+  seal();
+  mix();
 }
 
 void Environment::setMostKeys(std::uint32_t most) {
   if (most == most_keys_) return;
   most_keys_ = most;
-  for (Set& set : sets_) part(set);
+  for (std::size_t i = 0; i < kSets; ++i) {
+    part(sets_[i]);
+    applyEdits(i);
+  }
   seal();
   mix();
 }
@@ -135,6 +192,30 @@ Environment::Rest Environment::restOf(std::size_t index) const {
     rest.probes.push_back(parted ? &*parted : &set.lights.probes[k]);
   }
   return rest;
+}
+
+Environment::Shown Environment::shownOf(std::size_t index) const {
+  const Set& set = sets_[index];
+  Shown shown{.probes = {}, .constant = set.lights.constant, .discs = set.lights.discs};
+  for (std::size_t k = 0; k < set.lights.probes.size(); ++k)
+    shown.probes.push_back(set.pictures[k] ? &*set.pictures[k] : &set.lights.probes[k]);
+  for (std::size_t k = 0; k < set.key_discs.size(); ++k)
+    if (set.edits[k]) shown.discs.push_back(set.key_discs[k]);
+  return shown;
+}
+
+std::vector<Environment::FoundKey> Environment::foundKeys() const {
+  std::vector<FoundKey> found;
+  for (std::size_t i = 0; i < kSets; ++i) {
+    const Set& set = sets_[i];
+    for (std::size_t k = 0; k < set.key_discs.size(); ++k)
+      found.push_back({.set = i,
+                       .origin = set.parted.origins[k],
+                       .found = set.parted.keys[k],
+                       .now = set.key_discs[k],
+                       .edit = set.edits[k]});
+  }
+  return found;
 }
 
 void Environment::seal() {
@@ -157,7 +238,26 @@ void Environment::seal() {
       seal.add(set.known[k].checksum);
     }
   }
-  lights_version_ = seal.value();
+  rest_version_ = lights_version_ = pictures_version_ = seal.value();
+  Seal edits, edited;
+  edits.add(rest_version_);
+  edited.add(rest_version_);
+  bool any = false;
+  for (std::size_t i = 0; i < kSets; ++i)
+    for (std::size_t k = 0; k < sets_[i].edits.size(); ++k) {
+      const std::optional<spec::KeyEdit>& edit = sets_[i].edits[k];
+      if (!edit) continue;
+      any = true;
+      for (Seal* of : {&edits, &edited}) {
+        of->add(i);
+        of->add(k);
+      }
+      edits.add(edit->towards);
+      edits.add(edit->factor);
+    }
+  if (!any) return;
+  lights_version_ = edits.value();
+  pictures_version_ = edited.value();
 }
 
 glm::mat3 Environment::worldFromLight() const {
@@ -187,7 +287,7 @@ void Environment::mix() {
     place(sets_[i].parted.discs, share);
   }
   first_key_ = discs_.size();
-  for (std::size_t i = 0; i < kSets; ++i) place(sets_[i].parted.keys, shareOf(i));
+  for (std::size_t i = 0; i < kSets; ++i) place(sets_[i].key_discs, shareOf(i));
   sky_light_ = spec::turned(sky, turn_degrees_);
   key_light_ = spec::turned(keys, turn_degrees_);
   rest_light_ = spec::turned(sky + discs, turn_degrees_);

@@ -3,9 +3,10 @@
 // light vectors of order 8 in world space (probes projected once when loaded, suns in closed form), the suns
 // as discs, and what the sky shows. Fading and turning mix what was projected once. If key lights are asked
 // for, the light is parted once when it is loaded (key_lights.hpp): surfaces take the direct light of key
-// lights by shadow maps, and the rest, which few bands carry, by transfer. Whoever follows one
-// environment may be given another at any time: versions tell what they say, not how often it was changed.
-// No GL. Errors: those of loading a probe.
+// lights by shadow maps, and the rest, which few bands carry, by transfer. Key lights that were found in
+// probes may be moved, dimmed and coloured: their discs change, and the sky shows them in place of their
+// texels. Whoever follows one environment may be given another at any time: versions tell what they say, not
+// how often it was changed. No GL. Errors: those of loading a probe.
 #pragma once
 
 #include <array>
@@ -23,6 +24,7 @@
 #include "runtime/lighting/key_lights.hpp"
 #include "runtime/sh/light_vector.hpp"
 #include "runtime/spec/distant_lights.hpp"
+#include "runtime/spec/key_edit.hpp"
 
 namespace lambent::lighting {
 
@@ -43,6 +45,12 @@ class Environment {
   // How many key lights each set may have at most; 0, the default of this class: none. Parts the light anew
   // if it changes.
   void setMostKeys(std::uint32_t most);
+
+  // In place of the edits before. Each is of the key light of its set that was found in a probe nearest to
+  // edit.found, if that is close enough; of several edits of one key light the last counts. One that meets no
+  // key light changes nothing, and waits for another parting. They stay when other lights are loaded: whoever
+  // loads these says which edits are theirs.
+  void setKeyEdits(std::vector<spec::KeyEdit> edits);
 
   // Each gives another version where it changes something. Values that are not finite change nothing.
   // Positive turns take +Z to +X.
@@ -69,10 +77,14 @@ class Environment {
   // Of all that is said above, a checksum: of two environments, also of two objects, the same where they are
   // the same light, and else another (but for one chance in 2^64). Never 0.
   std::uint64_t version() const { return version_; }
-  // Of what was loaded, likewise: turning, fading and dimming leave it as it is.
+  // Of what was loaded and its edits, likewise: turning, fading and dimming leave it as it is.
   std::uint64_t lightsVersion() const { return lights_version_; }
+  // Of restOf() alone, and of the pictures of shownOf() alone: a key light that is dragged changes neither,
+  // so that what is made from pictures need not be made anew for it.
+  std::uint64_t restVersion() const { return rest_version_; }
+  std::uint64_t picturesVersion() const { return pictures_version_; }
 
-  // As loaded: the lights' own frame, whole radiance.
+  // As loaded, without edits: the lights' own frame, whole radiance.
   const spec::DistantLights& set(std::size_t index) const { return sets_[index].lights; }
   // The same without the key lights: probes without their peaks, and the discs that are none.
   struct Rest {
@@ -81,7 +93,23 @@ class Environment {
     std::span<const Disc> discs;
   };
   Rest restOf(std::size_t index) const;
-  const std::vector<Disc>& keysOf(std::size_t index) const { return sets_[index].parted.keys; }
+  const std::vector<Disc>& keysOf(std::size_t index) const { return sets_[index].key_discs; }
+  // What an eye sees: as loaded, but for key lights that are edited. These are out of the pictures, and
+  // discs.
+  struct Shown {
+    std::vector<const spec::Probe*> probes;
+    glm::vec3 constant{0.0f};
+    std::vector<Disc> discs;
+  };
+  Shown shownOf(std::size_t index) const;
+  // In the order of keys().
+  struct FoundKey {
+    std::size_t set = 0;
+    KeyOrigin origin;
+    Disc found, now;  // the lights' own frame, whole radiance; without and with the edit
+    std::optional<spec::KeyEdit> edit;
+  };
+  std::vector<FoundKey> foundKeys() const;
   // By what set() is multiplied now.
   float shareOf(std::size_t index) const;
   // What was repaired in the probes; a sentence each.
@@ -111,10 +139,14 @@ class Environment {
     spec::DistantLights lights;
     std::vector<KnownProbe> known;  // as lights.probes
     PartedLights parted;
+    std::vector<Disc> key_discs;                       // parted.keys with the edits
+    std::vector<std::optional<spec::KeyEdit>> edits;   // as parted.keys
+    std::vector<std::optional<spec::Probe>> pictures;  // as lights.probes: without the keys that are edited
     sh::LightVector sky, discs, keys;  // in the lights' own frame; sky: probes and the constant without peaks
   };
   Environment() = default;
   void part(Set& set) const;
+  void applyEdits(std::size_t index);
   void mix();
   void seal();  // says what was loaded
 
@@ -122,10 +154,11 @@ class Environment {
   std::vector<std::string> notices_;
   float turn_degrees_ = 0.0f, fade_ = 0.0f, intensity_ = 1.0f;
   std::uint32_t most_keys_ = 0;
+  std::vector<spec::KeyEdit> key_edits_;
   sh::LightVector light_, sky_light_, key_light_, rest_light_;
   std::vector<Disc> discs_;
   std::size_t first_key_ = 0;
-  std::uint64_t version_ = 0, lights_version_ = 0;
+  std::uint64_t version_ = 0, lights_version_ = 0, rest_version_ = 0, pictures_version_ = 0;
 };
 
 }  // namespace lambent::lighting

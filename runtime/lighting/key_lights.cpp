@@ -69,7 +69,14 @@ class Parting {
   double lossOf(const Choice& choice) const;
   Choice best();
   Choice pruned(Choice choice, double allowed) const;
-  void takeFrom(const Choice& choice, PartedLights& parted) const;
+  // A key, and which of the pieces it is made from; none: a disc.
+  struct Key {
+    spec::Disc disc;
+    KeyOrigin origin;
+    std::optional<std::uint32_t> piece;
+  };
+  std::vector<Key> takeFrom(const Choice& choice, PartedLights& parted) const;
+  void put(std::vector<Key> keys, PartedLights& parted) const;
 
   const spec::DistantLights& lights_;
   const KeyLightOptions& options_;
@@ -243,6 +250,7 @@ struct Taken {
   glm::dvec3 flux{0.0};
   double texel_sr = 0.0;  // sum, weighted with the flux
   std::vector<TakenTexel> texels;
+  std::vector<double> of_probe;  // luminous flux from each picture
 };
 
 // A sun's glow has little of its light, but would make its disc several times too large, and so its shadows
@@ -271,9 +279,11 @@ spec::Disc discOf(const Taken& taken) {
           glm::vec3(taken.flux / solidAngle(static_cast<double>(radius)))};
 }
 
-// Texel by texel: the rest keeps the threshold's luminance in the texel's own colour.
-void Parting::takeFrom(const Choice& choice, PartedLights& parted) const {
+// Texel by texel: the rest keeps the threshold's luminance in the texel's own colour. The texels that are
+// noted name the piece, until put() knows its key.
+std::vector<Parting::Key> Parting::takeFrom(const Choice& choice, PartedLights& parted) const {
   std::vector<Taken> taken(choice.pieces.size());
+  for (Taken& piece : taken) piece.of_probe.resize(lights_.probes.size());
   const PieceLimits limit = limits(choice.radius_rad);
   for (std::size_t k = 0; k < lights_.probes.size() && !choice.pieces.empty(); ++k) {
     const spec::Probe& probe = lights_.probes[k];
@@ -303,10 +313,20 @@ void Parting::takeFrom(const Choice& choice, PartedLights& parted) const {
         piece.moment.add(dir, flux);
         piece.texel_sr += sr * flux;
         piece.texels.push_back({glm::vec3(dir), static_cast<float>(flux)});
+        piece.of_probe[k] += flux;
+        parted.texels.push_back({static_cast<std::uint32_t>(k), static_cast<std::uint32_t>(i),
+                                 static_cast<std::uint32_t>(*owner)});
       }
   }
-  for (const Taken& piece : taken)
-    if (piece.moment.flux > 0.0) parted.keys.push_back(discOf(piece));
+  std::vector<Key> keys;
+  for (std::size_t i = 0; i < taken.size(); ++i) {
+    if (!(taken[i].moment.flux > 0.0)) continue;
+    const auto most = std::ranges::max_element(taken[i].of_probe) - taken[i].of_probe.begin();
+    keys.push_back({.disc = discOf(taken[i]),
+                    .origin = {.in_probe = true, .index = static_cast<std::size_t>(most)},
+                    .piece = static_cast<std::uint32_t>(i)});
+  }
+  return keys;
 }
 
 PartedLights Parting::run() {
@@ -331,13 +351,15 @@ PartedLights Parting::run() {
       (gain < kLeastGain * parted.loss_before || gain < kLeastGainOfKey * count * options_.least_loss))
     return parted;
   parted.loss_after = choice.loss;
-  takeFrom(choice, parted);
-  if (!parted.keys.empty()) parted.threshold = static_cast<float>(choice.threshold);
+  std::vector<Key> keys = takeFrom(choice, parted);
+  if (!keys.empty()) parted.threshold = static_cast<float>(choice.threshold);
   // A disc none of whose pieces is a key stays whole.
   std::vector<bool> broken(lights_.discs.size());
   std::vector<bool> is_key(discs_.size());
   for (const std::size_t i : choice.discs) {
-    parted.keys.push_back(discs_[i].disc);
+    keys.push_back({.disc = discs_[i].disc,
+                    .origin = {.in_probe = false, .index = discs_[i].source, .piece = discs_[i].divided},
+                    .piece = {}});
     is_key[i] = true;
     broken[discs_[i].source] = true;
   }
@@ -346,13 +368,31 @@ PartedLights Parting::run() {
     if (!broken[source]) parted.discs.push_back(lights_.discs[source]);
   for (std::size_t i = 0; i < discs_.size(); ++i)
     if (!is_key[i] && broken[discs_[i].source]) parted.discs.push_back(discs_[i].disc);
+  put(std::move(keys), parted);
+  return parted;
+}
+
+// Those that lose most first.
+void Parting::put(std::vector<Key> keys, PartedLights& parted) const {
   const auto loss = [&](const spec::Disc& disc) {
     const auto radius = static_cast<double>(disc.radius_rad);
     return luminance(disc.radiance) * solidAngle(radius) * discLoss(options_.order, radius);
   };
-  std::stable_sort(parted.keys.begin(), parted.keys.end(),
-                   [&](const spec::Disc& a, const spec::Disc& b) { return loss(a) > loss(b); });
-  return parted;
+  std::stable_sort(keys.begin(), keys.end(),
+                   [&](const Key& a, const Key& b) { return loss(a.disc) > loss(b.disc); });
+  constexpr std::uint32_t kNone = ~std::uint32_t{0};
+  std::vector<std::uint32_t> key_of_piece;
+  for (const Key& key : keys) {
+    if (key.piece) {
+      if (key_of_piece.size() <= *key.piece) key_of_piece.resize(*key.piece + 1, kNone);
+      key_of_piece[*key.piece] = static_cast<std::uint32_t>(parted.keys.size());
+    }
+    parted.keys.push_back(key.disc);
+    parted.origins.push_back(key.origin);
+  }
+  for (KeyTexel& texel : parted.texels)
+    texel.key = texel.key < key_of_piece.size() ? key_of_piece[texel.key] : kNone;
+  std::erase_if(parted.texels, [](const KeyTexel& texel) { return texel.key == kNone; });
 }
 
 }  // namespace

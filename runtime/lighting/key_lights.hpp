@@ -24,8 +24,22 @@ struct KeyLightOptions {
   float largest_radius_rad = 0.14f, widest_radius_rad = 0.28f;
 };
 
+// Where a key light was found.
+struct KeyOrigin {
+  bool in_probe = false;  // else it is a disc, or a piece of one
+  std::size_t index = 0;  // among lights.probes or lights.discs; of several probes the one with most of it
+  bool piece = false;     // of a disc that was divided
+};
+
+// A texel of lights.probes that gave light to a key.
+struct KeyTexel {
+  std::uint32_t probe = 0, texel = 0, key = 0;
+};
+
 struct PartedLights {
-  std::vector<spec::Disc> keys;   // those that lose most first
+  std::vector<spec::Disc> keys;    // those that lose most first
+  std::vector<KeyOrigin> origins;  // as keys
+  std::vector<KeyTexel> texels;
   std::vector<spec::Disc> discs;  // of the rest; the constant is all in the rest
   // As lights.probes: the picture without its keys, or none where it stays as it is.
   std::vector<std::optional<spec::Probe>> probes;

@@ -64,6 +64,10 @@ bool hasWideKeys(const Environment& environment) {
 
 }  // namespace
 
+std::uint64_t ReflectedSky::sourceVersion(const Environment& environment) {
+  return hasWideKeys(environment) ? environment.lightsVersion() : environment.restVersion();
+}
+
 struct ReflectedSky::Source {
   const gpu::Texture& sky;  // its own frame
   std::span<const Disc> discs;
@@ -89,7 +93,7 @@ Result<ReflectedSky> ReflectedSky::make(const Environment& environment, const Sk
   }
   made.has_whole_ = hasWideKeys(environment);
   for (std::size_t set = 0; set < Environment::kSets; ++set) {
-    const spec::DistantLights& lights = environment.set(set);
+    const Environment::Shown lights = environment.shownOf(set);
     const Environment::Rest rest = environment.restOf(set);
     const bool parted = !environment.keysOf(set).empty();
     const gpu::Texture rest_sky = parted ? skyCube(rest.probes, rest.constant) : gpu::Texture();

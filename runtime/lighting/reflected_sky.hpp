@@ -24,6 +24,8 @@ class ReflectedSky {
  public:
   // `sky` is that of the environment.
   static Result<ReflectedSky> make(const Environment& environment, const Sky& sky, gpu::Counters& counters);
+  // What make() would make depends on this alone.
+  static std::uint64_t sourceVersion(const Environment& environment);
 
   // The environment as it stands now, and the light that surfaces have of it: so many bands, windowed.
   void update(const Environment& environment, int order, sh::Window window, gpu::Counters& counters);

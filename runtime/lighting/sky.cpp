@@ -91,12 +91,12 @@ bool Sky::update(const Environment& environment) {
   lights_ = environment.lightsVersion();
   std::vector<DiscRecord> discs;
   for (std::size_t i = 0; i < Environment::kSets; ++i) {
-    std::vector<const spec::Probe*> probes;
-    for (const spec::Probe& probe : environment.set(i).probes) probes.push_back(&probe);
-    cubes_[i] = skyCube(probes, environment.set(i).constant);
-    for (const Disc& disc : environment.set(i).discs)
+    const Environment::Shown shown = environment.shownOf(i);
+    if (pictures_ != environment.picturesVersion()) cubes_[i] = skyCube(shown.probes, shown.constant);
+    for (const Disc& disc : shown.discs)
       discs.push_back({{disc.direction, disc.radius_rad}, disc.radiance, static_cast<float>(i)});
   }
+  pictures_ = environment.picturesVersion();
   disc_count_ = static_cast<std::uint32_t>(discs.size());
   discs_.assign(std::span<const DiscRecord>(discs));
   return true;

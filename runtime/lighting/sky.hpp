@@ -25,7 +25,7 @@ class Sky {
   static Result<Sky> create(const Environment& environment);
 
   bool upToDate(const Environment& environment) const { return lights_ == environment.lightsVersion(); }
-  // Does nothing unless other lights were loaded since; true if it did.
+  // Does nothing unless other lights were loaded, or key lights edited, since; true if it did.
   bool update(const Environment& environment);
   // Into the bound framebuffer, where its depth is still that of the clear. Only the rotation of
   // view_from_world is used.
@@ -43,7 +43,7 @@ class Sky {
   gpu::Table discs_;
   gpu::VertexArray no_vertices_;
   std::uint32_t disc_count_ = 0;
-  std::uint64_t lights_ = 0;  // version
+  std::uint64_t lights_ = 0, pictures_ = 0;  // versions
 };
 
 }  // namespace lambent::lighting

@@ -92,6 +92,8 @@ TEST_F(DemoProgram, WrongUsageIsExitCode2AndOneLine) {
                                 "a.glb --time nan",
                                 "a.glb --step -1",
                                 "a.glb --fade 0.5",
+                                "a.glb --edit-key key:1,2,3",
+                                "a.glb --quality best",
                                 "a.glb --fade 2 --fade-to constant:1,1,1",
                                 "a.glb --fade-to sphere:0,1,0,1,1",
                                 "a.glb --capture-size 3",
@@ -207,6 +209,39 @@ TEST_F(DemoProgram, FadesFromOneLightToAnother) {
   const glm::vec4 centre = picture->texels[32 * 64 + 32];
   EXPECT_NEAR(centre.r, 0.75f, 3e-3f);
   EXPECT_NEAR(centre.g, 0.5f, 3e-3f);
+}
+
+TEST_F(DemoProgram, MovesAndDimsAKeyLightOfAProbe) {
+  if (!deviceHere()) GTEST_SKIP() << "no OpenGL 4.5 here";
+  // One bright texel at azimuth -40, elevation 40 in a grey sky.
+  spec::RgbImage sky{.width = 128, .height = 64, .texels = std::vector<glm::vec3>(128 * 64, glm::vec3(0.5f))};
+  sky.texels[18 * 128 + 50] = glm::vec3(9000.0f);
+  ASSERT_TRUE(spec::writeHdr(folder / "sky.hdr", sky));
+  const auto keyOf = [&](const std::string& options) {
+    const Outcome outcome = run(bundle() + " --light " + quoted(folder / "sky.hdr") + options +
+                                " --size 32x32 --json --headless " + quoted(folder / "a.png"));
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    const auto report = nlohmann::json::parse(outcome.out);
+    EXPECT_EQ(report["key_lights"].size(), 1u);
+    return report["key_lights"][0];
+  };
+  const auto found = keyOf("");
+  const auto edited = keyOf(" --edit-key key:" + found["azimuth_deg"].dump() + "," +
+                            found["elevation_deg"].dump() + ",10,20,0.5,0.25,1");
+  EXPECT_NEAR(edited["azimuth_deg"].get<double>(), 10.0, 1e-3);
+  EXPECT_NEAR(edited["elevation_deg"].get<double>(), 20.0, 1e-3);
+  EXPECT_EQ(edited["radius_deg"], found["radius_deg"]);
+  for (int channel = 0; channel < 3; ++channel) {
+    const double factor = channel == 0 ? 0.5 : channel == 1 ? 0.25 : 1.0;
+    const double was = found["radiance"][channel];
+    EXPECT_NEAR(edited["radiance"][channel].get<double>(), factor * was, 1e-3 * was);
+  }
+  // One that means nothing there is told, and changes nothing.
+  const Outcome told =
+      run(bundle() + " --light constant:1,1,1 --edit-key key:0,0,0,0,1 --size 32x32 --headless " +
+          quoted(folder / "a.png"));
+  EXPECT_EQ(told.exit_code, 0);
+  expectOneLine(told.err);
 }
 
 TEST_F(DemoProgram, ALightInTheSceneShinesByTheSquareOfItsDistance) {

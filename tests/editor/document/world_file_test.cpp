@@ -42,6 +42,7 @@ class WorldFiles : public ::testing::Test {
     WorldState state;
     state.bundles.push_back({"small.lmb.glb", "small.lmb.glb", 0, "../small.gltf", {{"samples", "64"}}, {}});
     state.lights = {"constant:0.1,0.2,0.3", "sun:35,45,6,100"};
+    state.key_edits = {"key:10,20,30,40,0.5", "fade-key:0,0,0,90,1,0.5,0.25"};
     state.exposure_ev = -1.5f;
     state.camera = "orbit:30,15,2.5,40";
     state.settings = {{"window", "auto"}, {"residual", "off"}};
@@ -206,6 +207,8 @@ TEST_F(WorldFiles, EveryKindOfDamageIsNamedWithItsPlace) {
       {"\"sun:35,45,6,100\"", "\"sun:35,45\"", "environment.lights[1]"},
       {"\"sun:35,45,6,100\"", "\"sphere:0,0,0,1,1\"",
        "environment.lights[1] is a light that stands in the scene"},
+      {"\"key:10,20,30,40,0.5\"", "\"key:10,20,30,95,0.5\"",
+       "environment.key_edits[0] has an elevation outside"},
       {"\"fade\": 0.0", "\"fade\": 2", "environment.fade 2 lies outside 0..1"},
       {"\"exposure\": -1.5", "\"exposure\": true", "environment.exposure is not a number"},
       {"\"orbit:30,15,2.5,40\"", "\"orbit:30,95,2.5,40\"", "camera has an elevation"},

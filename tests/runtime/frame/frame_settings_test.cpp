@@ -9,6 +9,7 @@
 #include "runtime/frame/fewer_samples.hpp"
 #include "runtime/frame/glossy_record.hpp"
 #include "runtime/frame/material_rebake.hpp"
+#include "runtime/frame/quality.hpp"
 
 namespace lambent::frame {
 namespace {
@@ -121,6 +122,31 @@ TEST(MaterialRebake, SaysWhatDoesNotShow) {
   now = baked;
   now.emissive = glm::vec3(1.0f);
   EXPECT_EQ(fields(now, shiny), Fields{"emission nearly"});
+}
+
+TEST(Quality, SetsWhatItNamesAndIsToldByThat) {
+  ASSERT_EQ(qualityNames().size(), 3u);
+  for (const std::string_view name : qualityNames()) {
+    FrameSettings settings;
+    settings.order = 3;
+    ASSERT_TRUE(putQuality(settings, name));
+    EXPECT_EQ(qualityOf(settings), name);
+    EXPECT_EQ(settings.order, 3u) << "what it does not name stays";
+    // It names all that it sets.
+    FrameSettings put;
+    put.order = 3;
+    for (const std::string_view row : qualitySettings())
+      ASSERT_TRUE(putSetting(put, row, settingWord(*findSetting(row), settings)));
+    EXPECT_EQ(put, settings);
+    settings.key_samples = 17;
+    EXPECT_EQ(qualityOf(settings), "");
+  }
+  FrameSettings settings;
+  EXPECT_EQ(qualityOf(settings), "default");
+  ASSERT_TRUE(putQuality(settings, "high"));
+  ASSERT_TRUE(putQuality(settings, "default"));
+  EXPECT_EQ(settings, FrameSettings{}) << "nothing of the one before is left";
+  EXPECT_FALSE(putQuality(settings, "best"));
 }
 
 }  // namespace

@@ -67,4 +67,36 @@ TEST_F(KnobCostTest, TheErrorIsThatOfTwoPicturesDrawnApart) {
       << "no knob of accuracy";
 }
 
+// How many key lights there are is the environment's to follow, and has to be measured so.
+TEST_F(KnobCostTest, FewerKeyLightsAreMeasuredByLightThatIsPartedSo) {
+  const spec::Light small = spec::SunLight{
+      .azimuth_deg = 60, .elevation_deg = 35, .angle_deg = 0.5f, .radiance = glm::vec3(9000.0f)};
+  LiveStage stage(ball(), {small});
+  stage.environment.setMostKeys(16);
+  const double values[] = {0.0, 1.0, 32.0};
+  const auto points = sweepKnob(stage.world, stage.environment, stage.view(), stage.frame->settings(),
+                                *findSetting("keys"), values, {.size = {64, 64}, .repeats = 1});
+  ASSERT_TRUE(points) << points.error().line();
+  EXPECT_GT((*points)[0].error, 0.005) << "five bands alone";
+  EXPECT_EQ((*points)[1].error, 0.0) << "there is only one";
+  EXPECT_EQ((*points)[2].error, 0.0);
+  EXPECT_EQ(stage.environment.keys().size(), 1u) << "the one beside stays as it is";
+}
+
+TEST_F(KnobCostTest, MeasuringAFrameGivesThePictureThatAFrameDrawsAndItsPasses) {
+  LiveStage stage(ball(), {kSun});
+  stage.environment.setMostKeys(16);
+  const auto before = stage.picture();
+  const auto measured = measureFrame(stage.world, stage.environment, stage.view(), stage.frame->settings(),
+                                     {.size = {64, 64}, .repeats = 2});
+  ASSERT_TRUE(measured) << measured.error().line();
+  EXPECT_EQ(farthest(measured->picture.texels, before), 0.0f);
+  EXPECT_GT(measured->cost.milliseconds("key shadows"), 0.0);
+  EXPECT_GT(measured->cost.milliseconds("raster"), 0.0);
+  EXPECT_GE(measured->cost.milliseconds(),
+            measured->cost.milliseconds("key shadows") + measured->cost.milliseconds("raster"));
+  EXPECT_EQ(measured->cost.milliseconds("no such pass"), 0.0);
+  EXPECT_EQ(farthest(stage.picture(), before), 0.0f) << "the frame beside goes on as before";
+}
+
 }  // namespace lambent::frame

@@ -5,6 +5,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
 
+#include "runtime/frame/overlay_keys.hpp"
 #include "runtime/frame/overlay_lines.hpp"
 #include "runtime/scene/lights.hpp"
 #include "tests/runtime/frame/view_stage.hpp"
@@ -63,6 +64,90 @@ TEST(OverlayLines, ABoxHasItsTwelveEdgesWhereItStands) {
   EXPECT_EQ(around.max, glm::vec3(6.0f, 2.0f, 3.0f));
   appendBox({}, glm::mat4(1.0f), glm::vec4(1.0f), lines);
   EXPECT_EQ(lines.size(), 12u) << "an empty one has none";
+}
+
+TEST(OverlayKeys, TheBoxOfAShadowMapHoldsAllThatIsSeenAndStandsOnItsLight) {
+  const std::vector<glm::dvec3> seen = {{-1, 0, -1}, {1, 0, -1}, {1, 0, 2}, {-1, 0.5, 2}};
+  const glm::dvec3 towards = glm::normalize(glm::dvec3(0.3, 0.8, 0.5));
+  const auto region = regionOf(seen, towards, 0.0, scene::Box{glm::vec3(-2.0f), glm::vec3(2.0f)});
+  ASSERT_TRUE(region);
+  const auto corners = cornersOf(*region);
+  // In its own axes the box is [0, 1] in all three.
+  const glm::dvec3 origin(corners[0]);
+  for (const glm::dvec3& point : seen)
+    for (const std::size_t bit : {1u, 2u, 4u}) {
+      const glm::dvec3 edge = glm::dvec3(corners[bit]) - origin;
+      const double share = glm::dot(point - origin, edge) / glm::dot(edge, edge);
+      EXPECT_GE(share, -1e-5);
+      EXPECT_LE(share, 1.0 + 1e-5);
+    }
+  EXPECT_LT(glm::distance(glm::normalize(glm::dvec3(corners[4]) - origin), towards), 1e-6);
+}
+
+TEST(OverlayKeys, AKeyLightHasItsOutlineOnTheSkyAnArrowTheWayItShinesAndItsBox) {
+  const spec::Disc sun{
+      .direction = glm::normalize(glm::vec3(1, 2, 3)), .radius_rad = 0.05f, .radiance = glm::vec3(100.0f)};
+  const spec::Disc dark{.direction = {0, 1, 0}, .radius_rad = 0.1f, .radiance = glm::vec3(0.0f)};
+  const scene::Box world{glm::vec3(-1.0f), glm::vec3(1.0f)};
+  const spec::View view =
+      spec::orbitView({.distance_radii = 3.0f, .fov_deg = 40.0f}, world.min, world.max, 1.0f);
+  std::vector<OverlayLine> lines;
+  appendKeys(std::vector{sun}, {}, {}, world, view, lines);
+  std::size_t outline = 0, arrow = 0;
+  for (const OverlayLine& line : lines) {
+    const glm::vec3 from = glm::normalize(line.from_ws - view.eye_ws),
+                    to = glm::normalize(line.to_ws - view.eye_ws);
+    const float angle = std::acos(std::min(glm::dot(from, sun.direction), 1.0f));
+    if (std::abs(angle - sun.radius_rad) < 1e-4f &&
+        std::abs(std::acos(glm::dot(to, sun.direction)) - sun.radius_rad) < 1e-4f)
+      ++outline;
+    if (glm::dot(glm::normalize(line.to_ws - line.from_ws), -sun.direction) > 0.9999f) ++arrow;
+  }
+  EXPECT_GE(outline, 32u);
+  EXPECT_EQ(arrow, 1u);
+  // A parallel view sees no place on the sky, but the arrow.
+  spec::View parallel = view;
+  parallel.clip_from_view = glm::ortho(-2.0f, 2.0f, -2.0f, 2.0f, 0.1f, 10.0f);
+  std::vector<OverlayLine> without_sky;
+  appendKeys(std::vector{sun}, {}, {}, world, parallel, without_sky);
+  EXPECT_LT(without_sky.size(), 10u);
+  // One that is dark is grey and fainter; a map adds the twelve edges of its box.
+  std::vector<OverlayLine> both;
+  KeyShadows::ShownRegion map{.light = sun, .region = {}, .texels = 256};
+  map.region.max = glm::dvec2(1.0);
+  map.region.range = 2.0;
+  appendKeys(std::vector{sun, dark}, std::vector{map}, {}, world, view, both);
+  EXPECT_EQ(both.size(), 2 * lines.size() + 12);
+  const OverlayLine& of_dark = both[lines.size()];
+  EXPECT_EQ(of_dark.color.r, of_dark.color.b);
+  EXPECT_LT(of_dark.color.a, both[0].color.a);
+}
+
+TEST(OverlayKeys, OfManyKeyLightsTheStrongestHaveBoxesOrTheOneThatIsChosen) {
+  std::vector<spec::Disc> keys;
+  std::vector<KeyShadows::ShownRegion> maps;
+  for (int i = 0; i < 9; ++i) {
+    keys.push_back({.direction = glm::normalize(glm::vec3(i, 5, 1)),
+                    .radius_rad = 0.05f,
+                    .radiance = glm::vec3(static_cast<float>(10 + i))});
+    KeyRegion region;
+    region.max = glm::dvec2(1.0 + i);  // tells the boxes apart
+    region.range = 1.0;
+    maps.push_back({.light = keys.back(), .region = region, .texels = 256});
+  }
+  const scene::Box world{glm::vec3(-1.0f), glm::vec3(1.0f)};
+  const auto drawn = [&](std::span<const KeyShadows::ShownRegion> regions,
+                         std::optional<std::size_t> chosen) {
+    std::vector<OverlayLine> lines;
+    appendKeys(keys, regions, chosen, world, {}, lines);
+    return lines;
+  };
+  const std::size_t without = drawn({}, {}).size();
+  const std::vector<OverlayLine> all = drawn(maps, {}), one = drawn(maps, 3);
+  EXPECT_EQ(all.size(), without + 12 * kMostBoxes);
+  ASSERT_EQ(one.size(), without + 12);
+  EXPECT_EQ(all[without].to_ws.x, 9.0f) << "the strongest";
+  EXPECT_EQ(one[without].to_ws.x, 4.0f) << "the fourth";
 }
 
 TEST(OverlayLines, OfBoxesThatOverlapTheWantedOrElseTheNearestIsDrawnWhole) {
@@ -203,6 +288,44 @@ TEST_F(OverlayTest, LinesAreHiddenByWhatStandsBeforeThemButForATrace) {
   const auto changed = changes(stage.picture(), bare);
   EXPECT_GT(changed.size(), 10u);
   for (const std::size_t i : changed) EXPECT_GE(i / 64, 31u);
+}
+
+TEST_F(OverlayTest, KeyLightsAreMarkedWhereTheSkyShowsThem) {
+  // Beside the sphere, as the eye looks along -Z.
+  const auto lights = std::vector<spec::Light>{
+      spec::ConstantLight{.radiance = glm::vec3(0.5f)},
+      spec::SunLight{
+          .azimuth_deg = 165, .elevation_deg = 10, .angle_deg = 1, .radiance = glm::vec3(2000.0f)}};
+  ViewStage stage(BundleBuilder().add({sphereMesh(12, 24), {}}), lights, linearOptions());
+  stage.camera.distance_radii = 5.0f;
+  stage.environment.setMostKeys(16);
+  ASSERT_EQ(stage.environment.keys().size(), 1u);
+  const spec::RgbaImage bare = stage.picture();
+  OverlayOptions shown;
+  shown.keys = true;
+  stage.frame->setOverlays(shown);
+  const spec::RgbaImage marked = stage.picture();
+  const std::vector<std::size_t> changed = changes(marked, bare);
+  EXPECT_GT(changed.size(), 20u);
+  // The middle of what shines in the picture is the middle of the ring around it.
+  glm::vec2 sun(0.0f);
+  float count = 0.0f;
+  for (std::size_t i = 0; i < bare.texels.size(); ++i)
+    if (bare.texels[i].r > 500.0f && bare.texels[i].a == 0.0f) {
+      sun += glm::vec2(i % 64, i / 64);
+      ++count;
+    }
+  ASSERT_GT(count, 0.0f);
+  sun /= count;
+  std::size_t beside = 0;
+  for (const std::size_t i : changed) beside += glm::distance(glm::vec2(i % 64, i / 64), sun) < 6.0f;
+  EXPECT_GE(beside, 6u) << "a ring about it";
+  ASSERT_EQ(stage.frame->keyShadows().regions().size(), 1u);
+  EXPECT_LT(glm::distance(stage.frame->keyShadows().regions()[0].light.direction,
+                          stage.environment.keys()[0].direction),
+            1e-6f);
+  stage.frame->setOverlays({});
+  EXPECT_TRUE(changes(stage.picture(), bare).empty());
 }
 
 }  // namespace lambent::frame

@@ -149,4 +149,19 @@ TEST(FrameTimesTest, UploadsShrinkWhereFramesTakeLongerAndGrowAgain) {
   EXPECT_GT(pacer.budget(kMost), 0u) << "something always comes";
 }
 
+// A scene that has arrived in part takes far longer to draw than the empty world before it.
+TEST(FrameTimesTest, SlowFramesDoNotStarveWhatLoads) {
+  UploadPacer pacer;
+  constexpr std::uint64_t kMost = 16 << 20;
+  for (int i = 0; i < 100; ++i) pacer.frameTook(10.0, false, kMost);
+  double bytes = 0.0, seconds = 0.0, frame_ms = 100.0;
+  while (bytes < 32 << 20 && seconds < 60.0) {
+    bytes += static_cast<double>(pacer.budget(kMost));
+    seconds += 1e-3 * frame_ms;
+    pacer.frameTook(frame_ms, true, kMost);
+    frame_ms *= 1.3;  // each longer than those before
+  }
+  EXPECT_LT(seconds, 6.0) << "32 MiB";
+}
+
 }  // namespace lambent::frame

@@ -1,11 +1,18 @@
 // The sky as drawn is the radiance of the environment as it stands: turned, faded and scaled.
 #include "runtime/lighting/sky.hpp"
 
+#include <filesystem>
+#include <string>
 #include <vector>
 
+#include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include "runtime/lighting/reflected_sky.hpp"
+#include "runtime/sh/image_layout.hpp"
+#include "runtime/spec/image.hpp"
 #include "tests/support/gpu_context.hpp"
 
 namespace lambent::lighting {
@@ -52,6 +59,45 @@ TEST_F(SkyTest, ShowsTheMixOfBothSets) {
   expectSeen(120, -10, between);
   expectSeen(-10, 0, between + glm::vec3(2.0f));
   expectSeen(60, 60, between + glm::vec3(3.0f, 0.0f, 1.5f));
+}
+
+// A key light of a picture that is moved is seen where it went, and no longer where it was.
+TEST_F(SkyTest, ShowsAMovedKeyLightAsADiscInPlaceOfItsTexels) {
+  const glm::vec3 sun = spec::directionFromAzimuthElevation(40, 50);
+  spec::RgbImage image{.width = 256, .height = 128, .texels = {}};
+  for (int y = 0; y < 128; ++y)
+    for (int x = 0; x < 256; ++x) {
+      const glm::dvec3 dir = sh::texelDirection(sh::ImageLayout::LatLong, 256, 128, x, y);
+      image.texels.push_back(glm::distance(glm::vec3(dir), sun) < 0.05f ? glm::vec3(1000.0f)
+                                                                        : glm::vec3(1.0f));
+    }
+  const auto file = std::filesystem::path(::testing::TempDir()) / (std::to_string(getpid()) + "-sky.hdr");
+  ASSERT_TRUE(spec::writeHdr(file, image));
+  auto environment = Environment::create({spec::ProbeLight{file, std::nullopt}});
+  std::filesystem::remove(file);
+  ASSERT_TRUE(environment);
+  environment->setMostKeys(16);
+  ASSERT_EQ(environment->foundKeys().size(), 1u);
+  auto sky = Sky::create(*environment);
+  ASSERT_TRUE(sky) << sky.error().line();
+  const glm::vec3 to = spec::directionFromAzimuthElevation(-60, 10);
+  EXPECT_NEAR(seen(*sky, *environment, sun).r, 1000.0f, 20.0f);
+  EXPECT_NEAR(seen(*sky, *environment, to).r, 1.0f, 0.02f);
+  const std::uint64_t version = ReflectedSky::sourceVersion(*environment);
+  environment->setKeyEdits({{.found = sun, .towards = to, .factor = {0.5f, 0.25f, 0.0f}}});
+  const Environment::FoundKey key = environment->foundKeys()[0];
+  ASSERT_TRUE(key.edit);
+  EXPECT_TRUE(sky->update(*environment));
+  EXPECT_FALSE(sky->update(*environment));
+  const glm::vec3 moved = seen(*sky, *environment, to);
+  EXPECT_NEAR(moved.r, key.now.radiance.r + 1.0f, 0.02f * key.now.radiance.r);
+  EXPECT_NEAR(moved.g, key.now.radiance.g + 1.0f, 0.02f * key.now.radiance.g);
+  EXPECT_NEAR(moved.b, 1.0f, 0.02f) << "none of this channel is left";
+  EXPECT_LT(seen(*sky, *environment, sun).r, 300.0f) << "what the rest keeps";
+  EXPECT_EQ(ReflectedSky::sourceVersion(*environment), version) << "mirrors show the disc apart";
+  environment->setKeyEdits({});
+  EXPECT_TRUE(sky->update(*environment));
+  EXPECT_NEAR(seen(*sky, *environment, sun).r, 1000.0f, 20.0f);
 }
 
 }  // namespace lambent::lighting

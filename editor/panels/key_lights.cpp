@@ -1,0 +1,120 @@
+// The key lights that were found in the light from outside: a table, and the fields of the one at hand.
+#include "editor/session/key_lights.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include "editor/panels/panel.hpp"
+#include "runtime/spec/light.hpp"
+
+namespace lambent::editor {
+
+namespace {
+
+// A drag of a widget is one step of the history.
+void asOneStep(Session& session, const char* name) {
+  if (ImGui::IsItemActivated()) session.beginDrag(name);
+  if (ImGui::IsItemDeactivated()) session.endDrag();
+}
+
+void tell(Session& session, const Result<void>& done) {
+  if (!done) session.log.error(done.error());
+}
+
+void swatch(const glm::vec3& radiance) {
+  const float peak = std::max({radiance.r, radiance.g, radiance.b, 1e-6f});
+  const ImVec4 color(radiance.r / peak, radiance.g / peak, radiance.b / peak, 1.0f);
+  ImGui::ColorButton("##colour", color, ImGuiColorEditFlags_NoTooltip | ImGuiColorEditFlags_NoBorder,
+                     ImVec2(12.0f, 12.0f));
+  if (ImGui::IsItemHovered())
+    ImGui::SetTooltip("radiance %.4g %.4g %.4g", double{radiance.r}, double{radiance.g}, double{radiance.b});
+}
+
+void drawTable(Session& session, Ui& ui, const std::vector<KeyLight>& keys) {
+  constexpr ImGuiTableFlags kTable =
+      ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersInnerV | ImGuiTableFlags_SizingFixedFit;
+  if (!ImGui::BeginTable("keys", 6, kTable)) return;
+  for (const char* title : {"", "az", "el", "radius", "share"}) ImGui::TableSetupColumn(title);
+  ImGui::TableSetupColumn("found in", ImGuiTableColumnFlags_WidthStretch);
+  ImGui::TableHeadersRow();
+  std::optional<std::size_t>& at_hand = session.viewing.key_at_hand;
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    const KeyLight& key = keys[i];
+    ImGui::PushID(static_cast<int>(i));
+    ImGui::TableNextRow();
+    ImGui::TableNextColumn();
+    swatch(key.radiance);
+    ImGui::TableNextColumn();
+    const std::string azimuth = fmt::format("{:.1f}", key.azimuth_deg);
+    if (ImGui::Selectable(azimuth.c_str(), at_hand == i,
+                          ImGuiSelectableFlags_SpanAllColumns | ImGuiSelectableFlags_AllowItemOverlap)) {
+      at_hand = at_hand == i ? std::nullopt : std::optional(i);
+      session.viewing.changed = true;  // the overlay shows its box
+    }
+    ui.mark(fmt::format("key.{}", i));
+    ImGui::TableNextColumn();
+    ImGui::Text("%.1f", double{key.elevation_deg});
+    ImGui::TableNextColumn();
+    ImGui::Text("%.2f", double{key.radius_deg});
+    ImGui::TableNextColumn();
+    ImGui::Text("%.1f %%", 100.0 * key.share);
+    ImGui::TableNextColumn();
+    ImGui::Text("%s%s", key.source().c_str(), key.edited ? " *" : "");
+    ImGui::PopID();
+  }
+  ImGui::EndTable();
+}
+
+void drawFields(Session& session, Ui& ui, std::size_t index, const KeyLight& key) {
+  const std::string mark = fmt::format("key.{}", index);
+  float azimuth = key.azimuth_deg, elevation = key.elevation_deg;
+  bool moved = ImGui::DragFloat("azimuth##key", &azimuth, 0.5f, -360.0f, 360.0f, "%.1f deg");
+  asOneStep(session, "turn of key light");
+  ui.mark(mark + ".azimuth");
+  moved |= ImGui::DragFloat("elevation##key", &elevation, 0.25f, -89.9f, 89.9f, "%.1f deg",
+                            ImGuiSliderFlags_AlwaysClamp);
+  asOneStep(session, "height of key light");
+  ui.mark(mark + ".elevation");
+  if (moved)
+    tell(session, moveKeyLight(session, index, spec::directionFromAzimuthElevation(azimuth, elevation)));
+  if (!key.in_probe) {
+    ImGui::TextDisabled("Strength and colour are those of %s, above.", key.source().c_str());
+    return;
+  }
+  // A factor as a colour and a strength, as radiance is edited.
+  float strength = std::max({key.factor.r, key.factor.g, key.factor.b});
+  glm::vec3 tint = strength > 0.0f ? key.factor / strength : glm::vec3(1.0f);
+  bool changed =
+      ImGui::DragFloat("times##key", &strength, 0.01f, 0.0f, 1000.0f, "%.3f", ImGuiSliderFlags_AlwaysClamp);
+  asOneStep(session, "strength of key light");
+  ui.mark(mark + ".strength");
+  changed |= ImGui::ColorEdit3("tint##key", &tint.x, ImGuiColorEditFlags_Float);
+  asOneStep(session, "colour of key light");
+  ui.mark(mark + ".tint");
+  if (changed) tell(session, dimKeyLight(session, index, strength * glm::max(tint, 0.0f)));
+  if (!key.edited) return;
+  if (ImGui::Button("As found")) tell(session, resetKeyLights(session, index));
+  ui.mark(mark + ".reset");
+}
+
+}  // namespace
+
+void drawKeyLights(Session& session, Ui& ui) {
+  const bool open = ImGui::CollapsingHeader("Key lights", ImGuiTreeNodeFlags_DefaultOpen);
+  ui.mark("environment.keys");
+  if (ImGui::IsItemHovered())
+    ImGui::SetTooltip(
+        "Suns, lamps and windows that were found in the light from outside, and shine by shadow maps.\n"
+        "Share: of all light. With the environment selected, those of probes have handles on the sky, too.");
+  if (!open) return;
+  const std::vector<KeyLight> keys = keyLightsOf(session);
+  if (keys.empty()) return ImGui::TextDisabled("None: all light from outside is soft.");
+  drawTable(session, ui, keys);
+  std::optional<std::size_t>& at_hand = session.viewing.key_at_hand;
+  if (at_hand && *at_hand >= keys.size()) at_hand.reset();
+  if (at_hand) drawFields(session, ui, *at_hand, keys[*at_hand]);
+}
+
+}  // namespace lambent::editor

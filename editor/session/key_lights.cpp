@@ -1,0 +1,215 @@
+#include "editor/session/key_lights.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+#include <utility>
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
+#include <glm/matrix.hpp>
+#include <glm/trigonometric.hpp>
+
+#include "editor/gizmo/sun_gizmo.hpp"
+#include "editor/session/session.hpp"
+#include "runtime/spec/key_edit.hpp"
+#include "runtime/spec/light.hpp"
+
+namespace lambent::editor {
+
+namespace {
+
+using FoundKey = lighting::Environment::FoundKey;
+
+double luminance(const glm::vec3& c) {
+  return 0.2126 * double{c.r} + 0.7152 * double{c.g} + 0.0722 * double{c.b};
+}
+
+double fluxOf(const spec::Disc& disc) {
+  const double half = std::sin(0.5 * double{disc.radius_rad});
+  return 4.0 * std::numbers::pi * half * half * luminance(disc.radiance);
+}
+
+// Places among the lights of those that probes, or suns, came from, in their order.
+std::vector<std::size_t> placesOf(const std::vector<spec::Light>& lights, bool probes) {
+  std::vector<std::size_t> places;
+  for (std::size_t i = 0; i < lights.size(); ++i)
+    if (probes ? std::holds_alternative<spec::ProbeLight>(lights[i])
+               : std::holds_alternative<spec::SunLight>(lights[i]))
+      places.push_back(i);
+  return places;
+}
+
+const std::vector<std::string>& wordsOf(const Session& session, std::size_t set) {
+  const WorldState& world = session.document.world();
+  return set == 0 ? world.lights : world.fade_lights;
+}
+
+Result<FoundKey> findKey(const Session& session, std::size_t key) {
+  const std::vector<FoundKey> found = session.stage.environment().foundKeys();
+  if (key >= found.size())
+    return fail("key light", fmt::format("there is no key light {}", key),
+                fmt::format("there are {}, counted from 0", found.size()));
+  return found[key];
+}
+
+// The words without that of this edit.
+std::vector<std::string> without(const std::vector<std::string>& words, const spec::KeyEdit& edit) {
+  std::vector<std::string> kept;
+  for (const std::string& word : words)
+    if (const auto parsed = spec::parseKeyEdit(word); !parsed || !(*parsed == edit)) kept.push_back(word);
+  return kept;
+}
+
+void putEdit(Session& session, const FoundKey& found, const spec::KeyEdit& edit, const char* name) {
+  session.editWorld(name, [&](WorldState& world) {
+    if (found.edit) world.key_edits = without(world.key_edits, *found.edit);
+    world.key_edits.push_back(spec::keyEditWord(edit));
+  });
+}
+
+spec::KeyEdit editOf(const FoundKey& found) {
+  if (found.edit) return *found.edit;
+  return {.set = found.set, .found = found.found.direction, .towards = found.found.direction};
+}
+
+Result<std::size_t> sunOf(const Session& session, std::size_t key) {
+  const std::vector<KeyLight> keys = keyLightsOf(session);
+  if (key < keys.size() && keys[key].light < wordsOf(session, keys[key].set).size()) return keys[key].light;
+  return fail("key light", "its sun is not among the lights any more", "wait until the lights are loaded");
+}
+
+std::vector<std::string>& wordsOf(WorldState& world, std::size_t set) {
+  return set == 0 ? world.lights : world.fade_lights;
+}
+
+}  // namespace
+
+std::string KeyLight::source() const {
+  if (in_probe) return std::filesystem::path(word).filename().string();
+  return fmt::format("{}sun {}", piece ? "piece of " : "", light);
+}
+
+std::vector<KeyLight> keyLightsOf(const Session& session) {
+  const lighting::Environment& environment = session.stage.environment();
+  constexpr double kFluxOfBandZero = 3.5449077;  // sqrt(4 pi)
+  const double all = kFluxOfBandZero * luminance(environment.light().c[0]);
+  std::vector<KeyLight> keys;
+  for (const FoundKey& found : environment.foundKeys()) {
+    const std::vector<spec::Light>& lights =
+        found.set == 0 ? session.stage.lights() : session.stage.fadeLights();
+    const std::vector<std::size_t> places = placesOf(lights, found.origin.in_probe);
+    const std::vector<std::string>& words = wordsOf(session, found.set);
+    const glm::vec3 towards = environment.worldFromLight() * found.now.direction;
+    const spec::AzimuthElevation angles = spec::azimuthElevation(towards);
+    KeyLight key{.set = found.set,
+                 .light = 0,
+                 .word = {},
+                 .in_probe = found.origin.in_probe,
+                 .piece = found.origin.piece,
+                 .edited = found.edit.has_value(),
+                 .towards_ws = towards,
+                 .azimuth_deg = angles.azimuth_deg,
+                 .elevation_deg = angles.elevation_deg,
+                 .radius_deg = glm::degrees(found.now.radius_rad),
+                 .radiance = environment.shareOf(found.set) * found.now.radiance,
+                 .factor = found.edit ? found.edit->factor : glm::vec3(1.0f),
+                 .share = all > 0.0 ? double{environment.shareOf(found.set)} * fluxOf(found.now) / all : 0.0};
+    if (found.origin.index < places.size()) key.light = places[found.origin.index];
+    if (key.light < words.size()) key.word = words[key.light];
+    keys.push_back(std::move(key));
+  }
+  return keys;
+}
+
+Result<void> moveKeyLight(Session& session, std::size_t key, const glm::vec3& towards_ws) {
+  const auto found = findKey(session, key);
+  if (!found) return failAgain(found.error());
+  const glm::mat3 light_from_world = glm::transpose(session.stage.environment().worldFromLight());
+  const glm::vec3 towards = glm::normalize(light_from_world * towards_ws);
+  if (found->origin.in_probe) {
+    spec::KeyEdit edit = editOf(*found);
+    edit.towards = towards;
+    putEdit(session, *found, edit, "turn of key light");
+    return {};
+  }
+  const auto sun = sunOf(session, key);
+  if (!sun) return failAgain(sun.error());
+  const std::string& word = wordsOf(session, found->set)[*sun];
+  const auto light = spec::parseLight(word);
+  if (!light || !std::holds_alternative<spec::SunLight>(*light))
+    return fail("key light", word + " is no sun", "wait until the lights are loaded");
+  const auto& now = std::get<spec::SunLight>(*light);
+  const glm::quat turn(found->now.direction, towards);
+  const glm::vec3 to = turn * spec::directionFromAzimuthElevation(now.azimuth_deg, now.elevation_deg);
+  const auto turned = withSunDirection(word, skyDirection(to, 0.0f));
+  if (!turned) return failAgain(turned.error());
+  session.editWorld("turn of sun", [&](WorldState& world) { wordsOf(world, found->set)[*sun] = *turned; });
+  return {};
+}
+
+Result<void> dimKeyLight(Session& session, std::size_t key, const glm::vec3& factor) {
+  for (int channel = 0; channel < 3; ++channel)
+    if (!(factor[channel] >= 0.0f && factor[channel] <= spec::kMostKeyFactor))
+      return fail("key light", fmt::format("{} is no factor of it", factor[channel]), "give 0 to a million");
+  const auto found = findKey(session, key);
+  if (!found) return failAgain(found.error());
+  if (found->origin.in_probe) {
+    spec::KeyEdit edit = editOf(*found);
+    edit.factor = factor;
+    putEdit(session, *found, edit, "strength of key light");
+    return {};
+  }
+  const auto sun = sunOf(session, key);
+  if (!sun) return failAgain(sun.error());
+  const auto light = spec::parseLight(wordsOf(session, found->set)[*sun]);
+  if (!light || !std::holds_alternative<spec::SunLight>(*light))
+    return fail("key light", "its light is no sun", "wait until the lights are loaded");
+  auto now = std::get<spec::SunLight>(*light);
+  now.radiance *= factor;
+  const std::string word =
+      fmt::format("sun:{:.7g},{:.7g},{:.7g},{:.7g},{:.7g},{:.7g}", now.azimuth_deg, now.elevation_deg,
+                  now.angle_deg, now.radiance.r, now.radiance.g, now.radiance.b);
+  session.editWorld("strength of sun", [&](WorldState& world) { wordsOf(world, found->set)[*sun] = word; });
+  return {};
+}
+
+Result<void> resetKeyLights(Session& session, std::optional<std::size_t> key) {
+  if (!key) {
+    if (!session.document.world().key_edits.empty())
+      session.editWorld("key lights as found", [](WorldState& world) { world.key_edits.clear(); });
+    return {};
+  }
+  const auto found = findKey(session, *key);
+  if (!found) return failAgain(found.error());
+  if (!found->edit) return {};
+  session.editWorld("key light as found",
+                    [&](WorldState& world) { world.key_edits = without(world.key_edits, *found->edit); });
+  return {};
+}
+
+void replaceLights(const Session& session, WorldState& world, std::vector<std::string> lights) {
+  const auto stays = [&](const std::string& word) { return std::ranges::find(lights, word) != lights.end(); };
+  const auto isProbe = [](const std::string& word) {
+    const auto light = spec::parseLight(word);
+    return light && std::holds_alternative<spec::ProbeLight>(*light);
+  };
+  const bool all_stay = std::ranges::all_of(
+      world.lights, [&](const std::string& word) { return !isProbe(word) || stays(word); });
+  if (!all_stay) {
+    const std::vector<FoundKey> found = session.stage.environment().foundKeys();
+    const std::vector<KeyLight> keys = keyLightsOf(session);
+    std::erase_if(world.key_edits, [&](const std::string& word) {
+      const auto edit = spec::parseKeyEdit(word);
+      if (!edit || edit->set != 0) return !edit;
+      for (std::size_t i = 0; i < found.size(); ++i)
+        if (found[i].edit == *edit) return !stays(keys[i].word);
+      return true;  // it waits for a key light of a probe that may be the one that goes
+    });
+  }
+  world.lights = std::move(lights);
+}
+
+}  // namespace lambent::editor

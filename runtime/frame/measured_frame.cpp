@@ -1,0 +1,107 @@
+#include "runtime/frame/measured_frame.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <string>
+#include <utility>
+
+#include <glm/geometric.hpp>
+
+#include "runtime/frame/frame.hpp"
+
+namespace lambent::frame {
+
+namespace {
+
+double median(std::vector<double>& values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+// Passes of some frames that all did the same, each with its median times.
+std::vector<gpu::PassTime> medians(const std::vector<std::vector<gpu::PassTime>>& frames) {
+  std::vector<gpu::PassTime> passes;
+  if (frames.empty()) return passes;
+  std::map<std::string, std::pair<std::vector<double>, std::vector<double>>> times;
+  for (const auto& frame : frames)
+    for (const gpu::PassTime& pass : frame) {
+      times[pass.name].first.push_back(pass.cpu_ms);
+      times[pass.name].second.push_back(pass.gpu_ms);
+    }
+  passes = frames.back();
+  for (gpu::PassTime& pass : passes) {
+    auto& [cpu_ms, gpu_ms] = times[pass.name];
+    pass.cpu_ms = median(cpu_ms);
+    pass.gpu_ms = median(gpu_ms);
+  }
+  return passes;
+}
+
+// Whatever comes of a measurement, the samples are no other frame's any more.
+class Unshaded {
+ public:
+  explicit Unshaded(World& world) : world_(world) {}
+  ~Unshaded() { world_.residency().forgetShading(); }
+  Unshaded(const Unshaded&) = delete;
+  Unshaded& operator=(const Unshaded&) = delete;
+
+ private:
+  World& world_;
+};
+
+}  // namespace
+
+double FrameCost::milliseconds(std::string_view pass) const {
+  for (const gpu::PassTime& time : passes)
+    if (time.name == pass) return time.gpu_ms > 0.0 ? time.gpu_ms : time.cpu_ms;
+  return 0.0;
+}
+
+Result<MeasuredFrame> measureFrame(World& world, const lighting::Environment& environment,
+                                   const spec::View& view, const FrameSettings& settings,
+                                   const MeasureOptions& options) {
+  const Unshaded unshaded(world);
+  Result<Frame> frame = Frame::create({.size = options.size,
+                                       .output = Output::Linear,
+                                       .settings = settings,
+                                       .upload_budget_bytes = 0,  // what is resident, no more
+                                       .wait_for_captures = true},
+                                      environment);
+  if (!frame) return failAgain(frame.error());
+  if (const auto rested = frame->rest(world, environment); !rested) return failAgain(rested.error());
+  if (Result<void> done = frame->render(world, environment, view); !done) return failAgain(done.error());
+  MeasuredFrame measured{.picture = frame->readLinear(), .cost = {}};
+  std::vector<std::vector<gpu::PassTime>> frames;
+  for (std::uint32_t i = 0; i < options.repeats; ++i) {
+    frame->forget();
+    if (Result<void> done = frame->render(world, environment, view); !done) return failAgain(done.error());
+    frame->timers().finish();
+    frames.push_back(frame->timers().latest());
+  }
+  measured.cost.passes = medians(frames);
+  for (const gpu::PassTime& pass : measured.cost.passes) {
+    measured.cost.cpu_ms += pass.cpu_ms;
+    measured.cost.gpu_ms += std::max(pass.gpu_ms, 0.0);
+  }
+  return measured;
+}
+
+Result<double> relativeRms(const spec::RgbaImage& picture, const spec::RgbaImage& reference) {
+  if (picture.width != reference.width || picture.height != reference.height)
+    return fail("picture", "is not as large as the one beside it");
+  double squares = 0.0, energy = 0.0;
+  for (std::size_t i = 0; i < picture.texels.size(); ++i) {
+    const glm::vec4 &x = picture.texels[i], &a = reference.texels[i];
+    if (!(std::min(x.w, a.w) >= spec::kLeastCoverage)) continue;
+    const glm::dvec3 reference_color(a), difference = glm::dvec3(x) - reference_color;
+    squares += glm::dot(difference, difference);
+    energy += glm::dot(reference_color, reference_color);
+  }
+  if (!(energy > 0.0) || !std::isfinite(squares))
+    return fail("picture", "nothing that is lit stands in it", "turn the camera or the light");
+  return std::sqrt(squares / energy);
+}
+
+}  // namespace lambent::frame
