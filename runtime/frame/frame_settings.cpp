@@ -149,8 +149,9 @@ const std::array kRows = {
             "only lights within its bounds",
         .get = getNumber<&S::near_radii>,
         .put = putNumber<&S::near_radii>},
-    switchRow<&S::patch_bounces>("patch-bounces", "bounces of near lights", 1.0,
-                                "Surfaces send on the light of lights among them"),
+    switchRow<&S::patch_bounces>("patch-bounces", "bounces by patches", 1.0,
+                                "Surfaces send on the light of lights among them, and of key\nlights what their "
+                                "bands get wrong"),
     switchRow<&S::captures>("captures", "light between bodies", 1.0,
                             "Bodies light and shadow each other as they stand now"),
     SettingRow{.name = "capture-size",

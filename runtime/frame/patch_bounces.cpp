@@ -279,13 +279,15 @@ void PatchBounces::layOut(const World& world) {
   bounced_.reserve(std::max<std::size_t>(16, 4 * std::size_t{word}));
 }
 
-// Behind the patches of each group one that is dark, for links that meet nothing.
+// Behind the regions of each group one that is dark, for links that meet nothing.
 void PatchBounces::uploadPatches(gpu::Counters& counters) {
   std::vector<glm::vec4> patches;
   for (Room& room : rooms_) {
     if (room.room.givenOff().empty()) continue;
     room.first_patch = static_cast<std::uint32_t>(patches.size());
-    for (const glm::vec3& radiance : room.room.givenOff()) patches.emplace_back(radiance, 0.0f);
+    const lighting::PatchRegions& regions = room.room.transport()->regions();
+    for (const glm::vec3& radiance : regions.means(room.room.givenOff()))
+      patches.emplace_back(radiance, 0.0f);
     patches.emplace_back(0.0f);
   }
   if (patches.empty()) return;

@@ -78,7 +78,7 @@ LinkFrame linkFrame(const glm::vec3& n) {
 }
 
 PatchTransport::PatchTransport(const bundle::CaptureProxy& proxy, std::size_t most, int order)
-    : patches_(proxy, most), order_(order) {
+    : patches_(proxy, most), regions_(patches_), order_(order) {
   findShares();
   findNearest(proxy);
   bounced_ = meanBounced();
@@ -217,6 +217,30 @@ glm::vec3 PatchTransport::startNear(const SurfacePoint& point) const {
   return nearest != nullptr ? patches_.inFront(nearest->points[0], nearest->normal) : point.position;
 }
 
+std::size_t PatchTransport::regionFrom(const glm::vec3& origin, const RayHit& hit, float solid_angle_sr,
+                                       const RaysFrom& rays) const {
+  constexpr float kLeastCosine = 0.1f;
+  constexpr float kAlmost = 0.999f;  // of the way to the region
+  const std::array<glm::vec3, 3> corners = patches_.triangles()[hit.triangle].corners;
+  const glm::vec3 across = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
+  const glm::vec3 way =
+      corners[0] + hit.b * (corners[1] - corners[0]) + hit.c * (corners[2] - corners[0]) - origin;
+  const float cosine = std::abs(glm::dot(way, across)) / (glm::length(way) * glm::length(across));
+  const float covered = solid_angle_sr * glm::dot(way, way) / std::max(cosine, kLeastCosine);
+  std::size_t level = 0;
+  while (level + 1 < regions_.levelsOf(hit.triangle) &&
+         regions_.areaOf(hit.triangle, level + 1) < 4.0f * covered)
+    ++level;
+  // Where something stands before a part of it, light would leak.
+  const auto inSight = [&] {
+    return std::ranges::none_of(regions_.cornersAt(hit, level), [&](const glm::vec3& corner) {
+      return rays.blocked(corner - origin, kAlmost);
+    });
+  };
+  while (level > 0 && !inSight()) --level;
+  return regions_.regionAt(hit, level);
+}
+
 std::vector<std::uint16_t> PatchTransport::link(std::span<const SurfacePoint> points,
                                                 LinkSpread spread) const {
   const auto& directions = linkDirections(spread);
@@ -231,8 +255,13 @@ std::vector<std::uint16_t> PatchTransport::link(std::span<const SurfacePoint> po
       for (std::size_t k = 0; k < kLinks; ++k) {
         const std::optional<RayHit> hit = rays.first(frame.turned(directions[k]));
         backs += hit && hit->back ? 1 : 0;
-        const std::size_t patch = hit && !hit->back ? patches_.patchAt(*hit) : patches_.size();
-        links[kLinks * i + k] = static_cast<std::uint16_t>(patch);
+        std::size_t region = regions_.size();
+        if (hit && !hit->back) {
+          const float solid_angle = spread == LinkSpread::Cosine ? std::numbers::pi_v<float> / directions[k].z
+                                                                 : 2.0f * std::numbers::pi_v<float>;
+          region = regionFrom(origin, *hit, solid_angle / static_cast<float>(kLinks), rays);
+        }
+        links[kLinks * i + k] = static_cast<std::uint16_t>(region);
       }
       return backs;
     };
@@ -260,7 +289,7 @@ std::vector<glm::vec3> PatchTransport::byTriangle(std::span<const glm::vec3> giv
 
 std::uint64_t PatchTransport::bytes() const {
   return patches_.size() * sizeof(Patch) + 4 * transfer_.size() + shares_.size() * sizeof(Share) +
-         4 * first_share_.size() + nearest_.size() * sizeof(nearest_.front());
+         4 * first_share_.size() + nearest_.size() * sizeof(nearest_.front()) + regions_.bytes();
 }
 
 }  // namespace lambent::lighting

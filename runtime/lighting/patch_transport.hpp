@@ -14,6 +14,7 @@
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
+#include "runtime/lighting/patch_regions.hpp"
 #include "runtime/lighting/patches.hpp"
 
 namespace lambent::lighting {
@@ -50,6 +51,7 @@ class PatchTransport {
   explicit PatchTransport(const bundle::CaptureProxy& proxy, std::size_t most = kMaxPatches, int order = 5);
 
   const Patches& patches() const { return patches_; }
+  const PatchRegions& regions() const { return regions_; }
   int order() const { return order_; }
 
   // What each patch gives off when `direct` (E/pi, also below 0) falls on it: that, and what it receives from
@@ -64,9 +66,10 @@ class PatchTransport {
   // What bounces add where 1 falls on every patch straight: the mean over their area. An open shape has 0.
   float bounced() const { return bounced_; }
 
-  // kLinks patches to each point; one that meets nothing, or the back of something, has patches().size(). A
-  // point that lies behind the proxy, so that it sees backs for the most part, takes the view of the nearest
-  // patch that faces alike. On several threads.
+  // kLinks regions to each point, each about as large as its ray stands for and wholly in sight; one that
+  // meets nothing, or the back of something, has regions().size(). A point that lies behind the proxy, so
+  // that it sees backs for the most part, takes the view of the nearest patch that faces alike. On several
+  // threads.
   std::vector<std::uint16_t> link(std::span<const SurfacePoint> points, LinkSpread spread) const;
 
   // Of each triangle of all levels of the proxy, the mean of what its patches give off. Those of coarser
@@ -82,11 +85,15 @@ class PatchTransport {
   };
   void findShares();
   float meanBounced() const;
+  // What a link goes to whose ray, from where `rays` start, stands for this solid angle.
+  std::size_t regionFrom(const glm::vec3& origin, const RayHit& hit, float solid_angle_sr,
+                         const RaysFrom& rays) const;
   // Where the rays of a point behind the proxy may start.
   glm::vec3 startNear(const SurfacePoint& point) const;
   void findNearest(const bundle::CaptureProxy& proxy);
 
   Patches patches_;
+  PatchRegions regions_;
   int order_ = 5;
   float bounced_ = 0.0f;
   std::vector<float> transfer_;             // order² for each patch

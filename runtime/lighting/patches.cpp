@@ -31,12 +31,17 @@ glm::vec3 albedoOf(const bundle::CaptureProxy& proxy, const bundle::ProxyTriangl
   return glm::min(albedo, glm::vec3(1.0f));
 }
 
-// Parts in rows along the third corner's weight: row r has the parts' lower and upper triangles in turn.
-std::size_t placeOf(std::uint32_t parts, std::uint32_t column, std::uint32_t row, bool upper) {
-  return std::size_t{row} * (2 * parts - row) + 2 * std::size_t{column} + (upper ? 1 : 0);
-}
-
 }  // namespace
+
+TrianglePart TrianglePart::at(std::uint32_t parts, float b, float c) {
+  const float x = std::max(b, 0.0f) * static_cast<float>(parts);
+  const float y = std::max(c, 0.0f) * static_cast<float>(parts);
+  const auto row = std::min(static_cast<std::uint32_t>(y), parts - 1);
+  const auto column = std::min(static_cast<std::uint32_t>(x), parts - 1 - row);
+  const bool has_upper = column + row < parts - 1;
+  const bool upper = has_upper && (x - static_cast<float>(column)) + (y - static_cast<float>(row)) > 1.0f;
+  return {.column = column, .row = row, .upper = upper};
+}
 
 Patches::Patches(const bundle::CaptureProxy& proxy, std::size_t most) {
   if (proxy.levels.empty()) return;
@@ -99,14 +104,7 @@ Patches::Patches(const bundle::CaptureProxy& proxy, std::size_t most) {
 
 std::size_t Patches::patchAt(const RayHit& hit) const {
   const Split& split = split_[hit.triangle];
-  const std::uint32_t n = split.parts;
-  const float x = std::max(hit.b, 0.0f) * static_cast<float>(n);
-  const float y = std::max(hit.c, 0.0f) * static_cast<float>(n);
-  const auto row = std::min(static_cast<std::uint32_t>(y), n - 1);
-  const auto column = std::min(static_cast<std::uint32_t>(x), n - 1 - row);
-  const bool has_upper = column + row < n - 1;
-  const bool upper = has_upper && (x - static_cast<float>(column)) + (y - static_cast<float>(row)) > 1.0f;
-  return split.first + placeOf(n, column, row, upper);
+  return split.first + TrianglePart::at(split.parts, hit.b, hit.c).place(split.parts);
 }
 
 bool Patches::over(std::size_t triangle, const glm::vec3& point) const {

@@ -18,6 +18,18 @@ namespace lambent::lighting {
 inline constexpr std::size_t kMaxPatches = 1024;
 inline constexpr std::size_t kPatchPoints = 4;
 
+// A triangle whose edges are cut into `parts` falls into parts², in rows along the third corner's weight: row
+// r has lower and upper triangles in turn.
+struct TrianglePart {
+  std::uint32_t column = 0, row = 0;
+  bool upper = false;
+  // Where the second corner has weight b and the third c.
+  static TrianglePart at(std::uint32_t parts, float b, float c);
+  std::size_t place(std::uint32_t parts) const {
+    return std::size_t{row} * (2 * parts - row) + 2 * std::size_t{column} + (upper ? 1 : 0);
+  }
+};
+
 struct Patch {
   std::array<glm::vec3, kPatchPoints> points{};   // each stands for a quarter of its area
   std::array<glm::vec3, kPatchPoints> origins{};  // where rays from them may start
@@ -40,8 +52,10 @@ class Patches {
   // Those of a triangle, one after the other.
   std::size_t firstOf(std::size_t triangle) const { return split_[triangle].first; }
   std::size_t countOf(std::size_t triangle) const {
-    return std::size_t{split_[triangle].parts} * split_[triangle].parts;
+    return std::size_t{partsOf(triangle)} * partsOf(triangle);
   }
+  // Into how many its edges are cut.
+  std::uint32_t partsOf(std::size_t triangle) const { return split_[triangle].parts; }
   // Length of the diagonal of their bounds.
   float extent() const { return extent_; }
   // How far the proxy may lie from the surface that it stands for.

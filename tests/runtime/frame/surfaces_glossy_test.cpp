@@ -75,7 +75,11 @@ Scene makeScene(lambent::testing::BundleMaker& maker, const GlossyKind& kind, bo
              .radiance_word = 0,
              .alpha_mode = kAlphaOpaque,
              .alpha_cutoff = 0.5f,
-             .unlit = 0};
+             .unlit = 0,
+             .bounced_word = kAbsent,
+             .pad0 = 0,
+             .pad1 = 0,
+             .pad2 = 0};
   scene.record.glossy = {.group_from_world = glm::mat3x4(1.0f),
                          .dielectric = {0.04f, 0.05f, 0.06f, 0.9f},
                          .metallic_roughness_texture = slotOf(textures),

@@ -68,7 +68,11 @@ SurfaceDraw plainRecord() {
           .radiance_word = 0,
           .alpha_mode = kAlphaOpaque,
           .alpha_cutoff = 0.5f,
-          .unlit = 0};
+          .unlit = 0,
+          .bounced_word = kAbsent,
+          .pad0 = 0,
+          .pad1 = 0,
+          .pad2 = 0};
 }
 
 TextureSlot slot(std::uint32_t set, const gltf::TextureRef& reference = {}) {

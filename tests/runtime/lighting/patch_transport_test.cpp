@@ -47,8 +47,9 @@ std::vector<float> receivedAll(const Patches& patches, const std::vector<glm::ve
   return received;
 }
 
-glm::vec3 gathered(const std::vector<std::uint16_t>& links, std::size_t point,
-                   const std::vector<glm::vec3>& given_off) {
+glm::vec3 gathered(const PatchTransport& transport, const std::vector<std::uint16_t>& links,
+                   std::size_t point, const std::vector<glm::vec3>& by_patch) {
+  const std::vector<glm::vec3> given_off = transport.regions().means(by_patch);
   glm::vec3 sum(0.0f);
   for (std::size_t k = 0; k < kLinks; ++k)
     if (const std::uint16_t patch = links[kLinks * point + k]; patch < given_off.size())
@@ -92,7 +93,7 @@ TEST(PatchTransport, AFurnaceStaysUniform) {
       {{0.5f, 0, 1}, {0, 1, 0}}, {{0, 0, 0}, {0, 1, 0}}, {{1, 5, 2}, {-1, 0, 0}}};
   const auto links = transport.link(points, LinkSpread::Cosine);
   for (std::size_t p = 0; p < points.size(); ++p)
-    EXPECT_NEAR(gathered(links, p, transport.bounce(direct)).g, 2.0f, 0.002f) << p;
+    EXPECT_NEAR(gathered(transport, links, p, transport.bounce(direct)).g, 2.0f, 0.002f) << p;
 }
 
 TEST(PatchTransport, BouncesKeepTheColoursOfTheWalls) {
@@ -106,7 +107,8 @@ TEST(PatchTransport, BouncesKeepTheColoursOfTheWalls) {
   const auto given_off = transport.bounce(direct);
   const std::vector<SurfacePoint> points = {{{0.05f, 0, 0.5f}, {0, 1, 0}}, {{0.9f, 0, 0.5f}, {0, 1, 0}}};
   const auto links = transport.link(points, LinkSpread::Cosine);
-  const glm::vec3 near = gathered(links, 0, given_off), far = gathered(links, 1, given_off);
+  const glm::vec3 near = gathered(transport, links, 0, given_off),
+                  far = gathered(transport, links, 1, given_off);
   EXPECT_GT(near.r, 2.0f * far.r);
   EXPECT_EQ(near.g, 0.0f);
   EXPECT_GT(far.r, 0.0f);
@@ -124,7 +126,8 @@ TEST(PatchTransport, AtTheFootOfAWallHalfOfWhatIsSeenIsTheWall) {
   // Vertices lie on the edge itself, or by rounding behind it.
   for (const float x : {-0.004f, 0.0f, 0.001f}) {
     const std::vector<SurfacePoint> points = {{{x, -0.002f, 2}, {0, 1, 0}}};
-    EXPECT_NEAR(gathered(transport.link(points, LinkSpread::Cosine), 0, given_off).r, 0.5f, 0.04f) << x;
+    EXPECT_NEAR(gathered(transport, transport.link(points, LinkSpread::Cosine), 0, given_off).r, 0.5f, 0.04f)
+        << x;
   }
 }
 
@@ -209,6 +212,76 @@ TEST(PatchTransport, InAClosedSphereAllIsBounced) {
   light[0] = glm::vec4(1.0f / 0.28209479f);
   for (std::size_t i = 0; i < transport.patches().size(); ++i)
     ASSERT_NEAR(transport.direct(i, light).g, 0.0f, 1e-4f);
+}
+
+TEST(PatchTransport, ASmallBrightSpotIsMissedFromNowhere) {
+  RoomBuilder room;
+  room.wall({-2, 0, 2}, {4, 0, 0}, {0, 0, -4}, glm::vec3(0.5f));
+  const PatchTransport transport(room.proxy());
+  const Patches& patches = transport.patches();
+  std::vector<glm::vec3> given_off(patches.size(), glm::vec3(0.0f));
+  for (std::size_t i = 0; i < patches.size(); ++i) {
+    const glm::vec3 middle = patches.all()[i].points[0];
+    if (std::abs(middle.x - 0.4f) < 0.3f && std::abs(middle.z) < 0.3f) given_off[i] = glm::vec3(1.0f);
+  }
+  std::vector<SurfacePoint> points;
+  for (int i = 0; i < 25; ++i)
+    points.push_back(
+        {{-1.0f + 0.5f * static_cast<float>(i % 5), 2.0f, -1.0f + 0.5f * static_cast<float>(i / 5)},
+         {0, -1, 0}});
+  const auto links = transport.link(points, LinkSpread::Cosine);
+  double error = 0.0, power = 0.0;
+  for (std::size_t p = 0; p < points.size(); ++p) {
+    double expected = 0.0;
+    for (std::size_t i = 0; i < patches.size(); ++i)
+      for (const glm::vec3& point : patches.all()[i].points) {
+        const glm::vec3 way = point - points[p].position;
+        const double d2 = glm::dot(way, way);
+        expected += double{given_off[i].r} * 4.0 / (kPi * d2 * d2) * patches.all()[i].area / kPatchPoints;
+      }
+    const double found = gathered(transport, links, p, given_off).r;
+    EXPECT_NEAR(found / expected, 1.0, 0.55) << p;
+    error += (found - expected) * (found - expected);
+    power += expected * expected;
+  }
+  EXPECT_LT(std::sqrt(error / power), 0.25);  // 0.55 where links go to single patches
+}
+
+TEST(PatchTransport, ADarkBoxOnALitFloorStaysDark) {
+  RoomBuilder room;
+  room.wall({-4, 0, 4}, {8, 0, 0}, {0, 0, -8}, glm::vec3(0.5f));  // goes on under the box
+  room.box({0.3f, 0, 0.3f}, {1.3f, 1, 1.3f}, glm::vec3(0.5f));
+  const PatchTransport transport(room.proxy());
+  const Patches& patches = transport.patches();
+  const auto within = [](const glm::vec3& p) { return p.x > 0.1f && p.x < 1.5f && p.z > 0.1f && p.z < 1.5f; };
+  std::vector<glm::vec3> given_off(patches.size(), glm::vec3(1.0f));
+  for (std::size_t i = 0; i < patches.size(); ++i)
+    if (within(patches.all()[i].points[0])) given_off[i] = glm::vec3(0.0f);
+  const std::vector<SurfacePoint> points = {{{0.8f, 1, 0.8f}, {0, -1, 0}}, {{1.3f, 0.8f, 0.5f}, {-1, 0, 0}}};
+  const auto links = transport.link(points, LinkSpread::Cosine);
+  for (std::size_t p = 0; p < points.size(); ++p)
+    EXPECT_EQ(gathered(transport, links, p, given_off).r, 0.0f) << p;
+}
+
+TEST(PatchRegions, HoldTheMeansOfTheirPatchesAndAllOfThemAtEachLevel) {
+  const Patches patches(RoomBuilder().wall({0, 0, 0}, {3, 0, 0}, {0, 1, 0}, glm::vec3(0.5f)).proxy(), 200);
+  const PatchRegions regions(patches);
+  std::vector<glm::vec3> values;
+  for (const Patch& patch : patches.all()) values.push_back(patch.points[0]);
+  const std::vector<glm::vec3> means = regions.means(values);
+  ASSERT_EQ(means.size(), regions.size());
+  for (std::size_t level = 0; level < regions.levelsOf(0); ++level) {
+    const RayHit hit{.triangle = 0, .b = 0.3f, .c = 0.2f, .back = false};
+    const auto corners = regions.cornersAt(hit, level);
+    const glm::vec3 middle = (corners[0] + corners[1] + corners[2]) / 3.0f;
+    const float size = std::sqrt(regions.areaOf(0, level));
+    EXPECT_LT(glm::distance(means[regions.regionAt(hit, level)], middle), size) << level;
+  }
+  // The last level is the triangle itself.
+  const RayHit anywhere{.triangle = 1, .b = 0.1f, .c = 0.1f, .back = false};
+  const std::size_t whole = regions.regionAt(anywhere, regions.levelsOf(1) - 1);
+  EXPECT_NEAR(regions.areaOf(1, regions.levelsOf(1) - 1), 1.5f, 1e-4f);
+  EXPECT_NEAR(means[whole].x, 1.0f, 0.02f);
 }
 
 }  // namespace lambent::lighting
