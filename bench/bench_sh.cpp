@@ -1,7 +1,7 @@
 // Spherical harmonics, one thread, at orders 5 and 6: times in nanoseconds, medians with
-// --benchmark_repetitions. Rivals (docs/performance.md says where each was measured): DirectXMath's SHMath
-// evaluates one direction and rotates, drjit evaluates in batches. Limits, measured in the same run: *_limit
-// rows do the same arithmetic or move the same bytes and nothing else.
+// --benchmark_repetitions. Rivals (docs/measurements/frames.md says where each was measured): DirectXMath's
+// SHMath evaluates one direction and rotates, drjit evaluates in batches. Limits, measured in the same run:
+// *_limit rows do the same arithmetic or move the same bytes and nothing else.
 #include <array>
 #include <cstring>
 #include <vector>

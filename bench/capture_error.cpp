@@ -1,4 +1,4 @@
-// What cube maps of light cost and lose: the table of docs/accuracy.md, "Light capture", through the real GPU
+// What cube maps of light cost and lose: the tables of docs/measurements/captures.md, through the real GPU
 // path. Discs are bodies: a polygon of 256 corners that faces its point, drawn, resolved and projected like
 // any other body; the truth is the disc in closed form. Probes go through the sky's texels, turned at random;
 // the truth is the picture projected texel by texel and rotated. Error: |c - c_exact|² / |c_exact|².

@@ -33,7 +33,7 @@ namespace {
 constexpr double kTailShare = 0.3;
 
 // Of the bound on glossy light, where light bounces: to halve the error costs visibility a dozen bytes a
-// vertex, and bounced light of sharp metals a hundred (decisions/053).
+// vertex, and bounced light of sharp metals a hundred (docs/decisions/compression.md, "Glossy matrices").
 constexpr float kOfVisibility = 0.35f;
 
 // What the runtime holds of a group's shaded samples lies in one page: a vec4 for each output of each sample,

@@ -54,7 +54,8 @@ Result<std::unique_ptr<Brdf>> makeMeasured(const MeasuredBrdf& measured);
 void integrateView(const Brdf& brdf, const BrdfParameters& at, const bundle::BrdfView& view, int order,
                    std::size_t directions, std::span<double> out);
 
-// Nodes along each axis of a table; docs/accuracy.md, "Tables of b(v)", has what they cost and leave.
+// Nodes along each axis of a table; docs/measurements/glossy.md, "Tables of b(v)", has what they cost and
+// leave.
 struct BrdfGrid {
   std::uint32_t angles = 2, azimuths = 1, roughnesses = 1, strengths = 1;
 };

@@ -9,7 +9,7 @@ namespace lambent::baker {
 
 // Mean over lights of (sum over m and RGB of l_lm²) / (2l+1), each light divided by its own band 0. Randomly
 // rotated, the covariance of light vectors is diagonal with these entries, so they are all that the mean
-// error needs. Made by: bench_light_bands PROBES..., see docs/accuracy.md.
+// error needs. Made by: light_bands MAPS..., see docs/measurements/pictures.md.
 inline constexpr std::array<double, 8> kBandPower = {1.0,    0.5085, 0.3297, 0.2374,
                                                      0.1984, 0.1678, 0.1428, 0.1173};
 

@@ -21,8 +21,8 @@ struct Step {
   float ratio;
   std::uint32_t count;
 };
-// So that about 5 % of the picture are left to the places between light samples (docs/accuracy.md, "Near
-// lights").
+// So that about 5 % of the picture are left to the places between light probes
+// (docs/measurements/local-lights.md, "Light probes near a lamp").
 constexpr std::array kSteps = {Step{0.05f, 1}, Step{0.15f, 4}, Step{0.25f, 8}, Step{0.5f, 16}};
 
 std::uint32_t countFor(float ratio) {

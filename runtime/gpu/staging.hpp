@@ -1,8 +1,9 @@
 // Bytes on their way to buffers that only the GPU writes: put into memory that both see, and copied by the
 // GPU in the order of its commands. Drivers keep a buffer that the CPU writes to again and again where the
 // CPU reaches it, and shaders then read it over the bus; and they move it there in the midst of a frame
-// (decisions/050). The memory is a ring, made with the first bytes; what is written waits for the GPU only
-// where the ring is full of bytes that it has not copied yet. Must not outlive the context.
+// (docs/decisions/streaming.md, "GPU memory"). The memory is a ring, made with the first bytes; what is
+// written waits for the GPU only where the ring is full of bytes that it has not copied yet. Must not outlive
+// the context.
 #pragma once
 
 #include <array>

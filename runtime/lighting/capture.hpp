@@ -2,8 +2,8 @@
 // the bodies of other rigid groups are drawn into a small cube map in world axes, and that is projected to
 // spherical harmonics on the GPU. Comes in: the environment, bodies as capture proxies with a radiance per
 // triangle, points. Goes out, some frames later: per point the light that arrives there and how much of each
-// analytic light is not hidden. Analytic lights never pass through the texels. How: docs/decisions/016.
-// Errors: shaders that do not compile on this device.
+// analytic light is not hidden. Analytic lights never pass through the texels. How:
+// docs/decisions/captures.md. Errors: shaders that do not compile on this device.
 #pragma once
 
 #include <array>

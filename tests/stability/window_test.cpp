@@ -76,7 +76,8 @@ TEST_F(SunThroughAWindow, BouncesOffTheFloorAsInTheReference) {
       compareAt({-1, v, u});
       compareAt({u, v, -1});
     }
-  // 64 links see a spot of this size to about 12 % each and to 6 % in the mean (decision 059).
+  // 64 links see a spot of this size to about 12 % each and to 6 % in the mean
+  // (docs/decisions/local-lights.md, "Patches").
   EXPECT_NEAR(found / expected, 1.0, 0.08);
 }
 

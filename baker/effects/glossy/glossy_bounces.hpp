@@ -5,12 +5,12 @@
 //   bakeBounces(plain_pass, direct, scene, settings, progress, stop, &glossy);
 //   glossy.finish();   // glossy_direct.field has `bounced` and `lights_full`, all of order_out bands
 // Passes bring and take all bands that `direct` has, which may be more than order_out: the kernel of a sharp
-// surface meets edges of shadows where light leaves, which few bands do not have (decisions/049, 054, 055).
-// Their sum has order_out bands. Where direct light was fitted to points inside faces, what each pass brings
-// is fitted to what it brings there, before the next one begins. Memory at its most: `bounced` (2.5 KB x
-// channels per sample for 5 x 5), and twice a matrix of all bands (4.9 KB x channels for 7 x 5, 8.1 for 9 x
-// 5) for each sample, the first pass included; and one for each of the points inside faces while a pass is
-// fitted to them.
+// surface meets edges of shadows where light leaves, which few bands do not have (docs/decisions/glossy.md,
+// "Bounces"). Their sum has order_out bands. Where direct light was fitted to points inside faces, what each
+// pass brings is fitted to what it brings there, before the next one begins. Memory at its most: `bounced`
+// (2.5 KB x channels per sample for 5 x 5), and twice a matrix of all bands (4.9 KB x channels for 7 x 5, 8.1
+// for 9 x 5) for each sample, the first pass included; and one for each of the points inside faces while a
+// pass is fitted to them.
 #pragma once
 
 #include "baker/effects/diffuse/bounces.hpp"

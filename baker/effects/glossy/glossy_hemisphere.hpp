@@ -2,7 +2,7 @@
 // Functions continue below the horizon as their mirror image (glossy_transport.hpp), so in the sample's frame
 // only harmonics with l + m even are left: n(n+1)/2 of n² ("even" ones here, in rising order of their index;
 // those of a lower order come first). They are orthogonal over the hemisphere, which makes exact weights
-// easy (decisions/021).
+// easy (docs/decisions/glossy.md, "Visibility").
 #pragma once
 
 #include <cstddef>

@@ -16,8 +16,8 @@ namespace lambent::baker {
 
 namespace {
 
-// From here on five bands carry nine tenths of a highlight (docs/accuracy.md), and matrices of few bands say
-// what it shows.
+// From here on five bands carry nine tenths of a highlight (docs/measurements/glossy.md), and matrices of few
+// bands say what it shows.
 constexpr float kRoughEnough = 0.5f;
 // Paths of a ray that meets a highlight: a mirror needs one, and neighbouring rays share the rest.
 constexpr float kMirrorRoughness = 0.1f;

@@ -2,11 +2,11 @@
 //   T = (1/4pi) int L ds,   the medium's own albedo left out,
 // per coefficient of the light: by single scattering (what the medium and the surfaces around it let
 // through), and with light that was scattered any number of times (scatter_rows.hpp), until a linear solver
-// has what remains under 1e-5 of it. Surfaces block; what they send back is not added (docs/decisions/024).
-// Where free paths are shorter than voxels, samples are not what is at their centres, but what interpolates
-// best to what is at many places (fit_within_voxels.hpp).
-// With a phase function that prefers directions (Henyey and Greenstein's, g not 0) the radiance that arrives,
-// in bands, in place of its mean: L_lm = int L y_lm ds, of which g^l L_lm y_lm goes on (literature 1.8).
+// has what remains under 1e-5 of it. Surfaces block; what they send back is not added
+// (docs/decisions/volumes.md). Where free paths are shorter than voxels, samples are not what is at their
+// centres, but what interpolates best to what is at many places (fit_within_voxels.hpp). With a phase
+// function that prefers directions (Henyey and Greenstein's, g not 0) the radiance that arrives, in bands, in
+// place of its mean: L_lm = int L y_lm ds, of which g^l L_lm y_lm goes on (literature 1.8).
 #pragma once
 
 #include <cstdint>

@@ -160,7 +160,7 @@ TEST(BrdfTables, OfSmoothSurfacesAreMirrors) {
   }
 }
 
-// Between nodes, against integration at the very place; docs/accuracy.md has the mean.
+// Between nodes, against integration at the very place; docs/measurements/glossy.md has the mean.
 TEST(BrdfTables, InterpolateWithinHalfAPercentWhereFiveBandsCarryTheLobe) {
   const auto ggx = makeGgx(false);
   const bundle::BrdfTable table = integrateTable(*ggx, 5);

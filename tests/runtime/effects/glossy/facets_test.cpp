@@ -1,5 +1,5 @@
 // What evaluation at vertices would cost against evaluation at pixels: the figures of
-// docs/decisions/022-glossy-pixels.md.
+// docs/measurements/glossy.md, "Highlights at vertices".
 #include <fmt/format.h>
 #include <glm/gtc/constants.hpp>
 #include <gtest/gtest.h>
