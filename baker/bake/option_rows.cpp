@@ -2,15 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
-#include <charconv>
-#include <limits>
-#include <optional>
 #include <tuple>
 #include <type_traits>
 
 #include <fmt/format.h>
 
+#include "baker/bake/typed_option.hpp"
 #include "baker/effects/neighborhood/grid_placement.hpp"
 #include "baker/plan/local_light.hpp"
 
@@ -18,40 +15,7 @@ namespace lambent::baker {
 
 namespace {
 
-// ---- what a row consists of
-
-template <class T>
-struct Word {
-  std::string_view word;
-  std::conditional_t<std::is_same_v<T, std::string>, std::string_view, T> value;
-};
-
-// Numbers themselves; the points of a grid along each axis.
-template <class T>
-using LimitOf = std::conditional_t<std::is_same_v<T, glm::uvec3>, std::uint32_t, T>;
-
-template <class T>
-struct Limits {
-  LimitOf<T> least{}, greatest{};
-  bool open = false;                 // both ends excluded
-  bool usage = false;                // what lies outside is wrong usage: refused with the word
-  std::string_view wrong{}, mend{};  // instead of "is not between"; what to do
-};
-
-template <class T>
-struct TypedRow {
-  std::string_view name, setting, kind;
-  T BakeOptions::*member;
-  std::string_view help;
-  std::array<Word<T>, 3> words{};  // those with an empty word are none
-  std::optional<Limits<T>> limits{};
-  std::string (*record)(const BakeOptions&) = nullptr;  // none: the word
-};
-
-template <class T>
-constexpr bool kHasLimits = std::is_arithmetic_v<LimitOf<T>>;
-template <class T>
-constexpr bool kOnlyWords = std::is_same_v<T, Quality> || std::is_same_v<T, std::optional<bool>>;
+using namespace typed_options;
 
 // ---- the table
 
@@ -69,9 +33,6 @@ std::string recordRefine(const BakeOptions& o) {
 std::string recordFit(const BakeOptions& o) {
   return o.fitsMatte() ? "on" : o.fitsGlossy() ? "glossy" : "off";
 }
-
-template <class T>
-constexpr T kMost = std::numeric_limits<T>::max();
 
 constexpr std::tuple kRows{
     TypedRow<Quality>{
@@ -212,116 +173,13 @@ constexpr std::tuple kRows{
                        .help = "Threads; default all. The result does not depend on it",
                        .words = {{{"auto", 0}}}}};
 
-// A member without a row does not compile: it changes how many names this needs.
+// A member of BakeOptions without a row does not compile, since it changes how many names this needs.
 [[maybe_unused]] auto membersOf(const BakeOptions& options) {
   const auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o] = options;
   return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o);
 }
 static_assert(std::tuple_size_v<decltype(membersOf(BakeOptions()))> == std::tuple_size_v<decltype(kRows)>,
               "every member of BakeOptions has a row");
-
-// ---- words and values
-
-// All of the text, or nothing.
-template <class T>
-bool readNumber(std::string_view text, T& value) {
-  const char* const end = text.data() + text.size();
-  const auto [at, error] = std::from_chars(text.data(), end, value);
-  return error == std::errc{} && at == end;
-}
-
-// "4GB", "512 mib": units of 1024.
-bool readBytes(std::string_view text, std::uint64_t& value) {
-  const std::size_t digits = std::min(text.find_first_not_of("0123456789"), text.size());
-  std::string unit;
-  for (const char c : text.substr(digits))
-    if (c != ' ') unit += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  if (unit.ends_with('b')) unit.pop_back();
-  if (unit.ends_with('i')) unit.pop_back();
-  const std::size_t power = std::string_view(" kmgtp").find(unit.empty() ? " " : unit);
-  if (unit.size() > 1 || power == std::string_view::npos || !readNumber(text.substr(0, digits), value))
-    return false;
-  constexpr std::uint64_t kAll = kMost<std::uint64_t>;
-  if (value > (kAll >> (10 * power))) return false;
-  value <<= 10 * power;
-  return true;
-}
-
-template <class T>
-bool readValue(const TypedRow<T>& row, std::string_view text, T& value) {
-  for (const Word<T>& word : row.words)
-    if (!word.word.empty() && word.word == text) {
-      value = word.value;
-      return true;
-    }
-  if constexpr (kOnlyWords<T>) {
-    return false;
-  } else if constexpr (std::is_same_v<T, std::string>) {
-    value = text;
-    return true;
-  } else if constexpr (std::is_same_v<T, glm::uvec3>) {
-    const auto grid = gridSizeFrom(text);
-    value = grid.value_or(value);
-    return grid.has_value();
-  } else if constexpr (std::is_same_v<T, std::uint64_t>) {
-    return readBytes(text, value);
-  } else {
-    return readNumber(text, value);
-  }
-}
-
-template <class T>
-std::string textOf(const TypedRow<T>& row, const T& value) {
-  for (const Word<T>& word : row.words)
-    if (!word.word.empty() && word.value == value) return std::string(word.word);
-  if constexpr (kOnlyWords<T>)
-    return {};
-  else if constexpr (std::is_same_v<T, glm::uvec3>)
-    return fmt::format("{}x{}x{}", value.x, value.y, value.z);
-  else
-    return fmt::format("{}", value);
-}
-
-template <class T>
-bool within(const Limits<T>& limits, LimitOf<T> value) {
-  if (limits.open) return value > limits.least && value < limits.greatest;
-  return value >= limits.least && value <= limits.greatest;
-}
-
-// What of a value lies outside the limits; none where all is well, and where a word stands for the value.
-template <class T>
-std::optional<LimitOf<T>> outside(const TypedRow<T>& row, const T& value) {
-  if (!row.limits) return std::nullopt;
-  for (const Word<T>& word : row.words)
-    if (!word.word.empty() && word.value == value) return std::nullopt;
-  if constexpr (std::is_same_v<T, glm::uvec3>) {
-    for (int axis = 0; axis < 3; ++axis)
-      if (!within(*row.limits, value[axis])) return value[axis];
-    return std::nullopt;
-  } else {
-    return within(*row.limits, value) ? std::nullopt : std::optional(value);
-  }
-}
-
-// "is neither auto nor between 1 and 32"
-template <class T>
-std::string notOfItsKind(const TypedRow<T>& row) {
-  std::vector<std::string> kinds;
-  for (const Word<T>& word : row.words)
-    if (!word.word.empty()) kinds.emplace_back(word.word);
-  if constexpr (std::is_same_v<T, glm::uvec3>)
-    kinds.insert(kinds.end(), {"N", "XxYxZ"});
-  else if constexpr (std::is_same_v<T, std::uint64_t>)
-    kinds.emplace_back("a size in memory");
-  else if constexpr (std::is_arithmetic_v<T>)
-    kinds.push_back(row.limits && row.limits->usage
-                        ? fmt::format("between {} and {}", row.limits->least, row.limits->greatest)
-                    : std::is_integral_v<T> ? "a whole number"
-                                            : "a number");
-  std::string text = kinds.size() == 1 ? "is not " : "is neither ";
-  for (std::size_t i = 0; i < kinds.size(); ++i) text += (i > 0 ? " nor " : "") + kinds[i];
-  return text;
-}
 
 // ---- rows without their types
 

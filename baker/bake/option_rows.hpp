@@ -1,7 +1,7 @@
-// The table of a bake's options: one row for each, with its name, its help and how it is written as a word.
-// The command line, the editor's panel and its command, the checks before a bake, the settings that a bundle
-// records and the journal of unfinished bakes go by it. A new option is a member of BakeOptions and a row.
-// Errors: words that are not of the option's kind, values outside its range.
+// The table of a bake's options: a row for each has its name, its help and the form of its words. The command
+// line, the editor's panel and its command, the checks before a bake, the settings that a bundle records and
+// the journal of unfinished bakes all walk this table. A new option is a member of BakeOptions and a row in
+// option_rows.cpp. Errors name the option: a word is not of its kind, or a value lies outside its range.
 #pragma once
 
 #include <span>
@@ -19,28 +19,28 @@ struct OptionRow {
   std::string_view setting;  // in the settings that a bundle records; empty: it does not change the bytes
   std::string_view kind;     // what a word looks like, for help: "N|auto"
   std::string_view help;
-  std::vector<std::string_view> words{};  // that stand for values; `only_words`: it takes no others
-  bool only_words = false;
-  bool shows_default = false;  // the default is a value like others, not "auto" or "none"
+  std::vector<std::string_view> words{};  // that stand for values
+  bool only_words = false;                // it takes no other words
+  bool shows_default = false;             // the default is a value like others, not "auto" or "none"
 
   std::string (*word)(const BakeOptions&) = nullptr;
-  // The setting's value; most often the word.
+  // Returns what the bundle records, which most often is the word.
   std::string (*record)(const BakeOptions&) = nullptr;
-  // Takes a word over. Ranges are left to check(), but for those that the command line holds to be wrong
+  // Takes a word over. check() looks at the range, unless the command line counts a number outside as wrong
   // usage.
   Result<void> (*put)(BakeOptions&, std::string_view word) = nullptr;
-  // Takes over what word() or record() wrote; false where it is not of the option's kind.
+  // Takes over what word() or record() wrote. Returns false if it is not of the option's kind.
   bool (*read)(BakeOptions&, std::string_view word) = nullptr;
   Result<void> (*check)(const BakeOptions&) = nullptr;
 };
 
 // In the order of the help.
 std::span<const OptionRow> optionRows();
-const OptionRow* findOption(std::string_view name);  // null: there is none
+const OptionRow* findOption(std::string_view name);  // null if there is none
 
-// By name, as scripts do.
+// Sets an option by its name and a word, as scripts do.
 Result<void> putOption(BakeOptions& options, std::string_view name, std::string_view word);
-// Every row in its range.
+// Checks that every option lies in its range.
 Result<void> checkOptions(const BakeOptions& options);
 
 }  // namespace lambent::baker

@@ -1,5 +1,5 @@
-// The options of a bake on the command line: what a word means is said by their table, how words are found by
-// the library.
+// The options of a bake on the command line. The library finds the words; the table of options says what they
+// mean.
 #include <string>
 
 #include <CLI/CLI.hpp>

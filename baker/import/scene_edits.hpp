@@ -49,9 +49,9 @@ struct SceneEdits {
   bool operator==(const SceneEdits&) const = default;
 };
 
-// What makes the one material of the other; an edit without values where they are the same.
+// Returns the edit that turns one material into the other; it has no values if they are the same.
 SceneEdits::Material editOf(std::uint32_t index, const gltf::Material& was, const gltf::Material& now);
-// Both edits of one material, `above` where both have a value.
+// Returns both edits of one material as one; `above` wins where both have a value.
 SceneEdits::Material overlaid(const SceneEdits::Material& below, SceneEdits::Material above);
 
 void applyEdits(const SceneEdits& edits, Scene& scene);

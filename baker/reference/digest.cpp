@@ -41,7 +41,7 @@ void add(const gltf::TextureRef& ref, Digest& digest) {
   digest.add(ref.texture, ref.texcoord, ref.offset, ref.scale, ref.rotation_rad);
 }
 
-// What the surface reflects stands together, in the middle.
+// The fields of reflection are added together, between the other values and the other textures.
 void add(const gltf::Material& material, Digest& digest) {
   const auto addValues = [&](bool reflection) {
     gltf::forEachMaterialValue([&](const auto& field) {

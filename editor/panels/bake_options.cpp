@@ -14,6 +14,16 @@ namespace lambent::editor {
 
 namespace {
 
+// Shown where the pointer rests on the last widget.
+void tellHelp(const baker::OptionRow& row) {
+  if (!ImGui::IsItemHovered()) return;
+  ImGui::BeginTooltip();
+  ImGui::PushTextWrapPos(30.0f * ImGui::GetFontSize());
+  ImGui::TextUnformatted((std::string(row.kind) + ": " + std::string(row.help)).c_str());
+  ImGui::PopTextWrapPos();
+  ImGui::EndTooltip();
+}
+
 // True once another word was chosen or typed.
 bool editWord(Ui& ui, const baker::OptionRow& row, const std::string& mark, std::string& word) {
   ImGui::SetNextItemWidth(160.0f);
@@ -21,10 +31,12 @@ bool editWord(Ui& ui, const baker::OptionRow& row, const std::string& mark, std:
     const bool changed = ImGui::InputText(
         "##word", &word, ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
     ui.mark(mark);
+    tellHelp(row);
     return changed;
   }
   const bool open = ImGui::BeginCombo("##word", word.c_str());
   ui.mark(mark);
+  tellHelp(row);
   if (!open) return false;
   bool changed = false;
   for (const std::string_view choice : row.words) {
@@ -48,8 +60,7 @@ void drawBakeOptions(Session& session, Ui& ui, std::size_t scene) {
     ImGui::TableNextColumn();
     ImGui::AlignTextToFramePadding();
     ImGui::TextUnformatted(name.c_str());
-    if (ImGui::IsItemHovered())
-      ImGui::SetTooltip("%s: %s", std::string(row.kind).c_str(), std::string(row.help).c_str());
+    tellHelp(row);
     ImGui::TableNextColumn();
     if (editWord(ui, row, "bake-option." + name, word)) {
       const std::array words = {name, word, std::to_string(scene)};

@@ -1,8 +1,8 @@
 // The table of a material's fields: one row for each member of gltf::Material. Whoever needs all fields walks
 // this table instead of naming them: the JSON of bundles, the digests of a scene and of a reference picture,
 // the keys of baked results, edits of a scene, the component that the inspector shows, and the rules that say
-// when a material must be baked again. A new field is a member of Material and a row here; whatever a row
-// says that it can be changed live also is a member of MaterialFactors. Pure declarations.
+// when a material must be baked again. A new field is a member of Material and a row here; if it can be
+// changed while it is shown, it is a member of MaterialFactors, too. The header holds declarations only.
 #pragma once
 
 #include <array>
@@ -34,13 +34,13 @@ struct MaterialFactors {
   float alpha_cutoff = 0.5f;  // of masked ones
 };
 
-// Tells which results of a bake depend on a field.
+// Says which results of a bake depend on a field.
 enum class MaterialPart : std::uint8_t {
   Name,
   Color,       // bounced light
   Reflection,  // transfer and kernels of glossy surfaces, and what they bounce
   Emission,    // lamps of a group, up to a factor that is free at run time
-  Relief,      // nothing but the tangents of glossy surfaces: normal maps count at run time
+  Relief,      // only the tangents of glossy surfaces: normal maps are applied at run time
   Opacity,     // which rays a surface stops
 };
 
@@ -52,10 +52,10 @@ struct MaterialJson {
   const char* key = nullptr;             // null: the object itself says "true" by being there
   Allowed allowed = Allowed::Any;
   bool required = false;                    // to stand there if its object does
-  bool (*said)(const Material&) = nullptr;  // whether it is written; null: if it has not its default
+  bool (*said)(const Material&) = nullptr;  // whether it is written; null: unless it has its default
 };
 
-// A value of MaterialFactors that belongs to a field.
+// A member of MaterialFactors, as a value of the field that it belongs to.
 template <class T>
 struct LiveValue {
   struct Range {
@@ -68,7 +68,8 @@ struct LiveValue {
   std::string_view unit{};
 };
 
-// T: of the member. Live: of the values that can be changed, most often none or one of the same type.
+// A row of the table. T is the type of the member, Live are the types of its values that can be changed: most
+// often there is none, or one of the same type.
 template <class T, class... Live>
 struct MaterialField {
   using Value = T;
@@ -196,7 +197,7 @@ constexpr void forEachMaterialField(Visit&& visit) {
   std::apply([&](const auto&... field) { (visit(field), ...); }, kMaterialFields);
 }
 
-// The rows that are textures.
+// Calls visit(field) for each row that is a texture.
 template <class Visit>
 constexpr void forEachMaterialTexture(Visit&& visit) {
   forEachMaterialField([&](const auto& field) {
@@ -205,7 +206,7 @@ constexpr void forEachMaterialTexture(Visit&& visit) {
   });
 }
 
-// The rows that are numbers, colours and flags: all but the name and the textures.
+// Calls visit(field) for each row that is a number, a colour or a flag: all but the name and the textures.
 template <class Visit>
 constexpr void forEachMaterialValue(Visit&& visit) {
   forEachMaterialField([&](const auto& field) {

@@ -8,7 +8,7 @@ namespace lambent::frame {
 
 namespace {
 
-// The first value of what it reflects that differs; empty: none does.
+// Returns the name of the first value of reflection that differs, or nothing if none does.
 std::string changedReflection(const gltf::Material& a, const gltf::Material& b) {
   std::string changed;
   gltf::forEachLiveValue([&](const auto& field, const auto& live) {

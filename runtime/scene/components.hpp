@@ -149,7 +149,7 @@ struct MaterialComponent : gltf::MaterialFactors {
   std::uint32_t bundle = 0, material = 0;
 
   static constexpr std::string_view kComponentName = "Material";
-  // Those of the table of a material's fields that can be changed, in its order.
+  // The values that the table of a material's fields says can be changed, in its order.
   static auto fields() {
     return std::apply(
         [](const auto&... row) {
