@@ -11,6 +11,7 @@
 #include "baker/bake/bake_group.hpp"
 #include "baker/bake/bake_volume.hpp"
 #include "baker/bake/group_keys.hpp"
+#include "baker/bake/option_rows.hpp"
 #include "baker/bake/result_bytes.hpp"
 #include "baker/bake/ship_meshes.hpp"
 #include "baker/cache/kept_ranges.hpp"
@@ -26,49 +27,8 @@ namespace lambent::baker {
 namespace {
 
 static_assert(BakeOptions::kMostBounces == kMostBounces);
-constexpr int kLeastGlossyOrder = 4, kMostGlossyOrder = 6;
+constexpr int kMostGlossyOrder = 6;
 constexpr int kMostNeighborhoodOrder = 6;
-constexpr std::uint32_t kMostVolumeGrid = 256;
-constexpr std::size_t kMinRays = 128, kMaxRays = 1u << 20;
-
-Result<void> checkOptions(const BakeOptions& options) {
-  if (options.order < 1 || options.order > 8)
-    return fail("--order", fmt::format("{} is not between 1 and 8", options.order), "5 is the default");
-  if (options.glossy_order < kLeastGlossyOrder || options.glossy_order > kMostGlossyOrder)
-    return fail(
-        "--glossy-order",
-        fmt::format("{} is not between {} and {}", options.glossy_order, kLeastGlossyOrder, kMostGlossyOrder),
-        "5 is the default");
-  if (options.effectiveRays() < kMinRays || options.effectiveRays() > kMaxRays)
-    return fail("--rays", fmt::format("{} is not between {} and {}", options.rays, kMinRays, kMaxRays),
-                "leave it out to take what --quality stands for");
-  if (!(options.error_bound >= 0.0f && options.error_bound < 1.0f))
-    return fail("--error", fmt::format("{} is not between 0 and 1", options.error_bound),
-                "0.003 means 0.3 %");
-  if (options.bounces > kMostBounces)
-    return fail("--bounces", fmt::format("{} is more than {}", options.bounces, kMostBounces),
-                "leave it out to bake as many as the error bound asks for");
-  if (options.light_samples < 0 || options.light_samples > static_cast<int>(kMostLightSamples))
-    return fail("--light-samples",
-                fmt::format("{} is not between 1 and {}", options.light_samples, kMostLightSamples),
-                "auto chooses by how near light comes");
-  const glm::uvec3 grid = options.neighborhood_grid;
-  if (grid != glm::uvec3(0u))
-    for (int axis = 0; axis < 3; ++axis)
-      if (grid[axis] < 2 || grid[axis] > kMostGridPoints)
-        return fail("--neighborhood-grid",
-                    fmt::format("{} points are not between 2 and {}", grid[axis], kMostGridPoints),
-                    "64x64x8 is usual");
-  for (int axis = 0; axis < 3; ++axis)
-    if (options.volume_grid[axis] < 1 || options.volume_grid[axis] > kMostVolumeGrid)
-      return fail("--volume-grid",
-                  fmt::format("{} is not between 1 and {}", options.volume_grid[axis], kMostVolumeGrid),
-                  "32 is the default");
-  if (!(options.max_edge_m >= 0.0f && std::isfinite(options.max_edge_m)))
-    return fail("--max-edge", fmt::format("{} is not a length", options.max_edge_m),
-                "give a positive number in the scene's units, or leave it out");
-  return {};
-}
 
 // All effects that the scene calls for, or those that the user listed.
 Result<std::vector<EffectEntry>> effectsOf(const BakeOptions& options) {

@@ -1,6 +1,7 @@
 #include "baker/bake/group_keys.hpp"
 
 #include "baker/transport/geometry_key.hpp"
+#include "runtime/bundle/material_fields.hpp"
 
 namespace lambent::baker {
 
@@ -36,14 +37,24 @@ void addLights(const Scene& scene, const GroupGeometry& geometry, std::span<cons
   }
 }
 
+// The numbers, colours and flags of one part of a material. A measured BRDF counts by its measurements, which
+// addReflection() adds, and not by its place in the list.
+void addValues(const gltf::Material& material, gltf::MaterialPart part, KeyMaker& key) {
+  gltf::forEachMaterialValue([&](const auto& field) {
+    if (field.part == part && field.name != "brdf") key.add(material.*field.member);
+  });
+}
+
 void addColors(const Scene& scene, const GroupGeometry& geometry, KeyMaker& key) {
   key.addText("colors").addList(geometry.texcoords).addList(geometry.colors);
   for (const DrawGeometry& draw : geometry.draws) {
     const gltf::Material* material = materialOf(scene, draw);
     key.add(material != nullptr);
     if (!material) continue;
-    key.add(material->base_color).add(material->unlit);
-    addTexture(scene, material->base_color_texture.texture, key);
+    addValues(*material, gltf::MaterialPart::Color, key);
+    gltf::forEachMaterialTexture([&](const auto& field) {  // their coordinates are among the geometry's
+      if (field.part == gltf::MaterialPart::Color) addTexture(scene, (material->*field.member).texture, key);
+    });
   }
 }
 
@@ -58,11 +69,10 @@ void addReflection(const Scene& scene, const GroupGeometry& geometry, int order,
   for (const DrawGeometry& draw : geometry.draws) {
     const gltf::Material* m = materialOf(scene, draw);
     if (!m || draw.kind != SampleKind::Glossy) continue;
-    key.add(m->metallic).add(m->roughness).add(m->ior).add(m->specular).add(m->specular_color);
-    key.add(m->anisotropy).add(m->anisotropy_rotation_rad);
-    for (const gltf::TextureRef* ref : {&m->metallic_roughness_texture, &m->specular_texture,
-                                        &m->specular_color_texture, &m->anisotropy_texture})
-      addTextureRef(scene, *ref, key);
+    addValues(*m, gltf::MaterialPart::Reflection, key);
+    gltf::forEachMaterialTexture([&](const auto& field) {
+      if (field.part == gltf::MaterialPart::Reflection) addTextureRef(scene, m->*field.member, key);
+    });
     // Its coordinates alone: they tell the tangent.
     const gltf::TextureRef& normal = m->normal_texture;
     key.add(normal.texture >= 0).add(normal.texcoord).add(normal.offset).add(normal.scale);

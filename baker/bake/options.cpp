@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "baker/bake/option_rows.hpp"
 #include "runtime/sh/gaunt.hpp"
 #include "runtime/sh/zonal_factors.hpp"
 
@@ -35,14 +36,6 @@ static_assert(kQualities.back().exit_bands <= sh::kMaxFactoredOrder);
 
 const QualityRow& row(Quality quality) {
   return kQualities[static_cast<std::size_t>(quality)];
-}
-
-// All of the text, or nothing.
-template <typename T>
-bool readAll(std::string_view text, T& value) {
-  const char* const end = text.data() + text.size();
-  const auto [at, error] = std::from_chars(text.data(), end, value);
-  return error == std::errc{} && at == end;
 }
 
 // How far refinement may go, in words.
@@ -127,71 +120,50 @@ std::uint64_t BakeOptions::effectiveMemory() const {
 }
 
 std::map<std::string, std::string> BakeOptions::settings() const {
-  return {{"order", std::to_string(order)},
-          {"glossyOrder", std::to_string(glossy_order)},
-          {"rays", std::to_string(effectiveRays())},
-          {"bounces", bounces < 0 ? "auto" : std::to_string(bounces)},
-          {"lightSamples", light_samples == 0 ? "auto" : std::to_string(light_samples)},
-          {"errorBound", fmt::format("{}", effectiveErrorBound())},
-          {"glossyErrorBound", fmt::format("{}", effectiveGlossyErrorBound())},
-          {"neighborhoodGrid",
-           neighborhood_grid == glm::uvec3(0u)
-               ? "auto"
-               : fmt::format("{}x{}x{}", neighborhood_grid.x, neighborhood_grid.y, neighborhood_grid.z)},
-          {"maxEdge", fmt::format("{}", max_edge_m)},
-          {"refineBound", fmt::format("{}", effectiveRefineBound())},
-          {"refineMost", refineMost(row(quality))},
-          {"fit", fitsMatte()    ? "on"
-                  : fitsGlossy() ? "glossy"
-                                 : "off"},
-          {"volumeGrid", fmt::format("{}x{}x{}", volume_grid.x, volume_grid.y, volume_grid.z)},
-          {"effects", effects}};
+  // What a quality stands for beside the options.
+  std::map<std::string, std::string> settings = {
+      {"glossyErrorBound", fmt::format("{}", effectiveGlossyErrorBound())},
+      {"refineMost", refineMost(row(quality))}};
+  for (const OptionRow& option : optionRows())
+    if (!option.setting.empty()) settings.emplace(option.setting, option.record(*this));
+  return settings;
 }
 
 std::optional<BakeOptions> BakeOptions::fromSettings(const std::map<std::string, std::string>& settings) {
-  const auto find = [&](const char* name) -> std::string_view {
-    const auto found = settings.find(name);
-    return found == settings.end() ? std::string_view() : std::string_view(found->second);
+  const auto find = [&](std::string_view name) {
+    const auto found = settings.find(std::string(name));
+    return found == settings.end() ? std::string() : found->second;
   };
   BakeOptions all;
-  float glossy_bound = 0.0f;
-  const auto readOr = [&](const char* name, const char* word, auto& value) {
-    return find(name) == word || readAll(find(name), value);
-  };
-  const auto readGrid = [&](const char* name, glm::uvec3& grid) {
-    const auto read = gridSizeFrom(find(name));
-    grid = read.value_or(grid);
-    return read.has_value();
-  };
-  if (!readAll(find("order"), all.order) || !readAll(find("glossyOrder"), all.glossy_order) ||
-      !readAll(find("rays"), all.rays) || !readOr("bounces", "auto", all.bounces) ||
-      !readOr("lightSamples", "auto", all.light_samples) || !readAll(find("errorBound"), all.error_bound) ||
-      !readAll(find("glossyErrorBound"), glossy_bound) || !readAll(find("maxEdge"), all.max_edge_m) ||
-      !readAll(find("refineBound"), all.refine_bound) || !readGrid("volumeGrid", all.volume_grid) ||
-      !(find("neighborhoodGrid") == "auto" || readGrid("neighborhoodGrid", all.neighborhood_grid)) ||
-      !settings.contains("effects"))
-    return std::nullopt;
-  all.effects = find("effects");
+  for (const OptionRow& option : optionRows()) {
+    if (option.setting.empty() || option.setting == "fit") continue;  // "fit" is told with the quality
+    if (!settings.contains(std::string(option.setting)) || !option.read(all, find(option.setting)))
+      return std::nullopt;
+  }
   std::optional<BakeOptions> best;
   int fewest = 0;
   for (const Quality quality : {Quality::Draft, Quality::Standard, Quality::High}) {
     BakeOptions options = all;
     options.quality = quality;
-    const QualityRow& usual = row(quality);
-    if (find("refineMost") != refineMost(usual)) continue;
-    int asked = 4;  // for other than is usual
-    if (all.rays == usual.rays) options.rays = 0, --asked;
-    if (all.error_bound == usual.error_bound && glossy_bound == usual.glossy_error_bound)
-      options.error_bound = 0.0f, --asked;
-    if (all.refine_bound == usual.refine_bound) options.refine_bound = -1.0f, --asked;
-    const std::string_view fit = find("fit");
-    if (fit == (usual.fits_glossy ? "glossy" : "off"))
-      --asked;
-    else if (fit == "on" || fit == "off")
-      options.fit = fit == "on";
-    else
-      continue;  // "glossy" is not to be had with this quality, other words with none
-    if (best && asked >= fewest) continue;
+    if (const std::string fit = find("fit"); fit == "on" || fit == "off") options.fit = fit == "on";
+    // The settings that options of this quality must give back, with those that follow from the quality.
+    auto wanted = options.settings();
+    for (const char* name : {"fit", "glossyErrorBound", "refineMost"}) wanted[name] = find(name);
+    const auto wrong = [&](const BakeOptions& tried) {
+      int count = 0;
+      for (const auto& [name, word] : tried.settings()) count += wanted[name] != word;
+      return count;
+    };
+    // What the quality stands for anyway was not asked for.
+    int asked = 4;
+    const auto leaveOut = [&](auto member) {
+      BakeOptions fewer = options;
+      fewer.*member = BakeOptions().*member;
+      if (wrong(fewer) <= wrong(options)) options = fewer, --asked;
+    };
+    leaveOut(&BakeOptions::rays), leaveOut(&BakeOptions::error_bound);
+    leaveOut(&BakeOptions::refine_bound), leaveOut(&BakeOptions::fit);
+    if (wrong(options) > 0 || (best && asked >= fewest)) continue;
     fewest = asked;
     best = options;
   }

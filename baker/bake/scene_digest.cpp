@@ -4,34 +4,28 @@
 #include "baker/bake/bake.hpp"
 #include "baker/cache/key.hpp"
 #include "baker/transport/geometry_key.hpp"
+#include "runtime/bundle/material_fields.hpp"
 #include "runtime/bundle/reader.hpp"
 
 namespace lambent::baker {
 
 namespace {
 
-void addTexture(const gltf::TextureRef& ref, KeyMaker& digest) {
+void addField(const gltf::TextureRef& ref, KeyMaker& digest) {
   digest.add(ref.texture), digest.add(ref.texcoord);
   digest.add(ref.offset), digest.add(ref.scale), digest.add(ref.rotation_rad);
 }
+void addField(const std::string& text, KeyMaker& digest) {
+  digest.addText(text);
+}
+template <PlainBytes T>
+void addField(const T& value, KeyMaker& digest) {
+  digest.add(value);
+}
 
 // Field by field: padding between fields has no value.
-void addMaterial(const gltf::Material& m, KeyMaker& digest) {
-  digest.addText(m.name);
-  digest.add(m.base_color);
-  addTexture(m.base_color_texture, digest);
-  digest.add(m.metallic), digest.add(m.roughness), digest.add(m.ior);
-  addTexture(m.metallic_roughness_texture, digest);
-  digest.add(m.specular), digest.add(m.specular_color);
-  addTexture(m.specular_texture, digest);
-  addTexture(m.specular_color_texture, digest);
-  digest.add(m.anisotropy), digest.add(m.anisotropy_rotation_rad);
-  addTexture(m.anisotropy_texture, digest);
-  digest.add(m.brdf), digest.add(m.emissive);
-  addTexture(m.emissive_texture, digest);
-  addTexture(m.normal_texture, digest);
-  digest.add(m.normal_scale), digest.add(m.unlit);
-  digest.add(m.alpha_mode), digest.add(m.alpha_cutoff), digest.add(m.double_sided);
+void addMaterial(const gltf::Material& material, KeyMaker& digest) {
+  gltf::forEachMaterialField([&](const auto& field) { addField(material.*field.member, digest); });
 }
 
 void addCamera(const gltf::Camera& c, KeyMaker& digest) {

@@ -1,6 +1,4 @@
 // lambent bake SCENE -o OUT.lmb.glb, --watch DIR, --resume
-#include <cstdlib>
-#include <map>
 #include <memory>
 #include <optional>
 
@@ -15,7 +13,6 @@
 #include "baker/import/gltf.hpp"
 #include "baker/pipeline/journal.hpp"
 #include "baker/plan/counted.hpp"
-#include "runtime/spec/numbers.hpp"
 
 namespace lambent::baker {
 
@@ -269,96 +266,6 @@ int runBake(const BakeArguments& a) {
 
 }  // namespace
 
-void addLightSamplesOption(CLI::App& command, BakeOptions& options) {
-  command
-      .add_option_function<std::string>(
-          "--light-samples",
-          [&options](const std::string& text) {
-            options.light_samples = text == "auto" ? 0 : std::atoi(text.c_str());
-          },
-          "Points of each cell at which light from outside is sampled, 1..32; 1 for a group: light at "
-          "infinity. auto (default): by how near light comes, shared out over the group")
-      ->check(CLI::Validator(
-          [](const std::string& text) {
-            const bool number = !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
-            const int count = number && text.size() < 4 ? std::atoi(text.c_str()) : 0;
-            return text == "auto" || (count >= 1 && count <= static_cast<int>(kMostLightSamples))
-                       ? std::string()
-                       : fmt::format("{} is neither auto nor between 1 and {}", text, kMostLightSamples);
-          },
-          ""))
-      ->type_name("N|auto");
-}
-
-void addNeighborhoodGridOption(CLI::App& command, BakeOptions& options) {
-  const auto read = [](const std::string& text) {
-    return text == "auto" ? std::optional(glm::uvec3(0u)) : gridSizeFrom(text);
-  };
-  command
-      .add_option_function<std::string>(
-          "--neighborhood-grid",
-          [&options, read](const std::string& text) { options.neighborhood_grid = *read(text); },
-          "Points of neighborhood grids along their longest, middle and shortest side, 2..256 each; auto "
-          "(default): 64x64x8 where receivers are on one side only, else 32x32x32; for bodies that the scene "
-          "does "
-          "not name a quarter of that")
-      ->check(CLI::Validator(
-          [read](const std::string& text) {
-            return read(text) ? std::string() : fmt::format("{} is neither auto nor N nor XxYxZ", text);
-          },
-          ""))
-      ->type_name("XxYxZ");
-}
-
-void addFitOption(CLI::App& command, BakeOptions& options) {
-  command
-      .add_option_function<std::string>(
-          "--fit",
-          [&options](const std::string& text) {
-            options.fit = text == "auto" ? std::optional<bool>() : std::optional(text == "on");
-          },
-          "Fit light at vertices to what rays from inside the faces see, so that interpolation shows faces "
-          "best, of matte surfaces direct light alone: on, off (what the vertices see) or auto (default): on "
-          "glossy surfaces, but for drafts")
-      ->check(CLI::IsMember({"auto", "on", "off"}))
-      ->type_name("auto|on|off");
-}
-
-void addRefineOption(CLI::App& command, BakeOptions& options) {
-  command
-      .add_option_function<std::string>(
-          "--refine",
-          [&options](const std::string& text) {
-            options.refine_bound = text == "auto"  ? -1.0f
-                                   : text == "off" ? 0.0f
-                                                   : std::strtof(text.c_str(), nullptr);
-          },
-          "Split edges where shadows change, until interpolation errs by less than E, relative RMS; auto "
-          "(default): 0.02, 0.014 or 0.007 by quality; off: keep the vertices as they are")
-      ->check(CLI::Validator(
-          [](const std::string& text) {
-            const std::optional<float> bound = spec::parseNumber(text);
-            return text == "auto" || text == "off" || (bound && *bound > 0.0f && *bound < 1.0f)
-                       ? std::string()
-                       : fmt::format("{} is neither auto nor off nor between 0 and 1", text);
-          },
-          ""))
-      ->type_name("E|auto|off");
-}
-
-void addVolumeGridOption(CLI::App& command, BakeOptions& options) {
-  command
-      .add_option_function<std::string>(
-          "--volume-grid", [&options](const std::string& text) { options.volume_grid = *gridSizeFrom(text); },
-          "Voxels of the grid that a volume's transfer is baked on, 1..256 along each axis; default 32")
-      ->check(CLI::Validator(
-          [](const std::string& text) {
-            return gridSizeFrom(text) ? std::string() : fmt::format("{} is neither N nor XxYxZ", text);
-          },
-          ""))
-      ->type_name("N|XxYxZ");
-}
-
 void addBakeCommand(CLI::App& app, Command& run) {
   auto a = std::make_shared<BakeArguments>();
   CLI::App* command = app.add_subcommand("bake", "Bake a glTF scene into a bundle");
@@ -373,60 +280,7 @@ void addBakeCommand(CLI::App& app, Command& run) {
   command->add_flag("--resume", a->resume,
                     "Without SCENE: finish all bakes that were cut short. With it there is no need: a bake "
                     "always goes on from what the cache holds of it");
-  const std::map<std::string, Quality> qualities = {
-      {"draft", Quality::Draft}, {"standard", Quality::Standard}, {"high", Quality::High}};
-  command
-      ->add_option("--quality", a->options.quality,
-                   "draft, standard (default) or high: rays and error bound together")
-      ->transform(CLI::CheckedTransformer(qualities).description(""))
-      ->type_name("NAME");
-  command->add_option("--order", a->options.order, "Bands of spherical harmonics, 1..8; order² coefficients")
-      ->capture_default_str()
-      ->type_name("N");
-  command
-      ->add_option("--glossy-order", a->options.glossy_order,
-                   "Bands of the light that glossy surfaces reflect, 4..6")
-      ->capture_default_str()
-      ->type_name("N");
-  command
-      ->add_option("--rays", a->options.rays,
-                   "Rays per sample over its hemisphere; default 256, 1024 or 4096 by quality")
-      ->type_name("N");
-  command
-      ->add_option(
-          "--bounces", a->options.bounces,
-          "Interreflections between surfaces; 0: direct light with shadows only, and single scattering in "
-          "volumes, which else scatter as often as they do; default: until what is left out is far under "
-          "the error bound")
-      ->check(CLI::Range(0, BakeOptions::kMostBounces))
-      ->type_name("N");
-  command
-      ->add_option(
-          "--max-memory", a->options.memory_bytes,
-          "Memory for what passes keep, in bytes or like 4GB; default half of the machine's. What does "
-          "not fit is computed again: slower, the same result")
-      ->transform(CLI::AsSizeValue(/*kb_is_1000=*/false))
-      ->type_name("BYTES");
-  command
-      ->add_option("--error", a->options.error_bound,
-                   "Bound on the coding error, relative RMS of shaded radiance; default 0.01, 0.003 or 0.001 "
-                   "by quality, of glossy surfaces 0.03, 0.015 or 0.005")
-      ->type_name("E");
-  command
-      ->add_option("--max-edge", a->options.max_edge_m,
-                   "Split edges longer than this (scene units), so that large faces catch shadows")
-      ->type_name("M");
-  addRefineOption(*command, a->options);
-  addFitOption(*command, a->options);
-  addLightSamplesOption(*command, a->options);
-  addNeighborhoodGridOption(*command, a->options);
-  addVolumeGridOption(*command, a->options);
-  command->add_option("--effects", a->options.effects, "auto: what the scene calls for; or a list of effects")
-      ->capture_default_str()
-      ->type_name("LIST");
-  command
-      ->add_option("--threads", a->options.threads, "Threads; default all. The result does not depend on it")
-      ->type_name("N");
+  addBakeOptions(*command, a->options);
   command->add_flag("--allow-outside", a->allow_outside,
                     "Read buffers and images outside the scene's folder too");
   command

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <string_view>
 
 namespace CLI {
 class App;
@@ -22,9 +23,8 @@ void addInfoCommand(CLI::App& app, Command& run);
 void addReferenceCommand(CLI::App& app, Command& run);
 void addCompareCommand(CLI::App& app, Command& run);
 
-// --volume-grid of bake; --light-samples of bake and plan.
-void addVolumeGridOption(CLI::App& command, BakeOptions& options);
-void addLightSamplesOption(CLI::App& command, BakeOptions& options);
-void addNeighborhoodGridOption(CLI::App& command, BakeOptions& options);
+// Options of a bake, by the table of their rows (baker/bake/option_rows.hpp): all of them, or one by name.
+void addBakeOptions(CLI::App& command, BakeOptions& options);
+void addBakeOption(CLI::App& command, std::string_view name, BakeOptions& options);
 
 }  // namespace lambent::baker

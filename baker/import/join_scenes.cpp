@@ -4,6 +4,8 @@
 #include <iterator>
 #include <utility>
 
+#include "runtime/bundle/material_fields.hpp"
+
 namespace lambent::baker {
 
 namespace {
@@ -31,11 +33,8 @@ void shift(gltf::Node& node, const Offsets& by) {
 }
 
 void shift(gltf::Material& material, const Offsets& by) {
-  using M = gltf::Material;
-  for (const auto ref :
-       {&M::base_color_texture, &M::metallic_roughness_texture, &M::specular_texture,
-        &M::specular_color_texture, &M::anisotropy_texture, &M::emissive_texture, &M::normal_texture})
-    shift((material.*ref).texture, by.textures);
+  gltf::forEachMaterialTexture(
+      [&](const auto& field) { shift((material.*field.member).texture, by.textures); });
   shift(material.brdf, by.brdfs);
 }
 

@@ -1,9 +1,12 @@
 #include "baker/import/scene_edits.hpp"
 
 #include <algorithm>
+#include <type_traits>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+
+#include "runtime/bundle/material_fields.hpp"
 
 namespace lambent::baker {
 
@@ -25,20 +28,12 @@ void passedOver(const char* kind, const std::string& name, Scene& scene) {
       "the edit of {} \"{}\" is passed over: the file no longer has just one of that name", kind, name));
 }
 
-// Every value that a material has a place of its own for: its name in files, what is edited, that place.
-template <typename Edit, typename Visitor>
-void forEachValue(Edit& edit, const Visitor& visit) {
-  using M = gltf::Material;
-  visit("emissive", edit.emissive, &M::emissive);
-  visit("specularColor", edit.specular_color, &M::specular_color);
-  visit("metallic", edit.metallic, &M::metallic);
-  visit("roughness", edit.roughness, &M::roughness);
-  visit("ior", edit.ior, &M::ior);
-  visit("specular", edit.specular, &M::specular);
-  visit("anisotropy", edit.anisotropy, &M::anisotropy);
-  visit("anisotropyRotation", edit.anisotropy_rotation, &M::anisotropy_rotation_rad);
-  visit("normalScale", edit.normal_scale, &M::normal_scale);
-  visit("alphaCutoff", edit.alpha_cutoff, &M::alpha_cutoff);
+// The values that have an edit of their own.
+template <class Visit>
+void forEachValue(const Visit& visit) {
+  gltf::forEachLiveValue([&](const auto& field, const auto& live) {
+    if (live.edit) visit(field, live);
+  });
 }
 
 void applyNode(const SceneEdits::Node& edit, Scene& scene) {
@@ -53,13 +48,15 @@ void applyNode(const SceneEdits::Node& edit, Scene& scene) {
 void applyMaterial(const SceneEdits::Material& edit, Scene& scene) {
   const auto at = meant(scene.materials, edit.index, edit.name);
   if (!at) return passedOver("material", edit.name, scene);
-  gltf::Material& m = scene.materials[*at];
-  forEachValue(edit, [&](const char*, const auto& value, auto gltf::Material::*place) {
-    if (value) m.*place = *value;
+  gltf::Material& material = scene.materials[*at];
+  forEachValue([&]<class T>(const auto& field, const gltf::LiveValue<T>& live) {
+    const auto found = edit.values.find(live.edit);
+    if (found == edit.values.end()) return;
+    const T value = std::get<T>(found->second);
+    if constexpr (std::is_same_v<T, std::int32_t>)  // a measured BRDF that the file no longer has
+      if (value >= static_cast<std::int32_t>(scene.brdfs.size())) return;
+    gltf::putLive(value, material.*field.member);
   });
-  if (edit.base_color) m.base_color = glm::vec4(*edit.base_color, m.base_color.a);
-  if (edit.alpha) m.base_color.a = *edit.alpha;
-  if (edit.brdf && *edit.brdf < static_cast<std::int32_t>(scene.brdfs.size())) m.brdf = *edit.brdf;
 }
 
 // Nodes may share a light: the edited one gets one of its own.
@@ -88,33 +85,35 @@ json jsonOf(float value) {
 json jsonOf(const glm::vec3& value) {
   return vectorJson(value);
 }
-void readInto(const json& from, std::optional<float>& value) {
+json jsonOf(std::int32_t value) {
+  return value;
+}
+void readInto(const json& from, float& value) {
   value = from.get<float>();
 }
-void readInto(const json& from, std::optional<glm::vec3>& value) {
+void readInto(const json& from, glm::vec3& value) {
   value = vectorFrom(from);
+}
+void readInto(const json& from, std::int32_t& value) {
+  value = from.get<std::int32_t>();
 }
 
 json materialJson(const SceneEdits::Material& m) {
   json to = {{"index", m.index}, {"name", m.name}};
-  forEachValue(m, [&](const char* name, const auto& value, auto) {
-    if (value) to[name] = jsonOf(*value);
-  });
-  if (m.base_color) to["baseColor"] = vectorJson(*m.base_color);
-  if (m.alpha) to["alpha"] = *m.alpha;
-  if (m.brdf) to["brdf"] = *m.brdf;
+  for (const auto& [name, value] : m.values)
+    to[name] = std::visit([](const auto& v) { return jsonOf(v); }, value);
   return to;
 }
 
 SceneEdits::Material materialFrom(const json& from) {
   SceneEdits::Material m;
   from.at("index").get_to(m.index), from.at("name").get_to(m.name);
-  forEachValue(m, [&](const char* name, auto& value, auto) {
-    if (from.contains(name)) readInto(from.at(name), value);
+  forEachValue([&]<class T>(const auto&, const gltf::LiveValue<T>& live) {
+    if (!from.contains(live.edit)) return;
+    T value;
+    readInto(from.at(live.edit), value);
+    m.values[live.edit] = value;
   });
-  if (from.contains("baseColor")) readInto(from.at("baseColor"), m.base_color);
-  if (from.contains("alpha")) readInto(from.at("alpha"), m.alpha);
-  if (from.contains("brdf")) m.brdf = from.at("brdf").get<std::int32_t>();
   return m;
 }
 
@@ -154,19 +153,18 @@ SceneEdits::Light lightFrom(const json& from) {
 
 }  // namespace
 
-SceneEdits::Material overlaid(SceneEdits::Material below, const SceneEdits::Material& above) {
-  const SceneEdits::Material old = below;
-  below = above;
-  const auto keep = [](auto& value, const auto& otherwise) {
-    if (!value) value = otherwise;
-  };
-  keep(below.base_color, old.base_color), keep(below.emissive, old.emissive);
-  keep(below.specular_color, old.specular_color), keep(below.alpha, old.alpha);
-  keep(below.metallic, old.metallic), keep(below.roughness, old.roughness), keep(below.ior, old.ior);
-  keep(below.specular, old.specular), keep(below.anisotropy, old.anisotropy);
-  keep(below.anisotropy_rotation, old.anisotropy_rotation), keep(below.normal_scale, old.normal_scale);
-  keep(below.alpha_cutoff, old.alpha_cutoff), keep(below.brdf, old.brdf);
-  return below;
+SceneEdits::Material editOf(std::uint32_t index, const gltf::Material& was, const gltf::Material& now) {
+  SceneEdits::Material edit{index, was.name, {}};
+  forEachValue([&]<class T>(const auto& field, const gltf::LiveValue<T>& live) {
+    const T value = gltf::liveFrom<T>(now.*field.member);
+    if (value != gltf::liveFrom<T>(was.*field.member)) edit.values[live.edit] = value;
+  });
+  return edit;
+}
+
+SceneEdits::Material overlaid(const SceneEdits::Material& below, SceneEdits::Material above) {
+  above.values.insert(below.values.begin(), below.values.end());
+  return above;
 }
 
 void applyEdits(const SceneEdits& edits, Scene& scene) {

@@ -5,8 +5,10 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include <glm/mat4x4.hpp>
@@ -23,14 +25,12 @@ struct SceneEdits {
     glm::mat4 parent_from_node{1.0f};
     bool operator==(const Node&) const = default;
   };
-  // As gltf::Material; none: as in the file.
+  // The values that differ from the file's, by the names of edits in the table of a material's fields.
   struct Material {
+    using Value = std::variant<float, std::int32_t, glm::vec3>;
     std::uint32_t index = 0;
     std::string name;
-    std::optional<glm::vec3> base_color, emissive, specular_color;
-    std::optional<float> alpha, metallic, roughness, ior, specular, anisotropy, anisotropy_rotation,
-        normal_scale, alpha_cutoff;
-    std::optional<std::int32_t> brdf;
+    std::map<std::string, Value> values;
     bool operator==(const Material&) const = default;
   };
   // As gltf::Light, by the node that carries it.
@@ -49,8 +49,10 @@ struct SceneEdits {
   bool operator==(const SceneEdits&) const = default;
 };
 
-// Both, `above` where both say something.
-SceneEdits::Material overlaid(SceneEdits::Material below, const SceneEdits::Material& above);
+// Returns the edit that turns one material into the other; it has no values if they are the same.
+SceneEdits::Material editOf(std::uint32_t index, const gltf::Material& was, const gltf::Material& now);
+// Returns both edits of one material as one; `above` wins where both have a value.
+SceneEdits::Material overlaid(const SceneEdits::Material& below, SceneEdits::Material above);
 
 void applyEdits(const SceneEdits& edits, Scene& scene);
 

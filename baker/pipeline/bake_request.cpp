@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "baker/bake/option_rows.hpp"
 #include "runtime/bundle/checksum.hpp"
 
 namespace lambent::baker {
@@ -11,7 +12,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int kVersion = 2;
+constexpr int kVersion = 3;
 
 std::filesystem::path plain(const std::filesystem::path& path) {
   std::error_code ignored;
@@ -19,54 +20,19 @@ std::filesystem::path plain(const std::filesystem::path& path) {
   return (ignored ? path : absolute).lexically_normal();
 }
 
-json gridJson(const glm::uvec3& grid) {
-  return {grid.x, grid.y, grid.z};
+// Every option as a word.
+json optionsJson(const BakeOptions& options) {
+  json words = json::object();
+  for (const OptionRow& row : optionRows()) words[std::string(row.name)] = row.word(options);
+  return words;
 }
 
-glm::uvec3 readGrid(const json& value) {
-  return {value.at(0).get<std::uint32_t>(), value.at(1).get<std::uint32_t>(),
-          value.at(2).get<std::uint32_t>()};
-}
-
-json optionsJson(const BakeOptions& o) {
-  return {{"quality", static_cast<int>(o.quality)},
-          {"order", o.order},
-          {"glossyOrder", o.glossy_order},
-          {"rays", o.rays},
-          {"bounces", o.bounces},
-          {"errorBound", o.error_bound},
-          {"maxEdge", o.max_edge_m},
-          {"neighborhoodGrid", gridJson(o.neighborhood_grid)},
-          {"refineBound", o.refine_bound},
-          {"fit", o.fit ? json(*o.fit) : json()},
-          {"lightSamples", o.light_samples},
-          {"volumeGrid", gridJson(o.volume_grid)},
-          {"effects", o.effects},
-          {"threads", o.threads},
-          {"memory", o.memory_bytes}};
-}
-
-BakeOptions readOptions(const json& value) {
-  BakeOptions o;
-  const int quality = value.at("quality").get<int>();
-  if (quality < 0 || quality > static_cast<int>(Quality::High))
-    throw json::other_error::create(501, "quality", nullptr);
-  o.quality = static_cast<Quality>(quality);
-  value.at("order").get_to(o.order);
-  value.at("glossyOrder").get_to(o.glossy_order);
-  value.at("rays").get_to(o.rays);
-  value.at("bounces").get_to(o.bounces);
-  value.at("errorBound").get_to(o.error_bound);
-  value.at("maxEdge").get_to(o.max_edge_m);
-  o.neighborhood_grid = readGrid(value.at("neighborhoodGrid"));
-  value.at("refineBound").get_to(o.refine_bound);
-  if (const json& fit = value.at("fit"); !fit.is_null()) o.fit = fit.get<bool>();
-  value.at("lightSamples").get_to(o.light_samples);
-  o.volume_grid = readGrid(value.at("volumeGrid"));
-  value.at("effects").get_to(o.effects);
-  value.at("threads").get_to(o.threads);
-  value.at("memory").get_to(o.memory_bytes);
-  return o;
+BakeOptions readOptions(const json& words) {
+  BakeOptions options;
+  for (const OptionRow& row : optionRows())
+    if (!row.read(options, words.at(std::string(row.name)).get<std::string>()))
+      throw json::other_error::create(501, std::string(row.name), nullptr);
+  return options;
 }
 
 }  // namespace

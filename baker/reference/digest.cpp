@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "runtime/bundle/checksum.hpp"
+#include "runtime/bundle/material_fields.hpp"
 
 namespace lambent::baker::reference {
 
@@ -40,16 +41,20 @@ void add(const gltf::TextureRef& ref, Digest& digest) {
   digest.add(ref.texture, ref.texcoord, ref.offset, ref.scale, ref.rotation_rad);
 }
 
-void add(const gltf::Material& m, Digest& digest) {
-  digest.add(m.base_color, m.emissive, m.normal_scale, m.unlit, m.alpha_mode, m.alpha_cutoff, m.double_sided);
-  digest.add(m.metallic, m.roughness, m.ior, m.specular, m.specular_color, m.anisotropy,
-             m.anisotropy_rotation_rad, m.brdf);
-  for (const gltf::TextureRef* ref :
-       {&m.metallic_roughness_texture, &m.specular_texture, &m.specular_color_texture, &m.anisotropy_texture})
-    add(*ref, digest);
-  add(m.base_color_texture, digest);
-  add(m.emissive_texture, digest);
-  add(m.normal_texture, digest);
+// The fields of reflection are added together, between the other values and the other textures.
+void add(const gltf::Material& material, Digest& digest) {
+  const auto addValues = [&](bool reflection) {
+    gltf::forEachMaterialValue([&](const auto& field) {
+      if ((field.part == gltf::MaterialPart::Reflection) == reflection) digest.add(material.*field.member);
+    });
+  };
+  const auto addTextures = [&](bool reflection) {
+    gltf::forEachMaterialTexture([&](const auto& field) {
+      if ((field.part == gltf::MaterialPart::Reflection) == reflection) add(material.*field.member, digest);
+    });
+  };
+  addValues(false), addValues(true);
+  addTextures(true), addTextures(false);
 }
 
 void add(const Scene& scene, Digest& digest) {

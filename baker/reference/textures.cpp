@@ -6,6 +6,8 @@
 
 #include <glm/common.hpp>
 
+#include "runtime/bundle/material_fields.hpp"
+
 namespace lambent::baker::reference {
 
 namespace {
@@ -39,18 +41,20 @@ Result<Textures> Textures::load(const Scene& scene) {
   Textures out;
   out.textures_ = scene.textures;
   out.images_.resize(scene.images.size());
-  for (const gltf::Material& material : scene.materials)
-    for (const gltf::TextureRef* ref :
-         {&material.base_color_texture, &material.emissive_texture, &material.normal_texture,
-          &material.metallic_roughness_texture, &material.specular_texture, &material.specular_color_texture,
-          &material.anisotropy_texture}) {
-      if (ref->texture < 0) continue;
-      const std::int32_t image = scene.textures[static_cast<std::size_t>(ref->texture)].image;
-      if (image < 0 || out.images_[static_cast<std::size_t>(image)]) continue;
-      auto decoded = decodeImage(scene.images[static_cast<std::size_t>(image)]);
-      if (!decoded) return failAgain(std::move(decoded.error()));
+  std::optional<Error> error;
+  const auto load = [&](const gltf::TextureRef& ref) {
+    if (ref.texture < 0 || error) return;
+    const std::int32_t image = scene.textures[static_cast<std::size_t>(ref.texture)].image;
+    if (image < 0 || out.images_[static_cast<std::size_t>(image)]) return;
+    auto decoded = decodeImage(scene.images[static_cast<std::size_t>(image)]);
+    if (decoded)
       out.images_[static_cast<std::size_t>(image)] = std::move(*decoded);
-    }
+    else
+      error = std::move(decoded.error());
+  };
+  for (const gltf::Material& material : scene.materials)
+    gltf::forEachMaterialTexture([&](const auto& field) { load(material.*field.member); });
+  if (error) return failAgain(std::move(*error));
   return out;
 }
 

@@ -83,7 +83,7 @@ void drawBakes(Session& session, Ui& ui) {
   ImGui::TableSetupColumn("Shown", ImGuiTableColumnFlags_WidthFixed, 90.0f);
   ImGui::TableSetupColumn("Bake", ImGuiTableColumnFlags_WidthStretch, 0.3f);
   ImGui::TableSetupColumn("Now, or what came of it", ImGuiTableColumnFlags_WidthStretch, 0.5f);
-  ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthFixed, 170.0f);
+  ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthFixed, 230.0f);
   ImGui::TableSetupScrollFreeze(0, 1);
   ImGui::TableHeadersRow();
   for (std::size_t i = 0; i < entries.size(); ++i) {
@@ -125,6 +125,15 @@ void drawBakes(Session& session, Ui& ui) {
       ui.mark(mark + "bake");
     }
     ImGui::SameLine();
+    if (!entry.source.empty()) {
+      if (ImGui::SmallButton("Options")) ImGui::OpenPopup("options");
+      ui.mark(mark + "options");
+      if (ImGui::BeginPopup("options")) {
+        drawBakeOptions(session, ui, i);
+        ImGui::EndPopup();
+      }
+      ImGui::SameLine();
+    }
     if (ImGui::SmallButton("Close")) {
       report(session, runCommand(session, "close", std::array{number}));
       ImGui::PopID();

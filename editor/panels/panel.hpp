@@ -29,6 +29,7 @@ void drawKeyLights(Session& session, Ui& ui);  // a part of the environment's
 void drawSettings(Session& session, Ui& ui);
 void drawPlan(Session& session, Ui& ui);
 void drawBakes(Session& session, Ui& ui);
+void drawBakeOptions(Session& session, Ui& ui, std::size_t scene);  // a part of the bakes'
 void drawCost(Session& session, Ui& ui);
 void drawAccuracy(Session& session, Ui& ui);
 void drawStreaming(Session& session, Ui& ui);

@@ -26,36 +26,14 @@ void addLights(const ecs::Registry& registry, const bundle::Description& descrip
   }
 }
 
-template <typename T>
-void addIf(const T& now, const T& before, std::optional<T>& edit, bool& any) {
-  if (now == before) return;
-  edit = now;
-  any = true;
-}
-
 void addMaterials(const ecs::Registry& registry, const bundle::Description& description,
                   const scene::SceneInstance& instance, baker::SceneEdits& edits) {
   for (std::uint32_t i = 0; i < instance.materials.size(); ++i) {
     const auto* now = registry.tryGet<scene::MaterialComponent>(instance.materials[i]);
     if (!now) continue;
     const gltf::Material& was = description.materials[i];
-    baker::SceneEdits::Material edit;
-    edit.index = i, edit.name = was.name;
-    bool any = false;
-    addIf(now->base_color, glm::vec3(was.base_color), edit.base_color, any);
-    addIf(now->metallic, was.metallic, edit.metallic, any);
-    addIf(now->roughness, was.roughness, edit.roughness, any);
-    addIf(now->anisotropy, was.anisotropy, edit.anisotropy, any);
-    addIf(now->anisotropy_rotation_rad, was.anisotropy_rotation_rad, edit.anisotropy_rotation, any);
-    addIf(now->ior, was.ior, edit.ior, any);
-    addIf(now->specular, was.specular, edit.specular, any);
-    addIf(now->specular_color, was.specular_color, edit.specular_color, any);
-    addIf(now->alpha, was.base_color.a, edit.alpha, any);
-    addIf(now->brdf, was.brdf, edit.brdf, any);
-    addIf(scene::withComponent(was, *now).emissive, was.emissive, edit.emissive, any);
-    addIf(now->normal_scale, was.normal_scale, edit.normal_scale, any);
-    addIf(now->alpha_cutoff, was.alpha_cutoff, edit.alpha_cutoff, any);
-    if (any) edits.materials.push_back(std::move(edit));
+    baker::SceneEdits::Material edit = baker::editOf(i, was, scene::withComponent(was, *now));
+    if (!edit.values.empty()) edits.materials.push_back(std::move(edit));
   }
 }
 

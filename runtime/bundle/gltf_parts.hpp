@@ -14,10 +14,6 @@ namespace lambent::bundle {
 
 inline constexpr const char* kTextureTransform = "KHR_texture_transform";
 inline constexpr const char* kEmissiveStrength = "KHR_materials_emissive_strength";
-inline constexpr const char* kUnlit = "KHR_materials_unlit";
-inline constexpr const char* kIor = "KHR_materials_ior";
-inline constexpr const char* kSpecular = "KHR_materials_specular";
-inline constexpr const char* kAnisotropy = "KHR_materials_anisotropy";
 inline constexpr const char* kPunctualLights = "KHR_lights_punctual";
 
 // `used` collects the extensions that the JSON makes use of.

@@ -2,25 +2,20 @@
 
 #include <algorithm>
 
+#include "runtime/bundle/material_fields.hpp"
+
 namespace lambent::frame {
 
 namespace {
 
-bool sameReflection(const gltf::Material& a, const gltf::Material& b) {
-  return a.metallic == b.metallic && a.roughness == b.roughness && a.ior == b.ior &&
-         a.specular == b.specular && a.specular_color == b.specular_color && a.anisotropy == b.anisotropy &&
-         a.anisotropy_rotation_rad == b.anisotropy_rotation_rad && a.brdf == b.brdf;
-}
-
-// Which field to point at.
-const char* changedField(const gltf::Material& a, const gltf::Material& b) {
-  if (a.brdf != b.brdf) return "brdf";
-  if (a.metallic != b.metallic) return "metallic";
-  if (a.roughness != b.roughness) return "roughness";
-  if (a.anisotropy != b.anisotropy) return "anisotropy";
-  if (a.anisotropy_rotation_rad != b.anisotropy_rotation_rad) return "anisotropy_rotation";
-  if (a.ior != b.ior) return "ior";
-  return a.specular != b.specular ? "specular" : "specular_color";
+// Returns the name of the first value of reflection that differs, or nothing if none does.
+std::string changedReflection(const gltf::Material& a, const gltf::Material& b) {
+  std::string changed;
+  gltf::forEachLiveValue([&](const auto& field, const auto& live) {
+    if (changed.empty() && field.part == gltf::MaterialPart::Reflection && a.*field.member != b.*field.member)
+      changed = live.name;
+  });
+  return changed;
 }
 
 // By the same rule as glossy_record.cpp chooses.
@@ -62,7 +57,7 @@ MaterialUse materialUse(const bundle::Description& description, std::uint32_t ma
 std::vector<RebakeReason> needsRebake(const gltf::Material& now, const gltf::Material& baked,
                                       const MaterialUse& use) {
   std::vector<RebakeReason> reasons;
-  const auto add = [&](const char* field, bool shows, const char* sentence) {
+  const auto add = [&](const std::string& field, bool shows, const char* sentence) {
     reasons.push_back({.field = field, .sentence = sentence, .shows = shows});
   };
   const bool other_color = glm::vec3(now.base_color) != glm::vec3(baked.base_color);
@@ -75,8 +70,7 @@ std::vector<RebakeReason> needsRebake(const gltf::Material& now, const gltf::Mat
     add(now.base_color.a != baked.base_color.a ? "alpha" : "alpha_cutoff", true,
         now.alpha_mode == gltf::AlphaMode::Mask ? "The cut-outs of its baked shadow stay as they were."
                                                 : "Its baked shadow stays as it was.");
-  if (!sameReflection(now, baked)) {
-    const char* field = changedField(now, baked);
+  if (const std::string field = changedReflection(now, baked); !field.empty()) {
     if ((use.matte || use.normal_mapped) && now.matte() != baked.matte())
       add(field, false, "It was baked as a matte surface: roughness and metal show only after a rebake.");
     if (use.glossy) {

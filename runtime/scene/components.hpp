@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <numbers>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -15,6 +16,7 @@
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
 
+#include "runtime/bundle/material_fields.hpp"
 #include "runtime/ecs/entity.hpp"
 #include "runtime/ecs/fields.hpp"
 #include "runtime/scene/bounds.hpp"
@@ -143,41 +145,26 @@ struct LampComponent {
 // A material of a bundle, an entity of its own: the factors that surfaces are shaded by, before textures and
 // vertex colours. What is changed shows in the next frame as far as it is no part of what was baked
 // (frame/material_rebake.hpp says what is). What a LampComponent says is given off goes before `emission`.
-struct MaterialComponent {
+struct MaterialComponent : gltf::MaterialFactors {
   std::uint32_t bundle = 0, material = 0;
-  glm::vec3 base_color{1.0f};  // linear
-  float alpha = 1.0f;
-  float metallic = 1.0f, roughness = 1.0f;
-  float ior = 1.5f;  // 0: infinite
-  float specular = 1.0f;
-  glm::vec3 specular_color{1.0f};
-  float anisotropy = 0.0f, anisotropy_rotation_rad = 0.0f;
-  std::int32_t brdf = -1;    // a measured table of the bundle in place of all of the above; -1: none
-  glm::vec3 emission{0.0f};  // linear
-  float emission_strength = 1.0f;
-  float normal_scale = 1.0f;
-  float alpha_cutoff = 0.5f;  // of masked ones
 
   static constexpr std::string_view kComponentName = "Material";
+  // The values that the table of a material's fields says can be changed, in its order.
   static auto fields() {
-    using M = MaterialComponent;
-    constexpr float kTurn = 2.0f * std::numbers::pi_v<float>;
-    return std::tuple{
-        ecs::Field{"base_color", &M::base_color, glm::vec3(1.0f)},
-        ecs::Field{"alpha", &M::alpha, 1.0f, "", ecs::Range{0.0f, 1.0f}},
-        ecs::Field{"metallic", &M::metallic, 1.0f, "", ecs::Range{0.0f, 1.0f}},
-        ecs::Field{"roughness", &M::roughness, 1.0f, "", ecs::Range{0.0f, 1.0f}},
-        ecs::Field{"ior", &M::ior, 1.5f, "", ecs::Range{0.0f, 100.0f}},
-        ecs::Field{"specular", &M::specular, 1.0f, "", ecs::Range{0.0f, 1.0f}},
-        ecs::Field{"specular_color", &M::specular_color, glm::vec3(1.0f)},
-        ecs::Field{"anisotropy", &M::anisotropy, 0.0f, "", ecs::Range{0.0f, 1.0f}},
-        ecs::Field{"anisotropy_rotation", &M::anisotropy_rotation_rad, 0.0f, "rad",
-                   ecs::Range{-kTurn, kTurn}},
-        ecs::Field{"brdf", &M::brdf, -1, "", ecs::Range{-1, 65535}},
-        ecs::Field{"emission", &M::emission, glm::vec3(0.0f)},
-        ecs::Field{"emission_strength", &M::emission_strength, 1.0f, "", ecs::Range{0.0f, 1e6f}},
-        ecs::Field{"normal_scale", &M::normal_scale, 1.0f, "", ecs::Range{-100.0f, 100.0f}},
-        ecs::Field{"alpha_cutoff", &M::alpha_cutoff, 0.5f, "", ecs::Range{0.0f, 1.0f}}};
+    return std::apply(
+        [](const auto&... row) {
+          return std::tuple_cat(
+              std::apply([](const auto&... live) { return std::tuple{fieldOf(live)...}; }, row.live)...);
+        },
+        gltf::kMaterialFields);
+  }
+
+ private:
+  template <class T>
+  static ecs::Field<MaterialComponent, T> fieldOf(const gltf::LiveValue<T>& live) {
+    std::optional<ecs::Range<T>> range;
+    if (live.range) range = {live.range->least, live.range->greatest};
+    return {live.name, live.factor, gltf::MaterialFactors().*live.factor, live.unit, range};
   }
 };
 

@@ -15,22 +15,7 @@ bool usable(const glm::vec3& value) {
 
 MaterialComponent materialComponent(const gltf::Material& baked, std::uint32_t bundle,
                                     std::uint32_t material) {
-  return {.bundle = bundle,
-          .material = material,
-          .base_color = glm::vec3(baked.base_color),
-          .alpha = baked.base_color.a,
-          .metallic = baked.metallic,
-          .roughness = baked.roughness,
-          .ior = baked.ior,
-          .specular = baked.specular,
-          .specular_color = baked.specular_color,
-          .anisotropy = baked.anisotropy,
-          .anisotropy_rotation_rad = baked.anisotropy_rotation_rad,
-          .brdf = baked.brdf,
-          .emission = baked.emissive,
-          .emission_strength = 1.0f,
-          .normal_scale = baked.normal_scale,
-          .alpha_cutoff = baked.alpha_cutoff};
+  return {gltf::factorsOf(baked), bundle, material};
 }
 
 gltf::Material withComponent(const gltf::Material& baked, const MaterialComponent& component) {
@@ -43,20 +28,7 @@ gltf::Material withComponent(const gltf::Material& baked, const MaterialComponen
     if constexpr (std::is_same_v<Value, float>) good = good && std::isfinite(value);
     if (!good) value = field.of(before);
   });
-  gltf::Material material = baked;
-  material.base_color = glm::vec4(now.base_color, now.alpha);
-  material.metallic = now.metallic;
-  material.roughness = now.roughness;
-  material.ior = now.ior;
-  material.specular = now.specular;
-  material.specular_color = now.specular_color;
-  material.anisotropy = now.anisotropy;
-  material.anisotropy_rotation_rad = now.anisotropy_rotation_rad;
-  material.brdf = now.brdf;
-  material.emissive = now.emission_strength * now.emission;
-  material.normal_scale = now.normal_scale;
-  material.alpha_cutoff = now.alpha_cutoff;
-  return material;
+  return gltf::withFactors(baked, now);
 }
 
 }  // namespace lambent::scene

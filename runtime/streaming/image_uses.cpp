@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "runtime/bundle/material_fields.hpp"
+
 namespace lambent::streaming {
 
 namespace {
@@ -27,14 +29,10 @@ std::vector<ImageUse> imageUses(const bundle::Description& description) {
   const std::vector<bool> glossy = glossyMaterials(description);
   for (std::size_t i = 0; i < description.materials.size(); ++i) {
     const gltf::Material& material = description.materials[i];
-    read(material.base_color_texture, &ImageUse::color);
-    read(material.emissive_texture, &ImageUse::color);
-    read(material.normal_texture, &ImageUse::linear);
-    if (!glossy[i]) continue;
-    read(material.specular_color_texture, &ImageUse::color);
-    for (const gltf::TextureRef* numbers :
-         {&material.metallic_roughness_texture, &material.specular_texture, &material.anisotropy_texture})
-      read(*numbers, &ImageUse::linear);
+    gltf::forEachMaterialTexture([&](const auto& field) {
+      if (field.part == gltf::MaterialPart::Reflection && !glossy[i]) return;
+      read(material.*field.member, field.color_texture ? &ImageUse::color : &ImageUse::linear);
+    });
   }
   for (ImageUse& use : uses) use.color |= !use.linear;
   return uses;
@@ -44,14 +42,13 @@ std::vector<std::uint32_t> imagesOf(const bundle::Description& description, std:
   std::vector<std::uint32_t> images;
   if (material < 0) return images;
   const gltf::Material& of = description.materials[static_cast<std::size_t>(material)];
-  for (const gltf::TextureRef* reference :
-       {&of.base_color_texture, &of.emissive_texture, &of.normal_texture, &of.metallic_roughness_texture,
-        &of.specular_texture, &of.specular_color_texture, &of.anisotropy_texture}) {
-    if (reference->texture < 0) continue;
-    const std::int32_t image = description.textures[static_cast<std::size_t>(reference->texture)].image;
+  gltf::forEachMaterialTexture([&](const auto& field) {
+    const gltf::TextureRef& reference = of.*field.member;
+    if (reference.texture < 0) return;
+    const std::int32_t image = description.textures[static_cast<std::size_t>(reference.texture)].image;
     if (image >= 0 && std::ranges::find(images, static_cast<std::uint32_t>(image)) == images.end())
       images.push_back(static_cast<std::uint32_t>(image));
-  }
+  });
   return images;
 }
 

@@ -3,6 +3,8 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
 
+#include "tests/support/material_values.hpp"
+
 namespace lambent::baker {
 namespace {
 
@@ -22,7 +24,7 @@ SceneEdits someEdits() {
   edits.nodes.push_back({0, "box", glm::translate(glm::mat4(1.0f), glm::vec3(1.0f, 2.0f, 3.0f))});
   SceneEdits::Material material;
   material.index = 1, material.name = "blue";
-  material.base_color = glm::vec3(0.1f, 0.2f, 0.9f), material.roughness = 0.25f, material.alpha = 0.5f;
+  material.values = {{"baseColor", glm::vec3(0.1f, 0.2f, 0.9f)}, {"roughness", 0.25f}, {"alpha", 0.5f}};
   edits.materials.push_back(material);
   SceneEdits::Light lamp;
   lamp.node = 1, lamp.name = "lamp", lamp.intensity = 9.0f;
@@ -65,6 +67,35 @@ TEST(SceneEdits, ComeBackFromTheirText) {
   EXPECT_EQ(*read, someEdits());
   EXPECT_FALSE(readEdits("{\"nodes\": [{\"index\": \"one\"}]}").has_value());
   EXPECT_FALSE(readEdits("nothing").has_value());
+}
+
+TEST(SceneEdits, HoldEveryValueOfAMaterialThatCanBeChanged) {
+  const gltf::Material was = testing::materialWithEverything();
+  const gltf::MaterialFactors factors = gltf::factorsOf(was);
+  EXPECT_TRUE(editOf(0, was, was).values.empty());
+  gltf::forEachLiveValue([&](const auto& field, const auto& live) {
+    gltf::MaterialFactors other = factors;
+    testing::change(other.*live.factor);
+    const gltf::Material now = gltf::withFactors(was, other);
+    SceneEdits edits;
+    edits.materials = {editOf(0, was, now)};
+    EXPECT_EQ(edits.materials[0].values.size(), 1u) << live.name;
+    const auto read = readEdits(editsText(edits));
+    ASSERT_TRUE(read) << live.name;
+    EXPECT_EQ(*read, edits) << live.name;
+    Scene scene;
+    scene.materials = {was};
+    scene.brdfs.resize(2);
+    applyEdits(*read, scene);
+    EXPECT_EQ(scene.materials[0].*field.member, now.*field.member) << live.name;
+  });
+}
+
+TEST(SceneEdits, OfOneMaterialAddUpTheLaterOneAbove) {
+  const SceneEdits::Material below{0, "red", {{"roughness", 0.1f}, {"metallic", 0.2f}}};
+  const SceneEdits::Material above{0, "red", {{"roughness", 0.3f}, {"alpha", 0.4f}}};
+  const SceneEdits::Material both{0, "red", {{"roughness", 0.3f}, {"metallic", 0.2f}, {"alpha", 0.4f}}};
+  EXPECT_EQ(overlaid(below, above), both);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "baker/import/gltf.hpp"
+#include "runtime/bundle/material_fields.hpp"
 #include "tests/support/shared_data.hpp"
 
 namespace lambent::baker {
@@ -44,13 +45,11 @@ void expectWhole(const Scene& scene) {
     ASSERT_EQ(node.animated, node.trs.has_value());
   }
   for (const gltf::Material& material : scene.materials)
-    for (const gltf::TextureRef* ref :
-         {&material.base_color_texture, &material.emissive_texture, &material.normal_texture,
-          &material.metallic_roughness_texture, &material.specular_texture, &material.specular_color_texture,
-          &material.anisotropy_texture}) {
-      ASSERT_LT(ref->texture, static_cast<std::int32_t>(scene.textures.size()));
-      ASSERT_LE(ref->texcoord, 1u);
-    }
+    gltf::forEachMaterialTexture([&](const auto& field) {
+      const gltf::TextureRef& ref = material.*field.member;
+      ASSERT_LT(ref.texture, static_cast<std::int32_t>(scene.textures.size()));
+      ASSERT_LE(ref.texcoord, 1u);
+    });
 }
 
 TEST(SharedScenes, AreAllReadOrRefusedInOneLine) {

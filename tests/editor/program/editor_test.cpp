@@ -9,6 +9,7 @@
 
 #include "assets/glb.hpp"
 #include "assets/shapes.hpp"
+#include "baker/bake/option_rows.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/x_server.hpp"
 
@@ -141,6 +142,41 @@ TEST_F(EditorProgram, BakesTheScenesOfAWorldWithTheOptionsThatItWasSavedWith) {
   EXPECT_EQ(scene["bakeOptions"]["rays"], "300") << scene.dump();
   EXPECT_EQ(scene["bakeOptions"], before["bakeOptions"]);
   EXPECT_EQ(scene["bake"]["upToDate"], true) << "or it was baked with other options than the bundle has";
+}
+
+TEST_F(EditorProgram, SetsEveryOptionOfABakeInItsPanel) {
+  const Played played = play(fmt::format(R"(
+open {0}
+wait loaded
+panel Bakes
+wait frames 3
+click bakes.hello.options
+wait frames 3
+marks
+click bake-option.volume-grid
+type 16x8x4
+key Enter
+wait frames 3
+click bake-option.neighborhood-grid
+type 12
+key Enter
+wait frames 3
+click bake-option.fit
+wait frames 3
+click bake-option.fit.on
+wait frames 3
+state
+)",
+                                         path("hello.glb")),
+                             {"--no-bake"});
+  ASSERT_EQ(played.outcome.exit_code, 0) << told(played.outcome);
+  const std::string marks = played.answer("marks").dump();
+  for (const baker::OptionRow& row : baker::optionRows())
+    EXPECT_NE(marks.find(fmt::format("\"bake-option.{}\"", row.name)), std::string::npos) << row.name;
+  const json& options = played.answer("state")["scenes"][0]["bakeOptions"];
+  EXPECT_EQ(options["volumeGrid"], "16x8x4");
+  EXPECT_EQ(options["neighborhoodGrid"], "12x12x12");
+  EXPECT_EQ(options["fit"], "on");
 }
 
 TEST_F(EditorProgram, ReachesEachOfSeveralMarksWithOneName) {

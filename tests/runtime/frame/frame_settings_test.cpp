@@ -10,6 +10,7 @@
 #include "runtime/frame/glossy_record.hpp"
 #include "runtime/frame/material_rebake.hpp"
 #include "runtime/frame/quality.hpp"
+#include "tests/support/material_values.hpp"
 
 namespace lambent::frame {
 namespace {
@@ -122,6 +123,17 @@ TEST(MaterialRebake, SaysWhatDoesNotShow) {
   now = baked;
   now.emissive = glm::vec3(1.0f);
   EXPECT_EQ(fields(now, shiny), Fields{"emission nearly"});
+}
+
+TEST(MaterialRebake, IsAskedForByEveryValueOfReflection) {
+  const MaterialUse use{.glossy = true, .bounces = true, .tables = {bundle::BrdfFamily::AnisotropicGgx}};
+  const gltf::Material baked = testing::materialWithEverything();
+  gltf::forEachLiveValue([&](const auto& field, const auto& live) {
+    if (field.part != gltf::MaterialPart::Reflection) return;
+    const auto reasons = needsRebake(testing::changed(baked, field), baked, use);
+    ASSERT_FALSE(reasons.empty()) << live.name;
+    EXPECT_EQ(reasons.back().field, live.name);
+  });
 }
 
 TEST(Quality, SetsWhatItNamesAndIsToldByThat) {

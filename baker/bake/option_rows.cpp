@@ -1,0 +1,277 @@
+#include "baker/bake/option_rows.hpp"
+
+#include <algorithm>
+#include <array>
+#include <tuple>
+#include <type_traits>
+
+#include <fmt/format.h>
+
+#include "baker/bake/typed_option.hpp"
+#include "baker/effects/neighborhood/grid_placement.hpp"
+#include "baker/plan/local_light.hpp"
+
+namespace lambent::baker {
+
+namespace {
+
+using namespace typed_options;
+
+// ---- the table
+
+using B = BakeOptions;
+
+std::string recordRays(const BakeOptions& o) {
+  return fmt::format("{}", o.effectiveRays());
+}
+std::string recordError(const BakeOptions& o) {
+  return fmt::format("{}", o.effectiveErrorBound());
+}
+std::string recordRefine(const BakeOptions& o) {
+  return fmt::format("{}", o.effectiveRefineBound());
+}
+std::string recordFit(const BakeOptions& o) {
+  return o.fitsMatte() ? "on" : o.fitsGlossy() ? "glossy" : "off";
+}
+
+constexpr std::tuple kRows{
+    TypedRow<Quality>{
+        .name = "quality",
+        .setting = "",
+        .kind = "NAME",
+        .member = &B::quality,
+        .help = "draft, standard (default) or high: rays and error bound together",
+        .words = {{{"draft", Quality::Draft}, {"standard", Quality::Standard}, {"high", Quality::High}}}},
+    TypedRow<int>{.name = "order",
+                  .setting = "order",
+                  .kind = "N",
+                  .member = &B::order,
+                  .help = "Bands of spherical harmonics, 1..8; order² coefficients",
+                  .limits = Limits<int>{.least = 1, .greatest = 8, .mend = "5 is the default"}},
+    TypedRow<int>{.name = "glossy-order",
+                  .setting = "glossyOrder",
+                  .kind = "N",
+                  .member = &B::glossy_order,
+                  .help = "Bands of the light that glossy surfaces reflect, 4..6",
+                  .limits = Limits<int>{.least = 4, .greatest = 6, .mend = "5 is the default"}},
+    TypedRow<std::uint32_t>{
+        .name = "rays",
+        .setting = "rays",
+        .kind = "N",
+        .member = &B::rays,
+        .help = "Rays per sample over its hemisphere; default 256, 1024 or 4096 by quality",
+        .words = {{{"auto", 0}}},
+        .limits =
+            Limits<std::uint32_t>{
+                .least = 128, .greatest = 1u << 20, .mend = "leave it out to take what --quality stands for"},
+        .record = &recordRays},
+    TypedRow<int>{
+        .name = "bounces",
+        .setting = "bounces",
+        .kind = "N",
+        .member = &B::bounces,
+        .help = "Interreflections between surfaces, 0..64; 0: direct light with shadows only, and single "
+                "scattering in volumes, which else scatter as often as they do; default: until what is left "
+                "out is far under the error bound",
+        .words = {{{"auto", -1}}},
+        .limits = Limits<int>{.least = 0,
+                              .greatest = B::kMostBounces,
+                              .usage = true,
+                              .mend = "leave it out to bake as many as the error bound asks for"}},
+    TypedRow<std::uint64_t>{
+        .name = "max-memory",
+        .setting = "",
+        .kind = "BYTES",
+        .member = &B::memory_bytes,
+        .help = "Memory for what passes keep, in bytes or like 4GB; default half of the machine's. What does "
+                "not fit is computed again: slower, the same result",
+        .words = {{{"auto", 0}}}},
+    TypedRow<float>{
+        .name = "error",
+        .setting = "errorBound",
+        .kind = "E",
+        .member = &B::error_bound,
+        .help = "Bound on the coding error, relative RMS of shaded radiance; default 0.01, 0.003 or "
+                "0.001 by quality, of glossy surfaces 0.03, 0.015 or 0.005",
+        .words = {{{"auto", 0.0f}}},
+        .limits = Limits<float>{.least = 0.0f, .greatest = 1.0f, .open = true, .mend = "0.003 means 0.3 %"},
+        .record = &recordError},
+    TypedRow<float>{
+        .name = "max-edge",
+        .setting = "maxEdge",
+        .kind = "M",
+        .member = &B::max_edge_m,
+        .help = "Split edges longer than this (scene units), so that large faces catch shadows",
+        .limits = Limits<float>{.least = 0.0f,
+                                .greatest = kMost<float>,
+                                .wrong = "is not a length",
+                                .mend = "give a positive number in the scene's units, or leave it out"}},
+    TypedRow<float>{
+        .name = "refine",
+        .setting = "refineBound",
+        .kind = "E|auto|off",
+        .member = &B::refine_bound,
+        .help =
+            "Split edges where shadows change, until interpolation errs by less than E, relative RMS; auto "
+            "(default): 0.02, 0.014 or 0.007 by quality; off: keep the vertices as they are",
+        .words = {{{"auto", -1.0f}, {"off", 0.0f}}},
+        .limits = Limits<float>{.least = 0.0f,
+                                .greatest = 1.0f,
+                                .open = true,
+                                .usage = true,
+                                .mend = "auto takes what --quality stands for"},
+        .record = &recordRefine},
+    TypedRow<std::optional<bool>>{
+        .name = "fit",
+        .setting = "fit",
+        .kind = "auto|on|off",
+        .member = &B::fit,
+        .help = "Fit light at vertices to what rays from inside the faces see, so that interpolation shows "
+                "faces best, of matte surfaces direct light alone: on, off (what the vertices see) or auto "
+                "(default): on glossy surfaces, but for drafts",
+        .words = {{{"auto", std::nullopt}, {"on", true}, {"off", false}}},
+        .record = &recordFit},
+    TypedRow<int>{
+        .name = "light-samples",
+        .setting = "lightSamples",
+        .kind = "N|auto",
+        .member = &B::light_samples,
+        .help = "Points of each cell at which light from outside is sampled, 1..32; 1 for a group: light at "
+                "infinity. auto (default): by how near light comes, shared out over the group",
+        .words = {{{"auto", 0}}},
+        .limits = Limits<int>{.least = 1,
+                              .greatest = static_cast<int>(kMostLightSamples),
+                              .usage = true,
+                              .mend = "auto chooses by how near light comes"}},
+    TypedRow<glm::uvec3>{
+        .name = "neighborhood-grid",
+        .setting = "neighborhoodGrid",
+        .kind = "XxYxZ",
+        .member = &B::neighborhood_grid,
+        .help =
+            "Points of neighborhood grids along their longest, middle and shortest side, 2..256 each; auto "
+            "(default): 64x64x8 where receivers are on one side only, else 32x32x32; for bodies that the "
+            "scene does not name a quarter of that",
+        .words = {{{"auto", glm::uvec3(0u)}}},
+        .limits = Limits<glm::uvec3>{.least = 2, .greatest = kMostGridPoints, .mend = "64x64x8 is usual"}},
+    TypedRow<glm::uvec3>{
+        .name = "volume-grid",
+        .setting = "volumeGrid",
+        .kind = "N|XxYxZ",
+        .member = &B::volume_grid,
+        .help = "Voxels of the grid that a volume's transfer is baked on, 1..256 along each axis; default 32",
+        .limits = Limits<glm::uvec3>{.least = 1, .greatest = 256, .mend = "32 is the default"}},
+    TypedRow<std::string>{.name = "effects",
+                          .setting = "effects",
+                          .kind = "LIST",
+                          .member = &B::effects,
+                          .help = "auto: what the scene calls for; or a list of effects"},
+    TypedRow<unsigned>{.name = "threads",
+                       .setting = "",
+                       .kind = "N",
+                       .member = &B::threads,
+                       .help = "Threads; default all. The result does not depend on it",
+                       .words = {{{"auto", 0}}}}};
+
+// A member of BakeOptions without a row does not compile, since it changes how many names this needs.
+[[maybe_unused]] auto membersOf(const BakeOptions& options) {
+  const auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o] = options;
+  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o);
+}
+static_assert(std::tuple_size_v<decltype(membersOf(BakeOptions()))> == std::tuple_size_v<decltype(kRows)>,
+              "every member of BakeOptions has a row");
+
+// ---- rows without their types
+
+template <std::size_t I>
+std::string wordOf(const BakeOptions& options) {
+  const auto& row = std::get<I>(kRows);
+  return textOf(row, options.*row.member);
+}
+
+template <std::size_t I>
+bool readWord(BakeOptions& options, std::string_view word) {
+  const auto& row = std::get<I>(kRows);
+  return readValue(row, word, options.*row.member);
+}
+
+template <std::size_t I>
+Result<void> putWord(BakeOptions& options, std::string_view word) {
+  const auto& row = std::get<I>(kRows);
+  auto value = options.*row.member;
+  bool good = readValue(row, word, value);
+  if constexpr (std::is_arithmetic_v<decltype(value)>)
+    if (good && row.limits && row.limits->usage)  // 0 is not another word for "off"
+      good = std::ranges::any_of(row.words, [&](const auto& w) { return w.word == word; }) ||
+             within(*row.limits, value);
+  if (!good)
+    return fail(fmt::format("--{}", row.name), fmt::format("{} {}", word, notOfItsKind(row)),
+                fmt::format("give {}", row.kind));
+  options.*row.member = value;
+  return {};
+}
+
+template <std::size_t I>
+Result<void> checkValue(const BakeOptions& options) {
+  const auto& row = std::get<I>(kRows);
+  if constexpr (kHasLimits<std::remove_cvref_t<decltype(options.*row.member)>>) {
+    const auto wrong = outside(row, options.*row.member);
+    if (!wrong) return {};
+    const auto& limits = *row.limits;
+    return fail(fmt::format("--{}", row.name),
+                limits.wrong.empty()
+                    ? fmt::format("{} is not between {} and {}", *wrong, limits.least, limits.greatest)
+                    : fmt::format("{} {}", *wrong, limits.wrong),
+                std::string(limits.mend));
+  }
+  return {};
+}
+
+template <std::size_t I>
+OptionRow optionRow() {
+  const auto& row = std::get<I>(kRows);
+  using T = std::remove_cvref_t<decltype(BakeOptions().*row.member)>;
+  OptionRow out{.name = row.name, .setting = row.setting, .kind = row.kind, .help = row.help};
+  for (const Word<T>& word : row.words)
+    if (!word.word.empty()) out.words.push_back(word.word);
+  out.only_words = kOnlyWords<T>;
+  out.shows_default = out.words.empty() && !std::is_same_v<T, glm::uvec3> && BakeOptions().*row.member != T{};
+  out.word = &wordOf<I>;
+  out.record = row.record;
+  if (!out.record) out.record = &wordOf<I>;
+  out.put = &putWord<I>;
+  out.read = &readWord<I>;
+  out.check = &checkValue<I>;
+  return out;
+}
+
+}  // namespace
+
+std::span<const OptionRow> optionRows() {
+  static const auto kErased = []<std::size_t... I>(std::index_sequence<I...>) {
+    return std::array{optionRow<I>()...};
+  }
+  (std::make_index_sequence<std::tuple_size_v<decltype(kRows)>>{});
+  return kErased;
+}
+
+const OptionRow* findOption(std::string_view name) {
+  const auto rows = optionRows();
+  const auto found = std::ranges::find(rows, name, &OptionRow::name);
+  return found == rows.end() ? nullptr : &*found;
+}
+
+Result<void> putOption(BakeOptions& options, std::string_view name, std::string_view word) {
+  if (const OptionRow* row = findOption(name)) return row->put(options, word);
+  std::string names;
+  for (const OptionRow& row : optionRows()) names += fmt::format("{}{}", names.empty() ? "" : ", ", row.name);
+  return fail(std::string(name), "is no option of a bake", "give " + names);
+}
+
+Result<void> checkOptions(const BakeOptions& options) {
+  for (const OptionRow& row : optionRows())
+    if (auto checked = row.check(options); !checked) return checked;
+  return {};
+}
+
+}  // namespace lambent::baker

@@ -1,0 +1,39 @@
+// The options of a bake on the command line. The library finds the words; the table of options says what they
+// mean.
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "baker/bake/option_rows.hpp"
+#include "baker/cli/commands.hpp"
+
+namespace lambent::baker {
+
+namespace {
+
+void add(CLI::App& command, const OptionRow& row, BakeOptions& options) {
+  CLI::Option* option = command.add_option_function<std::string>(
+      "--" + std::string(row.name), [&options, &row](const std::string& word) { row.put(options, word); },
+      std::string(row.help));
+  option->type_name(std::string(row.kind));
+  option->check(CLI::Validator(
+      [&row](const std::string& word) {
+        BakeOptions tried;
+        const auto put = row.put(tried, word);
+        return put ? std::string() : put.error().problem;
+      },
+      ""));
+  if (row.shows_default) option->default_str(row.word(BakeOptions{}));
+}
+
+}  // namespace
+
+void addBakeOptions(CLI::App& command, BakeOptions& options) {
+  for (const OptionRow& row : optionRows()) add(command, row, options);
+}
+
+void addBakeOption(CLI::App& command, std::string_view name, BakeOptions& options) {
+  add(command, *findOption(name), options);
+}
+
+}  // namespace lambent::baker

@@ -1,0 +1,75 @@
+// The options of a scene's bake, a widget for each row of their table (baker/bake/option_rows.hpp).
+#include <array>
+#include <string>
+
+#include <imgui.h>
+#include <imgui_stdlib.h>
+#include <nlohmann/json.hpp>
+
+#include "baker/bake/option_rows.hpp"
+#include "editor/commands/command.hpp"
+#include "editor/panels/panel.hpp"
+
+namespace lambent::editor {
+
+namespace {
+
+// Shown where the pointer rests on the last widget.
+void tellHelp(const baker::OptionRow& row) {
+  if (!ImGui::IsItemHovered()) return;
+  ImGui::BeginTooltip();
+  ImGui::PushTextWrapPos(30.0f * ImGui::GetFontSize());
+  ImGui::TextUnformatted((std::string(row.kind) + ": " + std::string(row.help)).c_str());
+  ImGui::PopTextWrapPos();
+  ImGui::EndTooltip();
+}
+
+// True once another word was chosen or typed.
+bool editWord(Ui& ui, const baker::OptionRow& row, const std::string& mark, std::string& word) {
+  ImGui::SetNextItemWidth(160.0f);
+  if (!row.only_words) {
+    const bool changed = ImGui::InputText(
+        "##word", &word, ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
+    ui.mark(mark);
+    tellHelp(row);
+    return changed;
+  }
+  const bool open = ImGui::BeginCombo("##word", word.c_str());
+  ui.mark(mark);
+  tellHelp(row);
+  if (!open) return false;
+  bool changed = false;
+  for (const std::string_view choice : row.words) {
+    const std::string text(choice);
+    if (ImGui::Selectable(text.c_str(), text == word)) word = text, changed = true;
+    ui.mark(mark + "." + text);
+  }
+  ImGui::EndCombo();
+  return changed;
+}
+
+}  // namespace
+
+void drawBakeOptions(Session& session, Ui& ui, std::size_t scene) {
+  if (!ImGui::BeginTable("options", 2, ImGuiTableFlags_SizingFixedFit)) return;
+  for (const baker::OptionRow& row : baker::optionRows()) {
+    const std::string name(row.name);
+    std::string word = row.word(session.scenes.entries()[scene].options);
+    ImGui::PushID(name.c_str());
+    ImGui::TableNextRow();
+    ImGui::TableNextColumn();
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextUnformatted(name.c_str());
+    tellHelp(row);
+    ImGui::TableNextColumn();
+    if (editWord(ui, row, "bake-option." + name, word)) {
+      const std::array words = {name, word, std::to_string(scene)};
+      if (auto done = runCommand(session, "bake-option", words); !done) session.log.error(done.error());
+    }
+    ImGui::PopID();
+  }
+  ImGui::EndTable();
+  ImGui::TextDisabled("Return takes a word over; they hold from the next bake on.");
+}
+
+}  // namespace lambent::editor

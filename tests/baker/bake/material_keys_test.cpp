@@ -1,0 +1,76 @@
+// No field of a material is forgotten in what decides whether a bundle is up to date, or whether a kept
+// result still holds.
+#include <gtest/gtest.h>
+
+#include "baker/bake/bake.hpp"
+#include "baker/bake/group_keys.hpp"
+#include "tests/support/material_values.hpp"
+#include "tests/support/shapes.hpp"
+
+namespace lambent::baker {
+namespace {
+
+using testing::changed;
+
+// A plate of the material, glossy, with everything that a field may need to count.
+Scene plateOf(const gltf::Material& material) {
+  Scene scene = testing::sceneOf({testing::grid({0, 0, 0}, 1.0f, 2)});
+  scene.materials = {material};
+  scene.textures.resize(testing::kMaterialTextures);
+  scene.images.resize(testing::kMaterialTextures);
+  for (std::size_t i = 0; i < testing::kMaterialTextures; ++i) {
+    scene.textures[i].image = static_cast<std::int32_t>(i);
+    scene.images[i].file_bytes = {std::byte(i)};
+  }
+  scene.brdfs.resize(1);
+  scene.brdfs[0].measurements.resize(1);
+  return scene;
+}
+
+TEST(MaterialKeys, EveryFieldPutsABundleOutOfDate) {
+  const gltf::Material plain = testing::materialWithEverything();
+  const std::uint64_t before = sceneDigest(plateOf(plain));
+  gltf::forEachMaterialField([&](const auto& field) {
+    EXPECT_NE(sceneDigest(plateOf(changed(plain, field))), before) << field.name;
+  });
+}
+
+// Rows of the table that move, or values that are added in another form, would put every bundle out of date.
+TEST(MaterialKeys, DigestsOfScenesStayAsTheyWere) {
+  EXPECT_EQ(sceneDigest(plateOf(testing::materialWithEverything())), 0xd88fe320c1367f8full);
+}
+
+GroupKeys keysOf(const gltf::Material& material) {
+  const Scene scene = plateOf(material);
+  GroupGeometry geometry;
+  geometry.positions.resize(3), geometry.triangles.resize(1);
+  DrawGeometry draw;
+  draw.material = 0, draw.kind = SampleKind::Glossy;
+  geometry.draws = {draw};
+  const PlannedLight lamp{.kind = PlannedLight::Kind::Material, .index = 0};
+  return groupKeys(scene, geometry, {&lamp, 1}, {}, {});
+}
+
+TEST(MaterialKeys, EveryFieldThatABakeDependsOnChangesTheKeysOfItsResults) {
+  using Part = gltf::MaterialPart;
+  const gltf::Material plain = testing::materialWithEverything();
+  const GroupKeys before = keysOf(plain);
+  gltf::forEachMaterialField([&](const auto& field) {
+    const GroupKeys keys = keysOf(changed(plain, field));
+    const std::string name(field.name);
+    // Strengths of lamps, names and bumps are applied at run time.
+    const bool baked =
+        name != "emissive" && name != "normal_scale" && name != "normal_texture" && name != "name";
+    EXPECT_EQ(keys.cells != before.cells, baked) << name;
+    // Rays are traced again only where other ones are stopped, or a lamp shines otherwise.
+    const bool stops =
+        field.part == Part::Opacity || name == "emissive_texture" || name.starts_with("base_color");
+    EXPECT_EQ(keys.rays != before.rays, stops) << name;
+    if (field.part == Part::Color || field.part == Part::Reflection) {
+      EXPECT_NE(keys.proxy, before.proxy) << name;
+    }
+  });
+}
+
+}  // namespace
+}  // namespace lambent::baker

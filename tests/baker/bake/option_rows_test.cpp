@@ -1,0 +1,123 @@
+// Every row of the table of options is read, written, checked and recorded.
+#include "baker/bake/option_rows.hpp"
+
+#include <map>
+#include <set>
+
+#include <gtest/gtest.h>
+
+namespace lambent::baker {
+namespace {
+
+// Another value for each option; a new row needs one here.
+const std::map<std::string_view, std::string_view> kOthers = {
+    {"quality", "high"},      {"order", "4"},         {"glossy-order", "6"},  {"rays", "777"},
+    {"bounces", "3"},         {"max-memory", "4096"}, {"error", "0.0125"},    {"max-edge", "0.1"},
+    {"refine", "0.07"},       {"fit", "on"},          {"light-samples", "9"}, {"neighborhood-grid", "3x4x5"},
+    {"volume-grid", "6x7x8"}, {"effects", "diffuse"}, {"threads", "2"}};
+
+TEST(OptionRows, HaveNamesOfTheirOwnAndSayWhatTheyDo) {
+  std::set<std::string_view> names, settings;
+  for (const OptionRow& row : optionRows()) {
+    EXPECT_TRUE(names.insert(row.name).second) << row.name;
+    EXPECT_TRUE(row.setting.empty() || settings.insert(row.setting).second) << row.setting;
+    EXPECT_GT(row.help.size(), 20u) << row.name;
+    EXPECT_FALSE(row.kind.empty()) << row.name;
+  }
+}
+
+TEST(OptionRows, TakeEveryWordAndGiveItBack) {
+  for (const OptionRow& row : optionRows()) {
+    ASSERT_TRUE(kOthers.contains(row.name)) << row.name << " needs another value in this test";
+    BakeOptions options;
+    const auto before = options.settings();
+    ASSERT_TRUE(row.put(options, kOthers.at(row.name))) << row.name;
+    EXPECT_EQ(row.word(options), kOthers.at(row.name));
+    EXPECT_TRUE(checkOptions(options)) << row.name;
+    // What changes the bytes of a bundle stands in its settings; a quality by what it stands for.
+    const bool recorded = !row.setting.empty() || row.name == "quality";
+    EXPECT_EQ(options.settings() != before, recorded) << row.name;
+    if (recorded) {
+      const auto back = BakeOptions::fromSettings(options.settings());
+      ASSERT_TRUE(back) << row.name;
+      EXPECT_EQ(row.word(*back), row.word(options)) << row.name;
+    }
+    BakeOptions usual;
+    ASSERT_TRUE(row.read(options, row.word(usual))) << row.name << " by the word for its default";
+    EXPECT_EQ(row.word(options), row.word(usual)) << row.name;
+    for (const std::string_view word : row.words) {
+      ASSERT_TRUE(row.put(options, word)) << row.name << " " << word;
+      EXPECT_EQ(row.word(options), word) << row.name;
+    }
+  }
+}
+
+TEST(OptionRows, RefuseWordsThatAreNoneAndNameTheOption) {
+  for (const OptionRow& row : optionRows()) {
+    if (row.name == "effects") continue;  // any text, until it is asked for
+    for (const std::string_view wrong : {"", "several", "1,5", "--"}) {
+      BakeOptions options;
+      const auto put = row.put(options, wrong);
+      ASSERT_FALSE(put) << row.name << " " << wrong;
+      EXPECT_EQ(put.error().subject, "--" + std::string(row.name));
+      EXPECT_FALSE(put.error().mend.empty());
+      EXPECT_EQ(row.word(options), row.word(BakeOptions())) << "a wrong word changes nothing";
+    }
+  }
+  BakeOptions options;
+  const auto unknown = putOption(options, "smell", "1");
+  ASSERT_FALSE(unknown);
+  EXPECT_NE(unknown.error().mend.find("neighborhood-grid"), std::string::npos);
+}
+
+TEST(OptionRows, CheckRanges) {
+  const std::vector<std::pair<std::string_view, std::string_view>> refused = {
+      {"order", "0"},
+      {"order", "9"},
+      {"glossy-order", "3"},
+      {"glossy-order", "7"},
+      {"rays", "5"},
+      {"rays", "1048577"},
+      {"error", "1"},
+      {"error", "nan"},
+      {"error", "-0.1"},
+      {"max-edge", "-1"},
+      {"max-edge", "inf"},
+      {"max-edge", "nan"},
+      {"volume-grid", "0"},
+      {"volume-grid", "8x257x8"},
+      {"neighborhood-grid", "1"},
+      {"neighborhood-grid", "64x64x257"}};
+  for (const auto& [name, word] : refused) {
+    BakeOptions options;
+    ASSERT_TRUE(putOption(options, name, word)) << name << " " << word;
+    const auto checked = checkOptions(options);
+    ASSERT_FALSE(checked) << name << " " << word;
+    EXPECT_EQ(checked.error().subject, "--" + std::string(name));
+  }
+  // Already with the word, as wrong usage.
+  for (const auto& [name, word] : {std::pair("refine", "2"),
+                                   {"refine", "0"},
+                                   {"light-samples", "33"},
+                                   {"light-samples", "0"},
+                                   {"bounces", "65"},
+                                   {"bounces", "-1"}}) {
+    BakeOptions options;
+    EXPECT_FALSE(putOption(options, name, word)) << name << " " << word;
+  }
+}
+
+TEST(OptionRows, CountMemoryInUnitsOf1024) {
+  for (const auto& [word, bytes] : std::map<std::string_view, std::uint64_t>{
+           {"4GB", 4ull << 30}, {"512 mib", 512ull << 20}, {"3k", 3072}, {"17", 17}}) {
+    BakeOptions options;
+    ASSERT_TRUE(putOption(options, "max-memory", word)) << word;
+    EXPECT_EQ(options.memory_bytes, bytes) << word;
+  }
+  BakeOptions options;
+  for (const std::string_view wrong : {"4XB", "GB", "99999999999TB", "1.5GB"})
+    EXPECT_FALSE(putOption(options, "max-memory", wrong)) << wrong;
+}
+
+}  // namespace
+}  // namespace lambent::baker
