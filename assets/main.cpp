@@ -1,11 +1,11 @@
-// lambent-assets OUT_DIR: writes the sample scenes and light probes that ship. The same bytes each time.
+// lambent-assets OUT_DIR: writes the sample scenes and environment maps that ship. The same bytes each time.
 #include <cstdio>
 #include <filesystem>
 #include <system_error>
 
 #include <CLI/CLI.hpp>
 
-#include "assets/probes.hpp"
+#include "assets/environment_maps.hpp"
 #include "assets/scenes.hpp"
 
 namespace {
@@ -24,14 +24,14 @@ Result<void> writeAll(const std::filesystem::path& folder) {
   if (auto done = assets::writeGlb(folder / "metals.glb", assets::metals()); !done) return done;
   if (auto done = assets::writeGlb(folder / "flight.glb", assets::flight()); !done) return done;
   constexpr std::uint32_t kProbeWidth = 512;
-  if (auto done = spec::writeHdr(folder / "sky.hdr", assets::skyProbe(kProbeWidth)); !done) return done;
-  return spec::writeHdr(folder / "studio.hdr", assets::studioProbe(kProbeWidth));
+  if (auto done = spec::writeHdr(folder / "sky.hdr", assets::skyMap(kProbeWidth)); !done) return done;
+  return spec::writeHdr(folder / "studio.hdr", assets::studioMap(kProbeWidth));
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Writes the sample scenes and light probes of Lambent.", "lambent-assets");
+  CLI::App app("Writes the sample scenes and environment maps of Lambent.", "lambent-assets");
   std::filesystem::path folder;
   app.add_option("OUT_DIR", folder, "folder to write them to; made if it is not there")->required();
   app.set_version_flag("--version", "lambent-assets " LAMBENT_VERSION);

@@ -10,7 +10,7 @@
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 
-#include "assets/probes.hpp"
+#include "assets/environment_maps.hpp"
 #include "runtime/spec/light.hpp"
 
 namespace lambent::assets {
@@ -107,7 +107,7 @@ double luminance(glm::dvec3 colour) {
 
 }  // namespace
 
-spec::RgbImage skyProbe(std::uint32_t width) {
+spec::RgbImage skyMap(std::uint32_t width) {
   const glm::dvec3 to_sun(spec::directionFromAzimuthElevation(kSunAzimuthDeg, kSunElevationDeg));
   const Sky sky(to_sun);
   spec::RgbImage image = latLongImage(width, 2, [&](glm::dvec3 dir) { return sky(dir); });

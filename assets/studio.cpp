@@ -5,7 +5,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-#include "assets/probes.hpp"
+#include "assets/environment_maps.hpp"
 #include "runtime/spec/light.hpp"
 
 namespace lambent::assets {
@@ -41,7 +41,7 @@ struct SoftBox {
 
 }  // namespace
 
-spec::RgbImage studioProbe(std::uint32_t width) {
+spec::RgbImage studioMap(std::uint32_t width) {
   const std::array<SoftBox, 3> boxes = {{
       {48.0f, 40.0f, 54.0, 42.0, {16.0, 12.6, 8.8}},  // key: warm, from the right in front
       {-62.0f, 24.0f, 46.0, 62.0, {2.6, 3.5, 5.0}},   // fill: large and cool, from the left

@@ -20,14 +20,14 @@ struct TurnedRow {
 };
 using TurnedPatch = std::array<TurnedRow, 4>;
 
-// From inside the rim over its edge, down the body and under the bottom; the lid from its knob. q is 0.56 r
-// (a circle would take 0.5523), rounded where Newell rounded.
+// From inside the rim over its edge, down the body and under the bottom; the lid from its setting. q is 0.56
+// r (a circle would take 0.5523), rounded where Newell rounded.
 constexpr TurnedPatch kTurned[] = {
     {{{1.4, 0.784, 2.4}, {1.3375, 0.749, 2.53125}, {1.4375, 0.805, 2.53125}, {1.5, 0.84, 2.4}}},  // rim
     {{{1.5, 0.84, 2.4}, {1.75, 0.98, 1.875}, {2.0, 1.12, 1.35}, {2.0, 1.12, 0.9}}},     // upper body
     {{{2.0, 1.12, 0.9}, {2.0, 1.12, 0.45}, {1.5, 0.84, 0.225}, {1.5, 0.84, 0.15}}},     // lower body
     {{{1.5, 0.84, 0.15}, {1.5, 0.84, 0.075}, {1.425, 0.798, 0.0}, {0.0, 0.0, 0.0}}},    // bottom
-    {{{0.0, 0.0, 3.15}, {0.8, 0.45, 3.15}, {0.0, 0.0, 2.85}, {0.2, 0.112, 2.7}}},       // knob of the lid
+    {{{0.0, 0.0, 3.15}, {0.8, 0.45, 3.15}, {0.0, 0.0, 2.85}, {0.2, 0.112, 2.7}}},       // setting of the lid
     {{{0.2, 0.112, 2.7}, {0.4, 0.224, 2.55}, {1.3, 0.728, 2.55}, {1.3, 0.728, 2.4}}}};  // lid
 
 struct TubeRow {

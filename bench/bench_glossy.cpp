@@ -9,7 +9,7 @@
 
 #include "baker/brdf/surface_brdfs.hpp"
 #include "baker/effects/glossy/glossy_bounces.hpp"
-#include "baker/work/parallel.hpp"
+#include "baker/jobs/parallel.hpp"
 #include "bench/group_workload.hpp"
 #include "bench/scene_argument.hpp"
 
@@ -44,7 +44,7 @@ Timed run(const GroupWorkload& work, const ExitKernels& kernels, bool hits) {
   auto start = std::clock();
   auto direct = bakeDirect(plain, view, progress, {});
   auto seen = bakeGlossyDirect(glossy, std::size_t{4} << 30, direct->looks, progress, {});
-  plainFromGlossy(glossy, seen->field, *direct, {});
+  diffuseFromGlossy(glossy, seen->field, *direct, {});
   timed.direct_seconds = secondsSince(start);
   timed.rays = static_cast<double>(direct->field.rays + seen->rays);
   if (!hits) return timed;

@@ -72,7 +72,7 @@ GlossyField transport(const GroupWorkload& work, const SurfaceBrdfs& brdfs, cons
   auto direct = bakeDirect(plain, view, progress, {});
   const GlossyPass pass(plain, view, kOrder);
   auto glossy = bakeGlossyDirect(pass, std::size_t{1} << 30, direct->looks, progress, {});
-  plainFromGlossy(pass, glossy->field, *direct, {});
+  diffuseFromGlossy(pass, glossy->field, *direct, {});
   if (options.bounces > 0) {
     const ExitKernels kernels{.grey = brdfs.grey(),
                               .at = [&](std::uint32_t triangle, float u, float v, const glm::vec3& to,

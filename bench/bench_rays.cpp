@@ -14,9 +14,9 @@
 #include <embree3/rtcore.h>
 #include <glm/geometric.hpp>
 
+#include "baker/jobs/parallel.hpp"
 #include "baker/transport/frame.hpp"
 #include "baker/transport/ray_packets.hpp"
-#include "baker/work/parallel.hpp"
 #include "bench/group_workload.hpp"
 #include "bench/scene_argument.hpp"
 

@@ -235,9 +235,10 @@ void print(const std::string& name, const Flight& flight) {
   const auto percent = [&](frame::Shown shown) {
     return 100.0 * static_cast<double>(flight.shown[static_cast<std::size_t>(shown)]) / all;
   };
-  fmt::print("  bundles shown in full {:.1f} %, partly {:.1f} %, by stand-ins {:.1f} %, not {:.1f} %\n",
-             percent(frame::Shown::Full), percent(frame::Shown::Partly), percent(frame::Shown::StandIn),
-             percent(frame::Shown::Nothing));
+  fmt::print(
+      "  bundles shown in full {:.1f} %, partly {:.1f} %, by proxy levels of detail {:.1f} %, not {:.1f} %\n",
+      percent(frame::Shown::Full), percent(frame::Shown::Partly), percent(frame::Shown::ProxyLod),
+      percent(frame::Shown::Nothing));
   print("wall", flight.times);
   print("CPU of all threads", flight.cpu_times);
   for (const auto& [pass, times] : flight.passes)

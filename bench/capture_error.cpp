@@ -1,8 +1,9 @@
 // What cube maps of light cost and lose: the tables of docs/measurements/captures.md, through the real GPU
 // path. Discs are bodies: a polygon of 256 corners that faces its point, drawn, resolved and projected like
-// any other body; the truth is the disc in closed form. Probes go through the sky's texels, turned at random;
-// the truth is the picture projected texel by texel and rotated. Error: |c - c_exact|² / |c_exact|².
-//   capture_error [--directions N] [--probes DIR] [-o DIR] [--time]
+// any other body; the truth is the disc in closed form. Environment maps go through the sky's texels, turned
+// at random; the truth is the picture projected texel by texel and rotated. Error: |c - c_exact|² /
+// |c_exact|².
+//   capture_error [--directions N] [--environment maps DIR] [-o DIR] [--time]
 // Prints the table as markdown; with -o also writes capture_error.csv. --time: instead, how long a capture of
 // 200 points among 200 balls takes, each seeing about 20.
 #include <algorithm>
@@ -132,12 +133,12 @@ void discErrors(std::uint32_t size, double radius_deg, int directions, std::vect
 }
 
 void probeErrors(const std::filesystem::path& file, int directions, std::vector<Row>& rows) {
-  const Environment environment = must(Environment::create({spec::ProbeLight{file, std::nullopt}}));
+  const Environment environment = must(Environment::create({spec::EnvironmentMapLight{file, std::nullopt}}));
   const sh::LightVector exact = environment.light();
   for (const std::uint32_t size : kSizes) {
     Capture capture = must(Capture::create({.size = size}, environment));
     const std::span<Row> own = addRows(file.filename().string(), size, rows);
-    // Larger cubes hardly depend on how the probe is turned, and take long.
+    // Larger cubes hardly depend on how the environment map is turned, and take long.
     const int turns = std::max(20, directions * 256 / std::max(256, static_cast<int>(size * size)));
     std::mt19937 random(2002);
     std::normal_distribution<double> normal;
@@ -256,7 +257,7 @@ void printTimes() {
 
 int main(int argc, char** argv) {
   int directions = 500;
-  std::filesystem::path probes, out;
+  std::filesystem::path environment_maps, out;
   bool time = false;
   for (int i = 1; i < argc; ++i) {
     const std::string word = argv[i];
@@ -264,13 +265,13 @@ int main(int argc, char** argv) {
     if (word == "--directions" && has_value) {
       directions = std::max(1, std::atoi(argv[++i]));
     } else if (word == "--probes" && has_value) {
-      probes = argv[++i];
+      environment_maps = argv[++i];
     } else if (word == "-o" && has_value) {
       out = argv[++i];
     } else if (word == "--time") {
       time = true;
     } else {
-      std::fprintf(stderr, "capture_error [--directions N] [--probes DIR] [-o DIR] [--time]\n");
+      std::fprintf(stderr, "capture_error [--directions N] [--environment maps DIR] [-o DIR] [--time]\n");
       return 2;
     }
   }
@@ -283,9 +284,9 @@ int main(int argc, char** argv) {
   std::vector<Row> rows;
   for (const double radius : kRadiiDeg)
     for (const std::uint32_t size : kSizes) discErrors(size, radius, directions, rows);
-  if (!probes.empty()) {
+  if (!environment_maps.empty()) {
     std::vector<std::filesystem::path> files;
-    for (const auto& entry : std::filesystem::directory_iterator(probes))
+    for (const auto& entry : std::filesystem::directory_iterator(environment_maps))
       if (entry.path().extension() == ".hdr" || entry.path().extension() == ".exr")
         files.push_back(entry.path());
     std::sort(files.begin(), files.end());

@@ -46,7 +46,7 @@ Baked bakeWith(const GroupWorkload& work, const ExitKernels& kernels, std::size_
   auto start = Clock::now();
   auto direct = bakeDirect(plain, view, progress, {});
   auto seen = bakeGlossyDirect(glossy, std::size_t{8} << 30, direct->looks, progress, {});
-  plainFromGlossy(glossy, seen->field, *direct, {});
+  diffuseFromGlossy(glossy, seen->field, *direct, {});
   baked.direct_seconds = secondsSince(start);
   start = Clock::now();
   GlossyBounces partner(glossy, kernels, *direct, *seen, kOrder);

@@ -1,6 +1,7 @@
 // How much light real scenes have per coefficient of each band: makes the numbers of
 // baker/compress/light_weights.hpp.
-//   light_bands PROBE...     prints each light's bands relative to band 0, and the mean over probes and discs
+//   light_bands PROBE...     prints each light's bands relative to band 0, and the mean over environment maps
+//   and discs
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -13,7 +14,7 @@
 #include "runtime/sh/basis.hpp"
 #include "runtime/sh/projection.hpp"
 #include "runtime/sh/zonal.hpp"
-#include "runtime/spec/probe.hpp"
+#include "runtime/spec/environment_map.hpp"
 
 namespace {
 
@@ -43,14 +44,15 @@ void print(const std::string& name, const Bands& bands) {
 int main(int argc, char** argv) {
   std::vector<Bands> all;
   for (int i = 1; i < argc; ++i) {
-    const auto probe = spec::loadProbe({argv[i], std::nullopt});
-    if (!probe) {
-      std::fprintf(stderr, "light_bands: %s\n", probe.error().line().c_str());
+    const auto environment_map = spec::loadEnvironmentMap({argv[i], std::nullopt});
+    if (!environment_map) {
+      std::fprintf(stderr, "light_bands: %s\n", environment_map.error().line().c_str());
       return 1;
     }
-    const auto& image = probe->image;
-    all.push_back(bandPower(sh::projectImage(sh::kMaxOrder, probe->layout, static_cast<int>(image.width),
-                                             static_cast<int>(image.height), image.texels)));
+    const auto& image = environment_map->image;
+    all.push_back(
+        bandPower(sh::projectImage(sh::kMaxOrder, environment_map->layout, static_cast<int>(image.width),
+                                   static_cast<int>(image.height), image.texels)));
     print(std::filesystem::path(argv[i]).filename().string(), all.back());
   }
   for (const double degrees : {10.0, 20.0, 40.0, 60.0}) {

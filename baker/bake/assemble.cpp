@@ -16,7 +16,7 @@ constexpr int kZstdLevel = 19;
 constexpr std::uint32_t kRowsPriority = 1, kCodebookPriority = 2, kFirstPlanePriority = 3;
 
 std::uint32_t outputsOf(SampleKind kind, int glossy_order) {
-  if (kind == SampleKind::Plain) return 1;
+  if (kind == SampleKind::Diffuse) return 1;
   return kind == SampleKind::NormalMapped ? bundle::kMappedOutputs
                                           : static_cast<std::uint32_t>(glossy_order * glossy_order);
 }
@@ -83,9 +83,9 @@ class Assembler {
                                     ? bundle::GroupLight::Kind::Material
                                     : bundle::GroupLight::Kind::Node,
                                 light.index, light.color});
-      group.light_samples.clear();
-      for (const glm::vec3& point : baked[g].light_samples.points)
-        group.light_samples.push_back(origin + point);
+      group.light_probes.clear();
+      for (const glm::vec3& point : baked[g].light_probes.points)
+        group.light_probes.push_back(origin + point);
       for (std::size_t c = 0; c < baked[g].samples.cells.size(); ++c) {
         const SampleCell& cell = baked[g].samples.cells[c];
         group.cells.push_back({.first_sample = cell.first,
@@ -93,7 +93,7 @@ class Assembler {
                                .bounds_min = origin + cell.bounds_min,
                                .bounds_max = origin + cell.bounds_max,
                                .transfers = {},
-                               .light_samples = baked[g].light_samples.cells[c].points});
+                               .light_probes = baked[g].light_probes.cells[c].points});
       }
       if (baked[g].volume) addVolume(*baked[g].volume, planned, group);
       if (baked[g].neighborhood) addNeighborhood(*baked[g].neighborhood, group);
@@ -168,7 +168,7 @@ class Assembler {
     return index;
   }
 
-  void addGridCells(const std::vector<CodedCell>& cells, bundle::CellKind kind, std::uint32_t light_sample,
+  void addGridCells(const std::vector<CodedCell>& cells, bundle::CellKind kind, std::uint32_t light_probe,
                     bundle::Group& group) {
     for (const CodedCell& cell : cells) {
       group.cells.push_back({.first_sample = group.sample_count,
@@ -176,7 +176,7 @@ class Assembler {
                              .bounds_min = cell.bounds_min,
                              .bounds_max = cell.bounds_max,
                              .transfers = {},
-                             .light_samples = {light_sample},
+                             .light_probes = {light_probe},
                              .kind = kind});
       group.sample_count += cell.count;
     }
@@ -184,7 +184,7 @@ class Assembler {
 
   void addVolume(const BakedVolume& baked, const RigidGroup& planned, bundle::Group& group) {
     group.within = planned.within;
-    group.light_samples = {baked.light_sample};
+    group.light_probes = {baked.light_probe};
     std::tie(group.bounds_min, group.bounds_max) = baked.bounds();
     bundle::VolumeGrid grid{.size = baked.size,
                             .group_from_grid = baked.group_from_grid,
@@ -208,10 +208,10 @@ class Assembler {
     const auto nearer = [&](const glm::vec3& a, const glm::vec3& b) {
       return glm::distance(a, center) < glm::distance(b, center);
     };
-    const auto nearest = std::min_element(group.light_samples.begin(), group.light_samples.end(), nearer);
+    const auto nearest = std::min_element(group.light_probes.begin(), group.light_probes.end(), nearer);
     group.neighborhood = {baked.size, baked.bounds_min, baked.bounds_max};
     addGridCells(baked.cells, bundle::CellKind::Neighborhood,
-                 static_cast<std::uint32_t>(nearest - group.light_samples.begin()), group);
+                 static_cast<std::uint32_t>(nearest - group.light_probes.begin()), group);
   }
 
   // All of a cell's transfer but the planes, which come after the codebooks of all cells.
@@ -246,8 +246,8 @@ class Assembler {
 
   void addLightWeights(const std::vector<BakedGroup>& baked) {
     for (std::size_t g = 0; g < baked.size(); ++g)
-      for (std::size_t c = 0; c < baked[g].light_samples.cells.size(); ++c)
-        if (const auto& weights = baked[g].light_samples.cells[c].weights; !weights.empty())
+      for (std::size_t c = 0; c < baked[g].light_probes.cells.size(); ++c)
+        if (const auto& weights = baked[g].light_probes.cells[c].weights; !weights.empty())
           description_.groups[g].cells[c].light_weights = static_cast<std::int32_t>(addTransferPayload(
               bundle::PayloadType::LightWeights, bundle::encodeLightWeights(weights), kCodebookPriority));
   }
@@ -274,7 +274,7 @@ class Assembler {
 
   void addDraw(const PlannedDraw& planned, std::uint32_t group, const DrawGeometry& geometry,
                const SampleSet& samples) {
-    bundle::VertexRows rows;
+    bundle::VertexWeights rows;
     rows.offsets.push_back(0);
     for (std::uint32_t v = 0; v < geometry.vertex_count; ++v) {
       // Rows without a sample show what they are lit by, unshadowed (bake_unshadowed.cpp).
@@ -292,7 +292,8 @@ class Assembler {
                       planned.back,
                       0,
                       outputsOf(geometry.kind, options_.glossy_order)};
-    draw.rows = addTransferPayload(bundle::PayloadType::VertexRows, bundle::encodeRows(rows), kRowsPriority);
+    draw.rows =
+        addTransferPayload(bundle::PayloadType::VertexWeights, bundle::encodeRows(rows), kRowsPriority);
     description_.draws.push_back(draw);
   }
 

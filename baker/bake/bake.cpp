@@ -14,12 +14,12 @@
 #include "baker/bake/option_rows.hpp"
 #include "baker/bake/result_bytes.hpp"
 #include "baker/bake/ship_meshes.hpp"
-#include "baker/cache/kept_ranges.hpp"
+#include "baker/cache/cached_ranges.hpp"
 #include "baker/effects/diffuse/bounces.hpp"
 #include "baker/effects/effect_list.hpp"
 #include "baker/effects/neighborhood/grid_placement.hpp"
+#include "baker/jobs/parallel.hpp"
 #include "baker/refine/refine.hpp"
-#include "baker/work/parallel.hpp"
 #include "runtime/base/atomic_file.hpp"
 
 namespace lambent::baker {
@@ -53,11 +53,11 @@ Result<std::vector<EffectEntry>> effectsOf(const BakeOptions& options) {
   return chosen;
 }
 
-Result<BrdfTables> keptBrdfTables(const Scene& scene, const BakeOptions& options, Cache* cache) {
+Result<BrdfTables> cachedBrdfTables(const Scene& scene, const BakeOptions& options, Cache* cache) {
   Result<BrdfTables> tables;
   const int order = options.exitOrder(), shipped = options.glossy_order;
   const Keep keep{cache, cache ? brdfTablesKey(scene, order, shipped) : Key{}};
-  keptValue(
+  cachedValue(
       keep, [&](ByteReader& in) { return read(in, *tables); },
       [&] {
         tables = BrdfTables::make(scene, order, shipped);
@@ -85,7 +85,7 @@ Result<BakeReport> bakeOnTheseThreads(const Scene& scene, const BakeOptions& opt
   BrdfTables tables;
   if (plan->bakes("glossy")) {
     progress.begin("BRDF tables");
-    auto made = keptBrdfTables(scene, options, cache);
+    auto made = cachedBrdfTables(scene, options, cache);
     if (!made) return failAgain(made.error());
     tables = std::move(*made);
   }
@@ -96,7 +96,7 @@ Result<BakeReport> bakeOnTheseThreads(const Scene& scene, const BakeOptions& opt
     RefineOptions refine{.bound = bound,
                          .most_growth = options.refineGrowth(),
                          .most_added = options.refineAdded(),
-                         .most_fans = options.refineFans()};
+                         .most_wedges = options.refineWedges()};
     if (!tables.entries.empty()) refine.most_vertices = mostGlossySamples(options.glossy_order);
     auto refined = refineMeshes(scene, plan->groups, *alpha_maps, !tables.entries.empty(), refine, *split,
                                 progress, stop, cache);
@@ -112,7 +112,7 @@ Result<BakeReport> bakeOnTheseThreads(const Scene& scene, const BakeOptions& opt
         plan->groups[g].volume >= 0
             ? bakeVolume(scene, plan->groups, g, baked, *alpha_maps, plan->neighborhoods[g], options,
                          progress, stop, report, cache)
-            : bakeGroup(scene, plan->groups[g], plan->light_samples[g].count, plan->neighborhoods[g], tables,
+            : bakeGroup(scene, plan->groups[g], plan->light_probes[g].count, plan->neighborhoods[g], tables,
                         *meshes, *alpha_maps, images, options, progress, stop, report, cache);
     if (!result) return failAgain(result.error());
     baked.push_back(std::move(*result));
@@ -186,15 +186,15 @@ Result<EffectPlan> planFor(const Scene& scene, const BakeOptions& options) {
   // Volumes come last; without their effect they are not there.
   if (!plan.bakes("volume"))
     while (!plan.groups.empty() && plan.groups.back().volume >= 0)
-      plan.groups.pop_back(), plan.light_samples.pop_back(), plan.neighborhoods.pop_back();
+      plan.groups.pop_back(), plan.light_probes.pop_back(), plan.neighborhoods.pop_back();
   for (const RigidGroup& group : plan.groups)
     if (group.volume >= 0)
       if (auto checked = checkVolume(scene, scene.volumes[static_cast<std::size_t>(group.volume)], options);
           !checked)
         return failAgain(checked.error());
-  if (options.light_samples > 0)
-    for (PlannedLightSamples& planned : plan.light_samples)
-      planned = {{static_cast<std::uint32_t>(options.light_samples), /*of_group=*/false}, "asked for"};
+  if (options.light_probes > 0)
+    for (PlannedLightProbes& planned : plan.light_probes)
+      planned = {{static_cast<std::uint32_t>(options.light_probes), /*of_group=*/false}, "asked for"};
   return plan;
 }
 

@@ -14,9 +14,9 @@
 #include "baker/bake/options.hpp"
 #include "baker/cache/cache.hpp"
 #include "baker/import/scene.hpp"
+#include "baker/jobs/progress.hpp"
 #include "baker/plan/effect_plan.hpp"
 #include "baker/refine/refine.hpp"
-#include "baker/work/progress.hpp"
 #include "runtime/base/result.hpp"
 #include "runtime/bundle/description.hpp"
 
@@ -53,7 +53,7 @@ struct BakeReport {
   std::vector<double> pass_energy;
   struct Group {
     std::string name;
-    std::uint64_t light_samples = 0;
+    std::uint64_t light_probes = 0;
     std::vector<std::uint32_t> proxy_triangles;  // of each level, the finest first; empty: no proxy
     struct Effect {
       std::string name;

@@ -7,7 +7,7 @@
 
 #include "baker/bake/bake.hpp"
 #include "baker/bake/baked_grids.hpp"
-#include "baker/cache/kept_ranges.hpp"
+#include "baker/cache/cached_ranges.hpp"
 #include "baker/effects/neighborhood/body.hpp"
 #include "baker/effects/neighborhood/grid_placement.hpp"
 #include "baker/plan/neighborhoods.hpp"

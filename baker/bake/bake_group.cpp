@@ -11,7 +11,7 @@
 #include "baker/bake/group_keys.hpp"
 #include "baker/bake/result_bytes.hpp"
 #include "baker/brdf/kernel_power.hpp"
-#include "baker/cache/kept_ranges.hpp"
+#include "baker/cache/cached_ranges.hpp"
 #include "baker/effects/diffuse/bounces.hpp"
 #include "baker/effects/diffuse/direct.hpp"
 #include "baker/effects/diffuse/payloads.hpp"
@@ -20,10 +20,10 @@
 #include "baker/effects/glossy/inside_faces.hpp"
 #include "baker/effects/glossy/payloads.hpp"
 #include "baker/effects/neighborhood/surface_body.hpp"
+#include "baker/jobs/parallel.hpp"
 #include "baker/proxy/capture_proxy.hpp"
 #include "baker/transport/ray_scene.hpp"
 #include "baker/transport/sample_areas.hpp"
-#include "baker/work/parallel.hpp"
 
 namespace lambent::baker {
 
@@ -79,7 +79,7 @@ std::optional<Transported> transport(const DiffuseScene& scene, const SurfaceBrd
   figures.ray_seconds += progress.now().seconds;
   figures.rays = direct->field.rays, figures.rays_kept = direct->rays_kept;
   group.filled_samples = direct->field.filled_samples;
-  if (options.fitsMatte()) {
+  if (options.fitsDiffuse()) {
     const auto fit = fitDiffuse(pass, scene, *direct, progress, stop, {cache, keys.rays});
     if (!fit) return std::nullopt;
     figures.ray_seconds += fit->ray_seconds;
@@ -104,7 +104,7 @@ std::optional<Transported> transport(const DiffuseScene& scene, const SurfaceBrd
       figures.ray_seconds += fit->ray_seconds;
       figures.glossy_rays += fit->rays, figures.glossy_rays_kept += fit->rays_kept;
     }
-    if (!plainFromGlossy(*glossy_pass, light.glossy->field, light.direct, stop)) return std::nullopt;
+    if (!diffuseFromGlossy(*glossy_pass, light.glossy->field, light.direct, stop)) return std::nullopt;
     const std::uint64_t inside = light.glossy->inside ? light.glossy->inside->hits().bytes() : 0;
     group.hit_bytes = std::max<std::uint64_t>(group.hit_bytes, light.glossy->hits.bytes() + inside);
     group.glossy_samples = light.glossy->field.size();
@@ -140,7 +140,7 @@ std::optional<Transported> transport(const DiffuseScene& scene, const SurfaceBrd
 std::vector<CodedTransfer> codeGlossy(const SampleCell& cell, const GlossyField& field,
                                       const BandPower& kernel_power, bool grey_emission,
                                       const BakeOptions& options, const std::stop_token& stop,
-                                      KeptCoding& coding, GroupFigures& figures) {
+                                      CachedCoding& coding, GroupFigures& figures) {
   std::vector<CodedTransfer> coded;
   const std::vector<CellVectors> parts = glossyCellVectors(cell, field, grey_emission);
   double shown = 0.0;
@@ -177,7 +177,7 @@ std::vector<CodedTransfer> codeGlossy(const SampleCell& cell, const GlossyField&
 std::vector<CodedTransfer> codeDiffuse(const SampleCell& cell, const SampleSet& samples,
                                        const Transported& light, bool grey_emission,
                                        const BakeOptions& options, const std::stop_token& stop,
-                                       KeptCoding& coding, GroupFigures& figures) {
+                                       CachedCoding& coding, GroupFigures& figures) {
   std::vector<CodedTransfer> coded;
   for (const CellVectors& vectors :
        cellVectors(cell, samples, light.direct, light.bounced ? &*light.bounced : nullptr, grey_emission)) {
@@ -238,7 +238,7 @@ std::size_t mostGlossySamples(int glossy_order) {
          (16u * static_cast<std::size_t>(glossy_order) * static_cast<std::size_t>(glossy_order));
 }
 
-Result<BakedGroup> bakeGroup(const Scene& scene, const RigidGroup& group, LightSampleCount light_samples,
+Result<BakedGroup> bakeGroup(const Scene& scene, const RigidGroup& group, LightProbeCount light_probes,
                              const PlannedNeighborhood& neighborhood, const BrdfTables& tables,
                              const ShippedMeshes& meshes,
                              const std::vector<std::shared_ptr<const AlphaMap>>& alpha_maps,
@@ -267,7 +267,7 @@ Result<BakedGroup> bakeGroup(const Scene& scene, const RigidGroup& group, LightS
   report.samples += baked.samples.size();
   report.lights += baked.lights.size();
   const GroupKeys keys =
-      cache ? groupKeys(scene, baked.geometry, baked.lights, light_samples, options) : GroupKeys{};
+      cache ? groupKeys(scene, baked.geometry, baked.lights, light_probes, options) : GroupKeys{};
   // Only what was not found asks for colours: pictures take long to decode.
   std::optional<SurfaceColors> colors;
   const auto needColors = [&]() -> Result<void> {
@@ -279,18 +279,18 @@ Result<BakedGroup> bakeGroup(const Scene& scene, const RigidGroup& group, LightS
   };
 
   progress.begin("light samples");
-  keptValue(
-      Keep{cache, keys.light_samples}, [&](ByteReader& in) { return read(in, baked.light_samples); },
+  cachedValue(
+      Keep{cache, keys.light_probes}, [&](ByteReader& in) { return read(in, baked.light_probes); },
       [&] {
-        baked.light_samples =
-            chooseLightSamples(baked.samples, sampleAreas(baked.geometry, baked.samples),
-                               baked.geometry.bounds_min, baked.geometry.bounds_max, light_samples);
+        baked.light_probes =
+            chooseLightProbes(baked.samples, sampleAreas(baked.geometry, baked.samples),
+                              baked.geometry.bounds_min, baked.geometry.bounds_max, light_probes);
         return true;
       },
-      [&](ByteWriter& out) { write(baked.light_samples, out); });
+      [&](ByteWriter& out) { write(baked.light_probes, out); });
   progress.begin("proxy");
   Result<void> proxy_made;
-  keptValue(
+  cachedValue(
       Keep{cache, keys.proxy}, [&](ByteReader& in) { return read(in, baked.proxy); },
       [&] {
         proxy_made = needColors();
@@ -301,7 +301,7 @@ Result<BakedGroup> bakeGroup(const Scene& scene, const RigidGroup& group, LightS
   if (!proxy_made) return failAgain(proxy_made.error());
   BakeReport::Group& figures = report.groups.emplace_back();
   figures.name = group.name;
-  figures.light_samples = baked.light_samples.points.size();
+  figures.light_probes = baked.light_probes.points.size();
   for (const bundle::ProxyLevel& level : baked.proxy.levels)
     figures.proxy_triangles.push_back(level.triangle_count);
 
@@ -336,7 +336,7 @@ Result<BakedGroup> bakeGroup(const Scene& scene, const RigidGroup& group, LightS
     progress.begin("coding", baked.samples.size(), "samples");
     const BandPower kernel_power =
         brdfs ? kernelPower(baked.geometry, *brdfs, options.glossy_order) : BandPower(kLobePower);
-    KeptCoding coding(cache);
+    CachedCoding coding(cache);
     for (const SampleCell& cell : baked.samples.cells) {
       const bool grey = colors->greyEmission();
       baked.cells.push_back(

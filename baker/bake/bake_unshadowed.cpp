@@ -9,7 +9,7 @@
 #include "baker/bake/bake_volume.hpp"
 #include "baker/bake/ship_meshes.hpp"
 #include "baker/effects/volume/volume_transfer.hpp"
-#include "baker/work/parallel.hpp"
+#include "baker/jobs/parallel.hpp"
 
 namespace lambent::baker {
 
@@ -41,11 +41,11 @@ CodedTransfer openTransfer(int order, std::uint32_t outputs) {
 
 // A cell of one sample in the middle of the group.
 void addSample(BakedGroup& group, SampleKind kind, CodedTransfer transfer) {
-  const glm::vec3 center = group.light_samples.points.front();
+  const glm::vec3 center = group.light_probes.points.front();
   const auto first = static_cast<std::uint32_t>(group.samples.positions.size());
   group.samples.positions.push_back(center);
   group.samples.cells.push_back({first, 1, center, center, kind});
-  group.light_samples.cells.push_back({{0}, {}});
+  group.light_probes.cells.push_back({{0}, {}});
   group.cells.push_back({std::move(transfer)});
 }
 
@@ -53,9 +53,9 @@ BakedGroup openSurfaces(const Scene& scene, const RigidGroup& group, const Shipp
                         bool with_glossy, const BakeOptions& options) {
   BakedGroup baked;
   baked.geometry = buildGroupGeometry(group, scene, meshes.decoded, with_glossy);
-  baked.light_samples.points = {0.5f * (baked.geometry.bounds_min + baked.geometry.bounds_max)};
+  baked.light_probes.points = {0.5f * (baked.geometry.bounds_min + baked.geometry.bounds_max)};
   // Of no vertex: it says how many bands of light the group takes.
-  addSample(baked, SampleKind::Plain, openTransfer(options.order, 1));
+  addSample(baked, SampleKind::Diffuse, openTransfer(options.order, 1));
   baked.samples.vertex_sample.assign(baked.geometry.positions.size(), kNoSample);
   for (const DrawGeometry& draw : baked.geometry.draws) {
     if (draw.kind != SampleKind::Glossy) continue;
@@ -74,11 +74,11 @@ BakedGroup openVolume(const Scene& scene, const RigidGroup& group, const BakeOpt
   const SceneVolume& volume = scene.volumes[static_cast<std::size_t>(group.volume)];
   BakedGroup baked;
   baked.volume = placeVolume(scene, group, quantizeDensity(volume.density));
-  baked.light_samples.points = {baked.volume->light_sample};
+  baked.light_probes.points = {baked.volume->light_probe};
   const auto bands = static_cast<std::uint32_t>(bandsOfPhase(volume.g, options.order));
   CodedCell& cell = baked.volume->cells.emplace_back();
   cell.count = 1;
-  cell.bounds_min = cell.bounds_max = baked.volume->light_sample;
+  cell.bounds_min = cell.bounds_max = baked.volume->light_probe;
   cell.transfers.push_back(openTransfer(options.order, bands * bands));
   baked.volume->voxels = {0};
   return baked;

@@ -119,7 +119,7 @@ bool read(ByteReader& in, CodedVolume& coded) {
          in.read(coded.row_bytes) && in.read(coded.iterations);
 }
 
-CodedTransfer codeDense(const Part& part, float bound, KeptCoding& coding, const std::stop_token& stop,
+CodedTransfer codeDense(const Part& part, float bound, CachedCoding& coding, const std::stop_token& stop,
                         CodedVolume& out) {
   CodedTransfer coded =
       coding.code(part.vectors(), part.count(), shapeOf(part.transfer), {.bound = bound}, stop);
@@ -129,7 +129,7 @@ CodedTransfer codeDense(const Part& part, float bound, KeptCoding& coding, const
 
 // What comes through as visibility, what is scattered as matrices; they are shown together, and errors count
 // by how much of each band goes on, g^2l.
-std::vector<CodedTransfer> codeMatrices(const Part& part, float bound, KeptCoding& coding,
+std::vector<CodedTransfer> codeMatrices(const Part& part, float bound, CachedCoding& coding,
                                         const std::stop_token& stop, CodedVolume& out) {
   const VolumeTransfer& transfer = part.transfer;
   bundle::TransferShape visible = shapeOf(transfer), scattered = visible;
@@ -159,7 +159,7 @@ std::vector<CodedTransfer> codeMatrices(const Part& part, float bound, KeptCodin
 }
 
 // Runs of samples of nearly the same length, coded one by one. False if stopped.
-bool codeCells(const VolumeTransfer& transfer, const BakeOptions& options, KeptCoding& coding,
+bool codeCells(const VolumeTransfer& transfer, const BakeOptions& options, CachedCoding& coding,
                Progress& progress, const std::stop_token& stop, CodedVolume& out) {
   const std::size_t samples = transfer.grid.samples();
   const std::size_t cells = (samples + kMostSamplesInACell - 1) / kMostSamplesInACell;
@@ -217,7 +217,7 @@ void tell(const CodedVolume& coded, const SceneVolume& volume, const QuantizedDe
                             .iterations = coded.iterations,
                             .residual = coded.residual,
                             .row_bytes = coded.row_bytes});
-  report.groups.push_back({.name = name, .light_samples = 1, .proxy_triangles = {}, .effects = {}});
+  report.groups.push_back({.name = name, .light_probes = 1, .proxy_triangles = {}, .effects = {}});
 }
 
 }  // namespace
@@ -243,7 +243,7 @@ BakedVolume placeVolume(const Scene& scene, const RigidGroup& group, const Quant
       .transfer_size = glm::uvec3(1),
       .voxels = {},
       .cells = {}};
-  placed.light_sample = centreOf(volume.size, density.values, placed.group_from_grid);
+  placed.light_probe = centreOf(volume.size, density.values, placed.group_from_grid);
   return placed;
 }
 
@@ -281,7 +281,7 @@ Result<BakedGroup> bakeVolume(const Scene& scene, const std::vector<RigidGroup>&
   result.volume = placeVolume(scene, group, density);
   BakedVolume& placed = *result.volume;
   placed.transfer_size = options.volume_grid;
-  result.light_samples.points = {placed.light_sample};
+  result.light_probes.points = {placed.light_probe};
   const VolumeSettings settings{.order = options.order,
                                 .rays = options.effectiveRays(),
                                 // As the reference: bounces are counted between surfaces, not in volumes.
@@ -306,7 +306,7 @@ Result<BakedGroup> bakeVolume(const Scene& scene, const std::vector<RigidGroup>&
   const Keep around_keep = keepOf(around, cache, keep.key);
 
   CodedVolume coded;
-  KeptCoding coding(cache);
+  CachedCoding coding(cache);
   // Made when it is asked for: where all that follows from it is found, it is not.
   std::shared_ptr<const VolumeLight> light;
   Result<void> failed;
@@ -335,7 +335,7 @@ Result<BakedGroup> bakeVolume(const Scene& scene, const std::vector<RigidGroup>&
     return true;
   };
   const auto stopped = [&] { return fail(scene.source.string(), "stopped; nothing was written"); };
-  const auto found = keptValue(
+  const auto found = cachedValue(
       cells_keep, [&](ByteReader& in) { return read(in, coded); },
       [&] {
         coded = {};

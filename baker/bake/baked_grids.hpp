@@ -33,7 +33,7 @@ struct BakedVolume {
   glm::uvec3 transfer_size{1};
   std::vector<std::uint32_t> voxels;  // one per sample, rising
   std::vector<CodedCell> cells;
-  glm::vec3 light_sample{0.0f};  // where the light that comes in is sampled, group frame
+  glm::vec3 light_probe{0.0f};  // where the light that comes in is sampled, group frame
 
   // Around the box of voxels, group frame.
   std::pair<glm::vec3, glm::vec3> bounds() const {

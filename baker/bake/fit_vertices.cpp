@@ -62,12 +62,12 @@ std::optional<FitFigures> fitDiffuse(const DirectPass& pass, const DiffuseScene&
       return vertices.apply(part.width, part.at_points, part.values, stop);
     });
   };
-  const SampleStretch plain_points{0, points.samples.first_normal_mapped},
+  const SampleStretch diffuse_points{0, points.samples.first_normal_mapped},
       mapped_points{points.samples.first_normal_mapped, points.samples.size()};
   const auto foundIn = [&](const SampleStretch& stretch) {
     return std::span(found->field.vectors).subspan(stretch.begin * width, stretch.size() * width);
   };
-  const bool fitted = fit(plain, plain_points, {{width, foundIn(plain_points), fieldOf(plain)}}) &&
+  const bool fitted = fit(plain, diffuse_points, {{width, foundIn(diffuse_points), fieldOf(plain)}}) &&
                       fit(mapped, mapped_points,
                           {{width, foundIn(mapped_points), fieldOf(mapped)},
                            {direct.mapped.vectorSize(), found->mapped.vectors, direct.mapped.vectors}});

@@ -1,16 +1,16 @@
 // Direct light at the vertices as interpolation over faces shows it best: rays from inside the faces over
 // which it changes, and a least-squares fit to what they see (effects/diffuse/vertex_fit.hpp). Bounces gather
-// from the fitted values; what they bring to matte samples is added at the vertices.
+// from the fitted values; what they bring to diffuse samples is added at the vertices.
 #pragma once
 
 #include <cstdint>
 #include <optional>
 #include <stop_token>
 
-#include "baker/cache/kept_ranges.hpp"
+#include "baker/cache/cached_ranges.hpp"
 #include "baker/effects/diffuse/direct.hpp"
 #include "baker/effects/glossy/glossy_direct.hpp"
-#include "baker/work/progress.hpp"
+#include "baker/jobs/progress.hpp"
 
 namespace lambent::baker {
 

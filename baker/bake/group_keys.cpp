@@ -84,12 +84,12 @@ void addReflection(const Scene& scene, const GroupGeometry& geometry, int order,
 }  // namespace
 
 GroupKeys groupKeys(const Scene& scene, const GroupGeometry& geometry, std::span<const PlannedLight> lights,
-                    LightSampleCount light_samples, const BakeOptions& options) {
+                    LightProbeCount light_probes, const BakeOptions& options) {
   GroupKeys keys;
   {
     KeyMaker key = KeyMaker::ofStage("light samples");
     addShape(geometry, key);
-    keys.light_samples = key.add(light_samples.count).add(light_samples.of_group).key();
+    keys.light_probes = key.add(light_probes.count).add(light_probes.of_group).key();
   }
   KeyMaker surfaces = KeyMaker::ofStage("surfaces");
   addShape(geometry, surfaces);
@@ -114,7 +114,7 @@ GroupKeys groupKeys(const Scene& scene, const GroupGeometry& geometry, std::span
                      .add(colored)
                      .add(reflecting)
                      .add(options.glossy_order)
-                     .add(options.fitsMatte())
+                     .add(options.fitsDiffuse())
                      .add(options.fitsGlossy())
                      .key();
   keys.cells = KeyMaker::ofStage("cells")

@@ -14,7 +14,7 @@
 namespace lambent::baker {
 
 struct GroupKeys {
-  Key light_samples;
+  Key light_probes;
   Key rays;         // pass 0: transfer without a bounce, and what was met
   Key glossy_rays;  // the same of glossy samples
   Key proxy;
@@ -23,7 +23,7 @@ struct GroupKeys {
 };
 
 GroupKeys groupKeys(const Scene& scene, const GroupGeometry& geometry, std::span<const PlannedLight> lights,
-                    LightSampleCount light_samples, const BakeOptions& options);
+                    LightProbeCount light_probes, const BakeOptions& options);
 
 // Of the tables of b(v) of a scene's glossy materials.
 Key brdfTablesKey(const Scene& scene, int order, int shipped);

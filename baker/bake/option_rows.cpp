@@ -31,7 +31,7 @@ std::string recordRefine(const BakeOptions& o) {
   return fmt::format("{}", o.effectiveRefineBound());
 }
 std::string recordFit(const BakeOptions& o) {
-  return o.fitsMatte() ? "on" : o.fitsGlossy() ? "glossy" : "off";
+  return o.fitsDiffuse() ? "on" : o.fitsGlossy() ? "glossy" : "off";
 }
 
 constexpr std::tuple kRows{
@@ -47,13 +47,13 @@ constexpr std::tuple kRows{
                   .kind = "N",
                   .member = &B::order,
                   .help = "Bands of spherical harmonics, 1..8; order² coefficients",
-                  .limits = Limits<int>{.least = 1, .greatest = 8, .mend = "5 is the default"}},
+                  .limits = Limits<int>{.least = 1, .greatest = 8, .hint = "5 is the default"}},
     TypedRow<int>{.name = "glossy-order",
                   .setting = "glossyOrder",
                   .kind = "N",
                   .member = &B::glossy_order,
                   .help = "Bands of the light that glossy surfaces reflect, 4..6",
-                  .limits = Limits<int>{.least = 4, .greatest = 6, .mend = "5 is the default"}},
+                  .limits = Limits<int>{.least = 4, .greatest = 6, .hint = "5 is the default"}},
     TypedRow<std::uint32_t>{
         .name = "rays",
         .setting = "rays",
@@ -63,7 +63,7 @@ constexpr std::tuple kRows{
         .words = {{{"auto", 0}}},
         .limits =
             Limits<std::uint32_t>{
-                .least = 128, .greatest = 1u << 20, .mend = "leave it out to take what --quality stands for"},
+                .least = 128, .greatest = 1u << 20, .hint = "leave it out to take what --quality stands for"},
         .record = &recordRays},
     TypedRow<int>{
         .name = "bounces",
@@ -77,7 +77,7 @@ constexpr std::tuple kRows{
         .limits = Limits<int>{.least = 0,
                               .greatest = B::kMostBounces,
                               .usage = true,
-                              .mend = "leave it out to bake as many as the error bound asks for"}},
+                              .hint = "leave it out to bake as many as the error bound asks for"}},
     TypedRow<std::uint64_t>{
         .name = "max-memory",
         .setting = "",
@@ -94,7 +94,7 @@ constexpr std::tuple kRows{
         .help = "Bound on the coding error, relative RMS of shaded radiance; default 0.01, 0.003 or "
                 "0.001 by quality, of glossy surfaces 0.03, 0.015 or 0.005",
         .words = {{{"auto", 0.0f}}},
-        .limits = Limits<float>{.least = 0.0f, .greatest = 1.0f, .open = true, .mend = "0.003 means 0.3 %"},
+        .limits = Limits<float>{.least = 0.0f, .greatest = 1.0f, .open = true, .hint = "0.003 means 0.3 %"},
         .record = &recordError},
     TypedRow<float>{
         .name = "max-edge",
@@ -105,7 +105,7 @@ constexpr std::tuple kRows{
         .limits = Limits<float>{.least = 0.0f,
                                 .greatest = kMost<float>,
                                 .wrong = "is not a length",
-                                .mend = "give a positive number in the scene's units, or leave it out"}},
+                                .hint = "give a positive number in the scene's units, or leave it out"}},
     TypedRow<float>{
         .name = "refine",
         .setting = "refineBound",
@@ -119,7 +119,7 @@ constexpr std::tuple kRows{
                                 .greatest = 1.0f,
                                 .open = true,
                                 .usage = true,
-                                .mend = "auto takes what --quality stands for"},
+                                .hint = "auto takes what --quality stands for"},
         .record = &recordRefine},
     TypedRow<std::optional<bool>>{
         .name = "fit",
@@ -135,14 +135,14 @@ constexpr std::tuple kRows{
         .name = "light-samples",
         .setting = "lightSamples",
         .kind = "N|auto",
-        .member = &B::light_samples,
+        .member = &B::light_probes,
         .help = "Points of each cell at which light from outside is sampled, 1..32; 1 for a group: light at "
                 "infinity. auto (default): by how near light comes, shared out over the group",
         .words = {{{"auto", 0}}},
         .limits = Limits<int>{.least = 1,
-                              .greatest = static_cast<int>(kMostLightSamples),
+                              .greatest = static_cast<int>(kMostLightProbes),
                               .usage = true,
-                              .mend = "auto chooses by how near light comes"}},
+                              .hint = "auto chooses by how near light comes"}},
     TypedRow<glm::uvec3>{
         .name = "neighborhood-grid",
         .setting = "neighborhoodGrid",
@@ -153,14 +153,14 @@ constexpr std::tuple kRows{
             "(default): 64x64x8 where receivers are on one side only, else 32x32x32; for bodies that the "
             "scene does not name a quarter of that",
         .words = {{{"auto", glm::uvec3(0u)}}},
-        .limits = Limits<glm::uvec3>{.least = 2, .greatest = kMostGridPoints, .mend = "64x64x8 is usual"}},
+        .limits = Limits<glm::uvec3>{.least = 2, .greatest = kMostGridPoints, .hint = "64x64x8 is usual"}},
     TypedRow<glm::uvec3>{
         .name = "volume-grid",
         .setting = "volumeGrid",
         .kind = "N|XxYxZ",
         .member = &B::volume_grid,
         .help = "Voxels of the grid that a volume's transfer is baked on, 1..256 along each axis; default 32",
-        .limits = Limits<glm::uvec3>{.least = 1, .greatest = 256, .mend = "32 is the default"}},
+        .limits = Limits<glm::uvec3>{.least = 1, .greatest = 256, .hint = "32 is the default"}},
     TypedRow<std::string>{.name = "effects",
                           .setting = "effects",
                           .kind = "LIST",
@@ -222,7 +222,7 @@ Result<void> checkValue(const BakeOptions& options) {
                 limits.wrong.empty()
                     ? fmt::format("{} is not between {} and {}", *wrong, limits.least, limits.greatest)
                     : fmt::format("{} {}", *wrong, limits.wrong),
-                std::string(limits.mend));
+                std::string(limits.hint));
   }
   return {};
 }

@@ -22,7 +22,7 @@ struct QualityRow {
   float error_bound, glossy_error_bound, refine_bound;
   double refine_growth;
   std::size_t refine_added;
-  double refine_fans;
+  double refine_wedges;
   bool fits_glossy;
   float glossy_looseness;
   int exit_bands;  // of exitOrder(), beside five of light
@@ -40,7 +40,7 @@ const QualityRow& row(Quality quality) {
 
 // How far refinement may go, in words.
 std::string refineMost(const QualityRow& row) {
-  return fmt::format("{} x + {}, fans {} x", row.refine_growth, row.refine_added, row.refine_fans);
+  return fmt::format("{} x + {}, fans {} x", row.refine_growth, row.refine_added, row.refine_wedges);
 }
 
 }  // namespace
@@ -91,7 +91,7 @@ float BakeOptions::effectiveRefineBound() const {
   return refine_bound >= 0.0f ? refine_bound : row(quality).refine_bound;
 }
 
-bool BakeOptions::fitsMatte() const {
+bool BakeOptions::fitsDiffuse() const {
   return fit.value_or(false);
 }
 
@@ -107,8 +107,8 @@ std::size_t BakeOptions::refineAdded() const {
   return row(quality).refine_added;
 }
 
-double BakeOptions::refineFans() const {
-  return row(quality).refine_fans;
+double BakeOptions::refineWedges() const {
+  return row(quality).refine_wedges;
 }
 
 std::uint64_t BakeOptions::effectiveMemory() const {

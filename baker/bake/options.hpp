@@ -34,10 +34,10 @@ struct BakeOptions {
   // open light; 0: nowhere; under 0: the quality's.
   float refine_bound = -1.0f;
   // Light at vertices is what interpolation over the faces shows best (bake/fit_vertices.hpp), not what the
-  // vertices see: of glossy surfaces direct and bounced light, of matte ones direct light; none: of glossy
+  // vertices see: of glossy surfaces direct and bounced light, of diffuse ones direct light; none: of glossy
   // surfaces alone, but for drafts.
   std::optional<bool> fit = {};
-  int light_samples = 0;       // of each cell, 1..32; 0: auto, by how near light comes (local_light.hpp)
+  int light_probes = 0;        // of each cell, 1..32; 0: auto, by how near light comes (local_light.hpp)
   glm::uvec3 volume_grid{32};  // voxels of a volume's transfer, 1..256 along each axis
   std::string effects = "auto";
   unsigned threads = 0;            // 0: all
@@ -56,12 +56,12 @@ struct BakeOptions {
   // since a kernel meets edges of shadows there that few bands do not have; 4..9, by quality. Without bounces
   // glossyOrder.
   int exitOrder() const;
-  bool fitsMatte() const;
+  bool fitsDiffuse() const;
   bool fitsGlossy() const;
   // How far refinement may go: times as many vertices, and so many more.
   double refineGrowth() const;
   std::size_t refineAdded() const;
-  double refineFans() const;  // values apart at glossy vertices, by vertices
+  double refineWedges() const;  // values apart at glossy vertices, by vertices
   std::uint64_t effectiveMemory() const;
   std::map<std::string, std::string> settings() const;
   // Options with those settings, of the quality that they differ from least; names that settings() does not

@@ -12,20 +12,20 @@ bool read(ByteReader& in, CodedCell& cell) {
          read(in, cell.transfers);
 }
 
-void write(const LightSamples& lights, ByteWriter& out) {
+void write(const LightProbes& lights, ByteWriter& out) {
   out.addList(lights.points);
   out.add(std::uint64_t{lights.cells.size()});
-  for (const LightSamples::Cell& cell : lights.cells) {
+  for (const LightProbes::Cell& cell : lights.cells) {
     out.addList(cell.points);
     out.addList(cell.weights);
   }
 }
 
-bool read(ByteReader& in, LightSamples& lights) {
+bool read(ByteReader& in, LightProbes& lights) {
   std::uint64_t cells = 0;
   if (!in.readList(lights.points) || !in.read(cells)) return false;
   for (std::uint64_t c = 0; c < cells; ++c) {
-    LightSamples::Cell& cell = lights.cells.emplace_back();
+    LightProbes::Cell& cell = lights.cells.emplace_back();
     if (!in.readList(cell.points) || !in.readList(cell.weights)) return false;
   }
   return true;

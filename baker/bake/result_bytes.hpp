@@ -10,7 +10,7 @@
 #include "baker/brdf/surface_brdfs.hpp"
 #include "baker/cache/bytes.hpp"
 #include "baker/compress/kept_transfer.hpp"
-#include "baker/light_samples/light_samples.hpp"
+#include "baker/light_probes/light_probes.hpp"
 #include "runtime/bundle/capture_proxy.hpp"
 
 namespace lambent::baker {
@@ -18,8 +18,8 @@ namespace lambent::baker {
 void write(const CodedCell& cell, ByteWriter& out);
 bool read(ByteReader& in, CodedCell& cell);
 
-void write(const LightSamples& lights, ByteWriter& out);
-bool read(ByteReader& in, LightSamples& lights);
+void write(const LightProbes& lights, ByteWriter& out);
+bool read(ByteReader& in, LightProbes& lights);
 
 void write(const bundle::CaptureProxy& proxy, ByteWriter& out);
 bool read(ByteReader& in, bundle::CaptureProxy& proxy);

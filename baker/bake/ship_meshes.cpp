@@ -8,10 +8,10 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
-#include "baker/cache/kept_ranges.hpp"
+#include "baker/cache/cached_ranges.hpp"
 #include "baker/import/subdivide.hpp"
+#include "baker/jobs/parallel.hpp"
 #include "baker/transport/geometry_key.hpp"
-#include "baker/work/parallel.hpp"
 
 namespace lambent::baker {
 
@@ -83,8 +83,8 @@ std::vector<MeshLimits> limitsOf(const Scene& scene, const std::vector<RigidGrou
   return limits;
 }
 
-Result<EncodedMesh> encodeKept(const bundle::MeshData& mesh, float step, const std::string& subject,
-                               Cache* cache) {
+Result<EncodedMesh> encodeCached(const bundle::MeshData& mesh, float step, const std::string& subject,
+                                 Cache* cache) {
   Result<EncodedMesh> encoded;
   Keep keep{cache, {}};
   if (cache) {
@@ -92,7 +92,7 @@ Result<EncodedMesh> encodeKept(const bundle::MeshData& mesh, float step, const s
     addMesh(mesh, key);
     keep.key = key.add(step).key();
   }
-  keptValue(
+  cachedValue(
       keep,
       [&](ByteReader& in) {
         return in.readList(encoded->bytes) && in.read(encoded->attributes) && readMesh(in, encoded->decoded);
@@ -143,7 +143,7 @@ Result<ShippedMeshes> shipMeshes(const Scene& scene, const std::vector<RigidGrou
     for (Task& task : std::span(tasks).subspan(begin, end - begin)) {
       const std::string subject =
           fmt::format("{}: mesh {} primitive {}", scene.source.string(), task.mesh, task.primitive);
-      task.encoded = encodeKept(meshes[task.mesh][task.primitive], limits[task.mesh].step, subject, cache);
+      task.encoded = encodeCached(meshes[task.mesh][task.primitive], limits[task.mesh].step, subject, cache);
       progress.add(1);
     }
   });

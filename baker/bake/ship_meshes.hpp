@@ -8,8 +8,8 @@
 #include "baker/cache/cache.hpp"
 #include "baker/compress/draco_encode.hpp"
 #include "baker/import/scene.hpp"
+#include "baker/jobs/progress.hpp"
 #include "baker/plan/rigid_groups.hpp"
-#include "baker/work/progress.hpp"
 
 namespace lambent::baker {
 

@@ -37,7 +37,7 @@ struct Limits {
   LimitOf<T> least{}, greatest{};
   bool open = false;                 // both ends are excluded
   bool usage = false;                // a number outside is refused with the word, as wrong usage
-  std::string_view wrong{}, mend{};  // instead of "is not between"; what to do
+  std::string_view wrong{}, hint{};  // instead of "is not between"; what to do
 };
 
 template <class T>

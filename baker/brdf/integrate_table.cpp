@@ -10,7 +10,7 @@
 #include <glm/vec2.hpp>
 
 #include "baker/brdf/brdf.hpp"
-#include "baker/work/parallel.hpp"
+#include "baker/jobs/parallel.hpp"
 #include "runtime/sh/basis.hpp"
 #include "runtime/sh/zonal_factors.hpp"
 

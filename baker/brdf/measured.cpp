@@ -15,7 +15,7 @@
 
 #include "baker/brdf/brdf.hpp"
 #include "baker/import/measured_brdf.hpp"
-#include "baker/work/parallel.hpp"
+#include "baker/jobs/parallel.hpp"
 
 namespace lambent::baker {
 

@@ -375,13 +375,13 @@ Result<SurfaceBrdfs> SurfaceBrdfs::load(const Scene& scene, const GroupGeometry&
   for (const DrawGeometry& draw : geometry.draws) {
     Surface surface;
     if (draw.material < 0)
-      surface.material.metallic = 0.0f;  // matte white
+      surface.material.metallic = 0.0f;  // diffuse white
     else
       surface.material = scene.materials[static_cast<std::size_t>(draw.material)];
     const gltf::Material& material = surface.material;
     const std::int32_t table =
         draw.material < 0 ? -1 : tables.of_material[static_cast<std::size_t>(draw.material)];
-    // Draws that were planned as matte have no coordinates for the other textures.
+    // Draws that were planned as diffuse have no coordinates for the other textures.
     surface.glossy = table >= 0 && draw.kind == SampleKind::Glossy;
     if (surface.glossy) surface.table = static_cast<std::size_t>(table);
 

@@ -3,7 +3,7 @@
 //   L_out(q -> v) = Σ_k c_k(v) l'_k,   c = specular lobe + diffuse, in the group's frame, per colour channel.
 // The specular lobe is b(v) of the material's table, turned; the diffuse part is albedo (1 - metallic) (1 -
 // the largest channel of the specular lobe's directional albedo) A_l/pi y_lm(n), so that both together never
-// give more than they get. Textures and vertex colours are looked up at the point. Matte surfaces have only
+// give more than they get. Textures and vertex colours are looked up at the point. Diffuse surfaces have only
 // the diffuse part.
 #pragma once
 
@@ -28,7 +28,7 @@ struct BrdfTables {
     bundle::BrdfTable table;
   };
   std::vector<Entry> entries;
-  std::vector<std::int32_t> of_material;  // place in `entries`; -1: matte
+  std::vector<std::int32_t> of_material;  // place in `entries`; -1: diffuse
 
   // order: bands, 4..9, the first `shipped` of which (4..6) will be in the bundle. Errors: a measured BRDF
   // that has too few directions.
@@ -58,8 +58,8 @@ class SurfaceBrdfs {
   // The same surfaces, of whose kernels only so many bands are given; at most as many as were loaded.
   SurfaceBrdfs firstBands(int order) const { return {state_, order}; }
 
-  // Not matte, and with glossy samples: a draw of a glossy material whose samples were planned as Lambert's
-  // is matte.
+  // Not diffuse, and with glossy samples: a draw of a glossy material whose samples were planned as Lambert's
+  // is diffuse.
   bool glossy(std::uint32_t triangle) const;
   // All kernels are the same in red, green and blue.
   bool grey() const;
@@ -69,7 +69,7 @@ class SurfaceBrdfs {
   // cos(theta_v) = kLeastViewCosine. From any thread; allocates nothing.
   void exitKernel(std::uint32_t triangle, float u, float v, const glm::vec3& to, std::span<float> out) const;
 
-  // Perceptual roughness of a glossy point; 1 where its BRDF is measured, or where it is matte.
+  // Perceptual roughness of a glossy point; 1 where its BRDF is measured, or where it is diffuse.
   float roughness(std::uint32_t triangle, float u, float v) const;
   // Of a glossy point that is not measured, seen from `to` as in exitKernel.
   PointReflection reflection(std::uint32_t triangle, float u, float v, const glm::vec3& to) const;

@@ -59,7 +59,7 @@ nlohmann::json reportJson(const BakeArguments& a, const BakeReport& r) {
                          {"rays", effect.rays},
                          {"raysKept", effect.rays_kept}});
     groups.push_back({{"name", group.name},
-                      {"lightSamples", group.light_samples},
+                      {"lightSamples", group.light_probes},
                       {"proxyTriangles", group.proxy_triangles},
                       {"effects", effects}});
   }
@@ -151,12 +151,12 @@ void printReport(const BakeArguments& a, const BakeReport& r) {
         "steps\n",
         volume.name, volume.voxels, volume.samples, volume.density_bits, 100.0 * volume.density_error,
         volume.iterations);
-  std::uint64_t light_samples = 0, proxy_triangles = 0;
+  std::uint64_t light_probes = 0, proxy_triangles = 0;
   for (const BakeReport::Group& group : r.groups)
-    light_samples += group.light_samples,
+    light_probes += group.light_probes,
         proxy_triangles += group.proxy_triangles.empty() ? 0 : group.proxy_triangles.front();
   fmt::print("  groups    {}: {}, {} proxy triangles\n", r.groups.size(),
-             counted(light_samples, "light sample"), proxy_triangles);
+             counted(light_probes, "light probe"), proxy_triangles);
   fmt::print(
       "  bytes     {}: mesh {}, transfer {} ({:.1f} a vertex), proxies {}, images {}\n",
       bytesText(static_cast<double>(r.file_bytes)), bytesText(static_cast<double>(r.mesh_bytes)),

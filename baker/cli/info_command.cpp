@@ -33,7 +33,7 @@ Sizes sizesOf(const bundle::Description& d) {
   for (const bundle::Image& image : d.images) sizes.image += d.views[image.view].length;
   for (const bundle::Payload& payload : d.payloads) {
     const std::uint64_t length = d.views[payload.view].length;
-    if (payload.type == bundle::PayloadType::VertexRows) sizes.rows += length;
+    if (payload.type == bundle::PayloadType::VertexWeights) sizes.rows += length;
     if (payload.type == bundle::PayloadType::Codebook) sizes.codebooks += length;
     if (payload.type == bundle::PayloadType::ClusterIds) sizes.ids += length;
     if (payload.type == bundle::PayloadType::WeightPlane) sizes.planes += length;
@@ -104,7 +104,7 @@ void printJson(const bundle::Reader& reader, const Sizes& sizes) {
                          {"error", transfer.error}});
     groups.push_back({{"name", group.name},
                       {"samples", group.sample_count},
-                      {"lightSamples", group.light_samples.size()},
+                      {"lightSamples", group.light_probes.size()},
                       {"proxyTriangles", proxyTriangles(reader, group)},
                       {"neighborhood", neighborhoodJson(group)},
                       {"transfer", cells}});
@@ -158,7 +158,7 @@ void printText(const bundle::Reader& reader, const Sizes& sizes) {
   for (const bundle::Group& group : d.groups) {
     fmt::print("group \"{}\": {} samples in {} cells\n", group.name, group.sample_count, group.cells.size());
     const std::vector<std::uint32_t> proxy = proxyTriangles(reader, group);
-    fmt::print("  {}, {}\n", counted(group.light_samples.size(), "light sample"),
+    fmt::print("  {}, {}\n", counted(group.light_probes.size(), "light probe"),
                proxy.empty() ? "no proxy" : fmt::format("proxy of {} triangles", fmt::join(proxy, ", ")));
     if (const auto& around = group.neighborhood)
       fmt::print(

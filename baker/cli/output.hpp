@@ -7,7 +7,7 @@
 #include <string>
 #include <thread>
 
-#include "baker/work/progress.hpp"
+#include "baker/jobs/progress.hpp"
 #include "runtime/base/result.hpp"
 
 namespace lambent::baker {

@@ -41,7 +41,7 @@ void printJson(const Scene& scene, const EffectPlan& plan) {
   for (std::size_t g = 0; g < plan.groups.size(); ++g) {
     const RigidGroup& group = plan.groups[g];
     const GroupSize size = sizeOf(scene, group);
-    const PlannedLightSamples& planned = plan.light_samples[g];
+    const PlannedLightProbes& planned = plan.light_probes[g];
     groups.push_back(
         {{"name", group.name},
          {"volume", group.volume >= 0 ? scene.volumes[static_cast<std::size_t>(group.volume)].name : ""},
@@ -61,7 +61,7 @@ void printJson(const Scene& scene, const EffectPlan& plan) {
   const nlohmann::json json = {{"scene", scene.source.string()},
                                {"groups", groups},
                                {"effects", effects},
-                               {"nearLights", plan.near_lights},
+                               {"nearLights", plan.shadowed_lights},
                                {"leftOut", plan.left_out}};
   fmt::print("{}\n", json.dump(2));
 }
@@ -94,15 +94,15 @@ void printText(const Scene& scene, const EffectPlan& plan) {
       printNeighborhood(plan, g);
       continue;
     }
-    const auto& [count, reason] = plan.light_samples[g];
+    const auto& [count, reason] = plan.light_probes[g];
     fmt::print("    {}: {}, {} vertices, {} triangles\n", group.name, counted(group.draws.size(), "draw"),
                size.vertices, size.triangles);
-    fmt::print("      {}{}: {}\n", counted(count.count, "light sample"),
-               count.of_group ? "" : " in each cell", reason);
+    fmt::print("      {}{}: {}\n", counted(count.count, "light probe"), count.of_group ? "" : " in each cell",
+               reason);
     printNeighborhood(plan, g);
   }
-  if (!plan.near_lights.empty()) fmt::print("  near lights\n");
-  for (const std::string& sentence : plan.near_lights) fmt::print("    {}\n", sentence);
+  if (!plan.shadowed_lights.empty()) fmt::print("  local lights\n");
+  for (const std::string& sentence : plan.shadowed_lights) fmt::print("    {}\n", sentence);
   if (!plan.left_out.empty()) fmt::print("  left out\n");
   for (const std::string& sentence : plan.left_out) fmt::print("    {}\n", sentence);
 }

@@ -36,7 +36,8 @@ Result<void> understandLights(const ReferenceArguments& a, reference::Request& r
   for (const std::string& word : words) {
     auto light = spec::parseLight(word);
     if (!light) return failAgain(light.error());
-    if (auto* probe = std::get_if<spec::ProbeLight>(&*light)) probe->layout = layout;
+    if (auto* environment_map = std::get_if<spec::EnvironmentMapLight>(&*light))
+      environment_map->layout = layout;
     request.lights.push_back(std::move(*light));
   }
   return {};
@@ -142,16 +143,18 @@ void addReferenceCommand(CLI::App& app, Command& run) {
   command->add_option("SCENE", a->scene, "The scene, .gltf or .glb")->required();
   command->add_option("-o,--output", a->output, "The picture to write, linear OUT.exr")->required();
   command
-      ->add_option("--light", a->lights,
-                   "Several add up: a probe file (.hdr, .exr), constant:R,G,B,\nsun:AZ,EL,ANGLE,R[,G,B] "
-                   "(degrees, angular radius, radiance),\nsphere:X,Y,Z,RADIUS,R[,G,B] or "
-                   "disc:X,Y,Z,NX,NY,NZ,RADIUS,R[,G,B]\n(metres, radiance; unseen by the camera)")
+      ->add_option(
+          "--light", a->lights,
+          "Several add up: a environment map file (.hdr, .exr), constant:R,G,B,\nsun:AZ,EL,ANGLE,R[,G,B] "
+          "(degrees, angular radius, radiance),\nsphere:X,Y,Z,RADIUS,R[,G,B] or "
+          "disc:X,Y,Z,NX,NY,NZ,RADIUS,R[,G,B]\n(metres, radiance; unseen by the camera)")
       ->type_name("LIGHT")
       ->take_all()
       ->expected(1);
   command
-      ->add_option("--light-layout", a->light_layout,
-                   "Layout of probes whose shape misleads: lat-long, angular-map\nor vertical-cross")
+      ->add_option(
+          "--light-layout", a->light_layout,
+          "Layout of environment maps whose shape misleads: lat-long, angular-map\nor vertical-cross")
       ->type_name("LAYOUT");
   command
       ->add_option("--rotate-light", a->rotate_light, "Turn all light from infinity about +Y (+Z towards +X)")

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <limits>
 
-#include "baker/cache/kept_ranges.hpp"
+#include "baker/cache/cached_ranges.hpp"
 #include "baker/compress/cpca.hpp"
 #include "baker/compress/cpca_clusters.hpp"
 

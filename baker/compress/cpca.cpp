@@ -13,7 +13,7 @@
 #include "baker/compress/cpca_quantize.hpp"
 #include "baker/compress/cpca_space.hpp"
 #include "baker/compress/cpca_spectrum.hpp"
-#include "baker/work/parallel.hpp"
+#include "baker/jobs/parallel.hpp"
 
 namespace lambent::baker {
 

@@ -17,7 +17,7 @@
 #include <stop_token>
 #include <vector>
 
-#include "baker/cache/kept_ranges.hpp"
+#include "baker/cache/cached_ranges.hpp"
 #include "baker/compress/light_weights.hpp"
 #include "runtime/bundle/codebook.hpp"
 

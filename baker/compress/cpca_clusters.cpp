@@ -6,7 +6,7 @@
 #include <numbers>
 #include <numeric>
 
-#include "baker/work/parallel.hpp"
+#include "baker/jobs/parallel.hpp"
 
 namespace lambent::baker {
 

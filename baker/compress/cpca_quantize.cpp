@@ -6,7 +6,7 @@
 
 #include <Eigen/Cholesky>
 
-#include "baker/work/parallel.hpp"
+#include "baker/jobs/parallel.hpp"
 
 namespace lambent::baker {
 

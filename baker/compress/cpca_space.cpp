@@ -7,7 +7,7 @@
 
 #include "baker/compress/cpca.hpp"
 #include "baker/compress/light_weights.hpp"
-#include "baker/work/parallel.hpp"
+#include "baker/jobs/parallel.hpp"
 #include "runtime/sh/basis.hpp"
 #include "runtime/sh/gaunt.hpp"
 #include "runtime/sh/zonal.hpp"

@@ -8,7 +8,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 
-#include "baker/work/parallel.hpp"
+#include "baker/jobs/parallel.hpp"
 
 namespace lambent::baker {
 

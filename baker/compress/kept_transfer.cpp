@@ -46,9 +46,9 @@ bool read(ByteReader& in, CodedTransfer& coded) {
   return true;
 }
 
-CodedTransfer KeptCoding::code(std::span<const float> vectors, std::size_t count,
-                               const bundle::TransferShape& shape, const CodingSettings& settings,
-                               const std::stop_token& stop) {
+CodedTransfer CachedCoding::code(std::span<const float> vectors, std::size_t count,
+                                 const bundle::TransferShape& shape, const CodingSettings& settings,
+                                 const std::stop_token& stop) {
   Keep keep{cache_, {}};
   if (cache_) {
     KeyMaker key = KeyMaker::ofStage("coding");
@@ -58,7 +58,7 @@ CodedTransfer KeptCoding::code(std::span<const float> vectors, std::size_t count
     kept_.push_back(keep.key);
   }
   CodedTransfer coded;
-  const auto found = keptValue(
+  const auto found = cachedValue(
       keep, [&](ByteReader& in) { return read(in, coded); },
       [&] {
         coded = codeTransfer(vectors, count, shape, settings, stop, keep);
@@ -69,7 +69,7 @@ CodedTransfer KeptCoding::code(std::span<const float> vectors, std::size_t count
   return coded;
 }
 
-void KeptCoding::drop() {
+void CachedCoding::drop() {
   if (cache_)
     for (const Key& key : kept_) cache_->drop(key);
   kept_.clear();

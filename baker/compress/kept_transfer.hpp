@@ -6,7 +6,7 @@
 #include <stop_token>
 #include <vector>
 
-#include "baker/cache/kept_ranges.hpp"
+#include "baker/cache/cached_ranges.hpp"
 #include "baker/compress/cpca.hpp"
 
 namespace lambent::baker {
@@ -18,9 +18,9 @@ void write(const CodedTransfer& coded, ByteWriter& out);
 bool read(ByteReader& in, CodedTransfer& coded);
 
 // Of transfers that belong together, one after the other. One thread.
-class KeptCoding {
+class CachedCoding {
  public:
-  explicit KeptCoding(Cache* cache) : cache_(cache) {}
+  explicit CachedCoding(Cache* cache) : cache_(cache) {}
 
   // As codeTransfer; clusters and axes of the settings are those that it chooses.
   CodedTransfer code(std::span<const float> vectors, std::size_t count, const bundle::TransferShape& shape,

@@ -114,9 +114,9 @@ Result<void> checkDocument(const nlohmann::json& document, const std::string& fi
     checkNodes(root);
     return {};
   } catch (const BrokenField& broken) {
-    return fail(file, broken.problem, broken.mend);
+    return fail(file, broken.problem, broken.hint);
   } catch (const nlohmann::json::exception& exception) {
-    return fail(file, fmt::format("is not glTF 2.0 ({})", exception.what()), BrokenField{}.mend);
+    return fail(file, fmt::format("is not glTF 2.0 ({})", exception.what()), BrokenField{}.hint);
   }
 }
 

@@ -13,7 +13,7 @@ namespace lambent::baker {
 
 struct BrokenField {
   std::string problem;
-  std::string mend = "export the scene again, or look at it with a glTF validator";
+  std::string hint = "export the scene again, or look at it with a glTF validator";
 };
 
 // One object of the document with the name that errors call it by.

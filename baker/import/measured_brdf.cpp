@@ -16,7 +16,7 @@ namespace lambent::baker {
 namespace {
 
 constexpr std::size_t kMostWavelengths = 4096;
-constexpr const char* kMend = "take the file from its source again";
+constexpr const char* kHint = "take the file from its source again";
 
 struct Broken {
   std::string problem;
@@ -149,7 +149,7 @@ Result<MeasuredBrdf> readMeasuredBrdf(const std::filesystem::path& file) {
     Numbers numbers(std::string_view(reinterpret_cast<const char*>(bytes->data()), bytes->size()));
     return MeasuredBrdf{file.filename().string(), readMeasurements(numbers)};
   } catch (const Broken& broken) {
-    return fail(file.string(), broken.problem, kMend);
+    return fail(file.string(), broken.problem, kHint);
   }
 }
 

@@ -22,7 +22,7 @@ namespace {
 
 struct Broken {
   std::string problem;
-  std::string mend = "save it as NRRD of three dimensions with raw encoding";
+  std::string hint = "save it as NRRD of three dimensions with raw encoding";
 };
 
 enum class ValueType : std::uint8_t { Float, Double, Uchar, Ushort };
@@ -215,7 +215,7 @@ DensityGrid read(std::span<const std::byte> file, const std::string& subject) {
   for (int axis = 0; axis < 3; ++axis)
     size[axis] = numberOf<std::uint32_t>(sizes[static_cast<std::size_t>(axis)], "sizes");
   if (auto checked = checkGridSize(size, subject); !checked)
-    throw Broken{checked.error().problem, checked.error().mend};
+    throw Broken{checked.error().problem, checked.error().hint};
 
   const std::uint64_t wanted = size.x * size.y * size.z * width, there = file.size() - header.size();
   if (there != wanted)
@@ -245,7 +245,7 @@ Result<DensityGrid> readNrrd(const std::filesystem::path& file) {
   try {
     return read(*bytes, file.string());
   } catch (const Broken& broken) {
-    return fail(file.string(), broken.problem, broken.mend);
+    return fail(file.string(), broken.problem, broken.hint);
   }
 }
 

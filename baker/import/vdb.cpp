@@ -14,7 +14,7 @@
 namespace lambent::baker {
 namespace {
 
-constexpr const char* kMend = "write it again as a fog volume of float values";
+constexpr const char* kHint = "write it again as a fog volume of float values";
 
 std::string gridName(const OIIO::ImageSpec& spec) {
   const std::string name = spec.get_string_attribute("openvdb:name");
@@ -26,7 +26,7 @@ Result<glm::dmat4> fileFromIndex(const OIIO::ImageSpec& spec, const std::string&
   const OIIO::ParamValue* value = spec.find_attribute("openvdb:indextoworld");
   glm::dmat4 matrix(1.0);
   if (value == nullptr || value->type().aggregate != OIIO::TypeDesc::MATRIX44)
-    return fail(subject, "has no affine transform from voxels to space", kMend);
+    return fail(subject, "has no affine transform from voxels to space", kHint);
   for (int i = 0; i < 16; ++i)
     matrix[i / 4][i % 4] = value->type().basetype == OIIO::TypeDesc::DOUBLE
                                ? static_cast<const double*>(value->data())[i]
@@ -37,14 +37,14 @@ Result<glm::dmat4> fileFromIndex(const OIIO::ImageSpec& spec, const std::string&
 Result<DensityGrid> readGrid(OIIO::ImageInput& input, const std::string& subject) {
   const OIIO::ImageSpec& spec = input.spec();
   if (spec.nchannels != 1)
-    return fail(subject, fmt::format("has {} values in each voxel", spec.nchannels), kMend);
+    return fail(subject, fmt::format("has {} values in each voxel", spec.nchannels), kHint);
   DensityGrid grid;
   grid.name = gridName(spec);
   const glm::i64vec3 stored_min(spec.x, spec.y, spec.z), stored(spec.width, spec.height, spec.depth);
   const glm::i64vec3 first(spec.full_x, spec.full_y, spec.full_z);
   const glm::i64vec3 size(spec.full_width, spec.full_height, spec.full_depth);
   for (int axis = 0; axis < 3; ++axis)
-    if (stored[axis] < 1 || size[axis] < 1) return fail(subject, "holds no voxel", kMend);
+    if (stored[axis] < 1 || size[axis] < 1) return fail(subject, "holds no voxel", kHint);
   for (const glm::i64vec3& box : {stored, size})
     if (auto checked = checkGridSize(glm::u64vec3(box), subject); !checked) return failAgain(checked.error());
   const auto matrix = fileFromIndex(spec, subject);

@@ -26,9 +26,9 @@ constexpr std::chrono::hours kPreviewsKept{24 * 7};
 // What a job does next. A trial is the final bake with little time.
 enum class Step : std::uint8_t { Trial, Unshadowed, Coarse, Final };
 
-Rung rungOf(Step step) {
-  if (step == Step::Unshadowed) return Rung::Unshadowed;
-  return step == Step::Coarse ? Rung::Coarse : Rung::Final;
+PreviewLevel previewLevelOf(Step step) {
+  if (step == Step::Unshadowed) return PreviewLevel::Unshadowed;
+  return step == Step::Coarse ? PreviewLevel::Coarse : PreviewLevel::Final;
 }
 
 struct Job {
@@ -126,22 +126,23 @@ struct BakeQueue::Impl {
 
   std::jthread worker;  // last: stops before the rest goes
 
-  fs::path placeOf(const Job& job, Rung rung) const {
-    if (rung == Rung::Final) return job.state.request.output;
+  fs::path placeOf(const Job& job, PreviewLevel preview_level) const {
+    if (preview_level == PreviewLevel::Final) return job.state.request.output;
     return settings.work_folder / kPreviewFolder /
-           (requestKey(job.state.request) + "-" + rungName(rung) + ".lmb.glb");
+           (requestKey(job.state.request) + "-" + previewLevelName(preview_level) + ".lmb.glb");
   }
 
   void removePreviews(const Job& job) const {
     if (!settings.previews) return;
-    for (const Rung rung : {Rung::Unshadowed, Rung::Coarse}) {
+    for (const PreviewLevel preview_level : {PreviewLevel::Unshadowed, PreviewLevel::Coarse}) {
       std::error_code ignored;
-      fs::remove(placeOf(job, rung), ignored);
+      fs::remove(placeOf(job, preview_level), ignored);
     }
   }
 
-  void tell(BakeEvent::Kind kind, const Job& job, Rung rung = Rung::Final, fs::path bundle = {}) {
-    events.push_back({kind, job.state.id, rung, std::move(bundle)});
+  void tell(BakeEvent::Kind kind, const Job& job, PreviewLevel preview_level = PreviewLevel::Final,
+            fs::path bundle = {}) {
+    events.push_back({kind, job.state.id, preview_level, std::move(bundle)});
     happened.notify_all();
   }
 
@@ -165,7 +166,7 @@ struct BakeQueue::Impl {
     job.asked = ++asked;
     job.step = firstStep(job.state.request);
     job.tried = job.begun = false;
-    job.state.rung = rungOf(job.step);
+    job.state.preview_level = previewLevelOf(job.step);
   }
 
   std::shared_ptr<Job> next() const {
@@ -201,8 +202,8 @@ JobState BakeQueue::Impl::snapshot(const Job& job) const {
   const bool going = state.phase == JobPhase::Waiting || state.phase == JobPhase::Importing ||
                      state.phase == JobPhase::Baking;
   if (!going || job.expected.empty()) return state;
-  // Only the final bake counts; rungs before it are short.
-  const bool at_final = job.progress && state.rung == Rung::Final;
+  // Only the final bake counts; preview_levels before it are short.
+  const bool at_final = job.progress && state.preview_level == PreviewLevel::Final;
   if (!at_final) finished.clear();
   const double left = secondsLeft(job.expected, finished, at_final ? state.stage : Progress::Stage{});
   state.seconds_left = left;
@@ -227,18 +228,18 @@ void BakeQueue::Impl::turn(const std::shared_ptr<Job>& job, std::unique_lock<std
   const std::uint64_t asked_then = job->asked;
   const BakeRequest request = job->state.request;
   const Step step = job->step;
-  const Rung rung = rungOf(step);
+  const PreviewLevel preview_level = previewLevelOf(step);
   const auto progress = std::make_shared<Progress>();
   std::stop_source stop;
   running = job.get();
   running_stop = stop;
   job->progress = progress;
-  job->state.rung = rung;
+  job->state.preview_level = preview_level;
   job->state.phase = JobPhase::Importing;
   if (!job->begun) tell(BakeEvent::Kind::Began, *job);
   const bool record = !job->begun;
   job->begun = true;
-  const fs::path place = placeOf(*job, rung);
+  const fs::path place = placeOf(*job, preview_level);
   if (record) job->record = {};  // of the content before
   hold.unlock();
 
@@ -268,7 +269,8 @@ void BakeQueue::Impl::turn(const std::shared_ptr<Job>& job, std::unique_lock<std
       }
       std::optional<Deadline> deadline;
       if (step == Step::Trial) deadline.emplace(stop, settings.trial);
-      return bakeRung(rung, **scene, request.options, place, *progress, stop.get_token(), settings.cache);
+      return bakePreviewLevel(preview_level, **scene, request.options, place, *progress, stop.get_token(),
+                              settings.cache);
     } catch (const std::exception& failure) {  // out of memory, most likely
       return fail(request.scene.string(), failure.what(), "free some memory or bake the scene in parts");
     }
@@ -293,7 +295,7 @@ void BakeQueue::Impl::turn(const std::shared_ptr<Job>& job, std::unique_lock<std
       state.phase = JobPhase::Failed;
       state.error = result.error();
       job->record.done();
-      tell(BakeEvent::Kind::Failed, *job, rung);
+      tell(BakeEvent::Kind::Failed, *job, preview_level);
       return;
     }
     // Cut short: to be gone on with, but after a trial what can be shown sooner comes first.
@@ -301,11 +303,11 @@ void BakeQueue::Impl::turn(const std::shared_ptr<Job>& job, std::unique_lock<std
     if (step == Step::Trial) {
       job->tried = true;
       job->step = state.reached ? Step::Coarse : Step::Unshadowed;
-      state.rung = rungOf(job->step);
+      state.preview_level = previewLevelOf(job->step);
     }
     return;
   }
-  state.reached = up_to_date ? Rung::Final : rung;
+  state.reached = up_to_date ? PreviewLevel::Final : preview_level;
   state.up_to_date = up_to_date;
   state.bundle = up_to_date ? request.output : place;
   if (!up_to_date) state.report = *result;
@@ -317,11 +319,12 @@ void BakeQueue::Impl::turn(const std::shared_ptr<Job>& job, std::unique_lock<std
     job->record.done();
     return;
   }
-  if (rung == Rung::Coarse)
-    job->expected = scaleSeconds(stages, rungOptions(Rung::Coarse, request.options), request.options);
+  if (preview_level == PreviewLevel::Coarse)
+    job->expected =
+        scaleSeconds(stages, previewLevelOptions(PreviewLevel::Coarse, request.options), request.options);
   state.phase = JobPhase::Waiting;
-  job->step = rung == Rung::Coarse ? Step::Final : job->tried ? Step::Coarse : Step::Trial;
-  state.rung = rungOf(job->step);
+  job->step = preview_level == PreviewLevel::Coarse ? Step::Final : job->tried ? Step::Coarse : Step::Trial;
+  state.preview_level = previewLevelOf(job->step);
 }
 
 void BakeQueue::Impl::work(const std::stop_token& stop) {

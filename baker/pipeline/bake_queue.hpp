@@ -1,9 +1,9 @@
 // Bakes what it is asked for, one piece after another, on a worker thread of its own: every job first
-// unshadowed, then coarse, then final (rungs.hpp), so that all that was asked for appears before any of it
-// gets good. Among jobs at the same rung the one asked for last comes first; a job that arrives while a final
-// bake runs goes before it (which costs nothing where a cache keeps what it had done). Rungs before the final
-// one are written into the work folder, only the final one under its own name; they are left out where the
-// final one is up to date or comes within a second (QueueSettings::trial).
+// unshadowed, then coarse, then final (preview_levels.hpp), so that all that was asked for appears before any
+// of it gets good. Among jobs at the same preview_level the one asked for last comes first; a job that
+// arrives while a final bake runs goes before it (which costs nothing where a cache keeps what it had done).
+// PreviewLevels before the final one are written into the work folder, only the final one under its own name;
+// they are left out where the final one is up to date or comes within a second (QueueSettings::trial).
 //
 // All calls are safe from any thread and return at once; none throws. What goes wrong with a job is its
 // state. Destruction stops the worker within about a second; what was kept in the cache is found by the next
@@ -23,7 +23,7 @@ namespace lambent::baker {
 struct QueueSettings {
   std::filesystem::path work_folder;  // for previews and the journal; empty: neither
   Cache* cache = nullptr;             // outlives the queue; null: nothing is kept
-  bool previews = true;               // rungs before the final one
+  bool previews = true;               // preview_levels before the final one
   // That a final bake may take before a coarser one is shown in its place: with everything in the cache it is
   // done by then.
   std::chrono::milliseconds trial{1000};

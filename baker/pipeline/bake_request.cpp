@@ -66,9 +66,9 @@ std::optional<BakeRequest> readRequest(const std::string& text) {
                         .import = {.allow_outside = value.at("allowOutside").get<bool>()}};
     const auto edits = readEdits(value.at("edits").dump());
     const int last = value.at("last").get<int>();
-    if (!edits || last < 0 || last > static_cast<int>(Rung::Final)) return std::nullopt;
+    if (!edits || last < 0 || last > static_cast<int>(PreviewLevel::Final)) return std::nullopt;
     request.edits = *edits;
-    request.last = static_cast<Rung>(last);
+    request.last = static_cast<PreviewLevel>(last);
     return request;
   } catch (const json::exception&) {
     return std::nullopt;

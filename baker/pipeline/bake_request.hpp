@@ -11,7 +11,7 @@
 #include "baker/bake/options.hpp"
 #include "baker/import/import_options.hpp"
 #include "baker/import/scene_edits.hpp"
-#include "baker/pipeline/rungs.hpp"
+#include "baker/pipeline/preview_levels.hpp"
 
 namespace lambent::baker {
 
@@ -19,8 +19,8 @@ struct BakeRequest {
   std::filesystem::path scene, output;  // as given; the journal makes them absolute
   BakeOptions options{};
   ImportOptions import{};
-  SceneEdits edits{};       // to the scene, before it is baked
-  Rung last = Rung::Final;  // at which the job is done
+  SceneEdits edits{};                       // to the scene, before it is baked
+  PreviewLevel last = PreviewLevel::Final;  // at which the job is done
 };
 
 // Of both paths, absolute and without "." and "..": 16 hex digits, for names of files.

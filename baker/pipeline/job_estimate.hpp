@@ -1,7 +1,7 @@
 // How long a job will take: seconds by the name of the stage, for all groups together. At first from the size
-// of the scene, which is wrong by a factor of a few; from what the coarse rung took once that is done; best
-// of all from the last time. What stages really take replaces it as they run. Pure functions of their
-// arguments.
+// of the scene, which is wrong by a factor of a few; from what the coarse preview_level took once that is
+// done; best of all from the last time. What stages really take replaces it as they run. Pure functions of
+// their arguments.
 #pragma once
 
 #include <map>
@@ -11,7 +11,7 @@
 
 #include "baker/bake/options.hpp"
 #include "baker/import/scene.hpp"
-#include "baker/work/progress.hpp"
+#include "baker/jobs/progress.hpp"
 
 namespace lambent::baker {
 

@@ -11,7 +11,7 @@
 
 #include "baker/bake/bake.hpp"
 #include "baker/pipeline/bake_request.hpp"
-#include "baker/pipeline/rungs.hpp"
+#include "baker/pipeline/preview_levels.hpp"
 
 namespace lambent::baker {
 
@@ -28,13 +28,13 @@ struct JobState {
   JobId id;
   BakeRequest request;
   JobPhase phase = JobPhase::Waiting;
-  std::optional<Rung> rung;      // that it works at, or will work at next
-  std::optional<Rung> reached;   // the best that is whole, of the content that was added last
-  std::filesystem::path bundle;  // of `reached`: what to show; empty before
+  std::optional<PreviewLevel> preview_level;  // that it works at, or will work at next
+  std::optional<PreviewLevel> reached;        // the best that is whole, of the content that was added last
+  std::filesystem::path bundle;               // of `reached`: what to show; empty before
 
   Progress::Stage stage;               // that runs now; no name: none
   double units_per_s = 0.0;            // of the stage
-  double seconds = 0.0;                // worked at it so far, all rungs
+  double seconds = 0.0;                // worked at it so far, all preview_levels
   double fraction = 0.0;               // of the whole job, 0..1; never falls unless the job starts anew
   std::optional<double> seconds_left;  // of the whole job; nothing while nobody can tell
 
@@ -44,18 +44,19 @@ struct JobState {
   std::optional<BakeReport> report;   // of `reached`, where it was baked here
 };
 
-// What happened, in order. A bundle event names a file that is whole. A bundle of a rung before the final one
-// stays until the queue goes, or until the job, added again, reaches that rung again and replaces it.
+// What happened, in order. A bundle event names a file that is whole. A bundle of a preview_level before the
+// final one stays until the queue goes, or until the job, added again, reaches that preview_level again and
+// replaces it.
 struct BakeEvent {
   enum class Kind : std::uint8_t {
     Began,   // took the job up, for the first time or anew
-    Bundle,  // `bundle` of `rung` is whole
+    Bundle,  // `bundle` of `preview_level` is whole
     Failed,  // with JobState::error; what was whole stays
     Cancelled
   };
   Kind kind = Kind::Began;
   JobId job;
-  Rung rung = Rung::Final;
+  PreviewLevel preview_level = PreviewLevel::Final;
   std::filesystem::path bundle;
 };
 

@@ -65,8 +65,8 @@ EffectPlan makePlan(const Scene& scene, std::span<const EffectEntry> effects) {
     plan.neighborhoods = planNeighborhoods(scene, plan.groups);
   else
     plan.neighborhoods.resize(plan.groups.size());
-  plan.light_samples = planLightSamples(scene, plan.groups, plan.neighborhoods);
-  plan.near_lights = lightsInside(scene, plan.groups);
+  plan.light_probes = planLightProbes(scene, plan.groups, plan.neighborhoods);
+  plan.shadowed_lights = lightsInside(scene, plan.groups);
   plan.left_out = leftOut(scene, plan.bakes("glossy"));
   return plan;
 }

@@ -31,8 +31,8 @@ struct EffectPlan {
   std::vector<RigidGroup> groups;
   std::vector<EffectChoice> effects;
   std::vector<PlannedNeighborhood> neighborhoods;  // one per group; none baked without that effect
-  std::vector<PlannedLightSamples> light_samples;  // one per group
-  std::vector<std::string> near_lights;            // lamps that come within groups, and how they are shown
+  std::vector<PlannedLightProbes> light_probes;    // one per group
+  std::vector<std::string> shadowed_lights;        // lamps that come within groups, and how they are shown
   std::vector<std::string> left_out;  // what the scene has and the bake will not show, one sentence each
 
   bool bakes(std::string_view effect) const;

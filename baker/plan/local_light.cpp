@@ -15,7 +15,7 @@ namespace lambent::baker {
 
 namespace {
 
-constexpr std::uint32_t kOfBodies = 4;  // light samples that bodies which only reflect ask for
+constexpr std::uint32_t kOfBodies = 4;  // light probes that bodies which only reflect ask for
 
 struct Step {
   float ratio;
@@ -28,7 +28,7 @@ constexpr std::array kSteps = {Step{0.05f, 1}, Step{0.15f, 4}, Step{0.25f, 8}, S
 std::uint32_t countFor(float ratio) {
   for (const Step& step : kSteps)
     if (ratio < step.ratio) return step.count;
-  return kMostLightSamples;
+  return kMostLightProbes;
 }
 
 // What asked for the most, and of several the first.
@@ -37,10 +37,10 @@ class Choice {
   void ask(std::uint32_t count, auto reason) {
     if (count > chosen_.count.count) chosen_ = {{count, true}, reason()};
   }
-  PlannedLightSamples take() { return std::move(chosen_); }
+  PlannedLightProbes take() { return std::move(chosen_); }
 
  private:
-  PlannedLightSamples chosen_{{1, true}, "light comes from far away: nothing of other groups is near"};
+  PlannedLightProbes chosen_{{1, true}, "light comes from far away: nothing of other groups is near"};
 };
 
 // NaN and zero sizes ask for nothing.
@@ -56,8 +56,8 @@ std::string ratioText(const std::string& what, float ratio) {
 
 }  // namespace
 
-std::vector<PlannedLightSamples> planLightSamples(const Scene& scene, const std::vector<RigidGroup>& groups,
-                                                  const std::vector<PlannedNeighborhood>& neighborhoods) {
+std::vector<PlannedLightProbes> planLightProbes(const Scene& scene, const std::vector<RigidGroup>& groups,
+                                                const std::vector<PlannedNeighborhood>& neighborhoods) {
   const Motion motion(scene, groups);
   std::vector<Choice> choices(groups.size());
   for (int time = 0; time < motion.times(); ++time) {
@@ -73,24 +73,24 @@ std::vector<PlannedLightSamples> planLightSamples(const Scene& scene, const std:
       for (const Lamp& lamp : moment.lamps) {
         const float distance = glm::distance(lamp.place, own.centre());
         if (lamp.root == groups[g].root || (lamp.range_m > 0.0f && distance > lamp.range_m + half)) continue;
-        askBy(distance, kMostLightSamples, motion.lampName(lamp));
+        askBy(distance, kMostLightProbes, motion.lampName(lamp));
       }
       for (std::size_t other = 0; other < groups.size(); ++other) {
         const PlacedBody& body = moment.bodies[other];
         if (other == g || body.all.empty()) continue;
         if (!body.shining.empty())
-          askBy(body.shining.distance(own.centre()), kMostLightSamples,
+          askBy(body.shining.distance(own.centre()), kMostLightProbes,
                 "what shines of " + groups[other].name);
         // What neighborhoods carry is not looked for in the light from outside.
         if (other < neighborhoods.size() && neighborhoods[other].carries(g)) continue;
         if (movesAboutOn(body.all, own))
-          choices[g].ask(kMostLightSamples,
+          choices[g].ask(kMostLightProbes,
                          [&] { return groups[other].name + " can come within its bounds"; });
         askBy(body.all.distance(own.centre()), kOfBodies, groups[other].name);
       }
     }
   }
-  std::vector<PlannedLightSamples> out;
+  std::vector<PlannedLightProbes> out;
   for (Choice& choice : choices) out.push_back(choice.take());
   return out;
 }

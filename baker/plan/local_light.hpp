@@ -13,16 +13,16 @@
 
 namespace lambent::baker {
 
-inline constexpr std::uint32_t kMostLightSamples = 32;  // that can be asked for
+inline constexpr std::uint32_t kMostLightProbes = 32;  // that can be asked for
 
-struct LightSampleCount {
-  std::uint32_t count = 1;  // 1..kMostLightSamples; 1: a single one for the group
+struct LightProbeCount {
+  std::uint32_t count = 1;  // 1..kMostLightProbes; 1: a single one for the group
   // Of the group, shared out over its cells by area (at least one each); else of each cell.
   bool of_group = true;
 };
 
-struct PlannedLightSamples {
-  LightSampleCount count;
+struct PlannedLightProbes {
+  LightProbeCount count;
   std::string reason;  // one sentence
 };
 
@@ -32,8 +32,8 @@ struct PlannedLightSamples {
 // four. 32 too where a body of less than half its size comes within its bounds: shadows and reflections of
 // it can fall anywhere. Bodies whose neighborhoods (one per group, or none at all) carry what they do to the
 // group ask for nothing. One per group of the list.
-std::vector<PlannedLightSamples> planLightSamples(const Scene& scene, const std::vector<RigidGroup>& groups,
-                                                  const std::vector<PlannedNeighborhood>& neighborhoods = {});
+std::vector<PlannedLightProbes> planLightProbes(const Scene& scene, const std::vector<RigidGroup>& groups,
+                                                const std::vector<PlannedNeighborhood>& neighborhoods = {});
 
 // Lamps of others that come within a group's bounds. One sentence each.
 std::vector<std::string> lightsInside(const Scene& scene, const std::vector<RigidGroup>& groups);

@@ -149,10 +149,10 @@ class Planner {
       const std::string where = fmt::format("it can come within the bounds of {}", groups_[on].name);
       if (!findGroupLights(scene_, groups_[k]).empty()) {
         plan.reason =
-            where + ", but gives off light, which light samples see and a neighborhood does not carry";
+            where + ", but gives off light, which light probes see and a neighborhood does not carry";
       } else if (dark > kMostNeighborhoods) {
         plan.reason =
-            fmt::format("{}, but so can {} other bodies: light samples see them all", where, dark - 1);
+            fmt::format("{}, but so can {} other bodies: light probes see them all", where, dark - 1);
       } else {
         plan.baked = true;
         plan.by_hand = movedByHand(k);
@@ -175,7 +175,7 @@ class Planner {
       plan.reason = fmt::format("it can be moved by hand onto {}", groups_[*largerThan(k)].name);
       if (!plan.baked)
         plan.reason +=
-            fmt::format(", but so can {} other bodies: light samples see them all", dark + found.size() - 1);
+            fmt::format(", but so can {} other bodies: light probes see them all", dark + found.size() - 1);
     }
   }
 

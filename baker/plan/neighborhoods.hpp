@@ -1,8 +1,8 @@
 // Which groups get neighborhood transfer, and for whom: those that extras.lambent.neighborhood names, volumes
 // with surfaces in reach, bodies that move about on another group of more than twice their size, and bodies
-// that can be moved there by hand. Of many such bodies none: light samples that see all of them cost less
+// that can be moved there by hand. Of many such bodies none: light probes that see all of them cost less
 // than a grid for each. What a body does to the groups that its neighborhood carries is left out of their
-// light samples.
+// light probes.
 #pragma once
 
 #include <algorithm>
@@ -41,7 +41,7 @@ struct PlannedNeighborhood {
   }
 };
 
-// One per group. Looks at everything at rest and along the animations, as planLightSamples does.
+// One per group. Looks at everything at rest and along the animations, as planLightProbes does.
 std::vector<PlannedNeighborhood> planNeighborhoods(const Scene& scene, const std::vector<RigidGroup>& groups);
 
 }  // namespace lambent::baker

@@ -9,8 +9,8 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-#include "baker/light_samples/light_points.hpp"
-#include "baker/work/parallel.hpp"
+#include "baker/jobs/parallel.hpp"
+#include "baker/light_probes/light_points.hpp"
 
 namespace lambent::baker {
 

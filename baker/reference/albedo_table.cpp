@@ -5,10 +5,10 @@
 
 #include <glm/common.hpp>
 
+#include "baker/jobs/parallel.hpp"
 #include "baker/reference/brdf.hpp"
 #include "baker/reference/sampler.hpp"
 #include "baker/reference/warp.hpp"
-#include "baker/work/parallel.hpp"
 
 namespace lambent::baker::reference {
 

@@ -89,9 +89,9 @@ void add(const Scene& scene, Digest& digest) {
 void add(const spec::DistantLights& lights, Digest& digest) {
   digest.add(lights.constant, lights.discs.size());
   for (const spec::Disc& disc : lights.discs) digest.add(disc.direction, disc.radius_rad, disc.radiance);
-  for (const spec::Probe& probe : lights.probes) {
-    digest.add(probe.layout, probe.image.width, probe.image.height);
-    digest.addList(probe.image.texels);
+  for (const spec::EnvironmentMap& environment_map : lights.environment_maps) {
+    digest.add(environment_map.layout, environment_map.image.width, environment_map.image.height);
+    digest.addList(environment_map.image.texels);
   }
 }
 

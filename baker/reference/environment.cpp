@@ -14,19 +14,19 @@ namespace {
 // defined on whole texels.
 constexpr int kFine = 1024;
 
-glm::dvec3 directionAt(const spec::Probe& probe, double x, double y) {
-  const int width = static_cast<int>(probe.image.width) * kFine,
-            height = static_cast<int>(probe.image.height) * kFine;
-  return sh::texelDirection(probe.layout, width, height,
+glm::dvec3 directionAt(const spec::EnvironmentMap& environment_map, double x, double y) {
+  const int width = static_cast<int>(environment_map.image.width) * kFine,
+            height = static_cast<int>(environment_map.image.height) * kFine;
+  return sh::texelDirection(environment_map.layout, width, height,
                             std::clamp(static_cast<int>(x * kFine), 0, width - 1),
                             std::clamp(static_cast<int>(y * kFine), 0, height - 1));
 }
 
 // Steradians per texel's area in a unit direction that lies at (x, y) of the picture.
-double densityAt(const spec::Probe& probe, const glm::dvec3& dir, const glm::dvec2& at) {
+double densityAt(const spec::EnvironmentMap& environment_map, const glm::dvec3& dir, const glm::dvec2& at) {
   constexpr double kFull = std::numbers::pi;
-  const double width = probe.image.width, height = probe.image.height;
-  switch (probe.layout) {
+  const double width = environment_map.image.width, height = environment_map.image.height;
+  switch (environment_map.layout) {
     case sh::ImageLayout::LatLong:  // sin(polar) dpolar dazimuth
       return std::sqrt(std::max(0.0, 1.0 - dir.y * dir.y)) * (kFull / height) * (2.0 * kFull / width);
     case sh::ImageLayout::AngularMap: {  // sin(pi r) pi dr dphi over r dr dphi
@@ -71,17 +71,19 @@ Environment::Environment(spec::DistantLights lights, float turn_degrees, int ban
   }
   if (lights_.constant != glm::vec3(0.0f)) dark_ = false;
   // Texels that are not wholly pictures of a direction hold whatever the file has there.
-  for (spec::Probe& probe : lights_.probes)
-    for (std::size_t i = 0; i < probe.image.texels.size(); ++i) {
-      const int width = static_cast<int>(probe.image.width), height = static_cast<int>(probe.image.height);
-      const int x = static_cast<int>(i % probe.image.width), y = static_cast<int>(i / probe.image.width);
-      if (sh::texelSolidAngle(probe.layout, width, height, x, y) <= 0.0)
-        probe.image.texels[i] = glm::vec3(0.0f);
-      if (probe.image.texels[i] != glm::vec3(0.0f)) dark_ = false;
+  for (spec::EnvironmentMap& environment_map : lights_.environment_maps)
+    for (std::size_t i = 0; i < environment_map.image.texels.size(); ++i) {
+      const int width = static_cast<int>(environment_map.image.width),
+                height = static_cast<int>(environment_map.image.height);
+      const int x = static_cast<int>(i % environment_map.image.width),
+                y = static_cast<int>(i / environment_map.image.width);
+      if (sh::texelSolidAngle(environment_map.layout, width, height, x, y) <= 0.0)
+        environment_map.image.texels[i] = glm::vec3(0.0f);
+      if (environment_map.image.texels[i] != glm::vec3(0.0f)) dark_ = false;
     }
   if (band_limit > 0) return;
 
-  for (std::size_t i = 0; i < lights_.probes.size(); ++i) addProbe(i);
+  for (std::size_t i = 0; i < lights_.environment_maps.size(); ++i) addEnvironmentMap(i);
   for (std::size_t i = 0; i < lights_.discs.size(); ++i)
     parts_.push_back({.probability = brightness(lights_.discs[i].radiance) * double{cones_[i].cap} * 2.0 *
                                      std::numbers::pi,
@@ -93,18 +95,18 @@ Environment::Environment(spec::DistantLights lights, float turn_degrees, int ban
   for (Part& part : parts_) part.probability /= sum;
 }
 
-void Environment::addProbe(std::size_t index) {
-  const spec::Probe& probe = lights_.probes[index];
-  const std::size_t width = probe.image.width, height = probe.image.height;
+void Environment::addEnvironmentMap(std::size_t index) {
+  const spec::EnvironmentMap& environment_map = lights_.environment_maps[index];
+  const std::size_t width = environment_map.image.width, height = environment_map.image.height;
   Distribution out;
   out.columns.assign((width + 1) * height, 0.0f);
   std::vector<double> rows = {0.0}, row(width + 1, 0.0);
   for (std::size_t y = 0; y < height; ++y) {
     for (std::size_t x = 0; x < width; ++x) {
       const double angle =
-          sh::texelSolidAngle(probe.layout, static_cast<int>(width), static_cast<int>(height),
+          sh::texelSolidAngle(environment_map.layout, static_cast<int>(width), static_cast<int>(height),
                               static_cast<int>(x), static_cast<int>(y));
-      row[x + 1] = row[x] + angle * brightness(probe.image.texels[y * width + x]);
+      row[x + 1] = row[x] + angle * brightness(environment_map.image.texels[y * width + x]);
     }
     rows.push_back(rows.back() + row[width]);
     for (std::size_t x = 1; x <= width; ++x)
@@ -115,22 +117,23 @@ void Environment::addProbe(std::size_t index) {
   // Probabilities as the rounded sums have them, since by those texels are drawn.
   for (std::size_t i = 0; i < width * height; ++i) {
     const std::size_t y = i / width, column = y * (width + 1) + i % width;
-    out.texels.emplace_back(probe.image.texels[i], (out.rows[y + 1] - out.rows[y]) *
-                                                       (out.columns[column + 1] - out.columns[column]));
+    out.texels.emplace_back(
+        environment_map.image.texels[i],
+        (out.rows[y + 1] - out.rows[y]) * (out.columns[column + 1] - out.columns[column]));
   }
   distributions_.push_back(std::move(out));
-  parts_.push_back({.probability = power, .probe = index});
+  parts_.push_back({.probability = power, .environment_map = index});
 }
 
-Environment::Look Environment::lookAtProbe(std::size_t index, const glm::dvec3& dir) const {
-  const spec::Probe& probe = lights_.probes[index];
-  const std::uint32_t width = probe.image.width, height = probe.image.height;
+Environment::Look Environment::lookAtEnvironmentMap(std::size_t index, const glm::dvec3& dir) const {
+  const spec::EnvironmentMap& environment_map = lights_.environment_maps[index];
+  const std::uint32_t width = environment_map.image.width, height = environment_map.image.height;
   const glm::dvec2 at =
-      sh::imageCoordinates(probe.layout, static_cast<int>(width), static_cast<int>(height), dir);
+      sh::imageCoordinates(environment_map.layout, static_cast<int>(width), static_cast<int>(height), dir);
   const auto x = static_cast<std::size_t>(std::clamp(at.x, 0.0, width - 1.0));
   const auto y = static_cast<std::size_t>(std::clamp(at.y, 0.0, height - 1.0));
   const glm::vec4& texel = distributions_[index].texels[y * width + x];
-  const double density = densityAt(probe, dir, at);
+  const double density = densityAt(environment_map, dir, at);
   return {glm::vec3(texel), density > 0.0 ? static_cast<float>(double{texel.w} / density) : 0.0f};
 }
 
@@ -149,7 +152,7 @@ Environment::Look Environment::look(const glm::vec3& dir) const {
   for (const Part& part : parts_) {
     Look one;
     if (!part.is_disc)
-      one = lookAtProbe(part.probe, glm::dvec3(local));
+      one = lookAtEnvironmentMap(part.environment_map, glm::dvec3(local));
     else if (inside(cones_[part.disc], local))
       one = {lights_.discs[part.disc].radiance, 1.0f / (2.0f * kPi * cones_[part.disc].cap)};
     sum.radiance += one.radiance;
@@ -166,7 +169,8 @@ glm::vec3 Environment::shown(const glm::vec3& dir, float pixel_angle_rad) const 
         std::atan2(glm::length(glm::cross(local, disc.direction)), glm::dot(local, disc.direction));
     sum += std::clamp((disc.radius_rad - angle) / pixel_angle_rad + 0.5f, 0.0f, 1.0f) * disc.radiance;
   }
-  for (const spec::Probe& probe : lights_.probes) sum += spec::radiance(probe, local);
+  for (const spec::EnvironmentMap& environment_map : lights_.environment_maps)
+    sum += spec::radiance(environment_map, local);
   return sum;
 }
 
@@ -178,12 +182,13 @@ glm::vec3 Environment::sample(float choice, const glm::vec2& u) const {
   if (part.is_disc)
     return glm::normalize(world_from_light_ *
                           (cones_[part.disc].frame * coneDirection(u, cones_[part.disc].cap)));
-  const spec::Probe& probe = lights_.probes[part.probe];
-  const Distribution& d = distributions_[part.probe];
-  const std::size_t width = probe.image.width;
+  const spec::EnvironmentMap& environment_map = lights_.environment_maps[part.environment_map];
+  const Distribution& d = distributions_[part.environment_map];
+  const std::size_t width = environment_map.image.width;
   const auto [y, below] = place(d.rows.data(), d.rows.size(), u.y);
   const auto [x, right] = place(&d.columns[y * (width + 1)], width + 1, u.x);
-  const glm::dvec3 local = directionAt(probe, static_cast<double>(x) + right, static_cast<double>(y) + below);
+  const glm::dvec3 local =
+      directionAt(environment_map, static_cast<double>(x) + right, static_cast<double>(y) + below);
   return local == glm::dvec3(0.0) ? glm::vec3(0.0f) : glm::normalize(world_from_light_ * glm::vec3(local));
 }
 

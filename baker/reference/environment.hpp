@@ -1,7 +1,7 @@
 // The light from infinity, as paths meet it. Comes in: the distant lights, their turn, and the band limit.
-// Whole light is a constant, discs with sharp rims and probes whose texels each shine evenly over their area;
-// discs and probes can be sampled in proportion to what they send. Band-limited light is its spherical
-// harmonics, signed: it can be looked up only.
+// Whole light is a constant, discs with sharp rims and environment maps whose texels each shine evenly over
+// their area; discs and environment maps can be sampled in proportion to what they send. Band-limited light
+// is its spherical harmonics, signed: it can be looked up only.
 #pragma once
 
 #include <vector>
@@ -18,11 +18,12 @@ class Environment {
   // band_limit: 0 for whole light.
   Environment(spec::DistantLights lights, float turn_degrees, int band_limit);
 
-  // What the eye sees there, as the runtime draws its sky: probes bilinear, rims of discs softened over a
-  // pixel.
+  // What the eye sees there, as the runtime draws its sky: environment maps bilinear, rims of discs softened
+  // over a pixel.
   glm::vec3 shown(const glm::vec3& dir, float pixel_angle_rad) const;
 
-  // Discs and probes have a density to draw directions from; a constant and band-limited light have none.
+  // Discs and environment maps have a density to draw directions from; a constant and band-limited light have
+  // none.
   bool sampled() const { return !parts_.empty(); }
   // A unit direction of the world, now and then (the rim of an angular map) none, as 0. `choice` picks the
   // part, `u` the place in it.
@@ -45,7 +46,7 @@ class Environment {
   };
   struct Part {
     double probability = 0.0;
-    std::size_t probe = 0;  // or
+    std::size_t environment_map = 0;  // or
     std::size_t disc = 0;
     bool is_disc = false;
   };
@@ -54,9 +55,9 @@ class Environment {
     float cap = 0.0f;       // 1 - cos of the radius
   };
 
-  Look lookAtProbe(std::size_t probe, const glm::dvec3& dir) const;
+  Look lookAtEnvironmentMap(std::size_t environment_map, const glm::dvec3& dir) const;
   bool inside(const Cone& cone, const glm::vec3& dir) const;
-  void addProbe(std::size_t probe);
+  void addEnvironmentMap(std::size_t environment_map);
 
   spec::DistantLights lights_;
   glm::mat3 world_from_light_{1.0f};

@@ -1,7 +1,7 @@
-// Paths: what one pixel's samples see. At every vertex: one direction by the surface (matte: by the cosine),
-// weighed against one towards discs and probes, one towards each sphere and disc of light in the scene, one
-// point on an emissive triangle and one punctual light (Veach's multiple importance sampling, power
-// heuristic). Where a volume scatters, its phase function stands in for the surface. With
+// Paths: what one pixel's samples see. At every vertex: one direction by the surface (diffuse: by the
+// cosine), weighed against one towards discs and probes, one towards each sphere and disc of light in the
+// scene, one point on an emissive triangle and one punctual light (Veach's multiple importance sampling,
+// power heuristic). Where a volume scatters, its phase function stands in for the surface. With
 // `--band-limit IN,OUT` the first hit's answer to the open sky is exact, and paths only find what blocks it.
 // What volumes let through to the eye is exact too, so coverage has no noise.
 // All samples of a pixel that are asked for together walk in step, so that their rays travel in packets. A

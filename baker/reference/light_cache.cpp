@@ -12,7 +12,7 @@ namespace lambent::baker::reference {
 
 namespace {
 
-bool same(const spec::ProbeLight& a, const spec::ProbeLight& b) {
+bool same(const spec::EnvironmentMapLight& a, const spec::EnvironmentMapLight& b) {
   return a.file == b.file && a.layout == b.layout;
 }
 bool same(const spec::ConstantLight& a, const spec::ConstantLight& b) {

@@ -17,7 +17,7 @@ namespace lambent::baker::reference {
 
 class LightCache {
  public:
-  using FromInfinity = std::variant<spec::ProbeLight, spec::ConstantLight, spec::SunLight>;
+  using FromInfinity = std::variant<spec::EnvironmentMapLight, spec::ConstantLight, spec::SunLight>;
 
   // By the lights' words: a probe's file that changed since is not read again. factors, more: Request's.
   // Errors: those of loading a probe.

@@ -7,10 +7,10 @@
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 
+#include "baker/jobs/parallel.hpp"
 #include "baker/reference/brdf.hpp"
 #include "baker/reference/sampler.hpp"
 #include "baker/reference/warp.hpp"
-#include "baker/work/parallel.hpp"
 
 namespace lambent::baker::reference {
 

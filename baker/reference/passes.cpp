@@ -1,6 +1,6 @@
 #include "baker/reference/passes.hpp"
 
-#include "baker/work/parallel.hpp"
+#include "baker/jobs/parallel.hpp"
 
 namespace lambent::baker::reference {
 

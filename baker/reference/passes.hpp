@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <stop_token>
 
+#include "baker/jobs/progress.hpp"
 #include "baker/reference/film.hpp"
-#include "baker/work/progress.hpp"
 
 namespace lambent::baker::reference {
 

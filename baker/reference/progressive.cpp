@@ -9,11 +9,11 @@
 #include <thread>
 #include <utility>
 
+#include "baker/jobs/parallel.hpp"
 #include "baker/reference/enlarge.hpp"
 #include "baker/reference/light_cache.hpp"
 #include "baker/reference/passes.hpp"
 #include "baker/reference/traced_scene.hpp"
-#include "baker/work/parallel.hpp"
 
 namespace lambent::baker::reference {
 

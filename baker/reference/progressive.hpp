@@ -13,8 +13,8 @@
 #include <string>
 #include <vector>
 
+#include "baker/jobs/progress.hpp"
 #include "baker/reference/reference.hpp"
-#include "baker/work/progress.hpp"
 #include "runtime/spec/image.hpp"
 
 namespace lambent::baker::reference {

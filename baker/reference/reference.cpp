@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <chrono>
 
+#include "baker/jobs/parallel.hpp"
 #include "baker/reference/camera.hpp"
 #include "baker/reference/digest.hpp"
 #include "baker/reference/film.hpp"
 #include "baker/reference/passes.hpp"
 #include "baker/reference/request_lights.hpp"
 #include "baker/reference/traced_scene.hpp"
-#include "baker/work/parallel.hpp"
 #include "runtime/base/atomic_file.hpp"
 #include "runtime/bundle/keyframes.hpp"
 

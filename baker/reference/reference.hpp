@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "baker/import/scene.hpp"
+#include "baker/jobs/progress.hpp"
 #include "baker/reference/options.hpp"
-#include "baker/work/progress.hpp"
 #include "runtime/base/result.hpp"
 #include "runtime/spec/camera.hpp"
 #include "runtime/spec/distant_lights.hpp"

@@ -24,10 +24,10 @@ spec::DistantLights together(const std::vector<spec::DistantLights>& each,
       disc.radiance *= factor;
       all.discs.push_back(disc);
     }
-    for (const spec::Probe& probe : each[i].probes) {
-      all.probes.push_back(probe);
+    for (const spec::EnvironmentMap& environment_map : each[i].environment_maps) {
+      all.environment_maps.push_back(environment_map);
       if (factor != 1.0f)
-        for (glm::vec3& texel : all.probes.back().image.texels) texel *= factor;
+        for (glm::vec3& texel : all.environment_maps.back().image.texels) texel *= factor;
     }
     all.notices.insert(all.notices.end(), each[i].notices.begin(), each[i].notices.end());
   }
@@ -38,7 +38,8 @@ void addLights(spec::DistantLights& lights, const spec::DistantLights* more) {
   if (more == nullptr) return;
   lights.constant += more->constant;
   lights.discs.insert(lights.discs.end(), more->discs.begin(), more->discs.end());
-  lights.probes.insert(lights.probes.end(), more->probes.begin(), more->probes.end());
+  lights.environment_maps.insert(lights.environment_maps.end(), more->environment_maps.begin(),
+                                 more->environment_maps.end());
 }
 
 }  // namespace lambent::baker::reference

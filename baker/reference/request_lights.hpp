@@ -8,7 +8,7 @@
 
 namespace lambent::baker::reference {
 
-// One for each light; empty for those that stand in the scene. Errors: those of loading a probe.
+// One for each light; empty for those that stand in the scene. Errors: those of loading a environment map.
 Result<std::vector<spec::DistantLights>> loadEach(const std::vector<spec::Light>& lights);
 
 // factors: by light; those beyond the list are 1.

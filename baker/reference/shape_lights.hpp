@@ -30,7 +30,7 @@ std::optional<WayToLight> sampleShape(const spec::LocalLight& light, const glm::
 std::optional<WayToLight> lookAtShape(const spec::LocalLight& light, const glm::vec3& point,
                                       const glm::vec3& dir);
 
-// The first bands of what arrives at the point where nothing is in the way, as a light sample there has it.
+// The first bands of what arrives at the point where nothing is in the way, as a light probe there has it.
 sh::LightVector shapeLight(const spec::LocalLight& light, int order, const glm::vec3& point);
 
 }  // namespace lambent::baker::reference

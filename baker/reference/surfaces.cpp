@@ -61,7 +61,7 @@ Result<Surfaces> Surfaces::build(const Scene& scene) {
       if (primitive.material >= 0)
         surface.material = scene.materials[static_cast<std::size_t>(primitive.material)];
       else
-        surface.material.metallic = 0.0f;  // matte white
+        surface.material.metallic = 0.0f;  // diffuse white
       surface.first_vertex = static_cast<std::uint32_t>(out.positions_.size());
       surface.vertex_count = static_cast<std::uint32_t>(count);
       surface.first_triangle = static_cast<std::uint32_t>(out.triangles_.size());

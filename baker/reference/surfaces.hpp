@@ -43,7 +43,7 @@ struct SurfacePoint {
   glm::vec3 geometric{0.0f};  // unit; decides which directions are above the horizon
   glm::vec3 shading{0.0f};    // unit; in the cosine only
   glm::vec3 smooth{0.0f};     // the same before normal maps bend it
-  glm::vec3 albedo{0.0f};     // base colour; of a matte surface all there is to reflect
+  glm::vec3 albedo{0.0f};     // base colour; of a diffuse surface all there is to reflect
   bool glossy = false;        // reflects by `reflector`
   Reflector reflector;        // towards where it was looked at from
   glm::vec3 emitted{0.0f};    // radiance, the same in all directions

@@ -107,7 +107,7 @@ struct Walk {
     return samplers[path.replica].stream(dimension, path.index, way);
   }
 
-  // What share of the light from dir is reflected, times the cosine, of matte surfaces without the albedo;
+  // What share of the light from dir is reflected, times the cosine, of diffuse surfaces without the albedo;
   // and the density of dir by the surface's own strategy.
   struct Scattering {
     glm::vec3 value{0.0f};

@@ -8,10 +8,10 @@
 
 #include <glm/geometric.hpp>
 
+#include "baker/jobs/parallel.hpp"
 #include "baker/transport/face_points.hpp"
 #include "baker/transport/geometry_key.hpp"
 #include "baker/transport/sample_areas.hpp"
-#include "baker/work/parallel.hpp"
 
 namespace lambent::baker {
 
@@ -108,24 +108,24 @@ Result<bool> GroupRefiner::probe(const std::vector<Point>& missing, Progress& pr
     rays_ = std::move(*built);
   }
   std::atomic<std::uint64_t> traced = 0;
-  const KeptRanges kept =
-      keptRanges(keep, missing.size(), kPointsPerRange, stop,
-                 {.compute =
-                      [&](std::size_t begin, std::size_t end) {
-                        for (std::size_t i = begin; i < end; ++i) {
-                          const Point& point = missing[i];
-                          seen_[point.shadow] =
-                              probe_.look(*rays_, point.origins, point.normal, point.kind, masksOf(i, i + 1));
-                        }
-                        traced += (end - begin) * probe_.rays();
-                        progress.add(end - begin);
-                      },
-                  .pack =
-                      [&](std::size_t begin, std::size_t end, ByteWriter& out) {
-                        out.addList(std::span<const std::uint16_t>(masksOf(begin, end)));
-                        out.addList(std::span<const std::uint8_t>(seen_).subspan(first + begin, end - begin));
-                      },
-                  .unpack = unpack});
+  const CachedRanges kept = cachedRanges(
+      keep, missing.size(), kPointsPerRange, stop,
+      {.compute =
+           [&](std::size_t begin, std::size_t end) {
+             for (std::size_t i = begin; i < end; ++i) {
+               const Point& point = missing[i];
+               seen_[point.shadow] =
+                   probe_.look(*rays_, point.origins, point.normal, point.kind, masksOf(i, i + 1));
+             }
+             traced += (end - begin) * probe_.rays();
+             progress.add(end - begin);
+           },
+       .pack =
+           [&](std::size_t begin, std::size_t end, ByteWriter& out) {
+             out.addList(std::span<const std::uint16_t>(masksOf(begin, end)));
+             out.addList(std::span<const std::uint8_t>(seen_).subspan(first + begin, end - begin));
+           },
+       .unpack = unpack});
   traced_ += traced;
   rays_kept_ += rays - traced;
   return kept.finished;
@@ -159,7 +159,7 @@ Result<bool> GroupRefiner::measure(const GroupGeometry& geometry, Progress& prog
   if (auto probed = probe(missing, progress, stop); !probed || !*probed) return probed;
 
   std::vector<double> error_at(inner.size());
-  std::vector<float> lack_at(for_fans_ ? inner.size() * 2 * kLackValues : 0);
+  std::vector<float> lack_at(for_wedges_ ? inner.size() * 2 * kLackValues : 0);
   std::vector<std::uint8_t> seen_at(inner.size(), 0);
   // What nobody sees has no error; what nobody sees from takes the place of its neighbours (fill.hpp).
   const auto measureAt = [&](std::size_t i) {
@@ -177,7 +177,7 @@ Result<bool> GroupRefiner::measure(const GroupGeometry& geometry, Progress& prog
     for (HiddenFrom& corner : corners) corner.share /= shares;
     const auto wrong = probe_.difference(corners, {masksAt(point.shadow), point.normal}, point.kind);
     seen_at[i] = 1;
-    if (for_fans_)
+    if (for_wedges_)
       for (std::size_t half = 0; half < 2; ++half)
         std::copy_n(wrong[half].begin(), kLackValues, lack_at.begin() + (2 * i + half) * kLackValues);
     return ShadowProbe::squareError(wrong);
@@ -202,7 +202,7 @@ Result<bool> GroupRefiner::measure(const GroupGeometry& geometry, Progress& prog
     area_ += area;
     first = last;
   }
-  if (for_fans_) keepLacks(geometry, inner, seen_at, lack_at);
+  if (for_wedges_) keepLacks(geometry, inner, seen_at, lack_at);
   return true;
 }
 

@@ -13,22 +13,22 @@
 
 #include <glm/vec3.hpp>
 
-#include "baker/cache/kept_ranges.hpp"
-#include "baker/refine/fans.hpp"
+#include "baker/cache/cached_ranges.hpp"
+#include "baker/jobs/progress.hpp"
 #include "baker/refine/marked_edges.hpp"
 #include "baker/refine/shadow_probe.hpp"
+#include "baker/refine/wedges.hpp"
 #include "baker/transport/group_geometry.hpp"
 #include "baker/transport/samples.hpp"
 #include "baker/transport/vertex_key.hpp"
-#include "baker/work/progress.hpp"
 
 namespace lambent::baker {
 
 class GroupRefiner {
  public:
-  // for_fans: also keeps what addLacks() gives, 300 bytes a triangle and as much for each probe while
+  // for_wedges: also keeps what addLacks() gives, 300 bytes a triangle and as much for each probe while
   // measuring.
-  GroupRefiner(const ShadowProbe& probe, bool for_fans) : probe_(probe), for_fans_(for_fans) {}
+  GroupRefiner(const ShadowProbe& probe, bool for_wedges) : probe_(probe), for_wedges_(for_wedges) {}
 
   // alpha_maps outlive this. The geometry is that before any split: rays are traced against it in all rounds.
   void prepare(const GroupGeometry& geometry, const Scene& scene,
@@ -54,14 +54,14 @@ class GroupRefiner {
  private:
   struct Point {
     glm::vec3 normal{0.0f};
-    SampleKind kind = SampleKind::Plain;
+    SampleKind kind = SampleKind::Diffuse;
     std::vector<SampleOrigin> origins;
     std::uint32_t shadow = 0;  // place in masks_
   };
   struct Inner {  // a point inside a triangle
     std::uint32_t triangle = 0, shadow = 0;
     glm::vec3 weights{0.0f}, normal{0.0f};  // of the corners; of shading
-    SampleKind kind = SampleKind::Plain;
+    SampleKind kind = SampleKind::Diffuse;
   };
   void keepLacks(const GroupGeometry& geometry, std::span<const Inner> inner,
                  std::span<const std::uint8_t> seen, std::span<const float> lacks);
@@ -74,7 +74,7 @@ class GroupRefiner {
   Result<bool> probe(const std::vector<Point>& missing, Progress& progress, const std::stop_token& stop);
 
   const ShadowProbe& probe_;
-  bool for_fans_;
+  bool for_wedges_;
   Keep keep_;  // of the geometry that rays are traced against
   std::function<Result<RayScene>()> build_rays_;
   std::optional<RayScene> rays_;  // once something was not found

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "baker/refine/add_fans.hpp"
+#include "baker/refine/add_wedges.hpp"
 #include "baker/refine/group_refiner.hpp"
 #include "baker/refine/marked_edges.hpp"
 #include "baker/refine/shadow_probe.hpp"
@@ -12,7 +12,7 @@ namespace lambent::baker {
 
 namespace {
 
-// Fans are split until their error is this share of the bound: what splits of edges leave is mostly theirs,
+// Wedges are split until their error is this share of the bound: what splits of edges leave is mostly theirs,
 // and they cost no triangles.
 constexpr double kFanShare = 0.25;
 
@@ -29,7 +29,7 @@ Key outcomeKey(const Scene& scene, const std::vector<RigidGroup>& groups,
                const std::vector<std::vector<bundle::MeshData>>& meshes) {
   KeyMaker key = KeyMaker::ofStage("refinement");
   key.add(with_glossy).add(options.bound).add(std::uint64_t{options.rays}).add(options.rounds);
-  key.add(options.most_growth).add(std::uint64_t{options.most_added}).add(options.most_fans);
+  key.add(options.most_growth).add(std::uint64_t{options.most_added}).add(options.most_wedges);
   key.add(std::uint64_t{options.most_vertices}).add(std::uint64_t{meshes.size()});
   for (const auto& primitives : meshes) {
     key.add(std::uint64_t{primitives.size()});
@@ -105,7 +105,7 @@ Result<RefineReport> refineMeshes(const Scene& scene, const std::vector<RigidGro
   }
   const ShadowProbe probe(options.rays);
   std::vector<GroupRefiner> refiners;
-  for (std::size_t g = 0; g < groups.size(); ++g) refiners.emplace_back(probe, options.most_fans > 0.0);
+  for (std::size_t g = 0; g < groups.size(); ++g) refiners.emplace_back(probe, options.most_wedges > 0.0);
 
   for (int round = 0;; ++round) {
     if (round > 0) build();
@@ -129,12 +129,12 @@ Result<RefineReport> refineMeshes(const Scene& scene, const std::vector<RigidGro
     if (marked == 0) break;
     edges.split(meshes);
   }
-  const std::size_t most_fans =
-      std::min(static_cast<std::size_t>(options.most_fans * static_cast<double>(report.vertices_after)),
+  const std::size_t most_wedges =
+      std::min(static_cast<std::size_t>(options.most_wedges * static_cast<double>(report.vertices_after)),
                options.most_vertices - std::min(options.most_vertices, report.vertices_after));
-  if (most_fans > 0) {
+  if (most_wedges > 0) {
     const auto fans =
-        addFans(groups, geometries, refiners, kFanShare * double{options.bound}, most_fans, meshes, stop);
+        addWedges(groups, geometries, refiners, kFanShare * double{options.bound}, most_wedges, meshes, stop);
     if (!fans) return fail(scene.source.string(), "stopped; nothing was written");
     report.fans = *fans;
   }

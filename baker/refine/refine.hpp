@@ -12,9 +12,9 @@
 
 #include "baker/cache/cache.hpp"
 #include "baker/import/scene.hpp"
+#include "baker/jobs/progress.hpp"
 #include "baker/plan/rigid_groups.hpp"
 #include "baker/transport/alpha_map.hpp"
-#include "baker/work/progress.hpp"
 
 namespace lambent::baker {
 
@@ -27,8 +27,8 @@ struct RefineOptions {
   double most_growth = 1.5;
   std::size_t most_added = 20'000;
   std::size_t most_vertices = std::size_t{1} << 31;
-  // Fans that may be added to the vertices of glossy surfaces, by vertices after all splits (fans.hpp).
-  double most_fans = 0.0;
+  // Wedges that may be added to the vertices of glossy surfaces, by vertices after all splits (fans.hpp).
+  double most_wedges = 0.0;
 };
 
 struct RefineReport {

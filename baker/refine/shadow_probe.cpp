@@ -100,9 +100,10 @@ bool ShadowProbe::look(const RayScene& scene, std::span<const SampleOrigin> orig
                        SampleKind kind, std::span<std::uint16_t> masks) const {
   std::fill(masks.begin(), masks.end(), std::uint16_t{0});
   SeenOrigins seen;
-  findSeenOrigins(origins, glm::mat3(localFrame(glm::normalize(glm::dvec3(normal)))), scene, glances_, seen);
+  findSeenOrigins(origins, glm::mat3(localFrame(glm::normalize(glm::dvec3(normal)))), scene, inside_test_,
+                  seen);
   if (!seen.valid) return false;
-  if (kind == SampleKind::Plain) {
+  if (kind == SampleKind::Diffuse) {
     scene.trace(seen.origins, glm::mat3(1.0f), directions_, masks, BelowHorizon::Blocked);
     return true;
   }
@@ -120,7 +121,7 @@ bool ShadowProbe::look(const RayScene& scene, std::span<const SampleOrigin> orig
 
 ShadowProbe::Difference ShadowProbe::difference(std::span<const HiddenFrom, 3> corners,
                                                 const HiddenFrom& truth, SampleKind kind) const {
-  const bool plain = kind == SampleKind::Plain;
+  const bool plain = kind == SampleKind::Diffuse;
   Difference wrong{};
   for (std::size_t p = 0; p < packets(); ++p) {
     const unsigned in_any = corners[0].masks[p] | corners[1].masks[p] | corners[2].masks[p] | truth.masks[p],

@@ -53,7 +53,7 @@ class ShadowProbe {
 
   DirectionTable directions_;  // two halves of the table with a pattern of their own: errors are products of
                                // what one and what the other shows
-  GlanceTables glances_;
+  InsideTestTables inside_test_;
   std::vector<float> irradiance_, visibility_;
 };
 

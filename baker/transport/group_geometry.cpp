@@ -28,9 +28,9 @@ bool isNormalMapped(const gltf::Material& material, const bundle::MeshData& mesh
 }
 
 SampleKind kindOf(const gltf::Material* material, const bundle::MeshData& mesh, bool with_glossy) {
-  if (!material) return SampleKind::Plain;
+  if (!material) return SampleKind::Diffuse;
   if (with_glossy && !material->matte()) return SampleKind::Glossy;
-  return isNormalMapped(*material, mesh) ? SampleKind::NormalMapped : SampleKind::Plain;
+  return isNormalMapped(*material, mesh) ? SampleKind::NormalMapped : SampleKind::Diffuse;
 }
 
 // What textures of glossy surfaces ask for. A mirroring node turns the bitangent over, and so does the other

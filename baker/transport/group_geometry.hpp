@@ -30,7 +30,7 @@ struct DrawGeometry {
   std::uint32_t first_triangle = 0, triangle_count = 0;
   std::int32_t material = -1;
   bool back = false;  // of a double-sided material; the draw before it is its front
-  SampleKind kind = SampleKind::Plain;
+  SampleKind kind = SampleKind::Diffuse;
 };
 
 struct GroupGeometry {
@@ -59,8 +59,8 @@ struct GroupGeometry {
 glm::vec3 interpolatedNormal(const GroupGeometry& geometry, const glm::uvec3& corners,
                              const glm::vec3& shares);
 
-// decoded[mesh][primitive] is what ships. with_glossy: materials that are not matte have glossy samples; else
-// all are Lambert.
+// decoded[mesh][primitive] is what ships. with_glossy: materials that are not diffuse have glossy samples;
+// else all are Lambert.
 GroupGeometry buildGroupGeometry(const RigidGroup& group, const Scene& scene,
                                  const std::vector<std::vector<bundle::MeshData>>& decoded,
                                  bool with_glossy = false);

@@ -10,7 +10,7 @@
 
 #include <embree3/rtcore.h>
 
-#include "baker/transport/folds.hpp"
+#include "baker/transport/flipped_faces.hpp"
 #include "baker/transport/ray_packets.hpp"
 
 #if defined(__SSE2__)
@@ -115,7 +115,7 @@ namespace {
 
 // One Embree geometry of its own buffers for a draw; null if Embree has no memory for it.
 RTCGeometry makeGeometry(RTCDevice device, const GroupGeometry& group, const DrawGeometry& draw,
-                         std::span<const std::uint8_t> folds) {
+                         std::span<const std::uint8_t> flipped_faces) {
   RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
   void* vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
                                            sizeof(glm::vec3), draw.vertex_count);
@@ -127,7 +127,7 @@ RTCGeometry makeGeometry(RTCDevice device, const GroupGeometry& group, const Dra
   }
   std::memcpy(vertices, &group.positions[draw.first_vertex], draw.vertex_count * sizeof(glm::vec3));
   for (std::uint32_t t = 0; t < draw.triangle_count; ++t)
-    indices[t] = folds[draw.first_triangle + t] != 0
+    indices[t] = flipped_faces[draw.first_triangle + t] != 0
                      ? glm::uvec3(0)  // a triangle of no size, which no ray meets
                      : group.triangles[draw.first_triangle + t] - draw.first_vertex;
   return geometry;
@@ -158,14 +158,14 @@ Result<RayScene> RayScene::build(const GroupGeometry& group, const Scene& scene,
   state->scene.reset(rtcNewScene(state->device.get()));
   rtcSetSceneBuildQuality(state->scene.get(), RTC_BUILD_QUALITY_HIGH);
 
-  const std::vector<std::uint8_t> folds = findFolds(group);
+  const std::vector<std::uint8_t> flipped_faces = findFlippedFaces(group);
   for (std::size_t d = 0; d < group.draws.size(); ++d) {
     const DrawGeometry& draw = group.draws[d];
     const gltf::Material* material =
         draw.material < 0 ? nullptr : &scene.materials[static_cast<std::size_t>(draw.material)];
     if (draw.back || draw.triangle_count == 0) continue;  // the front's triangles stand for both sides
     if (material && material->alpha_mode == gltf::AlphaMode::Blend) continue;
-    RTCGeometry geometry = makeGeometry(state->device.get(), group, draw, folds);
+    RTCGeometry geometry = makeGeometry(state->device.get(), group, draw, flipped_faces);
     if (!geometry) return fail("Embree", "has not enough memory for the scene", "bake it in parts");
     if (material && material->alpha_mode == gltf::AlphaMode::Mask) {
       state->masked.push_back(maskedDraw(group, draw, alpha_maps[static_cast<std::size_t>(draw.material)]));

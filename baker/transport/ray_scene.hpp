@@ -1,7 +1,7 @@
 // Visibility inside one rigid group, by Embree. All rays of one sample go in packets of sixteen sorted
 // directions: measured, that is 1.2 to 2.8 times as fast as single rays or one direction over many samples.
 // Calls are safe from any thread. Surfaces: solid ones and single-sided back faces block, but no folds
-// (folds.hpp); alphaMode MASK blocks where its alpha says so; alphaMode BLEND blocks nothing.
+// (flipped_faces.hpp); alphaMode MASK blocks where its alpha says so; alphaMode BLEND blocks nothing.
 #pragma once
 
 #include <cstdint>

@@ -104,7 +104,7 @@ void placeSamples(const GroupGeometry& geometry, SampleSet& samples) {
   for (std::uint32_t i = 0; i < welded.positions.size(); ++i)
     lists[static_cast<std::size_t>(welded.kinds[i])].push_back(i);
   std::vector<std::uint32_t> place(welded.positions.size());
-  appendCells(welded, std::move(lists[0]), SampleKind::Plain, geometry, samples, place);
+  appendCells(welded, std::move(lists[0]), SampleKind::Diffuse, geometry, samples, place);
   samples.first_normal_mapped = samples.size();
   appendCells(welded, std::move(lists[1]), SampleKind::NormalMapped, geometry, samples, place);
   samples.first_glossy = samples.size();

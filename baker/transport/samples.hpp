@@ -4,8 +4,8 @@
 // vertices first use them: Draco walks over the mesh, so neighbours in memory are neighbours on the surface
 // and rows code to nearly nothing. Rays of a sample start from several origins, one for each face around the
 // vertex: pulled a little into the face and offset along its geometric normal. At concave edges anything else
-// sees through walls. Faces that turn their back to the vertex' normal, folds of a scanned skin, have none,
-// unless all do: what they see is seen by nobody.
+// sees through walls. Faces that turn their back to the vertex' normal, flipped_faces of a scanned skin, have
+// none, unless all do: what they see is seen by nobody.
 #pragma once
 
 #include <cstdint>
@@ -35,7 +35,7 @@ struct SampleOrigin {
 struct SampleCell {
   std::uint32_t first = 0, count = 0;
   glm::vec3 bounds_min{0.0f}, bounds_max{0.0f};
-  SampleKind kind = SampleKind::Plain;
+  SampleKind kind = SampleKind::Diffuse;
 };
 
 struct SampleSet {

@@ -13,21 +13,21 @@ constexpr float kCoveredShare = 0.9f;
 // A glance of which so much is blocked asks for a closer look; one that is blocked altogether most likely
 // stands in a closed room, where there is nothing more to see.
 constexpr float kBlockedShare = 0.5f;
-constexpr std::size_t kGlanceRays = 16, kLookRays = 64;
+constexpr std::size_t kInsideTestRays = 16, kLookRays = 64;
 
 }  // namespace
 
-GlanceTables::GlanceTables() : glance(cosineTable(kGlanceRays)), look(cosineTable(kLookRays)) {}
+InsideTestTables::InsideTestTables() : glance(cosineTable(kInsideTestRays)), look(cosineTable(kLookRays)) {}
 
 void findSeenOrigins(std::span<const SampleOrigin> all, const glm::mat3& frame, const RayScene& rays,
-                     const GlanceTables& glances, SeenOrigins& seen) {
+                     const InsideTestTables& glances, SeenOrigins& seen) {
   seen.origins.assign(all.begin(), all.end());
-  seen.valid = seen.closely = false;
+  seen.valid = seen.double_rays = false;
   if (all.empty()) return;
   std::vector<MetShares> shares(all.size());
   // Sixteen rays are enough to see that nothing is odd, which is nearly always so.
   const float blocked = rays.meet(all, frame, glances.glance, shares);
-  seen.closely = blocked >= kBlockedShare && blocked < 1.0f;
+  seen.double_rays = blocked >= kBlockedShare && blocked < 1.0f;
   seen.valid = std::all_of(shares.begin(), shares.end(), [](const MetShares& met) {
     return met.back == 0.0f && met.near <= kCoveredShare;
   });

@@ -13,9 +13,9 @@
 namespace lambent::baker {
 
 // A few rays to see whether an origin lies inside something, or much is in the way.
-struct GlanceTables {
+struct InsideTestTables {
   DirectionTable glance, look;
-  GlanceTables();
+  InsideTestTables();
 };
 
 struct SeenOrigins {
@@ -26,6 +26,6 @@ struct SeenOrigins {
 
 // frame: group_from_local of the sample. `seen` is filled, so that it can be used again.
 void findSeenOrigins(std::span<const SampleOrigin> all, const glm::mat3& frame, const RayScene& rays,
-                     const GlanceTables& glances, SeenOrigins& seen);
+                     const InsideTestTables& glances, SeenOrigins& seen);
 
 }  // namespace lambent::baker

@@ -13,7 +13,7 @@ int main(int argc, char** argv) {
     if (done) return 0;
     editor::printError(done.error());
   } catch (const std::exception& error) {  // out of memory, mostly
-    editor::printError({.subject = "stopped", .problem = error.what(), .mend = {}});
+    editor::printError({.subject = "stopped", .problem = error.what(), .hint = {}});
   }
   return 1;
 }

@@ -27,7 +27,8 @@ void declare(CLI::App& app, Words& words) {
                  "Scenes (.gltf, .glb), bundles (.lmb.glb), folders of them,\nor a world (.json)")
       ->type_name("");
   app.add_option("--light", words.lights,
-                 "Several add up: a probe file (.hdr, .exr), constant:R,G,B or\nsun:AZ,EL,ANGLE,R[,G,B]; in "
+                 "Several add up: a environment map file (.hdr, .exr), constant:R,G,B "
+                 "or\nsun:AZ,EL,ANGLE,R[,G,B]; in "
                  "the scene: sphere:... or disc:...")
       ->type_name("LIGHT")
       ->take_all()
@@ -103,7 +104,7 @@ std::variant<Options, int> parseOptions(int argc, const char* const* argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
-    printError({.subject = "usage", .problem = error.what(), .mend = "see lambent-editor --help"});
+    printError({.subject = "usage", .problem = error.what(), .hint = "see lambent-editor --help"});
     return 2;
   }
   Result<Options> options = understand(words);

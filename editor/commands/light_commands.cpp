@@ -14,9 +14,9 @@ Result<std::string> fromInfinity(const std::string& word) {
   if (!light) return failAgain(light.error());
   if (!spec::localLights(std::vector{*light}).empty())
     return fail(word, "stands in the scene", "create-sphere and create-disc put lights there");
-  if (const auto* probe = std::get_if<spec::ProbeLight>(&*light)) {
+  if (const auto* environment_map = std::get_if<spec::EnvironmentMapLight>(&*light)) {
     std::error_code ignored;
-    if (!std::filesystem::exists(probe->file, ignored))
+    if (!std::filesystem::exists(environment_map->file, ignored))
       return fail(word, "is not there", "name an .hdr or .exr file");
   }
   return word;
@@ -41,12 +41,12 @@ Answer removeLight(Session& session, Words words) {
   return nullptr;
 }
 
-// In place of the probe there is, else of all that there is: a probe brings its own sun.
-Answer probe(Session& session, Words words) {
+// In place of the environment map there is, else of all that there is: a environment map brings its own sun.
+Answer environment_map(Session& session, Words words) {
   if (words.empty()) {
     Dialog ask;
     ask.kind = Dialog::Kind::OpenFile;
-    ask.title = "Light from a probe";
+    ask.title = "Light from a environment map";
     ask.endings = {".hdr", ".exr"};
     std::error_code ignored;
     ask.folder = std::filesystem::current_path(ignored);
@@ -58,32 +58,33 @@ Answer probe(Session& session, Words words) {
   }
   const auto word = fromInfinity(words[0]);
   if (!word) return failAgain(word.error());
-  session.editWorld("probe " + std::filesystem::path(*word).stem().string(), [&](WorldState& world) {
-    std::vector<std::string> with = world.lights;
-    const auto there = std::ranges::find_if(with, [](const std::string& light) {
-      const auto parsed = spec::parseLight(light);
-      return parsed && std::holds_alternative<spec::ProbeLight>(*parsed);
-    });
-    if (there != with.end())
-      *there = *word;
-    else
-      with = {*word};
-    replaceLights(session, world, std::move(with));
-  });
+  session.editWorld("environment map " + std::filesystem::path(*word).stem().string(),
+                    [&](WorldState& world) {
+                      std::vector<std::string> with = world.lights;
+                      const auto there = std::ranges::find_if(with, [](const std::string& light) {
+                        const auto parsed = spec::parseLight(light);
+                        return parsed && std::holds_alternative<spec::EnvironmentMapLight>(*parsed);
+                      });
+                      if (there != with.end())
+                        *there = *word;
+                      else
+                        with = {*word};
+                      replaceLights(session, world, std::move(with));
+                    });
   return nullptr;
 }
 
 Answer probeFolder(Session& session, Words words) {
   if (!words.empty()) {
-    session.probes.addFolder(words[0]);
+    session.environment_maps.addFolder(words[0]);
     return nullptr;
   }
   Dialog ask;
   ask.kind = Dialog::Kind::Folder;
-  ask.title = "Folder of probes";
+  ask.title = "Folder of environment maps";
   std::error_code ignored;
   ask.folder = std::filesystem::current_path(ignored);
-  ask.answered = [](Session& s, const std::string& folder) { s.probes.addFolder(folder); };
+  ask.answered = [](Session& s, const std::string& folder) { s.environment_maps.addFolder(folder); };
   session.dialog = std::move(ask);
   return nullptr;
 }
@@ -118,8 +119,9 @@ constexpr std::array kRows = {
              &lights),
     scripted("add-light", "One more light from infinity", "LIGHT", 1, 1, &addLight),
     scripted("remove-light", "Take one away, counted from 0", "NUMBER", 1, 1, &removeLight),
-    scripted("probe", "Light from this probe; without a name a dialog asks", "[FILE]", 0, 1, &probe),
-    scripted("probe-folder", "Show the probes of a folder", "[FOLDER]", 0, 1, &probeFolder),
+    scripted("probe", "Light from this environment map; without a name a dialog asks", "[FILE]", 0, 1,
+             &environment_map),
+    scripted("probe-folder", "Show the environment maps of a folder", "[FOLDER]", 0, 1, &probeFolder),
     scripted("exposure", "Stops above radiance 1 = white", "EV|auto", 1, 1, &exposure),
 };
 

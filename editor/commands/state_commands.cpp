@@ -133,7 +133,7 @@ json jobJson(const baker::JobState& job) {
              {"fraction", job.fraction},
              {"seconds", job.seconds},
              {"upToDate", job.up_to_date}};
-  if (job.reached) to["reached"] = baker::rungName(*job.reached);
+  if (job.reached) to["reached"] = baker::previewLevelName(*job.reached);
   if (job.error) to["error"] = job.error->line();
   if (job.report) to["rays"] = job.report->rays;
   return to;

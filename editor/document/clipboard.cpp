@@ -19,7 +19,7 @@ Result<Json> componentJson(const ComponentValues& part) {
     Result<Json> value = valueJson(part.values[i]);
     if (!value)
       return fail(fmt::format("{}.{}", part.component->name, part.component->fields[i].name),
-                  value.error().problem, value.error().mend);
+                  value.error().problem, value.error().hint);
     fields[std::string(part.component->fields[i].name)] = std::move(*value);
   }
   return fields;
@@ -62,7 +62,7 @@ Result<ReadJson> readClip(std::string_view text, const char* part) {
 }
 
 tl::unexpected<Error> asError(const JsonFault& fault) {
-  return fail(kSubject + ": " + fault.place, fault.problem, fault.mend);
+  return fail(kSubject + ": " + fault.place, fault.problem, fault.hint);
 }
 
 }  // namespace

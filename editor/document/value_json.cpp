@@ -150,7 +150,7 @@ scene::Value Place::value(const scene::FieldInfo& field) const {
     }
     return false;
   }();
-  if (const Result<void> good = field.check(value); !good) fault(good.error().problem, good.error().mend);
+  if (const Result<void> good = field.check(value); !good) fault(good.error().problem, good.error().hint);
   return value;
 }
 

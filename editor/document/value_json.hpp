@@ -30,7 +30,7 @@ Result<Json> valueJson(const scene::Value& value);
 // A place in a document: a value and the way to it. Faults are thrown as JsonFault inside the room and become
 // Errors at its border.
 struct JsonFault {
-  std::string place, problem, mend;
+  std::string place, problem, hint;
 };
 
 class Place {
@@ -39,8 +39,8 @@ class Place {
 
   const ReadJson& json() const { return *value_; }
   const std::string& way() const { return way_; }
-  [[noreturn]] void fault(std::string problem, std::string mend = {}) const {
-    throw JsonFault{way_, std::move(problem), std::move(mend)};
+  [[noreturn]] void fault(std::string problem, std::string hint = {}) const {
+    throw JsonFault{way_, std::move(problem), std::move(hint)};
   }
   bool has(const std::string& key) const { return value_->is_object() && value_->contains(key); }
   Place at(const std::string& key) const;                      // faults where it is missing

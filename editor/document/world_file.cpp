@@ -38,7 +38,7 @@ class WorldReader {
     if (top_.has("camera")) {
       world_.state.camera = top_.at("camera").text();
       if (const auto camera = spec::parseCamera(world_.state.camera); !camera)
-        top_.at("camera").fault(camera.error().problem, camera.error().mend);
+        top_.at("camera").fault(camera.error().problem, camera.error().hint);
     }
     if (top_.has("settings")) world_.state.settings = top_.at("settings").table();
     if (top_.has("view")) world_.state.view = top_.at("view").table();
@@ -87,7 +87,7 @@ class WorldReader {
     for (const Place& place : environment.at(key).items()) {
       const std::string word = place.text();
       const Result<spec::Light> light = spec::parseLight(word);
-      if (!light) place.fault(light.error().problem, light.error().mend);
+      if (!light) place.fault(light.error().problem, light.error().hint);
       if (!spec::localLights({&*light, 1}).empty())
         place.fault("is a light that stands in the scene", "make it an entity with a Light");
       words.push_back(word);
@@ -103,7 +103,7 @@ class WorldReader {
       for (const Place& edit : place.at("key_edits").items()) {
         const std::string word = edit.text();
         if (const auto parsed = spec::parseKeyEdit(word); !parsed)
-          edit.fault(parsed.error().problem, parsed.error().mend);
+          edit.fault(parsed.error().problem, parsed.error().hint);
         world_.state.key_edits.push_back(word);
       }
     std::set<std::string> known{"lights", "fade_lights", "key_edits", "exposure"};
@@ -303,7 +303,7 @@ Result<WorldFile> parseWorld(std::string_view text, const std::string& subject) 
   try {
     return WorldReader(*json).run();
   } catch (const JsonFault& fault) {
-    return fail(subject, fault.place + " " + fault.problem, fault.mend);
+    return fail(subject, fault.place + " " + fault.problem, fault.hint);
   }
 }
 
@@ -346,8 +346,8 @@ std::string pathInWorld(const std::filesystem::path& world_path, const std::file
 
 std::string resolveLight(const std::filesystem::path& world_path, const std::string& word) {
   const Result<spec::Light> light = spec::parseLight(word);
-  const auto* probe = light ? std::get_if<spec::ProbeLight>(&*light) : nullptr;
-  return probe ? resolvePath(world_path, probe->file.generic_string()).string() : word;
+  const auto* environment_map = light ? std::get_if<spec::EnvironmentMapLight>(&*light) : nullptr;
+  return environment_map ? resolvePath(world_path, environment_map->file.generic_string()).string() : word;
 }
 
 Result<WorldFile> loadWorldFile(const std::filesystem::path& path) {

@@ -30,7 +30,7 @@ struct WorldState {
   // From infinity, as --light and --fade-light take them. Those that stand in the scene are entities;
   // intensity, rotation and fade are fields of the EnvironmentComponent.
   std::vector<std::string> lights, fade_lights;
-  // Of key lights that were found in probes among these, as --edit-key takes them.
+  // Of key lights that were found in environment maps among these, as --edit-key takes them.
   std::vector<std::string> key_edits;
   std::optional<float> exposure_ev;             // none: automatic
   std::string camera;                           // a camera word; empty: the program's choice

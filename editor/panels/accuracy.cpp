@@ -14,7 +14,7 @@ namespace lambent::editor {
 
 namespace {
 
-double milliseconds(const frame::KnobPoint& point) {
+double milliseconds(const frame::SettingPoint& point) {
   return point.gpu_ms > 0.0 ? point.gpu_ms : point.cpu_ms;
 }
 
@@ -23,10 +23,10 @@ std::string errorText(double error) {
 }
 
 // Error over values, drawn small; time in the tooltip.
-void drawSweep(const frame::SettingRow& row, const std::vector<frame::KnobPoint>& points) {
+void drawSweep(const frame::SettingRow& row, const std::vector<frame::SettingPoint>& points) {
   std::vector<float> errors;
   std::string table = fmt::format("{:>10}  {:>10}  {:>8}\n", row.name, "error", "ms");
-  for (const frame::KnobPoint& point : points) {
+  for (const frame::SettingPoint& point : points) {
     errors.push_back(static_cast<float>(100.0 * point.error));
     table += fmt::format("{:>10.4g}  {:>10}  {:>8.2f}\n", point.value, errorText(point.error),
                          milliseconds(point));
@@ -36,8 +36,8 @@ void drawSweep(const frame::SettingRow& row, const std::vector<frame::KnobPoint>
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", table.c_str());
 }
 
-// The knob itself beside its cost.
-void drawKnob(Session& session, Ui& ui, const frame::SettingRow& row) {
+// The setting itself beside its cost.
+void drawSetting(Session& session, Ui& ui, const frame::SettingRow& row) {
   frame::FrameSettings settings = session.stage.frame().settings();
   const double value = row.get(settings);
   double to = value;
@@ -68,8 +68,8 @@ void drawKnob(Session& session, Ui& ui, const frame::SettingRow& row) {
 }  // namespace
 
 void drawAccuracy(Session& session, Ui& ui) {
-  if (ImGui::Button(session.knobs.busy() ? "Measuring..." : "Measure in this view"))
-    session.knobs.measureAll();
+  if (ImGui::Button(session.settings.busy() ? "Measuring..." : "Measure in this view"))
+    session.settings.measureAll();
   ui.mark("accuracy.measure");
   ImGui::SameLine();
   ImGui::TextDisabled(
@@ -87,15 +87,15 @@ void drawAccuracy(Session& session, Ui& ui) {
   ImGui::TableHeadersRow();
   for (const frame::SettingRow& row : frame::settingRows()) {
     if (!row.finest) continue;
-    const auto found = session.knobs.rows().find(row.name);
+    const auto found = session.settings.rows().find(row.name);
     ImGui::PushID(row.name.data());
     ImGui::TableNextRow();
     ImGui::TableNextColumn();
     ImGui::TextUnformatted(std::string(row.label).c_str());
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", std::string(row.help).c_str());
     ImGui::TableNextColumn();
-    drawKnob(session, ui, row);
-    const bool known = found != session.knobs.rows().end() && !found->second.cost.now.passes.empty();
+    drawSetting(session, ui, row);
+    const bool known = found != session.settings.rows().end() && !found->second.cost.now.passes.empty();
     ImGui::TableNextColumn();
     if (known) ImGui::TextUnformatted(errorText(found->second.cost.now.error).c_str());
     ImGui::TableNextColumn();
@@ -103,11 +103,11 @@ void drawAccuracy(Session& session, Ui& ui) {
     ImGui::TableNextColumn();
     if (known) ImGui::Text("%.2f", milliseconds(found->second.cost.finest));
     ImGui::TableNextColumn();
-    if (found != session.knobs.rows().end() && !found->second.sweep.empty()) {
+    if (found != session.settings.rows().end() && !found->second.sweep.empty()) {
       drawSweep(row, found->second.sweep);
       ImGui::SameLine();
     }
-    if (ImGui::SmallButton("Sweep")) session.knobs.sweep(std::string(row.name));
+    if (ImGui::SmallButton("Sweep")) session.settings.sweep(std::string(row.name));
     ui.mark(fmt::format("accuracy.sweep.{}", row.name));
     ImGui::PopID();
   }

@@ -19,7 +19,8 @@ void report(Session& session, const Result<nlohmann::json>& done) {
 
 std::string stageText(const baker::JobState& job) {
   if (job.stage.name.empty()) return {};
-  std::string text = fmt::format("{}: {}", job.rung ? baker::rungName(*job.rung) : "", job.stage.name);
+  std::string text = fmt::format(
+      "{}: {}", job.preview_level ? baker::previewLevelName(*job.preview_level) : "", job.stage.name);
   if (job.stage.total > 0)
     text += fmt::format(" {} of {} {}", countText(static_cast<double>(job.stage.done)),
                         countText(static_cast<double>(job.stage.total)), job.stage.unit);
@@ -97,7 +98,7 @@ void drawBakes(Session& session, Ui& ui) {
     if (ImGui::IsItemHovered())
       ImGui::SetTooltip("%s\n%s", entry.source.string().c_str(), entry.bundle.string().c_str());
     ImGui::TableNextColumn();
-    ImGui::TextUnformatted(job && job->reached      ? baker::rungName(*job->reached)
+    ImGui::TextUnformatted(job && job->reached      ? baker::previewLevelName(*job->reached)
                            : entry.slot.has_value() ? "bundle"
                                                     : "nothing yet");
     ImGui::TableNextColumn();

@@ -74,7 +74,7 @@ void drawCost(Session& session, Ui& ui) {
                                             session.stage.frame().volumeBytes()))
                   .c_str());
   ui.mark("cost.bytes");
-  number("groups", counts.groups), number("light samples written", counts.light_samples_written);
+  number("groups", counts.groups), number("light probes written", counts.light_probes_written);
   number("captured", counts.incident.captured), number("cells shaded", counts.cells_shaded);
   number("draws shaded", counts.draws_shaded), number("shadow cubes", counts.shadow_cubes_drawn);
   number("volumes shaded", counts.volumes_shaded), number("grids", counts.neighborhoods.grids);

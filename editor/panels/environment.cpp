@@ -7,7 +7,7 @@
 
 #include "editor/commands/command.hpp"
 #include "editor/panels/panel.hpp"
-#include "editor/session/probe_shelf.hpp"
+#include "editor/session/environment_map_shelf.hpp"
 #include "runtime/spec/light.hpp"
 
 namespace lambent::editor {
@@ -78,7 +78,7 @@ void drawLight(Session& session, Ui& ui, std::size_t index, const std::string& w
                             : std::holds_alternative<spec::SunLight>(*light) ? "Sun"
                             : std::holds_alternative<spec::ConstantLight>(*light)
                                 ? "Constant"
-                                : "Probe " + std::filesystem::path(word).filename().string();
+                                : "Environment map " + std::filesystem::path(word).filename().string();
   ImGui::PushID(static_cast<int>(index));
   const bool open = ImGui::CollapsingHeader(
       title.c_str(), ImGuiTreeNodeFlags_DefaultOpen | ImGuiTreeNodeFlags_AllowItemOverlap);
@@ -93,41 +93,44 @@ void drawLight(Session& session, Ui& ui, std::size_t index, const std::string& w
       glm::vec3 radiance = constant->radiance;
       if (editRadiance(session, ui, mark, radiance)) setWord(session, index, constantWord(radiance));
     }
-    if (std::holds_alternative<spec::ProbeLight>(*light)) ImGui::TextWrapped("%s", word.c_str());
+    if (std::holds_alternative<spec::EnvironmentMapLight>(*light)) ImGui::TextWrapped("%s", word.c_str());
   }
   ImGui::PopID();
 }
 
 void drawShelf(Session& session, Ui& ui) {
   if (!ImGui::CollapsingHeader("Probes", ImGuiTreeNodeFlags_DefaultOpen)) return;
-  session.probes.update(session.document.world().lights, session.scenes);
-  if (session.probes.probes().empty())
+  session.environment_maps.update(session.document.world().lights, session.scenes);
+  if (session.environment_maps.environment_maps().empty())
     ImGui::TextDisabled("None beside the open files; add a folder of .hdr or .exr files.");
   const float room = ImGui::GetContentRegionAvail().x;
   const int columns = std::max(1, static_cast<int>(room / (kThumbWidth + 10.0f)));
   int column = 0;
-  for (const ProbeShelf::Probe& probe : session.probes.probes()) {
-    ImGui::PushID(probe.file.c_str());
+  for (const EnvironmentMapShelf::EnvironmentMap& environment_map :
+       session.environment_maps.environment_maps()) {
+    ImGui::PushID(environment_map.file.c_str());
     ImGui::BeginGroup();
-    const auto id = reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(probe.thumbnail.id()));
-    const std::string name = probe.file.stem().string();
-    if (probe.thumbnail
+    const auto id =
+        reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(environment_map.thumbnail.id()));
+    const std::string name = environment_map.file.stem().string();
+    if (environment_map.thumbnail
             ? ImGui::ImageButton(id, ImVec2(kThumbWidth, kThumbHeight), ImVec2(0, 0), ImVec2(1, 1), 1)
-            : ImGui::Button(probe.error.empty() ? "..." : "cannot be read",
+            : ImGui::Button(environment_map.error.empty() ? "..." : "cannot be read",
                             ImVec2(kThumbWidth, kThumbHeight)))
-      run(session, "probe", {probe.file.string()});
+      run(session, "probe", {environment_map.file.string()});
     ui.mark("probe." + name);
     if (ImGui::IsItemHovered())
-      ImGui::SetTooltip(
-          "%s\n%s", probe.file.string().c_str(),
-          probe.error.empty() ? "Click: the light from outside is this probe" : probe.error.c_str());
+      ImGui::SetTooltip("%s\n%s", environment_map.file.string().c_str(),
+                        environment_map.error.empty()
+                            ? "Click: the light from outside is this environment map"
+                            : environment_map.error.c_str());
     ImGui::TextDisabled("%.18s", name.c_str());
     ImGui::EndGroup();
     if (++column % columns != 0) ImGui::SameLine();
     ImGui::PopID();
   }
   ImGui::NewLine();
-  if (ImGui::Button("Add folder of probes...")) run(session, "probe-folder", {});
+  if (ImGui::Button("Add folder of environment maps...")) run(session, "probe-folder", {});
   ui.mark("environment.probe-folder");
 }
 
@@ -179,7 +182,7 @@ void drawEnvironment(Session& session, Ui& ui) {
   if (ImGui::Button("Add constant")) run(session, "add-light", {"constant:0.3,0.35,0.45"});
   ui.mark("environment.add-constant");
   ImGui::SameLine();
-  if (ImGui::Button("Add probe...")) run(session, "probe", {});
+  if (ImGui::Button("Add environment map...")) run(session, "probe", {});
   ui.mark("environment.add-probe");
   drawKeyLights(session, ui);
   drawShelf(session, ui);

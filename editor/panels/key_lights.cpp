@@ -79,7 +79,7 @@ void drawFields(Session& session, Ui& ui, std::size_t index, const KeyLight& key
   ui.mark(mark + ".elevation");
   if (moved)
     tell(session, moveKeyLight(session, index, spec::directionFromAzimuthElevation(azimuth, elevation)));
-  if (!key.in_probe) {
+  if (!key.in_map) {
     ImGui::TextDisabled("Strength and colour are those of %s, above.", key.source().c_str());
     return;
   }
@@ -107,7 +107,8 @@ void drawKeyLights(Session& session, Ui& ui) {
   if (ImGui::IsItemHovered())
     ImGui::SetTooltip(
         "Suns, lamps and windows that were found in the light from outside, and shine by shadow maps.\n"
-        "Share: of all light. With the environment selected, those of probes have handles on the sky, too.");
+        "Share: of all light. With the environment selected, those of environment maps have handles on the "
+        "sky, too.");
   if (!open) return;
   const std::vector<KeyLight> keys = keyLightsOf(session);
   if (keys.empty()) return ImGui::TextDisabled("None: all light from outside is soft.");

@@ -9,7 +9,7 @@ namespace {
 constexpr std::array kPanels = {
     Panel{"Scene", Dock::Left, "What is in the world: search, select, rename", &drawSceneTree},
     Panel{"Inspector", Dock::Right, "The components of what is selected", &drawInspector},
-    Panel{"Environment", Dock::Right, "The light from outside: probes, sun, turn, exposure",
+    Panel{"Environment", Dock::Right, "The light from outside: environment maps, sun, turn, exposure",
           &drawEnvironment},
     Panel{"Settings", Dock::Right, "How the picture is computed: bands, captures, effects", &drawSettings},
     Panel{"Plan", Dock::Right, "What a scene's bake simulates, what not, and why", &drawPlan},

@@ -31,7 +31,7 @@ void drawGroup(const baker::EffectPlan& plan, std::size_t g) {
   if (group.volume >= 0) {
     sentence("a volume");
   } else {
-    const auto& [count, reason] = plan.light_samples[g];
+    const auto& [count, reason] = plan.light_probes[g];
     sentence(fmt::format("{} draws", group.draws.size()));
     sentence(fmt::format("light from outside at {} points of {}: {}", count.count,
                          count.of_group ? "the group" : "each cell", reason));
@@ -78,7 +78,7 @@ void drawPlan(Session& session, Ui& ui) {
     if (sentences.empty() || !ImGui::CollapsingHeader(title, ImGuiTreeNodeFlags_DefaultOpen)) return;
     for (const std::string& text : sentences) sentence(text);
   };
-  list("Lamps that come near", plan.near_lights);
+  list("Lamps that come near", plan.shadowed_lights);
   list("Left out", plan.left_out);
   list("Warnings of the import", (*made)->warnings);
 }

@@ -88,9 +88,9 @@ void drawStreaming(Session& session, Ui& ui) {
   ImGui::Text("%u parts wanted, %s on their way, %.1f MB/s", status.queued,
               bytesText(static_cast<double>(status.in_flight_bytes)).c_str(), status.megabytes_per_s);
   ui.mark("streaming.queue");
-  ImGui::Text("%zu shown in full, %zu partly, %zu by stand-ins, %zu not", status.count(frame::Shown::Full),
-              status.count(frame::Shown::Partly), status.count(frame::Shown::StandIn),
-              status.count(frame::Shown::Nothing));
+  ImGui::Text("%zu shown in full, %zu partly, %zu by proxy levels of detail, %zu not",
+              status.count(frame::Shown::Full), status.count(frame::Shown::Partly),
+              status.count(frame::Shown::ProxyLod), status.count(frame::Shown::Nothing));
   drawTimes(session.stage.times());
   ImGui::EndChild();
   ImGui::SameLine();

@@ -234,7 +234,7 @@ void Script::finish(const ScriptLine& line, const nlohmann::json& answer, const 
     row["answer"] = answer;
   if (error && !line.may_fail) {
     error_ = Error{fmt::format("{}:{}: {}", name_.string(), line.number, error->subject), error->problem,
-                   error->mend};
+                   error->hint};
     at_ = lines_.size();
   } else {
     ++at_;

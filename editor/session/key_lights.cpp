@@ -32,12 +32,12 @@ double fluxOf(const spec::Disc& disc) {
   return 4.0 * std::numbers::pi * half * half * luminance(disc.radiance);
 }
 
-// Places among the lights of those that probes, or suns, came from, in their order.
-std::vector<std::size_t> placesOf(const std::vector<spec::Light>& lights, bool probes) {
+// Places among the lights of those that environment maps, or suns, came from, in their order.
+std::vector<std::size_t> placesOf(const std::vector<spec::Light>& lights, bool environment_maps) {
   std::vector<std::size_t> places;
   for (std::size_t i = 0; i < lights.size(); ++i)
-    if (probes ? std::holds_alternative<spec::ProbeLight>(lights[i])
-               : std::holds_alternative<spec::SunLight>(lights[i]))
+    if (environment_maps ? std::holds_alternative<spec::EnvironmentMapLight>(lights[i])
+                         : std::holds_alternative<spec::SunLight>(lights[i]))
       places.push_back(i);
   return places;
 }
@@ -88,7 +88,7 @@ std::vector<std::string>& wordsOf(WorldState& world, std::size_t set) {
 }  // namespace
 
 std::string KeyLight::source() const {
-  if (in_probe) return std::filesystem::path(word).filename().string();
+  if (in_map) return std::filesystem::path(word).filename().string();
   return fmt::format("{}sun {}", piece ? "piece of " : "", light);
 }
 
@@ -100,14 +100,14 @@ std::vector<KeyLight> keyLightsOf(const Session& session) {
   for (const FoundKey& found : environment.foundKeys()) {
     const std::vector<spec::Light>& lights =
         found.set == 0 ? session.stage.lights() : session.stage.fadeLights();
-    const std::vector<std::size_t> places = placesOf(lights, found.origin.in_probe);
+    const std::vector<std::size_t> places = placesOf(lights, found.origin.in_map);
     const std::vector<std::string>& words = wordsOf(session, found.set);
     const glm::vec3 towards = environment.worldFromLight() * found.now.direction;
     const spec::AzimuthElevation angles = spec::azimuthElevation(towards);
     KeyLight key{.set = found.set,
                  .light = 0,
                  .word = {},
-                 .in_probe = found.origin.in_probe,
+                 .in_map = found.origin.in_map,
                  .piece = found.origin.piece,
                  .edited = found.edit.has_value(),
                  .towards_ws = towards,
@@ -129,7 +129,7 @@ Result<void> moveKeyLight(Session& session, std::size_t key, const glm::vec3& to
   if (!found) return failAgain(found.error());
   const glm::mat3 light_from_world = glm::transpose(session.stage.environment().worldFromLight());
   const glm::vec3 towards = glm::normalize(light_from_world * towards_ws);
-  if (found->origin.in_probe) {
+  if (found->origin.in_map) {
     spec::KeyEdit edit = editOf(*found);
     edit.towards = towards;
     putEdit(session, *found, edit, "turn of key light");
@@ -156,7 +156,7 @@ Result<void> dimKeyLight(Session& session, std::size_t key, const glm::vec3& fac
       return fail("key light", fmt::format("{} is no factor of it", factor[channel]), "give 0 to a million");
   const auto found = findKey(session, key);
   if (!found) return failAgain(found.error());
-  if (found->origin.in_probe) {
+  if (found->origin.in_map) {
     spec::KeyEdit edit = editOf(*found);
     edit.factor = factor;
     putEdit(session, *found, edit, "strength of key light");
@@ -192,12 +192,12 @@ Result<void> resetKeyLights(Session& session, std::optional<std::size_t> key) {
 
 void replaceLights(const Session& session, WorldState& world, std::vector<std::string> lights) {
   const auto stays = [&](const std::string& word) { return std::ranges::find(lights, word) != lights.end(); };
-  const auto isProbe = [](const std::string& word) {
+  const auto isEnvironmentMap = [](const std::string& word) {
     const auto light = spec::parseLight(word);
-    return light && std::holds_alternative<spec::ProbeLight>(*light);
+    return light && std::holds_alternative<spec::EnvironmentMapLight>(*light);
   };
   const bool all_stay = std::ranges::all_of(
-      world.lights, [&](const std::string& word) { return !isProbe(word) || stays(word); });
+      world.lights, [&](const std::string& word) { return !isEnvironmentMap(word) || stays(word); });
   if (!all_stay) {
     const std::vector<FoundKey> found = session.stage.environment().foundKeys();
     const std::vector<KeyLight> keys = keyLightsOf(session);
@@ -206,7 +206,7 @@ void replaceLights(const Session& session, WorldState& world, std::vector<std::s
       if (!edit || edit->set != 0) return !edit;
       for (std::size_t i = 0; i < found.size(); ++i)
         if (found[i].edit == *edit) return !stays(keys[i].word);
-      return true;  // it waits for a key light of a probe that may be the one that goes
+      return true;  // it waits for a key light of a environment map that may be the one that goes
     });
   }
   world.lights = std::move(lights);

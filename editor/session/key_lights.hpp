@@ -1,8 +1,8 @@
 // The key lights that the environment has, and their edits: where each stands, how strong it is, where it was
-// found, and moving, dimming and colouring it. Those that were found in a probe are edited by words of
-// WorldState::key_edits; those of a sun by the sun's own word. Each edit is a step of the history. Angles are
-// those of the world: azimuth 0 on +Z, 90 on +X, as cameras have them. Errors: no such key light; one that
-// cannot be edited so.
+// found, and moving, dimming and colouring it. Those that were found in a environment map are edited by words
+// of WorldState::key_edits; those of a sun by the sun's own word. Each edit is a step of the history. Angles
+// are those of the world: azimuth 0 on +Z, 90 on +X, as cameras have them. Errors: no such key light; one
+// that cannot be edited so.
 #pragma once
 
 #include <optional>
@@ -23,7 +23,7 @@ struct KeyLight {
   // A word of WorldState::lights (or fade_lights), in which it was found.
   std::size_t light = 0;
   std::string word;
-  bool in_probe = false;
+  bool in_map = false;
   bool piece = false;   // of a wide sun that was divided
   bool edited = false;  // has an edit of its own
   glm::vec3 towards_ws{0.0f, 1.0f, 0.0f};
@@ -40,13 +40,13 @@ std::vector<KeyLight> keyLightsOf(const Session& session);
 
 // A piece of a sun takes its sun along.
 Result<void> moveKeyLight(Session& session, std::size_t key, const glm::vec3& towards_ws);
-// Of one that was found in a probe: times what was found. Of a sun: times what it has.
+// Of one that was found in a environment map: times what was found. Of a sun: times what it has.
 Result<void> dimKeyLight(Session& session, std::size_t key, const glm::vec3& factor);
 // As it was found; without a number all of them. Suns stay as they are.
 Result<void> resetKeyLights(Session& session, std::optional<std::size_t> key);
 
-// The world's light becomes `lights`: edits of key lights stay with the probes that they were found in, and
-// go with them.
+// The world's light becomes `lights`: edits of key lights stay with the environment maps that they were found
+// in, and go with them.
 void replaceLights(const Session& session, WorldState& world, std::vector<std::string> lights);
 
 }  // namespace lambent::editor

@@ -51,9 +51,9 @@ std::shared_ptr<const spec::DistantLights> editedLight(const lighting::Environme
       light->discs.push_back(disc);
     }
     if (share == 0.0f) continue;
-    for (const spec::Probe* probe : shown.probes) {
-      light->probes.push_back(*probe);
-      for (glm::vec3& texel : light->probes.back().image.texels) texel *= share;
+    for (const spec::EnvironmentMap* environment_map : shown.environment_maps) {
+      light->environment_maps.push_back(*environment_map);
+      for (glm::vec3& texel : light->environment_maps.back().image.texels) texel *= share;
     }
   }
   return light;

@@ -208,11 +208,12 @@ void Scenes::unwatchFolder(const std::filesystem::path& folder) {
 }
 
 void Scenes::request(SceneEntry& entry) {
-  entry.job = queue_->add({.scene = entry.source,
-                           .output = entry.bundle,
-                           .options = entry.options,
-                           .edits = entry.edits,
-                           .last = settings_.bake ? baker::Rung::Final : baker::Rung::Unshadowed});
+  entry.job =
+      queue_->add({.scene = entry.source,
+                   .output = entry.bundle,
+                   .options = entry.options,
+                   .edits = entry.edits,
+                   .last = settings_.bake ? baker::PreviewLevel::Final : baker::PreviewLevel::Unshadowed});
 }
 
 void Scenes::watch() {
@@ -248,14 +249,15 @@ void Scenes::take(const baker::BakeEvent& event) {
   if (event.kind == Kind::Failed && job && job->error) log_.error(*job->error);
   if (event.kind == Kind::Cancelled) log_.note(found->source.filename().string() + ": bake cancelled");
   if (event.kind != Kind::Bundle) return;
-  if (job && event.rung == baker::Rung::Final)
+  if (job && event.preview_level == baker::PreviewLevel::Final)
     for (const std::string& warning : job->warnings)
       log_.warn(found->source.filename().string() + ": " + warning);
   // A bundle with transfer is not given up for one without.
-  if (event.rung == baker::Rung::Unshadowed && found->slot && found->shown == found->bundle) return;
+  if (event.preview_level == baker::PreviewLevel::Unshadowed && found->slot && found->shown == found->bundle)
+    return;
   if (job) found->shown_edits = job->request.edits;
   show(*found, event.bundle);
-  if (event.rung == baker::Rung::Final)
+  if (event.preview_level == baker::PreviewLevel::Final)
     log_.note(
         fmt::format("{}: baked in {:.0f} s", found->bundle.filename().string(), job ? job->seconds : 0.0));
 }

@@ -1,7 +1,8 @@
 // The scenes and bundles of the world: what was opened, what is baked of it, and where it is shown. A scene
-// (.gltf, .glb) is baked by a queue on threads of its own and shown as soon as its first rung is whole; each
-// better one takes the place of the one before. Sources are watched: a file that changes is baked again, and
-// the old state stays until then. Main thread; update() once a frame brings over what happened elsewhere.
+// (.gltf, .glb) is baked by a queue on threads of its own and shown as soon as its first preview_level is
+// whole; each better one takes the place of the one before. Sources are watched: a file that changes is baked
+// again, and the old state stays until then. Main thread; update() once a frame brings over what happened
+// elsewhere.
 #pragma once
 
 #include <filesystem>
@@ -36,7 +37,7 @@ struct SceneSettings {
   std::filesystem::path output_folder;  // of bundles; empty: beside their scenes
   std::filesystem::path cache_folder;   // empty: the usual one
   std::uint64_t cache_bytes = baker::kCacheBytes;
-  bool bake = true;  // scenes at once when they are opened; else only their first, unshadowed rung
+  bool bake = true;  // scenes at once when they are opened; else only their first, unshadowed preview_level
   baker::BakeOptions options;
 };
 

@@ -121,7 +121,7 @@ void Session::render(spec::Size size) {
     viewing.tookTime(ms, moved || viewing.playing || history.open());
   }
   reference.update(*this);
-  knobs.update(*this);
+  settings.update(*this);
   qualities.update(*this);
 }
 

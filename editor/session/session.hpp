@@ -19,15 +19,15 @@
 #include "editor/document/tree.hpp"
 #include "editor/document/world_file.hpp"
 #include "editor/session/dialog.hpp"
-#include "editor/session/knob_study.hpp"
+#include "editor/session/environment_map_shelf.hpp"
 #include "editor/session/log.hpp"
 #include "editor/session/plans.hpp"
 #include "editor/session/preferences.hpp"
-#include "editor/session/probe_shelf.hpp"
 #include "editor/session/quality_study.hpp"
 #include "editor/session/reference_view.hpp"
 #include "editor/session/scene_steps.hpp"
 #include "editor/session/scenes.hpp"
+#include "editor/session/setting_study.hpp"
 #include "editor/session/stage.hpp"
 #include "editor/session/viewing.hpp"
 
@@ -118,7 +118,7 @@ class Session {
   bool loaded() const;
   bool baked() const { return !scenes.busy() && loaded(); }
   bool atRest() const { return loaded() && stage.atRest(); }
-  bool measured() const { return !knobs.busy() && !qualities.busy(); }
+  bool measured() const { return !settings.busy() && !qualities.busy(); }
   bool referenceDone() const { return reference.done(); }
   std::string title() const;
   bool titleChanged();
@@ -135,8 +135,8 @@ class Session {
   Viewing viewing;
   ReferenceView reference;
   Plans plans;
-  ProbeShelf probes;
-  KnobStudy knobs;
+  EnvironmentMapShelf environment_maps;
+  SettingStudy settings;
   QualityStudy qualities;
   TreeQuery tree;
   Clipboard clipboard;

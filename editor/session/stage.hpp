@@ -1,7 +1,7 @@
 // What is shown: the bundles' world, the light from infinity, and the frame that draws them, kept in step
-// with the document. Light words are loaded when they change (a probe that cannot be read leaves the light as
-// it was), settings go to the frame. The picture lies in a texture of the frame's. Main thread, with a
-// current OpenGL context. Errors: no OpenGL 4.5, what Frame::render says.
+// with the document. Light words are loaded when they change (a environment map that cannot be read leaves
+// the light as it was), settings go to the frame. The picture lies in a texture of the frame's. Main thread,
+// with a current OpenGL context. Errors: no OpenGL 4.5, what Frame::render says.
 #pragma once
 
 #include <optional>
@@ -32,7 +32,7 @@ class Stage {
   const std::vector<spec::Light>& fadeLights() const { return fade_lights_; }
 
   // Lights, edits of key lights, settings and exposure as `state` has them. Errors: words that are not known,
-  // probes that cannot be read; all the others are followed.
+  // environment maps that cannot be read; all the others are followed.
   std::vector<Error> follow(const WorldState& state);
   // Fields of the EnvironmentComponent.
   void followEnvironment();

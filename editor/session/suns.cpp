@@ -42,7 +42,7 @@ void addSunsOfWords(const Session& session, std::vector<SunOnSky>& suns) {
 void addKeyLights(const Session& session, std::vector<SunOnSky>& suns) {
   const std::vector<KeyLight> keys = keyLightsOf(session);
   for (std::size_t i = 0; i < keys.size(); ++i)
-    if (keys[i].in_probe)
+    if (keys[i].in_map)
       suns.push_back({.name = "key light",
                       .light = {},
                       .key = i,

@@ -1,6 +1,6 @@
 // The suns of what is selected, to be dragged over the sky: those of the environment's light words, key
-// lights that were found in its probes, and lights from one direction that stand in the tree. A sun that
-// moves is an edit like any other.
+// lights that were found in its environment maps, and lights from one direction that stand in the tree. A sun
+// that moves is an edit like any other.
 #pragma once
 
 #include <optional>
@@ -19,7 +19,7 @@ class Session;
 struct SunOnSky {
   std::string name;
   std::optional<std::size_t> light;  // of WorldState::lights; else
-  std::optional<std::size_t> key;    // of Environment::keys(), found in a probe; else
+  std::optional<std::size_t> key;    // of Environment::keys(), found in a environment map; else
   ecs::Entity entity;                // with a directional light
   glm::vec3 towards_ws{0.0f, 1.0f, 0.0f};
   glm::mat4 world_from_node{1.0f};  // of the entity

@@ -4,7 +4,7 @@ namespace lambent {
 
 std::string Error::line() const {
   std::string text = subject.empty() ? problem : subject + ": " + problem;
-  if (!mend.empty()) text += "; " + mend;
+  if (!hint.empty()) text += "; " + hint;
   for (char& c : text)
     if (c == '\n' || c == '\r') c = ' ';
   return text;

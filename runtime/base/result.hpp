@@ -1,5 +1,5 @@
 // Errors as values. Bad input (a file, an option, a device) is told apart from a bug: it comes back as an
-// Error that names the thing and the mend, and a program prints it as one line. Broken invariants are
+// Error that names the thing and the hint, and a program prints it as one line. Broken invariants are
 // assertions.
 #pragma once
 
@@ -14,7 +14,7 @@ namespace lambent {
 struct Error {
   std::string subject;  // what it is about: a file, an option, a device
   std::string problem;  // what is wrong with it
-  std::string mend;     // what to do about it; may be empty
+  std::string hint;     // what to do about it; may be empty
 
   // "SUBJECT: PROBLEM; MEND", the line that every program prints after its own name.
   std::string line() const;
@@ -23,8 +23,8 @@ struct Error {
 template <typename T>
 using Result = tl::expected<T, Error>;
 
-inline tl::unexpected<Error> fail(std::string subject, std::string problem, std::string mend = {}) {
-  return tl::unexpected<Error>(Error{std::move(subject), std::move(problem), std::move(mend)});
+inline tl::unexpected<Error> fail(std::string subject, std::string problem, std::string hint = {}) {
+  return tl::unexpected<Error>(Error{std::move(subject), std::move(problem), std::move(hint)});
 }
 
 // Hands an error on under the name of the file that it came up in.

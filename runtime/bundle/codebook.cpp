@@ -16,7 +16,7 @@ namespace lambent::bundle {
 
 namespace {
 
-constexpr const char* kMend = "copy it again or bake it again";
+constexpr const char* kHint = "copy it again or bake it again";
 // First word of a codebook payload.
 constexpr std::uint32_t kPlainForm = 0, kSharedForm = 1;
 // More than any cell needs; keeps a small file from asking for much memory.
@@ -119,7 +119,7 @@ Codebook expand(const SharedCodebook& codebook) {
 Result<Codebook> decodeCodebook(std::span<const std::byte> bytes, const TransferShape& shape,
                                 std::uint32_t clusters, const std::string& subject) {
   const auto damaged = [&](const char* why) {
-    return fail(subject, fmt::format("has a damaged codebook: {}", why), kMend);
+    return fail(subject, fmt::format("has a damaged codebook: {}", why), kHint);
   };
   const std::uint64_t size = shape.size();
   if (clusters == 0 || size == 0) return damaged("it is of nothing");
@@ -185,12 +185,12 @@ Result<std::vector<std::uint32_t>> decodeClusterIds(std::span<const std::byte> b
                                                     std::uint32_t sample_count, const std::string& subject) {
   const bool wide = clusters > 256;
   if (bytes.size() != std::size_t{sample_count} * (wide ? 2 : 1))
-    return fail(subject, "has damaged cluster ids: wrong size", kMend);
+    return fail(subject, "has damaged cluster ids: wrong size", kHint);
   std::vector<std::uint32_t> cluster_of(sample_count);
   for (std::size_t s = 0; s < cluster_of.size(); ++s) {
     cluster_of[s] = wide ? splitWord(bytes, sample_count, s) : std::to_integer<std::uint32_t>(bytes[s]);
     if (cluster_of[s] >= clusters)
-      return fail(subject, "has damaged cluster ids: a cluster that does not exist", kMend);
+      return fail(subject, "has damaged cluster ids: a cluster that does not exist", kHint);
   }
   return cluster_of;
 }
@@ -234,9 +234,9 @@ std::vector<std::byte> encodeWeightPlane(std::span<const std::uint32_t> codes, s
 
 Result<std::vector<std::uint32_t>> decodeWeightPlane(std::span<const std::byte> bytes, std::uint32_t bits,
                                                      std::uint32_t count, const std::string& subject) {
-  if (bits != 8 && bits != 16) return fail(subject, "has a damaged weight plane: not of 8 or 16 bits", kMend);
+  if (bits != 8 && bits != 16) return fail(subject, "has a damaged weight plane: not of 8 or 16 bits", kHint);
   if (bytes.size() != std::size_t{count} * bits / 8)
-    return fail(subject, "has a damaged weight plane: wrong size", kMend);
+    return fail(subject, "has a damaged weight plane: wrong size", kHint);
   std::vector<std::uint32_t> codes(count);
   std::uint32_t code = 0;
   for (std::size_t i = 0; i < codes.size(); ++i) {

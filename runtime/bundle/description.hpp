@@ -67,21 +67,21 @@ struct Image {
 
 // What a payload's bytes mean; see docs/format.md for the byte tables.
 enum class PayloadType : std::uint8_t {
-  VertexRows,    // per vertex: which samples, with what weights
-  Codebook,      // clusters of a cell: means and axes, binary16, and the steps of the weights
-  ClusterIds,    // which cluster each sample belongs to
-  WeightPlane,   // one quantized weight per sample of the clusters that have this axis
-  LightWeights,  // which light samples each sample of a cell is lit from (light_weights.hpp)
-  CaptureProxy,  // a group in a few triangles, as other groups see it (capture_proxy.hpp)
-  BrdfTable,     // b(v) of a family of BRDFs (brdf_table.hpp)
-  Density,       // extinction of a volume at its own resolution (volume_grid.hpp)
-  Voxels,        // which voxels of its transfer grid a volume has samples at (volume_grid.hpp)
+  VertexWeights,  // per vertex: which samples, with what weights
+  Codebook,       // clusters of a cell: means and axes, binary16, and the steps of the weights
+  ClusterIds,     // which cluster each sample belongs to
+  WeightPlane,    // one quantized weight per sample of the clusters that have this axis
+  LightWeights,   // which light probes each sample of a cell is lit from (light_weights.hpp)
+  CaptureProxy,   // a group in a few triangles, as other groups see it (capture_proxy.hpp)
+  BrdfTable,      // b(v) of a family of BRDFs (brdf_table.hpp)
+  Density,        // extinction of a volume at its own resolution (volume_grid.hpp)
+  Voxels,         // which voxels of its transfer grid a volume has samples at (volume_grid.hpp)
 };
 
 enum class PayloadCodec : std::uint8_t { Raw, Zstd };
 
 struct Payload {
-  PayloadType type = PayloadType::VertexRows;
+  PayloadType type = PayloadType::VertexWeights;
   PayloadCodec codec = PayloadCodec::Raw;
   std::uint32_t view = 0;
   std::uint64_t raw_length = 0;  // bytes after decompression
@@ -111,8 +111,8 @@ struct CellTransfer {
   bool fromEnvironment() const { return shape.order > 0; }  // else from the group's own lights
 };
 
-// Light samples that one cell may be lit from.
-inline constexpr std::uint32_t kMaxLightSamples = 64;
+// Light probes that one cell may be lit from.
+inline constexpr std::uint32_t kMaxLightProbes = 64;
 
 // What the samples of a cell are points of.
 enum class CellKind : std::uint8_t {
@@ -129,10 +129,10 @@ struct Cell {
   // light bounces, the bounced light), then light of the group's own lights (order 0, a column for each),
   // each at most once. The same outputs in all.
   std::vector<CellTransfer> transfers;
-  // Which of the group's light samples it is lit from, rising: light weights name them by their place in this
-  // list. At most kMaxLightSamples. With one entry all its samples take that one whole.
-  std::vector<std::uint32_t> light_samples = {0};
-  std::int32_t light_weights = -1;  // payload; -1 where there is one light sample
+  // Which of the group's light probes it is lit from, rising: light weights name them by their place in this
+  // list. At most kMaxLightProbes. With one entry all its samples take that one whole.
+  std::vector<std::uint32_t> light_probes = {0};
+  std::int32_t light_weights = -1;  // payload; -1 where there is one light probe
   CellKind kind = CellKind::Surface;
 
   std::uint32_t outputs() const { return transfers.empty() ? 1 : transfers.front().shape.outputs; }
@@ -189,7 +189,7 @@ struct Group {
   std::vector<GroupLight> lights;  // one per light column, in their order
   // Where the light that comes in from outside is sampled, group frame: at least one point. All cells
   // together use every one.
-  std::vector<glm::vec3> light_samples = {glm::vec3(0.0f)};
+  std::vector<glm::vec3> light_probes = {glm::vec3(0.0f)};
   std::int32_t proxy = -1;           // payload: what other groups see of it; -1: nothing
   std::optional<VolumeGrid> volume;  // a group with a volume is nothing else
   // Of a volume: the group that it never moves against, whose surfaces stand in its transfer; -1: none.
@@ -223,7 +223,7 @@ struct Draw {
 // Description::brdf_tables.
 enum class BrdfFamily : std::uint8_t { Ggx, AnisotropicGgx, Measured };
 
-// Which of them a material that is not matte looks up.
+// Which of them a material that is not diffuse looks up.
 inline BrdfFamily brdfFamilyOf(const gltf::Material& material) {
   if (material.brdf >= 0) return BrdfFamily::Measured;
   return material.anisotropy > 0.0f ? BrdfFamily::AnisotropicGgx : BrdfFamily::Ggx;

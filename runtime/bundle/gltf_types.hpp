@@ -107,7 +107,8 @@ struct Material {
     return ratio * ratio;
   }
   // Nothing but a Lambert surface: no metal, and either no specular strength or roughness 1 all over, which
-  // is how glTF files say "matte". Such a surface is Lambert with albedo = base colour everywhere in Lambent.
+  // is how glTF files say "diffuse". Such a surface is Lambert with albedo = base colour everywhere in
+  // Lambent.
   bool matte() const {
     if (unlit) return true;
     if (brdf >= 0 || metallic > 0.0f) return false;

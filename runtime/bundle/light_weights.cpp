@@ -28,7 +28,7 @@ Result<std::vector<LightWeights>> decodeLightWeights(std::span<const std::byte> 
     for (std::size_t k = 0; k < kLightsPerSample; ++k) {
       sample.light[k] = std::to_integer<std::uint8_t>(bytes[k * sample_count + i]);
       sample.weight[k] = std::to_integer<std::uint8_t>(bytes[(kLightsPerSample + k) * sample_count + i]);
-      if (sample.light[k] >= light_count) return damaged("a light sample that the cell does not have");
+      if (sample.light[k] >= light_count) return damaged("a light probe that the cell does not have");
     }
     if (std::accumulate(sample.weight.begin(), sample.weight.end(), 0u) != 255)
       return damaged("the weights of a sample do not sum to 255");

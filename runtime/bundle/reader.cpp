@@ -101,7 +101,7 @@ Result<MeshData> Reader::readMesh(std::uint32_t mesh, std::uint32_t primitive_in
   return data;
 }
 
-Result<VertexRows> Reader::readRows(std::uint32_t index) const {
+Result<VertexWeights> Reader::readRows(std::uint32_t index) const {
   const Draw& draw = description().draws.at(index);
   const Group& group = description().groups[draw.group];
   const std::string subject = fmt::format("{}: draw {}", path().string(), index);
@@ -165,7 +165,7 @@ Result<std::vector<LightWeights>> Reader::readLightWeights(std::uint32_t group,
   if (cell.light_weights < 0) return std::vector<LightWeights>(cell.sample_count, kOneLight);
   const auto bytes = readPayload(static_cast<std::uint32_t>(cell.light_weights));
   if (!bytes) return failAgain(bytes.error());
-  return decodeLightWeights(*bytes, cell.sample_count, cell.light_samples.size(),
+  return decodeLightWeights(*bytes, cell.sample_count, cell.light_probes.size(),
                             fmt::format("{}: group {} cell {}", path().string(), group, cell_index));
 }
 

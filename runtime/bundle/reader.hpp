@@ -46,13 +46,13 @@ class Reader {
   // Decodes a primitive and compares its digest.
   Result<MeshData> readMesh(std::uint32_t mesh, std::uint32_t primitive) const;
   // Of a draw; its samples are of cells with as many outputs.
-  Result<VertexRows> readRows(std::uint32_t draw) const;
+  Result<VertexWeights> readRows(std::uint32_t draw) const;
   // Of Cell::transfers[transfer]; it agrees with the counts of the planes.
   Result<CellCodebook> readCodebook(std::uint32_t group, std::uint32_t cell, std::uint32_t transfer) const;
   // Codes in the order of positionsOf.
   Result<std::vector<std::uint32_t>> readPlane(std::uint32_t group, std::uint32_t cell,
                                                std::uint32_t transfer, std::uint32_t plane) const;
-  // One per sample of the cell; of a cell with one light sample, that one whole.
+  // One per sample of the cell; of a cell with one light probe, that one whole.
   Result<std::vector<LightWeights>> readLightWeights(std::uint32_t group, std::uint32_t cell) const;
   Result<BrdfTable> readBrdfTable(std::uint32_t index) const;
   // Without a level where the group has none.

@@ -13,7 +13,7 @@ namespace lambent::bundle {
 
 namespace {
 
-constexpr const char* kMend = "copy it again or bake it again";
+constexpr const char* kHint = "copy it again or bake it again";
 // First word of a rows payload. (0 and 1 were those of version 1, with samples as they are.)
 constexpr std::uint32_t kSingleRows = 2, kSparseRows = 3;
 constexpr std::uint32_t kWeightOne = 65535;
@@ -60,7 +60,7 @@ void quantizeRow(std::span<const float> weights, std::vector<std::uint16_t>& out
 
 // --- vertex rows ---
 
-std::vector<std::byte> encodeRows(const VertexRows& rows) {
+std::vector<std::byte> encodeRows(const VertexWeights& rows) {
   const std::size_t vertex_count = rows.offsets.size() - 1;
   const bool single =
       rows.samples.size() == vertex_count &&
@@ -81,10 +81,10 @@ std::vector<std::byte> encodeRows(const VertexRows& rows) {
   return out;
 }
 
-Result<VertexRows> decodeRows(std::span<const std::byte> bytes, std::uint32_t vertex_count,
-                              std::uint32_t sample_count, const std::string& subject) {
+Result<VertexWeights> decodeRows(std::span<const std::byte> bytes, std::uint32_t vertex_count,
+                                 std::uint32_t sample_count, const std::string& subject) {
   const auto damaged = [&](const char* why) {
-    return fail(subject, fmt::format("has damaged vertex rows: {}", why), kMend);
+    return fail(subject, fmt::format("has damaged vertex rows: {}", why), kHint);
   };
   if (bytes.size() < 8) return damaged("too short");
   const auto head = takeFront<std::uint32_t>(bytes, 2);
@@ -95,7 +95,7 @@ Result<VertexRows> decodeRows(std::span<const std::byte> bytes, std::uint32_t ve
   const std::size_t expected = single ? entries * 4 : (vertices + 1) * 4 + entries * 6;
   if (bytes.size() != expected || (single && entries != vertices)) return damaged("sizes do not add up");
 
-  VertexRows rows;
+  VertexWeights rows;
   if (single) {
     rows.offsets.resize(vertices + 1);
     for (std::uint32_t v = 0; v <= vertex_count; ++v) rows.offsets[v] = v;
@@ -132,11 +132,11 @@ Result<std::vector<std::byte>> decompressZstd(std::span<const std::byte> bytes, 
                                               const std::string& subject) {
   // The frame says how much it holds: a false raw_length cannot make us allocate what is not there.
   if (ZSTD_getFrameContentSize(bytes.data(), bytes.size()) != raw_length)
-    return fail(subject, "has a damaged payload: it does not hold as many bytes as it says", kMend);
+    return fail(subject, "has a damaged payload: it does not hold as many bytes as it says", kHint);
   std::vector<std::byte> out(raw_length);
   const std::size_t size = ZSTD_decompress(out.data(), out.size(), bytes.data(), bytes.size());
   if (ZSTD_isError(size) || size != raw_length)
-    return fail(subject, "has a damaged payload: it cannot be decompressed", kMend);
+    return fail(subject, "has a damaged payload: it cannot be decompressed", kHint);
   return out;
 }
 

@@ -141,23 +141,23 @@ CellTransfer readCellTransfer(const Field& field, const Description& d, const Gr
   return transfer;
 }
 
-// Which of the group's light samples a cell takes, and where the weights lie if they are several.
+// Which of the group's light probes a cell takes, and where the weights lie if they are several.
 void readCellLights(const Field& field, const Description& d, const Group& group, Cell& cell) {
   const Field list = field["lightSamples"];
-  cell.light_samples.clear();
+  cell.light_probes.clear();
   for (const Field& entry : list.items()) {
-    const std::uint32_t sample = entry.index(group.light_samples.size());
-    if (!cell.light_samples.empty() && sample <= cell.light_samples.back()) entry.fault("does not rise");
-    cell.light_samples.push_back(sample);
+    const std::uint32_t sample = entry.index(group.light_probes.size());
+    if (!cell.light_probes.empty() && sample <= cell.light_probes.back()) entry.fault("does not rise");
+    cell.light_probes.push_back(sample);
   }
-  if (cell.light_samples.empty() || cell.light_samples.size() > kMaxLightSamples)
-    list.fault(fmt::format("are not 1 to {}", kMaxLightSamples));
-  if (cell.light_samples.size() > 1)
+  if (cell.light_probes.empty() || cell.light_probes.size() > kMaxLightProbes)
+    list.fault(fmt::format("are not 1 to {}", kMaxLightProbes));
+  if (cell.light_probes.size() > 1)
     cell.light_weights =
         static_cast<std::int32_t>(payloadIndex(field["lightWeights"], d, PayloadType::LightWeights,
                                                std::uint64_t{cell.sample_count} * sizeof(LightWeights)));
   else if (field.has("lightWeights"))
-    field["lightWeights"].fault("are there for one light sample");
+    field["lightWeights"].fault("are there for one light probe");
 }
 
 // In this order, each at most once: of the environment (of a glossy cell visibility, then bounced light), of
@@ -221,7 +221,7 @@ Json cellJson(const Cell& cell) {
   Json json = {{"kind", word(cell.kind, kCellKinds)},      {"firstSample", cell.first_sample},
                {"sampleCount", cell.sample_count},         {"boundsMin", vectorJson(cell.bounds_min)},
                {"boundsMax", vectorJson(cell.bounds_max)}, {"transfers", transfers},
-               {"lightSamples", cell.light_samples}};
+               {"lightSamples", cell.light_probes}};
   if (cell.light_weights >= 0) json["lightWeights"] = cell.light_weights;
   return json;
 }
@@ -248,7 +248,7 @@ Json groupJson(const Group& group) {
   if (group.volume) json["volume"] = volumeJson(*group.volume);
   if (group.within >= 0) json["within"] = group.within;
   if (group.neighborhood) json["neighborhood"] = neighborhoodJson(*group.neighborhood);
-  for (const glm::vec3& point : group.light_samples) json["lightSamples"].push_back(vectorJson(point));
+  for (const glm::vec3& point : group.light_probes) json["lightSamples"].push_back(vectorJson(point));
   for (const GroupLight& light : group.lights) json["lights"].push_back(groupLightJson(light));
   for (const Cell& cell : group.cells) json["cells"].push_back(cellJson(cell));
   return json;
@@ -267,10 +267,10 @@ Group readGroup(const Field& field, const Description& d) {
   group.sample_count = static_cast<std::uint32_t>(field["sampleCount"].count(0xfffffffeu));
   for (const Field& entry : field["lights"].items()) group.lights.push_back(readGroupLight(entry, d));
   if (group.lights.size() > kMaxColumns) field["lights"].fault("are too many");
-  group.light_samples.clear();
+  group.light_probes.clear();
   for (const Field& entry : field["lightSamples"].items())
-    group.light_samples.push_back(entry.vector<glm::vec3>());
-  if (group.light_samples.empty()) field["lightSamples"].fault("are none");
+    group.light_probes.push_back(entry.vector<glm::vec3>());
+  if (group.light_probes.empty()) field["lightSamples"].fault("are none");
   if (field.has("proxy"))
     group.proxy =
         static_cast<std::int32_t>(payloadIndex(field["proxy"], d, PayloadType::CaptureProxy, std::nullopt));
@@ -282,9 +282,9 @@ Group readGroup(const Field& field, const Description& d) {
   if (next != group.sample_count) field["cells"].fault("do not hold all samples of the group");
   readGrids(field, d, group);
   // Nothing is captured for nobody. (A group without cells has one all the same.)
-  std::vector<bool> used(group.light_samples.size(), group.cells.empty());
+  std::vector<bool> used(group.light_probes.size(), group.cells.empty());
   for (const Cell& cell : group.cells)
-    for (const std::uint32_t sample : cell.light_samples) used[sample] = true;
+    for (const std::uint32_t sample : cell.light_probes) used[sample] = true;
   if (std::find(used.begin(), used.end(), false) != used.end())
     field["lightSamples"].fault("are not all taken by a cell");
   return group;
@@ -299,7 +299,7 @@ Draw readDraw(const Field& field, const Description& d) {
   draw.primitive = field["primitive"].index(d.meshes[draw.mesh].primitives.size());
   draw.group = field["group"].index(d.groups.size());
   draw.back = readWord<bool>(field["side"], kSides);
-  draw.rows = payloadIndex(field["rows"], d, PayloadType::VertexRows, {});
+  draw.rows = payloadIndex(field["rows"], d, PayloadType::VertexWeights, {});
   draw.outputs = readOutputs(field["outputs"]);
   return draw;
 }

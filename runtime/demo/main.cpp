@@ -19,7 +19,7 @@ int main(int argc, char** argv) {
     if (done) return 0;
     demo::printError(done.error());
   } catch (const std::exception& error) {  // out of memory, mostly
-    demo::printError({.subject = "stopped", .problem = error.what(), .mend = {}});
+    demo::printError({.subject = "stopped", .problem = error.what(), .hint = {}});
   }
   return 1;
 }

@@ -36,7 +36,7 @@ struct Row {
 
 constexpr Row kRows[] = {
     {"--light-layout", &Words::light_layout, "LAYOUT",
-     "Layout of probes whose shape misleads: lat-long, angular-map\nor vertical-cross"},
+     "Layout of environment maps whose shape misleads: lat-long, angular-map\nor vertical-cross"},
     {"--camera", &Words::camera, "CAM",
      "Name or index of a camera in the file, or orbit:AZ,EL,DIST,FOV\n(default: the file's first, else an "
      "orbit)"},
@@ -79,11 +79,11 @@ void declare(CLI::App& app, Words& words) {
   app.add_option("BUNDLE", words.bundles, "Baked scenes to show (.lmb.glb), or folders of them")
       ->required()
       ->type_name("");
-  app.add_option(
-         "--light", words.lights,
-         "Several add up: a probe file (.hdr, .exr), constant:R,G,B or\nsun:AZ,EL,ANGLE,R[,G,B] (degrees, "
-         "angular radius, radiance);\nin the scene: sphere:X,Y,Z,RADIUS,R[,G,B] or "
-         "disc:X,Y,Z,NX,NY,NZ,RADIUS,R[,G,B]")
+  app.add_option("--light", words.lights,
+                 "Several add up: a environment map file (.hdr, .exr), constant:R,G,B "
+                 "or\nsun:AZ,EL,ANGLE,R[,G,B] (degrees, "
+                 "angular radius, radiance);\nin the scene: sphere:X,Y,Z,RADIUS,R[,G,B] or "
+                 "disc:X,Y,Z,NX,NY,NZ,RADIUS,R[,G,B]")
       ->type_name("LIGHT")
       ->take_all()
       ->expected(1);
@@ -144,7 +144,8 @@ Result<void> understandLights(const Words& words, Options& options) {
     for (const std::string& word : list) {
       Result<spec::Light> light = spec::parseLight(word);
       if (!light) return failAgain(light.error());
-      if (auto* probe = std::get_if<spec::ProbeLight>(&*light)) probe->layout = layout;
+      if (auto* environment_map = std::get_if<spec::EnvironmentMapLight>(&*light))
+        environment_map->layout = layout;
       lights.push_back(std::move(*light));
     }
     return {};
@@ -235,10 +236,10 @@ Result<Options> understand(const Words& words) {
       return failAgain(done.error());
   }
   const Result<frame::ViewChoice> view = frame::parseView(words.view);
-  if (!view) return fail("--view", view.error().problem, view.error().mend);
+  if (!view) return fail("--view", view.error().problem, view.error().hint);
   options.view = *view;
   Result<frame::OverlayOptions> overlays = frame::parseOverlays(words.overlay);
-  if (!overlays) return fail("--overlay", overlays.error().problem, overlays.error().mend);
+  if (!overlays) return fail("--overlay", overlays.error().problem, overlays.error().hint);
   options.overlays = std::move(*overlays);
   const Result<float> turn = spec::parseDegrees(words.rotate_light);
   if (!turn) return failAgain(turn.error());
@@ -281,7 +282,7 @@ std::variant<Options, int> parseOptions(int argc, const char* const* argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
-    printError({.subject = "usage", .problem = error.what(), .mend = "see lambent-demo --help"});
+    printError({.subject = "usage", .problem = error.what(), .hint = "see lambent-demo --help"});
     return 2;
   }
   Result<Options> options = understand(words);

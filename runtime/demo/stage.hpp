@@ -1,5 +1,5 @@
 // What both ways of running show: the bundles as a world, the lights of the command line as entities in it,
-// and the environment that follows its entity. Errors: those of opening probes and bundles.
+// and the environment that follows its entity. Errors: those of opening environment maps and bundles.
 #pragma once
 
 #include "runtime/base/result.hpp"

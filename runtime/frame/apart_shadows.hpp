@@ -1,6 +1,6 @@
 // What bodies hide of lamps that shine per pixel, where these bodies reach a group by their grids and are
 // left out of its captures: shadow cubes know it of straight light, and by this its bounced light does. Rays
-// from the light samples to the lamps, among the bodies' proxies. No GL.
+// from the light probes to the lamps, among the bodies' proxies. No GL.
 #pragma once
 
 #include <span>

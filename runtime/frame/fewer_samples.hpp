@@ -1,4 +1,4 @@
-// A group's light at fewer places than it was baked for: which of its light samples are kept, and for each
+// A group's light at fewer places than it was baked for: which of its light probes are kept, and for each
 // sample the kept one that it takes its light from. Kept are, one after the other, those farthest from all
 // that are kept already, so that few of them stand all over the group; each sample takes the nearest. Pure.
 #pragma once

@@ -67,8 +67,8 @@ Result<void> Frame::setSettings(const FrameSettings& settings) {
   // What other ways of the light leave in the captures by small steps must not depend on which way was on.
   if (incident_ &&
       (settings.captures != before.captures || settings.neighborhoods != before.neighborhoods ||
-       settings.near_shadows != before.near_shadows || settings.near_radii != before.near_radii ||
-       settings.light_samples != before.light_samples))
+       settings.local_shadows != before.local_shadows || settings.local_radii != before.local_radii ||
+       settings.light_probes != before.light_probes))
     incident_->forget();
   settled_ = false;
   return {};
@@ -76,7 +76,7 @@ Result<void> Frame::setSettings(const FrameSettings& settings) {
 
 void Frame::forget() {
   group_lights_.forget();
-  near_lights_.forget();
+  local_shadows_.forget();
   key_shadows_.forget();
   if (incident_) incident_->forget();
   settled_ = false;
@@ -122,7 +122,7 @@ Result<void> Frame::render(World& world, const lighting::Environment& environmen
   world.look(view);
   timers_.beginFrame();
   if (Result<void> done = step(world, environment, options_.settings.captures_per_step); !done) return done;
-  reasons_.noticeView(view, options_.size);
+  invalidation_log_.noticeView(view, options_.size);
   // what is seen where nothing stands, if other lights were loaded
   updateSky(environment);
   // cubes of the lights that stand among surfaces
@@ -158,17 +158,17 @@ bool Frame::atRest(const World& world, const lighting::Environment& environment)
 
 Result<void> Frame::step(World& world, const lighting::Environment& environment, std::size_t max_captures) {
   counts_ = {};
-  reasons_.begin();
-  reasons_.noticeSettings(options_.settings);
-  reasons_.noticeEnvironment(environment);
-  if (std::exchange(forgotten_, false)) reasons_.note(Cause::Asked, "asked for");
+  invalidation_log_.begin();
+  invalidation_log_.noticeSettings(options_.settings);
+  invalidation_log_.noticeEnvironment(environment);
+  if (std::exchange(forgotten_, false)) invalidation_log_.note(Cause::Asked, "asked for");
   settled_ = true;
   environment_seen_ = environment.version();
   // what has arrived goes to the GPU, within the budget
   if (Result<void> done = upload(world); !done) return done;
   // where nodes and rigid groups stand
   transforms(world);
-  // what arrives at each light sample, windowed and turned into its group's frame
+  // what arrives at each light probe, windowed and turned into its group's frame
   if (Result<void> done = light(world, environment); !done) return done;
   // what surfaces send on of the lights that stand among them, and of key lights
   if (Result<void> done = bounce(world, environment); !done) return done;
@@ -189,8 +189,8 @@ Result<void> Frame::upload(World& world) {
   const std::uint64_t most = options_.upload_budget_bytes;
   Result<void> done = world.upload(options_.pace_uploads ? pacer_.budget(most) : most, pass.counters());
   uploaded_bytes_ += pass.counters().uploaded_bytes;
-  reasons_.noticeArrivals(world, pass.counters().uploaded_bytes);
-  pass.because(reasons_.of(static_cast<std::uint32_t>(Cause::Arrived)));
+  invalidation_log_.noticeArrivals(world, pass.counters().uploaded_bytes);
+  pass.because(invalidation_log_.of(static_cast<std::uint32_t>(Cause::Arrived)));
   return done;
 }
 
@@ -198,8 +198,8 @@ void Frame::transforms(World& world) {
   gpu::PassTimers::Scope pass(timers_, "transforms");
   world.updateTransforms();
   world.updateMaterials();
-  reasons_.noticeWorld(world);
-  pass.because(reasons_.of(Cause::Moved | Cause::Materials));
+  invalidation_log_.noticeWorld(world);
+  pass.because(invalidation_log_.of(Cause::Moved | Cause::Materials));
 }
 
 Result<void> Frame::shade(World& world) {
@@ -207,7 +207,7 @@ Result<void> Frame::shade(World& world) {
   const FrameSettings& settings = options_.settings;
   Result<void> done = diffuse_.shade(world.residency(), group_lights_, settings.transfer, pass.counters(),
                                      {.surfaces = settings.diffuse, .volumes = settings.volumes});
-  if (pass.counters().dispatches > 0) pass.because(reasons_.of(kLightCauses, "light"));
+  if (pass.counters().dispatches > 0) pass.because(invalidation_log_.of(kLightCauses, "light"));
   counts_.cells_shaded = diffuse_.shadedLast().cells;
   counts_.draws_shaded = diffuse_.shadedLast().draws;
   return done;
@@ -221,7 +221,7 @@ Result<void> Frame::shadeGlossy(World& world) {
   Result<void> done = glossy_.shade(
       world.residency(), group_lights_, settings.transfer, pass.counters(),
       {.surfaces = settings.glossy, .volumes = settings.volumes, .neighborhoods = settings.neighborhoods});
-  if (pass.counters().dispatches > 0) pass.because(reasons_.of(kLightCauses, "light"));
+  if (pass.counters().dispatches > 0) pass.because(invalidation_log_.of(kLightCauses, "light"));
   counts_.cells_shaded += glossy_.cellsShadedLast();
   return done;
 }
@@ -232,7 +232,7 @@ Result<void> Frame::shadeVolumes(World& world) {
   gpu::PassTimers::Scope pass(timers_, "volume");
   Result<void> done = volume_.shade(world.residency(), group_lights_, diffuse_, glossy_,
                                     options_.settings.transfer, pass.counters());
-  if (pass.counters().dispatches > 0) pass.because(reasons_.of(kLightCauses, "light"));
+  if (pass.counters().dispatches > 0) pass.because(invalidation_log_.of(kLightCauses, "light"));
   counts_.volumes_shaded = volume_.shadedLast().volumes;
   counts_.volume_slabs_written = volume_.shadedLast().slabs;
   return done;
@@ -245,7 +245,7 @@ Result<void> Frame::marchVolumes(World& world, const spec::View& view) {
       (shown != SurfaceView::Final && shown != SurfaceView::Wireframe))
     return {};
   gpu::PassTimers::Scope pass(timers_, "march");
-  pass.because(reasons_.of(kPictureCauses));
+  pass.because(invalidation_log_.of(kPictureCauses));
   // Pictures that are compared take half the steps, all at their places.
   const bool linear = options_.output == Output::Linear;
   if (!march_) march_.emplace(effects::volume::MarchOptions{.jitter = !linear});
@@ -267,18 +267,18 @@ Result<void> Frame::shadeNeighborhoods(World& world) {
   Result<void> done =
       neighborhoods_.update(world, group_lights_, glossy_, options_.settings.transfer, pass.counters());
   if (pass.counters().dispatches > 0 || pass.counters().uploaded_bytes > 0)
-    pass.because(reasons_.of(kLightCauses, "light"));
+    pass.because(invalidation_log_.of(kLightCauses, "light"));
   counts_.neighborhoods = neighborhoods_.counts();
   return done;
 }
 
 Result<void> Frame::castShadows(World& world) {
   gpu::PassTimers::Scope pass(timers_, "shadows");
-  Result<void> done = near_lights_.update(world, lit_scene_.near_lights, lit_scene_.pixel_masks,
-                                          pass.counters());
-  counts_.shadow_cubes_drawn = near_lights_.cubesDrawn();
+  Result<void> done =
+      local_shadows_.update(world, lit_scene_.shadowed_lights, lit_scene_.pixel_masks, pass.counters());
+  counts_.shadow_cubes_drawn = local_shadows_.cubesDrawn();
   if (counts_.shadow_cubes_drawn > 0)
-    pass.because(reasons_.of(kLightCauses | Cause::Materials, "lights among surfaces"));
+    pass.because(invalidation_log_.of(kLightCauses | Cause::Materials, "lights among surfaces"));
   return done;
 }
 
@@ -292,23 +292,24 @@ Result<void> Frame::castKeyShadows(World& world, const lighting::Environment& en
       world, keys, view, {.finest = options_.settings.key_size, .samples = options_.settings.key_samples},
       pass.counters());
   counts_.key_maps_drawn = key_shadows_.mapsDrawn();
-  if (key_shadows_.mapsDrawn() > 0) pass.because(reasons_.of(kPictureCauses));
+  if (key_shadows_.mapsDrawn() > 0) pass.because(invalidation_log_.of(kPictureCauses));
   return done;
 }
 
 Result<void> Frame::reflectSky(const World& world, const lighting::Environment& environment) {
   if (!options_.settings.residual || !options_.settings.glossy || !glossy_.any()) return {};
-  const std::uint64_t source = lighting::ReflectedSky::sourceVersion(environment);
-  if (reflected_sky_ && reflected_lights_ == source) return {};
+  const std::uint64_t source = lighting::PrefilteredEnvironment::sourceVersion(environment);
+  if (prefiltered_environment_ && reflected_lights_ == source) return {};
   if (std::ranges::none_of(world.residency().groups(),
                            [](const streaming::ResidentGroup& group) { return group.glossy_outputs > 0; }))
     return {};  // matrices of neighborhoods or volumes alone
   gpu::PassTimers::Scope pass(timers_, "residual");
-  Result<lighting::ReflectedSky> made = lighting::ReflectedSky::make(environment, sky_, pass.counters());
+  Result<lighting::PrefilteredEnvironment> made =
+      lighting::PrefilteredEnvironment::make(environment, sky_, pass.counters());
   if (!made) return failAgain(made.error());
-  reflected_sky_ = std::move(*made);
+  prefiltered_environment_ = std::move(*made);
   reflected_lights_ = source;
-  pass.because(reasons_.of(static_cast<std::uint32_t>(Cause::Environment), "first needed"));
+  pass.because(invalidation_log_.of(static_cast<std::uint32_t>(Cause::Environment), "first needed"));
   return {};
 }
 
@@ -316,7 +317,7 @@ void Frame::updateSky(const lighting::Environment& environment) {
   if (sky_.upToDate(environment)) return;
   gpu::PassTimers::Scope pass(timers_, "sky");
   sky_.update(environment);
-  pass.because(reasons_.of(static_cast<std::uint32_t>(Cause::Environment)));
+  pass.because(invalidation_log_.of(static_cast<std::uint32_t>(Cause::Environment)));
 }
 
 // Also where numbers are drawn in place of light: what is picked is found among these.
@@ -324,16 +325,16 @@ Result<void> Frame::prepareSurfaces(World& world, const lighting::Environment& e
                                     const spec::View& view, gpu::Counters& counters) {
   surfaces_.setView(options_.view.view);
   const FrameSettings& settings = options_.settings;
-  const bool residual = reflected_sky_ && settings.residual;
+  const bool residual = prefiltered_environment_ && settings.residual;
   if (residual) {
     std::uint32_t order = 1;
     for (const streaming::ResidentGroup& group : world.residency().groups())
       order = std::max(order, group.order);
     order = std::min(order, settings.order);
-    reflected_sky_->update(environment, static_cast<int>(order), settings.window, counters);
+    prefiltered_environment_->update(environment, static_cast<int>(order), settings.window, counters);
   }
-  return surfaces_.prepare(world, diffuse_, view, counters, &near_lights_,
-                           residual ? &*reflected_sky_ : nullptr,
+  return surfaces_.prepare(world, diffuse_, view, counters, &local_shadows_,
+                           residual ? &*prefiltered_environment_ : nullptr,
                            settings.neighborhoods && neighborhoods_.any() ? &neighborhoods_ : nullptr,
                            patch_bounces_.any() ? &patch_bounces_ : nullptr,
                            {.diffuse = settings.diffuse,
@@ -344,20 +345,20 @@ Result<void> Frame::prepareSurfaces(World& world, const lighting::Environment& e
 
 Result<void> Frame::raster(World& world, const lighting::Environment& environment, const spec::View& view) {
   gpu::PassTimers::Scope pass(timers_, "raster");
-  pass.because(reasons_.of(kPictureCauses));
+  pass.because(invalidation_log_.of(kPictureCauses));
   if (Result<void> done = prepareSurfaces(world, environment, view, pass.counters()); !done) return done;
   if (showsTransfer(options_.view.view)) return drawNumbers(world, view, pass.counters());
   data_view_.reset();
-  near_lights_.bind(view, options_.size);
+  local_shadows_.bind(view, options_.size);
   key_shadows_.bind(view, options_.size);
   clearPicture();
   surfaces_.drawOpaque(world, pass.counters());
   if (options_.view.view == SurfaceView::Final || options_.view.view == SurfaceView::Wireframe) {
     if (Result<void> done =
-            stand_ins_.prepare(world, environment, lit_scene_.lights, options_.settings, pass.counters());
+            proxy_lods_.prepare(world, environment, lit_scene_.lights, options_.settings, pass.counters());
         !done)
       return done;
-    stand_ins_.draw(view, pass.counters());
+    proxy_lods_.draw(view, pass.counters());
   }
   if (showsLight(options_.view.view)) {
     sky_.draw(environment, view.view_from_world, view.clip_from_view, options_.size.height, pass.counters());
@@ -370,7 +371,7 @@ Result<void> Frame::raster(World& world, const lighting::Environment& environmen
 void Frame::toneMap() {
   gpu::PassTimers::Scope pass(timers_, "tone map");
   glBindFramebuffer(GL_FRAMEBUFFER, options_.to_window ? 0 : picture_target_.id());
-  pass.because(reasons_.of(kPictureCauses | Cause::Exposure));
+  pass.because(invalidation_log_.of(kPictureCauses | Cause::Exposure));
   tone_mapper_.run(hdr_, options_.settings.exposure_ev, pass.counters(), !showsLight(options_.view.view));
 }
 

@@ -11,7 +11,7 @@
 #include <optional>
 #include <vector>
 
-#include "runtime/base/by_key.hpp"
+#include "runtime/base/keyed_state.hpp"
 #include "runtime/base/result.hpp"
 #include "runtime/effects/diffuse/diffuse.hpp"
 #include "runtime/effects/diffuse/proxies.hpp"
@@ -22,15 +22,15 @@
 #include "runtime/frame/fewer_samples.hpp"
 #include "runtime/frame/frame_settings.hpp"
 #include "runtime/frame/frame_times.hpp"
+#include "runtime/frame/invalidation_log.hpp"
 #include "runtime/frame/key_shadows.hpp"
-#include "runtime/frame/patch_bounces.hpp"
 #include "runtime/frame/lit_scene.hpp"
-#include "runtime/frame/near_lights.hpp"
+#include "runtime/frame/local_shadows.hpp"
 #include "runtime/frame/neighborhoods.hpp"
 #include "runtime/frame/overlays.hpp"
+#include "runtime/frame/patch_bounces.hpp"
 #include "runtime/frame/picker.hpp"
-#include "runtime/frame/reasons.hpp"
-#include "runtime/frame/stand_ins.hpp"
+#include "runtime/frame/proxy_lods.hpp"
 #include "runtime/frame/surfaces.hpp"
 #include "runtime/frame/tone_mapper.hpp"
 #include "runtime/frame/views.hpp"
@@ -39,7 +39,7 @@
 #include "runtime/lighting/environment.hpp"
 #include "runtime/lighting/group_lights.hpp"
 #include "runtime/lighting/incident_light.hpp"
-#include "runtime/lighting/reflected_sky.hpp"
+#include "runtime/lighting/prefiltered_environment.hpp"
 #include "runtime/lighting/sky.hpp"
 #include "runtime/spec/camera.hpp"
 #include "runtime/spec/image.hpp"
@@ -68,11 +68,11 @@ struct FrameOptions {
 
 // What one step did; a still scene does nothing.
 struct StepCounts {
-  std::uint32_t groups = 0, bodies = 0, local_lights = 0, near_lights = 0;
-  std::uint32_t near_lights_left_out = 0;  // by harmonics instead, once for each group
+  std::uint32_t groups = 0, bodies = 0, local_lights = 0, shadowed_lights = 0;
+  std::uint32_t shadowed_lights_left_out = 0;  // by harmonics instead, once for each group
   lighting::IncidentCounts incident;
-  lighting::Capture::Load captured;         // what the captures of this step took
-  std::uint32_t light_samples_written = 0;  // coefficients computed for the shaders
+  lighting::Capture::Load captured;        // what the captures of this step took
+  std::uint32_t light_probes_written = 0;  // coefficients computed for the shaders
   std::uint32_t cells_shaded = 0, draws_shaded = 0;
   std::uint32_t shadow_cubes_drawn = 0;
   PatchBounceCounts patch_bounces;
@@ -117,7 +117,7 @@ class Frame {
   }
 
   // Waits for the GPU. Row 0 is the top. Linear pictures have depths, of what wrote to the depth buffer: in
-  // views of transfer blended surfaces too, with overlays the signs of light samples.
+  // views of transfer blended surfaces too, with overlays the signs of light probes.
   spec::RgbaImage readLinear() const;
   spec::Rgba8Image readDisplay() const;
 
@@ -146,9 +146,10 @@ class Frame {
   void keepFewerSamples(const World& world);
   std::vector<lighting::Incident> incidentOf(const World& world, std::size_t group) const;
   Result<void> shade(World& world);
-  Result<void> bounce(World& world, const lighting::Environment& environment);   // no pass without near lights
-  Result<void> shadeGlossy(World& world);   // no pass where nothing is glossy
-  Result<void> shadeVolumes(World& world);  // these two: no pass without volumes
+  Result<void> bounce(World& world,
+                      const lighting::Environment& environment);  // no pass without local lights
+  Result<void> shadeGlossy(World& world);                         // no pass where nothing is glossy
+  Result<void> shadeVolumes(World& world);                        // these two: no pass without volumes
   Result<void> marchVolumes(World& world, const spec::View& view);
   Result<void> shadeNeighborhoods(World& world);  // no pass without grids
   Result<void> prepareSampling(World& world, const lighting::Environment& environment,
@@ -181,19 +182,20 @@ class Frame {
   std::optional<effects::volume::March> march_;  // once there is a volume
   effects::diffuse::Proxies proxies_;
   LitScene lit_scene_;
-  NearLights near_lights_;
+  LocalShadows local_shadows_;
   PatchBounces patch_bounces_;
   KeyShadows key_shadows_;
-  StandIns stand_ins_;
+  ProxyLods proxy_lods_;
   Neighborhoods neighborhoods_;
-  std::optional<lighting::ReflectedSky> reflected_sky_;  // once a glossy surface asks for it
-  std::optional<lighting::IncidentLight> incident_;      // once there is something to sample
+  std::optional<lighting::PrefilteredEnvironment>
+      prefiltered_environment_;                      // once a glossy surface asks for it
+  std::optional<lighting::IncidentLight> incident_;  // once there is something to sample
   // How the light that groups send out has changed, summed up.
   struct ProxyRadiance {
     std::uint64_t version = 0, light = 0;
     double lamps = 0.0, drift = 0.0;
   };
-  ByKey<ProxyRadiance> proxy_radiance_;
+  KeyedState<ProxyRadiance> proxy_radiance_;
   std::uint64_t proxies_seen_ = 0;
   int capture_order_ = 0;
   static constexpr std::size_t kAllCaptures = ~std::size_t{0};
@@ -203,7 +205,7 @@ class Frame {
   std::uint64_t environment_seen_ = 0, reflected_lights_ = 0;
   bool forgotten_ = false;
   bool settled_ = false;  // whether a step has run since the settings changed
-  Reasons reasons_;
+  InvalidationLog invalidation_log_;
   Picker picker_;
   lighting::GroupLights group_lights_;
   StepCounts counts_;

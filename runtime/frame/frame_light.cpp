@@ -1,4 +1,4 @@
-// What arrives at the groups' light samples in Frame's steps, and what bodies send to each other.
+// What arrives at the groups' light probes in Frame's steps, and what bodies send to each other.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -49,8 +49,8 @@ Result<void> Frame::light(World& world, const lighting::Environment& environment
   gpu::PassTimers::Scope pass(timers_, "light");
   const FrameSettings& settings = options_.settings;
   lit_scene_ = gatherLitScene(world, meanRadiance(environment),
-                              {.near_lights = settings.near_shadows,
-                               .near_radii = keysApart() ? settings.near_radii : 0.0f,
+                              {.shadowed_lights = settings.local_shadows,
+                               .local_radii = keysApart() ? settings.local_radii : 0.0f,
                                .bodies = settings.captures});
   if (settings.neighborhoods || neighborhoods_.any())
     neighborhoods_.chooseCarriers(world, lit_scene_, settings.neighborhoods);
@@ -60,8 +60,9 @@ Result<void> Frame::light(World& world, const lighting::Environment& environment
   if (incident_) {
     incident_->update(environment, lit_scene_.groups, lit_scene_.lights, options_.wait_for_captures);
     counts_.incident = incident_->counts();
-    if (counts_.incident.arrived > 0) reasons_.note(Cause::Captured, "captures arrived");
-    if (counts_.incident.fading > 0) reasons_.note(Cause::Captured, "light fades from carrier to carrier");
+    if (counts_.incident.arrived > 0) invalidation_log_.note(Cause::Captured, "captures arrived");
+    if (counts_.incident.fading > 0)
+      invalidation_log_.note(Cause::Captured, "light fades from carrier to carrier");
   }
   std::vector<lighting::GroupPlace> places;
   for (std::size_t g = 0; g < world.residency().groups().size(); ++g) {
@@ -75,19 +76,19 @@ Result<void> Frame::light(World& world, const lighting::Environment& environment
   }
   group_lights_.update(environment, settings.window, places, pass.counters(),
                        static_cast<int>(settings.order));
-  if (pass.counters().uploaded_bytes > 0) pass.because(reasons_.of(kLightCauses, "light"));
+  if (pass.counters().uploaded_bytes > 0) pass.because(invalidation_log_.of(kLightCauses, "light"));
   counts_.groups = static_cast<std::uint32_t>(places.size());
   counts_.bodies = static_cast<std::uint32_t>(lit_scene_.bodies.size());
   counts_.local_lights = static_cast<std::uint32_t>(lit_scene_.lights.size());
-  counts_.near_lights = static_cast<std::uint32_t>(lit_scene_.near_lights.size());
-  counts_.near_lights_left_out = lit_scene_.near_left_out;
-  counts_.light_samples_written = group_lights_.renewedSamples();
+  counts_.shadowed_lights = static_cast<std::uint32_t>(lit_scene_.shadowed_lights.size());
+  counts_.shadowed_lights_left_out = lit_scene_.local_left_out;
+  counts_.light_probes_written = group_lights_.renewedSamples();
   return {};
 }
 
 Result<void> Frame::bounce(World& world, const lighting::Environment& environment) {
   const std::span<const spec::Disc> keys = keysApart() ? environment.keys() : std::span<const spec::Disc>();
-  if (lit_scene_.near_lights.empty() && keys.empty() && !patch_bounces_.any()) return {};
+  if (lit_scene_.shadowed_lights.empty() && keys.empty() && !patch_bounces_.any()) return {};
   gpu::PassTimers::Scope pass(timers_, "patch bounces");
   const FrameSettings& settings = options_.settings;
   const bool on = settings.patch_bounces && settings.transfer == effects::diffuse::TransferMode::Full;
@@ -95,7 +96,7 @@ Result<void> Frame::bounce(World& world, const lighting::Environment& environmen
                                             options_.wait_for_captures, pass.counters());
   counts_.patch_bounces = patch_bounces_.counts();
   if (pass.counters().uploaded_bytes > 0)
-    pass.because(reasons_.of(kLightCauses, "lights that patches send on"));
+    pass.because(invalidation_log_.of(kLightCauses, "lights that patches send on"));
   return done;
 }
 
@@ -104,8 +105,8 @@ void Frame::keepFewerSamples(const World& world) {
   const auto& groups = world.residency().groups();
   fewer_samples_.assign(groups.size(), {});
   for (std::size_t g = 0; g < groups.size(); ++g) {
-    if (groups[g].light_samples.size() <= options_.settings.light_samples) continue;
-    fewer_samples_[g] = fewerSamples(groups[g].light_samples, options_.settings.light_samples);
+    if (groups[g].light_probes.size() <= options_.settings.light_probes) continue;
+    fewer_samples_[g] = fewerSamples(groups[g].light_probes, options_.settings.light_probes);
     std::vector<glm::vec3> kept;
     for (const std::uint32_t sample : fewer_samples_[g].kept)
       kept.push_back(lit_scene_.groups[g].samples_ws[sample]);
@@ -114,7 +115,7 @@ void Frame::keepFewerSamples(const World& world) {
 }
 
 std::vector<lighting::Incident> Frame::incidentOf(const World& world, std::size_t group) const {
-  const std::size_t count = world.residency().groups()[group].light_samples.size();
+  const std::size_t count = world.residency().groups()[group].light_probes.size();
   if (!incident_) return std::vector<lighting::Incident>(count);
   std::vector<lighting::Incident> kept = incident_->incidentOf(group);
   if (fewer_samples_[group].place.empty()) return kept;
@@ -165,7 +166,8 @@ Result<void> Frame::capture(World& world, const lighting::Environment& environme
   counts_.incident.captured = incident_->counts().captured;
   counts_.incident.waiting = incident_->counts().waiting;
   if (counts_.incident.captured > 0) counts_.captured = incident_->captures().load();
-  if (pass.counters().dispatches > 0) pass.because(reasons_.of(kLightCauses, "light between bodies"));
+  if (pass.counters().dispatches > 0)
+    pass.because(invalidation_log_.of(kLightCauses, "light between bodies"));
   return done;
 }
 

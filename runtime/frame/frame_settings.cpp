@@ -135,23 +135,24 @@ const std::array kRows = {
                             "Glossy surfaces reflect what the bands of their light leave out\nof the sky"),
     switchRow<&S::neighborhoods>("neighborhoods", "neighborhoods", 1.0,
                                  "Bodies with grids around them shade others by these, off: by\ncaptures"),
-    switchRow<&S::near_shadows>("near-shadows", "near lights", 1.0,
-                                "Lights among the surfaces shine per pixel with shadow cubes, off:\nby "
-                                "harmonics"),
+    switchRow<&S::local_shadows>("near-shadows", "local lights", 1.0,
+                                 "Lights among the surfaces shine per pixel with shadow cubes, off:\nby "
+                                 "harmonics"),
     SettingRow{
         .name = "near-radii",
-        .label = "radii of near lights",
+        .label = "radii of local lights",
         .kind = Kind::Real,
         .greatest = 1000.0,
         .finest = 1000.0,
         .help =
             "Lights beside a body shine per pixel, too, nearer to its middle\nthan so many of its radii; 0: "
             "only lights within its bounds",
-        .get = getNumber<&S::near_radii>,
-        .put = putNumber<&S::near_radii>},
-    switchRow<&S::patch_bounces>("patch-bounces", "bounces by patches", 1.0,
-                                "Surfaces send on the light of lights among them, and of key\nlights what their "
-                                "bands get wrong"),
+        .get = getNumber<&S::local_radii>,
+        .put = putNumber<&S::local_radii>},
+    switchRow<&S::patch_bounces>(
+        "patch-bounces", "bounces by patches", 1.0,
+        "Surfaces send on the light of lights among them, and of key\nlights what their "
+        "bands get wrong"),
     switchRow<&S::captures>("captures", "light between bodies", 1.0,
                             "Bodies light and shadow each other as they stand now"),
     SettingRow{.name = "capture-size",
@@ -187,19 +188,19 @@ const std::array kRows = {
                .least = 1.0,
                .greatest = 1e6,
                .help =
-                   "Light samples that are drawn anew in a frame at most; a picture\nwithout a window is of "
+                   "Light probes that are drawn anew in a frame at most; a picture\nwithout a window is of "
                    "all of them",
                .get = getNumber<&S::captures_per_step>,
                .put = putNumber<&S::captures_per_step>},
     SettingRow{.name = "light-samples",
-               .label = "light samples of a group",
+               .label = "light probes of a group",
                .kind = Kind::Whole,
                .least = 1.0,
-               .greatest = S::kAllLightSamples,
-               .finest = S::kAllLightSamples,
+               .greatest = S::kAllLightProbes,
+               .finest = S::kAllLightProbes,
                .help = "Places at which the light of a group is sampled, at most",
-               .get = getNumber<&S::light_samples>,
-               .put = putNumber<&S::light_samples>},
+               .get = getNumber<&S::light_probes>,
+               .put = putNumber<&S::light_probes>},
     SettingRow{.name = "march-step",
                .label = "steps through volumes",
                .kind = Kind::Real,

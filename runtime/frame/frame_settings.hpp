@@ -1,4 +1,4 @@
-// What may change between the frames of one Frame: modes, switches of effects, and the knobs that trade
+// What may change between the frames of one Frame: modes, switches of effects, and the settings that trade
 // accuracy for time. One table has a row for each (name, kind, range, finest value, help): command lines,
 // panels and scripts go by it. Values go in and out of a row as numbers (switches 0 and 1, choices by their
 // place) or as words. Setting nothing but a row's value runs nothing: Frame::setSettings does. Errors:
@@ -34,7 +34,7 @@ struct FrameSettings {
   // Of the light that glossy surfaces weigh by their BRDF; what is left out of the sky is the residual's.
   std::uint32_t glossy_order = sh::kMaxOrder;
 
-  // Effects. What is off is not computed, and shows nothing of its own: matte or glossy surfaces are black
+  // Effects. What is off is not computed, and shows nothing of its own: diffuse or glossy surfaces are black
   // but for what they give off, volumes are not there.
   bool diffuse = true, glossy = true, volumes = true;
   // Glossy surfaces reflect what the bands of their light leave out of the sky, too.
@@ -42,23 +42,23 @@ struct FrameSettings {
   // Bodies with grids around them change the light of others by these; else by captures.
   bool neighborhoods = true;
   // Lights among the surfaces shine per pixel, with shadow cubes; else by harmonics.
-  bool near_shadows = true;
+  bool local_shadows = true;
   // So do those that stand beside a group: nearer to its middle than so many of its radii. 0: none.
-  float near_radii = 6.0f;
+  float local_radii = 6.0f;
   // And what the surfaces around them send on of their light arrives too.
   bool patch_bounces = true;
   // Bodies light and shadow each other as they stand now; else only as they were baked.
   bool captures = true;
 
   lighting::CaptureOptions capture{.order = 0};  // order 0: that of the groups' transfer
-  std::uint32_t captures_per_step = 16;          // light samples that are drawn anew in a frame, at most
+  std::uint32_t captures_per_step = 16;          // light probes that are drawn anew in a frame, at most
   // Of a group, at most: the others take the light of the nearest of these.
-  std::uint32_t light_samples = kAllLightSamples;
+  std::uint32_t light_probes = kAllLightProbes;
   // Of rays through volumes, in voxels; linear pictures take half of it.
   float march_step_voxels = 1.0f;
   std::optional<float> exposure_ev;  // none: automatic
 
-  static constexpr std::uint32_t kAllLightSamples = 4096;
+  static constexpr std::uint32_t kAllLightProbes = 4096;
   static constexpr std::uint32_t kAutoKeys = 16;
   bool operator==(const FrameSettings&) const = default;
 };
@@ -72,7 +72,7 @@ struct SettingRow {
   double least = 0.0, greatest = 1.0;         // both included; of a Choice the places of its words
   std::span<const std::string_view> words{};  // of a Choice, by place
   std::string_view zero{}, not_a_number{};    // words for 0 and NaN, where these mean something else
-  std::optional<double> finest{};             // most accurate; none: no knob of accuracy
+  std::optional<double> finest{};             // most accurate; none: no setting of accuracy
   std::string_view help{};
   double (*get)(const FrameSettings&) = nullptr;
   void (*put)(FrameSettings&, double) = nullptr;  // of a value in range

@@ -36,7 +36,7 @@ Result<void> Frame::drawOverlays(World& world, const lighting::Environment& envi
     return {};
   }
   gpu::PassTimers::Scope pass(timers_, "overlays");
-  pass.because(reasons_.of(kPictureCauses));
+  pass.because(invalidation_log_.of(kPictureCauses));
   const bool linear = options_.output == Output::Linear;
   if (!overlays_) {
     Result<Overlays> made = Overlays::create(hdr_.desc().samples, linear);

@@ -65,7 +65,7 @@ GlossyPart describeGlossy(const World& world, std::size_t draw) {
                                             .bundles()[resident.bundle]
                                             .brdf_tables[static_cast<std::size_t>(brdfTableOf(world, draw))];
   const gltf::Material& material = materialOf(world, draw);
-  // A matte material is Lambert, whatever its roughness says (docs/conventions.md).
+  // A diffuse material is Lambert, whatever its roughness says (docs/conventions.md).
   const glm::vec3 dielectric = material.reflectance() * material.specular_color;
   const float specular = material.matte() ? 0.0f : material.specular;
   return {.group_from_world = glm::mat3x4(glm::mat3_cast(glm::conjugate(world.rotationOf(resident.group)))),

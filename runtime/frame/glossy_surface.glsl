@@ -130,7 +130,7 @@ Lobes lobesAt(vec3 base_color, TangentFrame frame, vec3 normal) {
 }
 #endif
 
-#if defined(LAMBENT_NEAR_LIGHTS) || defined(LAMBENT_KEY_LIGHTS)
+#if defined(LAMBENT_SHADOWED_LIGHTS) || defined(LAMBENT_KEY_LIGHTS)
 #ifdef LAMBENT_MEASURED
 // Of this pixel.
 LocalView light_view;
@@ -234,7 +234,7 @@ vec3 lightReflectance(vec3 to_light, float spread) {
 #endif
 
 #ifdef LAMBENT_RESIDUAL
-#include "reflected_shared.h"
+#include "prefiltered_shared.h"
 layout(std140, binding = kBindReflection) uniform ReflectionBlock { ReflectionValues reflection; };
 layout(binding = kUnitFirstReflection) uniform samplerCube first_reflection;
 layout(binding = kUnitSecondReflection) uniform samplerCube second_reflection;
@@ -375,9 +375,9 @@ vec3 reflectedLight(vec3 base_color) {
   keyLight(draw_of, normal);
   radiance += key_highlights;
 #endif
-#ifdef LAMBENT_NEAR_LIGHTS
-  // As from a matte surface that sends as much towards the eye of light from all around.
-  radiance += reflected.albedo * nearLight(draws[draw_of].glossy.draw, draws[draw_of].facing * frame.normal, normal);
+#ifdef LAMBENT_SHADOWED_LIGHTS
+  // As from a diffuse surface that sends as much towards the eye of light from all around.
+  radiance += reflected.albedo * shadowedLight(draws[draw_of].glossy.draw, draws[draw_of].facing * frame.normal, normal);
 #endif
 #else
   Lobes lobes = lobesAt(base_color, frame, normal);
@@ -396,7 +396,7 @@ vec3 reflectedLight(vec3 base_color) {
   reflected.f0_light.w += change.f0_light.w;
   reflected.f90_light.w += change.f90_light.w;
 #endif
-#if defined(LAMBENT_NEAR_LIGHTS) || defined(LAMBENT_KEY_LIGHTS)
+#if defined(LAMBENT_SHADOWED_LIGHTS) || defined(LAMBENT_KEY_LIGHTS)
   light_lobes = lobes;
   light_normal = normal;
   light_to_eye = to_eye;
@@ -404,15 +404,15 @@ vec3 reflectedLight(vec3 base_color) {
 #ifdef LAMBENT_KEY_LIGHTS
   received += keyLight(draw_of, normal);
 #endif
-#ifdef LAMBENT_NEAR_LIGHTS
-  received += nearLight(draws[draw_of].glossy.draw, draws[draw_of].facing * frame.normal, normal);
+#ifdef LAMBENT_SHADOWED_LIGHTS
+  received += shadowedLight(draws[draw_of].glossy.draw, draws[draw_of].facing * frame.normal, normal);
 #endif
 #ifdef LAMBENT_VIEW_IRRADIANCE
   return received;
 #endif
   vec3 radiance = mirrored_light + diffuse * received;
-#ifdef LAMBENT_NEAR_LIGHTS
-  radiance += near_highlights;
+#ifdef LAMBENT_SHADOWED_LIGHTS
+  radiance += local_highlights;
 #endif
 #if defined(LAMBENT_KEY_LIGHTS) && !defined(LAMBENT_RESIDUAL)
   radiance += key_highlights;

@@ -2,7 +2,7 @@
 // term. Who includes this says what lies in the map: keyDepth(texel), keyBlockers(texel, level). Points and directions are
 // in view space, metres; places on a map are in texels of the texture that holds all maps.
 #include "key_shared.h"
-#include "near_light.glsl"
+#include "shadowed_light.glsl"
 
 // What is nearer to the light than the receiver's plane by less than these texels' width does not shadow it: rounding,
 // and faces that meet within a texel.
@@ -87,7 +87,7 @@ vec2 keyPoint(int i, int count) {
 }
 
 // The heights at which most of what stands in the cone from the receiver to the disc stands: one or two, as in
-// near_shadow.glsl; 0: nothing was found. After Fernando, Percentage-closer soft shadows, 2005, which has one.
+// local_shadow.glsl; 0: nothing was found. After Fernando, Percentage-closer soft shadows, 2005, which has one.
 struct KeyLayers {
   float low, high;
 };

@@ -12,7 +12,7 @@
 #include <glm/vec3.hpp>
 
 #include "runtime/frame/key_shared.h"
-#include "runtime/frame/near_light_ref.hpp"
+#include "runtime/frame/shadowed_light_ref.hpp"
 
 namespace lambent::frame::ref {
 

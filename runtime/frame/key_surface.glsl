@@ -23,14 +23,14 @@ vec3 keyPixelPosition() {
 vec3 viewFromGroup(uint draw, vec3 v) {
   vec4 turn = draws[draw].world_from_group;
   vec3 world = v + 2.0 * cross(turn.xyz, cross(turn.xyz, v) + turn.w * v);
-  return nearUnit(mat3(key_view.view_from_world) * world);
+  return localUnit(mat3(key_view.view_from_world) * world);
 }
 
 #ifdef LAMBENT_GLOSSY
 vec3 groupFromView(uint draw, vec3 v) {
   vec3 world = v * mat3(key_view.view_from_world);
   vec4 turn = vec4(-draws[draw].world_from_group.xyz, draws[draw].world_from_group.w);
-  return nearUnit(world + 2.0 * cross(turn.xyz, cross(turn.xyz, world) + turn.w * world));
+  return localUnit(world + 2.0 * cross(turn.xyz, cross(turn.xyz, world) + turn.w * world));
 }
 
 // pi times the specular f towards the eye of light from this direction, group frame, that spreads over so many radians.
@@ -45,7 +45,7 @@ vec3 key_open = vec3(0.0);  // of the last keyLight: as if nothing were in the w
 vec3 keyLight(uint draw, vec3 shading_normal) {
   vec3 position = keyPixelPosition();
   // Points to the eye: the picture's axes are right-handed with the direction to it.
-  vec3 normal = nearUnit(cross(dFdx(position), dFdy(position)));
+  vec3 normal = localUnit(cross(dFdx(position), dFdy(position)));
   vec3 shaded = viewFromGroup(draw, shading_normal);
   vec3 sum = vec3(0.0);
   for (uint k = 0u; k < key_view.count; ++k) {

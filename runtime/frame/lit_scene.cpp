@@ -9,8 +9,8 @@
 #include <glm/matrix.hpp>
 
 #include "runtime/frame/boxes.hpp"
-#include "runtime/frame/near_choice.hpp"
-#include "runtime/frame/near_record.hpp"
+#include "runtime/frame/shadowed_light_choice.hpp"
+#include "runtime/frame/shadowed_light_record.hpp"
 #include "runtime/scene/affine.hpp"
 
 namespace lambent::frame {
@@ -70,7 +70,7 @@ std::vector<float> nearnessOf(const World& world, std::span<const lighting::Loca
   for (std::size_t g = 0; g < groups.size(); ++g) {
     if (groups[g].volume >= 0) continue;
     for (std::size_t k = 0; k < lights.size(); ++k)
-      if (const auto near = lighting::nearLightOf(lights[k]);
+      if (const auto near = lighting::shadowedLightOf(lights[k]);
           near && shines(*near) && !world.litByColumn(g, entities[k]))
         nearness[k] =
             std::min(nearness[k], radiiFrom(world.groupBounds(g), world.worldFromGroup(g), lights[k]));
@@ -126,17 +126,17 @@ LitScene gatherLitScene(const World& world, float surroundings, const LitSceneOp
     light_entities.push_back(entity);
   }
   std::vector<float> shares(scene.lights.size(), 0.0f);
-  if (options.near_lights)
-    shares = nearShares(nearnessOf(world, scene.lights, light_entities), options.near_radii);
-  std::vector<std::int32_t> near_of_light(scene.lights.size(), -1);
+  if (options.shadowed_lights)
+    shares = localShares(nearnessOf(world, scene.lights, light_entities), options.local_radii);
+  std::vector<std::int32_t> local_of_light(scene.lights.size(), -1);
   for (std::size_t k = 0; k < scene.lights.size(); ++k) {
     if (shares[k] <= 0.0f) continue;
-    std::optional<lighting::NearLight> near = lighting::nearLightOf(scene.lights[k]);
+    std::optional<lighting::ShadowedLight> near = lighting::shadowedLightOf(scene.lights[k]);
     if (!near) continue;
     near->power *= shares[k];
-    near_of_light[k] = static_cast<std::int32_t>(scene.near_lights.size());
-    scene.near_lights.push_back(*near);
-    scene.near_sources.push_back(k);
+    local_of_light[k] = static_cast<std::int32_t>(scene.shadowed_lights.size());
+    scene.shadowed_lights.push_back(*near);
+    scene.local_sources.push_back(k);
   }
 
   std::uint32_t proxy_index = 0;
@@ -148,7 +148,7 @@ LitScene gatherLitScene(const World& world, float surroundings, const LitSceneOp
     lighting::IncidentGroup receiver;
     receiver.key = world.keyOf(g);
     receiver.samples = group.id;
-    for (const glm::vec3& sample : group.light_samples)
+    for (const glm::vec3& sample : group.light_probes)
       receiver.samples_ws.emplace_back(world_from_group * glm::vec4(sample, 1.0f));
     if (group.proxy && options.bodies) {
       receiver.body = static_cast<std::uint32_t>(scene.bodies.size());
@@ -163,19 +163,19 @@ LitScene gatherLitScene(const World& world, float surroundings, const LitSceneOp
                               .radiance_drift = 0.0,
                               .key = receiver.key});
     }
-    std::uint32_t near_mask = 0, pixel_mask = 0;
+    std::uint32_t local_mask = 0, pixel_mask = 0;
     for (std::size_t k = 0; k < scene.lights.size(); ++k) {
       bool by_harmonics = !world.litByColumn(g, light_entities[k]);
       float apart = 0.0f;
-      const std::uint32_t bit = near_of_light[k] >= 0 ? 1u << near_of_light[k] : 0u;
+      const std::uint32_t bit = local_of_light[k] >= 0 ? 1u << local_of_light[k] : 0u;
       // Rays through a volume look up its samples alone, and no shadow cube.
-      if (by_harmonics && options.near_lights && group.volume < 0) {
+      if (by_harmonics && options.shadowed_lights && group.volume < 0) {
         if (radiiFrom(bounds, world_from_group, scene.lights[k]) == 0.0f) {
-          near_mask |= bit;
+          local_mask |= bit;
           pixel_mask |= bit;
           by_harmonics = bit == 0;
-          scene.near_left_out += bit == 0 ? 1 : 0;
-        } else if (bit != 0 && options.near_radii > 0.0f &&
+          scene.local_left_out += bit == 0 ? 1 : 0;
+        } else if (bit != 0 && options.local_radii > 0.0f &&
                    !shadesColumn(world, g, light_entities[k], scene.lights[k].position_ws)) {
           pixel_mask |= bit;
           apart = shares[k];
@@ -184,7 +184,7 @@ LitScene gatherLitScene(const World& world, float surroundings, const LitSceneOp
       receiver.lit_by.push_back(by_harmonics ? 1 : 0);
       receiver.apart.push_back(apart);
     }
-    scene.near_masks.push_back(near_mask);
+    scene.local_masks.push_back(local_mask);
     scene.pixel_masks.push_back(pixel_mask);
     scene.groups.push_back(std::move(receiver));
   }

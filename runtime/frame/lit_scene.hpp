@@ -5,9 +5,9 @@
 //   its surfaces send on comes by patches;
 // - per pixel likewise, where the light stands beside any group, within some of its radii: then on all groups
 //   of surfaces, so that what stands between them casts shadows once; what surfaces send on goes by harmonics
-//   at the group's light samples, apart, as key lights do. On its way out of that distance the light goes
+//   at the group's light probes, apart, as key lights do. On its way out of that distance the light goes
 //   over to the next carrier bit by bit;
-// - harmonics at the group's light samples otherwise.
+// - harmonics at the group's light probes otherwise.
 // Of each path of light exactly one, or it would count twice.
 #pragma once
 
@@ -24,20 +24,21 @@ struct LitScene {
   std::vector<std::vector<glm::vec3>> lamps;    // per group, what its own lights give now, by light column
   std::vector<lighting::IncidentBody> bodies;
   std::vector<lighting::LocalLight> lights;
-  std::vector<lighting::NearLight> near_lights;  // at most kMaxNearLights, as strong as they shine per pixel
-  std::vector<std::uint32_t> near_masks;         // per group: bit k if near light k stands within its bounds
-  std::vector<std::uint32_t> pixel_masks;        // per group: bit k if near light k shines on it per pixel
-  std::vector<std::size_t> near_sources;         // per near light: among the lights
-  std::uint32_t near_left_out = 0;  // lights within bounds for which there was no place left: harmonics
+  std::vector<lighting::ShadowedLight>
+      shadowed_lights;                     // at most kMaxShadowedLights, as strong as they shine per pixel
+  std::vector<std::uint32_t> local_masks;  // per group: bit k if local light k stands within its bounds
+  std::vector<std::uint32_t> pixel_masks;  // per group: bit k if local light k shines on it per pixel
+  std::vector<std::size_t> local_sources;  // per local light: among the lights
+  std::uint32_t local_left_out = 0;  // lights within bounds for which there was no place left: harmonics
 
   // Whether anything but the environment reaches any group from outside.
   bool needsSampling() const;
 };
 
 struct LitSceneOptions {
-  bool near_lights = true;  // else all lights that stand in the scene go by harmonics
-  float near_radii = 0.0f;  // lights nearer to a group's middle than so many of its radii stand beside it
-  bool bodies = true;       // else groups neither light nor shadow each other
+  bool shadowed_lights = true;  // else all lights that stand in the scene go by harmonics
+  float local_radii = 0.0f;     // lights nearer to a group's middle than so many of its radii stand beside it
+  bool bodies = true;           // else groups neither light nor shadow each other
 };
 
 // surroundings: mean radiance, by which bodies count as bright.

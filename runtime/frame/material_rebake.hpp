@@ -1,6 +1,6 @@
 // What of a changed material does not show before it is baked again, or shows only nearly: light that bounced
-// carries the colours that were baked, surfaces baked as matte cannot shine. Comes in: the material as it is
-// and as it was baked, and how the bundle uses it. Goes out: a sentence for each such thing; none: the
+// carries the colours that were baked, surfaces baked as diffuse cannot shine. Comes in: the material as it
+// is and as it was baked, and how the bundle uses it. Goes out: a sentence for each such thing; none: the
 // picture is what a rebake would give, up to the coding of transfer. Pure.
 #pragma once
 

@@ -50,18 +50,18 @@ bool carriesLamps(const bundle::Group& group) {
 }
 
 // How much of a light's straight light a group has by harmonics; none: by a column of its own.
-std::optional<float> byHarmonics(const LitScene& scene, std::size_t group, std::size_t near_light) {
-  const std::size_t source = scene.near_sources[near_light];
+std::optional<float> byHarmonics(const LitScene& scene, std::size_t group, std::size_t shadowed_light) {
+  const std::size_t source = scene.local_sources[shadowed_light];
   const lighting::IncidentGroup& lit = scene.groups[group];
   if (lit.lit_by[source] != 0) return 1.0f - lit.apart[source];
-  if ((scene.pixel_masks[group] >> near_light & 1u) != 0) return 0.0f;
+  if ((scene.pixel_masks[group] >> shadowed_light & 1u) != 0) return 0.0f;
   return std::nullopt;
 }
 
 // Whether the body's shadow in light of lamps would reach the receiver twice, by grid and shadow cube, or not
 // at all. Volumes stand in no shadow cube.
-bool nearShadowsDiffer(const LitScene& scene, std::size_t body, std::size_t receiver) {
-  for (std::size_t n = 0; n < scene.near_sources.size(); ++n) {
+bool localShadowsDiffer(const LitScene& scene, std::size_t body, std::size_t receiver) {
+  for (std::size_t n = 0; n < scene.local_sources.size(); ++n) {
     const std::optional<float> sent = byHarmonics(scene, body, n), had = byHarmonics(scene, receiver, n);
     if (sent && had && *sent != *had) return true;
   }
@@ -155,7 +155,7 @@ void Neighborhoods::chooseCarriers(const World& world, LitScene& scene, bool on)
       const bool before = pairs_.contains({grid.group, b});
       if (b == grid.group || !hasSurfaces(describedGroup(world, b)) ||
           !meet(boxOf(grid.points, before), world_from_body, world.groupBounds(b), world.worldFromGroup(b)) ||
-          (world.residency().groups()[grid.group].volume < 0 && nearShadowsDiffer(scene, grid.group, b)))
+          (world.residency().groups()[grid.group].volume < 0 && localShadowsDiffer(scene, grid.group, b)))
         continue;
       pairs.insert({grid.group, b});
       std::vector<std::uint32_t>& left_out = scene.groups[b].left_out;

@@ -9,8 +9,8 @@
 // grid acts on every group with surfaces, the one that it stands within included.
 //
 // A draw receives from a grid at its vertices, through transfer of its own (so that it shades itself under
-// the changed light), where the grid has all bands of that transfer, the draw is matte without a normal map,
-// its edges are at most as long, in the mean, as the grid's points are apart, and its transfer is there
+// the changed light), where the grid has all bands of that transfer, the draw is diffuse without a normal
+// map, its edges are at most as long, in the mean, as the grid's points are apart, and its transfer is there
 // (effects::neighborhood::hasTransfer). Otherwise per pixel, as an open surface.
 //
 // Reads where groups stand and what is resident; writes the texture of the neighborhood effect and the tables

@@ -12,9 +12,9 @@ namespace lambent::frame {
 namespace {
 
 constexpr std::array<OverlayRow, 6> kRows = {{
-    {"light-samples", "Light samples",
+    {"light-samples", "Light probes",
      "where light is sampled: what is captured there as a cube, the harmonics as a ball",
-     &OverlayOptions::light_samples},
+     &OverlayOptions::light_probes},
     {"neighborhoods", "Neighborhoods",
      "grids around bodies, with a slice of how they change light: neighborhoods:AXIS,POSITION",
      &OverlayOptions::neighborhoods},

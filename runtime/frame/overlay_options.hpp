@@ -1,4 +1,4 @@
-// What is drawn over a picture that is done: light samples as cubes and balls, slices through neighborhoods,
+// What is drawn over a picture that is done: light probes as cubes and balls, slices through neighborhoods,
 // boxes of volumes and groups, lights as glyphs, key lights with what their shadow maps show, wires of the
 // triangles, and lines that a caller adds. Comes in: the world as the frame shows it. Goes out: a layer with
 // the depth of the scene in it, laid over the tone-mapped picture, which keeps its exposure, its alpha and,
@@ -40,14 +40,14 @@ struct NeighborhoodSlice {
 };
 
 struct OverlayOptions {
-  bool light_samples = false;
+  bool light_probes = false;
   bool neighborhoods = false;
   NeighborhoodSlice slice{};
   bool volumes = false;
   bool groups = false;
   bool lights = false;
   bool keys = false;
-  // Of light samples, neighborhoods, volumes and groups, these of the residency; empty: all.
+  // Of light probes, neighborhoods, volumes and groups, these of the residency; empty: all.
   std::vector<std::uint32_t> selected_groups{};
   // Of neighborhoods that overlap, those of these groups are drawn whole; of the others, and where none is
   // given, the one nearest to the eye. The rest are faint boxes without slices.
@@ -59,7 +59,7 @@ struct OverlayOptions {
   bool operator==(const OverlayOptions&) const = default;
 
   bool any() const {
-    return light_samples || neighborhoods || volumes || groups || lights || keys || !lines.empty();
+    return light_probes || neighborhoods || volumes || groups || lights || keys || !lines.empty();
   }
   bool shows(std::uint32_t group) const;
 };

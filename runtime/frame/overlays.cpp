@@ -71,13 +71,13 @@ void Overlays::attach(const gpu::Texture& depth, const spec::Size& size) {
 
 Result<void> Overlays::draw(const OverlayOptions& options, const OverlayScene& scene,
                             const std::function<Result<void>()>& wires, gpu::Counters& counters) {
-  if (options.light_samples) {
-    if (!light_samples_) {
-      Result<LightSampleSigns> made = LightSampleSigns::create(defines());
+  if (options.light_probes) {
+    if (!light_probes_) {
+      Result<ProbeMarkers> made = ProbeMarkers::create(defines());
       if (!made) return failAgain(made.error());
-      light_samples_ = std::move(*made);
+      light_probes_ = std::move(*made);
     }
-    if (Result<void> done = light_samples_->update(options, scene, counters); !done) return done;
+    if (Result<void> done = light_probes_->update(options, scene, counters); !done) return done;
   }
   glBindFramebuffer(GL_FRAMEBUFFER, target_.id());
   glViewport(0, 0, static_cast<GLsizei>(size_.width), static_cast<GLsizei>(size_.height));
@@ -90,7 +90,7 @@ Result<void> Overlays::draw(const OverlayOptions& options, const OverlayScene& s
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_LEQUAL);
   glEnable(GL_DEPTH_CLAMP);  // near and far plane fit the surfaces, and signs may stand outside of these
-  if (options.light_samples) light_samples_->draw(scene, counters);
+  if (options.light_probes) light_probes_->draw(scene, counters);
   Result<void> done = wires();
   // wires() has a view of its own
   glBindBufferBase(GL_UNIFORM_BUFFER, kBindView, view_.buffer().id());

@@ -1,7 +1,7 @@
 // Overlays on the GPU: a layer of colours as they shall be seen, over the scene's depth, laid over the
 // picture after tone mapping (overlay_options.hpp says what there is). Comes in: the options, the world and
 // what the frame knows of its light. Goes out: the bound picture, of which the alpha stays. The parts: lines
-// (overlay_lines.hpp), light samples (light_sample_signs.hpp), slices of neighborhoods, wires
+// (overlay_lines.hpp), light probes (probe_markers.hpp), slices of neighborhoods, wires
 // (data_view.hpp). Render thread only. Errors: shaders that do not compile on this device.
 #pragma once
 
@@ -9,10 +9,10 @@
 #include <optional>
 
 #include "runtime/base/result.hpp"
-#include "runtime/frame/light_sample_signs.hpp"
 #include "runtime/frame/neighborhoods.hpp"
 #include "runtime/frame/overlay_options.hpp"
 #include "runtime/frame/overlay_scene.hpp"
+#include "runtime/frame/probe_markers.hpp"
 #include "runtime/gpu/program.hpp"
 
 namespace lambent::frame {
@@ -44,7 +44,7 @@ class Overlays {
   gpu::Framebuffer target_;
   gpu::Program compose_;
   std::optional<gpu::Program> lines_program_, slices_program_;  // with the first that is drawn
-  std::optional<LightSampleSigns> light_samples_;
+  std::optional<ProbeMarkers> light_probes_;
   gpu::Table lines_, slices_, view_;
   gpu::VertexArray no_vertices_;
 };

@@ -12,7 +12,7 @@
 #include <glm/vec4.hpp>
 
 #include "lambent_frame_embedded.hpp"
-#include "runtime/frame/near_record.hpp"
+#include "runtime/frame/shadowed_light_record.hpp"
 #include "runtime/frame/surface_record.hpp"
 
 namespace lambent::frame {
@@ -71,7 +71,7 @@ void PatchBounces::drop() {
 
 // Lamps that stand within the group's bounds have patches in any case.
 std::uint32_t PatchBounces::within(const LitScene& scene, std::size_t group) {
-  return group < scene.near_masks.size() ? scene.near_masks[group] : 0u;
+  return group < scene.local_masks.size() ? scene.local_masks[group] : 0u;
 }
 
 std::uint32_t PatchBounces::beside(const LitScene& scene, std::size_t group) {
@@ -92,18 +92,19 @@ RoomLights PatchBounces::lightsIn(const World& world, const LitScene& scene, con
       apart(world, scene, lights, group) && transport && transport->bounced() >= kWorthPatches;
   RoomLights found;
   const std::uint32_t lamps = within(scene, group) | (by_bands ? beside(scene, group) : 0u);
-  for (std::size_t k = 0; k < scene.near_lights.size(); ++k)
-    if ((lamps >> k & 1u) != 0 && shines(scene.near_lights[k])) found.lamps.push_back(scene.near_lights[k]);
+  for (std::size_t k = 0; k < scene.shadowed_lights.size(); ++k)
+    if ((lamps >> k & 1u) != 0 && shines(scene.shadowed_lights[k]))
+      found.lamps.push_back(scene.shadowed_lights[k]);
   if (!by_bands) return found;
   const glm::quat group_from_world = glm::conjugate(world.rotationOf(group));
   for (spec::Disc key : lights.keys) {
     key.direction = group_from_world * key.direction;
     found.keys.push_back(key);
   }
-  for (std::size_t s = 0; s < resident.light_samples.size(); ++s) {
+  for (std::size_t s = 0; s < resident.light_probes.size(); ++s) {
     const std::span<const glm::vec4> bands = lights.bands->coefficients().subspan(
         lights.bands->firstOf(group, s) + lighting::GroupLights::kBlock, lighting::GroupLights::kBlock);
-    found.bands.push_back({.position = resident.light_samples[s], .light = {bands.begin(), bands.end()}});
+    found.bands.push_back({.position = resident.light_probes[s], .light = {bands.begin(), bands.end()}});
   }
   return found;
 }
@@ -117,7 +118,7 @@ std::vector<lighting::RayTriangle> PatchBounces::othersAround(const World& world
   const lighting::IncidentBody& room = scene.bodies[own];
   const glm::mat4 group_from_world = glm::inverse(world.worldFromGroup(group));
   std::vector<glm::vec3> ends;  // of ways from the room to its lights
-  for (const lighting::NearLight& lamp : lights.lamps) ends.push_back(lamp.position_ws);
+  for (const lighting::ShadowedLight& lamp : lights.lamps) ends.push_back(lamp.position_ws);
   for (const spec::Disc& key : lights.keys)
     ends.push_back(room.center_ws + kFarAway * room.radius_m * (world.rotationOf(group) * key.direction));
   const auto inTheWay = [&](const lighting::IncidentBody& other) {

@@ -16,7 +16,7 @@
 #include <span>
 #include <vector>
 
-#include "runtime/base/by_key.hpp"
+#include "runtime/base/keyed_state.hpp"
 #include "runtime/base/result.hpp"
 #include "runtime/frame/lit_scene.hpp"
 #include "runtime/frame/patch_room.hpp"
@@ -100,7 +100,7 @@ class PatchBounces {
     std::uint64_t gathered = 0;  // the version of its room
   };
   void drop();
-  // Near lights, a bit each, within the group's bounds, and others that shine on it per pixel.
+  // Local lights, a bit each, within the group's bounds, and others that shine on it per pixel.
   static std::uint32_t within(const LitScene& scene, std::size_t group);
   static std::uint32_t beside(const LitScene& scene, std::size_t group);
   // Whether transfer brings bounced light of lights that shine per pixel: key lights, and lamps beside.
@@ -122,8 +122,8 @@ class PatchBounces {
   Result<void> gather(World& world, gpu::Counters& counters);
   Result<const gpu::Program*> program(std::uint32_t outputs);
 
-  ByKey<Room> rooms_;
-  ByKey<Draw> draws_;
+  KeyedState<Room> rooms_;
+  KeyedState<Draw> draws_;
   std::vector<std::uint32_t> words_;  // by draw
   std::uint64_t layout_version_ = 0, version_ = 0;
   std::map<std::uint32_t, gpu::Program> programs_;  // by outputs

@@ -9,18 +9,18 @@
 #include <glm/matrix.hpp>
 
 #include "runtime/base/parallel.hpp"
-#include "runtime/frame/near_light_ref.hpp"
-#include "runtime/frame/near_record.hpp"
+#include "runtime/frame/shadowed_light_record.hpp"
+#include "runtime/frame/shadowed_light_ref.hpp"
 
 namespace lambent::frame {
 
 namespace {
 
-using lighting::NearLight;
 using lighting::Patch;
+using lighting::ShadowedLight;
 
 constexpr std::size_t kLampPoints = 16;  // of lamps with an extent
-constexpr float kLightSurface = 1.01f;   // as in near_lights.cpp
+constexpr float kLightSurface = 1.01f;   // as in local_shadows.cpp
 constexpr float kAlmost = 1.0f - 1e-4f;  // of the way to a patch: not the patch itself
 constexpr std::size_t kPoints = lighting::kPatchPoints;
 // Discs at infinity are widened to this, so that bounced light does not flicker while they turn. It is less
@@ -42,15 +42,15 @@ std::vector<glm::vec3> ballPoints() {
   return points;
 }
 
-std::vector<glm::vec3> lampPoints(const NearLight& light) {
+std::vector<glm::vec3> lampPoints(const ShadowedLight& light) {
   if (!hasExtent(light)) return {light.position_ws};
   std::vector<glm::vec3> points;
-  if (light.kind == NearLight::Kind::Sphere) {
+  if (light.kind == ShadowedLight::Kind::Sphere) {
     for (const glm::vec3& point : ballPoints()) points.push_back(light.position_ws + light.radius_m * point);
     return points;
   }
   glm::vec3 s, t;
-  ref::nearBasis(light.direction_ws, s, t);
+  ref::localBasis(light.direction_ws, s, t);
   for (std::size_t i = 0; i < kLampPoints; ++i) {
     const float radius = std::sqrt((static_cast<float>(i) + 0.5f) / static_cast<float>(kLampPoints));
     const float turn = 2.0f * std::numbers::pi_v<float> * std::numbers::phi_v<float> * static_cast<float>(i);
@@ -64,24 +64,24 @@ std::vector<glm::vec3> raysTo(const spec::Disc& key) {
   const float radius = std::max(key.radius_rad, kLeastRadius_rad);
   const std::size_t count = radius < 0.05f ? 4 : kLampPoints;
   glm::vec3 s, t;
-  ref::nearBasis(key.direction, s, t);
+  ref::localBasis(key.direction, s, t);
   std::vector<glm::vec3> rays;
   for (std::size_t i = 0; i < count; ++i) {
     const float away =
         std::sqrt((static_cast<float>(i) + 0.5f) / static_cast<float>(count)) * std::sin(radius);
     const float turn = 2.0f * std::numbers::pi_v<float> * std::numbers::phi_v<float> * static_cast<float>(i);
-    rays.push_back(ref::nearUnit(key.direction + away * (std::cos(turn) * s + std::sin(turn) * t)));
+    rays.push_back(ref::localUnit(key.direction + away * (std::cos(turn) * s + std::sin(turn) * t)));
   }
   return rays;
 }
 
 // What stands in the way of the lamp's light. What is no larger than a spherical lamp and within it is the
 // lamp.
-lighting::TriangleSet blockersOf(const NearLight& light, const lighting::Patches& patches,
+lighting::TriangleSet blockersOf(const ShadowedLight& light, const lighting::Patches& patches,
                                  std::span<const lighting::RayTriangle> others,
                                  const glm::mat4& world_from_group) {
   const auto isLamp = [&](const lighting::RayTriangle& triangle) {
-    return light.kind == NearLight::Kind::Sphere &&
+    return light.kind == ShadowedLight::Kind::Sphere &&
            std::ranges::all_of(triangle.corners, [&](const glm::vec3& corner) {
              const glm::vec3 corner_ws(world_from_group * glm::vec4(corner, 1.0f));
              return glm::distance(corner_ws, light.position_ws) <= kLightSurface * light.radius_m;
@@ -97,12 +97,12 @@ lighting::TriangleSet blockersOf(const NearLight& light, const lighting::Patches
 
 }  // namespace
 
-std::vector<float> lampOnPatches(const NearLight& lamp, const lighting::Patches& patches,
+std::vector<float> lampOnPatches(const ShadowedLight& lamp, const lighting::Patches& patches,
                                  std::span<const lighting::RayTriangle> others,
                                  const glm::mat4& world_from_group) {
-  NearLight light = lamp;
+  ShadowedLight light = lamp;
   if (const float length = glm::length(light.direction_ws); length > 0.0f) light.direction_ws /= length;
-  const NearRecord record = recordOf(light, 0.0f);
+  const ShadowedLightRecord record = recordOf(light, 0.0f);
   const std::vector<Patch>& all = patches.all();
   const glm::mat4 group_from_world = glm::inverse(world_from_group);
   const glm::mat3 world_from_normal = glm::transpose(glm::mat3(group_from_world));
@@ -110,10 +110,10 @@ std::vector<float> lampOnPatches(const NearLight& lamp, const lighting::Patches&
   std::vector<glm::vec3> points_ws;  // a little above their patches
   std::vector<float> shares;         // without blockers
   for (const Patch& patch : all) {
-    const glm::vec3 normal_ws = ref::nearUnit(world_from_normal * patch.normal);
+    const glm::vec3 normal_ws = ref::localUnit(world_from_normal * patch.normal);
     for (const glm::vec3& point : patch.points) {
       points_ws.emplace_back(world_from_group * glm::vec4(point, 1.0f));
-      shares.push_back(ref::nearShare(record, normal_ws, light.position_ws - points_ws.back()));
+      shares.push_back(ref::localShare(record, normal_ws, light.position_ws - points_ws.back()));
     }
   }
 

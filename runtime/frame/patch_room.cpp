@@ -23,7 +23,7 @@ double changeBetween(const std::vector<glm::vec3>& before, const std::vector<glm
   return power > 0.0 ? std::min(std::sqrt(change / power), 1.0) : 0.0;
 }
 
-lighting::NearLight ofUnitPower(lighting::NearLight lamp) {
+lighting::ShadowedLight ofUnitPower(lighting::ShadowedLight lamp) {
   lamp.power = glm::vec3(1.0f);
   return lamp;
 }
@@ -33,7 +33,7 @@ spec::Disc ofUnitPower(spec::Disc key) {
   return key;
 }
 
-bool sameLight(const lighting::NearLight& a, const lighting::NearLight& b) {
+bool sameLight(const lighting::ShadowedLight& a, const lighting::ShadowedLight& b) {
   return a == b;
 }
 
@@ -41,7 +41,7 @@ bool sameLight(const spec::Disc& a, const spec::Disc& b) {
   return a.direction == b.direction && a.radius_rad == b.radius_rad;
 }
 
-using Light = std::variant<lighting::NearLight, spec::Disc>;
+using Light = std::variant<lighting::ShadowedLight, spec::Disc>;
 bool sameSource(const Light& a, const Light& b) {
   if (a.index() != b.index()) return false;
   return a.index() == 0 ? sameLight(std::get<0>(a), std::get<0>(b))
@@ -53,7 +53,7 @@ bool sameSource(const Light& a, const Light& b) {
 std::vector<PatchRoom::Source> PatchRoom::bounceAll(const RoomLights& lights,
                                                     const std::vector<Source>& kept) {
   std::vector<Source> sources;
-  for (const lighting::NearLight& lamp : lights.lamps) sources.push_back({ofUnitPower(lamp), {}});
+  for (const lighting::ShadowedLight& lamp : lights.lamps) sources.push_back({ofUnitPower(lamp), {}});
   for (const spec::Disc& key : lights.keys) sources.push_back({ofUnitPower(key), {}});
 
   std::vector<spec::Disc> new_keys;
@@ -73,7 +73,7 @@ std::vector<PatchRoom::Source> PatchRoom::bounceAll(const RoomLights& lights,
   const std::vector<std::vector<float>> by_key = keysOnPatches(new_keys, transport_->patches(), others_);
   auto next_key = by_key.begin();
   for (Source* source : to_bounce) {
-    const auto* lamp = std::get_if<lighting::NearLight>(&source->light);
+    const auto* lamp = std::get_if<lighting::ShadowedLight>(&source->light);
     source->given_off = transport_->bounce(
         lamp != nullptr ? lampOnPatches(*lamp, transport_->patches(), others_, world_from_group_)
                         : *next_key++);
@@ -110,7 +110,7 @@ void PatchRoom::light(const RoomLights& lights, const glm::mat4& world_from_grou
   others_.assign(others.begin(), others.end());
 
   std::vector<glm::vec3> powers;
-  for (const lighting::NearLight& lamp : lights.lamps) powers.push_back(lamp.power);
+  for (const lighting::ShadowedLight& lamp : lights.lamps) powers.push_back(lamp.power);
   for (const spec::Disc& key : lights.keys) powers.push_back(key.radiance);
   sources_ = bounceAll(lights, kept);
   const bool same_sources = std::ranges::equal(

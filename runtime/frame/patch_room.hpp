@@ -17,8 +17,8 @@
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
-#include "runtime/lighting/near_light.hpp"
 #include "runtime/lighting/patch_transport.hpp"
+#include "runtime/lighting/shadowed_light.hpp"
 #include "runtime/spec/distant_lights.hpp"
 
 namespace lambent::frame {
@@ -31,9 +31,9 @@ struct KeyBands {
 };
 
 struct RoomLights {
-  std::vector<lighting::NearLight> lamps{};  // world
-  std::vector<spec::Disc> keys{};            // directions in the group's frame
-  std::vector<KeyBands> bands{};             // one at least where there are keys
+  std::vector<lighting::ShadowedLight> lamps{};  // world
+  std::vector<spec::Disc> keys{};                // directions in the group's frame
+  std::vector<KeyBands> bands{};                 // one at least where there are keys
   bool none() const { return lamps.empty() && keys.empty(); }
 };
 
@@ -62,7 +62,7 @@ class PatchRoom {
 
  private:
   struct Source {
-    std::variant<lighting::NearLight, spec::Disc> light;  // of power 1
+    std::variant<lighting::ShadowedLight, spec::Disc> light;  // of power 1
     std::vector<glm::vec3> given_off;
   };
   // Those that are not among the kept ones are bounced.

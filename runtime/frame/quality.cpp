@@ -44,7 +44,7 @@ Result<void> putQuality(FrameSettings& settings, std::string_view name) {
 Result<FrameSettings> settingsOfQuality(std::string_view name) {
   FrameSettings settings;
   if (Result<void> put = putQuality(settings, name); !put)
-    return fail("--quality", put.error().problem, put.error().mend);
+    return fail("--quality", put.error().problem, put.error().hint);
   return settings;
 }
 

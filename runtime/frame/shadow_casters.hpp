@@ -1,5 +1,5 @@
 // What stops light: all resident opaque and masked draws of a world, both sides of each, and how they are
-// drawn into tiles of a depth texture. Shadow cubes of near lights and shadow maps of key lights are made of
+// drawn into tiles of a depth texture. Shadow cubes of local lights and shadow maps of key lights are made of
 // them. Render thread only; no errors of its own.
 #pragma once
 

@@ -1,6 +1,6 @@
 // E/pi times albedo (factor x texture x vertex colour), or what a glossy surface makes of its light, and what the
 // surface gives off itself. Linear, not clamped;
-// alpha is coverage. With LAMBENT_NEAR_LIGHTS, lights among the surfaces add theirs per pixel, with LAMBENT_KEY_LIGHTS those at infinity that few bands cannot carry, with LAMBENT_NEIGHBORHOODS
+// alpha is coverage. With LAMBENT_SHADOWED_LIGHTS, lights among the surfaces add theirs per pixel, with LAMBENT_KEY_LIGHTS those at infinity that few bands cannot carry, with LAMBENT_NEIGHBORHOODS
 // bodies around change what arrives. With LAMBENT_DARK nothing is reflected: the effect that shades it is off. LAMBENT_VIEW_IRRADIANCE:
 // what arrives, E/pi; LAMBENT_VIEW_NORMALS: where the surface faces (views.hpp).
 #include "surface_shared.h"
@@ -56,7 +56,7 @@ layout(location = 6) in vec3 light[kLightCoefficients];
 #endif
 #else
 layout(location = 3) in vec3 radiance;
-#if defined(LAMBENT_NEAR_LIGHTS) || defined(LAMBENT_KEY_LIGHTS) || defined(LAMBENT_NEIGHBORHOODS) || defined(LAMBENT_VIEW_NORMALS)
+#if defined(LAMBENT_SHADOWED_LIGHTS) || defined(LAMBENT_KEY_LIGHTS) || defined(LAMBENT_NEIGHBORHOODS) || defined(LAMBENT_VIEW_NORMALS)
 layout(location = 4) in vec3 normal_group;  // of the side that is seen
 #endif
 #ifdef LAMBENT_NEIGHBORHOODS
@@ -64,13 +64,13 @@ layout(location = 5) in vec3 position_mesh;
 #endif
 #endif
 
-#if defined(LAMBENT_NEAR_LIGHTS) || defined(LAMBENT_KEY_LIGHTS)
-#include "near_shared.h"
-#include "near_light.glsl"
+#if defined(LAMBENT_SHADOWED_LIGHTS) || defined(LAMBENT_KEY_LIGHTS)
+#include "local_shared.h"
+#include "shadowed_light.glsl"
 #endif
 
-#ifdef LAMBENT_NEAR_LIGHTS
-#include "near_surface.glsl"
+#ifdef LAMBENT_SHADOWED_LIGHTS
+#include "local_surface.glsl"
 #endif
 
 #ifdef LAMBENT_KEY_LIGHTS
@@ -98,11 +98,11 @@ vec3 reflectedLight(vec3 base_color) {
   received = withChange(received, changeAround(draw_of, position_mesh, unit(normal_group)));
 #endif
 #endif
-#ifdef LAMBENT_NEAR_LIGHTS
+#ifdef LAMBENT_SHADOWED_LIGHTS
 #ifdef LAMBENT_NORMAL_MAPPED
-  received += nearLight(draw_of, draws[draw_of].facing * normal_group.xyz, normal);
+  received += shadowedLight(draw_of, draws[draw_of].facing * normal_group.xyz, normal);
 #else
-  received += nearLight(draw_of, normal_group, normal_group);
+  received += shadowedLight(draw_of, normal_group, normal_group);
 #endif
 #endif
 #ifdef LAMBENT_KEY_LIGHTS

@@ -22,7 +22,7 @@ layout(location = 0) in uint draw_index;  // one per instance: the draw's base i
 layout(location = 0) flat out uint draw_of;
 layout(location = 1) out vec4 looks_at;  // in the base colour picture: xy; in the emissive one: zw
 layout(location = 2) out vec4 vertex_color;
-#if defined(LAMBENT_NORMAL_MAPPED) || defined(LAMBENT_NEAR_LIGHTS) || defined(LAMBENT_KEY_LIGHTS) || defined(LAMBENT_GLOSSY) || defined(LAMBENT_NEIGHBORHOODS) || defined(LAMBENT_VIEW_NORMALS)
+#if defined(LAMBENT_NORMAL_MAPPED) || defined(LAMBENT_SHADOWED_LIGHTS) || defined(LAMBENT_KEY_LIGHTS) || defined(LAMBENT_GLOSSY) || defined(LAMBENT_NEIGHBORHOODS) || defined(LAMBENT_VIEW_NORMALS)
 #include "surface_normal.glsl"
 #endif
 #if defined(LAMBENT_NORMAL_MAPPED) || defined(LAMBENT_GLOSSY)
@@ -39,7 +39,7 @@ layout(location = 6) out vec3 light[kLightCoefficients];
 #endif
 #else
 layout(location = 3) out vec3 radiance;
-#if defined(LAMBENT_NEAR_LIGHTS) || defined(LAMBENT_KEY_LIGHTS) || defined(LAMBENT_NEIGHBORHOODS) || defined(LAMBENT_VIEW_NORMALS)
+#if defined(LAMBENT_SHADOWED_LIGHTS) || defined(LAMBENT_KEY_LIGHTS) || defined(LAMBENT_NEIGHBORHOODS) || defined(LAMBENT_VIEW_NORMALS)
 layout(location = 4) out vec3 normal_group;  // of the side that is seen
 #endif
 #ifdef LAMBENT_NEIGHBORHOODS
@@ -58,7 +58,7 @@ vec3 bouncedAt(uint place) {
 vec2 geometry2(uint at) { return vec2(uintBitsToFloat(geometry[at]), uintBitsToFloat(geometry[at + 1u])); }
 vec3 geometry3(uint at) { return vec3(geometry2(at), uintBitsToFloat(geometry[at + 2u])); }
 // In the group's frame, as long as its weight: pixels bring what is between to unit length.
-#if defined(LAMBENT_NORMAL_MAPPED) || defined(LAMBENT_NEAR_LIGHTS) || defined(LAMBENT_KEY_LIGHTS) || defined(LAMBENT_GLOSSY) || defined(LAMBENT_NEIGHBORHOODS) || defined(LAMBENT_VIEW_NORMALS)
+#if defined(LAMBENT_NORMAL_MAPPED) || defined(LAMBENT_SHADOWED_LIGHTS) || defined(LAMBENT_KEY_LIGHTS) || defined(LAMBENT_GLOSSY) || defined(LAMBENT_NEIGHBORHOODS) || defined(LAMBENT_VIEW_NORMALS)
 vec3 weightedNormal(uint vertex) {
   vec3 normal = geometry3(draws[draw_index].normals_word + 3u * vertex);
   return length(normal) * unit(mat3(draws[draw_index].group_from_mesh_normal) * normal);
@@ -131,7 +131,7 @@ void main() {
 #ifdef LAMBENT_BOUNCES
   radiance += bouncedAt(vertex);
 #endif
-#if defined(LAMBENT_NEAR_LIGHTS) || defined(LAMBENT_KEY_LIGHTS) || defined(LAMBENT_NEIGHBORHOODS) || defined(LAMBENT_VIEW_NORMALS)
+#if defined(LAMBENT_SHADOWED_LIGHTS) || defined(LAMBENT_KEY_LIGHTS) || defined(LAMBENT_NEIGHBORHOODS) || defined(LAMBENT_VIEW_NORMALS)
   normal_group =
       draws[draw_index].facing * weightedNormal(vertex);
 #endif

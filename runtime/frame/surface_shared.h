@@ -27,9 +27,9 @@ LAMBENT_CONSTANT kBindGeometry = 1u;  // arena page
 LAMBENT_CONSTANT kBindRadiance = 2u;  // arena page
 LAMBENT_CONSTANT kBindRows = 3u;      // arena page: rows of the vertices of glossy draws
 LAMBENT_CONSTANT kBindSamples = 4u;   // arena page: their samples
-LAMBENT_CONSTANT kBindRadianceChange = 3u;  // of matte draws, what bodies around change at vertices: 3 floats each
+LAMBENT_CONSTANT kBindRadianceChange = 3u;  // of diffuse draws, what bodies around change at vertices: 3 floats each
 // What patches send on (patch_bounces.hpp): per vertex 3 floats, or with normal maps and of glossy draws 27.
-LAMBENT_CONSTANT kBindBounced = 4u;        // of matte draws
+LAMBENT_CONSTANT kBindBounced = 4u;        // of diffuse draws
 LAMBENT_CONSTANT kBindGlossyBounced = 2u;  // of glossy ones, which have another buffer there
 LAMBENT_CONSTANT kAbsent = 0xffffffffu;
 

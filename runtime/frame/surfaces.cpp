@@ -52,7 +52,7 @@ Result<void> Surfaces::compile(const ProgramKind& kind) {
   if (kind.dark) defines.push_back({"LAMBENT_DARK", "1"});
   if (kind.normal_mapped) defines.push_back({"LAMBENT_NORMAL_MAPPED", "1"});
   if (kind.residual) defines.push_back({"LAMBENT_RESIDUAL", "1"});
-  if (kind.near_lit) defines.push_back({"LAMBENT_NEAR_LIGHTS", "1"});
+  if (kind.local_lit) defines.push_back({"LAMBENT_NEAR_LIGHTS", "1"});
   if (kind.bounces) defines.push_back({"LAMBENT_BOUNCES", "1"});
   if (kind.key_lit) defines.push_back({"LAMBENT_KEY_LIGHTS", "1"});
   if (kind.vertices_around) defines.push_back({"LAMBENT_VERTEX_CHANGE", "1"});
@@ -78,7 +78,7 @@ bool Surfaces::ready(const World& world, const effects::diffuse::Diffuse& diffus
 }
 
 void Surfaces::collect(World& world, const effects::diffuse::Diffuse& diffuse, glm::vec3 eye_ws,
-                       const NearLights* near_lights, const Neighborhoods* neighborhoods,
+                       const LocalShadows* shadowed_lights, const Neighborhoods* neighborhoods,
                        std::vector<Item>& opaque, std::vector<Item>& blended) {
   const streaming::Residency& residency = world.residency();
   shown_.assign(residency.draws().size(), 0);
@@ -92,7 +92,7 @@ void Surfaces::collect(World& world, const effects::diffuse::Diffuse& diffuse, g
                         .radiance_page = draw.radiance.page,
                         .textures = texturesOf(world, i, records_[i]),
                         .normal_mapped = normalMapped(world, i),
-                        .near_lit = near_lights != nullptr && near_lights->lightsOf(i) != 0,
+                        .local_lit = shadowed_lights != nullptr && shadowed_lights->lightsOf(i) != 0,
                         .key_lit = options_.key_lights && records_[i].unlit == 0,
                         .bounces = records_[i].bounced_word != kAbsent,
                         .around = neighborhoods != nullptr && neighborhoods->receives(i),
@@ -103,7 +103,7 @@ void Surfaces::collect(World& world, const effects::diffuse::Diffuse& diffuse, g
     if (dark(world, i)) {
       item.state.dark = true;
       item.state.radiance_page = 0;
-      item.state.normal_mapped = item.state.near_lit = item.state.key_lit = item.state.bounces =
+      item.state.normal_mapped = item.state.local_lit = item.state.key_lit = item.state.bounces =
           item.state.around = item.state.vertices_around = false;
     } else if (draw.glossy()) {
       item.state.glossy = glossyKindOf(world, i, options_.glossy_bands);
@@ -132,14 +132,14 @@ void Surfaces::appendRuns(const World& world, const std::vector<Item>& items, st
 }
 
 Result<void> Surfaces::prepare(World& world, const effects::diffuse::Diffuse& diffuse, const spec::View& view,
-                               gpu::Counters& counters, const NearLights* near_lights,
-                               const lighting::ReflectedSky* reflected_sky,
+                               gpu::Counters& counters, const LocalShadows* shadowed_lights,
+                               const lighting::PrefilteredEnvironment* prefiltered_environment,
                                const Neighborhoods* neighborhoods, const PatchBounces* bounces,
                                const SurfaceOptions& options) {
   const bool options_same = options == options_;
   options_ = options;
-  const bool residual_same = (reflected_sky != nullptr) == (reflected_sky_ != nullptr);
-  reflected_sky_ = reflected_sky;
+  const bool residual_same = (prefiltered_environment != nullptr) == (prefiltered_environment_ != nullptr);
+  prefiltered_environment_ = prefiltered_environment;
   neighborhoods_ = neighborhoods;
   bounces_ = bounces;
   const ViewBlock block{view.view_from_world, view.clip_from_view, eyeOf(view)};
@@ -147,18 +147,18 @@ Result<void> Surfaces::prepare(World& world, const effects::diffuse::Diffuse& di
   const streaming::Residency& residency = world.residency();
   std::size_t shaded = 0;
   for (std::size_t i = 0; i < residency.draws().size(); ++i) shaded += ready(world, diffuse, i) ? 1 : 0;
-  const std::uint64_t near_version = near_lights != nullptr ? near_lights->version() : 0;
+  const std::uint64_t local_version = shadowed_lights != nullptr ? shadowed_lights->version() : 0;
   const std::uint64_t around_version = neighborhoods != nullptr ? neighborhoods->version() : 0;
   const std::uint64_t bounces_version = bounces != nullptr ? bounces->layoutVersion() : 0;
   const bool scene_same = residual_same && options_same && view_shown_ == view_seen_ &&
                           world.materialsVersion() == materials_seen_ &&
-                          residency.version() == residency_seen_ && near_version == near_seen_ &&
+                          residency.version() == residency_seen_ && local_version == local_seen_ &&
                           around_version == around_seen_ && bounces_version == bounces_seen_ &&
                           world.transformsVersion() == transforms_seen_ &&
                           world.lampsVersion() == lamps_seen_ && shaded == shaded_seen_;
   if (scene_same && (blended_.empty() || view.eye_ws == eye_seen_ws_)) return {};
   view_seen_ = view_shown_;
-  near_seen_ = near_version;
+  local_seen_ = local_version;
   around_seen_ = around_version;
   bounces_seen_ = bounces_version;
   residency_seen_ = residency.version();
@@ -176,7 +176,7 @@ Result<void> Surfaces::prepare(World& world, const effects::diffuse::Diffuse& di
   glossy_records_.clear();
   glossy_index_.assign(records_.size(), 0);
   std::vector<Item> opaque, blended;
-  collect(world, diffuse, view.eye_ws, near_lights, neighborhoods, opaque, blended);
+  collect(world, diffuse, view.eye_ws, shadowed_lights, neighborhoods, opaque, blended);
   std::stable_sort(opaque.begin(), opaque.end(),
                    [](const Item& a, const Item& b) { return a.state < b.state; });
   std::stable_sort(blended.begin(), blended.end(),
@@ -226,7 +226,7 @@ void Surfaces::drawRuns(World& world, const std::vector<Run>& runs, gpu::Counter
   glBindBufferBase(GL_UNIFORM_BUFFER, kBindView, view_.buffer().id());
   glBindBuffer(GL_DRAW_INDIRECT_BUFFER, commands_.buffer().id());
   glEnable(GL_CULL_FACE);  // double-sided surfaces are two draws
-  if (reflected_sky_ != nullptr) reflected_sky_->bind();
+  if (prefiltered_environment_ != nullptr) prefiltered_environment_->bind();
   if (neighborhoods_ != nullptr) neighborhoods_->bind();
   for (const Run& run : runs) {
     const gpu::Buffer& geometry = world.residency().geometry().page(run.state.geometry_page);

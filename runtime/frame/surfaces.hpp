@@ -1,7 +1,7 @@
 // Draws every resident, shaded primitive: opaque and masked ones in as few multi-draws as textures, pages and
 // culling allow, blended ones afterwards from back to front. Reads the arenas; writes the bound framebuffer.
 // Back faces of single-sided materials are culled, as glTF asks; mirrored nodes turn their winding. Draws
-// that near lights shine on and glossy ones have programs of their own, compiled when the first of them
+// that local lights shine on and glossy ones have programs of their own, compiled when the first of them
 // comes; glossy ones are shaded here altogether, per pixel. Of records and commands only those that are other
 // than before go to the GPU. Errors: shaders that do not compile on this device.
 #pragma once
@@ -16,7 +16,7 @@
 #include "runtime/effects/diffuse/diffuse.hpp"
 #include "runtime/frame/draw_indices.hpp"
 #include "runtime/frame/glossy_record.hpp"
-#include "runtime/frame/near_lights.hpp"
+#include "runtime/frame/local_shadows.hpp"
 #include "runtime/frame/neighborhoods.hpp"
 #include "runtime/frame/patch_bounces.hpp"
 #include "runtime/frame/surface_record.hpp"
@@ -25,7 +25,7 @@
 #include "runtime/frame/views.hpp"
 #include "runtime/frame/world.hpp"
 #include "runtime/gpu/program.hpp"
-#include "runtime/lighting/reflected_sky.hpp"
+#include "runtime/lighting/prefiltered_environment.hpp"
 #include "runtime/spec/camera.hpp"
 
 namespace lambent::frame {
@@ -42,13 +42,13 @@ class Surfaces {
   // finest_texels: textures at their full resolution, for pictures of one ray per pixel.
   static Result<Surfaces> create(bool finest_texels);
 
-  // Brings draw records and commands up to date. With near lights, these must be updated before and bound
-  // when it draws. With a reflected sky, glossy surfaces add what their few bands of light leave out; it must
-  // live until they are drawn; with neighborhoods, draws receive what bodies around change, likewise, and
-  // with bounces what patches send on.
+  // Brings draw records and commands up to date. With local lights, these must be updated before and bound
+  // when it draws. With a prefiltered environment, glossy surfaces add what their few bands of light leave
+  // out; it must live until they are drawn; with neighborhoods, draws receive what bodies around change,
+  // likewise, and with bounces what patches send on.
   Result<void> prepare(World& world, const effects::diffuse::Diffuse& diffuse, const spec::View& view,
-                       gpu::Counters& counters, const NearLights* near_lights = nullptr,
-                       const lighting::ReflectedSky* reflected_sky = nullptr,
+                       gpu::Counters& counters, const LocalShadows* shadowed_lights = nullptr,
+                       const lighting::PrefilteredEnvironment* prefiltered_environment = nullptr,
                        const Neighborhoods* neighborhoods = nullptr, const PatchBounces* bounces = nullptr,
                        const SurfaceOptions& options = {});
   // Whether the last prepare() took the draw into the picture.
@@ -70,7 +70,7 @@ class Surfaces {
     std::int32_t brdf_table = -1;
     bool normal_mapped = false;
     bool dark = false;  // reflects nothing
-    bool near_lit = false, key_lit = false, bounces = false;
+    bool local_lit = false, key_lit = false, bounces = false;
     bool around = false;           // receives from neighborhoods, per pixel
     bool vertices_around = false;  // and at its vertices
     bool clockwise = false;        // which winding is seen
@@ -89,7 +89,7 @@ class Surfaces {
   Surfaces();
   // What a program is compiled for.
   struct ProgramKind {
-    bool normal_mapped = false, dark = false, near_lit = false, key_lit = false, bounces = false,
+    bool normal_mapped = false, dark = false, local_lit = false, key_lit = false, bounces = false,
          around = false, vertices_around = false;
     GlossyKind glossy = {};
     bool residual = false;
@@ -100,13 +100,13 @@ class Surfaces {
     const bool other = view_shown_ == SurfaceView::Irradiance || view_shown_ == SurfaceView::Normals;
     return {.normal_mapped = state.normal_mapped,
             .dark = state.dark,
-            .near_lit = state.near_lit,
+            .local_lit = state.local_lit,
             .key_lit = state.key_lit,
             .bounces = state.bounces,
             .around = state.around,
             .vertices_around = state.vertices_around,
             .glossy = state.glossy,
-            .residual = !other && reflected_sky_ != nullptr && state.glossy.bands > 0 &&
+            .residual = !other && prefiltered_environment_ != nullptr && state.glossy.bands > 0 &&
                         state.glossy.family != bundle::BrdfFamily::Measured,
             .view = other ? view_shown_ : SurfaceView::Final};
   }
@@ -114,8 +114,8 @@ class Surfaces {
   bool dark(const World& world, std::size_t draw) const;
   bool ready(const World& world, const effects::diffuse::Diffuse& diffuse, std::size_t draw) const;
   void collect(World& world, const effects::diffuse::Diffuse& diffuse, glm::vec3 eye_ws,
-               const NearLights* near_lights, const Neighborhoods* neighborhoods, std::vector<Item>& opaque,
-               std::vector<Item>& blended);
+               const LocalShadows* shadowed_lights, const Neighborhoods* neighborhoods,
+               std::vector<Item>& opaque, std::vector<Item>& blended);
   void appendRuns(const World& world, const std::vector<Item>& items, std::vector<Run>& runs,
                   std::vector<DrawCommand>& commands) const;
   // Of a table, what is other than before; all of it where its size is.
@@ -136,14 +136,15 @@ class Surfaces {
   SurfaceOptions options_;
   std::vector<std::uint32_t> glossy_index_;  // of a draw among them
   std::vector<Run> opaque_, blended_;
-  std::uint64_t residency_seen_ = 0, transforms_seen_ = 0, lamps_seen_ = 0, near_seen_ = 0, around_seen_ = 0,
+  std::uint64_t residency_seen_ = 0, transforms_seen_ = 0, lamps_seen_ = 0, local_seen_ = 0, around_seen_ = 0,
                 materials_seen_ = 0, bounces_seen_ = 0;
   std::size_t shaded_seen_ = 0;
   glm::vec3 eye_seen_ws_{0.0f};
   SurfaceView view_shown_ = SurfaceView::Final, view_seen_ = SurfaceView::Final;
-  const lighting::ReflectedSky* reflected_sky_ = nullptr;  // of this frame; null: no residual
-  const Neighborhoods* neighborhoods_ = nullptr;           // of this frame
-  const PatchBounces* bounces_ = nullptr;                  // likewise
+  const lighting::PrefilteredEnvironment* prefiltered_environment_ =
+      nullptr;                                    // of this frame; null: no residual
+  const Neighborhoods* neighborhoods_ = nullptr;  // of this frame
+  const PatchBounces* bounces_ = nullptr;         // likewise
 };
 
 }  // namespace lambent::frame

@@ -75,8 +75,8 @@ struct BundleError {
 // How a bundle is in the picture.
 enum class Shown : std::uint8_t {
   Nothing,
-  StandIn,  // its groups as others see them: a few triangles, without shadows
-  Partly,   // its surfaces, of whose transfer something is missing
+  ProxyLod,  // its groups as others see them: a few triangles, without shadows
+  Partly,    // its surfaces, of whose transfer something is missing
   Full
 };
 
@@ -92,8 +92,8 @@ struct BundleStreaming {
 
 struct StreamingStatus {
   std::uint64_t budget_bytes = 0;    // all bits: without limit
-  std::uint64_t resident_bytes = 0;  // stand-ins among them
-  std::uint64_t stand_in_bytes = 0;
+  std::uint64_t resident_bytes = 0;  // proxy levels of detail among them
+  std::uint64_t proxy_lod_bytes = 0;
   std::uint32_t queued = 0;  // items that are wanted and not here
   std::uint64_t in_flight_bytes = 0;
   double megabytes_per_s = 0.0;  // over the last second or so
@@ -103,7 +103,7 @@ struct StreamingStatus {
 };
 
 // A bundle whose surfaces are not here: by group, as others see it; none: nothing to see.
-struct StandIn {
+struct ProxyLod {
   std::uint32_t bundle = 0;
   std::uint64_t id = 0;  // of these proxies; no others ever have it
   std::span<const std::optional<bundle::CaptureProxy>> proxies;
@@ -137,9 +137,9 @@ class World {
 
   // Where room is limited, surfaces are shown from when all of a bundle's are here, and something stands in
   // for them until then: never both. Valid until the world changes.
-  std::vector<StandIn> standIns() const;
+  std::vector<ProxyLod> proxyLods() const;
   // Rises when others stand in.
-  std::uint64_t standInsVersion() const { return stand_ins_version_; }
+  std::uint64_t proxyLodsVersion() const { return proxy_lods_version_; }
   bool showsSurfaces(std::uint32_t bundle) const;
 
   // Up to about `budget_bytes` of what is ready; never waits.
@@ -230,7 +230,7 @@ class World {
     streaming::Parts parts;
     std::vector<float> size;                   // by unit, as the camera sees it
     std::vector<std::uint32_t> target, steps;  // by unit: that should be here, that are
-    Proxies proxies;                           // of its stand-in
+    Proxies proxies;                           // of its proxy level of detail
     std::uint64_t proxies_id = 0;
     std::optional<Batch> batch;
     std::uint64_t bytes_read = 0;           // before the batch
@@ -269,18 +269,18 @@ class World {
   const scene::RigidGroupComponent* rigidGroup(std::uint32_t bundle, std::uint32_t group) const;
   const scene::RigidGroupComponent* rigidGroup(std::size_t group) const;
   bool inPlace(std::uint32_t bundle, std::uint32_t group, std::size_t column) const;
-  // Stand-ins.
+  // Proxy levels of detail.
   static bool hasSurfaces(const streaming::Parts& parts, const std::vector<std::uint32_t>& steps) {
     return steps.front() == parts.surfaceSteps();
   }
   Result<void> accept(std::uint32_t slot, streaming::Ready item);
   Result<void> beginSurfaces(std::uint32_t slot);
   void endSurfaces(std::uint32_t slot);
-  void dropStandIn(Bundle& bundle);
+  void dropProxyLod(Bundle& bundle);
 
   ecs::Registry registry_;
   streaming::Residency residency_;
-  KeptThreads threads_;                         // of the loaders below
+  ThreadPool threads_;                          // of the loaders below
   std::vector<std::optional<Bundle>> bundles_;  // by slot
   std::vector<ecs::Entity> lamp_of_draw_;       // none: not a lamp of its group
   std::vector<scene::Box> group_bounds_;
@@ -293,7 +293,7 @@ class World {
   };
   Chosen chosen_;
   std::uint64_t bundles_version_ = 1;  // rises when one is opened, closed or replaced
-  std::uint64_t stand_ins_version_ = 1, next_proxies_id_ = 1;
+  std::uint64_t proxy_lods_version_ = 1, next_proxies_id_ = 1;
   std::vector<streaming::Loader> retired_;  // until their workers have ended
   struct Rate {
     std::chrono::steady_clock::time_point since = std::chrono::steady_clock::now();

@@ -18,7 +18,7 @@ bool isWhole(const streaming::Loader& loader) {
 
 // What is wrong with a bundle's part, as wrong with the bundle.
 Error World::inBundle(const bundle::Reader& reader, const Error& error) {
-  return {reader.path().string(), error.subject + ": " + error.problem, error.mend};
+  return {reader.path().string(), error.subject + ": " + error.problem, error.hint};
 }
 
 std::uint32_t World::freeInstance(const std::string& bundle_id) const {
@@ -69,7 +69,7 @@ Result<std::uint32_t> World::open(const std::filesystem::path& path, const OpenO
   if (slot == bundles_.size()) bundles_.emplace_back();
   bundles_[slot].emplace(std::move(bundle));
   ++bundles_version_;
-  ++stand_ins_version_;
+  ++proxy_lods_version_;
   rebuildTables();
   return slot;
 }
@@ -82,7 +82,7 @@ void World::close(std::uint32_t bundle) {
   if (residency_.present(bundle)) residency_.remove(bundle);
   bundles_[bundle].reset();
   ++bundles_version_;
-  ++stand_ins_version_;
+  ++proxy_lods_version_;
   scene::updateTransforms(registry_);
   rebuildTables();
 }
@@ -144,7 +144,7 @@ void World::uploadReplacement(Bundle& bundle, std::uint64_t& budget_bytes, gpu::
     items = next.loader.take(budget_bytes);
   for (streaming::Ready& item : items) {
     const std::uint64_t bytes = streaming::Residency::uploadBytes(item);
-    if (const auto* ready = std::get_if<streaming::ProxyReady>(&item))
+    if (const auto* ready = std::get_if<streaming::ProxyChunk>(&item))
       next.proxies[ready->group] = ready->proxy;
     // What is larger than the budget comes alone.
     const bool in_pieces =
@@ -188,7 +188,7 @@ void World::swapIn(std::uint32_t slot) {
   bundle.error.reset();
   retired_.push_back(std::move(next.loader));
   ++bundles_version_;
-  ++stand_ins_version_;
+  ++proxy_lods_version_;
   rebuildTables();
   playAnimations(0.0f);  // nodes that stood where the old one's animations put them
 }

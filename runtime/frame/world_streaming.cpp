@@ -25,7 +25,7 @@ std::uint64_t bytesOf(const streaming::Parts& parts, const std::vector<std::uint
 
 Shown shownOf(const streaming::Parts& parts, const std::vector<std::uint32_t>& steps) {
   if (steps.front() < parts.surfaceSteps())
-    return parts.hasStandIn() && steps.front() > 0 ? Shown::StandIn : Shown::Nothing;
+    return parts.hasProxyLod() && steps.front() > 0 ? Shown::ProxyLod : Shown::Nothing;
   return std::ranges::equal(steps, parts.units, {}, {}, &streaming::Unit::size) ? Shown::Full : Shown::Partly;
 }
 
@@ -47,10 +47,10 @@ std::vector<Next> missing(const streaming::Parts& parts, const std::vector<float
   for (std::uint32_t u = 0; u < parts.units.size(); ++u)
     for (std::uint32_t s = have[u]; s < target[u]; ++s)
       list.push_back({streaming::worthOf(parts, u, s, size[u]), u, s});
-  // Stand-ins of all bundles come before anything else.
-  constexpr float kStandInsFirst = 1e6f;
+  // Proxy levels of detail of all bundles come before anything else.
+  constexpr float kProxyLodsFirst = 1e6f;
   for (Next& next : list)
-    if (next.unit == 0 && next.step + 1 < parts.surfaceSteps()) next.worth *= kStandInsFirst;
+    if (next.unit == 0 && next.step + 1 < parts.surfaceSteps()) next.worth *= kProxyLodsFirst;
   std::ranges::sort(list, [](const Next& a, const Next& b) {
     return std::tuple(-a.worth, a.unit, a.step) < std::tuple(-b.worth, b.unit, b.step);
   });
@@ -182,7 +182,7 @@ void World::evict(std::uint32_t slot) {
   Bundle& bundle = *bundles_[slot];
   if (!hasSurfaces(bundle.parts, bundle.target)) {
     if (residency_.present(slot)) endSurfaces(slot);
-    if (bundle.target.front() == 0) dropStandIn(bundle);
+    if (bundle.target.front() == 0) dropProxyLod(bundle);
     return;
   }
   if (bundle.batch) {
@@ -203,9 +203,10 @@ bool World::startBatch(std::uint32_t slot) {
   std::uint64_t taken = bytesTaken(), bytes = 0;
   const std::vector<Next> list = missing(bundle.parts, bundle.size, bundle.steps, bundle.target);
   // The surfaces of what is largest have room in any case.
-  const bool only_stand_ins = std::ranges::none_of(residency_.bundles(), &streaming::ResidentBundle::present);
+  const bool only_proxy_lods =
+      std::ranges::none_of(residency_.bundles(), &streaming::ResidentBundle::present);
   const auto fits = [&](const Next& next) {
-    return !limited() || only_stand_ins ||
+    return !limited() || only_proxy_lods ||
            taken + bundle.parts.units[next.unit][next.step].bytes <= max_resident_bytes_;
   };
   if (list.empty() || !fits(list.front())) return false;
@@ -223,7 +224,7 @@ bool World::startBatch(std::uint32_t slot) {
     if (!pieces.empty() && (bytes + step.bytes > kBatchBytes || pieces.front().unit == 0)) break;
     if (step.work.empty()) {  // a bundle that shows nothing
       ++bundle.steps[next.unit];
-      ++stand_ins_version_;
+      ++proxy_lods_version_;
       continue;
     }
     taken += step.bytes;
@@ -273,7 +274,7 @@ void World::countOne(Bundle& bundle) {
   piece.begun = true;
   if (--piece.items > 0) return;
   bundle.steps[piece.unit] += piece.steps;
-  if (piece.unit == 0) ++stand_ins_version_;
+  if (piece.unit == 0) ++proxy_lods_version_;
   bundle.batch->pieces.pop_front();
 }
 
@@ -335,12 +336,12 @@ StreamingStatus World::streaming() const {
                          .resident_bytes = residency_.bytesResident(),
                          .megabytes_per_s = rate_.megabytes_per_s,
                          .bundles = {}};
-  for (const StandIn& stand_in : standIns())
-    for (std::uint32_t g = 0; g < stand_in.proxies.size(); ++g)
-      if (const auto& proxy = stand_in.proxies[g])
-        status.stand_in_bytes += streaming::kStandInGroupBytes +
-                                 streaming::kStandInTriangleBytes * proxy->levels.front().triangle_count;
-  status.resident_bytes += status.stand_in_bytes;
+  for (const ProxyLod& proxy_lod : proxyLods())
+    for (std::uint32_t g = 0; g < proxy_lod.proxies.size(); ++g)
+      if (const auto& proxy = proxy_lod.proxies[g])
+        status.proxy_lod_bytes += streaming::kProxyLodGroupBytes +
+                                  streaming::kProxyLodTriangleBytes * proxy->levels.front().triangle_count;
+  status.resident_bytes += status.proxy_lod_bytes;
   for (std::uint32_t i = 0; i < bundles_.size(); ++i) {
     if (!bundles_[i]) continue;
     const Bundle& bundle = *bundles_[i];

@@ -62,13 +62,13 @@ Window::~Window() = default;
 
 Result<Window> Window::create(const std::string& title, std::uint32_t width, std::uint32_t height,
                               const ContextOptions& options) {
-  constexpr const char* kMend = "give --headless OUT.png to render without a display";
+  constexpr const char* kHint = "give --headless OUT.png to render without a display";
   const auto reason = [] {
     const char* text = nullptr;
     glfwGetError(&text);
     return std::string(text ? text : "unknown reason");
   };
-  if (!glfwInit()) return fail("window", "cannot be opened: " + reason(), kMend);
+  if (!glfwInit()) return fail("window", "cannot be opened: " + reason(), kHint);
   auto state = std::make_unique<State>();
   glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 4);
   glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 5);
@@ -76,7 +76,7 @@ Result<Window> Window::create(const std::string& title, std::uint32_t width, std
   glfwWindowHint(GLFW_OPENGL_DEBUG_CONTEXT, options.debug ? GLFW_TRUE : GLFW_FALSE);
   state->window =
       glfwCreateWindow(static_cast<int>(width), static_cast<int>(height), title.c_str(), nullptr, nullptr);
-  if (state->window == nullptr) return fail("window", "cannot be opened with OpenGL 4.5: " + reason(), kMend);
+  if (state->window == nullptr) return fail("window", "cannot be opened with OpenGL 4.5: " + reason(), kHint);
   glfwMakeContextCurrent(state->window);
   glfwSwapInterval(1);
   glfwSetWindowUserPointer(state->window, state.get());

@@ -21,7 +21,7 @@ constexpr double kLevelErrorShare =
     0.5;  // of a texel's width: levels of proxies keep solid angles, if not outlines
 // The near plane, as a share of the distance to the nearest body's box, or of the radius of one that holds
 // the point. Depth is reversed and so does not suffer.
-constexpr double kNearShare = 1e-3, kLeastNearShare = 1e-9;
+constexpr double kLocalShare = 1e-3, kLeastLocalShare = 1e-9;
 // Points nearer to a body's box than this share of its radius count as inside.
 constexpr double kOutsideShare = 1e-6;
 // Rectangles grow by this share of a texel, so that rounding cannot cut a body's edge.
@@ -232,7 +232,7 @@ class PointPlanner {
       const double distance_m = boxDistance(corners);
       seen_.push_back({b, levelFor(options_, sphere, bounds), distance_m > kOutsideShare * sphere.radius_m,
                        sphere, corners});
-      near_m = std::min(near_m, std::max(kNearShare * distance_m, kLeastNearShare * sphere.radius_m));
+      near_m = std::min(near_m, std::max(kLocalShare * distance_m, kLeastLocalShare * sphere.radius_m));
     }
     const auto first_tile = static_cast<std::uint32_t>(plan_.tiles.size());
     for (std::uint32_t face = 0; face < 6; ++face) addFace(index, face);

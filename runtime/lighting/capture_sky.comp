@@ -1,6 +1,6 @@
-// The sky as all points see it: per texel of the cube in world axes the mean of the probes over subsamples²
+// The sky as all points see it: per texel of the cube in world axes the mean of the environment maps over subsamples²
 // directions, plus the constants; suns are not in it. And per texel the weights with which it goes to harmonics. Where
-// light is even they are those of sh::cubeWeights; where a probe has a sun or a window, smaller than a texel, its
+// light is even they are those of sh::cubeWeights; where a environment map has a sun or a window, smaller than a texel, its
 // place within the texel is known here and must not be lost. With d the mean direction of the texel's light, s² its
 // variance, d_u and s_u² those of even light, and y(d, s) = exp(-l(l+1) s² / 4) y(d), the mean of y over a small spot:
 //   Omega y(d, s) + s² / s_u² (w - Omega y(d_u, s_u))
@@ -10,9 +10,9 @@ layout(local_size_x = kWorkGroupSize) in;
 layout(location = 0) uniform mat3 light_from_world;
 layout(location = 1) uniform uint size;
 layout(location = 2) uniform uint subsamples;
-layout(location = 3) uniform vec2 levels;  // of the mip maps of both sets' probes: a texel to two subsamples
+layout(location = 3) uniform vec2 levels;  // of the mip maps of both sets' environment maps: a texel to two subsamples
 layout(location = 4) uniform vec3 constant_radiance;
-layout(location = 5) uniform vec2 shares;  // of the sets' probes
+layout(location = 5) uniform vec2 shares;  // of the sets' environment maps
 layout(binding = kUnitFirstProbes) uniform samplerCube first_probes;
 layout(binding = kUnitSecondProbes) uniform samplerCube second_probes;
 layout(std430, binding = kBindSky) writeonly buffer Sky { vec4 sky[]; };

@@ -32,20 +32,21 @@ constexpr GLint kLightFromWorld = 0, kSize = 1, kSubsamples = 2, kLevels = 3, kC
 constexpr GLint kTexelCount = 0;  // as in capture_sky_light.comp
 constexpr std::uint32_t kLargestProbeCube = 512;
 
-// At least a texel of the cube per texel of the probe, as far as memory goes; a power of two for the mip
-// maps.
-std::uint32_t probeCubeSize(const std::vector<const spec::Probe*>& probes) {
+// At least a texel of the cube per texel of the environment map, as far as memory goes; a power of two for
+// the mip maps.
+std::uint32_t probeCubeSize(const std::vector<const spec::EnvironmentMap*>& environment_maps) {
   std::uint32_t size = 1;
-  for (const spec::Probe* probe : probes) {
-    const std::uint32_t width = probe->image.width;
-    const std::uint32_t wanted = probe->layout == sh::ImageLayout::VerticalCross ? width / 3 : width / 4;
+  for (const spec::EnvironmentMap* environment_map : environment_maps) {
+    const std::uint32_t width = environment_map->image.width;
+    const std::uint32_t wanted =
+        environment_map->layout == sh::ImageLayout::VerticalCross ? width / 3 : width / 4;
     size = std::max(size, std::bit_ceil(std::clamp(wanted, 16u, kLargestProbeCube)));
   }
   return size;
 }
 
 // Means over 2 x 2 places of each texel.
-std::vector<glm::vec4> faceTexels(const std::vector<const spec::Probe*>& probes, int face,
+std::vector<glm::vec4> faceTexels(const std::vector<const spec::EnvironmentMap*>& environment_maps, int face,
                                   std::uint32_t size) {
   constexpr double kPlaces[] = {0.25, 0.75};
   std::vector<glm::vec4> texels;
@@ -57,7 +58,8 @@ std::vector<glm::vec4> faceTexels(const std::vector<const spec::Probe*>& probes,
         for (const double u : kPlaces) {
           const glm::vec3 dir(
               glm::normalize(sh::cubeFaceDirection(face, 2 * (x + u) / size - 1, 2 * (y + v) / size - 1)));
-          for (const spec::Probe* probe : probes) sum += 0.25f * spec::radiance(*probe, dir);
+          for (const spec::EnvironmentMap* environment_map : environment_maps)
+            sum += 0.25f * spec::radiance(*environment_map, dir);
         }
       texels.emplace_back(sum, 0.0f);
     }
@@ -65,17 +67,18 @@ std::vector<glm::vec4> faceTexels(const std::vector<const spec::Probe*>& probes,
 }
 
 // In the lights' own frame, with mip maps.
-gpu::Texture probeCube(const std::vector<const spec::Probe*>& probes) {
-  const std::uint32_t size = probeCubeSize(probes);
-  gpu::Texture cube("capture probes", {.format = GL_RGBA32F,
-                                       .width = size,
-                                       .height = size,
-                                       .levels = static_cast<std::uint32_t>(std::bit_width(size)),
-                                       .cube = true});
+gpu::Texture probeCube(const std::vector<const spec::EnvironmentMap*>& environment_maps) {
+  const std::uint32_t size = probeCubeSize(environment_maps);
+  gpu::Texture cube("capture environment maps", {.format = GL_RGBA32F,
+                                                 .width = size,
+                                                 .height = size,
+                                                 .levels = static_cast<std::uint32_t>(std::bit_width(size)),
+                                                 .cube = true});
   std::vector<std::future<std::vector<glm::vec4>>> faces;
   for (int face = 0; face < 6; ++face)
-    faces.push_back(
-        std::async(std::launch::async, [&probes, face, size] { return faceTexels(probes, face, size); }));
+    faces.push_back(std::async(std::launch::async, [&environment_maps, face, size] {
+      return faceTexels(environment_maps, face, size);
+    }));
   for (int face = 0; face < 6; ++face)
     glTextureSubImage3D(cube.id(), 0, 0, 0, face, static_cast<GLsizei>(size), static_cast<GLsizei>(size), 1,
                         GL_RGBA, GL_FLOAT, faces[static_cast<std::size_t>(face)].get().data());
@@ -111,7 +114,8 @@ Result<CaptureSky> CaptureSky::create(const CaptureOptions& options, const Envir
 void CaptureSky::takeLights(const Environment& environment) {
   if (lights_ == environment.restVersion()) return;
   lights_ = environment.restVersion();
-  for (std::size_t i = 0; i < Environment::kSets; ++i) probes_[i] = probeCube(environment.restOf(i).probes);
+  for (std::size_t i = 0; i < Environment::kSets; ++i)
+    environment_maps_[i] = probeCube(environment.restOf(i).environment_maps);
 }
 
 bool CaptureSky::update(const Environment& environment, const gpu::Buffer& weights, gpu::Counters& counters) {
@@ -127,27 +131,27 @@ void CaptureSky::makeTurned(const Environment& environment, const glm::mat3& wor
   takeLights(environment);
   version_ = 0;
   const glm::mat3 light_from_world = glm::transpose(world_from_light);
-  // Two subsamples to a texel: with one, the filter's triangles would not add up evenly over a turned probe,
-  // and a sun of one texel would flicker by several per cent.
-  const auto levelOf = [&](const gpu::Texture& probes) {
-    return std::max(0.0f, std::log2(2.0f * static_cast<float>(probes.desc().width) /
+  // Two subsamples to a texel: with one, the filter's triangles would not add up evenly over a turned
+  // environment map, and a sun of one texel would flicker by several per cent.
+  const auto levelOf = [&](const gpu::Texture& environment_maps) {
+    return std::max(0.0f, std::log2(2.0f * static_cast<float>(environment_maps.desc().width) /
                                     static_cast<float>(options_.size * options_.subsamples)));
   };
   glm::vec3 constant(0.0f);
   std::array<float, Environment::kSets> shares{};
   for (std::size_t i = 0; i < Environment::kSets; ++i) {
     constant += environment.shareOf(i) * environment.set(i).constant;
-    if (!environment.set(i).probes.empty()) shares[i] = environment.shareOf(i);
+    if (!environment.set(i).environment_maps.empty()) shares[i] = environment.shareOf(i);
   }
   program_.use();
   glUniformMatrix3fv(kLightFromWorld, 1, GL_FALSE, glm::value_ptr(light_from_world));
   glUniform1ui(kSize, options_.size);
   glUniform1ui(kSubsamples, options_.subsamples);
-  glUniform2f(kLevels, levelOf(probes_[0]), levelOf(probes_[1]));
+  glUniform2f(kLevels, levelOf(environment_maps_[0]), levelOf(environment_maps_[1]));
   glUniform3fv(kConstant, 1, glm::value_ptr(constant));
   glUniform2f(kShares, shares[0], shares[1]);
   for (GLuint i = 0; i < Environment::kSets; ++i) {
-    probes_[i].bind(i);
+    environment_maps_[i].bind(i);
     glBindSampler(i, sampler_.id());
   }
   glEnable(GL_TEXTURE_CUBE_MAP_SEAMLESS);

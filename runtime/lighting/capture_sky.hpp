@@ -27,7 +27,8 @@ class CaptureSky {
   // Does nothing if the environment is as it was. True if the cube was made anew.
   // weights: [texel][coefficient], sh::cubeWeights.
   bool update(const Environment& environment, const gpu::Buffer& weights, gpu::Counters& counters);
-  // Makes the cube with the probes turned in any way, for measurements; the next update() makes it anew.
+  // Makes the cube with the environment maps turned in any way, for measurements; the next update() makes it
+  // anew.
   void makeTurned(const Environment& environment, const glm::mat3& world_from_light,
                   const gpu::Buffer& weights);
   // For capture_project.comp.
@@ -40,12 +41,13 @@ class CaptureSky {
 
   CaptureOptions options_;
   gpu::Program program_, light_program_;
-  std::array<gpu::Texture, Environment::kSets> probes_;  // in the lights' own frame, float32, with mip maps
+  std::array<gpu::Texture, Environment::kSets>
+      environment_maps_;  // in the lights' own frame, float32, with mip maps
   gpu::Sampler sampler_;
   gpu::Buffer texels_, weights_, light_;
   gpu::Handle<gpu::TextureTraits> texels_view_, weights_view_;
   std::uint64_t version_ = 0;  // of the environment that the cube shows; 0: of none
-  std::uint64_t lights_ = 0;   // version of those in the probes' cubes
+  std::uint64_t lights_ = 0;   // version of those in the environment maps' cubes
 };
 
 }  // namespace lambent::lighting

@@ -42,9 +42,10 @@ class Seal {
 
 }  // namespace
 
-Environment::ProbeSource Environment::sourceOf(const spec::ProbeLight& light) {
+Environment::EnvironmentMapSource Environment::sourceOf(const spec::EnvironmentMapLight& light) {
   std::error_code code;  // a file that is not there is told of by whoever reads it
-  ProbeSource source{light.file, light.layout, std::filesystem::last_write_time(light.file, code), 0};
+  EnvironmentMapSource source{light.file, light.layout, std::filesystem::last_write_time(light.file, code),
+                              0};
   source.bytes = std::filesystem::file_size(light.file, code);
   return source;
 }
@@ -59,12 +60,14 @@ Result<Environment> Environment::create(const std::vector<spec::Light>& lights,
 Result<void> Environment::setLights(const std::vector<spec::Light>& lights,
                                     const std::vector<spec::Light>& second_lights) {
   const std::array<const std::vector<spec::Light>*, kSets> given = {&lights, &second_lights};
-  // Where the probes come from, in their order: a set and a place in it, or, of kSets, a place in `loaded`.
+  // Where the environment maps come from, in their order: a set and a place in it, or, of kSets, a place in
+  // `loaded`.
   std::vector<std::array<std::size_t, 2>> origins;
   std::vector<LoadedProbe> loaded;
   std::array<std::vector<bool>, kSets> taken;
   for (std::size_t i = 0; i < kSets; ++i) taken[i].assign(sets_[i].known.size(), false);
-  const auto findKnown = [&](const ProbeSource& source) -> std::optional<std::array<std::size_t, 2>> {
+  const auto findKnown =
+      [&](const EnvironmentMapSource& source) -> std::optional<std::array<std::size_t, 2>> {
     for (std::size_t i = 0; i < kSets; ++i)
       for (std::size_t k = 0; k < sets_[i].known.size(); ++k)
         if (!taken[i][k] && sets_[i].known[k].source == source) return std::array{i, k};
@@ -72,34 +75,37 @@ Result<void> Environment::setLights(const std::vector<spec::Light>& lights,
   };
   for (const auto* list : given)
     for (const spec::Light& light : *list) {
-      const auto* file = std::get_if<spec::ProbeLight>(&light);
+      const auto* file = std::get_if<spec::EnvironmentMapLight>(&light);
       if (!file) continue;
-      ProbeSource source = sourceOf(*file);
+      EnvironmentMapSource source = sourceOf(*file);
       if (const auto at = findKnown(source)) {
         taken[(*at)[0]][(*at)[1]] = true;
         origins.push_back(*at);
         continue;
       }
-      Result<spec::Probe> probe = spec::loadProbe(*file);
-      if (!probe) return failAgain(probe.error());
+      Result<spec::EnvironmentMap> environment_map = spec::loadEnvironmentMap(*file);
+      if (!environment_map) return failAgain(environment_map.error());
       origins.push_back({kSets, loaded.size()});
-      KnownProbe known{std::move(source),
-                       sh::projectImage(sh::kMaxOrder, probe->layout, static_cast<int>(probe->image.width),
-                                        static_cast<int>(probe->image.height), probe->image.texels),
-                       bundle::checksum(std::as_bytes(std::span(probe->image.texels)))};
-      loaded.push_back({std::move(*probe), std::move(known)});
+      KnownEnvironmentMap known{
+          std::move(source),
+          sh::projectImage(sh::kMaxOrder, environment_map->layout,
+                           static_cast<int>(environment_map->image.width),
+                           static_cast<int>(environment_map->image.height), environment_map->image.texels),
+          bundle::checksum(std::as_bytes(std::span(environment_map->image.texels)))};
+      loaded.push_back({std::move(*environment_map), std::move(known)});
     }
 
   std::array<Set, kSets> sets;
   auto origin = origins.begin();
   for (std::size_t i = 0; i < kSets; ++i) {
     Set& set = sets[i];
-    Result<spec::DistantLights> made = spec::loadDistantLights(*given[i], [&](const spec::ProbeLight&) {
-      const auto [from, place] = *origin++;
-      set.known.push_back(std::move(from == kSets ? loaded[place].known : sets_[from].known[place]));
-      return Result<spec::Probe>(
-          std::move(from == kSets ? loaded[place].probe : sets_[from].lights.probes[place]));
-    });
+    Result<spec::DistantLights> made =
+        spec::loadDistantLights(*given[i], [&](const spec::EnvironmentMapLight&) {
+          const auto [from, place] = *origin++;
+          set.known.push_back(std::move(from == kSets ? loaded[place].known : sets_[from].known[place]));
+          return Result<spec::EnvironmentMap>(std::move(
+              from == kSets ? loaded[place].environment_map : sets_[from].lights.environment_maps[place]));
+        });
     set.lights = std::move(*made);  // nothing was left to read
     part(set);
   }
@@ -117,7 +123,7 @@ void Environment::part(Set& set) const {
   set.parted = partLights(set.lights, {.most = most_keys_});
   set.sky = sh::constantLight(sh::kMaxOrder, set.lights.constant);
   for (std::size_t k = 0; k < set.known.size(); ++k) {
-    const std::optional<spec::Probe>& rest = set.parted.probes[k];
+    const std::optional<spec::EnvironmentMap>& rest = set.parted.environment_maps[k];
     set.sky += rest ? sh::projectImage(sh::kMaxOrder, rest->layout, static_cast<int>(rest->image.width),
                                        static_cast<int>(rest->image.height), rest->image.texels)
                     : set.known[k].sky;
@@ -136,7 +142,7 @@ void Environment::applyEdits(std::size_t index) {
     std::optional<std::size_t> nearest;
     float least_rad = 0.0f;
     for (std::size_t k = 0; k < count; ++k) {
-      if (!set.parted.origins[k].in_probe) continue;
+      if (!set.parted.origins[k].in_map) continue;
       const Disc& key = set.parted.keys[k];
       const float angle_rad = std::acos(std::clamp(glm::dot(key.direction, edit.found), -1.0f, 1.0f));
       if (angle_rad > std::max(kSameKey_rad, key.radius_rad) || (nearest && angle_rad >= least_rad)) continue;
@@ -146,7 +152,7 @@ void Environment::applyEdits(std::size_t index) {
     if (nearest) edits[*nearest] = edit;
   }
   set.key_discs = set.parted.keys;
-  bool same_pictures = set.edits.size() == count && set.pictures.size() == set.lights.probes.size();
+  bool same_pictures = set.edits.size() == count && set.pictures.size() == set.lights.environment_maps.size();
   for (std::size_t k = 0; k < count; ++k) {
     same_pictures = same_pictures && set.edits[k].has_value() == edits[k].has_value();
     if (!edits[k]) continue;
@@ -156,12 +162,13 @@ void Environment::applyEdits(std::size_t index) {
   set.edits = std::move(edits);
   set.keys = spec::discVector(set.key_discs);
   if (same_pictures) return;
-  set.pictures.assign(set.lights.probes.size(), std::nullopt);
+  set.pictures.assign(set.lights.environment_maps.size(), std::nullopt);
   for (const KeyTexel& texel : set.parted.texels) {
     if (!set.edits[texel.key]) continue;
-    std::optional<spec::Probe>& picture = set.pictures[texel.probe];
-    if (!picture) picture = set.lights.probes[texel.probe];
-    picture->image.texels[texel.texel] = set.parted.probes[texel.probe]->image.texels[texel.texel];
+    std::optional<spec::EnvironmentMap>& picture = set.pictures[texel.environment_map];
+    if (!picture) picture = set.lights.environment_maps[texel.environment_map];
+    picture->image.texels[texel.texel] =
+        set.parted.environment_maps[texel.environment_map]->image.texels[texel.texel];
   }
 }
 
@@ -186,19 +193,19 @@ void Environment::setMostKeys(std::uint32_t most) {
 
 Environment::Rest Environment::restOf(std::size_t index) const {
   const Set& set = sets_[index];
-  Rest rest{.probes = {}, .constant = set.lights.constant, .discs = set.parted.discs};
-  for (std::size_t k = 0; k < set.lights.probes.size(); ++k) {
-    const std::optional<spec::Probe>& parted = set.parted.probes[k];
-    rest.probes.push_back(parted ? &*parted : &set.lights.probes[k]);
+  Rest rest{.environment_maps = {}, .constant = set.lights.constant, .discs = set.parted.discs};
+  for (std::size_t k = 0; k < set.lights.environment_maps.size(); ++k) {
+    const std::optional<spec::EnvironmentMap>& parted = set.parted.environment_maps[k];
+    rest.environment_maps.push_back(parted ? &*parted : &set.lights.environment_maps[k]);
   }
   return rest;
 }
 
 Environment::Shown Environment::shownOf(std::size_t index) const {
   const Set& set = sets_[index];
-  Shown shown{.probes = {}, .constant = set.lights.constant, .discs = set.lights.discs};
-  for (std::size_t k = 0; k < set.lights.probes.size(); ++k)
-    shown.probes.push_back(set.pictures[k] ? &*set.pictures[k] : &set.lights.probes[k]);
+  Shown shown{.environment_maps = {}, .constant = set.lights.constant, .discs = set.lights.discs};
+  for (std::size_t k = 0; k < set.lights.environment_maps.size(); ++k)
+    shown.environment_maps.push_back(set.pictures[k] ? &*set.pictures[k] : &set.lights.environment_maps[k]);
   for (std::size_t k = 0; k < set.key_discs.size(); ++k)
     if (set.edits[k]) shown.discs.push_back(set.key_discs[k]);
   return shown;
@@ -229,12 +236,12 @@ void Environment::seal() {
       seal.add(disc.radius_rad);
       seal.add(disc.radiance);
     }
-    seal.add(set.lights.probes.size());
-    for (std::size_t k = 0; k < set.lights.probes.size(); ++k) {
-      const spec::Probe& probe = set.lights.probes[k];
-      seal.add(static_cast<std::uint32_t>(probe.layout));
-      seal.add(probe.image.width);
-      seal.add(probe.image.height);
+    seal.add(set.lights.environment_maps.size());
+    for (std::size_t k = 0; k < set.lights.environment_maps.size(); ++k) {
+      const spec::EnvironmentMap& environment_map = set.lights.environment_maps[k];
+      seal.add(static_cast<std::uint32_t>(environment_map.layout));
+      seal.add(environment_map.image.width);
+      seal.add(environment_map.image.height);
       seal.add(set.known[k].checksum);
     }
   }

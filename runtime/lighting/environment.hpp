@@ -1,12 +1,13 @@
-// The light at infinity: probes, suns and constants added up, in one or two sets to fade between, turned
-// together about +Y. Comes in: the lights as parsed; those that stand in the scene are passed over. Goes out:
-// light vectors of order 8 in world space (probes projected once when loaded, suns in closed form), the suns
-// as discs, and what the sky shows. Fading and turning mix what was projected once. If key lights are asked
-// for, the light is parted once when it is loaded (key_lights.hpp): surfaces take the direct light of key
-// lights by shadow maps, and the rest, which few bands carry, by transfer. Key lights that were found in
-// probes may be moved, dimmed and coloured: their discs change, and the sky shows them in place of their
-// texels. Whoever follows one environment may be given another at any time: versions tell what they say, not
-// how often it was changed. No GL. Errors: those of loading a probe.
+// The light at infinity: environment maps, suns and constants added up, in one or two sets to fade between,
+// turned together about +Y. Comes in: the lights as parsed; those that stand in the scene are passed over.
+// Goes out: light vectors of order 8 in world space (environment maps projected once when loaded, suns in
+// closed form), the suns as discs, and what the sky shows. Fading and turning mix what was projected once. If
+// key lights are asked for, the light is parted once when it is loaded (key_lights.hpp): surfaces take the
+// direct light of key lights by shadow maps, and the rest, which few bands carry, by transfer. Key lights
+// that were found in environment maps may be moved, dimmed and coloured: their discs change, and the sky
+// shows them in place of their texels. Whoever follows one environment may be given another at any time:
+// versions tell what they say, not how often it was changed. No GL. Errors: those of loading a environment
+// map.
 #pragma once
 
 #include <array>
@@ -36,9 +37,9 @@ class Environment {
 
   static Result<Environment> create(const std::vector<spec::Light>& lights,
                                     const std::vector<spec::Light>& second_lights = {});
-  // Shines with these in place of its own; turn, fade and intensity stay. Probes that it has, of files that
-  // did not change since, are neither read nor projected again. Errors: those of create(); nothing is changed
-  // then.
+  // Shines with these in place of its own; turn, fade and intensity stay. Environment maps that it has, of
+  // files that did not change since, are neither read nor projected again. Errors: those of create(); nothing
+  // is changed then.
   Result<void> setLights(const std::vector<spec::Light>& lights,
                          const std::vector<spec::Light>& second_lights = {});
 
@@ -46,10 +47,10 @@ class Environment {
   // if it changes.
   void setMostKeys(std::uint32_t most);
 
-  // In place of the edits before. Each is of the key light of its set that was found in a probe nearest to
-  // edit.found, if that is close enough; of several edits of one key light the last counts. One that meets no
-  // key light changes nothing, and waits for another parting. They stay when other lights are loaded: whoever
-  // loads these says which edits are theirs.
+  // In place of the edits before. Each is of the key light of its set that was found in a environment map
+  // nearest to edit.found, if that is close enough; of several edits of one key light the last counts. One
+  // that meets no key light changes nothing, and waits for another parting. They stay when other lights are
+  // loaded: whoever loads these says which edits are theirs.
   void setKeyEdits(std::vector<spec::KeyEdit> edits);
 
   // Each gives another version where it changes something. Values that are not finite change nothing.
@@ -86,9 +87,9 @@ class Environment {
 
   // As loaded, without edits: the lights' own frame, whole radiance.
   const spec::DistantLights& set(std::size_t index) const { return sets_[index].lights; }
-  // The same without the key lights: probes without their peaks, and the discs that are none.
+  // The same without the key lights: environment maps without their peaks, and the discs that are none.
   struct Rest {
-    std::vector<const spec::Probe*> probes;
+    std::vector<const spec::EnvironmentMap*> environment_maps;
     glm::vec3 constant{0.0f};
     std::span<const Disc> discs;
   };
@@ -97,7 +98,7 @@ class Environment {
   // What an eye sees: as loaded, but for key lights that are edited. These are out of the pictures, and
   // discs.
   struct Shown {
-    std::vector<const spec::Probe*> probes;
+    std::vector<const spec::EnvironmentMap*> environment_maps;
     glm::vec3 constant{0.0f};
     std::vector<Disc> discs;
   };
@@ -112,37 +113,39 @@ class Environment {
   std::vector<FoundKey> foundKeys() const;
   // By what set() is multiplied now.
   float shareOf(std::size_t index) const;
-  // What was repaired in the probes; a sentence each.
+  // What was repaired in the environment maps; a sentence each.
   const std::vector<std::string>& notices() const { return notices_; }
 
  private:
-  // What a probe was loaded from.
-  struct ProbeSource {
+  // What a environment map was loaded from.
+  struct EnvironmentMapSource {
     std::filesystem::path file;
     std::optional<sh::ImageLayout> layout;
     std::filesystem::file_time_type written{};
     std::uintmax_t bytes = 0;
-    bool operator==(const ProbeSource&) const = default;
+    bool operator==(const EnvironmentMapSource&) const = default;
   };
-  static ProbeSource sourceOf(const spec::ProbeLight& light);
-  // What takes long to say of a probe.
-  struct KnownProbe {
-    ProbeSource source;
+  static EnvironmentMapSource sourceOf(const spec::EnvironmentMapLight& light);
+  // What takes long to say of a environment map.
+  struct KnownEnvironmentMap {
+    EnvironmentMapSource source;
     sh::LightVector sky;
     std::uint64_t checksum = 0;  // of its texels
   };
   struct LoadedProbe {
-    spec::Probe probe;
-    KnownProbe known;
+    spec::EnvironmentMap environment_map;
+    KnownEnvironmentMap known;
   };
   struct Set {
     spec::DistantLights lights;
-    std::vector<KnownProbe> known;  // as lights.probes
+    std::vector<KnownEnvironmentMap> known;  // as lights.environment maps
     PartedLights parted;
-    std::vector<Disc> key_discs;                       // parted.keys with the edits
-    std::vector<std::optional<spec::KeyEdit>> edits;   // as parted.keys
-    std::vector<std::optional<spec::Probe>> pictures;  // as lights.probes: without the keys that are edited
-    sh::LightVector sky, discs, keys;  // in the lights' own frame; sky: probes and the constant without peaks
+    std::vector<Disc> key_discs;                      // parted.keys with the edits
+    std::vector<std::optional<spec::KeyEdit>> edits;  // as parted.keys
+    std::vector<std::optional<spec::EnvironmentMap>>
+        pictures;  // as lights.environment maps: without the keys that are edited
+    sh::LightVector sky, discs,
+        keys;  // in the lights' own frame; sky: environment maps and the constant without peaks
   };
   Environment() = default;
   void part(Set& set) const;

@@ -137,7 +137,7 @@ void GroupLights::followWindows(const Environment& environment, sh::Window windo
   // At 30 to 75 microseconds each.
   constexpr std::size_t kWorthAThread = 8;
   struct Search {
-    sh::KeptWindow* kept;
+    sh::CachedWindow* kept;
     sh::LightVector light;
   };
   std::vector<Search> searches;
@@ -147,7 +147,7 @@ void GroupLights::followWindows(const Environment& environment, sh::Window windo
     const GroupPlace& place = groups[renewal.group];
     const bool from_environment = place.incident[renewal.sample].light == nullptr;
     if (from_environment && std::exchange(followed[environmentWindow(place)], true)) continue;
-    sh::KeptWindow& kept = windowOf(renewal, place);
+    sh::CachedWindow& kept = windowOf(renewal, place);
     const int bands = std::min(static_cast<int>(place.order), max_order_);
     const sh::LightVector light = lightOf(environment, place, renewal.sample).truncated(bands);
     if (!kept.fits(light, window)) searches.push_back({&kept, light});
@@ -156,7 +156,7 @@ void GroupLights::followWindows(const Environment& environment, sh::Window windo
              [&](std::size_t i) { searches[i].kept->follow(searches[i].light, window); });
 }
 
-sh::KeptWindow& GroupLights::windowOf(const Renewal& renewal, const GroupPlace& place) {
+sh::CachedWindow& GroupLights::windowOf(const Renewal& renewal, const GroupPlace& place) {
   if (place.incident[renewal.sample].light != nullptr)
     return groups_[renewal.group].samples[renewal.sample].window;
   return environment_windows_[environmentWindow(place)];

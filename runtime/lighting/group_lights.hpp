@@ -1,6 +1,6 @@
 // The light of each rigid group on the GPU, in the group's own frame: what effects multiply transfer with.
 // Comes in: the environment, and per group its rotation in the world, the order of its transfer, what arrives
-// at its light samples and what its own lights give now. Goes out: per group and light sample two blocks of
+// at its light probes and what its own lights give now. Goes out: per group and light probe two blocks of
 // 64 coefficients of vec4 (zeros above order²), the light without key lights and that of key lights alone
 // (and of lamps whose straight light comes per pixel, too),
 // then the group's own lights, and versions that rise when these change. The first block is windowed (the
@@ -16,14 +16,14 @@
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
-#include "runtime/base/by_key.hpp"
+#include "runtime/base/keyed_state.hpp"
 #include "runtime/gpu/objects.hpp"
 #include "runtime/lighting/environment.hpp"
-#include "runtime/sh/kept_window.hpp"
+#include "runtime/sh/cached_window.hpp"
 
 namespace lambent::lighting {
 
-// What arrives at a light sample, world axes.
+// What arrives at a light probe, world axes.
 struct Incident {
   const sh::LightVector* light = nullptr;  // without key lights; null: the environment's, nothing in its way
   const sh::LightVector* key = nullptr;    // of key lights and lamps that stand apart, likewise
@@ -35,7 +35,7 @@ struct GroupPlace {
   std::uint32_t order = 1;
   // Lights that belong to the group, one per light column of its transfer: colour times strength.
   std::vector<glm::vec3> lamps{};
-  std::vector<Incident> incident = {{}};  // per light sample
+  std::vector<Incident> incident = {{}};  // per light probe
   std::uint64_t key = 0;                  // by which the group is known again when others come and go
   // Key lights stand apart, for their direct light comes by shadow maps, and so do lamps. Else transfer
   // brings all of them.
@@ -45,7 +45,7 @@ struct GroupPlace {
 class GroupLights {
  public:
   static constexpr std::uint32_t kBlock = sh::kMaxCoefficients;  // vec4s of one light
-  static constexpr std::uint32_t kStride = 2 * kBlock;  // of a light sample: without keys, keys alone
+  static constexpr std::uint32_t kStride = 2 * kBlock;           // of a light probe: without keys, keys alone
 
   GroupLights() : table_("group lights") {}
 
@@ -62,13 +62,13 @@ class GroupLights {
   std::size_t groupCount() const { return groups_.size(); }
   // Whether there are key lights, or lamps that stand apart; without them their blocks are 0.
   bool hasKeys() const { return has_keys_; }
-  // vec4 indices: of a light sample's coefficients (those of its key lights kBlock behind them), of the
+  // vec4 indices: of a light probe's coefficients (those of its key lights kBlock behind them), of the
   // group's own lights.
   std::uint32_t firstOf(std::size_t group, std::size_t sample = 0) const {
     return groups_[group].first + kStride * static_cast<std::uint32_t>(sample);
   }
   std::uint32_t lampsOf(std::size_t group) const { return firstOf(group, groups_[group].samples.size()); }
-  // Of all of it, of one light sample, of its own lights.
+  // Of all of it, of one light probe, of its own lights.
   std::uint64_t versionOf(std::size_t group) const { return groups_[group].version; }
   std::uint64_t versionOf(std::size_t group, std::size_t sample) const {
     return groups_[group].samples[sample].version;
@@ -78,7 +78,7 @@ class GroupLights {
   // it changed most: 0 where nothing did, at most 1. In world axes: a group that turns under a still light
   // has 0.
   float changeOf(std::size_t group) const { return groups_[group].change; }
-  // Light samples whose coefficients the last update wrote.
+  // Light probes whose coefficients the last update wrote.
   std::uint32_t renewedSamples() const { return renewed_; }
   void bindStorage(std::uint32_t binding) const { table_.bindStorage(binding); }
   // As uploaded, for CPU twins.
@@ -89,7 +89,7 @@ class GroupLights {
     bool from_environment = false;
     std::uint64_t seen = 0;  // version of the light it was computed from
     std::uint64_t version = 0;
-    sh::KeptWindow window;
+    sh::CachedWindow window;
     sh::LightVector light_ws{1}, key_ws{1};  // the first windowed
   };
   struct Group {
@@ -102,7 +102,7 @@ class GroupLights {
     std::uint64_t version = 0, lamps_version = 0;
     float change = 0.0f;
   };
-  // A light sample to be written.
+  // A light probe to be written.
   struct Renewal {
     std::size_t group = 0, sample = 0;
     bool light = false;  // also its light is new, not only the frame it is in
@@ -111,7 +111,7 @@ class GroupLights {
   // Those whose windows are to be searched for, on several threads: each is for itself.
   void followWindows(const Environment& environment, sh::Window window, std::span<const GroupPlace> groups,
                      std::span<const Renewal> renewals);
-  // What arrives at a light sample, world axes: without key lights (all of it where they are not apart), and
+  // What arrives at a light probe, world axes: without key lights (all of it where they are not apart), and
   // of them.
   static sh::LightVector lightOf(const Environment& environment, const GroupPlace& place, std::size_t sample);
   static sh::LightVector keyLightOf(const Environment& environment, const GroupPlace& place,
@@ -120,14 +120,14 @@ class GroupLights {
   static std::size_t environmentWindow(const GroupPlace& place) {
     return 2 * std::size_t{place.order} + (place.parted ? 1 : 0);
   }
-  sh::KeptWindow& windowOf(const Renewal& renewal, const GroupPlace& place);
+  sh::CachedWindow& windowOf(const Renewal& renewal, const GroupPlace& place);
   void write(const Environment& environment, std::span<const GroupPlace> groups,
              std::span<const Renewal> renewals);
   void layOut(std::span<const GroupPlace> groups);
   bool updateLamps(Group& group, const GroupPlace& place);
 
-  ByKey<Group> groups_;
-  std::array<sh::KeptWindow, 2 * (sh::kMaxOrder + 1)> environment_windows_;  // see environmentWindow()
+  KeyedState<Group> groups_;
+  std::array<sh::CachedWindow, 2 * (sh::kMaxOrder + 1)> environment_windows_;  // see environmentWindow()
   std::vector<glm::vec4> coefficients_;
   std::uint64_t environment_version_ = 0;
   sh::Window window_ = sh::Window::Off;

@@ -1,4 +1,4 @@
-// What arrives at every light sample, step by step. A sample that sees no body of another group and no local
+// What arrives at every light probe, step by step. A sample that sees no body of another group and no local
 // light has the environment's own light. Others have it from a capture (sky and bodies) plus the suns and
 // local lights in closed form, each times the share of it that no body hides; what of these comes per pixel
 // is handed on with the key lights. Captures are drawn for samples
@@ -17,7 +17,7 @@
 #include <glm/gtc/quaternion.hpp>
 #include <glm/vec3.hpp>
 
-#include "runtime/base/by_key.hpp"
+#include "runtime/base/keyed_state.hpp"
 #include "runtime/base/result.hpp"
 #include "runtime/lighting/capture.hpp"
 #include "runtime/lighting/environment.hpp"
@@ -61,7 +61,7 @@ struct IncidentGroup {
 };
 
 struct IncidentCounts {
-  std::uint32_t samples = 0;   // light samples there are
+  std::uint32_t samples = 0;   // light probes there are
   std::uint32_t captured = 0;  // drawn in this step
   std::uint32_t arrived = 0;   // whose captures arrived in this step
   // Surroundings changed, but by less than is drawn while things move, or there was no more room in the step;
@@ -99,7 +99,7 @@ class IncidentLight {
   // Nothing is on its way, nothing was left for later and the last update handed on nothing new.
   bool atRest() const;
 
-  // Of a group's light samples, for GroupLights.
+  // Of a group's light probes, for GroupLights.
   std::vector<Incident> incidentOf(std::size_t group) const;
   const IncidentCounts& counts() const { return counts_; }
 
@@ -187,9 +187,9 @@ class IncidentLight {
 
   Capture capture_;
   int order_;
-  ByKey<Group> groups_;
+  KeyedState<Group> groups_;
   std::vector<std::uint64_t> body_keys_;  // what indices of bodies mean in all that is kept
-  ByKey<Body> bodies_;                    // as they stood when it was last looked for changes
+  KeyedState<Body> bodies_;               // as they stood when it was last looked for changes
   std::uint64_t body_version_ = 0;        // the last that a pose was given
   std::vector<Request> requests_;         // on their way
   std::uint64_t version_ = 0;             // the last that a sample was given

@@ -58,7 +58,7 @@ struct Choice {
 class Parting {
  public:
   Parting(const spec::DistantLights& lights, const KeyLightOptions& options)
-      : lights_(lights), options_(options), blocks_(lights.probes) {}
+      : lights_(lights), options_(options), blocks_(lights.environment_maps) {}
   PartedLights run();
 
  private:
@@ -250,7 +250,7 @@ struct Taken {
   glm::dvec3 flux{0.0};
   double texel_sr = 0.0;  // sum, weighted with the flux
   std::vector<TakenTexel> texels;
-  std::vector<double> of_probe;  // luminous flux from each picture
+  std::vector<double> of_map;  // luminous flux from each picture
 };
 
 // A sun's glow has little of its light, but would make its disc several times too large, and so its shadows
@@ -283,24 +283,26 @@ spec::Disc discOf(const Taken& taken) {
 // noted name the piece, until put() knows its key.
 std::vector<Parting::Key> Parting::takeFrom(const Choice& choice, PartedLights& parted) const {
   std::vector<Taken> taken(choice.pieces.size());
-  for (Taken& piece : taken) piece.of_probe.resize(lights_.probes.size());
+  for (Taken& piece : taken) piece.of_map.resize(lights_.environment_maps.size());
   const PieceLimits limit = limits(choice.radius_rad);
-  for (std::size_t k = 0; k < lights_.probes.size() && !choice.pieces.empty(); ++k) {
-    const spec::Probe& probe = lights_.probes[k];
-    const int width = static_cast<int>(probe.image.width), height = static_cast<int>(probe.image.height);
+  for (std::size_t k = 0; k < lights_.environment_maps.size() && !choice.pieces.empty(); ++k) {
+    const spec::EnvironmentMap& environment_map = lights_.environment_maps[k];
+    const int width = static_cast<int>(environment_map.image.width),
+              height = static_cast<int>(environment_map.image.height);
     for (int y = 0; y < height; ++y)
       for (int x = 0; x < width; ++x) {
-        const std::size_t i = static_cast<std::size_t>(y) * probe.image.width + static_cast<std::size_t>(x);
-        const glm::vec3 whole = probe.image.texels[i];
+        const std::size_t i =
+            static_cast<std::size_t>(y) * environment_map.image.width + static_cast<std::size_t>(x);
+        const glm::vec3 whole = environment_map.image.texels[i];
         const double value = luminance(whole);
         if (!(value > choice.threshold)) continue;
-        const double sr = sh::texelSolidAngle(probe.layout, width, height, x, y);
+        const double sr = sh::texelSolidAngle(environment_map.layout, width, height, x, y);
         if (sr <= 0.0) continue;
-        const glm::dvec3 dir = sh::texelDirection(probe.layout, width, height, x, y);
+        const glm::dvec3 dir = sh::texelDirection(environment_map.layout, width, height, x, y);
         const auto owner = pieceOf(choice.pieces, limit, dir);
         if (!owner) continue;
-        std::optional<spec::Probe>& rest = parted.probes[k];
-        if (!rest) rest = probe;
+        std::optional<spec::EnvironmentMap>& rest = parted.environment_maps[k];
+        if (!rest) rest = environment_map;
         glm::vec3 kept;
         for (int channel = 0; channel < 3; ++channel)  // what is negative cannot be a key's
           kept[channel] = whole[channel] > 0.0f
@@ -313,7 +315,7 @@ std::vector<Parting::Key> Parting::takeFrom(const Choice& choice, PartedLights& 
         piece.moment.add(dir, flux);
         piece.texel_sr += sr * flux;
         piece.texels.push_back({glm::vec3(dir), static_cast<float>(flux)});
-        piece.of_probe[k] += flux;
+        piece.of_map[k] += flux;
         parted.texels.push_back({static_cast<std::uint32_t>(k), static_cast<std::uint32_t>(i),
                                  static_cast<std::uint32_t>(*owner)});
       }
@@ -321,9 +323,9 @@ std::vector<Parting::Key> Parting::takeFrom(const Choice& choice, PartedLights& 
   std::vector<Key> keys;
   for (std::size_t i = 0; i < taken.size(); ++i) {
     if (!(taken[i].moment.flux > 0.0)) continue;
-    const auto most = std::ranges::max_element(taken[i].of_probe) - taken[i].of_probe.begin();
+    const auto most = std::ranges::max_element(taken[i].of_map) - taken[i].of_map.begin();
     keys.push_back({.disc = discOf(taken[i]),
-                    .origin = {.in_probe = true, .index = static_cast<std::size_t>(most)},
+                    .origin = {.in_map = true, .index = static_cast<std::size_t>(most)},
                     .piece = static_cast<std::uint32_t>(i)});
   }
   return keys;
@@ -332,7 +334,7 @@ std::vector<Parting::Key> Parting::takeFrom(const Choice& choice, PartedLights& 
 PartedLights Parting::run() {
   PartedLights parted;
   parted.discs = lights_.discs;
-  parted.probes.resize(lights_.probes.size());
+  parted.environment_maps.resize(lights_.environment_maps.size());
   blocks_.addTo(all_);
   brightest_ = blocks_.brightest();
   readDiscs();
@@ -358,7 +360,7 @@ PartedLights Parting::run() {
   std::vector<bool> is_key(discs_.size());
   for (const std::size_t i : choice.discs) {
     keys.push_back({.disc = discs_[i].disc,
-                    .origin = {.in_probe = false, .index = discs_[i].source, .piece = discs_[i].divided},
+                    .origin = {.in_map = false, .index = discs_[i].source, .piece = discs_[i].divided},
                     .piece = {}});
     is_key[i] = true;
     broken[discs_[i].source] = true;

@@ -24,10 +24,12 @@ double luminance(const glm::vec3& radiance) {
   return 0.2126 * rgb.r + 0.7152 * rgb.g + 0.0722 * rgb.b;
 }
 
-LightBlocks::Search LightBlocks::searchOf(const spec::Probe& probe, std::size_t first_block) {
-  const spec::RgbImage& image = probe.image;
-  Search search{&probe, static_cast<int>(image.width), static_cast<int>(image.height), 1, 1, first_block};
-  const bool cross = probe.layout == sh::ImageLayout::VerticalCross;  // blocks stay within a square
+LightBlocks::Search LightBlocks::searchOf(const spec::EnvironmentMap& environment_map,
+                                          std::size_t first_block) {
+  const spec::RgbImage& image = environment_map.image;
+  Search search{&environment_map, static_cast<int>(image.width), static_cast<int>(image.height), 1, 1,
+                first_block};
+  const bool cross = environment_map.layout == sh::ImageLayout::VerticalCross;  // blocks stay within a square
   const std::uint32_t side = cross ? image.width / 3 : image.width;
   const auto blocks = [&](std::uint32_t texels) { return image.texels.size() / texels / texels; };
   for (std::uint32_t n = 2; n <= side && blocks(search.texels) > kMostBlocks; ++n)
@@ -41,7 +43,7 @@ LightBlocks::Search LightBlocks::searchOf(const spec::Probe& probe, std::size_t 
 // visit(block, luminance) for every texel, or for every part of each.
 template <typename Visit>
 void LightBlocks::eachBlock(const Search& search, Visit&& visit) {
-  const spec::RgbImage& image = search.probe->image;
+  const spec::RgbImage& image = search.environment_map->image;
   const std::uint32_t parts = search.parts, texels = search.texels;
   const auto width = static_cast<std::size_t>(search.width);
   for (std::uint32_t y = 0; y < image.height; ++y)
@@ -55,16 +57,16 @@ void LightBlocks::eachBlock(const Search& search, Visit&& visit) {
     }
 }
 
-LightBlocks::LightBlocks(std::span<const spec::Probe> probes) {
-  for (const spec::Probe& probe : probes) {
-    const Search search = searchOf(probe, blocks_.size());
+LightBlocks::LightBlocks(std::span<const spec::EnvironmentMap> environment_maps) {
+  for (const spec::EnvironmentMap& environment_map : environment_maps) {
+    const Search search = searchOf(environment_map, blocks_.size());
     searches_.push_back(search);
     for (int y = 0; y < search.height; ++y)
       for (int x = 0; x < search.width; ++x) {
         Block block;
-        block.texel_sr = sh::texelSolidAngle(probe.layout, search.width, search.height, x, y) /
+        block.texel_sr = sh::texelSolidAngle(environment_map.layout, search.width, search.height, x, y) /
                          (search.texels * search.texels);
-        block.point.dir = sh::texelDirection(probe.layout, search.width, search.height, x, y);
+        block.point.dir = sh::texelDirection(environment_map.layout, search.width, search.height, x, y);
         if (block.texel_sr > 0.0) block.point.at = FluxGrid::place(block.point.dir);
         blocks_.push_back(block);
       }

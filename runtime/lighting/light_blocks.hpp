@@ -1,5 +1,5 @@
 // Pictures of light as blocks of texels, and what of each is brighter than a threshold that is lowered step
-// by step. In: light probes. Out: all their light on a FluxGrid, and points of light above the threshold.
+// by step. In: environment maps. Out: all their light on a FluxGrid, and points of light above the threshold.
 // Each texel is looked at twice, and once more when the threshold passes it, so that a whole descent costs
 // little more than one threshold. Pure CPU, one thread.
 #pragma once
@@ -14,7 +14,7 @@
 #include "runtime/lighting/light_loss.hpp"
 #include "runtime/lighting/light_pieces.hpp"
 #include "runtime/sh/image_layout.hpp"
-#include "runtime/spec/probe.hpp"
+#include "runtime/spec/environment_map.hpp"
 
 namespace lambent::lighting {
 
@@ -22,7 +22,7 @@ double luminance(const glm::vec3& radiance);  // Rec.709
 
 class LightBlocks {
  public:
-  explicit LightBlocks(std::span<const spec::Probe> probes);
+  explicit LightBlocks(std::span<const spec::EnvironmentMap> environment_maps);
 
   double brightest() const { return brightest_; }  // luminance of a texel, 0 or more
   void addTo(FluxGrid& grid) const;                // all light
@@ -38,7 +38,7 @@ class LightBlocks {
  private:
   // A picture as it is searched: a coarser (or finer) picture of the same layout.
   struct Search {
-    const spec::Probe* probe;
+    const spec::EnvironmentMap* environment_map;
     int width, height;        // of blocks
     std::uint32_t texels;     // along a block's edge
     std::uint32_t parts;      // along a texel's edge, else 1
@@ -55,7 +55,7 @@ class LightBlocks {
     std::uint32_t block;
     float luminance;
   };
-  static Search searchOf(const spec::Probe& probe, std::size_t first_block);
+  static Search searchOf(const spec::EnvironmentMap& environment_map, std::size_t first_block);
   template <typename Visit>
   static void eachBlock(const Search& search, Visit&& visit);
   std::size_t levelOf(double value) const;

@@ -9,7 +9,7 @@
 #include <glm/vec3.hpp>
 
 #include "runtime/lighting/capture.hpp"
-#include "runtime/lighting/near_light.hpp"
+#include "runtime/lighting/shadowed_light.hpp"
 #include "runtime/sh/light_vector.hpp"
 
 namespace lambent::lighting {
@@ -36,6 +36,6 @@ sh::LightVector lightAt(const LocalLight& light, const glm::vec3& point_ws, int 
 std::optional<LightQuery> queryOf(const LocalLight& light, const glm::vec3& point_ws);
 
 // For shading per pixel; none for light from infinity.
-std::optional<NearLight> nearLightOf(const LocalLight& light);
+std::optional<ShadowedLight> shadowedLightOf(const LocalLight& light);
 
 }  // namespace lambent::lighting

@@ -3,7 +3,8 @@
 // receives what the patches give off that they meet first (a gathering radiosity; Cohen and Greenberg 1985
 // for the equations). Points of surfaces have links, one for each of their rays: the patch that it meets.
 // Both are made once; then light is bounced by sums alone. All rays are fixed, so the same group gives the
-// same numbers on any number of threads. Radiance of matte surfaces: what leaves is albedo times E/pi. No GL.
+// same numbers on any number of threads. Radiance of diffuse surfaces: what leaves is albedo times E/pi. No
+// GL.
 #pragma once
 
 #include <array>

@@ -30,21 +30,22 @@ struct DiscRecord {
 };
 static_assert(sizeof(DiscRecord) == 32);
 
-// About one texel of the cube per texel of the probe; a constant needs no more than one. A power of two:
-// reflections look into mip levels, and halves of odd sizes leave a row of texels out (a lamp may stand in
-// it).
-std::uint32_t cubeSize(std::span<const spec::Probe* const> probes) {
+// About one texel of the cube per texel of the environment map; a constant needs no more than one. A power of
+// two: reflections look into mip levels, and halves of odd sizes leave a row of texels out (a lamp may stand
+// in it).
+std::uint32_t cubeSize(std::span<const spec::EnvironmentMap* const> environment_maps) {
   std::uint32_t size = 1;
-  for (const spec::Probe* probe : probes) {
-    const std::uint32_t width = probe->image.width;
-    const std::uint32_t wanted = probe->layout == sh::ImageLayout::VerticalCross ? width / 3 : width / 4;
+  for (const spec::EnvironmentMap* environment_map : environment_maps) {
+    const std::uint32_t width = environment_map->image.width;
+    const std::uint32_t wanted =
+        environment_map->layout == sh::ImageLayout::VerticalCross ? width / 3 : width / 4;
     size = std::max(size, std::bit_ceil(std::clamp(wanted, 16u, 1024u)));
   }
   return size;
 }
 
-std::vector<std::uint64_t> faceTexels(std::span<const spec::Probe* const> probes, glm::vec3 constant,
-                                      int face, std::uint32_t size) {
+std::vector<std::uint64_t> faceTexels(std::span<const spec::EnvironmentMap* const> environment_maps,
+                                      glm::vec3 constant, int face, std::uint32_t size) {
   std::vector<std::uint64_t> texels;
   texels.reserve(std::size_t{size} * size);
   for (std::uint32_t y = 0; y < size; ++y)
@@ -52,7 +53,8 @@ std::vector<std::uint64_t> faceTexels(std::span<const spec::Probe* const> probes
       const glm::vec3 dir =
           sh::cubeTexelDirection(static_cast<int>(size), face, static_cast<int>(x), static_cast<int>(y));
       glm::vec3 sum = constant;
-      for (const spec::Probe* probe : probes) sum += spec::radiance(*probe, dir);
+      for (const spec::EnvironmentMap* environment_map : environment_maps)
+        sum += spec::radiance(*environment_map, dir);
       texels.push_back(glm::packHalf4x16(glm::vec4(glm::min(sum, glm::vec3(kLargestHalf)), 0.0f)));
     }
   return texels;
@@ -60,13 +62,13 @@ std::vector<std::uint64_t> faceTexels(std::span<const spec::Probe* const> probes
 
 }  // namespace
 
-gpu::Texture skyCube(std::span<const spec::Probe* const> probes, glm::vec3 constant) {
-  const std::uint32_t size = cubeSize(probes);
+gpu::Texture skyCube(std::span<const spec::EnvironmentMap* const> environment_maps, glm::vec3 constant) {
+  const std::uint32_t size = cubeSize(environment_maps);
   gpu::Texture cube("sky", {.format = GL_RGBA16F, .width = size, .height = size, .cube = true});
   std::vector<std::future<std::vector<std::uint64_t>>> faces;
   for (int face = 0; face < 6; ++face)
-    faces.push_back(
-        std::async(std::launch::async, [&, face] { return faceTexels(probes, constant, face, size); }));
+    faces.push_back(std::async(std::launch::async,
+                               [&, face] { return faceTexels(environment_maps, constant, face, size); }));
   for (int face = 0; face < 6; ++face)
     glTextureSubImage3D(cube.id(), 0, 0, 0, face, static_cast<GLsizei>(size), static_cast<GLsizei>(size), 1,
                         GL_RGBA, GL_HALF_FLOAT, faces[static_cast<std::size_t>(face)].get().data());
@@ -92,7 +94,8 @@ bool Sky::update(const Environment& environment) {
   std::vector<DiscRecord> discs;
   for (std::size_t i = 0; i < Environment::kSets; ++i) {
     const Environment::Shown shown = environment.shownOf(i);
-    if (pictures_ != environment.picturesVersion()) cubes_[i] = skyCube(shown.probes, shown.constant);
+    if (pictures_ != environment.picturesVersion())
+      cubes_[i] = skyCube(shown.environment_maps, shown.constant);
     for (const Disc& disc : shown.discs)
       discs.push_back({{disc.direction, disc.radius_rad}, disc.radiance, static_cast<float>(i)});
   }

@@ -1,6 +1,6 @@
 // What the camera sees where nothing stands: the environment's own radiance, not its spherical harmonics.
-// Probes and constants are resampled once into a cube map per set of lights (half floats, clamped to what
-// those hold); suns stay analytic discs with an edge one pixel wide. Turned, faded and scaled as the
+// Environment maps and constants are resampled once into a cube map per set of lights (half floats, clamped
+// to what those hold); suns stay analytic discs with an edge one pixel wide. Turned, faded and scaled as the
 // environment is when it is drawn, and resampled anew when update() meets other lights. Drawn behind
 // everything, with alpha 0: the sky covers nothing. Errors: shaders that do not compile on this device.
 #pragma once
@@ -17,8 +17,9 @@
 
 namespace lambent::lighting {
 
-// Probes and a constant in their own frame, resampled: about one texel of the cube per texel of the probes.
-gpu::Texture skyCube(std::span<const spec::Probe* const> probes, glm::vec3 constant);
+// Environment maps and a constant in their own frame, resampled: about one texel of the cube per texel of the
+// environment maps.
+gpu::Texture skyCube(std::span<const spec::EnvironmentMap* const> environment_maps, glm::vec3 constant);
 
 class Sky {
  public:
@@ -32,7 +33,7 @@ class Sky {
   void draw(const Environment& environment, const glm::mat4& view_from_world, const glm::mat4& clip_from_view,
             std::uint32_t picture_height, gpu::Counters& counters) const;
 
-  // Probes and constants of a set of lights, in their own frame.
+  // Environment maps and constants of a set of lights, in their own frame.
   const gpu::Texture& cube(std::size_t set) const { return cubes_[set]; }
 
  private:

@@ -194,8 +194,8 @@ std::string valueText(const Value& value) {
 }
 
 Result<void> FieldInfo::check(const Value& value) const {
-  const auto wrong = [&](std::string problem, std::string mend) {
-    return fail(fmt::format("{}.{}", component, name), std::move(problem), std::move(mend));
+  const auto wrong = [&](std::string problem, std::string hint) {
+    return fail(fmt::format("{}.{}", component, name), std::move(problem), std::move(hint));
   };
   if (kindOf(value) != kind)
     return wrong(fmt::format("takes {}, not {}", kindWord(kind), kindWord(kindOf(value))), "");

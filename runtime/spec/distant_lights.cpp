@@ -9,8 +9,9 @@
 
 namespace lambent::spec {
 
-Result<DistantLights> loadDistantLights(const std::vector<Light>& lights,
-                                        const std::function<Result<Probe>(const ProbeLight&)>& load) {
+Result<DistantLights> loadDistantLights(
+    const std::vector<Light>& lights,
+    const std::function<Result<EnvironmentMap>(const EnvironmentMapLight&)>& load) {
   DistantLights out;
   for (const Light& light : lights) {
     if (const auto* constant = std::get_if<ConstantLight>(&light)) {
@@ -19,13 +20,14 @@ Result<DistantLights> loadDistantLights(const std::vector<Light>& lights,
       out.discs.push_back({.direction = directionFromAzimuthElevation(sun->azimuth_deg, sun->elevation_deg),
                            .radius_rad = glm::radians(sun->angle_deg),
                            .radiance = sun->radiance});
-    } else if (const auto* file = std::get_if<ProbeLight>(&light)) {
-      Result<Probe> probe = load(*file);
-      if (!probe) return failAgain(probe.error());
-      if (probe->texels_not_finite > 0)
-        out.notices.push_back(file->file.string() + ": " + std::to_string(probe->texels_not_finite) +
+    } else if (const auto* file = std::get_if<EnvironmentMapLight>(&light)) {
+      Result<EnvironmentMap> environment_map = load(*file);
+      if (!environment_map) return failAgain(environment_map.error());
+      if (environment_map->texels_not_finite > 0)
+        out.notices.push_back(file->file.string() + ": " +
+                              std::to_string(environment_map->texels_not_finite) +
                               " texels are not finite and count as black");
-      out.probes.push_back(std::move(*probe));
+      out.environment_maps.push_back(std::move(*environment_map));
     }
   }
   return out;
@@ -37,9 +39,10 @@ sh::LightVector DistantLights::lightVector() const {
 
 sh::LightVector DistantLights::skyVector() const {
   sh::LightVector light = sh::constantLight(sh::kMaxOrder, constant);
-  for (const Probe& probe : probes)
-    light += sh::projectImage(sh::kMaxOrder, probe.layout, static_cast<int>(probe.image.width),
-                              static_cast<int>(probe.image.height), probe.image.texels);
+  for (const EnvironmentMap& environment_map : environment_maps)
+    light +=
+        sh::projectImage(sh::kMaxOrder, environment_map.layout, static_cast<int>(environment_map.image.width),
+                         static_cast<int>(environment_map.image.height), environment_map.image.texels);
   return light;
 }
 

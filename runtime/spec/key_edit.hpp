@@ -1,8 +1,8 @@
-// The word for an edit of a key light that was found in a probe's picture, the same in every program:
-// key:AZ,EL,TO_AZ,TO_EL,R[,G,B]. The key light that was found at azimuth AZ and elevation EL stands at TO_AZ,
-// TO_EL and shines by the factors R, G and B of what was found; fade-key:... means the second set of lights.
-// Angles are those of sun words: degrees in the lights' own frame. Comes in: the text. Goes out: a KeyEdit,
-// every number finite and in its range. Errors quote the word and show the form that was expected.
+// The word for an edit of a key light that was found in a environment map's picture, the same in every
+// program: key:AZ,EL,TO_AZ,TO_EL,R[,G,B]. The key light that was found at azimuth AZ and elevation EL stands
+// at TO_AZ, TO_EL and shines by the factors R, G and B of what was found; fade-key:... means the second set
+// of lights. Angles are those of sun words: degrees in the lights' own frame. Comes in: the text. Goes out: a
+// KeyEdit, every number finite and in its range. Errors quote the word and show the form that was expected.
 #pragma once
 
 #include <cstddef>

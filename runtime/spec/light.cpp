@@ -16,7 +16,8 @@ namespace lambent::spec {
 namespace {
 
 constexpr std::string_view kForms =
-    "give a probe file (.hdr or .exr), constant:R,G,B, sun:AZ,EL,ANGLE,R[,G,B], sphere:X,Y,Z,RADIUS,R[,G,B] "
+    "give a environment map file (.hdr or .exr), constant:R,G,B, sun:AZ,EL,ANGLE,R[,G,B], "
+    "sphere:X,Y,Z,RADIUS,R[,G,B] "
     "or disc:X,Y,Z,NX,NY,NZ,RADIUS,R[,G,B]";
 constexpr std::string_view kConstantForm = "write constant:R,G,B with radiances of 0 or more";
 constexpr std::string_view kSunForm =
@@ -29,8 +30,8 @@ constexpr std::string_view kDiscForm =
     "and "
     "radiances of 0 or more";
 
-tl::unexpected<Error> wrong(std::string_view word, std::string problem, std::string_view mend) {
-  return fail("light \"" + std::string(word) + "\"", std::move(problem), std::string(mend));
+tl::unexpected<Error> wrong(std::string_view word, std::string problem, std::string_view hint) {
+  return fail("light \"" + std::string(word) + "\"", std::move(problem), std::string(hint));
 }
 
 std::string lowerExtension(const std::filesystem::path& path) {
@@ -108,7 +109,7 @@ Result<Light> parseLight(std::string_view word) {
   const std::string extension = lowerExtension(file);
   if (extension != ".hdr" && extension != ".exr")
     return wrong(word, "is no kind of light known here", kForms);
-  return ProbeLight{file, std::nullopt};
+  return EnvironmentMapLight{file, std::nullopt};
 }
 
 std::vector<LocalLight> localLights(std::span<const Light> lights) {

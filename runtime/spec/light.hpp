@@ -1,10 +1,10 @@
-// The words for lights, the same in every program (docs/conventions.md): from infinity a probe file (.hdr,
-// .exr), constant:R,G,B and sun:AZ,EL,ANGLE,R[,G,B]; in the scene sphere:X,Y,Z,RADIUS,R[,G,B] and
+// The words for lights, the same in every program (docs/conventions.md): from infinity a environment map file
+// (.hdr, .exr), constant:R,G,B and sun:AZ,EL,ANGLE,R[,G,B]; in the scene sphere:X,Y,Z,RADIUS,R[,G,B] and
 // disc:X,Y,Z,NX,NY,NZ,RADIUS,R[,G,B]. Comes in: the text of one --light option. Goes out: a Light, every
 // number finite and in its range. Radiance is linear Rec.709 in W/(m² sr) up to one global scale; angles are
 // degrees, azimuth and elevation say where the light stands (azimuth 0 on +Z, 90 on +X); places are metres of
-// the world. Errors quote the word and show the form that was expected. No file is opened here: probe.hpp
-// does that.
+// the world. Errors quote the word and show the form that was expected. No file is opened here: environment
+// map.hpp does that.
 #pragma once
 
 #include <array>
@@ -23,7 +23,7 @@
 namespace lambent::spec {
 
 // Light from all directions at infinity, as a picture of the sphere.
-struct ProbeLight {
+struct EnvironmentMapLight {
   std::filesystem::path file;
   std::optional<sh::ImageLayout> layout;  // --light-layout; otherwise recognised by the picture's shape
 };
@@ -57,7 +57,7 @@ struct DiscLight {
   glm::vec3 radiance{1.0f};
 };
 
-using Light = std::variant<ProbeLight, ConstantLight, SunLight, SphereLight, DiscLight>;
+using Light = std::variant<EnvironmentMapLight, ConstantLight, SunLight, SphereLight, DiscLight>;
 
 // Those that stand in the scene.
 using LocalLight = std::variant<SphereLight, DiscLight>;

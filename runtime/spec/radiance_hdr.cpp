@@ -3,8 +3,8 @@
 // run-length coded (2 2 width, then the four components apart). G. Ward, "Real Pixels", Graphics Gems II,
 // 1991.
 //
-// A component is m * 2^(e - 136). Ward's own reader adds half a step (m + 0.5); every reader that probes are
-// commonly looked at with does not, and the encoder below rounds to nearest to suit.
+// A component is m * 2^(e - 136). Ward's own reader adds half a step (m + 0.5); every reader that environment
+// maps are commonly looked at with does not, and the encoder below rounds to nearest to suit.
 #include <algorithm>
 #include <array>
 #include <charconv>

@@ -25,7 +25,7 @@ constexpr float kPixels = 2300.0f;
 constexpr float kStays = 1.5f;
 static_assert(kSurfaces > kStays * kCodebooks && kCodebooks > kStays * kFirstPlanes);
 
-constexpr std::uint64_t kStandInShare = 4;  // of the memory, one part of so many comes first
+constexpr std::uint64_t kProxyLodShare = 4;  // of the memory, one part of so many comes first
 
 constexpr float kOutOfSight = 0.1f;  // the camera may turn at any moment
 constexpr float kLargest = 100.0f;   // standing in it, or near enough
@@ -94,18 +94,18 @@ void choose(std::span<Interest> bundles, std::uint64_t max_bytes) {
     taken += candidate.bytes;
     ++bundle.target[candidate.unit];
   };
-  const auto isStandIn = [&](const Candidate& candidate) {
+  const auto isProxyLod = [&](const Candidate& candidate) {
     return candidate.unit == 0 && candidate.step + 1 < bundles[candidate.bundle].parts->surfaceSteps();
   };
   const auto largest = std::ranges::find_if(
-      candidates, [&](const Candidate& candidate) { return candidate.unit == 0 && !isStandIn(candidate); });
+      candidates, [&](const Candidate& candidate) { return candidate.unit == 0 && !isProxyLod(candidate); });
   if (largest == candidates.end()) return;
   constexpr std::uint64_t kInAnyCase = ~std::uint64_t{0};
   for (const Candidate& candidate : candidates)
     if (candidate.bundle == largest->bundle && candidate.unit == 0) take(candidate, kInAnyCase);
-  const std::uint64_t with_stand_ins = std::min(max_bytes, taken + max_bytes / kStandInShare);
+  const std::uint64_t with_proxy_lods = std::min(max_bytes, taken + max_bytes / kProxyLodShare);
   for (const Candidate& candidate : candidates)
-    if (isStandIn(candidate)) take(candidate, with_stand_ins);
+    if (isProxyLod(candidate)) take(candidate, with_proxy_lods);
   for (const Candidate& candidate : candidates) take(candidate, max_bytes);
 }
 

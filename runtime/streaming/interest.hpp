@@ -28,9 +28,9 @@ float sizeSeen(const spec::View& view, const glm::vec3& center_ws, float radius_
 float worthOf(const Parts& parts, std::uint32_t unit, std::uint32_t step, float size);
 
 // Steps that together take at most `max_bytes`. The surfaces of what is largest are chosen in any case. Then
-// stand-ins come, the largest in sight first, before anything else up to a quarter of the memory, so that no
-// place in the world is empty. Then the most worth first, where surfaces come before shadows and these before
-// their finer detail, as far as other bundles are not much larger in sight.
+// proxy levels of detail come, the largest in sight first, before anything else up to a quarter of the
+// memory, so that no place in the world is empty. Then the most worth first, where surfaces come before
+// shadows and these before their finer detail, as far as other bundles are not much larger in sight.
 void choose(std::span<Interest> bundles, std::uint64_t max_bytes);
 
 }  // namespace lambent::streaming

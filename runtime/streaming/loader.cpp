@@ -8,7 +8,7 @@
 #include <new>
 #include <utility>
 
-#include "runtime/streaming/work.hpp"
+#include "runtime/streaming/load_request.hpp"
 
 namespace lambent::streaming {
 namespace {
@@ -28,7 +28,7 @@ struct Loader::State {
     std::size_t held = 0;  // bytes reserved, then those of `ready`
   };
 
-  State(std::shared_ptr<const bundle::Reader> bundle, std::vector<Work> wanted, KeptThreads& threads,
+  State(std::shared_ptr<const bundle::Reader> bundle, std::vector<Work> wanted, ThreadPool& threads,
         unsigned workers)
       : reader(std::move(bundle)), work(std::move(wanted)), slots(work.size()) {
     working = std::min<std::size_t>(std::max(workers, 1u), work.size());
@@ -144,9 +144,9 @@ struct Loader::State {
   std::condition_variable ended;  // one has
 };
 
-Loader::Loader(std::shared_ptr<const bundle::Reader> reader, KeptThreads& threads, unsigned workers)
-    : Loader(reader, workList(reader->description()), threads, workers) {}
-Loader::Loader(std::shared_ptr<const bundle::Reader> reader, std::vector<Work> work, KeptThreads& threads,
+Loader::Loader(std::shared_ptr<const bundle::Reader> reader, ThreadPool& threads, unsigned workers)
+    : Loader(reader, requestsOf(reader->description()), threads, workers) {}
+Loader::Loader(std::shared_ptr<const bundle::Reader> reader, std::vector<Work> work, ThreadPool& threads,
                unsigned workers)
     : state_(std::make_unique<State>(std::move(reader), std::move(work), threads, workers)) {}
 Loader::~Loader() = default;

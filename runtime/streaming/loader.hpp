@@ -10,11 +10,11 @@
 #include <optional>
 #include <vector>
 
-#include "runtime/base/kept_threads.hpp"
 #include "runtime/base/result.hpp"
+#include "runtime/base/thread_pool.hpp"
 #include "runtime/bundle/reader.hpp"
-#include "runtime/streaming/ready.hpp"
-#include "runtime/streaming/work.hpp"
+#include "runtime/streaming/load_request.hpp"
+#include "runtime/streaming/loaded_chunk.hpp"
 
 namespace lambent::streaming {
 
@@ -22,9 +22,9 @@ class Loader {
  public:
   // Starts `workers` (at least 1) on everything in the bundle: meshes and rows first, then tables of BRDFs,
   // grids of volumes, images, then codebooks and planes by priority. They end before `threads` do.
-  Loader(std::shared_ptr<const bundle::Reader> reader, KeptThreads& threads, unsigned workers);
+  Loader(std::shared_ptr<const bundle::Reader> reader, ThreadPool& threads, unsigned workers);
   // Brings these parts alone, in this order.
-  Loader(std::shared_ptr<const bundle::Reader> reader, std::vector<Work> work, KeptThreads& threads,
+  Loader(std::shared_ptr<const bundle::Reader> reader, std::vector<Work> work, ThreadPool& threads,
          unsigned workers);
   ~Loader();  // stops the workers after the item in hand
   Loader(Loader&&) noexcept;

@@ -59,7 +59,7 @@ void addImages(Parts& parts, Step& base, const std::vector<ImageUse>& uses) {
     base.bytes += uses[i].copies() * levelBytes(image, image.coarse);
     Unit& unit = parts.units.emplace_back();
     for (std::uint32_t level = image.coarse; level-- > 0;)
-      unit.push_back({.work = {ImageWork{i, level}},
+      unit.push_back({.work = {ImageRequest{i, level}},
                       .bytes = uses[i].copies() * (levelBytes(image, level) - levelBytes(image, level + 1))});
   }
 }
@@ -76,7 +76,7 @@ std::uint32_t Parts::planesIn(std::uint32_t group, std::uint32_t steps, std::uin
   std::uint32_t count = 0;
   for (std::uint32_t s = 0; s < std::min<std::size_t>(steps, units[1 + group].size()); ++s)
     for (const Work& work : units[1 + group][s].work)
-      if (const auto* plane = std::get_if<PlaneWork>(&work))
+      if (const auto* plane = std::get_if<PlaneRequest>(&work))
         count += plane->cell == cell && plane->transfer == transfer ? 1u : 0u;
   return count;
 }
@@ -103,20 +103,20 @@ Result<Parts> partsOf(const bundle::Reader& reader, bool limited) {
     if (!images) return failAgain(images.error());
     parts.images = std::move(*images);
   }
-  Step stand_in, base;
+  Step proxy_lod, base;
   std::vector<Step> codebooks(d.groups.size());
-  std::vector<std::vector<PlaneWork>> planes(d.groups.size());
-  for (const Work& work : workList(d)) {
-    if (const auto* plane = std::get_if<PlaneWork>(&work)) {
+  std::vector<std::vector<PlaneRequest>> planes(d.groups.size());
+  for (const Work& work : requestsOf(d)) {
+    if (const auto* plane = std::get_if<PlaneRequest>(&work)) {
       planes[plane->group].push_back(*plane);
-    } else if (const auto* codebook = std::get_if<CodebookWork>(&work)) {
+    } else if (const auto* codebook = std::get_if<CodebookRequest>(&work)) {
       add(codebooks[codebook->group], work, 0);
-    } else if (const auto* weights = std::get_if<LightWeightsWork>(&work)) {
+    } else if (const auto* weights = std::get_if<LightWeightsRequest>(&work)) {
       add(codebooks[weights->group], work, 0);
-    } else if (const auto* proxy = std::get_if<ProxyWork>(&work); proxy != nullptr && limited) {
-      add(stand_in, work, standInBytes(d, proxy->group));
-    } else if (const auto* image = std::get_if<ImageWork>(&work); image != nullptr && limited) {
-      add(base, ImageWork{image->image, parts.images[image->image].coarse}, 0);
+    } else if (const auto* proxy = std::get_if<ProxyRequest>(&work); proxy != nullptr && limited) {
+      add(proxy_lod, work, proxyLodBytes(d, proxy->group));
+    } else if (const auto* image = std::get_if<ImageRequest>(&work); image != nullptr && limited) {
+      add(base, ImageRequest{image->image, parts.images[image->image].coarse}, 0);
     } else {
       add(base, work, 0);
     }
@@ -130,7 +130,7 @@ Result<Parts> partsOf(const bundle::Reader& reader, bool limited) {
     base.bytes += *tables;
     addImages(parts, base, imageUses(d));
   }
-  if (!stand_in.work.empty()) parts.units.front().push_back(std::move(stand_in));
+  if (!proxy_lod.work.empty()) parts.units.front().push_back(std::move(proxy_lod));
   parts.units.front().push_back(std::move(base));
   for (std::uint32_t g = 0; g < d.groups.size(); ++g) {
     if (codebooks[g].work.empty()) continue;
@@ -146,7 +146,7 @@ Result<Parts> partsOf(const bundle::Reader& reader, bool limited) {
       Step& step = unit.emplace_back();
       for (std::size_t p = share * planes[g].size() / shares; p < (share + 1) * planes[g].size() / shares;
            ++p) {
-        const PlaneWork& at = planes[g][p];
+        const PlaneRequest& at = planes[g][p];
         add(step, at, planeBytes(d.groups[g].cells[at.cell].transfers[at.transfer].planes[at.plane]));
       }
     }

@@ -10,7 +10,7 @@
 
 #include "runtime/base/result.hpp"
 #include "runtime/bundle/reader.hpp"
-#include "runtime/streaming/work.hpp"
+#include "runtime/streaming/load_request.hpp"
 
 namespace lambent::streaming {
 
@@ -39,9 +39,10 @@ struct Parts {
   bool isImage(std::size_t unit) const { return unit >= firstImageUnit(); }
   const Image& imageOf(std::size_t unit) const { return images[unit - firstImageUnit()]; }
 
-  // How many steps of the first unit show the surfaces; with fewer, a stand-in is there or nothing.
+  // How many steps of the first unit show the surfaces; with fewer, a proxy level of detail is there or
+  // nothing.
   std::uint32_t surfaceSteps() const { return static_cast<std::uint32_t>(units.front().size()); }
-  bool hasStandIn() const { return surfaceSteps() > 1; }
+  bool hasProxyLod() const { return surfaceSteps() > 1; }
 
   // How many planes of a transfer belong to the first `steps` steps of the group's unit.
   std::uint32_t planesIn(std::uint32_t group, std::uint32_t steps, std::uint32_t cell,

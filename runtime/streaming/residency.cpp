@@ -24,7 +24,7 @@ constexpr std::uint64_t kMinPageBytes = std::uint64_t{1} << 20;
 
 // Places all of a cell but its planes from `word` on; returns the word after.
 std::uint32_t layOut(ResidentCell& cell, std::uint32_t word) {
-  if (cell.light_samples.size() > 1) {
+  if (cell.light_probes.size() > 1) {
     cell.light_weights_word = word;
     word += kLightWeightWords * cell.sample_count;
   }
@@ -186,7 +186,7 @@ void Residency::show(Staged staged, std::uint32_t bundle) {
 Result<void> Residency::upload(std::uint32_t bundle, Ready item) {
   assert(bundle < tables_.bundles.size() && tables_.bundles[bundle].present);
   ++version_;
-  if (std::holds_alternative<ProxyReady>(item)) ++proxies_version_;
+  if (std::holds_alternative<ProxyChunk>(item)) ++proxies_version_;
   const At at{tables_, tables_.bundles[bundle]};
   return std::visit([&](auto& ready) { return put(at, std::move(ready)); }, item);
 }
@@ -197,9 +197,9 @@ Result<void> Residency::uploadStaged(Staged staged, Ready item) {
   return std::visit([&](auto& ready) { return put(into, std::move(ready)); }, item);
 }
 
-Result<void> Residency::put(At at, const RowsReady& item) {
+Result<void> Residency::put(At at, const WeightsChunk& item) {
   ResidentDraw& draw = at.tables.draws[at.bundle.first.draws + item.draw];
-  const bundle::VertexRows& rows = item.rows;
+  const bundle::VertexWeights& rows = item.rows;
   const std::size_t entries = rows.samples.size();
   assert(rows.offsets.size() == at.tables.meshes[draw.mesh].vertex_count + 1u &&
          rows.weights.size() == entries);
@@ -248,7 +248,7 @@ Result<void> Residency::moveCell(ResidentCell& cell) {
   return {};
 }
 
-Result<void> Residency::put(At at, const PlaneReady& item) {
+Result<void> Residency::put(At at, const PlaneChunk& item) {
   ResidentCell& cell = cellOf(at.tables, at.bundle, item.group, item.cell);
   if (Result<void> reserved = reserveCell(cell); !reserved) return reserved;
   ResidentTransfer& transfer = cell.transfers[item.transfer];
@@ -268,10 +268,10 @@ Result<void> Residency::put(At at, const PlaneReady& item) {
   return {};
 }
 
-Result<void> Residency::put(At at, const LightWeightsReady& item) {
+Result<void> Residency::put(At at, const LightWeightsChunk& item) {
   ResidentCell& cell = cellOf(at.tables, at.bundle, item.group, item.cell);
   if (Result<void> reserved = reserveCell(cell); !reserved) return reserved;
-  assert(item.samples.size() == cell.sample_count && cell.light_samples.size() > 1);
+  assert(item.samples.size() == cell.sample_count && cell.light_probes.size() > 1);
   static_assert(sizeof(bundle::LightWeights) == 4 * kLightWeightWords);
   transfer_.write(cell.block, 4ull * (cell.light_weights_word - cell.block.word()), bytesOf(item.samples));
   cell.light_weights_resident = true;
@@ -279,12 +279,12 @@ Result<void> Residency::put(At at, const LightWeightsReady& item) {
   return {};
 }
 
-Result<void> Residency::put(At at, const ProxyReady& item) {
+Result<void> Residency::put(At at, const ProxyChunk& item) {
   at.tables.groups[at.bundle.first.groups + item.group].proxy = item.proxy;
   return {};
 }
 
-Result<void> Residency::put(At at, const BrdfReady& item) {
+Result<void> Residency::put(At at, const BrdfChunk& item) {
   Result<BrdfTexture> made =
       makeBrdfTexture(item.data, item.texels, fmt::format("BRDF table {}", item.table));
   if (!made) return failAgain(made.error());
@@ -293,7 +293,7 @@ Result<void> Residency::put(At at, const BrdfReady& item) {
   return {};
 }
 
-Result<void> Residency::put(At at, const DensityReady& item) {
+Result<void> Residency::put(At at, const DensityChunk& item) {
   ResidentVolume& volume = volumeOf(at.tables, at.bundle, item.group);
   volume.density = makeDensityTexture(volume.grid, item.codes);
   volume.block_maxima = item.block_maxima;
@@ -302,7 +302,7 @@ Result<void> Residency::put(At at, const DensityReady& item) {
   return {};
 }
 
-Result<void> Residency::put(At at, const VoxelsReady& item) {
+Result<void> Residency::put(At at, const VoxelsChunk& item) {
   ResidentVolume& volume = volumeOf(at.tables, at.bundle, item.group);
   assert(item.voxels.size() == volume.sample_count);
   const std::span<const std::byte> bytes = bytesOf(item.voxels);
@@ -342,30 +342,30 @@ std::uint64_t Residency::planesResident() const {
 
 std::uint64_t Residency::uploadBytes(const Ready& item) {
   struct Size {
-    std::uint64_t operator()(const MeshReady& mesh) const {
+    std::uint64_t operator()(const MeshChunk& mesh) const {
       return 24ull * mesh.data.positions.size() + 8ull * mesh.data.texcoords0.size() +
              8ull * mesh.data.texcoords1.size() + 8ull * mesh.data.colors.size() +
              16ull * mesh.data.tangents.size() + 4ull * mesh.data.indices.size();
     }
-    std::uint64_t operator()(const ImageReady& image) const {
+    std::uint64_t operator()(const ImageChunk& image) const {
       return image.rgba.size() + image.linear.size();
     }
-    std::uint64_t operator()(const RowsReady& rows) const {
+    std::uint64_t operator()(const WeightsChunk& rows) const {
       return 4ull * rows.rows.offsets.size() + 6ull * rows.rows.samples.size();
     }
-    std::uint64_t operator()(const CodebookReady& ready) const {
+    std::uint64_t operator()(const CodebookChunk& ready) const {
       const bundle::Codebook& codebook = ready.codebook;
       return 16ull * codebook.clusters() + 8ull * codebook.axes.size() + 4ull * codebook.vectors.size() +
              4ull * ready.positions.size();
     }
-    std::uint64_t operator()(const PlaneReady& plane) const { return plane.codes.size(); }
-    std::uint64_t operator()(const LightWeightsReady& weights) const {
+    std::uint64_t operator()(const PlaneChunk& plane) const { return plane.codes.size(); }
+    std::uint64_t operator()(const LightWeightsChunk& weights) const {
       return sizeof(bundle::LightWeights) * weights.samples.size();
     }
-    std::uint64_t operator()(const ProxyReady&) const { return 0; }  // stays in memory
-    std::uint64_t operator()(const BrdfReady& ready) const { return ready.texels.bytes(); }
-    std::uint64_t operator()(const DensityReady& density) const { return density.codes.size(); }  // or twice
-    std::uint64_t operator()(const VoxelsReady& ready) const { return 4 * ready.voxels.size(); }
+    std::uint64_t operator()(const ProxyChunk&) const { return 0; }  // stays in memory
+    std::uint64_t operator()(const BrdfChunk& ready) const { return ready.texels.bytes(); }
+    std::uint64_t operator()(const DensityChunk& density) const { return density.codes.size(); }  // or twice
+    std::uint64_t operator()(const VoxelsChunk& ready) const { return 4 * ready.voxels.size(); }
   };
   return std::visit(Size{}, item);
 }

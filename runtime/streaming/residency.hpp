@@ -108,21 +108,21 @@ class Residency {
     ResidentBundle& bundle;
   };
   struct ImageUpload {
-    ImageReady item;  // of one that comes in pieces
+    ImageChunk item;  // of one that comes in pieces
     gpu::Texture color, linear;
     std::uint32_t rows_done = 0;
   };
-  static ImageUpload begin(const ResidentBundle& owner, const ImageReady& item);
-  static void write(ImageUpload& upload, const ImageReady& item, std::uint32_t rows);
+  static ImageUpload begin(const ResidentBundle& owner, const ImageChunk& item);
+  static void write(ImageUpload& upload, const ImageChunk& item, std::uint32_t rows);
   static void finish(ResidentBundle& owner, ImageUpload upload, std::uint32_t image);
   struct MeshUpload {
-    MeshReady item;
+    MeshChunk item;
     std::vector<std::uint64_t> colors;
     gpu::Allocation block;
     std::uint64_t bytes_done = 0;
   };
   struct CodebookUpload {
-    CodebookReady item;
+    CodebookChunk item;
     std::uint64_t bytes_done = 0;  // of its vectors
   };
   using Coming = std::variant<ImageUpload, MeshUpload, CodebookUpload>;
@@ -138,21 +138,21 @@ class Residency {
   std::uint64_t proceed(ImageUpload& upload, std::uint64_t max_bytes);
   std::uint64_t proceed(MeshUpload& upload, std::uint64_t max_bytes);
   std::uint64_t proceed(At at, CodebookUpload& upload, std::uint64_t max_bytes);
-  Result<MeshUpload> begin(MeshReady item);
+  Result<MeshUpload> begin(MeshChunk item);
   Result<void> finish(At at, const MeshUpload& upload);
-  Result<void> writeTables(At at, const CodebookReady& item);
+  Result<void> writeTables(At at, const CodebookChunk& item);
   void finish(At at, const CodebookUpload& upload);
   std::uint64_t comingBytes() const;
-  Result<void> put(At at, MeshReady item);
-  Result<void> put(At at, const ImageReady& item);
-  Result<void> put(At at, const RowsReady& item);
-  Result<void> put(At at, CodebookReady item);
-  Result<void> put(At at, const PlaneReady& item);
-  Result<void> put(At at, const LightWeightsReady& item);
-  Result<void> put(At at, const ProxyReady& item);
-  Result<void> put(At at, const BrdfReady& item);
-  Result<void> put(At at, const DensityReady& item);
-  Result<void> put(At at, const VoxelsReady& item);
+  Result<void> put(At at, MeshChunk item);
+  Result<void> put(At at, const ImageChunk& item);
+  Result<void> put(At at, const WeightsChunk& item);
+  Result<void> put(At at, CodebookChunk item);
+  Result<void> put(At at, const PlaneChunk& item);
+  Result<void> put(At at, const LightWeightsChunk& item);
+  Result<void> put(At at, const ProxyChunk& item);
+  Result<void> put(At at, const BrdfChunk& item);
+  Result<void> put(At at, const DensityChunk& item);
+  Result<void> put(At at, const VoxelsChunk& item);
   Result<void> reserveCell(ResidentCell& cell);
   // To a page that has room for all of it.
   Result<void> moveCell(ResidentCell& cell);

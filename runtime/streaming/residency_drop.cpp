@@ -50,7 +50,7 @@ void Residency::dropTransfer(std::uint32_t bundle, std::uint32_t group) {
     ResidentCell& cell = tables_.cells[resident.first_cell + c];
     if (cell.block) transfer_.release(cell.block);
     cell.block = {};
-    cell.light_weights_resident = cell.light_samples.size() == 1;
+    cell.light_weights_resident = cell.light_probes.size() == 1;
     for (ResidentTransfer& transfer : cell.transfers) transfer.codebook_resident = false;
   }
   forgetShading(resident);

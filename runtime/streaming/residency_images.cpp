@@ -45,7 +45,7 @@ std::string labelOf(std::uint32_t image) {
 
 }  // namespace
 
-Residency::ImageUpload Residency::begin(const ResidentBundle& owner, const ImageReady& item) {
+Residency::ImageUpload Residency::begin(const ResidentBundle& owner, const ImageChunk& item) {
   const ImageUse use = owner.image_uses[item.image];
   const ImageSize size{item.width, item.height};
   const auto make = [&](const std::string& label, GLenum format) {
@@ -58,7 +58,7 @@ Residency::ImageUpload Residency::begin(const ResidentBundle& owner, const Image
   return upload;
 }
 
-void Residency::write(ImageUpload& upload, const ImageReady& item, std::uint32_t rows) {
+void Residency::write(ImageUpload& upload, const ImageChunk& item, std::uint32_t rows) {
   const auto& linear = item.linear.empty() ? item.rgba : item.linear;
   if (upload.color) writeRows(upload.color, item.rgba, upload.rows_done, rows);
   if (upload.linear) writeRows(upload.linear, linear, upload.rows_done, rows);
@@ -76,7 +76,7 @@ void Residency::finish(ResidentBundle& owner, ImageUpload upload, std::uint32_t 
   take(upload.linear, owner.linear_images[image]);
 }
 
-Result<void> Residency::put(At at, const ImageReady& item) {
+Result<void> Residency::put(At at, const ImageChunk& item) {
   ImageUpload upload = begin(at.bundle, item);
   write(upload, item, item.height);
   finish(at.bundle, std::move(upload), item.image);
@@ -84,7 +84,7 @@ Result<void> Residency::put(At at, const ImageReady& item) {
 }
 
 std::uint64_t Residency::proceed(ImageUpload& upload, std::uint64_t max_bytes) {
-  const ImageReady& item = upload.item;
+  const ImageChunk& item = upload.item;
   const std::uint64_t bytes = (item.rgba.size() + item.linear.size()) / item.height;
   const std::uint32_t left = item.height - upload.rows_done;
   const auto rows = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(max_bytes / bytes, 1, left));

@@ -40,8 +40,8 @@ std::uint64_t bytesOf(const MeshParts& parts) {
 }  // namespace
 
 bool Residency::comesInPieces(const Ready& item) {
-  return std::holds_alternative<ImageReady>(item) || std::holds_alternative<MeshReady>(item) ||
-         std::holds_alternative<CodebookReady>(item);
+  return std::holds_alternative<ImageChunk>(item) || std::holds_alternative<MeshChunk>(item) ||
+         std::holds_alternative<CodebookChunk>(item);
 }
 
 Residency::At Residency::at(const Whose& whose) {
@@ -72,15 +72,15 @@ void Residency::cancel(std::uint32_t bundle) {
 Result<void> Residency::begin(const Whose& whose, Ready item) {
   assert(comesInPieces(item) && !coming_.contains(whose));
   const At into = at(whose);
-  if (auto* image = std::get_if<ImageReady>(&item)) {
+  if (auto* image = std::get_if<ImageChunk>(&item)) {
     ImageUpload upload = begin(into.bundle, *image);
     upload.item = std::move(*image);
     coming_.emplace(whose, std::move(upload));
-  } else if (auto* mesh = std::get_if<MeshReady>(&item)) {
+  } else if (auto* mesh = std::get_if<MeshChunk>(&item)) {
     Result<MeshUpload> upload = begin(std::move(*mesh));
     if (!upload) return failAgain(upload.error());
     coming_.emplace(whose, std::move(*upload));
-  } else if (auto* codebook = std::get_if<CodebookReady>(&item)) {
+  } else if (auto* codebook = std::get_if<CodebookChunk>(&item)) {
     if (Result<void> written = writeTables(into, *codebook); !written) return written;
     coming_.emplace(whose, CodebookUpload{std::move(*codebook)});
   }
@@ -128,7 +128,7 @@ void Residency::cancel(const Whose& whose) {
 // --- meshes
 // -------------------------------------------------------------------------------------------------------
 
-Result<Residency::MeshUpload> Residency::begin(MeshReady item) {
+Result<Residency::MeshUpload> Residency::begin(MeshChunk item) {
   MeshUpload upload{.item = std::move(item), .colors = {}, .block = {}};
   upload.colors.reserve(upload.item.data.colors.size());
   for (const glm::vec4& color : upload.item.data.colors) upload.colors.push_back(glm::packUnorm4x16(color));
@@ -155,7 +155,7 @@ std::uint64_t Residency::proceed(MeshUpload& upload, std::uint64_t max_bytes) {
 }
 
 Result<void> Residency::finish(At at, const MeshUpload& upload) {
-  const MeshReady& item = upload.item;
+  const MeshChunk& item = upload.item;
   const std::uint32_t index = at.bundle.first.meshes + at.bundle.first_primitive[item.mesh] + item.primitive;
   ResidentMesh& mesh = at.tables.meshes[index];
   assert(item.data.positions.size() == mesh.vertex_count && item.data.indices.size() == mesh.index_count);
@@ -183,7 +183,7 @@ Result<void> Residency::finish(At at, const MeshUpload& upload) {
   return {};
 }
 
-Result<void> Residency::put(At at, MeshReady item) {
+Result<void> Residency::put(At at, MeshChunk item) {
   Result<MeshUpload> upload = begin(std::move(item));
   if (!upload) return failAgain(upload.error());
   proceed(*upload, kAll);
@@ -194,7 +194,7 @@ Result<void> Residency::put(At at, MeshReady item) {
 // ----------------------------------------------------------------------------------------------------
 
 // All but the vectors, which are nearly all of it.
-Result<void> Residency::writeTables(At at, const CodebookReady& item) {
+Result<void> Residency::writeTables(At at, const CodebookChunk& item) {
   ResidentCell& cell = cellOf(at.tables, at.bundle, item.group, item.cell);
   if (Result<void> reserved = reserveCell(cell); !reserved) return reserved;
   const ResidentTransfer& transfer = cell.transfers[item.transfer];
@@ -219,7 +219,7 @@ Result<void> Residency::writeTables(At at, const CodebookReady& item) {
 }
 
 std::uint64_t Residency::proceed(At at, CodebookUpload& upload, std::uint64_t max_bytes) {
-  const CodebookReady& item = upload.item;
+  const CodebookChunk& item = upload.item;
   const ResidentCell& cell = cellOf(at.tables, at.bundle, item.group, item.cell);
   const std::span<const std::byte> left = bytesOf(item.codebook.vectors).subspan(upload.bytes_done);
   const std::span<const std::byte> piece = left.first(std::min<std::uint64_t>(max_bytes, left.size()));
@@ -235,7 +235,7 @@ void Residency::finish(At at, const CodebookUpload& upload) {
   cell.version = version_;
 }
 
-Result<void> Residency::put(At at, CodebookReady item) {
+Result<void> Residency::put(At at, CodebookChunk item) {
   if (Result<void> written = writeTables(at, item); !written) return written;
   CodebookUpload upload{std::move(item)};
   proceed(at, upload, kAll);

@@ -42,8 +42,8 @@ ResidentCell describe(const bundle::Cell& cell, std::uint32_t first_output) {
                         .first_output = first_output,  // from where the group's samples will lie
                         .block = {},
                         .transfers = {},
-                        .light_samples = cell.light_samples,
-                        .light_weights_resident = cell.light_samples.size() == 1};
+                        .light_probes = cell.light_probes,
+                        .light_weights_resident = cell.light_probes.size() == 1};
   for (const bundle::CellTransfer& transfer : cell.transfers)
     resident.transfers.push_back(describe(transfer));
   return resident;
@@ -53,9 +53,9 @@ ResidentGroup describe(const bundle::Group& group) {
   ResidentGroup resident;
   resident.light_columns = static_cast<std::uint32_t>(group.lights.size());
   resident.cell_count = static_cast<std::uint32_t>(group.cells.size());
-  resident.plain_samples = group.samplesWith(1);
+  resident.diffuse_samples = group.samplesWith(1);
   resident.mapped_samples = group.samplesWith(bundle::kMappedOutputs);
-  resident.light_samples = group.light_samples;
+  resident.light_probes = group.light_probes;
   for (const bundle::Cell& cell : group.cells) {
     for (const bundle::CellTransfer& transfer : cell.transfers)
       resident.order = std::max(resident.order, transfer.shape.order);

@@ -65,9 +65,9 @@ struct ResidentCell {
   std::uint32_t first_output = 0;
   gpu::Allocation block;  // transfer arena: light weights and codebooks; reserved with the first of them
   std::vector<ResidentTransfer> transfers;
-  std::vector<std::uint32_t> light_samples;  // of the group; light weights name them by place
-  std::uint32_t light_weights_word = 0;      // per sample two words: four places, four weights of 255
-  bool light_weights_resident = false;       // always, where there is one light sample
+  std::vector<std::uint32_t> light_probes;  // of the group; light weights name them by place
+  std::uint32_t light_weights_word = 0;     // per sample two words: four places, four weights of 255
+  bool light_weights_resident = false;      // always, where there is one light probe
   std::uint64_t version = 0;
 
   // Enough has arrived to look better than no shadows at all: light weights, every transfer with its codebook
@@ -101,19 +101,19 @@ struct ResidentGroup {
   std::uint32_t first_cell = 0, cell_count = 0;  // into cells()
   // Samples of surfaces by their outputs, in this order: one, nine, and those of glossy surfaces. Those of
   // its volume and its neighborhood lie behind them (ResidentCell::first_output).
-  std::uint32_t plain_samples = 0, mapped_samples = 0;
+  std::uint32_t diffuse_samples = 0, mapped_samples = 0;
   std::uint32_t glossy_outputs = 0;  // of its glossy samples; 0: it has none
   // A vec4 per sample and output, zero until shaded. w: 1 once it is; of glossy samples V_i, the visibility's
   // own coefficient.
   gpu::Allocation samples;
-  std::vector<glm::vec3> light_samples;  // group frame
-  std::int32_t volume = -1;              // into volumes(); -1: it is surfaces
+  std::vector<glm::vec3> light_probes;  // group frame
+  std::int32_t volume = -1;             // into volumes(); -1: it is surfaces
   // What other groups see of it; stays in memory, for it is small. None: not here yet, or nothing to see.
   std::optional<bundle::CaptureProxy> proxy;
 
   // vec4 index of output o of sample s in the page: sampleBase(outputs) + outputs * s + o. May wrap round.
   std::uint32_t sampleBase(std::uint32_t outputs) const {
-    const std::uint32_t plain = outputs > 1 ? (outputs - 1) * plain_samples : 0;
+    const std::uint32_t plain = outputs > 1 ? (outputs - 1) * diffuse_samples : 0;
     const std::uint32_t mapped =
         bundle::isGlossy(outputs) ? (outputs - bundle::kMappedOutputs) * mapped_samples : 0;
     return samples.word() / 4 - plain - mapped;
@@ -162,7 +162,7 @@ struct ResidentBundle {
 // The tables of what is shown, bundle after bundle in the order of their slots: or of one bundle alone,
 // before it is shown. Indices between tables are of the same ResidentTables. Cells, volumes, groups and draws
 // have ids that no other entry of the residency ever had: what somebody keeps for them follows by ids
-// (base/by_key.hpp).
+// (base/keyed_state.hpp).
 struct ResidentTables {
   std::vector<ResidentBundle> bundles;
   std::vector<ResidentMesh> meshes;

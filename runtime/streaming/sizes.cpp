@@ -33,7 +33,7 @@ std::uint64_t codebookBytesOnGpu(const bundle::CellTransfer& transfer, std::uint
 }
 
 std::uint64_t cellBytes(const bundle::Cell& cell) {
-  std::uint64_t bytes = cell.light_samples.size() > 1 ? 4ull * kLightWeightWords * cell.sample_count : 0;
+  std::uint64_t bytes = cell.light_probes.size() > 1 ? 4ull * kLightWeightWords * cell.sample_count : 0;
   for (const bundle::CellTransfer& transfer : cell.transfers) {
     bytes += codebookBytesOnGpu(transfer, cell.sample_count);
     for (const bundle::WeightPlane& plane : transfer.planes) bytes += planeBytes(plane);
@@ -57,15 +57,15 @@ std::uint64_t volumeLightBytes(const bundle::Group& group) {
   return std::uint64_t{8} * size.x * size.y * size.z * group.cells.front().outputs();
 }
 
-std::uint64_t standInBytes(const bundle::Description& description, std::uint32_t group) {
+std::uint64_t proxyLodBytes(const bundle::Description& description, std::uint32_t group) {
   const std::int32_t payload = description.groups[group].proxy;
   if (payload < 0) return 0;
   // Emission, corners, light and flags of a triangle: what a payload has at least of each (format.md).
   constexpr std::uint64_t kStoredBytes = 12 + 6 + 2 + 1;
   const std::uint64_t stored =
       description.payloads[static_cast<std::size_t>(payload)].raw_length / kStoredBytes;
-  return kStandInGroupBytes +
-         kStandInTriangleBytes * std::min<std::uint64_t>(stored, bundle::kMaxProxyTriangles);
+  return kProxyLodGroupBytes +
+         kProxyLodTriangleBytes * std::min<std::uint64_t>(stored, bundle::kMaxProxyTriangles);
 }
 
 Needs needsOf(const bundle::Description& description) {

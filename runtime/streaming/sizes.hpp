@@ -14,7 +14,7 @@ constexpr std::uint32_t radianceWords(std::uint32_t outputs) {
   return bundle::isGlossy(outputs) ? 0 : 3 * outputs;
 }
 
-// Of a sample, where its cell is lit from several light samples.
+// Of a sample, where its cell is lit from several light probes.
 inline constexpr std::uint32_t kLightWeightWords = 2;
 
 // Codes of a plane, a block of its own.
@@ -34,9 +34,9 @@ std::uint64_t volumeBytes(const bundle::VolumeGrid& grid, std::uint64_t sample_c
 // What the light in a volume takes, in half floats: a texel per voxel of the transfer grid and output.
 std::uint64_t volumeLightBytes(const bundle::Group& group);
 
-// Of a group that is drawn by its capture proxy alone (frame/stand_ins.hpp), at most.
-inline constexpr std::uint64_t kStandInTriangleBytes = 64, kStandInGroupBytes = 208;
-std::uint64_t standInBytes(const bundle::Description& description, std::uint32_t group);
+// Of a group that is drawn by its capture proxy alone (frame/proxy_lods.hpp), at most.
+inline constexpr std::uint64_t kProxyLodTriangleBytes = 64, kProxyLodGroupBytes = 208;
+std::uint64_t proxyLodBytes(const bundle::Description& description, std::uint32_t group);
 
 struct Needs {
   std::uint64_t geometry = 0, transfer = 0, samples = 0, rows = 0, radiance = 0, volumes = 0;

@@ -1,13 +1,12 @@
-// The probes are finite light of mean 1, with the sun and the boxes where the source says.
-#include "assets/probes.hpp"
-
+// The environment maps are finite light of mean 1, with the sun and the boxes where the source says.
 #include <numbers>
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
+#include "assets/environment_maps.hpp"
+#include "runtime/spec/environment_map.hpp"
 #include "runtime/spec/light.hpp"
-#include "runtime/spec/probe.hpp"
 
 namespace lambent::assets {
 namespace {
@@ -17,25 +16,26 @@ double luminance(glm::dvec3 c) {
 }
 
 double luminanceTowards(const spec::RgbImage& image, float azimuth_deg, float elevation_deg) {
-  const spec::Probe probe{image, sh::ImageLayout::LatLong, 0};
-  return luminance(spec::radiance(probe, spec::directionFromAzimuthElevation(azimuth_deg, elevation_deg)));
+  const spec::EnvironmentMap environment_map{image, sh::ImageLayout::LatLong, 0};
+  return luminance(
+      spec::radiance(environment_map, spec::directionFromAzimuthElevation(azimuth_deg, elevation_deg)));
 }
 
-TEST(AssetsProbes, AreFinitePositiveAndOfMeanLuminanceOne) {
-  for (const spec::RgbImage& image : {skyProbe(256), studioProbe(256)}) {
+TEST(AssetsEnvironmentMaps, AreFinitePositiveAndOfMeanLuminanceOne) {
+  for (const spec::RgbImage& image : {skyMap(256), studioMap(256)}) {
     for (const glm::vec3 texel : image.texels)
       for (int c = 0; c < 3; ++c) ASSERT_TRUE(std::isfinite(texel[c]) && texel[c] >= 0.0f);
     EXPECT_NEAR(luminance(integrate(image)) / (4 * std::numbers::pi), 1.0, 1e-5);
   }
 }
 
-TEST(AssetsProbes, IntegrateCountsTheSphereOnce) {
+TEST(AssetsEnvironmentMaps, IntegrateCountsTheSphereOnce) {
   const spec::RgbImage ones = latLongImage(64, 1, [](glm::dvec3) { return glm::dvec3(1.0); });
   EXPECT_NEAR(integrate(ones).x, 4 * std::numbers::pi, 1e-9);
 }
 
-TEST(AssetsProbes, TheSkyIsBlueAboveAndItsSunKeepsItsEnergyAtEveryWidth) {
-  const spec::RgbImage large = skyProbe(512), small = skyProbe(128);
+TEST(AssetsEnvironmentMaps, TheSkyIsBlueAboveAndItsSunKeepsItsEnergyAtEveryWidth) {
+  const spec::RgbImage large = skyMap(512), small = skyMap(128);
   // The sun stands out by far, so that what lies within six degrees of it is nearly all its own light.
   const auto sunlight = [](const spec::RgbImage& image) {
     const glm::dvec3 to_sun(spec::directionFromAzimuthElevation(34.0f, 44.0f));
@@ -52,14 +52,14 @@ TEST(AssetsProbes, TheSkyIsBlueAboveAndItsSunKeepsItsEnergyAtEveryWidth) {
   };
   EXPECT_NEAR(sunlight(large) / sunlight(small), 1.0, 0.01);
   EXPECT_GT(luminanceTowards(large, 34, 44), 50.0);
-  const spec::Probe probe{large, sh::ImageLayout::LatLong, 0};
-  const glm::vec3 zenith = spec::radiance(probe, glm::vec3(0, 1, 0));
+  const spec::EnvironmentMap environment_map{large, sh::ImageLayout::LatLong, 0};
+  const glm::vec3 zenith = spec::radiance(environment_map, glm::vec3(0, 1, 0));
   EXPECT_GT(zenith.b, 1.5f * zenith.r);
   EXPECT_LT(luminanceTowards(large, 0, -60), 1.0);  // the ground gives back a quarter
 }
 
-TEST(AssetsProbes, TheStudioHasThreeBoxesInADarkRoom) {
-  const spec::RgbImage image = studioProbe(256);
+TEST(AssetsEnvironmentMaps, TheStudioHasThreeBoxesInADarkRoom) {
+  const spec::RgbImage image = studioMap(256);
   const double key = luminanceTowards(image, 48, 40), fill = luminanceTowards(image, -62, 24),
                rim = luminanceTowards(image, 172, 58), wall = luminanceTowards(image, -120, 5);
   EXPECT_GT(key, 1.5 * rim);

@@ -44,7 +44,7 @@ TEST(AssetsTeapot, NormalsPointAwayFromTheAxisOfTheBody) {
     const glm::vec3 p = mesh.positions[i];
     EXPECT_GT(glm::dot(mesh.normals[i], glm::vec3(p.x, 0, p.z)), 0.0f) << i;
   }
-  EXPECT_NEAR(mesh.normals[16 * per_patch].y, 1.0f, 1e-6f);  // top of the knob, a pole
+  EXPECT_NEAR(mesh.normals[16 * per_patch].y, 1.0f, 1e-6f);  // top of the setting, a pole
 }
 
 // The shared teapot was cut 12 x 12 per patch from another copy of the patch data: its vertices are ours,

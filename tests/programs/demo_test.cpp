@@ -124,10 +124,10 @@ TEST_F(DemoProgram, HelpAndVersionAreExitCode0) {
 }
 
 TEST_F(DemoProgram, AMissingFileIsExitCode1AndNamed) {
-  const Outcome probe = run("a.glb --light nowhere.hdr --headless a.png");
-  EXPECT_EQ(probe.exit_code, 1);
-  expectOneLine(probe.err);
-  EXPECT_NE(probe.err.find("nowhere.hdr"), std::string::npos);
+  const Outcome environment_map = run("a.glb --light nowhere.hdr --headless a.png");
+  EXPECT_EQ(environment_map.exit_code, 1);
+  expectOneLine(environment_map.err);
+  EXPECT_NE(environment_map.err.find("nowhere.hdr"), std::string::npos);
   if (!deviceHere()) GTEST_SKIP() << "no OpenGL 4.5 here: the rest needs it";
   const Outcome scene = run(quoted(folder / "lost.lmb.glb") + " --light constant:1,1,1 --headless a.png");
   EXPECT_EQ(scene.exit_code, 1);

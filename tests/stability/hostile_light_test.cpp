@@ -15,7 +15,7 @@ class HostileLight : public testing::ProgramTest {
     image.texels[100] = image.texels[101] = glm::vec4(glm::vec3(poison), 1.0f);
     const auto path = folder / "sky.exr";
     EXPECT_TRUE(spec::writeExr(path, image));
-    return lighting::Environment::create({spec::ProbeLight{path, {}}});
+    return lighting::Environment::create({spec::EnvironmentMapLight{path, {}}});
   }
   static bool isFinite(const sh::LightVector& light) {
     for (const auto& c : light.c)

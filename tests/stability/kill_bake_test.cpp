@@ -30,7 +30,7 @@ class KilledBake : public testing::ProgramTest {
     ASSERT_TRUE(written) << written.error().line();
   }
 
-  // Every kind of work: matte and glossy surfaces, a body with a neighborhood, a cloud.
+  // Every kind of work: diffuse and glossy surfaces, a body with a neighborhood, a cloud.
   static assets::Scene scene() {
     assets::Scene scene = assets::hello();
     assets::Material brass{.name = "brass", .base_color = {0.9f, 0.7f, 0.4f}};

@@ -30,7 +30,7 @@ Show show(const Look& look, int bounces) {
   scene.materials[1].roughness = look.roughness;
   scene.materials[1].metallic = look.metallic;
   if (look.roughness < 1.0f) scene.materials[1].specular = 1.0f;
-  return Show(scene, {kSun}, /*light_samples=*/0, bounces);
+  return Show(scene, {kSun}, /*light_probes=*/0, bounces);
 }
 
 glm::vec3 ballOf(Show& show) {

@@ -71,7 +71,7 @@ TEST_F(MovingLight, ABlockerBetweenLampAndStatueDarkensTheStatue) {
       true);
   Show show(scene, {constantLight(0.0f)}, 1);
   frame::FrameSettings settings = show.frame->settings();
-  settings.near_radii = 0.0f;  // this is about captures
+  settings.local_radii = 0.0f;  // this is about captures
   ASSERT_TRUE(show.frame->setSettings(settings));
   show.add({.kind = Kind::Sphere, .strength = 50.0f, .radius_m = 0.8f}, {0, 6, 0});
   const glm::vec3 eye(0.8f, 1.2f, 1.5f), top(0, 0.3f, 0);
@@ -161,7 +161,7 @@ TEST_F(MovingLight, AStillSceneCostsNoCaptureNoProjectionAndNoShading) {
     EXPECT_EQ(pass.counters.draws, 0u) << pass.name;
     EXPECT_EQ(pass.counters.uploaded_bytes, 0u) << pass.name;
   }
-  EXPECT_EQ(show.frame->counts().light_samples_written, 0u);
+  EXPECT_EQ(show.frame->counts().light_probes_written, 0u);
   EXPECT_EQ(show.frame->counts().cells_shaded, 0u);
   show.move("ball", {0, 0.6f, 0});
   show.step(eye, target);

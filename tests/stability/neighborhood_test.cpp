@@ -152,7 +152,7 @@ TEST_F(NeighborhoodBundle, IsLeftOutWhereTheEffectIs) {
   const auto plan = baker::planFor(over(icosphere({0, 0, 0}, 0.5f, 1), {0, 0.4f, 0}), options);
   ASSERT_TRUE(plan);
   for (const auto& one : plan->neighborhoods) EXPECT_FALSE(one.baked);
-  EXPECT_EQ(plan->light_samples[0].count.count, 32u);  // the floor's, for the ball
+  EXPECT_EQ(plan->light_probes[0].count.count, 32u);  // the floor's, for the ball
   // More bands than matrices have.
   options.effects = "auto";
   options.order = 8;

@@ -23,7 +23,7 @@ namespace lambent::testing {
 // A baked scene in a world, with a light, drawn in the little.
 class Show {
  public:
-  Show(const assets::Scene& source, const std::vector<spec::Light>& lights, int light_samples = 0,
+  Show(const assets::Scene& source, const std::vector<spec::Light>& lights, int light_probes = 0,
        std::optional<int> bounces = {}, float error_bound = 0.0f)
       : environment(*lighting::Environment::create(lights)) {
     const auto folder =
@@ -36,7 +36,7 @@ class Show {
     EXPECT_TRUE(scene) << scene.error().line();
     baker::BakeOptions options;
     options.quality = baker::Quality::Draft;
-    options.light_samples = light_samples;
+    options.light_probes = light_probes;
     if (bounces) options.bounces = *bounces;
     options.error_bound = error_bound;
     baker::Progress progress;

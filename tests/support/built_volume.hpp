@@ -124,7 +124,7 @@ inline std::uint32_t addVolume(bundle::Description& description, std::vector<bun
     group.bounds_min = glm::min(group.bounds_min, place);
     group.bounds_max = glm::max(group.bounds_max, place);
   }
-  group.light_samples = {0.5f * (group.bounds_min + group.bounds_max)};
+  group.light_probes = {0.5f * (group.bounds_min + group.bounds_max)};
   group.sample_count = samples;
   group.volume =
       bundle::VolumeGrid{.size = volume.size,
@@ -162,9 +162,9 @@ inline std::vector<streaming::Ready> partsOf(const BuiltVolume& volume, std::uin
       bundle::positionsOf(clusters.of_sample, static_cast<std::uint32_t>(clusters.codebook.clusters()));
   for (std::uint32_t& position : positions) position |= clusters.of_sample[position] << 16;
   const std::vector<std::byte> codes = volume.codes();
-  return {streaming::DensityReady{group, codes, streaming::blockMaxima(codes, volume.bits, volume.size)},
-          streaming::VoxelsReady{group, volume.voxels()},
-          streaming::CodebookReady{group, 0, 0, clusters.codebook, std::move(positions)}};
+  return {streaming::DensityChunk{group, codes, streaming::blockMaxima(codes, volume.bits, volume.size)},
+          streaming::VoxelsChunk{group, volume.voxels()},
+          streaming::CodebookChunk{group, 0, 0, clusters.codebook, std::move(positions)}};
 }
 
 }  // namespace lambent::testing

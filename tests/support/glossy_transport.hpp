@@ -1,5 +1,5 @@
-// The baker's passes over matte and glossy surfaces together, on a scene made in the test, with kernels made
-// in the test.
+// The baker's passes over diffuse and glossy surfaces together, on a scene made in the test, with kernels
+// made in the test.
 #pragma once
 
 #include <memory>
@@ -57,7 +57,7 @@ inline GlossyBake bakeGlossy(const Transport& t, const baker::ExitKernels& kerne
     EXPECT_TRUE(found && inside->fit(found->field.visibility, glossy->field.visibility, {}));
     if (settings.fit == Fit::AllLight) glossy->inside = inside;
   }
-  EXPECT_TRUE(baker::plainFromGlossy(pass, glossy->field, *direct, {}));
+  EXPECT_TRUE(baker::diffuseFromGlossy(pass, glossy->field, *direct, {}));
   GlossyBake bake{std::move(*direct), std::move(*glossy), {}};
   if (settings.bounces == 0) return bake;
   baker::GlossyBounces partner(pass, kernels, bake.direct, bake.glossy, settings.order_out);
@@ -101,7 +101,7 @@ inline std::vector<float> shadowMatrix(const baker::GlossyField& field, std::siz
   return matrix;
 }
 
-// All samples glossy: a metal, so that no draw counts as matte.
+// All samples glossy: a metal, so that no draw counts as diffuse.
 inline baker::Scene glossyScene(const std::vector<bundle::MeshData>& meshes) {
   baker::Scene scene = sceneOf(meshes);
   scene.materials[0].metallic = 1.0f;

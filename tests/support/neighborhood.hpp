@@ -140,7 +140,7 @@ inline NeighborhoodErrors errorsAgainst(const DecodedNeighborhood& grid, std::op
   const int order = grid.shape().order, order_out = grid.shape().order_out;
   std::vector<double> errors;
   double sum = 0.0, near = 0.0, changed = 0.0;
-  int near_count = 0, changed_count = 0;
+  int local_count = 0, changed_count = 0;
   while (static_cast<int>(errors.size()) < points) {
     const glm::vec3 p = glm::mix(low, high, glm::vec3(uniform(random), uniform(random), uniform(random)));
     if (glm::length(p) < 1.0f) continue;
@@ -151,13 +151,13 @@ inline NeighborhoodErrors errorsAgainst(const DecodedNeighborhood& grid, std::op
                  change = irradianceOf(right, order, order_out);
     errors.push_back(error);
     sum += error * error;
-    if (glm::length(p) < 1.5f) near += error * error, ++near_count;
+    if (glm::length(p) < 1.5f) near += error * error, ++local_count;
     if (change > 0.02) changed += std::pow(error / change, 2), ++changed_count;
   }
   std::sort(errors.begin(), errors.end());
   return {.rms = std::sqrt(sum / points),
           .p99 = errors[static_cast<std::size_t>(0.99 * points)],
-          .near_rms = std::sqrt(near / std::max(near_count, 1)),
+          .near_rms = std::sqrt(near / std::max(local_count, 1)),
           .of_change = std::sqrt(changed / std::max(changed_count, 1))};
 }
 

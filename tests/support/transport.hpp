@@ -23,7 +23,7 @@ struct Transport {
   baker::RayScene rays;
   baker::SurfaceColors colors;
 
-  // with_glossy: materials that are not matte have glossy samples.
+  // with_glossy: materials that are not diffuse have glossy samples.
   explicit Transport(const baker::Scene& from, bool with_glossy = false)
       : Transport(from, baker::findRigidGroups(from).at(0), with_glossy) {}
   Transport(const Transport&) = delete;  // colors refers to geometry

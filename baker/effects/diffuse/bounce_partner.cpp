@@ -15,8 +15,8 @@ ExitRadiance::ExitRadiance(const GroupGeometry& geometry, const SampleSet& sampl
                                    samples.vertex_sample[t.z]);
 }
 
-void ExitRadiance::addMatte(const GatherHit& hit, float weight, const TransferField& before,
-                            std::span<float> sum) const {
+void ExitRadiance::addDiffuse(const GatherHit& hit, float weight, const TransferField& before,
+                              std::span<float> sum) const {
   const glm::uvec3 corners = triangle_samples_[hit.triangle];
   const float u = static_cast<float>(hit.u) * (1.0f / 65535.0f),
               v = static_cast<float>(hit.v) * (1.0f / 65535.0f);

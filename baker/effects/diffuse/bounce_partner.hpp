@@ -1,4 +1,4 @@
-// What passes of bounces over matte and over other surfaces have in common: the radiance that leaves what
+// What passes of bounces over diffuse and over other surfaces have in common: the radiance that leaves what
 // rays met, and how late passes are thinned.
 #pragma once
 
@@ -10,13 +10,13 @@
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 
-#include "baker/cache/kept_ranges.hpp"
+#include "baker/cache/cached_ranges.hpp"
 #include "baker/effects/diffuse/hits.hpp"
 #include "baker/effects/diffuse/transfer_field.hpp"
+#include "baker/jobs/progress.hpp"
 #include "baker/transport/direction_table.hpp"
 #include "baker/transport/group_geometry.hpp"
 #include "baker/transport/samples.hpp"
-#include "baker/work/progress.hpp"
 
 namespace lambent::baker {
 
@@ -45,14 +45,15 @@ class BouncePartner {
 // What leaves the points that rays met, after the pass before.
 class ExitRadiance {
  public:
-  // partner: null where all is matte.
+  // partner: null where all is diffuse.
   ExitRadiance(const GroupGeometry& geometry, const SampleSet& samples, const BouncePartner* partner);
 
   bool matte(const GatherHit& hit) const { return triangle_samples_[hit.triangle].x < first_glossy_; }
   bool anyGlossy() const { return partner_ != nullptr; }
   // weight * albedo * interpolated transfer, added to `sum`, laid out as a sample of `before`.
-  void addMatte(const GatherHit& hit, float weight, const TransferField& before, std::span<float> sum) const;
-  // What leaves a hit that is not matte towards `to` (unit, group frame, away from the surface). chance:
+  void addDiffuse(const GatherHit& hit, float weight, const TransferField& before,
+                  std::span<float> sum) const;
+  // What leaves a hit that is not diffuse towards `to` (unit, group frame, away from the surface). chance:
   // below 0, what is known at the triangle's corners is interpolated; from [0, 1), it picks one corner for
   // all three, as often as its weight says: the same in the mean for a third of the reading (thinned passes).
   void addGlossy(const GatherHit& hit, const glm::vec3& to, float chance, float weight,
@@ -73,7 +74,7 @@ class ExitToSample {
 
   void add(const GatherHit& hit, float weight, const TransferField& before, std::span<float> sum) const {
     if (exit_.matte(hit))
-      exit_.addMatte(hit, weight, before, sum);
+      exit_.addDiffuse(hit, weight, before, sum);
     else
       addGlossy(hit, weight, sum);
   }

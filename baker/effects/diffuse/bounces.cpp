@@ -68,7 +68,7 @@ class Gather {
     const std::size_t first_mapped = scene_.samples.first_normal_mapped;
     for (std::size_t s = begin; s < end; ++s) {
       auto own = hits.of(s);
-      const Hemisphere& hemisphere = pass_.hemisphereOf(s, direct_.looks.closely[s] != 0);
+      const Hemisphere& hemisphere = pass_.hemisphereOf(s, direct_.looks.double_rays[s] != 0);
       float scale = 1.0f;
       if (thinly) scale = thinHits(bounce, hemisphere, own, thinned);
       const ExitToSample exit(exit_, hemisphere.table(), scene_.samples.normals[s], s, bounce, thinly);
@@ -173,27 +173,27 @@ std::optional<BounceResult> bakeBounces(const DirectPass& pass, const DirectResu
     TransferField now = zeroLike(before);
     const bool thinly = shareOf(energy, all) < kShareToThin;
     const Keep keep_pass = keep.part("pass", bounce);
-    const KeptRanges kept =
-        keptRanges(keep_pass, scene.samples.first_glossy, kSamplesGathered, stop,
-                   {.compute =
-                        [&](std::size_t begin, std::size_t end) {
-                          gather.range(bounce, thinly, begin, end, before, now, result.mapped);
-                          progress.add(end - begin);
-                        },
-                    .pack =
-                        [&](std::size_t begin, std::size_t end, ByteWriter& out) {
-                          writeStretch(now.vectors, begin * own, end * own, out);
-                          writeStretch(result.mapped.vectors, mappedOf(begin) * of_mapped,
-                                       mappedOf(end) * of_mapped, out);
-                        },
-                    .unpack =
-                        [&](std::size_t begin, std::size_t end, ByteReader& in) {
-                          progress.add(end - begin);
-                          return readStretch(in, begin * own, end * own, now.vectors) &&
-                                 readStretch(in, mappedOf(begin) * of_mapped, mappedOf(end) * of_mapped,
-                                             result.mapped.vectors);
-                        }},
-                   KeepWhen::Due);
+    const CachedRanges kept =
+        cachedRanges(keep_pass, scene.samples.first_glossy, kSamplesGathered, stop,
+                     {.compute =
+                          [&](std::size_t begin, std::size_t end) {
+                            gather.range(bounce, thinly, begin, end, before, now, result.mapped);
+                            progress.add(end - begin);
+                          },
+                      .pack =
+                          [&](std::size_t begin, std::size_t end, ByteWriter& out) {
+                            writeStretch(now.vectors, begin * own, end * own, out);
+                            writeStretch(result.mapped.vectors, mappedOf(begin) * of_mapped,
+                                         mappedOf(end) * of_mapped, out);
+                          },
+                      .unpack =
+                          [&](std::size_t begin, std::size_t end, ByteReader& in) {
+                            progress.add(end - begin);
+                            return readStretch(in, begin * own, end * own, now.vectors) &&
+                                   readStretch(in, mappedOf(begin) * of_mapped, mappedOf(end) * of_mapped,
+                                               result.mapped.vectors);
+                          }},
+                     KeepWhen::Due);
     if (!kept.finished) return std::nullopt;
     if (any_filled) fillFromNeighbours(edges, direct.looks.valid, now);
     if (partner &&

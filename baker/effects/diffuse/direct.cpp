@@ -32,18 +32,18 @@ class DirectPass::Walk {
  public:
   explicit Walk(const DirectPass& pass)
       : pass_(pass),
-        look_(pass.scene_.samples, pass.scene_.rays, pass.glances_),
+        look_(pass.scene_.samples, pass.scene_.rays, pass.inside_test_),
         group_from_local_(glm::dmat3(1.0), pass.settings_.order),
         incident_from_local_(glm::dmat3(1.0), kIncidentOrder) {}
 
   // Rays of sample `s`. Nothing is traced where it has no face to stand on.
   std::uint32_t look(std::size_t s) {
     look_.stand(s);
-    hemisphere_ = &pass_.hemisphereOf(s, look_.closely());
+    hemisphere_ = &pass_.hemisphereOf(s, look_.double_rays());
     return look_.look(hemisphere_->table(), pass_.settings_.keep_hits || !pass_.emitters_.empty());
   }
 
-  const SampleLook& looked() const { return look_; }
+  const SampleVisibility& looked() const { return look_; }
 
   // Transfer of the sample that was looked at.
   void project(std::span<float> scalar, std::span<float> incident) {
@@ -106,7 +106,7 @@ class DirectPass::Walk {
   }
 
   const DirectPass& pass_;
-  SampleLook look_;
+  SampleVisibility look_;
   sh::Rotation group_from_local_, incident_from_local_;
   const Hemisphere* hemisphere_ = nullptr;
   std::vector<float> local_, incident_local_;
@@ -115,20 +115,20 @@ class DirectPass::Walk {
 DirectPass::DirectPass(const DiffuseScene& scene, const DirectSettings& settings)
     : scene_(scene),
       settings_(settings),
-      plain_(Hemisphere::forNormal(settings.rays, settings.order)),
-      plain_closely_(Hemisphere::forNormal(2 * settings.rays, settings.order)),
+      diffuse_(Hemisphere::forNormal(settings.rays, settings.order)),
+      diffuse_double_rays_(Hemisphere::forNormal(2 * settings.rays, settings.order)),
       emitters_(scene.scene, scene.geometry, scene.colors, scene.lights),
       channels_(scene.colors.grey() && !settings.colored_kernels ? 1 : 3),
       columns_(static_cast<std::uint32_t>(sh::coefficientCount(settings.order)) +
                static_cast<std::uint32_t>(scene.lights.size())) {
   if (scene.samples.first_normal_mapped < scene.samples.first_glossy) {
     mapped_ = Hemisphere::forAnyNormal(settings.rays, settings.order);
-    mapped_closely_ = Hemisphere::forAnyNormal(2 * settings.rays, settings.order);
+    mapped_double_rays_ = Hemisphere::forAnyNormal(2 * settings.rays, settings.order);
   }
 }
 
 std::uint64_t DirectPass::bake(std::size_t begin, std::size_t end, const std::stop_token& stop,
-                               TransferField& field, TransferField& mapped, SampleLooks& looks,
+                               TransferField& field, TransferField& mapped, SampleVisibilities& looks,
                                RangeHits& hits) const {
   Walk walk(*this);
   std::uint64_t traced = 0;
@@ -137,7 +137,7 @@ std::uint64_t DirectPass::bake(std::size_t begin, std::size_t end, const std::st
     hits.next();
     traced += walk.look(s);
     looks.valid[s] = walk.looked().valid();
-    looks.closely[s] = walk.looked().closely();
+    looks.double_rays[s] = walk.looked().double_rays();
     walk.project(field.at(s), s < first_mapped ? std::span<float>() : mapped.at(s - first_mapped));
     if (settings_.keep_hits) walk.keepHits(hits);
   }
@@ -162,35 +162,35 @@ std::optional<DirectResult> bakeDirect(const DirectPass& pass, const DiffuseScen
   TracedRanges ranges(scene, own, settings.keep_hits, keep.cache != nullptr, result.hits);
   const bool grey_lights = scene.colors.greyEmission();
   const auto mappedOf = [&](std::size_t sample) { return std::max(sample, first_mapped) - first_mapped; };
-  const KeptRanges kept =
-      keptRanges(keep, own, kSamplesPerRange, stop,
-                 {.compute =
-                      [&](std::size_t begin, std::size_t end) {
-                        RangeHits hits;
-                        const std::uint64_t rays =
-                            pass.bake(begin, end, stop, result.field, result.mapped, result.looks, hits);
-                        ranges.add(begin / kSamplesPerRange, rays, std::move(hits), stop);
-                        progress.add(end - begin);
-                      },
-                  .pack =
-                      [&](std::size_t begin, std::size_t end, ByteWriter& out) {
-                        writeStretch(result.looks.valid, begin, end, out);
-                        writeStretch(result.looks.closely, begin, end, out);
-                        writeDirect(result.field, grey_lights, begin, end, out);
-                        writeDirect(result.mapped, grey_lights, mappedOf(begin), mappedOf(end), out);
-                        ranges.pack(begin / kSamplesPerRange, out);
-                      },
-                  .unpack =
-                      [&](std::size_t begin, std::size_t end, ByteReader& in) {
-                        if (!readStretch(in, begin, end, result.looks.valid) ||
-                            !readStretch(in, begin, end, result.looks.closely) ||
-                            !readDirect(in, grey_lights, begin, end, result.field) ||
-                            !readDirect(in, grey_lights, mappedOf(begin), mappedOf(end), result.mapped) ||
-                            !ranges.unpack(begin / kSamplesPerRange, end - begin, in))
-                          return false;
-                        progress.add(end - begin);
-                        return true;
-                      }});
+  const CachedRanges kept =
+      cachedRanges(keep, own, kSamplesPerRange, stop,
+                   {.compute =
+                        [&](std::size_t begin, std::size_t end) {
+                          RangeHits hits;
+                          const std::uint64_t rays =
+                              pass.bake(begin, end, stop, result.field, result.mapped, result.looks, hits);
+                          ranges.add(begin / kSamplesPerRange, rays, std::move(hits), stop);
+                          progress.add(end - begin);
+                        },
+                    .pack =
+                        [&](std::size_t begin, std::size_t end, ByteWriter& out) {
+                          writeStretch(result.looks.valid, begin, end, out);
+                          writeStretch(result.looks.double_rays, begin, end, out);
+                          writeDirect(result.field, grey_lights, begin, end, out);
+                          writeDirect(result.mapped, grey_lights, mappedOf(begin), mappedOf(end), out);
+                          ranges.pack(begin / kSamplesPerRange, out);
+                        },
+                    .unpack =
+                        [&](std::size_t begin, std::size_t end, ByteReader& in) {
+                          if (!readStretch(in, begin, end, result.looks.valid) ||
+                              !readStretch(in, begin, end, result.looks.double_rays) ||
+                              !readDirect(in, grey_lights, begin, end, result.field) ||
+                              !readDirect(in, grey_lights, mappedOf(begin), mappedOf(end), result.mapped) ||
+                              !ranges.unpack(begin / kSamplesPerRange, end - begin, in))
+                            return false;
+                          progress.add(end - begin);
+                          return true;
+                        }});
   if (!kept.finished) return std::nullopt;
   result.field.rays = ranges.raysTraced();
   result.rays_kept = ranges.raysUnpacked();

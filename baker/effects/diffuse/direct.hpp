@@ -10,17 +10,17 @@
 #include <span>
 #include <stop_token>
 
-#include "baker/cache/kept_ranges.hpp"
+#include "baker/cache/cached_ranges.hpp"
 #include "baker/effects/diffuse/emitters.hpp"
 #include "baker/effects/diffuse/hemisphere.hpp"
 #include "baker/effects/diffuse/hits.hpp"
-#include "baker/effects/diffuse/sample_look.hpp"
+#include "baker/effects/diffuse/sample_visibility.hpp"
 #include "baker/effects/diffuse/transfer_field.hpp"
+#include "baker/jobs/progress.hpp"
 #include "baker/transport/group_geometry.hpp"
 #include "baker/transport/ray_scene.hpp"
 #include "baker/transport/samples.hpp"
 #include "baker/transport/surface_colors.hpp"
-#include "baker/work/progress.hpp"
 
 namespace lambent::baker {
 
@@ -47,7 +47,7 @@ struct DirectSettings {
 };
 
 // One entry per sample.
-struct SampleLooks {
+struct SampleVisibilities {
   std::vector<std::uint8_t> valid;    // 0: lies inside something, filled from its neighbours
   std::vector<std::uint8_t> closely;  // 1: looked with twice the rays
 };
@@ -59,20 +59,20 @@ class DirectPass {
 
   // `closely`: with twice the rays.
   const Hemisphere& hemisphereOf(std::size_t sample, bool closely) const {
-    if (sample < scene_.samples.first_normal_mapped) return closely ? plain_closely_ : plain_;
-    return closely ? *mapped_closely_ : *mapped_;
+    if (sample < scene_.samples.first_normal_mapped) return closely ? diffuse_double_rays_ : diffuse_;
+    return closely ? *mapped_double_rays_ : *mapped_;
   }
   std::uint32_t columns() const { return columns_; }
   std::uint32_t channels() const { return channels_; }
   const DirectSettings& settings() const { return settings_; }
   const Emitters& emitters() const { return emitters_; }
-  const GlanceTables& glances() const { return glances_; }
+  const InsideTestTables& glances() const { return inside_test_; }
 
   // Samples [begin, end): transfer into the fields (`mapped` holds the normal-mapped samples alone), how each
   // looked, and what its rays met, not painted yet (paintHits). Returns the rays traced. Leaves the rest of
   // them when a stop is requested: a million rays a sample take seconds a range.
   std::uint64_t bake(std::size_t begin, std::size_t end, const std::stop_token& stop, TransferField& field,
-                     TransferField& mapped, SampleLooks& looks, RangeHits& hits) const;
+                     TransferField& mapped, SampleVisibilities& looks, RangeHits& hits) const;
   // The hits alone, as bake() gave them and painted.
   void traceAgain(std::size_t begin, std::size_t end, RangeHits& hits) const;
 
@@ -80,9 +80,9 @@ class DirectPass {
   class Walk;
   DiffuseScene scene_;
   DirectSettings settings_;
-  GlanceTables glances_;
-  Hemisphere plain_, plain_closely_;
-  std::optional<Hemisphere> mapped_, mapped_closely_;  // where there are such samples
+  InsideTestTables inside_test_;
+  Hemisphere diffuse_, diffuse_double_rays_;
+  std::optional<Hemisphere> mapped_, mapped_double_rays_;  // where there are such samples
   Emitters emitters_;
   std::uint32_t channels_, columns_;
 };
@@ -90,7 +90,7 @@ class DirectPass {
 struct DirectResult {
   TransferField field;   // outputs 1, all samples
   TransferField mapped;  // outputs 9, SampleSet::first_normal_mapped up to first_glossy
-  SampleLooks looks;
+  SampleVisibilities looks;
   HitStore hits;                // of the samples up to first_glossy
   std::uint64_t rays_kept = 0;  // that what was found in the cache stands for
 };

@@ -10,7 +10,7 @@ namespace {
 
 // Calls with the place in a sample's vector and the length of each stretch that is kept.
 template <typename Visit>
-void forKept(const TransferField& field, bool grey_lights, const Visit& visit) {
+void forCached(const TransferField& field, bool grey_lights, const Visit& visit) {
   const auto bands = static_cast<std::size_t>(sh::coefficientCount(field.order));
   const std::size_t lights = field.columns - bands;
   for (std::size_t output = 0; output < field.outputs; ++output)
@@ -43,7 +43,7 @@ void writeDirect(const TransferField& field, bool grey_lights, std::size_t begin
   std::vector<float> kept;
   for (std::size_t s = begin; s < end; ++s) {
     const auto vector = field.at(s);
-    forKept(field, grey_lights, [&](std::size_t at, std::size_t count) {
+    forCached(field, grey_lights, [&](std::size_t at, std::size_t count) {
       const auto stretch = vector.subspan(at, count);
       kept.insert(kept.end(), stretch.begin(), stretch.end());
     });
@@ -54,11 +54,11 @@ void writeDirect(const TransferField& field, bool grey_lights, std::size_t begin
 bool readDirect(ByteReader& in, bool grey_lights, std::size_t begin, std::size_t end, TransferField& field) {
   std::vector<float> kept;
   std::size_t size = 0, at_kept = 0;
-  forKept(field, grey_lights, [&](std::size_t, std::size_t count) { size += count; });
+  forCached(field, grey_lights, [&](std::size_t, std::size_t count) { size += count; });
   if (!in.readList(kept) || kept.size() != size * (end - begin)) return false;
   for (std::size_t s = begin; s < end; ++s) {
     const auto vector = field.at(s);
-    forKept(field, grey_lights, [&](std::size_t at, std::size_t count) {
+    forCached(field, grey_lights, [&](std::size_t at, std::size_t count) {
       std::copy_n(kept.begin() + static_cast<std::ptrdiff_t>(at_kept), count,
                   vector.begin() + static_cast<std::ptrdiff_t>(at));
       at_kept += count;

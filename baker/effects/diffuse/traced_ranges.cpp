@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "baker/effects/diffuse/hit_bytes.hpp"
-#include "baker/effects/diffuse/sample_look.hpp"
+#include "baker/effects/diffuse/sample_visibility.hpp"
 
 namespace lambent::baker {
 

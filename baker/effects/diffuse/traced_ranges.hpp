@@ -1,6 +1,6 @@
-// What ranges of samples traced, of matte and of glossy surfaces alike: how many rays, and what they met,
+// What ranges of samples traced, of diffuse and of glossy surfaces alike: how many rays, and what they met,
 // painted for the store and, beside it, unpainted as bytes for whoever keeps what a range found
-// (cache/kept_ranges.hpp).
+// (cache/cached_ranges.hpp).
 #pragma once
 
 #include <atomic>

@@ -8,8 +8,8 @@
 
 #include <Eigen/SparseCore>
 
+#include "baker/jobs/parallel.hpp"
 #include "baker/transport/sample_areas.hpp"
-#include "baker/work/parallel.hpp"
 
 namespace lambent::baker {
 

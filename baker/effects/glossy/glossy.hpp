@@ -6,7 +6,7 @@
 
 namespace lambent::baker {
 
-// Every scene with a surface that is not matte calls for glossy transfer.
+// Every scene with a surface that is not diffuse calls for glossy transfer.
 EffectChoice chooseGlossy(const Scene& scene, const std::vector<RigidGroup>& groups);
 
 }  // namespace lambent::baker

@@ -13,8 +13,8 @@
 #include "baker/effects/diffuse/field_bytes.hpp"
 #include "baker/effects/diffuse/fill.hpp"
 #include "baker/effects/glossy/inside_faces.hpp"
+#include "baker/jobs/parallel.hpp"
 #include "baker/transport/frame.hpp"
-#include "baker/work/parallel.hpp"
 #include "runtime/sh/basis.hpp"
 #include "runtime/sh/rotation.hpp"
 #include "runtime/sh/zonal_factors.hpp"
@@ -164,7 +164,7 @@ class GlossyBounces::Walk {
 
 GlossyBounces::GlossyBounces(const GlossyPass& pass, const ExitKernels& kernels, const DirectResult& plain,
                              GlossyDirect& direct, int order_out)
-    : pass_(pass), kernels_(kernels), plain_(plain), direct_(direct), order_out_(order_out) {
+    : pass_(pass), kernels_(kernels), diffuse_(plain), direct_(direct), order_out_(order_out) {
   const GlossyField& field = direct.field;
   assert(order_out <= field.order_out);
   assert(sh::coefficientCount(field.order_out) <= static_cast<int>(kMostOutputs));
@@ -246,7 +246,7 @@ bool GlossyBounces::gatherAt(const Receivers& at, const Bounce& bounce, State& n
     Walk walk(at.pass, bounce.before);
     for (std::size_t s = begin; s < end; ++s) {
       const std::size_t sample = first + s;
-      const GlossyHemisphere& hemisphere = at.pass.hemisphereOf(at.looks.closely[sample] != 0);
+      const GlossyHemisphere& hemisphere = at.pass.hemisphereOf(at.looks.double_rays[sample] != 0);
       const ExitToSample to_sample(bounce.exit, hemisphere.table(), at.pass.scene().samples.normals[sample],
                                    sample, bounce.number, bounce.thinly);
       walk.gather(sample, hits.of(s), raysTogether(share, hemisphere.table().size()), bounce.number,
@@ -255,7 +255,7 @@ bool GlossyBounces::gatherAt(const Receivers& at, const Bounce& bounce, State& n
     progress.add(end - begin);
   };
   const std::size_t environment = now.environment.sampleSize(), lights = now.lights.sampleSize();
-  const KeptRanges kept = keptRanges(
+  const CachedRanges kept = cachedRanges(
       keep, at.pass.size(), kSamplesGathered, stop,
       {.compute = gatherRange,
        .pack =
@@ -287,12 +287,12 @@ bool GlossyBounces::gather(int number, bool thinly, const ExitRadiance& exit, co
                            TransferField& now, Progress& progress, const std::stop_token& stop,
                            const Keep& keep) {
   const Bounce bounce{number, thinly, exit, before};
-  if (!gatherAt({pass_, direct_.hits, plain_.looks}, bounce, now_, progress, stop, keep)) return false;
+  if (!gatherAt({pass_, direct_.hits, diffuse_.looks}, bounce, now_, progress, stop, keep)) return false;
   if (!edges_.empty()) {
-    fillStretchFromNeighbours(edges_, plain_.looks.valid, pass_.first(), now_.environment.sampleSize(),
+    fillStretchFromNeighbours(edges_, diffuse_.looks.valid, pass_.first(), now_.environment.sampleSize(),
                               now_.environment.values);
     if (now_.lights.columns > 0)
-      fillStretchFromNeighbours(edges_, plain_.looks.valid, pass_.first(), now_.lights.sampleSize(),
+      fillStretchFromNeighbours(edges_, diffuse_.looks.valid, pass_.first(), now_.lights.sampleSize(),
                                 now_.lights.values);
   }
   if (direct_.inside && !fitInside(bounce, progress, stop, keep.part("inside faces"))) return false;
@@ -318,8 +318,8 @@ bool GlossyBounces::take(const State& state, TransferField* plain, const std::st
   const auto plainOf = [&](const GlossyMatrices& matrices, std::size_t s, std::size_t first_column) {
     const auto out = plain->at(pass_.first() + s);
     for (std::size_t c = 0; c < plain->channels; ++c)
-      plainTransfer(order_out_, pass_.scene().samples.normals[pass_.first() + s], matrices.matrix(s, c),
-                    out.subspan(c * plain->columns + first_column, matrices.columns));
+      diffuseTransfer(order_out_, pass_.scene().samples.normals[pass_.first() + s], matrices.matrix(s, c),
+                      out.subspan(c * plain->columns + first_column, matrices.columns));
   };
   const bool taken =
       parallelRanges(pass_.size(), kSamplesPerRange, stop, [&](std::size_t begin, std::size_t end) {

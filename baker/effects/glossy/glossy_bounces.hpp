@@ -1,8 +1,8 @@
-// Light between matte and glossy surfaces, both ways (Sloan 2002, section 4, passes b >= 1): what leaves a
+// Light between diffuse and glossy surfaces, both ways (Sloan 2002, section 4, passes b >= 1): what leaves a
 // glossy point q towards p is c(q, v)^T M_q^(b-1), c its exit kernel; what a glossy sample receives along d
 // is added to M_p^b as w (y_i(d) + y_i(mirrored d)). Goes along with bakeBounces as its partner:
 //   GlossyBounces glossy(pass, kernels, direct, glossy_direct, order_out);
-//   bakeBounces(plain_pass, direct, scene, settings, progress, stop, &glossy);
+//   bakeBounces(diffuse_pass, direct, scene, settings, progress, stop, &glossy);
 //   glossy.finish();   // glossy_direct.field has `bounced` and `lights_full`, all of order_out bands
 // Passes bring and take all bands that `direct` has, which may be more than order_out: the kernel of a sharp
 // surface meets edges of shadows where light leaves, which few bands do not have (docs/decisions/glossy.md,
@@ -69,7 +69,7 @@ class GlossyBounces : public BouncePartner {
   struct Receivers {
     const GlossyPass& pass;
     const HitStore& hits;
-    const SampleLooks& looks;
+    const SampleVisibilities& looks;
   };
   // Of the environment, and of the lights of the group.
   struct State {
@@ -91,7 +91,7 @@ class GlossyBounces : public BouncePartner {
 
   const GlossyPass& pass_;
   const ExitKernels& kernels_;
-  const DirectResult& plain_;
+  const DirectResult& diffuse_;
   GlossyDirect& direct_;
   int order_out_;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> edges_;  // empty where no sample is filled

@@ -6,9 +6,9 @@
 
 #include "baker/effects/diffuse/field_bytes.hpp"
 #include "baker/effects/diffuse/fill.hpp"
-#include "baker/effects/diffuse/sample_look.hpp"
+#include "baker/effects/diffuse/sample_visibility.hpp"
 #include "baker/effects/diffuse/traced_ranges.hpp"
-#include "baker/work/parallel.hpp"
+#include "baker/jobs/parallel.hpp"
 #include "runtime/sh/basis.hpp"
 #include "runtime/sh/rotation.hpp"
 #include "runtime/sh/zonal.hpp"
@@ -64,20 +64,20 @@ class GlossyPass::Walk {
  public:
   explicit Walk(const GlossyPass& pass)
       : pass_(pass),
-        look_(pass.scene_.samples, pass.scene_.rays, pass.plain_.glances()),
+        look_(pass.scene_.samples, pass.scene_.rays, pass.diffuse_.glances()),
         visibility_from_local_(glm::dmat3(1.0), pass.gaunt_.visibilityBands()),
         outputs_from_local_(glm::dmat3(1.0), pass.order_out_),
         local_(squared(pass.gaunt_.visibilityBands())) {}
 
   std::uint32_t look(std::size_t sample) {
     look_.stand(pass_.first() + sample);
-    hemisphere_ = &pass_.hemisphereOf(look_.closely());
+    hemisphere_ = &pass_.hemisphereOf(look_.double_rays());
     return look_.look(hemisphere_->table(),
-                      pass_.plain_.settings().keep_hits || !pass_.plain_.emitters().empty(),
+                      pass_.diffuse_.settings().keep_hits || !pass_.diffuse_.emitters().empty(),
                       BelowHorizon::Mirrored);
   }
 
-  const SampleLook& looked() const { return look_; }
+  const SampleVisibility& looked() const { return look_; }
 
   void project(std::span<float> visibility) {
     hemisphere_->project(look_.blocked(), local_);
@@ -93,8 +93,8 @@ class GlossyPass::Walk {
     lights_local_.assign(channels * even * lights, 0.0f);
     GlossyReceiver receiver(*hemisphere_, channels, lights, lights_local_);
     const glm::mat3 frame(look_.frame());
-    pass_.plain_.emitters().addMet(look_.hits(), look_.origins(), frame, receiver);
-    pass_.plain_.emitters().addChosen(look_.origins(), frame, pass_.scene_.rays, receiver);
+    pass_.diffuse_.emitters().addMet(look_.hits(), look_.origins(), frame, receiver);
+    pass_.diffuse_.emitters().addChosen(look_.origins(), frame, pass_.scene_.rays, receiver);
     outputs_from_local_.set(look_.frame());
     const std::size_t outputs = squared(pass_.order_out_);
     for (std::size_t c = 0; c < channels; ++c)
@@ -107,25 +107,25 @@ class GlossyPass::Walk {
 
  private:
   const GlossyPass& pass_;
-  SampleLook look_;
+  SampleVisibility look_;
   sh::Rotation visibility_from_local_, outputs_from_local_;
   const GlossyHemisphere* hemisphere_ = nullptr;
   std::vector<float> local_, lights_local_;
 };
 
 GlossyPass::GlossyPass(const DirectPass& plain, const DiffuseScene& scene, int order_out)
-    : plain_(plain),
+    : diffuse_(plain),
       scene_(scene),
       order_in_(plain.settings().order),
       order_out_(order_out),
       usual_(plain.settings().rays, order_in_ + order_out - 1, order_out),
-      closely_(2 * plain.settings().rays, order_in_ + order_out - 1, order_out),
+      double_rays_(2 * plain.settings().rays, order_in_ + order_out - 1, order_out),
       gaunt_(sh::makeGauntTable(order_in_, order_out)) {}
 
 GlossyField GlossyPass::shape() const {
   return {.order_in = order_in_,
           .order_out = order_out_,
-          .channels = plain_.channels(),
+          .channels = diffuse_.channels(),
           .light_columns = static_cast<std::uint32_t>(scene_.lights.size()),
           .first_sample = static_cast<std::uint32_t>(first()),
           .visibility = {},
@@ -135,7 +135,7 @@ GlossyField GlossyPass::shape() const {
 }
 
 std::uint64_t GlossyPass::bake(std::size_t begin, std::size_t end, const std::stop_token& stop,
-                               GlossyField& field, SampleLooks& looks, RangeHits& hits) const {
+                               GlossyField& field, SampleVisibilities& looks, RangeHits& hits) const {
   Walk walk(*this);
   std::uint64_t traced = 0;
   const std::size_t lights = field.light_columns, per_sample = field.channels * squared(order_out_) * lights;
@@ -143,12 +143,12 @@ std::uint64_t GlossyPass::bake(std::size_t begin, std::size_t end, const std::st
     hits.next();
     traced += walk.look(s);
     looks.valid[first() + s] = walk.looked().valid();
-    looks.closely[first() + s] = walk.looked().closely();
+    looks.double_rays[first() + s] = walk.looked().double_rays();
     walk.project(std::span(field.visibility).subspan(s * field.visibilitySize(), field.visibilitySize()));
     if (lights > 0)
       walk.receiveLights(field.channels, lights,
                          std::span(field.lights_shadowed).subspan(s * per_sample, per_sample));
-    if (plain_.settings().keep_hits) walk.keepHits(hits);
+    if (diffuse_.settings().keep_hits) walk.keepHits(hits);
   }
   hits.next();
   return traced;
@@ -159,7 +159,7 @@ void GlossyPass::traceAgain(std::size_t begin, std::size_t end, RangeHits& hits)
   paintHits(scene_.colors, hits);
 }
 
-void plainTransfer(int order_out, glm::vec3 normal, std::span<const float> matrix, std::span<float> out) {
+void diffuseTransfer(int order_out, glm::vec3 normal, std::span<const float> matrix, std::span<float> out) {
   std::vector<float> kernel(squared(order_out));
   sh::unoccludedTransfer(order_out, normal, std::span<float>(kernel));
   std::fill(out.begin(), out.end(), 0.0f);
@@ -167,8 +167,8 @@ void plainTransfer(int order_out, glm::vec3 normal, std::span<const float> matri
     for (std::size_t i = 0; i < out.size(); ++i) out[i] += kernel[k] * matrix[k * out.size() + i];
 }
 
-bool plainFromGlossy(const GlossyPass& pass, const GlossyField& field, DirectResult& direct,
-                     const std::stop_token& stop) {
+bool diffuseFromGlossy(const GlossyPass& pass, const GlossyField& field, DirectResult& direct,
+                       const std::stop_token& stop) {
   const std::size_t outputs = squared(field.order_out), columns = squared(field.order_in),
                     lights = field.light_columns;
   return parallelRanges(pass.size(), kSamplesPerRange, stop, [&](std::size_t begin, std::size_t end) {
@@ -180,22 +180,22 @@ bool plainFromGlossy(const GlossyPass& pass, const GlossyField& field, DirectRes
           std::span(field.visibility).subspan(s * field.visibilitySize(), field.visibilitySize()), matrix);
       const glm::vec3 normal = pass.scene().samples.normals[pass.first() + s];
       const auto out = direct.field.at(pass.first() + s);
-      plainTransfer(field.order_out, normal, matrix, out.first(columns));
+      diffuseTransfer(field.order_out, normal, matrix, out.first(columns));
       for (std::size_t c = 0; c < field.channels; ++c) {
         std::copy_n(out.begin(), columns,
                     out.begin() + static_cast<std::ptrdiff_t>(c * direct.field.columns));
         if (lights > 0)
-          plainTransfer(field.order_out, normal,
-                        std::span(field.lights_shadowed)
-                            .subspan((s * field.channels + c) * outputs * lights, outputs * lights),
-                        out.subspan(c * direct.field.columns + columns, lights));
+          diffuseTransfer(field.order_out, normal,
+                          std::span(field.lights_shadowed)
+                              .subspan((s * field.channels + c) * outputs * lights, outputs * lights),
+                          out.subspan(c * direct.field.columns + columns, lights));
       }
     }
   });
 }
 
 std::optional<GlossyDirect> bakeGlossyDirect(const GlossyPass& pass, std::size_t hit_memory,
-                                             SampleLooks& looks, Progress& progress,
+                                             SampleVisibilities& looks, Progress& progress,
                                              const std::stop_token& stop, const Keep& keep) {
   const SampleSet& samples = pass.scene().samples;
   const std::size_t count = pass.size();
@@ -210,7 +210,7 @@ std::optional<GlossyDirect> bakeGlossyDirect(const GlossyPass& pass, std::size_t
   // Of grey lamps the first channel stands for all (field_bytes.hpp).
   const std::size_t channel = outputs * lights, per_sample = field.channels * channel,
                     kept_lights = pass.scene().colors.greyEmission() ? channel : per_sample;
-  const KeptRanges kept = keptRanges(
+  const CachedRanges kept = cachedRanges(
       keep, count, kSamplesPerRange, stop,
       {.compute =
            [&](std::size_t begin, std::size_t end) {
@@ -222,7 +222,7 @@ std::optional<GlossyDirect> bakeGlossyDirect(const GlossyPass& pass, std::size_t
        .pack =
            [&](std::size_t begin, std::size_t end, ByteWriter& out) {
              writeStretch(looks.valid, first + begin, first + end, out);
-             writeStretch(looks.closely, first + begin, first + end, out);
+             writeStretch(looks.double_rays, first + begin, first + end, out);
              writeStretch(field.visibility, begin * seen, end * seen, out);
              for (std::size_t s = begin; s < end; ++s)
                writeStretch(field.lights_shadowed, s * per_sample, s * per_sample + kept_lights, out);
@@ -231,7 +231,7 @@ std::optional<GlossyDirect> bakeGlossyDirect(const GlossyPass& pass, std::size_t
        .unpack =
            [&](std::size_t begin, std::size_t end, ByteReader& in) {
              readStretch(in, first + begin, first + end, looks.valid);
-             readStretch(in, first + begin, first + end, looks.closely);
+             readStretch(in, first + begin, first + end, looks.double_rays);
              readStretch(in, begin * seen, end * seen, field.visibility);
              for (std::size_t s = begin; s < end; ++s) {
                const std::size_t at = s * per_sample;

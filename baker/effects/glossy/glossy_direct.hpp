@@ -23,9 +23,9 @@ class GlossyPass {
   // together at most sh::kMaxVisibilityBands + 1.
   GlossyPass(const DirectPass& plain, const DiffuseScene& scene, int order_out);
 
-  const DirectPass& plain() const { return plain_; }
+  const DirectPass& plain() const { return diffuse_; }
   const DiffuseScene& scene() const { return scene_; }
-  const GlossyHemisphere& hemisphereOf(bool closely) const { return closely ? closely_ : usual_; }
+  const GlossyHemisphere& hemisphereOf(bool closely) const { return closely ? double_rays_ : usual_; }
   const sh::GauntTable& gaunt() const { return gaunt_; }
   std::size_t first() const { return scene_.samples.first_glossy; }
   std::size_t size() const { return scene_.samples.size() - first(); }
@@ -34,15 +34,15 @@ class GlossyPass {
 
   // As DirectPass::bake. `looks` is that of all samples.
   std::uint64_t bake(std::size_t begin, std::size_t end, const std::stop_token& stop, GlossyField& field,
-                     SampleLooks& looks, RangeHits& hits) const;
+                     SampleVisibilities& looks, RangeHits& hits) const;
   void traceAgain(std::size_t begin, std::size_t end, RangeHits& hits) const;
 
  private:
   class Walk;
-  const DirectPass& plain_;
+  const DirectPass& diffuse_;
   DiffuseScene scene_;
   int order_in_, order_out_;
-  GlossyHemisphere usual_, closely_;
+  GlossyHemisphere usual_, double_rays_;
   sh::GauntTable gaunt_;
 };
 
@@ -62,15 +62,15 @@ struct GlossyDirect {
 // counts samples. hit_memory: bytes. The result does not depend on the number of threads. keep: as for
 // bakeDirect.
 std::optional<GlossyDirect> bakeGlossyDirect(const GlossyPass& pass, std::size_t hit_memory,
-                                             SampleLooks& looks, Progress& progress,
+                                             SampleVisibilities& looks, Progress& progress,
                                              const std::stop_token& stop, const Keep& keep = {});
 
 // Fills in the glossy samples of direct.field from visibility and lights. False if stopped.
-bool plainFromGlossy(const GlossyPass& pass, const GlossyField& field, DirectResult& direct,
-                     const std::stop_token& stop);
+bool diffuseFromGlossy(const GlossyPass& pass, const GlossyField& field, DirectResult& direct,
+                       const std::stop_token& stop);
 
 // What a sample's matrix in the group's frame gives at a Lambert receiver with its normal:
 // out[column] = Σ_k (A_l/pi) y_k(n) matrix[k * columns + column], of the matrix's first order_out² rows.
-void plainTransfer(int order_out, glm::vec3 normal, std::span<const float> matrix, std::span<float> out);
+void diffuseTransfer(int order_out, glm::vec3 normal, std::span<const float> matrix, std::span<float> out);
 
 }  // namespace lambent::baker

@@ -7,8 +7,8 @@ namespace lambent::baker {
 GlossyInsideFaces::GlossyInsideFaces(const GlossyPass& vertices, std::span<const std::uint32_t> triangles)
     : vertices_(vertices),
       points_(facePoints(vertices.scene().geometry, vertices.scene().samples, triangles)),
-      plain_(vertices.scene().withSamples(points_.samples), vertices.plain().settings()),
-      pass_(plain_, vertices.scene().withSamples(points_.samples), vertices.shape().order_out),
+      diffuse_(vertices.scene().withSamples(points_.samples), vertices.plain().settings()),
+      pass_(diffuse_, vertices.scene().withSamples(points_.samples), vertices.shape().order_out),
       looks_{std::vector<std::uint8_t>(points_.samples.size(), 0),
              std::vector<std::uint8_t>(points_.samples.size(), 0)} {}
 

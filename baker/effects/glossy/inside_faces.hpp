@@ -28,7 +28,7 @@ class GlossyInsideFaces {
                                    const Keep& keep);
 
   const GlossyPass& pass() const { return pass_; }  // its samples are the points, from 0 on
-  const SampleLooks& looks() const { return looks_; }
+  const SampleVisibilities& looks() const { return looks_; }
   const HitStore& hits() const { return hits_; }
   std::size_t size() const { return pass_.size(); }
 
@@ -39,9 +39,9 @@ class GlossyInsideFaces {
  private:
   const GlossyPass& vertices_;
   FacePoints points_;
-  DirectPass plain_;
+  DirectPass diffuse_;
   GlossyPass pass_;
-  SampleLooks looks_;
+  SampleVisibilities looks_;
   HitStore hits_;
   std::optional<VertexFit> fit_;
 };

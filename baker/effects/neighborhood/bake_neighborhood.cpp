@@ -107,7 +107,7 @@ std::optional<BakedAround> bakeNeighborhood(const Body& body, const Neighborhood
   if (!changed->grid) return out;
   const GridPlacement& grid = *changed->grid;
   progress.begin("coding the neighborhood", grid.count(), "points");
-  KeptCoding coding(keep.cache);
+  CachedCoding coding(keep.cache);
   auto coded = codeChange(*changed->change, grid, settings.origin, settings.coding, coding, stop);
   if (!coded) return std::nullopt;
   progress.add(grid.count());

@@ -5,12 +5,12 @@
 #include <stop_token>
 
 #include "baker/bake/baked_grids.hpp"
-#include "baker/cache/kept_ranges.hpp"
+#include "baker/cache/cached_ranges.hpp"
 #include "baker/effects/neighborhood/body.hpp"
 #include "baker/effects/neighborhood/code_change.hpp"
 #include "baker/effects/neighborhood/grid_placement.hpp"
+#include "baker/jobs/progress.hpp"
 #include "baker/plan/facing_area.hpp"
-#include "baker/work/progress.hpp"
 
 namespace lambent::baker {
 

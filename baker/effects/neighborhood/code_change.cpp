@@ -7,8 +7,8 @@
 
 #include <glm/common.hpp>
 
+#include "baker/jobs/parallel.hpp"
 #include "baker/transport/samples.hpp"
-#include "baker/work/parallel.hpp"
 #include "runtime/bundle/transfer_codec.hpp"
 
 namespace lambent::baker {
@@ -53,7 +53,7 @@ class CellCoder {
   }
 
   // Each part has half of the square error; bounced light so many times as much.
-  std::vector<CodedTransfer> code(double bound, double looser, KeptCoding& coding,
+  std::vector<CodedTransfer> code(double bound, double looser, CachedCoding& coding,
                                   const std::stop_token& stop) const {
     const double energy = meter_.lightEnergy() * static_cast<double>(count_);
     const auto order = static_cast<std::uint32_t>(shape_.order),
@@ -117,7 +117,7 @@ class CellCoder {
 
 std::optional<CodedChange> codeChange(const GridChange& change, const GridPlacement& grid,
                                       const glm::vec3& origin, const ChangeCoding& settings,
-                                      KeptCoding& coding, const std::stop_token& stop) {
+                                      CachedCoding& coding, const std::stop_token& stop) {
   const ChangeMeter meter(change.shape);
   CodedChange out;
   for (std::size_t first = 0; first < grid.count(); first += kMaxCellSamples) {

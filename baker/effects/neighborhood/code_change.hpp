@@ -32,6 +32,6 @@ struct CodedChange {
 // origin: added to the points for the cells' bounds. Nothing if stopped.
 std::optional<CodedChange> codeChange(const GridChange& change, const GridPlacement& grid,
                                       const glm::vec3& origin, const ChangeCoding& settings,
-                                      KeptCoding& coding, const std::stop_token& stop);
+                                      CachedCoding& coding, const std::stop_token& stop);
 
 }  // namespace lambent::baker

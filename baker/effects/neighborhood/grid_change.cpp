@@ -8,7 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include "baker/effects/diffuse/fill.hpp"
-#include "baker/work/parallel.hpp"
+#include "baker/jobs/parallel.hpp"
 
 namespace lambent::baker {
 
@@ -62,7 +62,7 @@ class Filler {
       progress.add(end - begin);
       return true;
     };
-    return keptRanges(keep, grid_.count(), kGrain, stop, {compute, pack, unpack}, KeepWhen::Due).finished;
+    return cachedRanges(keep, grid_.count(), kGrain, stop, {compute, pack, unpack}, KeepWhen::Due).finished;
   }
   std::size_t pointsTraced() const { return traced_; }
 

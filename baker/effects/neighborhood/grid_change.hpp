@@ -8,10 +8,10 @@
 #include <optional>
 #include <stop_token>
 
-#include "baker/cache/kept_ranges.hpp"
+#include "baker/cache/cached_ranges.hpp"
 #include "baker/effects/neighborhood/grid_placement.hpp"
 #include "baker/effects/neighborhood/point_change.hpp"
-#include "baker/work/progress.hpp"
+#include "baker/jobs/progress.hpp"
 
 namespace lambent::baker {
 

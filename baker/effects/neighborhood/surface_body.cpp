@@ -8,7 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include "baker/effects/neighborhood/follow_highlight.hpp"
-#include "baker/work/parallel.hpp"
+#include "baker/jobs/parallel.hpp"
 #include "runtime/sh/basis.hpp"
 #include "runtime/sh/gaunt.hpp"
 
@@ -48,8 +48,8 @@ SurfaceBody::SurfaceBody(const DiffuseScene& scene, const BakedSurfaces& baked)
   channels_ = baked.direct.channels;
   const auto columns = static_cast<std::size_t>(sh::coefficientCount(order_));
   const std::size_t samples = baked.direct.size();
-  plain_.resize(samples * channels_ * columns);
-  float* out = plain_.data();
+  diffuse_.resize(samples * channels_ * columns);
+  float* out = diffuse_.data();
   for (std::size_t s = 0; s < samples; ++s)
     for (std::size_t c = 0; c < channels_; ++c)
       for (std::size_t i = 0; i < columns; ++i, ++out)
@@ -86,7 +86,7 @@ void SurfaceBody::addPlain(const FirstHit& hit, const glm::vec3& scale, std::spa
   const glm::uvec3 t = scene_.geometry.triangles[hit.triangle];
   const auto columns = static_cast<std::size_t>(sh::coefficientCount(order_));
   const auto of = [&](std::uint32_t vertex) {
-    return plain_.data() + scene_.samples.vertex_sample[vertex] * channels_ * columns;
+    return diffuse_.data() + scene_.samples.vertex_sample[vertex] * channels_ * columns;
   };
   const float *a = of(t.x), *b = of(t.y), *c = of(t.z);
   float* sum = out.data();
@@ -98,7 +98,7 @@ void SurfaceBody::addPlain(const FirstHit& hit, const glm::vec3& scale, std::spa
   }
 }
 
-void SurfaceBody::addMatte(const FirstHit& hit, const glm::vec3& scale, std::span<float> out) const {
+void SurfaceBody::addDiffuse(const FirstHit& hit, const glm::vec3& scale, std::span<float> out) const {
   addPlain(hit, scale * scene_.colors.albedo(hit.triangle, hit.u, hit.v), out);
 }
 
@@ -201,7 +201,7 @@ class SurfaceBody::Paths {
         body_.addKernel(hit, path.along, choices(path.number, reflection).x, path.scale, out);
         return false;
       case Way::Matte:
-        body_.addMatte(hit, path.scale, out);
+        body_.addDiffuse(hit, path.scale, out);
     }
     return false;
   }
@@ -245,7 +245,7 @@ void SurfaceBody::look(const glm::vec3& from, const DirectionPacket& along, std:
     std::fill(row.begin(), row.end(), 0.0f);
     switch (wayOf(hit)) {
       case Way::Matte:
-        addMatte(hit, glm::vec3(1.0f), row);
+        addDiffuse(hit, glm::vec3(1.0f), row);
         break;
       case Way::Kernel:
         addKernel(hit, along[k], choices(static_cast<std::uint32_t>(first_ray + k), 0).x, glm::vec3(1.0f),

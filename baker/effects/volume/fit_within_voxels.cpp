@@ -9,7 +9,7 @@
 
 #include "baker/effects/volume/first_light.hpp"
 #include "baker/effects/volume/grid_fit.hpp"
-#include "baker/work/parallel.hpp"
+#include "baker/jobs/parallel.hpp"
 
 namespace lambent::baker {
 
@@ -138,7 +138,7 @@ bool fitWithinVoxels(const Medium& medium, const VolumeSettings& settings, const
       progress.add(end - begin);
       return true;
     };
-    if (!keptRanges(keep.part("places", start), count, kGrain, stop, {compute, pack, unpack}, KeepWhen::Due)
+    if (!cachedRanges(keep.part("places", start), count, kGrain, stop, {compute, pack, unpack}, KeepWhen::Due)
              .finished)
       return false;
     for (std::size_t k = 0; k < count; ++k)

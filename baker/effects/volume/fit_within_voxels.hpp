@@ -11,7 +11,7 @@
 #include "baker/effects/volume/occluders.hpp"
 #include "baker/effects/volume/scatter_rows.hpp"
 #include "baker/effects/volume/volume_transfer.hpp"
-#include "baker/work/progress.hpp"
+#include "baker/jobs/progress.hpp"
 
 namespace lambent::baker {
 

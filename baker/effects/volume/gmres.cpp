@@ -7,7 +7,7 @@
 
 #include "baker/effects/volume/gmres_checkpoint.hpp"
 #include "baker/effects/volume/scatter_rows.hpp"
-#include "baker/work/parallel.hpp"
+#include "baker/jobs/parallel.hpp"
 
 namespace lambent::baker {
 

@@ -9,7 +9,7 @@
 #include <span>
 #include <stop_token>
 
-#include "baker/cache/kept_ranges.hpp"
+#include "baker/cache/cached_ranges.hpp"
 
 namespace lambent::baker {
 

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "baker/cache/kept_ranges.hpp"
+#include "baker/cache/cached_ranges.hpp"
 #include "baker/effects/volume/scatter_rows.hpp"
 
 namespace lambent::baker {

@@ -4,7 +4,7 @@
 
 #include <glm/vector_relational.hpp>
 
-#include "baker/work/parallel.hpp"
+#include "baker/jobs/parallel.hpp"
 
 namespace lambent::baker {
 

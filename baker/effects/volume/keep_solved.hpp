@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "baker/cache/kept_ranges.hpp"
+#include "baker/cache/cached_ranges.hpp"
 #include "baker/effects/volume/gmres.hpp"
 
 namespace lambent::baker {
@@ -12,7 +12,7 @@ namespace lambent::baker {
 template <typename Solve>
 GmresResult keepSolved(const Keep& keep, std::span<float> result, const Solve& solve) {
   GmresResult done;
-  keptValue(
+  cachedValue(
       keep.part("solved"),
       [&](ByteReader& in) {
         return in.read(done.iterations) && in.read(done.residual) && in.readInto(result);

@@ -8,7 +8,7 @@
 
 #include <Eigen/Dense>
 
-#include "baker/work/parallel.hpp"
+#include "baker/jobs/parallel.hpp"
 
 namespace lambent::baker {
 
@@ -141,37 +141,37 @@ bool PhaseScattering::sumUpAll(std::span<const float> clear, std::uint64_t memor
     }
     progress.add(end - begin);
   };
-  const KeptRanges kept =
-      keptRanges(keep, samples(), kChunk, stop,
-                 {.compute =
-                      [&](std::size_t begin, std::size_t end) {
-                        Chunk chunk = trace(begin / kChunk, 0, table_->size());
-                        sumUp(clear, chunk, begin, end);
-                        traced += end - begin;
-                        offer(begin, end, std::move(chunk));
-                      },
-                  // What has no room in memory is not kept either, but for the sums.
-                  .pack =
-                      [&](std::size_t begin, std::size_t end, ByteWriter& out) {
-                        out.addList(std::span<const double>(away_).subspan(begin, end - begin));
-                        out.addList(std::span<const float>(amiss_).subspan(begin * n, (end - begin) * n));
-                        const Chunk& chunk = chunks_[begin / kChunk];
-                        out.addList(chunk.begins);
-                        out.addList(chunk.steps);
-                        out.addList(chunk.left);
-                      },
-                  .unpack =
-                      [&](std::size_t begin, std::size_t end, ByteReader& in) {
-                        Chunk chunk;
-                        if (!in.readInto(std::span(away_).subspan(begin, end - begin)) ||
-                            !in.readInto(std::span(amiss_).subspan(begin * n, (end - begin) * n)) ||
-                            !in.readList(chunk.begins) || !in.readList(chunk.steps) ||
-                            !in.readList(chunk.left) || !fits(chunk, end - begin))
-                          return false;
-                        offer(begin, end, std::move(chunk));
-                        return true;
-                      }},
-                 KeepWhen::Due);
+  const CachedRanges kept =
+      cachedRanges(keep, samples(), kChunk, stop,
+                   {.compute =
+                        [&](std::size_t begin, std::size_t end) {
+                          Chunk chunk = trace(begin / kChunk, 0, table_->size());
+                          sumUp(clear, chunk, begin, end);
+                          traced += end - begin;
+                          offer(begin, end, std::move(chunk));
+                        },
+                    // What has no room in memory is not kept either, but for the sums.
+                    .pack =
+                        [&](std::size_t begin, std::size_t end, ByteWriter& out) {
+                          out.addList(std::span<const double>(away_).subspan(begin, end - begin));
+                          out.addList(std::span<const float>(amiss_).subspan(begin * n, (end - begin) * n));
+                          const Chunk& chunk = chunks_[begin / kChunk];
+                          out.addList(chunk.begins);
+                          out.addList(chunk.steps);
+                          out.addList(chunk.left);
+                        },
+                    .unpack =
+                        [&](std::size_t begin, std::size_t end, ByteReader& in) {
+                          Chunk chunk;
+                          if (!in.readInto(std::span(away_).subspan(begin, end - begin)) ||
+                              !in.readInto(std::span(amiss_).subspan(begin * n, (end - begin) * n)) ||
+                              !in.readList(chunk.begins) || !in.readList(chunk.steps) ||
+                              !in.readList(chunk.left) || !fits(chunk, end - begin))
+                            return false;
+                          offer(begin, end, std::move(chunk));
+                          return true;
+                        }},
+                   KeepWhen::Due);
   bytes_ = bytes;
   samples_traced_ = traced;
   return kept.finished;

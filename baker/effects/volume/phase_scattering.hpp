@@ -17,7 +17,7 @@
 #include <stop_token>
 #include <vector>
 
-#include "baker/cache/kept_ranges.hpp"
+#include "baker/cache/cached_ranges.hpp"
 #include "baker/effects/volume/density_field.hpp"
 #include "baker/effects/volume/gmres.hpp"
 #include "baker/effects/volume/occluders.hpp"
@@ -25,7 +25,7 @@
 #include "baker/effects/volume/scatter_rows.hpp"
 #include "baker/effects/volume/sphere_table.hpp"
 #include "baker/effects/volume/transfer_grid.hpp"
-#include "baker/work/progress.hpp"
+#include "baker/jobs/progress.hpp"
 
 namespace lambent::baker {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "baker/work/parallel.hpp"
+#include "baker/jobs/parallel.hpp"
 
 namespace lambent::baker {
 
@@ -69,27 +69,27 @@ bool findPhasedLight(const DensityField& density, const TransferGrid& grid, cons
   const auto clearOf = [&](std::size_t begin, std::size_t end) {
     return std::span(light.clear).subspan(begin * outputs, (end - begin) * outputs);
   };
-  const KeptRanges kept =
-      keptRanges(keep, grid.samples(), kGrain, stop,
-                 {.compute =
-                      [&](std::size_t begin, std::size_t end) {
-                        findLight(density, grid, occluders, table, begin, end, light);
-                        traced += end - begin;
-                        progress.add(end - begin);
-                      },
-                  .pack =
-                      [&](std::size_t begin, std::size_t end, ByteWriter& out) {
-                        out.addList(std::span<const float>(visibilityOf(begin, end)));
-                        out.addList(std::span<const float>(clearOf(begin, end)));
-                      },
-                  .unpack =
-                      [&](std::size_t begin, std::size_t end, ByteReader& in) {
-                        if (!in.readInto(visibilityOf(begin, end)) || !in.readInto(clearOf(begin, end)))
-                          return false;
-                        progress.add(end - begin);
-                        return true;
-                      }},
-                 KeepWhen::Due);
+  const CachedRanges kept =
+      cachedRanges(keep, grid.samples(), kGrain, stop,
+                   {.compute =
+                        [&](std::size_t begin, std::size_t end) {
+                          findLight(density, grid, occluders, table, begin, end, light);
+                          traced += end - begin;
+                          progress.add(end - begin);
+                        },
+                    .pack =
+                        [&](std::size_t begin, std::size_t end, ByteWriter& out) {
+                          out.addList(std::span<const float>(visibilityOf(begin, end)));
+                          out.addList(std::span<const float>(clearOf(begin, end)));
+                        },
+                    .unpack =
+                        [&](std::size_t begin, std::size_t end, ByteReader& in) {
+                          if (!in.readInto(visibilityOf(begin, end)) || !in.readInto(clearOf(begin, end)))
+                            return false;
+                          progress.add(end - begin);
+                          return true;
+                        }},
+                   KeepWhen::Due);
   light.samples_traced = traced;
   return kept.finished;
 }

@@ -8,7 +8,7 @@
 #include "baker/effects/volume/phase_scattering.hpp"
 #include "baker/effects/volume/phased_light.hpp"
 #include "baker/effects/volume/sphere_table.hpp"
-#include "baker/work/parallel.hpp"
+#include "baker/jobs/parallel.hpp"
 #include "runtime/sh/gaunt.hpp"
 
 namespace lambent::baker {

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <tuple>
 
-#include "baker/work/parallel.hpp"
+#include "baker/jobs/parallel.hpp"
 
 namespace lambent::baker {
 
@@ -174,35 +174,35 @@ std::optional<ScatterRows> ScatterRows::build(const DensityField& density, const
     }
     progress.add(end - begin);
   };
-  const KeptRanges kept =
-      keptRanges(keep, met.size(), kChunk, stop,
-                 {.compute =
-                      [&](std::size_t begin, std::size_t end) {
-                        traced += end - begin;
-                        offer(begin, end, rows.trace(begin, end, rows.self_, rows.others_));
-                      },
-                  // What has no room in memory is not kept either, but for the sums.
-                  .pack =
-                      [&](std::size_t begin, std::size_t end, ByteWriter& out) {
-                        out.addList(std::span<const double>(rows.self_).subspan(begin, end - begin));
-                        out.addList(std::span<const double>(rows.others_).subspan(begin, end - begin));
-                        const Chunk& chunk = rows.chunks_[begin / kChunk];
-                        out.addList(chunk.begins);
-                        out.addList(chunk.nodes);
-                        out.addList(chunk.weights);
-                      },
-                  .unpack =
-                      [&](std::size_t begin, std::size_t end, ByteReader& in) {
-                        Chunk chunk;
-                        if (!in.readInto(std::span(rows.self_).subspan(begin, end - begin)) ||
-                            !in.readInto(std::span(rows.others_).subspan(begin, end - begin)) ||
-                            !in.readList(chunk.begins) || !in.readList(chunk.nodes) ||
-                            !in.readList(chunk.weights) || !chunk.fits(end - begin, grid.nodes()))
-                          return false;
-                        offer(begin, end, std::move(chunk));
-                        return true;
-                      }},
-                 KeepWhen::Due);
+  const CachedRanges kept =
+      cachedRanges(keep, met.size(), kChunk, stop,
+                   {.compute =
+                        [&](std::size_t begin, std::size_t end) {
+                          traced += end - begin;
+                          offer(begin, end, rows.trace(begin, end, rows.self_, rows.others_));
+                        },
+                    // What has no room in memory is not kept either, but for the sums.
+                    .pack =
+                        [&](std::size_t begin, std::size_t end, ByteWriter& out) {
+                          out.addList(std::span<const double>(rows.self_).subspan(begin, end - begin));
+                          out.addList(std::span<const double>(rows.others_).subspan(begin, end - begin));
+                          const Chunk& chunk = rows.chunks_[begin / kChunk];
+                          out.addList(chunk.begins);
+                          out.addList(chunk.nodes);
+                          out.addList(chunk.weights);
+                        },
+                    .unpack =
+                        [&](std::size_t begin, std::size_t end, ByteReader& in) {
+                          Chunk chunk;
+                          if (!in.readInto(std::span(rows.self_).subspan(begin, end - begin)) ||
+                              !in.readInto(std::span(rows.others_).subspan(begin, end - begin)) ||
+                              !in.readList(chunk.begins) || !in.readList(chunk.nodes) ||
+                              !in.readList(chunk.weights) || !chunk.fits(end - begin, grid.nodes()))
+                            return false;
+                          offer(begin, end, std::move(chunk));
+                          return true;
+                        }},
+                   KeepWhen::Due);
   if (!kept.finished) return std::nullopt;
   rows.bytes_ = bytes;
   rows.samples_traced_ = traced;

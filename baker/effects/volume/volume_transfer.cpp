@@ -11,7 +11,7 @@
 #include "baker/effects/volume/phased_transfer.hpp"
 #include "baker/effects/volume/scatter_rows.hpp"
 #include "baker/effects/volume/sphere_table.hpp"
-#include "baker/work/parallel.hpp"
+#include "baker/jobs/parallel.hpp"
 
 namespace lambent::baker {
 
@@ -41,34 +41,34 @@ bool lightIn(const Medium& medium, const TransferGrid& grid, const Occluders& oc
            visit(std::span(light.met).subspan(begin, count)) &&
            visit(std::span(light.out).subspan(begin, count));
   };
-  const KeptRanges kept =
-      keptRanges(keep, grid.samples(), kGrain, stop,
-                 {.compute =
-                      [&](std::size_t begin, std::size_t end) {
-                        FirstLight first(*medium.density, occluders);
-                        for (std::size_t p = begin; p < end; ++p) {
-                          const Arrival arrival = first.look(
-                              grid.place(p), table, std::span(light.transfer).subspan(p * columns, columns));
-                          light.met[p] = arrival.met;
-                          light.out[p] = arrival.out;
-                        }
-                        traced += (end - begin) * table.size();
-                        progress.add(end - begin);
-                      },
-                  .pack =
-                      [&](std::size_t begin, std::size_t end, ByteWriter& out) {
-                        parts(begin, end, [&]<typename T>(std::span<T> part) {
-                          out.addList(std::span<const T>(part));
-                          return true;
-                        });
-                      },
-                  .unpack =
-                      [&](std::size_t begin, std::size_t end, ByteReader& in) {
-                        if (!parts(begin, end, [&](auto part) { return in.readInto(part); })) return false;
-                        progress.add(end - begin);
-                        return true;
-                      }},
-                 KeepWhen::Due);
+  const CachedRanges kept = cachedRanges(
+      keep, grid.samples(), kGrain, stop,
+      {.compute =
+           [&](std::size_t begin, std::size_t end) {
+             FirstLight first(*medium.density, occluders);
+             for (std::size_t p = begin; p < end; ++p) {
+               const Arrival arrival =
+                   first.look(grid.place(p), table, std::span(light.transfer).subspan(p * columns, columns));
+               light.met[p] = arrival.met;
+               light.out[p] = arrival.out;
+             }
+             traced += (end - begin) * table.size();
+             progress.add(end - begin);
+           },
+       .pack =
+           [&](std::size_t begin, std::size_t end, ByteWriter& out) {
+             parts(begin, end, [&]<typename T>(std::span<T> part) {
+               out.addList(std::span<const T>(part));
+               return true;
+             });
+           },
+       .unpack =
+           [&](std::size_t begin, std::size_t end, ByteReader& in) {
+             if (!parts(begin, end, [&](auto part) { return in.readInto(part); })) return false;
+             progress.add(end - begin);
+             return true;
+           }},
+      KeepWhen::Due);
   rays += traced;
   return kept.finished;
 }
@@ -228,7 +228,7 @@ std::optional<VolumeTransfer> bakeVolumeTransfer(const Medium& medium, const Vol
                      .visibility = {}};
   const std::size_t samples = out.grid.samples(),
                     visibility = out.bands > 3 ? samples * out.visibilitySize() : 0;
-  const std::optional<bool> found = keptValue(
+  const std::optional<bool> found = cachedValue(
       keep.part("transfer"),
       [&](ByteReader& in) {
         return in.readList(out.vectors) && out.vectors.size() == samples * out.vectorSize() &&

@@ -1,4 +1,4 @@
-// Quantized weights of samples, and how the light samples share in one: for the sample stages of all effects. The CPU twin
+// Quantized weights of samples, and how the light probes share in one: for the sample stages of all effects. The CPU twin
 // stands in diffuse_ref.hpp (codedSampleAt, codeOf, lightShareOf).
 #include "diffuse_shared.h"
 

@@ -1,6 +1,6 @@
 // The diffuse effect on the GPU: radiance E/pi at every vertex (for normal maps: light of bands 0..2),
 // straight from the quantized transfer. Reads: transfer, rows and normals in the residency's arenas, the
-// light at the groups' light samples. Writes: the samples and radiance arenas. Three stages (cluster, sample,
+// light at the groups' light probes. Writes: the samples and radiance arenas. Three stages (cluster, sample,
 // vertex), each one indirect dispatch per arena page and kernel over what is dirty: a cell when its group's
 // light or its own codes changed, a vertex when any cell of its group or its own mesh or rows did. Nothing
 // changed: nothing is dispatched. What is not resident shades unshadowed.
@@ -11,7 +11,7 @@
 #include <map>
 #include <vector>
 
-#include "runtime/base/by_key.hpp"
+#include "runtime/base/keyed_state.hpp"
 #include "runtime/base/result.hpp"
 #include "runtime/effects/diffuse/diffuse_shared.h"
 #include "runtime/effects/diffuse/transfer_table.hpp"
@@ -73,8 +73,8 @@ class Diffuse {
   gpu::Table transfers_table_, places_table_, draws_table_, products_;
   // A cell's first transfer writes its samples, the second adds to them.
   gpu::WorkList project_work_, samples_work_, adding_work_, vertices_work_;
-  ByKey<Seen> cells_seen_, draws_seen_;
-  ByKey<std::uint64_t> group_shaded_;  // rises when a cell of the group was shaded
+  KeyedState<Seen> cells_seen_, draws_seen_;
+  KeyedState<std::uint64_t> group_shaded_;  // rises when a cell of the group was shaded
   std::uint64_t residency_seen_ = 0;
   std::size_t groups_seen_ = 0;
   TransferMode mode_seen_ = TransferMode::Full;

@@ -1,6 +1,6 @@
 // Stage b, one invocation per position of the dirty cells: mean plus code times product over the resident planes.
 // Neighbouring positions are of one cluster, so they read the same products. With LAMBENT_MANY_LIGHTS each sample blends
-// the products of the light samples around it.
+// the products of the light probes around it.
 #include "diffuse_shared.h"
 
 layout(local_size_x = kWorkGroupSize) in;

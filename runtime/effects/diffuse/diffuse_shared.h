@@ -14,7 +14,7 @@ using uint = std::uint32_t;
 #endif
 
 LAMBENT_CONSTANT kBindWork = 0u;       // WorkItem per work group
-LAMBENT_CONSTANT kBindLights = 1u;     // vec4 per coefficient: per group kLightStride for each light sample, then its own lights
+LAMBENT_CONSTANT kBindLights = 1u;     // vec4 per coefficient: per group kLightStride for each light probe, then its own lights
 LAMBENT_CONSTANT kBindTransfers = 2u;  // TransferRecord
 LAMBENT_CONSTANT kBindPlaces = 3u;     // of a transfer: where its planes and its lights lie
 LAMBENT_CONSTANT kBindProducts = 4u;   // vec4: a vector times the light, scaled to be multiplied by the code itself
@@ -34,9 +34,9 @@ LAMBENT_CONSTANT kWorkGroupSize = 64u;
 LAMBENT_CONSTANT kLanesPerUnit = 16u;  // of the project stage: a unit is one output of one cluster
 LAMBENT_CONSTANT kUnitsPerGroup = kWorkGroupSize / kLanesPerUnit;
 LAMBENT_CONSTANT kMaxWorkGroupsX = 65535u;  // what OpenGL 4.5 promises; longer lists fold into y
-LAMBENT_CONSTANT kKeyBlock = 64u;           // 8 bands of a light sample without key lights, then 8 of key lights alone
-LAMBENT_CONSTANT kLightStride = 2u * kKeyBlock;  // of a light sample; the group's own light columns follow the last
-LAMBENT_CONSTANT kLightsPerSample = 4u;     // light samples that one sample of a cell is lit from
+LAMBENT_CONSTANT kKeyBlock = 64u;           // 8 bands of a light probe without key lights, then 8 of key lights alone
+LAMBENT_CONSTANT kLightStride = 2u * kKeyBlock;  // of a light probe; the group's own light columns follow the last
+LAMBENT_CONSTANT kLightsPerSample = 4u;     // light probes that one sample of a cell is lit from
 LAMBENT_CONSTANT kMappedOutputs = 9u;       // of samples and draws with normal maps: light of bands 0..2
 LAMBENT_CONSTANT kCodes16Bit = 0x80000000u;  // 16-bit codes, else 8-bit
 LAMBENT_CONSTANT kNoRows = 0xffffffffu;
@@ -60,7 +60,7 @@ struct WorkItem {
 //   vectors    vector_size floats each: of every cluster the mean, then its axes; [channel][output][column]
 //   positions  per position, in the order of the codes: sample of the cell | cluster << 16
 // Places: words of the planes' codes in the page, with kCodes16Bit; of each light the vec4 index of the coefficient that
-// belongs to column 0. There is one light, or one per light sample of the cell.
+// belongs to column 0. There is one light, or one per light probe of the cell.
 struct TransferRecord {
   uint light_count;
   uint first_light;  // into the places
@@ -110,7 +110,7 @@ struct DrawRecord {
 struct ProxyGroupRecord {
   uint first_triangle;
   uint triangle_count;
-  uint light;  // vec4 index of the coefficients of its first light sample
+  uint light;  // vec4 index of the coefficients of its first light probe
   uint lamps;  // and of its own lights
   uint order;
   uint pad[3];

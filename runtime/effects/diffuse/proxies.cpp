@@ -24,8 +24,8 @@ glm::vec3 normalOf(const bundle::CaptureProxy& proxy, const bundle::ProxyTriangl
 
 // Of a sample of the group: plain ones stand first, then those of normal maps, then glossy ones.
 std::uint32_t outputsOf(const streaming::ResidentGroup& group, std::uint32_t sample) {
-  if (sample < group.plain_samples) return 1;
-  return sample < group.plain_samples + group.mapped_samples ? kMappedOutputs : group.glossy_outputs;
+  if (sample < group.diffuse_samples) return 1;
+  return sample < group.diffuse_samples + group.mapped_samples ? kMappedOutputs : group.glossy_outputs;
 }
 
 }  // namespace
@@ -34,7 +34,7 @@ Proxies::Proxies()
     : groups_table_("proxy groups"),
       triangles_table_("proxy triangles"),
       entries_table_("proxy entries"),
-      added_table_("proxy radiance from near lights"),
+      added_table_("proxy radiance from local lights"),
       radiance_("proxy radiance"),
       work_("proxy work") {}
 

@@ -12,7 +12,7 @@
 
 #include <glm/vec3.hpp>
 
-#include "runtime/base/by_key.hpp"
+#include "runtime/base/keyed_state.hpp"
 #include "runtime/base/result.hpp"
 #include "runtime/effects/diffuse/diffuse_shared.h"
 #include "runtime/gpu/program.hpp"
@@ -64,7 +64,7 @@ class Proxies {
   std::vector<ProxyGroupRecord> groups_;  // index: residency group
   std::vector<ProxyTriangleRecord> triangles_;
   std::vector<ProxyEntryRecord> entries_;
-  ByKey<Seen> seen_;
+  KeyedState<Seen> seen_;
   std::uint64_t proxies_seen_ = 0, version_ = 0;
   std::size_t lights_seen_ = 0;
   bool added_ = false;  // whether the table of what is added may hold anything

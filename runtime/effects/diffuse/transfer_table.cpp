@@ -20,8 +20,8 @@ TransferRecord describeTransfer(const streaming::ResidentCell& cell,
                                 bool has_keys) {
   const bundle::TransferShape& shape = transfer.shape;
   const bool full = takesFull(shape, mode);
-  const bool several = shape.order > 0 && cell.light_samples.size() > 1;
-  return {.light_count = several ? static_cast<std::uint32_t>(cell.light_samples.size()) : 1,
+  const bool several = shape.order > 0 && cell.light_probes.size() > 1;
+  return {.light_count = several ? static_cast<std::uint32_t>(cell.light_probes.size()) : 1,
           .first_light = 0,
           .light_weights_word = cell.light_weights_word,
           .columns = shape.columns(),
@@ -61,7 +61,7 @@ void TransferTable::add(const streaming::ResidentCell& cell, const lighting::Gro
     if (transfer.shape.order == 0) {
       places.push_back(lights.lampsOf(cell.group));
     } else {
-      for (const std::uint32_t sample : cell.light_samples)
+      for (const std::uint32_t sample : cell.light_probes)
         places.push_back(lights.firstOf(cell.group, sample));
     }
     record.first_plane = static_cast<std::uint32_t>(places.size());
@@ -75,7 +75,7 @@ void TransferTable::add(const streaming::ResidentCell& cell, const lighting::Gro
 
 std::uint64_t lightVersion(const lighting::GroupLights& lights, const streaming::ResidentCell& cell) {
   std::uint64_t version = lights.lampsVersionOf(cell.group);
-  for (const std::uint32_t sample : cell.light_samples)
+  for (const std::uint32_t sample : cell.light_probes)
     version = std::max(version, lights.versionOf(cell.group, sample));
   return version;
 }

@@ -31,8 +31,8 @@ std::uint32_t TransferValues::firstOf(const streaming::Residency& residency,
                                       const streaming::ResidentDraw& draw) const {
   const streaming::ResidentGroup& group = residency.groups()[draw.group];
   const std::uint32_t before = draw.outputs == 1 ? 0
-                               : draw.glossy()   ? group.plain_samples + group.mapped_samples
-                                                 : group.plain_samples;
+                               : draw.glossy()   ? group.diffuse_samples + group.mapped_samples
+                                                 : group.diffuse_samples;
   return first_of_group_[draw.group] + before;
 }
 

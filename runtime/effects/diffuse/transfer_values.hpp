@@ -1,7 +1,7 @@
 // Numbers of the coded transfer at every sample of every surface, for views of it: DC, the energy of a band,
 // what is known of a whole cell, and always the cluster. Comes in: the codes as they are resident, of all
-// effects that keep them (matte, normal-mapped, glossy). Goes out: a buffer of SampleValue that a raster pass
-// gathers by the rows of vertices. Nothing is held or dispatched until update() is called, update() does
+// effects that keep them (diffuse, normal-mapped, glossy). Goes out: a buffer of SampleValue that a raster
+// pass gathers by the rows of vertices. Nothing is held or dispatched until update() is called, update() does
 // nothing while neither the codes nor the question changed, and release() gives all of it back. What is
 // measured: transfer_measures.hpp. Render thread only. Errors: a kernel that does not compile on this device.
 #pragma once

@@ -1,6 +1,6 @@
 // The glossy effect on the GPU: transferred light l' = M l in bands at every sample of glossy cells, straight
 // from the quantized transfer, and beside it the visibility's own low bands V_i, which no light changes.
-// Reads: transfer in the residency's arena, the light at the groups' light samples. Writes: the samples
+// Reads: transfer in the residency's arena, the light at the groups' light probes. Writes: the samples
 // arena, a vec4 (l'_i in RGB, V_i) per output. Two stages (cluster, sample), each one indirect dispatch per
 // arena page and kernel over the cells whose light or codes changed; what a BRDF makes of l' is done per
 // pixel (glossy_kernel.glsl). What is not resident, and all of it when unshadowed, has the light itself.
@@ -13,7 +13,7 @@
 #include <map>
 #include <vector>
 
-#include "runtime/base/by_key.hpp"
+#include "runtime/base/keyed_state.hpp"
 #include "runtime/base/result.hpp"
 #include "runtime/effects/diffuse/transfer_table.hpp"
 #include "runtime/effects/glossy/glossy_shared.h"
@@ -76,8 +76,8 @@ class Glossy {
   gpu::Table transfers_table_, places_table_, products_, fills_table_;
   gpu::WorkList visibility_work_, dense_work_, fill_work_;
   std::array<gpu::WorkList, kMaxTransfers> samples_work_;
-  ByKey<Seen> cells_seen_;
-  ByKey<std::uint64_t> group_shaded_;
+  KeyedState<Seen> cells_seen_;
+  KeyedState<std::uint64_t> group_shaded_;
   std::uint64_t residency_seen_ = 0;
   std::size_t groups_seen_ = 0;
   TransferMode mode_seen_ = TransferMode::Full;

@@ -1,5 +1,5 @@
 // Stage b, LAMBENT_BANDS invocations per position of the dirty cells, each as many outputs: mean plus code times product
-// over the resident planes, under each light sample that shares in it. Neighbours write what lies side by side, few
+// over the resident planes, under each light probe that shares in it. Neighbours write what lies side by side, few
 // outputs keep within the registers, and a code is decoded once for several of them.
 #include "glossy_shared.h"
 

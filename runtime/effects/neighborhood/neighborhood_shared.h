@@ -24,7 +24,7 @@ LAMBENT_CONSTANT kBindWrites = 1u;        // WriteRecord
 LAMBENT_CONSTANT kBindWriteSamples = 2u;  // arena page: shaded points, a vec4 per output
 LAMBENT_CONSTANT kImageAtlas = 0u;
 
-// Receiving. Storage blocks of the surface pass, which has the lower ones in use (surface_shared.h, near_shared.h).
+// Receiving. Storage blocks of the surface pass, which has the lower ones in use (surface_shared.h, local_shared.h).
 LAMBENT_CONSTANT kBindReceivers = 6u;  // Receiver, by draw of the residency
 LAMBENT_CONSTANT kBindArrivals = 7u;   // Arrival
 LAMBENT_CONSTANT kUnitAtlas = 11u;     // texture unit

@@ -10,7 +10,7 @@
 #include <optional>
 #include <vector>
 
-#include "runtime/base/by_key.hpp"
+#include "runtime/base/keyed_state.hpp"
 #include "runtime/base/result.hpp"
 #include "runtime/effects/diffuse/diffuse.hpp"
 #include "runtime/effects/glossy/glossy.hpp"
@@ -71,7 +71,7 @@ class Volume {
 
   bool precise_;
   std::optional<gpu::Program> program_;
-  ByKey<Held> held_;  // index: residency volume
+  KeyedState<Held> held_;  // index: residency volume
   std::vector<ScatterRecord> records_;
   gpu::Table records_table_;
   gpu::WorkList work_;

@@ -125,7 +125,7 @@ TEST_F(Bake, StoresTransferThatDecodesToTheScene) {
   }
 }
 
-TEST_F(Bake, StoresLightSamplesAndProxiesInTheGroupsFrame) {
+TEST_F(Bake, StoresLightProbesAndProxiesInTheGroupsFrame) {
   Scene scene = stage();
   scene.nodes[2].parent_from_node = glm::translate(glm::mat4(1.0f), {100, 0.6f, 0});
   const auto open = [&] { return bundle::Reader::open(folder_ / "stage.lmb.glb"); };
@@ -133,10 +133,10 @@ TEST_F(Bake, StoresLightSamplesAndProxiesInTheGroupsFrame) {
   auto reader = open();
   ASSERT_TRUE(reader) << reader.error().line();
   for (const bundle::Group& group : reader->description().groups)
-    EXPECT_EQ(group.light_samples, std::vector{0.5f * (group.bounds_min + group.bounds_max)});
+    EXPECT_EQ(group.light_probes, std::vector{0.5f * (group.bounds_min + group.bounds_max)});
 
   BakeOptions options = draft();
-  options.light_samples = 8;
+  options.light_probes = 8;
   options.effects = "diffuse";  // no grid, which has cells of its own
   const auto report = bakeTo("stage.lmb.glb", scene, options);
   ASSERT_TRUE(report) << report.error().line();
@@ -145,9 +145,9 @@ TEST_F(Bake, StoresLightSamplesAndProxiesInTheGroupsFrame) {
   ASSERT_TRUE(reader->checkAll());
   for (std::uint32_t g = 0; g < 2; ++g) {
     const bundle::Group& group = reader->description().groups[g];
-    EXPECT_EQ(group.light_samples.size(), 8u);
-    EXPECT_EQ(report->groups.at(g).light_samples, 8u);
-    for (const glm::vec3& point : group.light_samples)
+    EXPECT_EQ(group.light_probes.size(), 8u);
+    EXPECT_EQ(report->groups.at(g).light_probes, 8u);
+    for (const glm::vec3& point : group.light_probes)
       EXPECT_TRUE(glm::all(glm::lessThanEqual(glm::abs(point), glm::vec3(2.0f))))
           << "not in the world's frame";
     ASSERT_EQ(group.cells.size(), 1u);
@@ -288,13 +288,13 @@ TEST_F(Bake, NamesTheOptionThatIsWrong) {
     const auto report = bakeTo("x.lmb.glb", stage(), options);
     ASSERT_FALSE(report) << name;
     EXPECT_EQ(report.error().subject, name);
-    EXPECT_FALSE(report.error().mend.empty());
+    EXPECT_FALSE(report.error().hint.empty());
   };
   refused([](BakeOptions& o) { o.order = 0; }, "--order");
   refused([](BakeOptions& o) { o.rays = 3; }, "--rays");
   refused([](BakeOptions& o) { o.error_bound = 2.0f; }, "--error");
   refused([](BakeOptions& o) { o.max_edge_m = -1.0f; }, "--max-edge");
-  refused([](BakeOptions& o) { o.light_samples = 33; }, "--light-samples");
+  refused([](BakeOptions& o) { o.light_probes = 33; }, "--light-samples");
   refused([](BakeOptions& o) { o.effects = "diffuse,smell"; }, "--effects");
 }
 

@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include "baker/jobs/parallel.hpp"
 #include "baker/transport/face_points.hpp"
-#include "baker/work/parallel.hpp"
 #include "tests/support/glossy_transport.hpp"
 #include "tests/support/shapes.hpp"
 
@@ -14,7 +14,7 @@ namespace {
 
 using testing::Transport;
 
-// A box on a coarse floor, matte or of metal.
+// A box on a coarse floor, diffuse or of metal.
 Scene boxOnFloor(float metallic) {
   Scene scene = testing::sceneOf({testing::grid({0.0f, 0.0f, 0.0f}, 4.0f, 10),
                                   testing::box({0.13f, 0.4f, -0.21f}, {0.7f, 0.8f, 0.7f}, 3)});

@@ -60,14 +60,14 @@ TEST(OptionRows, RefuseWordsThatAreNoneAndNameTheOption) {
       const auto put = row.put(options, wrong);
       ASSERT_FALSE(put) << row.name << " " << wrong;
       EXPECT_EQ(put.error().subject, "--" + std::string(row.name));
-      EXPECT_FALSE(put.error().mend.empty());
+      EXPECT_FALSE(put.error().hint.empty());
       EXPECT_EQ(row.word(options), row.word(BakeOptions())) << "a wrong word changes nothing";
     }
   }
   BakeOptions options;
   const auto unknown = putOption(options, "smell", "1");
   ASSERT_FALSE(unknown);
-  EXPECT_NE(unknown.error().mend.find("neighborhood-grid"), std::string::npos);
+  EXPECT_NE(unknown.error().hint.find("neighborhood-grid"), std::string::npos);
 }
 
 TEST(OptionRows, CheckRanges) {

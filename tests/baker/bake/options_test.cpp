@@ -25,8 +25,7 @@ TEST(BakeOptions, ComeBackFromTheSettingsThatABundleRecords) {
   }
   BakeOptions other;
   other.quality = Quality::High;
-  other.order = 4, other.glossy_order = 6, other.bounces = 3, other.light_samples = 7,
-  other.max_edge_m = 0.1f;
+  other.order = 4, other.glossy_order = 6, other.bounces = 3, other.light_probes = 7, other.max_edge_m = 0.1f;
   other.neighborhood_grid = {64, 48, 8}, other.volume_grid = {16, 24, 32}, other.effects = "diffuse,glossy";
   expectBack(other, Quality::High);
   for (const bool fit : {false, true}) {

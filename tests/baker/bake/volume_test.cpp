@@ -98,7 +98,7 @@ TEST_F(VolumeBake, LeavesVolumesOutWhereTheirEffectIsNotAskedFor) {
   const auto plan = planFor(foggy(), options);
   ASSERT_TRUE(plan);
   EXPECT_EQ(plan->groups.size(), 1u);
-  EXPECT_EQ(plan->light_samples.size(), 1u);
+  EXPECT_EQ(plan->light_probes.size(), 1u);
   options.effects = "auto";
   const auto whole = planFor(foggy(), options);
   ASSERT_TRUE(whole);

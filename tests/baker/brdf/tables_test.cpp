@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "baker/brdf/brdf.hpp"
-#include "baker/work/parallel.hpp"
+#include "baker/jobs/parallel.hpp"
 #include "runtime/sh/basis.hpp"
 #include "runtime/sh/zonal.hpp"
 #include "tests/baker/brdf/quadrature.hpp"

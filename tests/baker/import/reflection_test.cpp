@@ -185,7 +185,7 @@ TEST(MeasuredBrdf, FilesThatAreBrokenAreRefusedByLine) {
     ASSERT_FALSE(measured) << words;
     EXPECT_NE(measured.error().line().find(words), std::string::npos) << measured.error().line();
     EXPECT_NE(measured.error().line().find("broken.brdf"), std::string::npos);
-    EXPECT_FALSE(measured.error().mend.empty());
+    EXPECT_FALSE(measured.error().hint.empty());
   };
   const std::string head = "2\n400 700\n";
   refused("", "ends where the number of wavelengths");

@@ -66,7 +66,7 @@ TEST(SharedScenes, AreAllReadOrRefusedInOneLine) {
       } else {
         EXPECT_EQ(scene.error().line().find('\n'), std::string::npos);
         EXPECT_NE(scene.error().line().find(file.filename().string()), std::string::npos);
-        EXPECT_FALSE(scene.error().mend.empty());
+        EXPECT_FALSE(scene.error().hint.empty());
       }
     }
   // Those of scenes/ but two of Compatibility/, one node with two parents, and the points and lines.

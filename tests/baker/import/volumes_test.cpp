@@ -286,7 +286,7 @@ TEST(VdbFile, WithoutTheGridAskedForSaysWhatItHas) {
   const auto grid = readVdb(vdb, "temperature");
   ASSERT_FALSE(grid);
   EXPECT_NE(grid.error().line().find("no grid \"temperature\""), std::string::npos);
-  EXPECT_NE(grid.error().mend.find("density"), std::string::npos);
+  EXPECT_NE(grid.error().hint.find("density"), std::string::npos);
 }
 
 TEST(NrrdFile, OfTheSharedSmokeIsThere) {

@@ -1,5 +1,5 @@
-// Every rung is a whole bundle, the last one the bundle that a plain bake writes; what is changed, cancelled
-// or broken on the way harms nothing.
+// Every preview_level is a whole bundle, the last one the bundle that a plain bake writes; what is changed,
+// cancelled or broken on the way harms nothing.
 #include "baker/pipeline/bake_queue.hpp"
 
 #include "baker/bake/bake_unshadowed.hpp"
@@ -37,7 +37,7 @@ class BakeQueueTest : public testing::PipelineTest {
     const auto reader = bundle::Reader::open(bundle);
     return reader && reader->checkAll();
   }
-  std::string plainBake(const BakeRequest& request) const {
+  std::string diffuseBake(const BakeRequest& request) const {
     const auto scene = importScene(request.scene);
     Progress progress;
     const auto baked = bake(*scene, request.options, folder / "plain.lmb.glb", progress, {});
@@ -109,21 +109,21 @@ TEST_F(BakeQueueTest, RungsGetBetterAndEndWithWhatAPlainBakeWrites) {
   for (BakeEvent& event : queue.takeEvents()) events.push_back(std::move(event));
   ASSERT_EQ(events.size(), 4u);
   EXPECT_EQ(events[0].kind, Kind::Began);
-  const Rung rungs[] = {Rung::Unshadowed, Rung::Coarse, Rung::Final};
+  const PreviewLevel preview_levels[] = {PreviewLevel::Unshadowed, PreviewLevel::Coarse, PreviewLevel::Final};
   for (std::size_t i = 0; i < 3; ++i) {
     EXPECT_EQ(events[i + 1].kind, Kind::Bundle);
-    EXPECT_EQ(events[i + 1].rung, rungs[i]);
+    EXPECT_EQ(events[i + 1].preview_level, preview_levels[i]);
   }
   EXPECT_EQ(events[3].bundle, asked.output);
   EXPECT_NE(events[2].bundle.parent_path(), asked.output.parent_path()) << "only the final one lies there";
-  EXPECT_EQ(bytesOf(asked.output), plainBake(asked));
+  EXPECT_EQ(bytesOf(asked.output), diffuseBake(asked));
   EXPECT_EQ(stateOf(queue, job).fraction, 1.0);
 }
 
 TEST_F(BakeQueueTest, WhatIsUpToDateIsNotBakedAgain) {
   write(folder / "hello.glb", assets::hello());
   const BakeRequest asked = request("hello", quick());
-  (void)plainBake(asked);
+  (void)diffuseBake(asked);
   std::filesystem::rename(folder / "plain.lmb.glb", asked.output);
   BakeQueue queue({.work_folder = folder / "work"});
   const JobId job = queue.add(asked);
@@ -150,7 +150,7 @@ TEST_F(BakeQueueTest, AJobThatIsAddedAgainStartsWithTheNewContentUnderTheSameId)
   EXPECT_EQ(queue.add(again), job);
   ASSERT_TRUE(eventually([&] { return !queue.busy(); }));
   EXPECT_EQ(stateOf(queue, job).phase, JobPhase::Done);
-  EXPECT_EQ(bytesOf(asked.output), plainBake(again));
+  EXPECT_EQ(bytesOf(asked.output), diffuseBake(again));
 }
 
 TEST_F(BakeQueueTest, ACancelledJobStopsAndLeavesTheOldBundle) {

@@ -30,7 +30,7 @@ TEST_F(JournalTest, KeepsEveryOptionOfARequest) {
                    .neighborhood_grid = {3, 4, 5},
                    .refine_bound = 0.07f,
                    .fit = false,
-                   .light_samples = 9,
+                   .light_probes = 9,
                    .volume_grid = {6, 7, 8},
                    .effects = "diffuse,glossy",
                    .threads = 2,

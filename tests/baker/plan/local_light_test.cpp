@@ -13,9 +13,9 @@ using testing::sceneOf;
 
 struct Planned {
   std::vector<RigidGroup> groups;
-  std::vector<PlannedLightSamples> samples;
+  std::vector<PlannedLightProbes> samples;
 
-  const PlannedLightSamples& of(const std::string& name) const {
+  const PlannedLightProbes& of(const std::string& name) const {
     for (std::size_t g = 0; g < groups.size(); ++g)
       if (groups[g].name == name) return samples[g];
     ADD_FAILURE() << "no group " << name;
@@ -25,7 +25,7 @@ struct Planned {
 
 Planned plan(const Scene& scene) {
   Planned out{findRigidGroups(scene), {}};
-  out.samples = planLightSamples(scene, out.groups);
+  out.samples = planLightProbes(scene, out.groups);
   return out;
 }
 
@@ -55,7 +55,7 @@ void move(Scene& scene, std::uint32_t node, glm::vec3 from, glm::vec3 to) {
                          .values = {from.x, from.y, from.z, to.x, to.y, to.z}}}}};
 }
 
-TEST(LightSampleCounts, AreOneForOneGroupWithNothingOutside) {
+TEST(LightProbeCounts, AreOneForOneGroupWithNothingOutside) {
   Scene scene = sceneOf({icosphere({0, 0, 0}, 1.0f, 2)});
   EXPECT_EQ(plan(scene).samples.at(0).count.count, 1u);
   EXPECT_NE(plan(scene).samples.at(0).reason.find("far away"), std::string::npos);
@@ -66,7 +66,7 @@ TEST(LightSampleCounts, AreOneForOneGroupWithNothingOutside) {
   EXPECT_EQ(plan(scene).samples.at(0).count.count, 1u);
 }
 
-TEST(LightSampleCounts, RiseWithSizeOverDistanceOfALamp) {
+TEST(LightProbeCounts, RiseWithSizeOverDistanceOfALamp) {
   const float half = std::sqrt(3.0f);
   for (const auto& [ratio, count] :
        {std::pair{0.04f, 1u}, {0.12f, 4u}, {0.2f, 8u}, {0.4f, 16u}, {0.6f, 32u}, {5.0f, 32u}})
@@ -76,7 +76,7 @@ TEST(LightSampleCounts, RiseWithSizeOverDistanceOfALamp) {
       << plan(ballAndLamp(half / 0.6f)).samples[0].reason;
 }
 
-TEST(LightSampleCounts, IgnoreLampsThatAreDarkDirectionalOrOutOfRange) {
+TEST(LightProbeCounts, IgnoreLampsThatAreDarkDirectionalOrOutOfRange) {
   Scene scene = ballAndLamp(2.0f);
   scene.lights[0].type = gltf::Light::Type::Directional;
   EXPECT_EQ(plan(scene).samples[0].count.count, 1u);
@@ -89,14 +89,14 @@ TEST(LightSampleCounts, IgnoreLampsThatAreDarkDirectionalOrOutOfRange) {
   EXPECT_EQ(plan(scene).samples[0].count.count, 1u);
 }
 
-TEST(LightSampleCounts, LookAlongTheWholeWayOfAnAnimation) {
+TEST(LightProbeCounts, LookAlongTheWholeWayOfAnAnimation) {
   Scene scene = ballAndLamp(50.0f);
   EXPECT_EQ(plan(scene).samples[0].count.count, 1u);
   move(scene, 1, {0, 50, 0}, {0, 4, 0});
   EXPECT_EQ(plan(scene).samples[0].count.count, 16u);
 }
 
-TEST(LightSampleCounts, CountSurfacesOfOthersThatGiveOffLightAsLamps) {
+TEST(LightProbeCounts, CountSurfacesOfOthersThatGiveOffLightAsLamps) {
   Scene scene = sceneOf({icosphere({0, 0, 0}, 1.0f, 3), grid({0, 3, 0}, 4.0f, 1)});
   scene.nodes[0].name = "ball";
   scene.nodes[0].movable = true;
@@ -107,11 +107,11 @@ TEST(LightSampleCounts, CountSurfacesOfOthersThatGiveOffLightAsLamps) {
   EXPECT_EQ(plan(scene).of("ball").count.count, 32u) << "√3 / 3";
 }
 
-TEST(LightSampleCounts, AreMostOfAFloorThatBodiesMoveOver) {
+TEST(LightProbeCounts, AreMostOfAFloorThatBodiesMoveOver) {
   Scene scene = sceneOf({grid({0, 0, 0}, 20.0f, 4), icosphere({0, 0, 0}, 1.0f, 3)});
   scene.nodes[1].name = "ball";
   move(scene, 1, {-5, 1, 0}, {5, 1, 0});
-  EXPECT_EQ(plan(scene).of("static").count.count, kMostLightSamples);
+  EXPECT_EQ(plan(scene).of("static").count.count, kMostLightProbes);
   EXPECT_EQ(plan(scene).of("static").reason, "ball can come within its bounds");
   EXPECT_EQ(plan(scene).of("ball").count.count, 4u);
   // High above it the ball is a small thing, and the floor a far one.
@@ -120,7 +120,7 @@ TEST(LightSampleCounts, AreMostOfAFloorThatBodiesMoveOver) {
   EXPECT_EQ(plan(scene).of("ball").count.count, 1u);
 }
 
-TEST(LightSampleCounts, OfAPointStayFinite) {
+TEST(LightProbeCounts, OfAPointStayFinite) {
   Scene scene = ballAndLamp(0.0f);
   for (glm::vec3& p : scene.meshes[0].primitives[0].mesh.positions) p = glm::vec3(0.0f);
   EXPECT_EQ(plan(scene).samples[0].count.count, 1u) << "no size, one place";

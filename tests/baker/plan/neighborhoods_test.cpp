@@ -198,12 +198,12 @@ TEST(NeighborhoodPlans, AreForVolumesWithSurfacesInReach) {
   }
 }
 
-TEST(NeighborhoodPlans, MakeLightSamplesForTheBodyNeedless) {
+TEST(NeighborhoodPlans, MakeLightProbesForTheBodyNeedless) {
   const Scene scene = ballsOver(1, 0.5f);
   const Planned planned = plan(scene);
   const std::size_t floor = planned.indexOf("static");
-  EXPECT_EQ(planLightSamples(scene, planned.groups)[floor].count.count, 32u);
-  EXPECT_EQ(planLightSamples(scene, planned.groups, planned.plans)[floor].count.count, 1u);
+  EXPECT_EQ(planLightProbes(scene, planned.groups)[floor].count.count, 32u);
+  EXPECT_EQ(planLightProbes(scene, planned.groups, planned.plans)[floor].count.count, 1u);
 }
 
 }  // namespace

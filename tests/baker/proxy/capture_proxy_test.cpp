@@ -10,7 +10,7 @@
 
 #include "assets/teapot.hpp"
 #include "assets/torus_knot.hpp"
-#include "baker/work/parallel.hpp"
+#include "baker/jobs/parallel.hpp"
 #include "tests/support/shapes.hpp"
 #include "tests/support/transport.hpp"
 

@@ -93,7 +93,7 @@ TEST(BandLimit, DirectionsDrawnOnTheHorizonHaveADensity) {
   }
 }
 
-// Σ_k c_k l_k of a matte white plane that looks up.
+// Σ_k c_k l_k of a diffuse white plane that looks up.
 double openWithKernel(const sh::LightVector& light, int order, glm::vec3 normal) {
   return open(light.truncated(std::min(light.order, order)), normal);
 }

@@ -1,4 +1,4 @@
-// Sampling of probes and discs: densities that sum to one, and samples that bring the whole light.
+// Sampling of environment maps and discs: densities that sum to one, and samples that bring the whole light.
 #include "baker/reference/environment.hpp"
 
 #include <numbers>
@@ -13,10 +13,10 @@
 namespace lambent::baker::reference {
 namespace {
 
-spec::Probe probe(sh::ImageLayout layout, std::uint32_t width, std::uint32_t height) {
+spec::EnvironmentMap environment_map(sh::ImageLayout layout, std::uint32_t width, std::uint32_t height) {
   std::mt19937 random(7);
   std::lognormal_distribution<float> value(0.0f, 1.5f);
-  spec::Probe out{{width, height, {}}, layout, 0};
+  spec::EnvironmentMap out{{width, height, {}}, layout, 0};
   for (std::uint32_t i = 0; i < width * height; ++i)
     out.image.texels.emplace_back(value(random), value(random), value(random));
   return out;
@@ -54,14 +54,14 @@ TEST(Environment, SamplesProbesOfEveryLayout) {
         std::tuple{sh::ImageLayout::VerticalCross, 24u, 32u}}) {
     SCOPED_TRACE(sh::name(layout));
     spec::DistantLights lights;
-    lights.probes = {probe(layout, width, height)};
+    lights.environment_maps = {environment_map(layout, width, height)};
     expectSamplesBringTheLight(lights, layout == sh::ImageLayout::AngularMap ? 0.03 : 0.01);
   }
 }
 
 TEST(Environment, SamplesSeveralLightsTogether) {
   spec::DistantLights lights;
-  lights.probes = {probe(sh::ImageLayout::LatLong, 32, 16)};
+  lights.environment_maps = {environment_map(sh::ImageLayout::LatLong, 32, 16)};
   lights.discs = {{.direction = {0, 1, 0}, .radius_rad = 0.3f, .radiance = glm::vec3(40)},
                   {.direction = {1, 0, 0}, .radius_rad = 2.0f, .radiance = glm::vec3(1)}};
   lights.constant = glm::vec3(0.5f);
@@ -70,7 +70,7 @@ TEST(Environment, SamplesSeveralLightsTogether) {
 
 TEST(Environment, TurnsItsProbes) {
   spec::DistantLights lights;
-  lights.probes = {probe(sh::ImageLayout::LatLong, 32, 16)};
+  lights.environment_maps = {environment_map(sh::ImageLayout::LatLong, 32, 16)};
   const Environment still(lights, 0.0f, 0), turned(lights, 90.0f, 0);
   const glm::vec3 dir = glm::normalize(glm::vec3(0.3f, 0.2f, 0.9f));
   EXPECT_EQ(turned.look(glm::normalize(spec::lightRotation(90.0f) * dir)).radiance, still.look(dir).radiance);

@@ -174,7 +174,7 @@ TEST(Glossy, MirrorsShowTheLightInTheReflectedDirection) {
 
 TEST(Glossy, SurfacesAreSeenInEachOther) {
   // A mirror floor under a lamp: from above at a slant, the lamp's radiance; and the floor of a lamp in a
-  // matte floor.
+  // diffuse floor.
   Scene scene = floorOf(glossy(1.0f, 0.0f));
   scene.materials[0].base_color = glm::vec4(1.0f);
   gltf::Material shining = testing::matte();

@@ -166,7 +166,7 @@ TEST(Reference, RefusesWhatItCannotDo) {
   EXPECT_NE(line({light, {}, {.band_limit = BandLimit{9, {}}}}).find("--band-limit"), std::string::npos);
   EXPECT_NE(line({light, {}, {.band_limit = BandLimit{5, 0}}}).find("--band-limit"), std::string::npos);
   EXPECT_NE(line({light, spec::NamedCamera{"top"}, {}}).find("top"), std::string::npos);
-  EXPECT_NE(line({{spec::ProbeLight{.file = "no.hdr", .layout = {}}}, {}, {}}).find("no.hdr"),
+  EXPECT_NE(line({{spec::EnvironmentMapLight{.file = "no.hdr", .layout = {}}}, {}, {}}).find("no.hdr"),
             std::string::npos);
   EXPECT_NE(line({light, {}, {}}, "/no/such/folder/a.exr").find("a.exr"), std::string::npos);
   EXPECT_NE(line({light, {}, {}}, "a.png").find("a.png"), std::string::npos);

@@ -188,7 +188,7 @@ TEST_F(Progressive, PausesAndGoesOn) {
 
 TEST_F(Progressive, SaysWhatIsWrongAndTakesTheNextRequest) {
   Request wrong = request;
-  wrong.lights = {spec::ProbeLight{.file = "no/such/probe.hdr", .layout = {}}};
+  wrong.lights = {spec::EnvironmentMapLight{.file = "no/such/probe.hdr", .layout = {}}};
   ProgressiveReference reference(shared(), wrong);
   auto status = ended(reference);
   ASSERT_TRUE(status.error);
@@ -223,11 +223,11 @@ TEST(LightCache, ReadsAgainOnlyWhatChanged) {
 
 TEST(LightCache, LightsAreAsStrongAsTheirFactorsSay) {
   const auto file = std::filesystem::path(::testing::TempDir()) / "factor-probe.exr";
-  spec::RgbaImage probe{8, 4, std::vector<glm::vec4>(32, glm::vec4(0.5f, 1.0f, 2.0f, 1.0f))};
-  ASSERT_TRUE(spec::writeExr(file, probe));
+  spec::RgbaImage environment_map{8, 4, std::vector<glm::vec4>(32, glm::vec4(0.5f, 1.0f, 2.0f, 1.0f))};
+  ASSERT_TRUE(spec::writeExr(file, environment_map));
   LightCache cache;
   const std::vector<spec::Light> lights = {spec::SphereLight{}, testing::uniform(1.0f),
-                                           spec::ProbeLight{.file = file, .layout = {}}};
+                                           spec::EnvironmentMapLight{.file = file, .layout = {}}};
   const auto sky = [&](const std::vector<float>& factors) {
     const auto environment = *cache.environment(lights, factors, {});
     EXPECT_EQ(environment->shown({0, -1, 0}, 0.01f), environment->look({0, -1, 0}).radiance);

@@ -8,8 +8,8 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
+#include "baker/jobs/parallel.hpp"
 #include "baker/refine/shadow_probe.hpp"
-#include "baker/work/parallel.hpp"
 #include "tests/support/shapes.hpp"
 #include "tests/support/transport.hpp"
 
@@ -75,7 +75,7 @@ TEST(Refinement, BringsWhatAGlossyFloorReflectsUnderTheBound) {
   const Refined result = refined(scene, {.bound = 0.02f}, /*with_glossy=*/true);
   EXPECT_GT(result.report.error_before, 0.05);
   EXPECT_LT(result.report.error_after, 0.02);
-  // A lobe sees a shadow's edge where a matte floor sees a gradient.
+  // A lobe sees a shadow's edge where a diffuse floor sees a gradient.
   EXPECT_GT(result.report.vertices_after, refined(floorUnderSlab(), {.bound = 0.02f}).report.vertices_after);
 }
 
@@ -125,7 +125,7 @@ Scene foldedSheet() {
 TEST(Refinement, GivesTheFacesOfAFoldedSheetValuesApart) {
   const RefineOptions without{.bound = 0.05f, .rounds = 0};
   RefineOptions with = without;
-  with.most_fans = 0.5;
+  with.most_wedges = 0.5;
   const Refined shared = refined(foldedSheet(), without, /*with_glossy=*/true),
                 apart = refined(foldedSheet(), with, /*with_glossy=*/true);
   EXPECT_EQ(shared.report.fans, 0u);
@@ -133,7 +133,7 @@ TEST(Refinement, GivesTheFacesOfAFoldedSheetValuesApart) {
   EXPECT_LE(apart.report.fans, 145u);
   EXPECT_EQ(apart.report.vertices_after, shared.report.vertices_after + apart.report.fans);
   EXPECT_EQ(apart.meshes[0][0].indices.size(), shared.meshes[0][0].indices.size());
-  // Matte surfaces average what is near the horizon, and pay for none.
+  // Diffuse surfaces average what is near the horizon, and pay for none.
   EXPECT_EQ(refined(foldedSheet(), with, /*with_glossy=*/false).report.fans, 0u);
 }
 
@@ -142,12 +142,12 @@ TEST(Refinement, GivesFansToWhatIsDrawnOnceOnly) {
   scene.roots.push_back(static_cast<std::int32_t>(scene.nodes.size()));
   scene.nodes.push_back(scene.nodes.front());
   scene.nodes.back().parent_from_node = glm::translate(glm::mat4(1.0f), glm::vec3(10.0f, 0.0f, 0.0f));
-  EXPECT_EQ(refined(scene, {.bound = 0.05f, .rounds = 0, .most_fans = 0.5}, true).report.fans, 0u);
+  EXPECT_EQ(refined(scene, {.bound = 0.05f, .rounds = 0, .most_wedges = 0.5}, true).report.fans, 0u);
 }
 
 TEST(Refinement, OfFansIsTheSameForAnyNumberOfThreads) {
   Refined one, many;
-  const RefineOptions options{.bound = 0.05f, .rounds = 1, .most_fans = 0.5};
+  const RefineOptions options{.bound = 0.05f, .rounds = 1, .most_wedges = 0.5};
   withThreads(1, [&] { one = refined(foldedSheet(), options, true); });
   withThreads(0, [&] { many = refined(foldedSheet(), options, true); });
   EXPECT_GT(one.report.fans, 0u);
@@ -161,7 +161,7 @@ TEST(ShadowProbe, OfAClosedBoxMissesAllOfTheLight) {
   const SampleOrigin inside{{0.1f, 0.0f, 0.2f}, {0.0f, 1.0f, 0.0f}, 1.0f};
   std::vector<std::uint16_t> hidden(probe.packets()), open(probe.packets(), 0);
   const glm::vec3 up(0.0f, 1.0f, 0.0f);
-  for (const SampleKind kind : {SampleKind::Plain, SampleKind::Glossy}) {
+  for (const SampleKind kind : {SampleKind::Diffuse, SampleKind::Glossy}) {
     probe.look(t.rays, std::span(&inside, 1), up, kind, hidden);
     const HiddenFrom corner{open, up, 1.0f / 3.0f};
     EXPECT_NEAR(

@@ -101,7 +101,7 @@ TEST(Samples, OfNormalMappedDrawsComeLastInCellsOfTheirOwn) {
   EXPECT_EQ(t.samples.size(), 18u);
   EXPECT_EQ(t.samples.first_normal_mapped, 9u);
   ASSERT_EQ(t.samples.cells.size(), 2u);
-  EXPECT_EQ(t.samples.cells[0].kind, SampleKind::Plain);
+  EXPECT_EQ(t.samples.cells[0].kind, SampleKind::Diffuse);
   EXPECT_EQ(t.samples.cells[1].kind, SampleKind::NormalMapped);
   EXPECT_GE(t.samples.vertex_sample[0], 9u);  // the first mesh has the map
   EXPECT_LT(t.samples.vertex_sample[9], 9u);

@@ -37,7 +37,7 @@ TEST(EditorCommands, ShortcutsThatAreNoneAreErrors) {
     EXPECT_FALSE(parseShortcut(text).has_value()) << text;
 }
 
-TEST(EditorCommands, AllStandInTheManual) {
+TEST(EditorCommands, AllProxyLodTheManual) {
   const auto manual = readTextFile(LAMBENT_SOURCE_DIR "/docs/editor.md");
   ASSERT_TRUE(manual.has_value());
   for (const Command& command : commandList()) {

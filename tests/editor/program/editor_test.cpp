@@ -235,7 +235,7 @@ expect /errors 0
 }
 
 TEST_F(EditorProgram, EditsRoughnessByItsWidgetLiveWhereItCanBe) {
-  // A polished plate and a matte one.
+  // A polished plate and a diffuse one.
   assets::Scene plates;
   plates.materials = {{.name = "polished", .roughness = 0.4f, .metallic = 1.0f},
                       {.name = "matte", .specular = 1.0f}};

@@ -89,7 +89,7 @@ TEST(Codebook, ErrorsNameTheSubject) {
   const auto back = decodeCodebook({}, smallShape(), 3, "cell 7 of group lamp");
   ASSERT_FALSE(back);
   EXPECT_EQ(back.error().subject, "cell 7 of group lamp");
-  EXPECT_FALSE(back.error().mend.empty());
+  EXPECT_FALSE(back.error().hint.empty());
 }
 
 TEST(Codebook, NumbersOfAxesThatRiseAreRefused) {

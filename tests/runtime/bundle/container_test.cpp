@@ -98,12 +98,12 @@ Sample sampleBundle() {
                   {GroupLight::Kind::Node, 1, {0.0f, 40.0f, 0.5f}}};
   group.cells = {{0, 3, glm::vec3(-1.0f), glm::vec3(1.0f), {plain, lamps}},
                  {3, 2, glm::vec3(-1.0f), glm::vec3(1.0f), {mapped}}};
-  // Cell 0 is lit from all three light samples, cell 1 from the last.
-  group.light_samples = {glm::vec3(0.0f), {0.1f, -2.0f, 3e8f}, glm::vec3(1.0f)};
-  group.cells[0].light_samples = {0, 1, 2};
+  // Cell 0 is lit from all three light probes, cell 1 from the last.
+  group.light_probes = {glm::vec3(0.0f), {0.1f, -2.0f, 3e8f}, glm::vec3(1.0f)};
+  group.cells[0].light_probes = {0, 1, 2};
   group.cells[0].light_weights =
       static_cast<std::int32_t>(add(PayloadType::LightWeights, encodeLightWeights(kWeights)));
-  group.cells[1].light_samples = {2};
+  group.cells[1].light_probes = {2};
   CaptureProxy proxy;
   proxy.positions = {glm::vec3(0.0f), {1.0f, 0.0f, 0.0f}, {0.0f, 1.0f, 0.0f}};
   proxy.triangles = {{{0, 1, 2}, true, {1.0f, 2.0f, 3.0f}, 1, 0, 1}};
@@ -173,16 +173,16 @@ TEST_F(BundleFile, GivesBackClustersLampsAndNormalMappedCells) {
   EXPECT_TRUE(reader->checkAll());
 }
 
-TEST_F(BundleFile, GivesBackLightSamplesAndProxies) {
+TEST_F(BundleFile, GivesBackLightProbesAndProxies) {
   Sample sample = sampleBundle();
   sample.description.groups.emplace_back().name = "bare";  // no cells, no proxy
   ASSERT_TRUE(write(path_, sample.description, sample.blobs));
   auto reader = Reader::open(path_);
   ASSERT_TRUE(reader) << reader.error().line();
   const Group &group = reader->description().groups[0], &wanted = sample.description.groups[0];
-  EXPECT_EQ(group.light_samples, wanted.light_samples);
-  EXPECT_EQ(group.cells[0].light_samples, wanted.cells[0].light_samples);
-  EXPECT_EQ(group.cells[1].light_samples, wanted.cells[1].light_samples);
+  EXPECT_EQ(group.light_probes, wanted.light_probes);
+  EXPECT_EQ(group.cells[0].light_probes, wanted.cells[0].light_probes);
+  EXPECT_EQ(group.cells[1].light_probes, wanted.cells[1].light_probes);
   EXPECT_EQ(*reader->readLightWeights(0, 0), kWeights);
   EXPECT_EQ(*reader->readLightWeights(0, 1), (std::vector<LightWeights>(2, kOneLight)));
   const auto proxy = reader->readProxy(0);
@@ -190,7 +190,7 @@ TEST_F(BundleFile, GivesBackLightSamplesAndProxies) {
   ASSERT_EQ(proxy->entries.size(), 1u);
   EXPECT_EQ(proxy->entries[0].sample, 4u);
   EXPECT_EQ(proxy->triangles[0].light, 1);
-  EXPECT_EQ(reader->description().groups[1].light_samples.size(), 1u);
+  EXPECT_EQ(reader->description().groups[1].light_probes.size(), 1u);
   EXPECT_TRUE(reader->readProxy(1)->levels.empty());
   EXPECT_TRUE(reader->checkAll());
 }
@@ -240,7 +240,7 @@ TEST_F(BundleFile, AnyFlippedByteIsRefused) {
     replace(damaged);
     const auto read = readAll();
     ASSERT_FALSE(read) << "byte " << at << " of " << whole.size();
-    EXPECT_FALSE(read.error().mend.empty());
+    EXPECT_FALSE(read.error().hint.empty());
   }
 }
 
@@ -262,7 +262,7 @@ TEST_F(BundleFile, AnOlderVersionIsToBeBakedAgain) {
     const auto reader = Reader::open(path_);
     ASSERT_FALSE(reader) << version;
     EXPECT_NE(reader.error().problem.find("was written by an older program"), std::string::npos);
-    EXPECT_EQ(reader.error().mend, "bake it again");
+    EXPECT_EQ(reader.error().hint, "bake it again");
   }
 }
 
@@ -315,24 +315,24 @@ TEST_F(BundleFile, IndicesOutOfRangeAreRefusedByName) {
       },
       "fewer outputs than the cell before");
   const auto cell = [](Description& d) -> Cell& { return d.groups[0].cells[0]; };
-  refused([](Description& d) { d.groups[0].light_samples.clear(); }, "lightSamples are none");
-  refused([](Description& d) { d.groups[0].light_samples.pop_back(); }, "cells[0].lightSamples[2]");
-  refused([](Description& d) { d.groups[0].light_samples.emplace_back(0.0f); }, "not all taken by a cell");
-  refused([&](Description& d) { cell(d).light_samples = {}; }, "are not 1 to 64");
-  refused([&](Description& d) { cell(d).light_samples = {0, 2, 1}; }, "lightSamples[2] does not rise");
-  refused([&](Description& d) { cell(d).light_samples = {0, 1, 1}; }, "lightSamples[2] does not rise");
+  refused([](Description& d) { d.groups[0].light_probes.clear(); }, "lightSamples are none");
+  refused([](Description& d) { d.groups[0].light_probes.pop_back(); }, "cells[0].lightSamples[2]");
+  refused([](Description& d) { d.groups[0].light_probes.emplace_back(0.0f); }, "not all taken by a cell");
+  refused([&](Description& d) { cell(d).light_probes = {}; }, "are not 1 to 64");
+  refused([&](Description& d) { cell(d).light_probes = {0, 2, 1}; }, "lightSamples[2] does not rise");
+  refused([&](Description& d) { cell(d).light_probes = {0, 1, 1}; }, "lightSamples[2] does not rise");
   refused(
       [&](Description& d) {
-        d.groups[0].light_samples.resize(65);
-        for (std::uint32_t i = 3; i < 65; ++i) cell(d).light_samples.push_back(i);
+        d.groups[0].light_probes.resize(65);
+        for (std::uint32_t i = 3; i < 65; ++i) cell(d).light_probes.push_back(i);
       },
       "are not 1 to 64");
-  refused([&](Description& d) { cell(d).light_samples = {1}; }, "lightWeights are there for one");
+  refused([&](Description& d) { cell(d).light_probes = {1}; }, "lightWeights are there for one");
   refused([&](Description& d) { cell(d).light_weights = -1; }, "lightWeights is missing");
   refused([&](Description& d) { cell(d).light_weights = 0; }, "lightWeights is a payload of another type");
   refused(
       [&](Description& d) {
-        d.groups[0].cells[1].light_samples = {0, 1};
+        d.groups[0].cells[1].light_probes = {0, 1};
         d.groups[0].cells[1].light_weights = cell(d).light_weights;
       },
       "lightWeights is a payload of another size");

@@ -24,7 +24,7 @@ TEST(LightWeights, OfAnotherLengthOrPastTheListAreRefused) {
     EXPECT_FALSE(decodeLightWeights(std::span(bytes).first(length), 3, 4, "cell 0")) << length;
   EXPECT_FALSE(decodeLightWeights(bytes, 2, 4, "cell 0"));
   EXPECT_FALSE(decodeLightWeights(bytes, 4, 4, "cell 0"));
-  EXPECT_FALSE(decodeLightWeights(bytes, 3, 3, "cell 0")) << "light sample 3 of 3";
+  EXPECT_FALSE(decodeLightWeights(bytes, 3, 3, "cell 0")) << "light probe 3 of 3";
 }
 
 TEST(LightWeights, ThatDoNotSumToAWholeAreRefused) {

@@ -8,8 +8,8 @@
 namespace lambent::bundle {
 namespace {
 
-TEST(VertexRows, SingleRowsComeBackExactly) {
-  VertexRows rows{{0, 1, 2, 3}, {2, 0, 2}, {1.0f, 1.0f, 1.0f}};
+TEST(VertexWeights, SingleRowsComeBackExactly) {
+  VertexWeights rows{{0, 1, 2, 3}, {2, 0, 2}, {1.0f, 1.0f, 1.0f}};
   const auto bytes = encodeRows(rows);
   EXPECT_EQ(bytes.size(), 8u + 3 * 4);  // no offsets, no weights
   const auto back = decodeRows(bytes, 3, 3, "rows");
@@ -19,10 +19,10 @@ TEST(VertexRows, SingleRowsComeBackExactly) {
   EXPECT_EQ(back->weights, rows.weights);
 }
 
-TEST(VertexRows, QuantizedWeightsStillSumToOne) {
+TEST(VertexWeights, QuantizedWeightsStillSumToOne) {
   std::mt19937 random(7);
   std::uniform_real_distribution<float> uniform(0.0f, 1.0f);
-  VertexRows rows;
+  VertexWeights rows;
   rows.offsets = {0};
   for (int v = 0; v < 200; ++v) {
     const int count = 1 + v % 4;
@@ -48,8 +48,8 @@ TEST(VertexRows, QuantizedWeightsStillSumToOne) {
   }
 }
 
-TEST(VertexRows, DamagedOnesAreRefused) {
-  VertexRows rows{{0, 2, 3}, {0, 1, 1}, {0.5f, 0.5f, 1.0f}};
+TEST(VertexWeights, DamagedOnesAreRefused) {
+  VertexWeights rows{{0, 2, 3}, {0, 1, 1}, {0.5f, 0.5f, 1.0f}};
   const auto bytes = encodeRows(rows);
   ASSERT_TRUE(decodeRows(bytes, 2, 2, "rows"));
   for (std::size_t length = 0; length < bytes.size(); ++length) {
@@ -68,8 +68,8 @@ TEST(VertexRows, DamagedOnesAreRefused) {
   }
 }
 
-TEST(VertexRows, SamplesInOrderCostNextToNothing) {
-  VertexRows rows{{0}, {}, {}};
+TEST(VertexWeights, SamplesInOrderCostNextToNothing) {
+  VertexWeights rows{{0}, {}, {}};
   for (std::uint32_t v = 0; v < 10000; ++v) {
     rows.offsets.push_back(v + 1);
     rows.samples.push_back(70000 + v);
@@ -80,8 +80,8 @@ TEST(VertexRows, SamplesInOrderCostNextToNothing) {
   EXPECT_EQ(decodeRows(bytes, 10000, 80000, "rows")->samples, rows.samples);
 }
 
-TEST(VertexRows, DifferencesGoBackwardsAndFar) {
-  const VertexRows rows{{0, 1, 2, 3, 4}, {5, 0, 0xfffffff0u, 3}, {1.0f, 1.0f, 1.0f, 1.0f}};
+TEST(VertexWeights, DifferencesGoBackwardsAndFar) {
+  const VertexWeights rows{{0, 1, 2, 3, 4}, {5, 0, 0xfffffff0u, 3}, {1.0f, 1.0f, 1.0f, 1.0f}};
   const auto back = decodeRows(encodeRows(rows), 4, 0xffffffffu, "rows");
   ASSERT_TRUE(back) << back.error().line();
   EXPECT_EQ(back->samples, rows.samples);

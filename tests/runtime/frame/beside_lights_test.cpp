@@ -3,7 +3,7 @@
 
 #include <numbers>
 
-#include "runtime/frame/near_lights.hpp"
+#include "runtime/frame/local_shadows.hpp"
 #include "tests/runtime/frame/bundle_builder.hpp"
 #include "tests/runtime/frame/neighborhood_checks.hpp"
 
@@ -28,7 +28,7 @@ struct BesideStage : NeighborhoodStage {
   void moveLamp(const glm::vec3& place) { world.registry().edit<scene::Transform>(lamp).translation = place; }
   void setRadii(float radii) {
     FrameSettings settings = frame->settings();
-    settings.near_radii = radii;
+    settings.local_radii = radii;
     ASSERT_TRUE(frame->setSettings(settings));
   }
   // Of all pixels that the floor fills, relative to what they should be.
@@ -71,11 +71,11 @@ TEST_F(BesideLights, ABodyBehindAScreenIsDark) {
   const glm::vec3 lamp(2.5f, 1.5f, 0.0f);
   stage.moveLamp(lamp);
   for (const glm::vec4& texel : stage.picture().texels) ASSERT_LT(texel.r, 1e-6f);
-  EXPECT_EQ(stage.frame->counts().near_lights, 1u);
+  EXPECT_EQ(stage.frame->counts().shadowed_lights, 1u);
   stage.setRadii(0.0f);
   EXPECT_GT(stage.picture().texels[0].r, 0.5f * openAt(lamp, {0, 0, 0}))
       << "by harmonics, through the screen";
-  EXPECT_EQ(stage.frame->counts().near_lights, 0u);
+  EXPECT_EQ(stage.frame->counts().shadowed_lights, 0u);
 }
 
 TEST_F(BesideLights, EachPathOfTheLightComesOnceAtEveryDistance) {
@@ -96,7 +96,7 @@ TEST_F(BesideLights, EachPathOfTheLightComesOnceAtEveryDistance) {
       return glm::vec3(share * openAt(lamp, place) + (1.0f - share) * bands + (kFull - 1.0f) * bands);
     };
     EXPECT_LT(stage.worstError(stage.picture(), expected, 0.29f), 0.004) << radii << " radii away";
-    EXPECT_EQ(stage.frame->counts().near_lights, radii < 6.0f ? 1u : 0u);
+    EXPECT_EQ(stage.frame->counts().shadowed_lights, radii < 6.0f ? 1u : 0u);
   }
 }
 

@@ -120,7 +120,7 @@ void BundleBuilder::write(const std::filesystem::path& path) const {
                                       glm::transpose(glm::inverse(glm::mat3(mesh.world_from_mesh)));
     for (const bool back : {false, true}) {
       if (back && !mesh.material.double_sided) continue;
-      bundle::VertexRows rows;
+      bundle::VertexWeights rows;
       rows.offsets.push_back(0);
       for (const glm::vec3& normal : decoded.normals) {
         rows.samples.push_back(static_cast<std::uint32_t>(vectors.size()));
@@ -134,7 +134,7 @@ void BundleBuilder::write(const std::filesystem::path& path) const {
            .primitive = 0,
            .group = 0,
            .back = back,
-           .rows = store.payload(bundle::PayloadType::VertexRows, bundle::encodeRows(rows)),
+           .rows = store.payload(bundle::PayloadType::VertexWeights, bundle::encodeRows(rows)),
            .outputs = outputs()});
     }
   }

@@ -289,16 +289,16 @@ TEST_F(FrameTest, DisplayPicturesAreExposedAndOpaque) {
 
 TEST_F(FrameTest, TheSkyShowsTheProbeWhereItStands) {
   // A smooth picture of the sphere with a colour for each axis.
-  spec::RgbImage probe{.width = 128, .height = 64, .texels = {}};
-  for (std::uint32_t y = 0; y < probe.height; ++y)
-    for (std::uint32_t x = 0; x < probe.width; ++x)
-      probe.texels.push_back(0.5f +
-                             0.4f * glm::vec3(sh::texelDirection(sh::ImageLayout::LatLong, 128, 64,
-                                                                 static_cast<int>(x), static_cast<int>(y))));
+  spec::RgbImage environment_map{.width = 128, .height = 64, .texels = {}};
+  for (std::uint32_t y = 0; y < environment_map.height; ++y)
+    for (std::uint32_t x = 0; x < environment_map.width; ++x)
+      environment_map.texels.push_back(
+          0.5f + 0.4f * glm::vec3(sh::texelDirection(sh::ImageLayout::LatLong, 128, 64, static_cast<int>(x),
+                                                     static_cast<int>(y))));
   const std::filesystem::path file = temporary("axes.hdr");
-  ASSERT_TRUE(spec::writeHdr(file, probe));
+  ASSERT_TRUE(spec::writeHdr(file, environment_map));
   Stage stage(BundleBuilder().add({sphereMesh(12, 24), colored(glm::vec4(1.0f))}),
-              {spec::ProbeLight{.file = file, .layout = {}}}, kLinear);
+              {spec::EnvironmentMapLight{.file = file, .layout = {}}}, kLinear);
   for (const glm::vec2 place : {glm::vec2(0, 0), glm::vec2(90, 20), glm::vec2(200, -60), glm::vec2(300, 70)})
     for (const float turn : {0.0f, 90.0f}) {
       stage.camera.azimuth_deg = place.x;
@@ -311,7 +311,7 @@ TEST_F(FrameTest, TheSkyShowsTheProbeWhereItStands) {
       const glm::vec4 far_clip(-63.0f / 64.0f, 63.0f / 64.0f, 1.0f, 1.0f);
       const glm::vec4 far_ws = glm::inverse(view.clip_from_view * view.view_from_world) * far_clip;
       const glm::vec3 dir_ws = glm::normalize(glm::vec3(far_ws) / far_ws.w - view.eye_ws);
-      const glm::vec3 expected = spec::radiance(stage.environment.set(0).probes[0],
+      const glm::vec3 expected = spec::radiance(stage.environment.set(0).environment_maps[0],
                                                 glm::transpose(stage.environment.worldFromLight()) * dir_ws);
       // RGBE has 8 bits, the cube map half a degree to a texel.
       EXPECT_LT(glm::distance(glm::vec3(at(image, 0, 0)), expected), 0.01f) << place.x << " turned " << turn;

@@ -262,18 +262,18 @@ TEST_F(FrameVolume, ForwardScatteringShowsTheSunBehindIt) {
 }
 
 TEST_F(FrameVolume, ALightInsideShinesByHarmonics) {
-  // Near lights are for surfaces: rays through the mist look up no shadow cube.
+  // Local lights are for surfaces: rays through the mist look up no shadow cube.
   const spec::Light lamp = spec::SphereLight{
       .position_ws = glm::vec3(0.3f, 0.0f, 0.0f), .radius_m = 0.1f, .radiance = glm::vec3(50.0f)};
   Stage stage(BundleBuilder().volume(mist(2.0f)), {lamp});
   const spec::RgbaImage image = stage.picture();
   EXPECT_EQ(stage.frame->counts().local_lights, 1u);
-  EXPECT_EQ(stage.frame->counts().near_lights, 0u);
+  EXPECT_EQ(stage.frame->counts().shadowed_lights, 0u);
   EXPECT_GT(middle(image).g, 0.1f);
   for (const glm::vec4& texel : image.texels) ASSERT_TRUE(std::isfinite(texel.g));
 }
 
-TEST_F(FrameVolume, TheSurfacesThatItStandsInAreNotCapturedAtItsLightSamples) {
+TEST_F(FrameVolume, TheSurfacesThatItStandsInAreNotCapturedAtItsLightProbes) {
   for (const std::int32_t within : {-1, 0}) {
     BuiltVolume volume = mist(1.0f);
     volume.within = within;
@@ -281,7 +281,7 @@ TEST_F(FrameVolume, TheSurfacesThatItStandsInAreNotCapturedAtItsLightSamples) {
     const LitScene before = gatherLitScene(stage.world, 1.0f);
     EXPECT_FALSE(before.needsSampling()) << "there is no body yet";
     bundle::CaptureProxy proxy;
-    ASSERT_TRUE(stage.world.residency().upload(0, streaming::ProxyReady{0, proxy}));
+    ASSERT_TRUE(stage.world.residency().upload(0, streaming::ProxyChunk{0, proxy}));
     const LitScene scene = gatherLitScene(stage.world, 1.0f);
     ASSERT_EQ(scene.bodies.size(), 1u);
     EXPECT_EQ(scene.groups[0].body, 0u);

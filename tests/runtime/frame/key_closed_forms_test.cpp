@@ -181,18 +181,18 @@ struct Changes {
 
 // A sun in a sky that is brighter to one side.
 std::filesystem::path writeSky(const glm::vec3& sun) {
-  spec::RgbImage probe{.width = 256, .height = 128, .texels = {}};
-  for (std::uint32_t y = 0; y < probe.height; ++y)
-    for (std::uint32_t x = 0; x < probe.width; ++x) {
+  spec::RgbImage environment_map{.width = 256, .height = 128, .texels = {}};
+  for (std::uint32_t y = 0; y < environment_map.height; ++y)
+    for (std::uint32_t x = 0; x < environment_map.width; ++x) {
       const glm::vec3 d(
           sh::texelDirection(sh::ImageLayout::LatLong, 256, 128, static_cast<int>(x), static_cast<int>(y)));
       const bool in_sun = glm::dot(d, sun) > std::cos(glm::radians(kRadius));
-      probe.texels.push_back(in_sun ? glm::vec3(300, 270, 230)
-                                    : glm::vec3(0.3f, 0.4f, 0.6f) * (1.0f + 0.5f * d.x));
+      environment_map.texels.push_back(in_sun ? glm::vec3(300, 270, 230)
+                                              : glm::vec3(0.3f, 0.4f, 0.6f) * (1.0f + 0.5f * d.x));
     }
   const std::filesystem::path file =
       std::filesystem::path(::testing::TempDir()) / fmt::format("{}-turn.hdr", getpid());
-  EXPECT_TRUE(spec::writeHdr(file, probe));
+  EXPECT_TRUE(spec::writeHdr(file, environment_map));
   return file;
 }
 
@@ -213,7 +213,7 @@ BundleBuilder tower() {
 TEST_F(KeyClosedForms, ASkyThatTurnsAllTheWayRoundChangesPixelsAsItsShadowsMove) {
   const float up = glm::radians(kElevation);
   const std::filesystem::path file = writeSky({0, std::sin(up), std::cos(up)});
-  LiveStage stage(tower(), {spec::ProbeLight{.file = file, .layout = {}}});
+  LiveStage stage(tower(), {spec::EnvironmentMapLight{.file = file, .layout = {}}});
   std::filesystem::remove(file);
   stage.environment.setMostKeys(16);
   constexpr std::uint32_t kSide = 40;

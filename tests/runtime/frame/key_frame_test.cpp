@@ -12,7 +12,7 @@
 #include <unistd.h>
 
 #include "runtime/frame/frame.hpp"
-#include "runtime/frame/near_light_ref.hpp"
+#include "runtime/frame/shadowed_light_ref.hpp"
 #include "runtime/scene/components.hpp"
 #include "runtime/sh/image_layout.hpp"
 #include "runtime/sh/rotation.hpp"
@@ -446,23 +446,23 @@ TEST_F(KeyFrame, GroupsHaveAllOfTheLightInTheirTwoBlocks) {
 
 TEST_F(KeyFrame, ATurningProbeMovesShadowsWithoutJumps) {
   // A sun, a lamp and a window in a picture of the sky, over a court.
-  spec::RgbImage probe{.width = 128, .height = 64, .texels = {}};
+  spec::RgbImage environment_map{.width = 128, .height = 64, .texels = {}};
   const glm::vec3 sun_at = glm::normalize(glm::vec3(1, 1, 0.6f)),
                   lamp_at = glm::normalize(glm::vec3(-1, 0.7f, 0.2f));
-  for (std::uint32_t y = 0; y < probe.height; ++y)
-    for (std::uint32_t x = 0; x < probe.width; ++x) {
+  for (std::uint32_t y = 0; y < environment_map.height; ++y)
+    for (std::uint32_t x = 0; x < environment_map.width; ++x) {
       const glm::vec3 d(
           sh::texelDirection(sh::ImageLayout::LatLong, 128, 64, static_cast<int>(x), static_cast<int>(y)));
       glm::vec3 radiance = d.y > 0.0f ? glm::vec3(0.4f, 0.5f, 0.7f) : glm::vec3(0.2f, 0.15f, 0.1f);
       if (glm::dot(d, sun_at) > 0.9985f) radiance = glm::vec3(200, 180, 150);
       if (glm::dot(d, lamp_at) > 0.98f) radiance = glm::vec3(10, 8, 6);
       if (d.z < -0.8f && std::abs(d.x) < 0.3f && d.y > 0.1f && d.y < 0.5f) radiance = glm::vec3(4, 4.5f, 5);
-      probe.texels.push_back(radiance);
+      environment_map.texels.push_back(radiance);
     }
   const std::filesystem::path file =
       std::filesystem::path(::testing::TempDir()) / fmt::format("{}-key-turn.hdr", getpid());
-  ASSERT_TRUE(spec::writeHdr(file, probe));
-  KeyStage stage(court(), {spec::ProbeLight{.file = file, .layout = {}}}, kMost, {}, {96, 54});
+  ASSERT_TRUE(spec::writeHdr(file, environment_map));
+  KeyStage stage(court(), {spec::EnvironmentMapLight{.file = file, .layout = {}}}, kMost, {}, {96, 54});
   std::filesystem::remove(file);
   ASSERT_GE(stage.environment.keys().size(), 2u);
   const spec::View view = from({2, 2, 3}, {0, 0.4f, 0}, 50.0f, 96.0f / 54.0f);

@@ -1,5 +1,5 @@
 // Runs key_light.glsl on cases from a buffer, with a shadow map that key_shader_test.cpp made up.
-#include "near_shared.h"
+#include "local_shared.h"
 #include "key_shared.h"
 #include "key_light.glsl"
 

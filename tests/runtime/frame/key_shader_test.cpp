@@ -125,7 +125,7 @@ TEST_F(KeyShader, DoesWhatItsTwinDoes) {
   ASSERT_TRUE(pyramid) << pyramid.error().line();
   makePyramid(*pyramid, textures, 0, 0, kSize);
   const Result<gpu::Program> program =
-      gpu::Program::create("key probe", {{GL_COMPUTE_SHADER, "key_probe.comp"}}, kShaders);
+      gpu::Program::create("key environment map", {{GL_COMPUTE_SHADER, "key_probe.comp"}}, kShaders);
   ASSERT_TRUE(program) << program.error().line();
   gpu::Table input("cases"), output("results");
   input.assign(std::span<const Case>(cases));

@@ -27,7 +27,7 @@ const spec::Light kSun = spec::SunLight{
 gltf::Material colored(glm::vec4 color) {
   gltf::Material material;
   material.base_color = color;
-  material.metallic = 0.0f;  // and roughness 1: matte
+  material.metallic = 0.0f;  // and roughness 1: diffuse
   return material;
 }
 
@@ -189,13 +189,14 @@ TEST_F(LiveFrame, AnotherProbeIsAsIfItHadBeenThereFromTheStart) {
         0.5f + 0.4f * glm::vec3(sh::texelDirection(sh::ImageLayout::LatLong, 64, 32, i % 64, i / 64)));
   const auto file = std::filesystem::path(::testing::TempDir()) / fmt::format("{}-other.hdr", getpid());
   ASSERT_TRUE(spec::writeHdr(file, image));
-  const std::vector<spec::Light> probe = {spec::ProbeLight{.file = file, .layout = {}}, kSun};
+  const std::vector<spec::Light> environment_map = {spec::EnvironmentMapLight{.file = file, .layout = {}},
+                                                    kSun};
   for (const auto& builder : {glossyBall(metal(glm::vec3(0.9f), 0.2f)), ballAndCloud()}) {
     LiveStage swapped(builder, {kWhite});
     swapped.picture();
-    swapped.environment = *lighting::Environment::create(probe);
+    swapped.environment = *lighting::Environment::create(environment_map);
     const auto found = swapped.picture();
-    LiveStage fresh(builder, probe);
+    LiveStage fresh(builder, environment_map);
     EXPECT_EQ(farthest(found, fresh.picture()), 0.0f);
   }
   std::filesystem::remove(file);

@@ -1,22 +1,22 @@
-// Near lights on glossy surfaces: their highlight beside the diffuse part.
+// Local lights on glossy surfaces: their highlight beside the diffuse part.
 #include "baker/brdf/brdf.hpp"
 #include "tests/runtime/effects/glossy/random_table.hpp"
-#include "tests/runtime/frame/near_stage.hpp"
+#include "tests/runtime/frame/local_stage.hpp"
 #include "tests/support/gpu_context.hpp"
 
 namespace lambent::frame {
 
-using NearGlossyTest = testing::GpuTest;
+using LocalGlossyTest = testing::GpuTest;
 
-TEST_F(NearGlossyTest, APointLightOnAMetalFloorGivesItsGgxHighlight) {
+TEST_F(LocalGlossyTest, APointLightOnAMetalFloorGivesItsGgxHighlight) {
   constexpr float kRoughness = 0.4f;
   BuiltMesh floor = level(0.0f, 5.0f);
   floor.material.metallic = 1.0f;
   floor.material.roughness = kRoughness;
   Stage stage(BundleBuilder(5).add(floor).glossy(5, bundle::BrdfFamily::Ggx,
                                                  effects::glossy::testing::evenTable(5, true, 0.8f, 0.1f)));
-  NearLight point;
-  point.kind = NearLight::Kind::Point;
+  ShadowedLight point;
+  point.kind = ShadowedLight::Kind::Point;
   point.position_ws = {0.4f, 1.0f, -0.3f};
   point.power = {10, 5, 1};
   const auto picture = stage.picture(above(2.0f), point);
@@ -39,7 +39,7 @@ TEST_F(NearGlossyTest, APointLightOnAMetalFloorGivesItsGgxHighlight) {
   EXPECT_NEAR(picture[kSize / 2].g, 0.5f * picture[kSize / 2].r, 1e-4f);
 }
 
-TEST_F(NearGlossyTest, ADielectricFloorAddsItsDiffusePart) {
+TEST_F(LocalGlossyTest, ADielectricFloorAddsItsDiffusePart) {
   BuiltMesh floor = level(0.0f, 5.0f, {0, 0}, 0.5f);
   floor.material.metallic = 0.0f;
   floor.material.specular = 0.0f;  // nothing but diffuse is left

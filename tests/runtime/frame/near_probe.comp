@@ -1,11 +1,11 @@
-// Runs near_shadow.glsl on cases from a buffer, in a made-up world that near_shader_test.cpp knows too.
-#include "near_shared.h"
-#include "near_shadow.glsl"
+// Runs local_shadow.glsl on cases from a buffer, in a made-up world that local_shader_test.cpp knows too.
+#include "local_shared.h"
+#include "local_shadow.glsl"
 
 layout(local_size_x = 64) in;
 
 struct Case {
-  NearRecord light;
+  ShadowedLightRecord light;
   vec3 position;
   float turns;
   vec3 normal;
@@ -22,7 +22,7 @@ uniform layout(location = 0) uint count;
 const int kSize = 64;
 
 // Floor at y = -1, and blocks of eight texels at half a metre on a chequered half of the sky.
-float nearDistance(int light, int face, ivec2 texel) {
+float localDistance(int light, int face, ivec2 texel) {
   if (((texel.x / 8 + texel.y / 8 + face) & 1) == 0 && face != 3) return 0.5 + 0.01 * float(face);
   vec3 direction = texelDirection(face, vec2(texel) + 0.5, kSize);
   return direction.y < 0.0 ? -1.0 / direction.y : kNothing;
@@ -33,7 +33,7 @@ void main() {
   if (i >= count) return;
   Case c = cases[i];
   vec3 to_light = c.light.position - c.position;
-  vec3 all = nearRadiance(0, c.light, c.position, c.normal, c.horizon, c.shading_normal, kSize, 16, c.turns);
-  results[i] = vec4(all.xy, nearShare(c.light, c.shading_normal, to_light),
+  vec3 all = localRadiance(0, c.light, c.position, c.normal, c.horizon, c.shading_normal, kSize, 16, c.turns);
+  results[i] = vec4(all.xy, localShare(c.light, c.shading_normal, to_light),
                     pixelTurns(vec2(float(i) + 0.5, 37.5)));
 }

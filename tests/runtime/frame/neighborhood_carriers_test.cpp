@@ -31,7 +31,7 @@ TEST_F(NeighborhoodFrame, EachPairHasOneCarrier) {
 }
 
 TEST_F(NeighborhoodFrame, ABodyIsEitherCapturedOrAroundNeverBoth) {
-  // The floor's light sample is at its middle, right below the sphere: by capture, all of it darkens.
+  // The floor's light probe is at its middle, right below the sphere: by capture, all of it darkens.
   NeighborhoodScene scene;
   scene.receivers = {floorOf(8.0f)};
   scene.bodies = {sphereAt({0.0f, 1.5f, 0.0f}, 1.0f, kFine, kFineHalf)};

@@ -105,7 +105,7 @@ void addReceiver(bundle::Description& description, Store& store, const BuiltRece
       static_cast<std::int32_t>(mesh_node));
   description.nodes.push_back(node);
   const glm::mat3 normals = glm::transpose(glm::inverse(glm::mat3(receiver.group_from_mesh)));
-  bundle::VertexRows rows;
+  bundle::VertexWeights rows;
   rows.offsets.push_back(0);
   std::vector<std::vector<float>> vectors;
   for (const glm::vec3& normal : decoded.normals) {
@@ -119,7 +119,7 @@ void addReceiver(bundle::Description& description, Store& store, const BuiltRece
        .mesh = static_cast<std::uint32_t>(node.mesh),
        .primitive = 0,
        .group = static_cast<std::uint32_t>(description.groups.size()),
-       .rows = store.payload(bundle::PayloadType::VertexRows, bundle::encodeRows(rows)),
+       .rows = store.payload(bundle::PayloadType::VertexWeights, bundle::encodeRows(rows)),
        .outputs = receiver.outputs});
   group.sample_count = static_cast<std::uint32_t>(vectors.size());
   bundle::Cell cell;

@@ -33,7 +33,7 @@ TEST(OverlayWords, AListNamesThemAndSaysWhereTheSliceLies) {
   const auto both = parseOverlays("neighborhoods:z,0.25,lights");
   ASSERT_TRUE(both) << both.error().line();
   EXPECT_TRUE(both->neighborhoods && both->lights);
-  EXPECT_FALSE(both->groups || both->volumes || both->light_samples);
+  EXPECT_FALSE(both->groups || both->volumes || both->light_probes);
   EXPECT_EQ(both->slice.axis, 2);
   EXPECT_EQ(both->slice.position, 0.25f);
   EXPECT_FALSE(parseOverlays("")->any());
@@ -43,7 +43,7 @@ TEST(OverlayWords, AListNamesThemAndSaysWhereTheSliceLies) {
         "neighborhoods:x,2", "neighborhoods:x,0.5lights", "lights,,"}) {
     const auto options = parseOverlays(wrong);
     ASSERT_FALSE(options) << wrong;
-    EXPECT_NE(options.error().mend.find("light-samples"), std::string::npos);
+    EXPECT_NE(options.error().hint.find("light-samples"), std::string::npos);
   }
 }
 
@@ -197,7 +197,7 @@ TEST(OverlayLines, GlyphsOfLightsHaveTheirSizeAndPointWhereTheyShine) {
 
 using OverlayTest = testing::GpuTest;
 
-TEST_F(OverlayTest, TheBallOfALightSampleHasConstantRadianceUnderConstantLight) {
+TEST_F(OverlayTest, TheBallOfALightProbeHasConstantRadianceUnderConstantLight) {
   // The sample of the written bundle stands at the origin, in front of a quad, whichever way its group lies.
   const glm::vec3 radiance(0.25f, 0.5f, 2.0f);
   const glm::mat4 away = glm::translate(glm::mat4(1.0f), {0.0f, 0.0f, -0.5f});
@@ -206,7 +206,7 @@ TEST_F(OverlayTest, TheBallOfALightSampleHasConstantRadianceUnderConstantLight) 
                       .groupRotation(glm::angleAxis(1.0f, glm::vec3(0, 0.6f, 0.8f))),
                   {spec::ConstantLight{.radiance = radiance}}, linearOptions());
   OverlayOptions shown;
-  shown.light_samples = true;
+  shown.light_probes = true;
   stage.frame->setOverlays(shown);
   stage.camera.fov_deg = 8.0f;
   stage.render();
@@ -247,7 +247,7 @@ TEST_F(OverlayTest, WithoutOverlaysThePictureIsTheSameToTheBitAndThereIsNoPass) 
     const auto before = picture();
     const auto before_linear = linear();
     OverlayOptions shown;
-    shown.light_samples = shown.groups = shown.lights = true;
+    shown.light_probes = shown.groups = shown.lights = true;
     stage.frame->setOverlays(shown);
     const bool same = picture() == before;
     EXPECT_FALSE(same && linear() == before_linear);

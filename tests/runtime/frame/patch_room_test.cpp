@@ -13,17 +13,17 @@
 
 namespace lambent::frame {
 
-using lighting::NearLight;
 using lighting::Patch;
 using lighting::PatchTransport;
+using lighting::ShadowedLight;
 using testing::RoomBuilder;
 
 namespace {
 
 constexpr float kPi = std::numbers::pi_v<float>;
 
-NearLight pointLamp(glm::vec3 position, glm::vec3 power = glm::vec3(1.0f)) {
-  NearLight light;
+ShadowedLight pointLamp(glm::vec3 position, glm::vec3 power = glm::vec3(1.0f)) {
+  ShadowedLight light;
   light.position_ws = position;
   light.power = power;
   return light;
@@ -34,7 +34,7 @@ PatchRoom boxRoom(float albedo = 0.5f) {
       RoomBuilder().box({0, 0, 0}, {2, 2.4f, 3}, glm::vec3(albedo)).proxy()));
 }
 
-void shine(PatchRoom& room, std::vector<NearLight> lamps,
+void shine(PatchRoom& room, std::vector<ShadowedLight> lamps,
            const std::vector<lighting::RayTriangle>& others = {}) {
   room.light({.lamps = std::move(lamps)}, glm::mat4(1.0f), others);
 }
@@ -55,20 +55,20 @@ double received(const lighting::Patches& patches, const std::vector<float>& dire
 
 TEST(LampLight, AllLightOfALampArrivesInAClosedRoom) {
   const lighting::Patches patches(RoomBuilder().box({0, 0, 0}, {2, 2.4f, 3}, glm::vec3(0.5f)).proxy());
-  NearLight point = pointLamp({0.8f, 1.3f, 1.1f});
+  ShadowedLight point = pointLamp({0.8f, 1.3f, 1.1f});
   EXPECT_NEAR(received(patches, lampOnPatches(point, patches, {}, glm::mat4(1.0f)), 4.0 * kPi), 1.0, 0.01);
-  NearLight sphere = point;
-  sphere.kind = NearLight::Kind::Sphere;
+  ShadowedLight sphere = point;
+  sphere.kind = ShadowedLight::Kind::Sphere;
   sphere.radius_m = 0.3f;  // flux pi L 4 pi r²
   EXPECT_NEAR(received(patches, lampOnPatches(sphere, patches, {}, glm::mat4(1.0f)), kPi * 4.0 * kPi * 0.09),
               1.0, 0.01);
-  NearLight disc = sphere;
-  disc.kind = NearLight::Kind::Disc;
+  ShadowedLight disc = sphere;
+  disc.kind = ShadowedLight::Kind::Disc;
   disc.direction_ws = {0, -2, 0};  // of any length
   EXPECT_NEAR(received(patches, lampOnPatches(disc, patches, {}, glm::mat4(1.0f)), kPi * kPi * 0.09), 1.0,
               0.01);
-  NearLight spot = point;
-  spot.kind = NearLight::Kind::Spot;
+  ShadowedLight spot = point;
+  spot.kind = ShadowedLight::Kind::Spot;
   spot.direction_ws = {1, 0, 0};
   const std::vector<float> ahead = lampOnPatches(spot, patches, {}, glm::mat4(1.0f));
   for (std::size_t i = 0; i < patches.size(); ++i) {
@@ -82,8 +82,8 @@ TEST(LampLight, ALampInABoxLightsNothingOfTheBoxBeside) {
                                       .box({0, 0, 0}, {1, 1, 1}, glm::vec3(0.7f))
                                       .box({1.1f, 0, 0}, {2, 1, 1}, glm::vec3(0.7f))
                                       .proxy());
-  NearLight lamp = pointLamp({0.5f, 0.5f, 0.5f});
-  lamp.kind = NearLight::Kind::Sphere;
+  ShadowedLight lamp = pointLamp({0.5f, 0.5f, 0.5f});
+  lamp.kind = ShadowedLight::Kind::Sphere;
   lamp.radius_m = 0.2f;
   const std::vector<float> direct = lampOnPatches(lamp, patches, {}, glm::mat4(1.0f));
   for (std::size_t i = 0; i < patches.size(); ++i) {
@@ -96,8 +96,8 @@ TEST(LampLight, WhatIsNoLargerThanTheLampAndWithinItCastsNoShadow) {
   RoomBuilder builder;
   builder.wall({-1, 0, 1}, {2, 0, 0}, {0, 0, -2}, glm::vec3(0.5f));  // a floor
   const lighting::Patches patches(builder.proxy());
-  NearLight bulb = pointLamp({0, 1, 0});
-  bulb.kind = NearLight::Kind::Sphere;
+  ShadowedLight bulb = pointLamp({0, 1, 0});
+  bulb.kind = ShadowedLight::Kind::Sphere;
   bulb.radius_m = 0.1f;
   const auto shadowBy = [&](float half) {
     const lighting::RayTriangle plate{.corners = {glm::vec3(-half, 0.95f, -half),
@@ -135,7 +135,7 @@ TEST(PatchRoom, DimmingIsLinearToTheBitAndBouncesNothingAnew) {
 
 TEST(PatchRoom, TwoLampsGiveTheSumOfBoth) {
   PatchRoom room = boxRoom(), first = boxRoom(), second = boxRoom();
-  const NearLight a = pointLamp({1, 2, 1}, {4, 2, 1}), b = pointLamp({0.3f, 1, 2.6f}, {1, 3, 5});
+  const ShadowedLight a = pointLamp({1, 2, 1}, {4, 2, 1}), b = pointLamp({0.3f, 1, 2.6f}, {1, 3, 5});
   shine(room, {a, b});
   shine(first, {a});
   shine(second, {b});
@@ -146,7 +146,7 @@ TEST(PatchRoom, TwoLampsGiveTheSumOfBoth) {
 
 TEST(PatchRoom, WhatStandsStillIsNewOnlyOnce) {
   PatchRoom room = boxRoom();
-  const std::vector<NearLight> lamps = {pointLamp({1, 2, 1}), pointLamp({0.5f, 0.5f, 0.5f})};
+  const std::vector<ShadowedLight> lamps = {pointLamp({1, 2, 1}), pointLamp({0.5f, 0.5f, 0.5f})};
   shine(room, lamps);
   const std::uint64_t version = room.version();
   shine(room, lamps);
@@ -205,7 +205,7 @@ TEST(PatchRoom, ATurnedAndScaledRoomTakesTheSameShareOfLight) {
   const glm::mat4 world_from_group = glm::translate(glm::mat4(1.0f), glm::vec3(3, -1, 2)) *
                                      glm::rotate(glm::mat4(1.0f), 0.7f, glm::normalize(glm::vec3(1, 2, 3))) *
                                      glm::scale(glm::mat4(1.0f), glm::vec3(2.0f));
-  const std::vector<NearLight> lamp = {pointLamp(glm::vec3(world_from_group * glm::vec4(1, 2, 1, 1)))};
+  const std::vector<ShadowedLight> lamp = {pointLamp(glm::vec3(world_from_group * glm::vec4(1, 2, 1, 1)))};
   placed.light({.lamps = lamp}, world_from_group, {});
   for (std::size_t i = 0; i < plain.givenOff().size(); ++i)
     ASSERT_NEAR(4.0f * placed.givenOff()[i].r, plain.givenOff()[i].r, 0.02f * plain.givenOff()[i].r);
@@ -221,7 +221,7 @@ spec::Disc sunAt(const glm::vec3& direction, float radius_rad = 0.05f) {
           .radiance = glm::vec3(10.0f, 5.0f, 2.0f)};
 }
 
-// What transfer takes for the key lights at an open light probe.
+// What transfer takes for the key lights at an open light environment map.
 KeyBands bandsOf(const std::vector<spec::Disc>& keys, const glm::vec3& position) {
   KeyBands bands{.position = position, .light = {}};
   for (const glm::vec3& c : spec::discVector(keys).c) bands.light.emplace_back(c, 0.0f);

@@ -27,7 +27,7 @@ TEST_F(SurfaceImages, ColoursAreSrgbNormalsLinearAndAnImageThatIsBothIsHeldTwice
   ASSERT_TRUE(residency.add(description));
   for (std::uint32_t i = 0; i < 5; ++i)
     ASSERT_TRUE(residency.upload(
-        0, streaming::ImageReady{
+        0, streaming::ImageChunk{
                .image = i, .width = 4, .height = 3, .rgba = std::vector<std::uint8_t>(4 * 12, 188)}));
 
   const streaming::ResidentBundle& bundle = residency.bundles()[0];

@@ -46,7 +46,7 @@ struct Vertices {
   glm::vec2 texcoord1{0.5f, 0.5f};
 };
 
-SurfaceDraw plainRecord() {
+SurfaceDraw diffuseRecord() {
   const TextureSlot none{.texture_from_coordinates = glm::mat3x2(1.0f), .set = kAbsent, .pad = 0};
   return {.world_from_mesh = glm::mat4(1.0f),
           .group_from_mesh = glm::mat3x4(1.0f),
@@ -178,7 +178,7 @@ TEST_F(SurfaceShader, AddsEmissionToReflectedLightInTheEmissiveTexturesOwnCoordi
   textures[kUnitBaseColor] = picture(1, 1, {255, 128, 0, 255}, GL_RGBA8);
   textures[kUnitEmissive] =
       picture(2, 2, {255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 255, 255, 255, 255, 255}, GL_SRGB8_ALPHA8);
-  SurfaceDraw record = plainRecord();
+  SurfaceDraw record = diffuseRecord();
   record.base_color = {0.5f, 0.5f, 0.5f, 1.0f};
   record.emission = {5.0f, 6.0f, 7.0f, 0.0f};
   record.base_color_texture = slot(1);
@@ -216,7 +216,7 @@ TEST_F(SurfaceShader, AddsEmissionToReflectedLightInTheEmissiveTexturesOwnCoordi
 
 TEST_F(SurfaceShader, ShowsTheBaseColourOfUnlitSurfacesWhateverTheLight) {
   textures[kUnitBaseColor] = picture(1, 1, {255, 51, 255, 255}, GL_RGBA8);
-  SurfaceDraw record = plainRecord();
+  SurfaceDraw record = diffuseRecord();
   record.base_color = {0.25f, 0.5f, 1.0f, 0.5f};
   record.base_color_texture = slot(0);
   record.alpha_mode = kAlphaBlend;
@@ -240,7 +240,7 @@ TEST_F(SurfaceShader, ReceivesLightAtThePixelsNormalAsTheReferenceDoes) {
     Vertices vertices;
     vertices.normal = glm::normalize(glm::vec3(0.2f, 0.1f, 1.0f));
     vertices.tangent = {glm::normalize(glm::vec3(1.0f, 0.3f, -0.2f)), -1.0f};
-    SurfaceDraw record = plainRecord();
+    SurfaceDraw record = diffuseRecord();
     record.group_from_mesh = glm::mat3x4(group_from_mesh);
     record.group_from_mesh_normal = glm::mat3x4(normal_matrix);
     record.base_color = {0.5f, 1.0f, 0.25f, 1.0f};
@@ -275,7 +275,7 @@ TEST_F(SurfaceShader, TakesTheSameMipLevelAlsoWhereTrianglesMeet) {
   const std::vector<std::uint8_t> white(16, 255), black(4, 0);
   glTextureSubImage2D(texture.id(), 0, 0, 0, 2, 2, GL_RGBA, GL_UNSIGNED_BYTE, white.data());
   glTextureSubImage2D(texture.id(), 1, 0, 0, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, black.data());
-  SurfaceDraw record = plainRecord();
+  SurfaceDraw record = diffuseRecord();
   record.base_color_texture = slot(0, {.texture = 0, .texcoord = 0, .offset = {0.3f, 0.6f}});
   for (const glm::vec4& pixel : drawRadiance(record, glm::vec3(1.0f)))
     EXPECT_LT(glm::distance(pixel, glm::vec4(1.0f)), 1e-6f);
@@ -284,14 +284,14 @@ TEST_F(SurfaceShader, TakesTheSameMipLevelAlsoWhereTrianglesMeet) {
 TEST_F(SurfaceShader, UsesTheVertexNormalWhereThereIsNoNormalTexture) {
   Vertices vertices;
   vertices.normal = glm::normalize(glm::vec3(0.5f, -0.2f, 1.0f));
-  const Picture image = drawLight(plainRecord(), vertices, kLight);
+  const Picture image = drawLight(diffuseRecord(), vertices, kLight);
   ASSERT_FALSE(image.empty());
   EXPECT_LT(glm::distance(glm::vec3(at(image, 8, 8)), ref::diffuseLight(kLight, vertices.normal)), 1e-5f);
 }
 
 TEST_F(SurfaceShader, UniformLightHidesTheNormalMap) {
   textures[kUnitNormal] = picture(2, 1, {255, 128, 128, 255, 10, 200, 180, 255}, GL_RGBA8);
-  SurfaceDraw record = plainRecord();
+  SurfaceDraw record = diffuseRecord();
   record.normal_texture = slot(0);
   Light uniform{};
   uniform[0] = glm::vec3(3.54490770f, 1.77245385f, 0.0f);  // radiance 1 and 1/2: sqrt(4 pi) times

@@ -46,7 +46,7 @@ TEST(ViewWords, EveryViewIsFoundByItsNameAndByNoOther) {
                             "transfer-band:", "final:1", "Normals"}) {
     const auto choice = parseView(wrong);
     ASSERT_FALSE(choice) << wrong;
-    EXPECT_NE(choice.error().mend.find("transfer-band[:0..7]"), std::string::npos);
+    EXPECT_NE(choice.error().hint.find("transfer-band[:0..7]"), std::string::npos);
   }
 }
 

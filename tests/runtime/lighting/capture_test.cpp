@@ -325,7 +325,8 @@ TEST_F(CaptureTest, ASunOfOneTexelInAProbeKeepsItsPlaceAndPower) {
         out.put(static_cast<char>(sun ? 160 : 128)).put(static_cast<char>(sun ? 142 : 129));
       }
   }
-  const Environment environment = *Environment::create({spec::ProbeLight{file, sh::ImageLayout::LatLong}});
+  const Environment environment =
+      *Environment::create({spec::EnvironmentMapLight{file, sh::ImageLayout::LatLong}});
   auto capture = Capture::create({}, environment);
   ASSERT_TRUE(capture);
   std::mt19937 random(5);

@@ -115,8 +115,8 @@ TEST(Environment, ReportsTexelsThatAreNotFiniteInBothSetsAndCountsThemAsBlack) {
   image.texels[3].r = std::numeric_limits<float>::quiet_NaN();
   image.texels[17].b = std::numeric_limits<float>::infinity();
   ASSERT_TRUE(spec::writeExr(file, image));
-  const std::vector<spec::Light> probe = {spec::ProbeLight{.file = file, .layout = {}}};
-  const auto environment = Environment::create(probe, probe);
+  const std::vector<spec::Light> environment_map = {spec::EnvironmentMapLight{.file = file, .layout = {}}};
+  const auto environment = Environment::create(environment_map, environment_map);
   std::filesystem::remove(file);
   ASSERT_TRUE(environment) << environment.error().line();
   ASSERT_EQ(environment->notices().size(), 2u);
@@ -129,16 +129,16 @@ TEST(Environment, ReportsTexelsThatAreNotFiniteInBothSetsAndCountsThemAsBlack) {
 TEST(Environment, ProjectsAProbeToItsMeanRadiance) {
   const auto file = testing::sharedFile("probes/uffizi_latlong_small.hdr");
   LAMBENT_NEEDS_SHARED(file);
-  const auto environment = Environment::create({spec::ProbeLight{.file = file, .layout = {}}});
+  const auto environment = Environment::create({spec::EnvironmentMapLight{.file = file, .layout = {}}});
   ASSERT_TRUE(environment) << environment.error().line();
-  // Band 0 is the mean times sqrt(4 pi); the mean luminance of this probe is 0.882, or 0.885
+  // Band 0 is the mean times sqrt(4 pi); the mean luminance of this environment map is 0.882, or 0.885
   // for readers that take RGBE mantissas at the middle of their steps.
   const glm::vec3 mean = environment->light().c[0] / 3.5449077f;
   EXPECT_NEAR(glm::dot(mean, glm::vec3(0.2126f, 0.7152f, 0.0722f)), 0.885f, 0.004f);
 }
 
 // A picture of one radiance.
-void writeProbe(const std::filesystem::path& file, float radiance) {
+void writeEnvironmentMap(const std::filesystem::path& file, float radiance) {
   const spec::RgbaImage image{
       .width = 8, .height = 4, .texels = std::vector<glm::vec4>(32, glm::vec4(radiance))};
   ASSERT_TRUE(spec::writeExr(file, image));
@@ -146,11 +146,11 @@ void writeProbe(const std::filesystem::path& file, float radiance) {
 
 TEST(Environment, ReadsAProbeAgainOnlyWhenItsFileChanged) {
   const auto file = std::filesystem::path(::testing::TempDir()) / "lambent-environment-again.exr";
-  writeProbe(file, 1.0f);
+  writeEnvironmentMap(file, 1.0f);
   const auto written = std::filesystem::last_write_time(file);
   const auto withSun = [&](float azimuth) {
     return std::vector<spec::Light>{
-        spec::ProbeLight{.file = file, .layout = {}},
+        spec::EnvironmentMapLight{.file = file, .layout = {}},
         spec::SunLight{.azimuth_deg = azimuth, .elevation_deg = 25, .angle_deg = 5}};
   };
   auto environment = Environment::create(withSun(20), withSun(-20));
@@ -168,7 +168,7 @@ TEST(Environment, ReadsAProbeAgainOnlyWhenItsFileChanged) {
   EXPECT_EQ(environment->turnDegrees(), 30.0f);
 
   // The same light as of one that was made of these.
-  writeProbe(file, 1.0f);
+  writeEnvironmentMap(file, 1.0f);
   auto made = Environment::create(withSun(21), withSun(-21));
   ASSERT_TRUE(made);
   EXPECT_EQ(environment->lightsVersion(), made->lightsVersion());
@@ -178,7 +178,7 @@ TEST(Environment, ReadsAProbeAgainOnlyWhenItsFileChanged) {
   for (std::size_t i = 0; i < 64; ++i) EXPECT_EQ(environment->light().c[i], made->light().c[i]);
 
   // Another picture under its name is read; what cannot be read changes nothing.
-  writeProbe(file, 2.0f);
+  writeEnvironmentMap(file, 2.0f);
   std::filesystem::last_write_time(file, written + std::chrono::seconds(5));
   ASSERT_TRUE(environment->setLights(withSun(21), withSun(-21)));
   EXPECT_NE(environment->lightsVersion(), made->lightsVersion());
@@ -190,7 +190,8 @@ TEST(Environment, ReadsAProbeAgainOnlyWhenItsFileChanged) {
 }
 
 TEST(Environment, NamesAProbeThatIsNotThere) {
-  const auto environment = Environment::create({spec::ProbeLight{.file = "nowhere.hdr", .layout = {}}});
+  const auto environment =
+      Environment::create({spec::EnvironmentMapLight{.file = "nowhere.hdr", .layout = {}}});
   ASSERT_FALSE(environment);
   EXPECT_EQ(environment.error().subject, "nowhere.hdr");
 }

@@ -45,7 +45,7 @@ TEST_F(GroupLightsTest, GiveEachGroupTheLightInItsOwnFrame) {
   EXPECT_EQ(lights.coefficients()[2 * kStride + 1], glm::vec4(4, 0, 0, 0));
 }
 
-TEST_F(GroupLightsTest, LightSamplesHaveVersionsOfTheirOwn) {
+TEST_F(GroupLightsTest, LightProbesHaveVersionsOfTheirOwn) {
   GroupLights lights;
   gpu::Counters counters;
   const Environment environment = sunAlong(90);

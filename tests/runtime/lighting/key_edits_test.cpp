@@ -1,4 +1,4 @@
-// Key lights of a probe that are moved, dimmed and coloured: their discs change, and nothing else.
+// Key lights of a environment map that are moved, dimmed and coloured: their discs change, and nothing else.
 #include <cmath>
 #include <filesystem>
 #include <numbers>
@@ -34,7 +34,7 @@ class KeyEdits : public ::testing::Test {
         image.texels.push_back(texel);
       }
     EXPECT_TRUE(spec::writeHdr(file_, image));
-    Result<Environment> made = Environment::create({spec::ProbeLight{file_, std::nullopt}});
+    Result<Environment> made = Environment::create({spec::EnvironmentMapLight{file_, std::nullopt}});
     EXPECT_TRUE(made) << made.error().line();
     if (made) environment_.emplace(std::move(*made));
     environment_->setMostKeys(16);
@@ -45,9 +45,10 @@ class KeyEdits : public ::testing::Test {
   sh::LightVector seen() const {
     const Environment::Shown shown = environment_->shownOf(0);
     sh::LightVector light = sh::constantLight(2, shown.constant);
-    for (const spec::Probe* probe : shown.probes)
-      light += sh::projectImage(2, probe->layout, static_cast<int>(probe->image.width),
-                                static_cast<int>(probe->image.height), probe->image.texels);
+    for (const spec::EnvironmentMap* environment_map : shown.environment_maps)
+      light +=
+          sh::projectImage(2, environment_map->layout, static_cast<int>(environment_map->image.width),
+                           static_cast<int>(environment_map->image.height), environment_map->image.texels);
     for (const Disc& disc : shown.discs)
       light += sh::discLight(2, disc.direction, static_cast<double>(disc.radius_rad), disc.radiance);
     return light;
@@ -75,7 +76,7 @@ TEST_F(KeyEdits, SayWhereEachKeyLightWasFound) {
   EXPECT_LT(glm::distance(keys[0].found.direction, glm::vec3(kHigh)), 0.01f) << "the stronger one is first";
   EXPECT_LT(glm::distance(keys[1].found.direction, glm::vec3(kLow)), 0.01f);
   for (const Environment::FoundKey& key : keys) {
-    EXPECT_TRUE(key.origin.in_probe);
+    EXPECT_TRUE(key.origin.in_map);
     EXPECT_EQ(key.origin.index, 0u);
     EXPECT_FALSE(key.edit);
     EXPECT_EQ(key.found.radiance, key.now.radiance);
@@ -86,19 +87,19 @@ TEST_F(KeyEdits, SunsOfWordsAreToldFromThoseOfPictures) {
   ASSERT_TRUE(environment_->setLights(
       {spec::SunLight{
            .azimuth_deg = 10, .elevation_deg = 40, .angle_deg = 0.5f, .radiance = glm::vec3(20000)},
-       spec::ProbeLight{file_, std::nullopt},
+       spec::EnvironmentMapLight{file_, std::nullopt},
        spec::SunLight{
            .azimuth_deg = 190, .elevation_deg = 40, .angle_deg = 1, .radiance = glm::vec3(9000)}}));
   const auto keys = environment_->foundKeys();
   ASSERT_EQ(keys.size(), 4u);
-  std::size_t of_probe = 0;
+  std::size_t of_map = 0;
   for (const Environment::FoundKey& key : keys) {
-    of_probe += key.origin.in_probe;
-    if (key.origin.in_probe) continue;
+    of_map += key.origin.in_map;
+    if (key.origin.in_map) continue;
     EXPECT_EQ(key.found.direction, environment_->set(0).discs[key.origin.index].direction);
     EXPECT_FALSE(key.origin.piece);
   }
-  EXPECT_EQ(of_probe, 2u);
+  EXPECT_EQ(of_map, 2u);
 }
 
 TEST_F(KeyEdits, AnEditThatChangesNothingKeepsAllOfTheLight) {
@@ -120,10 +121,12 @@ TEST_F(KeyEdits, OnlyTheKeyLightThatIsEditedLeavesThePicture) {
   environment_->setKeyEdits({editOf(1)});
   const Environment::Shown shown = environment_->shownOf(0);
   ASSERT_EQ(shown.discs.size(), 1u);
-  EXPECT_GT(spec::radiance(*shown.probes[0], glm::vec3(kHigh)).r, 2000.0f) << "this one stays as it was";
-  EXPECT_LT(spec::radiance(*shown.probes[0], glm::vec3(kLow)).r, 400.0f) << "what the rest keeps";
+  EXPECT_GT(spec::radiance(*shown.environment_maps[0], glm::vec3(kHigh)).r, 2000.0f)
+      << "this one stays as it was";
+  EXPECT_LT(spec::radiance(*shown.environment_maps[0], glm::vec3(kLow)).r, 400.0f) << "what the rest keeps";
   environment_->setKeyEdits({});
-  EXPECT_EQ(environment_->shownOf(0).probes[0], &environment_->set(0).probes[0]) << "the picture as loaded";
+  EXPECT_EQ(environment_->shownOf(0).environment_maps[0], &environment_->set(0).environment_maps[0])
+      << "the picture as loaded";
   EXPECT_EQ(environment_->lightsVersion(), environment_->restVersion());
 }
 
@@ -172,7 +175,7 @@ TEST_F(KeyEdits, AnEditWaitsWhereItsKeyLightIsNotFound) {
   const sh::LightVector edited = environment_->light();
   environment_->setMostKeys(0);
   EXPECT_TRUE(environment_->foundKeys().empty());
-  EXPECT_EQ(environment_->shownOf(0).probes[0], &environment_->set(0).probes[0]);
+  EXPECT_EQ(environment_->shownOf(0).environment_maps[0], &environment_->set(0).environment_maps[0]);
   environment_->setMostKeys(16);
   for (std::size_t i = 0; i < 64; ++i) EXPECT_EQ(environment_->light().c[i], edited.c[i]) << i;
   // One that means no key light at all, one of the other set.

@@ -30,15 +30,15 @@ double solidAngle(const spec::Disc& disc) {
 
 // A picture of radianceAt(direction); black where the layout shows nothing.
 template <typename RadianceAt>
-spec::Probe painted(sh::ImageLayout layout, int width, int height, RadianceAt&& radianceAt) {
-  spec::Probe probe{.image = {static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height), {}},
-                    .layout = layout};
+spec::EnvironmentMap painted(sh::ImageLayout layout, int width, int height, RadianceAt&& radianceAt) {
+  spec::EnvironmentMap environment_map{
+      .image = {static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height), {}}, .layout = layout};
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x) {
       const glm::dvec3 dir = sh::texelDirection(layout, width, height, x, y);
-      probe.image.texels.push_back(dir == glm::dvec3(0.0) ? glm::vec3(0.0f) : radianceAt(dir));
+      environment_map.image.texels.push_back(dir == glm::dvec3(0.0) ? glm::vec3(0.0f) : radianceAt(dir));
     }
-  return probe;
+  return environment_map;
 }
 
 // Bluer above, without anything in bands 2 and up.
@@ -54,9 +54,9 @@ glm::vec3 skyWithSun(const glm::dvec3& dir) {
   return smoothSky(dir) + (in_sun ? glm::vec3(9000.0f, 8000.0f, 6000.0f) : glm::vec3(0.0f));
 }
 
-spec::DistantLights oneProbe(spec::Probe probe) {
+spec::DistantLights oneMap(spec::EnvironmentMap environment_map) {
   spec::DistantLights lights;
-  lights.probes.push_back(std::move(probe));
+  lights.environment_maps.push_back(std::move(environment_map));
   return lights;
 }
 
@@ -74,10 +74,11 @@ sh::LightVector total(const spec::DistantLights& lights, const PartedLights& par
   for (const auto* discs : {&parted.keys, &parted.discs})
     for (const spec::Disc& disc : *discs)
       light += sh::discLight(2, disc.direction, static_cast<double>(disc.radius_rad), disc.radiance);
-  for (std::size_t k = 0; k < lights.probes.size(); ++k) {
-    const spec::Probe& probe = parted.probes[k] ? *parted.probes[k] : lights.probes[k];
-    light += sh::projectImage(2, probe.layout, static_cast<int>(probe.image.width),
-                              static_cast<int>(probe.image.height), probe.image.texels);
+  for (std::size_t k = 0; k < lights.environment_maps.size(); ++k) {
+    const spec::EnvironmentMap& environment_map =
+        parted.environment_maps[k] ? *parted.environment_maps[k] : lights.environment_maps[k];
+    light += sh::projectImage(2, environment_map.layout, static_cast<int>(environment_map.image.width),
+                              static_cast<int>(environment_map.image.height), environment_map.image.texels);
   }
   return light;
 }
@@ -102,9 +103,9 @@ void expectSane(const PartedLights& parted) {
     EXPECT_LT(key.radius_rad, 4.0f);
     for (int channel = 0; channel < 3; ++channel) EXPECT_TRUE(std::isfinite(key.radiance[channel]));
   }
-  for (const auto& probe : parted.probes) {
-    if (!probe) continue;
-    for (const glm::vec3& texel : probe->image.texels) {
+  for (const auto& environment_map : parted.environment_maps) {
+    if (!environment_map) continue;
+    for (const glm::vec3& texel : environment_map->image.texels) {
       const bool finite = std::isfinite(texel.r) && std::isfinite(texel.g) && std::isfinite(texel.b);
       ASSERT_TRUE(finite);
     }
@@ -114,15 +115,15 @@ void expectSane(const PartedLights& parted) {
 }  // namespace
 
 TEST(KeyLights, SmoothLightHasNoneAndNothingIsCopied) {
-  for (const spec::Probe& probe :
+  for (const spec::EnvironmentMap& environment_map :
        {painted(sh::ImageLayout::LatLong, 256, 128, smoothSky),
         painted(sh::ImageLayout::LatLong, 16, 8, [](const glm::dvec3&) { return glm::vec3(2.0f); }),
         painted(sh::ImageLayout::AngularMap, 128, 128, smoothSky),
         painted(sh::ImageLayout::VerticalCross, 96, 128, smoothSky)}) {
-    const PartedLights parted = partLights(oneProbe(probe));
+    const PartedLights parted = partLights(oneMap(environment_map));
     EXPECT_TRUE(parted.keys.empty());
-    ASSERT_EQ(parted.probes.size(), 1u);
-    EXPECT_FALSE(parted.probes[0].has_value());
+    ASSERT_EQ(parted.environment_maps.size(), 1u);
+    EXPECT_FALSE(parted.environment_maps[0].has_value());
     EXPECT_LT(parted.loss_before, 0.01);
     EXPECT_EQ(parted.loss_after, parted.loss_before);
   }
@@ -139,7 +140,7 @@ TEST(KeyLights, FindsTheSunOfAPictureInEveryLayout) {
         Picture{sh::ImageLayout::AngularMap, 512, 512, 2 * kPi / 512},
         Picture{sh::ImageLayout::VerticalCross, 768, 1024, kPi / 2 / 256}}) {
     SCOPED_TRACE(sh::name(layout));
-    const spec::DistantLights lights = oneProbe(painted(layout, width, height, skyWithSun));
+    const spec::DistantLights lights = oneMap(painted(layout, width, height, skyWithSun));
     const PartedLights parted = partLights(lights);
     ASSERT_EQ(parted.keys.size(), 1u);
     const spec::Disc& key = parted.keys[0];
@@ -147,7 +148,7 @@ TEST(KeyLights, FindsTheSunOfAPictureInEveryLayout) {
     EXPECT_NEAR(static_cast<double>(key.radius_rad), kSunRadius, texel_rad);
     // What was painted, without the rim of the last texels: the sun is about 7 across.
     double painted_flux = 0.0;
-    ASSERT_TRUE(parted.probes[0]);
+    ASSERT_TRUE(parted.environment_maps[0]);
     for (int y = 0; y < height; ++y)
       for (int x = 0; x < width; ++x) {
         const auto i = static_cast<std::size_t>(y * width + x);
@@ -157,10 +158,10 @@ TEST(KeyLights, FindsTheSunOfAPictureInEveryLayout) {
             sh::texelSolidAngle(layout, width, height, x, y) * luminance(skyWithSun(dir) - smoothSky(dir));
         // The rest is the sky, with a dim patch at most where the sun was.
         if (glm::distance(dir, kSun) >= kSunRadius) {
-          ASSERT_EQ(parted.probes[0]->image.texels[i], lights.probes[0].image.texels[i]);
+          ASSERT_EQ(parted.environment_maps[0]->image.texels[i], lights.environment_maps[0].image.texels[i]);
         } else {
-          ASSERT_NEAR(luminance(parted.probes[0]->image.texels[i]), static_cast<double>(parted.threshold),
-                      1e-3 * static_cast<double>(parted.threshold));
+          ASSERT_NEAR(luminance(parted.environment_maps[0]->image.texels[i]),
+                      static_cast<double>(parted.threshold), 1e-3 * static_cast<double>(parted.threshold));
         }
       }
     const double found = luminance(key.radiance) * solidAngle(key);
@@ -173,7 +174,7 @@ TEST(KeyLights, FindsTheSunOfAPictureInEveryLayout) {
 }
 
 TEST(KeyLights, FinerGoalsLeaveLessOfTheSunInTheRest) {
-  const spec::DistantLights lights = oneProbe(painted(sh::ImageLayout::LatLong, 512, 256, skyWithSun));
+  const spec::DistantLights lights = oneMap(painted(sh::ImageLayout::LatLong, 512, 256, skyWithSun));
   float before = 1e9f;
   for (const double goal : {0.05, 0.02, 0.005, 0.002}) {
     const PartedLights parted = partLights(lights, {.least_loss = goal});
@@ -192,14 +193,14 @@ TEST(KeyLights, ATurnedPictureHasTheSameKeysTurned) {
     return light;
   };
   const int width = 512, columns = 100;
-  spec::Probe probe = painted(sh::ImageLayout::LatLong, width, width / 2, lamps);
-  const PartedLights straight = partLights(oneProbe(probe));
-  spec::Probe moved = probe;
+  spec::EnvironmentMap environment_map = painted(sh::ImageLayout::LatLong, width, width / 2, lamps);
+  const PartedLights straight = partLights(oneMap(environment_map));
+  spec::EnvironmentMap moved = environment_map;
   for (int y = 0; y < width / 2; ++y)
     for (int x = 0; x < width; ++x)
       moved.image.texels[static_cast<std::size_t>(y * width + (x + columns) % width)] =
-          probe.image.texels[static_cast<std::size_t>(y * width + x)];
-  const PartedLights turned = partLights(oneProbe(moved));
+          environment_map.image.texels[static_cast<std::size_t>(y * width + x)];
+  const PartedLights turned = partLights(oneMap(moved));
   ASSERT_EQ(straight.keys.size(), 2u);
   ASSERT_EQ(turned.keys.size(), 2u);
   const double angle = 2 * kPi * columns / width, c = std::cos(angle), s = std::sin(angle);
@@ -214,7 +215,7 @@ TEST(KeyLights, ATurnedPictureHasTheSameKeysTurned) {
 }
 
 TEST(KeyLights, TheSameLightGivesTheSameBits) {
-  const spec::DistantLights lights = oneProbe(painted(sh::ImageLayout::AngularMap, 256, 256, skyWithSun));
+  const spec::DistantLights lights = oneMap(painted(sh::ImageLayout::AngularMap, 256, 256, skyWithSun));
   const PartedLights a = partLights(lights), b = partLights(lights);
   ASSERT_EQ(a.keys.size(), b.keys.size());
   for (std::size_t i = 0; i < a.keys.size(); ++i) {
@@ -222,8 +223,8 @@ TEST(KeyLights, TheSameLightGivesTheSameBits) {
     EXPECT_EQ(a.keys[i].radius_rad, b.keys[i].radius_rad);
     EXPECT_EQ(a.keys[i].radiance, b.keys[i].radiance);
   }
-  ASSERT_TRUE(a.probes[0] && b.probes[0]);
-  EXPECT_EQ(a.probes[0]->image.texels, b.probes[0]->image.texels);
+  ASSERT_TRUE(a.environment_maps[0] && b.environment_maps[0]);
+  EXPECT_EQ(a.environment_maps[0]->image.texels, b.environment_maps[0]->image.texels);
 }
 
 // Forty lamps of about the same flux.
@@ -237,7 +238,7 @@ TEST(KeyLights, ThereAreNeverMoreThanAskedFor) {
     }
     return light;
   };
-  const spec::DistantLights lights = oneProbe(painted(sh::ImageLayout::LatLong, 512, 256, lamps));
+  const spec::DistantLights lights = oneMap(painted(sh::ImageLayout::LatLong, 512, 256, lamps));
   for (const std::uint32_t most : {0u, 1u, 4u, 16u, 64u}) {
     const PartedLights parted = partLights(lights, {.most = most, .least_loss = 0.001});
     EXPECT_LE(parted.keys.size(), most);
@@ -281,7 +282,7 @@ TEST(KeyLights, FaintDiscsStayInTheRest) {
 // Its edge is all that is lost, and discs would not make it better.
 TEST(KeyLights, AUniformHalfOfTheSkyHasNone) {
   const auto dome = [](const glm::dvec3& dir) { return glm::vec3(dir.y > 0.0 ? 1.0f : 0.0f); };
-  const PartedLights parted = partLights(oneProbe(painted(sh::ImageLayout::LatLong, 256, 128, dome)));
+  const PartedLights parted = partLights(oneMap(painted(sh::ImageLayout::LatLong, 256, 128, dome)));
   EXPECT_LT(parted.loss_before, 0.025);
   EXPECT_TRUE(parted.keys.empty());
   EXPECT_TRUE(partLights(skyAndDisc(90.0, 9.0f)).keys.empty());
@@ -290,18 +291,18 @@ TEST(KeyLights, AUniformHalfOfTheSkyHasNone) {
 TEST(KeyLights, SurvivesBlackNegativeAndEmptyLight) {
   EXPECT_TRUE(partLights({}).keys.empty());
   const auto all = [](float value) {
-    return oneProbe(
+    return oneMap(
         painted(sh::ImageLayout::LatLong, 64, 32, [=](const glm::dvec3&) { return glm::vec3(value); }));
   };
   for (const float value : {0.0f, -1.0f}) EXPECT_TRUE(partLights(all(value)).keys.empty());
-  spec::DistantLights odd = oneProbe(painted(sh::ImageLayout::LatLong, 128, 64, skyWithSun));
-  for (std::size_t i = 0; i < odd.probes[0].image.texels.size(); i += 7)
-    odd.probes[0].image.texels[i] = glm::vec3(-0.1f);
-  odd.probes[0].image.texels[1000] = glm::vec3(-20.0f, 40000.0f, -1.0f);
-  odd.probes[0].image.texels[5000] = glm::vec3(1e30f);
+  spec::DistantLights odd = oneMap(painted(sh::ImageLayout::LatLong, 128, 64, skyWithSun));
+  for (std::size_t i = 0; i < odd.environment_maps[0].image.texels.size(); i += 7)
+    odd.environment_maps[0].image.texels[i] = glm::vec3(-0.1f);
+  odd.environment_maps[0].image.texels[1000] = glm::vec3(-20.0f, 40000.0f, -1.0f);
+  odd.environment_maps[0].image.texels[5000] = glm::vec3(1e30f);
   odd.discs.push_back({.direction = {0.0f, 1.0f, 0.0f}, .radius_rad = 0.0f, .radiance = glm::vec3(1.0f)});
   expectSane(partLights(odd));
-  odd.probes[0].image.texels[5000] = glm::vec3(1.0f);
+  odd.environment_maps[0].image.texels[5000] = glm::vec3(1.0f);
   const PartedLights parted = partLights(odd);
   expectSane(parted);
   expectEnergyConserved(odd, parted, 1e-3f);
@@ -312,9 +313,9 @@ TEST(KeyLights, SurvivesBlackNegativeAndEmptyLight) {
 // Pictures as small as one texel are light too.
 TEST(KeyLights, TinyPicturesAreSearchedAsWell) {
   for (const int height : {1, 2, 5, 12}) {
-    spec::Probe probe = painted(sh::ImageLayout::LatLong, 2 * height, height, smoothSky);
-    probe.image.texels[0] = glm::vec3(500.0f);
-    const spec::DistantLights lights = oneProbe(probe);
+    spec::EnvironmentMap environment_map = painted(sh::ImageLayout::LatLong, 2 * height, height, smoothSky);
+    environment_map.image.texels[0] = glm::vec3(500.0f);
+    const spec::DistantLights lights = oneMap(environment_map);
     const PartedLights parted = partLights(lights);
     expectSane(parted);
     for (const spec::Disc& key : parted.keys) EXPECT_LT(key.radius_rad, 3.2f);
@@ -324,9 +325,9 @@ TEST(KeyLights, TinyPicturesAreSearchedAsWell) {
 TEST(KeyLights, FindsTheNoonSunOfAPhotograph) {
   const std::filesystem::path file = testing::sharedFile("probes/noon_grass_1k.hdr");
   LAMBENT_NEEDS_SHARED(file);
-  const auto probe = spec::loadProbe({file, std::nullopt});
-  ASSERT_TRUE(probe);
-  const spec::DistantLights lights = oneProbe(*probe);
+  const auto environment_map = spec::loadEnvironmentMap({file, std::nullopt});
+  ASSERT_TRUE(environment_map);
+  const spec::DistantLights lights = oneMap(*environment_map);
   const PartedLights parted = partLights(lights);
   ASSERT_EQ(parted.keys.size(), 1u);
   EXPECT_GT(parted.keys[0].direction.y, 0.99f);
@@ -342,9 +343,9 @@ TEST(KeyLights, SixteenDiscsDoMostForAChurchAndForAStreet) {
     SCOPED_TRACE(name);
     const std::filesystem::path file = testing::sharedFile(name);
     LAMBENT_NEEDS_SHARED(file);
-    const auto probe = spec::loadProbe({file, std::nullopt});
-    ASSERT_TRUE(probe);
-    const spec::DistantLights lights = oneProbe(*probe);
+    const auto environment_map = spec::loadEnvironmentMap({file, std::nullopt});
+    ASSERT_TRUE(environment_map);
+    const spec::DistantLights lights = oneMap(*environment_map);
     const PartedLights parted = partLights(lights);
     EXPECT_LE(parted.keys.size(), 16u);
     EXPECT_LT(parted.loss_after, 0.25 * parted.loss_before);

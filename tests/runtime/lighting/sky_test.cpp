@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include "runtime/lighting/reflected_sky.hpp"
+#include "runtime/lighting/prefiltered_environment.hpp"
 #include "runtime/sh/image_layout.hpp"
 #include "runtime/spec/image.hpp"
 #include "tests/support/gpu_context.hpp"
@@ -73,7 +73,7 @@ TEST_F(SkyTest, ShowsAMovedKeyLightAsADiscInPlaceOfItsTexels) {
     }
   const auto file = std::filesystem::path(::testing::TempDir()) / (std::to_string(getpid()) + "-sky.hdr");
   ASSERT_TRUE(spec::writeHdr(file, image));
-  auto environment = Environment::create({spec::ProbeLight{file, std::nullopt}});
+  auto environment = Environment::create({spec::EnvironmentMapLight{file, std::nullopt}});
   std::filesystem::remove(file);
   ASSERT_TRUE(environment);
   environment->setMostKeys(16);
@@ -83,7 +83,7 @@ TEST_F(SkyTest, ShowsAMovedKeyLightAsADiscInPlaceOfItsTexels) {
   const glm::vec3 to = spec::directionFromAzimuthElevation(-60, 10);
   EXPECT_NEAR(seen(*sky, *environment, sun).r, 1000.0f, 20.0f);
   EXPECT_NEAR(seen(*sky, *environment, to).r, 1.0f, 0.02f);
-  const std::uint64_t version = ReflectedSky::sourceVersion(*environment);
+  const std::uint64_t version = PrefilteredEnvironment::sourceVersion(*environment);
   environment->setKeyEdits({{.found = sun, .towards = to, .factor = {0.5f, 0.25f, 0.0f}}});
   const Environment::FoundKey key = environment->foundKeys()[0];
   ASSERT_TRUE(key.edit);
@@ -94,7 +94,7 @@ TEST_F(SkyTest, ShowsAMovedKeyLightAsADiscInPlaceOfItsTexels) {
   EXPECT_NEAR(moved.g, key.now.radiance.g + 1.0f, 0.02f * key.now.radiance.g);
   EXPECT_NEAR(moved.b, 1.0f, 0.02f) << "none of this channel is left";
   EXPECT_LT(seen(*sky, *environment, sun).r, 300.0f) << "what the rest keeps";
-  EXPECT_EQ(ReflectedSky::sourceVersion(*environment), version) << "mirrors show the disc apart";
+  EXPECT_EQ(PrefilteredEnvironment::sourceVersion(*environment), version) << "mirrors show the disc apart";
   environment->setKeyEdits({});
   EXPECT_TRUE(sky->update(*environment));
   EXPECT_NEAR(seen(*sky, *environment, sun).r, 1000.0f, 20.0f);

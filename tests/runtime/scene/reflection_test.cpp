@@ -57,7 +57,7 @@ TEST(Reflection, RefusesWhatDoesNotFitAndSaysWhy) {
   EXPECT_EQ(error("Transform", "rotation", glm::quat(0.0f, 0.0f, 0.0f, 0.0f)),
             "Transform.rotation: is no rotation: its length is 0; give a unit quaternion");
   EXPECT_EQ(registry.version<LocalLightComponent>(), version) << "what is refused changes nothing";
-  EXPECT_EQ(findField("Light", "power").error().mend,
+  EXPECT_EQ(findField("Light", "power").error().hint,
             "use kind, color, strength, radius, range, inner_cone, outer_cone, enabled");
 }
 

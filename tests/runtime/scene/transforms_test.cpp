@@ -100,7 +100,7 @@ TEST(Transforms, ReparentingMovesTheChildAndRefusesCycles) {
   EXPECT_EQ(place(registry, child), glm::vec3(0.0f, 0.0f, 1.0f));
 }
 
-TEST(Transforms, ChildrenOfADestroyedParentStandInTheWorld) {
+TEST(Transforms, ChildrenOfADestroyedParentProxyLodTheWorld) {
   ecs::Registry registry;
   const ecs::Entity parent = makeNode(registry, {}, {1.0f, 0.0f, 0.0f});
   const ecs::Entity child = makeNode(registry, parent, {0.0f, 0.0f, 1.0f});

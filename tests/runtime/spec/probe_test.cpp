@@ -1,6 +1,4 @@
 // Looking a direction up gives the same environment whatever the picture's layout, without seams.
-#include "runtime/spec/probe.hpp"
-
 #include <filesystem>
 #include <limits>
 #include <random>
@@ -8,6 +6,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
+#include "runtime/spec/environment_map.hpp"
 #include "tests/support/shared_data.hpp"
 
 namespace lambent::spec {
@@ -25,16 +24,16 @@ constexpr Shape kShapes[] = {{ImageLayout::LatLong, 128, 64},
 
 // A picture of f; texels that show no direction hold a value that no look-up may return.
 template <typename Function>
-Probe picture(const Shape& shape, const Function& f) {
+EnvironmentMap picture(const Shape& shape, const Function& f) {
   constexpr float kPoison = 1e6f;
-  Probe probe{{shape.width, shape.height, {}}, shape.layout, 0};
+  EnvironmentMap environment_map{{shape.width, shape.height, {}}, shape.layout, 0};
   for (int y = 0; y < static_cast<int>(shape.height); ++y)
     for (int x = 0; x < static_cast<int>(shape.width); ++x) {
       const glm::dvec3 dir = sh::texelDirection(shape.layout, static_cast<int>(shape.width),
                                                 static_cast<int>(shape.height), x, y);
-      probe.image.texels.push_back(dir == glm::dvec3(0.0) ? glm::vec3(kPoison) : f(glm::vec3(dir)));
+      environment_map.image.texels.push_back(dir == glm::dvec3(0.0) ? glm::vec3(kPoison) : f(glm::vec3(dir)));
     }
-  return probe;
+  return environment_map;
 }
 
 std::vector<glm::vec3> directions(int count) {
@@ -51,24 +50,24 @@ std::vector<glm::vec3> directions(int count) {
   return dirs;
 }
 
-TEST(SpecProbe, ASmoothEnvironmentComesBackFromEveryLayout) {
+TEST(SpecEnvironmentMap, ASmoothEnvironmentComesBackFromEveryLayout) {
   const auto f = [](glm::vec3 d) { return glm::vec3(2.0f + d.x, 2.0f + d.y * d.z, 2.0f + d.z); };
   for (const Shape& shape : kShapes) {
-    const Probe probe = picture(shape, f);
+    const EnvironmentMap environment_map = picture(shape, f);
     for (const glm::vec3 dir : directions(4000)) {
       // Texels are about 2.8 degrees wide; at the back of the angular map they are pulled by up to one more.
       const float tolerance = shape.layout == ImageLayout::AngularMap && dir.z > 0.99f ? 0.06f : 0.008f;
-      EXPECT_LT(glm::length(radiance(probe, dir) - f(dir)), tolerance)
+      EXPECT_LT(glm::length(radiance(environment_map, dir) - f(dir)), tolerance)
           << sh::name(shape.layout) << " " << dir.x << " " << dir.y << " " << dir.z;
     }
   }
 }
 
-TEST(SpecProbe, HasNoSeams) {
+TEST(SpecEnvironmentMap, HasNoSeams) {
   // Grey noise: an error in choosing a neighbour is as large as the noise itself.
   for (const Shape& shape : kShapes) {
     std::mt19937 random(2);
-    const Probe probe =
+    const EnvironmentMap environment_map =
         picture(shape, [&](glm::vec3) { return glm::vec3(static_cast<float>(random() % 1000) / 1000.0f); });
     for (const glm::vec3 dir : directions(2000)) {
       if (shape.layout == ImageLayout::AngularMap && dir.z > 0.99f) continue;  // its rim is one direction
@@ -79,71 +78,75 @@ TEST(SpecProbe, HasNoSeams) {
       const glm::vec3 size = glm::abs(dir);
       const bool corner =
           shape.layout == ImageLayout::VerticalCross && std::min({size.x, size.y, size.z}) > 0.55f;
-      EXPECT_LT(std::abs(radiance(probe, dir).x - radiance(probe, beside).x), corner ? 0.3f : 2e-3f)
+      EXPECT_LT(std::abs(radiance(environment_map, dir).x - radiance(environment_map, beside).x),
+                corner ? 0.3f : 2e-3f)
           << sh::name(shape.layout) << " " << dir.x << " " << dir.y << " " << dir.z;
     }
   }
 }
 
-TEST(SpecProbe, TexelCentresGiveTheTexelItself) {
+TEST(SpecEnvironmentMap, TexelCentresGiveTheTexelItself) {
   for (const Shape& shape : kShapes) {
     float next = 0.0f;
-    const Probe probe = picture(shape, [&](glm::vec3) { return glm::vec3(next += 1.0f); });
+    const EnvironmentMap environment_map = picture(shape, [&](glm::vec3) { return glm::vec3(next += 1.0f); });
     for (int y = 0; y < static_cast<int>(shape.height); y += 3)
       for (int x = 0; x < static_cast<int>(shape.width); ++x) {
         const glm::dvec3 dir = sh::texelDirection(shape.layout, static_cast<int>(shape.width),
                                                   static_cast<int>(shape.height), x, y);
         if (dir == glm::dvec3(0.0)) continue;
         const float texel =
-            probe.image.texels[static_cast<std::size_t>(y) * shape.width + static_cast<std::size_t>(x)].x;
+            environment_map.image
+                .texels[static_cast<std::size_t>(y) * shape.width + static_cast<std::size_t>(x)]
+                .x;
         // A float direction lies up to 1e-6 rad off; texels differ by up to a row (128) or more over a seam.
-        EXPECT_NEAR(radiance(probe, glm::vec3(dir)).x, texel, 0.5f)
+        EXPECT_NEAR(radiance(environment_map, glm::vec3(dir)).x, texel, 0.5f)
             << sh::name(shape.layout) << " " << x << " " << y;
       }
   }
 }
 
-TEST(SpecProbe, TinyPicturesAreLookedUpToo) {
+TEST(SpecEnvironmentMap, TinyPicturesAreLookedUpToo) {
   for (const Shape& shape : {Shape{ImageLayout::LatLong, 2, 1}, Shape{ImageLayout::AngularMap, 1, 1},
                              Shape{ImageLayout::VerticalCross, 3, 4}}) {
-    const Probe probe = picture(shape, [](glm::vec3) { return glm::vec3(1.0f); });
+    const EnvironmentMap environment_map = picture(shape, [](glm::vec3) { return glm::vec3(1.0f); });
     for (const glm::vec3 dir : directions(200))
-      EXPECT_NEAR(radiance(probe, dir).x, 1.0f, 1e-6f) << sh::name(shape.layout);
+      EXPECT_NEAR(radiance(environment_map, dir).x, 1.0f, 1e-6f) << sh::name(shape.layout);
   }
 }
 
-TEST(SpecProbe, TexelsThatAreNotFiniteAreBlackAndCounted) {
+TEST(SpecEnvironmentMap, TexelsThatAreNotFiniteAreBlackAndCounted) {
   const auto path = std::filesystem::path(::testing::TempDir()) / "lambent_spec_not_finite.exr";
   RgbaImage image{4, 2, std::vector<glm::vec4>(8, glm::vec4(1.0f))};
   image.texels[1].x = std::numeric_limits<float>::quiet_NaN();
   image.texels[6].z = -std::numeric_limits<float>::infinity();
   ASSERT_TRUE(writeExr(path, image));
-  const Result<Probe> probe = loadProbe({path, {}});
-  ASSERT_TRUE(probe) << probe.error().line();
-  EXPECT_EQ(probe->texels_not_finite, 2u);
-  EXPECT_EQ(probe->image.texels[1], glm::vec3(0.0f));
-  EXPECT_EQ(probe->image.texels[2], glm::vec3(1.0f));
+  const Result<EnvironmentMap> environment_map = loadEnvironmentMap({path, {}});
+  ASSERT_TRUE(environment_map) << environment_map.error().line();
+  EXPECT_EQ(environment_map->texels_not_finite, 2u);
+  EXPECT_EQ(environment_map->image.texels[1], glm::vec3(0.0f));
+  EXPECT_EQ(environment_map->image.texels[2], glm::vec3(1.0f));
   std::filesystem::remove(path);
 }
 
-TEST(SpecProbe, ShapesChooseTheLayoutAndWrongOnesAreExplained) {
+TEST(SpecEnvironmentMap, ShapesChooseTheLayoutAndWrongOnesAreExplained) {
   const auto path = std::filesystem::path(::testing::TempDir()) / "lambent_spec_shape.exr";
   ASSERT_TRUE(writeExr(path, {5, 3, std::vector<glm::vec4>(15, glm::vec4(1.0f))}));
-  const Result<Probe> unknown = loadProbe({path, {}});
+  const Result<EnvironmentMap> unknown = loadEnvironmentMap({path, {}});
   ASSERT_FALSE(unknown);
   EXPECT_NE(unknown.error().line().find("--light-layout"), std::string::npos) << unknown.error().line();
-  EXPECT_EQ(loadProbe({path, ImageLayout::LatLong}).value().layout, ImageLayout::LatLong);
-  EXPECT_FALSE(loadProbe({path, ImageLayout::VerticalCross}));
-  EXPECT_FALSE(loadProbe({path, ImageLayout::AngularMap}));
+  EXPECT_EQ(loadEnvironmentMap({path, ImageLayout::LatLong}).value().layout, ImageLayout::LatLong);
+  EXPECT_FALSE(loadEnvironmentMap({path, ImageLayout::VerticalCross}));
+  EXPECT_FALSE(loadEnvironmentMap({path, ImageLayout::AngularMap}));
   std::filesystem::remove(path);
 }
 
-TEST(SpecProbe, EucalyptusGroveIsTheSameAsAngularMapAndAsCross) {
+TEST(SpecEnvironmentMap, EucalyptusGroveIsTheSameAsAngularMapAndAsCross) {
   const auto angular_file = testing::sharedFile("probes/rnl_probe.hdr");
   const auto cross_file = testing::sharedFile("probes/rnl_cross.hdr");
   LAMBENT_NEEDS_SHARED(angular_file);
   LAMBENT_NEEDS_SHARED(cross_file);
-  const Result<Probe> angular = loadProbe({angular_file, {}}), cross = loadProbe({cross_file, {}});
+  const Result<EnvironmentMap> angular = loadEnvironmentMap({angular_file, {}}),
+                               cross = loadEnvironmentMap({cross_file, {}});
   ASSERT_TRUE(angular && cross);
   EXPECT_EQ(angular->layout, ImageLayout::AngularMap);
   EXPECT_EQ(cross->layout, ImageLayout::VerticalCross);

@@ -41,10 +41,10 @@ TEST(SpecLight, ParsesConstantSunAndProbe) {
   ASSERT_TRUE(grey) << grey.error().line();
   EXPECT_EQ(std::get<SunLight>(*grey).radiance, glm::vec3(3.0f));
 
-  const Result<Light> probe = parseLight("some folder/Grace.HDR");
-  ASSERT_TRUE(probe) << probe.error().line();
-  EXPECT_EQ(std::get<ProbeLight>(*probe).file, "some folder/Grace.HDR");
-  EXPECT_FALSE(std::get<ProbeLight>(*probe).layout);
+  const Result<Light> environment_map = parseLight("some folder/Grace.HDR");
+  ASSERT_TRUE(environment_map) << environment_map.error().line();
+  EXPECT_EQ(std::get<EnvironmentMapLight>(*environment_map).file, "some folder/Grace.HDR");
+  EXPECT_FALSE(std::get<EnvironmentMapLight>(*environment_map).layout);
 }
 
 TEST(SpecLight, RefusesEverythingElseAndShowsTheForm) {
@@ -65,7 +65,7 @@ TEST(SpecLight, RefusesEverythingElseAndShowsTheForm) {
   for (const char* wrong : {"", "sunn:1,2,3,4", "Sun:1,2,3,4", "probe.png", "hdr", "constant"}) {
     const Result<Light> light = parseLight(wrong);
     ASSERT_FALSE(light) << wrong;
-    EXPECT_NE(light.error().line().find("probe file (.hdr or .exr)"), std::string::npos)
+    EXPECT_NE(light.error().line().find("environment map file (.hdr or .exr)"), std::string::npos)
         << light.error().line();
   }
 }
@@ -95,7 +95,7 @@ TEST(SpecLight, ParsesLightsThatStandInTheScene) {
   EXPECT_TRUE(std::holds_alternative<DiscLight>(local[1]));
   const Result<DistantLights> distant = loadDistantLights(lights);
   ASSERT_TRUE(distant);
-  EXPECT_TRUE(distant->discs.empty() && distant->probes.empty()) << "they do not stand at infinity";
+  EXPECT_TRUE(distant->discs.empty() && distant->environment_maps.empty()) << "they do not stand at infinity";
   EXPECT_EQ(distant->constant, glm::vec3(1.0f));
 }
 

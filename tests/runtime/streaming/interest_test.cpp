@@ -67,7 +67,7 @@ TEST(Interest, LargerInSightComesFirstAndSurfacesBeforeShadowsBeforeDetail) {
   EXPECT_EQ(far.targets(), (Targets{{1, 11}, {0, 0}})) << "planes of what is near before what is a dot";
 }
 
-TEST(Interest, StandInsComeBeforeAnythingButTheLargestUpToAQuarterOfTheMemory) {
+TEST(Interest, ProxyLodsComeBeforeAnythingButTheLargestUpToAQuarterOfTheMemory) {
   const std::vector<float> sizes = {1e-4f, 1.0f, 0.5f, 1e-3f, 1e-2f, 1e-5f};
   Scene scene(sizes);
   scene.parts.units[0].insert(scene.parts.units[0].begin(), Step{.work = {}, .bytes = 10});
@@ -81,7 +81,7 @@ TEST(Interest, StandInsComeBeforeAnythingButTheLargestUpToAQuarterOfTheMemory) {
   tight.parts = scene.parts;
   choose(tight.bundles, 135);
   EXPECT_EQ(tight.targets(), (Targets{{0, 0}, {2, 0}, {1, 0}, {0, 0}, {1, 0}, {0, 0}}))
-      << "the largest, then the stand-ins of those that are next";
+      << "the largest, then the proxy levels of detail of those that are next";
   choose(tight.bundles, 50);
   EXPECT_EQ(tight.targets(), (Targets{{0, 0}, {2, 0}, {0, 0}, {0, 0}, {0, 0}, {0, 0}})) << "in any case";
 }

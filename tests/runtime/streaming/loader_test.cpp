@@ -24,22 +24,22 @@ namespace {
 using testing::Sample;
 
 struct Name {
-  std::string operator()(const MeshReady& r) const { return "mesh " + join({r.mesh, r.primitive}); }
-  std::string operator()(const ImageReady& r) const { return "image " + join({r.image}); }
-  std::string operator()(const RowsReady& r) const { return "rows " + join({r.draw}); }
-  std::string operator()(const CodebookReady& r) const {
+  std::string operator()(const MeshChunk& r) const { return "mesh " + join({r.mesh, r.primitive}); }
+  std::string operator()(const ImageChunk& r) const { return "image " + join({r.image}); }
+  std::string operator()(const WeightsChunk& r) const { return "rows " + join({r.draw}); }
+  std::string operator()(const CodebookChunk& r) const {
     return "codebook " + join({r.group, r.cell, r.transfer});
   }
-  std::string operator()(const PlaneReady& r) const {
+  std::string operator()(const PlaneChunk& r) const {
     return "plane " + join({r.group, r.cell, r.transfer, r.plane});
   }
-  std::string operator()(const LightWeightsReady& r) const {
+  std::string operator()(const LightWeightsChunk& r) const {
     return "light weights " + join({r.group, r.cell});
   }
-  std::string operator()(const ProxyReady& r) const { return "proxy " + join({r.group}); }
-  std::string operator()(const BrdfReady& r) const { return "brdf " + join({r.table}); }
-  std::string operator()(const DensityReady& r) const { return "density " + join({r.group}); }
-  std::string operator()(const VoxelsReady& r) const { return "voxels " + join({r.group}); }
+  std::string operator()(const ProxyChunk& r) const { return "proxy " + join({r.group}); }
+  std::string operator()(const BrdfChunk& r) const { return "brdf " + join({r.table}); }
+  std::string operator()(const DensityChunk& r) const { return "density " + join({r.group}); }
+  std::string operator()(const VoxelsChunk& r) const { return "voxels " + join({r.group}); }
   static std::string join(std::initializer_list<std::uint32_t> numbers) {
     std::string text;
     for (const std::uint32_t n : numbers) {
@@ -110,7 +110,7 @@ class LoaderTest : public ::testing::Test {
     file.put(byte);
   }
 
-  KeptThreads threads_;
+  ThreadPool threads_;
 
  private:
   testing::TemporaryFolder folder_;
@@ -129,23 +129,23 @@ TEST_F(LoaderTest, DeliversByPriorityWhatWasWritten) {
   EXPECT_EQ(loader.bytesRead(), all_bytes) << "everything is read once";
 
   ASSERT_EQ(items.size(), kInOrder.size());
-  const auto& mesh = std::get<MeshReady>(items[2]).data;
+  const auto& mesh = std::get<MeshChunk>(items[2]).data;
   ASSERT_EQ(mesh.positions.size(), 52u);
   EXPECT_NEAR(mesh.positions[0].y, 3.0f, 1e-6f);
-  const BrdfReady& table = std::get<BrdfReady>(items[6]);
+  const BrdfChunk& table = std::get<BrdfChunk>(items[6]);
   ASSERT_EQ(table.data.values.size(), testing::brdfTable().values.size());
   EXPECT_NEAR(table.data.values[77], 0.077f, 1e-5f);
   EXPECT_EQ(table.texels.width, 3u);
   EXPECT_EQ(table.texels.height, 2u);
   EXPECT_EQ(table.texels.layers, 5u) << "twenty weights of a node, four to a texel";
-  const auto& rows = std::get<RowsReady>(items[4]).rows;
+  const auto& rows = std::get<WeightsChunk>(items[4]).rows;
   ASSERT_EQ(rows.samples.size(), 402u);
   EXPECT_EQ(rows.samples[401], 101u);
-  const auto& image = std::get<ImageReady>(items[7]);
+  const auto& image = std::get<ImageChunk>(items[7]);
   EXPECT_EQ(image.width, 20u);
   EXPECT_EQ(image.height, 10u);
   EXPECT_EQ(image.rgba[(9 * 20 + 19) * 4 + 2], testing::texel(19, 9, 2));
-  const auto& codebook = std::get<CodebookReady>(items[9]);
+  const auto& codebook = std::get<CodebookChunk>(items[9]);
   ASSERT_EQ(codebook.codebook.vectors.size(), 20u);
   EXPECT_EQ(codebook.codebook.vectors[19], 24.0f) << "19 + 10/2: exact in binary16";
   EXPECT_EQ(codebook.codebook.axes.size(), 3u);
@@ -154,7 +154,7 @@ TEST_F(LoaderTest, DeliversByPriorityWhatWasWritten) {
   EXPECT_EQ(codebook.positions[332], 499u) << "333 samples of the first cluster";
   EXPECT_EQ(codebook.positions[333], 0u | 1u << 16);
   EXPECT_EQ(codebook.positions[499], 498u | 1u << 16);
-  const auto& codes = std::get<PlaneReady>(items[11]).codes;
+  const auto& codes = std::get<PlaneChunk>(items[11]).codes;
   ASSERT_EQ(codes.size(), 666u) << "333 samples of 16 bits";
   std::uint16_t code = 0;
   std::memcpy(&code, &codes[2 * 332], sizeof code);
@@ -274,7 +274,8 @@ TEST_F(LoaderTest, RefusesRowsOfANormalMappedDrawIntoPlainSamples) {
 
 TEST_F(LoaderTest, BringsThePartsThatAreAskedForInTheirOrder) {
   write(testing::sampleBundle());
-  Loader loader(open(), {ImageWork{1}, MeshWork{1, 1}, CodebookWork{1, 0, 0}, PlaneWork{1, 0, 0, 0}},
+  Loader loader(open(),
+                {ImageRequest{1}, MeshRequest{1, 1}, CodebookRequest{1, 0, 0}, PlaneRequest{1, 0, 0, 0}},
                 threads_, 2);
   EXPECT_EQ(names(drain(loader, 1 << 20)),
             (std::vector<std::string>{"image 1", "mesh 1.1", "codebook 1.0.0", "plane 1.0.0.0"}));

@@ -103,7 +103,7 @@ class Builder {
 
   void addDraw(std::uint32_t mesh, std::uint32_t primitive, std::uint32_t group, std::uint32_t priority) {
     const std::uint32_t vertices = sample.description.meshes[mesh].primitives[primitive].vertex_count;
-    bundle::VertexRows rows;
+    bundle::VertexWeights rows;
     rows.offsets.push_back(0);
     for (std::uint32_t v = 0; v < vertices; ++v) {
       rows.samples.push_back(v % sample.description.groups[group].sample_count);
@@ -115,7 +115,7 @@ class Builder {
     draw.mesh = mesh;
     draw.primitive = primitive;
     draw.group = group;
-    draw.rows = addPayload(bundle::PayloadType::VertexRows, bundle::encodeRows(rows), priority);
+    draw.rows = addPayload(bundle::PayloadType::VertexWeights, bundle::encodeRows(rows), priority);
     sample.description.draws.push_back(draw);
   }
 

@@ -46,7 +46,7 @@ class VolumeLoading : public ::testing::Test {
   }
 
   testing::TemporaryFolder folder_;
-  KeptThreads threads_;
+  ThreadPool threads_;
 };
 
 }  // namespace
@@ -64,19 +64,19 @@ TEST_F(VolumeLoading, BringsGridsAsTheyWereWrittenBeforeImagesAndTransfer) {
       return std::find_if(items.begin(), items.end(), is) - items.begin();
     };
     const auto density =
-        placeOf([](const Ready& item) { return std::holds_alternative<DensityReady>(item); });
-    const auto voxels = placeOf([](const Ready& item) { return std::holds_alternative<VoxelsReady>(item); });
-    const auto image = placeOf([](const Ready& item) { return std::holds_alternative<ImageReady>(item); });
-    const auto brdf = placeOf([](const Ready& item) { return std::holds_alternative<BrdfReady>(item); });
+        placeOf([](const Ready& item) { return std::holds_alternative<DensityChunk>(item); });
+    const auto voxels = placeOf([](const Ready& item) { return std::holds_alternative<VoxelsChunk>(item); });
+    const auto image = placeOf([](const Ready& item) { return std::holds_alternative<ImageChunk>(item); });
+    const auto brdf = placeOf([](const Ready& item) { return std::holds_alternative<BrdfChunk>(item); });
     EXPECT_LT(brdf, density);
     EXPECT_EQ(density + 1, voxels);
     EXPECT_LT(voxels, image);
     ASSERT_LT(image, static_cast<std::ptrdiff_t>(items.size()));
-    const auto& found = std::get<DensityReady>(items[static_cast<std::size_t>(density)]);
+    const auto& found = std::get<DensityChunk>(items[static_cast<std::size_t>(density)]);
     EXPECT_EQ(found.group, group);
     EXPECT_EQ(found.codes, volume.codes());
     EXPECT_EQ(found.block_maxima.size(), 2u * 2u * 3u);
-    EXPECT_EQ(std::get<VoxelsReady>(items[static_cast<std::size_t>(voxels)]).voxels, volume.voxels());
+    EXPECT_EQ(std::get<VoxelsChunk>(items[static_cast<std::size_t>(voxels)]).voxels, volume.voxels());
   }
 }
 

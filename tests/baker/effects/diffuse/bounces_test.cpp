@@ -1,7 +1,7 @@
 // Interreflection against closed forms (literature: a sphere's form factors are uniform; furnaces).
 #include "baker/effects/diffuse/bounces.hpp"
 
-#include "baker/work/parallel.hpp"
+#include "baker/jobs/parallel.hpp"
 #include "runtime/sh/zonal.hpp"
 #include "runtime/spec/image.hpp"
 #include "tests/support/shapes.hpp"

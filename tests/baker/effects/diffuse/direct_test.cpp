@@ -173,15 +173,15 @@ TEST(DirectTransfer, TurnsWithTheScene) {
 
 TEST(DirectTransfer, OfASceneFarAwayIsThatOfTheSameSceneNear) {
   Scene scene = sceneOf({grid({0, 0, 0}, 4.0f, 8), icosphere({0, 1.2f, 0}, 1.0f, 3)});
-  const auto near_by = Transport(scene).direct();
+  const auto local_by = Transport(scene).direct();
   for (gltf::Node& node : scene.nodes)
     node.parent_from_node = glm::translate(glm::mat4(1.0f), {1e6f, -2e6f, 4e6f});
   const Transport far_away(scene);
   EXPECT_GT(glm::length(far_away.geometry.origin), 4e6f);
   const auto field = far_away.direct();
-  ASSERT_EQ(field.vectors.size(), near_by.vectors.size());
+  ASSERT_EQ(field.vectors.size(), local_by.vectors.size());
   // Samples keep their order; single rays past an edge may fall on its other side.
-  EXPECT_LT(largestDifference(field.vectors, near_by.vectors), 5e-3f);
+  EXPECT_LT(largestDifference(field.vectors, local_by.vectors), 5e-3f);
 }
 
 TEST(DirectTransfer, UnderABodyIsFilledFromOutside) {

@@ -62,10 +62,10 @@ TEST(NormalMappedTransfer, AtTheSurfacesOwnNormalIsThePlainTransferBouncesInclud
   for (std::size_t s = 0; s < t.samples.size(); ++s) {
     if (!baked.direct.looks.valid[s]) continue;
     const auto plain = baked.direct.field.at(s), mapped = baked.direct.mapped.at(s);
-    const auto plain_bounced = baked.bounced.field.at(s), mapped_bounced = baked.bounced.mapped.at(s);
+    const auto diffuse_bounced = baked.bounced.field.at(s), mapped_bounced = baked.bounced.mapped.at(s);
     for (std::size_t i = 0; i < 25; ++i) {
       EXPECT_NEAR(atNormal(mapped.subspan(i), t.samples.normals[s], 25), plain[i], 2e-4f);
-      EXPECT_NEAR(atNormal(mapped_bounced.subspan(i), t.samples.normals[s], 25), plain_bounced[i], 2e-4f);
+      EXPECT_NEAR(atNormal(mapped_bounced.subspan(i), t.samples.normals[s], 25), diffuse_bounced[i], 2e-4f);
     }
   }
 }

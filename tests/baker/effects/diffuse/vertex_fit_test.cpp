@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "baker/work/parallel.hpp"
+#include "baker/jobs/parallel.hpp"
 #include "tests/support/shapes.hpp"
 #include "tests/support/transport.hpp"
 

@@ -1,8 +1,8 @@
-// Interreflection over glossy surfaces, and between glossy and matte ones, against closed forms.
+// Interreflection over glossy surfaces, and between glossy and diffuse ones, against closed forms.
 #include "baker/effects/glossy/glossy_bounces.hpp"
 
 #include "baker/brdf/surface_brdfs.hpp"
-#include "baker/work/parallel.hpp"
+#include "baker/jobs/parallel.hpp"
 #include "tests/support/glossy_transport.hpp"
 
 namespace lambent::baker {
@@ -131,8 +131,8 @@ TEST(GlossyBounces, ReachNormalMappedSurfacesAsThoseOfAMatteSurfaceDo) {
 }
 
 TEST(GlossyBounces, AskForTheDirectionThatLightLeavesIn) {
-  // A large floor sends cos(theta) of what it gets from everywhere; a small matte plate that looks down on it
-  // gets (1/pi) ∫ cos² = 2/3.
+  // A large floor sends cos(theta) of what it gets from everywhere; a small diffuse plate that looks down on
+  // it gets (1/pi) ∫ cos² = 2/3.
   const auto plate =
       transformed(flipped(grid({0, 0, 0}, 0.02f, 2)), glm::translate(glm::mat4(1.0f), {0, 1, 0}));
   Scene scene = sceneOf({grid({0, 0, 0}, 200.0f, 100), plate});

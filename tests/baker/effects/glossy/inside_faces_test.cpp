@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "baker/work/parallel.hpp"
+#include "baker/jobs/parallel.hpp"
 #include "tests/support/glossy_transport.hpp"
 
 namespace lambent::baker {

@@ -2,7 +2,7 @@
 #include "baker/effects/neighborhood/bake_neighborhood.hpp"
 
 #include "baker/effects/neighborhood/surface_body.hpp"
-#include "baker/work/parallel.hpp"
+#include "baker/jobs/parallel.hpp"
 #include "tests/support/neighborhood.hpp"
 
 namespace lambent::baker {

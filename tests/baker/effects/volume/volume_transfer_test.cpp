@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "baker/import/procedural_cloud.hpp"
-#include "baker/work/parallel.hpp"
+#include "baker/jobs/parallel.hpp"
 #include "runtime/sh/basis.hpp"
 #include "tests/baker/effects/volume/media.hpp"
 #include "tests/support/shapes.hpp"

@@ -19,10 +19,10 @@ namespace lambent::testing {
 struct RandomBundle {
   bundle::Description description;
   std::vector<streaming::Ready> meshes, rows;
-  std::vector<std::vector<streaming::CodebookReady>> codebooks;  // per cell, by transfer
-  std::vector<std::vector<streaming::PlaneReady>> planes;   // per cell, of the environment, then the lamps
-  std::vector<streaming::LightWeightsReady> light_weights;  // per cell; none where there is one light sample
-  std::vector<streaming::ProxyReady> proxies;               // per group
+  std::vector<std::vector<streaming::CodebookChunk>> codebooks;  // per cell, by transfer
+  std::vector<std::vector<streaming::PlaneChunk>> planes;   // per cell, of the environment, then the lamps
+  std::vector<streaming::LightWeightsChunk> light_weights;  // per cell; none where there is one light probe
+  std::vector<streaming::ProxyChunk> proxies;               // per group
 };
 
 struct RandomBundleOptions {
@@ -41,7 +41,7 @@ struct RandomBundleOptions {
   bool bounced = false;         // of glossy cells and of points
   std::uint32_t samples = 101;  // per cell, odd on purpose
   std::uint32_t vertices = 131;
-  std::uint32_t light_samples = 1;    // per group, every cell uses all but the first
+  std::uint32_t light_probes = 1;     // per group, every cell uses all but the first
   std::uint32_t proxy_triangles = 0;  // per group
 };
 
@@ -81,7 +81,7 @@ class BundleMaker {
     for (std::uint32_t k = 0; k < options.lamps; ++k)
       group.lights.push_back(
           {.kind = bundle::GroupLight::Kind::Material, .index = 0, .color = glm::vec3(1.0f)});
-    group.light_samples.assign(options.light_samples, glm::vec3(0.0f));
+    group.light_probes.assign(options.light_probes, glm::vec3(0.0f));
     for (std::uint32_t c = 0; c < cells; ++c)
       group.cells.push_back(
           makeCell(made, options, g, c,
@@ -157,7 +157,7 @@ class BundleMaker {
     made.description.draws.push_back(
         {.node = g, .mesh = g, .primitive = primitive, .group = g, .rows = 0, .outputs = outputs});
     made.rows.push_back(
-        streaming::RowsReady{.draw = index, .rows = makeRows(options, first_sample, end_sample)});
+        streaming::WeightsChunk{.draw = index, .rows = makeRows(options, first_sample, end_sample)});
   }
 
   bundle::Cell makeCell(RandomBundle& made, const RandomBundleOptions& options, std::uint32_t g,
@@ -168,13 +168,13 @@ class BundleMaker {
     cell.sample_count = options.samples;
     made.codebooks.emplace_back();
     made.planes.emplace_back();
-    if (options.light_samples > 2) {
-      cell.light_samples.clear();
-      for (std::uint32_t k = 1; k < options.light_samples; ++k) cell.light_samples.push_back(k);
+    if (options.light_probes > 2) {
+      cell.light_probes.clear();
+      for (std::uint32_t k = 1; k < options.light_probes; ++k) cell.light_probes.push_back(k);
       cell.light_weights = 0;
-      streaming::LightWeightsReady ready{.group = g, .cell = c, .samples = {}};
+      streaming::LightWeightsChunk ready{.group = g, .cell = c, .samples = {}};
       for (std::uint32_t s = 0; s < options.samples; ++s)
-        ready.samples.push_back(lightWeights(options.light_samples - 1));
+        ready.samples.push_back(lightWeights(options.light_probes - 1));
       made.light_weights.push_back(std::move(ready));
     }
     bundle::TransferShape shape{.order = options.order,
@@ -227,7 +227,7 @@ class BundleMaker {
       cluster_of.push_back(s == 0 ? 0 : below(options.clusters));
     const std::vector<std::uint32_t> counts = bundle::planeCounts(codebook, cluster_of);
     for (std::uint32_t j = 0; j < counts.size(); ++j) {
-      streaming::PlaneReady plane{.group = g, .cell = c, .transfer = transfer_index, .plane = j, .codes = {}};
+      streaming::PlaneChunk plane{.group = g, .cell = c, .transfer = transfer_index, .plane = j, .codes = {}};
       for (std::uint32_t i = 0; i < counts[j] * bitsOf(j) / 8; ++i)
         plane.codes.push_back(static_cast<std::byte>(below(256)));
       made.planes.back().push_back(std::move(plane));
@@ -262,14 +262,14 @@ class BundleMaker {
     primitive.vertex_count = options.vertices;
     primitive.index_count = static_cast<std::uint32_t>(data.indices.size());
     auto& primitives = made.description.meshes[g].primitives;
-    made.meshes.push_back(streaming::MeshReady{
+    made.meshes.push_back(streaming::MeshChunk{
         .mesh = g, .primitive = static_cast<std::uint32_t>(primitives.size()), .data = std::move(data)});
     primitives.push_back(primitive);
   }
 
-  bundle::VertexRows makeRows(const RandomBundleOptions& options, std::uint32_t first_sample,
-                              std::uint32_t end_sample) {
-    bundle::VertexRows rows;
+  bundle::VertexWeights makeRows(const RandomBundleOptions& options, std::uint32_t first_sample,
+                                 std::uint32_t end_sample) {
+    bundle::VertexWeights rows;
     rows.offsets.push_back(0);
     for (std::uint32_t v = 0; v < options.vertices; ++v) {
       const std::uint32_t entries = 1 + below(4);

@@ -35,7 +35,7 @@ struct Bench : testing::ShadingBench<Diffuse> {
     return pages;
   }
 
-  // A sun that few bands cannot carry; what arrives at light samples of their own has one as well.
+  // A sun that few bands cannot carry; what arrives at light probes of their own has one as well.
   void shineByKeyLights() {
     environment.setMostKeys(16);
     ASSERT_TRUE(environment.setLights(
@@ -165,7 +165,7 @@ TEST_F(DiffuseGpu, MatchesItsTwinWhereKeyLightsStandApart) {
                             .cells = 1,
                             .mapped_cells = 1,
                             .samples = 222,
-                            .light_samples = lights});
+                            .light_probes = lights});
         bench.shineByKeyLights();
         bench.uploadMeshes();
         bench.uploadRows();
@@ -197,7 +197,7 @@ TEST_F(DiffuseGpu, MatchesItsTwinWhereKeyLightsStandApart) {
       }
 }
 
-TEST_F(DiffuseGpu, BlendsSeveralLightSamplesAsItsTwin) {
+TEST_F(DiffuseGpu, BlendsSeveralLightProbesAsItsTwin) {
   testing::BundleMaker maker(21);
   for (const std::uint32_t lights : {3u, 33u})
     for (const std::uint32_t mapped : {0u, 1u}) {
@@ -208,7 +208,7 @@ TEST_F(DiffuseGpu, BlendsSeveralLightSamplesAsItsTwin) {
                           .cells = 2,
                           .mapped_cells = mapped,
                           .samples = 423,
-                          .light_samples = lights});
+                          .light_probes = lights});
       bench.uploadMeshes();
       bench.uploadRows();
       bench.uploadTransfer(7);
@@ -217,9 +217,9 @@ TEST_F(DiffuseGpu, BlendsSeveralLightSamplesAsItsTwin) {
     }
 }
 
-TEST_F(DiffuseGpu, ShadesOnlyCellsWhoseLightSamplesChanged) {
+TEST_F(DiffuseGpu, ShadesOnlyCellsWhoseLightProbesChanged) {
   testing::BundleMaker maker(22);
-  Bench bench(maker, {.groups = 2, .cells = 2, .light_samples = 4});
+  Bench bench(maker, {.groups = 2, .cells = 2, .light_probes = 4});
   bench.uploadMeshes();
   bench.uploadRows();
   bench.uploadTransfer(7);
@@ -240,7 +240,7 @@ TEST_F(DiffuseGpu, ProxiesSendOutWhatTheirSamplesReceive) {
                       .groups = 3,
                       .cells = 1,
                       .mapped_cells = 1,
-                      .light_samples = 5,
+                      .light_probes = 5,
                       .proxy_triangles = 77});
   bench.uploadMeshes();
   bench.uploadRows();

@@ -30,15 +30,15 @@ struct ShadingBench {
                std::uint64_t page_bytes = gpu::Arena::kMaxPageBytes)
       : residency(page_bytes), made(maker.make(options)) {
     EXPECT_TRUE(residency.add(made.description));
-    for (std::uint32_t k = 0; k < options.light_samples; ++k)
+    for (std::uint32_t k = 0; k < options.light_probes; ++k)
       incident.push_back(sh::discLight(static_cast<int>(options.order), maker.direction(), 0.7,
                                        glm::vec3(1.0f, 2.0f, 0.5f)));
     for (std::uint32_t g = 0; g < options.groups; ++g) {
       places.push_back({.world_from_group = maker.rotation(),
                         .order = options.order,
                         .lamps = std::vector<glm::vec3>(options.lamps, glm::vec3(0.7f, 0.3f, 1.1f))});
-      if (options.light_samples > 1) places.back().incident.clear();
-      for (std::uint32_t k = 0; k < options.light_samples && options.light_samples > 1; ++k)
+      if (options.light_probes > 1) places.back().incident.clear();
+      for (std::uint32_t k = 0; k < options.light_probes && options.light_probes > 1; ++k)
         places.back().incident.push_back({.light = &incident[k], .version = 1});
     }
   }

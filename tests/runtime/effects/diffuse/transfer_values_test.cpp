@@ -35,11 +35,11 @@ struct Bench : testing::ShadingBench<Asked> {
   }
   // Transfer t of a cell, sample-major, as the bundle decodes it.
   std::vector<float> decoded(std::size_t cell, std::size_t t, std::vector<std::uint32_t>& cluster_of) const {
-    const streaming::CodebookReady& ready = made.codebooks[cell][t];
+    const streaming::CodebookChunk& ready = made.codebooks[cell][t];
     cluster_of.resize(ready.positions.size());
     for (const std::uint32_t place : ready.positions) cluster_of[place & 0xffffu] = place >> 16u;
     std::vector<std::vector<std::uint32_t>> planes;
-    for (const streaming::PlaneReady& plane : made.planes[cell]) {
+    for (const streaming::PlaneChunk& plane : made.planes[cell]) {
       if (plane.transfer != t) continue;
       const bundle::CellTransfer& described = transferOf(cell, t);
       const std::size_t bytes = described.planes[plane.plane].bits / 8;

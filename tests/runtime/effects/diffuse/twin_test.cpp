@@ -11,7 +11,7 @@
 namespace lambent::effects::diffuse {
 namespace {
 
-// Of one light sample: without key lights, and of key lights alone, if there are any.
+// Of one light probe: without key lights, and of key lights alone, if there are any.
 std::vector<glm::vec4> randomLight(testing::BundleMaker& maker, int order, bool keys = false) {
   std::vector<glm::vec4> light(kLightStride, glm::vec4(0.0f));
   for (const uint first : keys ? std::vector{0u, kKeyBlock} : std::vector{0u})
@@ -55,7 +55,7 @@ struct Page {
     const auto& positions = made.codebooks[0][transfer_index].positions;
     const std::uint32_t lights =
         shape.order > 0 && !made.light_weights.empty()
-            ? static_cast<std::uint32_t>(made.description.groups[0].light_samples.size()) - 1
+            ? static_cast<std::uint32_t>(made.description.groups[0].light_probes.size()) - 1
             : 1;
     for (std::uint32_t k = 0; k < lights; ++k)
       places.push_back(shape.order > 0 ? kLightStride * k : lampsOf(made));
@@ -98,7 +98,7 @@ struct Page {
     append(codebook.vectors);
     record.positions_word = size();
     words.insert(words.end(), positions.begin(), positions.end());
-    for (const streaming::PlaneReady& plane : made.planes[0]) {
+    for (const streaming::PlaneChunk& plane : made.planes[0]) {
       if (plane.transfer != transfer_index) continue;
       places.push_back(size() | (transfer.planes[plane.plane].bits == 16 ? kCodes16Bit : 0u));
       words.resize(words.size() + (plane.codes.size() + 3) / 4);
@@ -111,11 +111,11 @@ struct Page {
       std::memcpy(&words[record.light_weights_word], weights.data(), 8 * weights.size());
     }
   }
-  // The lamps come after the light samples.
+  // The lamps come after the light probes.
   static uint lampsOf(const testing::RandomBundle& made) {
     return made.light_weights.empty()
                ? kLightStride
-               : kLightStride * static_cast<uint>(made.description.groups[0].light_samples.size() - 1);
+               : kLightStride * static_cast<uint>(made.description.groups[0].light_probes.size() - 1);
   }
   uint size() const { return static_cast<uint>(words.size()); }
   void append(const std::vector<float>& values) {
@@ -125,7 +125,7 @@ struct Page {
 
 std::vector<std::vector<std::uint32_t>> codesOf(const testing::RandomBundle& made, std::size_t transfer) {
   std::vector<std::vector<std::uint32_t>> all;
-  for (const streaming::PlaneReady& plane : made.planes[0]) {
+  for (const streaming::PlaneChunk& plane : made.planes[0]) {
     if (plane.transfer != transfer) continue;
     const std::size_t bytes =
         made.description.groups[0].cells[0].transfers[transfer].planes[plane.plane].bits / 8;
@@ -204,7 +204,7 @@ TEST(DiffuseTwin, ShadesSamplesAsDecodedTransferTimesLight) {
                                                              .groups = 1,
                                                              .cells = mapped ? 0u : 1u,
                                                              .mapped_cells = mapped ? 1u : 0u,
-                                                             .light_samples = lights});
+                                                             .light_probes = lights});
               std::vector<glm::vec4> light = randomLight(maker, 3, keys);
               for (std::uint32_t k = 2; k < lights; ++k) {
                 const std::vector<glm::vec4> more = randomLight(maker, 3, keys);

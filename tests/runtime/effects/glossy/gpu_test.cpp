@@ -21,7 +21,7 @@ TEST_F(GlossyGpu, MatchesItsTwinAtEveryOrderOfLightAndSurface) {
     }
 }
 
-TEST_F(GlossyGpu, MatchesItsTwinWithClustersBouncesLampsAndSeveralLightSamples) {
+TEST_F(GlossyGpu, MatchesItsTwinWithClustersBouncesLampsAndSeveralLightProbes) {
   lambent::testing::BundleMaker maker(32);
   for (const std::uint32_t clusters : {1u, 40u})
     for (const std::uint32_t lamps : {0u, 3u})
@@ -35,7 +35,7 @@ TEST_F(GlossyGpu, MatchesItsTwinWithClustersBouncesLampsAndSeveralLightSamples) 
                             .glossy_cells = 2,
                             .bounced = true,
                             .samples = 123,
-                            .light_samples = lights});
+                            .light_probes = lights});
         bench.uploadAll();
         for (const TransferMode mode :
              {TransferMode::Full, TransferMode::Shadowed, TransferMode::Unshadowed}) {

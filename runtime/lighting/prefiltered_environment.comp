@@ -1,0 +1,97 @@
+// The sky of one set of lights as a rough mirror shows it: one mip level of a cube map, in the lights' own
+// frame, each texel the mean over the lobe about its direction. Environment maps by equal shares of the lobe, each
+// looked up as wide as it is; discs of suns apart and exactly, for no such look-up finds them.
+#include "prefiltered_shared.h"
+#include "cube_texel.glsl"
+
+layout(local_size_x = kReflectedGroup, local_size_y = kReflectedGroup) in;
+layout(location = 0) uniform int size;    // of the level
+layout(location = 1) uniform vec2 lobe;   // alpha, scale; alpha 0: a mirror
+layout(location = 2) uniform int shares;  // of the lobe that look at the sky
+layout(location = 3) uniform uint disc_count;
+layout(binding = 0) uniform samplerCube sky;  // prefiltered_source.comp: times solid angle, and that
+layout(binding = 0, rgba16f) writeonly uniform imageCube reflected;
+layout(std430, binding = kBindLobe) readonly buffer Lobe {
+  float angles[];
+};
+layout(std430, binding = kBindDiscs) readonly buffer Discs {
+  ReflectedDisc discs[];
+};
+
+const float kPi = 3.14159265358979;
+const float kGoldenAngle = 2.39996323;
+const int kAllShares = 256, kDiscPoints = 48;
+const float kLargestHalf = 65504.0;
+
+// Two unit vectors across unit n [Duff et al., Building an orthonormal basis, revisited, 2017].
+mat3 frameAbout(vec3 n) {
+  float facing = n.z >= 0.0 ? 1.0 : -1.0;
+  float a = -1.0 / (facing + n.z), b = n.x * n.y * a;
+  return mat3(vec3(1.0 + facing * n.x * n.x * a, facing * b, -facing * n.x),
+              vec3(b, facing + n.y * n.y * a, -n.y), n);
+}
+
+// The mean over what a mip level holds there.
+vec3 meanOfSky(vec3 direction, float level) {
+  vec4 weighted = textureLod(sky, direction, level);
+  return weighted.rgb / weighted.a;
+}
+
+float density(float cos_theta) {
+  float root = 0.5 * (1.0 + cos_theta) * (lobe.x * lobe.x - 1.0) + 1.0;
+  return lobe.y * max(cos_theta, 0.0) / (root * root);
+}
+
+vec3 skyThrough(mat3 frame) {
+  float texels = float(textureSize(sky, 0).x);
+  float texel_angle = 4.0 * kPi / (6.0 * texels * texels);
+  if (lobe.x == 0.0) return meanOfSky(frame[2], max(log2(texels / float(size)), 0.0));
+  vec3 sum = vec3(0.0);
+  for (int i = 0; i < shares; ++i) {
+    float theta = angles[(2 * i + 1) * kAllShares / (2 * shares)], phi = kGoldenAngle * float(i);
+    vec3 direction = frame * vec3(sin(theta) * vec2(cos(phi), sin(phi)), cos(theta));
+    float wide = 1.0 / (float(shares) * max(density(cos(theta)), 1e-6));
+    sum += meanOfSky(direction, max(0.5 * log2(wide / texel_angle) + 0.5, 0.0));
+  }
+  return sum / float(shares);
+}
+
+// How much of the lobe a disc fills whose centre is so far from the lobe's axis.
+float shareOfDisc(float apart, float radius) {
+  if (lobe.x == 0.0) return clamp((radius - apart) * float(size) / (0.5 * kPi) + 0.5, 0.0, 1.0);
+  if (radius < 0.5 * angles[kAllShares / 2]) {
+    // The lobe is wider: over points of the disc.
+    float sum = 0.0, least = cos(radius);
+    for (int i = 0; i < kDiscPoints; ++i) {
+      float cosine = 1.0 - (float(i) + 0.5) / float(kDiscPoints) * (1.0 - least),
+            phi = kGoldenAngle * float(i);
+      sum += density(cosine * cos(apart) + sqrt(1.0 - cosine * cosine) * sin(apart) * cos(phi));
+    }
+    return sum * 2.0 * kPi * (1.0 - least) / float(kDiscPoints);
+  }
+  // Over rings of the lobe, each by how much of it the disc covers.
+  float sum = 0.0;
+  for (int i = 0; i < kAllShares; ++i) {
+    float theta = angles[i];
+    if (theta + apart <= radius) {
+      sum += 1.0;
+    } else if (abs(theta - apart) < radius) {
+      float cosine = (cos(radius) - cos(theta) * cos(apart)) / max(sin(theta) * sin(apart), 1e-9);
+      sum += acos(clamp(cosine, -1.0, 1.0)) / kPi;
+    }
+  }
+  return sum / float(kAllShares);
+}
+
+void main() {
+  ivec3 texel = ivec3(gl_GlobalInvocationID);
+  if (texel.x >= size || texel.y >= size) return;
+  mat3 frame = frameAbout(normalize(cubeTexelDirection(texel, size)));
+  vec3 sum = skyThrough(frame);
+  for (uint i = 0u; i < disc_count; ++i) {
+    vec3 to_disc = discs[i].direction_and_radius.xyz;
+    float apart = atan(length(cross(frame[2], to_disc)), dot(frame[2], to_disc));
+    sum += shareOfDisc(apart, discs[i].direction_and_radius.w) * discs[i].radiance.rgb;
+  }
+  imageStore(reflected, texel, vec4(min(sum, vec3(kLargestHalf)), 0.0));
+}

@@ -1,0 +1,295 @@
+#include "runtime/streaming/load_request.hpp"
+
+#include <algorithm>
+#include <span>
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+
+#include "runtime/bundle/volume_grid.hpp"
+#include "runtime/streaming/image_decode.hpp"
+#include "runtime/streaming/image_levels.hpp"
+#include "runtime/streaming/image_uses.hpp"
+#include "runtime/streaming/sizes.hpp"
+#include "runtime/streaming/volume_blocks.hpp"
+
+namespace lambent::streaming {
+namespace {
+
+float meanEdge(const bundle::MeshData& mesh) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3)
+    for (std::size_t k = 0; k < 3; ++k)
+      sum += double{
+          glm::distance(mesh.positions[mesh.indices[i + k]], mesh.positions[mesh.indices[i + (k + 1) % 3]])};
+  return mesh.indices.empty() ? 0.0f : static_cast<float>(sum / static_cast<double>(mesh.indices.size()));
+}
+
+template <class... Fs>
+struct Overloaded : Fs... {
+  using Fs::operator()...;
+};
+
+struct Ranked {
+  std::uint32_t priority;
+  Work work;
+};
+
+void appendByPriority(std::vector<Work>& list, std::vector<Ranked> ranked) {
+  std::stable_sort(ranked.begin(), ranked.end(),
+                   [](const Ranked& a, const Ranked& b) { return a.priority < b.priority; });
+  for (const Ranked& item : ranked) list.push_back(item.work);
+}
+
+template <class Place>  // what names a group and a cell
+const bundle::Cell& cellOf(const bundle::Description& description, const Place& at) {
+  return description.groups[at.group].cells[at.cell];
+}
+template <class Place>
+const bundle::CellTransfer& transferOf(const bundle::Description& description, const Place& at) {
+  return cellOf(description, at).transfers[at.transfer];
+}
+
+template <class T>
+std::size_t sizeInBytes(const std::vector<T>& values) {
+  return values.size() * sizeof(T);
+}
+
+using Loaded = std::optional<Result<Ready>>;
+
+class Load {
+ public:
+  Load(const bundle::Reader& reader, const Reserve& reserve)
+      : reader_(reader), description_(reader.description()), reserve_(reserve) {}
+
+  Loaded operator()(const MeshRequest& work) const {
+    const bundle::Primitive& primitive = description_.meshes[work.mesh].primitives[work.primitive];
+    // As if every attribute were there: it costs nothing to leave some room.
+    constexpr std::size_t kVertexBytes = sizeof(float) * (3 + 3 + 2 + 2 + 4 + 4);
+    if (!reserve_(primitive.vertex_count * kVertexBytes + primitive.index_count * sizeof(std::uint32_t)))
+      return {};
+    auto mesh = reader_.readMesh(work.mesh, work.primitive);
+    if (!mesh) return failAgain(mesh.error());
+    bundle::weighNormals(*mesh);
+    const float mean_edge = meanEdge(*mesh);
+    return MeshChunk{work.mesh, work.primitive, std::move(*mesh), mean_edge};
+  }
+
+  Loaded operator()(const WeightsRequest& work) const {
+    // Six bytes of an entry in the file become eight.
+    if (!reserve_(description_.payloads[description_.draws[work.draw].rows].raw_length * 2)) return {};
+    auto rows = reader_.readRows(work.draw);
+    if (!rows) return failAgain(rows.error());
+    return WeightsChunk{work.draw, std::move(*rows)};
+  }
+
+  Loaded operator()(const ImageRequest& work) const {
+    const bundle::Image& image = description_.images[work.image];
+    const std::string subject = named(fmt::format("image {} \"{}\"", work.image, image.name));
+    const auto file = reader_.readView(image.view);
+    if (!file) return failAgain(file.error());
+    const auto size = imageSize(*file, subject);
+    if (!size) return failAgain(size.error());
+    if (!reserve_(size->rgbaBytes())) return {};
+    auto rgba = decodeRgba(*file, subject);
+    if (!rgba) return failAgain(rgba.error());
+    if (work.level == 0) return ImageChunk{work.image, size->width, size->height, std::move(*rgba)};
+    const ImageUse use = imageUses(description_)[work.image];
+    const ImageSize small = sizeAt(*size, work.level);
+    ImageChunk ready{work.image, small.width, small.height, shrink(*rgba, *size, work.level, use.color)};
+    if (use.color && use.linear) ready.linear = shrink(*rgba, *size, work.level, /*color=*/false);
+    return ready;
+  }
+
+  Loaded operator()(const CodebookRequest& work) const {
+    const bundle::CellTransfer& transfer = transferOf(description_, work);
+    const std::uint32_t samples = cellOf(description_, work).sample_count;
+    // What it becomes, and the cluster of each sample.
+    if (!reserve_(codebookBytesOnGpu(transfer, samples) + 4 * std::size_t{samples})) return {};
+    auto found = reader_.readCodebook(work.group, work.cell, work.transfer);
+    if (!found) return failAgain(found.error());
+    std::vector<std::uint32_t> positions = bundle::positionsOf(found->cluster_of, transfer.clusters);
+    for (std::uint32_t& position : positions) position |= found->cluster_of[position] << 16;
+    return CodebookChunk{work.group, work.cell, work.transfer, std::move(found->codebook),
+                         std::move(positions)};
+  }
+
+  Loaded operator()(const PlaneRequest& work) const {
+    const bundle::WeightPlane& plane = transferOf(description_, work).planes[work.plane];
+    if (!reserve_(5 * std::size_t{plane.count})) return {};
+    const auto codes = reader_.readPlane(work.group, work.cell, work.transfer, work.plane);
+    if (!codes) return failAgain(codes.error());
+    PlaneChunk ready{work.group, work.cell, work.transfer, work.plane, {}};
+    ready.codes.reserve(codes->size() * plane.bits / 8);
+    for (const std::uint32_t code : *codes) {
+      ready.codes.push_back(static_cast<std::byte>(code & 0xff));
+      if (plane.bits == 16) ready.codes.push_back(static_cast<std::byte>(code >> 8));
+    }
+    return ready;
+  }
+
+  Loaded operator()(const LightWeightsRequest& work) const {
+    const std::size_t bytes = sizeof(bundle::LightWeights) * cellOf(description_, work).sample_count;
+    if (!reserve_(2 * bytes)) return {};
+    auto weights = reader_.readLightWeights(work.group, work.cell);
+    if (!weights) return failAgain(weights.error());
+    return LightWeightsChunk{work.group, work.cell, std::move(*weights)};
+  }
+
+  Loaded operator()(const ProxyRequest& work) const {
+    const auto payload = static_cast<std::size_t>(description_.groups[work.group].proxy);
+    if (!reserve_(3 * description_.payloads[payload].raw_length)) return {};
+    auto proxy = reader_.readProxy(work.group);
+    if (!proxy) return failAgain(proxy.error());
+    return ProxyChunk{work.group, std::move(*proxy)};
+  }
+
+  Loaded operator()(const DensityRequest& work) const {
+    const bundle::VolumeGrid& grid = *description_.groups[work.group].volume;
+    if (!reserve_(2 * description_.payloads[grid.density].raw_length)) return {};
+    auto codes = reader_.readPayload(grid.density);
+    if (!codes) return failAgain(codes.error());
+    std::vector<float> maxima = blockMaxima(*codes, grid.bits, grid.size);
+    return DensityChunk{work.group, std::move(*codes), std::move(maxima)};
+  }
+
+  Loaded operator()(const VoxelsRequest& work) const {
+    const bundle::VolumeGrid& grid = *description_.groups[work.group].volume;
+    if (!reserve_(3 * description_.payloads[grid.voxels].raw_length)) return {};
+    const auto bytes = reader_.readPayload(grid.voxels);
+    if (!bytes) return failAgain(bytes.error());
+    auto voxels =
+        bundle::decodeVoxels(*bytes, grid.transfer_size, named(fmt::format("group {}", work.group)));
+    if (!voxels) return failAgain(voxels.error());
+    return VoxelsChunk{work.group, std::move(*voxels)};
+  }
+
+  Loaded operator()(const BrdfRequest& work) const {
+    const bundle::BrdfTableEntry& entry = description_.brdf_tables[work.table];
+    // Its bytes, the table and the texels: all of a size.
+    if (!reserve_(8 * description_.payloads[entry.payload].raw_length)) return {};
+    auto table = reader_.readBrdfTable(work.table);
+    if (!table) return failAgain(table.error());
+    BrdfTexels texels = packBrdf(*table);
+    return BrdfChunk{work.table, std::move(*table), std::move(texels)};
+  }
+
+ private:
+  // "PATH: WHAT", the subject of an error.
+  std::string named(const std::string& what) const { return reader_.path().string() + ": " + what; }
+  static Result<Ready> failAgain(Error error) { return lambent::failAgain(std::move(error)); }
+
+  const bundle::Reader& reader_;
+  const bundle::Description& description_;
+  const Reserve& reserve_;
+};
+
+}  // namespace
+
+std::vector<Work> requestsOf(const bundle::Description& d) {
+  std::vector<Work> list;
+  for (std::uint32_t mesh = 0; mesh < d.meshes.size(); ++mesh) {
+    for (std::uint32_t p = 0; p < d.meshes[mesh].primitives.size(); ++p) list.push_back(MeshRequest{mesh, p});
+  }
+  std::vector<Ranked> rows, transfer;
+  for (std::uint32_t draw = 0; draw < d.draws.size(); ++draw) {
+    rows.push_back({d.payloads[d.draws[draw].rows].priority, WeightsRequest{draw}});
+  }
+  appendByPriority(list, std::move(rows));
+  for (std::uint32_t table = 0; table < d.brdf_tables.size(); ++table) list.push_back(BrdfRequest{table});
+  for (std::uint32_t group = 0; group < d.groups.size(); ++group) {
+    if (!d.groups[group].volume) continue;
+    list.push_back(DensityRequest{group});
+    list.push_back(VoxelsRequest{group});
+  }
+  for (std::uint32_t image = 0; image < d.images.size(); ++image) list.push_back(ImageRequest{image});
+  for (std::uint32_t group = 0; group < d.groups.size(); ++group) {
+    const std::int32_t proxy = d.groups[group].proxy;
+    if (proxy >= 0)
+      transfer.push_back({d.payloads[static_cast<std::size_t>(proxy)].priority, ProxyRequest{group}});
+    for (std::uint32_t cell = 0; cell < d.groups[group].cells.size(); ++cell) {
+      const auto& parts = d.groups[group].cells[cell].transfers;
+      const std::int32_t weights = d.groups[group].cells[cell].light_weights;
+      if (weights >= 0)
+        transfer.push_back(
+            {d.payloads[static_cast<std::size_t>(weights)].priority, LightWeightsRequest{group, cell}});
+      for (std::uint32_t t = 0; t < parts.size(); ++t) {
+        std::uint32_t priority = d.payloads[parts[t].codebook].priority;
+        transfer.push_back({priority, CodebookRequest{group, cell, t}});
+        for (std::uint32_t plane = 0; plane < parts[t].planes.size(); ++plane) {
+          priority = std::max(priority, d.payloads[parts[t].planes[plane].payload].priority);
+          transfer.push_back({priority, PlaneRequest{group, cell, t, plane}});
+        }
+      }
+    }
+  }
+  appendByPriority(list, std::move(transfer));
+  return list;
+}
+
+std::uint64_t bytesInFile(const bundle::Description& d, const Work& work) {
+  const auto view = [&](std::uint32_t index) { return d.views[index].length; };
+  const auto payload = [&](std::uint32_t index) { return view(d.payloads[index].view); };
+  return std::visit(
+      Overloaded{[&](const MeshRequest& at) { return view(d.meshes[at.mesh].primitives[at.primitive].view); },
+                 [&](const WeightsRequest& at) { return payload(d.draws[at.draw].rows); },
+                 [&](const ImageRequest& at) { return view(d.images[at.image].view); },
+                 [&](const CodebookRequest& at) {
+                   const bundle::CellTransfer& transfer = transferOf(d, at);
+                   const std::uint64_t codebook = payload(transfer.codebook);
+                   return transfer.cluster_ids < 0
+                              ? codebook
+                              : codebook + payload(static_cast<std::uint32_t>(transfer.cluster_ids));
+                 },
+                 [&](const PlaneRequest& at) { return payload(transferOf(d, at).planes[at.plane].payload); },
+                 [&](const LightWeightsRequest& at) {
+                   return payload(static_cast<std::uint32_t>(cellOf(d, at).light_weights));
+                 },
+                 [&](const ProxyRequest& at) {
+                   return payload(static_cast<std::uint32_t>(d.groups[at.group].proxy));
+                 },
+                 [&](const BrdfRequest& at) { return payload(d.brdf_tables[at.table].payload); },
+                 [&](const DensityRequest& at) { return payload(d.groups[at.group].volume->density); },
+                 [&](const VoxelsRequest& at) { return payload(d.groups[at.group].volume->voxels); }},
+      work);
+}
+
+std::optional<Result<Ready>> load(const bundle::Reader& reader, const Work& work, const Reserve& reserve) {
+  return std::visit(Load(reader, reserve), work);
+}
+
+std::size_t bytesOf(const Ready& ready) {
+  return std::visit(
+      Overloaded{
+          [](const MeshChunk& item) {
+            return sizeInBytes(item.data.positions) + sizeInBytes(item.data.normals) +
+                   sizeInBytes(item.data.texcoords0) + sizeInBytes(item.data.texcoords1) +
+                   sizeInBytes(item.data.colors) + sizeInBytes(item.data.tangents) +
+                   sizeInBytes(item.data.indices);
+          },
+          [](const ImageChunk& item) { return sizeInBytes(item.rgba) + sizeInBytes(item.linear); },
+          [](const WeightsChunk& item) {
+            return sizeInBytes(item.rows.offsets) + sizeInBytes(item.rows.samples) +
+                   sizeInBytes(item.rows.weights);
+          },
+          [](const CodebookChunk& item) {
+            return sizeInBytes(item.codebook.axis_counts) + sizeInBytes(item.codebook.axes) +
+                   sizeInBytes(item.codebook.vectors) + sizeInBytes(item.positions);
+          },
+          [](const PlaneChunk& item) { return sizeInBytes(item.codes); },
+          [](const LightWeightsChunk& item) { return sizeInBytes(item.samples); },
+          [](const ProxyChunk& item) {
+            return sizeInBytes(item.proxy.positions) + sizeInBytes(item.proxy.triangles) +
+                   sizeInBytes(item.proxy.entries) + sizeInBytes(item.proxy.levels);
+          },
+          [](const BrdfChunk& item) {
+            return sizeInBytes(item.data.values) + sizeInBytes(item.texels.values);
+          },
+          [](const DensityChunk& item) { return sizeInBytes(item.codes) + sizeInBytes(item.block_maxima); },
+          [](const VoxelsChunk& item) { return sizeInBytes(item.voxels); }},
+      ready);
+}
+
+}  // namespace lambent::streaming

@@ -1,0 +1,86 @@
+#include "runtime/frame/shadowed_light_choice.hpp"
+
+#include <cmath>
+#include <numeric>
+
+#include <glm/gtc/matrix_transform.hpp>
+#include <gtest/gtest.h>
+
+namespace lambent::frame {
+namespace {
+
+lighting::LocalLight pointAt(const glm::vec3& place) {
+  return {.kind = lighting::LocalLight::Kind::Point, .position_ws = place, .power = glm::vec3(1.0f)};
+}
+
+TEST(ShadowedLightChoice, WithinTheBoundsALightIsNoRadiiAway) {
+  const scene::Box box{{-1, -2, -2}, {1, 2, 2}};  // radius 3
+  EXPECT_EQ(radiiFrom(box, glm::mat4(1.0f), pointAt({0.9f, 1.9f, -1.9f})), 0.0f);
+  EXPECT_NEAR(radiiFrom(box, glm::mat4(1.0f), pointAt({1.1f, 0, 0})), 1.1f / 3.0f, 1e-6f);
+  EXPECT_NEAR(radiiFrom(box, glm::mat4(1.0f), pointAt({0, 9, 0})), 3.0f, 1e-6f);
+  lighting::LocalLight sphere = pointAt({0, 9, 0});
+  sphere.kind = lighting::LocalLight::Kind::Sphere;
+  sphere.radius_m = 3.0f;
+  EXPECT_NEAR(radiiFrom(box, glm::mat4(1.0f), sphere), 2.0f, 1e-6f) << "to where it begins";
+  sphere.radius_m = 8.0f;
+  EXPECT_EQ(radiiFrom(box, glm::mat4(1.0f), sphere), 0.0f) << "it reaches in";
+}
+
+TEST(ShadowedLightChoice, RadiiAreThoseOfTheBodyAsItStands) {
+  const scene::Box box{glm::vec3(-1), glm::vec3(1)};
+  const glm::mat4 place = glm::scale(glm::translate(glm::mat4(1.0f), glm::vec3(5, 0, 0)), glm::vec3(0.5f));
+  EXPECT_NEAR(radiiFrom(box, place, pointAt({5, 0, 3})), 3.0f / (0.5f * std::sqrt(3.0f)), 1e-5f);
+  EXPECT_TRUE(std::isinf(radiiFrom(scene::Box{}, place, pointAt({5, 0, 3}))));
+  lighting::LocalLight sun = pointAt({5, 0, 0});
+  sun.kind = lighting::LocalLight::Kind::Directional;
+  EXPECT_TRUE(std::isinf(radiiFrom(box, place, sun)));
+  EXPECT_TRUE(std::isinf(radiiFrom(box, place, pointAt({NAN, 0, 0}))));
+}
+
+TEST(ShadowedLightChoice, TheShareFallsOnTheWayOut) {
+  const std::vector<float> from = {0.0f, 4.9f, 5.5f, 6.0f, 7.0f};
+  const std::vector<float> shares = localShares(from, 6.0f);
+  EXPECT_EQ(shares[0], 1.0f);
+  EXPECT_EQ(shares[1], 1.0f);
+  EXPECT_NEAR(shares[2], 0.5f, 1e-6f);
+  EXPECT_EQ(shares[3], 0.0f);
+  EXPECT_EQ(shares[4], 0.0f);
+}
+
+TEST(ShadowedLightChoice, WithoutRadiiOnlyLightsWithinBoundsShinePerPixel) {
+  const std::vector<float> from = {0.1f, 0.0f, 2.0f};
+  EXPECT_EQ(localShares(from, 0.0f), (std::vector<float>{0.0f, 1.0f, 0.0f}));
+}
+
+TEST(ShadowedLightChoice, OfManyLightsWithinBoundsTheFirstHaveThePlaces) {
+  const std::vector<float> from = {0.5f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f};
+  EXPECT_EQ(localShares(from, 6.0f), (std::vector<float>{0.0f, 1.0f, 1.0f, 1.0f, 1.0f, 0.0f}));
+}
+
+TEST(ShadowedLightChoice, NoMoreShineThanThereAreShadowCubesForAndNoneJumps) {
+  // Seven lights swing to and fro, and change places all the time.
+  const auto at = [](int step) {
+    std::vector<float> from;
+    for (int k = 0; k < 7; ++k)
+      from.push_back(3.5f +
+                     3.0f * std::sin(0.002f * static_cast<float>(step * (k + 2)) + static_cast<float>(k)));
+    return from;
+  };
+  std::vector<float> before = localShares(at(0), 6.0f);
+  int changes = 0;
+  for (int step = 1; step < 3000; ++step) {
+    const std::vector<float> now = localShares(at(step), 6.0f);
+    EXPECT_LE(std::ranges::count_if(now, [](float share) { return share > 0.0f; }),
+              static_cast<std::ptrdiff_t>(lighting::kMaxShadowedLights));
+    for (std::size_t k = 0; k < now.size(); ++k) {
+      // 0.054 radii a step at most, of the nearest limit's sixth.
+      ASSERT_NEAR(now[k], before[k], 0.3f) << "step " << step << ", light " << k;
+      changes += (now[k] > 0.0f) != (before[k] > 0.0f) ? 1 : 0;
+    }
+    before = now;
+  }
+  EXPECT_GT(changes, 20);
+}
+
+}  // namespace
+}  // namespace lambent::frame

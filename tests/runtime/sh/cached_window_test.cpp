@@ -1,0 +1,86 @@
+#include "runtime/sh/cached_window.hpp"
+
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "runtime/sh/zonal.hpp"
+#include "tests/runtime/sh/sphere.hpp"
+
+namespace lambent::sh {
+namespace {
+
+LightVector someLight(testing::Random& random, int order = 5) {
+  LightVector light = constantLight(order, glm::vec3(0.05f));
+  for (int k = 0; k < 3; ++k)
+    light += discLight(order, glm::vec3(random.direction()), 0.1 + 0.3 * random.uniform(),
+                       glm::vec3(random.uniform(), random.uniform(), random.uniform()));
+  return light;
+}
+
+}  // namespace
+
+TEST(CachedWindow, AScaledLightKeepsTheWindowThatItWouldHave) {
+  testing::Random random(7);
+  for (int i = 0; i < 50; ++i) {
+    const LightVector light = someLight(random);
+    CachedWindow kept;
+    kept.follow(light, Window::Auto);
+    EXPECT_EQ(kept.weights(), windowWeights(light, Window::Auto));
+    const BandWeights before = kept.weights();
+    const LightVector scaled =
+        light * glm::vec3(0.01 + random.uniform(), 7.3 * (0.01 + random.uniform()), 300.0f);
+    EXPECT_TRUE(kept.fits(scaled, Window::Auto)) << i;
+    kept.follow(scaled, Window::Auto);
+    EXPECT_EQ(kept.weights(), before);
+    // As if it had been searched for, up to what the search promises.
+    const BandWeights searched = windowWeights(scaled, Window::Auto);
+    for (std::size_t l = 0; l < searched.size(); ++l) EXPECT_NEAR(kept.weights()[l], searched[l], 1e-3f);
+  }
+}
+
+TEST(CachedWindow, AnotherShapeHasAWindowOfItsOwn) {
+  testing::Random random(8);
+  for (int i = 0; i < 20; ++i) {
+    const LightVector light = someLight(random), other = someLight(random);
+    CachedWindow kept;
+    kept.follow(light, Window::Auto);
+    EXPECT_FALSE(kept.fits(other, Window::Auto));
+    kept.follow(other, Window::Auto);
+    EXPECT_EQ(kept.weights(), windowWeights(other, Window::Auto));
+    LightVector a_little = light;
+    a_little.c[7].g += 1e-4f;
+    EXPECT_FALSE(sameShape(light, a_little));
+  }
+}
+
+TEST(CachedWindow, ChannelsThatComeOrGoOrTurnRoundAreOtherShapes) {
+  testing::Random random(9);
+  const LightVector light = someLight(random);
+  const LightVector red = light * glm::vec3(1, 0, 0);
+  EXPECT_FALSE(sameShape(light, red));
+  EXPECT_FALSE(sameShape(red, light));
+  EXPECT_TRUE(sameShape(red, red * 2.0f));
+  EXPECT_FALSE(sameShape(light, light * -1.0f));
+  EXPECT_FALSE(sameShape(light, light.truncated(4)));
+  LightVector broken = light;
+  broken.c[3].r = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_FALSE(sameShape(light, broken));
+  EXPECT_FALSE(sameShape(broken, broken));
+  EXPECT_TRUE(sameShape(LightVector{}, LightVector{})) << "darkness is darkness";
+}
+
+TEST(CachedWindow, WindowsThatDoNotLookAtTheLightFollowItsOrderAndTheirKind) {
+  testing::Random random(10);
+  const LightVector light = someLight(random), other = someLight(random);
+  CachedWindow kept;
+  for (const Window window : {Window::Hann, Window::Off, Window::Auto}) {
+    EXPECT_FALSE(kept.fits(light, window));
+    kept.follow(light, window);
+    EXPECT_EQ(kept.weights(), windowWeights(light, window));
+    EXPECT_EQ(kept.fits(other, window), window != Window::Auto);
+    EXPECT_FALSE(kept.fits(light.truncated(3), window));
+  }
+}
+
+}  // namespace lambent::sh
