@@ -15,8 +15,8 @@
 #include "baker/reference/progressive.hpp"
 #include "editor/session/reference_scene.hpp"
 #include "runtime/frame/frame.hpp"
-#include "runtime/frame/tone_mapper.hpp"
 #include "runtime/gpu/objects.hpp"
+#include "runtime/tone_map/tone_mapper.hpp"
 
 namespace lambent::editor {
 

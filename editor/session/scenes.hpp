@@ -17,7 +17,7 @@
 #include "baker/pipeline/source_watch.hpp"
 #include "editor/document/world_state.hpp"
 #include "editor/session/log.hpp"
-#include "runtime/frame/world.hpp"
+#include "runtime/world/world.hpp"
 
 namespace lambent::editor {
 

@@ -7,11 +7,11 @@
 #include <fmt/format.h>
 
 #include "editor/session/moved_parts.hpp"
-#include "runtime/frame/material_rebake.hpp"
 #include "runtime/scene/bounds.hpp"
 #include "runtime/scene/lights.hpp"
 #include "runtime/scene/materials.hpp"
 #include "runtime/spec/light.hpp"
+#include "runtime/world/material_rebake.hpp"
 
 namespace lambent::editor {
 

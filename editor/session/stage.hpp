@@ -11,8 +11,8 @@
 #include "editor/document/world_state.hpp"
 #include "runtime/frame/frame.hpp"
 #include "runtime/frame/frame_times.hpp"
-#include "runtime/frame/world.hpp"
 #include "runtime/lighting/environment.hpp"
+#include "runtime/world/world.hpp"
 
 namespace lambent::editor {
 

@@ -14,9 +14,9 @@
 #include "editor/gizmo/light_gizmo.hpp"
 #include "editor/gizmo/sun_gizmo.hpp"
 #include "editor/session/suns.hpp"
-#include "runtime/frame/overlays.hpp"
-#include "runtime/frame/views.hpp"
+#include "runtime/debug/overlays.hpp"
 #include "runtime/spec/size.hpp"
+#include "runtime/surface/views.hpp"
 
 namespace lambent::editor {
 

@@ -6,9 +6,9 @@
 #include <optional>
 
 #include "runtime/base/result.hpp"
-#include "runtime/frame/world.hpp"
 #include "runtime/gpu/window.hpp"
 #include "runtime/spec/camera.hpp"
+#include "runtime/world/world.hpp"
 
 namespace lambent::demo {
 

@@ -9,13 +9,13 @@
 #include <variant>
 #include <vector>
 
+#include "runtime/debug/overlay_options.hpp"
 #include "runtime/frame/frame_settings.hpp"
-#include "runtime/frame/overlay_options.hpp"
-#include "runtime/frame/views.hpp"
 #include "runtime/spec/camera.hpp"
 #include "runtime/spec/key_edit.hpp"
 #include "runtime/spec/light.hpp"
 #include "runtime/spec/size.hpp"
+#include "runtime/surface/views.hpp"
 
 namespace lambent::demo {
 

@@ -8,9 +8,9 @@
 
 #include "runtime/demo/options.hpp"
 #include "runtime/frame/frame.hpp"
-#include "runtime/frame/world.hpp"
 #include "runtime/gpu/context.hpp"
 #include "runtime/gpu/pass_timers.hpp"
+#include "runtime/world/world.hpp"
 
 namespace lambent::demo {
 

@@ -4,9 +4,9 @@
 
 #include "runtime/base/result.hpp"
 #include "runtime/demo/options.hpp"
-#include "runtime/frame/world.hpp"
 #include "runtime/lighting/environment.hpp"
 #include "runtime/spec/camera.hpp"
+#include "runtime/world/world.hpp"
 
 namespace lambent::demo {
 

@@ -354,8 +354,11 @@ Result<void> Frame::raster(World& world, const lighting::Environment& environmen
   clearPicture();
   surfaces_.drawOpaque(world, pass.counters());
   if (options_.view.view == SurfaceView::Final || options_.view.view == SurfaceView::Wireframe) {
-    if (Result<void> done =
-            proxy_lods_.prepare(world, environment, lit_scene_.lights, options_.settings, pass.counters());
+    if (Result<void> done = proxy_lods_.prepare(world, environment, lit_scene_.lights,
+                                                {.order = options_.settings.order,
+                                                 .window = options_.settings.window,
+                                                 .diffuse = options_.settings.diffuse},
+                                                pass.counters());
         !done)
       return done;
     proxy_lods_.draw(view, pass.counters());

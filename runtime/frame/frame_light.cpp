@@ -3,8 +3,8 @@
 #include <cmath>
 #include <utility>
 
-#include "runtime/frame/apart_shadows.hpp"
 #include "runtime/frame/frame.hpp"
+#include "runtime/shadows/apart_shadows.hpp"
 
 namespace lambent::frame {
 

@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "runtime/frame/frame_settings.hpp"
-#include "runtime/frame/world.hpp"
 #include "runtime/lighting/environment.hpp"
 #include "runtime/spec/camera.hpp"
 #include "runtime/spec/size.hpp"
+#include "runtime/world/world.hpp"
 
 namespace lambent::frame {
 

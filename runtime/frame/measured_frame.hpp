@@ -10,12 +10,12 @@
 
 #include "runtime/base/result.hpp"
 #include "runtime/frame/frame_settings.hpp"
-#include "runtime/frame/world.hpp"
 #include "runtime/gpu/pass_timers.hpp"
 #include "runtime/lighting/environment.hpp"
 #include "runtime/spec/camera.hpp"
 #include "runtime/spec/image.hpp"
 #include "runtime/spec/size.hpp"
+#include "runtime/world/world.hpp"
 
 namespace lambent::frame {
 

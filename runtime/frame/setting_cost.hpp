@@ -13,10 +13,10 @@
 #include "runtime/base/result.hpp"
 #include "runtime/frame/frame_settings.hpp"
 #include "runtime/frame/measured_frame.hpp"
-#include "runtime/frame/world.hpp"
 #include "runtime/gpu/pass_timers.hpp"
 #include "runtime/lighting/environment.hpp"
 #include "runtime/spec/camera.hpp"
+#include "runtime/world/world.hpp"
 
 namespace lambent::frame {
 

@@ -2,7 +2,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "runtime/frame/material_rebake.hpp"
+#include "runtime/world/material_rebake.hpp"
 #include "tests/stability/show.hpp"
 #include "tests/support/gpu_context.hpp"
 

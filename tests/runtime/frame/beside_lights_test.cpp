@@ -3,7 +3,7 @@
 
 #include <numbers>
 
-#include "runtime/frame/local_shadows.hpp"
+#include "runtime/shadows/local_shadows.hpp"
 #include "tests/runtime/frame/bundle_builder.hpp"
 #include "tests/runtime/frame/neighborhood_checks.hpp"
 

@@ -1,6 +1,6 @@
 // Boxes that meet, against points of theirs.
 
-#include "runtime/frame/boxes.hpp"
+#include "runtime/world/boxes.hpp"
 
 #include <random>
 

@@ -6,10 +6,10 @@
 
 #include <gtest/gtest.h>
 
+#include "runtime/draws/glossy_record.hpp"
 #include "runtime/frame/fewer_samples.hpp"
-#include "runtime/frame/glossy_record.hpp"
-#include "runtime/frame/material_rebake.hpp"
 #include "runtime/frame/quality.hpp"
+#include "runtime/world/material_rebake.hpp"
 #include "tests/support/material_values.hpp"
 
 namespace lambent::frame {

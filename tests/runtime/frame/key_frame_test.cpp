@@ -12,11 +12,11 @@
 #include <unistd.h>
 
 #include "runtime/frame/frame.hpp"
-#include "runtime/frame/shadowed_light_ref.hpp"
 #include "runtime/scene/components.hpp"
 #include "runtime/sh/image_layout.hpp"
 #include "runtime/sh/rotation.hpp"
 #include "runtime/sh/zonal.hpp"
+#include "runtime/shadows/shadowed_light_ref.hpp"
 #include "tests/runtime/frame/bundle_builder.hpp"
 #include "tests/support/gpu_context.hpp"
 

@@ -9,7 +9,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "runtime/frame/key_light_ref.hpp"
+#include "runtime/shadows/key_light_ref.hpp"
 #include "tests/runtime/frame/key_maps.hpp"
 
 namespace lambent::frame {

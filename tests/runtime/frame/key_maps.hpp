@@ -12,7 +12,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
-#include "runtime/frame/key_shared.h"
+#include "runtime/shadows/key_shared.h"
 
 namespace lambent::frame {
 

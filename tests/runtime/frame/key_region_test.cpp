@@ -1,5 +1,5 @@
 // Which part of the world a key light's shadow map shows.
-#include "runtime/frame/key_region.hpp"
+#include "runtime/shadows/key_region.hpp"
 
 #include <cmath>
 #include <limits>

@@ -6,9 +6,9 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "runtime/frame/key_light_ref.hpp"
 #include "runtime/gpu/objects.hpp"
 #include "runtime/gpu/program.hpp"
+#include "runtime/shadows/key_light_ref.hpp"
 #include "test_key_gpu_embedded.hpp"
 #include "tests/runtime/frame/key_maps.hpp"
 #include "tests/support/gpu_context.hpp"

@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include "runtime/frame/local_shadow_ref.hpp"
 #include "runtime/gpu/program.hpp"
+#include "runtime/shadows/local_shadow_ref.hpp"
 #include "test_local_gpu_embedded.hpp"
 #include "tests/support/gpu_context.hpp"
 

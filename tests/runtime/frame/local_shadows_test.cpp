@@ -1,5 +1,5 @@
 // Pictures under local lights with known answers: small bundles in the dark, lit by one light.
-#include "runtime/frame/local_shadows.hpp"
+#include "runtime/shadows/local_shadows.hpp"
 
 #include <cmath>
 #include <limits>
@@ -8,7 +8,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
 
-#include "runtime/frame/local_shadow_ref.hpp"
+#include "runtime/shadows/local_shadow_ref.hpp"
 #include "tests/runtime/frame/local_stage.hpp"
 #include "tests/support/gpu_context.hpp"
 

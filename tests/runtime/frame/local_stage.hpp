@@ -13,10 +13,10 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include "runtime/frame/local_shadows.hpp"
-#include "runtime/frame/surfaces.hpp"
 #include "runtime/lighting/environment.hpp"
 #include "runtime/lighting/group_lights.hpp"
+#include "runtime/shadows/local_shadows.hpp"
+#include "runtime/surface/surfaces.hpp"
 #include "tests/runtime/frame/bundle_builder.hpp"
 
 namespace lambent::frame {

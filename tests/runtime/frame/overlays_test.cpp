@@ -1,12 +1,12 @@
 // Overlays: their words, what they draw where, and that they leave the rest of the picture alone.
-#include "runtime/frame/overlays.hpp"
+#include "runtime/debug/overlays.hpp"
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
 
-#include "runtime/frame/overlay_keys.hpp"
-#include "runtime/frame/overlay_lines.hpp"
+#include "runtime/debug/overlay_keys.hpp"
+#include "runtime/debug/overlay_lines.hpp"
 #include "runtime/scene/lights.hpp"
 #include "tests/runtime/frame/view_stage.hpp"
 

@@ -1,6 +1,6 @@
 // Pictures of a closed sphere with a lamp at its centre: E is the same everywhere, and bounces multiply it by
 // 1 / (1 - albedo).
-#include "runtime/frame/patch_bounces.hpp"
+#include "runtime/bounces/patch_bounces.hpp"
 
 #include <cmath>
 #include <cstring>

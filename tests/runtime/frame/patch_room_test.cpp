@@ -1,5 +1,5 @@
 // Rooms with lamps in them, on the CPU: known answers, and what costs nothing.
-#include "runtime/frame/patch_room.hpp"
+#include "runtime/bounces/patch_room.hpp"
 
 #include <cmath>
 #include <cstring>
@@ -8,7 +8,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
 
-#include "runtime/frame/patch_light.hpp"
+#include "runtime/bounces/patch_light.hpp"
 #include "tests/runtime/lighting/rooms.hpp"
 
 namespace lambent::frame {

@@ -1,5 +1,5 @@
 // What is picked is what the picture shows.
-#include "runtime/frame/picker.hpp"
+#include "runtime/debug/picker.hpp"
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>

@@ -1,4 +1,4 @@
-#include "runtime/frame/shadowed_light_choice.hpp"
+#include "runtime/shadows/shadowed_light_choice.hpp"
 
 #include <cmath>
 #include <numeric>

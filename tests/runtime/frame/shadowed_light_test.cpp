@@ -7,8 +7,8 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "runtime/frame/local_faces.hpp"
-#include "runtime/frame/local_shadow_ref.hpp"
+#include "runtime/shadows/local_faces.hpp"
+#include "runtime/shadows/local_shadow_ref.hpp"
 
 namespace lambent::frame {
 namespace {

@@ -7,12 +7,12 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
+#include "runtime/draws/draw_indices.hpp"
+#include "runtime/draws/glossy_record.hpp"
+#include "runtime/draws/surface_shared.h"
 #include "runtime/effects/glossy/glossy_kernel_ref.hpp"
-#include "runtime/frame/draw_indices.hpp"
-#include "runtime/frame/glossy_record.hpp"
-#include "runtime/frame/surface_normal_ref.hpp"
-#include "runtime/frame/surface_shared.h"
 #include "runtime/gpu/program.hpp"
+#include "runtime/surface/surface_normal_ref.hpp"
 #include "test_surfaces_embedded.hpp"
 #include "tests/runtime/effects/glossy/random_table.hpp"
 #include "tests/support/gpu_context.hpp"

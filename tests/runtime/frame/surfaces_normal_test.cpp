@@ -6,8 +6,8 @@
 #include <glm/mat3x3.hpp>
 #include <gtest/gtest.h>
 
-#include "runtime/frame/surface_normal_ref.hpp"
 #include "runtime/sh/zonal.hpp"
+#include "runtime/surface/surface_normal_ref.hpp"
 
 namespace lambent::frame {
 namespace {

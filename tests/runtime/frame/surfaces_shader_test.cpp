@@ -9,9 +9,9 @@
 #include <gtest/gtest.h>
 
 #include "runtime/bundle/gltf_types.hpp"
-#include "runtime/frame/surface_normal_ref.hpp"
-#include "runtime/frame/surface_shared.h"
+#include "runtime/draws/surface_shared.h"
 #include "runtime/gpu/program.hpp"
+#include "runtime/surface/surface_normal_ref.hpp"
 #include "test_surfaces_embedded.hpp"
 #include "tests/support/gpu_context.hpp"
 

@@ -1,5 +1,5 @@
 // Views of surfaces: their words, their numbers in pictures, and that a picture without them stays as it is.
-#include "runtime/frame/views.hpp"
+#include "runtime/surface/views.hpp"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>

@@ -1,6 +1,6 @@
 // Bundles come, go and take each other's place while the world is shown: what is left shows the same picture
 // as a world that never had the others, and nothing of them stays behind.
-#include "runtime/frame/world.hpp"
+#include "runtime/world/world.hpp"
 
 #include <fstream>
 

@@ -1,0 +1,354 @@
+#include "runtime/bounces/patch_bounces.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <span>
+#include <utility>
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+#include <glm/vec4.hpp>
+
+#include "lambent_bounces_embedded.hpp"
+#include "runtime/draws/surface_record.hpp"
+#include "runtime/shadows/shadowed_light_record.hpp"
+
+namespace lambent::frame {
+
+static_assert(kPatchLinks == lighting::kLinks);
+
+namespace {
+
+constexpr gpu::FindText kShaders[] = {&embedded::lambent_bounces::find};
+constexpr std::size_t kOtherLevel = 1;  // of the proxies of what stands in the light
+// Where bounces add less to light that falls on all of a group alike, bands suffice for key lights.
+constexpr float kWorthPatches = 0.02f;
+constexpr float kFarAway = 1e3f;  // radii of a room, where key lights are
+
+std::uint32_t outputsOf(const streaming::ResidentDraw& draw) {
+  return draw.outputs == 1 ? 1 : bundle::kMappedOutputs;
+}
+
+lighting::LinkSpread spreadOf(const streaming::ResidentDraw& draw) {
+  return outputsOf(draw) == 1 ? lighting::LinkSpread::Cosine : lighting::LinkSpread::Hemisphere;
+}
+
+std::vector<glm::vec3> readVectors(const gpu::Buffer& page, std::uint32_t word, std::uint32_t count) {
+  std::vector<glm::vec3> values(count);
+  page.read(4 * std::size_t{word}, std::span(values));
+  return values;
+}
+
+float distanceToSegment(const glm::vec3& point, const glm::vec3& from, const glm::vec3& to) {
+  const glm::vec3 way = to - from;
+  const float length2 = glm::dot(way, way);
+  const float along = length2 > 0.0f ? std::clamp(glm::dot(point - from, way) / length2, 0.0f, 1.0f) : 0.0f;
+  return glm::distance(point, from + along * way);
+}
+
+glm::vec3 unit(const glm::vec3& v) {
+  const float length = glm::length(v);
+  return length > 0.0f ? v / length : glm::vec3(0.0f, 1.0f, 0.0f);
+}
+
+}  // namespace
+
+PatchBounces::PatchBounces()
+    : patches_("lamp patches"),
+      bounced_("lamp light at vertices"),
+      directions_("lamp link directions"),
+      block_("lamp draw") {}
+
+void PatchBounces::drop() {
+  if (counts_.rooms > 0 || !words_.empty()) ++layout_version_;
+  rooms_.clear();
+  draws_.clear();
+  words_.clear();
+  counts_ = {};
+}
+
+// Lamps that stand within the group's bounds have patches in any case.
+std::uint32_t PatchBounces::within(const LitScene& scene, std::size_t group) {
+  return group < scene.local_masks.size() ? scene.local_masks[group] : 0u;
+}
+
+std::uint32_t PatchBounces::beside(const LitScene& scene, std::size_t group) {
+  return group < scene.pixel_masks.size() ? scene.pixel_masks[group] & ~within(scene, group) : 0u;
+}
+
+bool PatchBounces::apart(const World& world, const LitScene& scene, const PatchLights& lights,
+                         std::size_t group) {
+  return world.residency().groups()[group].volume < 0 &&
+         (!lights.keys.empty() || (lights.bands->hasKeys() && beside(scene, group) != 0));
+}
+
+RoomLights PatchBounces::lightsIn(const World& world, const LitScene& scene, const PatchLights& lights,
+                                  std::size_t group) const {
+  const auto& transport = rooms_[group].room.transport();
+  const streaming::ResidentGroup& resident = world.residency().groups()[group];
+  const bool by_bands =
+      apart(world, scene, lights, group) && transport && transport->bounced() >= kWorthPatches;
+  RoomLights found;
+  const std::uint32_t lamps = within(scene, group) | (by_bands ? beside(scene, group) : 0u);
+  for (std::size_t k = 0; k < scene.shadowed_lights.size(); ++k)
+    if ((lamps >> k & 1u) != 0 && shines(scene.shadowed_lights[k]))
+      found.lamps.push_back(scene.shadowed_lights[k]);
+  if (!by_bands) return found;
+  const glm::quat group_from_world = glm::conjugate(world.rotationOf(group));
+  for (spec::Disc key : lights.keys) {
+    key.direction = group_from_world * key.direction;
+    found.keys.push_back(key);
+  }
+  for (std::size_t s = 0; s < resident.light_probes.size(); ++s) {
+    const std::span<const glm::vec4> bands = lights.bands->coefficients().subspan(
+        lights.bands->firstOf(group, s) + lighting::GroupLights::kBlock, lighting::GroupLights::kBlock);
+    found.bands.push_back({.position = resident.light_probes[s], .light = {bands.begin(), bands.end()}});
+  }
+  return found;
+}
+
+// Bodies that may stand between the group's surfaces and its lights.
+std::vector<lighting::RayTriangle> PatchBounces::othersAround(const World& world, const LitScene& scene,
+                                                              std::size_t group, const RoomLights& lights) {
+  if (lights.none()) return {};
+  const std::uint32_t own = scene.groups[group].body;
+  if (own == lighting::CapturePoint::kNoBody) return {};
+  const lighting::IncidentBody& room = scene.bodies[own];
+  const glm::mat4 group_from_world = glm::inverse(world.worldFromGroup(group));
+  std::vector<glm::vec3> ends;  // of ways from the room to its lights
+  for (const lighting::ShadowedLight& lamp : lights.lamps) ends.push_back(lamp.position_ws);
+  for (const spec::Disc& key : lights.keys)
+    ends.push_back(room.center_ws + kFarAway * room.radius_m * (world.rotationOf(group) * key.direction));
+  const auto inTheWay = [&](const lighting::IncidentBody& other) {
+    return std::ranges::any_of(ends, [&](const glm::vec3& end) {
+      return distanceToSegment(other.center_ws, room.center_ws, end) <= room.radius_m + other.radius_m;
+    });
+  };
+  std::vector<lighting::RayTriangle> triangles;
+  for (std::size_t g = 0; g < scene.groups.size(); ++g) {
+    const std::uint32_t body = scene.groups[g].body;
+    if (body == own || body == lighting::CapturePoint::kNoBody) continue;
+    const lighting::IncidentBody& other = scene.bodies[body];
+    if (!inTheWay(other)) continue;
+    const bundle::CaptureProxy& proxy = *world.residency().groups()[g].proxy;
+    if (proxy.levels.empty()) continue;
+    const bundle::ProxyLevel& level = proxy.levels[std::min(kOtherLevel, proxy.levels.size() - 1)];
+    const glm::mat4 group_from_other = group_from_world * other.body.world_from_proxy;
+    for (std::uint32_t t = 0; t < level.triangle_count; ++t) {
+      const bundle::ProxyTriangle& from = proxy.triangles[level.first_triangle + t];
+      lighting::RayTriangle& triangle = triangles.emplace_back();
+      triangle.front_only = from.front_only;
+      for (std::size_t k = 0; k < 3; ++k)
+        triangle.corners[k] = group_from_other * glm::vec4(proxy.positions[from.vertices[k]], 1.0f);
+    }
+  }
+  return triangles;
+}
+
+PatchBounces::Points PatchBounces::pointsOf(World& world, std::size_t index) {
+  const streaming::ResidentDraw& draw = world.residency().draws()[index];
+  const streaming::ResidentMesh& mesh = world.residency().meshes()[draw.mesh];
+  const gpu::Buffer& page = world.residency().geometry().page(mesh.block.page);
+  const glm::mat4 group_from_mesh =
+      glm::inverse(world.worldFromGroup(draw.group)) * world.worldFromMesh(index);
+  const std::vector<glm::vec3> positions = readVectors(page, mesh.positions_word, mesh.vertex_count);
+  const std::vector<glm::vec3> normals = readVectors(page, mesh.normals_word, mesh.vertex_count);
+  Points points{.draw = draw.id, .points = {}, .spread = spreadOf(draw)};
+  points.points.reserve(mesh.vertex_count);
+  for (std::size_t v = 0; v < mesh.vertex_count; ++v)
+    points.points.push_back({.position = glm::vec3(group_from_mesh * glm::vec4(positions[v], 1.0f)),
+                             .normal = unit(draw.group_from_mesh_normal * normals[v])});
+  return points;
+}
+
+bool PatchBounces::lit(const World& world, std::size_t draw) const {
+  const streaming::ResidentDraw& resident = world.residency().draws()[draw];
+  return !rooms_[resident.group].room.givenOff().empty() && !materialOf(world, draw).unlit;
+}
+
+// Everything that the group needs and does not have, as one piece of work.
+void PatchBounces::ask(World& world, std::size_t group, bool links) {
+  Room& room = rooms_[group];
+  if (room.coming.valid()) return;
+  const auto& draws = world.residency().draws();
+  std::vector<Points> points;
+  for (std::size_t i = 0; links && i < draws.size(); ++i) {
+    if (draws[i].group != group || draws_[i].asked) continue;
+    if (!world.residency().meshes()[draws[i].mesh].block || materialOf(world, i).unlit) continue;
+    draws_[i].asked = true;
+    points.push_back(pointsOf(world, i));
+  }
+  if (room.room.transport() && points.empty()) return;
+  const streaming::ResidentGroup& resident = world.residency().groups()[group];
+  room.coming = std::async(std::launch::async, [transport = room.room.transport(), points = std::move(points),
+                                                proxy = *resident.proxy,
+                                                order = static_cast<int>(resident.order)]() mutable {
+    Made made{.transport = std::move(transport), .links = {}};
+    if (!made.transport)
+      made.transport = std::make_shared<const lighting::PatchTransport>(proxy, lighting::kMaxPatches, order);
+    for (const Points& draw : points)
+      made.links.push_back({draw.draw, made.transport->link(draw.points, draw.spread)});
+    return made;
+  });
+}
+
+bool PatchBounces::take(const World& world, std::size_t group, bool wait) {
+  Room& room = rooms_[group];
+  if (!room.coming.valid()) return false;
+  if (!wait && room.coming.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return false;
+  Made made = room.coming.get();
+  if (!room.room.transport()) room.room = PatchRoom(std::move(made.transport));
+  const auto& draws = world.residency().draws();
+  for (Made::Links& links : made.links) {
+    const auto found = std::ranges::find(draws, links.draw, &streaming::ResidentDraw::id);
+    if (found == draws.end()) continue;
+    Draw& draw = draws_[static_cast<std::size_t>(found - draws.begin())];
+    draw.links = gpu::Buffer("lamp links", std::max<std::size_t>(4, 2 * links.patches.size()));
+    draw.links.write(0, std::span<const std::uint16_t>(links.patches));
+  }
+  return true;
+}
+
+bool PatchBounces::prepare(World& world, const LitScene& scene, const PatchLights& lights, std::size_t group,
+                           bool wait) {
+  if (!world.residency().groups()[group].proxy) return false;
+  bool came = false;
+  // First the form factors of a group that has key lights alone: they say whether links are worth having.
+  for (int stage = 0; stage < 2; ++stage) {
+    const bool links = !lightsIn(world, scene, lights, group).none();
+    if (!links && (!apart(world, scene, lights, group) || rooms_[group].room.transport())) return came;
+    ask(world, group, links);
+    if (!take(world, group, wait)) return came;
+    came = true;
+  }
+  return came;
+}
+
+Result<void> PatchBounces::update(World& world, const LitScene& scene, const PatchLights& lights, bool on,
+                                  bool wait, gpu::Counters& counters) {
+  const auto& groups = world.residency().groups();
+  counts_ = {};
+  bool any = !lights.keys.empty();
+  for (const std::uint32_t mask : scene.pixel_masks) any |= mask != 0;
+  if (!on || (!any && rooms_.size() == 0)) {
+    drop();
+    return {};
+  }
+  const bool groups_moved = rooms_.follow(groups, &streaming::ResidentGroup::id);
+  const bool draws_moved = draws_.follow(world.residency().draws(), &streaming::ResidentDraw::id);
+  bool changed = groups_moved || draws_moved;
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    Room& room = rooms_[g];
+    changed |= prepare(world, scene, lights, g, wait);
+    if (room.coming.valid()) ++counts_.rooms_to_come;
+    if (!room.room.transport()) continue;
+    const RoomLights found = lightsIn(world, scene, lights, g);
+    room.room.light(found, world.worldFromGroup(g), othersAround(world, scene, g, found));
+    counts_.lights_bounced += room.room.bouncedLast();
+    if (!room.room.givenOff().empty()) {
+      ++counts_.rooms;
+      counts_.patches += static_cast<std::uint32_t>(room.room.givenOff().size());
+    }
+    if (room.seen == room.room.version()) continue;
+    room.seen = room.room.version();
+    room.version = ++version_;
+    room.sent.clear();
+    if (!room.room.givenOff().empty()) room.sent = room.room.transport()->byTriangle(room.room.givenOff());
+    changed = true;
+  }
+  if (!changed) return {};
+  layOut(world);
+  uploadPatches(counters);
+  return gather(world, counters);
+}
+
+void PatchBounces::layOut(const World& world) {
+  const auto& draws = world.residency().draws();
+  std::vector<std::uint32_t> words(draws.size(), kNothing);
+  std::uint32_t word = 0;
+  for (std::size_t i = 0; i < draws.size(); ++i) {
+    if (!draws_[i].links || !lit(world, i)) continue;
+    words[i] = word;
+    word += 3 * outputsOf(draws[i]) * world.residency().meshes()[draws[i].mesh].vertex_count;
+  }
+  if (words == words_) return;
+  words_ = std::move(words);
+  ++layout_version_;
+  for (Draw& draw : draws_) draw.gathered = 0;
+  bounced_.reserve(std::max<std::size_t>(16, 4 * std::size_t{word}));
+}
+
+// Behind the regions of each group one that is dark, for links that meet nothing.
+void PatchBounces::uploadPatches(gpu::Counters& counters) {
+  std::vector<glm::vec4> patches;
+  for (Room& room : rooms_) {
+    if (room.room.givenOff().empty()) continue;
+    room.first_patch = static_cast<std::uint32_t>(patches.size());
+    const lighting::PatchRegions& regions = room.room.transport()->regions();
+    for (const glm::vec3& radiance : regions.means(room.room.givenOff()))
+      patches.emplace_back(radiance, 0.0f);
+    patches.emplace_back(0.0f);
+  }
+  if (patches.empty()) return;
+  patches_.assign(std::span<const glm::vec4>(patches));
+  counters.uploaded_bytes += patches.size() * sizeof(glm::vec4);
+}
+
+Result<const gpu::Program*> PatchBounces::program(std::uint32_t outputs) {
+  if (const auto found = programs_.find(outputs); found != programs_.end()) return &found->second;
+  const std::vector<gpu::Define> defines = {{"LAMBENT_OUTPUTS", std::to_string(outputs)}};
+  Result<gpu::Program> made =
+      gpu::Program::create(fmt::format("patch_gather.comp outputs {}", outputs),
+                           {{GL_COMPUTE_SHADER, "patch_gather.comp"}}, kShaders, defines);
+  if (!made) return failAgain(made.error());
+  if (outputs > 1) {
+    std::vector<glm::vec4> directions;
+    for (const glm::vec3& direction : lighting::linkDirections(lighting::LinkSpread::Hemisphere))
+      directions.emplace_back(direction, 0.0f);
+    directions_.assign(std::span<const glm::vec4>(directions));
+  }
+  return &programs_.emplace(outputs, std::move(*made)).first->second;
+}
+
+Result<void> PatchBounces::gather(World& world, gpu::Counters& counters) {
+  const auto& draws = world.residency().draws();
+  for (std::size_t i = 0; i < draws.size(); ++i) {
+    const Room& room = rooms_[draws[i].group];
+    if (words_[i] == kNothing || draws_[i].gathered == room.version) continue;
+    draws_[i].gathered = room.version;
+    const Result<const gpu::Program*> kernel = program(outputsOf(draws[i]));
+    if (!kernel) return failAgain(kernel.error());
+    (*kernel)->use();
+    const streaming::ResidentMesh& mesh = world.residency().meshes()[draws[i].mesh];
+    const PatchDraw block{.group_from_mesh_normal = glm::mat3x4(draws[i].group_from_mesh_normal),
+                          .first_patch = room.first_patch,
+                          .vertex_count = mesh.vertex_count,
+                          .bounced_word = words_[i],
+                          .normals_word = mesh.normals_word};
+    block_.assign(std::span<const PatchDraw>(&block, 1));
+    glBindBufferBase(GL_UNIFORM_BUFFER, kBindPatchDraw, block_.buffer().id());
+    draws_[i].links.bindStorage(kBindPatchLinks);
+    patches_.bindStorage(kBindPatches);
+    bounced_.bindStorage(kBindPatchBounced);
+    if (outputsOf(draws[i]) > 1) {
+      world.residency().geometry().page(mesh.block.page).bindStorage(kBindPatchGeometry);
+      directions_.bindStorage(kBindPatchDirections);
+    }
+    glDispatchCompute((mesh.vertex_count + kPatchGroupSize - 1) / kPatchGroupSize, 1, 1);
+    ++counters.dispatches;
+    ++counts_.draws_gathered;
+    counters.uploaded_bytes += sizeof(block);
+  }
+  if (counts_.draws_gathered > 0) glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+  return {};
+}
+
+std::uint64_t PatchBounces::bytesResident() const {
+  std::uint64_t bytes = patches_.buffer().byteCount() + bounced_.buffer().byteCount();
+  for (const Draw& draw : draws_) bytes += draw.links.byteCount();
+  return bytes;
+}
+
+}  // namespace lambent::frame

@@ -1,0 +1,117 @@
+#include "runtime/draws/glossy_record.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include <fmt/format.h>
+#include <glm/gtc/quaternion.hpp>
+
+#include "runtime/sh/zonal_factors.hpp"
+
+namespace lambent::frame {
+
+namespace {
+
+std::optional<BrdfChoice> tableFor(std::span<const bundle::BrdfFamily> tables,
+                                   const gltf::Material& material) {
+  using Family = bundle::BrdfFamily;
+  const Family family = bundle::brdfFamilyOf(material);
+  if (family == Family::Measured) {
+    const auto index = static_cast<std::size_t>(material.brdf);
+    if (index >= tables.size() || tables[index] != family) return {};
+    return BrdfChoice{material.brdf, family};
+  }
+  const Family other = family == Family::Ggx ? Family::AnisotropicGgx : Family::Ggx;
+  for (const Family wanted : {family, other})
+    if (const auto found = std::ranges::find(tables, wanted); found != tables.end())
+      return BrdfChoice{static_cast<std::int32_t>(found - tables.begin()), wanted};
+  return {};
+}
+
+BrdfChoice choiceOf(const World& world, std::size_t draw) {
+  const streaming::ResidentDraw& resident = world.residency().draws()[draw];
+  return brdfChoiceOf(world.residency().bundles()[resident.bundle].brdf_families, world.material(draw),
+                      world.bakedMaterial(draw));
+}
+
+}  // namespace
+
+BrdfChoice brdfChoiceOf(std::span<const bundle::BrdfFamily> tables, const gltf::Material& now,
+                        const gltf::Material& baked) {
+  if (const auto choice = tableFor(tables, now)) return *choice;
+  return tableFor(tables, baked).value_or(BrdfChoice{-1, bundle::brdfFamilyOf(baked)});
+}
+
+std::int32_t brdfTableOf(const World& world, std::size_t draw) {
+  return choiceOf(world, draw).table;
+}
+
+bool glossyReady(const World& world, std::size_t draw) {
+  const streaming::ResidentDraw& resident = world.residency().draws()[draw];
+  const streaming::ResidentBundle& owner = world.residency().bundles()[resident.bundle];
+  const std::int32_t table = brdfTableOf(world, draw);
+  return resident.glossy() && table >= 0 && owner.brdf_tables[static_cast<std::size_t>(table)].texture &&
+         owner.brdf_tables[static_cast<std::size_t>(table)].order == bundle::bandsOf(resident.outputs) &&
+         world.residency().meshes()[resident.mesh].block && resident.rows &&
+         world.residency().groups()[resident.group].samples;
+}
+
+GlossyPart describeGlossy(const World& world, std::size_t draw) {
+  const streaming::ResidentDraw& resident = world.residency().draws()[draw];
+  const streaming::ResidentMesh& mesh = world.residency().meshes()[resident.mesh];
+  const streaming::ResidentGroup& group = world.residency().groups()[resident.group];
+  const streaming::BrdfTexture& table = world.residency()
+                                            .bundles()[resident.bundle]
+                                            .brdf_tables[static_cast<std::size_t>(brdfTableOf(world, draw))];
+  const gltf::Material& material = materialOf(world, draw);
+  // A diffuse material is Lambert, whatever its roughness says (docs/conventions.md).
+  const glm::vec3 dielectric = material.reflectance() * material.specular_color;
+  const float specular = material.matte() ? 0.0f : material.specular;
+  return {.group_from_world = glm::mat3x4(glm::mat3_cast(glm::conjugate(world.rotationOf(resident.group)))),
+          .dielectric = glm::vec4(dielectric, specular),
+          .metallic_roughness_texture = slotOf(material.metallic_roughness_texture, mesh),
+          .specular_texture = slotOf(material.specular_texture, mesh),
+          .specular_color_texture = slotOf(material.specular_color_texture, mesh),
+          .anisotropy_texture = slotOf(material.anisotropy_texture, mesh),
+          .metallic = material.metallic,
+          .roughness = material.roughness,
+          .anisotropy = material.anisotropy,
+          .direction_cos = std::cos(material.anisotropy_rotation_rad),
+          .direction_sin = std::sin(material.anisotropy_rotation_rad),
+          .roughnesses = table.roughnesses,
+          .strengths = table.strengths,
+          .indices_word = mesh.indices_word,
+          .rows_word = resident.rows.word(),
+          .row_entries = resident.row_entries,
+          .vertex_count = mesh.vertex_count,
+          .first_sample = group.sampleBase(resident.outputs),
+          .draw = static_cast<std::uint32_t>(draw),
+          .glossy_pad = {}};
+}
+
+GlossyKind glossyKindOf(const World& world, std::size_t draw, std::uint32_t max_bands) {
+  const std::uint32_t bands = bundle::bandsOf(world.residency().draws()[draw].outputs);
+  return {.bands = bands,
+          .used_bands = max_bands < bands ? max_bands : 0,
+          .family = choiceOf(world, draw).family};
+}
+
+std::vector<gpu::Define> definesOf(const GlossyKind& kind) {
+  const bool anisotropic = kind.family == bundle::BrdfFamily::AnisotropicGgx;
+  const auto order = static_cast<int>(kind.bands);
+  const sh::ZonalFactors factors =
+      anisotropic ? sh::ZonalFactors::anisotropic(order) : sh::ZonalFactors::isotropic(order);
+  std::string axes;
+  for (const glm::vec3& axis : factors.axes())
+    axes += fmt::format("{}vec3({:.9g}, {:.9g}, {:.9g})", axes.empty() ? "" : ", ", axis.x, axis.y, axis.z);
+  std::vector<gpu::Define> defines = {{"LAMBENT_GLOSSY", "1"},
+                                      {"LAMBENT_BANDS", std::to_string(kind.bands)},
+                                      {"LAMBENT_ZONAL_AXES", fmt::format("vec3[]({})", axes)}};
+  if (kind.used_bands > 0) defines.push_back({"LAMBENT_USED_BANDS", std::to_string(kind.used_bands)});
+  if (anisotropic) defines.push_back({"LAMBENT_ANISOTROPIC", "1"});
+  if (kind.family == bundle::BrdfFamily::Measured) defines.push_back({"LAMBENT_MEASURED", "1"});
+  return defines;
+}
+
+}  // namespace lambent::frame

@@ -1,0 +1,106 @@
+#include "runtime/draws/surface_record.hpp"
+
+#include <cmath>
+
+#include <glm/matrix.hpp>
+
+namespace lambent::frame {
+
+namespace {
+
+// The picture's coordinates from the mesh's.
+glm::mat3x2 transformOf(const gltf::TextureRef& texture) {
+  const glm::vec2 origin = texture.apply({0.0f, 0.0f});
+  return {texture.apply({1.0f, 0.0f}) - origin, texture.apply({0.0f, 1.0f}) - origin, origin};
+}
+
+// Undoes how the normal matrix was made, so that a group that moves turns nothing. A flattened mesh has no
+// inverse, and its normals went by the matrix itself.
+glm::mat3 directionMatrix(const glm::mat3& front_normal) {
+  const float determinant = glm::determinant(front_normal);
+  if (determinant == 0.0f || !std::isfinite(1.0f / determinant)) return front_normal;
+  return glm::transpose(glm::inverse(front_normal));
+}
+
+}  // namespace
+
+TextureSlot slotOf(const gltf::TextureRef& texture, const streaming::ResidentMesh& mesh) {
+  const std::uint32_t set = texture.texcoord;
+  const bool there = texture.texture >= 0 && set < 2 && mesh.texcoords_word[set] != kAbsent;
+  return {.texture_from_coordinates = transformOf(texture), .set = there ? set : kAbsent, .pad = 0};
+}
+
+const gltf::Material& materialOf(const World& world, std::size_t draw) {
+  return world.material(draw);
+}
+
+glm::vec3 emissionOf(const World& world, std::size_t draw) {
+  return world.emission(draw);
+}
+
+bool normalMapped(const World& world, std::size_t draw) {
+  return world.residency().draws()[draw].outputs == bundle::kMappedOutputs;
+}
+
+SurfaceDraw describe(const World& world, std::size_t draw) {
+  const streaming::ResidentDraw& resident = world.residency().draws()[draw];
+  const streaming::ResidentMesh& mesh = world.residency().meshes()[resident.mesh];
+  const gltf::Material& material = materialOf(world, draw);
+  const float facing = resident.back ? -1.0f : 1.0f;
+  const glm::quat turn = world.rotationOf(resident.group);
+  const glm::mat3 front_normal = facing * resident.group_from_mesh_normal;
+  // Unlit surfaces give off nothing but their base colour (KHR_materials_unlit).
+  const glm::vec3 emission = material.unlit ? glm::vec3(0.0f) : emissionOf(world, draw);
+  return {.world_from_mesh = world.worldFromMesh(draw),
+          .group_from_mesh = glm::mat3x4(directionMatrix(front_normal)),
+          .group_from_mesh_normal = glm::mat3x4(front_normal),
+          .world_from_group = {turn.x, turn.y, turn.z, turn.w},
+          .base_color = material.base_color,
+          .emission = glm::vec4(emission, 0.0f),
+          .base_color_texture = slotOf(material.base_color_texture, mesh),
+          .emissive_texture = slotOf(material.emissive_texture, mesh),
+          .normal_texture = slotOf(material.normal_texture, mesh),
+          .normal_scale = material.normal_scale,
+          .facing = facing,
+          .positions_word = mesh.positions_word,
+          .normals_word = mesh.normals_word,
+          .tangents_word = mesh.tangents_word,
+          .texcoords0_word = mesh.texcoords_word[0],
+          .texcoords1_word = mesh.texcoords_word[1],
+          .colors_word = mesh.colors_word,
+          .radiance_word = resident.radiance.word(),
+          .alpha_mode = static_cast<uint>(material.alpha_mode),
+          .alpha_cutoff = material.alpha_cutoff,
+          .unlit = material.unlit ? 1u : 0u,
+          .bounced_word = kAbsent,
+          .pad0 = 0,
+          .pad1 = 0,
+          .pad2 = 0};
+}
+
+SurfaceTextures texturesOf(const World& world, std::size_t draw, const SurfaceDraw& record) {
+  const gltf::Material& material = materialOf(world, draw);
+  SurfaceTextures textures;
+  if (record.base_color_texture.set != kAbsent) textures.base_color = material.base_color_texture.texture;
+  // What gives off no light and what takes it at its vertices need not part batches by textures left unread.
+  if (record.emissive_texture.set != kAbsent && glm::vec3(record.emission) != glm::vec3(0.0f))
+    textures.emissive = material.emissive_texture.texture;
+  const bool glossy = world.residency().draws()[draw].glossy();
+  if (record.normal_texture.set != kAbsent && (glossy || normalMapped(world, draw)))
+    textures.normal = material.normal_texture.texture;
+  if (glossy) {
+    const streaming::ResidentMesh& mesh = world.residency().meshes()[world.residency().draws()[draw].mesh];
+    const auto textureOf = [&](const gltf::TextureRef& reference) {
+      return slotOf(reference, mesh).set != kAbsent ? reference.texture : -1;
+    };
+    textures.metallic_roughness = textureOf(material.metallic_roughness_texture);
+    textures.specular = textureOf(material.specular_texture);
+    textures.specular_color = textureOf(material.specular_color_texture);
+    textures.anisotropy = textureOf(material.anisotropy_texture);
+  }
+  if (textures != SurfaceTextures{})
+    textures.bundle = static_cast<std::int32_t>(world.residency().draws()[draw].bundle);
+  return textures;
+}
+
+}  // namespace lambent::frame

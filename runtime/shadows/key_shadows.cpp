@@ -1,0 +1,331 @@
+#include "runtime/shadows/key_shadows.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+#include "lambent_shadows_embedded.hpp"
+
+namespace lambent::frame {
+
+namespace {
+
+constexpr gpu::FindText kShaders[] = {&embedded::lambent_shadows::find};
+constexpr std::size_t kViewStride = 256;  // OpenGL 4.5 asks for no larger alignment of uniform blocks
+constexpr std::uint32_t kLeastSize = 256;
+constexpr std::uint32_t kLeastRays = 8;
+constexpr std::uint64_t kFinestTiles = 2;  // all maps together take no more texels than so many of the finest
+constexpr double kMargin =
+    0.05;  // around what is seen: the camera may move a little before a map is drawn anew
+constexpr double kWasted = 4.0;  // a map that shows so many times the area that is seen is drawn anew
+// As in key_blockers.comp.
+constexpr GLint kFirst = 0, kSize = 1, kLevel = 2;
+
+// Penumbrae hide what is finer than a small part of their width.
+std::uint32_t sizeFor(float radius_rad, std::uint32_t finest) {
+  constexpr float kSharp = 0.026f, kMedium = 0.1f;  // radians
+  const std::uint32_t size = radius_rad <= kSharp ? finest : radius_rad <= kMedium ? finest / 2 : finest / 4;
+  return std::max(size, kLeastSize);
+}
+
+bool shines(const spec::Disc& light) {
+  const float sum = light.radiance.x + light.radiance.y + light.radiance.z;
+  return std::isfinite(sum) && light.radiance != glm::vec3(0.0f) && light.radius_rad > 0.0f &&
+         light.radius_rad < 1.0f;
+}
+
+float fluxOf(const spec::Disc& light) {
+  const float half = std::sin(0.5f * light.radius_rad);
+  return half * half * (light.radiance.r + light.radiance.g + light.radiance.b);
+}
+
+double tangentOf(const spec::Disc& light) {
+  return std::tan(double{light.radius_rad});
+}
+
+bool sameShape(const spec::Disc& a, const spec::Disc& b) {
+  return a.direction == b.direction && a.radius_rad == b.radius_rad;
+}
+
+glm::vec4 row(glm::dvec3 xyz, double w) {
+  return glm::vec4(glm::dvec4(xyz, w));
+}
+
+// Clip coordinates of what the region shows: z from -1 at its top to 1 at its bottom.
+glm::mat4 clipFromWorld(const KeyRegion& region) {
+  const glm::dvec2 scale = 2.0 / (region.max - region.min);
+  const double depth = 2.0 / region.range;
+  const glm::dmat4 rows(glm::dvec4(scale.x * region.right, -scale.x * region.min.x - 1.0),
+                        glm::dvec4(scale.y * region.up, -scale.y * region.min.y - 1.0),
+                        glm::dvec4(-depth * region.towards, depth * region.top - 1.0),
+                        glm::dvec4(0, 0, 0, 1));
+  return glm::mat4(glm::transpose(rows));
+}
+
+}  // namespace
+
+KeyShadows::KeyShadows() : views_("key map views"), block_("key lights") {}
+
+Result<void> KeyShadows::compile() {
+  if (pyramid_program_) return {};
+  for (const bool masked : {false, true}) {
+    std::vector<gpu::Define> defines;
+    if (masked) defines.push_back({"LAMBENT_MASKED", "1"});
+    Result<gpu::Program> program = gpu::Program::create(
+        "key caster", {{GL_VERTEX_SHADER, "key_caster.vert"}, {GL_FRAGMENT_SHADER, "key_caster.frag"}},
+        kShaders, defines);
+    if (!program) return failAgain(program.error());
+    programs_[masked ? 1 : 0] = std::move(*program);
+  }
+  Result<gpu::Program> pyramid =
+      gpu::Program::create("key blockers", {{GL_COMPUTE_SHADER, "key_blockers.comp"}}, kShaders);
+  if (!pyramid) return failAgain(pyramid.error());
+  pyramid_program_ = std::move(*pyramid);
+  return {};
+}
+
+// Large tiles first, each row as high as its first: tiles lie at multiples of their own size, so that levels
+// of the pyramid never mix two of them.
+void KeyShadows::layOut(std::span<const spec::Disc> keys) {
+  std::vector<Map> maps;
+  for (const spec::Disc& key : keys)
+    if (shines(key) && maps.size() < kMostKeyLights)
+      maps.push_back(
+          {.light = key, .size = sizeFor(key.radius_rad, options_.finest), .region = {}, .casters = {}});
+  const auto texels = [](const Map& map) { return std::uint64_t{map.size} * map.size; };
+  std::uint64_t sum = 0;
+  for (const Map& map : maps) sum += texels(map);
+  // The faint ones give way first.
+  std::vector<Map*> faintest;
+  for (Map& map : maps) faintest.push_back(&map);
+  std::ranges::stable_sort(faintest, std::ranges::less(), [](const Map* map) { return fluxOf(map->light); });
+  const std::uint64_t most = kFinestTiles * options_.finest * options_.finest;
+  for (std::uint32_t size = options_.finest; size > kLeastSize && sum > most; size /= 2)
+    for (Map* map : faintest)
+      if (sum > most && map->size == size) {
+        sum -= 3 * texels(*map) / 4;
+        map->size /= 2;
+      }
+  std::ranges::stable_sort(maps, std::ranges::greater(), &Map::size);
+  const auto side = static_cast<std::uint32_t>(std::sqrt(static_cast<double>(sum)));
+  const std::uint32_t width = maps.empty() ? 0 : std::max(maps.front().size, std::bit_ceil(side));
+  std::uint32_t x = 0, y = 0, row_height = 0;
+  for (Map& map : maps) {
+    if (x + map.size > width) {
+      x = 0;
+      y += row_height;
+      row_height = 0;
+    }
+    row_height = std::max(row_height, map.size);
+    map.x = x;
+    map.y = y;
+    x += map.size;
+  }
+  const std::uint32_t height = y + row_height;
+  const bool same_texture = depths_ && depths_.desc().width == width && depths_.desc().height == height;
+  for (std::size_t k = 0; k < maps.size() && same_texture; ++k)
+    if (k < maps_.size() && maps_[k].x == maps[k].x && maps_[k].y == maps[k].y &&
+        maps_[k].size == maps[k].size) {
+      const spec::Disc light = maps[k].light;
+      maps[k] = std::move(maps_[k]);
+      maps[k].drawn &= sameShape(maps[k].light, light);
+      maps[k].light = light;
+    }
+  maps_ = std::move(maps);
+  if (same_texture || maps_.empty()) return;
+  depths_ = gpu::Texture("key shadows", {.format = GL_DEPTH_COMPONENT32F, .width = width, .height = height});
+  const std::uint32_t levels = std::bit_width(width / kBlockerTexels);
+  blockers_ = gpu::Texture("key blockers", {.format = GL_RG32F,
+                                            .width = width / kBlockerTexels,
+                                            .height = height / kBlockerTexels,
+                                            .levels = levels});
+  GLuint id = 0;
+  glCreateFramebuffers(1, &id);
+  target_ = gpu::Handle<gpu::FramebufferTraits>(id);
+  glNamedFramebufferTexture(id, GL_DEPTH_ATTACHMENT, depths_.id(), 0);
+  glNamedFramebufferDrawBuffer(id, GL_NONE);
+}
+
+std::vector<std::size_t> KeyShadows::findChanged(World& world, const spec::View& view) {
+  if (casters_.follow(world)) {
+    bounds_ws_ = {};
+    for (const ShadowCaster& caster : casters_.all()) bounds_ws_.add(caster.bounds_ws);
+  }
+  const std::vector<glm::dvec3> seen = seenCorners(bounds_ws_, view.clip_from_view * view.view_from_world);
+  std::vector<std::size_t> changed;
+  for (std::size_t k = 0; k < maps_.size(); ++k) {
+    Map& map = maps_[k];
+    std::optional<KeyRegion> wanted =
+        regionOf(seen, glm::normalize(glm::dvec3(map.light.direction)), tangentOf(map.light), bounds_ws_);
+    if (!wanted) continue;
+    const glm::dvec2 size = wanted->max - wanted->min;
+    const double least = 1e-6 * std::max({size.x, size.y, wanted->range, 1e-3});
+    const auto holds = [&] {
+      KeyRegion turned = *wanted;  // as the map's own axes have it
+      turned.right = map.region.right;
+      turned.up = map.region.up;
+      turned.enclose(seen, tangentOf(map.light));
+      return map.region.holds(turned) && map.region.area() < kWasted * wanted->area();
+    };
+    std::vector<ShadowCaster> casters;
+    const auto take = [&](const KeyRegion& region) {
+      for (const ShadowCaster& caster : casters_.all()) {
+        const glm::dvec3 center(caster.bounds_ws.center());
+        const double radius = double{caster.bounds_ws.radius()};
+        const glm::dvec2 place(glm::dot(region.right, center), glm::dot(region.up, center));
+        if (place.x + radius >= region.min.x && place.x - radius <= region.max.x &&
+            place.y + radius >= region.min.y && place.y - radius <= region.max.y)
+          casters.push_back(caster);
+      }
+    };
+    if (map.drawn && holds()) {
+      take(map.region);
+      if (casters == map.casters) continue;
+      casters.clear();
+    }
+    wanted->min -= kMargin * size + least;
+    wanted->max += kMargin * size + least;
+    // A little more at both ends: what stands at 0 or 1 is still told from nothing.
+    wanted->top += 1e-3 * wanted->range + least;
+    wanted->range *= 1.002;
+    wanted->range += 2.0 * least;
+    take(*wanted);
+    map.region = *wanted;
+    map.casters = std::move(casters);
+    map.drawn = true;
+    changed.push_back(k);
+  }
+  return changed;
+}
+
+Result<void> KeyShadows::update(World& world, std::span<const spec::Disc> keys, const spec::View& view,
+                                const KeyShadowOptions& options, gpu::Counters& counters) {
+  maps_drawn_ = 0;
+  if (!(options == options_)) {
+    options_ = options;
+    options_.finest = std::bit_floor(std::clamp(options.finest, kLeastSize, 8192u));
+    options_.samples = std::clamp(options.samples, 4u, 128u);
+  }
+  layOut(keys);
+  if (maps_.empty()) return {};
+  if (Result<void> done = compile(); !done) return done;
+  const std::vector<std::size_t> changed = findChanged(world, view);
+  if (changed.empty()) return {};
+  maps_drawn_ = static_cast<std::uint32_t>(changed.size());
+  drawMaps(world, changed, counters);
+  makePyramid(changed, counters);
+  return {};
+}
+
+void KeyShadows::drawMaps(World& world, const std::vector<std::size_t>& changed, gpu::Counters& counters) {
+  std::vector<ShadowCasters::Tile> tiles;
+  std::vector<std::byte> views(kViewStride * changed.size());
+  for (std::size_t i = 0; i < changed.size(); ++i) {
+    const Map& map = maps_[changed[i]];
+    ShadowCasters::Tile& tile = tiles.emplace_back(ShadowCasters::Tile{
+        .x = map.x, .y = map.y, .size = map.size, .view = kViewStride * i, .casters = {}});
+    for (const ShadowCaster& caster : map.casters) tile.casters.push_back(&caster);
+    const KeyMapView block{clipFromWorld(map.region)};
+    std::memcpy(views.data() + tile.view, &block, sizeof(block));
+  }
+  views_.assign(std::span<const std::byte>(views));
+  counters.uploaded_bytes += views.size();
+  glBindFramebuffer(GL_FRAMEBUFFER, target_.id());
+  glEnable(GL_DEPTH_CLAMP);  // what stands behind all that is seen shadows nothing, but may be cut through
+  casters_.draw(world, tiles, programs_, views_.buffer(), sizeof(KeyMapView), kBindKeyMap, counters);
+  glDisable(GL_DEPTH_CLAMP);
+}
+
+void KeyShadows::makePyramid(const std::vector<std::size_t>& changed, gpu::Counters& counters) {
+  pyramid_program_.use();
+  depths_.bind(0);
+  blockers_.bind(1);
+  glBindSampler(0, 0);
+  glBindSampler(1, 0);
+  glMemoryBarrier(GL_FRAMEBUFFER_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
+  for (std::uint32_t level = 0; level < blockers_.desc().levels; ++level) {
+    glBindImageTexture(0, blockers_.id(), static_cast<GLint>(level), GL_FALSE, 0, GL_WRITE_ONLY, GL_RG32F);
+    glUniform1i(kLevel, static_cast<GLint>(level));
+    for (const std::size_t k : changed) {
+      const Map& map = maps_[k];
+      const std::uint32_t texels = kBlockerTexels << level, size = map.size / texels;
+      if (size == 0) continue;
+      glUniform2i(kFirst, static_cast<GLint>(map.x / texels), static_cast<GLint>(map.y / texels));
+      glUniform1i(kSize, static_cast<GLint>(size));
+      const std::uint32_t groups = (size + kBlockerGroup - 1) / kBlockerGroup;
+      glDispatchCompute(groups, groups, 1);
+      ++counters.dispatches;
+    }
+    glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+  }
+}
+
+void KeyShadows::bind(const spec::View& view, const spec::Size& size) {
+  if (maps_.empty()) return;
+  struct Block {
+    KeyView view;
+    std::array<KeyRecord, kMostKeyLights> keys;
+  };
+  Block block{};
+  const glm::dmat4 view_from_world(view.view_from_world), world_from_view = glm::inverse(view_from_world);
+  const glm::dmat3 turn(view_from_world);
+  const glm::dvec3 eye(world_from_view[3]);
+  // Errors of a light that is a part of all weigh little, and fall with the number of rays: this shares rays
+  // out so that their sum of squares is least.
+  float all_flux = 0.0f;
+  for (const Map& map : maps_) all_flux += fluxOf(map.light);
+  const auto raysFor = [&](float part) {
+    const float rays = 2.0f * static_cast<float>(options_.samples) * std::cbrt(part * part);
+    return std::clamp(static_cast<std::uint32_t>(rays), std::min(kLeastRays, options_.samples),
+                      options_.samples);
+  };
+  std::uint32_t count = 0;
+  for (const Map& map : maps_) {
+    if (!map.drawn) continue;
+    const KeyRegion& region = map.region;
+    const glm::dvec2 scale = double(map.size) / (region.max - region.min);
+    KeyRecord& record = block.keys[count++];
+    // dot(right, world) = dot(turn right, p) + dot(right, eye) of a point p in view space.
+    record.right = row(scale.x * (turn * region.right),
+                       double(map.x) + scale.x * (glm::dot(region.right, eye) - region.min.x));
+    record.up = row(scale.y * (turn * region.up),
+                    double(map.y) + scale.y * (glm::dot(region.up, eye) - region.min.y));
+    record.towards = row(turn * region.towards, region.top - glm::dot(region.towards, eye));
+    record.radiance = glm::vec4(map.light.radiance, std::sin(map.light.radius_rad));
+    record.tile = glm::vec4(map.x, map.y, map.x + map.size - 1, map.y + map.size - 1);
+    record.scale = glm::vec4(scale, region.range, std::tan(map.light.radius_rad));
+    record.rays = raysFor(fluxOf(map.light) / all_flux);
+  }
+  block.view = {.view_from_clip = glm::mat4(glm::inverse(glm::dmat4(view.clip_from_view))),
+                .view_from_world = glm::mat4(glm::mat3(view.view_from_world)),
+                .picture = glm::vec4(size.width, size.height, 0, 0),
+                .count = count,
+                .pad0 = 0,
+                .pad1 = 0,
+                .pad2 = 0};
+  block_.assign(std::span<const Block>(&block, 1));
+  glBindBufferBase(GL_UNIFORM_BUFFER, kBindKeyLights, block_.buffer().id());
+  depths_.bind(kUnitKeyShadows);
+  blockers_.bind(kUnitKeyBlockers);
+  glBindSampler(kUnitKeyShadows, 0);
+  glBindSampler(kUnitKeyBlockers, 0);
+}
+
+std::vector<KeyShadows::ShownRegion> KeyShadows::regions() const {
+  std::vector<ShownRegion> shown;
+  for (const Map& map : maps_)
+    if (map.drawn) shown.push_back({map.light, map.region, map.size});
+  return shown;
+}
+
+std::uint64_t KeyShadows::bytesResident() const {
+  if (!depths_) return 0;
+  const std::uint64_t texels = std::uint64_t{depths_.desc().width} * depths_.desc().height;
+  return 4 * texels + 8 * texels / (kBlockerTexels * kBlockerTexels) * 4 / 3;
+}
+
+}  // namespace lambent::frame

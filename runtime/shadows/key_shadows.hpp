@@ -1,0 +1,86 @@
+// Direct light of key lights (lighting/key_lights.hpp) on surfaces: a shadow map for each, which shows the
+// part of the world that is seen, and what the surface pass reads to shade by them. A map is drawn again only
+// when its light turned, something that it sees moved, arrived or went, or the camera sees what it does not
+// show. Maps are tiles of one depth texture: sharp lights have fine ones, wide lights, which blur, coarse
+// ones. Beside them lies a pyramid of the least and greatest depths, by which most pixels are told to be
+// wholly lit or wholly in shadow. Render thread only. Errors: shaders that do not compile on this device.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "runtime/base/result.hpp"
+#include "runtime/gpu/program.hpp"
+#include "runtime/shadows/key_region.hpp"
+#include "runtime/shadows/key_shared.h"
+#include "runtime/shadows/shadow_casters.hpp"
+#include "runtime/spec/camera.hpp"
+#include "runtime/spec/distant_lights.hpp"
+#include "runtime/spec/size.hpp"
+#include "runtime/world/world.hpp"
+
+namespace lambent::frame {
+
+struct KeyShadowOptions {
+  std::uint32_t finest = 4096;  // texels along an edge of the finest map, a power of two of 256..8192
+  std::uint32_t samples = 32;   // rays to a disc, 4..128
+  bool operator==(const KeyShadowOptions&) const = default;
+};
+
+class KeyShadows {
+ public:
+  KeyShadows();
+
+  // After World::updateTransforms. keys: world axes, at most kMostKeyLights count; dark ones take no map.
+  // Changes the bound framebuffer, viewport and program.
+  Result<void> update(World& world, std::span<const spec::Disc> keys, const spec::View& view,
+                      const KeyShadowOptions& options, gpu::Counters& counters);
+  // What the surface shaders read, for a picture of this size. Before Surfaces draws.
+  void bind(const spec::View& view, const spec::Size& size);
+
+  // Whether any key light shines.
+  bool any() const { return !maps_.empty(); }
+  std::uint32_t mapsDrawn() const { return maps_drawn_; }  // by the last update
+  std::uint32_t mapCount() const { return static_cast<std::uint32_t>(maps_.size()); }
+  std::uint64_t bytesResident() const;
+  // What each map shows that is drawn, for who looks at it.
+  struct ShownRegion {
+    spec::Disc light;  // world axes
+    KeyRegion region;
+    std::uint32_t texels = 0;  // along an edge
+  };
+  std::vector<ShownRegion> regions() const;
+  void forget() {
+    for (Map& map : maps_) map.drawn = false;
+  }
+
+ private:
+  struct Map {
+    spec::Disc light;
+    std::uint32_t x = 0, y = 0, size = 0;  // its tile, texels
+    KeyRegion region;
+    std::vector<ShadowCaster> casters;
+    bool drawn = false;
+  };
+
+  void layOut(std::span<const spec::Disc> keys);
+  Result<void> compile();
+  std::vector<std::size_t> findChanged(World& world, const spec::View& view);
+  void drawMaps(World& world, const std::vector<std::size_t>& changed, gpu::Counters& counters);
+  void makePyramid(const std::vector<std::size_t>& changed, gpu::Counters& counters);
+
+  KeyShadowOptions options_;
+  std::vector<Map> maps_;
+  ShadowCasters casters_{"key casters"};
+  scene::Box bounds_ws_;  // of all casters
+  ShadowCasters::Programs programs_;
+  gpu::Program pyramid_program_;
+  gpu::Texture depths_, blockers_;
+  gpu::Handle<gpu::FramebufferTraits> target_;
+  gpu::Table views_, block_;
+  std::uint32_t maps_drawn_ = 0;
+};
+
+}  // namespace lambent::frame

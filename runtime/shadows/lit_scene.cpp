@@ -1,0 +1,203 @@
+#include "runtime/shadows/lit_scene.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+#include "runtime/scene/affine.hpp"
+#include "runtime/shadows/shadowed_light_choice.hpp"
+#include "runtime/shadows/shadowed_light_record.hpp"
+#include "runtime/world/boxes.hpp"
+
+namespace lambent::frame {
+
+namespace {
+
+// What is this many times brighter than its surroundings is drawn however small it is.
+constexpr float kMaxBrightness = 1e6f;
+
+lighting::LocalLight::Kind kindOf(scene::LocalLightComponent::Kind kind) {
+  using From = scene::LocalLightComponent::Kind;
+  using To = lighting::LocalLight::Kind;
+  switch (kind) {
+    case From::Point:
+      return To::Point;
+    case From::Spot:
+      return To::Spot;
+    case From::Directional:
+      return To::Directional;
+    case From::Sphere:
+      return To::Sphere;
+    case From::Disc:
+      return To::Disc;
+  }
+  return To::Point;
+}
+
+lighting::LocalLight describe(const scene::LocalLightComponent& light, const glm::mat4& world_from_node) {
+  const glm::vec3 ahead = -glm::vec3(world_from_node[2]);
+  const float length = glm::length(ahead);
+  return {.kind = kindOf(light.kind),
+          .position_ws = glm::vec3(world_from_node[3]),
+          .direction_ws = length > 0.0f ? ahead / length : glm::vec3(0.0f, 0.0f, -1.0f),
+          .power = light.power(),
+          .radius_m = light.radius_m,
+          .range_m = light.range_m,
+          .inner_cone_rad = light.inner_cone_rad,
+          .outer_cone_rad = light.outer_cone_rad};
+}
+
+// The most that a triangle of it gives off by itself.
+float peakEmission(const bundle::CaptureProxy& proxy, const std::vector<glm::vec3>& lamps) {
+  float peak = 0.0f;
+  for (const bundle::ProxyTriangle& triangle : proxy.triangles) {
+    if (triangle.light < 0) continue;
+    const glm::vec3 radiance = triangle.emission * lamps[static_cast<std::size_t>(triangle.light)];
+    peak = std::max({peak, radiance.r, radiance.g, radiance.b});
+  }
+  return peak;
+}
+
+// How near each light comes to any group of surfaces that does not have it by a column.
+std::vector<float> nearnessOf(const World& world, std::span<const lighting::LocalLight> lights,
+                              std::span<const ecs::Entity> entities) {
+  std::vector<float> nearness(lights.size(), std::numeric_limits<float>::infinity());
+  const auto& groups = world.residency().groups();
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    if (groups[g].volume >= 0) continue;
+    for (std::size_t k = 0; k < lights.size(); ++k)
+      if (const auto near = lighting::shadowedLightOf(lights[k]);
+          near && shines(*near) && !world.litByColumn(g, entities[k]))
+        nearness[k] =
+            std::min(nearness[k], radiiFrom(world.groupBounds(g), world.worldFromGroup(g), lights[k]));
+  }
+  return nearness;
+}
+
+// Whether the group stands within another that has this light by a column, or between both, and has a grid by
+// which it takes light from it: then the light must be in what the grid is multiplied with.
+bool shadesColumn(const World& world, std::size_t group, ecs::Entity light, const glm::vec3& light_ws) {
+  const auto& groups = world.residency().groups();
+  if (!world.description(groups[group].bundle).groups[groups[group].index].neighborhood) return false;
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    if (g == group || groups[g].volume >= 0 || !world.litByColumn(g, light)) continue;
+    scene::Box lit = world.groupBounds(g);
+    lit.add(glm::vec3(glm::inverse(world.worldFromGroup(g)) * glm::vec4(light_ws, 1.0f)));
+    if (meet(world.groupBounds(group), world.worldFromGroup(group), lit, world.worldFromGroup(g)))
+      return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+bool LitScene::needsSampling() const {
+  const auto seesOthers = [&](const lighting::IncidentGroup& group) {
+    const std::size_t own = group.body == lighting::CapturePoint::kNoBody ? 0 : 1;
+    return bodies.size() > own + group.left_out.size();
+  };
+  return !lights.empty() || std::ranges::any_of(groups, seesOthers);
+}
+
+BodyProxies proxiesOf(const streaming::Residency& residency) {
+  BodyProxies bodies;
+  for (const streaming::ResidentGroup& group : residency.groups())
+    if (group.proxy) {
+      bodies.proxies.push_back(&*group.proxy);
+      bodies.keys.push_back(group.id);
+    }
+  return bodies;
+}
+
+LitScene gatherLitScene(const World& world, float surroundings, const LitSceneOptions& options) {
+  LitScene scene;
+  const ecs::Registry& registry = world.registry();
+  const auto& groups = world.residency().groups();
+
+  std::vector<ecs::Entity> light_entities;
+  for (auto [entity, light] : registry.view<const scene::LocalLightComponent>()) {
+    const auto* place = registry.tryGet<scene::WorldTransform>(entity);
+    if (light.power() == glm::vec3(0.0f)) continue;
+    scene.lights.push_back(describe(light, place ? place->world_from_node : glm::mat4(1.0f)));
+    light_entities.push_back(entity);
+  }
+  std::vector<float> shares(scene.lights.size(), 0.0f);
+  if (options.shadowed_lights)
+    shares = localShares(nearnessOf(world, scene.lights, light_entities), options.local_radii);
+  std::vector<std::int32_t> local_of_light(scene.lights.size(), -1);
+  for (std::size_t k = 0; k < scene.lights.size(); ++k) {
+    if (shares[k] <= 0.0f) continue;
+    std::optional<lighting::ShadowedLight> near = lighting::shadowedLightOf(scene.lights[k]);
+    if (!near) continue;
+    near->power *= shares[k];
+    local_of_light[k] = static_cast<std::int32_t>(scene.shadowed_lights.size());
+    scene.shadowed_lights.push_back(*near);
+    scene.local_sources.push_back(k);
+  }
+
+  std::uint32_t proxy_index = 0;
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    const streaming::ResidentGroup& group = groups[g];
+    const glm::mat4 world_from_group = world.worldFromGroup(g);
+    const scene::Box& bounds = world.groupBounds(g);
+    scene.lamps.push_back(world.lampsOf(g));
+    lighting::IncidentGroup receiver;
+    receiver.key = world.keyOf(g);
+    receiver.samples = group.id;
+    for (const glm::vec3& sample : group.light_probes)
+      receiver.samples_ws.emplace_back(world_from_group * glm::vec4(sample, 1.0f));
+    if (group.proxy && options.bodies) {
+      receiver.body = static_cast<std::uint32_t>(scene.bodies.size());
+      const glm::vec3 center = bounds.empty() ? glm::vec3(0.0f) : bounds.center();
+      const float peak = group.light_columns > 0 ? peakEmission(*group.proxy, scene.lamps.back()) : 0.0f;
+      const float brightness = surroundings > 0.0f ? peak / surroundings : kMaxBrightness * peak;
+      scene.bodies.push_back({.body = {.proxy = proxy_index++,
+                                       .world_from_proxy = world_from_group,
+                                       .brightness = std::clamp(brightness, 1.0f, kMaxBrightness)},
+                              .center_ws = glm::vec3(world_from_group * glm::vec4(center, 1.0f)),
+                              .radius_m = bounds.radius() * scene::largestScale(world_from_group),
+                              .radiance_drift = 0.0,
+                              .key = receiver.key});
+    }
+    std::uint32_t local_mask = 0, pixel_mask = 0;
+    for (std::size_t k = 0; k < scene.lights.size(); ++k) {
+      bool by_harmonics = !world.litByColumn(g, light_entities[k]);
+      float apart = 0.0f;
+      const std::uint32_t bit = local_of_light[k] >= 0 ? 1u << local_of_light[k] : 0u;
+      // Rays through a volume look up its samples alone, and no shadow cube.
+      if (by_harmonics && options.shadowed_lights && group.volume < 0) {
+        if (radiiFrom(bounds, world_from_group, scene.lights[k]) == 0.0f) {
+          local_mask |= bit;
+          pixel_mask |= bit;
+          by_harmonics = bit == 0;
+          scene.local_left_out += bit == 0 ? 1 : 0;
+        } else if (bit != 0 && options.local_radii > 0.0f &&
+                   !shadesColumn(world, g, light_entities[k], scene.lights[k].position_ws)) {
+          pixel_mask |= bit;
+          apart = shares[k];
+        }
+      }
+      receiver.lit_by.push_back(by_harmonics ? 1 : 0);
+      receiver.apart.push_back(apart);
+    }
+    scene.local_masks.push_back(local_mask);
+    scene.pixel_masks.push_back(pixel_mask);
+    scene.groups.push_back(std::move(receiver));
+  }
+  // What a volume stands within is in its own transfer.
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    const std::int32_t within = world.description(groups[g].bundle).groups[groups[g].index].within;
+    if (within < 0) continue;
+    const std::size_t around =
+        world.residency().bundles()[groups[g].bundle].first.groups + static_cast<std::size_t>(within);
+    if (const std::uint32_t body = scene.groups[around].body; body != lighting::CapturePoint::kNoBody)
+      scene.groups[g].left_out.push_back(body);
+  }
+  return scene;
+}
+
+}  // namespace lambent::frame

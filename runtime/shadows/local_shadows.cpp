@@ -1,0 +1,234 @@
+#include "runtime/shadows/local_shadows.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include <glm/matrix.hpp>
+
+#include "lambent_shadows_embedded.hpp"
+#include "runtime/shadows/local_faces.hpp"
+#include "runtime/shadows/shadowed_light_record.hpp"
+
+namespace lambent::frame {
+
+namespace {
+
+using lighting::ShadowedLight;
+constexpr gpu::FindText kShaders[] = {&embedded::lambent_shadows::find};
+constexpr std::uint32_t kFaces = 6;
+constexpr std::size_t kFaceStride = 256;  // OpenGL 4.5 asks for no larger alignment of uniform blocks
+constexpr float kLocalPlane_m = 2e-3f;
+constexpr float kLightSurface = 1.01f;  // what a spherical lamp is made of may be this much larger than it
+static_assert(kShadowedLights == lighting::kMaxShadowedLights);
+
+// Whether both have the same shadows, whatever their colour and cones.
+bool sameShadows(const ShadowedLight& a, const ShadowedLight& b) {
+  return a.kind == b.kind && a.position_ws == b.position_ws && a.radius_m == b.radius_m &&
+         a.range_m == b.range_m && (!hasDirection(a) || a.direction_ws == b.direction_ws);
+}
+
+ShadowFace faceOf(const ShadowedLight& light, float reach, std::uint32_t face) {
+  const FaceAxes axes = faceAxes(face);
+  return {.right = axes.right,
+          .clip_near = kLocalPlane_m,
+          .up = axes.up,
+          .reach = reach,
+          .forward = axes.forward,
+          .hole = light.kind == ShadowedLight::Kind::Sphere ? kLightSurface * light.radius_m : 0.0f,
+          .position = light.position_ws,
+          .behind = light.kind == ShadowedLight::Kind::Disc ? 1.0f : 0.0f,
+          .direction = light.direction_ws,
+          .pad = 0.0f};
+}
+
+scene::Box around(const scene::Box& box, glm::vec3 center) {
+  return {.min = box.min - center, .max = box.max - center};
+}
+
+// Whether any of the box stands where the light may shine.
+bool reaches(const ShadowedLight& light, const scene::Box& from_light) {
+  return nearestDistance(from_light) <= rangeOf(light) &&
+         (!hasDirection(light) || mostAlong(from_light, light.direction_ws) > 0.0f);
+}
+
+}  // namespace
+
+LocalShadows::LocalShadows(const LocalOptions& options)
+    : options_{.size = std::clamp(options.size, 16u, 4096u),
+               .samples = std::clamp(options.samples, 1u, 256u)},
+      block_("local lights"),
+      draws_table_("near draws"),
+      faces_("shadow faces") {}
+
+Result<void> LocalShadows::compile() {
+  if (programs_[0]) return {};
+  for (const bool masked : {false, true}) {
+    std::vector<gpu::Define> defines;
+    if (masked) defines.push_back({"LAMBENT_MASKED", "1"});
+    Result<gpu::Program> program = gpu::Program::create(
+        "shadow caster", {{GL_VERTEX_SHADER, "local_caster.vert"}, {GL_FRAGMENT_SHADER, "local_caster.frag"}},
+        kShaders, defines);
+    if (!program) return failAgain(program.error());
+    programs_[masked ? 1 : 0] = std::move(*program);
+  }
+  return {};
+}
+
+void LocalShadows::updateMasks(const World& world, std::span<const std::uint32_t> mask_of_group,
+                               gpu::Counters& counters) {
+  const streaming::Residency& residency = world.residency();
+  lights_used_ = 0;
+  std::uint32_t shining = 0;
+  for (std::size_t k = 0; k < lights_.size(); ++k) shining |= shines(lights_[k]) ? 1u << k : 0u;
+  for (const std::uint32_t mask : mask_of_group) lights_used_ |= mask & shining;
+  any_ = lights_used_ != 0;
+  Masks masks{.of_group = {mask_of_group.begin(), mask_of_group.end()},
+              .shining = shining,
+              .residency = residency.version(),
+              .transforms = world.transformsVersion()};
+  if (masks == masks_seen_) return;
+  masks_seen_ = std::move(masks);
+  std::vector<LocalDraw> draws;
+  if (any_) {
+    draws.reserve(residency.draws().size());
+    for (std::size_t i = 0; i < residency.draws().size(); ++i) {
+      const std::uint32_t group = residency.draws()[i].group;
+      const glm::quat turn = world.rotationOf(group);
+      // Unlit surfaces show their colour whatever the light.
+      const bool lit = group < mask_of_group.size() && !materialOf(world, i).unlit;
+      draws.push_back({.world_from_group = {turn.x, turn.y, turn.z, turn.w},
+                       .lights = lit ? mask_of_group[group] & shining : 0u,
+                       .pad0 = 0,
+                       .pad1 = 0,
+                       .pad2 = 0});
+    }
+  }
+  const bool same_lights =
+      draws.size() == draws_.size() &&
+      std::equal(draws.begin(), draws.end(), draws_.begin(),
+                 [](const LocalDraw& a, const LocalDraw& b) { return a.lights == b.lights; });
+  const std::size_t bytes = draws.size() * sizeof(LocalDraw);
+  const bool same = same_lights && (bytes == 0 || std::memcmp(draws.data(), draws_.data(), bytes) == 0);
+  if (!same_lights) ++version_;
+  if (same) return;
+  draws_ = std::move(draws);
+  if (draws_.empty()) return;
+  draws_table_.assign(std::span<const LocalDraw>(draws_));
+  counters.uploaded_bytes += bytes;
+}
+
+std::vector<std::uint32_t> LocalShadows::findChanged(World& world) {
+  const bool world_same = !casters_.follow(world);
+  std::vector<std::uint32_t> changed;
+  for (std::uint32_t k = 0; k < lights_.size(); ++k) {
+    Cube& cube = cubes_[k];
+    const ShadowedLight& light = lights_[k];
+    const bool light_same = cube.drawn && sameShadows(cube.light, light);
+    if ((lights_used_ >> k & 1u) == 0 || (light_same && world_same)) continue;
+    std::vector<ShadowCaster> casters;
+    float reach = 0.0f;
+    for (const ShadowCaster& caster : casters_.all()) {
+      const scene::Box box = around(caster.bounds_ws, light.position_ws);
+      if (!reaches(light, box)) continue;
+      casters.push_back(caster);
+      reach = std::max(reach, farthestDistance(box));
+    }
+    if (light_same && casters == cube.casters) continue;
+    cube.light = light;
+    cube.casters = std::move(casters);
+    // A little beyond: what stands at 1 is nothing.
+    cube.reach = std::max(1.001f * std::min(reach, rangeOf(light)), 1e-3f);
+    cube.drawn = false;
+    changed.push_back(k);
+  }
+  return changed;
+}
+
+Result<void> LocalShadows::update(World& world, std::span<const ShadowedLight> lights,
+                                  std::span<const std::uint32_t> mask_of_group, gpu::Counters& counters) {
+  cubes_drawn_ = 0;
+  const std::span<const ShadowedLight> kept =
+      lights.first(std::min<std::size_t>(lights.size(), kShadowedLights));
+  lights_.assign(kept.begin(), kept.end());
+  for (ShadowedLight& light : lights_)
+    if (const float length = glm::length(light.direction_ws); length > 0.0f) light.direction_ws /= length;
+  updateMasks(world, mask_of_group, counters);
+  if (!any_) return {};
+  if (Result<void> done = compile(); !done) return done;
+  makeRoom(static_cast<std::uint32_t>(std::bit_width(lights_used_)));
+  const std::vector<std::uint32_t> changed = findChanged(world);
+  if (!changed.empty()) drawCubes(world, changed, counters);
+  return {};
+}
+
+void LocalShadows::makeRoom(std::uint32_t rows) {
+  if (rows <= rows_) return;
+  rows_ = rows;
+  shadows_ = gpu::Texture(
+      "near shadows",
+      {.format = GL_DEPTH_COMPONENT32F, .width = kFaces * options_.size, .height = rows * options_.size});
+  GLuint id = 0;
+  glCreateFramebuffers(1, &id);
+  target_ = gpu::Handle<gpu::FramebufferTraits>(id);
+  glNamedFramebufferTexture(id, GL_DEPTH_ATTACHMENT, shadows_.id(), 0);
+  glNamedFramebufferDrawBuffer(id, GL_NONE);
+  for (Cube& cube : cubes_) cube.drawn = false;  // what was drawn is lost
+}
+
+void LocalShadows::drawCubes(World& world, const std::vector<std::uint32_t>& changed,
+                             gpu::Counters& counters) {
+  std::vector<ShadowCasters::Tile> tiles;
+  std::vector<std::byte> faces(kFaces * kShadowedLights * kFaceStride);
+  for (const std::uint32_t k : changed) {
+    Cube& cube = cubes_[k];
+    for (std::uint32_t face = 0; face < kFaces; ++face) {
+      ShadowCasters::Tile& tile =
+          tiles.emplace_back(ShadowCasters::Tile{.x = face * options_.size,
+                                                 .y = k * options_.size,
+                                                 .size = options_.size,
+                                                 .view = (kFaces * k + face) * kFaceStride,
+                                                 .casters = {}});
+      for (const ShadowCaster& caster : cube.casters)
+        if (faceMeets(faceAxes(face), around(caster.bounds_ws, cube.light.position_ws)))
+          tile.casters.push_back(&caster);
+      const ShadowFace block = faceOf(cube.light, cube.reach, face);
+      std::memcpy(faces.data() + tile.view, &block, sizeof(block));
+    }
+    cube.drawn = true;
+    ++cubes_drawn_;
+  }
+  faces_.assign(std::span<const std::byte>(faces));
+  counters.uploaded_bytes += faces.size();
+  glBindFramebuffer(GL_FRAMEBUFFER, target_.id());
+  casters_.draw(world, tiles, programs_, faces_.buffer(), sizeof(ShadowFace), kBindShadowFace, counters);
+}
+
+void LocalShadows::bind(const spec::View& view, const spec::Size& size) {
+  if (!any_) return;
+  struct Block {
+    LocalView view;
+    std::array<ShadowedLightRecord, kShadowedLights> lights;
+  };
+  Block block{};
+  block.view = {.view_from_clip = glm::mat4(glm::inverse(glm::dmat4(view.clip_from_view))),
+                .world_from_view = glm::mat4(glm::inverse(glm::dmat4(view.view_from_world))),
+                .width = static_cast<float>(size.width),
+                .height = static_cast<float>(size.height),
+                .size = options_.size,
+                .samples = options_.samples};
+  for (std::size_t k = 0; k < lights_.size(); ++k) block.lights[k] = recordOf(lights_[k], cubes_[k].reach);
+  block_.assign(std::span<const Block>(&block, 1));
+  glBindBufferBase(GL_UNIFORM_BUFFER, kBindShadowedLights, block_.buffer().id());
+  draws_table_.bindStorage(kBindLocalDraws);
+  shadows_.bind(kUnitLocalShadows);
+}
+
+std::uint64_t LocalShadows::bytesResident() const {
+  return std::uint64_t{4} * kFaces * options_.size * rows_ * options_.size +
+         draws_.size() * sizeof(LocalDraw);
+}
+
+}  // namespace lambent::frame

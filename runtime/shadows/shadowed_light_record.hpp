@@ -1,0 +1,50 @@
+// A local light as shaders and their CPU twins read it (local_shared.h), and what kinds of lights have.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "runtime/lighting/shadowed_light.hpp"
+#include "runtime/shadows/local_shared.h"
+
+namespace lambent::frame {
+
+inline bool hasExtent(const lighting::ShadowedLight& light) {
+  return light.kind == lighting::ShadowedLight::Kind::Sphere ||
+         light.kind == lighting::ShadowedLight::Kind::Disc;
+}
+
+inline bool hasDirection(const lighting::ShadowedLight& light) {
+  return light.kind == lighting::ShadowedLight::Kind::Spot ||
+         light.kind == lighting::ShadowedLight::Kind::Disc;
+}
+
+// A light with a number that is none is dark.
+inline bool shines(const lighting::ShadowedLight& light) {
+  const auto finite = [](glm::vec3 v) { return std::isfinite(v.x + v.y + v.z); };
+  return finite(light.power) && finite(light.position_ws) && finite(light.direction_ws) &&
+         light.power != glm::vec3(0.0f) &&
+         (!hasExtent(light) || (light.radius_m > 0.0f && std::isfinite(light.radius_m)));
+}
+
+// Where its light ends; surfaces with an extent shine without end.
+inline float rangeOf(const lighting::ShadowedLight& light) {
+  return !hasExtent(light) && light.range_m > 0.0f ? light.range_m : std::numeric_limits<float>::infinity();
+}
+
+inline ShadowedLightRecord recordOf(const lighting::ShadowedLight& light, float reach) {
+  const float inner = std::cos(light.inner_cone_rad), outer = std::cos(light.outer_cone_rad);
+  return {.position = light.position_ws,
+          .reach = reach,
+          .direction = light.direction_ws,
+          .kind = static_cast<uint>(light.kind),
+          .power = light.power,
+          .radius = light.radius_m,
+          .cos_outer = outer,
+          .cone_scale = 1.0f / std::max(0.001f, inner - outer),
+          .range = std::isinf(rangeOf(light)) ? 0.0f : light.range_m,
+          .pad = 0.0f};
+}
+
+}  // namespace lambent::frame

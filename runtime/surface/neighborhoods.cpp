@@ -1,0 +1,301 @@
+#include "runtime/surface/neighborhoods.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+
+#include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
+#include <glm/matrix.hpp>
+
+#include "runtime/draws/surface_record.hpp"
+#include "runtime/draws/surface_shared.h"
+#include "runtime/world/boxes.hpp"
+
+namespace lambent::frame {
+
+using effects::neighborhood::Arrival;
+using effects::neighborhood::Grid;
+using effects::neighborhood::Receiver;
+
+namespace {
+
+const bundle::Group& describedGroup(const World& world, std::size_t group) {
+  const streaming::ResidentGroup& resident = world.residency().groups()[group];
+  return world.description(resident.bundle).groups[resident.index];
+}
+
+// The grid's points, and a point's distance more all around.
+scene::Box boxOf(const bundle::NeighborhoodGrid& grid, bool grown) {
+  const glm::vec3 margin =
+      grown ? (grid.bounds_max - grid.bounds_min) / glm::vec3(grid.size - 1u) : glm::vec3(0.0f);
+  return {grid.bounds_min - margin, grid.bounds_max + margin};
+}
+
+bool hasSurfaces(const bundle::Group& group) {
+  return !group.volume && std::ranges::any_of(group.cells, [](const bundle::Cell& cell) {
+    return cell.kind == bundle::CellKind::Surface;
+  });
+}
+
+// Light of the group's own lamps, if it has any, goes by the grid too.
+bool carriesLamps(const bundle::Group& group) {
+  return group.lights.empty() || std::ranges::all_of(group.cells, [](const bundle::Cell& cell) {
+           return cell.kind != bundle::CellKind::Neighborhood ||
+                  std::ranges::any_of(cell.transfers, [](const bundle::CellTransfer& part) {
+                    return !part.fromEnvironment();
+                  });
+         });
+}
+
+// How much of a light's straight light a group has by harmonics; none: by a column of its own.
+std::optional<float> byHarmonics(const LitScene& scene, std::size_t group, std::size_t shadowed_light) {
+  const std::size_t source = scene.local_sources[shadowed_light];
+  const lighting::IncidentGroup& lit = scene.groups[group];
+  if (lit.lit_by[source] != 0) return 1.0f - lit.apart[source];
+  if ((scene.pixel_masks[group] >> shadowed_light & 1u) != 0) return 0.0f;
+  return std::nullopt;
+}
+
+// Whether the body's shadow in light of lamps would reach the receiver twice, by grid and shadow cube, or not
+// at all. Volumes stand in no shadow cube.
+bool localShadowsDiffer(const LitScene& scene, std::size_t body, std::size_t receiver) {
+  for (std::size_t n = 0; n < scene.local_sources.size(); ++n) {
+    const std::optional<float> sent = byHarmonics(scene, body, n), had = byHarmonics(scene, receiver, n);
+    if (sent && had && *sent != *had) return true;
+  }
+  return false;
+}
+
+bool finite(const glm::dmat4& matrix) {
+  for (int column = 0; column < 4; ++column)
+    for (int row = 0; row < 4; ++row)
+      if (!std::isfinite(matrix[column][row])) return false;
+  return true;
+}
+
+double scaleOf(const glm::mat4& matrix) {
+  return std::cbrt(std::abs(glm::determinant(glm::dmat3(glm::mat3(matrix)))));
+}
+
+// Whether a draw receives from the grid at its vertices, through transfer of its own: the rule at the head of
+// neighborhoods.hpp. Under coarser meshes the grid's own detail would be lost between vertices.
+bool byTransfer(const World& world, std::uint32_t draw, const Grid& grid) {
+  const streaming::ResidentDraw& resident = world.residency().draws()[draw];
+  const std::uint32_t order = world.residency().groups()[resident.group].order;
+  if (grid.place.outputs != order * order ||
+      !effects::neighborhood::hasTransfer(world.residency(), draw, order))
+    return false;
+  const glm::dvec3 spacing =
+      glm::dvec3(grid.points.bounds_max - grid.points.bounds_min) / glm::dvec3(grid.points.size - 1u);
+  const double apart = (spacing.x + spacing.y + spacing.z) / 3.0 * scaleOf(world.worldFromGroup(grid.group));
+  const double edge =
+      double{world.residency().meshes()[resident.mesh].mean_edge} * scaleOf(world.worldFromMesh(draw));
+  return edge <= apart;
+}
+
+// From the position that the surface pass has per pixel of this draw (surface.vert): the mesh's own, or with
+// normal maps the one turned by the matrix that surface_record.cpp makes.
+glm::dmat4 worldFromPosition(const World& world, std::size_t draw, const SurfaceDraw& record) {
+  const glm::dmat4 world_from_mesh(world.worldFromMesh(draw));
+  if (!normalMapped(world, draw)) return world_from_mesh;
+  return world_from_mesh * glm::dmat4(glm::inverse(glm::dmat3(glm::mat3(record.group_from_mesh))));
+}
+
+}  // namespace
+
+Neighborhoods::Neighborhoods() : receivers_table_("neighborhood receivers"), arrivals_table_("arrivals") {}
+
+void Neighborhoods::noticeGrids(const World& world) {
+  if (world.residency().structureVersion() == structure_seen_) return;
+  structure_seen_ = world.residency().structureVersion();
+  const auto& groups = world.residency().groups();
+  std::map<std::uint64_t, std::uint32_t> now;  // by key
+  std::vector<Grid> grids;
+  for (std::uint32_t g = 0; g < groups.size(); ++g) {
+    now[world.keyOf(g)] = g;
+    if (const auto& points = describedGroup(world, g).neighborhood)
+      grids.push_back({.group = g, .id = groups[g].id, .key = world.keyOf(g), .points = *points});
+  }
+  effect_.setGrids(std::move(grids), world.residency());
+  std::set<std::pair<std::uint32_t, std::uint32_t>> pairs;
+  for (const auto& [body, receiver] : pairs_) {
+    const auto body_now = now.find(group_keys_[body]), receiver_now = now.find(group_keys_[receiver]);
+    if (body_now != now.end() && receiver_now != now.end())
+      pairs.insert({body_now->second, receiver_now->second});
+  }
+  pairs_ = std::move(pairs);
+  pairs_changed_ = true;
+  group_keys_.clear();
+  for (std::uint32_t g = 0; g < groups.size(); ++g) group_keys_.push_back(world.keyOf(g));
+}
+
+std::size_t Neighborhoods::readyGrids() const {
+  return static_cast<std::size_t>(std::ranges::count_if(effect_.grids(), &Grid::ready));
+}
+
+void Neighborhoods::chooseCarriers(const World& world, LitScene& scene, bool on) {
+  noticeGrids(world);
+  // Carriers that change because something moves are faded; those that change with what arrives, or because
+  // somebody asked for it, are not.
+  const bool fades = ready_when_chosen_ == readyGrids() && on == on_;
+  on_ = on;
+  ready_when_chosen_ = readyGrids();
+  for (lighting::IncidentGroup& group : scene.groups) group.fades = fades;
+  counts_ = {.grids = static_cast<std::uint32_t>(effect_.grids().size())};
+  std::set<std::pair<std::uint32_t, std::uint32_t>> pairs;
+  const auto group_count = static_cast<std::uint32_t>(world.residency().groups().size());
+  for (const Grid& grid : effect_.grids()) {
+    if (!grid.ready || !carriesLamps(describedGroup(world, grid.group))) continue;
+    ++counts_.ready;
+    if (!on) continue;
+    const glm::mat4 world_from_body = world.worldFromGroup(grid.group);
+    for (std::uint32_t b = 0; b < group_count; ++b) {
+      const bool before = pairs_.contains({grid.group, b});
+      if (b == grid.group || !hasSurfaces(describedGroup(world, b)) ||
+          !meet(boxOf(grid.points, before), world_from_body, world.groupBounds(b), world.worldFromGroup(b)) ||
+          (world.residency().groups()[grid.group].volume < 0 && localShadowsDiffer(scene, grid.group, b)))
+        continue;
+      pairs.insert({grid.group, b});
+      std::vector<std::uint32_t>& left_out = scene.groups[b].left_out;
+      const std::uint32_t body = scene.groups[grid.group].body;
+      if (body != lighting::CapturePoint::kNoBody && !std::ranges::binary_search(left_out, body))
+        left_out.insert(std::ranges::upper_bound(left_out, body), body);
+    }
+  }
+  counts_.pairs = static_cast<std::uint32_t>(pairs.size());
+  if (pairs != pairs_) pairs_changed_ = true;
+  pairs_ = std::move(pairs);
+}
+
+Result<void> Neighborhoods::update(World& world, const lighting::GroupLights& lights,
+                                   const effects::glossy::Glossy& glossy, effects::diffuse::TransferMode mode,
+                                   gpu::Counters& counters) {
+  if (Result<void> done = effect_.update(world.residency(), lights, glossy, counters); !done) return done;
+  const bool same = !pairs_changed_ && transforms_seen_ == world.transformsVersion() &&
+                    residency_seen_ == world.residency().version() && effect_seen_ == effect_.version() &&
+                    mode_seen_ == mode && keys_seen_ == lights.hasKeys();
+  if (!same) {
+    pairs_changed_ = false;
+    transforms_seen_ = world.transformsVersion();
+    residency_seen_ = world.residency().version();
+    effect_seen_ = effect_.version();
+    mode_seen_ = mode;
+    keys_seen_ = lights.hasKeys();
+    findReceivers(world, mode);
+  }
+  if (Result<void> done =
+          vertex_receivers_.update(world.residency(), lights, mode, effect_, vertex_draws_, counters);
+      !done)
+    return done;
+  if (!same) {
+    takeReceivers();
+    receivers_table_.assign(std::span<const Receiver>(receivers_));
+    arrivals_table_.assign(std::span<const Arrival>(arrivals_));
+    counters.uploaded_bytes += receivers_.size() * sizeof(Receiver) + arrivals_.size() * sizeof(Arrival);
+  }
+  counts_.vertex_receivers = static_cast<std::uint32_t>(vertex_draws_.size());
+  counts_.vertex_receivers_shaded = vertex_receivers_.drawsShadedLast();
+  counts_.left_out = left_out_;
+  counts_.written = effect_.gridsWrittenLast();
+  counts_.arrivals = static_cast<std::uint32_t>(arrivals_.size());
+  counts_.receivers = static_cast<std::uint32_t>(
+      std::ranges::count_if(receivers_, [](const Receiver& receiver) { return receiver.count > 0; }));
+  return {};
+}
+
+// Which draws receive how; those that do at their vertices have no room there yet.
+void Neighborhoods::findReceivers(const World& world, effects::diffuse::TransferMode mode) {
+  const auto& draws = world.residency().draws();
+  found_.assign(draws.size(),
+                {.first = 0, .count = 0, .change_word = effects::neighborhood::kNoChange, .pad = 0});
+  vertex_draws_.clear();
+  arrivals_.clear();
+  left_out_ = 0;
+  struct Found {
+    double distance = 0.0;
+    Arrival arrival{};
+  };
+  for (std::uint32_t d = 0; d < draws.size() && !pairs_.empty(); ++d) {
+    const streaming::ResidentDraw& draw = draws[d];
+    if (!world.residency().meshes()[draw.mesh].block) continue;
+    const bundle::Draw& described = world.description(draw.bundle).draws[draw.index];
+    const bundle::Primitive& primitive =
+        world.description(draw.bundle).meshes[described.mesh].primitives[described.primitive];
+    const scene::Box bounds{primitive.bounds_min, primitive.bounds_max};
+    std::vector<Found> found;
+    effects::neighborhood::VertexDraw at_vertices{.draw = d, .from = {}};
+    std::optional<glm::dmat4> world_from_position;
+    for (std::uint32_t g = 0; g < effect_.grids().size(); ++g) {
+      const Grid& grid = effect_.grids()[g];
+      if (!grid.ready || !pairs_.contains({grid.group, draw.group})) continue;
+      const glm::mat4 world_from_body = world.worldFromGroup(grid.group),
+                      world_from_mesh = world.worldFromMesh(d);
+      if (!meet(boxOf(grid.points, /*grown=*/false), world_from_body, bounds, world_from_mesh)) continue;
+      const glm::dvec3 low(grid.points.bounds_min), size = glm::dvec3(grid.points.bounds_max) - low;
+      glm::dmat4 grid_from_body(1.0);
+      for (int axis = 0; axis < 3; ++axis) {
+        grid_from_body[axis][axis] = (static_cast<double>(grid.points.size[axis]) - 1.0) / size[axis];
+        grid_from_body[3][axis] = -low[axis] * grid_from_body[axis][axis];
+      }
+      if (!world_from_position) world_from_position = worldFromPosition(world, d, describe(world, d));
+      const glm::dmat4 grid_from_position =
+          grid_from_body * glm::inverse(glm::dmat4(world_from_body)) * *world_from_position;
+      if (!finite(grid_from_position)) continue;  // something is flat
+      const glm::quat body_from_group =
+          glm::conjugate(world.rotationOf(grid.group)) * world.rotationOf(draw.group);
+      const glm::mat3x4 to_grid(glm::mat4(glm::transpose(grid_from_position)));
+      // Volumes have no shadow maps: pixels, which know their key lights, take what volumes leave of these.
+      const bool whole = keys_seen_ && world.residency().groups()[grid.group].volume >= 0;
+      if (!whole && mode != effects::diffuse::TransferMode::Unshadowed && byTransfer(world, d, grid)) {
+        at_vertices.from.push_back(
+            {.grid = g, .grid_from_position = to_grid, .group_from_body = glm::conjugate(body_from_group)});
+        continue;
+      }
+      const glm::dvec3 middle(world_from_body *
+                              glm::vec4(0.5f * (grid.points.bounds_min + grid.points.bounds_max), 1.0f));
+      const glm::dvec3 receiver(world_from_mesh * glm::vec4(bounds.center(), 1.0f));
+      found.push_back(
+          {.distance = glm::distance(middle, receiver),
+           .arrival = {.grid_from_position = to_grid,
+                       .body_from_group = glm::mat3x4(glm::transpose(glm::mat3_cast(body_from_group))),
+                       .grid = grid.place,
+                       .whole = whole ? 1u : 0u,
+                       .pad0 = 0,
+                       .pad1 = 0,
+                       .pad2 = 0}});
+    }
+    std::ranges::stable_sort(found, {}, &Found::distance);
+    if (found.size() > kMaxArrivals) {
+      left_out_ += static_cast<std::uint32_t>(found.size()) - kMaxArrivals;
+      found.resize(kMaxArrivals);
+    }
+    found_[d].first = static_cast<std::uint32_t>(arrivals_.size());
+    found_[d].count = static_cast<std::uint32_t>(found.size());
+    for (const Found& one : found) arrivals_.push_back(one.arrival);
+    if (!at_vertices.from.empty()) vertex_draws_.push_back(std::move(at_vertices));
+  }
+}
+
+void Neighborhoods::takeReceivers() {
+  for (const effects::neighborhood::VertexDraw& draw : vertex_draws_)
+    found_[draw.draw].change_word = vertex_receivers_.changeWord(draw.draw);
+  const auto sameKind = [](const Receiver& a, const Receiver& b) {
+    return (a.count > 0) == (b.count > 0) && a.change_word == b.change_word;
+  };
+  if (!std::ranges::equal(found_, receivers_, sameKind)) ++version_;
+  receivers_ = found_;
+}
+
+void Neighborhoods::bind() const {
+  receivers_table_.bindStorage(effects::neighborhood::kBindReceivers);
+  arrivals_table_.bindStorage(effects::neighborhood::kBindArrivals);
+  effect_.bind();
+}
+
+void Neighborhoods::bindVertices() const {
+  vertex_receivers_.bindStorage(kBindRadianceChange);
+}
+
+}  // namespace lambent::frame

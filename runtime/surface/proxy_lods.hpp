@@ -1,0 +1,87 @@
+// Draws bundles whose surfaces have no room or have not come: the finest capture proxy of each rigid group,
+// every triangle in one colour, its albedo times E/pi at its normal, plus what its lamp gives now. Lit by the
+// environment and by the lights that stand outside of the group, bands 0..2, without any shadow, as surfaces
+// are whose transfer has not come. Comes in: the world's proxy levels of detail, the light. Goes out: draws
+// into the bound framebuffer. Triangles come and go group by group; where all surfaces are here, nothing is
+// made or drawn. Errors: shaders that do not compile on this device.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "runtime/base/result.hpp"
+#include "runtime/gpu/arena.hpp"
+#include "runtime/gpu/program.hpp"
+#include "runtime/lighting/environment.hpp"
+#include "runtime/lighting/local_light.hpp"
+#include "runtime/sh/cached_window.hpp"
+#include "runtime/sh/window.hpp"
+#include "runtime/spec/camera.hpp"
+#include "runtime/surface/proxy_lod_shared.h"
+#include "runtime/world/world.hpp"
+
+namespace lambent::frame {
+
+struct ProxyLodOptions {
+  std::uint32_t order = 5;  // at most so many bands of light
+  sh::Window window = sh::Window::Off;
+  bool diffuse = true;  // false: they only show what their lamps give
+  bool operator==(const ProxyLodOptions&) const = default;
+};
+
+class ProxyLods {
+ public:
+  ProxyLods();
+
+  // `lights`: those that stand in the scene.
+  Result<void> prepare(const World& world, const lighting::Environment& environment,
+                       std::span<const lighting::LocalLight> lights, const ProxyLodOptions& options,
+                       gpu::Counters& counters);
+  void draw(const spec::View& view, gpu::Counters& counters);
+
+ private:
+  // A group, in a slot of the table of groups.
+  struct Body {
+    std::uint64_t id = 0;  // of its proxies
+    std::uint32_t bundle = 0, group = 0;
+    gpu::Allocation triangles;     // empty: the slot is free
+    std::vector<glm::vec3> lamps;  // by which its triangles shine
+  };
+  // A multi-draw for each page of triangles.
+  struct Batch {
+    std::vector<GLint> first;
+    std::vector<GLsizei> count;
+  };
+  // What the tables were made from.
+  struct Seen {
+    std::uint64_t proxy_lods = 0, lamps = 0, local_lights = 0, transforms = 0, environment = 0;
+    ProxyLodOptions options;
+    bool operator==(const Seen&) const = default;
+  };
+  // Brings triangles that are new and lets go of others.
+  Result<void> follow(const World& world, gpu::Counters& counters);
+  Result<void> bring(const World& world, const ProxyLod& proxy_lod, std::uint32_t group,
+                     gpu::Counters& counters);
+  void write(Body& body, std::uint32_t slot, const bundle::CaptureProxy& proxy, gpu::Counters& counters);
+  void light(const World& world, const lighting::Environment& environment,
+             std::span<const lighting::LocalLight> lights, const ProxyLodOptions& options,
+             gpu::Counters& counters);
+
+  std::optional<gpu::Program> program_;  // from when it is first needed
+  gpu::VertexArray no_vertices_;
+  std::vector<Body> bodies_;
+  std::map<std::pair<std::uint64_t, std::uint32_t>, std::uint32_t> slots_;  // by id and group
+  std::map<std::uint32_t, Batch> batches_;                                  // by page
+  std::vector<ProxyLodGroup> groups_;                                       // as uploaded
+  std::array<sh::CachedWindow, sh::kMaxOrder + 1> windows_;                 // of the environment, by order
+  std::optional<Seen> seen_;
+  gpu::Arena triangles_;
+  gpu::Table groups_table_, view_;
+};
+
+}  // namespace lambent::frame

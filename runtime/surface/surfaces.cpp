@@ -1,0 +1,274 @@
+#include "runtime/surface/surfaces.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+#include "lambent_surface_embedded.hpp"
+
+namespace lambent::frame {
+
+namespace {
+
+constexpr gpu::FindText kShaders[] = {&embedded::lambent_surface::find};
+
+struct ViewBlock {
+  glm::mat4 view_from_world, clip_from_view;
+  glm::vec4 eye;  // as glossy_surface.glsl has it
+};
+
+glm::vec4 eyeOf(const spec::View& view) {
+  const bool perspective = view.clip_from_view[2][3] != 0.0f;
+  if (perspective) return {view.eye_ws, 1.0f};
+  const glm::mat4& from_world = view.view_from_world;
+  return {from_world[0][2], from_world[1][2], from_world[2][2], 0.0f};
+}
+
+}  // namespace
+
+Surfaces::Surfaces()
+    : indices_("surface"),
+      draws_("surface draws"),
+      glossy_draws_("glossy draws"),
+      commands_("surface commands"),
+      view_("view") {}
+
+Result<Surfaces> Surfaces::create(bool finest_texels) {
+  Surfaces surfaces;
+  surfaces.finest_texels_ = finest_texels;
+  for (const bool normal_mapped : {false, true})
+    if (const Result<void> done = surfaces.compile({.normal_mapped = normal_mapped}); !done)
+      return failAgain(done.error());
+  return surfaces;
+}
+
+Result<void> Surfaces::compile(const ProgramKind& kind) {
+  if (programs_.contains(kind)) return {};
+  std::vector<gpu::Define> defines;
+  if (kind.glossy.bands > 0) defines = definesOf(kind.glossy);
+  if (finest_texels_) defines.push_back({"LAMBENT_FINEST_TEXELS", "1"});
+  if (kind.dark) defines.push_back({"LAMBENT_DARK", "1"});
+  if (kind.normal_mapped) defines.push_back({"LAMBENT_NORMAL_MAPPED", "1"});
+  if (kind.residual) defines.push_back({"LAMBENT_RESIDUAL", "1"});
+  if (kind.local_lit) defines.push_back({"LAMBENT_NEAR_LIGHTS", "1"});
+  if (kind.bounces) defines.push_back({"LAMBENT_BOUNCES", "1"});
+  if (kind.key_lit) defines.push_back({"LAMBENT_KEY_LIGHTS", "1"});
+  if (kind.vertices_around) defines.push_back({"LAMBENT_VERTEX_CHANGE", "1"});
+  if (kind.around) defines.push_back({"LAMBENT_NEIGHBORHOODS", "1"});
+  if (kind.view == SurfaceView::Irradiance) defines.push_back({"LAMBENT_VIEW_IRRADIANCE", "1"});
+  if (kind.view == SurfaceView::Normals) defines.push_back({"LAMBENT_VIEW_NORMALS", "1"});
+  Result<gpu::Program> program = gpu::Program::create(
+      "surface", {{GL_VERTEX_SHADER, "surface.vert"}, {GL_FRAGMENT_SHADER, "surface.frag"}}, kShaders,
+      defines);
+  if (!program) return failAgain(program.error());
+  programs_.emplace(kind, std::move(*program));
+  return {};
+}
+
+bool Surfaces::dark(const World& world, std::size_t draw) const {
+  return !(world.residency().draws()[draw].glossy() ? options_.glossy : options_.diffuse);
+}
+
+bool Surfaces::ready(const World& world, const effects::diffuse::Diffuse& diffuse, std::size_t draw) const {
+  if (!world.showsSurfaces(world.residency().draws()[draw].bundle)) return false;  // something stands in
+  if (dark(world, draw)) return bool(world.residency().meshes()[world.residency().draws()[draw].mesh].block);
+  return world.residency().draws()[draw].glossy() ? glossyReady(world, draw) : diffuse.shaded(draw);
+}
+
+void Surfaces::collect(World& world, const effects::diffuse::Diffuse& diffuse, glm::vec3 eye_ws,
+                       const LocalShadows* shadowed_lights, const Neighborhoods* neighborhoods,
+                       std::vector<Item>& opaque, std::vector<Item>& blended) {
+  const streaming::Residency& residency = world.residency();
+  shown_.assign(residency.draws().size(), 0);
+  for (std::uint32_t i = 0; i < residency.draws().size(); ++i) {
+    const streaming::ResidentDraw& draw = residency.draws()[i];
+    if (!ready(world, diffuse, i)) continue;
+    shown_[i] = 1;
+    const streaming::ResidentMesh& mesh = residency.meshes()[draw.mesh];
+    const glm::mat4& world_from_mesh = records_[i].world_from_mesh;
+    Item item{.state = {.geometry_page = mesh.block.page,
+                        .radiance_page = draw.radiance.page,
+                        .textures = texturesOf(world, i, records_[i]),
+                        .normal_mapped = normalMapped(world, i),
+                        .local_lit = shadowed_lights != nullptr && shadowed_lights->lightsOf(i) != 0,
+                        .key_lit = options_.key_lights && records_[i].unlit == 0,
+                        .bounces = records_[i].bounced_word != kAbsent,
+                        .around = neighborhoods != nullptr && neighborhoods->receives(i),
+                        .vertices_around = neighborhoods != nullptr && neighborhoods->receivesAtVertices(i),
+                        .clockwise = (glm::determinant(glm::mat3(world_from_mesh)) < 0.0f) != draw.back},
+              .draw = i,
+              .distance = glm::distance(eye_ws, glm::vec3(world_from_mesh * glm::vec4(mesh.center, 1.0f)))};
+    if (dark(world, i)) {
+      item.state.dark = true;
+      item.state.radiance_page = 0;
+      item.state.normal_mapped = item.state.local_lit = item.state.key_lit = item.state.bounces =
+          item.state.around = item.state.vertices_around = false;
+    } else if (draw.glossy()) {
+      item.state.glossy = glossyKindOf(world, i, options_.glossy_bands);
+      item.state.bundle = draw.bundle;
+      item.state.brdf_table = brdfTableOf(world, i);
+      item.state.rows_page = draw.rows.page;
+      item.state.samples_page = residency.groups()[draw.group].samples.page;
+      glossy_index_[i] = static_cast<std::uint32_t>(glossy_records_.size());
+      glossy_records_.push_back({.surface = records_[i], .glossy = describeGlossy(world, i)});
+    }
+    (records_[i].alpha_mode == kAlphaBlend ? blended : opaque).push_back(item);
+  }
+}
+
+void Surfaces::appendRuns(const World& world, const std::vector<Item>& items, std::vector<Run>& runs,
+                          std::vector<DrawCommand>& commands) const {
+  for (const Item& item : items) {
+    const streaming::ResidentMesh& mesh =
+        world.residency().meshes()[world.residency().draws()[item.draw].mesh];
+    if (runs.empty() || runs.back().state != item.state)
+      runs.push_back({item.state, static_cast<std::uint32_t>(commands.size()), 0});
+    ++runs.back().command_count;
+    const std::uint32_t record = item.state.glossy.bands > 0 ? glossy_index_[item.draw] : item.draw;
+    commands.push_back({mesh.index_count, 1, mesh.indices_word, 0, record});
+  }
+}
+
+Result<void> Surfaces::prepare(World& world, const effects::diffuse::Diffuse& diffuse, const spec::View& view,
+                               gpu::Counters& counters, const LocalShadows* shadowed_lights,
+                               const lighting::PrefilteredEnvironment* prefiltered_environment,
+                               const Neighborhoods* neighborhoods, const PatchBounces* bounces,
+                               const SurfaceOptions& options) {
+  const bool options_same = options == options_;
+  options_ = options;
+  const bool residual_same = (prefiltered_environment != nullptr) == (prefiltered_environment_ != nullptr);
+  prefiltered_environment_ = prefiltered_environment;
+  neighborhoods_ = neighborhoods;
+  bounces_ = bounces;
+  const ViewBlock block{view.view_from_world, view.clip_from_view, eyeOf(view)};
+  view_.assign(std::span<const ViewBlock>(&block, 1));
+  const streaming::Residency& residency = world.residency();
+  std::size_t shaded = 0;
+  for (std::size_t i = 0; i < residency.draws().size(); ++i) shaded += ready(world, diffuse, i) ? 1 : 0;
+  const std::uint64_t local_version = shadowed_lights != nullptr ? shadowed_lights->version() : 0;
+  const std::uint64_t around_version = neighborhoods != nullptr ? neighborhoods->version() : 0;
+  const std::uint64_t bounces_version = bounces != nullptr ? bounces->layoutVersion() : 0;
+  const bool scene_same = residual_same && options_same && view_shown_ == view_seen_ &&
+                          world.materialsVersion() == materials_seen_ &&
+                          residency.version() == residency_seen_ && local_version == local_seen_ &&
+                          around_version == around_seen_ && bounces_version == bounces_seen_ &&
+                          world.transformsVersion() == transforms_seen_ &&
+                          world.lampsVersion() == lamps_seen_ && shaded == shaded_seen_;
+  if (scene_same && (blended_.empty() || view.eye_ws == eye_seen_ws_)) return {};
+  view_seen_ = view_shown_;
+  local_seen_ = local_version;
+  around_seen_ = around_version;
+  bounces_seen_ = bounces_version;
+  residency_seen_ = residency.version();
+  transforms_seen_ = world.transformsVersion();
+  lamps_seen_ = world.lampsVersion();
+  materials_seen_ = world.materialsVersion();
+  shaded_seen_ = shaded;
+  eye_seen_ws_ = view.eye_ws;
+
+  records_.clear();
+  for (std::size_t i = 0; i < residency.draws().size(); ++i) {
+    records_.push_back(describe(world, i));
+    if (bounces != nullptr) records_.back().bounced_word = bounces->wordOf(i);
+  }
+  glossy_records_.clear();
+  glossy_index_.assign(records_.size(), 0);
+  std::vector<Item> opaque, blended;
+  collect(world, diffuse, view.eye_ws, shadowed_lights, neighborhoods, opaque, blended);
+  std::stable_sort(opaque.begin(), opaque.end(),
+                   [](const Item& a, const Item& b) { return a.state < b.state; });
+  std::stable_sort(blended.begin(), blended.end(),
+                   [](const Item& a, const Item& b) { return a.distance > b.distance; });
+  std::vector<DrawCommand> commands;
+  opaque_.clear();
+  blended_.clear();
+  appendRuns(world, opaque, opaque_, commands);
+  appendRuns(world, blended, blended_, commands);
+  for (const std::vector<Run>* runs : {&opaque_, &blended_})
+    for (const Run& run : *runs)
+      if (Result<void> done = compile(kindOf(run.state)); !done) return done;
+  upload(draws_, records_, records_uploaded_, counters);
+  upload(glossy_draws_, glossy_records_, glossy_uploaded_, counters);
+  upload(commands_, commands, commands_uploaded_, counters);
+  indices_.reserve(records_.size());
+  return {};
+}
+
+template <typename Record>
+void Surfaces::upload(gpu::Table& table, const std::vector<Record>& records, std::vector<Record>& uploaded,
+                      gpu::Counters& counters) {
+  const auto same = [&](std::size_t i) {
+    return std::memcmp(&records[i], &uploaded[i], sizeof(Record)) == 0;
+  };
+  if (records.size() != uploaded.size()) {
+    table.assign(std::span<const Record>(records));
+    counters.uploaded_bytes += records.size() * sizeof(Record);
+  } else {
+    for (std::size_t first = 0; first < records.size();) {
+      if (same(first)) {
+        ++first;
+        continue;
+      }
+      std::size_t end = first + 1;
+      while (end < records.size() && !same(end)) ++end;
+      table.buffer().write(first * sizeof(Record), std::span(records).subspan(first, end - first));
+      counters.uploaded_bytes += (end - first) * sizeof(Record);
+      first = end;
+    }
+  }
+  uploaded = records;
+}
+
+void Surfaces::drawRuns(World& world, const std::vector<Run>& runs, gpu::Counters& counters) {
+  if (runs.empty()) return;
+  glBindBufferBase(GL_UNIFORM_BUFFER, kBindView, view_.buffer().id());
+  glBindBuffer(GL_DRAW_INDIRECT_BUFFER, commands_.buffer().id());
+  glEnable(GL_CULL_FACE);  // double-sided surfaces are two draws
+  if (prefiltered_environment_ != nullptr) prefiltered_environment_->bind();
+  if (neighborhoods_ != nullptr) neighborhoods_->bind();
+  for (const Run& run : runs) {
+    const gpu::Buffer& geometry = world.residency().geometry().page(run.state.geometry_page);
+    geometry.bindStorage(kBindGeometry);
+    indices_.bind(geometry);
+    programs_.at(kindOf(run.state)).use();
+    units_.bind(world, run.state.textures);
+    if (run.state.glossy.bands > 0) {
+      glossy_draws_.bindStorage(kBindDraws);
+      world.residency().rows().page(run.state.rows_page).bindStorage(kBindRows);
+      world.residency().samples().page(run.state.samples_page).bindStorage(kBindSamples);
+      units_.bindGlossy(world, run.state.textures, run.state.bundle, run.state.brdf_table);
+    } else if (run.state.dark) {
+      draws_.bindStorage(kBindDraws);
+    } else {
+      draws_.bindStorage(kBindDraws);
+      world.residency().radiance().page(run.state.radiance_page).bindStorage(kBindRadiance);
+      if (run.state.vertices_around) neighborhoods_->bindVertices();
+    }
+    if (run.state.bounces)
+      bounces_->bindStorage(run.state.glossy.bands > 0 ? kBindGlossyBounced : kBindBounced);
+    glFrontFace(run.state.clockwise ? GL_CW : GL_CCW);
+    DrawIndices::draw(run.first_command, run.command_count, counters);
+  }
+  glFrontFace(GL_CCW);
+  glDisable(GL_CULL_FACE);
+  units_.unbindSamplers();
+}
+
+void Surfaces::drawOpaque(World& world, gpu::Counters& counters) {
+  glDisable(GL_BLEND);
+  glDepthMask(GL_TRUE);
+  drawRuns(world, opaque_, counters);
+}
+
+void Surfaces::drawBlended(World& world, gpu::Counters& counters) {
+  glEnable(GL_BLEND);
+  glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+  glDepthMask(GL_FALSE);
+  drawRuns(world, blended_, counters);
+  glDepthMask(GL_TRUE);
+  glDisable(GL_BLEND);
+}
+
+}  // namespace lambent::frame
