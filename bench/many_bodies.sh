@@ -16,7 +16,7 @@ while getopts b:f:s:c: option; do
 done
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
-"$build/bin/lambent" bake "$build/assets/field.glb" -o "$folder/field.lmb.glb" --quality draft --light-samples 1 >/dev/null
+"$build/bin/lambent" bake "$build/assets/field.glb" -o "$folder/field.lmb.glb" --quality draft --light-probes 1 >/dev/null
 "$build/bin/lambent-demo" "$folder/field.lmb.glb" --light "$build/assets/sky.hdr" --camera main --size "$size" \
   --time 4 --step 0.1 --frames "$frames" --captures-per-frame "$captures" \
   --headless "$folder/field.png" --json >"$folder/report.json"

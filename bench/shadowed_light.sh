@@ -38,7 +38,7 @@ name=$(basename "${scene%.*}").b$bounces
 mkdir -p "$out"
 
 for count in "${counts[@]}"; do
-  "$build"/bin/lambent bake "$scene" -o "$out/$name.$count.lmb.glb" --bounces "$bounces" --light-samples "$count" --force >/dev/null
+  "$build"/bin/lambent bake "$scene" -o "$out/$name.$count.lmb.glb" --bounces "$bounces" --light-probes "$count" --force >/dev/null
 done
 
 # A light word: towards azimuth and elevation 40 of the middle of the one group, radiance such that a surface
@@ -82,7 +82,7 @@ for ratio in "${ratios[@]}"; do
     done
     for count in "${counts[@]}"; do
       stem=$out/$name.$ratio.$camera.$count
-      "$build"/bin/lambent-demo "$out/$name.$count.lmb.glb" "${words[@]}" --window off --near-radii 0 --headless "$stem.exr" >/dev/null
+      "$build"/bin/lambent-demo "$out/$name.$count.lmb.glb" "${words[@]}" --window off --local-radii 0 --headless "$stem.exr" >/dev/null
       for limit in 5 whole; do
         "$build"/bin/lambent compare "$stem.exr" "$out/$name.$ratio.$camera.$limit.1.exr" \
           --reference2 "$out/$name.$ratio.$camera.$limit.2.exr" --json > "$stem.$limit.json"
@@ -111,7 +111,7 @@ panels=()
 for panel in 1 32 reference; do
   picture=$out/$name.panel.$panel.exr
   if [[ $panel != reference ]]; then
-    "$build"/bin/lambent-demo "$out/$name.$panel.lmb.glb" "${words[@]}" --window off --near-radii 0 --headless "$picture" >/dev/null
+    "$build"/bin/lambent-demo "$out/$name.$panel.lmb.glb" "${words[@]}" --window off --local-radii 0 --headless "$picture" >/dev/null
   elif [[ ! -e $picture ]]; then
     "$build"/bin/lambent reference "$scene" "${words[@]}" --band-limit 5 --bounces "$bounces" --spp 1024 -o "$picture" >/dev/null
   fi

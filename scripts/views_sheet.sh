@@ -25,7 +25,7 @@ draw 06-clusters gallery --light constant:1,1,1 --view clusters
 draw 07-normals gallery --light constant:1,1,1 --view normals
 draw 08-wireframe flight $sky --view wireframe
 camera=orbit:25,14,0.8,25
-draw 09-light-samples playroom $day --overlay light-samples
+draw 09-light-samples playroom $day --overlay light-probes
 camera=main
 draw 10-neighborhoods playroom $day --overlay neighborhoods:y,0.3
 draw 11-groups-lights playroom $day --overlay groups,lights

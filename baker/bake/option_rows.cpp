@@ -132,7 +132,7 @@ constexpr std::tuple kRows{
         .words = {{{"auto", std::nullopt}, {"on", true}, {"off", false}}},
         .record = &recordFit},
     TypedRow<int>{
-        .name = "light-samples",
+        .name = "light-probes",
         .setting = "lightSamples",
         .kind = "N|auto",
         .member = &B::light_probes,
@@ -142,7 +142,8 @@ constexpr std::tuple kRows{
         .limits = Limits<int>{.least = 1,
                               .greatest = static_cast<int>(kMostLightProbes),
                               .usage = true,
-                              .hint = "auto chooses by how near light comes"}},
+                              .hint = "auto chooses by how near light comes"},
+        .former = "light-samples"},
     TypedRow<glm::uvec3>{
         .name = "neighborhood-grid",
         .setting = "neighborhoodGrid",
@@ -231,7 +232,8 @@ template <std::size_t I>
 OptionRow optionRow() {
   const auto& row = std::get<I>(kRows);
   using T = std::remove_cvref_t<decltype(BakeOptions().*row.member)>;
-  OptionRow out{.name = row.name, .setting = row.setting, .kind = row.kind, .help = row.help};
+  OptionRow out{
+      .name = row.name, .setting = row.setting, .kind = row.kind, .help = row.help, .former = row.former};
   for (const Word<T>& word : row.words)
     if (!word.word.empty()) out.words.push_back(word.word);
   out.only_words = kOnlyWords<T>;
@@ -257,7 +259,9 @@ std::span<const OptionRow> optionRows() {
 
 const OptionRow* findOption(std::string_view name) {
   const auto rows = optionRows();
-  const auto found = std::ranges::find(rows, name, &OptionRow::name);
+  const auto found = std::ranges::find_if(rows, [&](const OptionRow& row) {
+    return row.name == name || (!row.former.empty() && row.former == name);
+  });
   return found == rows.end() ? nullptr : &*found;
 }
 

@@ -15,7 +15,7 @@
 namespace lambent::baker {
 
 struct OptionRow {
-  std::string_view name;     // as in --name, in scripts and journals; never changed
+  std::string_view name;     // as in --name, in scripts and journals
   std::string_view setting;  // in the settings that a bundle records; empty: it does not change the bytes
   std::string_view kind;     // what a word looks like, for help: "N|auto"
   std::string_view help;
@@ -32,6 +32,7 @@ struct OptionRow {
   // Takes over what word() or record() wrote. Returns false if it is not of the option's kind.
   bool (*read)(BakeOptions&, std::string_view word) = nullptr;
   Result<void> (*check)(const BakeOptions&) = nullptr;
+  std::string_view former{};  // the name before 0.11, which is still understood but not shown; may be empty
 };
 
 // In the order of the help.

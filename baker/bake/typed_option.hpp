@@ -48,6 +48,7 @@ struct TypedRow {
   std::array<Word<T>, 3> words{};  // unused ones have an empty word
   std::optional<Limits<T>> limits{};
   std::string (*record)(const BakeOptions&) = nullptr;  // null: the word is recorded
+  std::string_view former{};                            // see OptionRow
 };
 
 template <class T>

@@ -11,9 +11,9 @@ namespace lambent::baker {
 
 namespace {
 
-void add(CLI::App& command, const OptionRow& row, BakeOptions& options) {
+CLI::Option* add(CLI::App& command, std::string_view name, const OptionRow& row, BakeOptions& options) {
   CLI::Option* option = command.add_option_function<std::string>(
-      "--" + std::string(row.name), [&options, &row](const std::string& word) { row.put(options, word); },
+      "--" + std::string(name), [&options, &row](const std::string& word) { row.put(options, word); },
       std::string(row.help));
   option->type_name(std::string(row.kind));
   option->check(CLI::Validator(
@@ -23,7 +23,13 @@ void add(CLI::App& command, const OptionRow& row, BakeOptions& options) {
         return put ? std::string() : put.error().problem;
       },
       ""));
+  return option;
+}
+
+void add(CLI::App& command, const OptionRow& row, BakeOptions& options) {
+  CLI::Option* option = add(command, row.name, row, options);
   if (row.shows_default) option->default_str(row.word(BakeOptions{}));
+  if (!row.former.empty()) add(command, row.former, row, options)->group("");  // not shown in the help
 }
 
 }  // namespace

@@ -122,7 +122,7 @@ void addPlanCommand(CLI::App& app, Command& run) {
   auto a = std::make_shared<PlanArguments>();
   CLI::App* command = app.add_subcommand("plan", "Say what would be baked, what not, and why");
   command->add_option("SCENE", a->scene, "The scene, .gltf or .glb")->required();
-  for (const char* name : {"effects", "light-samples"}) addBakeOption(*command, name, a->options);
+  for (const char* name : {"effects", "light-probes"}) addBakeOption(*command, name, a->options);
   command->add_flag("--allow-outside", a->allow_outside,
                     "Read buffers and images outside the scene's folder too");
   command->add_flag("--json", a->json, "Print as JSON");

@@ -227,7 +227,7 @@ constexpr std::array kRows = {
     scripted("reference-samples", "Samples a pixel at which the reference ends", "N", 1, 1, &samples),
     scripted("reference-bands", "Light of the reference in so many bands only", "N|off", 1, 1, &bands),
     separator("View"),
-    toggle("overlay-light-samples", "Light probes", "", "What is captured where, and its harmonics as a ball",
+    toggle("overlay-light-probes", "Light probes", "", "What is captured where, and its harmonics as a ball",
            &overlay<&O::light_probes>, &hasOverlay<&O::light_probes>),
     toggle("overlay-neighborhoods", "Neighborhood slices", "", "What bodies change around them",
            &overlay<&O::neighborhoods>, &hasOverlay<&O::neighborhoods>),

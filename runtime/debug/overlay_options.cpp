@@ -12,7 +12,7 @@ namespace lambent::frame {
 namespace {
 
 constexpr std::array<OverlayRow, 6> kRows = {{
-    {"light-samples", "Light probes",
+    {"light-probes", "Light probes",
      "where light is sampled: what is captured there as a cube, the harmonics as a ball",
      &OverlayOptions::light_probes},
     {"neighborhoods", "Neighborhoods",
@@ -54,7 +54,9 @@ Result<OverlayOptions> parseOverlays(std::string_view list) {
     std::size_t end = std::min(list.find(','), list.size());
     std::string_view word = list.substr(0, end);
     const std::size_t colon = word.find(':');
-    const auto row = std::ranges::find(kRows, word.substr(0, colon), &OverlayRow::name);
+    std::string_view name = word.substr(0, colon);
+    if (name == "light-samples") name = "light-probes";  // the name before 0.11
+    const auto row = std::ranges::find(kRows, name, &OverlayRow::name);
     if (row == kRows.end()) return unknown(word, "is not known");
     options.*row->flag = true;
     if (colon != std::string_view::npos) {

@@ -50,7 +50,7 @@ constexpr Row kRows[] = {
      "wireframe;\nan "
      ".exr holds the numbers"},
     {"--overlay", &Words::overlay, "LIST",
-     "Drawn over the picture: light-samples, neighborhoods[:AXIS,POSITION],\nvolumes, groups, lights, keys"},
+     "Drawn over the picture: light-probes, neighborhoods[:AXIS,POSITION],\nvolumes, groups, lights, keys"},
     {"--rotate-light", &Words::rotate_light, "DEG", "Turn all lights about +Y (+Z towards +X)"},
     {"--fade", &Words::fade, "SHARE", "From the lights of --light to those of --fade-to: 0..1"},
     {"--time", &Words::time, "S",
@@ -110,6 +110,8 @@ void declare(CLI::App& app, Words& words) {
     app.add_option("--" + std::string(row.name), words.settings[i], std::string(row.help))
         ->type_name(typeOf(row))
         ->default_str(frame::settingWord(row, defaults));
+    if (!row.former.empty())
+      app.add_option("--" + std::string(row.former), words.settings[i])->group("");  // hidden
   }
   app.add_option("--quality", words.quality,
                  "low, default or high: how many key lights there are and how finely\nthey shadow; single "

@@ -19,16 +19,16 @@ Json countsJson(const frame::StepCounts& counts) {
           {"local_lights", counts.local_lights},
           {"near_lights", counts.shadowed_lights},
           {"near_lights_left_out", counts.shadowed_lights_left_out},
-          {"light_samples", counts.incident.samples},
-          {"light_samples_captured", counts.incident.captured},
-          {"light_samples_waiting", counts.incident.waiting},
+          {"light_probes", counts.incident.samples},
+          {"light_probes_captured", counts.incident.captured},
+          {"light_probes_waiting", counts.incident.waiting},
           {"capture_pages", counts.captured.pages},
           {"capture_tiles", counts.captured.tiles},
           {"capture_bodies_drawn", counts.captured.draws},
           {"capture_triangles", counts.captured.triangles},
           {"capture_pixels", counts.captured.pixels},
-          {"light_samples_risen", counts.incident.risen},
-          {"light_samples_written", counts.light_probes_written},
+          {"light_probes_risen", counts.incident.risen},
+          {"light_probes_written", counts.light_probes_written},
           {"cells_shaded", counts.cells_shaded},
           {"draws_shaded", counts.draws_shaded},
           {"shadow_cubes_drawn", counts.shadow_cubes_drawn},
@@ -70,7 +70,7 @@ Json frameTimesJson(std::vector<double> frame_ms) {
 }
 
 Json streamingJson(const frame::StreamingStatus& status) {
-  constexpr const char* kShown[] = {"nothing", "stand-in", "partly", "full"};
+  constexpr const char* kShown[] = {"nothing", "proxy", "partly", "full"};
   constexpr const char* kStates[] = {"closed", "loading", "partial", "whole", "damaged"};
   Json bundles = Json::array();
   for (const frame::BundleStreaming& bundle : status.bundles)
@@ -84,10 +84,10 @@ Json streamingJson(const frame::StreamingStatus& status) {
   const bool limited = status.budget_bytes != ~std::uint64_t{0};
   return {{"budget_bytes", limited ? Json(status.budget_bytes) : Json()},
           {"bytes_resident", status.resident_bytes},
-          {"bytes_of_stand_ins", status.proxy_lod_bytes},
+          {"bytes_of_proxies", status.proxy_lod_bytes},
           {"shown_in_full", status.count(frame::Shown::Full)},
           {"shown_partly", status.count(frame::Shown::Partly)},
-          {"shown_as_stand_ins", status.count(frame::Shown::ProxyLod)},
+          {"shown_as_proxies", status.count(frame::Shown::ProxyLod)},
           {"not_shown", status.count(frame::Shown::Nothing)},
           {"queued", status.queued},
           {"bytes_in_flight", status.in_flight_bytes},

@@ -303,7 +303,7 @@ Result<void> Frame::reflectSky(const World& world, const lighting::Environment& 
   if (std::ranges::none_of(world.residency().groups(),
                            [](const streaming::ResidentGroup& group) { return group.glossy_outputs > 0; }))
     return {};  // matrices of neighborhoods or volumes alone
-  gpu::PassTimers::Scope pass(timers_, "residual");
+  gpu::PassTimers::Scope pass(timers_, "specular environment");
   Result<lighting::PrefilteredEnvironment> made =
       lighting::PrefilteredEnvironment::make(environment, sky_, pass.counters());
   if (!made) return failAgain(made.error());

@@ -21,14 +21,15 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 template <auto Member>
 constexpr SettingRow switchRow(std::string_view name, std::string_view label, std::optional<double> finest,
-                               std::string_view help) {
+                               std::string_view help, std::string_view former = {}) {
   return {.name = name,
           .label = label,
           .kind = Kind::Switch,
           .finest = finest,
           .help = help,
           .get = [](const FrameSettings& settings) { return settings.*Member ? 1.0 : 0.0; },
-          .put = [](FrameSettings& settings, double value) { settings.*Member = value != 0.0; }};
+          .put = [](FrameSettings& settings, double value) { settings.*Member = value != 0.0; },
+          .former = former};
 }
 
 // Member: of the settings, a number or an enum.
@@ -131,15 +132,17 @@ const std::array kRows = {
     switchRow<&S::diffuse>("diffuse", "matte surfaces", 1.0, "Light on matte surfaces"),
     switchRow<&S::glossy>("glossy", "glossy surfaces", 1.0, "Light on glossy surfaces"),
     switchRow<&S::volumes>("volumes", "volumes", 1.0, "Clouds, smoke and other media"),
-    switchRow<&S::residual>("residual", "sharp reflections of the sky", 1.0,
-                            "Glossy surfaces reflect what the bands of their light leave out\nof the sky"),
+    switchRow<&S::residual>("specular-environment", "sharp reflections of the sky", 1.0,
+                            "Glossy surfaces reflect what the bands of their light leave out\nof the sky",
+                            "residual"),
     switchRow<&S::neighborhoods>("neighborhoods", "neighborhoods", 1.0,
                                  "Bodies with grids around them shade others by these, off: by\ncaptures"),
-    switchRow<&S::local_shadows>("near-shadows", "local lights", 1.0,
+    switchRow<&S::local_shadows>("local-shadows", "local lights", 1.0,
                                  "Lights among the surfaces shine per pixel with shadow cubes, off:\nby "
-                                 "harmonics"),
+                                 "harmonics",
+                                 "near-shadows"),
     SettingRow{
-        .name = "near-radii",
+        .name = "local-radii",
         .label = "radii of local lights",
         .kind = Kind::Real,
         .greatest = 1000.0,
@@ -148,7 +151,8 @@ const std::array kRows = {
             "Lights beside a body shine per pixel, too, nearer to its middle\nthan so many of its radii; 0: "
             "only lights within its bounds",
         .get = getNumber<&S::local_radii>,
-        .put = putNumber<&S::local_radii>},
+        .put = putNumber<&S::local_radii>,
+        .former = "near-radii"},
     switchRow<&S::patch_bounces>(
         "patch-bounces", "bounces by patches", 1.0,
         "Surfaces send on the light of lights among them, and of key\nlights what their "
@@ -192,7 +196,7 @@ const std::array kRows = {
                    "all of them",
                .get = getNumber<&S::captures_per_step>,
                .put = putNumber<&S::captures_per_step>},
-    SettingRow{.name = "light-samples",
+    SettingRow{.name = "light-probes",
                .label = "light probes of a group",
                .kind = Kind::Whole,
                .least = 1.0,
@@ -200,7 +204,8 @@ const std::array kRows = {
                .finest = S::kAllLightProbes,
                .help = "Places at which the light of a group is sampled, at most",
                .get = getNumber<&S::light_probes>,
-               .put = putNumber<&S::light_probes>},
+               .put = putNumber<&S::light_probes>,
+               .former = "light-samples"},
     SettingRow{.name = "march-step",
                .label = "steps through volumes",
                .kind = Kind::Real,
@@ -249,7 +254,7 @@ std::span<const SettingRow> settingRows() {
 
 const SettingRow* findSetting(std::string_view name) {
   for (const SettingRow& row : kRows)
-    if (row.name == name) return &row;
+    if (row.name == name || (!row.former.empty() && row.former == name)) return &row;
   return nullptr;
 }
 

@@ -66,7 +66,7 @@ struct FrameSettings {
 struct SettingRow {
   enum class Kind : std::uint8_t { Switch, Choice, Whole, Real };
 
-  std::string_view name;  // as in --name, in scripts and files; never changed
+  std::string_view name;  // as in --name, in scripts and files
   std::string_view label;
   Kind kind = Kind::Switch;
   double least = 0.0, greatest = 1.0;         // both included; of a Choice the places of its words
@@ -75,7 +75,8 @@ struct SettingRow {
   std::optional<double> finest{};             // most accurate; none: no setting of accuracy
   std::string_view help{};
   double (*get)(const FrameSettings&) = nullptr;
-  void (*put)(FrameSettings&, double) = nullptr;  // of a value in range
+  void (*put)(FrameSettings&, double) = nullptr;  // takes a value in range
+  std::string_view former{};  // the name before 0.11, which is still understood but not shown; may be empty
 };
 
 // In the order of panels and help.

@@ -52,7 +52,7 @@ ProxyLodTriangle describe(const bundle::CaptureProxy& proxy, const bundle::Proxy
 }  // namespace
 
 ProxyLods::ProxyLods()
-    : triangles_("stand-ins", kPageBytes, std::make_shared<gpu::Staging>(kPageBytes)),
+    : triangles_("proxy levels of detail", kPageBytes, std::make_shared<gpu::Staging>(kPageBytes)),
       groups_table_("proxy level of detail groups"),
       view_("proxy level of detail view") {}
 
@@ -191,11 +191,11 @@ Result<void> ProxyLods::prepare(const World& world, const lighting::Environment&
   light(world, environment, lights, options, counters);
   if (program_) return {};
   Result<gpu::Program> made = gpu::Program::create(
-      "stand-ins", {{GL_VERTEX_SHADER, "proxy_lod.vert"}, {GL_FRAGMENT_SHADER, "proxy_lod.frag"}}, kShaders,
+      "proxy levels of detail", {{GL_VERTEX_SHADER, "proxy_lod.vert"}, {GL_FRAGMENT_SHADER, "proxy_lod.frag"}}, kShaders,
       {});
   if (!made) return failAgain(made.error());
   program_ = std::move(*made);
-  no_vertices_ = gpu::VertexArray("stand-ins");
+  no_vertices_ = gpu::VertexArray("proxy levels of detail");
   return {};
 }
 

@@ -249,7 +249,7 @@ TEST_F(DemoProgram, ALightInTheSceneShinesByTheSquareOfItsDistance) {
   const std::filesystem::path exr = folder / "a.exr";
   const auto centre = [&](const std::string& light) {
     const Outcome outcome = run(bundle() + " --light " + light +
-                                " --near-radii 0 --window off --size 64x64 --json --headless " + quoted(exr));
+                                " --local-radii 0 --window off --size 64x64 --json --headless " + quoted(exr));
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
     const auto report = nlohmann::json::parse(outcome.out);
     EXPECT_EQ(report["last_frame"]["counts"]["local_lights"], 1);
@@ -291,10 +291,10 @@ TEST_F(DemoProgram, ReportsAsJson) {
   EXPECT_EQ(report["settings"]["window"], "off");
   EXPECT_EQ(report["settings"]["keys"], "auto");
   EXPECT_EQ(report["key_lights"].size(), report["last_frame"]["counts"]["key_lights"]);
-  EXPECT_EQ(report["first_frame"]["counts"]["light_samples_written"], 1);
-  EXPECT_EQ(report["last_frame"]["counts"]["light_samples_written"], 0);
+  EXPECT_EQ(report["first_frame"]["counts"]["light_probes_written"], 1);
+  EXPECT_EQ(report["last_frame"]["counts"]["light_probes_written"], 0);
   EXPECT_EQ(report["last_frame"]["counts"]["cells_shaded"], 0);
-  EXPECT_EQ(report["last_frame"]["counts"]["light_samples_captured"], 0) << "one body sees no other";
+  EXPECT_EQ(report["last_frame"]["counts"]["light_probes_captured"], 0) << "one body sees no other";
   EXPECT_GT(report["frame_ms"]["median"], 0.0);
 }
 

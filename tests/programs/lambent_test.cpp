@@ -43,13 +43,13 @@ TEST_F(LambentProgram, HelpAndVersionAreExitCode0) {
   const std::vector<std::pair<std::string, std::vector<std::string>>> commands = {
       {"bake", {"SCENE",           "--output",     "--quality",     "--order",
                 "--rays",          "--bounces",    "--error",       "--max-edge",
-                "--light-samples", "--refine",     "--volume-grid", "--neighborhood-grid",
+                "--light-probes", "--refine",     "--volume-grid", "--neighborhood-grid",
                 "--effects",       "--threads",    "--max-memory",  "--allow-outside",
                 "--cache",         "--cache-size", "--force",       "--json"}},
       {"reference",
        {"SCENE", "--light", "--camera", "--output", "--spp", "--seed", "--band-limit", "--bounces", "--time",
         "--json"}},
-      {"plan", {"SCENE", "--effects", "--light-samples", "--json"}},
+      {"plan", {"SCENE", "--effects", "--light-probes", "--json"}},
       {"info", {"BUNDLE", "--json"}},
       {"compare",
        {"PICTURE", "REFERENCE", "--reference2", "--heat", "--heat-map", "--heat-range", "--json"}}};

@@ -294,7 +294,7 @@ TEST_F(Bake, NamesTheOptionThatIsWrong) {
   refused([](BakeOptions& o) { o.rays = 3; }, "--rays");
   refused([](BakeOptions& o) { o.error_bound = 2.0f; }, "--error");
   refused([](BakeOptions& o) { o.max_edge_m = -1.0f; }, "--max-edge");
-  refused([](BakeOptions& o) { o.light_probes = 33; }, "--light-samples");
+  refused([](BakeOptions& o) { o.light_probes = 33; }, "--light-probes");
   refused([](BakeOptions& o) { o.effects = "diffuse,smell"; }, "--effects");
 }
 

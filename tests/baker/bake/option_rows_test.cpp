@@ -13,7 +13,7 @@ namespace {
 const std::map<std::string_view, std::string_view> kOthers = {
     {"quality", "high"},      {"order", "4"},         {"glossy-order", "6"},  {"rays", "777"},
     {"bounces", "3"},         {"max-memory", "4096"}, {"error", "0.0125"},    {"max-edge", "0.1"},
-    {"refine", "0.07"},       {"fit", "on"},          {"light-samples", "9"}, {"neighborhood-grid", "3x4x5"},
+    {"refine", "0.07"},       {"fit", "on"},          {"light-probes", "9"}, {"neighborhood-grid", "3x4x5"},
     {"volume-grid", "6x7x8"}, {"effects", "diffuse"}, {"threads", "2"}};
 
 TEST(OptionRows, HaveNamesOfTheirOwnAndSayWhatTheyDo) {
@@ -98,8 +98,8 @@ TEST(OptionRows, CheckRanges) {
   // Already with the word, as wrong usage.
   for (const auto& [name, word] : {std::pair("refine", "2"),
                                    {"refine", "0"},
-                                   {"light-samples", "33"},
-                                   {"light-samples", "0"},
+                                   {"light-probes", "33"},
+                                   {"light-probes", "0"},
                                    {"bounces", "65"},
                                    {"bounces", "-1"}}) {
     BakeOptions options;

@@ -45,7 +45,7 @@ class WorldFiles : public ::testing::Test {
     state.key_edits = {"key:10,20,30,40,0.5", "fade-key:0,0,0,90,1,0.5,0.25"};
     state.exposure_ev = -1.5f;
     state.camera = "orbit:30,15,2.5,40";
-    state.settings = {{"window", "auto"}, {"residual", "off"}};
+    state.settings = {{"window", "auto"}, {"specular-environment", "off"}};
     document.setWorld(state);
   }
   ~WorldFiles() override { fs::remove_all(folder); }

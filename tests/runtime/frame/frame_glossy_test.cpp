@@ -280,16 +280,16 @@ TEST_F(FrameGlossy, TheResidualIsMadeOnceAndLeavesUniformLightAsItIs) {
   {
     Stage with(builder, {kWhite}, /*residual=*/true);
     with.render();
-    ASSERT_TRUE(with.counts("residual"));
-    EXPECT_GT(with.counts("residual")->dispatches, 0u);
+    ASSERT_TRUE(with.counts("specular environment"));
+    EXPECT_GT(with.counts("specular environment")->dispatches, 0u);
     image = with.frame->readLinear();
     with.environment.setTurn(20.0f);
     with.render();
-    EXPECT_FALSE(with.counts("residual"));
+    EXPECT_FALSE(with.counts("specular environment"));
   }
   Stage without(builder, {kWhite}, /*residual=*/false);
   without.render();
-  EXPECT_FALSE(without.counts("residual"));
+  EXPECT_FALSE(without.counts("specular environment"));
   const spec::RgbaImage plain = without.frame->readLinear();
   for (std::size_t i = 0; i < image.texels.size(); ++i)
     EXPECT_LT(glm::distance(image.texels[i], plain.texels[i]), 2e-3f);

@@ -41,7 +41,7 @@ TEST(FrameSettings, RowsGiveBackWhatIsPutAndStartAtTheDefaults) {
 TEST(FrameSettings, WordsAreThoseOfTheCommandLine) {
   FrameSettings settings;
   ASSERT_TRUE(putSetting(settings, "transfer", "shadowed"));
-  ASSERT_TRUE(putSetting(settings, "residual", "off"));
+  ASSERT_TRUE(putSetting(settings, "specular-environment", "off"));
   ASSERT_TRUE(putSetting(settings, "capture-order", "auto"));
   ASSERT_TRUE(putSetting(settings, "exposure", "-1.5"));
   EXPECT_EQ(settings.transfer, effects::diffuse::TransferMode::Shadowed);
@@ -162,4 +162,14 @@ TEST(Quality, SetsWhatItNamesAndIsToldByThat) {
 }
 
 }  // namespace
+TEST(FrameSettings, FormerNamesOfSettingsAreStillUnderstood) {
+  for (const auto& [former, name] : {std::pair{"residual", "specular-environment"},
+                                     {"near-shadows", "local-shadows"},
+                                     {"near-radii", "local-radii"},
+                                     {"light-samples", "light-probes"}}) {
+    ASSERT_NE(findSetting(former), nullptr) << former;
+    EXPECT_EQ(findSetting(former)->name, name);
+  }
+}
+
 }  // namespace lambent::frame

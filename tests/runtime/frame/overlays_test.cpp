@@ -43,7 +43,7 @@ TEST(OverlayWords, AListNamesThemAndSaysWhereTheSliceLies) {
         "neighborhoods:x,2", "neighborhoods:x,0.5lights", "lights,,"}) {
     const auto options = parseOverlays(wrong);
     ASSERT_FALSE(options) << wrong;
-    EXPECT_NE(options.error().hint.find("light-samples"), std::string::npos);
+    EXPECT_NE(options.error().hint.find("light-probes"), std::string::npos);
   }
 }
 
