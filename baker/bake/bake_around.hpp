@@ -6,8 +6,8 @@
 #include <string>
 
 #include "baker/bake/bake.hpp"
-#include "baker/bake/baked_grids.hpp"
 #include "baker/cache/cached_ranges.hpp"
+#include "baker/compress/baked_grids.hpp"
 #include "baker/effects/neighborhood/body.hpp"
 #include "baker/effects/neighborhood/grid_placement.hpp"
 #include "baker/plan/neighborhoods.hpp"

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "baker/bake/bake.hpp"
-#include "baker/bake/baked_grids.hpp"
 #include "baker/bake/ship_meshes.hpp"
 #include "baker/brdf/surface_brdfs.hpp"
+#include "baker/compress/baked_grids.hpp"
 #include "baker/compress/cpca.hpp"
 #include "baker/light_probes/light_probes.hpp"
 #include "baker/plan/group_lights.hpp"

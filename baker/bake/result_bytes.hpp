@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "baker/bake/bake.hpp"
-#include "baker/bake/baked_grids.hpp"
 #include "baker/bake/ship_meshes.hpp"
 #include "baker/brdf/surface_brdfs.hpp"
 #include "baker/cache/bytes.hpp"
+#include "baker/compress/baked_grids.hpp"
 #include "baker/compress/kept_transfer.hpp"
 #include "baker/light_probes/light_probes.hpp"
 #include "runtime/bundle/capture_proxy.hpp"

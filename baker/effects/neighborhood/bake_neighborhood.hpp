@@ -4,8 +4,8 @@
 #include <optional>
 #include <stop_token>
 
-#include "baker/bake/baked_grids.hpp"
 #include "baker/cache/cached_ranges.hpp"
+#include "baker/compress/baked_grids.hpp"
 #include "baker/effects/neighborhood/body.hpp"
 #include "baker/effects/neighborhood/code_change.hpp"
 #include "baker/effects/neighborhood/grid_placement.hpp"

@@ -7,7 +7,7 @@
 #include <stop_token>
 #include <vector>
 
-#include "baker/bake/baked_grids.hpp"
+#include "baker/compress/baked_grids.hpp"
 #include "baker/compress/kept_transfer.hpp"
 #include "baker/effects/neighborhood/grid_change.hpp"
 

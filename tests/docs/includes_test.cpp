@@ -1,0 +1,72 @@
+// The rooms of runtime and baker stand in their CMakeLists.txt in the order of the data. A header or source
+// may include files of its own room and of rooms above it in that list, and the runtime nothing of the baker.
+#include <algorithm>
+#include <filesystem>
+#include <iterator>
+#include <regex>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "runtime/base/atomic_file.hpp"
+
+namespace lambent {
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path kSource = LAMBENT_SOURCE_DIR;
+
+// Returns the names in `foreach(room ...)`.
+std::vector<std::string> roomsInOrder(const std::string& root) {
+  const Result<std::string> text = readTextFile(kSource / root / "CMakeLists.txt");
+  std::smatch list;
+  if (!text || !std::regex_search(*text, list, std::regex(R"(foreach\(room ([^)]*)\))"))) return {};
+  std::istringstream words(list[1].str());
+  return {std::istream_iterator<std::string>(words), {}};
+}
+
+// Returns the place of the room that holds the file "runtime/ROOM/FILE" in the list, or its size.
+std::size_t placeOf(const std::vector<std::string>& rooms, const std::string& root, const std::string& file) {
+  return static_cast<std::size_t>(
+      std::ranges::find_if(
+          rooms, [&](const std::string& room) { return file.starts_with(root + "/" + room + "/"); }) -
+      rooms.begin());
+}
+
+void expectNothingRunsUp(const std::string& root) {
+  const std::vector<std::string> rooms = roomsInOrder(root);
+  ASSERT_FALSE(rooms.empty());
+  const std::regex include(R"re(#include "((?:runtime|baker|editor)/[^"]+)")re");
+  std::size_t arrows = 0;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(kSource / root)) {
+    const std::string extension = entry.path().extension().string();
+    if (extension != ".hpp" && extension != ".cpp" && extension != ".h") continue;
+    const std::string file = fs::relative(entry.path(), kSource).generic_string();
+    const Result<std::string> text = readTextFile(entry.path());
+    ASSERT_TRUE(text) << text.error().line();
+    const std::size_t here = placeOf(rooms, root, file);
+    for (std::sregex_iterator found(text->begin(), text->end(), include), end; found != end; ++found) {
+      const std::string other = (*found)[1].str();
+      ++arrows;
+      if (other.starts_with(root + "/"))
+        EXPECT_LE(placeOf(rooms, root, other), here) << file << " includes " << other;
+      else
+        EXPECT_TRUE(root == "baker" && other.starts_with("runtime/")) << file << " includes " << other;
+    }
+  }
+  EXPECT_GT(arrows, 100u);
+}
+
+TEST(Includes, OfTheRuntimeRunDownTheListOfItsRooms) {
+  expectNothingRunsUp("runtime");
+}
+
+TEST(Includes, OfTheBakerRunDownTheListOfItsRooms) {
+  expectNothingRunsUp("baker");
+}
+
+}  // namespace
+}  // namespace lambent
