@@ -8,7 +8,7 @@
 #include "baker/cli/commands.hpp"
 #include "baker/cli/output.hpp"
 #include "baker/import/gltf.hpp"
-#include "baker/reference/reference.hpp"
+#include "reference/reference.hpp"
 #include "runtime/spec/numbers.hpp"
 #include "runtime/spec/rotate.hpp"
 

@@ -20,7 +20,7 @@ namespace lambent::baker {
 
 // What is stored for the samples of a draw.
 enum class SampleKind : std::uint8_t {
-  Plain,         // E/pi at the sample's normal
+  Diffuse,         // E/pi at the sample's normal
   NormalMapped,  // transferred light in bands 0..2, for any normal
   Glossy,        // transferred light in all bands, for any BRDF and normal
 };

@@ -5,7 +5,7 @@
 
 #include "baker/import/gltf.hpp"
 #include "baker/import/join_scenes.hpp"
-#include "baker/reference/reference.hpp"
+#include "reference/reference.hpp"
 #include "runtime/scene/components.hpp"
 
 namespace lambent::editor {

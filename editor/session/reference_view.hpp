@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "baker/accuracy/difference.hpp"
-#include "baker/reference/progressive.hpp"
 #include "editor/session/reference_scene.hpp"
+#include "reference/progressive.hpp"
 #include "runtime/frame/frame.hpp"
 #include "runtime/gpu/objects.hpp"
 #include "runtime/tone_map/tone_mapper.hpp"

@@ -39,7 +39,7 @@ std::size_t placeOf(const std::vector<std::string>& rooms, const std::string& ro
 void expectNothingRunsUp(const std::string& root) {
   const std::vector<std::string> rooms = roomsInOrder(root);
   ASSERT_FALSE(rooms.empty());
-  const std::regex include(R"re(#include "((?:runtime|baker|editor)/[^"]+)")re");
+  const std::regex include(R"re(#include "((?:runtime|baker|reference|editor)/[^"]+)")re");
   std::size_t arrows = 0;
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(kSource / root)) {
     const std::string extension = entry.path().extension().string();
@@ -54,7 +54,8 @@ void expectNothingRunsUp(const std::string& root) {
       if (other.starts_with(root + "/"))
         EXPECT_LE(placeOf(rooms, root, other), here) << file << " includes " << other;
       else
-        EXPECT_TRUE(root == "baker" && other.starts_with("runtime/")) << file << " includes " << other;
+        EXPECT_TRUE(root == "baker" && (other.starts_with("runtime/") || other.starts_with("reference/")))
+            << file << " includes " << other;
     }
   }
   EXPECT_GT(arrows, 100u);
@@ -66,6 +67,23 @@ TEST(Includes, OfTheRuntimeRunDownTheListOfItsRooms) {
 
 TEST(Includes, OfTheBakerRunDownTheListOfItsRooms) {
   expectNothingRunsUp("baker");
+}
+
+// The reference judges the baker, so it shares nothing with it but the scene that was imported.
+TEST(Includes, OfTheReferenceAreItsOwnAndThoseOfTheImport) {
+  const std::regex include(R"re(#include "((?:runtime|baker|reference|editor)/[^"]+)")re");
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(kSource / "reference")) {
+    const Result<std::string> text = readTextFile(entry.path());
+    ASSERT_TRUE(text) << text.error().line();
+    for (std::sregex_iterator found(text->begin(), text->end(), include), end; found != end; ++found) {
+      const std::string other = (*found)[1].str();
+      bool known = false;
+      for (const char* room : {"reference/", "baker/import/", "baker/jobs/", "runtime/base/",
+                               "runtime/bundle/", "runtime/sh/", "runtime/spec/"})
+        known = known || other.starts_with(room);
+      EXPECT_TRUE(known) << entry.path() << " includes " << other;
+    }
+  }
 }
 
 }  // namespace

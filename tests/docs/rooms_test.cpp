@@ -24,7 +24,7 @@ bool makesATarget(const fs::path& cmake_lists) {
 
 std::set<std::string> roomsOnDisk() {
   std::set<std::string> rooms;
-  for (const char* root : {"runtime", "baker", "editor", "assets"})
+  for (const char* root : {"runtime", "baker", "reference", "editor", "assets"})
     for (const fs::directory_entry& entry : fs::recursive_directory_iterator(kSource / root))
       if (entry.path().filename() == "CMakeLists.txt" && makesATarget(entry.path()))
         rooms.insert(fs::relative(entry.path().parent_path(), kSource).generic_string());

@@ -4,7 +4,7 @@
 
 #include <glm/geometric.hpp>
 
-#include "baker/reference/reference.hpp"
+#include "reference/reference.hpp"
 #include "tests/stability/show.hpp"
 #include "tests/support/gpu_context.hpp"
 

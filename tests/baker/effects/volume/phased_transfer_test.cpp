@@ -8,7 +8,7 @@
 #include "baker/effects/volume/sphere_table.hpp"
 #include "baker/import/procedural_cloud.hpp"
 #include "baker/jobs/parallel.hpp"
-#include "baker/reference/phase.hpp"
+#include "reference/phase.hpp"
 #include "runtime/sh/basis.hpp"
 #include "tests/baker/effects/volume/media.hpp"
 #include "tests/support/shapes.hpp"

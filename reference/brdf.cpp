@@ -1,0 +1,92 @@
+#include "reference/brdf.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include "reference/measured.hpp"
+#include "reference/warp.hpp"
+
+namespace lambent::baker::reference {
+
+namespace {
+
+float power5(float x) {
+  return x * x * x * x * x;
+}
+
+// |x| in the space where the surface has roughness 1: n·x sqrt(1 + alpha² tan²).
+float stretched(const glm::vec2& alpha, const glm::vec3& x) {
+  return glm::length(glm::vec3(alpha * glm::vec2(x), x.z));
+}
+
+// Trowbridge and Reitz 1975; Heitz 2014, equation 85.
+float distribution(const glm::vec2& alpha, const glm::vec3& h) {
+  const glm::vec2 slope = glm::vec2(h) / alpha;
+  const float k = glm::dot(slope, slope) + h.z * h.z;
+  return 1.0f / (kPi * alpha.x * alpha.y * k * k);
+}
+
+}  // namespace
+
+glm::vec2 ggxAlpha(float roughness, float strength) {
+  const float alpha = std::max(roughness * roughness, kLeastAlpha);
+  return {glm::mix(alpha, 1.0f, strength * strength), alpha};
+}
+
+glm::vec2 ggxValue(const glm::vec2& alpha, const glm::vec3& v, const glm::vec3& s) {
+  if (s.z <= 0.0f) return glm::vec2(0.0f);
+  const glm::vec3 h = glm::normalize(v + s);
+  // G2 / (4 n·v n·s), height-correlated: Heitz 2014, equations 99 and 72.
+  const float visible = 0.5f / (s.z * stretched(alpha, v) + v.z * stretched(alpha, s));
+  const float fresnel = power5(std::clamp(1.0f - glm::dot(v, h), 0.0f, 1.0f));
+  return distribution(alpha, h) * visible * s.z * glm::vec2(1.0f - fresnel, fresnel);
+}
+
+// pdf = D_v(h) / (4 v·h), with D_v = G1(v) v·h D(h) / n·v and G1 = 2 n·v / (n·v + stretched)
+float ggxPdf(const glm::vec2& alpha, const glm::vec3& v, const glm::vec3& s) {
+  const glm::vec3 sum = v + s;
+  const float length = glm::length(sum);
+  if (!(length > 0.0f) || sum.z <= 0.0f) return 0.0f;
+  return distribution(alpha, sum / length) / (2.0f * (v.z + stretched(alpha, v)));
+}
+
+// Dupuy and Benyoub, "Sampling Visible GGX Normals with Spherical Caps", 2023.
+glm::vec3 sampleGgx(const glm::vec2& alpha, const glm::vec3& v, const glm::vec2& u) {
+  const glm::vec3 round = glm::normalize(glm::vec3(alpha * glm::vec2(v), v.z));
+  const float z = (1.0f - u.y) * (1.0f + round.z) - round.z;
+  const float r = std::sqrt(std::clamp(1.0f - z * z, 0.0f, 1.0f)), angle = 2.0f * kPi * u.x;
+  const glm::vec3 cap = glm::vec3(r * std::cos(angle), r * std::sin(angle), z) + round;
+  const glm::vec3 h = glm::normalize(glm::vec3(alpha * glm::vec2(cap), std::max(cap.z, 1e-12f)));
+  return glm::normalize(2.0f * glm::dot(v, h) * h - v);
+}
+
+glm::vec3 liftedView(const glm::vec3& v) {
+  if (v.z >= kLeastCosine) return v;
+  const float side = std::sqrt(v.x * v.x + v.y * v.y);
+  const glm::vec2 along = side > 0.0f ? glm::vec2(v) / side : glm::vec2(1.0f, 0.0f);
+  return {along * std::sqrt(1.0f - kLeastCosine * kLeastCosine), kLeastCosine};
+}
+
+glm::vec3 Reflector::specular(const glm::vec3& s) const {
+  if (s.z <= 0.0f) return glm::vec3(0.0f);
+  if (measured) return measured->value(view, s) * s.z;
+  const glm::vec2 parts = ggxValue(alpha, view, s);
+  return f0 * parts.x + f90 * parts.y;
+}
+
+glm::vec3 Reflector::value(const glm::vec3& s) const {
+  return specular(s) + diffuse * (std::max(s.z, 0.0f) / kPi);
+}
+
+float Reflector::pdf(const glm::vec3& s) const {
+  return specular_share * ggxPdf(alpha, view, s) + (1.0f - specular_share) * std::max(s.z, 0.0f) / kPi;
+}
+
+glm::vec3 Reflector::sample(float choice, const glm::vec2& u) const {
+  return choice < specular_share ? sampleGgx(alpha, view, u) : cosineDirection(u);
+}
+
+}  // namespace lambent::baker::reference

@@ -1,0 +1,18 @@
+// One number for everything that decides a picture's bytes: scene, light, view, options, program. Two
+// checkpoints with the same digest may be gone on with.
+#pragma once
+
+#include <cstdint>
+
+#include "baker/import/scene.hpp"
+#include "reference/options.hpp"
+#include "runtime/spec/camera.hpp"
+#include "runtime/spec/distant_lights.hpp"
+
+namespace lambent::baker::reference {
+
+std::uint64_t digestOf(const Scene& scene, const spec::DistantLights& lights,
+                       const std::vector<spec::LocalLight>& shapes, const spec::View& view,
+                       const Options& options);
+
+}  // namespace lambent::baker::reference

@@ -1,0 +1,47 @@
+#include "reference/enlarge.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/common.hpp>
+
+namespace lambent::baker::reference {
+
+namespace {
+
+// Between texels `low` and `high`.
+struct Place {
+  std::size_t low, high;
+  float share;
+};
+
+std::vector<Place> places(std::uint32_t from, std::uint32_t to) {
+  std::vector<Place> out;
+  out.reserve(to);
+  for (std::uint32_t i = 0; i < to; ++i) {
+    const double at = std::clamp((i + 0.5) * from / to - 0.5, 0.0, from - 1.0);
+    const auto low = static_cast<std::size_t>(at);
+    out.push_back({low, std::min<std::size_t>(low + 1, from - 1), static_cast<float>(at - std::floor(at))});
+  }
+  return out;
+}
+
+}  // namespace
+
+spec::RgbaImage enlarged(const spec::RgbaImage& image, const spec::Size& size) {
+  const std::vector<Place> columns = places(image.width, size.width),
+                           rows = places(image.height, size.height);
+  spec::RgbaImage out{.width = size.width, .height = size.height, .texels = {}};
+  out.texels.reserve(std::size_t{size.width} * size.height);
+  for (const Place& y : rows)
+    for (const Place& x : columns) {
+      const auto between = [&](std::size_t row) {
+        return glm::mix(image.texels[row * image.width + x.low], image.texels[row * image.width + x.high],
+                        x.share);
+      };
+      out.texels.push_back(glm::mix(between(y.low), between(y.high), y.share));
+    }
+  return out;
+}
+
+}  // namespace lambent::baker::reference

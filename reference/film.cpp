@@ -1,0 +1,159 @@
+#include "reference/film.hpp"
+
+#include <cassert>
+#include <cmath>
+#include <cstring>
+#include <numeric>
+
+#include <glm/geometric.hpp>
+
+#include "runtime/base/atomic_file.hpp"
+#include "runtime/bundle/checksum.hpp"
+
+namespace lambent::baker::reference {
+
+namespace {
+
+constexpr std::uint32_t kMagic = 0x5052424c;  // "LBRP"
+constexpr std::uint32_t kVersionDepths = 2;   // pixels with depths; 1 had none
+constexpr std::uint32_t kVersionCurrent = kVersionDepths;
+
+struct Header {
+  std::uint32_t magic = kMagic, version = kVersionCurrent;
+  std::uint64_t digest = 0;
+  std::uint32_t width = 0, height = 0;
+  double seconds = 0.0;
+};
+static_assert(sizeof(Header) == 32);
+
+template <typename T>
+void put(std::vector<std::byte>& bytes, std::span<const T> values) {
+  const auto raw = std::as_bytes(values);
+  bytes.insert(bytes.end(), raw.begin(), raw.end());
+}
+
+template <typename T>
+std::span<const std::byte> take(std::span<const std::byte> bytes, std::span<T> values) {
+  std::memcpy(values.data(), bytes.data(), values.size_bytes());
+  return bytes.subspan(values.size_bytes());
+}
+
+}  // namespace
+
+Film::Film(const spec::Size& size, std::uint64_t digest)
+    : size_(size),
+      digest_(digest),
+      done_(size.height, 0),
+      rays_(size.height, 0),
+      pixels_(std::size_t{size.width} * size.height) {
+  static_assert(sizeof(Pixel) == 8 * sizeof(double));
+}
+
+void Film::addRow(std::uint32_t y, std::uint32_t count, std::span<const PixelSum> pixels) {
+  assert(pixels.size() == size_.width);
+  for (std::size_t x = 0; x < pixels.size(); ++x) {
+    Pixel& pixel = pixels_[std::size_t{y} * size_.width + x];
+    for (std::size_t r = 0; r < 2; ++r) pixel.replicas[r] += pixels[x].replicas[r];
+    pixel.alpha = pixels[x].alpha;
+    pixel.depth = pixels[x].depth;
+    rays_[y] += pixels[x].rays;
+  }
+  done_[y] += count;
+}
+
+std::uint64_t Film::rays() const {
+  return std::accumulate(rays_.begin(), rays_.end(), std::uint64_t{0});
+}
+
+Result<void> Film::save(const std::filesystem::path& path) const {
+  const Header header{.digest = digest_, .width = size_.width, .height = size_.height, .seconds = seconds};
+  std::vector<std::byte> bytes;
+  put(bytes, std::span(&header, 1));
+  put(bytes, std::span<const std::uint32_t>(done_));
+  put(bytes, std::span<const std::uint64_t>(rays_));
+  put(bytes, std::span<const Pixel>(pixels_));
+  const std::uint64_t checksum = bundle::checksum(bytes);
+  put(bytes, std::span(&checksum, 1));
+  auto file = AtomicFile::open(path);
+  if (!file) return failAgain(std::move(file.error()));
+  if (auto written = file->write(bytes); !written) return written;
+  return file->commit();
+}
+
+bool Film::restore(const std::filesystem::path& path) {
+  const auto text = readTextFile(path);
+  if (!text) return false;
+  const std::size_t wanted = sizeof(Header) + done_.size() * sizeof(done_[0]) +
+                             rays_.size() * sizeof(rays_[0]) + pixels_.size() * sizeof(Pixel) +
+                             sizeof(std::uint64_t);
+  if (text->size() != wanted) return false;
+  std::span<const std::byte> bytes = std::as_bytes(std::span(*text));
+  std::uint64_t checksum = 0;
+  std::memcpy(&checksum, bytes.data() + bytes.size() - sizeof(checksum), sizeof(checksum));
+  if (bundle::checksum(bytes.first(bytes.size() - sizeof(checksum))) != checksum) return false;
+  Header header;
+  bytes = take(bytes, std::span(&header, 1));
+  if (header.magic != kMagic || header.version != kVersionCurrent || header.digest != digest_ ||
+      header.width != size_.width || header.height != size_.height)
+    return false;
+  seconds = header.seconds;
+  bytes = take(bytes, std::span(done_));
+  bytes = take(bytes, std::span(rays_));
+  take(bytes, std::span(pixels_));
+  return true;
+}
+
+glm::dvec3 Film::mean(std::size_t pixel) const {
+  const double samples = done_[pixel / size_.width];
+  return (pixels_[pixel].replicas[0] + pixels_[pixel].replicas[1]) / samples;
+}
+
+spec::RgbaImage Film::image() const {
+  spec::RgbaImage image{.width = size_.width,
+                        .height = size_.height,
+                        .texels = std::vector<glm::vec4>(pixels_.size()),
+                        .depths = std::vector<float>(pixels_.size())};
+  for (std::uint32_t y = 0; y < size_.height; ++y) putRow(y, image);
+  return image;
+}
+
+void Film::putRow(std::uint32_t y, spec::RgbaImage& image) const {
+  assert(image.width == size_.width && image.height == size_.height && done_[y] > 0);
+  for (std::size_t i = std::size_t{y} * size_.width, end = i + size_.width; i < end; ++i) {
+    image.texels[i] = glm::vec4(glm::vec3(mean(i)), static_cast<float>(pixels_[i].alpha));
+    if (!image.depths.empty()) image.depths[i] = static_cast<float>(pixels_[i].depth);
+  }
+}
+
+spec::RgbaImage Film::half(std::size_t replica) const {
+  spec::RgbaImage image{.width = size_.width, .height = size_.height, .texels = {}};
+  image.texels.reserve(pixels_.size());
+  image.depths.reserve(pixels_.size());
+  for (std::size_t i = 0; i < pixels_.size(); ++i) {
+    // Samples go to the first and the second in turn.
+    const double samples = (done_[i / size_.width] + (replica == 0 ? 1 : 0)) / 2;
+    image.texels.emplace_back(glm::vec3(pixels_[i].replicas[replica] / samples),
+                              static_cast<float>(pixels_[i].alpha));
+    image.depths.push_back(static_cast<float>(pixels_[i].depth));
+  }
+  return image;
+}
+
+std::optional<double> Film::standardError() const {
+  double variances = 0.0, squares = 0.0;
+  for (std::size_t i = 0; i < pixels_.size(); ++i) {
+    if (pixels_[i].alpha < double{spec::kLeastCoverage}) continue;
+    const std::uint32_t samples = done_[i / size_.width];
+    if (samples < 2) return std::nullopt;
+    const double second = samples / 2, first = samples - second, done = samples;
+    // Two replicas with means a, b of n, m samples: the variance of (n a + m b)/(n + m) is nm/(n + m)² times
+    // that of a - b, if their variances go by 1/n and 1/m.
+    const glm::dvec3 apart = pixels_[i].replicas[0] / first - pixels_[i].replicas[1] / second;
+    variances += glm::dot(apart, apart) * first * second / (done * done);
+    squares += glm::dot(mean(i), mean(i));
+  }
+  if (!(squares > 0.0)) return std::nullopt;
+  return std::sqrt(variances / squares);
+}
+
+}  // namespace lambent::baker::reference

@@ -1,0 +1,110 @@
+// One volume as rays meet it. Comes in: import's SceneVolume, its node at its place. Goes out: the density at
+// a point as SceneVolume defines it (voxel centres, trilinear, constant in the half voxel at the faces), the
+// part of a ray that lies in the box, and along it coarse blocks with bounds of their density, which tracking
+// steps through. The scene must outlive it.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <glm/common.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/mat4x4.hpp>
+#include <glm/vec2.hpp>
+
+#include "baker/import/volume.hpp"
+#include "reference/ray_tracer.hpp"
+
+namespace lambent::baker::reference {
+
+// The part of a ray inside the box, in voxels. t counts as the ray's.
+struct GridRay {
+  glm::dvec3 origin{0.0}, dir{0.0};
+  double metres = 1.0;  // per t
+  double begin = 0.0, end = 0.0;
+  glm::dvec3 at(double t) const { return origin + t * dir; }
+};
+
+class GridMedium {
+ public:
+  // world_from_grid must be regular.
+  GridMedium(const SceneVolume& volume, const glm::dmat4& world_from_grid);
+
+  const SceneVolume& volume() const { return *volume_; }
+  bool dark() const { return !(most_ > 0.0f); }  // nothing in it
+
+  // Within [begin, end] of the ray; none where it misses the box.
+  std::optional<GridRay> clipped(const Ray& ray, double begin, double end) const;
+
+  // m^-1, of a point in voxels; outside the box as at its nearest face.
+  float at(const glm::dvec3& place) const;
+
+  // Calls visit(begin, end, least, most) for block after block, the bounds of the density there in 1/t, until
+  // it returns false.
+  template <typename Visit>
+  void visitBlocks(const GridRay& ray, Visit&& visit) const;
+
+ private:
+  static constexpr int kBlock = 8;  // voxels
+
+  const SceneVolume* volume_;
+  std::span<const float> density_;
+  glm::uvec3 size_;
+  glm::vec3 last_;  // voxel
+  glm::dmat3 linear_;
+  glm::dvec3 shift_;
+  glm::ivec3 blocks_;
+  std::vector<glm::vec2> bounds_;  // least and most, by block, x fastest
+  float most_ = 0.0f;
+};
+
+inline float GridMedium::at(const glm::dvec3& place) const {
+  const glm::vec3 q = glm::clamp(glm::vec3(place) - 0.5f, glm::vec3(0.0f), last_);
+  const glm::uvec3 i(q);
+  const glm::vec3 f = q - glm::vec3(i);
+  const std::size_t row = size_.x, slice = row * size_.y;
+  const std::size_t dx = f.x > 0.0f ? 1 : 0, dy = f.y > 0.0f ? row : 0, dz = f.z > 0.0f ? slice : 0;
+  const float* d = density_.data() + i.x + row * i.y + slice * i.z;
+  const auto along = [&](const float* p) { return p[0] + f.x * (p[dx] - p[0]); };
+  const float near0 = along(d), near1 = along(d + dy), far0 = along(d + dz), far1 = along(d + dy + dz);
+  const float near = near0 + f.y * (near1 - near0), far = far0 + f.y * (far1 - far0);
+  return near + f.z * (far - near);
+}
+
+template <typename Visit>
+void GridMedium::visitBlocks(const GridRay& ray, Visit&& visit) const {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const glm::dvec3 start = ray.at(ray.begin) / double{kBlock};
+  glm::ivec3 block = glm::clamp(glm::ivec3(glm::floor(start)), glm::ivec3(0), blocks_ - 1), step(0);
+  glm::dvec3 next(kInfinity), apart(kInfinity);  // t of the next face on each axis, and between faces
+  for (int a = 0; a < 3; ++a) {
+    if (ray.dir[a] == 0.0) continue;
+    step[a] = ray.dir[a] > 0.0 ? 1 : -1;
+    next[a] = (double{kBlock} * (block[a] + (step[a] > 0 ? 1 : 0)) - ray.origin[a]) / ray.dir[a];
+    apart[a] = double{kBlock} / std::abs(ray.dir[a]);
+  }
+  double t = ray.begin;
+  while (true) {
+    const int axis = next.x < next.y ? (next.x < next.z ? 0 : 2) : (next.y < next.z ? 1 : 2);
+    const double leave = std::min(next[axis], ray.end);
+    if (leave > t) {
+      const std::size_t b = static_cast<std::size_t>(block.x) +
+                            static_cast<std::size_t>(blocks_.x) *
+                                (static_cast<std::size_t>(block.y) +
+                                 static_cast<std::size_t>(blocks_.y) * static_cast<std::size_t>(block.z));
+      const glm::dvec2 bounds = ray.metres * glm::dvec2(bounds_[b]);
+      if (!visit(t, leave, bounds.x, bounds.y)) return;
+      t = leave;
+    }
+    if (leave >= ray.end) return;
+    block[axis] += step[axis];
+    if (block[axis] < 0 || block[axis] >= blocks_[axis]) return;
+    next[axis] += apart[axis];
+  }
+}
+
+}  // namespace lambent::baker::reference

@@ -1,0 +1,121 @@
+#include "reference/lamps.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <glm/geometric.hpp>
+
+#include "reference/warp.hpp"
+
+namespace lambent::baker::reference {
+
+namespace {
+
+// Mean over the triangle by seven points, never 0: a texture may shine just between them.
+double meanBrightness(const Surfaces& surfaces, std::uint32_t surface, std::uint32_t triangle) {
+  constexpr glm::vec2 kPlaces[] = {{1.0f / 3.0f, 1.0f / 3.0f},
+                                   {0.05f, 0.05f},
+                                   {0.9f, 0.05f},
+                                   {0.05f, 0.9f},
+                                   {0.45f, 0.1f},
+                                   {0.1f, 0.45f},
+                                   {0.45f, 0.45f}};
+  const auto mean = [](const glm::vec3& c) { return (double{c.r} + double{c.g} + double{c.b}) / 3.0; };
+  double sum = 0.0;
+  for (const glm::vec2& at : kPlaces)
+    sum += mean(surfaces.emittedAt({.surface = surface, .triangle = triangle, .u = at.x, .v = at.y}));
+  return sum / std::size(kPlaces) + 0.02 * mean(surfaces.surfaces()[surface].material.emissive);
+}
+
+}  // namespace
+
+EmissiveTriangles::EmissiveTriangles(const Surfaces& surfaces) : surfaces_(surfaces) {
+  std::vector<double> areas;
+  cumulated_ = {0.0};
+  for (std::uint32_t s = 0; s < surfaces.surfaces().size(); ++s) {
+    const Surface& surface = surfaces.surfaces()[s];
+    const gltf::Material& material = surface.material;
+    if (material.unlit || material.emissive == glm::vec3(0.0f) ||
+        material.alpha_mode == gltf::AlphaMode::Blend)
+      continue;
+    for (std::uint32_t t = surface.first_triangle; t < surface.first_triangle + surface.triangle_count; ++t) {
+      const double area = 0.5 * glm::length(surfaces.areaVector(t));
+      const double power = area * meanBrightness(surfaces, s, t) * (material.double_sided ? 2.0 : 1.0);
+      if (!(power > 0.0)) continue;
+      triangles_.push_back(t);
+      surface_of_.push_back(s);
+      areas.push_back(area);
+      cumulated_.push_back(cumulated_.back() + power);
+    }
+  }
+  if (triangles_.empty()) return;
+  const double sum = cumulated_.back();
+  for (double& value : cumulated_) value /= sum;
+  per_area_.assign(surfaces.triangles().size(), 0.0f);
+  for (std::size_t i = 0; i < triangles_.size(); ++i)
+    per_area_[triangles_[i]] = static_cast<float>((cumulated_[i + 1] - cumulated_[i]) / areas[i]);
+}
+
+EmissiveTriangles::Sample EmissiveTriangles::sample(float choice, const glm::vec2& u) const {
+  const auto above = std::upper_bound(cumulated_.begin() + 1, cumulated_.end() - 1, double{choice});
+  const auto i = static_cast<std::size_t>(above - cumulated_.begin()) - 1;
+  const glm::vec2 at = trianglePoint(u);
+  Sample out;
+  out.hit = {.surface = surface_of_[i], .triangle = triangles_[i], .u = at.x, .v = at.y};
+  const glm::uvec3 t = surfaces_.triangles()[triangles_[i]];
+  const auto& p = surfaces_.positions();
+  out.position = (1.0f - at.x - at.y) * p[t.x] + at.x * p[t.y] + at.y * p[t.z];
+  out.normal = glm::vec3(glm::normalize(surfaces_.areaVector(triangles_[i])));
+  out.double_sided = surfaces_.surfaces()[surface_of_[i]].material.double_sided;
+  out.per_area = per_area_[triangles_[i]];
+  return out;
+}
+
+float EmissiveTriangles::perArea(const Hit& hit) const {
+  return per_area_.empty() ? 0.0f : per_area_[hit.triangle];
+}
+
+std::vector<PunctualLight> punctualLights(const Scene& scene) {
+  std::vector<PunctualLight> out;
+  const std::vector<glm::mat4> world = gltf::worldTransforms(scene.nodes);
+  for (std::size_t n = 0; n < scene.nodes.size(); ++n) {
+    if (scene.nodes[n].light < 0) continue;
+    PunctualLight light{.light = scene.lights[static_cast<std::size_t>(scene.nodes[n].light)],
+                        .position = glm::vec3(world[n][3])};
+    const glm::vec3 along = -glm::vec3(world[n][2]);
+    if (glm::length(along) > 0.0f) light.along = glm::normalize(along);
+    out.push_back(std::move(light));
+  }
+  return out;
+}
+
+// KHR_lights_punctual, "Range Property" and "Inner and Outer Cone Angles".
+std::optional<Beam> beamAt(const PunctualLight& light, const glm::vec3& position) {
+  const gltf::Light& l = light.light;
+  Beam beam{.distance = std::numeric_limits<float>::infinity(), .irradiance = l.intensity * l.color};
+  if (l.type == gltf::Light::Type::Directional) {
+    beam.to_light = -light.along;
+    return beam;
+  }
+  const glm::vec3 to = light.position - position;
+  beam.distance = glm::length(to);
+  if (!(beam.distance > 0.0f)) return std::nullopt;
+  beam.to_light = to / beam.distance;
+  float fade = 1.0f / (beam.distance * beam.distance);
+  if (l.range_m > 0.0f) {
+    const float share = beam.distance / l.range_m, share2 = share * share;
+    fade *= std::clamp(1.0f - share2 * share2, 0.0f, 1.0f);
+  }
+  if (l.type == gltf::Light::Type::Spot) {
+    const float cos_outer = std::cos(l.outer_cone_rad);
+    const float scale = 1.0f / std::max(0.001f, std::cos(l.inner_cone_rad) - cos_outer);
+    const float inside = std::clamp((glm::dot(light.along, -beam.to_light) - cos_outer) * scale, 0.0f, 1.0f);
+    fade *= inside * inside;
+  }
+  if (!(fade > 0.0f)) return std::nullopt;
+  beam.irradiance *= fade;
+  return beam;
+}
+
+}  // namespace lambent::baker::reference

@@ -1,0 +1,85 @@
+#include "reference/light_cache.hpp"
+
+#include <algorithm>
+#include <functional>
+#include <iterator>
+#include <type_traits>
+#include <utility>
+
+#include "reference/request_lights.hpp"
+
+namespace lambent::baker::reference {
+
+namespace {
+
+bool same(const spec::EnvironmentMapLight& a, const spec::EnvironmentMapLight& b) {
+  return a.file == b.file && a.layout == b.layout;
+}
+bool same(const spec::ConstantLight& a, const spec::ConstantLight& b) {
+  return a.radiance == b.radiance;
+}
+bool same(const spec::SunLight& a, const spec::SunLight& b) {
+  return a.azimuth_deg == b.azimuth_deg && a.elevation_deg == b.elevation_deg && a.angle_deg == b.angle_deg &&
+         a.radiance == b.radiance;
+}
+
+bool same(const std::vector<LightCache::FromInfinity>& a, const std::vector<LightCache::FromInfinity>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const auto& x, const auto& y) {
+    return x.index() == y.index() &&
+           std::visit(
+               [&](const auto& light) { return same(light, std::get<std::decay_t<decltype(light)>>(y)); }, x);
+  });
+}
+
+bool standsInScene(const spec::Light& light) {
+  return std::holds_alternative<spec::SphereLight>(light) || std::holds_alternative<spec::DiscLight>(light);
+}
+
+// A sphere or disc that is dragged through the scene leaves the sky as it is.
+std::vector<LightCache::FromInfinity> fromInfinity(const std::vector<spec::Light>& lights) {
+  std::vector<LightCache::FromInfinity> out;
+  for (const spec::Light& light : lights)
+    std::visit(
+        [&](const auto& one) {
+          if constexpr (std::is_constructible_v<LightCache::FromInfinity, decltype(one)>)
+            out.emplace_back(one);
+        },
+        light);
+  return out;
+}
+
+}  // namespace
+
+Result<std::shared_ptr<const Environment>> LightCache::environment(
+    const std::vector<spec::Light>& lights, const std::vector<float>& factors, const Options& options,
+    const std::shared_ptr<const spec::DistantLights>& more) {
+  std::vector<FromInfinity> wanted = fromInfinity(lights);
+  if (!lights_ || !same(*lights_, wanted)) {
+    lights_.reset(), environment_.reset();
+    std::vector<spec::Light> distant;
+    std::copy_if(lights.begin(), lights.end(), std::back_inserter(distant), std::not_fn(standsInScene));
+    auto loaded = loadEach(distant);
+    if (!loaded) return failAgain(std::move(loaded.error()));
+    loaded_ = std::move(*loaded);
+    lights_ = std::move(wanted);
+  }
+  // Spheres and discs among the lights may have moved the factors of the others.
+  std::vector<float> of_loaded;
+  for (std::size_t i = 0; i < lights.size(); ++i)
+    if (!standsInScene(lights[i])) of_loaded.push_back(i < factors.size() ? factors[i] : 1.0f);
+  const int band_limit = options.band_limit ? options.band_limit->in : 0;
+  if (!environment_ || factors_ != of_loaded || turn_deg_ != options.rotate_light_deg ||
+      band_limit_ != band_limit || more_ != more) {
+    more_ = more;
+    factors_ = std::move(of_loaded);
+    turn_deg_ = options.rotate_light_deg;
+    band_limit_ = band_limit;
+    spec::DistantLights distant = together(loaded_, factors_);
+    addLights(distant, more_.get());
+    notices_ = distant.notices;
+    environment_ = std::make_shared<const Environment>(std::move(distant), turn_deg_, band_limit_);
+  }
+  return environment_;
+}
+
+}  // namespace lambent::baker::reference

@@ -1,0 +1,135 @@
+#include "reference/measured.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
+
+#include "baker/jobs/parallel.hpp"
+#include "reference/brdf.hpp"
+#include "reference/sampler.hpp"
+#include "reference/warp.hpp"
+
+namespace lambent::baker::reference {
+
+namespace {
+
+constexpr std::size_t kHalves = 257, kDifferences = 129;  // nodes of the table
+constexpr std::size_t kAngles = 65;                       // of the scale
+constexpr std::uint32_t kPoints = 2048;                   // of each of its integrals
+constexpr double kSharpness = 400.0;                      // of the weights: 1/(2 sigma²)
+
+// Half vector and difference as coordinates 0..1. Rusinkiewicz 1998.
+glm::dvec2 placeOf(const glm::dvec3& v, const glm::dvec3& s) {
+  const glm::dvec3 sum = v + s;
+  // By atan2: the arc cosine of a small angle has no digits.
+  const double half = std::atan2(std::sqrt(sum.x * sum.x + sum.y * sum.y), sum.z);
+  const double difference = std::atan2(glm::length(v - s), glm::length(sum));
+  constexpr double kQuarter = std::numbers::pi / 2;
+  return {std::sqrt(std::clamp(half / kQuarter, 0.0, 1.0)), std::clamp(difference / kQuarter, 0.0, 1.0)};
+}
+
+glm::dvec3 directionOf(float theta, float phi) {
+  const double t = theta, p = phi;
+  return {std::sin(t) * std::cos(p), std::sin(t) * std::sin(p), std::cos(t)};
+}
+
+struct Weighed {
+  glm::dvec2 place;
+  glm::dvec3 value;
+};
+
+glm::vec3 meanAt(const std::vector<Weighed>& all, const glm::dvec2& place) {
+  const auto distance2 = [&](const Weighed& one) {
+    const glm::dvec2 away = one.place - place;
+    return glm::dot(away, away);
+  };
+  // Weights relative to the nearest: far from all measurements they would vanish.
+  double nearest = distance2(all.front());
+  for (const Weighed& one : all) nearest = std::min(nearest, distance2(one));
+  double weights = 0.0;
+  glm::dvec3 sum(0.0);
+  for (const Weighed& one : all) {
+    const double beyond = kSharpness * (distance2(one) - nearest);
+    if (beyond > 40.0) continue;
+    const double weight = std::exp(-beyond);
+    weights += weight;
+    sum += weight * one.value;
+  }
+  return glm::vec3(sum / weights);
+}
+
+// A place 0..1 among `nodes`: the node below, and how far from it to the next.
+std::pair<std::size_t, float> between(double at, std::size_t nodes) {
+  const double scaled = std::clamp(at, 0.0, 1.0) * static_cast<double>(nodes - 1);
+  const auto below = std::min(static_cast<std::size_t>(scaled), nodes - 2);
+  return {below, static_cast<float>(scaled - static_cast<double>(below))};
+}
+
+float largest(const glm::vec3& v) {
+  return std::max({v.r, v.g, v.b});
+}
+
+}  // namespace
+
+MeasuredReflection MeasuredReflection::build(const MeasuredBrdf& measured) {
+  std::vector<Weighed> all;
+  for (const BrdfMeasurement& m : measured.measurements)
+    all.push_back(
+        {placeOf(directionOf(m.theta_i, m.phi_i), directionOf(m.theta_o, m.phi_o)), glm::dvec3(m.value)});
+  MeasuredReflection out;
+  out.values_.resize(kHalves * kDifferences);
+  parallelRanges(kDifferences, 1, {}, [&](std::size_t first, std::size_t last) {
+    for (std::size_t d = first; d < last; ++d)
+      for (std::size_t h = 0; h < kHalves; ++h)
+        out.values_[d * kHalves + h] = meanAt(
+            all, {static_cast<double>(h) / (kHalves - 1), static_cast<double>(d) / (kDifferences - 1)});
+  });
+  // The width of the highlight at theta_d = 30°: GGX falls to half where tan theta_h = 0.644 alpha.
+  const glm::vec3* row = &out.values_[kDifferences / 3 * kHalves];
+  const float base = largest(row[kHalves * 4 / 5]), half = 0.5f * (largest(row[0]) + base);
+  std::size_t h = 1;
+  while (h + 1 < kHalves && largest(row[h]) > half) ++h;
+  const float root = static_cast<float>(h) / (kHalves - 1);
+  out.alpha_ = std::clamp(std::tan(std::min(kPi / 2 * root * root, 1.2f)) / 0.644f, 0.02f, 1.0f);
+  // What would be reflected of uniform light.
+  out.scales_.resize(kAngles);
+  parallelRanges(kAngles, 1, {}, [&](std::size_t first, std::size_t last) {
+    for (std::size_t a = first; a < last; ++a) {
+      const float root_of_cosine = static_cast<float>(a) / (kAngles - 1);
+      const float cosine = std::max(root_of_cosine * root_of_cosine, kLeastCosine);
+      Reflector reflector{.view = {std::sqrt(std::max(1.0f - cosine * cosine, 0.0f)), 0.0f, cosine},
+                          .alpha = glm::vec2(out.alpha_),
+                          .specular_share = 0.5f};
+      const Sampler sampler(/*seed=*/1, static_cast<std::uint32_t>(a), 0);
+      glm::dvec3 sum(0.0);
+      for (std::uint32_t i = 0; i < kPoints; ++i) {
+        const glm::vec3 s = reflector.sample(i % 2 == 0 ? 0.0f : 1.0f, sampler.pair(i % 2, i / 2));
+        if (s.z > 0.0f) sum += glm::dvec3(out.unscaled(reflector.view, s) * (s.z / reflector.pdf(s)));
+      }
+      out.scales_[a] = std::min(1.0f, static_cast<float>(kPoints) / largest(glm::vec3(sum)));
+    }
+  });
+  return out;
+}
+
+glm::vec3 MeasuredReflection::unscaled(const glm::vec3& v, const glm::vec3& s) const {
+  const glm::dvec2 place = placeOf(glm::dvec3(v), glm::dvec3(s));
+  const auto [h, right] = between(place.x, kHalves);
+  const auto [d, down] = between(place.y, kDifferences);
+  const glm::vec3* at = &values_[d * kHalves + h];
+  return glm::mix(glm::mix(at[0], at[1], right), glm::mix(at[kHalves], at[kHalves + 1], right), down);
+}
+
+float MeasuredReflection::scale(float cosine) const {
+  const auto [a, share] = between(std::sqrt(std::max(cosine, 0.0f)), kAngles);
+  return glm::mix(scales_[a], scales_[a + 1], share);
+}
+
+glm::vec3 MeasuredReflection::value(const glm::vec3& v, const glm::vec3& s) const {
+  return unscaled(v, s) * std::min(scale(v.z), scale(s.z));
+}
+
+}  // namespace lambent::baker::reference

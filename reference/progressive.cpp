@@ -1,0 +1,273 @@
+#include "reference/progressive.hpp"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <condition_variable>
+#include <functional>
+#include <mutex>
+#include <thread>
+#include <utility>
+
+#include "baker/jobs/parallel.hpp"
+#include "reference/enlarge.hpp"
+#include "reference/light_cache.hpp"
+#include "reference/passes.hpp"
+#include "reference/traced_scene.hpp"
+
+namespace lambent::baker::reference {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// Coarse pictures, each by how much, and samples of its pixels: the first at once, so that there is one while
+// a view is dragged; all together cost 1.14 samples of every whole pixel.
+struct Coarse {
+  std::uint32_t by, samples;
+};
+constexpr std::array<Coarse, 3> kCoarse = {{{8, 1}, {4, 2}, {2, 4}}};
+// While the first whole pass comes in from the top.
+constexpr auto kPublishEvery = std::chrono::milliseconds(250);
+
+struct Job {
+  std::shared_ptr<const Scene> scene;
+  Request request;
+  std::uint64_t generation = 0;
+  std::stop_token stop = {};
+};
+
+spec::Size coarser(const spec::Size& size, std::uint32_t by) {
+  return {.width = (size.width + by - 1) / by, .height = (size.height + by - 1) / by};
+}
+
+Snapshot snapshotOf(const Film& film, std::uint32_t spp) {
+  Snapshot out;
+  out.image = film.image();
+  out.spp = spp;
+  out.noise = film.standardError();
+  if (spp > 1)
+    for (std::size_t replica = 0; replica < 2; ++replica) out.halves[replica] = film.half(replica);
+  return out;
+}
+
+}  // namespace
+
+class ProgressiveReference::Worker {
+ public:
+  ~Worker() {
+    const std::lock_guard hold(lock_);
+    stop_.request_stop();
+    thread_.request_stop();
+  }
+
+  std::uint64_t restart(std::shared_ptr<const Scene> scene, Request request) {
+    const std::lock_guard hold(lock_);
+    stop_.request_stop();
+    stop_ = std::stop_source();
+    if (scene) scene_ = std::move(scene);
+    const std::uint64_t generation = status_.generation + 1;
+    wanted_ = Job{scene_, std::move(request), generation, stop_.get_token()};
+    status_ = {.generation = generation, .paused = status_.paused};
+    if (!thread_.joinable()) thread_ = std::jthread([this](const std::stop_token& ended) { work(ended); });
+    changed_.notify_all();
+    return generation;
+  }
+
+  void pause(bool paused) {
+    const std::lock_guard hold(lock_);
+    status_.paused = paused;
+    changed_.notify_all();
+  }
+
+  std::shared_ptr<const Snapshot> snapshot() const {
+    const std::lock_guard hold(lock_);
+    return snapshot_;
+  }
+
+  ProgressiveStatus status() const {
+    const Progress::Stage stage = progress_.now();
+    const std::lock_guard hold(lock_);
+    ProgressiveStatus out = status_;
+    if (out.phase == ProgressivePhase::Tracing && stage.total > 0)
+      out.share = std::min(1.0, static_cast<double>(stage.done) / static_cast<double>(stage.total));
+    return out;
+  }
+
+ private:
+  void work(const std::stop_token& ended) {
+    for (;;) {
+      std::optional<Job> job;
+      {
+        std::unique_lock hold(lock_);
+        if (!changed_.wait(hold, ended, [&] { return wanted_.has_value(); })) return;
+        job = std::exchange(wanted_, std::nullopt);
+      }
+      begin_ = Clock::now();
+      Result<void> done;
+      try {
+        inBackground(job->request.options.threads, [&] { done = trace(*job); });
+      } catch (const std::exception& failure) {  // out of memory, most likely
+        traced_.reset();
+        done = fail("reference", failure.what(), "free some memory or make the picture smaller");
+      }
+      progress_.end();
+      if (job->stop.stop_requested()) continue;
+      if (done)
+        enter(*job, ProgressivePhase::Finished);
+      else
+        enter(*job, ProgressivePhase::Failed, std::move(done.error()));
+    }
+  }
+
+  // Everything from here on runs on the thread. Ends early, without an error, when stopped.
+  Result<void> trace(const Job& job) {
+    const Request& request = job.request;
+    const Options& options = request.options;
+    if (auto checked = checkOptions(options); !checked) return failAgain(std::move(checked.error()));
+    auto environment =
+        lights_.environment(request.lights, request.light_factors, options, request.more_light);
+    if (!environment) return failAgain(std::move(environment.error()));
+    if (auto built = build(job.scene); !built) return failAgain(std::move(built.error()));
+    const auto view = viewOf(*traced_scene_, traced_->surfaces(), request);
+    if (!view) return failAgain(view.error());
+    const std::vector<spec::LocalLight> shapes = spec::localLights(request.lights);
+    enter(job, ProgressivePhase::Tracing);
+
+    spec::RgbaImage shown;  // a coarse picture, and the rows of the first pass over it as they come in
+    for (const auto& [by, samples] : kCoarse) {
+      Options coarse = options;
+      coarse.size = coarser(options.size, by);
+      const World world = traced_->under(**environment, shapes, EyeRays(*view, coarse.size));
+      Film film(coarse.size, 0);
+      if (!fill(job, Integrator(world, coarse), film, std::min(samples, options.spp))) return {};
+      shown = enlarged(film.image(), options.size);
+      Snapshot out;
+      out.image = shown;
+      out.coarseness = by;
+      publish(job, std::move(out));
+    }
+
+    const World world = traced_->under(**environment, shapes, EyeRays(*view, options.size));
+    const Integrator integrator(world, options);
+    Film film(options.size, 0);
+    const std::uint32_t together = samplesInPass(options, world.volumes);
+    Clock::time_point shown_at = Clock::now();
+    const auto showRows = [&](std::uint32_t first, std::uint32_t last) {
+      for (std::uint32_t y = first; y < last; ++y) film.putRow(y, shown);
+      if (Clock::now() - shown_at < kPublishEvery || last == film.size().height) return;
+      Snapshot out;
+      out.image = shown;
+      out.coarseness = kCoarse.back().by;
+      publish(job, std::move(out));
+      shown_at = Clock::now();
+    };
+    for (std::uint32_t done = 0; done < options.spp;) {
+      const std::uint32_t next = done + std::min(together, options.spp - done);
+      const bool whole =
+          done == 0 ? fill(job, integrator, film, next, showRows) : fill(job, integrator, film, next);
+      if (!whole) return {};
+      done = next;
+      publish(job, snapshotOf(film, done));
+    }
+    return {};
+  }
+
+  Result<void> build(const std::shared_ptr<const Scene>& scene) {
+    if (traced_ && traced_scene_ == scene) return {};
+    traced_.reset();
+    traced_scene_ = scene;
+    auto traced = TracedScene::build(*scene);
+    if (!traced) return failAgain(std::move(traced.error()));
+    traced_ = std::move(*traced);
+    return {};
+  }
+
+  using OnRows = std::function<void(std::uint32_t first, std::uint32_t last)>;
+  // False when stopped.
+  bool fill(const Job& job, const Integrator& integrator, Film& film, std::uint32_t samples,
+            const OnRows& on_rows = {}) {
+    const std::uint32_t height = film.size().height;
+    progress_.begin("paths", std::uint64_t{film.size().width} * height * (samples - film.done(0)), "samples");
+    for (std::uint32_t first = 0; first < height; first += kRowsAtOnce) {
+      const std::uint32_t last = std::min(first + kRowsAtOnce, height);
+      if (!waitWhilePaused(job)) return false;
+      if (!addSamples(integrator, film, first, last, samples, progress_, job.stop)) return false;
+      if (on_rows) on_rows(first, last);
+    }
+    return true;
+  }
+
+  bool waitWhilePaused(const Job& job) {
+    std::unique_lock hold(lock_);
+    if (!status_.paused) return !job.stop.stop_requested();
+    const Clock::time_point since = Clock::now();
+    const bool goes_on = changed_.wait(hold, job.stop, [&] { return !status_.paused; });
+    begin_ += Clock::now() - since;
+    return goes_on && !job.stop.stop_requested();
+  }
+
+  void publish(const Job& job, Snapshot snapshot) {
+    snapshot.generation = job.generation;
+    snapshot.seconds = std::chrono::duration<double>(Clock::now() - begin_).count();
+    snapshot.notices = lights_.notices();
+    snapshot.notices.insert(snapshot.notices.end(), traced_->notices().begin(), traced_->notices().end());
+    auto shared = std::make_shared<const Snapshot>(std::move(snapshot));
+    const std::lock_guard hold(lock_);
+    if (job.generation == status_.generation) std::swap(snapshot_, shared);
+  }
+
+  void enter(const Job& job, ProgressivePhase phase, std::optional<Error> error = {}) {
+    const std::lock_guard hold(lock_);
+    if (job.generation != status_.generation) return;
+    status_.phase = phase;
+    status_.error = std::move(error);
+  }
+
+  // The thread's own. The scene stays as long as what was built of it.
+  LightCache lights_;
+  std::shared_ptr<const Scene> traced_scene_;
+  std::unique_ptr<const TracedScene> traced_;
+  Clock::time_point begin_;  // of the job, later by as long as it was paused
+
+  Progress progress_;
+
+  mutable std::mutex lock_;  // guards what follows
+  std::condition_variable_any changed_;
+  std::shared_ptr<const Scene> scene_;
+  std::optional<Job> wanted_;
+  std::stop_source stop_;  // of the newest job
+  ProgressiveStatus status_;
+  std::shared_ptr<const Snapshot> snapshot_;
+
+  std::jthread thread_;  // the last: joined before anything else goes
+};
+
+ProgressiveReference::ProgressiveReference(std::shared_ptr<const Scene> scene, Request request)
+    : worker_(std::make_unique<Worker>()) {
+  worker_->restart(std::move(scene), std::move(request));
+}
+
+ProgressiveReference::~ProgressiveReference() = default;
+
+std::uint64_t ProgressiveReference::restart(Request request) {
+  return worker_->restart(nullptr, std::move(request));
+}
+
+std::uint64_t ProgressiveReference::restart(std::shared_ptr<const Scene> scene, Request request) {
+  return worker_->restart(std::move(scene), std::move(request));
+}
+
+void ProgressiveReference::pause(bool paused) {
+  worker_->pause(paused);
+}
+
+std::shared_ptr<const Snapshot> ProgressiveReference::snapshot() const {
+  return worker_->snapshot();
+}
+
+ProgressiveStatus ProgressiveReference::status() const {
+  return worker_->status();
+}
+
+}  // namespace lambent::baker::reference

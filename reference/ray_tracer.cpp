@@ -1,0 +1,249 @@
+#include "reference/ray_tracer.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <type_traits>
+
+#include <embree3/rtcore.h>
+
+#if defined(__SSE2__)
+#include <pmmintrin.h>
+#include <xmmintrin.h>
+#endif
+
+namespace lambent::baker::reference {
+
+namespace {
+
+constexpr std::size_t kWidth = 16;
+
+struct Release {
+  void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
+  void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
+};
+using Device = std::unique_ptr<std::remove_pointer_t<RTCDevice>, Release>;
+using EmbreeScene = std::unique_ptr<std::remove_pointer_t<RTCScene>, Release>;
+
+// Embree asks for denormals to be flushed while it runs.
+class FlushDenormals {
+ public:
+#if defined(__SSE2__)
+  FlushDenormals() : saved_(_mm_getcsr()) {
+    _mm_setcsr(saved_ | _MM_FLUSH_ZERO_ON | _MM_DENORMALS_ZERO_ON);
+  }
+  FlushDenormals(const FlushDenormals&) = delete;
+  FlushDenormals& operator=(const FlushDenormals&) = delete;
+  ~FlushDenormals() {
+    _mm_setcsr(saved_);
+  }
+
+ private:
+  unsigned saved_;
+#endif
+};
+
+// User data of a geometry.
+struct Record {
+  const Surfaces* surfaces;
+  std::uint32_t surface;
+};
+
+const Surface& surfaceOf(const Record& record) {
+  return record.surfaces->surfaces()[record.surface];
+}
+
+Hit hitOf(const RTCFilterFunctionNArguments* args, unsigned i) {
+  const auto& record = *static_cast<const Record*>(args->geometryUserPtr);
+  return {.surface = record.surface,
+          .triangle = surfaceOf(record).first_triangle + RTCHitN_primID(args->hit, args->N, i),
+          .u = RTCHitN_u(args->hit, args->N, i),
+          .v = RTCHitN_v(args->hit, args->N, i),
+          .t = RTCRayN_tfar(args->ray, args->N, i)};
+}
+
+void filterCutOut(const RTCFilterFunctionNArguments* args) {
+  const auto& record = *static_cast<const Record*>(args->geometryUserPtr);
+  for (unsigned i = 0; i < args->N; ++i)
+    if (args->valid[i] == -1 &&
+        record.surfaces->alphaAt(hitOf(args, i)) < surfaceOf(record).material.alpha_cutoff)
+      args->valid[i] = 0;
+}
+
+bool isCulled(const RTCFilterFunctionNArguments* args, unsigned i) {
+  const auto& record = *static_cast<const Record*>(args->geometryUserPtr);
+  if (surfaceOf(record).material.double_sided) return false;
+  const glm::vec3 dir(RTCRayN_dir_x(args->ray, args->N, i), RTCRayN_dir_y(args->ray, args->N, i),
+                      RTCRayN_dir_z(args->ray, args->N, i));
+  return glm::dot(record.surfaces->areaVector(hitOf(args, i).triangle), glm::dvec3(dir)) > 0.0;
+}
+
+void filterBacks(const RTCFilterFunctionNArguments* args) {
+  for (unsigned i = 0; i < args->N; ++i)
+    if (args->valid[i] == -1 && isCulled(args, i)) args->valid[i] = 0;
+}
+
+// Writes down every hit and lets the ray go on.
+struct LayerContext {
+  RTCIntersectContext embree;
+  std::vector<Hit>* layers;
+};
+
+void filterLayers(const RTCFilterFunctionNArguments* args) {
+  auto& layers = *reinterpret_cast<LayerContext*>(args->context)->layers;
+  for (unsigned i = 0; i < args->N; ++i) {
+    if (args->valid[i] != -1) continue;
+    if (!isCulled(args, i)) layers.push_back(hitOf(args, i));
+    args->valid[i] = 0;
+  }
+}
+
+bool addGeometry(RTCDevice device, RTCScene scene, const Record& record) {
+  const Surface& surface = surfaceOf(record);
+  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+  void* vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                           sizeof(glm::vec3), surface.vertex_count);
+  auto* indices = static_cast<glm::uvec3*>(rtcSetNewGeometryBuffer(
+      geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(glm::uvec3), surface.triangle_count));
+  const bool room = vertices && indices;
+  if (room) {
+    std::memcpy(vertices, &record.surfaces->positions()[surface.first_vertex],
+                surface.vertex_count * sizeof(glm::vec3));
+    for (std::uint32_t t = 0; t < surface.triangle_count; ++t)
+      indices[t] = record.surfaces->triangles()[surface.first_triangle + t] - surface.first_vertex;
+    rtcSetGeometryUserData(geometry, const_cast<Record*>(&record));
+    if (surface.material.alpha_mode == gltf::AlphaMode::Mask) {
+      rtcSetGeometryIntersectFilterFunction(geometry, filterCutOut);
+      rtcSetGeometryOccludedFilterFunction(geometry, filterCutOut);
+    }
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometryByID(scene, geometry, record.surface);  // so that geomID is the surface
+  }
+  rtcReleaseGeometry(geometry);  // the scene holds it
+  return room;
+}
+
+void fill(RTCRay16& packet, std::span<const Ray> rays, int* valid) {
+  for (std::size_t k = 0; k < kWidth; ++k) {
+    valid[k] = k < rays.size() ? -1 : 0;
+    const Ray& ray = rays[std::min(k, rays.size() - 1)];
+    packet.org_x[k] = ray.origin.x, packet.org_y[k] = ray.origin.y, packet.org_z[k] = ray.origin.z;
+    packet.dir_x[k] = ray.dir.x, packet.dir_y[k] = ray.dir.y, packet.dir_z[k] = ray.dir.z;
+    packet.tnear[k] = 0.0f, packet.tfar[k] = ray.far;
+    packet.time[k] = 0.0f, packet.mask[k] = ~0u, packet.id[k] = 0, packet.flags[k] = 0;
+  }
+}
+
+}  // namespace
+
+struct RayTracer::State {
+  Device device;
+  EmbreeScene solid, blended;  // blended: null where there is nothing of the kind
+  std::vector<Record> records;
+  const Surfaces* surfaces = nullptr;
+};
+
+RayTracer::RayTracer(std::unique_ptr<State> state) : state_(std::move(state)) {}
+RayTracer::RayTracer(RayTracer&&) noexcept = default;
+RayTracer& RayTracer::operator=(RayTracer&&) noexcept = default;
+RayTracer::~RayTracer() = default;
+
+Result<RayTracer> RayTracer::build(const Surfaces& surfaces) {
+  auto state = std::make_unique<State>();
+  state->surfaces = &surfaces;
+  state->device.reset(rtcNewDevice(nullptr));
+  if (!state->device)
+    return fail("Embree", "cannot be set up", "check that libembree3 runs on this processor");
+  const auto newScene = [&](RTCBuildQuality quality) {
+    EmbreeScene scene(rtcNewScene(state->device.get()));
+    rtcSetSceneBuildQuality(scene.get(), quality);
+    // Edges that two triangles share let no ray through.
+    rtcSetSceneFlags(scene.get(), static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST |
+                                                             RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION));
+    return scene;
+  };
+  state->solid = newScene(RTC_BUILD_QUALITY_HIGH);
+  for (std::uint32_t s = 0; s < surfaces.surfaces().size(); ++s) state->records.push_back({&surfaces, s});
+  for (const Record& record : state->records) {
+    if (surfaceOf(record).triangle_count == 0) continue;
+    const bool blend = surfaceOf(record).material.alpha_mode == gltf::AlphaMode::Blend;
+    // Spatial splits (HIGH) would report a triangle's hit more than once.
+    if (blend && !state->blended) state->blended = newScene(RTC_BUILD_QUALITY_MEDIUM);
+    if (!addGeometry(state->device.get(), blend ? state->blended.get() : state->solid.get(), record))
+      return fail("Embree", "has not enough memory for the scene", "make it smaller");
+  }
+  rtcCommitScene(state->solid.get());
+  if (state->blended) rtcCommitScene(state->blended.get());
+  if (rtcGetDeviceError(state->device.get()) != RTC_ERROR_NONE)
+    return fail("Embree", "could not build its hierarchy over the scene", "check the memory that is free");
+  return RayTracer(std::move(state));
+}
+
+void RayTracer::intersect(std::span<const Ray> rays, std::span<Hit> hits) const {
+  const FlushDenormals flush;
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  alignas(64) RTCRayHit16 packet;
+  alignas(64) int valid[kWidth];
+  for (std::size_t first = 0; first < rays.size(); first += kWidth) {
+    const auto some = rays.subspan(first, std::min(kWidth, rays.size() - first));
+    fill(packet.ray, some, valid);
+    for (std::size_t k = 0; k < kWidth; ++k) packet.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
+    rtcIntersect16(valid, state_->solid.get(), &context, &packet);
+    for (std::size_t k = 0; k < some.size(); ++k) {
+      hits[first + k] = {};
+      const std::uint32_t surface = packet.hit.geomID[k];
+      if (surface == RTC_INVALID_GEOMETRY_ID) continue;
+      hits[first + k] = {surface, state_->surfaces->surfaces()[surface].first_triangle + packet.hit.primID[k],
+                         packet.hit.u[k], packet.hit.v[k], packet.ray.tfar[k]};
+    }
+  }
+}
+
+void RayTracer::occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked) const {
+  const FlushDenormals flush;
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  alignas(64) RTCRay16 packet;
+  alignas(64) int valid[kWidth];
+  for (std::size_t first = 0; first < rays.size(); first += kWidth) {
+    const auto some = rays.subspan(first, std::min(kWidth, rays.size() - first));
+    fill(packet, some, valid);
+    rtcOccluded16(valid, state_->solid.get(), &context, &packet);
+    // Embree sets tfar to -inf where something is in the way.
+    for (std::size_t k = 0; k < some.size(); ++k) blocked[first + k] = packet.tfar[k] < 0.0f;
+  }
+}
+
+void RayTracer::visible(const Ray& ray, std::vector<Hit>& layers) const {
+  const FlushDenormals flush;
+  layers.clear();
+  const auto trace = [&](RTCScene scene, RTCFilterFunctionN filter, float far) {
+    LayerContext context{{}, &layers};
+    rtcInitIntersectContext(&context.embree);
+    context.embree.filter = filter;
+    RTCRayHit hit{};
+    hit.ray.org_x = ray.origin.x, hit.ray.org_y = ray.origin.y, hit.ray.org_z = ray.origin.z;
+    hit.ray.dir_x = ray.dir.x, hit.ray.dir_y = ray.dir.y, hit.ray.dir_z = ray.dir.z;
+    hit.ray.tfar = far, hit.ray.mask = ~0u;
+    hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    rtcIntersect1(scene, &context.embree, &hit);
+    return hit;
+  };
+  const RTCRayHit solid = trace(state_->solid.get(), filterBacks, ray.far);
+  if (state_->blended) {
+    trace(state_->blended.get(), filterLayers, solid.ray.tfar);
+    std::sort(layers.begin(), layers.end(),
+              [](const Hit& a, const Hit& b) { return a.t != b.t ? a.t < b.t : a.triangle < b.triangle; });
+    // On the edge between two triangles a ray may meet both.
+    const auto same = [](const Hit& a, const Hit& b) {
+      return a.surface == b.surface && b.t - a.t <= 1e-6f * b.t;
+    };
+    layers.erase(std::unique(layers.begin(), layers.end(), same), layers.end());
+  }
+  if (solid.hit.geomID != RTC_INVALID_GEOMETRY_ID)
+    layers.push_back({solid.hit.geomID,
+                      state_->surfaces->surfaces()[solid.hit.geomID].first_triangle + solid.hit.primID,
+                      solid.hit.u, solid.hit.v, solid.ray.tfar});
+}
+
+}  // namespace lambent::baker::reference

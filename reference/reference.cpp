@@ -1,0 +1,154 @@
+#include "reference/reference.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+#include "baker/jobs/parallel.hpp"
+#include "reference/camera.hpp"
+#include "reference/digest.hpp"
+#include "reference/film.hpp"
+#include "reference/passes.hpp"
+#include "reference/request_lights.hpp"
+#include "reference/traced_scene.hpp"
+#include "runtime/base/atomic_file.hpp"
+#include "runtime/bundle/keyframes.hpp"
+
+namespace lambent::baker::reference {
+
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+constexpr auto kCheckpointEvery = std::chrono::seconds(10);
+
+double secondsSince(Clock::time_point begin) {
+  return std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+// Pass by pass over the picture, with a checkpoint every few seconds and when stopped.
+Result<void> renderAll(const Integrator& integrator, Film& film, std::uint32_t spp, std::uint32_t together,
+                       const fs::path& checkpoint, Progress& progress, const std::stop_token& stop) {
+  const double seconds_before = film.seconds;
+  const Clock::time_point begin = Clock::now();
+  Clock::time_point saved = begin;
+  const auto save = [&]() -> Result<void> {
+    film.seconds = seconds_before + secondsSince(begin);
+    saved = Clock::now();
+    if (checkpoint.empty()) return {};
+    return film.save(checkpoint);
+  };
+  for (std::uint32_t pass = 0; pass < spp; pass += together)
+    for (std::uint32_t row = 0; row < film.size().height; row += kRowsAtOnce) {
+      const bool whole = addSamples(integrator, film, row, std::min(row + kRowsAtOnce, film.size().height),
+                                    std::min(spp, pass + together), progress, stop);
+      if (!whole || Clock::now() - saved > kCheckpointEvery)
+        if (auto done = save(); !done) return done;
+      if (!whole)
+        return checkpoint.empty() ? fail("reference", "stopped")
+                                  : fail(checkpoint.string(), "stopped; keeps the samples so far",
+                                         "run the same words again to go on");
+    }
+  film.seconds = seconds_before + secondsSince(begin);
+  return {};
+}
+
+Result<void> checkOutput(const fs::path& output) {
+  if (output.empty()) return {};
+  if (output.extension() != ".exr")
+    return fail(output.string(), "is not an .exr", "name the picture OUT.exr");
+  if (auto file = AtomicFile::open(output); !file) return failAgain(std::move(file.error()));
+  return {};
+}
+
+void takeUp(Film& film, const fs::path& checkpoint, bool force, Report& report) {
+  std::error_code ignored;
+  if (checkpoint.empty() || force || !fs::exists(checkpoint, ignored)) return;
+  if (film.restore(checkpoint)) {
+    report.resumed_samples = film.done(0);
+    for (std::uint32_t y = 1; y < film.size().height; ++y)
+      report.resumed_samples = std::min(report.resumed_samples, film.done(y));
+    return;
+  }
+  report.notices.push_back(
+      checkpoint.string() +
+      ": is damaged, or of another version, scene or other words; the picture is begun anew");
+}
+
+Result<Report> renderHere(const Scene& scene, const Request& request, const fs::path& output, bool force,
+                          Progress& progress, const std::stop_token& stop) {
+  const Options& options = request.options;
+  if (auto checked = checkOptions(options); !checked) return failAgain(std::move(checked.error()));
+  if (auto checked = checkOutput(output); !checked) return failAgain(std::move(checked.error()));
+  Report report;
+  // the light, and the scene in world space
+  progress.begin("scene");
+  const auto loaded = loadEach(request.lights);
+  if (!loaded) return failAgain(loaded.error());
+  spec::DistantLights lights = together(*loaded, request.light_factors);
+  addLights(lights, request.more_light.get());
+  report.notices = lights.notices;
+  const std::vector<spec::LocalLight> shapes = spec::localLights(request.lights);
+  const auto traced = TracedScene::build(scene);
+  if (!traced) return failAgain(traced.error());
+  report.notices.insert(report.notices.end(), (*traced)->notices().begin(), (*traced)->notices().end());
+  const auto view = viewOf(scene, (*traced)->surfaces(), request);
+  if (!view) return failAgain(view.error());
+  Film film(options.size, digestOf(scene, lights, shapes, *view, options));
+  const Environment environment(std::move(lights), options.rotate_light_deg,
+                                options.band_limit ? options.band_limit->in : 0);
+  // what an earlier run has done
+  const fs::path checkpoint = checkpointOf(output);
+  takeUp(film, checkpoint, force, report);
+  std::uint64_t left = 0;
+  for (std::uint32_t y = 0; y < options.size.height; ++y)
+    left += std::uint64_t{options.size.width} * (options.spp - film.done(y));
+  // the paths
+  progress.begin("paths", left, "samples");
+  const World world = (*traced)->under(environment, shapes, EyeRays(*view, options.size));
+  auto done = renderAll(Integrator(world, options), film, options.spp, samplesInPass(options, world.volumes),
+                        checkpoint, progress, stop);
+  if (!done) return failAgain(std::move(done.error()));
+  report.image = film.image();
+  report.rays = film.rays();
+  report.seconds = film.seconds;
+  report.standard_error = film.standardError();
+  if (output.empty()) return report;
+  if (auto written = spec::writeExr(output, report.image); !written)
+    return failAgain(std::move(written.error()));
+  std::error_code ignored;
+  fs::remove(checkpoint, ignored);
+  return report;
+}
+
+}  // namespace
+
+void poseAt(Scene& scene, float time_s) {
+  if (scene.animations.empty())
+    scene.warnings.emplace_back("It has no animations: it looks the same at all times.");
+  gltf::applyAnimations(scene.animations, time_s, scene.nodes);
+}
+
+Result<spec::View> viewOf(const Scene& scene, const Surfaces& surfaces, const Request& request) {
+  if (request.view) return *request.view;
+  return viewOf(scene, surfaces, request.nodes_at_rest.empty() ? scene.nodes : request.nodes_at_rest,
+                request.camera, request.options.size.aspect());
+}
+
+fs::path checkpointOf(const fs::path& output) {
+  if (output.empty()) return {};
+  fs::path checkpoint = output;
+  checkpoint += ".partial";
+  return checkpoint;
+}
+
+Result<Report> render(const Scene& scene, const Request& request, const fs::path& output, bool force,
+                      Progress& progress, const std::stop_token& stop) {
+  Result<Report> report;
+  withThreads(request.options.threads,
+              [&] { report = renderHere(scene, request, output, force, progress, stop); });
+  progress.end();
+  return report;
+}
+
+}  // namespace lambent::baker::reference

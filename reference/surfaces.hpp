@@ -1,0 +1,100 @@
+// The scene at rest as triangles in world space, with what a path needs to know where it meets one. Comes in:
+// import's Scene, all nodes at their place. Goes out: one Surface per node and primitive, and the point on it
+// that a ray hit: both normals, how it reflects (docs/conventions.md, "Materials"), radiance that it gives
+// off. Mirrored nodes have their triangles turned, so that counter-clockwise is the front everywhere.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+
+#include "baker/import/scene.hpp"
+#include "reference/albedo_table.hpp"
+#include "reference/brdf.hpp"
+#include "reference/horizons.hpp"
+#include "reference/measured.hpp"
+#include "reference/textures.hpp"
+
+namespace lambent::baker::reference {
+
+struct Surface {
+  gltf::Material material;
+  std::uint32_t first_vertex = 0, vertex_count = 0;
+  std::uint32_t first_triangle = 0, triangle_count = 0;
+  float handedness = 1.0f;  // -1 in mirrored nodes, where a bitangent is cross(t, n) w
+};
+
+// Barycentric coordinates u, v belong to the triangle's second and third corner.
+struct Hit {
+  static constexpr std::uint32_t kNothing = ~0u;
+  std::uint32_t surface = kNothing;
+  std::uint32_t triangle = 0;  // of all surfaces
+  float u = 0.0f, v = 0.0f, t = 0.0f;
+  bool any() const { return surface != kNothing; }
+};
+
+// The side that was looked at: normals of a two-sided surface's back are turned; those of a one-sided one
+// are not, and `blocked` says that nothing comes from there.
+struct SurfacePoint {
+  glm::vec3 position{0.0f};
+  glm::vec3 geometric{0.0f};  // unit; decides which directions are above the horizon
+  glm::vec3 shading{0.0f};    // unit; in the cosine only
+  glm::vec3 smooth{0.0f};     // the same before normal maps bend it
+  glm::vec3 albedo{0.0f};     // base colour; of a diffuse surface all there is to reflect
+  bool glossy = false;        // reflects by `reflector`
+  Reflector reflector;        // towards where it was looked at from
+  glm::vec3 emitted{0.0f};    // radiance, the same in all directions
+  float alpha = 1.0f;
+  float offset = 0.0f;  // how far rays start off the surface
+  bool unlit = false;   // shows `albedo` as radiance
+  bool blocked = false;
+
+  glm::vec3 origin() const { return position + offset * geometric; }
+  Horizons horizons() const { return {smooth, geometric}; }
+};
+
+class Surfaces {
+ public:
+  // Errors: a texture that cannot be decoded.
+  static Result<Surfaces> build(const Scene& scene);
+
+  const std::vector<Surface>& surfaces() const { return surfaces_; }
+  const std::vector<glm::vec3>& positions() const { return positions_; }
+  const std::vector<glm::uvec3>& triangles() const { return triangles_; }
+
+  SurfacePoint pointAt(const Hit& hit, const glm::vec3& dir) const;
+  // Of the front; for cut-outs, by the filter of rays, and for blended surfaces.
+  float alphaAt(const Hit& hit) const;
+  glm::vec3 emittedAt(const Hit& hit) const;
+  // Twice the area, along the front's geometric normal.
+  glm::dvec3 areaVector(std::uint32_t triangle) const;
+
+ private:
+  template <typename T>
+  T interpolated(const std::vector<T>& values, const Hit& hit) const;
+  glm::vec2 texcoord(const Hit& hit, std::uint32_t set) const;
+  glm::vec4 baseColor(const Hit& hit) const;
+  glm::vec3 mappedNormal(const Hit& hit, const glm::vec3& normal) const;
+  glm::vec4 tangent(const Hit& hit, const glm::vec3& normal) const;
+  Reflector reflectorAt(const Hit& hit, const SurfacePoint& point, const glm::vec3& normal,
+                        const glm::vec3& to_eye) const;
+  // Of the longer lobe, unit and across the shading normal; strength 0..1.
+  std::pair<glm::vec3, float> anisotropy(const Hit& hit, const glm::vec3& normal,
+                                         const glm::vec3& shading) const;
+  void buildTables(const Scene& scene);
+
+  std::vector<Surface> surfaces_;
+  std::vector<glm::vec3> positions_, normals_;
+  std::vector<glm::vec2> texcoords_[2];
+  std::vector<glm::vec4> colors_;
+  std::vector<glm::vec4> tangents_;  // w = 0 where the file has none
+  std::vector<glm::uvec3> triangles_;
+  Textures textures_;
+  AlbedoTable round_, anisotropic_;
+  std::vector<MeasuredReflection> measured_;  // as Scene::brdfs
+};
+
+}  // namespace lambent::baker::reference

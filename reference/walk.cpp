@@ -1,0 +1,239 @@
+#include "reference/walk.hpp"
+
+#include <cmath>
+
+#include "reference/phase.hpp"
+#include "reference/warp.hpp"
+
+namespace lambent::baker::reference {
+
+namespace {
+
+constexpr std::uint32_t kFirstRoulette = 4;  // bounces that always go on
+constexpr std::uint32_t kPerLayer = kPerVertex * (kMostVertices + 1);
+// Vertices beyond the first ones draw from samplers of their own, this many from each.
+constexpr std::uint32_t kPage = 1024;
+
+}  // namespace
+
+void Walk::turnTo(bool in_volume, std::uint32_t layer, std::uint32_t vertex) {
+  if (vertex <= kMostVertices) {
+    if (vertex == 0) samplers = in_volume ? samplersOf(pageSeed(in_volume, layer, 0)) : firsts;
+    dimension = (in_volume ? 0 : layer * kPerLayer) + vertex * kPerVertex;
+    return;
+  }
+  const std::uint32_t beyond = vertex - kMostVertices - 1;
+  if (beyond % kPage == 0) samplers = samplersOf(pageSeed(in_volume, layer, 1 + beyond / kPage));
+  dimension = beyond % kPage * kPerVertex;
+}
+
+std::uint32_t Walk::pageSeed(bool in_volume, std::uint32_t layer, std::uint32_t page) const {
+  return combine(combine(combine(options.seed, in_volume ? 0x564f4c55u : 0x44454550u), layer), page);
+}
+
+Walk::Scattering Walk::scattering(const Path& path, const glm::vec3& dir, bool first) const {
+  const SurfacePoint& at = path.at;
+  if (path.in_medium) return phase(path, glm::dot(path.dir, dir), first);
+  if (at.glossy) {
+    const glm::vec3 local = at.reflector.toLocal(dir);
+    return {at.reflector.value(local), at.reflector.pdf(local)};
+  }
+  if (glm::dot(at.geometric, dir) <= 0.0f) return {};
+  const float value = std::max(glm::dot(at.shading, dir), 0.0f) / kPi;
+  return {glm::vec3(value), value};
+}
+
+Walk::Scattering Walk::ofRay(const Path& path, const glm::vec3& ray, bool first) const {
+  if (path.in_medium) return scattering(path, ray, first);
+  if (glm::dot(path.at.geometric, ray) <= 0.0f) return {};
+  if (first && limited) return {limited->kernelOfAll(ray), limited->pdf(ray)};
+  if (!path.at.glossy) return scattering(path, ray, first);
+  Scattering sum;
+  const auto add = [&](const glm::vec3& dir) {
+    const Scattering s = scattering(path, dir, first);
+    sum.value += s.value, sum.pdf += s.pdf;
+  };
+  path.at.horizons().forAbove(ray, [&](const glm::vec3& dir) {
+    add(dir);
+    add(Horizons::mirrored(dir, path.at.smooth));
+  });
+  return sum;
+}
+
+glm::vec3 Walk::rayFor(const Path& path, const glm::vec3& dir, bool first) const {
+  return !path.in_medium && (path.at.glossy || (first && limited)) ? path.at.horizons().rayFor(dir) : dir;
+}
+
+Walk::Scattering Walk::phase(const Path& path, float cosine, bool first) const {
+  const float whole = phaseValue(path.g, cosine);
+  if (!phaseIsLimited(first)) return {glm::vec3(whole), whole};
+  return {glm::vec3(phaseValue(path.g, cosine, *options.band_limit->out)), 0.5f * whole + 0.125f / kPi};
+}
+
+void Walk::reflect(std::uint32_t layer) {
+  if (paths.empty()) return;
+  if (shapesAreSky()) first_shapes = shapesFrom(paths.front().at.origin());
+  limited.reset();
+  if (options.band_limit && options.band_limit->out) {
+    sh::LightVector light = world.environment.lightVector();
+    if (shapesAreSky()) light += first_shapes;
+    limited.emplace(paths.front().at, *options.band_limit->out, light, combine(pixel, layer));
+    for (Path& path : paths) path.sum += limited->open();
+  }
+  walk(/*in_volume=*/false, layer);
+}
+
+void Walk::scatterToEye(const EyeDepth& eye, const Ray& ray, std::uint32_t layer, double begin, double end) {
+  limited.reset();
+  turnTo(/*in_volume=*/true, layer, 0);
+  const double share = -std::expm1(begin - end);
+  for (Path& path : paths) {
+    const glm::dvec2 u(draw(path, kPlaceInVolume));
+    const double t = eye.place(std::min(begin - std::log1p(-u.x * share), end));
+    standInMedium(path, glm::vec3(glm::dvec3(ray.origin) + t * glm::dvec3(ray.dir)),
+                  world.volumes.medium(eye.pick(t, u.y)));
+    path.dir = glm::vec3(glm::normalize(glm::dvec3(ray.dir)));
+  }
+  walk(/*in_volume=*/true, layer);
+}
+
+void Walk::walk(bool in_volume, std::uint32_t layer) {
+  for (std::uint32_t vertex = 0; anyAlive(); ++vertex) {
+    turnTo(in_volume, layer, vertex);
+    for (Path& path : paths)
+      if (!path.at.glossy && !(vertex == 0 && limited)) path.throughput *= path.at.albedo;
+    if (vertex > kFirstRoulette) playRoulette();
+    gatherLights(vertex == 0);
+    scatter(vertex == 0);
+    if (world.volumes.empty() && vertex == mostReflections() && !findsLights()) {
+      if (!world.environment.dark() || shapesAreSky()) lookAtSky(vertex == 0);
+      return;
+    }
+    advance(vertex == 0);
+  }
+}
+
+void Walk::scatter(bool first) {
+  rays.clear();
+  ray_path.clear();
+  for (std::size_t p = 0; p < paths.size(); ++p) {
+    Path& path = paths[p];
+    if (!path.alive) continue;
+    const glm::vec2 u = draw(path, kDirection);
+    if (path.in_medium) {
+      scatterInMedium(path, u, first);
+    } else if (first && limited) {
+      const glm::vec3 dir = limited->sample(u);
+      path.go(dir, limited->pdf(dir));
+      path.throughput *= limited->kernelOfAll(path.dir) / path.pdf;
+    } else if (path.at.glossy) {
+      const Reflector& reflector = path.at.reflector;
+      const float choice = draw(path, kLobe).x;
+      const glm::vec3 dir = glm::normalize(reflector.world_from_local * reflector.sample(choice, u));
+      const Scattering s = scattering(path, dir, first);
+      path.go(dir, s.pdf);
+      path.throughput *= s.pdf > 0.0f ? s.value / s.pdf : glm::vec3(0.0f);
+      path.dir = rayFor(path, dir, first);
+      if (findsLights()) path.ray_pdf = ofRay(path, path.dir, first).pdf;
+    } else {
+      const glm::vec3 local = cosineDirection(u);
+      path.go(glm::normalize(frameAbout(path.at.shading) * local), local.z / kPi);
+    }
+    path.alive = (path.in_medium || glm::dot(path.at.geometric, path.dir) > 0.0f) &&
+                 (path.throughput != glm::vec3(0.0f) || (first && limited));
+    if (!path.alive) continue;
+    rays.push_back({path.at.origin(), path.dir, kInfinity});
+    ray_path.push_back(p);
+  }
+}
+
+void Walk::scatterInMedium(Path& path, const glm::vec2& u, bool first) const {
+  glm::vec3 dir(0.0f);
+  if (!phaseIsLimited(first))
+    dir = samplePhase(path.g, path.dir, u);
+  else if (u.x < 0.5f)
+    dir = samplePhase(path.g, path.dir, {2.0f * u.x, u.y});
+  else
+    dir = sphereDirection({2.0f * u.x - 1.0f, u.y});
+  const Scattering s = phase(path, glm::dot(path.dir, dir), first);
+  path.go(dir, s.pdf);
+  path.throughput *= s.value / s.pdf;
+}
+
+void Walk::advance(bool first) {
+  collide();
+  hits.resize(rays.size());
+  if (!rays.empty()) world.rays.intersect(rays, hits);
+  traced += rays.size();
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    Path& path = paths[ray_path[i]];
+    const bool hit = hits[i].any();
+    addShapes(path, hit ? hits[i].t : rays[i].far * kShadowReach);
+    if (!hit && !collisions[i]) {
+      addSky(path, first);
+      path.alive = false;
+      continue;
+    }
+    if (first && limited) takeSky(path);
+    if (hit)
+      arrive(path, hits[i]);
+    else
+      enterMedium(path, rays[i], *collisions[i]);
+  }
+}
+
+void Walk::collide() {
+  collisions.assign(rays.size(), std::nullopt);
+  if (world.volumes.empty()) return;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    Stream random = stream(paths[ray_path[i]], kOnward);
+    collisions[i] = world.volumes.collide(rays[i], double{kInfinity}, random);
+    if (collisions[i]) rays[i].far = static_cast<float>(collisions[i]->t);
+  }
+}
+
+void Walk::arrive(Path& path, const Hit& hit) const {
+  const SurfacePoint there = world.surfaces.pointAt(hit, path.dir);
+  path.alive = !there.blocked && !there.unlit;
+  if (!path.alive) return;
+  addEmitted(path, hit, there);
+  path.at = there;
+  path.in_medium = false;
+  path.alive = ++path.reflections <= mostReflections();
+}
+
+void Walk::enterMedium(Path& path, const Ray& ray, const Volumes::Collision& collision) const {
+  standInMedium(path, glm::vec3(glm::dvec3(ray.origin) + collision.t * glm::dvec3(ray.dir)),
+                world.volumes.medium(collision.volume));
+  path.alive = options.bounces.value_or(1) > 0;
+}
+
+void Walk::standInMedium(Path& path, const glm::vec3& position, const SceneVolume& medium) {
+  path.at = {};
+  path.at.position = position;
+  path.at.albedo = medium.albedo;
+  path.in_medium = path.scattered = true;
+  path.g = medium.g;
+}
+
+void Walk::lookAtSky(bool first) {
+  traceOccluded();
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    Path& path = paths[ray_path[i]];
+    if (!blocked[i])
+      addSky(path, first);
+    else if (first && limited)
+      takeSky(path);
+  }
+}
+
+void Walk::playRoulette() {
+  for (Path& path : paths) {
+    if (!path.alive || (options.bounces && !path.scattered)) continue;
+    const float survival = std::min(1.0f, largest(path.throughput));
+    path.alive = survival > 0.0f && draw(path, kRouletteAndLamp).x < survival;
+    path.throughput /= std::max(survival, 1e-20f);
+  }
+}
+
+}  // namespace lambent::baker::reference

@@ -1,0 +1,209 @@
+// --band-limit: light as the runtime's light vector has it, in closed form where nothing is in its way.
+#include <gtest/gtest.h>
+
+#include "reference/exit_kernel.hpp"
+#include "reference/warp.hpp"
+#include "runtime/sh/local_light.hpp"
+#include "runtime/sh/zonal.hpp"
+#include "runtime/spec/distant_lights.hpp"
+#include "tests/reference/measure.hpp"
+
+namespace lambent::baker::reference {
+namespace {
+
+using testing::expectMean;
+using testing::measured;
+using testing::samples;
+using testing::sceneOf;
+
+Options limited(std::uint32_t spp, int in, std::optional<int> out = {}) {
+  Options options = samples(spp, 0);
+  options.band_limit = BandLimit{in, out};
+  return options;
+}
+
+// E/pi on a surface with nothing around.
+double open(const sh::LightVector& light, glm::vec3 normal) {
+  std::array<float, sh::kMaxCoefficients> transfer{};
+  sh::unoccludedTransfer(light.order, normal, transfer);
+  double sum = 0.0;
+  for (std::size_t i = 0; i < light.coefficients().size(); ++i)
+    sum += double{transfer[i]} * double{light.c[i].g};
+  return sum;
+}
+
+const glm::vec3 kEye(0.3f, 2, 0.4f), kPlace(0.1f, 0, 0.2f);
+
+TEST(BandLimit, LeavesAConstantLightAsItIs) {
+  const Scene floor = sceneOf({testing::grid({0, 0, 0}, 4.0f, 1)});
+  for (const int order : {1, 2, 5, 8})
+    expectMean(measured(floor, kEye, kPlace, {testing::uniform(1.0f)}, limited(16, order)), 1.0);
+}
+
+TEST(BandLimit, OfASunOverAnOpenPlaneIsTheDotProductOfLightAndTransfer) {
+  const Scene floor = sceneOf({testing::grid({0, 0, 0}, 4.0f, 1)});
+  const spec::SunLight sun{
+      .azimuth_deg = 30, .elevation_deg = 20, .angle_deg = 8, .radiance = glm::vec3(100)};
+  const auto light = spec::loadDistantLights({sun})->lightVector();
+  for (const int order : {2, 3, 5, 8}) {
+    std::array<float, sh::kMaxCoefficients> transfer{};
+    sh::unoccludedTransfer(order, glm::vec3(0, 1, 0), transfer);
+    double expected = 0.0;
+    for (int i = 0; i < sh::coefficientCount(order); ++i)
+      expected +=
+          double{transfer[static_cast<std::size_t>(i)]} * double{light.c[static_cast<std::size_t>(i)].g};
+    const auto seen = measured(floor, kEye, kPlace, {sun}, limited(256, order));
+    expectMean(seen, expected);
+    EXPECT_LT(seen.error.g, 0.01);
+  }
+}
+
+TEST(BandLimit, IsSignedAndTurnsWithTheLight) {
+  // Away from a small sun the expansion of order 3 rings below zero, and the picture says so.
+  const Scene wall = sceneOf({testing::box({0, 0, 0}, {2, 2, 2}, 1)});
+  const spec::SunLight sun{
+      .azimuth_deg = 0, .elevation_deg = -32, .angle_deg = 8, .radiance = glm::vec3(100)};
+  Options options = limited(256, 3);
+  options.rotate_light_deg = 90.0f;  // to +X
+  std::array<float, sh::kMaxCoefficients> transfer{};
+  sh::unoccludedTransfer(3, glm::vec3(0, 1, 0), transfer);
+  const auto light = spec::turned(spec::loadDistantLights({sun})->lightVector(), 90.0f).truncated(3);
+  double expected = 0.0;
+  for (std::size_t i = 0; i < 9; ++i) expected += double{transfer[i]} * double{light.c[i].g};
+  EXPECT_LT(expected, -0.01);
+  expectMean(measured(wall, {0.3f, 3, 0.4f}, {0.1f, 1, 0.2f}, {sun}, options), expected);
+}
+
+TEST(BandLimit, DirectionsDrawnOnTheHorizonHaveADensity) {
+  sh::LightVector light{.order = 5};
+  light.c[0] = glm::vec3(1.0f);
+  for (std::uint32_t n = 0; n < 64; ++n) {
+    const float turn = 2.39996323f * static_cast<float>(n);
+    SurfacePoint point;
+    point.smooth = point.shading = sphereDirection({(static_cast<float>(n) + 0.5f) / 64.0f, turn});
+    point.geometric = glm::normalize(point.smooth + 0.3f * glm::vec3(std::sin(turn), 0.2f, std::cos(turn)));
+    point.albedo = glm::vec3(1.0f);
+    const FirstHit hit(point, 5, light, n);
+    for (std::uint32_t i = 0; i < 256; ++i) {
+      const glm::vec3 ray = hit.sample({0.0f, (static_cast<float>(i) + 0.5f) / 256.0f});
+      if (glm::dot(ray, point.geometric) > 0.0f) {
+        ASSERT_GT(hit.pdf(ray), 0.0f) << n << ' ' << i;
+      }
+    }
+  }
+}
+
+// Σ_k c_k l_k of a diffuse white plane that looks up.
+double openWithKernel(const sh::LightVector& light, int order, glm::vec3 normal) {
+  return open(light.truncated(std::min(light.order, order)), normal);
+}
+
+TEST(BandLimit, OfTheKernelCutsTheCosineAtTheFirstHit) {
+  // Nothing stands over an open plane, and nothing in the mirrored directions: light of few bands is all
+  // there, and the answer is exact.
+  const Scene floor = sceneOf({testing::grid({0, 0, 0}, 4.0f, 1)});
+  const spec::SunLight sun{
+      .azimuth_deg = 30, .elevation_deg = 20, .angle_deg = 8, .radiance = glm::vec3(100)};
+  const auto light = spec::loadDistantLights({sun})->lightVector();
+  for (const int in : {1, 2, 5, 8})
+    for (const int out : {1, 2, 5}) {
+      EXPECT_NEAR(measured(floor, kEye, kPlace, {testing::uniform(1.0f)}, limited(16, in, out)).mean.g, 1.0,
+                  1e-5);
+      const auto seen = measured(floor, kEye, kPlace, {sun}, limited(16, in, out));
+      EXPECT_NEAR(seen.mean.g, openWithKernel(light.truncated(in), out, {0, 1, 0}), 1e-5) << in << " " << out;
+      EXPECT_LT(seen.error.g, 1e-6);
+    }
+}
+
+// Rays start 2^-19 of the floor's 4 m off it.
+TEST(BandLimit, OfASphereOverAnOpenPlaneIsSeenFromThePlace) {
+  const Scene floor = sceneOf({testing::grid({0, 0, 0}, 4.0f, 1)});
+  const auto expected = [&](int order, glm::dvec3 center, double radius) {
+    return open(sh::sphereLight(order, center - glm::dvec3(kPlace), radius, glm::vec3(30)), {0, 1, 0});
+  };
+  for (const int order : {1, 2, 5, 8})
+    for (const glm::vec3 center :
+         {glm::vec3(0.5f, 1, 0), glm::vec3(-1, 0.2f, 0), glm::vec3(0.1f, -0.3f, 1.7f)}) {
+      const spec::SphereLight sphere{.position_ws = center, .radius_m = 0.3f, .radiance = glm::vec3(30)};
+      const auto seen = measured(floor, kEye, kPlace, {sphere}, limited(256, order));
+      expectMean(seen, expected(order, glm::dvec3(center), double{sphere.radius_m}), 1e-4);
+      EXPECT_LT(seen.error.g, 0.02) << order;
+    }
+  // Under the plane a light of two bands still shines above it; whole, it would not.
+  EXPECT_GT(expected(2, {0.1, -0.3, 1.7}, 0.3), 0.05);
+}
+
+TEST(BandLimit, OfADiscOverAnOpenPlaneIsSeenFromThePlace) {
+  const Scene floor = sceneOf({testing::grid({0, 0, 0}, 4.0f, 1)});
+  const spec::DiscLight disc{.position_ws = {0.4f, 0.8f, 0.1f},
+                             .normal_ws = glm::normalize(glm::vec3(-1, -2, 0.5f)),
+                             .radius_m = 0.5f,
+                             .radiance = glm::vec3(10)};
+  for (const int order : {1, 3, 5}) {
+    const auto light = sh::discAreaLight(order, glm::dvec3(disc.position_ws) - glm::dvec3(kPlace),
+                                         glm::dvec3(disc.normal_ws), double{disc.radius_m}, disc.radiance);
+    const auto seen = measured(floor, kEye, kPlace, {disc}, limited(256, order));
+    expectMean(seen, open(light, {0, 1, 0}), 1e-4);
+    EXPECT_LT(seen.error.g, 0.02);
+  }
+}
+
+TEST(BandLimit, OfASphereThatBouncesIsSeenFromWhereItBounces) {
+  // A speck looks up at a wide ceiling that a light under the speck shines on. Straight above it the light is
+  // 3 m away, farther out it is far.
+  const Scene scene = [] {
+    Scene out =
+        sceneOf({testing::grid({0, 0, 0}, 0.01f, 1), testing::flipped(testing::grid({0, 1, 0}, 200.0f, 1))});
+    gltf::Material grey = testing::matte();
+    grey.base_color = glm::vec4(0.5f, 0.5f, 0.5f, 1);
+    testing::paint(out, 1, grey);
+    return out;
+  }();
+  const spec::SphereLight sphere{.position_ws = {0, -2, 0}, .radius_m = 1, .radiance = glm::vec3(30)};
+  for (const int order : {1, 4}) {
+    double expected = 0.0;
+    constexpr int kCount = 2000;
+    for (int k = 0; k < kCount; ++k) {
+      const double sine2 = (k + 0.5) / kCount;  // even in what a cosine weighs
+      const glm::dvec3 there(std::sqrt(sine2 / (1.0 - sine2)), 1, 0);
+      const auto light = sh::sphereLight(order, glm::dvec3(sphere.position_ws) - there,
+                                         double{sphere.radius_m}, sphere.radiance);
+      expected += 0.5 * open(light, {0, -1, 0}) / kCount;
+    }
+    Options options = limited(1024, order);
+    options.bounces = 1;
+    const auto seen = measured(scene, {0, 0.5f, 0.2f}, {0, 0, 0}, {sphere}, options);
+    expectMean(seen, expected, 1e-3);
+    EXPECT_LT(seen.error.g, 0.01 * expected);
+    options.bounces = 0;
+    EXPECT_NEAR(measured(scene, {0, 0.5f, 0.2f}, {0, 0, 0}, {sphere}, options).mean.g, 0.0, 1e-3);
+  }
+}
+
+TEST(BandLimit, InsideASphereIsTheSameFromEverywhere) {
+  const Scene scene =
+      sceneOf({testing::grid({0, 0, 0}, 4.0f, 1), testing::flipped(testing::grid({1, 1, 0}, 1.0f, 1))});
+  Options options = limited(64, 5, 5);
+  options.bounces = 2;
+  const spec::SphereLight around{.position_ws = {0, 3, 0}, .radius_m = 100, .radiance = glm::vec3(2)};
+  const double constant = measured(scene, kEye, kPlace, {testing::uniform(2.0f)}, options).mean.g;
+  EXPECT_NEAR(measured(scene, kEye, kPlace, {around}, options).mean.g, constant, 1e-5);
+}
+
+TEST(BandLimit, OfLightsInHardPlacesStaysFinite) {
+  const Scene scene =
+      sceneOf({testing::grid({0, 0, 0}, 4.0f, 1), testing::flipped(testing::grid({1, 1, 0}, 1.0f, 1))});
+  Options options = limited(16, 8, 8);
+  options.bounces = 2;
+  for (const glm::vec3 place : {kPlace, kPlace + glm::vec3(0, 1e-6f, 0), glm::vec3(0, 1e30f, 0)})
+    for (const float radius : {0.0f, 1e-30f, 1e-6f, 1.0f, 1e18f}) {
+      const spec::SphereLight sphere{.position_ws = place, .radius_m = radius, .radiance = glm::vec3(1e8f)};
+      const spec::DiscLight disc{.position_ws = place, .radius_m = radius, .radiance = glm::vec3(1e8f)};
+      const double seen = measured(scene, kEye, kPlace, {sphere, disc}, options).mean.g;
+      EXPECT_TRUE(std::isfinite(seen)) << place.y << " " << radius;
+      EXPECT_LT(std::abs(seen), 1e9) << place.y << " " << radius;
+    }
+}
+
+}  // namespace
+}  // namespace lambent::baker::reference

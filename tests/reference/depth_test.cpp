@@ -1,0 +1,84 @@
+// Depths of pictures: along the camera's axis, of the first surface that is not blended.
+#include <algorithm>
+#include <limits>
+
+#include "tests/reference/measure.hpp"
+#include "tests/reference/media.hpp"
+
+namespace lambent::baker::reference {
+namespace {
+
+constexpr float kNone = std::numeric_limits<float>::infinity();
+
+// A square of 2 m in the height y, seen from 5 m above the ground by a camera that looks straight down.
+std::vector<float> depthsOf(const Scene& scene, float fov_deg) {
+  Scene seen = scene;
+  testing::lookAt(seen, {0, 5, 0}, {0, 0, 0}, fov_deg);
+  const Report report =
+      testing::rendered(seen, {.lights = {testing::uniform(1.0f)}, .options = {.size = {33, 33}, .spp = 2}});
+  EXPECT_EQ(report.image.depths.size(), 33u * 33u);
+  return report.image.depths;
+}
+
+std::size_t count(const std::vector<float>& depths, float depth) {
+  return static_cast<std::size_t>(std::ranges::count_if(depths, [depth](float d) {
+    return depth == kNone ? d == kNone : std::abs(d - depth) < 2e-6f * depth;
+  }));
+}
+
+TEST(Depth, IsAlongTheAxisAndNotAlongTheRay) {
+  // All of the picture is floor, in whose corners rays are 1.4 times as long.
+  const std::vector<float> depths = depthsOf(testing::sceneOf({testing::grid({0, 0, 0}, 20.0f, 4)}), 70.0f);
+  EXPECT_EQ(count(depths, 5.0f), depths.size());
+}
+
+TEST(Depth, IsInfiniteWhereNothingStands) {
+  // 2 of 20 m: the middle fifth.
+  const std::vector<float> depths =
+      depthsOf(testing::sceneOf({testing::grid({0, 0, 0}, 2.0f, 4)}), 2.0f * 63.434949f);
+  EXPECT_EQ(count(depths, 5.0f) + count(depths, kNone), depths.size());
+  EXPECT_EQ(count(depths, 5.0f), 9u) << "3 x 3 of 33 x 33 pixels of 0.606 m";
+}
+
+TEST(Depth, OfBlendedSurfacesIsWhatStandsBehindThem) {
+  Scene scene = testing::sceneOf({testing::grid({0, 0, 0}, 20.0f, 4), testing::grid({0, 2, 0}, 20.0f, 4),
+                                  testing::grid({0, 3, 0}, 20.0f, 4)});
+  gltf::Material glass = testing::matte();
+  glass.alpha_mode = gltf::AlphaMode::Blend;
+  for (const float alpha : {0.0f, 0.5f, 1.0f}) {
+    glass.base_color.a = alpha;
+    testing::paint(scene, 1, glass);
+    testing::paint(scene, 2, glass);
+    const std::vector<float> depths = depthsOf(scene, 40.0f);
+    EXPECT_EQ(count(depths, 5.0f), depths.size()) << alpha;
+  }
+  testing::paint(scene, 0, glass);
+  const std::vector<float> nothing = depthsOf(scene, 40.0f);
+  EXPECT_EQ(count(nothing, kNone), nothing.size());
+}
+
+TEST(Depth, OfCutOutsIsWhatIsSeenThroughThem) {
+  Scene scene = testing::sceneOf({testing::grid({0, 0, 0}, 20.0f, 4), testing::grid({0, 3, 0}, 20.0f, 4)});
+  gltf::Material leaf = testing::matte();
+  leaf.alpha_mode = gltf::AlphaMode::Mask;
+  for (const auto& [alpha, depth] : {std::pair(0.4f, 5.0f), std::pair(0.6f, 2.0f)}) {
+    leaf.base_color.a = alpha;
+    testing::paint(scene, 1, leaf);
+    const std::vector<float> depths = depthsOf(scene, 40.0f);
+    EXPECT_EQ(count(depths, depth), depths.size()) << alpha;
+  }
+}
+
+TEST(Depth, DoesNotKnowVolumes) {
+  for (const float density : {0.5f, 1e6f}) {
+    Scene scene = testing::sceneOf({testing::grid({0, 0, 0}, 2.0f, 4)});
+    testing::place(scene, testing::even(density, glm::vec3(0.5f), 0.0f, {0, 2, 0}, {8, 1, 8}));
+    const std::vector<float> depths = depthsOf(scene, 40.0f);
+    EXPECT_EQ(count(depths, 5.0f) + count(depths, kNone), depths.size());
+    EXPECT_GT(count(depths, 5.0f), 100u);
+    EXPECT_GT(count(depths, kNone), 100u);
+  }
+}
+
+}  // namespace
+}  // namespace lambent::baker::reference

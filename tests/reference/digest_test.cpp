@@ -1,0 +1,26 @@
+// No field of a material is forgotten where a picture decides whether it may go on from a checkpoint.
+#include "reference/digest.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/material_values.hpp"
+
+namespace lambent::baker::reference {
+namespace {
+
+std::uint64_t digestWith(const gltf::Material& material) {
+  Scene scene;
+  scene.materials = {material};
+  return digestOf(scene, {}, {}, {}, {});
+}
+
+TEST(ReferenceDigest, ChangesWithEveryFieldOfAMaterialButItsName) {
+  const gltf::Material plain = testing::materialWithEverything();
+  gltf::forEachMaterialField([&](const auto& field) {
+    EXPECT_EQ(digestWith(testing::changed(plain, field)) != digestWith(plain), field.name != "name")
+        << field.name;
+  });
+}
+
+}  // namespace
+}  // namespace lambent::baker::reference

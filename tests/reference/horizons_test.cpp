@@ -1,0 +1,150 @@
+// Surfaces whose smooth normals lean away from their triangles: of what lies above the one and below the
+// other they see the mirror image, and lose nothing.
+#include "reference/horizons.hpp"
+
+#include <gtest/gtest.h>
+
+#include "reference/warp.hpp"
+#include "tests/reference/measure.hpp"
+#include "tests/reference/quadrature.hpp"
+
+namespace lambent::baker::reference {
+namespace {
+
+using testing::add;
+using testing::Ggx;
+using testing::measured;
+using testing::samples;
+using testing::sceneOf;
+
+const glm::vec3 kPlace(0.1f, 0, 0.2f);
+
+gltf::Material metal(float roughness) {
+  gltf::Material material;
+  material.metallic = 1.0f;
+  material.roughness = roughness;
+  return material;
+}
+
+gltf::Material shining(float radiance) {
+  gltf::Material material = testing::matte();
+  material.base_color = glm::vec4(0, 0, 0, 1);
+  material.emissive = glm::vec3(radiance);
+  return material;
+}
+
+glm::vec3 leaning(float degrees) {
+  const float lean = glm::radians(degrees);
+  return {std::sin(lean), std::cos(lean), 0.0f};
+}
+
+// Its normals lean by so much towards +X.
+Scene floorThatLeans(const gltf::Material& material, float degrees) {
+  Scene floor = sceneOf({testing::grid({0, 0, 0}, 4.0f, 1)});
+  for (glm::vec3& n : floor.meshes[0].primitives[0].mesh.normals) n = leaning(degrees);
+  floor.materials = {material};
+  return floor;
+}
+
+// At x = 1, on the floor, 2 m high, looking towards -X.
+bundle::MeshData wall() {
+  bundle::MeshData wall;
+  wall.positions = {{1, 0, -5}, {1, 0, 5}, {1, 2, 5}, {1, 2, -5}};
+  wall.normals.assign(4, {-1, 0, 0});
+  wall.indices = {0, 1, 2, 0, 2, 3};
+  return wall;
+}
+
+// Stands at -X, so low that a mirror of this lean would look to +X below the floor.
+constexpr float kLean = 20.0f, kEyeElevation = 25.0f, kHidden = 2 * kLean - kEyeElevation;
+glm::vec3 eye() {
+  return kPlace + 2.0f * spec::directionFromAzimuthElevation(-90.0f, kEyeElevation);
+}
+spec::SunLight sunAt(float elevation_deg) {
+  return {.azimuth_deg = 90, .elevation_deg = elevation_deg, .angle_deg = 3, .radiance = glm::vec3(7)};
+}
+
+// Of a white metal, whose F0 and F90 are 1.
+double albedo(float roughness, float lean) {
+  const glm::dvec3 n(leaning(lean)), v = glm::normalize(glm::dvec3(eye() - kPlace));
+  const double cosine = glm::dot(n, v), alpha = double{roughness} * double{roughness};
+  const glm::dvec2 parts =
+      Ggx{.alpha_t = alpha, .alpha_b = alpha}.albedo({std::sqrt(1.0 - cosine * cosine), 0.0, cosine});
+  return parts.x + parts.y;
+}
+
+TEST(Horizons, ARayAboveTheTriangleStandsForTheDirectionThatItAnswers) {
+  for (std::uint32_t n = 0; n < 1000; ++n) {
+    const auto random = [&](float step) {
+      const float x = step * static_cast<float>(n + 1);
+      return sphereDirection({x - std::floor(x), 2.4f * x - std::floor(2.4f * x)});
+    };
+    Horizons horizons{.smooth = random(0.6180340f), .triangle = {}};
+    horizons.triangle = glm::normalize(horizons.smooth + 0.5f * random(0.7548777f));
+    const glm::vec3 dir = random(0.5698403f), ray = horizons.rayFor(dir);
+    ASSERT_GE(glm::dot(ray, horizons.triangle), 0.0f) << n;
+    float nearest = 2.0f;
+    horizons.forAbove(ray, [&](const glm::vec3& above) {
+      EXPECT_GT(glm::dot(above, horizons.smooth), 0.0f) << n;
+      nearest = std::min({nearest, glm::distance(above, dir),
+                          glm::distance(Horizons::mirrored(above, horizons.smooth), dir)});
+    });
+    EXPECT_LT(nearest, 1e-5f) << n;
+  }
+}
+
+TEST(LeaningNormals, ReflectAllOfUniformLight) {
+  for (const float roughness : {0.3f, 0.6f})
+    for (const float lean : {kLean, -kLean}) {
+      const double expected = albedo(roughness, lean);
+      const auto seen = measured(floorThatLeans(metal(roughness), lean), eye(), kPlace,
+                                 {testing::uniform(1.0f)}, samples(256));
+      EXPECT_NEAR(seen.mean.g, expected, 4.0 * seen.error.g + 1e-3) << roughness << ' ' << lean;
+    }
+}
+
+// What shines at a place of its own is found by paths and by lights that look for it: together, once.
+TEST(LeaningNormals, ReflectAllOfWhatShinesAllAround) {
+  for (const float roughness : {0.3f, 0.6f}) {
+    const double expected = 2.0 * albedo(roughness, kLean);
+    const spec::SphereLight around{.position_ws = {0, 3, 0}, .radius_m = 100, .radiance = glm::vec3(2)};
+    Scene floor = floorThatLeans(metal(roughness), kLean);
+    const auto sphere = measured(floor, eye(), kPlace, {around}, samples(256, 0));
+    EXPECT_NEAR(sphere.mean.g, expected, 4.0 * sphere.error.g + 2e-3) << roughness;
+    add(floor, testing::flipped(testing::grid({0, 1, 0}, 1e3f, 1)), shining(2.0f));
+    const auto ceiling = measured(floor, eye(), kPlace, {}, samples(1024, 0));
+    EXPECT_NEAR(ceiling.mean.g, expected, 4.0 * ceiling.error.g + 4e-3) << roughness;
+    EXPECT_LT(ceiling.error.g, 0.02) << roughness;
+  }
+}
+
+TEST(LeaningNormals, ShowTheSkyOfTheHiddenDirectionItself) {
+  const Scene floor = floorThatLeans(metal(0.0f), kLean);
+  EXPECT_NEAR(measured(floor, eye(), kPlace, {sunAt(-kHidden)}, samples(64)).mean.g, 7.0, 0.02);
+  EXPECT_LT(measured(floor, eye(), kPlace, {sunAt(kHidden)}, samples(64)).mean.g, 0.01);
+}
+
+TEST(LeaningNormals, ShowWhatStandsInTheMirrorImage) {
+  Scene lit = floorThatLeans(metal(0.0f), kLean);
+  add(lit, wall(), shining(3.0f));
+  // Neither the sun behind the wall nor that in front of the mirror image.
+  const auto seen = measured(lit, eye(), kPlace, {sunAt(-kHidden), sunAt(kHidden)}, samples(64, 0));
+  EXPECT_NEAR(seen.mean.g, 3.0, 0.01);
+}
+
+TEST(LeaningNormals, LoseNothingAtLaterHitsEither) {
+  // A mirror on the ceiling shows the floor.
+  Scene scene = floorThatLeans(metal(0.3f), kLean);
+  const glm::vec3 down = glm::normalize(kPlace - eye());
+  add(scene, testing::flipped(testing::grid({-3.0f, 2.0f, 0.2f}, 1.0f, 1)), metal(0.0f));
+  const float height = 2.0f / -down.y;
+  const glm::vec3 on_ceiling = kPlace - height * down,
+                  below = on_ceiling + 0.5f * glm::vec3(-down.x, down.y, -down.z);
+  scene.nodes.back().parent_from_node =
+      glm::translate(glm::mat4(1.0f), on_ceiling - glm::vec3(-3.0f, 2.0f, 0.2f));
+  const auto seen = measured(scene, below, on_ceiling, {testing::uniform(1.0f)}, samples(256, 1));
+  EXPECT_NEAR(seen.mean.g, albedo(0.3f, kLean), 4.0 * seen.error.g + 2e-3);
+}
+
+}  // namespace
+}  // namespace lambent::baker::reference

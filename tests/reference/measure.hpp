@@ -1,0 +1,113 @@
+// Pictures of scenes that are built in the test, and the mean over many pixels that all look at one point.
+#pragma once
+
+#include <cmath>
+
+#include <glm/gtc/matrix_transform.hpp>
+#include <gtest/gtest.h>
+
+#include "reference/reference.hpp"
+#include "tests/support/shapes.hpp"
+
+namespace lambent::testing {
+
+inline baker::reference::Report rendered(const baker::Scene& scene,
+                                         const baker::reference::Request& request) {
+  baker::Progress progress;
+  auto report = baker::reference::render(scene, request, {}, false, progress, {});
+  EXPECT_TRUE(report) << report.error().line();
+  return report ? std::move(*report) : baker::reference::Report{};
+}
+
+// A camera of the scene, the first one: so it is used where none is asked for.
+inline void lookAt(baker::Scene& scene, glm::vec3 eye, glm::vec3 target, float fov_deg) {
+  scene.cameras = {{.name = "eye", .yfov_rad = glm::radians(fov_deg)}};
+  gltf::Node node;
+  node.camera = 0;
+  const glm::vec3 along = glm::normalize(target - eye);
+  const glm::vec3 up = std::abs(along.y) > 0.9f ? glm::vec3(0, 0, -1) : glm::vec3(0, 1, 0);
+  node.parent_from_node = glm::inverse(glm::lookAt(eye, target, up));
+  scene.roots.push_back(static_cast<std::int32_t>(scene.nodes.size()));
+  scene.nodes.push_back(node);
+}
+
+struct Measured {
+  glm::dvec3 mean{0.0}, error{0.0};  // standard error of the mean
+  double alpha = 0.0;
+};
+
+// What is seen of `target` from `eye`, by 64 independent pixels.
+inline Measured measured(baker::Scene scene, glm::vec3 eye, glm::vec3 target,
+                         const std::vector<spec::Light>& lights, baker::reference::Options options = {}) {
+  lookAt(scene, eye, target, 0.01f);
+  options.size = {8, 8};
+  const auto report = rendered(scene, {.lights = lights, .camera = {}, .options = options});
+  Measured out;
+  glm::dvec3 squares(0.0);
+  const double count = static_cast<double>(report.image.texels.size());
+  for (const glm::vec4& texel : report.image.texels) {
+    out.mean += glm::dvec3(texel) / count;
+    out.alpha += double{texel.w} / count;
+  }
+  for (const glm::vec4& texel : report.image.texels) {
+    const glm::dvec3 away = glm::dvec3(texel) - out.mean;
+    squares += away * away;
+  }
+  out.error = glm::sqrt(squares / (count * (count - 1.0)));
+  return out;
+}
+
+// Within four standard errors, a chance of 1 in 16,000 for each; rounding of floats aside. The tests draw the
+// same numbers every time.
+inline void expectMean(const Measured& m, double expected, double rounding = 2e-5) {
+  EXPECT_NEAR(m.mean.g, expected, 4.0 * m.error.g + rounding * std::max(1.0, expected));
+}
+
+inline baker::reference::Options samples(std::uint32_t spp, std::optional<std::uint32_t> bounces = {}) {
+  baker::reference::Options options;
+  options.spp = spp;
+  options.bounces = bounces;
+  return options;
+}
+
+// Lambert, white.
+inline gltf::Material matte() {
+  gltf::Material material;
+  material.metallic = 0.0f;
+  return material;
+}
+
+inline void paint(baker::Scene& scene, std::size_t mesh, const gltf::Material& material) {
+  scene.meshes[mesh].primitives[0].material = static_cast<std::int32_t>(scene.materials.size());
+  scene.materials.push_back(material);
+}
+
+// Under a node of its own, where it lies.
+inline void add(baker::Scene& scene, const bundle::MeshData& mesh, const gltf::Material& material) {
+  scene.roots.push_back(static_cast<std::int32_t>(scene.nodes.size()));
+  scene.nodes.push_back({});
+  scene.nodes.back().mesh = static_cast<std::int32_t>(scene.meshes.size());
+  scene.meshes.push_back({"", {{mesh, 0}}});
+  paint(scene, scene.meshes.size() - 1, material);
+}
+
+// Each triangle with its own, flat normals.
+inline bundle::MeshData flat(const bundle::MeshData& mesh) {
+  bundle::MeshData out;
+  for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
+    const glm::vec3 a = mesh.positions[mesh.indices[i]], b = mesh.positions[mesh.indices[i + 1]],
+                    c = mesh.positions[mesh.indices[i + 2]];
+    for (const glm::vec3& p : {a, b, c}) {
+      out.indices.push_back(static_cast<std::uint32_t>(out.positions.size()));
+      out.positions.push_back(p);
+      out.normals.push_back(glm::normalize(glm::cross(b - a, c - a)));
+    }
+  }
+  return out;
+}
+
+inline spec::Light uniform(float radiance) {
+  return spec::ConstantLight{.radiance = glm::vec3(radiance)};
+}
+
+}  // namespace lambent::testing

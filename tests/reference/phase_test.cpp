@@ -1,0 +1,80 @@
+#include "reference/phase.hpp"
+
+#include <array>
+
+#include <gtest/gtest.h>
+
+#include "reference/sampler.hpp"
+
+namespace lambent::baker::reference {
+namespace {
+
+// 2 pi ∫ f(cos) dcos, by the midpoint rule.
+template <typename F>
+double overSphere(const F& f, int count = 200000) {
+  double sum = 0.0;
+  for (int i = 0; i < count; ++i) sum += f(-1.0 + (i + 0.5) * 2.0 / count);
+  return 4.0 * std::numbers::pi * sum / count;
+}
+
+TEST(Phase, LosesNoLightAndHasTheMeanCosineG) {
+  for (const float g : {-0.9f, -0.3f, 0.0f, 1e-6f, 0.5f, 0.76f, 0.95f}) {
+    EXPECT_NEAR(overSphere([&](double c) { return double{phaseValue(g, static_cast<float>(c))}; }), 1.0, 1e-5)
+        << g;
+    EXPECT_NEAR(overSphere([&](double c) { return c * double{phaseValue(g, static_cast<float>(c))}; }),
+                double{g}, 1e-5)
+        << g;
+  }
+}
+
+TEST(Phase, DrawsDirectionsByItsValue) {
+  // Shares of the cosine in twenty bins, and evenly around.
+  constexpr int kCount = 1 << 18, kBins = 20;
+  const glm::vec3 along = glm::normalize(glm::vec3(0.3f, -0.5f, 0.8f));
+  const glm::mat3 frame = frameAbout(along);
+  for (const float g : {-0.7f, -1e-5f, 0.0f, 5e-5f, 2e-4f, 0.4f, 0.85f}) {
+    std::array<double, kBins> shares{};
+    glm::dvec3 mean(0.0);
+    for (std::uint32_t i = 0; i < kCount; ++i) {
+      const glm::vec3 dir = samplePhase(g, along, Sampler(3, 0, 0).pair(0, i));
+      ASSERT_NEAR(glm::length(dir), 1.0f, 1e-6f);
+      const float cosine = glm::dot(dir, along);
+      shares[static_cast<std::size_t>(std::clamp((cosine + 1.0f) * 0.5f * kBins, 0.0f, kBins - 1.0f))] +=
+          1.0 / kCount;
+      mean += glm::dvec3(dir * frame) / double{kCount};
+    }
+    EXPECT_NEAR(mean.z, double{g}, 1e-4) << g;
+    EXPECT_NEAR(mean.x, 0.0, 1e-3) << g;
+    EXPECT_NEAR(mean.y, 0.0, 1e-3) << g;
+    for (int b = 0; b < kBins; ++b) {
+      double expected = 0.0;
+      for (int i = 0; i < 1000; ++i) {
+        const double c = -1.0 + (b + (i + 0.5) / 1000) * 2.0 / kBins;
+        expected +=
+            2.0 * std::numbers::pi * 2.0 / kBins * double{phaseValue(g, static_cast<float>(c))} / 1000;
+      }
+      EXPECT_NEAR(shares[static_cast<std::size_t>(b)], expected, 2e-4) << g << " " << b;
+    }
+  }
+}
+
+TEST(Phase, OfManyBandsIsWhole) {
+  for (const float g : {-0.4f, 0.0f, 0.5f})
+    for (const float cosine : {-1.0f, -0.3f, 0.6f, 1.0f}) {
+      EXPECT_NEAR(phaseValue(g, cosine, 40), phaseValue(g, cosine), 1e-6f) << g << " " << cosine;
+      EXPECT_NEAR(phaseValue(g, cosine, 1), 0.25f / kPi, 1e-7f);
+      EXPECT_NEAR(phaseValue(g, cosine, 2), (1.0f + 3.0f * g * cosine) * 0.25f / kPi, 1e-7f);
+    }
+}
+
+TEST(Phase, StaysFiniteWhereItIsSharpest) {
+  for (const float g : {std::nextafter(1.0f, 0.0f), std::nextafter(-1.0f, 0.0f)})
+    for (const glm::vec2 u : {glm::vec2(0, 0), glm::vec2(0.5f), glm::vec2(std::nextafter(1.0f, 0.0f))}) {
+      const glm::vec3 dir = samplePhase(g, {0, 0, 1}, u);
+      EXPECT_NEAR(glm::length(dir), 1.0f, 1e-5f);
+      EXPECT_TRUE(std::isfinite(phaseValue(g, dir.z)) && phaseValue(g, dir.z) > 0.0f);
+    }
+}
+
+}  // namespace
+}  // namespace lambent::baker::reference

@@ -1,0 +1,203 @@
+// Spheres and discs of light that words put into the scene, against closed forms; and the scene at a time.
+#include <gtest/gtest.h>
+
+#include "reference/digest.hpp"
+#include "reference/shape_lights.hpp"
+#include "tests/reference/measure.hpp"
+
+namespace lambent::baker::reference {
+namespace {
+
+using testing::expectMean;
+using testing::measured;
+using testing::samples;
+using testing::sceneOf;
+
+// Rays start 2^-19 of the floor's 20 m off it, nearer to the light by as much.
+constexpr double kOffset = 2e-4;
+
+spec::Light sphere(glm::vec3 place, float radius, float radiance) {
+  return spec::SphereLight{.position_ws = place, .radius_m = radius, .radiance = glm::vec3(radiance)};
+}
+spec::Light disc(glm::vec3 place, glm::vec3 normal, float radius, float radiance) {
+  return spec::DiscLight{.position_ws = place,
+                         .normal_ws = glm::normalize(normal),
+                         .radius_m = radius,
+                         .radiance = glm::vec3(radiance)};
+}
+Scene whiteFloor() {
+  return sceneOf({testing::grid({0, 0, 0}, 20.0f, 1)});
+}
+
+// E/pi of a sphere that is wholly above the horizon: L r²/d² cos.
+TEST(SphereLight, LightsAFloorAsAPointOfItsPowerWould) {
+  for (const float x : {0.0f, 0.8f, 3.0f})
+    for (const float radius : {0.001f, 0.3f, 0.999f}) {
+      const double d2 = 1.0 + double{x} * double{x};
+      const double expected = 10.0 * double{radius} * double{radius} / d2 / std::sqrt(d2);
+      const auto floor = measured(whiteFloor(), {x, 0.9f, 3.0f}, {x, 0, 0},
+                                  {sphere({0, 1, 0}, radius, 10.0f)}, samples(64, 0));
+      expectMean(floor, expected, kOffset * expected);
+      EXPECT_LT(floor.error.g, 0.005 * expected) << x << " " << radius;
+    }
+}
+
+TEST(SphereLight, IsNotSeenAndStandsInNobodysWay) {
+  const auto light = sphere({0, 1, 0}, 0.5f, 10.0f);
+  const auto sky = measured(whiteFloor(), {0, 1, 4}, {0, 1, 0}, {light}, samples(4));
+  EXPECT_EQ(sky.mean.g, 0.0);
+  EXPECT_EQ(sky.alpha, 0.0);
+  // Through one sphere the light of another arrives whole: 10 * 0.1² / 3² more.
+  const auto both = measured(whiteFloor(), {0, 0.2f, 4}, {0, 0, 0}, {light, sphere({0, 3, 0}, 0.1f, 10.0f)},
+                             samples(64, 0));
+  expectMean(both, 10.0 * 0.25 + 10.0 * 0.01 / 9.0);
+}
+
+TEST(SphereLight, FromInsideComesFromEverywhereThatNothingBlocks) {
+  Scene scene = whiteFloor();
+  const auto around = sphere({1, -2, 0.5f}, 50.0f, 3.0f);
+  expectMean(measured(scene, {0, 1, 3}, {0, 0, 0}, {around}, samples(16, 0)), 3.0);
+  // A half plane upright on the floor takes half of it.
+  scene = sceneOf({testing::grid({0, 0, 0}, 20.0f, 1),
+                   testing::turned(testing::grid({0, 0, 0}, 4000.0f, 1), -90.0f, {0, 0, 1})});
+  gltf::Material black = testing::matte();
+  black.base_color = glm::vec4(0, 0, 0, 1);
+  black.double_sided = true;
+  testing::paint(scene, 1, black);
+  expectMean(measured(scene, {3, 1, 0}, {1e-3f, 0, 0}, {sphere({0, 0, 0}, 1000.0f, 3.0f)}, samples(64, 0)),
+             1.5, 2e-3);
+}
+
+TEST(SphereLight, IsHiddenByWhatStandsBeforeItOnly) {
+  const auto light = sphere({0, 2, 0}, 0.5f, 10.0f);
+  const double open = 10.0 * 0.25 / 4.0;
+  const auto under = [&](const bundle::MeshData& blocker) {
+    return measured(sceneOf({testing::grid({0, 0, 0}, 20.0f, 1), blocker}), {0, 0.3f, 3}, {0, 0, 0}, {light},
+                    samples(128, 0));
+  };
+  const auto ceiling = [](glm::vec3 place) { return testing::flipped(testing::grid(place, 8.0f, 1)); };
+  expectMean(under(ceiling({0, 1, 0})), 0.0);
+  expectMean(under(ceiling({0, 3, 0})), open, kOffset);
+  expectMean(under(ceiling({4, 1, 0})), open / 2.0, kOffset);  // its edge stands under the middle
+}
+
+TEST(SphereLight, FillsAWhiteBallByTheGeometricSeries) {
+  // Light that met the wall once gives L r²/R² rho, and each further bounce rho times as much.
+  Scene scene = sceneOf({testing::flipped(testing::icosphere({0, 0, 0}, 2.0f, 5))});
+  scene.materials[0].base_color = glm::vec4(0.6f, 0.6f, 0.6f, 1);
+  const auto seen = [&](std::optional<std::uint32_t> bounces) {
+    return measured(scene, {0.2f, 0.1f, 0}, {0.3f, -1.9f, 0.4f}, {sphere({0, 0, 0}, 0.5f, 8.0f)},
+                    samples(64, bounces));
+  };
+  const double once = 0.6 * 8.0 * 0.25 / 4.0;
+  expectMean(seen(0), once, 2e-3);  // a polyhedron, nearer to its middle than a ball
+  expectMean(seen(1), once * 1.6, 3e-3);
+  expectMean(seen({}), once / 0.4, 6e-3);
+}
+
+// On the axis: L r²/(r² + h²).
+TEST(DiscLight, LightsWhatLiesOnItsAxisInClosedForm) {
+  for (const float height : {0.002f, 0.5f, 2.0f, 30.0f}) {
+    const double expected = 7.0 / (1.0 + double{height} * double{height});
+    // From below the floor's own height over the point, between disc and floor.
+    const auto floor = measured(whiteFloor(), {0, 0.9f, 3}, {0, 0, 0},
+                                {disc({0, height, 0}, {0, -1, 0}, 1.0f, 7.0f)}, samples(128, 0));
+    expectMean(floor, expected, 1e-4 * expected);
+    EXPECT_LT(floor.error.g, 0.01 * expected) << height;
+  }
+}
+
+TEST(DiscLight, ShinesToOneSideAndNotAlongItsPlane) {
+  const auto floor = [&](const spec::Light& light) {
+    return measured(whiteFloor(), {0, 0.9f, 3}, {0, 0, 0}, {light}, samples(64, 0)).mean.g;
+  };
+  EXPECT_EQ(floor(disc({0, 1, 0}, {0, 1, 0}, 1.0f, 7.0f)), 0.0);
+  EXPECT_EQ(floor(disc({0, -1, 0}, {0, 1, 0}, 1.0f, 7.0f)), 0.0) << "under the floor";
+  EXPECT_EQ(floor(disc({3, 0, 0}, {0, -1, 0}, 1.0f, 7.0f)), 0.0) << "in the plane of the floor";
+  EXPECT_EQ(floor(disc({0, 1, 0}, {0, -1, 0}, 0.0f, 7.0f)), 0.0) << "radius 0";
+  EXPECT_EQ(floor(sphere({0, 1, 0}, 0.0f, 7.0f)), 0.0);
+}
+
+TEST(DiscLight, TiltedLightsByItsFormFactor) {
+  // Far enough for one direction: L A cos cos / d² / pi, 1e-4 right at a hundred radii.
+  const auto light = disc({60, 80, 0}, {-1, -1, 0}, 1.0f, 1e4f);
+  const double cosine = (0.6 + 0.8) / std::sqrt(2.0);
+  expectMean(measured(whiteFloor(), {0, 0.9f, 3}, {0, 0, 0}, {light}, samples(64, 0)), cosine * 0.8, 3e-4);
+}
+
+TEST(ShapeLights, HardPlacesStayFinite) {
+  for (const glm::vec3 place :
+       {glm::vec3(0), glm::vec3(0, 1e-6f, 0), glm::vec3(1, 0, 0), glm::vec3(0, 1e30f, 0)})
+    for (const float radius : {1e-30f, 1e-6f, 1.0f, 1e18f}) {
+      const auto report =
+          measured(whiteFloor(), {0, 0.9f, 3}, {0, 0, 0},
+                   {sphere(place, radius, 1e8f), disc(place, {0, -1, 0}, radius, 1e8f)}, samples(16, 1));
+      EXPECT_TRUE(std::isfinite(report.mean.g)) << place.y << " " << radius;
+      // Not more than two lights around give a white floor, in the mean over all that is not noise.
+      EXPECT_LE(report.mean.g, 2.1e8) << place.y << " " << radius;
+    }
+}
+
+TEST(ShapeLights, DensitiesOfBothStrategiesAgree) {
+  const spec::LocalLight ball = spec::SphereLight{.position_ws = {1, 2, -1}, .radius_m = 0.7f},
+                         plate = spec::DiscLight{
+                             .position_ws = {1, 2, -1}, .normal_ws = {0, -1, 0}, .radius_m = 0.7f};
+  for (const spec::LocalLight& light : {ball, plate})
+    for (float u = 0.05f; u < 0.99f; u += 0.1f)
+      for (float v = 0.05f; v < 0.99f; v += 0.1f) {
+        const auto drawn = sampleShape(light, glm::vec3(0), {u, v});
+        ASSERT_TRUE(drawn);
+        const auto met = lookAtShape(light, glm::vec3(0), drawn->dir);
+        ASSERT_TRUE(met) << u << " " << v;
+        EXPECT_NEAR(met->pdf, drawn->pdf, 1e-3f * drawn->pdf);
+        EXPECT_NEAR(met->distance, drawn->distance, 1e-3f);
+      }
+}
+
+TEST(Time, PutsTheSceneWhereItsAnimationsHaveIt) {
+  // A ceiling that leaves the sky after half a second.
+  Scene scene =
+      sceneOf({testing::grid({0, 0, 0}, 8.0f, 1), testing::flipped(testing::grid({0, 0, 0}, 8.0f, 1))});
+  gltf::Node& ceiling = scene.nodes[1];
+  ceiling.animated = true;
+  ceiling.trs = gltf::Trs{.translation = {0, 1, 0}};
+  ceiling.parent_from_node = ceiling.trs->matrix();
+  scene.animations = {{.name = "away",
+                       .channels = {{.node = 1,
+                                     .path = gltf::AnimationChannel::Path::Translation,
+                                     .interpolation = gltf::AnimationChannel::Interpolation::Linear,
+                                     .times_s = {0, 1},
+                                     .values = {0, 1, 0, 8, 1, 0}}}}};
+  const std::vector<spec::Light> zenith = {sphere({0, 100, 0}, 10.0f, 100.0f)};
+  const auto at = [&](float time) {
+    Scene posed = scene;
+    poseAt(posed, time);
+    EXPECT_TRUE(posed.warnings.empty());
+    return measured(posed, {0, 0.3f, 2}, {0, 0, 0}, zenith, samples(64, 0)).mean.g;
+  };
+  EXPECT_EQ(at(0.0f), 0.0);
+  EXPECT_EQ(at(0.25f), 0.0);
+  EXPECT_NEAR(at(0.75f), 1.0, 0.01);
+  EXPECT_NEAR(at(9.0f), 1.0, 0.01);
+  Scene still = whiteFloor();
+  poseAt(still, 1.0f);
+  EXPECT_EQ(still.warnings.size(), 1u);
+
+  // Checkpoints of another time or another light are other pictures.
+  const auto digest = [&](float time, const std::vector<spec::LocalLight>& shapes) {
+    Scene posed = scene;
+    poseAt(posed, time);
+    return digestOf(posed, {}, shapes, {}, {});
+  };
+  const std::vector<spec::LocalLight> one = {spec::SphereLight{.radius_m = 1}},
+                                      other = {spec::SphereLight{.radius_m = 2}},
+                                      plate = {spec::DiscLight{.radius_m = 1}};
+  EXPECT_EQ(digest(0.5f, one), digest(0.5f, one));
+  EXPECT_NE(digest(0.5f, one), digest(0.25f, one));
+  EXPECT_NE(digest(0.5f, one), digest(0.5f, other));
+  EXPECT_NE(digest(0.5f, one), digest(0.5f, plate));
+  EXPECT_NE(digest(0.5f, one), digest(0.5f, {}));
+}
+
+}  // namespace
+}  // namespace lambent::baker::reference

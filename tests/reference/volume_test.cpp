@@ -1,0 +1,405 @@
+// Pictures of media against closed forms.
+#include <gtest/gtest.h>
+
+#include "runtime/sh/zonal.hpp"
+#include "runtime/spec/distant_lights.hpp"
+#include "tests/reference/measure.hpp"
+#include "tests/reference/media.hpp"
+
+namespace lambent::baker::reference {
+namespace {
+
+using testing::even;
+using testing::expectMean;
+using testing::measured;
+using testing::place;
+using testing::rendered;
+using testing::samples;
+using testing::sceneOf;
+using testing::uniform;
+
+Scene cloud(float density, glm::vec3 albedo = glm::vec3(1), float g = 0.0f) {
+  Scene scene = sceneOf({});
+  place(scene, even(density, albedo, g));
+  return scene;
+}
+
+// A directional light of the scene: `lux` on what faces it, shining along `along`.
+void shine(Scene& scene, glm::vec3 along, float lux) {
+  gltf::Light light;
+  light.type = gltf::Light::Type::Directional;
+  light.intensity = lux;
+  gltf::Node node;
+  node.light = static_cast<std::int32_t>(scene.lights.size());
+  const glm::vec3 up = std::abs(along.y) > 0.9f ? glm::vec3(1, 0, 0) : glm::vec3(0, 1, 0);
+  node.parent_from_node = glm::inverse(glm::lookAt(glm::vec3(0), along, up));
+  scene.roots.push_back(static_cast<std::int32_t>(scene.nodes.size()));
+  scene.nodes.push_back(node);
+  scene.lights.push_back(light);
+}
+
+const glm::vec3 kFront(0.1f, 0.2f, 3.0f), kBack(0.1f, 0.2f, -1.0f);  // a ray through all of the cube, 1 m
+const std::vector<spec::Light> kDark = {uniform(0.0f)};
+
+double transmittanceOf(float density) {
+  return std::exp(-double{density});
+}
+
+Scene stillLife() {
+  Scene scene = sceneOf({testing::grid({0, 0, 0}, 4.0f, 1), testing::box({0.2f, 0.6f, 0}, {1, 1, 1}, 1)});
+  scene.materials[0].base_color = glm::vec4(0.8f, 0.7f, 0.6f, 1);
+  return scene;
+}
+
+TEST(VolumePicture, OfAnEmptyVolumeIsThatOfNoneToTheLastBit) {
+  Request request{.lights = {uniform(0.5f), spec::SunLight{.elevation_deg = 50, .angle_deg = 3},
+                             spec::SphereLight{.position_ws = {1, 2, 1}, .radius_m = 0.2f}},
+                  .camera = spec::OrbitCamera{30, 20, 2, 40},
+                  .options = {.size = {40, 30}, .spp = 20}};
+  for (const auto& limit : {std::optional<BandLimit>(), std::optional(BandLimit{5, 5})}) {
+    request.options.band_limit = limit;
+    const Report without = rendered(stillLife(), request);
+    Scene with = stillLife();
+    place(with, even(0.0f, glm::vec3(1), 0, {0, 0.5f, 0}));
+    const Report report = rendered(with, request);
+    EXPECT_EQ(report.image.texels, without.image.texels);
+    EXPECT_EQ(report.rays, without.rays);
+  }
+}
+
+TEST(VolumePicture, OfABlackVolumeIsTheSkyThroughIt) {
+  for (const float density : {1e-6f, 0.5f, 4.0f, 1e6f}) {
+    const auto seen = measured(cloud(density, glm::vec3(0)), kFront, kBack, {uniform(2.0f)}, samples(4));
+    EXPECT_NEAR(seen.mean.g, 2.0 * transmittanceOf(density), 1e-5);
+    EXPECT_NEAR(seen.alpha, -std::expm1(-double{density}), 1e-6);
+    if (density < 1.0f) {
+      EXPECT_NEAR(seen.alpha / -std::expm1(-double{density}), 1.0, 1e-5);
+    }
+  }
+}
+
+TEST(VolumePicture, InAWhiteFurnaceShowsNothing) {
+  // Every path of an albedo of 1 brings the light's radiance, whatever the density, the phase function and
+  // the surfaces about: without noise.
+  for (const float density : {1.0f, 4.0f, 16.0f})
+    for (const float g : {0.0f, 0.8f}) {
+      Scene scene =
+          sceneOf({testing::grid({0, -0.7f, 0}, 4.0f, 1), testing::box({0.2f, 0.1f, 0}, glm::vec3(0.3f), 1)});
+      place(scene, even(density, glm::vec3(1), g));
+      place(scene, even(0.5f * density, glm::vec3(1), -0.5f * g, {0.3f, 0.3f, 0.2f}));
+      const auto report = rendered(scene, {.lights = {uniform(1.0f)},
+                                           .camera = spec::OrbitCamera{30, 20, 1.2f, 40},
+                                           .options = {.size = {24, 24}, .spp = 4}});
+      double covered = 0.0;
+      for (const glm::vec4& texel : report.image.texels) {
+        EXPECT_NEAR(texel.g, 1.0f, 2e-5f);
+        covered += double{texel.w} / 576;
+      }
+      EXPECT_GT(covered, 0.5);
+    }
+}
+
+TEST(VolumePicture, InAWhiteFurnaceOfADiscThatIsTheWholeSkyShowsOneWithinItsNoise) {
+  // The same light by next-event estimation through the medium, weighed against the phase function.
+  const spec::SunLight whole{
+      .azimuth_deg = 30, .elevation_deg = 40, .angle_deg = 180, .radiance = glm::vec3(1)};
+  const int spp[] = {256, 128, 64};
+  int i = 0;
+  for (const float density : {1.0f, 4.0f, 16.0f}) {
+    for (const float g : {0.0f, 0.7f}) {
+      const auto seen = measured(cloud(density, glm::vec3(1), g), kFront, kBack, {whole},
+                                 samples(static_cast<std::uint32_t>(spp[i])));
+      expectMean(seen, 1.0);
+      EXPECT_LT(seen.error.g, 0.01) << density << " " << g;
+      EXPECT_GT(seen.error.g, 0.0);
+    }
+    ++i;
+  }
+}
+
+TEST(VolumePicture, CutToOneBandIsAFurnaceToo) {
+  Options options = samples(8);
+  options.band_limit = BandLimit{5, 5};
+  const auto seen = measured(cloud(4.0f, glm::vec3(1), 0.0f), kFront, kBack, {uniform(1.0f)}, options);
+  EXPECT_NEAR(seen.mean.g, 1.0, 2e-5);
+}
+
+// Radiance that arrives in the middle of the cube, the mean over all directions: by symmetry that over one
+// face of a cube map. The camera stands inside the volume.
+glm::dvec3 meanInTheMiddle(const Scene& medium, std::uint32_t spp) {
+  Scene scene = medium;
+  testing::lookAt(scene, {0, 0, 0}, {0, 0, -1}, 90.0f);
+  const auto report =
+      rendered(scene, {.lights = {uniform(1.0f)}, .camera = {}, .options = {.size = {32, 32}, .spp = spp}});
+  glm::dvec3 sum(0.0);
+  double angle = 0.0;
+  for (std::size_t i = 0; i < 1024; ++i) {
+    const double u = (static_cast<double>(i % 32) + 0.5) / 16 - 1,
+                 v = (static_cast<double>(i / 32) + 0.5) / 16 - 1;
+    const double weight = std::pow(1 + u * u + v * v, -1.5);
+    sum += weight * glm::dvec3(report.image.texels[i]);
+    angle += weight;
+  }
+  return sum / angle;
+}
+
+TEST(VolumePicture, ScattersInACubeAsTheTableSays) {
+  // Literature 7.8, albedo 0.5, 0.9 and 1, good to 0.001.
+  const std::pair<float, glm::dvec3> table[] = {
+      {1.0f, {0.716, 0.930, 1.0}}, {4.0f, {0.210, 0.651, 1.0}}, {16.0f, {0.0007, 0.052, 1.0}}};
+  for (const auto& [density, expected] : table) {
+    const glm::dvec3 seen = meanInTheMiddle(cloud(density, {0.5f, 0.9f, 1.0f}), density > 10.0f ? 32 : 128);
+    // 30,000 and 130,000 paths.
+    const double noise = density > 10.0f ? 0.003 : 0.0025;
+    EXPECT_NEAR(seen.r, expected.r, noise) << density;
+    EXPECT_NEAR(seen.g, expected.g, noise) << density;
+    EXPECT_NEAR(seen.b, expected.b, 2e-5) << density;
+  }
+}
+
+TEST(VolumePicture, OfSingleScatteringIsItsClosedForm) {
+  // --bounces 0. Light from above reaches a ray at depth d = 0.5 - y alike all along: E p(0) exp(-s d)
+  // (1 - exp(-s)). From behind, each of its points has exp(-s) in all before and behind it: E p(1) s exp(-s);
+  // from before the eye, E p(-1) (1 - exp(-2 s)) / 2.
+  const float y = 0.2f;
+  for (const float density : {0.01f, 1.0f, 5.0f})
+    for (const float g : {0.0f, 0.6f, -0.4f}) {
+      const double s = double{density}, k = double{g};
+      const auto phase = [&](double c) {
+        return (1 - k * k) / (4 * std::numbers::pi * std::pow(1 + k * k - 2 * k * c, 1.5));
+      };
+      const auto seen = [&](glm::vec3 along) {
+        Scene scene = cloud(density, {1, 0.5f, 0.25f}, g);
+        shine(scene, along, 10.0f);
+        return measured(scene, {0.1f, y, 3.0f}, {0.1f, y, -1.0f}, kDark, samples(256, 0));
+      };
+      const auto above = seen({0, -1, 0}), behind = seen({0, 0, 1}), before = seen({0, 0, -1});
+      expectMean(above, 5.0 * phase(0) * std::exp(-s * (0.5 - 0.2)) * -std::expm1(-s));
+      expectMean(behind, 5.0 * phase(1) * s * std::exp(-s));
+      expectMean(before, 5.0 * phase(-1) * -std::expm1(-2 * s) / 2);
+      EXPECT_NEAR(above.mean.r, 2.0 * above.mean.g, 1e-5 * above.mean.r);
+      EXPECT_NEAR(above.mean.b, 0.5 * above.mean.g, 1e-5 * above.mean.r);
+      EXPECT_LT(above.error.g, 0.01 * above.mean.g) << density;
+    }
+}
+
+TEST(VolumePicture, ThinIsTheLightConvolvedWithThePhaseFunction) {
+  // One scattering and no loss: towards d goes Σ g^l L_lm y_lm(d), of light that is cut to five bands. With
+  // OUT bands of the phase function the sum ends there.
+  const spec::SunLight sun{
+      .azimuth_deg = 30, .elevation_deg = 20, .angle_deg = 8, .radiance = glm::vec3(100)};
+  const auto light = spec::loadDistantLights({sun})->lightVector();
+  const float density = 1e-3f;
+  for (const float g : {0.0f, 0.6f})
+    for (const auto& out : {std::optional<int>(), std::optional(3)}) {
+      // Towards the light, and away from it.
+      for (const glm::vec3 along :
+           {glm::normalize(glm::vec3(0.5f, 0.2f, 1)), glm::normalize(glm::vec3(-0.3f, -0.4f, -1))}) {
+        double expected = 0.0;
+        std::array<float, sh::kMaxCoefficients> y{};
+        sh::evaluate(5, along, std::span(y));
+        for (int l = 0; l < out.value_or(5); ++l)
+          for (int i = l * l; i < (l + 1) * (l + 1); ++i)
+            expected += std::pow(double{g}, l) * double{light.c[static_cast<std::size_t>(i)].g} *
+                        double{y[static_cast<std::size_t>(i)]};
+        Options options = samples(1024, 0);
+        options.band_limit = BandLimit{5, out};
+        const auto seen = measured(cloud(density, glm::vec3(1), g), -3.0f * along, {0, 0, 0}, {sun}, options);
+        expectMean({.mean = seen.mean / seen.alpha, .error = seen.error / seen.alpha}, expected, 3e-3);
+        EXPECT_LT(seen.error.g / seen.alpha, 0.02 * std::abs(expected) + 0.01);
+      }
+    }
+}
+
+TEST(VolumePicture, CutToFiveBandsIsSignedInsideAVolume) {
+  // Single scattering in a dense cube under a small sun, against a sum over directions and places with the
+  // cube's chords.
+  const spec::SunLight sun{.azimuth_deg = 0, .elevation_deg = 90, .angle_deg = 5, .radiance = glm::vec3(100)};
+  const auto light = spec::loadDistantLights({sun})->lightVector().truncated(4);
+  const double density = 3.0, y = -0.3;
+  double expected = 0.0;
+  constexpr int kPlaces = 64, kDirections = 4000;
+  for (int i = 0; i < kPlaces; ++i) {
+    const double depth = (i + 0.5) / kPlaces;
+    const glm::dvec3 at(0.1, y, 0.5 - depth);
+    double arriving = 0.0;
+    for (int k = 0; k < kDirections; ++k) {
+      const glm::dvec3 dir = testing::evenDirection(k, kDirections);
+      double chord = 1e9;
+      for (int a = 0; a < 3; ++a) chord = std::min(chord, (std::copysign(0.5, dir[a]) - at[a]) / dir[a]);
+      arriving += std::exp(-density * chord) * double{light.evaluate(glm::vec3(dir)).g} / kDirections;
+    }
+    expected += density * std::exp(-density * depth) * arriving / kPlaces;
+  }
+  Options options = samples(2048, 0);
+  options.band_limit = BandLimit{4, {}};
+  const auto seen = measured(cloud(3.0f), {0.1f, -0.3f, 3}, {0.1f, -0.3f, -1}, {sun}, options);
+  expectMean(seen, expected, 1e-3);
+  EXPECT_LT(seen.error.g, 0.02 * std::abs(expected) + 2e-3);
+}
+
+TEST(VolumePicture, UnderASphereOfLightIsThatUnderAPointOfTheSameStrength) {
+  // Small and near, so both are the same light; one by its area, one by itself.
+  const glm::vec3 there(0.9f, 1.0f, 0.3f);
+  const float radius = 0.02f, candela = 5.0f;
+  Scene pointed = cloud(2.0f, glm::vec3(0.8f), 0.3f);
+  gltf::Light light;
+  light.type = gltf::Light::Type::Point;
+  light.intensity = candela;
+  gltf::Node node;
+  node.light = 0;
+  node.parent_from_node = glm::translate(glm::mat4(1), there);
+  pointed.roots.push_back(static_cast<std::int32_t>(pointed.nodes.size()));
+  pointed.nodes.push_back(node);
+  pointed.lights = {light};
+  const spec::SphereLight sphere{
+      .position_ws = there,
+      .radius_m = radius,
+      .radiance = glm::vec3(candela / (std::numbers::pi_v<float> * radius * radius))};
+  for (const std::optional<std::uint32_t> bounces : {std::optional(0u), std::optional<std::uint32_t>()}) {
+    const auto a = measured(pointed, kFront, kBack, kDark, samples(512, bounces));
+    const auto b =
+        measured(cloud(2.0f, glm::vec3(0.8f), 0.3f), kFront, kBack, {sphere}, samples(512, bounces));
+    const double noise = 4.0 * std::hypot(a.error.g, b.error.g);
+    EXPECT_NEAR(a.mean.g, b.mean.g, noise + 1e-3 * a.mean.g);
+    EXPECT_LT(noise, 0.04 * a.mean.g);
+  }
+}
+
+TEST(VolumePicture, FromInsideALightSphereIsAFurnace) {
+  // The sphere stands within the medium and around it.
+  const spec::SphereLight around{.position_ws = {0, 0, 0}, .radius_m = 5, .radiance = glm::vec3(1)};
+  const auto seen = measured(cloud(4.0f), kFront, kBack, {around}, samples(64));
+  // Unseen by the eye: what it sends is what is scattered.
+  EXPECT_NEAR(seen.mean.g, 1.0 - transmittanceOf(4.0f), 1e-5);
+  // One inside the medium sends to what is about it.
+  const spec::SphereLight within{.position_ws = {0, 0, 0}, .radius_m = 0.2f, .radiance = glm::vec3(1)};
+  const auto lit = measured(cloud(4.0f), kFront, kBack, {within}, samples(64));
+  EXPECT_GT(lit.mean.g, 0.01);
+  EXPECT_LT(lit.mean.g, 1.0);
+}
+
+TEST(VolumePicture, ShadesTheGroundByItsOpticalDepth) {
+  // A sheet over the ground, the sun straight above: exp(-depth) of its light is left.
+  for (const float density : {0.5f, 3.0f}) {
+    Scene scene = sceneOf({testing::grid({0, 0, 0}, 4.0f, 1)});
+    place(scene, even(density, glm::vec3(0), 0, {0, 1, 0}, {3, 1, 3}));
+    const spec::SunLight sun{.elevation_deg = 90, .angle_deg = 2, .radiance = glm::vec3(1000)};
+    const double open = 1000.0 * std::pow(std::sin(2.0 * std::numbers::pi / 180), 2.0);
+    const auto seen = measured(scene, {0, 0.3f, 0.8f}, {0.1f, 0, 0.1f}, {sun}, samples(256));
+    expectMean(seen, open * transmittanceOf(density), 1e-3);
+    EXPECT_EQ(seen.alpha, 1.0);
+    // And a lamp in it, a metre up.
+    shine(scene, {0, -1, 0}, 3.0f);
+    expectMean(measured(scene, {0, 0.3f, 0.8f}, {0.1f, 0, 0.1f}, kDark, samples(256)),
+               3.0 / std::numbers::pi * transmittanceOf(density));
+  }
+}
+
+TEST(VolumePicture, ShowsSurfacesThroughItAndFromWithin) {
+  // An emissive wall behind half a metre of a black medium.
+  Scene scene = sceneOf({testing::box({0, 0, -1}, {3, 3, 2}, 1)});
+  scene.materials[0].emissive = glm::vec3(2);
+  scene.materials[0].base_color = glm::vec4(0, 0, 0, 1);
+  place(scene, even(2.0f, glm::vec3(0)));
+  const auto from_outside = measured(scene, kFront, kBack, kDark, samples(4));
+  EXPECT_NEAR(from_outside.mean.g, 2.0 * std::exp(-1.0), 1e-5);
+  EXPECT_EQ(from_outside.alpha, 1.0);
+  // The near plane stands a millimetre or so before an eye that is within.
+  const auto from_within = measured(scene, {0, 0, 0.25f}, {0, 0, -1}, kDark, samples(4));
+  EXPECT_NEAR(from_within.mean.g, 2.0 * std::exp(-0.5), 3e-3);
+  const auto away = measured(scene, {0, 0, 0.25f}, {0, 0, 3}, kDark, samples(4));
+  EXPECT_NEAR(away.alpha, 1.0 - std::exp(-0.5), 2e-3);
+}
+
+TEST(VolumePicture, OfABlendedSurfaceInsideMultipliesWhatBothLetThrough) {
+  Scene scene = sceneOf({testing::turned(testing::grid({0, 0, 0}, 2.0f, 1), 90, {1, 0, 0})});
+  scene.materials[0].alpha_mode = gltf::AlphaMode::Blend;
+  scene.materials[0].base_color = glm::vec4(0, 0, 0, 0.25f);
+  place(scene, even(2.0f, glm::vec3(0)));
+  const auto seen = measured(scene, kFront, kBack, {uniform(1.0f)}, samples(4));
+  EXPECT_NEAR(seen.mean.g, 0.75 * std::exp(-2.0), 1e-5);
+  EXPECT_NEAR(seen.alpha, 1.0 - 0.75 * std::exp(-2.0), 1e-6);
+}
+
+TEST(VolumePicture, OfOneHiddenInAMeshIsThatOfTheMesh) {
+  Scene scene = stillLife();
+  const Request request{.lights = {uniform(0.5f), spec::SunLight{.elevation_deg = 50, .angle_deg = 3}},
+                        .camera = spec::OrbitCamera{30, 20, 2, 40},
+                        .options = {.size = {40, 30}, .spp = 16}};
+  const Report without = rendered(scene, request);
+  place(scene, even(50.0f, glm::vec3(1), 0, {0.2f, 0.6f, 0}, glm::vec3(0.99f)));
+  const Report with = rendered(scene, request);
+  for (std::size_t i = 0; i < with.image.texels.size(); ++i) {
+    EXPECT_NEAR(with.image.texels[i].g, without.image.texels[i].g, 1e-6f);
+    EXPECT_EQ(with.image.texels[i].w, without.image.texels[i].w);
+  }
+}
+
+TEST(VolumePicture, OfTwoThatOverlapIsThatOfTheirSum) {
+  // Where one of albedo 1 and one twice as dense of albedo 0.4 fill the same place, the albedo is 0.6.
+  Scene two = cloud(1.0f, glm::vec3(1));
+  place(two, even(2.0f, glm::vec3(0.4f)));
+  const spec::SunLight sun{.azimuth_deg = 60, .elevation_deg = 40, .angle_deg = 30, .radiance = glm::vec3(1)};
+  const auto a = measured(two, kFront, kBack, {sun, uniform(0.2f)}, samples(512));
+  const auto b = measured(cloud(3.0f, glm::vec3(0.6f)), kFront, kBack, {sun, uniform(0.2f)}, samples(512));
+  EXPECT_NEAR(a.mean.g, b.mean.g, 4.0 * std::hypot(a.error.g, b.error.g));
+  EXPECT_LT(a.error.g, 0.005 * a.mean.g);
+  EXPECT_NEAR(a.alpha, b.alpha, 1e-6);
+}
+
+TEST(VolumePicture, CountsReflectionsBySurfacesOnly) {
+  // Over a white ground, all of it under uniform light: without a bounce the ground does not light the
+  // medium; with one it does, and what the medium scatters is whole.
+  Scene scene = sceneOf({testing::grid({0, -0.6f, 0}, 40.0f, 1)});
+  place(scene, even(1.0f));
+  const auto seen = [&](std::uint32_t bounces) {
+    return measured(scene, {0.1f, 0.2f, 3.0f}, {0.1f, 0.2f, -1.0f}, {uniform(1.0f)}, samples(64, bounces))
+        .mean.g;
+  };
+  const double through = transmittanceOf(1.0f);
+  EXPECT_LT(seen(0), through + 0.6 * (1.0 - through));
+  EXPECT_GT(seen(1), through + 0.85 * (1.0 - through));
+  EXPECT_NEAR(seen(60), 1.0, 1e-3);
+  // Without surfaces one bounce is all that there is.
+  const auto open = [&](std::optional<std::uint32_t> bounces) {
+    return measured(cloud(16.0f), kFront, kBack, {uniform(1.0f)}, samples(16, bounces)).mean.g;
+  };
+  EXPECT_NEAR(open(1), 1.0, 2e-5);
+  EXPECT_LT(open(0), 0.5);
+}
+
+TEST(VolumePicture, IsTheSameForAnyNumberOfThreads) {
+  Scene scene = stillLife();
+  place(scene, even(5.0f, {0.9f, 0.8f, 0.7f}, 0.5f, {0.2f, 1.3f, 0}));
+  Request request{.lights = {uniform(1.0f), spec::SunLight{.elevation_deg = 50, .angle_deg = 3}},
+                  .camera = spec::OrbitCamera{30, 20, 2, 40},
+                  .options = {.size = {40, 30}, .spp = 20}};
+  request.options.threads = 1;
+  const auto one = rendered(scene, request);
+  request.options.threads = 2;
+  EXPECT_EQ(rendered(scene, request).image.texels, one.image.texels);
+}
+
+TEST(VolumePicture, InHardCasesStaysFinite) {
+  Request request{
+      .lights = {uniform(0.3f),
+                 spec::SunLight{.elevation_deg = 50, .angle_deg = 3, .radiance = glm::vec3(1e4f)},
+                 spec::SphereLight{
+                     .position_ws = {0.1f, 0.1f, 0.1f}, .radius_m = 1e-4f, .radiance = glm::vec3(1e6f)}},
+      .camera = spec::OrbitCamera{30, 20, 1.1f, 40},
+      .options = {.size = {12, 12}, .spp = 8}};
+  for (const float density : {1e-30f, 1e-6f, 1e6f, 1e25f})
+    for (const float g : {0.0f, 0.999f, -0.999f})
+      for (const auto& limit : {std::optional<BandLimit>(), std::optional(BandLimit{5, 5})}) {
+        request.options.band_limit = limit;
+        Scene scene = sceneOf({testing::grid({0, 0, 0}, 0.8f, 1)});
+        place(scene, even(density, glm::vec3(0.9f, 0.5f, 0.0f), g));
+        for (const glm::vec4& texel : rendered(scene, request).image.texels)
+          EXPECT_TRUE(std::isfinite(texel.r + texel.g + texel.b) && texel.w >= 0.0f && texel.w <= 1.0f)
+              << density;
+      }
+}
+
+}  // namespace
+}  // namespace lambent::baker::reference
