@@ -21,7 +21,7 @@ struct InsideTestTables {
 struct SeenOrigins {
   std::vector<SampleOrigin> origins;  // weights sum to 1
   bool valid = false;                 // else none is seen, and these are all
-  bool closely = false;               // much is in the way: to be looked at with twice the rays
+  bool double_rays = false;           // much is in the way: to be looked at with twice the rays
 };
 
 // frame: group_from_local of the sample. `seen` is filled, so that it can be used again.

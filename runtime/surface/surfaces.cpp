@@ -52,7 +52,7 @@ Result<void> Surfaces::compile(const ProgramKind& kind) {
   if (kind.dark) defines.push_back({"LAMBENT_DARK", "1"});
   if (kind.normal_mapped) defines.push_back({"LAMBENT_NORMAL_MAPPED", "1"});
   if (kind.residual) defines.push_back({"LAMBENT_RESIDUAL", "1"});
-  if (kind.local_lit) defines.push_back({"LAMBENT_NEAR_LIGHTS", "1"});
+  if (kind.local_lit) defines.push_back({"LAMBENT_SHADOWED_LIGHTS", "1"});
   if (kind.bounces) defines.push_back({"LAMBENT_BOUNCES", "1"});
   if (kind.key_lit) defines.push_back({"LAMBENT_KEY_LIGHTS", "1"});
   if (kind.vertices_around) defines.push_back({"LAMBENT_VERTEX_CHANGE", "1"});

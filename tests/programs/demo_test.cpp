@@ -253,7 +253,7 @@ TEST_F(DemoProgram, ALightInTheSceneShinesByTheSquareOfItsDistance) {
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
     const auto report = nlohmann::json::parse(outcome.out);
     EXPECT_EQ(report["last_frame"]["counts"]["local_lights"], 1);
-    EXPECT_EQ(report["last_frame"]["counts"]["near_lights"], 0) << "outside the sphere's bounds";
+    EXPECT_EQ(report["last_frame"]["counts"]["shadowed_lights"], 0) << "outside the sphere's bounds";
     const auto picture = spec::readExr(exr);
     EXPECT_TRUE(picture);
     return picture->texels[32 * 64 + 32].r;

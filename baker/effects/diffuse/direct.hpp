@@ -48,8 +48,8 @@ struct DirectSettings {
 
 // One entry per sample.
 struct SampleVisibilities {
-  std::vector<std::uint8_t> valid;    // 0: lies inside something, filled from its neighbours
-  std::vector<std::uint8_t> closely;  // 1: looked with twice the rays
+  std::vector<std::uint8_t> valid;        // 0: lies inside something, filled from its neighbours
+  std::vector<std::uint8_t> double_rays;  // 1: looked with twice the rays
 };
 
 // Pass 0 of ranges of samples; also traces a range's hits again.
@@ -57,10 +57,10 @@ class DirectPass {
  public:
   DirectPass(const DiffuseScene& scene, const DirectSettings& settings);
 
-  // `closely`: with twice the rays.
-  const Hemisphere& hemisphereOf(std::size_t sample, bool closely) const {
-    if (sample < scene_.samples.first_normal_mapped) return closely ? diffuse_double_rays_ : diffuse_;
-    return closely ? *mapped_double_rays_ : *mapped_;
+  // `double_rays`: with twice the rays.
+  const Hemisphere& hemisphereOf(std::size_t sample, bool double_rays) const {
+    if (sample < scene_.samples.first_normal_mapped) return double_rays ? diffuse_double_rays_ : diffuse_;
+    return double_rays ? *mapped_double_rays_ : *mapped_;
   }
   std::uint32_t columns() const { return columns_; }
   std::uint32_t channels() const { return channels_; }

@@ -22,7 +22,7 @@ class SampleVisibility {
   SampleVisibility(const SampleSet& samples, const RayScene& rays, const InsideTestTables& glances)
       : samples_(samples), rays_(rays), inside_test_(glances) {}
 
-  // Stands on sample `s`: its frame, the origins that lie outside, and whether to look closely.
+  // Stands on sample `s`: its frame, the origins that lie outside, and whether to trace twice the rays.
   void stand(std::size_t s);
   // Traces the table's rays, with what they meet where `wants_hits`. Returns how many were traced; none where
   // the sample has no face to stand on.
@@ -30,7 +30,7 @@ class SampleVisibility {
                      BelowHorizon below = BelowHorizon::Blocked);
 
   bool valid() const { return seen_.valid; }  // false: lies inside or under something, or has no face
-  bool closely() const {
+  bool double_rays() const {
     return seen_.double_rays;
   }  // much is in the way: to be looked at with twice the rays
   const glm::dmat3& frame() const { return frame_; }  // group_from_local

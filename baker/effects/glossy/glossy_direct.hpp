@@ -25,7 +25,7 @@ class GlossyPass {
 
   const DirectPass& plain() const { return diffuse_; }
   const DiffuseScene& scene() const { return scene_; }
-  const GlossyHemisphere& hemisphereOf(bool closely) const { return closely ? double_rays_ : usual_; }
+  const GlossyHemisphere& hemisphereOf(bool double_rays) const { return double_rays ? double_rays_ : usual_; }
   const sh::GauntTable& gaunt() const { return gaunt_; }
   std::size_t first() const { return scene_.samples.first_glossy; }
   std::size_t size() const { return scene_.samples.size() - first(); }
