@@ -209,7 +209,7 @@ void LocalShadows::drawCubes(World& world, const std::vector<std::uint32_t>& cha
 void LocalShadows::bind(const spec::View& view, const spec::Size& size) {
   if (!any_) return;
   struct Block {
-    LocalView view;
+    ShadowView view;
     std::array<ShadowedLightRecord, kShadowedLights> lights;
   };
   Block block{};

@@ -45,7 +45,7 @@ struct ShadowedLightRecord {
 };
 
 // The uniform block in front of kShadowedLights records.
-struct LocalView {
+struct ShadowView {
   mat4 view_from_clip, world_from_view;
   float width, height;  // of the picture, pixels
   uint size;            // texels along an edge of a cube's face
@@ -76,6 +76,6 @@ struct ShadowFace {
 #ifdef __cplusplus
 #undef LAMBENT_CONSTANT
 static_assert(sizeof(ShadowedLightRecord) == 64 && offsetof(ShadowedLightRecord, cos_outer) == 48);
-static_assert(sizeof(LocalView) == 144 && sizeof(LocalDraw) == 32 && sizeof(ShadowFace) == 80);
+static_assert(sizeof(ShadowView) == 144 && sizeof(LocalDraw) == 32 && sizeof(ShadowFace) == 80);
 }  // namespace lambent::frame
 #endif

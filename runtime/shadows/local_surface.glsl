@@ -3,7 +3,7 @@
 #include "local_shadow.glsl"
 
 layout(std140, binding = kBindShadowedLights) uniform LocalBlock {
-  LocalView local_view;
+  ShadowView local_view;
   ShadowedLightRecord shadowed_lights[kShadowedLights];
 };
 layout(std430, binding = kBindLocalDraws) readonly buffer LocalDraws { LocalDraw local_draws[]; };
