@@ -1,7 +1,7 @@
-// The environment maps that ship, lat-long (row 0 is +Y, the image centre looks along +X): a clear sky with a
-// hazy sun and a studio with three soft boxes. Both have a mean luminance of 1 over the sphere, so that
-// pictures under either need about the same exposure. Both are band-limited enough for small pictures:
-// nothing in them is narrower than 2 degrees.
+// These are the environment maps that ship. They are lat-long (row 0 is +Y, the image centre looks along +X):
+// a clear sky with a hazy sun, and a studio with three soft boxes. Both have a mean luminance of 1 over the
+// sphere, so that pictures under either need about the same exposure. Nothing in them is narrower than 2
+// degrees, so small images can hold them.
 #pragma once
 
 #include <cstdint>
@@ -16,14 +16,14 @@ namespace lambent::assets {
 spec::RgbImage skyMap(std::uint32_t width);
 spec::RgbImage studioMap(std::uint32_t width);
 
-// Each texel the mean of samples x samples directions; width x width / 2 texels.
+// Makes an image of width x width / 2 texels, each the mean of samples x samples directions.
 spec::RgbImage latLongImage(std::uint32_t width, int samples,
                             const std::function<glm::dvec3(glm::dvec3 dir)>& radiance);
 
-// The integral of the picture over the sphere, by exact texel solid angles.
+// Returns the integral of the image over the sphere, by exact texel solid angles.
 glm::dvec3 integrate(const spec::RgbImage& image);
 
-// Scales to a mean luminance of 1.
+// Scales the image to a mean luminance of 1.
 void normalise(spec::RgbImage& image);
 
 }  // namespace lambent::assets

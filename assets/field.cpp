@@ -1,4 +1,4 @@
-// Many bodies: 200 rigid groups that light and shadow each other.
+// The scene `field` has 200 rigid groups that light and shadow each other.
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -11,11 +11,11 @@ namespace lambent::assets {
 
 namespace {
 
-constexpr int kRows = 10, kColumns = 20;  // bodies, the first one being the lawn
+constexpr int kRows = 10, kColumns = 20;  // bodies, including the lawn
 constexpr int kMoving = 20;
 constexpr float kSpacing = 2.4f;
 
-// Round a small circle, once in four seconds.
+// Moves once around a small circle in four seconds.
 Motion circling(glm::vec3 center, float start) {
   Motion motion;
   constexpr int kKeys = 24;

@@ -1,5 +1,6 @@
-// Neighborhood and volume at work: a flyer with a ring-shaped polished wing circles over hills that shadow
-// themselves, and takes its shadow and the light that the ring gathers along; a cloud drifts above both.
+// The scene `flight` shows neighborhoods and volumes: a flyer with a ring-shaped polished wing circles over
+// hills that shadow themselves, and carries its shadow and the light that the ring gathers along; a cloud
+// drifts above both.
 #include <cmath>
 #include <numbers>
 
@@ -17,7 +18,7 @@ constexpr float kPi = std::numbers::pi_v<float>;
 
 enum MaterialIndex { kLand, kHull, kPolished };
 
-// Once round in ten seconds, leaning into the turn; the nose is +Z.
+// Moves once around in ten seconds, leaning into the turn; the nose is +Z.
 Motion circling(float radius, float height) {
   Motion motion;
   constexpr int kKeys = 40;
@@ -34,7 +35,7 @@ Motion circling(float radius, float height) {
   return motion;
 }
 
-// There and back in forty seconds.
+// Moves there and back in forty seconds.
 Motion drifting(glm::vec3 from, glm::vec3 to) {
   Motion motion;
   motion.times_s = {0.0f, 20.0f, 40.0f};
@@ -42,7 +43,7 @@ Motion drifting(glm::vec3 from, glm::vec3 to) {
   return motion;
 }
 
-// A body of revolution along +Z, pointed at both ends.
+// Makes a body of revolution along +Z, pointed at both ends.
 Mesh fuselage(float length, float radius) {
   return surface(28, 24, [&](double u, double v) {
     const double along = kPi * v, around = 2.0 * kPi * u;
@@ -54,7 +55,7 @@ Mesh fuselage(float length, float radius) {
   });
 }
 
-// A flat spindle: wings and fins. `axes`: half sizes.
+// Makes a flat spindle for wings and fins. `axes` are its half sizes.
 Mesh spindle(glm::vec3 axes) {
   Mesh mesh = sphere(1.0f, 10);
   for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
@@ -65,7 +66,7 @@ Mesh spindle(glm::vec3 axes) {
   return mesh;
 }
 
-// A band about +Y.
+// Makes a band about +Y.
 Mesh ringWing(float radius, float width, float thickness) {
   const float low = -0.5f * width, high = 0.5f * width, inner = radius - thickness;
   const std::vector<glm::vec2> profile = {

@@ -12,9 +12,9 @@ namespace lambent::assets {
 
 namespace {
 
-// The room: inner faces at x = +-kHalfWidth and z = kBack, open at z = kFront and above kHeight.
+// The room has inner faces at x = +-kHalfWidth and z = kBack, and is open at z = kFront and above kHeight.
 constexpr float kHalfWidth = 2.5f, kBack = -2.2f, kFront = 2.4f, kHeight = 2.6f, kThick = 0.14f;
-constexpr float kFine = 0.045f, kCoarse = 0.4f;  // cells where light falls, and where nobody looks
+constexpr float kFine = 0.045f, kCoarse = 0.4f;  // cell sizes in light and out of sight
 
 enum MaterialIndex { kStone, kRed, kTeal, kPlaster, kLimestone, kPorcelain, kBronze, kCobalt, kOchre };
 
@@ -24,14 +24,14 @@ std::vector<Material> materials() {
           {.name = "teal wall", .base_color = {0.07f, 0.33f, 0.36f}},
           {.name = "plaster", .base_color = {0.40f, 0.37f, 0.33f}},
           {.name = "limestone", .base_color = {0.70f, 0.65f, 0.57f}},
-          // Its inside shows through the spout and the gap under the lid.
+          // The inside shows through the spout and the gap under the lid.
           {.name = "porcelain", .base_color = {0.82f, 0.81f, 0.78f}, .double_sided = true},
           {.name = "bronze", .base_color = {0.72f, 0.42f, 0.14f}},
           {.name = "cobalt", .base_color = {0.09f, 0.16f, 0.48f}},
           {.name = "ochre", .base_color = {0.80f, 0.55f, 0.16f}}};
 }
 
-// A slab whose one face (edge_u x edge_v) is cut finely; the others close it coarsely.
+// Makes a slab of which one face (edge_u x edge_v) has fine cells; the others close it coarsely.
 Mesh slab(glm::vec3 corner, glm::vec3 edge_u, glm::vec3 edge_v, glm::vec3 depth, float cell) {
   Mesh mesh = plane(corner, edge_u, edge_v, cell);
   append(mesh, plane(corner + depth + edge_u, -edge_u, edge_v, kCoarse));
@@ -114,7 +114,7 @@ Scene gallery() {
   place("plinth of the knot", plinth, {1.46f, 0, -1.05f}, -18.0f);
   place("plinth of the spheres", plinth, {-1.50f, 0, -1.15f}, 14.0f);
 
-  // The knot's own axis is vertical; it stands upright on its plinth, facing the room.
+  // The knot's own axis is vertical; here it stands upright on its plinth and faces the room.
   const int knot = add("torus knot",
                        torusKnot({.ring_radius = 0.36f,
                                   .torus_radius = 0.16f,

@@ -19,9 +19,9 @@ namespace lambent::assets {
 
 namespace {
 
-using Json = nlohmann::ordered_json;  // members in the order in which they are written
+using Json = nlohmann::ordered_json;  // keeps members in the order in which they are written
 
-// glTF's names for GL constants.
+// These are glTF's GL constants.
 constexpr int kFloat = 5126, kUnsignedInt = 5125, kArrayBuffer = 34962, kElementArrayBuffer = 34963;
 
 Json toJson(glm::vec3 v) {
@@ -122,7 +122,7 @@ class Writer {
     return lights;
   }
 
-  // All motions as one animation, in straight lines from key to key.
+  // Writes all motions as one animation with linear interpolation.
   void addAnimation(Json& json) {
     Json channels = Json::array(), samplers = Json::array();
     for (std::size_t i = 0; i < scene_.nodes.size(); ++i) {

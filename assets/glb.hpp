@@ -1,6 +1,7 @@
-// A scene of the generator and its writer: binary glTF 2.0, one buffer, the same bytes for the same scene.
-// Materials are pure Lambert (metallic 0, roughness 1, KHR_materials_specular with factor 0) unless they say
-// otherwise. Every node carries TRS, so that editors can move things.
+// This is a generated scene and its writer. Files are binary glTF 2.0 with one buffer, and the same scene
+// gives the same bytes. Materials are pure Lambert (metallic 0, roughness 1, KHR_materials_specular with
+// factor 0) unless they say otherwise. Every node has translation, rotation and scale, so that editors can
+// move things.
 #pragma once
 
 #include <cstdint>
@@ -25,7 +26,7 @@ struct Material {
   bool double_sided = false;
   float roughness = 1.0f, metallic = 0.0f;
   float specular = 0.0f;    // KHR_materials_specular
-  float anisotropy = 0.0f;  // strength; along the tangent, which is that of the texture coordinates
+  float anisotropy = 0.0f;  // strength; along the tangent, which follows the texture coordinates
 };
 
 struct Image {
@@ -39,7 +40,7 @@ struct MaterialMesh {
   int material = 0;
 };
 
-// KHR_lights_punctual: shines along the node's -Z within its cone.
+// A Spot is a light of KHR_lights_punctual that shines along the node's -Z within its cone.
 struct Spot {
   std::string name;
   glm::vec3 color{1.0f};
@@ -47,22 +48,22 @@ struct Spot {
   float inner_cone_deg = 30.0f, outer_cone_deg = 45.0f;  // half angles
 };
 
-// Keys of a node's way: as many rotations as times, or none.
+// A Motion holds the keys of a node's motion, with as many rotations as times, or none.
 struct Motion {
   std::vector<float> times_s;
   std::vector<glm::vec3> translations;
   std::vector<glm::quat> rotations;
 };
 
-// extras.lambent.volume: a medium in a box of `size` about the node's origin.
+// A Volume becomes extras.lambent.volume: a medium in a box of `size` about the node's origin.
 struct Volume {
   std::string file;
-  float density_scale = 1.0f;  // m^-1 where the file says 1
+  float density_scale = 1.0f;  // m^-1 where the file's value is 1
   glm::vec3 albedo{1.0f};
   glm::vec3 size{1.0f};  // m
 };
 
-// extras.lambent.neighborhood: points of the grid around the body, and how far it reaches.
+// A Neighborhood becomes extras.lambent.neighborhood: the points of the grid around the body, and its extent.
 struct Neighborhood {
   glm::ivec3 size{64, 8, 64};
   glm::vec3 extent{1.0f};  // m
@@ -70,14 +71,14 @@ struct Neighborhood {
 
 struct Node {
   std::string name;
-  int mesh = 0;  // into Scene::meshes, -1: none; several nodes may show one mesh
+  int mesh = 0;  // into Scene::meshes, -1 for none; several nodes may show one mesh
   glm::vec3 translation{0.0f};
   glm::quat rotation{1.0f, 0.0f, 0.0f, 0.0f};
   float scale = 1.0f;
-  int parent = -1;       // a node before it
+  int parent = -1;       // index of an earlier node
   int spot = -1;         // into Scene::spots
-  bool movable = false;  // a rigid group of its own, though nothing moves it yet
-  Motion motion{};       // empty: stands
+  bool movable = false;  // makes a rigid group of its own, though nothing moves it yet
+  Motion motion{};       // empty if the node does not move
   std::optional<Volume> volume{};
   std::optional<Neighborhood> neighborhood{};
 };
@@ -98,6 +99,7 @@ struct Scene {
   std::vector<Camera> cameras;
 };
 
+// Errors: the file cannot be written.
 Result<void> writeGlb(const std::filesystem::path& path, const Scene& scene);
 
 }  // namespace lambent::assets

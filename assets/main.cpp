@@ -1,4 +1,5 @@
-// lambent-assets OUT_DIR: writes the sample scenes and environment maps that ship. The same bytes each time.
+// lambent-assets OUT_DIR writes the sample scenes and environment maps that ship, with the same bytes each
+// time.
 #include <cstdio>
 #include <filesystem>
 #include <system_error>

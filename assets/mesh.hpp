@@ -1,5 +1,5 @@
-// What the scene generator builds: triangle meshes in metres, +Y up, counter-clockwise seen from outside.
-// Part of the generator only; the programs read the glTF files that it writes.
+// The scene generator builds these triangle meshes in metres, +Y up, counter-clockwise seen from outside.
+// Only the generator uses them; the programs read the glTF files that it writes.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@ struct Mesh {
   std::vector<std::uint32_t> indices;
 };
 
-// Appends `more`, moved by a matrix without shear. Both must have texture coordinates or both none.
+// Appends `more`, transformed by a matrix without shear. Both must have texture coordinates, or neither.
 void append(Mesh& mesh, const Mesh& more, const glm::mat4& place = glm::mat4(1.0f));
 
 }  // namespace lambent::assets

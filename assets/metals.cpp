@@ -1,5 +1,5 @@
-// What glossy transfer is for: metals that show each other and the room, from polished to rough, brushed and
-// glazed ones, and a white wall that takes their light.
+// The scene `metals` shows glossy transfer: metals that reflect each other and the room, from polished to
+// rough, brushed and glazed ones, and a white wall that receives their light.
 #include <numbers>
 #include <vector>
 
@@ -37,7 +37,7 @@ std::vector<Material> materials() {
   return all;
 }
 
-// Turned on a lathe: its texture coordinates run around, and so does the brush.
+// The bowl is turned on a lathe, so its texture coordinates run around it, and so does the brushing.
 Mesh turnedBowl() {
   const std::vector<glm::vec2> profile = {{0.0f, 0.0f},   {0.16f, 0.0f},  {0.17f, 0.02f},
                                           {0.10f, 0.05f}, {0.24f, 0.16f}, {0.34f, 0.34f},

@@ -4,7 +4,7 @@
 
 namespace lambent::assets {
 
-// lowbias32 by C. Wellons.
+// This is lowbias32 by C. Wellons.
 float hash(std::uint32_t x, std::uint32_t y, std::uint32_t seed) {
   std::uint32_t h = x * 0x9e3779b9u ^ (y * 0x85ebca6bu + seed * 0xc2b2ae35u);
   h = (h ^ (h >> 16)) * 0x21f0aaadu;

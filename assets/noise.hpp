@@ -1,4 +1,4 @@
-// Value noise of the generator: the same numbers on every machine.
+// This is value noise for the generator; it gives the same numbers on every machine.
 #pragma once
 
 #include <cstdint>
@@ -7,9 +7,9 @@
 
 namespace lambent::assets {
 
-// Integer hash to [0, 1).
+// Hashes integers to [0, 1).
 float hash(std::uint32_t x, std::uint32_t y, std::uint32_t seed);
-// Smooth between lattice points; repeats after `period` lattice cells.
+// Interpolates smoothly between lattice points; repeats after `period` lattice cells.
 float noise(glm::vec2 at, std::uint32_t period, std::uint32_t seed);
 
 }  // namespace lambent::assets

@@ -1,5 +1,5 @@
-// What moving light is for: a ball that tints the wall it rolls along, a lamp that swings, a screen that
-// takes its light from the teapot.
+// The scene `playroom` shows moving light: a ball that tints the wall it rolls along, a lamp that swings, and
+// a screen that keeps its light from the teapot.
 #include <cmath>
 #include <numbers>
 
@@ -17,7 +17,7 @@ constexpr float kCell = 0.06f;
 
 enum MaterialIndex { kFloor, kWall, kRed, kPorcelain, kWood, kBrass };
 
-// There and back along the wall in ten seconds, without slipping.
+// Rolls there and back along the wall in ten seconds, without slipping.
 Motion rolling(float radius) {
   Motion motion;
   constexpr int kKeys = 40;
@@ -32,7 +32,7 @@ Motion rolling(float radius) {
   return motion;
 }
 
-// The lamp's arm turns to and fro about where it hangs.
+// Swings the lamp's arm to and fro about its hook.
 Motion swinging(glm::vec3 hook) {
   Motion motion;
   constexpr int kKeys = 32;
@@ -45,7 +45,7 @@ Motion swinging(glm::vec3 hook) {
   return motion;
 }
 
-// Between lamp and teapot, and for a while away to the side.
+// Slides between lamp and teapot, and away to the side for a while.
 Motion sliding() {
   constexpr float kOver = 1.28f, kBefore = 0.5f, kAway = 2.1f, kBetween = 0.95f;
   Motion motion;
@@ -55,7 +55,7 @@ Motion sliding() {
   return motion;
 }
 
-// An open shade around the bulb, hanging from the origin of the arm.
+// Makes an open shade around the bulb, hanging from the origin of the arm.
 Mesh lampShade(float arm) {
   const std::vector<glm::vec2> profile = {
       {0.0f, 0.0f}, {0.17f, -0.20f}, {0.155f, -0.20f}, {0.03f, -0.03f}, {0.0f, -0.03f}};
@@ -126,7 +126,7 @@ Scene playroom() {
                   .intensity_cd = 14.0f,
                   .inner_cone_deg = 22.0f,
                   .outer_cone_deg = 42.0f}};
-  // Towards the teapot: down and back.
+  // It points to the teapot: down and back.
   place({.name = "bulb",
          .mesh = -1,
          .translation = {0, -kArm - 0.12f, 0},

@@ -23,7 +23,7 @@ void appendCells(Mesh& mesh, int cells_u, int cells_v) {
     for (int i = 0; i < cells_u; ++i) {
       const std::uint32_t a = index(i, j), b = index(i + 1, j), c = index(i + 1, j + 1), d = index(i, j + 1);
       for (const auto& [p, q, r] : {std::array{a, b, c}, std::array{a, c, d}}) {
-        // Two corners in one point: a pole.
+        // Two corners coincide at a pole.
         const glm::vec3 &x = mesh.positions[p], &y = mesh.positions[q], &z = mesh.positions[r];
         if (x == y || y == z || z == x) continue;
         mesh.indices.insert(mesh.indices.end(), {p, q, r});
@@ -96,7 +96,7 @@ Mesh sphere(float radius, int cells) {
     for (const float sign : {1.0f, -1.0f}) {
       const glm::vec3 out = sign * axes[axis], right = axes[(axis + 1) % 3] * sign, up = axes[(axis + 2) % 3];
       append(mesh, surface(cells, cells, [&](double u, double v) {
-               // Equal angles rather than equal lengths: cells of nearly one size.
+               // Equal angles instead of equal lengths give cells of nearly one size.
                const auto stretch = [](double t) {
                  return static_cast<float>(std::tan((t - 0.5) * std::numbers::pi / 2));
                };
@@ -113,7 +113,7 @@ Mesh lathe(std::span<const glm::vec2> profile, int segments, float cell) {
     const glm::vec2 from = profile[piece], to = profile[piece + 1];
     const glm::vec2 along = glm::normalize(to - from);
     append(mesh, surface(segments, cellsFor(glm::length(to - from), cell), [&](double u, double v) {
-             // u runs to the right seen from outside; the last column is exactly the first.
+             // u runs to the right seen from outside; the last column equals the first exactly.
              const double angle = u < 1.0 ? 2 * std::numbers::pi * u : 0.0;
              const glm::vec3 outward(static_cast<float>(std::sin(angle)), 0,
                                      static_cast<float>(std::cos(angle)));

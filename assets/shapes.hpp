@@ -1,6 +1,6 @@
-// The plain shapes of the scenes. Per-vertex transfer wants vertices where shadows change, so everything
-// takes the length of an edge; edges of neighbouring faces are cut alike, so that boxes and spheres are
-// closed.
+// These are the simple shapes of the scenes. Transfer per vertex needs vertices where shadows change, so
+// every shape takes the length of an edge. Edges of neighbouring faces are divided alike, so that boxes and
+// spheres are closed.
 #pragma once
 
 #include <functional>
@@ -10,23 +10,25 @@
 
 namespace lambent::assets {
 
-// A flat quad of cells_u x cells_v cells; its normal is edge_u x edge_v. Texture coordinates are in metres.
+// Makes a flat quad of cells_u x cells_v cells; its normal is edge_u x edge_v. Texture coordinates are in
+// metres.
 Mesh plane(glm::vec3 corner, glm::vec3 edge_u, glm::vec3 edge_v, int cells_u, int cells_v);
 
-// As plane(), with cells of about `cell`.
+// Does the same with cells of about `cell` metres.
 Mesh plane(glm::vec3 corner, glm::vec3 edge_u, glm::vec3 edge_v, float cell);
 
 Mesh box(glm::vec3 low, glm::vec3 high, float cell);
 
-// A cube of cells x cells faces blown up: no poles.
+// Projects a cube with cells x cells per face onto a sphere, so that there are no poles.
 Mesh sphere(float radius, int cells);
 
-// A profile (radius, height) turned about +Y, from the bottom to the top, outside on the right of the way.
-// Every corner of the profile is a sharp edge; its pieces are cut into lengths of about `cell`. Closed where
-// the profile starts and ends on the axis.
+// Turns a profile (radius, height) about +Y, from the bottom to the top, with the outside on its right. Every
+// corner of the profile is a sharp edge, and its pieces are divided into lengths of about `cell`. The shape
+// is closed if the profile starts and ends on the axis.
 Mesh lathe(std::span<const glm::vec2> profile, int segments, float cell);
 
-// Every vertex as a function of (u, v) in [0, 1]²: shared by the curved shapes. (du x dv) must point outside.
+// Makes every vertex by a function of (u, v) in [0, 1]²; du x dv must point outside. The curved shapes use
+// it.
 struct SurfacePoint {
   glm::vec3 position, normal;
 };

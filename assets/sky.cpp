@@ -1,4 +1,4 @@
-// A clear sky after A. J. Preetham, P. Shirley and B. Smits, "A Practical Analytic Model for Daylight",
+// Makes a clear sky after A. J. Preetham, P. Shirley and B. Smits, "A Practical Analytic Model for Daylight",
 // SIGGRAPH 1999, appendix A.2: Perez' distribution for luminance Y and chromaticities x and y, whose
 // coefficients are linear in the turbidity.
 #include <algorithm>
@@ -20,11 +20,12 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 constexpr double kTurbidity = 3.0;  // clear, a little hazy
 constexpr float kSunAzimuthDeg = 34.0f, kSunElevationDeg = 44.0f;
-// The disc is wider than the sun's 0.27 degrees, at the same irradiance: small pictures and low orders can
-// show it.
+// The disc is wider than the sun's 0.27 degrees, at the same irradiance, so that small images and low orders
+// can show it.
 constexpr double kSunRadius = 2.6 * kPi / 180;
-// Irradiance of the sun, facing it, over that of the sky on a horizontal plane. About 6 in clear air; 2.5 is
-// a sun behind thin haze, which keeps shadows readable in low orders.
+// This is the irradiance by the sun of a surface that faces it, over the irradiance by the sky of a
+// horizontal plane. It is about 6 in clear air; 2.5 is a sun behind thin haze, which keeps shadows readable
+// in low orders.
 constexpr double kSunToSky = 2.5;
 const glm::dvec3 kSunColour(1.0, 0.90, 0.76);
 const glm::dvec3 kGroundAlbedo(0.26, 0.23, 0.19);
@@ -46,7 +47,8 @@ constexpr Perez kChromaX = {-0.0193 * kT - 0.2592, -0.0665 * kT + 0.0008, -0.000
 constexpr Perez kChromaY = {-0.0167 * kT - 0.2608, -0.0950 * kT + 0.0092, -0.0079 * kT + 0.2102,
                             -0.0441 * kT - 1.6537, -0.0109 * kT + 0.0529};
 
-// Chromaticity at the zenith: a quadratic in the turbidity of cubics in the sun's angle from it.
+// Returns the chromaticity at the zenith: a quadratic in the turbidity of cubics in the sun's angle from the
+// zenith.
 double zenithChroma(const std::array<std::array<double, 4>, 3>& m, double sun) {
   const auto cubic = [&](const std::array<double, 4>& c) {
     return ((c[0] * sun + c[1]) * sun + c[2]) * sun + c[3];
@@ -74,7 +76,8 @@ class Sky {
                       sun_);
   }
 
-  // Luminance 1 at the zenith. The model ends at the horizon; directions below are taken at it.
+  // The luminance at the zenith is 1. The model ends at the horizon, so directions below use its values
+  // there.
   glm::dvec3 operator()(glm::dvec3 dir) const {
     constexpr double kLowest = 0.01;
     const double cos_theta = std::max(dir.y, kLowest);
@@ -113,7 +116,7 @@ spec::RgbImage skyMap(std::uint32_t width) {
   spec::RgbImage image = latLongImage(width, 2, [&](glm::dvec3 dir) { return sky(dir); });
   const glm::dvec3 sky_irradiance = irradianceFromAbove(image);
 
-  // Coverage by the disc, then scaled so that the picture's own texels add up to the energy asked for.
+  // Texels get their coverage by the disc, then a scale so that they add up to the energy asked for.
   spec::RgbImage sun = latLongImage(width, 8, [&](glm::dvec3 dir) {
     return glm::dot(dir, to_sun) > std::cos(kSunRadius) ? kSunColour : glm::dvec3(0.0);
   });
@@ -124,7 +127,7 @@ spec::RgbImage skyMap(std::uint32_t width) {
       sky_irradiance + kSunColour / luminance(kSunColour) * sun_irradiance * to_sun.y;
   const glm::dvec3 ground = kGroundAlbedo * on_ground / kPi;
   for (std::uint32_t y = 0; y < image.height; ++y) {
-    // Haze: the ground fades into the lowest sky over five degrees.
+    // Haze fades the ground into the lowest sky over five degrees.
     const double elevation_deg = 90.0 - 180.0 * (y + 0.5) / image.height;
     const double above = glm::smoothstep(-5.0, 0.0, elevation_deg);
     for (std::uint32_t x = 0; x < image.width; ++x) {

@@ -12,7 +12,7 @@ namespace lambent::assets {
 
 namespace {
 
-// A rectangle on the sphere's tangent plane at its centre, with a soft rim as diffusing cloth has.
+// A SoftBox is a rectangle on the sphere's tangent plane at its centre, with a soft rim like diffusing cloth.
 struct SoftBox {
   glm::dvec3 centre, right, up;
   double half_width, half_height;  // on the plane at distance 1
@@ -33,7 +33,7 @@ struct SoftBox {
     const double x = std::abs(glm::dot(dir, right)) / distance, y = std::abs(glm::dot(dir, up)) / distance;
     const double inside = (1 - glm::smoothstep(half_width - kRim, half_width + kRim, x)) *
                           (1 - glm::smoothstep(half_height - kRim, half_height + kRim, y));
-    // A lamp behind the cloth: brightest in the middle.
+    // A lamp behind the cloth makes it brightest in the middle.
     return radiance * inside *
            (1.0 - 0.3 * (x * x / (half_width * half_width) + y * y / (half_height * half_height)) / 2);
   }
@@ -48,7 +48,7 @@ spec::RgbImage studioMap(std::uint32_t width) {
       {172.0f, 58.0f, 70.0, 24.0, {7.0, 7.0, 6.8}},   // rim: neutral, from behind and above
   }};
   spec::RgbImage image = latLongImage(width, 4, [&](glm::dvec3 dir) {
-    // Dark grey walls, a little lighter towards the ceiling; the floor gives back some warm light.
+    // Dark grey walls get a little lighter towards the ceiling; the floor reflects some warm light.
     glm::dvec3 sum = glm::mix(glm::dvec3(0.16, 0.14, 0.12), glm::dvec3(0.10, 0.10, 0.11),
                               glm::smoothstep(-0.35, 0.05, dir.y));
     sum += glm::dvec3(0.06) * glm::smoothstep(0.3, 1.0, dir.y);

@@ -1,7 +1,7 @@
-// Newell's control points, written by what they share. Twenty-four of the patches belong to surfaces of
-// revolution, each quadrant with the control polygon (r, 0), (r, -q), (q, -r), (0, -r), so that a row is (r,
-// q, z). Handle and spout are tubes of two mirrored halves, each with the control polygon (x0, 0, z0), (x0,
-// -w, z0), (x1, -w, z1), (x1, 0, z1).
+// This file holds Newell's control points, grouped by what they share. Twenty-four of the patches belong to
+// surfaces of revolution; each quadrant has the control polygon (r, 0), (r, -q), (q, -r), (0, -r), so a row
+// is (r, q, z). Handle and spout are tubes of two mirrored halves, each with the control polygon (x0, 0, z0),
+// (x0, -w, z0), (x1, -w, z1), (x1, 0, z1).
 #include "assets/teapot.hpp"
 
 #include <array>
@@ -20,8 +20,8 @@ struct TurnedRow {
 };
 using TurnedPatch = std::array<TurnedRow, 4>;
 
-// From inside the rim over its edge, down the body and under the bottom; the lid from its setting. q is 0.56
-// r (a circle would take 0.5523), rounded where Newell rounded.
+// The rows lead from inside the rim over its edge, down the body and under the bottom; then over the lid from
+// its setting. q is 0.56 r (a circle would take 0.5523), rounded where Newell rounded.
 constexpr TurnedPatch kTurned[] = {
     {{{1.4, 0.784, 2.4}, {1.3375, 0.749, 2.53125}, {1.4375, 0.805, 2.53125}, {1.5, 0.84, 2.4}}},  // rim
     {{{1.5, 0.84, 2.4}, {1.75, 0.98, 1.875}, {2.0, 1.12, 1.35}, {2.0, 1.12, 0.9}}},     // upper body
@@ -52,7 +52,7 @@ constexpr TubePatch kTubes[] = {{{{-1.6, 2.025, -1.5, 2.25, 0.3},
                                   {2.9, 2.475, 3.45, 2.5125, 0.15},
                                   {2.8, 2.4, 3.2, 2.4, 0.15}}}};  // lip of the spout
 
-// [row along v][column along u], with du x dv outside.
+// A Patch is indexed by [row along v][column along u]; du x dv points outside.
 using Patch = std::array<std::array<glm::dvec3, 4>, 4>;
 
 Patch turnedPatch(const TurnedPatch& rows, int quadrant) {
@@ -66,7 +66,7 @@ Patch turnedPatch(const TurnedPatch& rows, int quadrant) {
   return patch;
 }
 
-// The half at y <= 0, or the other one: mirrored, and u reversed so that it still faces outside.
+// Returns the half at y <= 0, or the other one: mirrored, with u reversed so that it still faces outside.
 Patch tubePatch(const TubePatch& rows, bool mirrored) {
   Patch patch;
   for (std::size_t row = 0; row < 4; ++row) {
@@ -105,11 +105,11 @@ SurfacePoint pointOn(const Patch& patch, double u, double v) {
   const Weights at_u = bernstein(u), slope_u = bernsteinSlope(u), slope_v = bernsteinSlope(v);
   glm::dvec3 du = blend(patch, slope_u, bernstein(v));
   const glm::dvec3 dv = blend(patch, at_u, slope_v);
-  // Where a row shrinks to a point du is 0; next to it du is its rate of change along v, away from the pole.
+  // Where a row shrinks to a point, du is 0; its rate of change along v, away from the pole, replaces it.
   if (glm::dot(du, du) < kPole) du = (v < 0.5 ? 1.0 : -1.0) * blend(patch, slope_u, slope_v);
   const glm::dvec3 position = blend(patch, at_u, bernstein(v)), normal = glm::normalize(glm::cross(du, dv));
   return {glm::vec3(position.x, position.z, -position.y),
-          glm::vec3(normal.x, normal.z, -normal.y)};  // to +Y up
+          glm::vec3(normal.x, normal.z, -normal.y)};  // turns +Y up
 }
 
 }  // namespace

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::uint32_t kPeriod = 256;
 
-// Ridges: sharp on top, as folded noise is.
+// Returns ridges that are sharp on top, by folding noise.
 float ridged(glm::vec2 at, std::uint32_t seed) {
   float sum = 0.0f, weight = 0.5f, sharper = 1.0f;
   for (std::uint32_t octave = 0; octave < 5; ++octave) {
@@ -47,7 +47,7 @@ float srgb(float linear) {
 float Terrain::height(float x, float z) const {
   const float from_middle = std::sqrt(x * x + z * z) / bowl_m;
   const float rise = glm::smoothstep(0.55f, 1.6f, from_middle);
-  // Lattice coordinates stay positive.
+  // Lattice coordinates must stay positive.
   const glm::vec2 at = glm::vec2(x, z) / 9.0f + 60.0f;
   const float rolling = noise(at * 1.7f, kPeriod, seed + 40) - 0.5f;
   return height_m * (rise * ridged(at, seed) * 1.15f + 0.10f * rolling);

@@ -1,5 +1,5 @@
-// A piece of hilly land, for things to fly over: heights by fractal noise, a mesh, and its colours as a
-// picture (grass in the valleys, rock where it is steep, snow on the peaks).
+// Makes a piece of hilly land to fly over: heights by fractal noise, a mesh, and an image of its colours
+// (grass in the valleys, rock where it is steep, snow on the peaks).
 #pragma once
 
 #include <cstdint>
@@ -11,17 +11,17 @@ namespace lambent::assets {
 
 struct Terrain {
   float side_m = 40.0f;   // a square about the origin
-  float height_m = 5.0f;  // of the highest peaks, about
+  float height_m = 5.0f;  // approximate height of the highest peaks
   float bowl_m = 11.0f;   // radius of the valley in the middle
   std::uint32_t seed = 5;
 
-  // At a place in metres.
+  // Returns the height at a place, all in metres.
   float height(float x, float z) const;
 };
 
-// cells x cells; texture coordinates 0..1 over the square.
+// Makes cells x cells cells with texture coordinates 0..1 over the square.
 Mesh terrainMesh(const Terrain& terrain, int cells);
-// sRGB PNG of side x side texels.
+// Returns an sRGB PNG of side x side texels.
 std::vector<std::uint8_t> terrainPng(const Terrain& terrain, int side);
 
 }  // namespace lambent::assets

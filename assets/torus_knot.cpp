@@ -21,11 +21,11 @@ Mesh torusKnot(const TorusKnot& knot) {
     const glm::dvec3 tangent =
         glm::normalize(distance * outward_dt +
                        knot.torus_radius * double(knot.q) * (std::cos(tube) * up - std::sin(tube) * outward));
-    // The curve lies on the torus, so the torus' normal is at right angles to it: a frame that closes by
-    // itself.
+    // The curve lies on the torus, so the normal of the torus is at right angles to it, and the frame closes
+    // by itself.
     const glm::dvec3 normal = std::cos(tube) * outward + std::sin(tube) * up;
     const glm::dvec3 side = glm::cross(tangent, normal);
-    // Turning counter-clockwise about the tangent, so that du x dv points outside.
+    // The circle runs counter-clockwise about the tangent, so that du x dv points outside.
     const glm::dvec3 radial = std::cos(around) * side + std::sin(around) * glm::cross(tangent, side);
     return SurfacePoint{glm::vec3(centre + double(knot.tube_radius) * radial), glm::vec3(radial)};
   });

@@ -26,7 +26,7 @@ void bakeWhole(benchmark::State& state, const std::string& file) {
       std::fprintf(stderr, "bench_bake: %s\n", scene.error().line().c_str());
       std::exit(1);
     }
-    const auto report = bake(*scene, {}, output, progress, {});
+    const auto report = bake(*scene, {}, output, {progress});
     double seconds = 0.0;
     for (const Progress::Stage& stage : report->stages) seconds += stage.seconds;
     state.SetIterationTime(seconds);

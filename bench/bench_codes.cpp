@@ -98,9 +98,9 @@ int main(int argc, char** argv) {
   const DiffuseScene view = work->view();
   Progress progress;
   const DirectPass pass(view, {options.order, options.rays, options.bounces != 0, std::size_t{2} << 30});
-  const auto direct = bakeDirect(pass, view, progress, {});
+  const auto direct = bakeDirect(pass, view, {progress});
   std::optional<BounceResult> bounced;
-  if (options.bounces != 0) bounced = bakeBounces(pass, *direct, view, {options.bounces, 1e-3}, progress, {});
+  if (options.bounces != 0) bounced = bakeBounces(pass, *direct, view, {options.bounces, 1e-3}, {progress});
   std::vector<CellVectors> cells;
   for (const SampleCell& cell : samples.cells)
     for (CellVectors& parts :

@@ -42,15 +42,15 @@ Timed run(const GroupWorkload& work, const ExitKernels& kernels, bool hits) {
   const GlossyPass glossy(plain, view, 5);
   Timed timed;
   auto start = std::clock();
-  auto direct = bakeDirect(plain, view, progress, {});
-  auto seen = bakeGlossyDirect(glossy, std::size_t{4} << 30, direct->looks, progress, {});
+  auto direct = bakeDirect(plain, view, {progress});
+  auto seen = bakeGlossyDirect(glossy, std::size_t{4} << 30, direct->looks, {progress});
   diffuseFromGlossy(glossy, seen->field, *direct, {});
   timed.direct_seconds = secondsSince(start);
   timed.rays = static_cast<double>(direct->field.rays + seen->rays);
   if (!hits) return timed;
   start = std::clock();
   GlossyBounces partner(glossy, kernels, *direct, *seen, 5);
-  bakeBounces(plain, *direct, view, {.bounces = 1}, progress, {}, glossy.size() > 0 ? &partner : nullptr);
+  bakeBounces(plain, *direct, view, {.bounces = 1}, {progress}, glossy.size() > 0 ? &partner : nullptr);
   timed.bounce_seconds = secondsSince(start);
   return timed;
 }

@@ -69,16 +69,16 @@ GlossyField transport(const GroupWorkload& work, const SurfaceBrdfs& brdfs, cons
                                 .keep_hits = options.bounces > 0,
                                 .hit_memory = std::size_t{1} << 30,
                                 .colored_kernels = !brdfs.grey()});
-  auto direct = bakeDirect(plain, view, progress, {});
+  auto direct = bakeDirect(plain, view, {progress});
   const GlossyPass pass(plain, view, kOrder);
-  auto glossy = bakeGlossyDirect(pass, std::size_t{1} << 30, direct->looks, progress, {});
+  auto glossy = bakeGlossyDirect(pass, std::size_t{1} << 30, direct->looks, {progress});
   diffuseFromGlossy(pass, glossy->field, *direct, {});
   if (options.bounces > 0) {
     const ExitKernels kernels{.grey = brdfs.grey(),
                               .at = [&](std::uint32_t triangle, float u, float v, const glm::vec3& to,
                                         std::span<float> out) { brdfs.exitKernel(triangle, u, v, to, out); }};
     GlossyBounces bounces(pass, kernels, *direct, *glossy, kOrder);
-    bakeBounces(plain, *direct, view, {options.bounces, 1e-3}, progress, {}, &bounces);
+    bakeBounces(plain, *direct, view, {options.bounces, 1e-3}, {progress}, &bounces);
     bounces.finish();
   }
   return std::move(glossy->field);

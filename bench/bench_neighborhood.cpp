@@ -31,10 +31,10 @@ std::size_t packedBytes(const BakedNeighborhood& grid) {
   for (const CodedCell& cell : grid.cells)
     for (const CodedTransfer& coded : cell.transfers) {
       const auto clusters = static_cast<std::uint32_t>(coded.codebook.clusters());
-      bytes += packed(bundle::encodeCodebook(coded.codebook));
-      if (clusters > 1) bytes += packed(bundle::encodeClusterIds(coded.cluster_of, clusters));
+      bytes += packed(transfer::encodeCodebook(coded.codebook));
+      if (clusters > 1) bytes += packed(transfer::encodeClusterIds(coded.cluster_of, clusters));
       for (const CodedPlane& plane : coded.planes)
-        bytes += packed(bundle::encodeWeightPlane(plane.codes, plane.bits));
+        bytes += packed(transfer::encodeWeightPlane(plane.codes, plane.bits));
     }
   return bytes;
 }
@@ -73,7 +73,7 @@ int main(int argc, char** argv) {
     settings.placement.by_length = size;
     Progress progress;
     const auto start = std::chrono::steady_clock::now();
-    const auto result = bakeNeighborhood(body, settings, progress, {});
+    const auto result = bakeNeighborhood(body, settings, {progress});
     progress.end();
     const double seconds = secondsSince(start);
     const lambent::testing::DecodedNeighborhood decoded(*result->grid);

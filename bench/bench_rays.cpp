@@ -127,7 +127,7 @@ Timed runBare(const Workload& work, const DirectionTable& table, Call call) {
       const OriginDealer dealer(origins);
       for (std::size_t p = 0; p < table.packets(); ++p) {
         packets.emplace_back();
-        fillPacket(p, origins, dealer, frame, table, packets.back().ray, packets.back().lanes);
+        fillPacket(p, {origins, frame, table}, dealer, packets.back().ray, packets.back().lanes);
       }
     }
     const auto start = Clock::now();
@@ -141,7 +141,7 @@ Timed runPass(const Workload& work) {
   Progress progress;
   const auto start = Clock::now();
   const DiffuseScene view = work.group->view();
-  const auto direct = bakeDirect(DirectPass(view, {.order = 5, .rays = kRays}), view, progress, {});
+  const auto direct = bakeDirect(DirectPass(view, {.order = 5, .rays = kRays}), view, {progress});
   return {direct->field.rays, secondsSince(start)};
 }
 
@@ -158,10 +158,10 @@ double bounceRatio(const Workload& work) {
                         {.order = 5, .rays = kRays, .keep_hits = true, .hit_memory = std::size_t{4} << 30});
   Progress progress;
   const auto start = Clock::now();
-  const auto direct = bakeDirect(pass, view, progress, {});
+  const auto direct = bakeDirect(pass, view, {progress});
   const double direct_seconds = secondsSince(start);
   const auto bounce_start = Clock::now();
-  bakeBounces(pass, *direct, view, {.bounces = 1}, progress, {});
+  bakeBounces(pass, *direct, view, {.bounces = 1}, {progress});
   return secondsSince(bounce_start) / direct_seconds;
 }
 

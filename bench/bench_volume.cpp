@@ -51,7 +51,7 @@ void whole(benchmark::State& state) {
   for (auto _ : state) {
     Progress progress;
     const auto transfer =
-        bakeVolumeTransfer({cloud.field, cloud.values, glm::vec3(1.0f)}, settings, {}, progress, {});
+        bakeVolumeTransfer({cloud.field, cloud.values, glm::vec3(1.0f)}, settings, {}, {progress});
     progress.end();
     for (const Progress::Stage& stage : progress.finished()) state.counters[stage.name] = stage.seconds;
     state.counters["samples"] = static_cast<double>(transfer->grid.samples());

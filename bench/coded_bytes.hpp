@@ -6,7 +6,7 @@
 
 #include "baker/compress/cpca.hpp"
 #include "baker/effects/diffuse/payloads.hpp"
-#include "runtime/bundle/transfer_codec.hpp"
+#include "runtime/bundle/entropy_coder.hpp"
 
 namespace lambent {
 
@@ -29,10 +29,10 @@ struct CodedBytes {
     seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     const auto own_clusters = static_cast<std::uint32_t>(coded.codebook.clusters());
     clusters += own_clusters;
-    codebook += packed(bundle::encodeCodebook(coded.codebook));
-    if (own_clusters > 1) ids += packed(bundle::encodeClusterIds(coded.cluster_of, own_clusters));
+    codebook += packed(transfer::encodeCodebook(coded.codebook));
+    if (own_clusters > 1) ids += packed(transfer::encodeClusterIds(coded.cluster_of, own_clusters));
     for (const baker::CodedPlane& plane : coded.planes) {
-      weights += packed(bundle::encodeWeightPlane(plane.codes, plane.bits));
+      weights += packed(transfer::encodeWeightPlane(plane.codes, plane.bits));
       codes += plane.codes.size();
     }
     if (!(double{coded.error} <= error)) error = double{coded.error};  // NaN shows

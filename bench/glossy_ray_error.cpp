@@ -44,13 +44,13 @@ Baked bakeWith(const GroupWorkload& work, const ExitKernels& kernels, std::size_
   Progress progress;
   Baked baked;
   auto start = Clock::now();
-  auto direct = bakeDirect(plain, view, progress, {});
-  auto seen = bakeGlossyDirect(glossy, std::size_t{8} << 30, direct->looks, progress, {});
+  auto direct = bakeDirect(plain, view, {progress});
+  auto seen = bakeGlossyDirect(glossy, std::size_t{8} << 30, direct->looks, {progress});
   diffuseFromGlossy(glossy, seen->field, *direct, {});
   baked.direct_seconds = secondsSince(start);
   start = Clock::now();
   GlossyBounces partner(glossy, kernels, *direct, *seen, kOrder);
-  const auto bounced = bakeBounces(plain, *direct, view, {.bounces = bounces}, progress, {}, &partner);
+  const auto bounced = bakeBounces(plain, *direct, view, {.bounces = bounces}, {progress}, &partner);
   partner.finish();
   baked.bounce_seconds = secondsSince(start);
   baked.passes = bounced->energy.size() - 1;
@@ -96,12 +96,12 @@ int main(int argc, char** argv) {
       }};
 
   const Baked truth = bakeWith(*work, kernels, truth_rays, bounces);
-  const bundle::TransferShape visibility{
+  const transfer::TransferShape visibility{
       .order = kOrder, .outputs = kOrder * kOrder, .visibility_bands = 2 * kOrder - 1};
-  const bundle::TransferShape bounced{.order = kOrder,
-                                      .shadowed_channels = 0,
-                                      .full_channels = truth.field.channels,
-                                      .outputs = kOrder * kOrder};
+  const transfer::TransferShape bounced{.order = kOrder,
+                                        .shadowed_channels = 0,
+                                        .full_channels = truth.field.channels,
+                                        .outputs = kOrder * kOrder};
   // Energies are of one set of outputs each: together they are all light, as bakes weigh it.
   const double of_bounced = transferEnergy(truth.field.bounced, bounced),
                all = transferEnergy(truth.field.visibility, visibility) + of_bounced;
@@ -114,7 +114,7 @@ int main(int argc, char** argv) {
   for (const std::size_t count : counts) {
     const Baked test = bakeWith(*work, kernels, count, bounces);
     const auto error = [&](const std::vector<float>& a, const std::vector<float>& b,
-                           const bundle::TransferShape& shape) {
+                           const transfer::TransferShape& shape) {
       return 100.0 * std::sqrt(transferEnergy(differences(a, b), shape) / all);
     };
     std::printf("%6zu    %6.3f %%  %6.3f %%  %9.2f  %9.2f\n", count,

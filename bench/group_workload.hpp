@@ -47,7 +47,7 @@ inline std::unique_ptr<GroupWorkload> loadGroup(
   const auto groups = findRigidGroups(work->scene);
   Progress progress;
   const auto meshes =
-      orExit(shipMeshes(work->scene, groups, orExit(splitMeshes(work->scene, groups, 0.0f)), progress, {}));
+      orExit(shipMeshes(work->scene, groups, orExit(splitMeshes(work->scene, groups, 0.0f)), {progress}));
   work->geometry = buildGroupGeometry(groups.at(0), work->scene, meshes.decoded, with_glossy);
   if (change_geometry) change_geometry(work->geometry);
   work->samples = buildSamples(work->geometry);

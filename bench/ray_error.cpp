@@ -29,8 +29,8 @@ Baked bakeWith(const GroupWorkload& work, std::size_t rays, int bounces) {
   const DirectPass pass(
       view, {.order = kOrder, .rays = rays, .keep_hits = bounces > 0, .hit_memory = std::size_t{4} << 30});
   Progress progress;
-  Baked baked{*bakeDirect(pass, view, progress, {}), {}, 0.0};
-  if (bounces > 0) baked.bounced = bakeBounces(pass, baked.direct, view, {bounces, 0.0}, progress, {});
+  Baked baked{*bakeDirect(pass, view, {progress}), {}, 0.0};
+  if (bounces > 0) baked.bounced = bakeBounces(pass, baked.direct, view, {bounces, 0.0}, {progress});
   baked.direct.hits = HitStore();
   baked.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return baked;

@@ -72,8 +72,8 @@ int main(int argc, char** argv) {
               "value", "error %", "CPU ms", "GPU ms");
   for (const frame::SettingRow& row : frame::settingRows()) {
     if (!row.finest || (wanted != "all" && wanted != row.name)) continue;
-    const auto points =
-        frame::sweepSetting(world, *environment, view, {}, row, valuesOf(row), {.size = kSize, .repeats = 3});
+    const auto points = frame::sweepSetting({world, *environment, view}, {}, row, valuesOf(row),
+                                            {.size = kSize, .repeats = 3});
     if (!points) return failed(points.error());
     for (const frame::SettingPoint& point : *points)
       std::printf("%-20s %8g %10.3f %10.2f %10.2f\n", std::string(row.name).c_str(), point.value,

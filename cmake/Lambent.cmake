@@ -54,7 +54,7 @@ function(lambent_program name)
 endfunction()
 
 # lambent_embed(TARGET file...): the files' text in the binary, found by name with
-# `std::string_view lambent::embedded::TARGET::find(name)` from "TARGET_embedded.hpp".
+# `std::string_view lambent::embedded::TARGET::find(name)` from "TARGET_embedded.hpp", here and in rooms that link TARGET.
 function(lambent_embed target)
   set(header "${CMAKE_CURRENT_BINARY_DIR}/embedded/${target}_embedded.hpp")
   set(inputs "")
@@ -66,7 +66,7 @@ function(lambent_embed target)
             -P "${PROJECT_SOURCE_DIR}/cmake/Embed.cmake"
     DEPENDS ${inputs} "${PROJECT_SOURCE_DIR}/cmake/Embed.cmake" VERBATIM)
   target_sources(${target} PRIVATE "${header}")
-  target_include_directories(${target} PRIVATE "${CMAKE_CURRENT_BINARY_DIR}/embedded")
+  target_include_directories(${target} PUBLIC "${CMAKE_CURRENT_BINARY_DIR}/embedded")
 endfunction()
 
 # lambent_test(NAME SOURCES file... LINK target... [LABELS label...] [TIMEOUT seconds])

@@ -1,6 +1,6 @@
-// Directional albedo of the GGX lobe in its two parts, those that F0 and F90 multiply, by view, roughness and
-// anisotropy: what the diffuse part of a material must leave to the specular one. Integrated by the reference
-// itself, good to 0.1 % (anisotropic: 0.5 %).
+// Tabulates the directional albedo of the GGX lobe by view, roughness and anisotropy, in the two parts that
+// F0 and F90 multiply. The diffuse part of a material must leave this much to the specular one. The reference
+// integrates the table itself, to 0.1 % (anisotropic: 0.5 %).
 #pragma once
 
 #include <vector>
@@ -12,11 +12,11 @@ namespace lambent::baker::reference {
 
 class AlbedoTable {
  public:
-  AlbedoTable() = default;  // none
+  AlbedoTable() = default;  // an empty table
   static AlbedoTable build(bool anisotropic);
 
   bool empty() const { return values_.empty(); }
-  // Local unit view with z > 0; roughness and strength 0..1.
+  // Returns the factors of F0 and F90. `view` is local and unit with z > 0; roughness and strength are 0..1.
   glm::vec2 at(const glm::vec3& view, float roughness, float strength) const;
 
  private:

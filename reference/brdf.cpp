@@ -6,8 +6,8 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-#include "reference/measured.hpp"
 #include "reference/warp.hpp"
+#include "reference/whole_brdf.hpp"
 
 namespace lambent::baker::reference {
 
@@ -17,12 +17,12 @@ float power5(float x) {
   return x * x * x * x * x;
 }
 
-// |x| in the space where the surface has roughness 1: n·x sqrt(1 + alpha² tan²).
+// Returns |x| in the space where the surface has roughness 1: n·x sqrt(1 + alpha² tan²).
 float stretched(const glm::vec2& alpha, const glm::vec3& x) {
   return glm::length(glm::vec3(alpha * glm::vec2(x), x.z));
 }
 
-// Trowbridge and Reitz 1975; Heitz 2014, equation 85.
+// This is the distribution of Trowbridge and Reitz 1975; Heitz 2014, equation 85.
 float distribution(const glm::vec2& alpha, const glm::vec3& h) {
   const glm::vec2 slope = glm::vec2(h) / alpha;
   const float k = glm::dot(slope, slope) + h.z * h.z;
@@ -39,7 +39,7 @@ glm::vec2 ggxAlpha(float roughness, float strength) {
 glm::vec2 ggxValue(const glm::vec2& alpha, const glm::vec3& v, const glm::vec3& s) {
   if (s.z <= 0.0f) return glm::vec2(0.0f);
   const glm::vec3 h = glm::normalize(v + s);
-  // G2 / (4 n·v n·s), height-correlated: Heitz 2014, equations 99 and 72.
+  // This is G2 / (4 n·v n·s), height-correlated: Heitz 2014, equations 99 and 72.
   const float visible = 0.5f / (s.z * stretched(alpha, v) + v.z * stretched(alpha, s));
   const float fresnel = power5(std::clamp(1.0f - glm::dot(v, h), 0.0f, 1.0f));
   return distribution(alpha, h) * visible * s.z * glm::vec2(1.0f - fresnel, fresnel);
@@ -53,7 +53,7 @@ float ggxPdf(const glm::vec2& alpha, const glm::vec3& v, const glm::vec3& s) {
   return distribution(alpha, sum / length) / (2.0f * (v.z + stretched(alpha, v)));
 }
 
-// Dupuy and Benyoub, "Sampling Visible GGX Normals with Spherical Caps", 2023.
+// This follows Dupuy and Benyoub, "Sampling Visible GGX Normals with Spherical Caps", 2023.
 glm::vec3 sampleGgx(const glm::vec2& alpha, const glm::vec3& v, const glm::vec2& u) {
   const glm::vec3 round = glm::normalize(glm::vec3(alpha * glm::vec2(v), v.z));
   const float z = (1.0f - u.y) * (1.0f + round.z) - round.z;
@@ -72,7 +72,7 @@ glm::vec3 liftedView(const glm::vec3& v) {
 
 glm::vec3 Reflector::specular(const glm::vec3& s) const {
   if (s.z <= 0.0f) return glm::vec3(0.0f);
-  if (measured) return measured->value(view, s) * s.z;
+  if (whole) return whole->value(view, s) * s.z;
   const glm::vec2 parts = ggxValue(alpha, view, s);
   return f0 * parts.x + f90 * parts.y;
 }

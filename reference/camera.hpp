@@ -1,5 +1,5 @@
-// Where the eye is, exactly as lambent-demo has it: the same bounds, the same default, the same View, rays
-// through pixel centres between its near and far planes.
+// Places the eye exactly as lambent-demo does: with the same bounds, the same default and the same View, and
+// rays through pixel centres between its near and far planes.
 #pragma once
 
 #include <optional>
@@ -12,8 +12,8 @@
 
 namespace lambent::baker::reference {
 
-// Errors: no camera of that name; one that cannot be looked through.
-// nodes_at_rest: by which orbits stand; what moves in a scene does not move its camera.
+// `nodes_at_rest` give the bounds that orbits use, so that animated nodes do not move the camera. Errors: no
+// camera has that name, or one cannot be looked through.
 Result<spec::View> viewOf(const Scene& scene, const Surfaces& surfaces,
                           const std::vector<gltf::Node>& nodes_at_rest,
                           const std::optional<spec::Camera>& camera, float aspect);
@@ -21,11 +21,11 @@ Result<spec::View> viewOf(const Scene& scene, const Surfaces& surfaces,
 class EyeRays {
  public:
   EyeRays(const spec::View& view, const spec::Size& size);
-  // Row 0 is the top. The ray's length 1 is the far plane.
+  // Row 0 is the top. The far plane is at ray length 1.
   Ray through(std::uint32_t x, std::uint32_t y) const;
-  // Of a point of the world along the camera's axis, metres.
+  // Returns the depth of a point in the world along the camera's axis, metres.
   double depthOf(const glm::dvec3& point_ws) const;
-  // Radians that a pixel spans in the middle, as the runtime's sky has it.
+  // Returns the radians that a pixel spans in the centre, as the runtime's sky uses them.
   float pixelAngle() const { return pixel_angle_rad_; }
 
  private:

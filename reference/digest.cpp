@@ -13,7 +13,7 @@ namespace lambent::baker::reference {
 
 namespace {
 
-// Lists bring their length, so that no two inputs read alike. Only types without padding.
+// Lists include their length, so that no two inputs read alike. Only types without padding are allowed.
 class Digest {
  public:
   template <typename... T>

@@ -1,5 +1,5 @@
-// One number for everything that decides a picture's bytes: scene, light, view, options, program. Two
-// checkpoints with the same digest may be gone on with.
+// Computes one number from everything that decides a picture's bytes: scene, light, view, options and
+// program. Work may be resumed from a checkpoint with the same digest.
 #pragma once
 
 #include <cstdint>

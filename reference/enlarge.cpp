@@ -9,7 +9,7 @@ namespace lambent::baker::reference {
 
 namespace {
 
-// Between texels `low` and `high`.
+// A Place lies between texels `low` and `high`; `share` is the weight of `high`.
 struct Place {
   std::size_t low, high;
   float share;

@@ -1,5 +1,5 @@
-// A small picture in the place of a large one: bilinear between its pixels' centres, so that a coarse picture
-// lies where the fine one will. Without depths: between two surfaces there is none.
+// Enlarges a small picture, bilinearly between its pixels' centres, so that a coarse picture lies where the
+// fine one will. The result has no depths, since there are none between two surfaces.
 #pragma once
 
 #include "runtime/spec/image.hpp"

@@ -10,8 +10,8 @@ namespace lambent::baker::reference {
 
 namespace {
 
-// Texels are divided this finely where a direction inside one is asked for; the layouts of runtime/sh are
-// defined on whole texels.
+// Texels are divided this finely when a direction inside one is asked for, since the layouts of runtime/sh
+// are defined on whole texels.
 constexpr int kFine = 1024;
 
 glm::dvec3 directionAt(const spec::EnvironmentMap& environment_map, double x, double y) {
@@ -22,7 +22,7 @@ glm::dvec3 directionAt(const spec::EnvironmentMap& environment_map, double x, do
                             std::clamp(static_cast<int>(y * kFine), 0, height - 1));
 }
 
-// Steradians per texel's area in a unit direction that lies at (x, y) of the picture.
+// Returns the steradians per texel area in a unit direction that lies at (x, y) of the picture.
 double densityAt(const spec::EnvironmentMap& environment_map, const glm::dvec3& dir, const glm::dvec2& at) {
   constexpr double kFull = std::numbers::pi;
   const double width = environment_map.image.width, height = environment_map.image.height;
@@ -34,7 +34,8 @@ double densityAt(const spec::EnvironmentMap& environment_map, const glm::dvec3& 
       const double r = std::sqrt(u * u + v * v), side = std::sqrt(std::max(0.0, 1.0 - dir.z * dir.z));
       return (r > 1e-9 ? kFull * side / r : kFull * kFull) * (2.0 / width) * (2.0 / height);
     }
-    case sh::ImageLayout::VerticalCross: {  // (1 + u² + v²)^(-3/2) du dv, u and v over a face of the cube
+    // This is (1 + u² + v²)^(-3/2) du dv, with u and v over a face of the cube.
+    case sh::ImageLayout::VerticalCross: {
       const glm::dvec3 size = glm::abs(dir);
       const double towards = std::max({size.x, size.y, size.z});
       return towards * towards * towards * (6.0 / width) * (6.0 / width);
@@ -47,7 +48,7 @@ double brightness(const glm::vec3& radiance) {
   return std::max(0.0, (double{radiance.r} + double{radiance.g} + double{radiance.b}) / 3.0);
 }
 
-// The last entry at or below u, and how far u lies from it to the next.
+// Returns the last entry at or below u, and the fraction of the way from it to the next.
 std::pair<std::size_t, double> place(const float* first, std::size_t count, float u) {
   const float* above = std::upper_bound(first + 1, first + count, u);
   const auto at = static_cast<std::size_t>(above - first) - 1;
@@ -70,7 +71,7 @@ Environment::Environment(spec::DistantLights lights, float turn_degrees, int ban
     if (disc.radiance != glm::vec3(0.0f)) dark_ = false;
   }
   if (lights_.constant != glm::vec3(0.0f)) dark_ = false;
-  // Texels that are not wholly pictures of a direction hold whatever the file has there.
+  // Texels that do not wholly show a direction hold whatever the file has there.
   for (spec::EnvironmentMap& environment_map : lights_.environment_maps)
     for (std::size_t i = 0; i < environment_map.image.texels.size(); ++i) {
       const int width = static_cast<int>(environment_map.image.width),
@@ -114,7 +115,7 @@ void Environment::addEnvironmentMap(std::size_t index) {
   }
   const double power = rows[height];
   for (const double value : rows) out.rows.push_back(power > 0.0 ? static_cast<float>(value / power) : 0.0f);
-  // Probabilities as the rounded sums have them, since by those texels are drawn.
+  // Probabilities follow the rounded sums, because texels are drawn by those.
   for (std::size_t i = 0; i < width * height; ++i) {
     const std::size_t y = i / width, column = y * (width + 1) + i % width;
     out.texels.emplace_back(
@@ -138,7 +139,7 @@ Environment::Look Environment::lookAtEnvironmentMap(std::size_t index, const glm
 }
 
 bool Environment::inside(const Cone& cone, const glm::vec3& dir) const {
-  // By the chord: the cosine of a small disc's rim has no digits left.
+  // This compares chords, because the cosine of a small disc's rim has no significant digits left.
   if (cone.cap > 1.0f) return glm::dot(dir, cone.frame[2]) >= 1.0f - cone.cap;
   const glm::vec3 away = dir - cone.frame[2];
   return glm::dot(away, away) <= 2.0f * cone.cap;
@@ -148,7 +149,7 @@ Environment::Look Environment::look(const glm::vec3& dir) const {
   if (band_limit_ > 0) return {vector_.evaluate(dir), 0.0f};
   Look sum{lights_.constant, 0.0f};
   if (parts_.empty()) return sum;
-  const glm::vec3 local = dir * world_from_light_;  // by the transpose
+  const glm::vec3 local = dir * world_from_light_;  // multiplies by the transpose
   for (const Part& part : parts_) {
     Look one;
     if (!part.is_disc)

@@ -14,9 +14,9 @@ namespace lambent::baker::reference {
 
 namespace {
 
-// How bright what stands in the way is taken to be, against the sky.
+// Assumed brightness of what stands in the way, relative to the sky.
 constexpr float kReflected = 0.3f;
-// Directions are drawn from this height on: nearer to the horizon rounding decides on which side they are.
+// Directions are drawn from this height on; nearer to the horizon, rounding decides on which side they are.
 constexpr float kLeastHeight = 1e-5f;
 
 float total(const glm::vec3& v) {
@@ -29,17 +29,17 @@ void addDiffuse(const glm::vec3& albedo, const glm::vec3& normal, sh::LightVecto
   for (std::size_t k = 0; k < kernel.coefficients().size(); ++k) kernel.c[k] += albedo * transfer[k];
 }
 
-// Two strategies in turn where the reflector is no GGX lobe alone: their mixture is the density.
+// A measured BRDF is sampled by two strategies in turn, whose mixture is the density.
 void addSpecular(const Reflector& reflector, std::uint32_t seed, std::uint32_t points,
                  sh::LightVector& kernel) {
   const Sampler sampler(/*seed=*/3, seed, 0);
   Reflector lobe = reflector;
-  lobe.specular_share = reflector.measured ? 0.5f : 1.0f;
+  lobe.specular_share = reflector.whole ? 0.5f : 1.0f;
   std::array<glm::dvec3, sh::kMaxCoefficients> sums{};
   std::array<float, sh::kMaxCoefficients> y{};
   for (std::uint32_t i = 0; i < points; ++i) {
-    const bool cosine = reflector.measured && i % 2 == 1;
-    const glm::vec2 u = reflector.measured ? sampler.pair(i % 2, i / 2) : sampler.pair(0, i);
+    const bool cosine = reflector.whole && i % 2 == 1;
+    const glm::vec2 u = reflector.whole ? sampler.pair(i % 2, i / 2) : sampler.pair(0, i);
     const glm::vec3 s = lobe.sample(cosine ? 1.0f : 0.0f, u);
     const float pdf = lobe.pdf(s);
     if (!(s.z > 0.0f && pdf > 0.0f)) continue;
@@ -51,7 +51,7 @@ void addSpecular(const Reflector& reflector, std::uint32_t seed, std::uint32_t p
     kernel.c[k] += glm::vec3(sums[k] / static_cast<double>(points));
 }
 
-// Of the cumulated `edges`: the cell that u falls into, and where in it.
+// Returns the cell of the cumulated `edges` that u falls into, and where in it.
 template <std::size_t N>
 std::pair<std::size_t, float> cellOf(const std::array<float, N>& edges, float u) {
   const auto above = std::upper_bound(edges.begin() + 1, edges.end() - 1, u);
@@ -149,7 +149,7 @@ float FirstHit::pdf(const glm::vec3& ray) const {
 }
 
 float FirstHit::pdfOfPair(const glm::vec3& dir) const {
-  const glm::vec3 local = dir * frame_;  // by the transpose
+  const glm::vec3 local = dir * frame_;  // multiplies by the transpose
   float turn = std::atan2(local.y, local.x) / (2.0f * kPi);
   if (turn < 0.0f) turn += 1.0f;
   const auto r = std::min(static_cast<std::size_t>(std::max(local.z, 0.0f) * kRows), kRows - 1);

@@ -13,7 +13,7 @@ EyeDepth::EyeDepth(const Volumes& volumes, const Ray& ray, double begin, double 
     if (!inside) continue;
     parts_.push_back({*inside, v});
     planes.insert(planes.end(), {inside->begin, inside->end});
-    // Voxel centres stand at k + 1/2.
+    // Voxel centres are at k + 1/2.
     const glm::dvec3 from = inside->at(inside->begin), to = inside->at(inside->end);
     for (int a = 0; a < 3; ++a) {
       if (inside->dir[a] == 0.0) continue;
@@ -42,7 +42,7 @@ double EyeDepth::extinction(double t, double middle) const {
   return sum;
 }
 
-// Gauss and Legendre's two points are exact for cubics.
+// Gauss-Legendre quadrature with two points is exact for cubics.
 double EyeDepth::within(const Segment& segment, double t) const {
   const double half = 0.5 * (t - segment.begin), centre = segment.begin + half, aside = half / std::sqrt(3.0);
   const double middle = 0.5 * (segment.begin + segment.end);
@@ -64,7 +64,7 @@ double EyeDepth::place(double depth) const {
                                 [](double at, const Segment& s) { return at < s.depth; });
   if (after != segments_.begin()) --after;
   const Segment& segment = *after;
-  // Newton's steps, kept within what bisection knows.
+  // This is Newton's method, kept within the interval that bisection knows.
   const double wanted = depth - segment.depth, middle = 0.5 * (segment.begin + segment.end);
   const double all = (after + 1 == segments_.end() ? whole_ : (after + 1)->depth) - segment.depth;
   double low = segment.begin, high = segment.end;

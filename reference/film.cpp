@@ -15,7 +15,7 @@ namespace lambent::baker::reference {
 namespace {
 
 constexpr std::uint32_t kMagic = 0x5052424c;  // "LBRP"
-constexpr std::uint32_t kVersionDepths = 2;   // pixels with depths; 1 had none
+constexpr std::uint32_t kVersionDepths = 2;   // pixels have depths; version 1 had none
 constexpr std::uint32_t kVersionCurrent = kVersionDepths;
 
 struct Header {
@@ -130,7 +130,7 @@ spec::RgbaImage Film::half(std::size_t replica) const {
   image.texels.reserve(pixels_.size());
   image.depths.reserve(pixels_.size());
   for (std::size_t i = 0; i < pixels_.size(); ++i) {
-    // Samples go to the first and the second in turn.
+    // Samples go to the first and the second replica in turn.
     const double samples = (done_[i / size_.width] + (replica == 0 ? 1 : 0)) / 2;
     image.texels.emplace_back(glm::vec3(pixels_[i].replicas[replica] / samples),
                               static_cast<float>(pixels_[i].alpha));
@@ -146,8 +146,8 @@ std::optional<double> Film::standardError() const {
     const std::uint32_t samples = done_[i / size_.width];
     if (samples < 2) return std::nullopt;
     const double second = samples / 2, first = samples - second, done = samples;
-    // Two replicas with means a, b of n, m samples: the variance of (n a + m b)/(n + m) is nm/(n + m)² times
-    // that of a - b, if their variances go by 1/n and 1/m.
+    // For two replicas with means a, b of n, m samples, the variance of (n a + m b)/(n + m) is nm/(n + m)²
+    // times that of a - b, if their variances are proportional to 1/n and 1/m.
     const glm::dvec3 apart = pixels_[i].replicas[0] / first - pixels_[i].replicas[1] / second;
     variances += glm::dot(apart, apart) * first * second / (done * done);
     squares += glm::dot(mean(i), mean(i));

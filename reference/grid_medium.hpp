@@ -1,7 +1,7 @@
-// One volume as rays meet it. Comes in: import's SceneVolume, its node at its place. Goes out: the density at
-// a point as SceneVolume defines it (voxel centres, trilinear, constant in the half voxel at the faces), the
-// part of a ray that lies in the box, and along it coarse blocks with bounds of their density, which tracking
-// steps through. The scene must outlive it.
+// A GridMedium is one volume as rays meet it. Import's SceneVolume comes in, with its node in place. The
+// density at a point goes out, as SceneVolume defines it (voxel centres, trilinear, constant in the half
+// voxel at the faces), and the part of a ray that lies in the box, with coarse blocks along it whose density
+// bounds serve tracking. The scene must outlive this.
 #pragma once
 
 #include <algorithm>
@@ -21,7 +21,7 @@
 
 namespace lambent::baker::reference {
 
-// The part of a ray inside the box, in voxels. t counts as the ray's.
+// A GridRay is the part of a ray inside the box, in voxels. t is that of the ray.
 struct GridRay {
   glm::dvec3 origin{0.0}, dir{0.0};
   double metres = 1.0;  // per t
@@ -31,20 +31,20 @@ struct GridRay {
 
 class GridMedium {
  public:
-  // world_from_grid must be regular.
+  // `world_from_grid` must be invertible.
   GridMedium(const SceneVolume& volume, const glm::dmat4& world_from_grid);
 
   const SceneVolume& volume() const { return *volume_; }
-  bool dark() const { return !(most_ > 0.0f); }  // nothing in it
+  bool dark() const { return !(most_ > 0.0f); }  // the volume is empty
 
-  // Within [begin, end] of the ray; none where it misses the box.
+  // Returns the part within [begin, end] of the ray, or nothing if it misses the box.
   std::optional<GridRay> clipped(const Ray& ray, double begin, double end) const;
 
-  // m^-1, of a point in voxels; outside the box as at its nearest face.
+  // Returns the density, m^-1, at a point in voxels; outside the box that of its nearest face.
   float at(const glm::dvec3& place) const;
 
-  // Calls visit(begin, end, least, most) for block after block, the bounds of the density there in 1/t, until
-  // it returns false.
+  // Calls visit(begin, end, least, most) for one block after the other, with the bounds of its density in
+  // 1/t, until it returns false.
   template <typename Visit>
   void visitBlocks(const GridRay& ray, Visit&& visit) const;
 
@@ -54,11 +54,11 @@ class GridMedium {
   const SceneVolume* volume_;
   std::span<const float> density_;
   glm::uvec3 size_;
-  glm::vec3 last_;  // voxel
+  glm::vec3 last_;  // centre of the last voxel, from that of the first
   glm::dmat3 linear_;
   glm::dvec3 shift_;
   glm::ivec3 blocks_;
-  std::vector<glm::vec2> bounds_;  // least and most, by block, x fastest
+  std::vector<glm::vec2> bounds_;  // least and most density per block, x fastest
   float most_ = 0.0f;
 };
 

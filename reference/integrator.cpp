@@ -34,11 +34,11 @@ PixelSum Integrator::pixel(std::uint32_t x, std::uint32_t y, std::uint32_t first
   std::vector<Hit> layers;
   world_.rays.visible(ray, layers);
   out.rays = 1;
-  // Whatever stands before it: the runtime's depth buffer knows neither blended surfaces nor volumes.
+  // Depth ignores blended surfaces and volumes, as the runtime's depth buffer does.
   if (!layers.empty() && !blended(layers.back()))
     out.depth = world_.eye.depthOf(glm::dvec3(ray.origin) + double{layers.back().t} * glm::dvec3(ray.dir));
   double through = 1.0;
-  // Volumes before layer i, from where the one before left off.
+  // Each step adds the volumes in front of layer i, from the previous layer on.
   std::optional<EyeDepth> eye;
   if (!world_.volumes.empty()) eye.emplace(world_.volumes, ray, 0.0, double{kInfinity});
   double depth = 0.0;

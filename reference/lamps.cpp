@@ -12,7 +12,8 @@ namespace lambent::baker::reference {
 
 namespace {
 
-// Mean over the triangle by seven points, never 0: a texture may shine just between them.
+// Returns the mean over the triangle by seven points. It is never 0, since a texture may shine just between
+// them.
 double meanBrightness(const Surfaces& surfaces, std::uint32_t surface, std::uint32_t triangle) {
   constexpr glm::vec2 kPlaces[] = {{1.0f / 3.0f, 1.0f / 3.0f},
                                    {0.05f, 0.05f},
@@ -90,7 +91,7 @@ std::vector<PunctualLight> punctualLights(const Scene& scene) {
   return out;
 }
 
-// KHR_lights_punctual, "Range Property" and "Inner and Outer Cone Angles".
+// Follows KHR_lights_punctual, "Range Property" and "Inner and Outer Cone Angles".
 std::optional<Beam> beamAt(const PunctualLight& light, const glm::vec3& position) {
   const gltf::Light& l = light.light;
   Beam beam{.distance = std::numeric_limits<float>::infinity(), .irradiance = l.intensity * l.color};

@@ -1,7 +1,7 @@
-// The lights that stand in the scene: emissive triangles, sampled by area in proportion to their power, and
-// punctual lights (KHR_lights_punctual). Comes in: the scene and its surfaces. Goes out: points and
-// directions for next-event estimation, with densities. Emissive surfaces shine from their front, two-sided
-// ones from both; unlit and blended surfaces give off nothing (rays do not meet the latter).
+// These are the lights in the scene: emissive triangles, sampled by area in proportion to their power, and
+// punctual lights (KHR_lights_punctual). The scene and its surfaces come in; points and directions for
+// next-event estimation, with their densities, go out. Emissive surfaces shine from their front, double-sided
+// ones from both sides; unlit and blended surfaces emit nothing (rays do not meet the latter).
 #pragma once
 
 #include <optional>
@@ -18,37 +18,38 @@ class EmissiveTriangles {
   bool empty() const { return triangles_.empty(); }
 
   struct Sample {
-    Hit hit;  // the place on the triangle
+    Hit hit;  // a point on the triangle
     glm::vec3 position{0.0f};
-    glm::vec3 normal{0.0f};  // unit, of the front
+    glm::vec3 normal{0.0f};  // unit normal of the front
     bool double_sided = false;
     float per_area = 0.0f;  // density per square metre
   };
   Sample sample(float choice, const glm::vec2& u) const;
-  // Density per square metre with which sample() finds a place on this triangle.
+  // Returns the density per square metre with which sample() finds a point on this triangle.
   float perArea(const Hit& hit) const;
 
  private:
   const Surfaces& surfaces_;
   std::vector<std::uint32_t> triangles_, surface_of_;
-  std::vector<double> cumulated_;  // begins with 0, ends with 1
-  std::vector<float> per_area_;    // by triangle of all surfaces; empty where nothing shines
+  std::vector<double> cumulated_;  // begins with 0 and ends with 1
+  std::vector<float> per_area_;    // by triangle of all surfaces; empty if nothing shines
 };
 
 struct PunctualLight {
   gltf::Light light;
   glm::vec3 position{0.0f};
-  glm::vec3 along{0.0f, 0.0f, -1.0f};  // where it shines to, unit
+  glm::vec3 along{0.0f, 0.0f, -1.0f};  // unit direction in which it shines
 };
 
 std::vector<PunctualLight> punctualLights(const Scene& scene);
 
-// What a punctual light sends to a point: irradiance on a surface that faces it. None where nothing arrives.
+// A Beam is what a punctual light sends to a point: the irradiance of a surface that faces it.
 struct Beam {
   glm::vec3 to_light{0.0f};  // unit
   float distance = 0.0f;     // infinite for directional lights
   glm::vec3 irradiance{0.0f};
 };
+// Returns nothing if no light arrives.
 std::optional<Beam> beamAt(const PunctualLight& light, const glm::vec3& position);
 
 }  // namespace lambent::baker::reference

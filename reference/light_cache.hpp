@@ -1,5 +1,5 @@
-// Light from infinity as it was read last, since reading probes and making them ready to be sampled takes
-// long, and most pictures that follow each other have the same light. One thread.
+// Keeps the light from infinity that was loaded last, since loading environment maps and preparing them for
+// sampling takes long, and successive pictures mostly have the same light. It must be used from one thread.
 #pragma once
 
 #include <memory>
@@ -19,23 +19,23 @@ class LightCache {
  public:
   using FromInfinity = std::variant<spec::EnvironmentMapLight, spec::ConstantLight, spec::SunLight>;
 
-  // By the lights' words: a probe's file that changed since is not read again. factors, more: Request's.
-  // Errors: those of loading a probe.
+  // Compares lights by their words, so an environment map that changed on disk is not loaded again. `factors`
+  // and `more` are those of Request. Errors: those of loading an environment map.
   Result<std::shared_ptr<const Environment>> environment(
       const std::vector<spec::Light>& lights, const std::vector<float>& factors, const Options& options,
       const std::shared_ptr<const spec::DistantLights>& more = {});
-  // What was repaired in the probes.
+  // Says what was repaired in the environment maps.
   const std::vector<std::string>& notices() const { return notices_; }
 
  private:
-  std::optional<std::vector<FromInfinity>> lights_;  // that loaded_ is of; none: of none
-  std::vector<spec::DistantLights> loaded_;          // each, whole
+  std::optional<std::vector<FromInfinity>> lights_;  // the lights of loaded_; nothing if it is not loaded
+  std::vector<spec::DistantLights> loaded_;          // one per light, not band-limited
   std::vector<std::string> notices_;
   std::vector<float> factors_;
   std::shared_ptr<const spec::DistantLights> more_;
   float turn_deg_ = 0.0f;
   int band_limit_ = 0;
-  std::shared_ptr<const Environment> environment_;  // of all these; null: of none
+  std::shared_ptr<const Environment> environment_;  // made from all of these; null if there is none yet
 };
 
 }  // namespace lambent::baker::reference

@@ -17,14 +17,14 @@ namespace lambent::baker::reference {
 namespace {
 
 constexpr std::size_t kHalves = 257, kDifferences = 129;  // nodes of the table
-constexpr std::size_t kAngles = 65;                       // of the scale
-constexpr std::uint32_t kPoints = 2048;                   // of each of its integrals
-constexpr double kSharpness = 400.0;                      // of the weights: 1/(2 sigma²)
+constexpr std::size_t kAngles = 65;                       // nodes of the scale
+constexpr std::uint32_t kPoints = 2048;                   // points of each of its integrals
+constexpr double kSharpness = 400.0;                      // sharpness of the weights, 1/(2 sigma²)
 
-// Half vector and difference as coordinates 0..1. Rusinkiewicz 1998.
+// Returns half vector and difference as coordinates 0..1 (Rusinkiewicz 1998).
 glm::dvec2 placeOf(const glm::dvec3& v, const glm::dvec3& s) {
   const glm::dvec3 sum = v + s;
-  // By atan2: the arc cosine of a small angle has no digits.
+  // This uses atan2, because the arc cosine of a small angle has no significant digits.
   const double half = std::atan2(std::sqrt(sum.x * sum.x + sum.y * sum.y), sum.z);
   const double difference = std::atan2(glm::length(v - s), glm::length(sum));
   constexpr double kQuarter = std::numbers::pi / 2;
@@ -46,7 +46,7 @@ glm::vec3 meanAt(const std::vector<Weighed>& all, const glm::dvec2& place) {
     const glm::dvec2 away = one.place - place;
     return glm::dot(away, away);
   };
-  // Weights relative to the nearest: far from all measurements they would vanish.
+  // Weights are relative to the nearest, since they would vanish far from all measurements.
   double nearest = distance2(all.front());
   for (const Weighed& one : all) nearest = std::min(nearest, distance2(one));
   double weights = 0.0;
@@ -61,7 +61,7 @@ glm::vec3 meanAt(const std::vector<Weighed>& all, const glm::dvec2& place) {
   return glm::vec3(sum / weights);
 }
 
-// A place 0..1 among `nodes`: the node below, and how far from it to the next.
+// Returns the node below a place 0..1 among `nodes`, and the fraction of the way to the next.
 std::pair<std::size_t, float> between(double at, std::size_t nodes) {
   const double scaled = std::clamp(at, 0.0, 1.0) * static_cast<double>(nodes - 1);
   const auto below = std::min(static_cast<std::size_t>(scaled), nodes - 2);
@@ -74,45 +74,43 @@ float largest(const glm::vec3& v) {
 
 }  // namespace
 
-MeasuredReflection MeasuredReflection::build(const MeasuredBrdf& measured) {
+MeasuredReflection::MeasuredReflection(const MeasuredBrdf& measured) {
   std::vector<Weighed> all;
   for (const BrdfMeasurement& m : measured.measurements)
     all.push_back(
         {placeOf(directionOf(m.theta_i, m.phi_i), directionOf(m.theta_o, m.phi_o)), glm::dvec3(m.value)});
-  MeasuredReflection out;
-  out.values_.resize(kHalves * kDifferences);
+  values_.resize(kHalves * kDifferences);
   parallelRanges(kDifferences, 1, {}, [&](std::size_t first, std::size_t last) {
     for (std::size_t d = first; d < last; ++d)
       for (std::size_t h = 0; h < kHalves; ++h)
-        out.values_[d * kHalves + h] = meanAt(
+        values_[d * kHalves + h] = meanAt(
             all, {static_cast<double>(h) / (kHalves - 1), static_cast<double>(d) / (kDifferences - 1)});
   });
   // The width of the highlight at theta_d = 30°: GGX falls to half where tan theta_h = 0.644 alpha.
-  const glm::vec3* row = &out.values_[kDifferences / 3 * kHalves];
+  const glm::vec3* row = &values_[kDifferences / 3 * kHalves];
   const float base = largest(row[kHalves * 4 / 5]), half = 0.5f * (largest(row[0]) + base);
   std::size_t h = 1;
   while (h + 1 < kHalves && largest(row[h]) > half) ++h;
   const float root = static_cast<float>(h) / (kHalves - 1);
-  out.alpha_ = std::clamp(std::tan(std::min(kPi / 2 * root * root, 1.2f)) / 0.644f, 0.02f, 1.0f);
+  alpha_ = std::clamp(std::tan(std::min(kPi / 2 * root * root, 1.2f)) / 0.644f, 0.02f, 1.0f);
   // What would be reflected of uniform light.
-  out.scales_.resize(kAngles);
+  scales_.resize(kAngles);
   parallelRanges(kAngles, 1, {}, [&](std::size_t first, std::size_t last) {
     for (std::size_t a = first; a < last; ++a) {
       const float root_of_cosine = static_cast<float>(a) / (kAngles - 1);
       const float cosine = std::max(root_of_cosine * root_of_cosine, kLeastCosine);
       Reflector reflector{.view = {std::sqrt(std::max(1.0f - cosine * cosine, 0.0f)), 0.0f, cosine},
-                          .alpha = glm::vec2(out.alpha_),
+                          .alpha = glm::vec2(alpha_),
                           .specular_share = 0.5f};
       const Sampler sampler(/*seed=*/1, static_cast<std::uint32_t>(a), 0);
       glm::dvec3 sum(0.0);
       for (std::uint32_t i = 0; i < kPoints; ++i) {
         const glm::vec3 s = reflector.sample(i % 2 == 0 ? 0.0f : 1.0f, sampler.pair(i % 2, i / 2));
-        if (s.z > 0.0f) sum += glm::dvec3(out.unscaled(reflector.view, s) * (s.z / reflector.pdf(s)));
+        if (s.z > 0.0f) sum += glm::dvec3(unscaled(reflector.view, s) * (s.z / reflector.pdf(s)));
       }
-      out.scales_[a] = std::min(1.0f, static_cast<float>(kPoints) / largest(glm::vec3(sum)));
+      scales_[a] = std::min(1.0f, static_cast<float>(kPoints) / largest(glm::vec3(sum)));
     }
   });
-  return out;
 }
 
 glm::vec3 MeasuredReflection::unscaled(const glm::vec3& v, const glm::vec3& s) const {

@@ -1,6 +1,6 @@
-// A measured BRDF as the reference reads it between its measurements (docs/conventions.md, "Materials"): the
-// weighed mean over the angles of half vector and difference, tabulated once, and scaled down where it would
-// reflect more than it receives.
+// Interpolates a measured BRDF between its measurements for the reference (docs/conventions.md, "Materials"):
+// by a weighted mean over the angles of half vector and difference, tabulated once, and scaled down where it
+// would reflect more than it receives.
 #pragma once
 
 #include <vector>
@@ -8,17 +8,16 @@
 #include <glm/vec3.hpp>
 
 #include "baker/import/measured_brdf.hpp"
+#include "reference/whole_brdf.hpp"
 
 namespace lambent::baker::reference {
 
-class MeasuredReflection {
+class MeasuredReflection final : public WholeBrdf {
  public:
-  static MeasuredReflection build(const MeasuredBrdf& measured);
+  explicit MeasuredReflection(const MeasuredBrdf& measured);
 
-  // f, local; v and s above the surface.
-  glm::vec3 value(const glm::vec3& v, const glm::vec3& s) const;
-  // The GGX lobe about as wide as the highlight, to draw directions by.
-  float alpha() const { return alpha_; }
+  glm::vec3 value(const glm::vec3& v, const glm::vec3& s) const override;
+  float alpha() const override { return alpha_; }
 
  private:
   glm::vec3 unscaled(const glm::vec3& v, const glm::vec3& s) const;

@@ -1,7 +1,7 @@
-// How a film fills: in passes, of samples of a pixel that walk together. Where passes begin and end decides
-// the last bits of a picture (sums are rounded, rays travel in packets), with a band limit its kernels too:
-// whoever draws the same pictures must cut them alike, and so both render() and ProgressiveReference go by
-// this.
+// Fills a film in passes of samples that advance together. Where passes begin and end affects the last bits
+// of a picture (sums are rounded, rays travel in packets), and with a band limit its kernels too. Whoever
+// draws the same pictures must use the same passes, so both render() and ProgressiveReference use these
+// functions.
 #pragma once
 
 #include <cstdint>
@@ -12,14 +12,14 @@
 
 namespace lambent::baker::reference {
 
-// Samples of a pixel in one pass.
+// Returns the samples per pixel in one pass.
 std::uint32_t samplesInPass(const Options& options, const Volumes& volumes);
 
-// Rows between two looks at the clock.
+// Rows that are traced between two looks at the clock.
 inline constexpr std::uint32_t kRowsAtOnce = 32;
 
-// Brings rows [first, last) to `samples` a pixel; in parallel. False when stopped: rows in hand are given up,
-// so that it takes no longer than a few pixels.
+// Brings rows [first, last) to `samples` per pixel, in parallel. Returns false if stopped; rows in progress
+// are dropped, so that stopping takes no longer than a few pixels.
 bool addSamples(const Integrator& integrator, Film& film, std::uint32_t first, std::uint32_t last,
                 std::uint32_t samples, Progress& progress, const std::stop_token& stop);
 

@@ -1,7 +1,7 @@
-// Where a medium scatters light: Henyey and Greenstein's phase function, Astrophysical Journal 93, 1941. Per
-// steradian, of the cosine between the directions that light travels in before and after; its mean cosine is
-// g. A path from the eye that travels along d and looks towards s sees light that came along -s and left
-// along -d: the cosine is dot(d, s).
+// This is Henyey and Greenstein's phase function of scattering in a medium, Astrophysical Journal 93, 1941.
+// It is per steradian, and a function of the cosine between the directions in which light travels before and
+// after; its mean cosine is g. A path from the eye that travels along d and looks towards s sees light that
+// came along -s and left along -d, so the cosine is dot(d, s).
 #pragma once
 
 #include <algorithm>
@@ -18,7 +18,8 @@ inline float phaseValue(float g, float cosine) {
   return static_cast<float>((1.0 - k * k) / (4.0 * std::numbers::pi * base * std::sqrt(base)));
 }
 
-// The first bands of the same, as runtime and bake have it: Σ_(l < bands) g^l (2l + 1)/(4π) P_l. Signed.
+// Returns the first bands of the function, as runtime and baker use it: Σ_(l < bands) g^l (2l + 1)/(4π) P_l.
+// Signed.
 inline float phaseValue(float g, float cosine, int bands) {
   const double c = double{cosine};
   double below = 0.0, legendre = 1.0, power = 1.0, sum = 0.0;

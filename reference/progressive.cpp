@@ -21,13 +21,13 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// Coarse pictures, each by how much, and samples of its pixels: the first at once, so that there is one while
-// a view is dragged; all together cost 1.14 samples of every whole pixel.
+// A Coarse picture has a factor and a number of samples per pixel. The first comes at once, so that there is
+// one while a view is dragged; all together cost 1.14 samples of every whole pixel.
 struct Coarse {
   std::uint32_t by, samples;
 };
 constexpr std::array<Coarse, 3> kCoarse = {{{8, 1}, {4, 2}, {2, 4}}};
-// While the first whole pass comes in from the top.
+// How often to publish rows while the first whole pass comes in from the top.
 constexpr auto kPublishEvery = std::chrono::milliseconds(250);
 
 struct Job {
@@ -107,7 +107,7 @@ class ProgressiveReference::Worker {
       Result<void> done;
       try {
         inBackground(job->request.options.threads, [&] { done = trace(*job); });
-      } catch (const std::exception& failure) {  // out of memory, most likely
+      } catch (const std::exception& failure) {  // most likely out of memory
         traced_.reset();
         done = fail("reference", failure.what(), "free some memory or make the picture smaller");
       }
@@ -120,7 +120,7 @@ class ProgressiveReference::Worker {
     }
   }
 
-  // Everything from here on runs on the thread. Ends early, without an error, when stopped.
+  // Everything from here on runs on the thread. It ends early, without an error, when stopped.
   Result<void> trace(const Job& job) {
     const Request& request = job.request;
     const Options& options = request.options;
@@ -134,7 +134,7 @@ class ProgressiveReference::Worker {
     const std::vector<spec::LocalLight> shapes = spec::localLights(request.lights);
     enter(job, ProgressivePhase::Tracing);
 
-    spec::RgbaImage shown;  // a coarse picture, and the rows of the first pass over it as they come in
+    spec::RgbaImage shown;  // a coarse picture, and over it the rows of the first pass as they come in
     for (const auto& [by, samples] : kCoarse) {
       Options coarse = options;
       coarse.size = coarser(options.size, by);
@@ -184,7 +184,7 @@ class ProgressiveReference::Worker {
   }
 
   using OnRows = std::function<void(std::uint32_t first, std::uint32_t last)>;
-  // False when stopped.
+  // Returns false if stopped.
   bool fill(const Job& job, const Integrator& integrator, Film& film, std::uint32_t samples,
             const OnRows& on_rows = {}) {
     const std::uint32_t height = film.size().height;
@@ -224,11 +224,11 @@ class ProgressiveReference::Worker {
     status_.error = std::move(error);
   }
 
-  // The thread's own. The scene stays as long as what was built of it.
+  // Only the thread uses these. The scene stays as long as what was built from it.
   LightCache lights_;
   std::shared_ptr<const Scene> traced_scene_;
   std::unique_ptr<const TracedScene> traced_;
-  Clock::time_point begin_;  // of the job, later by as long as it was paused
+  Clock::time_point begin_;  // of the job, moved later by the time that it was paused
 
   Progress progress_;
 
@@ -240,7 +240,7 @@ class ProgressiveReference::Worker {
   ProgressiveStatus status_;
   std::shared_ptr<const Snapshot> snapshot_;
 
-  std::jthread thread_;  // the last: joined before anything else goes
+  std::jthread thread_;  // last, so that it is joined before anything else is destroyed
 };
 
 ProgressiveReference::ProgressiveReference(std::shared_ptr<const Scene> scene, Request request)

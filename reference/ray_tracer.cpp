@@ -24,7 +24,7 @@ struct Release {
 using Device = std::unique_ptr<std::remove_pointer_t<RTCDevice>, Release>;
 using EmbreeScene = std::unique_ptr<std::remove_pointer_t<RTCScene>, Release>;
 
-// Embree asks for denormals to be flushed while it runs.
+// Flushes denormals while Embree runs, as Embree asks for.
 class FlushDenormals {
  public:
 #if defined(__SSE2__)
@@ -42,7 +42,7 @@ class FlushDenormals {
 #endif
 };
 
-// User data of a geometry.
+// A Record is the user data of a geometry.
 struct Record {
   const Surfaces* surfaces;
   std::uint32_t surface;
@@ -82,7 +82,7 @@ void filterBacks(const RTCFilterFunctionNArguments* args) {
     if (args->valid[i] == -1 && isCulled(args, i)) args->valid[i] = 0;
 }
 
-// Writes down every hit and lets the ray go on.
+// Records every hit and lets the ray go on.
 struct LayerContext {
   RTCIntersectContext embree;
   std::vector<Hit>* layers;
@@ -118,7 +118,7 @@ bool addGeometry(RTCDevice device, RTCScene scene, const Record& record) {
     rtcCommitGeometry(geometry);
     rtcAttachGeometryByID(scene, geometry, record.surface);  // so that geomID is the surface
   }
-  rtcReleaseGeometry(geometry);  // the scene holds it
+  rtcReleaseGeometry(geometry);  // the scene keeps its own reference
   return room;
 }
 
@@ -137,7 +137,7 @@ void fill(RTCRay16& packet, std::span<const Ray> rays, int* valid) {
 
 struct RayTracer::State {
   Device device;
-  EmbreeScene solid, blended;  // blended: null where there is nothing of the kind
+  EmbreeScene solid, blended;  // blended is null if no surface is blended
   std::vector<Record> records;
   const Surfaces* surfaces = nullptr;
 };
@@ -156,7 +156,7 @@ Result<RayTracer> RayTracer::build(const Surfaces& surfaces) {
   const auto newScene = [&](RTCBuildQuality quality) {
     EmbreeScene scene(rtcNewScene(state->device.get()));
     rtcSetSceneBuildQuality(scene.get(), quality);
-    // Edges that two triangles share let no ray through.
+    // ROBUST lets no ray through edges that two triangles share.
     rtcSetSceneFlags(scene.get(), static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST |
                                                              RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION));
     return scene;
@@ -209,7 +209,7 @@ void RayTracer::occluded(std::span<const Ray> rays, std::span<std::uint8_t> bloc
     const auto some = rays.subspan(first, std::min(kWidth, rays.size() - first));
     fill(packet, some, valid);
     rtcOccluded16(valid, state_->solid.get(), &context, &packet);
-    // Embree sets tfar to -inf where something is in the way.
+    // Embree sets tfar to -inf if something is in the way.
     for (std::size_t k = 0; k < some.size(); ++k) blocked[first + k] = packet.tfar[k] < 0.0f;
   }
 }
@@ -234,7 +234,7 @@ void RayTracer::visible(const Ray& ray, std::vector<Hit>& layers) const {
     trace(state_->blended.get(), filterLayers, solid.ray.tfar);
     std::sort(layers.begin(), layers.end(),
               [](const Hit& a, const Hit& b) { return a.t != b.t ? a.t < b.t : a.triangle < b.triangle; });
-    // On the edge between two triangles a ray may meet both.
+    // A ray may meet both triangles at an edge that they share.
     const auto same = [](const Hit& a, const Hit& b) {
       return a.surface == b.surface && b.t - a.t <= 1e-6f * b.t;
     };

@@ -26,7 +26,7 @@ double secondsSince(Clock::time_point begin) {
   return std::chrono::duration<double>(Clock::now() - begin).count();
 }
 
-// Pass by pass over the picture, with a checkpoint every few seconds and when stopped.
+// Draws pass by pass over the picture, with a checkpoint every few seconds and when stopped.
 Result<void> renderAll(const Integrator& integrator, Film& film, std::uint32_t spp, std::uint32_t together,
                        const fs::path& checkpoint, Progress& progress, const std::stop_token& stop) {
   const double seconds_before = film.seconds;
@@ -81,7 +81,7 @@ Result<Report> renderHere(const Scene& scene, const Request& request, const fs::
   if (auto checked = checkOptions(options); !checked) return failAgain(std::move(checked.error()));
   if (auto checked = checkOutput(output); !checked) return failAgain(std::move(checked.error()));
   Report report;
-  // the light, and the scene in world space
+  // Load the light, and build the scene in world space.
   progress.begin("scene");
   const auto loaded = loadEach(request.lights);
   if (!loaded) return failAgain(loaded.error());
@@ -97,13 +97,13 @@ Result<Report> renderHere(const Scene& scene, const Request& request, const fs::
   Film film(options.size, digestOf(scene, lights, shapes, *view, options));
   const Environment environment(std::move(lights), options.rotate_light_deg,
                                 options.band_limit ? options.band_limit->in : 0);
-  // what an earlier run has done
+  // Resume what an earlier run has done.
   const fs::path checkpoint = checkpointOf(output);
   takeUp(film, checkpoint, force, report);
   std::uint64_t left = 0;
   for (std::uint32_t y = 0; y < options.size.height; ++y)
     left += std::uint64_t{options.size.width} * (options.spp - film.done(y));
-  // the paths
+  // Trace the paths.
   progress.begin("paths", left, "samples");
   const World world = (*traced)->under(environment, shapes, EyeRays(*view, options.size));
   auto done = renderAll(Integrator(world, options), film, options.spp, samplesInPass(options, world.volumes),

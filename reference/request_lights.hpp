@@ -1,5 +1,5 @@
-// The light from infinity of a request: each light loaded once, and all of them together, each times its
-// factor. With factors of 1 it is loadDistantLights(), to the bit.
+// Loads the light from infinity of a request: each light once, and all of them together, each multiplied by
+// its factor. With factors of 1 the result equals that of loadDistantLights() to the bit.
 #pragma once
 
 #include <vector>
@@ -8,13 +8,14 @@
 
 namespace lambent::baker::reference {
 
-// One for each light; empty for those that stand in the scene. Errors: those of loading a environment map.
+// Returns one entry per light; those of lights in the scene are empty. Errors: those of loading an
+// environment map.
 Result<std::vector<spec::DistantLights>> loadEach(const std::vector<spec::Light>& lights);
 
-// factors: by light; those beyond the list are 1.
+// `factors` holds one per light; 1 is used beyond the list.
 spec::DistantLights together(const std::vector<spec::DistantLights>& each, const std::vector<float>& factors);
 
-// Adds what `more` has, if there is any.
+// Adds the lights in `more`, which may be null.
 void addLights(spec::DistantLights& lights, const spec::DistantLights* more);
 
 }  // namespace lambent::baker::reference

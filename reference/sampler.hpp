@@ -1,9 +1,9 @@
-// The reference's random numbers: Owen-scrambled Sobol points, two dimensions at a time, padded. Every number
-// is a function of (seed, pixel, replica, dimension, index) alone, so that pictures do not depend on threads
-// or on interruptions. Points of one pixel fill the square evenly in every power-of-two prefix; pixels and
-// dimensions are independent of each other. Scrambling by hash: Burley, "Practical Hash-based Owen
+// These are the reference's random numbers: padded Owen-scrambled Sobol points, two dimensions at a time.
+// Every number is a function of (seed, pixel, replica, dimension, index) alone, so pictures do not depend on
+// threads or interruptions. Points of one pixel fill the square evenly in every power-of-two prefix; pixels
+// and dimensions are independent of each other. Scrambling is by hash: Burley, "Practical Hash-based Owen
 // Scrambling", JCGT 9(4), 2020, with Vegdahl's constants (psychopath.io, "Building a Better LK Hash", 2021).
-// Walks through media draw from streams of independent numbers beside them.
+// Walks through media draw from separate streams of independent numbers.
 #pragma once
 
 #include <cmath>
@@ -13,7 +13,7 @@
 
 namespace lambent::baker::reference {
 
-// Avalanching hash of 32 bits ("lowbias32", Wellons).
+// This is an avalanching hash of 32 bits ("lowbias32", Wellons).
 constexpr std::uint32_t hash32(std::uint32_t x) {
   x ^= x >> 16;
   x *= 0x7feb352du;
@@ -35,7 +35,7 @@ constexpr std::uint32_t reversedBits(std::uint32_t x) {
   return ((x & 0x55555555u) << 1) | ((x & 0xaaaaaaaau) >> 1);
 }
 
-// Each bit is flipped by a hash of the bits below it.
+// Flips each bit by a hash of the bits below it.
 constexpr std::uint32_t laineKarras(std::uint32_t x, std::uint32_t seed) {
   x ^= x * 0x3d20adeau;
   x += seed;
@@ -45,13 +45,13 @@ constexpr std::uint32_t laineKarras(std::uint32_t x, std::uint32_t seed) {
   return x;
 }
 
-// Each bit is flipped by a hash of the bits above it: Owen's nested uniform scrambling.
+// Flips each bit by a hash of the bits above it: Owen's nested uniform scrambling.
 constexpr std::uint32_t owenScrambled(std::uint32_t x, std::uint32_t seed) {
   return reversedBits(laineKarras(reversedBits(x), seed));
 }
 
-// The second dimension of Sobol's sequence with its bits reversed: Pascal's triangle modulo 2 times the
-// index. The first dimension with its bits reversed is the index itself.
+// Returns the second dimension of Sobol's sequence with its bits reversed: Pascal's triangle modulo 2 times
+// the index. The first dimension with its bits reversed is the index itself.
 constexpr std::uint32_t sobolSecondReversed(std::uint32_t index) {
   index ^= index >> 16;
   index ^= (index & 0xff00ff00u) >> 8;
@@ -60,24 +60,24 @@ constexpr std::uint32_t sobolSecondReversed(std::uint32_t index) {
   return index ^ ((index & 0xaaaaaaaau) >> 1);
 }
 
-// In [0, 1), never 1.
+// Returns a number in [0, 1), never 1.
 constexpr float unitFloat(std::uint32_t x) {
   return static_cast<float>(x >> 8) * 0x1p-24f;
 }
 
-// Avalanching hash of 64 bits (the finalizer of SplitMix64).
+// This is an avalanching hash of 64 bits (the finalizer of SplitMix64).
 constexpr std::uint64_t hash64(std::uint64_t x) {
   x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
   x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
   return x ^ (x >> 31);
 }
 
-// Independent numbers, one after the other, where nobody knows how many it takes: SplitMix64 (Steele, Lea and
-// Flood, "Fast Splittable Pseudorandom Number Generators", OOPSLA 2014).
+// A Stream gives independent numbers one after the other, for uses whose count is not known in advance:
+// SplitMix64 (Steele, Lea and Flood, "Fast Splittable Pseudorandom Number Generators", OOPSLA 2014).
 class Stream {
  public:
   explicit Stream(std::uint64_t key) : state_(key) {}
-  // In (0, 1).
+  // Returns a number in (0, 1).
   double next() {
     state_ += 0x9e3779b97f4a7c15u;
     return (static_cast<double>(hash64(state_) >> 12) + 0.5) * 0x1p-52;
@@ -94,16 +94,16 @@ class Sampler {
   Sampler(std::uint32_t seed, std::uint32_t pixel, std::uint32_t replica)
       : key_(combine(combine(combine(0x4c4d4272u, seed), pixel), replica)) {}
 
-  // Point `index` of the pair of dimensions `dimension`.
+  // Returns point `index` in the pair of dimensions `dimension`.
   glm::vec2 pair(std::uint32_t dimension, std::uint32_t index) const {
     const std::uint32_t key = combine(key_, dimension);
-    // Shuffled per pair, so that pairs are padded independently.
+    // The index is shuffled per pair, so that pairs are padded independently.
     const std::uint32_t shuffled = owenScrambled(index, key);
     return {unitFloat(reversedBits(laineKarras(shuffled, hash32(key ^ 0x68bc21ebu)))),
             unitFloat(reversedBits(laineKarras(sobolSecondReversed(shuffled), hash32(key ^ 0x02e5be93u))))};
   }
 
-  // Beside the pairs: one for each use (`which`) that a vertex has for it.
+  // Returns a stream that is independent of the pairs: one for each use (`which`) at a vertex.
   Stream stream(std::uint32_t dimension, std::uint32_t index, std::uint32_t which) const {
     const std::uint64_t place = hash64((std::uint64_t{key_} << 32) | dimension);
     return Stream(hash64(place ^ hash64((std::uint64_t{which} << 32) | index)));

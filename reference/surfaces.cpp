@@ -14,8 +14,8 @@ namespace lambent::baker::reference {
 
 namespace {
 
-// Rays start this share of the coordinates and of the triangle's size off the surface: some thirty roundings
-// of a float, and as much below anything that is seen.
+// Rays start off the surface by this share of the coordinates and of the triangle's size: some thirty
+// roundings of a float, and about as far below anything visible.
 constexpr float kOffset = 0x1p-19f;
 
 float largest(const glm::vec3& v) {
@@ -42,14 +42,14 @@ Result<Surfaces> Surfaces::build(const Scene& scene) {
   auto textures = Textures::load(scene);
   if (!textures) return failAgain(std::move(textures.error()));
   out.textures_ = std::move(*textures);
-  out.buildTables(scene);
+  const std::vector<std::shared_ptr<const WholeBrdf>> whole = wholeBrdfs(scene);
   const std::vector<glm::mat4> world = gltf::worldTransforms(scene.nodes);
   for (std::size_t n = 0; n < scene.nodes.size(); ++n) {
     if (scene.nodes[n].mesh < 0) continue;
     const glm::dmat4 matrix(world[n]);
     const double determinant = glm::determinant(glm::dmat3(matrix));
     const bool mirrored = determinant < 0.0;
-    // Up to its scale the inverse transpose; defined for flat matrices too.
+    // The cofactors are the inverse transpose up to scale, and exist for flat matrices too.
     const glm::dmat3 linear(matrix);
     const glm::dmat3 cofactors(glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]),
                                glm::cross(linear[0], linear[1]));
@@ -58,10 +58,12 @@ Result<Surfaces> Surfaces::build(const Scene& scene) {
       const bundle::MeshData& mesh = primitive.mesh;
       const std::size_t count = mesh.positions.size();
       Surface surface;
-      if (primitive.material >= 0)
+      if (primitive.material >= 0) {
         surface.material = scene.materials[static_cast<std::size_t>(primitive.material)];
-      else
+        surface.whole = whole[static_cast<std::size_t>(primitive.material)];
+      } else {
         surface.material.metallic = 0.0f;  // diffuse white
+      }
       surface.first_vertex = static_cast<std::uint32_t>(out.positions_.size());
       surface.vertex_count = static_cast<std::uint32_t>(count);
       surface.first_triangle = static_cast<std::uint32_t>(out.triangles_.size());
@@ -88,14 +90,15 @@ Result<Surfaces> Surfaces::build(const Scene& scene) {
       out.surfaces_.push_back(std::move(surface));
     }
   }
+  out.buildTables();
   return out;
 }
 
-void Surfaces::buildTables(const Scene& scene) {
-  for (const MeasuredBrdf& brdf : scene.brdfs) measured_.push_back(MeasuredReflection::build(brdf));
-  for (const gltf::Material& material : scene.materials) {
+void Surfaces::buildTables() {
+  for (const Surface& surface : surfaces_) {
+    const gltf::Material& material = surface.material;
     const bool bare = material.metallic >= 1.0f && material.metallic_roughness_texture.texture < 0;
-    if (material.matte() || material.brdf >= 0 || bare) continue;
+    if (material.isDiffuse() || surface.whole || bare) continue;
     if (round_.empty()) round_ = AlbedoTable::build(/*anisotropic=*/false);
     if (material.anisotropy > 0.0f && anisotropic_.empty())
       anisotropic_ = AlbedoTable::build(/*anisotropic=*/true);
@@ -138,8 +141,8 @@ glm::vec3 Surfaces::emittedAt(const Hit& hit) const {
   return material.emissive * glm::vec3(textures_.color(ref, texcoord(hit, ref.texcoord)));
 }
 
-// The file's, or by the texture coordinates over this triangle. glTF's textures have v pointing down and
-// normals' +Y pointing up, so that a triangle's bitangent is -dp/dv.
+// Returns the file's tangent, or one from the texture coordinates over this triangle. glTF's textures have v
+// pointing down and normals' +Y pointing up, so a triangle's bitangent is -dp/dv.
 glm::vec4 Surfaces::tangent(const Hit& hit, const glm::vec3& normal) const {
   const glm::vec4 given = interpolated(tangents_, hit);
   if (tangents_[triangles_[hit.triangle].x].w != 0.0f)
@@ -199,9 +202,8 @@ Reflector Surfaces::reflectorAt(const Hit& hit, const SurfacePoint& point, const
   const auto [t, strength] = anisotropy(hit, normal, point.shading);
   out.world_from_local = {t, glm::cross(point.shading, t), point.shading};
   out.view = liftedView(out.toLocal(glm::normalize(to_eye)));
-  if (material.brdf >= 0) {
-    out.measured = &measured_[static_cast<std::size_t>(material.brdf)];
-    out.alpha = glm::vec2(out.measured->alpha());
+  if ((out.whole = surfaces_[hit.surface].whole.get())) {
+    out.alpha = glm::vec2(out.whole->alpha());
     out.specular_share = 0.5f;
     return out;
   }
@@ -217,7 +219,7 @@ Reflector Surfaces::reflectorAt(const Hit& hit, const SurfacePoint& point, const
       specular * glm::min(step * step * material.specular_color * tint, glm::vec3(1.0f));
   out.f0 = glm::mix(dielectric, point.albedo, metal);
   out.f90 = glm::mix(specular, 1.0f, metal);
-  if (metal >= 1.0f) return out;  // nothing diffuse, all by the lobe
+  if (metal >= 1.0f) return out;  // a metal has no diffuse part
   const glm::vec2 parts = (strength > 0.0f ? anisotropic_ : round_).at(out.view, roughness, strength);
   const glm::vec3 reflected = out.f0 * parts.x + out.f90 * parts.y;
   const float most = std::max({reflected.r, reflected.g, reflected.b});
@@ -252,7 +254,7 @@ SurfacePoint Surfaces::pointAt(const Hit& hit, const glm::vec3& dir) const {
     point.shading = -point.shading;
     point.smooth = -point.smooth;
   }
-  point.glossy = !material.matte();
+  point.glossy = !material.isDiffuse();
   if (point.glossy) point.reflector = reflectorAt(hit, point, normal, -dir);
   return point;
 }

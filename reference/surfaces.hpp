@@ -1,10 +1,11 @@
-// The scene at rest as triangles in world space, with what a path needs to know where it meets one. Comes in:
-// import's Scene, all nodes at their place. Goes out: one Surface per node and primitive, and the point on it
-// that a ray hit: both normals, how it reflects (docs/conventions.md, "Materials"), radiance that it gives
-// off. Mirrored nodes have their triangles turned, so that counter-clockwise is the front everywhere.
+// Surfaces are the scene as triangles in world space, with what a path needs to know where it meets one.
+// Import's Scene comes in, with all nodes in place. One Surface per node and primitive goes out, and for a
+// hit the point on it: both normals, how it reflects (docs/conventions.md, "Materials") and the radiance that
+// it emits. Triangles of mirrored nodes are turned, so that counter-clockwise is the front everywhere.
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include <glm/vec2.hpp>
@@ -15,37 +16,38 @@
 #include "reference/albedo_table.hpp"
 #include "reference/brdf.hpp"
 #include "reference/horizons.hpp"
-#include "reference/measured.hpp"
 #include "reference/textures.hpp"
+#include "reference/whole_brdf.hpp"
 
 namespace lambent::baker::reference {
 
 struct Surface {
   gltf::Material material;
+  std::shared_ptr<const WholeBrdf> whole;  // null: GGX, or matte
   std::uint32_t first_vertex = 0, vertex_count = 0;
   std::uint32_t first_triangle = 0, triangle_count = 0;
-  float handedness = 1.0f;  // -1 in mirrored nodes, where a bitangent is cross(t, n) w
+  float handedness = 1.0f;  // -1 in mirrored nodes; a bitangent is cross(t, n) w there
 };
 
-// Barycentric coordinates u, v belong to the triangle's second and third corner.
+// The barycentric coordinates u and v belong to the triangle's second and third corner.
 struct Hit {
   static constexpr std::uint32_t kNothing = ~0u;
   std::uint32_t surface = kNothing;
-  std::uint32_t triangle = 0;  // of all surfaces
+  std::uint32_t triangle = 0;  // index among those of all surfaces
   float u = 0.0f, v = 0.0f, t = 0.0f;
   bool any() const { return surface != kNothing; }
 };
 
-// The side that was looked at: normals of a two-sided surface's back are turned; those of a one-sided one
-// are not, and `blocked` says that nothing comes from there.
+// A SurfacePoint is on the side of a surface that a ray met. Normals are turned on the back of a double-sided
+// surface. On the back of a single-sided one they are not, and `blocked` says that no light comes from there.
 struct SurfacePoint {
   glm::vec3 position{0.0f};
   glm::vec3 geometric{0.0f};  // unit; decides which directions are above the horizon
-  glm::vec3 shading{0.0f};    // unit; in the cosine only
-  glm::vec3 smooth{0.0f};     // the same before normal maps bend it
-  glm::vec3 albedo{0.0f};     // base colour; of a diffuse surface all there is to reflect
+  glm::vec3 shading{0.0f};    // unit; used in the cosine only
+  glm::vec3 smooth{0.0f};     // the shading normal before normal maps
+  glm::vec3 albedo{0.0f};     // base colour; all that a diffuse surface reflects
   bool glossy = false;        // reflects by `reflector`
-  Reflector reflector;        // towards where it was looked at from
+  Reflector reflector;        // towards the origin of the ray
   glm::vec3 emitted{0.0f};    // radiance, the same in all directions
   float alpha = 1.0f;
   float offset = 0.0f;  // how far rays start off the surface
@@ -58,7 +60,7 @@ struct SurfacePoint {
 
 class Surfaces {
  public:
-  // Errors: a texture that cannot be decoded.
+  // Errors: a texture cannot be decoded.
   static Result<Surfaces> build(const Scene& scene);
 
   const std::vector<Surface>& surfaces() const { return surfaces_; }
@@ -66,10 +68,10 @@ class Surfaces {
   const std::vector<glm::uvec3>& triangles() const { return triangles_; }
 
   SurfacePoint pointAt(const Hit& hit, const glm::vec3& dir) const;
-  // Of the front; for cut-outs, by the filter of rays, and for blended surfaces.
+  // Returns alpha of the front, for cut-outs (in the filter of rays) and blended surfaces.
   float alphaAt(const Hit& hit) const;
   glm::vec3 emittedAt(const Hit& hit) const;
-  // Twice the area, along the front's geometric normal.
+  // Returns twice the area, along the front's geometric normal.
   glm::dvec3 areaVector(std::uint32_t triangle) const;
 
  private:
@@ -81,20 +83,20 @@ class Surfaces {
   glm::vec4 tangent(const Hit& hit, const glm::vec3& normal) const;
   Reflector reflectorAt(const Hit& hit, const SurfacePoint& point, const glm::vec3& normal,
                         const glm::vec3& to_eye) const;
-  // Of the longer lobe, unit and across the shading normal; strength 0..1.
+  // Returns the direction of the longer lobe, unit and orthogonal to the shading normal, and the strength,
+  // 0..1.
   std::pair<glm::vec3, float> anisotropy(const Hit& hit, const glm::vec3& normal,
                                          const glm::vec3& shading) const;
-  void buildTables(const Scene& scene);
+  void buildTables();
 
   std::vector<Surface> surfaces_;
   std::vector<glm::vec3> positions_, normals_;
   std::vector<glm::vec2> texcoords_[2];
   std::vector<glm::vec4> colors_;
-  std::vector<glm::vec4> tangents_;  // w = 0 where the file has none
+  std::vector<glm::vec4> tangents_;  // w = 0 if the file has none
   std::vector<glm::uvec3> triangles_;
   Textures textures_;
   AlbedoTable round_, anisotropic_;
-  std::vector<MeasuredReflection> measured_;  // as Scene::brdfs
 };
 
 }  // namespace lambent::baker::reference

@@ -12,10 +12,10 @@ namespace lambent::baker::reference {
 
 namespace {
 
-// glTF's sampler constants.
+// These are glTF's sampler constants.
 constexpr std::uint32_t kClampToEdge = 33071, kMirroredRepeat = 33648, kNearest = 9728;
 
-// IEC 61966-2-1.
+// Tabulates the sRGB decoding of IEC 61966-2-1.
 std::array<float, 256> srgbTable() {
   std::array<float, 256> table{};
   for (std::size_t i = 0; i < table.size(); ++i) {

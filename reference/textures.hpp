@@ -1,6 +1,6 @@
-// Textures as a ray sees them: bilinear at full resolution under the sampler's wrap modes, from the decoded
-// images. Colours come out linear; data (normals) as stored. Texel centres lie at half-integers, v = 0 is the
-// top.
+// Looks up textures as a ray sees them: bilinear at full resolution under the sampler's wrap modes, from the
+// decoded images. Colours come out linear, data (normals) as stored. Texel centres lie at half-integers; v =
+// 0 is the top.
 #pragma once
 
 #include <optional>
@@ -16,12 +16,12 @@ namespace lambent::baker::reference {
 
 class Textures {
  public:
-  // Decodes the images that materials of `scene` look up. Errors name the image.
+  // Decodes the images that materials of `scene` use. Errors name the image.
   static Result<Textures> load(const Scene& scene);
 
-  // sRGB-coded colour made linear, with alpha. White where there is no such texture.
+  // Returns the sRGB-coded colour made linear, with alpha; white if there is no such texture.
   glm::vec4 color(const gltf::TextureRef& ref, const glm::vec2& uv) const;
-  // 0..1 as stored.
+  // Returns the values as stored, 0..1.
   glm::vec4 data(const gltf::TextureRef& ref, const glm::vec2& uv) const;
 
  private:

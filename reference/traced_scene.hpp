@@ -1,6 +1,6 @@
-// A scene as paths meet it, whatever light from infinity and view there are: surfaces, the hierarchy over
-// them, what in the file shines, volumes. Comes in: import's Scene, all nodes at their place. Slow to build,
-// free to share: any number of pictures may be traced of one at a time, from any thread. The Scene must
+// A TracedScene is a scene as paths meet it, independent of light from infinity and view: surfaces, the
+// hierarchy over them, the lights in the file, and volumes. Import's Scene comes in, with all nodes in place.
+// It is slow to build, but any number of threads may trace pictures of it at the same time. The Scene must
 // outlive it.
 #pragma once
 
@@ -15,15 +15,15 @@ namespace lambent::baker::reference {
 
 class TracedScene {
  public:
-  // Errors: a texture that cannot be decoded; Embree without memory.
+  // Errors: a texture cannot be decoded, or Embree has no memory.
   static Result<std::unique_ptr<const TracedScene>> build(const Scene& scene);
 
   const Surfaces& surfaces() const { return surfaces_; }
   const Volumes& volumes() const { return volumes_; }
-  // What was put aside, a sentence each.
+  // Says what was left out, one sentence each.
   const std::vector<std::string>& notices() const { return notices_; }
 
-  // Everything must outlive the world.
+  // This object and all arguments must outlive the world.
   World under(const Environment& environment, const std::vector<spec::LocalLight>& shapes,
               const EyeRays& eye) const;
 

@@ -9,14 +9,15 @@ namespace lambent::baker::reference {
 
 namespace {
 
-// t of the first collision with this one, or `far`.
+// Returns t of the first collision with this volume, or `far`.
 double collideWith(const GridMedium& grid, const Ray& ray, double far, Stream& random) {
   const auto inside = grid.clipped(ray, 0.0, far);
   if (!inside) return far;
   double found = far, depth = random.exponential();
   grid.visitBlocks(*inside, [&](double t, double end, double /*least*/, double bound) {
     while (bound > 0.0) {
-      // Collisions with a medium of the bound's density; those that the real one does not have are passed.
+      // Collisions are drawn for a medium of the bound's density; those that the real one does not have are
+      // skipped.
       const double step = depth / bound;
       if (t + step >= end) {
         depth -= (end - t) * bound;
@@ -35,7 +36,7 @@ double collideWith(const GridMedium& grid, const Ray& ray, double far, Stream& r
 }
 
 double transmittanceOf(const GridMedium& grid, const Ray& ray, double far, Stream& random) {
-  // Below this, roulette keeps an estimate's worth and not its cost.
+  // Below this, roulette saves work and keeps the expected value.
   constexpr double kLittle = 0.1;
   const auto inside = grid.clipped(ray, 0.0, far);
   if (!inside) return 1.0;
@@ -45,7 +46,7 @@ double transmittanceOf(const GridMedium& grid, const Ray& ray, double far, Strea
     return through > 0.0;
   };
   grid.visitBlocks(*inside, [&](double t, double end, double least, double most) {
-    // The least density dims as it does; what there is above it is found by ratio tracking.
+    // The least density dims exactly; ratio tracking handles what exceeds it.
     through *= std::exp(-least * (end - t));
     if (!playRoulette()) return false;
     const double above = most - least;
@@ -86,7 +87,8 @@ Volumes Volumes::build(const Scene& scene, std::vector<std::string>& notices) {
 }
 
 std::optional<Volumes::Collision> Volumes::collide(const Ray& ray, double far, Stream& random) const {
-  // The first of independent collisions is the first with the sum, and whose it is goes by their shares.
+  // The first of independent collisions has the distribution of the summed media, and falls on each by its
+  // share.
   std::optional<Collision> first;
   for (std::uint32_t v = 0; v < grids_.size(); ++v) {
     const double limit = first ? first->t : far, t = collideWith(grids_[v], ray, limit, random);

@@ -1,8 +1,9 @@
-// The media of a scene, as paths meet them; where several overlap their extinctions add. Comes in: the scene,
-// all nodes at their place. Goes out: where a ray scatters next, by delta tracking (Woodcock et al. 1965),
-// and what of light gets through, by residual ratio tracking (Novák, Selle and Jarosz, "Residual Ratio
-// Tracking", SIGGRAPH Asia 2014); both without bias, for any density, through blocks with bounds of their
-// own. Volumes without density are left out: with such ones a scene is as without any. Any thread.
+// Volumes are the media of a scene, as paths meet them; where several overlap, their extinctions add. The
+// scene comes in, with all nodes in place. It answers where a ray scatters next, by delta tracking (Woodcock
+// et al. 1965), and how much light gets through, by residual ratio tracking (Novák, Selle and Jarosz,
+// "Residual Ratio Tracking", SIGGRAPH Asia 2014). Both are unbiased for any density and use blocks with
+// bounds of their own. Volumes without density are left out, so that a scene with them gives the same picture
+// as one without. Calls are safe from any thread.
 #pragma once
 
 #include <optional>
@@ -17,7 +18,7 @@ namespace lambent::baker::reference {
 
 class Volumes {
  public:
-  // Notices name volumes that are left out because their node is flat.
+  // `notices` receives the names of volumes that are left out because their node is flat.
   static Volumes build(const Scene& scene, std::vector<std::string>& notices);
 
   bool empty() const { return grids_.empty(); }
@@ -28,9 +29,9 @@ class Volumes {
     double t = 0.0;
     std::uint32_t volume = 0;
   };
-  // The first one before `far`, in lengths of the ray's direction; Ray::far is not looked at.
+  // Returns the first collision before `far`, in lengths of the ray's direction; Ray::far is ignored.
   std::optional<Collision> collide(const Ray& ray, double far, Stream& random) const;
-  // An estimate in 0..1 of exp(-optical depth); exactly 1 where nothing is met.
+  // Returns an unbiased estimate in 0..1 of exp(-optical depth); exactly 1 if nothing is met.
   double transmittance(const Ray& ray, double far, Stream& random) const;
 
  private:

@@ -9,7 +9,7 @@ namespace lambent::baker::reference {
 
 namespace {
 
-constexpr std::uint32_t kFirstRoulette = 4;  // bounces that always go on
+constexpr std::uint32_t kFirstRoulette = 4;  // bounces before roulette begins
 constexpr std::uint32_t kPerLayer = kPerVertex * (kMostVertices + 1);
 // Vertices beyond the first ones draw from samplers of their own, this many from each.
 constexpr std::uint32_t kPage = 1024;

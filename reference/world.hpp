@@ -1,4 +1,4 @@
-// Everything that light and rays meet.
+// A World is everything that light and rays meet.
 #pragma once
 
 #include <vector>

@@ -23,7 +23,7 @@ bool finite(const glm::dvec3& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
-// Nothing (infinity) is the same as nothing; what is not a number is the same as none.
+// Two infinite depths (no surface) are the same. NaN differs from every depth.
 bool sameDepth(float a, float b) {
   return a == b || std::abs(a - b) <= kSameDepth * std::min(a, b);
 }
@@ -32,7 +32,7 @@ bool haveDepths(std::initializer_list<const spec::RgbaImage*> pictures) {
   return std::ranges::none_of(pictures, [](const spec::RgbaImage* p) { return p->depths.empty(); });
 }
 
-// relative_rms is of this.
+// These sums give relative_rms.
 struct Sums {
   double squares = 0.0, energy = 0.0;
   std::uint64_t pixels = 0;
@@ -64,7 +64,8 @@ Result<PictureError> comparePictures(const spec::RgbaImage& picture, const spec:
   const bool depths = haveDepths({&picture, &reference, &second});
   for (std::size_t i = 0; i < picture.texels.size(); ++i) {
     const auto [least, most] = std::minmax({picture.texels[i].w, reference.texels[i].w, second.texels[i].w});
-    // A rim that is just above the bound in one and just below in the other is not apart.
+    // A pixel of an outline that is just above the bound in one picture and just below in another does not
+    // count.
     error.pixels_apart += most >= spec::kLeastCoverage && least < 0.5f * spec::kLeastCoverage;
     if (!(least >= spec::kLeastCoverage)) continue;
     const glm::dvec3 x(picture.texels[i]), a(reference.texels[i]), b(second.texels[i]), mean = 0.5 * (a + b);
@@ -77,8 +78,8 @@ Result<PictureError> comparePictures(const spec::RgbaImage& picture, const spec:
     if (depths && sameDepth(picture.depths[i], reference.depths[i]) &&
         sameDepth(picture.depths[i], second.depths[i]) && sameDepth(reference.depths[i], second.depths[i]))
       same_surface.add(x, a, b);
-    // With d the error and p, q the noise of A and B, (d - p)(d - q) strays by -d (p + q) + pq. Its variance
-    // is that of (d - (p + q)/2)(p - q), which can be seen.
+    // With d the error and p, q the noise of A and B, (d - p)(d - q) varies by -d (p + q) + pq. The variance
+    // of that equals that of (d - (p + q)/2)(p - q), which can be measured.
     const double noise = glm::dot(x - mean, a - b);
     noise_squares += noise * noise;
     difference_sum += x - mean;

@@ -1,10 +1,11 @@
-// How far a picture lies from a reference, in linear radiance, over the pixels that both cover (alpha of at
-// least spec::kLeastCoverage in every picture; no sky, no tone map). What a cloud or a blended surface lets
-// through of the sky counts with it: it is the same in all pictures, or should be. With a second reference
-// that was made independently (another seed), the noise of the references cancels: errors are products of two
-// differences whose noise is not correlated. Where all pictures have depths, pixels in which they show
-// different surfaces are told apart by these, whatever their colours: rays through the cracks of a mesh, or
-// an outline that moved by the rounding of positions.
+// The room baker/accuracy owns error figures between linear pictures. This file measures how far a picture is
+// from a reference, in linear radiance, over the pixels that both cover (alpha of at least
+// spec::kLeastCoverage in every picture), without sky and tone map. The part of the sky that shows through
+// clouds and blended surfaces counts with them, since it should be the same in all pictures. With a second,
+// independent reference (another seed) the noise of the references cancels, because errors are products of
+// two differences with uncorrelated noise. If all pictures have depths, pixels that show different surfaces
+// are told apart, whatever their colours: these are rays through cracks of a mesh, or outlines that moved by
+// rounding of positions. All functions here are pure and work on the calling thread.
 #pragma once
 
 #include <array>
@@ -19,32 +20,34 @@ namespace lambent::baker {
 
 struct PictureError {
   std::uint64_t pixels = 0;  // covered in all pictures
-  // Covered in one, sky in another (less than half of kLeastCoverage): more than the odd pixel of an outline
-  // says that scene, camera or size differ.
+  // Counts pixels that one picture covers and that are sky in another (less than half of kLeastCoverage).
+  // More than the odd pixel of an outline means that scene, camera or size differ.
   std::uint64_t pixels_apart = 0;
-  double relative_rms =
-      0.0;  // sqrt( sum (X-A)² / sum A² ); with B: sqrt( sum (X-A)(X-B) / sum AB ), 0 if negative
-  // Standard error of relative_rms²: what is left of two references' noise. relative_rms is a figure only
-  // where its square is well above. 0 with one reference, whose noise cannot be told from error.
+  // It is sqrt( sum (X-A)² / sum A² ), and with B sqrt( sum (X-A)(X-B) / sum AB ), 0 if negative.
+  double relative_rms = 0.0;
+  // This is the standard error of relative_rms²: the remaining noise of two references. relative_rms is
+  // meaningful only if its square is well above this. It is 0 with one reference, whose noise cannot be told
+  // from error.
   double relative_square_error = 0.0;
   std::array<double, 3> bias{};  // per channel: sum (X-A) / sum A; A the mean of both references
-  // Over pixels, of the root mean square difference of the channels, relative to that of the reference over
-  // the picture. Noise of the references is in these.
+  // These are percentiles over pixels of the RMS difference of the channels, relative to the reference's RMS
+  // over the picture. They include the noise of the references.
   double median = 0.0, percentile_95 = 0.0, percentile_99 = 0.0, largest = 0.0;
-  // Of `pixels`: depths of two pictures differ by more than kSameDepth, or only one of them has a depth. None
-  // where a picture has no depths.
+  // How many of `pixels` show different surfaces: depths of two pictures differ by more than kSameDepth, or
+  // only one of them has a depth. Nothing if a picture has no depths.
   std::optional<std::uint64_t> pixels_of_other_surfaces = {};
-  // relative_rms over the other pixels, by their own energy; none also where these are none or black.
+  // This is relative_rms over the other pixels, by their own energy. It is also nothing if there are none or
+  // they are black.
   std::optional<double> same_surface_rms = {};
 };
 
-// Relative to the smaller of two depths. Above what rounded positions and the steps of the runtime's depth
-// buffer (1e-4 at worst, runtime/spec/camera.cpp) make of one surface unless it is seen edge on, and below
-// how far most things stand before others.
+// The bound is relative to the smaller of two depths. It is above the differences that rounded positions and
+// the steps of the runtime's depth buffer (1e-4 at worst, runtime/spec/camera.cpp) make on one surface,
+// unless it is seen edge on, and below the distance between most objects.
 inline constexpr float kSameDepth = 1.0f / 512.0f;
 
-// reference2: null where there is none. Errors name `subject`: sizes that differ, values that are not finite,
-// no pixel that all cover, a black reference.
+// `reference2` is null if there is none. Errors name `subject`: sizes differ, values are not finite, no pixel
+// is covered in all pictures, or a reference is black.
 Result<PictureError> comparePictures(const spec::RgbaImage& picture, const spec::RgbaImage& reference,
                                      const spec::RgbaImage* reference2, const std::string& subject);
 

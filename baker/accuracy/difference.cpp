@@ -15,7 +15,7 @@ namespace {
 
 using Color = std::array<std::uint8_t, 3>;
 
-// ColorBrewer's RdBu in 11 steps, turned round, and matplotlib's inferno (CC0) at every tenth.
+// These are ColorBrewer's RdBu in 11 steps, reversed, and matplotlib's inferno (CC0) at every tenth.
 constexpr std::array<Color, 11> kSigned = {{{5, 48, 97},
                                             {33, 102, 172},
                                             {67, 147, 195},
@@ -39,19 +39,19 @@ constexpr std::array<Color, 11> kMagnitude = {{{0, 0, 4},
                                                {246, 215, 70},
                                                {252, 255, 164}}};
 constexpr Color kUncovered = {48, 48, 48}, kApart = {150, 60, 220};
-constexpr float kFloor = 0.05f;  // of the picture's RMS luminance
+constexpr float kFloor = 0.05f;  // relative to the picture's RMS luminance
 
-// Rec. 709.
+// Returns Rec. 709 luminance.
 float luminance(const glm::vec4& texel) {
   return 0.2126f * texel.r + 0.7152f * texel.g + 0.0722f * texel.b;
 }
 
 struct Pixels {
-  std::vector<float> values;  // of the map, where all pictures cover
+  std::vector<float> values;  // values of the map in pixels that all pictures cover
   std::vector<std::uint32_t> at, apart;
 };
 
-// As comparePictures() counts them.
+// Counts pixels as comparePictures() does.
 Pixels pixelsOf(const spec::RgbaImage& picture, const spec::RgbaImage& a, const spec::RgbaImage& b) {
   Pixels out;
   for (std::uint32_t i = 0; i < picture.texels.size(); ++i) {
@@ -84,7 +84,7 @@ void measure(Pixels& pixels, const spec::RgbaImage& picture, const spec::RgbaIma
   }
 }
 
-// Up to 1, 2 or 5 times a power of ten; pictures that are the same get a thousandth.
+// Rounds up to 1, 2 or 5 times a power of ten; equal pictures get a thousandth.
 double rounded(double range) {
   if (!(range > 1e-3)) return 1e-3;
   const double power = std::pow(10.0, std::floor(std::log10(range)));
@@ -142,7 +142,7 @@ Result<Difference> differenceOf(const spec::RgbaImage& picture, const spec::Rgba
                           .height = picture.height,
                           .texels = std::vector<std::uint8_t>(4 * picture.texels.size(), 255)},
                  .range = options.range ? *options.range : rangeOf(pixels.values)};
-  // One table for all pixels: colours are interpolated once.
+  // All pixels share one table, so that colours are interpolated once.
   constexpr int kSteps = 512;
   std::array<Color, kSteps + 1> table;
   const double least = options.map == HeatMap::Signed ? -1.0 : 0.0;

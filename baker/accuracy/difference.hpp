@@ -1,7 +1,7 @@
-// Where a picture differs from a reference, as colours, and by how much, in the figures of comparePictures().
-// Comes in: two linear pictures of one size and, where there is one, a second independent reference, whose
-// noise then cancels in the figures (of a single pixel it cannot be told from error). Goes out: a picture of
-// eight bits with a range that its colours span. Any thread; 1280 x 720 in less than 0.2 s.
+// Shows where and by how much a picture differs from a reference, as colours and in the figures of
+// comparePictures(). Two linear pictures of one size come in, with an optional second independent reference,
+// whose noise then cancels in the figures (though not in single pixels). An 8-bit picture and the range of
+// its colours go out. Calls are safe from any thread; 1280 x 720 takes less than 0.2 s.
 #pragma once
 
 #include <array>
@@ -14,34 +14,35 @@ namespace lambent::baker {
 
 enum class HeatMap {
   // (Y - Y_ref) / max(Y_ref, 5 % of the picture's RMS luminance): red where the picture is too bright, white
-  // where it is right, blue where it is too dark. The floor keeps what is next to black from filling the map.
+  // where it is right, blue where it is too dark. The floor keeps near-black pixels from filling the map.
   Signed,
   // The length of the difference over the channels, relative to the reference's RMS over the picture: black
-  // where it is right, then red, yellow, white. What comparePictures() has percentiles of.
+  // where it is right, then red, yellow, white. These are the values whose percentiles comparePictures()
+  // returns.
   Magnitude,
 };
 
-// "signed" or "magnitude".
+// Parses "signed" or "magnitude".
 Result<HeatMap> parseHeatMap(std::string_view word);
 
 struct HeatOptions {
   HeatMap map = HeatMap::Signed;
-  // Where the colours end, as a share (0.1: 10 %); none: what 99 of 100 pixels are below, rounded up to
-  // 1, 2 or 5 times a power of ten.
+  // The end of the colour range, as a share (0.1 is 10 %). By default it is the value that 99 of 100 pixels
+  // are below, rounded up to 1, 2 or 5 times a power of ten.
   std::optional<double> range = {};
 };
 
 struct Difference {
   PictureError figures;
-  // Pixels that no picture covers are dark grey; those that one covers and another does not are violet.
+  // Pixels that no picture covers are dark grey; those that only some cover are violet.
   spec::Rgba8Image heat;
   double range = 0.0;
 };
 
-// For the bar beside the map: share of the range, -1..1 where signed, else 0..1; clamped. sRGB.
+// Returns the sRGB colour for a share of the range, e.g. for a legend: -1..1 if signed, else 0..1; clamped.
 std::array<std::uint8_t, 3> heatColor(HeatMap map, double share);
 
-// reference2: null where there is none. Errors: those of comparePictures(); a range that is not above 0.
+// `reference2` is null if there is none. Errors: those of comparePictures(), or a range that is not above 0.
 Result<Difference> differenceOf(const spec::RgbaImage& picture, const spec::RgbaImage& reference,
                                 const spec::RgbaImage* reference2, const HeatOptions& options,
                                 const std::string& subject);

@@ -5,8 +5,9 @@
 
 #include <glm/geometric.hpp>
 
-#include "runtime/bundle/transfer_codec.hpp"
+#include "runtime/bundle/entropy_coder.hpp"
 #include "runtime/bundle/volume_grid.hpp"
+#include "runtime/transfer/vertex_rows.hpp"
 
 namespace lambent::baker {
 
@@ -17,15 +18,18 @@ constexpr std::uint32_t kRowsPriority = 1, kCodebookPriority = 2, kFirstPlanePri
 
 std::uint32_t outputsOf(SampleKind kind, int glossy_order) {
   if (kind == SampleKind::Diffuse) return 1;
-  return kind == SampleKind::NormalMapped ? bundle::kMappedOutputs
+  return kind == SampleKind::NormalMapped ? transfer::kMappedOutputs
                                           : static_cast<std::uint32_t>(glossy_order * glossy_order);
 }
 
 class Assembler {
  public:
-  Assembler(const Scene& scene, const BakeOptions& options, const EffectPlan& plan, const BrdfTables& tables,
-            BakeReport& report)
-      : scene_(scene), plan_(plan), options_(options), tables_(tables), report_(report) {}
+  explicit Assembler(const SceneBake& bake)
+      : scene_(bake.scene),
+        plan_(bake.plan),
+        options_(bake.options),
+        tables_(bake.tables),
+        report_(bake.report) {}
 
   void copyScene() {
     description_.generator = generatorOf(scene_, options_);
@@ -168,7 +172,7 @@ class Assembler {
     return index;
   }
 
-  void addGridCells(const std::vector<CodedCell>& cells, bundle::CellKind kind, std::uint32_t light_probe,
+  void addGridCells(const std::vector<CodedCell>& cells, transfer::Domain domain, std::uint32_t light_probe,
                     bundle::Group& group) {
     for (const CodedCell& cell : cells) {
       group.cells.push_back({.first_sample = group.sample_count,
@@ -177,7 +181,7 @@ class Assembler {
                              .bounds_max = cell.bounds_max,
                              .transfers = {},
                              .light_probes = {light_probe},
-                             .kind = kind});
+                             .domain = domain});
       group.sample_count += cell.count;
     }
   }
@@ -199,7 +203,7 @@ class Assembler {
     grid.voxels =
         addTransferPayload(bundle::PayloadType::Voxels, bundle::encodeVoxels(baked.voxels), kRowsPriority);
     group.volume = grid;
-    addGridCells(baked.cells, bundle::CellKind::Volume, 0, group);
+    addGridCells(baked.cells, transfer::Domain::Voxel, 0, group);
   }
 
   // The group is taken to stand in the light of its middle.
@@ -210,7 +214,7 @@ class Assembler {
     };
     const auto nearest = std::min_element(group.light_probes.begin(), group.light_probes.end(), nearer);
     group.neighborhood = {baked.size, baked.bounds_min, baked.bounds_max};
-    addGridCells(baked.cells, bundle::CellKind::Neighborhood,
+    addGridCells(baked.cells, transfer::Domain::GridPoint,
                  static_cast<std::uint32_t>(nearest - group.light_probes.begin()), group);
   }
 
@@ -221,27 +225,32 @@ class Assembler {
     transfer.clusters = static_cast<std::uint32_t>(coded.codebook.clusters());
     transfer.axes = static_cast<std::uint32_t>(coded.codebook.axes.size());
     transfer.codebook = addTransferPayload(bundle::PayloadType::Codebook,
-                                           bundle::encodeCodebook(coded.codebook), kCodebookPriority);
+                                           transfer::encodeCodebook(coded.codebook), kCodebookPriority);
     if (transfer.clusters > 1)
       transfer.cluster_ids = static_cast<std::int32_t>(addTransferPayload(
-          bundle::PayloadType::ClusterIds, bundle::encodeClusterIds(coded.cluster_of, transfer.clusters),
+          bundle::PayloadType::ClusterIds, transfer::encodeClusterIds(coded.cluster_of, transfer.clusters),
           kCodebookPriority));
     transfer.error_bound =
-        coded.shape.glossy() ? options_.effectiveGlossyErrorBound() : options_.effectiveErrorBound();
+        coded.shape.beyondDiffuse() ? options_.effectiveGlossyErrorBound() : options_.effectiveErrorBound();
     transfer.error = coded.error;
     return transfer;
   }
 
   void addBrdfTables() {
+    if (tables_.entries.empty()) return;
     for (const BrdfTables::Entry& entry : tables_.entries) {
       description_.brdf_tables.push_back({entry.family, entry.name, 0});
       description_.brdf_tables.back().payload = addTransferPayload(
           bundle::PayloadType::BrdfTable,
           bundle::encodeBrdfTable(firstBands(entry.table, options_.glossy_order)), kCodebookPriority);
     }
-    for (std::size_t m = 0; m < description_.materials.size(); ++m)
-      if (description_.materials[m].brdf >= 0 && !tables_.entries.empty())
-        description_.materials[m].brdf = tables_.of_material[m];
+    // Materials name their own tables by place in the bundle.
+    for (std::size_t m = 0; m < tables_.of_material.size(); ++m) {
+      const std::int32_t table = tables_.of_material[m];
+      const bool own = table >= 0 && tables_.entries[static_cast<std::size_t>(table)].family ==
+                                         bundle::BrdfFamily::Measured;
+      if (own || description_.materials[m].brdf >= 0) description_.materials[m].brdf = table;
+    }
   }
 
   void addLightWeights(const std::vector<BakedGroup>& baked) {
@@ -249,7 +258,7 @@ class Assembler {
       for (std::size_t c = 0; c < baked[g].light_probes.cells.size(); ++c)
         if (const auto& weights = baked[g].light_probes.cells[c].weights; !weights.empty())
           description_.groups[g].cells[c].light_weights = static_cast<std::int32_t>(addTransferPayload(
-              bundle::PayloadType::LightWeights, bundle::encodeLightWeights(weights), kCodebookPriority));
+              bundle::PayloadType::LightWeights, transfer::encodeLightWeights(weights), kCodebookPriority));
   }
 
   void addProxies(const std::vector<BakedGroup>& baked) {
@@ -267,14 +276,14 @@ class Assembler {
                               .count = static_cast<std::uint32_t>(coded.codes.size()),
                               .variance = coded.variance};
     plane.payload = addTransferPayload(bundle::PayloadType::WeightPlane,
-                                       bundle::encodeWeightPlane(coded.codes, coded.bits),
+                                       transfer::encodeWeightPlane(coded.codes, coded.bits),
                                        kFirstPlanePriority + static_cast<std::uint32_t>(j));
     return plane;
   }
 
   void addDraw(const PlannedDraw& planned, std::uint32_t group, const DrawGeometry& geometry,
                const SampleSet& samples) {
-    bundle::VertexWeights rows;
+    transfer::VertexWeights rows;
     rows.offsets.push_back(0);
     for (std::uint32_t v = 0; v < geometry.vertex_count; ++v) {
       // Rows without a sample show what they are lit by, unshadowed (bake_unshadowed.cpp).
@@ -293,7 +302,7 @@ class Assembler {
                       0,
                       outputsOf(geometry.kind, options_.glossy_order)};
     draw.rows =
-        addTransferPayload(bundle::PayloadType::VertexWeights, bundle::encodeRows(rows), kRowsPriority);
+        addTransferPayload(bundle::PayloadType::VertexWeights, transfer::encodeRows(rows), kRowsPriority);
     description_.draws.push_back(draw);
   }
 
@@ -308,10 +317,8 @@ class Assembler {
 
 }  // namespace
 
-AssembledBundle assemble(const Scene& scene, const BakeOptions& options, const EffectPlan& plan,
-                         const BrdfTables& tables, ShippedMeshes meshes, std::vector<BakedGroup> baked,
-                         BakeReport& report) {
-  Assembler assembler(scene, options, plan, tables, report);
+AssembledBundle assemble(const SceneBake& bake, ShippedMeshes meshes, const std::vector<BakedGroup>& baked) {
+  Assembler assembler(bake);
   assembler.copyScene();
   assembler.addMeshes(meshes);
   assembler.addGroups(baked);

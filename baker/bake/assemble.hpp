@@ -5,10 +5,8 @@
 
 #include <vector>
 
-#include "baker/bake/bake.hpp"
 #include "baker/bake/bake_group.hpp"
-#include "baker/bake/ship_meshes.hpp"
-#include "baker/brdf/surface_brdfs.hpp"
+#include "baker/bake/scene_bake.hpp"
 #include "runtime/bundle/description.hpp"
 #include "runtime/bundle/writer.hpp"
 
@@ -19,10 +17,7 @@ struct AssembledBundle {
   std::vector<bundle::Blob> blobs;
 };
 
-// `baked` has one entry per plan group. tables: of the glossy materials; empty where they are shown as
-// Lambert. Adds the sizes by kind to the report.
-AssembledBundle assemble(const Scene& scene, const BakeOptions& options, const EffectPlan& plan,
-                         const BrdfTables& tables, ShippedMeshes meshes, std::vector<BakedGroup> baked,
-                         BakeReport& report);
+// `baked` has one entry per plan group. Adds the sizes by kind to the report.
+AssembledBundle assemble(const SceneBake& bake, ShippedMeshes meshes, const std::vector<BakedGroup>& baked);
 
 }  // namespace lambent::baker

@@ -11,13 +11,14 @@
 #include "baker/bake/bake_group.hpp"
 #include "baker/bake/bake_volume.hpp"
 #include "baker/bake/group_keys.hpp"
+#include "baker/bake/group_scene.hpp"
 #include "baker/bake/option_rows.hpp"
 #include "baker/bake/result_bytes.hpp"
 #include "baker/bake/ship_meshes.hpp"
-#include "baker/cache/cached_ranges.hpp"
 #include "baker/effects/diffuse/bounces.hpp"
 #include "baker/effects/effect_list.hpp"
 #include "baker/effects/neighborhood/grid_placement.hpp"
+#include "baker/jobs/kept_value.hpp"
 #include "baker/jobs/parallel.hpp"
 #include "baker/refine/refine.hpp"
 #include "runtime/base/atomic_file.hpp"
@@ -53,82 +54,71 @@ Result<std::vector<EffectEntry>> effectsOf(const BakeOptions& options) {
   return chosen;
 }
 
-Result<BrdfTables> cachedBrdfTables(const Scene& scene, const BakeOptions& options, Cache* cache) {
-  Result<BrdfTables> tables;
+Result<BrdfTables> brdfTablesOf(const Scene& scene, const BakeOptions& options, const BakeContext& context) {
+  context.progress.begin("BRDF tables");
   const int order = options.exitOrder(), shipped = options.glossy_order;
-  const Keep keep{cache, cache ? brdfTablesKey(scene, order, shipped) : Key{}};
-  cachedValue(
-      keep, [&](ByteReader& in) { return read(in, *tables); },
-      [&] {
-        tables = BrdfTables::make(scene, order, shipped);
-        return tables.has_value();
-      },
-      [&](ByteWriter& out) { write(*tables, out); });
+  Result<BrdfTables> tables;
+  findOrMake(context.keyed(context.cache ? brdfTablesKey(scene, order, shipped) : Key{}), *tables, [&] {
+    tables = BrdfTables::make(scene, order, shipped);
+    return tables.has_value();
+  });
   return tables;
 }
 
-tl::unexpected<Error> stopped(const Scene& scene) {
-  return fail(scene.source.string(), "stopped; nothing was written");
-}
-
-Result<BakeReport> bakeOnTheseThreads(const Scene& scene, const BakeOptions& options,
-                                      const std::filesystem::path& output, Progress& progress,
-                                      const std::stop_token& stop, Cache* cache) {
-  BakeReport report;
-  progress.begin("plan");
-  const auto plan = planFor(scene, options);
-  if (!plan) return failAgain(plan.error());
-  DecodedImages images(scene);
-  const auto alpha_maps = loadAlphaMaps(scene, images);
-  if (!alpha_maps) return failAgain(alpha_maps.error());
-
-  BrdfTables tables;
-  if (plan->bakes("glossy")) {
-    progress.begin("BRDF tables");
-    auto made = cachedBrdfTables(scene, options, cache);
-    if (!made) return failAgain(made.error());
-    tables = std::move(*made);
-  }
-
-  auto split = splitMeshes(scene, plan->groups, options.max_edge_m);
+// The meshes as they ship: edges split where the options and shadows ask for it, then coded.
+Result<ShippedMeshes> meshesOf(const SceneBake& bake, const AlphaMaps& alpha_maps,
+                               const BakeContext& context) {
+  const auto& [scene, options, plan, tables, report] = bake;
+  auto split = splitMeshes(scene, plan.groups, options.max_edge_m);
   if (!split) return failAgain(split.error());
+  const bool with_glossy = !tables.entries.empty();
   if (const float bound = options.effectiveRefineBound(); bound > 0.0f) {
     RefineOptions refine{.bound = bound,
                          .most_growth = options.refineGrowth(),
                          .most_added = options.refineAdded(),
                          .most_wedges = options.refineWedges()};
-    if (!tables.entries.empty()) refine.most_vertices = mostGlossySamples(options.glossy_order);
-    auto refined = refineMeshes(scene, plan->groups, *alpha_maps, !tables.entries.empty(), refine, *split,
-                                progress, stop, cache);
+    if (with_glossy) refine.most_vertices = mostGlossySamples(options.glossy_order);
+    auto refined = refineMeshes({scene, plan.groups, alpha_maps, with_glossy}, refine, *split, context);
     if (!refined) return failAgain(refined.error());
     report.refinement = *refined;
   }
-  auto meshes = shipMeshes(scene, plan->groups, *split, progress, stop, cache);
+  return shipMeshes(scene, plan.groups, *split, context);
+}
+
+Result<BakeReport> bakeOnTheseThreads(const Scene& scene, const BakeOptions& options,
+                                      const std::filesystem::path& output, const BakeContext& context) {
+  BakeReport report;
+  context.progress.begin("plan");
+  const auto plan = planFor(scene, options);
+  if (!plan) return failAgain(plan.error());
+  DecodedImages images(scene);
+  const auto alpha_maps = loadAlphaMaps(scene, images);
+  if (!alpha_maps) return failAgain(alpha_maps.error());
+  Result<BrdfTables> tables;
+  if (plan->bakes("glossy")) tables = brdfTablesOf(scene, options, context);
+  if (!tables) return failAgain(tables.error());
+  const SceneBake whole{scene, options, *plan, *tables, report};
+  auto meshes = meshesOf(whole, *alpha_maps, context);
   if (!meshes) return failAgain(meshes.error());
 
   std::vector<BakedGroup> baked;
   for (std::size_t g = 0; g < plan->groups.size(); ++g) {
-    auto result =
-        plan->groups[g].volume >= 0
-            ? bakeVolume(scene, plan->groups, g, baked, *alpha_maps, plan->neighborhoods[g], options,
-                         progress, stop, report, cache)
-            : bakeGroup(scene, plan->groups[g], plan->light_probes[g].count, plan->neighborhoods[g], tables,
-                        *meshes, *alpha_maps, images, options, progress, stop, report, cache);
-    if (!result) return failAgain(result.error());
-    baked.push_back(std::move(*result));
+    auto group = plan->groups[g].volume >= 0 ? bakeVolume(whole, *alpha_maps, g, baked, context)
+                                             : bakeGroup(whole, {*meshes, *alpha_maps, images}, g, context);
+    if (!group) return failAgain(group.error());
+    baked.push_back(std::move(*group));
   }
-  if (stop.stop_requested()) return stopped(scene);
+  if (context.stopped()) return whole.stopped();
 
-  progress.begin("writing");
-  AssembledBundle bundle =
-      assemble(scene, options, *plan, tables, std::move(*meshes), std::move(baked), report);
+  context.progress.begin("writing");
+  AssembledBundle bundle = assemble(whole, std::move(*meshes), baked);
   if (auto written = bundle::write(output, std::move(bundle.description), bundle.blobs); !written)
     return failAgain(written.error());
-  progress.end();
+  context.progress.end();
   std::error_code ignored;
   report.file_bytes = std::filesystem::file_size(output, ignored);
-  report.stages = progress.finished();
-  if (cache) {
+  report.stages = context.progress.finished();
+  if (const Cache* cache = context.cache) {
     report.cache = cache->figures();
     if (std::string notice = cache->notice(); !notice.empty()) report.notices.push_back(std::move(notice));
   }
@@ -199,15 +189,14 @@ Result<EffectPlan> planFor(const Scene& scene, const BakeOptions& options) {
 }
 
 Result<BakeReport> bake(const Scene& scene, const BakeOptions& options, const std::filesystem::path& output,
-                        Progress& progress, std::stop_token stop, Cache* cache) {
+                        const BakeContext& context) {
   if (auto checked = checkRequest(options, output); !checked) return failAgain(checked.error());
   std::error_code ignored;
   if (std::filesystem::equivalent(scene.source, output, ignored))
     return fail(output.string(), "is the scene itself", "name another file for the bundle");
   std::optional<Result<BakeReport>> result;
-  if (cache) cache->beginBake();
-  withThreads(options.threads,
-              [&] { result = bakeOnTheseThreads(scene, options, output, progress, stop, cache); });
+  if (context.cache) context.cache->beginBake();
+  withThreads(options.threads, [&] { result = bakeOnTheseThreads(scene, options, output, context); });
   return std::move(*result);
 }
 

@@ -5,16 +5,14 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <stop_token>
 #include <string>
 #include <vector>
 
 #include <glm/vec3.hpp>
 
 #include "baker/bake/options.hpp"
-#include "baker/cache/cache.hpp"
 #include "baker/import/scene.hpp"
-#include "baker/jobs/progress.hpp"
+#include "baker/jobs/bake_context.hpp"
 #include "baker/plan/effect_plan.hpp"
 #include "baker/refine/refine.hpp"
 #include "runtime/base/result.hpp"
@@ -29,14 +27,6 @@ enum class Reuse : std::uint8_t {
   Found,       // nothing was left to do
 };
 const char* reuseName(Reuse reuse);  // "baked", "re-gathered", "found"
-
-// What the bake of one group's surfaces came to, whether it was done now or found.
-struct GroupFigures {
-  std::uint64_t filled_samples = 0, glossy_samples = 0;
-  std::uint64_t hit_bytes = 0;  // kept for the bounces
-  double worst_error = 0.0, worst_glossy_error = 0.0, left_out = 0.0;
-  std::vector<double> pass_energy;
-};
 
 struct BakeReport {
   std::uint64_t vertices = 0, triangles = 0, samples = 0, filled_samples = 0;
@@ -89,12 +79,12 @@ struct BakeReport {
   std::vector<std::string> notices;  // what came out other than the plan says, a sentence each
 };
 
-// cache: where results are looked up and kept, for later bakes and for this one if it is cut short; may be
-// null. The bundle is the same, byte for byte, whatever was found there. Errors: options out of range, an
+// Results are looked up in the cache of the context and kept there, for later bakes and for this one if it is
+// cut short. The bundle is the same, byte for byte, whatever was found. Errors: options out of range, an
 // effect that is not known, a scene that cannot be coded, an output that cannot be written, "stopped" if a
 // stop was requested.
 Result<BakeReport> bake(const Scene& scene, const BakeOptions& options, const std::filesystem::path& output,
-                        Progress& progress, std::stop_token stop, Cache* cache = nullptr);
+                        const BakeContext& context);
 
 // What can be told wrong before the scene is read and rays are traced: options out of range, an effect that
 // is not known, a place that cannot be written. bake() begins with it.

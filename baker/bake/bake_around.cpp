@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "baker/effects/neighborhood/bake_neighborhood.hpp"
+#include "baker/jobs/kept_value.hpp"
 
 namespace lambent::baker {
 
@@ -14,19 +15,19 @@ constexpr double kShareOfBound = 1.0 / 3.0;
 // others, and lie close around the body, where its contact with what it stands on shows.
 constexpr double kBoundByHand = 0.03;
 
-void tell(const Around& around, BakedAround baked, BakeReport& report,
-          std::optional<BakedNeighborhood>& out) {
+void tell(const Around& around, BakedAround baked, std::optional<BakedNeighborhood>& out) {
+  BakeReport& report = around.bake.report;
+  const std::string& name = around.bake.plan.groups[around.group].name;
   if (!baked.grid) {
-    report.notices.push_back(
-        fmt::format("rigid group \"{}\": nothing comes within reach of its neighborhood, and none was baked",
-                    around.name));
+    report.notices.push_back(fmt::format(
+        "rigid group \"{}\": nothing comes within reach of its neighborhood, and none was baked", name));
     return;
   }
   out = std::move(baked.grid);
   const NeighborhoodFigures& figures = baked.figures;
   report.rays += figures.rays;
   report.rays_kept += figures.rays_kept;
-  report.neighborhoods.push_back({.name = around.name,
+  report.neighborhoods.push_back({.name = name,
                                   .size = figures.size,
                                   .bounds_min = figures.bounds_min,
                                   .bounds_max = figures.bounds_max,
@@ -37,41 +38,39 @@ void tell(const Around& around, BakedAround baked, BakeReport& report,
 
 // Of the surfaces that come within reach, from the origin.
 std::optional<Box3> receiversOf(const Around& around) {
-  if (around.plan.receivers.empty() || around.plan.by_hand) return std::nullopt;
-  return Box3{around.plan.receivers_min - around.origin, around.plan.receivers_max - around.origin};
+  const PlannedNeighborhood& plan = around.plan();
+  if (plan.receivers.empty() || plan.by_hand) return std::nullopt;
+  return Box3{plan.receivers_min - around.origin, plan.receivers_max - around.origin};
 }
 
 }  // namespace
 
-Keep keepOf(const Around& around, Cache* cache, const Key& body) {
-  if (!cache) return {};
+BakeContext contextOf(const Around& around, const BakeContext& body) {
+  if (!body.keeps()) return body;
+  const PlannedNeighborhood& plan = around.plan();
+  const BakeOptions& options = around.bake.options;
   const std::optional<Box3> receivers = receiversOf(around);
   KeyMaker key = KeyMaker::ofStage("neighborhood");
-  key.add(body).add(around.origin).add(std::uint64_t{around.rays});
-  key.add(around.plan.asked)
-      .add(around.plan.by_hand)
-      .add(around.plan.matrices)
-      .add(around.plan.size)
-      .add(around.plan.extent);
+  key.add(body.key).add(around.origin).add(std::uint64_t{around.rays});
+  key.add(plan.asked).add(plan.by_hand).add(plan.matrices).add(plan.size).add(plan.extent);
   key.add(receivers.has_value());
   if (receivers) key.add(receivers->low).add(receivers->high);
-  key.add(around.plan.receivers_face);
-  key.add(around.options.neighborhood_grid).add(around.options.effectiveErrorBound());
-  return {cache, key.key()};
+  key.add(plan.receivers_face);
+  key.add(options.neighborhood_grid).add(options.effectiveErrorBound());
+  return body.keyed(key.key());
 }
 
-bool findAround(const Around& around, const Keep& keep, BakeReport& report,
-                std::optional<BakedNeighborhood>& out) {
-  auto found = findNeighborhood(keep);
-  if (!found) return false;
-  tell(around, std::move(*found), report, out);
+bool findAround(const Around& around, const BakeContext& context, std::optional<BakedNeighborhood>& out) {
+  BakedAround found;
+  if (!findKept(context, found)) return false;
+  tell(around, std::move(found), out);
   return true;
 }
 
-bool bakeAround(const Around& around, const Body& body, const Box3& bounds, Progress& progress,
-                const std::stop_token& stop, const Keep& keep, BakeReport& report,
+bool bakeAround(const Around& around, const Body& body, const Box3& bounds, const BakeContext& context,
                 std::optional<BakedNeighborhood>& out) {
-  const PlannedNeighborhood& plan = around.plan;
+  const PlannedNeighborhood& plan = around.plan();
+  const BakeOptions& options = around.bake.options;
   NeighborhoodSettings settings;
   settings.origin = around.origin;
   settings.matrices = plan.matrices;
@@ -81,14 +80,14 @@ bool bakeAround(const Around& around, const Body& body, const Box3& bounds, Prog
   settings.facing = plan.receivers_face;
   settings.placement.size = plan.size;
   settings.placement.extent = plan.extent;
-  settings.placement.by_length = around.options.neighborhood_grid;
+  settings.placement.by_length = options.neighborhood_grid;
   if (plan.by_hand) settings.placement.bound = kBoundByHand;
   settings.placement.few_points = !plan.asked && !plan.matrices;
   settings.fit_between_points = true;
-  settings.coding.bound = kShareOfBound * double{around.options.effectiveErrorBound()};
-  auto baked = bakeNeighborhood(body, settings, progress, stop, keep);
+  settings.coding.bound = kShareOfBound * double{options.effectiveErrorBound()};
+  auto baked = bakeNeighborhood(body, settings, context);
   if (!baked) return false;
-  tell(around, std::move(*baked), report, out);
+  tell(around, std::move(*baked), out);
   return true;
 }
 

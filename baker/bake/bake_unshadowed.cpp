@@ -23,11 +23,11 @@ constexpr std::uint32_t kDenseBands =
 
 // What a place that sees everything has: of one output the mean of the light, of more the light itself.
 CodedTransfer openTransfer(int order, std::uint32_t outputs) {
-  bundle::TransferShape shape;
+  transfer::TransferShape shape;
   shape.order = static_cast<std::uint32_t>(order);
   shape.outputs = outputs;
   const bool as_visibility = outputs > kDenseBands * kDenseBands;
-  if (as_visibility) shape.visibility_bands = shape.order + bundle::bandsOf(outputs) - 1;
+  if (as_visibility) shape.visibility_bands = shape.order + transfer::bandsOf(outputs) - 1;
   std::vector<float> vector(shape.size(), 0.0f);
   if (as_visibility)
     vector[0] = std::sqrt(4.0f * std::numbers::pi_v<float>);  // V = 1
@@ -85,20 +85,19 @@ BakedGroup openVolume(const Scene& scene, const RigidGroup& group, const BakeOpt
 }
 
 Result<BakeReport> bakeOnTheseThreads(const Scene& scene, const BakeOptions& options,
-                                      const std::filesystem::path& output, Progress& progress,
-                                      const std::stop_token& stop) {
+                                      const std::filesystem::path& output, const BakeContext& context) {
   BakeReport report;
-  progress.begin("plan");
+  context.progress.begin("plan");
   const auto plan = planFor(scene, options);
   if (!plan) return failAgain(plan.error());
   // Making tables takes longer than anything here: glossy surfaces are Lambert until they are there.
   const BrdfTables tables;
   auto split = splitMeshes(scene, plan->groups, options.max_edge_m);
   if (!split) return failAgain(split.error());
-  auto meshes = shipMeshes(scene, plan->groups, *split, progress, stop);
+  auto meshes = shipMeshes(scene, plan->groups, *split, context);
   if (!meshes) return failAgain(meshes.error());
 
-  progress.begin("writing");
+  context.progress.begin("writing");
   std::vector<BakedGroup> baked;
   for (const RigidGroup& group : plan->groups) {
     baked.push_back(group.volume >= 0
@@ -107,27 +106,26 @@ Result<BakeReport> bakeOnTheseThreads(const Scene& scene, const BakeOptions& opt
     report.vertices += baked.back().geometry.positions.size();
     report.triangles += baked.back().geometry.triangles.size();
   }
-  AssembledBundle bundle =
-      assemble(scene, options, *plan, tables, std::move(*meshes), std::move(baked), report);
+  const SceneBake whole{scene, options, *plan, tables, report};
+  AssembledBundle bundle = assemble(whole, std::move(*meshes), baked);
   bundle.description.generator.settings["transfer"] = "none";
-  if (stop.stop_requested()) return fail(scene.source.string(), "stopped; nothing was written");
+  if (context.stopped()) return whole.stopped();
   if (auto written = bundle::write(output, std::move(bundle.description), bundle.blobs); !written)
     return failAgain(written.error());
-  progress.end();
+  context.progress.end();
   std::error_code ignored;
   report.file_bytes = std::filesystem::file_size(output, ignored);
-  report.stages = progress.finished();
+  report.stages = context.progress.finished();
   return report;
 }
 
 }  // namespace
 
 Result<BakeReport> bakeUnshadowed(const Scene& scene, const BakeOptions& options,
-                                  const std::filesystem::path& output, Progress& progress,
-                                  std::stop_token stop) {
+                                  const std::filesystem::path& output, const BakeContext& context) {
   if (auto checked = checkRequest(options, output); !checked) return failAgain(checked.error());
   std::optional<Result<BakeReport>> result;
-  withThreads(options.threads, [&] { result = bakeOnTheseThreads(scene, options, output, progress, stop); });
+  withThreads(options.threads, [&] { result = bakeOnTheseThreads(scene, options, output, context); });
   return std::move(*result);
 }
 

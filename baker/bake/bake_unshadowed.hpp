@@ -7,7 +7,6 @@
 #pragma once
 
 #include <filesystem>
-#include <stop_token>
 
 #include "baker/bake/bake.hpp"
 
@@ -15,7 +14,6 @@ namespace lambent::baker {
 
 // Of the options the orders, the effects and the longest edge count. Errors: as bake().
 Result<BakeReport> bakeUnshadowed(const Scene& scene, const BakeOptions& options,
-                                  const std::filesystem::path& output, Progress& progress,
-                                  std::stop_token stop);
+                                  const std::filesystem::path& output, const BakeContext& context);
 
 }  // namespace lambent::baker

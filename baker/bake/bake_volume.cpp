@@ -8,10 +8,12 @@
 #include <glm/gtc/quaternion.hpp>
 
 #include "baker/bake/bake_around.hpp"
-#include "baker/bake/result_bytes.hpp"
+#include "baker/bake/group_scene.hpp"
+#include "baker/compress/kept_transfer.hpp"
 #include "baker/effects/neighborhood/volume_body.hpp"
 #include "baker/effects/volume/marched_volume.hpp"
 #include "baker/effects/volume/volume_transfer.hpp"
+#include "baker/jobs/kept_value.hpp"
 #include "baker/transport/geometry_key.hpp"
 #include "baker/transport/ray_scene.hpp"
 
@@ -89,8 +91,8 @@ struct Part {
   }
 };
 
-bundle::TransferShape shapeOf(const VolumeTransfer& transfer) {
-  bundle::TransferShape shape;
+transfer::TransferShape shapeOf(const VolumeTransfer& transfer) {
+  transfer::TransferShape shape;
   shape.order = static_cast<std::uint32_t>(transfer.order);
   shape.full_channels = transfer.full_channels;
   shape.outputs = static_cast<std::uint32_t>(transfer.outputs());
@@ -119,87 +121,145 @@ bool read(ByteReader& in, CodedVolume& coded) {
          in.read(coded.row_bytes) && in.read(coded.iterations);
 }
 
-CodedTransfer codeDense(const Part& part, float bound, CachedCoding& coding, const std::stop_token& stop,
-                        CodedVolume& out) {
-  CodedTransfer coded =
-      coding.code(part.vectors(), part.count(), shapeOf(part.transfer), {.bound = bound}, stop);
-  out.worst_error = std::max(out.worst_error, double{coded.error});
-  return coded;
-}
+// Codes the transfer of a volume.
+class VolumeCoder {
+ public:
+  VolumeCoder(const VolumeTransfer& transfer, const BakeOptions& options, CachedCoding& coding)
+      : transfer_(transfer), options_(options), coding_(coding) {}
 
-// What comes through as visibility, what is scattered as matrices; they are shown together, and errors count
-// by how much of each band goes on, g^2l.
-std::vector<CodedTransfer> codeMatrices(const Part& part, float bound, CachedCoding& coding,
-                                        const std::stop_token& stop, CodedVolume& out) {
-  const VolumeTransfer& transfer = part.transfer;
-  bundle::TransferShape visible = shapeOf(transfer), scattered = visible;
-  visible.full_channels = 0;
-  visible.visibility_bands = static_cast<std::uint32_t>(transfer.order + transfer.bands - 1);
-  scattered.shadowed_channels = 0;
-  BandPower power;
-  for (std::size_t l = 0; l < power.size(); ++l)
-    power[l] = std::pow(double{transfer.g}, 2.0 * static_cast<double>(l));
-  std::vector<float> matrices;
-  if (transfer.full_channels > 0) matrices = part.scattered();
-  CodingSettings settings{.bound = bound,
-                          .shown_energy = transferEnergy(part.visibility(), visible, power),
-                          .kernel_power = power};
-  if (!matrices.empty()) {
-    settings.shown_energy += transferEnergy(matrices, scattered, power);
-    settings.bound *= std::sqrt(0.5f);
-  }
-  std::vector<CodedTransfer> coded;
-  coded.push_back(coding.code(part.visibility(), part.count(), visible, settings, stop));
-  if (!matrices.empty() && !stop.stop_requested())
-    coded.push_back(coding.code(matrices, part.count(), scattered, settings, stop));
-  double square = 0.0;
-  for (const CodedTransfer& each : coded) square += double{each.error} * double{each.error};
-  out.worst_glossy_error = std::max(out.worst_glossy_error, std::sqrt(square));
-  return coded;
-}
-
-// Runs of samples of nearly the same length, coded one by one. False if stopped.
-bool codeCells(const VolumeTransfer& transfer, const BakeOptions& options, CachedCoding& coding,
-               Progress& progress, const std::stop_token& stop, CodedVolume& out) {
-  const std::size_t samples = transfer.grid.samples();
-  const std::size_t cells = (samples + kMostSamplesInACell - 1) / kMostSamplesInACell;
-  out.voxels = transfer.grid.voxels();
-  out.rays = transfer.rays, out.rays_kept = transfer.rays_kept, out.row_bytes = transfer.row_bytes;
-  out.iterations = transfer.iterations, out.residual = transfer.residual;
-  progress.begin("coding", samples, "samples");
-  for (std::size_t c = 0; c < cells && !stop.stop_requested(); ++c) {
-    const Part part{transfer, samples * c / cells, samples * (c + 1) / cells};
-    CodedCell& cell = out.cells.emplace_back();
-    cell.count = static_cast<std::uint32_t>(part.count());
-    cell.bounds_min = cell.bounds_max = transfer.grid.place(part.begin);
-    for (std::size_t p = part.begin; p < part.end; ++p) {
-      cell.bounds_min = glm::min(cell.bounds_min, transfer.grid.place(p));
-      cell.bounds_max = glm::max(cell.bounds_max, transfer.grid.place(p));
+  // Codes runs of samples of nearly the same length one by one. Returns false if stopped.
+  bool codeCells(Progress& progress, CodedVolume& out) {
+    const std::size_t samples = transfer_.grid.samples();
+    const std::size_t cells = (samples + kMostSamplesInACell - 1) / kMostSamplesInACell;
+    out.voxels = transfer_.grid.voxels();
+    out.rays = transfer_.rays, out.rays_kept = transfer_.rays_kept, out.row_bytes = transfer_.row_bytes;
+    out.iterations = transfer_.iterations, out.residual = transfer_.residual;
+    progress.begin("coding", samples, "samples");
+    for (std::size_t c = 0; c < cells && !coding_.stopped(); ++c) {
+      const Part part{transfer_, samples * c / cells, samples * (c + 1) / cells};
+      CodedCell& cell = out.cells.emplace_back();
+      cell.count = static_cast<std::uint32_t>(part.count());
+      cell.bounds_min = cell.bounds_max = transfer_.grid.place(part.begin);
+      for (std::size_t p = part.begin; p < part.end; ++p) {
+        cell.bounds_min = glm::min(cell.bounds_min, transfer_.grid.place(p));
+        cell.bounds_max = glm::max(cell.bounds_max, transfer_.grid.place(p));
+      }
+      if (transfer_.bands > 3)
+        cell.transfers = codeMatrices(part, out);
+      else
+        cell.transfers.push_back(codeDense(part, out));
+      progress.add(part.count());
     }
-    if (transfer.bands > 3)
-      cell.transfers = codeMatrices(part, options.effectiveGlossyErrorBound(), coding, stop, out);
-    else
-      cell.transfers.push_back(codeDense(part, options.effectiveErrorBound(), coding, stop, out));
-    progress.add(part.count());
+    return !coding_.stopped();
   }
-  return !stop.stop_requested();
+
+ private:
+  CodedTransfer codeDense(const Part& part, CodedVolume& out) {
+    CodedTransfer coded = coding_.code(part.vectors(), part.count(), shapeOf(transfer_),
+                                       {.bound = options_.effectiveErrorBound()});
+    out.worst_error = std::max(out.worst_error, double{coded.error});
+    return coded;
+  }
+
+  // What comes through as visibility, what is scattered as matrices; they are shown together, and errors
+  // count by how much of each band goes on, g^2l.
+  std::vector<CodedTransfer> codeMatrices(const Part& part, CodedVolume& out) {
+    transfer::TransferShape visible = shapeOf(transfer_), scattered = visible;
+    visible.full_channels = 0;
+    visible.visibility_bands = static_cast<std::uint32_t>(transfer_.order + transfer_.bands - 1);
+    scattered.shadowed_channels = 0;
+    BandPower power;
+    for (std::size_t l = 0; l < power.size(); ++l)
+      power[l] = std::pow(double{transfer_.g}, 2.0 * static_cast<double>(l));
+    std::vector<float> matrices;
+    if (transfer_.full_channels > 0) matrices = part.scattered();
+    CodingSettings settings{.bound = options_.effectiveGlossyErrorBound(),
+                            .shown_energy = transferEnergy(part.visibility(), visible, power),
+                            .kernel_power = power};
+    if (!matrices.empty()) {
+      settings.shown_energy += transferEnergy(matrices, scattered, power);
+      settings.bound *= std::sqrt(0.5f);
+    }
+    std::vector<CodedTransfer> coded;
+    coded.push_back(coding_.code(part.visibility(), part.count(), visible, settings));
+    if (!matrices.empty() && !coding_.stopped())
+      coded.push_back(coding_.code(matrices, part.count(), scattered, settings));
+    double square = 0.0;
+    for (const CodedTransfer& each : coded) square += double{each.error} * double{each.error};
+    out.worst_glossy_error = std::max(out.worst_glossy_error, std::sqrt(square));
+    return coded;
+  }
+
+  const VolumeTransfer& transfer_;
+  const BakeOptions& options_;
+  CachedCoding& coding_;
+};
+
+// The surfaces that a volume never moves against, from where they lie (GroupGeometry::origin).
+struct Within {
+  const GroupGeometry* geometry = nullptr;  // null: there are none
+  glm::mat4 from_group{1.0f};
+};
+
+Within surfacesAround(const std::vector<RigidGroup>& groups, std::size_t index,
+                      const std::vector<BakedGroup>& baked) {
+  const RigidGroup& group = groups[index];
+  if (group.within < 0) return {};
+  const auto w = static_cast<std::size_t>(group.within);
+  const GroupGeometry& geometry = baked[w].geometry;
+  return {&geometry, glm::mat4(glm::translate(glm::dmat4(1.0), -glm::dvec3(geometry.origin)) *
+                               glm::inverse(worldFromGroup(groups[w])) * worldFromGroup(group))};
 }
 
 // Of its transfer: the medium as it ships, and the surfaces that it never moves against.
 Key transferKey(const Scene& scene, const BakedVolume& placed, const VolumeSettings& settings,
-                const GroupGeometry* within, const glm::mat4& within_from_group) {
+                const Within& within) {
   KeyMaker key = KeyMaker::ofStage("volume");
   key.addList(placed.density).add(placed.bits).add(placed.density_max).add(placed.size);
   key.add(placed.group_from_grid).add(placed.albedo).add(placed.g);
   key.add(settings.order).add(std::uint64_t{settings.rays}).add(settings.scatterings).add(settings.grid);
   key.add(settings.fit_within_voxels);
-  key.add(within != nullptr);
-  if (within) {
-    addShape(*within, key);
-    addOpacity(scene, *within, key);
-    key.add(within_from_group);
+  key.add(within.geometry != nullptr);
+  if (within.geometry) {
+    addShape(*within.geometry, key);
+    addOpacity(scene, *within.geometry, key);
+    key.add(within.from_group);
   }
   return key.key();
+}
+
+// A volume that is placed, and how its transfer is baked.
+struct PlacedVolume {
+  const SceneBake& bake;
+  const AlphaMaps& alpha_maps;
+  const SceneVolume& volume;
+  const QuantizedDensity& density;
+  const glm::mat4& group_from_grid;
+  Within within;
+  VolumeSettings settings;
+};
+
+// Errors: no memory for the hierarchy, "stopped".
+Result<VolumeTransfer> transferOf(const PlacedVolume& placed, const BakeContext& context) {
+  std::optional<RayScene> rays;
+  Occluders occluders;
+  if (placed.within.geometry) {
+    auto built = RayScene::build(*placed.within.geometry, placed.bake.scene, placed.alpha_maps);
+    if (!built) return failAgain(built.error());
+    rays = std::move(*built);
+    occluders = Occluders(*rays, placed.within.from_group);
+  }
+  const auto field =
+      std::make_shared<DensityField>(placed.volume.size, placed.density.values, placed.group_from_grid);
+  const Medium medium{field, placed.density.values, placed.volume.albedo, placed.volume.g};
+  const std::size_t stages_before = context.progress.finished().size();
+  auto transfer = bakeVolumeTransfer(medium, placed.settings, occluders, context);
+  context.progress.end();
+  const std::vector<Progress::Stage> stages = context.progress.finished();
+  for (const Progress::Stage& stage : std::span(stages).subspan(stages_before))
+    if (stage.unit == "samples" || stage.unit == "places") placed.bake.report.ray_seconds += stage.seconds;
+  if (!transfer) return placed.bake.stopped();
+  return std::move(*transfer);
 }
 
 void tell(const CodedVolume& coded, const SceneVolume& volume, const QuantizedDensity& density,
@@ -267,99 +327,69 @@ Result<void> checkVolume(const Scene& scene, const SceneVolume& volume, const Ba
   return {};
 }
 
-Result<BakedGroup> bakeVolume(const Scene& scene, const std::vector<RigidGroup>& groups, std::size_t index,
-                              const std::vector<BakedGroup>& baked,
-                              const std::vector<std::shared_ptr<const AlphaMap>>& alpha_maps,
-                              const PlannedNeighborhood& neighborhood, const BakeOptions& options,
-                              Progress& progress, const std::stop_token& stop, BakeReport& report,
-                              Cache* cache) {
-  const RigidGroup& group = groups[index];
+Result<BakedGroup> bakeVolume(const SceneBake& bake, const AlphaMaps& alpha_maps, std::size_t index,
+                              const std::vector<BakedGroup>& baked, const BakeContext& context) {
+  const auto& [scene, options, plan, tables, report] = bake;
+  const RigidGroup& group = plan.groups[index];
   const SceneVolume& volume = scene.volumes[static_cast<std::size_t>(group.volume)];
-  progress.begin("density");
+  context.progress.begin("density");
   const QuantizedDensity density = quantizeDensity(volume.density);
   BakedGroup result;
   result.volume = placeVolume(scene, group, density);
-  BakedVolume& placed = *result.volume;
-  placed.transfer_size = options.volume_grid;
-  result.light_probes.points = {placed.light_probe};
-  const VolumeSettings settings{.order = options.order,
-                                .rays = options.effectiveRays(),
-                                // As the reference: bounces are counted between surfaces, not in volumes.
-                                .scatterings = options.bounces == 0 ? 0 : -1,
-                                .grid = options.volume_grid,
-                                .memory = options.effectiveMemory() / 2,
-                                .fit_within_voxels = true};
-
-  // The surfaces that it never moves against, from where they lie (GroupGeometry::origin).
-  const GroupGeometry* within = nullptr;
-  glm::mat4 within_from_group(1.0f);
-  if (group.within >= 0) {
-    const auto w = static_cast<std::size_t>(group.within);
-    within = &baked[w].geometry;
-    within_from_group = glm::mat4(glm::translate(glm::dmat4(1.0), -glm::dvec3(within->origin)) *
-                                  glm::inverse(worldFromGroup(groups[w])) * worldFromGroup(group));
-  }
-  const Keep keep{cache, cache ? transferKey(scene, placed, settings, within, within_from_group) : Key{}};
-  const Keep cells_keep =
-      keep.part("cells", options.effectiveErrorBound(), options.effectiveGlossyErrorBound());
-  const Around around{group.name, neighborhood, glm::vec3(0.0f), raysAroundVolumes(options), options};
-  const Keep around_keep = keepOf(around, cache, keep.key);
+  BakedVolume& out = *result.volume;
+  out.transfer_size = options.volume_grid;
+  result.light_probes.points = {out.light_probe};
+  const PlacedVolume placed{bake,
+                            alpha_maps,
+                            volume,
+                            density,
+                            out.group_from_grid,
+                            surfacesAround(plan.groups, index, baked),
+                            {.order = options.order,
+                             .rays = options.effectiveRays(),
+                             // As the reference: bounces are counted between surfaces, not in volumes.
+                             .scatterings = options.bounces == 0 ? 0 : -1,
+                             .grid = options.volume_grid,
+                             .memory = options.effectiveMemory() / 2,
+                             .fit_within_voxels = true}};
+  const BakeContext own =
+      context.keyed(context.cache ? transferKey(scene, out, placed.settings, placed.within) : Key{});
+  const Around around{bake, index, glm::vec3(0.0f), raysAroundVolumes(options)};
+  const BakeContext around_context = contextOf(around, own);
 
   CodedVolume coded;
-  CachedCoding coding(cache);
-  // Made when it is asked for: where all that follows from it is found, it is not.
-  std::shared_ptr<const VolumeLight> light;
-  Result<void> failed;
-  const auto makeLight = [&](const auto& use) {
-    std::optional<RayScene> rays;
-    Occluders occluders;
-    if (within) {
-      auto built = RayScene::build(*within, scene, alpha_maps);
-      if (!built) {
-        failed = failAgain(built.error());
-        return false;
-      }
-      rays = std::move(*built);
-      occluders = Occluders(*rays, within_from_group);
-    }
-    const Medium medium{std::make_shared<DensityField>(volume.size, density.values, placed.group_from_grid),
-                        density.values, volume.albedo, volume.g};
-    const std::size_t stages_before = progress.finished().size();
-    auto transfer = bakeVolumeTransfer(medium, settings, occluders, progress, stop, keep);
-    progress.end();
-    const std::vector<Progress::Stage> stages = progress.finished();
-    for (const Progress::Stage& stage : std::span(stages).subspan(stages_before))
-      if (stage.unit == "samples" || stage.unit == "places") report.ray_seconds += stage.seconds;
-    if (!transfer || !use(*transfer)) return false;
-    light = std::make_shared<MarchedVolume>(std::move(*transfer));
-    return true;
+  CachedCoding coding(context);
+  // The transfer is baked only if something that follows from it is not found.
+  std::optional<MarchedVolume> light;
+  const auto bakeLight = [&](const auto& use) -> Result<void> {
+    auto transfer = transferOf(placed, own);
+    if (!transfer) return failAgain(transfer.error());
+    if (!use(*transfer)) return bake.stopped();
+    light.emplace(std::move(*transfer));
+    return {};
   };
-  const auto stopped = [&] { return fail(scene.source.string(), "stopped; nothing was written"); };
-  const auto found = cachedValue(
-      cells_keep, [&](ByteReader& in) { return read(in, coded); },
-      [&] {
-        coded = {};
-        return makeLight([&](const VolumeTransfer& transfer) {
-          return codeCells(transfer, options, coding, progress, stop, coded);
-        });
-      },
-      [&](ByteWriter& out) { write(coded, out); });
-  if (!failed) return failAgain(failed.error());
-  if (!found) return stopped();
+  Result<void> made;
+  const BakeContext cells_context =
+      own.part("cells", options.effectiveErrorBound(), options.effectiveGlossyErrorBound());
+  const auto found = findOrMake(cells_context, coded, [&] {
+    coded = {};
+    made = bakeLight([&](const VolumeTransfer& transfer) {
+      return VolumeCoder(transfer, options, coding).codeCells(context.progress, coded);
+    });
+    return made.has_value();
+  });
+  if (!found) return failAgain(made.error());
   coding.drop();
   tell(coded, volume, density, group.name, report);
-  placed.voxels = std::move(coded.voxels);
-  placed.cells = std::move(coded.cells);
+  out.voxels = std::move(coded.voxels);
+  out.cells = std::move(coded.cells);
 
-  if (!neighborhood.baked || findAround(around, around_keep, report, result.neighborhood)) return result;
-  if (!light && !makeLight([](const VolumeTransfer&) { return true; })) {
-    if (!failed) return failAgain(failed.error());
-    return stopped();
-  }
-  const auto [low, high] = placed.bounds();
+  if (!around.plan().baked || findAround(around, around_context, result.neighborhood)) return result;
+  if (!light)
+    if (made = bakeLight([](const VolumeTransfer&) { return true; }); !made) return failAgain(made.error());
+  const auto [low, high] = out.bounds();
   const VolumeBody body(*light, low, high, /*scatters=*/true);
-  if (!bakeAround(around, body, Box3{low, high}, progress, stop, around_keep, report, result.neighborhood))
-    return stopped();
+  if (!bakeAround(around, body, Box3{low, high}, around_context, result.neighborhood)) return bake.stopped();
   return result;
 }
 

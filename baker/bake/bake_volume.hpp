@@ -1,9 +1,7 @@
 // One volume from its density to codes: quantizing, rays, scattering, coding.
 #pragma once
 
-#include <memory>
-#include <optional>
-#include <stop_token>
+#include <span>
 #include <vector>
 
 #include "baker/bake/bake_group.hpp"
@@ -14,14 +12,10 @@ namespace lambent::baker {
 // the runtime holds of their shaded samples lies in one page.
 Result<void> checkVolume(const Scene& scene, const SceneVolume& volume, const BakeOptions& options);
 
-// groups[index] is the volume's; `baked` holds the groups before it, those of surfaces among them. Adds what
-// it did to the report. Errors: no memory for the hierarchy, "stopped".
-Result<BakedGroup> bakeVolume(const Scene& scene, const std::vector<RigidGroup>& groups, std::size_t index,
-                              const std::vector<BakedGroup>& baked,
-                              const std::vector<std::shared_ptr<const AlphaMap>>& alpha_maps,
-                              const PlannedNeighborhood& neighborhood, const BakeOptions& options,
-                              Progress& progress, const std::stop_token& stop, BakeReport& report,
-                              Cache* cache);
+// Bakes group `index` of the plan, a volume; `baked` holds the groups before it, those of surfaces among
+// them. Errors: no memory for the hierarchy, "stopped".
+Result<BakedGroup> bakeVolume(const SceneBake& bake, const AlphaMaps& alpha_maps, std::size_t index,
+                              const std::vector<BakedGroup>& baked, const BakeContext& context);
 
 // Density as it ships.
 struct QuantizedDensity {

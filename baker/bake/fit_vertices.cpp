@@ -2,18 +2,18 @@
 
 #include <algorithm>
 
-#include "baker/effects/diffuse/vertex_fit.hpp"
 #include "baker/effects/glossy/inside_faces.hpp"
+#include "baker/trace/vertex_fit.hpp"
 #include "baker/transport/face_points.hpp"
 
 namespace lambent::baker {
 
 namespace {
 
-Keep keepInside(const Keep& keep, std::span<const std::uint32_t> triangles) {
+BakeContext insideContext(const BakeContext& context, std::span<const std::uint32_t> triangles) {
+  if (!context.keeps()) return context;
   KeyMaker key = KeyMaker::ofStage("inside faces");
-  key.add(keep.key).addList(triangles);
-  return {keep.cache, key.key()};
+  return context.keyed(key.add(context.key).addList(triangles).key());
 }
 
 // The same rays as at the vertices, and nothing of what they meet.
@@ -34,7 +34,7 @@ struct Part {
 }  // namespace
 
 std::optional<FitFigures> fitDiffuse(const DirectPass& pass, const DiffuseScene& scene, DirectResult& direct,
-                                     Progress& progress, const std::stop_token& stop, const Keep& keep) {
+                                     const BakeContext& context) {
   const SampleStretch plain{0, scene.samples.first_normal_mapped},
       mapped{scene.samples.first_normal_mapped, scene.samples.first_glossy};
   const std::size_t width = direct.field.vectorSize();
@@ -48,18 +48,17 @@ std::optional<FitFigures> fitDiffuse(const DirectPass& pass, const DiffuseScene&
   }
   if (triangles.empty()) return FitFigures{};
   const FacePoints points = facePoints(scene.geometry, scene.samples, triangles);
-  progress.begin("inside faces", points.samples.size(), "samples");
   const DiffuseScene inside = scene.withSamples(points.samples);
-  const auto found = bakeDirect(DirectPass(inside, settingsInside(pass.settings())), inside, progress, stop,
-                                keepInside(keep, triangles));
+  const auto found = bakeDirect(DirectPass(inside, settingsInside(pass.settings())), inside,
+                                insideContext(context, triangles), "inside faces");
   if (!found) return std::nullopt;
   const FitFigures figures{points.samples.size(), found->field.rays, found->rays_kept,
-                           progress.now().seconds};
+                           context.progress.now().seconds};
   const auto fit = [&](const SampleStretch& stretch, const SampleStretch& of_points,
                        std::initializer_list<Part> parts) {
     const VertexFit vertices(scene.geometry, scene.samples, stretch, points, of_points, found->looks.valid);
     return std::all_of(parts.begin(), parts.end(), [&](const Part& part) {
-      return vertices.apply(part.width, part.at_points, part.values, stop);
+      return vertices.apply(part.width, part.at_points, part.values, context.stop);
     });
   };
   const SampleStretch diffuse_points{0, points.samples.first_normal_mapped},
@@ -74,8 +73,8 @@ std::optional<FitFigures> fitDiffuse(const DirectPass& pass, const DiffuseScene&
   return fitted ? std::optional(figures) : std::nullopt;
 }
 
-std::optional<FitFigures> fitGlossy(const GlossyPass& pass, GlossyDirect& glossy, Progress& progress,
-                                    const std::stop_token& stop, const Keep& keep) {
+std::optional<FitFigures> fitGlossy(const GlossyPass& pass, GlossyDirect& glossy,
+                                    const BakeContext& context) {
   const DiffuseScene& scene = pass.scene();
   GlossyField& field = glossy.field;
   const SampleStretch stretch{scene.samples.first_glossy, scene.samples.size()};
@@ -83,12 +82,11 @@ std::optional<FitFigures> fitGlossy(const GlossyPass& pass, GlossyDirect& glossy
       changingTriangles(scene.geometry, scene.samples, stretch, field.visibilitySize(), field.visibility);
   if (triangles.empty()) return FitFigures{};
   const auto inside = std::make_shared<GlossyInsideFaces>(pass, triangles);
-  progress.begin("inside faces", inside->size(), "samples");
-  const auto found = inside->look(glossy.hits.bytesLeft(), progress, stop, keepInside(keep, triangles));
+  const auto found = inside->look(glossy.hits.bytesLeft(), insideContext(context, triangles));
   if (!found) return std::nullopt;
-  const FitFigures figures{inside->size(), found->rays, found->rays_kept, progress.now().seconds};
-  if (!inside->fit(found->field.visibility, field.visibility, stop) ||
-      !inside->fit(found->field.lights_shadowed, field.lights_shadowed, stop))
+  const FitFigures figures{inside->size(), found->rays, found->rays_kept, context.progress.now().seconds};
+  if (!inside->fit(found->field.visibility, field.visibility, context.stop) ||
+      !inside->fit(found->field.lights_shadowed, field.lights_shadowed, context.stop))
     return std::nullopt;
   if (pass.plain().settings().keep_hits) glossy.inside = inside;
   return figures;

@@ -1,16 +1,14 @@
 // Direct light at the vertices as interpolation over faces shows it best: rays from inside the faces over
-// which it changes, and a least-squares fit to what they see (effects/diffuse/vertex_fit.hpp). Bounces gather
+// which it changes, and a least-squares fit to what they see (trace/vertex_fit.hpp). Bounces gather
 // from the fitted values; what they bring to diffuse samples is added at the vertices.
 #pragma once
 
 #include <cstdint>
 #include <optional>
-#include <stop_token>
 
-#include "baker/cache/cached_ranges.hpp"
 #include "baker/effects/diffuse/direct.hpp"
 #include "baker/effects/glossy/glossy_direct.hpp"
-#include "baker/jobs/progress.hpp"
+#include "baker/jobs/bake_context.hpp"
 
 namespace lambent::baker {
 
@@ -20,13 +18,12 @@ struct FitFigures {
   double ray_seconds = 0.0;
 };
 
-// Of plain and normal-mapped samples. keep: that of the rays of the vertices. Nothing if stopped. Stage
-// "inside faces" of `progress`, counting samples. The result does not depend on the number of threads.
+// Fits plain and normal-mapped samples. The key of the context is that of the rays of the vertices. Returns
+// nothing if stopped. The result does not depend on the number of threads.
 std::optional<FitFigures> fitDiffuse(const DirectPass& pass, const DiffuseScene& scene, DirectResult& direct,
-                                     Progress& progress, const std::stop_token& stop, const Keep& keep = {});
-// Of glossy samples. Where hits are kept for bounces, those of the points are, too, in what is left of the
+                                     const BakeContext& context);
+// Fits glossy samples. Where hits are kept for bounces, those of the points are, too, in what is left of the
 // memory for hits, and glossy.inside has them.
-std::optional<FitFigures> fitGlossy(const GlossyPass& pass, GlossyDirect& glossy, Progress& progress,
-                                    const std::stop_token& stop, const Keep& keep = {});
+std::optional<FitFigures> fitGlossy(const GlossyPass& pass, GlossyDirect& glossy, const BakeContext& context);
 
 }  // namespace lambent::baker

@@ -1,5 +1,6 @@
 #include "baker/bake/group_keys.hpp"
 
+#include "baker/brdf/brdf_kinds.hpp"
 #include "baker/transport/geometry_key.hpp"
 #include "runtime/bundle/material_fields.hpp"
 
@@ -130,13 +131,18 @@ Key brdfTablesKey(const Scene& scene, int order, int shipped) {
   KeyMaker key = KeyMaker::ofStage("BRDF tables");
   key.add(order).add(shipped);
   for (const gltf::Material& material : scene.materials) {
-    key.add(material.matte());
-    if (material.matte()) continue;
-    const bundle::BrdfFamily family = bundle::brdfFamilyOf(material);
+    key.add(material.isDiffuse());
+    if (material.isDiffuse()) continue;
+    const bundle::BrdfFamily family = brdfKindOf(material).family;
     key.add(family);
     if (family != bundle::BrdfFamily::Measured) continue;
+    // Its table may depend on all that it reflects.
+    addValues(material, gltf::MaterialPart::Color, key);
+    addValues(material, gltf::MaterialPart::Reflection, key);
+    key.add(material.brdf);
+    if (material.brdf < 0) continue;
     const MeasuredBrdf& brdf = scene.brdfs[static_cast<std::size_t>(material.brdf)];
-    key.add(material.brdf).addText(brdf.name).addList(brdf.measurements);
+    key.addText(brdf.name).addList(brdf.measurements);
   }
   return key.key();
 }

@@ -127,7 +127,7 @@ constexpr std::tuple kRows{
         .kind = "auto|on|off",
         .member = &B::fit,
         .help = "Fit light at vertices to what rays from inside the faces see, so that interpolation shows "
-                "faces best, of matte surfaces direct light alone: on, off (what the vertices see) or auto "
+                "faces best, of diffuse surfaces direct light alone: on, off (what the vertices see) or auto "
                 "(default): on glossy surfaces, but for drafts",
         .words = {{{"auto", std::nullopt}, {"on", true}, {"off", false}}},
         .record = &recordFit},

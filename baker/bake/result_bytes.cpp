@@ -1,16 +1,8 @@
 #include "baker/bake/result_bytes.hpp"
 
+#include "baker/transport/geometry_key.hpp"
+
 namespace lambent::baker {
-
-void write(const CodedCell& cell, ByteWriter& out) {
-  out.add(cell.count), out.add(cell.bounds_min), out.add(cell.bounds_max);
-  write(cell.transfers, out);
-}
-
-bool read(ByteReader& in, CodedCell& cell) {
-  return in.read(cell.count) && in.read(cell.bounds_min) && in.read(cell.bounds_max) &&
-         read(in, cell.transfers);
-}
 
 void write(const LightProbes& lights, ByteWriter& out) {
   out.addList(lights.points);
@@ -90,16 +82,13 @@ bool read(ByteReader& in, BrdfTables& tables) {
   return in.ok();
 }
 
-void write(const GroupFigures& figures, ByteWriter& out) {
-  out.add(figures.filled_samples), out.add(figures.glossy_samples), out.add(figures.hit_bytes);
-  out.add(figures.worst_error), out.add(figures.worst_glossy_error), out.add(figures.left_out);
-  out.addList(figures.pass_energy);
+void write(const EncodedMesh& mesh, ByteWriter& out) {
+  out.addList(mesh.bytes), out.add(mesh.attributes);
+  writeMesh(mesh.decoded, out);
 }
 
-bool read(ByteReader& in, GroupFigures& figures) {
-  in.read(figures.filled_samples), in.read(figures.glossy_samples), in.read(figures.hit_bytes);
-  in.read(figures.worst_error), in.read(figures.worst_glossy_error), in.read(figures.left_out);
-  return in.readList(figures.pass_energy);
+bool read(ByteReader& in, EncodedMesh& mesh) {
+  return in.readList(mesh.bytes) && in.read(mesh.attributes) && readMesh(in, mesh.decoded);
 }
 
 }  // namespace lambent::baker

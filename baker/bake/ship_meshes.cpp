@@ -8,9 +8,10 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
-#include "baker/cache/cached_ranges.hpp"
+#include "baker/bake/result_bytes.hpp"
 #include "baker/import/subdivide.hpp"
-#include "baker/jobs/parallel.hpp"
+#include "baker/jobs/kept_value.hpp"
+#include "baker/jobs/stage.hpp"
 #include "baker/transport/geometry_key.hpp"
 
 namespace lambent::baker {
@@ -84,27 +85,18 @@ std::vector<MeshLimits> limitsOf(const Scene& scene, const std::vector<RigidGrou
 }
 
 Result<EncodedMesh> encodeCached(const bundle::MeshData& mesh, float step, const std::string& subject,
-                                 Cache* cache) {
-  Result<EncodedMesh> encoded;
-  Keep keep{cache, {}};
-  if (cache) {
-    KeyMaker key = KeyMaker::ofStage("draco");
-    addMesh(mesh, key);
-    keep.key = key.add(step).key();
+                                 const BakeContext& context) {
+  Key key;
+  if (context.cache) {
+    KeyMaker maker = KeyMaker::ofStage("draco");
+    addMesh(mesh, maker);
+    key = maker.add(step).key();
   }
-  cachedValue(
-      keep,
-      [&](ByteReader& in) {
-        return in.readList(encoded->bytes) && in.read(encoded->attributes) && readMesh(in, encoded->decoded);
-      },
-      [&] {
-        encoded = encodeDraco(mesh, step, subject);
-        return encoded.has_value();
-      },
-      [&](ByteWriter& out) {
-        out.addList(encoded->bytes), out.add(encoded->attributes);
-        writeMesh(encoded->decoded, out);
-      });
+  Result<EncodedMesh> encoded;
+  findOrMake(context.keyed(key), *encoded, [&] {
+    encoded = encodeDraco(mesh, step, subject);
+    return encoded.has_value();
+  });
   return encoded;
 }
 
@@ -127,8 +119,7 @@ Result<Meshes> splitMeshes(const Scene& scene, const std::vector<RigidGroup>& gr
 }
 
 Result<ShippedMeshes> shipMeshes(const Scene& scene, const std::vector<RigidGroup>& groups,
-                                 const Meshes& meshes, Progress& progress, std::stop_token stop,
-                                 Cache* cache) {
+                                 const Meshes& meshes, const BakeContext& context) {
   const std::vector<MeshLimits> limits = limitsOf(scene, groups, /*max_edge_m=*/0.0f);
   struct Task {
     std::size_t mesh, primitive;
@@ -138,16 +129,18 @@ Result<ShippedMeshes> shipMeshes(const Scene& scene, const std::vector<RigidGrou
   for (std::size_t m = 0; m < scene.meshes.size(); ++m)
     for (std::size_t p = 0; p < scene.meshes[m].primitives.size(); ++p) tasks.push_back({m, p, std::nullopt});
 
-  progress.begin("meshes", tasks.size(), "meshes");
-  const bool finished = parallelRanges(tasks.size(), 1, stop, [&](std::size_t begin, std::size_t end) {
+  const auto encode = [&](std::size_t begin, std::size_t end) {
     for (Task& task : std::span(tasks).subspan(begin, end - begin)) {
       const std::string subject =
           fmt::format("{}: mesh {} primitive {}", scene.source.string(), task.mesh, task.primitive);
-      task.encoded = encodeCached(meshes[task.mesh][task.primitive], limits[task.mesh].step, subject, cache);
-      progress.add(1);
+      task.encoded =
+          encodeCached(meshes[task.mesh][task.primitive], limits[task.mesh].step, subject, context);
     }
-  });
-  if (!finished) return fail(scene.source.string(), "stopped", "");
+  };
+  // Each mesh is kept by itself, so the stage as a whole is not.
+  if (!runStage({.name = "meshes", .unit = "meshes", .count = tasks.size(), .writes = {}, .compute = encode},
+                context))
+    return fail(scene.source.string(), "stopped", "");
 
   ShippedMeshes shipped;
   shipped.draco.resize(scene.meshes.size());

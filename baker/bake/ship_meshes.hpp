@@ -2,13 +2,11 @@
 // anything is computed on them.
 #pragma once
 
-#include <stop_token>
 #include <vector>
 
-#include "baker/cache/cache.hpp"
 #include "baker/compress/draco_encode.hpp"
 #include "baker/import/scene.hpp"
-#include "baker/jobs/progress.hpp"
+#include "baker/jobs/bake_context.hpp"
 #include "baker/plan/rigid_groups.hpp"
 
 namespace lambent::baker {
@@ -25,9 +23,8 @@ using Meshes = std::vector<std::vector<bundle::MeshData>>;  // [mesh][primitive]
 // many triangles.
 Result<Meshes> splitMeshes(const Scene& scene, const std::vector<RigidGroup>& groups, float max_edge_m);
 
-// cache: may be null; a mesh that was coded before on the same lattice is found there.
+// A mesh that was coded before on the same lattice is found in the cache.
 Result<ShippedMeshes> shipMeshes(const Scene& scene, const std::vector<RigidGroup>& groups,
-                                 const Meshes& meshes, Progress& progress, std::stop_token stop,
-                                 Cache* cache = nullptr);
+                                 const Meshes& meshes, const BakeContext& context);
 
 }  // namespace lambent::baker

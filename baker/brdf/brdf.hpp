@@ -1,7 +1,6 @@
 // One interface for everything that reflects: values of f for given directions in the local frame (z the
-// normal, x the tangent), parted into lobes as runtime/bundle/brdf_table.hpp has them. A new BRDF (sheen,
-// clearcoat) is one file with a class of this kind and a line in brdf_tables.cpp. No scene, no textures, no
-// rays.
+// normal, x the tangent), parted into lobes as runtime/bundle/brdf_table.hpp has them. brdf_kinds.hpp lists
+// them. No scene, no textures, no rays.
 #pragma once
 
 #include <cstddef>

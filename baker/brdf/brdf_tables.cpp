@@ -1,38 +1,30 @@
+#include <algorithm>
 #include <cassert>
 #include <cstddef>
-#include <optional>
 
+#include "baker/brdf/brdf_kinds.hpp"
 #include "baker/brdf/surface_brdfs.hpp"
 
 namespace lambent::baker {
 
 Result<BrdfTables> BrdfTables::make(const Scene& scene, int order, int shipped) {
-  using bundle::BrdfFamily;
   BrdfTables out;
-  const auto put = [&](BrdfFamily family, std::string name, const Brdf& brdf) {
-    out.entries.push_back({family, std::move(name), integrateTable(brdf, order, gridFor(brdf, shipped))});
-    return static_cast<std::int32_t>(out.entries.size() - 1);
-  };
-  std::optional<std::int32_t> round, anisotropic;
-  std::vector<std::optional<std::int32_t>> measured(scene.brdfs.size());
+  std::vector<const gltf::Material*> first_of;  // the first material that uses an entry
   for (const gltf::Material& material : scene.materials) {
     std::int32_t& entry = out.of_material.emplace_back(-1);
-    if (material.matte()) continue;
-    const BrdfFamily family = bundle::brdfFamilyOf(material);
-    if (family == BrdfFamily::Measured) {
-      const auto index = static_cast<std::size_t>(material.brdf);
-      if (!measured[index]) {
-        const auto brdf = makeMeasured(scene.brdfs[index]);
-        if (!brdf) return failAgain(brdf.error());
-        measured[index] = put(family, scene.brdfs[index].name, **brdf);
-      }
-      entry = *measured[index];
-      continue;
-    }
-    const bool is_anisotropic = family == BrdfFamily::AnisotropicGgx;
-    std::optional<std::int32_t>& table = is_anisotropic ? anisotropic : round;
-    if (!table) table = put(family, "", *makeGgx(is_anisotropic));
-    entry = *table;
+    if (material.isDiffuse()) continue;
+    const BrdfKind& kind = brdfKindOf(material);
+    const auto known = std::ranges::find_if(first_of, [&](const gltf::Material* first) {
+      return &brdfKindOf(*first) == &kind && kind.share(*first, material);
+    });
+    entry = static_cast<std::int32_t>(known - first_of.begin());
+    if (known != first_of.end()) continue;
+    const auto brdf = kind.make(scene, material);
+    if (!brdf) return failAgain(brdf.error());
+    first_of.push_back(&material);
+    out.entries.push_back(
+        {kind.family, material.brdf >= 0 ? scene.brdfs[static_cast<std::size_t>(material.brdf)].name : "",
+         integrateTable(**brdf, order, gridFor(**brdf, shipped))});
   }
   return out;
 }

@@ -52,7 +52,7 @@ class Cache {
   // Without: finds nothing, and keeps what it is given (`--force`).
   void setReading(bool reading);
 
-  // How much work a bake that is killed may lose: what takes longer is kept in parts (cached_ranges.hpp).
+  // How much work a bake that is killed may lose: what takes longer is kept in parts (baker/jobs/stage.hpp).
   void setCheckpointEvery(double seconds);
   double checkpointEvery() const;
   // Is it time for the next? checkpointed() says that all is safe now.

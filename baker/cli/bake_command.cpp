@@ -1,4 +1,4 @@
-// lambent bake SCENE -o OUT.lmb.glb, --watch DIR, --resume
+// Implements lambent bake SCENE -o OUT.lmb.glb, --watch DIR, --resume.
 #include <memory>
 #include <optional>
 
@@ -20,16 +20,16 @@ namespace {
 
 struct BakeArguments {
   std::filesystem::path scene, output;
-  std::filesystem::path watch;  // a folder; empty: none
+  std::filesystem::path watch;  // a folder; empty means none
   bool resume = false;
-  double checkpoint_s = 0.0;  // 0: as the cache has it
+  double checkpoint_s = 0.0;  // 0 keeps the cache's own interval
   BakeOptions options;
   bool force = false, json = false, allow_outside = false;
-  std::string cache;  // a folder, "off", or empty: the usual one
+  std::string cache;  // a folder, "off", or empty for the default one
   std::uint64_t cache_bytes = kCacheBytes;
 };
 
-// Without a cache a bake is as good and only slower: what is wrong with its folder is said, and no more.
+// A bake without a cache is only slower, so a problem with its folder is reported and no error.
 std::optional<Cache> openCache(const BakeArguments& a) {
   if (a.cache == "off") return std::nullopt;
   const std::filesystem::path folder =
@@ -176,7 +176,7 @@ void printReport(const BakeArguments& a, const BakeReport& r) {
                    : "");
 }
 
-// Records of bakes that were begun lie in the cache's folder.
+// The journal of this program lies in the cache's folder.
 Journal journalOf(const std::optional<Cache>& cache) {
   return Journal(cache ? cache->folder() / "journal" : std::filesystem::path());
 }
@@ -206,9 +206,9 @@ int bakeScene(const BakeArguments& a, std::optional<Cache>& cache, const std::st
   }
   Result<BakeReport> report = [&] {
     const ProgressLine line(progress);
-    return bake(*scene, a.options, a.output, progress, stop, cache ? &*cache : nullptr);
+    return bake(*scene, a.options, a.output, {progress, stop, cache ? &*cache : nullptr});
   }();
-  if (!stop.stop_requested()) record.done();  // else --resume goes on with it
+  if (!stop.stop_requested()) record.done();  // otherwise --resume continues it
   if (!report) return reportError(report.error());
   for (const std::string& notice : report->notices)
     fmt::print(stderr, "lambent: {}: {}\n", a.scene.string(), notice);
@@ -219,12 +219,13 @@ int bakeScene(const BakeArguments& a, std::optional<Cache>& cache, const std::st
   return 0;
 }
 
-// All bakes that were cut short, with the options that they had.
+// Reports an error in the command line and returns the exit code 2.
 int wrongUsage(const Error& error) {
   reportError(error);
   return 2;
 }
 
+// Bakes everything that was cut short, with the options that it had.
 int resumeBakes(const BakeArguments& a, std::optional<Cache>& cache, const std::stop_token& stop) {
   if (!cache) return reportError({"--resume", "there is no cache that would tell", "leave out --cache off"});
   const std::vector<BakeRequest> unfinished = journalOf(cache).unfinished();

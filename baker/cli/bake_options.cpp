@@ -1,5 +1,5 @@
-// The options of a bake on the command line. The library finds the words; the table of options says what they
-// mean.
+// Adds the options of a bake to the command line. The library parses the words, and the table of options says
+// what they mean.
 #include <string>
 
 #include <CLI/CLI.hpp>
@@ -29,7 +29,7 @@ CLI::Option* add(CLI::App& command, std::string_view name, const OptionRow& row,
 void add(CLI::App& command, const OptionRow& row, BakeOptions& options) {
   CLI::Option* option = add(command, row.name, row, options);
   if (row.shows_default) option->default_str(row.word(BakeOptions{}));
-  if (!row.former.empty()) add(command, row.former, row, options)->group("");  // not shown in the help
+  if (!row.former.empty()) add(command, row.former, row, options)->group("");  // hidden in the help
 }
 
 }  // namespace

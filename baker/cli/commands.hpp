@@ -1,5 +1,7 @@
-// The subcommands of `lambent`, each in a file of its own: adds itself to the command line and says what to
-// run.
+// The room baker/cli is the program `lambent`: it bakes, plans, inspects, compares, and draws references.
+// Each subcommand is a file of its own that adds itself to the command line and says what to run. Words of
+// the command line come in; bundles, pictures and reports go out. Commands run on the main thread, and errors
+// end in one line on stderr.
 #pragma once
 
 #include <functional>
@@ -13,17 +15,17 @@ namespace lambent::baker {
 
 struct BakeOptions;
 
-// Returns the exit code: 0 done, 1 failed.
+// A command returns the exit code: 0 done, 1 failed.
 using Command = std::function<int()>;
 
-// Each adds its subcommand; `run` is set when it was chosen.
+// Each adds its subcommand and sets `run` if the user chose it.
 void addBakeCommand(CLI::App& app, Command& run);
 void addPlanCommand(CLI::App& app, Command& run);
 void addInfoCommand(CLI::App& app, Command& run);
 void addReferenceCommand(CLI::App& app, Command& run);
 void addCompareCommand(CLI::App& app, Command& run);
 
-// Options of a bake, by the table of their rows (baker/bake/option_rows.hpp): all of them, or one by name.
+// Adds the options of a bake from their table (baker/bake/option_rows.hpp): all of them, or one by name.
 void addBakeOptions(CLI::App& command, BakeOptions& options);
 void addBakeOption(CLI::App& command, std::string_view name, BakeOptions& options);
 

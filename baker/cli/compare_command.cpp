@@ -1,4 +1,5 @@
-// lambent compare PICTURE.exr REFERENCE.exr [--reference2 OTHER.exr] [--shrink N] [--heat OUT.png]
+// Implements lambent compare PICTURE.exr REFERENCE.exr [--reference2 OTHER.exr] [--shrink N] [--heat
+// OUT.png].
 #include <memory>
 #include <optional>
 

@@ -1,4 +1,4 @@
-// lambent info BUNDLE
+// Implements lambent info BUNDLE.
 #include <memory>
 
 #include <CLI/CLI.hpp>
@@ -51,7 +51,7 @@ Sizes sizesOf(const bundle::Description& d) {
   return sizes;
 }
 
-// Of each level, the finest first; empty: it has no proxy.
+// Returns the triangles of each level, finest first; empty if the group has no proxy.
 std::vector<std::uint32_t> proxyTriangles(const bundle::Reader& reader, const bundle::Group& group) {
   const auto index = static_cast<std::uint32_t>(&group - reader.description().groups.data());
   std::vector<std::uint32_t> counts;
@@ -61,12 +61,12 @@ std::vector<std::uint32_t> proxyTriangles(const bundle::Reader& reader, const bu
 }
 
 const char* effectName(const bundle::Cell& cell, const bundle::CellTransfer& transfer) {
-  if (cell.kind == bundle::CellKind::Volume) return "volume";
-  if (cell.kind == bundle::CellKind::Neighborhood) return "neighborhood";
-  return transfer.shape.glossy() ? "glossy" : "diffuse";
+  if (cell.domain == transfer::Domain::Voxel) return "volume";
+  if (cell.domain == transfer::Domain::GridPoint) return "neighborhood";
+  return transfer.shape.beyondDiffuse() ? "glossy" : "diffuse";
 }
 
-// Null where there is none.
+// Returns null if there is none.
 nlohmann::json neighborhoodJson(const bundle::Group& group) {
   if (!group.neighborhood) return nullptr;
   const auto& [size, low, high] = *group.neighborhood;
@@ -75,7 +75,7 @@ nlohmann::json neighborhoodJson(const bundle::Group& group) {
           {"boundsMax", {high.x, high.y, high.z}}};
 }
 
-const char* partName(const bundle::TransferShape& shape) {
+const char* partName(const transfer::TransferShape& shape) {
   if (shape.isVisibility()) return "visibility";
   if (shape.shadowed_channels == 0) return "bounced";
   return shape.full_channels > 0 ? "shadowed and full" : "shadowed";

@@ -1,5 +1,5 @@
-// lambent: bakes glTF scenes into bundles of precomputed radiance transfer. Exit codes: 0 done, 1 failed, 2
-// wrong usage.
+// The program lambent bakes glTF scenes into bundles of precomputed radiance transfer. Exit codes: 0 done, 1
+// failed, 2 wrong usage.
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
@@ -27,7 +27,7 @@ int main(int argc, char** argv) {
   }
   try {
     return run();
-  } catch (const std::exception& failure) {  // out of memory, most likely
+  } catch (const std::exception& failure) {  // most likely out of memory
     fmt::print(stderr, "lambent: {}; free some memory or bake the scene in parts\n", failure.what());
     return 1;
   }

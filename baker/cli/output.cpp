@@ -63,7 +63,7 @@ ProgressLine::ProgressLine(const Progress& progress) {
   if (::isatty(STDERR_FILENO) == 0) return;
   thread_ = std::jthread([&progress](std::stop_token stop) {
     std::mutex lock;
-    std::condition_variable_any stopped;  // so that the end of a job need not wait for the next tick
+    std::condition_variable_any stopped;  // lets the end of a job come before the next tick
     std::unique_lock hold(lock);
     while (!stopped.wait_for(hold, stop, std::chrono::milliseconds(100),
                              [&] { return stop.stop_requested(); })) {
@@ -75,14 +75,14 @@ ProgressLine::ProgressLine(const Progress& progress) {
   });
 }
 
-ProgressLine::~ProgressLine() = default;  // jthread stops and joins
+ProgressLine::~ProgressLine() = default;  // the jthread stops and joins
 
 InterruptGuard::InterruptGuard(std::stop_source stop) {
   sigset_t signals;
   sigemptyset(&signals);
   sigaddset(&signals, SIGINT);
   sigaddset(&signals, SIGTERM);
-  sigaddset(&signals, SIGUSR1);  // how the destructor wakes the thread
+  sigaddset(&signals, SIGUSR1);  // the destructor wakes the thread with it
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
   thread_ = std::jthread([signals, stop]() mutable {
     for (int interrupts = 0;; ++interrupts) {

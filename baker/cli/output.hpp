@@ -1,5 +1,5 @@
-// What the command line prints: the progress line on a terminal, errors as one line, interrupts as stop
-// requests.
+// This is the output of the command line: the progress line on a terminal, errors as one line, and interrupts
+// as stop requests.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace lambent::baker {
 
-// "1.2 M", "3.4 MiB", "1:02".
+// These return texts such as "1.2 M", "3.4 MiB" and "1:02".
 std::string countText(double count);
 std::string bytesText(double bytes);
 std::string durationText(double seconds);
@@ -20,8 +20,8 @@ std::string durationText(double seconds);
 // Prints "lambent: SUBJECT: PROBLEM; MEND" to stderr and returns the exit code 1.
 int reportError(const Error& error);
 
-// While it lives: one line on stderr that follows `progress`, with rate and time left, if stderr is a
-// terminal.
+// Keeps one line on stderr that follows `progress`, with rate and time left, while it lives. Prints nothing
+// if stderr is no terminal.
 class ProgressLine {
  public:
   explicit ProgressLine(const Progress& progress);
@@ -31,8 +31,8 @@ class ProgressLine {
   std::jthread thread_;
 };
 
-// While it lives: SIGINT and SIGTERM ask `stop` to stop; a second one ends the program at once. Construct it
-// before any thread, so that all of them inherit the blocked signals.
+// While it lives, SIGINT and SIGTERM ask `stop` to stop, and a second one ends the program at once. Construct
+// it before any thread, so that all of them inherit the blocked signals.
 class InterruptGuard {
  public:
   explicit InterruptGuard(std::stop_source stop);

@@ -1,4 +1,4 @@
-// lambent plan SCENE
+// Implements lambent plan SCENE.
 #include <memory>
 
 #include <CLI/CLI.hpp>

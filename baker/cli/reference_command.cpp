@@ -1,4 +1,4 @@
-// lambent reference SCENE --light LIGHT... --camera CAM -o OUT.exr
+// Implements lambent reference SCENE --light LIGHT... --camera CAM -o OUT.exr.
 #include <memory>
 
 #include <CLI/CLI.hpp>
@@ -43,7 +43,7 @@ Result<void> understandLights(const ReferenceArguments& a, reference::Request& r
   return {};
 }
 
-// The words of the command line as values.
+// Parses the words of the command line into values.
 Result<reference::Request> understand(const ReferenceArguments& a) {
   reference::Request request{.lights = {}, .camera = {}, .options = a.options};
   if (auto done = understandLights(a, request); !done) return failAgain(std::move(done.error()));
@@ -68,7 +68,7 @@ Result<reference::Request> understand(const ReferenceArguments& a) {
   return request;
 }
 
-// None: at rest.
+// Returns nothing for a scene at rest.
 Result<std::optional<float>> understandTime(const std::string& word) {
   if (word.empty()) return std::optional<float>{};
   const std::optional<float> time = spec::parseNumber(word);
@@ -145,7 +145,7 @@ void addReferenceCommand(CLI::App& app, Command& run) {
   command
       ->add_option(
           "--light", a->lights,
-          "Several add up: a environment map file (.hdr, .exr), constant:R,G,B,\nsun:AZ,EL,ANGLE,R[,G,B] "
+          "Several add up: an environment map file (.hdr, .exr), constant:R,G,B,\nsun:AZ,EL,ANGLE,R[,G,B] "
           "(degrees, angular radius, radiance),\nsphere:X,Y,Z,RADIUS,R[,G,B] or "
           "disc:X,Y,Z,NX,NY,NZ,RADIUS,R[,G,B]\n(metres, radiance; unseen by the camera)")
       ->type_name("LIGHT")

@@ -26,7 +26,7 @@ class FolderBakes {
  public:
   FolderBakes(const WatchArguments& arguments, BakeQueue& queue) : arguments_(arguments), queue_(queue) {}
 
-  // One line for whatever happens.
+  // Prints one line for each event.
   void say(const char* event, const fs::path& scene, const std::string& text,
            json more = json::object()) const {
     if (arguments_.json) {
@@ -69,7 +69,7 @@ class FolderBakes {
           say("failed", scene, state->error->line(), {{"output", output}, {"error", state->error->line()}});
         return;
       case BakeEvent::Kind::Cancelled:
-        return;  // because the scene is gone, which was said
+        return;  // the scene is gone, which was reported
       case BakeEvent::Kind::Bundle:
         break;
     }
@@ -98,7 +98,7 @@ class FolderBakes {
                                           output.string(), entry->second.string());
       return say("failed", scene, why, {{"output", output.string()}, {"error", why}});
     }
-    std::error_code ignored;  // the bake says that it cannot write
+    std::error_code ignored;  // the bake reports that it cannot write
     fs::create_directories(output.parent_path(), ignored);
     jobs_.insert_or_assign(
         scene,

@@ -1,5 +1,5 @@
-// lambent bake --watch DIR: the pipeline without a window. Bakes every scene of a folder, then waits for
-// changes.
+// Implements lambent bake --watch DIR, the pipeline without a window: it bakes every scene of a folder, then
+// waits for changes.
 #pragma once
 
 #include <filesystem>
@@ -12,13 +12,13 @@ namespace lambent::baker {
 
 struct WatchArguments {
   std::filesystem::path folder;
-  std::filesystem::path output;  // a folder; empty: bundles lie beside their scenes
+  std::filesystem::path output;  // a folder; if empty, bundles lie beside their scenes
   BakeOptions options;
   ImportOptions import;
-  bool json = false;  // an object per line
+  bool json = false;  // prints one object per line
 };
 
-// Until it is interrupted. The exit code.
+// Runs until it is interrupted, and returns the exit code.
 int watchFolder(const WatchArguments& arguments, Cache* cache);
 
 }  // namespace lambent::baker

@@ -1,4 +1,4 @@
-// What the bake of a volume and of a neighborhood hands to the bundle.
+// These structs are what the bakes of a volume and of a neighborhood hand to the bundle.
 #pragma once
 
 #include <cstddef>
@@ -14,14 +14,14 @@
 
 namespace lambent::baker {
 
-// Samples that are coded together: at most 64 Ki, in the order of the grid.
+// A CodedCell holds samples that are coded together: at most 64 Ki, in the order of the grid.
 struct CodedCell {
   std::uint32_t count = 0;
   glm::vec3 bounds_min{0.0f}, bounds_max{0.0f};  // group frame
   std::vector<CodedTransfer> transfers;          // as in bundle::Cell
 };
 
-// bundle::VolumeGrid, with its payloads as values.
+// BakedVolume is bundle::VolumeGrid with its payloads as values.
 struct BakedVolume {
   glm::uvec3 size{1};
   glm::mat4 group_from_grid{1.0f};
@@ -31,11 +31,11 @@ struct BakedVolume {
   glm::vec3 albedo{1.0f};
   float g = 0.0f;
   glm::uvec3 transfer_size{1};
-  std::vector<std::uint32_t> voxels;  // one per sample, rising
+  std::vector<std::uint32_t> voxels;  // one per sample, ascending
   std::vector<CodedCell> cells;
-  glm::vec3 light_probe{0.0f};  // where the light that comes in is sampled, group frame
+  glm::vec3 light_probe{0.0f};  // where incoming light is sampled, group frame
 
-  // Around the box of voxels, group frame.
+  // Returns the bounds of the box of voxels in the group frame.
   std::pair<glm::vec3, glm::vec3> bounds() const {
     glm::vec3 low(group_from_grid[3]), high = low;
     for (int corner = 1; corner < 8; ++corner) {
@@ -47,7 +47,7 @@ struct BakedVolume {
   }
 };
 
-// bundle::NeighborhoodGrid.
+// BakedNeighborhood is bundle::NeighborhoodGrid with its payloads as values.
 struct BakedNeighborhood {
   glm::uvec3 size{2};
   glm::vec3 bounds_min{0.0f}, bounds_max{0.0f};  // group frame

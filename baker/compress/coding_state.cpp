@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "baker/compress/kept_transfer.hpp"
+#include "baker/jobs/kept_value.hpp"
 
 namespace lambent::baker {
 
@@ -19,35 +20,36 @@ bool read(ByteReader& in, Rounds& rounds) {
 
 }  // namespace
 
+void write(const CodingState& state, ByteWriter& out) {
+  out.add(state.step), write(state.basis, out), out.add(state.reachable), out.add(state.budget);
+  out.add(state.most_clusters), out.add(state.tried), out.add(state.fewest_bytes);
+  write(state.best, out), write(state.rounds, out), out.add(state.attempt), out.add(state.quantum);
+  write(state.coded, out);
+}
+
+bool read(ByteReader& in, CodingState& state) {
+  return in.read(state.step) && read(in, state.basis) && in.read(state.reachable) && in.read(state.budget) &&
+         in.read(state.most_clusters) && in.read(state.tried) && in.read(state.fewest_bytes) &&
+         read(in, state.best) && read(in, state.rounds) && in.read(state.attempt) && in.read(state.quantum) &&
+         read(in, state.coded);
+}
+
 bool CodingCheckpoint::restore(std::size_t count, CodingState& state) const {
-  if (!keep_.cache) return false;
-  const auto bytes = keep_.cache->find(keep_.key);
-  if (!bytes) return false;
-  ByteReader in(*bytes);
   CodingState found;
-  if (!in.read(found.step) || !read(in, found.basis) || !in.read(found.reachable) || !in.read(found.budget) ||
-      !in.read(found.most_clusters) || !in.read(found.tried) || !in.read(found.fewest_bytes) ||
-      !read(in, found.best) || !read(in, found.rounds) || !in.read(found.attempt) ||
-      !in.read(found.quantum) || !read(in, found.coded) || !in.atEnd() || found.best.ids.size() > count ||
-      found.rounds.ids.size() > count)
+  if (!findKept(context_, found) || found.best.ids.size() > count || found.rounds.ids.size() > count)
     return false;
   state = std::move(found);
   return true;
 }
 
 void CodingCheckpoint::save(const CodingState& state, bool stopped) const {
-  if (!keep_.cache || !(stopped || keep_.cache->checkpointDue())) return;
-  ByteWriter out;
-  out.add(state.step), write(state.basis, out), out.add(state.reachable), out.add(state.budget);
-  out.add(state.most_clusters), out.add(state.tried), out.add(state.fewest_bytes);
-  write(state.best, out), write(state.rounds, out), out.add(state.attempt), out.add(state.quantum);
-  write(state.coded, out);
-  keep_.cache->put(keep_.key, out.bytes());
-  keep_.cache->checkpointed();
+  if (!context_.keeps() || !(stopped || context_.checkpointDue())) return;
+  keepValue(context_, state);
+  context_.cache->checkpointed();
 }
 
 void CodingCheckpoint::drop() const {
-  if (keep_.cache) keep_.cache->drop(keep_.key);
+  dropValue(context_);
 }
 
 }  // namespace lambent::baker

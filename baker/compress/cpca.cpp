@@ -20,25 +20,26 @@ namespace lambent::baker {
 namespace {
 
 constexpr std::size_t kGrain = 512;
-constexpr std::size_t kBasisSamples = 8192;  // at least, for the covariance of all values
-// Multiply-adds that may go into it for visibility, bounced light and lamps: where few values allow it all
-// samples are looked at, for in grids around bodies rare ones, beside the body, are like no others, and few
-// samples next to a lamp hold nearly all of its energy.
+constexpr std::size_t kBasisSamples = 8192;  // samples that the covariance uses at least
+// Multiply-adds that the covariance may take for visibility, bounced light and lamps. With few values per
+// sample this covers all samples, which matters because some are rare: those of a grid beside the body are
+// unlike all others, and few samples next to a lamp hold nearly all of its energy.
 constexpr double kBasisWork = 1.6e10;
-constexpr double kTailShare = 0.05;     // of the square error allowed, for what the basis leaves out
-constexpr double kBesideLeftOut = 1.3;  // of what the basis must leave out: all square error then
-constexpr std::size_t kRun = 64;        // neighbours kept together where only some samples are taken
+constexpr double kTailShare = 0.05;     // share of the allowed square error that the basis may leave out
+constexpr double kBesideLeftOut = 1.3;  // allowed square error relative to what the basis has to leave out
+// Length of the runs of neighbours that are kept if only some samples are used.
+constexpr std::size_t kRun = 64;
 constexpr std::size_t kLeastSearched = 4096, kSearchedPerCluster = 96;
 constexpr int kSearchRounds = 4, kFinalRounds = 3, kMostAttempts = 8;
-// What a weight counts for in the choice of axes, however little it says. A weight of a glossy sample stands
-// for 25 multiply-adds of four numbers whenever light changes, so axes that are nearly all noise are not
-// worth their time.
+// Bits that a weight counts for at least in the choice of axes. A weight of a glossy sample costs 25
+// multiply-adds of four numbers whenever light changes, so axes that are nearly all noise are not worth their
+// time.
 constexpr double kPlainWeightBits = 0.1, kGlossyWeightBits = 1.5;
 constexpr std::uint32_t kClusterCounts[] = {1, 4, 16, 64, 128, 256};
 
-// Runs of neighbours spread over the cell: `kept` samples or all. One of each `stride` runs, now this and now
-// that one by the golden ratio: the rows of a grid of points would else be in step with them, and whole
-// layers of it never seen.
+// Returns all samples, or about `kept` of them in runs of neighbours spread over the cell. One of each
+// `stride` runs is taken, at a place that varies by the golden ratio; a fixed place could be in step with the
+// rows of a grid of points and miss whole layers of it.
 std::vector<std::uint32_t> someSamples(std::size_t count, std::size_t kept) {
   std::vector<std::uint32_t> samples;
   const std::size_t runs = (count + kRun - 1) / kRun, stride = std::max<std::size_t>(1, count / kept);
@@ -63,9 +64,9 @@ Points weighted(std::span<const float> vectors, const std::vector<double>& roots
   return out;
 }
 
-// Coordinates of all samples over the rounded basis, by least squares.
+// Returns the coordinates of all samples over the rounded basis, by least squares.
 Points coordinates(std::span<const float> vectors, const std::vector<double>& roots,
-                   const bundle::SharedCodebook& basis) {
+                   const transfer::SharedCodebook& basis) {
   const auto size = static_cast<Eigen::Index>(roots.size()),
              rank = static_cast<Eigen::Index>(basis.basis_scales.size());
   Eigen::MatrixXd axes(size, rank);
@@ -101,8 +102,8 @@ struct Clustering {
   double step = 0.0;
 };
 
-// Of means and axes, decoded.
-std::size_t expandedBytes(const std::vector<Cluster>& clusters, const bundle::TransferShape& shape) {
+// Returns the size of the decoded means and axes.
+std::size_t expandedBytes(const std::vector<Cluster>& clusters, const transfer::TransferShape& shape) {
   std::size_t vectors = clusters.size();
   for (const Cluster& cluster : clusters) vectors += static_cast<std::size_t>(cluster.kept);
   return vectors * shape.size() * sizeof(float);
@@ -111,22 +112,22 @@ std::size_t expandedBytes(const std::vector<Cluster>& clusters, const bundle::Tr
 std::vector<float> decode(const CodedTransfer& coded) {
   std::vector<std::vector<std::uint32_t>> codes;
   for (const CodedPlane& plane : coded.planes) codes.push_back(plane.codes);
-  return bundle::decodeTransfer(coded.shape, bundle::expand(coded.codebook), coded.cluster_of, codes);
+  return transfer::decodeTransfer(coded.shape, transfer::expand(coded.codebook), coded.cluster_of, codes);
 }
 
-// One transfer, step by step: what is known after each is the state, from which another run goes on.
+// Codes one transfer step by step. The state after each step is all that another run needs to go on.
 class Coder {
  public:
-  Coder(std::span<const float> vectors, const bundle::TransferShape& shape, const CodingSettings& settings,
-        const std::stop_token& stop, CodingCheckpoint checkpoint)
+  Coder(std::span<const float> vectors, const transfer::TransferShape& shape, const CodingSettings& settings,
+        const BakeContext& context)
       : vectors_(vectors),
         shape_(shape),
         settings_(settings),
-        stop_(stop),
-        checkpoint_(std::move(checkpoint)),
+        stop_(context.stop),
+        checkpoint_(context),
         count_(vectors.size() / shape.size()),
         space_(weightedSpace(vectors, shape, settings.shown_energy, settings.kernel_power)),
-        least_bits_(shape.glossy() ? kGlossyWeightBits : kPlainWeightBits) {
+        least_bits_(shape.beyondDiffuse() ? kGlossyWeightBits : kPlainWeightBits) {
     const double bound = double{settings.bound};
     allowed_ = bound * bound * space_.blocks / static_cast<double>(count_);
   }
@@ -148,14 +149,15 @@ class Coder {
         if (!fitted) return {};
         if (*fitted || !fewer) return std::move(state_.coded);
       }
-      // What some of the samples foretold is too little, or what was planned for the bound.
+      // The estimate from some of the samples, or for the bound, was too small: try with half as many
+      // clusters.
       state_.most_clusters = static_cast<std::uint32_t>(found->clusters.size() / 2);
       beginSearch();
     }
   }
 
  private:
-  // After a step of the work: keeps the state, where that is to be. True where the work ends here.
+  // Saves the state after a step of the work if that is due. Returns true if the work is to end here.
   bool stopped() {
     const bool stop = stop_.stop_requested();
     checkpoint_.save(state_, stop);
@@ -168,7 +170,7 @@ class Coder {
     state_.best = state_.rounds = {};
     state_.coded = {};
   }
-  // False if stopped.
+  // Returns false if stopped.
   bool beginFit(double step) {
     state_.step = CodingState::Step::Fit;
     state_.attempt = 0;
@@ -184,7 +186,8 @@ class Coder {
 
   void findBasis();
   CodedTransfer dark() const;
-  // Iterative PCA: fits and moves samples in turn, from where state_.rounds is. Nothing if stopped.
+  // Runs iterative PCA, which fits and moves samples in turn, from state_.rounds on. Returns nothing if
+  // stopped.
   std::optional<Clustering> refine(const Points& points, int axes, std::uint32_t rounds, bool held_out);
   Clustering fitted(const Points& points, ClusterIds ids, int axes, bool held_out) const;
   std::optional<Clustering> fromSome(std::uint32_t clusters, int axes);
@@ -192,16 +195,16 @@ class Coder {
     return someSamples(count_, std::max(kLeastSearched, kSearchedPerCluster * clusters));
   }
   std::optional<Clustering> search();
-  // Assigns all samples to clusters that were found from some. False if stopped.
+  // Assigns all samples to clusters that were found from some of them. Returns false if stopped.
   bool searchAndAssign();
-  // The best codes are left in state_.coded. False where the memory for means and axes ended before the bound
-  // was reached. Nothing if stopped.
+  // Leaves the best codes in state_.coded. Returns false if the memory for means and axes ran out before the
+  // bound was reached, and nothing if stopped.
   std::optional<bool> fitToBound(Clustering& found);
 
   std::span<const float> vectors_;
-  const bundle::TransferShape& shape_;
+  const transfer::TransferShape& shape_;
   const CodingSettings& settings_;
-  const std::stop_token& stop_;
+  std::stop_token stop_;
   CodingCheckpoint checkpoint_;
   std::size_t count_;
   WeightedSpace space_;
@@ -210,7 +213,7 @@ class Coder {
   CodingState state_;
 };
 
-// A basis for the cell: all principal components but those that hardly matter.
+// Finds a basis for the cell: all principal components but those that hardly matter.
 void Coder::findBasis() {
   double left_out = 0.0;
   const double size = static_cast<double>(shape_.size());
@@ -220,7 +223,7 @@ void Coder::findBasis() {
           : kBasisSamples;
   const Points some = weighted(vectors_, space_.roots, someSamples(count_, looked_at));
   Spectrum spectrum = leadingSpectrum(some, kTailShare * allowed_, settings_.most_components, left_out);
-  // Where the components that were looked for leave out more than is allowed, the rest is coded to match.
+  // If the components that were looked for leave out more than is allowed, the rest is coded to match.
   state_.reachable = std::max(allowed_, kBesideLeftOut * left_out);
   const double looseness = double{settings_.loose_bound} / double{settings_.bound};
   double tail_allowed = kTailShare * allowed_;
@@ -229,7 +232,7 @@ void Coder::findBasis() {
     spectrum = leadingSpectrum(some, tail_allowed, kAllComponents, left_out);
     state_.reachable = std::max(loose, kBesideLeftOut * left_out);
   }
-  state_.budget = 0.9 * (state_.reachable - left_out);  // the rest: rounding of basis, means and axes
+  state_.budget = 0.9 * (state_.reachable - left_out);  // the rest is for rounding of basis, means and axes
   Eigen::Index rank = spectrum.variances.size();
   for (double tail = left_out; rank > 0 && (tail += spectrum.variances(rank - 1)) <= left_out + tail_allowed;)
     --rank;
@@ -273,7 +276,7 @@ std::optional<Clustering> Coder::fromSome(std::uint32_t clusters, int axes) {
   return refine(searched, axes, kSearchRounds, some.size() < count_);
 }
 
-// The number of clusters that codes to the fewest bytes, by estimates from some of the samples.
+// Finds the number of clusters that codes to the fewest bytes, by estimates from some of the samples.
 std::optional<Clustering> Coder::search() {
   Clustering best;
   if (!state_.best.ids.empty()) {
@@ -303,8 +306,8 @@ bool Coder::searchAndAssign() {
   return !stopped();
 }
 
-// Steps are planned by what errors and bits are expected to be; here they are measured, and the step made as
-// large as the bound allows.
+// Steps were planned from expected errors and bits. This measures the errors and makes the step as large as
+// the bound allows.
 std::optional<bool> Coder::fitToBound(Clustering& found) {
   const double bound = double{settings_.bound} * std::sqrt(state_.reachable / allowed_);
   CodedTransfer& best = state_.coded;
@@ -315,14 +318,14 @@ std::optional<bool> Coder::fitToBound(Clustering& found) {
     coded.error = static_cast<float>(errorOf(coded));
     const float error = coded.error;
     const bool met = double{error} <= bound, met_before = double{best.error} <= bound;
-    // The larger error is the smaller code, among those that keep the bound.
+    // Among codes that keep the bound, the larger error is the smaller code.
     if (state_.attempt == 0 || (met ? !met_before || coded.error > best.error : coded.error < best.error))
       best = std::move(coded);
-    if (settings_.axes >= 0) break;  // no step makes up for axes that are left out
+    if (settings_.axes >= 0) break;  // no step makes up for axes that were left out
     if (met && double{best.error} > 0.98 * bound) break;
     if (best.planes.empty() && met) break;  // nothing left to save
-    // Part of the error does not follow the step (rounded means and axes, the weaker of the two blocks): what
-    // is missing has to come from the rest, so go down twice as far as the ratio says.
+    // Part of the error does not depend on the step (rounded means and axes, the weaker of the two blocks).
+    // The rest has to make up for it, so the step goes down by the square of the ratio.
     const double ratio = 0.995 * bound / std::max(double{error}, 1e-12);
     state_.quantum *= std::clamp(met ? ratio : ratio * ratio, 0.3, 1.5);
     ++state_.attempt;
@@ -333,11 +336,17 @@ std::optional<bool> Coder::fitToBound(Clustering& found) {
 
 }  // namespace
 
+CodedTransfer codeTransfer(std::span<const float> vectors, std::size_t count,
+                           const transfer::TransferShape& shape, const CodingSettings& settings) {
+  Progress progress;  // nobody looks at it
+  return codeTransfer(vectors, count, shape, settings, BakeContext{progress});
+}
+
 CodedTransfer codeTransfer(std::span<const float> vectors, [[maybe_unused]] std::size_t count,
-                           const bundle::TransferShape& shape, const CodingSettings& settings,
-                           const std::stop_token& stop, const Keep& keep) {
+                           const transfer::TransferShape& shape, const CodingSettings& settings,
+                           const BakeContext& context) {
   assert(count > 0 && vectors.size() == count * shape.size() && settings.bound > 0.0f);
-  return Coder(vectors, shape, settings, stop, CodingCheckpoint(keep)).code();
+  return Coder(vectors, shape, settings, context).code();
 }
 
 }  // namespace lambent::baker

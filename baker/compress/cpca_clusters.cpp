@@ -14,19 +14,19 @@ namespace {
 
 constexpr std::size_t kGrain = 1024;
 constexpr std::size_t kBlock = 256;     // samples gathered for one matrix product
-constexpr double kFewestMembers = 8.0;  // of a cluster; its mean and name are not worth it for fewer
+constexpr double kFewestMembers = 8.0;  // below this a cluster is not worth its mean and id
 constexpr double kNamingPrice = 2.0;    // a change of cluster also breaks the prediction of weights
 constexpr double kLeastAxisShare = 0.2, kMostAxisShare = 1.5;
 constexpr std::size_t kNearest = 8;  // clusters tried per sample, by distance to their means
 
-// Entropy of a Gaussian weight of this variance in steps, and what the weight costs besides.
+// Returns the entropy of a Gaussian weight of this variance in steps, plus a fixed cost.
 double weightBits(double variance, double step, double least_bits) {
   const double in_steps = variance / (step * step) + 1.0 / 12.0;
   return std::max(least_bits, 0.5 * std::log2(2.0 * std::numbers::pi * std::numbers::e * in_steps)) + 0.05;
 }
 
-// Bits in the codebook of a unit vector known well enough for weights of this variance (axisGrid): those of
-// an integer of typical size, for each coordinate.
+// Returns the bits in the codebook of a unit vector that is known well enough for weights of this variance
+// (axisGrid): those of an integer of typical size for each coordinate.
 double axisBits(Eigen::Index rank, double variance, double step, double count) {
   const auto coordinates = static_cast<double>(rank);
   const double typical = 1.0 / (std::sqrt(coordinates) * axisGrid(rank, variance, step, count));
@@ -37,7 +37,7 @@ double bitPrice(double step) {
   return 2.0 * std::numbers::ln2 * step * step / 12.0;
 }
 
-// A number in 0..1 from a counter (splitmix64).
+// Returns a number in 0..1 from a counter (splitmix64).
 double hashed(std::uint64_t counter) {
   std::uint64_t z = (counter + 1) * 0x9e3779b97f4a7c15ull;
   z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9ull;
@@ -66,8 +66,8 @@ void keepAxesOf(Cluster& cluster, double step) {
   }
 }
 
-// Of a block of samples that begins with sample `begin`, by cluster: those that may belong there, for it is
-// near, or was their own before, or that of the sample before. distances: column per sample.
+// Lists by cluster the samples of a block beginning at `begin` that may belong there: the cluster is near, or
+// was their own before, or that of the previous sample. `distances` has one column per sample.
 std::vector<std::vector<std::uint32_t>> candidates(const Eigen::MatrixXf& distances,
                                                    std::span<const std::uint32_t> before, std::size_t begin) {
   std::vector<std::vector<std::uint32_t>> samples(static_cast<std::size_t>(distances.rows()));
@@ -151,7 +151,7 @@ std::vector<Cluster> fitClusters(const Points& points, ClusterIds& ids, bool hel
     const Spectrum spectrum = spectrumAbout(points, own, cluster.mean);
     cluster.axes = spectrum.axes.cast<float>();
     cluster.variances = spectrum.variances;
-    // Differences between neighbours of the cluster, along the axes.
+    // Sums squared differences between neighbours of the cluster along the axes.
     Eigen::VectorXd squares = Eigen::VectorXd::Zero(cluster.axes.cols());
     Points block(points.rows(), static_cast<Eigen::Index>(kBlock));
     for (std::size_t first = 1; first < own.size(); first += kBlock) {
@@ -162,7 +162,7 @@ std::vector<Cluster> fitClusters(const Points& points, ClusterIds& ids, bool hel
       squares += along.rowwise().squaredNorm().cast<double>();
     }
     cluster.innovation = squares / std::max(1.0, cluster.count - 1.0);
-    // n samples leave n - 1 - j dimensions of noise to axis j: its variance looks smaller than it is.
+    // n samples leave n - 1 - j dimensions of noise to axis j, so its variance looks smaller than it is.
     if (held_out)
       for (Eigen::Index j = 0; j < cluster.variances.size(); ++j)
         cluster.variances(j) *= cluster.count / std::max(1.0, cluster.count - 1.0 - static_cast<double>(j));
@@ -229,7 +229,7 @@ ClusterIds assignClusters(const Points& points, const std::vector<Cluster>& clus
       prepared[c].spread(j) =
           static_cast<float>(price * 0.5 / std::numbers::ln2 / (variance + step * step / 12.0));
     }
-    // Small clusters lose their members to others, unless there is none but small ones.
+    // Small clusters lose their members to others, unless all clusters are small.
     const bool open = cluster.count >= std::min(largest, kFewestMembers);
     prepared[c].cost = open ? static_cast<float>(cost) : std::numeric_limits<float>::max();
   }
@@ -257,7 +257,7 @@ ClusterIds assignClusters(const Points& points, const std::vector<Cluster>& clus
         const std::size_t s = begin + in_block;
         float cost = off.col(m).squaredNorm() - weights.col(m).squaredNorm() + prepared[c].cost +
                      weights.col(m).cwiseAbs2().dot(prepared[c].spread);
-        // Neighbours in one cluster cost almost nothing to name.
+        // The id of a cluster costs almost nothing if a neighbour has the same one.
         if (!before.empty() &&
             !((s > 0 && before[s - 1] == c) || (s + 1 < before.size() && before[s + 1] == c)))
           cost += name;

@@ -12,21 +12,21 @@ namespace lambent::baker {
 
 namespace {
 
-constexpr double kLargestCoordinate = bundle::kMaxCoordinate - 1;
+constexpr double kLargestCoordinate = transfer::kMaxCoordinate - 1;
 constexpr double kMaxCode = 65535.0;
 
 std::int32_t rounded(double value) {
   return static_cast<std::int32_t>(std::lround(std::clamp(value, -kLargestCoordinate, kLargestCoordinate)));
 }
 
-// Few different values code to few bytes.
+// Rounds to quarter octaves, since few different values code to few bytes.
 double coarse(double value) {
   return std::exp2(std::round(4.0 * std::log2(value)) / 4.0);
 }
 
 struct CodedCluster {
   std::vector<std::int32_t> mean, directions;  // [coordinate], [axis][coordinate]
-  std::vector<bundle::AxisCode> axes;
+  std::vector<transfer::AxisCode> axes;
   std::vector<std::vector<std::uint32_t>> codes;  // [axis][member]
 };
 
@@ -39,7 +39,7 @@ CodedCluster codeCluster(const Points& points, std::span<const std::uint32_t> me
     coded.mean.push_back(rounded(double{cluster.mean(r)} / mean_grid));
     mean(r) = mean_grid * coded.mean.back();
   }
-  // Axes on grids whose errors, times the weights, suit the quantization of the weights.
+  // The errors of these grids, times the weights, suit the quantization of the weights.
   Eigen::MatrixXd axes(rank, cluster.kept);
   Eigen::VectorXd scales(cluster.kept);
   for (Eigen::Index j = 0; j < cluster.kept; ++j) {
@@ -77,14 +77,14 @@ CodedCluster codeCluster(const Points& points, std::span<const std::uint32_t> me
 
 }  // namespace
 
-bundle::SharedCodebook roundedBasis(const Eigen::MatrixXd& axes, const Eigen::VectorXd& energies,
-                                    const std::vector<double>& roots, double step) {
-  bundle::SharedCodebook basis;
+transfer::SharedCodebook roundedBasis(const Eigen::MatrixXd& axes, const Eigen::VectorXd& energies,
+                                      const std::vector<double>& roots, double step) {
+  transfer::SharedCodebook basis;
   for (const double root : roots)
     basis.value_scales.push_back(root > 0.0 ? static_cast<float>(1.0 / root) : 0.0f);
   for (Eigen::Index r = 0; r < axes.cols(); ++r) {
-    // Errors of the basis add a tenth of what quantization of one axis' weights leaves, for each vector.
-    // However little it matters, it stays a direction.
+    // Errors of the basis add, for each vector, a tenth of the quantization error of one axis' weights. The
+    // grid is kept fine enough that even an unimportant axis keeps its direction.
     const double coarsest = axes.col(r).cwiseAbs().maxCoeff() / 4.0;
     const double grid =
         std::clamp(step * std::sqrt(0.1 / (static_cast<double>(axes.rows()) * std::max(energies(r), 1e-300))),
@@ -96,7 +96,8 @@ bundle::SharedCodebook roundedBasis(const Eigen::MatrixXd& axes, const Eigen::Ve
 }
 
 CodedTransfer quantize(const Points& points, const ClusterIds& ids, const std::vector<Cluster>& clusters,
-                       const bundle::SharedCodebook& basis, const bundle::TransferShape& shape, double step) {
+                       const transfer::SharedCodebook& basis, const transfer::TransferShape& shape,
+                       double step) {
   // By falling number of axes.
   std::vector<std::uint32_t> order(clusters.size()), place(clusters.size());
   std::iota(order.begin(), order.end(), 0u);
@@ -115,7 +116,7 @@ CodedTransfer quantize(const Points& points, const ClusterIds& ids, const std::v
   for (const Cluster& cluster : clusters)
     mean_axes += cluster.count / static_cast<double>(ids.size()) * static_cast<double>(cluster.kept);
   const auto rank = static_cast<std::size_t>(points.rows());
-  // Errors of the means, which no weight corrects along the axes that are left out, add a fiftieth.
+  // Errors of the means add a fiftieth, since no weight corrects them along axes that are left out.
   double mean_grid = step * std::sqrt(0.02 * mean_axes / static_cast<double>(std::max<std::size_t>(rank, 1)));
   for (const Cluster& cluster : clusters)
     mean_grid = std::max(mean_grid, double{cluster.mean.cwiseAbs().maxCoeff()} / kLargestCoordinate);
@@ -125,7 +126,7 @@ CodedTransfer quantize(const Points& points, const ClusterIds& ids, const std::v
   parallelRanges(parts.size(), 1, {}, [&](std::size_t c, std::size_t) {
     parts[c] = codeCluster(points, members[c], clusters[order[c]], mean_grid, step);
   });
-  bundle::SharedCodebook& book = coded.codebook;
+  transfer::SharedCodebook& book = coded.codebook;
   book.mean_scale = static_cast<float>(mean_grid);
   for (const CodedCluster& part : parts) {
     book.axis_counts.push_back(static_cast<std::uint32_t>(part.axes.size()));
@@ -133,7 +134,7 @@ CodedTransfer quantize(const Points& points, const ClusterIds& ids, const std::v
   }
   for (std::size_t r = 0; r < rank; ++r)
     for (const CodedCluster& part : parts) book.means.push_back(part.mean[r]);
-  for (std::size_t j = 0; j < parts.front().axes.size(); ++j)  // of the cluster with the most axes
+  for (std::size_t j = 0; j < parts.front().axes.size(); ++j)  // the first cluster has the most axes
     for (std::size_t r = 0; r < rank; ++r)
       for (const CodedCluster& part : parts)
         if (j < part.axes.size()) book.directions.push_back(part.directions[j * rank + r]);

@@ -1,5 +1,6 @@
-// From clusters to integers: the basis, the clusters' means and axes on grids as coarse as the error allows,
-// then the weights of every sample by least squares over what those grids left, all with the same step.
+// Turns clusters into integers. The basis and the clusters' means and axes are rounded to grids as coarse as
+// the error allows; then the weights of every sample are fitted by least squares to the rounded axes, all
+// with the same step.
 #pragma once
 
 #include <vector>
@@ -9,13 +10,15 @@
 
 namespace lambent::baker {
 
-// The basis of the cell, rounded: basis, basis_scales and value_scales of a codebook; `axes` are columns in
-// the weighted space, `energies` their mean square coordinates.
-bundle::SharedCodebook roundedBasis(const Eigen::MatrixXd& axes, const Eigen::VectorXd& energies,
-                                    const std::vector<double>& roots, double step);
+// Rounds the basis of the cell and returns the codebook's basis, basis_scales and value_scales. `axes` are
+// columns in the weighted space, `energies` their mean square coordinates, and `roots` those of
+// WeightedSpace.
+transfer::SharedCodebook roundedBasis(const Eigen::MatrixXd& axes, const Eigen::VectorXd& energies,
+                                      const std::vector<double>& roots, double step);
 
-// points: coordinates over the rounded basis. Fills everything but `error`.
+// `points` are coordinates over the rounded basis. Fills in everything but `error`.
 CodedTransfer quantize(const Points& points, const ClusterIds& ids, const std::vector<Cluster>& clusters,
-                       const bundle::SharedCodebook& basis, const bundle::TransferShape& shape, double step);
+                       const transfer::SharedCodebook& basis, const transfer::TransferShape& shape,
+                       double step);
 
 }  // namespace lambent::baker

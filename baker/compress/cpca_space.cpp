@@ -16,14 +16,14 @@ namespace lambent::baker {
 
 namespace {
 
-constexpr std::size_t kGrain = 1024;  // samples in a range of a sum
+constexpr std::size_t kGrain = 1024;  // samples in one range of a sum
 
-std::size_t shadowedSize(const bundle::TransferShape& shape) {
+std::size_t shadowedSize(const transfer::TransferShape& shape) {
   if (shape.isVisibility()) return shape.size();
   return std::size_t{shape.shadowed_channels} * shape.outputs * shape.columns();
 }
 
-// Per value, the sum over samples of value(sample, i)², ordered.
+// Returns, for each value, the sum over samples of value(sample, i)², added in a fixed order.
 template <typename Value>
 std::vector<double> energies(std::size_t size, std::size_t count, const Value& value) {
   std::vector<std::vector<double>> partial((count + kGrain - 1) / kGrain);
@@ -42,18 +42,19 @@ std::vector<double> energies(std::size_t size, std::size_t count, const Value& v
   return total;
 }
 
-// How much an output's error shows: not normal-mapped 1, for normal maps A_l/pi, for glossy surfaces by the
-// lobe.
-double outputRoot(const bundle::TransferShape& shape, int output, const BandPower& kernel_power) {
+// Returns how much an output's error shows: A_l/pi for normal maps, by the power of the lobe for glossy
+// surfaces, else 1.
+double outputRoot(const transfer::TransferShape& shape, int output, const BandPower& kernel_power) {
   if (shape.outputs == 1) return 1.0;
   const int band = sh::bandOf(output);
-  return shape.glossy() ? std::sqrt(kernel_power[static_cast<std::size_t>(band)])
-                        : sh::clampedCosine(band) / std::numbers::pi;
+  return shape.beyondDiffuse() ? std::sqrt(kernel_power[static_cast<std::size_t>(band)])
+                               : sh::clampedCosine(band) / std::numbers::pi;
 }
 
-// Of visibility: lights and lobes turned at random make errors of its coefficients independent of each other.
-std::vector<double> visibilityRoots(const bundle::TransferShape& shape, const BandPower& kernel_power) {
-  const auto bands_out = static_cast<int>(bundle::bandsOf(shape.outputs));
+// Averages over lights and lobes turned at random, which make errors of visibility's coefficients
+// independent.
+std::vector<double> visibilityRoots(const transfer::TransferShape& shape, const BandPower& kernel_power) {
+  const auto bands_out = static_cast<int>(transfer::bandsOf(shape.outputs));
   const sh::GauntTable table = sh::makeGauntTable(static_cast<int>(shape.order), bands_out);
   std::vector<double> powers(shape.size(), 0.0);
   for (std::uint32_t i = 0; i < shape.outputs; ++i)
@@ -67,9 +68,9 @@ std::vector<double> visibilityRoots(const bundle::TransferShape& shape, const Ba
   return powers;
 }
 
-// sqrt(W_i) but for the lights of the group, which are 1 here: band power of light, times what the output
-// counts.
-std::vector<double> bandRoots(const bundle::TransferShape& shape, const BandPower& kernel_power) {
+// Returns sqrt(W_i), the band power of light times the weight of the output. Columns of the group's lights
+// get a band power of 1 here.
+std::vector<double> bandRoots(const transfer::TransferShape& shape, const BandPower& kernel_power) {
   if (shape.isVisibility()) return visibilityRoots(shape, kernel_power);
   std::vector<double> roots;
   const std::size_t columns = shape.columns(), environment = std::size_t{shape.order} * shape.order;
@@ -83,8 +84,8 @@ std::vector<double> bandRoots(const bundle::TransferShape& shape, const BandPowe
   return roots;
 }
 
-// How many of red, green and blue a channel stands for.
-double channelWeight(const bundle::TransferShape& shape) {
+// Returns how many of red, green and blue a channel stands for.
+double channelWeight(const transfer::TransferShape& shape) {
   return std::max(shape.shadowed_channels, shape.full_channels) == 3 ? 1.0 : 3.0;
 }
 
@@ -92,16 +93,16 @@ struct Block {
   std::size_t first = 0, last = 0;
 };
 
-std::vector<Block> blocksOf(const bundle::TransferShape& shape) {
+std::vector<Block> blocksOf(const transfer::TransferShape& shape) {
   std::vector<Block> blocks;
   if (shape.shadowed_channels > 0) blocks.push_back({0, shadowedSize(shape)});
   if (shape.full_channels > 0) blocks.push_back({shadowedSize(shape), shape.size()});
   return blocks;
 }
 
-// Each block of energy 1; in it, the columns of lights of as much energy as the whole environment, each. Or
-// relative to what is shown.
-std::vector<double> normalisedRoots(std::span<const float> vectors, const bundle::TransferShape& shape,
+// Scales each block to energy 1, in which each of the group's lights has as much energy as the whole
+// environment. With shown_energy, or for visibility, the scale is relative to what is shown instead.
+std::vector<double> normalisedRoots(std::span<const float> vectors, const transfer::TransferShape& shape,
                                     double shown_energy, const BandPower& kernel_power) {
   std::vector<double> roots = bandRoots(shape, kernel_power);
   if (shown_energy > 0.0 || shape.isVisibility()) {
@@ -132,7 +133,7 @@ std::vector<double> normalisedRoots(std::span<const float> vectors, const bundle
 
 }  // namespace
 
-double transferEnergy(std::span<const float> vectors, const bundle::TransferShape& shape,
+double transferEnergy(std::span<const float> vectors, const transfer::TransferShape& shape,
                       const BandPower& kernel_power) {
   const std::vector<double> roots = bandRoots(shape, kernel_power);
   const auto energy = energies(shape.size(), vectors.size() / shape.size(),
@@ -142,7 +143,7 @@ double transferEnergy(std::span<const float> vectors, const bundle::TransferShap
   return channelWeight(shape) * sum;
 }
 
-WeightedSpace weightedSpace(std::span<const float> vectors, const bundle::TransferShape& shape,
+WeightedSpace weightedSpace(std::span<const float> vectors, const transfer::TransferShape& shape,
                             double shown_energy, const BandPower& kernel_power) {
   WeightedSpace space{normalisedRoots(vectors, shape, shown_energy, kernel_power), 1.0};
   if (shape.full_channels > 0 && shape.shadowed_channels > 0) {
@@ -153,7 +154,8 @@ WeightedSpace weightedSpace(std::span<const float> vectors, const bundle::Transf
 }
 
 double radianceError(std::span<const float> truth, std::span<const float> coded,
-                     const bundle::TransferShape& shape, double shown_energy, const BandPower& kernel_power) {
+                     const transfer::TransferShape& shape, double shown_energy,
+                     const BandPower& kernel_power) {
   const std::size_t size = shape.size();
   assert(truth.size() == coded.size() && truth.size() % size == 0);
   const std::vector<double> roots = normalisedRoots(truth, shape, shown_energy, kernel_power);
@@ -162,10 +164,10 @@ double radianceError(std::span<const float> truth, std::span<const float> coded,
   double worst = 0.0;
   for (const Block& block : blocksOf(shape)) {
     double sum = 0.0;
-    // Where the truth has no energy there is nothing to be relative to: the error counts as it is.
+    // Where the truth has no energy there is nothing to be relative to, so the absolute error counts.
     for (std::size_t i = block.first; i < block.last; ++i)
       sum += (roots[i] > 0.0 ? roots[i] * roots[i] : 1.0) * off[i];
-    // NaN is the worst, and stays.
+    // NaN is the worst error, and stays.
     if (const double own = std::sqrt(sum); std::isnan(own) || own > worst) worst = own;
   }
   return worst;

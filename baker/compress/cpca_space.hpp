@@ -1,7 +1,7 @@
-// The space in which coding errors are measured. A transfer vector scaled value by value with roots[i] has
-// errors whose squares add up to the relative square error of shaded radiance: the energy of each block of
-// the cell (shadowed light, full light) is 1 there, so that one number bounds both. Also the judge of coded
-// vectors.
+// The space in which coding errors are measured. If a transfer vector is scaled value by value with roots[i],
+// the squares of its errors add up to the relative square error of shaded radiance. The energy of each block
+// of the cell (shadowed light, full light) is 1 in this space, so that one number bounds both. The measure of
+// coded vectors, radianceError, is implemented here too.
 #pragma once
 
 #include <cstddef>
@@ -9,22 +9,22 @@
 #include <vector>
 
 #include "baker/compress/light_weights.hpp"
-#include "runtime/bundle/codebook.hpp"
+#include "runtime/transfer/codebook.hpp"
 
 namespace lambent::baker {
 
 struct WeightedSpace {
-  std::vector<double> roots;  // per value of a vector; 0 where the cell has no energy
-  double blocks = 1.0;        // what the square errors of all blocks add up to where each is 1
+  std::vector<double> roots;  // one per value of a vector; 0 where the cell has no energy
+  double blocks = 1.0;        // sum of the energies of all blocks, weighted as in `roots`
 };
 
-// shown_energy, kernel_power: as CodingSettings.
-WeightedSpace weightedSpace(std::span<const float> vectors, const bundle::TransferShape& shape,
+// `shown_energy` and `kernel_power` are as in CodingSettings.
+WeightedSpace weightedSpace(std::span<const float> vectors, const transfer::TransferShape& shape,
                             double shown_energy, const BandPower& kernel_power);
 
-// Weight of errors in the shadowed block beside a full one. Noise that spreads evenly over the space would
-// leave it a smaller share of its bound than the full block, which has more values; with this both come out
-// alike (measured: 0.8 and 0.9 cost more bytes, 1 % and 0.5 %).
+// This is the weight of errors in the shadowed block beside a full one. Noise that spreads evenly over the
+// space would give the shadowed block a smaller relative error, because the full block has more values; with
+// this weight both come out alike (measured: 0.8 and 0.9 cost 1 % and 0.5 % more bytes).
 inline constexpr double kShadowedRoot = 0.85;
 
 }  // namespace lambent::baker

@@ -15,12 +15,13 @@ namespace lambent::baker {
 namespace {
 
 constexpr Eigen::Index kBlock = 256;        // samples gathered for one matrix product
-constexpr Eigen::Index kShortPoints = 320;  // up to here all components cost little
-constexpr Eigen::Index kFirstSketch = 64;   // components looked for at first; then twice as many, and so on
-constexpr double kOnlyRounding = 1e-12;     // of the largest variance: points are floats
+constexpr Eigen::Index kShortPoints = 320;  // up to this length all components cost little
+// Components looked for at first, then doubled until they are enough.
+constexpr Eigen::Index kFirstSketch = 64;
+constexpr double kOnlyRounding = 1e-12;  // relative to the largest variance; points are floats
 
-// A number with mean 0 and variance 1 from a counter (splitmix64); two-valued numbers sketch as well as
-// normal ones.
+// Returns a number with mean 0 and variance 1 from a counter (splitmix64). Two-valued numbers sketch as well
+// as normal ones.
 float sign(std::uint64_t counter) {
   std::uint64_t z = (counter + 1) * 0x9e3779b97f4a7c15ull;
   z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9ull;
@@ -28,7 +29,8 @@ float sign(std::uint64_t counter) {
   return (z ^ z >> 31) & 1 ? 1.0f : -1.0f;
 }
 
-// E[x xᵀ] times a few columns. Ranges in order, so the same for any number of threads.
+// Returns E[x xᵀ] times a few columns. Ranges are added in order, so the result is the same for any number of
+// threads.
 Eigen::MatrixXf covarianceTimes(const Points& points, const Eigen::MatrixXf& columns) {
   constexpr std::size_t kGrain = 1024;
   const auto count = static_cast<std::size_t>(points.cols());
@@ -49,7 +51,7 @@ Eigen::MatrixXf orthonormal(const Eigen::MatrixXf& columns) {
   return qr.householderQ() * Eigen::MatrixXf::Identity(columns.rows(), columns.cols());
 }
 
-// Of each, the largest coordinate is positive.
+// Makes the largest coordinate of each axis positive.
 void setSigns(Eigen::MatrixXd& axes) {
   for (Eigen::Index j = 0; j < axes.cols(); ++j) {
     Eigen::Index largest = 0;
@@ -69,13 +71,13 @@ Spectrum leadingSpectrum(const Points& points, double tail, Eigen::Index most, d
        width = std::min(2 * width, most)) {
     Eigen::MatrixXf sketch(points.rows(), width);
     for (Eigen::Index i = 0; i < sketch.size(); ++i) sketch.data()[i] = sign(static_cast<std::uint64_t>(i));
-    // One turn more than the range asks for: the components that matter little come out as well.
+    // One power iteration more than the range needs brings out the components that matter little, too.
     const Eigen::MatrixXf range =
         orthonormal(covarianceTimes(points, orthonormal(covarianceTimes(points, sketch))));
     const Points inside = range.transpose() * points;
     Spectrum found = spectrumOf(secondMoment(inside, {}, {}));
     left_out = std::max(0.0, energy - found.variances.sum());
-    // The last ones found are found badly.
+    // The last components found are inaccurate.
     if (width < most && left_out + found.variances.tail(width / 8).sum() > tail) continue;
     found.axes = range.cast<double>() * found.axes;
     return found;
@@ -95,8 +97,8 @@ Spectrum spectrumAbout(const Points& points, std::span<const std::uint32_t> memb
                        const Eigen::VectorXf& centre) {
   const auto count = static_cast<Eigen::Index>(members.size());
   if (count >= points.rows()) return spectrumOf(secondMoment(points, members, centre));
-  // With x/sqrt(count) as columns of X, X Xᵀ and the smaller Xᵀ X have the same eigenvalues but for zeros,
-  // and where v is an eigenvector of the second, X v is one of the first.
+  // With x/sqrt(count) as columns of X, X Xᵀ and the smaller Xᵀ X have the same nonzero eigenvalues, and if v
+  // is an eigenvector of the second, X v is one of the first.
   Eigen::MatrixXd own(points.rows(), count);
   for (Eigen::Index m = 0; m < count; ++m)
     own.col(m) = (points.col(members[static_cast<std::size_t>(m)]) - centre).cast<double>();
@@ -117,7 +119,7 @@ Eigen::MatrixXd secondMoment(const Points& points, std::span<const std::uint32_t
                              const Eigen::VectorXf& centre) {
   const Eigen::Index size = points.rows();
   const auto count = members.empty() ? points.cols() : static_cast<Eigen::Index>(members.size());
-  // Products of a few hundred samples in float, their sum in double.
+  // Products of a few hundred samples are in float, their sum in double.
   std::vector<Eigen::MatrixXd> partial(static_cast<std::size_t>((count + 8 * kBlock - 1) / (8 * kBlock)));
   parallelRanges(static_cast<std::size_t>(count), 8 * kBlock, {}, [&](std::size_t begin, std::size_t end) {
     Eigen::MatrixXd& sum = partial[begin / (8 * kBlock)];

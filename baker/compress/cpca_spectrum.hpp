@@ -1,6 +1,6 @@
-// Principal components: of a whole cell about zero, which gives the few coordinates in which clusters are
-// made, and of one cluster about its mean. Sums are made range by range in order, so results are the same for
-// any number of threads; eigenvectors, which have no sign of their own, get one.
+// Computes principal components: of a whole cell about zero, which gives the few coordinates in which
+// clusters are made, and of one cluster about its mean. Sums are made range by range in order, and the sign
+// of each eigenvector is fixed, so results are the same for any number of threads.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace lambent::baker {
 
-// One column per sample.
+// Holds one column per sample.
 using Points = Eigen::MatrixXf;
 
 struct Spectrum {
@@ -18,21 +18,22 @@ struct Spectrum {
   Eigen::VectorXd variances;  // >= 0
 };
 
-// Of a symmetric matrix with eigenvalues >= 0.
+// Decomposes a symmetric matrix with eigenvalues >= 0.
 Spectrum spectrumOf(const Eigen::MatrixXd& covariance);
 
-// The leading components of E[x xᵀ] about zero, as many as it takes to leave out a mean square of at most
-// `tail` (some more may come), all where points are short; but never more than `most` of long ones. Those
-// (matrices) by a randomised range finder (Halko, Martinsson, Tropp 2011, algorithm 4.4) with hashed instead
-// of random numbers. In `left_out`: the mean square that is in none of the components returned.
+// Returns the leading components of E[x xᵀ] about zero: as many as it takes to leave out a mean square of at
+// most `tail`, or some more. Short points get all components. Long ones (matrices) get at most `most`, by a
+// randomised range finder (Halko, Martinsson, Tropp 2011, algorithm 4.4) with hashed instead of random
+// numbers. `left_out` receives the mean square that lies in none of the components returned.
 Spectrum leadingSpectrum(const Points& points, double tail, Eigen::Index most, double& left_out);
 
-// Of members (one at least) about `centre`, their mean. Where they are fewer than coordinates there are no
-// more axes than they span: none whose variance is only rounding.
+// Analyses `members` (at least one) about their mean, `centre`. If there are fewer members than coordinates,
+// only the axes that they span are returned, and none whose variance is only rounding.
 Spectrum spectrumAbout(const Points& points, std::span<const std::uint32_t> members,
                        const Eigen::VectorXf& centre);
 
-// Mean over `members` (all samples where empty) of x xᵀ; x about `centre` where that is not empty.
+// Returns the mean over `members` (all samples if empty) of x xᵀ, with x relative to `centre` if that is not
+// empty.
 Eigen::MatrixXd secondMoment(const Points& points, std::span<const std::uint32_t> members,
                              const Eigen::VectorXf& centre);
 

@@ -20,8 +20,8 @@ namespace {
 
 using Lattice = glm::vec<3, std::int64_t>;
 
-// Of 0 (smallest) to 10 (fastest). On happy_buddha, stanford_bunny and teapot_150k 3 gives 14 to 24 % fewer
-// bytes than 5 for about half as much time again; 0 gains little more.
+// The scale goes from 0 (smallest) to 10 (fastest). On happy_buddha, stanford_bunny and teapot_150k, 3 gives
+// 14 to 24 % fewer bytes than 5 for about half as much time again; 0 gains little more.
 constexpr int kSpeed = 3;
 
 bool isPowerOfTwo(float value) {
@@ -29,7 +29,7 @@ bool isPowerOfTwo(float value) {
   return std::isnormal(value) && value > 0.0f && std::frexp(value, &exponent) == 0.5f;
 }
 
-// Positions on the lattice, and the box of lattice points that they span.
+// Holds positions on the lattice, and the box of lattice points that they span.
 struct Snapped {
   std::vector<glm::vec3> positions;
   Lattice low{0}, high{0};
@@ -54,13 +54,13 @@ Result<Snapped> snap(std::span<const glm::vec3> positions, float step, const std
   return snapped;
 }
 
-// One value per vertex; returns the attribute's unique id.
+// Adds an attribute with one value per vertex; returns the attribute's unique id.
 template <typename Value, glm::length_t N>
 std::int32_t addAttribute(draco::Mesh& mesh, draco::GeometryAttribute::Type type, draco::DataType data_type,
                           bool normalized, const std::vector<glm::vec<N, Value>>& values) {
   draco::GeometryAttribute layout;
   layout.Init(type, nullptr, static_cast<std::int8_t>(N), data_type, normalized, sizeof(values[0]), 0);
-  // There may be a value more than points (see farCorner), so the mapping is spelled out.
+  // There may be one value more than points (see farCorner), so the mapping is explicit.
   const auto count = static_cast<std::uint32_t>(values.size());
   draco::PointAttribute& attribute =
       *mesh.attribute(mesh.AddAttribute(layout, /*identity_mapping=*/false, count));
@@ -71,8 +71,8 @@ std::int32_t addAttribute(draco::Mesh& mesh, draco::GeometryAttribute::Type type
 }
 
 // Draco derives origin and step of its quantization from the box of an attribute's values. (Its interface for
-// explicit ones goes through decimal text of six places.) The box is therefore made to fit: from the lowest
-// lattice point it reaches 2^bits - 1 steps, so that Draco's step is ours, to the bit.
+// explicit ones goes through decimal text of six places.) So the box is made to fit: from the lowest lattice
+// point it reaches 2^bits - 1 steps, so that Draco's step equals ours to the bit.
 int positionBits(const Snapped& snapped) {
   const Lattice extent = snapped.high - snapped.low;
   int bits = 1;
@@ -130,8 +130,8 @@ std::unique_ptr<draco::Mesh> toDraco(const bundle::MeshData& mesh, const Snapped
   std::vector<glm::vec3> positions = snapped.positions;
   auto out = std::make_unique<draco::Mesh>();
   out->set_num_points(static_cast<std::uint32_t>(positions.size()));
-  // Triangles that collapse on the lattice carry nothing, and Draco's connectivity coder trips over meshes of
-  // them.
+  // Triangles that collapse on the lattice carry nothing, and Draco's connectivity coder fails on meshes made
+  // of them.
   for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
     const std::array<std::uint32_t, 3> v{mesh.indices[i], mesh.indices[i + 1], mesh.indices[i + 2]};
     assert(v[0] < positions.size() && v[1] < positions.size() && v[2] < positions.size());
@@ -140,7 +140,7 @@ std::unique_ptr<draco::Mesh> toDraco(const bundle::MeshData& mesh, const Snapped
       continue;
     out->AddFace({draco::PointIndex(v[0]), draco::PointIndex(v[1]), draco::PointIndex(v[2])});
   }
-  positions.push_back(farCorner(snapped, step));  // of no point
+  positions.push_back(farCorner(snapped, step));  // belongs to no point
   ids = addAttributes(*out, mesh, positions);
   // Seams of normals or texture coordinates must not look like borders to the connectivity coder.
   out->DeduplicateAttributeValues();
@@ -172,7 +172,7 @@ void setQuantization(draco::ExpertEncoder& encoder, const draco::Mesh& mesh, int
 
 bool liesOnLattice(std::span<const glm::vec3> positions, float step) {
   return std::all_of(positions.begin(), positions.end(), [&](const glm::vec3& p) {
-    const glm::vec3 k = p / step;  // exact: step is a power of two
+    const glm::vec3 k = p / step;  // exact, because step is a power of two
     return k == glm::round(k);
   });
 }

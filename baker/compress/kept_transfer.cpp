@@ -1,19 +1,20 @@
 #include "baker/compress/kept_transfer.hpp"
 
 #include "baker/compress/coding_state.hpp"
+#include "baker/jobs/kept_value.hpp"
 
 namespace lambent::baker {
 
 template <>
-inline constexpr bool kPlainBytes<bundle::AxisCode> = sizeof(bundle::AxisCode) == 2 * sizeof(float);
+inline constexpr bool kPlainBytes<transfer::AxisCode> = sizeof(transfer::AxisCode) == 2 * sizeof(float);
 
-void write(const bundle::SharedCodebook& book, ByteWriter& out) {
+void write(const transfer::SharedCodebook& book, ByteWriter& out) {
   out.addList(book.axis_counts), out.addList(book.axes);
   out.addList(book.value_scales), out.addList(book.basis_scales), out.add(book.mean_scale);
   out.addList(book.basis), out.addList(book.means), out.addList(book.directions);
 }
 
-bool read(ByteReader& in, bundle::SharedCodebook& book) {
+bool read(ByteReader& in, transfer::SharedCodebook& book) {
   return in.readList(book.axis_counts) && in.readList(book.axes) && in.readList(book.value_scales) &&
          in.readList(book.basis_scales) && in.read(book.mean_scale) && in.readList(book.basis) &&
          in.readList(book.means) && in.readList(book.directions);
@@ -46,32 +47,38 @@ bool read(ByteReader& in, CodedTransfer& coded) {
   return true;
 }
 
+void write(const CodedCell& cell, ByteWriter& out) {
+  out.add(cell.count), out.add(cell.bounds_min), out.add(cell.bounds_max);
+  write(cell.transfers, out);
+}
+
+bool read(ByteReader& in, CodedCell& cell) {
+  return in.read(cell.count) && in.read(cell.bounds_min) && in.read(cell.bounds_max) &&
+         read(in, cell.transfers);
+}
+
 CodedTransfer CachedCoding::code(std::span<const float> vectors, std::size_t count,
-                                 const bundle::TransferShape& shape, const CodingSettings& settings,
-                                 const std::stop_token& stop) {
-  Keep keep{cache_, {}};
-  if (cache_) {
-    KeyMaker key = KeyMaker::ofStage("coding");
-    key.add(shape).addList(vectors).add(settings.bound).add(settings.shown_energy);
-    key.add(settings.most_components).add(settings.loose_bound).add(settings.most_expanded_bytes);
-    keep.key = key.add(settings.kernel_power).key();
-    kept_.push_back(keep.key);
+                                 const transfer::TransferShape& shape, const CodingSettings& settings) {
+  Key key;
+  if (context_.cache) {
+    KeyMaker maker = KeyMaker::ofStage("coding");
+    maker.add(shape).addList(vectors).add(settings.bound).add(settings.shown_energy);
+    maker.add(settings.most_components).add(settings.loose_bound).add(settings.most_expanded_bytes);
+    key = maker.add(settings.kernel_power).key();
+    kept_.push_back(key);
   }
+  const BakeContext own = context_.keyed(key);
   CodedTransfer coded;
-  const auto found = cachedValue(
-      keep, [&](ByteReader& in) { return read(in, coded); },
-      [&] {
-        coded = codeTransfer(vectors, count, shape, settings, stop, keep);
-        return !stop.stop_requested();
-      },
-      [&](ByteWriter& out) { write(coded, out); });
-  if (found == false) CodingCheckpoint(keep).drop();  // made, and kept as a whole
+  const auto found = findOrMake(own, coded, [&] {
+    coded = codeTransfer(vectors, count, shape, settings, own);
+    return !own.stopped();
+  });
+  if (found == false) CodingCheckpoint(own).drop();  // made, and kept as a whole
   return coded;
 }
 
 void CachedCoding::drop() {
-  if (cache_)
-    for (const Key& key : kept_) cache_->drop(key);
+  for (const Key& key : kept_) dropValue(context_.keyed(key));
   kept_.clear();
 }
 

@@ -1,35 +1,55 @@
-// Coded transfer as bytes to keep (baker/cache), and coding that may be cut short anywhere: what was coded is
-// found by the next run of the same work, and what was being coded goes on from its last checkpoint.
+// Stores coded transfer as bytes in the cache (baker/cache), so that coding may be cut short anywhere: the
+// next run of the same work finds what was coded, and goes on from the last checkpoint of what was being
+// coded.
 #pragma once
 
 #include <span>
-#include <stop_token>
 #include <vector>
 
-#include "baker/cache/cached_ranges.hpp"
+#include "baker/cache/bytes.hpp"
+#include "baker/compress/baked_grids.hpp"
 #include "baker/compress/cpca.hpp"
 
 namespace lambent::baker {
 
-void write(const bundle::SharedCodebook& book, ByteWriter& out);
-bool read(ByteReader& in, bundle::SharedCodebook& book);
+void write(const transfer::SharedCodebook& book, ByteWriter& out);
+bool read(ByteReader& in, transfer::SharedCodebook& book);
 void write(const CodedTransfer& coded, ByteWriter& out);
-// False, and any part changed, where the bytes are no such result.
+// Returns false, with `coded` partly changed, if the bytes are no such result.
 bool read(ByteReader& in, CodedTransfer& coded);
+void write(const CodedCell& cell, ByteWriter& out);
+bool read(ByteReader& in, CodedCell& cell);
 
-// Of transfers that belong together, one after the other. One thread.
+// Lists of any values that are kept.
+template <typename T>
+void write(const std::vector<T>& list, ByteWriter& out) {
+  out.add(std::uint64_t{list.size()});
+  for (const T& value : list) write(value, out);
+}
+template <typename T>
+bool read(ByteReader& in, std::vector<T>& list) {
+  std::uint64_t count = 0;
+  if (!in.read(count)) return false;
+  list.clear();
+  for (std::uint64_t i = 0; i < count; ++i)
+    if (!read(in, list.emplace_back())) return false;
+  return true;
+}
+
+// Codes transfers that belong together, one after the other, on one thread.
 class CachedCoding {
  public:
-  explicit CachedCoding(Cache* cache) : cache_(cache) {}
+  explicit CachedCoding(const BakeContext& context) : context_(context) {}
 
-  // As codeTransfer; clusters and axes of the settings are those that it chooses.
-  CodedTransfer code(std::span<const float> vectors, std::size_t count, const bundle::TransferShape& shape,
-                     const CodingSettings& settings, const std::stop_token& stop);
+  bool stopped() const { return context_.stopped(); }
+  // Does what codeTransfer does; clusters and axes of the settings are those that it chooses.
+  CodedTransfer code(std::span<const float> vectors, std::size_t count, const transfer::TransferShape& shape,
+                     const CodingSettings& settings);
   // What they all led to is kept.
   void drop();
 
  private:
-  Cache* cache_;
+  BakeContext context_;
   std::vector<Key> kept_;
 };
 

@@ -16,7 +16,7 @@ namespace {
 template <typename T>
 T load(const unsigned char* bytes) {
   T value;
-  std::memcpy(&value, bytes, sizeof(T));  // glTF and every machine this runs on are little-endian
+  std::memcpy(&value, bytes, sizeof(T));  // glTF and all supported machines are little-endian
   return value;
 }
 
@@ -55,8 +55,8 @@ std::uint32_t toIndex(const unsigned char* bytes, int type) {
   }
 }
 
-// `count` elements of `element` bytes in a bufferView. checkDocument() compared the extents with the
-// byteLengths, and the buffers were loaded at exactly these.
+// Points to `count` elements of `element` bytes in a bufferView. checkDocument() compared the extents with
+// the byteLengths, and the buffers were loaded with exactly these.
 struct Elements {
   const unsigned char* first = nullptr;
   std::size_t stride = 0;
@@ -90,7 +90,7 @@ void forEachSparse(const tinygltf::Model& model, const tinygltf::Accessor& acces
                  element, /*strided=*/false);
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t target = toIndex(indices[i], sparse.indices.componentType);
-    if (target < accessor.count) replace(target, values[i]);  // else there is nothing to replace
+    if (target < accessor.count) replace(target, values[i]);  // otherwise there is nothing to replace
   }
 }
 
@@ -101,7 +101,7 @@ Result<Floats> readFloats(const Document& document, int index, const std::string
   const tinygltf::Model& model = document.model();
   const tinygltf::Accessor& accessor = model.accessors[static_cast<std::size_t>(index)];
   const int stored_components = tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(accessor.type));
-  // MAT2 has four components too, but is no vector.
+  // MAT2 has four components too, but is not a vector.
   const bool known = (accessor.type <= TINYGLTF_TYPE_VEC4 && accessor.type >= TINYGLTF_TYPE_VEC2) ||
                      accessor.type == TINYGLTF_TYPE_SCALAR || accessor.type == TINYGLTF_TYPE_MAT4;
   if (!known || std::find(allowed_components.begin(), allowed_components.end(), stored_components) ==

@@ -1,6 +1,6 @@
-// Reads accessors of a checked document as floats or indices: plain, interleaved, normalised, sparse, or with
-// no bufferView (zeros). Integers become what glTF says: value / max if normalised, the value itself
-// otherwise.
+// Reads accessors of a checked document as floats or indices: plain, interleaved, normalised, sparse, or
+// without a bufferView (zeros). Integers become what glTF says: value / max if normalised, else the value
+// itself.
 #pragma once
 
 #include <cstdint>
@@ -12,8 +12,8 @@
 
 namespace lambent::baker {
 
-// A scalar, vector or 4 x 4 matrix per element, `components` floats each; those that the file has fewer of
-// (VEC3 colours in a VEC4) are 1. Errors name the accessor and `use` ("POSITION").
+// Holds a scalar, vector or 4 x 4 matrix per element, with `components` floats each; components that the file
+// lacks (VEC3 colours in a VEC4) are 1. Errors name the accessor and `use` ("POSITION").
 struct Floats {
   std::vector<float> values;
   std::size_t components = 0;
@@ -22,7 +22,7 @@ struct Floats {
 Result<Floats> readFloats(const Document& document, int accessor, const std::string& use,
                           const std::vector<int>& allowed_components, std::size_t components);
 
-// Of an index accessor, sparse or not.
+// Reads an index accessor, sparse or not.
 Result<std::vector<std::uint32_t>> readIndices(const Document& document, int accessor);
 
 }  // namespace lambent::baker

@@ -1,4 +1,5 @@
-// Animations: channels of translation, rotation and scale, checked so that whoever plays them need not.
+// Converts animations: channels of translation, rotation and scale. They are checked here, so that players
+// need not.
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -18,7 +19,7 @@ using gltf::AnimationChannel;
 using nlohmann::json;
 
 constexpr const char* kExport = "export the scene again";
-// Channels may share their accessors, so a small file could claim any amount.
+// Channels may share accessors, so without a limit a small file could claim any amount.
 constexpr std::size_t kMaxNumbers = 1u << 26;
 
 std::optional<AnimationChannel::Path> pathOf(const std::string& word) {
@@ -44,7 +45,8 @@ Result<void> checkTimes(const std::vector<float>& times, const std::string& file
   return {};
 }
 
-// Unit quaternions: quantized ones are not, quite. Tangents of cubic keys keep their proportion.
+// Makes quaternions unit, because quantized ones are not exactly. Tangents of cubic keys keep their
+// proportion.
 Result<void> normalizeRotations(AnimationChannel& channel, const std::string& file, const std::string& name) {
   const std::size_t each = channel.interpolation == AnimationChannel::Interpolation::Cubic ? 12 : 4;
   for (std::size_t key = 0; key < channel.times_s.size(); ++key) {
@@ -83,8 +85,8 @@ Result<AnimationChannel> readChannel(const Document& document, const json& sampl
   return channel;
 }
 
-// Channels replace parts, so an animated node needs them. glTF forbids it a matrix; one without shear does no
-// harm.
+// Channels replace parts of a transform, so an animated node needs such parts. glTF forbids it a matrix, but
+// one without shear does no harm.
 Result<gltf::Trs> partsOf(const Document& document, std::size_t n) {
   const json& node = document.json()["nodes"][n];
   gltf::Trs trs;
@@ -149,9 +151,9 @@ Result<void> convertAnimation(const Document& document, const json& source, cons
                                            word == "weights" ? "morph weights" : "\"" + word + "\""));
       continue;
     }
-    if (!target.contains("node")) continue;  // glTF: to be ignored
+    if (!target.contains("node")) continue;  // glTF says to ignore it
     const auto node = target["node"].get<std::size_t>();
-    if (map.scene_node[node] < 0) continue;  // it stands in another scene
+    if (map.scene_node[node] < 0) continue;  // the node belongs to another scene
     if (!targets.emplace(node, *path).second)
       return fail(document.file(), fmt::format("{} moves the {} of node {} twice", name, word, node),
                   kExport);

@@ -15,7 +15,7 @@ namespace {
 
 using nlohmann::json;
 
-// The bytes that some view stands on, each counted once however many views share them.
+// Returns how many bytes are covered by views, counting shared bytes once.
 std::size_t bytesCovered(std::vector<std::pair<std::size_t, std::size_t>> ranges) {
   std::sort(ranges.begin(), ranges.end());
   std::size_t covered = 0, end = 0;
@@ -37,7 +37,7 @@ BufferSource::BufferSource(json& document, std::vector<std::byte> binary, const 
     wanted_.push_back({buffer.value("uri", std::string()), buffer["byteLength"].get<std::size_t>(), {}});
     buffer["uri"] = std::to_string(wanted_.size() - 1);
   }
-  // Views that meshoptimizer coded belong to a buffer without bytes of its own; those that have bytes keep
+  // Views that meshoptimizer coded belong to a buffer without bytes of its own; buffers that have bytes keep
   // them.
   if (!document.contains("bufferViews")) return;
   for (std::size_t v = 0; v < document["bufferViews"].size(); ++v) {
@@ -60,9 +60,9 @@ Result<std::vector<std::byte>> BufferSource::read(std::size_t i) {
   return bytes;
 }
 
-// A buffer of views that meshoptimizer coded.
+// Makes a buffer from its views that meshoptimizer coded.
 Result<std::vector<std::byte>> BufferSource::decode(const Wanted& buffer) {
-  std::map<std::size_t, std::vector<std::pair<std::size_t, std::size_t>>> ranges;  // by source
+  std::map<std::size_t, std::vector<std::pair<std::size_t, std::size_t>>> ranges;  // by source buffer
   for (const CodedView& view : buffer.coded) {
     const auto first = view.extension.value("byteOffset", std::size_t{0});
     ranges[view.extension["buffer"].get<std::size_t>()].emplace_back(

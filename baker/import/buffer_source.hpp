@@ -1,5 +1,6 @@
-// The buffers of a checked document by number: from files beside it, data: URIs, the binary chunk, or views
-// that meshoptimizer coded. Each is found, bounded and read here, once; tinygltf opens no file.
+// Gives the buffers of a checked document by number. They come from files beside it, data: URIs, the binary
+// chunk, or views coded by meshoptimizer. Each is found, bounds-checked and read here, once; tinygltf opens
+// no file.
 #pragma once
 
 #include <cstddef>
@@ -18,11 +19,11 @@ namespace lambent::baker {
 
 class BufferSource {
  public:
-  // Puts the number of each buffer in place of its URI: that is how tinygltf asks for it.
+  // Replaces the URI of each buffer by its number, because tinygltf asks for buffers by URI.
   BufferSource(nlohmann::json& document, std::vector<std::byte> binary, const std::filesystem::path& path,
                const ImportOptions& options);
 
-  // The bytes of a buffer, as many as it announces. Errors name the file and "buffer 2".
+  // Returns as many bytes as the buffer announces. Errors name the file and "buffer 2".
   Result<std::vector<std::byte>> read(std::size_t buffer);
 
  private:
@@ -33,14 +34,14 @@ class BufferSource {
   struct Wanted {
     std::string uri;
     std::size_t length = 0;
-    std::vector<CodedView> coded;  // not empty: the buffer is made of these
+    std::vector<CodedView> coded;  // if not empty, the buffer is made of these
   };
 
   Result<std::vector<std::byte>> load(std::size_t buffer);
   Result<std::vector<std::byte>> decode(const Wanted& buffer);
 
   std::vector<Wanted> wanted_;
-  std::set<std::size_t> sources_;                       // buffers that coded views take their bytes from
+  std::set<std::size_t> sources_;                       // buffers that coded views read from
   std::map<std::size_t, std::vector<std::byte>> kept_;  // those of them that were loaded
   std::vector<std::byte> binary_;
   std::filesystem::path path_;

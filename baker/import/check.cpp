@@ -1,9 +1,5 @@
 #include "baker/import/check.hpp"
 
-#include <algorithm>
-#include <array>
-#include <string_view>
-
 #include "baker/import/check_fields.hpp"
 
 namespace lambent::baker {
@@ -23,7 +19,7 @@ void checkAsset(const Root& root) {
 void checkExtensions(const Root& root) {
   for (const nlohmann::json& entry : root.object.list("extensionsRequired")) {
     const std::string name = entry.is_string() ? entry.get<std::string>() : entry.dump();
-    if (std::find(kExtensions.begin(), kExtensions.end(), name) == kExtensions.end())
+    if (!readsExtension(name))
       throw BrokenField{fmt::format("requires the extension {}, which this program does not know", name),
                         "export the scene without it"};
   }
@@ -52,7 +48,7 @@ void checkPrimitive(const Object& primitive, const Root& root) {
   const auto extensions = primitive.object("extensions");
   const auto draco = extensions ? extensions->object("KHR_draco_mesh_compression") : std::nullopt;
   if (draco) checkDraco(*draco, root);
-  // Zeros throughout would be triangles without area.
+  // Indices that are all zero would be triangles without area.
   if (indices && !draco && !root.object.list("accessors")[*indices].contains("bufferView") &&
       !root.object.list("accessors")[*indices].contains("sparse"))
     throw BrokenField{fmt::format("accessor {} holds indices but has no bufferView", *indices)};
@@ -82,12 +78,9 @@ void checkMaterials(const Root& root) {
     texture.index("sampler", root.size("samplers"), "samplers");
   });
   root.forEach("materials", "material", [&](const Object& material) {
-    if (const auto pbr = material.object("pbrMetallicRoughness"))
-      checkTextureInfo(*pbr, "baseColorTexture", root);
-    for (const char* key : {"normalTexture", "occlusionTexture", "emissiveTexture"})
-      checkTextureInfo(material, key, root);
+    checkMaterialFields(material, root);
+    checkTextureInfo(material, "occlusionTexture", root);
     checkEmissiveStrength(material);
-    checkReflection(material, root);
   });
 }
 

@@ -3,7 +3,7 @@
 namespace lambent::baker {
 namespace {
 
-// What an accessor without a bufferView (all zeros) may claim: such a claim costs a file nothing.
+// This limits accessors without a bufferView (all zeros), since such a claim costs a file nothing.
 constexpr std::uint64_t kMaxImplicitCount = 1u << 24;
 // tinygltf keeps counts and offsets of sparse parts as int.
 constexpr std::uint64_t kMaxSparse = 0x7fffffff;
@@ -24,7 +24,7 @@ std::uint64_t componentBytes(std::uint64_t component_type) {
   }
 }
 
-// Bytes of one element; columns of matrices start at multiples of four.
+// Returns the bytes of one element; columns of matrices start at multiples of four.
 std::uint64_t elementBytes(const std::string& type, std::uint64_t component) {
   if (type == "SCALAR") return component;
   if (type == "VEC2") return 2 * component;
@@ -54,7 +54,7 @@ void checkView(const Object& view, const Root& root) {
   checkMeshopt(view, root);
 }
 
-// `count` elements of `element` bytes at byteOffset of the object's bufferView.
+// Checks that `count` elements of `element` bytes fit at byteOffset of the object's bufferView.
 void checkExtent(const Object& object, const Root& root, std::uint64_t count, std::uint64_t element,
                  bool strided) {
   const auto index = object.index("bufferView", root.size("bufferViews"), "bufferViews");
@@ -68,7 +68,7 @@ void checkExtent(const Object& object, const Root& root, std::uint64_t count, st
         fmt::format("{}: byteStride {} is less than an element of {} bytes", object.name, stride, element)};
   if (!strided && (offset > kMaxSparse || count > kMaxSparse))
     throw BrokenField{fmt::format("{} reaches past 2 GiB", object.name)};
-  // Division, because count * stride may pass 2^64.
+  // This divides because count * stride may exceed 2^64.
   const bool fits = offset <= available && element <= available - offset &&
                     (count - 1) <= (available - offset - element) / stride;
   if (!fits)

@@ -1,7 +1,13 @@
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
+#include <type_traits>
 
+#include "baker/import/check.hpp"
 #include "baker/import/check_fields.hpp"
+#include "runtime/bundle/material_fields.hpp"
 
 namespace lambent::baker {
 namespace {
@@ -11,7 +17,7 @@ std::optional<Object> extension(const Object& object, const char* name) {
   return extensions ? extensions->object(name) : std::nullopt;
 }
 
-// A finite number, at least `least`; `fallback` where it is missing.
+// Returns a finite number of at least `least`, or `fallback` if it is missing.
 double numberFrom(const Object& object, const char* key, double least, double fallback) {
   const nlohmann::json* value = object.find(key);
   if (value == nullptr) return fallback;
@@ -20,10 +26,36 @@ double numberFrom(const Object& object, const char* key, double least, double fa
   return value->get<double>();
 }
 
-// From 0 to 1, up to a rounding.
+// Requires a number from 0 to 1, up to rounding.
 void shareFrom(const Object& object, const char* key) {
   if (numberFrom(object, key, 0.0, 1.0) > 1.0 + 1e-4)
     throw BrokenField{fmt::format("{}: {} is more than 1", object.name, key)};
+}
+
+// The object that a field of a material stands in, where there is one.
+std::optional<Object> placeOf(const Object& material, const gltf::MaterialJson& json) {
+  const auto [outer, inner] = json.objects;
+  if (!outer) return material;
+  const auto place = material.object(outer);
+  return place && inner ? place->object(inner) : place;
+}
+
+// A number in the range that its row allows.
+void checkFactor(const Object& place, const gltf::MaterialJson& json, float) {
+  using Allowed = gltf::MaterialJson::Allowed;
+  if (json.allowed == Allowed::ZeroToOne) return shareFrom(place, json.key);
+  const double least = json.allowed == Allowed::Any ? std::numeric_limits<double>::lowest() : 0.0;
+  const double value = numberFrom(place, json.key, least, 0.0);
+  if (json.allowed == Allowed::ZeroOrFromOne && value != 0.0 && value < 1.0)
+    throw BrokenField{fmt::format("{}: {} is {}, neither 0 nor 1 and more", place.name, json.key, value)};
+}
+
+// The same of a colour.
+void checkFactor(const Object& place, const gltf::MaterialJson& json, const glm::vec3&) {
+  checkNumbers(place, json.key, 3);
+  if (json.allowed != gltf::MaterialJson::Allowed::NotNegative) return;
+  for (const nlohmann::json& value : place.list(json.key))
+    if (value.get<float>() < 0.0f) throw BrokenField{fmt::format("{}: {} is negative", place.name, json.key)};
 }
 
 void checkLight(const Object& light) {
@@ -42,13 +74,26 @@ void checkLight(const Object& light) {
   if (!spot) throw BrokenField{fmt::format("{} has no spot", light.name)};
   const double inner = numberFrom(*spot, "innerConeAngle", 0.0, 0.0),
                outer = numberFrom(*spot, "outerConeAngle", 0.0, std::numbers::pi / 4);
-  // A right angle in float is a little more than one.
+  // A right angle in float is slightly more than pi/2.
   if (!(inner < outer) || outer > std::numbers::pi / 2 + 1e-6)
     throw BrokenField{fmt::format("{}: cones of {} and {} rad are not one inside the other, within pi/2",
                                   spot->name, inner, outer)};
 }
 
 }  // namespace
+
+bool readsExtension(std::string_view name) {
+  constexpr std::array<std::string_view, 7> kBesideMaterials{
+      "KHR_draco_mesh_compression",     "KHR_mesh_quantization",   "KHR_texture_transform",
+      "EXT_meshopt_compression",        "EXT_mesh_gpu_instancing", "KHR_lights_punctual",
+      "KHR_materials_emissive_strength"};
+  bool found = std::ranges::find(kBesideMaterials, name) != kBesideMaterials.end();
+  gltf::forEachMaterialField([&](const auto& row) {
+    const auto [outer, inner] = row.json.objects;
+    found |= inner != nullptr && outer == std::string_view("extensions") && inner == name;
+  });
+  return found;
+}
 
 void checkTextureTransform(const Object& texture_info) {
   const auto transform = extension(texture_info, "KHR_texture_transform");
@@ -73,29 +118,21 @@ void checkTextureInfo(const Object& owner, const char* key, const Root& root) {
   checkTextureTransform(*info);
 }
 
-void checkReflection(const Object& material, const Root& root) {
-  if (const auto pbr = material.object("pbrMetallicRoughness")) {
-    shareFrom(*pbr, "metallicFactor");
-    shareFrom(*pbr, "roughnessFactor");
-    checkTextureInfo(*pbr, "metallicRoughnessTexture", root);
-  }
-  if (const auto ior = extension(material, "KHR_materials_ior"))
-    if (const double value = numberFrom(*ior, "ior", 0.0, 1.5); value != 0.0 && value < 1.0)
-      throw BrokenField{fmt::format("{}: ior is {}, neither 0 nor 1 and more", ior->name, value)};
-  if (const auto specular = extension(material, "KHR_materials_specular")) {
-    shareFrom(*specular, "specularFactor");
-    checkNumbers(*specular, "specularColorFactor", 3);
-    for (const nlohmann::json& value : specular->list("specularColorFactor"))
-      if (value.get<float>() < 0.0f)
-        throw BrokenField{fmt::format("{}: specularColorFactor is negative", specular->name)};
-    checkTextureInfo(*specular, "specularTexture", root);
-    checkTextureInfo(*specular, "specularColorTexture", root);
-  }
-  if (const auto anisotropy = extension(material, "KHR_materials_anisotropy")) {
-    shareFrom(*anisotropy, "anisotropyStrength");
-    numberFrom(*anisotropy, "anisotropyRotation", -std::numeric_limits<double>::max(), 0.0);
-    checkTextureInfo(*anisotropy, "anisotropyTexture", root);
-  }
+void checkMaterialFields(const Object& material, const Root& root) {
+  gltf::forEachMaterialField([&]<class Row>(const Row& row) {
+    using Value = typename Row::Value;
+    constexpr bool texture = std::is_same_v<Value, gltf::TextureRef>,
+                   factor = std::is_same_v<Value, float> || std::is_same_v<Value, glm::vec3>;
+    if constexpr (texture || factor) {
+      if (factor && row.part != gltf::MaterialPart::Reflection) return;
+      const auto place = placeOf(material, row.json);
+      if (!place) return;
+      if constexpr (texture)
+        checkTextureInfo(*place, row.json.key, root);
+      else
+        checkFactor(*place, row.json, Value{});
+    }
+  });
   // `extras` may be anything; only what stands under our own name is ours.
   const nlohmann::json* extras = material.find("extras");
   if (extras == nullptr || !extras->is_object() || !extras->contains("lambent")) return;

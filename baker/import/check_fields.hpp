@@ -1,5 +1,5 @@
-// Typed, ranged access to the fields of a glTF document, for the checks only. A wrong field throws
-// BrokenField, which checkDocument() catches and turns into an Error; nothing else in the room throws.
+// Gives the checks typed, ranged access to the fields of a glTF document. A wrong field throws BrokenField,
+// which checkDocument() catches and turns into an Error; nothing else in the room throws.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@ struct BrokenField {
   std::string hint = "export the scene again, or look at it with a glTF validator";
 };
 
-// One object of the document with the name that errors call it by.
+// An Object is one object of the document, with the name that errors use for it.
 struct Object {
   const nlohmann::json& json;
   std::string name;  // "accessor 3"
@@ -34,7 +34,7 @@ struct Object {
     return Object{*value, fmt::format("{}: {}", name, key)};
   }
 
-  // A count, offset or index: an integer from 0 to 2^53.
+  // Returns a count, offset or index: an integer from 0 to 2^53.
   std::optional<std::uint64_t> number(const char* key) const {
     const nlohmann::json* value = find(key);
     if (value == nullptr) return std::nullopt;
@@ -47,7 +47,7 @@ struct Object {
     return *value;
   }
 
-  // An index into the top-level list that holds `size` objects.
+  // Returns an index into the top-level list that holds `size` objects.
   std::optional<std::uint64_t> index(const char* key, std::size_t size, const char* list) const {
     const auto value = number(key);
     if (value && *value >= size)
@@ -63,7 +63,7 @@ struct Object {
     return value->get<std::string>();
   }
 
-  // Elements of an array, empty where absent.
+  // Returns the elements of an array, empty if it is absent.
   const nlohmann::json& list(const char* key) const {
     static const nlohmann::json kEmpty = nlohmann::json::array();
     const nlohmann::json* value = find(key);
@@ -80,7 +80,7 @@ struct Object {
   }
 };
 
-// The top level of the document, and how many objects each list has.
+// Root is the top level of the document, with the number of objects in each list.
 struct Root {
   Object object;
 
@@ -96,23 +96,24 @@ struct Root {
   }
 };
 
-// Finite numbers: `count` of them, or any number where 0.
+// Requires finite numbers: `count` of them, or any number of them if it is 0.
 void checkNumbers(const Object& object, const char* key, std::size_t count = 0);
 
-// Extensions: values as well as types, so that the conversions can take them as they are.
+// For extensions these check values as well as types, so that conversions can use them as they are.
 void checkTextureTransform(const Object& texture_info);
 void checkEmissiveStrength(const Object& material);
-// A textureInfo under `key`, where there is one.
+// Checks a textureInfo under `key`, if there is one.
 void checkTextureInfo(const Object& owner, const char* key, const Root& root);
-// Metal, roughness, KHR_materials_ior, _specular, _anisotropy, and what `extras.lambent.brdf` names.
-void checkReflection(const Object& material, const Root& root);
+// All textures that are read, the numbers and colours of reflection, by the table of a material's fields, and
+// what `extras.lambent.brdf` names.
+void checkMaterialFields(const Object& material, const Root& root);
 void checkLights(const Root& root);
 void checkNodeExtensions(const Object& node, const Root& root);  // lights, instances
 
 void checkNodeGrids(const Object& node);  // volumes, neighborhoods
 
-void checkMeshopt(const Object& view, const Root& root);  // a bufferView coded by meshoptimizer, if it is
-void checkBuffers(const Root& root);                      // buffers, views, accessors: every byte extent
-void checkNodes(const Root& root);  // nodes, scenes, animations: one tree, all references
+void checkMeshopt(const Object& view, const Root& root);  // a bufferView, if meshoptimizer coded it
+void checkBuffers(const Root& root);                      // every byte extent of buffers, views and accessors
+void checkNodes(const Root& root);  // nodes, scenes, animations: a forest, all references
 
 }  // namespace lambent::baker

@@ -13,7 +13,7 @@ void checkIndices(const Object& object, const char* key, std::size_t size) {
           fmt::format("{}: node {} does not exist (there are {})", object.name, entry.dump(), size)};
 }
 
-// Every node has one parent at most and climbing ends: a forest.
+// Requires a forest: every node has at most one parent, and there are no cycles.
 void checkForest(const Root& root) {
   const std::size_t size = root.size("nodes");
   std::vector<std::size_t> parent(size, size);
@@ -29,7 +29,7 @@ void checkForest(const Root& root) {
     }
     ++n;
   });
-  // 0: not seen, 1: on the way up from the current start, 2: known to end at a root.
+  // 0 means not seen, 1 on the way up from the current start, 2 known to end at a root.
   std::vector<std::uint8_t> state(size, 0);
   for (std::size_t start = 0; start < size; ++start) {
     std::size_t i = start;

@@ -1,4 +1,4 @@
-// extras.lambent.volume and extras.lambent.neighborhood of nodes (docs/authoring.md).
+// Checks extras.lambent.volume and extras.lambent.neighborhood of nodes (docs/authoring.md).
 #include <cmath>
 
 #include "baker/import/check_fields.hpp"
@@ -53,7 +53,7 @@ void checkNeighborhood(const Object& request) {
 }  // namespace
 
 void checkNodeGrids(const Object& node) {
-  // `extras` may be anything; only what stands under our own name is ours.
+  // `extras` may be anything; only the object under our own name is checked.
   const nlohmann::json* extras = node.find("extras");
   if (extras == nullptr || !extras->is_object() || !extras->contains("lambent")) return;
   const nlohmann::json& ours = (*extras)["lambent"];

@@ -14,15 +14,16 @@ namespace {
 
 using bundle::MeshData;
 
-// Smaller triangles than this share of the bounding box's squared diagonal are dropped: ray tracers report
-// false hits on them (reference notes on Embree), and they carry no light.
+// Triangles smaller than this share of the bounding box's squared diagonal are dropped: ray tracers report
+// false hits on them, and they carry no light.
 constexpr double kDegenerateArea = 1e-12;
 
 bool isFinite(const glm::vec3& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
-// Twice the area as a vector along the geometric normal. In double: small triangles far from the origin.
+// Returns twice the area along the geometric normal, in double because of small triangles far from the
+// origin.
 glm::dvec3 areaVector(const MeshData& mesh, std::size_t first_corner) {
   const glm::dvec3 a = mesh.positions[mesh.indices[first_corner]];
   const glm::dvec3 b = mesh.positions[mesh.indices[first_corner + 1]];
@@ -76,7 +77,7 @@ void dropUnusedVertices(MeshData& mesh) {
   for (std::uint32_t& v : mesh.indices) v = number[v];
 }
 
-// glTF: without normals, flat ones. Each corner becomes a vertex of its own.
+// Makes flat normals, as glTF asks if there are none. Each corner becomes a vertex of its own.
 void makeFlat(MeshData& mesh) {
   const std::vector<std::uint32_t> sources = mesh.indices;
   gatherVertices(mesh, sources);
@@ -88,7 +89,7 @@ void makeFlat(MeshData& mesh) {
   }
 }
 
-// Unit length; a normal without direction becomes the area-weighted mean of the faces around its vertex.
+// Makes normals unit; one without direction becomes the area-weighted mean of the faces around its vertex.
 std::size_t repairNormals(MeshData& mesh) {
   constexpr float kShortest = 1e-6f;
   std::vector<std::uint8_t> broken(mesh.normals.size(), 0);
@@ -108,7 +109,7 @@ std::size_t repairNormals(MeshData& mesh) {
   for (std::size_t i = 0; i < mesh.indices.size(); ++i) {
     const glm::dvec3 area = areaVector(mesh, i / 3 * 3);
     sums[mesh.indices[i]] += area;
-    one_face[mesh.indices[i]] = area;  // where the faces around a vertex cancel out, one of them will do
+    one_face[mesh.indices[i]] = area;  // used if the faces around a vertex cancel out
   }
   for (std::size_t v = 0; v < broken.size(); ++v) {
     if (broken[v] == 0) continue;
@@ -118,7 +119,7 @@ std::size_t repairNormals(MeshData& mesh) {
   return count;
 }
 
-// Any direction in the surface will do for a tangent that has none.
+// Returns some direction in the surface, for tangents that have none.
 glm::vec3 someTangent(const glm::vec3& normal) {
   const glm::vec3 axis = std::abs(normal.x) < 0.5f ? glm::vec3(1, 0, 0) : glm::vec3(0, 1, 0);
   return glm::normalize(glm::cross(normal, axis));

@@ -23,12 +23,12 @@ std::uint32_t readU32(std::span<const std::byte> bytes, std::size_t at) {
   return value;
 }
 
-// The chunk at `at`, which moves past it.
 struct Chunk {
   std::uint32_t type = 0;
   std::span<const std::byte> bytes;
 };
 
+// Reads the chunk at `at` and moves `at` past it.
 Result<Chunk> readChunk(std::span<const std::byte> glb, std::size_t& at, const std::string& file) {
   if (glb.size() - at < kGlbChunkHeaderBytes)
     return fail(file, fmt::format("GLB chunk at byte {} has no header", at), kExport);

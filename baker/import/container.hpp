@@ -1,6 +1,6 @@
-// Opens a glTF file: tells .gltf text from a .glb container by its first bytes and takes the container apart.
-// Out come the JSON text and, for a .glb, its binary chunk; every length is compared with the file's before
-// use. Source: glTF 2.0 specification, section 4 (GLB).
+// Opens a glTF file. It tells .gltf text from a .glb container by the first bytes and takes the container
+// apart. The JSON text and, for a .glb, its binary chunk go out; every length is compared with the file's
+// before use. Source: glTF 2.0 specification, section 4 (GLB).
 #pragma once
 
 #include <cstddef>
@@ -14,13 +14,13 @@ namespace lambent::baker {
 
 struct Container {
   std::string json;
-  std::vector<std::byte> binary;  // empty: no binary chunk
+  std::vector<std::byte> binary;  // empty if there is no binary chunk
 };
 
 // Errors: missing or empty file, damaged container, glTF 1.
 Result<Container> openContainer(const std::filesystem::path& path);
 
-// The bytes of a file, an error if it is missing, a folder or unreadable. `subject` goes into the error.
+// Returns the bytes of a file. Errors name `subject`: the file is missing, a folder or unreadable.
 Result<std::vector<std::byte>> readBytes(const std::filesystem::path& path, const std::string& subject);
 
 }  // namespace lambent::baker

@@ -1,6 +1,6 @@
-// The conversions of the parts of a checked document, in the order in which importScene() calls them. Each
-// takes the document and the scene so far; warnings go into scene.warnings, one sentence each, led by the
-// object ("node 3: ...").
+// Converts the parts of a checked document, in the order in which importScene() calls these functions. Each
+// takes the document and the scene so far. Warnings go into scene.warnings, one sentence each, beginning with
+// the object ("node 3: ...").
 #pragma once
 
 #include <cstdint>
@@ -15,41 +15,43 @@
 
 namespace lambent::baker {
 
-// Materials, and the textures and images that they use. Numbered as in the file.
+// Converts materials, and the textures and images that they use. Materials are numbered as in the file.
 Result<void> convertMaterials(const Document& document, Scene& scene);
 
-// Punctual lights, numbered as in the file.
+// Converts punctual lights, numbered as in the file.
 void convertLights(const Document& document, Scene& scene);
 
-// Which node of the file became which of the scene; -1: it stands in another scene, or (made here) in no
-// file.
+// Maps nodes of the file to those of the scene and back. -1 marks nodes of other scenes in the file, and
+// nodes made here.
 struct NodeMap {
   std::vector<std::int32_t> scene_node;  // by node of the file
   std::vector<std::int32_t> file_node;   // by node of the scene
 };
 
-// The nodes of the default scene, renumbered, with their cameras. Meshes keep the file's numbers for now.
+// Converts the nodes of the default scene, renumbered, and their cameras. Meshes keep the file's numbers for
+// now.
 Result<NodeMap> convertNodes(const Document& document, Scene& scene);
-// The node's own transform, and its parts where it has any.
+// Returns the node's own transform, from its matrix or its translation, rotation and scale.
 glm::mat4 localMatrix(const Document& document, std::size_t file_node);
-// world_from_node of every node of the file, also of those that stand in no scene (joints may).
+// Returns world_from_node of every node of the file, including nodes outside all scenes (joints may be).
 std::vector<glm::mat4> fileWorldTransforms(const Document& document);
 
-// The meshes that nodes of the scene draw, as they stand at rest: a mesh with a skin, or with other weights
-// of its morph targets, becomes a mesh of its own. Nodes get the scene's numbers.
+// Converts the meshes that nodes of the scene draw, at rest. A mesh with a skin, or with other weights of its
+// morph targets, becomes a mesh of its own. Nodes get the scene's mesh numbers.
 Result<void> convertMeshes(const Document& document, NodeMap& map, Scene& scene);
 
-// Channels that move nodes of the scene; these nodes become animated and get the parts of their transform.
+// Converts channels that move nodes of the scene; these nodes become animated and get separate transform
+// parts.
 Result<void> convertAnimations(const Document& document, const NodeMap& map, Scene& scene);
 
-// EXT_mesh_gpu_instancing: a child node for every instance. Last, since it adds nodes.
+// Makes a child node for every instance of EXT_mesh_gpu_instancing. This comes last, since it adds nodes.
 Result<void> convertInstances(const Document& document, const NodeMap& map, Scene& scene);
 
-// extras.lambent.volume and extras.lambent.neighborhood: Scene::volumes, Scene::neighborhoods.
+// Converts extras.lambent.volume and extras.lambent.neighborhood to Scene::volumes and Scene::neighborhoods.
 Result<void> convertGrids(const Document& document, const NodeMap& map, Scene& scene);
 
-// Non-finite and degenerate triangles out, flat normals where there are none (or none usable), normals and
-// tangents of unit length, unused vertices out. `name` stands at the head of warnings.
+// Removes non-finite and degenerate triangles and unused vertices, makes flat normals where there are no
+// usable ones, and makes normals and tangents unit. Warnings begin with `name`.
 void cleanMesh(bundle::MeshData& mesh, const std::string& name, std::vector<std::string>& warnings);
 
 }  // namespace lambent::baker

@@ -21,7 +21,7 @@ namespace {
 
 using nlohmann::json;
 
-// tinygltf walks `extras` by recursion: a file must not choose how deep.
+// tinygltf walks `extras` recursively, so the depth must be limited.
 constexpr int kMaxDepth = 64;
 
 Result<json> parseJson(const std::string& text, const std::string& file) {
@@ -40,7 +40,7 @@ Result<json> parseJson(const std::string& text, const std::string& file) {
   }
 }
 
-// What stands between tinygltf, which asks for buffers by name and knows no errors, and the source.
+// Connects tinygltf, which asks for buffers by name and knows no errors, with the source.
 struct BufferAsker {
   BufferSource& source;
   std::optional<Error> error;
@@ -73,8 +73,8 @@ void setIndicesAside(json& document) {
   for (json& mesh : document["meshes"]) {
     if (!mesh.contains("primitives")) continue;
     for (json& primitive : mesh["primitives"]) {
-      if (primitive.contains("extensions"))
-        primitive["extensions"].erase(kIndicesAside);  // the file's own would be unchecked
+      // An extension of this name in the file would be unchecked.
+      if (primitive.contains("extensions")) primitive["extensions"].erase(kIndicesAside);
       if (!primitive.contains("indices")) continue;
       const bool draco =
           primitive.contains("extensions") && primitive["extensions"].contains("KHR_draco_mesh_compression");
@@ -86,8 +86,8 @@ void setIndicesAside(json& document) {
   }
 }
 
-// The text for tinygltf, without what this room reads for itself: images would be decoded, and skins and
-// animations are dropped in part where they are not to its taste.
+// Returns the text for tinygltf without what this room reads itself: it would decode images, and drop parts
+// of skins and animations that it does not accept.
 std::string textForTinygltf(json& document) {
   std::map<const char*, json> aside;
   for (const char* key : {"images", "skins", "animations"}) {
@@ -100,7 +100,7 @@ std::string textForTinygltf(json& document) {
   return text;
 }
 
-// What tinygltf says, cut to one short line.
+// Cuts tinygltf's message to one short line.
 std::string firstLine(const std::string& text) {
   return text.substr(0, std::min<std::size_t>(text.find('\n'), 160));
 }

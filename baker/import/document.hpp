@@ -1,6 +1,6 @@
-// A checked glTF document with its buffers in memory: container opened, JSON parsed and checked (check.hpp),
-// parsed into tinygltf's structures, buffers loaded. Images stay encoded. What the conversions in this room
-// share: the document, the file's name for errors, and the list of warnings.
+// A Document is a checked glTF file with its buffers in memory: its container is opened, its JSON parsed and
+// checked (check.hpp) and read into tinygltf's structures, and its buffers are loaded. Images stay encoded.
+// All conversions in this room read it.
 #pragma once
 
 #include <cstddef>
@@ -21,12 +21,12 @@ class Model;
 namespace lambent::baker {
 
 // tinygltf refuses index accessors without a bufferView, which Draco primitives have and sparse ones may
-// have; their number is kept here, in an extension object of the primitive, instead.
+// have. Their number is kept in this extension object of the primitive instead.
 inline constexpr const char* kIndicesAside = "LAMBENT_indices";
 
 class Document {
  public:
-  // Errors: those of importScene() that concern the file, not its geometry.
+  // Errors: those of importScene() that concern the file and not its geometry.
   static Result<Document> open(const std::filesystem::path& path, const ImportOptions& options = {});
 
   Document(Document&&) noexcept;
@@ -34,8 +34,8 @@ class Document {
   ~Document();
 
   const lambent_tinygltf::Model& model() const { return *model_; }
-  // The checked text itself, without buffers and images: for the parts that tinygltf does not read as they
-  // stand (extensions, animations, skins).
+  // Returns the checked JSON, without buffers and images, for the parts that tinygltf does not read
+  // faithfully (extensions, animations, skins).
   const nlohmann::json& json() const { return *json_; }
   const ImportOptions& options() const { return options_; }
   const std::filesystem::path& path() const { return path_; }

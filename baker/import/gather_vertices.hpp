@@ -1,4 +1,4 @@
-// All attributes of a mesh at once: whoever leaves vertices out, doubles or sorts them must forget none.
+// Copies all attributes of a mesh at once, so that code which drops, doubles or sorts vertices forgets none.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,8 @@
 
 namespace lambent::baker {
 
-// The vertices of `mesh` in the order of `sources`, which may repeat some and leave others out. Indices stay.
+// Reorders the vertices of `mesh` as `sources`, which may repeat some and leave others out. Indices stay
+// unchanged.
 void gatherVertices(bundle::MeshData& mesh, std::span<const std::uint32_t> sources);
 
 }  // namespace lambent::baker

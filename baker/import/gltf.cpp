@@ -22,7 +22,7 @@ void warnAboutExtensions(const Document& document, Scene& scene) {
   const auto& used = document.model().extensionsUsed;
   std::string looks;
   for (const std::string& name : std::set<std::string>(used.begin(), used.end())) {
-    if (std::find(kExtensions.begin(), kExtensions.end(), name) != kExtensions.end()) continue;
+    if (readsExtension(name)) continue;
     if (name.starts_with("KHR_materials_"))
       looks += (looks.empty() ? "" : ", ") + name;
     else
@@ -32,11 +32,11 @@ void warnAboutExtensions(const Document& document, Scene& scene) {
     scene.warnings.push_back(fmt::format("what materials look like by {} is left out", looks));
 }
 
-// Warnings alike but for the primitive become one.
+// Merges warnings that differ only in the primitive.
 void foldWarnings(std::vector<std::string>& warnings) {
   std::vector<std::string> kept;
-  std::map<std::string, std::pair<std::size_t, std::size_t>>
-      seen;  // what -> its place in `kept`, how many more
+  // Maps a message to its place in `kept` and to how many more there are.
+  std::map<std::string, std::pair<std::size_t, std::size_t>> seen;
   for (std::string& warning : warnings) {
     const auto [entry, added] = seen.try_emplace(warning.substr(warning.find(": ") + 1), kept.size(), 0);
     if (added) {
@@ -54,23 +54,23 @@ Result<Scene> convert(const Document& document) {
   Scene scene;
   scene.source = document.path();
   warnAboutExtensions(document, scene);
-  // materials, with the textures and images that they use
+  // Convert materials, with the textures and images that they use.
   if (auto materials = convertMaterials(document, scene); !materials)
     return failAgain(std::move(materials.error()));
   convertLights(document, scene);
-  // the tree of the default scene
+  // Convert the tree of the default scene.
   auto map = convertNodes(document, scene);
   if (!map) return failAgain(std::move(map.error()));
-  // its geometry at rest, brought to clean triangles
+  // Convert its geometry at rest to clean triangles.
   if (auto meshes = convertMeshes(document, *map, scene); !meshes)
     return failAgain(std::move(meshes.error()));
-  // what moves in it
+  // Convert animations.
   if (auto animations = convertAnimations(document, *map, scene); !animations)
     return failAgain(std::move(animations.error()));
-  // and what it holds many times
+  // Convert instances.
   if (auto instances = convertInstances(document, *map, scene); !instances)
     return failAgain(std::move(instances.error()));
-  // clouds, and grids around bodies
+  // Convert volumes and requests for neighborhoods.
   if (auto grids = convertGrids(document, *map, scene); !grids) return failAgain(std::move(grids.error()));
   foldWarnings(scene.warnings);
   if (scene.meshes.empty() && scene.volumes.empty())

@@ -1,5 +1,8 @@
-// Import of .gltf and .glb by tinygltf. Everything that the file claims is checked before use: a broken file
-// gives one error that names the object in it (accessor 3, image "bark"), never a crash.
+// The room baker/import turns any glTF 2.0 file (.gltf or .glb) into a Scene: triangles with normals,
+// materials, lights, animations and volumes. A path goes in, and a checked Scene with warnings comes out.
+// Everything that the file claims is checked before use: a broken file gives one error that names the object
+// in it (accessor 3, image "bark"), never a crash. The import works on the calling thread, and several may
+// run at once.
 #pragma once
 
 #include <filesystem>
@@ -11,7 +14,7 @@
 namespace lambent::baker {
 
 // Errors: missing or unreadable file, not glTF 2.0, unknown required extension, broken accessors or buffers,
-// a scene without triangles.
+// or a scene without triangles and volumes.
 Result<Scene> importScene(const std::filesystem::path& path, const ImportOptions& options = {});
 
 }  // namespace lambent::baker

@@ -16,7 +16,7 @@ namespace {
 constexpr int kLargestSide = 1 << 15;
 constexpr std::uint32_t kClampToEdge = 33071, kMirroredRepeat = 33648, kNearest = 9728;
 
-// IEC 61966-2-1.
+// Decodes sRGB (IEC 61966-2-1).
 float linearFromSrgb(float c) {
   return c <= 0.04045f ? c / 12.92f : std::pow((c + 0.055f) / 1.055f, 2.4f);
 }
@@ -33,7 +33,7 @@ const std::array<float, 256>& srgbTable() {
 std::uint32_t wrap(std::int64_t texel, std::uint32_t size, std::uint32_t mode) {
   const auto n = static_cast<std::int64_t>(size);
   if (texel >= 0 && texel < n)
-    return static_cast<std::uint32_t>(texel);  // nearly always, and divisions are slow
+    return static_cast<std::uint32_t>(texel);  // the common case first, since divisions are slow
   if (mode == kClampToEdge) return static_cast<std::uint32_t>(std::clamp<std::int64_t>(texel, 0, n - 1));
   const std::int64_t period = mode == kMirroredRepeat ? 2 * n : n;
   std::int64_t t = texel % period;
@@ -53,10 +53,10 @@ glm::vec4 texel(const DecodedImage& image, const gltf::Sampler& sampler, std::in
   return {srgbTable()[p[0]], srgbTable()[p[1]], srgbTable()[p[2]], static_cast<float>(p[3]) / 255.0f};
 }
 
-// Whether the chunks of a PNG lie within its bytes up to the last one, IEND. (OpenImageIO leaks when libpng
-// meets the end of the file early.) Source: PNG specification, section 5.
+// Returns whether the chunks of a PNG lie within its bytes up to the last one, IEND. (OpenImageIO leaks
+// memory if the file ends early.) Source: PNG specification, section 5.
 bool isWholePng(std::span<const std::byte> png) {
-  constexpr std::size_t kSignature = 8, kFrame = 12;  // a chunk's length, type and check sum
+  constexpr std::size_t kSignature = 8, kFrame = 12;  // length, type and checksum of a chunk
   constexpr std::uint32_t kEnd = 0x49454e44;
   const auto u32 = [&](std::size_t at) {
     std::uint32_t value = 0;
@@ -79,9 +79,9 @@ Result<DecodedImage> decode(const SceneImage& image) {
   OIIO::Filesystem::IOMemReader memory(const_cast<std::byte*>(image.file_bytes.data()),
                                        image.file_bytes.size());
   OIIO::ImageSpec wanted;
-  wanted.attribute("oiio:UnassociatedAlpha", 1);  // glTF colours are not multiplied by alpha
+  wanted.attribute("oiio:UnassociatedAlpha", 1);  // glTF colours are not premultiplied by alpha
   const char* name = image.mime_type == "image/png" ? "memory.png" : "memory.jpg";
-  // The reader takes its bytes from the configuration; open() forgets the proxy when it is given both.
+  // The reader takes its bytes from the configuration, because open() forgets the proxy if it gets both.
   OIIO::Filesystem::IOProxy* proxy = &memory;
   wanted.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
   const auto input = OIIO::ImageInput::open(name, &wanted);
@@ -137,7 +137,7 @@ Result<std::shared_ptr<const DecodedImage>> DecodedImages::ofTexture(std::int32_
 }
 
 glm::vec4 sampleImage(const DecodedImage& image, const gltf::Sampler& sampler, glm::vec2 uv) {
-  // Texel centres lie at half-integers; coordinates are cut so that wild ones stay in integer range.
+  // Texel centres lie at half-integers. Coordinates are clamped to stay in integer range.
   const glm::dvec2 size(image.width, image.height);
   const glm::dvec2 at =
       glm::clamp(glm::dvec2(uv) * size, -1e15, 1e15) - (sampler.mag_filter == kNearest ? 0.0 : 0.5);

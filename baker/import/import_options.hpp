@@ -1,11 +1,11 @@
-// What importScene() may do beyond the usual.
+// These are the options of importScene().
 #pragma once
 
 namespace lambent::baker {
 
 struct ImportOptions {
-  // Buffers and images may lie outside the scene's folder: absolute paths, "..", links that lead out. For
-  // scenes that come from a trusted place only, since a scene chooses which files are read.
+  // Lets buffers and images lie outside the scene's folder: absolute paths, "..", links that lead out. This
+  // is for scenes from a trusted place only, since a scene chooses which files are read.
   bool allow_outside = false;
 };
 

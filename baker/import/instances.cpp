@@ -1,4 +1,5 @@
-// EXT_mesh_gpu_instancing: every instance becomes a node, so that all that follows knows nothing of it.
+// Converts EXT_mesh_gpu_instancing: every instance becomes a node, so that later stages need not know of
+// instances.
 #include <cmath>
 
 #include <fmt/format.h>
@@ -12,7 +13,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t kMaxInstances = 1u << 20;  // nodes are dear: names, draws and transfer of their own
+constexpr std::size_t kMaxInstances = 1u << 20;  // each costs a name, draws and transfer of its own
 
 struct Attribute {
   const char* name;
@@ -51,7 +52,7 @@ glm::mat4 instanceMatrix(const Attribute& translation, const Attribute& rotation
   if (rotation.values.count() > 0) {
     const float* r = at(rotation, i);
     const glm::quat turn(r[3], r[0], r[1], r[2]);
-    // Quantized ones are not unit to the last bit; one of length zero turns nothing.
+    // Quantized quaternions are not exactly unit; one of length zero rotates nothing.
     if (glm::length(turn) > 0.0f) trs.rotation = glm::normalize(turn);
   }
   if (scale.values.count() > 0) {
@@ -76,7 +77,7 @@ Result<void> expand(const Document& document, const json& attributes, std::size_
                   "export the scene again");
     if (here != 0) count = here;
   }
-  if (count == 0) return {};  // nothing but attributes of its own: drawn once, as it stands
+  if (count == 0) return {};  // it has only custom attributes, so it is drawn once
   total += count;
   if (total > kMaxInstances)
     return fail(document.file(),

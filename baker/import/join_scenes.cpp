@@ -10,7 +10,7 @@ namespace lambent::baker {
 
 namespace {
 
-// Where the parts of the scene that is added begin in the other.
+// Offsets say where the parts of the added scene begin in the other.
 struct Offsets {
   std::int32_t nodes, meshes, materials, brdfs, textures, images, cameras, lights;
 };

@@ -1,4 +1,4 @@
-// Several scenes as one, each where it stands in the world: for a picture of all that is shown together.
+// Joins several scenes into one, each at its place in the world, for a picture of everything that is shown.
 #pragma once
 
 #include <string>
@@ -9,8 +9,8 @@
 
 namespace lambent::baker {
 
-// Adds all of `from` to the end of `to`, below a node of this name at `world_from_scene`. What stood in `to`
-// keeps its indices. The source stays that of `to`.
+// Appends all of `from` to `to`, below a new node called `name` at `world_from_scene`. Indices and the source
+// of `to` stay unchanged.
 void joinScene(Scene from, const std::string& name, const glm::mat4& world_from_scene, Scene& to);
 
 }  // namespace lambent::baker

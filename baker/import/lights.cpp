@@ -1,4 +1,4 @@
-// KHR_lights_punctual. check_extensions.cpp saw to types and ranges.
+// Converts KHR_lights_punctual. check_extensions.cpp has checked types and ranges.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -22,7 +22,7 @@ gltf::Light convertLight(const json& source) {
   if (source.contains("color"))
     for (int c = 0; c < 3; ++c) light.color[c] = source["color"][static_cast<std::size_t>(c)].get<float>();
   light.intensity = source.value("intensity", 1.0f);
-  // glTF's colours end at 1; what is brighter is meant as intensity.
+  // glTF's colours end at 1, so brighter ones are taken as intensity.
   const float largest = std::max({light.color.x, light.color.y, light.color.z});
   if (largest > 1.0f) {
     light.color /= largest;
@@ -30,7 +30,7 @@ gltf::Light convertLight(const json& source) {
   }
   light.range_m = source.value("range", 0.0f);
   if (light.type == gltf::Light::Type::Spot) {
-    // The largest float below a right angle: the next one is more than pi/2, which glTF forbids.
+    // This is the largest float below a right angle; the next one exceeds pi/2, which glTF forbids.
     const float widest = std::nextafter(std::numbers::pi_v<float> / 2, 0.0f);
     const json& spot = source["spot"];
     light.outer_cone_rad = std::min(spot.value("outerConeAngle", light.outer_cone_rad), widest);

@@ -22,7 +22,7 @@ glm::vec2 pairOr(const tinygltf::Value& object, const char* key, glm::vec2 fallb
           static_cast<float>(pair.Get(1).GetNumberAsDouble())};
 }
 
-// A textureInfo without its texture: the set of coordinates and KHR_texture_transform.
+// Returns a textureInfo without its texture: the coordinate set and KHR_texture_transform.
 gltf::TextureRef placement(const tinygltf::ExtensionMap& extensions, int texcoord) {
   gltf::TextureRef ref;
   ref.texcoord = static_cast<std::uint32_t>(std::max(texcoord, 0));
@@ -37,7 +37,7 @@ gltf::TextureRef placement(const tinygltf::ExtensionMap& extensions, int texcoor
   return ref;
 }
 
-// The type by the first bytes; what the file says about it is often wrong.
+// Finds the type from the first bytes, because what the file says about it is often wrong.
 std::string imageType(const std::vector<std::byte>& bytes) {
   constexpr std::array<unsigned char, 4> kPng{0x89, 'P', 'N', 'G'};
   constexpr std::array<unsigned char, 3> kJpeg{0xff, 0xd8, 0xff};

@@ -1,4 +1,5 @@
-// The textures and images of a document, taken over when the first material asks for them. In this room only.
+// Takes over textures and images of a document when the first material uses them. Only this room includes
+// this header.
 #pragma once
 
 #include <cstddef>
@@ -11,24 +12,25 @@
 
 namespace lambent::baker {
 
-// Number `key` of an extension, `fallback` where it has none.
+// Returns number `key` of an extension, or `fallback` if it has none.
 float numberOr(const tinygltf::Value& object, const char* key, float fallback);
 
 class MaterialTextures {
  public:
   MaterialTextures(const Document& document, Scene& scene);
 
-  // The reference of a material, `use` in words; without a texture where it has none that can be used.
+  // Returns a texture reference of a material, without a texture if none is usable. `use` names it in
+  // warnings.
   Result<gltf::TextureRef> refer(int index, const tinygltf::ExtensionMap& extensions, int texcoord,
                                  std::size_t material, const char* use);
-  // The same of the textureInfo `key` of an extension.
+  // Does the same for the textureInfo `key` of an extension.
   Result<gltf::TextureRef> refer(const tinygltf::Value& extension, const char* key, std::size_t material,
                                  const char* use);
 
  private:
   static constexpr std::int32_t kUnknown = -2;
 
-  // The scene's texture for the file's, -1 where it has no image that can be used.
+  // Returns the scene's texture for the file's, or -1 if it has no usable image.
   Result<std::int32_t> take(int index);
   Result<std::int32_t> takeImage(int index);
   Result<std::vector<std::byte>> imageBytes(const nlohmann::json& source, int index) const;

@@ -11,8 +11,8 @@
 namespace lambent::baker {
 namespace {
 
-// Colours and factors come as lists of doubles of any length; what is missing or not finite keeps its
-// default.
+// Copies colours and factors, which are lists of doubles of any length; values that are missing or not finite
+// keep their default.
 template <typename Vector>
 void assign(Vector& target, const std::vector<double>& values) {
   if (values.size() != static_cast<std::size_t>(Vector::length())) return;
@@ -29,7 +29,7 @@ gltf::Material convertMaterial(const tinygltf::Material& source) {
   if (const auto strength = source.extensions.find("KHR_materials_emissive_strength");
       strength != source.extensions.end())
     material.emissive *= numberOr(strength->second, "emissiveStrength", 1.0f);
-  for (int c = 0; c < 3; ++c)  // the product of two large numbers need not be one
+  for (int c = 0; c < 3; ++c)  // the product of two large numbers may overflow
     material.emissive[c] = std::min(material.emissive[c], std::numeric_limits<float>::max());
   material.unlit = source.extensions.contains("KHR_materials_unlit");
   material.base_color = glm::min(material.base_color, glm::vec4(1.0f));
@@ -40,7 +40,7 @@ gltf::Material convertMaterial(const tinygltf::Material& source) {
   return material;
 }
 
-// What the textures of a material are, and what becomes of it without those that cannot be used.
+// Adds the textures of a material, and adapts it if they cannot be used.
 Result<void> addTextures(const tinygltf::Material& source, std::size_t number, MaterialTextures& textures,
                          std::vector<std::string>& warnings, gltf::Material& material) {
   const auto assign = [](gltf::TextureRef& target, Result<gltf::TextureRef> ref) -> Result<void> {
@@ -64,7 +64,7 @@ Result<void> addTextures(const tinygltf::Material& source, std::size_t number, M
   done = assign(material.emissive_texture, textures.refer(emissive.index, emissive.extensions,
                                                           emissive.texCoord, number, "emissive texture"));
   if (done && material.emissive_texture.texture < 0) {
-    // All of the surface would shine where the texture says where it does.
+    // Without the texture, all of the surface would shine instead of the part that the texture selects.
     warnings.push_back(fmt::format("material {}: without its emissive texture it does not shine", number));
     material.emissive = glm::vec3(0.0f);
   }
@@ -81,7 +81,8 @@ Result<void> convertMaterials(const Document& document, Scene& scene) {
     if (auto done = addTextures(source, scene.materials.size(), textures, scene.warnings, material); !done)
       return done;
     if (auto done = measured.bind(source, scene.materials.size(), material); !done) return done;
-    if (auto done = convertReflection(source, scene.materials.size(), textures, material); !done) return done;
+    if (auto done = convertReflection(document, scene.materials.size(), textures, material); !done)
+      return done;
     scene.materials.push_back(std::move(material));
   }
   return {};

@@ -22,7 +22,7 @@ struct Broken {
   std::string problem;
 };
 
-// The numbers of a text one after the other; `#` starts a comment that ends with its line.
+// Reads the numbers of a text one after the other; `#` starts a comment that ends with its line.
 class Numbers {
  public:
   explicit Numbers(std::string_view text) : text_(text) { skip(); }
@@ -56,8 +56,9 @@ class Numbers {
   std::size_t at_ = 0, line_ = 1;
 };
 
-// CIE 1931 colour matching, analytic: Wyman, Sloan and Shirley 2013, "Simple Analytic Approximations to the
-// CIE XYZ Color Matching Functions", multi-lobe fit, equations 4 to 6 (wavelengths in nm).
+// This is CIE 1931 colour matching in analytic form: Wyman, Sloan and Shirley 2013, "Simple Analytic
+// Approximations to the CIE XYZ Color Matching Functions", multi-lobe fit, equations 4 to 6 (wavelengths in
+// nm).
 glm::dvec3 colorMatching(double nm) {
   const auto lobe = [nm](double height, double centre, double below, double above) {
     const double t = (nm - centre) * (nm < centre ? below : above);
@@ -69,11 +70,11 @@ glm::dvec3 colorMatching(double nm) {
           lobe(1.217, 437.0, 0.0845, 0.0278) + lobe(0.681, 459.0, 0.0385, 0.0725)};
 }
 
-// What each wavelength's value counts for in linear Rec.709 under light of equal energy; the spectrum runs
-// straight from one to the next. The weights add up to (1, 1, 1): white is white, whatever the illuminant's
-// own colour.
+// Returns the weight of each wavelength's value in linear Rec.709 under light of equal energy; the spectrum
+// is linear between wavelengths. The weights add up to (1, 1, 1), so that white stays white whatever the
+// illuminant's own colour.
 std::vector<glm::dvec3> colorWeights(const std::vector<double>& nm) {
-  // Columns: what X, Y and Z give to red, green and blue (IEC 61966-2-1).
+  // The columns are what X, Y and Z give to red, green and blue (IEC 61966-2-1).
   const glm::dmat3 rgb_from_xyz(3.2404542, -0.9692660, 0.0556434, -1.5371385, 1.8760108, -0.2040259,
                                 -0.4985314, 0.0415560, 1.0572252);
   std::vector<glm::dvec3> weights(nm.size(), glm::dvec3(0.0));
@@ -90,7 +91,8 @@ std::vector<glm::dvec3> colorWeights(const std::vector<double>& nm) {
   }
   glm::dvec3 sum(0.0);
   for (const glm::dvec3& weight : weights) sum += weight;
-  // All of the visible range gives 107 nm times white; a hundredth of that is no colour any more.
+  // All of the visible range gives 107 nm times white; about a hundredth of that is too little to tell a
+  // colour.
   if (!(std::min({sum.r, sum.g, sum.b}) > 1.0))
     throw Broken{"its wavelengths leave out a part of the visible range"};
   for (glm::dvec3& weight : weights) weight /= sum;
@@ -132,7 +134,7 @@ std::vector<BrdfMeasurement> readMeasurements(Numbers& numbers) {
     m.phi_o = static_cast<float>(numbers.next("phi_s"));
     glm::dvec3 color(0.0);
     for (const glm::dvec3& weight : weights) color += weight * numbers.next("a value of the spectrum");
-    // Noise, and colours beyond Rec.709, can be negative; a surface that takes light away cannot.
+    // Noise, and colours beyond Rec.709, can be negative, but reflected light cannot.
     m.value = glm::vec3(glm::max(color, glm::dvec3(0.0)));
     measurements.push_back(m);
   }

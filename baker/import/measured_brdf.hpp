@@ -1,6 +1,6 @@
-// Isotropic BRDFs measured at scattered directions (the Cornell Graphics Lab's text files, .brdf): read,
-// brought from spectra to linear Rec.709, kept as they stand. Materials name them by `extras.lambent.brdf`, a
-// path beside the glTF file.
+// Reads isotropic BRDFs measured at scattered directions (the Cornell Graphics Lab's text files, .brdf).
+// Spectra are converted to linear Rec.709; directions stay as they are. Materials name them by
+// `extras.lambent.brdf`, a path beside the glTF file.
 #pragma once
 
 #include <filesystem>
@@ -19,7 +19,7 @@ struct BrdfMeasurement {
 };
 
 struct MeasuredBrdf {
-  std::string name;  // the file's, without folders
+  std::string name;  // the file's name, without folders
   std::vector<BrdfMeasurement> measurements;
 };
 

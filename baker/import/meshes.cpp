@@ -1,4 +1,4 @@
-// The meshes that a scene draws, each as it stands at rest.
+// Converts the meshes that a scene draws, each posed at rest.
 #include <cmath>
 #include <map>
 #include <numeric>
@@ -16,7 +16,8 @@
 namespace lambent::baker {
 namespace {
 
-// Posed meshes are copies, and nodes are cheap to write: a small file could claim any amount.
+// Posed meshes are copies and nodes are cheap to write, so without a limit a small file could claim any
+// amount.
 constexpr std::size_t kMaxVertices = 1u << 26;
 
 std::vector<float> weightsOf(const tinygltf::Node& node, const tinygltf::Mesh& mesh) {
@@ -24,13 +25,13 @@ std::vector<float> weightsOf(const tinygltf::Node& node, const tinygltf::Mesh& m
   return {weights.begin(), weights.end()};
 }
 
-// Whether tangents change what is seen. Others would cost bytes in the bundle for nothing.
+// Returns whether tangents change the picture. Otherwise they would only cost bytes in the bundle.
 bool turnsWithTangents(const gltf::Material& material) {
   return material.normal_texture.texture >= 0 ||
-         (material.anisotropy > 0.0f && !material.unlit && material.brdf < 0 && !material.matte());
+         (material.anisotropy > 0.0f && !material.unlit && material.brdf < 0 && !material.isDiffuse());
 }
 
-// Joints' matrices of a skin: world at rest from mesh as stored.
+// Returns the joint matrices of a skin: world at rest from mesh as stored.
 Result<std::vector<glm::dmat4>> jointMatrices(const Document& document, std::size_t number,
                                               const std::vector<glm::mat4>& world) {
   const nlohmann::json& skin = document.json()["skins"][number];
@@ -87,7 +88,7 @@ class MeshConverter {
           fmt::format("node {}: its skin stands as the file's joints do and does not move", file_node));
       n = placeSkinned(n, pose);
     }
-    // A skinned mesh depends on its node: nobody else draws it.
+    // A skinned mesh depends on its node, so no other node draws it.
     const auto [entry, added] = number_.try_emplace(
         {file_mesh, pose.weights, skinned ? static_cast<std::int64_t>(n) : -1}, std::int32_t{-1});
     if (added) {
@@ -102,9 +103,9 @@ class MeshConverter {
     return {};
   }
 
-  // glTF places a skinned mesh by its joints alone. It stays at its node all the same, brought into the
-  // node's space, so that what moves the figure as a whole moves the mesh; but not where the node's space is
-  // flat or mirrored: there it gets a node of its own. Returns the node that draws it.
+  // glTF places a skinned mesh by its joints alone. Here it stays at its node, converted to the node's space,
+  // so that whatever moves the figure as a whole moves the mesh. If the node's space is flat or mirrored, it
+  // gets a node of its own instead. Returns the node that draws it.
   std::size_t placeSkinned(std::size_t n, MeshPose& pose) {
     const glm::dmat4 world(world_[static_cast<std::size_t>(map_.file_node[n])]);
     const double size = std::cbrt(std::abs(glm::determinant(glm::dmat3(world))));

@@ -8,7 +8,7 @@
 
 namespace lambent::baker {
 
-// What the extension's text asks of modes, strides and filters; the decoders rely on it.
+// Checks modes, strides and filters as the extension specifies them; the decoders rely on this.
 void checkMeshopt(const Object& view, const Root& root) {
   const auto extensions = view.object("extensions");
   const auto coded = extensions ? extensions->object(kMeshopt) : std::nullopt;

@@ -1,6 +1,6 @@
-// EXT_meshopt_compression: bufferViews whose bytes are coded by meshoptimizer (the codecs and filters of the
-// glTF extension, which gltfpack writes). Checked before use like everything else; decoded into the buffer
-// that the view names, so that accessors need not know.
+// Decodes EXT_meshopt_compression: bufferViews coded by meshoptimizer (with the codecs and filters of the
+// glTF extension, which gltfpack writes). The bytes are checked before use and decoded into the buffer that
+// the view names, so accessors read them like any others.
 #pragma once
 
 #include <cstddef>
@@ -15,12 +15,12 @@ namespace lambent::baker {
 
 inline constexpr const char* kMeshopt = "EXT_meshopt_compression";
 
-// The most that a coded byte can stand for: vertex blocks of equal bytes take 2 bits for 16 bytes, triangles
-// one byte for 12. A file that claims more for an empty buffer is refused before memory is taken.
+// The most decoded bytes per coded byte: vertex blocks of equal bytes take 2 bits for 16 bytes, triangles one
+// byte for 12. A file that claims more is refused before memory is taken.
 inline constexpr std::size_t kMeshoptLargestRatio = 256;
 
-// Decodes one view by its (checked) extension object. `view` are its count * stride bytes.
-// Errors name `subject` and `object`: bytes that are not what they should be.
+// Decodes one view by its checked extension object. `view` has its count * stride bytes. Errors name
+// `subject` and `object`: the bytes are damaged.
 Result<void> decodeMeshopt(const nlohmann::json& extension, std::span<const std::byte> coded,
                            std::span<std::byte> view, const std::string& subject, const std::string& object);
 

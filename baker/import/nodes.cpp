@@ -20,7 +20,7 @@ glm::mat4 localMatrix(const tinygltf::Node& node) {
   if (node.rotation.size() == 4) {
     const auto& r = node.rotation;
     const glm::dquat rotation(r[3], r[0], r[1], r[2]);
-    // A quaternion of length zero turns nothing.
+    // A quaternion of length zero rotates nothing.
     if (glm::length(rotation) > 0.0) matrix *= glm::mat4_cast(glm::normalize(rotation));
   }
   if (node.scale.size() == 3) matrix = glm::scale(matrix, glm::make_vec3(node.scale.data()));
@@ -39,7 +39,8 @@ std::int32_t lightOf(const nlohmann::json& node) {
   return node["extensions"]["KHR_lights_punctual"]["light"].get<std::int32_t>();
 }
 
-// Roots of the default scene, of the first one, or, in a file without scenes, all nodes without a parent.
+// Returns the roots of the default scene, or of the first one; in a file without scenes, all nodes without a
+// parent.
 std::vector<int> rootsOf(const tinygltf::Model& model) {
   std::vector<int> roots;
   if (!model.scenes.empty()) {
@@ -106,7 +107,7 @@ Result<NodeMap> convertNodes(const Document& document, Scene& scene) {
     scene.cameras.push_back(std::move(*camera));
   }
 
-  // Parents first, in the order of the file; nodes of other scenes are left out.
+  // Parents come first, in the order of the file; nodes of other scenes are left out.
   NodeMap map;
   map.scene_node.assign(model.nodes.size(), -1);
   std::vector<std::pair<int, std::int32_t>> pending;  // node of the file, new parent

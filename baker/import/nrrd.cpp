@@ -1,6 +1,6 @@
-// NRRD files (teem.sourceforge.net/nrrd/format.html): a text header up to the first empty line, then the
-// values. Three dimensions, one value in each voxel, raw encoding, in the same file; everything else is
-// refused with a word about what it is.
+// Reads NRRD files (teem.sourceforge.net/nrrd/format.html): a text header up to the first empty line, then
+// the values. It accepts three dimensions, one value per voxel, raw encoding and data in the same file;
+// anything else is refused with an error that says what it is.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -57,7 +57,7 @@ Number numberOf(std::string_view text, const char* field) {
   return value;
 }
 
-// "(1,0,0)"
+// Parses a vector such as "(1,0,0)".
 glm::dvec3 vectorOf(std::string_view text, const char* field) {
   glm::dvec3 vector(0.0);
   if (text.size() < 2 || text.front() != '(' || text.back() != ')')
@@ -105,7 +105,7 @@ class Header {
  private:
   void add(std::string_view line) {
     if (line.starts_with('#') || line.find(":=") != std::string_view::npos)
-      return;  // comments, keys of others
+      return;  // comments, and keys of other programs
     const std::size_t colon = line.find(": ");
     if (colon == std::string_view::npos)
       throw Broken{fmt::format("its header has the line \"{}\"", line.substr(0, 60))};
@@ -136,7 +136,7 @@ ValueType typeOf(std::string_view name) {
                "save it as float, double, uchar or ushort"};
 }
 
-// Voxel coordinates: the first value stands at (1/2, 1/2, 1/2), at "space origin".
+// Returns file_from_grid: the first voxel's centre, (1/2, 1/2, 1/2), lies at "space origin".
 glm::dmat4 placement(const Header& header) {
   glm::dmat4 matrix(1.0);
   if (const auto directions = header.find("space directions")) {

@@ -15,7 +15,8 @@ namespace {
 
 constexpr const char* kExport = "export the scene again";
 
-// The transposed inverse times the determinant's size: turns normals, and needs no division by zero.
+// Returns the inverse transpose times the absolute determinant: it rotates normals and needs no division by
+// zero.
 glm::dmat3 normalMatrix(const glm::dmat3& m) {
   const glm::dmat3 cofactors(glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1]));
   return glm::determinant(m) < 0.0 ? -cofactors : cofactors;
@@ -77,11 +78,11 @@ Result<void> applySkin(const std::vector<Influences>& sets, const std::vector<gl
         matrix += static_cast<double>(weight) * joints[static_cast<std::size_t>(joint)];
         sum += static_cast<double>(weight);
       }
-    if (sum == 0.0) continue;  // hangs on nothing and stays
-    matrix /= sum;             // quantized weights do not sum to 1, quite
+    if (sum == 0.0) continue;  // belongs to no joint and stays in place
+    matrix /= sum;             // quantized weights do not sum to exactly 1
     mesh.positions[v] = glm::vec3(matrix * glm::dvec4(mesh.positions[v], 1.0));
     const glm::dmat3 linear(matrix);
-    // Unnormalized: cleaning makes them unit, and tells of those without direction.
+    // Normals without direction are left for cleaning, which reports them.
     if (!mesh.normals.empty()) {
       const glm::dvec3 normal = normalMatrix(linear) * glm::dvec3(mesh.normals[v]);
       const double length = glm::length(normal);

@@ -1,5 +1,5 @@
-// Morph targets and skins, applied on the CPU: a mesh stands as the file's own weights and joints put it, and
-// stays so. What a renderer does per frame (glTF 2.0, sections 3.7.2.2 and 3.7.3), done once at import.
+// Applies morph targets and skins on the CPU, once at import: a mesh stays as the file's own weights and
+// joints pose it. A renderer would do this per frame (glTF 2.0, sections 3.7.2.2 and 3.7.3).
 #pragma once
 
 #include <string>
@@ -18,11 +18,11 @@ struct Primitive;
 namespace lambent::baker {
 
 struct MeshPose {
-  std::vector<float> weights;      // of the morph targets; missing ones are 0
-  std::vector<glm::dmat4> joints;  // mesh at rest from mesh as stored, by joint; empty: no skin
+  std::vector<float> weights;      // weights of the morph targets; missing ones are 0
+  std::vector<glm::dmat4> joints;  // posed mesh from stored mesh, by joint; empty if there is no skin
 };
 
-// Four joints of each vertex and their weights; up to kMaxInfluences sets of them.
+// Holds four joints of each vertex and their weights; a vertex may have up to kMaxInfluences sets of them.
 struct Influences {
   std::vector<glm::vec4> joints, weights;
 };
@@ -32,8 +32,8 @@ Result<void> applyMorphTargets(const Document& document, const lambent_tinygltf:
                                const std::vector<float>& weights, const std::string& name,
                                bundle::MeshData& mesh);
 
-// Moves every vertex by the weighted mean of its joints' matrices. Errors: joints that the skin does not
-// have.
+// Moves every vertex by the weighted mean of its joints' matrices. Errors: the skin does not have such a
+// joint.
 Result<void> applySkin(const std::vector<Influences>& sets, const std::vector<glm::dmat4>& joints,
                        const std::string& file, const std::string& name, bundle::MeshData& mesh);
 

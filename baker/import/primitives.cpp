@@ -32,7 +32,7 @@ Result<std::vector<Vector>> readVectors(const Document& document, const tinygltf
   return vectors;
 }
 
-// Takes a Result apart: the value into `target`, or false and the error kept.
+// Moves a result's value into `target`; returns false, and keeps the error, if there is none.
 template <typename T>
 bool assign(T& target, Result<T> result, Error& error) {
   if (!result) {
@@ -43,7 +43,7 @@ bool assign(T& target, Result<T> result, Error& error) {
   return true;
 }
 
-// The file's number of the accessor that holds the indices, -1 where there are none.
+// Returns the number of the accessor that holds the indices, or -1 if there are none.
 int indexAccessor(const tinygltf::Primitive& primitive) {
   const auto aside = primitive.extensions.find(kIndicesAside);
   return aside == primitive.extensions.end() ? primitive.indices
@@ -72,7 +72,7 @@ Result<bundle::MeshData> readPlain(const Document& document, const tinygltf::Pri
   return mesh;
 }
 
-// A Draco primitive: the buffer, and what the file says of it.
+// A DracoSource is a Draco primitive: the buffer, and what the file says about it.
 struct DracoSource {
   std::span<const std::byte> bytes;
   bundle::Primitive announced;
@@ -95,7 +95,7 @@ Result<DracoSource> dracoSource(const Document& document, const tinygltf::Primit
                                  .texcoord1 = source.id("TEXCOORD_1"),
                                  .color0 = source.id("COLOR_0"),
                                  .tangent = tangents ? source.id("TANGENT") : -1,
-                                 .normal_weight = source.id("_NORMAL_WEIGHT")};  // of a bundle
+                                 .normal_weight = source.id("_NORMAL_WEIGHT")};  // in bundles only
   const auto position = primitive.attributes.find("POSITION");
   const int indices = indexAccessor(primitive);
   if (position == primitive.attributes.end() || source.announced.attributes.position < 0 || indices < 0)
@@ -111,7 +111,7 @@ Result<DracoSource> dracoSource(const Document& document, const tinygltf::Primit
   return source;
 }
 
-// JOINTS_n and WEIGHTS_n for n = 0, 1, ...: from the Draco buffer where they lie there.
+// Reads JOINTS_n and WEIGHTS_n for n = 0, 1, ..., from the Draco buffer if they are there.
 Result<std::vector<Influences>> readInfluences(const Document& document, const tinygltf::Primitive& primitive,
                                                const DracoSource* draco, const std::string& name) {
   const auto read = [&](const std::string& semantic) {
@@ -131,7 +131,7 @@ Result<std::vector<Influences>> readInfluences(const Document& document, const t
   return sets;
 }
 
-// Every attribute has a value for every vertex, every index a vertex.
+// Requires that every attribute has a value for every vertex, and every index a vertex.
 Result<void> checkCounts(const bundle::MeshData& mesh, const std::vector<Influences>& influences,
                          const std::string& file, const std::string& name) {
   const std::size_t vertices = mesh.positions.size();
@@ -140,7 +140,7 @@ Result<void> checkCounts(const bundle::MeshData& mesh, const std::vector<Influen
                                                           {"TEXCOORD_1", mesh.texcoords1.size()},
                                                           {"COLOR_0", mesh.colors.size()},
                                                           {"TANGENT", mesh.tangents.size()}};
-  std::erase_if(counts, [](const auto& entry) { return entry.second == 0; });  // not there
+  std::erase_if(counts, [](const auto& entry) { return entry.second == 0; });  // absent attributes
   for (std::size_t n = 0; n < influences.size(); ++n) {
     counts.emplace_back(fmt::format("JOINTS_{}", n), influences[n].joints.size());
     counts.emplace_back(fmt::format("WEIGHTS_{}", n), influences[n].weights.size());
@@ -158,7 +158,7 @@ Result<void> checkCounts(const bundle::MeshData& mesh, const std::vector<Influen
   return {};
 }
 
-// Lists, strips and fans as lists; corners in the order that keeps the winding (glTF 2.0, section 3.7.2.1).
+// Converts lists, strips and fans to lists; corners keep the winding (glTF 2.0, section 3.7.2.1).
 std::vector<std::uint32_t> toTriangles(const std::vector<std::uint32_t>& in, int mode) {
   std::vector<std::uint32_t> out;
   if (mode == TINYGLTF_MODE_TRIANGLES) {
@@ -189,7 +189,7 @@ Result<bundle::MeshData> readPrimitive(const Document& document, const tinygltf:
     warnings.push_back(fmt::format("{}: has no positions and is left out", name));
     return bundle::MeshData{};
   }
-  // glTF: tangents without normals mean nothing.
+  // glTF gives no meaning to tangents without normals.
   tangents = tangents && primitive.attributes.contains("NORMAL");
   DracoSource draco;
   const bool compressed = primitive.extensions.contains(kDraco);
@@ -213,7 +213,7 @@ Result<bundle::MeshData> readPrimitive(const Document& document, const tinygltf:
   // Draco holds lists whatever the mode says.
   if (!compressed) mesh->indices = toTriangles(mesh->indices, primitive.mode);
   for (glm::vec4& color : mesh->colors) color = glm::clamp(color, glm::vec4(0.0f), glm::vec4(1.0f));
-  // glTF: targets first, then the skin.
+  // glTF applies targets first, then the skin.
   if (auto done = applyMorphTargets(document, primitive, pose.weights, name, *mesh); !done)
     return failAgain(std::move(done.error()));
   if (auto done = applySkin(influences, pose.joints, document.file(), name, *mesh); !done)

@@ -1,4 +1,5 @@
-// One primitive of a checked document as triangles: plain or Draco, lists, strips or fans, posed.
+// Reads one primitive of a checked document as posed triangles, from plain or Draco data, and lists, strips
+// or fans.
 #pragma once
 
 #include <string>
@@ -11,7 +12,7 @@
 
 namespace lambent::baker {
 
-// Empty, with a warning, where there are no triangles in it. Not cleaned yet.
+// Returns an empty mesh, and adds a warning, if it has no triangles. The mesh is not cleaned yet.
 Result<bundle::MeshData> readPrimitive(const Document& document, const lambent_tinygltf::Primitive& primitive,
                                        const MeshPose& pose, bool tangents, const std::string& name,
                                        std::vector<std::string>& warnings);

@@ -17,7 +17,7 @@ constexpr float kVoxel = 1.0f / 64.0f;
 constexpr float kBase = -0.27f;  // height of the flat underside
 constexpr float kMargin = 3.0f * kVoxel;
 
-// "lowbias32", Chris Wellons.
+// This is the hash "lowbias32" by Chris Wellons.
 std::uint32_t scrambled(std::uint32_t x) {
   x = (x ^ (x >> 16)) * 0x7feb352du;
   x = (x ^ (x >> 15)) * 0x846ca68bu;
@@ -35,7 +35,7 @@ class Dice {
   std::uint32_t seed_, drawn_ = 0;
 };
 
-// A smooth number from -1 to 1 at every point: gradients on a lattice (Perlin 2002).
+// Gives a smooth number from -1 to 1 at every point, from gradients on a lattice (Perlin 2002).
 class Noise {
  public:
   explicit Noise(std::uint32_t seed) : seed_(seed) {}
@@ -53,7 +53,7 @@ class Noise {
     return sum;
   }
 
-  // Rounded heaps with sharp valleys between them, 0 to 1.
+  // Returns rounded heaps with sharp valleys between them, 0 to 1.
   float billows(glm::vec3 p) const {
     float sum = 0.0f, height = 1.0f, all = 0.0f;
     for (int octave = 0; octave < 4; ++octave) {
@@ -80,8 +80,8 @@ class Noise {
   std::uint32_t seed_;
 };
 
-// Centres and radii: a few large ones side by side on the base, the tallest in the middle, each with smaller
-// ones on its upper half, and those again.
+// Returns centres and radii: a few large puffs side by side on the base, the tallest in the middle, each with
+// smaller ones on its upper half, and smaller ones on those.
 std::vector<glm::vec4> puffsOf(std::uint32_t seed) {
   Dice dice(seed);
   std::vector<glm::vec4> puffs;
@@ -107,7 +107,7 @@ std::vector<glm::vec4> puffsOf(std::uint32_t seed) {
       }
     begin = end;
   }
-  // None reaches into the margin.
+  // No puff reaches into the margin.
   const glm::vec3 half = 0.5f * kVoxel * glm::vec3(kSize) - kMargin;
   std::erase_if(puffs, [&](const glm::vec4& puff) {
     return glm::any(glm::greaterThan(glm::abs(glm::vec3(puff)) + puff.w, half));
@@ -115,7 +115,7 @@ std::vector<glm::vec4> puffsOf(std::uint32_t seed) {
   return puffs;
 }
 
-// Distance to the union of the puffs, negative inside, rounded where they meet.
+// Returns the distance to the union of the puffs, negative inside, rounded where they meet.
 float distanceTo(const std::vector<glm::vec4>& puffs, const glm::vec3& p) {
   constexpr float kBlend = 0.035f;
   float nearest = 1.0f;
@@ -147,7 +147,7 @@ DensityGrid proceduralCloud(std::uint32_t seed) {
         const float outside = distanceTo(puffs, p);
         float density = 0.0f;
         if (outside < 0.0f) {
-          // What the billows take away from the outside in, and a base that is flat but not ruled.
+          // Billows remove density from the outside inwards; the base is flat but not straight.
           const float depth = -outside - 0.055f * (1.0f - noise.billows(7.0f * p));
           const float base = kBase + 0.045f * noise.at(4.0f * p) + 0.015f * noise.at(13.0f * p);
           density = glm::smoothstep(0.0f, 0.045f, depth) * glm::smoothstep(base - 0.05f, base + 0.08f, p.y);

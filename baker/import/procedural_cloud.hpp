@@ -1,5 +1,5 @@
-// A fair-weather cloud made of numbers, for scenes that ship without files: flat below, billows on billows
-// above. The same seed gives the same cloud.
+// Makes a fair-weather cloud from a formula, for scenes that ship without files: flat below, with billows on
+// billows above. The same seed gives the same cloud.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,8 @@
 
 namespace lambent::baker {
 
-// 96 x 64 x 96 voxels of 1/64, centred at the origin, y up; densities 0..1, empty at all faces.
+// Returns 96 x 64 x 96 voxels of size 1/64, centred at the origin, y up; densities are 0..1, and 0 at all
+// faces.
 DensityGrid proceduralCloud(std::uint32_t seed);
 
 }  // namespace lambent::baker

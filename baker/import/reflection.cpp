@@ -1,11 +1,14 @@
 #include "baker/import/reflection.hpp"
 
 #include <algorithm>
+#include <type_traits>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "baker/import/measured_brdf.hpp"
 #include "baker/import/uri.hpp"
+#include "runtime/bundle/material_fields.hpp"
 
 namespace lambent::baker {
 namespace {
@@ -15,7 +18,7 @@ const tinygltf::Value* extensionOf(const tinygltf::Material& source, const char*
   return found != source.extensions.end() && found->second.IsObject() ? &found->second : nullptr;
 }
 
-// `target` = what `refer` finds, if the texture could change anything.
+// Sets `target` to what `refer` returns, if `wanted` says that the texture could change anything.
 Result<void> assign(gltf::TextureRef& target, bool wanted, auto refer) {
   if (!wanted) return {};
   Result<gltf::TextureRef> ref = refer();
@@ -24,13 +27,41 @@ Result<void> assign(gltf::TextureRef& target, bool wanted, auto refer) {
   return {};
 }
 
-Result<void> convertSpecular(const tinygltf::Value& extension, std::size_t number, MaterialTextures& textures,
-                             gltf::Material& material) {
-  material.specular = std::min(numberOr(extension, "specularFactor", 1.0f), 1.0f);
-  if (extension.Has("specularColorFactor"))
-    for (int c = 0; c < 3; ++c)
-      material.specular_color[c] =
-          static_cast<float>(extension.Get("specularColorFactor").Get(c).GetNumberAsDouble());
+// Numbers may lie over 1 by a rounding.
+void read(const nlohmann::json& value, const gltf::MaterialJson& json, float& factor) {
+  factor = value.get<float>();
+  if (json.allowed == gltf::MaterialJson::Allowed::ZeroToOne) factor = std::min(factor, 1.0f);
+}
+void read(const nlohmann::json& value, const gltf::MaterialJson&, glm::vec3& color) {
+  for (int c = 0; c < 3; ++c) color[c] = value[static_cast<std::size_t>(c)].get<float>();
+}
+
+// The numbers and colours of reflection, by the table of a material's fields. What is unlit or measured has
+// no use for those of extensions, of which it keeps the index of refraction alone.
+void readFactors(const nlohmann::json& source, gltf::Material& material) {
+  const bool has_lobes = !material.unlit && material.brdf < 0;
+  gltf::forEachMaterialField([&]<class Row>(const Row& row) {
+    using Value = typename Row::Value;
+    if constexpr (std::is_same_v<Value, float> || std::is_same_v<Value, glm::vec3>) {
+      const auto& objects = row.json.objects;
+      const bool wanted = has_lobes || objects[1] == nullptr || objects == gltf::material_rows::kIor;
+      if (row.part != gltf::MaterialPart::Reflection || !wanted) return;
+      const nlohmann::json* place = &source;
+      for (const char* object : objects) {
+        if (!object) continue;
+        const auto found = place->find(object);
+        if (found == place->end()) return;
+        place = &*found;
+      }
+      if (const auto value = place->find(row.json.key); value != place->end())
+        read(*value, row.json, material.*row.member);
+    }
+  });
+}
+
+// The textures of KHR_materials_specular.
+Result<void> referSpecular(const tinygltf::Value& extension, std::size_t number, MaterialTextures& textures,
+                           gltf::Material& material) {
   const bool reflects = material.specular > 0.0f;
   if (auto done =
           assign(material.specular_texture, reflects,
@@ -40,14 +71,6 @@ Result<void> convertSpecular(const tinygltf::Value& extension, std::size_t numbe
   return assign(material.specular_color_texture, reflects && material.specular_color != glm::vec3(0.0f), [&] {
     return textures.refer(extension, "specularColorTexture", number, "specular colour texture");
   });
-}
-
-Result<void> convertAnisotropy(const tinygltf::Value& extension, std::size_t number,
-                               MaterialTextures& textures, gltf::Material& material) {
-  material.anisotropy = std::min(numberOr(extension, "anisotropyStrength", 0.0f), 1.0f);
-  material.anisotropy_rotation_rad = numberOr(extension, "anisotropyRotation", 0.0f);
-  return assign(material.anisotropy_texture, material.anisotropy > 0.0f,
-                [&] { return textures.refer(extension, "anisotropyTexture", number, "anisotropy texture"); });
 }
 
 }  // namespace
@@ -74,18 +97,20 @@ Result<void> MeasuredBrdfs::bind(const tinygltf::Material& source, std::size_t n
   return {};
 }
 
-Result<void> convertReflection(const tinygltf::Material& source, std::size_t number,
-                               MaterialTextures& textures, gltf::Material& material) {
-  const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
-  material.metallic = std::clamp(static_cast<float>(pbr.metallicFactor), 0.0f, 1.0f);
-  material.roughness = std::clamp(static_cast<float>(pbr.roughnessFactor), 0.0f, 1.0f);
-  if (const auto* ior = extensionOf(source, "KHR_materials_ior")) material.ior = numberOr(*ior, "ior", 1.5f);
+Result<void> convertReflection(const Document& document, std::size_t number, MaterialTextures& textures,
+                               gltf::Material& material) {
+  readFactors(document.json()["materials"][number], material);
   if (material.unlit || material.brdf >= 0) return {};
+  const tinygltf::Material& source = document.model().materials[number];
   if (const auto* specular = extensionOf(source, "KHR_materials_specular"))
-    if (auto done = convertSpecular(*specular, number, textures, material); !done) return done;
-  if (const auto* anisotropy = extensionOf(source, "KHR_materials_anisotropy"))
-    if (auto done = convertAnisotropy(*anisotropy, number, textures, material); !done) return done;
-  const auto& texture = pbr.metallicRoughnessTexture;
+    if (auto done = referSpecular(*specular, number, textures, material); !done) return done;
+  if (const auto* anisotropy = extensionOf(source, "KHR_materials_anisotropy")) {
+    auto done = assign(material.anisotropy_texture, material.anisotropy > 0.0f, [&] {
+      return textures.refer(*anisotropy, "anisotropyTexture", number, "anisotropy texture");
+    });
+    if (!done) return done;
+  }
+  const auto& texture = source.pbrMetallicRoughness.metallicRoughnessTexture;
   const bool reflects = material.metallic > 0.0f || (material.specular > 0.0f && material.roughness > 0.0f);
   return assign(material.metallic_roughness_texture, reflects, [&] {
     return textures.refer(texture.index, texture.extensions, texture.texCoord, number,

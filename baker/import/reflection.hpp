@@ -1,6 +1,6 @@
-// What the surfaces of a material reflect besides their base colour: metal and roughness, KHR_materials_ior,
-// _specular and _anisotropy, and measured BRDFs, which are read when the first material names them. In this
-// room only.
+// What the surfaces of a material reflect besides their base colour: numbers and colours by the table of a
+// material's fields, their textures, and measured BRDFs, which are read when the first material names them.
+// In this room only.
 #pragma once
 
 #include <cstddef>
@@ -11,13 +11,13 @@
 
 namespace lambent::baker {
 
-// Measured BRDFs of a scene: materials that name one file share one entry of Scene::brdfs.
+// Reads the measured BRDFs of a scene; materials that name one file share one entry of Scene::brdfs.
 class MeasuredBrdfs {
  public:
   MeasuredBrdfs(const Document& document, Scene& scene) : document_(document), scene_(scene) {}
 
-  // Sets Material::brdf where the material's `extras.lambent.brdf` names a file. Errors: those of resolveUri
-  // and readMeasuredBrdf, with the material's number.
+  // Sets Material::brdf if the material's `extras.lambent.brdf` names a file. Errors: those of resolveUri and
+  // readMeasuredBrdf, with the material's number.
   Result<void> bind(const tinygltf::Material& source, std::size_t number, gltf::Material& material);
 
  private:
@@ -26,8 +26,9 @@ class MeasuredBrdfs {
   std::map<std::filesystem::path, std::int32_t> number_of_;
 };
 
-// After unlit, base colour and brdf are known: textures that could change nothing stay out of the scene.
-Result<void> convertReflection(const tinygltf::Material& source, std::size_t number,
-                               MaterialTextures& textures, gltf::Material& material);
+// Reads what material `number` of the file reflects. After unlit, base colour and brdf are known: textures
+// that could change nothing stay out of the scene.
+Result<void> convertReflection(const Document& document, std::size_t number, MaterialTextures& textures,
+                               gltf::Material& material);
 
 }  // namespace lambent::baker

@@ -1,6 +1,6 @@
-// The scene as the baker sees it: any glTF file brought to triangles with normals, in mesh space, linear
-// colours. Images stay encoded (they travel to the bundle as they are); decodeImage() gives texels where a
-// pass needs them.
+// A Scene is any glTF file as the baker sees it: as triangles with normals, in mesh space, with linear
+// colours. Images stay encoded, since they go into the bundle as they are; decodeImage() gives texels to
+// passes that need them.
 #pragma once
 
 #include <cstddef>
@@ -18,7 +18,7 @@
 namespace lambent::baker {
 
 struct ScenePrimitive {
-  bundle::MeshData mesh;  // triangles; normals always present (made flat where the file has none)
+  bundle::MeshData mesh;  // triangles; normals are always present (flat if the file has none)
   std::int32_t material = -1;
 };
 
@@ -30,30 +30,32 @@ struct SceneMesh {
 struct SceneImage {
   std::string name;
   std::string mime_type;              // image/png or image/jpeg
-  std::vector<std::byte> file_bytes;  // as it stands in the source
+  std::vector<std::byte> file_bytes;  // as in the source
 };
 
-// extras.lambent.neighborhood of a node that starts a rigid group: asks for neighborhood transfer.
+// A NeighborhoodRequest asks for neighborhood transfer; it is the extras.lambent.neighborhood of a node that
+// starts a rigid group.
 struct NeighborhoodRequest {
   std::uint32_t node = 0;
-  glm::uvec3 size{0};      // points; 0: as the bake sees fit
-  glm::vec3 extent{0.0f};  // of the grid, m, about the centre of the group's bounds; 0: as the bake sees fit
+  glm::uvec3 size{0};  // points; 0 leaves the choice to the bake
+  // The size of the grid is in m, about the centre of the group's bounds; 0 leaves the choice to the bake.
+  glm::vec3 extent{0.0f};
 };
 
 struct Scene {
   std::filesystem::path source;
   std::vector<gltf::Node> nodes;
-  std::vector<std::int32_t> roots;  // of the default scene
+  std::vector<std::int32_t> roots;  // roots of the default scene
   std::vector<SceneMesh> meshes;
   std::vector<gltf::Material> materials;
-  std::vector<MeasuredBrdf> brdfs;  // that Material::brdf counts in
+  std::vector<MeasuredBrdf> brdfs;  // Material::brdf is an index into these
   std::vector<gltf::Texture> textures;
   std::vector<SceneImage> images;
   std::vector<gltf::Camera> cameras;
   std::vector<gltf::Light> lights;
   std::vector<gltf::Animation> animations;
-  std::vector<SceneVolume> volumes;                // at most one at a node
-  std::vector<NeighborhoodRequest> neighborhoods;  // at most one for a node
+  std::vector<SceneVolume> volumes;                // at most one per node
+  std::vector<NeighborhoodRequest> neighborhoods;  // at most one per node
   std::vector<std::string> warnings;               // what was left out, one sentence each
 };
 

@@ -14,7 +14,7 @@ namespace {
 
 using nlohmann::json;
 
-// The part that was meant: of that index and name, else the only one of that name.
+// Returns the part that an edit refers to: that of its index and name, else the only one of its name.
 template <typename T>
 std::optional<std::size_t> meant(const std::vector<T>& parts, std::uint32_t index, const std::string& name) {
   if (index < parts.size() && parts[index].name == name) return index;
@@ -28,7 +28,7 @@ void passedOver(const char* kind, const std::string& name, Scene& scene) {
       "the edit of {} \"{}\" is passed over: the file no longer has just one of that name", kind, name));
 }
 
-// The values that have an edit of their own.
+// Calls visit for the values that have an edit of their own.
 template <class Visit>
 void forEachValue(const Visit& visit) {
   gltf::forEachLiveValue([&](const auto& field, const auto& live) {
@@ -41,7 +41,7 @@ void applyNode(const SceneEdits::Node& edit, Scene& scene) {
   if (!at) return passedOver("node", edit.name, scene);
   gltf::Node& node = scene.nodes[*at];
   node.parent_from_node = edit.parent_from_node;
-  // Channels replace parts of what they move; the others stay as edited only where there are none.
+  // Channels replace single parts of the transform, so an animated node keeps these parts.
   if (!node.animated) node.trs.reset();
 }
 
@@ -53,13 +53,13 @@ void applyMaterial(const SceneEdits::Material& edit, Scene& scene) {
     const auto found = edit.values.find(live.edit);
     if (found == edit.values.end()) return;
     const T value = std::get<T>(found->second);
-    if constexpr (std::is_same_v<T, std::int32_t>)  // a measured BRDF that the file no longer has
+    if constexpr (std::is_same_v<T, std::int32_t>)  // the file may not have this measured BRDF any more
       if (value >= static_cast<std::int32_t>(scene.brdfs.size())) return;
     gltf::putLive(value, material.*field.member);
   });
 }
 
-// Nodes may share a light: the edited one gets one of its own.
+// Nodes may share a light, so the edited node gets a light of its own.
 void applyLight(const SceneEdits::Light& edit, Scene& scene) {
   const auto at = meant(scene.nodes, edit.node, edit.name);
   if (!at || scene.nodes[*at].light < 0) return passedOver("lamp", edit.name, scene);
@@ -118,7 +118,7 @@ SceneEdits::Material materialFrom(const json& from) {
 }
 
 json nodeJson(const SceneEdits::Node& n) {
-  json matrix = json::array();  // by columns, as glTF has them
+  json matrix = json::array();  // by columns, as in glTF
   for (int column = 0; column < 4; ++column)
     for (int row = 0; row < 4; ++row) matrix.push_back(n.parent_from_node[column][row]);
   return {{"index", n.index}, {"name", n.name}, {"matrix", matrix}};

@@ -1,7 +1,7 @@
-// What somebody changed of a scene after it was imported, so that it can be baked or traced as it is looked
-// at: where nodes stand, what materials reflect, what lamps give. Comes in: the scene as its file has it.
-// Goes out: the same scene, edited. Parts are meant by index and name: where a file has changed since, an
-// edit follows its name, and one that no longer means anything is passed over with a warning in the scene.
+// Edits that a user made to a scene after its import, so that it can be baked or traced as shown: where nodes
+// stand, what materials reflect, how lamps shine. The scene as in its file comes in, and the edited scene
+// goes out. Edits refer to parts by index and name. If the file has changed since, an edit follows its name,
+// and one without a matching part is skipped with a warning in the scene.
 #pragma once
 
 #include <cstdint>
@@ -25,7 +25,7 @@ struct SceneEdits {
     glm::mat4 parent_from_node{1.0f};
     bool operator==(const Node&) const = default;
   };
-  // The values that differ from the file's, by the names of edits in the table of a material's fields.
+  // Holds the values that differ from the file's, by the edit names in the table of a material's fields.
   struct Material {
     using Value = std::variant<float, std::int32_t, glm::vec3>;
     std::uint32_t index = 0;
@@ -33,10 +33,10 @@ struct SceneEdits {
     std::map<std::string, Value> values;
     bool operator==(const Material&) const = default;
   };
-  // As gltf::Light, by the node that carries it.
+  // Holds the values of gltf::Light, by the node that carries the light.
   struct Light {
     std::uint32_t node = 0;
-    std::string name;  // of the node
+    std::string name;  // name of the node
     glm::vec3 color{1.0f};
     float intensity = 1.0f, range_m = 0.0f, inner_cone_rad = 0.0f, outer_cone_rad = 0.785398f;
     bool operator==(const Light&) const = default;
@@ -56,7 +56,7 @@ SceneEdits::Material overlaid(const SceneEdits::Material& below, SceneEdits::Mat
 
 void applyEdits(const SceneEdits& edits, Scene& scene);
 
-// As JSON, for journals and world files; nothing where a text is none.
+// Edits as JSON, for journals and world files. readEdits returns nothing if the text holds no edits.
 std::string editsText(const SceneEdits& edits);
 std::optional<SceneEdits> readEdits(const std::string& text);
 

@@ -14,7 +14,7 @@ namespace {
 using bundle::MeshData;
 using Corners = std::array<std::uint32_t, 3>;
 
-// The same number from either end: differences only change sign.
+// Returns the same number from either end, because differences only change sign.
 double squaredLength(const glm::vec3& a, const glm::vec3& b) {
   const glm::dvec3 d = glm::dvec3(a) - glm::dvec3(b);
   return glm::dot(d, d);
@@ -28,13 +28,13 @@ void pushMidpoint(std::vector<Vector>& values, std::uint32_t a, std::uint32_t b)
   values.push_back(middle);
 }
 
-// isMarked(a, b): whether the edge between two vertices is to be halved.
+// isMarked(a, b) says whether the edge between two vertices is to be split.
 template <typename IsMarked>
 class Splitter {
  public:
   Splitter(MeshData& mesh, IsMarked is_marked) : mesh_(mesh), is_marked_(std::move(is_marked)) {}
 
-  // How many triangles one pass would leave; as many as now if no edge is marked.
+  // Returns how many triangles one pass would leave; as many as now if no edge is marked.
   std::size_t countAfter() const {
     std::size_t count = 0;
     for (std::size_t i = 0; i < mesh_.indices.size(); i += 3) {
@@ -61,8 +61,8 @@ class Splitter {
     const std::array<bool, 3> marked{is_marked_(v[0], v[1]), is_marked_(v[1], v[2]), is_marked_(v[2], v[0])};
     const int count = marked[0] + marked[1] + marked[2];
     if (count == 0) return emit(v[0], v[1], v[2]);
-    // Turned so that the odd edge out has a fixed place: the only marked one first, the only unmarked one
-    // last.
+    // The corners are rotated so that the odd edge has a fixed place: the only marked one first, the only
+    // unmarked one last.
     std::size_t turn = 0;
     if (count == 1) turn = marked[0] ? 0 : marked[1] ? 1 : 2;
     if (count == 2) turn = !marked[2] ? 0 : !marked[0] ? 1 : 2;
@@ -84,7 +84,7 @@ class Splitter {
 
   void emit(std::uint32_t a, std::uint32_t b, std::uint32_t c) { out_.insert(out_.end(), {a, b, c}); }
 
-  // Along the shorter diagonal; equal ones are told apart by position, so that copies of a triangle split
+  // Splits along the shorter diagonal. Equal ones are decided by position, so that copies of a triangle split
   // alike.
   void emitQuad(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
     const auto key = [&](std::uint32_t p, std::uint32_t q) {
@@ -112,7 +112,8 @@ class Splitter {
     pushMidpoint(mesh_.texcoords1, low, high);
     pushMidpoint(mesh_.colors, low, high);
     if (!mesh_.normals.empty()) {
-      // Weighted, so that interpolation over the parts is that over the whole (MeshData::normal_weights).
+      // The mean is weighted, so that interpolation over the parts equals that over the whole
+      // (MeshData::normal_weights).
       mesh_.normal_weights.resize(next, 1.0f);
       const glm::vec3 mean = 0.5f * (mesh_.normal_weights[low] * mesh_.normals[low] +
                                      mesh_.normal_weights[high] * mesh_.normals[high]);

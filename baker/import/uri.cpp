@@ -14,7 +14,7 @@
 namespace lambent::baker {
 namespace {
 
-// RFC 4648; padding may be missing, anything else that does not belong gives nothing.
+// Decodes base64 (RFC 4648). Padding may be missing; any other wrong character gives nothing.
 std::optional<std::vector<std::byte>> decodeBase64(std::string_view text) {
   constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   while (!text.empty() && text.back() == '=') text.remove_suffix(1);
@@ -34,7 +34,7 @@ std::optional<std::vector<std::byte>> decodeBase64(std::string_view text) {
   return bytes;
 }
 
-// RFC 2397.
+// Decodes a data: URI (RFC 2397).
 std::optional<std::vector<std::byte>> decodeData(const std::string& uri) {
   constexpr std::string_view kBase64 = ";base64";
   const std::size_t comma = uri.find(',');
@@ -79,7 +79,7 @@ Result<std::filesystem::path> resolveUri(const std::filesystem::path& folder, co
     return fail(subject, fmt::format("{} has an empty or broken URI", object), "export the scene again");
 
   std::error_code error;
-  // A scene named without a folder lies in the current one; absolute() takes no empty path.
+  // A scene named without a folder lies in the current one; an empty path has no canonical form.
   const auto home =
       std::filesystem::weakly_canonical(folder.empty() ? std::filesystem::path(".") : folder, error);
   const auto file = error ? home : std::filesystem::weakly_canonical(home / name, error);

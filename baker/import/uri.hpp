@@ -1,6 +1,6 @@
-// Relative URIs of a glTF file to files beside it. A scene may come from anywhere, so it may only name files
-// in its own folder or below: absolute paths, ".." past the folder and links that lead out are refused unless
-// ImportOptions::allow_outside says otherwise; other schemes (http:, file:) always are.
+// Resolves relative URIs of a glTF file to files beside it. A scene may come from anywhere, so it may only
+// name files in its own folder or below: absolute paths, ".." past the folder and links that lead out are
+// refused unless ImportOptions::allow_outside is set. Other schemes (http:, file:) are always refused.
 #pragma once
 
 #include <cstddef>
@@ -13,16 +13,16 @@
 
 namespace lambent::baker {
 
-// Undoes percent-encoding: "Box%20With%20Spaces.bin" -> "Box With Spaces.bin".
+// Undoes percent-encoding: "Box%20With%20Spaces.bin" becomes "Box With Spaces.bin".
 std::string decodePercent(const std::string& uri);
 
-// The file that `uri` names, from `folder` on. Errors name `subject` and `object` ("buffer 0").
+// Returns the file that `uri` names, relative to `folder`. Errors name `subject` and `object` ("buffer 0").
 Result<std::filesystem::path> resolveUri(const std::filesystem::path& folder, const std::string& uri,
                                          const ImportOptions& options, const std::string& subject,
                                          const std::string& object);
 
-// The bytes behind a URI of the scene `file`: a data: URI (base64 or percent-encoded, of any media type) or a
-// file. Errors name the scene and `object`.
+// Returns the bytes behind a URI of the scene `file`: a data: URI (base64 or percent-encoded, of any media
+// type) or a file. Errors name the scene and `object`.
 Result<std::vector<std::byte>> readUri(const std::filesystem::path& file, const std::string& uri,
                                        const ImportOptions& options, const std::string& object);
 

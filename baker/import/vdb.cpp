@@ -1,6 +1,6 @@
-// OpenVDB files as OpenImageIO shows them: a subimage for each grid, its "pixels" in tiles over the box of
-// all leaf nodes, the full (display) window over the box of active voxels. Index coordinates are whole
-// numbers at voxel centres; openvdb:indextoworld brings them to the file's space.
+// Reads OpenVDB files as OpenImageIO presents them: a subimage for each grid, its "pixels" in tiles over the
+// box of all leaf nodes, and the full (display) window over the box of active voxels. Index coordinates are
+// whole numbers at voxel centres; openvdb:indextoworld maps them to the file's space.
 #include <algorithm>
 #include <exception>
 
@@ -21,7 +21,7 @@ std::string gridName(const OIIO::ImageSpec& spec) {
   return name.empty() ? std::string(spec.get_string_attribute("oiio:subimagename")) : name;
 }
 
-// Row vectors with the shift in the last row, which is how glm lies in memory too.
+// The file has row vectors with the shift in the last row, which is how glm lies in memory too.
 Result<glm::dmat4> fileFromIndex(const OIIO::ImageSpec& spec, const std::string& subject) {
   const OIIO::ParamValue* value = spec.find_attribute("openvdb:indextoworld");
   glm::dmat4 matrix(1.0);
@@ -54,7 +54,7 @@ Result<DensityGrid> readGrid(OIIO::ImageInput& input, const std::string& subject
   std::vector<float> all(static_cast<std::size_t>(stored.x * stored.y * stored.z));
   if (!input.read_image(input.current_subimage(), 0, 0, 1, OIIO::TypeDesc::FLOAT, all.data()))
     return fail(subject, fmt::format("is damaged ({})", input.geterror()), "take it from its source again");
-  // The box of active voxels, wherever it lies in what is stored.
+  // The grid covers the box of active voxels, wherever that lies in what is stored.
   grid.size = glm::uvec3(size);
   grid.values.assign(static_cast<std::size_t>(size.x * size.y * size.z), 0.0f);
   const glm::i64vec3 shift = first - stored_min;

@@ -28,7 +28,7 @@ std::optional<Vector> vectorOf(const json& object, const char* key) {
   return vector;
 }
 
-// "procedural:cloud,7"
+// Makes a grid from words such as "procedural:cloud,7".
 Result<DensityGrid> procedural(const std::string& words, const std::string& subject) {
   constexpr std::string_view kCloud = "procedural:cloud,";
   std::uint32_t seed = 0;
@@ -51,7 +51,7 @@ Result<DensityGrid> read(const Document& document, const std::string& uri, const
   if (kind != ".vdb" && kind != ".nrrd")
     return fail(subject, fmt::format("\"{}\" is neither .vdb nor .nrrd", file->filename().string()),
                 "save the densities as one of them");
-  // Before a library sees the name: a folder, or nothing at all, deserves a clear word.
+  // Folders and missing files are caught before a library sees the name, so that they get a clear error.
   std::error_code error;
   if (!std::filesystem::is_regular_file(*file, error))
     return fail(subject, fmt::format("\"{}\" is not a file", file->filename().string()),
@@ -61,9 +61,9 @@ Result<DensityGrid> read(const Document& document, const std::string& uri, const
   return densities;
 }
 
-// m^-1, finite, not negative. Returns how many were not.
+// Makes densities finite and not negative, in m^-1. Returns how many were not.
 std::size_t scaleDensities(std::vector<float>& values, float scale) {
-  constexpr float kLargest = 1e12f;  // m^-1: no ray gets anywhere, and no product overflows
+  constexpr float kLargest = 1e12f;  // m^-1: no light passes, and no product overflows
   std::size_t bad = 0;
   for (float& value : values) {
     if (std::isfinite(value) && value >= 0.0f) {
@@ -123,7 +123,7 @@ Result<void> convertGrids(const Document& document, const NodeMap& map, Scene& s
     if (volume == ours->end()) continue;
     const std::string object = fmt::format("node {}: its volume", map.file_node[node]);
     if (auto added = addVolume(document, *volume, number, object, scene); !added) return added;
-    // A box without inside holds nothing.
+    // A flat box holds no medium.
     const glm::dmat3 axes(glm::dmat4(world[node]) * glm::dmat4(scene.volumes.back().node_from_grid));
     const double inside = std::abs(glm::determinant(axes));
     if (inside > 0.0 && std::isfinite(inside)) continue;

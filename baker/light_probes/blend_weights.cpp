@@ -12,17 +12,18 @@ namespace lambent::baker {
 
 namespace {
 
-constexpr std::size_t kMost = bundle::kLightsPerSample;
+constexpr std::size_t kMost = transfer::kLightsPerSample;
 constexpr std::uint32_t kSteps = 255;
 
-// lambda of blendWeights: how much nearness counts beside the place that weights add up to.
+// This is lambda of blendWeights: how much nearness counts beside the point that the weights add up to.
 constexpr double kNearness = 0.1;
-// Of squared lengths: makes the choice of weights unique where light probes lie in a plane.
+// This is relative to squared lengths, and makes the choice of weights unique if light probes lie in a plane.
 constexpr double kRidge = 1e-10;
 constexpr int kMostRounds = 256;
 
-// Solves the first n rows and columns, the right hand side in column n; false where that is not possible.
-constexpr std::size_t kRows = kMost + 2;  // a light more than are kept, and the multiplier
+// Solves the first n rows and columns, with the right-hand side in column n; returns false if they are
+// singular.
+constexpr std::size_t kRows = kMost + 2;  // one light more than are kept, and the multiplier
 using Rows = std::array<std::array<double, kRows + 1>, kRows>;
 bool solve(Rows& rows, std::size_t n) {
   for (std::size_t c = 0; c < n; ++c) {
@@ -42,11 +43,11 @@ bool solve(Rows& rows, std::size_t n) {
 }
 
 struct Candidate {
-  glm::dvec3 way{0.0};  // from the place
+  glm::dvec3 way{0.0};  // from the place to the light
   double cost = 0.0;    // lambda (way² + offset)
 };
 
-// A number in [0, 1) of the place alone, so that all cells draw the same.
+// Returns a number in [0, 1) that depends on the place alone, so that all cells get the same.
 double drawn(glm::vec3 place) {
   std::uint64_t hash = 0;
   for (int axis = 0; axis < 3; ++axis) {
@@ -57,9 +58,9 @@ double drawn(glm::vec3 place) {
   return static_cast<double>(hash >> 11) * 0x1p-53;
 }
 
-// min |sum w way|² + sum w cost over w >= 0, sum w = 1, by active sets (Nocedal and Wright, Numerical
-// Optimization, section 16.5): solve for the lights in use; leave out, on the way there, those that come to
-// 0; take in the one that the gradient asks for most.
+// Minimizes |sum w way|² + sum w cost over w >= 0, sum w = 1, by active sets (Nocedal and Wright, Numerical
+// Optimization, section 16.5): it solves for the lights in use, drops those that reach 0 on the way there,
+// and adds the one with the steepest gradient.
 class Blend {
  public:
   explicit Blend(std::span<const Candidate> all, double ridge) : all_(all), ridge_(ridge) {
@@ -84,7 +85,8 @@ class Blend {
   std::span<const double> weights() const { return weights_; }
 
  private:
-  // A light whose slope lies under that of the lights in use; the number of lights if there is none.
+  // Returns a light whose slope is lower than that of the lights in use, or the number of lights if there is
+  // none.
   std::size_t mostAskedFor() const {
     glm::dvec3 sum(0.0);
     for (std::size_t i = 0; i < used_.size(); ++i) sum += weights_[i] * all_[used_[i]].way;
@@ -99,7 +101,7 @@ class Blend {
     return asked;
   }
 
-  // Towards the best weights of the lights in use; false if one of them had to go on the way.
+  // Moves to the best weights of the lights in use; returns false if one of them was dropped on the way.
   bool step() {
     const std::size_t n = used_.size();
     Rows rows{};
@@ -113,7 +115,7 @@ class Blend {
     double share = 1.0;
     std::size_t goes = n;
     if (!solve(rows, n + 1)) {
-      goes = n - 1;  // the newcomer is no different from the others
+      goes = n - 1;  // the new light is a combination of the others
       share = 0.0;
     }
     for (std::size_t i = 0; i < n && share > 0.0; ++i)
@@ -200,10 +202,10 @@ std::vector<std::uint32_t> lightsNear(glm::vec3 box_min, glm::vec3 box_max,
   std::vector<std::uint32_t> near(lights.size());
   std::iota(near.begin(), near.end(), 0u);
   if (lights.empty()) return near;
-  // With d the distance of the nearest light, the sum s of the weighed ways and the mean m of their squares,
-  // s² + lambda m <= (1 + lambda) d² (the nearest alone). Lights in use all have the slope
-  // 2 e·s + lambda e² = 2 s² + lambda m <= s² + (1 + lambda) d², so lambda e² - 2 e s is no more than that,
-  // and e is the longest where s is, at s² = (1 + lambda) d².
+  // With d the distance of the nearest light, s the weighted sum of the ways and m the mean of their squares,
+  // s² + lambda m <= (1 + lambda) d² (the value for the nearest alone). Lights in use all have the slope 2
+  // e·s + lambda e² = 2 s² + lambda m <= s² + (1 + lambda) d², so lambda e² - 2 e s is at most that, and e is
+  // longest where s is, at s² = (1 + lambda) d².
   const double l = kNearness, root = std::sqrt(1.0 + l);
   const double reach = (root + std::sqrt((1.0 + l) * (1.0 + 2.0 * l))) / l;
   const double half = 0.5 * double{glm::distance(box_min, box_max)};

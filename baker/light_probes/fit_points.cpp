@@ -14,11 +14,11 @@ namespace lambent::baker {
 
 namespace {
 
-// Measured on knot, teapot, sphere and box under local lights: more rounds give nothing, a smaller mu fits
-// better where light is far and worse where it is near.
+// Measured on knot, teapot, sphere and box under local lights: more rounds give nothing, and a smaller mu
+// fits better if light is far and worse if it is near.
 constexpr int kRounds = 4;
 constexpr double kNearness = 0.3;  // mu
-// So many samples, evenly through each cell, say how the surface lies.
+// This many samples, taken evenly through each cell, say how the surface lies.
 constexpr std::size_t kLeastUsed = 16384, kUsedPerPoint = 64;
 constexpr std::size_t kGrain = 512;
 constexpr int kSweeps = 64, kHalvings = 12;
@@ -27,7 +27,7 @@ struct Used {
   std::size_t sample = 0;
   std::size_t cell = 0;
   double area = 0.0;
-  BlendWeights blend{};  // of all points
+  BlendWeights blend{};  // over all points
 };
 
 std::vector<Used> usedSamples(const SampleSet& samples, std::span<const float> areas, std::size_t points) {
@@ -61,7 +61,7 @@ void blend(std::vector<Used>& used, const SampleSet& samples, std::span<const gl
   });
 }
 
-// The normal equations, a row per point: sum_j matrix_kj x_j = right_k.
+// A Row is one row of the normal equations, for one point: sum_j matrix_kj x_j = right_k.
 struct Row {
   std::map<std::uint32_t, double> matrix;
   glm::dvec3 right{0.0};
@@ -84,7 +84,7 @@ std::vector<Row> equations(const std::vector<Used>& used, const SampleSet& sampl
   return rows;
 }
 
-// By Gauss and Seidel; the matrix is positive definite. Points that light nothing stay.
+// Solves by Gauss-Seidel; the matrix is positive definite. Points that light nothing stay.
 std::vector<glm::vec3> solved(const std::vector<Row>& rows, std::span<const glm::vec3> points) {
   std::vector<glm::dvec3> x(points.begin(), points.end());
   for (int sweep = 0; sweep < kSweeps; ++sweep)
@@ -101,7 +101,7 @@ std::vector<glm::vec3> solved(const std::vector<Row>& rows, std::span<const glm:
   return {x.begin(), x.end()};
 }
 
-// How far a place lies outside of the surface, by the nearest of some samples.
+// Returns how far a place lies outside of the surface, judged by the nearest of some samples.
 float outside(glm::vec3 place, std::span<const std::size_t> around, const SampleSet& samples) {
   float least = std::numeric_limits<float>::max(), side = 0.0f;
   for (const std::size_t i : around) {

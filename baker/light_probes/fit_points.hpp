@@ -1,11 +1,11 @@
-// Moves light probes to where their blends stand for the surface best: fields that vary evenly in space are
-// blended as at the place that the weights add up to, so these places should be the surface's. Alternates
-// between weights for given points and points for given weights, which are the least squares
+// Moves light probes to where their blends represent the surface best. Fields that vary linearly in space are
+// blended as at the point that the weights add up to, so this point should lie on the surface. The fit
+// alternates between weights for given points and points for given weights, which are the least squares
 //   min over x of sum_p a_p (|sum_k w_pk x_k - p|² + mu sum_k w_pk |x_k - p|²)
 // with a_p the area of sample p. Means of clusters lie inside of a bent surface and blends of them deeper
-// still: fitting moves them out, but none of them out of the body: not beyond where the surface near to it
-// lies less `depth`, unless it was there before (means of flat clusters lie on the surface). So no light
-// sample comes into what a body stands on or leans against.
+// still. Fitting moves them out, but no farther than `depth` below the nearest surface unless they were
+// farther out before (as means of flat clusters are). So no light probe gets into what a body stands on or
+// leans against.
 #pragma once
 
 #include <span>
@@ -17,8 +17,9 @@
 
 namespace lambent::baker {
 
-// All points of a group, metres; `areas` as sampleAreas gives them; eps_m2 as blendWeights takes it. A sample
-// set without normals has no inside: points go where they fit. The same for any number of threads.
+// `points` are all light probes of a group, metres; `areas` comes from sampleAreas; `eps_m2` is that of
+// blendWeights. A sample set without normals has no inside, so points go where they fit. The result is the
+// same for any number of threads.
 void fitPoints(std::vector<glm::vec3>& points, const SampleSet& samples, std::span<const float> areas,
                double eps_m2, float depth_m);
 

@@ -12,14 +12,14 @@ namespace lambent::baker {
 namespace {
 
 constexpr int kMostRounds = 32;
-constexpr float kSettled = 1e-4f;  // of the points' size: centres that move less stand still
+constexpr float kSettled = 1e-4f;  // of the points' size; centres that move less have converged
 
 struct Points {
   std::vector<glm::dvec3> places;
   std::vector<double> weights;
 };
 
-// Points that count.
+// Returns the points that count: those with an area, or all if none has one.
 Points pointsOf(std::span<const glm::vec3> points, std::span<const float> areas) {
   const bool bare = std::none_of(areas.begin(), areas.end(), [](float area) { return area > 0.0f; });
   Points out;
@@ -35,8 +35,8 @@ double squared(glm::dvec3 v) {
   return glm::dot(v, v);
 }
 
-// Farthest points first: the one farthest from the mean, then always the one farthest from all before it;
-// the first in the list where several are. Stops where all that are left coincide with one.
+// Chooses farthest points first: the one farthest from the mean, then always the one farthest from all before
+// it, and the first in the list among equals. Stops if all that are left coincide with a chosen one.
 std::vector<glm::dvec3> farthestPoints(const Points& points, glm::dvec3 mean, std::size_t count) {
   std::vector<double> distances(points.places.size());
   std::transform(points.places.begin(), points.places.end(), distances.begin(),
@@ -54,8 +54,8 @@ std::vector<glm::dvec3> farthestPoints(const Points& points, glm::dvec3 mean, st
   return seeds;
 }
 
-// One round: means of the points that are nearest to each centre; a centre of none goes. Returns the farthest
-// way that one went, squared.
+// Does one round of Lloyd's algorithm: each centre moves to the mean of the points nearest to it, and a
+// centre without points is dropped. Returns the largest squared distance that a centre moved.
 double moveToMeans(const Points& points, std::vector<glm::dvec3>& centres) {
   std::vector<glm::dvec3> sums(centres.size(), glm::dvec3(0.0));
   std::vector<double> weights(centres.size(), 0.0);
@@ -100,7 +100,7 @@ std::vector<glm::vec3> lightPoints(std::span<const glm::vec3> points, std::span<
 }
 
 void mergePoints(std::vector<glm::vec3>& points, float distance) {
-  // Along x, only those that stand near in x need a look.
+  // Sorted along x, only points that are near in x need comparing.
   std::vector<std::uint32_t> order(points.size());
   std::iota(order.begin(), order.end(), 0u);
   std::stable_sort(order.begin(), order.end(),

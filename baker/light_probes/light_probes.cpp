@@ -16,8 +16,8 @@ namespace lambent::baker {
 
 namespace {
 
-// Of the group's diagonal: points nearer to each other are one; how far light probes are from deciding which
-// of them blend where several would do; how deep under the surface they lie at least.
+// Relative to the group's diagonal: points nearer than kMerge are one; kFlat decides which light probes blend
+// where several would do equally well; kDepth is how deep under the surface they lie at least.
 constexpr float kMerge = 1e-6f, kFlat = 1e-3f, kDepth = 5e-3f;
 constexpr std::size_t kGrain = 4096;
 
@@ -28,7 +28,8 @@ LightProbes atCentre(const SampleSet& samples, glm::vec3 bounds_min, glm::vec3 b
   return out;
 }
 
-// How many each cell gets. Shared out by area, largest remainder; of a cell with no share at least one.
+// Returns how many each cell gets. A count for the group is shared by area (largest remainder), at least one
+// per cell.
 std::vector<std::size_t> countsOf(const SampleSet& samples, std::span<const float> areas,
                                   LightProbeCount count) {
   std::vector<std::size_t> counts(samples.cells.size(), count.count);
@@ -47,9 +48,9 @@ std::vector<std::size_t> countsOf(const SampleSet& samples, std::span<const floa
 }
 
 struct Weighed {
-  std::vector<std::uint32_t> near;        // of all points
-  std::vector<QuantizedWeights> weights;  // `light` into `near`
-  std::vector<std::uint32_t> used;        // of `near`, rising
+  std::vector<std::uint32_t> near;        // among all points
+  std::vector<QuantizedWeights> weights;  // `light` indexes `near`
+  std::vector<std::uint32_t> used;        // into `near`, ascending
 };
 
 Weighed weigh(const SampleSet& samples, const SampleCell& cell, std::span<const glm::vec3> points,
@@ -65,14 +66,14 @@ Weighed weigh(const SampleSet& samples, const SampleCell& cell, std::span<const 
   });
   std::vector<bool> used(out.near.size(), false);
   for (const QuantizedWeights& weights : out.weights)
-    for (std::size_t k = 0; k < bundle::kLightsPerSample; ++k)
+    for (std::size_t k = 0; k < transfer::kLightsPerSample; ++k)
       if (weights.weight[k] > 0) used[weights.light[k]] = true;
   for (std::uint32_t k = 0; k < used.size(); ++k)
     if (used[k]) out.used.push_back(k);
   return out;
 }
 
-// Lists of the cells, by points that some cell uses.
+// Makes the lists of the cells, keeping only points that some cell uses.
 LightProbes gather(std::span<const glm::vec3> points, const std::vector<Weighed>& weighed) {
   std::vector<std::uint32_t> number(points.size(), 0);
   for (const Weighed& cell : weighed)
@@ -92,9 +93,9 @@ LightProbes gather(std::span<const glm::vec3> points, const std::vector<Weighed>
     }
     if (listed.points.size() == 1) continue;
     for (const QuantizedWeights& weights : cell.weights) {
-      bundle::LightWeights& stored = listed.weights.emplace_back();
+      transfer::LightWeights& stored = listed.weights.emplace_back();
       stored.weight = weights.weight;
-      for (std::size_t k = 0; k < bundle::kLightsPerSample; ++k)
+      for (std::size_t k = 0; k < transfer::kLightsPerSample; ++k)
         if (weights.weight[k] > 0) stored.light[k] = place[weights.light[k]];
     }
   }

@@ -20,10 +20,10 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kPreviewFolder = "previews";
-// Previews of programs that were killed.
+// Previews that killed programs left behind are removed after this time.
 constexpr std::chrono::hours kPreviewsKept{24 * 7};
 
-// What a job does next. A trial is the final bake with little time.
+// Step is the next step of a job. A trial is a final bake with little time.
 enum class Step : std::uint8_t { Trial, Unshadowed, Coarse, Final };
 
 PreviewLevel previewLevelOf(Step step) {
@@ -33,15 +33,15 @@ PreviewLevel previewLevelOf(Step step) {
 
 struct Job {
   JobState state;
-  std::uint64_t asked = 0;  // rises with every request: the newest comes first
+  std::uint64_t asked = 0;  // rises with every request, so that the newest comes first
   Step step = Step::Final;
-  bool tried = false;  // the trial
+  bool tried = false;  // the trial was made
   bool begun = false;
   Journal::Entry record;
-  StageSeconds expected;                     // of the final bake
-  std::shared_ptr<const Progress> progress;  // of what runs
+  StageSeconds expected;                     // for the final bake
+  std::shared_ptr<const Progress> progress;  // of the step that runs
 
-  // What appears soonest comes first.
+  // Steps that show something sooner come first.
   int rank() const {
     switch (step) {
       case Step::Unshadowed:
@@ -57,7 +57,7 @@ struct Job {
   }
 };
 
-// Asks to stop when its time is over.
+// Requests a stop when its time is over.
 class Deadline {
  public:
   Deadline(std::stop_source stop, std::chrono::milliseconds time)
@@ -109,8 +109,8 @@ struct BakeQueue::Impl {
   Journal journal;
 
   mutable std::mutex lock;
-  std::condition_variable_any changed;   // for the worker
-  std::condition_variable_any happened;  // for whoever waits for events
+  std::condition_variable_any changed;   // wakes the worker
+  std::condition_variable_any happened;  // wakes whoever waits for events
   std::vector<std::shared_ptr<Job>> jobs;
   std::vector<BakeEvent> events;
   std::uint64_t asked = 0;
@@ -118,13 +118,13 @@ struct BakeQueue::Impl {
   Job* running = nullptr;
   std::stop_source running_stop;
 
-  // The worker's own: the scene that it used last.
+  // The scene that was used last; only the worker accesses it.
   struct Held {
     std::uint64_t asked = 0;
     std::shared_ptr<const Scene> scene;
   } held;
 
-  std::jthread worker;  // last: stops before the rest goes
+  std::jthread worker;  // last, so that it stops before the rest is destroyed
 
   fs::path placeOf(const Job& job, PreviewLevel preview_level) const {
     if (preview_level == PreviewLevel::Final) return job.state.request.output;
@@ -153,7 +153,7 @@ struct BakeQueue::Impl {
 
   Step firstStep(const BakeRequest& request) const {
     if (!settings.previews) return Step::Final;
-    // Where a bundle is, most of what it takes to bake it again is in the cache, as a rule.
+    // If a bundle exists, most of what is needed to bake it again is usually in the cache.
     std::error_code ignored;
     return settings.cache != nullptr && fs::exists(request.output, ignored) ? Step::Trial : Step::Unshadowed;
   }
@@ -202,7 +202,7 @@ JobState BakeQueue::Impl::snapshot(const Job& job) const {
   const bool going = state.phase == JobPhase::Waiting || state.phase == JobPhase::Importing ||
                      state.phase == JobPhase::Baking;
   if (!going || job.expected.empty()) return state;
-  // Only the final bake counts; preview_levels before it are short.
+  // Only the final bake counts; the levels before it are short.
   const bool at_final = job.progress && state.preview_level == PreviewLevel::Final;
   if (!at_final) finished.clear();
   const double left = secondsLeft(job.expected, finished, at_final ? state.stage : Progress::Stage{});
@@ -269,8 +269,8 @@ void BakeQueue::Impl::turn(const std::shared_ptr<Job>& job, std::unique_lock<std
       }
       std::optional<Deadline> deadline;
       if (step == Step::Trial) deadline.emplace(stop, settings.trial);
-      return bakePreviewLevel(preview_level, **scene, request.options, place, *progress, stop.get_token(),
-                              settings.cache);
+      return bakePreviewLevel(preview_level, **scene, request.options, place,
+                              {*progress, stop.get_token(), settings.cache});
     } catch (const std::exception& failure) {  // out of memory, most likely
       return fail(request.scene.string(), failure.what(), "free some memory or bake the scene in parts");
     }
@@ -279,7 +279,7 @@ void BakeQueue::Impl::turn(const std::shared_ptr<Job>& job, std::unique_lock<std
 
   hold.lock();
   running = nullptr;
-  if (job->asked != asked_then) {  // added anew or cancelled meanwhile
+  if (job->asked != asked_then) {  // added again or cancelled meanwhile
     if (job->state.phase == JobPhase::Cancelled) entry.done();
     return;
   }
@@ -298,7 +298,7 @@ void BakeQueue::Impl::turn(const std::shared_ptr<Job>& job, std::unique_lock<std
       tell(BakeEvent::Kind::Failed, *job, preview_level);
       return;
     }
-    // Cut short: to be gone on with, but after a trial what can be shown sooner comes first.
+    // The step was stopped and will be resumed; but after a trial, previews come first.
     state.phase = JobPhase::Waiting;
     if (step == Step::Trial) {
       job->tried = true;
@@ -356,7 +356,7 @@ JobId BakeQueue::add(BakeRequest request) {
     job->state.id = {++impl_->last_id};
   }
   impl_->start(*job, std::move(request));
-  // What runs goes on later from where it is, if that is kept; and not at all if its scene has changed.
+  // A running step with a cache resumes later; it is also stopped if its own scene has changed.
   const Job* const running = impl_->running;
   if (running != nullptr &&
       (running == job.get() || (impl_->settings.cache != nullptr && job->rank() < running->rank())))
@@ -372,7 +372,7 @@ void BakeQueue::cancel(JobId id) {
       job->state.phase == JobPhase::Cancelled)
     return;
   if (impl_->running == job.get()) impl_->running_stop.request_stop();
-  job->asked = ++impl_->asked;  // what still runs is not told
+  job->asked = ++impl_->asked;  // so that the result of a running step is ignored
   job->state.phase = JobPhase::Cancelled;
   job->progress = nullptr;
   job->record.done();

@@ -1,13 +1,14 @@
-// Bakes what it is asked for, one piece after another, on a worker thread of its own: every job first
-// unshadowed, then coarse, then final (preview_levels.hpp), so that all that was asked for appears before any
-// of it gets good. Among jobs at the same preview_level the one asked for last comes first; a job that
-// arrives while a final bake runs goes before it (which costs nothing where a cache keeps what it had done).
-// PreviewLevels before the final one are written into the work folder, only the final one under its own name;
-// they are left out where the final one is up to date or comes within a second (QueueSettings::trial).
+// The room baker/pipeline bakes in the background. The queue takes requests and works on one step at a time,
+// on a worker thread of its own: every job first unshadowed, then coarse, then final (preview_levels.hpp), so
+// that everything appears before any of it gets good. Among jobs at the same preview level, the latest
+// request comes first. A job that arrives while a final bake runs goes before it, which costs nothing if a
+// cache keeps the interrupted work. Only the final bundle is written under its own name; previews go into the
+// work folder, and are left out if the final bundle is up to date or ready within a second
+// (QueueSettings::trial).
 //
-// All calls are safe from any thread and return at once; none throws. What goes wrong with a job is its
-// state. Destruction stops the worker within about a second; what was kept in the cache is found by the next
-// bake of the same scene, and the journal (journal.hpp) says which bakes were cut short.
+// All calls are safe from any thread and never throw; all but waitForEvents() return at once. The error of a
+// job is part of its state. Destruction stops the worker within about a second; the next bake of the same
+// scene then finds what the cache kept, and the journal (journal.hpp) says which bakes were cut short.
 #pragma once
 
 #include <chrono>
@@ -21,11 +22,10 @@
 namespace lambent::baker {
 
 struct QueueSettings {
-  std::filesystem::path work_folder;  // for previews and the journal; empty: neither
-  Cache* cache = nullptr;             // outlives the queue; null: nothing is kept
-  bool previews = true;               // preview_levels before the final one
-  // That a final bake may take before a coarser one is shown in its place: with everything in the cache it is
-  // done by then.
+  std::filesystem::path work_folder;  // for previews and the journal; if empty, there are neither
+  Cache* cache = nullptr;             // must outlive the queue; null: no results are kept
+  bool previews = true;               // makes previews before the final bake
+  // Time that a final bake gets before a preview is made instead; with everything in the cache it is enough.
   std::chrono::milliseconds trial{1000};
 };
 
@@ -36,17 +36,18 @@ class BakeQueue {
   BakeQueue(const BakeQueue&) = delete;
   BakeQueue& operator=(const BakeQueue&) = delete;
 
-  // The same scene and output again: the job starts anew with what the files hold now, under the same id.
+  // Adding the same scene and output again restarts the job with the present content of the files, under the
+  // same id.
   JobId add(BakeRequest request);
-  // What is whole stays. A job that is not there, or is done: nothing happens.
+  // Stops a job; bundles that are complete stay. Does nothing if the job does not exist or is done.
   void cancel(JobId job);
 
-  // In the order in which jobs were first added.
+  // Returns the jobs in the order in which they were first added.
   std::vector<JobState> states() const;
   std::vector<BakeEvent> takeEvents();
-  // Whether any job waits or is worked at.
+  // Returns whether any job waits or runs.
   bool busy() const;
-  // Returns when there are events to take or after `time`.
+  // Returns when there are events to take, or after `time`.
   void waitForEvents(std::chrono::milliseconds time);
 
  private:

@@ -20,7 +20,7 @@ std::filesystem::path plain(const std::filesystem::path& path) {
   return (ignored ? path : absolute).lexically_normal();
 }
 
-// Every option as a word.
+// Writes every option as a word.
 json optionsJson(const BakeOptions& options) {
   json words = json::object();
   for (const OptionRow& row : optionRows()) words[std::string(row.name)] = row.word(options);

@@ -1,6 +1,6 @@
-// What somebody asked to be baked: a scene, the bundle to write, and how. Two requests for the same bundle
-// are the same job, whatever else they say: requestKey() tells them by scene and output. Written as JSON into
-// the journal (journal.hpp), so that a later run of the program can take it up.
+// A BakeRequest says which scene to bake, into which bundle, and how. Two requests for the same scene and
+// output are the same job, whatever else they say; requestKey() identifies them. Requests are written as JSON
+// into the journal (journal.hpp), so that a later run of the program can resume them.
 #pragma once
 
 #include <cstdint>
@@ -19,15 +19,15 @@ struct BakeRequest {
   std::filesystem::path scene, output;  // as given; the journal makes them absolute
   BakeOptions options{};
   ImportOptions import{};
-  SceneEdits edits{};                       // to the scene, before it is baked
-  PreviewLevel last = PreviewLevel::Final;  // at which the job is done
+  SceneEdits edits{};                       // applied to the scene before it is baked
+  PreviewLevel last = PreviewLevel::Final;  // the job is done at this level
 };
 
-// Of both paths, absolute and without "." and "..": 16 hex digits, for names of files.
+// Returns 16 hex digits, for file names, from both paths made absolute and without "." and "..".
 std::string requestKey(const BakeRequest& request);
 
 std::string requestText(const BakeRequest& request);
-// Nothing where the text is not a request of this program: of another version, damaged.
+// Returns nothing if the text is no request of this version of the program, or is damaged.
 std::optional<BakeRequest> readRequest(const std::string& text);
 
 }  // namespace lambent::baker

@@ -9,16 +9,16 @@ namespace lambent::baker {
 
 namespace {
 
-// Of one core or so: only to say something before anything is known.
+// Rates of about one core, used only to have an estimate before anything is known.
 constexpr double kGuessedRaysPerSecond = 3e6, kGuessedCodedPerSecond = 2e4;
-// Each pass has less light to carry on, and fewer samples that it counts for.
+// Later passes have less light to carry, and fewer samples for which it matters.
 constexpr int kGuessedBounces = 4;
 
 bool isBounce(const std::string& stage) {
   return stage.starts_with("bounce ");
 }
 
-// Whose time goes with the rays of a sample.
+// Returns whether the stage's time is proportional to the rays of a sample.
 bool goesWithRays(const std::string& stage) {
   return isBounce(stage) || stage == "direct light" || stage == "glossy shadows" || stage == "inside faces" ||
          stage == "paths" || stage == "light into volumes" || stage == "scattering" ||
@@ -29,7 +29,8 @@ double cells(const glm::uvec3& grid) {
   return std::max(1.0, double(grid.x) * double(grid.y) * double(grid.z));
 }
 
-// Of a stage under other options; rough, each for a reason that its name says.
+// Returns how much longer a stage takes with other options; these are rough rules that the stage names
+// explain.
 double growth(const std::string& stage, const BakeOptions& of, const BakeOptions& to) {
   const double rays = static_cast<double>(to.effectiveRays()) / static_cast<double>(of.effectiveRays());
   const double voxels = cells(to.volume_grid) / cells(of.volume_grid);
@@ -67,7 +68,7 @@ StageSeconds scaleSeconds(std::span<const Progress::Stage> stages, const BakeOpt
   StageSeconds seconds;
   for (const Progress::Stage& stage : stages)
     seconds[stage.name] += stage.seconds * growth(stage.name, of, to);
-  // More passes than there were cost about what the last one did.
+  // Passes beyond those measured cost about as much as the last one.
   const int bounces = to.bounces < 0 ? kGuessedBounces : to.bounces;
   for (int bounce = 2; bounce <= bounces; ++bounce)
     for (const char* where : {"", " inside faces"}) {
@@ -75,7 +76,7 @@ StageSeconds scaleSeconds(std::span<const Progress::Stage> stages, const BakeOpt
       if (before != seconds.end())
         seconds.try_emplace(fmt::format("bounce {}{}", bounce, where), before->second);
     }
-  // Triangles are twice as many as vertices, and most of them may be looked from.
+  // There are twice as many triangles as vertices, and rays may start from most of them.
   const auto shadows = seconds.find("glossy shadows");
   if (shadows == seconds.end() || !to.fitsGlossy() || of.fitsGlossy()) return seconds;
   seconds.try_emplace("inside faces", 2.0 * shadows->second);
@@ -94,7 +95,7 @@ double secondsLeft(const StageSeconds& expected, std::span<const Progress::Stage
     const auto found = spent.find(stage);
     return found == spent.end() ? 0.0 : found->second;
   };
-  // Which bounce was the last shows when something else begins.
+  // Once another stage begins after bounces, no further bounce will come.
   bool past_bounces = !isBounce(now.name);
   if (past_bounces)
     past_bounces = std::any_of(finished.begin(), finished.end(),
@@ -106,7 +107,7 @@ double secondsLeft(const StageSeconds& expected, std::span<const Progress::Stage
   }
   const auto found = expected.find(now.name);
   const double this_one = found == expected.end() ? 0.0 : std::max(0.0, found->second - spentOn(now.name));
-  // By its own rate, once that says something, and at least what is expected of later groups.
+  // The stage's own rate is used once it is meaningful, plus what is expected for later groups.
   if (now.total > 0 && now.done > 0 && now.seconds > 0.2) {
     const double rate = static_cast<double>(now.done) / now.seconds;
     const double own = static_cast<double>(now.total - std::min(now.done, now.total)) / rate;

@@ -1,7 +1,7 @@
-// How long a job will take: seconds by the name of the stage, for all groups together. At first from the size
-// of the scene, which is wrong by a factor of a few; from what the coarse preview_level took once that is
-// done; best of all from the last time. What stages really take replaces it as they run. Pure functions of
-// their arguments.
+// Estimates how long a job will take, in seconds per stage name, for all groups together. The first estimate
+// is from the size of the scene and wrong by a factor of a few; a better one comes from the coarse preview
+// once that is done, and the best from the previous bake. Measured times replace estimates as stages run. All
+// functions are pure.
 #pragma once
 
 #include <map>
@@ -17,15 +17,16 @@ namespace lambent::baker {
 
 using StageSeconds = std::map<std::string, double>;
 
-// Of a bake of which nothing is known but the scene.
+// Estimates a bake from the scene alone.
 StageSeconds guessSeconds(const Scene& scene, const BakeOptions& options);
-// From the stages of a bake of the same scene under other options.
+// Estimates a bake from the stages of a bake of the same scene with other options.
 StageSeconds scaleSeconds(std::span<const Progress::Stage> stages, const BakeOptions& of,
                           const BakeOptions& to);
-// As they were.
+// Sums up the stages of a bake by name.
 StageSeconds sumSeconds(std::span<const Progress::Stage> stages);
 
-// What is left of a bake that was expected to take so long, has finished these stages and is at `now`.
+// Returns the seconds left of a bake that was expected to take `expected`, has finished these stages and is
+// at `now`.
 double secondsLeft(const StageSeconds& expected, std::span<const Progress::Stage> finished,
                    const Progress::Stage& now);
 

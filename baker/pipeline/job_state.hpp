@@ -1,5 +1,4 @@
-// What a user interface shows of a bake: snapshots of jobs, and events. Values only; BakeQueue hands them
-// out.
+// Snapshots of bakes, and events, for a user interface. These are plain values that BakeQueue hands out.
 #pragma once
 
 #include <compare>
@@ -28,30 +27,31 @@ struct JobState {
   JobId id;
   BakeRequest request;
   JobPhase phase = JobPhase::Waiting;
-  std::optional<PreviewLevel> preview_level;  // that it works at, or will work at next
-  std::optional<PreviewLevel> reached;        // the best that is whole, of the content that was added last
-  std::filesystem::path bundle;               // of `reached`: what to show; empty before
+  std::optional<PreviewLevel> preview_level;  // the level in progress, or the next one
+  std::optional<PreviewLevel> reached;        // the best level that is complete, for the content added last
+  // The bundle of `reached`, which is the one to show; empty before.
+  std::filesystem::path bundle;
 
-  Progress::Stage stage;               // that runs now; no name: none
-  double units_per_s = 0.0;            // of the stage
-  double seconds = 0.0;                // worked at it so far, all preview_levels
-  double fraction = 0.0;               // of the whole job, 0..1; never falls unless the job starts anew
-  std::optional<double> seconds_left;  // of the whole job; nothing while nobody can tell
+  Progress::Stage stage;               // the stage that runs now; its name is empty if none does
+  double units_per_s = 0.0;            // rate of the stage
+  double seconds = 0.0;                // time spent on the job so far, over all levels
+  double fraction = 0.0;               // of the whole job, 0..1; never falls unless the job restarts
+  std::optional<double> seconds_left;  // of the whole job; nothing while it is unknown
 
   std::optional<Error> error;         // of a job that failed
-  std::vector<std::string> warnings;  // of the import, then the bake's notices
-  bool up_to_date = false;            // done without baking
-  std::optional<BakeReport> report;   // of `reached`, where it was baked here
+  std::vector<std::string> warnings;  // of the import, followed by the bake's notices
+  bool up_to_date = false;            // true if the job was done without baking
+  std::optional<BakeReport> report;   // of `reached`, if it was baked here
 };
 
-// What happened, in order. A bundle event names a file that is whole. A bundle of a preview_level before the
-// final one stays until the queue goes, or until the job, added again, reaches that preview_level again and
-// replaces it.
+// A BakeEvent says what happened; events come in order. A Bundle event names a complete file. The bundle of a
+// preview stays until the queue is destroyed, or until the job is added again and reaches that level again,
+// which replaces it.
 struct BakeEvent {
   enum class Kind : std::uint8_t {
-    Began,   // took the job up, for the first time or anew
-    Bundle,  // `bundle` of `preview_level` is whole
-    Failed,  // with JobState::error; what was whole stays
+    Began,   // the job was started, or restarted
+    Bundle,  // `bundle` of `preview_level` is complete
+    Failed,  // see JobState::error; complete bundles stay
     Cancelled
   };
   Kind kind = Kind::Began;

@@ -26,8 +26,8 @@ fs::path lockOf(const fs::path& entry) {
   return fs::path(entry).replace_extension(kLock);
 }
 
-// The lock of an entry, if no other process has it: -1. The file may be removed by whoever holds the lock, so
-// it is asked for again until the one that is locked is the one that has the name.
+// Locks an entry and returns the file, or -1 if another process has it. The holder of a lock may remove the
+// file, so this tries again until the locked file is the one that has the name.
 int lock(const fs::path& entry) {
   const fs::path path = lockOf(entry);
   for (int attempt = 0; attempt < 16; ++attempt) {
@@ -85,7 +85,7 @@ Journal::Entry Journal::begin(const BakeRequest& request) const {
   if (failed) return entry;
   const fs::path path = folder_ / (requestKey(request) + kEntry);
   int held = lock(path);
-  // Somebody who only looks (unfinished()) is gone in a moment.
+  // A process in unfinished() holds the lock for a moment only.
   for (int attempt = 0; held < 0 && attempt < 10; ++attempt) {
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
     held = lock(path);
@@ -110,7 +110,7 @@ std::vector<BakeRequest> Journal::unfinished() const {
     if (path.extension() != kEntry) continue;
     const int held = lock(path);
     if (held < 0) continue;
-    // Looked at under the lock: whoever had it may have finished just now.
+    // This is read under the lock, since the previous holder may have finished just now.
     std::error_code gone;
     const fs::file_time_type begun = fs::last_write_time(path, gone);
     const auto text = readTextFile(path);

@@ -1,9 +1,10 @@
-// Which bakes were begun and not finished: a file for each in a folder, written when it begins and removed
-// when it is done, failed or was cancelled. A program that was killed or lost its power leaves its files
-// behind; unfinished() finds them. While a bake runs its file is locked, which ends with the process however
-// that ends: no other process takes it for cut short. Any number of processes may use one folder.
+// The journal records which bakes were begun and not finished: one file for each in a folder, written when
+// the bake begins and removed when it is done, failed or was cancelled. A program that was killed or lost its
+// power leaves its files behind, and unfinished() finds them. While a bake runs, its file is locked, and the
+// lock ends with the process, so no other process takes the bake for cut short. Any number of processes may
+// use one folder.
 //
-// A journal that cannot be written does not keep a bake from being made.
+// If the journal cannot be written, the bake runs all the same.
 #pragma once
 
 #include <filesystem>
@@ -15,15 +16,16 @@
 
 namespace lambent::baker {
 
-// In the work folder of a queue.
+// The folder lies in the work folder of a queue.
 inline constexpr const char* kJournalFolder = "journal";
 
 class Journal {
  public:
-  // An empty path: nothing is recorded. Makes the folder with the first entry.
+  // With an empty path nothing is recorded. The folder is made with the first entry.
   explicit Journal(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
-  // While it lives, the bake runs. done() removes the record; else it stays, for a later run to take up.
+  // An Entry lives while its bake runs. done() removes the record; otherwise it stays for a later run to
+  // resume.
   class Entry {
    public:
     Entry() = default;
@@ -38,11 +40,12 @@ class Journal {
     int lock_ = -1;
   };
 
-  // Without a record (file_ empty) where another process bakes the same, or nothing can be written.
+  // Returns an entry without a record (file_ empty) if another process bakes the same, or the folder cannot
+  // be written.
   Entry begin(const BakeRequest& request) const;
-  // Of bakes that no process works at; in the order in which they began.
+  // Returns the bakes that no process works on, in the order in which they began.
   std::vector<BakeRequest> unfinished() const;
-  // The bake of that scene and output was given up for good.
+  // Removes the record of a bake that was given up for good.
   void forget(const BakeRequest& request) const;
 
  private:

@@ -38,12 +38,10 @@ BakeOptions previewLevelOptions(PreviewLevel preview_level, const BakeOptions& a
 }
 
 Result<BakeReport> bakePreviewLevel(PreviewLevel preview_level, const Scene& scene, const BakeOptions& asked,
-                                    const std::filesystem::path& output, Progress& progress,
-                                    std::stop_token stop, Cache* cache) {
+                                    const std::filesystem::path& output, const BakeContext& context) {
   const BakeOptions options = previewLevelOptions(preview_level, asked);
-  if (preview_level == PreviewLevel::Unshadowed)
-    return bakeUnshadowed(scene, options, output, progress, std::move(stop));
-  return bake(scene, options, output, progress, std::move(stop), cache);
+  if (preview_level == PreviewLevel::Unshadowed) return bakeUnshadowed(scene, options, output, context);
+  return bake(scene, options, output, context);
 }
 
 }  // namespace lambent::baker

@@ -1,28 +1,26 @@
-// The preview_levels by which a scene gets better: at once unshadowed, then coarse transfer, then what was
-// asked for. Each is a whole bundle of its own; what it is baked with is decided here and nowhere else.
+// A scene gets better in preview levels: at once unshadowed, then coarse transfer, then what was asked for.
+// Each is a complete bundle. Only this file decides with which options a level is baked.
 #pragma once
 
 #include <cstdint>
-#include <stop_token>
 
 #include "baker/bake/bake.hpp"
 
 namespace lambent::baker {
 
 enum class PreviewLevel : std::uint8_t {
-  Unshadowed,  // no ray (bake_unshadowed.hpp)
-  Coarse,      // few rays, one bounce, no refinement: seconds
+  Unshadowed,  // traces no rays (bake_unshadowed.hpp)
+  Coarse,      // few rays, one bounce, no refinement; takes seconds
   Final        // the options that were asked for
 };
 
 const char* previewLevelName(PreviewLevel preview_level);  // "unshadowed", "coarse", "final"
 
-// The options of a preview_level for a bake that asked for `asked`; never finer than those.
+// Returns the options of a level for a bake that asked for `asked`; they are never finer than those.
 BakeOptions previewLevelOptions(PreviewLevel preview_level, const BakeOptions& asked);
 
-// Bakes `scene`, of which `asked` are the final options, up to one preview_level. Errors: as bake().
+// Bakes `scene` at one level, where `asked` holds the final options. Errors: those of bake().
 Result<BakeReport> bakePreviewLevel(PreviewLevel preview_level, const Scene& scene, const BakeOptions& asked,
-                                    const std::filesystem::path& output, Progress& progress,
-                                    std::stop_token stop, Cache* cache = nullptr);
+                                    const std::filesystem::path& output, const BakeContext& context);
 
 }  // namespace lambent::baker

@@ -12,7 +12,7 @@ namespace {
 
 using nlohmann::json;
 
-// What stands there, or null. Nothing of the text was checked.
+// Returns the member of that name, or null. Nothing in the text has been validated.
 const json& at(const json& value, const char* name) {
   static const json kNone;
   if (!value.is_object()) return kNone;
@@ -23,7 +23,7 @@ const json& at(const json& value, const char* name) {
 void add(const json& uri, const std::filesystem::path& folder, std::vector<std::filesystem::path>& files) {
   if (!uri.is_string()) return;
   const auto text = uri.get<std::string>();
-  if (text.empty() || text.find(':') != std::string::npos) return;  // data:, procedural:, http:
+  if (text.empty() || text.find(':') != std::string::npos) return;  // such as data:, procedural: and http:
   const std::filesystem::path file = folder / decodePercent(text);
   if (std::ranges::find(files, file) == files.end()) files.push_back(file);
 }

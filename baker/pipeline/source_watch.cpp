@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-// What tells one content of a file from another.
+// A Stamp distinguishes one content of a file from another.
 struct Stamp {
   bool there = false;
   std::uintmax_t size = 0;
@@ -44,16 +44,16 @@ std::vector<Stamp> stampsOf(const std::vector<fs::path>& files) {
 }
 
 struct Watched {
-  std::vector<fs::path> files;  // the scene first
+  std::vector<fs::path> files;  // the scene comes first
   std::vector<Stamp> stamps;
-  Clock::time_point moved;  // when they last changed
+  Clock::time_point moved;  // time of their last change
   std::optional<Clock::time_point> missing;
-  std::optional<Clock::time_point> failing;  // since when what lies there does not import
+  std::optional<Clock::time_point> failing;  // since when the present content fails to import
   std::optional<Error> error;
   bool dirty = true, told = false, complained = false;
 };
 
-// Images stay encoded at import, and a PNG that is cut off would only fail in the bake.
+// Detects truncated PNG files, because images stay encoded at import and would only fail in the bake.
 bool cutOff(const SceneImage& image) {
   if (image.mime_type != "image/png") return false;
   constexpr std::size_t kTail = 64;
@@ -71,12 +71,12 @@ Result<void> tryImport(const fs::path& path, const ImportOptions& options) {
       if (cutOff(image))
         return fail(path.string(), "its image \"" + image.name + "\" is cut off", "write it again");
     return {};
-  } catch (const std::exception& failure) {  // out of memory, most likely
+  } catch (const std::exception& failure) {  // most likely out of memory
     return fail(path.string(), failure.what(), "free some memory");
   }
 }
 
-// The scenes of a folder and below; hidden folders are nobody's business.
+// Collects the scenes of a folder and its subfolders, without hidden folders.
 void collect(const fs::path& folder, std::set<fs::path>& scenes) {
   std::error_code failed;
   fs::recursive_directory_iterator at(folder, fs::directory_options::skip_permission_denied, failed), end;
@@ -98,8 +98,8 @@ struct SourceWatch::Impl {
   std::condition_variable_any changed;
   std::vector<fs::path> sources;
   std::vector<WatchEvent> events;
-  std::map<fs::path, Watched> watched;  // the thread's own
-  std::jthread thread;                  // last: stops before the rest goes
+  std::map<fs::path, Watched> watched;  // used by the thread only
+  std::jthread thread;                  // last, so that it stops before the rest is destroyed
 
   void tell(WatchEvent::Kind kind, const fs::path& scene, std::optional<Error> error = {}) {
     const std::lock_guard hold(lock);
@@ -146,7 +146,7 @@ void SourceWatch::Impl::look(const std::vector<fs::path>& from, const std::stop_
   }
 }
 
-// Programs that replace a file may remove it first.
+// A scene counts as gone only after a while, since programs that replace a file may remove it first.
 bool SourceWatch::Impl::gone(const fs::path& scene, Watched& state, bool listed) {
   if (listed) {
     state.missing.reset();
@@ -162,7 +162,7 @@ void SourceWatch::Impl::check(const fs::path& scene, Watched& state) {
   const Clock::time_point now = Clock::now();
   if (std::vector<Stamp> stamps = stampsOf(state.files); stamps != state.stamps) {
     if (state.stamps.empty() || stamps.front() != state.stamps.front()) {
-      state.files = sourceFiles(scene);  // it may name others now
+      state.files = sourceFiles(scene);  // the scene may name other files now
       stamps = stampsOf(state.files);
     }
     state.stamps = std::move(stamps);
@@ -170,17 +170,18 @@ void SourceWatch::Impl::check(const fs::path& scene, Watched& state) {
     state.dirty = true;
     state.error.reset();
     state.failing.reset();
-    state.complained = false;  // something else may be wrong with it now
+    state.complained = false;  // the next error may be another one
     return;
   }
   if (!state.dirty || now - state.moved < settings.still_for) return;
-  // What failed once is tried again only when it is time to complain: a time stamp may be coarse.
+  // A scene that failed is imported again only before complaining, in case its time stamp is too coarse to
+  // show a change.
   const bool overdue = state.failing && now - *state.failing >= settings.complain_after;
   if (state.error && !(overdue && !state.complained)) return;
   const Result<void> imported = tryImport(scene, settings.import);
   std::vector<fs::path> files = sourceFiles(scene);
-  if (files != state.files ||
-      stampsOf(files) != state.stamps) {  // moved meanwhile, or named what was not known
+  // A file changed meanwhile, or the scene names new files.
+  if (files != state.files || stampsOf(files) != state.stamps) {
     state.files = std::move(files);
     state.stamps = stampsOf(state.files);
     state.moved = now;

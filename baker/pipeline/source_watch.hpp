@@ -1,11 +1,10 @@
-// Watches scenes on disk: .gltf and .glb files, one by one or all in a folder and below, with every file that
-// they refer to (buffers, images, volumes, BRDFs). Looks at sizes and times a few times a second on a thread
-// of its own, which works on any file system. A change counts once nothing has moved for a moment and the
-// whole scene imports; until then the old state stays, and what is wrong is told only if it stays wrong.
-// Bundles
-// (.lmb.glb) and hidden files are not scenes.
+// Watches scenes on disk: .gltf and .glb files, single ones or all in a folder and its subfolders, with every
+// file that they refer to (buffers, images, volumes, BRDFs). It checks sizes and times a few times a second
+// on its own thread, which works on any file system. A change is reported once nothing has changed for a
+// moment and the whole scene imports; until then the old state stays, and an error is reported only if it
+// persists. Bundles (.lmb.glb) and hidden files are not scenes.
 //
-// All calls are safe from any thread; none throws.
+// All calls are safe from any thread and never throw.
 #pragma once
 
 #include <chrono>
@@ -22,7 +21,7 @@ namespace lambent::baker {
 
 struct WatchSettings {
   std::chrono::milliseconds look_every{200};
-  std::chrono::milliseconds still_for{400};  // that a change must have been
+  std::chrono::milliseconds still_for{400};  // how long files must be unchanged before a change counts
   std::chrono::milliseconds complain_after{3000};
   ImportOptions import;
 };
@@ -30,8 +29,8 @@ struct WatchSettings {
 struct WatchEvent {
   enum class Kind : std::uint8_t {
     Found,    // a scene that imports, at the start or new
-    Changed,  // it or a file that it refers to; it imports
-    Broken,   // it does not import, and has not for a while: `error`
+    Changed,  // the scene, or a file that it refers to, changed; it imports
+    Broken,   // the scene has not imported for a while: see `error`
     Removed   // the scene file itself is gone
   };
   Kind kind = Kind::Found;
@@ -41,14 +40,14 @@ struct WatchEvent {
 
 class SourceWatch {
  public:
-  // Scene files and folders. What is not there yet is waited for.
+  // `sources` are scene files and folders; those that do not exist yet are waited for.
   SourceWatch(std::vector<std::filesystem::path> sources, WatchSettings settings);
   explicit SourceWatch(std::vector<std::filesystem::path> sources);
   ~SourceWatch();
   SourceWatch(const SourceWatch&) = delete;
   SourceWatch& operator=(const SourceWatch&) = delete;
 
-  // In place of those before.
+  // Replaces the sources.
   void setSources(std::vector<std::filesystem::path> sources);
   std::vector<WatchEvent> takeEvents();
 
@@ -57,10 +56,11 @@ class SourceWatch {
   std::unique_ptr<Impl> impl_;
 };
 
-// The files that a scene names, itself first: best effort, from its JSON alone, whether they exist or not.
+// Returns the files that a scene names, itself first, whether they exist or not. This is best effort, from
+// its JSON alone.
 std::vector<std::filesystem::path> sourceFiles(const std::filesystem::path& scene);
 
-// Whether the name is that of a scene to bake: .gltf or .glb, not .lmb.glb, not hidden.
+// Returns whether the name is that of a scene to bake: .gltf or .glb, not .lmb.glb, not hidden.
 bool isSceneFile(const std::filesystem::path& path);
 
 }  // namespace lambent::baker

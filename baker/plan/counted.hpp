@@ -1,4 +1,4 @@
-// "1 draw", "3 draws": counts in sentences.
+// Formats a count with its noun for sentences: "1 draw", "3 draws".
 #pragma once
 
 #include <cstddef>

@@ -14,7 +14,7 @@ std::string nameOf(const Scene& scene, std::size_t node) {
   return name.empty() ? fmt::format("node {}", node) : name;
 }
 
-// Transfer holds for directions, so a group may turn and grow evenly, but not be stretched.
+// Transfer holds for directions, so a group may turn and scale uniformly, but not be stretched.
 bool stretches(const gltf::AnimationChannel& channel, const gltf::Node& node) {
   if (channel.path != gltf::AnimationChannel::Path::Scale) return false;
   const bool cubic = channel.interpolation == gltf::AnimationChannel::Interpolation::Cubic;
@@ -40,13 +40,13 @@ void addStretchedNodes(const Scene& scene, std::vector<std::string>& sentences) 
                         nameOf(scene, channel.node)));
 }
 
-// What this version does not carry yet, so that nobody has to find out by looking at the picture.
+// Lists what this version does not carry yet, so that nobody has to find out by looking at the picture.
 std::vector<std::string> leftOut(const Scene& scene, bool glossy) {
   std::vector<std::string> sentences = scene.warnings;
   const auto any_material = [&](auto test) {
     return std::any_of(scene.materials.begin(), scene.materials.end(), test);
   };
-  if (!glossy && any_material([](const gltf::Material& m) { return !m.matte(); }))
+  if (!glossy && any_material([](const gltf::Material& m) { return !m.isDiffuse(); }))
     sentences.emplace_back(
         "Metallic and glossy reflection are left out: every material is Lambert with albedo = base colour.");
   if (any_material([](const gltf::Material& m) { return m.alpha_mode == gltf::AlphaMode::Blend; }))

@@ -1,6 +1,8 @@
-// What will be baked for a scene, what not, and why: "simulate only the effects that a scene calls for". Each
-// effect says for itself whether the scene calls for it (baker/effects/effect_list.hpp); `lambent plan`
-// prints the outcome.
+// The room baker/plan decides what will be baked for a scene, what will not, and why: only the effects that a
+// scene calls for are simulated. A scene comes in; its rigid groups, their lights, light probes and
+// neighborhoods, and a reason for each choice go out. Each effect decides for itself whether the scene calls
+// for it (baker/effects/effect_list.hpp), and `lambent plan` prints the outcome. Planning is deterministic,
+// runs on the calling thread and has no errors.
 #pragma once
 
 #include <span>
@@ -18,10 +20,10 @@ namespace lambent::baker {
 struct EffectChoice {
   std::string effect;
   bool baked = false;
-  std::string reason;  // one sentence, true either way
+  std::string reason;  // one sentence, which is true either way
 };
 
-// One line of the list of effects.
+// EffectEntry is one entry of the list of effects.
 struct EffectEntry {
   const char* name;
   EffectChoice (*choose)(const Scene& scene, const std::vector<RigidGroup>& groups);
@@ -30,10 +32,11 @@ struct EffectEntry {
 struct EffectPlan {
   std::vector<RigidGroup> groups;
   std::vector<EffectChoice> effects;
-  std::vector<PlannedNeighborhood> neighborhoods;  // one per group; none baked without that effect
+  std::vector<PlannedNeighborhood> neighborhoods;  // one per group; none is baked without that effect
   std::vector<PlannedLightProbes> light_probes;    // one per group
-  std::vector<std::string> shadowed_lights;        // lamps that come within groups, and how they are shown
-  std::vector<std::string> left_out;  // what the scene has and the bake will not show, one sentence each
+  std::vector<std::string> shadowed_lights;        // one sentence for each lamp that comes within a group
+  // Each sentence names something that the scene has and the bake will not show.
+  std::vector<std::string> left_out;
 
   bool bakes(std::string_view effect) const;
 };

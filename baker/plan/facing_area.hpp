@@ -1,6 +1,7 @@
-// How the surfaces of a group face, as one function over the sphere: their area times y_k of their normals,
-// in five bands. That is all that the mean of any square of irradiance over them asks for, which is of four.
-// What faces anywhere has band 0 alone.
+// A FacingArea says which way surfaces face: it holds the sum of their areas times y_k of their normals in
+// five bands. Five bands are enough for the mean square over these surfaces of any irradiance, because
+// irradiance has three bands and so its square has five. A surface that may face anywhere adds to band 0
+// only.
 #pragma once
 
 #include <array>

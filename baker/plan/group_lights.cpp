@@ -31,7 +31,7 @@ std::vector<PlannedLight> findGroupLights(const Scene& scene, const RigidGroup& 
     const gltf::Material& source = scene.materials[index];
     const bool known = std::any_of(lights.begin(), lights.end(),
                                    [&](const PlannedLight& light) { return light.index == index; });
-    // What is blended casts no shadow and is met by no ray: it shines for the eye only.
+    // Blended surfaces cast no shadow and rays miss them, so their light is only visible directly.
     if (!known && !source.unlit && source.alpha_mode != gltf::AlphaMode::Blend && isLit(source.emissive))
       lights.push_back({PlannedLight::Kind::Material, index, source.emissive, glm::mat4(1.0f)});
   }

@@ -1,6 +1,6 @@
-// The lights that belong to a rigid group: emissive materials on its surfaces, and punctual lights on nodes
-// that move with it. Each becomes a column of the group's transfer at unit strength (light that cannot be
-// told by what arrives from infinity), so that it can be dimmed and recoloured live.
+// Finds the lights that belong to a rigid group: emissive materials on its surfaces and punctual lights on
+// nodes that move with it. Light from infinity cannot describe them, so each becomes a column of the group's
+// transfer at unit strength, and can be dimmed and recoloured live.
 #pragma once
 
 #include <cstdint>
@@ -17,15 +17,15 @@ namespace lambent::baker {
 struct PlannedLight {
   enum class Kind : std::uint8_t { Material, Node };
   Kind kind = Kind::Material;
-  std::uint32_t index = 0;  // of the scene's materials or nodes
+  std::uint32_t index = 0;  // into the scene's materials or nodes
   glm::vec3 color{1.0f};    // strength as in the file: radiance, or colour x intensity of a punctual light
-  glm::mat4 group_from_node{1.0f};  // of a punctual light
+  glm::mat4 group_from_node{1.0f};  // used for punctual lights only
 };
 
-// Materials first, in the order of the draws, then nodes in their own order.
+// Returns materials first, in the order of the draws, then nodes in their own order.
 std::vector<PlannedLight> findGroupLights(const Scene& scene, const RigidGroup& group);
 
-// The node at or above `node` that starts its rigid group; -1: the static group.
+// Returns the node at or above `node` that starts its rigid group, or -1 for the static group.
 std::int32_t groupRootOf(const Scene& scene, std::uint32_t node);
 
 }  // namespace lambent::baker

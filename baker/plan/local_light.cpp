@@ -15,13 +15,13 @@ namespace lambent::baker {
 
 namespace {
 
-constexpr std::uint32_t kOfBodies = 4;  // light probes that bodies which only reflect ask for
+constexpr std::uint32_t kOfBodies = 4;  // most light probes that a body without light of its own asks for
 
 struct Step {
   float ratio;
   std::uint32_t count;
 };
-// So that about 5 % of the picture are left to the places between light probes
+// These counts leave an error of about 5 % of the picture between light probes
 // (docs/measurements/local-lights.md, "Light probes near a lamp").
 constexpr std::array kSteps = {Step{0.05f, 1}, Step{0.15f, 4}, Step{0.25f, 8}, Step{0.5f, 16}};
 
@@ -31,7 +31,7 @@ std::uint32_t countFor(float ratio) {
   return kMostLightProbes;
 }
 
-// What asked for the most, and of several the first.
+// Keeps the largest request, and of several equal ones the first.
 class Choice {
  public:
   void ask(std::uint32_t count, auto reason) {
@@ -81,7 +81,7 @@ std::vector<PlannedLightProbes> planLightProbes(const Scene& scene, const std::v
         if (!body.shining.empty())
           askBy(body.shining.distance(own.centre()), kMostLightProbes,
                 "what shines of " + groups[other].name);
-        // What neighborhoods carry is not looked for in the light from outside.
+        // Light probes do not sample what neighborhoods carry.
         if (other < neighborhoods.size() && neighborhoods[other].carries(g)) continue;
         if (movesAboutOn(body.all, own))
           choices[g].ask(kMostLightProbes,

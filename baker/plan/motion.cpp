@@ -11,10 +11,12 @@ namespace lambent::baker {
 namespace {
 
 constexpr int kTimes = 64;
-constexpr float kTouch = 1e-3f;       // of the larger body's half-size
-constexpr float kMuchSmaller = 0.5f;  // half-size of a body that can move about on another
+constexpr float kTouch = 1e-3f;  // share of the larger body's half-size
+// A body can move about on another only if the ratio of their half-sizes is below this.
+constexpr float kMuchSmaller = 0.5f;
 
-// The points of a mesh that lie farthest in 26 directions: turned as one likes, its box is near theirs.
+// Returns the points of a mesh that lie farthest in 26 directions. However they are turned, their box is
+// close to that of the mesh.
 std::vector<glm::vec3> outerPoints(const bundle::MeshData& mesh) {
   std::vector<glm::vec3> out;
   for (int x = -1; x <= 1; ++x)

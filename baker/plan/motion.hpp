@@ -1,5 +1,5 @@
-// Where everything in a scene is at rest and along its animations: boxes of bodies, places of lamps. For the
-// parts of the plan that ask what can come near what.
+// Places everything in a scene at rest and along its animations: the boxes of bodies and the positions of
+// lamps. The rest of the plan uses this to find out what can come near what.
 #pragma once
 
 #include <cstdint>
@@ -33,45 +33,45 @@ struct Box {
   }
 };
 
-// Less than half the size of the other.
+// Returns whether `body` is less than half as large as `other`.
 bool muchSmaller(const Box& body, const Box& other);
-// Can `body` move about on `other`: it is much smaller and comes within its bounds.
+// Returns whether `body` can move about on `other`: it is much smaller and comes within its bounds.
 bool movesAboutOn(const Box& body, const Box& other);
 
 struct PlacedBody {
-  Box all, shining;  // shining: surfaces that give off light
-  Box medium;        // of a volume, which has no surfaces
+  Box all, shining;  // shining: only the surfaces that give off light
+  Box medium;        // the box of a volume, which has no surfaces
 };
 
 struct Lamp {
   std::uint32_t node = 0;
-  std::int32_t root = -1;  // of the group that it moves with
+  std::int32_t root = -1;  // root of the group that it moves with
   float range_m = 0.0f;
   glm::vec3 place{0.0f};
 };
 
-// Everything at one time, in the world.
+// A Moment is the state of everything at one time, in the world's frame.
 struct Moment {
-  std::vector<PlacedBody> bodies;  // as the groups
+  std::vector<PlacedBody> bodies;  // one per group
   std::vector<Lamp> lamps;
   std::vector<glm::mat4> world;  // world_from_node
 };
 
 class Motion {
  public:
-  // Both outlive this.
+  // Both arguments must outlive this object.
   Motion(const Scene& scene, const std::vector<RigidGroup>& groups);
 
   int times() const;
-  // 0: at rest, then along the animations.
+  // Time 0 is at rest; the others follow along the animations.
   Moment at(int time) const;
   std::string lampName(const Lamp& lamp) const;
 
  private:
   const Scene& scene_;
   const std::vector<RigidGroup>& groups_;
-  std::vector<std::vector<std::vector<glm::vec3>>> points_;  // mesh, primitive
-  std::vector<std::set<std::int32_t>> shining_;              // materials, by group
+  std::vector<std::vector<std::vector<glm::vec3>>> points_;  // by mesh and primitive
+  std::vector<std::set<std::int32_t>> shining_;              // emissive materials, by group
   float duration_s_ = 0.0f;
 };
 

@@ -16,32 +16,33 @@ namespace lambent::baker {
 
 namespace {
 
-// How far a body's change of the light can be told, of its half-size: 1 % of irradiance and less from there.
+// A body changes the light noticeably up to this many half-sizes: beyond, irradiance changes by 1 % at most.
 constexpr float kReach = 10.0f;
-// Edges of a finely meshed receiver, of the body's half-size: about the spacing of its grid.
+// A finely meshed receiver has a mean edge of at most this many half-sizes of the body, which is about the
+// spacing of its grid.
 constexpr float kFineEdge = 0.35f;
-constexpr std::size_t kMostClips = 4u << 20;  // triangles over all times, for one pair of groups
-constexpr std::size_t kLooks = 128;           // triangles and vertices that are asked whether they face
+constexpr std::size_t kMostClips = 4u << 20;  // most triangles to clip over all times, for one pair of groups
+constexpr std::size_t kLooks = 128;           // triangles and vertices that shadowsItself compares
 
 struct Triangles {
-  std::vector<glm::vec3> corners;  // three by three, in the frame of a node
+  std::vector<glm::vec3> corners;  // three per triangle, in the frame of a node
   std::uint32_t node = 0;
   bool two_sided = false, glossy = false;
 };
 
-// Surfaces in a body's reach.
+// Within sums up the surfaces in a body's reach.
 struct Within {
   Box box;
   FacingArea facing{};
 };
 
-// A convex polygon of at most 3 + 6 corners.
+// A Polygon is convex and has at most 3 + 6 corners.
 struct Polygon {
   std::array<glm::vec3, 9> corners;
   std::size_t count = 0;
 };
 
-// The part of the polygon where sign * (x[axis] - at) <= 0.
+// Keeps the part of the polygon where sign * (x[axis] - at) <= 0.
 void clip(Polygon& polygon, int axis, float at, float sign) {
   Polygon out;
   for (std::size_t i = 0; i < polygon.count; ++i) {
@@ -54,7 +55,8 @@ void clip(Polygon& polygon, int axis, float at, float sign) {
   polygon = out;
 }
 
-// Adds what of the triangle lies in the box. mirrored: its corners run the other way round.
+// Adds the part of the triangle that lies in the box. `mirrored` means that its corners run the other way
+// round.
 void addWithin(const std::array<glm::vec3, 3>& triangle, const Triangles& of, bool mirrored, const Box& box,
                Within& sum) {
   const glm::vec3 low = glm::min(glm::min(triangle[0], triangle[1]), triangle[2]),
@@ -137,7 +139,7 @@ class Planner {
   }
 
   void takeBodies() {
-    std::vector<std::pair<std::size_t, std::size_t>> found;  // body, and on what
+    std::vector<std::pair<std::size_t, std::size_t>> found;  // a body, and the one that it moves on
     for (std::size_t k = 0; k < groups_.size(); ++k) {
       if (groups_[k].volume >= 0 || plans_[k].baked) continue;
       if (const auto on = movesOn(k)) found.emplace_back(k, *on);
@@ -162,7 +164,8 @@ class Planner {
     if (dark <= kMostNeighborhoods) takeBodiesByHand(dark);
   }
 
-  // Bodies that stand elsewhere at rest. They must not cost those their grids that move about anyway.
+  // Takes bodies that can be moved onto others by hand but stand elsewhere at rest. They must not displace
+  // the grids of bodies that move about anyway.
   void takeBodiesByHand(std::size_t dark) {
     std::vector<std::size_t> found;
     for (std::size_t k = 0; k < groups_.size(); ++k)
@@ -179,14 +182,14 @@ class Planner {
     }
   }
 
-  // Its file says that it may move, and no animation says where.
+  // Returns whether the file says that the body may move and no animation says where.
   bool movedByHand(std::size_t k) const {
     if (groups_[k].root < 0 || groups_[k].volume >= 0) return false;
     const gltf::Node& node = scene_.nodes[static_cast<std::size_t>(groups_[k].root)];
     return node.movable && !node.animated;
   }
 
-  // A group of surfaces of more than twice its size.
+  // Returns a group of surfaces that is more than twice as large.
   std::optional<std::size_t> largerThan(std::size_t k) const {
     const Box& own = moments_.front().bodies[k].all;
     for (std::size_t other = 0; other < groups_.size(); ++other)
@@ -207,7 +210,7 @@ class Planner {
 
   bool glossy(const PlannedDraw& draw) const {
     const std::int32_t material = scene_.meshes[draw.mesh].primitives[draw.primitive].material;
-    return material >= 0 && !scene_.materials[static_cast<std::size_t>(material)].matte();
+    return material >= 0 && !scene_.materials[static_cast<std::size_t>(material)].isDiffuse();
   }
 
   std::vector<Triangles> trianglesOf(std::size_t group) const {
@@ -256,7 +259,7 @@ class Planner {
     plan.receivers_face = within.facing;
   }
 
-  // Everything that it may be moved onto, and surfaces that face anywhere.
+  // Adds all groups that the body may be moved onto; their surfaces may face anywhere.
   void addReceiversByHand(std::size_t k) {
     PlannedNeighborhood& plan = plans_[k];
     const Box& own = moments_.front().bodies[k].all;
@@ -289,7 +292,7 @@ class Planner {
         world_from_group = moment.world[root] * glm::inverse(moments_.front().world[root]) * rest_from_group;
       }
       const glm::mat4 group_from_world = glm::inverse(world_from_group);
-      Box reach;  // the body's own box, as it stands in its frame, and its reach
+      Box reach;  // the body's own box at rest in its frame, and its reach around it
       const Box& box = boxOf(moments_.front(), k);
       const glm::mat4 group_from_rest = glm::inverse(rest_from_group);
       for (int corner = 0; corner < 8; ++corner) {
@@ -312,7 +315,8 @@ class Planner {
     }
   }
 
-  // Does its own transfer do more than its normals, and is it known about as finely as the neighborhood?
+  // Returns whether the receiver's own transfer says more than its normals do and is about as fine as the
+  // neighborhood's grid.
   bool hasFineTransfer(std::size_t other, float half_size) const {
     std::vector<std::array<glm::vec3, 3>> triangles;
     double edges = 0.0;
@@ -334,7 +338,7 @@ class Planner {
     return shadowsItself(triangles);
   }
 
-  // Some triangle faces some vertex.
+  // Returns whether some triangle faces some vertex of another.
   static bool shadowsItself(const std::vector<std::array<glm::vec3, 3>>& triangles) {
     const std::size_t stride = 1 + triangles.size() / kLooks;
     for (std::size_t a = 0; a < triangles.size(); a += stride) {

@@ -11,8 +11,8 @@ namespace lambent::baker {
 
 namespace {
 
-// The rotation nearest to the upper 3x3 of a world matrix: U V^T of its SVD, made proper. Scale and shear
-// stay in the group's geometry.
+// Returns the rotation nearest to the upper 3x3 of a world matrix: U V^T of its SVD, made proper. Scale and
+// shear stay in the group's geometry.
 glm::quat polarRotation(const glm::mat4& world) {
   Eigen::Matrix3d m;
   for (int row = 0; row < 3; ++row)
@@ -26,8 +26,9 @@ glm::quat polarRotation(const glm::mat4& world) {
                                   static_cast<float>(q.y()), static_cast<float>(q.z())));
 }
 
-// What of the root's world matrix its rotation leaves over: stretch. Taken to a millionth of each axis, so
-// that the rounding of a turned or carried root does not show: what is baked for it is found again.
+// Returns the stretch that remains of the root's world matrix without its rotation. It is rounded to a
+// millionth of each axis, so that rounding errors of a rotated or moved root do not change the keys of baked
+// results.
 glm::dmat3 stretchOf(const glm::mat4& world, const glm::quat& rotation) {
   constexpr int kBits = 20;
   glm::dmat3 stretch = glm::transpose(glm::mat3_cast(glm::dquat(rotation))) * glm::dmat3(glm::mat3(world));
@@ -47,7 +48,7 @@ class GroupFinder {
   }
 
   std::vector<RigidGroup> find() {
-    // Depth first without recursion, children in order.
+    // Walks depth first without recursion, with children in order.
     std::vector<std::pair<std::int32_t, std::size_t>> stack;  // node, group
     for (auto root = scene_.roots.rbegin(); root != scene_.roots.rend(); ++root) stack.emplace_back(*root, 0);
     while (!stack.empty()) {
@@ -65,7 +66,7 @@ class GroupFinder {
   }
 
  private:
-  // A volume that its own node moves hangs in the group which that node starts.
+  // A volume that its own node moves belongs within the group that this node starts.
   void addVolumes() {
     const auto surface_groups = static_cast<std::ptrdiff_t>(groups_.size());
     for (std::size_t v = 0; v < scene_.volumes.size(); ++v) {

@@ -18,11 +18,11 @@ namespace lambent::baker {
 namespace {
 
 constexpr std::array<std::size_t, 3> kLevels = {bundle::kMaxProxyTriangles, 64, 16};
-constexpr std::size_t kLeastTriangles = 4;  // of a side of a part
+constexpr std::size_t kLeastTriangles = 4;  // per side of a part
 constexpr std::size_t kPointsPerTriangle = 128;
-// Beyond this, silhouettes are taken of the surface at this many triangles.
+// Larger surfaces are simplified to this many triangles before their silhouette is taken.
 constexpr std::size_t kSilhouetteTriangles = 32768;
-// A level is worth its place where it has at most this share of the triangles of the one before.
+// A level is worth having if it has at most this share of the triangles of the one before.
 constexpr double kFewer = 0.75;
 
 double areaOf(const SimpleMesh& mesh) {
@@ -33,8 +33,8 @@ double areaOf(const SimpleMesh& mesh) {
   return sum;
 }
 
-// How many triangles each part may have, so that all sides together have `most`: by area, at least
-// kLeastTriangles or as many as it has. None where that is too many.
+// Returns how many triangles each part may have, so that all sides together have `most`: by area, but at
+// least kLeastTriangles, or as many as the part has. Returns nothing if that is too many.
 std::optional<std::vector<std::size_t>> shares(const std::vector<ProxyPart>& parts,
                                                const std::vector<SimpleMesh>& meshes, std::size_t most) {
   std::vector<std::size_t> counts;
@@ -44,7 +44,7 @@ std::optional<std::vector<std::size_t>> shares(const std::vector<ProxyPart>& par
     taken += counts[p] * parts[p].sides();
   }
   if (taken > most) return std::nullopt;
-  // The rest goes by area to those that can use it, until nobody can.
+  // The rest goes by area to the parts that can use it, until none can.
   for (;;) {
     double area = 0.0;
     for (std::size_t p = 0; p < parts.size(); ++p)
@@ -102,7 +102,7 @@ class ProxyMaker {
     return sum;
   }
 
-  // As many as the finest level can use; the coarser ones take the same.
+  // There are as many points as the finest level can use; the coarser ones use the same.
   void spreadPoints(const std::vector<SimpleMesh>& finest) {
     for (std::size_t p = 0; p < parts_.size(); ++p) {
       const std::size_t count = kPointsPerTriangle * std::max<std::size_t>(finest[p].triangles.size(), 4);
@@ -112,8 +112,8 @@ class ProxyMaker {
     }
   }
 
-  // Few triangles between points of a round surface lie inside of it and look smaller: they grow until they
-  // hide as much.
+  // A few triangles between points of a round surface lie inside of it and look smaller, so they grow until
+  // they cover as much.
   void growToSilhouette(std::vector<SimpleMesh>& simple) {
     if (!outline_) {
       std::vector<SimpleMesh> shown;
@@ -168,9 +168,9 @@ class ProxyMaker {
   const SampleSet& samples_;
   const SurfaceColors& colors_;
   std::vector<ProxyPart> parts_;
-  std::vector<SimpleMesh> meshes_;  // as parts_
+  std::vector<SimpleMesh> meshes_;  // one per part
   std::optional<Silhouette> outline_;
-  std::vector<std::array<std::vector<ShiningPoint>, 2>> points_;  // of each part, both sides
+  std::vector<std::array<std::vector<ShiningPoint>, 2>> points_;  // by part and side
   bundle::CaptureProxy proxy_;
 };
 

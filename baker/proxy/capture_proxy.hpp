@@ -1,6 +1,7 @@
-// A rigid group in a few triangles, as other groups see it when they sample their light (design: "capture
-// proxy"). Made of what ships; levels of at most 256, 64 and 16 triangles. Comes in: geometry, samples and
-// colours of the group; goes out: the payload's content, in the group's frame.
+// The room baker/proxy makes the capture proxy: a rigid group in a few triangles, as other groups see it when
+// they sample their light. Geometry, samples and colours of the group, as they ship, come in; the payload's
+// content in the group's frame goes out, with levels of at most 256, 64 and 16 triangles. It works on several
+// threads and has no errors.
 #pragma once
 
 #include "baker/transport/group_geometry.hpp"
@@ -10,7 +11,7 @@
 
 namespace lambent::baker {
 
-// Without a level where the group shows nothing: no area, or only what is mostly transparent.
+// Returns no level if the group shows nothing: it has no area, or only surfaces that are mostly transparent.
 bundle::CaptureProxy makeCaptureProxy(const GroupGeometry& geometry, const SampleSet& samples,
                                       const SurfaceColors& colors);
 

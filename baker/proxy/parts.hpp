@@ -1,5 +1,5 @@
-// What of a group its proxy shows, in parts that are simplified apart: light that a surface gives off must
-// not spread over its neighbours, and two-sided surfaces need two triangles for one.
+// Divides what a proxy shows of a group into parts that are simplified separately, because emitted light must
+// not spread over neighbouring surfaces and two-sided surfaces need two triangles for one.
 #pragma once
 
 #include <cstddef>
@@ -12,15 +12,15 @@
 namespace lambent::baker {
 
 struct ProxyPart {
-  std::uint32_t light = kNoLight;  // column of the group's lights that it gives off
+  std::uint32_t light = kNoLight;  // column of the group's light that it emits
   bool two_sided = false;
-  std::vector<std::uint32_t> front, back;  // triangles of the group; back only where two-sided
+  std::vector<std::uint32_t> front, back;  // triangles of the group; back only if two-sided
 
   std::size_t sides() const { return two_sided ? 2 : 1; }
 };
 
-// Surfaces that are cut out or blended with a mean coverage under a half are left out. At most `most` parts,
-// counted by sides: then the smallest ones that give off light count as dark.
+// Leaves out surfaces that are cut out or blended with a mean coverage under a half. Returns at most `most`
+// parts, counted by sides; to stay within that, the smallest parts that emit light count as dark.
 std::vector<ProxyPart> proxyParts(const GroupGeometry& geometry, const SurfaceColors& colors,
                                   std::size_t most);
 

@@ -39,7 +39,7 @@ float faceArea(const std::array<glm::vec3, 3>& c) {
   return 0.5f * glm::length(glm::cross(c[1] - c[0], c[2] - c[0]));
 }
 
-// The point of a triangle that is nearest to p (Ericson 2005, section 5.1.5).
+// Returns the point of a triangle that is nearest to p (Ericson 2005, section 5.1.5).
 glm::vec3 nearestOf(const std::array<glm::vec3, 3>& t, glm::vec3 p) {
   const glm::vec3 ab = t[1] - t[0], ac = t[2] - t[0], ap = p - t[0];
   const float d1 = glm::dot(ab, ap), d2 = glm::dot(ac, ap);
@@ -61,8 +61,8 @@ glm::vec3 nearestOf(const std::array<glm::vec3, 3>& t, glm::vec3 p) {
   return sum > 0.0f ? t[0] + vb / sum * ab + vc / sum * ac : t[0];
 }
 
-// Squared distance; facing 90 degrees apart counts as much as the size of a mean face, facing away from each
-// other as much more as there can be of distance.
+// Compares faces and points by squared distance and facing. Facing 90 degrees apart counts as much as the
+// size of a mean face; facing away from each other counts more than any distance.
 class Likeness {
  public:
   Likeness(std::span<const ProxyFace> faces, const std::vector<std::uint32_t>& own) : faces_(faces) {
@@ -78,7 +78,7 @@ class Likeness {
     size_ = static_cast<float>(area / static_cast<double>(std::max<std::size_t>(own.size(), 1)));
   }
 
-  // At a glance: sure to lie farther than `reach_m`.
+  // A quick test: returns true if the face certainly lies farther than `reach_m`.
   bool beyond(std::size_t place, const ShiningPoint& point, float reach_m) const {
     const glm::vec3 d = centres_[place] - point.position;
     const float sum = reach_m + radii_[place];
@@ -112,7 +112,7 @@ void add(const ShiningPoint& point, const GroupGeometry& geometry, const SampleS
   sums.emitted += double{point.at.area} * glm::dvec3(point.emission);
 }
 
-// Few samples that stand for all of a face: those nearest to the centres of as many clusters.
+// Chooses a few samples that stand for all of a face: those nearest to the centres of as many clusters.
 std::vector<std::uint32_t> chosenSamples(const std::map<std::uint32_t, Sums>& of, const SampleSet& samples) {
   std::vector<std::uint32_t> all;
   std::vector<glm::vec3> places;
@@ -155,7 +155,7 @@ std::vector<bundle::ProxyEntry> entriesOf(const FaceSums& face, const SampleSet&
   return entries;
 }
 
-// Faces of one side of one part, and the points dealt out to them.
+// Assigns points to the faces of one side of one part.
 void dealOut(std::span<const ProxyFace> faces, const std::vector<std::uint32_t>& own,
              const std::vector<ShiningPoint>& points, const GroupGeometry& geometry, const SampleSet& samples,
              std::vector<FaceSums>& sums) {
@@ -175,7 +175,7 @@ void dealOut(std::span<const ProxyFace> faces, const std::vector<std::uint32_t>&
     }
   });
   for (std::size_t i = 0; i < points.size(); ++i) add(points[i], geometry, samples, sums[face_of[i]]);
-  // A face that no point came to takes the one that is most like it.
+  // A face that got no point takes the one that is most like it.
   for (std::size_t k = 0; k < own.size(); ++k) {
     if (sums[own[k]].area > 0.0) continue;
     std::size_t nearest = 0;

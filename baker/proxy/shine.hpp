@@ -1,6 +1,6 @@
-// What each triangle of a proxy sends out: which samples of the group it stands for, and the light that it
-// gives off. Surface points of the group are dealt out to the triangles that lie near and face alike; means
-// over the points of a triangle are the triangle's.
+// Finds what each triangle of a proxy sends out: the samples of the group that it stands for, and the light
+// that it emits. Surface points of the group are assigned to the triangles that lie near and face alike; a
+// triangle gets the means over its points.
 #pragma once
 
 #include <array>
@@ -17,7 +17,7 @@
 
 namespace lambent::baker {
 
-// One side of a simplified surface, in the group's frame.
+// A ProxyFace is one side of a simplified surface, in the group's frame.
 struct ProxyFace {
   std::array<glm::vec3, 3> corners;
   std::uint32_t part = 0;
@@ -29,10 +29,10 @@ struct FaceShine {
   glm::vec3 emission{0.0f};
 };
 
-// A point of the surface with what it reflects and gives off at unit strength.
+// A ShiningPoint is a surface point with what it reflects, and emits at unit strength.
 struct ShiningPoint {
   SurfacePoint at;
-  glm::vec3 position, normal;  // of the face, unit
+  glm::vec3 position, normal;  // the normal is that of the face, unit
   glm::vec3 reflectance, emission;
 };
 
@@ -40,8 +40,8 @@ std::vector<ShiningPoint> shiningPoints(const GroupGeometry& geometry, const Sur
                                         std::span<const std::uint32_t> triangles, bool gives_light,
                                         std::size_t count);
 
-// points[part][side]. One per face. Emissions of a part add up to as much power (area x radiance) as its
-// points have.
+// Returns one entry per face. `points` is indexed by part and side. Emissions of a part add up to as much
+// power (area x radiance) as its points have.
 std::vector<FaceShine> shineOf(std::span<const ProxyFace> faces,
                                std::span<const std::array<std::vector<ShiningPoint>, 2>> points,
                                const GroupGeometry& geometry, const SampleSet& samples);

@@ -1,4 +1,4 @@
-// How large a surface looks from far away.
+// Measures how large a surface looks from far away.
 #pragma once
 
 #include <array>
@@ -16,16 +16,16 @@ class Silhouette {
  public:
   explicit Silhouette(std::span<const SimpleMesh> original);
 
-  // By how much `proxy` must grow, as a length, to cover as much as the original does, seen from far away
-  // along seven axes (mean of areas); of the proxy what lies within the original's bounds counts. 1 where
-  // either covers nothing; at least 1/2, at most 2.
+  // Returns by how much `proxy` must grow, as a length, to cover as much as the original does, seen from far
+  // away along seven axes (mean of areas). Of the proxy, only what lies within the original's bounds counts.
+  // Returns 1 if either covers nothing; the result is within 1/2..2.
   float scaleOf(std::span<const SimpleMesh> proxy) const;
 
  private:
   struct View {
     glm::vec3 right{0.0f}, up{0.0f};
-    glm::vec2 low{0.0f}, high{0.0f};  // of the original
-    double pixel = 0.0;               // square metres; 0 where it is seen edge on
+    glm::vec2 low{0.0f}, high{0.0f};  // bounds of the original
+    double pixel = 0.0;               // square metres; 0 if seen edge on
     double covered = 0.0;             // pixels
   };
   static double pixelsOf(std::span<const SimpleMesh> meshes, const View& view);

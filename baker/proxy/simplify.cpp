@@ -14,15 +14,15 @@ namespace lambent::baker {
 
 namespace {
 
-// Collapses cost time by the triangle; beyond this many clusters of vertices go first.
+// Collapses take time per triangle, so larger surfaces are reduced by clusters of vertices first.
 constexpr std::size_t kDetailed = 1u << 18;
 
 using Indices = std::vector<unsigned int>;
 
-// Corners of faces that meet may differ in their last bits, after a rotation: they are the same where they
-// round to the same point of a fine lattice.
+// Corners of faces that meet may differ in their last bits after a rotation, so they count as the same if
+// they round to the same point of a fine lattice.
 using LatticePoint = std::array<std::int64_t, 3>;
-constexpr float kLattice = 0x1p-18f;  // of the surface's size, at most twice as much
+constexpr float kLattice = 0x1p-18f;  // of the surface's size; the step is up to twice as large
 
 struct LatticeHash {
   std::size_t operator()(const LatticePoint& point) const {
@@ -82,7 +82,7 @@ SimpleMesh reduced(const SimpleMesh& mesh, std::size_t most, Method method) {
   return compacted(mesh.positions, out, mesh.error_m + error * scale);
 }
 
-// The box around it, or a tetrahedron in that where a box has too many triangles; both closed.
+// Returns the box around the mesh, or a tetrahedron in it if a box has too many triangles; both are closed.
 SimpleMesh boxed(const SimpleMesh& mesh, std::size_t most) {
   glm::vec3 low = mesh.positions.front(), high = low;
   for (const glm::vec3& p : mesh.positions) low = glm::min(low, p), high = glm::max(high, p);
@@ -107,7 +107,7 @@ SimpleMesh welded(const GroupGeometry& geometry, std::span<const std::uint32_t> 
     for (int c = 0; c < 3; ++c)
       low = glm::min(low, corner(triangle, c)), high = glm::max(high, corner(triangle, c));
   const glm::vec3 size = high - low;
-  // A power of two: what lies on a lattice as it ships lies on this one.
+  // The step is a power of two, so that points on the lattice that ships lie on this one too.
   const double step = std::exp2(
       std::ceil(std::log2(std::max(double{kLattice} * double{std::max({size.x, size.y, size.z})}, 1e-30))));
   std::unordered_map<LatticePoint, unsigned int, LatticeHash> seen;

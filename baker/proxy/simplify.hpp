@@ -1,4 +1,4 @@
-// A surface in fewer triangles, by meshoptimizer.
+// Simplifies a surface to fewer triangles, by meshoptimizer.
 #pragma once
 
 #include <cstddef>
@@ -13,17 +13,17 @@
 namespace lambent::baker {
 
 struct SimpleMesh {
-  std::vector<glm::vec3> positions;  // as GroupGeometry::positions, each used
+  std::vector<glm::vec3> positions;  // as GroupGeometry::positions; each is used
   std::vector<glm::uvec3> triangles;
-  float error_m = 0.0f;  // how far the surface may lie from the one that it was made of
+  float error_m = 0.0f;  // how far it may lie from the surface that it was made of
 };
 
-// The triangles as they are, vertices at the same place welded (but for rounding).
+// Returns the triangles as they are, with vertices at the same place (but for rounding) welded.
 SimpleMesh welded(const GroupGeometry& geometry, std::span<const std::uint32_t> triangles);
 
-// At most `most` triangles, 4 or more, and at least one if there was one with an area: by edge collapses
-// (Garland and Heckbert 1997); where the surface's topology stands against that, by clusters of vertices; and
-// where it is lost in these, its bounding box or tetrahedron.
+// Returns at most `most` triangles (4 or more), and at least one if any has an area. It collapses edges
+// (Garland and Heckbert 1997); if the topology does not allow that, it clusters vertices; and if that loses
+// the surface, it returns its bounding box or a tetrahedron.
 SimpleMesh simplified(const SimpleMesh& mesh, std::size_t most);
 
 }  // namespace lambent::baker

@@ -21,7 +21,7 @@ std::vector<SurfacePoint> pointsOn(const GroupGeometry& geometry, std::span<cons
   std::vector<SurfacePoint> points;
   if (!(sum > 0.0) || !std::isfinite(sum)) return points;
   const double step = sum / static_cast<double>(count);
-  constexpr double kRoot = 1.32471795724474602596;  // of x³ = x + 1
+  constexpr double kRoot = 1.32471795724474602596;  // the real root of x³ = x + 1
   std::size_t at = 0;
   for (std::size_t i = 0; i < count; ++i) {
     while (at + 1 < sums.size() && sums[at] <= (static_cast<double>(i) + 0.5) * step) ++at;

@@ -12,13 +12,13 @@ namespace lambent::baker {
 
 namespace {
 
-// A primitive whose vertices may be split into fans.
+// A FanSource is a primitive whose vertices may be split into fans.
 struct FanSource {
   std::size_t mesh, primitive, group, draw;
-  std::span<const std::uint32_t> faces;  // of the mesh, of each triangle of the draw
+  std::span<const std::uint32_t> faces;  // index in the mesh of each triangle of the draw
 };
 
-// What is drawn at many places would cost transfer at each of them: at most front and back of one.
+// Lists primitives that are drawn only once (front and back), since fans would cost transfer at every place.
 std::vector<FanSource> fanSources(const std::vector<RigidGroup>& groups,
                                   const std::vector<GroupGeometry>& geometries) {
   std::map<std::pair<std::size_t, std::size_t>, int> fronts;
@@ -41,16 +41,15 @@ std::vector<FanSource> fanSources(const std::vector<RigidGroup>& groups,
 
 }  // namespace
 
-std::optional<std::size_t> addWedges(const std::vector<RigidGroup>& groups,
-                                     const std::vector<GroupGeometry>& geometries,
-                                     const std::vector<GroupRefiner>& refiners, double bound,
-                                     std::size_t most, std::vector<std::vector<bundle::MeshData>>& meshes,
+std::optional<std::size_t> addWedges(const MeasuredGroups& measured, const WedgeLimits& limits,
+                                     std::vector<std::vector<bundle::MeshData>>& meshes,
                                      const std::stop_token& stop) {
-  const std::vector<FanSource> sources = fanSources(groups, geometries);
+  const auto& geometries = measured.geometries;
+  const std::vector<FanSource> sources = fanSources(measured.groups, geometries);
   FaceLacks lacks{.width = GroupRefiner::kLackValues};
   std::size_t stars = 0;
   for (const FanSource& source : sources) {
-    refiners[source.group].addLacks(geometries[source.group].draws[source.draw], lacks);
+    measured.refiners[source.group].addLacks(geometries[source.group].draws[source.draw], lacks);
     const bundle::MeshData& mesh = meshes[source.mesh][source.primitive];
     std::unordered_map<VertexKey, std::uint32_t, VertexKeyHash> known;
     for (const std::uint32_t face : source.faces)
@@ -65,7 +64,8 @@ std::optional<std::size_t> addWedges(const std::vector<RigidGroup>& groups,
   }
   double area = 0.0;
   for (const double a : lacks.areas) area += a;
-  const Wedges fans = chooseWedges(std::move(lacks), stars, bound * bound * area, most, stop);
+  const Wedges fans =
+      chooseWedges(std::move(lacks), stars, limits.bound * limits.bound * area, limits.most, stop);
   if (stop.stop_requested()) return std::nullopt;
   std::size_t next = 0;
   for (const FanSource& source : sources) {

@@ -1,5 +1,5 @@
-// Values apart (fans.hpp) in the meshes of a scene: of glossy surfaces, whose lobes show visibility near the
-// horizon that diffuse ones average away.
+// Gives vertices of glossy surfaces several values (wedges.hpp), because glossy lobes show visibility near
+// the horizon that diffuse surfaces average away.
 #pragma once
 
 #include <cstddef>
@@ -14,13 +14,22 @@
 
 namespace lambent::baker {
 
-// By what the refiners measured last, of groups and geometries as they are now, over all meshes where it
-// gains most: until the relative error that is left is `bound`, or `most` fans were added. How many were;
-// nothing if stopped.
-std::optional<std::size_t> addWedges(const std::vector<RigidGroup>& groups,
-                                     const std::vector<GroupGeometry>& geometries,
-                                     const std::vector<GroupRefiner>& refiners, double bound,
-                                     std::size_t most, std::vector<std::vector<bundle::MeshData>>& meshes,
+// Groups and geometries as they are now, and what the refiners measured last; one entry per group.
+struct MeasuredGroups {
+  const std::vector<RigidGroup>& groups;
+  const std::vector<GroupGeometry>& geometries;
+  const std::vector<GroupRefiner>& refiners;
+};
+
+struct WedgeLimits {
+  double bound;      // of the relative error that is left
+  std::size_t most;  // fans that may be added
+};
+
+// Adds fans over all meshes where it gains most, until one of the limits is reached. Returns how many were
+// added, or nothing if stopped.
+std::optional<std::size_t> addWedges(const MeasuredGroups& measured, const WedgeLimits& limits,
+                                     std::vector<std::vector<bundle::MeshData>>& meshes,
                                      const std::stop_token& stop);
 
 }  // namespace lambent::baker

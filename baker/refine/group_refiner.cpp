@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
 #include <numeric>
 
 #include <glm/geometric.hpp>
 
 #include "baker/jobs/parallel.hpp"
+#include "baker/jobs/stage.hpp"
 #include "baker/transport/face_points.hpp"
 #include "baker/transport/geometry_key.hpp"
 #include "baker/transport/sample_areas.hpp"
@@ -17,24 +17,24 @@ namespace lambent::baker {
 
 namespace {
 
-// A triangle is probed at n² points, where its longest edge is n times this share of the group's diagonal.
+// A triangle is probed at n² points if its longest edge is n times this share of the group's diagonal.
 constexpr float kProbeSpacing = 1.0f / 24.0f;
 constexpr int kMostProbesAlong = 8;
-constexpr std::size_t kPointsPerRange = 64;  // that are probed
-// Nothing is split below this share of the diagonal.
+constexpr std::size_t kPointsPerRange = 64;  // probed points in one range of work
+// No edge is split if its triangle's longest edge is below this share of the diagonal.
 constexpr float kShortestEdge = 1.0f / 1024.0f;
-// Of a triangle that is split, edges of at least this share of its longest.
+// A split triangle splits its edges of at least this share of the longest one.
 constexpr float kSplitShare = 0.6f;
-// A round splits triangles until what is left over has this share of the square error that is allowed, but no
-// more than this share of all of it: what the first splits show decides where the next ones go.
+// A round splits triangles until the remaining square error is this share of what is allowed, or this share
+// of all of it if that is more, because what the first splits show decides where the next ones go.
 constexpr double kLeftOfAllowed = 0.6, kLeftOfAll = 0.5;
 
-// A point inside a triangle, by the weights of its corners.
+// An InnerPoint is a point inside a triangle, by the weights of its corners.
 struct InnerPoint {
   glm::vec3 weights;
 };
 
-// Middles of n² equal parts of a triangle.
+// Returns the centres of n² equal parts of a triangle.
 std::vector<InnerPoint> innerPoints(int n) {
   std::vector<InnerPoint> points;
   const float part = 1.0f / (3.0f * static_cast<float>(n));
@@ -57,16 +57,13 @@ float longestEdge(const GroupGeometry& geometry, const glm::uvec3& t) {
 
 }  // namespace
 
-void GroupRefiner::prepare(const GroupGeometry& geometry, const Scene& scene,
-                           const std::vector<std::shared_ptr<const AlphaMap>>& alpha_maps, Cache* cache) {
+void GroupRefiner::prepare(const GroupGeometry& geometry, const Scene& scene, const AlphaMaps& alpha_maps) {
   diagonal_ = glm::distance(geometry.bounds_min, geometry.bounds_max);
   build_rays_ = [geometry, &scene, &alpha_maps] { return RayScene::build(geometry, scene, alpha_maps); };
   KeyMaker key = KeyMaker::ofStage("refinement probes");
-  if (cache) {
-    addShape(geometry, key);
-    addOpacity(scene, geometry, key);
-  }
-  keep_ = {cache, key.add(std::uint64_t{probe_.rays()}).key()};
+  addShape(geometry, key);
+  addOpacity(scene, geometry, key);
+  key_ = key.add(std::uint64_t{probe_.rays()}).key();
 }
 
 std::uint32_t GroupRefiner::shadowAt(const glm::vec3& position, const glm::vec3& normal, SampleKind kind,
@@ -77,29 +74,29 @@ std::uint32_t GroupRefiner::shadowAt(const glm::vec3& position, const glm::vec3&
   return entry->second;
 }
 
-Result<bool> GroupRefiner::probe(const std::vector<Point>& missing, Progress& progress,
-                                 const std::stop_token& stop) {
+Result<bool> GroupRefiner::probe(const std::vector<Point>& missing, const BakeContext& context) {
   const std::size_t size = probe_.packets(), first = seen_.size();  // missing ones are in order
   seen_.resize(first + missing.size());
   masks_.resize(seen_.size() * size);
-  const auto masksOf = [&](std::size_t begin, std::size_t end) {
-    return std::span(masks_).subspan((first + begin) * size, (end - begin) * size);
+  const auto masks = std::span(masks_).subspan(first * size);
+  const auto compute = [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const Point& point = missing[i];
+      seen_[point.shadow] =
+          probe_.look(*rays_, point.origins, point.normal, point.kind, masks.subspan(i * size, size));
+    }
   };
-  Keep keep = keep_;
-  if (keep.cache) {
-    KeyMaker key;
-    key.add(keep_.key);
-    for (const Point& point : missing) key.add(point.normal).add(point.kind).addList(point.origins);
-    keep.key = key.key();
-  }
-  const auto unpack = [&](std::size_t begin, std::size_t end, ByteReader& in) {
-    return in.readInto(masksOf(begin, end)) &&
-           in.readInto(std::span(seen_).subspan(first + begin, end - begin));
-  };
-  const std::uint64_t rays = missing.size() * probe_.rays();
-  if (restoreRanges(keep, missing.size(), kPointsPerRange, unpack)) {
-    progress.add(missing.size());
-    rays_kept_ += rays;
+  const Stage stage{.count = missing.size(),
+                    .grain = kPointsPerRange,
+                    .writes = {rowsOf(masks, size), rowsOf(seen_, 1, static_cast<std::ptrdiff_t>(first))},
+                    .compute = compute,
+                    .keep = KeepWhen::Always};
+  KeyMaker key;
+  key.add(key_);
+  for (const Point& point : missing) key.add(point.normal).add(point.kind).addList(point.origins);
+  const BakeContext own = context.keyed(key.key());
+  if (restoreStage(stage, own)) {
+    rays_kept_ += missing.size() * probe_.rays();
     return true;
   }
   if (!rays_) {
@@ -107,32 +104,14 @@ Result<bool> GroupRefiner::probe(const std::vector<Point>& missing, Progress& pr
     if (!built) return failAgain(built.error());
     rays_ = std::move(*built);
   }
-  std::atomic<std::uint64_t> traced = 0;
-  const CachedRanges kept = cachedRanges(
-      keep, missing.size(), kPointsPerRange, stop,
-      {.compute =
-           [&](std::size_t begin, std::size_t end) {
-             for (std::size_t i = begin; i < end; ++i) {
-               const Point& point = missing[i];
-               seen_[point.shadow] =
-                   probe_.look(*rays_, point.origins, point.normal, point.kind, masksOf(i, i + 1));
-             }
-             traced += (end - begin) * probe_.rays();
-             progress.add(end - begin);
-           },
-       .pack =
-           [&](std::size_t begin, std::size_t end, ByteWriter& out) {
-             out.addList(std::span<const std::uint16_t>(masksOf(begin, end)));
-             out.addList(std::span<const std::uint8_t>(seen_).subspan(first + begin, end - begin));
-           },
-       .unpack = unpack});
-  traced_ += traced;
-  rays_kept_ += rays - traced;
-  return kept.finished;
+  const auto done = runStage(stage, own);
+  if (!done) return false;
+  traced_ += done->computed * probe_.rays();
+  rays_kept_ += done->found * probe_.rays();
+  return true;
 }
 
-Result<bool> GroupRefiner::measure(const GroupGeometry& geometry, Progress& progress,
-                                   const std::stop_token& stop) {
+Result<bool> GroupRefiner::measure(const GroupGeometry& geometry, const BakeContext& context) {
   const SampleSet samples = buildSamples(geometry);
   std::vector<Point> missing;
   std::vector<std::uint32_t> of_sample(samples.size());
@@ -156,12 +135,13 @@ Result<bool> GroupRefiner::measure(const GroupGeometry& geometry, Progress& prog
     }
   }
 
-  if (auto probed = probe(missing, progress, stop); !probed || !*probed) return probed;
+  if (auto probed = probe(missing, context); !probed || !*probed) return probed;
 
   std::vector<double> error_at(inner.size());
   std::vector<float> lack_at(for_wedges_ ? inner.size() * 2 * kLackValues : 0);
   std::vector<std::uint8_t> seen_at(inner.size(), 0);
-  // What nobody sees has no error; what nobody sees from takes the place of its neighbours (fill.hpp).
+  // Points that cannot be seen have no error, and unseen corners take the values of their neighbours
+  // (fill.hpp).
   const auto measureAt = [&](std::size_t i) {
     const Inner& point = inner[i];
     std::array<HiddenFrom, 3> corners;
@@ -183,7 +163,7 @@ Result<bool> GroupRefiner::measure(const GroupGeometry& geometry, Progress& prog
     return ShadowProbe::squareError(wrong);
   };
   const bool measured =
-      parallelRanges(inner.size(), kPointsPerRange, stop, [&](std::size_t begin, std::size_t end) {
+      parallelRanges(inner.size(), kPointsPerRange, context.stop, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) error_at[i] = measureAt(i);
       });
   if (!measured) return false;
@@ -206,7 +186,7 @@ Result<bool> GroupRefiner::measure(const GroupGeometry& geometry, Progress& prog
   return true;
 }
 
-// The mean over the points of a triangle that somebody sees.
+// Keeps the mean over the points of each triangle that can be seen.
 void GroupRefiner::keepLacks(const GroupGeometry& geometry, std::span<const Inner> inner,
                              std::span<const std::uint8_t> seen, std::span<const float> lacks) {
   constexpr std::size_t kSize = 2 * kLackValues;

@@ -16,7 +16,7 @@ std::uint64_t pairOf(std::uint32_t a, std::uint32_t b) {
   return std::uint64_t{low} << 32 | high;
 }
 
-// Vertices at the very same position have one number.
+// Returns a number for each vertex; vertices at exactly the same position have the same one.
 std::vector<std::uint32_t> placesIn(const GroupGeometry& geometry) {
   std::vector<std::uint32_t> order(geometry.positions.size()), places(geometry.positions.size());
   for (std::uint32_t v = 0; v < order.size(); ++v) order[v] = v;
@@ -57,7 +57,7 @@ bool MarkedEdges::mark(std::size_t group, std::uint32_t a, std::uint32_t b) {
   return in_group_[group].insert(placesOf(group, a, b)).second;
 }
 
-// From groups to the meshes that are drawn there, and back. False once nothing is new.
+// Carries marks from groups to the meshes that are drawn there, and back. Returns false once nothing is new.
 bool MarkedEdges::spread() {
   bool any = false;
   for (std::size_t g = 0; g < groups_.size(); ++g)

@@ -1,52 +1,59 @@
-// Refinement where shadows change: splits edges of meshes until interpolation over triangles carries what is
-// hidden from their points within a bound (Krivanek and others 2004 refine by transfer, too). The error is
+// The room baker/refine splits edges where shadows change, until interpolation over triangles represents what
+// is hidden from their points within a bound (Krivanek and others 2004 refine by transfer, too). The error is
 // probed inside triangles by rays; where it is too large, the worst triangles are split, round after round.
-// Faces that see nothing change are left as they are.
+// Faces that see nothing change are left alone. The scene, its groups and decoded meshes come in; the meshes
+// with more vertices, and a report, go out. It works on several threads.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <stop_token>
 #include <vector>
 
-#include "baker/cache/cache.hpp"
 #include "baker/import/scene.hpp"
-#include "baker/jobs/progress.hpp"
+#include "baker/jobs/bake_context.hpp"
 #include "baker/plan/rigid_groups.hpp"
 #include "baker/transport/alpha_map.hpp"
+#include "runtime/bundle/mesh.hpp"
 
 namespace lambent::baker {
 
 struct RefineOptions {
-  float bound = 0.01f;     // on the error of each group: relative RMS over its surface, against open light
+  float bound = 0.01f;     // on each group's error: relative RMS over its surface, against open light
   std::size_t rays = 512;  // per probe, over the sphere
-  int rounds = 12;         // at most
-  // The scene never gets more vertices than so many times as it had and so many more, nor more than so many
-  // in all.
+  int rounds = 12;         // at most this many
+  // The scene gets at most most_growth times as many vertices as it had and most_added more, and never more
+  // than most_vertices in all.
   double most_growth = 1.5;
   std::size_t most_added = 20'000;
   std::size_t most_vertices = std::size_t{1} << 31;
-  // Wedges that may be added to the vertices of glossy surfaces, by vertices after all splits (fans.hpp).
+  // This limits the fans added to vertices of glossy surfaces, relative to the number of vertices after all
+  // splits (wedges.hpp).
   double most_wedges = 0.0;
 };
 
 struct RefineReport {
   std::size_t vertices_before = 0, vertices_after = 0;
   std::size_t fans = 0;  // values beyond one for each position and normal
-  // Of the group that was worst, before fans: what interpolation over the triangles got wrong.
+  // These are interpolation errors of the worst group; `error_after` is measured before fans are added.
   double error_before = 0.0, error_after = 0.0;
   std::uint64_t rays = 0;       // traced
-  std::uint64_t rays_kept = 0;  // that what was found in the cache stands for
+  std::uint64_t rays_kept = 0;  // rays that results in the cache saved
 };
 
-// meshes[mesh][primitive], changed in place; the same primitives as the scene's. Draws of one mesh share its
-// splits. cache: may be null; keeps the outcome, and what was probed in each group. Errors: no memory for the
-// hierarchy, "stopped". Deterministic for any number of threads.
-Result<RefineReport> refineMeshes(const Scene& scene, const std::vector<RigidGroup>& groups,
-                                  const std::vector<std::shared_ptr<const AlphaMap>>& alpha_maps,
-                                  bool with_glossy, const RefineOptions& options,
-                                  std::vector<std::vector<bundle::MeshData>>& meshes, Progress& progress,
-                                  const std::stop_token& stop, Cache* cache = nullptr);
+// What refinement reads beside the meshes.
+struct RefineScene {
+  const Scene& scene;
+  const std::vector<RigidGroup>& groups;
+  const AlphaMaps& alpha_maps;
+  bool with_glossy;  // materials that are not diffuse have glossy samples
+};
+
+// meshes[mesh][primitive] are changed in place; they are the same primitives as the scene's. Draws of one
+// mesh share its splits. The outcome is kept, and what was probed in each group. Errors: no memory for the
+// hierarchy, "stopped". The result does not depend on the number of threads.
+Result<RefineReport> refineMeshes(const RefineScene& from, const RefineOptions& options,
+                                  std::vector<std::vector<bundle::MeshData>>& meshes,
+                                  const BakeContext& context);
 
 }  // namespace lambent::baker

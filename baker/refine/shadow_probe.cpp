@@ -18,12 +18,12 @@ namespace lambent::baker {
 
 namespace {
 
-// Of the light, and of what surfaces make of it; visibility then shows in all bands that tie the two.
+// The order is that of light and of lobes; visibility matters in all bands that couple the two.
 constexpr int kOrder = 5, kVisibilityBands = 2 * kOrder - 1;
 constexpr std::size_t kPlainValues = kOrder * kOrder, kGlossyValues = kVisibilityBands * kVisibilityBands;
 static_assert(kGlossyValues == ShadowProbe::kMostValues);
 
-// Both halves of the sphere by the points of one, turned by `turn`.
+// Adds both halves of the sphere by the points of one, rotated by `turn`.
 void addSphere(const DirectionTable& half, const glm::mat3& turn, DirectionTable& table) {
   for (const float sign : {1.0f, -1.0f})
     for (std::size_t i = 0; i < half.size(); ++i) {
@@ -36,14 +36,14 @@ DirectionTable twoSpheres(std::size_t rays) {
   const DirectionTable half = uniformTable(rays / 4);
   DirectionTable table;
   addSphere(half, glm::mat3(1.0f), table);
-  // Any turn that brings no axis near another.
+  // Any rotation will do that brings no axis near another.
   const glm::vec3 a = glm::normalize(glm::vec3(0.46f, 0.71f, 0.53f)),
                   b = glm::normalize(glm::cross(a, glm::vec3(0.8f, -0.1f, 0.6f)));
   addSphere(half, glm::mat3(b, glm::cross(a, b), a), table);
   return table;
 }
 
-// Errors of irradiance by the power of light in each band, relative to an open point's.
+// Returns weights for errors of irradiance by the power of light in each band, relative to an open point.
 std::vector<double> irradianceRoots() {
   double open = 0.0;
   for (int l = 0; l < kOrder; ++l) {
@@ -57,7 +57,8 @@ std::vector<double> irradianceRoots() {
   return roots;
 }
 
-// Errors of visibility by what its products with lights show to lobes (CodingSettings), likewise.
+// Returns weights for errors of visibility by how its products with lights show in lobes (CodingSettings),
+// also relative to an open point.
 std::vector<double> visibilityRoots() {
   const sh::GauntTable table = sh::makeGauntTable(kOrder, kOrder);
   std::vector<double> roots(kGlossyValues, 0.0);
@@ -104,7 +105,7 @@ bool ShadowProbe::look(const RayScene& scene, std::span<const SampleOrigin> orig
                   seen);
   if (!seen.valid) return false;
   if (kind == SampleKind::Diffuse) {
-    scene.trace(seen.origins, glm::mat3(1.0f), directions_, masks, BelowHorizon::Blocked);
+    scene.trace({seen.origins, glm::mat3(1.0f), directions_, BelowHorizon::Blocked}, masks);
     return true;
   }
   DirectionTable above = directions_;
@@ -115,7 +116,7 @@ bool ShadowProbe::look(const RayScene& scene, std::span<const SampleOrigin> orig
     above.y[r] -= 2.0f * height * normal.y;
     above.z[r] -= 2.0f * height * normal.z;
   }
-  scene.trace(seen.origins, glm::mat3(1.0f), above, masks, BelowHorizon::Mirrored);
+  scene.trace({seen.origins, glm::mat3(1.0f), above, BelowHorizon::Mirrored}, masks);
   return true;
 }
 
@@ -126,7 +127,7 @@ ShadowProbe::Difference ShadowProbe::difference(std::span<const HiddenFrom, 3> c
   for (std::size_t p = 0; p < packets(); ++p) {
     const unsigned in_any = corners[0].masks[p] | corners[1].masks[p] | corners[2].masks[p] | truth.masks[p],
                    in_all = corners[0].masks[p] & corners[1].masks[p] & corners[2].masks[p] & truth.masks[p];
-    // What is hidden from all of them makes no difference, but where their cosines differ.
+    // What is hidden from all of them makes no difference, unless their cosines differ.
     for (unsigned left = plain ? in_any : in_any & ~in_all; left != 0; left &= left - 1) {
       const auto k = static_cast<std::size_t>(std::countr_zero(left));
       const std::size_t r = p * kPacketWidth + k;

@@ -12,16 +12,16 @@ namespace lambent::baker {
 
 namespace {
 
-// Poles of fans with more faces than this are left alone.
+// Stars with more faces than this, such as poles, are left alone.
 constexpr std::size_t kMostFaces = 32;
-// Each pass takes the splits that gain at least this share of what those of the pass before did.
+// Each pass takes the splits that gain at least this share of the least gain taken in the pass before.
 constexpr double kStep = 0.6;
 constexpr int kPasses = 24;
-// Over all fans, to settle values before any is split: what is left falls by half a sweep and more.
+// Sweeps over all fans settle the values before any split; each roughly halves the remaining change.
 constexpr int kSweeps = 6;
 constexpr double kGainOfWedge = 3.0 / 8.0;
 
-// What is lacked over some faces: their area and the sums of area times both estimates.
+// Sums what is lacking over some faces: their area, and area times both estimates.
 struct Sum {
   double area = 0.0;
   std::vector<double> values;
@@ -32,7 +32,7 @@ double productOf(const Sum& sum) {
   if (!(sum.area > 0.0)) return 0.0;
   double product = 0.0;
   for (std::size_t i = 0; i < half; ++i) product += sum.values[i] * sum.values[half + i];
-  return product / sum.area;  // area times product of the means
+  return product / sum.area;  // area times the product of the means
 }
 
 class FanChooser {
@@ -83,8 +83,8 @@ class FanChooser {
     return sum;
   }
 
-  // Changes the value of a fan by what is best while all others stay: 3/2 of the mean of r less half of what
-  // it was changed by before.
+  // Changes the value of a fan to the optimum while all others stay: by 3/2 of the mean of r less half of its
+  // change so far.
   void settle(std::size_t star, std::uint8_t fan) {
     const std::vector<std::uint32_t> own = fanOf(star, fan);
     const Sum sum = sumOf(own);
@@ -109,7 +109,7 @@ class FanChooser {
       for (std::uint8_t fan = 0; fan < of_star_[star]; ++fan) settle(star, fan);
   }
 
-  // Area times square error of one face.
+  // Returns area times square error of one face.
   double errorOf(std::size_t face) const {
     const double area = lacks_.areas[face];
     const float* values = lacks_.values.data() + face * 2 * lacks_.width;
@@ -132,7 +132,7 @@ class FanChooser {
     return kGainOfWedge * most;
   }
 
-  // No split of these gains more than that, but for noise.
+  // Returns an upper bound, but for noise, of what a split of these corners can gain.
   double mostOf(std::span<const std::uint32_t> corners) const {
     if (corners.size() < 2 || corners.size() > kMostFaces) return 0.0;
     double most = 0.0;
@@ -140,7 +140,7 @@ class FanChooser {
     return most;
   }
 
-  // Whether any of these faces around a star share an edge there.
+  // Returns whether any of these faces around a star share an edge there.
   bool touch(std::size_t star, std::span<const std::uint32_t> a, std::span<const std::uint32_t> b) const {
     const auto neighbours = [&](std::uint32_t corner) {
       const std::uint32_t face = corner / 3 * 3;
@@ -155,7 +155,7 @@ class FanChooser {
     return false;
   }
 
-  // Two parts of a fan, joined from single faces by least loss (Ward); what that split gains.
+  // Divides a fan in two by joining single faces at the least loss (Ward). Returns what that split gains.
   double partsOf(std::size_t star, std::span<const std::uint32_t> corners,
                  std::vector<std::uint32_t>& apart) {
     struct Part {
@@ -185,7 +185,7 @@ class FanChooser {
               parts[a].product + parts[b].product - productOf(joined(parts[a].sum, parts[b].sum));
           if (best_b == 0 || loss < least) least = loss, best_a = a, best_b = b;
         }
-      if (best_b == 0) return 0.0;  // surfaces that only touch at the vertex
+      if (best_b == 0) return 0.0;  // the surfaces only touch at the vertex
       parts[best_a].sum = joined(parts[best_a].sum, parts[best_b].sum);
       parts[best_a].product = productOf(parts[best_a].sum);
       parts[best_a].corners.insert(parts[best_a].corners.end(), parts[best_b].corners.begin(),
@@ -219,8 +219,8 @@ class FanChooser {
   FaceLacks lacks_;
   Wedges fans_;
   std::vector<std::uint32_t> offsets_, corners_;  // corners of each star
-  std::vector<std::uint8_t> of_star_;             // fans
-  std::vector<std::vector<float>> changes_;       // of each star: [fan][estimate][width]
+  std::vector<std::uint8_t> of_star_;             // number of fans
+  std::vector<std::vector<float>> changes_;       // per star: [fan][estimate][width]
 };
 
 }  // namespace

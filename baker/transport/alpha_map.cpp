@@ -4,9 +4,8 @@
 
 namespace lambent::baker {
 
-Result<std::vector<std::shared_ptr<const AlphaMap>>> loadAlphaMaps(const Scene& scene,
-                                                                   DecodedImages& images) {
-  std::vector<std::shared_ptr<const AlphaMap>> maps(scene.materials.size());
+Result<AlphaMaps> loadAlphaMaps(const Scene& scene, DecodedImages& images) {
+  AlphaMaps maps(scene.materials.size());
   for (std::size_t m = 0; m < scene.materials.size(); ++m) {
     const gltf::Material& material = scene.materials[m];
     if (material.alpha_mode != gltf::AlphaMode::Mask) continue;

@@ -1,5 +1,5 @@
-// Where cut-out surfaces let rays through: alphaMode MASK by texture, factor and vertex colour against the
-// cutoff.
+// Says where cut-out surfaces (alphaMode MASK) let rays through: texture, factor and vertex colour are
+// compared with the cutoff.
 #pragma once
 
 #include <memory>
@@ -13,12 +13,12 @@
 namespace lambent::baker {
 
 struct AlphaMap {
-  std::shared_ptr<const DecodedImage> image;  // may be null: only factor and vertex colour count
+  std::shared_ptr<const DecodedImage> image;  // null if there is none: only factor and vertex alpha count
   gltf::Sampler sampler;
   float factor = 1.0f;
   float cutoff = 0.5f;
 
-  // Does a surface point with this texture coordinate and vertex alpha stop a ray?
+  // Returns whether a surface point with this texture coordinate and vertex alpha stops a ray.
   bool blocks(glm::vec2 uv, float vertex_alpha) const {
     const float texture_alpha = image ? sampleImage(*image, sampler, uv).w : 1.0f;
     return texture_alpha * factor * vertex_alpha >= cutoff;
@@ -26,6 +26,7 @@ struct AlphaMap {
 };
 
 // One entry per material, null where its alpha mode is not MASK.
-Result<std::vector<std::shared_ptr<const AlphaMap>>> loadAlphaMaps(const Scene& scene, DecodedImages& images);
+using AlphaMaps = std::vector<std::shared_ptr<const AlphaMap>>;
+Result<AlphaMaps> loadAlphaMaps(const Scene& scene, DecodedImages& images);
 
 }  // namespace lambent::baker

@@ -10,7 +10,7 @@ namespace lambent::baker {
 
 namespace {
 
-// Distance along a Hilbert curve over a 256 x 256 grid.
+// Returns the distance along a Hilbert curve over a 256 x 256 grid.
 std::uint32_t hilbertIndex(double u, double v) {
   constexpr std::uint32_t kSide = 256;
   auto x = std::min(static_cast<std::uint32_t>(u * kSide), kSide - 1);
@@ -27,7 +27,7 @@ std::uint32_t hilbertIndex(double u, double v) {
   return distance;
 }
 
-// Unit square to unit disc, keeping areas and neighbours together.
+// Maps the unit square to the unit disc; it keeps areas, and neighbours stay neighbours.
 std::pair<double, double> concentricDisc(double u, double v) {
   const double a = 2.0 * u - 1.0, b = 2.0 * v - 1.0;
   if (a == 0.0 && b == 0.0) return {0.0, 0.0};
@@ -38,7 +38,7 @@ std::pair<double, double> concentricDisc(double u, double v) {
   return {radius * std::cos(angle), radius * std::sin(angle)};
 }
 
-// Calls add(x, y) with points of the disc, equal areas, along a Hilbert curve.
+// Calls add(x, y) with points of the disc that stand for equal areas, along a Hilbert curve.
 template <typename Add>
 void forDiscPoints(std::size_t rays, const Add& add) {
   const std::size_t count = std::max<std::size_t>(1, (rays + kPacketWidth - 1) / kPacketWidth) * kPacketWidth;
@@ -49,7 +49,8 @@ void forDiscPoints(std::size_t rays, const Add& add) {
   std::vector<Point> points(count);
   for (std::size_t i = 0; i < count; ++i) {
     const double u = (static_cast<double>(i) + 0.5) / static_cast<double>(count);
-    // From 0.5 on: at v = 0 the first ray would lie in the horizon itself, and a flat face would block it.
+    // The sequence starts at 0.5, because at v = 0 the first ray would lie in the horizon and a flat face
+    // would block it.
     const double v = std::fmod(0.5 + static_cast<double>(i) * (std::numbers::phi - 1.0), 1.0);
     points[i] = {hilbertIndex(u, v), u, v};
   }
@@ -79,7 +80,7 @@ DirectionTable cosineTable(std::size_t rays) {
 
 DirectionTable uniformTable(std::size_t rays) {
   DirectionTable table;
-  // Lambert's equal-area map from the disc: z = 1 - r².
+  // This is Lambert's equal-area map from the disc: z = 1 - r².
   forDiscPoints(rays, [&](double x, double y) {
     const double r2 = x * x + y * y, stretch = std::sqrt(std::max(0.0, 2.0 - r2));
     append(table, stretch * x, stretch * y, std::max(0.0, 1.0 - r2));

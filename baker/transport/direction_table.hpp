@@ -1,6 +1,6 @@
-// The directions in which every sample looks, over the local hemisphere (z up): low-discrepancy, and sorted
-// along a Hilbert curve so that sixteen neighbours make a coherent ray packet. One table is shared by all
-// samples, so its spherical harmonics are evaluated once.
+// A DirectionTable holds the directions of every sample's rays over the local hemisphere (z up). They are
+// low-discrepancy and sorted along a Hilbert curve, so that sixteen neighbours make a coherent ray packet.
+// All samples share one table, so its spherical harmonics are evaluated once.
 #pragma once
 
 #include <cstddef>
@@ -11,19 +11,20 @@ namespace lambent::baker {
 inline constexpr std::size_t kPacketWidth = 16;
 
 struct DirectionTable {
-  // Unit vectors, one array per axis; size a multiple of kPacketWidth.
+  // These are unit vectors, with one array per axis; the size is a multiple of kPacketWidth.
   std::vector<float> x, y, z;
 
   std::size_t size() const { return x.size(); }
   std::size_t packets() const { return x.size() / kPacketWidth; }
 };
 
-// `rays` is rounded up to whole packets. pdf = cos/pi: Fibonacci lattice on the unit square, concentric map
-// to the disc (Shirley and Chiu 1997), lifted to the hemisphere (Malley).
+// Makes directions with pdf = cos/pi: a Fibonacci lattice on the unit square goes through the concentric map
+// to the disc (Shirley and Chiu 1997) and is lifted to the hemisphere (Malley). `rays` is rounded up to whole
+// packets.
 DirectionTable cosineTable(std::size_t rays);
 
-// The same points spread evenly over the hemisphere: pdf = 1/(2 pi). For light at any normal, where light
-// near the horizon counts.
+// Spreads the same points evenly over the hemisphere: pdf = 1/(2 pi). This serves light that is evaluated at
+// any normal, for which light near the horizon counts.
 DirectionTable uniformTable(std::size_t rays);
 
 }  // namespace lambent::baker

@@ -1,5 +1,5 @@
-// Places inside faces, beside the vertices, where transfer is computed too: what interpolation over the faces
-// is held against (effects/diffuse/vertex_fit.hpp).
+// Makes samples inside faces, beside those at vertices. Transfer at them is what interpolation over the faces
+// is fitted to (trace/vertex_fit.hpp).
 #pragma once
 
 #include <cstdint>
@@ -12,21 +12,21 @@
 namespace lambent::baker {
 
 struct FacePoints {
-  SampleSet samples;                     // of no vertices, in no cells
-  std::vector<std::uint32_t> triangles;  // of each sample: into GroupGeometry::triangles
+  SampleSet samples;                     // without vertices and cells
+  std::vector<std::uint32_t> triangles;  // of each sample, into GroupGeometry::triangles
 };
 
-// A point of a triangle as a sample.
+// A FacePoint is a point of a triangle as a sample.
 struct FacePoint {
-  glm::vec3 position, normal;  // interpolated; the normal unit
-  SampleOrigin origin;         // off the face
+  glm::vec3 position, normal;  // interpolated; the normal is unit
+  SampleOrigin origin;         // a little off the face
 };
-// weights: of the corners, summing to 1. The triangle has an area.
+// `weights` are those of the corners and sum to 1. The triangle must have an area.
 FacePoint facePoint(const GroupGeometry& geometry, const glm::uvec3& corners, const glm::vec3& weights);
 
-// The centroids of the triangles listed: of plain ones, then of normal-mapped, then of glossy ones, as
-// SampleSet has them. Folds, of which nobody sees the front, have no origins. A triangle without area has no
-// point.
+// Returns the centroids of the triangles listed: first those of diffuse draws, then of normal-mapped and of
+// glossy ones, as in SampleSet. Faces that turn away from their normal have no origins, since nobody sees
+// their front. Triangles without area give no point.
 FacePoints facePoints(const GroupGeometry& geometry, const SampleSet& samples,
                       std::span<const std::uint32_t> triangles);
 

@@ -8,7 +8,7 @@ namespace lambent::baker {
 
 namespace {
 
-constexpr double kMostFolded = 0.01;  // of a draw's area
+constexpr double kMostFolded = 0.01;  // share of a draw's area
 
 }  // namespace
 

@@ -1,6 +1,6 @@
-// Faces of a skin that are turned over: slivers that scanning and decimation leave, whose fronts look into
-// the body. Nobody sees them, for they are seen from behind, but they lie on the faces beside them like lids.
-// A vertex under one would spread its darkness over all faces around.
+// Finds faces that are turned over: slivers that scanning and decimation leave, whose fronts look into the
+// body. They are only seen from behind, but they lie on the faces beside them like lids, and a vertex under
+// one would spread its darkness over all faces around it.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +10,9 @@
 
 namespace lambent::baker {
 
-// Per triangle 1 where it turns its back to the normals of two of its corners or of all, on draws of one
-// side. Where that is more than a hundredth of a draw's area it is no accident, and none of them counts.
+// Returns 1 for each triangle of a single-sided draw that faces away from the normals of at least two of its
+// corners, else 0. If these make up more than a hundredth of a draw's area they are no accident, and none
+// counts.
 std::vector<std::uint8_t> findFlippedFaces(const GroupGeometry& geometry);
 
 }  // namespace lambent::baker

@@ -1,4 +1,5 @@
-// The local frame of a sample: z along its normal. Pole-safe (Duff et al., JCGT 6(1), 2017).
+// Builds the local frame of a sample, with z along its normal, without a singularity at the poles (Duff et
+// al., JCGT 6(1), 2017).
 #pragma once
 
 #include <cmath>
@@ -8,7 +9,7 @@
 
 namespace lambent::baker {
 
-// group_from_local: columns tangent, bitangent, normal. `n` is a unit vector.
+// Returns group_from_local, whose columns are tangent, bitangent and normal. `n` is a unit vector.
 inline glm::dmat3 localFrame(const glm::dvec3& n) {
   const double sign = std::copysign(1.0, n.z);
   const double a = -1.0 / (sign + n.z);

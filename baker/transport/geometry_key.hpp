@@ -1,6 +1,6 @@
-// What of a group and of its scene results depend on, for the keys under which they are kept (baker/cache):
-// by content, so that names, the order of materials and textures in the file, and where a group stands in the
-// world play no part.
+// Adds what results depend on, of a group and its scene, to the keys under which they are cached
+// (baker/cache). Keys follow content, so names, the order of materials and textures in the file, and the
+// place of a group in the world do not change them.
 #pragma once
 
 #include "baker/cache/bytes.hpp"
@@ -16,19 +16,19 @@ inline constexpr bool kPlainBytes<SampleOrigin> = sizeof(SampleOrigin) == 8 * si
 template <>
 inline constexpr bool kPlainBytes<BrdfMeasurement> = sizeof(BrdfMeasurement) == 7 * sizeof(float);
 
-// Triangles, normals and kinds of samples: all that samples follow from.
+// Adds triangles, normals and kinds of samples, which determine all samples.
 void addShape(const GroupGeometry& geometry, KeyMaker& key);
 
-// What lets rays through, beside the shape: sides, blending, cut-outs with their pictures.
+// Adds what lets rays through beside the shape: sides, blending, and cut-outs with their images.
 void addOpacity(const Scene& scene, const GroupGeometry& geometry, KeyMaker& key);
 
-// A texture as it is looked up: bytes of its picture and its sampler.
+// Adds a texture as it is looked up: the bytes of its image and its sampler.
 void addTexture(const Scene& scene, std::int32_t texture, KeyMaker& key);
 void addTextureRef(const Scene& scene, const gltf::TextureRef& ref, KeyMaker& key);
 
 void addMesh(const bundle::MeshData& mesh, KeyMaker& key);
 
-// A mesh as bytes to keep, and back.
+// Writes a mesh as bytes for the cache, and reads it back; readMesh returns false if the bytes end early.
 void writeMesh(const bundle::MeshData& mesh, ByteWriter& out);
 bool readMesh(ByteReader& in, bundle::MeshData& mesh);
 

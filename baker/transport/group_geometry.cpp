@@ -20,7 +20,7 @@ glm::vec2 texcoordOf(const gltf::TextureRef& ref, const bundle::MeshData& mesh, 
   return ref.texture < 0 || set.empty() ? glm::vec2(0.0f) : ref.apply(set[vertex]);
 }
 
-// A normal map without coordinates to look it up by changes nothing.
+// A normal map without coordinates to look it up changes nothing.
 bool isNormalMapped(const gltf::Material& material, const bundle::MeshData& mesh) {
   const gltf::TextureRef& map = material.normal_texture;
   return !material.unlit && map.texture >= 0 &&
@@ -29,12 +29,12 @@ bool isNormalMapped(const gltf::Material& material, const bundle::MeshData& mesh
 
 SampleKind kindOf(const gltf::Material* material, const bundle::MeshData& mesh, bool with_glossy) {
   if (!material) return SampleKind::Diffuse;
-  if (with_glossy && !material->matte()) return SampleKind::Glossy;
+  if (with_glossy && !material->isDiffuse()) return SampleKind::Glossy;
   return isNormalMapped(*material, mesh) ? SampleKind::NormalMapped : SampleKind::Diffuse;
 }
 
-// What textures of glossy surfaces ask for. A mirroring node turns the bitangent over, and so does the other
-// side, whose normal is negated: both sides keep the direction in which they are brushed.
+// Appends what the textures of glossy surfaces need. A mirroring node flips the bitangent, and so does the
+// back side, whose normal is negated, so both sides keep the direction in which they are brushed.
 void appendGlossy(const bundle::MeshData& mesh, const glm::mat3& linear, float side, std::size_t first_vertex,
                   GroupGeometry& geometry) {
   const std::size_t end = first_vertex + mesh.positions.size();
@@ -68,7 +68,7 @@ void append(const PlannedDraw& draw, const bundle::MeshData& mesh, const gltf::M
   const gltf::TextureRef emissive = material ? material->emissive_texture : gltf::TextureRef{};
   for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
     const glm::dvec3 placed = group_from_mesh * glm::dvec4(mesh.positions[v], 1.0);
-    // Adding 0 turns -0 into 0: samples are welded by their bits.
+    // Adding 0 turns -0 into 0, because samples are welded by their bits.
     geometry.positions.push_back(glm::vec3(placed - glm::dvec3(geometry.origin)) + 0.0f);
     geometry.normals.push_back(side * unitOr(normal_matrix * mesh.normals[v], {0.0f, 1.0f, 0.0f}) + 0.0f);
     geometry.normal_weights.push_back(mesh.normal_weights.empty() ? 1.0f : mesh.normal_weights[v]);
@@ -86,7 +86,7 @@ void append(const PlannedDraw& draw, const bundle::MeshData& mesh, const gltf::M
     const glm::vec3 a = geometry.positions[triangle.x], b = geometry.positions[triangle.y],
                     c = geometry.positions[triangle.z];
     if (glm::cross(b - a, c - a) == glm::vec3(0.0f))
-      continue;  // no surface: rays must not come to depend on it
+      continue;  // a triangle without area is no surface, and rays must not come to depend on it
     geometry.triangles.push_back(triangle);
     geometry.mesh_faces.push_back(static_cast<std::uint32_t>(i / 3));
     ++out.triangle_count;
@@ -94,7 +94,7 @@ void append(const PlannedDraw& draw, const bundle::MeshData& mesh, const gltf::M
   geometry.draws.push_back(out);
 }
 
-// The centre of a group that stands much further from its frame's origin than it is large; else 0.
+// Returns the centre of a group that stands much farther from its frame's origin than it is large, else 0.
 glm::vec3 originOf(const RigidGroup& group, const std::vector<std::vector<bundle::MeshData>>& decoded) {
   constexpr double kFar = 16.0;
   glm::dvec3 low(std::numeric_limits<double>::max()), high(std::numeric_limits<double>::lowest());

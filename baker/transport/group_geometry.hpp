@@ -1,8 +1,8 @@
-// The geometry of one rigid group as rays see it: the decoded meshes of all its draws, side by side in the
-// group's frame. Triangles wind counter-clockwise seen from the outside (mirroring nodes are undone), back
-// sides of double-sided materials are draws of their own but share the triangles of the front for visibility.
-// Transfer does not depend on where things are, so a group that stands far from its frame's origin is brought
-// near it: out there floats are too coarse for rays.
+// GroupGeometry is one rigid group as rays see it: the decoded meshes of all its draws, side by side in the
+// group's frame. Triangles wind counter-clockwise seen from the outside, also under mirroring nodes. Back
+// sides of double-sided materials are draws of their own, but share the triangles of the front for
+// visibility. Transfer does not depend on position, so a group that stands far from its frame's origin is
+// moved near it, where floats are fine enough for rays.
 #pragma once
 
 #include <array>
@@ -18,9 +18,9 @@
 
 namespace lambent::baker {
 
-// What is stored for the samples of a draw.
+// SampleKind says what is stored for the samples of a draw.
 enum class SampleKind : std::uint8_t {
-  Diffuse,         // E/pi at the sample's normal
+  Diffuse,       // E/pi at the sample's normal
   NormalMapped,  // transferred light in bands 0..2, for any normal
   Glossy,        // transferred light in all bands, for any BRDF and normal
 };
@@ -29,38 +29,39 @@ struct DrawGeometry {
   std::uint32_t first_vertex = 0, vertex_count = 0;
   std::uint32_t first_triangle = 0, triangle_count = 0;
   std::int32_t material = -1;
-  bool back = false;  // of a double-sided material; the draw before it is its front
+  bool back = false;  // the back of a double-sided material; the draw before it is its front
   SampleKind kind = SampleKind::Diffuse;
 };
 
 struct GroupGeometry {
-  glm::vec3 origin{0.0f};             // group frame, metres: 0 unless the group stands far away
-  std::vector<glm::vec3> positions;   // from `origin`, along the group frame's axes
-  std::vector<glm::vec3> normals;     // unit; of back draws negated
-  std::vector<float> normal_weights;  // MeshData's, 1 where it has none
-  std::vector<std::uint8_t> fans;     // MeshData's, 0 where it has none
-  std::vector<glm::vec2>
-      texcoords;  // of the material's base-colour texture, transformed; 0 where it has none
-  std::vector<glm::vec2> emissive_texcoords;  // of its emissive texture
-  std::vector<glm::vec4> colors;              // of the vertices, linear; 1 where there are none
-  // For the textures of glossy surfaces: of the vertices of draws with glossy samples (0 for those before
-  // them; the lists end with the last one). Texture coordinates of both sets as the file has them, 0 where it
-  // has none; tangents unit, along the group's axes, w the sign of the bitangent cross(normal, tangent) w on
-  // that side, 0 without tangents.
+  glm::vec3 origin{0.0f};             // group frame, metres; 0 unless the group stands far away
+  std::vector<glm::vec3> positions;   // relative to `origin`, along the group frame's axes, metres
+  std::vector<glm::vec3> normals;     // unit; negated for back draws
+  std::vector<float> normal_weights;  // as in MeshData, 1 where it has none
+  std::vector<std::uint8_t> fans;     // as in MeshData, 0 where it has none
+  // These are for the material's base-colour texture, transformed; 0 where it has none.
+  std::vector<glm::vec2> texcoords;
+  std::vector<glm::vec2> emissive_texcoords;  // for its emissive texture
+  std::vector<glm::vec4> colors;              // vertex colours, linear; 1 where there are none
+  // These two serve the textures of glossy surfaces. They hold values for the vertices of glossy draws, 0 for
+  // those before them, and end with the last glossy one. `texcoord_sets` are as in the file, 0 where it has
+  // none. `tangents` are unit, along the group's axes; w is the sign of the bitangent cross(normal, tangent)
+  // w on that side; 0 if absent.
   std::array<std::vector<glm::vec2>, 2> texcoord_sets;
   std::vector<glm::vec4> tangents;
-  std::vector<glm::uvec3> triangles;             // into positions; of back draws corners 1 and 2 are swapped
-  std::vector<std::uint32_t> mesh_faces;         // of each triangle: which it is in its draw's mesh
+  std::vector<glm::uvec3> triangles;             // into positions; corners 1 and 2 are swapped for back draws
+  std::vector<std::uint32_t> mesh_faces;         // index of each triangle in its draw's mesh
   std::vector<DrawGeometry> draws;               // in the order of RigidGroup::draws
-  glm::vec3 bounds_min{0.0f}, bounds_max{0.0f};  // from `origin`
+  glm::vec3 bounds_min{0.0f}, bounds_max{0.0f};  // relative to `origin`
 };
 
-// Between the corners of a triangle, by their shares; unit, or 0 where they cancel.
+// Interpolates the normals of a triangle's corners by their shares; returns a unit vector, or 0 where they
+// cancel.
 glm::vec3 interpolatedNormal(const GroupGeometry& geometry, const glm::uvec3& corners,
                              const glm::vec3& shares);
 
-// decoded[mesh][primitive] is what ships. with_glossy: materials that are not diffuse have glossy samples;
-// else all are Lambert.
+// decoded[mesh][primitive] is the mesh as it ships. With `with_glossy`, materials that are not diffuse have
+// glossy samples; without it all materials are Lambertian.
 GroupGeometry buildGroupGeometry(const RigidGroup& group, const Scene& scene,
                                  const std::vector<std::vector<bundle::MeshData>>& decoded,
                                  bool with_glossy = false);

@@ -1,6 +1,6 @@
-// The rays of one sample, sixteen at a time, in Embree's packet layout (any type with RTCRay16's members).
-// Apart from ray_scene.cpp so that the benchmark can hold Embree's bare speed against ours on the very same
-// rays.
+// Makes the rays of one sample, sixteen at a time, in Embree's packet layout (any type with RTCRay16's
+// members). This is separate from ray_scene.cpp so that the benchmark can compare Embree's bare speed with
+// ours on the same rays.
 #pragma once
 
 #include <array>
@@ -17,9 +17,9 @@
 
 namespace lambent::baker {
 
-// Deals the rays of a sample out over its origins: ray r takes the origin in whose stretch of the cumulated
-// weights the r-th point of the golden-ratio sequence falls, so that each origin gets its share of every part
-// of the sky.
+// Distributes the rays of a sample over its origins: ray r takes the origin into whose interval of the
+// cumulated weights the r-th point of the golden-ratio sequence falls, so that each origin gets its share of
+// every part of the sky.
 class OriginDealer {
  public:
   explicit OriginDealer(std::span<const SampleOrigin> origins) : origins_(origins) {}
@@ -44,9 +44,9 @@ inline bool isAbove(glm::vec3 direction, const SampleOrigin& origin) {
   return glm::dot(direction, origin.geometric_normal) > 0.0f;
 }
 
-// The origin that a ray starts from. Below the horizon of the one that it is dealt to it takes the next that
-// it is above, so that a convex body loses nothing of its smooth normals' hemispheres; if there is none, the
-// one dealt comes back.
+// Returns the origin that a ray starts from. If the ray lies below the horizon of the origin it was given, it
+// takes the next origin that it is above, so that a convex body loses nothing of its smooth normals'
+// hemispheres. If there is none, the origin it was given is returned.
 inline std::size_t startOf(std::size_t ray, glm::vec3 direction, std::span<const SampleOrigin> origins,
                            const OriginDealer& dealer) {
   std::size_t origin = dealer.pick(ray);
@@ -55,8 +55,8 @@ inline std::size_t startOf(std::size_t ray, glm::vec3 direction, std::span<const
   return origin;
 }
 
-// What a direction below the horizon of the origin dealt to it sees: what it sees from another that it is
-// above, and nothing if there is none; or what its mirror image in that origin's plane sees
+// This says what a direction below the horizon of its origin sees. Blocked: it starts from another origin
+// that it is above, and is blocked if there is none. Mirrored: it is reflected about the origin's plane
 // (docs/conventions.md, "Exit kernel"), as everywhere on the face that the origin stands for.
 enum class BelowHorizon { Blocked, Mirrored };
 
@@ -65,18 +65,25 @@ inline glm::vec3 mirroredAbove(glm::vec3 direction, const SampleOrigin& origin) 
   return below > 0.0f ? direction : direction - 2.0f * below * origin.geometric_normal;
 }
 
-// Which rays of a packet are to be traced (-1, else 0) and which origin each starts from.
+// Says which rays of a packet are traced (-1, else 0) and which origin each starts from.
 struct PacketLanes {
   alignas(64) std::array<int, kPacketWidth> valid;
   std::array<std::size_t, kPacketWidth> origin;
 };
 
-// Fills packet p of the table, turned by `frame` (group_from_local). Lanes below the horizons of all origins
-// are not valid, or mirrored.
+// The rays of one sample: along the directions of a table, turned by the sample's frame.
+struct SampleRays {
+  std::span<const SampleOrigin> origins;  // not empty
+  glm::mat3 frame{1.0f};                  // group_from_local
+  const DirectionTable& table;
+  BelowHorizon below = BelowHorizon::Blocked;
+};
+
+// Fills packet p of the table. Lanes below the horizons of all origins are not valid, or mirrored.
 template <typename Ray16>
-void fillPacket(std::size_t p, std::span<const SampleOrigin> origins, const OriginDealer& dealer,
-                const glm::mat3& frame, const DirectionTable& table, Ray16& ray, PacketLanes& lanes,
-                BelowHorizon below = BelowHorizon::Blocked) {
+void fillPacket(std::size_t p, const SampleRays& rays, const OriginDealer& dealer, Ray16& ray,
+                PacketLanes& lanes) {
+  const auto& [origins, frame, table, below] = rays;
   const std::size_t first = p * kPacketWidth;
   for (std::size_t k = 0; k < kPacketWidth; ++k) {
     const float x = table.x[first + k], y = table.y[first + k], z = table.z[first + k];
@@ -105,7 +112,7 @@ void fillPacket(std::size_t p, std::span<const SampleOrigin> origins, const Orig
     ray.dir_x[k] = image.x;
     ray.dir_y[k] = image.y;
     ray.dir_z[k] = image.z;
-    lanes.valid[k] = isAbove(image, start) ? -1 : 0;  // not quite all: what runs along the plane
+    lanes.valid[k] = isAbove(image, start) ? -1 : 0;  // rays along the plane itself stay invalid
   }
 }
 

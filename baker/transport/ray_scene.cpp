@@ -31,8 +31,8 @@ struct ReleaseScene {
 using Device = std::unique_ptr<std::remove_pointer_t<RTCDevice>, ReleaseDevice>;
 using EmbreeScene = std::unique_ptr<std::remove_pointer_t<RTCScene>, ReleaseScene>;
 
-// Embree asks for denormals to be flushed while it runs; restored afterwards, so that no other code is
-// changed by which thread it happens to run on.
+// Flushes denormals while Embree runs, as Embree asks for. The mode is restored afterwards, so that other
+// code on the thread is not affected.
 class FlushDenormals {
  public:
 #if defined(__SSE2__)
@@ -48,7 +48,7 @@ class FlushDenormals {
 #endif
 };
 
-// What a filter needs to know of a cut-out geometry.
+// MaskedDraw is what the filter of a cut-out geometry needs.
 struct MaskedDraw {
   std::shared_ptr<const AlphaMap> alpha;
   std::vector<glm::uvec3> triangles;
@@ -77,7 +77,7 @@ struct Packet {
   PacketLanes lanes;
 };
 
-// Bit k is set where lane k is to be traced.
+// Returns a mask in which bit k is set if lane k is to be traced.
 std::uint32_t validMask(const PacketLanes& lanes) {
   std::uint32_t mask = 0;
   for (std::size_t k = 0; k < kPacketWidth; ++k) mask |= lanes.valid[k] ? 1u << k : 0u;
@@ -93,16 +93,16 @@ void forgetHits(RTCRayHit16& rays) {
 
 }  // namespace
 
-// The triangles of an Embree geometry in GroupGeometry.
+// SurfaceSides maps an Embree geometry to its triangles in GroupGeometry.
 struct SurfaceSides {
-  std::uint32_t front = 0, back = 0;  // first triangles
+  std::uint32_t front = 0, back = 0;  // first triangles of both sides
   bool double_sided = false;
 };
 
 struct RayScene::State {
   Device device;
   EmbreeScene scene;
-  std::vector<std::unique_ptr<MaskedDraw>> masked;  // user data of geometries: must stay in place
+  std::vector<std::unique_ptr<MaskedDraw>> masked;  // user data of geometries, which must stay in place
   std::vector<SurfaceSides> surfaces;               // by geometry id
 };
 
@@ -113,7 +113,7 @@ RayScene::~RayScene() = default;
 
 namespace {
 
-// One Embree geometry of its own buffers for a draw; null if Embree has no memory for it.
+// Makes an Embree geometry with its own buffers for a draw, or null if Embree has no memory for it.
 RTCGeometry makeGeometry(RTCDevice device, const GroupGeometry& group, const DrawGeometry& draw,
                          std::span<const std::uint8_t> flipped_faces) {
   RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
@@ -128,7 +128,7 @@ RTCGeometry makeGeometry(RTCDevice device, const GroupGeometry& group, const Dra
   std::memcpy(vertices, &group.positions[draw.first_vertex], draw.vertex_count * sizeof(glm::vec3));
   for (std::uint32_t t = 0; t < draw.triangle_count; ++t)
     indices[t] = flipped_faces[draw.first_triangle + t] != 0
-                     ? glm::uvec3(0)  // a triangle of no size, which no ray meets
+                     ? glm::uvec3(0)  // a degenerate triangle, which no ray hits
                      : group.triangles[draw.first_triangle + t] - draw.first_vertex;
   return geometry;
 }
@@ -148,10 +148,9 @@ std::unique_ptr<MaskedDraw> maskedDraw(const GroupGeometry& group, const DrawGeo
 
 }  // namespace
 
-Result<RayScene> RayScene::build(const GroupGeometry& group, const Scene& scene,
-                                 std::vector<std::shared_ptr<const AlphaMap>> alpha_maps) {
+Result<RayScene> RayScene::build(const GroupGeometry& group, const Scene& scene, AlphaMaps alpha_maps) {
   auto state = std::make_unique<State>();
-  // Embree's own thread count follows TBB's, which withThreads() limits; its result does not depend on it.
+  // Embree's thread count follows TBB's, which withThreads() limits; its result does not depend on it.
   state->device.reset(rtcNewDevice(nullptr));
   if (!state->device)
     return fail("Embree", "cannot be set up", "check that libembree3 runs on this processor");
@@ -175,7 +174,7 @@ Result<RayScene> RayScene::build(const GroupGeometry& group, const Scene& scene,
     }
     rtcCommitGeometry(geometry);
     rtcAttachGeometryByID(state->scene.get(), geometry, static_cast<unsigned>(state->surfaces.size()));
-    rtcReleaseGeometry(geometry);  // the scene holds it
+    rtcReleaseGeometry(geometry);  // the scene keeps its own reference
     SurfaceSides sides{.front = draw.first_triangle, .back = 0, .double_sided = false};
     if (d + 1 < group.draws.size() && group.draws[d + 1].back)
       sides.back = group.draws[d + 1].first_triangle, sides.double_sided = true;
@@ -187,20 +186,18 @@ Result<RayScene> RayScene::build(const GroupGeometry& group, const Scene& scene,
   return RayScene(std::move(state));
 }
 
-std::uint32_t RayScene::trace(std::span<const SampleOrigin> origins, const glm::mat3& frame,
-                              const DirectionTable& table, std::span<std::uint16_t> masks,
-                              BelowHorizon below) const {
-  assert(!origins.empty() && masks.size() == table.packets());
+std::uint32_t RayScene::trace(const SampleRays& rays, std::span<std::uint16_t> masks) const {
+  assert(!rays.origins.empty() && masks.size() == rays.table.packets());
   const FlushDenormals flush;
-  const OriginDealer dealer(origins);
+  const OriginDealer dealer(rays.origins);
   Packet packet;
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
-  context.flags =
-      RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;  // the faster one for occlusion, coherent as the rays are
+  // Embree's path for incoherent rays is the faster one for occlusion, although these rays are coherent.
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
   std::uint32_t traced = 0;
   for (std::size_t p = 0; p < masks.size(); ++p) {
-    fillPacket(p, origins, dealer, frame, table, packet.rays.ray, packet.lanes, below);
+    fillPacket(p, rays, dealer, packet.rays.ray, packet.lanes);
     rtcOccluded16(packet.lanes.valid.data(), state_->scene.get(), &context, &packet.rays.ray);
     std::uint32_t valid = 0, hit = 0;
     for (std::size_t k = 0; k < kPacketWidth; ++k) {
@@ -213,13 +210,11 @@ std::uint32_t RayScene::trace(std::span<const SampleOrigin> origins, const glm::
   return traced;
 }
 
-std::uint32_t RayScene::traceHits(std::span<const SampleOrigin> origins, const glm::mat3& frame,
-                                  const DirectionTable& table, bool mostly_blocked,
-                                  std::span<std::uint16_t> masks, std::vector<RayHit>& hits,
-                                  BelowHorizon below) const {
-  assert(!origins.empty() && masks.size() == table.packets());
+std::uint32_t RayScene::traceHits(const SampleRays& rays, bool mostly_blocked, std::span<std::uint16_t> masks,
+                                  std::vector<RayHit>& hits) const {
+  assert(!rays.origins.empty() && masks.size() == rays.table.packets());
   const FlushDenormals flush;
-  const OriginDealer dealer(origins);
+  const OriginDealer dealer(rays.origins);
   Packet packet;
   RTCIntersectContext any, closest;
   rtcInitIntersectContext(&any);
@@ -228,11 +223,11 @@ std::uint32_t RayScene::traceHits(std::span<const SampleOrigin> origins, const g
   closest.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
   std::uint32_t traced = 0;
   for (std::size_t p = 0; p < masks.size(); ++p) {
-    fillPacket(p, origins, dealer, frame, table, packet.rays.ray, packet.lanes, below);
+    fillPacket(p, rays, dealer, packet.rays.ray, packet.lanes);
     const std::uint32_t valid = validMask(packet.lanes);
     traced += static_cast<std::uint32_t>(std::popcount(valid));
     masks[p] = static_cast<std::uint16_t>(~valid);
-    // Where few rays hit, it is faster to ask first whether, and then only those what.
+    // If few rays hit, it is faster to test occlusion first and then find the hits of blocked rays only.
     if (!mostly_blocked) {
       rtcOccluded16(packet.lanes.valid.data(), state_->scene.get(), &any, &packet.rays.ray);
       std::uint32_t blocked = 0;
@@ -327,8 +322,8 @@ void RayScene::firstHits(std::span<const RaySegment> rays, std::span<FirstHit> h
   }
 }
 
-float RayScene::meet(std::span<const SampleOrigin> origins, const glm::mat3& frame,
-                     const DirectionTable& table, std::span<MetShares> shares) const {
+float RayScene::meet(const SampleRays& rays, std::span<MetShares> shares) const {
+  const auto& origins = rays.origins;
   assert(!origins.empty() && shares.size() == origins.size());
   const FlushDenormals flush;
   const OriginDealer dealer(origins);
@@ -336,16 +331,16 @@ float RayScene::meet(std::span<const SampleOrigin> origins, const glm::mat3& fra
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  std::vector<std::uint32_t> rays(origins.size(), 0), backs(origins.size(), 0), near(origins.size(), 0);
+  std::vector<std::uint32_t> counts(origins.size(), 0), backs(origins.size(), 0), near(origins.size(), 0);
   std::uint32_t traced = 0, met = 0;
-  for (std::size_t p = 0; p < table.packets(); ++p) {
-    fillPacket(p, origins, dealer, frame, table, packet.rays.ray, packet.lanes);
+  for (std::size_t p = 0; p < rays.table.packets(); ++p) {
+    fillPacket(p, rays, dealer, packet.rays.ray, packet.lanes);
     for (std::size_t k = 0; k < kPacketWidth; ++k) packet.rays.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
     rtcIntersect16(packet.lanes.valid.data(), state_->scene.get(), &context, &packet.rays);
     for (std::size_t k = 0; k < kPacketWidth; ++k) {
       if (!packet.lanes.valid[k]) continue;
       const std::size_t origin = packet.lanes.origin[k];
-      ++rays[origin];
+      ++counts[origin];
       const RTCHit16& hit = packet.rays.hit;
       ++traced;
       if (hit.geomID[k] == RTC_INVALID_GEOMETRY_ID) continue;
@@ -359,7 +354,7 @@ float RayScene::meet(std::span<const SampleOrigin> origins, const glm::mat3& fra
     }
   }
   for (std::size_t o = 0; o < origins.size(); ++o) {
-    const float share = rays[o] == 0 ? 0.0f : 1.0f / static_cast<float>(rays[o]);
+    const float share = counts[o] == 0 ? 0.0f : 1.0f / static_cast<float>(counts[o]);
     shares[o] = {share * static_cast<float>(backs[o]), share * static_cast<float>(near[o])};
   }
   return traced == 0 ? 0.0f : static_cast<float>(met) / static_cast<float>(traced);

@@ -1,4 +1,4 @@
-// How much of the surface each sample stands for.
+// Computes how much of the surface each sample stands for.
 #pragma once
 
 #include <vector>
@@ -8,11 +8,11 @@
 
 namespace lambent::baker {
 
-// Square metres.
+// Returns square metres.
 double triangleArea(const GroupGeometry& geometry, const glm::uvec3& corners);
 
-// Square metres; a third of each triangle goes to each of its corners. Both sides of a double-sided surface
-// count.
+// Returns square metres per sample; a third of each triangle goes to each of its corners. Both sides of a
+// double-sided surface count.
 std::vector<float> sampleAreas(const GroupGeometry& geometry, const SampleSet& samples);
 
 }  // namespace lambent::baker

@@ -15,9 +15,6 @@ namespace lambent::baker {
 
 namespace {
 
-// --- Morton order
-// ----------------------------------------------------------------------------------------------
-
 // Spreads the low 21 bits so that two zero bits follow each.
 std::uint64_t spread3(std::uint64_t x) {
   x &= 0x1fffff;
@@ -34,7 +31,7 @@ std::uint64_t mortonCode(glm::vec3 position, glm::vec3 low, float cells_per_metr
          spread3(static_cast<std::uint64_t>(grid.z)) << 2;
 }
 
-// Sorts the places listed along the curve; ties keep their order.
+// Sorts the samples listed along the curve; ties keep their order.
 void sortAlongMorton(std::span<const glm::vec3> positions, const GroupGeometry& geometry,
                      std::vector<std::uint32_t>& list) {
   const glm::vec3 low = geometry.bounds_min, extent = geometry.bounds_max - low;
@@ -46,7 +43,7 @@ void sortAlongMorton(std::span<const glm::vec3> positions, const GroupGeometry& 
   std::transform(codes.begin(), codes.end(), list.begin(), [](const auto& code) { return code.second; });
 }
 
-// One sample per key, in the order of first use.
+// Welded holds one sample per key, in the order of first use.
 struct Welded {
   std::vector<glm::vec3> positions, normals;
   std::vector<SampleKind> kinds;
@@ -73,7 +70,7 @@ Welded weld(const GroupGeometry& geometry, SampleSet& samples) {
 }
 
 // Cuts the samples listed into cells and appends them to the set, each cell in the order of first use.
-// `place` gets where each went.
+// `place` receives the new index of each.
 void appendCells(const Welded& welded, std::vector<std::uint32_t> list, SampleKind kind,
                  const GroupGeometry& geometry, SampleSet& samples, std::vector<std::uint32_t>& place) {
   if (list.size() > kMaxCellSamples) sortAlongMorton(welded.positions, geometry, list);
@@ -112,9 +109,6 @@ void placeSamples(const GroupGeometry& geometry, SampleSet& samples) {
   for (std::uint32_t& sample : samples.vertex_sample) sample = place[sample];
 }
 
-// --- origins
-// ---------------------------------------------------------------------------------------------------
-
 constexpr float kLongestReach = 0.01f;  // share of the group's diagonal
 
 float cornerAngle(glm::vec3 corner, glm::vec3 a, glm::vec3 b) {
@@ -138,7 +132,7 @@ void findOrigins(const GroupGeometry& geometry, SampleSet& samples) {
   std::stable_sort(corners.begin(), corners.end(),
                    [](const Corner& a, const Corner& b) { return a.sample < b.sample; });
 
-  std::vector<std::uint8_t> faces_up(samples.size(), 0);  // any face of the sample
+  std::vector<std::uint8_t> faces_up(samples.size(), 0);  // 1 if any face agrees with the sample's normal
   for (const Corner& corner : corners) {
     const glm::uvec3 triangle = geometry.triangles[corner.triangle];
     const glm::vec3 p = geometry.positions[triangle.x];

@@ -1,11 +1,13 @@
-// Where transfer is computed. Vertices of a group with the same position and normal share one sample whatever
-// their texture coordinates. Samples are cut into cells along a Morton curve, those of normal-mapped and
-// those of glossy draws into cells of their own, which come last; in a cell they stand in the order in which
-// vertices first use them: Draco walks over the mesh, so neighbours in memory are neighbours on the surface
-// and rows code to nearly nothing. Rays of a sample start from several origins, one for each face around the
-// vertex: pulled a little into the face and offset along its geometric normal. At concave edges anything else
-// sees through walls. Faces that turn their back to the vertex' normal, flipped_faces of a scanned skin, have
-// none, unless all do: what they see is seen by nobody.
+// Samples are the points where transfer is computed. Vertices of a group with the same position and normal
+// share one sample, whatever their texture coordinates. Samples are cut into cells along a Morton curve;
+// those of normal-mapped and of glossy draws get cells of their own, which come last. Within a cell, samples
+// keep the order in which vertices first use them: Draco walks over the mesh, so neighbours in memory are
+// neighbours on the surface and rows code to nearly nothing.
+//
+// Rays of a sample start from several origins, one for each face around the vertex, pulled a little into the
+// face and offset along its geometric normal; at concave edges anything else sees through walls. Faces that
+// turn away from the vertex normal, such as flipped faces of a scan, have no origin unless all faces do,
+// since nobody sees what they see.
 #pragma once
 
 #include <cstdint>
@@ -19,16 +21,16 @@
 namespace lambent::baker {
 
 inline constexpr float kPullIntoFace = 0.03f;            // share of the way to the face's centroid
-inline constexpr std::uint32_t kMaxCellSamples = 65536;  // "64 Ki samples" of the format
-inline constexpr std::uint32_t kNoSample = 0xffffffffu;  // of a vertex that is shown unshadowed
+inline constexpr std::uint32_t kMaxCellSamples = 65536;  // "64 Ki samples" in the format
+inline constexpr std::uint32_t kNoSample = 0xffffffffu;  // marks a vertex that is shown unshadowed
 
-// One place from which a sample's rays start.
+// A SampleOrigin is one place from which a sample's rays start.
 struct SampleOrigin {
   glm::vec3 position;          // as GroupGeometry::positions
-  glm::vec3 geometric_normal;  // unit; rays below it are blocked
-  float weight;                // the corner's angle; origins of one sample sum to 1
-  // As far as the face is wide, but never far of the whole: what hides all of the sky from nearer than this
-  // lies on the face, and not all over it.
+  glm::vec3 geometric_normal;  // unit; rays below its horizon are blocked
+  float weight;                // by the corner's angle; origins of one sample sum to 1
+  // In metres, this is as long as the face is wide, but at most a small share of the group. If all of the sky
+  // is hidden from nearer than this, something lies on the face itself.
   float reach = 0.0f;
 };
 
@@ -43,11 +45,11 @@ struct SampleSet {
   std::vector<glm::vec3> normals;            // unit shading normals
   std::vector<std::uint32_t> vertex_sample;  // GroupGeometry vertex -> sample
   std::vector<SampleOrigin> origins;
-  std::vector<std::uint32_t> origin_offsets;  // size() + 1; a sample without a face has none
+  std::vector<std::uint32_t> origin_offsets;  // size() + 1; a sample without a face has no origins
   std::vector<SampleCell> cells;
-  std::size_t first_normal_mapped =
-      0;                         // samples from here on belong to normal-mapped draws that are not glossy
-  std::size_t first_glossy = 0;  // and from here on to glossy ones
+  // Samples from here on belong to normal-mapped draws that are not glossy.
+  std::size_t first_normal_mapped = 0;
+  std::size_t first_glossy = 0;  // samples from here on belong to glossy draws
 
   std::size_t size() const { return positions.size(); }
   std::span<const SampleOrigin> originsOf(std::size_t sample) const {
@@ -56,17 +58,17 @@ struct SampleSet {
   }
 };
 
-// How far an origin stands off its face: what float rounding of positions and rays needs, and a little of the
-// face's size (metres, of an edge); never a fixed length.
+// Returns how far an origin stands off its face, metres: as much as float rounding of positions and rays
+// needs, plus a little of the face's size (metres, of an edge). A fixed length would not suit all scales.
 float standOff(const glm::vec3& position, float face_size);
 
-// SampleOrigin::reach.
+// Returns SampleOrigin::reach for a face of this size, metres.
 float reachOf(float face_size, const GroupGeometry& geometry);
 
 SampleSet buildSamples(const GroupGeometry& geometry);
 
-// Pairs of samples that share an edge of a face, each once as (smaller, larger), sorted. None where samples
-// are not of vertices.
+// Returns the pairs of samples that share an edge of a face, each once as (smaller, larger), sorted. The list
+// is empty if samples do not belong to vertices.
 std::vector<std::pair<std::uint32_t, std::uint32_t>> sampleEdges(const GroupGeometry& geometry,
                                                                  const SampleSet& samples);
 

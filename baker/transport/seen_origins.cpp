@@ -6,12 +6,12 @@ namespace lambent::baker {
 
 namespace {
 
-// An origin of which more first hits than this are backs lies inside a body or under something.
+// If more first hits of an origin than this share are back faces, it lies inside a body or under something.
 constexpr float kInsideShare = 0.5f;
-// One of which more first hits than this are on its own face's scale has something lying on it.
+// If more first hits than this share are nearer than the origin's reach, something lies on its face.
 constexpr float kCoveredShare = 0.9f;
-// A glance of which so much is blocked asks for a closer look; one that is blocked altogether most likely
-// stands in a closed room, where there is nothing more to see.
+// If this share of a few rays is blocked, the sample deserves more rays. If all of them are, it most likely
+// stands in a closed room, where more rays show nothing more.
 constexpr float kBlockedShare = 0.5f;
 constexpr std::size_t kInsideTestRays = 16, kLookRays = 64;
 
@@ -26,13 +26,13 @@ void findSeenOrigins(std::span<const SampleOrigin> all, const glm::mat3& frame, 
   if (all.empty()) return;
   std::vector<MetShares> shares(all.size());
   // Sixteen rays are enough to see that nothing is odd, which is nearly always so.
-  const float blocked = rays.meet(all, frame, glances.glance, shares);
+  const float blocked = rays.meet({all, frame, glances.glance}, shares);
   seen.double_rays = blocked >= kBlockedShare && blocked < 1.0f;
   seen.valid = std::all_of(shares.begin(), shares.end(), [](const MetShares& met) {
     return met.back == 0.0f && met.near <= kCoveredShare;
   });
   if (seen.valid) return;
-  rays.meet(all, frame, glances.look, shares);
+  rays.meet({all, frame, glances.look}, shares);
   seen.origins.clear();
   float weight = 0.0f;
   for (std::size_t o = 0; o < all.size(); ++o) {

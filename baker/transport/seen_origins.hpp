@@ -1,5 +1,6 @@
-// Which of a sample's origins stand where anybody could see them: not inside a body, nor where something lies
-// on the face. Transfer from there would leak, as darkness, over the parts of the faces that are seen.
+// Finds which of a sample's origins stand where they could be seen: not inside a body, and not where
+// something lies on the face. Transfer from such places would leak, as darkness, over the visible parts of
+// the faces.
 #pragma once
 
 #include <span>
@@ -12,7 +13,7 @@
 
 namespace lambent::baker {
 
-// A few rays to see whether an origin lies inside something, or much is in the way.
+// Holds a few directions that tell whether an origin lies inside something or much is in the way.
 struct InsideTestTables {
   DirectionTable glance, look;
   InsideTestTables();
@@ -20,11 +21,11 @@ struct InsideTestTables {
 
 struct SeenOrigins {
   std::vector<SampleOrigin> origins;  // weights sum to 1
-  bool valid = false;                 // else none is seen, and these are all
-  bool double_rays = false;           // much is in the way: to be looked at with twice the rays
+  bool valid = false;                 // false if no origin is seen; then `origins` holds all of them
+  bool double_rays = false;           // much is in the way, so that twice the rays should be traced
 };
 
-// frame: group_from_local of the sample. `seen` is filled, so that it can be used again.
+// `frame` is group_from_local of the sample. `seen` is an argument so that its memory can be reused.
 void findSeenOrigins(std::span<const SampleOrigin> all, const glm::mat3& frame, const RayScene& rays,
                      const InsideTestTables& glances, SeenOrigins& seen);
 

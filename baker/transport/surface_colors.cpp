@@ -13,7 +13,7 @@ bool isGrey(glm::vec3 color) {
   return color.r == color.g && color.g == color.b;
 }
 
-// Texels as the runtime sees them: grey if every texel is.
+// Returns whether every texel, as the runtime sees it, is grey.
 bool isGrey(const DecodedImage& image) {
   for (std::size_t i = 0; i + 3 < image.rgba.size(); i += 4)
     if (image.rgba[i] != image.rgba[i + 1] || image.rgba[i] != image.rgba[i + 2]) return false;

@@ -1,5 +1,5 @@
-// A point of a surface by the bits of its position and normal, and by what is stored there: points with the
-// same key have the same transfer.
+// A VertexKey identifies a surface point by the bits of its position and normal and by what is stored there;
+// points with the same key have the same transfer.
 #pragma once
 
 #include <array>

@@ -21,21 +21,21 @@ struct Area {
   ImVec2 at, size;
 };
 
-void drawDock(const char* id, Dock dock, const Area& area, std::string& tab, Session& session, Ui& ui) {
+void drawDock(const char* id, Dock dock, const Area& area, std::string& tab, Session& session, Marks& marks) {
   ImGui::SetNextWindowPos(area.at);
   ImGui::SetNextWindowSize(area.size);
   ImGui::Begin(id, nullptr, kFixed);
   if (ImGui::BeginTabBar("tabs", ImGuiTabBarFlags_FittingPolicyScroll)) {
     for (const Panel& panel : panelList()) {
       if (panel.dock != dock) continue;
-      const bool raise = session.raise_tabs && tab == panel.name;
+      const bool raise = session.window.raise_tabs && tab == panel.name;
       const bool open = ImGui::BeginTabItem(panel.name, nullptr, raise ? ImGuiTabItemFlags_SetSelected : 0);
-      ui.mark(std::string("tab.") + panel.name);
+      marks.put(std::string("tab.") + panel.name);
       if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", panel.help);
       if (!open) continue;
-      if (!session.raise_tabs) tab = panel.name;
+      if (!session.window.raise_tabs) tab = panel.name;
       ImGui::BeginChild("panel");
-      panel.draw(session, ui);
+      panel.draw(session, marks);
       ImGui::EndChild();
       ImGui::EndTabItem();
     }
@@ -71,7 +71,7 @@ void raisePanel(Session& session, const std::string& wanted) {
     (panel.dock == Dock::Left    ? p.show_left
      : panel.dock == Dock::Right ? p.show_right
                                  : p.show_bottom) = true;
-    session.raise_tabs = true;
+    session.window.raise_tabs = true;
     return;
   }
   session.log.warn("there is no panel \"" + wanted + "\"");
@@ -79,9 +79,10 @@ void raisePanel(Session& session, const std::string& wanted) {
 
 }  // namespace
 
-void drawLayout(Session& session, Ui& ui) {
-  drawMenus(session, ui);
-  for (const std::string& wanted : std::exchange(session.wanted_panels, {})) raisePanel(session, wanted);
+void drawLayout(Session& session, Renderer& renderer, Marks& marks) {
+  drawMenus(session, marks);
+  for (const std::string& wanted : std::exchange(session.window.wanted_panels, {}))
+    raisePanel(session, wanted);
   const float top = ImGui::GetFrameHeight();
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
   Preferences& p = session.preferences;
@@ -97,26 +98,26 @@ void drawLayout(Session& session, Ui& ui) {
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(0.0f, 0.0f));
   ImGui::Begin("view", nullptr, kFixed | ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
   ImGui::PopStyleVar();
-  drawViewport(session, ui);
+  drawViewport(session, renderer, marks);
   ImGui::End();
 
   if (p.show_left) {
-    drawDock("left", Dock::Left, {{0.0f, top}, {left, height}}, p.left_tab, session, ui);
+    drawDock("left", Dock::Left, {{0.0f, top}, {left, height}}, p.left_tab, session, marks);
     p.left = share(p.left + drawEdge("left edge", {{left - kEdge, top}, {kEdge, height}}, true) / screen.x);
   }
   if (p.show_right) {
-    drawDock("right", Dock::Right, {{screen.x - right, top}, {right, height}}, p.right_tab, session, ui);
+    drawDock("right", Dock::Right, {{screen.x - right, top}, {right, height}}, p.right_tab, session, marks);
     p.right =
         share(p.right - drawEdge("right edge", {{screen.x - right, top}, {kEdge, height}}, true) / screen.x);
   }
   if (p.show_bottom) {
     const float at = top + height - bottom;
-    drawDock("bottom", Dock::Bottom, {{left, at}, {middle, bottom}}, p.bottom_tab, session, ui);
+    drawDock("bottom", Dock::Bottom, {{left, at}, {middle, bottom}}, p.bottom_tab, session, marks);
     p.bottom = share(p.bottom - drawEdge("bottom edge", {{left, at}, {middle, kEdge}}, false) / height);
   }
-  session.raise_tabs = false;
-  drawDialogs(session, ui);
-  drawToasts(session, ui);
+  session.window.raise_tabs = false;
+  drawDialogs(session, marks);
+  drawToasts(session, marks);
 }
 
 }  // namespace lambent::editor

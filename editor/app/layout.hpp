@@ -1,12 +1,12 @@
-// Where panels stand: a column on each side, a row below, the view in the middle, and edges between them that
-// can be dragged.
+// Draws the window's contents: a column of panels on each side, a row of them below, the view in the middle,
+// and edges between them that can be dragged.
 #pragma once
 
-#include "editor/session/session.hpp"
-#include "editor/ui/ui.hpp"
+#include "editor/render/renderer.hpp"
+#include "editor/ui/marks.hpp"
 
 namespace lambent::editor {
 
-void drawLayout(Session& session, Ui& ui);
+void drawLayout(Session& session, Renderer& renderer, Marks& marks);
 
 }  // namespace lambent::editor

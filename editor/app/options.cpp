@@ -27,7 +27,7 @@ void declare(CLI::App& app, Words& words) {
                  "Scenes (.gltf, .glb), bundles (.lmb.glb), folders of them,\nor a world (.json)")
       ->type_name("");
   app.add_option("--light", words.lights,
-                 "Several add up: a environment map file (.hdr, .exr), constant:R,G,B "
+                 "Several add up: an environment map file (.hdr, .exr), constant:R,G,B "
                  "or\nsun:AZ,EL,ANGLE,R[,G,B]; in "
                  "the scene: sphere:... or disc:...")
       ->type_name("LIGHT")

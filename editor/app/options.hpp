@@ -1,6 +1,5 @@
-// The command line of lambent-editor as values. Comes in: argv. Goes out: Options, or the exit code with
-// which to stop: 0 after --help and --version, 2 after one line on stderr that says what is wrong and what to
-// do.
+// Reads the command line of lambent-editor. Returns Options, or the exit code with which to stop: 0 after
+// --help and --version, 2 after one line on stderr that says what is wrong and what to do.
 #pragma once
 
 #include <filesystem>

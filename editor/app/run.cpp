@@ -2,12 +2,15 @@
 
 #include <chrono>
 #include <cstdio>
+#include <string>
 
 #include <fmt/format.h>
 #include <imgui.h>
 
 #include "editor/app/layout.hpp"
+#include "editor/render/renderer.hpp"
 #include "editor/script/script.hpp"
+#include "editor/session/status.hpp"
 #include "runtime/base/atomic_file.hpp"
 
 namespace lambent::editor {
@@ -51,6 +54,8 @@ Result<void> run(const Options& options) {
   auto session = Session::create(options.session, std::move(preferences));
   if (!session) return failAgain(session.error());
   Session& s = **session;
+  auto renderer = Renderer::create(s);
+  if (!renderer) return failAgain(renderer.error());
   Ui ui(*window, s.preferences.scale);
   s.clipboard.put_system = [](const std::string& text) { ImGui::SetClipboardText(text.c_str()); };
   s.clipboard.get_system = [] {
@@ -60,23 +65,24 @@ Result<void> run(const Options& options) {
 
   Clock::time_point last = Clock::now();
   bool moving = true;
-  while (!s.quit) {
+  std::string title;
+  while (!s.window.quit) {
     const ScriptedInput* scripted = *script ? (*script)->step(s, ui) : nullptr;
     if (*script && (*script)->done() && scripted == nullptr) break;
     const bool wait = !moving && !*script && ui.sinceInput() > kActiveSeconds;
     ui.begin(wait ? kRestWaitSeconds : 0.0, scripted);
     if (ui.closeRequested()) {
       ui.refuseClose();
-      s.askToQuit();
+      s.files.askToQuit();
     }
-    for (const std::filesystem::path& file : ui.takeDropped()) s.openLogged(file);
+    for (const std::filesystem::path& file : ui.takeDropped()) s.files.openLogged(file);
     const auto now = Clock::now();
     s.update(std::chrono::duration<double>(now - last).count());
     last = now;
-    drawLayout(s, ui);
+    drawLayout(s, *renderer, ui.marks());
     moving = s.moving();
     ui.end();
-    if (s.titleChanged()) window->setTitle(s.title());
+    if (titleOf(s) != title) window->setTitle(title = titleOf(s));
   }
   std::uint32_t width = 0, height = 0;
   window->framebufferSize(width, height);

@@ -1,5 +1,5 @@
-// The editor's loop: input, what has changed outside (files, bakes), the world's step, the picture, panels.
-// Rests while nothing moves. Errors: no window, a script that cannot be read or that failed.
+// Runs the editor's loop: input, what has changed outside (files, bakes), the world's step, the picture,
+// panels. It rests while nothing moves. Errors: no window, a script that cannot be read or that failed.
 #pragma once
 
 #include "editor/app/options.hpp"

@@ -9,13 +9,14 @@ namespace {
 Answer bake(Session& session, Words words) {
   const auto entry = findScene(session, words.empty() ? std::string() : words[0]);
   if (!entry) return failAgain(entry.error());
-  return answerOf(session.scenes.bake(*entry, session.editsOf(*entry)));
+  return answerOf(session.scenes.bake(*entry, session.changes.editsOf(*entry)));
 }
 
 Answer bakeAll(Session& session, Words) {
   for (std::size_t i = 0; i < session.scenes.entries().size(); ++i) {
     if (session.scenes.entries()[i].source.empty()) continue;
-    if (auto asked = session.scenes.bake(i, session.editsOf(i)); !asked) return failAgain(asked.error());
+    if (auto asked = session.scenes.bake(i, session.changes.editsOf(i)); !asked)
+      return failAgain(asked.error());
   }
   return nullptr;
 }

@@ -1,4 +1,4 @@
-// Everything that the editor can do, as rows of one list: menus, shortcuts, tooltips and scripts all go by
+// Lists everything that the editor can do as rows: menus, shortcuts, tooltips and scripts all go by
 // it. A command takes words and gives an answer, a JSON value, or an error that says what to do; from the
 // menu it has no words, and those that need some ask for them in a dialog.
 #pragma once
@@ -30,17 +30,19 @@ struct Command {
   Result<nlohmann::json> (*run)(Session& session, Words words) = nullptr;
   bool (*enabled)(const Session& session) = nullptr;  // null: always
   bool (*checked)(const Session& session) = nullptr;  // null: no switch
+  const char* former = "";  // the id before 0.11, which is still understood but not shown; may be empty
 };
 
-// In the order of menus.
+// Returns the rows in the order of menus.
 std::span<const Command> commandList();
+// Finds a command by its id or its former one; null: there is none.
 const Command* findCommand(std::string_view id);
 
 // Runs it if it is enabled and has as many words as it takes; what goes wrong is an error here, and nothing
 // is thrown.
 Result<nlohmann::json> runCommand(Session& session, std::string_view id, Words words);
 
-// "Ctrl+Shift+S" as keys.
+// Holds "Ctrl+Shift+S" as keys.
 struct Shortcut {
   int key = -1;  // of GLFW
   bool ctrl = false, shift = false, alt = false;

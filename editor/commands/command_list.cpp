@@ -18,8 +18,9 @@ std::span<const Command> commandList() {
 const Command* findCommand(std::string_view id) {
   if (id.empty()) return nullptr;
   const auto list = commandList();
-  const auto found =
-      std::find_if(list.begin(), list.end(), [&](const Command& command) { return id == command.id; });
+  const auto found = std::find_if(list.begin(), list.end(), [&](const Command& command) {
+    return id == command.id || id == command.former;
+  });
   return found == list.end() ? nullptr : &*found;
 }
 

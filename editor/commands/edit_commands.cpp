@@ -27,15 +27,17 @@ void selectAll(Session& session, const std::vector<ecs::Entity>& entities) {
   session.selection.set(ids);
 }
 
-nlohmann::json replayJson(const Replay& replay) {
-  return {{"done", replay.done}, {"name", replay.name}, {"missing", replay.missing}};
+Answer replayed(Session& session, const Replay& replay) {
+  for (const std::string& missing : replay.missing)
+    session.log.warn(missing + " is not there now; it was passed over");
+  return nlohmann::json{{"done", replay.done}, {"name", replay.name}, {"missing", replay.missing}};
 }
 
 Answer undo(Session& session, Words) {
-  return replayJson(session.undo());
+  return replayed(session, session.history.undo());
 }
 Answer redo(Session& session, Words) {
-  return replayJson(session.redo());
+  return replayed(session, session.history.redo());
 }
 
 Answer duplicateSelected(Session& session, Words) {
@@ -75,14 +77,14 @@ Answer reset(Session& session, Words words) {
   const auto entities = selected(session);
   const std::string field = words.size() > 1 ? words[1] : std::string();
   if (!words.empty())
-    return answerOf(
-        resetToDefault(session.document, session.history, session.baseline(), entities, words[0], field));
+    return answerOf(resetToDefault(session.document, session.history, session.changes.baseline(), entities,
+                                   words[0], field));
   session.history.begin("reset");
   for (const scene::ComponentInfo& component : scene::components())
     if (std::any_of(entities.begin(), entities.end(),
                     [&](ecs::Entity e) { return component.has(session.document.registry(), e); }))
-      if (auto done =
-              resetToDefault(session.document, session.history, session.baseline(), entities, component.name);
+      if (auto done = resetToDefault(session.document, session.history, session.changes.baseline(), entities,
+                                     component.name);
           !done) {
         session.history.cancel();
         return failAgain(done.error());
@@ -93,7 +95,7 @@ Answer reset(Session& session, Words words) {
 
 Answer everything(Session& session, Words) {
   std::vector<StableId> ids;
-  for (const TreeRow& row : session.treeRowsNow())
+  for (const TreeRow& row : session.tree.of(session.document))
     if (row.matches) ids.push_back(row.id);
   session.selection.set(ids);
   return ids.size();
@@ -127,7 +129,7 @@ Answer rename(Session& session, Words words) {
     const ecs::Entity entity = s.selection.primaryEntity(s.document);
     if (auto done = s.history.setField(entity, "Name", "name", name); !done) s.log.error(done.error());
   };
-  session.dialog = std::move(ask);
+  session.window.dialog = std::move(ask);
   return nullptr;
 }
 

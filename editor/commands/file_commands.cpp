@@ -8,7 +8,7 @@ namespace {
 
 std::filesystem::path startFolder(const Session& session) {
   std::error_code ignored;
-  if (!session.worldFile().empty()) return session.worldFile().parent_path();
+  if (!session.files.world().empty()) return session.files.world().parent_path();
   if (!session.preferences.recent.empty())
     return std::filesystem::path(session.preferences.recent.front()).parent_path();
   return std::filesystem::current_path(ignored);
@@ -17,7 +17,7 @@ std::filesystem::path startFolder(const Session& session) {
 Answer open(Session& session, Words words) {
   if (!words.empty()) {
     for (const std::string& file : words)
-      if (auto opened = session.open(file); !opened) return failAgain(opened.error());
+      if (auto opened = session.files.open(file); !opened) return failAgain(opened.error());
     return nullptr;
   }
   Dialog ask;
@@ -26,50 +26,50 @@ Answer open(Session& session, Words words) {
   ask.endings = {".gltf", ".glb", ".json"};
   ask.folder = startFolder(session);
   ask.yes = "Open";
-  ask.answered = [](Session& s, const std::string& file) { s.openLogged(file); };
-  session.dialog = std::move(ask);
+  ask.answered = [](Session& s, const std::string& file) { s.files.openLogged(file); };
+  session.window.dialog = std::move(ask);
   return nullptr;
 }
 
 Answer watch(Session& session, Words words) {
-  if (!words.empty()) return answerOf(session.open(words[0]));
+  if (!words.empty()) return answerOf(session.files.open(words[0]));
   Dialog ask;
   ask.kind = Dialog::Kind::Folder;
   ask.title = "Open and watch a folder";
   ask.folder = startFolder(session);
   ask.yes = "Watch";
-  ask.answered = [](Session& s, const std::string& folder) { s.openLogged(folder); };
-  session.dialog = std::move(ask);
+  ask.answered = [](Session& s, const std::string& folder) { s.files.openLogged(folder); };
+  session.window.dialog = std::move(ask);
   return nullptr;
 }
 
 Answer saveAs(Session& session, Words words) {
-  if (!words.empty()) return answerOf(session.save(words[0]), {{"file", words[0]}});
+  if (!words.empty()) return answerOf(session.files.save(words[0]), {{"file", words[0]}});
   Dialog ask;
   ask.kind = Dialog::Kind::SaveFile;
   ask.title = "Save the world";
   ask.endings = {".json"};
   ask.folder = startFolder(session);
-  ask.name = session.worldFile().empty() ? "world.json" : session.worldFile().filename().string();
+  ask.name = session.files.world().empty() ? "world.json" : session.files.world().filename().string();
   ask.yes = "Save";
   ask.answered = [](Session& s, const std::string& file) {
     std::filesystem::path path = file;
     if (path.extension() != ".json") path += ".json";
-    if (auto saved = s.save(path); !saved) s.log.error(saved.error());
+    if (auto saved = s.files.save(path); !saved) s.log.error(saved.error());
   };
-  session.dialog = std::move(ask);
+  session.window.dialog = std::move(ask);
   return nullptr;
 }
 
 Answer save(Session& session, Words words) {
-  if (words.empty() && !session.worldFile().empty())
-    return answerOf(session.save(session.worldFile()), {{"file", session.worldFile().string()}});
+  if (words.empty() && !session.files.world().empty())
+    return answerOf(session.files.save(session.files.world()), {{"file", session.files.world().string()}});
   return saveAs(session, words);
 }
 
 Answer newWorld(Session& session, Words) {
-  session.unlessUnsaved("The world has edits that are not saved. Begin a new one without them?",
-                        [](Session& s) { s.newWorld(); });
+  session.files.unlessUnsaved("The world has edits that are not saved. Begin a new one without them?",
+                              [](Session& s) { s.files.closeAll(); });
   return nullptr;
 }
 
@@ -81,7 +81,7 @@ Answer close(Session& session, Words words) {
 }
 
 Answer quit(Session& session, Words) {
-  session.askToQuit();
+  session.files.askToQuit();
   return nullptr;
 }
 

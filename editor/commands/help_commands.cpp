@@ -19,7 +19,7 @@ Answer shortcuts(Session& session, Words) {
   show.title = "Keys and pointer";
   show.question = text;
   show.yes = "Close", show.no = "OK";
-  session.dialog = std::move(show);
+  session.window.dialog = std::move(show);
   return nullptr;
 }
 
@@ -31,7 +31,7 @@ Answer about(Session& session, Words) {
       "Bake a glTF scene once, light it any way you like.\n"
       "Precomputed radiance transfer: Sloan, Kautz and Snyder, SIGGRAPH 2002.";
   show.yes = "Close", show.no = "OK";
-  session.dialog = std::move(show);
+  session.window.dialog = std::move(show);
   return nullptr;
 }
 

@@ -79,9 +79,9 @@ Answer resetKey(Session& session, Words words) {
 }
 
 Answer quality(Session& session, Words words) {
-  frame::FrameSettings settings = session.stage.frame().settings();
+  frame::FrameSettings settings = session.stage.settings();
   if (auto put = frame::putQuality(settings, words[0]); !put) return failAgain(put.error());
-  session.editWorld("quality " + words[0], [&](WorldState& world) {
+  session.history.editWorld("quality " + words[0], [&](WorldState& world) {
     for (const std::string_view name : frame::qualitySettings()) {
       const frame::SettingRow* row = frame::findSetting(name);
       const std::string word = frame::settingWord(*row, settings);
@@ -117,9 +117,9 @@ constexpr std::array kRows = {
     scripted("keys", "The key lights that were found: where they stand, how strong they are", "", 0, 0,
              &keys),
     scripted("move-key", "A key light stands there, in degrees of the world", "NUMBER AZ EL", 3, 3, &moveKey),
-    scripted("dim-key", "Factors on a key light: of what was found in a environment map, of what a sun has",
+    scripted("dim-key", "Factors on a key light: of what was found in an environment map, of what a sun has",
              "NUMBER R [G B]", 2, 4, &dimKey),
-    scripted("reset-key", "A key light of a environment map, or all of them, as found", "[NUMBER]", 0, 1,
+    scripted("reset-key", "A key light of an environment map, or all of them, as found", "[NUMBER]", 0, 1,
              &resetKey),
     scripted("quality", "How many key lights there are and how finely they shadow", "low|default|high", 1, 1,
              &quality),

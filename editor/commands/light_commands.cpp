@@ -25,7 +25,7 @@ Result<std::string> fromInfinity(const std::string& word) {
 Answer addLight(Session& session, Words words) {
   const auto word = fromInfinity(words[0]);
   if (!word) return failAgain(word.error());
-  session.editWorld("add light", [&](WorldState& world) { world.lights.push_back(*word); });
+  session.history.editWorld("add light", [&](WorldState& world) { world.lights.push_back(*word); });
   return nullptr;
 }
 
@@ -37,44 +37,44 @@ Answer removeLight(Session& session, Words words) {
     return fail("remove-light", "there is no light " + words[0], fmt::format("there are {}", lights.size()));
   std::vector<std::string> left = lights;
   left.erase(left.begin() + static_cast<std::ptrdiff_t>(index));
-  session.editWorld("remove light", [&](WorldState& world) { replaceLights(session, world, left); });
+  session.history.editWorld("remove light", [&](WorldState& world) { replaceLights(session, world, left); });
   return nullptr;
 }
 
-// In place of the environment map there is, else of all that there is: a environment map brings its own sun.
-Answer environment_map(Session& session, Words words) {
+// Replaces the environment map there is, else all lights: an environment map brings its own sun.
+Answer environmentMap(Session& session, Words words) {
   if (words.empty()) {
     Dialog ask;
     ask.kind = Dialog::Kind::OpenFile;
-    ask.title = "Light from a environment map";
+    ask.title = "Light from an environment map";
     ask.endings = {".hdr", ".exr"};
     std::error_code ignored;
     ask.folder = std::filesystem::current_path(ignored);
     ask.answered = [](Session& s, const std::string& file) {
-      if (auto done = runCommand(s, "probe", std::array{file}); !done) s.log.error(done.error());
+      if (auto done = runCommand(s, "environment-map", std::array{file}); !done) s.log.error(done.error());
     };
-    session.dialog = std::move(ask);
+    session.window.dialog = std::move(ask);
     return nullptr;
   }
   const auto word = fromInfinity(words[0]);
   if (!word) return failAgain(word.error());
-  session.editWorld("environment map " + std::filesystem::path(*word).stem().string(),
-                    [&](WorldState& world) {
-                      std::vector<std::string> with = world.lights;
-                      const auto there = std::ranges::find_if(with, [](const std::string& light) {
-                        const auto parsed = spec::parseLight(light);
-                        return parsed && std::holds_alternative<spec::EnvironmentMapLight>(*parsed);
-                      });
-                      if (there != with.end())
-                        *there = *word;
-                      else
-                        with = {*word};
-                      replaceLights(session, world, std::move(with));
-                    });
+  session.history.editWorld("environment map " + std::filesystem::path(*word).stem().string(),
+                            [&](WorldState& world) {
+                              std::vector<std::string> with = world.lights;
+                              const auto there = std::ranges::find_if(with, [](const std::string& light) {
+                                const auto parsed = spec::parseLight(light);
+                                return parsed && std::holds_alternative<spec::EnvironmentMapLight>(*parsed);
+                              });
+                              if (there != with.end())
+                                *there = *word;
+                              else
+                                with = {*word};
+                              replaceLights(session, world, std::move(with));
+                            });
   return nullptr;
 }
 
-Answer probeFolder(Session& session, Words words) {
+Answer environmentMapFolder(Session& session, Words words) {
   if (!words.empty()) {
     session.environment_maps.addFolder(words[0]);
     return nullptr;
@@ -85,7 +85,7 @@ Answer probeFolder(Session& session, Words words) {
   std::error_code ignored;
   ask.folder = std::filesystem::current_path(ignored);
   ask.answered = [](Session& s, const std::string& folder) { s.environment_maps.addFolder(folder); };
-  session.dialog = std::move(ask);
+  session.window.dialog = std::move(ask);
   return nullptr;
 }
 
@@ -96,7 +96,7 @@ Answer lights(Session& session, Words words) {
     if (!word) return failAgain(word.error());
     checked.push_back(*word);
   }
-  session.editWorld("lights", [&](WorldState& world) { replaceLights(session, world, checked); });
+  session.history.editWorld("lights", [&](WorldState& world) { replaceLights(session, world, checked); });
   return nullptr;
 }
 
@@ -108,7 +108,7 @@ Answer exposure(Session& session, Words words) {
     if (*end != '\0' || !(*ev >= -64.0f && *ev <= 64.0f))
       return fail("exposure", words[0] + " is not a number of stops", "give -64..64 or auto");
   }
-  session.editWorld("exposure", [&](WorldState& world) { world.exposure_ev = ev; });
+  session.history.editWorld("exposure", [&](WorldState& world) { world.exposure_ev = ev; });
   return nullptr;
 }
 
@@ -119,9 +119,11 @@ constexpr std::array kRows = {
              &lights),
     scripted("add-light", "One more light from infinity", "LIGHT", 1, 1, &addLight),
     scripted("remove-light", "Take one away, counted from 0", "NUMBER", 1, 1, &removeLight),
-    scripted("probe", "Light from this environment map; without a name a dialog asks", "[FILE]", 0, 1,
-             &environment_map),
-    scripted("probe-folder", "Show the environment maps of a folder", "[FOLDER]", 0, 1, &probeFolder),
+    formerly("probe",
+             scripted("environment-map", "Light from this environment map; without a name a dialog asks",
+                      "[FILE]", 0, 1, &environmentMap)),
+    formerly("probe-folder", scripted("environment-map-folder", "Show the environment maps of a folder",
+                                      "[FOLDER]", 0, 1, &environmentMapFolder)),
     scripted("exposure", "Stops above radiance 1 = white", "EV|auto", 1, 1, &exposure),
 };
 

@@ -1,4 +1,4 @@
-// The rows of the command list by subject: one file each, joined in command_list.cpp.
+// Declares the rows of the command list by subject: one file each, joined in command_list.cpp.
 #pragma once
 
 #include <string>
@@ -24,12 +24,12 @@ std::span<const Command> stateCommands();  // for scripts: what is there
 
 using Answer = Result<nlohmann::json>;
 
-// A line between items of a menu.
+// Makes a line between items of a menu.
 constexpr Command separator(const char* menu) {
   return {.id = "", .title = "-", .menu = menu, .shortcut = "", .help = "", .arguments = ""};
 }
 
-// For scripts alone: no item in a menu, no key.
+// Makes a command for scripts alone: no item in a menu, no key.
 constexpr Command scripted(const char* id, const char* help, const char* arguments, std::size_t least,
                            std::size_t most, Answer (*run)(Session&, Words)) {
   return {.id = id,
@@ -41,6 +41,12 @@ constexpr Command scripted(const char* id, const char* help, const char* argumen
           .least_words = least,
           .most_words = most,
           .run = run};
+}
+
+// Lets a command be known by its id before 0.11, too.
+constexpr Command formerly(const char* id, Command command) {
+  command.former = id;
+  return command;
 }
 
 inline Answer answerOf(const Result<void>& done, nlohmann::json answer = nullptr) {

@@ -149,31 +149,31 @@ Answer state(Session& session, Words) {
                 {"shown", entry.shown.string()},
                 {"open", entry.slot.has_value()},
                 {"bakeOptions", entry.options.settings()},
-                {"needsRebake", session.needsRebake(i)}};
+                {"needsRebake", session.changes.needsRebake(i)}};
     if (const auto job = session.scenes.jobOf(i)) row["bake"] = jobJson(*job);
     scenes.push_back(std::move(row));
   }
   json selected = json::array();
   for (const ecs::Entity entity : session.selection.entities(session.document))
     selected.push_back(session.document.nameOf(entity));
-  const frame::StepCounts& counts = session.stage.frame().counts();
+  const frame::StepCounts& counts = session.picture.counts;
   json settings = json::object();
   for (const frame::SettingRow& row : frame::settingRows())
-    settings[std::string(row.name)] = frame::settingWord(row, session.stage.frame().settings());
+    settings[std::string(row.name)] = frame::settingWord(row, session.stage.settings());
   return json{{"scenes", scenes},
               {"selected", selected},
               {"lights", session.document.world().lights},
-              {"view", frame::wordOf(session.viewing.surfaceView())},
+              {"view", frame::wordOf(session.viewing.surfaces)},
               {"eye", poseWord(session.viewing.goal)},
               {"undo", session.history.undoName()},
               {"redo", session.history.redoName()},
-              {"modified", session.modified()},
-              {"world", session.worldFile().string()},
+              {"modified", session.files.modified()},
+              {"world", session.files.world().string()},
               {"settings", settings},
               {"bytesResident", session.stage.world().residency().bytesResident()},
-              {"groups", counts.groups},
-              {"negativePixels", session.stage.frame().negativePixels()},
-              {"exposureEv", session.stage.frame().exposureEv()},
+              {"groups", counts["groups"]},
+              {"negativePixels", session.picture.negative_pixels},
+              {"exposureEv", session.picture.exposure_ev},
               {"atRest", session.atRest()},
               {"errors", session.log.errors()}};
 }
@@ -193,16 +193,16 @@ Answer reference(Session& session, Words) {
 
 Answer passes(Session& session, Words) {
   json rows = json::array();
-  for (const gpu::PassTime& pass : session.stage.frame().timers().latest())
+  for (const gpu::PassTime& pass : session.picture.passes)
     rows.push_back(
         {{"pass", pass.name}, {"cpuMs", pass.cpu_ms}, {"gpuMs", pass.gpu_ms}, {"reason", pass.reason}});
   return rows;
 }
 
 Answer tree(Session& session, Words words) {
-  session.tree.filter = words.empty() ? std::string() : words[0];
+  session.tree.query.filter = words.empty() ? std::string() : words[0];
   json rows = json::array();
-  for (const TreeRow& row : session.treeRowsNow())
+  for (const TreeRow& row : session.tree.of(session.document))
     if (row.matches)
       rows.push_back({{"name", row.name}, {"kind", row.kind}, {"depth", row.depth}, {"id", idText(row.id)}});
   return rows;
@@ -217,7 +217,7 @@ Answer logEntries(Session& session, Words) {
 }
 
 Answer plan(Session& session, Words) {
-  const auto entry = session.entryAtHand();
+  const auto entry = sceneAtHand(session);
   if (!entry || session.scenes.entries()[*entry].source.empty())
     return fail("plan", "no scene is open", "open a .gltf or .glb file");
   const SceneEntry& scene = session.scenes.entries()[*entry];

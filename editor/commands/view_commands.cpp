@@ -13,26 +13,26 @@ using frame::SurfaceView;
 Answer setView(Session& session, Words words) {
   const auto choice = frame::parseView(words[0]);
   if (!choice) return failAgain(choice.error());
-  session.viewing.setView(session, *choice);
+  session.viewing.surfaces = *choice;
+  session.viewing.changed = true;
   return nullptr;
 }
 
 template <SurfaceView View>
 Answer show(Session& session, Words) {
-  frame::ViewChoice choice = session.viewing.surfaceView();
-  choice.view = View;
-  session.viewing.setView(session, choice);
+  session.viewing.surfaces.view = View;
+  session.viewing.changed = true;
   return nullptr;
 }
 template <SurfaceView View>
 bool shows(const Session& session) {
-  return session.viewing.surfaceView().view == View;
+  return session.viewing.surfaces.view == View;
 }
 
 Answer setSetting(Session& session, std::string name, std::string word) {
-  frame::FrameSettings settings = session.stage.frame().settings();
+  frame::FrameSettings settings = session.stage.settings();
   if (auto put = frame::putSetting(settings, name, word); !put) return failAgain(put.error());
-  session.editWorld(name, [&](WorldState& world) { world.settings[name] = std::move(word); });
+  session.history.editWorld(name, [&](WorldState& world) { world.settings[name] = std::move(word); });
   session.viewing.changed = true;
   return nullptr;
 }
@@ -47,39 +47,39 @@ Answer transfer(Session& session, Words) {
 }
 template <std::size_t Mode>
 bool transfers(const Session& session) {
-  return static_cast<std::size_t>(session.stage.frame().settings().transfer) == Mode;
+  return static_cast<std::size_t>(session.stage.settings().transfer) == Mode;
 }
 
 template <GizmoMode Mode>
 Answer mode(Session& session, Words) {
-  session.viewing.gizmo.options.mode = Mode;
-  session.viewing.show_gizmos = true;
+  session.handles.gizmo.options.mode = Mode;
+  session.handles.shown = true;
   return nullptr;
 }
 template <GizmoMode Mode>
 bool isMode(const Session& session) {
-  return session.viewing.show_gizmos && session.viewing.gizmo.options.mode == Mode;
+  return session.handles.shown && session.handles.gizmo.options.mode == Mode;
 }
 Answer space(Session& session, Words) {
-  GizmoSpace& now = session.viewing.gizmo.options.space;
+  GizmoSpace& now = session.handles.gizmo.options.space;
   now = now == GizmoSpace::World ? GizmoSpace::Local : GizmoSpace::World;
   return nullptr;
 }
 bool isLocal(const Session& session) {
-  return session.viewing.gizmo.options.space == GizmoSpace::Local;
+  return session.handles.gizmo.options.space == GizmoSpace::Local;
 }
 Answer gizmos(Session& session, Words) {
-  session.viewing.show_gizmos = !session.viewing.show_gizmos;
+  session.handles.shown = !session.handles.shown;
   return nullptr;
 }
 bool gizmosShown(const Session& session) {
-  return session.viewing.show_gizmos;
+  return session.handles.shown;
 }
 
 Answer snap(Session& session, Words words) {
   const auto metres = spec::parseNumber(words[0]);
   if (!metres || *metres < 0.0f) return fail("snap", words[0] + " is not a step", "give metres, 0 for none");
-  GizmoOptions& options = session.viewing.gizmo.options;
+  GizmoOptions& options = session.handles.gizmo.options;
   options.snap_m = *metres;
   options.snap_deg = *metres > 0.0f ? 15.0f : 0.0f;
   options.snap_scale = *metres > 0.0f ? 0.1f : 0.0f;
@@ -87,15 +87,15 @@ Answer snap(Session& session, Words words) {
 }
 
 Answer frameSelected(Session& session, Words) {
-  session.viewing.frame(session, session.selectionBounds());
+  session.viewing.frame(session.document, selectionBounds(session.document, session.selection));
   return nullptr;
 }
 Answer frameAll(Session& session, Words) {
-  session.viewing.frame(session, {});
+  session.viewing.frame(session.document, {});
   return nullptr;
 }
 Answer camera(Session& session, Words words) {
-  return answerOf(session.viewing.setCamera(session, words[0]));
+  return answerOf(session.viewing.setCamera(session.document, words[0]));
 }
 Answer ortho(Session& session, Words) {
   session.viewing.goal.orthographic = session.viewing.pose.orthographic = !session.viewing.goal.orthographic;
@@ -148,16 +148,16 @@ bool hasOverlay(const Session& session) {
 }
 
 Answer play(Session& session, Words) {
-  session.viewing.playing = !session.viewing.playing;
+  session.playback.playing = !session.playback.playing;
   return nullptr;
 }
 bool plays(const Session& session) {
-  return session.viewing.playing;
+  return session.playback.playing;
 }
 Answer time(Session& session, Words words) {
   const auto seconds = spec::parseNumber(words[0]);
   if (!seconds || *seconds < 0.0f) return fail("time", words[0] + " is not a time", "give seconds");
-  session.viewing.animation_s = *seconds;
+  session.playback.time_s = *seconds;
   session.stage.world().setAnimationTime(*seconds);
   session.viewing.changed = true;
   return nullptr;
@@ -174,7 +174,7 @@ bool docked(const Session& session) {
 }
 
 Answer panel(Session& session, Words words) {
-  session.wanted_panels.push_back(words[0]);
+  session.window.wanted_panels.push_back(words[0]);
   return nullptr;
 }
 
@@ -227,8 +227,9 @@ constexpr std::array kRows = {
     scripted("reference-samples", "Samples a pixel at which the reference ends", "N", 1, 1, &samples),
     scripted("reference-bands", "Light of the reference in so many bands only", "N|off", 1, 1, &bands),
     separator("View"),
-    toggle("overlay-light-probes", "Light probes", "", "What is captured where, and its harmonics as a ball",
-           &overlay<&O::light_probes>, &hasOverlay<&O::light_probes>),
+    formerly("overlay-light-samples", toggle("overlay-light-probes", "Light probes", "",
+                                             "What is captured where, and its harmonics as a ball",
+                                             &overlay<&O::light_probes>, &hasOverlay<&O::light_probes>)),
     toggle("overlay-neighborhoods", "Neighborhood slices", "", "What bodies change around them",
            &overlay<&O::neighborhoods>, &hasOverlay<&O::neighborhoods>),
     toggle("overlay-volumes", "Volume bounds", "", "The boxes of volumes", &overlay<&O::volumes>,

@@ -1,6 +1,6 @@
-// How a world's bundles stand before anybody edits them: the same entities made once more in a registry of
-// their own, found by StableId. World files keep only what differs from it, and "reset to default" goes back
-// to it. Comes in: the bundles' descriptions; it must be made again when they change.
+// Knows how a world's bundles stand before anybody edits them: it makes the same entities once more in a
+// registry of its own and finds them by StableId. World files keep only what differs from it, and "reset to
+// default" goes back to it. It is made of the bundles' descriptions, and must be made again when they change.
 #pragma once
 
 #include <cstdint>
@@ -31,13 +31,13 @@ class Baseline {
   static Result<Baseline> create(std::span<const BaselineBundle> bundles);
 
   const ecs::Registry& registry() const { return registry_; }
-  // None: not of these bundles.
+  // Returns the entity, or none where it is not of these bundles.
   ecs::Entity find(scene::StableId id) const;
-  // None where the bundles' entity has no such component, or there is none.
+  // Returns the field's value, or none where the bundles have no such entity or component.
   std::optional<scene::Value> value(scene::StableId id, const scene::FieldInfo& field) const;
   scene::StableId parent(scene::StableId id) const;
-  // Whether an animation moves the node's translation, rotation or scale: then it stands where the animation
-  // says, and that is not an edit.
+  // Returns whether an animation moves the node's translation, rotation or scale: then it stands where the
+  // animation says, and that is not an edit.
   bool animated(scene::StableId id, std::string_view transform_field) const;
 
  private:

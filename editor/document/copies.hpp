@@ -1,4 +1,5 @@
-// What duplicate and paste share: entities as snapshots, and made again under new ids. Inside this room.
+// Takes entities as snapshots and makes them again under new ids, for duplicate and paste. Only this room
+// uses it.
 #pragma once
 
 #include <span>
@@ -9,10 +10,10 @@
 
 namespace lambent::editor {
 
-// With all below them, parents first; only what a person could make. Errors: duplicate()'s.
+// Returns snapshots of the entities and all below them, parents first. Errors: those of duplicate().
 Result<std::vector<EntitySnapshot>> copiesOf(const Document& document, std::span<const ecs::Entity> entities);
 
-// One step; returns those whose parent is not among them.
+// Makes them as one step of the history, and returns those whose parent is not among them.
 Result<std::vector<ecs::Entity>> makeCopies(Document& document, History& history,
                                             std::vector<EntitySnapshot> copies, std::string name);
 

@@ -1,7 +1,7 @@
-// The world that is edited: a registry that belongs to somebody else (frame::World), the rest of the world as
-// a WorldState, and the names by which both are meant. Entities are known by StableId: bundles bring theirs;
-// what a person makes gets one of its own and the mark Created. Handles may change (undo makes entities
-// anew, a bundle is loaded again), ids do not, so selection, history and files keep ids. One thread.
+// Holds the world that is edited: a registry that belongs to somebody else (frame::World), the rest of the
+// world as a WorldState, and the names by which both are meant. Entities are known by StableId: bundles bring
+// theirs; what a person makes gets one of its own and the mark Created. Handles may change (undo makes
+// entities anew, a bundle is loaded again), ids do not, so selection, history and files keep ids. One thread.
 #pragma once
 
 #include <cstdint>
@@ -21,48 +21,50 @@ namespace lambent::editor {
 
 using scene::StableId;
 
-// No entity's id.
+// The id of no entity.
 inline constexpr StableId kNoId{};
 
-// Beside what a person has made: it is saved whole, may be destroyed, and gains and loses components.
+// Marks what a person has made: it is saved whole, may be destroyed, and gains and loses components.
 struct Created {};
 
-// The id of the one entity that says how the environment stands.
+// Returns the id of the one entity that says how the environment stands.
 StableId environmentId();
 
-// 16 hexadecimal digits, and back.
+// Writes an id as 16 hexadecimal digits, and reads it back.
 std::string idText(StableId id);
 std::optional<StableId> parseId(std::string_view text);
 
 class Document {
  public:
-  // seed: of the ids that are given; by default another one each time, so that worlds of two people can be
-  // merged. The registry outlives the document, or another is attached.
+  // seed: makes the ids that are given; by default it is another one each time, so that worlds of two people
+  // can be merged. The registry outlives the document, or another is attached.
   explicit Document(ecs::Registry& registry, std::optional<std::uint64_t> seed = {});
   Document(const Document&) = delete;
   Document& operator=(const Document&) = delete;
 
   ecs::Registry& registry() const { return *registry_; }
-  // After the program made its world anew.
+  // Edits this registry from now on, after the program made its world anew.
   void attach(ecs::Registry& registry);
 
   const WorldState& world() const { return world_; }
-  // Without a step in the history: for what is opened. Raises worldVersion() if it differs.
+  // Sets it without a step in the history, for what is opened. Raises worldVersion() if it differs.
   void setWorld(WorldState world);
   std::uint64_t worldVersion() const { return world_version_; }
 
-  // None if it is not there now.
+  // Returns the entity, or none if it is not there now.
   ecs::Entity find(StableId id) const;
-  // kNoId if it has none.
+  // Returns its id, or kNoId if it has none.
   StableId idOf(ecs::Entity entity) const;
-  // Its id; one that has none becomes Created (the environment gets environmentId()).
+  // Returns its id; an entity that has none gets one and becomes Created (the environment gets
+  // environmentId()).
   StableId adopt(ecs::Entity entity);
-  // All that lack an id and have a component that is described: lights that the command line put there.
+  // Adopts all that lack an id and have a component that is described: lights that the command line put
+  // there.
   void adoptAll();
   StableId newId();
   bool created(ecs::Entity entity) const { return registry_->has<Created>(entity); }
 
-  // "ball", else "entity 0123456789abcdef".
+  // Returns "ball", or "entity 0123456789abcdef" where it has no name.
   std::string nameOf(ecs::Entity entity) const;
   std::string nameOf(StableId id) const;
 
@@ -81,14 +83,15 @@ class Document {
 
 // ---- the hierarchy of Transforms
 
-// The parent, none where it is no longer alive.
+// Returns the parent, or none where it is no longer alive.
 ecs::Entity parentOf(const ecs::Registry& registry, ecs::Entity entity);
-// Whether `entity` is `ancestor` or hangs below it.
+// Returns whether `entity` is `ancestor` or hangs below it.
 bool isBelow(const ecs::Registry& registry, ecs::Entity entity, ecs::Entity ancestor);
-// Those given and all below them, each once, parents before children.
+// Returns those given and all below them, each once, parents before children.
 std::vector<ecs::Entity> withDescendants(const ecs::Registry& registry,
                                          const std::vector<ecs::Entity>& entities);
-// From the Transforms themselves: up to date between two updateTransforms too.
+// Computes the matrix from the Transforms themselves, so that it is up to date between two updateTransforms
+// too.
 glm::mat4 worldFromNode(const ecs::Registry& registry, ecs::Entity entity);
 
 }  // namespace lambent::editor

@@ -113,6 +113,16 @@ void History::commit() {
   endEdit();
 }
 
+void History::beginDrag(std::string name) {
+  endDrag();
+  begin(std::move(name));
+  dragging_ = true;
+}
+
+void History::endDrag() {
+  if (std::exchange(dragging_, false) && open()) commit();
+}
+
 void History::endEdit() {
   Scope scope = std::move(scopes_.back());
   scopes_.pop_back();

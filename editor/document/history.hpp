@@ -1,4 +1,4 @@
-// Undo and redo of everything that is edited. Every edit goes through here: it is checked, carried out and
+// Undoes and redoes everything that is edited. Every edit goes through here: it is checked, carried out and
 // kept as values before and after, by StableId, component and field, so that steps outlive the entities they
 // speak of: made anew by undo, or gone and back with a bundle that was loaded again. Edits between begin()
 // and commit() are one step, in which a field that is set a hundred times (a drag) is one pair of values.
@@ -30,22 +30,21 @@ struct FieldEdit {
   scene::Value value;
 };
 
-// What undo and redo did. An entity or component that is not there now (its bundle was taken away, or came
-// back without it) is passed over and named.
+// Tells what undo and redo did. An entity or component that is not there now (its bundle was taken away, or
+// came back without it) is passed over and named.
 struct Replay {
   bool done = false;  // there was a step
   std::string name;   // its name
   std::vector<std::string> missing;
 };
 
-// A change of something that the document does not hold (which scenes are open), undone by whoever does hold
-// it.
+// A change of something that the document does not hold (which scenes are open); whoever holds it undoes it.
 class OutsideChange {
  public:
   virtual ~OutsideChange() = default;
-  // forth: does it again, else takes it back. What cannot be done any more is named among the missing.
+  // Does it again if `forth`, else takes it back. What cannot be done any more is named among the missing.
   virtual void carryOut(bool forth, std::vector<std::string>& missing) = 0;
-  // What it takes of memory, about.
+  // Returns about how much memory it takes.
   virtual std::size_t bytes() const = 0;
 };
 
@@ -56,48 +55,62 @@ class History {
   // The document outlives the history. Beyond max_bytes the oldest steps are forgotten.
   explicit History(Document& document, std::size_t max_bytes = kDefaultBytes);
 
-  // ---- edits: each one step, unless a step is open
+  // ---- Each of these edits is one step, unless a step is open.
   Result<void> setField(ecs::Entity entity, std::string_view component, std::string_view field,
                         scene::Value value);
-  // All or none.
+  // Sets all of them or none.
   Result<void> setFields(std::span<const FieldEdit> edits, std::string name = {});
-  // The same with values that stood there before (a bundle's), which ranges do not bind: only kinds count.
+  // Does the same with values that stood there before (a bundle's), which ranges do not bind: only kinds
+  // count.
   Result<void> restoreFields(std::span<const FieldEdit> edits, std::string name = {});
-  // Errors: the parent has no Transform.
+  // Makes an entity as the snapshot says. Errors: the parent has no Transform.
   Result<ecs::Entity> create(const EntitySnapshot& snapshot, std::string name = {});
-  // With what hangs below; bundles' nodes below stay where they are, in the world. Errors: one that a person
-  // has not made.
+  // Destroys them with what hangs below; bundles' nodes below stay where they are, in the world. Errors: one
+  // that a person has not made.
   Result<void> destroy(std::span<const ecs::Entity> entities, std::string name = {});
   Result<void> destroy(ecs::Entity entity) { return destroy(std::span(&entity, 1)); }
-  // none: the world. keep_place: it stays where it is, and its Transform changes. Errors: no Transform, a
-  // parent that is the entity or below it; a flat parent, if the place is to be kept.
+  // Hangs them below `parent`, or in the world where that is none. keep_place: each stays where it is, and
+  // its Transform changes. Errors: no Transform, a parent that is the entity or below it; a flat parent, if
+  // the place is to be kept.
   Result<void> reparent(std::span<const ecs::Entity> entities, ecs::Entity parent, bool keep_place,
                         std::string name = {});
   Result<void> reparent(ecs::Entity entity, ecs::Entity parent, bool keep_place) {
     return reparent(std::span(&entity, 1), parent, keep_place);
   }
-  // Of what a person has made, where the component allows it.
+  // Work on what a person has made, where the component allows it.
   Result<void> addComponent(ecs::Entity entity, std::string_view component);
   Result<void> removeComponent(ecs::Entity entity, std::string_view component);
-  // Environment, settings, camera, list of bundles. The program follows Document::worldVersion().
+  // Replaces the environment, settings, camera and list of bundles. The program follows
+  // Document::worldVersion().
   void setWorld(WorldState world, std::string name);
-  // What has been done outside just now.
+  // Lets `change` edit a copy of the world's state, and sets that.
+  template <typename Change>
+  void editWorld(std::string name, const Change& change) {
+    WorldState world = document_.world();
+    change(world);
+    setWorld(std::move(world), std::move(name));
+  }
+  // Notes what has been done outside just now.
   void did(std::shared_ptr<OutsideChange> change, std::string name);
 
-  // ---- steps of several edits; they nest, and the outermost is the step
+  // ---- Steps of several edits nest, and the outermost is the step.
   void begin(std::string name);
   void commit();
   void cancel();  // takes back what was edited since its begin()
   bool open() const { return !scopes_.empty(); }
+  // A widget's drag is one step, from its first pixel to its end. Beginning one ends the one before; ending
+  // none does nothing.
+  void beginDrag(std::string name);
+  void endDrag();
 
-  // ---- back and forth; a step that is open is committed first
+  // ---- Undo and redo commit a step that is open first.
   Replay undo();
   Replay redo();
   bool canUndo() const { return done_ > 0 || !current_.empty(); }
   bool canRedo() const { return current_.empty() && done_ < steps_.size(); }
   std::string undoName() const;  // "Undo move of ball"; "Undo" where there is nothing
   std::string redoName() const;
-  // All steps, oldest first, and how many of them are done: for a list of steps.
+  // Return all steps, the oldest first, and how many of them are done: for a list of steps.
   std::vector<std::string> stepNames() const;
   std::size_t stepsDone() const { return done_; }
 
@@ -165,12 +178,13 @@ class History {
   std::uint64_t version_ = 0;
 
   std::vector<Scope> scopes_;
+  bool dragging_ = false;
   std::vector<Change> current_;
   // Where a field's change stands in current_: later ones join it.
   std::map<std::pair<StableId, const scene::FieldInfo*>, std::size_t> joinable_;
 };
 
-// "move of ball", "strength of 3 entities".
+// Returns a name for the step: "move of ball", "strength of 3 entities".
 std::string editName(const Document& document, std::span<const FieldEdit> edits);
 
 }  // namespace lambent::editor

@@ -1,6 +1,7 @@
-// What a person has changed, as values: of bundles' entities only the fields that differ from the baseline,
-// of Created ones everything. Taken out of a document and put back: by world files, and around the reload of
-// a bundle, whose entities go and come back. By rising id, so that two of the same document are equal.
+// Holds what a person has changed, as values: the fields of bundles' entities that differ from the baseline,
+// and all of what was created. World files take overrides out of a document and put them back; so does the
+// reload of a bundle, whose entities go and come back. They are sorted by id, so that two of the same
+// document are equal.
 #pragma once
 
 #include <map>
@@ -34,7 +35,7 @@ struct EntityOverride {
 
 using Overrides = std::vector<EntityOverride>;
 
-// Entities without an id are adopted first.
+// Returns the overrides of the document, after it has adopted entities without an id.
 Overrides captureOverrides(Document& document, const Baseline& baseline);
 
 struct ApplyReport {

@@ -4,6 +4,8 @@
 #include <iterator>
 #include <utility>
 
+#include "runtime/scene/components.hpp"
+
 namespace lambent::editor {
 
 void Selection::clear() {
@@ -88,6 +90,25 @@ std::vector<ecs::Entity> Selection::topmost(const Document& document) const {
     });
   });
   return tops;
+}
+
+scene::Box selectionBounds(const Document& document, const Selection& selection) {
+  scene::Box bounds;
+  const ecs::Registry& registry = document.registry();
+  for (const ecs::Entity selected : selection.entities(document)) {
+    if (registry.has<scene::RigidGroupComponent>(selected))
+      bounds.add(scene::groupBounds(registry, selected));
+    for (const auto [draw, item] : registry.view<const scene::DrawItem>())
+      if (draw == selected || item.node == selected || isBelow(registry, item.node, selected))
+        bounds.add(scene::drawBounds(registry, draw));
+    if (bounds.empty() && registry.has<scene::Transform>(selected)) {
+      const glm::vec3 at(worldFromNode(registry, selected)[3]);
+      const auto* light = registry.tryGet<scene::LocalLightComponent>(selected);
+      const glm::vec3 around(light ? std::max(0.1f, light->radius_m) : 0.1f);
+      bounds.add(at - around), bounds.add(at + around);
+    }
+  }
+  return bounds;
 }
 
 void Selection::prune(const Document& document) {

@@ -1,5 +1,5 @@
-// Entities as values: what a person may have set of one, taken out of a registry and put back. History keeps
-// snapshots of what was destroyed, the clipboard and duplicates are made of them.
+// Holds entities as values: what a person may have set of one, taken out of a registry and put back. History
+// keeps snapshots of what was destroyed, the clipboard and duplicates are made of them.
 #pragma once
 
 #include <string>
@@ -27,15 +27,15 @@ struct EntitySnapshot {
 
 ComponentValues componentValues(const ecs::Registry& registry, ecs::Entity entity,
                                 const scene::ComponentInfo& component);
-// The entity has an id (Document::adopt).
+// Takes an entity that has an id (Document::adopt).
 EntitySnapshot takeSnapshot(const Document& document, ecs::Entity entity);
-// A Created entity with these components. Parents that are not there: the world.
+// Makes a Created entity with these components, in the world if its parent is not there.
 ecs::Entity makeEntity(Document& document, const EntitySnapshot& snapshot);
-// What a snapshot takes of memory, about.
+// Return about how much memory they take.
 std::size_t bytesOf(const EntitySnapshot& snapshot);
 std::size_t bytesOf(const scene::Value& value);
 
-// What the menus make. Each has a Name and a Transform.
+// Return what the menus make. Each has a Name and a Transform.
 EntitySnapshot emptyEntity(std::string name);
 EntitySnapshot lightEntity(std::string_view kind, std::string name);  // a word of Light.kind
 EntitySnapshot cameraEntity(std::string name);

@@ -199,6 +199,15 @@ std::string_view kindWordOf(const ecs::Registry& registry, ecs::Entity entity) {
   return "entity";
 }
 
+const std::vector<TreeRow>& TreeRows::of(const Document& document) {
+  const std::uint64_t version = treeVersion(document.registry());
+  if (version == made_of_ && query == made_by_) return rows_;
+  rows_ = treeRows(document, query);
+  made_by_ = query;
+  made_of_ = version;
+  return rows_;
+}
+
 TreeFilter::TreeFilter(std::string_view text) {
   for (std::size_t at = 0; at < text.size();) {
     if (text[at] == ' ' || text[at] == '\t') {

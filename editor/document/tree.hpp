@@ -1,4 +1,4 @@
-// The entities of a registry as rows of a tree, flat, so that a list clipper can show the few that are
+// Lists the entities of a registry as rows of a tree, flat, so that a list clipper can show the few that are
 // visible: nodes by Transform::parent, bundles by their roots, and what has no place of its own (draws,
 // groups, lamps, materials, animations) below its node, group or bundle. Rows are made again when
 // treeVersion() has changed. A filter keeps rows that match and those above them.
@@ -33,16 +33,31 @@ struct TreeQuery {
   std::string filter;
   std::set<StableId> closed;  // rows whose children are not shown; a filter shows them all the same
   bool show_parts = true;     // draws and groups, which nobody edits
+  bool operator==(const TreeQuery&) const = default;
 };
 
 std::vector<TreeRow> treeRows(const Document& document, const TreeQuery& query);
-// Another whenever rows may be others; not while things only move. Takes a walk over the Transforms.
+// Returns another number whenever rows may be others, but not while things only move. Walks over the
+// Transforms.
 std::uint64_t treeVersion(const ecs::Registry& registry);
 
-// The kind word of one entity.
+// Keeps the rows of a query, and makes them again only when the query or the tree has changed.
+class TreeRows {
+ public:
+  TreeQuery query;
+  // Returns the rows of the query; they are valid until the next call.
+  const std::vector<TreeRow>& of(const Document& document);
+
+ private:
+  std::vector<TreeRow> rows_;
+  TreeQuery made_by_;
+  std::uint64_t made_of_ = ~std::uint64_t{0};  // tree version
+};
+
+// Returns the word for the kind of an entity.
 std::string_view kindWordOf(const ecs::Registry& registry, ecs::Entity entity);
 
-// For the filter alone, e.g. in other lists.
+// Matches entities against the text of a filter; other lists use it, too.
 class TreeFilter {
  public:
   explicit TreeFilter(std::string_view text);

@@ -1,5 +1,5 @@
-// Values of fields as JSON and back, for world files and the clipboard; and JSON with the way to it, so that
-// errors name the place. Used inside this room only.
+// Turns values of fields into JSON and back, for world files and the clipboard, and walks JSON with the way
+// to each place, so that errors name it. Only this room uses it.
 #pragma once
 
 #include <array>
@@ -22,9 +22,9 @@ using Json = nlohmann::ordered_json;  // to write: keys stay as they were put
 using ReadJson =
     nlohmann::json;  // to read: looks keys up by a tree, so that large files take no square of time
 
-// The shortest decimal that reads back as the same float, so that 0.1 is written 0.1.
+// Writes the shortest decimal that reads back as the same float, so that 0.1 is written 0.1.
 Json numberJson(float value);
-// Rotations as [x, y, z, w], as glTF has them. Error: not finite.
+// Writes rotations as [x, y, z, w], as glTF has them. Error: not finite.
 Result<Json> valueJson(const scene::Value& value);
 
 // A place in a document: a value and the way to it. Faults are thrown as JsonFault inside the room and become
@@ -53,10 +53,10 @@ class Place {
   std::uint64_t count(std::uint64_t largest) const;
   std::map<std::string, std::string> table() const;  // of texts
   std::vector<std::string> texts() const;
-  // As the field takes it: kind and range are checked.
+  // Returns the value as the field takes it: kind and range are checked.
   scene::Value value(const scene::FieldInfo& field) const;
 
-  // What is not among the known keys, as JSON texts; each is told in `notices`.
+  // Returns what is not among the known keys, as JSON texts; each is told in `notices`.
   UnknownFields unknown(const std::set<std::string>& known, std::vector<std::string>& notices) const;
 
  private:
@@ -64,7 +64,7 @@ class Place {
   std::string way_;
 };
 
-// Parsed, or an error with line and column.
+// Parses a text. Errors name line and column.
 Result<ReadJson> parseJson(std::string_view text, const std::string& subject);
 void putUnknown(Json& object, const UnknownFields& unknown);
 

@@ -1,8 +1,8 @@
-// World files: what stands in a world and how it was edited, as JSON (docs/world-file.md). Comes in: a text
-// or a path; goes out: a checked value. Nothing of a file that has an error is used, and errors name the
-// place in it ("entities.0f3a….fields.Light.strength"). What this version does not know is kept and written
-// back, and told. Writing is atomic and in a stable order: a small change is a small difference. The order of
-// use: loadWorldFile, open the bundles with the ids and instances that it names, applyWorld.
+// Reads and writes world files: what stands in a world and how it was edited, as JSON (docs/world-file.md). A
+// text or a path comes in, a checked value goes out. Nothing of a file that has an error is used, and errors
+// name the place in it ("entities.0f3a….fields.Light.strength"). What this version does not know is kept and
+// written back, and told. Writing is atomic and in a stable order: a small change is a small difference. The
+// order of use: loadWorldFile, open the bundles with the ids and instances that it names, applyWorld.
 #pragma once
 
 #include <cstdint>
@@ -32,23 +32,23 @@ struct WorldFile {
 
 // subject: what errors call it, e.g. the path.
 Result<WorldFile> parseWorld(std::string_view text, const std::string& subject);
-// Errors: a value that is not finite.
+// Writes a world as text. Errors: a value that is not finite.
 Result<std::string> worldText(const WorldFile& world);
 
-// Reads and checks, and that every bundle is there.
+// Reads the file and checks it, and that every bundle is there.
 Result<WorldFile> loadWorldFile(const std::filesystem::path& path);
 Result<void> saveWorldFile(const std::filesystem::path& path, const WorldFile& world);
 
-// The file that a bundle's path means, for a world file at `world_path`; and the path that a world file
+// Return the file that a bundle's path means in a world file at `world_path`, and the path that a world file
 // there has for a bundle.
 std::filesystem::path resolvePath(const std::filesystem::path& world_path, std::string_view path);
 std::string pathInWorld(const std::filesystem::path& world_path, const std::filesystem::path& file);
-// A light word with its picture's path resolved likewise.
+// Returns a light word with its environment map's path resolved likewise.
 std::string resolveLight(const std::filesystem::path& world_path, const std::string& word);
 
-// Of a document as it is now. `kept` is what was loaded: its unknown parts are carried on.
+// Takes the document as it is now. `kept` is what was loaded: its unknown parts are carried on.
 WorldFile captureWorld(Document& document, const Baseline& baseline, const WorldFile* kept = nullptr);
-// The bundles that it names stand in the registry. The document's history is not touched: clear it.
+// Applies a world file whose bundles stand in the registry. The document's history is not touched: clear it.
 ApplyReport applyWorld(Document& document, const WorldFile& world);
 
 }  // namespace lambent::editor

@@ -1,6 +1,6 @@
-// What a world is beside its entities: which bundles stand in it, the light from infinity, the camera, the
-// settings of the frame and of the editor's windows. A plain value: history keeps two of it for a step, the
-// world file writes it, the program reads it and follows. Words are those of the command line
+// Holds what a world is beside its entities: which bundles stand in it, the light from infinity, the camera,
+// the settings of the frame and of the editor's windows. It is a plain value: history keeps two of it for a
+// step, the world file writes it, the program reads it and follows. Words are those of the command line
 // (docs/conventions.md); paths are as the world file has them.
 #pragma once
 
@@ -12,7 +12,7 @@
 
 namespace lambent::editor {
 
-// JSON texts of what this version does not know, by key: kept and written back.
+// What this version does not know, as JSON texts by key; it is kept and written back.
 using UnknownFields = std::map<std::string, std::string>;
 
 struct BundleEntry {

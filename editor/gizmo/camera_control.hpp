@@ -1,7 +1,7 @@
-// The editor's own camera: around a point (orbit, pan, dolly), on foot (look, fly), and onto a selection
-// (frame). All functions are pure: a pose and a movement of the pointer give a pose, so that scripts and
-// tests move it as a hand does. Speeds count in the size of the scene, so that a teacup and a city feel
-// alike. A pose goes to and from orbit words, and makes a spec::View like any other camera's.
+// Moves the editor's own camera: around a point (orbit, pan, dolly), on foot (look, fly), and onto a
+// selection (frame). All functions are pure: a pose and a movement of the pointer give a pose, so that
+// scripts and tests move it as a hand does. Speeds count in the size of the scene, so that a teacup and a
+// city feel alike. A pose goes to and from orbit words, and makes a spec::View like any other camera's.
 #pragma once
 
 #include <optional>
@@ -33,7 +33,7 @@ struct CameraPose {
   float halfHeight() const;  // metres at the target
 };
 
-// What the hand did since the last time.
+// Tells what the hand did since the last time.
 struct CameraInput {
   glm::vec2 orbit_px{0.0f};  // pointer, right and down: about the target
   glm::vec2 look_px{0.0f};   // about the eye
@@ -45,33 +45,34 @@ struct CameraInput {
   float height_px = 1.0f;    // of the viewport
 };
 
-// bounds: the scene's; empty ones count as a metre.
+// Returns the pose after the movement. bounds: the scene's; empty ones count as a metre.
 CameraPose moved(const CameraPose& pose, const CameraInput& input, const scene::Box& bounds);
 
-// Nearer to the goal by half in every half_s; at it once no pixel would tell. Turns by the shorter way.
+// Moves nearer to the goal by half in every half_s, and to it once no pixel would tell. Turns by the shorter
+// way.
 CameraPose eased(const CameraPose& pose, const CameraPose& goal, float seconds, float half_s = 0.06f);
 
-// The box filled into the picture, seen from the same direction. Empty boxes change nothing.
+// Lets the box fill the picture, seen from the same direction. Empty boxes change nothing.
 CameraPose framed(const CameraPose& pose, const scene::Box& box, float aspect);
 
-// Depth is fitted to the bounds.
+// Makes a view whose depth is fitted to the bounds.
 spec::View viewOf(const CameraPose& pose, const scene::Box& bounds, float aspect);
 
 // ---- words
 CameraPose fromOrbit(const spec::OrbitCamera& orbit, const scene::Box& bounds);
-// The orbit that stands at the same place and looks at the bounds' centre: the same picture if the pose looks
-// there.
+// Returns the orbit that stands at the same place and looks at the bounds' centre: the same picture if the
+// pose looks there.
 spec::OrbitCamera toOrbit(const CameraPose& pose, const scene::Box& bounds);
 bool isOrbit(const CameraPose& pose, const scene::Box& bounds);
 std::string orbitWord(const spec::OrbitCamera& orbit);  // "orbit:30,15,2.5,40"
-// From a camera of a file: its place and direction (its roll is lost), looking at the depth of the bounds'
+// Takes a camera of a file: its place and direction (its roll is lost), looking at the depth of the bounds'
 // centre.
 CameraPose fromNode(const glm::mat4& world_from_node, const scene::CameraComponent& camera,
                     const scene::Box& bounds);
-// The node's matrix that looks as the pose does: "camera from view".
+// Returns the matrix of a node that looks as the pose does: "camera from view".
 glm::mat4 nodeMatrix(const CameraPose& pose);
 
-// "pose:X,Y,Z,AZ,EL,DISTANCE,FOV[,ortho]", for WorldState::view.
+// Writes "pose:X,Y,Z,AZ,EL,DISTANCE,FOV[,ortho]", for WorldState::view, and reads it back.
 std::string poseWord(const CameraPose& pose);
 Result<CameraPose> parsePose(std::string_view word);
 

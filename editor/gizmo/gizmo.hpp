@@ -1,9 +1,9 @@
-// Handles that move, turn and scale what is selected: where they stand in the picture, what the pointer is
-// over, and what dragging does. Comes in: the local Transforms of the selection with their parents' matrices,
-// a view, pixels. Goes out: new local Transforms, from the state at press() each time, so that a drag leaves
-// no rounding behind; and lines to paint. It touches no registry: whoever drives it puts the results through
-// the history. Mirrored and scaled parents are taken as they are: things move as the pointer does. An axis
-// that points at the viewer, or a plane seen edge on, has no handle.
+// Moves, turns and scales what is selected by handles: says where they stand in the picture, what the pointer
+// is over, and what dragging does. The local Transforms of the selection with their parents' matrices, a view
+// and pixels come in. New local Transforms go out, made from the state at press() each time, so that a drag
+// leaves no rounding behind, and lines to paint. It touches no registry: whoever drives it puts the results
+// through the history. Mirrored and scaled parents are taken as they are: things move as the pointer does. An
+// axis that points at the viewer, or a plane seen edge on, has no handle.
 #pragma once
 
 #include <array>
@@ -63,12 +63,12 @@ class Gizmo {
  public:
   GizmoOptions options;
 
-  // Every frame. The targets are not taken over while dragging; the view is. The primary target is the last.
-  // No targets: no handles.
+  // Call both every frame. The targets are not taken over while dragging; the view is. The primary target is
+  // the last. No targets: no handles.
   void setTargets(std::vector<GizmoTarget> targets);
   void setView(const spec::View& view, const Viewport& viewport);
 
-  // The handle under the pixel.
+  // Returns the handle under the pixel.
   Handle hit(glm::vec2 pixel) const;
   void hover(glm::vec2 pixel);
   Handle hovered() const { return hovered_; }
@@ -78,20 +78,20 @@ class Gizmo {
   bool press(Handle handle, glm::vec2 pixel);  // for shortcuts ("g", "x"); false if it is not there
   bool dragging() const { return active_ != Handle::None; }
   Handle active() const { return active_; }
-  // In the order of the targets, as they are to be now. `free`: without snapping (a modifier key). Nothing
-  // while nothing is dragged.
+  // Returns the targets in their order, as they are to be now. `free`: without snapping (a modifier key).
+  // Returns nothing while nothing is dragged.
   std::vector<scene::Transform> drag(glm::vec2 pixel, bool free = false);
   void release();
-  // Ends the drag; the targets as they were.
+  // Ends the drag and returns the targets as they were.
   std::vector<scene::Transform> cancel();
 
-  // A pixel at which the handle can be taken, away from the others; none if it is not seen. Scripts grab by
-  // it.
+  // Returns a pixel at which the handle can be taken, away from the others, or none if it is not seen.
+  // Scripts grab by it.
   std::optional<glm::vec2> handleScreenPoint(Handle handle) const;
   std::optional<glm::vec2> pivotScreenPoint() const;
 
   Painting paint() const;
-  // What the drag has done so far: "x +1.250 m", "y 45.0 deg", "x 2.00".
+  // Tells what the drag has done so far: "x +1.250 m", "y 45.0 deg", "x 2.00".
   std::string readout() const;
 
  private:
@@ -137,20 +137,20 @@ class Gizmo {
 
 // ---- what the drags do, for one target
 
-// Unit axes of its node in the world; the world's own where it is flat.
+// Returns the unit axes of its node in the world, or the world's own where it is flat.
 glm::dmat3 axesOf(const GizmoTarget& target);
 glm::dvec3 originOf(const GizmoTarget& target);
 
-// Its origin goes by `delta_ws`; turn and scale stay.
+// Moves its origin by `delta_ws`; turn and scale stay.
 scene::Transform movedBy(const GizmoTarget& target, const glm::dvec3& delta_ws);
-// Turned in the world about an axis (unit) through a point. Below a parent that is scaled unevenly the shear
-// takes up what a rotation cannot say.
+// Turns it in the world about an axis (unit) through a point. Below a parent that is scaled unevenly the
+// shear takes up what a rotation cannot say.
 scene::Transform turnedBy(const GizmoTarget& target, const glm::dvec3& pivot_ws, const glm::dvec3& axis_ws,
                           double angle_rad);
-// Scaled along its own axes; its origin goes from the pivot by the same factors along `axes`.
+// Scales it along its own axes; its origin goes from the pivot by the same factors along `axes`.
 scene::Transform scaledLocally(const GizmoTarget& target, const glm::dvec3& pivot_ws, const glm::dmat3& axes,
                                const glm::dvec3& factors);
-// Scaled along axes of the world, about a point.
+// Scales it along axes of the world, about a point.
 scene::Transform scaledInWorld(const GizmoTarget& target, const glm::dvec3& pivot_ws,
                                const glm::dvec3& factors);
 

@@ -1,6 +1,7 @@
-// Handles of one light: its radius, range, cones and strength, dragged in the picture. Comes in: the light,
-// where its node stands (its scale changes nothing), a view, pixels; goes out: the light as it is to be now,
-// inside the ranges of its fields. Moving and turning a light is the Gizmo's, a sun on the sky SunGizmo's.
+// Changes the radius, range, cones and strength of one light by handles that are dragged in the picture. The
+// light, where its node stands (its scale changes nothing), a view and pixels come in; the light as it is to
+// be now goes out, inside the ranges of its fields. Gizmo moves and turns lights, SunGizmo drags suns over
+// the sky.
 #pragma once
 
 #include <array>
@@ -28,7 +29,7 @@ class LightGizmo {
   float hit_px = 8.0f;
   float size_px = 70.0f;  // of cones and stalks that have no size in metres
 
-  // Every frame; the light is not taken over while dragging.
+  // Call both every frame. The light is not taken over while dragging.
   void setLight(const scene::LocalLightComponent& light, const glm::mat4& world_from_node);
   void setView(const spec::View& view, const Viewport& viewport);
 
@@ -42,7 +43,7 @@ class LightGizmo {
   void release() { active_ = LightHandle::None; }
   scene::LocalLightComponent cancel();
 
-  // Where the handle is taken; none if this kind of light has none, or it is not seen.
+  // Returns where the handle is taken, or none if this kind of light has none, or it is not seen.
   std::optional<glm::vec2> handleScreenPoint(LightHandle handle) const;
   Painting paint() const;
 

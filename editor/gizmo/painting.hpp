@@ -1,5 +1,5 @@
-// What gizmos want painted: lines and filled polygons in pixels, back to front, for ImDrawList or any other
-// canvas.
+// Holds what gizmos want painted: lines and filled polygons in pixels, back to front, for ImDrawList or any
+// other canvas.
 #pragma once
 
 #include <cstdint>

@@ -1,7 +1,8 @@
-// Between the world and the pixels of one view: where a point is seen, and which ray a pixel looks along.
+// Maps between the world and the pixels of one view: tells where a point is seen, and which ray a pixel looks
+// along.
 // Pixels count from the top left corner of the window that the viewport lies in, y down, as windows and Dear
-// ImGui have them. Perspective and orthographic views alike. Double precision inside: handles are dragged by
-// single pixels far from the origin, too.
+// ImGui have them. It takes perspective and orthographic views alike, and computes in double precision:
+// handles are dragged by single pixels far from the origin, too.
 #pragma once
 
 #include <optional>
@@ -31,23 +32,25 @@ class Projection {
 
   const Viewport& viewport() const { return viewport_; }
   bool perspective() const { return perspective_; }
-  // None behind the eye. Points beyond the picture's edges are given.
+  // Returns none behind the eye. Points beyond the picture's edges are given.
   std::optional<glm::dvec2> toScreen(const glm::dvec3& point_ws) const;
   Ray ray(const glm::dvec2& pixel) const;
-  // Unit, from the point to the eye.
+  // Returns the unit direction from the point to the eye.
   glm::dvec3 toEye(const glm::dvec3& point_ws) const;
   glm::dvec3 eye() const { return eye_; }
   glm::dvec3 right() const { return right_; }
   glm::dvec3 up() const { return up_; }
   glm::dvec3 back() const { return back_; }
-  // Pixels that a metre across the view takes at the point's depth; 0 behind the eye.
+  // Returns how many pixels a metre across the view takes at the point's depth; 0 behind the eye.
   double pixelsPerMetre(const glm::dvec3& point_ws) const;
 
-  // The t at which p + t d is seen at `coordinate` along the screen direction u (both in pixels): where a
-  // line is dragged to. None where the line is seen from its end, or the place lies behind the eye.
+  // Returns the t at which p + t d is seen at `coordinate` along the screen direction u (both in pixels):
+  // where a line is dragged to. Returns none where the line is seen from its end, or the place lies behind
+  // the eye.
   std::optional<double> alongLine(const glm::dvec3& p, const glm::dvec3& d, const glm::dvec2& u,
                                   double coordinate) const;
-  // The t at which the ray meets the plane; none where they run along each other or it lies behind.
+  // Returns the t at which the ray meets the plane, or none where they run along each other or it lies
+  // behind.
   static std::optional<double> hitPlane(const Ray& ray, const glm::dvec3& point, const glm::dvec3& normal);
 
  private:

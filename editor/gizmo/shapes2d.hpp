@@ -1,4 +1,5 @@
-// Lines and polygons in pixels: how far away they are, places on them, tips of axes. Inside this room.
+// Measures and makes lines and polygons in pixels: how far away they are, places on them, tips of axes. Only
+// this room uses it.
 #pragma once
 
 #include <cstdint>
@@ -11,13 +12,13 @@
 namespace lambent::editor {
 
 double distanceToLine(const std::vector<glm::dvec2>& points, const glm::dvec2& pixel);
-// 0 inside.
+// Returns 0 inside.
 double distanceToPolygon(const std::vector<glm::dvec2>& points, const glm::dvec2& pixel);
-// Some dozen places along the line, or inside the polygon.
+// Returns some dozen places along the line, or inside the polygon.
 std::vector<glm::dvec2> samplesOf(const std::vector<glm::dvec2>& points, bool filled);
-// The arrow's head, or a box, at the end of an axis.
+// Draws an arrow's head, or a box, at the end of an axis.
 Stroke tip(const glm::dvec2& from, const glm::dvec2& to, bool arrow, std::uint32_t color);
-// A small filled disc.
+// Draws a small filled disc.
 Stroke dot(const glm::dvec2& center, double radius, std::uint32_t color);
 
 }  // namespace lambent::editor

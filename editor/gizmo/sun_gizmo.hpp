@@ -1,7 +1,7 @@
-// Suns dragged over the sky: a handle where each is seen, at the picture's border where it stands beyond it
-// or behind the eye. Comes in: the directions in which suns stand, a view, pixels; goes out: the direction in
-// which the one that is dragged is to stand now. Who holds the sun (a light word, a directional light)
-// follows. Orthographic views see one direction only: there are no handles.
+// Drags suns over the sky: each has a handle where it is seen, or at the picture's border where it stands
+// beyond it or behind the eye. The directions in which suns stand, a view and pixels come in; the direction
+// in which the one that is dragged is to stand now goes out. Who holds the sun (a light word, a directional
+// light) follows. Orthographic views see one direction only: there are no handles.
 #pragma once
 
 #include <cstddef>
@@ -23,7 +23,8 @@ class SunGizmo {
  public:
   float hit_px = 10.0f;
 
-  // Every frame: unit directions of the world, towards each. The one that is dragged may have moved by then.
+  // Call both every frame, with unit directions of the world towards each sun. The one that is dragged may
+  // have moved by then.
   void setSuns(std::vector<glm::vec3> towards);
   void setView(const spec::View& view, const Viewport& viewport);
 
@@ -32,8 +33,8 @@ class SunGizmo {
   bool press(glm::vec2 pixel);
   bool dragging() const { return active_.has_value(); }
   std::optional<std::size_t> active() const { return active_; }
-  // Towards the sun that is dragged, as it is to stand. One that was taken at the border comes to the
-  // pointer; another keeps its distance from it, so that nothing jumps at the press.
+  // Returns the direction towards the sun that is dragged, as it is to stand. One that was taken at the
+  // border comes to the pointer; another keeps its distance from it, so that nothing jumps at the press.
   glm::vec3 drag(glm::vec2 pixel) const;
   void release() { active_.reset(); }
 
@@ -57,11 +58,11 @@ class SunGizmo {
 struct SkyDirection {
   float azimuth_deg = 0.0f, elevation_deg = 0.0f;
 };
-// A direction of the world, as sun: words have it. rotation_deg: the environment's; the sun of a turned
-// environment has the azimuth of its word plus that.
+// Converts a direction of the world to that of sun: words, and back. rotation_deg: the environment's; the sun
+// of a turned environment has the azimuth of its word plus that.
 SkyDirection skyDirection(const glm::vec3& towards, float rotation_deg);
 glm::vec3 towardsSun(const SkyDirection& direction, float rotation_deg);
-// "sun:AZ,EL,..." with other angles, all else as it was written. Error: the word is no sun.
+// Returns "sun:AZ,EL,..." with other angles, all else as it was written. Error: the word is no sun.
 Result<std::string> withSunDirection(std::string_view word, const SkyDirection& direction);
 
 }  // namespace lambent::editor

@@ -37,8 +37,8 @@ void drawSweep(const frame::SettingRow& row, const std::vector<frame::SettingPoi
 }
 
 // The setting itself beside its cost.
-void drawSetting(Session& session, Ui& ui, const frame::SettingRow& row) {
-  frame::FrameSettings settings = session.stage.frame().settings();
+void drawSetting(Session& session, Marks& marks, const frame::SettingRow& row) {
+  frame::FrameSettings settings = session.stage.settings();
   const double value = row.get(settings);
   double to = value;
   bool changed = false;
@@ -55,22 +55,22 @@ void drawSetting(Session& session, Ui& ui, const frame::SettingRow& row) {
                            frame::settingWord(row, settings).c_str(), ImGuiSliderFlags_AlwaysClamp);
     to = row.kind == Kind::Real ? double{shown} : std::round(double{shown});
   }
-  ui.mark(fmt::format("accuracy.{}", row.name));
-  if (ImGui::IsItemActivated()) session.beginDrag(std::string(row.label));
+  marks.put(fmt::format("accuracy.{}", row.name));
+  if (ImGui::IsItemActivated()) session.history.beginDrag(std::string(row.label));
   if (changed && to != value) {
     row.put(settings, to);
     const std::array words = {std::string(row.name), frame::settingWord(row, settings)};
     if (auto done = runCommand(session, "setting", words); !done) session.log.error(done.error());
   }
-  if (ImGui::IsItemDeactivated()) session.endDrag();
+  if (ImGui::IsItemDeactivated()) session.history.endDrag();
 }
 
 }  // namespace
 
-void drawAccuracy(Session& session, Ui& ui) {
+void drawAccuracy(Session& session, Marks& marks) {
   if (ImGui::Button(session.settings.busy() ? "Measuring..." : "Measure in this view"))
     session.settings.measureAll();
-  ui.mark("accuracy.measure");
+  marks.put("accuracy.measure");
   ImGui::SameLine();
   ImGui::TextDisabled(
       "error against the knob's finest value, same view at rest; times of a frame that shades everything");
@@ -94,7 +94,7 @@ void drawAccuracy(Session& session, Ui& ui) {
     ImGui::TextUnformatted(std::string(row.label).c_str());
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", std::string(row.help).c_str());
     ImGui::TableNextColumn();
-    drawSetting(session, ui, row);
+    drawSetting(session, marks, row);
     const bool known = found != session.settings.rows().end() && !found->second.cost.now.passes.empty();
     ImGui::TableNextColumn();
     if (known) ImGui::TextUnformatted(errorText(found->second.cost.now.error).c_str());
@@ -108,7 +108,7 @@ void drawAccuracy(Session& session, Ui& ui) {
       ImGui::SameLine();
     }
     if (ImGui::SmallButton("Sweep")) session.settings.sweep(std::string(row.name));
-    ui.mark(fmt::format("accuracy.sweep.{}", row.name));
+    marks.put(fmt::format("accuracy.sweep.{}", row.name));
     ImGui::PopID();
   }
   ImGui::EndTable();

@@ -25,24 +25,24 @@ void tellHelp(const baker::OptionRow& row) {
 }
 
 // True once another word was chosen or typed.
-bool editWord(Ui& ui, const baker::OptionRow& row, const std::string& mark, std::string& word) {
+bool editWord(Marks& marks, const baker::OptionRow& row, const std::string& mark, std::string& word) {
   ImGui::SetNextItemWidth(160.0f);
   if (!row.only_words) {
     const bool changed = ImGui::InputText(
         "##word", &word, ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
-    ui.mark(mark);
+    marks.put(mark);
     tellHelp(row);
     return changed;
   }
   const bool open = ImGui::BeginCombo("##word", word.c_str());
-  ui.mark(mark);
+  marks.put(mark);
   tellHelp(row);
   if (!open) return false;
   bool changed = false;
   for (const std::string_view choice : row.words) {
     const std::string text(choice);
     if (ImGui::Selectable(text.c_str(), text == word)) word = text, changed = true;
-    ui.mark(mark + "." + text);
+    marks.put(mark + "." + text);
   }
   ImGui::EndCombo();
   return changed;
@@ -50,7 +50,7 @@ bool editWord(Ui& ui, const baker::OptionRow& row, const std::string& mark, std:
 
 }  // namespace
 
-void drawBakeOptions(Session& session, Ui& ui, std::size_t scene) {
+void drawBakeOptions(Session& session, Marks& marks, std::size_t scene) {
   if (!ImGui::BeginTable("options", 2, ImGuiTableFlags_SizingFixedFit)) return;
   for (const baker::OptionRow& row : baker::optionRows()) {
     const std::string name(row.name);
@@ -62,7 +62,7 @@ void drawBakeOptions(Session& session, Ui& ui, std::size_t scene) {
     ImGui::TextUnformatted(name.c_str());
     tellHelp(row);
     ImGui::TableNextColumn();
-    if (editWord(ui, row, "bake-option." + name, word)) {
+    if (editWord(marks, row, "bake-option." + name, word)) {
       const std::array words = {name, word, std::to_string(scene)};
       if (auto done = runCommand(session, "bake-option", words); !done) session.log.error(done.error());
     }

@@ -70,7 +70,7 @@ std::string reportText(const baker::BakeReport& r) {
 
 }  // namespace
 
-void drawBakes(Session& session, Ui& ui) {
+void drawBakes(Session& session, Marks& marks) {
   const auto& entries = session.scenes.entries();
   if (entries.empty()) {
     ImGui::TextDisabled(
@@ -106,7 +106,7 @@ void drawBakes(Session& session, Ui& ui) {
       drawProgress(*job);
     else
       ImGui::TextDisabled(entry.source.empty() ? "no source" : "not asked for");
-    ui.mark(mark + "progress");
+    marks.put(mark + "progress");
     ImGui::TableNextColumn();
     if (job) {
       const std::string now = stageText(*job);
@@ -120,17 +120,17 @@ void drawBakes(Session& session, Ui& ui) {
                 job->phase == baker::JobPhase::Baking);
     if (working) {
       if (ImGui::SmallButton("Cancel")) report(session, runCommand(session, "cancel", std::array{number}));
-      ui.mark(mark + "cancel");
+      marks.put(mark + "cancel");
     } else if (!entry.source.empty()) {
       if (ImGui::SmallButton("Bake")) report(session, runCommand(session, "bake", std::array{number}));
-      ui.mark(mark + "bake");
+      marks.put(mark + "bake");
     }
     ImGui::SameLine();
     if (!entry.source.empty()) {
       if (ImGui::SmallButton("Options")) ImGui::OpenPopup("options");
-      ui.mark(mark + "options");
+      marks.put(mark + "options");
       if (ImGui::BeginPopup("options")) {
-        drawBakeOptions(session, ui, i);
+        drawBakeOptions(session, marks, i);
         ImGui::EndPopup();
       }
       ImGui::SameLine();
@@ -140,7 +140,7 @@ void drawBakes(Session& session, Ui& ui) {
       ImGui::PopID();
       break;
     }
-    ui.mark(mark + "close");
+    marks.put(mark + "close");
     ImGui::PopID();
   }
   ImGui::EndTable();

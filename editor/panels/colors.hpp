@@ -1,4 +1,4 @@
-// The few colours that mean something in every panel.
+// Names the few colours that mean something in every panel.
 #pragma once
 
 #include <imgui.h>

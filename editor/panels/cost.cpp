@@ -3,6 +3,7 @@
 
 #include "editor/panels/panel.hpp"
 #include "editor/panels/text.hpp"
+#include "runtime/effects/volume/volume.hpp"
 
 namespace lambent::editor {
 
@@ -61,8 +62,8 @@ void drawPasses(const std::vector<gpu::PassTime>& passes) {
 
 }  // namespace
 
-void drawCost(Session& session, Ui& ui) {
-  const frame::StepCounts& counts = session.stage.frame().counts();
+void drawCost(Session& session, Marks& marks) {
+  const frame::StepCounts& counts = session.picture.counts;
   const auto number = [](const char* label, std::uint64_t value) {
     ImGui::SameLine(0.0f, 18.0f);
     ImGui::TextDisabled("%s", label);
@@ -71,17 +72,17 @@ void drawCost(Session& session, Ui& ui) {
   };
   ImGui::Text("%s on the GPU",
               bytesText(static_cast<double>(session.stage.world().residency().bytesResident() +
-                                            session.stage.frame().volumeBytes()))
+                                            session.picture.volume_bytes))
                   .c_str());
-  ui.mark("cost.bytes");
-  number("groups", counts.groups), number("light probes written", counts.light_probes_written);
-  number("captured", counts.incident.captured), number("cells shaded", counts.cells_shaded);
-  number("draws shaded", counts.draws_shaded), number("shadow cubes", counts.shadow_cubes_drawn);
-  number("volumes shaded", counts.volumes_shaded), number("grids", counts.neighborhoods.grids);
+  marks.put("cost.bytes");
+  number("groups", counts["groups"]), number("light probes written", counts["light_probes_written"]);
+  number("captured", counts["light_probes_captured"]), number("cells shaded", counts["cells_shaded"]);
+  number("draws shaded", counts["draws_shaded"]), number("shadow cubes", counts["shadow_cubes_drawn"]);
+  number("volumes shaded", counts["volumes_shaded"]), number("grids", counts["neighborhood_grids"]);
   ImGui::BeginChild("table");
-  drawPasses(session.stage.frame().timers().latest());
+  drawPasses(session.picture.passes);
   ImGui::EndChild();
-  ui.mark("cost.passes");
+  marks.put("cost.passes");
 }
 
 }  // namespace lambent::editor

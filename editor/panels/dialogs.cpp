@@ -37,15 +37,15 @@ std::vector<std::filesystem::directory_entry> listing(const Dialog& dialog) {
 }
 
 // Returns whether a file was chosen by a double click.
-bool drawFiles(Dialog& dialog, Ui& ui) {
+bool drawFiles(Dialog& dialog, Marks& marks) {
   bool chosen = false;
   std::string folder = dialog.folder.string();
   ImGui::SetNextItemWidth(-60.0f);
   if (ImGui::InputText("##folder", &folder, ImGuiInputTextFlags_EnterReturnsTrue)) dialog.folder = folder;
-  ui.mark("dialog.folder");
+  marks.put("dialog.folder");
   ImGui::SameLine();
   if (ImGui::Button("Up")) dialog.folder = dialog.folder.parent_path();
-  ui.mark("dialog.up");
+  marks.put("dialog.up");
   ImGui::BeginChild("files", ImVec2(0.0f, 260.0f), true);
   std::filesystem::path enter;
   for (const auto& entry : listing(dialog)) {
@@ -60,7 +60,7 @@ bool drawFiles(Dialog& dialog, Ui& ui) {
       else if (!is_folder || dialog.kind == Kind::Folder)
         dialog.name = name, chosen = twice && !is_folder;
     }
-    ui.mark("dialog." + name);
+    marks.put("dialog." + name);
   }
   ImGui::EndChild();
   if (!enter.empty()) dialog.folder = enter, dialog.name.clear();
@@ -68,7 +68,7 @@ bool drawFiles(Dialog& dialog, Ui& ui) {
   if (ImGui::InputTextWithHint("##name", dialog.kind == Kind::Folder ? "this folder" : "file", &dialog.name,
                                ImGuiInputTextFlags_EnterReturnsTrue))
     chosen = true;
-  ui.mark("dialog.name");
+  marks.put("dialog.name");
   return chosen;
 }
 
@@ -81,10 +81,10 @@ std::string answerOf(const Dialog& dialog) {
 
 }  // namespace
 
-void drawDialogs(Session& session, Ui& ui) {
-  if (!session.dialog) return;
+void drawDialogs(Session& session, Marks& marks) {
+  if (!session.window.dialog) return;
   // What is asked may ask again: the dialog at hand is a copy from here on.
-  Dialog& dialog = *session.dialog;
+  Dialog& dialog = *session.window.dialog;
   const std::string title = dialog.title + "###dialog";
   if (!ImGui::IsPopupOpen(title.c_str())) ImGui::OpenPopup(title.c_str());
   ImGui::SetNextWindowSize(
@@ -103,26 +103,26 @@ void drawDialogs(Session& session, Ui& ui) {
   if (dialog.kind == Kind::Text) {
     ImGui::SetNextItemWidth(-1.0f);
     yes = ImGui::InputText("##text", &dialog.name, ImGuiInputTextFlags_EnterReturnsTrue);
-    ui.mark("dialog.text");
+    marks.put("dialog.text");
   } else if (dialog.kind != Kind::Confirm) {
-    yes = drawFiles(dialog, ui);
+    yes = drawFiles(dialog, marks);
   }
   yes |= ImGui::Button(dialog.yes.c_str(), ImVec2(110.0f, 0.0f));
-  ui.mark("dialog.yes");
+  marks.put("dialog.yes");
   if (!dialog.third.empty()) {
     ImGui::SameLine();
     third = ImGui::Button(dialog.third.c_str(), ImVec2(110.0f, 0.0f));
-    ui.mark("dialog.third");
+    marks.put("dialog.third");
   }
   ImGui::SameLine();
   no = ImGui::Button(dialog.no.c_str(), ImVec2(110.0f, 0.0f)) ||
        ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape));
-  ui.mark("dialog.no");
+  marks.put("dialog.no");
   if (yes || no || third) ImGui::CloseCurrentPopup();
   ImGui::EndPopup();
   if (!yes && !no && !third) return;
   const Dialog answered = std::move(dialog);
-  session.dialog.reset();
+  session.window.dialog.reset();
   if (yes && answered.answered) answered.answered(session, answerOf(answered));
   if (third && answered.third_chosen) answered.third_chosen(session);
 }

@@ -22,7 +22,8 @@ void run(Session& session, const char* command, std::initializer_list<std::strin
 }
 
 void setWord(Session& session, std::size_t index, std::string word) {
-  session.editWorld("light from outside", [&](WorldState& world) { world.lights[index] = std::move(word); });
+  session.history.editWorld("light from outside",
+                            [&](WorldState& world) { world.lights[index] = std::move(word); });
 }
 
 std::string sunWord(const spec::SunLight& sun) {
@@ -35,43 +36,43 @@ std::string constantWord(const glm::vec3& radiance) {
 
 // A drag of a widget is one step of the history.
 void asOneStep(Session& session, const char* name) {
-  if (ImGui::IsItemActivated()) session.beginDrag(name);
-  if (ImGui::IsItemDeactivated()) session.endDrag();
+  if (ImGui::IsItemActivated()) session.history.beginDrag(name);
+  if (ImGui::IsItemDeactivated()) session.history.endDrag();
 }
 
 // Radiance as a colour and a strength: suns are far brighter than a colour picker goes.
-bool editRadiance(Session& session, Ui& ui, const std::string& mark, glm::vec3& radiance) {
+bool editRadiance(Session& session, Marks& marks, const std::string& mark, glm::vec3& radiance) {
   float strength = std::max({radiance.r, radiance.g, radiance.b, 1e-6f});
   glm::vec3 color = radiance / strength;
   bool changed = ImGui::ColorEdit3("colour", &color.x, ImGuiColorEditFlags_Float);
   asOneStep(session, "colour of light");
-  ui.mark(mark + ".colour");
+  marks.put(mark + ".colour");
   changed |= ImGui::DragFloat("radiance", &strength, 0.01f * std::max(0.1f, strength), 0.0f, 1e7f, "%.4g",
                               ImGuiSliderFlags_AlwaysClamp);
   asOneStep(session, "strength of light");
-  ui.mark(mark + ".radiance");
+  marks.put(mark + ".radiance");
   if (changed) radiance = strength * color;
   return changed;
 }
 
-void drawSun(Session& session, Ui& ui, std::size_t index, spec::SunLight sun) {
+void drawSun(Session& session, Marks& marks, std::size_t index, spec::SunLight sun) {
   const std::string mark = fmt::format("environment.{}", index);
   bool changed = ImGui::DragFloat("azimuth", &sun.azimuth_deg, 0.5f, -360.0f, 360.0f, "%.1f deg");
   asOneStep(session, "turn of sun");
-  ui.mark(mark + ".azimuth");
+  marks.put(mark + ".azimuth");
   changed |= ImGui::DragFloat("elevation", &sun.elevation_deg, 0.25f, -90.0f, 90.0f, "%.1f deg",
                               ImGuiSliderFlags_AlwaysClamp);
   asOneStep(session, "height of sun");
-  ui.mark(mark + ".elevation");
+  marks.put(mark + ".elevation");
   changed |= ImGui::DragFloat("radius", &sun.angle_deg, 0.05f, 0.05f, 180.0f, "%.2f deg",
                               ImGuiSliderFlags_AlwaysClamp);
   asOneStep(session, "size of sun");
-  ui.mark(mark + ".radius");
-  changed |= editRadiance(session, ui, mark, sun.radiance);
+  marks.put(mark + ".radius");
+  changed |= editRadiance(session, marks, mark, sun.radiance);
   if (changed) setWord(session, index, sunWord(sun));
 }
 
-void drawLight(Session& session, Ui& ui, std::size_t index, const std::string& word) {
+void drawLight(Session& session, Marks& marks, std::size_t index, const std::string& word) {
   const auto light = spec::parseLight(word);
   const std::string mark = fmt::format("environment.{}", index);
   const std::string title = !light                                           ? word
@@ -82,24 +83,24 @@ void drawLight(Session& session, Ui& ui, std::size_t index, const std::string& w
   ImGui::PushID(static_cast<int>(index));
   const bool open = ImGui::CollapsingHeader(
       title.c_str(), ImGuiTreeNodeFlags_DefaultOpen | ImGuiTreeNodeFlags_AllowItemOverlap);
-  ui.mark(mark);
+  marks.put(mark);
   ImGui::SameLine(ImGui::GetWindowWidth() - 34.0f);
   if (ImGui::SmallButton("x")) run(session, "remove-light", {std::to_string(index)});
-  ui.mark(mark + ".remove");
+  marks.put(mark + ".remove");
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("Take this light away");
   if (open && light) {
-    if (const auto* sun = std::get_if<spec::SunLight>(&*light)) drawSun(session, ui, index, *sun);
+    if (const auto* sun = std::get_if<spec::SunLight>(&*light)) drawSun(session, marks, index, *sun);
     if (const auto* constant = std::get_if<spec::ConstantLight>(&*light)) {
       glm::vec3 radiance = constant->radiance;
-      if (editRadiance(session, ui, mark, radiance)) setWord(session, index, constantWord(radiance));
+      if (editRadiance(session, marks, mark, radiance)) setWord(session, index, constantWord(radiance));
     }
     if (std::holds_alternative<spec::EnvironmentMapLight>(*light)) ImGui::TextWrapped("%s", word.c_str());
   }
   ImGui::PopID();
 }
 
-void drawShelf(Session& session, Ui& ui) {
-  if (!ImGui::CollapsingHeader("Probes", ImGuiTreeNodeFlags_DefaultOpen)) return;
+void drawShelf(Session& session, Marks& marks) {
+  if (!ImGui::CollapsingHeader("Environment maps", ImGuiTreeNodeFlags_DefaultOpen)) return;
   session.environment_maps.update(session.document.world().lights, session.scenes);
   if (session.environment_maps.environment_maps().empty())
     ImGui::TextDisabled("None beside the open files; add a folder of .hdr or .exr files.");
@@ -110,15 +111,14 @@ void drawShelf(Session& session, Ui& ui) {
        session.environment_maps.environment_maps()) {
     ImGui::PushID(environment_map.file.c_str());
     ImGui::BeginGroup();
-    const auto id =
-        reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(environment_map.thumbnail.id()));
+    const auto id = reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(environment_map.texture));
     const std::string name = environment_map.file.stem().string();
-    if (environment_map.thumbnail
+    if (environment_map.texture != 0
             ? ImGui::ImageButton(id, ImVec2(kThumbWidth, kThumbHeight), ImVec2(0, 0), ImVec2(1, 1), 1)
             : ImGui::Button(environment_map.error.empty() ? "..." : "cannot be read",
                             ImVec2(kThumbWidth, kThumbHeight)))
-      run(session, "probe", {environment_map.file.string()});
-    ui.mark("probe." + name);
+      run(session, "environment-map", {environment_map.file.string()});
+    marks.put("environment-map." + name);
     if (ImGui::IsItemHovered())
       ImGui::SetTooltip("%s\n%s", environment_map.file.string().c_str(),
                         environment_map.error.empty()
@@ -130,11 +130,11 @@ void drawShelf(Session& session, Ui& ui) {
     ImGui::PopID();
   }
   ImGui::NewLine();
-  if (ImGui::Button("Add folder of environment maps...")) run(session, "probe-folder", {});
-  ui.mark("environment.probe-folder");
+  if (ImGui::Button("Add folder of environment maps...")) run(session, "environment-map-folder", {});
+  marks.put("environment.add-folder");
 }
 
-void drawStand(Session& session, Ui& ui) {
+void drawStand(Session& session, Marks& marks) {
   const ecs::Entity entity = session.stage.environmentEntity();
   const ecs::Registry& registry = session.document.registry();
   const auto number = [&](const char* field, const char* label, float least, float most, const char* format) {
@@ -145,7 +145,7 @@ void drawStand(Session& session, Ui& ui) {
       if (auto done = session.history.setField(entity, "Environment", field, value); !done)
         session.log.error(done.error());
     asOneStep(session, label);
-    ui.mark(fmt::format("environment.{}", field));
+    marks.put(fmt::format("environment.{}", field));
   };
   number("rotation", "turn", -180.0f, 180.0f, "%.1f deg");
   number("intensity", "intensity", 0.0f, 4.0f, "%.3f");
@@ -153,39 +153,39 @@ void drawStand(Session& session, Ui& ui) {
   std::optional<float> exposure = session.document.world().exposure_ev;
   bool automatic = !exposure.has_value();
   if (ImGui::Checkbox("automatic exposure", &automatic))
-    session.editWorld("exposure", [&](WorldState& world) {
-      world.exposure_ev = automatic ? std::nullopt : std::optional(session.stage.frame().exposureEv());
+    session.history.editWorld("exposure", [&](WorldState& world) {
+      world.exposure_ev = automatic ? std::nullopt : std::optional(session.picture.exposure_ev);
     });
-  ui.mark("environment.automatic");
+  marks.put("environment.automatic");
   if (automatic) {
     ImGui::SameLine();
-    ImGui::TextDisabled("%.2f EV", session.stage.frame().exposureEv());
+    ImGui::TextDisabled("%.2f EV", session.picture.exposure_ev);
     return;
   }
   float ev = *exposure;
   if (ImGui::SliderFloat("exposure", &ev, -12.0f, 12.0f, "%.2f EV"))
-    session.editWorld("exposure", [&](WorldState& world) { world.exposure_ev = ev; });
+    session.history.editWorld("exposure", [&](WorldState& world) { world.exposure_ev = ev; });
   asOneStep(session, "exposure");
-  ui.mark("environment.exposure");
+  marks.put("environment.exposure");
 }
 
 }  // namespace
 
-void drawEnvironment(Session& session, Ui& ui) {
-  drawStand(session, ui);
+void drawEnvironment(Session& session, Marks& marks) {
+  drawStand(session, marks);
   ImGui::Separator();
   const std::vector<std::string> lights = session.document.world().lights;
-  for (std::size_t i = 0; i < lights.size(); ++i) drawLight(session, ui, i, lights[i]);
+  for (std::size_t i = 0; i < lights.size(); ++i) drawLight(session, marks, i, lights[i]);
   if (ImGui::Button("Add sun")) run(session, "add-light", {"sun:35,45,6,30,28,25"});
-  ui.mark("environment.add-sun");
+  marks.put("environment.add-sun");
   ImGui::SameLine();
   if (ImGui::Button("Add constant")) run(session, "add-light", {"constant:0.3,0.35,0.45"});
-  ui.mark("environment.add-constant");
+  marks.put("environment.add-constant");
   ImGui::SameLine();
-  if (ImGui::Button("Add environment map...")) run(session, "probe", {});
-  ui.mark("environment.add-probe");
-  drawKeyLights(session, ui);
-  drawShelf(session, ui);
+  if (ImGui::Button("Add environment map...")) run(session, "environment-map", {});
+  marks.put("environment.add-map");
+  drawKeyLights(session, marks);
+  drawShelf(session, marks);
 }
 
 }  // namespace lambent::editor

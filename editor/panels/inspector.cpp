@@ -11,6 +11,7 @@
 #include "editor/document/actions.hpp"
 #include "editor/panels/colors.hpp"
 #include "editor/panels/panel.hpp"
+#include "editor/session/names.hpp"
 
 namespace lambent::editor {
 
@@ -94,7 +95,8 @@ Edited editValue(const FieldInfo& field, Value& value) {
 }
 
 // What several entities are edited as: the component of the primary one, and the same field of the others.
-void drawField(Session& session, Ui& ui, const FieldInfo& field, std::span<const ecs::Entity> entities) {
+void drawField(Session& session, Marks& marks, const FieldInfo& field,
+               std::span<const ecs::Entity> entities) {
   const ecs::Entity primary = entities.back();
   Value value = field.get(session.document.registry(), primary);
   const std::string name = fmt::format("{}.{}", field.component, field.name);
@@ -111,26 +113,27 @@ void drawField(Session& session, Ui& ui, const FieldInfo& field, std::span<const
                       std::string(field.unit).c_str(), mixed ? "; the selected ones differ" : "");
   ImGui::TableNextColumn();
   const Edited edited = editValue(field, value);
-  ui.mark("inspector." + name);
+  marks.put("inspector." + name);
   // From the first pixel of a drag to its end is one step.
   if (ImGui::IsItemActivated())
-    session.beginDrag(fmt::format("{} of {}", field.name, session.document.nameOf(primary)));
+    session.history.beginDrag(fmt::format("{} of {}", field.name, session.document.nameOf(primary)));
   if (edited.changed) {
     std::vector<FieldEdit> edits;
     for (const ecs::Entity entity : entities) edits.push_back({entity, field.component, field.name, value});
     checked(session, session.history.setFields(edits));
   }
-  if (ImGui::IsItemDeactivated()) session.endDrag();
-  if (!isDefault(session.document, session.baseline(), primary, field)) {
+  if (ImGui::IsItemDeactivated()) session.history.endDrag();
+  if (!isDefault(session.document, session.changes.baseline(), primary, field)) {
     ImGui::SameLine(0.0f, 4.0f);
     if (ImGui::SmallButton("o"))
-      checked(session, resetToDefault(session.document, session.history, session.baseline(), entities,
+      checked(session, resetToDefault(session.document, session.history, session.changes.baseline(), entities,
                                       field.component, field.name));
-    ui.mark("inspector.reset." + name);
+    marks.put("inspector.reset." + name);
     if (ImGui::IsItemHovered())
       ImGui::SetTooltip(
           "Back to %s",
-          scene::valueText(defaultValue(session.document, session.baseline(), primary, field)).c_str());
+          scene::valueText(defaultValue(session.document, session.changes.baseline(), primary, field))
+              .c_str());
   }
   ImGui::PopID();
 }
@@ -149,15 +152,15 @@ void drawComponentMenu(Session& session, const ComponentInfo& component,
   if (ImGui::MenuItem("Paste", nullptr, false, held.kind == Pasted::Component))
     checked(session, pasteComponent(session.document, session.history, entities, clip));
   if (ImGui::MenuItem("Reset"))
-    checked(session,
-            resetToDefault(session.document, session.history, session.baseline(), entities, component.name));
+    checked(session, resetToDefault(session.document, session.history, session.changes.baseline(), entities,
+                                    component.name));
   if (component.removable && session.document.created(entities.back()) && ImGui::MenuItem("Remove"))
     for (const ecs::Entity entity : entities)
       checked(session, session.history.removeComponent(entity, component.name));
   ImGui::EndPopup();
 }
 
-void drawComponent(Session& session, Ui& ui, const ComponentInfo& component,
+void drawComponent(Session& session, Marks& marks, const ComponentInfo& component,
                    std::span<const ecs::Entity> selected) {
   const ecs::Registry& registry = session.document.registry();
   std::vector<ecs::Entity> entities;
@@ -166,19 +169,19 @@ void drawComponent(Session& session, Ui& ui, const ComponentInfo& component,
   if (entities.empty() || entities.back() != selected.back()) return;
   const std::string name(component.name);
   const bool open = ImGui::CollapsingHeader(name.c_str(), ImGuiTreeNodeFlags_DefaultOpen);
-  ui.mark("inspector." + name);
+  marks.put("inspector." + name);
   drawComponentMenu(session, component, entities);
   if (!open || !ImGui::BeginTable(name.c_str(), 2, ImGuiTableFlags_SizingStretchProp)) return;
   ImGui::TableSetupColumn("name", ImGuiTableColumnFlags_WidthStretch, 0.38f);
   ImGui::TableSetupColumn("value", ImGuiTableColumnFlags_WidthStretch, 0.62f);
-  for (const FieldInfo& field : component.fields) drawField(session, ui, field, entities);
+  for (const FieldInfo& field : component.fields) drawField(session, marks, field, entities);
   ImGui::EndTable();
 }
 
-void drawAdd(Session& session, Ui& ui, std::span<const ecs::Entity> selected) {
+void drawAdd(Session& session, Marks& marks, std::span<const ecs::Entity> selected) {
   if (!session.document.created(selected.back())) return;
   if (ImGui::Button("Add component")) ImGui::OpenPopup("add");
-  ui.mark("inspector.add");
+  marks.put("inspector.add");
   if (!ImGui::BeginPopup("add")) return;
   for (const ComponentInfo& component : scene::components()) {
     if (!component.addable || component.has(session.document.registry(), selected.back())) continue;
@@ -189,10 +192,10 @@ void drawAdd(Session& session, Ui& ui, std::span<const ecs::Entity> selected) {
 }
 
 // What the picture only approximates since the bundle was baked, with one button to bake it anew.
-void drawRebake(Session& session, Ui& ui) {
-  const auto entry = session.entryAtHand();
+void drawRebake(Session& session, Marks& marks) {
+  const auto entry = sceneAtHand(session);
   if (!entry) return;
-  const std::vector<std::string>& reasons = session.needsRebakeNow(*entry);
+  const std::vector<std::string>& reasons = session.changes.needsRebakeNow(*entry);
   if (reasons.empty()) return;
   ImGui::PushStyleColor(ImGuiCol_Text, kWarningColor);
   ImGui::TextUnformatted("Needs a rebake");
@@ -204,17 +207,17 @@ void drawRebake(Session& session, Ui& ui) {
   if (ImGui::Button("Bake with these edits", ImVec2(-1.0f, 0.0f)))
     if (auto done = runCommand(session, "bake", std::array{std::to_string(*entry)}); !done)
       session.log.error(done.error());
-  ui.mark("inspector.rebake");
+  marks.put("inspector.rebake");
   ImGui::Separator();
 }
 
 }  // namespace
 
-void drawInspector(Session& session, Ui& ui) {
+void drawInspector(Session& session, Marks& marks) {
   const std::vector<ecs::Entity> selected = session.selection.entities(session.document);
   if (selected.empty()) {
     ImGui::TextDisabled("Nothing is selected: click in the view or in the tree.");
-    drawRebake(session, ui);
+    drawRebake(session, marks);
     return;
   }
   ImGui::TextDisabled(
@@ -222,10 +225,11 @@ void drawInspector(Session& session, Ui& ui) {
                 ? session.document.nameOf(selected.back()).c_str()
                 : fmt::format("{} and {} more", session.document.nameOf(selected.back()), selected.size() - 1)
                       .c_str());
-  ui.mark("inspector.name");
-  drawRebake(session, ui);
-  for (const ComponentInfo& component : scene::components()) drawComponent(session, ui, component, selected);
-  drawAdd(session, ui, selected);
+  marks.put("inspector.name");
+  drawRebake(session, marks);
+  for (const ComponentInfo& component : scene::components())
+    drawComponent(session, marks, component, selected);
+  drawAdd(session, marks, selected);
 }
 
 }  // namespace lambent::editor

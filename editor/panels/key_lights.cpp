@@ -15,8 +15,8 @@ namespace {
 
 // A drag of a widget is one step of the history.
 void asOneStep(Session& session, const char* name) {
-  if (ImGui::IsItemActivated()) session.beginDrag(name);
-  if (ImGui::IsItemDeactivated()) session.endDrag();
+  if (ImGui::IsItemActivated()) session.history.beginDrag(name);
+  if (ImGui::IsItemDeactivated()) session.history.endDrag();
 }
 
 void tell(Session& session, const Result<void>& done) {
@@ -32,7 +32,7 @@ void swatch(const glm::vec3& radiance) {
     ImGui::SetTooltip("radiance %.4g %.4g %.4g", double{radiance.r}, double{radiance.g}, double{radiance.b});
 }
 
-void drawTable(Session& session, Ui& ui, const std::vector<KeyLight>& keys) {
+void drawTable(Session& session, Marks& marks, const std::vector<KeyLight>& keys) {
   constexpr ImGuiTableFlags kTable =
       ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersInnerV | ImGuiTableFlags_SizingFixedFit;
   if (!ImGui::BeginTable("keys", 6, kTable)) return;
@@ -53,7 +53,7 @@ void drawTable(Session& session, Ui& ui, const std::vector<KeyLight>& keys) {
       at_hand = at_hand == i ? std::nullopt : std::optional(i);
       session.viewing.changed = true;  // the overlay shows its box
     }
-    ui.mark(fmt::format("key.{}", i));
+    marks.put(fmt::format("key.{}", i));
     ImGui::TableNextColumn();
     ImGui::Text("%.1f", double{key.elevation_deg});
     ImGui::TableNextColumn();
@@ -67,16 +67,16 @@ void drawTable(Session& session, Ui& ui, const std::vector<KeyLight>& keys) {
   ImGui::EndTable();
 }
 
-void drawFields(Session& session, Ui& ui, std::size_t index, const KeyLight& key) {
+void drawFields(Session& session, Marks& marks, std::size_t index, const KeyLight& key) {
   const std::string mark = fmt::format("key.{}", index);
   float azimuth = key.azimuth_deg, elevation = key.elevation_deg;
   bool moved = ImGui::DragFloat("azimuth##key", &azimuth, 0.5f, -360.0f, 360.0f, "%.1f deg");
   asOneStep(session, "turn of key light");
-  ui.mark(mark + ".azimuth");
+  marks.put(mark + ".azimuth");
   moved |= ImGui::DragFloat("elevation##key", &elevation, 0.25f, -89.9f, 89.9f, "%.1f deg",
                             ImGuiSliderFlags_AlwaysClamp);
   asOneStep(session, "height of key light");
-  ui.mark(mark + ".elevation");
+  marks.put(mark + ".elevation");
   if (moved)
     tell(session, moveKeyLight(session, index, spec::directionFromAzimuthElevation(azimuth, elevation)));
   if (!key.in_map) {
@@ -89,21 +89,21 @@ void drawFields(Session& session, Ui& ui, std::size_t index, const KeyLight& key
   bool changed =
       ImGui::DragFloat("times##key", &strength, 0.01f, 0.0f, 1000.0f, "%.3f", ImGuiSliderFlags_AlwaysClamp);
   asOneStep(session, "strength of key light");
-  ui.mark(mark + ".strength");
+  marks.put(mark + ".strength");
   changed |= ImGui::ColorEdit3("tint##key", &tint.x, ImGuiColorEditFlags_Float);
   asOneStep(session, "colour of key light");
-  ui.mark(mark + ".tint");
+  marks.put(mark + ".tint");
   if (changed) tell(session, dimKeyLight(session, index, strength * glm::max(tint, 0.0f)));
   if (!key.edited) return;
   if (ImGui::Button("As found")) tell(session, resetKeyLights(session, index));
-  ui.mark(mark + ".reset");
+  marks.put(mark + ".reset");
 }
 
 }  // namespace
 
-void drawKeyLights(Session& session, Ui& ui) {
+void drawKeyLights(Session& session, Marks& marks) {
   const bool open = ImGui::CollapsingHeader("Key lights", ImGuiTreeNodeFlags_DefaultOpen);
-  ui.mark("environment.keys");
+  marks.put("environment.keys");
   if (ImGui::IsItemHovered())
     ImGui::SetTooltip(
         "Suns, lamps and windows that were found in the light from outside, and shine by shadow maps.\n"
@@ -112,10 +112,10 @@ void drawKeyLights(Session& session, Ui& ui) {
   if (!open) return;
   const std::vector<KeyLight> keys = keyLightsOf(session);
   if (keys.empty()) return ImGui::TextDisabled("None: all light from outside is soft.");
-  drawTable(session, ui, keys);
+  drawTable(session, marks, keys);
   std::optional<std::size_t>& at_hand = session.viewing.key_at_hand;
   if (at_hand && *at_hand >= keys.size()) at_hand.reset();
-  if (at_hand) drawFields(session, ui, *at_hand, keys[*at_hand]);
+  if (at_hand) drawFields(session, marks, *at_hand, keys[*at_hand]);
 }
 
 }  // namespace lambent::editor

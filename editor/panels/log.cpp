@@ -29,17 +29,17 @@ ImVec4 severityColor(Severity severity) {
   return kNoteColor;
 }
 
-void drawLog(Session& session, Ui& ui) {
+void drawLog(Session& session, Marks& marks) {
   const auto entries = session.log.entries();
   if (ImGui::Button("Clear")) session.log.clear();
-  ui.mark("log.clear");
+  marks.put("log.clear");
   ImGui::SameLine();
   if (ImGui::Button("Copy all")) {
     std::string text;
     for (const LogEntry& entry : entries) text += entry.text + "\n";
     ImGui::SetClipboardText(text.c_str());
   }
-  ui.mark("log.copy");
+  marks.put("log.copy");
   ImGui::BeginChild("entries");
   for (const LogEntry& entry : entries) {
     const std::time_t when = std::chrono::system_clock::to_time_t(entry.when);
@@ -54,7 +54,7 @@ void drawLog(Session& session, Ui& ui) {
   ImGui::EndChild();
 }
 
-void drawToasts(Session& session, Ui& ui) {
+void drawToasts(Session& session, Marks& marks) {
   auto recent = session.log.recent(kToastAge);
   if (recent.size() > kMostToasts)
     recent.erase(recent.begin(), recent.end() - static_cast<std::ptrdiff_t>(kMostToasts));
@@ -76,7 +76,7 @@ void drawToasts(Session& session, Ui& ui) {
     ImGui::End();
     ImGui::PopStyleColor();
   }
-  if (!recent.empty()) ui.mark("toasts", {{screen.x - kToastWidth, bottom}, {screen.x, screen.y}});
+  if (!recent.empty()) marks.put("toasts", {{screen.x - kToastWidth, bottom}, {screen.x, screen.y}});
 }
 
 }  // namespace lambent::editor

@@ -52,24 +52,6 @@ void setLight(Session& session, ecs::Entity entity, const scene::LocalLightCompo
   if (auto done = session.history.setFields(edits); !done) session.log.error(done.error());
 }
 
-void pick(Session& session, const Viewport& viewport, glm::vec2 pixel) {
-  const float scale = session.viewing.scaleNow();
-  const auto picked =
-      session.stage.frame().pick(session.stage.world(), session.viewing.shown_view,
-                                 scale * (pixel.x - viewport.x), scale * (pixel.y - viewport.y));
-  if (!picked) return session.log.error(picked.error());
-  const ImGuiIO& io = ImGui::GetIO();
-  if (!*picked) {
-    if (!io.KeyCtrl && !io.KeyShift) session.selection.clear();
-    return;
-  }
-  const StableId id = session.document.idOf((*picked)->node);
-  if (io.KeyCtrl || io.KeyShift)
-    session.selection.toggle(id);
-  else
-    session.selection.set(id);
-}
-
 std::vector<GizmoTarget> targetsOf(const Session& session, const std::vector<ecs::Entity>& entities) {
   const ecs::Registry& registry = session.document.registry();
   std::vector<GizmoTarget> targets;
@@ -81,18 +63,18 @@ std::vector<GizmoTarget> targetsOf(const Session& session, const std::vector<ecs
   return targets;
 }
 
-void markHandles(const Session& session, Ui& ui, const std::vector<SunOnSky>& suns) {
+void markHandles(const Session& session, Marks& marks, const std::vector<SunOnSky>& suns) {
   const auto mark = [&](const std::string& name, const std::optional<glm::vec2>& at) {
-    if (at) ui.mark(name, {*at - glm::vec2(1.0f), *at + glm::vec2(1.0f)});
+    if (at) marks.put(name, {*at - glm::vec2(1.0f), *at + glm::vec2(1.0f)});
   };
   for (const Handle handle : kHandles)
-    mark("gizmo." + std::string(handleWord(handle)), session.viewing.gizmo.handleScreenPoint(handle));
+    mark("gizmo." + std::string(handleWord(handle)), session.handles.gizmo.handleScreenPoint(handle));
   for (const LightHandle handle : kLightHandles)
     mark("light." + std::string(lightHandleWord(handle)),
-         session.viewing.light_gizmo.handleScreenPoint(handle));
-  mark("gizmo.pivot", session.viewing.gizmo.pivotScreenPoint());
-  for (std::size_t sun = 0; sun < session.viewing.sun_gizmo.count(); ++sun)
-    if (const auto at = session.viewing.sun_gizmo.place(sun)) {
+         session.handles.light_gizmo.handleScreenPoint(handle));
+  mark("gizmo.pivot", session.handles.gizmo.pivotScreenPoint());
+  for (std::size_t sun = 0; sun < session.handles.sun_gizmo.count(); ++sun)
+    if (const auto at = session.handles.sun_gizmo.place(sun)) {
       if (sun < suns.size() && suns[sun].key)
         mark(fmt::format("key.{}.handle", *suns[sun].key), at->pixel);
       else
@@ -108,30 +90,32 @@ void addReadout(const glm::vec2& pixel, const std::string& text) {
 
 }  // namespace
 
-void manipulate(Session& session, Ui& ui, const Viewport& viewport, bool hovered) {
-  Viewing& viewing = session.viewing;
-  if (!viewing.show_gizmos) return;
+std::optional<glm::vec2> manipulate(Session& session, Marks& marks, const Viewport& viewport, bool hovered) {
+  Handles& handles = session.handles;
+  if (!handles.shown) return std::nullopt;
+  const spec::View& view = session.viewing.shown_view;
   const ImGuiIO& io = ImGui::GetIO();
   const glm::vec2 pixel(io.MousePos.x, io.MousePos.y);
   ecs::Registry& registry = session.document.registry();
   std::vector<ecs::Entity> entities = session.selection.topmost(session.document);
   std::erase_if(entities, [&](ecs::Entity entity) { return !registry.has<scene::Transform>(entity); });
-  Gizmo& gizmo = viewing.gizmo;
-  LightGizmo& light_gizmo = viewing.light_gizmo;
-  gizmo.setView(viewing.shown_view, viewport);
-  light_gizmo.setView(viewing.shown_view, viewport);
+  Gizmo& gizmo = handles.gizmo;
+  LightGizmo& light_gizmo = handles.light_gizmo;
+  gizmo.setView(view, viewport);
+  light_gizmo.setView(view, viewport);
   gizmo.setTargets(targetsOf(session, entities));
   const ecs::Entity primary = session.selection.primaryEntity(session.document);
   const auto* light = registry.tryGet<scene::LocalLightComponent>(primary);
   const bool light_handles = light && registry.has<scene::Transform>(primary);
   if (light_handles) light_gizmo.setLight(*light, worldFromNode(registry, primary));
-  SunGizmo& sun_gizmo = viewing.sun_gizmo;
+  SunGizmo& sun_gizmo = handles.sun_gizmo;
   const std::vector<SunOnSky> suns = sunsOf(session);
-  sun_gizmo.setView(viewing.shown_view, viewport);
+  sun_gizmo.setView(view, viewport);
   std::vector<glm::vec3> towards;
   for (const SunOnSky& sun : suns) towards.push_back(sun.towards_ws);
   sun_gizmo.setSuns(std::move(towards));
 
+  std::optional<glm::vec2> clicked;
   const bool eye_moves = io.KeyAlt;
   const auto dragging = [&] { return gizmo.dragging() || light_gizmo.dragging() || sun_gizmo.dragging(); };
   const auto release = [&] { gizmo.release(), light_gizmo.release(), sun_gizmo.release(); };
@@ -142,9 +126,9 @@ void manipulate(Session& session, Ui& ui, const Viewport& viewport, bool hovered
   }
   if (hovered && ImGui::IsMouseClicked(ImGuiMouseButton_Left) && !eye_moves) {
     if (sun_gizmo.press(pixel)) {
-      viewing.sun_taken = suns[*sun_gizmo.active()];
-      if (viewing.sun_taken->key) viewing.key_at_hand = viewing.sun_taken->key;
-      session.history.begin("turn of " + viewing.sun_taken->name);
+      handles.sun_taken = suns[*sun_gizmo.active()];
+      if (handles.sun_taken->key) session.viewing.key_at_hand = handles.sun_taken->key;
+      session.history.begin("turn of " + handles.sun_taken->name);
     } else if (light_handles && light_gizmo.press(pixel)) {
       session.history.begin("light of " + session.document.nameOf(primary));
     } else if (gizmo.press(pixel)) {
@@ -162,7 +146,7 @@ void manipulate(Session& session, Ui& ui, const Viewport& viewport, bool hovered
     } else if (ImGui::IsMouseDown(ImGuiMouseButton_Left)) {
       if (sun_gizmo.dragging()) {
         // A click alone does not fetch one from beyond the border.
-        if (io.MouseDragMaxDistanceSqr[0] > 0.0f) moveSun(session, *viewing.sun_taken, sun_gizmo.drag(pixel));
+        if (io.MouseDragMaxDistanceSqr[0] > 0.0f) moveSun(session, *handles.sun_taken, sun_gizmo.drag(pixel));
       } else if (light_gizmo.dragging()) {
         setLight(session, primary, light_gizmo.drag(pixel));
       } else {
@@ -174,14 +158,15 @@ void manipulate(Session& session, Ui& ui, const Viewport& viewport, bool hovered
     }
   } else if (hovered && ImGui::IsMouseReleased(ImGuiMouseButton_Left) && !eye_moves &&
              ImGui::GetIO().MouseDragMaxDistanceSqr[0] <= kClickPixels * kClickPixels) {
-    pick(session, viewport, pixel);
+    clicked = pixel - glm::vec2(viewport.x, viewport.y);
   }
   paint(gizmo.paint(), viewport);
   if (light_handles) paint(light_gizmo.paint(), viewport);
   paint(sun_gizmo.paint(), viewport);
   addReadout(pixel, gizmo.readout());
   if (const auto sun = sun_gizmo.active()) addReadout(pixel, sunReadout(session, suns[*sun]));
-  markHandles(session, ui, suns);
+  markHandles(session, marks, suns);
+  return clicked;
 }
 
 }  // namespace lambent::editor

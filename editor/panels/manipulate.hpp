@@ -1,14 +1,18 @@
-// What a hand does in the view beside moving the eye: picks what is under the pointer, drags the handles of
-// what is selected and of lights, turns suns on the sky. Every drag is one step of the history.
+// Follows what a hand does in the view beside moving the camera: it picks what is under the pointer, drags
+// the handles of what is selected and of lights, and turns suns on the sky. Every drag is one step of the
+// history.
 #pragma once
+
+#include <optional>
 
 #include "editor/gizmo/projection.hpp"
 #include "editor/session/session.hpp"
-#include "editor/ui/ui.hpp"
+#include "editor/ui/marks.hpp"
 
 namespace lambent::editor {
 
-// Right after the view's own item.
-void manipulate(Session& session, Ui& ui, const Viewport& viewport, bool hovered);
+// Call it right after the view's own widget. Returns the pixel of the view that was clicked to pick what is
+// there, from its top left corner; nothing: no click.
+std::optional<glm::vec2> manipulate(Session& session, Marks& marks, const Viewport& viewport, bool hovered);
 
 }  // namespace lambent::editor

@@ -6,6 +6,7 @@
 
 #include "editor/commands/command.hpp"
 #include "editor/panels/panel.hpp"
+#include "editor/session/status.hpp"
 
 namespace lambent::editor {
 
@@ -15,12 +16,12 @@ void report(Session& session, const Result<nlohmann::json>& done) {
   if (!done) session.log.error(done.error());
 }
 
-void drawItem(Session& session, Ui& ui, const Command& command) {
+void drawItem(Session& session, Marks& marks, const Command& command) {
   const bool enabled = !command.enabled || command.enabled(session);
   const bool checked = command.checked && command.checked(session);
   if (ImGui::MenuItem(command.title, command.shortcut, checked, enabled))
     report(session, runCommand(session, command.id, {}));
-  ui.mark(std::string("menu.") + command.id);
+  marks.put(std::string("menu.") + command.id);
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", command.help);
 }
 
@@ -41,46 +42,46 @@ void runShortcuts(Session& session) {
   }
 }
 
-void drawRecent(Session& session, Ui& ui) {
+void drawRecent(Session& session, Marks& marks) {
   if (!ImGui::BeginMenu("Recent", !session.preferences.recent.empty())) return;
   for (const std::string& file : std::vector(session.preferences.recent))
     if (ImGui::MenuItem(file.c_str())) report(session, runCommand(session, "open", std::array{file}));
   ImGui::EndMenu();
-  ui.mark("menu.recent");
+  marks.put("menu.recent");
 }
 
 void drawPanelItems(Session& session) {
   ImGui::Separator();
   for (const Panel& panel : panelList())
-    if (ImGui::MenuItem(panel.name)) session.wanted_panels.emplace_back(panel.name);
+    if (ImGui::MenuItem(panel.name)) session.window.wanted_panels.emplace_back(panel.name);
 }
 
 }  // namespace
 
-void drawMenus(Session& session, Ui& ui) {
+void drawMenus(Session& session, Marks& marks) {
   runShortcuts(session);
   if (!ImGui::BeginMainMenuBar()) return;
   constexpr std::array kMenus = {"File", "Edit", "Create", "View", "Bake", "Help"};
   for (const char* menu : kMenus) {
     const bool open = ImGui::BeginMenu(menu);
-    ui.mark(std::string("menu.") + menu);
+    marks.put(std::string("menu.") + menu);
     if (!open) continue;
     for (const Command& command : commandList()) {
       if (std::strcmp(command.menu, menu) != 0) continue;
       if (*command.title == '-')
         ImGui::Separator();
       else if (*command.title != '\0')
-        drawItem(session, ui, command);
-      if (std::strcmp(command.id, "open") == 0) drawRecent(session, ui);
+        drawItem(session, marks, command);
+      if (std::strcmp(command.id, "open") == 0) drawRecent(session, marks);
     }
     if (std::strcmp(menu, "View") == 0) drawPanelItems(session);
     ImGui::EndMenu();
   }
-  const std::string status = session.statusLine();
+  const std::string status = statusOf(session);
   const float width = ImGui::CalcTextSize(status.c_str()).x;
   ImGui::SameLine(ImGui::GetWindowWidth() - width - 16.0f);
   ImGui::TextDisabled("%s", status.c_str());
-  ui.mark("status");
+  marks.put("status");
   ImGui::EndMainMenuBar();
 }
 

@@ -1,14 +1,17 @@
-// What the window is made of: panels in three docks around the view, each a row of one list with its name and
-// the function that draws it. Panels show the session and change it through commands and the document's
-// history, never on their own.
+// Draws what the window is made of: panels in three docks around the view, each a row of one list with its
+// name and the function that draws it. Panels show the session and change it through commands and the
+// document's history, never on their own. They need a Dear ImGui context, and but for the view neither window
+// nor OpenGL.
 #pragma once
 
 #include <span>
 
 #include "editor/session/session.hpp"
-#include "editor/ui/ui.hpp"
+#include "editor/ui/marks.hpp"
 
 namespace lambent::editor {
+
+class Renderer;
 
 enum class Dock : std::uint8_t { Left, Right, Bottom };
 
@@ -16,29 +19,29 @@ struct Panel {
   const char* name;
   Dock dock;
   const char* help;
-  void (*draw)(Session& session, Ui& ui);
+  void (*draw)(Session& session, Marks& marks);
 };
 
 std::span<const Panel> panelList();
 
 // Each in a file of its own.
-void drawSceneTree(Session& session, Ui& ui);
-void drawInspector(Session& session, Ui& ui);
-void drawEnvironment(Session& session, Ui& ui);
-void drawKeyLights(Session& session, Ui& ui);  // a part of the environment's
-void drawSettings(Session& session, Ui& ui);
-void drawPlan(Session& session, Ui& ui);
-void drawBakes(Session& session, Ui& ui);
-void drawBakeOptions(Session& session, Ui& ui, std::size_t scene);  // a part of the bakes'
-void drawCost(Session& session, Ui& ui);
-void drawAccuracy(Session& session, Ui& ui);
-void drawStreaming(Session& session, Ui& ui);
-void drawLog(Session& session, Ui& ui);
+void drawSceneTree(Session& session, Marks& marks);
+void drawInspector(Session& session, Marks& marks);
+void drawEnvironment(Session& session, Marks& marks);
+void drawKeyLights(Session& session, Marks& marks);  // a part of the environment's
+void drawSettings(Session& session, Marks& marks);
+void drawPlan(Session& session, Marks& marks);
+void drawBakes(Session& session, Marks& marks);
+void drawBakeOptions(Session& session, Marks& marks, std::size_t scene);  // a part of the bakes'
+void drawCost(Session& session, Marks& marks);
+void drawAccuracy(Session& session, Marks& marks);
+void drawStreaming(Session& session, Marks& marks);
+void drawLog(Session& session, Marks& marks);
 
-// Not in docks: the menu bar, the view in the middle, what comes up over all.
-void drawMenus(Session& session, Ui& ui);
-void drawViewport(Session& session, Ui& ui);
-void drawToasts(Session& session, Ui& ui);
-void drawDialogs(Session& session, Ui& ui);
+// These stand in no dock: the menu bar, the view in the middle, and what comes up over all.
+void drawMenus(Session& session, Marks& marks);
+void drawViewport(Session& session, Renderer& renderer, Marks& marks);
+void drawToasts(Session& session, Marks& marks);
+void drawDialogs(Session& session, Marks& marks);
 
 }  // namespace lambent::editor

@@ -3,6 +3,7 @@
 
 #include "editor/panels/colors.hpp"
 #include "editor/panels/panel.hpp"
+#include "editor/session/names.hpp"
 
 namespace lambent::editor {
 
@@ -44,8 +45,8 @@ void drawGroup(const baker::EffectPlan& plan, std::size_t g) {
 
 }  // namespace
 
-void drawPlan(Session& session, Ui& ui) {
-  const auto entry = session.entryAtHand();
+void drawPlan(Session& session, Marks& marks) {
+  const auto entry = sceneAtHand(session);
   if (!entry) {
     ImGui::TextDisabled("Open a scene to see what its bake simulates, and why.");
     return;
@@ -66,7 +67,7 @@ void drawPlan(Session& session, Ui& ui) {
   }
   const baker::EffectPlan& plan = (*made)->plan;
   ImGui::TextUnformatted(scene.source.filename().string().c_str());
-  ui.mark("plan.scene");
+  marks.put("plan.scene");
   drawEffects(plan);
   if (ImGui::CollapsingHeader("Rigid groups", ImGuiTreeNodeFlags_DefaultOpen))
     for (std::size_t g = 0; g < plan.groups.size(); ++g) {

@@ -47,7 +47,7 @@ void select(Session& session, const std::vector<TreeRow>& rows, const TreeRow& r
   session.viewing.changed = true;
 }
 
-void drawRow(Session& session, Ui& ui, TreeQuery& query, const std::vector<TreeRow>& rows,
+void drawRow(Session& session, Marks& marks, TreeQuery& query, const std::vector<TreeRow>& rows,
              const TreeRow& row) {
   ImGui::PushID(static_cast<int>(row.id.value ^ row.id.value >> 32));
   const float indent = 12.0f * static_cast<float>(row.depth);
@@ -68,9 +68,9 @@ void drawRow(Session& session, Ui& ui, TreeQuery& query, const std::vector<TreeR
   if (!row.matches) ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyle().Colors[ImGuiCol_TextDisabled]);
   if (ImGui::Selectable(row.name.c_str(), session.selection.contains(row.id))) select(session, rows, row);
   if (!row.matches) ImGui::PopStyleColor();
-  ui.mark("scene." + row.name);
+  marks.put("scene." + row.name);
   if (ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left))
-    session.viewing.frame(session, session.selectionBounds());
+    session.viewing.frame(session.document, selectionBounds(session.document, session.selection));
   if (ImGui::BeginDragDropSource()) {
     ImGui::SetDragDropPayload("entity", &row.id, sizeof row.id);
     ImGui::TextUnformatted(row.name.c_str());
@@ -93,22 +93,22 @@ void drawRow(Session& session, Ui& ui, TreeQuery& query, const std::vector<TreeR
 
 }  // namespace
 
-void drawSceneTree(Session& session, Ui& ui) {
-  TreeQuery& query = session.tree;
+void drawSceneTree(Session& session, Marks& marks) {
+  TreeQuery& query = session.tree.query;
   ImGui::SetNextItemWidth(-1.0f);
   ImGui::InputTextWithHint("##search", "search: ball, type:light, has:Lamp", &query.filter);
-  ui.mark("scene.search");
+  marks.put("scene.search");
   ImGui::Checkbox("draws and groups", &query.show_parts);
-  ui.mark("scene.parts");
+  marks.put("scene.parts");
   ImGui::SameLine();
   ImGui::TextDisabled("%zu selected", session.selection.ids().size());
-  const std::vector<TreeRow>& rows = session.treeRowsNow();
+  const std::vector<TreeRow>& rows = session.tree.of(session.document);
   ImGui::BeginChild("rows");
   ImGuiListClipper clipper;
   clipper.Begin(static_cast<int>(rows.size()));
   while (clipper.Step())
     for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i)
-      drawRow(session, ui, query, rows, rows[static_cast<std::size_t>(i)]);
+      drawRow(session, marks, query, rows, rows[static_cast<std::size_t>(i)]);
   if (ImGui::IsWindowHovered() && ImGui::IsMouseClicked(ImGuiMouseButton_Left) && !ImGui::IsAnyItemHovered())
     session.selection.clear();
   ImGui::EndChild();

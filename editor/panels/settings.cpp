@@ -18,9 +18,9 @@ void put(Session& session, const frame::SettingRow& row, const frame::FrameSetti
   if (auto done = runCommand(session, "setting", words); !done) session.log.error(done.error());
 }
 
-void drawRow(Session& session, Ui& ui, const frame::SettingRow& row) {
+void drawRow(Session& session, Marks& marks, const frame::SettingRow& row) {
   using Kind = frame::SettingRow::Kind;
-  frame::FrameSettings settings = session.stage.frame().settings();
+  frame::FrameSettings settings = session.stage.settings();
   const double value = row.get(settings);
   const std::string label(row.label), name(row.name);
   bool changed = false;
@@ -55,23 +55,23 @@ void drawRow(Session& session, Ui& ui, const frame::SettingRow& row) {
     ImGui::PopID();
     return;
   }
-  ui.mark("setting." + name);
+  marks.put("setting." + name);
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", std::string(row.help).c_str());
-  if (ImGui::IsItemActivated()) session.beginDrag(label);
+  if (ImGui::IsItemActivated()) session.history.beginDrag(label);
   if (changed) {
     row.put(settings, to);
     put(session, row, settings);
   }
-  if (ImGui::IsItemDeactivated()) session.endDrag();
+  if (ImGui::IsItemDeactivated()) session.history.endDrag();
   ImGui::PopID();
 }
 
 // How many key lights there are and how finely they shadow, by one word; what that costs and loses here.
-void drawQuality(Session& session, Ui& ui) {
-  const std::string now(frame::qualityOf(session.stage.frame().settings()));
+void drawQuality(Session& session, Marks& marks) {
+  const std::string now(frame::qualityOf(session.stage.settings()));
   ImGui::SetNextItemWidth(0.45f * ImGui::GetContentRegionAvail().x);
   const bool open = ImGui::BeginCombo("quality", now.empty() ? "own" : now.c_str());
-  ui.mark("quality");
+  marks.put("quality");
   if (ImGui::IsItemHovered())
     ImGui::SetTooltip("How many key lights there are and how finely they shadow: time against error");
   if (open) {
@@ -80,13 +80,13 @@ void drawQuality(Session& session, Ui& ui) {
       if (ImGui::Selectable(word.c_str(), word == now))
         if (auto done = runCommand(session, "quality", std::array{word}); !done)
           session.log.error(done.error());
-      ui.mark("quality." + word);
+      marks.put("quality." + word);
     }
     ImGui::EndCombo();
   }
   ImGui::SameLine();
   if (ImGui::Button(session.qualities.busy() ? "Measuring..." : "Measure")) session.qualities.measure();
-  ui.mark("quality.measure");
+  marks.put("quality.measure");
   if (ImGui::IsItemHovered())
     ImGui::SetTooltip(
         "Draws this view at each quality: times of a frame that draws everything anew, and how\n"
@@ -121,37 +121,37 @@ void drawQuality(Session& session, Ui& ui) {
 }
 
 // Where the slice through neighborhoods lies, while it is shown.
-void drawSlice(Session& session, Ui& ui) {
+void drawSlice(Session& session, Marks& marks) {
   constexpr std::array kAxes = {"x", "y", "z"};
   frame::NeighborhoodSlice& slice = session.viewing.overlays.slice;
   ImGui::SetNextItemWidth(0.45f * ImGui::GetContentRegionAvail().x);
   bool changed = ImGui::Combo("slice across", &slice.axis, kAxes.data(), static_cast<int>(kAxes.size()));
-  ui.mark("slice.axis");
+  marks.put("slice.axis");
   ImGui::SetNextItemWidth(0.45f * ImGui::GetContentRegionAvail().x);
   changed |= ImGui::SliderFloat("place of the slice", &slice.position, 0.0f, 1.0f, "%.2f",
                                 ImGuiSliderFlags_AlwaysClamp);
-  ui.mark("slice.position");
+  marks.put("slice.position");
   if (changed) session.viewing.changed = true;
 }
 
 }  // namespace
 
-void drawSettings(Session& session, Ui& ui) {
-  drawQuality(session, ui);
+void drawSettings(Session& session, Marks& marks) {
+  drawQuality(session, marks);
   ImGui::Separator();
-  for (const frame::SettingRow& row : frame::settingRows()) drawRow(session, ui, row);
+  for (const frame::SettingRow& row : frame::settingRows()) drawRow(session, marks, row);
   ImGui::Separator();
   ImGui::SetNextItemWidth(0.45f * ImGui::GetContentRegionAvail().x);
-  if (ImGui::SliderFloat("pixels of the picture", &session.viewing.render_scale, 0.25f, 2.0f, "%.2f",
+  if (ImGui::SliderFloat("pixels of the picture", &session.viewing.scale.whole, 0.25f, 2.0f, "%.2f",
                          ImGuiSliderFlags_AlwaysClamp))
     session.viewing.changed = true;
-  ui.mark("setting.pixels");
+  marks.put("setting.pixels");
   if (ImGui::IsItemHovered())
     ImGui::SetTooltip("For each pixel of the window along an edge: less is faster, more is smoother");
-  if (session.viewing.overlays.neighborhoods) drawSlice(session, ui);
+  if (session.viewing.overlays.neighborhoods) drawSlice(session, marks);
   if (ImGui::Button("All to their defaults"))
-    session.editWorld("settings to default", [](WorldState& world) { world.settings.clear(); });
-  ui.mark("setting.defaults");
+    session.history.editWorld("settings to default", [](WorldState& world) { world.settings.clear(); });
+  marks.put("setting.defaults");
 }
 
 }  // namespace lambent::editor

@@ -39,7 +39,7 @@ void drawTimes(const frame::FrameTimes& times) {
               times.worst(), times.overTwiceMedian(), times.count());
 }
 
-void drawBundles(const frame::StreamingStatus& status, Ui& ui) {
+void drawBundles(const frame::StreamingStatus& status, Marks& marks) {
   constexpr ImGuiTableFlags kTable =
       ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersInnerV | ImGuiTableFlags_ScrollY;
   if (!ImGui::BeginTable("bundles", 4, kTable)) return;
@@ -67,12 +67,12 @@ void drawBundles(const frame::StreamingStatus& status, Ui& ui) {
     ImGui::TextUnformatted(stateWord(bundle.state));
   }
   ImGui::EndTable();
-  ui.mark("streaming.bundles");
+  marks.put("streaming.bundles");
 }
 
 }  // namespace
 
-void drawStreaming(Session& session, Ui& ui) {
+void drawStreaming(Session& session, Marks& marks) {
   const frame::StreamingStatus status = session.stage.world().streaming();
   const bool limited = status.budget_bytes != ~std::uint64_t{0};
   const double resident = static_cast<double>(status.resident_bytes);
@@ -84,18 +84,18 @@ void drawStreaming(Session& session, Ui& ui) {
             .c_str());
   else
     ImGui::Text("%s on the GPU, without a limit (--max-memory)", bytesText(resident).c_str());
-  ui.mark("streaming.budget");
+  marks.put("streaming.budget");
   ImGui::Text("%u parts wanted, %s on their way, %.1f MB/s", status.queued,
               bytesText(static_cast<double>(status.in_flight_bytes)).c_str(), status.megabytes_per_s);
-  ui.mark("streaming.queue");
+  marks.put("streaming.queue");
   ImGui::Text("%zu shown in full, %zu partly, %zu by proxy levels of detail, %zu not",
               status.count(frame::Shown::Full), status.count(frame::Shown::Partly),
               status.count(frame::Shown::ProxyLod), status.count(frame::Shown::Nothing));
-  drawTimes(session.stage.times());
+  drawTimes(session.picture.times);
   ImGui::EndChild();
   ImGui::SameLine();
   ImGui::BeginChild("list");
-  drawBundles(status, ui);
+  drawBundles(status, marks);
   ImGui::EndChild();
 }
 

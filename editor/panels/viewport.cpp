@@ -6,6 +6,7 @@
 #include "editor/panels/colors.hpp"
 #include "editor/panels/manipulate.hpp"
 #include "editor/panels/panel.hpp"
+#include "editor/render/renderer.hpp"
 
 namespace lambent::editor {
 
@@ -41,29 +42,29 @@ void moveEye(Session& session, const Viewport& viewport, bool hovered) {
   if (hovered) input.dolly = io.MouseWheel;
   const bool any = input.orbit_px != glm::vec2(0.0f) || input.look_px != glm::vec2(0.0f) ||
                    input.pan_px != glm::vec2(0.0f) || input.dolly != 0.0f || session.viewing.flying;
-  if (any) session.viewing.move(session, input);
+  if (any) session.viewing.move(session.document, input);
 }
 
-void drawPicture(Session& session, const ImVec2& low, const ImVec2& high) {
+void drawPicture(const Session& session, const Renderer& renderer, const ImVec2& low, const ImVec2& high) {
   ImDrawList* canvas = ImGui::GetWindowDrawList();
   // The frame's pictures begin at the bottom.
-  canvas->AddImage(handleOf(session.stage.frame().picture()), low, high, ImVec2(0.0f, 1.0f),
-                   ImVec2(1.0f, 0.0f));
+  canvas->AddImage(handleOf(renderer.picture()), low, high, ImVec2(0.0f, 1.0f), ImVec2(1.0f, 0.0f));
   const ReferenceView& reference = session.reference;
-  if (!reference.on() || !reference.picture()) return;
+  const gpu::Texture& beside = renderer.reference(reference.split);
+  if (!reference.on() || !beside) return;
   const float at = low.x + reference.split_at * (high.x - low.x);
-  canvas->AddImage(handleOf(reference.picture()), ImVec2(at, low.y), high, ImVec2(reference.split_at, 0.0f),
+  canvas->AddImage(handleOf(beside), ImVec2(at, low.y), high, ImVec2(reference.split_at, 0.0f),
                    ImVec2(1.0f, 1.0f));
   canvas->AddLine(ImVec2(at, low.y), ImVec2(at, high.y), IM_COL32(255, 255, 255, 200), kBarWidth);
 }
 
 // The edge between both pictures can be dragged.
-bool dragSplit(Session& session, Ui& ui, const ImVec2& low, const ImVec2& high) {
+bool dragSplit(Session& session, Marks& marks, const ImVec2& low, const ImVec2& high) {
   if (!session.reference.on()) return false;
   const float width = high.x - low.x, at = low.x + session.reference.split_at * width;
   ImGui::SetCursorScreenPos(ImVec2(at - 5.0f, low.y));
   ImGui::InvisibleButton("split", ImVec2(10.0f, high.y - low.y));
-  ui.mark("split");
+  marks.put("split");
   ImGui::SetItemAllowOverlap();
   const bool active = ImGui::IsItemActive(), hovered = ImGui::IsItemHovered();
   if (active || hovered) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
@@ -80,10 +81,10 @@ void textOver(const ImVec2& at, const std::string& text, ImU32 color = IM_COL32(
   canvas->AddText(at, color, text.c_str());
 }
 
-void drawLegends(Session& session, Ui& ui, const ImVec2& low, const ImVec2& high) {
-  const auto& view = session.viewing.surfaceView();
+void drawLegends(Session& session, Marks& marks, const ImVec2& low, const ImVec2& high) {
+  const auto& view = session.viewing.surfaces;
   std::string left = std::string(frame::rowOf(view.view).label);
-  const frame::ViewLegend legend = session.stage.frame().legend();
+  const frame::ViewLegend& legend = session.picture.legend;
   if (legend.colors == frame::ViewColors::Scale)
     left = fmt::format("{}: {:.3g} (dark) to {:.3g} (bright) {}", legend.name, legend.min, legend.max,
                        legend.unit);
@@ -105,8 +106,25 @@ void drawLegends(Session& session, Ui& ui, const ImVec2& low, const ImVec2& high
           fmt::format("   colours to {}{:.0f} %", reference.heat_map == baker::HeatMap::Signed ? "±" : "",
                       100.0 * difference->range);
     textOver(ImVec2(low.x + 12.0f, high.y - 26.0f), figures);
-    ui.mark("difference", {{low.x, high.y - 26.0f}, {high.x, high.y}});
+    marks.put("difference", {{low.x, high.y - 26.0f}, {high.x, high.y}});
   }
+}
+
+// Selects what is at a pixel of the picture; with Ctrl or Shift beside what is selected.
+void pick(Session& session, Renderer& renderer, const glm::vec2& pixel) {
+  const auto picked = renderer.pick(session, pixel.x, pixel.y);
+  if (!picked) return session.log.error(picked.error());
+  const ImGuiIO& io = ImGui::GetIO();
+  const bool beside = io.KeyCtrl || io.KeyShift;
+  if (!*picked) {
+    if (!beside) session.selection.clear();
+    return;
+  }
+  const StableId id = session.document.idOf((*picked)->node);
+  if (beside)
+    session.selection.toggle(id);
+  else
+    session.selection.set(id);
 }
 
 void drawEmpty(const ImVec2& low, const ImVec2& high) {
@@ -117,26 +135,27 @@ void drawEmpty(const ImVec2& low, const ImVec2& high) {
 
 }  // namespace
 
-void drawViewport(Session& session, Ui& ui) {
+void drawViewport(Session& session, Renderer& renderer, Marks& marks) {
   const ImVec2 low = ImGui::GetCursorScreenPos();
   const ImVec2 room = ImGui::GetContentRegionAvail();
   const ImVec2 high(low.x + std::max(16.0f, room.x), low.y + std::max(16.0f, room.y));
   const Viewport viewport{low.x, low.y, high.x - low.x, high.y - low.y};
-  const float scale = session.viewing.scaleNow();
-  session.render({static_cast<std::uint32_t>(std::max(16.0f, scale * viewport.width)),
-                  static_cast<std::uint32_t>(std::max(16.0f, scale * viewport.height))});
-  drawPicture(session, low, high);
-  const bool over_split = dragSplit(session, ui, low, high);
+  const float scale = session.viewing.scale.now();
+  renderer.update(session, {static_cast<std::uint32_t>(std::max(16.0f, scale * viewport.width)),
+                            static_cast<std::uint32_t>(std::max(16.0f, scale * viewport.height))});
+  drawPicture(session, renderer, low, high);
+  const bool over_split = dragSplit(session, marks, low, high);
 
   ImGui::SetCursorScreenPos(low);
   ImGui::InvisibleButton("picture", ImVec2(viewport.width, viewport.height),
                          ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight |
                              ImGuiButtonFlags_MouseButtonMiddle);
-  ui.mark("viewport");
+  marks.put("viewport");
   const bool hovered = ImGui::IsItemHovered();
   moveEye(session, viewport, hovered);
-  if (!over_split) manipulate(session, ui, viewport, hovered);
-  drawLegends(session, ui, low, high);
+  const auto clicked = over_split ? std::nullopt : manipulate(session, marks, viewport, hovered);
+  if (clicked) pick(session, renderer, scale * *clicked);
+  drawLegends(session, marks, low, high);
   if (session.scenes.entries().empty()) drawEmpty(low, high);
 }
 

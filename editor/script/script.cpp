@@ -30,7 +30,7 @@ struct Waiting {
 constexpr std::array kWaits = {Waiting{"loaded", [](const Session& s) { return s.loaded(); }},
                                Waiting{"baked", [](const Session& s) { return s.baked(); }},
                                Waiting{"rest", [](const Session& s) { return s.atRest(); }},
-                               Waiting{"reference", [](const Session& s) { return s.referenceDone(); }},
+                               Waiting{"reference", [](const Session& s) { return s.reference.done(); }},
                                Waiting{"measured", [](const Session& s) { return s.measured(); }}};
 
 Result<float> numberFrom(const ScriptLine& line, std::size_t index) {
@@ -73,10 +73,10 @@ Script::Script(std::filesystem::path name, std::vector<ScriptLine> lines,
 Result<glm::vec2> Script::placeOf(const std::string& mark, const Ui& ui) const {
   // A mark, with a place within it where one is asked for: viewport@0.25,0.5.
   const std::size_t at = mark.rfind('@');
-  const auto where = ui.find(mark.substr(0, at));
+  const auto where = ui.marks().find(mark.substr(0, at));
   if (!where)
     return fail(mark, "is not on the screen",
-                fmt::format("open its panel; on the screen are {}", fmt::join(ui.marks(), ", ")));
+                fmt::format("open its panel; on the screen are {}", fmt::join(ui.marks().names(), ", ")));
   if (at == std::string::npos) return where->center();
   glm::vec2 share(0.5f);
   if (std::sscanf(mark.c_str() + at + 1, "%f,%f", &share.x, &share.y) != 2)
@@ -211,7 +211,7 @@ Result<Script::Progress> Script::run(const ScriptLine& line, Session& session, U
     return Progress::Done;
   }
   if (word == "marks") {
-    answer = ui.marks();
+    answer = ui.marks().names();
     return Progress::Done;
   }
   if (word == "expect") {

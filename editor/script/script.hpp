@@ -1,5 +1,5 @@
-// Scripts that drive the editor (--script FILE): a line is a command of the command list with its words, or
-// one of those that act on the window as a hand would: click and drag at marks, keys, text, wheel, files
+// Runs scripts that drive the editor (--script FILE): a line is a command of the command list with its words,
+// or one of those that act on the window as a hand would: click and drag at marks, keys, text, wheel, files
 // dropped onto the window, screenshots; or waits. Each frame takes the script on until a line has to wait.
 // Answers are JSON, a line each; a line that fails ends the script unless it begins with "try".
 // docs/editor.md lists the lines.
@@ -28,18 +28,19 @@ struct ScriptLine {
   std::vector<std::string> words;  // the first is the command
 };
 
-// Words are parted by blanks; "..." keeps blanks, and \" and \\ inside; # begins a comment.
+// Parses a script. Words are parted by blanks; "..." keeps blanks, and \" and \\ inside; # begins a comment.
 Result<std::vector<ScriptLine>> parseScript(const std::filesystem::path& name, const std::string& text);
 
 class Script {
  public:
   Script(std::filesystem::path name, std::vector<ScriptLine> lines, std::function<void(std::string)> answer);
 
-  // Before a frame: what is held and typed in it, none where the script is over or does not touch the window.
+  // Goes on before a frame, and returns what is held and typed in it: null where the script is over or does
+  // not touch the window.
   const ScriptedInput* step(Session& session, Ui& ui);
   bool done() const { return at_ >= lines_.size() && queue_.empty(); }
   bool failed() const { return error_.has_value(); }
-  // Of the line that failed.
+  // The error of the line that failed.
   const Error& error() const { return *error_; }
 
  private:

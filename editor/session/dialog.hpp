@@ -1,5 +1,5 @@
-// A question that waits for the user: which file, or whether to go on. Drawn by panels/dialogs.cpp; never in
-// the way of what the rest of the editor does meanwhile.
+// Asks the user something: which file, or whether to go on. panels/dialogs.cpp draws it; the rest of the
+// editor goes on meanwhile.
 #pragma once
 
 #include <filesystem>

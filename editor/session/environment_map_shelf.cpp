@@ -11,7 +11,7 @@ namespace lambent::editor {
 namespace {
 
 constexpr std::uint32_t kWidth = 128, kHeight = 64;
-constexpr std::size_t kMostProbes = 64;
+constexpr std::size_t kMostMaps = 64;
 
 bool isEnvironmentMap(const std::filesystem::path& path) {
   const std::string ending = path.extension().string();
@@ -51,7 +51,7 @@ void EnvironmentMapShelf::addFolder(const std::filesystem::path& folder) {
 EnvironmentMapShelf::Thumbnail EnvironmentMapShelf::read(const std::filesystem::path& file) {
   try {
     const auto image = spec::readLightImage(file);
-    if (!image) return {.error = image.error().line()};
+    if (!image) return {.image = {}, .error = image.error().line()};
     std::vector<glm::vec3> texels;
     std::vector<float> brightness;
     for (std::uint32_t y = 0; y < kHeight; ++y)
@@ -64,13 +64,13 @@ EnvironmentMapShelf::Thumbnail EnvironmentMapShelf::read(const std::filesystem::
       }
     std::nth_element(brightness.begin(), brightness.begin() + kWidth * kHeight / 2, brightness.end());
     const float scale = 0.22f / std::max(1e-6f, brightness[kWidth * kHeight / 2]);
-    Thumbnail made{kWidth, kHeight, {}, {}};
+    Thumbnail made{{kWidth, kHeight, {}}, {}};
     for (const glm::vec3& texel : texels)
       for (const float value : {texel.r, texel.g, texel.b, 1.0f / scale})
-        made.rgba.push_back(std::isfinite(value) ? coded(scale * value) : std::uint8_t{255});
+        made.image.texels.push_back(std::isfinite(value) ? coded(scale * value) : std::uint8_t{255});
     return made;
   } catch (const std::exception& failure) {
-    return {.error = failure.what()};
+    return {.image = {}, .error = failure.what()};
   }
 }
 
@@ -83,22 +83,18 @@ void EnvironmentMapShelf::look() {
       if (entry.is_regular_file(ignored) && isEnvironmentMap(entry.path())) files.push_back(entry.path());
     std::sort(files.begin(), files.end());
     for (std::filesystem::path& file : files)
-      if (found.size() < kMostProbes)
-        found.push_back({.file = std::move(file), .thumbnail = {}, .error = {}});
+      if (found.size() < kMostMaps)
+        found.push_back({.file = std::move(file), .thumbnail = {}, .error = {}, .texture = 0});
   }
   for (EnvironmentMap& environment_map : found)
     for (EnvironmentMap& old : environment_maps_)
-      if (old.file == environment_map.file)
-        environment_map.thumbnail = std::move(old.thumbnail), environment_map.error = old.error;
+      if (old.file == environment_map.file) environment_map = std::move(old);
   environment_maps_ = std::move(found);
 }
 
 void EnvironmentMapShelf::update(const std::vector<std::string>& light_words, const Scenes& scenes) {
   const bool coming = coming_.valid();
-  const bool same =
-      light_words == words_seen_ && scenes.version() == scenes_seen_ && added_.size() == added_seen_;
-  if (!same && !coming) {
-    words_seen_ = light_words, scenes_seen_ = scenes.version(), added_seen_ = added_.size();
+  if (!coming && changed_.renew(light_words, scenes.version(), added_.size())) {
     std::vector<std::filesystem::path> folders = foldersOf(added_, light_words, scenes);
     if (folders != folders_) {
       folders_ = std::move(folders);
@@ -107,18 +103,13 @@ void EnvironmentMapShelf::update(const std::vector<std::string>& light_words, co
   }
   if (coming) {
     if (coming_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
-    const Thumbnail made = coming_.get();
-    EnvironmentMap& environment_map = environment_maps_[coming_for_];
-    environment_map.error = made.error;
-    if (!made.error.empty()) return;
-    environment_map.thumbnail =
-        gpu::Texture("probe", {.format = GL_RGBA8, .width = made.width, .height = made.height});
-    glTextureSubImage2D(environment_map.thumbnail.id(), 0, 0, 0, static_cast<GLsizei>(made.width),
-                        static_cast<GLsizei>(made.height), GL_RGBA, GL_UNSIGNED_BYTE, made.rgba.data());
+    Thumbnail made = coming_.get();
+    environment_maps_[coming_for_].error = std::move(made.error);
+    environment_maps_[coming_for_].thumbnail = std::move(made.image);
     return;
   }
   for (std::size_t i = 0; i < environment_maps_.size(); ++i)
-    if (!environment_maps_[i].thumbnail && environment_maps_[i].error.empty()) {
+    if (environment_maps_[i].thumbnail.texels.empty() && environment_maps_[i].error.empty()) {
       coming_for_ = i;
       coming_ = std::async(std::launch::async, &EnvironmentMapShelf::read, environment_maps_[i].file);
       return;

@@ -1,6 +1,6 @@
-// Environment maps to choose from: the .hdr and .exr files beside those in use, beside the open scenes and in
-// folders that were added, each with a small picture of it. Reading happens on a thread beside the editor's.
-// Main thread, with a current OpenGL context.
+// Lists environment maps to choose from: the .hdr and .exr files beside those in use, beside the open scenes
+// and in folders that were added, each with a small picture of it. Files are read on a thread beside the
+// editor's, one at a time. Main thread. A file that cannot be read stays in the list with its error.
 #pragma once
 
 #include <filesystem>
@@ -9,7 +9,8 @@
 #include <vector>
 
 #include "editor/session/scenes.hpp"
-#include "runtime/gpu/objects.hpp"
+#include "runtime/base/change_gate.hpp"
+#include "runtime/spec/image.hpp"
 
 namespace lambent::editor {
 
@@ -17,28 +18,27 @@ class EnvironmentMapShelf {
  public:
   struct EnvironmentMap {
     std::filesystem::path file;
-    gpu::Texture thumbnail;  // no handle: not here yet
+    spec::Rgba8Image thumbnail;  // empty: not read yet
     std::string error;
+    std::uint32_t texture = 0;  // the thumbnail's, as the renderer names it; 0: none yet
   };
 
   void addFolder(const std::filesystem::path& folder);
-  // Looks again where something has changed; brings one thumbnail at a time.
+  // Looks for files again where something has changed, and reads one thumbnail at a time.
   void update(const std::vector<std::string>& light_words, const Scenes& scenes);
   const std::vector<EnvironmentMap>& environment_maps() const { return environment_maps_; }
+  std::vector<EnvironmentMap>& environment_maps() { return environment_maps_; }
 
  private:
   struct Thumbnail {
-    std::uint32_t width = 0, height = 0;
-    std::vector<std::uint8_t> rgba{};
+    spec::Rgba8Image image{};
     std::string error{};
   };
   static Thumbnail read(const std::filesystem::path& file);
   void look();
 
-  // What folders_ were found from.
-  std::vector<std::string> words_seen_;
-  std::uint64_t scenes_seen_ = 0;
-  std::size_t added_seen_ = 0;
+  // What the folders were found from.
+  ChangeGate<std::vector<std::string>, std::uint64_t, std::size_t> changed_;  // words, scenes, what is added
   std::vector<std::filesystem::path> added_, folders_;
   std::vector<EnvironmentMap> environment_maps_;
   std::future<Thumbnail> coming_;

@@ -1,9 +1,7 @@
 #include "editor/session/key_lights.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
-#include <numbers>
 #include <utility>
 
 #include <fmt/format.h>
@@ -14,6 +12,8 @@
 
 #include "editor/gizmo/sun_gizmo.hpp"
 #include "editor/session/session.hpp"
+#include "runtime/lighting/light_blocks.hpp"
+#include "runtime/lighting/light_pieces.hpp"
 #include "runtime/spec/key_edit.hpp"
 #include "runtime/spec/light.hpp"
 
@@ -23,13 +23,8 @@ namespace {
 
 using FoundKey = lighting::Environment::FoundKey;
 
-double luminance(const glm::vec3& c) {
-  return 0.2126 * double{c.r} + 0.7152 * double{c.g} + 0.0722 * double{c.b};
-}
-
 double fluxOf(const spec::Disc& disc) {
-  const double half = std::sin(0.5 * double{disc.radius_rad});
-  return 4.0 * std::numbers::pi * half * half * luminance(disc.radiance);
+  return lighting::solidAngle(double{disc.radius_rad}) * lighting::luminance(disc.radiance);
 }
 
 // Places among the lights of those that environment maps, or suns, came from, in their order.
@@ -64,7 +59,7 @@ std::vector<std::string> without(const std::vector<std::string>& words, const sp
 }
 
 void putEdit(Session& session, const FoundKey& found, const spec::KeyEdit& edit, const char* name) {
-  session.editWorld(name, [&](WorldState& world) {
+  session.history.editWorld(name, [&](WorldState& world) {
     if (found.edit) world.key_edits = without(world.key_edits, *found.edit);
     world.key_edits.push_back(spec::keyEditWord(edit));
   });
@@ -75,9 +70,18 @@ spec::KeyEdit editOf(const FoundKey& found) {
   return {.set = found.set, .found = found.found.direction, .towards = found.found.direction};
 }
 
-Result<std::size_t> sunOf(const Session& session, std::size_t key) {
+struct FoundSun {
+  std::size_t place = 0;  // among the words of its set
+  spec::SunLight light;
+};
+
+Result<FoundSun> sunOf(const Session& session, std::size_t key) {
   const std::vector<KeyLight> keys = keyLightsOf(session);
-  if (key < keys.size() && keys[key].light < wordsOf(session, keys[key].set).size()) return keys[key].light;
+  if (key < keys.size() && keys[key].light < wordsOf(session, keys[key].set).size()) {
+    const auto light = spec::parseLight(wordsOf(session, keys[key].set)[keys[key].light]);
+    if (light && std::holds_alternative<spec::SunLight>(*light))
+      return FoundSun{.place = keys[key].light, .light = std::get<spec::SunLight>(*light)};
+  }
   return fail("key light", "its sun is not among the lights any more", "wait until the lights are loaded");
 }
 
@@ -95,7 +99,7 @@ std::string KeyLight::source() const {
 std::vector<KeyLight> keyLightsOf(const Session& session) {
   const lighting::Environment& environment = session.stage.environment();
   constexpr double kFluxOfBandZero = 3.5449077;  // sqrt(4 pi)
-  const double all = kFluxOfBandZero * luminance(environment.light().c[0]);
+  const double all = kFluxOfBandZero * lighting::luminance(environment.light().c[0]);
   std::vector<KeyLight> keys;
   for (const FoundKey& found : environment.foundKeys()) {
     const std::vector<spec::Light>& lights =
@@ -137,16 +141,13 @@ Result<void> moveKeyLight(Session& session, std::size_t key, const glm::vec3& to
   }
   const auto sun = sunOf(session, key);
   if (!sun) return failAgain(sun.error());
-  const std::string& word = wordsOf(session, found->set)[*sun];
-  const auto light = spec::parseLight(word);
-  if (!light || !std::holds_alternative<spec::SunLight>(*light))
-    return fail("key light", word + " is no sun", "wait until the lights are loaded");
-  const auto& now = std::get<spec::SunLight>(*light);
+  const spec::SunLight& now = sun->light;
   const glm::quat turn(found->now.direction, towards);
   const glm::vec3 to = turn * spec::directionFromAzimuthElevation(now.azimuth_deg, now.elevation_deg);
-  const auto turned = withSunDirection(word, skyDirection(to, 0.0f));
+  const auto turned = withSunDirection(wordsOf(session, found->set)[sun->place], skyDirection(to, 0.0f));
   if (!turned) return failAgain(turned.error());
-  session.editWorld("turn of sun", [&](WorldState& world) { wordsOf(world, found->set)[*sun] = *turned; });
+  session.history.editWorld("turn of sun",
+                            [&](WorldState& world) { wordsOf(world, found->set)[sun->place] = *turned; });
   return {};
 }
 
@@ -164,29 +165,28 @@ Result<void> dimKeyLight(Session& session, std::size_t key, const glm::vec3& fac
   }
   const auto sun = sunOf(session, key);
   if (!sun) return failAgain(sun.error());
-  const auto light = spec::parseLight(wordsOf(session, found->set)[*sun]);
-  if (!light || !std::holds_alternative<spec::SunLight>(*light))
-    return fail("key light", "its light is no sun", "wait until the lights are loaded");
-  auto now = std::get<spec::SunLight>(*light);
+  spec::SunLight now = sun->light;
   now.radiance *= factor;
   const std::string word =
       fmt::format("sun:{:.7g},{:.7g},{:.7g},{:.7g},{:.7g},{:.7g}", now.azimuth_deg, now.elevation_deg,
                   now.angle_deg, now.radiance.r, now.radiance.g, now.radiance.b);
-  session.editWorld("strength of sun", [&](WorldState& world) { wordsOf(world, found->set)[*sun] = word; });
+  session.history.editWorld("strength of sun",
+                            [&](WorldState& world) { wordsOf(world, found->set)[sun->place] = word; });
   return {};
 }
 
 Result<void> resetKeyLights(Session& session, std::optional<std::size_t> key) {
   if (!key) {
     if (!session.document.world().key_edits.empty())
-      session.editWorld("key lights as found", [](WorldState& world) { world.key_edits.clear(); });
+      session.history.editWorld("key lights as found", [](WorldState& world) { world.key_edits.clear(); });
     return {};
   }
   const auto found = findKey(session, *key);
   if (!found) return failAgain(found.error());
   if (!found->edit) return {};
-  session.editWorld("key light as found",
-                    [&](WorldState& world) { world.key_edits = without(world.key_edits, *found->edit); });
+  session.history.editWorld("key light as found", [&](WorldState& world) {
+    world.key_edits = without(world.key_edits, *found->edit);
+  });
   return {};
 }
 
@@ -206,7 +206,7 @@ void replaceLights(const Session& session, WorldState& world, std::vector<std::s
       if (!edit || edit->set != 0) return !edit;
       for (std::size_t i = 0; i < found.size(); ++i)
         if (found[i].edit == *edit) return !stays(keys[i].word);
-      return true;  // it waits for a key light of a environment map that may be the one that goes
+      return true;  // it waits for a key light of an environment map that may be the one that goes
     });
   }
   world.lights = std::move(lights);

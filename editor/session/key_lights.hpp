@@ -1,8 +1,8 @@
-// The key lights that the environment has, and their edits: where each stands, how strong it is, where it was
-// found, and moving, dimming and colouring it. Those that were found in a environment map are edited by words
-// of WorldState::key_edits; those of a sun by the sun's own word. Each edit is a step of the history. Angles
-// are those of the world: azimuth 0 on +Z, 90 on +X, as cameras have them. Errors: no such key light; one
-// that cannot be edited so.
+// Lists the key lights that the environment has (where each stands, how strong it is, where it was found),
+// and moves, dims and colours them. Those that were found in an environment map are edited by words of
+// WorldState::key_edits; those of a sun by the sun's own word. Each edit is a step of the history. Angles are
+// those of the world: azimuth 0 on +Z, 90 on +X, as cameras have them. Errors: no such key light; one that
+// cannot be edited so.
 #pragma once
 
 #include <optional>
@@ -20,7 +20,7 @@ struct WorldState;
 
 struct KeyLight {
   std::size_t set = 0;  // 1: of the lights that are faded to
-  // A word of WorldState::lights (or fade_lights), in which it was found.
+  // The word of WorldState::lights (or fade_lights) in which it was found, and its place there.
   std::size_t light = 0;
   std::string word;
   bool in_map = false;
@@ -35,17 +35,18 @@ struct KeyLight {
   std::string source() const;  // "studio.hdr", "sun 1", "piece of sun 1"
 };
 
-// In the order of Environment::keys().
+// Returns them in the order of Environment::keys().
 std::vector<KeyLight> keyLightsOf(const Session& session);
 
-// A piece of a sun takes its sun along.
+// Turns it to this direction of the world. A piece of a sun takes its sun along.
 Result<void> moveKeyLight(Session& session, std::size_t key, const glm::vec3& towards_ws);
-// Of one that was found in a environment map: times what was found. Of a sun: times what it has.
+// Sets the factor on what was found in an environment map, or multiplies what a sun has; per channel, 0 to a
+// million.
 Result<void> dimKeyLight(Session& session, std::size_t key, const glm::vec3& factor);
-// As it was found; without a number all of them. Suns stay as they are.
+// Makes a key light as it was found, or all of them without a number. Suns stay as they are.
 Result<void> resetKeyLights(Session& session, std::optional<std::size_t> key);
 
-// The world's light becomes `lights`: edits of key lights stay with the environment maps that they were found
+// Gives the world these lights: edits of key lights stay with the environment maps that they were found
 // in, and go with them.
 void replaceLights(const Session& session, WorldState& world, std::vector<std::string> lights);
 

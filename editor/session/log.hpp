@@ -1,5 +1,5 @@
-// What the editor has to say: notices and errors, each a line that says what to do, kept for the log panel
-// and shown for a while as toasts. Safe from any thread, for bakes and loaders report from theirs.
+// Keeps what the editor has to say: notices and errors, each a line that says what to do, for the log panel
+// and for toasts. It is safe from any thread, because bakes and loaders report from theirs.
 #pragma once
 
 #include <chrono>
@@ -33,9 +33,9 @@ class Log {
   void clear();
 
   std::vector<LogEntry> entries() const;
-  // Newer than `age`, the latest last.
+  // Returns those that are newer than `age`, the latest last.
   std::vector<LogEntry> recent(std::chrono::milliseconds age) const;
-  // Since the start; clear() does not take them back.
+  // Counts errors since the start; clear() does not take them back.
   std::uint64_t errors() const;
 
  private:

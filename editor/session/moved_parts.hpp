@@ -1,4 +1,5 @@
-// What moved within a rigid group since it was baked: the group's transfer still has it in its old place.
+// Finds what moved within a rigid group since it was baked: the group's transfer still has it in its old
+// place.
 #pragma once
 
 #include <string>
@@ -10,7 +11,8 @@
 
 namespace lambent::editor {
 
-// A sentence for each node that no longer stands where its group has it; moved groups as a whole are right.
+// Adds a sentence for each node that no longer stands where its group has it. Groups that moved as a whole
+// are right.
 void addMovedParts(const ecs::Registry& registry, const bundle::Description& description,
                    const scene::SceneInstance& instance, std::vector<std::string>& sentences);
 

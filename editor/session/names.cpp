@@ -24,10 +24,26 @@ Result<std::vector<ecs::Entity>> findEntities(const Session& session, const std:
   return fail(word, "nothing of that name is there", "\"tree\" lists all there is");
 }
 
+std::optional<std::size_t> sceneAtHand(const Session& session) {
+  const auto& entries = session.scenes.entries();
+  if (entries.empty()) return std::nullopt;
+  const ecs::Entity primary = session.selection.primaryEntity(session.document);
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    if (!entries[i].slot) continue;
+    const scene::SceneInstance& instance = session.stage.world().instance(*entries[i].slot);
+    if (primary == instance.root || isBelow(session.document.registry(), primary, instance.root)) return i;
+    const auto holds = [&](const std::vector<ecs::Entity>& list) {
+      return std::find(list.begin(), list.end(), primary) != list.end();
+    };
+    if (holds(instance.groups) || holds(instance.draws) || holds(instance.animations)) return i;
+  }
+  return 0;
+}
+
 Result<std::size_t> findScene(const Session& session, const std::string& word) {
   const auto& entries = session.scenes.entries();
   if (word.empty()) {
-    if (const auto entry = session.entryAtHand()) return *entry;
+    if (const auto entry = sceneAtHand(session)) return *entry;
     return fail("scene", "none is open", "open one first");
   }
   std::vector<std::string> known;

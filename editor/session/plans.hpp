@@ -1,5 +1,5 @@
-// The plans of scenes (`lambent plan`), made on a thread beside the editor's: what a bake simulates, what
-// not, and why. Asked for by the panel that shows them; kept until the scene's file changes.
+// Makes the plans of scenes (`lambent plan`) on a thread beside the editor's: what a bake simulates, what
+// not, and why. The panel that shows a plan asks for it; it is kept until the scene's file or options change.
 #pragma once
 
 #include <filesystem>
@@ -20,7 +20,7 @@ struct ScenePlan {
 
 class Plans {
  public:
-  // Null while it is being made.
+  // Returns the plan, or null while it is being made.
   const Result<ScenePlan>* find(const std::filesystem::path& scene, const baker::BakeOptions& options);
 
  private:

@@ -1,6 +1,6 @@
-// What the editor remembers from one day to the next: the layout, recent files, panel switches. A small JSON
-// file, $XDG_CONFIG_HOME/lambent/editor.json; a damaged or missing one means defaults, and saving never fails
-// loudly: the layout is not worth an error.
+// Keeps what the editor remembers from one day to the next: the layout, recent files, panel switches. It is a
+// small JSON file, $XDG_CONFIG_HOME/lambent/editor.json; a damaged or missing one means defaults, and saving
+// never fails loudly: the layout is not worth an error.
 #pragma once
 
 #include <filesystem>
@@ -21,7 +21,8 @@ struct Preferences {
   void addRecent(const std::filesystem::path& file);
 };
 
-// Empty where neither XDG_CONFIG_HOME nor HOME is set: nothing is remembered then.
+// Returns the file's path, or an empty one where neither XDG_CONFIG_HOME nor HOME is set: nothing is
+// remembered then.
 std::filesystem::path preferencesFile();
 Preferences loadPreferences(const std::filesystem::path& file);
 void savePreferences(const std::filesystem::path& file, const Preferences& preferences);

@@ -20,7 +20,7 @@ void QualityStudy::measure() {
 }
 
 void QualityStudy::update(Session& session) {
-  if (waiting_.empty() || !session.atRest() || session.viewing.size.width == 0) return;
+  if (waiting_.empty() || !session.atRest()) return;
   Stage& stage = session.stage;
   if (waiting_.size() == frame::qualityNames().size()) {
     rows_.clear();
@@ -31,14 +31,14 @@ void QualityStudy::update(Session& session) {
   }
   const std::string name = std::move(waiting_.back());
   waiting_.pop_back();
-  frame::FrameSettings settings = stage.frame().settings();
+  frame::FrameSettings settings = stage.settings();
   // How many key lights there are is the environment's to follow.
   lighting::Environment environment = stage.environment();
   const auto measured = [&]() -> Result<Row> {
     if (auto put = frame::putQuality(settings, name); !put) return failAgain(put.error());
     environment.setMostKeys(settings.mostKeys());
     auto frame =
-        frame::measureFrame(stage.world(), environment, view_, settings, {.size = size_, .repeats = 3});
+        frame::measureFrame({stage.world(), environment, view_}, settings, {.size = size_, .repeats = 3});
     if (!frame) return failAgain(frame.error());
     Row row{.quality = name, .error = 0.0, .cost = std::move(frame->cost)};
     if (rows_.empty()) {

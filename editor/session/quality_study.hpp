@@ -1,7 +1,8 @@
-// What each quality (frame/quality.hpp) costs in time and in error in the present view, measured when asked
+// Measures what each quality (frame/quality.hpp) costs in time and in error in the present view, when asked
 // for: one quality a frame, the highest first, so that the editor stays alive between. The error is the
 // relative RMS of linear radiance against the picture at high quality, which has errors of its own: the
-// reference beside tells these. Main thread, with a current OpenGL context.
+// reference beside tells these. Main thread; update() needs a
+// current OpenGL context, and the renderer calls it.
 #pragma once
 
 #include <optional>
@@ -19,9 +20,9 @@ class Session;
 
 class QualityStudy {
  public:
-  // Of the view, the light and the settings that there are at the next update.
+  // Begins to measure, with the view, the light and the settings that there are at the next update.
   void measure();
-  // Once a frame.
+  // Measures one quality if all is at rest; call it once a frame.
   void update(Session& session);
   bool busy() const { return !waiting_.empty(); }
 
@@ -30,9 +31,9 @@ class QualityStudy {
     double error = 0.0;  // against the highest: 0 there
     frame::FrameCost cost;
   };
-  // From the lowest to the highest that is measured so far.
+  // What is measured so far, from the lowest quality to the highest.
   const std::vector<Row>& rows() const { return rows_; }
-  // Of the pictures: the view's, or smaller where that is large.
+  // The size of the pictures: the view's, or smaller where that is large.
   const spec::Size& size() const { return size_; }
   const spec::View& view() const { return view_; }
 

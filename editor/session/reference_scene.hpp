@@ -1,5 +1,5 @@
-// What a path-traced picture needs of the world: its scenes as they are edited and where they stand, and the
-// lights that a person has put there.
+// Makes the scene that the reference traces out of the world: its scenes as they are edited and where they
+// stand, and the lights that a person has put there.
 #pragma once
 
 #include <filesystem>
@@ -13,7 +13,7 @@
 
 namespace lambent::editor {
 
-// A scene that is shown.
+// Says which scene is shown, and how.
 struct ReferencePart {
   std::filesystem::path source;
   std::filesystem::file_time_type time;
@@ -33,16 +33,16 @@ struct ReferenceLamps {
   std::string text() const;  // equal texts: equal lamps
 };
 
-// Point, spot and directional lights of the world that belong to no bundle.
+// Returns the point, spot and directional lights of the world that belong to no bundle.
 ReferenceLamps lampsOf(const ecs::Registry& registry, const Document& document);
 void addLamps(const ReferenceLamps& lamps, baker::Scene& scene);
 
-// All of them as one, as the animations have them; takes a while, on any thread. Errors: those of importing
-// one.
+// Joins all of them into one scene, as the animations have them at this time. Takes a while; any thread.
+// Errors: those of importing one.
 Result<baker::Scene> makeReferenceScene(const std::vector<ReferencePart>& parts, const ReferenceLamps& lamps,
                                         float animation_s);
 
-// Spheres and discs of light that a person has put into the world.
+// Returns the spheres and discs of light that a person has put into the world.
 std::vector<spec::Light> shapesOf(const ecs::Registry& registry, const Document& document);
 
 }  // namespace lambent::editor

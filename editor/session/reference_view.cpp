@@ -28,7 +28,7 @@ Result<std::vector<ReferencePart>> partsOf(const Session& session) {
     parts.push_back({.source = entries[i].source,
                      .time = std::filesystem::last_write_time(entries[i].source, ignored),
                      .name = entries[i].id,
-                     .edits = session.editsOf(i),
+                     .edits = session.changes.editsOf(i),
                      .world_from_scene = worldFromNode(session.document.registry(), instance.root)});
   }
   return parts;
@@ -74,10 +74,6 @@ Sky skyOf(const Stage& stage) {
   return sky;
 }
 
-gpu::Texture textureOf(const char* label, spec::Size size, GLenum format) {
-  return gpu::Texture(label, {.format = format, .width = size.width, .height = size.height});
-}
-
 }  // namespace
 
 bool ReferenceView::done() const {
@@ -107,7 +103,7 @@ std::string ReferenceView::notice() const {
 }
 
 // The scenes are read and edited on another thread; until they are there the old ones are traced.
-void ReferenceView::followScene(Session& session) {
+void ReferenceView::followScene(const Session& session) {
   auto parts = partsOf(session);
   if (!parts) {
     error_ = parts.error();
@@ -116,7 +112,7 @@ void ReferenceView::followScene(Session& session) {
   }
   if (parts->empty()) return;  // nothing is shown yet
   ReferenceLamps lamps = lampsOf(session.stage.world().registry(), session.document);
-  SceneKey key{std::move(*parts), lamps.text(), session.viewing.animation_s};
+  SceneKey key{std::move(*parts), lamps.text(), session.playback.time_s};
   if (coming_.valid() && coming_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
     auto made = coming_.get();
     if (made) {
@@ -140,7 +136,7 @@ void ReferenceView::followScene(Session& session) {
   });
 }
 
-void ReferenceView::followEye(Session& session) {
+void ReferenceView::followEye(const Session& session) {
   const EyeKey key{session.viewing.shown_view, session.viewing.size, session.stage.environment().version(),
                    spp, band_limit};
   const bool same = eye_key_ && sameView(eye_key_->view, key.view) &&
@@ -176,77 +172,28 @@ void ReferenceView::followEye(Session& session) {
   difference_.reset();
 }
 
-Result<spec::RgbaImage> ReferenceView::linearPicture(Session& session, const spec::View& view,
-                                                     spec::Size size) {
-  if (!linear_) {
-    auto made =
-        frame::Frame::create({.size = size, .output = frame::Output::Linear, .wait_for_captures = true},
-                             session.stage.environment());
-    if (!made) return failAgain(made.error());
-    linear_ = std::move(*made);
-  }
-  linear_->resize(size);
-  if (auto set = linear_->setSettings(session.stage.frame().settings()); !set) return failAgain(set.error());
-  if (auto drawn = linear_->render(session.stage.world(), session.stage.environment(), view); !drawn)
-    return failAgain(drawn.error());
-  return linear_->readLinear();
-}
-
-void ReferenceView::show(Session& session, const baker::reference::Snapshot& snapshot) {
-  const spec::Size size{snapshot.image.width, snapshot.image.height};
-  radiance_ = textureOf("reference", size, GL_RGBA32F);
-  glTextureSubImage2D(radiance_.id(), 0, 0, 0, static_cast<GLsizei>(size.width),
-                      static_cast<GLsizei>(size.height), GL_RGBA, GL_FLOAT, snapshot.image.texels.data());
-  if (!tone_mapper_) {
-    auto made = frame::ToneMapper::create(/*samples=*/0, /*linear=*/false);
-    if (!made) return session.log.error(made.error());
-    tone_mapper_ = std::move(*made);
-  }
-  shown_ = textureOf("reference, shown", size, GL_RGBA8);
-  shown_target_ = gpu::Framebuffer("reference, shown", shown_, nullptr);
-  glBindFramebuffer(GL_FRAMEBUFFER, shown_target_.id());
-  glViewport(0, 0, static_cast<GLsizei>(size.width), static_cast<GLsizei>(size.height));
-  gpu::Counters counters;
-  tone_mapper_->run(radiance_, session.stage.frame().exposureEv(), counters);
-  if (snapshot.spp == 0 || !session.stage.atRest()) return;
-
-  const auto picture = linearPicture(session, eye_key_->view, size);
-  if (!picture) return session.log.error(picture.error());
-  const bool halves = snapshot.halves[0].width > 0 && snapshot.halves[1].width > 0;
-  auto difference =
-      baker::differenceOf(*picture, halves ? snapshot.halves[0] : snapshot.image,
-                          halves ? &snapshot.halves[1] : nullptr, {.map = heat_map}, "reference");
-  if (!difference) {
+void ReferenceView::compared(Result<baker::Difference> difference) {
+  if (difference)
+    difference_ = std::move(*difference);
+  else
     error_ = difference.error();
-    return;
-  }
-  difference_ = std::move(*difference);
-  heat_ = textureOf("heat map", size, GL_RGBA8);
-  glTextureSubImage2D(heat_.id(), 0, 0, 0, static_cast<GLsizei>(size.width),
-                      static_cast<GLsizei>(size.height), GL_RGBA, GL_UNSIGNED_BYTE,
-                      difference_->heat.texels.data());
 }
 
-void ReferenceView::update(Session& session) {
+bool ReferenceView::update(const Session& session) {
   if (!on()) {
-    tracer_.reset(), scene_.reset(), seen_.reset(), difference_.reset(), linear_.reset();
+    tracer_.reset(), scene_.reset(), seen_.reset(), difference_.reset();
     scene_key_.reset(), eye_key_.reset(), error_.reset();
-    return;
+    return false;
   }
   if (session.scenes.entries().empty()) {
     error_ = Error{"reference", "there is no scene to trace", "open a .gltf or .glb file"};
     scene_key_.reset();
-    return;
+    return false;
   }
   followScene(session);
-  if (!scene_ || session.viewing.size.width == 0) return;
+  if (!scene_) return false;
   followEye(session);
-  const auto now = tracer_->snapshot();
-  const float exposure_ev = session.stage.frame().exposureEv();
-  if (!now || (now == seen_ && exposure_ev == seen_exposure_ev_ && (difference_ || !session.stage.atRest())))
-    return;
-  show(session, *now);
-  seen_ = now, seen_exposure_ev_ = exposure_ev;
+  return true;
 }
 
 }  // namespace lambent::editor

@@ -1,7 +1,8 @@
-// The path-traced picture beside the runtime's: traced in the background from all scenes that are shown, as
-// the world has them (where they stand, moved nodes, edited materials, lights and eye), finer pass by pass,
-// and held against the runtime's own linear picture of the same eye. Anything that changes begins it anew.
-// Main thread; tracing happens elsewhere. What cannot be traced says so in notice().
+// Owns the path-traced reference beside the runtime's picture: traced in the background from all scenes that
+// are shown, as the world has them (where they stand, moved nodes, edited materials, lights and camera),
+// finer pass by pass. Anything that changes begins it anew. What cannot be traced says so in notice(). The
+// renderer (editor/render) shows its snapshots and tells how they differ from the runtime's own linear
+// picture. Main thread; tracing happens elsewhere.
 #pragma once
 
 #include <cstdint>
@@ -9,14 +10,15 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "baker/accuracy/difference.hpp"
 #include "editor/session/reference_scene.hpp"
 #include "reference/progressive.hpp"
-#include "runtime/frame/frame.hpp"
-#include "runtime/gpu/objects.hpp"
-#include "runtime/tone_map/tone_mapper.hpp"
+#include "runtime/spec/camera.hpp"
+#include "runtime/spec/distant_lights.hpp"
+#include "runtime/spec/size.hpp"
 
 namespace lambent::editor {
 
@@ -32,18 +34,24 @@ class ReferenceView {
   std::optional<int> band_limit;  // of the light: what an ideal runtime of that order would show
   baker::HeatMap heat_map = baker::HeatMap::Signed;
 
-  // Once a frame, after the runtime's picture was drawn; nothing happens while it is off.
-  void update(Session& session);
-
   bool on() const { return split != SplitView::Off; }
-  // Whether it has the samples that were asked for, or cannot go on.
+  // Returns whether it shows the samples that were asked for, or cannot go on.
   bool done() const;
-  // The picture to show, row 0 at the top; no handle: none yet.
-  const gpu::Texture& picture() const { return split == SplitView::Heat ? heat_ : shown_; }
-  const std::optional<baker::Difference>& difference() const { return difference_; }
-  std::shared_ptr<const baker::reference::Snapshot> snapshot() const;
-  // What keeps it from being traced, or what it does.
+  // Says what keeps it from being traced, or what it does.
   std::string notice() const;
+  std::shared_ptr<const baker::reference::Snapshot> snapshot() const;
+  // How the snapshot that is shown differs from the runtime's picture; nothing: not known yet.
+  const std::optional<baker::Difference>& difference() const { return difference_; }
+
+  // The rest is for the renderer. Follows the world; call it once a frame, after the runtime's picture was
+  // drawn. Returns whether there is a picture to show. Lets go of everything while it is off.
+  bool update(const Session& session);
+  // The view that is traced.
+  const spec::View& view() const { return eye_key_->view; }
+  // The snapshot that shown() was told of last.
+  const std::shared_ptr<const baker::reference::Snapshot>& seen() const { return seen_; }
+  void shown(std::shared_ptr<const baker::reference::Snapshot> snapshot) { seen_ = std::move(snapshot); }
+  void compared(Result<baker::Difference> difference);
 
  private:
   // What the scene that is traced was made of.
@@ -61,10 +69,8 @@ class ReferenceView {
     std::optional<int> band_limit;
   };
   using ScenePointer = std::shared_ptr<const baker::Scene>;
-  void followScene(Session& session);
-  void followEye(Session& session);
-  void show(Session& session, const baker::reference::Snapshot& snapshot);
-  Result<spec::RgbaImage> linearPicture(Session& session, const spec::View& view, spec::Size size);
+  void followScene(const Session& session);
+  void followEye(const Session& session);
 
   std::optional<SceneKey> scene_key_;
   std::optional<EyeKey> eye_key_;
@@ -76,11 +82,6 @@ class ReferenceView {
   std::optional<Error> error_;
   std::unique_ptr<baker::reference::ProgressiveReference> tracer_;
   std::shared_ptr<const baker::reference::Snapshot> seen_;
-  float seen_exposure_ev_ = 0.0f;
-  std::optional<frame::ToneMapper> tone_mapper_;
-  std::optional<frame::Frame> linear_;
-  gpu::Texture radiance_, shown_, heat_;
-  gpu::Framebuffer shown_target_;
   std::optional<baker::Difference> difference_;
 };
 

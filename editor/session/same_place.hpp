@@ -1,6 +1,6 @@
-// Whether two matrices stand for the same place, up to the rounding of matrices that were taken apart and put
-// together again. One rule for all that asks: what counts as moved is an edit of the next bake, and the other
-// way round.
+// Decides whether two matrices stand for the same place, up to the rounding of matrices that were taken apart
+// and put together again. One rule for all that asks: what counts as moved is an edit of the next bake, and
+// the other way round.
 #pragma once
 
 #include <algorithm>

@@ -119,7 +119,7 @@ bool SceneSteps::take(ClosedScene& scene) {
     session_.scenes.close(*place);
     return true;
   }
-  Overrides all = captureOverrides(session_.document, session_.baseline());
+  Overrides all = captureOverrides(session_.document, session_.changes.baseline());
   session_.scenes.close(*place);
   scene.kept = goneWith(session_.document, std::move(all));
   return true;

@@ -1,4 +1,4 @@
-// Opening and closing scenes as steps of the history. A scene that is closed leaves behind what was edited of
+// Opens and closes scenes as steps of the history. A scene that is closed leaves behind what was edited of
 // it, and undo brings it back from its files with these edits; what was opened is closed by undo. History
 // speaks by StableIds, which are the same when a scene comes back, so earlier steps go on working. Edits of a
 // scene of which no bundle is there yet are put back when its first one comes. Main thread.
@@ -16,7 +16,7 @@ namespace lambent::editor {
 
 class Session;
 
-// A scene that is not in the world now, or a folder that is not watched.
+// Holds a scene that is not in the world now, or a folder that is not watched.
 struct ClosedScene {
   SceneEntry entry;
   std::size_t place = 0;  // among the entries
@@ -28,16 +28,16 @@ class SceneSteps {
  public:
   explicit SceneSteps(Session& session) : session_(session) {}
 
-  // One step, of all that comes with it. Errors: nothing there that can be opened.
+  // Opens as one step all that comes with the path. Errors: nothing there that can be opened.
   Result<void> open(const std::filesystem::path& path);
   void close(std::size_t entry);
-  // Once a frame: edits of scenes whose bundle has come.
+  // Puts back edits of scenes whose bundle has come; call it once a frame.
   void update();
   void clear() { waiting_.clear(); }
 
-  // For the steps themselves.
+  // The rest is for the steps themselves. Brings the scene back.
   Result<void> bring(const ClosedScene& scene);
-  // As it was. False: it is not there.
+  // Takes the scene out of the world and keeps it as it was. Returns false where it is not there.
   bool take(ClosedScene& scene);
 
  private:

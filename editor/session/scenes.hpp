@@ -1,5 +1,5 @@
-// The scenes and bundles of the world: what was opened, what is baked of it, and where it is shown. A scene
-// (.gltf, .glb) is baked by a queue on threads of its own and shown as soon as its first preview_level is
+// Owns the scenes and bundles of the world: what was opened, what is baked of it, and where it is shown. A
+// scene (.gltf, .glb) is baked by a queue on threads of its own and shown as soon as its first preview is
 // whole; each better one takes the place of the one before. Sources are watched: a file that changes is baked
 // again, and the old state stays until then. Main thread; update() once a frame brings over what happened
 // elsewhere.
@@ -37,7 +37,7 @@ struct SceneSettings {
   std::filesystem::path output_folder;  // of bundles; empty: beside their scenes
   std::filesystem::path cache_folder;   // empty: the usual one
   std::uint64_t cache_bytes = baker::kCacheBytes;
-  bool bake = true;  // scenes at once when they are opened; else only their first, unshadowed preview_level
+  bool bake = true;  // scenes at once when they are opened; else only their first, unshadowed preview
   baker::BakeOptions options;
 };
 
@@ -46,28 +46,29 @@ class Scenes {
   Scenes(frame::World& world, Log& log, SceneSettings settings);
   ~Scenes();
 
-  // A scene, a bundle, or a folder of them, which is watched then. Errors: nothing there that can be opened.
+  // Opens a scene, a bundle, or a folder of them, which is watched then. Errors: nothing there that can be
+  // opened.
   Result<void> open(const std::filesystem::path& path);
-  // As a world file has it; opened under that id.
+  // Opens a bundle, or its scene, as a world file has it, under the id that it has there.
   Result<void> open(const BundleEntry& entry, const std::filesystem::path& folder);
   void close(std::size_t entry);
   void closeAll();
-  // What was closed, at its place again: what is on disk is shown, and baked with what it was baked with.
-  // Errors: neither its bundle nor its scene is there any more.
+  // Opens what was closed, at its place again: what is on disk is shown, and baked with what it was baked
+  // with. Errors: neither its bundle nor its scene is there any more.
   Result<void> reopen(SceneEntry entry, std::size_t place);
   void watchFolder(const std::filesystem::path& folder);
   void unwatchFolder(const std::filesystem::path& folder);
 
-  // What bakes and files did since the last call. Returns whether anything changed.
+  // Takes over what bakes and files did since the last call. Returns whether anything changed.
   bool update();
 
   // Bakes it with the edits that the world makes to it; a bundle without a source is an error.
   Result<void> bake(std::size_t entry, baker::SceneEdits edits);
   Result<void> setOption(std::size_t entry, std::string_view name, std::string_view word);
   void cancel(std::size_t entry);
-  // Until what was baked has been brought over, too.
+  // Returns true until what was baked has been brought over, too.
   bool busy() const;
-  // Of bakes that an earlier session left unfinished.
+  // Opens the scenes of bakes that an earlier session left unfinished, and returns how many there were.
   std::size_t resume();
 
   const std::vector<SceneEntry>& entries() const { return entries_; }
@@ -75,7 +76,7 @@ class Scenes {
   std::optional<baker::JobState> jobOf(std::size_t entry) const;
   std::optional<std::size_t> entryOf(std::uint32_t slot) const;
   const std::vector<std::filesystem::path>& watched() const { return watched_; }
-  // As a world file is to have it, with paths relative to `folder`.
+  // Returns the entries as a world file is to have them, with paths relative to `folder`.
   std::vector<BundleEntry> state(const std::filesystem::path& folder) const;
   // Rises when entries come, go, or show another bundle.
   std::uint64_t version() const { return version_; }

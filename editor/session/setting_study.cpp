@@ -51,19 +51,19 @@ void SettingStudy::update(Session& session) {
   waiting_.pop_back();
   const frame::SettingRow* row = frame::findSetting(task.name);
   if (!row || !row->finest) return;
-  const frame::FrameSettings& settings = session.stage.frame().settings();
+  const frame::FrameSettings& settings = session.stage.settings();
   const spec::Size size{
       320, std::max(1u, 320 * session.viewing.size.height / std::max(1u, session.viewing.size.width))};
   Stage& stage = session.stage;
   if (task.sweep) {
-    auto points = frame::sweepSetting(stage.world(), stage.environment(), session.viewing.shown_view,
+    auto points = frame::sweepSetting({stage.world(), stage.environment(), session.viewing.shown_view},
                                       settings, *row, valuesOf(*row), {.size = size, .repeats = 3});
     if (points)
       rows_[task.name].sweep = std::move(*points);
     else
       session.log.error(points.error());
   } else {
-    auto cost = frame::measureSetting(stage.world(), stage.environment(), session.viewing.shown_view,
+    auto cost = frame::measureSetting({stage.world(), stage.environment(), session.viewing.shown_view},
                                       settings, *row, {.size = size, .repeats = 3});
     if (cost)
       rows_[task.name].cost = std::move(*cost);

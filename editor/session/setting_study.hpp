@@ -1,5 +1,6 @@
-// What each setting of the frame costs in time and in error in the present view, measured when asked for: one
-// setting a frame, so that the editor stays alive between. Main thread, with a current OpenGL context.
+// Measures what each setting of the frame costs in time and in error in the present view, when asked for: one
+// setting a frame, so that the editor stays alive between. Main thread; update() needs a current OpenGL
+// context, and the renderer calls it.
 #pragma once
 
 #include <map>
@@ -14,11 +15,11 @@ class Session;
 
 class SettingStudy {
  public:
-  // Of every setting at the value that it has.
+  // Begins to measure every setting at the value that it has.
   void measureAll();
-  // Over values from the coarsest to the finest of one setting.
+  // Begins to measure one setting at values from its coarsest to its finest.
   void sweep(std::string name);
-  // Once a frame.
+  // Measures one setting if all is at rest; call it once a frame.
   void update(Session& session);
   bool busy() const { return !waiting_.empty(); }
 

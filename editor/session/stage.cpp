@@ -1,8 +1,7 @@
 #include "editor/session/stage.hpp"
 
-#include <algorithm>
+#include <utility>
 
-#include "runtime/frame/frame_settings.hpp"
 #include "runtime/scene/lights.hpp"
 #include "runtime/spec/key_edit.hpp"
 #include "runtime/spec/light.hpp"
@@ -10,8 +9,6 @@
 namespace lambent::editor {
 
 namespace {
-
-constexpr spec::Size kFirstSize{1280, 720};
 
 Result<std::vector<spec::Light>> parseLights(const std::vector<std::string>& words) {
   std::vector<spec::Light> lights;
@@ -25,18 +22,15 @@ Result<std::vector<spec::Light>> parseLights(const std::vector<std::string>& wor
 
 }  // namespace
 
-Stage::Stage(frame::World world, lighting::Environment environment, frame::Frame frame)
-    : world_(std::move(world)), environment_(std::move(environment)), frame_(std::move(frame)) {
+Stage::Stage(frame::World world, lighting::Environment environment)
+    : world_(std::move(world)), environment_(std::move(environment)) {
   environment_entity_ = scene::addEnvironment(world_.registry());
 }
 
 Result<Stage> Stage::create(std::uint64_t max_memory_bytes) {
   auto environment = lighting::Environment::create({});
   if (!environment) return failAgain(environment.error());
-  auto frame = frame::Frame::create({.size = kFirstSize, .output = frame::Output::Display}, *environment);
-  if (!frame) return failAgain(frame.error());
-  return Stage(frame::World({.max_resident_bytes = max_memory_bytes}), std::move(*environment),
-               std::move(*frame));
+  return Stage(frame::World({.max_resident_bytes = max_memory_bytes}), std::move(*environment));
 }
 
 Result<void> Stage::followLights(const WorldState& state) {
@@ -70,8 +64,10 @@ std::vector<Error> Stage::follow(const WorldState& state) {
     if (auto put = frame::putSetting(settings, name, word); !put) errors.push_back(put.error());
   settings.exposure_ev = state.exposure_ev;
   environment_.setMostKeys(settings.mostKeys());
-  if (settings == frame_.settings()) return errors;
-  if (auto done = frame_.setSettings(settings); !done) errors.push_back(done.error());
+  if (auto checked = frame::checkSettings(settings); checked)
+    settings_ = settings;
+  else
+    errors.push_back(checked.error());
   return errors;
 }
 
@@ -81,18 +77,6 @@ void Stage::followEnvironment() {
   environment_.setTurn(component->rotation_deg);
   environment_.setFade(component->fade);
   environment_.setIntensity(component->intensity);
-}
-
-Result<void> Stage::render(const spec::View& view, spec::Size size) {
-  if (size.width != frame_.options().size.width || size.height != frame_.options().size.height)
-    frame_.resize(size);
-  followEnvironment();
-  world_.updateTransforms();
-  if (auto done = frame_.render(world_, environment_, view); !done) return done;
-  const frame::StepCounts& counts = frame_.counts();
-  at_rest_ = world_.loaded() && counts.incident.captured == 0 && counts.incident.waiting == 0 &&
-             counts.cells_shaded == 0 && counts.draws_shaded == 0;
-  return {};
 }
 
 }  // namespace lambent::editor

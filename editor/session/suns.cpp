@@ -82,7 +82,7 @@ void moveSun(Session& session, const SunOnSky& start, const glm::vec3& towards_w
     const auto word = withSunDirection(session.document.world().lights[*start.light],
                                        skyDirection(towards_ws, turnOf(session)));
     if (!word) return session.log.error(word.error());
-    session.editWorld("turn of sun", [&](WorldState& world) { world.lights[*start.light] = *word; });
+    session.history.editWorld("turn of sun", [&](WorldState& world) { world.lights[*start.light] = *word; });
     return;
   }
   if (start.key) {

@@ -1,82 +1,56 @@
-// How the world is looked at: the eye and where it is going, what surfaces show, what is drawn over them, the
-// handles of what is selected, and whether animations run. Comes in: movements of the pointer from the view
-// panel, words from commands; goes out: a spec::View for each picture. Kept in world files by
-// WorldState::view.
+// Holds how the world is looked at: the camera and where it is going, what surfaces show, and what is drawn
+// over them. Movements of the pointer and words of commands come in; a spec::View for each picture goes out.
+// World files keep it in WorldState::view.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <string_view>
 
-#include "editor/document/world_state.hpp"
+#include "editor/document/document.hpp"
 #include "editor/gizmo/camera_control.hpp"
-#include "editor/gizmo/gizmo.hpp"
-#include "editor/gizmo/light_gizmo.hpp"
-#include "editor/gizmo/sun_gizmo.hpp"
-#include "editor/session/suns.hpp"
-#include "runtime/debug/overlays.hpp"
+#include "editor/session/picture_scale.hpp"
+#include "runtime/debug/overlay_options.hpp"
+#include "runtime/scene/bounds.hpp"
 #include "runtime/spec/size.hpp"
 #include "runtime/surface/views.hpp"
 
 namespace lambent::editor {
 
-class Session;
-
 class Viewing {
  public:
-  // Of the picture that is shown; free to be read by panels.
+  // The size in pixels and the view of the last picture.
   spec::Size size;
   spec::View shown_view;
 
-  CameraPose pose, goal;  // the eye eases from the one to the other
-  Gizmo gizmo;
-  LightGizmo light_gizmo;
-  SunGizmo sun_gizmo;
-  std::optional<SunOnSky> sun_taken;       // as it stood when its drag began
-  std::optional<std::size_t> key_at_hand;  // of Environment::keys(): whose fields are shown
-  bool show_gizmos = true;
+  CameraPose pose, goal;  // the camera eases from the one to the other
+  frame::ViewChoice surfaces;
   frame::OverlayOptions overlays;
-  float render_scale = 1.0f;  // pixels of the picture for each of the window
-  // What a picture is drawn at now: fewer pixels while it moves and whole ones take long.
-  float scaleNow() const { return moving_fast_ ? render_scale * moving_scale_ : render_scale; }
-  // Of a picture that was drawn at scaleNow(); moves: it will not stay.
-  void tookTime(double ms, bool moves);
-  // Nothing moves any more: the next picture is whole.
-  void settle();
+  std::optional<std::size_t> key_at_hand;  // of Environment::keys(): whose fields are shown
+  PictureScale scale;
 
-  bool playing = false;      // animations
-  float animation_s = 0.0f;  // how long they have played
+  bool frame_when_loaded = true;  // the first bundle that comes decides where the camera stands
+  bool changed = true;            // the picture must be drawn anew
+  bool flying = false;            // keys move the camera
 
-  bool frame_when_loaded = true;  // the first bundle that comes decides where the eye stands
-  bool changed = true;            // something here did: the picture is to be drawn anew
-  bool flying = false;            // keys move the eye
+  // Eases the camera towards its goal; call it once a frame.
+  void update(const Document& document, double seconds);
+  Result<spec::View> view(const Document& document, spec::Size of) const;
 
-  // Once a frame.
-  void update(Session& session, double seconds);
-  Result<spec::View> view(const Session& session, spec::Size of) const;
-  void setView(Session& session, const frame::ViewChoice& choice);
-  const frame::ViewChoice& surfaceView() const { return view_; }
+  void move(const Document& document, const CameraInput& input);
+  // Lets the box fill the picture; an empty one means the whole world.
+  void frame(const Document& document, const scene::Box& box);
+  // Takes "orbit:...", "pose:...", or a camera of a bundle by its name. Errors: a word that is none of these.
+  Result<void> setCamera(const Document& document, std::string_view word);
 
-  void move(const Session& session, const CameraInput& input);
-  // Empty: the whole world.
-  void frame(const Session& session, const scene::Box& box);
-  // "orbit:...", "pose:...", or a camera of a bundle by its name.
-  Result<void> setCamera(const Session& session, std::string_view word);
-  // Names of the bundles' cameras.
-  std::vector<std::string> cameras(const Session& session) const;
-  bool hasAnimations(const Session& session) const;
-
-  // To and from a world file.
+  // Writes itself into a world's state, and reads itself from there where that has changed.
   void keep(WorldState& world) const;
   void follow(const WorldState& world);
 
  private:
-  scene::Box bounds(const Session& session) const;
-  void placeFirst(Session& session);
+  void placeFirst(const Document& document);
 
-  frame::ViewChoice view_;
-  float moving_scale_ = 1.0f;
-  bool moving_fast_ = false;
   std::string pose_followed_;
 };
 

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <map>
-#include <string>
 #include <utility>
 
 #include <imgui.h>
@@ -19,8 +17,6 @@
 namespace lambent::editor {
 
 struct Ui::State {
-  std::map<std::string, Rectangle, std::less<>> marks, marks_before;
-  std::map<std::string, std::uint32_t, std::less<>> marked;  // how often a name was given in this frame
   std::vector<std::filesystem::path> dropped;
   double last_input = 0.0;
   bool picture_wanted = false;
@@ -101,8 +97,7 @@ void Ui::begin(double wait_s, const ScriptedInput* scripted) {
     apply({}, io);
   }
   state_->scripted_before = scripted != nullptr;
-  state_->marks_before = std::exchange(state_->marks, {});
-  state_->marked.clear();
+  marks_.beginFrame();
   ImGui::NewFrame();
   if (anyInput(io)) state_->last_input = ImGui::GetTime();
 }
@@ -132,29 +127,6 @@ std::vector<std::filesystem::path> Ui::takeDropped() {
 }
 void Ui::drop(std::filesystem::path file) {
   state_->dropped.push_back(std::move(file));
-}
-
-void Ui::mark(std::string_view name) {
-  const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
-  mark(name, {{low.x, low.y}, {high.x, high.y}});
-}
-void Ui::mark(std::string_view name, const Rectangle& where) {
-  std::uint32_t& times = state_->marked[std::string(name)];
-  std::string own(name);
-  if (++times > 1) own += '#' + std::to_string(times);
-  // Somebody may be called like the second of another name.
-  while (!state_->marks.try_emplace(own, where).second)
-    own = std::string(name) + '#' + std::to_string(++times);
-}
-
-std::optional<Rectangle> Ui::find(std::string_view name) const {
-  const auto found = state_->marks_before.find(name);
-  return found == state_->marks_before.end() ? std::nullopt : std::optional(found->second);
-}
-std::vector<std::string> Ui::marks() const {
-  std::vector<std::string> names;
-  for (const auto& [name, where] : state_->marks_before) names.push_back(name);
-  return names;
 }
 
 double Ui::sinceInput() const {

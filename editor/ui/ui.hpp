@@ -1,19 +1,17 @@
-// Dear ImGui over a gpu::Window: its context, its looks, a frame of it, and input that comes from a script as
-// if it came from the user. Widgets that scripts may want to reach leave a mark with a name ("inspector.Lamp.
-// strength"); a script clicks and drags at marks, so it takes the same way through Dear ImGui as a hand
-// would. Main thread only. The one room beside panels/ that knows Dear ImGui; files that were dropped onto
-// the window are handed on.
+// Runs Dear ImGui over a gpu::Window: its context, its looks, a frame of it, the marks of its widgets, and
+// input that comes from a script as if it came from the user. Files that were dropped onto the window are
+// handed on. Main thread only. Beside the panels, this is the only room that knows Dear ImGui.
 #pragma once
 
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include <glm/vec2.hpp>
 
+#include "editor/ui/marks.hpp"
 #include "runtime/gpu/window.hpp"
 #include "runtime/spec/image.hpp"
 
@@ -29,14 +27,9 @@ struct ScriptedInput {
   float wheel = 0.0f;
 };
 
-struct Rectangle {
-  glm::vec2 min{0.0f}, max{0.0f};  // window pixels
-  glm::vec2 center() const { return 0.5f * (min + max); }
-};
-
 class Ui {
  public:
-  // scale: of text and widgets.
+  // scale: factor on the size of text and widgets.
   explicit Ui(gpu::Window& window, float scale = 1.0f);
   ~Ui();
   Ui(const Ui&) = delete;
@@ -44,26 +37,21 @@ class Ui {
 
   // Waits up to wait_s for something to happen, then begins a frame.
   void begin(double wait_s, const ScriptedInput* scripted);
-  // Draws it into framebuffer 0.
+  // Draws the frame into framebuffer 0.
   void end();
 
   bool closeRequested() const;
   void refuseClose();
   std::vector<std::filesystem::path> takeDropped();
-  // As if dropped onto the window.
+  // Takes the file as if it were dropped onto the window.
   void drop(std::filesystem::path file);
 
-  // Of the last widget, under this name until it is not drawn any more. Of several with one name, the first
-  // has it, the others are NAME#2, NAME#3, ... in the order in which they are drawn.
-  void mark(std::string_view name);
-  void mark(std::string_view name, const Rectangle& where);
-  // Of the last whole frame.
-  std::optional<Rectangle> find(std::string_view name) const;
-  std::vector<std::string> marks() const;
+  Marks& marks() { return marks_; }
+  const Marks& marks() const { return marks_; }
 
-  // In seconds, of the user or a script.
+  // Returns how many seconds ago the user or a script did anything.
   double sinceInput() const;
-  // The window as the next end() draws it: asked for in one frame, there in the next. Row 0 at the top.
+  // Asks for the window as the next end() draws it; takePicture() has it then, with row 0 at the top.
   void askForPicture();
   std::optional<spec::Rgba8Image> takePicture();
 
@@ -71,6 +59,7 @@ class Ui {
 
  private:
   gpu::Window& window_;
+  Marks marks_;
   std::unique_ptr<State> state_;
 };
 

@@ -45,7 +45,7 @@ Result<AtomicFile> AtomicFile::open(const fs::path& path) {
   std::error_code ignored;
   const fs::file_status there = fs::status(path, ignored);
   if (fs::is_directory(there)) return fail(path.string(), "is a folder", "name a file to write");
-  // A rename would put a plain file in the place of a device or a pipe.
+  // A rename would replace a device or a pipe by a plain file.
   if (fs::exists(there) && !fs::is_regular_file(there))
     return fail(path.string(), "is a device or a pipe", "name a file to write");
   fs::path part = path;

@@ -1,5 +1,5 @@
-// A file that appears whole or not at all: written beside its final place and renamed on commit, so that an
-// interrupted or failed program never leaves half a file nor loses the old one.
+// An AtomicFile appears whole or not at all. It is written beside its final path and renamed on commit, so an
+// interrupted or failed program neither leaves half a file nor loses the old one.
 #pragma once
 
 #include <cstddef>
@@ -20,11 +20,11 @@ class AtomicFile {
   AtomicFile& operator=(AtomicFile&& other) noexcept;
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
-  ~AtomicFile();  // without commit(): removes the part file
+  ~AtomicFile();  // removes the part file if commit() was not called
 
   Result<void> write(std::span<const std::byte> bytes);
   Result<void> write(const std::string& text);
-  // Flushes to disk and renames over PATH. The object is empty afterwards.
+  // Flushes to disk and renames the part file to PATH. The object is empty afterwards.
   Result<void> commit();
 
  private:
@@ -36,7 +36,7 @@ class AtomicFile {
   int descriptor_ = -1;
 };
 
-// The whole file, or an error that says whether it is missing, a folder or unreadable.
+// Returns the whole file. The error says whether it is missing, a folder or unreadable.
 Result<std::string> readTextFile(const std::filesystem::path& path);
 
 }  // namespace lambent

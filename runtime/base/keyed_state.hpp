@@ -1,7 +1,7 @@
-// What somebody keeps for every entry of a list that others change, index for index. Entries come and go, and
-// indices with them; follow() moves every state to where its entry is now, by a key that an entry keeps for
-// life. Entries that are new have a default-constructed state, that of those that went is dropped: so no
-// state is ever taken for that of another entry. Of entries with the same key the first stays the first.
+// Keeps one state per entry of a list that other code changes, at the same index. When entries come and go,
+// their indices change; follow() then moves each state to the new index of its entry, which it finds by a key
+// that the entry never changes. New entries get a default-constructed state, and states of removed entries
+// are dropped, so no entry ever gets the state of another. Entries with equal keys keep their order.
 #pragma once
 
 #include <algorithm>
@@ -17,8 +17,8 @@ namespace lambent {
 template <class State>
 class KeyedState {
  public:
-  // key(entry): an integer of at most 64 bits, or a pointer to the member. True if anything moved, came or
-  // went; cheap where nothing did.
+  // Matches the states to `entries`. `key` returns an integer of at most 64 bits for an entry, or is a
+  // pointer to such a member. Returns whether anything moved, came or went. The call is cheap if nothing did.
   template <class Entries, class Key>
   bool follow(const Entries& entries, Key key) {
     const auto key_of = [&](const auto& entry) -> std::uint64_t { return std::invoke(key, entry); };

@@ -31,7 +31,8 @@ struct Job {
   }
 };
 
-// Threads that wait for jobs. Who begins late finds nothing left to do, and nobody has waited for it.
+// Threads that wait for jobs. A thread that starts late finds nothing left to do, and the caller has not
+// waited.
 class Helpers {
  public:
   static Helpers& get() {
@@ -69,7 +70,7 @@ class Helpers {
   std::mutex mutex_;  // guards jobs_
   std::condition_variable_any called_;
   std::deque<std::shared_ptr<Job>> jobs_;
-  std::vector<std::jthread> threads_;  // last: they use all above
+  std::vector<std::jthread> threads_;  // last member, because threads use the others
 };
 
 }  // namespace

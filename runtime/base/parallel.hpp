@@ -1,5 +1,5 @@
-// Work that falls into independent parts, on as many threads as it is worth. What comes out must not depend
-// on which thread does which part, nor on how many there are.
+// Runs independent parts of a task on several threads. The result must not depend on which thread runs which
+// part, nor on the number of threads.
 #pragma once
 
 #include <cstddef>
@@ -7,9 +7,9 @@
 
 namespace lambent {
 
-// Calls part(i) for all i below count and returns when all are done. The caller works, too; a helper is
-// called for each `worth` parts beyond the first as many, up to the number of processors (16 at most). Nobody
-// waits for a helper that other programs keep from beginning. From any thread; parts must not throw.
+// Calls part(i) for all i below `count` and returns when all are done. The calling thread works, too. Each
+// further `worth` parts get a helper thread, up to the number of processors and at most 16 threads. The call
+// does not wait for helpers that have not started yet. It may be made from any thread. Parts must not throw.
 void inParallel(std::size_t count, std::size_t worth, const std::function<void(std::size_t)>& part);
 
 }  // namespace lambent

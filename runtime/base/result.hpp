@@ -1,6 +1,7 @@
-// Errors as values. Bad input (a file, an option, a device) is told apart from a bug: it comes back as an
-// Error that names the thing and the hint, and a program prints it as one line. Broken invariants are
-// assertions.
+// The room base owns errors as values, files that appear whole or not at all, and work on several threads.
+// Bad input (a file, an option, a device) is returned as an Error, which a program prints as one line. Bugs
+// are caught by assertions instead. All functions of the room may be called from any thread; an object is
+// used by one thread at a time unless its header says otherwise.
 #pragma once
 
 #include <string>
@@ -12,11 +13,11 @@
 namespace lambent {
 
 struct Error {
-  std::string subject;  // what it is about: a file, an option, a device
-  std::string problem;  // what is wrong with it
-  std::string hint;     // what to do about it; may be empty
+  std::string subject;  // the file, option or device that the error is about
+  std::string problem;  // what is wrong with the subject
+  std::string hint;     // what the user can do about it; may be empty
 
-  // "SUBJECT: PROBLEM; MEND", the line that every program prints after its own name.
+  // Returns "SUBJECT: PROBLEM; HINT", which every program prints after its own name.
   std::string line() const;
 };
 
@@ -27,7 +28,7 @@ inline tl::unexpected<Error> fail(std::string subject, std::string problem, std:
   return tl::unexpected<Error>(Error{std::move(subject), std::move(problem), std::move(hint)});
 }
 
-// Hands an error on under the name of the file that it came up in.
+// Passes an error on as the result of another type.
 inline tl::unexpected<Error> failAgain(Error error) {
   return tl::unexpected<Error>(std::move(error));
 }

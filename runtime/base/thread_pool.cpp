@@ -35,11 +35,11 @@ struct ThreadPool::State {
     }
   }
 
-  std::mutex mutex;  // guards all below but the threads' own
+  std::mutex mutex;  // guards the members below
   std::condition_variable_any called;
-  std::deque<std::function<void()>> work;  // that no thread has taken yet
-  std::size_t waiting = 0;                 // threads, for work
-  std::vector<std::jthread> threads;       // last: they use all above
+  std::deque<std::function<void()>> work;  // tasks that no thread has taken yet
+  std::size_t waiting = 0;                 // number of idle threads
+  std::vector<std::jthread> threads;       // last member, because threads use the others
 };
 
 ThreadPool::ThreadPool() : state_(std::make_unique<State>()) {}

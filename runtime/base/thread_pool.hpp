@@ -1,5 +1,5 @@
-// Threads for work that may wait for others, kept for the next such work: beginning a thread costs up to a
-// millisecond of whoever asks for it, which is much of a frame.
+// Keeps threads for tasks that may block. Starting a thread costs the caller up to a millisecond, which is
+// much of a frame, so threads are reused.
 #pragma once
 
 #include <functional>
@@ -10,12 +10,12 @@ namespace lambent {
 class ThreadPool {
  public:
   ThreadPool();
-  ~ThreadPool();  // after all work
+  ~ThreadPool();  // waits for all tasks
   ThreadPool(ThreadPool&&) noexcept;
   ThreadPool& operator=(ThreadPool&&) noexcept;
 
-  // Calls work() on a thread of its own, one that has nothing to do if there is any, at once and not after
-  // other work. work must not throw. From any thread.
+  // Calls work() at once on a thread of its own: an idle thread if there is one, else a new one. `work` must
+  // not throw. This may be called from any thread.
   void run(std::function<void()> work);
 
  private:

@@ -22,13 +22,13 @@ static_assert(kPatchLinks == lighting::kLinks);
 namespace {
 
 constexpr gpu::FindText kShaders[] = {&embedded::lambent_bounces::find};
-constexpr std::size_t kOtherLevel = 1;  // of the proxies of what stands in the light
-// Where bounces add less to light that falls on all of a group alike, bands suffice for key lights.
+constexpr std::size_t kOtherLevel = 1;  // level of the blockers' proxies
+// If bounces of uniform direct light add less than this, bands suffice for key lights.
 constexpr float kWorthPatches = 0.02f;
-constexpr float kFarAway = 1e3f;  // radii of a room, where key lights are
+constexpr float kFarAway = 1e3f;  // distance of key lights, in radii of the room
 
 std::uint32_t outputsOf(const streaming::ResidentDraw& draw) {
-  return draw.outputs == 1 ? 1 : bundle::kMappedOutputs;
+  return draw.form() == transfer::Form::Vector ? 1 : transfer::kMappedOutputs;
 }
 
 lighting::LinkSpread spreadOf(const streaming::ResidentDraw& draw) {
@@ -69,7 +69,7 @@ void PatchBounces::drop() {
   counts_ = {};
 }
 
-// Lamps that stand within the group's bounds have patches in any case.
+// Lamps within the group's bounds always use patches.
 std::uint32_t PatchBounces::within(const LitScene& scene, std::size_t group) {
   return group < scene.local_masks.size() ? scene.local_masks[group] : 0u;
 }
@@ -84,18 +84,28 @@ bool PatchBounces::apart(const World& world, const LitScene& scene, const PatchL
          (!lights.keys.empty() || (lights.bands->hasKeys() && beside(scene, group) != 0));
 }
 
+bool PatchBounces::mendsBands(const World& world, const LitScene& scene, const PatchLights& lights,
+                              std::size_t group) const {
+  const auto& transport = rooms_[group].room.transport();
+  return apart(world, scene, lights, group) && transport && transport->bounced() >= kWorthPatches;
+}
+
+std::uint32_t PatchBounces::lampsIn(const LitScene& scene, std::size_t group, bool mends_bands) {
+  std::uint32_t lamps = within(scene, group) | (mends_bands ? beside(scene, group) : 0u);
+  for (std::size_t k = 0; k < scene.shadowed_lights.size(); ++k)
+    if (!shines(scene.shadowed_lights[k])) lamps &= ~(1u << k);
+  return lamps;
+}
+
 RoomLights PatchBounces::lightsIn(const World& world, const LitScene& scene, const PatchLights& lights,
                                   std::size_t group) const {
-  const auto& transport = rooms_[group].room.transport();
   const streaming::ResidentGroup& resident = world.residency().groups()[group];
-  const bool by_bands =
-      apart(world, scene, lights, group) && transport && transport->bounced() >= kWorthPatches;
+  const bool mends_bands = mendsBands(world, scene, lights, group);
+  const std::uint32_t lamps = lampsIn(scene, group, mends_bands);
   RoomLights found;
-  const std::uint32_t lamps = within(scene, group) | (by_bands ? beside(scene, group) : 0u);
   for (std::size_t k = 0; k < scene.shadowed_lights.size(); ++k)
-    if ((lamps >> k & 1u) != 0 && shines(scene.shadowed_lights[k]))
-      found.lamps.push_back(scene.shadowed_lights[k]);
-  if (!by_bands) return found;
+    if ((lamps >> k & 1u) != 0) found.lamps.push_back(scene.shadowed_lights[k]);
+  if (!mends_bands) return found;
   const glm::quat group_from_world = glm::conjugate(world.rotationOf(group));
   for (spec::Disc key : lights.keys) {
     key.direction = group_from_world * key.direction;
@@ -109,7 +119,7 @@ RoomLights PatchBounces::lightsIn(const World& world, const LitScene& scene, con
   return found;
 }
 
-// Bodies that may stand between the group's surfaces and its lights.
+// Returns the bodies that may stand between the group's surfaces and its lights.
 std::vector<lighting::RayTriangle> PatchBounces::othersAround(const World& world, const LitScene& scene,
                                                               std::size_t group, const RoomLights& lights) {
   if (lights.none()) return {};
@@ -117,7 +127,7 @@ std::vector<lighting::RayTriangle> PatchBounces::othersAround(const World& world
   if (own == lighting::CapturePoint::kNoBody) return {};
   const lighting::IncidentBody& room = scene.bodies[own];
   const glm::mat4 group_from_world = glm::inverse(world.worldFromGroup(group));
-  std::vector<glm::vec3> ends;  // of ways from the room to its lights
+  std::vector<glm::vec3> ends;  // where lines from the room to its lights end
   for (const lighting::ShadowedLight& lamp : lights.lamps) ends.push_back(lamp.position_ws);
   for (const spec::Disc& key : lights.keys)
     ends.push_back(room.center_ws + kFarAway * room.radius_m * (world.rotationOf(group) * key.direction));
@@ -168,7 +178,7 @@ bool PatchBounces::lit(const World& world, std::size_t draw) const {
   return !rooms_[resident.group].room.givenOff().empty() && !materialOf(world, draw).unlit;
 }
 
-// Everything that the group needs and does not have, as one piece of work.
+// Requests everything that the group needs and lacks, as one task.
 void PatchBounces::ask(World& world, std::size_t group, bool links) {
   Room& room = rooms_[group];
   if (room.coming.valid()) return;
@@ -215,9 +225,10 @@ bool PatchBounces::prepare(World& world, const LitScene& scene, const PatchLight
                            bool wait) {
   if (!world.residency().groups()[group].proxy) return false;
   bool came = false;
-  // First the form factors of a group that has key lights alone: they say whether links are worth having.
+  // For a group with only key lights, form factors come first: they tell whether links are worth making.
   for (int stage = 0; stage < 2; ++stage) {
-    const bool links = !lightsIn(world, scene, lights, group).none();
+    const bool mends_bands = mendsBands(world, scene, lights, group);
+    const bool links = lampsIn(scene, group, mends_bands) != 0 || (mends_bands && !lights.keys.empty());
     if (!links && (!apart(world, scene, lights, group) || rooms_[group].room.transport())) return came;
     ask(world, group, links);
     if (!take(world, group, wait)) return came;
@@ -280,7 +291,7 @@ void PatchBounces::layOut(const World& world) {
   bounced_.reserve(std::max<std::size_t>(16, 4 * std::size_t{word}));
 }
 
-// Behind the regions of each group one that is dark, for links that meet nothing.
+// Each group's regions are followed by a dark one, for links that hit nothing.
 void PatchBounces::uploadPatches(gpu::Counters& counters) {
   std::vector<glm::vec4> patches;
   for (Room& room : rooms_) {

@@ -1,12 +1,13 @@
-// Bounces by patches: what the surfaces of a rigid group send on of lamps among them, and of key lights what
-// the bands of transfer get wrong. Comes in: the world, the scene as the lighting system sees it, the key
-// lights and what the light probes have of them. Goes out: per vertex E/pi (of surfaces with normal maps and
-// glossy ones light of bands 0..2), which the raster adds to what transfer brings, and per triangle of the
-// group's capture proxy what others see of it. When a group first needs them, form factors and links are made
-// on worker threads; the frames go on without them until they are there. Open shapes, whose surfaces hardly
-// see each other, have none for key lights. What changes nothing costs nothing: a light that moves is bounced
-// anew on the CPU (PatchRoom) and gathered on the GPU, one dispatch for each draw. Errors: a kernel that does
-// not compile on this device.
+// Owns bounces by patches: what the surfaces of a rigid group reflect of lamps among them, and for key lights
+// the difference to what the bands of transfer carry. It takes the world, the scene as the lighting system
+// sees it, the key lights and their light at the light probes. It provides E/pi per vertex (light in bands
+// 0..2 for surfaces with normal maps and for glossy ones), which the raster adds to what transfer carries,
+// and the exit radiance per triangle of the group's capture proxy, which others see.
+//
+// When a group first needs them, form factors and links are made on worker threads, and frames go on without
+// them. Open shapes, whose surfaces hardly see each other, do without patches for key lights. Unchanged light
+// costs nothing: a light that moves is bounced again on the CPU (PatchRoom) and gathered on the GPU in one
+// dispatch per draw. Render thread only. update() fails if a kernel does not compile on this device.
 #pragma once
 
 #include <cstdint>
@@ -29,16 +30,16 @@
 namespace lambent::frame {
 
 struct PatchBounceCounts {
-  std::uint32_t rooms = 0;           // groups whose patches send on light
-  std::uint32_t patches = 0;         // of all of them
-  std::uint32_t rooms_to_come = 0;   // whose form factors or links are being made
-  std::uint32_t lights_bounced = 0;  // in the last update
-  std::uint32_t draws_gathered = 0;  // likewise
+  std::uint32_t rooms = 0;           // groups whose patches reflect light
+  std::uint32_t patches = 0;         // in all of these groups
+  std::uint32_t rooms_to_come = 0;   // groups whose form factors or links are still being made
+  std::uint32_t lights_bounced = 0;  // by the last update
+  std::uint32_t draws_gathered = 0;  // by the last update
 };
 
 struct PatchLights {
-  std::span<const spec::Disc> keys;              // world; none: their bounced light is left to the bands
-  const lighting::GroupLights* bands = nullptr;  // in which the keys stand apart
+  std::span<const spec::Disc> keys;              // world; empty: only the bands carry their bounced light
+  const lighting::GroupLights* bands = nullptr;  // the light probes' light, with keys apart
 };
 
 class PatchBounces {
@@ -47,27 +48,28 @@ class PatchBounces {
 
   PatchBounces();
 
-  // wait: for form factors and links, rather than going on without them. Without `on` it holds nothing.
+  // Updates all groups. If `wait` is set, waits for form factors and links. If `on` is false, frees
+  // everything.
   Result<void> update(World& world, const LitScene& scene, const PatchLights& lights, bool on, bool wait,
                       gpu::Counters& counters);
 
-  // Where the light of a draw's first vertex lies, in words; kNothing: it has none.
+  // Returns where the light of a draw's first vertex lies, in words; kNothing if it has none.
   std::uint32_t wordOf(std::size_t draw) const { return draw < words_.size() ? words_[draw] : kNothing; }
-  // Whether it holds anything.
+  // Returns whether any draw has such light.
   bool any() const { return !words_.empty(); }
-  // Rises when any word changes.
+  // Rises when wordOf() changes for any draw.
   std::uint64_t layoutVersion() const { return layout_version_; }
   void bindStorage(std::uint32_t binding) const { bounced_.bindStorage(binding); }
 
-  // What the triangles of the group's capture proxy send on, for others to see; empty: nothing.
+  // Returns the radiance that the triangles of the group's capture proxy send to other groups; empty: none.
   std::span<const glm::vec3> sentBy(std::size_t group) const {
     return group < rooms_.size() ? std::span(rooms_[group].sent) : std::span<const glm::vec3>();
   }
-  // Another number when that changed.
+  // Changes when sentBy() does.
   std::uint64_t versionOf(std::size_t group) const {
     return group < rooms_.size() ? rooms_[group].version : 0;
   }
-  // By how much of itself it has changed so far, summed up.
+  // Returns the sum of all relative changes of that radiance so far.
   double driftOf(std::size_t group) const { return group < rooms_.size() ? rooms_[group].room.drift() : 0.0; }
 
   const PatchBounceCounts& counts() const { return counts_; }
@@ -75,7 +77,7 @@ class PatchBounces {
 
  private:
   struct Points {
-    std::uint64_t draw = 0;  // its id
+    std::uint64_t draw = 0;  // id of the draw
     std::vector<lighting::SurfacePoint> points;
     lighting::LinkSpread spread = lighting::LinkSpread::Cosine;
   };
@@ -87,33 +89,40 @@ class PatchBounces {
     std::shared_ptr<const lighting::PatchTransport> transport;
     std::vector<Links> links;
   };
-  struct Room {  // by group
+  struct Room {  // one per group
     PatchRoom room;
     std::future<Made> coming;
     std::vector<glm::vec3> sent;
-    std::uint64_t version = 0, seen = 0;  // ours, and the room's
+    std::uint64_t version = 0, seen = 0;  // our version, and the room's that was seen
     std::uint32_t first_patch = 0;
   };
   struct Draw {
     bool asked = false;
-    gpu::Buffer links;           // empty handle: not here yet
-    std::uint64_t gathered = 0;  // the version of its room
+    gpu::Buffer links;           // null handle: not here yet
+    std::uint64_t gathered = 0;  // the version of its room that was gathered
   };
   void drop();
-  // Local lights, a bit each, within the group's bounds, and others that shine on it per pixel.
+  // Return a bit for each shadowed light: those within the group's bounds, and others that shine on it per
+  // pixel.
   static std::uint32_t within(const LitScene& scene, std::size_t group);
   static std::uint32_t beside(const LitScene& scene, std::size_t group);
-  // Whether transfer brings bounced light of lights that shine per pixel: key lights, and lamps beside.
+  // Returns whether transfer carries bounced light of lights that are shaded per pixel: key lights, and lamps
+  // beside.
   static bool apart(const World& world, const LitScene& scene, const PatchLights& lights, std::size_t group);
-  // Lamps that shine on the group, and what stands apart if its surfaces see enough of each other.
+  // Whether what stands apart has patches: the group's surfaces see enough of each other.
+  bool mendsBands(const World& world, const LitScene& scene, const PatchLights& lights,
+                  std::size_t group) const;
+  // Returns the lamps that patches bounce, a bit each.
+  static std::uint32_t lampsIn(const LitScene& scene, std::size_t group, bool mends_bands);
+  // Returns these lamps, and what stands apart if it has patches.
   RoomLights lightsIn(const World& world, const LitScene& scene, const PatchLights& lights,
                       std::size_t group) const;
   static std::vector<lighting::RayTriangle> othersAround(const World& world, const LitScene& scene,
                                                          std::size_t group, const RoomLights& lights);
   void ask(World& world, std::size_t group, bool links);
-  // Asks for what the group needs of its lights and takes what came. Whether anything did.
+  // Requests what the group needs for its lights and takes what arrived; returns whether anything did.
   bool prepare(World& world, const LitScene& scene, const PatchLights& lights, std::size_t group, bool wait);
-  // Whether anything came.
+  // Returns whether anything arrived.
   bool take(const World& world, std::size_t group, bool wait);
   static Points pointsOf(World& world, std::size_t draw);
   bool lit(const World& world, std::size_t draw) const;
@@ -124,9 +133,9 @@ class PatchBounces {
 
   KeyedState<Room> rooms_;
   KeyedState<Draw> draws_;
-  std::vector<std::uint32_t> words_;  // by draw
+  std::vector<std::uint32_t> words_;  // indexed by draw
   std::uint64_t layout_version_ = 0, version_ = 0;
-  std::map<std::uint32_t, gpu::Program> programs_;  // by outputs
+  std::map<std::uint32_t, gpu::Program> programs_;  // by outputs per vertex
   gpu::Table patches_, bounced_, directions_, block_;
   PatchBounceCounts counts_;
 };

@@ -1,6 +1,7 @@
-// One invocation per vertex: the mean of what the patches give off that its links go to. That is E/pi where the links
-// are distributed as the cosine; with LAMBENT_OUTPUTS 9 they go to all sides of the hemisphere alike, and what arrives
-// is light of bands 0..2. The CPU twin is lighting::PatchTransport and the test beside it.
+// Gathers the light of patches. An invocation handles a vertex: it computes the mean exit radiance of the
+// patches that the vertex's links go to. That is E/pi if the links are cosine-distributed; with
+// LAMBENT_OUTPUTS 9 they are uniform over the hemisphere, and the result is light of bands 0..2. Its CPU twin
+// is lighting::PatchTransport and the test beside it.
 #include "patch_shared.h"
 
 layout(local_size_x = kPatchGroupSize) in;

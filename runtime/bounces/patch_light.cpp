@@ -19,23 +19,24 @@ namespace {
 using lighting::Patch;
 using lighting::ShadowedLight;
 
-constexpr std::size_t kLampPoints = 16;  // of lamps with an extent
+constexpr std::size_t kLampPoints = 16;  // points on a lamp with an extent
 constexpr float kLightSurface = 1.01f;   // as in local_shadows.cpp
-constexpr float kAlmost = 1.0f - 1e-4f;  // of the way to a patch: not the patch itself
+constexpr float kAlmost = 1.0f - 1e-4f;  // share of the distance to a patch, so that it does not block itself
 constexpr std::size_t kPoints = lighting::kPatchPoints;
-// Discs at infinity are widened to this, so that bounced light does not flicker while they turn. It is less
-// than a patch sees of its neighbours.
+// Discs at infinity are widened to this radius, so that bounced light does not flicker while they turn. It is
+// less than the angle under which patches see their neighbours.
 constexpr float kLeastRadius_rad = 0.02f;
-constexpr float kAtInfinity = 1e4f;  // lengths of the patches' extent
+constexpr float kAtInfinity = 1e4f;  // in multiples of the patches' extent
 
-// Points all over a disc of radius 1, and how far each is before or behind it in a ball (golden angle).
+// Returns points all over a disc of radius 1, each with a distance from its plane that makes them fill a ball
+// (golden angle).
 std::vector<glm::vec3> ballPoints() {
   std::vector<glm::vec3> points;
   for (std::size_t i = 0; i < kLampPoints; ++i) {
     const float height = 1.0f - (2.0f * static_cast<float>(i) + 1.0f) / static_cast<float>(kLampPoints);
     const float ring = std::sqrt(1.0f - height * height);
     const float turn = 2.0f * std::numbers::pi_v<float> * std::numbers::phi_v<float> * static_cast<float>(i);
-    // On the sphere and halfway in, in turn: so the points are about even as any side sees them.
+    // Points alternate between the sphere and halfway in, so that they look about even from any side.
     const float radius = i % 2 == 0 ? 0.9f : 0.5f;
     points.push_back(radius * glm::vec3(ring * std::cos(turn), ring * std::sin(turn), height));
   }
@@ -59,7 +60,7 @@ std::vector<glm::vec3> lampPoints(const ShadowedLight& light) {
   return points;
 }
 
-// Unit directions to points all over a disc at infinity.
+// Returns unit directions to points all over a disc at infinity.
 std::vector<glm::vec3> raysTo(const spec::Disc& key) {
   const float radius = std::max(key.radius_rad, kLeastRadius_rad);
   const std::size_t count = radius < 0.05f ? 4 : kLampPoints;
@@ -75,8 +76,8 @@ std::vector<glm::vec3> raysTo(const spec::Disc& key) {
   return rays;
 }
 
-// What stands in the way of the lamp's light. What is no larger than a spherical lamp and within it is the
-// lamp.
+// Returns what may block the lamp's light. Triangles within a spherical lamp that are no larger than it
+// belong to the lamp itself.
 lighting::TriangleSet blockersOf(const ShadowedLight& light, const lighting::Patches& patches,
                                  std::span<const lighting::RayTriangle> others,
                                  const glm::mat4& world_from_group) {
@@ -107,7 +108,7 @@ std::vector<float> lampOnPatches(const ShadowedLight& lamp, const lighting::Patc
   const glm::mat4 group_from_world = glm::inverse(world_from_group);
   const glm::mat3 world_from_normal = glm::transpose(glm::mat3(group_from_world));
 
-  std::vector<glm::vec3> points_ws;  // a little above their patches
+  std::vector<glm::vec3> points_ws;  // slightly above their patches
   std::vector<float> shares;         // without blockers
   for (const Patch& patch : all) {
     const glm::vec3 normal_ws = ref::localUnit(world_from_normal * patch.normal);
@@ -117,7 +118,7 @@ std::vector<float> lampOnPatches(const ShadowedLight& lamp, const lighting::Patc
     }
   }
 
-  // From each point of the lamp to all points of patches that it shines on.
+  // Each point of the lamp is connected with all points of patches that it shines on.
   const std::vector<glm::vec3> lamp_points = lampPoints(light);
   const lighting::TriangleSet blockers = blockersOf(light, patches, others, world_from_group);
   std::vector<std::vector<std::uint8_t>> seen(lamp_points.size());
@@ -153,7 +154,7 @@ std::vector<std::vector<float>> keysOnPatches(std::span<const spec::Disc> keys,
   for (const spec::Disc& key : keys) rays_to.push_back(raysTo(key));
 
   std::vector<std::vector<float>> direct(keys.size(), std::vector<float>(patches.size(), 0.0f));
-  constexpr std::size_t kBlock = 32;  // patches of one part of the work
+  constexpr std::size_t kBlock = 32;  // patches per unit of work
   inParallel((patches.size() + kBlock - 1) / kBlock, 1, [&](std::size_t block) {
     lighting::RaysFrom rays(blockers, 1e-5f * patches.extent());
     for (std::size_t i = block * kBlock; i < std::min(patches.size(), (block + 1) * kBlock); ++i) {

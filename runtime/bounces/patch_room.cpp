@@ -11,7 +11,7 @@ namespace lambent::frame {
 
 namespace {
 
-// By how much of itself something changed, at most 1.
+// Returns the relative change, at most 1.
 double changeBetween(const std::vector<glm::vec3>& before, const std::vector<glm::vec3>& after) {
   if (before.size() != after.size()) return 1.0;
   double change = 0.0, power = 0.0;
@@ -81,7 +81,8 @@ std::vector<PatchRoom::Source> PatchRoom::bounceAll(const RoomLights& lights,
   return sources;
 }
 
-// Between light probes by the square of the distance, as smooth as light probes are meant to be read.
+// Interpolates between light probes with weights by squared distance, which is as smooth as probes are meant
+// to be.
 std::vector<glm::vec3> PatchRoom::bandsOnPatches(const std::vector<KeyBands>& bands) const {
   const lighting::Patches& patches = transport_->patches();
   const float least = 1e-3f * patches.extent();

@@ -1,9 +1,9 @@
-// What the surfaces of one rigid group send on of lamps that stand among them and of key lights, by patches.
-// Each light is bounced once at unit power and kept until it, the group or what else stands in its light
-// moves; so a light that is dimmed or takes another colour costs a sum, and the light of several is the sum
-// of theirs. Of key lights the group's transfer brings bounced light already, as far as few bands know where
-// they fall. So what the bands say is taken off here: patches carry the difference between a key light with
-// its shadows and its bands, and the detail of transfer stays. No GL.
+// Owns the light that the surfaces of one rigid group reflect of lamps among them and of key lights, by
+// patches. Each light is bounced once at unit power and kept until it, the group or a blocker moves. So
+// dimming or colouring a light costs one sum, and the light of several lamps is the sum of theirs. For key
+// lights the group's transfer already carries bounced light, as far as a few bands know where they fall. What
+// the bands say is therefore subtracted here: patches carry the difference between a key light with its
+// shadows and its bands, and the detail of transfer is kept. No GL.
 #pragma once
 
 #include <cstdint>
@@ -23,17 +23,17 @@
 
 namespace lambent::frame {
 
-// Bands of the key lights at one light probe: what transfer takes for them. Group frame.
+// Holds the bands of the key lights at one light probe, as transfer uses them, in the group's frame.
 struct KeyBands {
   glm::vec3 position{0.0f};
-  std::vector<glm::vec4> light;  // at least order² coefficients of the transport
+  std::vector<glm::vec4> light;  // at least as many coefficients as order² of the transport
   bool operator==(const KeyBands&) const = default;
 };
 
 struct RoomLights {
   std::vector<lighting::ShadowedLight> lamps{};  // world
   std::vector<spec::Disc> keys{};                // directions in the group's frame
-  std::vector<KeyBands> bands{};                 // one at least where there are keys
+  std::vector<KeyBands> bands{};                 // at least one if there are keys
   bool none() const { return lamps.empty() && keys.empty(); }
 };
 
@@ -43,29 +43,29 @@ class PatchRoom {
   explicit PatchRoom(std::shared_ptr<const lighting::PatchTransport> transport)
       : transport_(std::move(transport)) {}
 
-  // Null until it was made.
+  // Null until it is made.
   const std::shared_ptr<const lighting::PatchTransport>& transport() const { return transport_; }
 
-  // others: what else stands in the light, in the group's frame.
+  // Bounces the lights. `others` are further blockers in the group's frame.
   void light(const RoomLights& lights, const glm::mat4& world_from_group,
              std::span<const lighting::RayTriangle> others);
 
-  // Radiance of each patch: what it sends on of the lights, after any number of bounces; of key lights more
-  // or less than their bands say, so also below 0. Empty where no light shines.
+  // Returns the exit radiance of each patch after any number of bounces. For key lights it is the difference
+  // to their bands, so it may be below 0. Empty if no light shines.
   const std::vector<glm::vec3>& givenOff() const { return given_off_; }
-  // Rises when that is other than before.
+  // Rises when givenOff() changes.
   std::uint64_t version() const { return version_; }
-  // By how much of itself it has changed so far, summed up.
+  // Returns the sum of all relative changes of givenOff() so far.
   double drift() const { return drift_; }
-  // Lights that the last light() bounced anew.
+  // Returns how many lights the last light() bounced.
   std::uint32_t bouncedLast() const { return bounced_; }
 
  private:
   struct Source {
-    std::variant<lighting::ShadowedLight, spec::Disc> light;  // of power 1
+    std::variant<lighting::ShadowedLight, spec::Disc> light;  // at unit power
     std::vector<glm::vec3> given_off;
   };
-  // Those that are not among the kept ones are bounced.
+  // Bounces the lights that are not in `kept`.
   std::vector<Source> bounceAll(const RoomLights& lights, const std::vector<Source>& kept);
   std::vector<glm::vec3> bandsOnPatches(const std::vector<KeyBands>& bands) const;
 
@@ -73,7 +73,7 @@ class PatchRoom {
   std::vector<Source> sources_;
   std::vector<glm::vec3> powers_;
   std::vector<KeyBands> bands_;
-  std::vector<glm::vec3> by_bands_;  // what patches give off of these
+  std::vector<glm::vec3> by_bands_;  // exit radiance of the patches due to these
   glm::mat4 world_from_group_{1.0f};
   std::vector<lighting::RayTriangle> others_;
   std::vector<glm::vec3> given_off_;

@@ -1,4 +1,5 @@
-// One text for C++ and GLSL: how light that lamps' rooms send on is gathered at vertices (patch_gather.comp).
+// This file is shared by C++ and GLSL. It holds the bindings of patch_gather.comp, which gathers the light of
+// patches at vertices.
 #ifdef __cplusplus
 #pragma once
 
@@ -16,18 +17,18 @@ using glm::mat3x4;
 #endif
 
 LAMBENT_CONSTANT kBindPatchDraw = 0u;        // uniform block PatchDraw
-LAMBENT_CONSTANT kBindPatchLinks = 0u;       // kPatchLinks patches of 16 bits to a vertex
-LAMBENT_CONSTANT kBindPatches = 1u;     // vec4: what a patch gives off; of each group one more that is dark
-LAMBENT_CONSTANT kBindPatchBounced = 2u;     // what arrives: 3 floats a vertex, E/pi, or light of bands 0..2, 27
+LAMBENT_CONSTANT kBindPatchLinks = 0u;       // kPatchLinks patches of 16 bits per vertex
+LAMBENT_CONSTANT kBindPatches = 1u;          // vec4: exit radiance per patch; each group has one more, dark
+LAMBENT_CONSTANT kBindPatchBounced = 2u;     // per vertex 3 floats, E/pi, or 27, light of bands 0..2
 LAMBENT_CONSTANT kBindPatchGeometry = 3u;    // arena page
-LAMBENT_CONSTANT kBindPatchDirections = 4u;  // vec4: of the links, in the vertex's frame
+LAMBENT_CONSTANT kBindPatchDirections = 4u;  // vec4: directions of the links, in the vertex's frame
 
 LAMBENT_CONSTANT kPatchGroupSize = 64u;
-LAMBENT_CONSTANT kPatchLinks = 64u;  // lighting::kLinks
+LAMBENT_CONSTANT kPatchLinks = 64u;  // the same as lighting::kLinks
 
 struct PatchDraw {
   mat3x4 group_from_mesh_normal;
-  uint first_patch;  // of the group
+  uint first_patch;  // first patch of the group
   uint vertex_count;
   uint bounced_word;
   uint normals_word;

@@ -1,4 +1,4 @@
-// Animations as ordinary glTF: one sampler a channel, and the keyframes of an animation in one view.
+// Writes and reads animations as ordinary glTF, with one sampler per channel and one view per animation.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -36,7 +36,8 @@ void append(Blob& blob, const std::vector<float>& values) {
   blob.insert(blob.end(), bytes.begin(), bytes.end());
 }
 
-// The count of an accessor that must be `type` in float32 at `offset` of the view.
+// Returns the count of an accessor. Throws JsonFault unless it holds `type` in float32 at `offset` of the
+// view.
 std::uint64_t countAt(const Field& accessor, const std::string& type, std::size_t view, std::uint64_t offset,
                       std::uint64_t view_bytes, std::uint64_t components) {
   if (accessor["componentType"].count(0xffff) != kFloat || accessor["type"].text() != type)
@@ -135,7 +136,7 @@ bool loadAnimation(gltf::Animation& animation, std::span<const std::byte> bytes)
   for (AnimationChannel& channel : animation.channels) {
     good = load(channel.times_s) && good;
     good = load(channel.values) && good;
-    // Strictly: no two keys at one time.
+    // Times must rise strictly, so no two keys may have the same time.
     good = good && std::adjacent_find(channel.times_s.begin(), channel.times_s.end(),
                                       [](float a, float b) { return !(a < b); }) == channel.times_s.end();
   }

@@ -6,25 +6,25 @@
 #include <cmath>
 #include <numbers>
 
-#include "runtime/bundle/payload_bytes.hpp"
+#include "runtime/base/payload_bytes.hpp"
 
 namespace lambent::bundle {
 
 namespace {
 
 constexpr std::uint32_t kMaxBands = 6;
-constexpr std::uint32_t kMaxNodes = 1024;                     // along an axis
-constexpr std::uint64_t kMaxValues = std::uint64_t{1} << 25;  // of all nodes
-// Codes of the largest value of a lobe: leaves 1e-4 of it, where interpolation leaves more, and compresses to
-// two thirds of what all 16 bits do.
+constexpr std::uint32_t kMaxNodes = 1024;                     // per axis
+constexpr std::uint64_t kMaxValues = std::uint64_t{1} << 25;  // over all nodes
+// Code of the largest value of a lobe. The rounding error is 1e-4 of that value, less than the error of
+// interpolation, and the payload compresses to two thirds of the size that codes with all 16 bits need.
 constexpr float kCodeMax = 5000.0f;
 // Rounding of codes may lift an albedo of 1 by this much.
 constexpr float kAlbedoSlack = 1e-3f;
 
-// A place between two nodes of an axis.
+// A position between two nodes of an axis.
 struct Between {
   std::size_t first = 0, second = 0;
-  float share = 0.0f;  // of the second
+  float share = 0.0f;  // weight of the second node
 };
 
 Between between(float position, std::uint32_t nodes) {
@@ -38,7 +38,7 @@ float at(float unit, std::uint32_t nodes) {
   return unit * static_cast<float>(nodes - 1);
 }
 
-// Calls add(first value of a node, weight) for the nodes around a place that have weight.
+// Calls add(first value of a node, weight) for each node that interpolation at this point needs.
 template <typename Add>
 void forNodesAround(const BrdfTable& table, const BrdfView& view, float roughness, float strength,
                     Add&& add) {
@@ -78,7 +78,7 @@ void lookUpStored(const BrdfTable& table, const BrdfView& view, float roughness,
     for (std::size_t k = 0; k < count; ++k) out[k] += weight * node[k];
   });
   if (table.isotropic()) return;
-  // Mirrored in the tangent or the bitangent, with the view, b sees its y axis turned over: sin(|m| phi)
+  // Reflecting the view in the tangent or the bitangent flips the y axis of its frame, so sin(|m| phi)
   // changes its sign.
   if (view.cos_phi * view.sin_phi >= 0.0f) return;
   std::size_t k = 0;
@@ -167,7 +167,7 @@ Result<BrdfTable> decodeBrdfTable(std::span<const std::byte> bytes, const std::s
       if (!(std::abs(table.values[k]) <= 1.0f)) return damaged("a value out of range");
     }
   }
-  // F0 and F90 parts add up; red, green and blue do not.
+  // The lobes of F0 and F90 are summed to an albedo; red, green and blue each have their own.
   const float whole = 2.0f * std::sqrt(std::numbers::pi_v<float>);
   const std::size_t part = table.lobes == 2 ? 2 : 1;
   for (std::size_t lobe = 0; lobe < lobes; lobe += part) {

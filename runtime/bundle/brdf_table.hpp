@@ -1,21 +1,22 @@
-// b(v): what a BRDF sends towards direction v of light y_k, Kautz, Sloan and Snyder 2002:
+// A BRDF table holds b(v), the radiance that a BRDF reflects towards v when the light is the basis function
+// y_k (Kautz, Sloan and Snyder 2002):
 //   b_k(v) = ∫ f(v, s) max(s_z, 0) y_k(s) ds,   reflected radiance r(v) = Σ_k b_k(v) l'_k
-// with l' the transferred light in the frame of the view: z the normal, x along the surface towards where the
-// view leans (v = (sin theta_v, 0, cos theta_v)), y = z cross x. In that frame b changes slowly with the
-// view's azimuth, or not at all. Comes in: a grid over view directions and, for families with parameters,
-// over roughness and anisotropy. Goes out: b at any place between. No GPU. sqrt(4 pi) b_0 is the directional
-// albedo, at most 1 (of two lobes: their sum).
+// where l' is the transferred light in the frame of the view: z is the normal, x lies in the surface on the
+// side of the view (v = (sin theta_v, 0, cos theta_v)), and y = z cross x. In this frame b depends little on
+// the view's azimuth. The table is a grid over view directions and, for families with parameters, over
+// roughness and anisotropy; looking it up interpolates linearly between the nodes. sqrt(4 pi) b_0 is the
+// directional albedo, at most 1 (for two lobes this holds for their sum). Nothing here needs a GPU.
 //
-// Axes of the grid, each node to node with linear interpolation between:
-//   angle:     cos(theta_v) = 1 - (1 - u²)², u = i / (angles - 1): dense towards grazing views, where albedos
-//   change
-//              with cos(theta_v), and even in theta_v about the normal, where b_lm goes like theta_v^m
-//   azimuth:   phi_v = j / (azimuths - 1) * pi/2, of the view about z from the tangent; the other quadrants
-//   by
-//              reflection in tangent and bitangent, which turns the signs of m < 0. 1 node: isotropic
-//   roughness: glTF's perceptual roughness k / (roughnesses - 1). 1 node: it has none
-//   strength:  KHR_materials_anisotropy strength m / (strengths - 1). 1 node: none
-// Isotropic tables are stored as such: they mirror in the xz plane, so only m >= 0 is not 0.
+// These are the axes of the grid:
+//   angle:     cos(theta_v) = 1 - (1 - u²)² with u = i / (angles - 1). Nodes are dense towards grazing views,
+//              where albedos change with cos(theta_v), and evenly spaced in theta_v near the normal, where
+//              b_lm behaves like theta_v^m.
+//   azimuth:   phi_v = j / (azimuths - 1) * pi/2 is the angle of the view about z from the tangent. The other
+//              quadrants follow by reflection in tangent and bitangent, which flips the signs of m < 0. An
+//              isotropic table has 1 node.
+//   roughness: k / (roughnesses - 1) is glTF's perceptual roughness; a family without it has 1 node.
+//   strength:  m / (strengths - 1) is KHR_materials_anisotropy's strength; a family without it has 1 node.
+// Isotropic tables are symmetric about the xz plane, so coefficients with m < 0 are 0 and are not stored.
 #pragma once
 
 #include <algorithm>
@@ -31,10 +32,10 @@
 namespace lambent::bundle {
 
 inline constexpr std::uint32_t kMaxBrdfLobes = 3;
-// Nodes with less cos(theta_v) are integrated at this; views at or below the horizon count as this one.
+// Smallest cos(theta_v) for which b is defined; lower views are treated as this one.
 inline constexpr float kLeastViewCosine = 1e-3f;
 
-// u of a view.
+// Returns u, the position of a view on the axis "angle".
 inline float angleAxis(float cos_theta) {
   const float past = std::sqrt(std::max(1.0f - cos_theta, 0.0f));
   return std::sqrt(std::max(1.0f - past, 0.0f));
@@ -42,7 +43,8 @@ inline float angleAxis(float cos_theta) {
 
 struct BrdfTable {
   std::uint32_t order = 5;  // bands, 1..6
-  // 2: the parts that F0 and F90 multiply: r = F0 b^0 + F90 b^1 (Schlick 1994). 3: red, green and blue.
+  // Two lobes are the parts that F0 and F90 multiply: r = F0 b^0 + F90 b^1 (Schlick 1994). Three are red,
+  // green and blue.
   std::uint32_t lobes = 2;
   std::uint32_t angles = 2;  // at least 2
   std::uint32_t azimuths = 1, roughnesses = 1, strengths = 1;
@@ -50,35 +52,34 @@ struct BrdfTable {
   std::vector<float> values;
 
   bool isotropic() const { return azimuths == 1; }
-  // Per lobe: of an isotropic table those with m >= 0, band by band, m rising: (l, m) at l(l+1)/2 + m. Else
-  // all.
+  // Returns the number of stored coefficients per lobe. An isotropic table stores those with m >= 0, with
+  // (l, m) at l(l+1)/2 + m; other tables store all.
   std::uint32_t coefficients() const { return isotropic() ? order * (order + 1) / 2 : order * order; }
   std::size_t nodeValues() const { return std::size_t{lobes} * coefficients(); }
   std::size_t nodes() const { return std::size_t{strengths} * roughnesses * azimuths * angles; }
 };
 
-// A view direction as the table's axes have it.
+// A view direction in the terms of the table's axes.
 struct BrdfView {
-  float cos_theta = 1.0f;  // to the normal; below 0 counts as 0
+  float cos_theta = 1.0f;  // angle to the normal; values below 0 count as 0
   // Azimuth of the frame's x axis about the normal, from the tangent towards the bitangent. Isotropic tables
-  // do not ask.
+  // ignore it.
   float cos_phi = 1.0f, sin_phi = 0.0f;
 };
 
-// b at a view and parameters: out[lobe * order² + k], all coefficients, in the frame of the view. roughness
-// and strength are clamped to 0..1.
+// Writes all coefficients of b in the frame of the view to out[lobe * order² + k]. `roughness` and `strength`
+// are clamped to 0..1.
 void lookUp(const BrdfTable& table, const BrdfView& view, float roughness, float strength,
             std::span<float> out);
 
-// The same without the coefficients that are always 0: out[lobe * coefficients() + c], as
-// ZonalFactors::factor takes them.
+// Writes only the stored coefficients, to out[lobe * coefficients() + c], as ZonalFactors::factor takes them.
 void lookUpStored(const BrdfTable& table, const BrdfView& view, float roughness, float strength,
                   std::span<float> out);
 
-// Payload "brdfTable": 16 bits a value, within 1e-4 of the largest of its node and lobe.
+// Encodes the payload "brdfTable" with 16 bits per value. The error is at most 1e-4 of the largest value of
+// the same node and lobe.
 std::vector<std::byte> encodeBrdfTable(const BrdfTable& table);
-// Errors name `subject`: sizes that do not add up, values that are not finite, albedos that are negative or
-// over 1.
+// Fails, naming `subject`, if sizes do not add up, values are not finite, or an albedo is negative or over 1.
 Result<BrdfTable> decodeBrdfTable(std::span<const std::byte> bytes, const std::string& subject);
 
 }  // namespace lambent::bundle

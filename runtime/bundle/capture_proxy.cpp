@@ -6,13 +6,13 @@
 
 #include <glm/vector_relational.hpp>
 
-#include "runtime/bundle/payload_bytes.hpp"
+#include "runtime/base/payload_bytes.hpp"
 
 namespace lambent::bundle {
 
 namespace {
 
-// No level has more corners than its triangles; so 16 bits hold every index.
+// Levels have at most three positions per triangle, so 16 bits hold every index.
 constexpr std::uint32_t kMaxTriangles = kMaxProxyLevels * kMaxProxyTriangles;
 constexpr std::uint32_t kMaxPositions = 3 * kMaxTriangles;
 constexpr float kOne = 65535.0f;
@@ -131,7 +131,7 @@ Result<CaptureProxy> decodeCaptureProxy(std::span<const std::byte> bytes, std::u
     next_entry += triangle.entry_count;
     if (triangle.entry_count > kMaxProxyEntries || next_entry > entries)
       return damaged("a triangle of too many entries");
-    // What reflects more than it gets makes light between two groups grow without end.
+    // If a triangle reflected more than it receives, light between two groups would grow without limit.
     glm::vec3 sum(0.0f);
     for (std::uint32_t e = triangle.first_entry; e < next_entry; ++e) sum += proxy.entries[e].reflectance;
     if (glm::any(glm::greaterThan(sum, glm::vec3(1.0f + kMaxProxyEntries / kOne))))

@@ -1,5 +1,5 @@
-// XXH3-64, the checksum and digest of the whole format: fast enough to leave on, 64 bits against accidents
-// (not against forgery).
+// XXH3-64 is the checksum and the digest of the whole format. It is fast enough to be checked on every read.
+// It detects accidents, not forgery.
 #pragma once
 
 #include <cstddef>

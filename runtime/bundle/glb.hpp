@@ -1,6 +1,6 @@
-// The GLB container: a 12-byte header, a JSON chunk and a binary chunk (glTF 2.0 specification, section 4).
-// Finds the chunks of a file and reads byte ranges of it; knows nothing of what stands in them. Calls are
-// safe from any thread.
+// Reads the GLB container: a 12-byte header, a JSON chunk and a binary chunk (glTF 2.0 specification, section
+// 4). It finds the chunks of a file and reads byte ranges, but does not interpret them. All const calls may
+// come from any thread.
 #pragma once
 
 #include <cstddef>
@@ -20,8 +20,8 @@ inline constexpr std::uint64_t kGlbHeaderBytes = 12, kGlbChunkHeaderBytes = 8;
 
 class GlbFile {
  public:
-  // Reads the headers and the JSON text. Errors: missing, unreadable, not a GLB, truncated, trailing bytes,
-  // chunks that do not fill the file.
+  // Reads the headers and the JSON text. Fails if the file is missing, unreadable, not a GLB or truncated,
+  // has trailing bytes, or if the chunks do not fill it.
   static Result<GlbFile> open(const std::filesystem::path& path);
 
   GlbFile(GlbFile&& other) noexcept;
@@ -30,9 +30,9 @@ class GlbFile {
 
   const std::filesystem::path& path() const { return path_; }
   std::uint64_t fileBytes() const { return file_bytes_; }
-  const std::string& json() const { return json_; }  // with its padding
+  const std::string& json() const { return json_; }  // including its padding
   std::uint64_t binaryBytes() const { return bin_length_; }
-  // Fills `out` from `offset` of the binary chunk; the caller keeps to binaryBytes().
+  // Fills `out` with bytes from `offset` of the binary chunk. The range must lie within binaryBytes().
   Result<void> readBinary(std::uint64_t offset, std::span<std::byte> out) const;
 
  private:

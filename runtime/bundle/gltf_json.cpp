@@ -1,5 +1,5 @@
-// The glTF 2.0 part of a bundle's JSON: what any viewer reads. Materials, lenses and animations stand in
-// files of their own (gltf_parts.hpp).
+// Writes and reads the glTF 2.0 part of a bundle's JSON, which any viewer can read. Materials, cameras,
+// lights and animations have files of their own (gltf_parts.hpp).
 #include <algorithm>
 #include <array>
 #include <set>
@@ -15,10 +15,9 @@ namespace {
 
 constexpr std::uint64_t kLargestCount = 0xffffffffu;
 
-// --- meshes
-// ----------------------------------------------------------------------------------------------------
+// --- meshes ---
 
-// Accessors of a Draco primitive have no bufferView: they only say what the decoder gives back.
+// Accessors of a Draco primitive have no bufferView; they only describe what the decoder returns.
 Json accessorJson(int component_type, const char* type, std::uint32_t count) {
   return {{"componentType", component_type}, {"type", type}, {"count", count}};
 }
@@ -87,14 +86,13 @@ Primitive readPrimitive(const Field& field, const std::vector<Field>& accessors,
   return primitive;
 }
 
-// --- nodes
-// -----------------------------------------------------------------------------------------------------
+// --- nodes ---
 
 Json nodeJson(const gltf::Node& node) {
   Json json = Json::object();
   if (!node.name.empty()) json["name"] = node.name;
   if (!node.children.empty()) json["children"] = node.children;
-  if (node.trs) {  // channels of animations need the parts; elsewhere the matrix is exact
+  if (node.trs) {  // animation channels need the parts; for other nodes the matrix is exact
     const glm::quat& q = node.trs->rotation;
     json["translation"] = vectorJson(node.trs->translation);
     json["rotation"] = vectorJson(glm::vec4(q.x, q.y, q.z, q.w));
@@ -138,7 +136,8 @@ gltf::Node readNode(const Field& field, const Description& d, std::size_t node_c
   return node;
 }
 
-// Sets parents from children and refuses what is not a forest: transforms are chained without further checks.
+// Sets parents from children. Throws JsonFault if nodes do not form a forest, since later code chains
+// transforms without further checks.
 void linkParents(const Field& document, std::vector<gltf::Node>& nodes) {
   for (std::size_t i = 0; i < nodes.size(); ++i)
     for (const std::int32_t child : nodes[i].children) {
@@ -154,10 +153,9 @@ void linkParents(const Field& document, std::vector<gltf::Node>& nodes) {
   }
 }
 
-// --- textures
-// ---------------------------------------------------------------------------------------------------------
+// --- textures ---
 
-// glTF keeps samplers apart from textures; equal ones share an entry.
+// glTF stores samplers separately from textures; equal samplers share an entry.
 std::size_t samplerIndex(const gltf::Sampler& sampler, std::vector<gltf::Sampler>& samplers) {
   const auto found = std::find(samplers.begin(), samplers.end(), sampler);
   if (found == samplers.end()) samplers.push_back(sampler);
@@ -187,7 +185,7 @@ void writeGltf(const Description& d, std::uint64_t binary_bytes, Json& document)
       json["primitives"].push_back(primitiveJson(primitive, accessors));
     return json;
   });
-  // The writer put the views of the animations last.
+  // The views of the animations are the last ones.
   std::size_t view = d.views.size() - d.animations.size();
   writeList(document, "animations", d.animations,
             [&](const gltf::Animation& animation) { return animationJson(animation, view++, accessors); });
@@ -278,7 +276,7 @@ void readGltf(const Field& document, std::uint64_t binary_bytes, Description& d)
     for (const gltf::AnimationChannel& channel : d.animations.back().channels) {
       gltf::Node& node = d.nodes[channel.node];
       node.animated = true;
-      if (!node.trs) node.trs = gltf::Trs{};  // readAnimation() saw to it that it has no matrix
+      if (!node.trs) node.trs = gltf::Trs{};  // readAnimation() has checked that the node has no matrix
     }
   }
   if (document.has("scenes"))

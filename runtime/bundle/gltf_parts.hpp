@@ -1,5 +1,6 @@
-// The parts of the glTF document that stand in files of their own: materials, lenses (cameras and lights),
-// animations. Inside this room only; gltf_json.cpp puts them together. Readers throw JsonFault.
+// Writes and reads the parts of the glTF document that have files of their own: materials, cameras and
+// lights, and animations. Only this room includes this header; gltf_json.cpp puts the parts together. Readers
+// throw JsonFault.
 #pragma once
 
 #include <set>
@@ -16,7 +17,7 @@ inline constexpr const char* kTextureTransform = "KHR_texture_transform";
 inline constexpr const char* kEmissiveStrength = "KHR_materials_emissive_strength";
 inline constexpr const char* kPunctualLights = "KHR_lights_punctual";
 
-// `used` collects the extensions that the JSON makes use of.
+// Adds the extensions that the material needs to `used`.
 Json materialJson(const gltf::Material& material, std::set<std::string>& used);
 gltf::Material readMaterial(const Field& field, std::size_t texture_count);
 
@@ -25,14 +26,15 @@ gltf::Camera readCamera(const Field& field);
 Json lightJson(const gltf::Light& light);
 gltf::Light readLight(const Field& field);
 
-// An animation's keyframes are one view: of every channel its times, then its values, all float32. The views
-// of the animations are the last ones of Description::views, in order.
+// Returns the keyframes of an animation, which form one view: for each channel its times, then its values,
+// all float32. The views of the animations are the last of Description::views, in order.
 Blob animationBytes(const gltf::Animation& animation);
 Json animationJson(const gltf::Animation& animation, std::size_t view, Json& accessors);
-// Times and values get their sizes, checked against the view's; loadAnimation() fills them.
+// Gives times and values their sizes, which must fill the view; loadAnimation() fills in the numbers.
 gltf::Animation readAnimation(const Field& field, const std::vector<Field>& accessors, std::size_t view,
                               std::uint64_t view_bytes, const std::vector<gltf::Node>& nodes);
-// False where times do not rise or a number is not finite. `bytes` are as long as the sizes say.
+// Fills in the keyframes from the bytes of the view, whose length must match the sizes. Returns false if
+// times do not rise or a number is not finite.
 bool loadAnimation(gltf::Animation& animation, std::span<const std::byte> bytes);
 
 }  // namespace lambent::bundle

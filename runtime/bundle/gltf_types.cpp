@@ -16,7 +16,8 @@ std::vector<glm::mat4> worldTransforms(const std::vector<Node>& nodes) {
   std::vector<bool> done(nodes.size(), false);
   std::vector<std::size_t> chain;
   for (std::size_t start = 0; start < nodes.size(); ++start) {
-    // Climb to the first ancestor that is done, then come back down. No recursion: hierarchies may be deep.
+    // The loop climbs to the first ancestor that is done and comes back down. It does not recurse, because
+    // hierarchies may be deep.
     chain.clear();
     for (std::int32_t i = static_cast<std::int32_t>(start); i >= 0 && !done[static_cast<std::size_t>(i)];
          i = nodes[static_cast<std::size_t>(i)].parent) {

@@ -1,7 +1,7 @@
-// The part of a glTF file that Lambent keeps: nodes, materials, textures, cameras, lights, animations. Both
-// sides share these types: the importer fills them from any glTF file, the bundle carries them through, the
-// runtime draws from them. Units and axes are glTF's: metres, +Y up, right-handed, colours linear Rec.709.
-// Indices are -1 where there is none.
+// These types hold what Lambent keeps of a glTF file: nodes, materials, textures, cameras, lights and
+// animations. The importer fills them from any glTF file, the bundle stores them, and the runtime draws from
+// them. Units and axes are glTF's: metres, +Y up, right-handed, colours linear Rec.709. An index of -1 means
+// "none".
 #pragma once
 
 #include <cmath>
@@ -18,7 +18,7 @@
 
 namespace lambent::gltf {
 
-// A transform in the parts that animation channels replace one by one.
+// A transform as three parts, which animation channels replace one by one.
 struct Trs {
   glm::vec3 translation{0.0f};
   glm::quat rotation{1.0f, 0.0f, 0.0f, 0.0f};  // unit
@@ -34,13 +34,13 @@ struct Node {
   glm::mat4 parent_from_node{1.0f};
   std::int32_t mesh = -1;
   std::int32_t camera = -1;
-  std::int32_t light = -1;  // KHR_lights_punctual; shines along the node's -Z
-  bool animated = false;    // some animation moves it
+  std::int32_t light = -1;  // index of a KHR_lights_punctual light, which shines along the node's -Z
+  bool animated = false;    // true if some animation moves the node
   bool movable = false;     // extras.lambent.movable
-  std::optional<Trs> trs;   // of animated nodes: the parts of parent_from_node
+  std::optional<Trs> trs;   // the parts of parent_from_node; animated nodes have them
 };
 
-// glTF 2.0 sampler enums as they stand in the file (GL constants).
+// A glTF 2.0 sampler, with the GL constants of the file.
 struct Sampler {
   std::uint32_t wrap_s = 10497, wrap_t = 10497;        // REPEAT
   std::uint32_t mag_filter = 9729, min_filter = 9987;  // LINEAR, LINEAR_MIPMAP_LINEAR
@@ -54,7 +54,7 @@ struct Texture {
 
 struct TextureRef {
   std::int32_t texture = -1;
-  std::uint32_t texcoord = 0;  // which TEXCOORD_n, 0 or 1
+  std::uint32_t texcoord = 0;  // n of TEXCOORD_n, 0 or 1
   // KHR_texture_transform, applied where the texture is looked up: uv' = offset + R(rotation) (scale * uv).
   glm::vec2 offset{0.0f}, scale{1.0f};
   float rotation_rad = 0.0f;
@@ -69,47 +69,47 @@ struct TextureRef {
 
 enum class AlphaMode : std::uint8_t { Opaque, Mask, Blend };
 
-// What a surface reflects: the metallic-roughness model of glTF 2.0 with KHR_materials_ior, _specular and
-// _anisotropy, or a measured BRDF. Exact formulas: docs/conventions.md, "Materials".
+// A material is the metallic-roughness model of glTF 2.0 with KHR_materials_ior, _specular and _anisotropy,
+// or a measured BRDF. docs/conventions.md, "Materials", has the formulas.
 struct Material {
   std::string name;
   glm::vec4 base_color{1.0f};     // linear
   TextureRef base_color_texture;  // sRGB colour, linear alpha; multiplies base_color
   float metallic = 1.0f, roughness = 1.0f;
-  TextureRef metallic_roughness_texture;  // linear: G multiplies roughness, B metallic
-  float ior = 1.5f;                       // KHR_materials_ior; >= 1, or 0: infinite
-  // KHR_materials_specular: strength (texture: linear, A) and colour (texture: sRGB) of the reflection of
-  // what is no metal.
+  TextureRef metallic_roughness_texture;  // linear; G multiplies roughness, B multiplies metallic
+  float ior = 1.5f;                       // KHR_materials_ior; at least 1, or 0 for infinite
+  // KHR_materials_specular: strength (texture linear, in A) and colour (texture sRGB) of the dielectric
+  // reflection.
   float specular = 1.0f;
   glm::vec3 specular_color{1.0f};
   TextureRef specular_texture, specular_color_texture;
-  // KHR_materials_anisotropy: strength 0..1, and the direction of the longer lobe against the tangent,
-  // towards the bitangent. Texture: linear, RG direction from -1 to 1, B strength.
+  // KHR_materials_anisotropy: strength 0..1, and the angle of the longer lobe from the tangent towards the
+  // bitangent. The texture is linear, with the direction from -1 to 1 in RG and the strength in B.
   float anisotropy = 0.0f, anisotropy_rotation_rad = 0.0f;
   TextureRef anisotropy_texture;
-  // extras.lambent.brdf: a measured BRDF takes the place of everything above but base_color's alpha.
+  // extras.lambent.brdf: index of a measured BRDF that replaces everything above except base_color's alpha.
   std::int32_t brdf = -1;
-  // Radiance that the surface gives off: factor times KHR_materials_emissive_strength, times the texture.
+  // Emitted radiance: the factor times KHR_materials_emissive_strength. The texture multiplies it.
   glm::vec3 emissive{0.0f};
   TextureRef emissive_texture;  // sRGB colour
   TextureRef normal_texture;    // tangent space, linear
-  float normal_scale = 1.0f;    // on the x and y of the texture's normal
-  // KHR_materials_unlit: shows its base colour as radiance, whatever the light; blocks light, reflects and
-  // gives off none.
+  float normal_scale = 1.0f;    // scale of the x and y of the texture's normal
+  // KHR_materials_unlit: the surface shows its base colour as radiance in any light. It blocks light, but
+  // reflects and emits none.
   bool unlit = false;
   AlphaMode alpha_mode = AlphaMode::Opaque;
   float alpha_cutoff = 0.5f;
   bool double_sided = false;
 
-  // Of what is no metal, head on, from air, before specular strength and colour: by its index of refraction.
+  // Returns the dielectric reflectance at normal incidence from air, before specular strength and colour.
   float reflectance() const {
     const float ratio = ior > 0.0f ? (ior - 1.0f) / (ior + 1.0f) : 1.0f;
     return ratio * ratio;
   }
-  // Nothing but a Lambert surface: no metal, and either no specular strength or roughness 1 all over, which
-  // is how glTF files say "diffuse". Such a surface is Lambert with albedo = base colour everywhere in
-  // Lambent.
-  bool matte() const {
+  // Returns whether the surface is purely diffuse: it is not metallic, and has either no specular strength or
+  // roughness 1 everywhere, which is how glTF files say "diffuse". Lambent treats it everywhere as a Lambert
+  // surface with albedo = base colour.
+  bool isDiffuse() const {
     if (unlit) return true;
     if (brdf >= 0 || metallic > 0.0f) return false;
     return specular <= 0.0f || (roughness >= 1.0f && metallic_roughness_texture.texture < 0);
@@ -120,26 +120,27 @@ struct Camera {
   std::string name;
   bool perspective = true;
   float yfov_rad = 0.8f;
-  float aspect = 0.0f;             // 0: the viewport's
+  float aspect = 0.0f;             // width / height; 0 for that of the viewport
   float xmag = 1.0f, ymag = 1.0f;  // orthographic half sizes
   float znear = 0.01f;
-  float zfar = 0.0f;  // 0: infinite
+  float zfar = 0.0f;  // 0 for infinite
 };
 
-// KHR_lights_punctual. At distance d and inside its cone it gives colour x intensity / d² W/m² on a surface
-// that faces it (directional: colour x intensity), faded out towards `range_m` as the extension asks.
+// A light of KHR_lights_punctual. On a surface that faces it, at distance d inside its cone, it gives an
+// irradiance of colour x intensity / d², or colour x intensity if it is directional. It fades out towards
+// `range_m` as the extension says.
 struct Light {
   enum class Type : std::uint8_t { Directional, Point, Spot };
   std::string name;
   Type type = Type::Point;
   glm::vec3 color{1.0f};                                    // linear
-  float intensity = 1.0f;                                   // candela = W/sr; directional: lux = W/m²
-  float range_m = 0.0f;                                     // 0: no end
-  float inner_cone_rad = 0.0f, outer_cone_rad = 0.785398f;  // spot: half angles, inner < outer <= pi/2
+  float intensity = 1.0f;                                   // candela (W/sr); lux (W/m²) if directional
+  float range_m = 0.0f;                                     // 0 for no limit
+  float inner_cone_rad = 0.0f, outer_cone_rad = 0.785398f;  // half angles of a spot, inner < outer <= pi/2
 };
 
-// Keyframes of one node's translation, rotation or scale. Values are as glTF stores them: 3 or 4 numbers a
-// key (quaternion x, y, z, w), for Cubic in-tangent, value, out-tangent.
+// Keyframes of one node's translation, rotation or scale. Values are stored as in glTF: 3 or 4 numbers per
+// key (quaternions as x, y, z, w). A cubic key has an in-tangent, a value and an out-tangent.
 struct AnimationChannel {
   enum class Path : std::uint8_t { Translation, Rotation, Scale };
   enum class Interpolation : std::uint8_t { Step, Linear, Cubic };
@@ -155,7 +156,7 @@ struct Animation {
   std::vector<AnimationChannel> channels;
 };
 
-// world_from_node for every node; parents may stand after their children in the list.
+// Returns world_from_node for every node. Parents may follow their children in the list.
 std::vector<glm::mat4> worldTransforms(const std::vector<Node>& nodes);
 
 }  // namespace lambent::gltf

@@ -1,4 +1,4 @@
-// The JSON of a group's grids: its volume, its neighborhood.
+// Writes and reads the JSON of a group's volume and neighborhood grids.
 #pragma once
 
 #include "runtime/bundle/description.hpp"
@@ -9,7 +9,7 @@ namespace lambent::bundle {
 Json volumeJson(const VolumeGrid& volume);
 Json neighborhoodJson(const NeighborhoodGrid& grid);
 
-// Of a group whose cells have been read: whether the grids and the cells that hold their transfer agree.
+// Reads the grids of a group whose cells have been read. Throws JsonFault if grids and cells do not agree.
 void readGrids(const Field& field, const Description& d, Group& group);
 
 }  // namespace lambent::bundle

@@ -1,5 +1,6 @@
-// Checked access to JSON: every look-up names the place, so that an error in a damaged file reads
-// "groups[2].cells[0].sampleCount is missing". Throws JsonFault; description_json.cpp turns it into an Error.
+// Gives checked access to JSON. Every look-up knows its path, so an error in a damaged file reads
+// "groups[2].cells[0].sampleCount is missing". Faults are thrown as JsonFault; description_json.cpp turns
+// them into an Error.
 #pragma once
 
 #include <cmath>
@@ -22,7 +23,7 @@ struct JsonFault : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// A place in the document: the value and the way to it.
+// A value in the document and its path.
 class Field {
  public:
   Field(const Json& value, std::string place) : value_(&value), place_(std::move(place)) {}
@@ -43,7 +44,7 @@ class Field {
       list.emplace_back((*value_)[i], fmt::format("{}[{}]", place_, i));
     return list;
   }
-  // The list under `key`, empty where the key is missing (glTF leaves empty lists out).
+  // Returns the list under `key`, which is empty if the key is missing, since glTF omits empty lists.
   std::vector<Field> list(const char* key) const {
     return has(key) ? (*this)[key].items() : std::vector<Field>{};
   }
@@ -69,7 +70,7 @@ class Field {
     if (value > largest) fault(fmt::format("is {}, more than {}", value, largest));
     return value;
   }
-  // An index into a list of `size`.
+  // Returns an index into a list of `size` items.
   std::uint32_t index(std::size_t size) const {
     if (size == 0) fault("points into an empty list");
     return static_cast<std::uint32_t>(count(size - 1));
@@ -116,7 +117,7 @@ inline Json hexJson(std::uint64_t value) {
   return fmt::format("{:016x}", value);
 }
 
-// The two subjects of the document.
+// gltf_json.cpp and transfer_json.cpp define these.
 struct Description;
 void writeGltf(const Description& description, std::uint64_t binary_bytes, Json& document);
 void readGltf(const Field& document, std::uint64_t binary_bytes, Description& description);

@@ -13,8 +13,8 @@ namespace {
 
 using Interpolation = AnimationChannel::Interpolation;
 
-// Between keys `first` and `first + 1`, `share` of the way and `interval_s` apart; share 0 is the first
-// alone.
+// A time between the keys `first` and `first + 1`, which are `interval_s` apart. `share` is the fraction of
+// the interval that has passed; if it is 0, only the first key counts.
 struct Place {
   std::size_t first = 0;
   double share = 0.0, interval_s = 0.0;
@@ -27,7 +27,7 @@ Place placeOf(const AnimationChannel& channel, float time_s) {
   if (above == times.begin()) return {};
   const auto first = static_cast<std::size_t>(above - times.begin()) - 1;
   if (above == times.end()) return {.first = first};
-  // Above 0: `above` is later than the time, and the key before is not.
+  // The interval is above 0, because `above` is later than the time and the key before it is not.
   const double interval = double{*above} - double{times[first]};
   return {.first = first, .share = (double{time} - double{times[first]}) / interval, .interval_s = interval};
 }
@@ -35,7 +35,8 @@ Place placeOf(const AnimationChannel& channel, float time_s) {
 template <int N>
 using Vector = glm::vec<N, double>;
 
-// Element `part` of a key: 0 for steps and lines; in-tangent, value, out-tangent for cubic splines.
+// Reads element `part` of a key. Cubic keys have in-tangent, value and out-tangent; other keys have only
+// element 0.
 template <int N>
 Vector<N> read(const AnimationChannel& channel, std::size_t key, std::size_t part = 0) {
   const std::size_t parts = channel.interpolation == Interpolation::Cubic ? 3 : 1;
@@ -51,7 +52,7 @@ Vector<N> valueOf(const AnimationChannel& channel, std::size_t key) {
   return read<N>(channel, key, channel.interpolation == Interpolation::Cubic ? 1 : 0);
 }
 
-// glTF 2.0, C.5: tangents are per second, the spline runs over one unit.
+// Evaluates glTF 2.0, C.5. Tangents are per second, while the spline parameter runs from 0 to 1.
 template <int N>
 Vector<N> cubicAt(const AnimationChannel& channel, const Place& at) {
   const double t = at.share, t2 = t * t, t3 = t2 * t;
@@ -65,7 +66,7 @@ glm::dquat quaternion(const Vector<4>& xyzw) {
   return {xyzw.w, xyzw.x, xyzw.y, xyzw.z};
 }
 
-// glTF 2.0, C.4, by the shorter of the two ways round.
+// Evaluates glTF 2.0, C.4, along the shorter of the two arcs.
 glm::dquat slerp(const glm::dquat& from, glm::dquat to, double share) {
   double cosine = glm::dot(from, to);
   if (cosine < 0.0) {
@@ -99,7 +100,7 @@ glm::quat rotationAt(const AnimationChannel& channel, float time_s) {
   if (at.share == 0.0 || channel.interpolation == Interpolation::Step) return glm::quat(from);
   if (channel.interpolation == Interpolation::Linear)
     return glm::quat(unit(slerp(from, unit(quaternion(valueOf<4>(channel, at.first + 1))), at.share)));
-  // A spline may pass through 0, where no rotation is meant.
+  // A spline may pass through 0, where it defines no rotation.
   const glm::dquat q = quaternion(cubicAt<4>(channel, at));
   return glm::quat(glm::length(q) > 1e-6 ? unit(q) : from);
 }

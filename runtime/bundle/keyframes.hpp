@@ -1,6 +1,6 @@
-// Animations at a point in time: glTF 2.0, appendix C (step, linear with slerp for rotations, cubic Hermite
-// splines). Before the first key the first value holds, after the last the last. Quaternions come out unit;
-// times that are not finite count as 0.
+// Evaluates animations at a point in time, as glTF 2.0, appendix C says: step, linear (slerp for rotations)
+// or cubic Hermite splines. The first value holds before the first key, the last value after the last key.
+// Quaternions are returned with unit length. Times that are not finite count as 0.
 #pragma once
 
 #include <span>
@@ -13,19 +13,19 @@
 
 namespace lambent::gltf {
 
-// Translation and Scale channels.
+// Evaluates a Translation or Scale channel.
 glm::vec3 vectorAt(const AnimationChannel& channel, float time_s);
-// Rotation channels.
+// Evaluates a Rotation channel.
 glm::quat rotationAt(const AnimationChannel& channel, float time_s);
 
-// From 0 to its last key; 0 if it has none.
+// Returns the time of the last key in seconds, or 0 if there is none.
 float durationOf(const Animation& animation);
 
-// Puts what the channels name into the parts of a node.
+// Sets the part of a node's transform that the channel animates.
 void applyChannel(const AnimationChannel& channel, float time_s, Trs& parts);
 
-// Moves the nodes that the animations name to where they are at time_s: trs and parent_from_node. Where
-// several move the same, the last counts.
+// Sets trs and parent_from_node of all animated nodes for the time. If several channels animate the same
+// part, the last one counts.
 void applyAnimations(std::span<const Animation> animations, float time_s, std::vector<Node>& nodes);
 
 }  // namespace lambent::gltf

@@ -1,4 +1,4 @@
-// Cameras and punctual lights: what looks and shines from a node along its -Z.
+// Writes and reads cameras and punctual lights.
 #include <algorithm>
 #include <array>
 #include <numbers>

@@ -1,22 +1,24 @@
-// Refuses to compile while a member of a material has no row in the table.
+// This file does not compile while a member of a material has no row in the table.
 #include "runtime/bundle/material_fields.hpp"
 
 namespace lambent::gltf {
 
 namespace {
 
-// A new member changes how many names these need.
-[[maybe_unused]] auto membersOf(const Material& material) {
-  const auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u, v, w] = material;
-  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u, v, w);
-}
-[[maybe_unused]] auto membersOf(const MaterialFactors& factors) {
-  const auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n] = factors;
-  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n);
-}
+// Stands for a value of any type where a type only counts how many values it takes.
+struct AnyValue {
+  template <class T>
+  operator T() const;
+};
 
-template <class T>
-constexpr std::size_t kMembers = std::tuple_size_v<decltype(membersOf(std::declval<const T&>()))>;
+// Returns how many members an aggregate has: it takes so many values, and not one more.
+template <class T, class... Values>
+consteval std::size_t memberCount() {
+  if constexpr (requires { T{Values()..., AnyValue()}; })
+    return memberCount<T, Values..., AnyValue>();
+  else
+    return sizeof...(Values);
+}
 
 constexpr std::size_t liveValues() {
   std::size_t count = 0;
@@ -24,9 +26,9 @@ constexpr std::size_t liveValues() {
   return count;
 }
 
-static_assert(kMembers<Material> == std::tuple_size_v<decltype(kMaterialFields)>,
+static_assert(memberCount<Material>() == std::tuple_size_v<decltype(kMaterialFields)>,
               "every member of Material has a row in kMaterialFields");
-static_assert(kMembers<MaterialFactors> == liveValues(),
+static_assert(memberCount<MaterialFactors>() == liveValues(),
               "every member of MaterialFactors is a live value of a row in kMaterialFields");
 
 }  // namespace

@@ -1,8 +1,8 @@
-// The table of a material's fields: one row for each member of gltf::Material. Whoever needs all fields walks
-// this table instead of naming them: the JSON of bundles, the digests of a scene and of a reference picture,
-// the keys of baked results, edits of a scene, the component that the inspector shows, and the rules that say
-// when a material must be baked again. A new field is a member of Material and a row here; if it can be
-// changed while it is shown, it is a member of MaterialFactors, too. The header holds declarations only.
+// The table of a material's fields has one row for each member of gltf::Material. Code that needs all fields
+// walks this table instead of naming them: the JSON of bundles, the digests of a scene and of a reference
+// picture, the keys of baked results, edits of a scene, the component in the inspector, and the rules that
+// say when a material must be baked again. To add a field, add a member of Material and a row here. If the
+// field can be changed while it is shown, add a member of MaterialFactors as well.
 #pragma once
 
 #include <array>
@@ -18,68 +18,68 @@
 
 namespace lambent::gltf {
 
-// The values of a material that can be changed while it is shown: factors before textures and vertex colours.
+// The values of a material that can be changed while it is shown. Textures and vertex colours multiply them.
 struct MaterialFactors {
   glm::vec3 base_color{1.0f};  // linear
   float alpha = 1.0f;
   float metallic = 1.0f, roughness = 1.0f;
-  float ior = 1.5f;  // 0: infinite
+  float ior = 1.5f;  // at least 1, or 0 for infinite
   float specular = 1.0f;
   glm::vec3 specular_color{1.0f};
   float anisotropy = 0.0f, anisotropy_rotation_rad = 0.0f;
-  std::int32_t brdf = -1;    // a measured table of the bundle in place of all of the above; -1: none
+  std::int32_t brdf = -1;    // measured table of the bundle that replaces all of the above; -1 if none
   glm::vec3 emission{0.0f};  // linear
   float emission_strength = 1.0f;
   float normal_scale = 1.0f;
-  float alpha_cutoff = 0.5f;  // of masked ones
+  float alpha_cutoff = 0.5f;  // used by masked materials
 };
 
-// Says which results of a bake depend on a field.
+// Tells which results of a bake depend on a field.
 enum class MaterialPart : std::uint8_t {
   Name,
   Color,       // bounced light
-  Reflection,  // transfer and kernels of glossy surfaces, and what they bounce
-  Emission,    // lamps of a group, up to a factor that is free at run time
-  Relief,      // only the tangents of glossy surfaces: normal maps are applied at run time
-  Opacity,     // which rays a surface stops
+  Reflection,  // transfer and kernels of glossy surfaces, and the light that they bounce
+  Emission,    // lights of a group, up to a factor that can change at run time
+  Relief,      // only the tangents of glossy surfaces, since normal maps are applied at run time
+  Opacity,     // rays that a surface stops
 };
 
-// Says where a field stands in glTF's JSON.
+// Tells where a field stands in glTF's JSON.
 struct MaterialJson {
   enum class Allowed : std::uint8_t { Any, ZeroToOne, NotNegative, ZeroOrFromOne };
 
-  std::array<const char*, 2> objects{};  // that the key stands in, the outer one first; null: none
-  const char* key = nullptr;             // null: the object itself says "true" by being there
+  std::array<const char*, 2> objects{};  // objects around the key, the outer one first; null if there is none
+  const char* key = nullptr;             // if null, the presence of the object means "true"
   Allowed allowed = Allowed::Any;
-  bool required = false;                    // to stand there if its object does
-  bool (*said)(const Material&) = nullptr;  // whether it is written; null: unless it has its default
+  bool required = false;                    // true if the key must be present whenever its object is
+  bool (*said)(const Material&) = nullptr;  // whether to write it; if null, it is written unless default
 };
 
-// A member of MaterialFactors, as a value of the field that it belongs to.
+// A member of MaterialFactors, described as a value of the field that it belongs to.
 template <class T>
 struct LiveValue {
   struct Range {
     T least, greatest;
   };
-  std::string_view name;  // in the inspector, in scripts and world files; never changed
+  std::string_view name;  // name in the inspector, in scripts and in world files, so it must not change
   T MaterialFactors::*factor;
-  const char* edit;  // its name in the JSON of edits, never changed; null: no edit of its own
+  const char* edit;  // name in the JSON of edits, which must not change either; null if it has no edit
   std::optional<Range> range{};
   std::string_view unit{};
 };
 
-// A row of the table. T is the type of the member, Live are the types of its values that can be changed: most
-// often there is none, or one of the same type.
+// A row of the table. T is the type of the member. Live are the types of its live values; most rows have
+// none, or one of type T.
 template <class T, class... Live>
 struct MaterialField {
   using Value = T;
 
-  std::string_view name;  // the member's
+  std::string_view name;  // name of the member
   T Material::*member;
   MaterialPart part;
   MaterialJson json;
   std::tuple<LiveValue<Live>...> live{};
-  bool color_texture = false;  // of a texture: sRGB, not linear numbers
+  bool color_texture = false;  // true for textures that are sRGB colours instead of linear numbers
 };
 
 namespace material_rows {
@@ -135,7 +135,7 @@ constexpr LiveValue<T> live(std::string_view name, T F::*factor, const char* edi
 
 }  // namespace material_rows
 
-// The order is that in which the scene's digest adds the fields: moving a row puts every bundle out of date.
+// The scene's digest adds the fields in this order, so moving a row invalidates every bundle.
 inline constexpr auto kMaterialFields = [] {
   using namespace material_rows;
   return std::tuple{
@@ -197,7 +197,7 @@ constexpr void forEachMaterialField(Visit&& visit) {
   std::apply([&](const auto&... field) { (visit(field), ...); }, kMaterialFields);
 }
 
-// Calls visit(field) for each row that is a texture.
+// Calls visit(field) for each row whose value is a texture.
 template <class Visit>
 constexpr void forEachMaterialTexture(Visit&& visit) {
   forEachMaterialField([&](const auto& field) {
@@ -206,7 +206,7 @@ constexpr void forEachMaterialTexture(Visit&& visit) {
   });
 }
 
-// Calls visit(field) for each row that is a number, a colour or a flag: all but the name and the textures.
+// Calls visit(field) for each row except the name and the textures.
 template <class Visit>
 constexpr void forEachMaterialValue(Visit&& visit) {
   forEachMaterialField([&](const auto& field) {
@@ -223,8 +223,8 @@ constexpr void forEachLiveValue(Visit&& visit) {
   });
 }
 
-// Reads a live value from its field. A colour with alpha has two, and a strength, which scales an emission
-// that is given in full, reads as 1.
+// Reads a live value from its field. A colour with alpha has two live values. A strength reads as 1, because
+// the field already contains it.
 template <class Live, class Value>
 Live liveFrom(const Value& value) {
   if constexpr (std::is_same_v<Live, Value>)
@@ -237,7 +237,7 @@ Live liveFrom(const Value& value) {
     return Live{1};
 }
 
-// Puts a live value into its field; strengths come after what they scale.
+// Puts a live value into its field. A strength must be put after the value that it scales.
 template <class Live, class Value>
 void putLive(const Live& live, Value& value) {
   if constexpr (std::is_same_v<Live, Value>)

@@ -1,5 +1,5 @@
-// Materials and their extensions, by the table of their fields (material_fields.hpp); texture transforms and
-// emission above 1 have rules of their own.
+// Writes and reads materials and their extensions by the table of fields (material_fields.hpp). Texture
+// transforms and emission above 1 have special rules.
 #include <algorithm>
 #include <array>
 #include <optional>
@@ -65,7 +65,7 @@ void readValue(const Field& field, std::size_t, gltf::AlphaMode& value) {
   value = static_cast<gltf::AlphaMode>(found - kAlphaModes.begin());
 }
 void readValue(const Field& field, std::size_t, std::int32_t& value) {
-  constexpr std::uint64_t kMostBrdfs = 1u << 16;  // the transfer's reader checks whether the table is there
+  constexpr std::uint64_t kMostBrdfs = 1u << 16;  // transfer_json.cpp checks that the table exists
   value = static_cast<std::int32_t>(field.count(kMostBrdfs));
 }
 template <glm::length_t L>
@@ -110,7 +110,7 @@ bool isDefault(const T& value, const T& otherwise) {
   return value == otherwise;
 }
 
-// What has its default is left out, and with it extensions that would say nothing.
+// Writes a field unless it has its default. Extensions with only default values are therefore not written.
 template <class Row>
 void writeRow(const Row& row, const gltf::Material& material, Json& json, std::set<std::string>& used) {
   const auto& value = material.*row.member;
@@ -145,7 +145,7 @@ void readRow(const Row& row, const Field& field, std::size_t texture_count, gltf
   checkValue(place[row.json.key], row.json.allowed, value);
 }
 
-// ---- emission: glTF's factor ends at 1, and what shines brighter has a strength besides
+// ---- emission: glTF's factor is at most 1, so brighter materials also have a strength
 
 void splitEmission(const gltf::Material& material, Json& json, std::set<std::string>& used) {
   const float strength = std::max({material.emissive.x, material.emissive.y, material.emissive.z});
@@ -174,7 +174,7 @@ Json materialJson(const gltf::Material& material, std::set<std::string>& used) {
 
 gltf::Material readMaterial(const Field& field, std::size_t texture_count) {
   gltf::Material material;
-  static_cast<void>(field["pbrMetallicRoughness"]);  // faults where it is missing
+  static_cast<void>(field["pbrMetallicRoughness"]);  // throws if it is missing
   gltf::forEachMaterialField([&](const auto& row) { readRow(row, field, texture_count, material); });
   joinEmission(field, material);
   return material;

@@ -13,17 +13,17 @@
 namespace lambent::bundle {
 namespace {
 
-// More than any mesh that fits a bundle, less than what would take the machine down before an allocation
-// fails.
+// This is more than any mesh that fits into a bundle, but little enough that a machine survives the
+// allocation.
 constexpr std::uint32_t kMaxTriangles = 1u << 26;
 constexpr std::size_t kHeaderBytes = 11;
-constexpr std::uint8_t kMajor = 2, kMinor = 2;  // the bitstream that KHR_draco_mesh_compression names
+constexpr std::uint8_t kMajor = 2, kMinor = 2;  // version of the bitstream in KHR_draco_mesh_compression
 constexpr std::uint8_t kTriangularMesh = 1, kEdgebreaker = 1;
-constexpr std::uint8_t kMetadataFlag = 0x80;  // of the high byte of the flags
+constexpr std::uint8_t kMetadataFlag = 0x80;  // in the high byte of the flags
 
 const char* kReencode = "encode the mesh again";
 
-// Little-endian base 128, as Draco writes counts.
+// Reads a count as Draco writes it, in little-endian base 128.
 std::optional<std::uint64_t> readVarint(std::span<const std::byte> bytes, std::size_t& at) {
   std::uint64_t value = 0;
   for (unsigned shift = 0; shift < 35 && at < bytes.size(); shift += 7) {
@@ -34,8 +34,8 @@ std::optional<std::uint64_t> readVarint(std::span<const std::byte> bytes, std::s
   return std::nullopt;
 }
 
-// Draco allocates what the header claims before it reads the data. So the claim is compared with the
-// primitive's count first: a forged header cannot ask for gigabytes.
+// Draco allocates what the header claims before it reads the data. Comparing the claim with the primitive's
+// count first keeps a forged header from demanding gigabytes.
 Result<void> checkHeader(std::span<const std::byte> bytes, const Primitive& primitive,
                          const std::string& subject) {
   const auto byteAt = [&](std::size_t i) { return std::to_integer<std::uint8_t>(bytes[i]); };
@@ -72,7 +72,8 @@ Result<void> checkHeader(std::span<const std::byte> bytes, const Primitive& prim
   return {};
 }
 
-// The attribute with the unique id, checked to hold `components` finite floats for every point.
+// Returns the attribute with the unique id. Fails unless it holds finite floats, as many as the vector type
+// has, for every point.
 template <typename Vector>
 Result<std::vector<Vector>> readAttribute(const draco::Mesh& mesh, std::int32_t id, const char* name,
                                           const std::string& subject) {
@@ -81,7 +82,7 @@ Result<std::vector<Vector>> readAttribute(const draco::Mesh& mesh, std::int32_t 
       id < 0 ? nullptr : mesh.GetAttributeByUniqueId(static_cast<std::uint32_t>(id));
   if (attribute == nullptr)
     return fail(subject, fmt::format("has no {} (attribute {})", name, id), kReencode);
-  // Colours may come as RGB.
+  // Colours may be stored as RGB.
   const int stored = attribute->num_components();
   if (stored != kComponents && !(kComponents == 4 && stored == 3))
     return fail(subject, fmt::format("has {} of {} components", name, stored), kReencode);
@@ -114,7 +115,7 @@ Result<void> normalize(std::vector<glm::vec3>& normals, const std::string& subje
   return {};
 }
 
-// Unit, and w the exact sign that it stands for: the coder is lossy.
+// Gives tangents unit length and a w of exactly 1 or -1, since Draco is lossy.
 Result<void> normalize(std::vector<glm::vec4>& tangents, const std::string& subject) {
   for (std::size_t i = 0; i < tangents.size(); ++i) {
     const glm::vec3 direction(tangents[i]);
@@ -174,7 +175,7 @@ Result<MeshData> extract(const draco::Mesh& mesh, const DracoAttributes& attribu
   return data;
 }
 
-// What `use` makes of the decoded mesh, whose counts are those of the primitive.
+// Decodes the mesh, checks its counts against the primitive's, and returns the result of `use`.
 template <typename Out, typename Use>
 Result<Out> withDecoded(std::span<const std::byte> bytes, const Primitive& primitive,
                         const std::string& subject, Use use) {

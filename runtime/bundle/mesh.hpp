@@ -1,5 +1,5 @@
-// A mesh as the runtime draws it and as the baker bakes it: what Draco gives back, never what went in ("bake
-// what ships"). One float array per attribute; empty where the mesh has none.
+// Decodes meshes. Both the runtime and the baker use the mesh that Draco decodes, never the one that was
+// encoded, so that the bake matches what ships.
 #pragma once
 
 #include <cstddef>
@@ -16,38 +16,39 @@
 
 namespace lambent::bundle {
 
+// A decoded mesh with one array per attribute. An array is empty if the mesh lacks the attribute.
 struct MeshData {
   std::vector<glm::vec3> positions;  // mesh space
   std::vector<glm::vec3> normals;    // unit length
-  // By which normals count where they are interpolated, above 0 and at most 1; empty: all 1. The mean of two
-  // normals is shorter than they are, and a vertex that splits an edge keeps that: else the two halves of the
-  // edge would turn from one normal to the other in another way than the whole did.
+  // Weights of normals when they are interpolated, above 0 and at most 1; all are 1 if empty. A vertex that
+  // splits an edge has the mean of two normals, which is shorter than they are. Its weight keeps that length,
+  // so that normals along the edge interpolate as before the split.
   std::vector<float> normal_weights = {};
-  // Vertices of one position and normal hold transfer of their own where these differ, each of the faces
-  // around that use it (a fan of them); empty: all 0.
+  // Distinguishes vertices that share position and normal but have transfer of their own. Each belongs to one
+  // fan of the faces around the point. All are 0 if empty.
   std::vector<std::uint8_t> fans = {};
-  std::vector<glm::vec2> texcoords0;   // may be empty
-  std::vector<glm::vec2> texcoords1;   // may be empty
-  std::vector<glm::vec4> colors;       // linear, 0..1; may be empty
-  std::vector<glm::vec4> tangents;     // as glTF: unit xyz, w the bitangent's sign; may be empty
+  std::vector<glm::vec2> texcoords0;
+  std::vector<glm::vec2> texcoords1;
+  std::vector<glm::vec4> colors;       // linear, 0..1
+  std::vector<glm::vec4> tangents;     // unit xyz; w is the sign of the bitangent, as in glTF
   std::vector<std::uint32_t> indices;  // triangles, counter-clockwise seen from outside
 };
 
-// Decodes a Draco buffer. Errors name `subject`: not Draco, not a mesh, an attribute missing, counts that
-// differ from the primitive's, indices out of range, values that are not finite.
+// Decodes a Draco buffer. Fails, naming `subject`, if it is not Draco or not a mesh, if an attribute is
+// missing, counts differ from the primitive's, indices are out of range, or values are not finite.
 Result<MeshData> decodeDraco(std::span<const std::byte> bytes, const Primitive& primitive,
                              const std::string& subject);
 
-// One attribute of a Draco buffer that MeshData has no place for (joints, weights): four floats a vertex in
-// the order of decodeDraco(), 1 where it has fewer components. Checks and errors as there.
+// Decodes an attribute that MeshData does not have, such as joints or weights. Returns four floats per vertex
+// in the order of decodeDraco(); missing components are 1. Fails like decodeDraco().
 Result<std::vector<glm::vec4>> decodeDracoAttribute(std::span<const std::byte> bytes,
                                                     const Primitive& primitive, std::int32_t id,
                                                     const std::string& name, const std::string& subject);
 
-// Normals times their weights, as vertices hand them to pixels; the weights are empty then.
+// Multiplies normals by their weights, as the vertex shader interpolates them, and empties the weights.
 void weighNormals(MeshData& mesh);
 
-// XXH3-64 over positions and indices: transfer belongs to exactly this mesh.
+// Returns the XXH3-64 of positions and indices, which ties transfer to exactly this mesh.
 std::uint64_t meshDigest(const MeshData& mesh);
 
 }  // namespace lambent::bundle

@@ -1,4 +1,4 @@
-// A field that names a payload of the bundle.
+// Reads a field that refers to a payload of the bundle.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace lambent::bundle {
 
-// A payload of the type wanted, of the size wanted.
+// Returns the index of a payload. Throws JsonFault if its type or, if given, its length is another.
 inline std::uint32_t payloadIndex(const Field& field, const Description& d, PayloadType type,
                                   std::optional<std::uint64_t> raw_length) {
   const std::uint32_t index = field.index(d.payloads.size());

@@ -8,9 +8,10 @@
 
 #include "runtime/bundle/checksum.hpp"
 #include "runtime/bundle/description_json.hpp"
+#include "runtime/bundle/entropy_coder.hpp"
 #include "runtime/bundle/glb.hpp"
 #include "runtime/bundle/gltf_parts.hpp"
-#include "runtime/bundle/transfer_codec.hpp"
+#include "runtime/transfer/vertex_rows.hpp"
 
 namespace lambent::bundle {
 
@@ -26,7 +27,8 @@ Reader::~Reader() = default;
 
 namespace {
 
-// The integrity view: the checksum of the JSON chunk and its complement (description_json.hpp).
+// Checks the JSON chunk against the integrity view, which holds its checksum and the complement of that
+// (description_json.hpp).
 Result<void> checkJson(const GlbFile& glb) {
   std::array<std::uint64_t, 2> stored{};
   if (glb.binaryBytes() < kIntegrityBytes)
@@ -44,7 +46,7 @@ Result<void> checkJson(const GlbFile& glb) {
 Result<Reader> Reader::open(const std::filesystem::path& path) {
   auto glb = GlbFile::open(path);
   if (!glb) return failAgain(glb.error());
-  // Version and kind come first, so that a plain glTF file or a newer bundle is called what it is, not
+  // Version and kind are checked first, so that a plain glTF file or a newer bundle is not reported as
   // damaged.
   auto description = fromJson(glb->json(), glb->binaryBytes(), path.string());
   const auto intact = checkJson(*glb);
@@ -74,7 +76,7 @@ std::uint64_t Reader::fileBytes() const {
 
 Result<std::vector<std::byte>> Reader::readView(std::uint32_t index) const {
   const View& view = file_->description.views.at(index);
-  std::vector<std::byte> bytes((view.length + 7) / 8 * 8);  // with the padding, which the checksum covers
+  std::vector<std::byte> bytes((view.length + 7) / 8 * 8);  // includes the padding, which the checksum covers
   if (auto read = file_->glb.readBinary(view.offset, bytes); !read) return failAgain(read.error());
   if (checksum(bytes) != view.checksum)
     return fail(path().string(), fmt::format("is damaged: byte range {} does not match its checksum", index),
@@ -101,21 +103,22 @@ Result<MeshData> Reader::readMesh(std::uint32_t mesh, std::uint32_t primitive_in
   return data;
 }
 
-Result<VertexWeights> Reader::readRows(std::uint32_t index) const {
+Result<transfer::VertexWeights> Reader::readRows(std::uint32_t index) const {
   const Draw& draw = description().draws.at(index);
   const Group& group = description().groups[draw.group];
   const std::string subject = fmt::format("{}: draw {}", path().string(), index);
   const auto bytes = readPayload(draw.rows);
   if (!bytes) return failAgain(bytes.error());
-  auto rows = decodeRows(*bytes, description().meshes[draw.mesh].primitives[draw.primitive].vertex_count,
-                         group.sample_count, subject);
+  auto rows =
+      transfer::decodeRows(*bytes, description().meshes[draw.mesh].primitives[draw.primitive].vertex_count,
+                           group.sample_count, subject);
   if (!rows) return rows;
-  // Samples stand by rising outputs.
+  // Samples are ordered by rising outputs.
   std::uint32_t first = 0;
   for (const Cell& cell : group.cells)
-    if (cell.kind == CellKind::Surface && cell.outputs() < draw.outputs)
+    if (cell.domain == transfer::Domain::Vertex && cell.form() < draw.form())
       first = cell.first_sample + cell.sample_count;
-  const std::uint32_t end = first + group.samplesWith(draw.outputs);
+  const std::uint32_t end = first + group.samplesOf(draw.form());
   const auto other = [&](std::uint32_t sample) { return sample < first || sample >= end; };
   if (std::any_of(rows->samples.begin(), rows->samples.end(), other))
     return fail(subject, fmt::format("takes samples that do not have {} outputs", draw.outputs),
@@ -130,19 +133,19 @@ Result<CellCodebook> Reader::readCodebook(std::uint32_t group, std::uint32_t cel
   const std::string subject = fmt::format("{}: group {} cell {}", path().string(), group, cell_index);
   const auto bytes = readPayload(transfer.codebook);
   if (!bytes) return failAgain(bytes.error());
-  auto codebook = decodeCodebook(*bytes, transfer.shape, transfer.clusters, subject);
+  auto codebook = transfer::decodeCodebook(*bytes, transfer.shape, transfer.clusters, subject);
   if (!codebook) return failAgain(codebook.error());
-  if (codebook->axes.size() != transfer.axes)  // whoever makes room for them goes by the description
+  if (codebook->axes.size() != transfer.axes)  // callers reserve memory by the description
     return fail(subject, "has a codebook of another size than its description says", "bake it again");
   CellCodebook found{std::move(*codebook), std::vector<std::uint32_t>(cell.sample_count, 0)};
   if (transfer.cluster_ids >= 0) {
     const auto id_bytes = readPayload(static_cast<std::uint32_t>(transfer.cluster_ids));
     if (!id_bytes) return failAgain(id_bytes.error());
-    auto ids = decodeClusterIds(*id_bytes, transfer.clusters, cell.sample_count, subject);
+    auto ids = transfer::decodeClusterIds(*id_bytes, transfer.clusters, cell.sample_count, subject);
     if (!ids) return failAgain(ids.error());
     found.cluster_of = std::move(*ids);
   }
-  const std::vector<std::uint32_t> counts = planeCounts(found.codebook, found.cluster_of);
+  const std::vector<std::uint32_t> counts = transfer::planeCounts(found.codebook, found.cluster_of);
   const auto same = [](std::uint32_t count, const WeightPlane& plane) { return count == plane.count; };
   if (!std::equal(counts.begin(), counts.end(), transfer.planes.begin(), transfer.planes.end(), same))
     return fail(subject, "has weight planes of other sizes than its clusters ask for", "bake it again");
@@ -155,18 +158,21 @@ Result<std::vector<std::uint32_t>> Reader::readPlane(std::uint32_t group, std::u
       description().groups.at(group).cells.at(cell).transfers.at(transfer).planes.at(index);
   const auto bytes = readPayload(plane.payload);
   if (!bytes) return failAgain(bytes.error());
-  return decodeWeightPlane(*bytes, plane.bits, plane.count,
-                           fmt::format("{}: group {} cell {} plane {}", path().string(), group, cell, index));
+  return transfer::decodeWeightPlane(
+      *bytes, plane.bits, plane.count,
+      fmt::format("{}: group {} cell {} plane {}", path().string(), group, cell, index));
 }
 
-Result<std::vector<LightWeights>> Reader::readLightWeights(std::uint32_t group,
-                                                           std::uint32_t cell_index) const {
+Result<std::vector<transfer::LightWeights>> Reader::readLightWeights(std::uint32_t group,
+                                                                     std::uint32_t cell_index) const {
   const Cell& cell = description().groups.at(group).cells.at(cell_index);
-  if (cell.light_weights < 0) return std::vector<LightWeights>(cell.sample_count, kOneLight);
+  if (cell.light_weights < 0)
+    return std::vector<transfer::LightWeights>(cell.sample_count, transfer::kOneLight);
   const auto bytes = readPayload(static_cast<std::uint32_t>(cell.light_weights));
   if (!bytes) return failAgain(bytes.error());
-  return decodeLightWeights(*bytes, cell.sample_count, cell.light_probes.size(),
-                            fmt::format("{}: group {} cell {}", path().string(), group, cell_index));
+  return transfer::decodeLightWeights(
+      *bytes, cell.sample_count, cell.light_probes.size(),
+      fmt::format("{}: group {} cell {}", path().string(), group, cell_index));
 }
 
 Result<CaptureProxy> Reader::readProxy(std::uint32_t index) const {

@@ -1,7 +1,9 @@
-// Reads bundles: the JSON once, and with it the keyframes of animations, then only the byte ranges that are
-// asked for. Owns the open file; every call is safe from any thread. What comes out has been checked: lengths
-// against the file, checksums against the bytes, every index and count of the description against the lists
-// that it points into. No GL, no baker.
+// The bundle room owns the file format in both directions: the container, its description, the payload codecs
+// and the decoding of meshes. It needs neither a GPU nor the baker. A Reader owns an open bundle. Opening
+// reads the JSON and the keyframes of animations; other calls read only the byte ranges that they need, and
+// may come from any thread. All results have been checked: lengths against the file, checksums against the
+// bytes, and indices and counts of the description against the lists that they refer to. Damaged or
+// unreadable files are reported as an Error that names the file and the place.
 #pragma once
 
 #include <cstddef>
@@ -14,21 +16,22 @@
 #include "runtime/bundle/brdf_table.hpp"
 #include "runtime/bundle/capture_proxy.hpp"
 #include "runtime/bundle/description.hpp"
-#include "runtime/bundle/light_weights.hpp"
 #include "runtime/bundle/mesh.hpp"
-#include "runtime/bundle/transfer_codec.hpp"
+#include "runtime/transfer/light_weights.hpp"
+#include "runtime/transfer/vertex_rows.hpp"
 
 namespace lambent::bundle {
 
 // The codebook of a cell's transfer, and the cluster of each sample.
 struct CellCodebook {
-  Codebook codebook;
+  transfer::Codebook codebook;
   std::vector<std::uint32_t> cluster_of;
 };
 
 class Reader {
  public:
-  // Errors: missing file, not a GLB, truncated, not a bundle, too new, damaged JSON, indices out of range.
+  // Fails if the file is missing, truncated, not a GLB, not a bundle, too new, or if its JSON is damaged or
+  // has indices out of range.
   static Result<Reader> open(const std::filesystem::path& path);
 
   Reader(Reader&&) noexcept;
@@ -39,25 +42,26 @@ class Reader {
   const Description& description() const;
   std::uint64_t fileBytes() const;
 
-  // The bytes of a view, without padding; the checksum is compared.
+  // Returns the bytes of a view without padding, after checking their checksum.
   Result<std::vector<std::byte>> readView(std::uint32_t view) const;
-  // The bytes of a payload, decompressed to raw_length.
+  // Returns the decompressed bytes of a payload, raw_length of them.
   Result<std::vector<std::byte>> readPayload(std::uint32_t payload) const;
-  // Decodes a primitive and compares its digest.
+  // Decodes a primitive and checks its digest.
   Result<MeshData> readMesh(std::uint32_t mesh, std::uint32_t primitive) const;
-  // Of a draw; its samples are of cells with as many outputs.
-  Result<VertexWeights> readRows(std::uint32_t draw) const;
-  // Of Cell::transfers[transfer]; it agrees with the counts of the planes.
+  // Returns the rows of a draw. All their samples belong to cells with the draw's outputs.
+  Result<transfer::VertexWeights> readRows(std::uint32_t draw) const;
+  // Returns the codebook of Cell::transfers[transfer]. Its clusters agree with the lengths of the planes.
   Result<CellCodebook> readCodebook(std::uint32_t group, std::uint32_t cell, std::uint32_t transfer) const;
-  // Codes in the order of positionsOf.
+  // Returns the codes of a plane in the order of positionsOf().
   Result<std::vector<std::uint32_t>> readPlane(std::uint32_t group, std::uint32_t cell,
                                                std::uint32_t transfer, std::uint32_t plane) const;
-  // One per sample of the cell; of a cell with one light probe, that one whole.
-  Result<std::vector<LightWeights>> readLightWeights(std::uint32_t group, std::uint32_t cell) const;
+  // Returns one entry per sample of the cell. If the cell has only one light probe, all entries are
+  // kOneLight.
+  Result<std::vector<transfer::LightWeights>> readLightWeights(std::uint32_t group, std::uint32_t cell) const;
   Result<BrdfTable> readBrdfTable(std::uint32_t index) const;
-  // Without a level where the group has none.
+  // Returns a proxy without levels if the group has none.
   Result<CaptureProxy> readProxy(std::uint32_t group) const;
-  // Reads, decodes and compares everything in the file.
+  // Reads, decodes and checks everything in the file.
   Result<void> checkAll() const;
 
  private:

@@ -1,4 +1,4 @@
-// The extension LAMBENT_radiance_transfer: what was baked and where it lies.
+// Writes and reads the extension LAMBENT_radiance_transfer, which says what was baked and where it lies.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -7,8 +7,8 @@
 #include "runtime/bundle/description.hpp"
 #include "runtime/bundle/grid_json.hpp"
 #include "runtime/bundle/json_fields.hpp"
-#include "runtime/bundle/light_weights.hpp"
 #include "runtime/bundle/payload_field.hpp"
+#include "runtime/transfer/light_weights.hpp"
 
 namespace lambent::bundle {
 
@@ -16,13 +16,13 @@ namespace {
 
 constexpr std::uint32_t kMaxOrder = 8, kMaxColumns = 4096, kMaxCellSamples = 65536;
 constexpr std::uint32_t kMaxClusters = 65536;
-constexpr std::uint64_t kMaxPayloadBytes = std::uint64_t{1} << 32;  // refuse to allocate more for one payload
+constexpr std::uint64_t kMaxPayloadBytes = std::uint64_t{1} << 32;  // limits what one payload may allocate
 constexpr std::array kPayloadTypes = {"vertexRows",  "codebook",     "clusterIds",
                                       "weightPlane", "lightWeights", "captureProxy",
                                       "brdfTable",   "density",      "voxels"};
-constexpr std::array kCellKinds = {"surface", "volume", "neighborhood"};
+constexpr std::array kDomains = {"surface", "volume", "neighborhood"};
 constexpr std::array kBrdfFamilies = {"ggx", "anisotropicGgx", "measured"};
-// Transferred light of glossy surfaces has 4, 5 or 6 bands, and so may the light that they are given.
+// Glossy surfaces have transferred light in 4, 5 or 6 bands and incident light in at most 6.
 constexpr std::uint32_t kMaxGlossyOrder = 6;
 constexpr std::array kCodecs = {"raw", "zstd"};
 constexpr std::array kLightKinds = {"material", "node"};
@@ -66,7 +66,7 @@ Json cellTransferJson(const CellTransfer& transfer) {
 
 std::uint32_t readOutputs(const Field& field) {
   const auto outputs = static_cast<std::uint32_t>(field.count(kMaxGlossyOrder * kMaxGlossyOrder));
-  if (outputs != 1 && outputs != kMappedOutputs && outputs != 16 && outputs != 25 && outputs != 36)
+  if (outputs != 1 && outputs != transfer::kMappedOutputs && outputs != 16 && outputs != 25 && outputs != 36)
     field.fault("is none of 1, 9, 16, 25 and 36");
   return outputs;
 }
@@ -78,8 +78,9 @@ std::uint32_t readChannels(const Field& field, bool may_be_none) {
   return channels;
 }
 
-TransferShape readShape(const Field& field, const std::vector<GroupLight>& lights, CellKind kind) {
-  TransferShape shape;
+transfer::TransferShape readShape(const Field& field, const std::vector<GroupLight>& lights,
+                                  transfer::Domain domain) {
+  transfer::TransferShape shape;
   shape.order = static_cast<std::uint32_t>(field["order"].count(kMaxOrder));
   shape.light_columns = static_cast<std::uint32_t>(field["lightColumns"].count(kMaxColumns));
   if ((shape.order == 0) == (shape.light_columns == 0))
@@ -87,17 +88,18 @@ TransferShape readShape(const Field& field, const std::vector<GroupLight>& light
   if (shape.light_columns != 0 && shape.light_columns != lights.size())
     field["lightColumns"].fault("are not as many as the group has lights");
   shape.outputs = readOutputs(field["outputs"]);
-  // Light transferred by matrices, of which nothing but visibility may be stored.
-  const bool glossy = shape.glossy() || kind == CellKind::Neighborhood;
+  // These cells transfer light by matrices and may store only the visibility.
+  const bool glossy = transfer::evaluatedAsMatrix(domain, shape.outputs);
   if (glossy && shape.order > kMaxGlossyOrder) field["order"].fault("is over 6 for glossy surfaces");
   shape.full_channels = readChannels(field["fullChannels"], /*may_be_none=*/true);
-  // Bounced light by itself, beside the visibility, has no shadowed part.
+  // Bounced light that is stored beside the visibility has no shadowed part.
   shape.shadowed_channels =
       readChannels(field["shadowedChannels"],
                    /*may_be_none=*/glossy && shape.order > 0 && shape.full_channels > 0);
   if (field.has("visibilityBands")) {
     shape.visibility_bands = static_cast<std::uint32_t>(field["visibilityBands"].count(2 * kMaxGlossyOrder));
-    if (!glossy || shape.order == 0 || shape.visibility_bands != shape.order + bandsOf(shape.outputs) - 1 ||
+    if (!glossy || shape.order == 0 ||
+        shape.visibility_bands != shape.order + transfer::bandsOf(shape.outputs) - 1 ||
         shape.shadowed_channels != 1 || shape.full_channels != 0)
       field["visibilityBands"].fault("are not those of the product of the light and the outputs");
   }
@@ -116,16 +118,16 @@ WeightPlane readPlane(const Field& field, const Description& d, std::uint32_t la
 }
 
 CellTransfer readCellTransfer(const Field& field, const Description& d, const Group& group,
-                              std::uint32_t sample_count, CellKind kind) {
+                              std::uint32_t sample_count, transfer::Domain domain) {
   CellTransfer transfer;
-  transfer.shape = readShape(field, group.lights, kind);
+  transfer.shape = readShape(field, group.lights, domain);
   transfer.clusters = static_cast<std::uint32_t>(field["clusters"].count(kMaxClusters));
   if (transfer.clusters == 0) field["clusters"].fault("is 0");
   const auto planes = field["planes"].items();
   if (planes.size() > transfer.shape.size()) field["planes"].fault("are more than the vector has values");
   transfer.axes =
       static_cast<std::uint32_t>(field["axes"].count(std::uint64_t{transfer.clusters} * planes.size()));
-  // Its length depends on how it is coded; decodeCodebook() holds it against the counts.
+  // The length depends on the coding, so decodeCodebook() checks it.
   transfer.codebook = payloadIndex(field["codebook"], d, PayloadType::Codebook, std::nullopt);
   if (transfer.clusters > 1)
     transfer.cluster_ids = static_cast<std::int32_t>(
@@ -134,14 +136,14 @@ CellTransfer readCellTransfer(const Field& field, const Description& d, const Gr
   std::uint32_t largest_count = sample_count;
   for (const Field& entry : planes) {
     transfer.planes.push_back(readPlane(entry, d, largest_count));
-    largest_count = transfer.planes.back().count;  // a sample that has axis j + 1 has axis j
+    largest_count = transfer.planes.back().count;  // a sample with an axis j + 1 has an axis j, too
   }
   transfer.error_bound = field["errorBound"].number();
   transfer.error = field["error"].number();
   return transfer;
 }
 
-// Which of the group's light probes a cell takes, and where the weights lie if they are several.
+// Reads the light probes of a cell and, if there are several, the payload of their weights.
 void readCellLights(const Field& field, const Description& d, const Group& group, Cell& cell) {
   const Field list = field["lightSamples"];
   cell.light_probes.clear();
@@ -153,24 +155,24 @@ void readCellLights(const Field& field, const Description& d, const Group& group
   if (cell.light_probes.empty() || cell.light_probes.size() > kMaxLightProbes)
     list.fault(fmt::format("are not 1 to {}", kMaxLightProbes));
   if (cell.light_probes.size() > 1)
-    cell.light_weights =
-        static_cast<std::int32_t>(payloadIndex(field["lightWeights"], d, PayloadType::LightWeights,
-                                               std::uint64_t{cell.sample_count} * sizeof(LightWeights)));
+    cell.light_weights = static_cast<std::int32_t>(
+        payloadIndex(field["lightWeights"], d, PayloadType::LightWeights,
+                     std::uint64_t{cell.sample_count} * sizeof(transfer::LightWeights)));
   else if (field.has("lightWeights"))
     field["lightWeights"].fault("are there for one light probe");
 }
 
-// In this order, each at most once: of the environment (of a glossy cell visibility, then bounced light), of
-// the group's lights.
+// Checks that the parts of a cell's transfer stand in this order, each at most once: the environment (for
+// glossy cells visibility, then bounced light), then the group's lights.
 void checkParts(const Field& field, const Cell& cell) {
   enum Part { Environment, Bounced, Lights };
-  const auto partOf = [&](const TransferShape& shape) {
+  const auto partOf = [&](const transfer::TransferShape& shape) {
     if (shape.order == 0) return Lights;
-    const bool matrices = shape.glossy() || cell.kind == CellKind::Neighborhood;
+    const bool matrices = transfer::evaluatedAsMatrix(cell.domain, shape.outputs);
     return matrices && !shape.isVisibility() ? Bounced : Environment;
   };
   for (std::size_t t = 0; t < cell.transfers.size(); ++t) {
-    const TransferShape& shape = cell.transfers[t].shape;
+    const transfer::TransferShape& shape = cell.transfers[t].shape;
     if (shape.outputs != cell.outputs()) field.fault("differ in their outputs");
     if (t == 0 ? partOf(shape) != Environment : partOf(shape) <= partOf(cell.transfers[t - 1].shape))
       field.fault("are not the group's lights after the environment");
@@ -185,20 +187,21 @@ Cell readCell(const Field& field, const Description& d, const Group& group, std:
   if (cell.first_sample != first_sample) field["firstSample"].fault("leaves a gap between cells");
   cell.sample_count = static_cast<std::uint32_t>(
       field["sampleCount"].count(std::min(kMaxCellSamples, group.sample_count - cell.first_sample)));
-  cell.kind = readWord<CellKind>(field["kind"], kCellKinds);
+  cell.domain = readWord<transfer::Domain>(field["kind"], kDomains);
   cell.bounds_min = field["boundsMin"].vector<glm::vec3>();
   cell.bounds_max = field["boundsMax"].vector<glm::vec3>();
   for (const Field& entry : field["transfers"].items())
-    cell.transfers.push_back(readCellTransfer(entry, d, group, cell.sample_count, cell.kind));
+    cell.transfers.push_back(readCellTransfer(entry, d, group, cell.sample_count, cell.domain));
   checkParts(field["transfers"], cell);
   readCellLights(field, d, group, cell);
   if (!group.cells.empty()) {
     const Cell& before = group.cells.back();
-    if (before.kind > cell.kind) field["kind"].fault("is out of order");
-    if (before.kind == CellKind::Surface && cell.kind == CellKind::Surface &&
+    if (before.domain > cell.domain) field["kind"].fault("is out of order");
+    if (before.domain == transfer::Domain::Vertex && cell.domain == transfer::Domain::Vertex &&
         before.outputs() > cell.outputs())
       field.fault("has fewer outputs than the cell before it");
-    if (before.kind == cell.kind && cell.kind != CellKind::Surface && before.outputs() != cell.outputs())
+    if (before.domain == cell.domain && cell.domain != transfer::Domain::Vertex &&
+        before.outputs() != cell.outputs())
       field.fault("has other outputs than the cell before it");
   }
   return cell;
@@ -218,7 +221,7 @@ GroupLight readGroupLight(const Field& field, const Description& d) {
 Json cellJson(const Cell& cell) {
   Json transfers = Json::array();
   for (const CellTransfer& transfer : cell.transfers) transfers.push_back(cellTransferJson(transfer));
-  Json json = {{"kind", word(cell.kind, kCellKinds)},      {"firstSample", cell.first_sample},
+  Json json = {{"kind", word(cell.domain, kDomains)},      {"firstSample", cell.first_sample},
                {"sampleCount", cell.sample_count},         {"boundsMin", vectorJson(cell.bounds_min)},
                {"boundsMax", vectorJson(cell.bounds_max)}, {"transfers", transfers},
                {"lightSamples", cell.light_probes}};
@@ -236,7 +239,7 @@ Json groupJson(const Group& group) {
   const glm::quat& r = group.rest_rotation;
   Json json = {{"name", group.name},
                {"restTranslation", vectorJson(group.rest_translation)},
-               {"restRotation", {r.x, r.y, r.z, r.w}},  // glTF's order
+               {"restRotation", {r.x, r.y, r.z, r.w}},  // in glTF's order
                {"boundsMin", vectorJson(group.bounds_min)},
                {"boundsMax", vectorJson(group.bounds_max)},
                {"sampleCount", group.sample_count},
@@ -281,7 +284,8 @@ Group readGroup(const Field& field, const Description& d) {
   }
   if (next != group.sample_count) field["cells"].fault("do not hold all samples of the group");
   readGrids(field, d, group);
-  // Nothing is captured for nobody. (A group without cells has one all the same.)
+  // Some cell must use each light probe, or light would be captured in vain. A group without cells has one,
+  // too.
   std::vector<bool> used(group.light_probes.size(), group.cells.empty());
   for (const Cell& cell : group.cells)
     for (const std::uint32_t sample : cell.light_probes) used[sample] = true;
@@ -312,12 +316,12 @@ BrdfTableEntry readBrdfTable(const Field& field, const Description& d) {
   return entry;
 }
 
-// Glossy surfaces all have as many bands, and their draws find what they look up.
+// Checks that all glossy surfaces have the same number of bands, and that the tables of their draws exist.
 void checkBrdfTables(const Field& field, const Description& d) {
   const std::uint32_t outputs = d.glossyOutputs();
   for (const Group& group : d.groups)
     for (const Cell& cell : group.cells)
-      if (cell.kind == CellKind::Surface && isGlossy(cell.outputs()) && cell.outputs() != outputs)
+      if (cell.isGlossySurface() && cell.outputs() != outputs)
         field.fault("serve cells of different outputs");
 
   const auto has = [&](BrdfFamily family) {

@@ -1,6 +1,6 @@
 #include "runtime/bundle/volume_grid.hpp"
 
-#include "runtime/bundle/payload_bytes.hpp"
+#include "runtime/base/payload_bytes.hpp"
 
 namespace lambent::bundle {
 

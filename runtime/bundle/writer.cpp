@@ -21,7 +21,8 @@ constexpr std::uint64_t padded8(std::uint64_t bytes) {
   return (bytes + 7) / 8 * 8;
 }
 
-// Views lie in the order of the parts, each on a multiple of 8, after the integrity view.
+// Places the views after the integrity view in the order of the parts, each at a multiple of 8. Returns the
+// end.
 std::uint64_t placeViews(const std::vector<std::span<const std::byte>>& parts, std::vector<View>& views) {
   std::uint64_t offset = kIntegrityBytes;
   views.clear();
@@ -63,8 +64,7 @@ Result<void> write(const std::filesystem::path& path, Description description,
   parts.insert(parts.end(), animations.begin(), animations.end());
   const std::uint64_t binary_bytes = placeViews(parts, description.views);
   std::string json = toJson(description, binary_bytes);
-  json.resize((json.size() + 7) / 8 * 8 + 4,
-              ' ');  // so that the binary chunk's data begin on a multiple of 8
+  json.resize((json.size() + 7) / 8 * 8 + 4, ' ');  // aligns the binary data to a multiple of 8
 
   const std::uint64_t file_bytes = kGlbHeaderBytes + 2 * kGlbChunkHeaderBytes + json.size() + binary_bytes;
   if (file_bytes > 0xffffffffu)

@@ -1,5 +1,4 @@
-// Writes bundles: a valid GLB 2.0 whose binary chunk holds the views in the order given. The counterpart of
-// reader.hpp.
+// Writes bundles, the counterpart of reader.hpp. A bundle is a valid GLB 2.0 file.
 #pragma once
 
 #include <cstddef>
@@ -13,10 +12,10 @@ namespace lambent::bundle {
 
 using Blob = std::vector<std::byte>;
 
-// `description.views` is filled here: blobs[i] becomes view i; the keyframes of the animations, which have at
-// least one channel with keys each, follow in views of their own. The file appears whole or not at all.
-// The same description and blobs give the same bytes. Errors: transfer that is not a number, which no reader
-// takes; more than a GLB can hold; a file that cannot be written.
+// Writes a bundle and fills `description.views`: blobs[i] becomes view i, and each animation gets another
+// view for its keyframes after them. Every animation must have at least one channel with keys. The file
+// appears whole or not at all, and equal input gives equal bytes. Fails if transfer is not finite, if the
+// file would exceed the 4 GiB of a GLB, or if it cannot be written.
 Result<void> write(const std::filesystem::path& path, Description description,
                    const std::vector<Blob>& blobs);
 

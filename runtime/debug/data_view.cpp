@@ -7,16 +7,32 @@
 #include <glm/vec2.hpp>
 
 #include "lambent_debug_embedded.hpp"
+#include "lambent_draws_embedded.hpp"
+#include "lambent_effects_neighborhood_embedded.hpp"
+#include "lambent_evaluate_embedded.hpp"
+#include "lambent_lighting_embedded.hpp"
+#include "lambent_shadows_embedded.hpp"
+#include "lambent_surface_embedded.hpp"
+#include "lambent_tone_map_embedded.hpp"
+#include "lambent_transfer_embedded.hpp"
 
 namespace lambent::frame {
 
 namespace {
 
-using effects::diffuse::TransferValue;
+using evaluate::TransferValue;
 
-constexpr gpu::FindText kShaders[] = {&embedded::lambent_debug::find};
+constexpr gpu::FindText kShaders[] = {&embedded::lambent_debug::find,
+                                      &embedded::lambent_draws::find,
+                                      &embedded::lambent_surface::find,
+                                      &embedded::lambent_shadows::find,
+                                      &embedded::lambent_tone_map::find,
+                                      &embedded::lambent_lighting::find,
+                                      &embedded::lambent_evaluate::find,
+                                      &embedded::lambent_transfer::find,
+                                      &embedded::lambent_effects_neighborhood::find};
 
-// As in data_view.frag.
+// These are the uniform locations of data_view.frag.
 constexpr GLint kDrawIndex = 0, kRange = 1, kWireColor = 2;
 
 struct ViewBlock {
@@ -25,13 +41,13 @@ struct ViewBlock {
 };
 
 struct CodingErrors {
-  std::vector<float> of_cells;  // of each the larger error of its transfers of light from outside
-  // Of surfaces: twice the bound that was asked for, so that this is in the middle; more where an error is
-  // more.
+  std::vector<float> of_cells;  // per cell, the larger error of its transfers of distant light
+  // The colour range for surfaces ends here: at twice the requested bound, so that the bound is in the
+  // middle; more if an error is larger.
   float range_end = 0.0f;
 };
 
-// As the bakes say.
+// Collects the errors that the bakes recorded.
 CodingErrors errorsOf(const World& world) {
   CodingErrors errors;
   const streaming::Residency& residency = world.residency();
@@ -43,7 +59,7 @@ CodingErrors errorsOf(const World& world) {
     for (const bundle::CellTransfer& transfer : cell.transfers) {
       if (!transfer.fromEnvironment()) continue;
       error = std::max(error, transfer.error);
-      if (cell.kind == bundle::CellKind::Surface)
+      if (cell.domain == transfer::Domain::Vertex)
         errors.range_end = std::max({errors.range_end, 2.0f * transfer.error_bound, transfer.error});
     }
     errors.of_cells.push_back(error);
@@ -66,7 +82,7 @@ DataView::DataView(bool numbers)
       no_vertices_("data view") {}
 
 Result<void> DataView::update(World& world, const lighting::GroupLights& lights, const ViewChoice& choice,
-                              effects::diffuse::TransferMode mode, gpu::Counters& counters) {
+                              evaluate::TransferMode mode, gpu::Counters& counters) {
   choice_ = choice;
   const CodingErrors errors = errorsOf(world);
   legend_ = legendOf(choice, errors.range_end);
@@ -88,7 +104,7 @@ Result<void> DataView::drawWires(World& world, const spec::View& view, gpu::Coun
   glEnable(GL_BLEND);
   glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
   glDepthMask(GL_FALSE);
-  glEnable(GL_POLYGON_OFFSET_FILL);  // the surfaces themselves were drawn by another program
+  glEnable(GL_POLYGON_OFFSET_FILL);  // another program drew the surfaces themselves
   glPolygonOffset(-1.0f, -2.0f);
   Result<void> done = drawAll(world, view, Kind::Wires, counters);
   glDisable(GL_POLYGON_OFFSET_FILL);
@@ -121,7 +137,7 @@ Result<void> DataView::drawAll(World& world, const spec::View& view, Kind kind, 
                      .rows_word = draw.rows ? draw.rows.word() : kAbsent,
                      .row_entries = draw.row_entries,
                      .vertex_count = mesh.vertex_count,
-                     .first_value = kind == Kind::Wires ? 0 : values_.firstOf(residency, draw),
+                     .first_value = kind == Kind::Wires ? 0 : values_.firstOf(draw.group),
                      .pad = {}});
   }
   if (draws.empty()) return {};
@@ -148,7 +164,7 @@ Result<void> DataView::drawAll(World& world, const spec::View& view, Kind kind, 
     if (draw.rows)
       residency.rows().page(draw.rows.page).bindStorage(kBindDataRows);
     else
-      data_draws_.bindStorage(kBindDataRows);  // any buffer will do where nothing is read
+      data_draws_.bindStorage(kBindDataRows);  // any buffer will do, since nothing is read
     units_.bind(world, texturesOf(world, i, draws[i]));
     const bool mirrored = glm::determinant(glm::mat3(draws[i].world_from_mesh)) < 0.0f;
     glFrontFace(mirrored != draw.back ? GL_CW : GL_CCW);

@@ -1,5 +1,6 @@
-// A number as a colour, or the wires of triangles. With LAMBENT_FINEST_TEXELS, for pictures that are compared, the number
-// itself in all channels; of clusters: the cluster, the cell, 0. Alpha is coverage; of wires, how much of them.
+// Draws a number as a colour, or the wires of triangles. With LAMBENT_FINEST_TEXELS, for pictures that are
+// compared, it writes the number itself to all channels, or for clusters the cluster, the cell and 0. Alpha
+// is coverage, for wires that of the wires.
 #include "surface_shared.h"
 #include "transfer_values_shared.h"
 #include "view_colors.glsl"
@@ -18,14 +19,15 @@ layout(location = 4) in vec2 value;
 layout(location = 5) flat in uvec3 clusters;
 layout(location = 0) out vec4 color;
 
-// No number here: grey, lit from the eye so that its shape can be seen.
+// Surfaces without a number are grey, lit from the eye so that their shape can be seen.
 vec3 withoutValue() {
   vec3 normal = normalize(cross(dFdx(position_vs), dFdy(position_vs)));
   return vec3(0.16 + 0.16 * abs(dot(normal, normalize(position_vs))));
 }
 
 vec4 wires() {
-  // In pixels from each edge. Where triangles are as small as pixels the wires would fill the picture: they fade to a veil.
+  // Distances to the edges are in pixels. Wires of triangles as small as pixels would fill the picture, so
+  // they fade to a veil.
   vec3 per_pixel = fwidth(barycentric);
   vec3 distance_px = barycentric / max(per_pixel, vec3(1e-6));
   float nearest = min(distance_px.x, min(distance_px.y, distance_px.z));

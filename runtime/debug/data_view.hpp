@@ -1,9 +1,9 @@
-// Draws the surfaces of a world as numbers of their coded transfer, in place of their light, or their
-// triangles as wires over the picture. Comes in: what is resident, and the view. Goes out: the bound
-// framebuffer; in pictures for the eye false colours that are meant to be shown as they are (ToneMapper::run
-// with as_is), in linear ones the numbers. Draws one by one: these pictures are looked at, not timed. It is
-// made when a view asks for it first and thrown away when none does. Render thread only. Errors: shaders that
-// do not compile on this device.
+// Draws the surfaces of a world coloured by numbers of their coded transfer instead of their light, or their
+// triangles as wires over the picture. It takes what is resident and the view, and draws into the bound
+// framebuffer: false colours that are shown as they are (ToneMapper::run with as_is), or in linear pictures
+// the numbers themselves. Each draw is issued by itself, since these pictures need not be fast. A DataView
+// exists only while a view asks for it. Render thread only. Fails if a shader does not compile on this
+// device.
 #pragma once
 
 #include <map>
@@ -13,7 +13,7 @@
 #include "runtime/debug/data_view_shared.h"
 #include "runtime/draws/surface_record.hpp"
 #include "runtime/draws/texture_units.hpp"
-#include "runtime/effects/diffuse/transfer_values.hpp"
+#include "runtime/evaluate/transfer_values.hpp"
 #include "runtime/gpu/program.hpp"
 #include "runtime/spec/camera.hpp"
 #include "runtime/surface/views.hpp"
@@ -23,27 +23,27 @@ namespace lambent::frame {
 
 class DataView {
  public:
-  // numbers: pictures hold the numbers themselves.
+  // If `numbers` is set, pictures hold the numbers themselves.
   explicit DataView(bool numbers);
 
-  // Works out the numbers where they are not known yet.
+  // Computes the numbers that are not known yet.
   Result<void> update(World& world, const lighting::GroupLights& lights, const ViewChoice& choice,
-                      effects::diffuse::TransferMode mode, gpu::Counters& counters);
+                      evaluate::TransferMode mode, gpu::Counters& counters);
   // Colours and depth, for a view of transfer. Opaque, blended surfaces too.
   Result<void> draw(World& world, const spec::View& view, gpu::Counters& counters);
-  // Over what is there, colours times alpha.
+  // Draws wires over what is there; colours are premultiplied by alpha.
   Result<void> drawWires(World& world, const spec::View& view, gpu::Counters& counters);
 
-  // As the last update() left it.
+  // Returns the legend of the last update().
   const ViewLegend& legend() const { return legend_; }
-  const effects::diffuse::TransferValues& values() const { return values_; }
+  const evaluate::TransferValues& values() const { return values_; }
 
  private:
   enum class Kind : std::uint8_t { Values, Clusters, Wires };
   Result<void> drawAll(World& world, const spec::View& view, Kind kind, gpu::Counters& counters);
 
   bool numbers_;
-  effects::diffuse::TransferValues values_;
+  evaluate::TransferValues values_;
   std::map<Kind, gpu::Program> programs_;
   gpu::Table draws_, data_draws_, view_;
   gpu::VertexArray no_vertices_;

@@ -1,5 +1,5 @@
-// Triangles corner by corner, without an index buffer, so that each corner knows the other two: views of numbers at
-// samples, and of the triangles themselves.
+// Draws triangles corner by corner, without an index buffer, so that each corner knows the other two. It
+// serves views of numbers at samples and of the triangles themselves.
 #include "surface_shared.h"
 #include "data_view_shared.h"
 #include "transfer_values_shared.h"
@@ -20,14 +20,14 @@ layout(location = 0) out vec3 barycentric;
 layout(location = 1) out vec3 position_vs;
 layout(location = 2) out vec2 looks_at;
 layout(location = 3) out float vertex_alpha;
-layout(location = 4) out vec2 value;  // times the share of samples that have one, and that share
+layout(location = 4) out vec2 value;  // value times the share of samples that have one, and that share
 layout(location = 5) flat out uvec3 clusters;
 
 vec2 geometry2(uint at) { return vec2(uintBitsToFloat(geometry[at]), uintBitsToFloat(geometry[at + 1u])); }
 vec3 geometry3(uint at) { return vec3(geometry2(at), uintBitsToFloat(geometry[at + 2u])); }
 
 #ifdef LAMBENT_VALUES
-// The mean over the vertex's samples; returns the cluster of the one that counts most.
+// Computes the mean over the vertex's samples, and returns the cluster of the sample with the largest weight.
 uint gather(DataDraw draw, uint vertex, out vec2 mean) {
   mean = vec2(0.0);
   if (draw.rows_word == kAbsent) return kNoCluster;

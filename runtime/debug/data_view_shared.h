@@ -1,4 +1,5 @@
-// One text for C++ and GLSL: what the raster pass of data_view.cpp binds besides surface_shared.h.
+// This file is shared by C++ and GLSL. It holds the bindings of data_view.cpp's raster pass, besides
+// surface_shared.h.
 #ifdef __cplusplus
 #pragma once
 
@@ -12,15 +13,15 @@ using uint = std::uint32_t;
 #endif
 
 LAMBENT_CONSTANT kBindDataRows = 3u;    // arena page
-LAMBENT_CONSTANT kBindDataValues = 4u;  // SampleValue of transfer_values_shared.h
-LAMBENT_CONSTANT kBindDataDraws = 5u;   // DataDraw, by draw of the residency
+LAMBENT_CONSTANT kBindDataValues = 4u;  // array of SampleValue of transfer_values_shared.h
+LAMBENT_CONSTANT kBindDataDraws = 5u;   // array of DataDraw, indexed by draw of the residency
 
 struct DataDraw {
   uint indices_word;
-  uint rows_word;  // as glossy draws have them; kAbsent: none
+  uint rows_word;  // laid out as for glossy draws; kAbsent: none
   uint row_entries;
   uint vertex_count;
-  uint first_value;  // of sample 0 of its rows
+  uint first_value;  // index of the value of sample 0 of its rows
   uint pad[3];
 };
 

@@ -1,4 +1,4 @@
-// What an overlay writes: colours as they are seen, or with LAMBENT_LINEAR light.
+// Converts colours for overlays: to display colours, or with LAMBENT_LINEAR to light.
 #include "tone_curve.glsl"
 #include "view_colors.glsl"
 
@@ -8,7 +8,7 @@ struct Exposure {
 };
 layout(std430, binding = 7) readonly buffer ExposureBuffer { Exposure exposure; };
 
-// Radiance as the picture shows it.
+// Returns radiance as the picture shows it.
 vec3 shownLight(vec3 radiance) {
 #ifdef LAMBENT_LINEAR
   return radiance;
@@ -17,7 +17,7 @@ vec3 shownLight(vec3 radiance) {
 #endif
 }
 
-// A colour given by its sRGB values.
+// Returns a colour that is given by its sRGB values.
 vec3 shownColor(vec3 coded) {
 #ifdef LAMBENT_LINEAR
   return displayed(coded);

@@ -1,4 +1,4 @@
-// The layer over the picture; blended, colours times alpha.
+// Blends the layer over the picture; its colours are premultiplied by alpha.
 #ifdef LAMBENT_SAMPLES
 layout(binding = 0) uniform sampler2DMS layer;
 const int kSamples = LAMBENT_SAMPLES;

@@ -20,7 +20,7 @@ float fluxOf(const spec::Disc& key) {
   return half * half * (key.radiance.r + key.radiance.g + key.radiance.b);
 }
 
-// Its own colour, as bright as can be.
+// Returns the light's colour at full brightness.
 glm::vec3 colorOf(const spec::Disc& key) {
   const float peak = std::max({key.radiance.r, key.radiance.g, key.radiance.b});
   if (!(peak > 0.0f)) return kDark;
@@ -51,7 +51,7 @@ void appendOutline(const spec::Disc& key, const spec::View& view, float distance
     const float to = kTurn * static_cast<float>(i + 1) / kOutlineSteps;
     lines.push_back({.from_ws = at(from, radius), .to_ws = at(to, radius), .color = color, .width_px = 2.0f});
   }
-  // Ticks, by which it is told from a round thing that stands there.
+  // Ticks distinguish the outline from a round object in the scene.
   for (int i = 0; i < 4; ++i) {
     const float angle = kTurn * static_cast<float>(i) / 4.0f;
     lines.push_back({.from_ws = at(angle, radius),
@@ -63,7 +63,7 @@ void appendOutline(const spec::Disc& key, const spec::View& view, float distance
 
 void appendArrow(const spec::Disc& key, const scene::Box& world, const glm::vec4& color,
                  std::vector<OverlayLine>& lines) {
-  constexpr float kFrom = 1.3f, kTo = 0.25f, kHead = 0.12f;  // of the world's radius, from its middle
+  constexpr float kFrom = 1.3f, kTo = 0.25f, kHead = 0.12f;  // of the world's radius, from its centre
   const Frame3 frame = frameAlong(key.direction);
   const float radius = std::max(world.radius(), 1e-3f);
   const glm::vec3 to = world.center() + kTo * radius * frame.z;

@@ -1,4 +1,4 @@
-// `strength` is less for what is hidden.
+// Draws a line; `strength` is lower for hidden parts.
 #include "overlay_colors.glsl"
 
 layout(location = 1) uniform float strength;

@@ -1,4 +1,4 @@
-// A line as a quad of its width in pixels, cut at the plane of the eye.
+// Draws a line as a quad of its width in pixels, clipped at the plane of the eye.
 #include "surface_shared.h"
 
 layout(std140, binding = kBindView) uniform ViewBlock {
@@ -7,7 +7,7 @@ layout(std140, binding = kBindView) uniform ViewBlock {
   vec4 eye;
 };
 struct Line {
-  vec4 from_and_width;  // world; pixels
+  vec4 from_and_width;  // world position; w: width in pixels
   vec4 to;
   vec4 color;
 };
@@ -22,7 +22,7 @@ void main() {
   line_color = line.color;
   vec4 a = clip_from_view * (view_from_world * vec4(line.from_and_width.xyz, 1.0));
   vec4 b = clip_from_view * (view_from_world * vec4(line.to.xyz, 1.0));
-  // Not at the near plane, which fits the scene alone: depth is clamped.
+  // It is not clipped at the near plane, which fits only the scene; depth is clamped instead.
   float least = 1e-3 * max(a.w, b.w), a_in = a.w - least, b_in = b.w - least;
   if (least <= 0.0) {
     gl_Position = vec4(2.0, 2.0, 2.0, 1.0);

@@ -22,7 +22,7 @@ constexpr glm::vec4 kFaintNeighborhoodColor{0.78f, 0.6f, 1.0f, 0.25f};
 constexpr int kCircleSteps = 48;
 
 struct Glyph {
-  glm::vec3 origin, x, y, z;  // unit axes; it shines along -z
+  glm::vec3 origin, x, y, z;  // unit axes; the light shines along -z
   glm::vec4 color;
   std::vector<OverlayLine>& lines;
 
@@ -44,7 +44,7 @@ struct Glyph {
     line(from, to);
     for (const glm::vec3& side : {x, -x, y, -y}) line(to, to + head * z + 0.5f * head * side);
   }
-  // Outline of a spot's cone at an angle, to a circle at the length.
+  // Draws the outline of a spot's cone at an angle, up to a circle at the given length.
   void cone(float angle_rad, float length, bool sides) const {
     const float along = length * std::cos(angle_rad), radius = length * std::sin(angle_rad);
     const glm::vec3 center = origin - along * z;
@@ -54,7 +54,7 @@ struct Glyph {
   }
 };
 
-// The rim of a slice through a box.
+// Appends the outline of a slice through a box.
 void appendSlice(const scene::Box& box, const glm::mat4& world_from_box, const NeighborhoodSlice& slice,
                  std::vector<OverlayLine>& lines) {
   const int axis = slice.axis, u = (axis + 1) % 3, v = (axis + 2) % 3;
@@ -74,7 +74,7 @@ void appendSlice(const scene::Box& box, const glm::mat4& world_from_box, const N
                      .width_px = 1.0f});
 }
 
-// Along a direction, or any where there is none.
+// Returns the unit vector along v, or `otherwise` if v has no direction.
 glm::vec3 unitOr(const glm::vec3& v, const glm::vec3& otherwise) {
   const float length = glm::length(v);
   return length > 0.0f && std::isfinite(length) ? v / length : otherwise;
@@ -152,7 +152,7 @@ std::vector<bool> drawnWhole(const std::vector<PlacedBox>& boxes, const glm::vec
     for (std::size_t other = 0; other < boxes.size() && foremost; ++other) {
       const PlacedBox &a = boxes[i], &b = boxes[other];
       if (other == i || !meet(a.box, a.world_from_box, b.box, b.world_from_box)) continue;
-      // Of two at the same distance the first.
+      // Of two boxes at the same distance, the first counts as nearer.
       foremost = !b.wanted && (other < i ? distance(a) < distance(b) : distance(a) <= distance(b));
     }
     whole.push_back(foremost || boxes[i].wanted);
@@ -209,7 +209,7 @@ std::vector<OverlayLine> linesOf(const World& world, const Neighborhoods& neighb
     const float size = signSize(world);
     for (auto [entity, light] : world.registry().view<const scene::LocalLightComponent>()) {
       const auto* place = world.registry().tryGet<scene::WorldTransform>(entity);
-      // Of its own colour, as bright as can be; dark where it gives nothing.
+      // The line has the light's colour at full brightness, and is dark if the light gives nothing.
       const float peak = std::max({light.color.r, light.color.g, light.color.b});
       const bool on = light.power() != glm::vec3(0.0f) && peak > 0.0f;
       const glm::vec3 color =

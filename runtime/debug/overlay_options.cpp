@@ -14,7 +14,7 @@ namespace {
 constexpr std::array<OverlayRow, 6> kRows = {{
     {"light-probes", "Light probes",
      "where light is sampled: what is captured there as a cube, the harmonics as a ball",
-     &OverlayOptions::light_probes},
+     &OverlayOptions::light_probes, "light-samples"},
     {"neighborhoods", "Neighborhoods",
      "grids around bodies, with a slice of how they change light: neighborhoods:AXIS,POSITION",
      &OverlayOptions::neighborhoods},
@@ -54,13 +54,13 @@ Result<OverlayOptions> parseOverlays(std::string_view list) {
     std::size_t end = std::min(list.find(','), list.size());
     std::string_view word = list.substr(0, end);
     const std::size_t colon = word.find(':');
-    std::string_view name = word.substr(0, colon);
-    if (name == "light-samples") name = "light-probes";  // the name before 0.11
-    const auto row = std::ranges::find(kRows, name, &OverlayRow::name);
+    const std::string_view name = word.substr(0, colon);
+    const auto row = std::ranges::find_if(
+        kRows, [&](const OverlayRow& known) { return name == known.name || name == known.former; });
     if (row == kRows.end()) return unknown(word, "is not known");
     options.*row->flag = true;
     if (colon != std::string_view::npos) {
-      // Its place has a comma of its own.
+      // The argument has a comma of its own.
       end = std::min(list.find(',', end + 1), list.size());
       word = list.substr(0, end);
       if (row->flag != &OverlayOptions::neighborhoods) return unknown(word, "has no slice");

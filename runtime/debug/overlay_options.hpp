@@ -1,10 +1,9 @@
-// What is drawn over a picture that is done: light probes as cubes and balls, slices through neighborhoods,
-// boxes of volumes and groups, lights as glyphs, key lights with what their shadow maps show, wires of the
-// triangles, and lines that a caller adds. Comes in: the world as the frame shows it. Goes out: a layer with
-// the depth of the scene in it, laid over the tone-mapped picture, which keeps its exposure, its alpha and,
-// with all overlays off, every bit; parts behind something show faintly. A frame without overlays holds,
-// compiles and dispatches nothing for them. Render thread only. Errors: shaders that do not compile on this
-// device. docs/views.md says how to read them.
+// The options of overlays, which are drawn over a finished picture: light probes as cubes and balls, slices
+// through neighborhoods, boxes of volumes and groups, lights as glyphs, key lights with what their shadow
+// maps show, wires of the triangles, and lines that a caller adds. Overlays use the scene's depth, so hidden
+// parts show faintly, and are laid over the tone-mapped picture. The picture keeps its exposure and alpha,
+// and with all overlays off every bit; then nothing is held, compiled or dispatched for them. docs/views.md
+// explains how to read them. Types and parsing only; parseOverlays() fails on unknown names.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +20,7 @@
 
 namespace lambent::frame {
 
-// World space. Colours are sRGB values as a picture program shows them, with alpha.
+// Describes a line in world space. Colours are sRGB with alpha, as picture programs show them.
 struct OverlayLine {
   glm::vec3 from_ws{0.0f}, to_ws{0.0f};
   glm::vec4 color{1.0f};
@@ -29,12 +28,12 @@ struct OverlayLine {
   bool operator==(const OverlayLine&) const = default;
 };
 
-// A plane through the grid of a neighborhood, in the axes of its body.
+// Describes a plane through the grid of a neighborhood, in the axes of its body.
 struct NeighborhoodSlice {
-  int axis = 1;           // across which it lies: 0, 1, 2 for x, y, z
-  float position = 0.5f;  // 0: the first points, 1: the last
-  // Change of E/pi at this normal, world; 0: of the mean radiance that arrives. Against what arrives there
-  // when nothing stands around.
+  int axis = 1;           // the axis that it is perpendicular to: 0, 1, 2 for x, y, z
+  float position = 0.5f;  // 0: at the first points, 1: at the last
+  // The slice shows the change of E/pi at this normal (world axes), or of the mean radiance if it is 0,
+  // relative to what arrives there without the body.
   glm::vec3 normal_ws{0.0f, 1.0f, 0.0f};
   bool operator==(const NeighborhoodSlice&) const = default;
 };
@@ -47,13 +46,13 @@ struct OverlayOptions {
   bool groups = false;
   bool lights = false;
   bool keys = false;
-  // Of light probes, neighborhoods, volumes and groups, these of the residency; empty: all.
+  // The groups of the residency whose light probes, neighborhoods, volumes and bounds are shown; empty: all.
   std::vector<std::uint32_t> selected_groups{};
-  // Of neighborhoods that overlap, those of these groups are drawn whole; of the others, and where none is
-  // given, the one nearest to the eye. The rest are faint boxes without slices.
+  // Among overlapping neighborhoods, those of these groups are drawn whole, and of the rest the one nearest
+  // to the eye. The others are faint boxes without slices.
   std::vector<std::uint32_t> foremost_groups{};
-  // Of key lights, in the order of Environment::keys(): the one whose shadow map's box is drawn. None: those
-  // of the strongest few, since more would hide each other.
+  // The key light, by its index in Environment::keys(), whose shadow map's box is drawn. Nothing: the boxes
+  // of the few strongest are drawn, since more would hide each other.
   std::optional<std::size_t> key{};
   std::vector<OverlayLine> lines{};
   bool operator==(const OverlayOptions&) const = default;
@@ -67,11 +66,12 @@ struct OverlayOptions {
 struct OverlayRow {
   std::string_view name, label, help;
   bool OverlayOptions::*flag;
+  std::string_view former{};  // the name that it had before, still understood; empty where there is none
 };
 std::span<const OverlayRow> overlayRows();
 std::string knownOverlays();
 
-// Comma-separated names; neighborhoods:AXIS,POSITION says where its slice lies.
+// Parses comma-separated names; neighborhoods:AXIS,POSITION places the slice.
 Result<OverlayOptions> parseOverlays(std::string_view list);
 
 }  // namespace lambent::frame

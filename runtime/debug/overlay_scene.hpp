@@ -1,4 +1,4 @@
-// What overlays see of a frame: references to what it has, for the time of one draw. Types only.
+// Lists what overlays read of a frame, as references that are valid during one draw. Types only.
 #pragma once
 
 #include "runtime/effects/diffuse/proxies.hpp"

@@ -1,5 +1,5 @@
-// How a body changes the light on the plane: at a normal E/pi, without one the mean radiance that arrives, both by
-// luminance and against what arrives there when nothing stands around. Where little changes the plane is clear.
+// Shows how a body changes the light on the plane: E/pi at a normal, or without one the mean radiance, both
+// as luminance relative to the light without the body. The plane is transparent where little changes.
 #include "overlay_colors.glsl"
 #include "neighborhood_eval.glsl"
 #include "overlay_slice_shared.h"
@@ -8,7 +8,7 @@
 layout(std430, binding = kBindSlices) readonly buffer Slices { SliceRecord slices[]; };
 layout(std430, binding = kBindSliceLights) readonly buffer Lights { vec4 lights[]; };
 layout(binding = kUnitAtlas) uniform sampler3D atlas;
-layout(location = 1) uniform float strength;  // less for what is hidden
+layout(location = 1) uniform float strength;  // lower for hidden parts
 layout(location = 0) in vec3 place;
 layout(location = 1) flat in int slice;
 layout(location = 0) out vec4 color;

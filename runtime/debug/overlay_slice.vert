@@ -1,4 +1,4 @@
-// A plane through a grid of a neighborhood, corner by corner.
+// Draws a plane through the grid of a neighborhood, corner by corner.
 #include "surface_shared.h"
 #include "overlay_slice_shared.h"
 
@@ -8,7 +8,7 @@ layout(std140, binding = kBindView) uniform ViewBlock {
   vec4 eye;
 };
 layout(std430, binding = kBindSlices) readonly buffer Slices { SliceRecord slices[]; };
-layout(location = 0) out vec3 place;  // points of the grid
+layout(location = 0) out vec3 place;  // in units of grid points
 layout(location = 1) flat out int slice;
 
 void main() {

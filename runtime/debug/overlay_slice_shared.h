@@ -1,5 +1,5 @@
-// One text for C++ and GLSL: slices through grids of neighborhoods, overlay_slice.vert and .frag. C++ includes
-// runtime/effects/neighborhood/neighborhood_shared.h before it.
+// This file is shared by C++ and GLSL. It describes slices through grids of neighborhoods, for
+// overlay_slice.vert and .frag. C++ includes runtime/effects/neighborhood/neighborhood_shared.h before it.
 #ifdef __cplusplus
 #pragma once
 
@@ -21,18 +21,18 @@ using effects::neighborhood::GridPlace;
 #define LAMBENT_CONSTANT const
 #endif
 
-LAMBENT_CONSTANT uint kBindSlices = 1u;       // SliceRecord
+LAMBENT_CONSTANT uint kBindSlices = 1u;       // array of SliceRecord
 LAMBENT_CONSTANT uint kBindSliceLights = 2u;  // vec4 per coefficient (GroupLights)
-LAMBENT_CONSTANT float kSliceRange = 0.5f;    // of the open light, where the colours end
+LAMBENT_CONSTANT float kSliceRange = 0.5f;    // change, relative to the unoccluded light, where colours end
 
 struct SliceRecord {
-  mat4 world_from_place;  // of points of the grid
-  vec4 normal;            // frame of the body; 0: of no normal
+  mat4 world_from_place;  // from coordinates of the grid
+  vec4 normal;            // in the body's frame; 0: show the mean radiance
   GridPlace grid;
   uint axis;
   float position;
   uint light;         // vec4 index of the light without the body, in its frame
-  uint coefficients;  // of it
+  uint coefficients;  // number of its coefficients
 };
 
 #ifdef __cplusplus

@@ -6,6 +6,14 @@
 #include <glm/matrix.hpp>
 
 #include "lambent_debug_embedded.hpp"
+#include "lambent_draws_embedded.hpp"
+#include "lambent_effects_neighborhood_embedded.hpp"
+#include "lambent_evaluate_embedded.hpp"
+#include "lambent_lighting_embedded.hpp"
+#include "lambent_shadows_embedded.hpp"
+#include "lambent_surface_embedded.hpp"
+#include "lambent_tone_map_embedded.hpp"
+#include "lambent_transfer_embedded.hpp"
 #include "runtime/debug/overlay_keys.hpp"
 #include "runtime/debug/overlay_lines.hpp"
 #include "runtime/debug/overlay_slice_shared.h"
@@ -16,9 +24,17 @@ namespace lambent::frame {
 
 namespace {
 
-constexpr gpu::FindText kShaders[] = {&embedded::lambent_debug::find};
+constexpr gpu::FindText kShaders[] = {&embedded::lambent_debug::find,
+                                      &embedded::lambent_draws::find,
+                                      &embedded::lambent_surface::find,
+                                      &embedded::lambent_shadows::find,
+                                      &embedded::lambent_tone_map::find,
+                                      &embedded::lambent_lighting::find,
+                                      &embedded::lambent_evaluate::find,
+                                      &embedded::lambent_transfer::find,
+                                      &embedded::lambent_effects_neighborhood::find};
 
-// As in the shaders.
+// These are the uniform locations and bindings of the shaders.
 constexpr GLint kSizePx = 0, kStrength = 1;
 constexpr GLuint kBindLines = 1, kBindExposure = 7;
 constexpr float kHiddenStrength = 0.22f;
@@ -89,10 +105,10 @@ Result<void> Overlays::draw(const OverlayOptions& options, const OverlayScene& s
   scene.tone_mapper.bindExposure(kBindExposure);
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_LEQUAL);
-  glEnable(GL_DEPTH_CLAMP);  // near and far plane fit the surfaces, and signs may stand outside of these
+  glEnable(GL_DEPTH_CLAMP);  // near and far plane fit the surfaces, and markers may lie beyond them
   if (options.light_probes) light_probes_->draw(scene, counters);
   Result<void> done = wires();
-  // wires() has a view of its own
+  // wires() binds another view
   glBindBufferBase(GL_UNIFORM_BUFFER, kBindView, view_.buffer().id());
   glEnable(GL_BLEND);
   glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
@@ -183,7 +199,7 @@ Result<void> Overlays::drawLines(const OverlayOptions& options, const OverlaySce
   glUniform2f(kSizePx, static_cast<float>(size_.width), static_cast<float>(size_.height));
   glBindVertexArray(no_vertices_.id());
   glDisable(GL_CULL_FACE);
-  // Lines that lie in a surface are in front of it.
+  // The offset moves lines that lie in a surface in front of it.
   glEnable(GL_POLYGON_OFFSET_FILL);
   glPolygonOffset(-1.0f, -4.0f);
   for (const bool hidden : {true, false}) {
@@ -205,7 +221,7 @@ void Overlays::layOver(gpu::Counters& counters) {
   glDisable(GL_DEPTH_TEST);
   glEnable(GL_BLEND);
   glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
-  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_FALSE);  // alpha stays coverage
+  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_FALSE);  // alpha stays the coverage
   glDrawArrays(GL_TRIANGLES, 0, 3);
   glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
   glDisable(GL_BLEND);

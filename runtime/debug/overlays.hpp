@@ -1,8 +1,8 @@
-// Overlays on the GPU: a layer of colours as they shall be seen, over the scene's depth, laid over the
-// picture after tone mapping (overlay_options.hpp says what there is). Comes in: the options, the world and
-// what the frame knows of its light. Goes out: the bound picture, of which the alpha stays. The parts: lines
-// (overlay_lines.hpp), light probes (probe_markers.hpp), slices of neighborhoods, wires
-// (data_view.hpp). Render thread only. Errors: shaders that do not compile on this device.
+// Draws overlays: a layer of display colours over the scene's depth, which is laid over the picture after
+// tone mapping (overlay_options.hpp lists them). It takes the options, the world and what the frame knows of
+// its light, and writes the bound picture, whose alpha stays. Its parts are lines (overlay_lines.hpp), light
+// probes (probe_markers.hpp), slices of neighborhoods and wires (data_view.hpp). Render thread only. Fails if
+// a shader does not compile on this device.
 #pragma once
 
 #include <functional>
@@ -19,16 +19,17 @@ namespace lambent::frame {
 
 class Overlays {
  public:
-  // samples: a pixel of the scene's depth, 0: a plain texture. linear: into a picture of light, with colours
-  // to match.
+  // `samples` is the number per pixel of the scene's depth, 0 for a plain texture. If `linear` is set, the
+  // overlay goes into a picture of light with matching colours.
   static Result<Overlays> create(std::uint32_t samples, bool linear);
 
-  // The layer anew, over this depth.
+  // Makes a new layer over this depth.
   void attach(const gpu::Texture& depth, const spec::Size& size);
-  // What the options ask for; `wires` draws more of the like, blended, after solid things and before lines.
+  // Draws what the options ask for. `wires` draws further blended content after solid things and before
+  // lines.
   Result<void> draw(const OverlayOptions& options, const OverlayScene& scene,
                     const std::function<Result<void>()>& wires, gpu::Counters& counters);
-  // Over the bound framebuffer.
+  // Lays the layer over the bound framebuffer.
   void layOver(gpu::Counters& counters);
 
  private:
@@ -43,7 +44,7 @@ class Overlays {
   gpu::Texture color_;
   gpu::Framebuffer target_;
   gpu::Program compose_;
-  std::optional<gpu::Program> lines_program_, slices_program_;  // with the first that is drawn
+  std::optional<gpu::Program> lines_program_, slices_program_;  // made when first drawn
   std::optional<ProbeMarkers> light_probes_;
   gpu::Table lines_, slices_, view_;
   gpu::VertexArray no_vertices_;

@@ -1,4 +1,5 @@
-// Which draw is seen, by the same rule of what is there as surface.frag; of blended surfaces, what can be seen at all.
+// Writes which draw is visible, with the same rule for cut-outs as surface.frag. A blended surface counts
+// where it is visible at all.
 #include "surface_shared.h"
 
 layout(std430, binding = kBindDraws) readonly buffer Draws { SurfaceDraw draws[]; };

@@ -1,4 +1,4 @@
-// Surfaces as surface.vert places them, of which only one pixel is drawn.
+// Places surfaces as surface.vert does; only one pixel is drawn.
 #include "surface_shared.h"
 
 layout(location = 0) uniform mat4 clip_from_world;
@@ -7,7 +7,7 @@ layout(std430, binding = kBindGeometry) readonly buffer Geometry { uint geometry
 
 layout(location = 0) in uint draw_index;
 layout(location = 0) flat out uint draw_of;
-layout(location = 1) out vec3 looks_at;  // z: the vertex colour's alpha
+layout(location = 1) out vec3 looks_at;  // texture coordinates; z: the vertex colour's alpha
 layout(location = 2) out vec3 normal_group;
 
 vec2 geometry2(uint at) { return vec2(uintBitsToFloat(geometry[at]), uintBitsToFloat(geometry[at + 1u])); }

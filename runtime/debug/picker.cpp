@@ -11,17 +11,33 @@
 #include <glm/matrix.hpp>
 
 #include "lambent_debug_embedded.hpp"
+#include "lambent_draws_embedded.hpp"
+#include "lambent_effects_neighborhood_embedded.hpp"
+#include "lambent_evaluate_embedded.hpp"
+#include "lambent_lighting_embedded.hpp"
+#include "lambent_shadows_embedded.hpp"
+#include "lambent_surface_embedded.hpp"
+#include "lambent_tone_map_embedded.hpp"
+#include "lambent_transfer_embedded.hpp"
 #include "runtime/surface/surfaces.hpp"
 
 namespace lambent::frame {
 
 namespace {
 
-constexpr gpu::FindText kShaders[] = {&embedded::lambent_debug::find};
+constexpr gpu::FindText kShaders[] = {&embedded::lambent_debug::find,
+                                      &embedded::lambent_draws::find,
+                                      &embedded::lambent_surface::find,
+                                      &embedded::lambent_shadows::find,
+                                      &embedded::lambent_tone_map::find,
+                                      &embedded::lambent_lighting::find,
+                                      &embedded::lambent_evaluate::find,
+                                      &embedded::lambent_transfer::find,
+                                      &embedded::lambent_effects_neighborhood::find};
 constexpr GLint kClipFromWorld = 0;  // as in pick.vert
 
 struct Ray {
-  glm::dvec3 origin{0.0}, direction{0.0};  // from the near plane on
+  glm::dvec3 origin{0.0}, direction{0.0};  // starts at the near plane
 };
 
 Ray rayThrough(const glm::dmat4& world_from_clip, double x, double y) {
@@ -36,7 +52,7 @@ struct Hit {
   bool from_within = false;
 };
 
-// Where the ray enters the box from 0 to size.
+// Returns where the ray enters the box from 0 to `size`.
 std::optional<Hit> enters(const Ray& ray, const glm::dmat4& world_from_box, const glm::uvec3& size) {
   const glm::dmat4 box_from_world = glm::inverse(world_from_box);
   const glm::dvec3 origin(box_from_world * glm::dvec4(ray.origin, 1.0));
@@ -44,7 +60,7 @@ std::optional<Hit> enters(const Ray& ray, const glm::dmat4& world_from_box, cons
   double first = -std::numeric_limits<double>::infinity(), last = std::numeric_limits<double>::infinity();
   for (int axis = 0; axis < 3; ++axis) {
     const double a = -origin[axis] / direction[axis], b = (size[axis] - origin[axis]) / direction[axis];
-    // Along a face both may be none: then the ray is between them or never.
+    // A ray parallel to a face is either between the two faces or misses.
     if (direction[axis] == 0.0) {
       if (origin[axis] < 0.0 || origin[axis] > size[axis]) return {};
       continue;
@@ -145,15 +161,15 @@ std::optional<Picker::Seen> Picker::drawPixel(World& world, const Surfaces& surf
 }
 
 Result<std::optional<Picked>> Picker::pick(World& world, const Surfaces& surfaces, const spec::View& view,
-                                           const spec::Size& size, float x, float y,
-                                           const PickOptions& options) {
+                                           const PicturePoint& point, const PickOptions& options) {
+  const auto& [size, x, y] = point;
   if (!(x >= 0.0f && x < static_cast<float>(size.width) && y >= 0.0f && y < static_cast<float>(size.height)))
     return std::optional<Picked>();
   if (Result<void> done = compile(options); !done) return failAgain(done.error());
   const double width = size.width, height = size.height;
   const double ndc_x = 2.0 * static_cast<double>(x) / width - 1.0,
                ndc_y = 1.0 - 2.0 * static_cast<double>(y) / height;
-  // A pixel's width about the point becomes all of clip space, so that textures are looked up as in the
+  // A pixel's width around the point becomes all of clip space, so that textures are sampled as in the
   // picture.
   glm::dmat4 pixel_from_clip(1.0);
   pixel_from_clip[0][0] = width;

@@ -1,10 +1,10 @@
-// What stands at a point of the picture. Comes in: the world, what of it the surface pass shows, the view, a
-// point. Goes out: the draw that is seen there, with its node, group, place and normal, or the volume whose
-// box the ray meets first; none: the sky. Surfaces are found by drawing that one pixel, with cut-outs and
-// culling as in the picture, so what is picked is what is seen; blended surfaces count where they can be seen
-// at all. A volume counts where the ray enters its box before any surface, or where it starts within and
-// meets none. On demand only: holds a pixel, and nothing before the first time. Render thread; waits for the
-// GPU. Errors: a shader that does not compile on this device.
+// Finds what is visible at a point of the picture. It takes the world, what the surface pass shows of it, the
+// view and a point, and returns the draw there with its node, group, position and normal, or the volume whose
+// box the ray meets first, or nothing for the sky. It draws surfaces into that single pixel, with cut-outs
+// and culling as in the picture, so it picks what is seen; blended surfaces count where they are visible at
+// all. A volume counts if the ray enters its box before any surface, or starts inside and meets no surface.
+// It holds one pixel, and nothing before the first use. Render thread only; it waits for the GPU. Fails if a
+// shader does not compile on this device.
 #pragma once
 
 #include <cstdint>
@@ -29,16 +29,22 @@ namespace lambent::frame {
 class Surfaces;
 
 struct Picked {
-  ecs::Entity draw;  // none: a volume
-  ecs::Entity node;  // of the draw, or what the volume's group moves with
+  ecs::Entity draw;  // null: a volume
+  ecs::Entity node;  // of the draw; or the one that the volume's group moves with
   ecs::Entity group;
-  ecs::Entity material;  // none: a volume, or a draw without one
+  ecs::Entity material;  // null: a volume, or a draw without a material
   glm::vec3 position_ws{0.0f};
-  glm::vec3 normal_ws{0.0f};  // of the vertices, of the side that is seen; of a volume towards the eye
+  glm::vec3 normal_ws{0.0f};  // interpolated, of the visible side; of a volume, towards the eye
+};
+
+// A point of a picture of this size, in pixels from its top left corner.
+struct PicturePoint {
+  spec::Size size;
+  float x = 0.0f, y = 0.0f;
 };
 
 struct PickOptions {
-  bool finest_texels = false;  // as the surface pass has it
+  bool finest_texels = false;  // as in the surface pass
   bool volumes = true;
 };
 
@@ -46,18 +52,17 @@ class Picker {
  public:
   Picker();
 
-  // x, y in pixels from the top left corner of a picture of this size.
   Result<std::optional<Picked>> pick(World& world, const Surfaces& surfaces, const spec::View& view,
-                                     const spec::Size& size, float x, float y, const PickOptions& options);
+                                     const PicturePoint& point, const PickOptions& options);
 
  private:
   struct Seen {
     std::uint32_t draw = 0;
     glm::vec3 normal_group{0.0f};
-    float depth = 1.0f;  // of the window, 0..1
+    float depth = 1.0f;  // window depth, 0..1
   };
   Result<void> compile(const PickOptions& options);
-  // clip_from_world: the one pixel fills clip space.
+  // clip_from_world must scale the one pixel to fill clip space.
   std::optional<Seen> drawPixel(World& world, const Surfaces& surfaces, const glm::mat4& clip_from_world);
 
   std::optional<gpu::Program> program_;

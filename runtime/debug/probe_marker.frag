@@ -1,5 +1,5 @@
-// Radiance that arrives at a light probe along the direction in which the cube or the ball is seen from its middle: on the
-// cube what is captured there, on the ball the harmonics.
+// Shows the radiance that arrives at a light probe from the direction of the cube's or ball's surface point:
+// on the cube what is captured there, on the ball the harmonics.
 #include "overlay_colors.glsl"
 
 struct Sign {
@@ -10,7 +10,7 @@ struct Sign {
   uint pad[2];
 };
 struct Disc {
-  vec4 direction_and_radius;  // world; radians
+  vec4 direction_and_radius;  // world axes; w: radius in radians
   vec4 radiance;
 };
 layout(std430, binding = 1) readonly buffer Signs { Sign signs[]; };
@@ -20,9 +20,9 @@ layout(std430, binding = 4) readonly buffer Discs { Disc discs[]; };
 layout(binding = 0) uniform samplerCube first_sky;
 layout(binding = 1) uniform samplerCube second_sky;
 layout(location = 0) uniform mat3 light_from_world;
-layout(location = 1) uniform vec2 shares;  // of the first and the second set of lights
+layout(location = 1) uniform vec2 shares;  // factors on the two sets of lights
 layout(location = 2) uniform uint disc_count;
-layout(location = 3) uniform int cube_size;  // 0: no bodies
+layout(location = 3) uniform int cube_size;  // 0 if there are no bodies
 
 layout(location = 0) in vec3 direction;
 layout(location = 1) in vec2 face_place;
@@ -31,7 +31,8 @@ layout(location = 0) out vec4 color;
 
 vec3 turned(vec4 turn, vec3 v) { return v + 2.0 * cross(turn.xyz, cross(turn.xyz, v) + turn.w * v); }
 
-// sum over i of l_i y_i(n): the recurrences of unshadowedRadiance in diffuse_eval.glsl, without its weights.
+// Returns the sum over i of l_i y_i(n), with the recurrences of unshadowedRadiance in diffuse_eval.glsl
+// without its weights.
 vec3 harmonics(vec3 n, uint light, int order) {
   vec3 sum = vec3(0.0);
   float c = 1.0, s = 0.0, sectoral = 0.28209479177387814;
@@ -61,7 +62,7 @@ vec3 harmonics(vec3 n, uint light, int order) {
 
 vec3 captured(vec3 dir) {
   vec3 sky = shares.x * texture(first_sky, light_from_world * dir).rgb + shares.y * texture(second_sky, light_from_world * dir).rgb;
-  // Suns are smaller than what such a cube can show: their edges are as soft as a pixel of it is wide.
+  // Suns are smaller than such a cube can show; their edges are as soft as one of its pixels is wide.
   float soft = max(length(fwidth(dir)), 1e-3);
   for (uint i = 0u; i < disc_count; ++i) {
     vec3 to_disc = discs[i].direction_and_radius.xyz;
@@ -82,7 +83,7 @@ void main() {
     return;
   }
   vec3 radiance = shownLight(captured(dir));
-  // Dark edges, so that the cube stands out from a sky that it shows itself.
+  // Dark edges distinguish the cube from a sky that it shows itself.
   float edge = max(abs(face_place.x), abs(face_place.y));
   color = vec4(mix(radiance, vec3(0.0), 0.8 * smoothstep(0.9, 0.95, edge)), 1.0);
 }

@@ -1,4 +1,4 @@
-// Instances of a cube and a ball on top of it, both made of the six faces of a cube.
+// Draws instances of a cube with a ball on top of it, both made of the six faces of a cube.
 #include "surface_shared.h"
 
 layout(std140, binding = kBindView) uniform ViewBlock {
@@ -15,13 +15,13 @@ struct Sign {
 };
 layout(std430, binding = 1) readonly buffer Signs { Sign signs[]; };
 
-layout(location = 0) out vec3 direction;  // from the middle of the cube or ball, world
-layout(location = 1) out vec2 face_place;  // of the cube
-layout(location = 2) flat out ivec2 face_and_sign;  // face -1: the ball
+layout(location = 0) out vec3 direction;  // from the centre of the cube or ball, world axes
+layout(location = 1) out vec2 face_place;  // coordinates on the face, for the cube
+layout(location = 2) flat out ivec2 face_and_sign;  // the face (-1: the ball) and the index of the sign
 
 const int kCubeVertices = 36, kBallCells = 10;
 
-// As sh::cubeFaceDirection.
+// Does the same as sh::cubeFaceDirection.
 vec3 faceDirection(int face, vec2 st) {
   if (face == 0) return vec3(1.0, -st.y, -st.x);
   if (face == 1) return vec3(-1.0, -st.y, st.x);

@@ -1,4 +1,5 @@
-// From the texels that a capture leaves, those that show bodies, to whole cubes: a work group per point that sees any.
+// Copies the texels with bodies that a capture made into whole cubes. A work group handles a point that sees
+// any body.
 #include "capture_shared.h"
 
 layout(local_size_x = kWorkGroupSize) in;

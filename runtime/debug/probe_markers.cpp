@@ -10,28 +10,44 @@
 #include <glm/matrix.hpp>
 
 #include "lambent_debug_embedded.hpp"
+#include "lambent_draws_embedded.hpp"
+#include "lambent_effects_neighborhood_embedded.hpp"
+#include "lambent_evaluate_embedded.hpp"
+#include "lambent_lighting_embedded.hpp"
+#include "lambent_shadows_embedded.hpp"
+#include "lambent_surface_embedded.hpp"
+#include "lambent_tone_map_embedded.hpp"
+#include "lambent_transfer_embedded.hpp"
 #include "runtime/scene/bounds.hpp"
 
 namespace lambent::frame {
 
 namespace {
 
-constexpr gpu::FindText kShaders[] = {&embedded::lambent_debug::find};
+constexpr gpu::FindText kShaders[] = {&embedded::lambent_debug::find,
+                                      &embedded::lambent_draws::find,
+                                      &embedded::lambent_surface::find,
+                                      &embedded::lambent_shadows::find,
+                                      &embedded::lambent_tone_map::find,
+                                      &embedded::lambent_lighting::find,
+                                      &embedded::lambent_evaluate::find,
+                                      &embedded::lambent_transfer::find,
+                                      &embedded::lambent_effects_neighborhood::find};
 
-// As in the shaders.
+// These are the bindings and uniform locations of the shaders.
 constexpr GLuint kBindSigns = 1, kBindLights = 2, kBindCubes = 3, kBindDiscs = 4;
 constexpr GLint kLightFromWorld = 0, kShares = 1, kDiscCount = 2, kShownCubeSize = 3;
 constexpr GLuint kBindPoints = 0, kBindTexels = 1, kBindValues = 2, kBindSlots = 3, kBindGathered = 4;
-constexpr GLsizei kVertices = 36 + 6 * 10 * 10 * 6;  // of a cube and a ball
+constexpr GLsizei kVertices = 36 + 6 * 10 * 10 * 6;  // cube and ball
 constexpr std::size_t kCubeTexels = 6 * ProbeMarkers::kCubeSize * ProbeMarkers::kCubeSize;
 
 struct DiscRecord {
   glm::vec4 direction_and_radius, radiance;
 };
 
-// Small beside the scene, and beside the way from a sample to the next of the same group: the middle one of
-// these ways, for two samples may stand close together. Cube and ball together are three and a half radii
-// high.
+// Returns a radius that is small relative to the scene and to the distance between neighbouring samples of a
+// group. It uses the median of these distances, because two samples may stand close together. Cube and ball
+// together are three and a half radii high.
 float radiusFor(float scene_radius, std::span<const glm::vec3> places) {
   const float radius = 0.022f * scene_radius;
   if (places.size() < 2) return radius;
@@ -93,7 +109,7 @@ void ProbeMarkers::place(const OverlayOptions& options, const OverlayScene& scen
     const glm::quat group_from_world = glm::conjugate(scene.world.rotationOf(g));
     const float radius = radiusFor(scene_radius, group.samples_ws);
     for (std::size_t s = 0; s < group.samples_ws.size(); ++s, ++at) {
-      // Evenly over all where there are too many.
+      // If there are too many, the shown ones are spread evenly over all.
       if (count > kMaxSigns && at * kMaxSigns / count == (at + 1) * kMaxSigns / count) continue;
       signs_.push_back({.place_and_radius = glm::vec4(group.samples_ws[s], radius),
                         .group_from_world = {group_from_world.x, group_from_world.y, group_from_world.z,
@@ -115,7 +131,7 @@ Result<void> ProbeMarkers::capture(const OverlayScene& scene, gpu::Counters& cou
   if (points_.empty() || scene.lit_scene.bodies.empty() ||
       scene.proxies.groups().size() != residency.groups().size()) {
     cubes_ = {};
-    seen_.clear();
+    cubes_changed_.forget();
     return {};
   }
   if (!capture_) {
@@ -124,7 +140,7 @@ Result<void> ProbeMarkers::capture(const OverlayScene& scene, gpu::Counters& cou
     if (!made) return failAgain(made.error());
     capture_ = std::move(*made);
   }
-  // Its light is not asked for, only its texels.
+  // Only the texels of the capture are needed, not its light.
   if (capture_->pending() && !capture_->take(/*wait=*/false)) return {};
   std::vector<glm::vec4> seen;
   std::vector<std::uint64_t> shine;
@@ -138,14 +154,11 @@ Result<void> ProbeMarkers::capture(const OverlayScene& scene, gpu::Counters& cou
     for (int column = 0; column < 4; ++column) seen.push_back(body.body.world_from_proxy[column]);
   }
   for (std::size_t g = 0; g < residency.groups().size(); ++g) shine.push_back(scene.proxies.versionOf(g));
-  if (cubes_ && seen == seen_ && shine == shine_seen_) return {};
-  if (proxies_seen_ != residency.proxiesVersion()) {
-    proxies_seen_ = residency.proxiesVersion();
+  if (!cubes_changed_.renew(seen, shine)) return {};
+  if (proxies_changed_.renew(residency.proxiesVersion())) {
     const BodyProxies known = proxiesOf(residency);
     capture_->setProxies(known.proxies, counters, known.keys);
   }
-  seen_ = std::move(seen);
-  shine_seen_ = std::move(shine);
   if (Result<void> done =
           capture_->run(scene.environment, bodies, points_, scene.proxies.radiance(), counters);
       !done)
@@ -174,7 +187,7 @@ Result<void> ProbeMarkers::capture(const OverlayScene& scene, gpu::Counters& cou
 void ProbeMarkers::draw(const OverlayScene& scene, gpu::Counters& counters) {
   if (signs_.empty()) return;
   std::vector<DiscRecord> discs;
-  // Key lights that were found in a picture are in the sky's cube already.
+  // Key lights that were found in a picture are already in the sky's cube.
   const glm::mat3 world_from_light = scene.environment.worldFromLight();
   for (std::size_t i = 0; i < lighting::Environment::kSets; ++i)
     for (const lighting::Disc& disc : scene.environment.shownOf(i).discs)
@@ -190,7 +203,7 @@ void ProbeMarkers::draw(const OverlayScene& scene, gpu::Counters& counters) {
   if (cubes_)
     cubes_.bindStorage(kBindCubes);
   else
-    discs_.bindStorage(kBindCubes);  // not read
+    discs_.bindStorage(kBindCubes);  // bound but not read
   const glm::mat3 light_from_world = glm::transpose(world_from_light);
   glUniformMatrix3fv(kLightFromWorld, 1, GL_FALSE, glm::value_ptr(light_from_world));
   glUniform2f(kShares, scene.environment.shareOf(0), scene.environment.shareOf(1));
@@ -203,7 +216,8 @@ void ProbeMarkers::draw(const OverlayScene& scene, gpu::Counters& counters) {
   glBindVertexArray(no_vertices_.id());
   glEnable(GL_TEXTURE_CUBE_MAP_SEAMLESS);
   glDisable(GL_BLEND);
-  // Faces of a cube map run clockwise from outside. Not left to depth, which is clamped outside of the scene.
+  // Faces of a cube map run clockwise as seen from outside. Culling is used because depth is clamped outside
+  // the scene.
   glEnable(GL_CULL_FACE);
   glFrontFace(GL_CW);
   glDepthMask(GL_TRUE);

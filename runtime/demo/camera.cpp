@@ -14,7 +14,7 @@ namespace lambent::demo {
 
 namespace {
 
-constexpr float kDegreesPerWindow = 220.0f;  // a drag over the window's height
+constexpr float kDegreesPerWindow = 220.0f;  // for a drag over the window's height
 constexpr float kZoomPerNotch = 0.9f;
 constexpr float kMaxElevationDeg = 89.0f;
 
@@ -24,7 +24,7 @@ std::optional<std::uint32_t> firstCameraNode(const bundle::Description& descript
   return {};
 }
 
-// An empty scene is looked at as if it were a unit box.
+// An empty scene is framed like a unit box.
 scene::Box boundsOf(const frame::World& world) {
   scene::Box bounds = scene::worldBounds(world.registry());
   if (bounds.empty()) {
@@ -34,19 +34,19 @@ scene::Box boundsOf(const frame::World& world) {
   return bounds;
 }
 
-// The side to which a scene is open, as a horizontal vector: the sum of area times normal over its surfaces,
-// which is 0 for closed bodies and looks out of a stage or a room without a front.
+// Returns the side on which a scene is open, as a horizontal vector: the sum of area times normal over its
+// surfaces. It is 0 for closed bodies and points out of a stage or a room without a front wall.
 glm::vec3 openSide(const frame::World& world) {
   glm::vec3 sum(0.0f);
   for (auto [entity, draw] : world.registry().view<const scene::DrawItem>()) {
     const bundle::Description& description = world.description(draw.bundle);
     const bundle::Primitive& primitive = description.meshes[draw.mesh].primitives[draw.primitive];
-    const float side = draw.back ? -1.0f : 1.0f;  // two-sided surfaces cancel
+    const float side = draw.back ? -1.0f : 1.0f;  // double-sided surfaces cancel
     const auto* place = world.registry().tryGet<scene::WorldTransform>(draw.node);
     if (!place) continue;
     const glm::mat3 world_from_mesh(place->world_from_node);
     const float volume = glm::determinant(world_from_mesh);
-    // Areas go by the matrix of cofactors; a mirror turns the winding back.
+    // The cofactor matrix transforms areas; the absolute value undoes a mirror's change of winding.
     if (volume != 0.0f)
       sum += side * std::abs(volume) * glm::inverseTranspose(world_from_mesh) * primitive.vector_area;
   }

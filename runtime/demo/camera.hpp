@@ -1,6 +1,6 @@
-// Where lambent-demo looks from: the camera that was asked for, the file's first one, or an orbit; and in the
-// window, the orbit that the mouse moves. A camera of the file stays as it is until the first drag, then
-// becomes the orbit that stands at the same place and looks at the scene's centre.
+// Owns the view of lambent-demo: the requested camera, else the file's first one, else an orbit. In the
+// window the mouse moves the orbit. A camera of the file stays as it is until the first drag, and then
+// becomes the orbit at the same place that looks at the scene's centre.
 #pragma once
 
 #include <optional>
@@ -14,7 +14,8 @@ namespace lambent::demo {
 
 class ViewController {
  public:
-  // aspect: of the picture, for an orbit that frames the scene. Errors: no camera of that name.
+  // `aspect` is that of the picture, for an orbit that frames the scene. Fails if there is no camera of that
+  // name.
   static Result<ViewController> create(const frame::World& world, const std::optional<spec::Camera>& camera,
                                        float aspect);
 
@@ -26,7 +27,7 @@ class ViewController {
     std::size_t bundle = 0;
     std::uint32_t node = 0;
   };
-  scene::Box bounds_;  // of the scene at rest: what moves in it does not move the camera
+  scene::Box bounds_;  // of the scene at rest, so that moving objects do not move the camera
   std::optional<FileCamera> file_camera_, first_file_camera_;
   spec::OrbitCamera orbit_, first_orbit_;
 };

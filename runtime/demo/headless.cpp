@@ -9,7 +9,9 @@
 #include "runtime/demo/report.hpp"
 #include "runtime/demo/run.hpp"
 #include "runtime/demo/stage.hpp"
+#include "runtime/effects/volume/volume.hpp"
 #include "runtime/frame/frame.hpp"
+#include "runtime/shadows/key_shadows.hpp"
 #include "runtime/spec/image.hpp"
 
 namespace lambent::demo {
@@ -30,7 +32,7 @@ Result<void> writePicture(const frame::Frame& frame, const Options& options, std
   return written;
 }
 
-// Errors of a picture that the device cannot hold are told before anything is loaded.
+// Reports a picture that the device cannot hold before anything is loaded.
 Result<void> checkSize(const spec::Size& size, std::uint32_t limit) {
   if (size.width > limit || size.height > limit)
     return fail("--size", fmt::format("this device draws at most {} pixels a side", limit),
@@ -72,12 +74,12 @@ Result<void> runHeadless(const Options& options) {
                            stage->environment());
   if (!frame) return failAgain(frame.error());
   const auto render = [&]() -> Result<void> {
-    world.updateTransforms();  // cameras may hang on what moves
+    world.updateTransforms();  // cameras may be attached to what moves
     const Result<spec::View> view = controller->view(world, options.size.aspect());
     if (!view) return failAgain(view.error());
     return frame->render(world, stage->environment(), *view);
   };
-  // Pictures are of light that has come to rest.
+  // A picture shows the light after it has come to rest.
   const auto finishPicture = [&](std::uint32_t number) -> Result<void> {
     const Result<std::uint32_t> steps = frame->rest(world, stage->environment());
     if (!steps) return failAgain(steps.error());
@@ -88,8 +90,8 @@ Result<void> runHeadless(const Options& options) {
   };
   const bool every_frame = isNumbered(*options.headless);
   for (std::uint32_t i = 0; i < options.frames; ++i) {
-    // Over several frames the light turns into its place and time runs up to the asked for, so that what
-    // movement costs can be read off.
+    // Over several frames the light turns to its place and time runs to the requested value, so that the cost
+    // of movement can be measured.
     stage->turnLight(options.rotate_light_deg * static_cast<float>(i + 1) /
                      static_cast<float>(options.frames));
     if (options.time_s)
@@ -113,13 +115,14 @@ Result<void> runHeadless(const Options& options) {
   if (!options.json) return {};
   report.parts = world.loadedParts();
   report.streaming = world.streaming();
-  report.bytes_resident = report.streaming.resident_bytes + frame->volumeBytes();
+  report.bytes_resident =
+      report.streaming.resident_bytes + frame->kept<effects::volume::Volume>().textureBytes();
   report.negative_pixels = frame->negativePixels();
   report.exposure_ev = frame->exposureEv();
   report.gl_errors = context->errors();
   const std::span<const spec::Disc> keys = stage->environment().keys();
   report.keys.assign(keys.begin(), keys.end());
-  report.key_shadow_bytes = frame->keyShadows().bytesResident();
+  report.key_shadow_bytes = frame->kept<frame::KeyShadows>().bytesResident();
   fmt::print("{}\n", reportJson(options, context->info(), report));
   return {};
 }

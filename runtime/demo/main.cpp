@@ -18,7 +18,7 @@ int main(int argc, char** argv) {
     const Result<void> done = options.headless ? demo::runHeadless(options) : demo::runWindowed(options);
     if (done) return 0;
     demo::printError(done.error());
-  } catch (const std::exception& error) {  // out of memory, mostly
+  } catch (const std::exception& error) {  // mostly out of memory
     demo::printError({.subject = "stopped", .problem = error.what(), .hint = {}});
   }
   return 1;

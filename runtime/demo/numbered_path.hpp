@@ -1,4 +1,4 @@
-// Names of picture sequences: a run of # in the file name stands for the number of the frame, with as many
+// Names the pictures of a sequence: a run of # in the file name stands for the frame's number with as many
 // digits.
 #pragma once
 
@@ -15,7 +15,8 @@ inline bool isNumbered(const std::filesystem::path& path) {
   return path.filename().string().find('#') != std::string::npos;
 }
 
-// "frame-###.png" and 7: "frame-007.png". The first run counts; without one the path is as it was.
+// Returns, for "frame-###.png" and 7, "frame-007.png". Only the first run counts; a path without one is
+// unchanged.
 inline std::filesystem::path numberedPath(const std::filesystem::path& path, std::uint32_t number) {
   std::string name = path.filename().string();
   const std::size_t first = name.find('#');

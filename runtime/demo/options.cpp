@@ -16,12 +16,12 @@ namespace lambent::demo {
 
 namespace {
 
-// What CLI11 hands over, before the words are understood.
+// The raw strings from CLI11, before they are parsed.
 struct Words {
   std::vector<std::string> bundles, lights, fade_lights, key_edits;
   std::string light_layout, camera, size = "1280x720", headless, view = "final", overlay, quality = "default";
   std::string rotate_light = "0", lamps = "1", fade = "0", time, step = "0.0333";
-  std::vector<std::string> settings;  // of the frame, a word for each row
+  std::vector<std::string> settings;  // of the frame, one per row
   std::uint64_t max_memory = ~std::uint64_t{0};
   std::uint32_t frames = 1;
   bool json = false;
@@ -60,7 +60,7 @@ constexpr Row kRows[] = {
     {"--lamps", &Words::lamps, "FACTOR", "Times the strength of the scenes' own lights; 0 switches them off"},
 };
 
-// As help shows what an option takes.
+// Returns the type of an option as help shows it.
 std::string typeOf(const frame::SettingRow& row) {
   switch (row.kind) {
     case frame::SettingRow::Kind::Switch:
@@ -80,7 +80,7 @@ void declare(CLI::App& app, Words& words) {
       ->required()
       ->type_name("");
   app.add_option("--light", words.lights,
-                 "Several add up: a environment map file (.hdr, .exr), constant:R,G,B "
+                 "Several add up: an environment map file (.hdr, .exr), constant:R,G,B "
                  "or\nsun:AZ,EL,ANGLE,R[,G,B] (degrees, "
                  "angular radius, radiance);\nin the scene: sphere:X,Y,Z,RADIUS,R[,G,B] or "
                  "disc:X,Y,Z,NX,NY,NZ,RADIUS,R[,G,B]")
@@ -104,14 +104,14 @@ void declare(CLI::App& app, Words& words) {
     if (!(words.*row.field).empty()) option->capture_default_str();
   }
   const frame::FrameSettings defaults;
-  words.settings.resize(frame::settingRows().size());  // empty: not given, as --quality has it
+  words.settings.resize(frame::settingRows().size());  // empty: not given, so --quality decides
   for (std::size_t i = 0; i < words.settings.size(); ++i) {
     const frame::SettingRow& row = frame::settingRows()[i];
     app.add_option("--" + std::string(row.name), words.settings[i], std::string(row.help))
         ->type_name(typeOf(row))
         ->default_str(frame::settingWord(row, defaults));
     if (!row.former.empty())
-      app.add_option("--" + std::string(row.former), words.settings[i])->group("");  // hidden
+      app.add_option("--" + std::string(row.former), words.settings[i])->group("");  // hidden in help
   }
   app.add_option("--quality", words.quality,
                  "low, default or high: how many key lights there are and how finely\nthey shadow; single "
@@ -205,7 +205,7 @@ Result<void> understandPicture(const Words& words, Options& options) {
   return {};
 }
 
-// The bundle, or those in the folder by name.
+// Returns the bundle, or those in the folder sorted by name.
 Result<std::vector<std::filesystem::path>> bundlesIn(const std::filesystem::path& word) {
   std::error_code error;
   if (!std::filesystem::is_directory(word, error)) return std::vector{word};

@@ -7,6 +7,8 @@
 #include <glm/trigonometric.hpp>
 #include <nlohmann/json.hpp>
 
+#include "runtime/frame/frame_times.hpp"
+
 namespace lambent::demo {
 
 namespace {
@@ -14,47 +16,12 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json countsJson(const frame::StepCounts& counts) {
-  return {{"groups", counts.groups},
-          {"bodies", counts.bodies},
-          {"local_lights", counts.local_lights},
-          {"shadowed_lights", counts.shadowed_lights},
-          {"shadowed_lights_left_out", counts.shadowed_lights_left_out},
-          {"light_probes", counts.incident.samples},
-          {"light_probes_captured", counts.incident.captured},
-          {"light_probes_waiting", counts.incident.waiting},
-          {"capture_pages", counts.captured.pages},
-          {"capture_tiles", counts.captured.tiles},
-          {"capture_bodies_drawn", counts.captured.draws},
-          {"capture_triangles", counts.captured.triangles},
-          {"capture_pixels", counts.captured.pixels},
-          {"light_probes_risen", counts.incident.risen},
-          {"light_probes_written", counts.light_probes_written},
-          {"cells_shaded", counts.cells_shaded},
-          {"draws_shaded", counts.draws_shaded},
-          {"shadow_cubes_drawn", counts.shadow_cubes_drawn},
-          {"patch_rooms", counts.patch_bounces.rooms},
-          {"patch_rooms_to_come", counts.patch_bounces.rooms_to_come},
-          {"patches", counts.patch_bounces.patches},
-          {"lights_bounced", counts.patch_bounces.lights_bounced},
-          {"patch_draws_gathered", counts.patch_bounces.draws_gathered},
-          {"key_lights", counts.key_lights},
-          {"key_maps_drawn", counts.key_maps_drawn},
-          {"volumes", counts.volumes},
-          {"volumes_shaded", counts.volumes_shaded},
-          {"volume_slabs_written", counts.volume_slabs_written},
-          {"volumes_drawn", counts.volumes_drawn},
-          {"neighborhood_grids", counts.neighborhoods.grids},
-          {"neighborhood_grids_ready", counts.neighborhoods.ready},
-          {"neighborhood_grids_written", counts.neighborhoods.written},
-          {"neighborhood_pairs", counts.neighborhoods.pairs},
-          {"neighborhood_receivers", counts.neighborhoods.receivers},
-          {"neighborhood_arrivals", counts.neighborhoods.arrivals},
-          {"neighborhood_vertex_receivers", counts.neighborhoods.vertex_receivers},
-          {"neighborhood_vertex_receivers_shaded", counts.neighborhoods.vertex_receivers_shaded},
-          {"neighborhood_arrivals_left_out", counts.neighborhoods.left_out}};
+  Json json = Json::object();
+  for (const frame::StepCounts::Count& count : counts) json[std::string(count.name)] = count.value;
+  return json;
 }
 
-// Of all frames but the first, which also waits for what is made once.
+// Leaves out the first frame, which also waits for what is made once.
 Json frameTimesJson(std::vector<double> frame_ms) {
   if (frame_ms.size() > 1) frame_ms.erase(frame_ms.begin());
   if (frame_ms.empty()) return Json();
@@ -123,7 +90,7 @@ Json frameJson(const FrameReport& frame) {
           {"draw_calls", total.draw_calls}};
 }
 
-// Brightest first, as lights are given: azimuth 0 stands on +Z, 90 on +X.
+// Lists key lights, brightest first, with the angles of light options: azimuth 0 is +Z, 90 is +X.
 Json keysJson(std::vector<spec::Disc> keys) {
   const auto flux = [](const spec::Disc& key) {
     const float half = std::sin(0.5f * key.radius_rad);
@@ -139,7 +106,7 @@ Json keysJson(std::vector<spec::Disc> keys) {
   return list;
 }
 
-// As the words of the options.
+// Lists the settings by the names of their options.
 Json settingsJson(const frame::FrameSettings& settings) {
   Json json = Json::object();
   for (const frame::SettingRow& row : frame::settingRows())

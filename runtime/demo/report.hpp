@@ -1,6 +1,6 @@
-// What --json prints: the words of the run, passes of the first and the last frame (times in milliseconds,
-// what each issued, what was captured and shaded), how long frames took, what was loaded, bytes resident,
-// negative pixels, the device.
+// Makes the output of --json: the arguments of the run, the passes of the first and the last frame (times in
+// milliseconds, what each issued, what was captured and shaded), frame times, what was loaded, bytes
+// resident, negative pixels, and the device.
 #pragma once
 
 #include <string>
@@ -21,8 +21,8 @@ struct FrameReport {
 
 struct Report {
   FrameReport first_frame, last_frame;
-  std::vector<double> frame_ms;  // of each frame until the GPU was done with it
-  std::uint32_t rest_steps = 0;  // after the last frame, until no light changed any more
+  std::vector<double> frame_ms;  // per frame, until the GPU was done
+  std::uint32_t rest_steps = 0;  // steps after the last frame until no light changed any more
   double load_ms = 0.0;          // from opening the bundles until everything was resident
   std::uint64_t bytes_resident = 0;
   frame::LoadedParts parts;
@@ -30,7 +30,7 @@ struct Report {
   std::uint32_t negative_pixels = 0;
   float exposure_ev = 0.0f;
   std::uint64_t gl_errors = 0;
-  std::vector<spec::Disc> keys;  // of the last frame, world axes
+  std::vector<spec::Disc> keys;  // of the last frame, in world axes
   std::uint64_t key_shadow_bytes = 0;
 };
 

@@ -1,6 +1,6 @@
-// The two ways in which lambent-demo runs. Headless loads everything, renders, writes the picture whole or
-// not at all and prints its path (or the report). Windowed shows the scene while it loads, under a light that
-// turns, until it is closed.
+// Runs lambent-demo in one of two ways. Headless, it loads everything, renders, writes the picture whole or
+// not at all, and prints its path (or the report). Windowed, it shows the scene while it loads, under a light
+// that turns, until it is closed.
 #pragma once
 
 #include "runtime/base/result.hpp"

@@ -63,7 +63,8 @@ void Stage::dragLight(const spec::View& view, float right, float down) {
     const auto* place = registry.tryGet<scene::WorldTransform>(entity);
     if (light.kind == scene::LocalLightComponent::Kind::Directional || !place) continue;
     const glm::vec3 position_vs(view.view_from_world * place->world_from_node[3]);
-    // What the picture's height is there; orthographic pictures are as high everywhere.
+    // This is the picture's height at the light's distance; an orthographic picture is equally high
+    // everywhere.
     const bool perspective = view.clip_from_view[2][3] != 0.0f;
     const float height = 2.0f / view.clip_from_view[1][1] * (perspective ? std::abs(position_vs.z) : 1.0f);
     const glm::vec3 by_vs = height * glm::vec3(right, -down, 0.0f);
@@ -73,7 +74,7 @@ void Stage::dragLight(const spec::View& view, float right, float down) {
     const glm::mat3 parent_from_world =
         parent ? glm::inverse(glm::mat3(parent->world_from_node)) : glm::mat3(1.0f);
     const glm::vec3 by_parent = parent_from_world * by_ws;
-    if (!glm::all(glm::equal(by_parent, by_parent))) return;  // hangs below something flat
+    if (!glm::all(glm::equal(by_parent, by_parent))) return;  // its parent is scaled flat
     registry.edit<scene::Transform>(entity).translation += by_parent;
     return;
   }

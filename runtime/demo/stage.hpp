@@ -1,5 +1,5 @@
-// What both ways of running show: the bundles as a world, the lights of the command line as entities in it,
-// and the environment that follows its entity. Errors: those of opening environment maps and bundles.
+// Owns what both ways of running show: the bundles as a world, the lights of the command line as entities in
+// it, and the environment that follows its entity. Fails if an environment map or a bundle cannot be opened.
 #pragma once
 
 #include "runtime/base/result.hpp"
@@ -10,22 +10,23 @@
 
 namespace lambent::demo {
 
-// Lights first: a wrong file is told before a device is looked for. Says on stderr what was repaired in them.
+// Loads the lights. This comes first, so that a wrong file is reported before a device is needed. Reports on
+// stderr what was repaired in the environment maps.
 Result<lighting::Environment> loadEnvironment(const Options& options);
 
 class Stage {
  public:
-  // Needs a GL context. Opens the bundles, which load while frames are rendered.
+  // Opens the bundles, which load while frames are rendered. Needs a GL context.
   static Result<Stage> create(const Options& options, lighting::Environment environment);
 
   frame::World& world() { return world_; }
   const lighting::Environment& environment() const { return environment_; }
 
   void turnLight(float degrees);
-  // The environment as its entity says.
+  // Updates the environment from its entity.
   void applyEnvironment();
-  // Moves the first light that stands in the scene in the plane of the picture, by fractions of its height:
-  // right and down are positive. Does nothing where there is none.
+  // Moves the first light that stands in the scene, in the plane of the picture, by fractions of the
+  // picture's height; right and down are positive. Does nothing if there is none.
   void dragLight(const spec::View& view, float right, float down);
 
  private:

@@ -17,14 +17,14 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr float kTurnDegreesPerSecond = 12.0f;  // on its own
+constexpr float kTurnDegreesPerSecond = 12.0f;  // without a key held
 constexpr float kKeyDegreesPerSecond = 60.0f;   // while A or D is held
 
 float secondsSince(Clock::time_point start) {
   return std::chrono::duration<float>(Clock::now() - start).count();
 }
 
-// Frames per second over the last second or so, into the title.
+// Shows frames per second, over about the last second, in the window's title.
 class TitleClock {
  public:
   void tick(gpu::Window& window, const std::string& title) {
@@ -42,7 +42,7 @@ class TitleClock {
   int frames_ = 0;
 };
 
-// With what is on its way, and how much of the room is taken.
+// Adds what is being loaded and how much of the memory is taken.
 std::string titleOf(const std::string& title, const frame::StreamingStatus& status) {
   constexpr double kMegabyte = 1e6;
   std::string text =
@@ -81,7 +81,7 @@ Result<void> runWindowed(const Options& options) {
   bool turning = true;
   world.setAnimationTime(options.time_s.value_or(0.0f));
   TitleClock title_clock;
-  std::set<std::string> reported;  // what is wrong with bundles, each once
+  std::set<std::string> reported;  // errors of bundles, each reported once
   Clock::time_point last = Clock::now();
   while (true) {
     const gpu::Input input = window->poll();

@@ -1,6 +1,6 @@
-// Multi-draws whose shaders know which draw they are of: a vertex array whose one attribute, at location 0,
-// steps once per instance through 0, 1, 2, ..., so that a command's base instance comes back. gl_DrawID is
-// not in OpenGL 4.5.
+// Makes multi-draws whose shaders know the index of their draw. The vertex array has one attribute, at
+// location 0, that steps once per instance through 0, 1, 2, ..., so that a shader reads its command's base
+// instance. gl_DrawID is not in OpenGL 4.5.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace lambent::frame {
 
-// As glMultiDrawElementsIndirect reads it.
+// Describes a command in the layout of glMultiDrawElementsIndirect.
 struct DrawCommand {
   std::uint32_t count = 0, instance_count = 1, first_index = 0, base_vertex = 0, base_instance = 0;
 };
@@ -19,12 +19,12 @@ class DrawIndices {
   explicit DrawIndices(std::string_view label) : vertices_(label) {}
 
   void reserve(std::size_t draw_count);
-  // With `elements` as what indices are read from.
+  // Binds the vertex array with `elements` as its index buffer.
   void bind(const gpu::Buffer& elements) const {
     glBindVertexArray(vertices_.id());
     glVertexArrayElementBuffer(vertices_.id(), elements.id());
   }
-  // Triangles of commands that follow each other in the bound indirect buffer.
+  // Draws the triangles of consecutive commands in the bound indirect buffer.
   static void draw(std::uint32_t first_command, std::uint32_t command_count, gpu::Counters& counters);
 
  private:

@@ -52,7 +52,7 @@ bool glossyReady(const World& world, std::size_t draw) {
   const streaming::ResidentBundle& owner = world.residency().bundles()[resident.bundle];
   const std::int32_t table = brdfTableOf(world, draw);
   return resident.glossy() && table >= 0 && owner.brdf_tables[static_cast<std::size_t>(table)].texture &&
-         owner.brdf_tables[static_cast<std::size_t>(table)].order == bundle::bandsOf(resident.outputs) &&
+         owner.brdf_tables[static_cast<std::size_t>(table)].order == transfer::bandsOf(resident.outputs) &&
          world.residency().meshes()[resident.mesh].block && resident.rows &&
          world.residency().groups()[resident.group].samples;
 }
@@ -67,7 +67,8 @@ GlossyPart describeGlossy(const World& world, std::size_t draw) {
   const gltf::Material& material = materialOf(world, draw);
   // A diffuse material is Lambert, whatever its roughness says (docs/conventions.md).
   const glm::vec3 dielectric = material.reflectance() * material.specular_color;
-  const float specular = material.matte() ? 0.0f : material.specular;
+  const float specular = material.isDiffuse() ? 0.0f : material.specular;
+  const streaming::SampleStretch samples = group.stretchOf(transfer::Form::Matrix);
   return {.group_from_world = glm::mat3x4(glm::mat3_cast(glm::conjugate(world.rotationOf(resident.group)))),
           .dielectric = glm::vec4(dielectric, specular),
           .metallic_roughness_texture = slotOf(material.metallic_roughness_texture, mesh),
@@ -85,13 +86,14 @@ GlossyPart describeGlossy(const World& world, std::size_t draw) {
           .rows_word = resident.rows.word(),
           .row_entries = resident.row_entries,
           .vertex_count = mesh.vertex_count,
-          .first_sample = group.sampleBase(resident.outputs),
+          .first_sample = samples.first_sample,
           .draw = static_cast<std::uint32_t>(draw),
+          .first_output = samples.first_output,
           .glossy_pad = {}};
 }
 
 GlossyKind glossyKindOf(const World& world, std::size_t draw, std::uint32_t max_bands) {
-  const std::uint32_t bands = bundle::bandsOf(world.residency().draws()[draw].outputs);
+  const std::uint32_t bands = transfer::bandsOf(world.residency().draws()[draw].outputs);
   return {.bands = bands,
           .used_bands = max_bands < bands ? max_bands : 0,
           .family = choiceOf(world, draw).family};

@@ -1,6 +1,6 @@
-// What the raster pass knows of a glossy draw beyond what every draw has: its reflection, where its rows and
-// samples lie, and the table of b(v) that serves it. Reads the residency's tables and where the world's
-// groups stand.
+// Makes the part of a glossy draw's record that other draws lack: its reflection parameters, where its rows
+// and samples lie, and its table of b(v). Reads the residency's tables and the placement of the world's
+// groups. Render thread.
 #pragma once
 
 #include <compare>
@@ -15,29 +15,29 @@
 
 namespace lambent::frame {
 
-// By what a glossy draw looks up b(v): that of its material as it is now, where the bundle has a table for
-// it, else as it was baked. A GGX table with anisotropy serves materials without; where there is only one
-// without, anisotropy does not show.
+// Names the table of b(v) that a glossy draw uses: that for its current material if the bundle has such a
+// table, else for the baked material. A GGX table with anisotropy also serves materials without; if there is
+// only one without, anisotropy does not show.
 struct BrdfChoice {
-  std::int32_t table = -1;  // by index in its bundle; -1: there is none
+  std::int32_t table = -1;  // index in its bundle; -1: there is none
   bundle::BrdfFamily family = bundle::BrdfFamily::Ggx;
 };
 BrdfChoice brdfChoiceOf(std::span<const bundle::BrdfFamily> tables, const gltf::Material& now,
                         const gltf::Material& baked);
 
-// The table of a draw, by index in its bundle; -1 where the bundle has none that fits.
+// Returns the index of a draw's table in its bundle, or -1 if no table fits.
 std::int32_t brdfTableOf(const World& world, std::size_t draw);
 
-// Whether everything is there that the draw needs: mesh, rows, table. Its samples always have light.
+// Returns whether the draw's mesh, rows and table are resident. Its samples always have light.
 bool glossyReady(const World& world, std::size_t draw);
 
-// Only of draws that are ready.
+// Requires a draw that is ready.
 GlossyPart describeGlossy(const World& world, std::size_t draw);
 
-// What the surface program of a glossy draw is compiled for.
+// Names the variant of the surface program that a glossy draw needs.
 struct GlossyKind {
-  std::uint32_t bands = 0;       // 0: no glossy draw
-  std::uint32_t used_bands = 0;  // of these, that count; 0: all
+  std::uint32_t bands = 0;       // 0: not a glossy draw
+  std::uint32_t used_bands = 0;  // how many of these bands count; 0: all
   bundle::BrdfFamily family = bundle::BrdfFamily::Ggx;
   auto operator<=>(const GlossyKind&) const = default;
 };

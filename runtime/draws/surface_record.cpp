@@ -8,14 +8,14 @@ namespace lambent::frame {
 
 namespace {
 
-// The picture's coordinates from the mesh's.
+// Returns the matrix from the mesh's to the texture's coordinates.
 glm::mat3x2 transformOf(const gltf::TextureRef& texture) {
   const glm::vec2 origin = texture.apply({0.0f, 0.0f});
   return {texture.apply({1.0f, 0.0f}) - origin, texture.apply({0.0f, 1.0f}) - origin, origin};
 }
 
-// Undoes how the normal matrix was made, so that a group that moves turns nothing. A flattened mesh has no
-// inverse, and its normals went by the matrix itself.
+// Undoes how the normal matrix was made, so that moving a group changes no normal. A flattened mesh has no
+// inverse, and its normals were transformed by the matrix itself.
 glm::mat3 directionMatrix(const glm::mat3& front_normal) {
   const float determinant = glm::determinant(front_normal);
   if (determinant == 0.0f || !std::isfinite(1.0f / determinant)) return front_normal;
@@ -39,7 +39,7 @@ glm::vec3 emissionOf(const World& world, std::size_t draw) {
 }
 
 bool normalMapped(const World& world, std::size_t draw) {
-  return world.residency().draws()[draw].outputs == bundle::kMappedOutputs;
+  return world.residency().draws()[draw].form() == transfer::Form::NormalMapped;
 }
 
 SurfaceDraw describe(const World& world, std::size_t draw) {
@@ -49,7 +49,7 @@ SurfaceDraw describe(const World& world, std::size_t draw) {
   const float facing = resident.back ? -1.0f : 1.0f;
   const glm::quat turn = world.rotationOf(resident.group);
   const glm::mat3 front_normal = facing * resident.group_from_mesh_normal;
-  // Unlit surfaces give off nothing but their base colour (KHR_materials_unlit).
+  // Unlit surfaces emit nothing but their base colour (KHR_materials_unlit).
   const glm::vec3 emission = material.unlit ? glm::vec3(0.0f) : emissionOf(world, draw);
   return {.world_from_mesh = world.worldFromMesh(draw),
           .group_from_mesh = glm::mat3x4(directionMatrix(front_normal)),
@@ -82,7 +82,8 @@ SurfaceTextures texturesOf(const World& world, std::size_t draw, const SurfaceDr
   const gltf::Material& material = materialOf(world, draw);
   SurfaceTextures textures;
   if (record.base_color_texture.set != kAbsent) textures.base_color = material.base_color_texture.texture;
-  // What gives off no light and what takes it at its vertices need not part batches by textures left unread.
+  // Textures that are never read must not split batches: surfaces without emission, and those that receive
+  // light at their vertices, leave them out.
   if (record.emissive_texture.set != kAbsent && glm::vec3(record.emission) != glm::vec3(0.0f))
     textures.emissive = material.emissive_texture.texture;
   const bool glossy = world.residency().draws()[draw].glossy();

@@ -1,6 +1,6 @@
-// What the raster pass knows of one draw: its record for the shaders and the textures that it looks into.
-// Reads the residency's tables and where the world's nodes stand. A texture whose coordinates the mesh lacks
-// counts as absent.
+// Makes the record of one draw for the shaders of the raster pass, and tells which textures it uses. Reads
+// the residency's tables and the placement of the world's nodes. A texture whose coordinates the mesh lacks
+// counts as absent. Render thread.
 #pragma once
 
 #include <compare>
@@ -15,24 +15,24 @@
 
 namespace lambent::frame {
 
-// Of the bundle's tables; -1: none.
+// Holds indices into the bundle's tables; -1 means none.
 struct SurfaceTextures {
   std::int32_t bundle = -1, base_color = -1, emissive = -1, normal = -1;
-  // Of glossy draws.
+  // These are used by glossy draws only.
   std::int32_t metallic_roughness = -1, specular = -1, specular_color = -1, anisotropy = -1;
   auto operator<=>(const SurfaceTextures&) const = default;
 };
 
-// How a mesh looks into a texture; absent where it lacks the coordinates.
+// Returns how a mesh looks up a texture; absent if it lacks the coordinates.
 TextureSlot slotOf(const gltf::TextureRef& texture, const streaming::ResidentMesh& mesh);
 
-// As it is now; valid while the draw's bundle is.
+// Returns the current material; valid as long as the draw's bundle is.
 const gltf::Material& materialOf(const World& world, std::size_t draw);
 
-// Radiance that the surface gives off, before its texture.
+// Returns the radiance that the surface emits, before its texture.
 glm::vec3 emissionOf(const World& world, std::size_t draw);
 
-// Whether the draw has light in bands 0..2 at its vertices, to be received at the pixel's own normal.
+// Returns whether the draw has light in bands 0..2 at its vertices, for shading with the pixel's own normal.
 bool normalMapped(const World& world, std::size_t draw);
 
 SurfaceDraw describe(const World& world, std::size_t draw);

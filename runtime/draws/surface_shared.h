@@ -1,4 +1,5 @@
-// One text for C++ and GLSL: what the raster pass binds and reads. Words are 32 bits from the start of an arena page.
+// This file is shared by C++ and GLSL. It holds the bindings and records of the raster pass. Words are 32
+// bits, counted from the start of an arena page.
 #ifdef __cplusplus
 #pragma once
 
@@ -21,42 +22,43 @@ using glm::vec4;
 #define LAMBENT_CONSTANT const uint
 #endif
 
-LAMBENT_CONSTANT kBindView = 0u;      // uniform block ViewBlock
-LAMBENT_CONSTANT kBindDraws = 0u;     // SurfaceDraw
-LAMBENT_CONSTANT kBindGeometry = 1u;  // arena page
-LAMBENT_CONSTANT kBindRadiance = 2u;  // arena page
-LAMBENT_CONSTANT kBindRows = 3u;      // arena page: rows of the vertices of glossy draws
-LAMBENT_CONSTANT kBindSamples = 4u;   // arena page: their samples
-LAMBENT_CONSTANT kBindRadianceChange = 3u;  // of diffuse draws, what bodies around change at vertices: 3 floats each
-// What patches send on (patch_bounces.hpp): per vertex 3 floats, or with normal maps and of glossy draws 27.
-LAMBENT_CONSTANT kBindBounced = 4u;        // of diffuse draws
-LAMBENT_CONSTANT kBindGlossyBounced = 2u;  // of glossy ones, which have another buffer there
+LAMBENT_CONSTANT kBindView = 0u;            // uniform block ViewBlock
+LAMBENT_CONSTANT kBindDraws = 0u;           // array of SurfaceDraw
+LAMBENT_CONSTANT kBindGeometry = 1u;        // arena page
+LAMBENT_CONSTANT kBindRadiance = 2u;        // arena page
+LAMBENT_CONSTANT kBindRows = 3u;            // arena page: rows of the vertices of glossy draws
+LAMBENT_CONSTANT kBindSamples = 4u;         // arena page: samples of glossy draws
+LAMBENT_CONSTANT kBindRadianceChange = 3u;  // diffuse draws: the change by bodies nearby, 3 floats per vertex
+// These hold light of patches (patch_bounces.hpp): 3 floats per vertex, or 27 for draws with normal maps and
+// glossy draws.
+LAMBENT_CONSTANT kBindBounced = 4u;        // in diffuse draws
+LAMBENT_CONSTANT kBindGlossyBounced = 2u;  // in glossy draws, which use binding 4 for samples
 LAMBENT_CONSTANT kAbsent = 0xffffffffu;
 
 LAMBENT_CONSTANT kUnitBaseColor = 0u;  // texture units
 LAMBENT_CONSTANT kUnitEmissive = 1u;
 LAMBENT_CONSTANT kUnitNormal = 2u;
-LAMBENT_CONSTANT kUnitMetallicRoughness = 3u;  // from here on of glossy draws
+LAMBENT_CONSTANT kUnitMetallicRoughness = 3u;  // from here on only in glossy draws
 LAMBENT_CONSTANT kUnitSpecular = 4u;
 LAMBENT_CONSTANT kUnitSpecularColor = 5u;
 LAMBENT_CONSTANT kUnitAnisotropy = 6u;
 LAMBENT_CONSTANT kUnitBrdf = 7u;  // table of b(v)
 
 LAMBENT_CONSTANT kAlphaOpaque = 0u;  // alpha is 1
-LAMBENT_CONSTANT kAlphaMask = 1u;    // below the cutoff nothing is there
+LAMBENT_CONSTANT kAlphaMask = 1u;    // below the cutoff the surface is absent
 LAMBENT_CONSTANT kAlphaBlend = 2u;
 
-// Draws with a normal map have light in bands 0..2 at each vertex in place of radiance: 9 colours.
+// Draws with a normal map have light in bands 0..2 at each vertex instead of radiance: 9 colours.
 LAMBENT_CONSTANT kLightCoefficients = 9u;
 
-// How a surface looks into one of its textures.
+// Describes how a surface looks up one of its textures.
 struct TextureSlot {
-  mat3x2 texture_from_coordinates;  // KHR_texture_transform, on (u, v, 1)
-  uint set;                         // TEXCOORD_0 or TEXCOORD_1; kAbsent: no texture
+  mat3x2 texture_from_coordinates;  // KHR_texture_transform, applied to (u, v, 1)
+  uint set;                         // 0: TEXCOORD_0, 1: TEXCOORD_1; kAbsent: no texture
   uint pad;
 };
 
-// What glossy draws have besides (effects/glossy).
+// Holds the additional fields of glossy draws (effects/glossy).
 struct GlossyPart {
   mat3x4 group_from_world;  // rotation
   vec4 dielectric;          // ((ior - 1) / (ior + 1))² times the specular colour; w: specular
@@ -67,29 +69,30 @@ struct GlossyPart {
   float metallic;
   float roughness;
   float anisotropy;
-  float direction_cos, direction_sin;  // of the longer lobe against the tangent
-  uint roughnesses, strengths;         // nodes of the table
+  float direction_cos, direction_sin;  // direction of the longer lobe relative to the tangent
+  uint roughnesses, strengths;         // numbers of nodes in the table
   uint indices_word;
-  uint rows_word;  // vertex_count + 1 offsets, then samples, then weights two to a word
+  uint rows_word;  // vertex_count + 1 offsets, then samples, then weights, two per word
   uint row_entries;
   uint vertex_count;
-  uint first_sample;  // vec4 index of output o of sample s: first_sample + outputs s + o
-  uint draw;          // of the residency
-  uint glossy_pad[3];
+  uint first_sample;  // of its samples; output o of sample s is vec4 first_output + outputs (s - first_sample) + o
+  uint draw;          // index in the residency
+  uint first_output;
+  uint glossy_pad[2];
 };
 
 struct SurfaceDraw {
   mat4 world_from_mesh;
-  mat3x4 group_from_mesh;         // directions along the surface; columns padded as std430 has them
-  mat3x4 group_from_mesh_normal;  // of the front, also in draws of the back
-  vec4 world_from_group;  // quaternion, xyz then w
+  mat3x4 group_from_mesh;         // maps tangents; columns padded as in std430
+  mat3x4 group_from_mesh_normal;  // maps the front's normal, also in draws of the back
+  vec4 world_from_group;          // quaternion, xyz then w
   vec4 base_color;
   vec4 emission;  // radiance; w unused
   TextureSlot base_color_texture;
   TextureSlot emissive_texture;
   TextureSlot normal_texture;
   float normal_scale;
-  float facing;  // -1: the back of a double-sided surface
+  float facing;  // -1: draws the back of a double-sided surface
   uint positions_word;
   uint normals_word;
   uint tangents_word;
@@ -100,7 +103,7 @@ struct SurfaceDraw {
   uint alpha_mode;
   float alpha_cutoff;
   uint unlit;
-  uint bounced_word;  // where its bounced light begins; kAbsent: none
+  uint bounced_word;  // where its light of patches begins; kAbsent: none
   uint pad0, pad1, pad2;
 #ifdef LAMBENT_GLOSSY
   GlossyPart glossy;
@@ -113,8 +116,8 @@ struct GlossyDraw {
   SurfaceDraw surface;
   GlossyPart glossy;
 };
-static_assert(sizeof(GlossyPart) == 256 && offsetof(GlossyPart, metallic) == 192 && sizeof(GlossyDraw) == 624 &&
-              offsetof(GlossyDraw, glossy) == 368);
+static_assert(sizeof(GlossyPart) == 256 && offsetof(GlossyPart, metallic) == 192 &&
+              sizeof(GlossyDraw) == 624 && offsetof(GlossyDraw, glossy) == 368);
 static_assert(sizeof(TextureSlot) == 32 && offsetof(TextureSlot, set) == 24);
 static_assert(sizeof(SurfaceDraw) == 368 && offsetof(SurfaceDraw, base_color) == 176 &&
               offsetof(SurfaceDraw, base_color_texture) == 208 && offsetof(SurfaceDraw, normal_scale) == 304);

@@ -5,7 +5,7 @@ namespace lambent::frame {
 namespace {
 
 gpu::Texture oneTexel(const char* label, const glm::vec4& value) {
-  // Eight bits have no 0.5, so a flat normal needs more.
+  // Eight bits cannot represent 0.5, so a flat normal needs more.
   gpu::Texture texture(label, {.format = GL_RGBA16F});
   glTextureSubImage2D(texture.id(), 0, 0, 0, 1, 1, GL_RGBA, GL_FLOAT, &value.x);
   return texture;
@@ -56,7 +56,7 @@ void TextureUnits::bindGlossy(const World& world, const SurfaceTextures& texture
   bindOne(kUnitSpecularColor, owner, textures.specular_color);
   bindOne(kUnitAnisotropy, owner, textures.anisotropy);
   owner->brdf_tables[static_cast<std::size_t>(table)].texture.bind(kUnitBrdf);
-  glBindSampler(kUnitBrdf, 0);  // the texture's own
+  glBindSampler(kUnitBrdf, 0);  // the texture's own sampling is used
 }
 
 void TextureUnits::unbindSamplers() const {

@@ -1,6 +1,6 @@
 // Binds the textures of surfaces, each with its sampler, to the units that the shaders name. A texture that
-// has not arrived shows as white, a normal map as flat, a picture of anisotropy as that of the factors.
-// Samplers are made once for each kind.
+// has not arrived shows as white, a normal map as flat, and an anisotropy texture as one that keeps the
+// factors. One sampler is made per kind. Render thread only.
 #pragma once
 
 #include <map>
@@ -16,7 +16,7 @@ class TextureUnits {
   TextureUnits();
 
   void bind(const World& world, const SurfaceTextures& textures);
-  // What glossy surfaces look into besides, and the table of b(v) of their bundle.
+  // Binds the further textures of glossy surfaces, and the table of b(v) of their bundle.
   void bindGlossy(const World& world, const SurfaceTextures& textures, std::uint32_t bundle,
                   std::int32_t table);
   void unbindSamplers() const;

@@ -1,6 +1,6 @@
-// The name of an entity: an index that is used again after destruction and a generation that is not, so that
-// a handle kept too long is recognised instead of meaning somebody else. Handles are valid in the registry
-// that made them; what must outlive a session (world files, undo) refers to scene::StableId instead.
+// An Entity is a handle: an index, which is reused after destruction, and a generation, which is not. So a
+// stale handle is detected instead of meaning another entity. Handles are valid in the registry that made
+// them. Data that outlives a session (world files, undo) uses scene::StableId instead.
 #pragma once
 
 #include <compare>
@@ -15,7 +15,8 @@ struct Entity {
   std::uint32_t index = kNoIndex;
   std::uint32_t generation = 0;  // odd while the entity lives; 0 belongs to no entity
 
-  // False for Entity{}, "none". A true handle may still be stale: ask Registry::alive.
+  // Returns false for Entity{}, which means "none". If it returns true, the handle may still be stale, which
+  // Registry::alive tells.
   explicit operator bool() const { return index != kNoIndex; }
   auto operator<=>(const Entity&) const = default;
 };

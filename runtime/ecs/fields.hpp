@@ -1,4 +1,4 @@
-// A component says once what its fields are; inspector, undo, world files and scripts go by that list:
+// Lets a component declare its fields once. The inspector, undo, world files and scripts use that list:
 //
 //   struct Lamp {
 //     float power_cd = 1.0f;
@@ -8,8 +8,8 @@
 //     }
 //   };
 //
-// Fields that a system derives (matrices, caches) are not declared. Units are words as in "m", "deg"; "" for
-// none.
+// Values that a system derives (matrices, caches) are not declared. Units are words such as "m" or "deg", or
+// "" for none.
 #pragma once
 
 #include <concepts>
@@ -21,7 +21,7 @@
 
 namespace lambent::ecs {
 
-// Least and greatest sensible value, both included.
+// The smallest and the largest sensible value.
 template <class T>
 struct Range {
   T least, greatest;
@@ -31,7 +31,7 @@ template <class Owner, class T>
 struct Field {
   using Value = T;
 
-  std::string_view name;  // in files and scripts: lower_snake_case, never changed
+  std::string_view name;  // name in files and scripts, in lower_snake_case; it must not change
   T Owner::*member;
   T default_value{};
   std::string_view unit{};
@@ -56,7 +56,7 @@ concept Described = requires {
   T::fields();
 };
 
-// Calls visitor(field, value) for each field in the order of declaration; value is const where the component
+// Calls visitor(field, value) for each field in the order of declaration. The value is const if the component
 // is.
 template <class Component, class Visitor>
 requires Described<std::remove_const_t<Component>>
@@ -69,7 +69,7 @@ constexpr void resetFields(Component& component) {
   forEachField(component, [](const auto& field, auto& value) { value = field.default_value; });
 }
 
-// Inside its range, if it declares one. NaN is outside of every range.
+// Returns whether the value is in the field's range, if it declares one. NaN is outside every range.
 template <class Owner, class T>
 constexpr bool withinRange(const Field<Owner, T>& field, const T& value) {
   if constexpr (std::totally_ordered<T>) {

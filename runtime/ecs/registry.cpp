@@ -21,7 +21,7 @@ Entity Registry::create() {
 bool Registry::destroy(Entity entity) {
   if (!alive(entity)) return false;
   for (auto& [type, set] : sets_) set->remove(entity);
-  // An index whose generations are used up is not given out again: its first handles would come alive.
+  // An index whose generations are used up is not reused, or its first handles would become valid again.
   const bool used_up = entity.generation == std::numeric_limits<std::uint32_t>::max();
   ++generations_[entity.index];
   if (!used_up) free_.push_back(entity.index);

@@ -1,11 +1,12 @@
-// Entities and their components: a set per component type, made when the type is first used. A component is
-// any movable struct; nothing is registered beforehand and nothing is global: two registries share nothing.
-// Systems are functions over a registry; what one keeps between runs lies in state<T>().
+// A Registry owns entities and their components, with one set per component type that is made on first use. A
+// component is any movable struct. Types need no registration, nothing is global, and registries share
+// nothing. Systems are functions that take a registry; state<T>() holds what they keep between runs.
 //
-// Changes are counted, not observed: emplace, remove, touch and edit give the component's version<T>() a new
-// value, and a pass runs when a version is not the one it has seen. get() of a non-const registry hands out a
-// reference without counting: whoever writes through it says so with touch(), or uses edit(). One thread at a
-// time. Misuse (a component of a dead entity, get() of one that is missing) asserts.
+// There are change counters instead of observers. emplace, remove, touch and edit raise the component's
+// version<T>(), and a pass runs if a version is not the one it saw last. get() of a non-const registry
+// returns a reference without counting, so code that writes through it must call touch(), or use edit(). Only
+// one thread may use a registry at a time. Misuse asserts: adding a component to a dead entity, or get() of a
+// missing one.
 #pragma once
 
 #include <cassert>
@@ -23,7 +24,7 @@
 namespace lambent::ecs {
 
 namespace detail {
-// A type's identity is the address of a constant of its own: no counter to keep, no names to collide.
+// A type is identified by the address of its own constant, so there is no counter and no name can collide.
 template <class T>
 inline constexpr char kTypeTag = 0;
 using TypeId = const void*;
@@ -40,20 +41,20 @@ class Registry {
   Registry& operator=(Registry&&) noexcept = default;
 
   Entity create();
-  // Removes its components too. False, and nothing happens, if it is not alive.
+  // Destroys the entity and its components. Does nothing and returns false if it is not alive.
   bool destroy(Entity entity);
   bool alive(Entity entity) const;
   std::size_t entityCount() const { return alive_count_; }
-  // All that live, by index.
+  // Returns all living entities, sorted by index.
   std::vector<Entity> entities() const;
 
-  // Adds a component, or replaces the one there is.
+  // Adds or replaces a component.
   template <class T, class... Args>
   T& emplace(Entity entity, Args&&... args) {
     assert(alive(entity) && "a component for an entity that is not alive");
     return setOf<T>().emplace(entity, std::forward<Args>(args)...);
   }
-  // False if there was none.
+  // Returns false if the entity had no such component.
   template <class T>
   bool remove(Entity entity) {
     SparseSet<T>* set = find<T>();
@@ -64,7 +65,7 @@ class Registry {
     const SparseSet<T>* set = find<T>();
     return set && set->contains(entity);
   }
-  // Null where the entity is stale or has no such component.
+  // Returns null if the entity is stale or has no such component.
   template <class T>
   T* tryGet(Entity entity) {
     SparseSet<T>* set = find<T>();
@@ -88,25 +89,26 @@ class Registry {
     return *value;
   }
 
-  // Says that the component was changed through a reference.
+  // Records that the component was changed through a reference.
   template <class T>
   void touch(Entity entity) {
     setOf<T>().touch(entity);
   }
-  // get() and touch(): a reference for writing.
+  // Calls touch() and returns a reference for writing.
   template <class T>
   T& edit(Entity entity) {
     touch<T>(entity);
     return get<T>(entity);
   }
 
-  // Of all components of the type: rises with every change to any; 0 if there never was one.
+  // Returns the version of all components of the type. It rises with every change, and is 0 if there never
+  // was one.
   template <class T>
   std::uint64_t version() const {
     const SparseSet<T>* set = find<T>();
     return set ? set->version() : 0;
   }
-  // Of one: the version<T>() of its last change; 0 where there is none.
+  // Returns version<T>() at the last change of this component, or 0 if the entity has none.
   template <class T>
   std::uint64_t version(Entity entity) const {
     const SparseSet<T>* set = find<T>();
@@ -118,7 +120,8 @@ class Registry {
     return set ? set->size() : 0;
   }
 
-  // See view.hpp. `const T` in the list gives const references.
+  // Returns a view of the entities that have all these components (view.hpp). `const T` gives const
+  // references.
   template <class... Ts>
   View<Ts...> view() {
     return View<Ts...>(find<std::remove_const_t<Ts>>()...);
@@ -128,7 +131,7 @@ class Registry {
     return View<const Ts...>(find<std::remove_const_t<Ts>>()...);
   }
 
-  // The one T of this registry, default-constructed on first use.
+  // Returns the only T of this registry, which is default-constructed on first use.
   template <class T>
   T& state() {
     std::shared_ptr<void>& slot = states_[detail::typeId<T>()];
@@ -153,12 +156,12 @@ class Registry {
     addSet(detail::typeId<T>(), std::move(made));
     return set;
   }
-  // Not in the header: the map's code once, instead of once per component type.
+  // These are not in the header, so that the map's code is not compiled once per component type.
   SparseSetBase* findSet(detail::TypeId type) const;
   void addSet(detail::TypeId type, std::unique_ptr<SparseSetBase> set);
 
-  std::vector<std::uint32_t> generations_;  // by index; odd: alive
-  std::vector<std::uint32_t> free_;         // indices to use again, latest first
+  std::vector<std::uint32_t> generations_;  // by index; odd if alive
+  std::vector<std::uint32_t> free_;         // indices to reuse; the last one is used first
   std::size_t alive_count_ = 0;
   std::unordered_map<detail::TypeId, std::unique_ptr<SparseSetBase>> sets_;
   std::unordered_map<detail::TypeId, std::shared_ptr<void>> states_;

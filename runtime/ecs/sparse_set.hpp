@@ -1,10 +1,10 @@
-// The components of one type: values packed without gaps, in an order that removal changes, and a table from
-// an entity's index to its place (4 bytes per index ever used). Look-up, insertion and removal take constant
-// time.
+// A SparseSet holds the components of one type. Values are packed without gaps, in an order that removal
+// changes, and a table maps an entity's index to its place (4 bytes per index ever used). Look-up, insertion
+// and removal take constant time.
 //
-// Every change gives the set a new version and the entity that version, so that a pass can ask "anything new
-// since I last ran?" in one comparison, and then which. References to values hold until the next insertion or
-// removal.
+// Every change gives the set a new version and stores it for the entity. So a pass sees with one comparison
+// whether anything changed since it last ran, and can then find out which entities. References to values are
+// valid until the next insertion or removal.
 #pragma once
 
 #include <cassert>
@@ -20,21 +20,21 @@
 
 namespace lambent::ecs {
 
-// What can be asked without knowing the component's type.
+// The part of a set that does not depend on the component's type.
 class SparseSetBase {
  public:
   virtual ~SparseSetBase() = default;
 
-  // False if the entity had none.
+  // Returns false if the entity had no component.
   virtual bool remove(Entity entity) = 0;
 
   bool contains(Entity entity) const { return placeOf(entity) != kNoPlace; }
   std::size_t size() const { return entities_.size(); }
   std::span<const Entity> entities() const { return entities_; }
 
-  // Rises with every insertion, removal and touch; 0 before the first.
+  // Returns a number that rises with every insertion, removal and touch; it is 0 before the first.
   std::uint64_t version() const { return version_; }
-  // The set's version when this entity's component last changed; 0 if it has none.
+  // Returns the set's version when this entity's component last changed, or 0 if it has none.
   std::uint64_t versionOf(Entity entity) const {
     const std::uint32_t place = placeOf(entity);
     return place == kNoPlace ? 0 : versions_[place];
@@ -55,7 +55,7 @@ class SparseSetBase {
   }
 
   void append(Entity entity);
-  // The last entity moves into the gap; the caller does the same with the values.
+  // Moves the last entity into the gap. The caller must do the same with the values.
   void removeAt(std::uint32_t place);
 
  private:
@@ -71,10 +71,10 @@ class SparseSet final : public SparseSetBase {
   static_assert(!std::is_same_v<T, bool>, "std::vector<bool> hands out no references; wrap it in a struct");
 
  public:
-  // Replaces the value if there is one.
+  // Adds or replaces the entity's value.
   template <class... Args>
   T& emplace(Entity entity, Args&&... args) {
-    // Aggregates are made with braces, so that components need no constructors.
+    // Aggregates are initialised with braces, so components need no constructors.
     T value = [&] {
       if constexpr (std::is_constructible_v<T, Args...>) {
         return T(std::forward<Args>(args)...);

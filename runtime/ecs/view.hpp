@@ -1,10 +1,10 @@
-// The entities that have all of some components, for range-for:
+// A View iterates over the entities that have all of some components:
 //   for (auto [entity, transform, draw] : registry.view<Transform, const DrawItem>()) ...
 //
-// The loop may create, destroy, add and remove anything. It walks a list of entities taken when the view was
-// made from the smallest of the sets, and visits an entity, once, if it still has every component when its
-// turn comes; entities added meanwhile are not visited. (Walking the set itself would skip or repeat
-// entities, since removal moves them.) The references of a step hold until the body adds or removes a
+// The loop may create, destroy, add and remove anything. It walks a list of entities that was copied from the
+// smallest set when the view was made. It visits an entity once, if it still has every component when its
+// turn comes, and does not visit entities that were added meanwhile. (Walking the set itself would skip or
+// repeat entities, since removal moves them.) References are valid until the loop body adds or removes a
 // component of that type.
 #pragma once
 
@@ -22,12 +22,12 @@ namespace lambent::ecs {
 template <class... Ts>
 class View {
   static_assert(sizeof...(Ts) > 0);
-  // const T looks into a set that is not changed.
+  // A const T needs a const set.
   template <class T>
   using SetOf = std::conditional_t<std::is_const_v<T>, const SparseSet<std::remove_const_t<T>>, SparseSet<T>>;
 
  public:
-  // A null set, of a component that no entity ever had, makes an empty view.
+  // A set is null if no entity ever had the component. The view is then empty.
   explicit View(SetOf<Ts>*... sets) : sets_(sets...) {
     const std::array<const SparseSetBase*, sizeof...(Ts)> all{sets...};
     if (std::find(all.begin(), all.end(), nullptr) != all.end()) return;
@@ -52,7 +52,7 @@ class View {
     bool operator!=(const Iterator& other) const { return at_ != other.at_; }
 
    private:
-    // On to the next entity that has everything, from at_ on.
+    // Moves from at_ to the next entity that has all components.
     void settle() {
       for (; at_ < view_->entities_.size(); ++at_) {
         const Entity entity = view_->entities_[at_];

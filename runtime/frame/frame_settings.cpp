@@ -129,7 +129,7 @@ const std::array kRows = {
                .help = "Bands that glossy surfaces reflect, at most",
                .get = getNumber<&S::glossy_order>,
                .put = putNumber<&S::glossy_order>},
-    switchRow<&S::diffuse>("diffuse", "matte surfaces", 1.0, "Light on matte surfaces"),
+    switchRow<&S::diffuse>("diffuse", "diffuse surfaces", 1.0, "Light on diffuse surfaces"),
     switchRow<&S::glossy>("glossy", "glossy surfaces", 1.0, "Light on glossy surfaces"),
     switchRow<&S::volumes>("volumes", "volumes", 1.0, "Clouds, smoke and other media"),
     switchRow<&S::residual>("specular-environment", "sharp reflections of the sky", 1.0,

@@ -12,7 +12,7 @@
 #include <string_view>
 
 #include "runtime/base/result.hpp"
-#include "runtime/effects/diffuse/transfer_table.hpp"
+#include "runtime/evaluate/transfer_table.hpp"
 #include "runtime/lighting/capture_scene.hpp"
 #include "runtime/sh/light_vector.hpp"
 #include "runtime/sh/window.hpp"
@@ -20,7 +20,7 @@
 namespace lambent::frame {
 
 struct FrameSettings {
-  effects::diffuse::TransferMode transfer = effects::diffuse::TransferMode::Full;
+  evaluate::TransferMode transfer = evaluate::TransferMode::Full;
   sh::Window window = sh::Window::Off;
   // Key lights that each set of lights from infinity may have, at most; 0: none, all light goes by bands.
   // Whoever owns the environment hands it on (lighting::Environment::setMostKeys).

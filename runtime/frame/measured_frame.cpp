@@ -59,9 +59,9 @@ double FrameCost::milliseconds(std::string_view pass) const {
   return 0.0;
 }
 
-Result<MeasuredFrame> measureFrame(World& world, const lighting::Environment& environment,
-                                   const spec::View& view, const FrameSettings& settings,
+Result<MeasuredFrame> measureFrame(const MeasuredScene& scene, const FrameSettings& settings,
                                    const MeasureOptions& options) {
+  const auto& [world, environment, view] = scene;
   const Unshaded unshaded(world);
   Result<Frame> frame = Frame::create({.size = options.size,
                                        .output = Output::Linear,

@@ -24,6 +24,13 @@ struct MeasureOptions {
   std::uint32_t repeats = 5;  // of which times are the median; 0: no times
 };
 
+// What is drawn: the world as it is resident, under this light, from this place.
+struct MeasuredScene {
+  World& world;
+  const lighting::Environment& environment;
+  const spec::View& view;
+};
+
 struct FrameCost {
   double cpu_ms = 0.0, gpu_ms = 0.0;    // of all passes
   std::vector<gpu::PassTime> passes{};  // medians, in the order of the frame
@@ -38,8 +45,7 @@ struct MeasuredFrame {
   FrameCost cost;
 };
 
-Result<MeasuredFrame> measureFrame(World& world, const lighting::Environment& environment,
-                                   const spec::View& view, const FrameSettings& settings,
+Result<MeasuredFrame> measureFrame(const MeasuredScene& scene, const FrameSettings& settings,
                                    const MeasureOptions& options = {});
 
 // sqrt( sum (X-A)² / sum A² ) over pixels that both cover. Errors: nothing is lit; the sizes differ.

@@ -34,12 +34,10 @@ struct SettingCost {
 };
 
 // Of the value that `settings` has. A row without a finest value is an error.
-Result<SettingCost> measureSetting(World& world, const lighting::Environment& environment,
-                                   const spec::View& view, const FrameSettings& settings,
+Result<SettingCost> measureSetting(const MeasuredScene& scene, const FrameSettings& settings,
                                    const SettingRow& row, const SettingOptions& options = {});
 // In the order of the values.
-Result<std::vector<SettingPoint>> sweepSetting(World& world, const lighting::Environment& environment,
-                                               const spec::View& view, const FrameSettings& settings,
+Result<std::vector<SettingPoint>> sweepSetting(const MeasuredScene& scene, const FrameSettings& settings,
                                                const SettingRow& row, std::span<const double> values,
                                                const SettingOptions& options = {});
 

@@ -81,7 +81,7 @@ std::optional<Allocation> Arena::allocateIn(std::uint32_t page, std::uint64_t by
 
 std::uint32_t Arena::makePage(std::uint64_t byte_count) {
   for (Page& page : pages_)
-    if (isEmpty(page)) page = {};  // too small, it seems
+    if (isEmpty(page)) page = {};  // the empty page that was kept is too small
   auto page = std::ranges::find_if(pages_, [](const Page& one) { return !one.buffer; });
   if (page == pages_.end()) page = pages_.insert(page, Page{});
   const auto index = static_cast<std::uint32_t>(page - pages_.begin());

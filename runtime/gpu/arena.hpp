@@ -1,7 +1,8 @@
-// Storage in pages: one arena holds one kind of data for all meshes, in storage buffers of at most 128 MiB
-// each (what OpenGL 4.5 promises and llvmpipe allows), so that a pass binds a page and works on everything in
-// it. FreeList is the bookkeeping of one page, without GL. Offsets and sizes are bytes, multiples of 16. An
-// allocation lies within one page; one larger than a page is an error.
+// An Arena allocates GPU memory in pages. One arena holds one kind of data for all meshes, so a pass binds a
+// page and processes everything in it. Pages are storage buffers of at most 128 MiB, which OpenGL 4.5
+// guarantees and llvmpipe supports. Offsets and sizes are in bytes and multiples of 16. An allocation lies
+// within one page; one larger than the largest page is an error. FreeList manages one page and does not use
+// GL.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +18,7 @@
 
 namespace lambent::gpu {
 
-// First fit by address; neighbours are merged on release.
+// Allocates the first free range that fits, by address, and merges adjacent ranges on release.
 class FreeList {
  public:
   explicit FreeList(std::uint64_t byte_count);
@@ -27,7 +28,7 @@ class FreeList {
   std::uint64_t largestFree() const;
 
  private:
-  std::map<std::uint64_t, std::uint64_t> free_;  // offset -> bytes
+  std::map<std::uint64_t, std::uint64_t> free_;  // sizes of free ranges by offset
   std::uint64_t free_bytes_ = 0;
 };
 
@@ -36,7 +37,8 @@ struct Allocation {
   std::uint64_t offset = 0, byte_count = 0;
 
   explicit operator bool() const { return byte_count != 0; }
-  std::uint32_t word() const { return static_cast<std::uint32_t>(offset / 4); }  // as shaders address it
+  // Returns the offset in 32-bit words, as shaders address it.
+  std::uint32_t word() const { return static_cast<std::uint32_t>(offset / 4); }
 };
 
 class Arena {
@@ -44,35 +46,35 @@ class Arena {
   static constexpr std::uint64_t kMaxPageBytes = std::uint64_t{128} << 20;
   static constexpr std::uint64_t kAlignment = 16;
 
-  // Several arenas may share what their bytes come through.
+  // Several arenas may share the staging through which they upload.
   explicit Arena(std::string label, std::uint64_t page_bytes = kMaxPageBytes,
                  std::shared_ptr<Staging> staging = std::make_shared<Staging>());
 
-  // Pages are made when first needed, as large as page_bytes. Takes at least one byte.
+  // Allocates at least one byte, and makes a page of page_bytes (or more, if needed) if no page has room.
   Result<Allocation> allocate(std::uint64_t byte_count);
-  // In a page where `room` bytes in one piece are free for what is to lie beside it.
+  // Allocates in a page that has a free range of at least `room` bytes, which include byte_count. So related
+  // data can be allocated in the same page afterwards.
   Result<Allocation> allocateWithRoom(std::uint64_t byte_count, std::uint64_t room);
-  // None where the page has no room in one piece.
+  // Returns nothing if the page has no free range that is large enough.
   std::optional<Allocation> allocateIn(std::uint32_t page, std::uint64_t byte_count);
-  // Of pages that nothing lies in any more one stays until another one is made: what goes makes room for
-  // what comes, and memory that is asked for anew is not had at once.
+  // Releases the memory. One empty page is kept until another page is made, because new data often replace
+  // old data, and drivers do not provide new memory at once.
   void release(const Allocation& allocation);
   void write(const Allocation& allocation, std::uint64_t offset, std::span<const std::byte> bytes);
-  void clear(const Allocation& allocation);                 // to zero
-  void copy(const Allocation& from, const Allocation& to);  // on the GPU; `to` is as large
+  void clear(const Allocation& allocation);                 // sets all bytes to zero
+  void copy(const Allocation& from, const Allocation& to);  // copies on the GPU; `to` is at least as large
 
-  // Lowers or raises the size of pages made from now on, up to kMaxPageBytes: a small scene needs no large
-  // page.
+  // Sets the size of new pages, up to kMaxPageBytes. A small scene needs no large pages.
   void setPageBytes(std::uint64_t page_bytes);
   const Buffer& page(std::uint32_t index) const { return pages_[index].buffer; }
-  // Pages up to this one; some in between may be empty handles.
+  // Returns the number of pages. Some of them may be empty handles.
   std::uint32_t pageCount() const { return static_cast<std::uint32_t>(pages_.size()); }
   std::uint64_t bytesUsed() const { return bytes_used_; }
-  std::uint64_t bytesReserved() const;  // of all pages
+  std::uint64_t bytesReserved() const;  // returns the size of all pages
 
  private:
   struct Page {
-    Buffer buffer;  // empty handle: the page has gone, its place is used again
+    Buffer buffer;  // an empty handle if the page was deleted; a new page may reuse its index
     FreeList list{0};
   };
   static bool isEmpty(const Page& page);

@@ -29,9 +29,9 @@ struct DisplayChoice {
   const char* platform = "";
 };
 
-// Displays in the order in which to try them: a real GPU first (Mesa's surfaceless platform would hide
-// another vendor's behind its software renderer), then surfaceless, then software devices, then whatever EGL
-// thinks is the default.
+// Returns displays in the order in which they are tried. Real GPUs come first, because Mesa's surfaceless
+// platform would choose its software renderer instead of another vendor's GPU. The surfaceless platform,
+// software devices and EGL's default follow.
 std::vector<DisplayChoice> displayChoices() {
   std::vector<DisplayChoice> choices, software;
   const char* client = eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
@@ -57,7 +57,7 @@ std::vector<DisplayChoice> displayChoices() {
   return choices;
 }
 
-// A current OpenGL 4.5 core context on the display without any surface, or why not.
+// Makes an OpenGL 4.5 core context without a surface on the display and makes it current.
 Result<EGLContext> makeCurrent(EGLDisplay display, bool debug) {
   const auto no = [](std::string why) { return fail("OpenGL", std::move(why)); };
   if (display == EGL_NO_DISPLAY || !eglInitialize(display, nullptr, nullptr)) return no("does not start");
@@ -66,7 +66,7 @@ Result<EGLContext> makeCurrent(EGLDisplay display, bool debug) {
   if (!eglBindAPI(EGL_OPENGL_API)) return no("has no desktop OpenGL");
   EGLConfig config = nullptr;
   EGLint config_count = 0;
-  // No surface is ever made, so any surface type will do (0), not the default EGL_WINDOW_BIT.
+  // No surface is ever made, so the surface type is 0 (any) instead of the default EGL_WINDOW_BIT.
   constexpr std::array<EGLint, 5> kConfig = {EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_SURFACE_TYPE, 0,
                                              EGL_NONE};
   if (!eglChooseConfig(display, kConfig.data(), &config, 1, &config_count) || config_count == 0) {
@@ -99,7 +99,7 @@ std::string glText(GLenum name) {
 }  // namespace
 
 struct Context::State {
-  EGLDisplay display = EGL_NO_DISPLAY;  // none: somebody else's context
+  EGLDisplay display = EGL_NO_DISPLAY;  // EGL_NO_DISPLAY if the context is not owned
   EGLContext context = EGL_NO_CONTEXT;
   DeviceInfo info;
   bool debug = false;
@@ -122,7 +122,7 @@ struct Context::State {
     if (context == EGL_NO_CONTEXT) return;
     eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
     eglDestroyContext(display, context);
-    // The display stays: a process has one of each kind, and other contexts may be using it.
+    // The display is not terminated. A process has one of each kind, and other contexts may use it.
   }
 };
 

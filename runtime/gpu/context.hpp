@@ -1,8 +1,11 @@
-// An OpenGL 4.5 core context and what it says about itself. Headless ones come from EGL without any display;
-// a window's comes from window.hpp, which is the only place that knows GLFW. Owns the context and makes it
-// current on the thread that created it; every GL object must die before it does. Debug output (KHR_debug) is
-// collected into an error count when asked for, and always in debug builds; performance hints and notices are
-// left out. Errors: no EGL, no device that gives OpenGL 4.5 core.
+// The room gpu owns OpenGL contexts, objects, programs, memory, uploads, work lists and timers. All of it is
+// used on the thread that created the context. Missing devices and shaders that do not compile are returned
+// as an Error.
+//
+// This header owns an OpenGL 4.5 core context, which is current on the thread that created it. A headless
+// context comes from EGL without a display; window.hpp makes that of a window. Every GL object must be
+// destroyed before the context. Errors in debug output (KHR_debug) are counted if requested, and always in
+// debug builds; performance hints and notifications are ignored.
 #pragma once
 
 #include <cstdint>
@@ -21,13 +24,13 @@ inline constexpr bool kDebugByDefault = true;
 #endif
 
 struct ContextOptions {
-  bool debug =
-      kDebugByDefault;  // synchronous debug output: slower, and every error is counted where it happens
+  // Enables synchronous debug output, which is slower and reports every error at the call that caused it.
+  bool debug = kDebugByDefault;
 };
 
 struct DeviceInfo {
   std::string renderer, vendor, version;
-  std::uint64_t max_storage_bytes = 0;  // of one shader storage block
+  std::uint64_t max_storage_bytes = 0;  // size limit of a shader storage block
   std::uint32_t max_vertex_storage_blocks = 0;
   std::uint32_t max_samples = 0;
   std::uint32_t max_texture_side = 0;
@@ -35,8 +38,9 @@ struct DeviceInfo {
 
 class Context {
  public:
+  // Fails if there is no EGL, or no device with OpenGL 4.5 core.
   static Result<Context> createHeadless(const ContextOptions& options = {});
-  // Takes note of the context that is current on this thread; whoever made it keeps it.
+  // Refers to the context that is current on this thread, without owning it.
   static Result<Context> attachToCurrent(const ContextOptions& options);
 
   Context(Context&&) noexcept;
@@ -44,9 +48,10 @@ class Context {
   ~Context();
 
   const DeviceInfo& info() const;
-  // GL errors so far: from debug output where it is on, else from glGetError, which is drained here.
+  // Returns the number of GL errors so far, from debug output if it is enabled, else from glGetError, whose
+  // queue this call empties.
   std::uint64_t errors() const;
-  // The first few messages behind errors(), for a test's or a program's report.
+  // Returns the first few messages of these errors, for reports.
   const std::vector<std::string>& errorMessages() const;
 
  private:

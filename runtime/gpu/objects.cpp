@@ -45,7 +45,7 @@ void Buffer::readBytes(std::size_t offset, std::span<std::byte> bytes) const {
 }
 
 void Table::reserve(std::size_t byte_count) {
-  // GL binds no empty buffer, and a little room saves remaking it while a scene streams in.
+  // GL cannot bind an empty buffer. Some spare room avoids new buffers while a scene streams in.
   if (buffer_.byteCount() < std::max<std::size_t>(byte_count, 16))
     buffer_ = Buffer(label_, std::max<std::size_t>(byte_count + byte_count / 2, 256));
 }

@@ -1,6 +1,6 @@
-// GL objects as values: move-only, named for debuggers, made and changed by direct state access, deleted with
-// their last owner. Sizes are bytes and texels. They must not outlive their context; making one cannot fail
-// except by a bug or for want of memory, which debug output reports.
+// Owns GL objects as move-only values with labels for debuggers. They use direct state access. Sizes are in
+// bytes and texels. An object must not outlive its context. Creation fails only by a bug or for lack of
+// memory, which debug output reports.
 #pragma once
 
 #include <cstddef>
@@ -50,7 +50,7 @@ struct VertexArrayTraits {
   static void destroy(GLuint id) { glDeleteVertexArrays(1, &id); }
 };
 
-// Who writes into a buffer. What only the GPU writes (shaders, copies) stays in its own memory.
+// Tells who writes into a buffer. A buffer that only the GPU writes (shaders, copies) stays in GPU memory.
 enum class WrittenBy { Cpu, Gpu };
 
 class Buffer : public Handle<BufferTraits> {
@@ -59,7 +59,7 @@ class Buffer : public Handle<BufferTraits> {
   Buffer(std::string_view label, std::size_t byte_count, WrittenBy writer = WrittenBy::Cpu);
 
   std::size_t byteCount() const { return byte_count_; }
-  void writeBytes(std::size_t offset, std::span<const std::byte> bytes);  // WrittenBy::Cpu alone
+  void writeBytes(std::size_t offset, std::span<const std::byte> bytes);  // only for WrittenBy::Cpu
   void readBytes(std::size_t offset, std::span<std::byte> bytes) const;   // waits for the GPU
   template <typename T>
   void write(std::size_t offset, std::span<const T> values) {
@@ -75,7 +75,7 @@ class Buffer : public Handle<BufferTraits> {
   std::size_t byte_count_ = 0;
 };
 
-// A storage buffer that is as large as what is put into it: tables that the CPU keeps and the GPU reads.
+// A storage buffer that grows with its contents, for tables that the CPU maintains and the GPU reads.
 class Table {
  public:
   explicit Table(std::string_view label) : label_(label) {}
@@ -91,7 +91,7 @@ class Table {
   const Buffer& buffer() const { return buffer_; }
 
  private:
-  std::string_view label_;  // a literal
+  std::string_view label_;  // refers to a literal
   Buffer buffer_;
 };
 
@@ -99,10 +99,10 @@ struct TextureDesc {
   GLenum format = GL_RGBA8;
   std::uint32_t width = 1, height = 1;
   std::uint32_t levels = 1;
-  std::uint32_t samples = 0;  // 0: single-sampled
+  std::uint32_t samples = 0;  // 0 for a single-sampled texture
   bool cube = false;
-  std::uint32_t layers = 0;  // 0: no array
-  std::uint32_t depth = 0;   // 0: not three-dimensional
+  std::uint32_t layers = 0;  // 0 if the texture is no array
+  std::uint32_t depth = 0;   // 0 if the texture is not three-dimensional
 };
 
 class Texture : public Handle<TextureTraits> {
@@ -119,7 +119,7 @@ class Texture : public Handle<TextureTraits> {
 class Sampler : public Handle<SamplerTraits> {
  public:
   Sampler() = default;
-  // glTF's sampler enums are GL's.
+  // The parameters are GL constants, which glTF uses, too.
   Sampler(GLenum wrap_s, GLenum wrap_t, GLenum mag_filter, GLenum min_filter);
 };
 
@@ -128,7 +128,7 @@ class Framebuffer : public Handle<FramebufferTraits> {
   Framebuffer() = default;
   // `depth` may be null.
   Framebuffer(std::string_view label, const Texture& color, const Texture* depth);
-  // The layers of an array, each a colour of its own.
+  // Attaches each layer of an array as a colour of its own.
   Framebuffer(std::string_view label, const Texture& layers);
 };
 
@@ -138,7 +138,7 @@ class VertexArray : public Handle<VertexArrayTraits> {
   explicit VertexArray(std::string_view label);
 };
 
-// A named stretch of commands, as debuggers show it.
+// Gives the commands of a scope a name in debuggers.
 class DebugGroup {
  public:
   explicit DebugGroup(std::string_view name) {
@@ -149,11 +149,11 @@ class DebugGroup {
   DebugGroup& operator=(const DebugGroup&) = delete;
 };
 
-// What was given to the GPU: counted where it is issued, shown per pass and frame.
+// Counts commands and uploads, which are reported per pass and frame.
 struct Counters {
   std::uint32_t dispatches = 0;
-  std::uint32_t draws = 0;       // draw commands, each one of a multi-draw counted
-  std::uint32_t draw_calls = 0;  // calls that issued them
+  std::uint32_t draws = 0;       // draw commands, including each one of a multi-draw
+  std::uint32_t draw_calls = 0;  // GL calls that issued them
   std::uint64_t uploaded_bytes = 0;
 };
 

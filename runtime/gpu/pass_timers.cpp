@@ -35,7 +35,7 @@ void PassTimers::Scope::because(std::string reason) {
 
 void PassTimers::beginFrame() {
   current_ = (current_ + 1) % kFramesInFlight;
-  // This slot was used kFramesInFlight frames ago: its times are there, or they are given up.
+  // This slot was used kFramesInFlight frames ago. Times that are still missing are given up.
   collect(frames_[current_], /*wait=*/false);
   frames_[current_].passes.clear();
 }

@@ -1,6 +1,6 @@
-// How long each pass of a frame takes, on the CPU and on the GPU. A pass is a scope; GPU times are timestamp
-// queries kept in a ring and read when they are there, a few frames later, so that asking never makes the CPU
-// wait. Also counts what each pass issued, and says why it had anything to do. Times in milliseconds.
+// Measures the CPU and GPU time of each pass of a frame, in milliseconds. A pass is a scope. GPU times are
+// timestamp queries in a ring, which are read a few frames later when they are available, so the CPU never
+// waits. The timers also record the commands of each pass and why it had work to do.
 #pragma once
 
 #include <array>
@@ -15,14 +15,14 @@ namespace lambent::gpu {
 struct PassTime {
   std::string name;
   double cpu_ms = 0.0;
-  double gpu_ms = -1.0;  // -1: not known
+  double gpu_ms = -1.0;  // -1 if unknown
   Counters counters;
-  std::string reason{};  // what changed; empty: nothing, the pass was up to date
+  std::string reason{};  // the change that caused work; empty if the pass was up to date
 };
 
 class PassTimers {
  public:
-  // Times what is issued until it dies; also a debug group of that name.
+  // Times the commands of its lifetime, which also form a debug group of this name.
   class Scope {
    public:
     Scope(PassTimers& timers, std::string_view name);
@@ -40,9 +40,9 @@ class PassTimers {
   };
 
   void beginFrame();
-  // Waits for all frames in flight, so that latest() is the last one: for headless reports.
+  // Waits for all frames in flight, so that latest() is the last frame. Headless reports need this.
   void finish();
-  // The newest frame whose times are all known, in the order of its passes.
+  // Returns the times of the newest frame that are all known, in the order of its passes.
   const std::vector<PassTime>& latest() const { return latest_; }
 
  private:
@@ -51,7 +51,7 @@ class PassTimers {
   };
   struct Frame {
     std::vector<PassTime> passes;
-    std::vector<Handle<QueryTraits>> queries;  // two per pass, kept and used again
+    std::vector<Handle<QueryTraits>> queries;  // two per pass, reused in later frames
   };
   void collect(Frame& frame, bool wait);
 

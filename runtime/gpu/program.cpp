@@ -11,7 +11,7 @@ namespace lambent::gpu {
 namespace {
 
 struct Assembler {
-  std::span<const FindText> tables;
+  const ShaderSources& sources;
   ShaderText out;
   std::set<std::string, std::less<>> included;
 
@@ -21,8 +21,10 @@ struct Assembler {
   }
 
   std::string_view find(std::string_view file) const {
-    for (const FindText table : tables)
+    for (const FindText table : sources.tables)
       if (const std::string_view text = table(file); !text.empty()) return text;
+    for (const WrittenFile& written : sources.written)
+      if (written.name == file) return written.text;
     return {};
   }
 
@@ -52,12 +54,15 @@ struct Assembler {
     const std::size_t open = line.find('"');
     const std::size_t close = open == std::string_view::npos ? open : line.find('"', open + 1);
     if (close == std::string_view::npos) return {};
-    return line.substr(open + 1, close - open - 1);
+    const std::string_view name = line.substr(open + 1, close - open - 1);
+    // A path is for C++ alone, in texts that both languages share; embedded files have names.
+    if (name.find('/') != std::string_view::npos) return {};
+    return name;
   }
 };
 
-// The line number in what drivers write before a message: "0:12(5): error" (Mesa), "0(12) : error" (NVIDIA),
-// "ERROR: 0:12: ..." (AMD, Apple). Says where the position ends, too.
+// The line number, and its range in the text, that drivers write before a message: "0:12(5): error" (Mesa),
+// "0(12) : error" (NVIDIA), "ERROR: 0:12: ..." (AMD, Apple).
 struct Position {
   int line = 0;
   std::size_t begin = 0, end = 0;
@@ -72,7 +77,7 @@ std::optional<Position> findPosition(std::string_view log_line) {
   while (at < log_line.size() && std::isdigit(static_cast<unsigned char>(log_line[at])))
     line = line * 10 + (log_line[at++] - '0');
   if (at == zero + 2) return {};
-  // Skips the column and the punctuation up to the message.
+  // The column and the punctuation before the message are skipped.
   at = log_line.find(": ", at);
   if (at == std::string_view::npos) return {};
   return Position{line, zero, at};
@@ -93,11 +98,10 @@ struct ShaderTraits {
 
 }  // namespace
 
-Result<ShaderText> assembleShader(std::string_view file, std::span<const FindText> tables,
-                                  std::span<const Define> defines) {
-  Assembler assembler{.tables = tables, .out = {}, .included = {}};
+Result<ShaderText> assembleShader(std::string_view file, const ShaderSources& sources) {
+  Assembler assembler{.sources = sources, .out = {}, .included = {}};
   assembler.addLine("#version 450 core", "<head>", 1);
-  for (const Define& define : defines)
+  for (const Define& define : sources.defines)
     assembler.addLine(fmt::format("#define {} {}", define.name, define.value), "<head>", 1);
   if (Result<void> added = assembler.addFile(file, {}, 0); !added) return failAgain(added.error());
   return std::move(assembler.out);
@@ -125,10 +129,10 @@ std::string mapLog(std::string_view log, const ShaderText& shader) {
 }
 
 Result<Program> Program::create(std::string_view label, std::initializer_list<Stage> stages,
-                                std::span<const FindText> tables, std::span<const Define> defines) {
+                                const ShaderSources& sources) {
   Program program(glCreateProgram());
   for (const Stage& stage : stages) {
-    const Result<ShaderText> shader = assembleShader(stage.file, tables, defines);
+    const Result<ShaderText> shader = assembleShader(stage.file, sources);
     if (!shader) return failAgain(shader.error());
     const Handle<ShaderTraits> object(glCreateShader(stage.kind));
     const char* text = shader->text.c_str();

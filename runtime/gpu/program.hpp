@@ -1,7 +1,7 @@
-// Programs from GLSL text that lies in the binary. A stage is an entry file; `#include "file"` is resolved
-// over the tables of embedded text that the caller names (each file once), `#version 450 core` and the
-// defines come first. Errors name the shader's own file and line, whatever was included: the compiler's line
-// numbers are mapped back.
+// Makes programs from GLSL text that is embedded in the binary. Each stage has an entry file. The directive
+// `#include "file"` is resolved with the caller's tables of embedded text, each file once. `#version 450
+// core` and the defines are put first. Errors name the file and line of the shader's source, also in included
+// files.
 #pragma once
 
 #include <initializer_list>
@@ -15,11 +15,24 @@
 
 namespace lambent::gpu {
 
-// A table made by lambent_embed: the text of a file by its name, empty if it is not there.
+// A table made by lambent_embed. It returns the text of a file, or an empty text if it does not have the
+// file.
 using FindText = std::string_view (*)(std::string_view);
 
 struct Define {
   std::string name, value;
+};
+
+// A file of GLSL that is not embedded but written by the program, for others to include.
+struct WrittenFile {
+  std::string name, text;
+};
+
+// Where shaders come from: tables of embedded text, then files that the caller wrote.
+struct ShaderSources {
+  std::span<const FindText> tables;
+  std::span<const Define> defines{};
+  std::span<const WrittenFile> written{};
 };
 
 struct Stage {
@@ -27,18 +40,17 @@ struct Stage {
   std::string_view file;
 };
 
-// A shader's text with its includes in place, and where each of its lines came from.
+// The text of a shader with its includes, and the origin of each line.
 struct ShaderText {
   struct Origin {
     std::string file;
     int line = 0;
   };
   std::string text;
-  std::vector<Origin> origins;  // of line i + 1
+  std::vector<Origin> origins;  // origins[i] is that of line i + 1
 };
-Result<ShaderText> assembleShader(std::string_view file, std::span<const FindText> tables,
-                                  std::span<const Define> defines);
-// The log with "FILE:LINE:" in place of the compiler's own positions.
+Result<ShaderText> assembleShader(std::string_view file, const ShaderSources& sources);
+// Returns the compiler's log with its positions replaced by "FILE:LINE:".
 std::string mapLog(std::string_view log, const ShaderText& shader);
 
 struct ProgramTraits {
@@ -49,7 +61,11 @@ class Program : public Handle<ProgramTraits> {
  public:
   Program() = default;
   static Result<Program> create(std::string_view label, std::initializer_list<Stage> stages,
-                                std::span<const FindText> tables, std::span<const Define> defines = {});
+                                const ShaderSources& sources);
+  static Result<Program> create(std::string_view label, std::initializer_list<Stage> stages,
+                                std::span<const FindText> tables, std::span<const Define> defines = {}) {
+    return create(label, stages, ShaderSources{.tables = tables, .defines = defines, .written = {}});
+  }
   void use() const { glUseProgram(id()); }
 
  private:

@@ -23,7 +23,7 @@ void Staging::make() {
   mapped_ = static_cast<std::byte*>(glMapNamedBufferRange(id, 0, byte_count, kAccess));
 }
 
-// What comes after the commands so far may overwrite the next part once they are done.
+// Moves on to the next part of the ring, and waits until its earlier copies are done.
 void Staging::nextPart() {
   copied_[part_] = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
   part_ = (part_ + 1) % kParts;

@@ -1,9 +1,8 @@
-// Bytes on their way to buffers that only the GPU writes: put into memory that both see, and copied by the
-// GPU in the order of its commands. Drivers keep a buffer that the CPU writes to again and again where the
-// CPU reaches it, and shaders then read it over the bus; and they move it there in the midst of a frame
-// (docs/decisions/streaming.md, "GPU memory"). The memory is a ring, made with the first bytes; what is
-// written waits for the GPU only where the ring is full of bytes that it has not copied yet. Must not outlive
-// the context.
+// Uploads bytes to buffers that only the GPU writes. The CPU writes them to mapped memory, and the GPU copies
+// them in the order of its commands. Without this, drivers move a buffer that the CPU writes often to memory
+// of the CPU, even within a frame, and shaders then read it over the bus (docs/decisions/streaming.md, "GPU
+// memory"). The mapped memory is a ring that is made on first use. Writing waits for the GPU only if the ring
+// is full of bytes that are not copied yet. The object must not outlive the context.
 #pragma once
 
 #include <array>
@@ -16,7 +15,7 @@ namespace lambent::gpu {
 
 class Staging {
  public:
-  // What a frame brings at most (FrameOptions): then nothing waits for the GPU within one.
+  // This is the most that a frame uploads (FrameOptions), so nothing waits for the GPU within a frame.
   static constexpr std::size_t kRingBytes = std::size_t{16} << 20;
 
   explicit Staging(std::size_t ring_bytes = kRingBytes) : part_bytes_(ring_bytes / kParts) {}
@@ -24,9 +23,10 @@ class Staging {
   Staging(const Staging&) = delete;
   Staging& operator=(const Staging&) = delete;
 
-  // Any number of bytes, into [offset, offset + bytes.size()) of the buffer.
+  // Writes any number of bytes to [offset, offset + bytes.size()) of the buffer.
   void write(const Buffer& to, std::size_t offset, std::span<const std::byte> bytes);
-  // To zero, by copies, too: a driver may clear buffers on the CPU, in memory that it first has to ask for.
+  // Sets bytes to zero, by copies as well, because a driver may clear a buffer on the CPU in memory that it
+  // must allocate first.
   void clear(const Buffer& to, std::size_t offset, std::size_t byte_count);
 
  private:
@@ -40,8 +40,8 @@ class Staging {
   Buffer zeros_;
   Handle<BufferTraits> ring_;
   std::byte* mapped_ = nullptr;
-  std::size_t part_ = 0, used_ = 0;      // the part that is being filled, and how many of its bytes are
-  std::array<GLsync, kParts> copied_{};  // of a part: signalled once its copies are done; null: nothing there
+  std::size_t part_ = 0, used_ = 0;      // the part of the ring that is being filled, and its bytes in use
+  std::array<GLsync, kParts> copied_{};  // signalled when a part's copies are done; null if it has none
 };
 
 }  // namespace lambent::gpu

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#define GLFW_INCLUDE_NONE  // epoxy has OpenGL's declarations
+#define GLFW_INCLUDE_NONE  // epoxy declares OpenGL's functions
 #include <GLFW/glfw3.h>
 #include <epoxy/gl.h>
 

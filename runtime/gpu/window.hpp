@@ -1,6 +1,5 @@
-// A window with an OpenGL 4.5 core context, and what the user does to it since the last look. The only place
-// that knows GLFW. Sizes are framebuffer pixels, pointer moves are fractions of the window's height. Errors:
-// no display, no OpenGL 4.5 there.
+// A Window has an OpenGL 4.5 core context and collects the user's input. Only this part of the room uses
+// GLFW. Sizes are in framebuffer pixels; pointer motion is in fractions of the window's height.
 #pragma once
 
 #include <cstdint>
@@ -17,20 +16,21 @@ struct GLFWwindow;
 
 namespace lambent::gpu {
 
-// What happened since the last poll.
+// Input since the last poll.
 struct Input {
-  float drag_x = 0.0f, drag_y = 0.0f;          // left button held; right and down are positive
-  float light_x = 0.0f, light_y = 0.0f;        // the same with the right button
+  float drag_x = 0.0f, drag_y = 0.0f;          // motion with the left button; right and down are positive
+  float light_x = 0.0f, light_y = 0.0f;        // motion with the right button
   float scroll = 0.0f;                         // notches; away from the user is positive
-  bool reset = false;                          // R
-  bool pause = false;                          // space
-  int turn = 0;                                // A: -1, D: +1, while held
-  bool quit = false;                           // Esc, or the window is being closed
-  std::vector<std::filesystem::path> dropped;  // files and folders let fall onto the window
+  bool reset = false;                          // the R key was pressed
+  bool pause = false;                          // the space bar was pressed
+  int turn = 0;                                // -1 while A is held, +1 while D is held
+  bool quit = false;                           // Esc was pressed or the window is being closed
+  std::vector<std::filesystem::path> dropped;  // files and folders that were dropped onto the window
 };
 
 class Window {
  public:
+  // Fails if there is no display, or no OpenGL 4.5 core on it.
   static Result<Window> create(const std::string& title, std::uint32_t width, std::uint32_t height,
                                const ContextOptions& options);
 
@@ -39,7 +39,8 @@ class Window {
   ~Window();
 
   const Context& context() const;
-  // For a user interface that listens by itself; valid as long as the window.
+  // Returns GLFW's handle for user interfaces that handle events themselves. It is valid as long as the
+  // window.
   GLFWwindow* handle() const;
   Input poll();
   void framebufferSize(std::uint32_t& width, std::uint32_t& height) const;

@@ -8,8 +8,8 @@ namespace lambent::gpu {
 
 namespace {
 
-// Batches start where any driver can bind a storage range; a block holds the dispatch's arguments, the next
-// one the list: its length, padding to 16 bytes, items.
+// Batches start at multiples of a block, where any driver can bind a storage range. The first block holds the
+// arguments of the dispatch. The list follows: its length, padding to 16 bytes, and the items.
 constexpr std::size_t kBlockBytes = 256;
 constexpr std::size_t kHeaderBytes = 16;
 

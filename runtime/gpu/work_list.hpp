@@ -1,7 +1,7 @@
-// What a compute pass has to do, as batches of work items, each run by one indirect dispatch. A batch is what
-// can share its bindings (one arena page, one program). In a kernel: work group i does work[i], and a group
-// with i >= work_count has nothing to do; i = x + y * 65535, since OpenGL promises no longer rows. Lists that
-// stay the same are uploaded once.
+// Holds the work of a compute pass as batches of work items. Each batch is one indirect dispatch whose items
+// share all bindings (one arena page, one program). In the kernel, work group i = x + y * 65535 processes
+// work[i] and does nothing if i >= work_count; OpenGL guarantees at most 65535 groups along x. A list that
+// does not change is uploaded only once.
 #pragma once
 
 #include <cstdint>
@@ -14,11 +14,11 @@
 namespace lambent::gpu {
 
 struct WorkItem {
-  std::uint32_t record = 0;  // what to work on
-  std::uint32_t first = 0;   // its first element for this work group
+  std::uint32_t record = 0;  // index of the record to process
+  std::uint32_t first = 0;   // first element of the record for this work group
 };
 
-// In the order: program variant, then pages.
+// The program variant of a batch, followed by its pages.
 using BatchKey = std::vector<std::uint32_t>;
 
 class WorkList {
@@ -28,20 +28,20 @@ class WorkList {
   explicit WorkList(std::string_view label) : buffer_(label) {}
 
   void clear() { batches_.clear(); }
-  // Items for elements 0..count-1 of a record, `group_size` elements to an item.
+  // Adds items for elements 0..count-1 of a record, with `group_size` elements per item.
   void add(const BatchKey& key, std::uint32_t record, std::uint32_t count, std::uint32_t group_size);
   bool empty() const { return batches_.empty(); }
 
-  // Uploads if anything differs from last time; batches keep the order of their keys.
+  // Uploads the list if it differs from the last upload. Batches are ordered by their keys.
   void upload(Counters& counters);
   const std::map<BatchKey, std::vector<WorkItem>>& batches() const { return batches_; }
-  // Binds batch `index` and dispatches it. The program and its other buffers are bound already.
+  // Binds and dispatches batch `index`. The caller has bound the program and its other buffers.
   void dispatch(std::size_t index, std::uint32_t binding, Counters& counters) const;
 
  private:
   std::map<BatchKey, std::vector<WorkItem>> batches_;
-  std::vector<std::size_t> offsets_;  // of each batch's arguments in the buffer
-  std::vector<std::byte> bytes_;      // as uploaded
+  std::vector<std::size_t> offsets_;  // offset of each batch's arguments in the buffer
+  std::vector<std::byte> bytes_;      // the bytes of the last upload
   Table buffer_;
 };
 

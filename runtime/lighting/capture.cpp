@@ -28,7 +28,7 @@ namespace {
 using namespace capture;
 
 constexpr gpu::FindText kShaders[] = {&embedded::lambent_lighting::find};
-// As in capture.vert, capture_resolve.comp and capture_project.comp.
+// These are the uniform locations of capture.vert, capture_resolve.comp and capture_project.comp.
 constexpr GLint kClipFromPixel = 0, kDepth = 1;
 constexpr GLint kFirstTexel = 0, kTexelCount = 1, kFirstWord = 2, kWordCount = 3, kSubsamples = 4;
 constexpr GLint kFirstPoint = 0;
@@ -42,10 +42,10 @@ DrawRecord drawRecord(const CaptureOptions& options, const Tile& tile, const Cap
                       const PlannedPoint& planned, const glm::vec3& point_ws, std::uint32_t page_height) {
   glm::dmat4 point_from_proxy(body.world_from_proxy);
   point_from_proxy[3] -= glm::dvec4(glm::dvec3(point_ws), 0.0);
-  // Face coordinates, x = sc w and y = tc w, in units of the near plane's distance.
+  // Rows give face coordinates, x = sc w and y = tc w, in units of the near plane's distance.
   const glm::dmat4 rows = glm::transpose(glm::dmat4(faceFromWorld(tile.face)) * point_from_proxy) *
                           (1.0 / double{planned.near_m});
-  // The face's square, scaled and moved so that the tile comes to lie in its place.
+  // The face's square is scaled and moved so that the tile lands in its place in the atlas.
   const double face_pixels = options.size * options.subsamples;
   const auto placed = [&](const glm::dvec4& along, std::uint32_t at, std::uint32_t texel,
                           double atlas_pixels) {
@@ -63,13 +63,13 @@ DrawRecord drawRecord(const CaptureOptions& options, const Tile& tile, const Cap
 
 enum class Side : std::uint8_t { None, Bright, Dark };
 
-// Which side of a body's triangles a point sees. Told here, so that dark sides that cannot show need not be
-// drawn; once for a point and a body, however many faces of its cube the body shows on.
+// Finds which side of a body's triangles a point sees, so that dark sides that cannot show are not drawn. It
+// works once per point and body, however many faces of the cube the body shows on.
 class SidesSeen {
  public:
   explicit SidesSeen(std::size_t bodies) : bodies_(bodies) {}
 
-  // Of points one after the other. What is returned lives until the next call.
+  // Expects the draws of one point after the other. The result is valid until the next call.
   std::span<const Side> look(const Draw& draw, const PreparedLevel& level, std::uint32_t point,
                              const CaptureBody& body, const glm::vec3& point_ws) {
     if (point != point_) sides_.clear();
@@ -92,13 +92,13 @@ class SidesSeen {
  private:
   static constexpr std::uint32_t kNone = 0xffffffffu;
   struct Body {
-    std::uint32_t point = kNone;  // of which the sides are
-    std::size_t first = 0;        // of its sides
+    std::uint32_t point = kNone;  // the point for which `first` is valid
+    std::size_t first = 0;        // index of its first side
     glm::dmat4 proxy_from_world{1.0};
   };
   std::vector<Body> bodies_;
   std::uint32_t point_ = kNone;
-  std::vector<Side> sides_;  // of all bodies that the point sees
+  std::vector<Side> sides_;  // of all bodies that the current point sees
 };
 
 }  // namespace
@@ -123,7 +123,7 @@ Result<Capture> Capture::create(const CaptureOptions& options, const Environment
   if (options.order < 1 || options.order > sh::kMaxOrder)
     return fail("light capture", "order " + std::to_string(options.order), "1 to 8");
   Capture capture(options);
-  // [texel][coefficient], padded to vec4s: the shaders fetch four at a time.
+  // The layout is [texel][coefficient], padded to vec4s because the shaders fetch four at a time.
   const std::vector<float> weights = sh::cubeWeights(options.order, static_cast<int>(options.size));
   const std::size_t count = static_cast<std::size_t>(sh::coefficientCount(options.order)),
                     texels = weights.size() / count, stride = (count + 3) / 4 * 4;
@@ -167,7 +167,7 @@ void Capture::setProxies(std::span<const bundle::CaptureProxy* const> proxies, g
     else
       unknown.push_back(i);
   }
-  constexpr std::size_t kWorthAThread = 2;  // a tenth of a millisecond each and more
+  constexpr std::size_t kWorthAThread = 2;  // each takes a tenth of a millisecond or more
   inParallel(unknown.size(), kWorthAThread, [&](std::size_t i) {
     proxies_[unknown[i]].prepared =
         std::make_shared<const PreparedProxy>(PreparedProxy::of(*proxies[unknown[i]]));
@@ -234,7 +234,7 @@ Result<void> Capture::run(const Environment& environment, std::span<const Captur
   return {};
 }
 
-// All pages' tables at once.
+// Uploads the tables of all pages at once.
 void Capture::upload(const Plan& plan, std::span<const CaptureBody> bodies,
                      std::span<const CapturePoint> points, gpu::Counters& counters) {
   load_ = {.pages = static_cast<std::uint32_t>(plan.pages.size()),
@@ -327,13 +327,13 @@ void Capture::upload(const Plan& plan, std::span<const CaptureBody> bodies,
 }
 
 void Capture::drawPage(const Page& page, std::size_t index, gpu::Counters& counters) {
-  // Grows with the largest page so far.
+  // The atlas is as high as the largest page so far.
   if (!ids_ || ids_.desc().height < page.height) {
     const std::uint32_t height = std::bit_ceil(page.height);
     ids_ = gpu::Texture("capture ids", {.format = GL_R32UI, .width = kAtlasWidth, .height = height});
     depths_ = gpu::Texture("capture depths",
                            {.format = GL_DEPTH_COMPONENT32F, .width = kAtlasWidth, .height = height});
-    // Textures of integers are incomplete with the filters that textures are made with.
+    // Integer textures are incomplete with the linear filters that textures are created with.
     for (const gpu::Texture* texture : {&ids_, &depths_}) {
       glTextureParameteri(texture->id(), GL_TEXTURE_MIN_FILTER, GL_NEAREST);
       glTextureParameteri(texture->id(), GL_TEXTURE_MAG_FILTER, GL_NEAREST);
@@ -363,7 +363,8 @@ void Capture::drawPage(const Page& page, std::size_t index, gpu::Counters& count
   bindTable(vertices_view_, kUnitVertices, GL_RGBA32UI, vertices_.buffer());
   bindTable(draws_view_, kUnitDraws, GL_RGBA32UI, draws_.buffer());
   glUniform2f(kClipFromPixel, 2.0f / static_cast<float>(kAtlasWidth), 2.0f / static_cast<float>(page.height));
-  // A dark side that lies on a bright one, as in a fold of a simplified surface, must not show through it.
+  // A dark side that coincides with a bright one, as in a fold of a simplified surface, must not show through
+  // it.
   constexpr float kDarkDepth = 0.9999f;
   const PageIndices& range = page_indices_[index];
   const auto draw = [&](std::uint32_t first, std::uint32_t end, float depth) {

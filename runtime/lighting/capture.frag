@@ -1,4 +1,4 @@
-// Which surface a subsample sees.
+// Writes the id of the surface that a subsample sees.
 layout(location = 0) flat in uint surface_id;
 layout(location = 0) out uint id;
 

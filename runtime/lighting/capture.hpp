@@ -1,9 +1,10 @@
-// Incident light sampled on the fly (Sloan, Kautz and Snyder 2002, section 6): around each point the sky and
-// the bodies of other rigid groups are drawn into a small cube map in world axes, and that is projected to
-// spherical harmonics on the GPU. Comes in: the environment, bodies as capture proxies with a radiance per
-// triangle, points. Goes out, some frames later: per point the light that arrives there and how much of each
-// analytic light is not hidden. Analytic lights never pass through the texels. How:
-// docs/decisions/captures.md. Errors: shaders that do not compile on this device.
+// Samples incident light on the fly (Sloan, Kautz and Snyder 2002, section 6): around each point the sky and
+// the bodies of other rigid groups are drawn into a small cube map in world axes, which is projected to
+// spherical harmonics on the GPU. It takes the environment, bodies as capture proxies with one radiance per
+// triangle, and points. Some frames later it returns, for each point, the light that arrives there and the
+// visible share of each analytic light. Analytic lights are never drawn into texels.
+// docs/decisions/captures.md describes the method. Render thread only. create() fails if an option is out of
+// range or a shader does not compile on this device.
 #pragma once
 
 #include <array>
@@ -36,47 +37,50 @@ class Capture {
   static Result<Capture> create(const CaptureOptions& options, const Environment& environment);
   const CaptureOptions& options() const { return options_; }
 
-  // All proxies; triangles are numbered through them in their order. Not to be called while pending(). keys:
-  // empty, or one for each proxy that no other proxy ever has; what was made of one that was given before is
-  // used again.
+  // Sets all proxies. Triangles are numbered through the proxies in the given order. `keys` is empty or has
+  // one unique key per proxy; work done for a key that was given before is reused. Must not be called while
+  // pending().
   void setProxies(std::span<const bundle::CaptureProxy* const> proxies, gpu::Counters& counters,
                   std::span<const std::uint64_t> keys = {});
   std::uint32_t firstTriangle(std::size_t proxy) const { return proxies_[proxy].first_triangle; }
   std::uint32_t triangleCount() const { return triangle_count_; }
 
-  // As capture::sees() takes it, with options(): whether a point would have the body drawn at all.
+  // Returns the sphere that capture::sees() takes together with options(), to tell whether a point would have
+  // the body drawn at all.
   capture::BodySphere sphereOf(const CaptureBody& body) const;
 
-  // Draws and projects; per page of cube maps at most two draws (surfaces with and without a dark side)
-  // and two dispatches, and two when the environment changed. triangle_radiance: vec4 per triangle;
-  // what is not finite counts as black. Points that see no body cost the GPU nothing. Not to be called while
-  // pending(). Changes the bound framebuffer, viewport, depth and culling state. Errors: called while
-  // pending; fewer radiances than triangles; 2^21 bodies to draw, counted per face of a point.
+  // Draws and projects. Each page of cube maps takes at most two draws (surfaces with and without a dark
+  // side) and two dispatches, and two more dispatches when the environment changed. `triangle_radiance` holds
+  // a vec4 per triangle; values that are not finite count as black. Points that see no body cost the GPU
+  // nothing. Changes the bound framebuffer, viewport, depth and culling state. Fails if it is called while
+  // pending(), if there are fewer radiances than triangles, or if 2^21 bodies or more would be drawn (counted
+  // per face of a point).
   Result<void> run(const Environment& environment, std::span<const CaptureBody> bodies,
                    std::span<const CapturePoint> points, const gpu::Buffer& triangle_radiance,
                    gpu::Counters& counters);
   bool pending() const { return pending_; }
-  // The light of the last run, one per point; none while the GPU is still at it, unless told to wait, or
-  // where nothing was run.
+  // Returns the light of the last run, one entry per point. Returns nothing if nothing was run, or if the GPU
+  // has not finished and `wait` is false.
   std::optional<std::vector<CapturedLight>> take(bool wait);
 
-  // Of the last run: what its cube maps took. Pixels are subsamples.
+  // States how much work the cube maps of the last run took. Pixels are subsamples.
   struct Load {
     std::uint32_t pages = 0, points = 0, tiles = 0, draws = 0;
     std::uint64_t triangles = 0, pixels = 0;
   };
   const Load& load() const { return load_; }
-  // Texels of the last run, for pictures of what points see: those that a body may show in. They stay until
-  // the next run.
+  // Gives the texels of the last run in which a body may show, for pictures of what points see. The buffers
+  // stay valid until the next run.
   struct Texels {
-    std::vector<std::uint32_t> points;     // of each record, which of the points given
+    std::vector<std::uint32_t> points;     // for each record, the index of its point
     const gpu::Buffer* records = nullptr;  // capture::PointRecord
-    const gpu::Buffer* texels = nullptr;   // capture::TexelRecord: which of the cube
-    const gpu::Buffer* values = nullptr;   // vec4: mean radiance of bodies; share that they hide
+    const gpu::Buffer* texels = nullptr;   // capture::TexelRecord, which names the texel of the cube
+    const gpu::Buffer* values = nullptr;   // vec4: mean radiance of bodies, their coverage
   };
   Texels texels() const;
-  // The sky as it comes through the texels, turned in any way, without the correction to the exact light:
-  // measures the texels. Waits for the GPU; not to be called while pending().
+  // Returns the sky as its texels represent it, turned by the given rotation and without the correction to
+  // the exact light, so that the error of the texels can be measured. Waits for the GPU. Must not be called
+  // while pending().
   sh::LightVector skyThroughTexels(const Environment& environment, const glm::mat3& world_from_light);
 
  private:
@@ -88,14 +92,14 @@ class Capture {
   struct PageIndices {
     std::uint32_t first_bright = 0, first_dark = 0, end = 0;
   };
-  // What take() needs of the run.
+  // Holds what take() needs to know about the run.
   struct Run {
     std::vector<CapturePoint> points;
-    std::vector<std::uint32_t> records;                    // per point its record on the GPU, or kNoRecord
-    std::vector<std::uint32_t> uncovered;                  // per record: texels that no tile covers
-    std::vector<std::uint32_t> first_texels, first_words;  // per record, and the end
+    std::vector<std::uint32_t> records;    // for each point its record on the GPU, or kNoRecord
+    std::vector<std::uint32_t> uncovered;  // for each record, the number of texels that no tile covers
+    std::vector<std::uint32_t> first_texels, first_words;  // for each record, with the end as last entry
     std::size_t word_count = 0;
-    std::size_t results_at = 0, hidden_at = 0, sky_at = 0;  // in the readback
+    std::size_t results_at = 0, hidden_at = 0, sky_at = 0;  // byte offsets in the readback
     bool new_sky = false;
     sh::LightVector sky;
   };
@@ -122,13 +126,13 @@ class Capture {
   std::vector<capture::ProxyBounds> bounds_;
   std::uint32_t triangle_count_ = 0;
   std::vector<PageIndices> page_indices_;
-  // What is drawn, until it is uploaded; kept for their memory.
+  // These lists of indices are drawn once they are uploaded. They are members so that their memory is reused.
   std::vector<std::uint32_t> bright_then_dark_, dark_;
 
   bool pending_ = false;
   Run run_;
   bool sky_is_new_ = false;
-  sh::LightVector sky_through_texels_;  // as projected from the sky's cube
+  sh::LightVector sky_through_texels_;  // as projected from the sky's cube map
   Load load_;
 };
 

@@ -1,11 +1,13 @@
-// A corner of a body's triangle in one tile of the atlas. Depth is reversed and has no far end: near / w, whose
-// relative precision is the same at all distances. Tiles are cut at their edges by clip distances.
+// Places a corner of a body's triangle in one tile of the atlas. Depth is reversed and has no far plane: near
+// / w, whose relative precision is the same at all distances. Clip distances cut at the edges of the tile.
 #include "capture_shared.h"
 
 layout(binding = kUnitVertices) uniform usamplerBuffer vertices;
 layout(binding = kUnitDraws) uniform usamplerBuffer draws;
-layout(location = 1) uniform float depth;  // 1, or a little less where what lies in the same place goes before
-layout(location = 0) uniform vec2 clip_from_pixel;  // times a pixel, minus 1: its edge in the atlas, -1..1
+layout(location = 1) uniform float depth;  // 1, or a little less for surfaces that lose against others in the
+                                           // same place
+layout(location = 0) uniform vec2 clip_from_pixel;  // pixel * clip_from_pixel - 1 is the pixel's first edge
+                                                    // in clip space
 
 out gl_PerVertex {
   vec4 gl_Position;

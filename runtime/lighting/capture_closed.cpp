@@ -15,7 +15,7 @@ namespace lambent::lighting::capture {
 bool isClosed(const bundle::CaptureProxy& proxy, const bundle::ProxyLevel& level) {
   struct Corner {
     glm::vec3 place;
-    std::uint32_t index;  // of three times the triangle
+    std::uint32_t index;  // three times the triangle, plus the corner
   };
   std::vector<Corner> corners;
   for (std::uint32_t t = level.first_triangle; t < level.first_triangle + level.triangle_count; ++t) {
@@ -26,7 +26,7 @@ bool isClosed(const bundle::CaptureProxy& proxy, const bundle::ProxyLevel& level
       corners.push_back({p, static_cast<std::uint32_t>(corners.size())});
     }
   }
-  // Vertices at the same place are one.
+  // Vertices at the same place are treated as one.
   const auto place = [](const Corner& corner) {
     return std::tuple(corner.place.x, corner.place.y, corner.place.z);
   };
@@ -41,7 +41,7 @@ bool isClosed(const bundle::CaptureProxy& proxy, const bundle::ProxyLevel& level
     return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
   });
 
-  // Each edge as often in one direction as in the other.
+  // Each edge must occur as often in one direction as in the other.
   struct Edge {
     std::uint32_t first, last;
     int direction;
@@ -62,12 +62,12 @@ bool isClosed(const bundle::CaptureProxy& proxy, const bundle::ProxyLevel& level
   const auto ends = [](const Edge& edge) { return std::pair(edge.first, edge.last); };
   std::ranges::sort(edges, {}, ends);
   for (std::size_t i = 0, sum = 0; i < edges.size(); ++i) {
-    sum += static_cast<std::size_t>(edges[i].direction);  // wraps around, and back
+    sum += static_cast<std::size_t>(edges[i].direction);  // unsigned wrap-around cancels out
     const bool last = i + 1 == edges.size() || ends(edges[i]) != ends(edges[i + 1]);
     if (last && sum != 0) return false;
   }
 
-  // Every connected part must face outwards: a room seen from outside is dark.
+  // Every connected part must face outwards: a room seen from outside shows its dark sides.
   std::map<std::uint32_t, double> volumes;
   for (const auto& [a, b, c] : triangles) {
     const glm::dvec3 origin = places[rootOf(a)];

@@ -1,5 +1,6 @@
-// Whether a level of a proxy is made of closed surfaces that face outwards, so that from outside its box only
-// the bright sides can be seen and the others need not be drawn. Double-sided triangles never are.
+// Tells whether a level of a proxy consists of closed surfaces that face outwards. Then only bright sides are
+// visible from outside its box, and the dark sides need not be drawn. Levels with double-sided triangles
+// never count as closed.
 #pragma once
 
 #include "runtime/bundle/capture_proxy.hpp"

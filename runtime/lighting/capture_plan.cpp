@@ -16,11 +16,10 @@ namespace lambent::lighting::capture {
 
 namespace {
 
-constexpr double kCullShare = 0.25;  // of a texel's solid angle: smaller bodies are left out
-constexpr double kLevelErrorShare =
-    0.5;  // of a texel's width: levels of proxies keep solid angles, if not outlines
-// The near plane, as a share of the distance to the nearest body's box, or of the radius of one that holds
-// the point. Depth is reversed and so does not suffer.
+constexpr double kCullShare = 0.25;       // share of a texel's solid angle below which bodies are left out
+constexpr double kLevelErrorShare = 0.5;  // of a texel's width; levels keep solid angles, if not outlines
+// These give the near plane as a share of the distance to the nearest body's box, or of the radius of a body
+// that contains the point. Reversed depth keeps its precision.
 constexpr double kLocalShare = 1e-3, kLeastLocalShare = 1e-9;
 // Points nearer to a body's box than this share of its radius count as inside.
 constexpr double kOutsideShare = 1e-6;
@@ -32,7 +31,7 @@ bool finite(const glm::vec3& v) {
 }
 
 struct Sphere {
-  glm::dvec3 centre{0.0};  // as seen from the point
+  glm::dvec3 centre{0.0};  // relative to the point
   double radius_m = 0;     // 0: there is nothing to see
   double scale = 0;
 };
@@ -45,15 +44,16 @@ bool largeEnough(const CaptureOptions& options, const glm::dvec3& centre, double
   const double squared = glm::dot(centre, centre), radius_squared = radius_m * radius_m;
   if (!(radius_m > 0) || !std::isfinite(radius_m + squared)) return false;
   if (squared <= radius_squared) return true;
-  // The solid angle, 2 pi (1 - cos a), is between pi sin² a and twice that: mostly enough to know. A texel's
-  // is 4 pi over their number. Both times their number, squared / pi.
+  // The solid angle, 2 pi (1 - cos a), is between pi sin² a and twice that, which mostly decides. A texel's
+  // solid angle is 4 pi over the number of texels. Both sides are multiplied by that number and `squared`,
+  // and divided by pi.
   const double brighter = brightness > 1.0f ? static_cast<double>(brightness) : 1.0;
   const double texels = 6.0 * options.size * options.size;
   const double least = texels * radius_squared * brighter, needed = 4 * kCullShare * squared;
   constexpr double kClearly = 1 + 1e-9;
   if (2 * least * kClearly < needed) return false;
   if (least > needed * kClearly) return true;
-  // Written so that small a keep their digits.
+  // This form keeps its digits for small a.
   const double sine_squared = radius_squared / squared;
   return 2 * least >= needed * (1 + std::sqrt(std::max(0.0, 1 - sine_squared)));
 }
@@ -89,7 +89,7 @@ Corners seenFrom(const glm::vec3& position_ws, Corners corners) {
   return corners;
 }
 
-// From the point to the box; 0 inside.
+// Returns the distance from the point to the box, 0 inside.
 double boxDistance(const Corners& corners) {
   glm::dvec3 nearest = corners[0];
   for (const std::size_t k : {1u, 2u, 4u}) {
@@ -101,10 +101,10 @@ double boxDistance(const Corners& corners) {
 }
 
 struct Interval {
-  double lowest = -1, highest = 1;  // of sc or tc
+  double lowest = -1, highest = 1;  // range of sc or tc
 };
 
-// Of a circle of radius r about (x, w): the tangents of the directions under which it is seen.
+// Returns the tangents of the directions under which a circle of radius r about (x, w) is seen.
 Interval circleInterval(double x, double w, double r) {
   const double distance = std::hypot(x, w);
   if (distance <= r) return {};
@@ -118,13 +118,13 @@ std::optional<TexelRect> rectOf(std::uint32_t size, std::uint32_t face, const Sp
                                 const Corners& corners) {
   const glm::dmat3& from_world = faceFromWorld(face);
   const glm::dvec3 c = from_world * sphere.centre;
-  // Wholly behind one of the planes through the point that bound the face, or behind the point.
+  // The sphere lies wholly behind the point or behind one of the planes through it that bound the face.
   const double beyond = std::numbers::sqrt2 * sphere.radius_m * (1 + 1e-9);
   if (c.z <= -sphere.radius_m || std::abs(c.x) - c.z > beyond || std::abs(c.y) - c.z > beyond)
     return std::nullopt;
   Interval sc = circleInterval(c.x, c.z, sphere.radius_m), tc = circleInterval(c.y, c.z, sphere.radius_m);
 
-  // The box about the body, cut off close before the point; its projection is the hull of its corners.
+  // The body's box is cut off just in front of the point; its projection is the hull of its corners.
   const double cut = 1e-6 * sphere.radius_m;
   Corners at;
   for (std::size_t i = 0; i < at.size(); ++i) at[i] = from_world * corners[i];
@@ -166,7 +166,7 @@ TexelRect together(const TexelRect& a, const TexelRect& b) {
   return {std::min(a.x0, b.x0), std::min(a.y0, b.y0), std::max(a.x1, b.x1), std::max(a.y1, b.y1)};
 }
 
-// Makes the rectangles disjoint: what overlaps becomes one.
+// Makes the rectangles disjoint by merging those that overlap.
 void mergeOverlaps(std::vector<TexelRect>& rects) {
   for (bool merged = true; merged;) {
     merged = false;
@@ -184,7 +184,7 @@ void mergeOverlaps(std::vector<TexelRect>& rects) {
   }
 }
 
-// Rows of tiles, the highest first. The height that they need.
+// Arranges tiles in rows, the highest first, and returns the height that they need.
 std::uint32_t shelve(std::span<Tile> tiles, std::uint32_t subsamples) {
   std::vector<std::size_t> order(tiles.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -207,7 +207,7 @@ std::uint32_t shelve(std::span<Tile> tiles, std::uint32_t subsamples) {
   return next_shelf;
 }
 
-// Tiles and draws of one point, at the ends of the plan's lists.
+// Appends the tiles and draws of one point to the plan.
 class PointPlanner {
  public:
   PointPlanner(const CaptureOptions& options, std::span<const ProxyBounds> proxies,
@@ -271,19 +271,19 @@ class PointPlanner {
   std::span<const ProxyBounds> proxies_;
   std::span<const CaptureBody> bodies_;
   Plan& plan_;
-  std::vector<BodySphere> spheres_;  // by body
-  std::vector<Corners> corners_;     // by body, world
+  std::vector<BodySphere> spheres_;  // indexed by body
+  std::vector<Corners> corners_;     // indexed by body, world space
   std::vector<Seen> seen_;
   std::vector<std::pair<const Seen*, TexelRect>> on_face_;
   std::vector<TexelRect> rects_;
 };
 
-// As many points to a page as fit.
+// Puts as many points on each page as fit.
 void makePages(Plan& plan, std::uint32_t subsamples) {
   const auto points = static_cast<std::uint32_t>(plan.points.size());
   std::uint32_t first_draw = 0;
   for (std::uint32_t first = 0; first < points;) {
-    // By area first, and fewer if the rows waste too much.
+    // The area gives the first guess; fewer points are taken if the rows waste too much.
     constexpr std::uint64_t kArea = std::uint64_t{kAtlasWidth} * kAtlasHeight;
     std::uint32_t last = first;
     for (std::uint64_t area = 0, texel_count = 0; last < points && last - first < kMaxPointsOfPage; ++last) {
@@ -301,7 +301,7 @@ void makePages(Plan& plan, std::uint32_t subsamples) {
                           end_tile = plan.points[last - 1].first_tile + plan.points[last - 1].tile_count;
       page.height = shelve(std::span(plan.tiles).subspan(first_tile, end_tile - first_tile), subsamples);
       page.point_count = last - first;
-      // One point alone may need up to twice its area and a row: 7168 pixels.
+      // A point alone on a page may need up to twice its area and a row: 7168 pixels.
       if (page.height <= kAtlasHeight || page.point_count == 1) {
         while (first_draw < plan.draws.size() && plan.draws[first_draw].tile < end_tile) ++first_draw;
         break;
@@ -340,7 +340,8 @@ ProxyBounds ProxyBounds::of(const bundle::CaptureProxy& proxy) {
       const glm::dvec3 d = glm::dvec3(proxy.positions[v]) - glm::dvec3(bounds.centre);
       squared = std::max(squared, glm::dot(d, d));
     }
-  // A little more than the farthest corner: rounding must not put it outside.
+  // The radius is a little larger than the farthest corner's distance, so that rounding cannot put that
+  // outside.
   bounds.radius_m = static_cast<float>(std::sqrt(squared) * (1 + 1e-6));
   return bounds;
 }

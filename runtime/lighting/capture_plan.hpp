@@ -1,8 +1,9 @@
-// Which bodies are drawn for which point, where: the CPU's part of the light capture, without GL. Bodies
-// under a quarter of a texel are left out, the others drawn by their coarsest level whose error is under half
-// a texel. On each face of a point's cube the bodies' bounding rectangles, in whole texels, become
-// tiles of an atlas; those that overlap are one tile. Comes in: bounds of the proxies, bodies, points. Goes
-// out: pages (one atlas each, all tiles of a point on the same), tiles, draws.
+// Decides which bodies are drawn for which point, and where: the CPU's part of the light capture, without GL.
+// Bodies smaller than a quarter of a texel are left out; the others are drawn at their coarsest level whose
+// error is below half a texel. On each face of a point's cube, the bounding rectangles of the bodies, in
+// whole texels, become tiles of an atlas, and overlapping rectangles become one tile. It takes the bounds of
+// the proxies, bodies and points, and returns pages (one atlas each; all tiles of a point are on the same
+// page), tiles and draws.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +19,7 @@
 
 namespace lambent::lighting::capture {
 
-// Texels [x0, x1) x [y0, y1) of a face.
+// Describes the texels [x0, x1) x [y0, y1) of a face.
 struct TexelRect {
   std::uint32_t x0 = 0, y0 = 0, x1 = 0, y1 = 0;
   std::uint32_t width() const { return x1 - x0; }
@@ -28,8 +29,8 @@ struct TexelRect {
 
 struct ProxyBounds {
   glm::vec3 lowest{0.0f}, highest{0.0f}, centre{0.0f};
-  float radius_m = 0.0f;              // about the centre; 0: draws nothing
-  std::vector<float> level_errors_m;  // finest first
+  float radius_m = 0.0f;              // about the centre; a proxy with radius 0 is not drawn
+  std::vector<float> level_errors_m;  // one per level, finest first
 
   static ProxyBounds of(const bundle::CaptureProxy& proxy);
 };
@@ -37,7 +38,7 @@ struct ProxyBounds {
 struct Tile {
   std::uint32_t point = 0, face = 0;
   TexelRect texels;
-  std::uint32_t x = 0, y = 0;  // its first pixel in the page's atlas
+  std::uint32_t x = 0, y = 0;  // the tile's first pixel in the page's atlas
 };
 
 struct Draw {
@@ -46,8 +47,8 @@ struct Draw {
 };
 
 struct Page {
-  std::uint32_t height = 0;                        // pixels of the atlas that are in use; all of its width
-  std::uint32_t first_point = 0, point_count = 0;  // into Plan::points
+  std::uint32_t height = 0;  // rows of the atlas in use, in pixels; the whole width is in use
+  std::uint32_t first_point = 0, point_count = 0;  // indices into Plan::points
   std::uint32_t first_draw = 0, draw_count = 0;
 };
 
@@ -58,35 +59,36 @@ struct PlannedPoint {
 };
 
 struct Plan {
-  std::vector<PlannedPoint> points;  // only those that see a body
+  std::vector<PlannedPoint> points;  // only points that see a body
   std::vector<Tile> tiles;
   std::vector<Draw> draws;
   std::vector<Page> pages;
 };
 
-// Pixels. A page of one point may be higher, below 8192.
+// An atlas has this size in pixels. A page with a single point may be higher, below 8192.
 inline constexpr std::uint32_t kAtlasWidth = 2048, kAtlasHeight = 4096;
-// So that a dispatch stays below the 65535 work groups that OpenGL promises.
+// These limits keep a dispatch below the 65535 work groups that OpenGL guarantees.
 inline constexpr std::uint32_t kMaxPointsOfPage = 65535, kMaxTexelsOfPage = 1u << 21;
 
-// A sphere around a body, and how bright it is: enough to tell whether a point sees it.
+// Holds a sphere around a body and the body's brightness, which suffice to tell whether a point sees it.
 struct BodySphere {
   glm::dvec3 centre_ws{0.0};
   double radius_m = 0;  // 0: there is nothing to see
-  double scale = 0;     // of the body against its proxy
+  double scale = 0;     // of the body relative to its proxy
   float brightness = 1.0f;
 
   static BodySphere of(const CaptureBody& body, const ProxyBounds& bounds);
 };
 
-// Whether the body is drawn at all for a point.
+// Returns whether the body is drawn at all for a point at this position.
 bool sees(const CaptureOptions& options, const glm::vec3& position_ws, const BodySphere& body);
 
-// Rows: face coordinates (sc w, tc w, w) of world directions; see sh::cubeFaceDirection.
+// Returns the matrix whose rows give the face coordinates (sc w, tc w, w) of a world direction; see
+// sh::cubeFaceDirection.
 const glm::dmat3& faceFromWorld(std::uint32_t face);
 std::uint32_t faceOf(const glm::dvec3& direction);
 
-// The texels of a face in which the body can be seen; none if it cannot.
+// Returns the texels of a face in which the body may be visible, or nothing if it cannot be.
 std::optional<TexelRect> faceRect(std::uint32_t size, std::uint32_t face, const CapturePoint& point,
                                   const CaptureBody& body, const ProxyBounds& bounds);
 

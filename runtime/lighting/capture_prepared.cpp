@@ -17,9 +17,9 @@ bool finite(const glm::vec3& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
-// The vertices of one level. A triangle's id comes from its last corner, so each triangle needs one that is
-// last in no other; of closed meshes, with half as many vertices as triangles, about half are doubled. Black
-// last corners are shared by all triangles that end there.
+// Builds the vertices of one level. A triangle's id comes from its last corner, so each triangle needs a
+// corner that is last in no other. Closed meshes have half as many vertices as triangles, so about half of
+// the triangles need an extra vertex. Black last corners are shared by all triangles that end there.
 class LevelVertices {
  public:
   LevelVertices(const bundle::CaptureProxy& proxy, std::vector<Vertex>& vertices)
@@ -29,7 +29,7 @@ class LevelVertices {
         slots_(proxy.positions.size(), kNone),
         black_(proxy.positions.size(), kNone) {}
 
-  // Turns the corners so that few vertices are doubled; goes out: as vertices of the level.
+  // Rotates `corners` so that few vertices are duplicated, and returns them as vertices of the level.
   std::array<std::uint32_t, 3> add(std::uint32_t surface_id, std::array<std::uint32_t, 3>& corners) {
     for (int turn = 0; turn < 3 && !isFree(corners[2]); ++turn)
       std::rotate(corners.begin(), corners.begin() + 1, corners.end());
@@ -68,9 +68,9 @@ class LevelVertices {
   const bundle::CaptureProxy& proxy_;
   std::vector<Vertex>& vertices_;
   std::size_t first_;
-  std::vector<std::uint32_t> slots_, black_;  // per position of the proxy
+  std::vector<std::uint32_t> slots_, black_;  // indexed by position of the proxy
 };
-// Three corners of its own and a black one for each triangle.
+// In the worst case each triangle has three corners of its own and a black one.
 static_assert(4 * bundle::kMaxProxyTriangles <= 1u << kVertexBits);
 
 glm::dvec4 planeOf(const bundle::CaptureProxy& proxy, const bundle::ProxyTriangle& triangle) {

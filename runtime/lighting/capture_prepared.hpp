@@ -1,5 +1,6 @@
-// What a light capture keeps of a proxy: its levels as they are drawn, and its bounds. Made once for each
-// proxy, when it comes, from the proxy alone, so that it stays as it is when others come and go. No GL.
+// Holds what a light capture keeps of a proxy: its bounds, and its levels in the form in which they are
+// drawn. It is made once per proxy and from that proxy alone, so that it stays valid when other proxies come
+// and go. No GL.
 #pragma once
 
 #include <array>
@@ -13,22 +14,23 @@
 
 namespace lambent::lighting::capture {
 
-// Position as bits of floats, surface id: 0 of a vertex that no triangle ends in, kBlackId, or else the
-// triangle's number in its proxy + 1.
+// A vertex is its position as bits of three floats, then its surface id: the triangle's number in its proxy +
+// 1, kBlackId, or 0 for a vertex that is no triangle's last corner.
 using Vertex = std::array<std::uint32_t, 4>;
 
 struct LevelTriangle {
-  // Vertices of the level. The last one names the surface: that of the bright side, or black.
+  // These are indices of vertices of the level. The last one carries the id of the surface seen from the
+  // front: the triangle or black.
   std::array<std::uint32_t, 3> corners{};
-  std::uint32_t black = 0;  // of a triangle that is there from behind: its last corner, black
+  std::uint32_t black = 0;  // the last corner seen from behind, whose id is kBlackId; unused if front_only
   bool front_only = false;
-  glm::dvec4 plane{0.0};  // proxy frame; over 0 on the bright side
+  glm::dvec4 plane{0.0};  // in the proxy's frame; positive on the bright side
 };
 
 struct PreparedLevel {
-  std::uint32_t first_vertex = 0;  // of the proxy's
+  std::uint32_t first_vertex = 0;  // index into PreparedProxy::vertices
   std::vector<LevelTriangle> triangles;
-  bool closed = false;  // seen from outside, no dark side can show
+  bool closed = false;  // from outside no dark side is visible
 };
 
 struct PreparedProxy {

@@ -1,7 +1,7 @@
-// From texels to spherical harmonics: sums with the weights of sh::cubeWeights, Omega (2 y(centre) - mean y), and of
-// the sky with its own (capture_sky.comp). A work group is a point; an invocation takes four coefficients of every
-// kSlices-th texel. Texels without a tile are all sky and need nothing: what comes out is the bodies' light and the
-// sky's light that they hide,
+// Projects texels to spherical harmonics: bodies with the weights of sh::cubeWeights, Omega (2 y(centre) -
+// mean y), and the sky with its own weights (capture_sky.comp). A work group handles a point; an invocation
+// handles four coefficients of every kSlices-th texel. Texels without a tile see only sky and are skipped:
+// the results are the bodies' light and the light of the sky that they hide,
 //   results[2 (point ORDER² + i)]      xyz: sum of w_i * bodies; w: sum of the open shares of texels
 //   results[2 (point ORDER² + i) + 1]  xyz: sum of v_i * hidden share * sky; w: sum of v_i * hidden share
 // Sums have a fixed order.

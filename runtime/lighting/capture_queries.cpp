@@ -26,15 +26,15 @@ std::vector<glm::vec3> discDirections(const LightQuery& query) {
   const glm::dvec3 axis = glm::normalize(given);
   const double radius = static_cast<double>(query.angular_radius_rad);
   if (!(radius > 0)) return {glm::vec3(axis)};
-  const double height = 1 - std::cos(std::min(radius, std::numbers::pi));  // of the cap
-  // Duff et al. 2017, without branches at the poles.
+  const double height = 1 - std::cos(std::min(radius, std::numbers::pi));  // of the spherical cap
+  // This frame has no branches at the poles (Duff et al. 2017).
   const double sign = std::copysign(1.0, axis.z), a = -1 / (sign + axis.z), b = axis.x * axis.y * a;
   const glm::dvec3 u(1 + sign * axis.x * axis.x * a, sign * b, -sign * axis.x),
       v(b, sign + axis.y * axis.y * a, -axis.y);
   std::vector<glm::vec3> directions;
   directions.reserve(kLookupsPerWord);
   for (std::uint32_t k = 0; k < kLookupsPerWord; ++k) {
-    // Vogel's spiral: equal steps of solid angle outwards, turned by the golden angle.
+    // Vogel's spiral takes equal steps of solid angle outwards and turns by the golden angle.
     const double down = height * (k + 0.5) / kLookupsPerWord;
     const double sine = std::sqrt(std::max(0.0, down * (2 - down)));
     const double turn = k * std::numbers::pi * (3 - std::sqrt(5.0));

@@ -1,7 +1,7 @@
-// How much of a light's disc is hidden: directions spread over it, looked up in the drawn cube maps, and what
-// the visible ones say about the light's shape. Comes in: a query, the tiles of its point. Goes out: pixels
-// and depths for the GPU; from the bits that come back, the visible share and a correction of the light. No
-// GL.
+// Measures how much of a light's disc bodies hide. Directions spread over the disc are looked up in the drawn
+// cube maps, and the visible ones also correct the shape of the light. appendLookups() turns a query and the
+// tiles of its point into pixels and depths for the GPU; visibleShare() turns the bits that come back into
+// the visible share and the correction. No GL.
 #pragma once
 
 #include <array>
@@ -18,25 +18,27 @@
 
 namespace lambent::lighting::capture {
 
-// A surface that lies as far away as the light itself, give or take this share, does not hide it.
+// A surface does not hide the light if it is as far away as the light, within this relative tolerance.
 inline constexpr double kSameDistance = 1e-3;
 
-// For the GPU: bit i of a word says whether something is nearer than the light along direction i.
+// Describes a lookup for the GPU. Bit i of a result word tells whether something is nearer than the light
+// along direction i.
 struct Lookup {
   std::uint32_t pixel = kNoPixel;  // x | y << 16
-  std::uint32_t depth_bits = 0;    // of a float: near / w, reversed
+  std::uint32_t depth_bits = 0;    // bits of a float: near / w, so larger values are nearer
 };
 
-// Unit directions of equal solid angle over the disc; one for radius 0.
+// Returns unit directions that each stand for the same solid angle of the disc. Radius 0 gives one direction.
 std::vector<glm::vec3> discDirections(const LightQuery& query);
 
-// kLookupsPerWord entries for each of the point's queries.
+// Appends kLookupsPerWord entries for each of the point's queries.
 void appendLookups(std::uint32_t size, std::uint32_t subsamples, const PlannedPoint& planned,
                    std::span<const Tile> tiles, const CapturePoint& point, std::vector<Lookup>& lookups);
 
-// The share that is visible. Where it is neither 0 nor 1, adds
+// Returns the visible share, 0..1. If it is neither 0 nor 1, adds
 //   radiance Omega (mean over visible directions of y · visible - visible · mean over all of y)
-// to `light`, so that `visible` times the disc in closed form plus this has the visible part's shape.
+// to `light`, so that `visible` times the closed form of the disc plus this term has the shape of the visible
+// part.
 float visibleShare(const LightQuery& query, std::uint32_t hidden_bits, sh::LightVector& light);
 
 }  // namespace lambent::lighting::capture

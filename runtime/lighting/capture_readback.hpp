@@ -1,5 +1,5 @@
-// A few results that come back from the GPU without waiting for it: copied into memory that the CPU sees,
-// with a fence behind the copies. Sizes in bytes. Must not outlive the context.
+// Reads results back from the GPU without stalling: they are copied into mapped memory, and a fence tells
+// when they have arrived. Sizes are in bytes. A Readback must not outlive its context.
 #pragma once
 
 #include <cstddef>
@@ -25,7 +25,7 @@ class Readback {
   }
   ~Readback() { forgetFence(); }
 
-  // Room for as much from now on; what was copied before is gone.
+  // Reserves room for this many bytes and discards earlier copies.
   void start(std::size_t byte_count) {
     forgetFence();
     used_ = 0;
@@ -39,7 +39,7 @@ class Readback {
     mapped_ = static_cast<const std::byte*>(
         glMapNamedBufferRange(id, 0, static_cast<GLsizeiptr>(capacity_), kAccess));
   }
-  // Returns where the bytes will lie.
+  // Copies from the start of the buffer and returns the offset at which read() will find the bytes.
   std::size_t copy(const gpu::Buffer& from, std::size_t byte_count) {
     const std::size_t at = used_;
     if (byte_count > 0)
@@ -50,7 +50,7 @@ class Readback {
   }
   void finish() { fence_ = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0); }
 
-  // Whether everything has arrived; always if told to wait, or if nothing was asked for.
+  // Returns whether everything has arrived. This is true if `wait` is set or if nothing was asked for.
   bool arrived(bool wait) {
     if (fence_ == nullptr) return true;
     const GLenum state = glClientWaitSync(fence_, GL_SYNC_FLUSH_COMMANDS_BIT, wait ? GL_TIMEOUT_IGNORED : 0);

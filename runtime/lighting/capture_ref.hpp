@@ -1,5 +1,6 @@
-// CPU twin of the light capture's shaders, in double: every subsample is a ray against every triangle. Slow;
-// for tests. The choice of bodies and levels is the plan's own.
+// This is the CPU twin of the light capture's shaders, in double precision. It tests every subsample as a ray
+// against every triangle, so it is slow and meant for tests. It uses the same plan for the choice of bodies
+// and levels.
 #pragma once
 
 #include <cmath>
@@ -26,14 +27,14 @@ struct RefScene {
   std::span<const bundle::CaptureProxy* const> proxies;
   std::span<const CaptureBody> bodies;
   std::span<const glm::vec4> triangle_radiance;
-  std::span<const glm::vec3> sky_texels;  // 6 size²
+  std::span<const glm::vec3> sky_texels;  // 6 size² texels
   sh::LightVector exact_sky;
 };
 
-// What a ray from the point meets: nothing, the dark side of a triangle, or a triangle that shines.
+// Describes what a ray from the point hits: nothing, the dark side of a triangle, or its bright side.
 struct RefHit {
-  std::uint32_t id = 0;                                       // as a pixel of the atlas
-  double distance = std::numeric_limits<double>::infinity();  // in lengths of the ray's direction
+  std::uint32_t id = 0;                                       // as in a pixel of the atlas
+  double distance = std::numeric_limits<double>::infinity();  // in multiples of the direction's length
 };
 
 class RefPoint {
@@ -48,7 +49,7 @@ class RefPoint {
     const Plan made = plan(scene.options, bounds, scene.bodies, std::span(&point, 1));
     std::vector<bool> done(scene.bodies.size());
     for (const Draw& draw : made.draws) {
-      if (done[draw.body]) continue;  // in another tile already
+      if (done[draw.body]) continue;  // it was added for another tile
       done[draw.body] = true;
       const CaptureBody& body = scene.bodies[draw.body];
       const bundle::CaptureProxy& proxy = *scene.proxies[body.proxy];
@@ -69,7 +70,8 @@ class RefPoint {
     RefHit hit;
     for (const Triangle& triangle : triangles_) {
       const auto& [a, b, c] = triangle.corners;
-      // Volumes of the tetrahedra that the direction makes with the edges: all of one sign inside.
+      // These are volumes of the tetrahedra that the direction spans with the edges. All have one sign
+      // inside.
       const double u = glm::dot(direction, glm::cross(b, c)), v = glm::dot(direction, glm::cross(c, a)),
                    w = glm::dot(direction, glm::cross(a, b));
       const bool front = u <= 0 && v <= 0 && w <= 0, back = u >= 0 && v >= 0 && w >= 0;
@@ -129,7 +131,8 @@ inline CapturedLight captureRef(const RefScene& scene, const CapturePoint& point
   for (const LightQuery& query : point.queries) {
     std::uint32_t bits = 0, k = 0;
     for (const glm::vec3& direction : discDirections(query)) {
-      // Through the middle of the pixel that it falls into.
+      // The ray goes through the centre of the pixel that the direction falls into, as the lookup on the GPU
+      // does.
       const std::uint32_t face = faceOf(direction);
       const glm::dvec3 at = faceFromWorld(face) * glm::dvec3(direction);
       const auto middle = [&](double s) {

@@ -1,6 +1,6 @@
-// From subsamples to texels: of each texel that a tile covers, the mean radiance of the bodies over its subsamples and
-// the share of them that bodies hide. Then the lights: what of them lies behind something. An invocation is a texel or
-// a word of lookups.
+// Resolves subsamples to texels: for each texel in a tile, it writes the mean radiance of the bodies over the
+// subsamples and the share of subsamples that bodies hide. Then it writes which lookups of the lights are
+// hidden. An invocation handles a texel or a word of lookups.
 #include "capture_shared.h"
 
 layout(local_size_x = kWorkGroupSize) in;
@@ -24,13 +24,14 @@ ivec2 pixelOf(uint packed_xy) {
 vec3 radianceOf(uint id) {
   if (id == 0u || id == kBlackId) return vec3(0.0);
   vec3 radiance = triangle_radiance[id - 1u].rgb;
-  // One bad value must not spoil a whole light; not isnan, which compilers may take for false.
+  // One bad value must not spoil a whole light. isnan is not used because compilers may assume that it is
+  // false.
   return mix(vec3(0.0), radiance, lessThan(abs(radiance), vec3(3.0e38)));
 }
 
 vec4 resolved(ivec2 origin) {
   float one_over_count = 1.0 / float(subsamples * subsamples);
-  // Neighbours mostly see the same triangle: its radiance is fetched once per run.
+  // Neighbours mostly see the same triangle, so its radiance is fetched once per run.
   uint id = 0u, run = 0u, covered = 0u;
   vec3 sum = vec3(0.0);
   for (uint y = 0u; y < subsamples; ++y)
@@ -45,7 +46,7 @@ vec4 resolved(ivec2 origin) {
       covered += min(here, 1u);
     }
   sum += float(run) * one_over_count * radianceOf(id);
-  // Exactly 1 where nothing is open, whatever the rounding.
+  // A fully covered texel gives exactly 1 in spite of rounding.
   return vec4(sum, covered == subsamples * subsamples ? 1.0 : float(covered) * one_over_count);
 }
 
@@ -61,7 +62,7 @@ void main() {
   for (uint k = 0u; k < kLookupsPerWord; ++k) {
     uvec2 lookup = lookups[(first_word + i) * kLookupsPerWord + k];
     if (lookup.x == kNoPixel) continue;
-    // Reversed depth: what is nearer than the light is greater.
+    // Depth is reversed, so a surface nearer than the light has a greater depth.
     if (texelFetch(depths, pixelOf(lookup.x), 0).r > uintBitsToFloat(lookup.y)) bits |= 1u << k;
   }
   hidden_words[first_word + i] = bits;

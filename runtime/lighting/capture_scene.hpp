@@ -1,5 +1,5 @@
-// What the light capture draws and looks from: options, bodies, points with their queries, and the light that
-// comes out. Types only.
+// Declares the types of the light capture: its options, the bodies that are drawn, the points with their
+// queries, and the resulting light.
 #pragma once
 
 #include <algorithm>
@@ -16,33 +16,33 @@ namespace lambent::lighting {
 struct CaptureOptions {
   std::uint32_t size = 16;        // texels along an edge of a cube map, 4..64
   std::uint32_t subsamples = 16;  // along an edge of a texel, 1..16
-  int order = 6;                  // bands of the light that comes out
+  int order = 6;                  // number of bands of the resulting light
   bool operator==(const CaptureOptions&) const = default;
 };
 
-// A body where it stands now. Its proxy is one of those given to setProxies.
+// Describes a body at its current place. `proxy` is an index into those given to setProxies().
 struct CaptureBody {
   std::uint32_t proxy = 0;
   glm::mat4 world_from_proxy{1.0f};  // rotation, translation, uniform scale
-  // Bodies under a quarter of a texel are left out; one that shines this many times brighter than its
-  // surroundings, only when it is as many times smaller.
+  // Bodies smaller than a quarter of a texel are left out. The limit on their size falls in proportion for a
+  // body that is this many times brighter than its surroundings.
   float brightness = 1.0f;
 };
 
-// A light that goes to harmonics in closed form, as seen from a point: what of it is not hidden?
+// Asks which share of an analytic light is visible from a point.
 struct LightQuery {
-  glm::vec3 direction{0.0f, 1.0f, 0.0f};  // unit, world, towards it
-  float angular_radius_rad = 0.0f;        // 0: a single direction
-  float distance_m = 0.0f;                // bodies farther away do not hide it; 0: at infinity
-  glm::vec3 radiance{0.0f};  // of a disc that is partly hidden, for its shape; 0 for single directions
+  glm::vec3 direction{0.0f, 1.0f, 0.0f};  // unit vector towards the light, world axes
+  float angular_radius_rad = 0.0f;        // 0 asks for a single direction
+  float distance_m = 0.0f;                // bodies beyond this distance do not hide it; 0: at infinity
+  glm::vec3 radiance{0.0f};               // corrects a partly hidden disc's shape; 0 for single directions
 };
 
 struct CapturePoint {
   static constexpr std::uint32_t kNoBody = 0xffffffffu;
   glm::vec3 position_ws{0.0f};
-  std::uint32_t own_body = kNoBody;  // index into the bodies; does not see itself
+  std::uint32_t own_body = kNoBody;  // index of the body that the point belongs to and does not see
   std::vector<LightQuery> queries{};
-  std::vector<std::uint32_t> left_out{};  // bodies that it does not see either
+  std::vector<std::uint32_t> left_out{};  // other bodies that it does not see
 
   bool ignores(std::uint32_t body) const {
     return body == own_body || std::find(left_out.begin(), left_out.end(), body) != left_out.end();
@@ -50,11 +50,11 @@ struct CapturePoint {
 };
 
 struct CapturedLight {
-  // World axes. Sky (without its discs) and bodies; where a disc of a query is partly hidden, also what is
-  // then wrong with `visible` times the whole disc.
+  // This is light in world axes: the sky without its discs, and bodies. If a query's disc is partly hidden,
+  // it also holds the difference between the visible part and `visible` times the whole disc.
   sh::LightVector light;
-  glm::vec3 sky_visible{1.0f};  // share of the sky's light that no body hides
-  std::vector<float> visible;   // per query, 0..1
+  glm::vec3 sky_visible{1.0f};  // share of the sky's light that no body hides, per channel
+  std::vector<float> visible;   // for each query, 0..1
 };
 
 }  // namespace lambent::lighting

@@ -1,25 +1,27 @@
-// The sky as all points see it: per texel of the cube in world axes the mean of the environment maps over subsamples²
-// directions, plus the constants; suns are not in it. And per texel the weights with which it goes to harmonics. Where
-// light is even they are those of sh::cubeWeights; where a environment map has a sun or a window, smaller than a texel, its
-// place within the texel is known here and must not be lost. With d the mean direction of the texel's light, s² its
-// variance, d_u and s_u² those of even light, and y(d, s) = exp(-l(l+1) s² / 4) y(d), the mean of y over a small spot:
-//   Omega y(d, s) + s² / s_u² (w - Omega y(d_u, s_u))
+// Makes the sky that all points share: for each texel of the cube in world axes, the mean of the environment
+// maps over subsamples² directions, plus the constants, without suns. It also makes the weights that project
+// each texel to harmonics. For uniform light these are the weights of sh::cubeWeights. A sun or a window in
+// an environment map is smaller than a texel, and its place within the texel must not be lost. With d the
+// mean direction of the texel's light, s² its variance, d_u and s_u² those of uniform light, and y(d, s) =
+// exp(-l(l+1) s² / 4) y(d) the mean of y over a small spot, the weight is
+//  Omega y(d, s) + s² / s_u² (w - Omega y(d_u, s_u))
 #include "capture_shared.h"
 
 layout(local_size_x = kWorkGroupSize) in;
 layout(location = 0) uniform mat3 light_from_world;
 layout(location = 1) uniform uint size;
 layout(location = 2) uniform uint subsamples;
-layout(location = 3) uniform vec2 levels;  // of the mip maps of both sets' environment maps: a texel to two subsamples
+layout(location = 3) uniform vec2 levels;  // mip level for each set's environment maps at which two
+                                           // subsamples span a texel
 layout(location = 4) uniform vec3 constant_radiance;
-layout(location = 5) uniform vec2 shares;  // of the sets' environment maps
+layout(location = 5) uniform vec2 shares;  // factors on the environment maps of the two sets
 layout(binding = kUnitFirstProbes) uniform samplerCube first_probes;
 layout(binding = kUnitSecondProbes) uniform samplerCube second_probes;
 layout(std430, binding = kBindSky) writeonly buffer Sky { vec4 sky[]; };
 layout(std430, binding = kBindWeights) readonly buffer Weights { float weights[]; };
 layout(std430, binding = kBindSkyWeights) buffer SkyWeights { float sky_weights[]; };
 
-// sh::cubeFaceDirection
+// Does the same as sh::cubeFaceDirection.
 vec3 faceDirection(uint face, float sc, float tc) {
   switch (face) {
     case 0u: return vec3(1.0, -tc, -sc);
@@ -31,7 +33,8 @@ vec3 faceDirection(uint face, float sc, float tc) {
   }
 }
 
-// K of sh/basis.hpp's recurrence: y_l = z f_l y_(l-1) - f_l / f_(l-1) y_(l-2), all of the same m.
+// Returns the factor f_l in the recurrence of sh/basis.hpp: y_l = z f_l y_(l-1) - f_l / f_(l-1) y_(l-2), all
+// of the same m.
 float zFactor(float l, float m) {
   return sqrt((4.0 * l * l - 1.0) / (l * l - m * m));
 }
@@ -79,7 +82,7 @@ void main() {
     for (uint i = 0u; i < subsamples; ++i) {
       float sc = (float(x * subsamples + i) + 0.5) * step - 1.0;
       float tc = (float(y * subsamples + j) + 0.5) * step - 1.0;
-      // Equal areas of the face are unequal solid angles; over one texel of 16 by as much as a tenth.
+      // Equal areas of the face are unequal solid angles; over one of 16 texels they differ by up to a tenth.
       float subsample_sr = pow(1.0 + sc * sc + tc * tc, -1.5);
       vec3 direction = normalize(faceDirection(face, sc, tc)), in_light = light_from_world * direction;
       vec3 radiance = constant_radiance;
@@ -96,10 +99,10 @@ void main() {
 
   uint first_weight = texel * uint((ORDER * ORDER + 3) / 4 * 4);
   even_offset /= texel_sr;
-  // A single subsample tells nothing of what is within, and black is even.
+  // With a single subsample nothing is known about the inside of the texel, and black counts as uniform.
   bool even = subsamples == 1u || !(brightness > 0.0);
   offset = even ? even_offset : offset / brightness;
-  // 1 - |mean direction|², which is the variance, without its cancellation.
+  // The variance is 1 - |mean direction|², written so that it does not cancel.
   float even_variance = -dot(even_offset, 2.0 * middle + even_offset);
   float variance = clamp(-dot(offset, 2.0 * middle + offset), 0.0, even_variance);
   float share = even ? 1.0 : variance / even_variance;

@@ -27,13 +27,13 @@ using namespace capture;
 
 constexpr gpu::FindText kShaders[] = {&embedded::lambent_lighting::find};
 
-// As in capture_sky.comp.
+// These are the uniform locations of capture_sky.comp.
 constexpr GLint kLightFromWorld = 0, kSize = 1, kSubsamples = 2, kLevels = 3, kConstant = 4, kShares = 5;
 constexpr GLint kTexelCount = 0;  // as in capture_sky_light.comp
 constexpr std::uint32_t kLargestProbeCube = 512;
 
-// At least a texel of the cube per texel of the environment map, as far as memory goes; a power of two for
-// the mip maps.
+// Returns a power of two, for the mip maps, that gives at least a texel of the cube per texel of the
+// environment map unless that exceeds the largest size.
 std::uint32_t probeCubeSize(const std::vector<const spec::EnvironmentMap*>& environment_maps) {
   std::uint32_t size = 1;
   for (const spec::EnvironmentMap* environment_map : environment_maps) {
@@ -45,7 +45,7 @@ std::uint32_t probeCubeSize(const std::vector<const spec::EnvironmentMap*>& envi
   return size;
 }
 
-// Means over 2 x 2 places of each texel.
+// Each texel is the mean over 2 x 2 places in it.
 std::vector<glm::vec4> faceTexels(const std::vector<const spec::EnvironmentMap*>& environment_maps, int face,
                                   std::uint32_t size) {
   constexpr double kPlaces[] = {0.25, 0.75};
@@ -66,7 +66,7 @@ std::vector<glm::vec4> faceTexels(const std::vector<const spec::EnvironmentMap*>
   return texels;
 }
 
-// In the lights' own frame, with mip maps.
+// Makes the cube in the lights' own frame, with mip maps.
 gpu::Texture probeCube(const std::vector<const spec::EnvironmentMap*>& environment_maps) {
   const std::uint32_t size = probeCubeSize(environment_maps);
   gpu::Texture cube("capture environment maps", {.format = GL_RGBA32F,
@@ -131,8 +131,8 @@ void CaptureSky::makeTurned(const Environment& environment, const glm::mat3& wor
   takeLights(environment);
   version_ = 0;
   const glm::mat3 light_from_world = glm::transpose(world_from_light);
-  // Two subsamples to a texel: with one, the filter's triangles would not add up evenly over a turned
-  // environment map, and a sun of one texel would flicker by several per cent.
+  // Two subsamples span a texel: with one, the triangles of the linear filter would not add up evenly over a
+  // turned environment map, and a sun of one texel would flicker by several per cent.
   const auto levelOf = [&](const gpu::Texture& environment_maps) {
     return std::max(0.0f, std::log2(2.0f * static_cast<float>(environment_maps.desc().width) /
                                     static_cast<float>(options_.size * options_.subsamples)));

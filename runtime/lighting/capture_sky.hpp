@@ -1,8 +1,8 @@
-// The sky as the light capture sees it: one small cube in world axes for all points, box-filtered, without
-// suns. Comes in: an environment. Goes out: per texel (order of sh/cube_map.hpp) its
-// radiance and the weights that take it to harmonics, and the sum of both, made anew by two
-// dispatches when the environment turned, faded or is another. Errors: shaders that
-// do not compile on this device.
+// Owns the sky as the light capture sees it: one small box-filtered cube map in world axes for all points,
+// without suns. It takes an environment and provides, per texel (in the order of sh/cube_map.hpp), the
+// radiance and the weights that project it to harmonics, and the projected sum. Two dispatches remake them
+// when the environment was turned, faded or replaced. Render thread only. create() fails if a shader does not
+// compile on this device.
 #pragma once
 
 #include <array>
@@ -24,16 +24,16 @@ class CaptureSky {
   CaptureSky() = default;
   static Result<CaptureSky> create(const CaptureOptions& options, const Environment& environment);
 
-  // Does nothing if the environment is as it was. True if the cube was made anew.
-  // weights: [texel][coefficient], sh::cubeWeights.
+  // Remakes the cube if the environment changed, and returns whether it did. `weights` is
+  // [texel][coefficient] from sh::cubeWeights.
   bool update(const Environment& environment, const gpu::Buffer& weights, gpu::Counters& counters);
-  // Makes the cube with the environment maps turned in any way, for measurements; the next update() makes it
-  // anew.
+  // Makes the cube with the environment maps turned by any rotation, for measurements. The next update()
+  // remakes it.
   void makeTurned(const Environment& environment, const glm::mat3& world_from_light,
                   const gpu::Buffer& weights);
-  // For capture_project.comp.
+  // Binds the texels and weights that capture_project.comp reads.
   void bindTables();
-  // vec4 per coefficient: the sum of texels times weights.
+  // Returns one vec4 per coefficient: the sum of texels times weights.
   const gpu::Buffer& light() const { return light_; }
 
  private:
@@ -41,13 +41,12 @@ class CaptureSky {
 
   CaptureOptions options_;
   gpu::Program program_, light_program_;
-  std::array<gpu::Texture, Environment::kSets>
-      environment_maps_;  // in the lights' own frame, float32, with mip maps
+  std::array<gpu::Texture, Environment::kSets> environment_maps_;  // light frame, float32, mip maps
   gpu::Sampler sampler_;
   gpu::Buffer texels_, weights_, light_;
   gpu::Handle<gpu::TextureTraits> texels_view_, weights_view_;
-  std::uint64_t version_ = 0;  // of the environment that the cube shows; 0: of none
-  std::uint64_t lights_ = 0;   // version of those in the environment maps' cubes
+  std::uint64_t version_ = 0;  // version of the environment that the cube shows; 0: none yet
+  std::uint64_t lights_ = 0;   // version of the lights in environment_maps_
 };
 
 }  // namespace lambent::lighting

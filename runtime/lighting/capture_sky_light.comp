@@ -1,4 +1,5 @@
-// The whole sky's light as its texels give it: an invocation is a coefficient, ORDER² of them. One work group.
+// Computes the light of the whole sky as its texels represent it. An invocation computes one of ORDER²
+// coefficients; there is one work group.
 #include "capture_shared.h"
 
 layout(local_size_x = ORDER * ORDER) in;

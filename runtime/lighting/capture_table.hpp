@@ -1,11 +1,12 @@
-// Storage buffers as buffer textures, for shaders that fetch whole vectors far apart.
+// Presents storage buffers as buffer textures to shaders that fetch whole vectors at distant places.
 #pragma once
 
 #include "runtime/gpu/objects.hpp"
 
 namespace lambent::lighting::capture {
 
-// Binds a view, made when it is first used; anew each time, since tables move when they grow.
+// Binds a view of the buffer. The view is created on first use and attached again on each call, since tables
+// move when they grow.
 inline void bindTable(gpu::Handle<gpu::TextureTraits>& texture, GLuint unit, GLenum format,
                       const gpu::Buffer& buffer) {
   if (!texture) {

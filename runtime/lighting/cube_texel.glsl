@@ -1,4 +1,5 @@
-// Unnormalised direction through the texel's centre, of a cube map's level of `size` texels, as runtime/sh/cube_map.hpp has it.
+// Returns the unnormalised direction through a texel's centre in a cube map level with `size` texels per
+// edge, as runtime/sh/cube_map.hpp defines it.
 vec3 cubeTexelDirection(ivec3 texel, int size) {
   vec2 at = (2.0 * vec2(texel.xy) + 1.0) / float(size) - 1.0;
   switch (texel.z) {

@@ -18,11 +18,12 @@ namespace lambent::lighting {
 
 namespace {
 
-// Up to so far beside it, or within its disc, an edit still means a key light: other settings part the same
-// picture a little differently.
+// An edit applies to a key light up to this far away, or within its disc, because other settings divide the
+// same picture a little differently.
 constexpr float kSameKey_rad = 0.01f;
 
-// Checksums and sizes go in as they are; what is given by reference by its own checksum.
+// Combines values into a checksum. Checksums and sizes enter as they are; data held by reference enters by
+// its own checksum.
 class Seal {
  public:
   template <typename T>
@@ -43,7 +44,7 @@ class Seal {
 }  // namespace
 
 Environment::EnvironmentMapSource Environment::sourceOf(const spec::EnvironmentMapLight& light) {
-  std::error_code code;  // a file that is not there is told of by whoever reads it
+  std::error_code code;  // a missing file is reported by whoever reads it
   EnvironmentMapSource source{light.file, light.layout, std::filesystem::last_write_time(light.file, code),
                               0};
   source.bytes = std::filesystem::file_size(light.file, code);
@@ -60,7 +61,7 @@ Result<Environment> Environment::create(const std::vector<spec::Light>& lights,
 Result<void> Environment::setLights(const std::vector<spec::Light>& lights,
                                     const std::vector<spec::Light>& second_lights) {
   const std::array<const std::vector<spec::Light>*, kSets> given = {&lights, &second_lights};
-  // Where the environment maps come from, in their order: a set and a place in it, or, of kSets, a place in
+  // For each environment map, the set and the index in it that it comes from; kSets stands for an index in
   // `loaded`.
   std::vector<std::array<std::size_t, 2>> origins;
   std::vector<LoadedProbe> loaded;
@@ -106,7 +107,7 @@ Result<void> Environment::setLights(const std::vector<spec::Light>& lights,
           return Result<spec::EnvironmentMap>(std::move(
               from == kSets ? loaded[place].environment_map : sets_[from].lights.environment_maps[place]));
         });
-    set.lights = std::move(*made);  // nothing was left to read
+    set.lights = std::move(*made);  // cannot fail: nothing was left to read
     part(set);
   }
   sets_ = std::move(sets);
@@ -275,7 +276,7 @@ float Environment::shareOf(std::size_t index) const {
   return intensity_ * (index == 0 ? 1.0f - fade_ : fade_);
 }
 
-// Always from the light as loaded: no error gathers over turns and fades.
+// Mixes from the lights as loaded, so that no error accumulates over turns and fades.
 void Environment::mix() {
   const glm::mat3 world_from_light = worldFromLight();
   sh::LightVector sky{.order = sh::kMaxOrder}, discs{.order = sh::kMaxOrder}, keys{.order = sh::kMaxOrder};

@@ -1,13 +1,15 @@
-// The light at infinity: environment maps, suns and constants added up, in one or two sets to fade between,
-// turned together about +Y. Comes in: the lights as parsed; those that stand in the scene are passed over.
-// Goes out: light vectors of order 8 in world space (environment maps projected once when loaded, suns in
-// closed form), the suns as discs, and what the sky shows. Fading and turning mix what was projected once. If
-// key lights are asked for, the light is parted once when it is loaded (key_lights.hpp): surfaces take the
-// direct light of key lights by shadow maps, and the rest, which few bands carry, by transfer. Key lights
-// that were found in environment maps may be moved, dimmed and coloured: their discs change, and the sky
-// shows them in place of their texels. Whoever follows one environment may be given another at any time:
-// versions tell what they say, not how often it was changed. No GL. Errors: those of loading a environment
-// map.
+// Owns the light at infinity: the sum of environment maps, suns and constants, in one or two sets that can be
+// faded between and are turned together about +Y. It takes parsed lights and ignores those that stand in the
+// scene. It provides light vectors of order 8 in world space (environment maps are projected once when they
+// are loaded, suns in closed form), the suns as discs, and what the sky shows; fading and turning only mix
+// what was projected.
+//
+// If key lights are asked for, the light is divided once when it is loaded (key_lights.hpp): surfaces receive
+// the direct light of key lights by shadow maps, and the rest, which few bands can carry, by transfer. Key
+// lights that were found in environment maps can be moved, dimmed and coloured: their discs change, and the
+// sky shows the discs in place of their texels. Versions are checksums of the contents, so users may switch
+// between Environment objects at any time. No GL. create() and setLights() fail if an environment map cannot
+// be loaded.
 #pragma once
 
 #include <array>
@@ -37,57 +39,58 @@ class Environment {
 
   static Result<Environment> create(const std::vector<spec::Light>& lights,
                                     const std::vector<spec::Light>& second_lights = {});
-  // Shines with these in place of its own; turn, fade and intensity stay. Environment maps that it has, of
-  // files that did not change since, are neither read nor projected again. Errors: those of create(); nothing
-  // is changed then.
+  // Replaces the lights; turn, fade and intensity stay. Environment maps that are already loaded, and whose
+  // files did not change since, are neither read nor projected again. On an error nothing is changed.
   Result<void> setLights(const std::vector<spec::Light>& lights,
                          const std::vector<spec::Light>& second_lights = {});
 
-  // How many key lights each set may have at most; 0, the default of this class: none. Parts the light anew
-  // if it changes.
+  // Sets how many key lights each set may have at most. 0, the default of this class, means none. A change
+  // divides the light again.
   void setMostKeys(std::uint32_t most);
 
-  // In place of the edits before. Each is of the key light of its set that was found in a environment map
-  // nearest to edit.found, if that is close enough; of several edits of one key light the last counts. One
-  // that meets no key light changes nothing, and waits for another parting. They stay when other lights are
-  // loaded: whoever loads these says which edits are theirs.
+  // Replaces all edits. Each edit applies to the key light of its set, found in an environment map, that is
+  // nearest to edit.found, if it is close enough; the last of several edits of one key light counts. An edit
+  // without a matching key light has no effect until the lights are divided differently. Edits stay when
+  // other lights are loaded, so the caller must clear those that no longer apply.
   void setKeyEdits(std::vector<spec::KeyEdit> edits);
 
-  // Each gives another version where it changes something. Values that are not finite change nothing.
+  // Each of these setters changes the version if it changes a value. Values that are not finite are ignored.
   // Positive turns take +Z to +X.
   void setTurn(float degrees);
-  // 0: the first set alone, 1: the second; between them (1 - fade) of the one and fade of the other. Clamped.
+  // Sets the share of the second set, clamped to 0..1; the first set has the share 1 - fade.
   void setFade(float fade);
-  // Factor on all of it, 0 or more.
+  // Sets a factor on all light, at least 0.
   void setIntensity(float intensity);
   float turnDegrees() const { return turn_degrees_; }
   float fade() const { return fade_; }
   float intensity() const { return intensity_; }
-  // World directions from the lights' own.
+  // Returns the rotation from the lights' own frame to world space.
   glm::mat3 worldFromLight() const;
 
-  // Now: world space, turned, faded, times the intensity.
-  const sh::LightVector& light() const { return light_; }           // all of it
+  // These return the current light: in world space, turned, faded and scaled by the intensity.
+  const sh::LightVector& light() const { return light_; }           // all light
   const sh::LightVector& skyLight() const { return sky_light_; }    // without any disc
-  const sh::LightVector& keyLight() const { return key_light_; }    // of the key lights alone
-  const sh::LightVector& restLight() const { return rest_light_; }  // light() without that
-  // The suns of both sets, key lights last, always as many and in the same order; dark ones have radiance 0.
+  const sh::LightVector& keyLight() const { return key_light_; }    // key lights only
+  const sh::LightVector& restLight() const { return rest_light_; }  // light() without keyLight()
+  // Returns the suns of both sets, key lights last. Their number and order do not change while the lights
+  // fade; dark ones have radiance 0.
   const std::vector<Disc>& discs() const { return discs_; }
   std::span<const Disc> keys() const { return std::span(discs_).subspan(first_key_); }
   bool isKey(std::size_t disc) const { return disc >= first_key_; }
-  // Of all that is said above, a checksum: of two environments, also of two objects, the same where they are
-  // the same light, and else another (but for one chance in 2^64). Never 0.
+  // Returns a checksum of all values above. Two environments, also different objects, have the same version
+  // exactly if they are the same light (but for one chance in 2^64). Never 0.
   std::uint64_t version() const { return version_; }
-  // Of what was loaded and its edits, likewise: turning, fading and dimming leave it as it is.
+  // Returns a checksum of the loaded lights and their edits. Turning, fading and dimming do not change it.
   std::uint64_t lightsVersion() const { return lights_version_; }
-  // Of restOf() alone, and of the pictures of shownOf() alone: a key light that is dragged changes neither,
-  // so that what is made from pictures need not be made anew for it.
+  // Return checksums of restOf() alone and of the pictures in shownOf() alone. Dragging a key light changes
+  // neither, so what was made from the pictures need not be made again.
   std::uint64_t restVersion() const { return rest_version_; }
   std::uint64_t picturesVersion() const { return pictures_version_; }
 
-  // As loaded, without edits: the lights' own frame, whole radiance.
+  // Returns the lights as loaded, without edits, in the lights' own frame at full radiance.
   const spec::DistantLights& set(std::size_t index) const { return sets_[index].lights; }
-  // The same without the key lights: environment maps without their peaks, and the discs that are none.
+  // Holds the lights of a set without its key lights: environment maps without their peaks, and the remaining
+  // discs.
   struct Rest {
     std::vector<const spec::EnvironmentMap*> environment_maps;
     glm::vec3 constant{0.0f};
@@ -95,29 +98,29 @@ class Environment {
   };
   Rest restOf(std::size_t index) const;
   const std::vector<Disc>& keysOf(std::size_t index) const { return sets_[index].key_discs; }
-  // What an eye sees: as loaded, but for key lights that are edited. These are out of the pictures, and
-  // discs.
+  // Holds what the camera sees: the lights as loaded, but edited key lights are removed from the pictures and
+  // added as discs.
   struct Shown {
     std::vector<const spec::EnvironmentMap*> environment_maps;
     glm::vec3 constant{0.0f};
     std::vector<Disc> discs;
   };
   Shown shownOf(std::size_t index) const;
-  // In the order of keys().
+  // Describes a key light as found and as edited. foundKeys() returns them in the order of keys().
   struct FoundKey {
     std::size_t set = 0;
     KeyOrigin origin;
-    Disc found, now;  // the lights' own frame, whole radiance; without and with the edit
+    Disc found, now;  // without and with the edit; lights' own frame, full radiance
     std::optional<spec::KeyEdit> edit;
   };
   std::vector<FoundKey> foundKeys() const;
-  // By what set() is multiplied now.
+  // Returns the factor by which set() is multiplied now: its share of the fade times the intensity.
   float shareOf(std::size_t index) const;
-  // What was repaired in the environment maps; a sentence each.
+  // Returns a sentence for each thing that was repaired in the environment maps.
   const std::vector<std::string>& notices() const { return notices_; }
 
  private:
-  // What a environment map was loaded from.
+  // Identifies the file that an environment map was loaded from, and its state.
   struct EnvironmentMapSource {
     std::filesystem::path file;
     std::optional<sh::ImageLayout> layout;
@@ -126,11 +129,11 @@ class Environment {
     bool operator==(const EnvironmentMapSource&) const = default;
   };
   static EnvironmentMapSource sourceOf(const spec::EnvironmentMapLight& light);
-  // What takes long to say of a environment map.
+  // Keeps the results for an environment map that take long to compute.
   struct KnownEnvironmentMap {
     EnvironmentMapSource source;
     sh::LightVector sky;
-    std::uint64_t checksum = 0;  // of its texels
+    std::uint64_t checksum = 0;  // of the texels
   };
   struct LoadedProbe {
     spec::EnvironmentMap environment_map;
@@ -138,20 +141,20 @@ class Environment {
   };
   struct Set {
     spec::DistantLights lights;
-    std::vector<KnownEnvironmentMap> known;  // as lights.environment maps
+    std::vector<KnownEnvironmentMap> known;  // in the order of lights.environment_maps
     PartedLights parted;
-    std::vector<Disc> key_discs;                      // parted.keys with the edits
-    std::vector<std::optional<spec::KeyEdit>> edits;  // as parted.keys
+    std::vector<Disc> key_discs;                      // parted.keys with the edits applied
+    std::vector<std::optional<spec::KeyEdit>> edits;  // in the order of parted.keys
     std::vector<std::optional<spec::EnvironmentMap>>
-        pictures;  // as lights.environment maps: without the keys that are edited
+        pictures;  // in the order of lights.environment_maps; without the edited keys
     sh::LightVector sky, discs,
-        keys;  // in the lights' own frame; sky: environment maps and the constant without peaks
+        keys;  // lights' own frame; `sky` is the environment maps and the constant without peaks
   };
   Environment() = default;
   void part(Set& set) const;
   void applyEdits(std::size_t index);
   void mix();
-  void seal();  // says what was loaded
+  void seal();  // updates lights_version_
 
   std::array<Set, kSets> sets_;
   std::vector<std::string> notices_;

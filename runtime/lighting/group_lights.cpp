@@ -14,7 +14,7 @@ namespace lambent::lighting {
 
 namespace {
 
-// By how much of itself something changed, at most 1.
+// Returns the relative change, at most 1.
 float changeBetween(std::span<const glm::vec3> before, std::span<const glm::vec3> after) {
   double change = 0.0, power = 0.0;
   for (std::size_t i = 0; i < before.size(); ++i) {
@@ -25,7 +25,7 @@ float changeBetween(std::span<const glm::vec3> before, std::span<const glm::vec3
   return power > 0.0 ? static_cast<float>(std::min(std::sqrt(change / power), 1.0)) : 0.0f;
 }
 
-// Lamps that stand apart give light, and so have a band 0.
+// Lamps that are kept apart give light, so their band 0 is not zero.
 bool hasLampsApart(const GroupPlace& place) {
   return place.parted && std::ranges::any_of(place.incident, [](const Incident& incident) {
            return incident.key != nullptr && incident.key->c[0] != glm::vec3(0.0f);
@@ -72,7 +72,7 @@ bool GroupLights::updateLamps(Group& group, const GroupPlace& place) {
 
 void GroupLights::update(const Environment& environment, sh::Window window,
                          std::span<const GroupPlace> groups, gpu::Counters& counters, int max_order) {
-  // Blocks move when groups come and go.
+  // Blocks move when groups come or go.
   const bool same_groups = std::ranges::equal(groups, groups_.keys(), {}, &GroupPlace::key) &&
                            std::ranges::equal(groups, groups_, sameLayout);
   if (!same_groups) layOut(groups);
@@ -134,7 +134,7 @@ sh::LightVector GroupLights::keyLightOf(const Environment& environment, const Gr
 
 void GroupLights::followWindows(const Environment& environment, sh::Window window,
                                 std::span<const GroupPlace> groups, std::span<const Renewal> renewals) {
-  // At 30 to 75 microseconds each.
+  // each takes 30 to 75 microseconds
   constexpr std::size_t kWorthAThread = 8;
   struct Search {
     sh::CachedWindow* kept;
@@ -165,7 +165,7 @@ sh::CachedWindow& GroupLights::windowOf(const Renewal& renewal, const GroupPlace
 void GroupLights::write(const Environment& environment, std::span<const GroupPlace> groups,
                         std::span<const Renewal> renewals) {
   std::optional<sh::Rotation> rotation;
-  std::size_t rotation_of = 0;  // which group
+  std::size_t rotation_of = 0;  // index of the group that the rotation is for
   for (const Renewal& renewal : renewals) {
     const GroupPlace& place = groups[renewal.group];
     Group& group = groups_[renewal.group];

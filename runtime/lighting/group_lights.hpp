@@ -1,10 +1,11 @@
-// The light of each rigid group on the GPU, in the group's own frame: what effects multiply transfer with.
-// Comes in: the environment, and per group its rotation in the world, the order of its transfer, what arrives
-// at its light probes and what its own lights give now. Goes out: per group and light probe two blocks of
-// 64 coefficients of vec4 (zeros above order²), the light without key lights and that of key lights alone
-// (and of lamps whose straight light comes per pixel, too),
-// then the group's own lights, and versions that rise when these change. The first block is windowed (the
-// environment once per order, a light of the same shape as before not anew); both are rotated per group.
+// Owns the light of each rigid group on the GPU, in the group's own frame, as effects multiply it with
+// transfer. It takes the environment and, per group, its rotation in the world, the order of its transfer,
+// the light that arrives at its light probes, and the current strength of its own lights. It provides per
+// group and light probe two blocks of 64 vec4 coefficients (zero from order² on): first the light without key
+// lights, then key lights alone, with those lamps whose direct light is shaded per pixel. The group's own
+// lights follow. Versions rise when these change. The first block is windowed (the environment once per
+// order, and only when the shape of its light changed); both blocks are rotated per group. Render thread
+// only.
 #pragma once
 
 #include <array>
@@ -23,74 +24,76 @@
 
 namespace lambent::lighting {
 
-// What arrives at a light probe, world axes.
+// Names the light that arrives at a light probe, in world axes.
 struct Incident {
-  const sh::LightVector* light = nullptr;  // without key lights; null: the environment's, nothing in its way
-  const sh::LightVector* key = nullptr;    // of key lights and lamps that stand apart, likewise
+  const sh::LightVector* light = nullptr;  // without key lights; null: the environment's, unoccluded
+  const sh::LightVector* key = nullptr;    // key lights and lamps shaded per pixel; null: as for light
   std::uint64_t version = 0;               // of both
 };
 
 struct GroupPlace {
   glm::quat world_from_group{1.0f, 0.0f, 0.0f, 0.0f};
   std::uint32_t order = 1;
-  // Lights that belong to the group, one per light column of its transfer: colour times strength.
+  // These are the coefficients of the lights that belong to the group, one per light column of its transfer:
+  // colour times strength.
   std::vector<glm::vec3> lamps{};
-  std::vector<Incident> incident = {{}};  // per light probe
-  std::uint64_t key = 0;                  // by which the group is known again when others come and go
-  // Key lights stand apart, for their direct light comes by shadow maps, and so do lamps. Else transfer
-  // brings all of them.
+  std::vector<Incident> incident = {{}};  // one per light probe
+  std::uint64_t key = 0;                  // identifies the group when others come and go
+  // If true, key lights and lamps are kept apart because shadow maps carry their direct light. If false,
+  // transfer carries all of it.
   bool parted = true;
 };
 
 class GroupLights {
  public:
-  static constexpr std::uint32_t kBlock = sh::kMaxCoefficients;  // vec4s of one light
-  static constexpr std::uint32_t kStride = 2 * kBlock;           // of a light probe: without keys, keys alone
+  static constexpr std::uint32_t kBlock = sh::kMaxCoefficients;  // vec4s per light
+  static constexpr std::uint32_t kStride = 2 * kBlock;           // vec4s per light probe: light, then keys
 
   GroupLights() : table_("group lights") {}
 
-  // Does nothing if neither the environment, the window, max_order nor any group changed. max_order: bands of
-  // the light that count, at most; the window is that of as many, and higher ones are 0.
+  // Uploads what changed; does nothing if the environment, the window, max_order and all groups are as
+  // before. `max_order` limits the bands of the light: the window is made for that many bands, and higher
+  // bands are 0.
   void update(const Environment& environment, sh::Window window, std::span<const GroupPlace> groups,
               gpu::Counters& counters, int max_order = sh::kMaxOrder);
-  // All counts as new in the next update.
+  // Makes the next update treat everything as new.
   void forget() {
     groups_.clear();
     environment_windows_ = {};
   }
 
   std::size_t groupCount() const { return groups_.size(); }
-  // Whether there are key lights, or lamps that stand apart; without them their blocks are 0.
+  // Returns whether there are key lights or lamps that are kept apart. If not, their blocks are 0.
   bool hasKeys() const { return has_keys_; }
-  // vec4 indices: of a light probe's coefficients (those of its key lights kBlock behind them), of the
-  // group's own lights.
+  // Return indices of vec4s: of a light probe's first coefficient (its key lights follow kBlock later), and
+  // of the group's own lights.
   std::uint32_t firstOf(std::size_t group, std::size_t sample = 0) const {
     return groups_[group].first + kStride * static_cast<std::uint32_t>(sample);
   }
   std::uint32_t lampsOf(std::size_t group) const { return firstOf(group, groups_[group].samples.size()); }
-  // Of all of it, of one light probe, of its own lights.
+  // Return the versions of all light of a group, of one light probe, and of the group's own lights.
   std::uint64_t versionOf(std::size_t group) const { return groups_[group].version; }
   std::uint64_t versionOf(std::size_t group, std::size_t sample) const {
     return groups_[group].samples[sample].version;
   }
   std::uint64_t lampsVersionOf(std::size_t group) const { return groups_[group].lamps_version; }
-  // By how much of itself the light that arrives at the group changed in the last update, at the sample where
-  // it changed most: 0 where nothing did, at most 1. In world axes: a group that turns under a still light
-  // has 0.
+  // Returns the relative change, 0..1, of the light that arrived at the group in the last update, at the
+  // light probe where it changed most. It is measured in world axes, so a group that turns under constant
+  // light gives 0.
   float changeOf(std::size_t group) const { return groups_[group].change; }
-  // Light probes whose coefficients the last update wrote.
+  // Returns how many light probes the last update wrote.
   std::uint32_t renewedSamples() const { return renewed_; }
   void bindStorage(std::uint32_t binding) const { table_.bindStorage(binding); }
-  // As uploaded, for CPU twins.
+  // Returns the coefficients as uploaded, for CPU twins.
   std::span<const glm::vec4> coefficients() const { return coefficients_; }
 
  private:
   struct Sample {
     bool from_environment = false;
-    std::uint64_t seen = 0;  // version of the light it was computed from
+    std::uint64_t seen = 0;  // version of the light that it was computed from
     std::uint64_t version = 0;
     sh::CachedWindow window;
-    sh::LightVector light_ws{1}, key_ws{1};  // the first windowed
+    sh::LightVector light_ws{1}, key_ws{1};  // light_ws is windowed
   };
   struct Group {
     glm::quat world_from_group{1.0f, 0.0f, 0.0f, 0.0f};
@@ -102,21 +105,22 @@ class GroupLights {
     std::uint64_t version = 0, lamps_version = 0;
     float change = 0.0f;
   };
-  // A light probe to be written.
+  // Names a light probe that must be written.
   struct Renewal {
     std::size_t group = 0, sample = 0;
-    bool light = false;  // also its light is new, not only the frame it is in
+    bool light = false;  // its light is new, not only the frame of its group
   };
   static bool sameLayout(const GroupPlace& place, const Group& group);
-  // Those whose windows are to be searched for, on several threads: each is for itself.
+  // Searches the windows of those probes that need one. Each is independent, so several threads share the
+  // work.
   void followWindows(const Environment& environment, sh::Window window, std::span<const GroupPlace> groups,
                      std::span<const Renewal> renewals);
-  // What arrives at a light probe, world axes: without key lights (all of it where they are not apart), and
-  // of them.
+  // Return what arrives at a light probe in world axes: the light without key lights (all light if the place
+  // is not parted), and the key lights.
   static sh::LightVector lightOf(const Environment& environment, const GroupPlace& place, std::size_t sample);
   static sh::LightVector keyLightOf(const Environment& environment, const GroupPlace& place,
                                     std::size_t sample);
-  // Which of environment_windows_ a place goes by.
+  // Returns the index into environment_windows_ that applies to a place.
   static std::size_t environmentWindow(const GroupPlace& place) {
     return 2 * std::size_t{place.order} + (place.parted ? 1 : 0);
   }
@@ -127,7 +131,7 @@ class GroupLights {
   bool updateLamps(Group& group, const GroupPlace& place);
 
   KeyedState<Group> groups_;
-  std::array<sh::CachedWindow, 2 * (sh::kMaxOrder + 1)> environment_windows_;  // see environmentWindow()
+  std::array<sh::CachedWindow, 2 * (sh::kMaxOrder + 1)> environment_windows_;  // by environmentWindow()
   std::vector<glm::vec4> coefficients_;
   std::uint64_t environment_version_ = 0;
   sh::Window window_ = sh::Window::Off;

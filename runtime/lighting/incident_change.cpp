@@ -10,7 +10,8 @@ namespace lambent::lighting {
 
 namespace {
 
-// Columns of rotation and scale: how far points at unit distance from the origin may have moved.
+// Returns how far points at unit distance from the origin may have moved, from the columns of rotation and
+// scale.
 float turnBetween(const glm::mat4& a, const glm::mat4& b) {
   float turn = 0.0f;
   for (int column = 0; column < 3; ++column)
@@ -29,16 +30,16 @@ BodyChange changeOf(const BodyPose& before, const glm::vec3& place_before, const
   const float moved = glm::distance(offset_before, offset_after) +
                       radius_m * turnBetween(before.world_from_proxy, after.world_from_proxy);
   const float distance = std::min(glm::length(offset_before), glm::length(offset_after));
-  // Inside its sphere anything may have happened.
+  // Inside the body's sphere nothing can be ruled out.
   if (distance <= radius_m) return {.half_angle = kPi, .angle = moved > 0.0f ? kPi : 0.0f, .drift = drift};
   return {
       .half_angle = std::asin(radius_m / distance), .angle = moved / (distance - radius_m), .drift = drift};
 }
 
 float shareOfLight(const BodyChange& change, bool other, int order) {
-  // A body that fills a share of the sphere makes up so much of the light's mean, and n times as much of n
-  // bands of it (|y(d)|² = n²/4pi), up to all of it. Turned by an angle, it differs from itself by about
-  // n/2 times the angle (the parallax of a delta light), until it is another altogether.
+  // A body that fills a share of the sphere contributes that share of the light's mean, and up to n times as
+  // much in n bands (|y(d)|² = n²/4pi), but no more than all of it. Moved by an angle, its light differs from
+  // itself by about n/2 times the angle (the parallax of a delta light), up to that of an unrelated light.
   const auto bands = static_cast<float>(order);
   constexpr float kOther = std::numbers::sqrt2_v<float>;
   const float parallax = other ? kOther : std::min(0.5f * bands * change.angle, kOther);

@@ -17,7 +17,8 @@ namespace {
 constexpr std::uint64_t kNoVersion = ~std::uint64_t{0};
 constexpr std::size_t kGone = ~std::size_t{0};
 
-// Whether either part of a light, without and of key lights, changed by more than a little of the whole.
+// Returns whether either part of a light (with and without key lights) changed by more than kLeastChange of
+// the whole.
 bool differs(const sh::LightVector& now, const sh::LightVector& key, const sh::LightVector& before,
              const sh::LightVector& key_before) {
   double change = 0.0, power = 0.0;
@@ -55,7 +56,7 @@ Result<void> IncidentLight::renew(const CaptureOptions& options, const Environme
 void IncidentLight::forget() {
   ++renewal_;
   nothing_to_draw_ = false;
-  counts_.waiting = std::max(counts_.waiting, 1u);  // not at rest before it was looked for
+  counts_.waiting = std::max(counts_.waiting, 1u);  // not at rest before changes were looked for
 }
 
 void IncidentLight::leaveOut(Sample& sample, const std::vector<std::uint32_t>& left_out, bool fades) {
@@ -71,7 +72,7 @@ void IncidentLight::takeDrawn(bool wait) {
   counts_.arrived = static_cast<std::uint32_t>(requests_.size());
   for (std::size_t i = 0; i < requests_.size(); ++i) {
     Request& request = requests_[i];
-    // Groups and their samples may have gone since.
+    // Groups and their samples may have gone in the meantime.
     if (request.group >= groups_.size() || request.sample >= groups_[request.group].samples.size()) continue;
     Sample& sample = groups_[request.group].samples[request.sample];
     request.drawn.result = std::move((*results)[i]);
@@ -83,7 +84,7 @@ void IncidentLight::takeDrawn(bool wait) {
   requests_.clear();
 }
 
-// Samples of a group that was baked anew begin with the light of what was nearest to them.
+// Samples of a group that was baked again start with the light of the nearest former sample.
 void IncidentLight::renewSamples(Group& group, const IncidentGroup& now) {
   std::vector<Sample> samples(now.samples_ws.size());
   std::uint64_t version = 0;
@@ -117,7 +118,7 @@ void IncidentLight::followGroups(std::span<const IncidentGroup> groups) {
   }
 }
 
-// Bodies of all that is kept, by their indices from now on. Those that went stand behind all others.
+// Renumbers the bodies in all that is kept. Bodies that are gone are placed behind all others.
 void IncidentLight::followBodies(std::span<const IncidentBody> bodies) {
   if (std::ranges::equal(bodies, body_keys_, {}, &IncidentBody::key)) return;
   std::vector<std::uint32_t> now(body_keys_.size(), CapturePoint::kNoBody);
@@ -192,7 +193,7 @@ void IncidentLight::updateSample(Sample& sample, const Group& group, const Envir
   }
   const bool fading = sample.fade_steps > 0;
   if (!sample.drawn && !lit && !fading) {
-    // GroupLights itself follows the environment.
+    // GroupLights itself follows changes of the environment.
     if (!sample.plain || sample.version == 0 || sample.environment != environment.version()) ++counts_.risen;
     if (!sample.plain || sample.version == 0) sample.version = ++version_;
     sample.plain = true;
@@ -200,7 +201,7 @@ void IncidentLight::updateSample(Sample& sample, const Group& group, const Envir
     sample.environment = environment.version();
     return;
   }
-  // Where bodies stand around, a sky that turned waits for its capture.
+  // Where bodies are in sight, a turned sky waits for its capture.
   const bool new_sky = !sample.drawn && sample.environment != environment.version();
   const bool moved = lit && sample.position_ws != position_ws;
   if (!sample.drawn_anew && !moved && !new_sky && !sample.plain && !fading && sample.lights == group.lights &&
@@ -254,7 +255,7 @@ void IncidentLight::updateSample(Sample& sample, const Group& group, const Envir
 }
 
 bool IncidentLight::somethingShines(const Environment& environment, std::span<const IncidentBody> bodies) {
-  // In halves, which are exact.
+  // The version is split into halves, which doubles hold exactly.
   std::vector<double> shine = {static_cast<double>(environment.version() >> 32),
                                static_cast<double>(environment.version() & 0xffffffffu)};
   for (const Group& group : groups_) shine.push_back(static_cast<double>(group.lights));
@@ -281,13 +282,13 @@ bool IncidentLight::somethingMoves(std::span<const IncidentGroup> groups,
   return moves;
 }
 
-Result<void> IncidentLight::capture(const Environment& environment, std::span<const IncidentGroup> groups,
-                                    std::span<const IncidentBody> bodies, std::span<const LocalLight> lights,
+Result<void> IncidentLight::capture(const Environment& environment, const IncidentScene& scene,
                                     const gpu::Buffer& triangle_radiance, std::size_t max_samples,
                                     gpu::Counters& counters) {
+  const auto& [groups, bodies, lights] = scene;
   counts_.captured = 0;
   followBodies(bodies);
-  if (!requests_.empty()) return {};  // the last one is still on its way
+  if (!requests_.empty()) return {};  // the last capture is still on its way
   const bool moves = somethingMoves(groups, bodies), shines = somethingShines(environment, bodies);
   if (!moves && !shines && nothing_to_draw_) return {};
   counts_.waiting = 0;
@@ -298,7 +299,7 @@ Result<void> IncidentLight::capture(const Environment& environment, std::span<co
     const IncidentGroup& group = groups[look.group];
     Sample& sample = groups_[look.group].samples[look.sample];
     if (look.change < 0.0f) {
-      if (sample.drawn) ++counts_.waiting;  // for the next step, which finds nothing in the light's way
+      if (sample.drawn) ++counts_.waiting;  // for the next step, which finds the light unoccluded
       leaveOut(sample, group.left_out, group.fades && sample.drawn.has_value());
       sample.drawn_anew |= sample.drawn.has_value();
       sample.drawn.reset();
@@ -308,7 +309,8 @@ Result<void> IncidentLight::capture(const Environment& environment, std::span<co
       ++counts_.waiting;
     }
   }
-  // What changed most first; the others have their turn soon, for what they wait for adds up.
+  // Samples that changed most come first. The others follow soon, because their changes add up while they
+  // wait.
   std::ranges::stable_sort(wanted, std::ranges::greater(), &Wanted::change);
   if (wanted.size() > max_samples) {
     counts_.waiting += static_cast<std::uint32_t>(wanted.size() - max_samples);
@@ -376,7 +378,8 @@ void IncidentLight::seeFrom(const glm::vec3& position_ws, const std::vector<bool
     if (!ignored[b] && capture::sees(capture_.options(), position_ws, bodies_[b].sphere)) seen.push_back(b);
 }
 
-// All samples, with how much of their light changed; where no body is seen a negative number.
+// Returns all samples with the relative change of their light, or a negative number for those that see no
+// body.
 std::vector<IncidentLight::Wanted> IncidentLight::lookAround(const Environment& environment,
                                                              std::span<const IncidentGroup> groups,
                                                              std::span<const LocalLight> lights) const {
@@ -386,30 +389,29 @@ std::vector<IncidentLight::Wanted> IncidentLight::lookAround(const Environment& 
     ignored.push_back(ignoredBy(groups[g], bodies_.size()));
     for (std::size_t s = 0; s < groups[g].samples_ws.size(); ++s) looks.push_back({-1.0f, g, s});
   }
-  constexpr std::size_t kWorthAThread = 256;  // a millisecond where there are two hundred bodies
+  constexpr std::size_t kWorthAThread = 256;  // a millisecond with two hundred bodies
   inParallel(looks.size(), kWorthAThread, [&](std::size_t i) {
     Wanted& look = looks[i];
     const IncidentGroup& group = groups[look.group];
     std::vector<std::uint32_t> seen;
     seeFrom(group.samples_ws[look.sample], ignored[look.group], seen);
     if (seen.empty()) return;
-    const std::optional<Drawn>& drawn = groups_[look.group].samples[look.sample].drawn;
-    look.change = drawn ? changeAround(*drawn, environment, look.group, group, look.sample, seen, lights)
-                        : kWhollyChanged;
+    look.change = changeAround(look, environment, group, seen, lights);
   });
   return looks;
 }
 
 // How much of the light at the sample changed since it was drawn, as an estimate; infinite if it has to be
 // drawn anew.
-float IncidentLight::changeAround(const Drawn& drawn, const Environment& environment, std::size_t g,
-                                  const IncidentGroup& group, std::size_t sample,
-                                  std::span<const std::uint32_t> seen,
+float IncidentLight::changeAround(const Wanted& look, const Environment& environment,
+                                  const IncidentGroup& group, std::span<const std::uint32_t> seen,
                                   std::span<const LocalLight> lights) const {
-  if (drawn.environment != environment.version() || drawn.lights != groups_[g].lights ||
-      drawn.renewal != renewal_)
+  const Group& kept = groups_[look.group];
+  if (!kept.samples[look.sample].drawn) return kWhollyChanged;
+  const Drawn& drawn = *kept.samples[look.sample].drawn;
+  if (drawn.environment != environment.version() || drawn.lights != kept.lights || drawn.renewal != renewal_)
     return kWhollyChanged;
-  // A body that reaches the group by another way now would count twice, or not at all.
+  // A body that now reaches the group by another carrier would otherwise count twice, or not at all.
   if (drawn.left_out != group.left_out) {
     const auto changed = [&](std::uint32_t body) {
       return std::ranges::binary_search(drawn.left_out, body) !=
@@ -418,9 +420,9 @@ float IncidentLight::changeAround(const Drawn& drawn, const Environment& environ
     if (std::ranges::any_of(drawn.seen, changed, &SeenBody::body) || std::ranges::any_of(seen, changed))
       return kWhollyChanged;
   }
-  const glm::vec3& position_ws = group.samples_ws[sample];
+  const glm::vec3& position_ws = group.samples_ws[look.sample];
   const bool stays = drawn.position_ws == position_ws;
-  std::optional<CapturePoint> point;  // what it would ask for; made when something changed
+  std::optional<CapturePoint> point;  // what it would ask for; made only when something changed
   float change_squared = 0.0f;
   auto then = drawn.seen.begin();
   auto here = seen.begin();
@@ -445,7 +447,7 @@ float IncidentLight::changeAround(const Drawn& drawn, const Environment& environ
           return kWhollyChanged;
       }
       const float part = shareOfLight(change, gone || come, order_) * body.brightness;
-      change_squared += part * part;  // some brighten, some darken
+      change_squared += part * part;  // as a sum of squares, since some changes brighten and some darken
     }
     if (!come) ++then;
     if (!gone) ++here;
@@ -469,7 +471,7 @@ void IncidentLight::askForLights(const Environment& environment, const IncidentG
   for (std::size_t k = 0; k < lights.size(); ++k) {
     std::optional<LightQuery> query;
     if (group.lit_by[k] != 0) query = queryOf(lights[k], point.position_ws);
-    // The shape of what stands apart is not among the light without it.
+    // The part of the light that is kept apart has no shape to correct in the light without it.
     if (query && k < group.apart.size()) query->radiance *= 1.0f - group.apart[k];
     ask(query, drawn.query_of_light);
   }

@@ -18,41 +18,42 @@ namespace lambent::lighting {
 
 namespace {
 
-// Bands show a wider disc better than the pieces that it would be divided into (docs/pictures/penumbra.png).
+// SH bands show a wider disc better than the pieces that it would be divided into
+// (docs/pictures/penumbra.png).
 constexpr float kWidestDisc_rad = 0.79f;
 
 constexpr double kPi = std::numbers::pi;
-// How far pieces reach where as many small ones as there may be do not suffice: from the largest radius to
-// the widest.
+// If the largest number of small pieces does not suffice, pieces grow in these steps from the largest to the
+// widest radius.
 constexpr std::array<double, 3> kWidths = {0.0, 0.5, 1.0};
 // Keys that would lose less than this share of the least loss stay in the rest.
 constexpr double kLeastShare = 0.1;
-// All keys together must do away with this share of the loss, and with this much for each of them in units of
-// the least loss; or there are none.
+// All keys together must remove this share of the loss, and each of them on average kLeastGainOfKey of the
+// least loss; otherwise there are none.
 constexpr double kLeastGain = 0.2, kLeastGainOfKey = 0.1;
-// A key's size is that of the part with at least this share of its light.
+// A key has the size of the part with at least this share of its light.
 constexpr double kCore = 0.85;
-// Up to this share of the least loss may go into the shape of a divided disc.
+// The shape of a divided disc may lose up to this share of the least loss.
 constexpr double kShapeShare = 0.25;
-// Between partings whose loss differs by less than this factor the one with less light in its keys is taken.
+// If the losses of two choices differ by less than this factor, the one with less light in its keys is taken.
 constexpr double kAlike = 1.05;
 
-// An analytic disc, or one piece of a large one.
+// Describes an analytic disc, or one piece of a large one.
 struct DiscCandidate {
   spec::Disc disc;
   std::size_t source;
-  double flux, luminance, loss;    // loss: as a flux
-  std::vector<LightPoint> points;  // of what it stands for
+  double flux, luminance, loss;    // the loss is a flux
+  std::vector<LightPoint> points;  // of the light that it represents
   bool divided;
 };
 
-// Which light is in the keys, and what that loses.
+// Describes a choice of the light that goes into keys, and what it loses.
 struct Choice {
   double threshold = 0.0, loss = 0.0;
-  std::size_t level = 0;           // of the threshold
-  double radius_rad = 0.0;         // up to which light was gathered into pieces
-  std::vector<std::size_t> discs;  // among the candidates
-  std::vector<LightPiece> pieces;  // of pictures
+  std::size_t level = 0;           // index of the threshold
+  double radius_rad = 0.0;         // radius within which light was gathered into pieces
+  std::vector<std::size_t> discs;  // indices of candidates
+  std::vector<LightPiece> pieces;  // from pictures
 };
 
 class Parting {
@@ -69,7 +70,7 @@ class Parting {
   double lossOf(const Choice& choice) const;
   Choice best();
   Choice pruned(Choice choice, double allowed) const;
-  // A key, and which of the pieces it is made from; none: a disc.
+  // Holds a key and the piece that it is made from; a disc has no piece.
   struct Key {
     spec::Disc disc;
     KeyOrigin origin;
@@ -103,7 +104,7 @@ void Parting::readDiscs() {
   }
 }
 
-// Once it is known how much light there is.
+// Divides discs; needs the total flux to be known.
 void Parting::divideDiscs() {
   for (std::size_t source = 0; source < lights_.discs.size(); ++source) {
     const spec::Disc& disc = lights_.discs[source];
@@ -121,7 +122,7 @@ void Parting::divideDiscs() {
                                 .most = options_.most,
                                 .allowed = kShapeShare * options_.least_loss * flux_};
     for (DiscPiece& part : dividedDisc(whole, dividing)) {
-      // Of the same flux on its own area.
+      // The piece has the same flux on its own area.
       const auto share = static_cast<float>(part.piece.flux / whole.flux * solidAngle(whole.radius_rad) /
                                             solidAngle(part.piece.radius_rad));
       const spec::Disc small{glm::vec3(part.piece.dir), static_cast<float>(part.piece.radius_rad),
@@ -139,7 +140,7 @@ PieceLimits Parting::limits(double radius_rad) const {
           .least_flux = kLeastShare * options_.least_loss * flux_};
 }
 
-// The discs and pieces above the threshold that lose most.
+// Chooses the discs and pieces above the threshold that lose most.
 Choice Parting::choose(std::size_t level, double radius_rad) const {
   const double threshold = blocks_.threshold(level);
   struct Candidate {
@@ -171,7 +172,7 @@ Choice Parting::choose(std::size_t level, double radius_rad) const {
   return choice;
 }
 
-// The blocks must be at the choice's threshold.
+// Returns the loss of a choice. The blocks must be at its threshold.
 double Parting::lossOf(const Choice& choice) const {
   FluxGrid rest = all_, misshapen;
   const auto take = [&](const LightPoint& point) {
@@ -199,8 +200,8 @@ double Parting::lossOf(const Choice& choice) const {
   return std::sqrt(rest.lostPower(options_.order) + misshapen.lostPower(1)) / flux_;
 }
 
-// The highest threshold that suffices, of the smallest pieces that do; else the first of those that lose
-// nearly least.
+// Returns the choice with the highest threshold that suffices, with the smallest pieces that do; otherwise
+// the first of those that lose about least.
 Choice Parting::best() {
   std::vector<Choice> tried;
   const auto largest = static_cast<double>(options_.largest_radius_rad);
@@ -222,7 +223,7 @@ Choice Parting::best() {
   return pruned(std::move(*found), kAlike * kAlike * least);
 }
 
-// Without the keys that can be done without: the weakest first.
+// Removes keys that are not needed, the weakest first.
 Choice Parting::pruned(Choice choice, double allowed) const {
   const auto tryWithout = [&](auto& list) {
     for (std::size_t i = list.size(); i-- > 0;) {
@@ -248,14 +249,14 @@ struct TakenTexel {
 struct Taken {
   LightMoment moment;
   glm::dvec3 flux{0.0};
-  double texel_sr = 0.0;  // sum, weighted with the flux
+  double texel_sr = 0.0;  // sum weighted with the flux
   std::vector<TakenTexel> texels;
-  std::vector<double> of_map;  // luminous flux from each picture
+  std::vector<double> of_map;  // luminous flux taken from each picture
 };
 
-// A sun's glow has little of its light, but would make its disc several times too large, and so its shadows
-// too soft. Hence what lies twice as far out as the disc reaches is left out, again and again, while that is
-// little.
+// Returns a radius without the glow. A sun's glow has little of its light but would make its disc several
+// times too large, and its shadows too soft. So light twice as far out as the disc reaches is removed
+// repeatedly, as long as that is little.
 double radiusWithoutGlow(const Taken& taken) {
   LightMoment kept = taken.moment;
   for (int round = 0; round < 8; ++round) {
@@ -279,8 +280,8 @@ spec::Disc discOf(const Taken& taken) {
           glm::vec3(taken.flux / solidAngle(static_cast<double>(radius)))};
 }
 
-// Texel by texel: the rest keeps the threshold's luminance in the texel's own colour. The texels that are
-// noted name the piece, until put() knows its key.
+// Takes light texel by texel: the rest keeps the threshold's luminance in the texel's own colour. The noted
+// texels name their piece until put() knows its key.
 std::vector<Parting::Key> Parting::takeFrom(const Choice& choice, PartedLights& parted) const {
   std::vector<Taken> taken(choice.pieces.size());
   for (Taken& piece : taken) piece.of_map.resize(lights_.environment_maps.size());
@@ -304,7 +305,7 @@ std::vector<Parting::Key> Parting::takeFrom(const Choice& choice, PartedLights& 
         std::optional<spec::EnvironmentMap>& rest = parted.environment_maps[k];
         if (!rest) rest = environment_map;
         glm::vec3 kept;
-        for (int channel = 0; channel < 3; ++channel)  // what is negative cannot be a key's
+        for (int channel = 0; channel < 3; ++channel)  // a negative value cannot belong to a key
           kept[channel] = whole[channel] > 0.0f
                               ? whole[channel] * static_cast<float>(choice.threshold / value)
                               : whole[channel];
@@ -344,7 +345,7 @@ PartedLights Parting::run() {
   if (options_.most == 0 || !(parted.loss_before > options_.least_loss)) return parted;
 
   divideDiscs();
-  // Below the mean there is nothing that could stand out.
+  // Nothing can stand out below the mean.
   blocks_.setLevels(brightest_, std::min(flux_ / (4 * kPi), brightest_));
   const Choice choice = best();
   const double gain = parted.loss_before - choice.loss;
@@ -355,7 +356,7 @@ PartedLights Parting::run() {
   parted.loss_after = choice.loss;
   std::vector<Key> keys = takeFrom(choice, parted);
   if (!keys.empty()) parted.threshold = static_cast<float>(choice.threshold);
-  // A disc none of whose pieces is a key stays whole.
+  // A disc stays whole if none of its pieces is a key.
   std::vector<bool> broken(lights_.discs.size());
   std::vector<bool> is_key(discs_.size());
   for (const std::size_t i : choice.discs) {
@@ -374,7 +375,7 @@ PartedLights Parting::run() {
   return parted;
 }
 
-// Those that lose most first.
+// Stores the keys ordered by falling loss.
 void Parting::put(std::vector<Key> keys, PartedLights& parted) const {
   const auto loss = [&](const spec::Disc& disc) {
     const auto radius = static_cast<double>(disc.radius_rad);

@@ -8,12 +8,12 @@ namespace lambent::lighting {
 
 namespace {
 
-// Blocks in a picture: about as many, where its size has a suitable divisor.
+// The number of blocks in a picture lies in this range if its size has a suitable divisor.
 constexpr std::size_t kMostBlocks = 60'000, kFewestBlocks = 8'000;
-// Pictures with fewer rows are searched in parts of texels: points too far apart would be light in high
-// bands.
+// Pictures with fewer rows are searched in parts of texels, because points too far apart would show up as
+// light in high bands.
 constexpr std::uint32_t kFewestRows = 64;
-// Each threshold is this much below the one before.
+// Each threshold is one such step below the previous one.
 constexpr double kStepsPerOctave = 4.0;
 constexpr std::size_t kMostLevels = 400;
 
@@ -29,7 +29,8 @@ LightBlocks::Search LightBlocks::searchOf(const spec::EnvironmentMap& environmen
   const spec::RgbImage& image = environment_map.image;
   Search search{&environment_map, static_cast<int>(image.width), static_cast<int>(image.height), 1, 1,
                 first_block};
-  const bool cross = environment_map.layout == sh::ImageLayout::VerticalCross;  // blocks stay within a square
+  const bool cross =
+      environment_map.layout == sh::ImageLayout::VerticalCross;  // blocks must stay within a face
   const std::uint32_t side = cross ? image.width / 3 : image.width;
   const auto blocks = [&](std::uint32_t texels) { return image.texels.size() / texels / texels; };
   for (std::uint32_t n = 2; n <= side && blocks(search.texels) > kMostBlocks; ++n)
@@ -40,7 +41,7 @@ LightBlocks::Search LightBlocks::searchOf(const spec::EnvironmentMap& environmen
   return search;
 }
 
-// visit(block, luminance) for every texel, or for every part of each.
+// Calls visit(block, luminance) for every texel, or for every part of each texel.
 template <typename Visit>
 void LightBlocks::eachBlock(const Search& search, Visit&& visit) {
   const spec::RgbImage& image = search.environment_map->image;
@@ -105,7 +106,7 @@ void LightBlocks::setLevels(double brightest, double lowest) {
 }
 
 void LightBlocks::lowerTo(std::size_t level) {
-  if (level < next_level_) {  // up again: start at the top
+  if (level < next_level_) {  // the threshold rises: start at the top
     for (Block& block : blocks_) block.light = block.solid_angle_sr = 0.0;
     lit_.clear();
     next_level_ = 0;

@@ -1,7 +1,7 @@
-// Pictures of light as blocks of texels, and what of each is brighter than a threshold that is lowered step
-// by step. In: environment maps. Out: all their light on a FluxGrid, and points of light above the threshold.
-// Each texel is looked at twice, and once more when the threshold passes it, so that a whole descent costs
-// little more than one threshold. Pure CPU, one thread.
+// Searches pictures of light in blocks of texels for what is brighter than a threshold that is lowered step
+// by step. It takes environment maps and returns all their light on a FluxGrid, and points of light above the
+// threshold. Each texel is read twice, and once more when the threshold passes it, so that a whole descent
+// costs little more than one threshold. Pure CPU, one thread.
 #pragma once
 
 #include <cstddef>
@@ -24,29 +24,29 @@ class LightBlocks {
  public:
   explicit LightBlocks(std::span<const spec::EnvironmentMap> environment_maps);
 
-  double brightest() const { return brightest_; }  // luminance of a texel, 0 or more
-  void addTo(FluxGrid& grid) const;                // all light
+  double brightest() const { return brightest_; }  // luminance of the brightest texel, at least 0
+  void addTo(FluxGrid& grid) const;                // adds all light
 
-  // Thresholds from just below `brightest` (of all light) down to about `lowest`.
+  // Sets thresholds from just below `brightest` (of all light) down to about `lowest`.
   void setLevels(double brightest, double lowest);
   std::size_t levels() const { return levels_.size(); }
   double threshold(std::size_t level) const;
-  // points() are then, of each block, what its texels have above this level's threshold.
+  // Lowers the threshold to this level. points() then holds, for each block, what its texels have above it.
   void lowerTo(std::size_t level);
   std::span<const LightPoint> points() const { return points_; }
 
  private:
-  // A picture as it is searched: a coarser (or finer) picture of the same layout.
+  // The picture in the resolution in which it is searched: coarser or finer blocks in the same layout.
   struct Search {
     const spec::EnvironmentMap* environment_map;
-    int width, height;        // of blocks
-    std::uint32_t texels;     // along a block's edge
-    std::uint32_t parts;      // along a texel's edge, else 1
-    std::size_t first_block;  // in blocks_
+    int width, height;        // in blocks
+    std::uint32_t texels;     // texels along a block's edge
+    std::uint32_t parts;      // blocks along a texel's edge, if blocks are finer; else 1
+    std::size_t first_block;  // index into blocks_
   };
   struct Block {
-    LightPoint point;             // its flux is what is above the threshold
-    double texel_sr = 0.0;        // of one texel, or of one part
+    LightPoint point;             // its flux is the flux above the threshold
+    double texel_sr = 0.0;        // solid angle of one texel, or of one part
     double all = 0.0;             // sum of luminance over the texels
     double light = 0.0;           // sum of luminance times solid angle over the texels above the threshold
     double solid_angle_sr = 0.0;  // of these texels
@@ -66,7 +66,7 @@ class LightBlocks {
   std::vector<std::vector<Bright>> levels_;
   std::size_t next_level_ = 0;
   std::vector<std::uint32_t> lit_;  // blocks with texels above the threshold
-  std::vector<LightPoint> points_;  // of these
+  std::vector<LightPoint> points_;  // the points of these blocks
 };
 
 }  // namespace lambent::lighting

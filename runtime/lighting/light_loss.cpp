@@ -14,14 +14,13 @@ constexpr double kPi = std::numbers::pi;
 constexpr int kBands = FluxGrid::kBands;
 constexpr std::size_t kRows = FluxGrid::kRows, kColumns = FluxGrid::kColumns;
 
-// p_l, see the header.
+// Returns p_l; see the header.
 double transferPower(int l) {
   return l == 0 ? 1.0 : std::pow(l + 0.5, -3.0);
 }
 
-// Normalised associated Legendre functions at the rows' middles, those of one (m, l) side by side; times
-// sqrt(4pi), so that the one of band 0 is 1, and with the sqrt(2) of m > 0. And cos, sin of m times the
-// azimuth.
+// Normalised associated Legendre functions at the centres of the rows, times sqrt(4pi), so that band 0 is 1,
+// and with the sqrt(2) of m > 0; also cosine and sine of m times the azimuth.
 struct Tables {
   std::array<std::array<std::array<double, kRows>, kBands>, kBands> legendre{};  // [m][l][row]
   std::array<std::array<double, kColumns>, kBands> cosines{}, sines{};           // [m][column]
@@ -41,7 +40,7 @@ struct Tables {
             before = value;
             value = next;
           }
-          // Of the step after this one: sqrt((l² - m²) / (4 l² - 1)).
+          // This factor, sqrt((l² - m²) / (4 l² - 1)), is used in the next step.
           back = std::sqrt((1.0 * l * l - 1.0 * m * m) / (4.0 * l * l - 1.0));
           if (l == m) back = 0.0;
           legendre[static_cast<std::size_t>(m)][static_cast<std::size_t>(l)][row] = value;
@@ -72,7 +71,7 @@ FluxGrid::Place FluxGrid::place(const glm::dvec3& dir) {
   for (int corner = 0; corner < 4; ++corner) {
     const int right = corner & 1, below = corner >> 1;
     int column = static_cast<int>(left) + right, row = static_cast<int>(top) + below;
-    if (row < 0 || row >= kRows) {  // over a pole
+    if (row < 0 || row >= kRows) {  // beyond a pole
       row = std::clamp(row, 0, kRows - 1);
       column += kColumns / 2;
     }
@@ -121,7 +120,7 @@ double FluxGrid::lostPower(int first_band) const {
 }
 
 double discLoss(int order, double radius_rad) {
-  const double radius = std::max(radius_rad, 1e-5);  // of a point in the limit
+  const double radius = std::max(radius_rad, 1e-5);  // approaches a point
   const double mean = sh::discZonal(0, radius);
   double lost = 0.0;
   for (int l = order; l < kBands; ++l) {

@@ -14,15 +14,15 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 constexpr int kShifts = 4, kRounds = 8;
-constexpr std::size_t kSeeds = 64;  // more than pieces wanted
-// Discs side by side leave gaps; a piece takes the light in the gaps around it too.
+constexpr std::size_t kSeeds = 64;  // more than the pieces wanted
+// Discs side by side leave gaps, so a piece also takes the light in the gaps around it.
 constexpr double kReach = 1.25;
 
 LightPiece pieceFrom(const LightMoment& sum) {
   return {sum.direction(), sum.flux, sum.radius()};
 }
 
-// Moves each piece to the middle of what is nearer to it than to any other, again and again: k-means.
+// Moves each piece repeatedly to the centre of the points that are nearest to it (k-means).
 template <typename Owner>
 void settle(std::span<const LightPoint> points, std::vector<LightPiece>& pieces, Owner&& owner) {
   for (int round = 0; round < kRounds; ++round) {
@@ -62,8 +62,9 @@ std::optional<std::size_t> pieceOf(std::span<const LightPiece> pieces, const Pie
   return nearest(pieces, dir, std::cos(std::min(kReach * limits.radius_rad, kPi)));
 }
 
-// Seeds are the brightest points that no piece has; each moves uphill to the middle of the light around it
-// and takes that. There are more seeds than pieces wanted, since a wide piece need not have a bright point.
+// Seeds are the brightest points that belong to no piece yet; each moves uphill to the centre of the light
+// around it and takes that light. There are more seeds than wanted pieces, since a wide piece need not have a
+// bright point.
 std::vector<LightPiece> gatherPieces(std::span<const LightPoint> points, const PieceLimits& limits) {
   std::vector<std::uint32_t> order(points.size());
   std::iota(order.begin(), order.end(), 0u);
@@ -161,7 +162,7 @@ void addDisc(FluxGrid& grid, const LightPiece& disc, double factor) {
   for (const LightPoint& point : discPoints(disc)) grid.add(point.at, factor * point.flux);
 }
 
-// Never into two halves, which are not round at all.
+// A disc is never divided into two halves, which are far from round.
 std::vector<DiscPiece> dividedDisc(const LightPiece& disc, const DiscDivision& division) {
   const std::size_t most = std::max<std::size_t>(division.most, 3);
   const double areas = std::ceil(solidAngle(disc.radius_rad) / solidAngle(division.radius_rad));

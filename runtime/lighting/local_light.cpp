@@ -16,8 +16,8 @@ sh::LightVector lightAt(const LocalLight& light, const glm::vec3& point_ws, int 
     case LocalLight::Kind::Point:
       return sh::pointLight(order, light_from_point, light.power, light.range_m);
     case LocalLight::Kind::Spot:
-      return sh::spotLight(order, light_from_point, axis, light.power, light.inner_cone_rad,
-                           light.outer_cone_rad, light.range_m);
+      return sh::spotLight(order, light_from_point, {axis, light.inner_cone_rad, light.outer_cone_rad},
+                           light.power, light.range_m);
     case LocalLight::Kind::Directional:
       return sh::directionalLight(order, -axis, light.power);
     case LocalLight::Kind::Sphere:
@@ -37,7 +37,7 @@ std::optional<LightQuery> queryOf(const LocalLight& light, const glm::vec3& poin
   if (!(distance > extent) || !std::isfinite(distance)) return std::nullopt;
   LightQuery query{.direction = towards / distance, .distance_m = distance - extent};
   query.angular_radius_rad = std::asin(std::min(1.0f, extent / distance));
-  // The shape of what is left of a sphere is known; a disc light's ellipse is dimmed as a whole.
+  // The shape of a sphere's visible part is known; the ellipse of a disc light is dimmed as a whole.
   if (light.kind == LocalLight::Kind::Sphere) query.radiance = light.power;
   return query;
 }

@@ -1,7 +1,7 @@
-// The patches of a rigid group, and coarser parts of the same triangles that hold several of them, like the
-// levels of a mip map. A ray that stands for a solid angle brings the mean of what it covers: without this, a
-// small bright spot would be met by a few rays or by none. Regions are numbered: first the patches, in their
-// order. Group frame. No GL.
+// Owns the regions of a rigid group: its patches, and coarser parts of the same triangles that contain
+// several patches, like the levels of a mip map. A ray that stands for a solid angle looks up the mean over
+// what it covers; otherwise a few rays or none would hit a small bright spot. Regions are numbered: first the
+// patches, in their order. All positions are in the group's frame. No GL.
 #pragma once
 
 #include <array>

@@ -17,12 +17,12 @@ namespace lambent::lighting {
 
 namespace {
 
-constexpr std::size_t kRaysPerPoint = 64;  // of a point of a patch
+constexpr std::size_t kRaysPerPoint = 64;  // for each point of a patch
 constexpr float kDone = 1e-4f;
 constexpr int kMaxBounces = 256;
-constexpr std::size_t kBlock = 64;  // points of one part of the work
+constexpr std::size_t kBlock = 64;  // points per unit of work
 
-// The R2 sequence (Roberts 2018), which fills the square evenly for any number of points.
+// Returns a point of the R2 sequence (Roberts 2018), which fills the square evenly for any number of points.
 std::array<float, 2> evenPoint(std::size_t index) {
   constexpr double kA = 0.7548776662466927, kB = 0.5698402909980532;
   const auto i = static_cast<double>(index) + 1.0;
@@ -30,13 +30,13 @@ std::array<float, 2> evenPoint(std::size_t index) {
   return {static_cast<float>(x - std::floor(x)), static_cast<float>(y - std::floor(y))};
 }
 
-// Malley's method: the height above the disc.  pdf = cos/pi
+// Uses Malley's method: the height above the disc. pdf = cos/pi
 glm::vec3 cosineDirection(float u, float v) {
   const float radius = std::sqrt(u), angle = 2.0f * std::numbers::pi_v<float> * v;
   return {radius * std::cos(angle), radius * std::sin(angle), std::sqrt(std::max(1.0f - u, 0.0f))};
 }
 
-// pdf = 1/(2 pi)
+// Is uniform over the hemisphere: pdf = 1/(2 pi)
 glm::vec3 hemisphereDirection(float u, float v) {
   const float radius = std::sqrt(std::max(1.0f - u * u, 0.0f)), angle = 2.0f * std::numbers::pi_v<float> * v;
   return {radius * std::cos(angle), radius * std::sin(angle), u};
@@ -45,7 +45,7 @@ glm::vec3 hemisphereDirection(float u, float v) {
 std::array<glm::vec3, kLinks> directionsOf(LinkSpread spread) {
   std::array<glm::vec3, kLinks> directions{};
   for (std::size_t i = 0; i < kLinks; ++i) {
-    // A spiral by the golden angle (Vogel 1979).
+    // The points lie on a spiral with the golden angle (Vogel 1979).
     const float u = (static_cast<float>(i) + 0.5f) / static_cast<float>(kLinks);
     const float v = static_cast<float>(i) * (std::numbers::phi_v<float> - 1.0f);
     directions[i] = spread == LinkSpread::Cosine ? cosineDirection(u, v) : hemisphereDirection(u, v);
@@ -97,13 +97,13 @@ void PatchTransport::findShares() {
       const Patch& patch = patches_.all()[i];
       const LinkFrame frame = linkFrame(patch.normal);
       met.clear();
-      // What rays meet is taken off the closed form, so that open patches have it exactly.
+      // Occlusion is subtracted from the closed form, so that open patches have exact values.
       const std::span<float> transfer = std::span(transfer_).subspan(terms * i, terms);
       sh::unoccludedTransfer(order_, patch.normal, transfer);
       for (std::size_t p = 0; p < kPatchPoints; ++p) {
         rays.moveTo(patch.origins[p], patch.normal);
         for (std::size_t k = 0; k < kRaysPerPoint; ++k) {
-          // The points of a patch share out one even set, and so do neighbours, in part.
+          // The points of a patch share one even set of directions, and neighbours share it in part.
           const std::size_t place = p * kRaysPerPoint + k;
           const auto [even, turn] = evenPoint(place + 37 * i);
           const float u =
@@ -135,7 +135,7 @@ void PatchTransport::findNearest(const bundle::CaptureProxy& proxy) {
   for (std::size_t level = 1; level < proxy.levels.size(); ++level) {
     bundle::CaptureProxy coarse = proxy;
     coarse.levels = {proxy.levels[level]};
-    const Patches whole(coarse, 1);  // a patch to each triangle
+    const Patches whole(coarse, 1);  // one patch per triangle
     for (const Patch& triangle : whole.all()) {
       auto& nearest = nearest_.emplace_back();
       for (std::size_t p = 0; p < kPatchPoints; ++p) {
@@ -143,7 +143,7 @@ void PatchTransport::findNearest(const bundle::CaptureProxy& proxy) {
         for (std::uint32_t i = 0; i < patches_.size(); ++i) {
           const Patch& patch = patches_.all()[i];
           const float away = glm::distance(triangle.points[p], patch.points[0]);
-          // One that faces another way is as good as one that is farther off.
+          // A patch that faces another way counts as farther away.
           const float turned = 0.5f * patches_.extent() * (1.0f - glm::dot(triangle.normal, patch.normal));
           if (away + turned >= least) continue;
           least = away + turned;
@@ -188,7 +188,7 @@ std::vector<glm::vec3> PatchTransport::bounce(std::span<const glm::vec3> direct)
     brightest = std::max(brightest, largest(glm::abs(given_off[i])));
   }
   if (brightest == 0.0f) return given_off;
-  // Gauss and Seidel's way: what is new counts at once.
+  // In a Gauss-Seidel iteration, new values count at once.
   for (int bounces = 0; bounces < kMaxBounces; ++bounces) {
     float change = 0.0f;
     for (std::size_t i = 0; i < patches_.size(); ++i) {
@@ -220,7 +220,7 @@ glm::vec3 PatchTransport::startNear(const SurfacePoint& point) const {
 std::size_t PatchTransport::regionFrom(const glm::vec3& origin, const RayHit& hit, float solid_angle_sr,
                                        const RaysFrom& rays) const {
   constexpr float kLeastCosine = 0.1f;
-  constexpr float kAlmost = 0.999f;  // of the way to the region
+  constexpr float kAlmost = 0.999f;  // share of the distance to the region
   const std::array<glm::vec3, 3> corners = patches_.triangles()[hit.triangle].corners;
   const glm::vec3 across = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
   const glm::vec3 way =
@@ -231,7 +231,7 @@ std::size_t PatchTransport::regionFrom(const glm::vec3& origin, const RayHit& hi
   while (level + 1 < regions_.levelsOf(hit.triangle) &&
          regions_.areaOf(hit.triangle, level + 1) < 4.0f * covered)
     ++level;
-  // Where something stands before a part of it, light would leak.
+  // If something stands in front of a part of the region, light would leak.
   const auto inSight = [&] {
     return std::ranges::none_of(regions_.cornersAt(hit, level), [&](const glm::vec3& corner) {
       return rays.blocked(corner - origin, kAlmost);
@@ -247,7 +247,7 @@ std::vector<std::uint16_t> PatchTransport::link(std::span<const SurfacePoint> po
   std::vector<std::uint16_t> links(kLinks * points.size());
   inParallel(blocksOf(points.size()), 2, [&](std::size_t block) {
     RaysFrom rays(patches_.triangles(), 1e-5f * patches_.extent());
-    // Returns how many of the rays meet the back of something.
+    // Returns how many of the rays hit the back of something.
     const auto linkFrom = [&](const glm::vec3& origin, std::size_t i) {
       const LinkFrame frame = linkFrame(points[i].normal);
       rays.moveTo(origin, points[i].normal);

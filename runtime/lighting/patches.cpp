@@ -11,11 +11,12 @@ namespace lambent::lighting {
 
 namespace {
 
-// Of the diagonal of the bounds.
+// These lengths are relative to the diagonal of the bounds.
 constexpr float kLift = 2e-4f;
 constexpr float kLeastThickness = 2e-3f;
 
-// Weights of the corners: the centres of the four parts of a triangle whose edges are halved.
+// These are the barycentric coordinates of the centres of the four parts of a triangle whose edges are
+// halved.
 constexpr std::array<glm::vec3, kPatchPoints> kPointWeights = {
     glm::vec3(1.0f / 3.0f, 1.0f / 3.0f, 1.0f / 3.0f), glm::vec3(2.0f / 3.0f, 1.0f / 6.0f, 1.0f / 6.0f),
     glm::vec3(1.0f / 6.0f, 2.0f / 3.0f, 1.0f / 6.0f), glm::vec3(1.0f / 6.0f, 1.0f / 6.0f, 2.0f / 3.0f)};
@@ -67,7 +68,7 @@ Patches::Patches(const bundle::CaptureProxy& proxy, std::size_t most) {
   }
   extent_ = glm::distance(low, high);
   error_ = std::max(level.error_m, kLeastThickness * extent_);
-  // Rounding gives some triangles more parts than their share: then all get a little fewer.
+  // Rounding gives some triangles more parts than their share; then all get a little fewer.
   float wanted = whole / static_cast<float>(std::max<std::size_t>(most, 1));
   for (int tries = 0; tries < 32; ++tries) {
     std::size_t count = 0;
@@ -123,7 +124,7 @@ glm::vec3 Patches::inFront(glm::vec3 point, const glm::vec3& normal) const {
     const float height = glm::dot(normals_[t], point - corners_[t][0]);
     if (height > 0.5f * lift || height < -error_ || glm::dot(normals_[t], normal) < -0.5f || !over(t, point))
       continue;
-    // Not through to the other side of something thin, which the point is in front of.
+    // The point must not move through to the other side of something thin that it is in front of.
     const auto inTheWay = [&](std::size_t other) {
       if (glm::dot(normals_[other], normals_[t]) > -0.9f) return false;
       const float above = glm::dot(normals_[other], point - corners_[other][0]);

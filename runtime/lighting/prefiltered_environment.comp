@@ -1,15 +1,17 @@
-// The sky of one set of lights as a rough mirror shows it: one mip level of a cube map, in the lights' own
-// frame, each texel the mean over the lobe about its direction. Environment maps by equal shares of the lobe, each
-// looked up as wide as it is; discs of suns apart and exactly, for no such look-up finds them.
+// Computes how a rough mirror shows the sky of one set of lights: one mip level of a cube map in the lights'
+// own frame, each texel being the mean over the lobe about its direction. Environment maps are sampled in
+// equal shares of the lobe, each share at a mip level that matches its width. Discs of suns are added
+// exactly, because such samples would miss them.
 #include "prefiltered_shared.h"
 #include "cube_texel.glsl"
 
 layout(local_size_x = kReflectedGroup, local_size_y = kReflectedGroup) in;
-layout(location = 0) uniform int size;    // of the level
+layout(location = 0) uniform int size;    // texels along the level's edge
 layout(location = 1) uniform vec2 lobe;   // alpha, scale; alpha 0: a mirror
-layout(location = 2) uniform int shares;  // of the lobe that look at the sky
+layout(location = 2) uniform int shares;  // number of samples of the lobe that look at the sky
 layout(location = 3) uniform uint disc_count;
-layout(binding = 0) uniform samplerCube sky;  // prefiltered_source.comp: times solid angle, and that
+layout(binding = 0) uniform samplerCube sky;  // from prefiltered_source.comp: radiance times solid angle, and
+                                              // the solid angle
 layout(binding = 0, rgba16f) writeonly uniform imageCube reflected;
 layout(std430, binding = kBindLobe) readonly buffer Lobe {
   float angles[];
@@ -23,7 +25,7 @@ const float kGoldenAngle = 2.39996323;
 const int kAllShares = 256, kDiscPoints = 48;
 const float kLargestHalf = 65504.0;
 
-// Two unit vectors across unit n [Duff et al., Building an orthonormal basis, revisited, 2017].
+// Returns a frame about the unit vector n [Duff et al., Building an orthonormal basis, revisited, 2017].
 mat3 frameAbout(vec3 n) {
   float facing = n.z >= 0.0 ? 1.0 : -1.0;
   float a = -1.0 / (facing + n.z), b = n.x * n.y * a;
@@ -31,7 +33,7 @@ mat3 frameAbout(vec3 n) {
               vec3(b, facing + n.y * n.y * a, -n.y), n);
 }
 
-// The mean over what a mip level holds there.
+// Returns the mean radiance over what the mip level covers there.
 vec3 meanOfSky(vec3 direction, float level) {
   vec4 weighted = textureLod(sky, direction, level);
   return weighted.rgb / weighted.a;
@@ -56,11 +58,11 @@ vec3 skyThrough(mat3 frame) {
   return sum / float(shares);
 }
 
-// How much of the lobe a disc fills whose centre is so far from the lobe's axis.
+// Returns the share of the lobe that a disc covers whose centre is `apart` radians from the lobe's axis.
 float shareOfDisc(float apart, float radius) {
   if (lobe.x == 0.0) return clamp((radius - apart) * float(size) / (0.5 * kPi) + 0.5, 0.0, 1.0);
   if (radius < 0.5 * angles[kAllShares / 2]) {
-    // The lobe is wider: over points of the disc.
+    // The lobe is wider than the disc, so the disc is sampled.
     float sum = 0.0, least = cos(radius);
     for (int i = 0; i < kDiscPoints; ++i) {
       float cosine = 1.0 - (float(i) + 0.5) / float(kDiscPoints) * (1.0 - least),
@@ -69,7 +71,7 @@ float shareOfDisc(float apart, float radius) {
     }
     return sum * 2.0 * kPi * (1.0 - least) / float(kDiscPoints);
   }
-  // Over rings of the lobe, each by how much of it the disc covers.
+  // Otherwise the lobe is sampled in rings, each weighted with the part of it that the disc covers.
   float sum = 0.0;
   for (int i = 0; i < kAllShares; ++i) {
     float theta = angles[i];

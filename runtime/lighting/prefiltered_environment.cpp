@@ -16,16 +16,17 @@ namespace lambent::lighting {
 namespace {
 
 constexpr gpu::FindText kShaders[] = {&embedded::lambent_lighting::find};
-constexpr std::uint32_t kLargestSize = 256, kLeastSize = 64;  // 64: kReflectedLevels levels
-// Of the lobe, each of which looks at the sky once: more where the lobe is wide and texels are few.
+constexpr std::uint32_t kLargestSize = 256, kLeastSize = 64;  // kLeastSize allows kReflectedLevels levels
+// Returns the number of samples of the lobe that look at the sky: more where the lobe is wide and texels are
+// few.
 int sharesOf(std::uint32_t level) {
   return level <= 1 ? 32 : level == 2 ? 64 : kLobeShares;
 }
 
-// As in prefiltered_environment.comp.
+// These are the uniform locations of prefiltered_environment.comp.
 constexpr GLint kSize = 0, kLobe = 1, kSkyShares = 2, kDiscCount = 3;
 
-// The sky with all its mip levels, so that wide looks are cheap.
+// Returns the sky with all mip levels, so that wide lookups are cheap.
 gpu::Texture withLevels(const gpu::Texture& sky, const gpu::Program& program, gpu::Counters& counters) {
   const std::uint32_t size = sky.desc().width;
   gpu::Texture weighted("sky to reflect", {.format = GL_RGBA16F,
@@ -69,9 +70,9 @@ std::uint64_t PrefilteredEnvironment::sourceVersion(const Environment& environme
 }
 
 struct PrefilteredEnvironment::Source {
-  const gpu::Texture& sky;  // its own frame
+  const gpu::Texture& sky;  // in the lights' own frame
   std::span<const Disc> discs;
-  bool pictured = false;  // else all that is not a disc is constant
+  bool pictured = false;  // false: everything that is not a disc is constant
   const gpu::Program &program, &weigh;
   std::span<const ReflectedLobe> lobes;
 };
@@ -147,10 +148,7 @@ gpu::Texture PrefilteredEnvironment::prefilter(const Source& from, gpu::Counters
 
 void PrefilteredEnvironment::update(const Environment& environment, int order, sh::Window window,
                                     gpu::Counters& counters) {
-  if (environment.version() == environment_seen_ && order == order_seen_ && window == window_seen_) return;
-  environment_seen_ = environment.version();
-  order_seen_ = order;
-  window_seen_ = window;
+  if (!changed_.renew(environment.version(), order, window)) return;
   values_.light_from_world = glm::mat4(glm::transpose(environment.worldFromLight()));
   values_.shares = {environment.shareOf(0), environment.shareOf(1), static_cast<float>(kReflectedLevels - 1),
                     has_whole_ ? 1.0f : 0.0f};

@@ -1,16 +1,17 @@
-// What rough mirrors show of the sky beyond the few bands that surfaces have of its light: P(L) - P(L_n),
-// prefiltered by the round lobe of prefiltered_lobe.hpp. L is the light without key lights, whose highlights
-// surfaces shade by their discs; where key lights are wide, pieces of windows or soft boxes, their true shape
-// is kept in second pictures, of all the light, for mirrors that are sharp enough to tell. P(L) stands in a
-// cube map per set of lights, roughness along its mip levels, in the lights' own frame: made once, for
-// turning, fading and dimming only mix it anew. P(L_n) has n bands, each scaled by the lobe's, and is taken
-// off where a surface looks (glossy_surface.glsl), so that light of few bands leaves nothing. Render thread
-// only. Errors: a kernel that does not compile on this device.
+// Owns what rough mirrors show of the sky beyond the few SH bands that surfaces receive: P(L) - P(L_n),
+// prefiltered with the round lobe of prefiltered_lobe.hpp. L is the light without key lights, whose
+// highlights surfaces shade from their discs; where key lights are wide (pieces of windows or soft boxes),
+// their true shape is kept in second cube maps of all light, for mirrors that are sharp enough to show it.
+// P(L) is a cube map per set of lights with roughness along its mip levels, in the lights' own frame; it is
+// made once, and turning, fading and dimming only change how it is mixed. P(L_n) has n bands, each scaled by
+// the lobe's, and is subtracted where a surface looks it up (glossy_surface.glsl), so that light of few bands
+// leaves nothing. Render thread only. make() fails if a kernel does not compile on this device.
 #pragma once
 
 #include <array>
 #include <cstdint>
 
+#include "runtime/base/change_gate.hpp"
 #include "runtime/base/result.hpp"
 #include "runtime/gpu/objects.hpp"
 #include "runtime/lighting/environment.hpp"
@@ -22,22 +23,23 @@ namespace lambent::lighting {
 
 class PrefilteredEnvironment {
  public:
-  // `sky` is that of the environment.
+  // `sky` must be the sky of this environment.
   static Result<PrefilteredEnvironment> make(const Environment& environment, const Sky& sky,
                                              gpu::Counters& counters);
-  // What make() would make depends on this alone.
+  // Returns a version: make() gives the same result if it is the same.
   static std::uint64_t sourceVersion(const Environment& environment);
 
-  // The environment as it stands now, and the light that surfaces have of it: so many bands, windowed.
+  // Updates the uniform block to the current environment and to the light that surfaces have of it: this many
+  // bands, windowed.
   void update(const Environment& environment, int order, sh::Window window, gpu::Counters& counters);
   void bind() const;
 
-  // As uploaded, for tests.
+  // Return what was uploaded, for tests.
   const ReflectionValues& values() const { return values_; }
   const gpu::Texture& cube(std::size_t set) const { return cubes_[set]; }
 
  private:
-  // P of a set of lights, along the mip levels.
+  // Makes P of one set of lights, with roughness along the mip levels.
   struct Source;
   static gpu::Texture prefilter(const Source& source, gpu::Counters& counters);
 
@@ -47,9 +49,7 @@ class PrefilteredEnvironment {
   bool has_whole_ = false;
   ReflectionValues values_{};
   gpu::Table block_;
-  std::uint64_t environment_seen_ = ~std::uint64_t{0};
-  int order_seen_ = 0;
-  sh::Window window_seen_ = sh::Window::Off;
+  ChangeGate<std::uint64_t, int, sh::Window> changed_;  // environment, order, window
 };
 
 }  // namespace lambent::lighting

@@ -19,7 +19,7 @@ double shape(double alpha, double cos_theta) {
   return std::max(cos_theta, 0.0) / (root * root);
 }
 
-// Steps of a quadrature over theta in 0..pi/2, dense about 0 where narrow lobes are.
+// Returns a quadrature node for theta in 0..pi/2. Nodes are dense near 0, where narrow lobes are.
 double thetaAt(double u) {
   return 0.5 * kPi * u * u * u;
 }

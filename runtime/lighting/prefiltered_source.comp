@@ -1,5 +1,6 @@
-// The sky as reflections look into it: radiance times the solid angle of the texel, and that in alpha. The mip levels of
-// both tell true means; those of radiance alone count the texels along the edges of a face up to five times too much.
+// Prepares the sky for prefiltering: radiance times the solid angle of the texel, and the solid angle in
+// alpha. The mip levels of both give true means; those of radiance alone would weight the texels along the
+// edges of a face up to five times too much.
 #include "prefiltered_shared.h"
 #include "cube_texel.glsl"
 

@@ -20,19 +20,19 @@ namespace {
 constexpr gpu::FindText kShaders[] = {&embedded::lambent_lighting::find};
 constexpr float kLargestHalf = 65504.0f;
 
-// As in sky.frag.
+// These are the binding and the uniform locations of sky.frag.
 constexpr GLuint kBindDiscs = 0;
 constexpr GLint kWorldFromClip = 0, kLightFromWorld = 1, kDiscCount = 2, kPixelAngle = 3, kShares = 4;
 struct DiscRecord {
-  glm::vec4 direction_and_radius;  // in the lights' own frame
+  glm::vec4 direction_and_radius;  // lights' own frame; w: radius in radians
   glm::vec3 radiance;
   float set;
 };
 static_assert(sizeof(DiscRecord) == 32);
 
-// About one texel of the cube per texel of the environment map; a constant needs no more than one. A power of
-// two: reflections look into mip levels, and halves of odd sizes leave a row of texels out (a lamp may stand
-// in it).
+// Returns a size with about one texel of the cube per texel of the environment map; a constant needs only
+// one. The size is a power of two because reflections read mip levels, and halving an odd size drops a row of
+// texels, in which a lamp may stand.
 std::uint32_t cubeSize(std::span<const spec::EnvironmentMap* const> environment_maps) {
   std::uint32_t size = 1;
   for (const spec::EnvironmentMap* environment_map : environment_maps) {
@@ -107,7 +107,7 @@ bool Sky::update(const Environment& environment) {
 
 void Sky::draw(const Environment& environment, const glm::mat4& view_from_world,
                const glm::mat4& clip_from_view, std::uint32_t picture_height, gpu::Counters& counters) const {
-  // Directions only: without the eye's place, so that precision does not depend on where the scene stands.
+  // Only the rotation is used, so that precision does not depend on where the scene stands.
   const glm::mat4 rotation = glm::mat4(glm::mat3(view_from_world));
   const glm::mat4 world_from_clip = glm::inverse(clip_from_view * rotation);
   const glm::mat3 light_from_world = glm::transpose(environment.worldFromLight());

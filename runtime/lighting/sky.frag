@@ -1,16 +1,16 @@
-// The environment's radiance along the pixel's ray. Perspective rays start at the origin, so far - near is the ray for
-// both kinds of camera.
+// Writes the environment's radiance along the pixel's ray. Perspective rays start at the origin, so far -
+// near is the ray for both kinds of camera.
 layout(location = 1) uniform mat3 light_from_world;
 layout(location = 2) uniform uint disc_count;
-layout(location = 3) uniform float pixel_angle;  // radians that a pixel spans
-layout(location = 4) uniform vec2 shares;        // of the first and the second set of lights
+layout(location = 3) uniform float pixel_angle;  // radians spanned by a pixel
+layout(location = 4) uniform vec2 shares;        // factors on the two sets of lights
 layout(binding = 0) uniform samplerCube first_sky;
 layout(binding = 1) uniform samplerCube second_sky;
 
 struct Disc {
-  vec4 direction_and_radius;  // in the lights' own frame; radians
+  vec4 direction_and_radius;  // lights' own frame; w: radius in radians
   vec3 radiance;
-  float set;  // 0 or 1
+  float set;  // index of the set, 0 or 1
 };
 layout(std430, binding = 0) readonly buffer Discs { Disc discs[]; };
 
@@ -24,9 +24,9 @@ void main() {
   vec3 radiance = shares.x * texture(first_sky, dir).rgb + shares.y * texture(second_sky, dir).rgb;
   for (uint i = 0u; i < disc_count; ++i) {
     vec3 to_disc = discs[i].direction_and_radius.xyz;
-    // acos would lose the last digits just where discs are small.
+    // acos would lose its last digits for just the angles of small discs.
     float angle = atan(length(cross(dir, to_disc)), dot(dir, to_disc));
-    // Not by derivatives: they are not to be trusted where a pixel is covered in part.
+    // Derivatives are not used: they are unreliable in partly covered pixels.
     float inside = clamp((discs[i].direction_and_radius.w - angle) / pixel_angle + 0.5, 0.0, 1.0);
     radiance += inside * (discs[i].set > 0.5 ? shares.y : shares.x) * discs[i].radiance;
   }

@@ -1,4 +1,4 @@
-// One triangle over the whole picture at the far plane; hands on the ray through each pixel.
+// Draws one triangle over the whole picture at the far plane, and passes on the ray through each pixel.
 layout(location = 0) uniform mat4 world_from_clip;
 layout(location = 0) out vec4 near_ws;
 layout(location = 1) out vec4 far_ws;

@@ -53,7 +53,7 @@ void RaysFrom::moveTo(const glm::vec3& origin, const glm::vec3& normal) {
     const glm::vec3 a = corner(0, i), b = corner(1, i), c = corner(2, i);
     if (glm::dot(a, normal) < 0.0f && glm::dot(b, normal) < 0.0f && glm::dot(c, normal) < 0.0f) continue;
     const glm::vec3 bc = glm::cross(b, c);
-    const float volume = glm::dot(a, bc);  // negative in front
+    const float volume = glm::dot(a, bc);  // negative for front hits
     const bool back = volume > 0.0f;
     const bool on_plane = !(std::abs(volume) > least_distance_ * set_.double_area_[i]);
     if (on_plane || (back && set_.front_only_[i] != 0)) continue;
@@ -87,14 +87,14 @@ std::optional<RayHit> RaysFrom::first(const glm::vec3& direction) {
     const float c = x * cx[i] + y * cy[i] + z * cz[i];
     const float sum = a + b + c;
     const bool inside = (a >= 0.0f) & (b >= 0.0f) & (c >= 0.0f) & (sum > 0.0f);
-    // Without a branch, or the loop would not take several triangles at a time. The bits of positive numbers
-    // rise with them.
-    const std::uint32_t missed = static_cast<std::uint32_t>(inside) - 1u;  // all bits
+    // This has no branch, so that the loop handles several triangles at once. The bits of positive floats
+    // order like the floats.
+    const std::uint32_t missed = static_cast<std::uint32_t>(inside) - 1u;  // all bits set if missed
     distance[i] = std::bit_cast<std::uint32_t>(volume[i] / sum) | missed;
     nearest = std::min(nearest, distance[i]);
   }
   if (nearest == kNothing) return std::nullopt;
-  // Of two sides of something without thickness the one that faces the ray.
+  // If both sides of something without thickness are hit, the one that faces the ray counts.
   std::size_t i = count_;
   for (std::size_t k = 0; k < count_; ++k)
     if (distance[k] == nearest && (i == count_ || back_[i] > back_[k])) i = k;

@@ -12,7 +12,7 @@
 namespace lambent::scene {
 namespace {
 
-// Some unit vector at right angles to the first `known` of `axes`, which are orthonormal.
+// Returns a unit vector that is orthogonal to the first `known` of the orthonormal `axes`.
 glm::dvec3 anyOrthogonal(const std::array<glm::dvec3, 3>& axes, int known) {
   glm::dvec3 best{1.0, 0.0, 0.0};
   double best_length = 0.0;
@@ -41,13 +41,14 @@ glm::mat4 localMatrix(const Transform& t) {
 }
 
 void setLocalMatrix(Transform& transform, const glm::mat4& parent_from_node) {
-  // Gram-Schmidt, column by column: columns = axes * scale * shear. A column that depends on those before it
-  // has scale 0 and gets its axis last, at right angles to all others, where no later column has any part.
+  // Gram-Schmidt orthogonalisation gives columns = axes * scale * shear. A column that depends linearly on
+  // those before it has scale 0. Its axis is chosen last, orthogonal to all others, where no later column has
+  // a component.
   const glm::dmat3 columns{glm::mat3(parent_from_node)};
   std::array<glm::dvec3, 3> axes{};
   std::array<bool, 3> found{};
   glm::dvec3 scale{0.0};
-  glm::dmat3 part{0.0};  // part[j][i]: of column j along axis i
+  glm::dmat3 part{0.0};  // part[j][i] is the component of column j along axis i
   for (int j = 0; j < 3; ++j) {
     glm::dvec3 rest = columns[j];
     for (int i = 0; i < j; ++i) {
@@ -55,7 +56,7 @@ void setLocalMatrix(Transform& transform, const glm::mat4& parent_from_node) {
       part[j][i] = glm::dot(rest, axes[static_cast<std::size_t>(i)]);
       rest -= part[j][i] * axes[static_cast<std::size_t>(i)];
     }
-    // What float columns leave after cancelling is noise of about 1e-7 of their length.
+    // Cancellation of float columns leaves noise of about 1e-7 of their length.
     const double length = glm::length(rest);
     if (length == 0.0 || length <= 1e-6 * glm::length(columns[j])) continue;
     found[static_cast<std::size_t>(j)] = true;
@@ -98,10 +99,12 @@ std::optional<glm::quat> polarRotation(const glm::dmat3& linear) {
   double size = 0.0;
   for (int j = 0; j < 3; ++j) size += glm::dot(q[j], q[j]);
   const double cubed = std::pow(size, 1.5);
-  // Against the size of the matrix, so that small models are not called flat. NaN fails the comparison too.
+  // The determinant is compared with the size of the matrix, so that small models do not count as flat. NaN
+  // fails the comparison, too.
   if (!(glm::determinant(q) > 1e-12 * cubed)) return std::nullopt;
   q /= std::cbrt(glm::determinant(q));
-  // Quadratic near the end; far from it each step halves the largest scale: 100 are enough for any double.
+  // Convergence is quadratic near the end. Far from it each step halves the largest scale, so 100 steps
+  // suffice.
   for (int step = 0; step < 100; ++step) {
     const glm::dmat3 next = 0.5 * (q + glm::transpose(glm::inverse(q)));
     double change = 0.0;

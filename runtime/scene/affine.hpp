@@ -1,4 +1,4 @@
-// Affine matrices taken apart and put together: Transform <-> matrix, and the rotation in a motion.
+// Converts between Transforms and affine matrices, and extracts scale and rotation from matrices.
 #pragma once
 
 #include <optional>
@@ -11,19 +11,21 @@ namespace lambent::scene {
 
 struct Transform;
 
-// translation * rotation * scale * shear, the shear being ((1, xy, xz), (0, 1, yz), (0, 0, 1)) by rows.
+// Returns translation * rotation * scale * shear. The rows of shear are (1, xy, xz), (0, 1, yz) and
+// (0, 0, 1).
 glm::mat4 localMatrix(const Transform& transform);
 
-// Sets translation, rotation, scale and shear so that localMatrix() is `parent_from_node` again, up to
-// rounding, for every affine matrix: mirrored (scale.x < 0), sheared or singular (zeros in scale). The parent
-// stays.
+// Sets translation, rotation, scale and shear so that localMatrix() returns `parent_from_node` up to
+// rounding. This works for every affine matrix, also if it mirrors (scale.x < 0), shears or is singular
+// (zeros in scale). The parent entity stays unchanged.
 void setLocalMatrix(Transform& transform, const glm::mat4& parent_from_node);
 
-// How much it stretches at most along an axis of its frame.
+// Returns the length of the longest column, which is the largest scale along an axis.
 float largestScale(const glm::mat4& matrix);
 
-// The orthogonal factor of `linear` = Q S, S symmetric and positive: the rotation nearest to it (Higham 1986,
-// Newton iteration in double). None where the matrix is singular or mirrors.
+// Returns the rotation nearest to `linear`, which is the orthogonal factor Q of `linear` = Q S with S
+// symmetric and positive (Higham 1986, Newton iteration in double precision). Returns nothing if the matrix
+// is singular or mirrors.
 std::optional<glm::quat> polarRotation(const glm::dmat3& linear);
 
 }  // namespace lambent::scene

@@ -17,8 +17,8 @@ const AnimatedBundle* bundleOf(std::span<const AnimatedBundle> bundles, const An
                                                                                             : nullptr;
 }
 
-// Where a player that stood at `time` stands after `seconds` of its own time. Outside 0..duration (put there
-// by hand) it stays until it comes in by itself.
+// Returns the time of an animation after `seconds` of its own time. If the user has set a time outside
+// 0..duration and it does not loop, it is not clamped but may come back by itself.
 float advanced(float time, float seconds, float duration, bool loop) {
   if (!(duration > 0.0f) || seconds == 0.0f) return time;
   const float next = (std::isfinite(time) ? time : 0.0f) + seconds;
@@ -31,13 +31,13 @@ float advanced(float time, float seconds, float duration, bool loop) {
   return within < 0.0f ? within + duration : within;
 }
 
-// Writes what the channels say at the player's time; nodes that stand there already are not touched.
+// Writes the pose at the player's time. Nodes that have this pose already are not touched.
 void pose(ecs::Registry& registry, const AnimatedBundle& bundle, AnimationComponent& player,
           std::vector<ecs::Entity>& moved) {
   for (const gltf::AnimationChannel& channel : bundle.description->animations[player.animation].channels) {
     const ecs::Entity node = bundle.instance->nodes[channel.node];
     const Transform* now = registry.tryGet<Transform>(node);
-    if (!now) continue;  // taken out of the scene
+    if (!now) continue;  // the node was removed from the scene
     gltf::Trs parts{.translation = now->translation, .rotation = now->rotation, .scale = now->scale};
     const gltf::Trs before = parts;
     gltf::applyChannel(channel, player.time_s, parts);

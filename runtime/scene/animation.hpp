@@ -1,8 +1,7 @@
-// Plays the animations of the bundles in a scene: a system over AnimationComponents that writes Transforms.
-// Comes in: the registry, the bundles' descriptions and entities, seconds since the last call. Goes out:
-// Transforms of the nodes that stand elsewhere now, and only theirs get new versions: an animation that is
-// paused, at its end or between two equal keys costs no transform, capture or shading. Run it before
-// updateTransforms. Until an animation has played or its time was set, its nodes stand at rest.
+// Plays the animations of the bundles in a scene. This system reads AnimationComponents and writes
+// Transforms. It writes and gives new versions only to Transforms that change, so an animation that is
+// paused, at its end or between two equal keys costs no transforms, captures or shading. Call it before
+// updateTransforms. Nodes keep their rest pose until their animation has played or its time was set.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +13,7 @@
 
 namespace lambent::scene {
 
-// What AnimationComponent::bundle names.
+// A bundle that AnimationComponent::bundle refers to.
 struct AnimatedBundle {
   std::uint32_t bundle = 0;
   const bundle::Description* description = nullptr;
@@ -22,17 +21,17 @@ struct AnimatedBundle {
 };
 
 struct AnimationUpdates {
-  std::uint32_t animations = 0;  // at another time than before
-  std::uint32_t nodes = 0;       // that stand elsewhere now
+  std::uint32_t animations = 0;  // number of animations whose time changed
+  std::uint32_t nodes = 0;       // number of nodes that moved
 };
 
-// Moves the time of those that play by `seconds` times their speed: around in 0..duration where they loop,
-// else up to its ends; then poses what is at another time than it was posed for. Where several animations
-// move one node, the last counts. Seconds that are not finite count as 0.
+// Advances the time of playing animations by `seconds` times their speed. It wraps within 0..duration if they
+// loop, else it stops at the ends. Then sets the pose of animations whose time differs from that of their
+// last pose. If several animations move one node, the last counts. Seconds that are not finite count as 0.
 AnimationUpdates playAnimations(ecs::Registry& registry, std::span<const AnimatedBundle> bundles,
                                 float seconds);
 
-// Puts all of them to time_s and poses them, playing or not. Beyond the last key the last value holds.
+// Sets the time and the pose of all animations, playing or not. The last value holds beyond the last key.
 AnimationUpdates setAnimationTime(ecs::Registry& registry, std::span<const AnimatedBundle> bundles,
                                   float time_s);
 

@@ -1,7 +1,7 @@
-// Axis-aligned boxes, and those of what a registry shows in world space, metres. A box under a matrix is the
-// box around its eight corners moved, so a scene's bounds are those of its primitives' boxes at their nodes:
-// what any reader of the glTF file gets from its accessors' min and max; a volume's box is that of its
-// voxels. Orbit cameras stand by these bounds.
+// Computes axis-aligned bounding boxes of draws, groups and the whole scene, in world space and metres. A
+// transformed box encloses the eight transformed corners. So a scene's bounds are those of its primitives'
+// boxes at their nodes, as any reader of the glTF file gets them from min and max of the accessors. A volume
+// has the box of its voxels. Orbit cameras use these bounds.
 #pragma once
 
 #include <limits>
@@ -28,13 +28,14 @@ struct Box {
   void add(const Box& other);
 };
 
-// Empty boxes stay empty.
+// Returns the box around the transformed corners. Empty boxes stay empty.
 Box transformed(const Box& box, const glm::mat4& matrix);
 
-// These read WorldTransform: call updateTransforms first. Empty where an entity or what it refers to is gone.
+// These functions read WorldTransform, so call updateTransforms first. A box is empty if the entity, or one
+// that it refers to, does not exist any more.
 Box drawBounds(const ecs::Registry& registry, ecs::Entity draw);
 Box groupBounds(const ecs::Registry& registry, ecs::Entity group);
-// Of all draws and volumes.
+// Returns the box of all draws and volumes.
 Box worldBounds(const ecs::Registry& registry);
 
 }  // namespace lambent::scene

@@ -1,7 +1,7 @@
-// What the entities of a scene carry. Units are metres and radians unless a name says otherwise; axes are
-// glTF's (+Y up, right-handed). What a person may set is declared as fields; what a system derives
-// (WorldTransform, the present place of a group) is not. Links between entities are handles here and
-// StableIds in files.
+// The components of a scene's entities. Units are metres and radians unless a name says otherwise; axes are
+// glTF's (+Y up, right-handed). Values that users may set are declared as fields; values that a system
+// derives (WorldTransform, the current transform of a group) are not. Entities refer to each other by handles
+// here, and by StableIds in files.
 #pragma once
 
 #include <cstdint>
@@ -30,14 +30,14 @@ struct Name {
   static auto fields() { return std::tuple{ecs::Field{"name", &Name::value, ""}}; }
 };
 
-// Where a node stands in its parent: parent_from_node = translation * rotation * scale * shear, which any
-// affine matrix can be written as (affine.hpp). Mirrors have a negative scale.
+// The local transform of a node: parent_from_node = translation * rotation * scale * shear. Any affine matrix
+// can be written this way (affine.hpp). Mirrors have a negative scale.
 struct Transform {
   glm::vec3 translation{0.0f};
   glm::quat rotation{1.0f, 0.0f, 0.0f, 0.0f};
   glm::vec3 scale{1.0f};
-  glm::vec3 shear{0.0f};  // of x by y, x by z, y by z; 0 in files that keep to translation, rotation, scale
-  ecs::Entity parent;     // none or no longer alive: the world. Set by setParent (transforms.hpp)
+  glm::vec3 shear{0.0f};  // shear of x by y, x by z, y by z; 0 for nodes with translation, rotation, scale
+  ecs::Entity parent;     // set by setParent (transforms.hpp); if none or not alive, the parent is the world
 
   static constexpr std::string_view kComponentName = "Transform";
   static auto fields() {
@@ -48,64 +48,63 @@ struct Transform {
   }
 };
 
-// Made and kept by updateTransforms for every entity with a Transform; its version rises when the matrix
-// changes.
+// The world matrix of an entity with a Transform. updateTransforms adds and updates it, and its version rises
+// only if the matrix changes.
 struct WorldTransform {
   glm::mat4 world_from_node{1.0f};
-  std::uint64_t seen_local = 0, seen_parent = 0;  // versions that the matrix was computed from
-  std::uint64_t visit = 0;                        // the last update that came by
+  std::uint64_t seen_local = 0, seen_parent = 0;  // versions from which the matrix was computed
+  std::uint64_t visit = 0;                        // number of the last update that visited the entity
 };
 
-// A rigid group of a bundle: transfer and its samples stand in the group's frame, which is the rotation and
-// place of its root node, without scale. Light goes into it by inverse(rotation).
+// A rigid group of a bundle. Transfer and its samples are in the group's frame, which has the rotation and
+// position of its root node, without scale. inverse(rotation) takes light into this frame.
 struct RigidGroupComponent {
   std::uint32_t bundle = 0, group = 0;
-  ecs::Entity node;  // what it moves with: its root node, or the instance's root
-  Box bounds;        // group frame
+  ecs::Entity node;  // the entity that it moves with: its root node, or the instance's root
+  Box bounds;        // in the group's frame
 
-  // world_from_group when baked.
+  // world_from_group as baked.
   glm::quat rest_rotation{1.0f, 0.0f, 0.0f, 0.0f};
   glm::vec3 rest_translation{0.0f};
   glm::dmat4 node_from_world_at_rest{1.0};
 
-  // world_from_group now; kept by updateTransforms, which gives the component a new version when it changes.
+  // Current world_from_group. updateTransforms updates it and gives the component a new version when it
+  // changes.
   glm::quat rotation{1.0f, 0.0f, 0.0f, 0.0f};
   glm::vec3 translation{0.0f};
-  // What the directions of the bake have been turned by: rotation * inverse(rest_rotation), the identity at
-  // rest.
+  // Rotation since rest, which applies to directions of the bake: rotation * inverse(rest_rotation).
   glm::quat turn_since_rest{1.0f, 0.0f, 0.0f, 0.0f};
-  // The whole motion since rest, with scale if there is any: takes a place in the world as baked to where it
-  // is now.
+  // The whole motion since rest, including scale. It takes a world position as baked to the current one.
   glm::mat4 world_from_rest{1.0f};
-  std::uint64_t seen_node = 0;  // version of the node's WorldTransform that this was computed from
+  std::uint64_t seen_node = 0;  // version of the node's WorldTransform from which this was computed
 };
 
-// One side of one primitive at one node: bundle::Draw as an entity.
+// One side of a primitive at a node, which is bundle::Draw as an entity.
 struct DrawItem {
   std::uint32_t bundle = 0, draw = 0;
   std::uint32_t mesh = 0, primitive = 0;
-  bool back = false;  // drawn with its winding and normals turned round
+  bool back = false;  // true if winding and normals are reversed
   std::int32_t material = -1;
-  ecs::Entity node;   // its WorldTransform places the mesh
-  ecs::Entity group;  // its RigidGroupComponent says whose light shades it
-  Box bounds;         // mesh space
+  ecs::Entity node;   // entity whose WorldTransform places the mesh
+  ecs::Entity group;  // entity of the rigid group whose light shades the draw
+  Box bounds;         // in mesh space
 };
 
-// Beside the RigidGroupComponent of a volume: the box that it fills, in voxel coordinates from 0 to size.
+// The box of a volume, in voxel coordinates from 0 to `size`. It stands beside the RigidGroupComponent.
 struct VolumeItem {
   glm::mat4 group_from_grid{1.0f};
   glm::uvec3 size{1};
 };
 
-// Beside the Transform of a node that carries a camera; looks along the node's -Z. As gltf::Camera.
+// A camera, with the values of gltf::Camera. It looks along the node's -Z and stands beside a Transform.
 struct CameraComponent {
   std::uint32_t bundle = 0, camera = 0;
   bool perspective = true;
   float yfov_rad = 0.8f;
-  float aspect = 0.0f;             // 0: the viewport's
+  float aspect = 0.0f;             // width / height; 0 for that of the viewport
   float xmag = 1.0f, ymag = 1.0f;  // orthographic half sizes
   float znear = 0.01f;
-  float zfar = 0.0f;  // 0: infinite
+  float zfar = 0.0f;  // 0 for infinite
 
   static constexpr std::string_view kComponentName = "Camera";
   static auto fields() {
@@ -122,12 +121,12 @@ struct CameraComponent {
   }
 };
 
-// An emissive material of a rigid group, as bundle::GroupLight: it gives colour x strength as radiance. Lit
-// anew at once, with the shadows and bounces that were baked for it. Lamps have a LocalLightComponent
-// instead.
+// An emissive material of a rigid group (bundle::GroupLight), whose radiance is colour x strength. A change
+// shows at once, with the shadows and bounces that were baked for it. Nodes with a KHR light have a
+// LocalLightComponent instead.
 struct LampComponent {
   std::uint32_t bundle = 0, group = 0, column = 0;
-  glm::vec3 color{1.0f};  // linear; the bundle's at first
+  glm::vec3 color{1.0f};  // linear; at first that of the bundle
   float strength = 1.0f;
   bool enabled = true;
 
@@ -142,14 +141,14 @@ struct LampComponent {
   }
 };
 
-// A material of a bundle, an entity of its own: the factors that surfaces are shaded by, before textures and
-// vertex colours. What is changed shows in the next frame as far as it is no part of what was baked
-// (frame/material_rebake.hpp says what is). What a LampComponent says is given off goes before `emission`.
+// A material of a bundle, which is an entity of its own. Its factors shade surfaces; textures and vertex
+// colours multiply them. A change shows in the next frame, except for baked effects
+// (world/material_rebake.hpp tells which). The radiance of a LampComponent takes precedence over `emission`.
 struct MaterialComponent : gltf::MaterialFactors {
   std::uint32_t bundle = 0, material = 0;
 
   static constexpr std::string_view kComponentName = "Material";
-  // The values that the table of a material's fields says can be changed, in its order.
+  // Returns the live values in the table of material fields, in its order.
   static auto fields() {
     return std::apply(
         [](const auto&... row) {
@@ -168,17 +167,17 @@ struct MaterialComponent : gltf::MaterialFactors {
   }
 };
 
-// A light that stands in the scene and may move, beside a Transform: at the node's place, shining along its
-// -Z where it has a direction. Punctual kinds are those of KHR_lights_punctual; spheres and discs are
-// surfaces of uniform radiance.
+// A local light, which may move with the Transform beside it. It stands at the node's position and shines
+// along the node's -Z if it has a direction. Point, spot and directional lights are those of
+// KHR_lights_punctual; spheres and discs are surfaces of uniform radiance.
 struct LocalLightComponent {
   enum class Kind : std::uint8_t { Point, Spot, Directional, Sphere, Disc };
   Kind kind = Kind::Point;
   glm::vec3 color{1.0f};  // linear
-  float strength = 1.0f;  // Point, Spot: candela; Directional: lux; Sphere, Disc: radiance
-  float radius_m = 0.0f;  // Sphere, Disc
-  float range_m = 0.0f;   // Point, Spot: where it fades out, 0: never
-  float inner_cone_rad = 0.0f, outer_cone_rad = 0.785398f;  // Spot
+  float strength = 1.0f;  // candela for Point and Spot, lux for Directional, radiance for Sphere and Disc
+  float radius_m = 0.0f;  // for Sphere and Disc
+  float range_m = 0.0f;   // distance at which Point and Spot have faded out; 0 for no limit
+  float inner_cone_rad = 0.0f, outer_cone_rad = 0.785398f;  // half angles of a Spot
   bool enabled = true;
 
   glm::vec3 power() const { return enabled ? strength * color : glm::vec3(0.0f); }
@@ -199,20 +198,21 @@ struct LocalLightComponent {
   }
 };
 
-// The words for the values of an enum, in their order: what files and scripts call them.
+// Names of the values of an enum in files and scripts, in their order.
 inline constexpr std::string_view kLightKindWords[] = {"point", "spot", "directional", "sphere", "disc"};
 constexpr std::span<const std::string_view> enumWords(LocalLightComponent::Kind) {
   return kLightKindWords;
 }
 
-// One animation of a bundle, an entity of its own; scene::playAnimations moves what its channels name.
+// An animation of a bundle, which is an entity of its own. scene::playAnimations moves the nodes of its
+// channels.
 struct AnimationComponent {
   std::uint32_t bundle = 0, animation = 0;
   float time_s = 0.0f;
   float speed = 1.0f;  // seconds of animation per second; negative plays backwards
   bool playing = true;
   bool loop = true;
-  float posed_s = 0.0f;  // the time that the nodes stand at; kept by playAnimations
+  float posed_s = 0.0f;  // time of the current pose; playAnimations updates it
 
   static constexpr std::string_view kComponentName = "Animation";
   static auto fields() {
@@ -223,12 +223,11 @@ struct AnimationComponent {
   }
 };
 
-// How the light from outside, sky and probes, stands over the scene. There may be two sets of it to fade
-// between.
+// Intensity and rotation of the light at infinity. There may be two sets of lights, between which it fades.
 struct EnvironmentComponent {
-  float intensity = 1.0f;     // factor on its radiance
-  float rotation_deg = 0.0f;  // about +Y; positive turns take +Z to +X
-  float fade = 0.0f;          // 0: the first set of lights, 1: the second
+  float intensity = 1.0f;     // factor of the radiance
+  float rotation_deg = 0.0f;  // about +Y; positive rotations take +Z to +X
+  float fade = 0.0f;          // 0 for the first set of lights, 1 for the second
 
   static constexpr std::string_view kComponentName = "Environment";
   static auto fields() {

@@ -16,7 +16,7 @@
 namespace lambent::scene {
 namespace {
 
-// A bundle in a registry of its own: what its entities are before anybody changes them.
+// A bundle in a registry of its own, with its entities as they are before any changes.
 struct Untouched {
   ecs::Registry registry;
   SceneInstance instance;
@@ -55,7 +55,7 @@ class Exchange {
     takePosesBack();
     for (const auto& [entity, made] : entity_of_) {
       const ecs::Entity old = oldOf(entity);
-      if (!registry_.alive(made)) continue;  // destroyed by hand
+      if (!registry_.alive(made)) continue;  // the user destroyed it
       exchangeTransform(made, old, entity);
       exchangeFields<Name>(made, old, entity);
       exchangeFields<CameraComponent>(made, old, entity);
@@ -76,15 +76,15 @@ class Exchange {
   }
 
  private:
-  // entity_of_: from an entity of is_ to the one in the registry.
+  // Matches entities of both bundles by their ids and creates those that only the new one has.
   void matchEntities() {
-    std::map<StableId, std::pair<ecs::Entity, ecs::Entity>> old;  // in was_, in the registry
+    std::map<StableId, std::pair<ecs::Entity, ecs::Entity>> old;  // entities in was_ and in the registry
     const std::vector<ecs::Entity> were = listOf(was_.instance), are = listOf(instance_);
     for (std::size_t i = 0; i < were.size(); ++i)
       old[was_.registry.get<StableId>(were[i])] = {were[i], are[i]};
     std::set<StableId> kept;
     forEachEntity(is_.instance, [&](ecs::Entity entity) {
-      if (entity_of_.contains(entity)) return;  // a lamp that is a node
+      if (entity_of_.contains(entity)) return;  // a lamp that is also a node
       const StableId id = is_.registry.get<StableId>(entity);
       if (const auto found = old.find(id); found != old.end()) {
         kept.insert(id);
@@ -111,7 +111,7 @@ class Exchange {
     return found == entity_of_.end() ? ecs::Entity{} : found->second;
   }
 
-  // Parts of transforms that stand where an animation put them were not changed by hand.
+  // Resets parts of transforms that have the pose of an animation, since the user did not change them.
   void takePosesBack() {
     using Path = gltf::AnimationChannel::Path;
     for (std::size_t a = 0; a < instance_.animations.size(); ++a) {
@@ -136,7 +136,7 @@ class Exchange {
     }
   }
 
-  // `value` begins as the new bundle has it.
+  // Copies fields that the user changed into `value`, which has those of the new bundle.
   template <class Component>
   static void keepChanges(Component& value, const Component& was, const Component& stands) {
     std::apply(
@@ -146,7 +146,7 @@ class Exchange {
         Component::fields());
   }
 
-  // What to put on the entity; none: leave it as it is.
+  // Returns the component to put on the entity, or nothing if the entity must stay as it is.
   template <class Component>
   std::optional<Component> merged(ecs::Entity entity, ecs::Entity old, ecs::Entity now) {
     const Component* stands = registry_.tryGet<Component>(entity);
@@ -156,7 +156,7 @@ class Exchange {
       if (was && stands) registry_.remove<Component>(entity);
       return {};
     }
-    if (was ? !stands : stands != nullptr) return {};  // taken off or put on by hand
+    if (was ? !stands : stands != nullptr) return {};  // the user removed or added it
     Component value = *is;
     if (was) keepChanges(value, *was, *stands);
     return value;
@@ -180,12 +180,12 @@ class Exchange {
       const ecs::Entity was_parent = was_.registry.get<Transform>(old).parent;
       const auto was = now_of_old_.find(was_parent);
       const ecs::Entity expected = was == now_of_old_.end() ? ecs::Entity{} : was->second;
-      if (stands->parent != expected) value->parent = stands->parent;  // hung elsewhere by hand
+      if (stands->parent != expected) value->parent = stands->parent;  // the user changed the parent
     }
     registry_.emplace<Transform>(entity, *value);
   }
 
-  // Nobody changes these by hand.
+  // Replaces components that users cannot change.
   void exchangeDerived(ecs::Entity entity, ecs::Entity old, ecs::Entity now) {
     if (const auto* is = is_.registry.tryGet<DrawItem>(now)) {
       DrawItem item = *is;
@@ -205,8 +205,8 @@ class Exchange {
     }
   }
 
-  // Groups whose node stands as it did when they were baked are at rest to the last bit, as if the bundle had
-  // just been opened.
+  // Sets groups whose node is where it was baked to exactly their rest transform, as if the bundle had just
+  // been opened.
   void placeGroups() {
     for (const ecs::Entity now : is_.instance.groups) {
       const ecs::Entity entity = entityOf(now);
@@ -238,8 +238,8 @@ class Exchange {
   const SceneInstance& instance_;
   const bundle::Description& before_;
   const Untouched was_, is_;
-  std::map<ecs::Entity, ecs::Entity> entity_of_, old_of_;  // of an entity of is_: in the registry, in was_
-  std::map<ecs::Entity, ecs::Entity> now_of_old_;          // of an entity of was_: in the registry
+  std::map<ecs::Entity, ecs::Entity> entity_of_, old_of_;  // from is_ to the registry, and from is_ to was_
+  std::map<ecs::Entity, ecs::Entity> now_of_old_;          // from was_ to the registry
   std::vector<ecs::Entity> gone_;
   std::set<ecs::Entity> to_pose_;
 };

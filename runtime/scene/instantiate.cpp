@@ -50,7 +50,7 @@ class Instantiation {
       Transform transform;
       transform.parent = nodeOrRoot(node.parent);
       setLocalMatrix(transform, node.parent_from_node);
-      if (node.trs) {  // the very parts that animations replace one by one
+      if (node.trs) {  // animations replace exactly these parts
         transform.translation = node.trs->translation;
         transform.rotation = node.trs->rotation;
         transform.scale = node.trs->scale;
@@ -61,8 +61,8 @@ class Instantiation {
       if (node.light >= 0)
         makeLight(instance_.nodes[i], description_.lights[static_cast<std::size_t>(node.light)]);
     }
-    // Ids chain from parent to child: parents first. Roots and children keep the file's order, by which
-    // siblings of the same name are told apart.
+    // An id depends on the parent's id, so parents come first. Roots and children keep the file's order,
+    // which distinguishes siblings of the same name.
     std::vector<std::int32_t> open;
     for (std::size_t i = nodes.size(); i-- > 0;) {
       if (nodes[i].parent < 0) open.push_back(static_cast<std::int32_t>(i));
@@ -114,7 +114,8 @@ class Instantiation {
       component.rest_rotation = component.rotation = group.rest_rotation;
       component.rest_translation = component.translation = group.rest_translation;
       const glm::dmat4 world_from_node(registry_.get<WorldTransform>(component.node).world_from_node);
-      // A root that is flat at rest (scale 0) has no inverse and shows nothing: its group stays where it is.
+      // A root that is flat at rest (scale 0) has no inverse and shows nothing, so its group stays where it
+      // is.
       if (glm::determinant(world_from_node) != 0.0) {
         component.node_from_world_at_rest = glm::inverse(world_from_node);
         component.seen_node = registry_.version<WorldTransform>(component.node);
@@ -156,8 +157,8 @@ class Instantiation {
       instance_.lamps.emplace_back();
       const auto& lights = description_.groups[g].lights;
       for (std::uint32_t k = 0; k < lights.size(); ++k) {
-        // A lamp is its node: one light, whether it shines on its own group or on others. An emissive
-        // material is one lamp in each group that it lights.
+        // The entity of a KHR light is its node, whether it shines on its own group or on others. An emissive
+        // material has one lamp in each group that it lights.
         if (lights[k].kind == Kind::Node) {
           instance_.lamps.back().push_back(instance_.nodes[lights[k].index]);
           continue;
@@ -228,15 +229,15 @@ Result<SceneInstance> instantiate(ecs::Registry& registry, const bundle::Descrip
   return Instantiation(registry, description, options).run();
 }
 
-// From the last that was made to the first: indices are used again latest first, so a bundle that comes back
-// has the order that it had, by which trees show it.
+// Entities are destroyed in reverse order of their creation. Indices are reused last in, first out, so a
+// bundle that is instantiated again gets the same order, in which trees show it.
 void destroyInstance(ecs::Registry& registry, const SceneInstance& instance) {
   const auto destroyAll = [&](const std::vector<ecs::Entity>& list) {
     for (auto entity = list.rbegin(); entity != list.rend(); ++entity) registry.destroy(*entity);
   };
   destroyAll(instance.materials);
   destroyAll(instance.animations);
-  // Lamps that are nodes go with these.
+  // Lamps that are nodes are destroyed with the nodes.
   for (auto lamps = instance.lamps.rbegin(); lamps != instance.lamps.rend(); ++lamps)
     for (auto lamp = lamps->rbegin(); lamp != lamps->rend(); ++lamp)
       if (registry.tryGet<LampComponent>(*lamp)) registry.destroy(*lamp);

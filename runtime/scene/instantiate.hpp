@@ -1,8 +1,12 @@
-// A bundle's description as entities: one root that places the whole, one entity per node (Name, StableId,
-// Transform, CameraComponent and LocalLightComponent where it carries one), one per rigid group, per draw,
-// per emissive material in a group that it lights, per animation, and per material. Several bundles, and one
-// bundle several times under different instance numbers, may stand in one registry. Payloads are not touched:
-// streaming brings them.
+// The room scene owns the scene as entities of a registry: it creates, moves, animates, edits and replaces
+// them. Its systems are functions over a registry that only one thread may use at a time; bad input is
+// returned as an Error.
+//
+// This header turns a bundle's description into entities: one root that places the whole, one per node (with
+// Name, StableId, Transform and, if it has them, CameraComponent and LocalLightComponent), and one per rigid
+// group, draw, animation and material, and per emissive material of each group that it lights. A registry may
+// hold several bundles, and the same bundle several times under different instance numbers. Streaming loads
+// the payloads.
 #pragma once
 
 #include <cstdint>
@@ -16,30 +20,31 @@
 namespace lambent::scene {
 
 struct InstantiateOptions {
-  std::uint32_t bundle_index = 0;  // what components call the bundle by while the program runs
-  std::string bundle_id;  // what StableIds call it by: the same in every session, e.g. its path in the world
+  std::uint32_t bundle_index = 0;  // number of the bundle in components while the program runs
+  std::string bundle_id;  // id for StableIds, equal in every session, such as the path in the world file
   std::uint32_t instance = 0;
 };
 
-// Indices are those of the description.
+// The entities of an instance, with the indices of the description.
 struct SceneInstance {
   ecs::Entity root;
   std::vector<ecs::Entity> nodes;
   std::vector<ecs::Entity> groups;
   std::vector<ecs::Entity> draws;
-  // Of each group, by light column: an entity with a LampComponent for a material, the node with its
-  // LocalLightComponent for a lamp.
+  // For each group and light column: an entity with a LampComponent for an emissive material, or the node
+  // with a LocalLightComponent for a KHR light.
   std::vector<std::vector<ecs::Entity>> lamps;
   std::vector<ecs::Entity> animations;
   std::vector<ecs::Entity> materials;
 };
 
-// World matrices and groups are up to date on return (updateTransforms has run over the registry). The
-// description is one that a Reader has checked. Error: the registry has this bundle and instance already.
+// Adds the entities of a description that a Reader has checked. World matrices and groups are up to date on
+// return, because it calls updateTransforms. Fails if the registry already has this bundle and instance.
 Result<SceneInstance> instantiate(ecs::Registry& registry, const bundle::Description& description,
                                   const InstantiateOptions& options);
 
-// Destroys its entities; those hung below them by others live on, in the world.
+// Destroys the entities of an instance. Other entities that have one of them as parent stay alive, in the
+// world.
 void destroyInstance(ecs::Registry& registry, const SceneInstance& instance);
 
 }  // namespace lambent::scene

@@ -10,7 +10,7 @@ namespace {
 
 using Kind = LocalLightComponent::Kind;
 
-// The brightest channel as strength, so that colours keep to 0..1.
+// Makes the brightest channel the strength, so that colours are within 0..1.
 LocalLightComponent lightOf(Kind kind, float radius_m, glm::vec3 radiance) {
   const float strength = std::max({radiance.r, radiance.g, radiance.b});
   return {.kind = kind,
@@ -19,7 +19,7 @@ LocalLightComponent lightOf(Kind kind, float radius_m, glm::vec3 radiance) {
           .radius_m = radius_m};
 }
 
-// Takes -Z there by the shortest way.
+// Returns the smallest rotation that takes -Z to the direction.
 glm::quat facing(glm::vec3 direction) {
   const glm::dvec3 to = glm::normalize(glm::dvec3(direction)), from(0.0, 0.0, -1.0);
   const double w = 1.0 + glm::dot(from, to);

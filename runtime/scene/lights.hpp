@@ -1,6 +1,5 @@
-// Lights as entities that belong to no bundle: those that light words put into the scene, and the one that
-// says how the environment stands. Comes in: lights as parsed. Goes out: entities with Name, Transform and
-// LocalLightComponent, or EnvironmentComponent.
+// Makes entities for lights that belong to no bundle: local lights of the command line, with Name, Transform
+// and LocalLightComponent, and the environment, with an EnvironmentComponent.
 #pragma once
 
 #include <span>
@@ -12,8 +11,8 @@
 
 namespace lambent::scene {
 
-// One entity for each light that stands in the scene (spec::localLights), in their order; a disc's Transform
-// turns -Z to where it shines.
+// Adds an entity for each local light (spec::localLights), in their order. The Transform of a disc rotates -Z
+// to the direction in which it shines.
 std::vector<ecs::Entity> addLights(ecs::Registry& registry, std::span<const spec::Light> lights);
 
 ecs::Entity addEnvironment(ecs::Registry& registry, const EnvironmentComponent& environment = {});

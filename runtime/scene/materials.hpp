@@ -1,7 +1,6 @@
-// Materials as components: what of a bundle's material may be changed while it is shown. Comes in: a material
-// as the bundle has it. Goes out: the component that says the same, and the material as a component has
-// changed it. Textures, sidedness and how alpha counts stay as they were baked. A number that is none, or
-// outside its field's range, changes nothing.
+// Converts a bundle's material to the component that holds its live values, and applies a changed component
+// to the material. Textures, double_sided and the alpha mode stay as they were baked. NaN or a value outside
+// its field's range changes nothing.
 #pragma once
 
 #include "runtime/bundle/gltf_types.hpp"

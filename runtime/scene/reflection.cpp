@@ -17,7 +17,7 @@
 namespace lambent::scene {
 namespace {
 
-// ---- values in and out of members
+// ---- conversion between values and members
 
 template <class T>
 Value toValue(const T& value) {
@@ -32,7 +32,7 @@ Value toValue(const T& value) {
   }
 }
 
-// The value has the member's kind; of words, one that there is.
+// Assigns a value of the member's kind. A Word must be one of the enum's names.
 template <class T>
 void fromValue(T& member, const Value& value) {
   if constexpr (std::is_enum_v<T>) {
@@ -93,9 +93,9 @@ std::span<const FieldInfo> fieldInfos() {
 }
 
 enum class By : std::uint8_t {
-  File,        // comes with a bundle or the program, and goes with it
-  Person,      // added and removed at will
-  Everything,  // what a person makes always has it
+  File,        // a bundle or the program adds and removes it
+  Person,      // users add and remove it
+  Everything,  // every entity that a user makes has it
 };
 
 template <ecs::Described C>
@@ -135,7 +135,7 @@ bool finite(const glm::vec3& v) {
 }  // namespace
 
 std::span<const ComponentInfo> components() {
-  // THE list: a component that is described by fields is known everywhere once it stands here.
+  // THE list: every part of the program knows a component with fields once it is in this list.
   static const std::array kComponents{
       row<Name>(By::Everything),
       row<Transform>(By::Everything),
@@ -219,7 +219,7 @@ Result<void> FieldInfo::check(const Value& value) const {
     case ValueKind::Rotation: {
       const glm::quat q = std::get<glm::quat>(value);
       const float length = glm::length(q);
-      // Far from 1 it is a mistake; near it rounding, which matrices bear.
+      // A length far from 1 is a mistake. A length near 1 is rounding, which does no harm.
       if (!(std::abs(length - 1.0f) <= 1e-3f))
         return wrong(fmt::format("is no rotation: its length is {}", length), "give a unit quaternion");
       return {};

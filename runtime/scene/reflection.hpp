@@ -1,9 +1,9 @@
-// All described components of a scene as rows of a table, without their types: what inspectors, undo, world
-// files, scripts and the clipboard are written against. A row knows the component's name and fields (name,
-// unit, kind, range, default) and reads and writes them in a registry by value. What goes in is checked:
-// kinds, ranges, NaN; errors name the field and nothing has changed then. Writing raises versions as
-// Registry::edit does. One thread at a time per registry; the table itself is constant. A new component is
-// one line in reflection.cpp.
+// A table of all described components of a scene, without their types. The inspector, undo, world files,
+// scripts and the clipboard use it. A row has the component's name and fields (name, unit, kind, range,
+// default), and reads and writes their values in a registry. Written values are checked for kind, range and
+// NaN; an error names the field, and nothing has changed. Writing raises versions as Registry::edit does.
+// Only one thread may use a registry at a time; the table itself is constant. To add a component, add a line
+// in reflection.cpp.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +22,7 @@
 
 namespace lambent::scene {
 
-// A value of an enum, as files call it.
+// The name of an enum's value in files.
 struct Word {
   std::string text;
   bool operator==(const Word&) const = default;
@@ -30,7 +30,7 @@ struct Word {
 
 using Value = std::variant<bool, std::int32_t, float, glm::vec3, glm::quat, std::string, Word>;
 
-// In the order of Value's alternatives.
+// The kinds are in the order of Value's alternatives.
 enum class ValueKind : std::uint8_t { Flag, Whole, Number, Vector, Rotation, Text, Word };
 
 inline ValueKind kindOf(const Value& value) {
@@ -38,29 +38,30 @@ inline ValueKind kindOf(const Value& value) {
 }
 std::string_view kindWord(ValueKind kind);
 
-// The same bits: tells 0 from -0 and finds NaN equal to itself.
+// Returns whether the bits are equal, so 0 differs from -0 and NaN equals itself.
 bool sameBits(const Value& a, const Value& b);
 
-// For people: "0.5", "(1, 2, 3)", "point".
+// Returns a text for users, such as "0.5", "(1, 2, 3)" or "point".
 std::string valueText(const Value& value);
 
 struct FieldInfo {
   std::string_view component, name, unit;
   ValueKind kind = ValueKind::Flag;
-  bool color = false;                       // a Vector that is linear RGB
-  std::optional<ecs::Range<float>> range;   // of Whole and Number, both ends included
-  std::span<const std::string_view> words;  // of Word: all there are, in the enum's order
+  bool color = false;                       // true for a Vector that is linear RGB
+  std::optional<ecs::Range<float>> range;   // for Whole and Number; both ends are included
+  std::span<const std::string_view> words;  // for Word: all names, in the enum's order
   Value default_value;
 
-  // Whether set() would take it.
+  // Returns an error if set() would not accept the value.
   Result<void> check(const Value& value) const;
 
-  // The entity has the component.
+  // Returns the value. The entity must have the component.
   Value get(const ecs::Registry& registry, ecs::Entity entity) const { return get_(registry, entity); }
-  // Errors: no such component, what check() says.
+  // Fails as check() does, and if the entity does not have the component.
   Result<void> set(ecs::Registry& registry, ecs::Entity entity, const Value& value) const;
-  // As set(), for values that were there before, which may lie outside the range if a file says so: only the
-  // kind is checked. False, and nothing happens, if it or the component is another.
+  // Sets a value that the field had before. It may be outside the range, since files may contain such values,
+  // so only the kind is checked. Does nothing and returns false if the kind differs or the component is
+  // missing.
   bool restore(ecs::Registry& registry, ecs::Entity entity, const Value& value) const;
 
   Value (*get_)(const ecs::Registry&, ecs::Entity) = nullptr;
@@ -70,30 +71,30 @@ struct FieldInfo {
 struct ComponentInfo {
   std::string_view name;
   std::span<const FieldInfo> fields;
-  bool addable = false;    // by a person, to what a person has made
-  bool removable = false;  // likewise
+  bool addable = false;    // true if users may add it to entities that they made
+  bool removable = false;  // true if users may remove it from such entities
 
-  // Null if there is none of that name.
+  // Returns null if there is no field of that name.
   const FieldInfo* field(std::string_view field_name) const;
 
   bool (*has)(const ecs::Registry&, ecs::Entity) = nullptr;
-  // With its defaults, or in the place of the one there is.
+  // Adds the component with its defaults, or replaces the one there is.
   void (*add)(ecs::Registry&, ecs::Entity) = nullptr;
-  bool (*remove)(ecs::Registry&, ecs::Entity) = nullptr;  // false if there was none
-  // All declared fields; the others stay. False, and nothing happens, unless both have the component.
+  bool (*remove)(ecs::Registry&, ecs::Entity) = nullptr;  // returns false if there was none
+  // Copies the declared fields only. Does nothing and returns false unless both entities have the component.
   bool (*copy)(ecs::Registry&, ecs::Entity from, ecs::Entity to) = nullptr;
-  // As Registry::version<T>(): of all, and of one.
+  // These return Registry::version<T>() of all components of the type, and of one.
   std::uint64_t (*version)(const ecs::Registry&) = nullptr;
   std::uint64_t (*versionOf)(const ecs::Registry&, ecs::Entity) = nullptr;
-  // The bundle that the component belongs to while the program runs; none for components without.
+  // Returns the number of the bundle that the component belongs to, or nothing if it belongs to none.
   std::optional<std::uint32_t> (*bundle)(const ecs::Registry&, ecs::Entity) = nullptr;
 };
 
-// In the order in which an inspector shows them.
+// Returns all components in the order in which an inspector shows them.
 std::span<const ComponentInfo> components();
-// Null if there is none of that name.
+// Returns null if there is no component of that name.
 const ComponentInfo* findComponent(std::string_view name);
-// Errors list what there is.
+// The error lists the components or fields that exist.
 Result<const FieldInfo*> findField(std::string_view component, std::string_view field);
 
 }  // namespace lambent::scene

@@ -8,7 +8,8 @@
 namespace lambent::scene {
 namespace {
 
-// Fixed sizes first, text last: no two inputs give the same bytes. Little endian on every machine.
+// Appends a value in little-endian order on every machine. Values of fixed size come first and text last, so
+// no two inputs give the same bytes.
 template <class T>
 void append(std::vector<std::byte>& bytes, T value) {
   for (std::size_t i = 0; i < sizeof(T); ++i)

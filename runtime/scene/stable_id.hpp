@@ -1,7 +1,6 @@
-// Names that outlive a session: undo, world files and scripts mean an entity by its StableId. It is made of
-// the bundle's id, the instance number and the names on the way from the root (with a count where siblings
-// share a name), so that a scene that is imported again, with nodes added or reordered elsewhere, keeps its
-// ids. 64 bits by XXH3.
+// A StableId identifies an entity across sessions, in undo, world files and scripts. It is a 64-bit XXH3 hash
+// of the bundle's id, the instance number and the names on the path from the root (with a count if siblings
+// share a name). So a scene keeps its ids when it is imported again with nodes added or reordered elsewhere.
 #pragma once
 
 #include <compare>
@@ -17,9 +16,10 @@ struct StableId {
 
 enum class StableKind : std::uint8_t { Node = 1, Group, Draw, Lamp, Animation, Material };
 
-// The root entity of an instance.
+// Returns the id of an instance's root entity.
 StableId instanceId(std::string_view bundle_id, std::uint32_t instance);
-// Of something below `parent`; ordinal counts earlier ones of the same parent, kind and name.
+// Returns the id of an entity below `parent`. `ordinal` is the number of earlier ones with the same parent,
+// kind and name.
 StableId childId(StableId parent, StableKind kind, std::string_view name, std::uint32_t ordinal);
 
 }  // namespace lambent::scene

@@ -15,7 +15,7 @@ struct UpdateState {
   std::uint64_t visit = 0;  // number of this update
 };
 
-// A WorldTransform for each Transform and none besides.
+// Adds a WorldTransform for each Transform and removes all others.
 void matchWorldTransforms(ecs::Registry& registry) {
   for (auto [entity, local] : registry.view<const Transform>()) {
     if (!registry.has<WorldTransform>(entity)) registry.emplace<WorldTransform>(entity);
@@ -26,7 +26,7 @@ void matchWorldTransforms(ecs::Registry& registry) {
   }
 }
 
-// True if the matrix was computed. The parent's is up to date.
+// Returns true if the matrix was recomputed. The parent's matrix must be up to date.
 bool updateNode(ecs::Registry& registry, ecs::Entity entity) {
   const Transform& local = registry.get<Transform>(entity);
   WorldTransform& world = registry.get<WorldTransform>(entity);
@@ -45,15 +45,15 @@ bool updateNode(ecs::Registry& registry, ecs::Entity entity) {
   return true;
 }
 
-// True if the group has moved.
+// Returns true if the group has moved.
 bool updateGroup(const ecs::Registry& registry, RigidGroupComponent& group) {
   const WorldTransform* node = registry.tryGet<WorldTransform>(group.node);
   if (!node) return false;
   const std::uint64_t version = registry.version<WorldTransform>(group.node);
   if (version == group.seen_node) return false;
   group.seen_node = version;
-  // The motion since rest, not the node's matrix: scale and mirrors that were there at rest cancel, and what
-  // is left at rest is nothing.
+  // This uses the motion since rest, not the node's matrix. Scale and mirrors that were there at rest cancel,
+  // so the motion at rest is the identity.
   const glm::dmat4 motion = glm::dmat4(node->world_from_node) * group.node_from_world_at_rest;
   const glm::mat4 world_from_rest(motion);
   if (world_from_rest == group.world_from_rest) return false;
@@ -77,7 +77,7 @@ TransformUpdates updateTransforms(ecs::Registry& registry) {
     matchWorldTransforms(registry);
     std::vector<ecs::Entity> chain;
     for (auto [start, local] : registry.view<const Transform>()) {
-      // Climb to the first ancestor that has had its turn, then come back down.
+      // The loop climbs to the first ancestor that was visited, then comes back down.
       chain.clear();
       for (ecs::Entity at = start;;) {
         WorldTransform* world = registry.tryGet<WorldTransform>(at);

@@ -1,6 +1,6 @@
-// Keeps world matrices and the place of rigid groups in step with the Transforms, once a frame. Work is done
-// only where a version has changed; parents come before children whatever their order, and hierarchies may be
-// of any depth.
+// Updates world matrices and rigid groups from the Transforms, once per frame. Only entities with a changed
+// version cost work. Parents are updated before their children in any order of entities, and hierarchies may
+// have any depth.
 #pragma once
 
 #include <cstddef>
@@ -10,17 +10,18 @@
 namespace lambent::scene {
 
 struct TransformUpdates {
-  std::size_t nodes = 0;   // world matrices computed again
-  std::size_t groups = 0;  // rigid groups that moved
+  std::size_t nodes = 0;   // number of world matrices that were recomputed
+  std::size_t groups = 0;  // number of rigid groups that moved
 };
 
-// Makes a WorldTransform for each Transform, computes it where the Transform or its parent's matrix has a new
-// version, then moves the groups whose node's matrix has one. What comes out the same keeps its version. A
-// group that is flattened or mirrored since rest has no rotation: it keeps the last one.
+// Adds a WorldTransform for each Transform, and recomputes it if the Transform or the parent's matrix has a
+// new version. Then updates the groups whose node's matrix has a new version. Results that do not change keep
+// their version. A group that is flattened or mirrored since rest keeps its last rotation.
 TransformUpdates updateTransforms(ecs::Registry& registry);
 
-// Hangs `child` below `parent` (none: the world); its local transform stays, so it moves along. False, and
-// nothing changes, if the parent has no Transform or is the child or below it.
+// Makes `parent` the parent of `child`; Entity{} stands for the world. The local transform stays, so the
+// child moves in the world. Does nothing and returns false if the parent has no Transform, is the child or is
+// below it.
 bool setParent(ecs::Registry& registry, ecs::Entity child, ecs::Entity parent);
 
 }  // namespace lambent::scene

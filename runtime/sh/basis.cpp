@@ -13,7 +13,7 @@ void evaluateOne(T x, T y, T z, T* out) {
   evaluateFixed<Order>(x, y, z, [out](int i, T value) { out[i] = value; });
 }
 
-// One direction per vector lane. ivdep is the caller's promise that outputs do not overlap inputs.
+// Evaluates one direction per vector lane. The ivdep pragma is valid because outputs must not overlap inputs.
 template <int Order, typename T>
 void evaluateMany(const T* xs, const T* ys, const T* zs, std::size_t count, T* out, std::size_t stride) {
 #ifndef __clang__

@@ -1,10 +1,14 @@
-// The real spherical harmonics y_lm that every room of Lambent uses: orthonormal over the sphere, WITHOUT the
-// Condon-Shortley sign, index i = l(l+1)+m. "Order n" means n bands, l = 0..n-1, n² coefficients
-// (docs/conventions.md). In: unit directions as Cartesian components. Out: the n² values. There is no
-// trigonometry and no division, so the poles are ordinary points; a direction that is off unit length by e
-// shifts band l by about l e. Recurrences: cos(m phi) sin(theta)^m and sin(m phi) sin(theta)^m as polynomials
-// in x and y, associated Legendre functions divided by sin(theta)^m as polynomials in z, with normalised
-// ratios only (no factorials).
+// The room sh owns spherical harmonics: basis, rotation, zonal functions, projection of pictures, windows,
+// and lights in closed form. It computes with plain values on the CPU, and free functions may be called from
+// any thread. Wrong orders and sizes are bugs, which assert; only invalid rotations are returned as an Error.
+//
+// This header evaluates the real spherical harmonics y_lm of all rooms. They are orthonormal over the sphere,
+// WITHOUT the Condon-Shortley sign, with index i = l(l+1)+m. "Order n" means n bands, l = 0..n-1, and n²
+// coefficients (docs/conventions.md). Input is a unit direction in Cartesian components, output the n²
+// values. The recurrences use polynomials in x and y for cos(m phi) sin(theta)^m and sin(m phi) sin(theta)^m,
+// and polynomials in z for associated Legendre functions divided by sin(theta)^m. They need no trigonometry,
+// division or factorials, so the poles are ordinary points. If the length of a direction is off by e, band l
+// is off by about l e.
 #pragma once
 
 #include <concepts>
@@ -17,9 +21,8 @@
 
 namespace lambent::sh {
 
-constexpr int kMaxOrder = 8;  // of light and everything that is stored for it
-constexpr int kMaxBasisOrder =
-    13;  // of the functions and rotations: visibility in 5 + 9 - 1 bands (gaunt.hpp)
+constexpr int kMaxOrder = 8;        // largest order of light and of everything that is stored for it
+constexpr int kMaxBasisOrder = 13;  // largest order of basis and rotations, for 5 + 9 - 1 bands in gaunt.hpp
 
 constexpr int coefficientCount(int order) {
   return order * order;
@@ -28,7 +31,7 @@ constexpr int coefficientIndex(int l, int m) {
   return l * (l + 1) + m;
 }
 
-// The band l that coefficient i belongs to.
+// Returns the band l of coefficient i.
 constexpr int bandOf(int i) {
   int l = 0;
   while ((l + 1) * (l + 1) <= i) ++l;
@@ -37,7 +40,8 @@ constexpr int bandOf(int i) {
 
 constexpr int kMaxCoefficients = coefficientCount(kMaxOrder);
 
-// All n² values at one unit direction; out holds at least n² entries. order in 1..kMaxBasisOrder.
+// Writes all order² values at a unit direction to `out`, which holds at least as many. `order` is in
+// 1..kMaxBasisOrder.
 template <std::floating_point T>
 void evaluate(int order, T x, T y, T z, std::type_identity_t<std::span<T>> out);
 
@@ -48,8 +52,8 @@ inline void evaluate(int order, const glm::dvec3& dir, std::span<double> out) {
   evaluate<double>(order, dir.x, dir.y, dir.z, out);
 }
 
-// Many directions at once: y_i of direction k goes to out[i * stride + k]. stride >= count; the outputs must
-// not overlap the inputs. Values agree with evaluate() to rounding.
+// Evaluates many directions at once: y_i of direction k goes to out[i * stride + k], where stride >= count.
+// Outputs must not overlap inputs. Values agree with evaluate() up to rounding.
 template <std::floating_point T>
 void evaluateBatch(int order, const T* xs, const T* ys, const T* zs, std::size_t count, T* out,
                    std::size_t stride);
@@ -61,7 +65,8 @@ void evaluateBatch(int order, const T* xs, const T* ys, const T* zs, std::size_t
 
 namespace detail {
 
-// std::sqrt is not constexpr in C++20. Newton from above decreases until rounding stops it.
+// std::sqrt is not constexpr in C++20. Newton's method starts above the root and decreases until rounding
+// stops it.
 constexpr double constexprSqrt(double value) {
   if (value <= 0) return 0;
   double root = value > 1 ? value : 1;
@@ -72,7 +77,7 @@ constexpr double constexprSqrt(double value) {
 
 constexpr double kPi = 3.14159265358979323846;
 
-// K_mm P_mm / sin(theta)^m, with the sqrt(2) of the m != 0 functions left out.
+// Returns K_mm P_mm / sin(theta)^m without the factor sqrt(2) of functions with m != 0.
 constexpr double sectoral(int m) {
   double squared = 1 / (4 * kPi);
   for (int k = 1; k <= m; ++k) squared *= (2.0 * k + 1) / (2.0 * k);
@@ -92,13 +97,13 @@ constexpr void unrolled(std::integer_sequence<int, I...>, F&& f) {
 
 }  // namespace detail
 
-// evaluate() for an order known at compile time, to be inlined into loops: sink(i, y_i) is called once for
-// each i, in columns of equal |m|. T may be any type with +, -, * among itself and construction from double.
+// Evaluates an order that is known at compile time, to be inlined into loops. Calls sink(i, y_i) once for
+// each i, in columns of equal |m|. T may be any type that has +, - and * and can be constructed from double.
 template <int Order, typename T, typename Sink>
 inline void evaluateFixed(T x, T y, T z, Sink&& sink) {
   static_assert(Order >= 1 && Order <= kMaxBasisOrder);
   const T z_squared = z * z;
-  T c = T(1), s = T(0);  // Re and Im of (x + iy)^m
+  T c = T(1), s = T(0);  // real and imaginary part of (x + iy)^m
   detail::unrolled(std::make_integer_sequence<int, Order>{}, [&](auto m_constant) {
     constexpr int m = m_constant;
     if constexpr (m == 1) {
@@ -109,7 +114,7 @@ inline void evaluateFixed(T x, T y, T z, Sink&& sink) {
       s = s * x + c * y;
       c = next;
     }
-    // The column's polynomials in z: k = l - m = 0..3 written out, the rest by three-term recurrence.
+    // The polynomials in z are written out for k = l - m = 0..3; a three-term recurrence gives the others.
     constexpr double k0 = detail::sectoral(m) * (m == 0 ? 1 : detail::constexprSqrt(2));
     constexpr double k1 = detail::zFactor(m + 1, m) * k0;
     constexpr double k2 = detail::zFactor(m + 2, m) * k1, k2_constant = -detail::backFactor(m + 2, m) * k0;

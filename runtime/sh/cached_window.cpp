@@ -20,7 +20,7 @@ bool sameShape(const LightVector& a, const LightVector& b) {
     if (!(of_both[k] > 0.0)) return false;
     factor[k] = of_both[k] / of_a[k];
   }
-  // The sums above lose digits where they cancel, so what is left is looked at by itself.
+  // The sums above lose digits by cancellation, so the remainder is computed from the coefficients.
   glm::dvec3 left(0.0);
   for (std::size_t i = 0; i < a.coefficients().size(); ++i) {
     const glm::dvec3 apart = glm::dvec3(b.c[i]) - factor * glm::dvec3(a.c[i]);

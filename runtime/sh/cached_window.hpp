@@ -1,22 +1,22 @@
-// The window of a light that changes from frame to frame: searched for anew only where the light's shape
-// changed. One that is as strong as before times some factor, in each channel another if need be, keeps its
-// window, for that depends on the shape alone.
+// Keeps the window of a light that changes from frame to frame. The window depends on the light's shape
+// alone, so it is searched again only if the shape changes, not if a channel is scaled.
 #pragma once
 
 #include "runtime/sh/window.hpp"
 
 namespace lambent::sh {
 
-// Whether b is a times a positive factor in each channel, up to 1e-6 of its norm. Not if anything is not
-// finite.
+// Returns whether each channel of b is a positive multiple of that of a, up to 1e-6 of its norm. Returns
+// false if anything is not finite.
 bool sameShape(const LightVector& a, const LightVector& b);
 
 class CachedWindow {
  public:
-  // Whether follow() would have nothing to do.
+  // Returns whether the weights already belong to this light and window.
   bool fits(const LightVector& light, Window window) const;
+  // Updates the weights to this light and window.
   void follow(const LightVector& light, Window window);
-  // Of the light that was followed last; all 1 before.
+  // Returns the weights of the last light; all are 1 before the first.
   const BandWeights& weights() const { return weights_; }
 
  private:

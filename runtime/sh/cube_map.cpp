@@ -9,7 +9,7 @@ namespace lambent::sh {
 
 namespace {
 
-// Solid angle of [0, u] x [0, v] at distance 1, signed.
+// Returns the signed solid angle of [0, u] x [0, v] at distance 1.
 double cornerSolidAngle(double u, double v) {
   return std::atan2(u * v, std::sqrt(u * u + v * v + 1));
 }

@@ -15,8 +15,9 @@ namespace lambent::sh {
 
 namespace {
 
-// Nodes and weights of 6-point Gauss-Legendre quadrature on [-1, 1]. Over one texel the integrands are
-// smooth: 6 x 6 points give the means of y to 1e-4 for a whole face and to rounding from 4 texels an edge on.
+// Nodes and weights of 6-point Gauss-Legendre quadrature on [-1, 1]. Integrands are smooth over a texel: 6 x
+// 6 points give the means of y to 1e-4 for a whole face, and up to rounding for faces of 4 or more texels per
+// edge.
 struct GaussNode {
   double at, weight;
 };
@@ -27,7 +28,7 @@ constexpr std::array<GaussNode, 6> kGauss = {{{-0.93246951420315203, 0.171324492
                                               {0.66120938646626451, 0.36076157304813861},
                                               {0.93246951420315203, 0.17132449237917035}}};
 
-// Omega (2 y(centre) - mean y) of one texel for all coefficients.
+// Writes Omega (2 y(centre) - mean y) of a texel for all coefficients.
 void sharpenedWeights(int order, int size, int face, int x, int y, std::span<double> weights) {
   const double half = 1.0 / size;
   const double sc = 2 * (x + 0.5) / size - 1, tc = 2 * (y + 0.5) / size - 1;
@@ -50,9 +51,8 @@ void sharpenedWeights(int order, int size, int face, int x, int y, std::span<dou
   for (std::size_t i = 0; i < count; ++i) weights[i] = solid_angle_sr * (2 * basis[i] - integral[i] / area);
 }
 
-// The weights of all texels, made so that uniform light has no coefficient but the first: over a whole cube
-// the sharpened weights of the bands that the cube's own symmetry lets through (4 and up) sum to a little
-// more than 0.
+// Corrects the sharpened weights, so that uniform light has no coefficient except the first. Without this,
+// weights of bands 4 and up that share the cube's symmetry sum to slightly more than 0 over the whole cube.
 class TexelWeights {
  public:
   TexelWeights(int order, int size) : order_(order), size_(size) {
@@ -89,8 +89,8 @@ float total(const Lanes& lanes) {
   return ((lanes[0] + lanes[4]) + (lanes[2] + lanes[6])) + ((lanes[1] + lanes[5]) + (lanes[3] + lanes[7]));
 }
 
-// Count coefficients of one parity class times three channels, each a dot product over the folded texels.
-// weights: Count rows of `length`; folded: three channels of `length`.
+// Computes three channels of `Count` coefficients of one parity class, each as a dot product over folded
+// texels. `weights` has Count rows of `length`, `folded` three channels of `length`.
 template <int Count>
 void dotProducts(const float* weights, const float* folded, std::size_t length, const int* coefficients,
                  LightVector& light) {
@@ -110,7 +110,7 @@ void dotProducts(const float* weights, const float* folded, std::size_t length, 
                                                           total(sum[i][2])};
 }
 
-// Parity of y_lm under x -> -x, y -> -y, z -> -z as bits 1, 2, 4 (set: odd).
+// Returns the parity of y_lm in x, y and z as the bits 1, 2 and 4, which are set if it is odd.
 int parity(int l, int m) {
   const int odd_y = m < 0 ? 1 : 0;
   const int odd_x = (std::abs(m) + odd_y) & 1;
@@ -118,7 +118,8 @@ int parity(int l, int m) {
   return odd_x | odd_y << 1 | odd_z << 2;
 }
 
-// How a face lies on the axes: sc runs along axis_of_sc (0, 1, 2 for x, y, z), or against it where flipped.
+// Orientation of a face: sc runs along axis_of_sc (0, 1, 2 for x, y, z), or against it if flipped; tc
+// likewise.
 struct FaceAxes {
   int axis_of_sc, axis_of_tc;
   bool sc_flipped, tc_flipped;
@@ -134,9 +135,10 @@ std::size_t roundedUp(std::size_t count) {
   return (count + kLanes - 1) / kLanes * kLanes;
 }
 
-// Sums and differences of the four texels of a face that mirror each other, for one row pair and the first
-// `half` columns: plus and minus are the rows on the positive and negative side of tc's axis, `size` texels
-// each. to[odd_sc + 2 odd_tc] points to the first of `half` reds; greens and blues follow at channel_step.
+// Folds a pair of rows: computes sums and differences of each four texels of a face that mirror each other,
+// for the first `half` columns. `plus` and `minus` are the rows on the positive and negative side of tc's
+// axis, with `size` texels each. to[odd_sc + 2 odd_tc] points to the first of `half` red values; green and
+// blue values follow at channel_step.
 using FoldTargets = std::array<float*, 4>;
 
 template <typename Value, typename Store>
@@ -150,8 +152,15 @@ void foldFour(const Value& plus_low, const Value& plus_high, const Value& minus_
   store(3, sign * (high_odd - low_odd));
 }
 
-void foldColumns(const glm::vec3* plus, const glm::vec3* minus, std::size_t size, std::size_t first,
-                 float sign, const FoldTargets& to, std::size_t channel_step) {
+// Rows of `size` texels that mirror each other.
+struct RowPair {
+  const glm::vec3 *plus, *minus;
+  std::size_t size;
+};
+
+void foldColumns(const RowPair& rows, std::size_t first, float sign, const FoldTargets& to,
+                 std::size_t channel_step) {
+  const auto& [plus, minus, size] = rows;
   for (std::size_t c = first; c < (size + 1) / 2; ++c)
     foldFour(plus[c], plus[size - 1 - c], minus[c], minus[size - 1 - c], sign,
              [&](std::size_t p, const glm::vec3& sum) {
@@ -160,7 +169,7 @@ void foldColumns(const glm::vec3* plus, const glm::vec3* minus, std::size_t size
              });
 }
 
-// Eight texels as three vectors of one channel each.
+// Eight texels as three SIMD vectors of one channel each.
 struct Texels {
   Lanes red, green, blue;
 };
@@ -193,7 +202,7 @@ void foldRows(const glm::vec3* plus, const glm::vec3* minus, std::size_t size, b
     fold(&Texels::green, channel_step);
     fold(&Texels::blue, 2 * channel_step);
   }
-  foldColumns(plus, minus, size, c, sign, to, channel_step);
+  foldColumns({plus, minus, size}, c, sign, to, channel_step);
 }
 
 }  // namespace
@@ -231,8 +240,8 @@ CubeProjector::CubeProjector(int order, int size) : order_(order), size_(size) {
   }
   weights_.assign(rows * folded_count_, 0.0f);
 
-  // The weight of each texel of the octant x, y, z > 0. In the middle row or column of an odd size a texel is
-  // its own mirror image and is added to itself: half the weight.
+  // Weights are needed for the octant x, y, z > 0 only. In the middle row or column of an odd size a texel is
+  // its own mirror image and is added to itself, so it gets half the weight.
   const TexelWeights texel_weights(order, size);
   std::array<double, kMaxCoefficients> weights;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -255,9 +264,9 @@ CubeProjector::CubeProjector(int order, int size) : order_(order), size_(size) {
 LightVector CubeProjector::project(std::span<const glm::vec3> faces) const {
   const auto size = static_cast<std::size_t>(size_), half = (size + 1) / 2;
   assert(faces.size() == 6 * size * size);
-  const std::size_t class_step = 3 * folded_count_;  // red, green and blue sums of one parity class
+  const std::size_t class_step = 3 * folded_count_;  // size of the RGB sums of one parity class
   const auto folded = std::make_unique_for_overwrite<float[]>(8 * class_step);
-  // Two faces of an axis, folded in their own planes: [face][parity in sc, tc][channel][row][column].
+  // Both faces of an axis are folded in their own planes: [face][parity in sc, tc][channel][row][column].
   const std::size_t plane = half * half;
   const auto planes = std::make_unique_for_overwrite<float[]>(2 * 4 * 3 * plane);
 

@@ -14,14 +14,14 @@ namespace lambent::sh {
 
 namespace {
 
-// Γ below this is rounding: the least that is not 0 is over 1e-4 (gaunt_test.cpp).
+// Smaller values of Γ are rounding errors of 0. The smallest nonzero one is over 1e-4 (gaunt_test.cpp).
 constexpr double kNothing = 1e-12;
 
 struct Node {
   double z, weight;
 };
 
-// Gauss-Legendre on [-1, 1]: exact for polynomials of degree 2 count - 1.
+// Returns Gauss-Legendre nodes on [-1, 1], which are exact for polynomials of degree 2 count - 1.
 std::vector<Node> gaussLegendre(int count) {
   std::vector<Node> nodes;
   for (int i = 0; i < count; ++i) {
@@ -40,15 +40,15 @@ std::vector<Node> gaussLegendre(int count) {
   return nodes;
 }
 
-// All y at each node, `stride` of them, and the node's weight.
+// Weights of the nodes and, for each node, `stride` values of y.
 struct Samples {
   std::vector<double> weights;
   std::vector<double> y;
   std::size_t stride = 0;
 };
 
-// The product of three functions has degree (in - 1) + (out - 1) + (in + out - 2) in z and in cos and sin of
-// phi.
+// Samples the sphere so that products of three functions are integrated exactly. Their degree in z and in
+// cos(phi), sin(phi) is (in - 1) + (out - 1) + (in + out - 2).
 Samples sampleSphere(int bands_in, int bands_out) {
   const int degree = 2 * (bands_in + bands_out - 2), visibility = bands_in + bands_out - 1;
   const int order = std::max({bands_in, bands_out, visibility});

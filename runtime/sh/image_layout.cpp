@@ -15,15 +15,15 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-// Squares of the cross by column and row. Upright squares show the cube from inside with +Y up; the bottom
-// one hangs below -Y and so shows +Z turned by 180 degrees.
+// Squares of the cross by row and column. Squares in the middle row and column show the cube from inside with
+// +Y up. The bottom one is attached below -Y, so it shows +Z rotated by 180 degrees.
 enum class Square { None, PlusX, MinusX, PlusY, MinusY, PlusZ, MinusZ };
 constexpr Square kSquares[4][3] = {{Square::None, Square::PlusY, Square::None},
                                    {Square::MinusX, Square::MinusZ, Square::PlusX},
                                    {Square::None, Square::MinusY, Square::None},
                                    {Square::None, Square::PlusZ, Square::None}};
 
-// u to the right, v up, both in [-1, 1].
+// Returns the direction at (u, v) of a square, with u to the right and v up, both in [-1, 1].
 glm::dvec3 squareDirection(Square square, double u, double v) {
   switch (square) {
     case Square::PlusX:
@@ -159,7 +159,7 @@ glm::dvec2 imageCoordinates(ImageLayout layout, int width, int height, const glm
     case ImageLayout::AngularMap: {
       const double side = std::hypot(dir.x, dir.y);
       const double r = std::atan2(side, -dir.z) / kPi;
-      // Straight back (+Z) is the whole rim; take its right end.
+      // The whole rim shows +Z; its right end represents that direction.
       const double u = side > 0 ? r * dir.x / side : r, v = side > 0 ? r * dir.y / side : 0;
       return {0.5 * (u + 1) * width, 0.5 * (1 - v) * height};
     }

@@ -1,8 +1,8 @@
-// How a picture covers the sphere of directions: lat-long (2:1), angular map (1:1) and vertical cross (3:4),
-// as docs/conventions.md draws them. Texel (x, y) has column x from the left and row y from the top;
-// continuous image coordinates put the picture's top left corner at (0, 0) and texel centres at
-// half-integers. Texels that show no direction (outside the circle, empty squares of the cross) have solid
-// angle 0 and direction (0, 0, 0). Directions: unit, right-handed, +Y up.
+// Maps texels of an environment map to directions. The layouts are lat-long (2:1), angular map (1:1) and
+// vertical cross (3:4), drawn in docs/conventions.md. Texel (x, y) has column x from the left and row y from
+// the top. Continuous image coordinates put the top left corner of the picture at (0, 0) and texel centres at
+// half-integers. Texels that show no direction (outside the circle, in empty squares of the cross) have solid
+// angle 0 and direction (0, 0, 0). Directions are unit vectors, right-handed, with +Y up.
 #pragma once
 
 #include <optional>
@@ -15,20 +15,21 @@ namespace lambent::sh {
 
 enum class ImageLayout { LatLong, AngularMap, VerticalCross };
 
-// "lat-long", "angular-map", "vertical-cross".
+// Returns "lat-long", "angular-map" or "vertical-cross".
 std::string_view name(ImageLayout layout);
 
-// The layout that a picture of this shape must have; none for any other shape.
+// Returns the layout that has this shape, or nothing if none has.
 std::optional<ImageLayout> layoutOfShape(int width, int height);
 
-// Direction through the centre of a texel.
+// Returns the direction through the centre of a texel.
 glm::dvec3 texelDirection(ImageLayout layout, int width, int height, int x, int y);
 
-// Steradians that a texel covers: exact for lat-long and cross; for the angular map the density at the
-// texel's centre times its area (the sum over a picture N texels wide is 4pi to about 3/N²).
+// Returns the solid angle of a texel in steradians. It is exact for lat-long and cross. For the angular map
+// it is the density at the texel's centre times its area, which sums to 4pi up to about 3/N² for N texels of
+// width.
 double texelSolidAngle(ImageLayout layout, int width, int height, int x, int y);
 
-// Where a direction (any length but zero) lies in the picture.
+// Returns the image coordinates of a direction of any length except zero.
 glm::dvec2 imageCoordinates(ImageLayout layout, int width, int height, const glm::dvec3& dir);
 
 }  // namespace lambent::sh

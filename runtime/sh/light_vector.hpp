@@ -1,7 +1,7 @@
-// Incident light as spherical harmonics: L(s) = sum_i c_i y_i(s), the radiance (linear Rec.709 RGB, float32)
-// that arrives from unit direction s. The same type holds any RGB function of direction (windowed light,
-// irradiance/pi). Coefficients at and above order² are zero, so vectors of different orders add as functions
-// do.
+// A LightVector is incident light in spherical harmonics: L(s) = sum_i c_i y_i(s) is the radiance (linear
+// Rec.709 RGB) that arrives from unit direction s. The same type holds any RGB function of direction, such as
+// windowed light or irradiance/pi. Coefficients from order² on are zero, so vectors of different orders can
+// be added.
 #pragma once
 
 #include <array>
@@ -24,10 +24,10 @@ struct LightVector {
     return std::span(c).first(static_cast<std::size_t>(coefficientCount(order)));
   }
 
-  // L(dir) for a unit direction; may be negative where the expansion rings.
+  // Returns L(dir) for a unit direction. It may be negative where the expansion rings.
   glm::vec3 evaluate(const glm::vec3& dir) const;
 
-  // The first bands only; a higher order than the present one pads with zeros.
+  // Returns the first new_order bands, padded with zeros if the order rises.
   LightVector truncated(int new_order) const;
 
   LightVector& operator+=(const LightVector& other);  // the order becomes the larger of the two

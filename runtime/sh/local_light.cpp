@@ -29,7 +29,7 @@ LightVector scaled(int order, const glm::vec3& rgb, Coefficient&& coefficient) {
   return light;
 }
 
-// Forward differentiation: a value and its derivative along one direction.
+// A value and its derivative along one direction, for forward differentiation.
 struct Dual {
   double value, slope;
   constexpr Dual(double v, double s = 0.0) : value(v), slope(s) {}
@@ -40,8 +40,8 @@ struct Dual {
   }
 };
 
-// sums_i += the derivative of y_i along `along` at s, by the polynomials that evaluateFixed() multiplies out;
-// off the sphere they are one continuation of y_i of many, which have the same slope along it.
+// Adds the derivative of y_i at s along the tangent `along` to sums_i. It differentiates the polynomials of
+// evaluateFixed(); other extensions of y_i off the sphere would have the same tangential derivative.
 using Sums = std::array<double, kMaxCoefficients>;
 template <int Order>
 void addSlopes(const glm::dvec3& s, const glm::dvec3& along, Sums& sums) {
@@ -51,7 +51,7 @@ void addSlopes(const glm::dvec3& s, const glm::dvec3& along, Sums& sums) {
 void addSlopes(int order, const glm::dvec3& s, const glm::dvec3& along, Sums& sums) {
   switch (order) {
     case 1:
-      return;  // band 0 has none
+      return;  // band 0 is constant
     case 2:
       return addSlopes<2>(s, along, sums);
     case 3:
@@ -69,16 +69,16 @@ void addSlopes(int order, const glm::dvec3& s, const glm::dvec3& along, Sums& su
   }
 }
 
-// The disc in units of its radius and in axes of its own: the point stands at 0, the disc in the plane
-// `height` before it, its centre `aside` along u.
+// The disc in units of its radius, in a frame whose origin is the point. The disc lies in the plane at
+// distance `height` ahead, and its centre is `aside` along u.
 struct DiscSight {
   double height, aside;
   glm::dvec3 u, v, ahead;  // right-handed
 };
 
-// Nearer than this to the rim, in radii, the point counts as that high above the plane.
+// If the point is nearer to the rim than this, in radii, it is treated as this high above the plane.
 constexpr double kLeastHeightAtRim = 1e-4;
-// Farther than this, in radii, a disc is a direction: its extent changes nothing that a double holds.
+// Beyond this distance, in radii, the extent of a disc makes no difference in double precision.
 constexpr double kFar = 1e7;
 
 std::optional<DiscSight> sightOf(const glm::dvec3& center, const glm::dvec3& normal, double radius) {
@@ -101,22 +101,23 @@ std::optional<DiscSight> sightOf(const glm::dvec3& center, const glm::dvec3& nor
   return sight;
 }
 
-// f(q, dq) for points q(phi) of the rim at the nodes of a trapezoid rule, dq = q'(phi) dphi;
-// counter-clockwise as seen from the point.
+// Calls f(q, dq) for positions q(phi) on the rim at the nodes of a trapezoid rule, where dq = q'(phi) dphi.
+// They run counter-clockwise as seen from the lit point.
 //
-// The rule converges as e^(-count d) where the integrand is analytic for |Im phi| < d. It has a singularity
-// where |q|² = A + B cos(phi) vanishes, at phi = pi + i acosh(A/B), near the axis when the point stands near
-// the rim. A Moebius map of the circle, e^(i phi) = (w + g) / (1 + g w), gathers nodes there and moves that
-// singularity and the one at e^(i phi) = 0 equally far away: d grows to about the square root.
+// The rule converges as e^(-count d) if the integrand is analytic for |Im phi| < d. The integrand has a
+// singularity where |q|² = A + B cos(phi) vanishes, at phi = pi + i acosh(A/B), which is near the real axis
+// when the point is near the rim. The Moebius map e^(i phi) = (w + g) / (1 + g w) of the circle gathers nodes
+// there. It moves this singularity and the one at e^(i phi) = 0 to equal distances, so d grows to about its
+// square root.
 template <typename F>
 void alongRim(const DiscSight& sight, int order, F&& f) {
   const double a = sight.height * sight.height + sight.aside * sight.aside + 1.0, b = 2.0 * sight.aside;
-  // e^(-acosh(A/B)), and A² - B² without cancellation.
+  // This computes e^(-acosh(A/B)), with A² - B² free of cancellation.
   const double inner = (sight.aside - 1.0) * (sight.aside - 1.0) + sight.height * sight.height;
   const double outer = (sight.aside + 1.0) * (sight.aside + 1.0) + sight.height * sight.height;
   const double pole = b / (a + std::sqrt(inner * outer));
   const double g = -pole / (1.0 + std::sqrt(std::max(0.0, 1.0 - pole * pole)));
-  // ln(1/|g|) for |g| near 1 too; 40 is e^-40 = 4e-18 times the growth of degree 8's poles.
+  // ln(1/|g|) gives the number of nodes. An exponent of 40 leaves an error of about e^-40 = 4e-18.
   const double decay = g < 0.0 ? -std::log(-g) : 40.0;
   const int count = 2 * order + 8 + static_cast<int>(std::ceil(std::min(40.0 / decay, 8192.0)));
   for (int k = 0; k < count; ++k) {
@@ -150,14 +151,15 @@ LightVector discAreaLight(int order, const glm::dvec3& center, const glm::dvec3&
   Sums sums{};
   const double distance = std::hypot(sight->height, sight->aside);
   if (distance > kFar) {
-    // Area times cosine over squared distance, in one direction.
+    // A distant disc is one direction with a solid angle of area times cosine over squared distance.
     const double solid_angle = kPi / distance / distance * (sight->height / distance);
     evaluate(order, glm::normalize(center), sums);
     return scaled(order, radiance, [&](int i) { return solid_angle * sums[static_cast<std::size_t>(i)]; });
   }
-  // On the sphere the Laplacian of y_lm is -l(l+1) y_lm, so by the divergence theorem its integral over what
-  // the disc fills is -1/(l(l+1)) times that of its slope outwards along the rim, dq x q / |q|² for a rim
-  // seen counter-clockwise. Band 0 is the solid angle: the integral of (1 - cos theta) dphi about the axis.
+  // On the sphere the Laplacian of y_lm is -l(l+1) y_lm. By the divergence theorem the integral of y_lm over
+  // the solid angle of the disc is therefore -1/(l(l+1)) times the integral, along the rim, of the outward
+  // slope. Its direction is dq x q / |q|² for a rim seen counter-clockwise. Band 0 is the solid angle, which
+  // is the integral of (1 - cos theta) dphi about the axis.
   const glm::dmat3 frame(sight->u, sight->v, sight->ahead);
   double solid_angle = 0.0;
   alongRim(*sight, order, [&](const glm::dvec3& q, const glm::dvec3& dq) {
@@ -185,12 +187,12 @@ LightVector pointLight(int order, const glm::dvec3& light, const glm::vec3& inte
   });
 }
 
-LightVector spotLight(int order, const glm::dvec3& light, const glm::dvec3& axis, const glm::vec3& intensity,
-                      double inner_cone, double outer_cone, double range) {
-  const double length = glm::length(axis), distance = glm::length(light);
-  if (!(length > 0.0) || !finite(axis) || !finite(light)) return {.order = order};
-  const double cosine = distance > 0.0 ? glm::dot(axis / length, -light / distance) : 1.0;
-  const double fade = coneFade(cosine, inner_cone, outer_cone);
+LightVector spotLight(int order, const glm::dvec3& light, const SpotCone& cone, const glm::vec3& intensity,
+                      double range) {
+  const double length = glm::length(cone.axis), distance = glm::length(light);
+  if (!(length > 0.0) || !finite(cone.axis) || !finite(light)) return {.order = order};
+  const double cosine = distance > 0.0 ? glm::dot(cone.axis / length, -light / distance) : 1.0;
+  const double fade = coneFade(cosine, cone.inner_rad, cone.outer_rad);
   if (!(fade > 0.0)) return {.order = order};
   return pointLight(order, light, intensity, range) * static_cast<float>(fade);
 }

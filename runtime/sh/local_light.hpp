@@ -1,9 +1,8 @@
-// Lights that stand near, as seen from a point: what arrives there as spherical harmonics, in closed form and
-// in double. Comes in: places relative to the point, metres, in any frame. Goes out: the light vector in that
-// frame. Surfaces of uniform radiance are integrated over the solid angle that they fill; single directions
-// give E y_i(dir), E being the irradiance on a surface that faces them. Hard cases are no errors: every
-// finite input gives finite coefficients, what is not finite gives darkness; each function says what it does
-// at its limits. Nothing here knows about shadows.
+// Computes the light vector that a local light sends to a point, in closed form and in double precision.
+// Positions are relative to the point, in metres, in any frame; the light vector is in the same frame.
+// Surfaces of uniform radiance are integrated over the solid angle that they fill. A light from a single
+// direction gives E y_i(dir), where E is the irradiance on a surface that faces it. There are no errors:
+// finite input gives finite coefficients, and other input gives darkness. Shadows are ignored.
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -12,36 +11,40 @@
 
 namespace lambent::sh {
 
-// A sphere of uniform radiance: a disc of angular radius asin(radius / distance), and from inside the same
-// radiance from everywhere. On its surface that is a step, from half the sky to all of it. Radius 0 or less:
-// dark.
+// A sphere of uniform radiance. From outside it is a disc of angular radius asin(radius / distance); from
+// inside the same radiance arrives from everywhere, so at its surface light jumps from half the sphere of
+// directions to all of it. A radius of 0 or less gives darkness.
 LightVector sphereLight(int order, const glm::dvec3& center_from_point, double radius_m,
                         const glm::vec3& radiance_rgb);
 
-// A flat disc of uniform radiance that shines along its normal (any length): exact wherever the point stands,
-// except within 1e-4 radii of the rim, where it counts as that much in front of the plane. From the plane and
-// from behind: dark. Radius 0 or less, or a normal of length 0: dark.
+// A flat disc of uniform radiance that shines towards its normal (any length). The result is exact except
+// within 1e-4 radii of the rim, where the point is treated as that far in front of the plane. Points in the
+// plane or behind it are dark. A radius of 0 or less or a normal of length 0 gives darkness.
 LightVector discAreaLight(int order, const glm::dvec3& center_from_point, const glm::dvec3& normal,
                           double radius_m, const glm::vec3& radiance_rgb);
 
-// KHR_lights_punctual: a point without extent that gives intensity (W/sr) over squared distance, faded out
-// towards range_m (0: nowhere). The extension has a pole at distance 0. Ours differs: within
-// kLeastPointDistance it shines as from there, and band l shrinks with the l-th power of the distance, so
-// that the light goes over to one from all around (band 0 alone at the point itself) without a jump.
+// A point light of KHR_lights_punctual gives intensity (W/sr) over squared distance, and fades out towards
+// range_m (0 for no limit). The extension has a pole at distance 0. Ours differs: nearer than
+// kLeastPointDistance the intensity stays as at that distance, and band l shrinks with the l-th power of the
+// distance. So the light changes continuously to one from all around, with only band 0 at the point itself.
 inline constexpr double kLeastPointDistance = 0.01;  // metres
 LightVector pointLight(int order, const glm::dvec3& light_from_point, const glm::vec3& intensity_rgb,
                        double range_m = 0.0);
 
-// A point light within a cone about its axis (any length, the way it shines): whole within inner_cone_rad,
-// dark beyond outer_cone_rad. At the light's own place the point counts as within. An axis of length 0: dark.
-LightVector spotLight(int order, const glm::dvec3& light_from_point, const glm::dvec3& axis,
-                      const glm::vec3& intensity_rgb, double inner_cone_rad, double outer_cone_rad,
-                      double range_m = 0.0);
+// A point light within a cone about its axis (any length, the way it shines): whole within the inner angle,
+// dark beyond the outer one. At the light's own place the point counts as within. An axis of length 0: dark.
+struct SpotCone {
+  glm::dvec3 axis;
+  double inner_rad, outer_rad;
+};
+LightVector spotLight(int order, const glm::dvec3& light_from_point, const SpotCone& cone,
+                      const glm::vec3& intensity_rgb, double range_m = 0.0);
 
-// One direction (any length, towards the light; 0: dark); irradiance (W/m²) on a surface that faces it.
+// Light from one direction, given by a vector of any length towards the light; length 0 gives darkness. The
+// irradiance (W/m²) is that on a surface that faces the light.
 LightVector directionalLight(int order, const glm::dvec3& to_light, const glm::vec3& irradiance_rgb);
 
-// The factors of KHR_lights_punctual, "Range Property" and "Inner and Outer Cone Angles".
+// Return the factors of KHR_lights_punctual, sections "Range Property" and "Inner and Outer Cone Angles".
 double rangeFade(double distance_m, double range_m);
 double coneFade(double cos_from_axis, double inner_cone_rad, double outer_cone_rad);
 

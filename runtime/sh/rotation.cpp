@@ -11,9 +11,9 @@ namespace lambent::sh {
 
 namespace {
 
-// A band's block is kept transposed against the recurrence's papers: column j of D lies in stride(l)
-// consecutive numbers, so that applying it is "add column j times in_j" and building it works on whole rows
-// of the inverse's block, D(R)^T = D(R^-1). Padding to multiples of 4 holds zeros.
+// A block is stored by columns: column j of D takes stride(l) consecutive numbers, padded with zeros to a
+// multiple of 4. Applying D adds column j times in_j. Building it works on whole rows of the inverse's block,
+// since D(R)^T = D(R^-1).
 constexpr int stride(int l) {
   return l == 0 ? 1 : (2 * l + 1 + 3) / 4 * 4;
 }
@@ -23,8 +23,8 @@ constexpr int bandOffset(int l) {
   return offset;
 }
 
-// The factors of Ivanic and Ruedenberg for row m of band l, without the part that depends on the column only.
-// Row m = u P_0(m) + v_plus P_1(.) + v_minus P_-1(.) + w (P_1(.) +- P_-1(.)), see makeBand.
+// The factors of Ivanic and Ruedenberg for row m of band l, without the part that depends only on the column.
+// Row m is u P_0(m) + v_plus P_1(.) + v_minus P_-1(.) + w (P_1(.) +- P_-1(.)), as makeBand shows.
 struct RowFactors {
   double u, v, w;
 };
@@ -35,7 +35,7 @@ constexpr RowFactors rowFactors(int l, int m) {
           .v = 0.5 * detail::constexprSqrt((1 + zero) * (l + a - 1) * (l + a)) * (1 - 2 * zero),
           .w = -0.5 * detail::constexprSqrt(1.0 * (l - a - 1) * (l - a)) * (1 - zero)};
 }
-// 1 / sqrt(denominator) of column n.
+// Returns 1 / sqrt(denominator) for each column n.
 template <int L>
 constexpr std::array<double, static_cast<std::size_t>(stride(L))> columnFactors() {
   std::array<double, static_cast<std::size_t>(stride(L))> columns{};
@@ -47,16 +47,15 @@ constexpr std::array<double, static_cast<std::size_t>(stride(L))> columnFactors(
   return columns;
 }
 
-// Band L of the matrix whose band 1 is `first` (rows and columns m = -1, 0, 1) from band L-1.
-// The recurrence is Ivanic and Ruedenberg's with the two published errata (additions and corrections, 1998;
-// the V term for m < 0); their real harmonics carry no Condon-Shortley sign in Cartesian form, as ours do
-// not.
+// Computes band L from band L-1 and from band 1 in `first` (rows and columns m = -1, 0, 1). The recurrence is
+// that of Ivanic and Ruedenberg with the two published errata (additions and corrections, 1998; the V term
+// for m < 0). Like ours, their real harmonics have no Condon-Shortley sign in Cartesian form.
 template <int L>
 void makeBand(const std::array<std::array<double, 3>, 3>& first, const double* before, double* band) {
   constexpr int kRows = 2 * L - 1, kStride = stride(L), kBefore = stride(L - 1);
   static constexpr auto kColumnFactors = columnFactors<L>();
 
-  // p[i + 1][a + L - 1] is the row P_i(a, .), scaled by the column's factor.
+  // p[i + 1][a + L - 1] is the row P_i(a, .), scaled by the factors of the columns.
   double p[3][kRows][kStride] = {};
   for (int i = 0; i < 3; ++i) {
     const double r_minus = first[static_cast<std::size_t>(i)][0],
@@ -96,8 +95,8 @@ void makeBand(const std::array<std::array<double, 3>, 3>& first, const double* b
   });
 }
 
-// out = D in for one band of coefficients with interleaved channels. Each column is read once for all
-// channels.
+// Computes out = D in for one band of coefficients with interleaved channels. Each column is read once for
+// all channels.
 template <int L, int Channels, typename T>
 void applyBand(const T* columns, const T* in, T* out) {
   if constexpr (L == 0) {
@@ -133,7 +132,7 @@ void applyBands(int order, const T* columns, const T* in, T* out) {
 bool isRotation(const glm::dmat3& matrix, double tolerance) {
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j <= i; ++j)
-      // Negated so that NaN fails.
+      // The comparison is negated so that NaN fails.
       if (!(std::abs(glm::dot(matrix[i], matrix[j]) - (i == j ? 1 : 0)) <= tolerance)) return false;
   return glm::determinant(matrix) > 0;
 }
@@ -178,7 +177,7 @@ Result<Rotation> Rotation::make(const glm::dmat3& matrix, int order) {
 
 void Rotation::set(const glm::dmat3& rotation) {
   assert(isRotation(rotation));
-  // The inverse's band 1 in the order m = -1, 0, 1, that is y, z, x. R^-1 = R^T has row i in R's column i,
+  // Band 1 of the inverse has the order m = -1, 0, 1, which is y, z, x. Row i of R^-1 = R^T is column i of R,
   // which is rotation[i] in GLM.
   constexpr std::array<int, 3> kAxis = {1, 2, 0};
   std::array<std::array<double, 3>, 3> first;

@@ -1,10 +1,10 @@
-// Rotations of spherical harmonics: block-diagonal, one (2l+1) x (2l+1) block per band, built from a 3x3
-// rotation R. Applied to the coefficients of f it gives those of f(R^-1 s), the function carried along by R;
-// equally y(R s) = D y(s). So light known in world space goes into an object's frame by
-// Rotation(local_from_world). Blocks are computed in double by the recurrence of Ivanic and Ruedenberg (J.
-// Phys. Chem. 100, 1996, with the additions of 102, 1998) and applied in float or double. Bad matrices:
-// make() refuses them; the constructors assert. Never accumulate a rotation by multiplying matrices or these
-// blocks: accumulate a quaternion, renormalise it, and rebuild.
+// Rotates spherical harmonics. A rotation R gives a block-diagonal matrix D with one (2l+1) x (2l+1) block
+// per band. Applied to the coefficients of f(s), D gives those of f(R^-1 s), the function rotated by R;
+// likewise y(R s) = D y(s). Rotation(local_from_world) therefore takes light from world space to an object's
+// frame. Blocks are computed in double by the recurrence of Ivanic and Ruedenberg (J. Phys. Chem. 100, 1996,
+// with the additions of 102, 1998) and applied in float or double. make() rejects invalid matrices; the
+// constructors assert. Do not accumulate a rotation by multiplying matrices or blocks, but accumulate a
+// quaternion, normalise it and rebuild.
 #pragma once
 
 #include <span>
@@ -18,18 +18,21 @@
 
 namespace lambent::sh {
 
-// Proper (determinant +1) and orthonormal to within tolerance in every entry of R^T R.
+// Returns whether the matrix is orthonormal, up to the tolerance in every entry of R^T R, and has a positive
+// determinant.
 bool isRotation(const glm::dmat3& matrix, double tolerance = 1e-6);
 
-// The rotation in a matrix that has drifted or carries positive scale: columns are normalised, then passed
-// through a unit quaternion. Fails for mirrors, flat or non-finite matrices.
+// Returns the rotation of a matrix that has drifted or contains positive scale, by normalising the columns
+// and then a quaternion. Fails if the matrix mirrors, is singular or is not finite.
 Result<glm::dmat3> orthonormalised(const glm::dmat3& matrix);
 
 class Rotation {
  public:
-  Rotation(const glm::dmat3& rotation,
-           int order);  // asserts isRotation(rotation) and 1 <= order <= kMaxBasisOrder
-  Rotation(const glm::dquat& quaternion, int order);  // any quaternion but zero; normalised here
+  // Asserts isRotation(rotation) and 1 <= order <= kMaxBasisOrder.
+  Rotation(const glm::dmat3& rotation, int order);
+  // Takes a quaternion of any length except zero.
+  Rotation(const glm::dquat& quaternion, int order);
+  // Fails if the matrix is not a rotation.
   static Result<Rotation> make(const glm::dmat3& matrix, int order);
 
   // Replaces the rotation at the same order without allocating.
@@ -37,20 +40,20 @@ class Rotation {
 
   int order() const { return order_; }
 
-  // D_(i,j) with i and j in the same band; 0 elsewhere.
+  // Returns D_(i,j), which is 0 if i and j are in different bands.
   double entry(int i, int j) const;
 
-  // in and out hold order² coefficients each and must not overlap.
+  // Rotates order² coefficients. `in` and `out` must not overlap.
   void apply(std::span<const float> in, std::span<float> out) const;
   void apply(std::span<const double> in, std::span<double> out) const;
   void apply(std::span<const glm::vec3> in, std::span<glm::vec3> out) const;
 
-  // light.order must not exceed order().
+  // Rotates a light whose order does not exceed order().
   LightVector apply(const LightVector& light) const;
 
  private:
   int order_ = 0;
-  // Column by column, each padded to whole vectors: see bandOffset() in the .cpp.
+  // The columns of each band, padded to whole SIMD vectors (bandOffset() in rotation.cpp).
   std::vector<double> columns_;
   std::vector<float> columns_float_;
 };

@@ -15,27 +15,27 @@ namespace lambent::sh {
 namespace {
 
 constexpr std::size_t kDirections = 1024;
-constexpr float kGuard = 1e-5f;    // of the mean radiance: what the search aims above 0, for rounding
-constexpr float kWorthIt = 2e-5f;  // of blend: a step that gains less is too long
-constexpr float kHopeless =
-    1e-6f;  // mean over largest coefficient: below it a channel has no mean to speak of
+// Fraction of the mean radiance by which the search aims above 0, as a margin for rounding.
+constexpr float kGuard = 1e-5f;
+constexpr float kWorthIt = 2e-5f;  // gain in blend below which the climb shortens its step
+// A channel whose ratio of mean to largest coefficient is smaller than this is ignored.
+constexpr float kHopeless = 1e-6f;
 
-// --- the positive kernel
-// -----------------------------------------------------------------------------------------
+// --- the positive kernel ---
 
-// p(t): Legendre of degree k for odd orders, Jacobi (0, 1) of degree k, (P_k + P_k+1) / (1 + t), for even
-// ones.
+// The polynomial p(t) of degree k. For odd orders it is the Legendre polynomial, for even orders the Jacobi
+// (0, 1) polynomial (P_k + P_k+1) / (1 + t).
 struct Extremal {
   int degree;
   bool even_order;
 
   double operator()(double t) const {
     if (!even_order) return legendre(degree, t);
-    if (t + 1 < 1e-9) t = -1 + 1e-9;  // the quotient is a polynomial: its limit is near enough
+    if (t + 1 < 1e-9) t = -1 + 1e-9;  // the quotient is a polynomial, so a nearby value is good enough
     return (legendre(degree, t) + legendre(degree + 1, t)) / (1 + t);
   }
 
-  // Scanned from 1 downwards; zeros of degrees up to 4 lie much further apart than the steps.
+  // Scans from 1 downwards. Zeros of degrees up to 4 are much further apart than the steps.
   double largestZero() const {
     double high = 1, low = 1;
     while ((*this)(low) > 0) high = low, low -= 1.0 / 64;
@@ -44,24 +44,24 @@ struct Extremal {
   }
 };
 
-// --- the least blend
-// ---------------------------------------------------------------------------------------------
+// --- the least blend ---
 
-// The blend that lifts light to the guard: (1 - a) as_is + a lifted = guard. 0 where it need not be lifted, 1
-// where even the kernel does not suffice.
+// Returns the blend a that lifts light to the guard: (1 - a) as_is + a lifted = guard. It is 0 if the light
+// is positive already, and 1 if even the kernel does not suffice.
 float blendOf(float as_is, float lifted) {
   if (as_is >= -0.5f * kGuard)
-    return 0;  // untouched up to rounding; half the guard keeps this apart from the aim
+    return 0;  // the light is positive up to rounding; half the guard separates this test from the goal
   if (lifted <= kGuard) return 1;
   return (kGuard - as_is) / (lifted - as_is);
 }
 
-// One channel of the light, relative to its mean, as it is and under the positive kernel; 0 beyond its order.
+// One channel of the light, divided by its mean: plain, and convolved with the positive kernel. Coefficients
+// beyond its order are 0.
 struct Channel {
   std::array<float, kMaxCoefficients> plain{}, smooth{};
 };
 
-constexpr std::size_t kLanes = 8;  // sums side by side, for the compiler to make vectors of
+constexpr std::size_t kLanes = 8;  // parallel sums, which the compiler vectorizes
 
 float sum(std::array<float, kLanes> lanes) {
   for (std::size_t half = kLanes / 2; half > 0; half /= 2)
@@ -69,7 +69,7 @@ float sum(std::array<float, kLanes> lanes) {
   return lanes[0];
 }
 
-// Those channels of a light that differ: what is asked for is the blend of the one that needs most.
+// The channels of a light that differ. The largest of their blends is wanted.
 struct Channels {
   int order;
   std::size_t count = 0;
@@ -101,16 +101,16 @@ struct Channels {
 };
 static_assert(kMaxCoefficients % kLanes == 0);
 
-// Where a parabola through three values a step apart has its summit, in (-step, step); towards the larger
-// side where it has none.
+// Returns the summit, in (-step, step), of a parabola through three values a step apart. If it has none,
+// returns a position towards the larger value.
 float summitOf(float before, float here, float after, float step) {
   const float bend = 2 * here - before - after, slope = after - before;
   if (bend <= 0.25f * std::abs(slope)) return slope > 0 ? step : slope < 0 ? -step : 0;
   return std::clamp(0.5f * step * slope / bend, -step, step);
 }
 
-// Ascent over the sphere by crosses of shrinking steps and the parabolas through them: the blend is smooth,
-// and what a step along the flat crest of a ring leaves out is worth nothing.
+// Climbs on the sphere, from `dir`, with crosses of shrinking steps and the parabolas through them. This
+// works because the blend is smooth, and stopping along the flat crest of a ring loses almost nothing.
 float climb(const Channels& channels, glm::vec3 dir, float best) {
   for (float step = 0.05f; step > 2e-3f;) {
     const glm::vec3 across =
@@ -138,9 +138,9 @@ float climb(const Channels& channels, glm::vec3 dir, float best) {
   return best;
 }
 
-// Spherical Fibonacci points: no poles or seams, 0.11 rad apart, where bands up to 7 have no room to hide a
-// minimum. Their basis functions lie by tiles of points, within a tile by function: the sums of a tile stay
-// in registers.
+// Spherical Fibonacci points, which have no poles or seams. They are 0.11 rad apart, so bands up to 7 have no
+// minimum between them that they miss. Basis functions are stored by tiles of points and within a tile by
+// function, so that the sums of a tile stay in registers.
 struct SearchPoints {
   static constexpr std::size_t kTile = 32;
   struct Tile {
@@ -174,7 +174,7 @@ struct Summit {
   glm::vec3 dir;
 };
 
-// Where the light has to be lifted at all.
+// Returns the search points at which the light must be lifted.
 std::vector<Summit> lifted(const Channels& channels) {
   constexpr std::size_t kTile = SearchPoints::kTile;
   std::vector<Summit> found;
@@ -198,10 +198,11 @@ std::vector<Summit> lifted(const Channels& channels) {
   return found;
 }
 
-// The highest first; of points about one summit only the highest, as one climb will do for all of them.
+// Returns the highest points first. Of points around one summit only the highest is kept, since one climb
+// serves them all.
 std::vector<Summit> summits(const Channels& channels) {
   constexpr std::size_t kMostSummits = 5;
-  constexpr float kApart = 0.97f;  // cosine of 0.25 rad, over twice the distance between points
+  constexpr float kApart = 0.97f;  // cosine of 0.25 rad, more than twice the distance between points
   std::vector<Summit> points = lifted(channels), kept;
   while (kept.size() < kMostSummits && !points.empty()) {
     const Summit highest = *std::ranges::max_element(points, {}, &Summit::blend);
@@ -236,7 +237,7 @@ BandWeights integratedPositiveWeights(int order) {
   const bool even_order = order % 2 == 0;
   const Extremal p{(even_order ? order : order + 1) / 2, even_order};
   const double x = p.largestZero();
-  // Simpson over 512 intervals: polynomials of degree 14 at most, exact to 1e-12.
+  // Simpson's rule over 512 intervals is exact to 1e-12, since polynomials have at most degree 14.
   constexpr int kIntervals = 512;
   std::array<double, kMaxOrder> sums{};
   for (int k = 0; k <= kIntervals; ++k) {
@@ -255,7 +256,7 @@ double blendFor(const LightVector& light, const BandWeights& kernel) {
   Channels channels{.order = light.order};
   for (int k = 0; k < 3; ++k) {
     Channel channel;
-    const float mean = light.c[0][k] * 0.28209479f;  // of the radiance: c_0 y_00
+    const float mean = light.c[0][k] * 0.28209479f;  // mean radiance c_0 y_00
     float largest = 0;
     for (std::size_t i = 0; i < light.coefficients().size(); ++i) {
       if (!std::isfinite(light.c[i][k])) return 0;

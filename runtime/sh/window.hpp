@@ -1,16 +1,18 @@
-// Windows against ringing: a truncated expansion of a bright, small light swings below zero, and the shaded
-// picture shows dark rings. A window scales band l of the LIGHT by w_l <= 1, once per frame, and never
-// touches transfer. Hann: w_l = (1 + cos(pi l / n)) / 2, always on, broad. Auto: w_l = 1 - a + a k_l with one
-// a in [0, 1] for all channels, the least that leaves no channel of the light negative in any direction;
-// lights that do not ring pass unchanged. A light that is nowhere negative shades nothing negative, whatever
-// stands in its way: radiance is the integral of light times visibility times cosine, and the truncated light
-// times the truncated transfer is exactly that integral over the truncated light. k_l are the bands of the
-// non-negative zonal polynomial of the order's degree that keeps most of band 1. Convolving with it blurs as
-// little as any non-negative kernel can, and leaves every expansion of a real light non-negative, so that a =
-// 1 always suffices. At order 5 it keeps .77, .49, .22, .06 of bands 1 to 4 (a Laplacian window strong enough
-// for a point light keeps .44, .08, .02, .01).
-// The blend depends on the light's shape only, not on its scale or rotation (up to the search's tolerance,
-// 1e-3).
+// Windows reduce ringing. The truncated expansion of a bright, small light becomes negative in places, and
+// the picture shows dark rings. A window scales band l of the LIGHT by w_l <= 1 once per frame and never
+// changes transfer.
+//
+// Hann: w_l = (1 + cos(pi l / n)) / 2, whether the light rings or not. It blurs much.
+//
+// Auto: w_l = 1 - a + a k_l. The blend a in [0, 1] is the same for all channels, and is the smallest that
+// makes no channel negative in any direction, so lights that do not ring stay unchanged. A light that is
+// nowhere negative shades nothing negative behind any occluder: radiance is the integral of light times
+// visibility times cosine, and truncated light times truncated transfer is exactly this integral over the
+// truncated light. k_l are the bands of the non-negative zonal polynomial of degree n - 1 that keeps most of
+// band 1. Convolution with it makes every expansion of a real light non-negative, so a = 1 always suffices,
+// and no other non-negative kernel keeps more of band 1. At order 5 it keeps .77, .49, .22, .06 of bands 1 to
+// 4, where a Laplacian window that suffices for a point light keeps .44, .08, .02, .01. The blend depends on
+// the light's shape only, not on its scale or rotation, up to the tolerance of the search, 1e-3.
 #pragma once
 
 #include <array>
@@ -25,13 +27,13 @@ using BandWeights = std::array<float, kMaxOrder>;
 
 BandWeights hannWeights(int order);
 
-// k_l above; source: the extremal polynomial of Gauss quadrature, (p(t) / (t - x))² with x the largest zero
-// of p, p the Legendre polynomial of degree (order + 1) / 2 for odd orders; (1 + t) times that with Jacobi
-// (0, 1) for even ones. k_1 = x.
+// Returns k_l of the extremal polynomial of Gauss quadrature. For odd orders the polynomial is (p(t) / (t -
+// x))², where p is the Legendre polynomial of degree (order + 1) / 2 and x its largest zero. For even orders
+// p is the Jacobi (0, 1) polynomial, and a factor (1 + t) is added. k_1 = x.
 BandWeights positiveWeights(int order);
 
-// The blend a of Auto: 0 when no channel rings. Channels whose mean is not positive are left out (no window
-// can help them), and so is a light with coefficients that are not finite.
+// Returns the blend a of Auto, which is 0 if no channel rings. Channels whose mean is not positive are
+// ignored, since no window can help them, and so are lights with coefficients that are not finite.
 double deringingBlend(const LightVector& light);
 
 BandWeights windowWeights(const LightVector& light, Window window);

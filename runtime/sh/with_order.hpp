@@ -1,4 +1,4 @@
-// From a number of bands that is known when the program runs to one that is known when it is compiled.
+// Turns an order that is known at run time into a compile-time constant.
 #pragma once
 
 #include <cassert>
@@ -9,7 +9,7 @@
 
 namespace lambent::sh {
 
-// Calls f with std::integral_constant<int, order>; order 1..Most.
+// Calls f with std::integral_constant<int, order>. `order` is in 1..Most.
 template <int Most, typename F>
 void withOrder(int order, F&& f) {
   assert(order >= 1 && order <= Most);

@@ -12,12 +12,12 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-// By which a zonal kernel's coefficient z_l scales band l in a convolution.
+// Returns the factor by which convolution with a zonal kernel of coefficient z_l scales band l.
 double convolutionFactor(int l, double zonal) {
   return std::sqrt(4 * kPi / (2 * l + 1)) * zonal;
 }
 
-// out_lm = scale(l) y_lm(dir)
+// Writes out_lm = scale(l) y_lm(dir).
 template <typename T, typename Scale>
 void scaleBands(int order, const glm::vec<3, T>& dir, std::span<T> out, Scale&& scale) {
   evaluate<T>(order, dir.x, dir.y, dir.z, out);
@@ -48,7 +48,8 @@ double clampedCosine(int l) {
   if (l == 0) return kPi;
   if (l == 1) return 2 * kPi / 3;
   if (l % 2 == 1) return 0;
-  // 2 pi (-1)^(l/2-1) / ((l+2)(l-1)) * l! / (2^l (l/2)!²), the last factor as a product of (2k-1)/(2k).
+  // A_l is 2 pi (-1)^(l/2-1) / ((l+2)(l-1)) * l! / (2^l (l/2)!²); the last factor is a product of
+  // (2k-1)/(2k).
   double central = 1;
   for (int k = 1; k <= l / 2; ++k) central *= (2.0 * k - 1) / (2.0 * k);
   const double sign = (l / 2) % 2 == 1 ? 1 : -1;
@@ -83,8 +84,8 @@ double discZonal(int l, double angular_radius_rad) {
     const double t = std::cos(radius);
     return std::sqrt(kPi / (2 * l + 1)) * (legendre(l - 1, t) - legendre(l + 1, t));
   }
-  // The difference above is (2l+1) times the integral of P_l over [1 - cap, 1]; for small caps it cancels, so
-  // sum the integral's series in cap: P_l(1-u) = sum_k (-1)^k C(l,k) C(l+k,k) (u/2)^k.
+  // The difference above is (2l+1) times the integral of P_l over [1 - cap, 1]. It cancels for small caps, so
+  // they use the series of the integral with P_l(1-u) = sum_k (-1)^k C(l,k) C(l+k,k) (u/2)^k.
   double term = 1, sum = 1;
   for (int k = 1; k <= l; ++k) {
     term *= -(l - k + 1.0) * (l + k) / (1.0 * k * k) * (cap / 2);

@@ -20,10 +20,11 @@ struct AxisAngles {
   double theta_deg, phi_deg;
 };
 
-// After z. Found by random descent on the worst condition number of the band matrices y_lm(a_i) up to band 5,
-// each with its first axes: 2.1 in the plane, 3.5 on the sphere (zonal_factors_test.cpp prints them); then
-// likewise for bands 6 to 8, each with the others as they were: 2.7, 3.7 and 2.8; 11.7, 7.8 and 8.4. An axis
-// and its opposite do equally well, so all stand on the upper side.
+// These are the axes after z. They were found by random descent on the worst condition number of the band
+// matrices y_lm(a_i) up to band 5, each with its first axes: 2.1 in the plane, 3.5 on the sphere
+// (zonal_factors_test.cpp prints them). Axes for bands 6 to 8 were then added one band at a time: the
+// condition numbers are 2.7, 3.7 and 2.8 in the plane, 11.7, 7.8 and 8.4 on the sphere. Opposite axes are
+// equivalent, so all are on the upper side.
 constexpr std::array<AxisAngles, 8> kInPlane = {{{70.877, 0},
                                                  {48.465, 180},
                                                  {35.135, 0},
@@ -51,12 +52,12 @@ constexpr std::array<AxisAngles, 16> kOnSphere = {{{50.897, 336.283},
 
 glm::dvec3 directionOf(const AxisAngles& axis) {
   const double theta = axis.theta_deg * std::numbers::pi / 180, phi = axis.phi_deg * std::numbers::pi / 180;
-  // In the plane y is exactly 0, not the sine of pi as double has it.
+  // In the plane y must be exactly 0, but the sine of pi in double precision is not.
   const bool in_plane = axis.phi_deg == 0 || axis.phi_deg == 180;
   return {std::sin(theta) * std::cos(phi), in_plane ? 0.0 : std::sin(theta) * std::sin(phi), std::cos(theta)};
 }
 
-// By elimination with row pivots; `matrix` and its inverse are count x count, row-major.
+// Inverts a row-major count x count matrix by elimination with row pivots.
 std::vector<double> inverted(std::vector<double> matrix, std::size_t count) {
   std::vector<double> inverse(count * count);
   for (std::size_t i = 0; i < count; ++i) inverse[i * count + i] = 1;
@@ -95,7 +96,7 @@ ZonalFactors::ZonalFactors(int order, bool isotropic) : order_(order), isotropic
 
   std::vector<double> y(static_cast<std::size_t>(coefficientCount(order)));
   for (int l = 0; l < order; ++l) {
-    // y_lm(a_i): row m, column i. What is in the plane knows only m >= 0.
+    // The matrix y_lm(a_i) has row m and column i. Functions with axes in the plane have only m >= 0.
     const auto count = static_cast<std::size_t>(axesOfBand(l));
     std::vector<double> band(count * count);
     for (std::size_t i = 0; i < count; ++i) {
@@ -147,7 +148,7 @@ void ZonalFactors::expand(std::span<const float> weights, std::span<const glm::v
   std::array<float, kMaxFactoredOrder * kMaxFactoredOrder> y;
   for (int i = 0; i < static_cast<int>(axes_.size()); ++i) {
     evaluate(order_, turned_axes[static_cast<std::size_t>(i)], y);
-    // The bands that have this axis: those from l = i on, or from 2l = i on.
+    // Bands from l = i on use this axis if isotropic, else bands from 2l = i on.
     for (int l = isotropic_ ? i : (i + 1) / 2; l < order_; ++l) {
       const float weight = weights[static_cast<std::size_t>((isotropic_ ? l * (l + 1) / 2 : l * l) + i)];
       for (int k = l * l; k < (l + 1) * (l + 1); ++k)

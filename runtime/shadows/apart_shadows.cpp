@@ -14,10 +14,10 @@ namespace lambent::frame {
 
 namespace {
 
-constexpr std::size_t kLevel = 1;     // of the proxies
-constexpr float kLeastShare = 1e-5f;  // of a body's radius: triangles nearer to the sample than this
+constexpr std::size_t kLevel = 1;     // level of the proxies
+constexpr float kLeastShare = 1e-5f;  // of a body's radius: nearer triangles are ignored
 
-// The proxies that are asked for, in the world.
+// Makes the proxies that are asked for, placed in the world.
 class Blockers {
  public:
   explicit Blockers(std::span<const bundle::CaptureProxy* const> proxies) : proxies_(proxies) {}
@@ -42,10 +42,10 @@ class Blockers {
 
  private:
   std::span<const bundle::CaptureProxy* const> proxies_;
-  std::map<std::uint64_t, lighting::TriangleSet> sets_;  // by the body's key
+  std::map<std::uint64_t, lighting::TriangleSet> sets_;  // indexed by the body's key
 };
 
-// Whether a sphere about the body comes between the point and the light.
+// Returns whether a sphere around the body comes between the point and the light.
 bool mayHide(const lighting::IncidentBody& body, const lighting::LocalLight& light, const glm::vec3& point) {
   const glm::vec3 way = light.position_ws - point, to_body = body.center_ws - point;
   const float squared = glm::dot(way, way);
@@ -53,7 +53,7 @@ bool mayHide(const lighting::IncidentBody& body, const lighting::LocalLight& lig
   return glm::distance(to_body, along * way) < body.radius_m + light.extent_m();
 }
 
-// The share of the light that the bodies let through.
+// Returns the share of the light that the bodies let through.
 float shareThrough(std::span<const lighting::IncidentBody* const> bodies, Blockers& blockers,
                    const lighting::LocalLight& light, const glm::vec3& point) {
   const std::optional<lighting::LightQuery> query = lighting::queryOf(light, point);

@@ -1,6 +1,7 @@
-// What bodies hide of lamps that shine per pixel, where these bodies reach a group by their grids and are
-// left out of its captures: shadow cubes know it of straight light, and by this its bounced light does. Rays
-// from the light probes to the lamps, among the bodies' proxies. No GL.
+// Finds what bodies hide of lamps that are shaded per pixel, when these bodies reach a group by their
+// neighborhood grids and are left out of its captures. Shadow cubes occlude the direct light of such lamps;
+// this gives the occlusion for their bounced light. It traces rays from the light probes to the lamps among
+// the bodies' proxies. No GL.
 #pragma once
 
 #include <span>
@@ -10,8 +11,8 @@
 
 namespace lambent::frame {
 
-// Fills IncidentGroup::open of all groups; samples_ws and left_out must be as they stay. proxies: by
-// CaptureBody::proxy.
+// Fills IncidentGroup::open of all groups; their samples_ws and left_out must be final. `proxies` is indexed
+// by CaptureBody::proxy.
 void hideApart(LitScene& scene, std::span<const bundle::CaptureProxy* const> proxies);
 
 }  // namespace lambent::frame

@@ -1,13 +1,13 @@
-// The pyramid over a shadow map: least and greatest depth of kBlockerTexels² texels of the map, then of 2 x 2 of the
-// level below.
+// Builds the pyramid over a shadow map: level 0 holds the least and greatest depth of kBlockerTexels² texels
+// of the map, each further level those of 2 x 2 texels of the level below.
 #include "key_shared.h"
 
 layout(local_size_x = kBlockerGroup, local_size_y = kBlockerGroup) in;
-layout(location = 0) uniform ivec2 first;   // of the tile, in texels of the level that is written
-layout(location = 1) uniform int size;      // of the tile in these
-layout(location = 2) uniform int level;     // that is written
-layout(binding = 0) uniform sampler2D depths;    // level 0 reads it
-layout(binding = 1) uniform sampler2D blockers;  // the others
+layout(location = 0) uniform ivec2 first;   // first texel of the tile in the level that is written
+layout(location = 1) uniform int size;      // edge of the tile in texels of that level
+layout(location = 2) uniform int level;     // the level that is written
+layout(binding = 0) uniform sampler2D depths;    // read for level 0
+layout(binding = 1) uniform sampler2D blockers;  // read for the other levels
 layout(binding = 0, rg32f) writeonly uniform image2D written;
 
 void main() {

@@ -1,4 +1,4 @@
-// Depth is all that a shadow map holds; masked surfaces leave holes.
+// A shadow map holds depth only; masked surfaces leave holes.
 #ifdef LAMBENT_MASKED
 #include "surface_shared.h"
 layout(std430, binding = kBindDraws) readonly buffer Draws { SurfaceDraw draws[]; };

@@ -1,4 +1,4 @@
-// What stands before a key light, as the light sees it: orthographic, nearest first.
+// Projects casters as the key light sees them: orthographic, nearest first.
 #include "surface_shared.h"
 #include "key_shared.h"
 

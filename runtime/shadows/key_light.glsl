@@ -1,17 +1,19 @@
-// How much of a key light a point sees, by the light's shadow map. key_light_ref.hpp is the same on the CPU, term by
-// term. Who includes this says what lies in the map: keyDepth(texel), keyBlockers(texel, level). Points and directions are
-// in view space, metres; places on a map are in texels of the texture that holds all maps.
+// Computes how much of a key light a point sees, from the light's shadow map. key_light_ref.hpp is the same
+// on the CPU, term by term. The including shader defines how the map is read: keyDepth(texel) and
+// keyBlockers(texel, level). Points and directions are in view space, metres; places on a map are in texels
+// of the texture that holds all maps.
 #include "key_shared.h"
 #include "shadowed_light.glsl"
 
-// What is nearer to the light than the receiver's plane by less than these texels' width does not shadow it: rounding,
-// and faces that meet within a texel.
+// A surface casts no shadow if it is nearer to the light than the receiver's plane by less than the width of
+// this many texels. This tolerates rounding, and faces that meet within a texel.
 const float kKeyBiasTexels = 1.0;
-const float kLeastFacing = 0.02;   // cosine below which the receiver's plane is taken to lean no more
-const float kSharpTexels = 0.8;    // a penumbra narrower than this is that of the texels
-const float kOneHeight = 0.1;      // heights that differ by less than this share are one
-const int kLeastSearch = 20;       // points of the search for blockers: too few would miss what is small
-const int kKeySteps = 3;           // of the search along a ray
+const float kLeastFacing = 0.02;   // the receiver's plane leans no more than at this cosine
+const float kSharpTexels = 0.8;    // a penumbra narrower than this is unresolved: the texels' own edge is
+                                   // used
+const float kOneHeight = 0.1;      // heights that differ by less than this share count as one
+const int kLeastSearch = 20;       // points in the search for blockers; fewer would miss small ones
+const int kKeySteps = 3;           // steps of the search along a ray
 const int kKeyNarrowing = 3;
 
 float keyDepth(ivec2 texel);                // 0..1
@@ -19,10 +21,10 @@ vec2 keyBlockers(ivec2 texel, int level);   // least and greatest depth, 0..1
 
 struct KeyReceiver {
   vec2 place;
-  float depth;  // below the map's top, metres
+  float depth;  // depth below the map's top, metres
   vec2 slope;   // metres of depth per texel along the receiver's plane
   float bias;
-  bool above;   // all of the disc stands over the plane
+  bool above;   // the whole disc is above the plane
 };
 
 KeyReceiver keyReceiver(KeyRecord key, vec3 position, vec3 normal) {
@@ -37,7 +39,8 @@ KeyReceiver keyReceiver(KeyRecord key, vec3 position, vec3 normal) {
   return receiver;
 }
 
-// Least and greatest depth, metres, of all that lies within so many texels of a place; maybe of a little more.
+// Returns the least and greatest depth, in metres, of all that lies within `reach` texels of a place, or
+// slightly more.
 vec2 blockerBounds(KeyRecord key, vec2 place, vec2 reach) {
   float widest = max(reach.x, reach.y) * 2.0 / float(kBlockerTexels);
   float tile = key.tile.z - key.tile.x + 1.0;
@@ -57,18 +60,18 @@ vec2 blockerBounds(KeyRecord key, vec2 place, vec2 reach) {
   return key.scale.z * bounds;
 }
 
-// How high above the receiver what stands in a texel is, along the light; 0: it does not stand in the way.
+// Returns how high above the receiver, along the light, the surface in a texel is; 0 if it does not block.
 float blockerHeight(KeyRecord key, KeyReceiver receiver, ivec2 texel) {
   texel = clamp(texel, ivec2(key.tile.xy), ivec2(key.tile.zw));
   float depth = key.scale.z * keyDepth(texel);
   float falls = dot(receiver.slope, vec2(texel) + 0.5 - receiver.place);
-  // What is lower than the receiver is no blocker, also where its plane falls steeply: the floor before a wall that
-  // light grazes, or nothing, where the map ends.
+  // A surface lower than the receiver is no blocker, even where the receiver's plane falls steeply: it may be
+  // the floor in front of a grazed wall, or an empty texel at the map's end.
   float limit = receiver.depth + min(falls, 0.0) - receiver.bias;
   return depth < limit ? receiver.depth - depth : 0.0;
 }
 
-// Of a light without width: between the four texels about the place.
+// Returns the visibility of a light without width, interpolated between the four texels around the place.
 float texelVisible(KeyRecord key, KeyReceiver receiver) {
   vec2 corner = floor(receiver.place - 0.5), part = receiver.place - 0.5 - corner;
   float visible = 0.0;
@@ -80,28 +83,29 @@ float texelVisible(KeyRecord key, KeyReceiver receiver) {
   return visible;
 }
 
-// Where on the unit disc the i-th of so many points lies [Vogel 1979].
+// Returns the i-th of `count` points on the unit disc [Vogel 1979].
 vec2 keyPoint(int i, int count) {
   float angle = 2.39996323 * float(i);
   return sqrt((float(i) + 0.5) / float(count)) * vec2(cos(angle), sin(angle));
 }
 
-// The heights at which most of what stands in the cone from the receiver to the disc stands: one or two, as in
-// local_shadow.glsl; 0: nothing was found. After Fernando, Percentage-closer soft shadows, 2005, which has one.
+// Holds the one or two heights that represent the blockers in the cone from the receiver to the disc, as in
+// local_shadow.glsl; 0 if nothing was found. This follows Fernando, Percentage-closer soft shadows, 2005,
+// which uses one height.
 struct KeyLayers {
   float low, high;
 };
 
-// `reach` is how high blockers may stand.
+// `reach` is the greatest height at which blockers may stand.
 KeyLayers keyLayers(KeyRecord key, KeyReceiver receiver, float reach, int count) {
   float found = 0.0;
-  vec3 powers = vec3(0.0);  // of height, summed
+  vec3 powers = vec3(0.0);  // sums of powers of height
   for (int i = 0; i < count; ++i) {
-    // Closer together towards the receiver's own ray, where low blockers are.
+    // Points are denser towards the receiver's own ray, where low blockers are.
     vec2 at = keyPoint(i, count);
     at *= i == 0 ? 0.0 : length(at) * length(at);
     float height = blockerHeight(key, receiver, ivec2(floor(receiver.place + reach * key.scale.w * key.scale.xy * at)));
-    // Within the cone at its own height, by a texel's width at most beside it.
+    // A blocker counts if it is within the cone at its own height, or at most a texel's width beside it.
     if (height == 0.0 || reach * length(at) * key.scale.w > height * key.scale.w + receiver.bias) continue;
     float relative = height / reach;
     found += 1.0;
@@ -119,8 +123,8 @@ KeyLayers keyLayers(KeyRecord key, KeyReceiver receiver, float reach, int count)
   return KeyLayers(reach * low, reach * high);
 }
 
-// Whether something stands on the way to a point of the disc: looked for where the ray passes this height, then where it
-// passes the height that was found there.
+// Returns whether something blocks the ray to a point of the disc. It looks where the ray passes this height,
+// then where it passes the height that was found there.
 bool rayBlocked(KeyRecord key, KeyReceiver receiver, float height, vec2 at) {
   vec2 per_metre = key.scale.w * key.scale.xy * at;
   for (int i = 0; i < kKeySteps; ++i) {
@@ -132,7 +136,7 @@ bool rayBlocked(KeyRecord key, KeyReceiver receiver, float height, vec2 at) {
   return true;
 }
 
-// The share of the disc's light that arrives at a point with this normal of its triangle and this normal for shading.
+// Returns the visible share of the disc's light at a point with this triangle normal and this shading normal.
 float keyVisible(KeyRecord key, vec3 position, vec3 normal, vec3 shading_normal) {
   if (dot(normal, key.towards.xyz) <= -key.radiance.w) return 0.0;
   KeyReceiver receiver = keyReceiver(key, position, normal);
@@ -140,7 +144,7 @@ float keyVisible(KeyRecord key, vec3 position, vec3 normal, vec3 shading_normal)
   int rays = int(key.rays);
   KeyLayers layers = KeyLayers(0.0, 0.0);
   bool open = false;
-  // What may stand in the way lies in a cone; the highest thing in it says how wide the cone is at most.
+  // Blockers lie in a cone, and the highest surface in it limits how wide the cone must be.
   for (int i = 0; i < kKeyNarrowing; ++i) {
     vec2 bounds = blockerBounds(key, receiver.place, reach * key.scale.w * key.scale.xy + 1.0);
     float lean = dot(abs(receiver.slope), reach * key.scale.w * key.scale.xy + 1.0);
@@ -177,7 +181,7 @@ float keyVisible(KeyRecord key, vec3 position, vec3 normal, vec3 shading_normal)
   return all > 0.0 ? visible / all : 0.0;
 }
 
-// E/pi of the whole disc for radiance 1.
+// Returns E/pi of the whole disc for radiance 1.
 float keyShare(KeyRecord key, vec3 shading_normal) {
   return sphereShare(dot(shading_normal, key.towards.xyz), 1.0 / key.radiance.w);
 }

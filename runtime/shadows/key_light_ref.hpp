@@ -1,6 +1,6 @@
-// The CPU twin of key_light.glsl: same names, same order of terms, so that a test can hold one against the
-// other. What lies in the shadow map is asked of `Map`: float keyDepth(glm::ivec2 texel), 0..1, and
-// glm::vec2 keyBlockers(glm::ivec2 texel, int level), least and greatest depth. No GL.
+// This is the CPU twin of key_light.glsl, with the same names and order of terms, so that a test can compare
+// the two. The shadow map is read through `Map`: float keyDepth(glm::ivec2 texel), 0..1, and glm::vec2
+// keyBlockers(glm::ivec2 texel, int level), the least and greatest depth. No GL.
 #pragma once
 
 #include <algorithm>

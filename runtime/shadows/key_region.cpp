@@ -15,7 +15,7 @@ namespace lambent::frame {
 
 namespace {
 
-// Points p with dot(plane, (p, 1)) >= 0 are inside.
+// A point p is inside if dot(plane, (p, 1)) >= 0 for each plane.
 using Planes = std::array<glm::dvec4, 12>;
 
 Planes planesOf(const scene::Box& box, const glm::dmat4& clip_from_world) {
@@ -57,7 +57,7 @@ std::vector<glm::dvec3> seenCorners(const scene::Box& box, const glm::mat4& clip
     return std::ranges::all_of(
         planes, [&](const glm::dvec4& plane) { return glm::dot(plane, glm::dvec4(p, 1.0)) >= -doubt; });
   };
-  // A convex body's corners are among the points where three of its planes meet.
+  // The corners of a convex body are among the points where three of its planes meet.
   for (std::size_t i = 0; i < planes.size(); ++i)
     for (std::size_t j = i + 1; j < planes.size(); ++j)
       for (std::size_t k = j + 1; k < planes.size(); ++k) {
@@ -92,7 +92,7 @@ bool KeyRegion::holds(const KeyRegion& other) const {
 std::optional<KeyRegion> regionOf(std::span<const glm::dvec3> seen, glm::dvec3 towards, double tan_radius,
                                   const scene::Box& casters) {
   if (seen.empty() || casters.empty()) return std::nullopt;
-  constexpr int kTurns = 12;  // tried over a quarter of a turn
+  constexpr int kTurns = 12;  // number of angles tried over a quarter turn
   const glm::dvec3 beside = std::abs(towards.y) < 0.9 ? glm::dvec3(0, 1, 0) : glm::dvec3(1, 0, 0);
   const glm::dvec3 first = glm::normalize(glm::cross(beside, towards)), second = glm::cross(towards, first);
   std::optional<KeyRegion> best;

@@ -1,5 +1,5 @@
-// Which part of the world a key light's shadow map must show: the part that is seen, as the light sees it,
-// and what stands between that and the light. World axes, metres. No GL.
+// Computes which part of the world a key light's shadow map must show: the part that the camera sees, as seen
+// from the light, and what stands between that and the light. World axes, metres. No GL.
 #pragma once
 
 #include <optional>
@@ -13,25 +13,27 @@
 
 namespace lambent::frame {
 
-// The corners of what is both in the box and in the camera's view; empty where nothing is.
+// Returns the corners of the intersection of the box and the camera's frustum; empty if they do not meet.
 std::vector<glm::dvec3> seenCorners(const scene::Box& box, const glm::mat4& clip_from_world);
 
-// An orthographic view along `towards` (unit, to the light): right, up and towards are right-handed. Places
-// run from min to max along right and up, depth from `top` downwards over `range`.
+// Describes an orthographic view along `towards` (unit, to the light); right, up and towards are
+// right-handed. The map covers min to max along right and up, and depths from `top` down to `top - range`.
 struct KeyRegion {
   glm::dvec3 right{1, 0, 0}, up{0, 1, 0}, towards{0, 0, 1};
   glm::dvec2 min{0.0}, max{0.0};
   double top = 0.0, range = 0.0;
 
-  // Makes min and max the least that show these points, with all that may stand in their light up to `top`.
+  // Sets min and max to the smallest area that shows these points and everything up to `top` that may block
+  // their light.
   void enclose(std::span<const glm::dvec3> seen, double tan_radius);
-  // Whether all that `other` shows lies within.
+  // Returns whether this region contains all of `other`.
   bool holds(const KeyRegion& other) const;
   double area() const { return (max.x - min.x) * (max.y - min.y); }
 };
 
-// Turned about the light so that it is small. Blockers stand up to `top` (along towards) and light comes from
-// directions up to tan_radius beside it, which widens what must be seen. None where there is nothing to see.
+// Returns a region rotated about the light so that it is small, or nothing if there is nothing to see.
+// Blockers reach up to `top` (along towards), and light also comes from directions up to tan_radius beside
+// it, which widens the region.
 std::optional<KeyRegion> regionOf(std::span<const glm::dvec3> seen, glm::dvec3 towards, double tan_radius,
                                   const scene::Box& casters);
 

@@ -8,26 +8,26 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
+#include "lambent_draws_embedded.hpp"
 #include "lambent_shadows_embedded.hpp"
 
 namespace lambent::frame {
 
 namespace {
 
-constexpr gpu::FindText kShaders[] = {&embedded::lambent_shadows::find};
+constexpr gpu::FindText kShaders[] = {&embedded::lambent_shadows::find, &embedded::lambent_draws::find};
 constexpr std::size_t kViewStride = 256;  // OpenGL 4.5 asks for no larger alignment of uniform blocks
 constexpr std::uint32_t kLeastSize = 256;
 constexpr std::uint32_t kLeastRays = 8;
-constexpr std::uint64_t kFinestTiles = 2;  // all maps together take no more texels than so many of the finest
-constexpr double kMargin =
-    0.05;  // around what is seen: the camera may move a little before a map is drawn anew
-constexpr double kWasted = 4.0;  // a map that shows so many times the area that is seen is drawn anew
-// As in key_blockers.comp.
+constexpr std::uint64_t kFinestTiles = 2;  // limit on the texels of all maps, in areas of the finest
+constexpr double kMargin = 0.05;           // margin that lets the camera move before a map is drawn again
+constexpr double kWasted = 4.0;  // a map that covers this many times the visible area is drawn again
+// These are the uniform locations of key_blockers.comp.
 constexpr GLint kFirst = 0, kSize = 1, kLevel = 2;
 
-// Penumbrae hide what is finer than a small part of their width.
+// Returns a size for which texels are a small part of the penumbra's width, which hides them.
 std::uint32_t sizeFor(float radius_rad, std::uint32_t finest) {
-  constexpr float kSharp = 0.026f, kMedium = 0.1f;  // radians
+  constexpr float kSharp = 0.026f, kMedium = 0.1f;  // in radians
   const std::uint32_t size = radius_rad <= kSharp ? finest : radius_rad <= kMedium ? finest / 2 : finest / 4;
   return std::max(size, kLeastSize);
 }
@@ -55,7 +55,7 @@ glm::vec4 row(glm::dvec3 xyz, double w) {
   return glm::vec4(glm::dvec4(xyz, w));
 }
 
-// Clip coordinates of what the region shows: z from -1 at its top to 1 at its bottom.
+// Returns clip coordinates of the region: z from -1 at its top to 1 at its bottom.
 glm::mat4 clipFromWorld(const KeyRegion& region) {
   const glm::dvec2 scale = 2.0 / (region.max - region.min);
   const double depth = 2.0 / region.range;
@@ -88,8 +88,8 @@ Result<void> KeyShadows::compile() {
   return {};
 }
 
-// Large tiles first, each row as high as its first: tiles lie at multiples of their own size, so that levels
-// of the pyramid never mix two of them.
+// Places large tiles first, in rows as high as their first tile. Each tile lies at a multiple of its own
+// size, so that no texel of the pyramid covers two tiles.
 void KeyShadows::layOut(std::span<const spec::Disc> keys) {
   std::vector<Map> maps;
   for (const spec::Disc& key : keys)
@@ -99,7 +99,7 @@ void KeyShadows::layOut(std::span<const spec::Disc> keys) {
   const auto texels = [](const Map& map) { return std::uint64_t{map.size} * map.size; };
   std::uint64_t sum = 0;
   for (const Map& map : maps) sum += texels(map);
-  // The faint ones give way first.
+  // The faintest lights get smaller maps first.
   std::vector<Map*> faintest;
   for (Map& map : maps) faintest.push_back(&map);
   std::ranges::stable_sort(faintest, std::ranges::less(), [](const Map* map) { return fluxOf(map->light); });
@@ -165,7 +165,7 @@ std::vector<std::size_t> KeyShadows::findChanged(World& world, const spec::View&
     const glm::dvec2 size = wanted->max - wanted->min;
     const double least = 1e-6 * std::max({size.x, size.y, wanted->range, 1e-3});
     const auto holds = [&] {
-      KeyRegion turned = *wanted;  // as the map's own axes have it
+      KeyRegion turned = *wanted;  // expressed in the map's present axes
       turned.right = map.region.right;
       turned.up = map.region.up;
       turned.enclose(seen, tangentOf(map.light));
@@ -189,7 +189,7 @@ std::vector<std::size_t> KeyShadows::findChanged(World& world, const spec::View&
     }
     wanted->min -= kMargin * size + least;
     wanted->max += kMargin * size + least;
-    // A little more at both ends: what stands at 0 or 1 is still told from nothing.
+    // A margin at both ends keeps casters there distinct from empty texels.
     wanted->top += 1e-3 * wanted->range + least;
     wanted->range *= 1.002;
     wanted->range += 2.0 * least;
@@ -236,7 +236,7 @@ void KeyShadows::drawMaps(World& world, const std::vector<std::size_t>& changed,
   counters.uploaded_bytes += views.size();
   glBindFramebuffer(GL_FRAMEBUFFER, target_.id());
   glEnable(GL_DEPTH_CLAMP);  // what stands behind all that is seen shadows nothing, but may be cut through
-  casters_.draw(world, tiles, programs_, views_.buffer(), sizeof(KeyMapView), kBindKeyMap, counters);
+  casters_.draw(world, tiles, programs_, {views_.buffer(), sizeof(KeyMapView), kBindKeyMap}, counters);
   glDisable(GL_DEPTH_CLAMP);
 }
 
@@ -274,8 +274,8 @@ void KeyShadows::bind(const spec::View& view, const spec::Size& size) {
   const glm::dmat4 view_from_world(view.view_from_world), world_from_view = glm::inverse(view_from_world);
   const glm::dmat3 turn(view_from_world);
   const glm::dvec3 eye(world_from_view[3]);
-  // Errors of a light that is a part of all weigh little, and fall with the number of rays: this shares rays
-  // out so that their sum of squares is least.
+  // Errors of a light matter in proportion to its part of all light, and fall with the number of rays. This
+  // distribution of rays minimizes the sum of squared errors.
   float all_flux = 0.0f;
   for (const Map& map : maps_) all_flux += fluxOf(map.light);
   const auto raysFor = [&](float part) {
@@ -289,7 +289,7 @@ void KeyShadows::bind(const spec::View& view, const spec::Size& size) {
     const KeyRegion& region = map.region;
     const glm::dvec2 scale = double(map.size) / (region.max - region.min);
     KeyRecord& record = block.keys[count++];
-    // dot(right, world) = dot(turn right, p) + dot(right, eye) of a point p in view space.
+    // For a point p in view space, dot(right, world) = dot(turn right, p) + dot(right, eye).
     record.right = row(scale.x * (turn * region.right),
                        double(map.x) + scale.x * (glm::dot(region.right, eye) - region.min.x));
     record.up = row(scale.y * (turn * region.up),

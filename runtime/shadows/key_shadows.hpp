@@ -1,9 +1,9 @@
-// Direct light of key lights (lighting/key_lights.hpp) on surfaces: a shadow map for each, which shows the
-// part of the world that is seen, and what the surface pass reads to shade by them. A map is drawn again only
-// when its light turned, something that it sees moved, arrived or went, or the camera sees what it does not
-// show. Maps are tiles of one depth texture: sharp lights have fine ones, wide lights, which blur, coarse
-// ones. Beside them lies a pyramid of the least and greatest depths, by which most pixels are told to be
-// wholly lit or wholly in shadow. Render thread only. Errors: shaders that do not compile on this device.
+// Owns the shadow maps of key lights (lighting/key_lights.hpp), each of which covers the part of the world
+// that is seen, and what the surface pass reads to shade with them. A map is drawn again only when its light
+// turned, something in it moved, arrived or went, or the camera sees something outside it. Maps are tiles of
+// one depth texture; sharp lights have fine maps, wide lights, which blur, coarse ones. A pyramid of least
+// and greatest depths tells for most pixels that they are wholly lit or wholly in shadow. Render thread only.
+// update() fails if a shader does not compile on this device.
 #pragma once
 
 #include <array>
@@ -24,8 +24,8 @@
 namespace lambent::frame {
 
 struct KeyShadowOptions {
-  std::uint32_t finest = 4096;  // texels along an edge of the finest map, a power of two of 256..8192
-  std::uint32_t samples = 32;   // rays to a disc, 4..128
+  std::uint32_t finest = 4096;  // texels along an edge of the finest map; a power of two, 256..8192
+  std::uint32_t samples = 32;   // rays per disc, 4..128
   bool operator==(const KeyShadowOptions&) const = default;
 };
 
@@ -33,21 +33,21 @@ class KeyShadows {
  public:
   KeyShadows();
 
-  // After World::updateTransforms. keys: world axes, at most kMostKeyLights count; dark ones take no map.
-  // Changes the bound framebuffer, viewport and program.
+  // Call it after World::updateTransforms(). `keys` are in world axes, at most kMostKeyLights of them count,
+  // and dark ones take no map. Changes the bound framebuffer, viewport and program.
   Result<void> update(World& world, std::span<const spec::Disc> keys, const spec::View& view,
                       const KeyShadowOptions& options, gpu::Counters& counters);
-  // What the surface shaders read, for a picture of this size. Before Surfaces draws.
+  // Binds what the surface shaders read, for a picture of this size. Call it before Surfaces draws.
   void bind(const spec::View& view, const spec::Size& size);
 
-  // Whether any key light shines.
+  // Returns whether any key light shines.
   bool any() const { return !maps_.empty(); }
   std::uint32_t mapsDrawn() const { return maps_drawn_; }  // by the last update
   std::uint32_t mapCount() const { return static_cast<std::uint32_t>(maps_.size()); }
   std::uint64_t bytesResident() const;
-  // What each map shows that is drawn, for who looks at it.
+  // States what each drawn map covers, for display.
   struct ShownRegion {
-    spec::Disc light;  // world axes
+    spec::Disc light;  // in world axes
     KeyRegion region;
     std::uint32_t texels = 0;  // along an edge
   };
@@ -59,7 +59,7 @@ class KeyShadows {
  private:
   struct Map {
     spec::Disc light;
-    std::uint32_t x = 0, y = 0, size = 0;  // its tile, texels
+    std::uint32_t x = 0, y = 0, size = 0;  // its tile, in texels
     KeyRegion region;
     std::vector<ShadowCaster> casters;
     bool drawn = false;

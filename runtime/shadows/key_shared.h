@@ -1,5 +1,6 @@
-// One text for C++ and GLSL: what direct light of key lights binds and reads, besides surface_shared.h. Metres. Axes are
-// the camera's (view space), so that large worlds lose no precision.
+// This file is shared by C++ and GLSL. It holds the bindings and records for direct light of key lights,
+// besides surface_shared.h. Metres. Axes are the camera's (view space), so that large worlds lose no
+// precision.
 #ifdef __cplusplus
 #pragma once
 
@@ -23,33 +24,33 @@ LAMBENT_CONSTANT kUnitKeyShadows = 12u;   // texture unit of the depth maps, til
 LAMBENT_CONSTANT kUnitKeyBlockers = 13u;  // texture unit of the pyramid of least and greatest depths
 LAMBENT_CONSTANT kMostKeyLights = 64u;
 
-LAMBENT_CONSTANT kBlockerTexels = 8u;  // texels of a depth map along an edge of one of the pyramid's finest
-LAMBENT_CONSTANT kBlockerGroup = 8u;   // work group of key_blockers.comp, along an edge
+LAMBENT_CONSTANT kBlockerTexels = 8u;  // depth texels along the edge of a texel in the pyramid's finest level
+LAMBENT_CONSTANT kBlockerGroup = 8u;   // edge of a work group of key_blockers.comp
 
-LAMBENT_CONSTANT kBindKeyMap = 4u;  // uniform block KeyMapView, while a map is drawn
+LAMBENT_CONSTANT kBindKeyMap = 4u;  // uniform block KeyMapView, bound while a map is drawn
 
-// A disc of light at infinity, and its shadow map: an orthographic picture of the world as the light sees it. What is
-// stored is depth below the map's top over `range`; 1 is nothing.
+// Describes a disc of light at infinity and its shadow map, an orthographic picture of the world as seen from
+// the light. The map stores depth below its top over `range`; 1 means that nothing is there.
 struct KeyRecord {
-  vec4 right;     // texels of the texture from a point p: dot(xyz, p) + w
+  vec4 right;  // x of a point p in the texture, in texels: dot(xyz, p) + w; `up` gives y
   vec4 up;
-  vec4 towards;   // unit, to the light; depth of p below the map's top: w - dot(xyz, p)
+  vec4 towards;   // unit, to the light; the depth of p below the map's top is w - dot(xyz, p)
   vec4 radiance;  // w: sine of the disc's angular radius
-  vec4 tile;      // first texel, last texel: places are clamped to their centres
-  vec4 scale;     // texels per metre along right and up; w: tangent of the angular radius; z: range of depth
-  uint rays;      // to the disc, from a point in its penumbra
+  vec4 tile;      // first and last texel; lookups are clamped to their centres
+  vec4 scale;     // texels per metre along right and up; z: range of depth; w: tangent of the angular radius
+  uint rays;      // rays to the disc from a point in its penumbra
   uint pad0, pad1, pad2;
 };
 
 struct KeyView {
   mat4 view_from_clip;
-  mat4 view_from_world;  // rotation
-  vec4 picture;          // width, height in pixels
+  mat4 view_from_world;  // rotation only
+  vec4 picture;          // width and height in pixels
   uint count;
   uint pad0, pad1, pad2;
 };
 
-// Of a map while it is drawn: clip coordinates from the world.
+// Gives the clip coordinates of a map while it is drawn.
 struct KeyMapView {
   mat4 clip_from_world;
 };

@@ -17,7 +17,7 @@ namespace lambent::frame {
 
 namespace {
 
-// What is this many times brighter than its surroundings is drawn however small it is.
+// A body brighter than its surroundings by this factor is drawn however small it is.
 constexpr float kMaxBrightness = 1e6f;
 
 lighting::LocalLight::Kind kindOf(scene::LocalLightComponent::Kind kind) {
@@ -51,7 +51,7 @@ lighting::LocalLight describe(const scene::LocalLightComponent& light, const glm
           .outer_cone_rad = light.outer_cone_rad};
 }
 
-// The most that a triangle of it gives off by itself.
+// Returns the largest radiance that a triangle of the proxy emits.
 float peakEmission(const bundle::CaptureProxy& proxy, const std::vector<glm::vec3>& lamps) {
   float peak = 0.0f;
   for (const bundle::ProxyTriangle& triangle : proxy.triangles) {
@@ -62,7 +62,7 @@ float peakEmission(const bundle::CaptureProxy& proxy, const std::vector<glm::vec
   return peak;
 }
 
-// How near each light comes to any group of surfaces that does not have it by a column.
+// Returns the least distance, in radii, of each light from any group of surfaces that has no column for it.
 std::vector<float> nearnessOf(const World& world, std::span<const lighting::LocalLight> lights,
                               std::span<const ecs::Entity> entities) {
   std::vector<float> nearness(lights.size(), std::numeric_limits<float>::infinity());
@@ -78,8 +78,9 @@ std::vector<float> nearnessOf(const World& world, std::span<const lighting::Loca
   return nearness;
 }
 
-// Whether the group stands within another that has this light by a column, or between both, and has a grid by
-// which it takes light from it: then the light must be in what the grid is multiplied with.
+// Returns whether the group stands within a group that has a column for this light, or between that group and
+// the light, and has a neighborhood grid through which the other takes the light. Then the grid must be
+// multiplied with this light.
 bool shadesColumn(const World& world, std::size_t group, ecs::Entity light, const glm::vec3& light_ws) {
   const auto& groups = world.residency().groups();
   if (!world.description(groups[group].bundle).groups[groups[group].index].neighborhood) return false;
@@ -168,7 +169,7 @@ LitScene gatherLitScene(const World& world, float surroundings, const LitSceneOp
       bool by_harmonics = !world.litByColumn(g, light_entities[k]);
       float apart = 0.0f;
       const std::uint32_t bit = local_of_light[k] >= 0 ? 1u << local_of_light[k] : 0u;
-      // Rays through a volume look up its samples alone, and no shadow cube.
+      // Rays through a volume look up only its samples, not shadow cubes.
       if (by_harmonics && options.shadowed_lights && group.volume < 0) {
         if (radiiFrom(bounds, world_from_group, scene.lights[k]) == 0.0f) {
           local_mask |= bit;
@@ -188,7 +189,7 @@ LitScene gatherLitScene(const World& world, float surroundings, const LitSceneOp
     scene.pixel_masks.push_back(pixel_mask);
     scene.groups.push_back(std::move(receiver));
   }
-  // What a volume stands within is in its own transfer.
+  // The transfer of a volume contains what it stands within.
   for (std::size_t g = 0; g < groups.size(); ++g) {
     const std::int32_t within = world.description(groups[g].bundle).groups[groups[g].index].within;
     if (within < 0) continue;

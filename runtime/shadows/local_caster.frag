@@ -1,4 +1,4 @@
-// Distance from the light over its reach, the same along every ray whatever the face.
+// Writes the distance from the light over its reach, which is the same along a ray in whichever face.
 #include "surface_shared.h"
 #include "local_shared.h"
 
@@ -15,7 +15,7 @@ void main() {
 #endif
   float distance_m = length(from_light);
   if (distance_m < face.hole) discard;
-  // A disc's own plane, with what a lamp is made of in it, shadows nothing.
+  // What lies in or behind a disc's own plane, such as the lamp's body, casts no shadow.
   if (face.behind > 0.0 && dot(face.direction, from_light) < 1e-3 * distance_m) discard;
   gl_FragDepth = distance_m / face.reach;
 }

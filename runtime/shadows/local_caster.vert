@@ -1,4 +1,4 @@
-// One face of a local light's shadow cube: what stands around the light, from its centre.
+// Projects casters onto one face of a local light's shadow cube, as seen from the light's centre.
 #include "surface_shared.h"
 #include "local_shared.h"
 
@@ -23,7 +23,7 @@ void main() {
 #ifdef LAMBENT_MASKED
   lookUpMask(draw_index, vertex);
 #endif
-  // No far plane; the fragment stage writes depth.
+  // There is no far plane; the fragment stage writes depth.
   float ahead = dot(face.forward, from_light);
   gl_Position = vec4(dot(face.right, from_light), dot(face.up, from_light), ahead - 2.0 * face.clip_near, ahead);
 }

@@ -1,5 +1,5 @@
-// The six faces of a shadow cube, as local_shadow.glsl looks them up: +X, -X, +Y, -Y, +Z, -Z, each seen as by
-// a camera that looks along its axis, 90 degrees wide. Boxes are relative to the cube's centre.
+// Defines the six faces of a shadow cube as local_shadow.glsl looks them up: +X, -X, +Y, -Y, +Z, -Z, each a
+// camera along its axis with a field of view of 90 degrees. Boxes are relative to the cube's centre.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +22,7 @@ inline FaceAxes faceAxes(std::uint32_t face) {
   return {glm::cross(forward, up), up, forward};
 }
 
-// The least and the largest of dot(axis, x) over the box.
+// Return the least and the greatest dot(axis, x) over the box.
 inline float leastAlong(const scene::Box& box, glm::vec3 axis) {
   float sum = 0.0f;
   for (int i = 0; i < 3; ++i) sum += axis[i] * (axis[i] > 0.0f ? box.min[i] : box.max[i]);
@@ -32,14 +32,15 @@ inline float mostAlong(const scene::Box& box, glm::vec3 axis) {
   return -leastAlong(box, -axis);
 }
 
-// Whether any of the box may lie in the face's pyramid; errs to yes at its edges.
+// Returns whether part of the box may lie in the face's frustum; at its edges it may return true for boxes
+// outside.
 inline bool faceMeets(const FaceAxes& axes, const scene::Box& box) {
   for (const glm::vec3 side : {axes.right, -axes.right, axes.up, -axes.up})
     if (mostAlong(box, axes.forward + side) < 0.0f) return false;
   return true;
 }
 
-// Of the box's points from the centre.
+// Return the distance of the box's nearest and farthest point from the centre.
 inline float nearestDistance(const scene::Box& box) {
   return glm::length(glm::max(glm::max(box.min, -box.max), glm::vec3(0.0f)));
 }

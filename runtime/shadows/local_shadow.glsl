@@ -1,37 +1,40 @@
-// How much of a local light a point sees, by the light's shadow cube. local_shadow_ref.hpp is the same on the CPU. Who
-// includes this says what lies in a texel: localDistance(light, face, texel), metres along the ray through its centre,
-// kNothing where it meets nothing. Points and directions are relative to the light's centre, world axes.
+// Computes how much of a local light a point sees, from the light's shadow cube. local_shadow_ref.hpp is the
+// same on the CPU. The including shader defines how the cube is read: localDistance(light, face, texel) gives
+// metres along the ray through a texel's centre, kNothing where it hits nothing. Points and directions are
+// relative to the light's centre, world axes.
 #include "shadowed_light.glsl"
 
 const float kNothing = 1e30;
-// What is nearer to the light than the receiver by less than these texels' width does not shadow it: rounding, curved
-// surfaces and corners of rooms within a texel.
+// A surface casts no shadow if it is nearer to the light than the receiver by less than the width of this
+// many texels. This tolerates rounding, curved surfaces, and corners of rooms within a texel.
 const float kBiasTexels = 1.5;
-// What stands beside the light's cone says how high blockers are, too; few points would miss the cone's rim.
-const float kSearchWidth = 2.0, kFoundWidth = 3.0;  // in the disc's radius
-const float kOneLayer = 0.01;  // of the way: blockers no farther apart than this count as one layer
-// A search for what blocks a ray takes so many steps, each so much shorter than the one before.
+// Blockers beside the light's cone also tell how high blockers are; few points would miss those at the cone's
+// rim.
+const float kSearchWidth = 2.0, kFoundWidth = 3.0;  // in multiples of the disc's radius
+const float kOneLayer = 0.01;  // share of the way: blockers at most this far apart count as one layer
+// The search for what blocks a ray takes this many steps, each shorter than the one before by this factor.
 const int kSteps = 3;
 const float kNearer = 0.8;
-const float kLeastSquared = 1e-12;  // a micrometre: weights stay finite
+const float kLeastSquared = 1e-12;  // square of a micrometre: keeps weights finite
 const float kGoldenAngle = 2.39996323;
 
 float localDistance(int light, int face, ivec2 texel);
 
 struct ShadowReceiver {
   vec3 position;
-  vec3 normal;      // of the triangle, not as it is shaded
-  vec3 horizon;     // interpolated, before a normal map: light above it counts, so that triangles of a round body do
-                    // not show where its dark side begins; the body itself shadows them there
+  vec3 normal;      // of the triangle, not the shading normal
+  vec3 horizon;     // interpolated, without a normal map; light above it counts, so that the triangles of a
+                    // round body do not show where its dark side begins; there the body itself casts the
+                    // shadow
   float distance;   // to the light
-  float bias;       // share of a distance
+  float bias;       // as a share of a distance
 };
 
 ShadowReceiver shadowReceiver(vec3 position, vec3 normal, vec3 horizon, int size) {
   return ShadowReceiver(position, normal, horizon, length(position), kBiasTexels * 2.0 / float(size));
 }
 
-// Faces +X, -X, +Y, -Y, +Z, -Z; each is seen as by a camera that looks along its axis.
+// Returns the face, +X, -X, +Y, -Y, +Z, -Z, each a camera that looks along its axis.
 int shadowFace(vec3 d) {
   vec3 a = abs(d);
   if (a.x >= a.y && a.x >= a.z) return d.x < 0.0 ? 1 : 0;
@@ -45,7 +48,7 @@ vec3 faceForward(int face) {
 vec3 faceUp(int face) { return face == 2 || face == 3 ? vec3(0.0, 0.0, 1.0) : vec3(0.0, 1.0, 0.0); }
 vec3 faceRight(int face) { return cross(faceForward(face), faceUp(face)); }
 
-// Where the direction meets the face, in texels from its lower left corner.
+// Returns where the direction meets the face, in texels from its lower left corner.
 vec2 facePlace(int face, vec3 d, int size) {
   vec2 at = vec2(dot(faceRight(face), d), dot(faceUp(face), d)) / dot(faceForward(face), d);
   return (0.5 * at + 0.5) * float(size);
@@ -55,7 +58,7 @@ vec3 texelDirection(int face, vec2 place, int size) {
   return localUnit(faceForward(face) + at.x * faceRight(face) + at.y * faceUp(face));
 }
 
-// What stands in the texel that the direction meets.
+// Describes the surface in the texel that a direction meets.
 struct Blocker {
   vec3 direction;  // through the texel's centre
   float distance;
@@ -66,13 +69,14 @@ Blocker blockerAt(int light, vec3 direction, int size) {
   return Blocker(texelDirection(face, vec2(texel) + 0.5, size), localDistance(light, face, texel));
 }
 
-// How far from the light the receiver's plane is on a ray: what a surface that light grazes shows in its own texels.
+// Returns the distance from the light at which a ray meets the receiver's plane. A surface that the light
+// grazes appears at that distance in its own texels.
 float planeDistance(ShadowReceiver receiver, vec3 direction) {
   float plane = dot(receiver.normal, receiver.position), along = dot(receiver.normal, direction);
   return plane * along > 0.0 ? plane / along : kNothing;
 }
 
-// Of a light without an extent: between the four texels about the ray.
+// Returns the visibility of a light without an extent, interpolated between the four texels around the ray.
 float pointVisible(int light, ShadowReceiver receiver, int size) {
   if (dot(receiver.horizon, receiver.position) >= 0.0) return 0.0;
   int face = shadowFace(receiver.position);
@@ -82,21 +86,21 @@ float pointVisible(int light, ShadowReceiver receiver, int size) {
   for (int i = 0; i < 4; ++i) {
     vec2 side = vec2(float(i & 1), float(i >> 1));
     vec2 share = side * part + (1.0 - side) * (1.0 - part);
-    // Over an edge the direction finds the face beside it.
+    // Beyond an edge the direction selects the neighbouring face.
     Blocker blocker = blockerAt(light, texelDirection(face, corner + side + 0.5, size), size);
-    // Not farther than the receiver either: walls beside it are no blockers.
+    // The limit is never farther than the receiver, so that walls beside it do not block.
     float limit = min(receiver.distance, planeDistance(receiver, blocker.direction));
     if (blocker.distance >= limit * (1.0 - receiver.bias)) visible += share.x * share.y;
   }
   return visible;
 }
 
-// A flat disc that looks from the receiver as the light does.
+// Describes a flat disc that looks like the light as seen from the receiver.
 struct LightDisc {
   vec3 normal;  // unit; the receiver is on its positive side
-  float height; // of the receiver over the disc's plane
+  float height; // height of the receiver above the disc's plane
   float radius;
-  vec3 s, t;    // along the disc, unit
+  vec3 s, t;    // unit vectors along the disc
 };
 LightDisc lightDisc(ShadowedLightRecord light, ShadowReceiver receiver) {
   LightDisc disc;
@@ -104,47 +108,50 @@ LightDisc lightDisc(ShadowedLightRecord light, ShadowReceiver receiver) {
   disc.normal = sphere ? localUnit(receiver.position) : light.direction;
   disc.height = dot(disc.normal, receiver.position);
   float sine = min(light.radius / receiver.distance, 0.99);
-  // The sphere's tangent cone meets the plane through its centre in a larger circle.
+  // The tangent cone of the sphere meets the plane through its centre in a larger circle.
   disc.radius = sphere ? light.radius * inversesqrt(1.0 - sine * sine) : light.radius;
   localBasis(disc.normal, disc.s, disc.t);
   return disc;
 }
 
-// Where on the unit disc the i-th of so many points lies [Vogel 1979], turned by so many turns.
+// Returns the i-th of `count` points on the unit disc [Vogel 1979], rotated by `turns` full turns.
 vec2 discPoint(int i, int count, float turns) {
   float angle = kGoldenAngle * float(i) + 2.0 * kLocalPi * turns;
   return sqrt((float(i) + 0.5) / float(count)) * vec2(cos(angle), sin(angle));
 }
 
-// The i-th of points on a line [van der Corput 1935]: even with discPoint's radius and apart from its angle.
+// Returns the i-th point on a line [van der Corput 1935], which is even with respect to discPoint's radius
+// and uncorrelated with its angle.
 float linePoint(int i) { return float(bitfieldReverse(uint(i))) * 2.3283064e-10; }
 
-// How far up from the disc (0) to the receiver (1) a blocker stands; negative: not between the receiver and a disc of
-// this radius.
+// Returns how far up from the disc (0) to the receiver (1) a blocker is, or a negative number if it is not
+// between the receiver and a disc of this radius.
 float blockerHeight(ShadowReceiver receiver, LightDisc disc, float radius, Blocker blocker) {
   if (blocker.distance >= planeDistance(receiver, blocker.direction) * (1.0 - receiver.bias)) return -1.0;
   vec3 place = blocker.distance * blocker.direction;
   float height = dot(disc.normal, place) / disc.height;
   if (height <= 0.0 || height >= 1.0 - receiver.bias) return -1.0;
-  // From the receiver through the blocker to the disc's plane; a texel's width of doubt grows on the way.
+  // The line from the receiver through the blocker is extended to the disc's plane, which magnifies a texel's
+  // width.
   float scale = 1.0 / (1.0 - height);
   vec3 seen = receiver.position + scale * (place - receiver.position);
   float doubt = receiver.bias * blocker.distance * scale;
   return dot(seen, seen) <= (radius + doubt) * (radius + doubt) ? height : -1.0;
 }
 
-// The heights at which most of what stands in between stands: one or two, found among rays all over the cone and
-// beside it. Two are those of the distribution of two heights that has the same first three moments, which for two flat
-// blockers is exact.
+// Holds the one or two heights that represent the blockers, found with rays all over the cone and beside it.
+// Two heights are those of the two-point distribution with the same first three moments, which is exact for
+// two flat blockers.
 struct BlockerLayers {
-  float low, high;  // the same if they are one; 1: nothing is there
+  float low, high;  // equal if there is one; 1: nothing blocks
 };
 BlockerLayers blockerLayers(int index, ShadowReceiver receiver, LightDisc disc, int size, int count, float turns) {
   float found = 0.0;
-  vec3 powers = vec3(0.0);  // of height, summed
+  vec3 powers = vec3(0.0);  // sums of powers of height
   for (int i = 0; i < count; ++i) {
     vec2 at = kSearchWidth * disc.radius * discPoint(i, count, turns);
-    // One on the receiver's own ray, the rest closer together towards the receiver, where penumbras are narrow.
+    // One point lies on the receiver's own ray; the others are denser towards the receiver, where penumbras
+    // are narrow.
     float down = i == 0 ? 0.0 : fract(linePoint(i) + turns), up = 1.0 - down * sqrt(down);
     vec3 place = (1.0 - up) * (at.x * disc.s + at.y * disc.t) + up * receiver.position;
     float height = blockerHeight(receiver, disc, kFoundWidth * disc.radius, blockerAt(index, place, size));
@@ -163,16 +170,18 @@ BlockerLayers blockerLayers(int index, ShadowReceiver receiver, LightDisc disc, 
                        clamp(moments.x + deviation * (half_skew + root), 0.0, 1.0));
 }
 
-// What stands where the ray from the receiver to a point of the disc passes this height, as blockerHeight.
+// Returns blockerHeight of what stands where the ray from the receiver to a point of the disc passes this
+// height.
 float heightOnRay(float up, int index, ShadowReceiver receiver, LightDisc disc, vec2 unit_place, int size) {
-  // Sharp shadows still fade over a texel.
+  // Even sharp shadows fade over a texel.
   float least = receiver.bias * 0.5 * receiver.distance * up / max(1.0 - up, 1e-3);
   vec2 at = max(disc.radius, least) * unit_place;
   vec3 place = (1.0 - up) * (at.x * disc.s + at.y * disc.t) + up * receiver.position;
   return blockerHeight(receiver, disc, disc.radius, blockerAt(index, place, size));
 }
 
-// Whether that ray is blocked, looked for from this height on: what is found at another height must be found there.
+// Returns whether that ray is blocked. The search starts at this height; a blocker found at another height
+// must be found there again.
 bool blockedNear(float up, int index, ShadowReceiver receiver, LightDisc disc, vec2 unit_place, int size) {
   float apart = 1.0;
   for (int i = 0; i < kSteps; ++i) {
@@ -187,16 +196,17 @@ bool blockedNear(float up, int index, ShadowReceiver receiver, LightDisc disc, v
   return true;
 }
 
-// Of a light with an extent: the mean over points on its disc, each weighed by the light it gives at the shading
-// normal. Each point's ray is looked up where it passes the layers of blockers; after Fernando, Percentage-closer soft
-// shadows, 2005, which has one layer. `turns` differs from pixel to pixel.
+// Returns the visibility of a light with an extent: the mean over points on its disc, each weighted with the
+// light that it gives at the shading normal. Each point's ray is looked up where it passes the layers of
+// blockers; this follows Fernando, Percentage-closer soft shadows, 2005, which has one layer. `turns` differs
+// from pixel to pixel.
 float discVisible(int index, ShadowedLightRecord light, ShadowReceiver receiver, vec3 shading_normal, int size, int count,
                   float turns) {
   LightDisc disc = lightDisc(light, receiver);
   if (disc.height <= 0.0) return 0.0;
   BlockerLayers layers = blockerLayers(index, receiver, disc, size, count, turns);
   int layer_count = layers.low >= 1.0 ? 0 : layers.low < layers.high ? 2 : 1;
-  // Nothing to ask where nothing is found and all of the disc is above the surface.
+  // No points are needed if nothing was found and all of the disc is above the surface.
   vec2 slope = vec2(dot(receiver.horizon, disc.s), dot(receiver.horizon, disc.t));
   bool above = -dot(receiver.horizon, receiver.position) > disc.radius * length(slope);
   int points = layer_count == 0 && above ? 0 : count;
@@ -216,7 +226,7 @@ float discVisible(int index, ShadowedLightRecord light, ShadowReceiver receiver,
   return all > 0.0 ? visible / all : 1.0;
 }
 
-// E/pi of one light at a point, shadows included.
+// Returns E/pi of one light at a point, with shadows.
 vec3 localRadiance(int index, ShadowedLightRecord light, vec3 position, vec3 normal, vec3 horizon, vec3 shading_normal, int size,
                   int count, float turns) {
   vec3 to_light = light.position - position;
@@ -230,5 +240,6 @@ vec3 localRadiance(int index, ShadowedLightRecord light, vec3 position, vec3 nor
   return visible * share * light.power;
 }
 
-// [Jimenez, Next generation post processing in Call of Duty: Advanced Warfare, 2014]: interleaved gradient noise.
+// Returns interleaved gradient noise [Jimenez, Next generation post processing in Call of Duty: Advanced
+// Warfare, 2014].
 float pixelTurns(vec2 pixel) { return fract(52.9829189 * fract(dot(pixel, vec2(0.06711056, 0.00583715)))); }

@@ -1,6 +1,6 @@
-// The CPU twin of local_shadow.glsl: same names, same order of terms. What lies in a texel is asked of
-// `Distance`: float(int face, glm::ivec2 texel), metres along the ray through its centre. Points and
-// directions are relative to the light's centre, world axes. No GL.
+// This is the CPU twin of local_shadow.glsl, with the same names and order of terms. A texel of the shadow
+// cube is read through `Distance`: float(int face, glm::ivec2 texel), metres along the ray through its
+// centre. Points and directions are relative to the light's centre, in world axes. No GL.
 #pragma once
 
 #include <glm/common.hpp>
@@ -133,12 +133,20 @@ inline float blockerHeight(const ShadowReceiver& receiver, const LightDisc& disc
   return glm::dot(seen, seen) <= (radius + doubt) * (radius + doubt) ? height : -1.0f;
 }
 
+// How shadow cubes are looked up: texels along an edge of a face, points on a light with an extent, and by
+// how much these are turned about, in turns.
+struct ShadowLookup {
+  int size, count;
+  float turns;
+};
+
 struct BlockerLayers {
   float low, high;
 };
 template <typename Distance>
 BlockerLayers blockerLayers(const Distance& distance, const ShadowReceiver& receiver, const LightDisc& disc,
-                            int size, int count, float turns) {
+                            const ShadowLookup& lookup) {
+  const auto [size, count, turns] = lookup;
   float found = 0.0f;
   glm::vec3 powers(0.0f);
   for (int i = 0; i < count; ++i) {
@@ -190,10 +198,11 @@ bool blockedNear(float up, const Distance& distance, const ShadowReceiver& recei
 
 template <typename Distance>
 float discVisible(const Distance& distance, const ShadowedLightRecord& light, const ShadowReceiver& receiver,
-                  glm::vec3 shading_normal, int size, int count, float turns) {
+                  glm::vec3 shading_normal, const ShadowLookup& lookup) {
+  const auto [size, count, turns] = lookup;
   const LightDisc disc = lightDisc(light, receiver);
   if (disc.height <= 0.0f) return 0.0f;
-  const BlockerLayers layers = blockerLayers(distance, receiver, disc, size, count, turns);
+  const BlockerLayers layers = blockerLayers(distance, receiver, disc, lookup);
   const int layer_count = layers.low >= 1.0f ? 0 : layers.low < layers.high ? 2 : 1;
   const glm::vec2 slope(glm::dot(receiver.horizon, disc.s), glm::dot(receiver.horizon, disc.t));
   const bool above = -glm::dot(receiver.horizon, receiver.position) > disc.radius * glm::length(slope);
@@ -214,19 +223,23 @@ float discVisible(const Distance& distance, const ShadowedLightRecord& light, co
   return all > 0.0f ? visible / all : 1.0f;
 }
 
+// A point of a surface; its normals are those of the vertices, of the triangle, and for shading.
+struct ShadedPoint {
+  glm::vec3 position, normal, horizon, shading_normal;
+};
+
 template <typename Distance>
-glm::vec3 localRadiance(const Distance& distance, const ShadowedLightRecord& light, glm::vec3 position,
-                        glm::vec3 normal, glm::vec3 horizon, glm::vec3 shading_normal, int size, int count,
-                        float turns) {
+glm::vec3 localRadiance(const Distance& distance, const ShadowedLightRecord& light, const ShadedPoint& point,
+                        const ShadowLookup& lookup) {
+  const auto& [position, normal, horizon, shading_normal] = point;
   const glm::vec3 to_light = light.position - position;
   const float share = localShare(light, shading_normal, to_light);
   if (share <= 0.0f) return glm::vec3(0.0f);
-  const ShadowReceiver receiver = shadowReceiver(-to_light, normal, horizon, size);
+  const ShadowReceiver receiver = shadowReceiver(-to_light, normal, horizon, lookup.size);
   const bool flat_light = light.kind == kLocalPoint || light.kind == kLocalSpot;
   if (light.kind == kLocalSphere && receiver.distance <= light.radius) return share * light.power;
-  const float visible = flat_light
-                            ? pointVisible(distance, receiver, size)
-                            : discVisible(distance, light, receiver, shading_normal, size, count, turns);
+  const float visible = flat_light ? pointVisible(distance, receiver, lookup.size)
+                                   : discVisible(distance, light, receiver, shading_normal, lookup);
   return visible * share * light.power;
 }
 

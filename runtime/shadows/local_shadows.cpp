@@ -8,6 +8,7 @@
 
 #include <glm/matrix.hpp>
 
+#include "lambent_draws_embedded.hpp"
 #include "lambent_shadows_embedded.hpp"
 #include "runtime/shadows/local_faces.hpp"
 #include "runtime/shadows/shadowed_light_record.hpp"
@@ -17,14 +18,14 @@ namespace lambent::frame {
 namespace {
 
 using lighting::ShadowedLight;
-constexpr gpu::FindText kShaders[] = {&embedded::lambent_shadows::find};
+constexpr gpu::FindText kShaders[] = {&embedded::lambent_shadows::find, &embedded::lambent_draws::find};
 constexpr std::uint32_t kFaces = 6;
 constexpr std::size_t kFaceStride = 256;  // OpenGL 4.5 asks for no larger alignment of uniform blocks
 constexpr float kLocalPlane_m = 2e-3f;
-constexpr float kLightSurface = 1.01f;  // what a spherical lamp is made of may be this much larger than it
+constexpr float kLightSurface = 1.01f;  // the body of a spherical lamp may be larger by this factor
 static_assert(kShadowedLights == lighting::kMaxShadowedLights);
 
-// Whether both have the same shadows, whatever their colour and cones.
+// Returns whether both cast the same shadows, whatever their colour and cones.
 bool sameShadows(const ShadowedLight& a, const ShadowedLight& b) {
   return a.kind == b.kind && a.position_ws == b.position_ws && a.radius_m == b.radius_m &&
          a.range_m == b.range_m && (!hasDirection(a) || a.direction_ws == b.direction_ws);
@@ -48,7 +49,7 @@ scene::Box around(const scene::Box& box, glm::vec3 center) {
   return {.min = box.min - center, .max = box.max - center};
 }
 
-// Whether any of the box stands where the light may shine.
+// Returns whether part of the box stands where the light may shine.
 bool reaches(const ShadowedLight& light, const scene::Box& from_light) {
   return nearestDistance(from_light) <= rangeOf(light) &&
          (!hasDirection(light) || mostAlong(from_light, light.direction_ws) > 0.0f);
@@ -85,12 +86,9 @@ void LocalShadows::updateMasks(const World& world, std::span<const std::uint32_t
   for (std::size_t k = 0; k < lights_.size(); ++k) shining |= shines(lights_[k]) ? 1u << k : 0u;
   for (const std::uint32_t mask : mask_of_group) lights_used_ |= mask & shining;
   any_ = lights_used_ != 0;
-  Masks masks{.of_group = {mask_of_group.begin(), mask_of_group.end()},
-              .shining = shining,
-              .residency = residency.version(),
-              .transforms = world.transformsVersion()};
-  if (masks == masks_seen_) return;
-  masks_seen_ = std::move(masks);
+  if (!masks_changed_.renew({mask_of_group.begin(), mask_of_group.end()}, shining, residency.version(),
+                            world.transformsVersion()))
+    return;
   std::vector<LocalDraw> draws;
   if (any_) {
     draws.reserve(residency.draws().size());
@@ -139,7 +137,7 @@ std::vector<std::uint32_t> LocalShadows::findChanged(World& world) {
     if (light_same && casters == cube.casters) continue;
     cube.light = light;
     cube.casters = std::move(casters);
-    // A little beyond: what stands at 1 is nothing.
+    // The reach is a little larger than needed, because depth 1 means that nothing is there.
     cube.reach = std::max(1.001f * std::min(reach, rangeOf(light)), 1e-3f);
     cube.drawn = false;
     changed.push_back(k);
@@ -175,7 +173,7 @@ void LocalShadows::makeRoom(std::uint32_t rows) {
   target_ = gpu::Handle<gpu::FramebufferTraits>(id);
   glNamedFramebufferTexture(id, GL_DEPTH_ATTACHMENT, shadows_.id(), 0);
   glNamedFramebufferDrawBuffer(id, GL_NONE);
-  for (Cube& cube : cubes_) cube.drawn = false;  // what was drawn is lost
+  for (Cube& cube : cubes_) cube.drawn = false;  // the new texture is empty
 }
 
 void LocalShadows::drawCubes(World& world, const std::vector<std::uint32_t>& changed,
@@ -203,7 +201,7 @@ void LocalShadows::drawCubes(World& world, const std::vector<std::uint32_t>& cha
   faces_.assign(std::span<const std::byte>(faces));
   counters.uploaded_bytes += faces.size();
   glBindFramebuffer(GL_FRAMEBUFFER, target_.id());
-  casters_.draw(world, tiles, programs_, faces_.buffer(), sizeof(ShadowFace), kBindShadowFace, counters);
+  casters_.draw(world, tiles, programs_, {faces_.buffer(), sizeof(ShadowFace), kBindShadowFace}, counters);
 }
 
 void LocalShadows::bind(const spec::View& view, const spec::Size& size) {

@@ -1,9 +1,9 @@
-// Direct light of local lights (lighting/shadowed_light.hpp): their shadow cubes, and what the surface pass
-// reads to shade by them. Comes in: the world, up to kMaxShadowedLights lights, and which of them light the
-// draws of each rigid group per pixel. A cube is drawn again only when its light or something that it sees
-// has moved, arrived or gone; it holds all resident opaque and masked draws of all groups, both sides of
-// each. Cubes lie in one depth texture, six tiles in a row for each light; depth is distance over the light's
-// reach. Render thread only. Errors: shaders that do not compile on this device.
+// Owns the shadow cubes of local lights (lighting/shadowed_light.hpp) and what the surface pass reads to
+// shade with them. It takes the world, up to kMaxShadowedLights lights, and which of them light the draws of
+// each rigid group per pixel. A cube is drawn again only when its light or something in it has moved, arrived
+// or gone; it holds all resident opaque and masked draws of all groups, both sides of each. All cubes are
+// tiles of one depth texture, six in a row per light; depth is distance over the light's reach. Render thread
+// only. update() fails if a shader does not compile on this device.
 #pragma once
 
 #include <array>
@@ -13,6 +13,7 @@
 
 #include <glm/mat4x4.hpp>
 
+#include "runtime/base/change_gate.hpp"
 #include "runtime/base/result.hpp"
 #include "runtime/gpu/program.hpp"
 #include "runtime/lighting/shadowed_light.hpp"
@@ -27,33 +28,33 @@ namespace lambent::frame {
 
 struct LocalOptions {
   std::uint32_t size = 512;    // texels along an edge of a cube's face, 16..4096
-  std::uint32_t samples = 16;  // points on a light with an extent, 1..256
+  std::uint32_t samples = 16;  // sample points on a light with an extent, 1..256
 };
 
 class LocalShadows {
  public:
   explicit LocalShadows(const LocalOptions& options = {});
 
-  // Lights beyond the first kMaxShadowedLights are left out. mask_of_group, in the order of
-  // residency().groups(), says with bit k that light k lights the group's draws; groups beyond its end have
-  // none. After World::updateTransforms. Changes the bound framebuffer, viewport and program.
+  // Lights beyond the first kMaxShadowedLights are ignored. Bit k of mask_of_group, indexed as
+  // residency().groups(), tells that light k lights the group's draws; groups beyond its end have no light.
+  // Call it after World::updateTransforms(). Changes the bound framebuffer, viewport and program.
   Result<void> update(World& world, std::span<const lighting::ShadowedLight> lights,
                       std::span<const std::uint32_t> mask_of_group, gpu::Counters& counters);
 
-  // What the surface shaders read, for a picture of this size seen so. Before Surfaces draws; nothing is
-  // bound where no draw is lit.
+  // Binds what the surface shaders read, for a picture of this size and view. Call it before Surfaces draws;
+  // it binds nothing if no draw is lit.
   void bind(const spec::View& view, const spec::Size& size);
 
-  // Bit k: the residency's draw is lit by light k.
+  // Returns the lights of a draw of the residency: bit k is set if light k lights it.
   std::uint32_t lightsOf(std::size_t draw) const { return draw < draws_.size() ? draws_[draw].lights : 0; }
   bool any() const { return any_; }
-  // Rises when lightsOf changes for any draw.
+  // Rises when lightsOf() changes for any draw.
   std::uint64_t version() const { return version_; }
-  // All cubes are drawn anew.
+  // Makes the next update draw all cubes.
   void forget() {
     for (Cube& cube : cubes_) cube.drawn = false;
   }
-  // How many cubes the last update drew.
+  // Returns how many cubes the last update drew.
   std::uint32_t cubesDrawn() const { return cubes_drawn_; }
   std::uint64_t bytesResident() const;
 
@@ -64,16 +65,10 @@ class LocalShadows {
     float reach = 0.0f;
     bool drawn = false;
   };
-  struct Masks {
-    std::vector<std::uint32_t> of_group;
-    std::uint32_t shining = 0;
-    std::uint64_t residency = 0, transforms = 0;
-    bool operator==(const Masks&) const = default;
-  };
   void updateMasks(const World& world, std::span<const std::uint32_t> mask_of_group, gpu::Counters& counters);
   Result<void> compile();
   void makeRoom(std::uint32_t rows);
-  // The lights whose cubes must be drawn; says what stands in them.
+  // Returns the lights whose cubes must be drawn, and records their casters.
   std::vector<std::uint32_t> findChanged(World& world);
   void drawCubes(World& world, const std::vector<std::uint32_t>& changed, gpu::Counters& counters);
 
@@ -83,12 +78,13 @@ class LocalShadows {
   ShadowCasters::Programs programs_;
   gpu::Texture shadows_;
   gpu::Handle<gpu::FramebufferTraits> target_;
-  std::uint32_t rows_ = 0;  // of the texture: lights that have room
+  std::uint32_t rows_ = 0;  // rows of the texture, one per light
   gpu::Table block_, draws_table_, faces_;
   std::vector<LocalDraw> draws_;
-  Masks masks_seen_;  // what draws_ follows from
+  // Masks of groups, lights that shine, residency, transforms: what draws_ follows from.
+  ChangeGate<std::vector<std::uint32_t>, std::uint32_t, std::uint64_t, std::uint64_t> masks_changed_;
   std::vector<lighting::ShadowedLight> lights_;
-  std::uint32_t lights_used_ = 0;  // that shine on any group
+  std::uint32_t lights_used_ = 0;  // number that shine on any group
   bool any_ = false;
   std::uint64_t version_ = 0;
   std::uint32_t cubes_drawn_ = 0;

@@ -1,4 +1,5 @@
-// One text for C++ and GLSL: what shading by local lights binds and reads, besides surface_shared.h. World axes, metres.
+// This file is shared by C++ and GLSL. It holds the bindings and records for shading by local lights, besides
+// surface_shared.h. World axes, metres.
 #ifdef __cplusplus
 #pragma once
 
@@ -19,14 +20,14 @@ using glm::vec4;
 #define LAMBENT_CONSTANT const uint
 #endif
 
-LAMBENT_CONSTANT kBindShadowedLights = 3u;   // uniform block LocalBlock
-LAMBENT_CONSTANT kBindShadowFace = 4u;   // uniform block ShadowFace
-LAMBENT_CONSTANT kBindLocalDraws = 5u;    // LocalDraw
-LAMBENT_CONSTANT kUnitLocalShadows = 8u;  // texture unit of the shadow cubes
+LAMBENT_CONSTANT kBindShadowedLights = 3u;  // uniform block LocalBlock
+LAMBENT_CONSTANT kBindShadowFace = 4u;      // uniform block ShadowFace
+LAMBENT_CONSTANT kBindLocalDraws = 5u;      // array of LocalDraw
+LAMBENT_CONSTANT kUnitLocalShadows = 8u;    // texture unit of the shadow cubes
 
 LAMBENT_CONSTANT kShadowedLights = 4u;  // lighting::kMaxShadowedLights
 
-// lighting::ShadowedLight::Kind
+// These are the values of lighting::ShadowedLight::Kind.
 LAMBENT_CONSTANT kLocalPoint = 0u;
 LAMBENT_CONSTANT kLocalSpot = 1u;
 LAMBENT_CONSTANT kLocalSphere = 2u;
@@ -34,41 +35,41 @@ LAMBENT_CONSTANT kLocalDisc = 3u;
 
 struct ShadowedLightRecord {
   vec3 position;
-  float reach;  // what depth 1 in the shadow cube means; nothing stands there
+  float reach;  // distance of depth 1 in the shadow cube; casters are nearer
   vec3 direction;
   uint kind;
   vec3 power;
   float radius;
-  float cos_outer, cone_scale;  // share of a spot: clamp((cos - cos_outer) * cone_scale, 0, 1)^2
-  float range;                  // 0: no end
+  float cos_outer, cone_scale;  // factor of a spot: clamp((cos - cos_outer) * cone_scale, 0, 1)^2
+  float range;                  // 0: unlimited
   float pad;
 };
 
-// The uniform block in front of kShadowedLights records.
+// This is the uniform block's head, before kShadowedLights records.
 struct ShadowView {
   mat4 view_from_clip, world_from_view;
-  float width, height;  // of the picture, pixels
+  float width, height;  // of the picture, in pixels
   uint size;            // texels along an edge of a cube's face
-  uint samples;         // points on a light with an extent
+  uint samples;         // sample points on a light with an extent
 };
 
-// Of one draw of the surface pass.
+// Names the lights of one draw of the surface pass.
 struct LocalDraw {
   vec4 world_from_group;  // quaternion, xyz then w
   uint lights;            // bit k: lit by light k
   uint pad0, pad1, pad2;
 };
 
-// One face of one cube, as it is drawn.
+// Describes one face of one cube, while it is drawn.
 struct ShadowFace {
   vec3 right;
-  float clip_near;  // of the clip plane
+  float clip_near;  // distance of the near clip plane
   vec3 up;
   float reach;
   vec3 forward;
-  float hole;  // what is nearer to the light is not drawn
+  float hole;  // surfaces nearer to the light than this are not drawn
   vec3 position;
-  float behind;  // 1: what lies behind the light's plane is not drawn
+  float behind;  // 1: surfaces behind the light's plane are not drawn
   vec3 direction;
   float pad;
 };

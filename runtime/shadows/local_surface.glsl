@@ -1,4 +1,4 @@
-// Local lights in the surface pass: E/pi from all that light this draw, with their shadows.
+// Handles local lights in the surface pass: computes E/pi of all lights of this draw, with their shadows.
 #include "local_shared.h"
 #include "local_shadow.glsl"
 
@@ -9,7 +9,7 @@ layout(std140, binding = kBindShadowedLights) uniform LocalBlock {
 layout(std430, binding = kBindLocalDraws) readonly buffer LocalDraws { LocalDraw local_draws[]; };
 layout(binding = kUnitLocalShadows) uniform sampler2D local_shadows;
 
-// Pictures to be looked at are of half floats, and one infinite pixel beside a small light would blind the exposure.
+// Displayed pictures hold half floats, and one infinite pixel beside a small light would upset the exposure.
 const float kLargestShown = 6e4;
 
 float localDistance(int light, int face, ivec2 texel) {
@@ -18,8 +18,8 @@ float localDistance(int light, int face, ivec2 texel) {
   return depth < 1.0 ? depth * shadowed_lights[light].reach : kNothing;
 }
 
-// View frame. In homogeneous coordinates of which w is left aside: gl_FragCoord.w has the depth at full precision, also
-// where the depth buffer has little.
+// Returns the position in view space. It is computed in homogeneous coordinates whose w is not needed:
+// gl_FragCoord.w has the depth at full precision, even where the depth buffer has little.
 vec3 pixelPosition() {
   vec3 ndc = vec3(2.0 * gl_FragCoord.xy / vec2(local_view.width, local_view.height), 2.0 * gl_FragCoord.z) - 1.0;
   return (local_view.view_from_clip * (vec4(ndc, 1.0) / gl_FragCoord.w)).xyz;
@@ -27,40 +27,30 @@ vec3 pixelPosition() {
 
 vec3 turned(vec4 turn, vec3 v) { return localUnit(v + 2.0 * cross(turn.xyz, cross(turn.xyz, v) + turn.w * v)); }
 
-#ifdef LAMBENT_GLOSSY
-// pi times the specular f towards the eye of light from this direction, group frame, that spreads over so many radians.
-vec3 lightReflectance(vec3 to_light, float spread);
-vec3 local_highlights = vec3(0.0);  // of the last shadowedLight
-#endif
-
-// Group frame, of the side that is seen: the vertices' normal, and the one that the surface is shaded by.
-vec3 shadowedLight(uint draw, vec3 smooth_normal, vec3 shading_normal) {
+// E/pi, and of glossy surfaces the highlights; lightReflectance is pi times the specular f towards the eye of light from a
+// direction, group frame, that spreads over so many radians.
+void addLocalLights(SurfacePoint at, inout SurfaceLight light) {
   vec3 position_vs = pixelPosition();
   vec3 position = (local_view.world_from_view * vec4(position_vs, 1.0)).xyz;
-  // Points to the eye: the picture's axes are right-handed with the direction to it.
+  // The cross product points to the eye, because the picture's axes and the direction to it are right-handed.
   vec3 normal = localUnit(mat3(local_view.world_from_view) * cross(dFdx(position_vs), dFdy(position_vs)));
-  vec4 turn = local_draws[draw].world_from_group;
-  vec3 horizon = turned(turn, smooth_normal);
-  shading_normal = turned(turn, shading_normal);
+  vec4 turn = local_draws[at.draw].world_from_group;
+  vec3 horizon = turned(turn, at.smooth_normal);
+  vec3 shading_normal = turned(turn, at.normal);
   float turns = pixelTurns(gl_FragCoord.xy);
   vec3 sum = vec3(0.0);
   // By the bits that are set: on some devices an if costs as much as what it leaves out, and a loop does not.
-  for (uint rest = local_draws[draw].lights; rest != 0u; rest &= rest - 1u) {
+  for (uint rest = local_draws[at.draw].lights; rest != 0u; rest &= rest - 1u) {
     int k = findLSB(rest);
     vec3 received = localRadiance(k, shadowed_lights[k], position, normal, horizon, shading_normal, int(local_view.size),
                                  int(local_view.samples), turns);
     sum += received;
-#ifdef LAMBENT_GLOSSY
+    if (!kHighlights) continue;
     vec3 to_light = shadowed_lights[k].position - position;
     bool wide = shadowed_lights[k].kind == kLocalSphere || shadowed_lights[k].kind == kLocalDisc;
     float spread = wide ? atan(shadowed_lights[k].radius, length(to_light)) : 0.0;
     vec3 to_light_group = turned(vec4(-turn.xyz, turn.w), localUnit(to_light));
-    local_highlights += min(received * lightReflectance(to_light_group, spread), vec3(kLargestShown));
-#endif
+    light.local_highlights += min(received * lightReflectance(to_light_group, spread), vec3(kLargestShown));
   }
-#ifdef LAMBENT_FINEST_TEXELS
-  return sum;
-#else
-  return min(sum, vec3(kLargestShown));
-#endif
+  light.local += kFinestTexels ? sum : min(sum, vec3(kLargestShown));
 }

@@ -1,4 +1,4 @@
-// Whether a fragment of a masked caster of shadows is a hole. After draws[].
+// Tells whether a fragment of a masked shadow caster is a hole. Include it after draws[].
 layout(binding = kUnitBaseColor) uniform sampler2D base_color_texture;
 layout(location = 1) flat in uint draw_of;
 layout(location = 2) in vec3 looks_at;

@@ -1,6 +1,7 @@
-// Of masked casters of shadows: where their vertices look into the base colour picture. After draws[] and geometry[].
+// Passes on where the vertices of masked shadow casters look up the base colour texture. Include it after
+// draws[] and geometry[].
 layout(location = 1) flat out uint draw_of;
-layout(location = 2) out vec3 looks_at;  // z: the vertex colour's alpha
+layout(location = 2) out vec3 looks_at;  // texture coordinates; z: the vertex colour's alpha
 
 void lookUpMask(uint draw, uint vertex) {
   draw_of = draw;

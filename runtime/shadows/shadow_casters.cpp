@@ -15,13 +15,7 @@ ShadowCasters::ShadowCasters(std::string_view label) : records_(label), commands
 
 bool ShadowCasters::follow(const World& world) {
   const streaming::Residency& residency = world.residency();
-  if (seen_ && residency.version() == residency_seen_ && world.transformsVersion() == transforms_seen_ &&
-      world.materialsVersion() == materials_seen_)
-    return false;
-  seen_ = true;
-  residency_seen_ = residency.version();
-  transforms_seen_ = world.transformsVersion();
-  materials_seen_ = world.materialsVersion();
+  if (!changed_.renew(residency.version(), world.transformsVersion(), world.materialsVersion())) return false;
   casters_.clear();
   for (std::uint32_t i = 0; i < residency.draws().size(); ++i) {
     const streaming::ResidentDraw& draw = residency.draws()[i];
@@ -83,8 +77,7 @@ void ShadowCasters::appendRuns(const World& world, const Tile& tile, std::size_t
 }
 
 void ShadowCasters::draw(World& world, std::span<const Tile> tiles, const Programs& programs,
-                         const gpu::Buffer& views, std::size_t view_bytes, GLuint view_binding,
-                         gpu::Counters& counters) {
+                         const TileViews& views, gpu::Counters& counters) {
   std::vector<SurfaceDraw> records;
   records.reserve(world.residency().draws().size());
   for (std::size_t i = 0; i < world.residency().draws().size(); ++i) records.push_back(describe(world, i));
@@ -100,7 +93,7 @@ void ShadowCasters::draw(World& world, std::span<const Tile> tiles, const Progra
   glDepthFunc(GL_LESS);
   glDepthMask(GL_TRUE);
   glDisable(GL_BLEND);
-  glDisable(GL_CULL_FACE);  // surfaces stop light from both sides, as in the bake
+  glDisable(GL_CULL_FACE);  // surfaces block light from both sides, as in the bake
   glEnable(GL_SCISSOR_TEST);
   for (const Tile& tile : tiles) {
     glScissor(static_cast<GLint>(tile.x), static_cast<GLint>(tile.y), static_cast<GLsizei>(tile.size),
@@ -115,8 +108,8 @@ void ShadowCasters::draw(World& world, std::span<const Tile> tiles, const Progra
     const Tile& tile = tiles[run.tile];
     glViewport(static_cast<GLint>(tile.x), static_cast<GLint>(tile.y), static_cast<GLsizei>(tile.size),
                static_cast<GLsizei>(tile.size));
-    glBindBufferRange(GL_UNIFORM_BUFFER, view_binding, views.id(), static_cast<GLintptr>(tile.view),
-                      static_cast<GLsizeiptr>(view_bytes));
+    glBindBufferRange(GL_UNIFORM_BUFFER, views.binding, views.buffer.id(), static_cast<GLintptr>(tile.view),
+                      static_cast<GLsizeiptr>(views.bytes));
     const gpu::Buffer& geometry = world.residency().geometry().page(run.state.geometry_page);
     geometry.bindStorage(kBindGeometry);
     indices_.bind(geometry);

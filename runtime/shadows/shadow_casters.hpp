@@ -1,6 +1,6 @@
-// What stops light: all resident opaque and masked draws of a world, both sides of each, and how they are
-// drawn into tiles of a depth texture. Shadow cubes of local lights and shadow maps of key lights are made of
-// them. Render thread only; no errors of its own.
+// Owns the shadow casters: all resident opaque and masked draws of a world, both sides of each. It draws them
+// into tiles of a depth texture, for the shadow cubes of local lights and the shadow maps of key lights.
+// Render thread only; it reports no errors.
 #pragma once
 
 #include <array>
@@ -12,6 +12,7 @@
 
 #include <glm/mat4x4.hpp>
 
+#include "runtime/base/change_gate.hpp"
 #include "runtime/draws/draw_indices.hpp"
 #include "runtime/draws/surface_record.hpp"
 #include "runtime/draws/texture_units.hpp"
@@ -21,7 +22,7 @@
 
 namespace lambent::frame {
 
-// The same casters make the same shadows.
+// Equal casters cast equal shadows.
 struct ShadowCaster {
   std::uint32_t draw = 0;
   std::uint64_t id = 0;  // of the draw
@@ -29,8 +30,8 @@ struct ShadowCaster {
   scene::Box bounds_ws;
   gpu::Allocation block;
   bool masked = false;
-  std::uint32_t image_levels = 0;           // that have arrived
-  float alpha = 1.0f, alpha_cutoff = 0.0f;  // of masked ones
+  std::uint32_t image_levels = 0;           // texture levels that have arrived
+  float alpha = 1.0f, alpha_cutoff = 0.0f;  // masked casters only
   bool operator==(const ShadowCaster& other) const;
 };
 
@@ -38,25 +39,31 @@ class ShadowCasters {
  public:
   explicit ShadowCasters(std::string_view label);
 
-  // Looks again where the world is other than at the last call; whether it was.
+  // Gathers the casters again if the world changed since the last call, and returns whether it did.
   bool follow(const World& world);
   const std::vector<ShadowCaster>& all() const { return casters_; }
 
-  // A square of the texture, and what is drawn into it.
+  // Describes a square of the texture, and the casters drawn into it.
   struct Tile {
-    std::uint32_t x = 0, y = 0, size = 0;  // texels
-    std::size_t view = 0;                  // where its uniform block begins in the buffer of views, bytes
+    std::uint32_t x = 0, y = 0, size = 0;  // in texels
+    std::size_t view = 0;                  // offset in bytes of its uniform block in the buffer of views
     std::vector<const ShadowCaster*> casters;
+  };
+  // Uniform blocks, one for each tile.
+  struct TileViews {
+    const gpu::Buffer& buffer;
+    std::size_t bytes = 0;  // of a block
+    GLuint binding = 0;
   };
   // For opaque casters and for masked ones.
   using Programs = std::array<gpu::Program, 2>;
-  // Clears the tiles of the bound framebuffer's depth to 1 and draws them. views: uniform blocks of
-  // view_bytes, bound to view_binding tile by tile. Changes viewport, scissor, depth and culling state.
-  void draw(World& world, std::span<const Tile> tiles, const Programs& programs, const gpu::Buffer& views,
-            std::size_t view_bytes, GLuint view_binding, gpu::Counters& counters);
+  // Clears the tiles of the bound framebuffer's depth to 1 and draws them. Changes viewport, scissor, depth
+  // and culling state.
+  void draw(World& world, std::span<const Tile> tiles, const Programs& programs, const TileViews& views,
+            gpu::Counters& counters);
 
  private:
-  // Casters that may go into one multi-draw.
+  // Holds the state that casters must share to go into one multi-draw.
   struct State {
     std::uint32_t geometry_page = 0;
     bool masked = false;
@@ -76,8 +83,7 @@ class ShadowCasters {
   gpu::Table records_, commands_;
   DrawIndices indices_;
   TextureUnits units_;
-  std::uint64_t residency_seen_ = 0, transforms_seen_ = 0, materials_seen_ = 0;
-  bool seen_ = false;
+  ChangeGate<std::uint64_t, std::uint64_t, std::uint64_t> changed_;  // residency, transforms, materials
 };
 
 }  // namespace lambent::frame

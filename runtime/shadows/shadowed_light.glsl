@@ -1,19 +1,23 @@
-// Local lights where nothing is in the way: E/pi for unit power at a point, exact or bounded. shadowed_light_ref.hpp is the
-// same on the CPU, term by term. World axes; `to_light` runs from the point to the light's centre, metres.
+// Computes unoccluded local lights: E/pi for unit power at a point, exact or with bounded error.
+// shadowed_light_ref.hpp is the same on the CPU, term by term. World axes; `to_light` runs from the point to
+// the light's centre, metres.
+#include "local_shared.h"
 
 const float kLocalPi = 3.14159265;
-const float kLeastDistance = 0.01;      // lights without an extent are no nearer: all stays finite
-const float kLocalNoLength = 1e-36;      // below this a squared length is no length
-const float kFarSphere = 64.0;          // in radii: above, the sphere is a flat disc in the sky
+const float kLeastDistance = 0.01;      // lower limit on the distance of lights without an extent: keeps
+                                        // values finite
+const float kLocalNoLength = 1e-36;      // a smaller squared length counts as zero
+const float kFarSphere = 64.0;          // in radii: beyond this, the sphere is a flat disc in the sky
 const float kFarDisc = 20.0;
 const int kDiscCorners = 24;
-// A regular polygon of the unit disc's area: 12 rho^2 sin(15 degrees) = pi.
+// The corners' radius gives the regular polygon the unit disc's area: 12 rho^2 sin(15 degrees) = pi.
 const float kDiscCorner = 1.005744;
 const float kCornerCos = 0.96592583, kCornerSin = 0.25881905;
 
 vec3 localUnit(vec3 v) { return v * inversesqrt(max(dot(v, v), kLocalNoLength)); }
 
-// Two unit vectors that are right-handed with unit n [Duff et al., Building an orthonormal basis, revisited, 2017].
+// Returns two unit vectors that are right-handed with unit n [Duff et al., Building an orthonormal basis,
+// revisited, 2017].
 void localBasis(vec3 n, out vec3 s, out vec3 t) {
   float facing = n.z >= 0.0 ? 1.0 : -1.0;
   float a = -1.0 / (facing + n.z), b = n.x * n.y * a;
@@ -21,7 +25,7 @@ void localBasis(vec3 n, out vec3 s, out vec3 t) {
   t = vec3(b, facing + n.y * n.y * a, -n.y);
 }
 
-// KHR_lights_punctual: fade by distance and range, and between the cones.
+// Returns the attenuation of KHR_lights_punctual: by distance and range, and between the cones.
 float punctualShare(ShadowedLightRecord light, vec3 to_light) {
   float squared = dot(to_light, to_light);
   float least = max(squared, kLeastDistance * kLeastDistance);
@@ -38,15 +42,16 @@ float punctualShare(ShadowedLightRecord light, vec3 to_light) {
   return share;
 }
 
-// E/(pi L) of a sphere whose centre is h radii away at an angle of this cosine to the normal, also where it crosses the
-// horizon [Snyder, Area light sources for real-time graphics, 1996]. Within the sphere all is light.
+// Returns E/(pi L) of a sphere whose centre is h radii away at an angle of this cosine to the normal, also if
+// the horizon cuts it [Snyder, Area light sources for real-time graphics, 1996]. Inside the sphere the result
+// is 1.
 float sphereShare(float cosine, float h) {
   if (h <= 1.0) return 1.0;
   float h2 = h * h, above = cosine * h;  // heights in radii
   if (above >= 1.0) return cosine / h2;
   if (above <= -1.0) return 0.0;
   if (h > kFarSphere) {
-    // The same for a flat disc cut by a line, to 1/h^2; the exact form would cancel.
+    // This is the form for a flat disc cut by a line, accurate to 1/h^2; the exact form would cancel.
     float rest = sqrt(max(1.0 - above * above, 0.0));
     return max(above * acos(-above) + above * above * rest + 2.0 / 3.0 * rest * rest * rest, 0.0) / (kLocalPi * h2 * h);
   }
@@ -56,14 +61,15 @@ float sphereShare(float cosine, float h) {
   return max((cosine * turned - k * w) / h2 + atan(k, w), 0.0) / kLocalPi;
 }
 
-// The angle of an edge as seen from the point, along its normal.
+// Returns the angle under which the point sees an edge, along the normal of the plane through both.
 vec3 edgeTerm(vec3 a, vec3 b) {
   vec3 u = localUnit(a), v = localUnit(b), turn = cross(u, v);
   float sine = length(turn), angle = atan(sine, dot(u, v));
   return sine > 1e-7 ? turn * (angle / sine) : turn;
 }
 
-// E/(pi L) of a disc that shines to one side, as a polygon of its area: Lambert's formula, cut at the horizon.
+// Returns E/(pi L) of a disc that shines to one side, as a polygon of its area: Lambert's formula, clipped at
+// the horizon.
 float discShare(vec3 normal, vec3 to_light, vec3 direction, float radius) {
   float facing = -dot(direction, to_light);
   if (facing <= 0.0) return 0.0;

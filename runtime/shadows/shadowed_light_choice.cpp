@@ -15,7 +15,7 @@ namespace lambent::frame {
 
 namespace {
 
-// The share falls within the last part of the distance.
+// The share falls to 0 over this last part of the distance.
 constexpr float kFadePart = 1.0f / 6.0f;
 
 }  // namespace
@@ -39,7 +39,7 @@ float radiiFrom(const scene::Box& bounds, const glm::mat4& world_from_group,
   const float radius = bounds.radius() * scene::largestScale(world_from_group);
   const glm::vec3 middle(world_from_group * glm::vec4(bounds.center(), 1.0f));
   const float distance = glm::distance(middle, light.position_ws);
-  // Most are farther away than any corner of the bounds, with the light's own extent around them.
+  // Most lights are farther away than any corner of the bounds, enlarged by the light's own extent.
   const bool beyond = distance > 1.001f * (radius + std::numbers::sqrt3_v<float> * light.extent_m());
   if (!beyond && standsWithin(bounds, world_from_group, light)) return 0.0f;
   const float radii = std::max(distance - light.extent_m(), 0.0f) / radius;

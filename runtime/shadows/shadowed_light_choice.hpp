@@ -1,6 +1,6 @@
-// Which lights that stand in the scene shine per pixel with shadow cubes, and how much of each: those that
-// stand within the bounds of a group, and those that stand beside one, nearer to its middle than so many of
-// its radii. On the way out of that distance the share falls to 0 bit by bit. No GL.
+// Chooses which lights in the scene are shaded per pixel with shadow cubes, and with what share: those within
+// the bounds of a group, and those beside one, within a given number of its radii from its centre. Near that
+// distance the share falls to 0 continuously. No GL.
 #pragma once
 
 #include <span>
@@ -13,18 +13,18 @@
 
 namespace lambent::frame {
 
-// Whether a light that stands in the scene is within a group's bounds, which are in its frame.
+// Returns whether a light in the scene is within a group's bounds, which are given in the group's frame.
 bool standsWithin(const scene::Box& bounds, const glm::mat4& world_from_group,
                   const lighting::LocalLight& light);
 
-// How far such a light is from the middle of a group's bounds, in radii of these: 0 within the bounds, more
-// outside, infinite where that means nothing.
+// Returns the distance of such a light from the centre of a group's bounds in units of their radius: 0 within
+// the bounds, larger outside, infinite if it is undefined.
 float radiiFrom(const scene::Box& bounds, const glm::mat4& world_from_group,
                 const lighting::LocalLight& light);
 
-// Of each light its share, 0 to 1, by radiiFrom() the group that it is nearest to. Lights within bounds have
-// all of it. No more than kMaxShadowedLights have any: where more stand within `radii`, the first that has no
-// room sets the distance, so that nothing jumps where two lights change places.
+// Returns the share of each light, 0..1, given the least radiiFrom() over all groups. Lights within bounds
+// have share 1. At most kMaxShadowedLights have a share: if more stand within `radii`, the distance of the
+// first one without a cube becomes the limit, so that nothing jumps when two lights change places.
 std::vector<float> localShares(std::span<const float> radii_from, float radii);
 
 }  // namespace lambent::frame

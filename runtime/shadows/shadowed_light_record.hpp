@@ -1,4 +1,5 @@
-// A local light as shaders and their CPU twins read it (local_shared.h), and what kinds of lights have.
+// Makes the record of a local light that shaders and their CPU twins read (local_shared.h), and tells what
+// each kind of light has.
 #pragma once
 
 #include <algorithm>
@@ -20,7 +21,7 @@ inline bool hasDirection(const lighting::ShadowedLight& light) {
          light.kind == lighting::ShadowedLight::Kind::Disc;
 }
 
-// A light with a number that is none is dark.
+// Returns whether the light gives any light. One with a value that is not finite gives none.
 inline bool shines(const lighting::ShadowedLight& light) {
   const auto finite = [](glm::vec3 v) { return std::isfinite(v.x + v.y + v.z); };
   return finite(light.power) && finite(light.position_ws) && finite(light.direction_ws) &&
@@ -28,7 +29,7 @@ inline bool shines(const lighting::ShadowedLight& light) {
          (!hasExtent(light) || (light.radius_m > 0.0f && std::isfinite(light.radius_m)));
 }
 
-// Where its light ends; surfaces with an extent shine without end.
+// Returns the distance at which its light ends. Lights with an extent have no limit.
 inline float rangeOf(const lighting::ShadowedLight& light) {
   return !hasExtent(light) && light.range_m > 0.0f ? light.range_m : std::numeric_limits<float>::infinity();
 }

@@ -1,5 +1,6 @@
-// The CPU twin of shadowed_light.glsl: same names, same order of terms, so that a test can hold one against
-// the other. World axes, metres; shares are E/pi for unit power (candela, or radiance of a surface). No GL.
+// This is the CPU twin of shadowed_light.glsl, with the same names and order of terms, so that a test can
+// compare the two. World axes, metres; shares are E/pi for unit power (candela, or radiance of a surface). No
+// GL.
 #pragma once
 
 #include <algorithm>

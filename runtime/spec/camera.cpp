@@ -21,8 +21,9 @@ struct DepthRange {
   float near_m, far_m;
 };
 
-// The bounds' depths along the view, a little widened. The near plane stays at least far / 4096 away: an eye
-// inside the scene keeps enough depth precision, and cuts off only what is closer than that.
+// Returns the range of depths of the bounds along the view, slightly widened. The near plane is at least far
+// / 4096 away, so an eye inside the scene keeps enough depth precision and cuts off only what is closer than
+// that.
 DepthRange fitDepth(const glm::mat4& view_from_world, glm::vec3 bounds_min, glm::vec3 bounds_max) {
   float nearest = std::numeric_limits<float>::max(), farthest = 0.0f;
   for (int corner = 0; corner < 8; ++corner) {
@@ -33,7 +34,7 @@ DepthRange fitDepth(const glm::mat4& view_from_world, glm::vec3 bounds_min, glm:
     nearest = std::min(nearest, depth);
     farthest = std::max(farthest, depth);
   }
-  if (!(farthest > 0.0f)) return {0.01f, 1.0f};  // nothing in front of the eye
+  if (!(farthest > 0.0f)) return {0.01f, 1.0f};  // nothing is in front of the eye
   farthest *= 1.01f;
   return {std::max(nearest * 0.99f, farthest / 4096.0f), farthest};
 }
@@ -76,7 +77,7 @@ OrbitCamera framingOrbit(glm::vec3 bounds_min_ws, glm::vec3 bounds_max_ws, glm::
   OrbitCamera orbit{.azimuth_deg = 25.0f, .elevation_deg = 12.0f, .distance_radii = 1.0f, .fov_deg = 35.0f};
   const glm::vec3 open(open_side_ws.x, 0.0f, open_side_ws.z), size = bounds_max_ws - bounds_min_ws;
   if (glm::length(open) > kOpen * size.y * std::max(size.x, size.z)) {
-    constexpr float kAside = 8.0f;  // straight on looks flat
+    constexpr float kAside = 8.0f;  // degrees; a view straight from the front would look flat
     orbit.azimuth_deg = glm::degrees(std::atan2(open.x, open.z)) + kAside;
     orbit.elevation_deg = 4.0f;
   }
@@ -102,7 +103,7 @@ View orbitView(const OrbitCamera& camera, glm::vec3 bounds_min_ws, glm::vec3 bou
   const glm::vec3 centre = 0.5f * (bounds_min_ws + bounds_max_ws);
   const float radius = std::max(0.5f * glm::length(bounds_max_ws - bounds_min_ws), 1e-6f);
   const glm::vec3 to_eye = directionFromAzimuthElevation(camera.azimuth_deg, camera.elevation_deg);
-  // The upward axis of the camera itself, so that straight down (elevation 90) needs no special case.
+  // Using the camera's own up axis avoids a special case for looking straight down (elevation 90).
   const glm::vec3 up = directionFromAzimuthElevation(camera.azimuth_deg, camera.elevation_deg + 90.0f);
   View view;
   view.eye_ws = centre + camera.distance_radii * radius * to_eye;

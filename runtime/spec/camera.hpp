@@ -1,9 +1,9 @@
-// The words for cameras and the matrices that follow from them. Comes in: orbit:AZ,EL,DIST,FOV or the name or
-// index of a camera in the file; the scene's bounds; the picture's aspect (width / height). Goes out: a View
-// for OpenGL clip space (z in -1..1), whose near and far planes are fitted to the bounds, so that nothing in
-// them is cut off and depth is spent on what is there. Angles in degrees, FOV vertical, DIST in
+// Parses cameras and computes their matrices. A camera is written orbit:AZ,EL,DIST,FOV, or as the name or
+// index of a camera in the file. With the scene's bounds and the picture's aspect (width / height) it gives a
+// View for OpenGL clip space (z in -1..1). Near and far planes are fitted to the bounds, so nothing is cut
+// off and depth precision is not wasted. Angles are in degrees, FOV is vertical, and DIST is in
 // bounding-sphere radii (half the box's diagonal). The reference renderer traces primary rays through the
-// same View, so pictures of both can be compared texel by texel.
+// same View, so its pictures can be compared pixel by pixel.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@
 
 namespace lambent::spec {
 
-// Looks at the centre of the bounds; up is +Y.
+// A camera that looks at the centre of the bounds, with +Y up.
 struct OrbitCamera {
   float azimuth_deg = 30.0f;    // 0 stands on +Z, 90 on +X
   float elevation_deg = 15.0f;  // above the horizon, -90..90
@@ -28,13 +28,14 @@ struct OrbitCamera {
   float fov_deg = 40.0f;        // 0 < fov < 180
 };
 
-// A camera of the file.
+// A camera of the glTF file.
 struct NamedCamera {
   std::string name_or_index;
 };
 
 using Camera = std::variant<OrbitCamera, NamedCamera>;
 
+// Fails, quoting the word, if its form or a number is wrong.
 Result<Camera> parseCamera(std::string_view word);
 
 struct View {
@@ -43,22 +44,22 @@ struct View {
   glm::vec3 eye_ws{0.0f};
 };
 
-// Where nothing else is asked for: from the side to which a scene is open, if it is, and so that the corners
-// of its box lie within the picture, with a margin. open_side_ws: the sum of area times normal over its
-// surfaces, which is 0 for closed bodies and looks out of a stage or a room without a front.
+// Returns the default camera. It shows all corners of the scene's box, with a margin, from the open side of
+// the scene if there is one. `open_side_ws` is the sum of area times normal over the surfaces, which is 0 for
+// closed bodies and points out of a stage or a room without a front wall.
 OrbitCamera framingOrbit(glm::vec3 bounds_min_ws, glm::vec3 bounds_max_ws, glm::vec3 open_side_ws,
                          float aspect);
 
 View orbitView(const OrbitCamera& camera, glm::vec3 bounds_min_ws, glm::vec3 bounds_max_ws, float aspect);
 
-// The node that carries the camera: by the camera's name, else the name of its node, else the camera's index.
-// Errors list the cameras that there are.
+// Returns the node that carries the camera. The camera is found by its name, else by the name of its node,
+// else by its index. The error lists the cameras of the file.
 Result<std::uint32_t> findCameraNode(const std::vector<gltf::Node>& nodes,
                                      const std::vector<gltf::Camera>& cameras, const NamedCamera& wanted);
 
-// The vertical field of view (or ymag) is kept and the picture's aspect used; scale in world_from_node is
-// ignored, as glTF asks. Errors: a field of view or magnification outside its range, a matrix that is
-// singular.
+// Returns the view of a camera of the file. It keeps the vertical field of view (or ymag) and uses the
+// picture's aspect. Scale in world_from_node is ignored, as glTF requires. Fails if a field of view or
+// magnification is out of range, or if the matrix is singular.
 Result<View> cameraView(const gltf::Camera& camera, const glm::mat4& world_from_node, glm::vec3 bounds_min_ws,
                         glm::vec3 bounds_max_ws, float aspect);
 

@@ -1,8 +1,6 @@
-// The words for lights made real: what shines from infinity, in the lights' own frame (before
-// --rotate-light). Comes in: the lights as parsed; those that stand in the scene are passed over. Goes out:
-// environment maps loaded, discs, one constant, and the light vector of all of them together. The runtime and
-// the reference renderer both start from here, so that they mean the same light. Errors: those of loading a
-// environment map.
+// Loads the lights at infinity among the parsed lights, and skips local lights. The result has environment
+// maps, discs and one constant, in the lights' own frame (before --rotate-light), and computes the light
+// vector of them all. The runtime and the reference renderer both use it, so they have the same light.
 #pragma once
 
 #include <functional>
@@ -19,33 +17,35 @@
 
 namespace lambent::spec {
 
+// A disc of uniform radiance at infinity.
 struct Disc {
-  glm::vec3 direction{0.0f, 1.0f, 0.0f};  // towards it
+  glm::vec3 direction{0.0f, 1.0f, 0.0f};  // unit, towards the disc
   float radius_rad = 0.0f;
   glm::vec3 radiance{0.0f};
 };
 
-// Bands 0..7 of all of them, in closed form.
+// Returns bands 0..7 of the sum of the discs, in closed form.
 sh::LightVector discVector(std::span<const Disc> discs);
 
 struct DistantLights {
   std::vector<EnvironmentMap> environment_maps;
   std::vector<Disc> discs;
   glm::vec3 constant{0.0f};
-  // What was repaired in the environment maps; a sentence each.
+  // Sentences about repairs to the environment maps.
   std::vector<std::string> notices;
 
-  // As bands 0..7: environment maps projected texel by texel, discs and the constant in closed form.
-  sh::LightVector lightVector() const;  // all of it
-  sh::LightVector skyVector() const;    // environment maps and the constant
+  // Return bands 0..7, with environment maps projected texel by texel and discs and the constant in closed
+  // form.
+  sh::LightVector lightVector() const;  // of all lights
+  sh::LightVector skyVector() const;    // of environment maps and the constant
 };
 
-// load: where environment maps come from.
+// Loads environment maps with `load` and passes its errors on.
 Result<DistantLights> loadDistantLights(
     const std::vector<Light>& lights,
     const std::function<Result<EnvironmentMap>(const EnvironmentMapLight&)>& load = loadEnvironmentMap);
 
-// Light that was turned by `degrees` about +Y, as lightRotation() turns directions.
+// Returns the light rotated by `degrees` about +Y, as lightRotation() rotates directions.
 sh::LightVector turned(const sh::LightVector& light, float degrees);
 
 }  // namespace lambent::spec

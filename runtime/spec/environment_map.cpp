@@ -18,9 +18,11 @@ struct Texel {
   int x, y;
 };
 
-// Sampling next to a seam asks for texels beyond it; each layout says which texel of the picture that is.
+// Filtering next to a seam needs texels beyond it. For each layout a function returns the texel of the
+// picture that lies there.
 
-// Around the horizon pictures wrap; over a pole the next texel is half a turn away in the same row.
+// Lat-long pictures wrap around horizontally. Across a pole the next texel is half a turn away in the same
+// row.
 Texel besideLatLong(Texel texel, int width, int height) {
   if (texel.y < 0 || texel.y >= height) {
     texel.y = texel.y < 0 ? -1 - texel.y : 2 * height - 1 - texel.y;
@@ -35,7 +37,7 @@ bool showsDirection(ImageLayout layout, Texel texel, int width, int height) {
   return sh::texelDirection(layout, width, height, texel.x, texel.y) != glm::dvec3(0.0);
 }
 
-// The whole rim is the one direction +Z, so that the texel pulled inwards along its radius is as near as any.
+// The whole rim is the direction +Z, so the texel is moved inwards along its radius.
 Texel besideAngularMap(Texel texel, int width, int height) {
   const glm::dvec2 centre = 0.5 * glm::dvec2(width, height);
   const glm::dvec2 outward = glm::normalize(glm::dvec2(texel.x, texel.y) + 0.5 - centre);
@@ -48,8 +50,8 @@ Texel besideAngularMap(Texel texel, int width, int height) {
   return texel;
 }
 
-// Column and row of the square. A direction right on an edge may land on the far side of its square's right
-// or lower border, where the picture may be blank.
+// Returns column and row of the square at a position. A direction exactly on an edge may lie beyond the right
+// or lower border of its square, where the picture may be blank.
 Texel faceOfCross(glm::dvec2 at, int width, int height) {
   const int side = width / 3;
   for (const glm::dvec2 nudge :
@@ -63,15 +65,15 @@ Texel faceOfCross(glm::dvec2 at, int width, int height) {
   return {1, 1};
 }
 
-// On the cube itself, not its unit sphere: there texels of a face are equal steps apart, also beyond its
-// edges.
+// Returns the centre of a texel on the cube instead of the unit sphere. There texels of a face are equally
+// spaced, even beyond its edges.
 glm::dvec3 onCube(Texel texel, int width, int height) {
   const glm::dvec3 dir = sh::texelDirection(ImageLayout::VerticalCross, width, height, texel.x, texel.y);
   const glm::dvec3 size = glm::abs(dir);
   return dir / std::max({size.x, size.y, size.z});
 }
 
-// The face is continued as a plane past its edge and projected onto the face next to it.
+// The plane of the face is continued beyond its edge and projected onto the adjacent face.
 Texel besideCross(Texel texel, Texel face, int width, int height) {
   const int side = width / 3;
   const Texel edge{std::clamp(texel.x, face.x * side, face.x * side + side - 1),

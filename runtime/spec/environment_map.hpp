@@ -1,8 +1,7 @@
-// A light environment map in memory: a picture of the whole sphere, its layout, and a look-up by direction.
-// Comes in: a EnvironmentMapLight. Goes out: radiance towards any direction, filtered bilinearly on the
-// sphere: lat-long pictures wrap and go over the poles, crosses go from face to face and never take from
-// their unused squares, angular maps stay in their circle. Texels that are not finite count as black; how
-// many there were is kept.
+// An EnvironmentMap is a picture of light from the whole sphere, with its layout, that is looked up by
+// direction. Look-ups are filtered bilinearly on the sphere: lat-long pictures wrap around and across the
+// poles, crosses filter from face to face and never use their empty squares, and angular maps stay inside
+// their circle. Texels that are not finite count as black.
 #pragma once
 
 #include <cstdint>
@@ -19,14 +18,14 @@ namespace lambent::spec {
 struct EnvironmentMap {
   RgbImage image;  // every value finite
   sh::ImageLayout layout = sh::ImageLayout::LatLong;
-  std::uint64_t texels_not_finite = 0;  // replaced by 0 when loaded
+  std::uint64_t texels_not_finite = 0;  // number of texels that were replaced by 0
 };
 
-// Errors: those of readLightImage; a shape that is no known layout, or that does not fit the layout asked
-// for.
+// Fails as readLightImage does, and if the shape of the picture belongs to no layout or not to the requested
+// one.
 Result<EnvironmentMap> loadEnvironmentMap(const EnvironmentMapLight& light);
 
-// What arrives from the unit direction dir (light frame), bilinear.
+// Returns the radiance that arrives from the unit direction `dir` in the light's frame.
 glm::vec3 radiance(const EnvironmentMap& environment_map, glm::vec3 dir);
 
 }  // namespace lambent::spec

@@ -1,4 +1,4 @@
-// OpenEXR in and out. The library throws; nothing that it throws leaves this file.
+// Reads and writes OpenEXR. The library throws, but this file catches all its exceptions.
 #include <algorithm>
 #include <cassert>
 #include <cstring>
@@ -20,10 +20,10 @@ namespace lambent::spec {
 
 namespace {
 
-// As OpenEXR's standard names have it.
+// Standard name of OpenEXR for depth.
 constexpr char kDepthChannel[] = "Z";
 
-// A file in memory, so that the real one is written whole or not at all.
+// A file in memory, so that the file on disk can be written whole or not at all.
 class MemoryStream : public Imf::OStream {
  public:
   MemoryStream() : Imf::OStream("memory") {}
@@ -58,7 +58,8 @@ bool isWholeChannel(const Imf::ChannelList& channels, const char* name) {
   return channel && channel->xSampling == 1 && channel->ySampling == 1;
 }
 
-// The display window is the picture; the data window, where values are stored, may be smaller or larger.
+// Copies values from the data window to the display window, which is the picture. The data window may be
+// smaller or larger.
 template <typename Value>
 std::vector<Value> toDisplayWindow(std::vector<Value> data, const Imath::Box2i& from, const Imath::Box2i& to,
                                    const Value& outside) {
@@ -76,7 +77,7 @@ std::vector<Value> toDisplayWindow(std::vector<Value> data, const Imath::Box2i& 
 Result<RgbaImage> readOpened(Imf::InputFile& file, const std::filesystem::path& path,
                              std::uint64_t file_bytes) {
   const Imath::Box2i data = file.header().dataWindow(), display = file.header().displayWindow();
-  constexpr std::uint64_t kTexelsPerByte = 4096;  // far above what any of its compressions reaches
+  constexpr std::uint64_t kTexelsPerByte = 4096;  // far more than any compression of OpenEXR reaches
   for (const Imath::Box2i& window : {data, display})
     if (const auto checked = checkImageSize(path, extent(window.min.x, window.max.x),
                                             extent(window.min.y, window.max.y), file_bytes, kTexelsPerByte);

@@ -1,4 +1,4 @@
-// Whole files in and out, for the picture formats of this room.
+// Helpers that the picture formats of this room share.
 #pragma once
 
 #include <filesystem>
@@ -11,7 +11,7 @@
 namespace lambent::spec {
 
 // Fails if width x height is 0, more than kMaxImageTexels, or more than `file_bytes` could hold at
-// `texels_per_byte`: a header must not make us reserve gigabytes for a file of a few bytes.
+// `texels_per_byte`. So a small file with a false header cannot make us reserve gigabytes.
 Result<void> checkImageSize(const std::filesystem::path& path, std::uint64_t width, std::uint64_t height,
                             std::uint64_t file_bytes, std::uint64_t texels_per_byte);
 

@@ -16,7 +16,7 @@ namespace lambent::spec {
 
 namespace {
 
-// By set.
+// Prefixes for each set of lights.
 constexpr std::array<std::string_view, 2> kPrefixes = {"key:", "fade-key:"};
 
 tl::unexpected<Error> wrong(std::string_view word, std::string problem) {
@@ -25,7 +25,7 @@ tl::unexpected<Error> wrong(std::string_view word, std::string problem) {
               "million; or fade-key:... for the lights that are faded to");
 }
 
-// As few digits as read back to the same float.
+// Appends the shortest decimal number that reads back as the same float.
 void append(std::string& text, float value) {
   std::array<char, 32> digits{};
   const auto [end, code] = std::to_chars(digits.data(), digits.data() + digits.size(), value);

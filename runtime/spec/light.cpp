@@ -16,7 +16,7 @@ namespace lambent::spec {
 namespace {
 
 constexpr std::string_view kForms =
-    "give a environment map file (.hdr or .exr), constant:R,G,B, sun:AZ,EL,ANGLE,R[,G,B], "
+    "give an environment map file (.hdr or .exr), constant:R,G,B, sun:AZ,EL,ANGLE,R[,G,B], "
     "sphere:X,Y,Z,RADIUS,R[,G,B] "
     "or disc:X,Y,Z,NX,NY,NZ,RADIUS,R[,G,B]";
 constexpr std::string_view kConstantForm = "write constant:R,G,B with radiances of 0 or more";
@@ -41,7 +41,7 @@ std::string lowerExtension(const std::filesystem::path& path) {
   return text;
 }
 
-// One number stands for all three channels.
+// Parses one number for all channels, or three.
 std::optional<glm::vec3> parseRadiance(std::span<const float> values) {
   if (values.size() != 1 && values.size() != 3) return std::nullopt;
   if (std::ranges::any_of(values, [](float value) { return value < 0.0f; })) return std::nullopt;
@@ -87,7 +87,7 @@ Result<Light> parseDisc(std::string_view word, std::string_view text) {
   if (values->size() != 8 && values->size() != 10)
     return wrong(word, "needs eight or ten numbers", kDiscForm);
   const std::vector<float>& v = *values;
-  // In double: squares of floats neither overflow nor vanish there.
+  // In double precision squares of floats neither overflow nor underflow.
   const glm::dvec3 normal(v[3], v[4], v[5]);
   if (!(glm::length(normal) > 0.0)) return wrong(word, "has a normal of length 0", kDiscForm);
   if (v[6] < 0.0f) return wrong(word, "has a negative radius", kDiscForm);
@@ -130,7 +130,7 @@ Result<sh::ImageLayout> parseLightLayout(std::string_view word) {
 }
 
 glm::vec3 directionFromAzimuthElevation(float azimuth_deg, float elevation_deg) {
-  // In double: a sun at azimuth 180 must not stand 1e-7 beside the axis.
+  // Double precision keeps a sun at azimuth 180 from standing 1e-7 beside the axis.
   const double azimuth = glm::radians(static_cast<double>(azimuth_deg));
   const double elevation = glm::radians(static_cast<double>(elevation_deg));
   return {static_cast<float>(std::cos(elevation) * std::sin(azimuth)),

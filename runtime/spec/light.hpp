@@ -1,10 +1,14 @@
-// The words for lights, the same in every program (docs/conventions.md): from infinity a environment map file
-// (.hdr, .exr), constant:R,G,B and sun:AZ,EL,ANGLE,R[,G,B]; in the scene sphere:X,Y,Z,RADIUS,R[,G,B] and
-// disc:X,Y,Z,NX,NY,NZ,RADIUS,R[,G,B]. Comes in: the text of one --light option. Goes out: a Light, every
-// number finite and in its range. Radiance is linear Rec.709 in W/(m² sr) up to one global scale; angles are
-// degrees, azimuth and elevation say where the light stands (azimuth 0 on +Z, 90 on +X); places are metres of
-// the world. Errors quote the word and show the form that was expected. No file is opened here: environment
-// map.hpp does that.
+// The room spec owns how all programs describe lights, cameras and picture sizes, and it reads and writes
+// pictures. It has no GPU code and keeps no state; functions may be called from any thread and return an
+// Error for bad input.
+//
+// This header parses lights, as docs/conventions.md describes them. Lights at infinity are environment map
+// files (.hdr, .exr), constant:R,G,B and sun:AZ,EL,ANGLE,R[,G,B]. Local lights in the scene are
+// sphere:X,Y,Z,RADIUS,R[,G,B] and disc:X,Y,Z,NX,NY,NZ,RADIUS,R[,G,B]. Input is the text of one --light
+// option; all numbers of the resulting Light are finite and in range. Radiance is linear Rec.709 in W/(m² sr)
+// up to one global scale. Angles are in degrees; azimuth and elevation tell where the light stands (azimuth 0
+// is +Z, 90 is +X). Positions are in world space, in metres. Errors quote the word and show the expected
+// form. environment_map.hpp opens the files.
 #pragma once
 
 #include <array>
@@ -25,7 +29,7 @@ namespace lambent::spec {
 // Light from all directions at infinity, as a picture of the sphere.
 struct EnvironmentMapLight {
   std::filesystem::path file;
-  std::optional<sh::ImageLayout> layout;  // --light-layout; otherwise recognised by the picture's shape
+  std::optional<sh::ImageLayout> layout;  // --light-layout; by default the picture's shape decides
 };
 
 // The same radiance from every direction.
@@ -37,45 +41,45 @@ struct ConstantLight {
 struct SunLight {
   float azimuth_deg = 0.0f;
   float elevation_deg = 0.0f;  // -90..90
-  float angle_deg = 0.0f;      // angular radius, 0 < angle <= 180 (half the sky at 90)
+  float angle_deg = 0.0f;      // angular radius, 0 < angle <= 180; 90 is half the sphere of directions
   glm::vec3 radiance{1.0f};
 };
 
-// A sphere of uniform radiance that stands in the scene. It is seen by surfaces only: a camera looks through
-// it, and it casts no shadow. Radius 0 gives no light.
+// A sphere of uniform radiance in the scene. It lights surfaces, but is invisible to the camera and casts no
+// shadow. Radius 0 gives no light.
 struct SphereLight {
   glm::vec3 position_ws{0.0f};
   float radius_m = 0.0f;  // >= 0
   glm::vec3 radiance{1.0f};
 };
 
-// A flat disc of uniform radiance that shines to one side, as SphereLight otherwise.
+// A flat disc of uniform radiance that shines to one side, and otherwise behaves like SphereLight.
 struct DiscLight {
   glm::vec3 position_ws{0.0f};
-  glm::vec3 normal_ws{0.0f, -1.0f, 0.0f};  // unit, the way that it shines
+  glm::vec3 normal_ws{0.0f, -1.0f, 0.0f};  // unit, towards the side that shines
   float radius_m = 0.0f;                   // >= 0
   glm::vec3 radiance{1.0f};
 };
 
 using Light = std::variant<EnvironmentMapLight, ConstantLight, SunLight, SphereLight, DiscLight>;
 
-// Those that stand in the scene.
+// A light that stands in the scene.
 using LocalLight = std::variant<SphereLight, DiscLight>;
 
-// Where no light is asked for: a blue sky's worth of constant light and a soft sun, about radiance 1 on a
-// white surface that faces it.
+// Default lights: constant light like a blue sky, and a soft sun that gives radiance of about 1 on a white
+// surface that faces it.
 inline constexpr std::array<const char*, 2> kDefaultLights = {"constant:0.35,0.42,0.55",
                                                               "sun:35,45,6,100,92,80"};
 
 Result<Light> parseLight(std::string_view word);
 
-// The lights that stand in the scene, in their order; the others are loadDistantLights'.
+// Returns the local lights in their order. loadDistantLights() handles the others.
 std::vector<LocalLight> localLights(std::span<const Light> lights);
 
-// --light-layout: lat-long, angular-map or vertical-cross.
+// Parses --light-layout: lat-long, angular-map or vertical-cross.
 Result<sh::ImageLayout> parseLightLayout(std::string_view word);
 
-// Unit direction towards (azimuth, elevation): (0, 0) is +Z, (90, 0) is +X, (any, 90) is +Y.
+// Returns the unit direction towards (azimuth, elevation): (0, 0) is +Z, (90, 0) is +X, (any, 90) is +Y.
 glm::vec3 directionFromAzimuthElevation(float azimuth_deg, float elevation_deg);
 
 }  // namespace lambent::spec

@@ -8,7 +8,7 @@ namespace lambent::spec {
 std::optional<float> parseNumber(std::string_view text) {
   float value = 0.0f;
   const char* const end = text.data() + text.size();
-  const auto [stop, code] = std::from_chars(text.data(), end, value);  // unlike strtof: no spaces, no locale
+  const auto [stop, code] = std::from_chars(text.data(), end, value);  // takes no spaces and ignores locales
   if (code != std::errc{} || stop != end || !std::isfinite(value)) return std::nullopt;
   return value;
 }

@@ -1,5 +1,5 @@
-// Strict number parsing for the words of the command line: comma-separated decimal numbers, finite, nothing
-// before, between or after them.
+// Parses numbers of the command line strictly: they are finite, decimal and separated by commas, without any
+// other characters.
 #pragma once
 
 #include <optional>
@@ -8,10 +8,10 @@
 
 namespace lambent::spec {
 
-// One number; nothing if there is any other character, or if the value is not finite.
+// Parses one number. Returns nothing if there is any other character or the value is not finite.
 std::optional<float> parseNumber(std::string_view text);
 
-// "A,B,C"; nothing if any part is not a number.
+// Parses "A,B,C". Returns nothing if any part is not a number.
 std::optional<std::vector<float>> parseNumbers(std::string_view text);
 
 }  // namespace lambent::spec

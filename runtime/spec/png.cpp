@@ -1,4 +1,4 @@
-// PNG by stb, whose code is compiled here and nowhere else.
+// Reads and writes PNG with stb, whose code is compiled only here.
 #include <algorithm>
 #include <cstddef>
 #include <memory>
@@ -28,7 +28,7 @@ Result<Rgba8Image> readPng(const std::filesystem::path& path) {
   int width = 0, height = 0, channels = 0;
   if (!stbi_info_from_memory(data, length, &width, &height, &channels))
     return fail(path.string(), "is not a PNG picture", "name a .png file");
-  // Deflate reaches about 1000 to 1.
+  // Deflate compresses at most about 1000 to 1.
   if (const auto checked =
           checkImageSize(path, static_cast<std::uint64_t>(width), static_cast<std::uint64_t>(height),
                          bytes->size(), /*texels_per_byte=*/8200);

@@ -1,10 +1,10 @@
-// Radiance RGBE pictures: encoder and decoder side by side. Layout: text lines up to an empty one, the line
-// "-Y height +X width", then scanlines, each flat (4 bytes a texel), old run-length (1 1 1 n repeats) or new
-// run-length coded (2 2 width, then the four components apart). G. Ward, "Real Pixels", Graphics Gems II,
-// 1991.
+// Reads and writes Radiance RGBE pictures. A file has text lines up to an empty one, the line "-Y height +X
+// width", and then scanlines. A scanline is flat (4 bytes per texel), old run-length coded (1 1 1 n repeats)
+// or new run-length coded (2 2 width, then the four components one after the other). G. Ward, "Real Pixels",
+// Graphics Gems II, 1991.
 //
-// A component is m * 2^(e - 136). Ward's own reader adds half a step (m + 0.5); every reader that environment
-// maps are commonly looked at with does not, and the encoder below rounds to nearest to suit.
+// A component is m * 2^(e - 136). Ward's own reader adds half a step (m + 0.5), but common viewers of
+// environment maps do not, so the encoder below rounds to nearest.
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -19,7 +19,7 @@ namespace {
 
 using Rgbe = std::array<std::uint8_t, 4>;
 
-constexpr std::size_t kMinRunWidth = 8, kMaxRunWidth = 0x7fff;  // widths that new run-length coding can have
+constexpr std::size_t kMinRunWidth = 8, kMaxRunWidth = 0x7fff;  // widths of new run-length coding
 
 glm::vec3 decode(Rgbe rgbe) {
   if (rgbe[3] == 0) return glm::vec3(0.0f);
@@ -38,7 +38,7 @@ Rgbe encode(glm::vec3 colour) {
           static_cast<std::uint8_t>(exponent + 128)};
 }
 
-// The bytes of the file in order; `short_` tells whether more were asked for than there are.
+// Reads the bytes of the file in order. `short_` is set if more are requested than there are.
 class Bytes {
  public:
   explicit Bytes(std::string_view text) : text_(text) {}
@@ -53,7 +53,7 @@ class Bytes {
     for (std::uint8_t& component : texel) component = next();
     return texel;
   }
-  // Up to the newline, without it.
+  // Returns the text up to the next newline, without it.
   std::string_view line() {
     const std::size_t end = text_.find('\n', at_);
     if (end == std::string_view::npos) {
@@ -73,7 +73,8 @@ class Bytes {
   bool short_ = false;
 };
 
-// The four components apart: a count over 128 repeats one byte count - 128 times, others copy that many.
+// Reads the four components one after the other. A count over 128 repeats one byte count - 128 times; any
+// other count copies that many bytes.
 bool readRuns(Bytes& in, std::vector<Rgbe>& scanline) {
   for (std::size_t component = 0; component < 4; ++component) {
     for (std::size_t x = 0; x < scanline.size();) {
@@ -101,7 +102,7 @@ bool readScanline(Bytes& in, std::vector<Rgbe>& scanline) {
     const bool new_runs = texel[0] == 2 && texel[1] == 2 && texel[2] < 128;
     if (x == 0 && new_runs && width >= kMinRunWidth && width <= kMaxRunWidth)
       return texel[2] * std::size_t{256} + texel[3] == width && readRuns(in, scanline);
-    if (texel[0] == 1 && texel[1] == 1 && texel[2] == 1) {  // old runs; several in a row make larger counts
+    if (texel[0] == 1 && texel[1] == 1 && texel[2] == 1) {  // old run; successive runs form a larger count
       const std::size_t count = std::size_t{texel[3]} << repeat_shift;
       if (x == 0 || repeat_shift > 16 || count > width - x) return false;
       std::fill_n(scanline.begin() + static_cast<std::ptrdiff_t>(x), count, scanline[x - 1]);
@@ -165,8 +166,8 @@ Result<RgbImage> readHdr(const std::filesystem::path& path) {
   if (!(skip("-Y ") && parseCount(size, height) && skip(" +X ") && parseCount(size, width)) || in.ranOut())
     return fail(path.string(), "its size line is not \"-Y height +X width\"",
                 "save it upright, from top to bottom, left to right");
-  // New runs need at least 2 bytes for 127 values of each of 4 components, old ones 4 bytes for 255 << 16
-  // texels; those nobody writes any more, so that 4096 texels a byte is generous.
+  // New runs need at least 2 bytes for 127 values of each of 4 components. Old runs need 4 bytes for 255 <<
+  // 16 texels, but nobody writes them any more, so 4096 texels per byte are generous.
   if (const auto checked = checkImageSize(path, width, height, in.rest().size(), /*texels_per_byte=*/4096);
       !checked)
     return failAgain(checked.error());

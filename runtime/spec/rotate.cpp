@@ -17,7 +17,7 @@ Result<float> parseDegrees(std::string_view word) {
 glm::mat3 lightRotation(float degrees) {
   const double angle = std::fmod(static_cast<double>(degrees), 360.0) * std::numbers::pi / 180.0;
   const float c = static_cast<float>(std::cos(angle)), s = static_cast<float>(std::sin(angle));
-  return {{c, 0.0f, -s}, {0.0f, 1.0f, 0.0f}, {s, 0.0f, c}};  // columns: where +X, +Y and +Z go
+  return {{c, 0.0f, -s}, {0.0f, 1.0f, 0.0f}, {s, 0.0f, c}};  // the columns are the images of +X, +Y and +Z
 }
 
 }  // namespace lambent::spec

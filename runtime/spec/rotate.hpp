@@ -1,5 +1,5 @@
-// Turning all lights about the vertical, as --rotate-light takes it: degrees, positive takes +Z to +X about
-// +Y. A turn by D degrees moves a sun at azimuth A to azimuth A + D.
+// Rotates all lights about the vertical axis, as --rotate-light does. Positive degrees take +Z to +X about
+// +Y, so D degrees move a sun at azimuth A to azimuth A + D.
 #pragma once
 
 #include <string_view>
@@ -12,7 +12,7 @@ namespace lambent::spec {
 
 Result<float> parseDegrees(std::string_view word);
 
-// Takes a direction of the unturned light to where it stands after the turn.
+// Returns the matrix that rotates directions of the light.
 glm::mat3 lightRotation(float degrees);
 
 }  // namespace lambent::spec

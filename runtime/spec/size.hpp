@@ -1,5 +1,5 @@
-// The word for a picture's size, WIDTHxHEIGHT in pixels, as --size takes it. Both 1..kMaxPictureSide; errors
-// show the form that was expected.
+// Parses the size of a picture, WIDTHxHEIGHT in pixels, as in --size. Both are in 1..kMaxPictureSide. Errors
+// show the expected form.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace lambent::spec {
 
-inline constexpr std::uint32_t kMaxPictureSide = 16384;  // what OpenGL 4.5 guarantees for textures
+inline constexpr std::uint32_t kMaxPictureSide = 16384;  // size of textures that OpenGL 4.5 guarantees
 
 struct Size {
   std::uint32_t width = 1280, height = 720;

@@ -5,8 +5,8 @@
 
 #include <fmt/format.h>
 
-// The one place of this room where stb_image is compiled; static, so that other copies in a program do not
-// meet it. As a system header it is spared our warnings.
+// This room compiles stb_image here only, as static functions, so that it does not collide with other copies
+// in a program. It is included as a system header to suppress warnings.
 #define STB_IMAGE_STATIC
 #define STB_IMAGE_IMPLEMENTATION
 #define STBI_ONLY_PNG

@@ -1,5 +1,6 @@
-// Texture images, PNG or JPEG as they lie in a bundle, to texels: four channels of 8 bits, row 0 at the top,
-// colour still sRGB-coded, alpha 1 where the file has none. Errors name `subject`. Safe from any thread.
+// Decodes texture images (PNG or JPEG) of a bundle. Texels have four channels of 8 bits, with row 0 at the
+// top, and colours stay sRGB-coded. Alpha is 1 if the file has none. Errors name `subject`. The functions may
+// be called from any thread.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +13,8 @@
 
 namespace lambent::streaming {
 
-// Per side, texels: what OpenGL 4.5 drivers take. Larger images are refused before any memory is asked for.
+// Largest width and height in texels, which OpenGL 4.5 drivers support. Larger images are rejected before any
+// memory is allocated.
 inline constexpr std::uint32_t kMaxImageSide = 16384;
 
 struct ImageSize {
@@ -20,10 +22,11 @@ struct ImageSize {
   std::size_t rgbaBytes() const { return std::size_t{4} * width * height; }
 };
 
-// From the header alone. Errors: not a PNG or JPEG, empty, a side over kMaxImageSide.
+// Reads the size from the header alone. Fails if the file is no PNG or JPEG, is empty, or has a side over
+// kMaxImageSide.
 Result<ImageSize> imageSize(std::span<const std::byte> file, const std::string& subject);
 
-// Errors: those of imageSize, damaged data.
+// Fails as imageSize does, and if the data are damaged.
 Result<std::vector<std::uint8_t>> decodeRgba(std::span<const std::byte> file, const std::string& subject);
 
 }  // namespace lambent::streaming

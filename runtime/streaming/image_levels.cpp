@@ -10,7 +10,7 @@ namespace lambent::streaming {
 
 namespace {
 
-// IEC 61966-2-1.
+// The transfer functions of sRGB are those of IEC 61966-2-1.
 float fromSrgb(float code) {
   return code <= 0.04045f ? code / 12.92f : std::pow((code + 0.055f) / 1.055f, 2.4f);
 }
@@ -22,7 +22,8 @@ std::uint8_t byteOf(float value) {
   return static_cast<std::uint8_t>(std::lround(255.0f * std::clamp(value, 0.0f, 1.0f)));
 }
 
-// What of `count` texels side by side lies in texel `at` of `fewer`: the first, and weights that sum to 1.
+// The part of a row of `count` texels that lies in texel `at` of a row of `fewer` texels: the index of the
+// first one, and weights that sum to 1.
 struct Span {
   std::uint32_t first = 0;
   std::vector<float> weights;
@@ -60,7 +61,7 @@ std::vector<std::uint8_t> shrink(std::span<const std::uint8_t> rgba, const Image
                                  std::uint32_t level, bool color) {
   assert(rgba.size() == size.rgbaBytes());
   const ImageSize small = sizeAt(size, level);
-  std::array<float, 256> codes{}, light{};  // of numbers, and of colours
+  std::array<float, 256> codes{}, light{};  // values of codes as numbers and as colours
   for (std::size_t code = 0; code < 256; ++code) {
     codes[code] = static_cast<float>(code) / 255.0f;
     light[code] = color ? fromSrgb(codes[code]) : codes[code];

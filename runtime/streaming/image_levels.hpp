@@ -1,7 +1,6 @@
-// Images as their mip levels: which of them lie on the GPU, what they take there, and how a coarser one is
-// made of the texels of the file. An image that is wanted from level l on is decoded whole, brought down to
-// that level here and given to the GPU as if it were all there is; the GPU makes the coarser levels, as it
-// does of whole images. No GL; safe from any thread.
+// Computes sizes and texels of mip levels. An image that is needed from level l on is decoded whole, reduced
+// to that level here and uploaded as a texture of its own. The GPU makes the coarser levels. Nothing here
+// uses GL, and the functions may be called from any thread.
 #pragma once
 
 #include <cstdint>
@@ -12,19 +11,20 @@
 
 namespace lambent::streaming {
 
-// As OpenGL rounds.
+// Returns the size of a mip level, rounded as in OpenGL.
 ImageSize sizeAt(const ImageSize& size, std::uint32_t level);
-// Down to a single texel.
+// Returns the number of mip levels down to a single texel.
 std::uint32_t levelCount(const ImageSize& size);
-// A texture of this size with all its mip levels.
+// Returns the size in bytes of a texture with all its mip levels.
 std::uint64_t textureBytes(const ImageSize& size);
 
-// The finest level that comes with the surfaces, however little room there is: at most so many texels a side.
+// The finest level that is loaded with the surfaces, however little memory there is, has at most kCoarseSide
+// texels per side.
 inline constexpr std::uint32_t kCoarseSide = 64;
 std::uint32_t coarseLevel(const ImageSize& size);
 
-// Means over the area of each texel, of four channels; `color`: of the light that sRGB codes of the first
-// three stand for.
+// Reduces an image to a mip level by averaging over the area of each texel. If `color` is true, the first
+// three channels are sRGB codes and their linear values are averaged.
 std::vector<std::uint8_t> shrink(std::span<const std::uint8_t> rgba, const ImageSize& size,
                                  std::uint32_t level, bool color);
 

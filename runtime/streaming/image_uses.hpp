@@ -1,5 +1,4 @@
-// How the materials of a bundle read its images: which of them lie on the GPU as colour, which as plain
-// numbers.
+// Tells how the materials of a bundle read its images, as colour or as linear numbers.
 #pragma once
 
 #include <cstdint>
@@ -10,17 +9,17 @@
 namespace lambent::streaming {
 
 struct ImageUse {
-  bool color = false;   // decoded from sRGB where it is looked up
-  bool linear = false;  // normals, roughness and the like
+  bool color = false;   // true if some texture decodes it from sRGB
+  bool linear = false;  // true if some texture reads it as numbers, such as normals or roughness
 
   unsigned copies() const { return (color ? 1u : 0u) + (linear ? 1u : 0u); }
 };
 
-// By image. Textures that only glossy surfaces read count where a glossy draw has the material. What no
-// material names may yet be asked for: as colour, the usual.
+// Returns the use of each image. Textures that only glossy surfaces read count if a glossy draw has the
+// material. An image that no material reads counts as colour.
 std::vector<ImageUse> imageUses(const bundle::Description& description);
 
-// That the material names, none twice; -1: none.
+// Returns the images that a material reads, each once. Material -1 has none.
 std::vector<std::uint32_t> imagesOf(const bundle::Description& description, std::int32_t material);
 
 }  // namespace lambent::streaming

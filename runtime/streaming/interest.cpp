@@ -13,22 +13,22 @@ namespace lambent::streaming {
 
 namespace {
 
-// What a step is worth, against the last share of planes of what is seen as large: surfaces are kept until
-// something is sqrt(64) times larger in sight.
+// Values of steps, relative to the last share of planes of something seen with the same size. So surfaces are
+// kept until something else appears sqrt(64) times larger.
 constexpr float kSurfaces = 64.0f, kCodebooks = 16.0f, kFirstPlanes = 8.0f, kLastPlanes = 1.0f;
-// A level of a texture, whose texels are no smaller than pixels; of smaller ones as much less as they are
-// smaller.
+// Value of a texture level whose texels are at least as large as pixels. The value falls with the area of
+// smaller texels.
 constexpr float kTexels = 8.0f;
-// What a sphere of size 1 measures across in a picture of 1080 rows and 50 degrees.
+// Diameter, in pixels, of a sphere of size 1 in a picture with 1080 rows and a field of view of 50 degrees.
 constexpr float kPixels = 2300.0f;
-// What was chosen before is worth more.
+// Factor on the value of steps that were chosen before.
 constexpr float kStays = 1.5f;
 static_assert(kSurfaces > kStays * kCodebooks && kCodebooks > kStays * kFirstPlanes);
 
-constexpr std::uint64_t kProxyLodShare = 4;  // of the memory, one part of so many comes first
+constexpr std::uint64_t kProxyLodShare = 4;  // proxy levels of detail may take 1/4 of the memory first
 
-constexpr float kOutOfSight = 0.1f;  // the camera may turn at any moment
-constexpr float kLargest = 100.0f;   // standing in it, or near enough
+constexpr float kOutOfSight = 0.1f;  // factor for spheres out of sight, as the camera may turn at any moment
+constexpr float kLargest = 100.0f;   // limit of the size, for a camera inside or almost inside the sphere
 
 struct Candidate {
   float worth = 0.0f;
@@ -87,7 +87,7 @@ void choose(std::span<Interest> bundles, std::uint64_t max_bytes) {
   std::uint64_t taken = 0;
   const auto take = [&](const Candidate& candidate, std::uint64_t most) {
     Interest& bundle = bundles[candidate.bundle];
-    // Where a step had no room, those that come after it have nothing to stand on.
+    // If a step did not fit, later steps of the unit cannot be taken.
     if (bundle.target[candidate.unit] != candidate.step) return;
     if (candidate.unit != 0 && bundle.target[0] != bundle.parts->surfaceSteps()) return;
     if (taken + candidate.bytes > most) return;

@@ -1,7 +1,8 @@
-// What should be on the GPU, of bundles that take more than there is room for. Comes in: each bundle's parts,
-// how large the camera sees it and its groups, what was chosen before. Goes out: how many steps of each unit.
-// The same camera path gives the same choices, however fast things load. What was chosen stays until
-// something else is clearly worth more, so that nothing goes to and fro. No GL, no threads.
+// Chooses what to keep on the GPU if the bundles need more memory than there is. The choice depends on each
+// bundle's parts, on how large the camera sees it and its groups, and on the previous choice. The result is a
+// number of steps per unit. The same camera path gives the same choices, however fast loading is. A choice
+// stays until something else is clearly worth more, so that nothing is loaded and dropped again and again.
+// Nothing here uses GL or threads.
 #pragma once
 
 #include <cstdint>
@@ -17,20 +18,22 @@ namespace lambent::streaming {
 
 struct Interest {
   const Parts* parts = nullptr;
-  std::vector<float> size;            // by unit, sizeSeen(); of the first the largest of all
-  std::vector<std::uint32_t> target;  // by unit: steps chosen before; then, steps chosen now
+  std::vector<float> size;  // sizeSeen() of each unit; the first unit has the largest of all
+  // Steps of each unit: the previous choice on input, the new one on output.
+  std::vector<std::uint32_t> target;
 };
 
-// A sphere's share of the view, about: radius over distance, squared; less where it is out of sight.
+// Returns about the share of the view that a sphere covers: the square of radius over distance. It is reduced
+// if the sphere is out of sight.
 float sizeSeen(const spec::View& view, const glm::vec3& center_ws, float radius_m);
 
-// What a step of a unit is worth that is seen as large as `size`; falls from step to step.
+// Returns the value of a step of a unit that is seen with this size. It falls from step to step.
 float worthOf(const Parts& parts, std::uint32_t unit, std::uint32_t step, float size);
 
-// Steps that together take at most `max_bytes`. The surfaces of what is largest are chosen in any case. Then
-// proxy levels of detail come, the largest in sight first, before anything else up to a quarter of the
-// memory, so that no place in the world is empty. Then the most worth first, where surfaces come before
-// shadows and these before their finer detail, as far as other bundles are not much larger in sight.
+// Chooses steps that need at most `max_bytes` together. The surfaces of the largest bundle in view are chosen
+// in any case. Proxy levels of detail come next, largest first, for up to a quarter of the memory, so that no
+// part of the world is empty. The remaining steps follow by value. Surfaces have more value than shadows, and
+// these more than their finer detail, unless another bundle is much larger in view.
 void choose(std::span<Interest> bundles, std::uint64_t max_bytes);
 
 }  // namespace lambent::streaming

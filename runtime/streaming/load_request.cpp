@@ -43,7 +43,7 @@ void appendByPriority(std::vector<Work>& list, std::vector<Ranked> ranked) {
   for (const Ranked& item : ranked) list.push_back(item.work);
 }
 
-template <class Place>  // what names a group and a cell
+template <class Place>  // a request with a group and a cell
 const bundle::Cell& cellOf(const bundle::Description& description, const Place& at) {
   return description.groups[at.group].cells[at.cell];
 }
@@ -66,7 +66,7 @@ class Load {
 
   Loaded operator()(const MeshRequest& work) const {
     const bundle::Primitive& primitive = description_.meshes[work.mesh].primitives[work.primitive];
-    // As if every attribute were there: it costs nothing to leave some room.
+    // This assumes that every attribute is present; reserving too much does no harm.
     constexpr std::size_t kVertexBytes = sizeof(float) * (3 + 3 + 2 + 2 + 4 + 4);
     if (!reserve_(primitive.vertex_count * kVertexBytes + primitive.index_count * sizeof(std::uint32_t)))
       return {};
@@ -78,7 +78,7 @@ class Load {
   }
 
   Loaded operator()(const WeightsRequest& work) const {
-    // Six bytes of an entry in the file become eight.
+    // An entry has six bytes in the file and eight in memory.
     if (!reserve_(description_.payloads[description_.draws[work.draw].rows].raw_length * 2)) return {};
     auto rows = reader_.readRows(work.draw);
     if (!rows) return failAgain(rows.error());
@@ -106,11 +106,11 @@ class Load {
   Loaded operator()(const CodebookRequest& work) const {
     const bundle::CellTransfer& transfer = transferOf(description_, work);
     const std::uint32_t samples = cellOf(description_, work).sample_count;
-    // What it becomes, and the cluster of each sample.
+    // The codebook as on the GPU and the cluster of each sample are needed.
     if (!reserve_(codebookBytesOnGpu(transfer, samples) + 4 * std::size_t{samples})) return {};
     auto found = reader_.readCodebook(work.group, work.cell, work.transfer);
     if (!found) return failAgain(found.error());
-    std::vector<std::uint32_t> positions = bundle::positionsOf(found->cluster_of, transfer.clusters);
+    std::vector<std::uint32_t> positions = transfer::positionsOf(found->cluster_of, transfer.clusters);
     for (std::uint32_t& position : positions) position |= found->cluster_of[position] << 16;
     return CodebookChunk{work.group, work.cell, work.transfer, std::move(found->codebook),
                          std::move(positions)};
@@ -131,7 +131,7 @@ class Load {
   }
 
   Loaded operator()(const LightWeightsRequest& work) const {
-    const std::size_t bytes = sizeof(bundle::LightWeights) * cellOf(description_, work).sample_count;
+    const std::size_t bytes = sizeof(transfer::LightWeights) * cellOf(description_, work).sample_count;
     if (!reserve_(2 * bytes)) return {};
     auto weights = reader_.readLightWeights(work.group, work.cell);
     if (!weights) return failAgain(weights.error());
@@ -168,7 +168,7 @@ class Load {
 
   Loaded operator()(const BrdfRequest& work) const {
     const bundle::BrdfTableEntry& entry = description_.brdf_tables[work.table];
-    // Its bytes, the table and the texels: all of a size.
+    // The payload, the table and the texels have similar sizes.
     if (!reserve_(8 * description_.payloads[entry.payload].raw_length)) return {};
     auto table = reader_.readBrdfTable(work.table);
     if (!table) return failAgain(table.error());
@@ -177,7 +177,7 @@ class Load {
   }
 
  private:
-  // "PATH: WHAT", the subject of an error.
+  // Returns "PATH: WHAT", the subject of an error.
   std::string named(const std::string& what) const { return reader_.path().string() + ": " + what; }
   static Result<Ready> failAgain(Error error) { return lambent::failAgain(std::move(error)); }
 

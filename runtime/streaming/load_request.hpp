@@ -1,5 +1,5 @@
-// The loader's work, item by item: what a bundle's description asks to be brought, in what order, and how one
-// item is read, checked and decoded. Nothing here knows of threads. Errors name the bundle file and the item.
+// Defines the items that the loader loads and their order, and reads, checks and decodes one item. It uses no
+// threads. Errors name the bundle file and the item.
 #pragma once
 
 #include <cstddef>
@@ -23,7 +23,7 @@ struct WeightsRequest {
 };
 struct ImageRequest {
   std::uint32_t image = 0;
-  std::uint32_t level = 0;  // the finest that is wanted
+  std::uint32_t level = 0;  // finest mip level that is needed
 };
 struct CodebookRequest {
   std::uint32_t group = 0, cell = 0, transfer = 0;
@@ -49,22 +49,22 @@ struct VoxelsRequest {
 using Work = std::variant<MeshRequest, WeightsRequest, ImageRequest, CodebookRequest, PlaneRequest,
                           LightWeightsRequest, ProxyRequest, BrdfRequest, DensityRequest, VoxelsRequest>;
 
-// Meshes, then rows, then tables of BRDFs (without these three glossy surfaces do not show), then what
-// volumes show by, then images, then light weights, proxies, codebooks and planes: each by the priority of
-// its payload and, where that is equal, by place in the description. A codebook comes before its planes and
-// those in their order, whatever priorities say.
+// Returns all items of a bundle in the order of loading: meshes, rows, BRDF tables (glossy surfaces need
+// these three), grids of volumes, images, and then light weights, proxies, codebooks and planes. Items of a
+// kind are sorted by the priority of their payload and then by their order in the description. A codebook
+// always comes before its planes, which keep their order.
 std::vector<Work> requestsOf(const bundle::Description& description);
 
-// What an item takes in the file.
+// Returns the size of an item in the file.
 std::uint64_t bytesInFile(const bundle::Description& description, const Work& work);
 
-// Asked for the bytes that an item will hold, before they are held; false: give up.
+// Reserves the bytes that an item will need in memory. Returns false if the item is not wanted any more.
 using Reserve = std::function<bool(std::size_t)>;
 
-// Empty if `reserve` said so.
+// Loads an item. Returns nothing if `reserve` returned false.
 std::optional<Result<Ready>> load(const bundle::Reader& reader, const Work& work, const Reserve& reserve);
 
-// Memory that an item holds on to.
+// Returns the memory that a loaded item uses.
 std::size_t bytesOf(const Ready& ready);
 
 }  // namespace lambent::streaming

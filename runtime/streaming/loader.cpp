@@ -13,19 +13,19 @@
 namespace lambent::streaming {
 namespace {
 
-// What may be decoded or in the making but not taken. The item that is next to be taken never waits for room,
-// so the real limit is this and one item, and workers cannot wait for each other.
+// Limit of the memory of items that are decoded, or being decoded, but not taken. The item that will be taken
+// next never waits for memory, so the actual limit is one item more, and workers cannot block each other.
 constexpr std::size_t kMaxHeldBytes = std::size_t{64} << 20;
 constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
 
 }  // namespace
 
-// Workers claim items in order and put what they load into the item's slot; take() empties slots from the
-// front. So the sequence is the list's, however many workers there are and however long each item takes.
+// Workers claim items in order and put the loaded item into its slot; take() empties slots from the front. So
+// items keep the order of the list, however many workers there are and however long each item takes.
 struct Loader::State {
   struct Slot {
     std::optional<Ready> ready;
-    std::size_t held = 0;  // bytes reserved, then those of `ready`
+    std::size_t held = 0;  // bytes that are reserved, and later those of `ready`
   };
 
   State(std::shared_ptr<const bundle::Reader> bundle, std::vector<Work> wanted, ThreadPool& threads,
@@ -37,7 +37,7 @@ struct Loader::State {
         runWorker();
         const std::lock_guard lock(mutex);
         --working;
-        ended.notify_all();  // under the lock: who waits for it destroys this
+        ended.notify_all();  // needs the lock, because the waiting thread destroys this object
       });
   }
 
@@ -98,7 +98,7 @@ struct Loader::State {
     }
   }
 
-  // Waits for room. False when the item is not wanted any more.
+  // Waits for memory. Returns false if the item is not wanted any more.
   bool reserve(std::size_t at, std::size_t bytes) {
     std::unique_lock lock(mutex);
     const auto unwanted = [&] { return stopping || at >= end(); };
@@ -108,7 +108,7 @@ struct Loader::State {
     return true;
   }
 
-  // --- under the mutex ---
+  // --- the caller holds the mutex ---
 
   void hold(std::size_t at, std::size_t bytes) {
     held_bytes += bytes - slots[at].held;
@@ -117,7 +117,7 @@ struct Loader::State {
 
   std::size_t end() const { return std::min(work.size(), failed_at); }
   bool frontIsReady() const { return next_take < end() && slots[next_take].ready.has_value(); }
-  // No worker is at an item before the failed one, where it could fail as well: this failure is the first.
+  // Returns whether all items before the failed one are loaded, so that this failure is the first.
   bool failureIsFirst() const {
     if (failed_at == kNone) return false;
     for (std::size_t at = next_take; at < failed_at; ++at) {
@@ -129,10 +129,10 @@ struct Loader::State {
   const std::shared_ptr<const bundle::Reader> reader;
   const std::vector<Work> work;
 
-  mutable std::mutex mutex;      // guards all below
-  std::condition_variable more;  // something is ready, or nothing more will come
-  std::condition_variable room;  // something was taken, or is not wanted any more
-  std::vector<Slot> slots;       // by place in `work`
+  mutable std::mutex mutex;      // guards the members below
+  std::condition_variable more;  // signals that an item is ready or no more will come
+  std::condition_variable room;  // signals that an item was taken or is not wanted any more
+  std::vector<Slot> slots;       // one per item of `work`
   std::size_t next_claim = 0;
   std::size_t next_take = 0;
   std::size_t held_bytes = 0;
@@ -140,8 +140,8 @@ struct Loader::State {
   Error failure;
   std::uint64_t bytes_read = 0;
   bool stopping = false;
-  std::size_t working = 0;        // workers that have not ended
-  std::condition_variable ended;  // one has
+  std::size_t working = 0;        // number of workers that have not ended
+  std::condition_variable ended;  // signals that a worker has ended
 };
 
 Loader::Loader(std::shared_ptr<const bundle::Reader> reader, ThreadPool& threads, unsigned workers)

@@ -1,7 +1,6 @@
-// Brings a bundle into memory in the order in which it is wanted, on worker threads: reads ranges, checks
-// them, decodes Draco, images and entropy coding. No GL: the render thread takes what is ready and uploads it
-// within its budget (residency.hpp). Order of delivery is the order of priority, whatever the number of
-// threads.
+// Loads a bundle into memory on worker threads. They read byte ranges, check them, and decode Draco, images
+// and entropy coding, without GL. The render thread takes loaded items and uploads them within its budget
+// (residency.hpp). Items are delivered in the order of their priority, whatever the number of threads.
 #pragma once
 
 #include <cstddef>
@@ -20,30 +19,30 @@ namespace lambent::streaming {
 
 class Loader {
  public:
-  // Starts `workers` (at least 1) on everything in the bundle: meshes and rows first, then tables of BRDFs,
-  // grids of volumes, images, then codebooks and planes by priority. They end before `threads` do.
+  // Starts `workers` (at least 1) that load the whole bundle in the order of requestsOf(). The loader must be
+  // destroyed before `threads`.
   Loader(std::shared_ptr<const bundle::Reader> reader, ThreadPool& threads, unsigned workers);
-  // Brings these parts alone, in this order.
+  // Loads only these items, in this order.
   Loader(std::shared_ptr<const bundle::Reader> reader, std::vector<Work> work, ThreadPool& threads,
          unsigned workers);
-  ~Loader();  // stops the workers after the item in hand
+  ~Loader();  // waits until the workers have finished their current items
   Loader(Loader&&) noexcept;
   Loader& operator=(Loader&&) noexcept;
 
-  // What is ready, in order, up to about max_bytes (at least one item if any is ready). Never waits.
+  // Returns loaded items in order, up to about max_bytes, but at least one if any is ready. Never waits.
   std::vector<Ready> take(std::size_t max_bytes);
-  // Waits until something is ready or nothing more will come.
+  // Waits until an item is ready or no more will come.
   void waitForMore();
-  // True once every item has been taken, or loading stopped at an error.
+  // Returns true once every item has been taken, or loading has stopped at an error.
   bool finished() const;
-  // The first error; loading stops there.
+  // Returns the first error, at which loading stops.
   std::optional<Error> error() const;
 
   std::uint64_t bytesRead() const;
 
-  // Nothing more is wanted: workers end after the item in hand.
+  // Stops loading. Workers end after their current items.
   void stop();
-  // Whether all workers have ended: destroying the loader does not wait then.
+  // Returns whether all workers have ended, so that the destructor does not wait.
   bool idle() const;
 
  private:

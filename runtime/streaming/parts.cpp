@@ -15,7 +15,7 @@ namespace lambent::streaming {
 
 namespace {
 
-// A group's planes come in so many shares: each is shaded with the next frame, and so are all its vertices.
+// Number of shares in which a group's planes are loaded. After each share the whole group is shaded again.
 constexpr std::size_t kShares = 12;
 
 Result<std::vector<Parts::Image>> describeImages(const bundle::Reader& reader) {
@@ -52,7 +52,7 @@ std::uint64_t levelBytes(const Parts::Image& image, std::uint32_t level) {
   return textureBytes(sizeAt({image.width, image.height}, level));
 }
 
-// The first unit has the coarse levels, and a unit of its own the others.
+// Adds the coarse level of each image to the first unit, and a unit for its finer levels.
 void addImages(Parts& parts, Step& base, const std::vector<ImageUse>& uses) {
   for (std::uint32_t i = 0; i < parts.images.size(); ++i) {
     const Parts::Image& image = parts.images[i];

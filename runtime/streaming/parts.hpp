@@ -1,8 +1,8 @@
-// What a bundle is brought in, piece by piece, and what each takes on the GPU: first the capture proxies of
-// its groups, which stand in for it where there is no room for more; then all that shows its surfaces and
-// volumes without shadows, textures from a coarse level on; then of each rigid group the codebooks of its
-// transfer, then weight planes, a share of them at a time; of each texture its finer levels, one by one. Made
-// from a checked bundle's description; what follows the camera (interest.hpp) chooses among these.
+// Divides a bundle into parts that can be loaded one by one, with the GPU memory of each. The capture proxies
+// of its groups come first; they replace the bundle if there is no memory for more. Next come its surfaces
+// and volumes without shadows, with textures in a coarse level. For each rigid group the codebooks of its
+// transfer and then its weight planes follow, a share at a time, and for each texture its finer levels, one
+// by one. interest.hpp chooses among the parts by the camera.
 #pragma once
 
 #include <cstdint>
@@ -14,24 +14,24 @@
 
 namespace lambent::streaming {
 
-// Brought and left away as a whole.
+// Items that are loaded and dropped together.
 struct Step {
   std::vector<Work> work;
   std::uint64_t bytes = 0;
 };
 
-// Steps of a unit come one after the other and go from the last.
+// Steps of a unit are loaded in order and dropped in reverse order.
 using Unit = std::vector<Step>;
 
 struct Parts {
-  // The first: proxies, as a step of their own where there are any and others may need the room; then
-  // meshes, rows, textures, volumes. Then of each group its transfer, then of each image its finer levels;
-  // some are empty, and those of images all are where room is not limited.
+  // The first unit has the proxies, in a separate step if there are any and memory is limited, and then
+  // meshes, rows, textures and volumes. Next is a unit for the transfer of each group, and then one for the
+  // finer levels of each image. Units may be empty, and those of images all are if memory is not limited.
   std::vector<Unit> units;
   struct Image {
     std::uint32_t width = 0, height = 0;
-    std::uint32_t coarse = 0;           // the finest level of the first unit
-    std::vector<std::uint32_t> groups;  // that are drawn with it
+    std::uint32_t coarse = 0;           // finest level in the first unit
+    std::vector<std::uint32_t> groups;  // groups that are drawn with the image
   };
   std::vector<Image> images;
 
@@ -39,23 +39,24 @@ struct Parts {
   bool isImage(std::size_t unit) const { return unit >= firstImageUnit(); }
   const Image& imageOf(std::size_t unit) const { return images[unit - firstImageUnit()]; }
 
-  // How many steps of the first unit show the surfaces; with fewer, a proxy level of detail is there or
-  // nothing.
+  // Returns the number of steps of the first unit that show the surfaces. With fewer there is a proxy level
+  // of detail or nothing.
   std::uint32_t surfaceSteps() const { return static_cast<std::uint32_t>(units.front().size()); }
   bool hasProxyLod() const { return surfaceSteps() > 1; }
 
-  // How many planes of a transfer belong to the first `steps` steps of the group's unit.
+  // Returns the number of planes of a transfer in the first `steps` steps of the group's unit.
   std::uint32_t planesIn(std::uint32_t group, std::uint32_t steps, std::uint32_t cell,
                          std::uint32_t transfer) const;
-  // How many mip levels of an image are here with the first `steps` steps of its unit.
+  // Returns the number of mip levels that an image has after the first `steps` steps of its unit.
   std::uint32_t levelsIn(std::size_t unit, std::uint32_t steps) const;
 
-  // All of these steps, in order; of an image's levels the finest alone, for it brings the others.
+  // Returns the items of the given number of steps of each unit, in order. Of an image's levels it returns
+  // only the finest, which includes the others.
   std::vector<Work> workOf(const std::vector<std::uint32_t>& steps) const;
 };
 
-// Where room is `limited`, looks into images for their sizes, and proxies come first, to stand in for the
-// rest; else textures count as nothing. Errors: an image that cannot be read.
+// Divides a bundle into parts. If memory is `limited`, it reads the sizes of images and makes the proxies a
+// separate step; else textures count as 0 bytes. Fails if an image cannot be read.
 Result<Parts> partsOf(const bundle::Reader& reader, bool limited);
 
 }  // namespace lambent::streaming

@@ -19,10 +19,10 @@ std::span<const std::byte> bytesOf(const std::vector<T>& values) {
   return std::as_bytes(std::span(values));
 }
 
-// Small bundles share a page.
+// Smallest size of a page, which small bundles share.
 constexpr std::uint64_t kMinPageBytes = std::uint64_t{1} << 20;
 
-// Places all of a cell but its planes from `word` on; returns the word after.
+// Lays out a cell without its planes from `word` on. Returns the first word after it.
 std::uint32_t layOut(ResidentCell& cell, std::uint32_t word) {
   if (cell.light_probes.size() > 1) {
     cell.light_weights_word = word;
@@ -43,7 +43,7 @@ std::uint64_t planeBytesOf(const ResidentPlane& plane) {
   return planeBytes({.payload = 0, .bits = plane.bits, .count = plane.count, .variance = plane.variance});
 }
 
-// What a cell takes with all planes.
+// Returns the size of a cell with all planes.
 std::uint64_t wholeBytes(ResidentCell cell) {
   constexpr std::uint64_t kBlock = gpu::Arena::kAlignment;
   std::uint64_t bytes = (4ull * layOut(cell, 0) + kBlock - 1) / kBlock * kBlock;
@@ -52,8 +52,9 @@ std::uint64_t wholeBytes(ResidentCell cell) {
   return bytes;
 }
 
-// Linear between voxel centres, constant in the half voxel towards the faces. Codes of 8 bits too are kept in
-// 16: some devices interpolate texels of 8 bits with results of 8 bits.
+// Makes a density texture that is linear between voxel centres and constant in the outermost half voxel. It
+// has 16 bits even for codes of 8 bits, because some devices interpolate 8-bit texels with a precision of 8
+// bits.
 gpu::Texture makeDensityTexture(const bundle::VolumeGrid& grid, const std::vector<std::byte>& codes) {
   gpu::Texture texture("density",
                        {.format = GL_R16, .width = grid.size.x, .height = grid.size.y, .depth = grid.size.z});
@@ -199,12 +200,12 @@ Result<void> Residency::uploadStaged(Staged staged, Ready item) {
 
 Result<void> Residency::put(At at, const WeightsChunk& item) {
   ResidentDraw& draw = at.tables.draws[at.bundle.first.draws + item.draw];
-  const bundle::VertexWeights& rows = item.rows;
+  const transfer::VertexWeights& rows = item.rows;
   const std::size_t entries = rows.samples.size();
   assert(rows.offsets.size() == at.tables.meshes[draw.mesh].vertex_count + 1u &&
          rows.weights.size() == entries);
   std::vector<std::uint16_t> weights(entries);
-  // To the nearest; a loop that becomes vector code, which glm::packUnorm1x16 does not.
+  // This rounds to nearest in a loop that compilers vectorize, unlike glm::packUnorm1x16.
   std::transform(rows.weights.begin(), rows.weights.end(), weights.begin(), [](float weight) {
     return static_cast<std::uint16_t>(std::clamp(weight, 0.0f, 1.0f) * 65535.0f + 0.5f);
   });
@@ -252,11 +253,11 @@ Result<void> Residency::put(At at, const PlaneChunk& item) {
   ResidentCell& cell = cellOf(at.tables, at.bundle, item.group, item.cell);
   if (Result<void> reserved = reserveCell(cell); !reserved) return reserved;
   ResidentTransfer& transfer = cell.transfers[item.transfer];
-  // The loader delivers the planes of a cell in order, so what is here is always a prefix.
+  // The loader delivers the planes of a cell in order, so the loaded planes are always the first ones.
   assert(item.plane == transfer.planes_resident);
   ResidentPlane& plane = transfer.planes[item.plane];
   std::optional<gpu::Allocation> block = transfer_.allocateIn(cell.block.page, planeBytesOf(plane));
-  if (!block) {  // others have filled the page
+  if (!block) {  // other cells have filled the page
     if (Result<void> moved = moveCell(cell); !moved) return moved;
     block = transfer_.allocateIn(cell.block.page, planeBytesOf(plane));
   }
@@ -272,7 +273,7 @@ Result<void> Residency::put(At at, const LightWeightsChunk& item) {
   ResidentCell& cell = cellOf(at.tables, at.bundle, item.group, item.cell);
   if (Result<void> reserved = reserveCell(cell); !reserved) return reserved;
   assert(item.samples.size() == cell.sample_count && cell.light_probes.size() > 1);
-  static_assert(sizeof(bundle::LightWeights) == 4 * kLightWeightWords);
+  static_assert(sizeof(transfer::LightWeights) == 4 * kLightWeightWords);
   transfer_.write(cell.block, 4ull * (cell.light_weights_word - cell.block.word()), bytesOf(item.samples));
   cell.light_weights_resident = true;
   cell.version = version_;
@@ -354,17 +355,18 @@ std::uint64_t Residency::uploadBytes(const Ready& item) {
       return 4ull * rows.rows.offsets.size() + 6ull * rows.rows.samples.size();
     }
     std::uint64_t operator()(const CodebookChunk& ready) const {
-      const bundle::Codebook& codebook = ready.codebook;
+      const transfer::Codebook& codebook = ready.codebook;
       return 16ull * codebook.clusters() + 8ull * codebook.axes.size() + 4ull * codebook.vectors.size() +
              4ull * ready.positions.size();
     }
     std::uint64_t operator()(const PlaneChunk& plane) const { return plane.codes.size(); }
     std::uint64_t operator()(const LightWeightsChunk& weights) const {
-      return sizeof(bundle::LightWeights) * weights.samples.size();
+      return sizeof(transfer::LightWeights) * weights.samples.size();
     }
-    std::uint64_t operator()(const ProxyChunk&) const { return 0; }  // stays in memory
+    std::uint64_t operator()(const ProxyChunk&) const { return 0; }  // is not uploaded
     std::uint64_t operator()(const BrdfChunk& ready) const { return ready.texels.bytes(); }
-    std::uint64_t operator()(const DensityChunk& density) const { return density.codes.size(); }  // or twice
+    // Codes of 8 bits take twice this size on the GPU.
+    std::uint64_t operator()(const DensityChunk& density) const { return density.codes.size(); }
     std::uint64_t operator()(const VoxelsChunk& ready) const { return 4 * ready.voxels.size(); }
   };
   return std::visit(Size{}, item);

@@ -1,8 +1,8 @@
-// What of the loaded bundles lies on the GPU, and where. add() makes the tables of a bundle, upload() takes
-// what the Loader hands on, one item at a time, and puts it into arenas and textures; nothing else writes
-// there. A bundle may also be staged: brought beside those that are shown, and put in the place of one of
-// them when it is whole. Effects and the frame read the tables (resident_tables.hpp). Render thread only.
-// Errors: a mesh or a group too large for one page (128 MiB), named.
+// The room streaming loads bundles on worker threads (loader.hpp) and owns what is resident on the GPU.
+// Residency is used on the render thread only. add() makes the tables of a bundle, and upload() puts items of
+// the Loader into arenas and textures; nothing else writes there. A bundle may also be staged: it is loaded
+// beside the shown ones and replaces one of them when it is complete. Effects and the frame read the tables
+// (resident_tables.hpp). An error names a mesh or a group that is too large for one page (128 MiB).
 #pragma once
 
 #include <compare>
@@ -25,60 +25,63 @@ class Residency {
   // Pages are as large as a bundle needs, up to max_page_bytes.
   explicit Residency(std::uint64_t max_page_bytes = gpu::Arena::kMaxPageBytes);
 
-  // Returns the bundle's slot: the first that is empty.
+  // Adds a bundle in the first empty slot and returns the slot.
   Result<std::uint32_t> add(const bundle::Description& description);
-  // Into this one, which must be empty.
+  // Adds a bundle in this slot, which must be empty.
   Result<void> add(const bundle::Description& description, std::uint32_t slot);
   Result<void> upload(std::uint32_t bundle, Ready item);
-  // Samples and radiance were written by others: cells and draws get new versions, so that whoever shades
-  // them does it anew.
+  // Gives all cells and draws new versions, so that they are shaded again. Call this after other code wrote
+  // into samples or radiance.
   void forgetShading();
-  // Gives back all that it took. The slot is empty until the next add(); those of others stay.
+  // Releases all memory of the bundle. The slot is empty until the next add(); other slots do not change.
   void remove(std::uint32_t bundle);
-  // Whether the slot holds a bundle.
+  // Returns whether the slot holds a bundle.
   bool present(std::uint32_t slot) const {
     return slot < tables_.bundles.size() && tables_.bundles[slot].present;
   }
-  // How many planes of a transfer to keep.
+  // Returns the number of planes of a transfer to keep.
   using PlanesToKeep = std::function<std::uint32_t(std::uint32_t cell, std::uint32_t transfer)>;
   void dropPlanes(std::uint32_t bundle, std::uint32_t group, const PlanesToKeep& keep);
-  // What is larger than a frame has room for comes in pieces and is shown when it is whole: an image in place
-  // of a coarser one, a mesh, the means and axes of a transfer. One at a time of each bundle.
+  // Returns whether an item can be uploaded in pieces over several frames. These are images, meshes and
+  // codebooks. The item is shown when it is complete. Each bundle has at most one such item at a time.
   static bool comesInPieces(const Ready& item);
+  // Begins the upload of an item in pieces.
   Result<void> begin(std::uint32_t bundle, Ready item);
+  // Returns whether such an upload is in progress.
   bool comes(std::uint32_t bundle) const { return coming_.contains({false, bundle}); }
-  // At most about so many bytes more of it; returns how many.
+  // Continues the upload with at most about max_bytes, and returns the number of bytes.
   Result<std::uint64_t> proceed(std::uint32_t bundle, std::uint64_t max_bytes);
   void cancel(std::uint32_t bundle);
-  // Keeps the coarsest of its mip levels, so many.
+  // Keeps only this many of the coarsest mip levels of an image.
   void dropLevels(std::uint32_t bundle, std::uint32_t image, std::uint32_t levels);
-  // All of the group's transfer, light weights too: it is shown without shadows from now on.
+  // Drops all transfer and light weights of a group, which is then shown without shadows.
   void dropTransfer(std::uint32_t bundle, std::uint32_t group);
 
-  // A bundle that is not in the tables yet, named by what stage() returns.
+  // Identifies a bundle that is staged, so not in the tables yet.
   using Staged = std::uint32_t;
   Result<Staged> stage(const bundle::Description& description);
   Result<void> uploadStaged(Staged staged, Ready item);
   void discard(Staged staged);
-  // As begin(), comes(), proceed(): pieces of what is staged.
+  // These upload items of a staged bundle in pieces, like begin(), comes() and proceed().
   Result<void> beginStaged(Staged staged, Ready item);
   bool comesStaged(Staged staged) const { return coming_.contains({true, staged}); }
   Result<std::uint64_t> proceedStaged(Staged staged, std::uint64_t max_bytes);
-  // In the place of `bundle`, which goes; the slot may be empty. Nothing of it may still be coming.
+  // Puts a staged bundle into a slot, and removes the bundle that is there, if any. No upload of the staged
+  // bundle may be in progress.
   void show(Staged staged, std::uint32_t bundle);
 
-  // By slot; some may be empty.
+  // Returns the bundles by slot. Some slots may be empty.
   const std::vector<ResidentBundle>& bundles() const { return tables_.bundles; }
   const std::vector<ResidentMesh>& meshes() const { return tables_.meshes; }
   const std::vector<ResidentGroup>& groups() const { return tables_.groups; }
   const std::vector<ResidentCell>& cells() const { return tables_.cells; }
   const std::vector<ResidentDraw>& draws() const { return tables_.draws; }
   const std::vector<ResidentVolume>& volumes() const { return tables_.volumes; }
-  // Rises with every upload; entries carry the value at which they last changed.
+  // Returns a number that rises with every upload. Entries have the value at which they last changed.
   std::uint64_t version() const { return version_; }
-  // Rises when entries come or go: indices into the tables are others then.
+  // Returns a number that rises when entries are added or removed, so that indices into the tables change.
   std::uint64_t structureVersion() const { return structure_version_; }
-  // Rises with every capture proxy that arrives and every group that comes or goes.
+  // Returns a number that rises when a capture proxy is loaded, or when groups are added or removed.
   std::uint64_t proxiesVersion() const { return proxies_version_; }
 
   gpu::Arena& geometry() { return geometry_; }
@@ -87,12 +90,12 @@ class Residency {
   gpu::Arena& rows() { return rows_; }
   gpu::Arena& radiance() { return radiance_; }
 
-  // What is in use on the GPU: arenas and textures, staged bundles and images on their way included.
+  // Returns the GPU memory in use by arenas and textures, including staged bundles and unfinished uploads.
   std::uint64_t bytesResident() const;
-  // What the arenas hold for it, with what is free in their pages.
+  // Returns this memory plus the free memory in pages of the arenas.
   std::uint64_t bytesReserved() const;
   std::uint64_t planesResident() const;
-  // Bytes of an item as they are uploaded.
+  // Returns the number of bytes that the upload of an item takes.
   static std::uint64_t uploadBytes(const Ready& item);
 
  private:
@@ -102,13 +105,13 @@ class Residency {
   std::vector<const gpu::Arena*> arenas() const {
     return {&geometry_, &transfer_, &samples_, &rows_, &radiance_};
   }
-  // Into the tables that hold the bundle.
+  // The tables that hold a bundle, and its entry there.
   struct At {
     ResidentTables& tables;
     ResidentBundle& bundle;
   };
   struct ImageUpload {
-    ImageChunk item;  // of one that comes in pieces
+    ImageChunk item;  // empty if the image is uploaded at once
     gpu::Texture color, linear;
     std::uint32_t rows_done = 0;
   };
@@ -123,12 +126,12 @@ class Residency {
   };
   struct CodebookUpload {
     CodebookChunk item;
-    std::uint64_t bytes_done = 0;  // of its vectors
+    std::uint64_t bytes_done = 0;  // bytes of its vectors that are uploaded
   };
   using Coming = std::variant<ImageUpload, MeshUpload, CodebookUpload>;
   struct Whose {
     bool staged = false;
-    std::uint32_t index = 0;  // slot, or Staged
+    std::uint32_t index = 0;  // the slot, or the Staged number
     auto operator<=>(const Whose&) const = default;
   };
   At at(const Whose& whose);
@@ -154,9 +157,9 @@ class Residency {
   Result<void> put(At at, const DensityChunk& item);
   Result<void> put(At at, const VoxelsChunk& item);
   Result<void> reserveCell(ResidentCell& cell);
-  // To a page that has room for all of it.
+  // Moves a cell to a page with room for all its planes.
   Result<void> moveCell(ResidentCell& cell);
-  // Shades all of the group anew, from nothing.
+  // Clears the shaded samples of a group and causes it to be shaded again.
   void forgetShading(const ResidentGroup& group);
 
   std::uint64_t max_page_bytes_;

@@ -1,4 +1,4 @@
-// What leaves the GPU again, or moves there: planes and transfer of groups that are not wanted now.
+// Drops planes and transfer of groups from the GPU.
 #include <optional>
 
 #include "runtime/streaming/residency.hpp"
@@ -39,7 +39,7 @@ void Residency::dropPlanes(std::uint32_t bundle, std::uint32_t group, const Plan
     }
     forget |= usable && !cell.usable();
   }
-  // What was shaded stays in the samples until it is overwritten: nothing would.
+  // A cell that is no longer usable is not shaded again, so its old samples must be cleared.
   if (forget) forgetShading(resident);
 }
 

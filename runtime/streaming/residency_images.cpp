@@ -1,4 +1,4 @@
-// Textures of surfaces: how they come to the GPU, and how their finest levels leave it.
+// Uploads textures of surfaces and drops their finest levels.
 #include <algorithm>
 
 #include <fmt/format.h>
@@ -14,7 +14,7 @@ std::uint64_t bytesOf(const gpu::Texture& texture) {
   return texture ? textureBytes({texture.desc().width, texture.desc().height}) : 0;
 }
 
-// The same from its level `from` on.
+// Returns a copy of the texture from its level `from` on.
 gpu::Texture coarser(const gpu::Texture& texture, std::uint32_t from, const std::string& label) {
   const gpu::TextureDesc& desc = texture.desc();
   const ImageSize size = sizeAt({desc.width, desc.height}, from);

@@ -1,5 +1,6 @@
-// What a frame may have no room for comes in pieces: meshes and codebooks here, textures in
-// residency_images.cpp. It counts once it is whole. What comes at once takes the same way, in one piece.
+// Uploads large items in pieces over several frames: meshes and codebooks here, textures in
+// residency_images.cpp. An item is used once it is complete. An upload at once is the same with a single
+// piece.
 #include <algorithm>
 #include <array>
 #include <cassert>
@@ -13,7 +14,7 @@ namespace lambent::streaming {
 
 namespace {
 
-// However little a frame may bring: else what is large would not come at all.
+// Smallest piece of a frame, however small its budget is, so that large items are completed at all.
 constexpr std::uint64_t kLeastBytes = std::uint64_t{64} << 10;
 constexpr std::uint64_t kAll = ~std::uint64_t{0};
 
@@ -22,7 +23,7 @@ std::span<const std::byte> bytesOf(const std::vector<T>& values) {
   return std::as_bytes(std::span(values));
 }
 
-// The attributes of a mesh as they lie one after the other in its block.
+// The attributes of a mesh, in the order of its block.
 constexpr std::size_t kMeshParts = 7;
 using MeshParts = std::array<std::span<const std::byte>, kMeshParts>;
 
@@ -120,13 +121,12 @@ Result<std::uint64_t> Residency::proceed(const Whose& whose, std::uint64_t max_b
 void Residency::cancel(const Whose& whose) {
   const auto found = coming_.find(whose);
   if (found == coming_.end()) return;
-  // Textures go by themselves, and the blocks of cells are the cells'.
+  // Textures delete themselves, and cells own the blocks of codebooks.
   if (const auto* mesh = std::get_if<MeshUpload>(&found->second)) geometry_.release(mesh->block);
   coming_.erase(found);
 }
 
-// --- meshes
-// -------------------------------------------------------------------------------------------------------
+// --- meshes ---
 
 Result<Residency::MeshUpload> Residency::begin(MeshChunk item) {
   MeshUpload upload{.item = std::move(item), .colors = {}, .block = {}};
@@ -140,7 +140,7 @@ Result<Residency::MeshUpload> Residency::begin(MeshChunk item) {
 
 std::uint64_t Residency::proceed(MeshUpload& upload, std::uint64_t max_bytes) {
   const std::uint64_t before = upload.bytes_done;
-  std::uint64_t first = 0;  // of the part
+  std::uint64_t first = 0;  // offset of the part
   for (const std::span<const std::byte> part : partsOf(upload.item.data, upload.colors)) {
     const std::uint64_t left = max_bytes - (upload.bytes_done - before);
     if (const std::uint64_t from = upload.bytes_done - first; left > 0 && from < part.size()) {
@@ -176,7 +176,7 @@ Result<void> Residency::finish(At at, const MeshUpload& upload) {
     draw.version = version_;
     if (draw.glossy()) continue;
     const Result<gpu::Allocation> radiance =
-        radiance_.allocate(4ull * radianceWords(draw.outputs) * mesh.vertex_count);
+        radiance_.allocate(4ull * radianceWords(draw.form()) * mesh.vertex_count);
     if (!radiance) return failAgain(radiance.error());
     draw.radiance = *radiance;
   }
@@ -190,23 +190,22 @@ Result<void> Residency::put(At at, MeshChunk item) {
   return finish(at, *upload);
 }
 
-// --- codebooks
-// ----------------------------------------------------------------------------------------------------
+// --- codebooks ---
 
-// All but the vectors, which are nearly all of it.
+// Writes everything except the vectors, which are most of a codebook.
 Result<void> Residency::writeTables(At at, const CodebookChunk& item) {
   ResidentCell& cell = cellOf(at.tables, at.bundle, item.group, item.cell);
   if (Result<void> reserved = reserveCell(cell); !reserved) return reserved;
   const ResidentTransfer& transfer = cell.transfers[item.transfer];
-  const bundle::Codebook& codebook = item.codebook;
+  const transfer::Codebook& codebook = item.codebook;
   assert(codebook.clusters() == transfer.clusters && codebook.axes.size() == transfer.axes &&
          item.positions.size() == cell.sample_count);
   std::vector<std::uint32_t> clusters;
-  std::vector<bundle::AxisCode> weights;
+  std::vector<transfer::AxisCode> weights;
   for (std::size_t c = 0, axis = 0; c < codebook.clusters(); ++c) {
     const std::uint32_t axes = codebook.axis_counts[c];
     clusters.insert(clusters.end(), {static_cast<std::uint32_t>(weights.size()), axes});
-    weights.push_back({.offset = 1.0f, .scale = 0.0f});  // the mean
+    weights.push_back({.offset = 1.0f, .scale = 0.0f});  // the mean has weight 1
     for (std::uint32_t j = 0; j < axes; ++j) weights.push_back(codebook.axes[axis++]);
   }
   const auto write = [&](std::uint32_t word, std::span<const std::byte> bytes) {

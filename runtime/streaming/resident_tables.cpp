@@ -25,8 +25,8 @@ ResidentTransfer describe(const bundle::CellTransfer& transfer) {
   return resident;
 }
 
-// Normals go by the inverse transpose; the group's own placement has no scale. A flattened mesh has no
-// inverse: its normals then go by the matrix itself, which keeps them finite.
+// Returns the matrix for normals, which is the inverse transpose; the group's frame has no scale. A flattened
+// mesh has no inverse, so its normals use the matrix itself, which keeps them finite.
 glm::mat3 normalMatrix(const bundle::Group& group, const glm::mat4& world_from_mesh) {
   const glm::mat3 linear = glm::mat3_cast(glm::conjugate(group.rest_rotation)) * glm::mat3(world_from_mesh);
   const float determinant = glm::determinant(linear);
@@ -35,11 +35,11 @@ glm::mat3 normalMatrix(const bundle::Group& group, const glm::mat4& world_from_m
 }
 
 ResidentCell describe(const bundle::Cell& cell, std::uint32_t first_output) {
-  ResidentCell resident{.kind = cell.kind,
+  ResidentCell resident{.domain = cell.domain,
                         .first_sample = cell.first_sample,
                         .sample_count = cell.sample_count,
                         .outputs = cell.outputs(),
-                        .first_output = first_output,  // from where the group's samples will lie
+                        .first_output = first_output,  // relative to the group's samples for now
                         .block = {},
                         .transfers = {},
                         .light_probes = cell.light_probes,
@@ -53,14 +53,13 @@ ResidentGroup describe(const bundle::Group& group) {
   ResidentGroup resident;
   resident.light_columns = static_cast<std::uint32_t>(group.lights.size());
   resident.cell_count = static_cast<std::uint32_t>(group.cells.size());
-  resident.diffuse_samples = group.samplesWith(1);
-  resident.mapped_samples = group.samplesWith(bundle::kMappedOutputs);
+  resident.diffuse_samples = group.samplesOf(transfer::Form::Vector);
+  resident.mapped_samples = group.samplesOf(transfer::Form::NormalMapped);
   resident.light_probes = group.light_probes;
   for (const bundle::Cell& cell : group.cells) {
     for (const bundle::CellTransfer& transfer : cell.transfers)
       resident.order = std::max(resident.order, transfer.shape.order);
-    if (cell.kind == bundle::CellKind::Surface && bundle::isGlossy(cell.outputs()))
-      resident.glossy_outputs = cell.outputs();
+    if (cell.isGlossySurface()) resident.glossy_outputs = cell.outputs();
   }
   return resident;
 }
@@ -84,12 +83,12 @@ TableSizes sum(const TableSizes& a, const TableSizes& b) {
           a.volumes + b.volumes};
 }
 
-// Numbers wrap round: adding this takes away.
+// Returns the negative sizes. Numbers wrap around, so adding these subtracts.
 TableSizes negative(const TableSizes& a) {
   return {0u - a.meshes, 0u - a.groups, 0u - a.cells, 0u - a.draws, 0u - a.volumes};
 }
 
-// What the entries from `begin` on say of places in the tables, after these have moved.
+// Adjusts indices in the entries from `begin` on after entries of the tables have moved.
 void shift(ResidentTables& tables, const TableSizes& begin, const TableSizes& by) {
   for (std::size_t i = begin.groups; i < tables.groups.size(); ++i) {
     ResidentGroup& group = tables.groups[i];

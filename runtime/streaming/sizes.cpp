@@ -60,7 +60,7 @@ std::uint64_t volumeLightBytes(const bundle::Group& group) {
 std::uint64_t proxyLodBytes(const bundle::Description& description, std::uint32_t group) {
   const std::int32_t payload = description.groups[group].proxy;
   if (payload < 0) return 0;
-  // Emission, corners, light and flags of a triangle: what a payload has at least of each (format.md).
+  // A payload has at least emission, corners, light and flags of each triangle (docs/format.md).
   constexpr std::uint64_t kStoredBytes = 12 + 6 + 2 + 1;
   const std::uint64_t stored =
       description.payloads[static_cast<std::size_t>(payload)].raw_length / kStoredBytes;
@@ -84,7 +84,7 @@ Needs needsOf(const bundle::Description& description) {
   for (const bundle::Draw& draw : description.draws) {
     const std::uint64_t vertices = description.meshes[draw.mesh].primitives[draw.primitive].vertex_count;
     needs.rows += description.payloads[draw.rows].raw_length + 6 * vertices + 2 * kSlack;
-    if (!draw.glossy()) needs.radiance += 4ull * radianceWords(draw.outputs) * vertices + kSlack;
+    if (!draw.glossy()) needs.radiance += 4ull * radianceWords(draw.form()) * vertices + kSlack;
   }
   return needs;
 }

@@ -1,5 +1,5 @@
-// What a bundle takes on the GPU, told from its description: in each arena, in bytes. Residency makes its
-// pages no larger, and what follows the camera (parts.hpp) counts by it.
+// Computes the GPU memory of a bundle from its description, in bytes for each arena. Residency limits its
+// pages to these sizes, and parts.hpp counts with them.
 #pragma once
 
 #include <cstdint>
@@ -8,34 +8,38 @@
 
 namespace lambent::streaming {
 
-// All that is written for a vertex of a draw: E/pi, or for normal maps light of bands 0..2; RGB floats.
-// Glossy ones take their samples at each pixel.
-constexpr std::uint32_t radianceWords(std::uint32_t outputs) {
-  return bundle::isGlossy(outputs) ? 0 : 3 * outputs;
+// Returns the number of floats that are written per vertex of a draw: E/pi, or light in bands 0..2 for normal
+// maps, each as RGB. Glossy draws need none, since they use samples at each pixel.
+constexpr std::uint32_t radianceWords(transfer::Form form) {
+  if (form == transfer::Form::Vector) return 3;
+  return form == transfer::Form::NormalMapped ? 3 * transfer::kMappedOutputs : 0;
 }
 
-// Of a sample, where its cell is lit from several light probes.
+// Words per sample if its cell has several light probes.
 inline constexpr std::uint32_t kLightWeightWords = 2;
 
-// Codes of a plane, a block of its own.
+// Returns the size of a plane's codes, which are a block of their own.
 std::uint64_t planeBytes(const bundle::WeightPlane& plane);
-// The codebook as the kernels read it (diffuse_shared.h), and the positions of the samples.
+// Returns the size of a codebook as the kernels read it (diffuse_shared.h), with the positions of the
+// samples.
 std::uint64_t codebookBytesOnGpu(const bundle::CellTransfer& transfer, std::uint32_t sample_count);
 std::uint64_t cellBytes(const bundle::Cell& cell);
-// vec4s of shaded samples.
+// Returns the number of vec4 for the shaded samples of a group.
 std::uint64_t samplesOf(const bundle::Group& group);
 
-// Of the density as the GPU has it, 16 bits a voxel.
+// Returns the size of the density on the GPU, which has 16 bits per voxel.
 constexpr std::uint64_t densityBytes(const glm::uvec3& size) {
   return std::uint64_t{2} * size.x * size.y * size.z;
 }
-// And the list of voxels.
+// Returns the size of the density and the list of voxels.
 std::uint64_t volumeBytes(const bundle::VolumeGrid& grid, std::uint64_t sample_count);
-// What the light in a volume takes, in half floats: a texel per voxel of the transfer grid and output.
+// Returns the size of the light in a volume: a texel of half floats per voxel of the transfer grid and
+// output.
 std::uint64_t volumeLightBytes(const bundle::Group& group);
 
-// Of a group that is drawn by its capture proxy alone (frame/proxy_lods.hpp), at most.
+// Size limits for a group that is drawn as its capture proxy (surface/proxy_lods.hpp).
 inline constexpr std::uint64_t kProxyLodTriangleBytes = 64, kProxyLodGroupBytes = 208;
+// Returns an upper bound of the memory of such a group.
 std::uint64_t proxyLodBytes(const bundle::Description& description, std::uint32_t group);
 
 struct Needs {
@@ -43,7 +47,7 @@ struct Needs {
 
   std::uint64_t total() const { return geometry + transfer + samples + rows + radiance + volumes; }
 };
-// At most so much: rows are told by their length in the file.
+// Returns upper bounds, since the sizes of rows are derived from their length in the file.
 Needs needsOf(const bundle::Description& description);
 
 }  // namespace lambent::streaming

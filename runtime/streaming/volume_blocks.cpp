@@ -7,7 +7,7 @@ namespace lambent::streaming {
 
 namespace {
 
-// Blocks that a voxel shares in: its own, and the next one where it lies at the border.
+// The blocks that a voxel contributes to: its own, and the adjacent one if it lies at the border.
 struct Blocks {
   std::uint32_t first, last;
 };

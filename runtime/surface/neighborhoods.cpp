@@ -35,14 +35,14 @@ scene::Box boxOf(const bundle::NeighborhoodGrid& grid, bool grown) {
 
 bool hasSurfaces(const bundle::Group& group) {
   return !group.volume && std::ranges::any_of(group.cells, [](const bundle::Cell& cell) {
-    return cell.kind == bundle::CellKind::Surface;
+    return cell.domain == transfer::Domain::Vertex;
   });
 }
 
 // Light of the group's own lamps, if it has any, goes by the grid too.
 bool carriesLamps(const bundle::Group& group) {
   return group.lights.empty() || std::ranges::all_of(group.cells, [](const bundle::Cell& cell) {
-           return cell.kind != bundle::CellKind::Neighborhood ||
+           return cell.domain != transfer::Domain::GridPoint ||
                   std::ranges::any_of(cell.transfers, [](const bundle::CellTransfer& part) {
                     return !part.fromEnvironment();
                   });
@@ -108,8 +108,7 @@ glm::dmat4 worldFromPosition(const World& world, std::size_t draw, const Surface
 Neighborhoods::Neighborhoods() : receivers_table_("neighborhood receivers"), arrivals_table_("arrivals") {}
 
 void Neighborhoods::noticeGrids(const World& world) {
-  if (world.residency().structureVersion() == structure_seen_) return;
-  structure_seen_ = world.residency().structureVersion();
+  if (!structure_changed_.renew(world.residency().structureVersion())) return;
   const auto& groups = world.residency().groups();
   std::map<std::uint64_t, std::uint32_t> now;  // by key
   std::vector<Grid> grids;
@@ -126,7 +125,7 @@ void Neighborhoods::noticeGrids(const World& world) {
       pairs.insert({body_now->second, receiver_now->second});
   }
   pairs_ = std::move(pairs);
-  pairs_changed_ = true;
+  receivers_changed_.forget();
   group_keys_.clear();
   for (std::uint32_t g = 0; g < groups.size(); ++g) group_keys_.push_back(world.keyOf(g));
 }
@@ -165,31 +164,22 @@ void Neighborhoods::chooseCarriers(const World& world, LitScene& scene, bool on)
     }
   }
   counts_.pairs = static_cast<std::uint32_t>(pairs.size());
-  if (pairs != pairs_) pairs_changed_ = true;
+  if (pairs != pairs_) receivers_changed_.forget();
   pairs_ = std::move(pairs);
 }
 
 Result<void> Neighborhoods::update(World& world, const lighting::GroupLights& lights,
-                                   const effects::glossy::Glossy& glossy, effects::diffuse::TransferMode mode,
+                                   const effects::glossy::Glossy& glossy, evaluate::TransferMode mode,
                                    gpu::Counters& counters) {
   if (Result<void> done = effect_.update(world.residency(), lights, glossy, counters); !done) return done;
-  const bool same = !pairs_changed_ && transforms_seen_ == world.transformsVersion() &&
-                    residency_seen_ == world.residency().version() && effect_seen_ == effect_.version() &&
-                    mode_seen_ == mode && keys_seen_ == lights.hasKeys();
-  if (!same) {
-    pairs_changed_ = false;
-    transforms_seen_ = world.transformsVersion();
-    residency_seen_ = world.residency().version();
-    effect_seen_ = effect_.version();
-    mode_seen_ = mode;
-    keys_seen_ = lights.hasKeys();
-    findReceivers(world, mode);
-  }
+  const bool changed = receivers_changed_.renew(world.residency().version(), world.transformsVersion(),
+                                                effect_.version(), mode, lights.hasKeys());
+  if (changed) findReceivers(world, mode, lights.hasKeys());
   if (Result<void> done =
           vertex_receivers_.update(world.residency(), lights, mode, effect_, vertex_draws_, counters);
       !done)
     return done;
-  if (!same) {
+  if (changed) {
     takeReceivers();
     receivers_table_.assign(std::span<const Receiver>(receivers_));
     arrivals_table_.assign(std::span<const Arrival>(arrivals_));
@@ -206,7 +196,7 @@ Result<void> Neighborhoods::update(World& world, const lighting::GroupLights& li
 }
 
 // Which draws receive how; those that do at their vertices have no room there yet.
-void Neighborhoods::findReceivers(const World& world, effects::diffuse::TransferMode mode) {
+void Neighborhoods::findReceivers(const World& world, evaluate::TransferMode mode, bool keys) {
   const auto& draws = world.residency().draws();
   found_.assign(draws.size(),
                 {.first = 0, .count = 0, .change_word = effects::neighborhood::kNoChange, .pad = 0});
@@ -247,8 +237,8 @@ void Neighborhoods::findReceivers(const World& world, effects::diffuse::Transfer
           glm::conjugate(world.rotationOf(grid.group)) * world.rotationOf(draw.group);
       const glm::mat3x4 to_grid(glm::mat4(glm::transpose(grid_from_position)));
       // Volumes have no shadow maps: pixels, which know their key lights, take what volumes leave of these.
-      const bool whole = keys_seen_ && world.residency().groups()[grid.group].volume >= 0;
-      if (!whole && mode != effects::diffuse::TransferMode::Unshadowed && byTransfer(world, d, grid)) {
+      const bool whole = keys && world.residency().groups()[grid.group].volume >= 0;
+      if (!whole && mode != evaluate::TransferMode::Unshadowed && byTransfer(world, d, grid)) {
         at_vertices.from.push_back(
             {.grid = g, .grid_from_position = to_grid, .group_from_body = glm::conjugate(body_from_group)});
         continue;

@@ -22,6 +22,7 @@
 #include <utility>
 #include <vector>
 
+#include "runtime/base/change_gate.hpp"
 #include "runtime/base/result.hpp"
 #include "runtime/effects/glossy/glossy.hpp"
 #include "runtime/effects/neighborhood/neighborhood.hpp"
@@ -57,7 +58,7 @@ class Neighborhoods {
   void chooseCarriers(const World& world, LitScene& scene, bool on = true);
   // After the glossy effect: what was shaded goes into the texture.
   Result<void> update(World& world, const lighting::GroupLights& lights,
-                      const effects::glossy::Glossy& glossy, effects::diffuse::TransferMode mode,
+                      const effects::glossy::Glossy& glossy, evaluate::TransferMode mode,
                       gpu::Counters& counters);
 
   // Whether no grid has become ready since carriers were chosen: else the next step shows it.
@@ -81,7 +82,7 @@ class Neighborhoods {
   std::size_t readyGrids() const;
   void noticeGrids(const World& world);
   void takeReceivers();
-  void findReceivers(const World& world, effects::diffuse::TransferMode mode);
+  void findReceivers(const World& world, evaluate::TransferMode mode, bool keys);
 
   effects::neighborhood::Neighborhood effect_;
   std::set<std::pair<std::uint32_t, std::uint32_t>> pairs_;
@@ -92,10 +93,10 @@ class Neighborhoods {
   gpu::Table receivers_table_, arrivals_table_;
   std::vector<std::uint64_t> group_keys_;  // what indices of groups mean in pairs_
   std::size_t ready_when_chosen_ = 0;
-  effects::diffuse::TransferMode mode_seen_ = effects::diffuse::TransferMode::Full;
-  bool keys_seen_ = false;
-  std::uint64_t structure_seen_ = 0, transforms_seen_ = 0, residency_seen_ = 0, effect_seen_ = 0;
-  bool pairs_changed_ = false, on_ = true;
+  ChangeGate<std::uint64_t> structure_changed_;
+  // Of the residency, transforms and the effect; the mode, whether key lights stand apart.
+  ChangeGate<std::uint64_t, std::uint64_t, std::uint64_t, evaluate::TransferMode, bool> receivers_changed_;
+  bool on_ = true;
   std::uint32_t left_out_ = 0;
   std::uint64_t version_ = 1;
   NeighborhoodCounts counts_;

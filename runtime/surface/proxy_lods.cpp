@@ -172,18 +172,13 @@ void ProxyLods::light(const World& world, const lighting::Environment& environme
 Result<void> ProxyLods::prepare(const World& world, const lighting::Environment& environment,
                                 std::span<const lighting::LocalLight> lights, const ProxyLodOptions& options,
                                 gpu::Counters& counters) {
-  const Seen now{.proxy_lods = world.proxyLodsVersion(),
-                 .lamps = world.lampsVersion(),
-                 .local_lights = world.registry().version<scene::LocalLightComponent>(),
-                 .transforms = world.transformsVersion(),
-                 .environment = environment.version(),
-                 .options = options};
-  if (seen_ == now) return {};
-  const bool others = !seen_ || seen_->proxy_lods != now.proxy_lods;
+  const bool others = proxy_lods_changed_.renew(world.proxyLodsVersion());
   // Emissive triangles follow their lamps, also where these are moved out of their place.
-  const bool follow_anew = others || seen_->lamps != now.lamps || seen_->local_lights != now.local_lights ||
-                           seen_->transforms != now.transforms;
-  seen_ = now;
+  const bool follow_anew =
+      scene_changed_.renew(world.lampsVersion(), world.registry().version<scene::LocalLightComponent>(),
+                           world.transformsVersion()) ||
+      others;
+  if (!light_changed_.renew(environment.version(), options) && !follow_anew) return {};
   if (!others && batches_.empty()) return {};
   if (follow_anew)
     if (Result<void> done = follow(world, counters); !done) return done;
@@ -191,8 +186,8 @@ Result<void> ProxyLods::prepare(const World& world, const lighting::Environment&
   light(world, environment, lights, options, counters);
   if (program_) return {};
   Result<gpu::Program> made = gpu::Program::create(
-      "proxy levels of detail", {{GL_VERTEX_SHADER, "proxy_lod.vert"}, {GL_FRAGMENT_SHADER, "proxy_lod.frag"}}, kShaders,
-      {});
+      "proxy levels of detail",
+      {{GL_VERTEX_SHADER, "proxy_lod.vert"}, {GL_FRAGMENT_SHADER, "proxy_lod.frag"}}, kShaders, {});
   if (!made) return failAgain(made.error());
   program_ = std::move(*made);
   no_vertices_ = gpu::VertexArray("proxy levels of detail");

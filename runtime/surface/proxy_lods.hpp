@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "runtime/base/change_gate.hpp"
 #include "runtime/base/result.hpp"
 #include "runtime/gpu/arena.hpp"
 #include "runtime/gpu/program.hpp"
@@ -57,12 +58,6 @@ class ProxyLods {
     std::vector<GLint> first;
     std::vector<GLsizei> count;
   };
-  // What the tables were made from.
-  struct Seen {
-    std::uint64_t proxy_lods = 0, lamps = 0, local_lights = 0, transforms = 0, environment = 0;
-    ProxyLodOptions options;
-    bool operator==(const Seen&) const = default;
-  };
   // Brings triangles that are new and lets go of others.
   Result<void> follow(const World& world, gpu::Counters& counters);
   Result<void> bring(const World& world, const ProxyLod& proxy_lod, std::uint32_t group,
@@ -79,7 +74,9 @@ class ProxyLods {
   std::map<std::uint32_t, Batch> batches_;                                  // by page
   std::vector<ProxyLodGroup> groups_;                                       // as uploaded
   std::array<sh::CachedWindow, sh::kMaxOrder + 1> windows_;                 // of the environment, by order
-  std::optional<Seen> seen_;
+  ChangeGate<std::uint64_t> proxy_lods_changed_;
+  ChangeGate<std::uint64_t, std::uint64_t, std::uint64_t> scene_changed_;  // lamps, local lights, transforms
+  ChangeGate<std::uint64_t, ProxyLodOptions> light_changed_;
   gpu::Arena triangles_;
   gpu::Table groups_table_, view_;
 };

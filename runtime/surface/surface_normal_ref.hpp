@@ -9,7 +9,7 @@
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
-#include "runtime/effects/diffuse/diffuse_light_ref.hpp"
+#include "runtime/transfer/diffuse_light_ref.hpp"
 
 namespace lambent::frame::ref {
 
@@ -47,6 +47,6 @@ inline glm::vec3 perturbedNormal(const TangentFrame& frame, glm::vec3 texel, flo
   return glm::normalize(bump.x * frame.tangent + bump.y * bitangent + bump.z * frame.normal);
 }
 
-using effects::diffuse::ref::diffuseLight;
+using transfer::ref::diffuseLight;
 
 }  // namespace lambent::frame::ref

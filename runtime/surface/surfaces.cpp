@@ -2,17 +2,14 @@
 
 #include <algorithm>
 #include <cstring>
+#include <utility>
 
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
-#include "lambent_surface_embedded.hpp"
-
 namespace lambent::frame {
 
 namespace {
-
-constexpr gpu::FindText kShaders[] = {&embedded::lambent_surface::find};
 
 struct ViewBlock {
   glm::mat4 view_from_world, clip_from_view;
@@ -44,24 +41,9 @@ Result<Surfaces> Surfaces::create(bool finest_texels) {
   return surfaces;
 }
 
-Result<void> Surfaces::compile(const ProgramKind& kind) {
+Result<void> Surfaces::compile(const SurfaceKind& kind) {
   if (programs_.contains(kind)) return {};
-  std::vector<gpu::Define> defines;
-  if (kind.glossy.bands > 0) defines = definesOf(kind.glossy);
-  if (finest_texels_) defines.push_back({"LAMBENT_FINEST_TEXELS", "1"});
-  if (kind.dark) defines.push_back({"LAMBENT_DARK", "1"});
-  if (kind.normal_mapped) defines.push_back({"LAMBENT_NORMAL_MAPPED", "1"});
-  if (kind.residual) defines.push_back({"LAMBENT_RESIDUAL", "1"});
-  if (kind.local_lit) defines.push_back({"LAMBENT_SHADOWED_LIGHTS", "1"});
-  if (kind.bounces) defines.push_back({"LAMBENT_BOUNCES", "1"});
-  if (kind.key_lit) defines.push_back({"LAMBENT_KEY_LIGHTS", "1"});
-  if (kind.vertices_around) defines.push_back({"LAMBENT_VERTEX_CHANGE", "1"});
-  if (kind.around) defines.push_back({"LAMBENT_NEIGHBORHOODS", "1"});
-  if (kind.view == SurfaceView::Irradiance) defines.push_back({"LAMBENT_VIEW_IRRADIANCE", "1"});
-  if (kind.view == SurfaceView::Normals) defines.push_back({"LAMBENT_VIEW_NORMALS", "1"});
-  Result<gpu::Program> program = gpu::Program::create(
-      "surface", {{GL_VERTEX_SHADER, "surface.vert"}, {GL_FRAGMENT_SHADER, "surface.frag"}}, kShaders,
-      defines);
+  Result<gpu::Program> program = makeSurfaceProgram(kind, modules_, finest_texels_);
   if (!program) return failAgain(program.error());
   programs_.emplace(kind, std::move(*program));
   return {};
@@ -77,8 +59,26 @@ bool Surfaces::ready(const World& world, const effects::diffuse::Diffuse& diffus
   return world.residency().draws()[draw].glossy() ? glossyReady(world, draw) : diffuse.shaded(draw);
 }
 
+SurfaceKind Surfaces::kindOf(const World& world, std::size_t draw) const {
+  const bool other = view_shown_ == SurfaceView::Irradiance || view_shown_ == SurfaceView::Normals;
+  SurfaceKind kind{.view = other ? view_shown_ : SurfaceView::Final};
+  if (dark(world, draw)) {
+    kind.dark = true;
+    return kind;
+  }
+  kind.normal_mapped = normalMapped(world, draw);
+  if (world.residency().draws()[draw].glossy())
+    kind.glossy = glossyKindOf(world, draw, options_.glossy_bands);
+  const SurfaceReceiver receiver = kind.receiver();
+  for (std::size_t m = 0; m < modules_.size(); ++m)
+    if (modules_[m]->reaches(draw, records_[draw]) &&
+        std::ranges::any_of(modules_[m]->functions(),
+                            [&](const SurfaceFunction& f) { return calls(receiver, f.by); }))
+      kind.modules |= bitOf(m);
+  return kind;
+}
+
 void Surfaces::collect(World& world, const effects::diffuse::Diffuse& diffuse, glm::vec3 eye_ws,
-                       const LocalShadows* shadowed_lights, const Neighborhoods* neighborhoods,
                        std::vector<Item>& opaque, std::vector<Item>& blended) {
   const streaming::Residency& residency = world.residency();
   shown_.assign(residency.draws().size(), 0);
@@ -91,22 +91,13 @@ void Surfaces::collect(World& world, const effects::diffuse::Diffuse& diffuse, g
     Item item{.state = {.geometry_page = mesh.block.page,
                         .radiance_page = draw.radiance.page,
                         .textures = texturesOf(world, i, records_[i]),
-                        .normal_mapped = normalMapped(world, i),
-                        .local_lit = shadowed_lights != nullptr && shadowed_lights->lightsOf(i) != 0,
-                        .key_lit = options_.key_lights && records_[i].unlit == 0,
-                        .bounces = records_[i].bounced_word != kAbsent,
-                        .around = neighborhoods != nullptr && neighborhoods->receives(i),
-                        .vertices_around = neighborhoods != nullptr && neighborhoods->receivesAtVertices(i),
+                        .kind = kindOf(world, i),
                         .clockwise = (glm::determinant(glm::mat3(world_from_mesh)) < 0.0f) != draw.back},
               .draw = i,
               .distance = glm::distance(eye_ws, glm::vec3(world_from_mesh * glm::vec4(mesh.center, 1.0f)))};
-    if (dark(world, i)) {
-      item.state.dark = true;
+    if (item.state.kind.dark) {
       item.state.radiance_page = 0;
-      item.state.normal_mapped = item.state.local_lit = item.state.key_lit = item.state.bounces =
-          item.state.around = item.state.vertices_around = false;
     } else if (draw.glossy()) {
-      item.state.glossy = glossyKindOf(world, i, options_.glossy_bands);
       item.state.bundle = draw.bundle;
       item.state.brdf_table = brdfTableOf(world, i);
       item.state.rows_page = draw.rows.page;
@@ -126,57 +117,41 @@ void Surfaces::appendRuns(const World& world, const std::vector<Item>& items, st
     if (runs.empty() || runs.back().state != item.state)
       runs.push_back({item.state, static_cast<std::uint32_t>(commands.size()), 0});
     ++runs.back().command_count;
-    const std::uint32_t record = item.state.glossy.bands > 0 ? glossy_index_[item.draw] : item.draw;
+    const std::uint32_t record = item.state.kind.glossy.bands > 0 ? glossy_index_[item.draw] : item.draw;
     commands.push_back({mesh.index_count, 1, mesh.indices_word, 0, record});
   }
 }
 
 Result<void> Surfaces::prepare(World& world, const effects::diffuse::Diffuse& diffuse, const spec::View& view,
-                               gpu::Counters& counters, const LocalShadows* shadowed_lights,
-                               const lighting::PrefilteredEnvironment* prefiltered_environment,
-                               const Neighborhoods* neighborhoods, const PatchBounces* bounces,
-                               const SurfaceOptions& options) {
-  const bool options_same = options == options_;
-  options_ = options;
-  const bool residual_same = (prefiltered_environment != nullptr) == (prefiltered_environment_ != nullptr);
-  prefiltered_environment_ = prefiltered_environment;
-  neighborhoods_ = neighborhoods;
-  bounces_ = bounces;
+                               const SurfaceInputs& inputs, gpu::Counters& counters) {
+  const bool options_same = std::exchange(options_, inputs.options) == inputs.options;
+  modules_.assign(inputs.modules.begin(), inputs.modules.end());
   const ViewBlock block{view.view_from_world, view.clip_from_view, eyeOf(view)};
   view_.assign(std::span<const ViewBlock>(&block, 1));
   const streaming::Residency& residency = world.residency();
-  std::size_t shaded = 0;
+  std::uint64_t shaded = 0;
   for (std::size_t i = 0; i < residency.draws().size(); ++i) shaded += ready(world, diffuse, i) ? 1 : 0;
-  const std::uint64_t local_version = shadowed_lights != nullptr ? shadowed_lights->version() : 0;
-  const std::uint64_t around_version = neighborhoods != nullptr ? neighborhoods->version() : 0;
-  const std::uint64_t bounces_version = bounces != nullptr ? bounces->layoutVersion() : 0;
-  const bool scene_same = residual_same && options_same && view_shown_ == view_seen_ &&
-                          world.materialsVersion() == materials_seen_ &&
-                          residency.version() == residency_seen_ && local_version == local_seen_ &&
-                          around_version == around_seen_ && bounces_version == bounces_seen_ &&
-                          world.transformsVersion() == transforms_seen_ &&
-                          world.lampsVersion() == lamps_seen_ && shaded == shaded_seen_;
+  std::vector<std::uint64_t> now = {residency.version(),
+                                    world.transformsVersion(),
+                                    world.lampsVersion(),
+                                    world.materialsVersion(),
+                                    shaded,
+                                    static_cast<std::uint64_t>(view_shown_)};
+  for (const SurfaceModule* module : modules_) now.push_back(module->version());
+  const bool scene_same = options_same && now == seen_;
   if (scene_same && (blended_.empty() || view.eye_ws == eye_seen_ws_)) return {};
-  view_seen_ = view_shown_;
-  local_seen_ = local_version;
-  around_seen_ = around_version;
-  bounces_seen_ = bounces_version;
-  residency_seen_ = residency.version();
-  transforms_seen_ = world.transformsVersion();
-  lamps_seen_ = world.lampsVersion();
-  materials_seen_ = world.materialsVersion();
-  shaded_seen_ = shaded;
+  seen_ = std::move(now);
   eye_seen_ws_ = view.eye_ws;
 
   records_.clear();
   for (std::size_t i = 0; i < residency.draws().size(); ++i) {
     records_.push_back(describe(world, i));
-    if (bounces != nullptr) records_.back().bounced_word = bounces->wordOf(i);
+    for (const SurfaceModule* module : modules_) module->describe(i, records_.back());
   }
   glossy_records_.clear();
   glossy_index_.assign(records_.size(), 0);
   std::vector<Item> opaque, blended;
-  collect(world, diffuse, view.eye_ws, shadowed_lights, neighborhoods, opaque, blended);
+  collect(world, diffuse, view.eye_ws, opaque, blended);
   std::stable_sort(opaque.begin(), opaque.end(),
                    [](const Item& a, const Item& b) { return a.state < b.state; });
   std::stable_sort(blended.begin(), blended.end(),
@@ -188,7 +163,7 @@ Result<void> Surfaces::prepare(World& world, const effects::diffuse::Diffuse& di
   appendRuns(world, blended, blended_, commands);
   for (const std::vector<Run>* runs : {&opaque_, &blended_})
     for (const Run& run : *runs)
-      if (Result<void> done = compile(kindOf(run.state)); !done) return done;
+      if (Result<void> done = compile(run.state.kind); !done) return done;
   upload(draws_, records_, records_uploaded_, counters);
   upload(glossy_draws_, glossy_records_, glossy_uploaded_, counters);
   upload(commands_, commands, commands_uploaded_, counters);
@@ -226,28 +201,24 @@ void Surfaces::drawRuns(World& world, const std::vector<Run>& runs, gpu::Counter
   glBindBufferBase(GL_UNIFORM_BUFFER, kBindView, view_.buffer().id());
   glBindBuffer(GL_DRAW_INDIRECT_BUFFER, commands_.buffer().id());
   glEnable(GL_CULL_FACE);  // double-sided surfaces are two draws
-  if (prefiltered_environment_ != nullptr) prefiltered_environment_->bind();
-  if (neighborhoods_ != nullptr) neighborhoods_->bind();
   for (const Run& run : runs) {
     const gpu::Buffer& geometry = world.residency().geometry().page(run.state.geometry_page);
     geometry.bindStorage(kBindGeometry);
     indices_.bind(geometry);
-    programs_.at(kindOf(run.state)).use();
+    const SurfaceKind& kind = run.state.kind;
+    programs_.at(kind).use();
     units_.bind(world, run.state.textures);
-    if (run.state.glossy.bands > 0) {
-      glossy_draws_.bindStorage(kBindDraws);
+    const bool glossy = isGlossy(kind.receiver());
+    (glossy ? glossy_draws_ : draws_).bindStorage(kBindDraws);
+    if (glossy) {
       world.residency().rows().page(run.state.rows_page).bindStorage(kBindRows);
       world.residency().samples().page(run.state.samples_page).bindStorage(kBindSamples);
       units_.bindGlossy(world, run.state.textures, run.state.bundle, run.state.brdf_table);
-    } else if (run.state.dark) {
-      draws_.bindStorage(kBindDraws);
-    } else {
-      draws_.bindStorage(kBindDraws);
+    } else if (!kind.dark) {
       world.residency().radiance().page(run.state.radiance_page).bindStorage(kBindRadiance);
-      if (run.state.vertices_around) neighborhoods_->bindVertices();
     }
-    if (run.state.bounces)
-      bounces_->bindStorage(run.state.glossy.bands > 0 ? kBindGlossyBounced : kBindBounced);
+    for (std::size_t m = 0; m < modules_.size(); ++m)
+      if ((kind.modules & bitOf(m)) != 0) modules_[m]->bind(kind.receiver());
     glFrontFace(run.state.clockwise ? GL_CW : GL_CCW);
     DrawIndices::draw(run.first_command, run.command_count, counters);
   }

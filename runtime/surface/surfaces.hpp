@@ -7,24 +7,24 @@
 #pragma once
 
 #include <compare>
+#include <cstdint>
 #include <map>
+#include <span>
 #include <vector>
 
 #include <glm/vec3.hpp>
 
 #include "runtime/base/result.hpp"
-#include "runtime/bounces/patch_bounces.hpp"
 #include "runtime/draws/draw_indices.hpp"
 #include "runtime/draws/glossy_record.hpp"
+#include "runtime/draws/surface_module.hpp"
 #include "runtime/draws/surface_record.hpp"
 #include "runtime/draws/surface_shared.h"
 #include "runtime/draws/texture_units.hpp"
 #include "runtime/effects/diffuse/diffuse.hpp"
 #include "runtime/gpu/program.hpp"
-#include "runtime/lighting/prefiltered_environment.hpp"
-#include "runtime/shadows/local_shadows.hpp"
 #include "runtime/spec/camera.hpp"
-#include "runtime/surface/neighborhoods.hpp"
+#include "runtime/surface/surface_program.hpp"
 #include "runtime/surface/views.hpp"
 #include "runtime/world/world.hpp"
 
@@ -33,8 +33,12 @@ namespace lambent::frame {
 struct SurfaceOptions {
   bool diffuse = true, glossy = true;  // off: such surfaces reflect nothing
   std::uint32_t glossy_bands = 8;      // that glossy ones reflect, at most
-  bool key_lights = false;             // KeyShadows are bound when surfaces are drawn
   bool operator==(const SurfaceOptions&) const = default;
+};
+
+struct SurfaceInputs {
+  SurfaceOptions options{};
+  std::span<const SurfaceModule* const> modules{};
 };
 
 class Surfaces {
@@ -42,15 +46,10 @@ class Surfaces {
   // finest_texels: textures at their full resolution, for pictures of one ray per pixel.
   static Result<Surfaces> create(bool finest_texels);
 
-  // Brings draw records and commands up to date. With local lights, these must be updated before and bound
-  // when it draws. With a prefiltered environment, glossy surfaces add what their few bands of light leave
-  // out; it must live until they are drawn; with neighborhoods, draws receive what bodies around change,
-  // likewise, and with bounces what patches send on.
+  // Brings draw records and commands up to date. The modules must live until surfaces are drawn, and be the
+  // same ones in the same order in each frame.
   Result<void> prepare(World& world, const effects::diffuse::Diffuse& diffuse, const spec::View& view,
-                       gpu::Counters& counters, const LocalShadows* shadowed_lights = nullptr,
-                       const lighting::PrefilteredEnvironment* prefiltered_environment = nullptr,
-                       const Neighborhoods* neighborhoods = nullptr, const PatchBounces* bounces = nullptr,
-                       const SurfaceOptions& options = {});
+                       const SurfaceInputs& inputs, gpu::Counters& counters);
   // Whether the last prepare() took the draw into the picture.
   bool shows(std::size_t draw) const { return draw < shown_.size() && shown_[draw] != 0; }
   // What surfaces show from the next prepare() on: Irradiance and Normals have programs of their own,
@@ -64,16 +63,11 @@ class Surfaces {
   struct State {
     std::uint32_t geometry_page = 0, radiance_page = 0;
     SurfaceTextures textures = {};
+    SurfaceKind kind = {};
     // Of glossy draws.
-    GlossyKind glossy = {};
     std::uint32_t bundle = 0, rows_page = 0, samples_page = 0;
     std::int32_t brdf_table = -1;
-    bool normal_mapped = false;
-    bool dark = false;  // reflects nothing
-    bool local_lit = false, key_lit = false, bounces = false;
-    bool around = false;           // receives from neighborhoods, per pixel
-    bool vertices_around = false;  // and at its vertices
-    bool clockwise = false;        // which winding is seen
+    bool clockwise = false;  // which winding is seen
     auto operator<=>(const State&) const = default;
   };
   struct Run {
@@ -87,34 +81,10 @@ class Surfaces {
   };
 
   Surfaces();
-  // What a program is compiled for.
-  struct ProgramKind {
-    bool normal_mapped = false, dark = false, local_lit = false, key_lit = false, bounces = false,
-         around = false, vertices_around = false;
-    GlossyKind glossy = {};
-    bool residual = false;
-    SurfaceView view = SurfaceView::Final;
-    auto operator<=>(const ProgramKind&) const = default;
-  };
-  ProgramKind kindOf(const State& state) const {
-    const bool other = view_shown_ == SurfaceView::Irradiance || view_shown_ == SurfaceView::Normals;
-    return {.normal_mapped = state.normal_mapped,
-            .dark = state.dark,
-            .local_lit = state.local_lit,
-            .key_lit = state.key_lit,
-            .bounces = state.bounces,
-            .around = state.around,
-            .vertices_around = state.vertices_around,
-            .glossy = state.glossy,
-            .residual = !other && prefiltered_environment_ != nullptr && state.glossy.bands > 0 &&
-                        state.glossy.family != bundle::BrdfFamily::Measured,
-            .view = other ? view_shown_ : SurfaceView::Final};
-  }
-  Result<void> compile(const ProgramKind& kind);
   bool dark(const World& world, std::size_t draw) const;
   bool ready(const World& world, const effects::diffuse::Diffuse& diffuse, std::size_t draw) const;
+  SurfaceKind kindOf(const World& world, std::size_t draw) const;
   void collect(World& world, const effects::diffuse::Diffuse& diffuse, glm::vec3 eye_ws,
-               const LocalShadows* shadowed_lights, const Neighborhoods* neighborhoods,
                std::vector<Item>& opaque, std::vector<Item>& blended);
   void appendRuns(const World& world, const std::vector<Item>& items, std::vector<Run>& runs,
                   std::vector<DrawCommand>& commands) const;
@@ -122,10 +92,11 @@ class Surfaces {
   template <typename Record>
   static void upload(gpu::Table& table, const std::vector<Record>& records, std::vector<Record>& uploaded,
                      gpu::Counters& counters);
+  Result<void> compile(const SurfaceKind& kind);
   void drawRuns(World& world, const std::vector<Run>& runs, gpu::Counters& counters);
 
   bool finest_texels_ = false;
-  std::map<ProgramKind, gpu::Program> programs_;  // as they were first needed
+  std::map<SurfaceKind, gpu::Program> programs_;  // as they were first needed
   TextureUnits units_;
   DrawIndices indices_;
   gpu::Table draws_, glossy_draws_, commands_, view_;
@@ -136,15 +107,10 @@ class Surfaces {
   SurfaceOptions options_;
   std::vector<std::uint32_t> glossy_index_;  // of a draw among them
   std::vector<Run> opaque_, blended_;
-  std::uint64_t residency_seen_ = 0, transforms_seen_ = 0, lamps_seen_ = 0, local_seen_ = 0, around_seen_ = 0,
-                materials_seen_ = 0, bounces_seen_ = 0;
-  std::size_t shaded_seen_ = 0;
+  std::vector<const SurfaceModule*> modules_;  // of this frame
+  std::vector<std::uint64_t> seen_;            // versions of all that records and commands depend on
   glm::vec3 eye_seen_ws_{0.0f};
-  SurfaceView view_shown_ = SurfaceView::Final, view_seen_ = SurfaceView::Final;
-  const lighting::PrefilteredEnvironment* prefiltered_environment_ =
-      nullptr;                                    // of this frame; null: no residual
-  const Neighborhoods* neighborhoods_ = nullptr;  // of this frame
-  const PatchBounces* bounces_ = nullptr;         // likewise
+  SurfaceView view_shown_ = SurfaceView::Final;
 };
 
 }  // namespace lambent::frame

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "runtime/effects/diffuse/transfer_measures.hpp"
+#include "runtime/transfer/transfer_measures.hpp"
 
 namespace lambent::frame {
 
@@ -61,12 +61,12 @@ ViewLegend legendOf(const ViewChoice& choice, float largest_error) {
   switch (choice.view) {
     case SurfaceView::TransferDc:
       legend.unit = "E/pi of the light y_00";
-      legend.max = effects::diffuse::openDc();
+      legend.max = transfer::openDc();
       break;
     case SurfaceView::TransferBand:
       legend.name = fmt::format("Transfer, band {}", choice.band);
       legend.unit = "squared E/pi, mean over channels";
-      legend.max = effects::diffuse::usualBandEnergy(choice.band);
+      legend.max = transfer::usualBandEnergy(choice.band);
       break;
     case SurfaceView::ErrorEstimate:
       legend.unit = "relative RMS";

@@ -1,4 +1,4 @@
-// The linear picture that is read, with LAMBENT_SAMPLES samples a pixel (0: a plain texture).
+// Reads the linear picture with LAMBENT_SAMPLES samples per pixel (0: a plain texture).
 #ifdef LAMBENT_SAMPLES
 layout(binding = 0) uniform sampler2DMS hdr;
 const int kSamples = LAMBENT_SAMPLES;
@@ -12,7 +12,7 @@ vec4 hdrAt(ivec2 pixel, int index) { return texelFetch(hdr, pixel, 0); }
 #endif
 
 struct Exposure {
-  float scale;                // what radiance is multiplied by before the curve
-  uint negative_pixels;       // covered pixels with a channel below zero, before clamping
+  float scale;                // factor on radiance before the curve
+  uint negative_pixels;       // covered pixels with a negative channel before clamping
 };
 layout(std430, binding = 0) buffer ExposureBuffer { Exposure exposure; };

@@ -1,12 +1,13 @@
-// Automatic exposure: the mean of luminance over what the scene covers (over all, if it covers nothing) goes to a middle
-// grey. The mean is that of square roots: a geometric mean follows black corners, a plain one follows highlights. One
-// work group looks at 64 x 64 places of the picture.
+// Computes the automatic exposure: the mean luminance over what the scene covers (over the whole picture if
+// it covers nothing) becomes a middle grey. The mean is that of square roots: a geometric mean follows black
+// corners, an arithmetic one follows highlights. One work group samples 64 x 64 places of the picture.
 #include "hdr_input.glsl"
 
 layout(local_size_x = 16, local_size_y = 16) in;
-layout(location = 0) uniform float manual_scale;  // used as it is where it is above zero
+layout(location = 0) uniform float manual_scale;  // used as the factor if above zero
 
-const float kMiddleGrey = 0.26;  // of the curve's white; chosen by eye on scans and rooms under the shared probes
+const float kMiddleGrey = 0.26;  // share of the curve's white; chosen by eye on scans and rooms under the
+                                 // shared environment maps
 const int kGrid = 64;
 shared vec4 sums[256];  // covered: sum, count; all: sum, count
 

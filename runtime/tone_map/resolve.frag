@@ -1,13 +1,15 @@
-// The last pass: counts negative pixels and makes the picture that is looked at: clamped, exposed, through a tone
-// curve, sRGB-coded (sample by sample, so that edges against bright sky stay smooth); or linear as it is, signs and all.
+// Is the last pass: it counts negative pixels and makes the displayed picture: clamped, exposed, through a
+// tone curve, sRGB-coded (sample by sample, so that edges against bright sky stay smooth); or it leaves
+// linear values as they are, with their sign.
 #include "hdr_input.glsl"
 #include "tone_curve.glsl"
 
-layout(location = 0) uniform uint as_is;  // 1: colours, not light
+layout(location = 0) uniform uint as_is;  // 1: the input holds colours, not light
 layout(location = 0) out vec4 color;
 
-// Ringing can leave single channels below zero. Cutting those off alone would turn a dark grey into a saturated blue:
-// the colour moves towards its own luminance instead, until the lowest channel is 0; without luminance it is black.
+// Ringing can make single channels negative. Clipping only those would turn a dark grey into a saturated
+// blue, so the colour moves towards its own luminance until the lowest channel is 0; without luminance it
+// becomes black.
 vec3 withoutNegatives(vec3 linear) {
   float low = min(linear.r, min(linear.g, linear.b));
   if (low >= 0.0) return linear;
@@ -24,9 +26,10 @@ void main() {
     vec4 linear = hdrAt(pixel, i);
     negative = negative || (linear.a > 0.0 && any(lessThan(linear.rgb, vec3(0.0))));
 #ifdef LAMBENT_LINEAR
-    sum += linear;  // signed: pictures are compared against references that are, and clamping would look like an error
+    sum += linear;  // signed: pictures are compared with signed references, and clamping would look like an
+                    // error
 #else
-    vec3 shown = max(withoutNegatives(linear.rgb), vec3(0.0));  // max: rounding
+    vec3 shown = max(withoutNegatives(linear.rgb), vec3(0.0));  // max removes rounding errors
     vec3 mapped = as_is != 0u ? shown : toneCurve(exposure.scale * min(shown, vec3(kLargest)));
     sum += vec4(srgbFromLinear(mapped), 1.0);
 #endif

@@ -1,10 +1,11 @@
-// From exposed linear colours to those that are looked at.
+// Turns exposed linear colours into display colours.
 
-const float kLargest = 65504.0;  // brighter suns are infinite in half floats, and the curve would make NaN of that
+const float kLargest = 65504.0;  // a brighter sun is infinite in half floats, and the curve would turn that
+                                 // into NaN
 
-// Khronos PBR Neutral: colours up to 0.76 pass almost unchanged (4 % are taken off as the specular part that it is
-// meant for and Lambert lacks: here that only deepens blacks), brighter ones are compressed and drift to white.
-// https://github.com/KhronosGroup/ToneMapping/blob/main/PBR_Neutral/README.md
+// The Khronos PBR Neutral curve passes colours up to 0.76 almost unchanged (it subtracts 4 % for a specular
+// part, which Lambert surfaces lack; here that only deepens blacks), and compresses brighter ones towards
+// white. https://github.com/KhronosGroup/ToneMapping/blob/main/PBR_Neutral/README.md
 vec3 toneCurve(vec3 linear) {
   const float kStart = 0.8 - 0.04, kDesaturation = 0.15;
   float low = min(linear.r, min(linear.g, linear.b));
@@ -18,7 +19,7 @@ vec3 toneCurve(vec3 linear) {
   return mix(mapped, vec3(new_peak), to_white);
 }
 
-// IEC 61966-2-1.
+// Applies the sRGB transfer function (IEC 61966-2-1).
 vec3 srgbFromLinear(vec3 linear) {
   vec3 low = 12.92 * linear, high = 1.055 * pow(max(linear, vec3(0.0031308)), vec3(1.0 / 2.4)) - 0.055;
   return mix(high, low, lessThanEqual(linear, vec3(0.0031308)));

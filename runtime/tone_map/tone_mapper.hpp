@@ -1,7 +1,7 @@
-// From linear radiance to the picture that is looked at or written: meters the exposure, counts and clamps
-// negative pixels, applies the tone curve and sRGB coding, or leaves values linear for EXR. Reads a colour
-// texture with any number of samples a pixel; writes the framebuffer that is bound. Errors: shaders that do
-// not compile.
+// Turns linear radiance into the picture that is shown or written: it meters the exposure, counts and clamps
+// negative pixels, and applies the tone curve and sRGB coding, or leaves values linear for EXR. It reads a
+// colour texture with any number of samples per pixel and writes the bound framebuffer. Render thread only.
+// create() fails if a shader does not compile.
 #pragma once
 
 #include <cstdint>
@@ -15,17 +15,18 @@ namespace lambent::frame {
 
 class ToneMapper {
  public:
-  // linear: no exposure, no curve, alpha kept.
+  // `linear` pictures have no exposure and no curve, and keep alpha.
   static Result<ToneMapper> create(std::uint32_t samples, bool linear);
 
-  // exposure_ev: stops above radiance 1 = white; none: metered from the picture. as_is: what is there are
-  // colours, not light; they are coded and nothing else. Linear pictures are always so.
+  // exposure_ev is in stops above "radiance 1 is white"; without it, exposure is metered from the picture. If
+  // as_is is set, the texture holds colours instead of light, which are only sRGB coded. A linear picture
+  // ignores both.
   void run(const gpu::Texture& hdr, std::optional<float> exposure_ev, gpu::Counters& counters,
            bool as_is = false);
-  // What the last run multiplied radiance with, as Exposure of hdr_input.glsl.
+  // Binds the factor on radiance of the last run, as the block Exposure of hdr_input.glsl.
   void bindExposure(GLuint binding) const { exposure_.bindStorage(binding); }
 
-  // Of the last run; wait for the GPU.
+  // Return values of the last run; both wait for the GPU.
   std::uint32_t negativePixels() const;
   float exposureEv() const;
 

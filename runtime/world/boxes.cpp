@@ -31,7 +31,7 @@ Placed place(const scene::Box& box, const glm::mat4& world_from_box, const glm::
   return placed;
 }
 
-// Strictly: boxes that touch are not apart.
+// Returns whether the axis separates the boxes. Boxes that touch are not separated.
 bool apart(const Placed& a, const Placed& b, const glm::dvec3& axis) {
   double a_low = std::numeric_limits<double>::infinity(), a_high = -a_low, b_low = a_low, b_high = -a_low;
   for (std::size_t corner = 0; corner < 8; ++corner) {

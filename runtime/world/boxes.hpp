@@ -1,4 +1,4 @@
-// Whether two boxes that stand anywhere in the world have a point in common.
+// Tells whether two boxes placed anywhere in the world overlap.
 #pragma once
 
 #include <glm/mat4x4.hpp>
@@ -7,8 +7,9 @@
 
 namespace lambent::frame {
 
-// A box and where its frame stands; affine. Empty boxes meet nothing. Exact but for rounding: separating axes
-// (Gottschalk, Lin and Manocha 1996), of parallelepipeds, so that any affine placement will do.
+// Returns whether the boxes have a point in common; empty boxes never do. The placements may be any affine
+// transforms, because the test uses separating axes of parallelepipeds (Gottschalk, Lin and Manocha 1996). It
+// is exact but for rounding.
 bool meet(const scene::Box& a, const glm::mat4& world_from_a, const scene::Box& b,
           const glm::mat4& world_from_b);
 

@@ -18,7 +18,7 @@ std::string changedReflection(const gltf::Material& a, const gltf::Material& b) 
   return changed;
 }
 
-// By the same rule as glossy_record.cpp chooses.
+// Follows the rule by which glossy_record.cpp chooses a table.
 bool tableMissing(const gltf::Material& material, const std::vector<bundle::BrdfFamily>& tables) {
   using Family = bundle::BrdfFamily;
   const Family family = bundle::brdfFamilyOf(material);
@@ -40,10 +40,9 @@ MaterialUse materialUse(const bundle::Description& description, std::uint32_t ma
     const std::int32_t of_draw = description.meshes[draw.mesh].primitives[draw.primitive].material;
     if (of_draw != static_cast<std::int32_t>(material)) continue;
     const bundle::Group& group = description.groups[draw.group];
-    if (draw.glossy())
-      use.glossy = true;
-    else
-      (draw.outputs > 1 ? use.normal_mapped : use.matte) = true;
+    use.glossy |= draw.glossy();
+    use.normal_mapped |= draw.form() == transfer::Form::NormalMapped;
+    use.diffuse |= draw.form() == transfer::Form::Vector;
     for (const bundle::Cell& cell : group.cells)
       for (const bundle::CellTransfer& transfer : cell.transfers)
         use.bounces |= transfer.shape.full_channels > 0;
@@ -71,8 +70,8 @@ std::vector<RebakeReason> needsRebake(const gltf::Material& now, const gltf::Mat
         now.alpha_mode == gltf::AlphaMode::Mask ? "The cut-outs of its baked shadow stay as they were."
                                                 : "Its baked shadow stays as it was.");
   if (const std::string field = changedReflection(now, baked); !field.empty()) {
-    if ((use.matte || use.normal_mapped) && now.matte() != baked.matte())
-      add(field, false, "It was baked as a matte surface: roughness and metal show only after a rebake.");
+    if ((use.diffuse || use.normal_mapped) && now.isDiffuse() != baked.isDiffuse())
+      add(field, false, "It was baked as a diffuse surface: roughness and metal show only after a rebake.");
     if (use.glossy) {
       if (tableMissing(now, use.tables))
         add(now.brdf >= 0 ? "brdf" : "anisotropy", false,
@@ -82,11 +81,11 @@ std::vector<RebakeReason> needsRebake(const gltf::Material& now, const gltf::Mat
                 : "The bundle has only measured tables: factors of the material show only after a rebake.");
       if (use.bounces || use.seen)
         add(field, true, "Light that bounces off it still does so as it was baked.");
-      if (now.matte())
-        add(field, true, "It is matte now, and still shaded by the few bands of a glossy surface.");
+      if (now.isDiffuse())
+        add(field, true, "It is diffuse now, and still shaded by the few bands of a glossy surface.");
     }
   }
-  if (now.normal_scale != baked.normal_scale && now.normal_texture.texture >= 0 && use.matte)
+  if (now.normal_scale != baked.normal_scale && now.normal_texture.texture >= 0 && use.diffuse)
     add("normal_scale", false, "It was baked without its normal map: bumps show only after a rebake.");
   if (now.emissive != baked.emissive && !use.lamp)
     add("emission", true, "What it gives off can be seen, but lights nothing before a rebake.");

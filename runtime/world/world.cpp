@@ -23,7 +23,7 @@ ecs::Entity lampOf(const bundle::Description& description, const scene::SceneIns
   return {};
 }
 
-// What a light column of a group is multiplied with. A lamp that was taken out of the scene is dark.
+// Returns the factor on a light column of a group. A lamp that was removed from the scene is dark.
 glm::vec3 radianceOf(const ecs::Registry& registry, ecs::Entity entity) {
   if (const auto* material = registry.tryGet<scene::LampComponent>(entity)) return material->radiance();
   const auto* lamp = registry.tryGet<scene::LocalLightComponent>(entity);
@@ -115,7 +115,7 @@ bool World::inPlace(std::uint32_t slot, std::uint32_t group, std::size_t column)
   const auto* rigid = rigidGroup(slot, group);
   if (!now || !rigid) return false;
   const glm::mat4 expected = rigid->world_from_rest * bundle.world_from_node_at_rest[light.index];
-  // Rounding of matrices that were composed another way round.
+  // Matrices that were composed in another order differ by rounding.
   constexpr float kTolerance = 1e-4f;
   const scene::Box bounds{described.bounds_min, described.bounds_max};
   const float size = bounds.empty() ? 0.0f : bounds.radius();

@@ -1,9 +1,9 @@
-// The bundles that are shown: their readers, loaders, entities and what of them is on the GPU. open() makes a
-// bundle's entities at once and starts loading; upload() brings over what has arrived, within a budget;
-// groups and draws are then asked for in the order of the residency's tables. A bundle keeps its slot until
-// it is closed; replace() brings another file beside it and swaps that in when it is whole. Render thread
-// only. What goes wrong with a bundle while it loads is told by status() and errors(), and the others are
-// shown.
+// Owns the bundles that are shown: their readers, loaders and entities, and what of them is on the GPU.
+// open() creates a bundle's entities at once and starts loading; upload() brings over what has arrived,
+// within a budget. Groups and draws are numbered in the order of the residency's tables. A bundle keeps its
+// slot until it is closed; replace() loads another file beside it and swaps that in when it is complete.
+// Render thread only. Errors of a bundle that occur while it loads are reported by status() and errors(), and
+// the other bundles are still shown.
 #pragma once
 
 #include <chrono>
@@ -32,22 +32,22 @@
 namespace lambent::frame {
 
 struct WorldOptions {
-  // Of GPU memory that the bundles may take together; what the camera sees large comes first (interest.hpp).
-  // Beside that lie only a replacement on its way, a texture while it becomes finer, and the surfaces of one
-  // bundle that are more by themselves.
+  // The bundles may take this much GPU memory together; what the camera sees large comes first
+  // (interest.hpp). Only a replacement being loaded, a texture while it gets finer levels, and a single
+  // bundle whose surfaces alone exceed the limit come on top.
   std::uint64_t max_resident_bytes = ~std::uint64_t{0};
 };
 
-// How much of the bundles has been brought.
+// States how much of the bundles has been loaded.
 struct LoadedParts {
   std::uint64_t bytes_loaded = 0, bytes_in_bundles = 0;  // of the files
   std::uint64_t planes_resident = 0, planes_in_bundles = 0;
 };
 
 struct OpenOptions {
-  // What StableIds call the bundle by, whatever file it is in; empty: its path.
+  // This is the name of the bundle in StableIds, whatever file it is in. If empty, it is the path.
   std::string bundle_id{};
-  // Of those with the same id; none: the first that is free.
+  // This is the number among bundles with the same id. Without it, the first free one is taken.
   std::optional<std::uint32_t> instance{};
 };
 
@@ -55,16 +55,16 @@ struct BundleStatus {
   enum class State {
     Closed,
     Loading,
-    Partial,  // all that there is room for is here
+    Partial,  // everything that fits into the memory is here
     Whole,
-    Damaged  // what came before the error is shown
+    Damaged  // what arrived before the error is shown
   };
   State state = State::Closed;
   std::filesystem::path path;  // of what is shown
   std::string bundle_id;
   std::uint32_t instance = 0;
-  std::filesystem::path replacement;  // on its way; empty: none
-  std::optional<Error> error;         // of what is shown, else of the last replacement, which was given up
+  std::filesystem::path replacement;  // being loaded; empty: none
+  std::optional<Error> error;         // of what is shown; otherwise of the last failed replacement
 };
 
 struct BundleError {
@@ -72,40 +72,41 @@ struct BundleError {
   Error error;
 };
 
-// How a bundle is in the picture.
+// States how a bundle appears in the picture.
 enum class Shown : std::uint8_t {
   Nothing,
-  ProxyLod,  // its groups as others see them: a few triangles, without shadows
-  Partly,    // its surfaces, of whose transfer something is missing
+  ProxyLod,  // its groups as capture proxies: a few triangles without shadows
+  Partly,    // its surfaces, but part of their transfer is missing
   Full
 };
 
 struct BundleStreaming {
   std::uint32_t bundle = 0;
   std::string name;  // of the file
-  // Of GPU memory: all of it, what is wanted now, what is here.
+  // These state the GPU memory for everything, for what is wanted now, and for what is here.
   std::uint64_t whole_bytes = 0, wanted_bytes = 0, resident_bytes = 0;
-  float size = 0.0f;  // as the camera sees it: what is larger comes first
+  float size = 0.0f;  // as seen by the camera; larger bundles come first
   BundleStatus::State state = BundleStatus::State::Closed;
   Shown shown = Shown::Nothing;
 };
 
 struct StreamingStatus {
-  std::uint64_t budget_bytes = 0;    // all bits: without limit
-  std::uint64_t resident_bytes = 0;  // proxy levels of detail among them
+  std::uint64_t budget_bytes = 0;    // all bits set: unlimited
+  std::uint64_t resident_bytes = 0;  // includes proxy levels of detail
   std::uint64_t proxy_lod_bytes = 0;
-  std::uint32_t queued = 0;  // items that are wanted and not here
+  std::uint32_t queued = 0;  // wanted items that are not here yet
   std::uint64_t in_flight_bytes = 0;
-  double megabytes_per_s = 0.0;  // over the last second or so
+  double megabytes_per_s = 0.0;  // over about the last second
   std::vector<BundleStreaming> bundles;
 
   std::size_t count(Shown shown) const;
 };
 
-// A bundle whose surfaces are not here: by group, as others see it; none: nothing to see.
+// Describes a bundle whose surfaces are not here, as capture proxies indexed by group. A group without a
+// proxy shows nothing.
 struct ProxyLod {
   std::uint32_t bundle = 0;
-  std::uint64_t id = 0;  // of these proxies; no others ever have it
+  std::uint64_t id = 0;  // of this set of proxies; never reused
   std::span<const std::optional<bundle::CaptureProxy>> proxies;
 };
 
@@ -113,81 +114,82 @@ class World {
  public:
   explicit World(const WorldOptions& options = {}) : max_resident_bytes_(options.max_resident_bytes) {}
 
-  // Returns the bundle's slot: the first that is free. Errors: a file that is no bundle; nothing has changed
-  // then.
+  // Opens a bundle and returns its slot, the first free one. Fails if the file is not a bundle; nothing
+  // changes then.
   Result<std::uint32_t> open(const std::filesystem::path& path, const OpenOptions& options = {});
-  // Its entities, its memory and what was on its way. Others keep their slots.
+  // Removes the bundle's entities, its memory and what was being loaded. Other bundles keep their slots.
   void close(std::uint32_t bundle);
-  // Shows what is in this file in the place of the bundle, once all of it is here, in one frame; until then
-  // the old one stays, and for good if the file turns out damaged. What was changed by hand stays
-  // (exchange.hpp), and entities that are in both stay the same. Whatever else was to replace the bundle is
-  // given up. Errors: a file that is no bundle; also in status().
+  // Shows this file in place of the bundle, in one frame, once all of it is here. Until then the old one
+  // stays, and it stays for good if the file turns out damaged. Changes made by hand are kept (exchange.hpp),
+  // and entities that occur in both stay the same. An earlier replacement still being loaded is cancelled.
+  // Fails if the file is not a bundle, which status() then reports too.
   Result<void> replace(std::uint32_t bundle, const std::filesystem::path& path);
 
-  // Slots, closed ones among them: these have no description and no instance.
+  // Returns the number of slots, including closed ones, which have no description and no instance.
   std::size_t bundleCount() const { return bundles_.size(); }
   bool isOpen(std::uint32_t bundle) const { return bundle < bundles_.size() && bundles_[bundle].has_value(); }
   BundleStatus status(std::uint32_t bundle) const;
   std::vector<BundleError> errors() const;
 
-  // From where the world is seen: what is larger in sight is brought first, and stays where there is no room
-  // for all. Without it all bundles are alike.
+  // Sets the view that decides what is loaded first, and what is kept when there is not room for everything:
+  // what looks larger. Without it all bundles are equal.
   void look(const spec::View& view) { view_ = view; }
   StreamingStatus streaming() const;
 
-  // Where room is limited, surfaces are shown from when all of a bundle's are here, and something stands in
-  // for them until then: never both. Valid until the world changes.
+  // Returns what stands in for surfaces. With limited memory, surfaces are shown once all of a bundle's are
+  // here, and a proxy level of detail until then, never both. Valid until the world changes.
   std::vector<ProxyLod> proxyLods() const;
-  // Rises when others stand in.
+  // Rises when the set of stand-ins changes.
   std::uint64_t proxyLodsVersion() const { return proxy_lods_version_; }
   bool showsSurfaces(std::uint32_t bundle) const;
 
-  // Up to about `budget_bytes` of what is ready; never waits.
+  // Uploads up to about `budget_bytes` of what is ready. Never waits.
   Result<void> upload(std::uint64_t budget_bytes, gpu::Counters& counters);
-  // Waits until everything is resident that there is room for, and every replacement is shown. Errors: the
-  // first of errors(), after all else has come.
+  // Waits until everything that there is room for is resident and every replacement is shown. Fails with the
+  // first of errors(), after everything else has arrived.
   Result<void> uploadAll(gpu::Counters& counters);
-  // Nothing is on its way.
+  // Returns whether nothing is being loaded.
   bool loaded() const;
   LoadedParts loadedParts() const;
 
   void updateTransforms();
-  // All animations of the bundles, before updateTransforms.
+  // Plays all animations of the bundles. Call it before updateTransforms().
   void playAnimations(float seconds);
   void setAnimationTime(float time_s);
   std::uint64_t transformsVersion() const { return registry_.version<scene::WorldTransform>(); }
 
-  // Takes over what was changed in MaterialComponents; each that was touched gives a new version.
+  // Takes over changes of MaterialComponents. Each component that was touched gives a new version.
   void updateMaterials();
   std::uint64_t materialsVersion() const { return materials_version_; }
-  // As it is now, and as the bundle was baked with; of draws without a material glTF's default.
+  // Return the material as it is now and as it was baked; for draws without a material, glTF's default.
   const gltf::Material& material(std::size_t draw) const;
   const gltf::Material& bakedMaterial(std::size_t draw) const;
 
-  // In the order of residency().groups() and draws().
-  // By which a group is known: that of a replaced bundle has the key of the one whose entity it shares, and
-  // no other group ever has it.
+  // Groups and draws below are indices into residency().groups() and draws().
+  //
+  // Returns the key that identifies a group. A group of a replacement has the key of the group whose entity
+  // it takes over; otherwise keys are unique.
   std::uint64_t keyOf(std::size_t group) const;
-  // Where the group's frame stands now, with scale if it has any since it was baked.
+  // Returns the current placement of the group's frame, with any scale that it was given since the bake.
   glm::mat4 worldFromGroup(std::size_t group) const;
-  // Of a group of a bundle's description, resident or not: the same.
+  // Returns the same for a group of a bundle's description, resident or not.
   glm::mat4 worldFromGroup(std::uint32_t bundle, std::uint32_t group) const;
-  // Group frame, as baked.
+  // Returns the bounds in the group's frame, as baked.
   const scene::Box& groupBounds(std::size_t group) const { return group_bounds_[group]; }
-  // What the group's own lights give now, by light column. A lamp that was moved out of its place in the
-  // group gives nothing here: its column no longer holds.
+  // Returns the current strength of the group's own lights, by light column. A lamp that was moved from its
+  // place in the group gives 0 here, because its column is no longer valid.
   std::vector<glm::vec3> lampsOf(std::size_t group) const;
   std::vector<glm::vec3> lampsOf(std::uint32_t bundle, std::uint32_t group) const;
-  // Whether the light is one of the group's own and stands in its place.
+  // Returns whether the light is one of the group's own and stands in its place.
   bool litByColumn(std::size_t group, ecs::Entity light) const;
   glm::quat rotationOf(std::size_t group) const;
   glm::mat4 worldFromMesh(std::size_t draw) const;
-  // Radiance that the draw's material gives off now, before its texture: its lamp's where it is one in its
-  // group, else the material's own.
+  // Returns the current radiance emitted by the draw's material, before its texture: that of its lamp if it
+  // is a lamp of its group, else the material's own.
   glm::vec3 emission(std::size_t draw) const;
-  // Rises when what an emissive material gives off changes.
+  // Rises when the emission of an emissive material changes.
   std::uint64_t lampsVersion() const { return registry_.version<scene::LampComponent>(); }
-  // Multiplies the strength of all lights that the bundles bring with them.
+  // Multiplies the strength of all lights in the bundles.
   void scaleLamps(float factor);
 
   streaming::Residency& residency() { return residency_; }
@@ -200,25 +202,25 @@ class World {
   const scene::SceneInstance& instance(std::size_t bundle) const { return bundles_[bundle]->instance; }
 
  private:
-  // Steps on their way, in the order in which they were asked for.
+  // Lists steps that are being loaded, in the order in which they were requested.
   struct Piece {
     std::uint32_t unit = 0;
     std::vector<streaming::Work> work;
-    std::size_t items = 0;  // still to come
+    std::size_t items = 0;  // items that are still to come
     bool begun = false;
     std::uint64_t bytes = 0;
-    std::uint32_t steps = 1;  // of an image it may bring several at once
+    std::uint32_t steps = 1;  // an image may bring several at once
   };
   struct Batch {
     streaming::Loader loader;
     std::deque<Piece> pieces;
   };
-  using Proxies = std::vector<std::optional<bundle::CaptureProxy>>;  // by group
+  using Proxies = std::vector<std::optional<bundle::CaptureProxy>>;  // indexed by group
   struct Replacement {
     std::shared_ptr<const bundle::Reader> reader;
     streaming::Parts parts;
     Proxies proxies;
-    std::vector<std::uint32_t> steps;  // of each unit that are brought
+    std::vector<std::uint32_t> steps;  // for each unit, the steps that are loaded
     streaming::Loader loader;
     streaming::Residency::Staged staged = 0;
   };
@@ -228,9 +230,9 @@ class World {
     scene::SceneInstance instance;
     std::vector<glm::mat4> world_from_node_at_rest;
     streaming::Parts parts;
-    std::vector<float> size;                   // by unit, as the camera sees it
-    std::vector<std::uint32_t> target, steps;  // by unit: that should be here, that are
-    Proxies proxies;                           // of its proxy level of detail
+    std::vector<float> size;                   // for each unit, as seen by the camera
+    std::vector<std::uint32_t> target, steps;  // for each unit: steps that should be here, steps that are
+    Proxies proxies;                           // for its proxy level of detail
     std::uint64_t proxies_id = 0;
     std::optional<Batch> batch;
     std::uint64_t bytes_read = 0;           // before the batch
@@ -246,10 +248,10 @@ class World {
   void dropReplacement(Bundle& bundle);
   void uploadReplacement(Bundle& bundle, std::uint64_t& budget_bytes, gpu::Counters& counters);
   void swapIn(std::uint32_t slot);
-  // What is kept per group and draw, after the residency's tables have changed.
+  // Rebuilds what is kept per group and draw after the residency's tables have changed.
   void rebuildTables();
 
-  // Following the camera: what should be here; what goes; what is asked for; what has come.
+  // These follow the camera: they choose what should be here, drop, request and receive.
   void chooseTargets();
   void seeBundle(Bundle& bundle) const;
   void evict(std::uint32_t slot);
@@ -258,9 +260,9 @@ class World {
   void retire(Bundle& bundle);
   void request();
   bool startBatch(std::uint32_t slot);
-  void countOne(Bundle& bundle);  // of the items of its batch has come
+  void countOne(Bundle& bundle);  // counts an arrived item of its batch
   void takeFrom(std::uint32_t slot, std::uint64_t& budget_bytes, gpu::Counters& counters);
-  std::uint64_t bytesTaken() const;  // by what is here or on its way
+  std::uint64_t bytesTaken() const;  // by what is here or being loaded
   static bool settled(const Bundle& bundle) {
     return bundle.error || (bundle.steps == bundle.target && !bundle.batch);
   }
@@ -269,7 +271,7 @@ class World {
   const scene::RigidGroupComponent* rigidGroup(std::uint32_t bundle, std::uint32_t group) const;
   const scene::RigidGroupComponent* rigidGroup(std::size_t group) const;
   bool inPlace(std::uint32_t bundle, std::uint32_t group, std::size_t column) const;
-  // Proxy levels of detail.
+  // These handle proxy levels of detail.
   static bool hasSurfaces(const streaming::Parts& parts, const std::vector<std::uint32_t>& steps) {
     return steps.front() == parts.surfaceSteps();
   }
@@ -280,21 +282,21 @@ class World {
 
   ecs::Registry registry_;
   streaming::Residency residency_;
-  ThreadPool threads_;                          // of the loaders below
-  std::vector<std::optional<Bundle>> bundles_;  // by slot
-  std::vector<ecs::Entity> lamp_of_draw_;       // none: not a lamp of its group
+  ThreadPool threads_;                          // for the loaders below
+  std::vector<std::optional<Bundle>> bundles_;  // indexed by slot
+  std::vector<ecs::Entity> lamp_of_draw_;       // null: not a lamp of its group
   std::vector<scene::Box> group_bounds_;
   std::uint64_t materials_seen_ = 0, materials_version_ = 1;
   std::uint64_t max_resident_bytes_;
   std::optional<spec::View> view_;
-  struct Chosen {  // for what
+  struct Chosen {  // the inputs of the last choice
     std::optional<spec::View> view;
     std::uint64_t transforms = 0, bundles = 0;
   };
   Chosen chosen_;
-  std::uint64_t bundles_version_ = 1;  // rises when one is opened, closed or replaced
+  std::uint64_t bundles_version_ = 1;  // rises when a bundle is opened, closed or replaced
   std::uint64_t proxy_lods_version_ = 1, next_proxies_id_ = 1;
-  std::vector<streaming::Loader> retired_;  // until their workers have ended
+  std::vector<streaming::Loader> retired_;  // kept until their workers have ended
   struct Rate {
     std::chrono::steady_clock::time_point since = std::chrono::steady_clock::now();
     std::uint64_t bytes = 0;

@@ -9,14 +9,14 @@ namespace lambent::frame {
 
 namespace {
 
-// All has been taken, and that was all; a loader also finishes at its first error.
+// Returns whether everything was taken without an error; a loader also finishes at its first error.
 bool isWhole(const streaming::Loader& loader) {
   return loader.finished() && !loader.error();
 }
 
 }  // namespace
 
-// What is wrong with a bundle's part, as wrong with the bundle.
+// Reports an error in a part of a bundle as an error of the bundle.
 Error World::inBundle(const bundle::Reader& reader, const Error& error) {
   return {reader.path().string(), error.subject + ": " + error.problem, error.hint};
 }
@@ -130,7 +130,7 @@ void World::uploadReplacement(Bundle& bundle, std::uint64_t& budget_bytes, gpu::
     budget_bytes -= std::min(budget_bytes, bytes);
     counters.uploaded_bytes += bytes;
   };
-  // What is large comes over several frames.
+  // Large items are uploaded over several frames.
   const auto proceed = [&] {
     const Result<std::uint64_t> bytes = residency_.proceedStaged(next.staged, budget_bytes);
     if (bytes)
@@ -146,7 +146,7 @@ void World::uploadReplacement(Bundle& bundle, std::uint64_t& budget_bytes, gpu::
     const std::uint64_t bytes = streaming::Residency::uploadBytes(item);
     if (const auto* ready = std::get_if<streaming::ProxyChunk>(&item))
       next.proxies[ready->group] = ready->proxy;
-    // What is larger than the budget comes alone.
+    // An item larger than the budget is uploaded alone.
     const bool in_pieces =
         bytes > budget_bytes && items.size() == 1 && streaming::Residency::comesInPieces(item);
     if (!in_pieces) spend(bytes);
@@ -190,7 +190,7 @@ void World::swapIn(std::uint32_t slot) {
   ++bundles_version_;
   ++proxy_lods_version_;
   rebuildTables();
-  playAnimations(0.0f);  // nodes that stood where the old one's animations put them
+  playAnimations(0.0f);  // moves nodes that the old bundle's animations had placed
 }
 
 Result<void> World::upload(std::uint64_t budget_bytes, gpu::Counters& counters) {
@@ -214,10 +214,10 @@ Result<void> World::upload(std::uint64_t budget_bytes, gpu::Counters& counters) 
 
 Result<void> World::uploadAll(gpu::Counters& counters) {
   constexpr std::uint64_t kPieceBytes = std::uint64_t{64} << 20;
-  // What has come in one call makes room for what the next one asks for; where both bring nothing and have
-  // nothing on its way, nothing comes any more.
+  // What arrives in one call makes room for what the next one requests. If two calls bring nothing and
+  // nothing is being loaded, nothing more will come.
   constexpr int kIdleCalls = 2;
-  chooseTargets();  // the camera may look elsewhere than when all had come
+  chooseTargets();  // the camera may have moved since everything had arrived
   for (int idle = 0; !loaded() && idle < kIdleCalls;) {
     const std::uint64_t before = residency_.version();
     if (Result<void> done = upload(kPieceBytes, counters); !done) return done;

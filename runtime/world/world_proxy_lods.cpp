@@ -1,4 +1,4 @@
-// What shows of a bundle whose surfaces are not here: World's part that keeps proxy levels of detail.
+// The part of World that shows a proxy level of detail for a bundle whose surfaces are not here.
 #include <algorithm>
 
 #include "runtime/world/world.hpp"
@@ -26,7 +26,7 @@ bool World::showsSurfaces(std::uint32_t slot) const {
   return !bundle.parts.hasProxyLod() || hasSurfaces(bundle.parts, bundle.steps);
 }
 
-// Proxies stay here, for when the surfaces go; others also see them where these are.
+// Proxies stay here for when the surfaces are dropped, and other groups see them in any case.
 Result<void> World::accept(std::uint32_t slot, streaming::Ready item) {
   Bundle& bundle = *bundles_[slot];
   auto* ready = std::get_if<streaming::ProxyChunk>(&item);

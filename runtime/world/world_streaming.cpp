@@ -1,4 +1,4 @@
-// What of the bundles is on the GPU, by what the camera sees: World's part that follows it.
+// The part of World that chooses what of the bundles is on the GPU by what the camera sees.
 #include <algorithm>
 #include <thread>
 #include <tuple>
@@ -12,9 +12,10 @@ namespace lambent::frame {
 
 namespace {
 
-// Asked for at once, and on the GPU in one piece: little, for the camera may turn meanwhile.
+// This much is requested at once and uploaded in one piece. It is little because the camera may turn
+// meanwhile.
 constexpr std::uint64_t kBatchBytes = std::uint64_t{8} << 20;
-constexpr std::uint32_t kBatches = 2;  // on their way, each of one bundle
+constexpr std::uint32_t kBatches = 2;  // loading at a time, each for one bundle
 
 std::uint64_t bytesOf(const streaming::Parts& parts, const std::vector<std::uint32_t>& steps) {
   std::uint64_t bytes = 0;
@@ -40,7 +41,7 @@ struct Next {
   std::uint32_t unit = 0, step = 0;
 };
 
-// What is missing, the most worth first.
+// Returns what is missing, the most valuable first.
 std::vector<Next> missing(const streaming::Parts& parts, const std::vector<float>& size,
                           const std::vector<std::uint32_t>& have, const std::vector<std::uint32_t>& target) {
   std::vector<Next> list;
@@ -75,7 +76,7 @@ void World::seeBundle(Bundle& bundle) const {
   constexpr float kLeast = 1e-12f;
   bundle.size.assign(bundle.parts.units.size(), view_ ? kLeast : 1.0f);
   if (!view_) return;
-  // What is drawn of a group; volumes fill its bounds.
+  // These are the bounds of what a group draws; volumes fill the group's bounds.
   std::vector<scene::Box> boxes(bundle.instance.groups.size());
   const bundle::Description& description = bundle.reader->description();
   for (std::size_t d = 0; d < description.draws.size(); ++d)
@@ -99,7 +100,7 @@ void World::chooseTargets() {
   chosen_ = {.view = view_, .transforms = transformsVersion(), .bundles = bundles_version_};
   const bool waiting =
       std::ranges::any_of(bundles_, [](const auto& bundle) { return bundle && !settled(*bundle); });
-  if (!limited() && !waiting) return;  // all of it is here and stays
+  if (!limited() && !waiting) return;  // everything is here and stays
   std::vector<streaming::Interest> interests;
   for (std::optional<Bundle>& bundle : bundles_) {
     if (!bundle) continue;
@@ -123,7 +124,8 @@ std::vector<std::uint32_t> World::stepsForReplacement(std::uint32_t slot,
     if (i == slot) place = interests.size();
     interests.push_back({&bundles_[i]->parts, bundles_[i]->size, bundles_[i]->target});
   }
-  // As large in sight as the old one; what there is more of, as large as all of it.
+  // The replacement counts as large as the old bundle; units without a counterpart count as large as all of
+  // it.
   streaming::Interest& one = interests[place];
   one.parts = &parts;
   one.size.resize(parts.units.size(), one.size.front());
@@ -177,7 +179,7 @@ void World::cancelBatch(std::uint32_t slot) {
   if (front.begun && front.unit != 0) dropTo(slot, front.unit, bundle.steps[front.unit]);
 }
 
-// What is here or comes and should not.
+// Drops what is here or being loaded and should not be.
 void World::evict(std::uint32_t slot) {
   Bundle& bundle = *bundles_[slot];
   if (!hasSurfaces(bundle.parts, bundle.target)) {
@@ -202,7 +204,7 @@ bool World::startBatch(std::uint32_t slot) {
   Bundle& bundle = *bundles_[slot];
   std::uint64_t taken = bytesTaken(), bytes = 0;
   const std::vector<Next> list = missing(bundle.parts, bundle.size, bundle.steps, bundle.target);
-  // The surfaces of what is largest have room in any case.
+  // The surfaces of the largest bundle are always loaded.
   const bool only_proxy_lods =
       std::ranges::none_of(residency_.bundles(), &streaming::ResidentBundle::present);
   const auto fits = [&](const Next& next) {
@@ -284,7 +286,7 @@ void World::takeFrom(std::uint32_t slot, std::uint64_t& budget_bytes, gpu::Count
     budget_bytes -= std::min(budget_bytes, bytes);
     counters.uploaded_bytes += bytes;
   };
-  // What is large comes over several frames.
+  // Large items are uploaded over several frames.
   const auto comes = [&] {
     if (!residency_.comes(slot)) return false;
     const Result<std::uint64_t> bytes = residency_.proceed(slot, budget_bytes);
@@ -302,7 +304,7 @@ void World::takeFrom(std::uint32_t slot, std::uint64_t& budget_bytes, gpu::Count
   if (!bundle.error) items = bundle.batch->loader.take(budget_bytes);
   for (streaming::Ready& item : items) {
     const std::uint64_t bytes = streaming::Residency::uploadBytes(item);
-    // What is larger than the budget comes alone.
+    // An item larger than the budget is uploaded alone.
     const bool in_pieces =
         bytes > budget_bytes && items.size() == 1 && streaming::Residency::comesInPieces(item);
     if (!in_pieces) spend(bytes);

@@ -12,7 +12,7 @@
 
 #include "runtime/base/atomic_file.hpp"
 #include "runtime/spec/image.hpp"
-#include "tests/runtime/frame/bundle_builder.hpp"
+#include "tests/support/frame/bundle_builder.hpp"
 #include "tests/support/gpu_context.hpp"
 
 namespace lambent {
@@ -248,8 +248,9 @@ TEST_F(DemoProgram, ALightInTheSceneShinesByTheSquareOfItsDistance) {
   if (!deviceHere()) GTEST_SKIP() << "no OpenGL 4.5 here";
   const std::filesystem::path exr = folder / "a.exr";
   const auto centre = [&](const std::string& light) {
-    const Outcome outcome = run(bundle() + " --light " + light +
-                                " --local-radii 0 --window off --size 64x64 --json --headless " + quoted(exr));
+    const Outcome outcome =
+        run(bundle() + " --light " + light + " --local-radii 0 --window off --size 64x64 --json --headless " +
+            quoted(exr));
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
     const auto report = nlohmann::json::parse(outcome.out);
     EXPECT_EQ(report["last_frame"]["counts"]["local_lights"], 1);

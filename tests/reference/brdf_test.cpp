@@ -102,7 +102,7 @@ TEST(Brdf, OfDielectricsGivesTheDiffusePartWhatTheSpecularOneLeaves) {
   for (const float ior : {1.0f, 1.5f, 2.5f, 0.0f})
     for (const float roughness : kRoughness) {
       gltf::Material material = plastic(roughness, ior);
-      if (material.matte()) material.roughness = 0.99f;
+      if (material.isDiffuse()) material.roughness = 0.99f;
       material.base_color = glm::vec4(1.0f, 0.5f, 0.0f, 1.0f);
       const Floor floor = floorOf(material);
       const double step = ior > 0.0f ? (double{ior} - 1.0) / (double{ior} + 1.0) : 1.0;

@@ -28,7 +28,7 @@ class EndToEndBake : public ProgramTest {
                                          const baker::BakeOptions& settings = options()) const {
     const std::filesystem::path path = folder / "scene.lmb.glb";
     baker::Progress progress;
-    const auto report = baker::bake(scene, settings, path, progress, {});
+    const auto report = baker::bake(scene, settings, path, {progress});
     EXPECT_TRUE(report) << report.error().line();
     if (!report) return {};
     auto draws = decodeBundle(path);

@@ -74,7 +74,7 @@ TEST_F(HostileScene, WithANodeScaledToNothingBakesTheRest) {
     std::swap(scene.roots[0], scene.roots[1]);
     scene.roots.resize(1);  // nothing but the vanished node
     baker::Progress progress;
-    const auto alone = baker::bake(scene, options(), folder / "alone.lmb.glb", progress, {});
+    const auto alone = baker::bake(scene, options(), folder / "alone.lmb.glb", {progress});
     if (!alone) {
       EXPECT_NE(alone.error().line().find("test.glb"), std::string::npos) << alone.error().line();
     }

@@ -46,7 +46,7 @@ class HostileVolume : public testing::ProgramTest {
     options.effects = "diffuse,volume";  // not what it does to the surfaces around it
     const std::filesystem::path path = folder / "fog.lmb.glb";
     baker::Progress progress;
-    const auto report = baker::bake(scene, options, path, progress, {});
+    const auto report = baker::bake(scene, options, path, {progress});
     EXPECT_TRUE(report) << report.error().line();
     const auto reader = bundle::Reader::open(path);
     EXPECT_TRUE(reader) << reader.error().line();
@@ -76,7 +76,7 @@ class HostileVolume : public testing::ProgramTest {
     Baked baked{.group = reader.description().groups[g], .vectors = {}};
     for (std::uint32_t c = 0; c < baked.group.cells.size(); ++c) {
       const bundle::CellTransfer& transfer = baked.group.cells[c].transfers.at(0);
-      EXPECT_EQ(baked.group.cells[c].kind, bundle::CellKind::Volume);
+      EXPECT_EQ(baked.group.cells[c].domain, transfer::Domain::Voxel);
       baked.size = transfer.shape.size();
       baked.full_channels = transfer.shape.full_channels;
       std::vector<std::vector<std::uint32_t>> planes;
@@ -84,7 +84,8 @@ class HostileVolume : public testing::ProgramTest {
         planes.push_back(*reader.readPlane(g, c, 0, j));
       const auto codes = reader.readCodebook(g, c, 0);
       EXPECT_TRUE(codes) << codes.error().line();
-      const auto vectors = bundle::decodeTransfer(transfer.shape, codes->codebook, codes->cluster_of, planes);
+      const auto vectors =
+          transfer::decodeTransfer(transfer.shape, codes->codebook, codes->cluster_of, planes);
       baked.vectors.insert(baked.vectors.end(), vectors.begin(), vectors.end());
     }
     return baked;

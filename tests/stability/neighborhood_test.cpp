@@ -41,7 +41,7 @@ class NeighborhoodBundle : public testing::ProgramTest {
     options.neighborhood_grid = {12, 12, 6};
     const std::filesystem::path path = folder / "scene.lmb.glb";
     baker::Progress progress;
-    const auto report = baker::bake(scene, options, path, progress, {});
+    const auto report = baker::bake(scene, options, path, {progress});
     EXPECT_TRUE(report) << report.error().line();
     if (!report) return std::nullopt;
     const auto reader = bundle::Reader::open(path);
@@ -56,18 +56,18 @@ class NeighborhoodBundle : public testing::ProgramTest {
       Stored stored{.grid = *d.groups[g].neighborhood, .shape = {}, .visibility = {}, .bounced = {}};
       for (std::uint32_t c = 0; c < d.groups[g].cells.size(); ++c) {
         const bundle::Cell& cell = d.groups[g].cells[c];
-        if (cell.kind != bundle::CellKind::Neighborhood) continue;
+        if (cell.domain != transfer::Domain::GridPoint) continue;
         for (std::uint32_t t = 0; t < cell.transfers.size(); ++t) {
-          const bundle::TransferShape& shape = cell.transfers[t].shape;
+          const transfer::TransferShape& shape = cell.transfers[t].shape;
           const auto codes = reader->readCodebook(g, c, t);
           EXPECT_TRUE(codes);
           std::vector<std::vector<std::uint32_t>> planes;
           for (std::uint32_t j = 0; j < cell.transfers[t].planes.size(); ++j)
             planes.push_back(*reader->readPlane(g, c, t, j));
-          const auto values = bundle::decodeTransfer(shape, codes->codebook, codes->cluster_of, planes);
+          const auto values = transfer::decodeTransfer(shape, codes->codebook, codes->cluster_of, planes);
           (shape.isVisibility() ? stored.visibility : stored.bounced) = values;
           stored.shape.order = static_cast<int>(shape.order);
-          stored.shape.order_out = static_cast<int>(bundle::bandsOf(shape.outputs));
+          stored.shape.order_out = static_cast<int>(transfer::bandsOf(shape.outputs));
           if (!shape.isVisibility()) stored.shape.channels = shape.full_channels;
         }
       }

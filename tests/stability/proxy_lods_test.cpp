@@ -124,7 +124,7 @@ class ProxyLods : public testing::GpuTest {
     options.rays = 128;
     options.bounces = 0;
     baker::Progress progress;
-    const auto report = baker::bake(*scene, options, path, progress, {});
+    const auto report = baker::bake(*scene, options, path, {progress});
     EXPECT_TRUE(report) << report.error().line();
     return path;
   }

@@ -32,15 +32,16 @@ class Show {
     std::filesystem::create_directories(folder);
     const std::filesystem::path file = folder / "scene.glb", bundle = folder / "scene.lmb.glb";
     EXPECT_TRUE(assets::writeGlb(file, source));
-    const auto scene = baker::importScene(file);
-    EXPECT_TRUE(scene) << scene.error().line();
+    auto imported = baker::importScene(file);
+    EXPECT_TRUE(imported) << imported.error().line();
+    scene = std::move(*imported);
     baker::BakeOptions options;
     options.quality = baker::Quality::Draft;
     options.light_probes = light_probes;
     if (bounces) options.bounces = *bounces;
     options.error_bound = error_bound;
     baker::Progress progress;
-    const auto report = baker::bake(*scene, options, bundle, progress, {});
+    const auto report = baker::bake(scene, options, bundle, {progress});
     EXPECT_TRUE(report) << report.error().line();
     const Result<std::uint32_t> opened = world.open(bundle);
     EXPECT_TRUE(opened) << opened.error().line();
@@ -102,6 +103,7 @@ class Show {
   }
 
   static constexpr std::uint32_t kSide = 8;
+  baker::Scene scene;  // as it was imported
   frame::World world;
   lighting::Environment environment;
   std::optional<frame::Frame> frame;

@@ -14,7 +14,6 @@
 #include <glm/vec3.hpp>
 
 #include "runtime/bundle/description.hpp"
-#include "runtime/bundle/transfer_codec.hpp"
 #include "runtime/bundle/volume_grid.hpp"
 #include "runtime/bundle/writer.hpp"
 #include "runtime/streaming/loader.hpp"
@@ -33,7 +32,7 @@ struct BuiltVolume {
   float g = 0.0f;
   glm::uvec3 transfer_size{4};
   std::function<bool(std::uint32_t voxel)> has_sample = [](std::uint32_t) { return true; };
-  bundle::TransferShape shape{.order = 3};
+  transfer::TransferShape shape{.order = 3};
   // Vector of a voxel, shape.size() values. Unless a test says otherwise the light there is the open light.
   std::function<std::vector<float>(std::uint32_t voxel)> transfer;
   glm::quat rest_rotation{1.0f, 0.0f, 0.0f, 0.0f};
@@ -76,7 +75,7 @@ struct BuiltVolume {
   }
   // A cluster for each vector that differs from the others, without axes.
   struct Clusters {
-    bundle::Codebook codebook;
+    transfer::Codebook codebook;
     std::vector<std::uint32_t> of_sample;
   };
   Clusters clusters() const {
@@ -138,17 +137,17 @@ inline std::uint32_t addVolume(bundle::Description& description, std::vector<bun
                          .voxels = payload(bundle::PayloadType::Voxels, bundle::encodeVoxels(voxels))};
   const BuiltVolume::Clusters clusters = volume.clusters();
   bundle::Cell cell;
-  cell.kind = bundle::CellKind::Volume;
+  cell.domain = transfer::Domain::Voxel;
   cell.sample_count = samples;
   cell.bounds_min = group.bounds_min;
   cell.bounds_max = group.bounds_max;
   bundle::CellTransfer transfer;
   transfer.shape = volume.shape;
   transfer.clusters = static_cast<std::uint32_t>(clusters.codebook.clusters());
-  transfer.codebook = payload(bundle::PayloadType::Codebook, bundle::encodeCodebook(clusters.codebook));
+  transfer.codebook = payload(bundle::PayloadType::Codebook, transfer::encodeCodebook(clusters.codebook));
   if (transfer.clusters > 1)
     transfer.cluster_ids = static_cast<std::int32_t>(payload(
-        bundle::PayloadType::ClusterIds, bundle::encodeClusterIds(clusters.of_sample, transfer.clusters)));
+        bundle::PayloadType::ClusterIds, transfer::encodeClusterIds(clusters.of_sample, transfer.clusters)));
   cell.transfers.push_back(std::move(transfer));
   group.cells.push_back(std::move(cell));
   description.groups.push_back(std::move(group));
@@ -159,7 +158,7 @@ inline std::uint32_t addVolume(bundle::Description& description, std::vector<bun
 inline std::vector<streaming::Ready> partsOf(const BuiltVolume& volume, std::uint32_t group) {
   const BuiltVolume::Clusters clusters = volume.clusters();
   std::vector<std::uint32_t> positions =
-      bundle::positionsOf(clusters.of_sample, static_cast<std::uint32_t>(clusters.codebook.clusters()));
+      transfer::positionsOf(clusters.of_sample, static_cast<std::uint32_t>(clusters.codebook.clusters()));
   for (std::uint32_t& position : positions) position |= clusters.of_sample[position] << 16;
   const std::vector<std::byte> codes = volume.codes();
   return {streaming::DensityChunk{group, codes, streaming::blockMaxima(codes, volume.bits, volume.size)},

@@ -41,7 +41,7 @@ inline Result<std::vector<DecodedDraw>> decodeBundle(const std::filesystem::path
     samples.emplace_back();
     for (std::uint32_t c = 0; c < d.groups[g].cells.size(); ++c) {
       const bundle::CellTransfer& transfer = d.groups[g].cells[c].transfers.at(0);
-      const bundle::TransferShape& shape = transfer.shape;
+      const transfer::TransferShape& shape = transfer.shape;
       const auto codes = reader->readCodebook(g, c, 0);
       if (!codes) return failAgain(codes.error());
       std::vector<std::vector<std::uint32_t>> planes;
@@ -50,7 +50,7 @@ inline Result<std::vector<DecodedDraw>> decodeBundle(const std::filesystem::path
         if (!plane) return failAgain(plane.error());
         planes.push_back(std::move(*plane));
       }
-      const auto vectors = bundle::decodeTransfer(shape, codes->codebook, codes->cluster_of, planes);
+      const auto vectors = transfer::decodeTransfer(shape, codes->codebook, codes->cluster_of, planes);
       const std::uint32_t first = shape.full_channels > 0 ? shape.shadowed_channels : 0;
       const std::uint32_t channels = shape.full_channels > 0 ? shape.full_channels : shape.shadowed_channels;
       const std::size_t begin = std::size_t{first + (channels == 3 ? channel : 0)} * shape.columns();

@@ -43,9 +43,9 @@ inline GlossyBake bakeGlossy(const Transport& t, const baker::ExitKernels& kerne
   const baker::GlossyPass pass(plain, view,
                                settings.exit_order > 0 ? settings.exit_order : settings.order_out);
   baker::Progress progress;
-  auto direct = baker::bakeDirect(plain, view, progress, {});
+  auto direct = baker::bakeDirect(plain, view, {progress});
   EXPECT_TRUE(direct.has_value());
-  auto glossy = baker::bakeGlossyDirect(pass, settings.hit_memory, direct->looks, progress, {});
+  auto glossy = baker::bakeGlossyDirect(pass, settings.hit_memory, direct->looks, {progress});
   EXPECT_TRUE(glossy.has_value());
   if (settings.fit != Fit::Nothing) {
     std::vector<std::uint32_t> triangles;
@@ -53,7 +53,7 @@ inline GlossyBake bakeGlossy(const Transport& t, const baker::ExitKernels& kerne
       if (t.samples.vertex_sample[t.geometry.triangles[i].x] >= t.samples.first_glossy)
         triangles.push_back(i);
     const auto inside = std::make_shared<baker::GlossyInsideFaces>(pass, triangles);
-    const auto found = inside->look(glossy->hits.bytesLeft(), progress, {}, {});
+    const auto found = inside->look(glossy->hits.bytesLeft(), {progress});
     EXPECT_TRUE(found && inside->fit(found->field.visibility, glossy->field.visibility, {}));
     if (settings.fit == Fit::AllLight) glossy->inside = inside;
   }
@@ -62,7 +62,7 @@ inline GlossyBake bakeGlossy(const Transport& t, const baker::ExitKernels& kerne
   if (settings.bounces == 0) return bake;
   baker::GlossyBounces partner(pass, kernels, bake.direct, bake.glossy, settings.order_out);
   auto bounced = baker::bakeBounces(plain, bake.direct, view, {settings.bounces, settings.tail_error},
-                                    progress, {}, &partner);
+                                    {progress}, &partner);
   EXPECT_TRUE(bounced.has_value());
   partner.finish();
   bake.bounced = std::move(*bounced);

@@ -48,9 +48,9 @@ class DecodedNeighborhood {
  public:
   explicit DecodedNeighborhood(const baker::BakedNeighborhood& grid)
       : placement_{grid.size, {grid.bounds_min, grid.bounds_max}} {
-    const bundle::TransferShape& of = grid.cells.at(0).transfers.at(0).shape;
+    const transfer::TransferShape& of = grid.cells.at(0).transfers.at(0).shape;
     shape_ = {.order = static_cast<int>(of.order),
-              .order_out = static_cast<int>(bundle::bandsOf(of.outputs)),
+              .order_out = static_cast<int>(transfer::bandsOf(of.outputs)),
               .channels = 0};
     for (const baker::CodedCell& cell : grid.cells)
       if (cell.transfers.size() > 1) shape_.channels = cell.transfers[1].shape.full_channels;
@@ -97,7 +97,7 @@ class DecodedNeighborhood {
     std::vector<std::vector<std::uint32_t>> codes;
     for (const baker::CodedPlane& plane : coded.planes) codes.push_back(plane.codes);
     const auto values =
-        bundle::decodeTransfer(coded.shape, bundle::expand(coded.codebook), coded.cluster_of, codes);
+        transfer::decodeTransfer(coded.shape, transfer::expand(coded.codebook), coded.cluster_of, codes);
     all.insert(all.end(), values.begin(), values.end());
   }
 

@@ -45,10 +45,10 @@ struct Transport {
     const baker::DiffuseScene view = diffuse();
     const baker::DirectPass pass(view, {order, ray_count, bounces != 0, hit_memory});
     baker::Progress progress;
-    auto first = baker::bakeDirect(pass, view, progress, {});
+    auto first = baker::bakeDirect(pass, view, {progress});
     EXPECT_TRUE(first.has_value());
     if (bounces == 0) return {std::move(*first), {}};
-    auto rest = baker::bakeBounces(pass, *first, view, {bounces, tail_error}, progress, {});
+    auto rest = baker::bakeBounces(pass, *first, view, {bounces, tail_error}, {progress});
     EXPECT_TRUE(rest.has_value());
     return {std::move(*first), std::move(*rest)};
   }

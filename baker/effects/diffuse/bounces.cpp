@@ -8,8 +8,8 @@
 #include <glm/geometric.hpp>
 
 #include "baker/compress/light_weights.hpp"
-#include "baker/effects/diffuse/field_bytes.hpp"
-#include "baker/effects/diffuse/fill.hpp"
+#include "baker/jobs/stage.hpp"
+#include "baker/trace/fill.hpp"
 #include "baker/transport/frame.hpp"
 #include "runtime/sh/basis.hpp"
 #include "runtime/sh/rotation.hpp"
@@ -56,51 +56,55 @@ TransferField zeroLike(const TransferField& field) {
 
 class Gather {
  public:
-  Gather(const DirectPass& pass, const DirectResult& direct, const DiffuseScene& scene,
-         const ExitRadiance& exit)
-      : pass_(pass), direct_(direct), scene_(scene), exit_(exit) {}
+  Gather(const DirectPass& pass, const DirectResult& direct, const DiffuseScene& scene)
+      : pass_(pass), direct_(direct), scene_(scene) {}
 
-  // Samples [begin, end) of bounce `bounce`. `mapped` gets it added; it is in the group's frame.
-  void range(int bounce, bool thinly, std::size_t begin, std::size_t end, const TransferField& before,
-             TransferField& now, TransferField& mapped) const {
+  // Gathers at samples [begin, end). `mapped` gets it added; it is in the group's frame.
+  void range(const Bounce& bounce, std::size_t begin, std::size_t end, TransferField& now,
+             TransferField& mapped) const {
     std::vector<GatherHit> thinned;
     const StoredHits hits(direct_.hits, pass_, begin, end);
     const std::size_t first_mapped = scene_.samples.first_normal_mapped;
     for (std::size_t s = begin; s < end; ++s) {
-      auto own = hits.of(s);
       const Hemisphere& hemisphere = pass_.hemisphereOf(s, direct_.looks.double_rays[s] != 0);
-      float scale = 1.0f;
-      if (thinly) scale = thinHits(bounce, hemisphere, own, thinned);
-      const ExitToSample exit(exit_, hemisphere.table(), scene_.samples.normals[s], s, bounce, thinly);
+      const ExitToSample exit(bounce, hemisphere.table(), scene_.samples.normals[s], s);
+      Received received{hits.of(s), 1.0f, hemisphere, exit};
+      if (bounce.thinly) received.scale = thinHits(bounce.number, hemisphere, received.hits, thinned);
       if (s < first_mapped)
-        gatherPlain(own, scale, hemisphere, exit, before, now.at(s));
+        gatherPlain(received, now.at(s));
       else
-        gatherMapped(s, own, scale, hemisphere, exit, before, now.at(s), mapped.at(s - first_mapped));
+        gatherMapped(s, received, now.at(s), mapped.at(s - first_mapped));
     }
   }
 
  private:
-  void gatherPlain(std::span<const GatherHit> hits, float scale, const Hemisphere& hemisphere,
-                   const ExitToSample& exit, const TransferField& before, std::span<float> out) const {
-    for (const GatherHit& hit : hits)
-      exit.add(hit, scale * static_cast<float>(hemisphere.weight(hit.ray)), before, out);
+  // What the rays of one sample met, and what leaves there towards it; hits count `scale` times.
+  struct Received {
+    std::span<const GatherHit> hits;
+    float scale;
+    const Hemisphere& hemisphere;
+    const ExitToSample& exit;
+  };
+
+  static void gatherPlain(const Received& received, std::span<float> out) {
+    for (const GatherHit& hit : received.hits)
+      received.exit.add(hit, received.scale * static_cast<float>(received.hemisphere.weight(hit.ray)), out);
   }
 
-  void gatherMapped(std::size_t sample, std::span<const GatherHit> hits, float scale,
-                    const Hemisphere& hemisphere, const ExitToSample& exit_to, const TransferField& before,
-                    std::span<float> out, std::span<float> mapped) const {
-    const std::size_t stride = before.vectorSize();
+  void gatherMapped(std::size_t sample, const Received& received, std::span<float> out,
+                    std::span<float> mapped) const {
+    const std::size_t stride = out.size();
     std::vector<float> exit(stride), local(kIncident * stride, 0.0f);
-    for (const GatherHit& hit : hits) {
+    for (const GatherHit& hit : received.hits) {
       std::fill(exit.begin(), exit.end(), 0.0f);
-      exit_to.add(hit, scale, before, exit);
-      const auto weight = static_cast<float>(hemisphere.weight(hit.ray));
+      received.exit.add(hit, received.scale, exit);
+      const auto weight = static_cast<float>(received.hemisphere.weight(hit.ray));
       for (std::size_t i = 0; i < stride; ++i) out[i] += weight * exit[i];
-      const auto& weights = hemisphere.incidentWeight(hit.ray);
+      const auto& weights = received.hemisphere.incidentWeight(hit.ray);
       for (std::size_t j = 0; j < kIncident; ++j)
         for (std::size_t i = 0; i < stride; ++i) local[j * stride + i] += weights[j] * exit[i];
     }
-    if (hits.empty()) return;
+    if (received.hits.empty()) return;
     const sh::Rotation group_from_local(
         localFrame(glm::normalize(glm::dvec3(scene_.samples.normals[sample]))), 3);
     std::array<float, kIncident> from, to;
@@ -114,7 +118,6 @@ class Gather {
   const DirectPass& pass_;
   const DirectResult& direct_;
   const DiffuseScene& scene_;
-  const ExitRadiance& exit_;
 };
 
 // The largest share that a pass has of all light, over the sources of light.
@@ -142,10 +145,9 @@ double tailOf(const std::vector<double>& before, const std::vector<double>& now,
 
 std::optional<BounceResult> bakeBounces(const DirectPass& pass, const DirectResult& direct,
                                         const DiffuseScene& scene, const BounceSettings& settings,
-                                        Progress& progress, const std::stop_token& stop,
-                                        BouncePartner* partner, const Keep& keep) {
+                                        const BakeContext& context, BouncePartner* partner) {
   const ExitRadiance exit(scene.geometry, scene.samples, partner);
-  const Gather gather(pass, direct, scene, exit);
+  const Gather gather(pass, direct, scene);
   BounceResult result{
       .field = zeroLike(direct.field), .mapped = zeroLike(direct.mapped), .energy = {1.0}, .left_out = 0.0};
   const bool any_filled = std::find(direct.looks.valid.begin(), direct.looks.valid.end(), std::uint8_t{0}) !=
@@ -162,43 +164,25 @@ std::optional<BounceResult> bakeBounces(const DirectPass& pass, const DirectResu
   };
   std::vector<double> energy = energiesOf(before), all = energy;
   const std::vector<double> first = energy;
-  // In bytes to keep: the pass of plain samples, and of normal-mapped ones the sum of all passes so far.
-  const std::size_t own = before.vectorSize(), of_mapped = result.mapped.vectorSize();
-  const auto mappedOf = [&](std::size_t sample) {
-    return std::max(sample, scene.samples.first_normal_mapped) - scene.samples.first_normal_mapped;
-  };
+  const auto first_mapped = static_cast<std::ptrdiff_t>(scene.samples.first_normal_mapped);
   const int most = settings.bounces < 0 ? kMostBounces : settings.bounces;
-  for (int bounce = 1; bounce <= most; ++bounce) {
-    progress.begin(fmt::format("bounce {}", bounce), scene.samples.size(), "samples");
+  for (int number = 1; number <= most; ++number) {
+    context.progress.begin(fmt::format("bounce {}", number), scene.samples.size(), "samples");
     TransferField now = zeroLike(before);
-    const bool thinly = shareOf(energy, all) < kShareToThin;
-    const Keep keep_pass = keep.part("pass", bounce);
-    const CachedRanges kept =
-        cachedRanges(keep_pass, scene.samples.first_glossy, kSamplesGathered, stop,
-                     {.compute =
-                          [&](std::size_t begin, std::size_t end) {
-                            gather.range(bounce, thinly, begin, end, before, now, result.mapped);
-                            progress.add(end - begin);
-                          },
-                      .pack =
-                          [&](std::size_t begin, std::size_t end, ByteWriter& out) {
-                            writeStretch(now.vectors, begin * own, end * own, out);
-                            writeStretch(result.mapped.vectors, mappedOf(begin) * of_mapped,
-                                         mappedOf(end) * of_mapped, out);
-                          },
-                      .unpack =
-                          [&](std::size_t begin, std::size_t end, ByteReader& in) {
-                            progress.add(end - begin);
-                            return readStretch(in, begin * own, end * own, now.vectors) &&
-                                   readStretch(in, mappedOf(begin) * of_mapped, mappedOf(end) * of_mapped,
-                                               result.mapped.vectors);
-                          }},
-                     KeepWhen::Due);
-    if (!kept.finished) return std::nullopt;
+    const Bounce bounce{number, shareOf(energy, all) < kShareToThin, exit, before};
+    const BakeContext pass_context = context.part("pass", number);
+    // Of normal-mapped samples the sum of all passes so far is kept.
+    const auto gathered =
+        runStage({.count = scene.samples.first_glossy,
+                  .grain = kSamplesGathered,
+                  .writes = {rowsOf(now.vectors, now.vectorSize()),
+                             rowsOf(result.mapped.vectors, result.mapped.vectorSize(), -first_mapped)},
+                  .compute = [&](std::size_t begin,
+                                 std::size_t end) { gather.range(bounce, begin, end, now, result.mapped); }},
+                 pass_context);
+    if (!gathered) return std::nullopt;
     if (any_filled) fillFromNeighbours(edges, direct.looks.valid, now);
-    if (partner &&
-        !partner->gather(bounce, thinly, exit, before, now, progress, stop, keep_pass.part("glossy")))
-      return std::nullopt;
+    if (partner && !partner->gather(bounce, now, pass_context.part("glossy"))) return std::nullopt;
     add(now, result.field);
 
     const std::vector<double> energy_before = std::exchange(energy, energiesOf(now));
@@ -219,13 +203,13 @@ std::optional<BounceResult> bakeBounces(const DirectPass& pass, const DirectResu
   return result;
 }
 
-void dropBounces(const DiffuseScene& scene, std::size_t inside_faces, const Keep& keep) {
+void dropBounces(const DiffuseScene& scene, std::size_t inside_faces, const BakeContext& context) {
   const std::size_t plain = scene.samples.first_glossy, glossy = scene.samples.size() - plain;
-  for (int bounce = 1; bounce <= kMostBounces; ++bounce) {
-    const Keep pass = keep.part("pass", bounce);
-    dropRanges(pass, plain, kSamplesGathered);
-    dropRanges(pass.part("glossy"), glossy, kSamplesGathered);
-    dropRanges(pass.part("glossy").part("inside faces"), inside_faces, kSamplesGathered);
+  for (int number = 1; number <= kMostBounces; ++number) {
+    const BakeContext pass = context.part("pass", number);
+    dropStage(pass, plain, kSamplesGathered);
+    dropStage(pass.part("glossy"), glossy, kSamplesGathered);
+    dropStage(pass.part("glossy").part("inside faces"), inside_faces, kSamplesGathered);
   }
 }
 

@@ -8,11 +8,10 @@
 #pragma once
 
 #include <optional>
-#include <stop_token>
 #include <vector>
 
-#include "baker/effects/diffuse/bounce_partner.hpp"
 #include "baker/effects/diffuse/direct.hpp"
+#include "baker/trace/exit_radiance.hpp"
 
 namespace lambent::baker {
 
@@ -31,14 +30,13 @@ struct BounceResult {
   double left_out = 0.0;  // estimate of what the passes left out, relative to all light
 };
 
-// Nothing if stopped. Stages "bounce 1", "bounce 2", ... of `progress`, counting samples. `partner` may be
-// null. keep: of all that the passes read; what they came to is kept there until dropBounces(), for a bake
-// that is cut short.
+// Returns nothing if stopped. Progress shows "bounce 1", "bounce 2", ... `partner` may be null. The key of
+// the context is that of all that the passes read; what they came to is kept under it until dropBounces(),
+// for a bake that is cut short.
 std::optional<BounceResult> bakeBounces(const DirectPass& pass, const DirectResult& direct,
                                         const DiffuseScene& scene, const BounceSettings& settings,
-                                        Progress& progress, const std::stop_token& stop,
-                                        BouncePartner* partner = nullptr, const Keep& keep = {});
+                                        const BakeContext& context, BouncePartner* partner = nullptr);
 // inside_faces: samples of the partner there.
-void dropBounces(const DiffuseScene& scene, std::size_t inside_faces, const Keep& keep);
+void dropBounces(const DiffuseScene& scene, std::size_t inside_faces, const BakeContext& context);
 
 }  // namespace lambent::baker

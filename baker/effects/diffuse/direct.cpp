@@ -5,9 +5,10 @@
 
 #include <glm/geometric.hpp>
 
-#include "baker/effects/diffuse/field_bytes.hpp"
-#include "baker/effects/diffuse/fill.hpp"
-#include "baker/effects/diffuse/traced_ranges.hpp"
+#include "baker/effects/diffuse/lambert_receiver.hpp"
+#include "baker/trace/field_bytes.hpp"
+#include "baker/trace/fill.hpp"
+#include "baker/trace/traced_ranges.hpp"
 #include "baker/transport/frame.hpp"
 #include "runtime/sh/rotation.hpp"
 
@@ -128,17 +129,16 @@ DirectPass::DirectPass(const DiffuseScene& scene, const DirectSettings& settings
 }
 
 std::uint64_t DirectPass::bake(std::size_t begin, std::size_t end, const std::stop_token& stop,
-                               TransferField& field, TransferField& mapped, SampleVisibilities& looks,
-                               RangeHits& hits) const {
+                               DirectResult& out, RangeHits& hits) const {
   Walk walk(*this);
   std::uint64_t traced = 0;
   const std::size_t first_mapped = scene_.samples.first_normal_mapped;
   for (std::size_t s = begin; s < end && !stop.stop_requested(); ++s) {
     hits.next();
     traced += walk.look(s);
-    looks.valid[s] = walk.looked().valid();
-    looks.double_rays[s] = walk.looked().double_rays();
-    walk.project(field.at(s), s < first_mapped ? std::span<float>() : mapped.at(s - first_mapped));
+    out.looks.valid[s] = walk.looked().valid();
+    out.looks.double_rays[s] = walk.looked().double_rays();
+    walk.project(out.field.at(s), s < first_mapped ? std::span<float>() : out.mapped.at(s - first_mapped));
     if (settings_.keep_hits) walk.keepHits(hits);
   }
   hits.next();
@@ -150,8 +150,8 @@ void DirectPass::traceAgain(std::size_t begin, std::size_t end, RangeHits& hits)
   paintHits(scene_.colors, hits);
 }
 
-std::optional<DirectResult> bakeDirect(const DirectPass& pass, const DiffuseScene& scene, Progress& progress,
-                                       const std::stop_token& stop, const Keep& keep) {
+std::optional<DirectResult> bakeDirect(const DirectPass& pass, const DiffuseScene& scene,
+                                       const BakeContext& context, const char* stage) {
   const std::size_t count = scene.samples.size(), own = scene.samples.first_glossy;
   const std::size_t first_mapped = scene.samples.first_normal_mapped, mapped = own - first_mapped;
   const DirectSettings& settings = pass.settings();
@@ -159,41 +159,27 @@ std::optional<DirectResult> bakeDirect(const DirectPass& pass, const DiffuseScen
                       .mapped = makeField(mapped, settings.order, kIncident, pass.channels(), pass.columns()),
                       .looks = {std::vector<std::uint8_t>(count, 0), std::vector<std::uint8_t>(count, 0)},
                       .hits = HitStore(own, settings.keep_hits ? settings.hit_memory : 0)};
-  TracedRanges ranges(scene, own, settings.keep_hits, keep.cache != nullptr, result.hits);
+  TracedRanges ranges(scene, own, settings.keep_hits, context.keeps(), result.hits);
   const bool grey_lights = scene.colors.greyEmission();
-  const auto mappedOf = [&](std::size_t sample) { return std::max(sample, first_mapped) - first_mapped; };
-  const CachedRanges kept =
-      cachedRanges(keep, own, kSamplesPerRange, stop,
-                   {.compute =
-                        [&](std::size_t begin, std::size_t end) {
-                          RangeHits hits;
-                          const std::uint64_t rays =
-                              pass.bake(begin, end, stop, result.field, result.mapped, result.looks, hits);
-                          ranges.add(begin / kSamplesPerRange, rays, std::move(hits), stop);
-                          progress.add(end - begin);
-                        },
-                    .pack =
-                        [&](std::size_t begin, std::size_t end, ByteWriter& out) {
-                          writeStretch(result.looks.valid, begin, end, out);
-                          writeStretch(result.looks.double_rays, begin, end, out);
-                          writeDirect(result.field, grey_lights, begin, end, out);
-                          writeDirect(result.mapped, grey_lights, mappedOf(begin), mappedOf(end), out);
-                          ranges.pack(begin / kSamplesPerRange, out);
-                        },
-                    .unpack =
-                        [&](std::size_t begin, std::size_t end, ByteReader& in) {
-                          if (!readStretch(in, begin, end, result.looks.valid) ||
-                              !readStretch(in, begin, end, result.looks.double_rays) ||
-                              !readDirect(in, grey_lights, begin, end, result.field) ||
-                              !readDirect(in, grey_lights, mappedOf(begin), mappedOf(end), result.mapped) ||
-                              !ranges.unpack(begin / kSamplesPerRange, end - begin, in))
-                            return false;
-                          progress.add(end - begin);
-                          return true;
-                        }});
-  if (!kept.finished) return std::nullopt;
+  const auto compute = [&](std::size_t begin, std::size_t end) {
+    RangeHits hits;
+    const std::uint64_t rays = pass.bake(begin, end, context.stop, result, hits);
+    ranges.add(begin / kSamplesPerRange, rays, std::move(hits), context.stop);
+  };
+  const auto done =
+      runStage({.name = stage,
+                .count = own,
+                .grain = kSamplesPerRange,
+                .writes = {rowsOf(result.looks.valid), rowsOf(result.looks.double_rays),
+                           directRows(result.field, grey_lights),
+                           directRows(result.mapped, grey_lights, -static_cast<std::ptrdiff_t>(first_mapped)),
+                           ranges.output()},
+                .compute = compute,
+                .keep = KeepWhen::Always},
+               context);
+  if (!done) return std::nullopt;
   result.field.rays = ranges.raysTraced();
-  result.rays_kept = ranges.raysUnpacked();
+  result.rays_kept = ranges.raysFound();
   const auto edges = sampleEdges(scene.geometry, scene.samples);
   result.field.filled_samples = fillFromNeighbours(edges, result.looks.valid, result.field);
   fillStretchFromNeighbours(edges, result.looks.valid, first_mapped, result.mapped.vectorSize(),

@@ -10,33 +10,19 @@
 #include <span>
 #include <stop_token>
 
-#include "baker/cache/cached_ranges.hpp"
-#include "baker/effects/diffuse/emitters.hpp"
 #include "baker/effects/diffuse/hemisphere.hpp"
-#include "baker/effects/diffuse/hits.hpp"
-#include "baker/effects/diffuse/sample_visibility.hpp"
-#include "baker/effects/diffuse/transfer_field.hpp"
-#include "baker/jobs/progress.hpp"
+#include "baker/jobs/bake_context.hpp"
+#include "baker/trace/emitters.hpp"
+#include "baker/trace/group_scene.hpp"
+#include "baker/trace/hits.hpp"
+#include "baker/trace/sample_visibility.hpp"
+#include "baker/trace/transfer_field.hpp"
 #include "baker/transport/group_geometry.hpp"
 #include "baker/transport/ray_scene.hpp"
 #include "baker/transport/samples.hpp"
 #include "baker/transport/surface_colors.hpp"
 
 namespace lambent::baker {
-
-// What the diffuse effect reads of a group; all of it outlives the bake.
-struct DiffuseScene {
-  const Scene& scene;
-  const GroupGeometry& geometry;
-  const SampleSet& samples;
-  const RayScene& rays;
-  const SurfaceColors& colors;
-  std::span<const PlannedLight> lights;
-
-  DiffuseScene withSamples(const SampleSet& others) const {
-    return {scene, geometry, others, rays, colors, lights};
-  }
-};
 
 struct DirectSettings {
   int order = 5;                 // 1..8
@@ -46,10 +32,12 @@ struct DirectSettings {
   bool colored_kernels = false;  // of glossy surfaces: three channels even where all colours are grey
 };
 
-// One entry per sample.
-struct SampleVisibilities {
-  std::vector<std::uint8_t> valid;        // 0: lies inside something, filled from its neighbours
-  std::vector<std::uint8_t> double_rays;  // 1: looked with twice the rays
+struct DirectResult {
+  TransferField field;   // outputs 1, all samples
+  TransferField mapped;  // outputs 9, SampleSet::first_normal_mapped up to first_glossy
+  SampleVisibilities looks;
+  HitStore hits;                // of the samples up to first_glossy
+  std::uint64_t rays_kept = 0;  // that what was found in the cache stands for
 };
 
 // Pass 0 of ranges of samples; also traces a range's hits again.
@@ -68,11 +56,11 @@ class DirectPass {
   const Emitters& emitters() const { return emitters_; }
   const InsideTestTables& glances() const { return inside_test_; }
 
-  // Samples [begin, end): transfer into the fields (`mapped` holds the normal-mapped samples alone), how each
-  // looked, and what its rays met, not painted yet (paintHits). Returns the rays traced. Leaves the rest of
-  // them when a stop is requested: a million rays a sample take seconds a range.
-  std::uint64_t bake(std::size_t begin, std::size_t end, const std::stop_token& stop, TransferField& field,
-                     TransferField& mapped, SampleVisibilities& looks, RangeHits& hits) const;
+  // Fills in the transfer of samples [begin, end) and how each looked; `hits` gets what its rays met, not
+  // painted yet (paintHits). Returns the rays traced. Leaves the rest of them when a stop is requested: a
+  // million rays a sample take seconds a range.
+  std::uint64_t bake(std::size_t begin, std::size_t end, const std::stop_token& stop, DirectResult& out,
+                     RangeHits& hits) const;
   // The hits alone, as bake() gave them and painted.
   void traceAgain(std::size_t begin, std::size_t end, RangeHits& hits) const;
 
@@ -87,19 +75,11 @@ class DirectPass {
   std::uint32_t channels_, columns_;
 };
 
-struct DirectResult {
-  TransferField field;   // outputs 1, all samples
-  TransferField mapped;  // outputs 9, SampleSet::first_normal_mapped up to first_glossy
-  SampleVisibilities looks;
-  HitStore hits;                // of the samples up to first_glossy
-  std::uint64_t rays_kept = 0;  // that what was found in the cache stands for
-};
-
-// Nothing if stopped. The result does not depend on the number of threads. Progress counts samples. Glossy
-// samples are left at 0 and not looked at: bakeGlossyDirect fills them in. keep: its key is of all that rays
-// ask for (geometry, what lets rays through, lamps, the settings but for memory); not of what surfaces
-// reflect.
-std::optional<DirectResult> bakeDirect(const DirectPass& pass, const DiffuseScene& scene, Progress& progress,
-                                       const std::stop_token& stop, const Keep& keep = {});
+// Returns nothing if stopped. The result does not depend on the number of threads. Glossy samples are left at
+// 0 and not looked at: bakeGlossyDirect fills them in. The key of the context is that of all that rays ask
+// for (geometry, what lets rays through, lamps, the settings but for memory), not of what surfaces reflect.
+// `stage` is the name that progress shows.
+std::optional<DirectResult> bakeDirect(const DirectPass& pass, const DiffuseScene& scene,
+                                       const BakeContext& context, const char* stage = "direct light");
 
 }  // namespace lambent::baker

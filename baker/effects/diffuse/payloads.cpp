@@ -9,7 +9,7 @@ namespace lambent::baker {
 namespace {
 
 // Columns [first, first + shape.columns()) of a cell's samples.
-CellVectors stack(bundle::TransferShape shape, std::size_t first_column, std::size_t first_sample,
+CellVectors stack(transfer::TransferShape shape, std::size_t first_column, std::size_t first_sample,
                   std::size_t count, const TransferField& direct, const TransferField* bounced) {
   CellVectors out{shape, {}};
   out.vectors.reserve(count * shape.size());

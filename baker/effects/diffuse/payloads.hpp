@@ -1,17 +1,17 @@
-// From transfer at samples to the vectors that a cell's payloads hold (runtime/bundle/codebook.hpp): light of
-// the environment and light of the group's own lights apart, without bounces ("shadowed") and with them
+// From transfer at samples to the vectors that a cell's payloads hold (runtime/transfer/codebook.hpp): light
+// of the environment and light of the group's own lights apart, without bounces ("shadowed") and with them
 // ("full") side by side.
 #pragma once
 
 #include <vector>
 
 #include "baker/effects/diffuse/bounces.hpp"
-#include "runtime/bundle/codebook.hpp"
+#include "runtime/transfer/codebook.hpp"
 
 namespace lambent::baker {
 
 struct CellVectors {
-  bundle::TransferShape shape;
+  transfer::TransferShape shape;
   std::vector<float> vectors;  // sample-major, shape.size() each
 };
 

@@ -1,12 +1,15 @@
 #include "baker/effects/glossy/glossy.hpp"
 
 #include <algorithm>
+#include <map>
+#include <ranges>
 #include <string>
 #include <vector>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "baker/brdf/brdf_kinds.hpp"
 #include "baker/effects/glossy/lobe_energy.hpp"
 #include "baker/plan/counted.hpp"
 
@@ -19,19 +22,18 @@ constexpr int kOrder = 5;
 constexpr float kRoughEnough = 0.5f;
 
 struct Counts {
-  std::size_t draws = 0, metals = 0, dielectrics = 0, anisotropic = 0, measured = 0;
+  std::size_t draws = 0, metals = 0, dielectrics = 0;
+  std::map<const BrdfKind*, std::size_t> of_kind;
   std::size_t smooth = 0, textured = 0;  // roughness below what the order carries; by texture perhaps
   float smoothest = 1.0f;
 };
 
 void count(const gltf::Material& material, Counts& counts) {
   ++counts.draws;
-  if (material.brdf >= 0) {
-    ++counts.measured;
-    return;
-  }
+  const BrdfKind& kind = brdfKindOf(material);
+  ++counts.of_kind[&kind];
+  if (kind.family == bundle::BrdfFamily::Measured) return;
   ++(material.metallic > 0.0f ? counts.metals : counts.dielectrics);
-  counts.anisotropic += material.anisotropy > 0.0f;
   if (material.roughness < kRoughEnough) {
     ++counts.smooth;
     counts.smoothest = std::min(counts.smoothest, material.roughness);
@@ -49,18 +51,18 @@ EffectChoice chooseGlossy(const Scene& scene, const std::vector<RigidGroup>& gro
       const std::int32_t index = scene.meshes[draw.mesh].primitives[draw.primitive].material;
       if (index < 0) continue;
       const gltf::Material& material = scene.materials[static_cast<std::size_t>(index)];
-      if (!material.matte()) count(material, counts);
+      if (!material.isDiffuse()) count(material, counts);
     }
-  if (counts.draws == 0) return {"glossy", false, "every material is matte"};
+  if (counts.draws == 0) return {"glossy", false, "every material is diffuse"};
   std::vector<std::string> kinds;
   const auto name = [&](std::size_t n, const char* what) {
     if (n > 0) kinds.push_back(fmt::format("{} {}", n, what));
   };
   name(counts.metals, "metallic");
   name(counts.dielectrics, "dielectric");
-  name(counts.anisotropic, "anisotropic");
-  name(counts.measured, "measured");
-  std::string reason = fmt::format("{} not matte ({}): {} transfer matrices for any light and view",
+  for (const BrdfKind& kind : brdfKinds() | std::views::reverse)
+    if (kind.family != bundle::BrdfFamily::Ggx) name(counts.of_kind[&kind], kind.name);
+  std::string reason = fmt::format("{} not diffuse ({}): {} transfer matrices for any light and view",
                                    counts.draws == 1 ? "1 draw is" : counted(counts.draws, "draw") + " are",
                                    fmt::join(kinds, ", "), fmt::format("{0} x {0}", kOrder * kOrder));
   if (counts.smooth > 0)

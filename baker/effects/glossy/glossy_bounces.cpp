@@ -10,10 +10,10 @@
 #include <glm/geometric.hpp>
 
 #include "baker/compress/light_weights.hpp"
-#include "baker/effects/diffuse/field_bytes.hpp"
-#include "baker/effects/diffuse/fill.hpp"
 #include "baker/effects/glossy/inside_faces.hpp"
 #include "baker/jobs/parallel.hpp"
+#include "baker/jobs/stage.hpp"
+#include "baker/trace/fill.hpp"
 #include "baker/transport/frame.hpp"
 #include "runtime/sh/basis.hpp"
 #include "runtime/sh/rotation.hpp"
@@ -70,21 +70,27 @@ void contract(const float* kernels, std::size_t outputs, const float* matrix, fl
   }
 }
 
+struct MatrixView {
+  const float* values;
+  std::size_t outputs, columns;
+};
+
 template <std::size_t Kernels>
-void contract(const float* kernels, std::size_t outputs, const float* matrix, std::size_t columns,
-              float weight, float* out, std::size_t out_stride) {
+void contract(const float* kernels, const MatrixView& matrix, float weight, float* out,
+              std::size_t out_stride) {
+  const auto [values, outputs, columns] = matrix;
   switch (columns) {
     case 16:
-      return contract<16, Kernels>(kernels, outputs, matrix, weight, out, out_stride);
+      return contract<16, Kernels>(kernels, outputs, values, weight, out, out_stride);
     case 25:
-      return contract<25, Kernels>(kernels, outputs, matrix, weight, out, out_stride);
+      return contract<25, Kernels>(kernels, outputs, values, weight, out, out_stride);
     case 36:
-      return contract<36, Kernels>(kernels, outputs, matrix, weight, out, out_stride);
+      return contract<36, Kernels>(kernels, outputs, values, weight, out, out_stride);
     default:
       for (std::size_t n = 0; n < Kernels; ++n)
         for (std::size_t k = 0; k < outputs; ++k)
           for (std::size_t i = 0; i < columns; ++i)
-            out[n * out_stride + i] += weight * kernels[n * outputs + k] * matrix[k * columns + i];
+            out[n * out_stride + i] += weight * kernels[n * outputs + k] * values[k * columns + i];
   }
 }
 
@@ -93,17 +99,22 @@ void contract(const float* kernels, std::size_t outputs, const float* matrix, st
 // One thread's way through a range of samples.
 class GlossyBounces::Walk {
  public:
-  Walk(const GlossyPass& pass, const TransferField& before)
+  // Both outlive it.
+  Walk(const GlossyPass& pass, const Bounce& bounce)
       : pass_(pass),
-        before_(before),
+        bounce_(bounce),
         outputs_from_local_(glm::dmat3(1.0), pass.shape().order_out),
-        exits_(kBlock * before.vectorSize()) {}
+        exits_(kBlock * bounce.before.vectorSize()) {}
 
-  // Of one sample. Hits of rays in a row of `together` (raysTogether) share what leaves one of them.
-  void gather(std::size_t sample, std::span<const GatherHit> hits, std::uint32_t together, int bounce,
-              const GlossyHemisphere& hemisphere, const ExitToSample& exit, std::size_t s, State& now) {
+  // Gathers at sample `s` of the pass. Hits of rays in a row of `together` (raysTogether) share what leaves
+  // one of them.
+  void gather(std::size_t s, std::span<const GatherHit> hits, std::uint32_t together,
+              const GlossyHemisphere& hemisphere, State& now) {
     if (hits.empty()) return;
-    const std::size_t stride = before_.vectorSize(), even = hemisphere.evenOutputs();
+    const std::size_t sample = pass_.first() + s;
+    const glm::vec3 normal = pass_.scene().samples.normals[sample];
+    const ExitToSample exit(bounce_, hemisphere.table(), normal, sample);
+    const std::size_t stride = bounce_.before.vectorSize(), even = hemisphere.evenOutputs();
     local_.assign(even * stride, 0.0f);
     std::fill(exits_.begin(), exits_.end(), 0.0f);
     std::size_t filled = 0;
@@ -116,9 +127,9 @@ class GlossyBounces::Walk {
       }
       for (std::size_t e = 0; e < even; ++e) weights_[e][filled] = weights[e];
       // Another one in each row and each pass: a golden-ratio sequence.
-      const std::uint32_t dealt = (row + static_cast<std::uint32_t>(bounce) * 5u) * 2654435769u;
+      const std::uint32_t dealt = (row + static_cast<std::uint32_t>(bounce_.number) * 5u) * 2654435769u;
       const auto pick = static_cast<std::size_t>(std::uint64_t{dealt} * (last - first) >> 32);
-      exit.add(hits[first + pick], 1.0f, before_, std::span(exits_).subspan(filled * stride, stride));
+      exit.add(hits[first + pick], 1.0f, std::span(exits_).subspan(filled * stride, stride));
       if (++filled == kBlock) addBlock(even), filled = 0;
     }
     if (filled > 0) {
@@ -126,13 +137,14 @@ class GlossyBounces::Walk {
         std::fill(of_output.begin() + static_cast<std::ptrdiff_t>(filled), of_output.end(), 0.0f);
       addBlock(even);
     }
-    outputs_from_local_.set(localFrame(glm::normalize(glm::dvec3(pass_.scene().samples.normals[sample]))));
+    outputs_from_local_.set(localFrame(glm::normalize(glm::dvec3(normal))));
     const auto indices = hemisphere.evenIndices().first(even);
     const auto turn = [&](GlossyMatrices& matrices, std::size_t first_column) {
       for (std::size_t c = 0; c < matrices.channels; ++c)
-        turnOutputs(outputs_from_local_, indices, matrices.columns,
-                    std::span<const float>(local_).subspan(c * before_.columns + first_column), stride,
-                    matrices.at(s).subspan(c * matrices.matrixSize()), matrices.columns);
+        turnOutputs(
+            outputs_from_local_, indices, matrices.columns,
+            {std::span<const float>(local_).subspan(c * bounce_.before.columns + first_column), stride},
+            {matrices.at(s).subspan(c * matrices.matrixSize()), matrices.columns});
     };
     turn(now.environment, 0);
     if (now.lights.columns > 0) turn(now.lights, now.environment.columns);
@@ -141,7 +153,7 @@ class GlossyBounces::Walk {
  private:
   // Adds the block's radiance to the matrix, and clears it.
   void addBlock(std::size_t even) {
-    const std::size_t stride = before_.vectorSize();
+    const std::size_t stride = bounce_.before.vectorSize();
     for (std::size_t e = 0; e < even; ++e) {
       const std::array<float, kBlock> w = weights_[e];
       float* out = local_.data() + e * stride;
@@ -156,7 +168,7 @@ class GlossyBounces::Walk {
   }
 
   const GlossyPass& pass_;
-  const TransferField& before_;
+  const Bounce& bounce_;
   sh::Rotation outputs_from_local_;
   std::vector<float> exits_, local_;
   std::array<std::array<float, kBlock>, kMostOutputs> weights_{};  // of each output: of the block's hits
@@ -216,11 +228,11 @@ void GlossyBounces::addExit(const GatherHit& hit, const glm::uvec3& corners, con
   const auto of = [&](const GlossyMatrices& matrices, std::size_t s, float share, std::size_t first) {
     float* out = sum.data() + first;
     if (matrices.channels < channels)  // one for all: read once
-      return contract<3>(kernel.data(), outputs, matrices.at(s).data(), matrices.columns, share, out,
+      return contract<3>(kernel.data(), {matrices.at(s).data(), outputs, matrices.columns}, share, out,
                          columns + lights);
     for (std::size_t c = 0; c < channels; ++c, out += columns + lights)
-      contract<1>(kernel.data() + c * outputs, outputs, matrices.matrix(s, c).data(), matrices.columns, share,
-                  out, 0);
+      contract<1>(kernel.data() + c * outputs, {matrices.matrix(s, c).data(), outputs, matrices.columns},
+                  share, out, 0);
   };
   const auto add = [&](std::uint32_t corner, float share) {
     const std::size_t s = corner - pass_.first();
@@ -236,58 +248,39 @@ void GlossyBounces::addExit(const GatherHit& hit, const glm::uvec3& corners, con
   }
 }
 
-bool GlossyBounces::gatherAt(const Receivers& at, const Bounce& bounce, State& now, Progress& progress,
-                             const std::stop_token& stop, const Keep& keep) const {
-  const std::size_t first = at.pass.first();
+bool GlossyBounces::gatherAt(const Receivers& at, const Bounce& bounce, State& now,
+                             const BakeContext& context) const {
   const double share = shareOfBefore();
   now = zero(direct_.field.order_out, at.pass.size());
   const auto gatherRange = [&](std::size_t begin, std::size_t end) {
     const StoredHits hits(at.hits, at.pass, begin, end);
-    Walk walk(at.pass, bounce.before);
+    Walk walk(at.pass, bounce);
     for (std::size_t s = begin; s < end; ++s) {
-      const std::size_t sample = first + s;
-      const GlossyHemisphere& hemisphere = at.pass.hemisphereOf(at.looks.double_rays[sample] != 0);
-      const ExitToSample to_sample(bounce.exit, hemisphere.table(), at.pass.scene().samples.normals[sample],
-                                   sample, bounce.number, bounce.thinly);
-      walk.gather(sample, hits.of(s), raysTogether(share, hemisphere.table().size()), bounce.number,
-                  hemisphere, to_sample, s, now);
+      const GlossyHemisphere& hemisphere =
+          at.pass.hemisphereOf(at.looks.double_rays[at.pass.first() + s] != 0);
+      walk.gather(s, hits.of(s), raysTogether(share, hemisphere.table().size()), hemisphere, now);
     }
-    progress.add(end - begin);
   };
-  const std::size_t environment = now.environment.sampleSize(), lights = now.lights.sampleSize();
-  const CachedRanges kept = cachedRanges(
-      keep, at.pass.size(), kSamplesGathered, stop,
-      {.compute = gatherRange,
-       .pack =
-           [&](std::size_t begin, std::size_t end, ByteWriter& out) {
-             writeStretch(now.environment.values, begin * environment, end * environment, out);
-             writeStretch(now.lights.values, begin * lights, end * lights, out);
-           },
-       .unpack =
-           [&](std::size_t begin, std::size_t end, ByteReader& in) {
-             progress.add(end - begin);
-             return readStretch(in, begin * environment, end * environment, now.environment.values) &&
-                    readStretch(in, begin * lights, end * lights, now.lights.values);
-           }},
-      KeepWhen::Due);
-  return kept.finished;
+  return runStage({.count = at.pass.size(),
+                   .grain = kSamplesGathered,
+                   .writes = {rowsOf(now.environment.values, now.environment.sampleSize()),
+                              rowsOf(now.lights.values, now.lights.sampleSize())},
+                   .compute = gatherRange},
+                  context)
+      .has_value();
 }
 
-bool GlossyBounces::fitInside(const Bounce& bounce, Progress& progress, const std::stop_token& stop,
-                              const Keep& keep) {
+bool GlossyBounces::fitInside(const Bounce& bounce, const BakeContext& context) {
   const GlossyInsideFaces& inside = *direct_.inside;
-  progress.begin(fmt::format("bounce {} inside faces", bounce.number), inside.size(), "samples");
+  context.progress.begin(fmt::format("bounce {} inside faces", bounce.number), inside.size(), "samples");
   State there;
-  return gatherAt({inside.pass(), inside.hits(), inside.looks()}, bounce, there, progress, stop, keep) &&
-         inside.fit(there.environment.values, now_.environment.values, stop) &&
-         inside.fit(there.lights.values, now_.lights.values, stop);
+  return gatherAt({inside.pass(), inside.hits(), inside.looks()}, bounce, there, context) &&
+         inside.fit(there.environment.values, now_.environment.values, context.stop) &&
+         inside.fit(there.lights.values, now_.lights.values, context.stop);
 }
 
-bool GlossyBounces::gather(int number, bool thinly, const ExitRadiance& exit, const TransferField& before,
-                           TransferField& now, Progress& progress, const std::stop_token& stop,
-                           const Keep& keep) {
-  const Bounce bounce{number, thinly, exit, before};
-  if (!gatherAt({pass_, direct_.hits, diffuse_.looks}, bounce, now_, progress, stop, keep)) return false;
+bool GlossyBounces::gather(const Bounce& bounce, TransferField& now, const BakeContext& context) {
+  if (!gatherAt({pass_, direct_.hits, diffuse_.looks}, bounce, now_, context)) return false;
   if (!edges_.empty()) {
     fillStretchFromNeighbours(edges_, diffuse_.looks.valid, pass_.first(), now_.environment.sampleSize(),
                               now_.environment.values);
@@ -295,9 +288,9 @@ bool GlossyBounces::gather(int number, bool thinly, const ExitRadiance& exit, co
       fillStretchFromNeighbours(edges_, diffuse_.looks.valid, pass_.first(), now_.lights.sampleSize(),
                                 now_.lights.values);
   }
-  if (direct_.inside && !fitInside(bounce, progress, stop, keep.part("inside faces"))) return false;
+  if (direct_.inside && !fitInside(bounce, context.part("inside faces"))) return false;
   if (sum_.environment.values.empty()) sum_ = zero(order_out_, pass_.size());
-  return take(now_, &now, stop);
+  return take(now_, &now, context.stop);
 }
 
 bool GlossyBounces::take(const State& state, TransferField* plain, const std::stop_token& stop) {

@@ -2,7 +2,7 @@
 // glossy point q towards p is c(q, v)^T M_q^(b-1), c its exit kernel; what a glossy sample receives along d
 // is added to M_p^b as w (y_i(d) + y_i(mirrored d)). Goes along with bakeBounces as its partner:
 //   GlossyBounces glossy(pass, kernels, direct, glossy_direct, order_out);
-//   bakeBounces(diffuse_pass, direct, scene, settings, progress, stop, &glossy);
+//   bakeBounces(diffuse_pass, direct, scene, settings, context, &glossy);
 //   glossy.finish();   // glossy_direct.field has `bounced` and `lights_full`, all of order_out bands
 // Passes bring and take all bands that `direct` has, which may be more than order_out: the kernel of a sharp
 // surface meets edges of shadows where light leaves, which few bands do not have (docs/decisions/glossy.md,
@@ -47,8 +47,7 @@ class GlossyBounces : public BouncePartner {
 
   void addExit(const GatherHit& hit, const glm::uvec3& corners, const glm::vec3& to, float chance,
                float weight, std::span<float> sum) const override;
-  bool gather(int bounce, bool thinly, const ExitRadiance& exit, const TransferField& before,
-              TransferField& now, Progress& progress, const std::stop_token& stop, const Keep& keep) override;
+  bool gather(const Bounce& bounce, TransferField& now, const BakeContext& context) override;
   void advance() override;
   std::vector<double> energies() const override { return energies_; }
 
@@ -58,13 +57,6 @@ class GlossyBounces : public BouncePartner {
 
  private:
   class Walk;
-  // One pass.
-  struct Bounce {
-    int number;  // from 1 on
-    bool thinly;
-    const ExitRadiance& exit;
-    const TransferField& before;
-  };
   // Where it gathers, and what the rays met there.
   struct Receivers {
     const GlossyPass& pass;
@@ -78,10 +70,9 @@ class GlossyBounces : public BouncePartner {
   // Of `order` bands.
   State zero(int order, std::size_t samples) const;
   // What the pass brings to all samples of `at`; 0 where these see nothing. False if stopped.
-  bool gatherAt(const Receivers& at, const Bounce& bounce, State& now, Progress& progress,
-                const std::stop_token& stop, const Keep& keep) const;
+  bool gatherAt(const Receivers& at, const Bounce& bounce, State& now, const BakeContext& context) const;
   // now_ is fitted to what it brings to the points inside faces.
-  bool fitInside(const Bounce& bounce, Progress& progress, const std::stop_token& stop, const Keep& keep);
+  bool fitInside(const Bounce& bounce, const BakeContext& context);
   // What follows from `state`: its energies, and where asked for plain transfer in `plain` and the sum so
   // far.
   bool take(const State& state, TransferField* plain, const std::stop_token& stop);

@@ -4,11 +4,11 @@
 #include <cassert>
 #include <utility>
 
-#include "baker/effects/diffuse/field_bytes.hpp"
-#include "baker/effects/diffuse/fill.hpp"
-#include "baker/effects/diffuse/sample_visibility.hpp"
-#include "baker/effects/diffuse/traced_ranges.hpp"
 #include "baker/jobs/parallel.hpp"
+#include "baker/jobs/stage.hpp"
+#include "baker/trace/fill.hpp"
+#include "baker/trace/sample_visibility.hpp"
+#include "baker/trace/traced_ranges.hpp"
 #include "runtime/sh/basis.hpp"
 #include "runtime/sh/rotation.hpp"
 #include "runtime/sh/zonal.hpp"
@@ -57,6 +57,22 @@ std::size_t squared(int order) {
   return static_cast<std::size_t>(sh::coefficientCount(order));
 }
 
+// Rows of `width` values of which the first `kept` say all: those after them repeat them.
+Output repeatingRows(std::vector<float>& values, std::size_t width, std::size_t kept) {
+  return {[&values, width, kept](std::size_t begin, std::size_t end, ByteWriter& out) {
+            for (std::size_t s = begin; s < end; ++s)
+              out.addList(std::span<const float>(values).subspan(s * width, kept));
+          },
+          [&values, width, kept](std::size_t begin, std::size_t end, ByteReader& in) {
+            for (std::size_t s = begin; s < end; ++s) {
+              const auto row = std::span(values).subspan(s * width, width);
+              if (!in.readInto(row.first(kept))) return false;
+              for (std::size_t i = kept; i < width; ++i) row[i] = row[i - kept];
+            }
+            return true;
+          }};
+}
+
 }  // namespace
 
 // One thread's way through a range of samples.
@@ -99,8 +115,8 @@ class GlossyPass::Walk {
     const std::size_t outputs = squared(pass_.order_out_);
     for (std::size_t c = 0; c < channels; ++c)
       turnOutputs(outputs_from_local_, hemisphere_->evenIndices().first(even), lights,
-                  std::span(lights_local_).subspan(c * even * lights), lights,
-                  values.subspan(c * outputs * lights), lights);
+                  {std::span(lights_local_).subspan(c * even * lights), lights},
+                  {values.subspan(c * outputs * lights), lights});
   }
 
   void keepHits(RangeHits& out) const { look_.keepHits(out); }
@@ -195,67 +211,48 @@ bool diffuseFromGlossy(const GlossyPass& pass, const GlossyField& field, DirectR
 }
 
 std::optional<GlossyDirect> bakeGlossyDirect(const GlossyPass& pass, std::size_t hit_memory,
-                                             SampleVisibilities& looks, Progress& progress,
-                                             const std::stop_token& stop, const Keep& keep) {
+                                             SampleVisibilities& looks, const BakeContext& context,
+                                             const char* stage) {
   const SampleSet& samples = pass.scene().samples;
   const std::size_t count = pass.size();
   const bool keep_hits = pass.plain().settings().keep_hits;
   GlossyDirect result{.field = pass.shape(), .hits = HitStore(count, keep_hits ? hit_memory : 0)};
   GlossyField& field = result.field;
-  const std::size_t outputs = squared(field.order_out), lights = field.light_columns;
-  field.visibility.resize(count * field.visibilitySize());
-  field.lights_shadowed.resize(count * field.channels * outputs * lights);
-  TracedRanges ranges(pass.scene(), count, keep_hits, keep.cache != nullptr, result.hits);
-  const std::size_t first = pass.first(), seen = field.visibilitySize();
   // Of grey lamps the first channel stands for all (field_bytes.hpp).
-  const std::size_t channel = outputs * lights, per_sample = field.channels * channel,
+  const std::size_t lights = field.light_columns, channel = squared(field.order_out) * lights,
+                    per_sample = field.channels * channel,
                     kept_lights = pass.scene().colors.greyEmission() ? channel : per_sample;
-  const CachedRanges kept = cachedRanges(
-      keep, count, kSamplesPerRange, stop,
-      {.compute =
-           [&](std::size_t begin, std::size_t end) {
-             RangeHits hits;
-             const std::uint64_t rays = pass.bake(begin, end, stop, field, looks, hits);
-             ranges.add(begin / kSamplesPerRange, rays, std::move(hits), stop);
-             progress.add(end - begin);
-           },
-       .pack =
-           [&](std::size_t begin, std::size_t end, ByteWriter& out) {
-             writeStretch(looks.valid, first + begin, first + end, out);
-             writeStretch(looks.double_rays, first + begin, first + end, out);
-             writeStretch(field.visibility, begin * seen, end * seen, out);
-             for (std::size_t s = begin; s < end; ++s)
-               writeStretch(field.lights_shadowed, s * per_sample, s * per_sample + kept_lights, out);
-             ranges.pack(begin / kSamplesPerRange, out);
-           },
-       .unpack =
-           [&](std::size_t begin, std::size_t end, ByteReader& in) {
-             readStretch(in, first + begin, first + end, looks.valid);
-             readStretch(in, first + begin, first + end, looks.double_rays);
-             readStretch(in, begin * seen, end * seen, field.visibility);
-             for (std::size_t s = begin; s < end; ++s) {
-               const std::size_t at = s * per_sample;
-               if (!readStretch(in, at, at + kept_lights, field.lights_shadowed)) return false;
-               for (std::size_t from = at + kept_lights; from < at + per_sample; ++from)
-                 field.lights_shadowed[from] = field.lights_shadowed[from - kept_lights];
-             }
-             if (!ranges.unpack(begin / kSamplesPerRange, end - begin, in)) return false;
-             progress.add(end - begin);
-             return true;
-           }});
-  if (!kept.finished) return std::nullopt;
+  field.visibility.resize(count * field.visibilitySize());
+  field.lights_shadowed.resize(count * per_sample);
+  TracedRanges ranges(pass.scene(), count, keep_hits, context.keeps(), result.hits);
+  const auto compute = [&](std::size_t begin, std::size_t end) {
+    RangeHits hits;
+    const std::uint64_t rays = pass.bake(begin, end, context.stop, field, looks, hits);
+    ranges.add(begin / kSamplesPerRange, rays, std::move(hits), context.stop);
+  };
+  const auto first = static_cast<std::ptrdiff_t>(pass.first());
+  const auto done =
+      runStage({.name = stage,
+                .count = count,
+                .grain = kSamplesPerRange,
+                .writes = {rowsOf(looks.valid, 1, first), rowsOf(looks.double_rays, 1, first),
+                           rowsOf(field.visibility, field.visibilitySize()),
+                           repeatingRows(field.lights_shadowed, per_sample, kept_lights), ranges.output()},
+                .compute = compute,
+                .keep = KeepWhen::Always},
+               context);
+  if (!done) return std::nullopt;
   result.rays = ranges.raysTraced();
-  result.rays_kept = ranges.raysUnpacked();
-  const auto first_valid = looks.valid.begin() + static_cast<std::ptrdiff_t>(pass.first());
+  result.rays_kept = ranges.raysFound();
+  const auto first_valid = looks.valid.begin() + first;
   if (std::find(first_valid, looks.valid.end(), std::uint8_t{0}) != looks.valid.end()) {
     const auto edges = sampleEdges(pass.scene().geometry, samples);
     const auto fill = [&](std::size_t size, std::vector<float>& values) {
       return fillStretchFromNeighbours(edges, looks.valid, pass.first(), size, values);
     };
     result.filled_samples = fill(field.visibilitySize(), field.visibility);
-    if (lights > 0) fill(field.channels * outputs * lights, field.lights_shadowed);
+    if (lights > 0) fill(per_sample, field.lights_shadowed);
   }
-
   return result;
 }
 

@@ -58,12 +58,12 @@ struct GlossyDirect {
   std::shared_ptr<const GlossyInsideFaces> inside = {};
 };
 
-// Nothing if stopped. Also fills in the glossy samples of `looks`, which is that of all samples. Progress
-// counts samples. hit_memory: bytes. The result does not depend on the number of threads. keep: as for
+// Returns nothing if stopped. Also fills in the glossy samples of `looks`, which is that of all samples.
+// hit_memory: bytes. The result does not depend on the number of threads. Context and stage: as for
 // bakeDirect.
 std::optional<GlossyDirect> bakeGlossyDirect(const GlossyPass& pass, std::size_t hit_memory,
-                                             SampleVisibilities& looks, Progress& progress,
-                                             const std::stop_token& stop, const Keep& keep = {});
+                                             SampleVisibilities& looks, const BakeContext& context,
+                                             const char* stage = "glossy shadows");
 
 // Fills in the glossy samples of direct.field from visibility and lights. False if stopped.
 bool diffuseFromGlossy(const GlossyPass& pass, const GlossyField& field, DirectResult& direct,

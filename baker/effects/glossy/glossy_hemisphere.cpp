@@ -101,15 +101,14 @@ void GlossyHemisphere::project(std::span<const std::uint16_t> blocked, std::span
   if (subtract) out[0] += static_cast<float>(std::sqrt(2.0 * kTwoPi));
 }
 
-void turnOutputs(const sh::Rotation& group_from_local, std::span<const std::uint16_t> even, std::size_t count,
-                 std::span<const float> local, std::size_t local_stride, std::span<float> out,
-                 std::size_t out_stride) {
+void turnOutputs(const sh::Rotation& group_from_local, std::span<const std::uint16_t> even,
+                 std::size_t columns, Rows<const float> local, Rows<float> out) {
   const auto outputs = static_cast<std::size_t>(sh::coefficientCount(group_from_local.order()));
   std::vector<float> from(outputs, 0.0f), to(outputs);
-  for (std::size_t column = 0; column < count; ++column) {
-    for (std::size_t e = 0; e < even.size(); ++e) from[even[e]] = local[e * local_stride + column];
+  for (std::size_t column = 0; column < columns; ++column) {
+    for (std::size_t e = 0; e < even.size(); ++e) from[even[e]] = local.values[e * local.stride + column];
     group_from_local.apply(std::span<const float>(from), std::span<float>(to));
-    for (std::size_t i = 0; i < outputs; ++i) out[i * out_stride + column] = to[i];
+    for (std::size_t i = 0; i < outputs; ++i) out.values[i * out.stride + column] = to[i];
   }
 }
 

@@ -59,10 +59,16 @@ class GlossyHemisphere {
   std::vector<float> packet_sums_;
 };
 
-// Even outputs in a sample's frame as all outputs in the group's, of `count` columns: local[e * local_stride
-// + column] to out[output * out_stride + column]. The order is that of `group_from_local`.
-void turnOutputs(const sh::Rotation& group_from_local, std::span<const std::uint16_t> even, std::size_t count,
-                 std::span<const float> local, std::size_t local_stride, std::span<float> out,
-                 std::size_t out_stride);
+// Rows of columns, `stride` values from row to row.
+template <typename Value>
+struct Rows {
+  std::span<Value> values;
+  std::size_t stride;
+};
+
+// Turns even outputs in a sample's frame (rows of `local`) into all outputs in the group's (rows of `out`),
+// of the first `columns` columns. The order is that of `group_from_local`.
+void turnOutputs(const sh::Rotation& group_from_local, std::span<const std::uint16_t> even,
+                 std::size_t columns, Rows<const float> local, Rows<float> out);
 
 }  // namespace lambent::baker

@@ -12,9 +12,8 @@ GlossyInsideFaces::GlossyInsideFaces(const GlossyPass& vertices, std::span<const
       looks_{std::vector<std::uint8_t>(points_.samples.size(), 0),
              std::vector<std::uint8_t>(points_.samples.size(), 0)} {}
 
-std::optional<GlossyDirect> GlossyInsideFaces::look(std::size_t hit_memory, Progress& progress,
-                                                    const std::stop_token& stop, const Keep& keep) {
-  auto found = bakeGlossyDirect(pass_, hit_memory, looks_, progress, stop, keep);
+std::optional<GlossyDirect> GlossyInsideFaces::look(std::size_t hit_memory, const BakeContext& context) {
+  auto found = bakeGlossyDirect(pass_, hit_memory, looks_, context, "inside faces");
   if (!found) return std::nullopt;
   hits_ = std::exchange(found->hits, {});
   const DiffuseScene& scene = vertices_.scene();

@@ -1,6 +1,6 @@
 // Glossy samples inside the faces over which direct light changes, beside those of the vertices: what arrives
 // there, directly and in every pass of bounces, is what the values at vertices are fitted to
-// (effects/diffuse/vertex_fit.hpp).
+// (trace/vertex_fit.hpp).
 #pragma once
 
 #include <cstdint>
@@ -9,8 +9,8 @@
 #include <stop_token>
 #include <vector>
 
-#include "baker/effects/diffuse/vertex_fit.hpp"
 #include "baker/effects/glossy/glossy_direct.hpp"
+#include "baker/trace/vertex_fit.hpp"
 #include "baker/transport/face_points.hpp"
 
 namespace lambent::baker {
@@ -24,8 +24,7 @@ class GlossyInsideFaces {
   GlossyInsideFaces& operator=(const GlossyInsideFaces&) = delete;
 
   // Direct light at the points, before anything is fitted; what was met stays here. As bakeGlossyDirect.
-  std::optional<GlossyDirect> look(std::size_t hit_memory, Progress& progress, const std::stop_token& stop,
-                                   const Keep& keep);
+  std::optional<GlossyDirect> look(std::size_t hit_memory, const BakeContext& context);
 
   const GlossyPass& pass() const { return pass_; }  // its samples are the points, from 0 on
   const SampleVisibilities& looks() const { return looks_; }

@@ -29,24 +29,24 @@ std::vector<CellVectors> glossyCellVectors(const SampleCell& cell, const GlossyF
   };
 
   std::vector<CellVectors> out;
-  const bundle::TransferShape visibility{
+  const transfer::TransferShape visibility{
       .order = order,
       .outputs = outputs,
       .visibility_bands = static_cast<std::uint32_t>(field.visibilityBands())};
   out.push_back({visibility, copied(partOf(field.visibility, field.visibilitySize(), first, count))});
 
-  const bundle::TransferShape bounced{
+  const transfer::TransferShape bounced{
       .order = order, .shadowed_channels = 0, .full_channels = field.channels, .outputs = outputs};
   if (!field.bounced.empty())
     if (const auto part = partOf(field.bounced, bounced.size(), first, count); anyIn(part))
       out.push_back({bounced, copied(part)});
 
   if (field.light_columns == 0) return out;
-  bundle::TransferShape lights{.order = 0,
-                               .light_columns = field.light_columns,
-                               .shadowed_channels = grey_emission ? 1 : field.channels,
-                               .full_channels = 0,
-                               .outputs = outputs};
+  transfer::TransferShape lights{.order = 0,
+                                 .light_columns = field.light_columns,
+                                 .shadowed_channels = grey_emission ? 1 : field.channels,
+                                 .full_channels = 0,
+                                 .outputs = outputs};
   const std::size_t channel = std::size_t{outputs} * field.light_columns, size = field.channels * channel;
   const auto shadowed = partOf(field.lights_shadowed, size, first, count);
   std::span<const float> full;

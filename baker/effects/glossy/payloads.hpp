@@ -1,5 +1,5 @@
 // From transfer matrices at samples to the vectors that the payloads of a glossy cell hold: visibility,
-// bounced light, light of the group's own lights, each coded by itself (runtime/bundle/codebook.hpp).
+// bounced light, light of the group's own lights, each coded by itself (runtime/transfer/codebook.hpp).
 #pragma once
 
 #include <vector>

@@ -2,14 +2,13 @@
 #pragma once
 
 #include <optional>
-#include <stop_token>
 
-#include "baker/cache/cached_ranges.hpp"
+#include "baker/cache/bytes.hpp"
 #include "baker/compress/baked_grids.hpp"
 #include "baker/effects/neighborhood/body.hpp"
 #include "baker/effects/neighborhood/code_change.hpp"
 #include "baker/effects/neighborhood/grid_placement.hpp"
-#include "baker/jobs/progress.hpp"
+#include "baker/jobs/bake_context.hpp"
 #include "baker/plan/facing_area.hpp"
 
 namespace lambent::baker {
@@ -40,12 +39,12 @@ struct BakedAround {
   NeighborhoodFigures figures;
 };
 
-// Order of the light up to 6. Nothing if stopped. The result does not depend on the number of threads. keep:
-// of body and settings.
+void write(const BakedAround& around, ByteWriter& out);
+bool read(ByteReader& in, BakedAround& around);
+
+// Order of the light up to 6. Returns nothing if stopped. The result does not depend on the number of
+// threads. The key of the context is that of body and settings; the result is kept under it.
 std::optional<BakedAround> bakeNeighborhood(const Body& body, const NeighborhoodSettings& settings,
-                                            Progress& progress, const std::stop_token& stop,
-                                            const Keep& keep = {});
-// What that kept, without asking for the body.
-std::optional<BakedAround> findNeighborhood(const Keep& keep);
+                                            const BakeContext& context);
 
 }  // namespace lambent::baker

@@ -9,7 +9,7 @@
 
 #include "baker/jobs/parallel.hpp"
 #include "baker/transport/samples.hpp"
-#include "runtime/bundle/transfer_codec.hpp"
+#include "runtime/bundle/entropy_coder.hpp"
 
 namespace lambent::baker {
 
@@ -23,7 +23,7 @@ constexpr int kQuickLevel = 3;                 // of zstd: files are packed with
 std::vector<float> decode(const CodedTransfer& coded) {
   std::vector<std::vector<std::uint32_t>> codes;
   for (const CodedPlane& plane : coded.planes) codes.push_back(plane.codes);
-  return bundle::decodeTransfer(coded.shape, bundle::expand(coded.codebook), coded.cluster_of, codes);
+  return transfer::decodeTransfer(coded.shape, transfer::expand(coded.codebook), coded.cluster_of, codes);
 }
 
 double bytesOf(const std::vector<CodedTransfer>& coded) {
@@ -32,9 +32,9 @@ double bytesOf(const std::vector<CodedTransfer>& coded) {
     bytes += std::min(raw.size(), bundle::compressZstd(raw, kQuickLevel).size());
   };
   for (const CodedTransfer& part : coded) {
-    add(bundle::encodeCodebook(part.codebook));
-    add(bundle::encodeClusterIds(part.cluster_of, static_cast<std::uint32_t>(part.codebook.clusters())));
-    for (const CodedPlane& plane : part.planes) add(bundle::encodeWeightPlane(plane.codes, plane.bits));
+    add(transfer::encodeCodebook(part.codebook));
+    add(transfer::encodeClusterIds(part.cluster_of, static_cast<std::uint32_t>(part.codebook.clusters())));
+    for (const CodedPlane& plane : part.planes) add(transfer::encodeWeightPlane(plane.codes, plane.bits));
   }
   return static_cast<double>(bytes);
 }
@@ -53,8 +53,7 @@ class CellCoder {
   }
 
   // Each part has half of the square error; bounced light so many times as much.
-  std::vector<CodedTransfer> code(double bound, double looser, CachedCoding& coding,
-                                  const std::stop_token& stop) const {
+  std::vector<CodedTransfer> code(double bound, double looser, CachedCoding& coding) const {
     const double energy = meter_.lightEnergy() * static_cast<double>(count_);
     const auto order = static_cast<std::uint32_t>(shape_.order),
                outputs = static_cast<std::uint32_t>(shape_.outputs());
@@ -62,16 +61,16 @@ class CellCoder {
                             .shown_energy = energy,
                             .kernel_power = receiverPower(shape_)};
     std::vector<CodedTransfer> coded;
-    const bundle::TransferShape visibility{
+    const transfer::TransferShape visibility{
         .order = order,
         .outputs = outputs,
         .visibility_bands = static_cast<std::uint32_t>(shape_.visibilityBands())};
-    coded.push_back(coding.code(visibility_, count_, visibility, settings, stop));
-    if (sends_ && !stop.stop_requested()) {
-      const bundle::TransferShape bounced{
+    coded.push_back(coding.code(visibility_, count_, visibility, settings));
+    if (sends_ && !coding.stopped()) {
+      const transfer::TransferShape bounced{
           .order = order, .shadowed_channels = 0, .full_channels = shape_.channels, .outputs = outputs};
       settings.bound *= static_cast<float>(looser);
-      coded.push_back(coding.code(bounced_, count_, bounced, settings, stop));
+      coded.push_back(coding.code(bounced_, count_, bounced, settings));
     }
     return coded;
   }
@@ -117,7 +116,7 @@ class CellCoder {
 
 std::optional<CodedChange> codeChange(const GridChange& change, const GridPlacement& grid,
                                       const glm::vec3& origin, const ChangeCoding& settings,
-                                      CachedCoding& coding, const std::stop_token& stop) {
+                                      CachedCoding& coding) {
   const ChangeMeter meter(change.shape);
   CodedChange out;
   for (std::size_t first = 0; first < grid.count(); first += kMaxCellSamples) {
@@ -133,8 +132,8 @@ std::optional<CodedChange> codeChange(const GridChange& change, const GridPlacem
     double bound = settings.bound, looser = 1.0, change_error = std::numeric_limits<double>::infinity();
     const double most_bytes = settings.most_bytes * static_cast<double>(count);
     for (int attempt = 0; attempt < kMostAttempts; ++attempt) {
-      auto coded = coder.code(bound, looser, coding, stop);
-      if (stop.stop_requested()) return std::nullopt;
+      auto coded = coder.code(bound, looser, coding);
+      if (coding.stopped()) return std::nullopt;
       const double bytes = bytesOf(coded);
       const bool fits = bytes <= most_bytes;
       if (!fits && attempt > 0 && looser == 1.0) break;  // finer than the bytes allow: the one before stays

@@ -4,7 +4,6 @@
 // the change too.
 #pragma once
 
-#include <stop_token>
 #include <vector>
 
 #include "baker/compress/baked_grids.hpp"
@@ -29,9 +28,9 @@ struct CodedChange {
   double change_error = 0.0;  // what `points_within` of the points with a change keep
 };
 
-// origin: added to the points for the cells' bounds. Nothing if stopped.
+// origin: added to the points for the cells' bounds. Returns nothing if stopped.
 std::optional<CodedChange> codeChange(const GridChange& change, const GridPlacement& grid,
                                       const glm::vec3& origin, const ChangeCoding& settings,
-                                      CachedCoding& coding, const std::stop_token& stop);
+                                      CachedCoding& coding);
 
 }  // namespace lambent::baker

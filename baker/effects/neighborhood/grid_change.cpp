@@ -1,14 +1,14 @@
 #include "baker/effects/neighborhood/grid_change.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-#include "baker/effects/diffuse/fill.hpp"
 #include "baker/jobs/parallel.hpp"
+#include "baker/jobs/stage.hpp"
+#include "baker/trace/fill.hpp"
 
 namespace lambent::baker {
 
@@ -34,8 +34,8 @@ class Filler {
   Filler(const Body& body, const CapDirections& directions, const GridPlacement& grid, GridChange& change)
       : body_(body), directions_(directions), grid_(grid), change_(change) {}
 
-  // Each point by itself: from rays, and from the back that it saw nearest.
-  bool look(std::vector<Back>& backs, Progress& progress, const std::stop_token& stop, const Keep& keep) {
+  // Looks from each point by itself; `backs` get what those inside saw nearest.
+  std::optional<StageFigures> look(std::vector<Back>& backs, const BakeContext& context) {
     const auto compute = [&](std::size_t begin, std::size_t end) {
       PointChange point(body_, directions_, change_.shape);
       for (std::size_t p = begin; p < end; ++p) {
@@ -45,26 +45,17 @@ class Filler {
         store(point.visibility(), change_.visibility, p);
         store(point.bounced(), change_.bounced, p);
       }
-      traced_ += end - begin;
-      progress.add(end - begin);
     };
-    const auto pack = [&](std::size_t begin, std::size_t end, ByteWriter& out) {
-      out.addList(std::span<const std::uint8_t>(change_.outside).subspan(begin, end - begin));
-      out.addList(std::span<const Back>(backs).subspan(begin, end - begin));
-      out.addList(std::span<const float>(visibilityOf(begin, end)));
-      out.addList(std::span<const float>(bouncedOf(begin, end)));
-    };
-    const auto unpack = [&](std::size_t begin, std::size_t end, ByteReader& in) {
-      if (!in.readInto(std::span(change_.outside).subspan(begin, end - begin)) ||
-          !in.readInto(std::span(backs).subspan(begin, end - begin)) ||
-          !in.readInto(visibilityOf(begin, end)) || !in.readInto(bouncedOf(begin, end)))
-        return false;
-      progress.add(end - begin);
-      return true;
-    };
-    return cachedRanges(keep, grid_.count(), kGrain, stop, {compute, pack, unpack}, KeepWhen::Due).finished;
+    return runStage({.name = "neighborhood",
+                     .unit = "points",
+                     .count = grid_.count(),
+                     .grain = kGrain,
+                     .writes = {rowsOf(change_.outside), rowsOf(backs),
+                                rowsOf(change_.visibility, change_.shape.visibilitySize()),
+                                rowsOf(change_.bounced, change_.shape.bouncedSize())},
+                     .compute = compute},
+                    context);
   }
-  std::size_t pointsTraced() const { return traced_; }
 
   // Points inside beside points outside. known[p] becomes 1 where that could be done.
   bool continueInside(const std::vector<Back>& backs, std::vector<std::uint8_t>& known,
@@ -115,15 +106,6 @@ class Filler {
       all[point * on.size() + i] = only_on ? on[i] : 2.0f * on[i] - before[i];
   }
 
-  std::span<float> visibilityOf(std::size_t begin, std::size_t end) {
-    const std::size_t size = change_.shape.visibilitySize();
-    return std::span(change_.visibility).subspan(begin * size, (end - begin) * size);
-  }
-  std::span<float> bouncedOf(std::size_t begin, std::size_t end) {
-    const std::size_t size = change_.shape.bouncedSize();
-    return std::span(change_.bounced).subspan(begin * size, (end - begin) * size);
-  }
-
   bool besideOutside(std::size_t p) const {
     const glm::ivec3 size(grid_.size);
     const auto index = static_cast<int>(p);
@@ -142,7 +124,6 @@ class Filler {
   const CapDirections& directions_;
   const GridPlacement& grid_;
   GridChange& change_;
-  std::atomic<std::size_t> traced_ = 0;
 };
 
 }  // namespace
@@ -152,9 +133,7 @@ std::size_t GridChange::insidePoints() const {
 }
 
 std::optional<GridChange> changeOnGrid(const Body& body, const GridPlacement& grid, const ChangeShape& shape,
-                                       std::size_t rays, Progress& progress, const std::stop_token& stop,
-                                       const Keep& keep) {
-  progress.begin("neighborhood", grid.count(), "points");
+                                       std::size_t rays, const BakeContext& context) {
   const CapDirections directions(rays);
   GridChange change;
   change.shape = shape;
@@ -163,17 +142,18 @@ std::optional<GridChange> changeOnGrid(const Body& body, const GridPlacement& gr
   change.outside.resize(grid.count());
   Filler filler(body, directions, grid, change);
   std::vector<Back> backs(grid.count());
-  if (!filler.look(backs, progress, stop, keep) || stop.stop_requested()) return std::nullopt;
-  change.rays = filler.pointsTraced() * directions.size();
-  change.rays_kept = (grid.count() - filler.pointsTraced()) * directions.size();
+  const auto looked = filler.look(backs, context);
+  if (!looked) return std::nullopt;
+  change.rays = looked->computed * directions.size();
+  change.rays_kept = looked->found * directions.size();
   std::vector<std::uint8_t> known = change.outside;
-  if (!filler.continueInside(backs, known, stop)) return std::nullopt;
+  if (!filler.continueInside(backs, known, context.stop)) return std::nullopt;
   filler.fillRest(known);
   return change;
 }
 
-void dropChange(const Keep& keep, std::size_t points) {
-  dropRanges(keep, points, kGrain);
+void dropChange(const BakeContext& context, std::size_t points) {
+  dropStage(context, points, kGrain);
 }
 
 }  // namespace lambent::baker

@@ -6,12 +6,10 @@
 #pragma once
 
 #include <optional>
-#include <stop_token>
 
-#include "baker/cache/cached_ranges.hpp"
 #include "baker/effects/neighborhood/grid_placement.hpp"
 #include "baker/effects/neighborhood/point_change.hpp"
-#include "baker/jobs/progress.hpp"
+#include "baker/jobs/bake_context.hpp"
 
 namespace lambent::baker {
 
@@ -25,12 +23,10 @@ struct GridChange {
   std::size_t insidePoints() const;
 };
 
-// Nothing if stopped. Stage "neighborhood" of `progress`, counting points. The result does not depend on the
-// number of threads.
+// Returns nothing if stopped. The result does not depend on the number of threads.
 std::optional<GridChange> changeOnGrid(const Body& body, const GridPlacement& grid, const ChangeShape& shape,
-                                       std::size_t rays, Progress& progress, const std::stop_token& stop,
-                                       const Keep& keep = {});
-// What it kept.
-void dropChange(const Keep& keep, std::size_t points);
+                                       std::size_t rays, const BakeContext& context);
+// Removes what it kept.
+void dropChange(const BakeContext& context, std::size_t points);
 
 }  // namespace lambent::baker

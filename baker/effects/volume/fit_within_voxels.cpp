@@ -1,7 +1,6 @@
 #include "baker/effects/volume/fit_within_voxels.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <numbers>
 
@@ -9,7 +8,7 @@
 
 #include "baker/effects/volume/first_light.hpp"
 #include "baker/effects/volume/grid_fit.hpp"
-#include "baker/jobs/parallel.hpp"
+#include "baker/jobs/stage.hpp"
 
 namespace lambent::baker {
 
@@ -89,11 +88,10 @@ std::vector<std::vector<float>> blocksOf(const VolumeTransfer& transfer) {
 }  // namespace
 
 bool fitWithinVoxels(const Medium& medium, const VolumeSettings& settings, const Occluders& occluders,
-                     const ScatterRows* rows, VolumeTransfer& out, Progress& progress,
-                     const std::stop_token& stop, const Keep& keep) {
+                     const ScatterRows* rows, VolumeTransfer& out, const BakeContext& context) {
   const std::vector<Place> places = placesIn(*medium.density, out.grid);
   if (places.empty()) return true;
-  progress.begin("light within voxels", places.size(), "places");
+  context.progress.begin("light within voxels", places.size(), "places");
   const std::size_t columns = out.columns(), width = out.vectorSize();
   const std::size_t blocks = (columns + kBlockColumns - 1) / kBlockColumns;
   const std::vector<SphereTable> many = turnedTables(settings.rays, settings.order),
@@ -102,7 +100,7 @@ bool fitWithinVoxels(const Medium& medium, const VolumeSettings& settings, const
   GridFit fit(out.grid, width, out.vectors);
   std::vector<float> values(kTogether * width);
   std::vector<double> weights(kTogether);
-  std::atomic<std::size_t> traced = 0;
+  std::size_t traced = 0;
   for (std::size_t start = 0; start < places.size(); start += kTogether) {
     const std::size_t count = std::min(kTogether, places.size() - start);
     const auto compute = [&](std::size_t begin, std::size_t end) {
@@ -124,23 +122,14 @@ bool fitWithinVoxels(const Medium& medium, const VolumeSettings& settings, const
                 double{value[i]} + albedo * double{scattered[channel * blocks * kBlockColumns + i]});
         }
       }
-      traced += end - begin;
-      progress.add(end - begin);
     };
-    const auto pack = [&](std::size_t begin, std::size_t end, ByteWriter& to) {
-      to.addList(std::span<const float>(values).subspan(begin * width, (end - begin) * width));
-      to.addList(std::span<const double>(weights).subspan(begin, end - begin));
-    };
-    const auto unpack = [&](std::size_t begin, std::size_t end, ByteReader& in) {
-      if (!in.readInto(std::span(values).subspan(begin * width, (end - begin) * width)) ||
-          !in.readInto(std::span(weights).subspan(begin, end - begin)))
-        return false;
-      progress.add(end - begin);
-      return true;
-    };
-    if (!cachedRanges(keep.part("places", start), count, kGrain, stop, {compute, pack, unpack}, KeepWhen::Due)
-             .finished)
-      return false;
+    const auto done = runStage({.count = count,
+                                .grain = kGrain,
+                                .writes = {rowsOf(values, width), rowsOf(weights)},
+                                .compute = compute},
+                               context.part("places", start));
+    if (!done) return false;
+    traced += done->computed;
     for (std::size_t k = 0; k < count; ++k)
       fit.add(places[start + k].point, weights[k], std::span(values).subspan(k * width, width));
   }
@@ -152,10 +141,10 @@ bool fitWithinVoxels(const Medium& medium, const VolumeSettings& settings, const
   return true;
 }
 
-void dropWithinVoxels(const Keep& keep, const DensityField& density, const TransferGrid& grid) {
+void dropWithinVoxels(const BakeContext& context, const DensityField& density, const TransferGrid& grid) {
   const std::size_t places = placesIn(density, grid).size();
   for (std::size_t start = 0; start < places; start += kTogether)
-    dropRanges(keep.part("places", start), std::min(kTogether, places - start), kGrain);
+    dropStage(context.part("places", start), std::min(kTogether, places - start), kGrain);
 }
 
 }  // namespace lambent::baker

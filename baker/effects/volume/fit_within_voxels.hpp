@@ -6,22 +6,18 @@
 // what of it goes out: density times the mean transmittance to the outside (grid_fit.hpp).
 #pragma once
 
-#include <stop_token>
-
 #include "baker/effects/volume/occluders.hpp"
 #include "baker/effects/volume/scatter_rows.hpp"
 #include "baker/effects/volume/volume_transfer.hpp"
-#include "baker/jobs/progress.hpp"
+#include "baker/jobs/bake_context.hpp"
 
 namespace lambent::baker {
 
 // Changes the vectors of `out`, one output each. rows: none where single scattering is all. Voxels in which
-// no place is over a quarter of a free path thick are not looked at. Stage "light within voxels". False if
-// stopped.
+// no place is over a quarter of a free path thick are not looked at. Returns false if stopped.
 bool fitWithinVoxels(const Medium& medium, const VolumeSettings& settings, const Occluders& occluders,
-                     const ScatterRows* rows, VolumeTransfer& out, Progress& progress,
-                     const std::stop_token& stop, const Keep& keep = {});
-// What it kept.
-void dropWithinVoxels(const Keep& keep, const DensityField& density, const TransferGrid& grid);
+                     const ScatterRows* rows, VolumeTransfer& out, const BakeContext& context);
+// Removes what it kept.
+void dropWithinVoxels(const BakeContext& context, const DensityField& density, const TransferGrid& grid);
 
 }  // namespace lambent::baker

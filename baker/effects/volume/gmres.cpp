@@ -74,14 +74,14 @@ Columns normalize(std::span<float> v) {
 
 GmresResult solveGmres(std::span<const float> b, std::span<float> x,
                        const std::function<bool(std::span<const float>, std::span<float>)>& apply,
-                       const GmresSettings& settings) {
+                       const GmresSettings& settings, const BakeContext& context) {
   const std::size_t rows = b.size() / kC;
   const double wanted = lengthOf(dots(b, b));
   if (wanted == 0.0) {
     std::fill(x.begin(), x.end(), 0.0f);
     return {};
   }
-  GmresCheckpoints checkpoints(settings.keep, settings.restart);
+  GmresCheckpoints checkpoints(context, settings.restart);
   GmresState state;
   checkpoints.restore(state, x);
   std::vector<Vector>& basis = state.basis;
@@ -151,6 +151,15 @@ GmresResult solveGmres(std::span<const float> b, std::span<float> x,
     ++state.round;
     checkpoints.saveIfDue(state, x);
   }
+}
+
+void write(const SolvedBlock& block, ByteWriter& out) {
+  out.add(block.result.iterations), out.add(block.result.residual);
+  out.addList(std::span<const float>(block.x));
+}
+
+bool read(ByteReader& in, SolvedBlock& block) {
+  return in.read(block.result.iterations) && in.read(block.result.residual) && in.readInto(block.x);
 }
 
 }  // namespace lambent::baker

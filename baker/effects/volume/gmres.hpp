@@ -7,9 +7,10 @@
 #include <cstddef>
 #include <functional>
 #include <span>
-#include <stop_token>
+#include <vector>
 
-#include "baker/cache/cached_ranges.hpp"
+#include "baker/cache/bytes.hpp"
+#include "baker/jobs/bake_context.hpp"
 
 namespace lambent::baker {
 
@@ -17,7 +18,6 @@ struct GmresSettings {
   double tolerance = 1e-5;    // of the residual, relative to b, RMS over all columns
   int most_iterations = 400;  // applications of G
   int restart = 24;           // vectors that are kept
-  Keep keep{};                // of b, G and the settings: checkpoints
 };
 
 struct GmresResult {
@@ -26,9 +26,18 @@ struct GmresResult {
   bool stopped = false;
 };
 
-// apply(x, y): y = G x; false if stopped. x comes in as a first guess and goes out as the solution.
+// apply(x, y): y = G x; false if stopped. x comes in as a first guess and goes out as the solution. The key
+// of the context is that of b, G and the settings: checkpoints are kept under it.
 GmresResult solveGmres(std::span<const float> b, std::span<float> x,
                        const std::function<bool(std::span<const float>, std::span<float>)>& apply,
-                       const GmresSettings& settings);
+                       const GmresSettings& settings, const BakeContext& context);
+
+// A block of columns that is solved: kept as soon as it is there, since the next block may take long, too.
+struct SolvedBlock {
+  GmresResult result;
+  std::span<float> x;
+};
+void write(const SolvedBlock& block, ByteWriter& out);
+bool read(ByteReader& in, SolvedBlock& block);
 
 }  // namespace lambent::baker

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "baker/jobs/kept_value.hpp"
+
 namespace lambent::baker {
 
 void LeastSquares::begin(double length) {
@@ -36,8 +38,8 @@ std::vector<double> LeastSquares::solve() const {
 }
 
 bool GmresCheckpoints::restore(GmresState& state, std::span<float> x) const {
-  if (!keep_.cache) return false;
-  const auto bytes = keep_.cache->find(keep_.part("state").key);
+  if (!context_.keeps()) return false;
+  const auto bytes = context_.cache->find(context_.part("state").key);
   if (!bytes) return false;
   ByteReader in(*bytes);
   GmresState found;
@@ -58,7 +60,7 @@ bool GmresCheckpoints::restore(GmresState& state, std::span<float> x) const {
   }
   if (!in.atEnd()) return false;
   for (std::size_t j = 0; j < vectors; ++j) {
-    const auto kept = keep_.cache->find(vectorKeep(found.round, j).key);
+    const auto kept = context_.cache->find(ofVector(found.round, j).key);
     if (!kept) return false;
     ByteReader vector(*kept);
     if (!vector.readList(found.basis.emplace_back()) || !vector.atEnd() ||
@@ -71,12 +73,12 @@ bool GmresCheckpoints::restore(GmresState& state, std::span<float> x) const {
 }
 
 void GmresCheckpoints::save(const GmresState& state, std::span<const float> x) {
-  if (!keep_.cache) return;
+  if (!context_.keeps()) return;
   if (saved_round_ != state.round) saved_round_ = state.round, saved_ = 0;
   for (; saved_ < state.basis.size(); ++saved_) {
     ByteWriter out;
     out.addList(state.basis[saved_]);
-    keep_.cache->put(vectorKeep(state.round, saved_).key, out.bytes());
+    context_.cache->put(ofVector(state.round, saved_).key, out.bytes());
   }
   ByteWriter out;
   out.add(state.round), out.add(state.iterations), out.add(state.residual), out.add(state.before);
@@ -86,19 +88,19 @@ void GmresCheckpoints::save(const GmresState& state, std::span<const float> x) {
     out.addList(small.cosine), out.addList(small.sine), out.addList(small.g);
     for (const std::vector<double>& column : small.h) out.addList(column);
   }
-  keep_.cache->put(keep_.part("state").key, out.bytes());
-  keep_.cache->checkpointed();
+  context_.cache->put(context_.part("state").key, out.bytes());
+  context_.cache->checkpointed();
 }
 
 void GmresCheckpoints::saveIfDue(const GmresState& state, std::span<const float> x) {
-  if (keep_.cache && keep_.cache->checkpointDue()) save(state, x);
+  if (context_.checkpointDue()) save(state, x);
 }
 
 void GmresCheckpoints::drop(int last_round) const {
-  if (!keep_.cache) return;
-  keep_.cache->drop(keep_.part("state").key);
+  if (!context_.keeps()) return;
+  dropValue(context_.part("state"));
   for (int round = 0; round <= last_round; ++round)
-    for (int j = 0; j <= restart_; ++j) keep_.cache->drop(vectorKeep(round, static_cast<std::size_t>(j)).key);
+    for (int j = 0; j <= restart_; ++j) dropValue(ofVector(round, static_cast<std::size_t>(j)));
 }
 
 }  // namespace lambent::baker

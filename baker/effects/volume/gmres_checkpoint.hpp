@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "baker/cache/cached_ranges.hpp"
 #include "baker/effects/volume/scatter_rows.hpp"
+#include "baker/jobs/bake_context.hpp"
 
 namespace lambent::baker {
 
@@ -32,7 +32,7 @@ struct GmresState {
 
 class GmresCheckpoints {
  public:
-  GmresCheckpoints(const Keep& keep, int restart) : keep_(keep), restart_(restart) {}
+  GmresCheckpoints(const BakeContext& context, int restart) : context_(context), restart_(restart) {}
 
   // False, and nothing changed, where nothing whole is kept.
   bool restore(GmresState& state, std::span<float> x) const;
@@ -42,9 +42,9 @@ class GmresCheckpoints {
   void drop(int last_round) const;
 
  private:
-  Keep vectorKeep(int round, std::size_t index) const { return keep_.part("vector", round, index); }
+  BakeContext ofVector(int round, std::size_t index) const { return context_.part("vector", round, index); }
 
-  Keep keep_;
+  BakeContext context_;
   int restart_;
   int saved_round_ = -1;
   std::size_t saved_ = 0;  // vectors of that round

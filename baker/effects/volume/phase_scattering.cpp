@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
 #include <numbers>
 
@@ -33,16 +32,16 @@ void look(const float* coefficients, std::span<const float> as, float* out) {
 
 }  // namespace
 
-PhaseScattering::PhaseScattering(const DensityField& density, const TransferGrid& grid,
-                                 const Occluders& occluders, const SphereTable& table, int bands, float g)
-    : grid_(&grid),
-      occluders_(&occluders),
+PhaseScattering::PhaseScattering(const VolumeScene& scene, const SphereTable& table,
+                                 const PhaseSettings& settings)
+    : scene_(scene),
       table_(&table),
-      steps_(density, grid, table.size()),
-      away_(grid.samples()),
-      chunks_((grid.samples() + kChunk - 1) / kChunk) {
+      steps_(scene.density, scene.grid, table.size()),
+      away_(scene.grid.samples()),
+      chunks_((scene.grid.samples() + kChunk - 1) / kChunk, settings.memory) {
+  const auto& [density, grid, occluders] = scene;
   double power = 1.0;
-  for (int l = 0; l < bands; ++l, power *= double{g})
+  for (int l = 0; l < settings.bands; ++l, power *= double{settings.g})
     for (int m = -l; m <= l; ++m) factors_.push_back(power);
   amiss_.resize(grid.samples() * outputs());
   resolved_.resize(grid.nodes());
@@ -74,8 +73,8 @@ PhaseScattering::Chunk PhaseScattering::trace(std::size_t chunk, std::size_t fir
   std::vector<float> reach(end - first);
   out.begins.push_back(0);
   for (std::size_t p = chunk * kChunk; p < std::min((chunk + 1) * kChunk, samples()); ++p) {
-    const glm::vec3 origin = grid_->place(p);
-    occluders_->reach(origin, table_->directions().subspan(first, end - first), reach);
+    const glm::vec3 origin = scene_.grid.place(p);
+    scene_.occluders.reach(origin, table_->directions().subspan(first, end - first), reach);
     for (std::size_t r = first; r < end; ++r) {
       const double left =
           steps_.gather(origin, table_->direction(r), reach[r - first], [&](double t, double share) {
@@ -93,17 +92,17 @@ void PhaseScattering::sumUp(std::span<const float> clear, const Chunk& chunk, st
   const std::size_t rays = table_->size(), n = outputs();
   std::vector<double> out(n);
   for (std::size_t p = begin; p < end; ++p) {
-    const glm::dvec3 from = grid_->gridFromGroup(glm::dvec3(grid_->place(p)));
+    const glm::dvec3 from = scene_.grid.gridFromGroup(glm::dvec3(scene_.grid.place(p)));
     const bool beyond = resolved_[p] > 0.5f;
     double away = 0.0;
     std::fill(out.begin(), out.end(), 0.0);
     for (std::size_t r = 0; r < rays; ++r) {
       const std::size_t ray = (p - begin) * rays + r;
-      const glm::dvec3 along = grid_->gridDirection(glm::dvec3(table_->direction(r)));
+      const glm::dvec3 along = scene_.grid.gridDirection(glm::dvec3(table_->direction(r)));
       for (std::uint32_t s = chunk.begins[ray]; s < chunk.begins[ray + 1]; ++s) {
         const RayStep& step = chunk.steps[s];
         const double t = double{step.t};
-        const TransferGrid::Stencil at = grid_->stencil(from + t * along, steps_.levelAt(t), beyond);
+        const TransferGrid::Stencil at = scene_.grid.stencil(from + t * along, steps_.levelAt(t), beyond);
         for (std::size_t k = 0; k < static_cast<std::size_t>(at.count); ++k)
           if (at.node[k] != p) away += double{step.share} * at.weight[k];
       }
@@ -126,64 +125,26 @@ bool PhaseScattering::fits(const Chunk& chunk, std::size_t samples) const {
          std::is_sorted(chunk.begins.begin(), chunk.begins.end());
 }
 
-bool PhaseScattering::sumUpAll(std::span<const float> clear, std::uint64_t memory, Progress& progress,
-                               const std::stop_token& stop, const Keep& keep) {
-  const std::size_t n = outputs();
-  std::atomic<std::uint64_t> bytes = 0;
-  std::atomic<std::size_t> traced = 0;
-  const auto offer = [&](std::size_t begin, std::size_t end, Chunk&& chunk) {
-    const std::uint64_t size = chunk.bytes();
-    if (bytes.fetch_add(size) + size <= memory) {
-      chunk.steps.shrink_to_fit();
-      chunks_[begin / kChunk] = std::move(chunk);
-    } else {
-      bytes.fetch_sub(size);
-    }
-    progress.add(end - begin);
+std::optional<PhaseScattering> PhaseScattering::build(const VolumeScene& scene, const SphereTable& table,
+                                                      std::span<const float> clear,
+                                                      const PhaseSettings& settings,
+                                                      const BakeContext& context) {
+  PhaseScattering out(scene, table, settings);
+  const auto fits = [&](const Chunk& chunk, std::size_t samples) { return out.fits(chunk, samples); };
+  const auto compute = [&](std::size_t begin, std::size_t end) {
+    Chunk chunk = out.trace(begin / kChunk, 0, table.size());
+    out.sumUp(clear, chunk, begin, end);
+    out.chunks_.offer(begin / kChunk, std::move(chunk));
   };
-  const CachedRanges kept =
-      cachedRanges(keep, samples(), kChunk, stop,
-                   {.compute =
-                        [&](std::size_t begin, std::size_t end) {
-                          Chunk chunk = trace(begin / kChunk, 0, table_->size());
-                          sumUp(clear, chunk, begin, end);
-                          traced += end - begin;
-                          offer(begin, end, std::move(chunk));
-                        },
-                    // What has no room in memory is not kept either, but for the sums.
-                    .pack =
-                        [&](std::size_t begin, std::size_t end, ByteWriter& out) {
-                          out.addList(std::span<const double>(away_).subspan(begin, end - begin));
-                          out.addList(std::span<const float>(amiss_).subspan(begin * n, (end - begin) * n));
-                          const Chunk& chunk = chunks_[begin / kChunk];
-                          out.addList(chunk.begins);
-                          out.addList(chunk.steps);
-                          out.addList(chunk.left);
-                        },
-                    .unpack =
-                        [&](std::size_t begin, std::size_t end, ByteReader& in) {
-                          Chunk chunk;
-                          if (!in.readInto(std::span(away_).subspan(begin, end - begin)) ||
-                              !in.readInto(std::span(amiss_).subspan(begin * n, (end - begin) * n)) ||
-                              !in.readList(chunk.begins) || !in.readList(chunk.steps) ||
-                              !in.readList(chunk.left) || !fits(chunk, end - begin))
-                            return false;
-                          offer(begin, end, std::move(chunk));
-                          return true;
-                        }},
-                   KeepWhen::Due);
-  bytes_ = bytes;
-  samples_traced_ = traced;
-  return kept.finished;
-}
-
-std::optional<PhaseScattering> PhaseScattering::build(const DensityField& density, const TransferGrid& grid,
-                                                      const Occluders& occluders, const SphereTable& table,
-                                                      int bands, float g, std::span<const float> clear,
-                                                      std::uint64_t memory, Progress& progress,
-                                                      const std::stop_token& stop, const Keep& keep) {
-  PhaseScattering out(density, grid, occluders, table, bands, g);
-  if (!out.sumUpAll(clear, memory, progress, stop, keep)) return std::nullopt;
+  const auto done = runStage(
+      {.name = "scattering",
+       .count = out.samples(),
+       .grain = kChunk,
+       .writes = {rowsOf(out.away_), rowsOf(out.amiss_, out.outputs()), out.chunks_.output(kChunk, fits)},
+       .compute = compute},
+      context);
+  if (!done) return std::nullopt;
+  out.samples_traced_ = done->computed;
   return out;
 }
 
@@ -191,7 +152,7 @@ std::optional<PhaseScattering> PhaseScattering::build(const DensityField& densit
 // up by 1/12 of the second difference, and a node of level l, a mean of 2^l voxels, by (1 - 4^-l) / 24: the
 // nodes over the samples are moved by that. Rays see the samples themselves from near, and not all over.
 void PhaseScattering::bend(std::span<const float> nodes, std::span<float> bent) const {
-  const std::size_t width = outputs() * kC, above = grid_->nodes() - samples();
+  const std::size_t width = outputs() * kC, above = scene_.grid.nodes() - samples();
   parallelRanges(above, kNodeGrain, {}, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const std::size_t node = samples() + i;
@@ -215,10 +176,10 @@ void PhaseScattering::bend(std::span<const float> nodes, std::span<float> bent) 
 // further in.
 std::optional<std::array<std::size_t, 3>> PhaseScattering::curveAt(std::size_t node, int axis) const {
   auto middle = static_cast<std::uint32_t>(node);
-  const auto beside = grid_->neighbors(middle, axis);
+  const auto beside = scene_.grid.neighbors(middle, axis);
   if (beside.first < 0 && beside.second >= 0) middle = static_cast<std::uint32_t>(beside.second);
   if (beside.first >= 0 && beside.second < 0) middle = static_cast<std::uint32_t>(beside.first);
-  const auto [before, after] = grid_->neighbors(middle, axis);
+  const auto [before, after] = scene_.grid.neighbors(middle, axis);
   if (before < 0 || after < 0) return std::nullopt;
   return std::array{static_cast<std::size_t>(before), std::size_t{middle}, static_cast<std::size_t>(after)};
 }
@@ -267,11 +228,11 @@ void PhaseScattering::gather(std::size_t index, std::size_t first_ray, std::span
   Columns sum;
   const std::size_t begin = index * kChunk, end = std::min(begin + kChunk, samples());
   for (std::size_t p = begin; p < end; ++p) {
-    const glm::dvec3 from = grid_->gridFromGroup(glm::dvec3(grid_->place(p)));
+    const glm::dvec3 from = scene_.grid.gridFromGroup(glm::dvec3(scene_.grid.place(p)));
     const double resolved = double{resolved_[p]};
     for (std::size_t r = first_ray; r < end_ray; ++r) {
       const std::size_t ray = (p - begin) * stride + offset + (r - first_ray);
-      const glm::dvec3 along = grid_->gridDirection(glm::dvec3(table_->direction(r)));
+      const glm::dvec3 along = scene_.grid.gridDirection(glm::dvec3(table_->direction(r)));
       const Seen& by = seen[r - first_ray];
       const float* const own = &by.near[p * kNear * kC];
       for (std::size_t c = 0; c < kC; ++c) sum[c] = -chunk.left[ray] * own[c];
@@ -279,7 +240,7 @@ void PhaseScattering::gather(std::size_t index, std::size_t first_ray, std::span
         const RayStep& step = chunk.steps[s];
         const double t = double{step.t};
         const int level = steps_.levelAt(t);
-        const TransferGrid::Stencil at = grid_->stencil(from + t * along, level, resolved > 0.5);
+        const TransferGrid::Stencil at = scene_.grid.stencil(from + t * along, level, resolved > 0.5);
         const glm::vec3 bend(resolved * 0.5 * at.fraction * (1.0 - at.fraction));
         for (std::size_t k = 0; k < static_cast<std::size_t>(at.count); ++k) {
           const float weight = step.share * static_cast<float>(at.weight[k]);
@@ -300,12 +261,12 @@ void PhaseScattering::gather(std::size_t index, std::size_t first_ray, std::span
 }
 
 bool PhaseScattering::apply(std::span<const float> x, std::span<float> out, const std::stop_token& stop) {
-  const std::size_t n = outputs(), nodes = grid_->nodes(), above = nodes - samples();
+  const std::size_t n = outputs(), nodes = scene_.grid.nodes(), above = nodes - samples();
   std::vector<float> values(nodes * n * kC), bent(above * n * kC);
   std::array<Seen, kRays> seen;
   for (Seen& by : seen) by.near.resize(samples() * kNear * kC), by.far.resize(above * kC);
   std::copy(x.begin(), x.end(), values.begin());
-  grid_->raise(values, n * kC);
+  scene_.grid.raise(values, n * kC);
   bend(values, bent);
   // What many rays say of uniform light, where few miss it.
   for (std::size_t p = 0; p < samples(); ++p)

@@ -17,15 +17,13 @@
 #include <stop_token>
 #include <vector>
 
-#include "baker/cache/cached_ranges.hpp"
-#include "baker/effects/volume/density_field.hpp"
 #include "baker/effects/volume/gmres.hpp"
-#include "baker/effects/volume/occluders.hpp"
+#include "baker/effects/volume/kept_chunks.hpp"
 #include "baker/effects/volume/ray_steps.hpp"
 #include "baker/effects/volume/scatter_rows.hpp"
 #include "baker/effects/volume/sphere_table.hpp"
-#include "baker/effects/volume/transfer_grid.hpp"
-#include "baker/jobs/progress.hpp"
+#include "baker/effects/volume/volume_scene.hpp"
+#include "baker/jobs/stage.hpp"
 
 namespace lambent::baker {
 
@@ -36,23 +34,27 @@ struct RayStep {
 template <>
 inline constexpr bool kPlainBytes<RayStep> = true;
 
+struct PhaseSettings {
+  int bands = 3;             // of what arrives
+  float g = 0.0f;            // mean cosine of the phase function
+  std::uint64_t memory = 0;  // bytes for what rays meet
+};
+
 class PhaseScattering {
  public:
   // clear: [sample][bands²], int tau y_i ds up to the outside or to surfaces, by many rays
-  // (phased_light.hpp): uniform light comes out as that says. table: of `bands` bands, at least 2 bands²
-  // rays. What rays meet is kept in `memory` bytes; what does not fit is traced again each time, with the
-  // same result. Nothing if stopped. All that is passed must outlive it.
-  static std::optional<PhaseScattering> build(const DensityField& density, const TransferGrid& grid,
-                                              const Occluders& occluders, const SphereTable& table, int bands,
-                                              float g, std::span<const float> clear, std::uint64_t memory,
-                                              Progress& progress, const std::stop_token& stop,
-                                              const Keep& keep = {});
+  // (phased_light.hpp): uniform light comes out as that says. table: of as many bands, at least 2 bands²
+  // rays. What does not fit into the memory is traced again each time, with the same result. Nothing if
+  // stopped. Scene and table must outlive it.
+  static std::optional<PhaseScattering> build(const VolumeScene& scene, const SphereTable& table,
+                                              std::span<const float> clear, const PhaseSettings& settings,
+                                              const BakeContext& context);
   // Removes what build() kept.
-  static void drop(const Keep& keep, std::size_t samples) { dropRanges(keep, samples, kChunk); }
+  static void drop(const BakeContext& context, std::size_t samples) { dropStage(context, samples, kChunk); }
   // Samples whose rays were traced in this run; the others were kept.
   std::size_t samplesTraced() const { return samples_traced_; }
 
-  std::size_t samples() const { return grid_->samples(); }
+  std::size_t samples() const { return scene_.grid.samples(); }
   std::size_t outputs() const { return factors_.size(); }
   // g^l of output i.
   double factor(std::size_t i) const { return factors_[i]; }
@@ -62,7 +64,7 @@ class PhaseScattering {
   // out = K x - g^l x. x, out: [sample][outputs][kBlockColumns]. False if stopped.
   bool apply(std::span<const float> x, std::span<float> out, const std::stop_token& stop);
 
-  std::uint64_t bytes() const { return bytes_; }
+  std::uint64_t bytes() const { return chunks_.bytes(); }
 
  private:
   static constexpr std::size_t kChunk = 64;  // samples
@@ -72,17 +74,21 @@ class PhaseScattering {
     std::vector<RayStep> steps;
     std::vector<float> left;  // [sample][ray]: gets out, or to a surface
     std::uint64_t bytes() const { return 4 * (begins.size() + left.size()) + 8 * steps.size(); }
+    void shrink() { steps.shrink_to_fit(); }
+    friend void write(const Chunk& chunk, ByteWriter& out) {
+      out.addList(chunk.begins), out.addList(chunk.steps), out.addList(chunk.left);
+    }
+    friend bool read(ByteReader& in, Chunk& chunk) {
+      return in.readList(chunk.begins) && in.readList(chunk.steps) && in.readList(chunk.left);
+    }
   };
 
-  PhaseScattering(const DensityField& density, const TransferGrid& grid, const Occluders& occluders,
-                  const SphereTable& table, int bands, float g);
+  PhaseScattering(const VolumeScene& scene, const SphereTable& table, const PhaseSettings& settings);
   // Rays [first, end) of the samples of a chunk.
   Chunk trace(std::size_t chunk, std::size_t first, std::size_t end) const;
   // Of one chunk, from what its rays met.
   void sumUp(std::span<const float> clear, const Chunk& chunk, std::size_t begin, std::size_t end);
   bool fits(const Chunk& chunk, std::size_t samples) const;
-  bool sumUpAll(std::span<const float> clear, std::uint64_t memory, Progress& progress,
-                const std::stop_token& stop, const Keep& keep);
   void findDuals();
   // What a ray sees of the samples and of the nodes over them.
   struct Seen {
@@ -96,8 +102,7 @@ class PhaseScattering {
   void gather(std::size_t chunk, std::size_t first_ray, std::span<const Seen> seen,
               std::span<float> out) const;
 
-  const TransferGrid* grid_;
-  const Occluders* occluders_;
+  VolumeScene scene_;
   const SphereTable* table_;
   RaySteps steps_;
   std::vector<double> factors_;
@@ -105,9 +110,8 @@ class PhaseScattering {
   std::vector<float> seen_as_, duals_;
   std::vector<float> resolved_;  // of nodes: 1 where a free path is not shorter than a voxel, 0 where far
   std::vector<double> away_;
-  std::vector<float> amiss_;   // [sample][outputs]: by how much few rays miss `clear`, times y_0
-  std::vector<Chunk> chunks_;  // empty where not kept
-  std::uint64_t bytes_ = 0;
+  std::vector<float> amiss_;  // [sample][outputs]: by how much few rays miss `clear`, times y_0
+  KeptChunks<Chunk> chunks_;
   std::size_t samples_traced_ = 0;
 };
 

@@ -1,11 +1,10 @@
 #include "baker/effects/volume/phased_light.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <numbers>
 
-#include "baker/jobs/parallel.hpp"
+#include "baker/jobs/stage.hpp"
 
 namespace lambent::baker {
 
@@ -24,8 +23,9 @@ void project(const SphereTable& table, double mean, std::span<const double> lost
                                 (i == 0 ? kY0 * mean : (1.0 - mean) * table.mean(i) - lost[i] * share));
 }
 
-void findLight(const DensityField& density, const TransferGrid& grid, const Occluders& occluders,
-               const SphereTable& table, std::size_t begin, std::size_t end, PhasedLight& light) {
+void findLight(const VolumeScene& scene, const SphereTable& table, std::size_t begin, std::size_t end,
+               PhasedLight& light) {
+  const auto& [density, grid, occluders] = scene;
   const std::size_t size = light.visibility_size, outputs = light.clear.size() / grid.samples();
   std::vector<float> reach(table.size());
   std::vector<double> lost(size), gone_sums(outputs);
@@ -54,48 +54,29 @@ void findLight(const DensityField& density, const TransferGrid& grid, const Occl
 
 }  // namespace
 
-bool findPhasedLight(const DensityField& density, const TransferGrid& grid, const Occluders& occluders,
-                     const SphereTable& table, int bands, PhasedLight& light, Progress& progress,
-                     const std::stop_token& stop, const Keep& keep) {
-  const std::size_t size = table.harmonics(0).size();
+std::optional<PhasedLight> findPhasedLight(const VolumeScene& scene, const SphereTable& table, int bands,
+                                           const BakeContext& context) {
+  const std::size_t samples = scene.grid.samples(), size = table.harmonics(0).size();
   const auto outputs = static_cast<std::size_t>(bands) * static_cast<std::size_t>(bands);
-  light.visibility_size = size;
-  light.visibility.resize(grid.samples() * size);
-  light.clear.resize(grid.samples() * outputs);
-  std::atomic<std::size_t> traced = 0;
-  const auto visibilityOf = [&](std::size_t begin, std::size_t end) {
-    return std::span(light.visibility).subspan(begin * size, (end - begin) * size);
+  PhasedLight light{.visibility_size = size,
+                    .visibility = std::vector<float>(samples * size),
+                    .clear = std::vector<float>(samples * outputs)};
+  const auto compute = [&](std::size_t begin, std::size_t end) {
+    findLight(scene, table, begin, end, light);
   };
-  const auto clearOf = [&](std::size_t begin, std::size_t end) {
-    return std::span(light.clear).subspan(begin * outputs, (end - begin) * outputs);
-  };
-  const CachedRanges kept =
-      cachedRanges(keep, grid.samples(), kGrain, stop,
-                   {.compute =
-                        [&](std::size_t begin, std::size_t end) {
-                          findLight(density, grid, occluders, table, begin, end, light);
-                          traced += end - begin;
-                          progress.add(end - begin);
-                        },
-                    .pack =
-                        [&](std::size_t begin, std::size_t end, ByteWriter& out) {
-                          out.addList(std::span<const float>(visibilityOf(begin, end)));
-                          out.addList(std::span<const float>(clearOf(begin, end)));
-                        },
-                    .unpack =
-                        [&](std::size_t begin, std::size_t end, ByteReader& in) {
-                          if (!in.readInto(visibilityOf(begin, end)) || !in.readInto(clearOf(begin, end)))
-                            return false;
-                          progress.add(end - begin);
-                          return true;
-                        }},
-                   KeepWhen::Due);
-  light.samples_traced = traced;
-  return kept.finished;
+  const auto done = runStage({.name = "light into volumes",
+                              .count = samples,
+                              .grain = kGrain,
+                              .writes = {rowsOf(light.visibility, size), rowsOf(light.clear, outputs)},
+                              .compute = compute},
+                             context);
+  if (!done) return std::nullopt;
+  light.samples_traced = done->computed;
+  return light;
 }
 
-void dropPhasedLight(const Keep& keep, std::size_t samples) {
-  dropRanges(keep, samples, kGrain);
+void dropPhasedLight(const BakeContext& context, std::size_t samples) {
+  dropStage(context, samples, kGrain);
 }
 
 }  // namespace lambent::baker

@@ -5,15 +5,12 @@
 #pragma once
 
 #include <cstddef>
-#include <stop_token>
+#include <optional>
 #include <vector>
 
-#include "baker/cache/cached_ranges.hpp"
-#include "baker/effects/volume/density_field.hpp"
-#include "baker/effects/volume/occluders.hpp"
 #include "baker/effects/volume/sphere_table.hpp"
-#include "baker/effects/volume/transfer_grid.hpp"
-#include "baker/jobs/progress.hpp"
+#include "baker/effects/volume/volume_scene.hpp"
+#include "baker/jobs/bake_context.hpp"
 
 namespace lambent::baker {
 
@@ -24,11 +21,10 @@ struct PhasedLight {
   std::size_t samples_traced = 0;  // in this run; the others were kept
 };
 
-// table: of order + bands - 1 bands. False if stopped.
-bool findPhasedLight(const DensityField& density, const TransferGrid& grid, const Occluders& occluders,
-                     const SphereTable& table, int bands, PhasedLight& light, Progress& progress,
-                     const std::stop_token& stop, const Keep& keep = {});
-// What it kept.
-void dropPhasedLight(const Keep& keep, std::size_t samples);
+// table: of order + bands - 1 bands. Returns nothing if stopped.
+std::optional<PhasedLight> findPhasedLight(const VolumeScene& scene, const SphereTable& table, int bands,
+                                           const BakeContext& context);
+// Removes what it kept.
+void dropPhasedLight(const BakeContext& context, std::size_t samples);
 
 }  // namespace lambent::baker

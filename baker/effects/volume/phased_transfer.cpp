@@ -4,10 +4,10 @@
 #include <cmath>
 
 #include "baker/effects/volume/gmres.hpp"
-#include "baker/effects/volume/keep_solved.hpp"
 #include "baker/effects/volume/phase_scattering.hpp"
 #include "baker/effects/volume/phased_light.hpp"
 #include "baker/effects/volume/sphere_table.hpp"
+#include "baker/jobs/kept_value.hpp"
 #include "baker/jobs/parallel.hpp"
 #include "runtime/sh/gaunt.hpp"
 
@@ -26,10 +26,11 @@ constexpr std::uint64_t kSolverBytes = std::uint64_t{1} << 30, kLeastKept = 6, k
 // sample.
 class PhasedSystem {
  public:
-  PhasedSystem(PhaseScattering& scattering, double albedo, const std::stop_token& stop)
+  // The key of the context is that of the block.
+  PhasedSystem(PhaseScattering& scattering, double albedo, const BakeContext& context)
       : scattering_(scattering),
         albedo_(albedo),
-        stop_(stop),
+        context_(context),
         scale_(scattering.samples() * scattering.outputs()) {
     const std::size_t n = scattering.outputs();
     for (std::size_t p = 0; p < scattering.samples(); ++p)
@@ -43,7 +44,7 @@ class PhasedSystem {
     kept_vectors_ = static_cast<int>(std::clamp(kSolverBytes / vector, kLeastKept, kMostKept));
   }
 
-  GmresResult solve(std::span<const float> first, std::span<float> result, const Keep& keep) {
+  GmresResult solve(std::span<const float> first, std::span<float> result) {
     std::vector<float> right(first.size());
     for (std::size_t i = 0; i < first.size(); ++i)
       right[i] = static_cast<float>(double{first[i]} * scale_[i / kBlockColumns]);
@@ -51,7 +52,7 @@ class PhasedSystem {
     return solveGmres(
         right, result,
         [&](std::span<const float> x, std::span<float> y) {
-          if (!scattering_.apply(x, y, stop_)) return false;
+          if (!scattering_.apply(x, y, context_.stop)) return false;
           const std::size_t n = scattering_.outputs();
           parallelRanges(scale_.size(), kGrain * n, {}, [&](std::size_t begin, std::size_t end) {
             for (std::size_t row = begin; row < end; ++row) {
@@ -62,7 +63,7 @@ class PhasedSystem {
           });
           return true;
         },
-        {.tolerance = kTolerance, .restart = kept_vectors_, .keep = keep});
+        {.tolerance = kTolerance, .restart = kept_vectors_}, context_);
   }
 
   // So many scatterings one after the other.
@@ -71,7 +72,7 @@ class PhasedSystem {
     std::vector<float> change(first.size());
     const std::size_t n = scattering_.outputs();
     for (int k = 0; k < times; ++k) {
-      if (!scattering_.apply(result, change, stop_)) return {k, 0.0, true};
+      if (!scattering_.apply(result, change, context_.stop)) return {k, 0.0, true};
       for (std::size_t i = 0; i < first.size(); ++i) {
         const double goes_on = scattering_.factor(i / kBlockColumns % n);
         result[i] = static_cast<float>(double{first[i]} +
@@ -84,13 +85,14 @@ class PhasedSystem {
  private:
   PhaseScattering& scattering_;
   double albedo_;
-  const std::stop_token& stop_;
+  BakeContext context_;
   std::vector<double> scale_;
   int kept_vectors_ = 0;
 };
 
 bool scatter(PhaseScattering& scattering, const VolumeSettings& settings, VolumeTransfer& out,
-             Progress& progress, const std::stop_token& stop, const Keep& keep) {
+             const BakeContext& context) {
+  context.progress.begin("scattered light", out.columns() * out.full_channels, "columns");
   const std::size_t columns = out.columns(), block_size = out.outputs() * columns,
                     rows = out.grid.samples() * out.outputs();
   // Row: an output of a sample. Where its columns stand in the vectors.
@@ -106,17 +108,20 @@ bool scatter(PhaseScattering& scattering, const VolumeSettings& settings, Volume
       std::copy_n(at(row, 0) + begin, width, &first[row * kBlockColumns]);
     for (std::uint32_t channel = 0; channel < out.full_channels; ++channel) {
       const double albedo = std::min(double{out.albedo[static_cast<int>(channel)]}, kLargestAlbedo);
-      PhasedSystem system(scattering, albedo, stop);
-      const GmresResult done = keepSolved(keep.part("block", begin, channel), result, [&](const Keep& part) {
-        return settings.scatterings < 0 ? system.solve(first, result, part)
-                                        : system.repeat(first, result, settings.scatterings);
+      const BakeContext block_context = context.part("block", begin, channel);
+      PhasedSystem system(scattering, albedo, block_context);
+      SolvedBlock solved{{}, result};
+      const auto found = findOrMake(block_context.part("solved"), solved, [&] {
+        solved.result = settings.scatterings < 0 ? system.solve(first, result)
+                                                 : system.repeat(first, result, settings.scatterings);
+        return !solved.result.stopped;
       });
-      if (done.stopped) return false;
-      out.iterations = std::max(out.iterations, done.iterations);
-      out.residual = std::max(out.residual, done.residual);
+      if (!found) return false;
+      out.iterations = std::max(out.iterations, solved.result.iterations);
+      out.residual = std::max(out.residual, solved.result.residual);
       for (std::size_t row = 0; row < rows; ++row)
         std::copy_n(&result[row * kBlockColumns], width, at(row, 1 + channel) + begin);
-      progress.add(width);
+      context.progress.add(width);
     }
   }
   return true;
@@ -125,44 +130,40 @@ bool scatter(PhaseScattering& scattering, const VolumeSettings& settings, Volume
 }  // namespace
 
 bool bakePhasedTransfer(const Medium& medium, const VolumeSettings& settings, const Occluders& occluders,
-                        VolumeTransfer& out, Progress& progress, const std::stop_token& stop,
-                        const Keep& keep) {
+                        VolumeTransfer& out, const BakeContext& context) {
   const std::size_t samples = out.grid.samples();
+  const VolumeScene scene{*medium.density, out.grid, occluders};
   const SphereTable table(settings.rays, out.order + out.bands - 1);
-  progress.begin("light into volumes", samples, "samples");
-  PhasedLight light;
-  if (!findPhasedLight(*medium.density, out.grid, occluders, table, out.bands, light, progress, stop,
-                       keep.part("light")))
-    return false;
-  out.rays = light.samples_traced * table.size();
-  out.rays_kept = (samples - light.samples_traced) * table.size();
+  auto light = findPhasedLight(scene, table, out.bands, context.part("light"));
+  if (!light) return false;
+  out.rays = light->samples_traced * table.size();
+  out.rays_kept = (samples - light->samples_traced) * table.size();
   const sh::GauntTable products = sh::makeGauntTable(out.order, out.bands);
   parallelRanges(samples, kGrain, {}, [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; ++p)
       sh::addVisibilityMatrix(
-          products, std::span(light.visibility).subspan(p * light.visibility_size, light.visibility_size),
+          products, std::span(light->visibility).subspan(p * light->visibility_size, light->visibility_size),
           std::span(out.vectors).subspan(p * out.vectorSize(), out.outputs() * out.columns()));
   });
-  if (out.bands > 3) out.visibility = std::move(light.visibility);
+  if (out.bands > 3) out.visibility = std::move(light->visibility);
   if (out.full_channels == 0) return true;
 
   const SphereTable few(
       std::max({kLeastScatteringRays, kRaysPerOutput * out.outputs(), settings.rays / kRaysPerScatteringRay}),
       out.bands);
-  progress.begin("scattering", samples, "samples");
-  auto scattering = PhaseScattering::build(*medium.density, out.grid, occluders, few, out.bands, out.g,
-                                           light.clear, settings.memory, progress, stop, keep.part("rows"));
+  auto scattering = PhaseScattering::build(scene, few, light->clear,
+                                           {.bands = out.bands, .g = out.g, .memory = settings.memory},
+                                           context.part("rows"));
   if (!scattering) return false;
   out.rays += scattering->samplesTraced() * few.size();
   out.rays_kept += (samples - scattering->samplesTraced()) * few.size();
   out.row_bytes = scattering->bytes();
-  progress.begin("scattered light", out.columns() * out.full_channels, "columns");
-  return scatter(*scattering, settings, out, progress, stop, keep);
+  return scatter(*scattering, settings, out, context);
 }
 
-void dropPhasedParts(const Keep& keep, std::size_t samples) {
-  dropPhasedLight(keep.part("light"), samples);
-  PhaseScattering::drop(keep.part("rows"), samples);
+void dropPhasedParts(const BakeContext& context, std::size_t samples) {
+  dropPhasedLight(context.part("light"), samples);
+  PhaseScattering::drop(context.part("rows"), samples);
 }
 
 }  // namespace lambent::baker

@@ -2,8 +2,6 @@
 // bands. Part of bakeVolumeTransfer().
 #pragma once
 
-#include <stop_token>
-
 #include "baker/effects/volume/volume_transfer.hpp"
 
 namespace lambent::baker {
@@ -11,9 +9,8 @@ namespace lambent::baker {
 // Fills vectors, visibility and figures of a transfer of more than one band; grid, order, bands and channels
 // are there. False if stopped.
 bool bakePhasedTransfer(const Medium& medium, const VolumeSettings& settings, const Occluders& occluders,
-                        VolumeTransfer& out, Progress& progress, const std::stop_token& stop,
-                        const Keep& keep = {});
-// Its checkpoints, but for the solver's.
-void dropPhasedParts(const Keep& keep, std::size_t samples);
+                        VolumeTransfer& out, const BakeContext& context);
+// Removes its checkpoints, but for the solver's.
+void dropPhasedParts(const BakeContext& context, std::size_t samples);
 
 }  // namespace lambent::baker

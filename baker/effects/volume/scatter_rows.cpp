@@ -9,17 +9,15 @@
 
 namespace lambent::baker {
 
-ScatterRows::ScatterRows(const DensityField& density, const TransferGrid& grid, const Occluders& occluders,
-                         const SphereTable& table, std::span<const double> met)
-    : density_(&density),
-      grid_(&grid),
-      occluders_(&occluders),
+ScatterRows::ScatterRows(const VolumeScene& scene, const SphereTable& table, std::span<const double> met,
+                         std::uint64_t memory)
+    : scene_(scene),
       table_(&table),
       met_(met.begin(), met.end()),
       self_(met.size()),
       others_(met.size()),
-      chunks_((met.size() + kChunk - 1) / kChunk),
-      steps_(density, grid, table.size()) {}
+      chunks_((met.size() + kChunk - 1) / kChunk, memory),
+      steps_(scene.density, scene.grid, table.size()) {}
 
 // The row of one sample as it grows: weights of nodes, and weights of what interpolation leaves out.
 class ScatterRows::Row {
@@ -99,14 +97,14 @@ class ScatterRows::Row {
 
 void ScatterRows::traceRow(const glm::vec3& origin, const SphereTable& table, std::vector<float>& reach,
                            Row& row) const {
-  const glm::dvec3 grid_origin = grid_->gridFromGroup(glm::dvec3(origin));
+  const glm::dvec3 grid_origin = scene_.grid.gridFromGroup(glm::dvec3(origin));
   const double thickness =
-      double{density_->atGrid(density_->gridFromGroup(origin))} * double{grid_->meanEdge()};
+      double{scene_.density.atGrid(scene_.density.gridFromGroup(origin))} * double{scene_.grid.meanEdge()};
   row.begin(1.0 - glm::smoothstep(2.0, 4.0, thickness));
-  occluders_->reach(origin, table.directions(), reach);
+  scene_.occluders.reach(origin, table.directions(), reach);
   for (std::size_t r = 0; r < table.size(); ++r) {
     const glm::vec3& direction = table.direction(r);
-    const glm::dvec3 grid_direction = grid_->gridDirection(glm::dvec3(direction));
+    const glm::dvec3 grid_direction = scene_.grid.gridDirection(glm::dvec3(direction));
     steps_.gather(origin, direction, reach[r], [&](double t, double share) {
       row.add(grid_origin + t * grid_direction, steps_.levelAt(t), share);
     });
@@ -116,11 +114,11 @@ void ScatterRows::traceRow(const glm::vec3& origin, const SphereTable& table, st
 ScatterRows::Chunk ScatterRows::trace(std::size_t begin, std::size_t end, std::span<double> self,
                                       std::span<double> others) const {
   Chunk chunk;
-  Row row(*grid_);
+  Row row(scene_.grid);
   std::vector<float> reach(table_->size());
   chunk.begins.push_back(0);
   for (std::size_t p = begin; p < end; ++p) {
-    traceRow(grid_->place(p), *table_, reach, row);
+    traceRow(scene_.grid.place(p), *table_, reach, row);
     const double scale = row.sum() > 0.0 ? met_[p] / row.sum() : 0.0;
     double rest = 0.0, own = 0.0;
     row.finish([&](std::uint32_t node, double weight) {
@@ -139,7 +137,7 @@ ScatterRows::Chunk ScatterRows::trace(std::size_t begin, std::size_t end, std::s
 }
 
 ScatterRows::Gather::Gather(const ScatterRows& rows)
-    : rows_(rows), row_(std::make_unique<Row>(*rows.grid_)) {}
+    : rows_(rows), row_(std::make_unique<Row>(rows.scene_.grid)) {}
 ScatterRows::Gather::~Gather() = default;
 
 void ScatterRows::Gather::look(const glm::vec3& place, const SphereTable& table, double met,
@@ -156,56 +154,25 @@ void ScatterRows::Gather::look(const glm::vec3& place, const SphereTable& table,
   });
 }
 
-std::optional<ScatterRows> ScatterRows::build(const DensityField& density, const TransferGrid& grid,
-                                              const Occluders& occluders, const SphereTable& table,
+std::optional<ScatterRows> ScatterRows::build(const VolumeScene& scene, const SphereTable& table,
                                               std::span<const double> met, std::uint64_t memory,
-                                              Progress& progress, const std::stop_token& stop,
-                                              const Keep& keep) {
-  ScatterRows rows(density, grid, occluders, table, met);
-  std::atomic<std::uint64_t> bytes = 0;
-  std::atomic<std::size_t> traced = 0;
-  const auto offer = [&](std::size_t begin, std::size_t end, Chunk&& chunk) {
-    const std::uint64_t size = chunk.bytes();
-    if (bytes.fetch_add(size) + size <= memory) {
-      chunk.nodes.shrink_to_fit(), chunk.weights.shrink_to_fit();
-      rows.chunks_[begin / kChunk] = std::move(chunk);
-    } else {
-      bytes.fetch_sub(size);
-    }
-    progress.add(end - begin);
+                                              const BakeContext& context) {
+  ScatterRows rows(scene, table, met, memory);
+  const auto fits = [&](const Chunk& chunk, std::size_t count) {
+    return chunk.fits(count, scene.grid.nodes());
   };
-  const CachedRanges kept =
-      cachedRanges(keep, met.size(), kChunk, stop,
-                   {.compute =
-                        [&](std::size_t begin, std::size_t end) {
-                          traced += end - begin;
-                          offer(begin, end, rows.trace(begin, end, rows.self_, rows.others_));
-                        },
-                    // What has no room in memory is not kept either, but for the sums.
-                    .pack =
-                        [&](std::size_t begin, std::size_t end, ByteWriter& out) {
-                          out.addList(std::span<const double>(rows.self_).subspan(begin, end - begin));
-                          out.addList(std::span<const double>(rows.others_).subspan(begin, end - begin));
-                          const Chunk& chunk = rows.chunks_[begin / kChunk];
-                          out.addList(chunk.begins);
-                          out.addList(chunk.nodes);
-                          out.addList(chunk.weights);
-                        },
-                    .unpack =
-                        [&](std::size_t begin, std::size_t end, ByteReader& in) {
-                          Chunk chunk;
-                          if (!in.readInto(std::span(rows.self_).subspan(begin, end - begin)) ||
-                              !in.readInto(std::span(rows.others_).subspan(begin, end - begin)) ||
-                              !in.readList(chunk.begins) || !in.readList(chunk.nodes) ||
-                              !in.readList(chunk.weights) || !chunk.fits(end - begin, grid.nodes()))
-                            return false;
-                          offer(begin, end, std::move(chunk));
-                          return true;
-                        }},
-                   KeepWhen::Due);
-  if (!kept.finished) return std::nullopt;
-  rows.bytes_ = bytes;
-  rows.samples_traced_ = traced;
+  const auto compute = [&](std::size_t begin, std::size_t end) {
+    rows.chunks_.offer(begin / kChunk, rows.trace(begin, end, rows.self_, rows.others_));
+  };
+  const auto done =
+      runStage({.name = "scattering",
+                .count = met.size(),
+                .grain = kChunk,
+                .writes = {rowsOf(rows.self_), rowsOf(rows.others_), rows.chunks_.output(kChunk, fits)},
+                .compute = compute},
+               context);
+  if (!done) return std::nullopt;
+  rows.samples_traced_ = done->computed;
   return rows;
 }
 
@@ -218,7 +185,7 @@ bool ScatterRows::Chunk::fits(std::size_t rows, std::size_t nodes_there) const {
 }
 
 bool ScatterRows::apply(std::span<float> nodes, std::span<float> out, const std::stop_token& stop) const {
-  grid_->raise(nodes, kBlockColumns);
+  scene_.grid.raise(nodes, kBlockColumns);
   return parallelRanges(samples(), kChunk, stop, [&](std::size_t begin, std::size_t end) {
     const Chunk& kept = chunks_[begin / kChunk];
     const Chunk traced = kept.begins.empty() ? trace(begin, end, {}, {}) : Chunk{};

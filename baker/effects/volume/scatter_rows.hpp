@@ -17,13 +17,11 @@
 #include <stop_token>
 #include <vector>
 
-#include "baker/cache/cached_ranges.hpp"
-#include "baker/effects/volume/density_field.hpp"
-#include "baker/effects/volume/occluders.hpp"
+#include "baker/effects/volume/kept_chunks.hpp"
 #include "baker/effects/volume/ray_steps.hpp"
 #include "baker/effects/volume/sphere_table.hpp"
-#include "baker/effects/volume/transfer_grid.hpp"
-#include "baker/jobs/progress.hpp"
+#include "baker/effects/volume/volume_scene.hpp"
+#include "baker/jobs/stage.hpp"
 
 namespace lambent::baker {
 
@@ -37,15 +35,13 @@ class ScatterRows {
   // met: of each sample, the share of light going out (or coming in) that the medium meets before it gets out
   // or to a surface: rows sum to that. Rows are kept in at most `memory` bytes; those that do not fit are
   // traced again each time, with the same result. Nothing if stopped. All that is passed must outlive it.
-  static std::optional<ScatterRows> build(const DensityField& density, const TransferGrid& grid,
-                                          const Occluders& occluders, const SphereTable& table,
+  static std::optional<ScatterRows> build(const VolumeScene& scene, const SphereTable& table,
                                           std::span<const double> met, std::uint64_t memory,
-                                          Progress& progress, const std::stop_token& stop,
-                                          const Keep& keep = {});
+                                          const BakeContext& context);
   // Samples of which rows were traced in this run; the others were kept.
   std::size_t samplesTraced() const { return samples_traced_; }
   // Removes what build() kept.
-  static void drop(const Keep& keep, std::size_t samples) { dropRanges(keep, samples, kChunk); }
+  static void drop(const BakeContext& context, std::size_t samples) { dropStage(context, samples, kChunk); }
 
   std::size_t samples() const { return self_.size(); }
   // Of a sample: k_pp, the sum of the others, what reaches the outside or a surface.
@@ -72,7 +68,7 @@ class ScatterRows {
     std::vector<float> reach_;
   };
 
-  std::uint64_t bytes() const { return bytes_; }
+  std::uint64_t bytes() const { return chunks_.bytes(); }
 
  private:
   static constexpr std::size_t kChunk = 64;  // samples whose rows lie together
@@ -80,23 +76,27 @@ class ScatterRows {
     std::vector<std::uint32_t> begins, nodes;
     std::vector<float> weights;
     std::uint64_t bytes() const { return 4 * (begins.size() + nodes.size() + weights.size()); }
+    void shrink() { nodes.shrink_to_fit(), weights.shrink_to_fit(); }
     bool fits(std::size_t rows, std::size_t nodes_there) const;
+    friend void write(const Chunk& chunk, ByteWriter& out) {
+      out.addList(chunk.begins), out.addList(chunk.nodes), out.addList(chunk.weights);
+    }
+    friend bool read(ByteReader& in, Chunk& chunk) {
+      return in.readList(chunk.begins) && in.readList(chunk.nodes) && in.readList(chunk.weights);
+    }
   };
 
-  ScatterRows(const DensityField& density, const TransferGrid& grid, const Occluders& occluders,
-              const SphereTable& table, std::span<const double> met);
+  ScatterRows(const VolumeScene& scene, const SphereTable& table, std::span<const double> met,
+              std::uint64_t memory);
   void traceRow(const glm::vec3& origin, const SphereTable& table, std::vector<float>& reach, Row& row) const;
   // Adds the rows of some samples; self and others get their sums where given.
   Chunk trace(std::size_t begin, std::size_t end, std::span<double> self, std::span<double> others) const;
 
-  const DensityField* density_;
-  const TransferGrid* grid_;
-  const Occluders* occluders_;
+  VolumeScene scene_;
   const SphereTable* table_;
   std::vector<double> met_, self_, others_;
-  std::vector<Chunk> chunks_;  // empty where not kept
+  KeptChunks<Chunk> chunks_;
   RaySteps steps_;
-  std::uint64_t bytes_ = 0;
   std::size_t samples_traced_ = 0;
 };
 

@@ -1,17 +1,16 @@
 #include "baker/effects/volume/volume_transfer.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 
 #include "baker/effects/volume/first_light.hpp"
 #include "baker/effects/volume/fit_within_voxels.hpp"
 #include "baker/effects/volume/gmres.hpp"
-#include "baker/effects/volume/keep_solved.hpp"
 #include "baker/effects/volume/phased_transfer.hpp"
 #include "baker/effects/volume/scatter_rows.hpp"
 #include "baker/effects/volume/sphere_table.hpp"
-#include "baker/jobs/parallel.hpp"
+#include "baker/jobs/kept_value.hpp"
+#include "baker/jobs/stage.hpp"
 
 namespace lambent::baker {
 
@@ -23,65 +22,48 @@ constexpr double kTolerance = 1e-5;
 
 // What arrives unscattered, and what stands in its way.
 struct FirstLights {
-  std::vector<float> transfer;   // [sample][order²]
-  std::vector<double> met, out;  // share of the directions whose light the medium meets, and the rest
+  std::vector<float> transfer;     // [sample][order²]
+  std::vector<double> met, out;    // share of the directions whose light the medium meets, and the rest
+  std::size_t samples_traced = 0;  // in this run; the others were kept
 };
 
-// rays: of those that were not kept.
-bool lightIn(const Medium& medium, const TransferGrid& grid, const Occluders& occluders,
-             const SphereTable& table, std::size_t columns, FirstLights& light, std::uint64_t& rays,
-             Progress& progress, const std::stop_token& stop, const Keep& keep) {
-  light.transfer.resize(grid.samples() * columns);
-  light.met.resize(grid.samples());
-  light.out.resize(grid.samples());
-  std::atomic<std::uint64_t> traced = 0;
-  const auto parts = [&](std::size_t begin, std::size_t end, const auto& visit) {
-    const std::size_t count = end - begin;
-    return visit(std::span(light.transfer).subspan(begin * columns, count * columns)) &&
-           visit(std::span(light.met).subspan(begin, count)) &&
-           visit(std::span(light.out).subspan(begin, count));
+std::optional<FirstLights> lightIn(const VolumeScene& scene, const SphereTable& table, std::size_t columns,
+                                   const BakeContext& context) {
+  const std::size_t samples = scene.grid.samples();
+  FirstLights light{.transfer = std::vector<float>(samples * columns),
+                    .met = std::vector<double>(samples),
+                    .out = std::vector<double>(samples)};
+  const auto compute = [&](std::size_t begin, std::size_t end) {
+    FirstLight first(scene.density, scene.occluders);
+    for (std::size_t p = begin; p < end; ++p) {
+      const auto transfer = std::span(light.transfer).subspan(p * columns, columns);
+      const Arrival arrival = first.look(scene.grid.place(p), table, transfer);
+      light.met[p] = arrival.met;
+      light.out[p] = arrival.out;
+    }
   };
-  const CachedRanges kept = cachedRanges(
-      keep, grid.samples(), kGrain, stop,
-      {.compute =
-           [&](std::size_t begin, std::size_t end) {
-             FirstLight first(*medium.density, occluders);
-             for (std::size_t p = begin; p < end; ++p) {
-               const Arrival arrival =
-                   first.look(grid.place(p), table, std::span(light.transfer).subspan(p * columns, columns));
-               light.met[p] = arrival.met;
-               light.out[p] = arrival.out;
-             }
-             traced += (end - begin) * table.size();
-             progress.add(end - begin);
-           },
-       .pack =
-           [&](std::size_t begin, std::size_t end, ByteWriter& out) {
-             parts(begin, end, [&]<typename T>(std::span<T> part) {
-               out.addList(std::span<const T>(part));
-               return true;
-             });
-           },
-       .unpack =
-           [&](std::size_t begin, std::size_t end, ByteReader& in) {
-             if (!parts(begin, end, [&](auto part) { return in.readInto(part); })) return false;
-             progress.add(end - begin);
-             return true;
-           }},
-      KeepWhen::Due);
-  rays += traced;
-  return kept.finished;
+  const auto done =
+      runStage({.name = "light into volumes",
+                .count = samples,
+                .grain = kGrain,
+                .writes = {rowsOf(light.transfer, columns), rowsOf(light.met), rowsOf(light.out)},
+                .compute = compute},
+               context);
+  if (!done) return std::nullopt;
+  light.samples_traced = done->computed;
+  return light;
 }
 
 // T = T0 + w K T for a block of columns, on the diagonal's scale: what a sample keeps to itself is taken out
 // of the iteration, so that thick media converge too. result, first: [sample][kBlockColumns].
 class Scattering {
  public:
+  // The key of the context is that of the block.
   Scattering(const ScatterRows& rows, const TransferGrid& grid, const FirstLights& light, double albedo,
-             const std::stop_token& stop)
+             const BakeContext& context)
       : rows_(rows),
         albedo_(albedo),
-        stop_(stop),
+        context_(context),
         nodes_(grid.nodes() * kBlockColumns),
         scale_(rows.samples()) {
     for (std::size_t p = 0; p < scale_.size(); ++p) {
@@ -91,20 +73,21 @@ class Scattering {
     }
   }
 
-  GmresResult solve(std::span<const float> first, std::span<float> result, const Keep& keep) {
+  GmresResult solve(std::span<const float> first, std::span<float> result) {
     std::vector<float> right(first.size());
     for (std::size_t i = 0; i < first.size(); ++i)
       right[i] = static_cast<float>(double{first[i]} * scale_[i / kBlockColumns]);
     std::copy(right.begin(), right.end(), result.begin());
-    return solveGmres(right, result,
-                      [&](std::span<const float> x, std::span<float> y) {
-                        std::copy(x.begin(), x.end(), nodes_.begin());
-                        if (!rows_.apply(nodes_, y, stop_)) return false;
-                        for (std::size_t i = 0; i < y.size(); ++i)
-                          y[i] = static_cast<float>(albedo_ * scale_[i / kBlockColumns] * double{y[i]});
-                        return true;
-                      },
-                      {.tolerance = kTolerance, .keep = keep});
+    return solveGmres(
+        right, result,
+        [&](std::span<const float> x, std::span<float> y) {
+          std::copy(x.begin(), x.end(), nodes_.begin());
+          if (!rows_.apply(nodes_, y, context_.stop)) return false;
+          for (std::size_t i = 0; i < y.size(); ++i)
+            y[i] = static_cast<float>(albedo_ * scale_[i / kBlockColumns] * double{y[i]});
+          return true;
+        },
+        {.tolerance = kTolerance}, context_);
   }
 
   // So many scatterings one after the other.
@@ -113,7 +96,7 @@ class Scattering {
     std::vector<float> others(first.size());
     for (int k = 0; k < times; ++k) {
       std::copy(result.begin(), result.end(), nodes_.begin());
-      if (!rows_.apply(nodes_, others, stop_)) return {k, 0.0, true};
+      if (!rows_.apply(nodes_, others, context_.stop)) return {k, 0.0, true};
       for (std::size_t i = 0; i < first.size(); ++i)
         result[i] = static_cast<float>(
             double{first[i]} +
@@ -125,13 +108,14 @@ class Scattering {
  private:
   const ScatterRows& rows_;
   double albedo_;
-  const std::stop_token& stop_;
+  BakeContext context_;
   std::vector<float> nodes_;
   std::vector<double> scale_;
 };
 
 bool scatter(const ScatterRows& rows, const FirstLights& light, const VolumeSettings& settings,
-             VolumeTransfer& out, Progress& progress, const std::stop_token& stop, const Keep& keep) {
+             VolumeTransfer& out, const BakeContext& context) {
+  context.progress.begin("scattered light", out.columns() * out.full_channels, "columns");
   const std::size_t columns = out.columns(), samples = out.grid.samples();
   std::vector<float> first(samples * kBlockColumns), result(first.size());
   for (std::size_t block = 0; block < columns; block += kBlockColumns) {
@@ -141,78 +125,92 @@ bool scatter(const ScatterRows& rows, const FirstLights& light, const VolumeSett
       std::copy_n(&light.transfer[p * columns + block], width, &first[p * kBlockColumns]);
     for (std::uint32_t channel = 0; channel < out.full_channels; ++channel) {
       const double albedo = std::min(double{out.albedo[static_cast<int>(channel)]}, kLargestAlbedo);
-      Scattering scattering(rows, out.grid, light, albedo, stop);
-      const GmresResult done = keepSolved(keep.part("block", block, channel), result, [&](const Keep& at) {
-        return settings.scatterings < 0 ? scattering.solve(first, result, at)
-                                        : scattering.repeat(first, result, settings.scatterings);
+      const BakeContext block_context = context.part("block", block, channel);
+      Scattering scattering(rows, out.grid, light, albedo, block_context);
+      SolvedBlock solved{{}, result};
+      const auto found = findOrMake(block_context.part("solved"), solved, [&] {
+        solved.result = settings.scatterings < 0 ? scattering.solve(first, result)
+                                                 : scattering.repeat(first, result, settings.scatterings);
+        return !solved.result.stopped;
       });
-      if (done.stopped) return false;
-      out.iterations = std::max(out.iterations, done.iterations);
-      out.residual = std::max(out.residual, done.residual);
+      if (!found) return false;
+      out.iterations = std::max(out.iterations, solved.result.iterations);
+      out.residual = std::max(out.residual, solved.result.residual);
       for (std::size_t p = 0; p < samples; ++p)
         std::copy_n(&result[p * kBlockColumns], width,
                     &out.vectors[p * out.vectorSize() + (1 + channel) * columns + block]);
-      progress.add(width);
+      context.progress.add(width);
     }
   }
   return true;
 }
 
-// Checkpoints of what is all there now.
-void dropParts(const Keep& keep, const VolumeTransfer& transfer) {
-  if (!keep.cache) return;
+// Removes the checkpoints of what is all there now.
+void dropParts(const BakeContext& context, const VolumeTransfer& transfer) {
+  if (!context.keeps()) return;
   const std::size_t samples = transfer.grid.samples();
   if (transfer.bands > 1) {
-    dropPhasedParts(keep, samples);
+    dropPhasedParts(context, samples);
   } else {
-    dropRanges(keep.part("light"), samples, kGrain);
-    ScatterRows::drop(keep.part("rows"), samples);
-    dropWithinVoxels(keep.part("within voxels"), *transfer.density, transfer.grid);
+    dropStage(context.part("light"), samples, kGrain);
+    ScatterRows::drop(context.part("rows"), samples);
+    dropWithinVoxels(context.part("within voxels"), *transfer.density, transfer.grid);
   }
   for (std::size_t block = 0; block < transfer.columns(); block += kBlockColumns)
     for (std::uint32_t channel = 0; channel < transfer.full_channels; ++channel)
-      dropSolved(keep.part("block", block, channel));
+      dropValue(context.part("block", block, channel).part("solved"));
 }
 
 bool bakeTransfer(const Medium& medium, const VolumeSettings& settings, const Occluders& occluders,
-                  VolumeTransfer& out, Progress& progress, const std::stop_token& stop, const Keep& keep) {
+                  VolumeTransfer& out, const BakeContext& context) {
   const std::size_t samples = out.grid.samples(), columns = out.columns();
-  out.vectors.resize(samples * out.vectorSize());
+  out.rays_kept = 0, out.visibility.clear();
+  out.vectors.assign(samples * out.vectorSize(), 0.0f);
   if (samples == 0) return true;
-  if (out.bands > 1) return bakePhasedTransfer(medium, settings, occluders, out, progress, stop, keep);
+  if (out.bands > 1) return bakePhasedTransfer(medium, settings, occluders, out, context);
 
+  const VolumeScene scene{*medium.density, out.grid, occluders};
   const SphereTable table(settings.rays, settings.order);
-  progress.begin("light into volumes", samples, "samples");
-  FirstLights light;
-  if (!lightIn(medium, out.grid, occluders, table, columns, light, out.rays, progress, stop,
-               keep.part("light")))
-    return false;
+  const auto light = lightIn(scene, table, columns, context.part("light"));
+  if (!light) return false;
+  out.rays = light->samples_traced * table.size();
   out.rays_kept = samples * table.size() - out.rays;
   for (std::size_t p = 0; p < samples; ++p)
-    std::copy_n(&light.transfer[p * columns], columns, &out.vectors[p * out.vectorSize()]);
+    std::copy_n(&light->transfer[p * columns], columns, &out.vectors[p * out.vectorSize()]);
   const auto fit = [&](const ScatterRows* rows) {
-    return !settings.fit_within_voxels || fitWithinVoxels(medium, settings, occluders, rows, out, progress,
-                                                          stop, keep.part("within voxels"));
+    return !settings.fit_within_voxels ||
+           fitWithinVoxels(medium, settings, occluders, rows, out, context.part("within voxels"));
   };
   if (out.full_channels == 0) return fit(nullptr);
 
   const SphereTable few(std::max(kLeastScatteringRays, settings.rays / kRaysPerScatteringRay), 1);
-  progress.begin("scattering", samples, "samples");
-  const auto rows = ScatterRows::build(*medium.density, out.grid, occluders, few, light.met, settings.memory,
-                                       progress, stop, keep.part("rows"));
+  const auto rows = ScatterRows::build(scene, few, light->met, settings.memory, context.part("rows"));
   if (!rows) return false;
   out.rays += rows->samplesTraced() * few.size();
   out.rays_kept += (samples - rows->samplesTraced()) * few.size();
   out.row_bytes = rows->bytes();
-  progress.begin("scattered light", columns * out.full_channels, "columns");
-  return scatter(*rows, light, settings, out, progress, stop, keep) && fit(&*rows);
+  return scatter(*rows, *light, settings, out, context) && fit(&*rows);
 }
 
 }  // namespace
 
+void write(const VolumeTransfer& transfer, ByteWriter& out) {
+  out.addList(transfer.vectors), out.addList(transfer.visibility);
+  out.add(transfer.rays + transfer.rays_kept);
+  out.add(transfer.iterations), out.add(transfer.residual), out.add(transfer.row_bytes);
+}
+
+bool read(ByteReader& in, VolumeTransfer& transfer) {
+  const std::size_t samples = transfer.grid.samples(),
+                    visibility = transfer.bands > 3 ? samples * transfer.visibilitySize() : 0;
+  return in.readList(transfer.vectors) && transfer.vectors.size() == samples * transfer.vectorSize() &&
+         in.readList(transfer.visibility) && transfer.visibility.size() == visibility &&
+         in.read(transfer.rays_kept) && in.read(transfer.iterations) && in.read(transfer.residual) &&
+         in.read(transfer.row_bytes);
+}
+
 std::optional<VolumeTransfer> bakeVolumeTransfer(const Medium& medium, const VolumeSettings& settings,
-                                                 const Occluders& occluders, Progress& progress,
-                                                 const std::stop_token& stop, const Keep& keep) {
+                                                 const Occluders& occluders, const BakeContext& context) {
   const glm::vec3& w = medium.albedo;
   const bool black = w == glm::vec3(0.0f), grey = w.r == w.g && w.g == w.b;
   VolumeTransfer out{.density = medium.density,
@@ -226,25 +224,10 @@ std::optional<VolumeTransfer> bakeVolumeTransfer(const Medium& medium, const Vol
                                                                          : 3u,
                      .vectors = {},
                      .visibility = {}};
-  const std::size_t samples = out.grid.samples(),
-                    visibility = out.bands > 3 ? samples * out.visibilitySize() : 0;
-  const std::optional<bool> found = cachedValue(
-      keep.part("transfer"),
-      [&](ByteReader& in) {
-        return in.readList(out.vectors) && out.vectors.size() == samples * out.vectorSize() &&
-               in.readList(out.visibility) && out.visibility.size() == visibility && in.read(out.rays_kept) &&
-               in.read(out.iterations) && in.read(out.residual) && in.read(out.row_bytes);
-      },
-      [&] {
-        out.vectors.clear(), out.visibility.clear(), out.rays_kept = 0;
-        return bakeTransfer(medium, settings, occluders, out, progress, stop, keep);
-      },
-      [&](ByteWriter& to) {
-        to.addList(out.vectors), to.addList(out.visibility), to.add(out.rays + out.rays_kept);
-        to.add(out.iterations), to.add(out.residual), to.add(out.row_bytes);
-      });
+  const auto found = findOrMake(context.part("transfer"), out,
+                                [&] { return bakeTransfer(medium, settings, occluders, out, context); });
   if (!found) return std::nullopt;
-  if (!*found) dropParts(keep, out);
+  if (!*found) dropParts(context, out);
   return out;
 }
 

@@ -13,16 +13,15 @@
 #include <memory>
 #include <optional>
 #include <span>
-#include <stop_token>
 #include <vector>
 
 #include <glm/vec3.hpp>
 
-#include "baker/cache/cached_ranges.hpp"
+#include "baker/cache/bytes.hpp"
 #include "baker/effects/volume/density_field.hpp"
 #include "baker/effects/volume/occluders.hpp"
 #include "baker/effects/volume/transfer_grid.hpp"
-#include "baker/jobs/progress.hpp"
+#include "baker/jobs/bake_context.hpp"
 
 namespace lambent::baker {
 
@@ -87,10 +86,14 @@ struct VolumeTransfer {
   }
 };
 
-// Nothing if stopped. order is at most 6 where bandsOfPhase() is over 3. Stages: "light into volumes",
-// "scattering", "scattered light", "light within voxels". keep: of medium, settings and occluders.
+void write(const VolumeTransfer& transfer, ByteWriter& out);
+// Reads what a bake filled in of a transfer whose grid, order, bands and channels are there.
+bool read(ByteReader& in, VolumeTransfer& transfer);
+
+// Returns nothing if stopped. order is at most 6 where bandsOfPhase() is over 3. Progress shows "light into
+// volumes", "scattering", "scattered light", "light within voxels". The key of the context is that of medium,
+// settings and occluders.
 std::optional<VolumeTransfer> bakeVolumeTransfer(const Medium& medium, const VolumeSettings& settings,
-                                                 const Occluders& occluders, Progress& progress,
-                                                 const std::stop_token& stop, const Keep& keep = {});
+                                                 const Occluders& occluders, const BakeContext& context);
 
 }  // namespace lambent::baker

@@ -1,9 +1,10 @@
-// The diffuse effect on the GPU: radiance E/pi at every vertex (for normal maps: light of bands 0..2),
-// straight from the quantized transfer. Reads: transfer, rows and normals in the residency's arenas, the
-// light at the groups' light probes. Writes: the samples and radiance arenas. Three stages (cluster, sample,
-// vertex), each one indirect dispatch per arena page and kernel over what is dirty: a cell when its group's
-// light or its own codes changed, a vertex when any cell of its group or its own mesh or rows did. Nothing
-// changed: nothing is dispatched. What is not resident shades unshadowed.
+// Runs the diffuse effect on the GPU: it computes radiance E/pi at every vertex (for normal maps, light in
+// bands 0..2) directly from the quantized transfer. It reads transfer, rows and normals in the residency's
+// arenas and the light at the groups' light probes, and writes the arenas of samples and radiance. It has
+// three stages (cluster, sample, vertex), each one indirect dispatch per arena page and kernel over what is
+// dirty: a cell if its group's light or its own codes changed, a vertex if any cell of its group or its own
+// mesh or rows did. If nothing changed, nothing is dispatched. What is not resident is shaded unshadowed.
+// Render thread only.
 #pragma once
 
 #include <array>
@@ -11,10 +12,11 @@
 #include <map>
 #include <vector>
 
+#include "runtime/base/change_gate.hpp"
 #include "runtime/base/keyed_state.hpp"
 #include "runtime/base/result.hpp"
 #include "runtime/effects/diffuse/diffuse_shared.h"
-#include "runtime/effects/diffuse/transfer_table.hpp"
+#include "runtime/evaluate/transfer_table.hpp"
 #include "runtime/gpu/program.hpp"
 #include "runtime/gpu/work_list.hpp"
 #include "runtime/lighting/group_lights.hpp"
@@ -23,7 +25,7 @@
 namespace lambent::effects::diffuse {
 
 // The tables that the kernels read, as last uploaded.
-struct Tables : TransferTable {
+struct Tables : evaluate::TransferTable {
   std::vector<DrawRecord> draws;  // index: residency draw
 };
 
@@ -31,33 +33,31 @@ class Diffuse {
  public:
   Diffuse();
 
-  // Brings every resident draw up to date. Errors: a kernel that does not compile on this device.
-  Result<void> shade(streaming::Residency& residency, const lighting::GroupLights& lights, TransferMode mode,
-                     gpu::Counters& counters, const ShadedKinds& kinds = {});
+  // Updates every resident draw. Fails if a kernel does not compile on this device.
+  Result<void> shade(streaming::Residency& residency, const lighting::GroupLights& lights,
+                     evaluate::TransferMode mode, gpu::Counters& counters,
+                     const evaluate::ShadedKinds& kinds = {});
 
-  // Rises when samples of the group were shaded.
+  // Rises when samples of the group are shaded.
   std::uint64_t versionOf(std::size_t group) const {
     return group < group_shaded_.size() ? group_shaded_[group] : 0;
   }
-  // What the last call shaded.
+  // States what the last call shaded.
   struct Shaded {
     std::uint32_t cells = 0, draws = 0;
   };
   const Shaded& shadedLast() const { return shaded_; }
   // Whether the draw's radiance has been written.
-  bool shaded(std::size_t draw) const { return draw < draws_seen_.size() && draws_seen_[draw].version != 0; }
+  bool shaded(std::size_t draw) const { return draw < draws_changed_.size() && draws_changed_[draw].known(); }
   const Tables& tables() const { return tables_; }
 
  private:
   enum Stage { Project, Samples, Vertices, kStageCount };
-  struct Seen {
-    std::uint64_t version = 0, light = 0, cells = 0;
-  };
 
   void rebuildTables(const streaming::Residency& residency, const lighting::GroupLights& lights,
-                     TransferMode mode);
+                     evaluate::TransferMode mode);
   void collectCells(const streaming::Residency& residency, const lighting::GroupLights& lights,
-                    const ShadedKinds& kinds);
+                    evaluate::TransferMode mode, const evaluate::ShadedKinds& kinds);
   void collectDraws(const streaming::Residency& residency, const lighting::GroupLights& lights);
   Result<const gpu::Program*> program(Stage stage, std::uint32_t kind, std::uint32_t outputs);
   Result<void> runSamples(streaming::Residency& residency, const gpu::WorkList& work,
@@ -67,18 +67,17 @@ class Diffuse {
   Result<void> runDraws(streaming::Residency& residency, const lighting::GroupLights& lights,
                         gpu::Counters& counters);
 
-  // By order (0: any) or, for samples, 1 for several lights; and outputs.
+  // The keys are the order (0: any), for samples 1 if there are several lights, and the outputs.
   std::array<std::map<std::array<std::uint32_t, 2>, gpu::Program>, kStageCount> programs_;
   Tables tables_;
   gpu::Table transfers_table_, places_table_, draws_table_, products_;
-  // A cell's first transfer writes its samples, the second adds to them.
+  // A cell's first transfer writes its samples, the second one adds to them.
   gpu::WorkList project_work_, samples_work_, adding_work_, vertices_work_;
-  KeyedState<Seen> cells_seen_, draws_seen_;
-  KeyedState<std::uint64_t> group_shaded_;  // rises when a cell of the group was shaded
-  std::uint64_t residency_seen_ = 0;
-  std::size_t groups_seen_ = 0;
-  TransferMode mode_seen_ = TransferMode::Full;
-  bool keys_seen_ = false;
+  KeyedState<ChangeGate<std::uint64_t, std::uint64_t>> cells_changed_;  // its version, its light
+  KeyedState<ChangeGate<std::uint64_t, std::uint64_t, std::uint64_t>> draws_changed_;  // and its cells
+  KeyedState<std::uint64_t> group_shaded_;                 // rises when a cell of the group was shaded
+  ChangeGate<evaluate::TransferMode, bool> way_changed_;   // the mode, whether key lights stand apart
+  ChangeGate<std::uint64_t, std::size_t> layout_changed_;  // residency, groups
   Shaded shaded_;
 };
 

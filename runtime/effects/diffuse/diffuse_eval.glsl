@@ -1,47 +1,11 @@
 // Diffuse transfer times light: the math only, no bindings. The CPU twin is diffuse_ref.hpp, with the same names and
-// the same order of terms. An entry shader says which stage it is (LAMBENT_STAGE_PROJECT, _SAMPLES, _VERTICES or
-// _PROXIES) and
+// the same order of terms. An entry shader says which stage it is (LAMBENT_STAGE_VERTICES or _PROXIES) and
 // defines the fetches that the stage's functions declare.
 #include "diffuse_shared.h"
 
 const vec3 kLuminance = vec3(0.2126, 0.7152, 0.0722);  // Rec. 709
 
-#ifndef LAMBENT_STAGE_SAMPLES
 vec3 lightAt(uint index);  // coefficient of the light in the group's frame, RGB
-#endif
-
-#ifdef LAMBENT_STAGE_PROJECT
-float vectorAt(uint word);  // of the transfer page
-
-// A stretch of `columns` values from this word on times the light from this index on, plus as much of the light that
-// lies kKeyBlock behind it: one value per colour channel.
-vec3 timesLight(uint at, uint channels, uint stride, uint columns, uint light, float rest, float key) {
-  vec3 sum = vec3(0.0);
-  for (uint i = 0u; i < columns; ++i) {
-    vec3 arriving = rest * lightAt(light + i);
-    if (key != 0.0) arriving += key * lightAt(light + kKeyBlock + i);
-    vec3 value = vec3(vectorAt(at + i));
-    if (channels > 1u) value.gb = vec2(vectorAt(at + stride + i), vectorAt(at + 2u * stride + i));
-    sum += value * arriving;
-  }
-  return sum;
-}
-
-// One output of a mean or axis times the light whose coefficients start at `light`: one value per colour channel. Light
-// that comes straight from key lights is not in it; its luminance is w.
-vec4 projectOnLight(TransferRecord transfer, uint vector, uint output_index, uint columns, uint light) {
-  uint first = transfer.vectors_word + vector * transfer.vector_size + output_index * columns;
-  uint stride = transfer.outputs * columns;
-  vec3 sum = timesLight(first + transfer.first_value, transfer.channels, stride, columns, light, 1.0, float(transfer.bounced));
-  if (transfer.straight_channels == 0u) return vec4(sum, 0.0);
-  vec3 straight = timesLight(first, transfer.straight_channels, stride, columns, light, 0.0, 1.0);
-  return vec4(sum - float(transfer.bounced) * straight, dot(straight, kLuminance));
-}
-#endif
-
-#ifdef LAMBENT_STAGE_SAMPLES
-#include "coded_transfer.glsl"
-#endif
 
 #if defined(LAMBENT_STAGE_VERTICES) || defined(LAMBENT_STAGE_PROXIES)
 vec4 sampleAt(uint index);  // shaded sample, w > 0: resident
@@ -89,29 +53,18 @@ vec3 unshadowedRadiance(vec3 normal, uint light, int order) {
 #endif
 
 #ifdef LAMBENT_STAGE_VERTICES
-uint rowWordAt(uint word);  // of the rows page
-
-// Of a row entry: weight and sample.
-struct RowEntry {
-  float weight;
-  uint sample_index;
-};
-
-RowEntry rowEntryAt(DrawRecord draw, uint entry) {
-  uint samples_word = draw.rows_word + draw.vertex_count + 1u;
-  uint pair = rowWordAt(samples_word + draw.row_entries + (entry >> 1u));
-  return RowEntry(float((pair >> (16u * (entry & 1u))) & 0xffffu) / 65535.0, rowWordAt(samples_word + entry));
-}
+#include "vertex_rows.glsl"
 
 // A vertex from its row of samples; what is not resident counts as unshadowed.
 vec3 vertexRadiance(DrawRecord draw, uint vertex, vec3 normal, int order) {
   vec3 sum = vec3(0.0);
   float resident = 0.0, total = 0.0;
   if (draw.rows_word != kNoRows) {
-    uint end = rowWordAt(draw.rows_word + vertex + 1u);
-    for (uint i = rowWordAt(draw.rows_word + vertex); i < end; ++i) {
-      RowEntry entry = rowEntryAt(draw, i);
-      vec4 shaded = sampleAt(draw.first_sample + entry.sample_index);
+    VertexRows rows = VertexRows(draw.rows_word, draw.vertex_count, draw.row_entries);
+    uvec2 row = rowOf(rows, vertex);
+    for (uint i = row.x; i < row.y; ++i) {
+      RowEntry entry = rowEntryAt(rows, i);
+      vec4 shaded = sampleAt(draw.first_output + entry.sample_index - draw.first_sample);
       sum += entry.weight * shadedShare(shaded) * shaded.rgb;
       resident += entry.weight * shadedShare(shaded);
       total += entry.weight;
@@ -127,10 +80,11 @@ void vertexLight(DrawRecord draw, uint vertex, out vec3 light[kMappedOutputs]) {
   float resident = 0.0, total = 0.0;
   for (uint j = 0u; j < kMappedOutputs; ++j) light[j] = vec3(0.0);
   if (draw.rows_word != kNoRows) {
-    uint end = rowWordAt(draw.rows_word + vertex + 1u);
-    for (uint i = rowWordAt(draw.rows_word + vertex); i < end; ++i) {
-      RowEntry entry = rowEntryAt(draw, i);
-      uint first = draw.first_sample + kMappedOutputs * entry.sample_index;
+    VertexRows rows = VertexRows(draw.rows_word, draw.vertex_count, draw.row_entries);
+    uvec2 row = rowOf(rows, vertex);
+    for (uint i = row.x; i < row.y; ++i) {
+      RowEntry entry = rowEntryAt(rows, i);
+      uint first = draw.first_output + kMappedOutputs * (entry.sample_index - draw.first_sample);
       float shaded = shadedShare(sampleAt(first));
       for (uint j = 0u; j < kMappedOutputs; ++j) light[j] += entry.weight * shaded * sampleAt(first + j).rgb;
       resident += entry.weight * shaded;

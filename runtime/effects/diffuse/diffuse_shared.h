@@ -1,4 +1,4 @@
-// One text for C++ and GLSL: what the diffuse kernels bind, and the layout (std430) of the tables that they read.
+// One text for C++ and GLSL: what the diffuse kernels bind besides transfer_shared.h, and the layout (std430) of the tables that they read.
 // Addresses within an arena page are in 32-bit words; samples and lights are counted in vec4s.
 #ifdef __cplusplus
 #pragma once
@@ -6,20 +6,16 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "runtime/transfer/transfer_shared.h"
+
 namespace lambent::effects::diffuse {
 using uint = std::uint32_t;
 #define LAMBENT_CONSTANT inline constexpr uint
 #else
+#include "transfer_shared.h"
 #define LAMBENT_CONSTANT const uint
 #endif
 
-LAMBENT_CONSTANT kBindWork = 0u;       // WorkItem per work group
-LAMBENT_CONSTANT kBindLights = 1u;     // vec4 per coefficient: per group kLightStride for each light probe, then its own lights
-LAMBENT_CONSTANT kBindTransfers = 2u;  // TransferRecord
-LAMBENT_CONSTANT kBindPlaces = 3u;     // of a transfer: where its planes and its lights lie
-LAMBENT_CONSTANT kBindProducts = 4u;   // vec4: a vector times the light, scaled to be multiplied by the code itself
-LAMBENT_CONSTANT kBindTransfer = 5u;   // arena page: codebooks (float), positions and codes
-LAMBENT_CONSTANT kBindSamples = 6u;    // arena page: vec4 per sample and output; w: see below
 LAMBENT_CONSTANT kBindDraws = 2u;      // DrawRecord
 LAMBENT_CONSTANT kBindRows = 3u;       // arena page: rows of vertices
 LAMBENT_CONSTANT kBindGeometry = 4u;   // arena page: normals among others
@@ -30,67 +26,8 @@ LAMBENT_CONSTANT kBindProxyEntries = 4u;    // ProxyEntryRecord
 LAMBENT_CONSTANT kBindProxyRadiance = 5u;   // vec4 per triangle
 LAMBENT_CONSTANT kBindProxyAdded = 7u;      // likewise: what it sends out besides
 
-LAMBENT_CONSTANT kWorkGroupSize = 64u;
-LAMBENT_CONSTANT kLanesPerUnit = 16u;  // of the project stage: a unit is one output of one cluster
-LAMBENT_CONSTANT kUnitsPerGroup = kWorkGroupSize / kLanesPerUnit;
-LAMBENT_CONSTANT kMaxWorkGroupsX = 65535u;  // what OpenGL 4.5 promises; longer lists fold into y
-LAMBENT_CONSTANT kKeyBlock = 64u;           // 8 bands of a light probe without key lights, then 8 of key lights alone
-LAMBENT_CONSTANT kLightStride = 2u * kKeyBlock;  // of a light probe; the group's own light columns follow the last
-LAMBENT_CONSTANT kLightsPerSample = 4u;     // light probes that one sample of a cell is lit from
-LAMBENT_CONSTANT kMappedOutputs = 9u;       // of samples and draws with normal maps: light of bands 0..2
-LAMBENT_CONSTANT kCodes16Bit = 0x80000000u;  // 16-bit codes, else 8-bit
 LAMBENT_CONSTANT kNoRows = 0xffffffffu;
 LAMBENT_CONSTANT kNoLamp = 0xffffffffu;
-
-#ifndef __cplusplus
-// What one work group does: elements first..first + kWorkGroupSize - 1 of a cell or a draw (gpu::WorkItem).
-struct WorkItem {
-  uint record;
-  uint first;
-};
-#endif
-
-// Of a shaded sample w is 1 plus what arrives straight from key lights by harmonics, as luminance, in the first
-// output at least 0; of one that was not shaded yet it is 0. Surfaces take that light by shadow maps, per pixel; capture
-// proxies have no pixels and send it on from here.
-
-// One transfer of a cell, as far as it is resident, and which block of it counts. Words are of the transfer page:
-//   clusters   per cluster two uints: its first vector, its number of axes
-//   weights    per vector two floats: offset and scale of the weight (1 and 0 of a mean)
-//   vectors    vector_size floats each: of every cluster the mean, then its axes; [channel][output][column]
-//   positions  per position, in the order of the codes: sample of the cell | cluster << 16
-// Places: words of the planes' codes in the page, with kCodes16Bit; of each light the vec4 index of the coefficient that
-// belongs to column 0. There is one light, or one per light probe of the cell.
-struct TransferRecord {
-  uint light_count;
-  uint first_light;  // into the places
-  uint light_weights_word;  // of the page: per sample of the cell four lights, four weights of 255; for several lights
-  uint columns;  // all of the environment, or all of the group's own lights
-  uint channels;  // 1 or 3, of the block that counts
-  uint outputs;   // 1, kMappedOutputs, or bands squared where glossy
-  uint clusters;
-  uint clusters_word;
-  uint weights_word;
-  uint vectors_word;
-  uint positions_word;
-  uint vector_size;
-  uint first_value;    // of the block within a vector
-  uint plane_count;    // resident
-  uint first_plane;    // into the places
-  // Output o of vector v under light k is products[first_product + light_products k + outputs v + o]; all offsets are in
-  // the means.
-  uint first_product;
-  uint light_products;
-  uint first_output;   // vec4 index into the samples page of the cell's first sample
-  uint sample_count;
-  uint accumulate;  // 1: adds to what another transfer of the cell has written
-  uint order;       // bands of the environment's light; 0: the group's own lights
-  uint visibility;  // 1: the vectors are visibility, to be multiplied with the light (glossy_eval.glsl)
-  // With key lights: 1 if bounced light is in the block that counts, so that key lights are among its light; and how
-  // many channels at the start of a vector carry light without bounces, by which key lights do not arrive here.
-  uint bounced;
-  uint straight_channels;
-};
 
 struct DrawRecord {
   float group_from_mesh_normal[12];  // three columns of vec4, for directions of normals
@@ -100,10 +37,11 @@ struct DrawRecord {
   uint normals_word;
   uint rows_word;  // vertex_count + 1 offsets, then samples, then weights two to a word; kNoRows: unshadowed
   uint row_entries;
-  uint first_sample;   // vec4 index of output o of sample s: first_sample + outputs s + o
+  uint first_sample;   // of its samples; output o of sample s is vec4 first_output + outputs (s - first_sample) + o
   uint radiance_word;  // where the result goes
   uint outputs;
-  uint pad[3];
+  uint first_output;
+  uint pad[2];
 };
 
 // Capture proxies: triangles that send out one radiance in all directions (runtime/bundle/capture_proxy.hpp).
@@ -135,8 +73,6 @@ struct ProxyEntryRecord {
 #ifdef __cplusplus
 #undef LAMBENT_CONSTANT
 static_assert(sizeof(ProxyGroupRecord) == 32 && sizeof(ProxyTriangleRecord) == 48 && sizeof(ProxyEntryRecord) == 32);
-static_assert(sizeof(TransferRecord) == 96 && offsetof(TransferRecord, first_product) == 60 &&
-              offsetof(TransferRecord, accumulate) == 76);
 static_assert(sizeof(DrawRecord) == 96 && offsetof(DrawRecord, light) == 48 && offsetof(DrawRecord, outputs) == 80);
 }  // namespace lambent::effects::diffuse
 #endif

@@ -6,7 +6,7 @@ layout(local_size_x = kWorkGroupSize) in;
 layout(std430, binding = kBindWork) readonly buffer Work { uint work_count; uint pad[3]; WorkItem work[]; };
 layout(std430, binding = kBindLights) readonly buffer Lights { vec4 lights[]; };
 layout(std430, binding = kBindDraws) readonly buffer Draws { DrawRecord draws[]; };
-layout(std430, binding = kBindRows) readonly buffer Rows { uint rows[]; };
+layout(std430, binding = kBindRows) readonly buffer Rows { uint row_words[]; };
 layout(std430, binding = kBindGeometry) readonly buffer Geometry { float geometry[]; };
 layout(std430, binding = kBindRadiance) writeonly buffer Radiance { float radiance_out[]; };
 layout(std430, binding = kBindSamples) readonly buffer Samples { vec4 samples[]; };
@@ -16,7 +16,7 @@ layout(std430, binding = kBindSamples) readonly buffer Samples { vec4 samples[];
 
 vec3 lightAt(uint index) { return lights[index].rgb; }
 vec4 sampleAt(uint index) { return samples[index]; }
-uint rowWordAt(uint word) { return rows[word]; }
+uint rowWordAt(uint word) { return row_words[word]; }
 
 void main() {
   uint index = gl_WorkGroupID.x + gl_WorkGroupID.y * kMaxWorkGroupsX;

@@ -1,31 +1,28 @@
 #include "runtime/effects/diffuse/proxies.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include <glm/geometric.hpp>
 #include <glm/vec4.hpp>
 
 #include "lambent_effects_diffuse_embedded.hpp"
+#include "lambent_transfer_embedded.hpp"
 
 namespace lambent::effects::diffuse {
 
 namespace {
 
-constexpr gpu::FindText kShaders[] = {&embedded::lambent_effects_diffuse::find};
+constexpr gpu::FindText kShaders[] = {&embedded::lambent_effects_diffuse::find,
+                                      &embedded::lambent_transfer::find};
 
-// Of a triangle without area: any will do, for nobody sees it.
+// A triangle without area may have any normal, since nobody sees it.
 glm::vec3 normalOf(const bundle::CaptureProxy& proxy, const bundle::ProxyTriangle& triangle) {
   const glm::vec3 a = proxy.positions[triangle.vertices[0]], b = proxy.positions[triangle.vertices[1]],
                   c = proxy.positions[triangle.vertices[2]];
   const glm::vec3 across = glm::cross(b - a, c - a);
   const float length = glm::length(across);
   return length > 0.0f ? across / length : glm::vec3(0.0f, 1.0f, 0.0f);
-}
-
-// Of a sample of the group: plain ones stand first, then those of normal maps, then glossy ones.
-std::uint32_t outputsOf(const streaming::ResidentGroup& group, std::uint32_t sample) {
-  if (sample < group.diffuse_samples) return 1;
-  return sample < group.diffuse_samples + group.mapped_samples ? kMappedOutputs : group.glossy_outputs;
 }
 
 }  // namespace
@@ -38,13 +35,13 @@ Proxies::Proxies()
       radiance_("proxy radiance"),
       work_("proxy work") {}
 
-void Proxies::makeRecords(const streaming::ResidentGroup& group, Seen& seen) {
-  seen.made = true;
+void Proxies::makeRecords(const streaming::ResidentGroup& group, Proxy& kept) {
+  kept.made = true;
   const bundle::CaptureProxy& proxy = *group.proxy;
-  seen.triangles.reserve(proxy.triangles.size());
+  kept.triangles.reserve(proxy.triangles.size());
   for (const bundle::ProxyTriangle& triangle : proxy.triangles) {
     const glm::vec3 normal = normalOf(proxy, triangle);
-    seen.triangles.push_back(
+    kept.triangles.push_back(
         {.normal = {normal.x, normal.y, normal.z},
          .first_entry = triangle.first_entry,
          .emission = {triangle.emission.r, triangle.emission.g, triangle.emission.b},
@@ -52,12 +49,12 @@ void Proxies::makeRecords(const streaming::ResidentGroup& group, Seen& seen) {
          .lamp = triangle.light < 0 ? kNoLamp : static_cast<std::uint32_t>(triangle.light),
          .pad = {}});
   }
-  seen.entries.reserve(proxy.entries.size());
+  kept.entries.reserve(proxy.entries.size());
   for (const bundle::ProxyEntry& entry : proxy.entries) {
-    const std::uint32_t outputs = outputsOf(group, entry.sample);
-    seen.entries.push_back({.reflectance = {entry.reflectance.r, entry.reflectance.g, entry.reflectance.b},
-                            .sample_index = group.sampleBase(outputs) + outputs * entry.sample,
-                            .outputs = outputs,
+    const streaming::SampleStretch stretch = group.stretchOf(group.formOf(entry.sample));
+    kept.entries.push_back({.reflectance = {entry.reflectance.r, entry.reflectance.g, entry.reflectance.b},
+                            .sample_index = stretch.outputOf(entry.sample),
+                            .outputs = stretch.outputs,
                             .pad = {}});
   }
 }
@@ -66,19 +63,19 @@ void Proxies::rebuildTables(const streaming::Residency& residency, const lightin
   groups_.clear();
   triangles_.clear();
   entries_.clear();
-  seen_.follow(residency.groups(), &streaming::ResidentGroup::id);
+  kept_.follow(residency.groups(), &streaming::ResidentGroup::id);
   for (std::size_t g = 0; g < residency.groups().size(); ++g) {
     const streaming::ResidentGroup& group = residency.groups()[g];
-    Seen& seen = seen_[g];
-    seen.written = false;
-    if (group.proxy && !seen.made) makeRecords(group, seen);
+    Proxy& kept = kept_[g];
+    kept.written = false;
+    if (group.proxy && !kept.made) makeRecords(group, kept);
     const auto first = static_cast<std::uint32_t>(triangles_.size());
     const auto first_entry = static_cast<std::uint32_t>(entries_.size());
-    triangles_.insert(triangles_.end(), seen.triangles.begin(), seen.triangles.end());
+    triangles_.insert(triangles_.end(), kept.triangles.begin(), kept.triangles.end());
     for (std::size_t t = first; t < triangles_.size(); ++t) triangles_[t].first_entry += first_entry;
-    entries_.insert(entries_.end(), seen.entries.begin(), seen.entries.end());
+    entries_.insert(entries_.end(), kept.entries.begin(), kept.entries.end());
     groups_.push_back({.first_triangle = first,
-                       .triangle_count = static_cast<std::uint32_t>(seen.triangles.size()),
+                       .triangle_count = static_cast<std::uint32_t>(kept.triangles.size()),
                        .light = lights.firstOf(g),
                        .lamps = lights.lampsOf(g),
                        .order = group.order,
@@ -88,13 +85,13 @@ void Proxies::rebuildTables(const streaming::Residency& residency, const lightin
   triangles_table_.assign(std::span<const ProxyTriangleRecord>(triangles_));
   entries_table_.assign(std::span<const ProxyEntryRecord>(entries_));
   radiance_.reserve(triangles_.size() * sizeof(glm::vec4));
-  added_ = true;  // to be written anew
+  added_ = true;  // makes the table be written again
 }
 
 void Proxies::writeAdded(std::span<const AddedRadiance> added, gpu::Counters& counters) {
   const bool any =
       std::ranges::any_of(added, [](const AddedRadiance& one) { return !one.triangles.empty(); });
-  if (!any && !added_) return;  // it is 0 already
+  if (!any && !added_) return;  // the table is 0 already
   added_ = any;
   std::vector<glm::vec4> values(triangles_.size(), glm::vec4(0.0f));
   for (std::size_t g = 0; g < std::min(added.size(), groups_.size()); ++g)
@@ -108,27 +105,18 @@ void Proxies::writeAdded(std::span<const AddedRadiance> added, gpu::Counters& co
 Result<void> Proxies::shade(streaming::Residency& residency, const lighting::GroupLights& lights,
                             std::span<const std::uint64_t> shaded, gpu::Counters& counters,
                             std::span<const AddedRadiance> added) {
-  if (residency.proxiesVersion() != proxies_seen_ || lights.coefficients().size() != lights_seen_) {
-    proxies_seen_ = residency.proxiesVersion();
-    lights_seen_ = lights.coefficients().size();
+  if (layout_changed_.renew(residency.proxiesVersion(), lights.coefficients().size()))
     rebuildTables(residency, lights);
-  }
   work_.clear();
   for (std::uint32_t g = 0; g < groups_.size(); ++g) {
     const streaming::ResidentGroup& group = residency.groups()[g];
     if (groups_[g].triangle_count == 0 || !group.samples) continue;
-    Seen& seen = seen_[g];
-    const std::uint64_t samples = shaded[g], light = lights.versionOf(g);
+    Proxy& kept = kept_[g];
     const std::uint64_t brought = g < added.size() ? added[g].version : 0;
-    const bool same =
-        seen.version != 0 && seen.samples == samples && seen.light == light && seen.added == brought;
-    if (same && seen.written) continue;
-    if (!same) seen.version = ++version_;
-    seen.samples = samples;
-    seen.light = light;
-    seen.added = brought;
-    seen.written = true;
-    work_.add({group.samples.page}, g, groups_[g].triangle_count, kWorkGroupSize);
+    const bool changed = kept.changed.renew(shaded[g], lights.versionOf(g), brought);
+    if (changed) kept.version = ++version_;
+    if (std::exchange(kept.written, true) && !changed) continue;
+    work_.add({group.samples.page}, g, groups_[g].triangle_count, transfer::kWorkGroupSize);
   }
   if (work_.empty()) return {};
   if (!program_) {
@@ -140,7 +128,7 @@ Result<void> Proxies::shade(streaming::Residency& residency, const lighting::Gro
   work_.upload(counters);
   writeAdded(added, counters);
   program_->use();
-  lights.bindStorage(kBindLights);
+  lights.bindStorage(transfer::kBindLights);
   groups_table_.bindStorage(kBindProxyGroups);
   triangles_table_.bindStorage(kBindProxyTriangles);
   entries_table_.bindStorage(kBindProxyEntries);
@@ -148,8 +136,8 @@ Result<void> Proxies::shade(streaming::Residency& residency, const lighting::Gro
   radiance_.bindStorage(kBindProxyRadiance);
   std::size_t index = 0;
   for (const auto& [key, items] : work_.batches()) {
-    residency.samples().page(key[0]).bindStorage(kBindSamples);
-    work_.dispatch(index++, kBindWork, counters);
+    residency.samples().page(key[0]).bindStorage(transfer::kBindSamples);
+    work_.dispatch(index++, transfer::kBindWork, counters);
   }
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
   return {};

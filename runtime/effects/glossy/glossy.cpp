@@ -6,25 +6,26 @@
 #include <fmt/format.h>
 
 #include "lambent_effects_glossy_embedded.hpp"
+#include "lambent_transfer_embedded.hpp"
 #include "runtime/sh/gaunt.hpp"
 
 namespace lambent::effects::glossy {
 
-using diffuse::TransferRecord;
-using namespace diffuse;  // the bindings of the kernels
+using namespace transfer;  // for the bindings of the kernels
 
 namespace {
 
-constexpr gpu::FindText kShaders[] = {&embedded::lambent_effects_glossy::find};
+constexpr gpu::FindText kShaders[] = {&embedded::lambent_effects_glossy::find,
+                                      &embedded::lambent_transfer::find};
 
-// Dense kernels with the order compiled in; 0 is the one that loops over any order.
+// Returns the order that is compiled into the dense kernel; 0 selects the kernel that loops over any order.
 std::uint32_t variantOf(std::uint32_t order) {
   return order >= 2 && order <= 6 ? order : 0;
 }
 
 FillRecord describeFill(const streaming::ResidentGroup& group, const streaming::ResidentCell& cell,
                         std::uint32_t light) {
-  const bool open = cell.kind != bundle::CellKind::Neighborhood;
+  const bool open = cell.domain != transfer::Domain::GridPoint;
   return {.first_output = cell.first_output,
           .output_count = cell.outputs * cell.sample_count,
           .outputs = cell.outputs,
@@ -57,23 +58,20 @@ Glossy::Glossy()
                     gpu::WorkList("glossy adding more work")} {}
 
 Result<void> Glossy::shade(streaming::Residency& residency, const lighting::GroupLights& lights,
-                           TransferMode mode, gpu::Counters& counters, const ShadedKinds& kinds) {
-  const bool same_way = mode == mode_seen_ && lights.hasKeys() == keys_seen_;
-  if (residency.version() != residency_seen_ || lights.groupCount() != groups_seen_ || !same_way) {
+                           evaluate::TransferMode mode, gpu::Counters& counters,
+                           const evaluate::ShadedKinds& kinds) {
+  const bool other_way = way_changed_.renew(mode, lights.hasKeys());
+  if (other_way) cells_changed_.clear();  // everything anew
+  if (layout_changed_.renew(residency.version(), lights.groupCount()) || other_way) {
     any_ = std::any_of(residency.cells().begin(), residency.cells().end(),
                        [](const streaming::ResidentCell& cell) { return cell.matrices(); });
-    if (!same_way) cells_seen_.clear();  // everything anew
     rebuildTables(residency, lights, mode);
-    residency_seen_ = residency.version();
-    groups_seen_ = lights.groupCount();
-    mode_seen_ = mode;
-    keys_seen_ = lights.hasKeys();
   }
   cells_shaded_ = 0;
   if (!any_) return {};
   collect(residency, lights, kinds);
   if (cells_shaded_ == 0) return {};
-  lights.bindStorage(kBindLights);
+  lights.bindStorage(transfer::kBindLights);
   if (Result<void> run = fill(residency, counters); !run) return run;
   if (Result<void> run = project(residency, counters); !run) return run;
   for (gpu::WorkList& work : samples_work_)
@@ -82,10 +80,10 @@ Result<void> Glossy::shade(streaming::Residency& residency, const lighting::Grou
 }
 
 void Glossy::rebuildTables(const streaming::Residency& residency, const lighting::GroupLights& lights,
-                           TransferMode mode) {
+                           evaluate::TransferMode mode) {
   tables_ = {};
   fills_.clear();
-  cells_seen_.follow(residency.cells(), &streaming::ResidentCell::id);
+  cells_changed_.follow(residency.cells(), &streaming::ResidentCell::id);
   group_shaded_.follow(residency.groups(), &streaming::ResidentGroup::id);
   if (!any_) return;
   for (const streaming::ResidentCell& cell : residency.cells()) {
@@ -95,52 +93,49 @@ void Glossy::rebuildTables(const streaming::Residency& residency, const lighting
     else
       tables_.addNone();
   }
-  transfers_table_.assign(std::span<const TransferRecord>(tables_.transfers));
+  transfers_table_.assign(std::span<const transfer::TransferRecord>(tables_.transfers));
   places_table_.assign(std::span<const std::uint32_t>(tables_.places));
   fills_table_.assign(std::span<const FillRecord>(fills_));
   products_.reserve(tables_.product_count * sizeof(glm::vec4));
 }
 
 void Glossy::collect(const streaming::Residency& residency, const lighting::GroupLights& lights,
-                     const ShadedKinds& kinds) {
+                     const evaluate::ShadedKinds& kinds) {
   visibility_work_.clear();
   dense_work_.clear();
   fill_work_.clear();
   for (gpu::WorkList& work : samples_work_) work.clear();
   for (std::uint32_t i = 0; i < tables_.cells.size(); ++i) {
     const streaming::ResidentCell& cell = residency.cells()[i];
-    if (!cell.matrices() || !kinds.has(cell.kind)) continue;
-    const TransferTable::Cell range = tables_.cells[i];
+    if (!cell.matrices() || !kinds.has(cell.domain)) continue;
+    const evaluate::TransferTable::Cell range = tables_.cells[i];
     const bool open = range.count == 0 || !cell.usable();
-    const std::uint64_t light = open ? lights.versionOf(cell.group, 0) : lightVersion(lights, cell);
-    Seen& seen = cells_seen_[i];
-    // Versions of cells start at 1: one that was never seen is dirty.
-    if (seen.version == cell.version && seen.light == light) continue;
-    seen = {.version = cell.version, .light = light};
+    const std::uint64_t light = open ? lights.versionOf(cell.group, 0) : evaluate::lightVersion(lights, cell);
+    if (!cells_changed_[i].renew(cell.version, light)) continue;
     ++group_shaded_[cell.group];
     ++cells_shaded_;
     const std::uint32_t samples_page = residency.groups()[cell.group].samples.page;
     if (open) {
-      fill_work_.add({samples_page}, i, fills_[i].output_count, kWorkGroupSize);
+      fill_work_.add({samples_page}, i, fills_[i].output_count, transfer::kWorkGroupSize);
       continue;
     }
-    const std::uint32_t bands = bundle::bandsOf(cell.outputs);
+    const std::uint32_t bands = transfer::bandsOf(cell.outputs);
     for (std::uint32_t t = range.first; t < range.first + range.count; ++t) {
-      const TransferRecord& record = tables_.transfers[t];
+      const transfer::TransferRecord& record = tables_.transfers[t];
       const std::uint32_t units = record.light_count * record.clusters * record.outputs;
       if (record.visibility != 0)
-        visibility_work_.add({record.order, bands, cell.block.page}, t, units, kUnitsPerGroup);
+        visibility_work_.add({record.order, bands, cell.block.page}, t, units, transfer::kUnitsPerGroup);
       else
-        dense_work_.add({variantOf(record.order), cell.block.page}, t, units, kUnitsPerGroup);
+        dense_work_.add({variantOf(record.order), cell.block.page}, t, units, transfer::kUnitsPerGroup);
       samples_work_[std::min<std::size_t>(t - range.first, kMaxTransfers - 1)].add(
-          {bands, cell.block.page, samples_page}, t, bands * record.sample_count, kWorkGroupSize);
+          {bands, cell.block.page, samples_page}, t, bands * record.sample_count, transfer::kWorkGroupSize);
     }
   }
 }
 
 Result<const gpu::Program*> Glossy::program(Kernel kernel, std::uint32_t variant) {
-  constexpr std::array<const char*, kKernelCount> kFiles = {"glossy_project.comp", "diffuse_project.comp",
-                                                            "glossy_samples.comp", "glossy_fill.comp"};
+  constexpr std::array<const char*, kKernelCount> kFiles = {"project_visibility.comp", "project_vectors.comp",
+                                                            "shade_matrices.comp", "glossy_fill.comp"};
   auto& programs = programs_[kernel];
   if (const auto found = programs.find(variant); found != programs.end()) return &found->second;
   std::vector<gpu::Define> defines;
@@ -161,17 +156,17 @@ Result<void> Glossy::fill(streaming::Residency& residency, gpu::Counters& counte
   fills_table_.bindStorage(kBindFills);
   std::size_t index = 0;
   for (const auto& [key, items] : fill_work_.batches()) {
-    residency.samples().page(key[0]).bindStorage(kBindSamples);
-    fill_work_.dispatch(index++, kBindWork, counters);
+    residency.samples().page(key[0]).bindStorage(transfer::kBindSamples);
+    fill_work_.dispatch(index++, transfer::kBindWork, counters);
   }
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
   return {};
 }
 
 Result<void> Glossy::project(streaming::Residency& residency, gpu::Counters& counters) {
-  transfers_table_.bindStorage(kBindTransfers);
-  places_table_.bindStorage(kBindPlaces);
-  products_.bindStorage(kBindProducts);
+  transfers_table_.bindStorage(transfer::kBindTransfers);
+  places_table_.bindStorage(transfer::kBindPlaces);
+  products_.bindStorage(transfer::kBindProducts);
   const auto run = [&](gpu::WorkList& work, Kernel stage) -> Result<void> {
     if (work.empty()) return {};
     work.upload(counters);
@@ -180,13 +175,13 @@ Result<void> Glossy::project(streaming::Residency& residency, gpu::Counters& cou
       const Result<const gpu::Program*> kernel = program(stage, stage == Visibility ? 0 : key[0]);
       if (!kernel) return failAgain(kernel.error());
       (*kernel)->use();
-      residency.transfer().page(key.back()).bindStorage(kBindTransfer);
+      residency.transfer().page(key.back()).bindStorage(transfer::kBindTransfer);
       if (stage == Visibility) {
         gpu::Table& gaunt = gaunts_.try_emplace({key[0], key[1]}, "products of harmonics").first->second;
         if (!gaunt.buffer()) gaunt.assign(std::span<const std::uint32_t>(gauntWords(key[0], key[1])));
-        gaunt.bindStorage(kBindGaunt);
+        gaunt.bindStorage(transfer::kBindGaunt);
       }
-      work.dispatch(index++, kBindWork, counters);
+      work.dispatch(index++, transfer::kBindWork, counters);
     }
     return {};
   };
@@ -205,9 +200,9 @@ Result<void> Glossy::shadeSamples(streaming::Residency& residency, gpu::WorkList
     const Result<const gpu::Program*> kernel = program(Samples, key[0]);
     if (!kernel) return failAgain(kernel.error());
     (*kernel)->use();
-    residency.transfer().page(key[1]).bindStorage(kBindTransfer);
-    residency.samples().page(key[2]).bindStorage(kBindSamples);
-    work.dispatch(index++, kBindWork, counters);
+    residency.transfer().page(key[1]).bindStorage(transfer::kBindTransfer);
+    residency.samples().page(key[2]).bindStorage(transfer::kBindSamples);
+    work.dispatch(index++, transfer::kBindWork, counters);
   }
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
   return {};

@@ -1,30 +1,8 @@
-// Visibility times light in spherical harmonics: the math only, no bindings. The CPU twin is glossy_ref.hpp, with the same
-// names and the same order of terms.
+// Samples without transfer: the math only, no bindings. The CPU twin is glossy_ref.hpp.
 #include "glossy_shared.h"
 
 const float kSqrtFourPi = 3.5449077018110318;
 
-#ifdef LAMBENT_STAGE_PROJECT
-vec3 lightAt(uint index);
-float vectorAt(uint word);    // of the transfer page
-uint gauntWordAt(uint word);  // of the table of products
-
-// Output i of a mean or axis V of visibility under the light whose coefficients start at `light`:
-//   l'_i = sum_jk Gamma_ijk V_k l_j,   and in w the same under constant light of radiance 1, which is V_i itself.
-vec4 projectVisibility(TransferRecord transfer, uint vector, uint output_index, uint light) {
-  uint at = transfer.vectors_word + vector * transfer.vector_size;
-  vec3 sum = vec3(0.0);
-  uint first_term = transfer.outputs + 1u, end = gauntWordAt(output_index + 1u);
-  for (uint t = gauntWordAt(output_index); t < end; ++t) {
-    uint jk = gauntWordAt(first_term + kGauntTermWords * t);
-    float value = uintBitsToFloat(gauntWordAt(first_term + kGauntTermWords * t + 1u));
-    sum += value * vectorAt(at + (jk >> 16u)) * lightAt(light + (jk & 0xffffu));
-  }
-  return vec4(sum, vectorAt(at + output_index));
-}
-#endif
-
-#ifdef LAMBENT_STAGE_FILL
 vec3 lightAt(uint index);
 
 // An open sample: all of the light, and visibility 1. Of a neighborhood: no change of either.
@@ -32,4 +10,3 @@ vec4 openLight(FillRecord fill, uint output_index) {
   vec3 light = output_index < fill.coefficients ? lightAt(fill.light + output_index) : vec3(0.0);
   return vec4(light, output_index == 0u && fill.open != 0u ? kSqrtFourPi : 0.0);
 }
-#endif

@@ -7,7 +7,6 @@ layout(std430, binding = kBindLights) readonly buffer Lights { vec4 lights[]; };
 layout(std430, binding = kBindFills) readonly buffer Fills { FillRecord fills[]; };
 layout(std430, binding = kBindSamples) writeonly buffer Samples { vec4 samples[]; };
 
-#define LAMBENT_STAGE_FILL
 #include "glossy_eval.glsl"
 
 vec3 lightAt(uint index) { return lights[index].rgb; }

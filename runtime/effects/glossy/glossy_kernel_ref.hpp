@@ -1,5 +1,5 @@
-// The CPU twin of glossy_kernel.glsl: same names, same order of terms; what the GPU looks up in a texture is
-// interpolated here from the same texels. Vectors are unit and in the group's frame. No GL.
+// This is the CPU twin of glossy_kernel.glsl, with the same names and order of terms. Texture lookups of the
+// GPU are interpolated here from the same texels. Vectors are unit vectors in the group's frame. No GL.
 #pragma once
 
 #include <algorithm>
@@ -92,7 +92,7 @@ inline LocalView localView(bool isotropic, const glm::vec3& normal, const glm::v
   return view;
 }
 
-// A table as the kernel has it.
+// Holds a table of b(v) as the kernel reads it.
 struct Table {
   const bundle::BrdfTable* table = nullptr;
   streaming::BrdfTexels texels;
@@ -104,7 +104,7 @@ struct Table {
         factors(from.isotropic() ? sh::ZonalFactors::isotropic(static_cast<int>(from.order))
                                  : sh::ZonalFactors::anisotropic(static_cast<int>(from.order))) {}
 
-  // Between the four texels about a place, counted in nodes.
+  // Interpolates between the four texels around a place, given in nodes.
   glm::vec4 brdfTexel(glm::vec2 place, std::uint32_t layer) const {
     const auto texel = [&](std::uint32_t x, std::uint32_t y) {
       return texels
@@ -149,11 +149,12 @@ inline std::vector<glm::vec4> lookUpWeights(const Table& table, const LocalView&
   return weights;
 }
 
-// Two lobes: what F0 and F90 multiply; three: red, green and blue in `light`, all else 0.
+// With two lobes, holds the factors of F0 and F90; with three, red, green and blue in `light`, and 0
+// elsewhere.
 struct Reflected {
-  glm::vec4 light{0.0f};  // measured
+  glm::vec4 light{0.0f};  // of a measured BRDF
   glm::vec4 f0_light{0.0f}, f90_light{0.0f};
-  glm::vec3 albedo{0.0f};  // of the lobes
+  glm::vec3 albedo{0.0f};  // albedo of each lobe
   glm::vec4 diffuse{0.0f};
 };
 

@@ -1,5 +1,4 @@
-// One text for C++ and GLSL: what the glossy kernels bind and read besides diffuse_shared.h, whose records of transfers
-// and work items they share.
+// One text for C++ and GLSL: what the kernels of the glossy effect bind and read besides transfer_shared.h.
 #ifdef __cplusplus
 #pragma once
 
@@ -10,16 +9,11 @@ namespace lambent::effects::glossy {
 using uint = std::uint32_t;
 #define LAMBENT_CONSTANT inline constexpr uint
 #else
-#include "diffuse_shared.h"
+#include "transfer_shared.h"
 #define LAMBENT_CONSTANT const uint
 #endif
 
-// The others stand where they stand for diffuse transfer.
-LAMBENT_CONSTANT kBindGaunt = 7u;  // of the product of spherical harmonics: offsets of its outputs, then the terms
 LAMBENT_CONSTANT kBindFills = 2u;  // FillRecord
-
-// A term of the table of products takes two words: j | k << 16, and its value (sh::GauntTerm).
-LAMBENT_CONSTANT kGauntTermWords = 2u;
 
 // A cell that shows the light itself, for want of transfer or because it was asked for. One of a neighborhood changes
 // nothing then.

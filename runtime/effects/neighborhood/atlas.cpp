@@ -14,7 +14,7 @@ AtlasLayout layOutAtlas(std::span<const GridShape> shapes, std::uint32_t max_sid
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return shapes[a].size.y > shapes[b].size.y; });
-  // Shelves along y, each as high as the first grid on it; grids stand side by side along z.
+  // Shelves run along y, each as high as its first grid; grids are placed side by side along z.
   std::uint32_t shelf_y = 0, shelf_height = 0, next_z = 0;
   for (const std::size_t i : order) {
     const GridShape& shape = shapes[i];

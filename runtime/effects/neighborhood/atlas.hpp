@@ -1,6 +1,6 @@
-// Where the grids of all bodies lie in one 3D texture: each output of a grid is a slab of as many texels as
-// the grid has points, slabs stack along z and, where that ends, go on in a column beside. One texture for
-// all, so that draws that receive from different bodies still share a multi-draw. No GL.
+// Lays out the grids of all bodies in one 3D texture. Each output of a grid is a slab with one texel per grid
+// point; slabs are stacked along z and continue in a neighbouring column when that is full. There is one
+// texture for all, so that draws that receive from different bodies share a multi-draw. No GL.
 #pragma once
 
 #include <cstdint>
@@ -19,11 +19,12 @@ struct GridShape {
 };
 
 struct AtlasLayout {
-  glm::uvec3 size{0};             // texels; 0: nothing was placed
-  std::vector<GridPlace> places;  // one per shape; outputs 0: there was no room
+  glm::uvec3 size{0};             // in texels; 0: nothing was placed
+  std::vector<GridPlace> places;  // one per shape; outputs is 0 if there was no room
 };
 
-// max_side: of a 3D texture on this device; OpenGL 4.5 promises 2048. Large grids first.
+// Places large grids first. `max_side` is the limit of a 3D texture on this device; OpenGL 4.5 guarantees
+// 2048.
 AtlasLayout layOutAtlas(std::span<const GridShape> shapes, std::uint32_t max_side);
 
 }  // namespace lambent::effects::neighborhood

@@ -7,6 +7,7 @@
 #include <glm/common.hpp>
 
 #include "lambent_effects_neighborhood_embedded.hpp"
+#include "lambent_transfer_embedded.hpp"
 
 namespace lambent::effects::neighborhood {
 
@@ -14,7 +15,8 @@ static_assert(kWriteGroupsX == gpu::WorkList::kMaxGroupsX);
 
 namespace {
 
-constexpr gpu::FindText kShaders[] = {&embedded::lambent_effects_neighborhood::find};
+constexpr gpu::FindText kShaders[] = {&embedded::lambent_effects_neighborhood::find,
+                                      &embedded::lambent_transfer::find};
 
 gpu::Handle<gpu::TextureTraits> makeAtlas(const glm::uvec3& size) {
   GLuint id = 0;
@@ -37,10 +39,10 @@ template <typename Each>
 void forCells(const streaming::Residency& residency, const Grid& grid, const Each& each) {
   const streaming::ResidentGroup& group = residency.groups()[grid.group];
   for (std::uint32_t c = group.first_cell; c < group.first_cell + group.cell_count; ++c)
-    if (residency.cells()[c].kind == bundle::CellKind::Neighborhood) each(residency.cells()[c]);
+    if (residency.cells()[c].domain == transfer::Domain::GridPoint) each(residency.cells()[c]);
 }
 
-// All points are there, as far as they look better than none.
+// Returns whether all points have arrived that can improve the picture.
 bool complete(const streaming::Residency& residency, const Grid& grid) {
   std::uint64_t points = 0;
   bool usable = true;
@@ -52,7 +54,7 @@ bool complete(const streaming::Residency& residency, const Grid& grid) {
   return usable && points == std::uint64_t{size.x} * size.y * size.z;
 }
 
-// A power of two near the group's light, so that half floats suit light of any strength.
+// Returns a power of two near the group's light, so that half floats suit light of any strength.
 float scaleOf(const lighting::GroupLights& lights, const streaming::ResidentGroup& group,
               std::uint32_t index) {
   float largest = 0.0f;
@@ -79,7 +81,7 @@ void Neighborhood::setGrids(std::vector<Grid> grids, const streaming::Residency&
     return;
   }
   std::swap(grids, grids_);
-  seen_.assign(grids_.size(), 0);
+  written_versions_.assign(grids_.size(), 0);
   ++version_;
   std::vector<GridShape> shapes;
   for (const Grid& grid : grids_) {
@@ -114,8 +116,8 @@ Result<void> Neighborhood::update(streaming::Residency& residency, const lightin
   for (std::size_t i = 0; i < grids_.size(); ++i) {
     Grid& grid = grids_[i];
     const std::uint64_t shaded = glossy.versionOf(grid.group);
-    if (grid.place.outputs == 0 || shaded == seen_[i]) continue;
-    seen_[i] = shaded;
+    if (grid.place.outputs == 0 || shaded == written_versions_[i]) continue;
+    written_versions_[i] = shaded;
     ++written_;
     const bool ready = complete(residency, grid);
     const float scale = scaleOf(lights, residency.groups()[grid.group], grid.group);

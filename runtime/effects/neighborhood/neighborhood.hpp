@@ -1,9 +1,10 @@
-// The change of the light around bodies as a texture. Comes in: grids of groups, and their points as the
-// glossy effect has shaded them, (M - I) l in the body's frame (samples arena, cells of kind Neighborhood).
-// Goes out: one 3D texture of half floats with all grids in it (atlas.hpp), looked up by receivers per pixel
-// (neighborhood_eval.glsl) and per vertex (neighborhood_vertices.comp). A grid is written anew only when its
-// points were shaded anew: under light that does not change against the body, nothing is dispatched. Without
-// grids nothing is compiled, held or dispatched. Errors: a kernel that does not compile on this device.
+// Owns the change of the light around bodies as a texture. It takes grids of groups and their points as the
+// glossy effect has shaded them, (M - I) l in the body's frame (samples arena, cells of kind Neighborhood),
+// and writes one 3D texture of half floats with all grids (atlas.hpp), which receivers look up per pixel
+// (neighborhood_eval.glsl) and per vertex (neighborhood_vertices.comp). A grid is written only when its
+// points were shaded: under light that is constant relative to the body, nothing is dispatched. Without grids
+// nothing is compiled, held or dispatched. Render thread only. Fails if a kernel does not compile on this
+// device.
 #pragma once
 
 #include <cstdint>
@@ -22,30 +23,31 @@
 namespace lambent::effects::neighborhood {
 
 struct Grid {
-  std::uint32_t group = 0;  // of the residency: whose
+  std::uint32_t group = 0;  // index of its group in the residency
   std::uint64_t id = 0;     // of that group
-  std::uint64_t key = 0;    // the same for one that takes the place of another
+  std::uint64_t key = 0;    // kept when a replacement takes its place
   bundle::NeighborhoodGrid points;
   GridPlace place{};   // outputs 0: no room on this device
-  bool ready = false;  // all of it has arrived and is written
+  bool ready = false;  // it has arrived as a whole and is written
 };
 
 class Neighborhood {
  public:
   Neighborhood();
 
-  // Which groups have grids; the texture is made anew if they are others than before. One whose place a grid
-  // takes that has all arrived, or that stays, is ready still: update() writes it before anybody looks it up.
+  // Sets which groups have grids; if they differ from before, the texture is made again. A grid stays ready
+  // if the grid with its key was ready before and all its points have arrived: update() writes it before it
+  // is looked up.
   void setGrids(std::vector<Grid> grids, const streaming::Residency& residency);
-  // Brings the texture up to date with the shaded points.
+  // Writes the grids whose points were shaded since.
   Result<void> update(streaming::Residency& residency, const lighting::GroupLights& lights,
                       const glossy::Glossy& glossy, gpu::Counters& counters);
 
   const std::vector<Grid>& grids() const { return grids_; }
-  // Rises when a grid became ready, or lies or counts otherwise than before (Grid::place).
+  // Rises when a grid becomes ready, or when a Grid::place changes.
   std::uint64_t version() const { return version_; }
   // Rises when the grid is written.
-  std::uint64_t writtenVersion(std::size_t grid) const { return seen_[grid]; }
+  std::uint64_t writtenVersion(std::size_t grid) const { return written_versions_[grid]; }
   std::uint32_t gridsWrittenLast() const { return written_; }
   std::uint64_t bytes() const;  // of the texture
   void bind() const { glBindTextureUnit(kUnitAtlas, atlas_.id()); }
@@ -56,7 +58,7 @@ class Neighborhood {
   Result<void> write(streaming::Residency& residency, gpu::Counters& counters);
 
   std::vector<Grid> grids_;
-  std::vector<std::uint64_t> seen_;  // per grid: version of its shaded points in the texture; 0: none
+  std::vector<std::uint64_t> written_versions_;  // per grid, of its shaded points; 0: none
   std::optional<gpu::Program> program_;
   gpu::Handle<gpu::TextureTraits> atlas_;
   glm::uvec3 atlas_size_{0};

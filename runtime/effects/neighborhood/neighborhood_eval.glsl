@@ -36,6 +36,4 @@ vec3 gridIrradiance(vec3 place, GridPlace grid, vec3 n) {
   return sum;
 }
 
-// Light and its change together. What is below 0 already, by coding errors, stays; a change takes no light that is not
-// there (overlapping shadows, ringing).
-vec3 withChange(vec3 light, vec3 change) { return max(light + change, min(light, vec3(0.0))); }
+#include "with_change.glsl"

@@ -1,4 +1,5 @@
-// The CPU twin of neighborhood_eval.glsl and neighborhood_write.comp: same names, same order of terms. No GL.
+// This is the CPU twin of neighborhood_eval.glsl and neighborhood_write.comp, with the same names and order
+// of terms. No GL.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +18,7 @@
 
 namespace lambent::effects::neighborhood::ref {
 
-// As the GPU has it: x fastest, then y, then z.
+// Holds the texture as the GPU does: x varies fastest, then y, then z.
 struct Atlas {
   std::size_t width = 1, height = 1, depth = 1;
   std::vector<glm::vec4> texels;
@@ -30,7 +31,7 @@ struct Atlas {
     return texels[(z * height + y) * width + x];
   }
 
-  // Linear between texels, whose middles are at i + 0.5; constant beyond the outermost.
+  // Interpolates linearly between texel centres at i + 0.5; constant beyond the outermost.
   glm::vec4 at(const glm::vec3& place) const {
     const glm::vec3 last(static_cast<float>(width - 1), static_cast<float>(height - 1),
                          static_cast<float>(depth - 1));
@@ -52,7 +53,7 @@ struct Atlas {
   }
 };
 
-// Point by point, output by output, as half floats.
+// Writes point by point and output by output, rounded to half floats.
 inline void write(Atlas& atlas, const WriteRecord& cell, std::span<const glm::vec4> samples) {
   const auto half = [](float value) { return glm::unpackHalf1x16(glm::packHalf1x16(value)); };
   for (uint element = 0; element < cell.point_count * cell.grid.outputs; ++element) {

@@ -3,15 +3,16 @@
 #include "vertex_shared.h"
 #include "neighborhood_eval.glsl"
 #include "coded_transfer.glsl"
+#include "vertex_rows.glsl"
 
 layout(local_size_x = kVertexGroupSize) in;
-layout(std140, binding = kBindVertexBlock) uniform Block { VertexReceiver receiver; };
+layout(std140, binding = kBindVertexBlock) uniform Block { VertexReceiver receivers[kRecordsPerDispatch]; };
 layout(std430, binding = kBindVertexArrivals) readonly buffer Arrivals { VertexArrival arrivals[]; };
 layout(std430, binding = kBindVertexTransfers) readonly buffer Transfers { TransferRecord transfers[]; };
 layout(std430, binding = kBindVertexPlanes) readonly buffer Planes { uint planes[]; };
 layout(std430, binding = kBindSamplePlaces) readonly buffer SamplePlaces { uint sample_places[]; };
 layout(std430, binding = kBindVertexTransfer) readonly buffer Transfer { uint page[]; };
-layout(std430, binding = kBindVertexRows) readonly buffer Rows { uint rows[]; };
+layout(std430, binding = kBindVertexRows) readonly buffer Rows { uint row_words[]; };
 layout(std430, binding = kBindVertexGeometry) readonly buffer Geometry { float geometry[]; };
 layout(std430, binding = kBindVertexChange) writeonly buffer Change { float change_out[]; };
 layout(binding = kUnitAtlas) uniform sampler3D atlas;
@@ -20,6 +21,7 @@ const uint kBandCount = LAMBENT_ORDER, kBandedLight = kBandCount * kBandCount;
 
 vec4 atlasAt(vec3 texel) { return textureLod(atlas, texel / vec3(textureSize(atlas, 0)), 0.0); }
 uint codeWordAt(uint word) { return page[word]; }
+uint rowWordAt(uint word) { return row_words[word]; }
 
 void addArrival(uint a, vec3 position, inout vec3 change[kBandedLight]) {
   vec3 place = vec4(position, 1.0) * arrivals[a].grid_from_position;
@@ -45,7 +47,7 @@ vec3 projected(TransferRecord transfer, uint vector, vec3 change[kBandedLight]) 
   return sum;
 }
 
-vec3 receivedBySample(uint sample_index, vec3 change[kBandedLight]) {
+vec3 receivedBySample(VertexReceiver receiver, uint sample_index, vec3 change[kBandedLight]) {
   uint stands = sample_places[receiver.first_place + sample_index];
   TransferRecord transfer = transfers[receiver.first_transfer + (stands >> 16u)];
   uint position = stands & 0xffffu;
@@ -61,6 +63,7 @@ vec3 receivedBySample(uint sample_index, vec3 change[kBandedLight]) {
 }
 
 void main() {
+  VertexReceiver receiver = receivers[gl_WorkGroupID.y];
   uint vertex = gl_WorkGroupID.x * kVertexGroupSize + gl_LocalInvocationID.x;
   if (vertex >= receiver.vertex_count) return;
   uint at = receiver.positions_word + 3u * vertex;
@@ -69,13 +72,14 @@ void main() {
   for (uint k = 0u; k < kBandedLight; ++k) change[k] = vec3(0.0);
   for (uint a = receiver.first_arrival; a < receiver.first_arrival + receiver.arrival_count; ++a)
     addArrival(a, position, change);
-  uint samples_word = receiver.rows_word + receiver.vertex_count + 1u, weights_word = samples_word + receiver.row_entries;
+  VertexRows rows = VertexRows(receiver.rows_word, receiver.vertex_count, receiver.row_entries);
+  uvec2 row = rowOf(rows, vertex);
   vec3 sum = vec3(0.0);
   float total = 0.0;
-  for (uint entry = rows[receiver.rows_word + vertex]; entry < rows[receiver.rows_word + vertex + 1u]; ++entry) {
-    float weight = float((rows[weights_word + (entry >> 1u)] >> (16u * (entry & 1u))) & 0xffffu) / 65535.0;
-    sum += weight * receivedBySample(rows[samples_word + entry], change);
-    total += weight;
+  for (uint i = row.x; i < row.y; ++i) {
+    RowEntry entry = rowEntryAt(rows, i);
+    sum += entry.weight * receivedBySample(receiver, entry.sample_index, change);
+    total += entry.weight;
   }
   if (total > 0.0) sum /= total;
   uint out_word = receiver.change_word + 3u * vertex;

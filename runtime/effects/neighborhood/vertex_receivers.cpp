@@ -1,20 +1,30 @@
 #include "runtime/effects/neighborhood/vertex_receivers.hpp"
 
 #include <algorithm>
+#include <array>
+#include <compare>
 
 #include <fmt/format.h>
 
 #include "lambent_effects_neighborhood_embedded.hpp"
+#include "lambent_transfer_embedded.hpp"
 #include "runtime/sh/rotation.hpp"
 
 namespace lambent::effects::neighborhood {
 
 namespace {
 
-constexpr gpu::FindText kShaders[] = {&embedded::lambent_effects_neighborhood::find};
+constexpr gpu::FindText kShaders[] = {&embedded::lambent_effects_neighborhood::find,
+                                      &embedded::lambent_transfer::find};
+
+// Receivers of one dispatch share a kernel and pages.
+struct Batch {
+  std::uint32_t order = 0, transfer_page = 0, rows_page = 0, geometry_page = 0;
+  auto operator<=>(const Batch&) const = default;
+};
 
 bool plain(const streaming::ResidentCell& cell) {
-  return cell.kind == bundle::CellKind::Surface && cell.outputs == 1;
+  return cell.domain == transfer::Domain::Vertex && cell.form() == transfer::Form::Vector;
 }
 
 std::span<const streaming::ResidentCell> cellsOf(const streaming::Residency& residency, std::uint32_t group) {
@@ -32,7 +42,7 @@ std::uint64_t versionOf(const streaming::Residency& residency, std::uint32_t gro
 VertexArrival describe(const VertexDraw::From& from, const Grid& grid) {
   VertexArrival arrival{
       .grid_from_position = from.grid_from_position, .grid = grid.place, .turn = {}, .pad = {}};
-  const int bands = static_cast<int>(bundle::bandsOf(grid.place.outputs));
+  const int bands = static_cast<int>(transfer::bandsOf(grid.place.outputs));
   const sh::Rotation turn(glm::dquat(from.group_from_body), bands);
   std::size_t entry = 0;
   for (int l = 0; l < bands; ++l)
@@ -50,7 +60,7 @@ GLuint groupsFor(std::uint32_t count) {
 
 bool hasTransfer(const streaming::Residency& residency, std::uint32_t index, std::uint32_t order) {
   const streaming::ResidentDraw& draw = residency.draws()[index];
-  if (draw.outputs != 1 || !draw.rows || !draw.radiance) return false;
+  if (draw.form() != transfer::Form::Vector || !draw.rows || !draw.radiance) return false;
   std::optional<std::uint32_t> page;
   for (const streaming::ResidentCell& cell : cellsOf(residency, draw.group)) {
     if (!plain(cell)) continue;
@@ -80,9 +90,21 @@ Result<const gpu::Program*> VertexReceivers::program(std::uint32_t order) {
   return &programs_.emplace(order, std::move(*made)).first->second;
 }
 
-void VertexReceivers::bindBlock(std::span<const std::byte> bytes) {
-  block_.assignBytes(bytes);
-  glBindBufferBase(GL_UNIFORM_BUFFER, kBindVertexBlock, block_.buffer().id());
+// One dispatch for as many records as a block holds; `largest` is the largest number of elements of one.
+template <typename Record>
+void VertexReceivers::dispatch(std::span<const Record> records, std::uint32_t largest,
+                               gpu::Counters& counters) {
+  for (std::size_t first = 0; first < records.size(); first += kRecordsPerDispatch) {
+    std::array<Record, kRecordsPerDispatch> block{};
+    const auto some =
+        records.subspan(first, std::min<std::size_t>(kRecordsPerDispatch, records.size() - first));
+    std::ranges::copy(some, block.begin());
+    block_.assign(std::span<const Record>(block));
+    glBindBufferBase(GL_UNIFORM_BUFFER, kBindVertexBlock, block_.buffer().id());
+    glDispatchCompute(groupsFor(largest), static_cast<GLuint>(some.size()), 1);
+    ++counters.dispatches;
+    counters.uploaded_bytes += some.size_bytes();
+  }
 }
 
 void VertexReceivers::layOut(const streaming::Residency& residency, std::span<const VertexDraw> draws) {
@@ -92,7 +114,7 @@ void VertexReceivers::layOut(const streaming::Residency& residency, std::span<co
   if (same) return;
   words_.clear();
   places_.clear();
-  seen_.clear();
+  changed_.clear();
   std::uint32_t word = 0, place = 0;
   for (const VertexDraw& receiver : draws) {
     const streaming::ResidentDraw& draw = residency.draws()[receiver.draw];
@@ -107,75 +129,69 @@ void VertexReceivers::layOut(const streaming::Residency& residency, std::span<co
   sample_places_.reserve(4 * std::size_t{place});
 }
 
-// Plain cells stand first in their group, so its samples are numbered as the rows have them.
+// Plain cells come first in their group, so its samples are numbered as in the rows.
 Result<void> VertexReceivers::findPlaces(streaming::Residency& residency, gpu::Counters& counters) {
+  std::map<std::uint32_t, std::vector<PlacesCell>> batches;  // by page
   for (auto& [group, places] : places_) {
     const std::uint64_t version = versionOf(residency, group);
     if (version == places.version) continue;
     places.version = version;
-    const Result<const gpu::Program*> kernel = program(0);
-    if (!kernel) return failAgain(kernel.error());
-    (*kernel)->use();
-    sample_places_.bindStorage(kBindSamplePlaces);
     std::uint32_t index = 0;
     for (const streaming::ResidentCell& cell : cellsOf(residency, group)) {
       const std::uint32_t local = index++;
-      if (!plain(cell)) continue;
-      const PlacesCell block{.positions_word = cell.transfers.front().positions_word,
-                             .sample_count = cell.sample_count,
-                             .first_place = places.first + cell.first_sample,
-                             .cell = local};
-      bindBlock(std::as_bytes(std::span(&block, 1)));
-      residency.transfer().page(cell.block.page).bindStorage(kBindVertexTransfer);
-      glDispatchCompute(groupsFor(cell.sample_count), 1, 1);
-      ++counters.dispatches;
+      if (plain(cell))
+        batches[cell.block.page].push_back({.positions_word = cell.transfers.front().positions_word,
+                                            .sample_count = cell.sample_count,
+                                            .first_place = places.first + cell.first_sample,
+                                            .cell = local});
     }
-    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
   }
+  if (batches.empty()) return {};
+  const Result<const gpu::Program*> kernel = program(0);
+  if (!kernel) return failAgain(kernel.error());
+  (*kernel)->use();
+  sample_places_.bindStorage(kBindSamplePlaces);
+  for (const auto& [page, cells] : batches) {
+    residency.transfer().page(page).bindStorage(kBindVertexTransfer);
+    const auto largest = std::ranges::max(cells, {}, &PlacesCell::sample_count).sample_count;
+    dispatch(std::span<const PlacesCell>(cells), largest, counters);
+  }
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
   return {};
 }
 
-VertexReceivers::Seen VertexReceivers::seenNow(const streaming::Residency& residency,
-                                               const Neighborhood& effect, const VertexDraw& draw) const {
+bool VertexReceivers::changed(const streaming::Residency& residency, const Neighborhood& effect,
+                              const VertexDraw& draw) {
   const streaming::ResidentDraw& resident = residency.draws()[draw.draw];
-  Seen now{.draw = resident.version,
-           .cells = versionOf(residency, resident.group),
-           .from = draw.from,
-           .written = {}};
-  for (const VertexDraw::From& from : draw.from) now.written.push_back(effect.writtenVersion(from.grid));
-  return now;
+  std::vector<std::uint64_t> written;
+  for (const VertexDraw::From& from : draw.from) written.push_back(effect.writtenVersion(from.grid));
+  return changed_[draw.draw].renew(resident.version, versionOf(residency, resident.group), draw.from,
+                                   written);
 }
 
 Result<void> VertexReceivers::update(streaming::Residency& residency, const lighting::GroupLights& lights,
-                                     diffuse::TransferMode mode, const Neighborhood& effect,
+                                     evaluate::TransferMode mode, const Neighborhood& effect,
                                      std::span<const VertexDraw> draws, gpu::Counters& counters) {
   shaded_ = 0;
   if (draws.empty() && words_.empty()) return {};
-  if (structure_seen_ != residency.structureVersion()) {  // all indices are others
-    structure_seen_ = residency.structureVersion();
+  if (structure_changed_.renew(residency.structureVersion())) {  // all indices are others
     words_.clear();
     places_.clear();
-    seen_.clear();
+    changed_.clear();
   }
   layOut(residency, draws);
-  if (mode != mode_seen_) seen_.clear();
-  mode_seen_ = mode;
+  if (mode_changed_.renew(mode)) changed_.clear();
   std::vector<const VertexDraw*> dirty;
-  for (const VertexDraw& draw : draws) {
-    Seen now = seenNow(residency, effect, draw);
-    Seen& seen = seen_[draw.draw];
-    if (seen == now) continue;
-    seen = std::move(now);
-    dirty.push_back(&draw);
-  }
+  for (const VertexDraw& draw : draws)
+    if (changed(residency, effect, draw)) dirty.push_back(&draw);
   if (dirty.empty()) return {};
   if (Result<void> done = findPlaces(residency, counters); !done) return done;
 
-  diffuse::TransferTable table;  // for its places of planes
-  std::vector<diffuse::TransferRecord> transfers;
+  evaluate::TransferTable table;  // for its places of planes
+  std::vector<transfer::TransferRecord> transfers;
   std::map<std::uint32_t, std::uint32_t> first_transfer;  // by group
   std::vector<VertexArrival> arrivals;
-  std::vector<VertexReceiver> receivers;
+  std::map<Batch, std::vector<VertexReceiver>> batches;
   for (const VertexDraw* draw : dirty) {
     const streaming::ResidentDraw& resident = residency.draws()[draw->draw];
     if (!first_transfer.contains(resident.group)) {
@@ -183,51 +199,51 @@ Result<void> VertexReceivers::update(streaming::Residency& residency, const ligh
       for (const streaming::ResidentCell& cell : cellsOf(residency, resident.group)) {
         if (plain(cell)) table.add(cell, lights, mode);
         transfers.push_back(plain(cell) ? table.transfers[table.cells.back().first]
-                                        : diffuse::TransferRecord{});
+                                        : transfer::TransferRecord{});
       }
     }
     const streaming::ResidentMesh& mesh = residency.meshes()[resident.mesh];
-    receivers.push_back({.first_arrival = static_cast<std::uint32_t>(arrivals.size()),
-                         .arrival_count = static_cast<std::uint32_t>(draw->from.size()),
-                         .vertex_count = mesh.vertex_count,
-                         .positions_word = mesh.positions_word,
-                         .rows_word = resident.rows.word(),
-                         .row_entries = resident.row_entries,
-                         .first_place = places_[resident.group].first,
-                         .first_transfer = first_transfer[resident.group],
-                         .change_word = words_[draw->draw],
-                         .pad0 = 0,
-                         .pad1 = 0,
-                         .pad2 = 0});
+    const Grid& grid = effect.grids()[draw->from.front().grid];
+    const auto cells = cellsOf(residency, resident.group);
+    const Batch batch{.order = transfer::bandsOf(grid.place.outputs),
+                      .transfer_page = std::ranges::find_if(cells, plain)->block.page,
+                      .rows_page = resident.rows.page,
+                      .geometry_page = mesh.block.page};
+    batches[batch].push_back({.first_arrival = static_cast<std::uint32_t>(arrivals.size()),
+                              .arrival_count = static_cast<std::uint32_t>(draw->from.size()),
+                              .vertex_count = mesh.vertex_count,
+                              .positions_word = mesh.positions_word,
+                              .rows_word = resident.rows.word(),
+                              .row_entries = resident.row_entries,
+                              .first_place = places_[resident.group].first,
+                              .first_transfer = first_transfer[resident.group],
+                              .change_word = words_[draw->draw],
+                              .pad0 = 0,
+                              .pad1 = 0,
+                              .pad2 = 0});
     for (const VertexDraw::From& from : draw->from)
       arrivals.push_back(describe(from, effect.grids()[from.grid]));
   }
   arrivals_.assign(std::span<const VertexArrival>(arrivals));
-  transfers_.assign(std::span<const diffuse::TransferRecord>(transfers));
+  transfers_.assign(std::span<const transfer::TransferRecord>(transfers));
   planes_.assign(std::span<const std::uint32_t>(table.places));
   counters.uploaded_bytes += arrivals.size() * sizeof(VertexArrival) +
-                             transfers.size() * sizeof(diffuse::TransferRecord) + 4 * table.places.size() +
-                             receivers.size() * sizeof(VertexReceiver);
+                             transfers.size() * sizeof(transfer::TransferRecord) + 4 * table.places.size();
   effect.bind();
-  for (std::size_t i = 0; i < dirty.size(); ++i) {
-    const streaming::ResidentDraw& resident = residency.draws()[dirty[i]->draw];
-    const Grid& grid = effect.grids()[dirty[i]->from.front().grid];
-    const Result<const gpu::Program*> kernel = program(bundle::bandsOf(grid.place.outputs));
+  arrivals_.bindStorage(kBindVertexArrivals);
+  transfers_.bindStorage(kBindVertexTransfers);
+  planes_.bindStorage(kBindVertexPlanes);
+  sample_places_.bindStorage(kBindSamplePlaces);
+  change_.bindStorage(kBindVertexChange);
+  for (const auto& [batch, receivers] : batches) {
+    const Result<const gpu::Program*> kernel = program(batch.order);
     if (!kernel) return failAgain(kernel.error());
     (*kernel)->use();
-    const auto cells = cellsOf(residency, resident.group);
-    const auto cell = std::ranges::find_if(cells, plain);
-    arrivals_.bindStorage(kBindVertexArrivals);
-    transfers_.bindStorage(kBindVertexTransfers);
-    planes_.bindStorage(kBindVertexPlanes);
-    sample_places_.bindStorage(kBindSamplePlaces);
-    residency.transfer().page(cell->block.page).bindStorage(kBindVertexTransfer);
-    residency.rows().page(resident.rows.page).bindStorage(kBindVertexRows);
-    residency.geometry().page(residency.meshes()[resident.mesh].block.page).bindStorage(kBindVertexGeometry);
-    change_.bindStorage(kBindVertexChange);
-    bindBlock(std::as_bytes(std::span(&receivers[i], 1)));
-    glDispatchCompute(groupsFor(receivers[i].vertex_count), 1, 1);
-    ++counters.dispatches;
+    residency.transfer().page(batch.transfer_page).bindStorage(kBindVertexTransfer);
+    residency.rows().page(batch.rows_page).bindStorage(kBindVertexRows);
+    residency.geometry().page(batch.geometry_page).bindStorage(kBindVertexGeometry);
+    const auto largest = std::ranges::max(receivers, {}, &VertexReceiver::vertex_count).vertex_count;
+    dispatch(std::span<const VertexReceiver>(receivers), largest, counters);
   }
   shaded_ = static_cast<std::uint32_t>(dirty.size());
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);

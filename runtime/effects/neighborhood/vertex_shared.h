@@ -13,7 +13,7 @@ namespace lambent::effects::neighborhood {
 #define LAMBENT_CONSTANT const uint
 #endif
 
-LAMBENT_CONSTANT kBindVertexBlock = 0u;      // uniform block VertexReceiver, or PlacesCell
+LAMBENT_CONSTANT kBindVertexBlock = 0u;      // uniform block of so many VertexReceivers, or PlacesCells
 LAMBENT_CONSTANT kBindVertexArrivals = 0u;   // VertexArrival
 LAMBENT_CONSTANT kBindVertexTransfers = 1u;  // diffuse's TransferRecord
 LAMBENT_CONSTANT kBindVertexPlanes = 2u;     // what these call places: where their planes lie
@@ -23,6 +23,7 @@ LAMBENT_CONSTANT kBindVertexRows = 5u;       // arena page
 LAMBENT_CONSTANT kBindVertexGeometry = 6u;   // arena page
 LAMBENT_CONSTANT kBindVertexChange = 7u;     // 3 floats per vertex: E/pi
 LAMBENT_CONSTANT kVertexGroupSize = 64u;
+LAMBENT_CONSTANT kRecordsPerDispatch = 256u;  // gl_WorkGroupID.y says which; OpenGL 4.5 promises blocks of 16 KiB
 LAMBENT_CONSTANT kMaxTurnEntries = 286u;  // 1 + 9 + 25 + ..., six bands
 
 // One draw, whose cells all lie in one page.

@@ -10,7 +10,7 @@
 #include <glm/vec4.hpp>
 
 #include "lambent_effects_volume_embedded.hpp"
-#include "runtime/bundle/codebook.hpp"
+#include "runtime/transfer/codebook.hpp"
 
 namespace lambent::effects::volume {
 
@@ -18,7 +18,7 @@ namespace {
 
 constexpr gpu::FindText kShaders[] = {&embedded::lambent_effects_volume::find};
 
-// As in volume_march.frag.
+// These are the uniform locations of volume_march.frag.
 constexpr GLint kScale = 0, kOffset = 1, kPictureSize = 2, kPerspective = 3, kStepVoxels = 4;
 
 bool finite(const glm::dmat4& matrix) {
@@ -137,8 +137,7 @@ Result<const gpu::Program*> March::compositeProgram(std::uint32_t samples) {
 void March::uploadBlocks(const streaming::Residency& residency, gpu::Counters& counters) {
   std::vector<std::uint64_t> versions;
   for (const streaming::ResidentVolume& volume : residency.volumes()) versions.push_back(volume.version);
-  if (versions == blocks_seen_) return;
-  blocks_seen_ = std::move(versions);
+  if (!blocks_changed_.renew(versions)) return;
   std::vector<float> blocks;
   first_block_.clear();
   for (const streaming::ResidentVolume& volume : residency.volumes()) {
@@ -181,7 +180,7 @@ Result<void> March::draw(const streaming::Residency& residency, const Volume& li
   for (Item& item : items) item.record.first_block = first_block_[item.volume];
   std::stable_sort(items.begin(), items.end(),
                    [](const Item& a, const Item& b) { return a.distance > b.distance; });
-  // Whole batches before the last: what is near is marched together.
+  // All batches but the one drawn first are full, so that near volumes are marched together.
   for (std::size_t first = 0; first < items.size();) {
     const std::size_t left = items.size() - first;
     const std::size_t count = left % kMaxMarched != 0 ? left % kMaxMarched : kMaxMarched;
@@ -204,7 +203,7 @@ Result<void> March::drawBatch(const streaming::Residency& residency, const Volum
   std::vector<MarchRecord> records;
   Rectangle rectangle = items.front().rectangle;
   for (const Item& item : items) {
-    kind.bands = std::max(kind.bands, bundle::bandsOf(item.record.outputs));
+    kind.bands = std::max(kind.bands, transfer::bandsOf(item.record.outputs));
     records.push_back(item.record);
     rectangle = unite(rectangle, item.rectangle);
   }
@@ -228,8 +227,8 @@ Result<void> March::drawBatch(const streaming::Residency& residency, const Volum
   glDisable(GL_DEPTH_TEST);
   glDisable(GL_CULL_FACE);
   glEnable(GL_SCISSOR_TEST);
-  // A pixel more all round than is composed: devices differ by as much in where they cut off pixels of
-  // several samples.
+  // The rectangle is a pixel larger on each side than what is composited, because devices differ by that much
+  // in how they clip pixels with several samples.
   const Rectangle marched = grown(rectangle, picture.size);
   glScissor(marched.x, marched.y, marched.width, marched.height);
   const glm::mat4& p = view.clip_from_view;

@@ -13,11 +13,12 @@ namespace {
 
 constexpr gpu::FindText kShaders[] = {&embedded::lambent_effects_volume::find};
 
-// Whether the samples of the cell hold nothing for the mode, so that the light itself is shown. The glossy
-// effect fills its own.
-bool isOpen(const streaming::ResidentCell& cell, const diffuse::TransferTable::Cell& transfers,
-            TransferMode mode) {
-  return !cell.matrices() && (mode == TransferMode::Unshadowed || !cell.usable() || transfers.count == 0);
+// Returns whether the samples of the cell hold nothing for the mode, so that the light itself is shown. The
+// glossy effect fills its own samples.
+bool isOpen(const streaming::ResidentCell& cell, const evaluate::TransferTable::Cell& transfers,
+            evaluate::TransferMode mode) {
+  return !cell.matrices() &&
+         (mode == evaluate::TransferMode::Unshadowed || !cell.usable() || transfers.count == 0);
 }
 
 }  // namespace
@@ -49,7 +50,8 @@ gpu::Texture Volume::makeTexture(const streaming::ResidentVolume& volume) const 
 }
 
 void Volume::collect(const streaming::Residency& residency, const lighting::GroupLights& lights,
-                     const diffuse::Diffuse& diffuse, const glossy::Glossy& glossy, TransferMode mode) {
+                     const diffuse::Diffuse& diffuse, const glossy::Glossy& glossy,
+                     evaluate::TransferMode mode) {
   work_.clear();
   records_.clear();
   for (std::uint32_t v = 0; v < held_.size(); ++v) {
@@ -57,19 +59,13 @@ void Volume::collect(const streaming::Residency& residency, const lighting::Grou
     const streaming::ResidentGroup& group = residency.groups()[volume.group];
     if (!volume.ready() || volume.sample_count == 0) continue;
     const auto first = static_cast<std::uint32_t>(records_.size());
-    Seen now{.shaded = diffuse.versionOf(volume.group) + glossy.versionOf(volume.group),
-             .light = 0,
-             .version = volume.version,
-             .open_cells = 0,
-             .mode = mode};
+    const std::uint64_t shaded = diffuse.versionOf(volume.group) + glossy.versionOf(volume.group);
+    std::uint32_t open_cells = 0;
     const SlabLayout layout = slabLayoutOf(volume.grid.transfer_size, volume.outputs);
     for (std::uint32_t c = group.first_cell; c < group.first_cell + group.cell_count; ++c) {
       const streaming::ResidentCell& cell = residency.cells()[c];
       const bool open = isOpen(cell, diffuse.tables().cells[c], mode);
-      if (open) {
-        ++now.open_cells;
-        now.light = lights.versionOf(volume.group);
-      }
+      if (open) ++open_cells;
       const glm::uvec3& size = volume.grid.transfer_size;
       records_.push_back({.first_output = cell.first_output,
                           .first_voxel = cell.first_sample,
@@ -83,9 +79,9 @@ void Volume::collect(const streaming::Residency& residency, const lighting::Grou
                           .pad = 0});
     }
     Held& held = held_[v];
-    if (held.light && held.seen == now) continue;
+    const std::uint64_t light = open_cells > 0 ? lights.versionOf(volume.group) : 0;
+    if (!held.changed.renew(shaded, light, volume.version, open_cells, mode)) continue;
     if (!held.light) held.light = makeTexture(volume);
-    held.seen = now;
     ++shaded_.volumes;
     shaded_.slabs += volume.outputs;
     for (std::uint32_t r = first; r < records_.size(); ++r)
@@ -94,8 +90,8 @@ void Volume::collect(const streaming::Residency& residency, const lighting::Grou
 }
 
 Result<void> Volume::shade(streaming::Residency& residency, const lighting::GroupLights& lights,
-                           const diffuse::Diffuse& diffuse, const glossy::Glossy& glossy, TransferMode mode,
-                           gpu::Counters& counters) {
+                           const diffuse::Diffuse& diffuse, const glossy::Glossy& glossy,
+                           evaluate::TransferMode mode, gpu::Counters& counters) {
   shaded_ = {};
   held_.follow(residency.volumes(), &streaming::ResidentVolume::id);
   if (residency.volumes().empty()) return {};

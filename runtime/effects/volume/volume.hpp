@@ -1,15 +1,17 @@
-// The light in volumes on the GPU. The samples of a volume's cells are shaded by the diffuse effect (outputs
-// 1 and 9) or the glossy one (more); this one brings them into a 3D texture per volume, where rays through
-// the volume find them (march.hpp): mean radiance that arrives at a voxel of the transfer grid, or, for phase
-// functions that look ahead, its spherical harmonics, convolved with the phase function. One indirect
-// dispatch per volume whose samples were shaded anew; nothing changed: none. What is not resident, and all of
-// it when unshadowed, shows the light itself. Without volumes nothing is compiled, held or dispatched.
+// Owns the light in volumes on the GPU. The diffuse effect shades the samples of a volume's cells with
+// outputs 1 and 9, the glossy effect those with more; this one copies them into a 3D texture per volume,
+// where marched rays look them up (march.hpp). The texture holds the mean radiance that arrives at a voxel of
+// the transfer grid or, for anisotropic phase functions, its spherical harmonics convolved with the phase
+// function. It takes one indirect dispatch per volume whose samples were shaded. What is not resident, and in
+// mode Unshadowed everything, shows the light itself. Without volumes nothing is compiled, held or
+// dispatched. Render thread only.
 #pragma once
 
 #include <cstdint>
 #include <optional>
 #include <vector>
 
+#include "runtime/base/change_gate.hpp"
 #include "runtime/base/keyed_state.hpp"
 #include "runtime/base/result.hpp"
 #include "runtime/effects/diffuse/diffuse.hpp"
@@ -22,9 +24,9 @@
 
 namespace lambent::effects::volume {
 
-using diffuse::TransferMode;
+using evaluate::TransferMode;
 
-// How the slabs of a texture stand: one per output, along z and, past the end of a texture, along x.
+// Describes the arrangement of slabs in a texture: one per output, along z and, where that is full, along x.
 struct SlabLayout {
   std::uint32_t slabs_z = 1, slabs_x = 1;
   glm::uvec3 texture_size{1};
@@ -33,19 +35,19 @@ SlabLayout slabLayoutOf(const glm::uvec3& transfer_size, std::uint32_t outputs);
 
 class Volume {
  public:
-  // precise: light in floats, for pictures that are compared; else in half floats.
+  // If `precise` is set, light is stored in floats, for pictures that are compared; otherwise in half floats.
   explicit Volume(bool precise = false);
 
-  // Brings the textures up to date with what the other effects last shaded, after they have. Errors: a kernel
-  // that does not compile on this device.
+  // Updates the textures to what the other effects last shaded; call it after them. Fails if a kernel does
+  // not compile on this device.
   Result<void> shade(streaming::Residency& residency, const lighting::GroupLights& lights,
-                     const diffuse::Diffuse& diffuse, const glossy::Glossy& glossy, TransferMode mode,
-                     gpu::Counters& counters);
+                     const diffuse::Diffuse& diffuse, const glossy::Glossy& glossy,
+                     evaluate::TransferMode mode, gpu::Counters& counters);
 
-  // Of residency().volumes()[volume]; an empty handle: nothing to show yet.
+  // Returns the texture of residency().volumes()[volume]; a null handle if there is nothing to show yet.
   const gpu::Texture& lightOf(std::size_t volume) const { return held_[volume].light; }
   std::size_t volumeCount() const { return held_.size(); }
-  // What the last call wrote.
+  // States what the last call wrote.
   struct Shaded {
     std::uint32_t volumes = 0, slabs = 0;
   };
@@ -53,25 +55,19 @@ class Volume {
   std::uint64_t textureBytes() const;
 
  private:
-  // What a texture was written from.
-  struct Seen {
-    std::uint64_t shaded = 0, light = 0, version = 0;
-    std::uint32_t open_cells = 0;
-    TransferMode mode = TransferMode::Full;
-    bool operator==(const Seen&) const = default;
-  };
   struct Held {
     gpu::Texture light;
-    Seen seen;
+    // Samples that were shaded, light of open cells, the volume, open cells, the mode.
+    ChangeGate<std::uint64_t, std::uint64_t, std::uint64_t, std::uint32_t, TransferMode> changed;
   };
 
   void collect(const streaming::Residency& residency, const lighting::GroupLights& lights,
-               const diffuse::Diffuse& diffuse, const glossy::Glossy& glossy, TransferMode mode);
+               const diffuse::Diffuse& diffuse, const glossy::Glossy& glossy, evaluate::TransferMode mode);
   gpu::Texture makeTexture(const streaming::ResidentVolume& volume) const;
 
   bool precise_;
   std::optional<gpu::Program> program_;
-  KeyedState<Held> held_;  // index: residency volume
+  KeyedState<Held> held_;  // indexed by volume of the residency
   std::vector<ScatterRecord> records_;
   gpu::Table records_table_;
   gpu::WorkList work_;

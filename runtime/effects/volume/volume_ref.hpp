@@ -1,5 +1,5 @@
-// The CPU twin of volume_march.glsl and volume_scatter.comp: same names, same order of terms. What the GPU
-// looks up in textures is interpolated here from the same texels. No GL.
+// This is the CPU twin of volume_march.glsl and volume_scatter.comp, with the same names and order of terms.
+// Texture lookups of the GPU are interpolated here from the same texels. No GL.
 #pragma once
 
 #include <algorithm>
@@ -23,7 +23,7 @@ namespace lambent::effects::volume::ref {
 inline constexpr float kInfinity = 1e30f;
 inline constexpr float kDeep = 9.2103404f;
 
-// A texture of floats or of vec4s; x fastest.
+// Holds a texture of floats or vec4s; x varies fastest.
 template <typename T>
 struct Texels {
   glm::uvec3 size{1};
@@ -33,7 +33,7 @@ struct Texels {
     return values[texel.x + std::size_t{size.x} * (texel.y + std::size_t{size.y} * texel.z)];
   }
   const T& at(const glm::uvec3& texel) const { return const_cast<Texels*>(this)->at(texel); }
-  // Linear between centres, the outermost texel beyond them; place 0..1.
+  // Interpolates linearly between texel centres and clamps beyond the outermost. `place` is 0..1.
   T sample(const glm::vec3& place) const {
     const glm::vec3 last(size - 1u);
     const glm::vec3 at_texel = glm::clamp(place * glm::vec3(size) - 0.5f, glm::vec3(0.0f), last);
@@ -49,7 +49,7 @@ struct Texels {
   }
 };
 
-// A volume as the march sees it.
+// Holds a volume as the march reads it.
 struct Medium {
   MarchRecord record{};
   Texels<float> density;
@@ -57,7 +57,8 @@ struct Medium {
   std::vector<float> block_maxima;
 };
 
-// What the scatter kernel writes for the samples of a cell. `coefficients` of the light, where record.open.
+// Writes what the scatter kernel writes for the samples of a cell; if record.open is set, that is this many
+// coefficients of the light.
 inline void scatter(const ScatterRecord& record, std::span<const uint> voxels,
                     std::span<const glm::vec4> samples, std::span<const glm::vec4> lights,
                     Texels<glm::vec4>& out) {
@@ -180,7 +181,7 @@ inline glm::vec3 scatteredAt(const Medium& medium, const VolumeRay& ray, float t
   return light.a > 0.0f ? glm::vec3(light) / light.a : glm::vec3(0.0f);
 }
 
-// RGB: scattered; alpha: optical depth; before each of the stops.
+// Returns scattered light (RGB) and optical depth (alpha) up to each of the stops.
 inline std::vector<glm::vec4> marchVolumes(std::span<const Medium> media, std::vector<VolumeRay> rays,
                                            std::span<const float> stops, float step_voxels, float jitter) {
   glm::vec4 sum(0.0f);
@@ -243,13 +244,18 @@ inline std::vector<glm::vec4> marchVolumes(std::span<const Medium> media, std::v
   }
 }
 
-// One ray from `begin` to `end` metres, view space.
-inline glm::vec4 march(std::span<const Medium> media, const glm::vec3& origin_vs, const glm::vec3& dir_vs,
-                       float begin = 0.0f, float end = kInfinity, float step_voxels = 0.5f,
+// A ray from `begin` to `end` metres, view space.
+struct RaySegment {
+  glm::vec3 origin_vs, dir_vs;
+  float begin = 0.0f, end = kInfinity;
+};
+
+inline glm::vec4 march(std::span<const Medium> media, const RaySegment& ray, float step_voxels = 0.5f,
                        float jitter = 1.0f) {
   std::vector<VolumeRay> rays;
-  for (const Medium& medium : media) rays.push_back(enterVolume(medium.record, origin_vs, dir_vs, begin));
-  return marchVolumes(media, std::move(rays), std::span(&end, 1), step_voxels, jitter).front();
+  for (const Medium& medium : media)
+    rays.push_back(enterVolume(medium.record, ray.origin_vs, ray.dir_vs, ray.begin));
+  return marchVolumes(media, std::move(rays), std::span(&ray.end, 1), step_voxels, jitter).front();
 }
 
 }  // namespace lambent::effects::volume::ref

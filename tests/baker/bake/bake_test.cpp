@@ -11,7 +11,6 @@
 
 #include "baker/import/gltf.hpp"
 #include "runtime/bundle/reader.hpp"
-#include "runtime/bundle/transfer_codec.hpp"
 #include "tests/support/shapes.hpp"
 
 namespace lambent::baker {
@@ -33,7 +32,7 @@ class Bake : public ::testing::Test {
 
   Result<BakeReport> bakeTo(const std::string& name, const Scene& scene, const BakeOptions& options) const {
     Progress progress;
-    return bake(scene, options, folder_ / name, progress, {});
+    return bake(scene, options, folder_ / name, {progress});
   }
   std::string bytes(const std::string& name) const {
     std::ifstream in(folder_ / name, std::ios::binary);
@@ -105,7 +104,7 @@ TEST_F(Bake, StoresTransferThatDecodesToTheScene) {
   ASSERT_TRUE(found) << found.error().line();
   std::vector<std::vector<std::uint32_t>> codes;
   for (std::uint32_t j = 0; j < transfer.planes.size(); ++j) codes.push_back(*reader->readPlane(0, 0, 0, j));
-  const auto vectors = bundle::decodeTransfer(transfer.shape, found->codebook, found->cluster_of, codes);
+  const auto vectors = transfer::decodeTransfer(transfer.shape, found->codebook, found->cluster_of, codes);
 
   const auto mesh = reader->readMesh(d.draws[0].mesh, 0);
   ASSERT_TRUE(mesh) << mesh.error().line();
@@ -271,7 +270,7 @@ TEST_F(Bake, ThatIsStoppedOrFailsLeavesTheOldBundle) {
   std::stop_source stop;
   stop.request_stop();
   Progress progress;
-  const auto stopped = bake(stage(), draft(), folder_ / "stage.lmb.glb", progress, stop.get_token());
+  const auto stopped = bake(stage(), draft(), folder_ / "stage.lmb.glb", {progress, stop.get_token()});
   ASSERT_FALSE(stopped);
   EXPECT_NE(stopped.error().problem.find("stopped"), std::string::npos);
   BakeOptions wrong = draft();

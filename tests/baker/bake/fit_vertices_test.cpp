@@ -88,8 +88,8 @@ TEST(FitVertices, ShowsVisibilityOverFacesOfMetalBetterThanWhatTheVerticesSee) {
   const DirectPass true_plain(true_view, {.order = 5, .rays = kTrueRays});
   const GlossyPass true_pass(true_plain, true_view, 5);
   Progress progress;
-  auto there = bakeDirect(true_plain, true_view, progress, {});
-  const auto seen = bakeGlossyDirect(true_pass, 0, there->looks, progress, {});
+  auto there = bakeDirect(true_plain, true_view, {progress});
+  const auto seen = bakeGlossyDirect(true_pass, 0, there->looks, {progress});
 
   const auto bakeFitted = [&](unsigned threads) {
     const DiffuseScene view = t.diffuse();
@@ -97,10 +97,10 @@ TEST(FitVertices, ShowsVisibilityOverFacesOfMetalBetterThanWhatTheVerticesSee) {
     const GlossyPass pass(plain, view, 5);
     std::pair<GlossyField, GlossyField> out;
     withThreads(threads, [&] {
-      auto direct = bakeDirect(plain, view, progress, {});
-      auto glossy = bakeGlossyDirect(pass, 0, direct->looks, progress, {});
+      auto direct = bakeDirect(plain, view, {progress});
+      auto glossy = bakeGlossyDirect(pass, 0, direct->looks, {progress});
       out.first = glossy->field;
-      const auto figures = fitGlossy(pass, *glossy, progress, {});
+      const auto figures = fitGlossy(pass, *glossy, {progress});
       ASSERT_TRUE(figures);
       EXPECT_GT(figures->points, 0u);
       EXPECT_LT(figures->points, t.geometry.triangles.size());  // far from the box all see the same
@@ -124,15 +124,15 @@ TEST(FitVertices, ShowsIrradianceOverMatteFacesBetterThanWhatTheVerticesSee) {
   const DiffuseScene view = t.diffuse(), true_view = withSamples(t, truth.points);
   Progress progress;
   const auto there =
-      bakeDirect(DirectPass(true_view, {.order = 5, .rays = kTrueRays}), true_view, progress, {});
+      bakeDirect(DirectPass(true_view, {.order = 5, .rays = kTrueRays}), true_view, {progress});
   const DirectPass pass(view, {.order = 5, .rays = kRays});
-  auto direct = bakeDirect(pass, view, progress, {});
+  auto direct = bakeDirect(pass, view, {progress});
   const auto error = [&] {
     return truth.error(direct->field.vectorSize(), there->field.vectors, there->looks.valid,
                        direct->field.vectors);
   };
   const double before = error();
-  ASSERT_TRUE(fitDiffuse(pass, view, *direct, progress, {}));
+  ASSERT_TRUE(fitDiffuse(pass, view, *direct, {progress}));
   RecordProperty("before", std::to_string(before));
   RecordProperty("after", std::to_string(error()));
   EXPECT_LT(error(), 0.9 * before);
@@ -147,10 +147,10 @@ TEST(FitVertices, LeavesAnOpenBodyOfMetalAsItIsAndTracesNothing) {
   const DirectPass plain(view, {.order = 5, .rays = 256});
   const GlossyPass pass(plain, view, 5);
   Progress progress;
-  auto direct = bakeDirect(plain, view, progress, {});
-  auto glossy = bakeGlossyDirect(pass, 0, direct->looks, progress, {});
+  auto direct = bakeDirect(plain, view, {progress});
+  auto glossy = bakeGlossyDirect(pass, 0, direct->looks, {progress});
   const std::vector<float> before = glossy->field.visibility;
-  const auto figures = fitGlossy(pass, *glossy, progress, {});
+  const auto figures = fitGlossy(pass, *glossy, {progress});
   ASSERT_TRUE(figures);
   EXPECT_EQ(glossy->field.visibility, before);
   EXPECT_EQ(figures->rays, 0u);

@@ -87,7 +87,7 @@ class BakeAgain : public ::testing::Test {
   Baked bakeWith(Cache* cache, const Scene& scene, const BakeOptions& options = draft()) const {
     Progress progress;
     const fs::path out = folder_.path() / "out.lmb.glb";
-    auto report = bake(scene, options, out, progress, {}, cache);
+    auto report = bake(scene, options, out, {progress, {}, cache});
     EXPECT_TRUE(report) << report.error().line();
     std::ifstream in(out, std::ios::binary);
     return {{std::istreambuf_iterator<char>(in), {}}, std::move(*report)};
@@ -222,7 +222,7 @@ bool stopsAfter(std::uint64_t units, const Scene& scene, const fs::path& out, Ca
       std::this_thread::sleep_for(std::chrono::microseconds(100));
     }
   });
-  return !bake(scene, draft(), out, progress, stop.get_token(), &cache).has_value();
+  return !bake(scene, draft(), out, {progress, stop.get_token(), &cache}).has_value();
 }
 
 TEST_F(BakeAgain, EndsInTheSameBundleWhereverItWasStopped) {

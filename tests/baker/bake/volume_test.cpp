@@ -66,7 +66,7 @@ TEST_F(VolumeBake, WritesTheSameBytesWithOneThreadAndWithTwo) {
     options.threads = threads;
     const auto path = folder / (std::to_string(threads) + ".lmb.glb");
     Progress progress;
-    const auto report = bake(foggy(), options, path, progress, {});
+    const auto report = bake(foggy(), options, path, {progress});
     EXPECT_TRUE(report) << report.error().line();
     std::ifstream file(path, std::ios::binary);
     return std::string(std::istreambuf_iterator<char>(file), {});
@@ -82,7 +82,7 @@ TEST_F(VolumeBake, ScattersAsOftenAsItDoesHoweverFewBouncesAreAskedFor) {
     BakeOptions options = small();
     options.bounces = bounces;
     Progress progress;
-    const auto report = bake(foggy(), options, folder / (std::to_string(bounces) + ".lmb.glb"), progress, {});
+    const auto report = bake(foggy(), options, folder / (std::to_string(bounces) + ".lmb.glb"), {progress});
     EXPECT_TRUE(report) << report.error().line();
     return report && report->volumes.size() == 1 ? report->volumes[0].iterations : -1;
   };
@@ -114,7 +114,7 @@ TEST_F(VolumeBake, KeepsNineOutputsOfBroadPhasesAndMatricesOfNarrowOnes) {
     options.order = 4;
     const auto path = folder / "phase.lmb.glb";
     Progress progress;
-    const auto report = bake(scene, options, path, progress, {});
+    const auto report = bake(scene, options, path, {progress});
     ASSERT_TRUE(report) << report.error().line();
     const auto reader = bundle::Reader::open(path);
     ASSERT_TRUE(reader) << reader.error().line();
@@ -124,7 +124,7 @@ TEST_F(VolumeBake, KeepsNineOutputsOfBroadPhasesAndMatricesOfNarrowOnes) {
       found = true;
       EXPECT_EQ(group.volume->g, g);
       for (const bundle::Cell& cell : group.cells) {
-        if (cell.kind != bundle::CellKind::Volume) continue;
+        if (cell.domain != transfer::Domain::Voxel) continue;
         ASSERT_EQ(cell.transfers.size(), transfers);
         EXPECT_EQ(cell.outputs(), outputs);
         EXPECT_EQ(cell.transfers[0].shape.visibility_bands, transfers == 2 ? 7u : 0u);

@@ -57,8 +57,8 @@ struct Square {
   void load() {
     const gltf::Material& material = scene.materials[0];
     BrdfTables tables;
-    tables.of_material = {material.matte() ? -1 : 0};
-    if (!material.matte()) tables.entries.push_back(material.anisotropy > 0.0f ? brushed() : round());
+    tables.of_material = {material.isDiffuse() ? -1 : 0};
+    if (!material.isDiffuse()) tables.entries.push_back(material.anisotropy > 0.0f ? brushed() : round());
     if (material.brdf >= 0) {
       auto own = BrdfTables::make(scene, kOrder, kOrder);
       ASSERT_TRUE(own) << own.error().line();

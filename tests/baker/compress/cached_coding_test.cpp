@@ -13,7 +13,7 @@ namespace lambent::baker {
 namespace {
 
 constexpr std::size_t kCount = 6000, kHeaps = 24;
-constexpr bundle::TransferShape kVisibility{.order = 5, .outputs = 25, .visibility_bands = 9};
+constexpr transfer::TransferShape kVisibility{.order = 5, .outputs = 25, .visibility_bands = 9};
 
 std::vector<float> heaps() {
   return testing::heaps(kCount, kHeaps, kVisibility.size(), 31);
@@ -39,7 +39,8 @@ CodedTransfer codeUntilKept(Cache& cache, const std::vector<float>& vectors, con
     while (!over.stop_requested() && cache.figures().stored == stored) std::this_thread::yield();
     stop.request_stop();
   });
-  return CachedCoding(&cache).code(vectors, kCount, kVisibility, settings, stop.get_token());
+  Progress progress;
+  return CachedCoding({progress, stop.get_token(), &cache}).code(vectors, kCount, kVisibility, settings);
 }
 
 }  // namespace
@@ -73,11 +74,13 @@ TEST(CachedCoding, LeavesNothingOnceWhatItLedToIsKept) {
   auto cache = Cache::open(folder.path());
   ASSERT_TRUE(cache);
   cache->setCheckpointEvery(0.0);
-  CachedCoding coding(&*cache);
-  const CodedTransfer coded = coding.code(vectors, kCount, kVisibility, {.bound = 0.01f}, {});
+  Progress progress;
+  const BakeContext context{progress, {}, &*cache};
+  CachedCoding coding(context);
+  const CodedTransfer coded = coding.code(vectors, kCount, kVisibility, {.bound = 0.01f});
   EXPECT_EQ(entriesIn(folder.path()), 1u) << "the codes";
   const auto before = cache->figures().stored;
-  const CodedTransfer found = CachedCoding(&*cache).code(vectors, kCount, kVisibility, {.bound = 0.01f}, {});
+  const CodedTransfer found = CachedCoding(context).code(vectors, kCount, kVisibility, {.bound = 0.01f});
   EXPECT_EQ(cache->figures().stored, before) << "found";
   EXPECT_EQ(bytesOf(found), bytesOf(coded));
   coding.drop();
@@ -89,7 +92,8 @@ TEST(CachedCoding, WritesNoCheckpointsBeforeItIsTime) {
   auto cache = Cache::open(folder.path());
   ASSERT_TRUE(cache);
   cache->setCheckpointEvery(1e9);
-  CachedCoding(&*cache).code(heaps(), kCount, kVisibility, {.bound = 0.01f}, {});
+  Progress progress;
+  CachedCoding({progress, {}, &*cache}).code(heaps(), kCount, kVisibility, {.bound = 0.01f});
   EXPECT_EQ(cache->figures().stored, 1u) << "the codes alone";
 }
 

@@ -16,9 +16,9 @@
 namespace lambent::baker {
 namespace {
 
-bundle::TransferShape shapeOf(std::uint32_t order, std::uint32_t shadowed = 1, std::uint32_t full = 0,
-                              std::uint32_t outputs = 1, std::uint32_t lights = 0) {
-  bundle::TransferShape shape;
+transfer::TransferShape shapeOf(std::uint32_t order, std::uint32_t shadowed = 1, std::uint32_t full = 0,
+                                std::uint32_t outputs = 1, std::uint32_t lights = 0) {
+  transfer::TransferShape shape;
   shape.order = order;
   shape.light_columns = lights;
   shape.shadowed_channels = shadowed;
@@ -29,7 +29,7 @@ bundle::TransferShape shapeOf(std::uint32_t order, std::uint32_t shadowed = 1, s
 
 // Transfer of a bumpy world: unoccluded vectors along a path of normals, each run of values of `columns`
 // dimmed and disturbed in its own way.
-std::vector<float> bumpyTransfer(std::size_t count, const bundle::TransferShape& shape, unsigned seed,
+std::vector<float> bumpyTransfer(std::size_t count, const transfer::TransferShape& shape, unsigned seed,
                                  float noise = 0.01f) {
   std::mt19937 random(seed);
   std::normal_distribution<float> normal;
@@ -53,17 +53,17 @@ std::vector<float> decoded(const CodedTransfer& coded, std::size_t planes = 1000
   std::vector<std::vector<std::uint32_t>> codes;
   for (const CodedPlane& plane : coded.planes)
     if (codes.size() < planes) codes.push_back(plane.codes);
-  return bundle::decodeTransfer(coded.shape, bundle::expand(coded.codebook), coded.cluster_of, codes);
+  return transfer::decodeTransfer(coded.shape, transfer::expand(coded.codebook), coded.cluster_of, codes);
 }
 
 // Everything that ends up in the file, before entropy coding.
 std::vector<std::byte> bytesOf(const CodedTransfer& coded) {
-  std::vector<std::byte> all = bundle::encodeCodebook(coded.codebook);
+  std::vector<std::byte> all = transfer::encodeCodebook(coded.codebook);
   const auto append = [&](const std::vector<std::byte>& bytes) {
     all.insert(all.end(), bytes.begin(), bytes.end());
   };
-  append(bundle::encodeClusterIds(coded.cluster_of, static_cast<std::uint32_t>(coded.codebook.clusters())));
-  for (const CodedPlane& plane : coded.planes) append(bundle::encodeWeightPlane(plane.codes, plane.bits));
+  append(transfer::encodeClusterIds(coded.cluster_of, static_cast<std::uint32_t>(coded.codebook.clusters())));
+  for (const CodedPlane& plane : coded.planes) append(transfer::encodeWeightPlane(plane.codes, plane.bits));
   return all;
 }
 
@@ -73,24 +73,24 @@ std::size_t codesOf(const CodedTransfer& coded) {
   return codes;
 }
 
-CodedTransfer code(const std::vector<float>& vectors, const bundle::TransferShape& shape, float bound,
+CodedTransfer code(const std::vector<float>& vectors, const transfer::TransferShape& shape, float bound,
                    std::uint32_t clusters = 0) {
   return codeTransfer(vectors, vectors.size() / shape.size(), shape, {bound, clusters});
 }
 
 void expectSound(const CodedTransfer& coded, std::size_t count) {
   ASSERT_EQ(coded.cluster_of.size(), count);
-  const bundle::Codebook book = bundle::expand(coded.codebook);
-  const auto counts = bundle::planeCounts(book, coded.cluster_of);
+  const transfer::Codebook book = transfer::expand(coded.codebook);
+  const auto counts = transfer::planeCounts(book, coded.cluster_of);
   ASSERT_EQ(counts.size(), coded.planes.size());
   for (std::size_t j = 0; j < counts.size(); ++j) EXPECT_EQ(coded.planes[j].codes.size(), counts[j]);
   for (std::size_t j = 1; j < counts.size(); ++j)
     EXPECT_LE(coded.planes[j].variance, coded.planes[j - 1].variance);
   for (const float value : decoded(coded)) ASSERT_TRUE(std::isfinite(value));
   EXPECT_TRUE(std::isfinite(coded.error));
-  const auto bytes = bundle::encodeCodebook(coded.codebook);
+  const auto bytes = transfer::encodeCodebook(coded.codebook);
   const auto back =
-      bundle::decodeCodebook(bytes, coded.shape, static_cast<std::uint32_t>(book.clusters()), "cell");
+      transfer::decodeCodebook(bytes, coded.shape, static_cast<std::uint32_t>(book.clusters()), "cell");
   ASSERT_TRUE(back) << back.error().line();
   EXPECT_EQ(back->vectors, book.vectors);
 }
@@ -182,7 +182,7 @@ TEST(ClusteredCoding, OneClusterIsPrincipalComponents) {
   const auto vectors = bumpyTransfer(600, shape, 11);
   const CodedTransfer coded = code(vectors, shape, 0.003f, 1);
   EXPECT_EQ(coded.codebook.clusters(), 1u);
-  const bundle::Codebook book = bundle::expand(coded.codebook);
+  const transfer::Codebook book = transfer::expand(coded.codebook);
   for (std::size_t i = 0; i < 25; ++i) {
     double mean = 0.0;
     for (std::size_t s = 0; s < 600; ++s) mean += double{vectors[s * 25 + i]} / 600.0;
@@ -308,7 +308,9 @@ TEST(ClusteredCoding, StopsWhenAskedTo) {
   const auto vectors = bumpyTransfer(2000, shape, 37);
   std::stop_source stop;
   stop.request_stop();
-  EXPECT_TRUE(codeTransfer(vectors, 2000, shape, {0.005f, 0}, stop.get_token()).cluster_of.empty());
+  Progress progress;
+  EXPECT_TRUE(
+      codeTransfer(vectors, 2000, shape, {0.005f, 0}, {progress, stop.get_token()}).cluster_of.empty());
 }
 
 TEST(RadianceError, IsRelativeToTheBlockAndTakesTheWorse) {

@@ -18,8 +18,8 @@
 namespace lambent::baker {
 namespace {
 
-constexpr bundle::TransferShape kVisibility{.order = 5, .outputs = 25, .visibility_bands = 9};
-constexpr bundle::TransferShape kBounced{
+constexpr transfer::TransferShape kVisibility{.order = 5, .outputs = 25, .visibility_bands = 9};
+constexpr transfer::TransferShape kBounced{
     .order = 5, .shadowed_channels = 0, .full_channels = 3, .outputs = 25};
 
 // Of means and axes, decoded.
@@ -95,7 +95,7 @@ std::vector<float> bouncedMatrices(std::size_t count, unsigned seed, float noise
 std::vector<float> decoded(const CodedTransfer& coded) {
   std::vector<std::vector<std::uint32_t>> codes;
   for (const CodedPlane& plane : coded.planes) codes.push_back(plane.codes);
-  return bundle::decodeTransfer(coded.shape, bundle::expand(coded.codebook), coded.cluster_of, codes);
+  return transfer::decodeTransfer(coded.shape, transfer::expand(coded.codebook), coded.cluster_of, codes);
 }
 
 double squaredDistance(const Points& points, const ClusterIds& ids, const std::vector<Cluster>& clusters) {
@@ -189,7 +189,7 @@ TEST(MatrixCoding, KeepsToItsMemoryWithFewerClusters) {
 TEST(MatrixCoding, KeepsItsBoundWithFewerClustersWhereMemoryEndsOnTheWayThere) {
   // Four clusters were planned to take less than this, and turn out to take more; one takes 451.
   constexpr std::size_t kCount = 3000;
-  bundle::TransferShape grey = kBounced;
+  transfer::TransferShape grey = kBounced;
   grey.full_channels = 1;
   const std::vector<float> vectors = slowlyFalling(kCount, grey.size());
   const std::size_t most = 800 * grey.size() * sizeof(float);
@@ -264,7 +264,7 @@ TEST(MatrixCoding, FindsTheLeadingComponentsOfLongMatrices) {
 }
 
 TEST(MatrixCoding, KeepsABoundWithoutLeadingComponentsWhereAllOfThemMayBeTaken) {
-  bundle::TransferShape grey = kBounced;
+  transfer::TransferShape grey = kBounced;
   grey.full_channels = 1;
   std::mt19937 random(23);
   std::normal_distribution<float> normal;

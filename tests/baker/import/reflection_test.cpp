@@ -75,7 +75,7 @@ TEST(Reflection, OfEveryKindIsReadWithItsTextures) {
   EXPECT_EQ(imageOf(m.specular_color_texture), "a.png");
   EXPECT_EQ(imageOf(m.anisotropy_texture), "c.png");
   EXPECT_TRUE(scene.warnings.empty());
-  EXPECT_FALSE(m.matte());
+  EXPECT_FALSE(m.isDiffuse());
 }
 
 TEST(Reflection, IsWhatGltfSaysWhereTheFileSaysNothing) {
@@ -101,7 +101,7 @@ TEST(Reflection, TexturesThatCouldChangeNothingStayOut) {
   material["extensions"]["KHR_materials_anisotropy"]["anisotropyStrength"] = 0;
   const Scene scene = imported(withMaterials(folder, json::array({material})), folder);
   EXPECT_TRUE(scene.images.empty());
-  EXPECT_TRUE(scene.materials.at(0).matte());
+  EXPECT_TRUE(scene.materials.at(0).isDiffuse());
 }
 
 TEST(Reflection, KeepsTangentsWhereTheLobeIsNotRound) {
@@ -219,7 +219,7 @@ TEST(MeasuredBrdf, MaterialsThatNameOneFileShareIt) {
   const std::vector<std::int32_t> expected = {0, -1, 0, 1};
   ASSERT_EQ(scene.materials.size(), 4u);
   for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(scene.materials[i].brdf, expected[i]) << i;
-  EXPECT_FALSE(scene.materials[0].matte());
+  EXPECT_FALSE(scene.materials[0].isDiffuse());
 }
 
 TEST(MeasuredBrdf, ThatASceneCannotUseNamesFileAndMaterial) {

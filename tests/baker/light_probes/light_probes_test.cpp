@@ -57,8 +57,8 @@ void expectSound(const LightProbes& found, const SampleSet& samples) {
     EXPECT_TRUE(std::is_sorted(cell.points.begin(), cell.points.end()));
     for (const std::uint32_t k : cell.points) used.at(k) = true;
     EXPECT_EQ(cell.weights.size(), cell.points.size() == 1 ? 0u : samples.cells[c].count);
-    const auto read = bundle::decodeLightWeights(bundle::encodeLightWeights(cell.weights),
-                                                 cell.weights.size(), cell.points.size(), "cell");
+    const auto read = transfer::decodeLightWeights(transfer::encodeLightWeights(cell.weights),
+                                                   cell.weights.size(), cell.points.size(), "cell");
     EXPECT_TRUE(read) << read.error().line();
   }
   EXPECT_EQ(std::count(used.begin(), used.end(), false), 0);
@@ -91,7 +91,7 @@ TEST(LightProbes, BlendWithoutASeamWhereCellsMeet) {
   // neighbours within a cell do at most.
   const auto blended = [&](std::uint32_t c, std::uint32_t i) {
     double sum = 0.0;
-    const bundle::LightWeights& w = found.cells[c].weights[i];
+    const transfer::LightWeights& w = found.cells[c].weights[i];
     for (std::size_t k = 0; k < 4; ++k) {
       const glm::vec3 p = found.points[found.cells[c].points[w.light[k]]];
       sum += w.weight[k] / 255.0 * (1.0 + std::sin(5.0 * p.x) + p.z);

@@ -6,7 +6,6 @@
 #include "baker/import/gltf.hpp"
 #include "baker/pipeline/journal.hpp"
 #include "runtime/bundle/reader.hpp"
-#include "runtime/bundle/transfer_codec.hpp"
 #include "tests/baker/pipeline/pipeline_test.hpp"
 
 namespace lambent::baker {
@@ -40,7 +39,7 @@ class BakeQueueTest : public testing::PipelineTest {
   std::string diffuseBake(const BakeRequest& request) const {
     const auto scene = importScene(request.scene);
     Progress progress;
-    const auto baked = bake(*scene, request.options, folder / "plain.lmb.glb", progress, {});
+    const auto baked = bake(*scene, request.options, folder / "plain.lmb.glb", {progress});
     EXPECT_TRUE(baked) << baked.error().line();
     return bytesOf(folder / "plain.lmb.glb");
   }
@@ -50,8 +49,8 @@ class BakeQueueTest : public testing::PipelineTest {
 std::vector<float> vectorOf(const bundle::Reader& reader, std::uint32_t group, std::uint32_t cell) {
   const auto codes = reader.readCodebook(group, cell, 0);
   EXPECT_TRUE(codes);
-  return bundle::decodeTransfer(reader.description().groups[group].cells[cell].transfers[0].shape,
-                                codes->codebook, codes->cluster_of, {});
+  return transfer::decodeTransfer(reader.description().groups[group].cells[cell].transfers[0].shape,
+                                  codes->codebook, codes->cluster_of, {});
 }
 
 }  // namespace
@@ -68,7 +67,7 @@ TEST_F(BakeQueueTest, TheUnshadowedRungHasNoSampleAtVerticesAndOneThatSeesEveryt
   const auto scene = importScene(folder / "a.glb");
   ASSERT_TRUE(scene) << scene.error().line();
   Progress progress;
-  const auto baked = bakeUnshadowed(*scene, quick(), folder / "a.lmb.glb", progress, {});
+  const auto baked = bakeUnshadowed(*scene, quick(), folder / "a.lmb.glb", {progress});
   ASSERT_TRUE(baked) << baked.error().line();
   EXPECT_FALSE(isUpToDate(*scene, quick(), folder / "a.lmb.glb")) << "a bake must not take it for its own";
   const auto reader = bundle::Reader::open(folder / "a.lmb.glb");

@@ -34,8 +34,9 @@ Refined refined(const Scene& scene, const RefineOptions& options, bool with_glos
     for (const ScenePrimitive& primitive : mesh.primitives) result.meshes.back().push_back(primitive.mesh);
   }
   Progress progress;
-  const auto report =
-      refineMeshes(scene, findRigidGroups(scene), {}, with_glossy, options, result.meshes, progress, {});
+  const auto groups = findRigidGroups(scene);
+  const AlphaMaps none;
+  const auto report = refineMeshes({scene, groups, none, with_glossy}, options, result.meshes, {progress});
   EXPECT_TRUE(report) << report.error().line();
   if (report) result.report = *report;
   return result;

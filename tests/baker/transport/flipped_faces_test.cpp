@@ -35,7 +35,7 @@ std::size_t blockedRays(const Transport& t, const glm::vec3& place) {
   const SampleOrigin origin{place, {0, 1, 0}, 1.0f};
   const DirectionTable table = cosineTable(256);
   std::vector<std::uint16_t> masks(table.packets());
-  t.rays.trace(std::span(&origin, 1), upright(), table, masks);
+  t.rays.trace({std::span(&origin, 1), upright(), table}, masks);
   std::size_t blocked = 0;
   for (const std::uint16_t mask : masks) blocked += static_cast<std::size_t>(std::popcount(mask));
   return blocked;

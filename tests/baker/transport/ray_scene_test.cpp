@@ -42,7 +42,7 @@ TEST(RayScene, BlocksExactlyTheDirectionsUnderARoof) {
   const SampleOrigin origin{{0, 0, 0}, {0, 1, 0}, 1.0f};
   const DirectionTable table = cosineTable(512);
   std::vector<std::uint16_t> masks(table.packets());
-  EXPECT_EQ(t.rays.trace(std::span(&origin, 1), upright(), table, masks), 512u);
+  EXPECT_EQ(t.rays.trace({std::span(&origin, 1), upright(), table}, masks), 512u);
   for (std::size_t r = 0; r < table.size(); ++r) {
     const glm::vec3 d = upright() * glm::vec3(table.x[r], table.y[r], table.z[r]);
     EXPECT_EQ(masks[r / 16] >> (r % 16) & 1, d.x > 0.0f ? 1 : 0) << d.x;
@@ -55,7 +55,7 @@ TEST(RayScene, BlocksBelowTheGeometricHorizonWithoutTracing) {
   const SampleOrigin origin{{0, 0, 0}, tilted, 1.0f};
   const DirectionTable table = cosineTable(256);
   std::vector<std::uint16_t> masks(table.packets());
-  const std::uint32_t traced = t.rays.trace(std::span(&origin, 1), upright(), table, masks);
+  const std::uint32_t traced = t.rays.trace({std::span(&origin, 1), upright(), table}, masks);
   std::uint32_t above = 0;
   for (std::size_t r = 0; r < table.size(); ++r) {
     const bool is_above = glm::dot(upright() * glm::vec3(table.x[r], table.y[r], table.z[r]), tilted) > 0.0f;
@@ -72,14 +72,14 @@ TEST(RayScene, SeesBacksOnlyFromInsideASolid) {
   MetShares met;
   {
     const Transport t(scene);
-    t.rays.meet(std::span(&inside, 1), upright(), table, std::span(&met, 1));
+    t.rays.meet({std::span(&inside, 1), upright(), table}, std::span(&met, 1));
     EXPECT_EQ(met.back, 1.0f);
-    t.rays.meet(std::span(&outside, 1), upright(), table, std::span(&met, 1));
+    t.rays.meet({std::span(&outside, 1), upright(), table}, std::span(&met, 1));
     EXPECT_EQ(met.back, 0.0f);
   }
   scene.materials[0].double_sided = true;  // then there is no back
   const Transport t(scene);
-  t.rays.meet(std::span(&inside, 1), upright(), table, std::span(&met, 1));
+  t.rays.meet({std::span(&inside, 1), upright(), table}, std::span(&met, 1));
   EXPECT_EQ(met.back, 0.0f);
 }
 
@@ -94,9 +94,9 @@ TEST(RayScene, TellsWhatBlockedRaysMetInBothWaysAlike) {
   const DirectionTable table = cosineTable(1024);
   std::vector<std::uint16_t> masks(table.packets()), asked_first(masks), at_once(masks);
   std::vector<RayHit> hits, hits_at_once;
-  t.rays.trace(std::span(&origin, 1), upright(), table, masks);
-  t.rays.traceHits(std::span(&origin, 1), upright(), table, /*mostly_blocked=*/false, asked_first, hits);
-  t.rays.traceHits(std::span(&origin, 1), upright(), table, /*mostly_blocked=*/true, at_once, hits_at_once);
+  t.rays.trace({std::span(&origin, 1), upright(), table}, masks);
+  t.rays.traceHits({std::span(&origin, 1), upright(), table}, /*mostly_blocked=*/false, asked_first, hits);
+  t.rays.traceHits({std::span(&origin, 1), upright(), table}, /*mostly_blocked=*/true, at_once, hits_at_once);
   EXPECT_EQ(asked_first, masks);
   EXPECT_EQ(at_once, masks);
   ASSERT_EQ(hits.size(), hits_at_once.size());

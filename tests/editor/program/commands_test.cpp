@@ -15,6 +15,9 @@ TEST(EditorCommands, HaveNamesOfTheirOwnAndSayWhatTheyDo) {
   for (const Command& command : commandList()) {
     if (*command.id == '\0') continue;
     EXPECT_TRUE(ids.insert(command.id).second) << command.id;
+    if (*command.former != '\0') {
+      EXPECT_TRUE(ids.insert(command.former).second) << command.former;
+    }
     EXPECT_GT(std::string(command.help).size(), 5u) << command.id;
     EXPECT_NE(command.run, nullptr) << command.id;
     EXPECT_LE(command.least_words, command.most_words) << command.id;
@@ -37,7 +40,7 @@ TEST(EditorCommands, ShortcutsThatAreNoneAreErrors) {
     EXPECT_FALSE(parseShortcut(text).has_value()) << text;
 }
 
-TEST(EditorCommands, AllProxyLodTheManual) {
+TEST(EditorCommands, AreAllInTheManual) {
   const auto manual = readTextFile(LAMBENT_SOURCE_DIR "/docs/editor.md");
   ASSERT_TRUE(manual.has_value());
   for (const Command& command : commandList()) {

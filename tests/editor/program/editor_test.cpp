@@ -280,7 +280,7 @@ expect /errors 0
   EXPECT_EQ(states[0]["scenes"][0]["needsRebake"], json::array()) << "polished surfaces show it at once";
   EXPECT_LT(roughness[2].get<double>(), 0.99);
   ASSERT_EQ(states[1]["scenes"][0]["needsRebake"].size(), 1u) << states[1].dump();
-  EXPECT_NE(states[1]["scenes"][0]["needsRebake"][0].get<std::string>().find("baked as a matte surface"),
+  EXPECT_NE(states[1]["scenes"][0]["needsRebake"][0].get<std::string>().find("baked as a diffuse surface"),
             std::string::npos);
   EXPECT_EQ(states[2]["scenes"][0]["needsRebake"], json::array());
 }
@@ -331,7 +331,7 @@ state
 }
 
 // The studio's soft boxes are found in its picture, and each of their discs can be moved and dimmed.
-TEST_F(EditorProgram, MovesDimsAndResetsAKeyLightOfAProbe) {
+TEST_F(EditorProgram, MovesDimsAndResetsAKeyLightOfAnEnvironmentMap) {
   constexpr std::string_view script = R"(
 open {0}
 lights {2}

@@ -10,8 +10,8 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "runtime/bundle/entropy_coder.hpp"
 #include "runtime/bundle/reader.hpp"
-#include "runtime/bundle/transfer_codec.hpp"
 #include "runtime/bundle/writer.hpp"
 
 namespace lambent::bundle {

@@ -18,8 +18,8 @@ Blob blobOf(std::size_t size, unsigned first) {
   return blob;
 }
 
-const std::vector<LightWeights> kWeights = {
-    kOneLight, {{1, 2, 0, 0}, {200, 55, 0, 0}}, {{2, 1, 0, 0}, {128, 127, 0, 0}}};
+const std::vector<transfer::LightWeights> kWeights = {
+    transfer::kOneLight, {{1, 2, 0, 0}, {200, 55, 0, 0}}, {{2, 1, 0, 0}, {128, 127, 0, 0}}};
 
 // A description that uses every list but meshes (mesh_test.cpp has those), with values that are easy to lose.
 Sample sampleBundle() {
@@ -57,13 +57,14 @@ Sample sampleBundle() {
 
   // Cell 0 plain, two clusters of two and no axes; cell 1 normal-mapped, of one cluster; lamps in both.
   const auto add = [&](PayloadType type, const Blob& bytes) { return s.add(type, bytes); };
-  const auto codebook = [&](const TransferShape& shape, const std::vector<std::uint32_t>& axis_counts) {
-    Codebook book{axis_counts, {}, {}};
+  const auto codebook = [&](const transfer::TransferShape& shape,
+                            const std::vector<std::uint32_t>& axis_counts) {
+    transfer::Codebook book{axis_counts, {}, {}};
     for (const std::uint32_t count : axis_counts) {
       book.axes.insert(book.axes.end(), count, {-0.5f, 0.001f});
       book.vectors.insert(book.vectors.end(), (1 + count) * shape.size(), 0.25f);
     }
-    return encodeCodebook(book);
+    return transfer::encodeCodebook(book);
   };
   s.blobs = {blobOf(13, 1)};
   CellTransfer plain;
@@ -71,10 +72,10 @@ Sample sampleBundle() {
   plain.clusters = 2;
   plain.axes = 2;
   plain.codebook = add(PayloadType::Codebook, codebook(plain.shape, {2, 0}));
-  plain.cluster_ids =
-      static_cast<std::int32_t>(add(PayloadType::ClusterIds, encodeClusterIds(std::vector{0u, 1u, 0u}, 2)));
+  plain.cluster_ids = static_cast<std::int32_t>(
+      add(PayloadType::ClusterIds, transfer::encodeClusterIds(std::vector{0u, 1u, 0u}, 2)));
   const auto plane = [&](std::uint32_t bits, const std::vector<std::uint32_t>& codes, float variance) {
-    return WeightPlane{add(PayloadType::WeightPlane, encodeWeightPlane(codes, bits)), bits,
+    return WeightPlane{add(PayloadType::WeightPlane, transfer::encodeWeightPlane(codes, bits)), bits,
                        static_cast<std::uint32_t>(codes.size()), variance};
   };
   plain.planes = {plane(16, {65535, 7}, 0.9f), plane(8, {3, 255}, 0.05f)};
@@ -102,7 +103,7 @@ Sample sampleBundle() {
   group.light_probes = {glm::vec3(0.0f), {0.1f, -2.0f, 3e8f}, glm::vec3(1.0f)};
   group.cells[0].light_probes = {0, 1, 2};
   group.cells[0].light_weights =
-      static_cast<std::int32_t>(add(PayloadType::LightWeights, encodeLightWeights(kWeights)));
+      static_cast<std::int32_t>(add(PayloadType::LightWeights, transfer::encodeLightWeights(kWeights)));
   group.cells[1].light_probes = {2};
   CaptureProxy proxy;
   proxy.positions = {glm::vec3(0.0f), {1.0f, 0.0f, 0.0f}, {0.0f, 1.0f, 0.0f}};
@@ -147,7 +148,7 @@ TEST_F(BundleFile, GivesBackClustersLampsAndNormalMappedCells) {
   EXPECT_EQ(group.lights[1].kind, GroupLight::Kind::Node);
   EXPECT_EQ(group.lights[1].index, 1u);
   EXPECT_EQ(group.lights[1].color, glm::vec3(0.0f, 40.0f, 0.5f));
-  EXPECT_EQ(group.samplesWith(1), 3u);
+  EXPECT_EQ(group.samplesOf(transfer::Form::Vector), 3u);
   EXPECT_EQ(group.cells[1].outputs(), 9u);
   const Cell& expected = sample.description.groups[0].cells[0];
   ASSERT_EQ(group.cells[0].transfers.size(), 2u);
@@ -184,7 +185,7 @@ TEST_F(BundleFile, GivesBackLightProbesAndProxies) {
   EXPECT_EQ(group.cells[0].light_probes, wanted.cells[0].light_probes);
   EXPECT_EQ(group.cells[1].light_probes, wanted.cells[1].light_probes);
   EXPECT_EQ(*reader->readLightWeights(0, 0), kWeights);
-  EXPECT_EQ(*reader->readLightWeights(0, 1), (std::vector<LightWeights>(2, kOneLight)));
+  EXPECT_EQ(*reader->readLightWeights(0, 1), (std::vector<transfer::LightWeights>(2, transfer::kOneLight)));
   const auto proxy = reader->readProxy(0);
   ASSERT_TRUE(proxy) << proxy.error().line();
   ASSERT_EQ(proxy->entries.size(), 1u);
@@ -346,7 +347,8 @@ TEST_F(BundleFile, IndicesOutOfRangeAreRefusedByName) {
 TEST_F(BundleFile, ClustersThatContradictThePlanesAreRefusedBeforeUse) {
   Sample sample = sampleBundle();
   const auto ids = static_cast<std::uint32_t>(sample.description.groups[0].cells[0].transfers[0].cluster_ids);
-  sample.blobs[sample.description.payloads[ids].view] = encodeClusterIds(std::vector{0u, 0u, 0u}, 2);
+  sample.blobs[sample.description.payloads[ids].view] =
+      transfer::encodeClusterIds(std::vector{0u, 0u, 0u}, 2);
   ASSERT_TRUE(write(path_, sample.description, sample.blobs));
   auto reader = Reader::open(path_);
   ASSERT_TRUE(reader) << reader.error().line();

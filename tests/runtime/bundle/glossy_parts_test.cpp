@@ -16,11 +16,11 @@ Sample sampleBundle() {
   d.roots = {0};
   d.nodes[0].light = 0;
   d.lights.resize(1);
-  const auto transfer = [&](const TransferShape& shape) {
+  const auto transfer = [&](const transfer::TransferShape& shape) {
     CellTransfer made;
     made.shape = shape;
-    const Codebook book{{0}, {}, std::vector<float>(shape.size(), 0.25f)};
-    made.codebook = s.add(PayloadType::Codebook, encodeCodebook(book));
+    const transfer::Codebook book{{0}, {}, std::vector<float>(shape.size(), 0.25f)};
+    made.codebook = s.add(PayloadType::Codebook, transfer::encodeCodebook(book));
     return made;
   };
   Group group;
@@ -58,8 +58,8 @@ TEST_F(GlossyParts, ComeBackAsTheyWereWritten) {
   ASSERT_TRUE(table) << table.error().line();
   EXPECT_EQ(table->order, 4u);
   const Group& group = d.groups[0];
-  EXPECT_EQ(group.samplesWith(1), 2u);
-  EXPECT_EQ(group.samplesWith(16), 3u);
+  EXPECT_EQ(group.samplesOf(transfer::Form::Vector), 2u);
+  EXPECT_EQ(group.samplesOf(transfer::Form::Matrix), 3u);
   ASSERT_EQ(group.cells[1].transfers.size(), 3u);
   for (std::size_t t = 0; t < 3; ++t)
     EXPECT_EQ(group.cells[1].transfers[t].shape, sample.description.groups[0].cells[1].transfers[t].shape);

@@ -18,11 +18,11 @@ Sample sampleBundle() {
   d.generator = {"lambent", "0.5.0", "x86-64-v3", {}};
   d.nodes.resize(2);
   d.roots = {0, 1};
-  const auto transfer = [&](const TransferShape& shape) {
+  const auto transfer = [&](const transfer::TransferShape& shape) {
     CellTransfer made;
     made.shape = shape;
-    const Codebook book{{0}, {}, std::vector<float>(shape.size(), 0.25f)};
-    made.codebook = s.add(PayloadType::Codebook, encodeCodebook(book));
+    const transfer::Codebook book{{0}, {}, std::vector<float>(shape.size(), 0.25f)};
+    made.codebook = s.add(PayloadType::Codebook, transfer::encodeCodebook(book));
     return made;
   };
   Group body;
@@ -34,7 +34,7 @@ Sample sampleBundle() {
        .sample_count = 8,
        .transfers = {transfer({.order = 3, .outputs = 9, .visibility_bands = 5}),
                      transfer({.order = 3, .shadowed_channels = 0, .full_channels = 3, .outputs = 9})},
-       .kind = CellKind::Neighborhood}};
+       .domain = transfer::Domain::GridPoint}};
   body.neighborhood =
       NeighborhoodGrid{{2, 2, 2}, glm::vec3(-1.0f, -2.0f, -3.0f), glm::vec3(1.0f, 2.0f, 3.0f)};
   Group cloud;
@@ -44,7 +44,7 @@ Sample sampleBundle() {
   cloud.cells = {{.first_sample = 0,
                   .sample_count = 4,
                   .transfers = {transfer({.order = 3, .full_channels = 3})},
-                  .kind = CellKind::Volume}};
+                  .domain = transfer::Domain::Voxel}};
   VolumeGrid grid;
   grid.size = {4, 3, 2};
   grid.group_from_grid[3] = glm::vec4(7.0f, 8.0f, 9.0f, 1.0f);
@@ -71,9 +71,10 @@ TEST_F(Grids, ComeBackAsTheyWereWritten) {
   EXPECT_TRUE(reader->checkAll());
   const Group& body = reader->description().groups[0];
   const Group& cloud = reader->description().groups[1];
-  EXPECT_EQ(body.cells[1].kind, CellKind::Neighborhood);
-  EXPECT_EQ(body.samplesWith(1), 2u);
-  EXPECT_EQ(body.samplesWith(9), 0u) << "points of a grid are no samples of normal maps";
+  EXPECT_EQ(body.cells[1].domain, transfer::Domain::GridPoint);
+  EXPECT_EQ(body.samplesOf(transfer::Form::Vector), 2u);
+  EXPECT_EQ(body.samplesOf(transfer::Form::NormalMapped), 0u)
+      << "points of a grid are no samples of normal maps";
   ASSERT_TRUE(body.neighborhood);
   EXPECT_EQ(body.neighborhood->size, glm::uvec3(2));
   EXPECT_EQ(body.neighborhood->bounds_max, glm::vec3(1.0f, 2.0f, 3.0f));
@@ -119,7 +120,7 @@ TEST_F(Grids, ThatContradictThemselvesAreRefusedByName) {
   refused([](Group& body, Group&, VolumeGrid&) { body.neighborhood->size.x = 1; }, "neighborhood.size");
   refused([](Group& body, Group&, VolumeGrid&) { body.neighborhood->bounds_max.y = -2.0f; },
           "neighborhood.boundsMax");
-  refused([](Group& body, Group&, VolumeGrid&) { body.cells[0].kind = CellKind::Neighborhood; },
+  refused([](Group& body, Group&, VolumeGrid&) { body.cells[0].domain = transfer::Domain::GridPoint; },
           "after the environment");
   refused([](Group& body, Group&, VolumeGrid&) { body.cells[1].transfers[0].shape.visibility_bands = 6; },
           "visibilityBands");

@@ -4,7 +4,7 @@
 
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "tests/runtime/frame/view_stage.hpp"
+#include "tests/support/frame/view_stage.hpp"
 
 namespace lambent::frame {
 namespace {
@@ -94,7 +94,7 @@ TEST_F(FrameDepths, DoNotKnowVolumes) {
   mist.density = [](const glm::vec3&) { return 5.0f; };
   ViewStage stage(BundleBuilder().add(square(-2.0f, 0.5f)).volume(mist), {kWhite}, testing::linearOptions());
   const std::vector<float> depths = depthsOf(stage, glm::ortho(-1.5f, 1.5f, -1.5f, 1.5f, 1.0f, 30.0f));
-  ASSERT_EQ(stage.frame->counts().volumes_drawn, 1u);
+  ASSERT_EQ(stage.frame->counts()["volumes_drawn"], 1u);
   EXPECT_NEAR(depths[32 * 64 + 32], 12.0f, 2e-5f);
   EXPECT_EQ(depths[32 * 64 + 14], kNone) << "nothing but mist";
 }

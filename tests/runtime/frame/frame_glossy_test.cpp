@@ -9,7 +9,7 @@
 #include "runtime/effects/glossy/glossy_kernel_ref.hpp"
 #include "runtime/frame/frame.hpp"
 #include "runtime/scene/bounds.hpp"
-#include "tests/runtime/frame/bundle_builder.hpp"
+#include "tests/support/frame/bundle_builder.hpp"
 #include "tests/support/gpu_context.hpp"
 
 namespace lambent::frame {

@@ -7,8 +7,8 @@
 #include <gtest/gtest.h>
 
 #include "runtime/draws/glossy_record.hpp"
-#include "runtime/frame/fewer_samples.hpp"
 #include "runtime/frame/quality.hpp"
+#include "runtime/lighting/fewer_samples.hpp"
 #include "runtime/world/material_rebake.hpp"
 #include "tests/support/material_values.hpp"
 
@@ -44,7 +44,7 @@ TEST(FrameSettings, WordsAreThoseOfTheCommandLine) {
   ASSERT_TRUE(putSetting(settings, "specular-environment", "off"));
   ASSERT_TRUE(putSetting(settings, "capture-order", "auto"));
   ASSERT_TRUE(putSetting(settings, "exposure", "-1.5"));
-  EXPECT_EQ(settings.transfer, effects::diffuse::TransferMode::Shadowed);
+  EXPECT_EQ(settings.transfer, evaluate::TransferMode::Shadowed);
   EXPECT_FALSE(settings.residual);
   EXPECT_EQ(settings.exposure_ev, -1.5f);
   ASSERT_TRUE(putSetting(settings, "exposure", "auto"));
@@ -57,12 +57,12 @@ TEST(FrameSettings, WordsAreThoseOfTheCommandLine) {
 TEST(FewerSamples, StandAllOverTheGroupAndTakeTheNearest) {
   std::vector<glm::vec3> line;
   for (int i = 0; i < 10; ++i) line.emplace_back(static_cast<float>(i), 0.0f, 0.0f);
-  const FewerSamples three = fewerSamples(line, 3);
+  const lighting::FewerSamples three = lighting::fewerSamples(line, 3);
   EXPECT_EQ(three.kept, (std::vector<std::uint32_t>{0, 4, 9}));
   EXPECT_EQ(three.place, (std::vector<std::uint32_t>{0, 0, 0, 1, 1, 1, 1, 2, 2, 2}));
-  EXPECT_EQ(fewerSamples(line, 10).kept.size(), 10u);
-  EXPECT_EQ(fewerSamples(line, 1).place, std::vector<std::uint32_t>(10, 0));
-  EXPECT_EQ(fewerSamples(std::vector<glm::vec3>(4, glm::vec3(1.0f)), 3).kept.size(), 1u)
+  EXPECT_EQ(lighting::fewerSamples(line, 10).kept.size(), 10u);
+  EXPECT_EQ(lighting::fewerSamples(line, 1).place, std::vector<std::uint32_t>(10, 0));
+  EXPECT_EQ(lighting::fewerSamples(std::vector<glm::vec3>(4, glm::vec3(1.0f)), 3).kept.size(), 1u)
       << "all at one place";
 }
 
@@ -97,13 +97,13 @@ TEST(MaterialRebake, SaysWhatDoesNotShow) {
     }
     return found;
   };
-  const MaterialUse direct{.matte = true}, bounced{.matte = true, .bounces = true, .seen = true};
+  const MaterialUse direct{.diffuse = true}, bounced{.diffuse = true, .bounces = true, .seen = true};
   const MaterialUse shiny{.glossy = true, .tables = {bundle::BrdfFamily::Ggx}};
   using Fields = std::set<std::string>;
   gltf::Material now = baked;
   EXPECT_EQ(fields(now, bounced), Fields{}) << "nothing changed";
   now.base_color = {0.5f, 0.2f, 0.1f, 1.0f};
-  EXPECT_EQ(fields(now, direct), Fields{}) << "direct light on a matte surface is exact";
+  EXPECT_EQ(fields(now, direct), Fields{}) << "direct light on a diffuse surface is exact";
   EXPECT_EQ(fields(now, bounced), Fields{"base_color nearly"});
   now = baked;
   now.roughness = 0.4f;

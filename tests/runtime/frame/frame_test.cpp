@@ -12,7 +12,7 @@
 #include "runtime/scene/bounds.hpp"
 #include "runtime/sh/image_layout.hpp"
 #include "runtime/streaming/sizes.hpp"
-#include "tests/runtime/frame/bundle_builder.hpp"
+#include "tests/support/frame/bundle_builder.hpp"
 #include "tests/support/gpu_context.hpp"
 
 namespace lambent::frame {
@@ -189,8 +189,7 @@ TEST_F(FrameTest, LightsEachSideOfATwoSidedCardForItself) {
   // The sun stands before the card; its back is turned away, with transfer of its own and unshadowed alike.
   gltf::Material both = colored(glm::vec4(1.0f));
   both.double_sided = true;
-  for (const auto transfer :
-       {effects::diffuse::TransferMode::Full, effects::diffuse::TransferMode::Unshadowed}) {
+  for (const auto transfer : {evaluate::TransferMode::Full, evaluate::TransferMode::Unshadowed}) {
     auto options = kLinear;
     options.settings.transfer = transfer;
     Stage stage(
@@ -352,7 +351,7 @@ TEST_F(FrameTest, TheWordsOfTransferChooseTheBlock) {
   };
   const auto builder =
       BundleBuilder().bounces().transfer(transfer).add({sphereMesh(12, 24), colored(glm::vec4(1.0f))});
-  using effects::diffuse::TransferMode;
+  using evaluate::TransferMode;
   for (const auto& [mode, expected] : {std::pair{TransferMode::Full, 0.75f},
                                        {TransferMode::Shadowed, 0.25f},
                                        {TransferMode::Unshadowed, 1.0f}}) {

@@ -7,16 +7,18 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "runtime/effects/volume/volume.hpp"
 #include "runtime/frame/frame.hpp"
 #include "runtime/scene/bounds.hpp"
 #include "runtime/scene/lights.hpp"
-#include "tests/runtime/frame/bundle_builder.hpp"
+#include "runtime/shadows/lit_scene.hpp"
+#include "tests/support/frame/bundle_builder.hpp"
 #include "tests/support/gpu_context.hpp"
 
 namespace lambent::frame {
 namespace {
 
-using effects::diffuse::TransferMode;
+using evaluate::TransferMode;
 using testing::BuiltVolume;
 using testing::BundleBuilder;
 using testing::quadMesh;
@@ -120,8 +122,8 @@ TEST_F(FrameVolume, ABundleOfNothingButAVolumeIsFramedAndShows) {
       1e-3f)
       << "codebooks are of half floats";
   EXPECT_EQ(at(image, 1, 1).a, 0.0f);
-  EXPECT_EQ(stage.frame->counts().volumes, 1u);
-  EXPECT_EQ(stage.frame->counts().volumes_drawn, 1u);
+  EXPECT_EQ(stage.frame->counts()["volumes"], 1u);
+  EXPECT_EQ(stage.frame->counts()["volumes_drawn"], 1u);
 }
 
 TEST_F(FrameVolume, ATurnedGroupIsBoundedByItsCorners) {
@@ -184,13 +186,13 @@ TEST_F(FrameVolume, AStillFrameOnlyMarches) {
   ASSERT_NE(stage.pass("march"), nullptr);
   EXPECT_EQ(stage.pass("volume")->counters.dispatches, 1u);
   EXPECT_EQ(stage.pass("march")->counters.draws, 1u);
-  EXPECT_EQ(stage.frame->counts().volumes_shaded, 1u);
-  EXPECT_EQ(stage.frame->counts().volume_slabs_written, 1u);
+  EXPECT_EQ(stage.frame->counts()["volumes_shaded"], 1u);
+  EXPECT_EQ(stage.frame->counts()["volume_slabs_written"], 1u);
   stage.render();
   EXPECT_EQ(stage.pass("volume")->counters.dispatches, 0u);
   EXPECT_EQ(stage.pass("volume")->counters.uploaded_bytes, 0u);
   EXPECT_EQ(stage.pass("shade")->counters.dispatches, 0u);
-  EXPECT_EQ(stage.frame->counts().volumes_shaded, 0u);
+  EXPECT_EQ(stage.frame->counts()["volumes_shaded"], 0u);
   stage.view.view_from_world = glm::lookAt(glm::vec3(1, 2, 9), glm::vec3(0.0f), glm::vec3(0, 1, 0));
   stage.render();
   EXPECT_EQ(stage.pass("volume")->counters.dispatches, 0u) << "light in it does not depend on the camera";
@@ -204,8 +206,8 @@ TEST_F(FrameVolume, ASceneWithoutOneHasNoPassForIt) {
   stage.render();
   EXPECT_EQ(stage.pass("volume"), nullptr);
   EXPECT_EQ(stage.pass("march"), nullptr);
-  EXPECT_EQ(stage.frame->counts().volumes, 0u);
-  EXPECT_EQ(stage.frame->volumeBytes(), 0u);
+  EXPECT_EQ(stage.frame->counts()["volumes"], 0u);
+  EXPECT_EQ(stage.frame->kept<effects::volume::Volume>().textureBytes(), 0u);
 }
 
 TEST_F(FrameVolume, AnEmptyVolumeLeavesThePictureToTheLastBit) {
@@ -215,7 +217,7 @@ TEST_F(FrameVolume, AnEmptyVolumeLeavesThePictureToTheLastBit) {
   empty.density = [](const glm::vec3&) { return 0.0f; };
   Stage without(builder), with(BundleBuilder(builder).volume(empty));
   EXPECT_EQ(with.picture().texels, without.picture().texels);
-  EXPECT_EQ(with.frame->counts().volumes_drawn, 0u);
+  EXPECT_EQ(with.frame->counts()["volumes_drawn"], 0u);
 }
 
 TEST_F(FrameVolume, TheWordsOfTransferChooseTheBlock) {
@@ -267,8 +269,8 @@ TEST_F(FrameVolume, ALightInsideShinesByHarmonics) {
       .position_ws = glm::vec3(0.3f, 0.0f, 0.0f), .radius_m = 0.1f, .radiance = glm::vec3(50.0f)};
   Stage stage(BundleBuilder().volume(mist(2.0f)), {lamp});
   const spec::RgbaImage image = stage.picture();
-  EXPECT_EQ(stage.frame->counts().local_lights, 1u);
-  EXPECT_EQ(stage.frame->counts().shadowed_lights, 0u);
+  EXPECT_EQ(stage.frame->counts()["local_lights"], 1u);
+  EXPECT_EQ(stage.frame->counts()["shadowed_lights"], 0u);
   EXPECT_GT(middle(image).g, 0.1f);
   for (const glm::vec4& texel : image.texels) ASSERT_TRUE(std::isfinite(texel.g));
 }

@@ -8,7 +8,7 @@
 #include "baker/brdf/brdf.hpp"
 #include "runtime/sh/image_layout.hpp"
 #include "runtime/spec/image.hpp"
-#include "tests/runtime/frame/live_stage.hpp"
+#include "tests/support/frame/live_stage.hpp"
 #include "tests/support/gpu_context.hpp"
 
 namespace lambent::frame {
@@ -131,7 +131,7 @@ TEST_F(LiveFrame, EverySettingComesBackToTheSamePicture) {
   const std::pair<const char*, const char*> changes[] = {
       {"transfer", "unshadowed"}, {"transfer", "shadowed"}, {"window", "hann"},       {"order", "2"},
       {"diffuse", "off"},         {"volumes", "off"},       {"march-step", "4"},      {"light-probes", "1"},
-      {"captures", "off"},        {"local-shadows", "off"},  {"neighborhoods", "off"}, {"capture-size", "8"}};
+      {"captures", "off"},        {"local-shadows", "off"}, {"neighborhoods", "off"}, {"capture-size", "8"}};
   LiveStage stage(ballAndCloud(), {kSun}, plain);
   const auto before = stage.picture();
   for (const auto& [name, word] : changes) {
@@ -147,7 +147,8 @@ TEST_F(LiveFrame, EverySettingComesBackToTheSamePicture) {
   }
   LiveStage glossy(glossyBall(metal(glm::vec3(0.9f), 0.5f)), {kSun}, plain);
   const auto shiny = glossy.picture();
-  for (const auto& [name, word] : {std::pair{"glossy", "off"}, {"specular-environment", "off"}, {"glossy-order", "3"}}) {
+  for (const auto& [name, word] :
+       {std::pair{"glossy", "off"}, {"specular-environment", "off"}, {"glossy-order", "3"}}) {
     const std::string was = settingWord(*findSetting(name), glossy.frame->settings());
     glossy.set(name, word);
     EXPECT_GT(farthest(glossy.picture(), shiny), 1e-3f) << name;

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/runtime/frame/live_stage.hpp"
+#include "tests/support/frame/live_stage.hpp"
 #include "tests/support/gpu_context.hpp"
 
 namespace lambent::frame {
@@ -30,8 +30,8 @@ TEST_F(SettingCostTest, ErrorsFallTowardsTheFinestValueWhichHasNone) {
   const SettingRow& row = *findSetting("order");
   const double values[] = {1.0, 2.0, 3.0, 5.0, 8.0};
   const SettingOptions options{.size = {48, 48}, .repeats = 2};
-  const auto points = sweepSetting(stage.world, stage.environment, stage.view(), stage.frame->settings(), row,
-                                   values, options);
+  const auto points = sweepSetting({stage.world, stage.environment, stage.view()}, stage.frame->settings(),
+                                   row, values, options);
   ASSERT_TRUE(points) << points.error().line();
   for (std::size_t i = 0; i < 3; ++i) EXPECT_GT((*points)[i].error, (*points)[i + 1].error) << i;
   EXPECT_EQ((*points)[3].error, 0.0) << "the transfer has five bands";
@@ -50,7 +50,7 @@ TEST_F(SettingCostTest, TheErrorIsThatOfTwoPicturesDrawnApart) {
   coarse.window = sh::Window::Off;
   coarse.order = 2;
   LiveStage stage(ball(), {kSun}, coarse);
-  const auto cost = measureSetting(stage.world, stage.environment, stage.view(), coarse,
+  const auto cost = measureSetting({stage.world, stage.environment, stage.view()}, coarse,
                                    *findSetting("order"), {.size = {64, 64}, .repeats = 0});
   ASSERT_TRUE(cost) << cost.error().line();
   EXPECT_EQ(cost->now.value, 2.0);
@@ -63,7 +63,8 @@ TEST_F(SettingCostTest, TheErrorIsThatOfTwoPicturesDrawnApart) {
   ASSERT_TRUE(expected);
   EXPECT_NEAR(cost->now.error, *expected, 1e-6);
   EXPECT_GT(cost->now.error, 0.05);
-  EXPECT_FALSE(measureSetting(stage.world, stage.environment, stage.view(), coarse, *findSetting("exposure")))
+  EXPECT_FALSE(
+      measureSetting({stage.world, stage.environment, stage.view()}, coarse, *findSetting("exposure")))
       << "no knob of accuracy";
 }
 
@@ -74,7 +75,7 @@ TEST_F(SettingCostTest, FewerKeyLightsAreMeasuredByLightThatIsPartedSo) {
   LiveStage stage(ball(), {small});
   stage.environment.setMostKeys(16);
   const double values[] = {0.0, 1.0, 32.0};
-  const auto points = sweepSetting(stage.world, stage.environment, stage.view(), stage.frame->settings(),
+  const auto points = sweepSetting({stage.world, stage.environment, stage.view()}, stage.frame->settings(),
                                    *findSetting("keys"), values, {.size = {64, 64}, .repeats = 1});
   ASSERT_TRUE(points) << points.error().line();
   EXPECT_GT((*points)[0].error, 0.005) << "five bands alone";
@@ -87,7 +88,7 @@ TEST_F(SettingCostTest, MeasuringAFrameGivesThePictureThatAFrameDrawsAndItsPasse
   LiveStage stage(ball(), {kSun});
   stage.environment.setMostKeys(16);
   const auto before = stage.picture();
-  const auto measured = measureFrame(stage.world, stage.environment, stage.view(), stage.frame->settings(),
+  const auto measured = measureFrame({stage.world, stage.environment, stage.view()}, stage.frame->settings(),
                                      {.size = {64, 64}, .repeats = 2});
   ASSERT_TRUE(measured) << measured.error().line();
   EXPECT_EQ(farthest(measured->picture.texels, before), 0.0f);

@@ -18,7 +18,7 @@ constexpr FindText kTables[] = {&findText};
 
 TEST(ShaderText, PutsVersionAndDefinesFirstAndEachFileInOnce) {
   const Define defines[] = {{"LAMBENT_ORDER", "5"}};
-  const auto shader = assembleShader("main.comp", kTables, defines);
+  const auto shader = assembleShader("main.comp", {.tables = kTables, .defines = defines, .written = {}});
   ASSERT_TRUE(shader);
   EXPECT_EQ(shader->text,
             "#version 450 core\n#define LAMBENT_ORDER 5\nfloat one() {\n  return 1.0;\n}\nvoid main() {\n  "
@@ -26,7 +26,7 @@ TEST(ShaderText, PutsVersionAndDefinesFirstAndEachFileInOnce) {
 }
 
 TEST(ShaderText, MapsEveryDriversPositionsToFileAndLine) {
-  const auto shader = assembleShader("main.comp", kTables, {});
+  const auto shader = assembleShader("main.comp", {.tables = kTables, .defines = {}, .written = {}});
   ASSERT_TRUE(shader);
   // Line 6 of the whole is line 4 of main.comp; line 3 is line 2 of math.glsl.
   EXPECT_EQ(mapLog("0:6(3): error: `broken' undeclared\n", *shader),
@@ -38,7 +38,7 @@ TEST(ShaderText, MapsEveryDriversPositionsToFileAndLine) {
 }
 
 TEST(ShaderText, NamesTheLineThatIncludesAMissingFile) {
-  const auto shader = assembleShader("lost.comp", kTables, {});
+  const auto shader = assembleShader("lost.comp", {.tables = kTables, .defines = {}, .written = {}});
   ASSERT_FALSE(shader);
   EXPECT_EQ(shader.error().subject, "lost.comp:2");
   EXPECT_NE(shader.error().problem.find("nowhere.glsl"), std::string::npos);

@@ -100,7 +100,7 @@ TEST_F(IncidentLightTest, DrawsWhatAWalkOverAllBodiesFindsChanged) {
       }
     }
     incident->update(environment, groups, {}, /*wait=*/true);
-    ASSERT_TRUE(incident->capture(environment, groups, bodies, {}, radiance, kBodies, counters));
+    ASSERT_TRUE(incident->capture(environment, {groups, bodies, {}}, radiance, kBodies, counters));
     EXPECT_EQ(incident->counts().captured, expected) << "step " << step;
     EXPECT_EQ(incident->counts().waiting, waiting) << "step " << step;
     if (step > 0) all_drawn += expected, all_waiting += waiting;

@@ -1,4 +1,4 @@
-// Key lights of a environment map that are moved, dimmed and coloured: their discs change, and nothing else.
+// Key lights of an environment map that are moved, dimmed and coloured: their discs change, and nothing else.
 #include <cmath>
 #include <filesystem>
 #include <numbers>

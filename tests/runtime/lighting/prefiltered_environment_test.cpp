@@ -109,7 +109,7 @@ TEST_F(PrefilteredEnvironmentTest, ASunIsBlurredToTheLobesShareOfIt) {
 }
 
 TEST_F(PrefilteredEnvironmentTest, LightOfFewBandsLeavesNothing) {
-  // A environment map of bands 0 to 2: what is reflected is each band times the lobe's.
+  // An environment map of bands 0 to 2: what is reflected is each band times the lobe's.
   const std::filesystem::path path =
       std::filesystem::path(::testing::TempDir()) / (std::to_string(::getpid()) + "-bands.exr");
   constexpr std::uint32_t kWidth = 256, kHeight = 128;
@@ -151,12 +151,12 @@ TEST_F(PrefilteredEnvironmentTest, LightOfFewBandsLeavesNothing) {
       difference =
           std::max<double>(difference, glm::distance(known, glm::vec3(texels[static_cast<std::size_t>(i)])));
     }
-    // Radiance up to 3, a few looks through half floats at a environment map of 64 texels a face.
+    // Radiance up to 3, a few looks through half floats at an environment map of 64 texels a face.
     EXPECT_LT(difference, 0.02) << "level " << level;
   }
 }
 
-// Lamps along the edges of cube faces, in a environment map that asks for cubes of 125 texels: blurred, all
+// Lamps along the edges of cube faces, in an environment map that asks for cubes of 125 texels: blurred, all
 // of their light is still there.
 TEST_F(PrefilteredEnvironmentTest, LampsInAProbeOfAnySizeKeepTheirPower) {
   const std::filesystem::path path =

@@ -101,13 +101,13 @@ TEST(ShLocalLight, LowOrdersAreTheFirstBandsOfHighOnes) {
   const LightVector disc = discAreaLight(kMaxOrder, center, normal, 0.8, kWarm),
                     sphere = sphereLight(kMaxOrder, center, 0.8, kWarm),
                     point = pointLight(kMaxOrder, center, kWarm),
-                    spot = spotLight(kMaxOrder, center, normal, kWarm, 0.1, 1.2),
+                    spot = spotLight(kMaxOrder, center, {normal, 0.1, 1.2}, kWarm),
                     far = directionalLight(kMaxOrder, center, kWarm);
   for (int order = 1; order <= kMaxOrder; ++order)
     for (const auto& [low, high] : {std::pair{discAreaLight(order, center, normal, 0.8, kWarm), disc},
                                     std::pair{sphereLight(order, center, 0.8, kWarm), sphere},
                                     std::pair{pointLight(order, center, kWarm), point},
-                                    std::pair{spotLight(order, center, normal, kWarm, 0.1, 1.2), spot},
+                                    std::pair{spotLight(order, center, {normal, 0.1, 1.2}, kWarm), spot},
                                     std::pair{directionalLight(order, center, kWarm), far}}) {
       EXPECT_EQ(low.order, order);
       const LightVector cut = high.truncated(order);
@@ -167,7 +167,7 @@ TEST(ShLocalLight, SpotsFadeFromTheInnerConeToTheOuter) {
   const auto strength = [&](double angle) {
     // The point lies `angle` off the axis, one metre from the light.
     const glm::dvec3 light_from_point = -glm::dvec3(std::sin(angle), -std::cos(angle), 0);
-    return spotLight(5, light_from_point, axis, kWhite, inner, outer).c[0].r /
+    return spotLight(5, light_from_point, {axis, inner, outer}, kWhite).c[0].r /
            pointLight(5, light_from_point, kWhite).c[0].r;
   };
   EXPECT_FLOAT_EQ(strength(0.0), 1.0f);
@@ -216,14 +216,14 @@ TEST(ShLocalLight, HardCasesStayFinite) {
   EXPECT_TRUE(dark(sphereLight(8, {0, 0, 0}, 0, bright)));
   EXPECT_TRUE(dark(sphereLight(8, {0, 1, 0}, -1, bright)));
   EXPECT_TRUE(dark(directionalLight(8, {0, 0, 0}, bright)));
-  EXPECT_TRUE(dark(spotLight(8, {0, 1, 0}, {0, 0, 0}, bright, 0, 1)));
+  EXPECT_TRUE(dark(spotLight(8, {0, 1, 0}, {{0, 0, 0}, 0, 1}, bright)));
   for (const double wrong : {kNaN, kInfinity}) {
     EXPECT_TRUE(dark(sphereLight(8, {0, wrong, 0}, 1, bright)));
     EXPECT_TRUE(dark(discAreaLight(8, {0, wrong, 0}, down, 1, bright)));
     EXPECT_TRUE(dark(discAreaLight(8, {0, 1, 0}, {wrong, 0, 0}, 1, bright)));
     EXPECT_TRUE(dark(discAreaLight(8, {0, 1, 0}, down, wrong, bright)));
     EXPECT_TRUE(dark(pointLight(8, {wrong, 0, 0}, bright)));
-    EXPECT_TRUE(dark(spotLight(8, {0, wrong, 0}, down, bright, 0, 1)));
+    EXPECT_TRUE(dark(spotLight(8, {0, wrong, 0}, {down, 0, 1}, bright)));
   }
   // Rims as near as can be, from all sides, and everything from tiny to huge.
   for (const double x : {1.0, 1.0 + 1e-15, 1.0 - 1e-15, 1.0 + 1e-7, 1.0 - 1e-7, 0.0, 1e-300, 1e-9})
@@ -236,7 +236,7 @@ TEST(ShLocalLight, HardCasesStayFinite) {
         for (const glm::vec3& c : disc.c) EXPECT_LT(std::abs(c.r), 1.01e8f * 2 * 3.1416f * 1.2f);
         EXPECT_TRUE(allFinite(sphereLight(8, place, scale, bright)));
         EXPECT_TRUE(allFinite(pointLight(8, place, bright)));
-        EXPECT_TRUE(allFinite(spotLight(8, place, down, bright, 0.0, 0.0)));
+        EXPECT_TRUE(allFinite(spotLight(8, place, {down, 0.0, 0.0}, bright)));
         EXPECT_TRUE(allFinite(directionalLight(8, place, bright)));
       }
 }

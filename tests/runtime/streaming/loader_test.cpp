@@ -13,7 +13,6 @@
 
 #include <gtest/gtest.h>
 
-#include "runtime/bundle/transfer_codec.hpp"
 #include "runtime/bundle/writer.hpp"
 #include "runtime/streaming/parts.hpp"
 #include "tests/runtime/streaming/sample_bundle.hpp"
@@ -249,7 +248,7 @@ TEST_F(LoaderTest, RefusesClustersThatContradictThePlanes) {
   const bundle::CellTransfer& transfer = sample.description.groups[1].cells[0].transfers[0];
   const auto view = sample.description.payloads[static_cast<std::uint32_t>(transfer.cluster_ids)].view;
   const std::vector<std::uint32_t> all_first(500, 0);
-  sample.blobs[view] = bundle::encodeClusterIds(all_first, 2);
+  sample.blobs[view] = transfer::encodeClusterIds(all_first, 2);
   sample.description.payloads[static_cast<std::uint32_t>(transfer.cluster_ids)].codec =
       bundle::PayloadCodec::Raw;
   write(sample);

@@ -14,8 +14,9 @@
 #include <stb/stb_image_write.h>
 
 #include "runtime/bundle/brdf_table.hpp"
+#include "runtime/bundle/entropy_coder.hpp"
 #include "runtime/bundle/mesh.hpp"
-#include "runtime/bundle/transfer_codec.hpp"
+#include "runtime/transfer/vertex_rows.hpp"
 
 namespace lambent::streaming::testing {
 namespace {
@@ -103,7 +104,7 @@ class Builder {
 
   void addDraw(std::uint32_t mesh, std::uint32_t primitive, std::uint32_t group, std::uint32_t priority) {
     const std::uint32_t vertices = sample.description.meshes[mesh].primitives[primitive].vertex_count;
-    bundle::VertexWeights rows;
+    transfer::VertexWeights rows;
     rows.offsets.push_back(0);
     for (std::uint32_t v = 0; v < vertices; ++v) {
       rows.samples.push_back(v % sample.description.groups[group].sample_count);
@@ -115,7 +116,7 @@ class Builder {
     draw.mesh = mesh;
     draw.primitive = primitive;
     draw.group = group;
-    draw.rows = addPayload(bundle::PayloadType::VertexWeights, bundle::encodeRows(rows), priority);
+    draw.rows = addPayload(bundle::PayloadType::VertexWeights, transfer::encodeRows(rows), priority);
     sample.description.draws.push_back(draw);
   }
 
@@ -131,7 +132,7 @@ class Builder {
     transfer.shape.order = 2;
     transfer.clusters = clusters;
     transfer.axes = static_cast<std::uint32_t>(plane_priorities.size());
-    bundle::Codebook codebook;
+    transfer::Codebook codebook;
     codebook.axis_counts.assign(clusters, 0);
     codebook.axis_counts[0] = transfer.axes;
     codebook.axes.assign(transfer.axes, {0.0f, 0.01f});
@@ -139,22 +140,22 @@ class Builder {
       codebook.vectors.push_back(static_cast<float>(i) + static_cast<float>(codebook_priority) * 0.5f);
     }
     transfer.codebook =
-        addPayload(bundle::PayloadType::Codebook, bundle::encodeCodebook(codebook), codebook_priority);
+        addPayload(bundle::PayloadType::Codebook, transfer::encodeCodebook(codebook), codebook_priority);
     std::vector<std::uint32_t> cluster_of(samples, 0);
     if (clusters > 1) {
       for (std::uint32_t i = 0; i < samples; i += 3) cluster_of[i] = 1;
       transfer.cluster_ids = static_cast<std::int32_t>(
-          addPayload(bundle::PayloadType::ClusterIds, bundle::encodeClusterIds(cluster_of, clusters),
+          addPayload(bundle::PayloadType::ClusterIds, transfer::encodeClusterIds(cluster_of, clusters),
                      codebook_priority));
     }
-    const std::vector<std::uint32_t> counts = bundle::planeCounts(codebook, cluster_of);
+    const std::vector<std::uint32_t> counts = transfer::planeCounts(codebook, cluster_of);
     for (std::size_t p = 0; p < plane_priorities.size(); ++p) {
       const std::uint32_t bits = p % 2 == 0 ? 8 : 16;
       std::vector<std::uint32_t> codes(counts[p]);
       for (std::uint32_t i = 0; i < codes.size(); ++i)
         codes[i] = (31 * i + plane_priorities[p]) % (1u << bits);
       bundle::WeightPlane plane;
-      plane.payload = addPayload(bundle::PayloadType::WeightPlane, bundle::encodeWeightPlane(codes, bits),
+      plane.payload = addPayload(bundle::PayloadType::WeightPlane, transfer::encodeWeightPlane(codes, bits),
                                  plane_priorities[p]);
       plane.bits = bits;
       plane.count = counts[p];

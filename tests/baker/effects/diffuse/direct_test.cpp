@@ -242,7 +242,7 @@ TEST(DirectTransfer, StopsWhenAsked) {
   stop.request_stop();
   Progress progress;
   const DiffuseScene scene = t.diffuse();
-  EXPECT_FALSE(bakeDirect(DirectPass(scene, {5, 128}), scene, progress, stop.get_token()).has_value());
+  EXPECT_FALSE(bakeDirect(DirectPass(scene, {5, 128}), scene, {progress, stop.get_token()}).has_value());
 }
 
 }  // namespace

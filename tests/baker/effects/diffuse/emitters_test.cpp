@@ -1,6 +1,6 @@
 // Light of the group's own lights against closed forms: Lambert's formula for polygons, closed boxes, inverse
 // squares.
-#include "baker/effects/diffuse/emitters.hpp"
+#include "baker/trace/emitters.hpp"
 
 #include "tests/support/shapes.hpp"
 #include "tests/support/transport.hpp"

@@ -235,8 +235,8 @@ TEST(GlossyBounces, LightLeavesByAllBandsOfTheKernel) {
                          {.order = 5, .rays = 4096, .keep_hits = true, .hit_memory = std::size_t{1} << 30});
   const GlossyPass pass(plain, view, kExit);
   Progress progress;
-  auto direct = bakeDirect(plain, view, progress, {});
-  auto glossy = bakeGlossyDirect(pass, std::size_t{1} << 30, direct->looks, progress, {});
+  auto direct = bakeDirect(plain, view, {progress});
+  auto glossy = bakeGlossyDirect(pass, std::size_t{1} << 30, direct->looks, {progress});
   const GlossyBounces bounces(pass, kernels, *direct, *glossy, 5);
 
   const std::size_t sample = t.sampleAt({-1.0f / 3.0f, 0.0f, 0.0f});

@@ -253,11 +253,11 @@ TEST(GlossyDirect, StopsWhenAsked) {
   const DiffuseScene view = t.diffuse();
   const DirectPass plain(view, {});
   Progress progress;
-  auto direct = bakeDirect(plain, view, progress, {});
+  auto direct = bakeDirect(plain, view, {progress});
   std::stop_source stop;
   stop.request_stop();
-  EXPECT_FALSE(
-      bakeGlossyDirect(GlossyPass(plain, view, 5), 0, direct->looks, progress, stop.get_token()).has_value());
+  EXPECT_FALSE(bakeGlossyDirect(GlossyPass(plain, view, 5), 0, direct->looks, {progress, stop.get_token()})
+                   .has_value());
 }
 
 }  // namespace

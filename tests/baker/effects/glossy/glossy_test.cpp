@@ -18,7 +18,7 @@ EffectChoice choiceOf(const Scene& scene) {
 TEST(ChooseGlossy, LeavesMatteScenesAlone) {
   Scene scene = sceneOf({grid({0, 0, 0}, 1.0f, 1)});
   EXPECT_FALSE(choiceOf(scene).baked);
-  EXPECT_EQ(choiceOf(scene).reason, "every material is matte");
+  EXPECT_EQ(choiceOf(scene).reason, "every material is diffuse");
   scene.materials.push_back(scene.materials[0]);
   scene.materials[1].metallic = 1.0f;  // which nothing is made of
   EXPECT_FALSE(choiceOf(scene).baked);
@@ -34,11 +34,12 @@ TEST(ChooseGlossy, CountsWhatThereIsAndSaysWhatFiveBandsCannotCarry) {
   scene.meshes[1].primitives[0].material = 1;
   const EffectChoice choice = choiceOf(scene);
   EXPECT_TRUE(choice.baked);
-  EXPECT_EQ(choice.reason,
-            "3 draws are not matte (1 metallic, 2 dielectric, 1 anisotropic): 25 x 25 transfer matrices for "
-            "any light and "
-            "view; 1 draw with roughness below 0.5, down to 0.3, where order 5 carries 38 % of the "
-            "highlight's energy");
+  EXPECT_EQ(
+      choice.reason,
+      "3 draws are not diffuse (1 metallic, 2 dielectric, 1 anisotropic): 25 x 25 transfer matrices for "
+      "any light and "
+      "view; 1 draw with roughness below 0.5, down to 0.3, where order 5 carries 38 % of the "
+      "highlight's energy");
 }
 
 TEST(LobeEnergyShare, MatchesTheKnownValuesAndEndsAtOneAndNothing) {

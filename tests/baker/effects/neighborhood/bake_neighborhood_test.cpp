@@ -36,7 +36,7 @@ struct Made {
   }
   BakedAround bake() const {
     Progress progress;
-    auto result = bakeNeighborhood(body, settings, progress, {});
+    auto result = bakeNeighborhood(body, settings, {progress});
     EXPECT_TRUE(result.has_value());
     return std::move(*result);
   }
@@ -156,8 +156,8 @@ TEST(Neighborhood, DecodesBothPartsWithinTheBound) {
   ASSERT_TRUE(around.grid.has_value());
   ASSERT_EQ(around.grid->cells.size(), 1u);
   ASSERT_EQ(around.grid->cells[0].transfers.size(), 2u);
-  const bundle::TransferShape &visibility = around.grid->cells[0].transfers[0].shape,
-                              &bounced = around.grid->cells[0].transfers[1].shape;
+  const transfer::TransferShape &visibility = around.grid->cells[0].transfers[0].shape,
+                                &bounced = around.grid->cells[0].transfers[1].shape;
   EXPECT_EQ(visibility.visibility_bands, 7u);
   EXPECT_EQ(visibility.outputs, 9u);
   EXPECT_EQ(bounced.shadowed_channels, 0u);
@@ -166,8 +166,7 @@ TEST(Neighborhood, DecodesBothPartsWithinTheBound) {
 
   const DecodedNeighborhood grid(*around.grid);
   Progress progress;
-  const auto truth =
-      changeOnGrid(made.body, grid.placement(), grid.shape(), made.settings.rays, progress, {});
+  const auto truth = changeOnGrid(made.body, grid.placement(), grid.shape(), made.settings.rays, {progress});
   const ChangeMeter meter(grid.shape());
   double square = 0.0;
   for (std::size_t p = 0; p < grid.placement().count(); ++p) {
@@ -192,10 +191,10 @@ TEST(Neighborhood, IsTheSameOnOneThreadAndOnTwo) {
     withThreads(threads, [&] { around = made.bake(); });
     std::vector<std::byte> bytes;
     for (const CodedTransfer& coded : around->grid->cells.at(0).transfers) {
-      const auto codebook = bundle::encodeCodebook(coded.codebook);
+      const auto codebook = transfer::encodeCodebook(coded.codebook);
       bytes.insert(bytes.end(), codebook.begin(), codebook.end());
       for (const CodedPlane& plane : coded.planes) {
-        const auto codes = bundle::encodeWeightPlane(plane.codes, plane.bits);
+        const auto codes = transfer::encodeWeightPlane(plane.codes, plane.bits);
         bytes.insert(bytes.end(), codes.begin(), codes.end());
       }
     }
@@ -238,7 +237,7 @@ TEST(Neighborhood, StopsWhenAsked) {
   std::stop_source stop;
   stop.request_stop();
   Progress progress;
-  EXPECT_FALSE(bakeNeighborhood(made.body, made.settings, progress, stop.get_token()).has_value());
+  EXPECT_FALSE(bakeNeighborhood(made.body, made.settings, {progress, stop.get_token()}).has_value());
 }
 
 }  // namespace

@@ -60,7 +60,7 @@ class VolumeCheckpoint : public ::testing::TestWithParam<float> {
 
 TEST_P(VolumeCheckpoint, CutShortAgainAndAgainItComesToTheSameBits) {
   Progress progress;
-  const auto whole = bakeVolumeTransfer(ball(), settings(), {}, progress, {});
+  const auto whole = bakeVolumeTransfer(ball(), settings(), {}, {progress});
   ASSERT_TRUE(whole);
   ASSERT_GT(whole->iterations, 5);
   int runs = 0;
@@ -70,7 +70,7 @@ TEST_P(VolumeCheckpoint, CutShortAgainAndAgainItComesToTheSameBits) {
   for (; !last; ++runs) {
     ASSERT_LT(runs, 2000);
     Cache cache = open();
-    const Keep keep{&cache, KeyMaker().addText("ball").key()};
+    const Key key = KeyMaker().addText("ball").key();
     std::stop_source stop;
     std::atomic<bool> done = false;
     std::thread killer([&] {
@@ -78,7 +78,7 @@ TEST_P(VolumeCheckpoint, CutShortAgainAndAgainItComesToTheSameBits) {
         std::this_thread::sleep_for(std::chrono::microseconds(200));
       stop.request_stop();
     });
-    last = bakeVolumeTransfer(ball(), settings(), {}, progress, stop.get_token(), keep);
+    last = bakeVolumeTransfer(ball(), settings(), {}, {progress, stop.get_token(), &cache, key});
     done = true;
     killer.join();
     if (last) rays = last->rays;
@@ -93,7 +93,7 @@ TEST_P(VolumeCheckpoint, CutShortAgainAndAgainItComesToTheSameBits) {
   EXPECT_EQ(entries(), 1) << "checkpoints go when the result is there";
   Cache cache = open();
   const auto found =
-      bakeVolumeTransfer(ball(), settings(), {}, progress, {}, {&cache, KeyMaker().addText("ball").key()});
+      bakeVolumeTransfer(ball(), settings(), {}, {progress, {}, &cache, KeyMaker().addText("ball").key()});
   ASSERT_TRUE(found);
   EXPECT_EQ(found->rays, 0u);
   EXPECT_EQ(found->vectors, whole->vectors);

@@ -92,7 +92,7 @@ TEST(FitWithinVoxels, LeavesThinMediaAlone) {
   VolumeTransfer transfer = transferOf(fog, gridOf(9, 2, 256));
   const std::vector<float> before = transfer.vectors;
   Progress progress;
-  ASSERT_TRUE(fitWithinVoxels(fog.medium(), gridOf(9, 2, 256), {}, nullptr, transfer, progress, {}));
+  ASSERT_TRUE(fitWithinVoxels(fog.medium(), gridOf(9, 2, 256), {}, nullptr, transfer, {progress}));
   EXPECT_EQ(transfer.vectors, before);
 }
 

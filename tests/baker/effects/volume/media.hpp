@@ -54,7 +54,7 @@ inline baker::VolumeTransfer transferOf(const Fog& fog, const baker::VolumeSetti
                                         glm::vec3 albedo = glm::vec3(1.0f),
                                         const baker::Occluders& occluders = {}, float g = 0.0f) {
   baker::Progress progress;
-  auto transfer = baker::bakeVolumeTransfer(fog.medium(albedo, g), settings, occluders, progress, {});
+  auto transfer = baker::bakeVolumeTransfer(fog.medium(albedo, g), settings, occluders, {progress});
   EXPECT_TRUE(transfer.has_value());
   return std::move(*transfer);
 }

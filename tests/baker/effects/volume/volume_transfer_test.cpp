@@ -211,7 +211,7 @@ TEST(VolumeTransfer, OfACloudIsThatOfRandomWalks) {
   const auto field = std::make_shared<DensityField>(cloud.size, values, glm::mat4(cloud.file_from_grid));
   Progress progress;
   const auto t = bakeVolumeTransfer({field, values, glm::vec3(static_cast<float>(kAlbedo))},
-                                    gridOf(24, 2, 512), {}, progress, {});
+                                    gridOf(24, 2, 512), {}, {progress});
   ASSERT_TRUE(t);
   const std::size_t samples = t->grid.samples();
   for (const std::size_t p : {samples / 7, samples / 3, samples / 2, samples * 3 / 4, samples * 6 / 7}) {

@@ -11,8 +11,8 @@
 #include <glm/geometric.hpp>
 
 #include "runtime/bundle/description.hpp"
-#include "runtime/bundle/transfer_codec.hpp"
 #include "runtime/streaming/loader.hpp"
+#include "runtime/transfer/vertex_rows.hpp"
 
 namespace lambent::testing {
 
@@ -89,7 +89,7 @@ class BundleMaker {
                    : c < options.cells + options.mapped_cells ? 9
                    : c < surface_cells                        ? glossy_outputs
                                        : options.neighborhood_bands * options.neighborhood_bands,
-                   c < surface_cells ? bundle::CellKind::Surface : bundle::CellKind::Neighborhood));
+                   c < surface_cells ? transfer::Domain::Vertex : transfer::Domain::GridPoint));
     gltf::Node node;
     node.parent_from_node = glm::mat4_cast(group.rest_rotation);
     // Scale differs by axis: normals must go by the inverse transpose.
@@ -137,8 +137,8 @@ class BundleMaker {
   glm::vec3 color() { return {uniform(0, 1), uniform(0, 1), uniform(0, 1)}; }
 
   // Up to four different lights, weights that fall and sum to 255.
-  bundle::LightWeights lightWeights(std::uint32_t lights) {
-    bundle::LightWeights weights;
+  transfer::LightWeights lightWeights(std::uint32_t lights) {
+    transfer::LightWeights weights;
     const std::uint32_t count = 1 + below(std::min(lights, 4u)), first = below(lights);
     std::uint32_t left = 255;
     for (std::uint32_t k = 0; k < count; ++k) {
@@ -161,9 +161,9 @@ class BundleMaker {
   }
 
   bundle::Cell makeCell(RandomBundle& made, const RandomBundleOptions& options, std::uint32_t g,
-                        std::uint32_t c, std::uint32_t outputs, bundle::CellKind kind) {
+                        std::uint32_t c, std::uint32_t outputs, transfer::Domain domain) {
     bundle::Cell cell;
-    cell.kind = kind;
+    cell.domain = domain;
     cell.first_sample = c * options.samples;
     cell.sample_count = options.samples;
     made.codebooks.emplace_back();
@@ -177,23 +177,23 @@ class BundleMaker {
         ready.samples.push_back(lightWeights(options.light_probes - 1));
       made.light_weights.push_back(std::move(ready));
     }
-    bundle::TransferShape shape{.order = options.order,
-                                .light_columns = 0,
-                                .shadowed_channels = options.shadowed_channels,
-                                .full_channels = options.full_channels,
-                                .outputs = outputs};
-    const auto add = [&](const bundle::TransferShape& part) {
+    transfer::TransferShape shape{.order = options.order,
+                                  .light_columns = 0,
+                                  .shadowed_channels = options.shadowed_channels,
+                                  .full_channels = options.full_channels,
+                                  .outputs = outputs};
+    const auto add = [&](const transfer::TransferShape& part) {
       const auto index = static_cast<std::uint32_t>(cell.transfers.size());
       cell.transfers.push_back(makeTransfer(made, options, g, c, index, part));
     };
-    if (outputs <= bundle::kMappedOutputs && kind == bundle::CellKind::Surface) {
+    if (outputs <= transfer::kMappedOutputs && domain == transfer::Domain::Vertex) {
       add(shape);
     } else {
       add({.order = options.order,
            .shadowed_channels = 1,
            .full_channels = 0,
            .outputs = outputs,
-           .visibility_bands = options.order + bundle::bandsOf(outputs) - 1});
+           .visibility_bands = options.order + transfer::bandsOf(outputs) - 1});
       if (options.bounced)
         add({.order = options.order, .shadowed_channels = 0, .full_channels = 3, .outputs = outputs});
     }
@@ -208,11 +208,11 @@ class BundleMaker {
   // Clusters of ever fewer axes, random samples in each.
   bundle::CellTransfer makeTransfer(RandomBundle& made, const RandomBundleOptions& options, std::uint32_t g,
                                     std::uint32_t c, std::uint32_t transfer_index,
-                                    const bundle::TransferShape& shape) {
+                                    const transfer::TransferShape& shape) {
     bundle::CellTransfer transfer;
     transfer.shape = shape;
     transfer.clusters = options.clusters;
-    bundle::Codebook codebook;
+    transfer::Codebook codebook;
     for (std::uint32_t cluster = 0; cluster < options.clusters; ++cluster) {
       codebook.axis_counts.push_back(options.planes - cluster * (options.planes + 1) / options.clusters);
       for (std::uint32_t j = 0; j < codebook.axis_counts.back(); ++j)
@@ -225,7 +225,7 @@ class BundleMaker {
     std::vector<std::uint32_t> cluster_of;
     for (std::uint32_t s = 0; s < options.samples; ++s)
       cluster_of.push_back(s == 0 ? 0 : below(options.clusters));
-    const std::vector<std::uint32_t> counts = bundle::planeCounts(codebook, cluster_of);
+    const std::vector<std::uint32_t> counts = transfer::planeCounts(codebook, cluster_of);
     for (std::uint32_t j = 0; j < counts.size(); ++j) {
       streaming::PlaneChunk plane{.group = g, .cell = c, .transfer = transfer_index, .plane = j, .codes = {}};
       for (std::uint32_t i = 0; i < counts[j] * bitsOf(j) / 8; ++i)
@@ -234,7 +234,7 @@ class BundleMaker {
       transfer.planes.push_back(
           {.payload = 0, .bits = bitsOf(j), .count = counts[j], .variance = j == 0 ? 0.95f : 0.01f});
     }
-    std::vector<std::uint32_t> positions = bundle::positionsOf(cluster_of, options.clusters);
+    std::vector<std::uint32_t> positions = transfer::positionsOf(cluster_of, options.clusters);
     for (std::uint32_t& position : positions) position |= cluster_of[position] << 16;
     made.codebooks.back().push_back({.group = g,
                                      .cell = c,
@@ -267,9 +267,9 @@ class BundleMaker {
     primitives.push_back(primitive);
   }
 
-  bundle::VertexWeights makeRows(const RandomBundleOptions& options, std::uint32_t first_sample,
-                                 std::uint32_t end_sample) {
-    bundle::VertexWeights rows;
+  transfer::VertexWeights makeRows(const RandomBundleOptions& options, std::uint32_t first_sample,
+                                   std::uint32_t end_sample) {
+    transfer::VertexWeights rows;
     rows.offsets.push_back(0);
     for (std::uint32_t v = 0; v < options.vertices; ++v) {
       const std::uint32_t entries = 1 + below(4);

@@ -17,7 +17,7 @@ struct Bench : testing::ShadingBench<Diffuse> {
   Diffuse& diffuse = effect;
   Proxies proxies;
 
-  std::uint32_t shade(TransferMode mode = TransferMode::Full) { return shadeIn(mode); }
+  std::uint32_t shade(evaluate::TransferMode mode = evaluate::TransferMode::Full) { return shadeIn(mode); }
 
   std::vector<std::uint64_t> shadedGroups() const {
     std::vector<std::uint64_t> shaded;
@@ -60,15 +60,15 @@ struct Bench : testing::ShadingBench<Diffuse> {
     for (std::size_t i = 0; i < tables.cells.size(); ++i) {
       const streaming::ResidentCell& resident = residency.cells()[i];
       if (!resident.usable()) continue;
-      ref::Memory memory;
+      transfer::ref::Memory memory;
       memory.lights = lights.coefficients();
       memory.transfer = transfer[resident.block.page];
       for (uint t = 0; t < tables.cells[i].count; ++t) {
-        const TransferRecord& record = tables.transfers[tables.cells[i].first + t];
-        ref::projectTransfer(memory, record, tables.places, products);
+        const transfer::TransferRecord& record = tables.transfers[tables.cells[i].first + t];
+        transfer::ref::projectVectors(memory, record, tables.places, products);
         for (uint position = 0; position < record.sample_count; ++position)
-          ref::shadePosition(memory, record, tables.places, products, position,
-                             samples[residency.groups()[resident.group].samples.page]);
+          transfer::ref::shadeVector(memory, record, tables.places, products, position,
+                                     samples[residency.groups()[resident.group].samples.page]);
       }
     }
     double difference = 0.0, largest = 0.0;
@@ -84,11 +84,11 @@ struct Bench : testing::ShadingBench<Diffuse> {
     for (std::size_t i = 0; i < tables.draws.size(); ++i) {
       const streaming::ResidentDraw& resident = residency.draws()[i];
       const DrawRecord& draw = tables.draws[i];
-      const ref::Memory memory{.lights = lights.coefficients(),
-                               .transfer = {},
-                               .samples = samples[residency.groups()[resident.group].samples.page],
-                               .rows = rows[resident.rows.page],
-                               .geometry = geometry[residency.meshes()[resident.mesh].block.page]};
+      const transfer::ref::Memory memory{.lights = lights.coefficients(),
+                                         .transfer = {},
+                                         .samples = samples[residency.groups()[resident.group].samples.page],
+                                         .rows = rows[resident.rows.page],
+                                         .geometry = geometry[residency.meshes()[resident.mesh].block.page]};
       const std::vector<uint>& result = radiance[resident.radiance.page];
       for (uint v = 0; v < draw.vertex_count; ++v) {
         ref::MappedLight expected{};
@@ -144,7 +144,8 @@ TEST_F(DiffuseGpu, MatchesItsTwinWithClustersLampsBothBlocksAndNormalMaps) {
         bench.uploadMeshes();
         bench.uploadRows();
         bench.uploadTransfer(4);
-        for (const TransferMode mode : {TransferMode::Full, TransferMode::Shadowed}) {
+        for (const evaluate::TransferMode mode :
+             {evaluate::TransferMode::Full, evaluate::TransferMode::Shadowed}) {
           bench.shade(mode);
           EXPECT_LT(bench.differenceToTwin(), 1e-3)
               << clusters << " clusters, " << lamps << " lamps, " << mapped << " mapped cells";
@@ -170,12 +171,14 @@ TEST_F(DiffuseGpu, MatchesItsTwinWhereKeyLightsStandApart) {
         bench.uploadMeshes();
         bench.uploadRows();
         bench.uploadTransfer(4);
-        for (const TransferMode mode : {TransferMode::Full, TransferMode::Shadowed}) {
+        for (const evaluate::TransferMode mode :
+             {evaluate::TransferMode::Full, evaluate::TransferMode::Shadowed}) {
           bench.shade(mode);
           EXPECT_LT(bench.differenceToTwin(), 1e-3)
               << shadowed << " and " << full << " channels, " << lights << " lights";
-          for (const TransferRecord& record : bench.diffuse.tables().transfers) {
-            EXPECT_EQ(record.bounced, record.order > 0 && mode == TransferMode::Full && full > 0 ? 1u : 0u);
+          for (const transfer::TransferRecord& record : bench.diffuse.tables().transfers) {
+            EXPECT_EQ(record.bounced,
+                      record.order > 0 && mode == evaluate::TransferMode::Full && full > 0 ? 1u : 0u);
             EXPECT_EQ(record.straight_channels, record.order > 0 ? shadowed : 0u);
           }
         }
@@ -188,11 +191,12 @@ TEST_F(DiffuseGpu, MatchesItsTwinWhereKeyLightsStandApart) {
           for (lighting::Incident& incident : place.incident) incident.key = nullptr;
         bench.shade();
         EXPECT_LT(bench.differenceToTwin(), 1e-3) << "no key lights";
-        for (const TransferRecord& record : bench.diffuse.tables().transfers) EXPECT_EQ(record.bounced, 0u);
+        for (const transfer::TransferRecord& record : bench.diffuse.tables().transfers)
+          EXPECT_EQ(record.bounced, 0u);
         bench.shineByKeyLights();
         bench.shade();
         EXPECT_LT(bench.differenceToTwin(), 1e-3) << "they are back";
-        for (const TransferRecord& record : bench.diffuse.tables().transfers)
+        for (const transfer::TransferRecord& record : bench.diffuse.tables().transfers)
           EXPECT_EQ(record.bounced, record.order > 0 && full > 0 ? 1u : 0u);
       }
 }
@@ -265,7 +269,7 @@ TEST_F(DiffuseGpu, ProxiesSendOutWhatTheirSamplesReceive) {
       const gpu::Buffer& page = bench.residency.samples().page(bench.residency.groups()[g].samples.page);
       std::vector<glm::vec4> samples(page.byteCount() / sizeof(glm::vec4));
       page.read(0, std::span(samples));
-      ref::Memory memory;
+      transfer::ref::Memory memory;
       memory.lights = bench.lights.coefficients();
       memory.samples = samples;
       const ProxyGroupRecord& group = bench.proxies.groups()[g];
@@ -322,10 +326,10 @@ TEST_F(DiffuseGpu, ALampThatDimsIsShadedAgainAndUnshadowedIsDark) {
   EXPECT_EQ(bench.shade(), 5u);
   EXPECT_LT(bench.differenceToTwin(), 1e-3);
   EXPECT_NE(Bench::pagesOf(bench.residency.radiance()), before);
-  EXPECT_EQ(bench.shade(TransferMode::Unshadowed), 1u);
+  EXPECT_EQ(bench.shade(evaluate::TransferMode::Unshadowed), 1u);
   const auto unshadowed = Bench::pagesOf(bench.residency.radiance());
   bench.places[0].lamps[0] = glm::vec3(50.0f);
-  bench.shade(TransferMode::Unshadowed);
+  bench.shade(evaluate::TransferMode::Unshadowed);
   EXPECT_EQ(Bench::pagesOf(bench.residency.radiance()), unshadowed);
 }
 
@@ -362,9 +366,9 @@ TEST_F(DiffuseGpu, UnshadowedModeLeavesTransferAside) {
   bench.uploadRows();
   bench.uploadTransfer(7);
   bench.shade();
-  EXPECT_EQ(bench.shade(TransferMode::Unshadowed), 1u);
+  EXPECT_EQ(bench.shade(evaluate::TransferMode::Unshadowed), 1u);
   EXPECT_LT(bench.differenceToTwin(), 1e-3);
-  EXPECT_EQ(bench.shade(TransferMode::Full), 3u);
+  EXPECT_EQ(bench.shade(evaluate::TransferMode::Full), 3u);
   EXPECT_LT(bench.differenceToTwin(), 1e-3);
 }
 

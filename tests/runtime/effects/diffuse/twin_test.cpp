@@ -13,8 +13,8 @@ namespace {
 
 // Of one light probe: without key lights, and of key lights alone, if there are any.
 std::vector<glm::vec4> randomLight(testing::BundleMaker& maker, int order, bool keys = false) {
-  std::vector<glm::vec4> light(kLightStride, glm::vec4(0.0f));
-  for (const uint first : keys ? std::vector{0u, kKeyBlock} : std::vector{0u})
+  std::vector<glm::vec4> light(transfer::kLightStride, glm::vec4(0.0f));
+  for (const uint first : keys ? std::vector{0u, transfer::kKeyBlock} : std::vector{0u})
     for (uint i = 0; i < static_cast<uint>(order * order); ++i)
       light[first + i] = {maker.uniform(-1, 1), maker.uniform(-1, 1), maker.uniform(-1, 1), 0.0f};
   return light;
@@ -26,7 +26,7 @@ TEST(DiffuseTwin, ShadesUnshadowedAsTheClosedFormOfOpenTransfer) {
   testing::BundleMaker maker(3);
   for (int order = 1; order <= 8; ++order) {
     const std::vector<glm::vec4> light = randomLight(maker, order);
-    ref::Memory memory;
+    transfer::ref::Memory memory;
     memory.lights = light;
     for (int i = 0; i < 50; ++i) {
       const glm::vec3 normal = i == 0 ? glm::vec3(0, 0, 1) : i == 1 ? glm::vec3(0, -1, 0) : maker.direction();
@@ -46,19 +46,19 @@ namespace {
 // A transfer as residency lays it out, alone in its page.
 struct Page {
   std::vector<uint> words, places;
-  TransferRecord record{};
+  transfer::TransferRecord record{};
 
   Page(const testing::RandomBundle& made, std::size_t transfer_index, bool full, bool keys = false) {
     const bundle::CellTransfer& transfer = made.description.groups[0].cells[0].transfers[transfer_index];
-    const bundle::TransferShape& shape = transfer.shape;
-    const bundle::Codebook& codebook = made.codebooks[0][transfer_index].codebook;
+    const transfer::TransferShape& shape = transfer.shape;
+    const transfer::Codebook& codebook = made.codebooks[0][transfer_index].codebook;
     const auto& positions = made.codebooks[0][transfer_index].positions;
     const std::uint32_t lights =
         shape.order > 0 && !made.light_weights.empty()
             ? static_cast<std::uint32_t>(made.description.groups[0].light_probes.size()) - 1
             : 1;
     for (std::uint32_t k = 0; k < lights; ++k)
-      places.push_back(shape.order > 0 ? kLightStride * k : lampsOf(made));
+      places.push_back(shape.order > 0 ? transfer::kLightStride * k : lampsOf(made));
     record = {.light_count = lights,
               .first_light = 0,
               .light_weights_word = 0,
@@ -100,9 +100,9 @@ struct Page {
     words.insert(words.end(), positions.begin(), positions.end());
     for (const streaming::PlaneChunk& plane : made.planes[0]) {
       if (plane.transfer != transfer_index) continue;
-      places.push_back(size() | (transfer.planes[plane.plane].bits == 16 ? kCodes16Bit : 0u));
+      places.push_back(size() | (transfer.planes[plane.plane].bits == 16 ? transfer::kCodes16Bit : 0u));
       words.resize(words.size() + (plane.codes.size() + 3) / 4);
-      std::memcpy(&words[places.back() & ~kCodes16Bit], plane.codes.data(), plane.codes.size());
+      std::memcpy(&words[places.back() & ~transfer::kCodes16Bit], plane.codes.data(), plane.codes.size());
     }
     if (lights > 1) {
       record.light_weights_word = size();
@@ -114,8 +114,9 @@ struct Page {
   // The lamps come after the light probes.
   static uint lampsOf(const testing::RandomBundle& made) {
     return made.light_weights.empty()
-               ? kLightStride
-               : kLightStride * static_cast<uint>(made.description.groups[0].light_probes.size() - 1);
+               ? transfer::kLightStride
+               : transfer::kLightStride *
+                     static_cast<uint>(made.description.groups[0].light_probes.size() - 1);
   }
   uint size() const { return static_cast<uint>(words.size()); }
   void append(const std::vector<float>& values) {
@@ -141,22 +142,22 @@ std::vector<glm::vec4> decodedTimesLight(const testing::RandomBundle& made,
                                          const std::vector<glm::vec4>& light, bool full) {
   std::vector<glm::vec4> out;
   for (std::size_t t = 0; t < made.codebooks[0].size(); ++t) {
-    const bundle::TransferShape& shape = made.description.groups[0].cells[0].transfers[t].shape;
+    const transfer::TransferShape& shape = made.description.groups[0].cells[0].transfers[t].shape;
     const auto& positions = made.codebooks[0][t].positions;
     std::vector<std::uint32_t> cluster_of(positions.size());
     for (const std::uint32_t place : positions) cluster_of[place & 0xffff] = place >> 16;
     const std::vector<float> vectors =
-        bundle::decodeTransfer(shape, made.codebooks[0][t].codebook, cluster_of, codesOf(made, t));
+        transfer::decodeTransfer(shape, made.codebooks[0][t].codebook, cluster_of, codesOf(made, t));
     if (out.empty()) out.resize(positions.size() * shape.outputs, glm::vec4(0, 0, 0, 1));
     // Coefficient i of what arrives at a sample, of the block that begins so far behind the first.
     const auto arriving = [&](std::size_t s, std::uint32_t block, std::uint32_t i) {
       if (shape.order == 0) return block == 0 ? glm::vec3(light[Page::lampsOf(made) + i]) : glm::vec3(0.0f);
       if (made.light_weights.empty()) return glm::vec3(light[block + i]);
-      const bundle::LightWeights& weights = made.light_weights[0].samples[s];
+      const transfer::LightWeights& weights = made.light_weights[0].samples[s];
       glm::vec3 sum(0.0f);
       for (std::size_t k = 0; k < 4; ++k)
         sum += static_cast<float>(weights.weight[k]) / 255.0f *
-               glm::vec3(light[kLightStride * weights.light[k] + block + i]);
+               glm::vec3(light[transfer::kLightStride * weights.light[k] + block + i]);
       return sum;
     };
     const auto times = [&](std::size_t s, std::uint32_t j, std::uint32_t first, std::uint32_t channels,
@@ -175,10 +176,10 @@ std::vector<glm::vec4> decodedTimesLight(const testing::RandomBundle& made,
     const std::uint32_t channels = full ? shape.full_channels : shape.shadowed_channels;
     for (std::size_t s = 0; s < positions.size(); ++s)
       for (std::uint32_t j = 0; j < shape.outputs; ++j) {
-        const glm::vec3 straight = times(s, j, 0, shape.shadowed_channels, kKeyBlock);
+        const glm::vec3 straight = times(s, j, 0, shape.shadowed_channels, transfer::kKeyBlock);
         glm::vec3 sum = times(s, j, first, channels, 0);
-        if (full) sum += times(s, j, first, channels, kKeyBlock) - straight;
-        const float luminance = glm::dot(straight, ref::kLuminance);
+        if (full) sum += times(s, j, first, channels, transfer::kKeyBlock) - straight;
+        const float luminance = glm::dot(straight, transfer::ref::kLuminance);
         out[s * shape.outputs + j] += glm::vec4(sum, j == 0 ? std::max(luminance, 0.0f) : luminance);
       }
   }
@@ -216,13 +217,13 @@ TEST(DiffuseTwin, ShadesSamplesAsDecodedTransferTimesLight) {
               std::vector<glm::vec4> samples(expected.size(), glm::vec4(0.0f));
               for (std::size_t t = 0; t < made.codebooks[0].size(); ++t) {
                 const Page page(made, t, full, keys);
-                ref::Memory memory;
+                transfer::ref::Memory memory;
                 memory.lights = light;
                 memory.transfer = page.words;
                 std::vector<glm::vec4> products(lights * page.words.size());
-                ref::projectTransfer(memory, page.record, page.places, products);
+                transfer::ref::projectVectors(memory, page.record, page.places, products);
                 for (uint p = 0; p < page.record.sample_count; ++p)
-                  ref::shadePosition(memory, page.record, page.places, products, p, samples);
+                  transfer::ref::shadeVector(memory, page.record, page.places, products, p, samples);
               }
               for (std::size_t i = 0; i < samples.size(); ++i) {
                 // Values are of size 1, sums of 100 floats.
@@ -237,35 +238,35 @@ TEST(DiffuseTwin, ShadesSamplesAsDecodedTransferTimesLight) {
 
 TEST(DiffuseTwin, OfKeyLightsOnlyTheBouncesArriveAndBouncesWithATransferOfTheirOwnAlone) {
   // As the plain sum above, by hand: one column, one vector, no codes.
-  std::vector<glm::vec4> light(kLightStride, glm::vec4(0.0f));
+  std::vector<glm::vec4> light(transfer::kLightStride, glm::vec4(0.0f));
   light[0] = {1.0f, 2.0f, 3.0f, 0.0f};
-  light[kKeyBlock] = {10.0f, 20.0f, 40.0f, 0.0f};
+  light[transfer::kKeyBlock] = {10.0f, 20.0f, 40.0f, 0.0f};
   constexpr float kShadowed = 0.5f;
   constexpr glm::vec3 kFull(0.75f, 1.0f, 1.25f);
   std::vector<uint> words;
   for (const float value : {kShadowed, kFull.r, kFull.g, kFull.b})
     words.push_back(std::bit_cast<uint>(value));
-  ref::Memory memory;
+  transfer::ref::Memory memory;
   memory.lights = light;
   memory.transfer = words;
-  const auto project = [&](const TransferRecord& record) {
-    return ref::projectOnLight(memory, record, 0, 0, 0);
+  const auto project = [&](const transfer::TransferRecord& record) {
+    return transfer::ref::projectOnLight(memory, record, 0, 0, 0);
   };
-  TransferRecord record{};
+  transfer::TransferRecord record{};
   record.columns = record.outputs = record.order = 1;
   record.channels = 3;
   record.vector_size = 4;
   record.first_value = 1;
-  const glm::vec3 rest(light[0]), key(light[kKeyBlock]);
+  const glm::vec3 rest(light[0]), key(light[transfer::kKeyBlock]);
   EXPECT_EQ(project(record), glm::vec4(kFull * rest, 0.0f)) << "no key lights";
   record.bounced = 1;
   record.straight_channels = 1;
   EXPECT_EQ(project(record),
-            glm::vec4(kFull * (rest + key) - kShadowed * key, glm::dot(kShadowed * key, ref::kLuminance)));
+            glm::vec4(kFull * (rest + key) - kShadowed * key, glm::dot(kShadowed * key, transfer::ref::kLuminance)));
   record.channels = 1;  // without bounces
   record.first_value = 0;
   record.bounced = 0;
-  EXPECT_EQ(project(record), glm::vec4(kShadowed * rest, glm::dot(kShadowed * key, ref::kLuminance)));
+  EXPECT_EQ(project(record), glm::vec4(kShadowed * rest, glm::dot(kShadowed * key, transfer::ref::kLuminance)));
   record.channels = 3;  // bounces that have a transfer of their own: nothing of it is straight
   record.first_value = 1;
   record.bounced = 1;
@@ -276,7 +277,7 @@ TEST(DiffuseTwin, OfKeyLightsOnlyTheBouncesArriveAndBouncesWithATransferOfTheirO
 TEST(DiffuseTwin, MappedLightOfAnUnshadowedVertexIsTheLight) {
   testing::BundleMaker maker(5);
   const std::vector<glm::vec4> light = randomLight(maker, 3);
-  ref::Memory memory;
+  transfer::ref::Memory memory;
   memory.lights = light;
   DrawRecord draw{};
   draw.rows_word = kNoRows;

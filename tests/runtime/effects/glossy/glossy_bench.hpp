@@ -19,7 +19,7 @@ struct Bench : lambent::testing::ShadingBench<Glossy> {
     uploadRows();
     uploadTransfer();
   }
-  std::uint32_t shade(TransferMode mode = TransferMode::Full) { return shadeIn(mode); }
+  std::uint32_t shade(evaluate::TransferMode mode = evaluate::TransferMode::Full) { return shadeIn(mode); }
 
   static std::vector<glm::vec4> samplesOf(gpu::Arena& arena, std::uint32_t page) {
     std::vector<glm::vec4> samples(arena.page(page).byteCount() / sizeof(glm::vec4));
@@ -30,7 +30,7 @@ struct Bench : lambent::testing::ShadingBench<Glossy> {
   // Largest difference of a glossy sample to the twin's, relative to the largest value; RGB and visibility.
   double differenceToTwin() {
     double difference = 0.0, largest = 0.0;
-    const TransferTable& tables = glossy.tables();
+    const evaluate::TransferTable& tables = glossy.tables();
     std::vector<glm::vec4> products(tables.product_count);
     for (std::size_t i = 0; i < tables.cells.size(); ++i) {
       const streaming::ResidentCell& cell = residency.cells()[i];
@@ -38,7 +38,7 @@ struct Bench : lambent::testing::ShadingBench<Glossy> {
       const std::vector<glm::vec4> got =
           samplesOf(residency.samples(), residency.groups()[cell.group].samples.page);
       std::vector<glm::vec4> wanted(got.size(), glm::vec4(0.0f));
-      diffuse::ref::Memory memory;
+      transfer::ref::Memory memory;
       memory.lights = lights.coefficients();
       const FillRecord& fill = glossy.fills()[i];
       if (tables.cells[i].count == 0 || !cell.usable()) {
@@ -49,14 +49,15 @@ struct Bench : lambent::testing::ShadingBench<Glossy> {
         residency.transfer().page(cell.block.page).read(0, std::span(page));
         memory.transfer = page;
         for (uint t = 0; t < tables.cells[i].count; ++t) {
-          const diffuse::TransferRecord& record = tables.transfers[tables.cells[i].first + t];
+          const transfer::TransferRecord& record = tables.transfers[tables.cells[i].first + t];
           if (record.visibility != 0)
-            ref::projectTransfer(memory, gauntWords(record.order, bundle::bandsOf(record.outputs)), record,
-                                 tables.places, products);
+            transfer::ref::projectVisibilities(memory,
+                                               gauntWords(record.order, transfer::bandsOf(record.outputs)),
+                                               record, tables.places, products);
           else
-            diffuse::ref::projectTransfer(memory, record, tables.places, products);
+            transfer::ref::projectVectors(memory, record, tables.places, products);
           for (uint position = 0; position < record.sample_count; ++position)
-            ref::shadePosition(memory, record, tables.places, products, position, wanted);
+            transfer::ref::shadeMatrix(memory, record, tables.places, products, position, wanted);
         }
       }
       for (uint e = fill.first_output; e < fill.first_output + fill.output_count; ++e)

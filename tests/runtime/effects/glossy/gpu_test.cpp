@@ -37,8 +37,9 @@ TEST_F(GlossyGpu, MatchesItsTwinWithClustersBouncesLampsAndSeveralLightProbes) {
                             .samples = 123,
                             .light_probes = lights});
         bench.uploadAll();
-        for (const TransferMode mode :
-             {TransferMode::Full, TransferMode::Shadowed, TransferMode::Unshadowed}) {
+        for (const evaluate::TransferMode mode :
+             {evaluate::TransferMode::Full, evaluate::TransferMode::Shadowed,
+              evaluate::TransferMode::Unshadowed}) {
           bench.shade(mode);
           EXPECT_LT(bench.differenceToTwin(), 1e-4)
               << clusters << " clusters, " << lamps << " lamps, " << lights << " lights";
@@ -61,7 +62,7 @@ TEST_F(GlossyGpu, ShadesPointsOfNeighborhoodsAlsoWhereNothingIsGlossy) {
       bench.shade();
       EXPECT_EQ(bench.glossy.cellsShadedLast(), 4u);
       EXPECT_LT(bench.differenceToTwin(), 1e-4) << bands << " bands";
-      bench.shade(TransferMode::Shadowed);
+      bench.shade(evaluate::TransferMode::Shadowed);
       EXPECT_LT(bench.differenceToTwin(), 1e-4) << bands << " bands";
     }
 }
@@ -85,7 +86,7 @@ TEST_F(GlossyGpu, PointsWithoutTransferChangeNothing) {
   bench.uploadTransfer();
   bench.shade();
   EXPECT_FALSE(none(points()));
-  bench.shade(TransferMode::Unshadowed);
+  bench.shade(evaluate::TransferMode::Unshadowed);
   EXPECT_TRUE(none(points()));
 }
 
@@ -94,8 +95,8 @@ TEST_F(GlossyGpu, ShadowedLeavesBouncedLightOut) {
   Bench bench(maker, {.groups = 1, .cells = 0, .glossy_cells = 1, .bounced = true});
   bench.uploadAll();
   EXPECT_EQ(bench.shade(), 4u) << "visibility, dense, samples, adding";
-  EXPECT_EQ(bench.shade(TransferMode::Shadowed), 2u);
-  EXPECT_EQ(bench.shade(TransferMode::Unshadowed), 1u) << "fill";
+  EXPECT_EQ(bench.shade(evaluate::TransferMode::Shadowed), 2u);
+  EXPECT_EQ(bench.shade(evaluate::TransferMode::Unshadowed), 1u) << "fill";
 }
 
 TEST_F(GlossyGpu, ShowsTheLightItselfUntilTransferIsThere) {
@@ -144,7 +145,7 @@ TEST_F(GlossyGpu, GlossyDrawsHaveNoRadianceAtTheirVertices) {
   diffuse::Diffuse diffuse;
   gpu::Counters counters;
   bench.shade();
-  ASSERT_TRUE(diffuse.shade(bench.residency, bench.lights, TransferMode::Full, counters));
+  ASSERT_TRUE(diffuse.shade(bench.residency, bench.lights, evaluate::TransferMode::Full, counters));
   EXPECT_EQ(counters.dispatches, 0u);
 }
 

@@ -15,7 +15,7 @@ struct OneVector {
   std::uint32_t in, out;
   std::vector<uint> gaunt, page;
   std::vector<glm::vec4> lights;
-  diffuse::TransferRecord record{};
+  transfer::TransferRecord record{};
 
   OneVector(std::uint32_t bands_in, std::uint32_t bands_out)
       : in(bands_in), out(bands_out), gaunt(gauntWords(bands_in, bands_out)) {
@@ -27,10 +27,10 @@ struct OneVector {
   }
   void setVisibility(std::size_t k, float value) { page[k] = std::bit_cast<uint>(value); }
   glm::vec4 output(uint i) const {
-    diffuse::ref::Memory memory;
+    transfer::ref::Memory memory;
     memory.lights = lights;
     memory.transfer = page;
-    return ref::projectVisibility(memory, gaunt, record, 0, i, 0);
+    return transfer::ref::projectVisibility(memory, gaunt, record, 0, i, 0);
   }
 };
 
@@ -81,7 +81,7 @@ TEST(GlossyTwin, IsTheProductOfVisibilityAndLightPointByPoint) {
 
 TEST(GlossyTwin, FillsOpenSamplesWithTheLightAndFullVisibility) {
   const std::vector<glm::vec4> lights(9, glm::vec4(1.0f, 2.0f, 3.0f, 0.0f));
-  diffuse::ref::Memory memory;
+  transfer::ref::Memory memory;
   memory.lights = lights;
   FillRecord fill{
       .first_output = 0, .output_count = 25, .outputs = 25, .light = 0, .coefficients = 9, .open = 1};

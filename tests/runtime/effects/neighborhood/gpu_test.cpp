@@ -55,7 +55,7 @@ struct Bench : lambent::testing::ShadingBench<glossy::Glossy> {
       uint first_point = 0;
       for (std::uint32_t c = group.first_cell; c < group.first_cell + group.cell_count; ++c) {
         const streaming::ResidentCell& cell = residency.cells()[c];
-        if (cell.kind != bundle::CellKind::Neighborhood) continue;
+        if (cell.domain != transfer::Domain::GridPoint) continue;
         ref::write(result,
                    {.grid = grid.place,
                     .first_output = cell.first_output,

@@ -22,7 +22,7 @@ BuiltVolume cloud(unsigned seed, std::uint32_t bits = 16, std::uint32_t outputs 
   built.has_sample = [](std::uint32_t voxel) { return voxel % 11 != 3; };
   built.shape = {.order = 3, .full_channels = 3, .outputs = outputs};
   if (outputs > 9)
-    built.shape = {.order = 3, .outputs = outputs, .visibility_bands = 3 + bundle::bandsOf(outputs) - 1};
+    built.shape = {.order = 3, .outputs = outputs, .visibility_bands = 3 + transfer::bandsOf(outputs) - 1};
   built.transfer = [shape_of = built.shape, seed](std::uint32_t voxel) {
     std::mt19937 engine(seed * 1000 + voxel);
     std::vector<float> vector(shape_of.size());
@@ -42,7 +42,7 @@ std::vector<glm::vec4> pictureOfTwin(const Bench& bench, const spec::View& view,
       const PixelRay ray = rayOf(view, x, y);
       const float depth = depths[y * kSide + x];
       const float end = depth < 1.0f ? viewZ(view, 2.0f * depth - 1.0f) / ray.direction.z : ref::kInfinity;
-      const glm::vec4 found = ref::march(media, ray.origin, ray.direction, ray.begin, end);
+      const glm::vec4 found = ref::march(media, {ray.origin, ray.direction, ray.begin, end});
       const float through = std::exp(-found.a);
       texels.push_back(
           glm::vec4(glm::vec3(found) + through * glm::vec3(before), 1.0f - through * (1.0f - before.a)));
@@ -121,7 +121,8 @@ TEST_F(VolumeGpu, MatchesItsTwinForOneVolumeAndSeveralThatOverlap) {
 
 TEST_F(VolumeGpu, BringsSamplesToTheirTexels) {
   for (const std::uint32_t outputs : {1u, 9u, 25u})
-    for (const TransferMode mode : {TransferMode::Full, TransferMode::Unshadowed}) {
+    for (const evaluate::TransferMode mode :
+         {evaluate::TransferMode::Full, evaluate::TransferMode::Unshadowed}) {
       BuiltVolume built = cloud(9, 16, outputs);
       Bench bench({built});
       bench.uploadAll();
@@ -131,7 +132,7 @@ TEST_F(VolumeGpu, BringsSamplesToTheirTexels) {
       std::vector<glm::vec4> samples(bench.residency.samples().page(group.samples.page).byteCount() / 16);
       bench.residency.samples().page(group.samples.page).read(0, std::span(samples));
       const SlabLayout layout = slabLayoutOf(built.transfer_size, outputs);
-      const bool open = mode == TransferMode::Unshadowed && outputs <= 9;
+      const bool open = mode == evaluate::TransferMode::Unshadowed && outputs <= 9;
       const ScatterRecord record{.first_output = cell.first_output,
                                  .first_voxel = 0,
                                  .sample_count = cell.sample_count,
@@ -152,7 +153,7 @@ TEST_F(VolumeGpu, BringsSamplesToTheirTexels) {
       ASSERT_EQ(found.light.values.size(), expected.values.size());
       for (std::size_t i = 0; i < expected.values.size(); ++i)
         ASSERT_LT(glm::distance(found.light.values[i], expected.values[i]), 1e-5f) << outputs << " at " << i;
-      if (mode == TransferMode::Unshadowed) {
+      if (mode == evaluate::TransferMode::Unshadowed) {
         // However it is stored: the light itself, its band l times g^l.
         const sh::LightVector& light = bench.environment.light();
         const glm::vec3 band_one = glm::vec3(expected.at({0, 0, outputs > 1 ? 2u * 7u : 0u}));
@@ -173,11 +174,11 @@ TEST_F(VolumeGpu, WritesNothingUnlessSomethingChanged) {
   bench.environment.setTurn(10.0f);
   EXPECT_EQ(bench.shade(), 2u);
   EXPECT_EQ(bench.shade(), 0u);
-  EXPECT_EQ(bench.shade(TransferMode::Shadowed), 2u);
-  EXPECT_EQ(bench.shade(TransferMode::Unshadowed), 2u);
-  EXPECT_EQ(bench.shade(TransferMode::Unshadowed), 0u);
+  EXPECT_EQ(bench.shade(evaluate::TransferMode::Shadowed), 2u);
+  EXPECT_EQ(bench.shade(evaluate::TransferMode::Unshadowed), 2u);
+  EXPECT_EQ(bench.shade(evaluate::TransferMode::Unshadowed), 0u);
   bench.environment.setTurn(20.0f);
-  EXPECT_EQ(bench.shade(TransferMode::Unshadowed), 2u) << "also where it shows the light itself";
+  EXPECT_EQ(bench.shade(evaluate::TransferMode::Unshadowed), 2u) << "also where it shows the light itself";
 }
 
 TEST_F(VolumeGpu, ShowsTheLightItselfUntilTransferIsThere) {

@@ -79,7 +79,7 @@ TEST(VolumeTwin, AHomogeneousBoxTransmitsTheExponentialOfItsChord) {
         glm::scale(glm::translate(glm::mat4(1.0f), glm::vec3(-1.0f)), glm::vec3(1.0f / 16.0f));
     const ref::Medium medium = mediumOf(built, whiteLight);
     for (const Aim& aim : someAims(300)) {
-      const glm::vec4 found = ref::march(std::span(&medium, 1), aim.origin, aim.direction);
+      const glm::vec4 found = ref::march(std::span(&medium, 1), {aim.origin, aim.direction});
       EXPECT_NEAR(found.a, extinction * chord(aim), 2e-5f * extinction)
           << extinction << " " << aim.origin.x << " " << aim.origin.y << " " << aim.origin.z << " along "
           << aim.direction.x << " " << aim.direction.y << " " << aim.direction.z;
@@ -100,7 +100,7 @@ TEST(VolumeTwin, AtAnyDensityScattersNoMoreThanItTakesAway) {
     built.density = [=](const glm::vec3& at) { return density_max * shape(at); };
     const ref::Medium medium = mediumOf(built, whiteLight);
     for (const Aim& aim : someAims(300)) {
-      const glm::vec4 found = ref::march(std::span(&medium, 1), aim.origin, aim.direction);
+      const glm::vec4 found = ref::march(std::span(&medium, 1), {aim.origin, aim.direction});
       for (int c = 0; c < 3; ++c) EXPECT_NEAR(found[c] + std::exp(-found.a), 1.0f, 1e-3f) << density_max;
       ASSERT_TRUE(std::isfinite(found.a));
       if (density_max == 0.0f) {
@@ -121,8 +121,9 @@ TEST(VolumeTwin, AStepIsExactWhereDensityIsConstantAndLightLinear) {
     // Texel x has its centre at -1 + (x + 0.5) / 4 m; the outermost half voxel is left out.
     const float begin = 3.0f - 0.875f, length = 1.75f;
     for (const float step : {0.25f, 0.5f, 8.0f}) {
-      const glm::vec4 found = ref::march(std::span(&medium, 1), glm::vec3(-3.0f, 0.1f, 0.2f),
-                                         glm::vec3(1, 0, 0), begin, begin + length, step);
+      const glm::vec4 found =
+          ref::march(std::span(&medium, 1),
+                     {glm::vec3(-3.0f, 0.1f, 0.2f), glm::vec3(1, 0, 0), begin, begin + length}, step);
       const double s = extinction, d = length;
       const double expected = 4.0 * (-std::expm1(-s * d) / s - d * std::exp(-s * d));
       EXPECT_NEAR(found.r, expected, 2e-3 * expected) << extinction << " step " << step;
@@ -146,7 +147,8 @@ TEST(VolumeTwin, ABallTransmitsTheExponentialOfItsChord) {
   for (const float offset : {0.0f, 0.3f, 0.6f, 0.8f}) {
     const glm::vec3 direction = glm::normalize(glm::vec3(0.3f, -0.2f, -1.0f));
     const glm::vec3 across = glm::normalize(glm::cross(direction, glm::vec3(0, 1, 0)));
-    const glm::vec4 found = ref::march(std::span(&medium, 1), offset * across - 4.0f * direction, direction);
+    const glm::vec4 found =
+        ref::march(std::span(&medium, 1), {offset * across - 4.0f * direction, direction});
     const float expected = std::exp(-2.0f * kExtinction * std::sqrt(1.0f - offset * offset));
     EXPECT_NEAR(std::exp(-found.a), expected, 0.01f * expected) << offset;
   }
@@ -171,7 +173,7 @@ TEST(VolumeTwin, HalfTheStepChangesThePictureByLessThanHalfAPercent) {
     for (const Aim& aim : someAims(1500)) {
       const auto seen = [&](float step) {
         const glm::vec4 found =
-            ref::march(std::span(&medium, 1), aim.origin, aim.direction, 0.0f, ref::kInfinity, step);
+            ref::march(std::span(&medium, 1), {aim.origin, aim.direction, 0.0f, ref::kInfinity}, step);
         return glm::dvec3(found) + std::exp(-double{found.a}) * glm::dvec3(0.2, 0.5, 1.0);
       };
       const glm::dvec3 whole = seen(default_step), half = seen(0.5f * default_step);
@@ -195,9 +197,10 @@ TEST(VolumeTwin, JitterChangesNothingThatCanBeSeen) {
   int number = 0;
   for (const Aim& aim : someAims(1000)) {
     const float jitter = static_cast<float>(++number % 16 + 1) / 16.0f;
-    const float plain = std::exp(-ref::march(std::span(&medium, 1), aim.origin, aim.direction).a);
+    const float plain = std::exp(-ref::march(std::span(&medium, 1), {aim.origin, aim.direction}).a);
     const float jittered = std::exp(
-        -ref::march(std::span(&medium, 1), aim.origin, aim.direction, 0.0f, ref::kInfinity, 1.0f, jitter).a);
+        -ref::march(std::span(&medium, 1), {aim.origin, aim.direction, 0.0f, ref::kInfinity}, 1.0f, jitter)
+             .a);
     change += std::pow(plain - jittered, 2.0);
     power += std::pow(plain, 2.0);
   }
@@ -220,20 +223,21 @@ TEST(VolumeTwin, OverlappingVolumesAddTheirExtinctions) {
     const glm::mat4 back = glm::inverse(place);
     const Aim turned{glm::vec3(back * glm::vec4(aim.origin, 1.0f)),
                      glm::vec3(back * glm::vec4(aim.direction, 0.0f))};
-    const glm::vec4 found = ref::march(media, aim.origin, aim.direction);
+    const glm::vec4 found = ref::march(media, {aim.origin, aim.direction});
     EXPECT_NEAR(found.a, 0.7f * chord(aim) + 1.3f * chord(turned), 1e-4f);
     EXPECT_NEAR(found.r + std::exp(-found.a), 1.0f, 1e-4f);
   }
   // Where both are, the ray starts and ends: light is shared by extinction.
   const glm::vec3 origin(0.3f, 0.2f, 0.0f), along = glm::normalize(glm::vec3(1, 0.2f, 0.1f));
-  const glm::vec4 found = ref::march(lit, origin, along, 0.0f, 0.3f);
+  const glm::vec4 found = ref::march(lit, {origin, along, 0.0f, 0.3f});
   EXPECT_NEAR(found.r, 0.35f * (1.0f - std::exp(-2.0f * 0.3f)), 1e-5f);
 }
 
 TEST(VolumeTwin, RaysEndAtTheSurfaceAndMayStartInside) {
   const ref::Medium medium = mediumOf(homogeneous(2.0f), whiteLight);
   const auto depth = [&](float begin, float end) {
-    return ref::march(std::span(&medium, 1), glm::vec3(-1.5f, 0.1f, 0.1f), glm::vec3(1, 0, 0), begin, end).a;
+    return ref::march(std::span(&medium, 1), {glm::vec3(-1.5f, 0.1f, 0.1f), glm::vec3(1, 0, 0), begin, end})
+        .a;
   };
   EXPECT_EQ(depth(0.0f, 0.4f), 0.0f) << "a wall before it";
   EXPECT_NEAR(depth(0.0f, 1.1f), 1.2f, 1e-5f);
@@ -258,7 +262,7 @@ TEST(VolumeTwin, SeveralStopsAreWhatSeveralRaysWouldSee) {
                                         stops, 0.1f, 1.0f);
     for (std::size_t i = 0; i < 2; ++i) {
       const glm::vec4 one =
-          ref::march(std::span(&medium, 1), aim.origin, aim.direction, 0.0f, stops[i], 0.1f);
+          ref::march(std::span(&medium, 1), {aim.origin, aim.direction, 0.0f, stops[i]}, 0.1f);
       EXPECT_LT(glm::distance(both[i], one), 2e-3f);
     }
   }
@@ -282,8 +286,8 @@ TEST(VolumeTwin, SkippingEmptyBlocksLosesNothing) {
   ref::Medium filled = medium;
   filled.block_maxima.assign(medium.block_maxima.size(), 1.0f);
   for (const Aim& aim : someAims(1000)) {
-    const float expected = ref::march(std::span(&filled, 1), aim.origin, aim.direction).a;
-    EXPECT_NEAR(ref::march(std::span(&medium, 1), aim.origin, aim.direction).a, expected,
+    const float expected = ref::march(std::span(&filled, 1), {aim.origin, aim.direction}).a;
+    EXPECT_NEAR(ref::march(std::span(&medium, 1), {aim.origin, aim.direction}).a, expected,
                 1e-5f + 1e-4f * expected);
   }
 }
@@ -294,8 +298,8 @@ TEST(VolumeTwin, AVolumeThatIsScaledKeepsItsOpticalDepth) {
   const ref::Medium small = mediumOf(built, whiteLight),
                     large = mediumOf(built, whiteLight, glm::scale(glm::mat4(1.0f), glm::vec3(2.0f)));
   for (const Aim& aim : someAims(100))
-    EXPECT_NEAR(ref::march(std::span(&small, 1), aim.origin, aim.direction).a,
-                ref::march(std::span(&large, 1), 2.0f * aim.origin, aim.direction).a, 1e-4f);
+    EXPECT_NEAR(ref::march(std::span(&small, 1), {aim.origin, aim.direction}).a,
+                ref::march(std::span(&large, 1), {2.0f * aim.origin, aim.direction}).a, 1e-4f);
 }
 
 TEST(VolumeTwin, ForwardScatteringIsBrightTowardsTheLight) {
@@ -307,7 +311,7 @@ TEST(VolumeTwin, ForwardScatteringIsBrightTowardsTheLight) {
       built.g = g;
       built.shape.outputs = outputs;
       std::vector<float> y(outputs);
-      sh::evaluate(static_cast<int>(bundle::bandsOf(outputs)), towards_light, y);
+      sh::evaluate(static_cast<int>(transfer::bandsOf(outputs)), towards_light, y);
       const glm::mat4 place = glm::mat4_cast(glm::angleAxis(0.9f, glm::normalize(glm::vec3(-1, 2, 1))));
       ref::Medium medium = mediumOf(built, whiteLight, place);
       const SlabLayout layout = slabLayoutOf(built.transfer_size, outputs);
@@ -327,7 +331,7 @@ TEST(VolumeTwin, ForwardScatteringIsBrightTowardsTheLight) {
                                  .pad = 0};
       ref::scatter(record, voxels, samples, {}, medium.light);
       const auto seen = [&](const glm::vec3& along) {
-        return ref::march(std::span(&medium, 1), -3.0f * along, along).r;
+        return ref::march(std::span(&medium, 1), {-3.0f * along, along}).r;
       };
       const glm::vec3 light_ws = glm::vec3(place * glm::vec4(towards_light, 0.0f));
       for (const Aim& aim : someAims(50)) {
@@ -356,7 +360,7 @@ TEST(VolumeTwin, VoxelsWithoutLightDoNotDarkenTheirNeighbours) {
       built, [](const glm::uvec3& texel) { return texel.x == 0 ? glm::vec4(0.0f) : glm::vec4(1.0f); });
   for (const float y : {-0.7f, 0.0f, 0.3f})
     for (const float x : {-0.9f, -0.7f, 0.4f}) {
-      const float seen = ref::march(std::span(&medium, 1), glm::vec3(x, y, 3.0f), glm::vec3(0, 0, -1)).r;
+      const float seen = ref::march(std::span(&medium, 1), {glm::vec3(x, y, 3.0f), glm::vec3(0, 0, -1)}).r;
       EXPECT_NEAR(seen, x < -0.8f ? 0.0f : 1.0f, 1e-3f) << x << " " << y;
     }
 }
@@ -387,8 +391,8 @@ TEST(VolumeRectangle, HoldsEveryPixelWhoseRayMeetsTheBox) {
         const glm::vec4 near = view_from_clip * glm::vec4(clip, -1.0f, 1.0f),
                         far = view_from_clip * glm::vec4(clip, 1.0f, 1.0f);
         const glm::vec3 begin = glm::vec3(near) / near.w, end = glm::vec3(far) / far.w;
-        const glm::vec4 gathered = ref::march(std::span(&medium, 1), begin, glm::normalize(end - begin), 0.0f,
-                                              glm::distance(begin, end));
+        const glm::vec4 gathered = ref::march(
+            std::span(&medium, 1), {begin, glm::normalize(end - begin), 0.0f, glm::distance(begin, end)});
         const auto px = static_cast<std::int32_t>(x), py = static_cast<std::int32_t>(y);
         const bool inside =
             px >= found.x && px < found.x + found.width && py >= found.y && py < found.y + found.height;

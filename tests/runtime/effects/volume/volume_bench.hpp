@@ -58,7 +58,7 @@ struct Bench {
       for (const auto& item : lambent::testing::partsOf(built[v], v)) upload(item);
   }
   // Dispatches of the volume effect alone.
-  std::uint32_t shade(TransferMode mode = TransferMode::Full) {
+  std::uint32_t shade(evaluate::TransferMode mode = evaluate::TransferMode::Full) {
     counters = {};
     gpu::Counters others;
     lights.update(environment, sh::Window::Off, places, others);

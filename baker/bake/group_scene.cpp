@@ -1,0 +1,72 @@
+#include "baker/bake/group_scene.hpp"
+
+#include <fmt/format.h>
+
+namespace lambent::baker {
+
+namespace {
+
+// What the runtime holds of a group's shaded samples lies in one page: a vec4 for each output of each sample,
+// and an OpenGL driver may have pages of 128 MiB.
+constexpr std::uint64_t kMostBytesShaded = std::uint64_t{128} << 20;
+std::uint64_t bytesShaded(const SampleSet& samples, int glossy_order) {
+  const std::uint64_t outputs =
+      static_cast<std::uint64_t>(glossy_order) * static_cast<std::uint64_t>(glossy_order);
+  return 16 * (samples.first_normal_mapped +
+               transfer::kMappedOutputs * (samples.first_glossy - samples.first_normal_mapped) +
+               outputs * (samples.size() - samples.first_glossy));
+}
+
+}  // namespace
+
+std::size_t mostGlossySamples(int glossy_order) {
+  return kMostBytesShaded /
+         (16u * static_cast<std::size_t>(glossy_order) * static_cast<std::size_t>(glossy_order));
+}
+
+GroupScene::GroupScene(const SceneBake& of, const SurfaceInputs& inputs, std::size_t at,
+                       const BakeContext& context)
+    : bake(of), index(at), group(of.plan.groups[at]), inputs_(inputs) {
+  context.progress.begin("samples");
+  const auto place = [&](bool with_glossy) {
+    geometry = buildGroupGeometry(group, bake.scene, inputs.meshes.decoded, with_glossy);
+    samples = buildSamples(geometry);
+  };
+  place(!bake.tables.entries.empty());
+  if (const std::uint64_t bytes = bytesShaded(samples, bake.options.glossy_order);
+      anyGlossy() && bytes > kMostBytesShaded) {
+    bake.report.notices.push_back(fmt::format(
+        "rigid group \"{}\": {} glossy samples take {} MiB on the GPU, more than the {} MiB that one piece "
+        "may have; its "
+        "surfaces are Lambert. Part it into several groups (extras.lambent.movable), or lower --glossy-order",
+        group.name, samples.size() - samples.first_glossy, bytes >> 20, kMostBytesShaded >> 20));
+    place(/*with_glossy=*/false);
+  }
+  lights = findGroupLights(bake.scene, group);
+  if (context.cache)
+    keys = groupKeys(bake.scene, geometry, lights, bake.plan.light_probes[index].count, bake.options);
+}
+
+Result<void> GroupScene::loadColors() {
+  if (colors_) return {};
+  auto loaded = SurfaceColors::load(bake.scene, geometry, lights, inputs_.images);
+  if (!loaded) return failAgain(loaded.error());
+  colors_ = std::move(*loaded);
+  return {};
+}
+
+Result<void> GroupScene::prepareRays(const BakeContext& context) {
+  if (auto loaded = loadColors(); !loaded) return loaded;
+  context.progress.begin("hierarchy");
+  auto rays = RayScene::build(geometry, bake.scene, inputs_.alpha_maps);
+  if (!rays) return failAgain(rays.error());
+  rays_ = std::move(*rays);
+  if (!anyGlossy()) return {};
+  auto brdfs =
+      SurfaceBrdfs::load(bake.scene, geometry, bake.tables, inputs_.images, bake.options.exitOrder());
+  if (!brdfs) return failAgain(brdfs.error());
+  brdfs_ = std::move(*brdfs);
+  return {};
+}
+
+}  // namespace lambent::baker

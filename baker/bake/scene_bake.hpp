@@ -1,0 +1,32 @@
+// What all groups of a scene share while they are baked.
+#pragma once
+
+#include "baker/bake/bake.hpp"
+#include "baker/bake/ship_meshes.hpp"
+#include "baker/brdf/surface_brdfs.hpp"
+#include "baker/import/image.hpp"
+#include "baker/transport/alpha_map.hpp"
+
+namespace lambent::baker {
+
+// The bake of a scene: what is asked for, what is planned, and the report that everything adds to.
+struct SceneBake {
+  const Scene& scene;
+  const BakeOptions& options;
+  const EffectPlan& plan;
+  const BrdfTables& tables;  // of the scene's glossy materials; empty where all are shown as Lambert
+  BakeReport& report;
+
+  tl::unexpected<Error> stopped() const {
+    return fail(scene.source.string(), "stopped; nothing was written");
+  }
+};
+
+// What surfaces are made of.
+struct SurfaceInputs {
+  const ShippedMeshes& meshes;
+  const AlphaMaps& alpha_maps;
+  DecodedImages& images;
+};
+
+}  // namespace lambent::baker

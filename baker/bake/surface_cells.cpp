@@ -1,0 +1,126 @@
+#include "baker/bake/surface_cells.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "baker/brdf/kernel_power.hpp"
+#include "baker/effects/diffuse/payloads.hpp"
+#include "baker/effects/glossy/payloads.hpp"
+
+namespace lambent::baker {
+
+namespace {
+
+// Of the bound on glossy light, where light bounces: to halve the error costs visibility a dozen bytes a
+// vertex, and bounced light of sharp metals a hundred (docs/decisions/compression.md, "Glossy matrices").
+constexpr float kOfVisibility = 0.35f;
+
+class CellCoder {
+ public:
+  CellCoder(const GroupScene& group, const SurfaceTransport& light, CachedCoding& coding)
+      : group_(group),
+        light_(light),
+        options_(group.bake.options),
+        coding_(coding),
+        grey_emission_(group.colors().greyEmission()),
+        kernel_power_(group.brdfs()
+                          ? kernelPower(group.geometry, *group.brdfs(), group.bake.options.glossy_order)
+                          : BandPower(kLobePower)) {}
+
+  std::vector<CodedTransfer> code(const SampleCell& cell, SurfaceFigures& figures) {
+    return cell.kind == SampleKind::Glossy ? codeGlossy(cell, figures) : codeDiffuse(cell, figures);
+  }
+
+ private:
+  std::vector<CodedTransfer> codeGlossy(const SampleCell& cell, SurfaceFigures& figures);
+  std::vector<CodedTransfer> codeDiffuse(const SampleCell& cell, SurfaceFigures& figures);
+
+  const GroupScene& group_;
+  const SurfaceTransport& light_;
+  const BakeOptions& options_;
+  CachedCoding& coding_;
+  bool grey_emission_;
+  BandPower kernel_power_;
+};
+
+// Visibility and bounced light are shown together: errors of both are relative to both, and their squares add
+// up to that of the bound. A bound that was asked for is kept at any price.
+std::vector<CodedTransfer> CellCoder::codeGlossy(const SampleCell& cell, SurfaceFigures& figures) {
+  std::vector<CodedTransfer> coded;
+  const std::vector<CellVectors> parts = glossyCellVectors(cell, light_.glossy->field, grey_emission_);
+  double shown = 0.0;
+  bool any_bounced = false;
+  for (const CellVectors& part : parts) {
+    if (part.shape.order == 0) continue;  // the group's lights
+    shown += transferEnergy(part.vectors, part.shape, kernel_power_);
+    any_bounced |= !part.shape.isVisibility();
+  }
+  double square = 0.0;
+  for (const CellVectors& part : parts) {
+    const bool environment = part.shape.order > 0;
+    float bound = options_.effectiveGlossyErrorBound();
+    if (environment && any_bounced)
+      bound *= part.shape.isVisibility() ? kOfVisibility : std::sqrt(1.0f - kOfVisibility * kOfVisibility);
+    coded.push_back(
+        coding_.code(part.vectors, cell.count, part.shape,
+                     {.bound = bound,
+                      .most_components = options_.error_bound > 0.0f ? kAllComponents : kUsualComponents,
+                      .loose_bound = options_.glossyLooseness() * bound,
+                      .shown_energy = environment ? shown : 0.0,
+                      .kernel_power = kernel_power_}));
+    const double error = coded.back().error;
+    if (environment)
+      square += error * error;
+    else
+      figures.worst_glossy_error = std::max(figures.worst_glossy_error, error);
+  }
+  figures.worst_glossy_error = std::max(figures.worst_glossy_error, std::sqrt(square));
+  return coded;
+}
+
+std::vector<CodedTransfer> CellCoder::codeDiffuse(const SampleCell& cell, SurfaceFigures& figures) {
+  std::vector<CodedTransfer> coded;
+  for (const CellVectors& vectors :
+       cellVectors(cell, group_.samples, light_.direct, light_.bounced ? &*light_.bounced : nullptr,
+                   grey_emission_)) {
+    coded.push_back(
+        coding_.code(vectors.vectors, cell.count, vectors.shape, {.bound = options_.effectiveErrorBound()}));
+    figures.worst_error = std::max(figures.worst_error, double{coded.back().error});
+  }
+  return coded;
+}
+
+}  // namespace
+
+void write(const SurfaceCells& cells, ByteWriter& out) {
+  const SurfaceFigures& figures = cells.figures;
+  write(cells.cells, out);
+  out.add(figures.filled_samples), out.add(figures.glossy_samples), out.add(figures.hit_bytes);
+  out.add(figures.worst_error), out.add(figures.worst_glossy_error), out.add(figures.left_out);
+  out.addList(figures.pass_energy);
+  out.add(figures.diffuse.traced + figures.diffuse.kept);
+  out.add(figures.glossy.traced + figures.glossy.kept);
+}
+
+bool read(ByteReader& in, SurfaceCells& cells) {
+  SurfaceFigures& figures = cells.figures;
+  return read(in, cells.cells) && in.read(figures.filled_samples) && in.read(figures.glossy_samples) &&
+         in.read(figures.hit_bytes) && in.read(figures.worst_error) && in.read(figures.worst_glossy_error) &&
+         in.read(figures.left_out) && in.readList(figures.pass_energy) && in.read(figures.diffuse.kept) &&
+         in.read(figures.glossy.kept);
+}
+
+std::optional<SurfaceCells> codeSurfaces(const GroupScene& group, const SurfaceTransport& light,
+                                         CachedCoding& coding, Progress& progress) {
+  progress.begin("coding", group.samples.size(), "samples");
+  SurfaceCells out{{}, light.figures};
+  CellCoder coder(group, light, coding);
+  for (const SampleCell& cell : group.samples.cells) {
+    out.cells.push_back(coder.code(cell, out.figures));
+    if (coding.stopped()) return std::nullopt;
+    progress.add(cell.count);
+  }
+  return out;
+}
+
+}  // namespace lambent::baker

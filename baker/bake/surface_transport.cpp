@@ -1,0 +1,121 @@
+#include "baker/bake/surface_transport.hpp"
+
+#include <algorithm>
+
+#include "baker/bake/fit_vertices.hpp"
+#include "baker/effects/glossy/glossy_bounces.hpp"
+#include "baker/effects/glossy/inside_faces.hpp"
+
+namespace lambent::baker {
+
+namespace {
+
+// What passes left out may amount to, as a share of the bound on the coding error.
+constexpr double kTailShare = 0.3;
+
+void add(const FitFigures& fit, SurfaceFigures::Rays& rays, SurfaceFigures& figures) {
+  rays.traced += fit.rays, rays.kept += fit.rays_kept;
+  figures.ray_seconds += fit.ray_seconds;
+}
+
+// Direct light of diffuse samples. Returns false if stopped.
+bool traceDiffuse(const DirectPass& pass, const GroupScene& group, const BakeContext& context,
+                  SurfaceTransport& light) {
+  const BakeContext own = context.keyed(group.keys.rays);
+  SurfaceFigures& figures = light.figures;
+  auto direct = bakeDirect(pass, group.view(), own);
+  if (!direct) return false;
+  light.direct = std::move(*direct);
+  figures.ray_seconds += context.progress.now().seconds;
+  figures.diffuse = {light.direct.field.rays, light.direct.rays_kept};
+  figures.filled_samples = light.direct.field.filled_samples;
+  if (group.bake.options.fitsDiffuse()) {
+    const auto fit = fitDiffuse(pass, group.view(), light.direct, own);
+    if (!fit) return false;
+    add(*fit, figures.diffuse, figures);
+  }
+  figures.hit_bytes = light.direct.hits.bytes();
+  return true;
+}
+
+// Direct light of glossy samples, and what it is to diffuse ones. Returns false if stopped.
+bool traceGlossy(const GlossyPass& pass, const GroupScene& group, const BakeContext& context,
+                 SurfaceTransport& light) {
+  const BakeContext own = context.keyed(group.keys.glossy_rays);
+  SurfaceFigures& figures = light.figures;
+  light.glossy = bakeGlossyDirect(pass, pass.plain().settings().hit_memory, light.direct.looks, own);
+  if (!light.glossy) return false;
+  GlossyDirect& glossy = *light.glossy;
+  figures.ray_seconds += context.progress.now().seconds;
+  figures.glossy = {glossy.rays, glossy.rays_kept};
+  figures.filled_samples += glossy.filled_samples;
+  if (group.bake.options.fitsGlossy()) {
+    const auto fit = fitGlossy(pass, glossy, own);
+    if (!fit) return false;
+    add(*fit, figures.glossy, figures);
+  }
+  if (!diffuseFromGlossy(pass, glossy.field, light.direct, context.stop)) return false;
+  const std::uint64_t inside = glossy.inside ? glossy.inside->hits().bytes() : 0;
+  figures.hit_bytes = std::max<std::uint64_t>(figures.hit_bytes, glossy.hits.bytes() + inside);
+  figures.glossy_samples = glossy.field.size();
+  return true;
+}
+
+// Light between the surfaces; what rays met is not needed after it. Returns false if stopped.
+bool bounce(const DirectPass& pass, const GlossyPass* glossy_pass, const GroupScene& group,
+            const BakeContext& context, SurfaceTransport& light) {
+  const BakeOptions& options = group.bake.options;
+  ExitKernels kernels;
+  std::optional<GlossyBounces> partner;
+  if (glossy_pass) {
+    kernels = {
+        .grey = group.brdfs()->grey(),
+        .at = [brdfs = group.brdfs()](std::uint32_t triangle, float u, float v, const glm::vec3& to,
+                                      std::span<float> out) { brdfs->exitKernel(triangle, u, v, to, out); }};
+    partner.emplace(*glossy_pass, kernels, light.direct, *light.glossy, options.glossy_order);
+  }
+  const double tail = kTailShare * double{options.effectiveErrorBound()};
+  light.bounced = bakeBounces(pass, light.direct, group.view(), {options.bounces, tail},
+                              context.keyed(group.keys.bounces), partner ? &*partner : nullptr);
+  if (!light.bounced) return false;
+  if (partner) {
+    partner->finish();
+    light.glossy->hits = HitStore();
+    if (light.glossy->inside) light.inside_faces = light.glossy->inside->size();
+    light.glossy->inside.reset();
+  }
+  light.direct.hits = HitStore();
+  light.figures.pass_energy = light.bounced->energy;
+  light.figures.left_out = light.bounced->left_out;
+  return true;
+}
+
+}  // namespace
+
+std::optional<SurfaceTransport> transportLight(const GroupScene& group, const BakeContext& context) {
+  const BakeOptions& options = group.bake.options;
+  const SurfaceBrdfs* const brdfs = group.brdfs();
+  const bool bounces = options.bounces != 0;
+  const DirectPass pass(group.view(), {.order = options.order,
+                                       .rays = options.effectiveRays(),
+                                       .keep_hits = bounces,
+                                       .hit_memory = options.effectiveMemory() / (brdfs ? 4 : 2),
+                                       .colored_kernels = brdfs && !brdfs->grey()});
+  std::optional<SurfaceTransport> light(std::in_place);
+  if (!traceDiffuse(pass, group, context, *light)) return std::nullopt;
+  std::optional<GlossyPass> glossy_pass;
+  if (brdfs) {
+    glossy_pass.emplace(pass, group.view(), options.exitOrder());
+    if (!traceGlossy(*glossy_pass, group, context, *light)) return std::nullopt;
+  }
+  if (bounces && !bounce(pass, glossy_pass ? &*glossy_pass : nullptr, group, context, *light))
+    return std::nullopt;
+  return light;
+}
+
+void dropTransport(const GroupScene& group, const SurfaceTransport& light, const BakeContext& context) {
+  const BakeContext bounces = context.keyed(group.keys.bounces);
+  if (light.bounced && bounces.keeps()) dropBounces(group.view(), light.inside_faces, bounces);
+}
+
+}  // namespace lambent::baker

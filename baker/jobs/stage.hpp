@@ -1,0 +1,85 @@
+// A stage of a bake: work over many items in ranges. It declares what it writes and has a function that
+// computes a range; what it reads is in the key of its context. runStage() does everything else: it runs
+// ranges on all threads, counts progress, stops, keeps finished ranges in the cache every few seconds, and
+// begins with all that an earlier run of the same stage kept. Neither the order in which ranges finish, nor
+// the number of threads, nor the place where a run was cut short shows in the result.
+//
+// An entry of the cache holds any ranges of a stage; a stage's entries are numbered under its key. New ones
+// are added, and none is written twice.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "baker/cache/bytes.hpp"
+#include "baker/jobs/bake_context.hpp"
+
+namespace lambent::baker {
+
+// Something that a stage writes, as bytes of ranges of its items. Both functions are called from any thread,
+// and for different ranges at the same time.
+struct Output {
+  std::function<void(std::size_t begin, std::size_t end, ByteWriter& out)> write;
+  // Puts back what write() wrote; returns false if the bytes are not those of such a range.
+  std::function<bool(std::size_t begin, std::size_t end, ByteReader& in)> read;
+};
+
+// Returns the row of an item, where that of item 0 is `first_row`; items before row 0 have none.
+inline std::size_t rowOfItem(std::size_t item, std::ptrdiff_t first_row) {
+  return static_cast<std::size_t>(std::max(static_cast<std::ptrdiff_t>(item) + first_row, std::ptrdiff_t{0}));
+}
+
+// An output that lies in a list as rows of `width` values, by rowOfItem(). The list must outlive the stage
+// and has its full length already.
+template <typename List>
+Output rowsOf(List& list, std::size_t width = 1, std::ptrdiff_t first_row = 0) {
+  const std::span values(list);
+  const auto rows = [values, width, first_row](std::size_t begin, std::size_t end) {
+    const std::size_t first = width * rowOfItem(begin, first_row), last = width * rowOfItem(end, first_row);
+    return values.subspan(first, last - first);
+  };
+  using Value = typename decltype(values)::value_type;
+  return {
+      [rows](std::size_t begin, std::size_t end, ByteWriter& out) {
+        out.addList(std::span<const Value>(rows(begin, end)));
+      },
+      [rows](std::size_t begin, std::size_t end, ByteReader& in) { return in.readInto(rows(begin, end)); }};
+}
+
+enum class KeepWhen : std::uint8_t {
+  Always,  // Later bakes read it, too: a range is packed right after it was computed, on the same thread.
+  Due,     // Checkpoints alone: ranges are packed by any thread once one is due, or when the bake stops.
+};
+
+struct Stage {
+  // The name that progress shows; a stage without one counts on in the progress stage before it.
+  std::string name = {};
+  std::string unit = "samples";
+  std::size_t count = 0;  // items
+  std::size_t grain = 1;  // items in a range, > 0
+  std::vector<Output> writes = {};
+  // Computes items [begin, end); called from many threads, once for each range that was not found.
+  std::function<void(std::size_t begin, std::size_t end)> compute = {};
+  KeepWhen keep = KeepWhen::Due;
+};
+
+struct StageFigures {
+  std::size_t computed = 0, found = 0;  // items
+};
+
+// Returns nothing if it was stopped. Without a cache or a key in the context nothing is kept.
+std::optional<StageFigures> runStage(const Stage& stage, const BakeContext& context);
+
+// Puts back what earlier runs kept and computes nothing. Returns false if a range is missing.
+bool restoreStage(const Stage& stage, const BakeContext& context);
+
+// Removes what was kept of a stage of so many items: checkpoints, once what they led to is kept.
+void dropStage(const BakeContext& context, std::size_t count, std::size_t grain);
+
+}  // namespace lambent::baker

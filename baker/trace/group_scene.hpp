@@ -1,0 +1,28 @@
+// A rigid group as rays see it, whatever is computed from what they meet: its geometry and samples, the
+// hierarchy, the colours of its surfaces and the lights that belong to it. All of it is borrowed.
+#pragma once
+
+#include <span>
+
+#include "baker/transport/group_geometry.hpp"
+#include "baker/transport/ray_scene.hpp"
+#include "baker/transport/samples.hpp"
+#include "baker/transport/surface_colors.hpp"
+
+namespace lambent::baker {
+
+// What tracing and gathering read of a rigid group; all of it outlives the bake.
+struct DiffuseScene {
+  const Scene& scene;
+  const GroupGeometry& geometry;
+  const SampleSet& samples;
+  const RayScene& rays;
+  const SurfaceColors& colors;
+  std::span<const PlannedLight> lights;
+
+  DiffuseScene withSamples(const SampleSet& others) const {
+    return {scene, geometry, others, rays, colors, lights};
+  }
+};
+
+}  // namespace lambent::baker

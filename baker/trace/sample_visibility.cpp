@@ -1,0 +1,63 @@
+#include "baker/trace/sample_visibility.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include <glm/geometric.hpp>
+
+#include "baker/transport/frame.hpp"
+
+namespace lambent::baker {
+
+namespace {
+
+// Where more than one ray in so many hits, most packets have one that does, and to ask at once what they hit
+// is faster than to ask first whether they do.
+constexpr std::size_t kAskWhatAtOnce = 6;
+
+}  // namespace
+
+void SampleVisibility::stand(std::size_t s) {
+  frame_ = localFrame(glm::normalize(glm::dvec3(samples_.normals[s])));
+  findSeenOrigins(samples_.originsOf(s), glm::mat3(frame_), rays_, inside_test_, seen_);
+}
+
+std::uint32_t SampleVisibility::look(const DirectionTable& table, bool wants_hits, BelowHorizon below) {
+  hits_.clear();
+  blocked_.assign(table.packets(), 0);
+  if (seen_.origins.empty()) return 0;
+  const SampleRays rays{seen_.origins, glm::mat3(frame_), table, below};
+  if (!wants_hits) return rays_.trace(rays, blocked_);
+  const std::uint32_t traced = rays_.traceHits(rays, mostly_blocked_, blocked_, hits_);
+  mostly_blocked_ = kAskWhatAtOnce * hits_.size() > table.size();
+  return traced;
+}
+
+void SampleVisibility::keepHits(RangeHits& out) const {
+  for (const RayHit& hit : hits_)
+    out.hits.push_back({.triangle = hit.triangle,
+                        .ray = hit.ray,
+                        .u = GatherHit::unorm(hit.u),
+                        .v = GatherHit::unorm(hit.v)});
+}
+
+void paintHits(const SurfaceColors& colors, RangeHits& hits) {
+  std::size_t left = 0;
+  for (std::size_t s = 0; s + 1 < hits.offsets.size(); ++s) {
+    const std::size_t begin = std::exchange(hits.offsets[s], static_cast<std::uint32_t>(left));
+    for (std::size_t h = begin; h < hits.offsets[s + 1]; ++h) {
+      GatherHit hit = hits.hits[h];
+      // At the place that is kept, so that a colour is the same whether the hit was traced or found.
+      const glm::vec3 albedo = colors.albedo(hit.triangle, static_cast<float>(hit.u) * (1.0f / 65535.0f),
+                                             static_cast<float>(hit.v) * (1.0f / 65535.0f));
+      // What is glossy and black still mirrors.
+      if (albedo == glm::vec3(0.0f) && !colors.glossy(hit.triangle)) continue;
+      for (int c = 0; c < 3; ++c) hit.albedo[c] = GatherHit::unorm(albedo[c]);
+      hits.hits[left++] = hit;
+    }
+  }
+  if (!hits.offsets.empty()) hits.offsets.back() = static_cast<std::uint32_t>(left);
+  hits.hits.resize(left);
+}
+
+}  // namespace lambent::baker

@@ -1,0 +1,65 @@
+// How a sample looks around: where its rays start, what they meet, and what lies inside something. Shared by
+// all that trace from samples; one per thread and range of samples.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <glm/mat3x3.hpp>
+
+#include "baker/trace/hits.hpp"
+#include "baker/transport/direction_table.hpp"
+#include "baker/transport/ray_scene.hpp"
+#include "baker/transport/samples.hpp"
+#include "baker/transport/seen_origins.hpp"
+#include "baker/transport/surface_colors.hpp"
+
+namespace lambent::baker {
+
+// One entry per sample.
+struct SampleVisibilities {
+  std::vector<std::uint8_t> valid;        // 0: lies inside something, filled from its neighbours
+  std::vector<std::uint8_t> double_rays;  // 1: looked with twice the rays
+};
+
+class SampleVisibility {
+ public:
+  SampleVisibility(const SampleSet& samples, const RayScene& rays, const InsideTestTables& glances)
+      : samples_(samples), rays_(rays), inside_test_(glances) {}
+
+  // Stands on sample `s`: its frame, the origins that lie outside, and whether to trace twice the rays.
+  void stand(std::size_t s);
+  // Traces the table's rays, with what they meet where `wants_hits`. Returns how many were traced; none where
+  // the sample has no face to stand on.
+  std::uint32_t look(const DirectionTable& table, bool wants_hits,
+                     BelowHorizon below = BelowHorizon::Blocked);
+
+  bool valid() const { return seen_.valid; }  // false: lies inside or under something, or has no face
+  bool double_rays() const {
+    return seen_.double_rays;
+  }  // much is in the way: to be looked at with twice the rays
+  const glm::dmat3& frame() const { return frame_; }  // group_from_local
+  std::span<const SampleOrigin> origins() const { return seen_.origins; }
+  // Bit k of blocked()[p]: ray 16 p + k.
+  std::span<const std::uint16_t> blocked() const { return blocked_; }
+  std::span<const RayHit> hits() const { return hits_; }
+
+  // Appends the hits to `out`, without colours (paintHits).
+  void keepHits(RangeHits& out) const;
+
+ private:
+  const SampleSet& samples_;
+  const RayScene& rays_;
+  const InsideTestTables& inside_test_;
+  glm::dmat3 frame_{1.0};
+  bool mostly_blocked_ = false;
+  SeenOrigins seen_;
+  std::vector<std::uint16_t> blocked_;
+  std::vector<RayHit> hits_;
+};
+
+// Looks up what the surfaces that were met reflect. Hits on those that reflect nothing are left out.
+void paintHits(const SurfaceColors& colors, RangeHits& hits);
+
+}  // namespace lambent::baker

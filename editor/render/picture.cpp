@@ -1,0 +1,130 @@
+#include "editor/render/picture.hpp"
+
+#include <utility>
+#include <vector>
+
+#include "editor/document/selection.hpp"
+#include "runtime/effects/volume/volume.hpp"
+
+namespace lambent::editor {
+
+namespace {
+
+// Returns the resident groups that hold anything that is selected.
+std::vector<std::uint32_t> selectedGroups(const Session& session) {
+  std::vector<std::uint32_t> found;
+  const ecs::Registry& registry = session.document.registry();
+  const std::vector<ecs::Entity> selected = session.selection.entities(session.document);
+  const auto& groups = session.stage.world().residency().groups();
+  const auto add = [&](const scene::RigidGroupComponent& group) {
+    for (std::uint32_t i = 0; i < groups.size(); ++i)
+      if (groups[i].bundle == group.bundle && groups[i].index == group.group) found.push_back(i);
+  };
+  for (const ecs::Entity entity : selected)
+    if (const auto* group = registry.tryGet<scene::RigidGroupComponent>(entity)) add(*group);
+  for (const auto [draw, item] : registry.view<const scene::DrawItem>())
+    for (const ecs::Entity entity : selected)
+      if (draw == entity || isBelow(registry, item.node, entity))
+        if (const auto* group = registry.tryGet<scene::RigidGroupComponent>(item.group)) add(*group);
+  return found;
+}
+
+// Returns the overlays that are asked for, with a box around what is selected.
+frame::OverlayOptions overlaysOf(const Session& session) {
+  frame::OverlayOptions overlays = session.viewing.overlays;
+  if (overlays.neighborhoods) overlays.foremost_groups = selectedGroups(session);
+  overlays.key = session.viewing.key_at_hand;
+  if (!session.handles.shown) return overlays;
+  const scene::Box box = selectionBounds(session.document, session.selection);
+  if (box.empty()) return overlays;
+  constexpr glm::vec4 kColor(1.0f, 0.62f, 0.2f, 0.9f);
+  const auto corner = [&](int i) {
+    return glm::vec3((i & 1) != 0 ? box.max.x : box.min.x, (i & 2) != 0 ? box.max.y : box.min.y,
+                     (i & 4) != 0 ? box.max.z : box.min.z);
+  };
+  for (int i = 0; i < 8; ++i)
+    for (const int bit : {1, 2, 4})
+      if ((i & bit) == 0) overlays.lines.push_back({corner(i), corner(i | bit), kColor});
+  return overlays;
+}
+
+// Rises with all that edits and picks change in the picture.
+std::uint64_t editsVersion(const Session& session) {
+  return session.history.version() + session.selection.version();
+}
+
+}  // namespace
+
+Result<Picture> Picture::create(const Session& session) {
+  auto frame = frame::Frame::create({.size = session.viewing.size, .output = frame::Output::Display},
+                                    session.stage.environment());
+  if (!frame) return failAgain(frame.error());
+  return Picture(std::move(*frame));
+}
+
+Result<std::optional<frame::Picked>> Picture::pick(Session& session, float x, float y) {
+  return frame_.pick(session.stage.world(), session.viewing.shown_view, x, y);
+}
+
+// What takes waiting for is read when the GPU has finished, so that it costs none.
+void Picture::readFinished(Session& session) {
+  PictureFacts& facts = session.picture;
+  while (const auto time = clock_.take()) {
+    facts.times.add(time->milliseconds);
+    if (time->whole) session.viewing.scale.wholeTook(time->milliseconds);
+  }
+  facts.in_flight = clock_.inFlight();
+  if (facts.in_flight || !std::exchange(unread_, false)) return;
+  facts.negative_pixels = frame_.negativePixels();
+  facts.exposure_ev = frame_.exposureEv();
+}
+
+Result<void> Picture::draw(Session& session, const spec::View& view, spec::Size size) {
+  Stage& stage = session.stage;
+  if (!(size == frame_.options().size)) frame_.resize(size);
+  if (auto set = frame_.setSettings(stage.settings()); !set) return set;
+  frame_.setView(session.viewing.surfaces);
+  frame_.setOverlays(overlaysOf(session));
+  stage.followEnvironment();
+  stage.world().updateTransforms();
+  if (auto drawn = frame_.render(stage.world(), stage.environment(), view); !drawn) return drawn;
+  PictureFacts& facts = session.picture;
+  const frame::StepCounts& counts = facts.counts = frame_.counts();
+  facts.legend = frame_.legend();
+  facts.passes = frame_.timers().latest();
+  facts.volume_bytes = frame_.kept<effects::volume::Volume>().textureBytes();
+  facts.settled = stage.world().loaded() && counts["light_probes_captured"] == 0 &&
+                  counts["light_probes_waiting"] == 0 && counts["cells_shaded"] == 0 &&
+                  counts["draws_shaded"] == 0;
+  return {};
+}
+
+void Picture::update(Session& session, spec::Size size) {
+  readFinished(session);
+  Viewing& viewing = session.viewing;
+  viewing.size = size;
+  const auto view = viewing.view(session.document, size);
+  if (!view) return session.log.error(view.error());
+  viewing.shown_view = *view;
+  const bool resized = !(size == drawn_.size);
+  // Another size has another aspect, by a pixel at least. That is no movement: where whole pictures take
+  // long, the next would be drawn coarse for it, at another size again, and so on for ever.
+  const bool moved = view->view_from_world != drawn_.view.view_from_world ||
+                     (!resized && view->clip_from_view != drawn_.view.clip_from_view) ||
+                     drawn_.edits != editsVersion(session);
+  const bool needed =
+      moved || resized || viewing.changed || session.playback.playing || !session.picture.settled;
+  const bool moves = moved || session.playback.playing || session.history.open();
+  const bool coarse = viewing.scale.coarse();
+  if (!moves && viewing.scale.settle()) viewing.changed = true;
+  if (!needed) return;
+  viewing.changed = false;
+  drawn_ = {editsVersion(session), *view, size};
+  clock_.begin();
+  if (auto drawn = draw(session, *view, size); !drawn) session.log.error(drawn.error());
+  clock_.end(/*whole=*/!coarse);
+  viewing.scale.drawn(moves);
+  session.picture.in_flight = unread_ = true;
+}
+
+}  // namespace lambent::editor

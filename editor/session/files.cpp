@@ -1,0 +1,113 @@
+#include "editor/session/files.hpp"
+
+#include <utility>
+
+#include "editor/session/session.hpp"
+#include "runtime/spec/light.hpp"
+
+namespace lambent::editor {
+
+void Files::openLogged(const std::filesystem::path& path) {
+  if (auto opened = open(path); !opened) session_.log.error(opened.error());
+}
+
+Result<void> Files::open(const std::filesystem::path& path) {
+  if (path.extension() == ".json") return openWorld(path);
+  const bool first = session_.scenes.entries().empty();
+  if (auto opened = session_.scene_steps.open(path); !opened) return opened;
+  session_.preferences.addRecent(path);
+  if (first) session_.viewing.frame_when_loaded = true;
+  return {};
+}
+
+Result<void> Files::openWorld(const std::filesystem::path& path) {
+  auto file = loadWorldFile(path);
+  if (!file) return failAgain(file.error());
+  closeAll();
+  Log& log = session_.log;
+  for (const BundleEntry& bundle : file->state.bundles)
+    if (auto opened = session_.scenes.open(bundle, path.parent_path()); !opened) log.error(opened.error());
+  for (const std::string& notice : file->notices) log.warn(path.string() + ": " + notice);
+  for (const std::string& missing : applyWorld(session_.document, *file).missing)
+    log.warn(path.string() + ": " + missing + " is not there any more; its edits wait");
+  loaded_ = std::move(*file);
+  world_ = path;
+  session_.history.clear();
+  session_.preferences.addRecent(path);
+  session_.followDocument();
+  return {};
+}
+
+// Puts into the document what only scenes and camera know, before it is saved.
+void Files::keepWorldState() {
+  WorldState world = session_.document.world();
+  world.bundles = session_.scenes.state(world_.parent_path());
+  session_.viewing.keep(world);
+  session_.document.setWorld(std::move(world));
+}
+
+Result<void> Files::save(const std::filesystem::path& path) {
+  const std::filesystem::path before = world_;
+  world_ = std::filesystem::absolute(path);
+  keepWorldState();
+  const WorldFile file =
+      captureWorld(session_.document, session_.changes.baseline(), loaded_ ? &*loaded_ : nullptr);
+  if (auto saved = saveWorldFile(world_, file); !saved) {
+    world_ = before;
+    return saved;
+  }
+  session_.history.markSaved();
+  session_.preferences.addRecent(world_);
+  return {};
+}
+
+void Files::closeAll() {
+  Document& document = session_.document;
+  const ecs::Entity environment = session_.stage.environmentEntity();
+  session_.scenes.closeAll();
+  session_.scene_steps.clear();
+  session_.selection.clear();
+  std::vector<ecs::Entity> created;
+  for (const auto [entity, mark] : document.registry().view<const Created>()) created.push_back(entity);
+  for (const ecs::Entity entity : created)
+    if (entity != environment) document.registry().destroy(entity);
+  WorldState world;
+  world.lights.assign(spec::kDefaultLights.begin(), spec::kDefaultLights.end());
+  document.registry().edit<scene::EnvironmentComponent>(environment) = {};
+  document.setWorld(std::move(world));
+  world_.clear();
+  loaded_.reset();
+  session_.history.clear();
+  session_.viewing.frame_when_loaded = true;
+}
+
+bool Files::modified() const {
+  return world_.empty() ? session_.history.modifiedInside() : session_.history.modified();
+}
+
+void Files::unlessUnsaved(std::string question, std::function<void(Session&)> then) {
+  if (!modified()) return then(session_);
+  Dialog ask;
+  ask.kind = Dialog::Kind::Confirm;
+  ask.title = "Not saved";
+  ask.question = std::move(question);
+  ask.yes = "Discard", ask.no = "Cancel", ask.third = "Save";
+  ask.answered = [then](Session& session, const std::string&) { then(session); };
+  ask.third_chosen = [then](Session& session) {
+    Files& files = session.files;
+    if (files.world().empty()) {
+      session.log.warn("the world has no file yet: save it with File > Save as");
+      return;
+    }
+    if (auto saved = files.save(files.world()); !saved) return session.log.error(saved.error());
+    then(session);
+  };
+  session_.window.dialog = std::move(ask);
+}
+
+void Files::askToQuit() {
+  unlessUnsaved("The world has edits that are not saved. Quit without them?",
+                [](Session& session) { session.window.quit = true; });
+}
+
+}  // namespace lambent::editor

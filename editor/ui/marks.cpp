@@ -1,0 +1,38 @@
+#include "editor/ui/marks.hpp"
+
+#include <utility>
+
+#include <imgui.h>
+
+namespace lambent::editor {
+
+void Marks::beginFrame() {
+  before_ = std::exchange(now_, {});
+  times_.clear();
+}
+
+void Marks::put(std::string_view name) {
+  const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
+  put(name, {{low.x, low.y}, {high.x, high.y}});
+}
+
+void Marks::put(std::string_view name, const Rectangle& where) {
+  std::uint32_t& times = times_[std::string(name)];
+  std::string own(name);
+  if (++times > 1) own += '#' + std::to_string(times);
+  // Another widget may be called like the second of this name.
+  while (!now_.try_emplace(own, where).second) own = std::string(name) + '#' + std::to_string(++times);
+}
+
+std::optional<Rectangle> Marks::find(std::string_view name) const {
+  const auto found = before_.find(name);
+  return found == before_.end() ? std::nullopt : std::optional(found->second);
+}
+
+std::vector<std::string> Marks::names() const {
+  std::vector<std::string> names;
+  for (const auto& [name, where] : before_) names.push_back(name);
+  return names;
+}
+
+}  // namespace lambent::editor

@@ -1,0 +1,17 @@
+// The entropy coder of all payloads, zstd. Errors name `subject`: bytes that are damaged or cut off.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "runtime/base/result.hpp"
+
+namespace lambent::bundle {
+
+std::vector<std::byte> compressZstd(std::span<const std::byte> bytes, int level);
+Result<std::vector<std::byte>> decompressZstd(std::span<const std::byte> bytes, std::size_t raw_length,
+                                              const std::string& subject);
+
+}  // namespace lambent::bundle

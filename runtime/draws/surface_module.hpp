@@ -1,0 +1,65 @@
+// A module adds light to surfaces in the raster pass, at some points of their programs: a function in GLSL
+// for each, in a file that the module's room embeds. Surfaces asks each module which draws it reaches, and
+// puts a program together for every set of modules that some draw has (surface_program.hpp). The functions
+// have these forms:
+//   Vertex       void f(uint vertex, inout vec3 radiance), and of normal-mapped draws
+//                void f(uint vertex, inout vec3 light[kLightCoefficients])
+//   Gathered     void f(uvec3 corners, vec3 weights, inout vec4 light[kCoefficients])
+//   Received     void f(SurfacePoint at, inout SurfaceLight light), surface_light.glsl
+//   MirroredSky  void f(Reflected reflected, SurfaceLight light, inout vec3 sky), what mirrors show of it in
+//   its place
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "runtime/draws/surface_shared.h"
+#include "runtime/gpu/program.hpp"
+
+namespace lambent::frame {
+
+enum class SurfaceHook : std::uint8_t { Vertex, Gathered, Received, MirroredSky };
+
+// What becomes of the light that transfer brings to a surface.
+enum class SurfaceReceiver : std::uint8_t { Diffuse, NormalMapped, Ggx, Measured };
+constexpr bool isGlossy(SurfaceReceiver receiver) {
+  return receiver == SurfaceReceiver::Ggx || receiver == SurfaceReceiver::Measured;
+}
+
+// Which receivers call a function.
+enum class CalledBy : std::uint8_t { All, Diffuse /* also with normal maps */, Glossy, Ggx };
+constexpr bool calls(SurfaceReceiver receiver, CalledBy by) {
+  return by == CalledBy::All || (by == CalledBy::Ggx && receiver == SurfaceReceiver::Ggx) ||
+         (by == CalledBy::Glossy && isGlossy(receiver)) || (by == CalledBy::Diffuse && !isGlossy(receiver));
+}
+
+struct SurfaceFunction {
+  SurfaceHook hook;
+  CalledBy by;
+  std::string_view file, name;
+};
+
+class SurfaceModule {
+ public:
+  virtual ~SurfaceModule() = default;
+
+  virtual std::span<const SurfaceFunction> functions() const = 0;
+  // Returns the tables that hold the files of its functions.
+  virtual std::span<const gpu::FindText> shaders() const = 0;
+  // Returns whether the draw has light of this module; `record` is complete but for what modules describe.
+  virtual bool reaches(std::size_t draw, const SurfaceDraw& record) const = 0;
+  // Rises when reaches() or describe() has another answer for any draw.
+  virtual std::uint64_t version() const = 0;
+  // Writes what the module's functions read of the draw's record.
+  virtual void describe(std::size_t, SurfaceDraw&) const {}
+  // Binds what the functions read, before draws with such a receiver are drawn.
+  virtual void bind(SurfaceReceiver receiver) const = 0;
+};
+
+// The modules of a frame.
+using SurfaceModules = std::vector<const SurfaceModule*>;
+
+}  // namespace lambent::frame

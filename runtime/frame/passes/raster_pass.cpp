@@ -1,0 +1,131 @@
+// Surfaces, proxies of bundles that are not here, the sky and blended surfaces: linear radiance. In views of
+// transfer it draws numbers in place of light.
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "runtime/bounces/patch_bounces.hpp"
+#include "runtime/debug/data_view.hpp"
+#include "runtime/effects/diffuse/diffuse.hpp"
+#include "runtime/frame/passes/passes.hpp"
+#include "runtime/lighting/prefiltered_environment.hpp"
+#include "runtime/lighting/sky.hpp"
+#include "runtime/shadows/key_shadows.hpp"
+#include "runtime/shadows/lit_scene.hpp"
+#include "runtime/shadows/local_shadows.hpp"
+#include "runtime/surface/neighborhoods.hpp"
+#include "runtime/surface/proxy_lods.hpp"
+#include "runtime/surface/surfaces.hpp"
+
+namespace lambent::frame {
+
+namespace {
+
+using effects::diffuse::Diffuse;
+using lighting::GroupLights;
+using lighting::Sky;
+using Prefiltered = std::optional<lighting::PrefilteredEnvironment>;
+
+class RasterPass final : public FramePass {
+ public:
+  RasterPass(Surfaces surfaces, Blackboard& board)
+      : FramePass({.name = "raster",
+                   .reads = resources<World, LitScene, GroupLights, Diffuse, Neighborhoods, PatchBounces, Sky,
+                                      Prefiltered, LocalShadows, KeyShadows>(),
+                   .writes = resources<PictureTargets, Surfaces, std::optional<DataView>, Prefiltered,
+                                       LocalShadows, KeyShadows>(),
+                   .causes = kPictureCauses}),
+        surfaces_(std::move(surfaces)),
+        modules_(board.get<SurfaceModules>()) {
+    board.offer(surfaces_);
+    board.offer(data_view_);
+  }
+
+  Result<void> update(FrameContext& frame) override {
+    frame.because();
+    // Also where numbers are drawn: what is picked is found among these.
+    if (Result<void> done = prepareSurfaces(frame); !done) return done;
+    if (showsTransfer(frame.options.view.view)) return drawNumbers(frame);
+    data_view_.reset();
+    return drawLight(frame);
+  }
+
+ private:
+  Result<void> prepareSurfaces(FrameContext& frame) {
+    surfaces_.setView(frame.options.view.view);
+    const FrameSettings& settings = frame.settings();
+    Prefiltered& prefiltered = frame.write<Prefiltered>();
+    const bool residual = prefiltered && settings.residual;
+    if (residual) {
+      std::uint32_t order = 1;
+      for (const streaming::ResidentGroup& group : frame.world.residency().groups())
+        order = std::max(order, group.order);
+      order = std::min(order, settings.order);
+      prefiltered->update(frame.environment, static_cast<int>(order), settings.window, frame.counters());
+    }
+    return surfaces_.prepare(frame.world, frame.read<Diffuse>(), *frame.view,
+                             {.options = {.diffuse = settings.diffuse,
+                                          .glossy = settings.glossy,
+                                          .glossy_bands = settings.glossy_order},
+                              .modules = modules_},
+                             frame.counters());
+  }
+
+  Result<void> drawNumbers(FrameContext& frame) {
+    if (!data_view_) data_view_.emplace(/*numbers=*/frame.options.linear());
+    if (Result<void> done = data_view_->update(frame.world, frame.read<GroupLights>(), frame.options.view,
+                                               frame.settings().transfer, frame.counters());
+        !done)
+      return done;
+    clearTargets(frame);
+    return data_view_->draw(frame.world, *frame.view, frame.counters());
+  }
+
+  Result<void> drawLight(FrameContext& frame) {
+    const spec::View& view = *frame.view;
+    const SurfaceView shown = frame.options.view.view;
+    frame.write<LocalShadows>().bind(view, frame.targets.size());
+    frame.write<KeyShadows>().bind(view, frame.targets.size());
+    clearTargets(frame);
+    surfaces_.drawOpaque(frame.world, frame.counters());
+    if (shown == SurfaceView::Final || shown == SurfaceView::Wireframe) {
+      if (Result<void> done =
+              proxy_lods_.prepare(frame.world, frame.environment, frame.read<LitScene>().lights,
+                                  {.order = frame.settings().order,
+                                   .window = frame.settings().window,
+                                   .diffuse = frame.settings().diffuse},
+                                  frame.counters());
+          !done)
+        return done;
+      proxy_lods_.draw(view, frame.counters());
+    }
+    if (showsLight(shown)) {
+      frame.read<Sky>().draw(frame.environment, view.view_from_world, view.clip_from_view,
+                             frame.targets.size().height, frame.counters());
+      glDepthFunc(GL_LESS);
+    }
+    surfaces_.drawBlended(frame.world, frame.counters());
+    return {};
+  }
+
+  static void clearTargets(FrameContext& frame) {
+    // Behind numbers and directions there is a dark grey that neither has.
+    constexpr float kGrey = 0.012f;
+    frame.targets.bindCleared(showsLight(frame.options.view.view) || frame.options.linear() ? 0.0f : kGrey);
+  }
+
+  Surfaces surfaces_;
+  const SurfaceModules& modules_;
+  ProxyLods proxy_lods_;
+  std::optional<DataView> data_view_;  // while a view shows transfer
+};
+
+}  // namespace
+
+MadePass makeRasterPass(const PassSetup& setup) {
+  Result<Surfaces> surfaces = Surfaces::create(/*finest_texels=*/setup.options.linear());
+  if (!surfaces) return failAgain(surfaces.error());
+  return std::make_unique<RasterPass>(std::move(*surfaces), setup.board);
+}
+
+}  // namespace lambent::frame

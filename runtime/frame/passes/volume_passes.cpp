@@ -1,0 +1,95 @@
+// Volumes: the light in them goes into textures, which rays through the picture look up.
+#include <optional>
+#include <vector>
+
+#include "runtime/effects/diffuse/diffuse.hpp"
+#include "runtime/effects/glossy/glossy.hpp"
+#include "runtime/effects/volume/march.hpp"
+#include "runtime/effects/volume/volume.hpp"
+#include "runtime/frame/passes/passes.hpp"
+
+namespace lambent::frame {
+
+namespace {
+
+using effects::diffuse::Diffuse;
+using effects::glossy::Glossy;
+using effects::volume::Volume;
+
+bool anyShown(const FrameContext& frame) {
+  return frame.settings().volumes && !frame.world.residency().volumes().empty();
+}
+
+class VolumePass final : public FramePass {
+ public:
+  VolumePass(bool precise, Blackboard& board)
+      : FramePass({.name = "volume",
+                   .reads = resources<World, lighting::GroupLights, Diffuse, Glossy>(),
+                   .writes = resources<Volume>(),
+                   .causes = kLightCauses,
+                   .counts = {"volumes_shaded", "volume_slabs_written"}}),
+        volume_(precise) {
+    board.offer(volume_);
+  }
+
+  bool due(const FrameContext& frame) override { return anyShown(frame); }
+  Result<void> update(FrameContext& frame) override {
+    Result<void> done =
+        volume_.shade(frame.world.residency(), frame.read<lighting::GroupLights>(), frame.read<Diffuse>(),
+                      frame.read<Glossy>(), frame.settings().transfer, frame.counters());
+    if (frame.counters().dispatches > 0) frame.because("light");
+    frame.count("volumes_shaded", volume_.shadedLast().volumes);
+    frame.count("volume_slabs_written", volume_.shadedLast().slabs);
+    return done;
+  }
+
+ private:
+  Volume volume_;
+};
+
+class MarchPass final : public FramePass {
+ public:
+  MarchPass()
+      : FramePass({.name = "march",
+                   .reads = resources<World, Volume, PictureTargets>(),
+                   .writes = resources<PictureTargets>(),
+                   .causes = kPictureCauses,
+                   .counts = {"volumes_drawn"}}) {}
+
+  bool due(const FrameContext& frame) override {
+    const SurfaceView shown = frame.options.view.view;
+    return anyShown(frame) && (shown == SurfaceView::Final || shown == SurfaceView::Wireframe);
+  }
+  Result<void> update(FrameContext& frame) override {
+    frame.because();
+    // Pictures that are compared take half the steps, all at their places.
+    const bool linear = frame.options.linear();
+    if (!march_) march_.emplace(effects::volume::MarchOptions{.jitter = !linear});
+    march_->setStep(frame.settings().march_step_voxels * (linear ? 0.5f : 1.0f));
+    const auto& volumes = frame.world.residency().volumes();
+    std::vector<effects::volume::PlacedVolume> placed;
+    for (std::uint32_t v = 0; v < volumes.size(); ++v)
+      if (frame.world.showsSurfaces(frame.world.residency().groups()[volumes[v].group].bundle))
+        placed.push_back({v, frame.world.worldFromGroup(volumes[v].group)});
+    Result<void> done = march_->draw(frame.world.residency(), frame.read<Volume>(), placed, *frame.view,
+                                     {frame.targets.hdrColor(), frame.targets.depth(), frame.targets.size()},
+                                     frame.counters());
+    frame.count("volumes_drawn", march_->drawnLast());
+    return done;
+  }
+
+ private:
+  std::optional<effects::volume::March> march_;  // once there is a volume
+};
+
+}  // namespace
+
+MadePass makeVolumePass(const PassSetup& setup) {
+  return std::make_unique<VolumePass>(/*precise=*/setup.options.linear(), setup.board);
+}
+
+MadePass makeMarchPass(const PassSetup&) {
+  return std::make_unique<MarchPass>();
+}
+
+}  // namespace lambent::frame

@@ -1,0 +1,76 @@
+// The world: what has arrived goes to the GPU, within a budget of bytes for each frame; then nodes, rigid
+// groups and materials are where they stand now.
+#include <chrono>
+#include <optional>
+
+#include "runtime/frame/frame_times.hpp"
+#include "runtime/frame/passes/passes.hpp"
+
+namespace lambent::frame {
+
+namespace {
+
+class UploadPass final : public FramePass {
+ public:
+  UploadPass()
+      : FramePass({.name = "upload",
+                   .writes = resources<World>(),
+                   .causes = static_cast<std::uint32_t>(Cause::Arrived),
+                   .counts = {"volumes"}}) {}
+
+  Result<void> update(FrameContext& frame) override {
+    const std::uint64_t most = frame.options.upload_budget_bytes;
+    if (frame.view) noticeFrame(most);
+    Result<void> done =
+        frame.world.upload(frame.options.pace_uploads ? pacer_.budget(most) : most, frame.counters());
+    uploaded_bytes_ += frame.counters().uploaded_bytes;
+    frame.log.noticeArrivals(frame.world, frame.counters().uploaded_bytes);
+    frame.because();
+    frame.count("volumes", frame.world.residency().volumes().size());
+    return done;
+  }
+
+ private:
+  // The time from one picture to the next, with the steps between them.
+  void noticeFrame(std::uint64_t most_bytes) {
+    const auto now = std::chrono::steady_clock::now();
+    if (rendered_)
+      pacer_.frameTook(std::chrono::duration<double, std::milli>(now - *rendered_).count(),
+                       uploaded_bytes_ > 0, most_bytes);
+    rendered_ = now;
+    uploaded_bytes_ = 0;
+  }
+
+  UploadPacer pacer_;
+  std::optional<std::chrono::steady_clock::time_point> rendered_;  // the last time
+  std::uint64_t uploaded_bytes_ = 0;                               // since then
+};
+
+class TransformsPass final : public FramePass {
+ public:
+  TransformsPass()
+      : FramePass({.name = "transforms",
+                   .reads = resources<World>(),
+                   .writes = resources<World>(),
+                   .causes = Cause::Moved | Cause::Materials}) {}
+
+  Result<void> update(FrameContext& frame) override {
+    frame.world.updateTransforms();
+    frame.world.updateMaterials();
+    frame.log.noticeWorld(frame.world);
+    frame.because();
+    return {};
+  }
+};
+
+}  // namespace
+
+MadePass makeUploadPass(const PassSetup&) {
+  return std::make_unique<UploadPass>();
+}
+
+MadePass makeTransformsPass(const PassSetup&) {
+  return std::make_unique<TransformsPass>();
+}
+
+}  // namespace lambent::frame

@@ -1,0 +1,30 @@
+#include "runtime/frame/step_counts.hpp"
+
+#include <algorithm>
+#include <cassert>
+
+namespace lambent::frame {
+
+void StepCounts::declare(std::span<const std::string_view> names) {
+  for (const std::string_view name : names)
+    if (std::ranges::find(counts_, name, &Count::name) == counts_.end()) counts_.push_back({.name = name});
+}
+
+void StepCounts::clear() {
+  for (Count& count : counts_) count.value = 0;
+}
+
+void StepCounts::add(std::string_view name, std::uint64_t value) {
+  const auto found = std::ranges::find(counts_, name, &Count::name);
+  assert(found != counts_.end());
+  found->value += value;
+}
+
+std::uint64_t StepCounts::operator[](std::string_view name) const {
+  if (counts_.empty()) return 0;
+  const auto found = std::ranges::find(counts_, name, &Count::name);
+  assert(found != counts_.end());
+  return found->value;
+}
+
+}  // namespace lambent::frame

@@ -1,0 +1,21 @@
+// Surfaces that are shaded at their vertices: E/pi, interpolated.
+#include "surface_normal.glsl"
+#include "surface_light.glsl"
+
+layout(location = 3) in vec3 radiance;
+layout(location = 4) in vec3 normal_group;  // of the side that is seen
+layout(location = 5) in vec3 position_mesh;
+
+const bool kHighlights = false;
+vec3 lightReflectance(vec3 to_light, float spread) { return vec3(0.0); }
+
+#include "received_light.glsl"
+
+vec3 shadingNormal() { return unit(normal_group); }
+
+vec3 reflectedLight(vec3 base_color) {
+  SurfaceLight light = kNoLight;
+  receiveLight(SurfacePoint(draw_of, position_mesh, normal_group, unit(normal_group)), light);
+  vec3 received = withLight(radiance, light);
+  return kShown == kShownIrradiance ? received : received * base_color;
+}

@@ -1,0 +1,18 @@
+// Surfaces that are shaded at their vertices: E/pi as the diffuse effect left it, and what modules add to it there.
+layout(std430, binding = kBindRadiance) readonly buffer Radiance { float radiance_of[]; };
+layout(location = 3) out vec3 radiance;
+layout(location = 4) out vec3 normal_group;  // of the side that is seen
+layout(location = 5) out vec3 position_mesh;
+
+#include "vertex_light.glsl"
+
+void writeReceiver(uint vertex, vec3 position) {
+  radiance = vec3(0.0);
+  if (!kDark) {
+    uint at = draws[draw_index].radiance_word + 3u * vertex;
+    radiance = vec3(radiance_of[at], radiance_of[at + 1u], radiance_of[at + 2u]);
+  }
+  addVertexLight(vertex, radiance);
+  normal_group = draws[draw_index].facing * weightedNormal(vertex);
+  position_mesh = position;
+}

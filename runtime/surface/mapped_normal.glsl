@@ -1,0 +1,29 @@
+// The normal of a pixel from a normal map, in the group's frame.
+#include "surface_normal.glsl"
+
+layout(binding = kUnitNormal) uniform sampler2D normal_texture;
+layout(location = 3) in vec4 position_group;  // w, and that of the normal: where in the normal picture
+layout(location = 4) in vec4 normal_group;
+layout(location = 5) in vec4 tangent_group;  // w: +1 or -1 as glTF has it, of the mesh as it stands in the group
+
+// From the vertices' tangents, or else from how the picture lies on the surface; of the front.
+TangentFrame pixelFrame() {
+  vec2 at = vec2(position_group.w, normal_group.w);
+  vec3 normal = unit(normal_group.xyz);
+  TangentFrame from_picture =
+      frameFromDerivatives(normal, dFdx(position_group.xyz), dFdy(position_group.xyz), dFdx(at), dFdy(at));
+  bool stored = draws[draw_of].tangents_word != kAbsent;
+  return stored ? frameFromTangent(normal, tangent_group) : from_picture;
+}
+
+// Of the side that is seen.
+vec3 pixelNormal(TangentFrame frame) {
+  vec3 normal = frame.normal;
+  if (draws[draw_of].normal_texture.set != kAbsent) {
+    vec2 at = vec2(position_group.w, normal_group.w);
+    normal = perturbedNormal(frame, look(normal_texture, at).xyz, draws[draw_of].normal_scale);
+  }
+  return draws[draw_of].facing * normal;
+}
+
+vec3 shadingNormal() { return pixelNormal(pixelFrame()); }

@@ -1,0 +1,19 @@
+// Neighborhoods in the surface pass: what the bodies around change in the light of a glossy pixel, in as many bands as grid and
+// surface both have, reflected by the kernel of this view.
+#include "neighborhood_arrivals.glsl"
+
+void addReflectedNeighborhoods(SurfacePoint at, inout SurfaceLight light) {
+  for (uint a = receivers[at.draw].first; a < receivers[at.draw].first + receivers[at.draw].count; ++a) {
+    vec3 place = vec4(at.position, 1.0) * arrivals[a].grid_from_position;
+    float share = gridShare(place, arrivals[a].grid);
+    if (share == 0.0) continue;
+    vec4 change[kCoefficients];
+    for (int k = 0; k < kCoefficients; ++k)
+      change[k] = k < kUsedCoefficients && uint(k) < arrivals[a].grid.outputs ? share * gridOutput(place, arrivals[a].grid, uint(k)) : vec4(0.0);
+    LocalView turned_view = pixel_view;
+    turned_view.tangent = vec4(pixel_view.tangent, 0.0) * arrivals[a].body_from_group;
+    turned_view.bitangent = vec4(pixel_view.bitangent, 0.0) * arrivals[a].body_from_group;
+    turned_view.normal = vec4(pixel_view.normal, 0.0) * arrivals[a].body_from_group;
+    pixel_change = sumOf(pixel_change, reflectLight(turned_view, pixel_weights, change));
+  }
+}

@@ -1,0 +1,90 @@
+// The prefiltered environment as mirrors show it: what few bands of light leave out of the sky (prefiltered_environment.hpp).
+#include "prefiltered_shared.h"
+layout(std140, binding = kBindReflection) uniform ReflectionBlock { ReflectionValues reflection; };
+layout(binding = kUnitFirstReflection) uniform samplerCube first_reflection;
+layout(binding = kUnitSecondReflection) uniform samplerCube second_reflection;
+layout(binding = kUnitFirstWhole) uniform samplerCube first_whole;
+layout(binding = kUnitSecondWhole) uniform samplerCube second_whole;
+
+// What a rough mirror shows of key lights in their true shape.
+vec3 keyPicture(vec3 direction_ws, float roughness) {
+  float level = reflection.shares.z * pow(roughness, 2.0 / 3.0);
+  vec3 direction = mat3(reflection.light_from_world) * direction_ws;
+  vec3 first = textureLod(first_whole, direction, level).rgb - textureLod(first_reflection, direction, level).rgb;
+  vec3 second = textureLod(second_whole, direction, level).rgb - textureLod(second_reflection, direction, level).rgb;
+  return max(reflection.shares.x * first + reflection.shares.y * second, vec3(0.0));
+}
+
+// Highlights by discs, or of a mirror that is sharp enough to tell what the discs are pieces of, by that.
+vec3 keyHighlights(Lobes lobes, SurfaceLight light, vec3 mirrored_ws, vec3 rho) {
+  const float kSharp = 0.05, kRough = 0.12;  // alpha
+  float alpha = lobes.roughness * lobes.roughness;
+  float pictured = lobes.anisotropy != 0.0 ? 0.0 : reflection.shares.w * (1.0 - smoothstep(kSharp, kRough, alpha));
+  if (pictured == 0.0) return light.key_highlights;
+  float open = dot(light.open_key_highlights, vec3(1.0)), seen = dot(light.key_highlights, vec3(1.0));
+  float visible = open > 0.0 ? clamp(seen / open, 0.0, 1.0) : 1.0;
+  return mix(light.key_highlights, visible * rho * keyPicture(mirrored_ws, lobes.roughness), pictured);
+}
+
+// What a rough mirror shows of the sky besides the bands that the surface has of it: P(L) - P(L_n). The bands scale
+// between levels as the levels themselves mix, so that light of few bands leaves nothing. Signed.
+vec3 residualLight(vec3 direction_ws, float roughness) {
+  float level = reflection.shares.z * pow(roughness, 2.0 / 3.0);  // roughnessOfLevel, turned about
+  vec3 direction = mat3(reflection.light_from_world) * direction_ws;
+  vec3 seen = reflection.shares.x * textureLod(first_reflection, direction, level).rgb +
+              reflection.shares.y * textureLod(second_reflection, direction, level).rgb;
+  vec4 light[kCoefficients], bands[kBands];
+  for (int k = 0; k < kCoefficients; ++k) light[k] = k < kUsedCoefficients ? reflection.light[k] : vec4(0.0);
+  bandsAt(direction_ws, light, bands);
+  int low = int(min(level, reflection.shares.z - 1.0));
+  float share = level - float(low);
+  vec4 first = mix(reflection.bands[2 * low], reflection.bands[2 * low + 2], share);
+  vec4 second = mix(reflection.bands[2 * low + 1], reflection.bands[2 * low + 3], share);
+  vec3 known = first.x * bands[0].rgb + first.y * bands[1].rgb + first.z * bands[2].rgb + first.w * bands[3].rgb;
+#if LAMBENT_BANDS > 4
+  known += second.x * bands[4].rgb;
+#endif
+#if LAMBENT_BANDS > 5
+  known += second.y * bands[5].rgb;
+#endif
+  return seen - known;
+}
+
+// Brushed metal reflects a fan: round lobes of its narrow roughness about the view mirrored in normals that lean along the
+// tangent, by equal shares of the slopes of GGX (their marginal is s = a u / sqrt(1 - u^2), u even in -1..1).
+vec3 residualOver(Lobes lobes, vec3 normal, vec3 to_eye) {
+  const int kShares = 12;
+  float narrow = lobes.roughness * lobes.roughness, wide = mix(narrow, 1.0, lobes.anisotropy * lobes.anisotropy);
+  float fan = sqrt(max(wide * wide - narrow * narrow, 0.0));
+  mat3 group_from_world = mat3(draws[draw_of].glossy.group_from_world);
+  if (fan < 0.05) return residualLight(reflect(-to_eye, normal) * group_from_world, lobes.roughness);  // by the transpose
+  float between = fan / float(kShares);  // of one share to the next, halved: wide enough to leave no gaps
+  float roughness = sqrt(sqrt(narrow * narrow + between * between));
+  vec3 sum = vec3(0.0);
+  float weights = 0.0;
+  for (int i = 0; i < kShares; ++i) {
+    float u = (2.0 * float(i) + 1.0) / float(kShares) - 1.0;
+    vec3 leaning = normalize(normal + fan * u * inversesqrt(1.0 - u * u) * lobes.tangent);
+    vec3 mirrored = reflect(-to_eye, leaning);
+    float weight = max(dot(leaning, to_eye), 0.0) * step(0.0, dot(mirrored, normal));
+    if (weight <= 0.0) continue;
+    sum += weight * residualLight(mirrored * group_from_world, roughness);
+    weights += weight;
+  }
+  return weights > 0.0 ? sum / weights : vec3(0.0);
+}
+
+// By the share of the sky that the lobe sees, as far as few bands can tell: (c . V) / (c . 1). Key lights are shown in their
+// true shape.
+void addSpecularEnvironment(Reflected reflected, SurfaceLight light, inout vec3 sky) {
+  Fresnel fresnel = pixel_lobes.fresnel;
+  vec3 rho = fresnel.f0 * reflected.albedo.x + fresnel.f90 * reflected.albedo.y;
+  float f0 = dot(fresnel.f0, vec3(1.0 / 3.0));
+  float seen = f0 * reflected.f0_light.w + fresnel.f90 * reflected.f90_light.w;
+  float open = f0 * reflected.albedo.x + fresnel.f90 * reflected.albedo.y;
+  float visibility = clamp(seen / max(open, 1e-6), 0.0, 1.0);
+  sky = visibility * rho * residualOver(pixel_lobes, pixel_normal, pixel_to_eye);
+  if (!light.keys_apart) return;
+  vec3 mirrored_ws = reflect(-pixel_to_eye, pixel_normal) * mat3(draws[draw_of].glossy.group_from_world);  // by the transpose
+  sky += keyHighlights(pixel_lobes, light, mirrored_ws, rho);
+}

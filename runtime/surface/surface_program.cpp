@@ -1,0 +1,129 @@
+#include "runtime/surface/surface_program.hpp"
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "lambent_draws_embedded.hpp"
+#include "lambent_effects_glossy_embedded.hpp"
+#include "lambent_effects_neighborhood_embedded.hpp"
+#include "lambent_lighting_embedded.hpp"
+#include "lambent_shadows_embedded.hpp"
+#include "lambent_surface_embedded.hpp"
+#include "lambent_transfer_embedded.hpp"
+
+namespace lambent::frame {
+
+namespace {
+
+constexpr gpu::FindText kShaders[] = {&embedded::lambent_surface::find,
+                                      &embedded::lambent_draws::find,
+                                      &embedded::lambent_transfer::find,
+                                      &embedded::lambent_lighting::find,
+                                      &embedded::lambent_shadows::find,
+                                      &embedded::lambent_effects_glossy::find,
+                                      &embedded::lambent_effects_neighborhood::find};
+
+std::string_view vertexFileOf(SurfaceReceiver receiver) {
+  if (isGlossy(receiver)) return "glossy_vertex.glsl";
+  return receiver == SurfaceReceiver::NormalMapped ? "normal_mapped_vertex.glsl" : "diffuse_vertex.glsl";
+}
+
+std::string_view fileOf(SurfaceReceiver receiver) {
+  switch (receiver) {
+    case SurfaceReceiver::Diffuse:
+      return "diffuse_receiver.glsl";
+    case SurfaceReceiver::NormalMapped:
+      return "normal_mapped_receiver.glsl";
+    case SurfaceReceiver::Ggx:
+      return "ggx_receiver.glsl";
+    case SurfaceReceiver::Measured:
+      break;
+  }
+  return "measured_receiver.glsl";
+}
+
+int shownBy(SurfaceView view) {
+  return view == SurfaceView::Irradiance ? 1 : view == SurfaceView::Normals ? 2 : 0;
+}
+
+std::string kindText(const SurfaceKind& kind, bool finest_texels) {
+  return fmt::format(
+      "const bool kFinestTexels = {};\n"
+      "const bool kDark = {};\n"
+      "const int kShownRadiance = 0, kShownIrradiance = 1, kShownNormals = 2;\n"
+      "const int kShown = {};\n",
+      finest_texels, kind.dark, shownBy(kind.view));
+}
+
+// A function of which the body is a call of each module's function, one after the other.
+struct Caller {
+  SurfaceHook hook;
+  const char* file;
+  const char* signature;
+  const char* arguments;
+};
+
+Caller vertexCaller(SurfaceReceiver receiver) {
+  return {SurfaceHook::Vertex, "vertex_light.glsl",
+          receiver == SurfaceReceiver::NormalMapped
+              ? "addVertexLight(uint vertex, inout vec3 light[kLightCoefficients])"
+              : "addVertexLight(uint vertex, inout vec3 light)",
+          "vertex, light"};
+}
+
+constexpr Caller kPixelCallers[] = {
+    {SurfaceHook::Gathered, "gathered_light.glsl",
+     "addGatheredLight(uvec3 corners, vec3 weights, inout vec4 light[kCoefficients])",
+     "corners, weights, light"},
+    {SurfaceHook::Received, "received_light.glsl", "receiveLight(SurfacePoint at, inout SurfaceLight light)",
+     "at, light"},
+    {SurfaceHook::MirroredSky, "mirrored_sky.glsl",
+     "addMirroredSky(Reflected reflected, SurfaceLight light, inout vec3 sky)", "reflected, light, sky"},
+};
+
+gpu::WrittenFile callerFile(const Caller& caller, std::span<const SurfaceFunction> functions) {
+  std::string includes, body;
+  for (const SurfaceFunction& function : functions) {
+    if (function.hook != caller.hook) continue;
+    includes += fmt::format("#include \"{}\"\n", function.file);
+    body += fmt::format("  {}({});\n", function.name, caller.arguments);
+  }
+  return {caller.file, fmt::format("{}void {} {{\n{}}}\n", includes, caller.signature, body)};
+}
+
+}  // namespace
+
+SurfaceReceiver SurfaceKind::receiver() const {
+  if (glossy.bands > 0)
+    return glossy.family == bundle::BrdfFamily::Measured ? SurfaceReceiver::Measured : SurfaceReceiver::Ggx;
+  return normal_mapped ? SurfaceReceiver::NormalMapped : SurfaceReceiver::Diffuse;
+}
+
+Result<gpu::Program> makeSurfaceProgram(const SurfaceKind& kind,
+                                        std::span<const SurfaceModule* const> modules, bool finest_texels) {
+  const SurfaceReceiver receiver = kind.receiver();
+  std::vector<SurfaceFunction> functions;
+  std::vector<gpu::FindText> tables(std::begin(kShaders), std::end(kShaders));
+  for (std::size_t m = 0; m < modules.size(); ++m) {
+    if ((kind.modules & bitOf(m)) == 0) continue;
+    std::ranges::copy_if(modules[m]->functions(), std::back_inserter(functions),
+                         [&](const SurfaceFunction& function) { return calls(receiver, function.by); });
+    tables.insert(tables.end(), modules[m]->shaders().begin(), modules[m]->shaders().end());
+  }
+  std::vector<gpu::WrittenFile> written = {
+      {"surface_kind.glsl", kindText(kind, finest_texels)},
+      {"vertex_receiver.glsl", fmt::format("#include \"{}\"\n", vertexFileOf(receiver))},
+      {"receiver.glsl", fmt::format("#include \"{}\"\n", fileOf(receiver))},
+      callerFile(vertexCaller(receiver), functions)};
+  for (const Caller& caller : kPixelCallers) written.push_back(callerFile(caller, functions));
+  std::vector<gpu::Define> defines;
+  if (isGlossy(receiver)) defines = definesOf(kind.glossy);
+  return gpu::Program::create("surface",
+                              {{GL_VERTEX_SHADER, "surface.vert"}, {GL_FRAGMENT_SHADER, "surface.frag"}},
+                              {.tables = tables, .defines = defines, .written = written});
+}
+
+}  // namespace lambent::frame

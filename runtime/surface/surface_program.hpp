@@ -1,0 +1,37 @@
+// The program of a kind of surface: a receiver (surface.frag), and the modules that add light to it. Errors:
+// shaders that do not compile on this device.
+#pragma once
+
+#include <compare>
+#include <cstdint>
+#include <span>
+
+#include "runtime/base/result.hpp"
+#include "runtime/draws/glossy_record.hpp"
+#include "runtime/draws/surface_module.hpp"
+#include "runtime/gpu/program.hpp"
+#include "runtime/surface/views.hpp"
+
+namespace lambent::frame {
+
+struct SurfaceKind {
+  bool normal_mapped = false;
+  bool dark = false;          // reflects nothing
+  std::uint32_t modules = 0;  // bitOf() each
+  GlossyKind glossy = {};
+  SurfaceView view = SurfaceView::Final;  // Final, Irradiance or Normals
+  auto operator<=>(const SurfaceKind&) const = default;
+
+  SurfaceReceiver receiver() const;
+};
+
+// Returns the bit of the module at this place of the list.
+constexpr std::uint32_t bitOf(std::size_t module) {
+  return 0x80000000u >> module;
+}
+
+// finest_texels: textures are read at their full resolution, for pictures of one ray per pixel.
+Result<gpu::Program> makeSurfaceProgram(const SurfaceKind& kind,
+                                        std::span<const SurfaceModule* const> modules, bool finest_texels);
+
+}  // namespace lambent::frame

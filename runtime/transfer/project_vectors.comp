@@ -1,0 +1,12 @@
+// Stage a of vectors and of matrices, of any effect: each value of a vector times its coefficient of the light.
+#include "vector_light.glsl"
+#include "project_clusters.glsl"
+
+vec4 projected(TransferRecord transfer, uint vector, uint output_index, uint light) {
+#ifdef LAMBENT_ORDER
+  uint columns = LAMBENT_ORDER * LAMBENT_ORDER;
+#else
+  uint columns = transfer.columns;
+#endif
+  return projectOnLight(transfer, vector, output_index, columns, light);
+}

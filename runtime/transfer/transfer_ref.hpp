@@ -1,0 +1,252 @@
+// The CPU twin of the shader modules of this room and of the kernels that evaluate coded transfer: same
+// names, same tables, same order of terms, so that a test can hold one against the other and a debugger can
+// step through what the GPU does. Memory is what the GPU sees: arena pages as 32-bit words. No GL.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <span>
+
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+
+#include "runtime/transfer/transfer_shared.h"
+
+namespace lambent::transfer::ref {
+
+struct Memory {
+  std::span<const glm::vec4> lights;
+  std::span<const uint> transfer;      // page
+  std::span<const glm::vec4> samples;  // page
+  std::span<const uint> rows;          // page
+  std::span<const uint> geometry;      // page
+
+  glm::vec3 lightAt(uint index) const { return glm::vec3(lights[index]); }
+  float floatAt(uint word) const { return std::bit_cast<float>(transfer[word]); }
+  uint codeWordAt(uint word) const { return transfer[word]; }
+  glm::vec4 sampleAt(uint index) const { return samples[index]; }
+  uint rowWordAt(uint word) const { return rows[word]; }
+};
+
+inline constexpr glm::vec3 kLuminance{0.2126f, 0.7152f, 0.0722f};
+
+// A vector of transfer in memory: its first word, and how many words lie between its channels.
+struct TransferVector {
+  uint at, channels, stride, columns;
+};
+
+// The vector times `rest` of the light without key lights and `key` of theirs.
+inline glm::vec3 timesLight(const Memory& memory, const TransferVector& vector, uint light, float rest,
+                            float key) {
+  const auto [at, channels, stride, columns] = vector;
+  glm::vec3 sum(0.0f);
+  for (uint i = 0; i < columns; ++i) {
+    glm::vec3 arriving = rest * memory.lightAt(light + i);
+    if (key != 0.0f) arriving += key * memory.lightAt(light + kKeyBlock + i);
+    glm::vec3 value(memory.floatAt(at + i));
+    if (channels > 1) {
+      value.g = memory.floatAt(at + stride + i);
+      value.b = memory.floatAt(at + 2 * stride + i);
+    }
+    sum += value * arriving;
+  }
+  return sum;
+}
+
+inline glm::vec4 projectOnLight(const Memory& memory, const TransferRecord& transfer, uint vector,
+                                uint output_index, uint light) {
+  const uint columns = transfer.columns, stride = transfer.outputs * columns;
+  const uint first = transfer.vectors_word + vector * transfer.vector_size + output_index * columns;
+  const auto bounced = static_cast<float>(transfer.bounced);
+  const glm::vec3 sum = timesLight(memory, {first + transfer.first_value, transfer.channels, stride, columns},
+                                   light, 1.0f, bounced);
+  if (transfer.straight_channels == 0) return glm::vec4(sum, 0.0f);
+  const glm::vec3 straight =
+      timesLight(memory, {first, transfer.straight_channels, stride, columns}, light, 0.0f, 1.0f);
+  return glm::vec4(sum - bounced * straight, glm::dot(straight, kLuminance));
+}
+
+inline uint codeOf(const Memory& memory, uint codes, uint position) {
+  const uint word = codes & ~kCodes16Bit;
+  if ((codes & kCodes16Bit) != 0) {
+    const uint pair = memory.codeWordAt(word + (position >> 1));
+    return (pair >> (16 * (position & 1))) & 0xffff;
+  }
+  const uint four = memory.codeWordAt(word + (position >> 2));
+  return (four >> (8 * (position & 3))) & 0xff;
+}
+
+// The vectors of a cluster: its mean, then its axes as far as they are resident.
+struct ResidentCluster {
+  uint first, axes;
+};
+
+inline ResidentCluster clusterAt(const Memory& memory, const TransferRecord& transfer, uint cluster) {
+  const uint word = transfer.clusters_word + 2 * cluster;
+  return {memory.codeWordAt(word), std::min(memory.codeWordAt(word + 1), transfer.plane_count)};
+}
+
+// What one unit of stage a computes, by its place among the transfer's.
+struct ProjectUnit {
+  uint light, cluster, output;
+};
+
+// Stage a, one output of one cluster under one light: its products, the mean's with all offsets in it.
+// projected(vector, output, light): the vector times the light.
+template <typename Projected>
+void projectCluster(const Memory& memory, const TransferRecord& transfer, std::span<const uint> places,
+                    const ProjectUnit& unit, const Projected& projected, std::span<glm::vec4> products) {
+  const uint light = places[transfer.first_light + unit.light];
+  const ResidentCluster at = clusterAt(memory, transfer, unit.cluster);
+  const auto product = [&](uint vector) -> glm::vec4& {
+    return products[transfer.first_product + transfer.light_products * unit.light +
+                    transfer.outputs * vector + unit.output];
+  };
+  std::array<glm::vec4, kLanesPerUnit> means{};
+  for (uint v = 0; v <= at.axes; ++v) {
+    const uint vector = at.first + v;
+    const glm::vec4 value = projected(vector, unit.output, light);
+    means[v % kLanesPerUnit] += memory.floatAt(transfer.weights_word + 2 * vector) * value;
+    if (v > 0) product(vector) = memory.floatAt(transfer.weights_word + 2 * vector + 1) * value;
+  }
+  glm::vec4 total(0.0f);
+  for (const glm::vec4& mean : means) total += mean;
+  product(at.first) = total;
+}
+
+template <typename Projected>
+void projectClusters(const Memory& memory, const TransferRecord& transfer, std::span<const uint> places,
+                     const Projected& projected, std::span<glm::vec4> products) {
+  for (uint light = 0; light < transfer.light_count; ++light)
+    for (uint cluster = 0; cluster < transfer.clusters; ++cluster)
+      for (uint j = 0; j < transfer.outputs; ++j)
+        projectCluster(memory, transfer, places, {light, cluster, j}, projected, products);
+}
+
+// Stage a of vectors and matrices.
+inline void projectVectors(const Memory& memory, const TransferRecord& transfer, std::span<const uint> places,
+                           std::span<glm::vec4> products) {
+  const auto projected = [&](uint vector, uint output_index, uint light) {
+    return projectOnLight(memory, transfer, vector, output_index, light);
+  };
+  projectClusters(memory, transfer, places, projected, products);
+}
+
+// Whose code stands at a position: the sample of the cell, and its cluster.
+struct CodedSample {
+  uint sample_index;
+  ResidentCluster cluster;
+};
+
+inline CodedSample codedSampleAt(const Memory& memory, const TransferRecord& transfer, uint position) {
+  const uint place = memory.codeWordAt(transfer.positions_word + position);
+  return {place & 0xffff, clusterAt(memory, transfer, place >> 16)};
+}
+
+// How much of light k falls on a sample of the cell.
+struct LightShare {
+  uint light;
+  float weight;
+};
+
+inline LightShare lightShareOf(const Memory& memory, const TransferRecord& transfer, uint sample_index,
+                               uint k) {
+  if (transfer.light_count == 1) return {0, k == 0 ? 1.0f : 0.0f};
+  const uint word = transfer.light_weights_word + 2 * sample_index;
+  return {memory.codeWordAt(word) >> (8 * k) & 0xff,
+          static_cast<float>(memory.codeWordAt(word + 1) >> (8 * k) & 0xff) / 255.0f};
+}
+
+// Stage b of vectors: one position of the cell, into its sample.
+inline void shadeVector(const Memory& memory, const TransferRecord& transfer, std::span<const uint> places,
+                        std::span<const glm::vec4> products, uint position, std::span<glm::vec4> samples) {
+  const CodedSample at = codedSampleAt(memory, transfer, position);
+  for (uint j = 0; j < transfer.outputs; ++j) {
+    glm::vec4 light(0.0f);
+    for (uint k = 0; k < kLightsPerSample; ++k) {
+      const LightShare share = lightShareOf(memory, transfer, at.sample_index, k);
+      uint product = transfer.first_product + transfer.light_products * share.light +
+                     transfer.outputs * at.cluster.first + j;
+      light += share.weight * products[product];
+      for (uint axis = 0; axis < at.cluster.axes; ++axis) {
+        product += transfer.outputs;
+        light += static_cast<float>(codeOf(memory, places[transfer.first_plane + axis], position)) *
+                 share.weight * products[product];
+      }
+    }
+    glm::vec4& out = samples[transfer.first_output + transfer.outputs * at.sample_index + j];
+    if (transfer.accumulate != 0)
+      light += out;
+    else
+      light.w = 1.0f + (j == 0 ? std::max(light.w, 0.0f) : light.w);
+    out = light;
+  }
+}
+
+inline glm::vec4 projectVisibility(const Memory& memory, std::span<const uint> gaunt,
+                                   const TransferRecord& transfer, uint vector, uint output_index,
+                                   uint light) {
+  const uint at = transfer.vectors_word + vector * transfer.vector_size;
+  glm::vec3 sum(0.0f);
+  const uint first_term = transfer.outputs + 1, end = gaunt[output_index + 1];
+  for (uint t = gaunt[output_index]; t < end; ++t) {
+    const uint jk = gaunt[first_term + kGauntTermWords * t];
+    const float value = std::bit_cast<float>(gaunt[first_term + kGauntTermWords * t + 1]);
+    sum += value * memory.floatAt(at + (jk >> 16)) * memory.lightAt(light + (jk & 0xffff));
+  }
+  return {sum, memory.floatAt(at + output_index)};
+}
+
+// Stage a of visibility.
+inline void projectVisibilities(const Memory& memory, std::span<const uint> gaunt,
+                                const TransferRecord& transfer, std::span<const uint> places,
+                                std::span<glm::vec4> products) {
+  const auto projected = [&](uint vector, uint output_index, uint light) {
+    return projectVisibility(memory, gaunt, transfer, vector, output_index, light);
+  };
+  projectClusters(memory, transfer, places, projected, products);
+}
+
+// Stage b of matrices: one position of the cell, into all outputs of its sample.
+inline void shadeMatrix(const Memory& memory, const TransferRecord& transfer, std::span<const uint> places,
+                        std::span<const glm::vec4> products, uint position, std::span<glm::vec4> samples) {
+  const CodedSample at = codedSampleAt(memory, transfer, position);
+  for (uint j = 0; j < transfer.outputs; ++j) {
+    glm::vec4 light(0.0f);
+    for (uint k = 0; k < kLightsPerSample; ++k) {
+      const LightShare share = lightShareOf(memory, transfer, at.sample_index, k);
+      if (share.weight == 0.0f) break;
+      uint product = transfer.first_product + transfer.light_products * share.light +
+                     transfer.outputs * at.cluster.first + j;
+      light += share.weight * products[product];
+      for (uint axis = 0; axis < at.cluster.axes; ++axis) {
+        product += transfer.outputs;
+        const uint code = codeOf(memory, places[transfer.first_plane + axis], position);
+        light += static_cast<float>(code) * share.weight * products[product];
+      }
+    }
+    glm::vec4& out = samples[transfer.first_output + transfer.outputs * at.sample_index + j];
+    out = transfer.accumulate != 0 ? light + out : light;
+  }
+}
+
+// As vertex_rows.glsl has it.
+struct VertexRows {
+  uint word, vertex_count, entries;
+};
+
+struct RowEntry {
+  float weight;
+  uint sample_index;
+};
+
+inline RowEntry rowEntryAt(const Memory& memory, const VertexRows& rows, uint entry) {
+  const uint samples_word = rows.word + rows.vertex_count + 1;
+  const uint pair = memory.rowWordAt(samples_word + rows.entries + (entry >> 1));
+  return {static_cast<float>((pair >> (16 * (entry & 1))) & 0xffff) / 65535.0f,
+          memory.rowWordAt(samples_word + entry)};
+}
+
+}  // namespace lambent::transfer::ref

@@ -1,0 +1,25 @@
+// Rows of vertices (vertex_rows.hpp): from which samples a vertex takes its light. A draw's rows lie in a page of words as
+// vertex_count + 1 offsets of entries, the samples of the entries, and their weights, two to a word as unorm16.
+uint rowWordAt(uint word);  // of the rows page
+
+struct VertexRows {
+  uint word;  // where they begin in the page
+  uint vertex_count;
+  uint entries;
+};
+
+// The entries of a vertex: from x on, before y.
+uvec2 rowOf(VertexRows rows, uint vertex) {
+  return uvec2(rowWordAt(rows.word + vertex), rowWordAt(rows.word + vertex + 1u));
+}
+
+struct RowEntry {
+  float weight;
+  uint sample_index;
+};
+
+RowEntry rowEntryAt(VertexRows rows, uint entry) {
+  uint samples_word = rows.word + rows.vertex_count + 1u;
+  uint pair = rowWordAt(samples_word + rows.entries + (entry >> 1u));
+  return RowEntry(float((pair >> (16u * (entry & 1u))) & 0xffffu) / 65535.0, rowWordAt(samples_word + entry));
+}

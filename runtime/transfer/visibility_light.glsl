@@ -1,0 +1,21 @@
+// Visibility times light in spherical harmonics: the math only, no bindings. The CPU twin stands in transfer_ref.hpp, with
+// the same names and the same order of terms.
+#include "transfer_shared.h"
+
+vec3 lightAt(uint index);
+float vectorAt(uint word);    // of the transfer page
+uint gauntWordAt(uint word);  // of the table of products
+
+// Output i of a mean or axis V of visibility under the light whose coefficients start at `light`:
+//   l'_i = sum_jk Gamma_ijk V_k l_j,   and in w the same under constant light of radiance 1, which is V_i itself.
+vec4 projectVisibility(TransferRecord transfer, uint vector, uint output_index, uint light) {
+  uint at = transfer.vectors_word + vector * transfer.vector_size;
+  vec3 sum = vec3(0.0);
+  uint first_term = transfer.outputs + 1u, end = gauntWordAt(output_index + 1u);
+  for (uint t = gauntWordAt(output_index); t < end; ++t) {
+    uint jk = gauntWordAt(first_term + kGauntTermWords * t);
+    float value = uintBitsToFloat(gauntWordAt(first_term + kGauntTermWords * t + 1u));
+    sum += value * vectorAt(at + (jk >> 16u)) * lightAt(light + (jk & 0xffffu));
+  }
+  return vec4(sum, vectorAt(at + output_index));
+}

@@ -1,0 +1,158 @@
+// Commands on a session that has neither window nor OpenGL.
+#include "tests/editor/program/windowless.hpp"
+
+namespace lambent::editor {
+namespace {
+
+using nlohmann::json;
+
+class WindowlessCommands : public testing::Windowless {};
+
+TEST_F(WindowlessCommands, CreateSelectMoveAndTakeItBack) {
+  answer("create-sphere", {"0", "1", "0"});
+  answer("create-point");
+  answer("select", {"sphere"});
+  EXPECT_EQ(answer("state")["selected"], json::array({"sphere"}));
+  answer("set", {"Transform.translation", "1", "2", "3"});
+  EXPECT_EQ(answer("get", {"Transform.translation"}), json::array({1.0, 2.0, 3.0}));
+  EXPECT_EQ(answer("undo")["done"], true);
+  EXPECT_EQ(answer("get", {"Transform.translation"}), json::array({0.0, 1.0, 0.0}));
+  answer("redo");
+  EXPECT_EQ(answer("get", {"Transform.translation"}), json::array({1.0, 2.0, 3.0}));
+  EXPECT_FALSE(run("set", {"Light.radius", "-1"})) << "out of its range";
+}
+
+TEST_F(WindowlessCommands, DeleteAndBringBack) {
+  answer("create-spot");
+  answer("rename", {"desk lamp"});
+  const json found = answer("tree", {"\"desk lamp\""});
+  ASSERT_EQ(found.size(), 1u);
+  answer("delete");
+  EXPECT_EQ(answer("tree", {"\"desk lamp\""}).size(), 0u);
+  answer("undo");
+  EXPECT_EQ(answer("tree", {"\"desk lamp\""}), found) << "the same id";
+  answer("select", {"desk lamp"});
+  answer("duplicate");
+  EXPECT_EQ(answer("tree", {"type:light"}).size(), 2u);
+}
+
+TEST_F(WindowlessCommands, CopyAndPasteWithoutASystemClipboard) {
+  answer("create-disc");
+  answer("set", {"Light.strength", "5"});
+  answer("copy", {"Light"});
+  answer("create-sphere");
+  answer("paste");
+  EXPECT_EQ(answer("get", {"Light.strength"}), 5.0);
+}
+
+TEST_F(WindowlessCommands, AddLightsThatComeOnStage) {
+  answer("add-light", {"sun:35,45,0.5,20000"});
+  session->update(0.0);
+  EXPECT_EQ(session->stage.lights().size(), 2u);
+  const json keys = answer("keys");
+  ASSERT_EQ(keys.size(), 1u);
+  EXPECT_NEAR(keys[0]["elevation"].get<double>(), 45.0, 0.01);
+  answer("move-key", {"0", "90", "30"});
+  EXPECT_NEAR(answer("keys")[0]["azimuth"].get<double>(), 90.0, 0.01);
+  answer("remove-light", {"1"});
+  EXPECT_EQ(answer("keys").size(), 0u);
+  EXPECT_FALSE(run("add-light", {"sun:1"}));
+  EXPECT_FALSE(run("add-light", {"nowhere.hdr"}));
+}
+
+TEST_F(WindowlessCommands, SettingsAndQualitiesAreStepsThatTheStageFollows) {
+  answer("setting", {"key-samples", "17"});
+  answer("quality", {"low"});
+  session->followDocument();
+  EXPECT_EQ(session->stage.settings().mostKeys(), 4u);
+  EXPECT_EQ(answer("state")["settings"]["keys"], "4");
+  answer("undo");
+  session->followDocument();
+  EXPECT_EQ(answer("state")["settings"]["key-samples"], "17");
+  EXPECT_EQ(answer("state")["settings"]["keys"], "auto");
+  EXPECT_FALSE(run("setting", {"key-samples", "no number"}));
+}
+
+TEST_F(WindowlessCommands, LookAtTheWorldAsTheyAreTold) {
+  answer("view", {"normals"});
+  EXPECT_EQ(answer("state")["view"], "normals");
+  answer("camera", {"pose:1,2,3,0,0,5,40"});
+  EXPECT_FALSE(run("camera", {"no such camera"}));
+  answer("split");
+  EXPECT_TRUE(session->reference.on());
+  answer("reference-bands", {"5"});
+  EXPECT_EQ(session->reference.band_limit, 5);
+}
+
+TEST_F(WindowlessCommands, ChangeAMaterialOfABundle) {
+  openHello();
+  answer("select", {"type:material floor"});
+  answer("set", {"Material.base_color", "0.9", "0.1", "0.1"});
+  const baker::SceneEdits edits = session->changes.editsOf(0);
+  ASSERT_EQ(edits.materials.size(), 1u);
+  EXPECT_EQ(edits.materials.front().name, "floor");
+  answer("reset", {"Material"});
+  EXPECT_TRUE(session->changes.editsOf(0).materials.empty());
+}
+
+TEST_F(WindowlessCommands, SetOptionsOfABakeAndBake) {
+  openHello();
+  answer("bake-option", {"rays", "300"});
+  answer("bake-option", {"bounces", "1", "hello"});
+  EXPECT_EQ(answer("state")["scenes"][0]["bakeOptions"]["rays"], "300");
+  EXPECT_FALSE(run("bake-option", {"rays", "few"}));
+  EXPECT_FALSE(run("bake-option", {"rays", "300", "no such scene"}));
+  EXPECT_EQ(session->scenes.jobOf(0)->request.last, baker::PreviewLevel::Unshadowed);
+  answer("bake");
+  EXPECT_EQ(session->scenes.jobOf(0)->request.last, baker::PreviewLevel::Final);
+  EXPECT_EQ(session->scenes.jobOf(0)->request.options.settings().at("rays"), "300");
+  answer("cancel");
+}
+
+TEST_F(WindowlessCommands, SaveAWorldThatComesBack) {
+  openHello();
+  answer("select", {"has:Transform sphere"});
+  answer("set", {"Transform.translation", "0.1", "0.6", "0.2"});
+  answer("create-point", {"0", "2", "0"});
+  const std::string file = (folder.path() / "world.json").string();
+  // World files name the final bundle, and nothing is baked here.
+  const SceneEntry& entry = session->scenes.entries().front();
+  std::filesystem::copy(entry.shown, entry.bundle);
+  EXPECT_TRUE(session->files.modified());
+  answer("save", {file});
+  EXPECT_FALSE(session->files.modified());
+  session = makeSession();
+  answer("open", {file});
+  waitForBundle(*session);
+  answer("select", {"has:Transform sphere"});
+  EXPECT_NEAR(answer("get", {"Transform.translation"})[1].get<double>(), 0.6, 1e-6);
+  EXPECT_NEAR(answer("get", {"point:Transform.translation"})[1].get<double>(), 2.0, 1e-6);
+}
+
+TEST_F(WindowlessCommands, AskInADialogWhatHasNotBeenSaid) {
+  answer("open");
+  ASSERT_TRUE(session->window.dialog);
+  EXPECT_EQ(session->window.dialog->kind, Dialog::Kind::OpenFile);
+  session->window.dialog.reset();
+  answer("quit");
+  EXPECT_TRUE(session->window.quit) << "nothing would be lost";
+  session->window.quit = false;
+  answer("create-empty");
+  answer("quit");
+  EXPECT_FALSE(session->window.quit);
+  ASSERT_TRUE(session->window.dialog);
+  const Dialog asked = *session->window.dialog;
+  asked.answered(*session, {});
+  EXPECT_TRUE(session->window.quit);
+}
+
+TEST_F(WindowlessCommands, AreStillKnownByTheirFormerNames) {
+  EXPECT_EQ(findCommand("probe"), findCommand("environment-map"));
+  EXPECT_EQ(findCommand("probe-folder"), findCommand("environment-map-folder"));
+  EXPECT_EQ(findCommand("overlay-light-samples"), findCommand("overlay-light-probes"));
+  answer("probe-folder", {folder.path().string()});
+  for (const json& row : answer("commands")) EXPECT_NE(row["id"], "probe");
+}
+
+}  // namespace
+}  // namespace lambent::editor

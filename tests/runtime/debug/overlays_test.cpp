@@ -1,0 +1,331 @@
+// Overlays: their words, what they draw where, and that they leave the rest of the picture alone.
+#include "runtime/debug/overlays.hpp"
+
+#include <glm/geometric.hpp>
+#include <glm/gtc/matrix_transform.hpp>
+#include <gtest/gtest.h>
+
+#include "runtime/debug/overlay_keys.hpp"
+#include "runtime/debug/overlay_lines.hpp"
+#include "runtime/scene/lights.hpp"
+#include "tests/support/frame/view_stage.hpp"
+
+namespace lambent::frame {
+namespace {
+
+using testing::BundleBuilder;
+using testing::linearOptions;
+using testing::quadMesh;
+using testing::sphereMesh;
+using testing::ViewStage;
+
+// Pixels that the two pictures differ in.
+std::vector<std::size_t> changes(const spec::RgbaImage& a, const spec::RgbaImage& b) {
+  std::vector<std::size_t> found;
+  for (std::size_t i = 0; i < a.texels.size(); ++i)
+    if (a.texels[i] != b.texels[i]) found.push_back(i);
+  return found;
+}
+
+}  // namespace
+
+TEST(OverlayWords, AListNamesThemAndSaysWhereTheSliceLies) {
+  const auto both = parseOverlays("neighborhoods:z,0.25,lights");
+  ASSERT_TRUE(both) << both.error().line();
+  EXPECT_TRUE(both->neighborhoods && both->lights);
+  EXPECT_FALSE(both->groups || both->volumes || both->light_probes);
+  EXPECT_EQ(both->slice.axis, 2);
+  EXPECT_EQ(both->slice.position, 0.25f);
+  EXPECT_FALSE(parseOverlays("")->any());
+  for (const OverlayRow& row : overlayRows()) EXPECT_TRUE((*parseOverlays(row.name)).*row.flag) << row.name;
+  for (const char* wrong :
+       {"light", "lights:x,0.5", "neighborhoods:", "neighborhoods:w,0.5", "neighborhoods:x",
+        "neighborhoods:x,2", "neighborhoods:x,0.5lights", "lights,,"}) {
+    const auto options = parseOverlays(wrong);
+    ASSERT_FALSE(options) << wrong;
+    EXPECT_NE(options.error().hint.find("light-probes"), std::string::npos);
+  }
+}
+
+TEST(OverlayLines, ABoxHasItsTwelveEdgesWhereItStands) {
+  std::vector<OverlayLine> lines;
+  appendBox(scene::Box{glm::vec3(-1.0f), glm::vec3(1.0f, 2.0f, 3.0f)},
+            glm::translate(glm::mat4(1.0f), {5.0f, 0.0f, 0.0f}), glm::vec4(1.0f), lines);
+  ASSERT_EQ(lines.size(), 12u);
+  float sum = 0.0f;
+  scene::Box around;
+  for (const OverlayLine& line : lines) {
+    sum += glm::distance(line.from_ws, line.to_ws);
+    around.add(line.from_ws);
+    around.add(line.to_ws);
+  }
+  EXPECT_FLOAT_EQ(sum, 4.0f * (2.0f + 3.0f + 4.0f));
+  EXPECT_EQ(around.min, glm::vec3(4.0f, -1.0f, -1.0f));
+  EXPECT_EQ(around.max, glm::vec3(6.0f, 2.0f, 3.0f));
+  appendBox({}, glm::mat4(1.0f), glm::vec4(1.0f), lines);
+  EXPECT_EQ(lines.size(), 12u) << "an empty one has none";
+}
+
+TEST(OverlayKeys, TheBoxOfAShadowMapHoldsAllThatIsSeenAndStandsOnItsLight) {
+  const std::vector<glm::dvec3> seen = {{-1, 0, -1}, {1, 0, -1}, {1, 0, 2}, {-1, 0.5, 2}};
+  const glm::dvec3 towards = glm::normalize(glm::dvec3(0.3, 0.8, 0.5));
+  const auto region = regionOf(seen, towards, 0.0, scene::Box{glm::vec3(-2.0f), glm::vec3(2.0f)});
+  ASSERT_TRUE(region);
+  const auto corners = cornersOf(*region);
+  // In its own axes the box is [0, 1] in all three.
+  const glm::dvec3 origin(corners[0]);
+  for (const glm::dvec3& point : seen)
+    for (const std::size_t bit : {1u, 2u, 4u}) {
+      const glm::dvec3 edge = glm::dvec3(corners[bit]) - origin;
+      const double share = glm::dot(point - origin, edge) / glm::dot(edge, edge);
+      EXPECT_GE(share, -1e-5);
+      EXPECT_LE(share, 1.0 + 1e-5);
+    }
+  EXPECT_LT(glm::distance(glm::normalize(glm::dvec3(corners[4]) - origin), towards), 1e-6);
+}
+
+TEST(OverlayKeys, AKeyLightHasItsOutlineOnTheSkyAnArrowTheWayItShinesAndItsBox) {
+  const spec::Disc sun{
+      .direction = glm::normalize(glm::vec3(1, 2, 3)), .radius_rad = 0.05f, .radiance = glm::vec3(100.0f)};
+  const spec::Disc dark{.direction = {0, 1, 0}, .radius_rad = 0.1f, .radiance = glm::vec3(0.0f)};
+  const scene::Box world{glm::vec3(-1.0f), glm::vec3(1.0f)};
+  const spec::View view =
+      spec::orbitView({.distance_radii = 3.0f, .fov_deg = 40.0f}, world.min, world.max, 1.0f);
+  std::vector<OverlayLine> lines;
+  appendKeys(std::vector{sun}, {}, {}, world, view, lines);
+  std::size_t outline = 0, arrow = 0;
+  for (const OverlayLine& line : lines) {
+    const glm::vec3 from = glm::normalize(line.from_ws - view.eye_ws),
+                    to = glm::normalize(line.to_ws - view.eye_ws);
+    const float angle = std::acos(std::min(glm::dot(from, sun.direction), 1.0f));
+    if (std::abs(angle - sun.radius_rad) < 1e-4f &&
+        std::abs(std::acos(glm::dot(to, sun.direction)) - sun.radius_rad) < 1e-4f)
+      ++outline;
+    if (glm::dot(glm::normalize(line.to_ws - line.from_ws), -sun.direction) > 0.9999f) ++arrow;
+  }
+  EXPECT_GE(outline, 32u);
+  EXPECT_EQ(arrow, 1u);
+  // A parallel view sees no place on the sky, but the arrow.
+  spec::View parallel = view;
+  parallel.clip_from_view = glm::ortho(-2.0f, 2.0f, -2.0f, 2.0f, 0.1f, 10.0f);
+  std::vector<OverlayLine> without_sky;
+  appendKeys(std::vector{sun}, {}, {}, world, parallel, without_sky);
+  EXPECT_LT(without_sky.size(), 10u);
+  // One that is dark is grey and fainter; a map adds the twelve edges of its box.
+  std::vector<OverlayLine> both;
+  KeyShadows::ShownRegion map{.light = sun, .region = {}, .texels = 256};
+  map.region.max = glm::dvec2(1.0);
+  map.region.range = 2.0;
+  appendKeys(std::vector{sun, dark}, std::vector{map}, {}, world, view, both);
+  EXPECT_EQ(both.size(), 2 * lines.size() + 12);
+  const OverlayLine& of_dark = both[lines.size()];
+  EXPECT_EQ(of_dark.color.r, of_dark.color.b);
+  EXPECT_LT(of_dark.color.a, both[0].color.a);
+}
+
+TEST(OverlayKeys, OfManyKeyLightsTheStrongestHaveBoxesOrTheOneThatIsChosen) {
+  std::vector<spec::Disc> keys;
+  std::vector<KeyShadows::ShownRegion> maps;
+  for (int i = 0; i < 9; ++i) {
+    keys.push_back({.direction = glm::normalize(glm::vec3(i, 5, 1)),
+                    .radius_rad = 0.05f,
+                    .radiance = glm::vec3(static_cast<float>(10 + i))});
+    KeyRegion region;
+    region.max = glm::dvec2(1.0 + i);  // tells the boxes apart
+    region.range = 1.0;
+    maps.push_back({.light = keys.back(), .region = region, .texels = 256});
+  }
+  const scene::Box world{glm::vec3(-1.0f), glm::vec3(1.0f)};
+  const auto drawn = [&](std::span<const KeyShadows::ShownRegion> regions,
+                         std::optional<std::size_t> chosen) {
+    std::vector<OverlayLine> lines;
+    appendKeys(keys, regions, chosen, world, {}, lines);
+    return lines;
+  };
+  const std::size_t without = drawn({}, {}).size();
+  const std::vector<OverlayLine> all = drawn(maps, {}), one = drawn(maps, 3);
+  EXPECT_EQ(all.size(), without + 12 * kMostBoxes);
+  ASSERT_EQ(one.size(), without + 12);
+  EXPECT_EQ(all[without].to_ws.x, 9.0f) << "the strongest";
+  EXPECT_EQ(one[without].to_ws.x, 4.0f) << "the fourth";
+}
+
+TEST(OverlayLines, OfBoxesThatOverlapTheWantedOrElseTheNearestIsDrawnWhole) {
+  const auto at = [](float x, bool wanted = false) {
+    return PlacedBox{{glm::vec3(-1.0f), glm::vec3(1.0f)},
+                     glm::translate(glm::mat4(1.0f), glm::vec3(x, 0.0f, 0.0f)),
+                     wanted};
+  };
+  const glm::vec3 eye(10.0f, 0.0f, 0.0f);
+  // A row of three, and one apart; from the right.
+  EXPECT_EQ(drawnWhole({at(0.0f), at(1.5f), at(3.0f), at(-9.0f)}, eye),
+            (std::vector<bool>{false, false, true, true}));
+  EXPECT_EQ(drawnWhole({at(0.0f, true), at(1.5f), at(3.0f), at(-9.0f)}, eye),
+            (std::vector<bool>{true, false, true, true}));
+  EXPECT_EQ(drawnWhole({at(2.0f), at(2.0f)}, eye), (std::vector<bool>{true, false})) << "just one of two";
+}
+
+TEST(OverlayLines, GlyphsOfLightsHaveTheirSizeAndPointWhereTheyShine) {
+  using Kind = scene::LocalLightComponent::Kind;
+  const glm::mat4 place = glm::translate(glm::mat4(1.0f), {0.0f, 4.0f, 0.0f});
+  const auto boundsOf = [&](const scene::LocalLightComponent& light) {
+    std::vector<OverlayLine> lines;
+    appendLight(light, place, 1.0f, glm::vec4(1.0f), lines);
+    scene::Box bounds;
+    for (const OverlayLine& line : lines) {
+      bounds.add(line.from_ws);
+      bounds.add(line.to_ws);
+    }
+    return bounds;
+  };
+  const scene::Box sphere = boundsOf({.kind = Kind::Sphere, .radius_m = 0.75f});
+  EXPECT_NEAR(sphere.max.x - sphere.min.x, 1.5f, 0.01f);
+  EXPECT_NEAR(sphere.center().y, 4.0f, 1e-3f);
+  const scene::Box disc = boundsOf({.kind = Kind::Disc, .radius_m = 2.0f});
+  EXPECT_NEAR(disc.max.x, 2.0f, 0.01f);
+  EXPECT_NEAR(disc.max.z, 0.0f, 1e-4f) << "nothing behind it";
+  EXPECT_NEAR(disc.min.z, -2.0f, 1e-4f) << "its arrow";
+  const float angle = 0.5f;
+  const scene::Box spot = boundsOf({.kind = Kind::Spot, .outer_cone_rad = angle});
+  EXPECT_NEAR(spot.max.x / -spot.min.z, std::tan(angle), 0.01f);
+  EXPECT_NEAR(spot.max.z, 0.0f, 1e-4f);
+  EXPECT_LT(boundsOf({.kind = Kind::Directional}).min.z, -1.0f);
+  const scene::Box point = boundsOf({.kind = Kind::Point});
+  EXPECT_NEAR(point.center().z, 0.0f, 1e-4f);
+  EXPECT_NEAR(point.max.y - 4.0f, 0.5f, 1e-4f);
+}
+
+using OverlayTest = testing::GpuTest;
+
+TEST_F(OverlayTest, TheBallOfALightProbeHasConstantRadianceUnderConstantLight) {
+  // The sample of the written bundle stands at the origin, in front of a quad, whichever way its group lies.
+  const glm::vec3 radiance(0.25f, 0.5f, 2.0f);
+  const glm::mat4 away = glm::translate(glm::mat4(1.0f), {0.0f, 0.0f, -0.5f});
+  ViewStage stage(BundleBuilder(5)
+                      .add({quadMesh(), {}, away})
+                      .groupRotation(glm::angleAxis(1.0f, glm::vec3(0, 0.6f, 0.8f))),
+                  {spec::ConstantLight{.radiance = radiance}}, linearOptions());
+  OverlayOptions shown;
+  shown.light_probes = true;
+  stage.frame->setOverlays(shown);
+  stage.camera.fov_deg = 8.0f;
+  stage.render();
+  OverlayOptions nothing;
+  const spec::RgbaImage with = stage.frame->readLinear();
+  stage.frame->setOverlays(nothing);
+  const spec::RgbaImage without = stage.picture();
+  std::size_t ball = 0, edges = 0;
+  for (const std::size_t i : changes(with, without)) {
+    ASSERT_EQ(with.texels[i].a, without.texels[i].a) << "alpha is the scene's coverage";
+    // The cube's faces show the same, and its edges are dark.
+    if (with.texels[i].r < 0.9f * radiance.r) {
+      ++edges;
+      continue;
+    }
+    ++ball;
+    ASSERT_LT(glm::distance(glm::vec3(with.texels[i]), radiance), 2e-3f);
+  }
+  EXPECT_GT(ball, 5u);
+  EXPECT_GT(edges, 2u);
+}
+
+TEST_F(OverlayTest, WithoutOverlaysThePictureIsTheSameToTheBitAndThereIsNoPass) {
+  for (const Output output : {Output::Linear, Output::Display}) {
+    FrameOptions options;
+    options.output = output;
+    ViewStage stage(BundleBuilder().add({sphereMesh(12, 24), {}}),
+                    {spec::ConstantLight{.radiance = glm::vec3(1.0f)}}, options);
+    scene::addLights(stage.world.registry(), std::vector<spec::Light>{spec::SphereLight{
+                                                 .position_ws = {0.0f, 0.0f, 1.2f}, .radius_m = 0.3f}});
+    const auto picture = [&] {
+      stage.render();
+      return output == Output::Linear ? std::vector<std::uint8_t>{} : stage.frame->readDisplay().texels;
+    };
+    const auto linear = [&] {
+      return output == Output::Linear ? stage.frame->readLinear().texels : std::vector<glm::vec4>{};
+    };
+    const auto before = picture();
+    const auto before_linear = linear();
+    OverlayOptions shown;
+    shown.light_probes = shown.groups = shown.lights = true;
+    stage.frame->setOverlays(shown);
+    const bool same = picture() == before;
+    EXPECT_FALSE(same && linear() == before_linear);
+    stage.frame->setOverlays({});
+    EXPECT_EQ(picture(), before);
+    EXPECT_EQ(linear(), before_linear);
+    stage.frame->timers().finish();
+    for (const gpu::PassTime& pass : stage.frame->timers().latest()) EXPECT_NE(pass.name, "overlays");
+  }
+}
+
+TEST_F(OverlayTest, LinesAreHiddenByWhatStandsBeforeThemButForATrace) {
+  // A line from left to right behind the sphere, and one before it.
+  const auto lineAt = [](float z) {
+    OverlayOptions options;
+    options.lines.push_back(
+        {.from_ws = {-1.0f, 0.0f, z}, .to_ws = {1.0f, 0.0f, z}, .color = {1, 0, 0, 1}, .width_px = 3.0f});
+    return options;
+  };
+  ViewStage stage(BundleBuilder().add({sphereMesh(12, 24), {}}),
+                  {spec::ConstantLight{.radiance = glm::vec3(1.0f)}}, linearOptions());
+  const spec::RgbaImage bare = stage.picture();
+  const std::size_t middle = 32 * 64 + 32;
+  stage.frame->setOverlays(lineAt(1.2f));
+  const spec::RgbaImage before = stage.picture();
+  EXPECT_LT(glm::distance(glm::vec3(before.texels[middle]), glm::vec3(1.0f, 0.0f, 0.0f)), 1e-3f);
+  stage.frame->setOverlays(lineAt(-1.2f));
+  const spec::RgbaImage behind = stage.picture();
+  EXPECT_NE(behind.texels[middle], bare.texels[middle]);
+  EXPECT_GT(behind.texels[middle].g, 0.6f) << "mostly the white sphere";
+  // A line that reaches behind the eye is cut, not turned about: it stays in its half of the picture.
+  OverlayOptions through;
+  through.lines.push_back({.from_ws = {0.0f, -0.9f, -3.0f},
+                           .to_ws = {0.0f, -0.9f, 40.0f},
+                           .color = {1, 0, 0, 1},
+                           .width_px = 3.0f});
+  stage.frame->setOverlays(through);
+  const auto changed = changes(stage.picture(), bare);
+  EXPECT_GT(changed.size(), 10u);
+  for (const std::size_t i : changed) EXPECT_GE(i / 64, 31u);
+}
+
+TEST_F(OverlayTest, KeyLightsAreMarkedWhereTheSkyShowsThem) {
+  // Beside the sphere, as the eye looks along -Z.
+  const auto lights = std::vector<spec::Light>{
+      spec::ConstantLight{.radiance = glm::vec3(0.5f)},
+      spec::SunLight{
+          .azimuth_deg = 165, .elevation_deg = 10, .angle_deg = 1, .radiance = glm::vec3(2000.0f)}};
+  ViewStage stage(BundleBuilder().add({sphereMesh(12, 24), {}}), lights, linearOptions());
+  stage.camera.distance_radii = 5.0f;
+  stage.environment.setMostKeys(16);
+  ASSERT_EQ(stage.environment.keys().size(), 1u);
+  const spec::RgbaImage bare = stage.picture();
+  OverlayOptions shown;
+  shown.keys = true;
+  stage.frame->setOverlays(shown);
+  const spec::RgbaImage marked = stage.picture();
+  const std::vector<std::size_t> changed = changes(marked, bare);
+  EXPECT_GT(changed.size(), 20u);
+  // The middle of what shines in the picture is the middle of the ring around it.
+  glm::vec2 sun(0.0f);
+  float count = 0.0f;
+  for (std::size_t i = 0; i < bare.texels.size(); ++i)
+    if (bare.texels[i].r > 500.0f && bare.texels[i].a == 0.0f) {
+      sun += glm::vec2(i % 64, i / 64);
+      ++count;
+    }
+  ASSERT_GT(count, 0.0f);
+  sun /= count;
+  std::size_t beside = 0;
+  for (const std::size_t i : changed) beside += glm::distance(glm::vec2(i % 64, i / 64), sun) < 6.0f;
+  EXPECT_GE(beside, 6u) << "a ring about it";
+  ASSERT_EQ(stage.frame->kept<KeyShadows>().regions().size(), 1u);
+  EXPECT_LT(glm::distance(stage.frame->kept<KeyShadows>().regions()[0].light.direction,
+                          stage.environment.keys()[0].direction),
+            1e-6f);
+  stage.frame->setOverlays({});
+  EXPECT_TRUE(changes(stage.picture(), bare).empty());
+}
+
+}  // namespace lambent::frame

@@ -1,0 +1,188 @@
+// Views of surfaces: their words, their numbers in pictures, and that a picture without them stays as it is.
+#include "runtime/surface/views.hpp"
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+
+#include "runtime/debug/data_view.hpp"
+#include "runtime/transfer/transfer_measures.hpp"
+#include "tests/support/frame/view_stage.hpp"
+
+namespace lambent::frame {
+namespace {
+
+using testing::BundleBuilder;
+using testing::linearOptions;
+using testing::quadMesh;
+using testing::sphereMesh;
+using testing::ViewStage;
+
+const spec::Light kWhite = spec::ConstantLight{.radiance = glm::vec3(1.0f)};
+
+// What a normal map is shaded from where nothing is hidden: the light itself.
+BundleBuilder& openMapped(BundleBuilder& builder) {
+  std::vector<float> same(81, 0.0f);
+  for (std::size_t j = 0; j < 9; ++j) same[9 * j + j] = 1.0f;
+  return builder.normalMapped().transfer([same](const glm::vec3&) { return same; });
+}
+
+BundleBuilder openSphere() {
+  gltf::Material material;
+  material.base_color = {0.8f, 0.5f, 0.2f, 1.0f};
+  return BundleBuilder().add({sphereMesh(24, 48), material});
+}
+
+}  // namespace
+
+TEST(ViewWords, EveryViewIsFoundByItsNameAndByNoOther) {
+  for (const SurfaceViewRow& row : kSurfaceViews) {
+    const auto choice = parseView(row.name);
+    ASSERT_TRUE(choice) << row.name;
+    EXPECT_EQ(choice->view, row.view);
+    EXPECT_EQ(*parseView(wordOf(*choice)), *choice);
+  }
+  EXPECT_EQ(parseView("transfer-band:4")->band, 4u);
+  for (const char* wrong : {"", "transfer", "transfer-band:8", "transfer-band:-1", "transfer-band:1x",
+                            "transfer-band:", "final:1", "Normals"}) {
+    const auto choice = parseView(wrong);
+    ASSERT_FALSE(choice) << wrong;
+    EXPECT_NE(choice.error().hint.find("transfer-band[:0..7]"), std::string::npos);
+  }
+}
+
+using ViewTest = testing::GpuTest;
+
+TEST_F(ViewTest, TransferDcOfAnOpenSphereIsTheClosedFormAllOver) {
+  ViewStage stage(openSphere(), {kWhite}, linearOptions({SurfaceView::TransferDc}));
+  const spec::RgbaImage image = stage.picture();
+  std::size_t count = 0;
+  for (const glm::vec4& texel : image.texels) {
+    if (texel.a == 0.0f) {
+      EXPECT_EQ(texel, glm::vec4(0.0f)) << "no sky in pictures of numbers";
+      continue;
+    }
+    ++count;
+    // A_0/pi y_00; the basis is stored in half floats.
+    EXPECT_NEAR(texel.r, 0.2820948f, 0.2820948f / 2048.0f);
+  }
+  EXPECT_GT(count, 300u);
+  EXPECT_EQ(stage.frame->legend().max, transfer::openDc());
+}
+
+TEST_F(ViewTest, BandEnergyOfAnOpenSphereIsTheClosedFormForPlainAndMappedSurfacesAlike) {
+  for (const bool mapped : {false, true})
+    for (const std::uint32_t band : {0u, 1u, 2u}) {
+      BundleBuilder builder = openSphere();
+      if (mapped) openMapped(builder);
+      ViewStage stage(builder, {kWhite}, linearOptions({SurfaceView::TransferBand, band}));
+      const float expected = transfer::openBandEnergy(band);
+      for (const glm::vec4& texel : stage.picture().texels) {
+        if (texel.a == 0.0f) continue;
+        ASSERT_NEAR(texel.r, expected, 0.005f * expected) << band << mapped;
+      }
+    }
+}
+
+TEST_F(ViewTest, TheErrorEstimateIsWhatTheBundleRecords) {
+  ViewStage stage(openSphere(), {kWhite}, linearOptions({SurfaceView::ErrorEstimate}));
+  const bundle::CellTransfer& transfer = stage.world.description(0).groups[0].cells[0].transfers[0];
+  std::size_t count = 0;
+  for (const glm::vec4& texel : stage.picture().texels) {
+    if (texel.a == 0.0f) continue;
+    ++count;
+    ASSERT_NEAR(texel.r, transfer.error, 1e-5f * transfer.error);
+  }
+  EXPECT_GT(count, 300u);
+  EXPECT_GT(transfer.error, 0.0f);
+}
+
+TEST_F(ViewTest, IrradianceIsTheLightWithoutTheAlbedo) {
+  ViewStage stage(openSphere(), {kWhite}, linearOptions({SurfaceView::Irradiance}));
+  for (const glm::vec4& texel : stage.picture().texels) {
+    if (texel.a == 0.0f) continue;
+    ASSERT_LT(glm::distance(glm::vec3(texel), glm::vec3(1.0f)), 1e-3f);
+  }
+}
+
+TEST_F(ViewTest, NormalsAreThoseOfTheWorldHoweverTheMeshStands) {
+  // A quad towards +Z, turned to face +X, in a group that lies otherwise still.
+  const glm::mat4 turned(glm::vec4(0, 0, -1, 0), glm::vec4(0, 1, 0, 0), glm::vec4(1, 0, 0, 0),
+                         glm::vec4(0, 0, 0, 1));
+  for (const bool mapped : {false, true}) {
+    BundleBuilder builder;
+    builder.add({quadMesh(), {}, turned}).groupRotation(glm::angleAxis(0.7f, glm::vec3(0.6f, 0.0f, 0.8f)));
+    if (mapped) openMapped(builder);
+    ViewStage stage(builder, {kWhite}, linearOptions({SurfaceView::Normals}));
+    stage.camera.azimuth_deg = 90.0f;
+    std::size_t count = 0;
+    for (const glm::vec4& texel : stage.picture().texels) {
+      if (texel.a == 0.0f) continue;
+      ++count;
+      ASSERT_LT(glm::distance(glm::vec3(texel), glm::vec3(1.0f, 0.5f, 0.5f)), 1e-3f) << mapped;
+    }
+    EXPECT_GT(count, 100u);
+  }
+}
+
+TEST_F(ViewTest, FalseColoursAreShownAsTheyAreWhateverTheExposure) {
+  const auto shown = [](float exposure_ev) {
+    FrameOptions options;
+    options.settings.exposure_ev = exposure_ev;
+    options.view = {SurfaceView::TransferDc};
+    ViewStage stage(openSphere(), {kWhite}, options);
+    stage.render();
+    return stage.frame->readDisplay().texels;
+  };
+  const auto dark = shown(-6.0f);
+  EXPECT_EQ(dark, shown(6.0f));
+  // The middle: the end of viridis (253, 231, 37).
+  const std::size_t middle = 4 * (32 * 64 + 32);
+  EXPECT_NEAR(dark[middle], 253, 4);
+  EXPECT_NEAR(dark[middle + 1], 231, 4);
+  EXPECT_NEAR(dark[middle + 2], 37, 6);
+}
+
+TEST_F(ViewTest, APictureWithoutViewsIsTheSameToTheBitBeforeAndAfterThemAndCostsNothingMore) {
+  ViewStage stage(openSphere(), {kWhite}, linearOptions());
+  const spec::RgbaImage before = stage.picture();
+  const auto passesOf = [&] {
+    stage.frame->timers().finish();
+    std::string passes;
+    for (const gpu::PassTime& pass : stage.frame->timers().latest())
+      passes += fmt::format("{} {} {} ", pass.name, pass.counters.dispatches, pass.counters.draws);
+    return passes;
+  };
+  stage.render();
+  const std::string still = passesOf();
+  for (const SurfaceViewRow& row : kSurfaceViews) {
+    if (row.view == SurfaceView::Final) continue;
+    stage.frame->setView({row.view});
+    EXPECT_NE(stage.picture().texels, before.texels) << row.name;
+    EXPECT_EQ(stage.frame->kept<std::optional<DataView>>().has_value(), showsTransfer(row.view)) << row.name;
+    stage.frame->setView({});
+    EXPECT_EQ(stage.picture().texels, before.texels) << row.name;
+    EXPECT_FALSE(stage.frame->kept<std::optional<DataView>>()) << row.name;
+  }
+  stage.render();
+  EXPECT_EQ(passesOf(), still);
+}
+
+TEST_F(ViewTest, WiresKeepTheCoverageAndLieOnTheSurface) {
+  ViewStage stage(BundleBuilder().add({quadMesh(), {}}), {kWhite}, linearOptions());
+  const spec::RgbaImage before = stage.picture();
+  stage.frame->setView({SurfaceView::Wireframe});
+  const spec::RgbaImage wires = stage.picture();
+  std::size_t changed = 0;
+  for (std::size_t i = 0; i < before.texels.size(); ++i) {
+    ASSERT_EQ(wires.texels[i].a, before.texels[i].a);
+    if (wires.texels[i] == before.texels[i]) continue;
+    ++changed;
+    EXPECT_GT(before.texels[i].a, 0.0f) << "only on surfaces";
+  }
+  // Four edges and a diagonal of a quad that is about 30 pixels wide, a pixel or three thick.
+  EXPECT_GT(changed, 60u);
+  EXPECT_LT(changed, 700u);
+}
+
+}  // namespace lambent::frame

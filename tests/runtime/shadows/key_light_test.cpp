@@ -1,0 +1,421 @@
+// What a shadow map says of a key light, on the CPU: closed forms, and sums over the disc that know nothing
+// of maps.
+#include <array>
+#include <limits>
+#include <numbers>
+#include <random>
+#include <vector>
+
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+
+#include "runtime/shadows/key_light_ref.hpp"
+#include "tests/runtime/shadows/key_maps.hpp"
+
+namespace lambent::frame {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr float kDegree = std::numbers::pi_v<float> / 180.0f;
+constexpr glm::vec3 kUp(0, 0, 1);
+constexpr float kRounding = 1e-6f;  // weights of four texels sum to 1 but for that
+
+struct Random {
+  std::mt19937 engine{7};
+  float number(float low, float high) { return std::uniform_real_distribution<float>(low, high)(engine); }
+  glm::vec3 direction() {
+    for (;;) {
+      const glm::vec3 v(number(-1, 1), number(-1, 1), number(-1, 1));
+      if (const float squared = glm::dot(v, v); squared > 0.01f && squared < 1.0f) return glm::normalize(v);
+    }
+  }
+};
+
+// Distances along rays; none: less than 0.
+constexpr double kMiss = -1.0;
+double nearer(double a, double b) {
+  return a < 0.0 ? b : b < 0.0 ? a : std::min(a, b);
+}
+
+double toPlane(const KeyRay& ray, glm::dvec3 normal, double offset) {
+  const double along = glm::dot(normal, ray.direction);
+  return along == 0.0 ? kMiss : (offset - glm::dot(normal, ray.from)) / along;
+}
+
+struct Slab {
+  glm::dvec3 least, most;
+};
+double toBox(const KeyRay& ray, const Slab& box) {
+  double from = 0.0, to = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < 3; ++i) {
+    if (ray.direction[i] == 0.0) {
+      if (ray.from[i] < box.least[i] || ray.from[i] > box.most[i]) return kMiss;
+      continue;
+    }
+    const double a = (box.least[i] - ray.from[i]) / ray.direction[i],
+                 b = (box.most[i] - ray.from[i]) / ray.direction[i];
+    from = std::max(from, std::min(a, b));
+    to = std::min(to, std::max(a, b));
+  }
+  return from <= to ? from : kMiss;
+}
+
+double toSphere(const KeyRay& ray, glm::dvec3 center, double radius) {
+  const glm::dvec3 from = ray.from - center;
+  const double b = glm::dot(from, ray.direction), c = glm::dot(from, from) - radius * radius;
+  const double root = b * b - c;
+  return root < 0.0 || -b < 0.0 ? kMiss : -b - std::sqrt(root);
+}
+
+// The share of a disc on the far side of a line at s radii from its middle.
+double beyondChord(double s) {
+  s = std::clamp(s, -1.0, 1.0);
+  return (std::acos(s) - s * std::sqrt(1.0 - s * s)) / kPi;
+}
+
+// The share of the disc that rays from a point reach, each weighed by its cosine, over many more rays than
+// the shader takes; blocked(ray): whether something is in the way.
+template <typename Blocked>
+double visibleByRays(const KeyRecord& key, glm::vec3 position, glm::vec3 normal, const Blocked& blocked) {
+  constexpr int kRays = 3000;
+  const glm::dvec3 right{glm::normalize(glm::vec3(key.right))}, up{glm::normalize(glm::vec3(key.up))};
+  double visible = 0.0, all = 0.0;
+  for (int i = 0; i < kRays; ++i) {
+    const glm::dvec2 at = double{key.scale.w} * glm::dvec2(ref::keyPoint(i, kRays));
+    const glm::dvec3 direction = glm::dvec3(glm::vec3(key.towards)) + at.x * right + at.y * up;
+    const double weight = std::max(glm::dot(glm::dvec3(normal), direction), 0.0);
+    all += weight;
+    if (weight > 0.0 && !blocked(KeyRay{glm::dvec3(position), glm::normalize(direction)})) visible += weight;
+  }
+  return all > 0.0 ? visible / all : 0.0;
+}
+
+struct Errors {
+  double largest = 0.0, sum = 0.0, signed_sum = 0.0, squares = 0.0;
+  int count = 0;
+  void add(double error) {
+    largest = std::max(largest, std::abs(error));
+    sum += std::abs(error);
+    signed_sum += error;
+    squares += error * error;
+    ++count;
+  }
+  double mean() const { return sum / count; }
+  double rms() const { return std::sqrt(squares / count); }
+  double bias() const { return signed_sum / count; }
+};
+
+}  // namespace
+
+TEST(KeyLight, AnEdgeCastsThePenumbraOfADiscThatALineCuts) {
+  // A plate ends in a line over a floor. To each side the penumbra is as wide as the edge is high, times the
+  // tangent of the radius.
+  constexpr int kSize = 512;
+  struct Case {
+    float degrees, height, half;  // half: of what the map shows
+  };
+  for (const Case& c : {Case{0.27f, 1.0f, 0.2f},
+                        {0.27f, 0.3f, 0.05f},
+                        {2, 0.3f, 0.5f},
+                        {2, 1, 2},
+                        {5, 1, 2},
+                        {8, 0.3f, 2},
+                        {8, 3, 2}})
+    for (const uint rays : {32u, 128u}) {
+      Errors errors;
+      for (const float turn : {0.0f, 0.5f, 1.3f, 2.9f}) {
+        const KeyRecord key = madeKey(kUp, c.degrees * kDegree, c.half, kSize, turn, rays);
+        const MadeMap map = madeMap(key, kSize, [&](const KeyRay& ray) {
+          return ray.from.z - (ray.from.x < 0.0 ? double{c.height} : 0.0);
+        });
+        const double width = double{c.height} * double{key.scale.w};
+        for (int i = -40; i <= 40; ++i) {
+          const double x = width * i / 40.0;
+          const float visible = ref::keyVisible(map, key, {static_cast<float>(x), 0.01f, 0.0f}, kUp, kUp);
+          errors.add(double{visible} - beyondChord(-x / width));
+        }
+        // Beyond it there is all or nothing.
+        for (const double beyond : {1.1, 1.5, 3.0}) {
+          const auto x = static_cast<float>(beyond * width + 1.5 / double{key.scale.x});
+          EXPECT_NEAR(ref::keyVisible(map, key, {x, 0.01f, 0.0f}, kUp, kUp), 1.0f, kRounding);
+          EXPECT_EQ(ref::keyVisible(map, key, {-x, 0.01f, 0.0f}, kUp, kUp), 0.0f);
+        }
+      }
+      // So finely so many points tell how much of a disc lies beyond a line.
+      const bool few = rays == 32;
+      EXPECT_LT(errors.largest, few ? 0.08 : 0.035) << c.degrees << " degrees, " << c.height << " high";
+      EXPECT_LT(errors.mean(), few ? 0.02 : 0.0075) << c.degrees << " degrees, " << c.height << " high";
+      EXPECT_LT(std::abs(errors.bias()), few ? 0.008 : 0.002)
+          << c.degrees << " degrees, " << c.height << " high";
+    }
+}
+
+TEST(KeyLight, AnEdgeWhosePenumbraIsFinerThanTexelsIsSharpToATexel) {
+  constexpr int kSize = 256;
+  for (const float degrees : {0.01f, 0.27f, 1.0f})
+    for (const float turn : {0.0f, 0.7f}) {
+      const KeyRecord key = madeKey(kUp, degrees * kDegree, 2.0f, kSize, turn);
+      const MadeMap map =
+          madeMap(key, kSize, [](const KeyRay& ray) { return ray.from.z - (ray.from.x < 0.0 ? 0.5 : 0.0); });
+      const float sharp = 1.5f / key.scale.x + 0.5f * key.scale.w;
+      float sum = 0.0f;
+      constexpr int kPlaces = 200;
+      for (int i = 0; i < kPlaces; ++i) {
+        const float x = 4.0f * sharp * ((static_cast<float>(i) + 0.5f) / kPlaces - 0.5f);
+        const float visible = ref::keyVisible(map, key, {x, 0.01f, 0.0f}, kUp, kUp);
+        sum += visible;
+        if (std::abs(x) > sharp) {
+          EXPECT_NEAR(visible, x > 0.0f ? 1.0f : 0.0f, kRounding) << degrees << " degrees at " << x;
+        }
+      }
+      // To half a texel.
+      EXPECT_NEAR((sum / kPlaces - 0.5f) * 4.0f * sharp * key.scale.x, 0.0f, 0.51f)
+          << "the edge stands where it is";
+    }
+}
+
+TEST(KeyLight, ABallCastsTheShadowOfADiscThatItCovers) {
+  constexpr int kSize = 1024;
+  for (const float degrees : {0.27f, 2.0f, 5.0f, 8.0f})
+    for (const double radius : {0.1, 0.3}) {
+      const glm::vec3 towards = glm::normalize(glm::vec3(0.3f, -0.2f, 1.0f));
+      const KeyRecord key = madeKey(towards, degrees * kDegree, 3.0f, kSize, 0.4f);
+      const glm::dvec3 center = 1.5 * glm::dvec3(towards);
+      const MadeMap map = madeMap(key, kSize, [&](const KeyRay& ray) {
+        return nearer(toPlane(ray, glm::dvec3(kUp), 0.0), toSphere(ray, center, radius));
+      });
+      Errors errors;
+      double shadowed = 0.0;
+      for (int i = 0; i < 23; ++i)
+        for (int j = 0; j < 23; ++j) {
+          const glm::vec3 place(0.05f * static_cast<float>(i - 11), 0.05f * static_cast<float>(j - 11), 0.0f);
+          const double expected = visibleByRays(
+              key, place, kUp, [&](const KeyRay& ray) { return toSphere(ray, center, radius) >= 0.0; });
+          shadowed += 1.0 - expected;
+          errors.add(double{ref::keyVisible(map, key, place, kUp, kUp)} - expected);
+        }
+      // The ball stands at many heights at once; a penumbra finer than a texel is as wide as one.
+      EXPECT_LT(errors.largest, 0.2) << degrees << " degrees, radius " << radius;
+      EXPECT_LT(errors.mean(), 0.022) << degrees << " degrees, radius " << radius;
+      EXPECT_LT(std::abs(errors.bias()), 0.06 * shadowed / errors.count)
+          << "the shadow is as dark on the whole";
+    }
+}
+
+TEST(KeyLight, SeveralBlockersAtSeveralHeightsShadowAsTheyDoTogether) {
+  constexpr int kSize = 1024;
+  const std::vector<std::array<Slab, 2>> scenes = {
+      {{{{-3, -3, 0.3}, {0, 3, 0.35}}, {{0.1, -3, 2.0}, {3, 3, 2.05}}}},       // a slit between them
+      {{{{-3, -3, 0.5}, {-0.05, 3, 0.55}}, {{-3, -3, 1.5}, {0.05, 3, 1.6}}}},  // one over the other
+      {{{{-0.2, -0.2, 0.3}, {0.2, 0.2, 0.4}},
+        {{-0.3, -0.6, 1.8}, {0.3, 0.1, 1.9}}}}};  // one hidden from above
+  for (const auto& boxes : scenes)
+    for (const float degrees : {0.27f, 2.0f, 5.0f, 8.0f}) {
+      const KeyRecord key = madeKey(kUp, degrees * kDegree, 3.0f, kSize);
+      const MadeMap map = madeMap(key, kSize, [&](const KeyRay& ray) {
+        return nearer(toPlane(ray, glm::dvec3(kUp), 0.0), nearer(toBox(ray, boxes[0]), toBox(ray, boxes[1])));
+      });
+      Errors errors;
+      for (int i = 0; i < 61; ++i)
+        for (int j = 0; j < 9; ++j) {
+          const glm::vec3 place(0.02f * static_cast<float>(i - 30) + 0.003f,
+                                0.07f * static_cast<float>(j - 4), 0.0f);
+          const double expected = visibleByRays(key, place, kUp, [&](const KeyRay& ray) {
+            return toBox(ray, boxes[0]) >= 0.0 || toBox(ray, boxes[1]) >= 0.0;
+          });
+          errors.add(double{ref::keyVisible(map, key, place, kUp, kUp)} - expected);
+        }
+      const bool hidden = &boxes == &scenes.back();
+      EXPECT_LT(errors.mean(), hidden ? 0.035 : 0.015) << degrees << " degrees";
+      EXPECT_LT(errors.rms(), hidden ? 0.065 : 0.04) << degrees << " degrees";
+      EXPECT_LT(std::abs(errors.bias()), hidden ? 0.02 : 0.01) << degrees << " degrees";
+    }
+}
+
+TEST(KeyLight, NothingInTheWayIsAllOfTheLightAtAnyTilt) {
+  Random random;
+  for (const int size : {64, 256, 512})
+    for (const float degrees : {0.27f, 2.0f, 8.0f})
+      for (const float facing : {1.0f, 0.9f, 0.6f, 0.3f, 0.1f, 0.05f, 0.025f}) {
+        const glm::vec3 towards = random.direction();
+        const glm::vec3 beside = glm::normalize(glm::cross(towards, random.direction()));
+        const glm::vec3 normal = facing * towards + std::sqrt(1.0f - facing * facing) * beside;
+        const glm::vec3 along = glm::cross(towards, beside), steep = glm::cross(normal, along);
+        const KeyRecord key = madeKey(towards, degrees * kDegree, 1.0f, size, random.number(0, 3));
+        const float offset = random.number(-0.02f, 0.02f) * facing;
+        const MadeMap map = madeMap(key, size, [&](const KeyRay& ray) {
+          return std::max(toPlane(ray, glm::dvec3(normal), double{offset}),
+                          0.0);  // above the top it is at the top
+        });
+        for (int i = 0; i < 100; ++i) {
+          const glm::vec3 place =
+              offset * normal + random.number(-0.6f, 0.6f) * along + random.number(-0.6f, 0.6f) * steep;
+          ASSERT_NEAR(ref::keyVisible(map, key, place, normal, normal), 1.0f, kRounding)
+              << degrees << " degrees, " << size << " texels, cosine " << facing;
+        }
+      }
+}
+
+TEST(KeyLight, AWallThatLightGrazesIsLitDownToTheFloor) {
+  constexpr int kSize = 512;
+  for (const float degrees : {0.27f, 2.0f, 5.0f})
+    for (const float facing : {0.5f, 0.3f, 0.15f, 0.1f}) {
+      const glm::vec3 towards(facing, 0.0f, std::sqrt(1.0f - facing * facing));
+      const KeyRecord key = madeKey(towards, degrees * kDegree, 2.0f, kSize, 0.3f);
+      const MadeMap map = madeMap(key, kSize, [&](const KeyRay& ray) {
+        return nearer(toPlane(ray, glm::dvec3(kUp), 0.0), toBox(ray, {{-3, -3, -1}, {0, 3, 1}}));
+      });
+      Random random;
+      // Nearer to the floor than a quarter of a texel, the texel between both may take a little: a bias of
+      // one texel is the price of walls that let no light through at their foot.
+      const float foot = 0.25f / key.scale.x;
+      for (int i = 0; i < 200; ++i) {
+        const glm::vec3 place(0.0f, random.number(-0.3f, 0.3f),
+                              random.number(foot, i % 2 == 0 ? 0.05f : 0.8f));
+        ASSERT_NEAR(ref::keyVisible(map, key, place, {1, 0, 0}, {1, 0, 0}), 1.0f, kRounding)
+            << degrees << " degrees, cosine " << facing << " at " << place.z;
+      }
+    }
+}
+
+TEST(KeyLight, NoLightComesThroughThinWallsAndClosedRooms) {
+  // In a box of walls without thickness, on the walls and on things within.
+  constexpr int kSize = 512;
+  const Slab room{{-1, -1, -1}, {1, 1, 1}};
+  Random random;
+  int tried = 0;
+  for (const float degrees : {0.27f, 2.0f, 8.0f})
+    for (int light = 0; light < 12; ++light) {
+      const glm::vec3 towards = random.direction();
+      const KeyRecord key = madeKey(towards, degrees * kDegree, 2.0f, kSize, random.number(0, 3));
+      const MadeMap map = madeMap(key, kSize, [&](const KeyRay& ray) { return toBox(ray, room); });
+      const double texel = 1.0 / double{key.scale.x};
+      // What the map can tell: all of the cone to the disc goes through walls that the light sees, two texels
+      // from the room's outline at least; and these are so far away that the receiver's own plane, which
+      // rises to the light from texel to texel, does not reach them.
+      const auto wellWithin = [&](glm::vec3 place, glm::vec3 normal) {
+        const double steps = 3.0 + 3.0 / std::max(double{glm::dot(normal, towards)}, 0.02);
+        for (int i = 0; i < 8; ++i) {
+          const double angle = 0.25 * kPi * i;
+          const glm::dvec3 beside = texel * (2.0 * texel + 3.5 * double{key.scale.w}) *
+                                    (std::cos(angle) * glm::dvec3(glm::vec3(key.right)) +
+                                     std::sin(angle) * glm::dvec3(glm::vec3(key.up)));
+          const glm::dvec3 to_light{towards};
+          const double found = toBox({glm::dvec3(place) + beside + 9.0 * to_light, -to_light}, room);
+          if (found < 0.0 || found > 9.0 - steps * texel) return false;
+        }
+        return true;
+      };
+      for (int i = 0; i < 500; ++i) {
+        glm::vec3 place(random.number(-1, 1), random.number(-1, 1), random.number(-1, 1));
+        glm::vec3 normal = random.direction();
+        if (i % 2 == 0) {
+          const int axis = i / 2 % 3;
+          const float side = i / 6 % 2 == 0 ? 1.0f : -1.0f;
+          place[axis] = side;
+          normal = glm::vec3(0.0f);
+          normal[axis] = -side;
+        }
+        if (!wellWithin(place, normal)) continue;
+        ++tried;
+        // Rays that graze the receiver's own plane may run within a texel of it for long. That is little
+        // light, in parts of what the disc gives overhead.
+        const float visible = ref::keyVisible(map, key, place, normal, normal);
+        const float grazes = glm::dot(normal, towards) < 0.2f ? 3e-3f : 0.0f;
+        ASSERT_LE(visible * ref::keyShare(key, normal) / (key.radiance.w * key.radiance.w), grazes)
+            << degrees << " degrees, at " << place.x << " " << place.y << " " << place.z;
+      }
+    }
+  EXPECT_GT(tried, 5000);
+}
+
+TEST(KeyLight, ShadowsBeginWhereABoxStands) {
+  // The light comes at half height from -x; the box's shadow falls to +x, from the line of contact on.
+  constexpr int kSize = 512;
+  for (const float degrees : {0.27f, 2.0f, 5.0f, 8.0f})
+    for (const float turn : {0.0f, 0.4f}) {
+      const glm::vec3 towards = glm::normalize(glm::vec3(-1.0f, 0.15f, 1.0f));
+      const KeyRecord key = madeKey(towards, degrees * kDegree, 2.0f, kSize, turn);
+      const MadeMap map = madeMap(key, kSize, [&](const KeyRay& ray) {
+        return nearer(toPlane(ray, glm::dvec3(kUp), 0.0), toBox(ray, {{-0.5, -0.5, -0.1}, {0.0, 0.5, 0.5}}));
+      });
+      const float texel = 1.0f / key.scale.x;
+      for (int i = 0; i <= 60; ++i) {
+        const float texels = 0.5f * static_cast<float>(i);
+        for (const float y : {-0.2f, 0.0f, 0.013f, 0.2f}) {
+          EXPECT_EQ(ref::keyVisible(map, key, {texels * texel, y, 0.0f}, kUp, kUp), 0.0f)
+              << degrees << " degrees, " << texels << " texels behind the box";
+          // And where light falls on, it reaches the foot.
+          if (texels < 2.0f) continue;
+          EXPECT_NEAR(ref::keyVisible(map, key, {-0.5f - texels * texel, y, 0.0f}, kUp, kUp), 1.0f, kRounding)
+              << degrees << " degrees, " << texels << " texels before the box";
+        }
+      }
+    }
+}
+
+TEST(KeyLight, OfADiscThatIsPartlyBelowTheHorizonTheRestShines) {
+  constexpr int kSize = 256;
+  const auto nothing = [](const KeyRay&) { return kMiss; };
+  for (const float degrees : {2.0f, 8.0f})
+    for (const float above : {-0.9f, -0.5f, 0.0f, 0.5f, 0.9f, 1.5f}) {
+      const float sine = std::sin(degrees * kDegree), cosine = above * sine;
+      const glm::vec3 towards(std::sqrt(1.0f - cosine * cosine), 0.0f, cosine);
+      const KeyRecord key = madeKey(towards, degrees * kDegree, 1.0f, kSize, 0.0f, 128);
+      const MadeMap map = madeMap(key, kSize, nothing);
+      // What of the disc's light arrives is a sum over its rays above the horizon: in units of the sine's
+      // square.
+      const double expected = [&] {
+        constexpr int kRays = 40000;
+        const glm::dvec3 right{glm::normalize(glm::vec3(key.right))}, up{glm::normalize(glm::vec3(key.up))};
+        double sum = 0.0;
+        for (int i = 0; i < kRays; ++i) {
+          // Evenly over the sphere's cap.
+          const double angle = kPi * (3.0 - std::sqrt(5.0)) * i;
+          const double z = 1.0 - (1.0 - std::cos(double{degrees * kDegree})) * (i + 0.5) / kRays,
+                       s = std::sqrt(1.0 - z * z);
+          const glm::dvec3 ray =
+              s * std::cos(angle) * right + s * std::sin(angle) * up + z * glm::dvec3(towards);
+          sum += std::max(ray.z, 0.0);
+        }
+        return 2.0 * (1.0 - std::cos(double{degrees * kDegree})) * sum / kRays;
+      }();
+      EXPECT_NEAR(ref::keyShare(key, kUp) / (sine * sine), expected / double{sine * sine},
+                  2e-3 * double{sine});
+      const float all = ref::keyVisible(map, key, glm::vec3(0.0f), kUp, kUp);
+      EXPECT_NEAR(all, 1.0f, kRounding) << "the share has the horizon in it already";
+      // A normal of the triangle that cuts off more than that for shading: as rays say.
+      const glm::vec3 normal = glm::normalize(glm::vec3(-0.7f * sine, 0.0f, 1.0f));
+      const double seen = visibleByRays(key, glm::vec3(0.0f), kUp, [&](const KeyRay& ray) {
+        return glm::dot(ray.direction, glm::dvec3(normal)) <= 0.0;
+      });
+      EXPECT_NEAR(ref::keyVisible(map, key, glm::vec3(0.0f), normal, kUp), seen, 0.03)
+          << degrees << " " << above;
+      // A triangle that looks away from all of it has none, however its normal is bent.
+      EXPECT_EQ(ref::keyVisible(map, key, glm::vec3(0.0f), -towards, kUp), 0.0f);
+    }
+}
+
+TEST(KeyLight, SharesStayBetweenNothingAndAllForDegenerateInputs) {
+  Random random;
+  const auto blocks = [](const KeyRay& ray) { return toBox(ray, {{-0.3, -0.3, 0.1}, {0.3, 0.3, 0.4}}); };
+  for (const int size : {8, 64})
+    for (const float radius : {1e-4f, 0.1f, 0.99f})
+      for (const float half : {1e-6f, 1.0f, 1e6f}) {
+        const KeyRecord key = madeKey(kUp, radius, half, size);
+        const MadeMap map = madeMap(key, size, blocks);
+        for (const glm::vec3 normal :
+             {glm::vec3(1, 0, 0), {0, 0, 1}, {0, 0, -1}, {0, 0, 0}, {1e-20f, 0, 1e-20f}})
+          for (const glm::vec3 shading : {normal, glm::vec3(0, 1, 0), -normal})
+            // Also far beside the map, above its top and below its bottom.
+            for (const glm::vec3 place :
+                 {glm::vec3(0), {half, half, 0}, {1e6f, -1e6f, 0}, {0, 0, 1e6f}, {0, 0, -1e6f}}) {
+              const float visible = ref::keyVisible(map, key, place, normal, shading);
+              EXPECT_TRUE(visible >= 0.0f && visible <= 1.0f + 1e-5f) << visible;
+              const float share = ref::keyShare(key, shading);
+              EXPECT_TRUE(share >= 0.0f && share <= 1.0f) << share;
+            }
+      }
+}
+
+}  // namespace lambent::frame

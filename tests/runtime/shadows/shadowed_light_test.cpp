@@ -1,0 +1,231 @@
+// Light of local lights where nothing is in the way, and what their shadow cubes say, on the CPU: closed
+// forms and a quadrature that knows nothing of the formulas.
+#include <array>
+#include <numbers>
+#include <random>
+
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+
+#include "runtime/shadows/local_faces.hpp"
+#include "runtime/shadows/local_shadow_ref.hpp"
+
+namespace lambent::frame {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+struct Random {
+  std::mt19937 engine{11};
+  float number(float low, float high) { return std::uniform_real_distribution<float>(low, high)(engine); }
+  glm::vec3 direction() {
+    for (;;) {
+      const glm::vec3 v(number(-1, 1), number(-1, 1), number(-1, 1));
+      if (const float squared = glm::dot(v, v); squared > 0.01f && squared < 1.0f) return glm::normalize(v);
+    }
+  }
+};
+
+// (1/pi) times the integral of the clamped cosine over a cone about +Z, the normal tilted in the xz plane.
+double coneShare(double normal_cosine, double cone_sine) {
+  const double normal_sine = std::sqrt(1.0 - normal_cosine * normal_cosine);
+  constexpr int kRings = 600, kTurns = 600;
+  const double least = std::sqrt(1.0 - cone_sine * cone_sine);
+  double sum = 0.0;
+  for (int i = 0; i < kRings; ++i) {
+    const double z = least + (1.0 - least) * (i + 0.5) / kRings, sine = std::sqrt(1.0 - z * z);
+    for (int j = 0; j < kTurns; ++j)
+      sum += std::max(normal_cosine * z + normal_sine * sine * std::cos(2.0 * kPi * (j + 0.5) / kTurns), 0.0);
+  }
+  return sum * 2.0 * kPi * (1.0 - least) / (kRings * kTurns) / kPi;
+}
+
+// The same for a disc by points on its area.
+double discSum(glm::dvec3 normal, glm::dvec3 to_light, glm::dvec3 direction, double radius) {
+  glm::vec3 s, t;
+  ref::localBasis(glm::vec3(direction), s, t);
+  constexpr int kRings = 500, kTurns = 500;
+  double sum = 0.0;
+  for (int i = 0; i < kRings; ++i)
+    for (int j = 0; j < kTurns; ++j) {
+      const double rho = radius * std::sqrt((i + 0.5) / kRings), angle = 2.0 * kPi * (j + 0.5) / kTurns;
+      const glm::dvec3 ray =
+          to_light + rho * (std::cos(angle) * glm::dvec3(s) + std::sin(angle) * glm::dvec3(t));
+      const double squared = glm::dot(ray, ray);
+      sum += std::max(glm::dot(normal, ray), 0.0) * std::max(-glm::dot(direction, ray), 0.0) /
+             (squared * squared);
+    }
+  return sum * radius * radius / (kRings * kTurns);  // pi of the area against 1/pi
+}
+
+ShadowedLightRecord lightOf(uint kind) {
+  return {.position = glm::vec3(0.0f),
+          .reach = 100.0f,
+          .direction = {0, 0, -1},
+          .kind = kind,
+          .power = glm::vec3(1.0f),
+          .radius = 0.0f,
+          .cos_outer = 0.0f,
+          .cone_scale = 1.0f,
+          .range = 0.0f,
+          .pad = 0.0f};
+}
+
+}  // namespace
+
+TEST(ShadowedLight, ASphereGivesWhatAQuadratureOfItsConeGivesAlsoAcrossTheHorizon) {
+  for (const float h : {1.01f, 1.3f, 2.0f, 5.0f, 20.0f, 63.0f, 65.0f, 500.0f})
+    // From below the horizon to above it in steps of the sphere's own size, and straight on.
+    for (const double above : {-1.2, -0.9, -0.5, -0.1, 0.0, 0.3, 0.7, 0.99, 1.0, 1.5, 1e9}) {
+      const double cosine = std::clamp(above / double{h}, -1.0, 1.0);
+      const double expected = coneShare(cosine, 1.0 / double{h});
+      // The quadrature's own error is 1e-5 of the sphere's largest share; so is the cancellation's.
+      EXPECT_NEAR(ref::sphereShare(static_cast<float>(cosine), h), expected, 2e-4 / (h * h) + 2e-3 * expected)
+          << "h " << h << " above " << above;
+    }
+}
+
+TEST(ShadowedLight, ASphereOverheadGivesPiLTimesTheSquareOfItsSine) {
+  for (const float h : {1.001f, 2.0f, 10.0f, 1000.0f})
+    EXPECT_NEAR(ref::sphereShare(1.0f, h) * h * h, 1.0f, 1e-5f);
+  EXPECT_EQ(ref::sphereShare(-1.0f, 0.5f), 1.0f) << "within the sphere all is light";
+}
+
+TEST(ShadowedLight, ADiscGivesWhatAQuadratureOfItsAreaGivesAlsoAcrossTheHorizon) {
+  Random random;
+  for (int i = 0; i < 40; ++i) {
+    const glm::vec3 normal = random.direction(), direction = random.direction();
+    const glm::vec3 to_light = random.number(0.5f, 3.0f) * random.direction();
+    const float radius = random.number(0.05f, 1.0f);
+    const double expected = discSum(normal, to_light, direction, radius);
+    const bool shines = glm::dot(direction, to_light) < 0.0f;
+    // A polygon of 24 corners for the circle.
+    EXPECT_NEAR(ref::discShare(normal, to_light, direction, radius), shines ? expected : 0.0,
+                3e-3 * expected + 1e-4);
+  }
+}
+
+TEST(ShadowedLight, ADiscOverheadHasItsKnownFormFactor) {
+  // r^2 / (r^2 + d^2) for a point on its axis that faces it.
+  for (const float radius : {0.01f, 0.049f, 0.051f, 0.3f, 1.0f, 10.0f, 1000.0f}) {
+    const float expected = radius * radius / (radius * radius + 1.0f);
+    EXPECT_NEAR(ref::discShare({0, 1, 0}, {0, 1, 0}, {0, -1, 0}, radius), expected, 3e-3f * expected);
+  }
+  EXPECT_EQ(ref::discShare({0, 1, 0}, {0, 1, 0}, {0, 1, 0}, 0.5f), 0.0f) << "it shines to one side";
+}
+
+TEST(ShadowedLight, PunctualLightsFadeAsTheirExtensionSays) {
+  ShadowedLightRecord point = lightOf(kLocalPoint);
+  EXPECT_NEAR(ref::localShare(point, {0, 0, 1}, {0, 0, 2}), 0.25 / kPi, 1e-7);
+  EXPECT_NEAR(ref::localShare(point, {0, 0, 1}, {0, 3, 4}), 0.8 / 25.0 / kPi, 1e-7);
+  EXPECT_EQ(ref::localShare(point, {0, 0, 1}, {0, 0, -2}), 0.0f);
+  point.range = 4.0f;
+  EXPECT_NEAR(ref::punctualShare(point, {0, 0, 2}), 0.25 * (1.0 - 1.0 / 16.0), 1e-7);
+  EXPECT_EQ(ref::punctualShare(point, {0, 0, 5}), 0.0f);
+  ShadowedLightRecord spot = lightOf(kLocalSpot);
+  const float inner = std::cos(0.2f), outer = std::cos(0.5f);
+  spot.cos_outer = outer;
+  spot.cone_scale = 1.0f / (inner - outer);
+  const auto at = [&](float angle) {  // from the axis, one metre away
+    return ref::punctualShare(spot, {std::sin(angle), 0.0f, std::cos(angle)});
+  };
+  EXPECT_NEAR(at(0.1f), 1.0f, 1e-6f);
+  EXPECT_EQ(at(0.6f), 0.0f);
+  const float half = (std::cos(0.4f) - outer) / (inner - outer);
+  EXPECT_NEAR(at(0.4f), half * half, 1e-5f);
+}
+
+TEST(ShadowedLight, StaysFiniteAtTheLightItself) {
+  for (const uint kind : {kLocalPoint, kLocalSpot, kLocalSphere, kLocalDisc}) {
+    ShadowedLightRecord light = lightOf(kind);
+    light.radius = 0.1f;
+    light.power = glm::vec3(1e8f);
+    const auto lit = [](int, glm::ivec2) { return ref::kNothing; };
+    for (const glm::vec3 place :
+         {glm::vec3(0), {0, 0, 1e-20f}, {0, 0, -1e-6f}, {0.1f, 0, 0}, {0.1f, 0, -1e-9f}})
+      for (const glm::vec3 normal : {glm::vec3(0, 0, 1), {0, 0, -1}, {1, 0, 0}}) {
+        const glm::vec3 radiance =
+            ref::localRadiance(lit, light, {place, normal, normal, normal}, {64, 16, 0.3f});
+        // Of 1e8 cd at no less than a centimetre.
+        EXPECT_TRUE(radiance.x >= 0.0f && radiance.x <= 1e8f * 1e4f) << kind << " " << radiance.x;
+      }
+  }
+}
+
+TEST(LocalShadow, EveryDirectionFindsItsTexel) {
+  Random random;
+  for (int i = 0; i < 2000; ++i) {
+    const glm::vec3 direction = random.direction();
+    const int face = ref::shadowFace(direction), size = 64;
+    const ref::Blocker blocker = ref::blockerAt(
+        [&](int f, glm::ivec2 texel) {
+          EXPECT_EQ(f, face);
+          EXPECT_TRUE(texel.x >= 0 && texel.y >= 0 && texel.x < size && texel.y < size);
+          return 1.0f;
+        },
+        direction, size);
+    EXPECT_GT(glm::dot(blocker.direction, direction), std::cos(0.75f * 2.0f / 64.0f));
+  }
+}
+
+TEST(LocalShadow, FacesAreDrawnWhereTheyAreLookedUp) {
+  for (std::uint32_t face = 0; face < 6; ++face) {
+    const FaceAxes axes = faceAxes(face);
+    const int i = static_cast<int>(face);
+    EXPECT_EQ(axes.forward, ref::faceForward(i));
+    EXPECT_EQ(axes.up, ref::faceUp(i));
+    EXPECT_EQ(axes.right, ref::faceRight(i));
+    EXPECT_EQ(glm::cross(axes.right, axes.up), -axes.forward) << "as a camera sees";
+  }
+}
+
+TEST(LocalShadow, BoxesMeetTheFacesThatTheirPointsFall) {
+  Random random;
+  for (int i = 0; i < 500; ++i) {
+    const glm::vec3 center = 2.0f * random.direction(), half(random.number(0.01f, 1.0f));
+    const scene::Box box{.min = center - half, .max = center + half};
+    for (int j = 0; j < 20; ++j) {
+      const glm::vec3 point =
+          center + half * glm::vec3(random.number(-1, 1), random.number(-1, 1), random.number(-1, 1));
+      EXPECT_TRUE(faceMeets(faceAxes(static_cast<std::uint32_t>(ref::shadowFace(point))), box));
+      EXPECT_GE(glm::length(point), nearestDistance(box) - 1e-6f);
+      EXPECT_LE(glm::length(point), farthestDistance(box) + 1e-6f);
+    }
+  }
+}
+
+TEST(LocalShadow, APlaneThatLightGrazesIsLitAndABlockerShadowsIt) {
+  // A floor 0.05 below the light; what each texel sees is the floor, out to the horizon.
+  const auto floor_only = [](int face, glm::ivec2 texel) {
+    const glm::vec3 direction = ref::texelDirection(face, glm::vec2(texel) + 0.5f, 512);
+    return direction.y < 0.0f ? -0.05f / direction.y : ref::kNothing;
+  };
+  // And a wall at x = 1 that stands on it, 0.5 high: the floor behind is dark.
+  const auto with_wall = [&](int face, glm::ivec2 texel) {
+    const glm::vec3 direction = ref::texelDirection(face, glm::vec2(texel) + 0.5f, 512);
+    const float wall = direction.x > 0.0f ? 1.0f / direction.x : ref::kNothing;
+    return direction.y * wall < 0.45f ? std::min(wall, floor_only(face, texel)) : floor_only(face, texel);
+  };
+  constexpr float kRounding = 1e-5f;  // weights of four texels sum to 1 but for that
+  Random random;
+  ShadowedLightRecord sphere = lightOf(kLocalSphere);
+  sphere.radius = 0.02f;
+  const glm::vec3 up(0, 1, 0);
+  for (int i = 0; i < 400; ++i) {
+    const glm::vec3 place(random.number(-4, 4), -0.05f, random.number(-1, 1));
+    const ref::ShadowReceiver receiver = ref::shadowReceiver(place, up, up, 512);
+    EXPECT_NEAR(ref::pointVisible(floor_only, receiver, 512), 1.0f, kRounding);
+    EXPECT_NEAR(ref::discVisible(floor_only, sphere, receiver, up, {512, 16, random.number(0, 1)}), 1.0f,
+                kRounding);
+    // Contact: from 1 % of the distance behind the wall on; before it, all the way to its foot, light.
+    const bool behind = place.x > 1.012f * 1.02f, before = place.x < 0.98f;
+    if (!behind && !before) continue;
+    EXPECT_NEAR(ref::pointVisible(with_wall, receiver, 512), before ? 1.0f : 0.0f, kRounding)
+        << place.x << " " << place.z;
+    EXPECT_NEAR(ref::discVisible(with_wall, sphere, receiver, up, {512, 16, random.number(0, 1)}),
+                before ? 1.0f : 0.0f, kRounding)
+        << place.x << " " << place.z;
+  }
+}
+
+}  // namespace lambent::frame

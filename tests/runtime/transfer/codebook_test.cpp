@@ -1,0 +1,301 @@
+#include "runtime/transfer/codebook.hpp"
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include <gtest/gtest.h>
+
+namespace lambent::transfer {
+namespace {
+
+std::vector<std::byte> prefix(const std::vector<std::byte>& bytes, std::size_t length) {
+  return {bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(length)};
+}
+
+// Three clusters of 2, 1 and 0 axes over vectors of 4 values (order 1, one light, full in one channel).
+TransferShape smallShape() {
+  TransferShape shape;
+  shape.order = 1;
+  shape.light_columns = 1;
+  shape.full_channels = 1;
+  return shape;
+}
+
+Codebook smallCodebook() {
+  Codebook codebook;
+  codebook.axis_counts = {2, 1, 0};
+  codebook.axes = {{-1.0f, 0.5f}, {0.0f, 0.25f}, {2.0f, 1.0f}};
+  for (int i = 0; i < 6 * 4; ++i) codebook.vectors.push_back(static_cast<float>(i) * 0.125f - 1.0f);
+  return codebook;
+}
+
+TEST(TransferShape, CountsBlocksChannelsOutputsAndColumns) {
+  TransferShape shape;
+  shape.order = 5;
+  shape.light_columns = 2;
+  shape.full_channels = 3;
+  shape.outputs = 9;
+  EXPECT_EQ(shape.columns(), 27u);
+  EXPECT_EQ(shape.channels(), 4u);
+  EXPECT_EQ(shape.size(), 4u * 9 * 27);
+}
+
+TEST(Codebook, ComesBackExactlyWhereHalfHoldsIt) {
+  const Codebook codebook = smallCodebook();
+  const auto bytes = encodeCodebook(codebook);
+  EXPECT_EQ(bytes.size(), 4 + 3u * 2 + 3 * 8 + 24 * 2);
+  const auto back = decodeCodebook(bytes, smallShape(), 3, "cell 0");
+  ASSERT_TRUE(back) << back.error().line();
+  EXPECT_EQ(back->axis_counts, codebook.axis_counts);
+  EXPECT_EQ(back->vectors, codebook.vectors);
+  ASSERT_EQ(back->axes.size(), codebook.axes.size());
+  for (std::size_t a = 0; a < codebook.axes.size(); ++a) {
+    EXPECT_EQ(back->axes[a].offset, codebook.axes[a].offset);
+    EXPECT_EQ(back->axes[a].scale, codebook.axes[a].scale);
+  }
+}
+
+TEST(Codebook, RoundsToElevenBits) {
+  std::mt19937 random(5);
+  std::normal_distribution<float> normal;
+  Codebook codebook = smallCodebook();
+  for (float& value : codebook.vectors) value = normal(random);
+  const auto back = decodeCodebook(encodeCodebook(codebook), smallShape(), 3, "cell 0");
+  ASSERT_TRUE(back);
+  for (std::size_t i = 0; i < codebook.vectors.size(); ++i)
+    EXPECT_NEAR(back->vectors[i], codebook.vectors[i], std::abs(codebook.vectors[i]) / 2048.0f + 1e-7f);
+}
+
+TEST(Codebook, CutShortOrOfAnotherShapeIsRefused) {
+  const auto bytes = encodeCodebook(smallCodebook());
+  for (std::size_t length = 0; length < bytes.size(); ++length)
+    EXPECT_FALSE(decodeCodebook(prefix(bytes, length), smallShape(), 3, "cell 0")) << length;
+  auto longer = bytes;
+  longer.push_back(std::byte{0});
+  EXPECT_FALSE(decodeCodebook(longer, smallShape(), 3, "cell 0"));
+  for (const std::uint32_t clusters : {0u, 1u, 2u, 4u, 1000u, 0xffffffffu})
+    EXPECT_FALSE(decodeCodebook(bytes, smallShape(), clusters, "cell 0")) << clusters;
+  TransferShape wider = smallShape();
+  wider.order = 2;
+  EXPECT_FALSE(decodeCodebook(bytes, wider, 3, "cell 0"));
+  wider.order = 0;
+  wider.light_columns = 0;  // vectors of no values
+  EXPECT_FALSE(decodeCodebook(bytes, wider, 3, "cell 0"));
+  EXPECT_FALSE(decodeCodebook({}, smallShape(), 3, "cell 0"));
+}
+
+TEST(Codebook, ErrorsNameTheSubject) {
+  const auto back = decodeCodebook({}, smallShape(), 3, "cell 7 of group lamp");
+  ASSERT_FALSE(back);
+  EXPECT_EQ(back.error().subject, "cell 7 of group lamp");
+  EXPECT_FALSE(back.error().hint.empty());
+}
+
+TEST(Codebook, NumbersOfAxesThatRiseAreRefused) {
+  Codebook codebook = smallCodebook();
+  codebook.axis_counts = {1, 2, 0};  // as many bytes
+  EXPECT_FALSE(decodeCodebook(encodeCodebook(codebook), smallShape(), 3, "cell 0"));
+}
+
+TEST(Codebook, WeightsAndValuesThatAreNotFiniteAreRefused) {
+  constexpr float kInfinite = std::numeric_limits<float>::infinity();
+  for (const float bad : {kInfinite, -kInfinite, std::numeric_limits<float>::quiet_NaN(), 3e38f}) {
+    Codebook codebook = smallCodebook();
+    codebook.axes[1].offset = bad;
+    EXPECT_FALSE(decodeCodebook(encodeCodebook(codebook), smallShape(), 3, "cell 0")) << bad;
+    codebook = smallCodebook();
+    codebook.axes[2].scale = bad;
+    EXPECT_FALSE(decodeCodebook(encodeCodebook(codebook), smallShape(), 3, "cell 0")) << bad;
+    codebook = smallCodebook();
+    codebook.vectors[9] = bad;  // 3e38 is infinite in half
+    EXPECT_FALSE(decodeCodebook(encodeCodebook(codebook), smallShape(), 3, "cell 0")) << bad;
+  }
+}
+
+// Whatever the bytes: an error, or a codebook that decodes to finite vectors.
+TEST(Codebook, WithFlippedBitsIsRefusedOrDecodesToFiniteVectors) {
+  const auto bytes = encodeCodebook(smallCodebook());
+  const std::vector<std::uint32_t> cluster_of = {0, 1, 2};
+  std::size_t refused = 0;
+  for (std::size_t bit = 0; bit < bytes.size() * 8; ++bit) {
+    auto flipped = bytes;
+    flipped[bit / 8] ^= static_cast<std::byte>(1u << bit % 8);
+    const auto back = decodeCodebook(flipped, smallShape(), 3, "cell 0");
+    if (!back) {
+      ++refused;
+      continue;
+    }
+    const auto counts = planeCounts(*back, cluster_of);
+    std::vector<std::vector<std::uint32_t>> planes;
+    for (const std::uint32_t count : counts) planes.emplace_back(count, 65535u);
+    for (const float value : decodeTransfer(smallShape(), *back, cluster_of, planes))
+      ASSERT_TRUE(std::isfinite(value)) << bit;
+  }
+  EXPECT_GT(refused, 3u * 16 / 2);  // most flips of a count
+}
+
+// Two basis vectors; clusters of 1 and 0 axes over vectors of 4 values.
+SharedCodebook sharedCodebook() {
+  SharedCodebook codebook;
+  codebook.axis_counts = {1, 0};
+  codebook.axes = {{-1.0f, 0.5f}};
+  codebook.value_scales = {1.0f, 1.0f, 2.0f, 0.5f};
+  codebook.basis_scales = {0.25f, 1.0f};
+  codebook.mean_scale = 0.5f;
+  codebook.basis = {4, 0, -8, 1000, 0, -1, 1, 0};
+  codebook.means = {2, 4, 0, -6};  // coordinate by coordinate
+  codebook.directions = {-1, 3};
+  return codebook;
+}
+
+TEST(SharedCodebook, ExpandsToMeansAndAxes) {
+  const Codebook codebook = expand(sharedCodebook());
+  // Basis: {1, 0, -4, 125} and {0, -1, 2, 0}.
+  EXPECT_EQ(codebook.vectors, (std::vector<float>{1, 0, -4, 125,      // mean of cluster 0: 1 and 0
+                                                  -1, -3, 10, -125,   // its axis: -1 and 3
+                                                  2, 3, -14, 250}));  // mean of cluster 1: 2 and -3
+  EXPECT_EQ(codebook.axis_counts, (std::vector<std::uint32_t>{1, 0}));
+}
+
+TEST(SharedCodebook, ComesBackExactly) {
+  const SharedCodebook codebook = sharedCodebook();
+  const auto bytes = encodeCodebook(codebook);
+  const auto back = decodeCodebook(bytes, smallShape(), 2, "cell 0");
+  ASSERT_TRUE(back) << back.error().line();
+  EXPECT_EQ(back->vectors, expand(codebook).vectors);
+  ASSERT_EQ(back->axes.size(), 1u);
+  EXPECT_EQ(back->axes[0].offset, -1.0f);
+  EXPECT_EQ(back->axes[0].scale, 0.5f);
+  for (std::size_t length = 0; length < bytes.size(); ++length)
+    EXPECT_FALSE(decodeCodebook(prefix(bytes, length), smallShape(), 2, "cell 0")) << length;
+  auto longer = bytes;
+  longer.push_back(std::byte{0});
+  EXPECT_FALSE(decodeCodebook(longer, smallShape(), 2, "cell 0"));
+  EXPECT_FALSE(decodeCodebook(bytes, smallShape(), 3, "cell 0"));
+}
+
+TEST(SharedCodebook, WithFlippedBitsIsRefusedOrDecodesToFiniteVectors) {
+  const auto bytes = encodeCodebook(sharedCodebook());
+  const std::vector<std::uint32_t> cluster_of = {0, 1};
+  std::size_t refused = 0;
+  for (std::size_t bit = 0; bit < bytes.size() * 8; ++bit) {
+    auto flipped = bytes;
+    flipped[bit / 8] ^= static_cast<std::byte>(1u << bit % 8);
+    const auto back = decodeCodebook(flipped, smallShape(), 2, "cell 0");
+    if (!back) {
+      ++refused;
+      continue;
+    }
+    std::vector<std::vector<std::uint32_t>> planes;
+    for (const std::uint32_t count : planeCounts(*back, cluster_of)) planes.emplace_back(count, 65535u);
+    for (const float value : decodeTransfer(smallShape(), *back, cluster_of, planes))
+      ASSERT_TRUE(std::isfinite(value)) << bit;
+  }
+  EXPECT_GT(refused, 100u);
+}
+
+TEST(SharedCodebook, OfTooManyVectorsIsRefusedBeforeTheyAreMade) {
+  // 70,000 clusters of 3,072 values from a payload of 140 kB.
+  SharedCodebook codebook;
+  codebook.axis_counts.assign(70000, 0);
+  TransferShape shape;
+  shape.order = 8;
+  shape.shadowed_channels = 3;
+  shape.full_channels = 3;
+  shape.outputs = 8;
+  codebook.value_scales.assign(shape.size(), 1.0f);
+  EXPECT_FALSE(decodeCodebook(encodeCodebook(codebook), shape, 70000, "cell 0"));
+}
+
+TEST(ClusterIds, ComeBackAtBothWidths) {
+  for (const std::uint32_t clusters : {1u, 3u, 256u, 257u, 65536u}) {
+    const std::vector<std::uint32_t> cluster_of = {0, clusters - 1, clusters / 2, 0, 0};
+    const auto bytes = encodeClusterIds(cluster_of, clusters);
+    EXPECT_EQ(bytes.size(), clusters <= 256 ? 5u : 10u);
+    const auto back = decodeClusterIds(bytes, clusters, 5, "cell 0");
+    ASSERT_TRUE(back) << back.error().line();
+    EXPECT_EQ(*back, cluster_of);
+    for (std::size_t length = 0; length < bytes.size(); ++length)
+      EXPECT_FALSE(decodeClusterIds(prefix(bytes, length), clusters, 5, "cell 0"));
+    EXPECT_FALSE(decodeClusterIds(bytes, clusters, 6, "cell 0"));
+    if (clusters > 1 && clusters != 257) {
+      EXPECT_FALSE(decodeClusterIds(bytes, clusters - 1, 5, "cell 0"));
+    }
+  }
+}
+
+TEST(ClusterIds, NeverNameAClusterThatDoesNotExist) {
+  std::mt19937 random(3);
+  for (int round = 0; round < 200; ++round) {
+    std::vector<std::byte> bytes(6);
+    for (std::byte& byte : bytes) byte = static_cast<std::byte>(random() & 0xff);
+    if (const auto narrow = decodeClusterIds(bytes, 100, 6, "cell 0")) {
+      for (const std::uint32_t id : *narrow) EXPECT_LT(id, 100u);
+    }
+    if (const auto wide = decodeClusterIds(bytes, 300, 3, "cell 0")) {
+      for (const std::uint32_t id : *wide) EXPECT_LT(id, 300u);
+    }
+  }
+}
+
+TEST(Positions, KeepTheCellsOrderWithinAClusterAndMakePlanesDense) {
+  const std::vector<std::uint32_t> cluster_of = {2, 0, 1, 0, 2, 1, 0};
+  EXPECT_EQ(positionsOf(cluster_of, 3), (std::vector<std::uint32_t>{1, 3, 6, 2, 5, 0, 4}));
+  EXPECT_EQ(planeCounts(smallCodebook(), cluster_of), (std::vector<std::uint32_t>{5, 3}));
+  EXPECT_TRUE(positionsOf({}, 3).empty());
+}
+
+TEST(WeightPlanes, ComeBackAtBothWidths) {
+  for (const std::uint32_t bits : {8u, 16u}) {
+    const std::vector<std::uint32_t> codes = {3, 0, 1, (1u << bits) - 1, 127, 128, (1u << bits) - 1, 0};
+    const auto bytes = encodeWeightPlane(codes, bits);
+    EXPECT_EQ(bytes.size(), codes.size() * bits / 8);
+    const auto back = decodeWeightPlane(bytes, bits, 8, "cell 0");
+    ASSERT_TRUE(back) << back.error().line();
+    EXPECT_EQ(*back, codes);
+    for (std::size_t length = 0; length < bytes.size(); ++length)
+      EXPECT_FALSE(decodeWeightPlane(prefix(bytes, length), bits, 8, "cell 0"));
+    EXPECT_FALSE(decodeWeightPlane(bytes, bits, 7, "cell 0"));
+  }
+  EXPECT_TRUE(decodeWeightPlane({}, 8, 0, "cell 0")->empty());
+  EXPECT_FALSE(decodeWeightPlane({}, 12, 0, "cell 0"));
+}
+
+TEST(WeightPlanes, HoldDifferencesNearZeroAsSmallBytes) {
+  const auto bytes = encodeWeightPlane(std::vector<std::uint32_t>{3, 2, 2, 4, 0}, 8);
+  EXPECT_EQ(bytes,
+            (std::vector<std::byte>{std::byte{6}, std::byte{1}, std::byte{0}, std::byte{4}, std::byte{7}}));
+}
+
+TEST(WeightPlanes, OfAnyBytesDecodeToCodesOfTheirWidth) {
+  std::mt19937 random(11);
+  std::vector<std::byte> bytes(64);
+  for (std::byte& byte : bytes) byte = static_cast<std::byte>(random() & 0xff);
+  const auto narrow = decodeWeightPlane(bytes, 8, 64, "cell 0"),
+             wide = decodeWeightPlane(bytes, 16, 32, "cell 0");
+  ASSERT_TRUE(narrow && wide);
+  for (const std::uint32_t code : *narrow) EXPECT_LT(code, 256u);
+  for (const std::uint32_t code : *wide) EXPECT_LT(code, 65536u);
+}
+
+TEST(ClusteredTransfer, DecodesMeanPlusWeightedAxesAndAnyPrefix) {
+  TransferShape shape;
+  shape.order = 1;
+  shape.shadowed_channels = 3;
+  Codebook codebook;
+  codebook.axis_counts = {2, 0};
+  codebook.axes = {{-1.0f, 0.5f}, {0.0f, 0.25f}};
+  codebook.vectors = {1, 2, 3, 10, 20, 30, 100, 200, 300, 7, 8, 9};
+  const std::vector<std::uint32_t> cluster_of = {1, 0, 0};
+  const std::vector<std::vector<std::uint32_t>> planes = {{0, 4}, {1, 2}};
+  EXPECT_EQ(decodeTransfer(shape, codebook, cluster_of, planes),
+            (std::vector<float>{7, 8, 9, 1 - 10 + 25, 2 - 20 + 50, 3 - 30 + 75, 1 + 10 + 50, 2 + 20 + 100,
+                                3 + 30 + 150}));
+  EXPECT_EQ(decodeTransfer(shape, codebook, cluster_of, std::span(planes).first(1)),
+            (std::vector<float>{7, 8, 9, 1 - 10, 2 - 20, 3 - 30, 1 + 10, 2 + 20, 3 + 30}));
+  EXPECT_EQ(decodeTransfer(shape, codebook, cluster_of, {}), (std::vector<float>{7, 8, 9, 1, 2, 3, 1, 2, 3}));
+}
+
+}  // namespace
+}  // namespace lambent::transfer

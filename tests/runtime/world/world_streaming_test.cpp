@@ -1,0 +1,167 @@
+// A row of bundles that take three times the memory there is, and a camera that flies along it.
+#include <chrono>
+#include <thread>
+
+#include <gtest/gtest.h>
+
+#include "runtime/frame/frame_times.hpp"
+#include "tests/support/frame/world_stage.hpp"
+
+namespace lambent::frame {
+
+using testing::WorldStage;
+using testing::worst;
+
+namespace {
+
+constexpr std::uint32_t kBundles = 12;
+constexpr float kApart_m = 8.0f;
+
+spec::View at(float x) {
+  const glm::vec3 eye(x, 0.0f, 4.0f);
+  return {.view_from_world = glm::lookAt(eye, eye - glm::vec3(0, 0, 1), glm::vec3(0, 1, 0)),
+          .clip_from_view = glm::perspective(0.8f, 1.0f, 0.1f, 200.0f),
+          .eye_ws = eye};
+}
+
+}  // namespace
+
+struct WorldStreaming : testing::WorldTest {
+  std::filesystem::path sphereFile(std::uint32_t i) {
+    const std::filesystem::path path = file(fmt::format("sphere-{}.lmb.glb", i));
+    if (std::filesystem::exists(path)) return path;
+    gltf::Material material;
+    material.base_color = {0.2f + 0.06f * static_cast<float>(i), 0.6f, 0.4f, 1.0f};
+    testing::BundleBuilder(5)
+        .add({testing::sphereMesh(48, 96), material,
+              glm::translate(glm::mat4(1.0f), glm::vec3(kApart_m * static_cast<float>(i), 0, 0))})
+        .write(path);
+    return path;
+  }
+  void openAll(WorldStage& stage) {
+    for (std::uint32_t i = 0; i < kBundles; ++i) stage.open(sphereFile(i));
+  }
+  static std::uint64_t resident(const WorldStage& stage, std::uint32_t bundle) {
+    return stage.world.streaming().bundles[bundle].resident_bytes;
+  }
+};
+
+TEST_F(WorldStreaming, ResidencyFollowsTheCameraWithinTheBudget) {
+  WorldStage whole(lights);
+  openAll(whole);
+  whole.picture();
+  const std::uint64_t budget = whole.world.residency().bytesResident() / 3;
+
+  WorldStage stage(lights, {.max_resident_bytes = budget});
+  stage.uploadAtMost(std::uint64_t{1} << 20);
+  openAll(stage);
+  EXPECT_EQ(stage.world.residency().bytesResident(), 0u);
+  const auto fly = [&](float x) {
+    stage.renderFrom(at(x));
+    ASSERT_LE(stage.world.residency().bytesResident(), budget) << "at " << x;
+    ASSERT_TRUE(stage.world.errors().empty());
+  };
+  for (int frame = 0; frame < 400 && stage.world.streaming().queued + (frame < 3) > 0; ++frame) {
+    fly(0.0f);
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  const auto first = stage.world.streaming();
+  EXPECT_EQ(first.queued, 0u);
+  EXPECT_EQ(first.bundles[0].state, BundleStatus::State::Whole);
+  EXPECT_LT(first.bundles[11].resident_bytes, first.bundles[11].whole_bytes);
+  // Along the row, with a stop at the end.
+  constexpr float kEnd = kApart_m * (kBundles - 1);
+  for (int frame = 0; frame <= 200; ++frame) fly(kEnd * static_cast<float>(frame) / 200.0f);
+  int frames = 0;
+  for (; frames < 400 && stage.world.streaming().queued > 0; ++frames) {
+    fly(kEnd);
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  const auto last = stage.world.streaming();
+  EXPECT_EQ(last.bundles[11].state, BundleStatus::State::Whole) << "after " << frames << " frames";
+  EXPECT_LT(last.bundles[0].resident_bytes, last.bundles[0].whole_bytes) << "made room";
+  // What is near looks as if there were room for all.
+  stage.renderFrom(at(kEnd));
+  whole.renderFrom(at(kEnd));
+  EXPECT_EQ(worst(stage.frame->readLinear(), whole.frame->readLinear()), 0.0);
+  // And nothing goes to and fro while the camera stands still.
+  const std::uint64_t version = stage.world.residency().version();
+  for (int frame = 0; frame < 5; ++frame) fly(kEnd);
+  EXPECT_EQ(stage.world.residency().version(), version);
+}
+
+TEST_F(WorldStreaming, TheSamePathEndsWithTheSameParts) {
+  std::vector<std::vector<std::uint64_t>> ends;
+  for (const std::uint64_t upload : {std::uint64_t{1} << 16, std::uint64_t{1} << 24}) {
+    WorldStage stage(lights, {.max_resident_bytes = 1'500'000});
+    stage.uploadAtMost(upload);
+    openAll(stage);
+    for (int frame = 0; frame <= 40; ++frame) stage.renderFrom(at(40.0f * static_cast<float>(frame) / 40.0f));
+    gpu::Counters counters;
+    ASSERT_TRUE(stage.world.uploadAll(counters));
+    std::vector<std::uint64_t>& bytes = ends.emplace_back();
+    for (std::uint32_t i = 0; i < kBundles; ++i) bytes.push_back(resident(stage, i));
+    EXPECT_EQ(stage.world.streaming().queued, 0u);
+  }
+  EXPECT_EQ(ends[0], ends[1]) << "however fast it loads";
+}
+
+TEST_F(WorldStreaming, WhatLostItsTransferIsLitWithoutShadowsAndGetsItBack) {
+  WorldStage stage(lights, {.max_resident_bytes = 700'000});
+  stage.uploadAtMost(std::uint64_t{1} << 24);
+  stage.open(floorFile());
+  stage.open(sphereFile(0));
+  stage.open(sphereFile(1));
+  gpu::Counters counters;
+  std::vector<spec::RgbaImage> images;
+  for (const float x : {0.0f, kApart_m, 0.0f}) {
+    stage.world.look(at(x));
+    ASSERT_TRUE(stage.world.uploadAll(counters));
+    stage.renderFrom(at(x));
+    ASSERT_TRUE(stage.frame->rest(stage.world, stage.environment));
+    stage.renderFrom(at(x));
+    images.push_back(stage.frame->readLinear());
+  }
+  EXPECT_EQ(worst(images[0], images[2]), 0.0);
+}
+
+TEST(FrameTimesTest, SaysHowManyFramesStandOut) {
+  FrameTimes times(100);
+  for (int i = 0; i < 250; ++i) times.add(i % 50 == 49 ? 25.0 : 10.0);
+  EXPECT_EQ(times.count(), 100u);
+  EXPECT_EQ(times.median(), 10.0);
+  EXPECT_EQ(times.worst(), 25.0);
+  EXPECT_EQ(times.last(), 25.0);
+  EXPECT_EQ(times.overTwiceMedian(), 2u);
+  EXPECT_EQ(times.histogram(8), (std::vector<std::size_t>{0, 0, 0, 0, 98, 0, 0, 2}));
+}
+
+TEST(FrameTimesTest, UploadsShrinkWhereFramesTakeLongerAndGrowAgain) {
+  UploadPacer pacer;
+  constexpr std::uint64_t kMost = 16 << 20;
+  for (int i = 0; i < 100; ++i) pacer.frameTook(10.0, true, kMost);
+  EXPECT_EQ(pacer.budget(kMost), kMost);
+  pacer.frameTook(20.0, true, kMost);
+  EXPECT_EQ(pacer.budget(kMost), kMost / 2);
+  pacer.frameTook(40.0, false, kMost);
+  EXPECT_EQ(pacer.budget(kMost), kMost / 2) << "that was something else";
+  for (int i = 0; i < 100; ++i) pacer.frameTook(30.0, true, kMost);
+  EXPECT_GT(pacer.budget(kMost), 0u) << "something always comes";
+}
+
+// A scene that has arrived in part takes far longer to draw than the empty world before it.
+TEST(FrameTimesTest, SlowFramesDoNotStarveWhatLoads) {
+  UploadPacer pacer;
+  constexpr std::uint64_t kMost = 16 << 20;
+  for (int i = 0; i < 100; ++i) pacer.frameTook(10.0, false, kMost);
+  double bytes = 0.0, seconds = 0.0, frame_ms = 100.0;
+  while (bytes < 32 << 20 && seconds < 60.0) {
+    bytes += static_cast<double>(pacer.budget(kMost));
+    seconds += 1e-3 * frame_ms;
+    pacer.frameTook(frame_ms, true, kMost);
+    frame_ms *= 1.3;  // each longer than those before
+  }
+  EXPECT_LT(seconds, 6.0) << "32 MiB";
+}
+
+}  // namespace lambent::frame
