@@ -9,8 +9,8 @@
 #include <stop_token>
 #include <vector>
 
-#include "baker/effects/diffuse/direct.hpp"
 #include "baker/jobs/stage.hpp"
+#include "baker/trace/group_scene.hpp"
 #include "baker/trace/hits.hpp"
 
 namespace lambent::baker {

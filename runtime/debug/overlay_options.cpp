@@ -55,8 +55,9 @@ Result<OverlayOptions> parseOverlays(std::string_view list) {
     std::string_view word = list.substr(0, end);
     const std::size_t colon = word.find(':');
     const std::string_view name = word.substr(0, colon);
-    const auto row = std::ranges::find_if(
-        kRows, [&](const OverlayRow& known) { return name == known.name || name == known.former; });
+    const auto row = std::ranges::find_if(kRows, [&](const OverlayRow& known) {
+      return !name.empty() && (name == known.name || name == known.former);
+    });
     if (row == kRows.end()) return unknown(word, "is not known");
     options.*row->flag = true;
     if (colon != std::string_view::npos) {

@@ -49,9 +49,16 @@ Lobes lobesAt(vec3 base_color, TangentFrame frame, vec3 normal) {
 // These are of the pixel that is being shaded, for modules.
 Lobes pixel_lobes = Lobes(0.0, 1.0, 0.0, vec3(0.0), Fresnel(vec3(0.0), 0.0));
 vec3 pixel_normal = vec3(0.0), pixel_to_eye = vec3(0.0);
-LocalView pixel_view;
+LocalView pixel_view = LocalView(vec3(0.0), vec3(0.0), vec3(0.0), 0.0, vec2(0.0));
 vec4 pixel_weights[kTexels];
 Reflected pixel_change = Reflected(vec4(0.0), vec4(0.0), vec2(0.0), vec4(0.0));  // what bodies around change
+
+// Takes the view of this pixel, and the weights of the table for it. It stands before all that reads them, because
+// compilers warn of variables that are read in a function above the one that sets them.
+void lookFrom(vec3 normal, vec3 tangent, vec3 to_eye, float roughness, float anisotropy, uvec2 nodes) {
+  pixel_view = localView(normal, tangent, to_eye);
+  lookUpWeights(pixel_view, roughness, anisotropy, nodes, pixel_weights);
+}
 
 Reflected sumOf(Reflected a, Reflected b) {
   return Reflected(a.f0_light + b.f0_light, a.f90_light + b.f90_light, a.albedo, a.diffuse + b.diffuse);
@@ -125,9 +132,8 @@ vec3 reflectedLight(vec3 base_color) {
   vec4 light_of_bands[kCoefficients];
   gatherLight(light_of_bands);
   pixel_lobes = lobesAt(base_color, frame, pixel_normal);
-  pixel_view = localView(pixel_normal, pixel_lobes.tangent, pixel_to_eye);
-  uvec2 nodes = uvec2(draws[draw_of].glossy.roughnesses, draws[draw_of].glossy.strengths);
-  lookUpWeights(pixel_view, pixel_lobes.roughness, pixel_lobes.anisotropy, nodes, pixel_weights);
+  lookFrom(pixel_normal, pixel_lobes.tangent, pixel_to_eye, pixel_lobes.roughness, pixel_lobes.anisotropy,
+           uvec2(draws[draw_of].glossy.roughnesses, draws[draw_of].glossy.strengths));
   Reflected reflected = reflectLight(pixel_view, pixel_weights, light_of_bands);
   Fresnel fresnel = pixel_lobes.fresnel;
   vec3 diffuse = diffuseAlbedo(base_color, pixel_lobes.metallic, fresnel, reflected.albedo);

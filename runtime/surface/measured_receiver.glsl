@@ -2,9 +2,16 @@
 #include "glossy_receiver.glsl"
 
 // These are of the pixel that is being shaded, for modules.
-LocalView pixel_view;
+LocalView pixel_view = LocalView(vec3(0.0), vec3(0.0), vec3(0.0), 0.0, vec2(0.0));
 vec4 pixel_weights[kTexels];
 Reflected pixel_change = Reflected(vec4(0.0), vec3(0.0), vec4(0.0));  // what bodies around change
+
+// Takes the view of this pixel, and the weights of the table for it. It stands before all that reads them, because
+// compilers warn of variables that are read in a function above the one that sets them.
+void lookFrom(vec3 normal, vec3 tangent, vec3 to_eye, float roughness, float anisotropy, uvec2 nodes) {
+  pixel_view = localView(normal, tangent, to_eye);
+  lookUpWeights(pixel_view, roughness, anisotropy, nodes, pixel_weights);
+}
 
 Reflected sumOf(Reflected a, Reflected b) { return Reflected(a.light + b.light, a.albedo, a.diffuse + b.diffuse); }
 
@@ -48,8 +55,7 @@ vec3 reflectedLight(vec3 base_color) {
   vec3 normal = pixelNormal(frame);
   vec4 light_of_bands[kCoefficients];
   gatherLight(light_of_bands);
-  pixel_view = localView(normal, vec3(0.0), towardsEye());
-  lookUpWeights(pixel_view, 0.0, 0.0, uvec2(1u), pixel_weights);
+  lookFrom(normal, vec3(0.0), towardsEye(), 0.0, 0.0, uvec2(1u));
   Reflected reflected = reflectLight(pixel_view, pixel_weights, light_of_bands);
 
   SurfaceLight light = kNoLight;

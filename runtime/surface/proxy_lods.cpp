@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "lambent_surface_embedded.hpp"
+#include "lambent_transfer_embedded.hpp"
 #include "runtime/shadows/lit_scene.hpp"
 #include "runtime/shadows/shadowed_light_choice.hpp"
 #include "runtime/streaming/sizes.hpp"
@@ -14,7 +15,7 @@ namespace lambent::frame {
 
 namespace {
 
-constexpr gpu::FindText kShaders[] = {&embedded::lambent_surface::find};
+constexpr gpu::FindText kShaders[] = {&embedded::lambent_surface::find, &embedded::lambent_transfer::find};
 constexpr std::uint64_t kPageBytes = std::uint64_t{1} << 20;
 constexpr int kBands = 3;  // of the light: more hardly reach a diffuse surface
 

@@ -4,6 +4,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "lambent_effects_neighborhood_embedded.hpp"
 #include "runtime/effects/neighborhood/neighborhood.hpp"
 #include "runtime/effects/neighborhood/neighborhood_ref.hpp"
 #include "test_effects_neighborhood_gpu_embedded.hpp"
@@ -83,7 +84,8 @@ TEST_F(NeighborhoodGpu, WritesAndLooksUpAsItsTwinDoes) {
   std::mt19937 random(52);
   std::uniform_real_distribution<float> uniform(-0.2f, 1.2f);
   std::normal_distribution<float> normal;
-  constexpr gpu::FindText kShaders[] = {&embedded::test_effects_neighborhood_gpu::find};
+  constexpr gpu::FindText kShaders[] = {&embedded::test_effects_neighborhood_gpu::find,
+                                        &embedded::lambent_effects_neighborhood::find};
   const Result<gpu::Program> probe =
       gpu::Program::create("probe", {{GL_COMPUTE_SHADER, "neighborhood_probe.comp"}}, kShaders);
   ASSERT_TRUE(probe) << probe.error().line();
