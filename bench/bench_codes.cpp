@@ -95,7 +95,7 @@ int main(int argc, char** argv) {
   };
   const auto work = loadGroup(options.scene, paint, map);
   const SampleSet& samples = work->samples;
-  const DiffuseScene view = work->view();
+  const TracedScene view = work->view();
   Progress progress;
   const DirectPass pass(view, {options.order, options.rays, options.bounces != 0, std::size_t{2} << 30});
   const auto direct = bakeDirect(pass, view, {progress});

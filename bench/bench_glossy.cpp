@@ -33,7 +33,7 @@ struct Timed {
 
 Timed run(const GroupWorkload& work, const ExitKernels& kernels, bool hits) {
   Progress progress;
-  const DiffuseScene view = work.view();
+  const TracedScene view = work.view();
   const DirectPass plain(view, {.order = 5,
                                 .rays = kRays,
                                 .keep_hits = hits,

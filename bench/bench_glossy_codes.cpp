@@ -62,7 +62,7 @@ Options parse(int argc, char** argv) {
 }
 
 GlossyField transport(const GroupWorkload& work, const SurfaceBrdfs& brdfs, const Options& options) {
-  const DiffuseScene view = work.view();
+  const TracedScene view = work.view();
   Progress progress;
   const DirectPass plain(view, {.order = kOrder,
                                 .rays = options.rays,

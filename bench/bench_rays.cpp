@@ -140,7 +140,7 @@ Timed runBare(const Workload& work, const DirectionTable& table, Call call) {
 Timed runPass(const Workload& work) {
   Progress progress;
   const auto start = Clock::now();
-  const DiffuseScene view = work.group->view();
+  const TracedScene view = work.group->view();
   const auto direct = bakeDirect(DirectPass(view, {.order = 5, .rays = kRays}), view, {progress});
   return {direct->field.rays, secondsSince(start)};
 }
@@ -153,7 +153,7 @@ void report(benchmark::State& state, const Timed& timed) {
 // Bounces against pass 0, in one run: seconds of the first gather pass over those of the direct pass with
 // hits kept.
 double bounceRatio(const Workload& work) {
-  const DiffuseScene view = work.group->view();
+  const TracedScene view = work.group->view();
   const DirectPass pass(view,
                         {.order = 5, .rays = kRays, .keep_hits = true, .hit_memory = std::size_t{4} << 30});
   Progress progress;

@@ -34,7 +34,7 @@ Baked bakeWith(const GroupWorkload& work, const ExitKernels& kernels, std::size_
   const auto secondsSince = [](Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
   };
-  const DiffuseScene view = work.view();
+  const TracedScene view = work.view();
   const DirectPass plain(view, {.order = kOrder,
                                 .rays = rays,
                                 .keep_hits = bounces != 0,

@@ -22,7 +22,7 @@ struct GroupWorkload {
   std::unique_ptr<lambent::baker::RayScene> rays;
   std::unique_ptr<lambent::baker::SurfaceColors> colors;
 
-  lambent::baker::DiffuseScene view() const { return {scene, geometry, samples, *rays, *colors, lights}; }
+  lambent::baker::TracedScene view() const { return {scene, geometry, samples, *rays, *colors, lights}; }
 };
 
 template <typename T>

@@ -25,7 +25,7 @@ struct Baked {
 
 Baked bakeWith(const GroupWorkload& work, std::size_t rays, int bounces) {
   const auto start = std::chrono::steady_clock::now();
-  const DiffuseScene view = work.view();
+  const TracedScene view = work.view();
   const DirectPass pass(
       view, {.order = kOrder, .rays = rays, .keep_hits = bounces > 0, .hit_memory = std::size_t{4} << 30});
   Progress progress;

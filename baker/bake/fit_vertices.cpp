@@ -33,10 +33,9 @@ struct Part {
 
 }  // namespace
 
-std::optional<FitFigures> fitDiffuse(const DirectPass& pass, const DiffuseScene& scene, DirectResult& direct,
+std::optional<FitFigures> fitDiffuse(const DirectPass& pass, const TracedScene& scene, DirectResult& direct,
                                      const BakeContext& context) {
-  const SampleStretch plain{0, scene.samples.first_normal_mapped},
-      mapped{scene.samples.first_normal_mapped, scene.samples.first_glossy};
+  const SampleStretch &plain = scene.samples.diffuse, &mapped = scene.samples.normal_mapped;
   const std::size_t width = direct.field.vectorSize();
   const auto fieldOf = [&](const SampleStretch& stretch) {
     return std::span(direct.field.vectors).subspan(stretch.begin * width, stretch.size() * width);
@@ -48,7 +47,7 @@ std::optional<FitFigures> fitDiffuse(const DirectPass& pass, const DiffuseScene&
   }
   if (triangles.empty()) return FitFigures{};
   const FacePoints points = facePoints(scene.geometry, scene.samples, triangles);
-  const DiffuseScene inside = scene.withSamples(points.samples);
+  const TracedScene inside = scene.withSamples(points.samples);
   const auto found = bakeDirect(DirectPass(inside, settingsInside(pass.settings())), inside,
                                 insideContext(context, triangles), "inside faces");
   if (!found) return std::nullopt;
@@ -61,8 +60,7 @@ std::optional<FitFigures> fitDiffuse(const DirectPass& pass, const DiffuseScene&
       return vertices.apply(part.width, part.at_points, part.values, context.stop);
     });
   };
-  const SampleStretch diffuse_points{0, points.samples.first_normal_mapped},
-      mapped_points{points.samples.first_normal_mapped, points.samples.size()};
+  const SampleStretch &diffuse_points = points.samples.diffuse, &mapped_points = points.samples.normal_mapped;
   const auto foundIn = [&](const SampleStretch& stretch) {
     return std::span(found->field.vectors).subspan(stretch.begin * width, stretch.size() * width);
   };
@@ -75,9 +73,9 @@ std::optional<FitFigures> fitDiffuse(const DirectPass& pass, const DiffuseScene&
 
 std::optional<FitFigures> fitGlossy(const GlossyPass& pass, GlossyDirect& glossy,
                                     const BakeContext& context) {
-  const DiffuseScene& scene = pass.scene();
+  const TracedScene& scene = pass.scene();
   GlossyField& field = glossy.field;
-  const SampleStretch stretch{scene.samples.first_glossy, scene.samples.size()};
+  const SampleStretch& stretch = scene.samples.glossy;
   const auto triangles =
       changingTriangles(scene.geometry, scene.samples, stretch, field.visibilitySize(), field.visibility);
   if (triangles.empty()) return FitFigures{};

@@ -20,7 +20,7 @@ struct FitFigures {
 
 // Fits plain and normal-mapped samples. The key of the context is that of the rays of the vertices. Returns
 // nothing if stopped. The result does not depend on the number of threads.
-std::optional<FitFigures> fitDiffuse(const DirectPass& pass, const DiffuseScene& scene, DirectResult& direct,
+std::optional<FitFigures> fitDiffuse(const DirectPass& pass, const TracedScene& scene, DirectResult& direct,
                                      const BakeContext& context);
 // Fits glossy samples. Where hits are kept for bounces, those of the points are, too, in what is left of the
 // memory for hits, and glossy.inside has them.

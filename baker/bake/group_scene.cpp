@@ -12,9 +12,8 @@ constexpr std::uint64_t kMostBytesShaded = std::uint64_t{128} << 20;
 std::uint64_t bytesShaded(const SampleSet& samples, int glossy_order) {
   const std::uint64_t outputs =
       static_cast<std::uint64_t>(glossy_order) * static_cast<std::uint64_t>(glossy_order);
-  return 16 * (samples.first_normal_mapped +
-               transfer::kMappedOutputs * (samples.first_glossy - samples.first_normal_mapped) +
-               outputs * (samples.size() - samples.first_glossy));
+  return 16 * (samples.diffuse.size() + transfer::kMappedOutputs * samples.normal_mapped.size() +
+               outputs * samples.glossy.size());
 }
 
 }  // namespace
@@ -39,7 +38,7 @@ GroupScene::GroupScene(const SceneBake& of, const SurfaceInputs& inputs, std::si
         "rigid group \"{}\": {} glossy samples take {} MiB on the GPU, more than the {} MiB that one piece "
         "may have; its "
         "surfaces are Lambert. Part it into several groups (extras.lambent.movable), or lower --glossy-order",
-        group.name, samples.size() - samples.first_glossy, bytes >> 20, kMostBytesShaded >> 20));
+        group.name, samples.glossy.size(), bytes >> 20, kMostBytesShaded >> 20));
     place(/*with_glossy=*/false);
   }
   lights = findGroupLights(bake.scene, group);

@@ -31,8 +31,8 @@ class GroupScene {
   std::vector<PlannedLight> lights;
   GroupKeys keys;  // not set without a cache
 
-  bool anyDiffuse() const { return samples.first_glossy > 0; }
-  bool anyGlossy() const { return samples.first_glossy < samples.size(); }
+  bool anyDiffuse() const { return samples.glossy.begin > 0; }
+  bool anyGlossy() const { return !samples.glossy.empty(); }
 
   // Loads the colours, once: pictures take long to decode. Errors: images that cannot be decoded.
   Result<void> loadColors();
@@ -42,7 +42,7 @@ class GroupScene {
   // After loadColors().
   const SurfaceColors& colors() const { return *colors_; }
   // After prepareRays(): what rays see, and how glossy surfaces reflect; null where there are none.
-  DiffuseScene view() const { return {bake.scene, geometry, samples, *rays_, *colors_, lights}; }
+  TracedScene view() const { return {bake.scene, geometry, samples, *rays_, *colors_, lights}; }
   const SurfaceBrdfs* brdfs() const { return brdfs_ ? &*brdfs_ : nullptr; }
 
  private:

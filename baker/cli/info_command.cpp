@@ -97,7 +97,7 @@ void printJson(const bundle::Reader& reader, const Sizes& sizes) {
                          {"lightColumns", transfer.shape.light_columns},
                          {"shadowedChannels", transfer.shape.shadowed_channels},
                          {"fullChannels", transfer.shape.full_channels},
-                         {"normalMapped", transfer.shape.outputs == 9},
+                         {"normalMapped", transfer.shape.outputs == transfer::kMappedOutputs},
                          {"clusters", transfer.clusters},
                          {"planes", transfer.planes.size()},
                          {"errorBound", transfer.error_bound},

@@ -8,7 +8,7 @@ namespace lambent::baker {
 
 ExitRadiance::ExitRadiance(const GroupGeometry& geometry, const SampleSet& samples,
                            const BouncePartner* partner)
-    : first_glossy_(samples.first_glossy), partner_(partner) {
+    : glossy_begin_(samples.glossy.begin), partner_(partner) {
   triangle_samples_.reserve(geometry.triangles.size());
   for (const glm::uvec3& t : geometry.triangles)
     triangle_samples_.emplace_back(samples.vertex_sample[t.x], samples.vertex_sample[t.y],

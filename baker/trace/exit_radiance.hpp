@@ -28,7 +28,7 @@ struct Bounce {
   const TransferField& before;  // plain transfer of all samples after the pass before
 };
 
-// Surfaces that reflect by another law than Lambert's, with samples of their own (SampleSet::first_glossy
+// Surfaces that reflect by another law than Lambert's, with samples of their own (SampleSet::glossy
 // on): they take part in every pass, as senders and as receivers.
 class BouncePartner {
  public:
@@ -52,7 +52,7 @@ class ExitRadiance {
   // partner: null where all is diffuse.
   ExitRadiance(const GroupGeometry& geometry, const SampleSet& samples, const BouncePartner* partner);
 
-  bool isDiffuse(const GatherHit& hit) const { return triangle_samples_[hit.triangle].x < first_glossy_; }
+  bool isDiffuse(const GatherHit& hit) const { return triangle_samples_[hit.triangle].x < glossy_begin_; }
   bool anyGlossy() const { return partner_ != nullptr; }
   // weight * albedo * interpolated transfer, added to `sum`, laid out as a sample of `before`.
   void addDiffuse(const GatherHit& hit, float weight, const TransferField& before,
@@ -65,7 +65,7 @@ class ExitRadiance {
 
  private:
   std::vector<glm::uvec3> triangle_samples_;
-  std::size_t first_glossy_;
+  std::size_t glossy_begin_;
   const BouncePartner* partner_;
 };
 

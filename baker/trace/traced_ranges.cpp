@@ -8,7 +8,7 @@
 
 namespace lambent::baker {
 
-TracedRanges::TracedRanges(const DiffuseScene& scene, std::size_t samples, bool keep_hits, bool kept,
+TracedRanges::TracedRanges(const TracedScene& scene, std::size_t samples, bool keep_hits, bool kept,
                            HitStore& store)
     : scene_(scene),
       store_(store),

@@ -10,15 +10,15 @@
 #include <vector>
 
 #include "baker/jobs/stage.hpp"
-#include "baker/trace/group_scene.hpp"
 #include "baker/trace/hits.hpp"
+#include "baker/trace/traced_scene.hpp"
 
 namespace lambent::baker {
 
 class TracedRanges {
  public:
   // Scene and store outlive it. keep_hits: bounces want them. kept: output() will be written.
-  TracedRanges(const DiffuseScene& scene, std::size_t samples, bool keep_hits, bool kept, HitStore& store);
+  TracedRanges(const TracedScene& scene, std::size_t samples, bool keep_hits, bool kept, HitStore& store);
 
   // Takes what a range traced just now; from any thread, each range once. What was stopped has no hits.
   void add(std::size_t range, std::uint64_t rays, RangeHits&& hits, const std::stop_token& stop);
@@ -34,7 +34,7 @@ class TracedRanges {
   bool read(std::size_t range, std::size_t samples, ByteReader& in);
   void offer(std::size_t range, RangeHits&& hits);
 
-  const DiffuseScene& scene_;
+  const TracedScene& scene_;
   HitStore& store_;
   bool keep_hits_, kept_;
   std::vector<std::uint64_t> rays_;

@@ -20,12 +20,6 @@
 
 namespace lambent::baker {
 
-// Samples [begin, end) of one kind.
-struct SampleStretch {
-  std::size_t begin = 0, end = 0;
-  std::size_t size() const { return end - begin; }
-};
-
 // Triangles over which values change, ascending: those that have most of the square of all change between
 // corners. values: [sample of the stretch][width].
 std::vector<std::uint32_t> changingTriangles(const GroupGeometry& geometry, const SampleSet& samples,

@@ -29,11 +29,12 @@ FacePoints facePoints(const GroupGeometry& geometry, const SampleSet& samples,
   FacePoints points;
   SampleSet& set = points.samples;
   set.origin_offsets.push_back(0);
-  const auto append = [&](std::size_t first, std::size_t end) {
+  const auto append = [&](const SampleStretch& stretch) {
+    const std::size_t begin = set.size();
     for (const std::uint32_t t : triangles) {
       const glm::uvec3 corners = geometry.triangles[t];
       const std::uint32_t sample = samples.vertex_sample[corners.x];
-      if (sample < first || sample >= end) continue;
+      if (sample < stretch.begin || sample >= stretch.end) continue;
       if (!(triangleArea(geometry, corners) > 0.0)) continue;
       const FacePoint point = facePoint(geometry, corners, glm::vec3(1.0f / 3.0f));
       points.triangles.push_back(t);
@@ -42,12 +43,11 @@ FacePoints facePoints(const GroupGeometry& geometry, const SampleSet& samples,
       if (glm::dot(point.normal, point.origin.geometric_normal) > 0.0f) set.origins.push_back(point.origin);
       set.origin_offsets.push_back(static_cast<std::uint32_t>(set.origins.size()));
     }
+    return SampleStretch{begin, set.size()};
   };
-  append(0, samples.first_normal_mapped);
-  set.first_normal_mapped = set.size();
-  append(samples.first_normal_mapped, samples.first_glossy);
-  set.first_glossy = set.size();
-  append(samples.first_glossy, samples.size());
+  set.diffuse = append(samples.diffuse);
+  set.normal_mapped = append(samples.normal_mapped);
+  set.glossy = append(samples.glossy);
   return points;
 }
 

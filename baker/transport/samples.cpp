@@ -101,11 +101,14 @@ void placeSamples(const GroupGeometry& geometry, SampleSet& samples) {
   for (std::uint32_t i = 0; i < welded.positions.size(); ++i)
     lists[static_cast<std::size_t>(welded.kinds[i])].push_back(i);
   std::vector<std::uint32_t> place(welded.positions.size());
-  appendCells(welded, std::move(lists[0]), SampleKind::Diffuse, geometry, samples, place);
-  samples.first_normal_mapped = samples.size();
-  appendCells(welded, std::move(lists[1]), SampleKind::NormalMapped, geometry, samples, place);
-  samples.first_glossy = samples.size();
-  appendCells(welded, std::move(lists[2]), SampleKind::Glossy, geometry, samples, place);
+  const auto append = [&](SampleKind kind) {
+    const std::size_t begin = samples.size();
+    appendCells(welded, std::move(lists[static_cast<std::size_t>(kind)]), kind, geometry, samples, place);
+    return SampleStretch{begin, samples.size()};
+  };
+  samples.diffuse = append(SampleKind::Diffuse);
+  samples.normal_mapped = append(SampleKind::NormalMapped);
+  samples.glossy = append(SampleKind::Glossy);
   for (std::uint32_t& sample : samples.vertex_sample) sample = place[sample];
 }
 

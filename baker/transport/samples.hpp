@@ -34,6 +34,13 @@ struct SampleOrigin {
   float reach = 0.0f;
 };
 
+// Samples of one kind stand side by side.
+struct SampleStretch {
+  std::size_t begin = 0, end = 0;
+  std::size_t size() const { return end - begin; }
+  bool empty() const { return begin == end; }
+};
+
 struct SampleCell {
   std::uint32_t first = 0, count = 0;
   glm::vec3 bounds_min{0.0f}, bounds_max{0.0f};
@@ -47,9 +54,7 @@ struct SampleSet {
   std::vector<SampleOrigin> origins;
   std::vector<std::uint32_t> origin_offsets;  // size() + 1; a sample without a face has no origins
   std::vector<SampleCell> cells;
-  // Samples from here on belong to normal-mapped draws that are not glossy.
-  std::size_t first_normal_mapped = 0;
-  std::size_t first_glossy = 0;  // samples from here on belong to glossy draws
+  SampleStretch diffuse, normal_mapped, glossy;  // one after the other
 
   std::size_t size() const { return positions.size(); }
   std::span<const SampleOrigin> originsOf(std::size_t sample) const {

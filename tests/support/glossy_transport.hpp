@@ -34,7 +34,7 @@ struct GlossyBakeSettings {
 
 inline GlossyBake bakeGlossy(const Transport& t, const baker::ExitKernels& kernels,
                              const GlossyBakeSettings& settings) {
-  const baker::DiffuseScene view = t.diffuse();
+  const baker::TracedScene view = t.diffuse();
   const baker::DirectPass plain(view, {.order = settings.order,
                                        .rays = settings.rays,
                                        .keep_hits = settings.bounces != 0,
@@ -50,7 +50,7 @@ inline GlossyBake bakeGlossy(const Transport& t, const baker::ExitKernels& kerne
   if (settings.fit != Fit::Nothing) {
     std::vector<std::uint32_t> triangles;
     for (std::uint32_t i = 0; i < t.geometry.triangles.size(); ++i)
-      if (t.samples.vertex_sample[t.geometry.triangles[i].x] >= t.samples.first_glossy)
+      if (t.samples.vertex_sample[t.geometry.triangles[i].x] >= t.samples.glossy.begin)
         triangles.push_back(i);
     const auto inside = std::make_shared<baker::GlossyInsideFaces>(pass, triangles);
     const auto found = inside->look(glossy->hits.bytesLeft(), {progress});
@@ -91,7 +91,7 @@ inline baker::ExitKernels lambertKernels(const Transport& t, int order_out = 5) 
       }};
 }
 
-// M of the environment at glossy sample `s` (from first_glossy on), channel 0, without bounces.
+// M of the environment at glossy sample `s` (counted from the first glossy one), channel 0, without bounces.
 inline std::vector<float> shadowMatrix(const baker::GlossyField& field, std::size_t s) {
   const auto table = sh::makeGauntTable(field.order_in, field.order_out);
   std::vector<float> matrix(

@@ -29,7 +29,7 @@ struct Transport {
   Transport(const Transport&) = delete;  // colors refers to geometry
   Transport& operator=(const Transport&) = delete;
 
-  baker::DiffuseScene diffuse() const { return {scene, geometry, samples, rays, colors, lights}; }
+  baker::TracedScene diffuse() const { return {scene, geometry, samples, rays, colors, lights}; }
 
   baker::TransferField direct(int order = 5, std::size_t ray_count = 512) const {
     return bake(order, ray_count, /*bounces=*/0).direct.field;
@@ -42,7 +42,7 @@ struct Transport {
   // bounces < 0: as many as it takes for tail_error.
   Baked bake(int order, std::size_t ray_count, int bounces, double tail_error = 1e-3,
              std::size_t hit_memory = std::size_t{1} << 30) const {
-    const baker::DiffuseScene view = diffuse();
+    const baker::TracedScene view = diffuse();
     const baker::DirectPass pass(view, {order, ray_count, bounces != 0, hit_memory});
     baker::Progress progress;
     auto first = baker::bakeDirect(pass, view, {progress});

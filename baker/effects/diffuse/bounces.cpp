@@ -56,7 +56,7 @@ TransferField zeroLike(const TransferField& field) {
 
 class Gather {
  public:
-  Gather(const DirectPass& pass, const DirectResult& direct, const DiffuseScene& scene)
+  Gather(const DirectPass& pass, const DirectResult& direct, const TracedScene& scene)
       : pass_(pass), direct_(direct), scene_(scene) {}
 
   // Gathers at samples [begin, end). `mapped` gets it added; it is in the group's frame.
@@ -64,7 +64,7 @@ class Gather {
              TransferField& mapped) const {
     std::vector<GatherHit> thinned;
     const StoredHits hits(direct_.hits, pass_, begin, end);
-    const std::size_t first_mapped = scene_.samples.first_normal_mapped;
+    const std::size_t first_mapped = scene_.samples.normal_mapped.begin;
     for (std::size_t s = begin; s < end; ++s) {
       const Hemisphere& hemisphere = pass_.hemisphereOf(s, direct_.looks.double_rays[s] != 0);
       const ExitToSample exit(bounce, hemisphere.table(), scene_.samples.normals[s], s);
@@ -117,7 +117,7 @@ class Gather {
 
   const DirectPass& pass_;
   const DirectResult& direct_;
-  const DiffuseScene& scene_;
+  const TracedScene& scene_;
 };
 
 // The largest share that a pass has of all light, over the sources of light.
@@ -144,7 +144,7 @@ double tailOf(const std::vector<double>& before, const std::vector<double>& now,
 }  // namespace
 
 std::optional<BounceResult> bakeBounces(const DirectPass& pass, const DirectResult& direct,
-                                        const DiffuseScene& scene, const BounceSettings& settings,
+                                        const TracedScene& scene, const BounceSettings& settings,
                                         const BakeContext& context, BouncePartner* partner) {
   const ExitRadiance exit(scene.geometry, scene.samples, partner);
   const Gather gather(pass, direct, scene);
@@ -164,7 +164,7 @@ std::optional<BounceResult> bakeBounces(const DirectPass& pass, const DirectResu
   };
   std::vector<double> energy = energiesOf(before), all = energy;
   const std::vector<double> first = energy;
-  const auto first_mapped = static_cast<std::ptrdiff_t>(scene.samples.first_normal_mapped);
+  const auto first_mapped = static_cast<std::ptrdiff_t>(scene.samples.normal_mapped.begin);
   const int most = settings.bounces < 0 ? kMostBounces : settings.bounces;
   for (int number = 1; number <= most; ++number) {
     context.progress.begin(fmt::format("bounce {}", number), scene.samples.size(), "samples");
@@ -173,7 +173,7 @@ std::optional<BounceResult> bakeBounces(const DirectPass& pass, const DirectResu
     const BakeContext pass_context = context.part("pass", number);
     // Of normal-mapped samples the sum of all passes so far is kept.
     const auto gathered =
-        runStage({.count = scene.samples.first_glossy,
+        runStage({.count = scene.samples.glossy.begin,
                   .grain = kSamplesGathered,
                   .writes = {rowsOf(now.vectors, now.vectorSize()),
                              rowsOf(result.mapped.vectors, result.mapped.vectorSize(), -first_mapped)},
@@ -198,13 +198,13 @@ std::optional<BounceResult> bakeBounces(const DirectPass& pass, const DirectResu
     if (partner) partner->advance();
   }
   if (any_filled)
-    fillStretchFromNeighbours(edges, direct.looks.valid, scene.samples.first_normal_mapped,
+    fillStretchFromNeighbours(edges, direct.looks.valid, scene.samples.normal_mapped.begin,
                               result.mapped.vectorSize(), result.mapped.vectors);
   return result;
 }
 
-void dropBounces(const DiffuseScene& scene, std::size_t inside_faces, const BakeContext& context) {
-  const std::size_t plain = scene.samples.first_glossy, glossy = scene.samples.size() - plain;
+void dropBounces(const TracedScene& scene, std::size_t inside_faces, const BakeContext& context) {
+  const std::size_t plain = scene.samples.glossy.begin, glossy = scene.samples.glossy.size();
   for (int number = 1; number <= kMostBounces; ++number) {
     const BakeContext pass = context.part("pass", number);
     dropStage(pass, plain, kSamplesGathered);

@@ -34,9 +34,9 @@ struct BounceResult {
 // the context is that of all that the passes read; what they came to is kept under it until dropBounces(),
 // for a bake that is cut short.
 std::optional<BounceResult> bakeBounces(const DirectPass& pass, const DirectResult& direct,
-                                        const DiffuseScene& scene, const BounceSettings& settings,
+                                        const TracedScene& scene, const BounceSettings& settings,
                                         const BakeContext& context, BouncePartner* partner = nullptr);
 // inside_faces: samples of the partner there.
-void dropBounces(const DiffuseScene& scene, std::size_t inside_faces, const BakeContext& context);
+void dropBounces(const TracedScene& scene, std::size_t inside_faces, const BakeContext& context);
 
 }  // namespace lambent::baker

@@ -113,7 +113,7 @@ class DirectPass::Walk {
   std::vector<float> local_, incident_local_;
 };
 
-DirectPass::DirectPass(const DiffuseScene& scene, const DirectSettings& settings)
+DirectPass::DirectPass(const TracedScene& scene, const DirectSettings& settings)
     : scene_(scene),
       settings_(settings),
       diffuse_(Hemisphere::forNormal(settings.rays, settings.order)),
@@ -122,7 +122,7 @@ DirectPass::DirectPass(const DiffuseScene& scene, const DirectSettings& settings
       channels_(scene.colors.grey() && !settings.colored_kernels ? 1 : 3),
       columns_(static_cast<std::uint32_t>(sh::coefficientCount(settings.order)) +
                static_cast<std::uint32_t>(scene.lights.size())) {
-  if (scene.samples.first_normal_mapped < scene.samples.first_glossy) {
+  if (!scene.samples.normal_mapped.empty()) {
     mapped_ = Hemisphere::forAnyNormal(settings.rays, settings.order);
     mapped_double_rays_ = Hemisphere::forAnyNormal(2 * settings.rays, settings.order);
   }
@@ -132,7 +132,7 @@ std::uint64_t DirectPass::bake(std::size_t begin, std::size_t end, const std::st
                                DirectResult& out, RangeHits& hits) const {
   Walk walk(*this);
   std::uint64_t traced = 0;
-  const std::size_t first_mapped = scene_.samples.first_normal_mapped;
+  const std::size_t first_mapped = scene_.samples.normal_mapped.begin;
   for (std::size_t s = begin; s < end && !stop.stop_requested(); ++s) {
     hits.next();
     traced += walk.look(s);
@@ -150,10 +150,11 @@ void DirectPass::traceAgain(std::size_t begin, std::size_t end, RangeHits& hits)
   paintHits(scene_.colors, hits);
 }
 
-std::optional<DirectResult> bakeDirect(const DirectPass& pass, const DiffuseScene& scene,
+std::optional<DirectResult> bakeDirect(const DirectPass& pass, const TracedScene& scene,
                                        const BakeContext& context, const char* stage) {
-  const std::size_t count = scene.samples.size(), own = scene.samples.first_glossy;
-  const std::size_t first_mapped = scene.samples.first_normal_mapped, mapped = own - first_mapped;
+  const std::size_t count = scene.samples.size(), own = scene.samples.glossy.begin;
+  const std::size_t first_mapped = scene.samples.normal_mapped.begin,
+                    mapped = scene.samples.normal_mapped.size();
   const DirectSettings& settings = pass.settings();
   DirectResult result{.field = makeField(count, settings.order, 1, pass.channels(), pass.columns()),
                       .mapped = makeField(mapped, settings.order, kIncident, pass.channels(), pass.columns()),

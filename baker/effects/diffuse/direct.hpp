@@ -13,9 +13,9 @@
 #include "baker/effects/diffuse/hemisphere.hpp"
 #include "baker/jobs/bake_context.hpp"
 #include "baker/trace/emitters.hpp"
-#include "baker/trace/group_scene.hpp"
 #include "baker/trace/hits.hpp"
 #include "baker/trace/sample_visibility.hpp"
+#include "baker/trace/traced_scene.hpp"
 #include "baker/trace/transfer_field.hpp"
 #include "baker/transport/group_geometry.hpp"
 #include "baker/transport/ray_scene.hpp"
@@ -34,20 +34,20 @@ struct DirectSettings {
 
 struct DirectResult {
   TransferField field;   // outputs 1, all samples
-  TransferField mapped;  // outputs 9, SampleSet::first_normal_mapped up to first_glossy
+  TransferField mapped;  // outputs 9, samples of SampleSet::normal_mapped
   SampleVisibilities looks;
-  HitStore hits;                // of the samples up to first_glossy
+  HitStore hits;                // of all samples but glossy ones
   std::uint64_t rays_kept = 0;  // that what was found in the cache stands for
 };
 
 // Pass 0 of ranges of samples; also traces a range's hits again.
 class DirectPass {
  public:
-  DirectPass(const DiffuseScene& scene, const DirectSettings& settings);
+  DirectPass(const TracedScene& scene, const DirectSettings& settings);
 
   // `double_rays`: with twice the rays.
   const Hemisphere& hemisphereOf(std::size_t sample, bool double_rays) const {
-    if (sample < scene_.samples.first_normal_mapped) return double_rays ? diffuse_double_rays_ : diffuse_;
+    if (sample < scene_.samples.normal_mapped.begin) return double_rays ? diffuse_double_rays_ : diffuse_;
     return double_rays ? *mapped_double_rays_ : *mapped_;
   }
   std::uint32_t columns() const { return columns_; }
@@ -66,7 +66,7 @@ class DirectPass {
 
  private:
   class Walk;
-  DiffuseScene scene_;
+  TracedScene scene_;
   DirectSettings settings_;
   InsideTestTables inside_test_;
   Hemisphere diffuse_, diffuse_double_rays_;
@@ -79,7 +79,7 @@ class DirectPass {
 // 0 and not looked at: bakeGlossyDirect fills them in. The key of the context is that of all that rays ask
 // for (geometry, what lets rays through, lamps, the settings but for memory), not of what surfaces reflect.
 // `stage` is the name that progress shows.
-std::optional<DirectResult> bakeDirect(const DirectPass& pass, const DiffuseScene& scene,
+std::optional<DirectResult> bakeDirect(const DirectPass& pass, const TracedScene& scene,
                                        const BakeContext& context, const char* stage = "direct light");
 
 }  // namespace lambent::baker

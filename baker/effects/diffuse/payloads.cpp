@@ -51,7 +51,7 @@ std::vector<CellVectors> cellVectors(const SampleCell& cell, const SampleSet& sa
   const TransferField& field = mapped ? direct.mapped : direct.field;
   const TransferField* extra = nullptr;
   if (bounced) extra = mapped ? &bounced->mapped : &bounced->field;
-  const std::size_t first = cell.first - (mapped ? samples.first_normal_mapped : 0);
+  const std::size_t first = cell.first - (mapped ? samples.normal_mapped.begin : 0);
   const auto bands = static_cast<std::uint32_t>(sh::coefficientCount(field.order));
   const std::uint32_t lights = field.columns - bands;
   const auto full = [&](std::size_t column, std::size_t columns) {

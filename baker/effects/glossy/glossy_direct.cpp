@@ -129,7 +129,7 @@ class GlossyPass::Walk {
   std::vector<float> local_, lights_local_;
 };
 
-GlossyPass::GlossyPass(const DirectPass& plain, const DiffuseScene& scene, int order_out)
+GlossyPass::GlossyPass(const DirectPass& plain, const TracedScene& scene, int order_out)
     : diffuse_(plain),
       scene_(scene),
       order_in_(plain.settings().order),

@@ -15,20 +15,20 @@
 
 namespace lambent::baker {
 
-// Pass 0 of ranges of glossy samples; also traces a range's hits again. Samples are counted from first_glossy
-// on.
+// Pass 0 of ranges of glossy samples; also traces a range's hits again. Samples are counted from the first
+// glossy one.
 class GlossyPass {
  public:
   // Rays, order (in), channels and lights are those of `plain`, which outlives this. Orders 4..9, and of both
   // together at most sh::kMaxVisibilityBands + 1.
-  GlossyPass(const DirectPass& plain, const DiffuseScene& scene, int order_out);
+  GlossyPass(const DirectPass& plain, const TracedScene& scene, int order_out);
 
   const DirectPass& plain() const { return diffuse_; }
-  const DiffuseScene& scene() const { return scene_; }
+  const TracedScene& scene() const { return scene_; }
   const GlossyHemisphere& hemisphereOf(bool double_rays) const { return double_rays ? double_rays_ : usual_; }
   const sh::GauntTable& gaunt() const { return gaunt_; }
-  std::size_t first() const { return scene_.samples.first_glossy; }
-  std::size_t size() const { return scene_.samples.size() - first(); }
+  std::size_t first() const { return scene_.samples.glossy.begin; }
+  std::size_t size() const { return scene_.samples.glossy.size(); }
   // Of a GlossyField without samples.
   GlossyField shape() const;
 
@@ -40,7 +40,7 @@ class GlossyPass {
  private:
   class Walk;
   const DirectPass& diffuse_;
-  DiffuseScene scene_;
+  TracedScene scene_;
   int order_in_, order_out_;
   GlossyHemisphere usual_, double_rays_;
   sh::GauntTable gaunt_;
@@ -50,7 +50,7 @@ class GlossyInsideFaces;
 
 struct GlossyDirect {
   GlossyField field;  // visibility and lights_shadowed
-  HitStore hits;      // from first_glossy on
+  HitStore hits;      // of glossy samples
   std::uint64_t rays = 0;
   std::uint64_t rays_kept = 0;  // that what was found in the cache stands for
   std::uint32_t filled_samples = 0;

@@ -16,7 +16,7 @@ struct GlossyField {
   int order_in = 5, order_out = 5;  // while bounces are baked, order_out is that of what leaves points
   std::uint32_t channels = 1;       // of bounced light and of the lights: 1 or 3
   std::uint32_t light_columns = 0;  // lights of the group
-  std::uint32_t first_sample = 0;   // SampleSet::first_glossy
+  std::uint32_t first_sample = 0;   // SampleSet::glossy
 
   std::vector<float> visibility;  // [sample][k], visibilityBands()² each
   // Bounced light of the environment: [sample][channel][output][column], order_out² by order_in²; empty

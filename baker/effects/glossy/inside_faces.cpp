@@ -16,8 +16,8 @@ std::optional<GlossyDirect> GlossyInsideFaces::look(std::size_t hit_memory, cons
   auto found = bakeGlossyDirect(pass_, hit_memory, looks_, context, "inside faces");
   if (!found) return std::nullopt;
   hits_ = std::exchange(found->hits, {});
-  const DiffuseScene& scene = vertices_.scene();
-  fit_.emplace(scene.geometry, scene.samples, SampleStretch{vertices_.first(), scene.samples.size()}, points_,
+  const TracedScene& scene = vertices_.scene();
+  fit_.emplace(scene.geometry, scene.samples, scene.samples.glossy, points_,
                SampleStretch{0, points_.samples.size()}, looks_.valid);
   return found;
 }

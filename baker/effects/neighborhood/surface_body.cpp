@@ -32,7 +32,7 @@ std::size_t pathsFor(float roughness) {
 
 }  // namespace
 
-SurfaceBody::SurfaceBody(const DiffuseScene& scene, const BakedSurfaces& baked)
+SurfaceBody::SurfaceBody(const TracedScene& scene, const BakedSurfaces& baked)
     : scene_(scene), brdfs_(baked.brdfs), order_(baked.direct.order) {
   const GroupGeometry& geometry = scene.geometry;
   centre_ = 0.5f * (geometry.bounds_min + geometry.bounds_max);
@@ -108,7 +108,7 @@ void SurfaceBody::addKernel(const FirstHit& hit, const glm::vec3& along, float c
   brdfs_->exitKernel(hit.triangle, hit.u, hit.v, -along, kernel);
   const glm::uvec3 t = scene_.geometry.triangles[hit.triangle];
   const std::uint32_t corner = chance < hit.u ? t.y : chance < hit.u + hit.v ? t.z : t.x;
-  const std::size_t sample = scene_.samples.vertex_sample[corner] - scene_.samples.first_glossy;
+  const std::size_t sample = scene_.samples.vertex_sample[corner] - scene_.samples.glossy.begin;
   const auto columns = static_cast<std::size_t>(sh::coefficientCount(order_));
   for (std::size_t c = 0; c < channels_; ++c) {
     const std::size_t own = matrix_channels_ == 1 ? 0 : c;

@@ -29,7 +29,7 @@ struct BakedSurfaces {
 class SurfaceBody : public Body {
  public:
   // `scene` and the BRDFs outlive this; transfer is copied.
-  SurfaceBody(const DiffuseScene& scene, const BakedSurfaces& baked);
+  SurfaceBody(const TracedScene& scene, const BakedSurfaces& baked);
 
   int order() const override { return order_; }
   std::uint32_t channels() const override { return channels_; }
@@ -49,7 +49,7 @@ class SurfaceBody : public Body {
   void addKernel(const FirstHit& hit, const glm::vec3& along, float chance, const glm::vec3& scale,
                  std::span<float> out) const;
 
-  const DiffuseScene scene_;
+  const TracedScene scene_;
   const SurfaceBrdfs* brdfs_;
   int order_;
   std::uint32_t channels_ = 0;

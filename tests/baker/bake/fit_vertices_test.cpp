@@ -44,8 +44,9 @@ class Truth {
       points.origins.push_back(point.origin);
     }
     for (std::uint32_t i = 0; i <= points.size(); ++i) points.origin_offsets.push_back(i);
-    const bool glossy = t.samples.first_glossy == 0;
-    points.first_normal_mapped = points.first_glossy = glossy ? 0 : points.size();
+    const bool glossy = t.samples.glossy.begin == 0;
+    (glossy ? points.glossy : points.diffuse) = {0, points.size()};
+    if (!glossy) points.normal_mapped = points.glossy = {points.size(), points.size()};
   }
 
   double error(std::size_t width, std::span<const float> truth, const std::vector<std::uint8_t>& valid,
@@ -74,7 +75,7 @@ class Truth {
   std::vector<float> areas_;
 };
 
-DiffuseScene withSamples(const Transport& t, const SampleSet& samples) {
+TracedScene withSamples(const Transport& t, const SampleSet& samples) {
   return {t.scene, t.geometry, samples, t.rays, t.colors, t.lights};
 }
 
@@ -82,9 +83,9 @@ constexpr std::size_t kRays = 1024, kTrueRays = 4096;
 
 TEST(FitVertices, ShowsVisibilityOverFacesOfMetalBetterThanWhatTheVerticesSee) {
   const Transport t(boxOnFloor(1.0f), /*with_glossy=*/true);
-  ASSERT_EQ(t.samples.first_glossy, 0u);
+  ASSERT_EQ(t.samples.glossy.begin, 0u);
   const Truth truth(t);
-  const DiffuseScene true_view = withSamples(t, truth.points);
+  const TracedScene true_view = withSamples(t, truth.points);
   const DirectPass true_plain(true_view, {.order = 5, .rays = kTrueRays});
   const GlossyPass true_pass(true_plain, true_view, 5);
   Progress progress;
@@ -92,7 +93,7 @@ TEST(FitVertices, ShowsVisibilityOverFacesOfMetalBetterThanWhatTheVerticesSee) {
   const auto seen = bakeGlossyDirect(true_pass, 0, there->looks, {progress});
 
   const auto bakeFitted = [&](unsigned threads) {
-    const DiffuseScene view = t.diffuse();
+    const TracedScene view = t.diffuse();
     const DirectPass plain(view, {.order = 5, .rays = kRays});
     const GlossyPass pass(plain, view, 5);
     std::pair<GlossyField, GlossyField> out;
@@ -121,7 +122,7 @@ TEST(FitVertices, ShowsVisibilityOverFacesOfMetalBetterThanWhatTheVerticesSee) {
 TEST(FitVertices, ShowsIrradianceOverMatteFacesBetterThanWhatTheVerticesSee) {
   const Transport t(boxOnFloor(0.0f));
   const Truth truth(t);
-  const DiffuseScene view = t.diffuse(), true_view = withSamples(t, truth.points);
+  const TracedScene view = t.diffuse(), true_view = withSamples(t, truth.points);
   Progress progress;
   const auto there =
       bakeDirect(DirectPass(true_view, {.order = 5, .rays = kTrueRays}), true_view, {progress});
@@ -143,7 +144,7 @@ TEST(FitVertices, LeavesAnOpenBodyOfMetalAsItIsAndTracesNothing) {
   scene.materials[0].metallic = 1.0f;
   scene.materials[0].roughness = 0.3f;
   const Transport t(scene, /*with_glossy=*/true);
-  const DiffuseScene view = t.diffuse();
+  const TracedScene view = t.diffuse();
   const DirectPass plain(view, {.order = 5, .rays = 256});
   const GlossyPass pass(plain, view, 5);
   Progress progress;

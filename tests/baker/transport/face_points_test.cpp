@@ -20,7 +20,7 @@ TEST(FacePoints, StandInTheMiddleOfTheirFacesAndOffThem) {
   const Transport t(testing::sceneOf({testing::icosphere({0.0f, 0.0f, 0.0f}, 1.0f, 2)}));
   const FacePoints points = facePoints(t.geometry, t.samples, allTriangles(t.geometry));
   ASSERT_EQ(points.samples.size(), t.geometry.triangles.size());
-  EXPECT_EQ(points.samples.first_glossy, points.samples.size());  // none is glossy
+  EXPECT_EQ(points.samples.glossy.begin, points.samples.size());  // none is glossy
   for (std::size_t p = 0; p < points.samples.size(); ++p) {
     const glm::uvec3 corners = t.geometry.triangles[points.triangles[p]];
     const glm::vec3 middle = (t.geometry.positions[corners.x] + t.geometry.positions[corners.y] +

@@ -99,7 +99,7 @@ TEST(Samples, OfNormalMappedDrawsComeLastInCellsOfTheirOwn) {
   const Transport t(scene);
   // The grids coincide, but what they store differs.
   EXPECT_EQ(t.samples.size(), 18u);
-  EXPECT_EQ(t.samples.first_normal_mapped, 9u);
+  EXPECT_EQ(t.samples.normal_mapped.begin, 9u);
   ASSERT_EQ(t.samples.cells.size(), 2u);
   EXPECT_EQ(t.samples.cells[0].kind, SampleKind::Diffuse);
   EXPECT_EQ(t.samples.cells[1].kind, SampleKind::NormalMapped);

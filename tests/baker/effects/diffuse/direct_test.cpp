@@ -241,7 +241,7 @@ TEST(DirectTransfer, StopsWhenAsked) {
   std::stop_source stop;
   stop.request_stop();
   Progress progress;
-  const DiffuseScene scene = t.diffuse();
+  const TracedScene scene = t.diffuse();
   EXPECT_FALSE(bakeDirect(DirectPass(scene, {5, 128}), scene, {progress, stop.get_token()}).has_value());
 }
 

@@ -44,7 +44,7 @@ Scene mappedScene(std::vector<bundle::MeshData> meshes) {
 
 TEST(NormalMappedTransfer, OfAnOpenPlaneUnderUniformLightFollowsTheTilt) {
   const Transport t(mappedScene({grid({0, 0, 0}, 1.0f, 2)}));
-  ASSERT_EQ(t.samples.first_normal_mapped, 0u);
+  ASSERT_EQ(t.samples.normal_mapped.begin, 0u);
   const auto baked = t.bake(4, 1024, 0);
   ASSERT_EQ(baked.direct.mapped.size(), t.samples.size());
   for (std::size_t s = 0; s < t.samples.size(); ++s)

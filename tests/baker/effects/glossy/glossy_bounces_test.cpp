@@ -114,8 +114,8 @@ TEST(GlossyBounces, ReachNormalMappedSurfacesAsThoseOfAMatteSurfaceDo) {
     return scene;
   };
   const Transport matte(mapped_wall(false)), t(mapped_wall(true), true);
-  ASSERT_GT(t.samples.first_glossy, t.samples.first_normal_mapped);
-  ASSERT_GT(t.samples.size(), t.samples.first_glossy);
+  ASSERT_GT(t.samples.glossy.begin, t.samples.normal_mapped.begin);
+  ASSERT_GT(t.samples.size(), t.samples.glossy.begin);
   const auto truth = matte.bake(5, 1024, 1);
   const auto baked = bakeGlossy(t, lambertKernels(t), {.rays = 1024, .bounces = 1});
   const TransferField &a = baked.bounced.mapped, &b = truth.bounced.mapped;
@@ -146,7 +146,7 @@ TEST(GlossyBounces, AskForTheDirectionThatLightLeavesIn) {
                             }};
   const auto baked = bakeGlossy(t, kernels, {.rays = 2048, .bounces = 1});
   const std::size_t s = t.sampleAt({0, 1, 0});
-  ASSERT_LT(s, t.samples.first_glossy);
+  ASSERT_LT(s, t.samples.glossy.begin);
   EXPECT_NEAR(baked.bounced.field.at(s)[0], 2.0f / 3.0f, 5e-3f);
   for (std::size_t i = 1; i < 25; ++i) EXPECT_NEAR(baked.bounced.field.at(s)[i], 0.0f, 5e-3f);
 }
@@ -205,7 +205,7 @@ TEST(GlossyBounces, HaveThreeChannelsWhereKernelsAreColoured) {
   const auto baked = bakeGlossy(t, kernels, {.rays = 128, .bounces = 1});
   EXPECT_EQ(baked.glossy.field.channels, 3u);
   const std::size_t s = t.sampleAt({-0.5f, 0.25f, 0.0f});
-  ASSERT_LT(s, t.samples.first_glossy);
+  ASSERT_LT(s, t.samples.glossy.begin);
   const auto transfer = baked.bounced.field.at(s);
   EXPECT_GT(transfer[0], 0.01f);
   EXPECT_EQ(transfer[0], transfer[25]);
@@ -230,7 +230,7 @@ TEST(GlossyBounces, LightLeavesByAllBandsOfTheKernel) {
   std::array<float, kExit * kExit> lobe{};
   sh::evaluate(kExit, from, lobe);
   const ExitKernels kernels = everywhere(lobe);
-  const DiffuseScene view = t.diffuse();
+  const TracedScene view = t.diffuse();
   const DirectPass plain(view,
                          {.order = 5, .rays = 4096, .keep_hits = true, .hit_memory = std::size_t{1} << 30});
   const GlossyPass pass(plain, view, kExit);

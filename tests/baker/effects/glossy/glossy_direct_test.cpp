@@ -54,7 +54,7 @@ void expectIdentity(std::span<const float> matrix, std::size_t columns, float to
 TEST(GlossyDirect, IsTheIdentityOnAnOpenPlaneAtEveryOrder) {
   const Transport t(
       glossyScene({turned(grid({0, 0, 0}, 1.0f, 4), 37.0f, glm::normalize(glm::vec3(1, 2, -1)))}), true);
-  ASSERT_EQ(t.samples.first_glossy, 0u);
+  ASSERT_EQ(t.samples.glossy.begin, 0u);
   for (const auto& [in, out] : {std::pair{5, 5}, {6, 6}, {4, 5}, {5, 4}})
     for (const std::size_t rays : {std::size_t{128}, std::size_t{512}}) {
       const auto baked = bakeGlossy(t, lambertKernels(t, out), {.order = in, .order_out = out, .rays = rays});
@@ -176,13 +176,13 @@ TEST(GlossyDirect, LeavesMatteSamplesAsTheyAre) {
   scene.materials[1].metallic = 1.0f;
   scene.meshes[1].primitives[0].material = 1;
   const Transport mixed(scene, true);
-  ASSERT_EQ(mixed.samples.first_glossy, 121u);
+  ASSERT_EQ(mixed.samples.glossy.begin, 121u);
   const auto baked = bakeGlossy(mixed, lambertKernels(mixed), {});
   const auto alone = matte.direct();
-  for (std::size_t s = 0; s < mixed.samples.first_glossy; ++s)
+  for (std::size_t s = 0; s < mixed.samples.glossy.begin; ++s)
     EXPECT_EQ(largestDifference(baked.direct.field.at(s), alone.at(s)), 0.0f);
   // Seen through 5 bands of the cosine instead of the whole of it, at samples that nothing hides.
-  for (std::size_t s = mixed.samples.first_glossy; s < mixed.samples.size(); ++s)
+  for (std::size_t s = mixed.samples.glossy.begin; s < mixed.samples.size(); ++s)
     EXPECT_LT(largestDifference(baked.direct.field.at(s), alone.at(s)), 0.02f);
   EXPECT_EQ(baked.glossy.field.size(), mixed.samples.size() - 121u);
 }
@@ -250,7 +250,7 @@ TEST(GlossyDirect, IsTheSameForAnyNumberOfThreads) {
 
 TEST(GlossyDirect, StopsWhenAsked) {
   const Transport t(glossyScene({grid({0, 0, 0}, 2.0f, 30)}), true);
-  const DiffuseScene view = t.diffuse();
+  const TracedScene view = t.diffuse();
   const DirectPass plain(view, {});
   Progress progress;
   auto direct = bakeDirect(plain, view, {progress});

@@ -12,7 +12,7 @@
 namespace lambent::baker {
 
 // What tracing and gathering read of a rigid group; all of it outlives the bake.
-struct DiffuseScene {
+struct TracedScene {
   const Scene& scene;
   const GroupGeometry& geometry;
   const SampleSet& samples;
@@ -20,7 +20,7 @@ struct DiffuseScene {
   const SurfaceColors& colors;
   std::span<const PlannedLight> lights;
 
-  DiffuseScene withSamples(const SampleSet& others) const {
+  TracedScene withSamples(const SampleSet& others) const {
     return {scene, geometry, others, rays, colors, lights};
   }
 };
