@@ -137,7 +137,7 @@ Result<bool> GroupRefiner::measure(const GroupGeometry& geometry, const BakeCont
 
   if (auto probed = probe(missing, context); !probed || !*probed) return probed;
 
-  std::vector<double> error_at(inner.size());
+  std::vector<double> error_at(inner.size()), light_at(inner.size(), 0.0);
   std::vector<float> lack_at(for_wedges_ ? inner.size() * 2 * kLackValues : 0);
   std::vector<std::uint8_t> seen_at(inner.size(), 0);
   // Points that cannot be seen have no error, and unseen corners take the values of their neighbours
@@ -156,6 +156,8 @@ Result<bool> GroupRefiner::measure(const GroupGeometry& geometry, const BakeCont
     if (seen_[point.shadow] == 0 || !(shares > 0.0f)) return 0.0;
     for (HiddenFrom& corner : corners) corner.share /= shares;
     const auto wrong = probe_.difference(corners, {masksAt(point.shadow), point.normal}, point.kind);
+    light_at[i] = ShadowProbe::squareError(
+        probe_.arriving({masksAt(point.shadow), point.normal}, point.kind));
     seen_at[i] = 1;
     if (for_wedges_)
       for (std::size_t half = 0; half < 2; ++half)
@@ -169,17 +171,18 @@ Result<bool> GroupRefiner::measure(const GroupGeometry& geometry, const BakeCont
   if (!measured) return false;
 
   triangle_error_.assign(geometry.triangles.size(), 0.0);
-  square_error_ = area_ = 0.0;
+  square_error_ = light_ = 0.0;
   for (std::size_t first = 0; first < inner.size();) {
     const std::uint32_t t = inner[first].triangle;
     std::size_t last = first;
-    double sum = 0.0;
-    for (; last < inner.size() && inner[last].triangle == t; ++last) sum += error_at[last];
+    double sum = 0.0, light = 0.0;
+    for (; last < inner.size() && inner[last].triangle == t; ++last)
+      sum += error_at[last], light += light_at[last];
     const glm::uvec3 corners = geometry.triangles[t];
     const double area = triangleArea(geometry, corners);
     triangle_error_[t] = area * sum / static_cast<double>(last - first);
     square_error_ += triangle_error_[t];
-    area_ += area;
+    light_ += area * light / static_cast<double>(last - first);
     first = last;
   }
   if (for_wedges_) keepLacks(geometry, inner, seen_at, lack_at);
@@ -213,7 +216,7 @@ void GroupRefiner::addLacks(const DrawGeometry& draw, FaceLacks& lacks) const {
 
 std::size_t GroupRefiner::markWorst(std::size_t group, const GroupGeometry& geometry, double bound,
                                     std::size_t& room, MarkedEdges& edges) const {
-  const double allowed = bound * bound * area_;
+  const double allowed = bound * bound * light_;
   if (square_error_ <= allowed) return 0;
   std::vector<std::uint32_t> order(geometry.triangles.size());
   std::iota(order.begin(), order.end(), 0u);

@@ -35,7 +35,7 @@ class GroupRefiner {
   // Area times square error of every triangle. Errors: no memory for the hierarchy. False when stopped.
   Result<bool> measure(const GroupGeometry& geometry, const BakeContext& context);
 
-  double relativeError() const { return area_ > 0.0 ? std::sqrt(std::max(0.0, square_error_) / area_) : 0.0; }
+  double relativeError() const { return light_ > 0.0 ? std::sqrt(std::max(0.0, square_error_) / light_) : 0.0; }
   std::uint64_t raysTraced() const { return traced_; }
   std::uint64_t raysKept() const { return rays_kept_; }
 
@@ -83,7 +83,8 @@ class GroupRefiner {
   std::vector<std::uint8_t> seen_;    // 1 if the point can be seen at all
   std::vector<double> triangle_error_, triangle_area_;
   std::vector<float> triangle_lack_;
-  double square_error_ = 0.0, area_ = 0.0;
+  double square_error_ = 0.0;
+  double light_ = 0.0;  // area times the square of the light that arrives
   std::uint64_t traced_ = 0, rays_kept_ = 0;
 };
 

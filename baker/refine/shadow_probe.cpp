@@ -147,6 +147,21 @@ ShadowProbe::Difference ShadowProbe::difference(std::span<const HiddenFrom, 3> c
   return wrong;
 }
 
+ShadowProbe::Difference ShadowProbe::arriving(const HiddenFrom& point, SampleKind kind) const {
+  const bool plain = kind == SampleKind::Diffuse;
+  Difference light{};
+  for (std::size_t r = 0; r < directions_.size(); ++r) {
+    if ((point.masks[r / kPacketWidth] >> r % kPacketWidth & 1) != 0) continue;
+    const glm::vec3 direction(directions_.x[r], directions_.y[r], directions_.z[r]);
+    const float seen = plain ? glm::dot(point.normal, direction) : 1.0f;
+    if (!(seen > 0.0f)) continue;
+    const std::span<const float> from = row(r, plain);
+    auto& to = light[r < directions_.size() / 2 ? 0 : 1];
+    for (std::size_t i = 0; i < from.size(); ++i) to[i] += seen * from[i];
+  }
+  return light;
+}
+
 double ShadowProbe::squareError(const Difference& difference) {
   double error = 0.0;
   for (std::size_t i = 0; i < kMostValues; ++i) error += double{difference[0][i]} * double{difference[1][i]};

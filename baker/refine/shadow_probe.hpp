@@ -45,6 +45,8 @@ class ShadowProbe {
   using Difference = std::array<std::array<float, kMostValues>, 2>;
   Difference difference(std::span<const HiddenFrom, 3> corners, const HiddenFrom& truth,
                         SampleKind kind) const;
+  // Returns what arrives at a point in the same way: its square is the mean square of the light there.
+  Difference arriving(const HiddenFrom& point, SampleKind kind) const;
   static double squareError(const Difference& difference);
 
  private:

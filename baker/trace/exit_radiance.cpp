@@ -1,5 +1,7 @@
 #include "baker/trace/exit_radiance.hpp"
 
+#include <array>
+
 #include <glm/geometric.hpp>
 
 #include "baker/transport/frame.hpp"
@@ -38,6 +40,29 @@ void ExitRadiance::addGlossy(const GatherHit& hit, const glm::vec3& to, float ch
   if (partner_) partner_->addExit(hit, triangle_samples_[hit.triangle], to, chance, weight, sum);
 }
 
+void ExitRadiance::addPatches(const GatherHit& hit, const glm::vec3& to, float weight,
+                              const PatchRadiance& patches, std::span<float> sum) const {
+  const glm::vec3 reflected = weight * albedo(hit, to);
+  const float u = static_cast<float>(hit.u) * (1.0f / 65535.0f),
+              v = static_cast<float>(hit.v) * (1.0f / 65535.0f);
+  const glm::uvec3 corners = triangle_samples_[hit.triangle];
+  const std::array<float, 3> shares = {1.0f - u - v, u, v};
+  const std::size_t columns = patches.field.columns;
+  for (int corner = 0; corner < 3; ++corner) {
+    const float* in = patches.field.at(patches.patches.of_sample[corners[corner]]).data();
+    float* out = sum.data();
+    for (std::size_t c = 0; c < patches.field.channels; ++c, in += columns, out += columns) {
+      const float factor = shares[static_cast<std::size_t>(corner)] * reflected[static_cast<int>(c)];
+      for (std::size_t i = 0; i < columns; ++i) out[i] += factor * in[i];
+    }
+  }
+}
+
+glm::vec3 ExitRadiance::albedo(const GatherHit& hit, const glm::vec3& to) const {
+  if (partner_ && !isDiffuse(hit)) return partner_->albedo(hit, to);
+  return glm::vec3(hit.albedo[0], hit.albedo[1], hit.albedo[2]) * (1.0f / 65535.0f);
+}
+
 ExitToSample::ExitToSample(const Bounce& bounce, const DirectionTable& table, const glm::vec3& normal,
                            std::size_t sample)
     : bounce_(bounce), table_(table) {
@@ -55,6 +80,7 @@ void ExitToSample::addGlossy(const GatherHit& hit, float weight, std::span<float
   const std::uint32_t dealt = seed_ + hit.ray * 2654435769u;
   const float chance = bounce_.thinly ? static_cast<float>(dealt >> 8) * 0x1p-24f : -1.0f;
   bounce_.exit.addGlossy(hit, -along, chance, weight, sum);
+  if (bounce_.of_patches) bounce_.exit.addPatches(hit, -along, weight, *bounce_.of_patches, sum);
 }
 
 }  // namespace lambent::baker

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -11,6 +12,7 @@
 
 #include "baker/jobs/bake_context.hpp"
 #include "baker/trace/hits.hpp"
+#include "baker/trace/patch_light.hpp"
 #include "baker/trace/transfer_field.hpp"
 #include "baker/transport/direction_table.hpp"
 #include "baker/transport/group_geometry.hpp"
@@ -25,7 +27,12 @@ struct Bounce {
   int number;   // from 1 on
   bool thinly;  // late passes are thinned
   const ExitRadiance& exit;
-  const TransferField& before;  // plain transfer of all samples after the pass before
+  const TransferField& before;  // plain transfer of all samples, of what this pass passes on
+  // What of it samples of other surfaces than diffuse ones have from patches alone; null: nothing. They
+  // reflect it alike in all directions.
+  const PatchRadiance* of_patches = nullptr;
+  // How much more light this pass passes on than the one before brought.
+  double growth = 1.0;
 };
 
 // Surfaces that reflect by another law than Lambert's, with samples of their own (SampleSet::glossy
@@ -36,6 +43,11 @@ class BouncePartner {
   // As ExitRadiance::add, of a hit on a triangle of its own; `corners` are the triangle's samples.
   virtual void addExit(const GatherHit& hit, const glm::uvec3& corners, const glm::vec3& to, float chance,
                        float weight, std::span<float> sum) const = 0;
+  // Returns how much of uniform light the point that was met reflects towards `to`, for each channel.
+  virtual glm::vec3 albedo(const GatherHit& hit, const glm::vec3& to) const = 0;
+  // Calls take with the hits of a sample of its own, and the direction from each towards the sample.
+  using TakeGlossyHit = std::function<void(const GatherHit& hit, float weight, const glm::vec3& to)>;
+  virtual void visitHits(std::size_t sample, const TakeGlossyHit& take) const = 0;
   // Gathers one pass over its samples. `now` is the plain transfer of all samples, and gets what follows at
   // its own. The key of the context is that of this pass. Returns false if stopped.
   virtual bool gather(const Bounce& bounce, TransferField& now, const BakeContext& context) = 0;
@@ -62,6 +74,12 @@ class ExitRadiance {
   // all three, as often as its weight says: the same in the mean for a third of the reading (thinned passes).
   void addGlossy(const GatherHit& hit, const glm::vec3& to, float chance, float weight,
                  std::span<float> sum) const;
+  // What leaves a hit that is not diffuse of light that patches brought.
+  void addPatches(const GatherHit& hit, const glm::vec3& to, float weight, const PatchRadiance& patches,
+                  std::span<float> sum) const;
+  // Returns how much of the light at a hit leaves it towards `to`.
+  glm::vec3 albedo(const GatherHit& hit, const glm::vec3& to) const;
+  std::span<const glm::uvec3> triangleSamples() const { return triangle_samples_; }
 
  private:
   std::vector<glm::uvec3> triangle_samples_;

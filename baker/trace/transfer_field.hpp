@@ -21,6 +21,14 @@ struct TransferField {
 
   std::size_t vectorSize() const { return std::size_t{outputs} * channels * columns; }
   std::size_t size() const { return vectors.size() / vectorSize(); }
+  // Returns zeros of the same layout for so many samples.
+  TransferField zeros(std::size_t samples) const {
+    return {.order = order,
+            .outputs = outputs,
+            .channels = channels,
+            .columns = columns,
+            .vectors = std::vector<float>(samples * vectorSize(), 0.0f)};
+  }
   std::span<float> at(std::size_t sample) {
     return std::span(vectors).subspan(sample * vectorSize(), vectorSize());
   }

@@ -1,10 +1,12 @@
-// Interreflection (Sloan 2002, section 4, passes b >= 1): each pass gathers what the pass before left at the
+// Interreflection (Sloan 2002, section 4, passes b >= 1). A pass gathers what the pass before left at the
 // points that the rays of pass 0 met,
 //   t^b_p = sum_rays w_r rho(q_r) t^(b-1)(q_r),   t(q) interpolated over the triangle that was met,
-// all samples from the same state of the others (Jacobi), so the order of work does not matter. Passes that
-// carry less than a hundredth of all light gather over every fourth ray. The surface's albedo rho is textured
-// and coloured; the receiver's own is left out. Passes end when what is still to come would add less than
-// asked for.
+// all samples from the same state of the others (Jacobi), so the order of work does not matter. The first
+// pass is gathered at all samples. All later ones are passed on between patches of samples (patches.hpp)
+// until what is still to come would add less than asked for, and their sum is gathered at all samples once
+// more: a final gather, in place of a gather per pass. The surface's albedo rho is textured and coloured; the
+// receiver's own is left out. A final gather that carries less than a hundredth of all light goes over every
+// fourth ray.
 #pragma once
 
 #include <optional>

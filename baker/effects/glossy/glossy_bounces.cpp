@@ -248,9 +248,32 @@ void GlossyBounces::addExit(const GatherHit& hit, const glm::uvec3& corners, con
   }
 }
 
+glm::vec3 GlossyBounces::albedo(const GatherHit& hit, const glm::vec3& to) const {
+  // Uniform light of radiance 1 has sqrt(4 pi) as its coefficient 0 and no others.
+  constexpr float kUniform = 3.54490770f;
+  const std::size_t outputs = before_.environment.outputs;
+  std::array<float, 3 * kMostOutputs> kernel;
+  kernels_.at(hit.triangle, static_cast<float>(hit.u) * (1.0f / 65535.0f),
+              static_cast<float>(hit.v) * (1.0f / 65535.0f), to, std::span(kernel).first(3 * outputs));
+  return kUniform * glm::vec3(kernel[0], kernel[outputs], kernel[2 * outputs]);
+}
+
+void GlossyBounces::visitHits(std::size_t sample, const TakeGlossyHit& take) const {
+  const std::size_t s = sample - pass_.first();
+  const GlossyHemisphere& hemisphere = pass_.hemisphereOf(diffuse_.looks.double_rays[sample] != 0);
+  const glm::mat3 frame(localFrame(glm::normalize(glm::dvec3(pass_.scene().samples.normals[sample]))));
+  const StoredHits hits(direct_.hits, pass_, s, s + 1);
+  for (const GatherHit& hit : hits.of(s)) {
+    const glm::vec3 local = hemisphere.direction(hit.ray);
+    // Rays are uniform over the hemisphere, over which the cosine has the mean 1/2.
+    const float weight = 2.0f * local.z * static_cast<float>(hemisphere.weight(hit.ray));
+    take(hit, weight, -(frame * local));
+  }
+}
+
 bool GlossyBounces::gatherAt(const Receivers& at, const Bounce& bounce, State& now,
                              const BakeContext& context) const {
-  const double share = shareOfBefore();
+  const double share = std::min(bounce.growth * shareOfBefore(), 1.0);
   now = zero(direct_.field.order_out, at.pass.size());
   const auto gatherRange = [&](std::size_t begin, std::size_t end) {
     const StoredHits hits(at.hits, at.pass, begin, end);

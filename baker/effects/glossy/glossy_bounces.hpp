@@ -47,6 +47,8 @@ class GlossyBounces : public BouncePartner {
 
   void addExit(const GatherHit& hit, const glm::uvec3& corners, const glm::vec3& to, float chance,
                float weight, std::span<float> sum) const override;
+  glm::vec3 albedo(const GatherHit& hit, const glm::vec3& to) const override;
+  void visitHits(std::size_t sample, const TakeGlossyHit& take) const override;
   bool gather(const Bounce& bounce, TransferField& now, const BakeContext& context) override;
   void advance() override;
   std::vector<double> energies() const override { return energies_; }

@@ -1,0 +1,135 @@
+#include "baker/trace/patches.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include "baker/transport/sample_areas.hpp"
+
+namespace lambent::baker {
+
+namespace {
+
+// Samples of one level differ in brightness by a factor of 16 at most; those of the last are dark.
+constexpr int kLevels = 8;
+constexpr double kOctavesPerLevel = 4.0;
+
+std::size_t levelOf(float brightness, float brightest) {
+  if (!(brightness > 0.0f)) return kLevels - 1;
+  const double octaves = std::log2(double{brightest} / double{brightness});
+  return static_cast<std::size_t>(std::clamp(octaves / kOctavesPerLevel, 0.0, double{kLevels - 1}));
+}
+
+// A turn of the normal by a right angle separates as much as this share of the group's diagonal.
+constexpr float kNormalLength = 0.1f;
+
+// Parts lists of samples in halves until there are as many lists as asked for.
+class Splitter {
+ public:
+  Splitter(const SampleSet& samples, float diagonal)
+      : samples_(samples), normal_scale_(kNormalLength * diagonal) {}
+
+  template <typename Emit>
+  void split(std::span<std::uint32_t> list, std::size_t parts, const Emit& emit) const {
+    if (parts <= 1 || list.size() <= 1) return emit(list);
+    const std::size_t axis = longestAxis(list), left = parts / 2;
+    const std::size_t middle = std::clamp<std::size_t>(list.size() * left / parts, 1, list.size() - 1);
+    std::nth_element(list.begin(), list.begin() + static_cast<std::ptrdiff_t>(middle), list.end(),
+                     [&](std::uint32_t a, std::uint32_t b) {
+                       const float at_a = coordinate(a, axis), at_b = coordinate(b, axis);
+                       return at_a != at_b ? at_a < at_b : a < b;
+                     });
+    split(list.first(middle), left, emit);
+    split(list.subspan(middle), parts - left, emit);
+  }
+
+ private:
+  float coordinate(std::uint32_t sample, std::size_t axis) const {
+    return axis < 3 ? samples_.positions[sample][static_cast<int>(axis)]
+                    : normal_scale_ * samples_.normals[sample][static_cast<int>(axis) - 3];
+  }
+  std::size_t longestAxis(std::span<const std::uint32_t> list) const {
+    std::array<float, 6> extents{};
+    for (std::size_t axis = 0; axis < extents.size(); ++axis) {
+      float least = coordinate(list[0], axis), most = least;
+      for (const std::uint32_t sample : list) {
+        least = std::min(least, coordinate(sample, axis));
+        most = std::max(most, coordinate(sample, axis));
+      }
+      extents[axis] = most - least;
+    }
+    return static_cast<std::size_t>(std::max_element(extents.begin(), extents.end()) - extents.begin());
+  }
+
+  const SampleSet& samples_;
+  float normal_scale_;
+};
+
+// Samples that are not valid join a neighbour's patch, layer by layer; those without any neighbour stay in
+// the first.
+void joinNeighbours(std::span<const std::uint8_t> valid,
+                    std::span<const std::pair<std::uint32_t, std::uint32_t>> edges,
+                    std::vector<std::uint32_t>& of_sample) {
+  std::vector<std::uint8_t> joined(valid.begin(), valid.end());
+  for (bool any = true; any;) {
+    any = false;
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> joins;  // a sample, and the patch
+    const auto join = [&](std::uint32_t sample, std::uint32_t from) {
+      if (joined[sample] == 0 && joined[from] != 0) joins.emplace_back(sample, of_sample[from]);
+    };
+    for (const auto& [a, b] : edges) join(a, b), join(b, a);
+    for (const auto& [sample, patch] : joins) {
+      if (joined[sample] == 0 || patch < of_sample[sample]) of_sample[sample] = patch;
+      joined[sample] = 1;
+      any = true;
+    }
+  }
+}
+
+}  // namespace
+
+Patches choosePatches(const GroupGeometry& geometry, const SampleSet& samples,
+                      std::span<const float> brightness, std::span<const std::uint8_t> valid,
+                      std::span<const std::pair<std::uint32_t, std::uint32_t>> edges) {
+  Patches patches;
+  patches.of_sample.assign(samples.size(), 0);
+  patches.offsets.push_back(0);
+  float brightest = 0.0f;
+  for (const float value : brightness) brightest = std::max(brightest, value);
+  std::array<std::vector<std::uint32_t>, kLevels> levels;
+  std::size_t count = 0;
+  for (std::uint32_t s = 0; s < samples.size(); ++s) {
+    if (valid[s] == 0) continue;
+    levels[levelOf(brightness[s], brightest)].push_back(s);
+    ++count;
+  }
+  const std::vector<float> areas = sampleAreas(geometry, samples);
+  const Splitter splitter(samples, glm::length(geometry.bounds_max - geometry.bounds_min));
+  const auto emit = [&](std::span<std::uint32_t> members) {
+    std::sort(members.begin(), members.end());
+    const auto patch = static_cast<std::uint32_t>(patches.size());
+    double area = 0.0;
+    for (const std::uint32_t s : members) area += double{areas[s]};
+    for (const std::uint32_t s : members) {
+      patches.of_sample[s] = patch;
+      patches.samples.push_back(s);
+      patches.shares.push_back(area > 0.0 ? static_cast<float>(double{areas[s]} / area)
+                                          : 1.0f / static_cast<float>(members.size()));
+    }
+    patches.offsets.push_back(static_cast<std::uint32_t>(patches.samples.size()));
+  };
+  for (std::vector<std::uint32_t>& level : levels) {
+    if (level.empty()) continue;
+    const std::size_t parts =
+        count <= kMostPatches ? level.size() : std::max<std::size_t>(level.size() * kMostPatches / count, 1);
+    splitter.split(level, parts, emit);
+  }
+  if (count < samples.size()) joinNeighbours(valid, edges, patches.of_sample);
+  return patches;
+}
+
+}  // namespace lambent::baker
