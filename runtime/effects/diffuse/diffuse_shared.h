@@ -1,6 +1,6 @@
-// Shared by C++ and GLSL. It says what the diffuse kernels bind besides transfer_shared.h, and lays out the tables
-// that they read (std430). Addresses within an arena page are in 32-bit words; samples and lights are counted in
-// vec4s.
+// This file is shared by C++ and GLSL. It says what the diffuse kernels bind besides transfer_shared.h, and lays out
+// the tables that they read (std430). Addresses within an arena page are in 32-bit words; samples and lights are
+// counted in vec4s.
 #ifdef __cplusplus
 #pragma once
 

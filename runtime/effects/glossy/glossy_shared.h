@@ -1,4 +1,5 @@
-// Shared by C++ and GLSL. It says what the kernels of the glossy effect bind and read besides transfer_shared.h.
+// This file is shared by C++ and GLSL. It says what the kernels of the glossy effect bind and read besides
+// transfer_shared.h.
 #ifdef __cplusplus
 #pragma once
 

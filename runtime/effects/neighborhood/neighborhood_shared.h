@@ -1,5 +1,5 @@
-// Shared by C++ and GLSL. It says how the change of the light around bodies is laid out in the atlas, a 3D texture,
-// and what is bound to write the atlas and to receive from it.
+// This file is shared by C++ and GLSL. It says how the change of the light around bodies is laid out in the atlas, a
+// 3D texture, and what is bound to write the atlas and to receive from it.
 #ifdef __cplusplus
 #pragma once
 

@@ -1,6 +1,6 @@
-// Shared by C++ and GLSL. It serves receivers with transfer of their own (neighborhood_vertices.comp), and finds
-// where each sample of a group stands in its cell's codes (neighborhood_places.comp). Words are 32 bits, counted from
-// the start of an arena page.
+// This file is shared by C++ and GLSL. It serves receivers with transfer of their own (neighborhood_vertices.comp),
+// and finds where each sample of a group stands in its cell's codes (neighborhood_places.comp). Words are 32 bits,
+// counted from the start of an arena page.
 #include "neighborhood_shared.h"
 #ifdef __cplusplus
 #pragma once

@@ -1,4 +1,5 @@
-// Shared by C++ and GLSL. It says what the kernels of volumes bind, and lays out the tables that they read (std430).
+// This file is shared by C++ and GLSL. It says what the kernels of volumes bind, and lays out the tables that they
+// read (std430).
 #ifdef __cplusplus
 #pragma once
 
