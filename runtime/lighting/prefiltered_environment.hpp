@@ -39,7 +39,7 @@ class PrefilteredEnvironment {
   const gpu::Texture& cube(std::size_t set) const { return cubes_[set]; }
 
  private:
-  // Makes P of one set of lights, with roughness along the mip levels.
+  // Makes P(L) of one set of lights, with roughness along the mip levels.
   struct Source;
   static gpu::Texture prefilter(const Source& source, gpu::Counters& counters);
 
