@@ -15,7 +15,7 @@ namespace lambent::effects::neighborhood {
 #endif
 
 LAMBENT_CONSTANT kBindVertexBlock = 0u;      // uniform block, an array of VertexReceiver or PlacesCell
-LAMBENT_CONSTANT kBindVertexArrivals = 0u;   // VertexArrival
+LAMBENT_CONSTANT kBindVertexArrivals = 0u;   // TransferRecord (transfer_shared.h)
 LAMBENT_CONSTANT kBindVertexTransfers = 1u;  // diffuse's TransferRecord
 LAMBENT_CONSTANT kBindVertexPlanes = 2u;     // places of the transfers' planes
 LAMBENT_CONSTANT kBindSamplePlaces = 3u;     // per sample of a group: position in its cell's codes | cell of the group << 16
