@@ -42,7 +42,7 @@ struct ResidentPlane {
   float variance = 0.0f;
 };
 
-// One transfer of a cell. Words are in the cell's page; diffuse_shared.h has the layout.
+// Describes one transfer of a cell. Words are in the cell's page; transfer_shared.h has the layout.
 struct ResidentTransfer {
   transfer::TransferShape shape;
   std::uint32_t clusters = 1, axes = 0;

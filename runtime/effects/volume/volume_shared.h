@@ -19,7 +19,7 @@ using glm::uvec3, glm::vec3, glm::vec4;
 
 // Bindings of the scatter kernel, which copies samples into textures.
 LAMBENT_CONSTANT kBindWork = 0u;     // WorkItem per work group
-LAMBENT_CONSTANT kBindLights = 1u;   // as in diffuse_shared.h
+LAMBENT_CONSTANT kBindLights = 1u;   // as in transfer_shared.h
 LAMBENT_CONSTANT kBindScatter = 2u;  // ScatterRecord
 LAMBENT_CONSTANT kBindVoxels = 3u;   // voxel of each sample of a volume
 LAMBENT_CONSTANT kBindSamples = 4u;  // arena page
