@@ -47,13 +47,14 @@ struct OverlayOptions {
   bool groups = false;
   bool lights = false;
   bool keys = false;
-  // Groups of the residency whose light probes, neighborhoods, volumes and bounds are shown; empty: all.
+  // Lists the groups of the residency whose light probes, neighborhoods, volumes and bounds are shown; empty:
+  // all.
   std::vector<std::uint32_t> selected_groups{};
   // Among overlapping neighborhoods, those of these groups are drawn whole, and of the rest the one nearest
   // to the eye. The others are faint boxes without slices.
   std::vector<std::uint32_t> foremost_groups{};
-  // Index in Environment::keys() of the key light whose shadow map's box is drawn. If there is none, the
-  // boxes of the few strongest are drawn, since more would hide each other.
+  // Holds the index in Environment::keys() of the key light whose shadow map's box is drawn. If there is
+  // none, the boxes of the few strongest are drawn, since more would hide each other.
   std::optional<std::size_t> key{};
   std::vector<OverlayLine> lines{};
   bool operator==(const OverlayOptions&) const = default;

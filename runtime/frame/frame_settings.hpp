@@ -22,16 +22,17 @@ namespace lambent::frame {
 struct FrameSettings {
   evaluate::TransferMode transfer = evaluate::TransferMode::Full;
   sh::Window window = sh::Window::Off;
-  // The largest number of key lights of each set of lights at infinity; 0: none, so bands carry all light.
+  // Limits the number of key lights of each set of lights at infinity; 0: none, so bands carry all light.
   // The owner of the environment passes it on (lighting::Environment::setMostKeys).
   std::optional<std::uint32_t> keys;  // nothing: kAutoKeys, of which only useful ones are made
   std::uint32_t mostKeys() const { return keys.value_or(kAutoKeys); }
-  // Shadow maps of key lights: texels along an edge of the finest map, and rays per light.
+  // Shadow maps of key lights have this many texels along an edge of the finest map, and trace this many
+  // rays.
   std::uint32_t key_size = 4096;
   std::uint32_t key_samples = 32;
-  // The largest number of bands of the light. Higher bands are 0.
+  // Limits the number of bands of the light. Higher bands are 0.
   std::uint32_t order = sh::kMaxOrder;
-  // The largest number of bands that glossy surfaces weigh by their BRDF. `residual` shows the rest of the
+  // Limits the bands that glossy surfaces weigh by their BRDF. `residual` shows the rest of the
   // sky.
   std::uint32_t glossy_order = sh::kMaxOrder;
 
@@ -53,9 +54,9 @@ struct FrameSettings {
 
   lighting::CaptureOptions capture{.order = 0};  // order 0: that of the groups' transfer
   std::uint32_t captures_per_step = 16;          // largest number of light probes captured per frame
-  // The largest number of light probes per group; other samples take the light of the nearest of these.
+  // Limits the number of light probes per group; other samples take the light of the nearest of these.
   std::uint32_t light_probes = kAllLightProbes;
-  // The step of rays through volumes, in voxels; linear pictures use half of it.
+  // Sets the step of rays through volumes, in voxels; linear pictures use half of it.
   float march_step_voxels = 1.0f;
   std::optional<float> exposure_ev;  // stops; nothing: automatic
 

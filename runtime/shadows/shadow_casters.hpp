@@ -55,7 +55,7 @@ class ShadowCasters {
     std::size_t bytes = 0;  // size of a block
     GLuint binding = 0;
   };
-  // Programs for opaque casters and for masked ones, in this order.
+  // Holds the programs for opaque casters and for masked ones, in this order.
   using Programs = std::array<gpu::Program, 2>;
   // Clears the tiles of the bound framebuffer's depth to 1 and draws them. Changes viewport, scissor, depth
   // and culling state.

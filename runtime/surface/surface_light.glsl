@@ -17,7 +17,7 @@ struct SurfaceLight {
   vec3 key;            // E/pi from key lights
   vec3 open_key;       // the same without occlusion
   bool keys_apart;     // true: key lights shine here, so transfer does not contain them
-  // Radiance towards the eye, for glossy surfaces only.
+  // These hold radiance towards the eye, for glossy surfaces only.
   vec3 local_highlights, key_highlights, open_key_highlights;
 };
 

@@ -1,8 +1,8 @@
 // Applies normal maps: computes the normal at a pixel, in the group's frame. The CPU twin is surface_normal_ref.hpp,
 // term by term.
 
-// The frame of a normal map, right-handed if `handedness` is +1. A tangent of 0 means that the surface has none; its
-// normal then stays as it is.
+// Describes the frame of a normal map, right-handed if `handedness` is +1. A tangent of 0 means that the surface has
+// none; its normal then stays as it is.
 struct TangentFrame {
   vec3 normal, tangent;
   float handedness;  // bitangent = handedness * cross(normal, tangent)

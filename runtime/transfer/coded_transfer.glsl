@@ -4,7 +4,7 @@
 
 uint codeWordAt(uint word);  // word of the transfer page
 
-// The sample of the cell whose code stands at a position, the first vector of its cluster, and how many of the
+// Names the sample of the cell whose code stands at a position, the first vector of its cluster, and how many of the
 // cluster's axes are resident.
 struct CodedSample {
   uint sample_index, first, axes;
@@ -26,7 +26,7 @@ uint codeOf(uint codes, uint position) {
   return (four >> (8u * (position & 3u))) & 0xffu;
 }
 
-// The share of a light probe in the light of a sample. Weights fall with k, so all after the first 0 are 0.
+// Holds the share of a light probe in the light of a sample. Weights fall with k, so all after the first 0 are 0.
 struct LightShare {
   uint light;
   float weight;

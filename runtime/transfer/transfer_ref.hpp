@@ -32,7 +32,7 @@ struct Memory {
 
 inline constexpr glm::vec3 kLuminance{0.2126f, 0.7152f, 0.0722f};
 
-// A transfer vector in memory: its first word, and the number of words from one channel to the next
+// Describes a transfer vector in memory: its first word, and the number of words from one channel to the next
 // (`stride`).
 struct TransferVector {
   uint at, channels, stride, columns;
@@ -79,7 +79,7 @@ inline uint codeOf(const Memory& memory, uint codes, uint position) {
   return (four >> (8 * (position & 3))) & 0xff;
 }
 
-// The vectors of a cluster: its mean, then those of its axes that are resident.
+// Names the vectors of a cluster: its mean, then those of its axes that are resident.
 struct ResidentCluster {
   uint first, axes;
 };
@@ -135,7 +135,7 @@ inline void projectVectors(const Memory& memory, const TransferRecord& transfer,
   projectClusters(memory, transfer, places, projected, products);
 }
 
-// The sample of the cell whose code stands at a position, and its cluster.
+// Names the sample of the cell whose code stands at a position, and its cluster.
 struct CodedSample {
   uint sample_index;
   ResidentCluster cluster;
@@ -146,7 +146,7 @@ inline CodedSample codedSampleAt(const Memory& memory, const TransferRecord& tra
   return {place & 0xffff, clusterAt(memory, transfer, place >> 16)};
 }
 
-// The share of a light probe in the light of a sample.
+// Holds the share of a light probe in the light of a sample.
 struct LightShare {
   uint light;
   float weight;

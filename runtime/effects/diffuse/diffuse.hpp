@@ -24,7 +24,7 @@
 
 namespace lambent::effects::diffuse {
 
-// The tables that the kernels read, as last uploaded.
+// Holds the tables that the kernels read, as last uploaded.
 struct Tables : evaluate::TransferTable {
   std::vector<DrawRecord> draws;  // index: residency draw
 };

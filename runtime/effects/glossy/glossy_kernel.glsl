@@ -71,9 +71,9 @@ vec3 perpendicular(vec3 n) {
   return vec3(1.0 + facing * n.x * n.x * a, facing * n.x * n.y * a, -facing * n.x);
 }
 
-// The frame of a table, in which the view leans along x, and where the view stands in the table. Anisotropic BRDFs
-// are symmetric about the material's tangent and bitangent, so views of all quadrants map to the first one, with y
-// reversed in every other quadrant.
+// Describes the frame of a table, in which the view leans along x, and where the view stands in the table.
+// Anisotropic BRDFs are symmetric about the material's tangent and bitangent, so views of all quadrants map to the
+// first one, with y reversed in every other quadrant.
 struct LocalView {
   vec3 tangent, bitangent, normal;
   float cos_theta;
@@ -130,7 +130,7 @@ void lookUpWeights(LocalView view, float roughness, float strength, uvec2 roughn
 #endif
 }
 
-// The reflected light of a point. In each vec4, w treats the visibility in the light's w as RGB treats the light.
+// Holds the reflected light of a point. In each vec4, w treats the visibility in the light's w as RGB treats the light.
 struct Reflected {
 #ifdef LAMBENT_MEASURED
   vec4 light;
@@ -190,7 +190,7 @@ Reflected reflectLight(LocalView view, vec4 weights[kTexels], vec4 light[kCoeffi
   return sum;
 }
 
-// F0 and F90 of a point. `dielectric` is ((ior-1)/(ior+1))² times the specular colour.
+// Holds F0 and F90 of a point. `dielectric` is ((ior-1)/(ior+1))² times the specular colour.
 struct Fresnel {
   vec3 f0;
   float f90;

@@ -16,7 +16,7 @@ using glm::mat3x4;
 #define LAMBENT_CONSTANT const uint
 #endif
 
-// Bindings of neighborhood_write.comp, which writes the atlas.
+// These are bindings of neighborhood_write.comp, which writes the atlas.
 LAMBENT_CONSTANT kWriteGroupSize = 64u;
 LAMBENT_CONSTANT kWriteGroupsX = 65535u;  // longer lists fold into y
 LAMBENT_CONSTANT kBindWriteWork = 0u;     // WorkItem per work group
@@ -24,7 +24,7 @@ LAMBENT_CONSTANT kBindWrites = 1u;        // WriteRecord
 LAMBENT_CONSTANT kBindWriteSamples = 2u;  // arena page: shaded points, a vec4 per output
 LAMBENT_CONSTANT kImageAtlas = 0u;
 
-// Bindings for receiving. They are storage blocks of the surface pass, which uses the lower bindings itself
+// These are bindings for receiving. They are storage blocks of the surface pass, which uses the lower bindings itself
 // (surface_shared.h, local_shared.h).
 LAMBENT_CONSTANT kBindReceivers = 6u;  // Receiver per draw of the residency
 LAMBENT_CONSTANT kBindArrivals = 7u;   // Arrival

@@ -18,7 +18,7 @@ const float kInfinity = 1e30;
 const float kDeep = 9.2103404;  // exp(-kDeep) = 1e-4, behind which nothing is seen
 const int kMaxIntervals = 8192;  // more than any ray meets
 
-// Density and light of volume v, looked up by place in its texture, 0..1.
+// Return density and light of volume v, looked up by place in its texture, 0..1.
 float densityAt(int v, vec3 place);
 vec4 lightAt(int v, vec3 place);
 float blockMaximumAt(uint block);  // over the blocks of all volumes
@@ -31,7 +31,7 @@ float meanPlace(float x) {
   return x < 0.3 ? 0.5 - x / 12.0 + x * x * x / 720.0 : 1.0 / x - 1.0 / (exp(min(x, 80.0)) - 1.0);
 }
 
-// The state of a ray in one volume.
+// Holds the state of a ray in one volume.
 struct VolumeRay {
   vec3 origin;     // in the box from 0 to 1
   vec3 direction;  // of the box, per metre of the ray
@@ -40,7 +40,7 @@ struct VolumeRay {
   float enter;     // metres; the ray misses the volume if it is not below `leave`
   float leave;
   float voxel;  // metres along the ray that count as a voxel's length
-  // The block that the ray is in, and where the ray leaves it along each axis.
+  // These hold the block that the ray is in, and where the ray leaves it along each axis.
   ivec3 block;
   ivec3 last_block;
   vec3 exits;

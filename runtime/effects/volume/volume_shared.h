@@ -17,20 +17,20 @@ using glm::uvec3, glm::vec3, glm::vec4;
 #define LAMBENT_CONSTANT const uint
 #endif
 
-// Bindings of the scatter kernel, which copies samples into textures.
+// These are bindings of the scatter kernel, which copies samples into textures.
 LAMBENT_CONSTANT kBindWork = 0u;     // WorkItem per work group
 LAMBENT_CONSTANT kBindLights = 1u;   // as in transfer_shared.h
 LAMBENT_CONSTANT kBindScatter = 2u;  // ScatterRecord
 LAMBENT_CONSTANT kBindVoxels = 3u;   // voxel of each sample of a volume
 LAMBENT_CONSTANT kBindSamples = 4u;  // arena page
 LAMBENT_CONSTANT kImageLight = 0u;   // texture of a volume, written
-// Bindings of the march.
+// These are bindings of the march.
 LAMBENT_CONSTANT kBindMarch = 0u;   // MarchRecord
 LAMBENT_CONSTANT kBindBlocks = 1u;  // largest density per block, for all volumes; 0 where a block is empty
 LAMBENT_CONSTANT kUnitDepth = 0u;   // depth of the picture; for volume_composite.frag what was marched
 LAMBENT_CONSTANT kUnitMarched = 1u;
-// The first texture units of density and light, one per volume. With depth they fit the sixteen units that OpenGL 4.5
-// promises a stage.
+// These are the first texture units of density and light, one per volume. With depth they fit the sixteen units that
+// OpenGL 4.5 promises a stage.
 LAMBENT_CONSTANT kUnitDensity = 1u;
 
 LAMBENT_CONSTANT kMaxMarched = 7u;  // volumes in one pass
