@@ -131,8 +131,8 @@ class GroupLights {
   bool updateLamps(Group& group, const GroupPlace& place);
 
   KeyedState<Group> groups_;
-  std::array<sh::CachedWindow, 2 * (sh::kMaxOrder + 1)>
-      environment_windows_;  // indexed by environmentWindow()
+  // Indexed by environmentWindow().
+  std::array<sh::CachedWindow, 2 * (sh::kMaxOrder + 1)> environment_windows_;
   std::vector<glm::vec4> coefficients_;
   std::uint64_t environment_version_ = 0;
   sh::Window window_ = sh::Window::Off;
