@@ -51,7 +51,7 @@ class SurfaceModule {
   virtual std::span<const gpu::FindText> shaders() const = 0;
   // Returns whether the draw has light of this module; `record` is complete but for what modules describe.
   virtual bool reaches(std::size_t draw, const SurfaceDraw& record) const = 0;
-  // Rises when the answer of reaches() or describe() changes for any draw.
+  // Changes when the answer of reaches() or describe() changes for any draw.
   virtual std::uint64_t version() const = 0;
   // Writes what the module's functions read of the draw's record.
   virtual void describe(std::size_t, SurfaceDraw&) const {}
