@@ -1,5 +1,5 @@
-// Tells whether something must be made anew: keeps the values that it was last made from, such as version
-// counters, switches and sizes. A value type without an idea of what the values mean.
+// Tells whether something must be made anew. It keeps the values that it was last made from, such as version
+// counters, switches and sizes, without knowing what they mean.
 #pragma once
 
 #include <optional>
@@ -10,17 +10,17 @@ namespace lambent {
 template <class... Values>
 class ChangeGate {
  public:
-  // Whether any value is another than at the last call, as all are at the first call. Keeps the values.
+  // Keeps the values and returns whether any of them differs from the last call. The first call returns true.
   bool renew(const Values&... values) {
     if (holds(values...)) return false;
     kept_.emplace(values...);
     return true;
   }
-  // Whether the last call of renew() had these values.
+  // Returns whether the last call of renew() had these values.
   bool holds(const Values&... values) const { return kept_ == std::tuple<Values...>(values...); }
-  // Whether renew() was called at all, and not forgotten.
+  // Returns whether renew() was called, at all or since forget().
   bool known() const { return kept_.has_value(); }
-  // Lets the next call count as the first.
+  // Makes the next call of renew() count as the first.
   void forget() { kept_.reset(); }
 
  private:

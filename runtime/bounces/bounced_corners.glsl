@@ -1,4 +1,4 @@
-// What patches send on, light of bands 0..2 at the corners of a glossy triangle (patch_bounces.hpp).
+// Adds what patches send on: light of bands 0..2 at the corners of a glossy triangle (patch_bounces.hpp).
 layout(std430, binding = kBindGlossyBounced) readonly buffer Bounced { float bounced_of[]; };
 
 void addBounces(uvec3 corners, vec3 weights, inout vec4 light[kCoefficients]) {

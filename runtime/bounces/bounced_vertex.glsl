@@ -1,4 +1,4 @@
-// What patches send on, at the vertices of diffuse draws (patch_bounces.hpp).
+// Adds what patches send on, at the vertices of diffuse draws (patch_bounces.hpp).
 layout(std430, binding = kBindBounced) readonly buffer Bounced { float bounced_of[]; };
 
 vec3 bouncedAt(uint place) {

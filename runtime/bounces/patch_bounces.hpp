@@ -109,7 +109,8 @@ class PatchBounces {
   // Returns whether transfer carries bounced light of lights that are shaded per pixel: key lights, and lamps
   // beside.
   static bool apart(const World& world, const LitScene& scene, const PatchLights& lights, std::size_t group);
-  // Whether what stands apart has patches: the group's surfaces see enough of each other.
+  // Returns whether patches also correct what stands apart, because the group's surfaces see enough of each
+  // other.
   bool mendsBands(const World& world, const LitScene& scene, const PatchLights& lights,
                   std::size_t group) const;
   // Returns the lamps that patches bounce, a bit each.
@@ -135,7 +136,7 @@ class PatchBounces {
   KeyedState<Draw> draws_;
   std::vector<std::uint32_t> words_;  // indexed by draw
   std::uint64_t layout_version_ = 0, version_ = 0;
-  std::map<std::uint32_t, gpu::Program> programs_;  // by outputs per vertex
+  std::map<std::uint32_t, gpu::Program> programs_;  // keyed by outputs per vertex
   gpu::Table patches_, bounced_, directions_, block_;
   PatchBounceCounts counts_;
 };

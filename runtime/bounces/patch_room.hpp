@@ -43,7 +43,7 @@ class PatchRoom {
   explicit PatchRoom(std::shared_ptr<const lighting::PatchTransport> transport)
       : transport_(std::move(transport)) {}
 
-  // Null until it is made.
+  // Returns null until the transport is made.
   const std::shared_ptr<const lighting::PatchTransport>& transport() const { return transport_; }
 
   // Bounces the lights. `others` are further blockers in the group's frame.

@@ -21,7 +21,7 @@ constexpr float kCodeMax = 5000.0f;
 // Rounding of codes may lift an albedo of 1 by this much.
 constexpr float kAlbedoSlack = 1e-3f;
 
-// A position between two nodes of an axis.
+// Describes a position between two nodes of an axis.
 struct Between {
   std::size_t first = 0, second = 0;
   float share = 0.0f;  // weight of the second node

@@ -59,7 +59,7 @@ struct BrdfTable {
   std::size_t nodes() const { return std::size_t{strengths} * roughnesses * azimuths * angles; }
 };
 
-// A view direction in the terms of the table's axes.
+// Describes a view direction in the terms of the table's axes.
 struct BrdfView {
   float cos_theta = 1.0f;  // angle to the normal; values below 0 count as 0
   // Azimuth of the frame's x axis about the normal, from the tangent towards the bitangent. Isotropic tables

@@ -31,7 +31,7 @@ struct ProxyTriangle {
   std::uint32_t first_entry = 0, entry_count = 0;
 };
 
-// One sample whose E/pi the triangle reflects. The reflectance is the albedo times the share of the
+// Names a sample whose E/pi the triangle reflects. The reflectance is the albedo times the share of the
 // triangle's area that the sample represents.
 struct ProxyEntry {
   // Sample of the group. If it has nine outputs, E/pi is taken at the triangle's normal.
@@ -39,8 +39,8 @@ struct ProxyEntry {
   glm::vec3 reflectance{0.0f};  // 0..1, stored in steps of 1/65535; those of a triangle sum to at most 1
 };
 
-// A level of detail. The finest comes first, and each shows the whole group with triangles of its own.
-// first_triangle is the sum of the counts of the levels before it; first_entry of a triangle likewise.
+// Describes a level of detail. The finest comes first, and each shows the whole group with triangles of its
+// own. first_triangle is the sum of the counts of the levels before it; first_entry of a triangle likewise.
 struct ProxyLevel {
   std::uint32_t first_triangle = 0, triangle_count = 0;  // 1..kMaxProxyTriangles
   float error_m = 0.0f;                                  // largest distance from the group's own surface

@@ -30,14 +30,14 @@ inline constexpr std::uint32_t kVersionWeightedNormals = 6;
 inline constexpr std::uint32_t kVersionFans = 7;
 inline constexpr std::uint32_t kVersionCurrent = kVersionFans;
 
-// A byte range of the GLB's binary chunk.
+// Describes a byte range of the GLB's binary chunk.
 struct View {
   std::uint64_t offset = 0;    // from the start of the binary chunk, a multiple of 8
   std::uint64_t length = 0;    // bytes, without padding
   std::uint64_t checksum = 0;  // XXH3-64 of the bytes and the zero padding up to the next multiple of 8
 };
 
-// Unique ids of the attributes of a Draco mesh; -1 if the mesh lacks one.
+// Holds the unique ids of the attributes of a Draco mesh; -1 if the mesh lacks one.
 struct DracoAttributes {
   std::int32_t position = -1, normal = -1, texcoord0 = -1, texcoord1 = -1, color0 = -1, tangent = -1,
                normal_weight = -1, fan = -1;
@@ -65,9 +65,9 @@ struct Image {
   std::uint32_t view = 0;
 };
 
-// Meaning of a payload's bytes; docs/format.md has the byte tables.
+// Tells what a payload's bytes mean; docs/format.md has the byte tables.
 enum class PayloadType : std::uint8_t {
-  VertexWeights,  // samples and weights of each vertex (transfer_codec.hpp)
+  VertexWeights,  // samples and weights of each vertex (vertex_rows.hpp)
   Codebook,       // means, axes and quantization steps of the clusters of a cell (codebook.hpp)
   ClusterIds,     // cluster of each sample
   WeightPlane,    // one quantized weight per sample of the clusters that have this axis
@@ -88,8 +88,8 @@ struct Payload {
   std::uint32_t priority = 0;    // streaming order; lower numbers are loaded first
 };
 
-// The weights of axis j: one code for each sample whose cluster has an axis j. The AxisCode of the cluster
-// turns a code into a weight.
+// Describes the weights of axis j: one code for each sample whose cluster has an axis j. The AxisCode of the
+// cluster turns a code into a weight.
 struct WeightPlane {
   std::uint32_t payload = 0;
   std::uint32_t bits = 8;   // 8 or 16
@@ -97,7 +97,8 @@ struct WeightPlane {
   float variance = 0.0f;    // share of the cell's weighted variance about its mean that this plane carries
 };
 
-// One part of the transfer of a cell, stored as a codebook and a few weights per sample (codebook.hpp).
+// Describes one part of the transfer of a cell, stored as a codebook and a few weights per sample
+// (codebook.hpp).
 struct CellTransfer {
   transfer::TransferShape shape;
   std::uint32_t clusters = 1;
@@ -115,7 +116,7 @@ struct CellTransfer {
 // Largest number of light probes per cell.
 inline constexpr std::uint32_t kMaxLightProbes = 64;
 
-// The unit of storage, with at most 64 Ki samples.
+// Describes a cell, the unit of storage, with at most 64 Ki samples.
 struct Cell {
   std::uint32_t first_sample = 0, sample_count = 0;
   glm::vec3 bounds_min{0.0f}, bounds_max{0.0f};  // group frame
@@ -137,8 +138,9 @@ struct Cell {
   }
 };
 
-// A light that belongs to a group, so it does not move in the group's frame. Column k of the group's transfer
-// is the response to light k at unit strength; its coefficient is the light's current colour times strength.
+// Describes a light that belongs to a group, so that it does not move in the group's frame. Column k of the
+// group's transfer is the response to light k at unit strength; its coefficient is the light's current colour
+// times strength.
 struct GroupLight {
   enum class Kind : std::uint8_t { Material, Node };
   Kind kind = Kind::Material;
@@ -147,10 +149,10 @@ struct GroupLight {
   glm::vec3 color{0.0f};
 };
 
-// A medium that absorbs and scatters, in a box of voxels. The density has its own resolution, for optical
-// depth and ray marching. Transfer has another grid over the same box; `voxels` lists the voxels that have
-// samples, in the order of the samples of the group's volume cells. With 1 output a sample gives the mean
-// incident radiance; with 9, 16 or 25 it gives the incident radiance in bands, for anisotropic phase
+// Describes a medium that absorbs and scatters, in a box of voxels. The density has its own resolution, for
+// optical depth and ray marching. Transfer has another grid over the same box; `voxels` lists the voxels that
+// have samples, in the order of the samples of the group's volume cells. With 1 output a sample gives the
+// mean incident radiance; with 9, 16 or 25 it gives the incident radiance in bands, for anisotropic phase
 // functions. Values belong to voxel centres, are linear between them, and are constant in the outermost half
 // voxel.
 struct VolumeGrid {
@@ -165,17 +167,17 @@ struct VolumeGrid {
   std::uint32_t voxels = 0;         // payload
 };
 
-// A grid of points that stores how the group changes the light around it: M - I in the group's frame, which
-// falls to 0 towards the faces of the grid. The points are the samples of the group's neighborhood cells, x
-// fastest, then y, then z. They have 9 outputs (bands 0..2, enough for diffuse receivers) or as many bands as
-// the light, for receivers with transfer of their own.
+// Describes a grid of points that stores how the group changes the light around it: M - I in the group's
+// frame, which falls to 0 towards the faces of the grid. The points are the samples of the group's
+// neighborhood cells, x fastest, then y, then z. They have 9 outputs (bands 0..2, enough for diffuse
+// receivers) or as many bands as the light, for receivers with transfer of their own.
 struct NeighborhoodGrid {
   glm::uvec3 size{2};                            // number of points along each axis, at least 2
   glm::vec3 bounds_min{0.0f}, bounds_max{0.0f};  // first and last point, in the group's frame
 };
 
-// The unit of transport: a rigid group, whose nodes never move relative to each other. Transfer is stored in
-// the group's frame, which has the rotation and position of its root node at rest, without scale.
+// Describes a rigid group, the unit of transport, whose nodes never move relative to each other. Transfer is
+// stored in the group's frame, which has the rotation and position of its root node at rest, without scale.
 struct Group {
   std::string name;
   std::int32_t node = -1;  // root node; -1 if the root is the scene
@@ -206,9 +208,9 @@ struct Group {
   }
 };
 
-// The unit of drawing: one side of a primitive at a node, with transfer of its own. A primitive with a
-// double-sided material has two draws. The back one has its winding reversed and its normals negated, so
-// every draw is single-sided.
+// Describes a draw, the unit of drawing: one side of a primitive at a node, with transfer of its own. A
+// primitive with a double-sided material has two draws. The back one has its winding reversed and its normals
+// negated, so every draw is single-sided.
 struct Draw {
   std::uint32_t node = 0, mesh = 0, primitive = 0, group = 0;
   bool back = false;
@@ -221,9 +223,10 @@ struct Draw {
   bool glossy() const { return form() == transfer::Form::Matrix; }
 };
 
-// Whose b(v) a table holds. GGX tables serve all materials of their kind (F0 and F90 parts apart, roughness
-// and anisotropy as axes). A measured one holds all that a material reflects, measured or computed, and
-// serves the materials whose `brdf` is its index in Description::brdf_tables.
+// Tells whose b(v) a table holds. GGX tables serve all materials of their kind, with the parts of F0 and F90
+// apart, and roughness and anisotropy as axes. A measured table holds all that a material reflects, whether
+// it was measured or computed, and serves the materials whose `brdf` is its index in
+// Description::brdf_tables.
 enum class BrdfFamily : std::uint8_t { Ggx, AnisotropicGgx, Measured };
 
 // Returns the family whose table a material looks up if it is not diffuse.

@@ -1,4 +1,5 @@
-// The entropy coder of all payloads, zstd. Errors name `subject`: bytes that are damaged or cut off.
+// Compresses and decompresses all payloads, with zstd. Damaged or truncated bytes are reported as an Error
+// that names `subject`.
 #pragma once
 
 #include <cstddef>

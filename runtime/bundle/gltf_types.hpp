@@ -18,7 +18,7 @@
 
 namespace lambent::gltf {
 
-// A transform as three parts, which animation channels replace one by one.
+// Describes a transform by three parts, which animation channels replace one by one.
 struct Trs {
   glm::vec3 translation{0.0f};
   glm::quat rotation{1.0f, 0.0f, 0.0f, 0.0f};  // unit
@@ -40,7 +40,7 @@ struct Node {
   std::optional<Trs> trs;   // the parts of parent_from_node; animated nodes have them
 };
 
-// A glTF 2.0 sampler, with the GL constants of the file.
+// Describes a glTF 2.0 sampler, with the GL constants of the file.
 struct Sampler {
   std::uint32_t wrap_s = 10497, wrap_t = 10497;        // REPEAT
   std::uint32_t mag_filter = 9729, min_filter = 9987;  // LINEAR, LINEAR_MIPMAP_LINEAR
@@ -126,9 +126,9 @@ struct Camera {
   float zfar = 0.0f;  // 0 for infinite
 };
 
-// A light of KHR_lights_punctual. On a surface that faces it, at distance d inside its cone, it gives an
-// irradiance of colour x intensity / d², or colour x intensity if it is directional. It fades out towards
-// `range_m` as the extension says.
+// Describes a light of KHR_lights_punctual. On a surface that faces it, at distance d inside its cone, it
+// gives an irradiance of colour x intensity / d², or colour x intensity if it is directional. It fades out
+// towards `range_m` as the extension says.
 struct Light {
   enum class Type : std::uint8_t { Directional, Point, Spot };
   std::string name;
@@ -139,8 +139,8 @@ struct Light {
   float inner_cone_rad = 0.0f, outer_cone_rad = 0.785398f;  // half angles of a spot, inner < outer <= pi/2
 };
 
-// Keyframes of one node's translation, rotation or scale. Values are stored as in glTF: 3 or 4 numbers per
-// key (quaternions as x, y, z, w). A cubic key has an in-tangent, a value and an out-tangent.
+// Holds the keyframes of one node's translation, rotation or scale. Values are stored as in glTF: 3 or 4
+// numbers per key (quaternions as x, y, z, w). A cubic key has an in-tangent, a value and an out-tangent.
 struct AnimationChannel {
   enum class Path : std::uint8_t { Translation, Rotation, Scale };
   enum class Interpolation : std::uint8_t { Step, Linear, Cubic };

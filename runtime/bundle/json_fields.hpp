@@ -23,7 +23,7 @@ struct JsonFault : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// A value in the document and its path.
+// Holds a value in the document and its path.
 class Field {
  public:
   Field(const Json& value, std::string place) : value_(&value), place_(std::move(place)) {}

@@ -13,8 +13,8 @@ namespace {
 
 using Interpolation = AnimationChannel::Interpolation;
 
-// A time between the keys `first` and `first + 1`, which are `interval_s` apart. `share` is the fraction of
-// the interval that has passed; if it is 0, only the first key counts.
+// Describes a time between the keys `first` and `first + 1`, which are `interval_s` apart. `share` is the
+// fraction of the interval that has passed; if it is 0, only the first key counts.
 struct Place {
   std::size_t first = 0;
   double share = 0.0, interval_s = 0.0;

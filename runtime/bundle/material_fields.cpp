@@ -1,4 +1,4 @@
-// This file does not compile while a member of a material has no row in the table.
+// Checks that every member of a material has a row in the table; otherwise this file does not compile.
 #include "runtime/bundle/material_fields.hpp"
 
 namespace lambent::gltf {

@@ -18,7 +18,8 @@
 
 namespace lambent::gltf {
 
-// The values of a material that can be changed while it is shown. Textures and vertex colours multiply them.
+// Holds the values of a material that can be changed while it is shown. Textures and vertex colours multiply
+// them.
 struct MaterialFactors {
   glm::vec3 base_color{1.0f};  // linear
   float alpha = 1.0f;
@@ -55,7 +56,7 @@ struct MaterialJson {
   bool (*said)(const Material&) = nullptr;  // whether to write it; if null, it is written unless default
 };
 
-// A member of MaterialFactors, described as a value of the field that it belongs to.
+// Describes a member of MaterialFactors as a value of the field that it belongs to.
 template <class T>
 struct LiveValue {
   struct Range {
@@ -68,8 +69,8 @@ struct LiveValue {
   std::string_view unit{};
 };
 
-// A row of the table. T is the type of the member. Live are the types of its live values; most rows have
-// none, or one of type T.
+// Describes a row of the table. T is the type of the member. Live are the types of its live values; most rows
+// have none, or one of type T.
 template <class T, class... Live>
 struct MaterialField {
   using Value = T;

@@ -16,7 +16,7 @@
 
 namespace lambent::bundle {
 
-// A decoded mesh with one array per attribute. An array is empty if the mesh lacks the attribute.
+// Holds a decoded mesh with one array per attribute. An array is empty if the mesh lacks the attribute.
 struct MeshData {
   std::vector<glm::vec3> positions;  // mesh space
   std::vector<glm::vec3> normals;    // unit length

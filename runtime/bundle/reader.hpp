@@ -22,7 +22,7 @@
 
 namespace lambent::bundle {
 
-// The codebook of a cell's transfer, and the cluster of each sample.
+// Holds the codebook of a cell's transfer, and the cluster of each sample.
 struct CellCodebook {
   transfer::Codebook codebook;
   std::vector<std::uint32_t> cluster_of;

@@ -29,7 +29,7 @@ class DataView {
   // Computes the numbers that are not known yet.
   Result<void> update(World& world, const lighting::GroupLights& lights, const ViewChoice& choice,
                       evaluate::TransferMode mode, gpu::Counters& counters);
-  // Colours and depth, for a view of transfer. Opaque, blended surfaces too.
+  // Draws colours and depth for a view of transfer. Blended surfaces are drawn as opaque ones.
   Result<void> draw(World& world, const spec::View& view, gpu::Counters& counters);
   // Draws wires over what is there; colours are premultiplied by alpha.
   Result<void> drawWires(World& world, const spec::View& view, gpu::Counters& counters);

@@ -1,9 +1,10 @@
-// The options of overlays, which are drawn over a finished picture: light probes as cubes and balls, slices
-// through neighborhoods, boxes of volumes and groups, lights as glyphs, key lights with what their shadow
-// maps show, wires of the triangles, and lines that a caller adds. Overlays use the scene's depth, so hidden
-// parts show faintly, and are laid over the tone-mapped picture. The picture keeps its exposure and alpha,
-// and with all overlays off every bit; then nothing is held, compiled or dispatched for them. docs/views.md
-// explains how to read them. Types and parsing only; parseOverlays() fails on unknown names.
+// Defines the options of overlays, which are drawn over a finished picture: light probes as cubes and balls,
+// slices through neighborhoods, boxes of volumes and groups, lights as glyphs, key lights with what their
+// shadow maps show, wires of the triangles, and lines that a caller adds. Overlays use the scene's depth, so
+// hidden parts show faintly, and are laid over the tone-mapped picture. The picture keeps its exposure and
+// alpha. With all overlays off the picture is unchanged to the last bit, and nothing is held, compiled or
+// dispatched for them. docs/views.md explains how to read them. Types and parsing only; parseOverlays() fails
+// on unknown names.
 #pragma once
 
 #include <cstdint>
@@ -46,13 +47,14 @@ struct OverlayOptions {
   bool groups = false;
   bool lights = false;
   bool keys = false;
-  // The groups of the residency whose light probes, neighborhoods, volumes and bounds are shown; empty: all.
+  // Lists the groups of the residency whose light probes, neighborhoods, volumes and bounds are shown; empty:
+  // all.
   std::vector<std::uint32_t> selected_groups{};
   // Among overlapping neighborhoods, those of these groups are drawn whole, and of the rest the one nearest
   // to the eye. The others are faint boxes without slices.
   std::vector<std::uint32_t> foremost_groups{};
-  // The key light, by its index in Environment::keys(), whose shadow map's box is drawn. Nothing: the boxes
-  // of the few strongest are drawn, since more would hide each other.
+  // Holds the index in Environment::keys() of the key light whose shadow map's box is drawn. If there is
+  // none, the boxes of the few strongest are drawn, since more would hide each other.
   std::optional<std::size_t> key{};
   std::vector<OverlayLine> lines{};
   bool operator==(const OverlayOptions&) const = default;
@@ -66,7 +68,7 @@ struct OverlayOptions {
 struct OverlayRow {
   std::string_view name, label, help;
   bool OverlayOptions::*flag;
-  std::string_view former{};  // the name that it had before, still understood; empty where there is none
+  std::string_view former{};  // its former name, which is still understood; may be empty
 };
 std::span<const OverlayRow> overlayRows();
 std::string knownOverlays();

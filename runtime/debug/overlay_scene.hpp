@@ -1,4 +1,4 @@
-// Lists what overlays read of a frame, as references that are valid during one draw. Types only.
+// Describes what overlays read of a frame, as references that are valid during one draw. Types only.
 #pragma once
 
 #include "runtime/effects/diffuse/proxies.hpp"

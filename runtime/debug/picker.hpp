@@ -30,14 +30,14 @@ class Surfaces;
 
 struct Picked {
   ecs::Entity draw;  // null: a volume
-  ecs::Entity node;  // of the draw; or the one that the volume's group moves with
+  ecs::Entity node;  // of the draw, or that which the volume's group moves with
   ecs::Entity group;
   ecs::Entity material;  // null: a volume, or a draw without a material
   glm::vec3 position_ws{0.0f};
-  glm::vec3 normal_ws{0.0f};  // interpolated, of the visible side; of a volume, towards the eye
+  glm::vec3 normal_ws{0.0f};  // on the visible side, interpolated; for a volume towards the eye
 };
 
-// A point of a picture of this size, in pixels from its top left corner.
+// Describes a point of a picture of this size, in pixels from its top left corner.
 struct PicturePoint {
   spec::Size size;
   float x = 0.0f, y = 0.0f;

@@ -46,11 +46,11 @@ class ProbeMarkers {
   Result<void> capture(const OverlayScene& scene, gpu::Counters& counters);
 
   gpu::Program program_, gather_program_;
-  std::optional<lighting::Capture> capture_;  // once there are bodies
+  std::optional<lighting::Capture> capture_;  // made once there are bodies
   ChangeGate<std::uint64_t> proxies_changed_;
   std::vector<Sign> signs_;
   std::vector<lighting::CapturePoint> points_;
-  ChangeGate<std::vector<glm::vec4>, std::vector<std::uint64_t>> cubes_changed_;  // places, what shines
+  ChangeGate<std::vector<glm::vec4>, std::vector<std::uint64_t>> cubes_changed_;  // places, light
   gpu::Table table_, record_slots_, discs_;
   gpu::Buffer cubes_;  // vec4 per texel: radiance of bodies, share that they hide
   gpu::VertexArray no_vertices_;

@@ -1,13 +1,13 @@
-// A module adds light to surfaces in the raster pass, at some points of their programs: a function in GLSL
-// for each, in a file that the module's room embeds. Surfaces asks each module which draws it reaches, and
-// puts a program together for every set of modules that some draw has (surface_program.hpp). The functions
-// have these forms:
-//   Vertex       void f(uint vertex, inout vec3 radiance), and of normal-mapped draws
+// Defines modules, which add light to surfaces in the raster pass. For some points of the surfaces' programs
+// a module has a GLSL function, in a file that the module's room embeds. Surfaces asks each module which
+// draws it reaches, and puts a program together for every set of modules that some draw has
+// (surface_program.hpp). The functions have these forms:
+//   Vertex       void f(uint vertex, inout vec3 radiance), for normal-mapped draws
 //                void f(uint vertex, inout vec3 light[kLightCoefficients])
 //   Gathered     void f(uvec3 corners, vec3 weights, inout vec4 light[kCoefficients])
-//   Received     void f(SurfacePoint at, inout SurfaceLight light), surface_light.glsl
-//   MirroredSky  void f(Reflected reflected, SurfaceLight light, inout vec3 sky), what mirrors show of it in
-//   its place
+//   Received     void f(SurfacePoint at, inout SurfaceLight light), see surface_light.glsl
+//   MirroredSky  void f(Reflected reflected, SurfaceLight light, inout vec3 sky); it replaces what mirrors
+//                show of the sky
 #pragma once
 
 #include <cstddef>
@@ -23,13 +23,13 @@ namespace lambent::frame {
 
 enum class SurfaceHook : std::uint8_t { Vertex, Gathered, Received, MirroredSky };
 
-// What becomes of the light that transfer brings to a surface.
+// Tells how a surface uses the light that transfer brings to it.
 enum class SurfaceReceiver : std::uint8_t { Diffuse, NormalMapped, Ggx, Measured };
 constexpr bool isGlossy(SurfaceReceiver receiver) {
   return receiver == SurfaceReceiver::Ggx || receiver == SurfaceReceiver::Measured;
 }
 
-// Which receivers call a function.
+// Tells which receivers call a function.
 enum class CalledBy : std::uint8_t { All, Diffuse /* also with normal maps */, Glossy, Ggx };
 constexpr bool calls(SurfaceReceiver receiver, CalledBy by) {
   return by == CalledBy::All || (by == CalledBy::Ggx && receiver == SurfaceReceiver::Ggx) ||
@@ -51,7 +51,7 @@ class SurfaceModule {
   virtual std::span<const gpu::FindText> shaders() const = 0;
   // Returns whether the draw has light of this module; `record` is complete but for what modules describe.
   virtual bool reaches(std::size_t draw, const SurfaceDraw& record) const = 0;
-  // Rises when reaches() or describe() has another answer for any draw.
+  // Changes when the answer of reaches() or describe() changes for any draw.
   virtual std::uint64_t version() const = 0;
   // Writes what the module's functions read of the draw's record.
   virtual void describe(std::size_t, SurfaceDraw&) const {}
@@ -59,7 +59,7 @@ class SurfaceModule {
   virtual void bind(SurfaceReceiver receiver) const = 0;
 };
 
-// The modules of a frame.
+// Lists the modules of a frame.
 using SurfaceModules = std::vector<const SurfaceModule*>;
 
 }  // namespace lambent::frame

@@ -23,7 +23,7 @@ struct SurfaceTextures {
   auto operator<=>(const SurfaceTextures&) const = default;
 };
 
-// Returns how a mesh looks up a texture; absent if it lacks the coordinates.
+// Returns how a mesh looks up a texture. The slot is absent if the mesh lacks the coordinates.
 TextureSlot slotOf(const gltf::TextureRef& texture, const streaming::ResidentMesh& mesh);
 
 // Returns the current material; valid as long as the draw's bundle is.

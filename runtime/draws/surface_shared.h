@@ -75,7 +75,7 @@ struct GlossyPart {
   uint rows_word;  // vertex_count + 1 offsets, then samples, then weights, two per word
   uint row_entries;
   uint vertex_count;
-  uint first_sample;  // of its samples; output o of sample s is vec4 first_output + outputs (s - first_sample) + o
+  uint first_sample;  // of the draw; output o of sample s is vec4 first_output + outputs (s - first_sample) + o
   uint draw;          // index in the residency
   uint first_output;
   uint glossy_pad[2];
@@ -103,7 +103,7 @@ struct SurfaceDraw {
   uint alpha_mode;
   float alpha_cutoff;
   uint unlit;
-  uint bounced_word;  // where its light of patches begins; kAbsent: none
+  uint bounced_word;  // first word of its light of patches; kAbsent: none
   uint pad0, pad1, pad2;
 #ifdef LAMBENT_GLOSSY
   GlossyPart glossy;

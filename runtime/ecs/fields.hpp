@@ -21,7 +21,7 @@
 
 namespace lambent::ecs {
 
-// The smallest and the largest sensible value.
+// Gives the smallest and the largest sensible value.
 template <class T>
 struct Range {
   T least, greatest;

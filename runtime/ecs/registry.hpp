@@ -160,7 +160,7 @@ class Registry {
   SparseSetBase* findSet(detail::TypeId type) const;
   void addSet(detail::TypeId type, std::unique_ptr<SparseSetBase> set);
 
-  std::vector<std::uint32_t> generations_;  // by index; odd if alive
+  std::vector<std::uint32_t> generations_;  // one per index; odd if alive
   std::vector<std::uint32_t> free_;         // indices to reuse; the last one is used first
   std::size_t alive_count_ = 0;
   std::unordered_map<detail::TypeId, std::unique_ptr<SparseSetBase>> sets_;

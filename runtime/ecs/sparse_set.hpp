@@ -20,7 +20,7 @@
 
 namespace lambent::ecs {
 
-// The part of a set that does not depend on the component's type.
+// Owns the part of a set that does not depend on the component's type.
 class SparseSetBase {
  public:
   virtual ~SparseSetBase() = default;
@@ -59,7 +59,7 @@ class SparseSetBase {
   void removeAt(std::uint32_t place);
 
  private:
-  std::vector<std::uint32_t> places_;    // by Entity::index
+  std::vector<std::uint32_t> places_;    // indexed by Entity::index
   std::vector<Entity> entities_;         // by place
   std::vector<std::uint64_t> versions_;  // by place
   std::uint64_t version_ = 0;

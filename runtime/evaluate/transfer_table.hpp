@@ -1,5 +1,5 @@
-// Lists the transfers of cells as the kernels of all effects read them (diffuse_shared.h): records, and the
-// places of planes and lights that they refer to.
+// Lists the transfers of cells as the kernels of all effects read them (transfer_shared.h): the records, and
+// the places of planes and lights that they refer to.
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,7 @@
-// Numbers of the transfer for views of it, one invocation per position of a cell, straight from the codes. The CPU twin
-// stands in transfer_measures.hpp. LAMBENT_VALUE: 0 what the cell says (and, as always, the cluster), 1 DC, 2 energy of a
-// band; LAMBENT_VISIBILITY: of which the light's bands are so many, and the vector is visibility.
+// Computes numbers of the transfer for views of it, straight from the codes, with one invocation per position of a
+// cell. The CPU twin is in transfer_measures.hpp. LAMBENT_VALUE selects the number: 0 the cell's constant, 1 DC, 2
+// the energy of a band; the cluster is always written. LAMBENT_VISIBILITY is set if the vector is visibility, to the
+// number of bands of the light.
 #include "transfer_shared.h"
 #include "transfer_values_shared.h"
 
@@ -24,7 +25,7 @@ float floatAt(uint word) { return uintBitsToFloat(page[word]); }
 const float kY00 = 0.28209479177387814;
 const float kFourPi = 12.566370614359172;
 
-// One value of the vector at a position.
+// Decodes one value of the vector at a position.
 float decoded(TransferRecord transfer, CodedSample at, uint position, uint value) {
   uint word = transfer.vectors_word + transfer.vector_size * at.first + value;
   uint weights = transfer.weights_word + 2u * at.first;
@@ -38,7 +39,8 @@ float decoded(TransferRecord transfer, CodedSample at, uint position, uint value
   return sum;
 }
 
-// Of E/pi of the light whose only coefficient is l_00 = 1, the mean over channels; of a matrix its mean over all normals.
+// Returns E/pi under the light whose only coefficient is l_00 = 1, averaged over channels. For a matrix it is also
+// averaged over all normals.
 float dcOf(TransferRecord transfer, CodedSample at, uint position) {
   if (transfer.visibility != 0u) return kY00 * kY00 * decoded(transfer, at, position, 0u);
   float sum = 0.0;
@@ -47,7 +49,7 @@ float dcOf(TransferRecord transfer, CodedSample at, uint position) {
   return (transfer.outputs > 1u ? kY00 : 1.0) * sum / float(transfer.channels);
 }
 
-// A_j/pi of the nine outputs that a diffuse receiver takes.
+// Returns A_l/pi for one of the nine outputs that a diffuse receiver takes.
 float cosineOverPi(uint j) { return j == 0u ? 1.0 : j < 4u ? 2.0 / 3.0 : 0.25; }
 
 #ifdef LAMBENT_VISIBILITY
@@ -106,7 +108,8 @@ void main() {
 #endif
   uint out_index = cell.first_value + at.sample_index;
   if (transfer.accumulate != 0u) {
-    // Bounced light of glossy surfaces, coded by itself: its part of DC adds up, and the clusters stay the first's.
+    // This is the bounced light of a glossy surface, which has a transfer of its own. Its DC adds to that of the
+    // first transfer, which also wrote the cluster.
     values[out_index].value_bits = floatBitsToUint(uintBitsToFloat(values[out_index].value_bits) + value);
     return;
   }

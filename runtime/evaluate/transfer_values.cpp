@@ -61,7 +61,7 @@ void TransferValues::describe(const streaming::Residency& residency, const light
     const TransferTable::Cell range = table.cells.back();
     for (std::uint32_t t = range.first; t < range.first + range.count; ++t) {
       const transfer::TransferRecord& record = table.transfers[t];
-      if (record.order == 0) continue;  // of the group's own lights
+      if (record.order == 0) continue;  // the group's own lights
       const bool adds = record.accumulate != 0;
       if (adds && question_.value != TransferValue::Dc) continue;
       const auto at = static_cast<std::uint32_t>(cells.size());

@@ -61,7 +61,7 @@ class TransferValues {
   gpu::Buffer values_;
   std::vector<std::uint32_t> first_of_group_;
   TransferQuestion question_;
-  ChangeGate<TransferQuestion, std::uint64_t, std::size_t> changed_;  // and residency, groups
+  ChangeGate<TransferQuestion, std::uint64_t, std::size_t> changed_;  // question, residency, groups
 };
 
 }  // namespace lambent::evaluate

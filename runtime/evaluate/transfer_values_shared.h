@@ -1,4 +1,5 @@
-// One text for C++ and GLSL: what transfer_values.comp binds besides diffuse_shared.h, and what it leaves for views.
+// This file is shared by C++ and GLSL. It says what transfer_values.comp binds besides transfer_shared.h, and what it
+// writes for views.
 #ifdef __cplusplus
 #pragma once
 
@@ -14,21 +15,22 @@ using uint = std::uint32_t;
 
 LAMBENT_CONSTANT kBindValueCells = 1u;  // ValueCell
 LAMBENT_CONSTANT kBindValues = 6u;      // SampleValue
-LAMBENT_CONSTANT kBindProducts3 = 7u;   // of the product of spherical harmonics: offsets of nine outputs, then the terms
+LAMBENT_CONSTANT kBindProducts3 = 7u;   // product of spherical harmonics: offsets of nine outputs, then its terms
 LAMBENT_CONSTANT kNoCluster = 0xffffffffu;
 
-// A transfer of a cell.
+// Names a transfer of a cell.
 struct ValueCell {
-  uint transfer;     // TransferRecord
-  uint first_value;  // of its first sample
-  uint cell;         // of the residency
-  float constant;    // what its samples have where they all have the same
+  uint transfer;     // index of the TransferRecord
+  uint first_value;  // index of the first sample's value
+  uint cell;         // index in the residency
+  float constant;    // value of all samples, if the question asks for a number per cell
 };
 
-// Of a sample of a surface, group by group in the order of its samples. value_bits are those of a float.
+// Holds the value at a sample of a surface. Samples are in their order, group by group. value_bits are the bits of a
+// float.
 struct SampleValue {
   uint value_bits;
-  uint cluster;  // cell << 16 | cluster; kNoCluster: its transfer is not here
+  uint cluster;  // cell << 16 | cluster; kNoCluster: the transfer is not resident
 };
 
 #ifdef __cplusplus

@@ -1,5 +1,5 @@
-// What passes of a frame keep for each other, found by its type: lights of groups, shaded samples, shadow
-// maps. A pass offers its own objects once, when it is made, and they live as long as the frame.
+// Holds what the passes of a frame share, found by its type: lights of groups, shaded samples, shadow maps. A
+// pass offers its own objects once, when it is made, and they live as long as the frame.
 #pragma once
 
 #include <cassert>
@@ -9,7 +9,7 @@
 
 namespace lambent::frame {
 
-// Types that stand for what a pass reads and writes.
+// Lists the types that a pass reads or writes.
 using Resources = std::vector<std::type_index>;
 template <class... Types>
 Resources resources() {
@@ -18,14 +18,14 @@ Resources resources() {
 
 class Blackboard {
  public:
-  // One object of each type.
+  // Offers an object. There may be only one of each type.
   template <class Type>
   void offer(Type& object) {
     const bool first = objects_.emplace(typeid(Type), &object).second;
     assert(first);
     (void)first;
   }
-  // Something of the type must have been offered.
+  // Returns the object of a type, which must have been offered.
   template <class Type>
   Type& get() const {
     const auto found = objects_.find(typeid(Type));

@@ -1,8 +1,9 @@
-// One frame, from what has arrived to the picture: a walk along the list of passes (pass_list.hpp). Every
-// pass runs only if something that it reads is newer than its last output; each is timed, counts what it
-// issued and says why. World, environment (also another object) and settings may be changed between frames as
-// one likes. The picture goes to the frame's own target, which can be read back, or to the window's
-// framebuffer. Errors: shaders that do not compile, a bundle that turns out damaged while it loads.
+// Owns a frame: it runs the list of passes (pass_list.hpp), from what has arrived to the picture. A pass runs
+// only if something that it reads is newer than its last output; each is timed, counts what it issued and
+// says why it ran. The world, the environment (also for another object) and the settings may be changed
+// between frames. The picture goes to the frame's own target, which can be read back, or to the window's
+// framebuffer. Render thread only. Fails if a shader does not compile, or if a bundle turns out damaged while
+// it loads.
 #pragma once
 
 #include <cstdint>
@@ -28,7 +29,8 @@
 
 namespace lambent::frame {
 
-// After so many steps a still scene is taken to be at rest: light has gone to and fro as often.
+// A still scene counts as at rest after this many steps, in which light has travelled as often between
+// bodies.
 inline constexpr std::uint32_t kMaxRestSteps = 16;
 
 class Frame {
@@ -36,40 +38,43 @@ class Frame {
   static Result<Frame> create(const FrameOptions& options, const lighting::Environment& environment);
 
   const FrameSettings& settings() const { return options_.settings; }
-  // From the next step on; only what depends on what is other than before runs again. Errors: a value out of
-  // its range (nothing is changed).
+  // Sets the settings from the next step on; only what depends on a changed value runs again. Fails and
+  // changes nothing if a value is out of range.
   Result<void> setSettings(const FrameSettings& settings);
-  // The next step computes everything anew, as if all had just arrived.
+  // Makes the next step compute everything anew, as if all had just arrived.
   void forget();
 
-  // A step and a picture.
+  // Runs a step and draws a picture.
   Result<void> render(World& world, const lighting::Environment& environment, const spec::View& view);
-  // Steps until no light changes any more, at most kMaxRestSteps; returns how many it took. No picture.
+  // Runs steps until no light changes any more, at most kMaxRestSteps, without a picture. Returns how many it
+  // took.
   Result<std::uint32_t> rest(World& world, const lighting::Environment& environment);
   void resize(const spec::Size& size);
-  // What is seen at a point of the picture, in pixels from its top left corner (that of pixel i, j has its
-  // middle at i + 0.5, j + 0.5); none: the sky. Of what the last picture showed. Waits for the GPU.
+  // Returns what the last picture shows at a point, or nothing for the sky. The point is in pixels from the
+  // picture's top left corner, so that pixel (i, j) has its centre at (i + 0.5, j + 0.5). Waits for the GPU.
   Result<std::optional<Picked>> pick(World& world, const spec::View& view, float x, float y);
 
-  // From the next picture on.
+  // Sets the view from the next picture on.
   void setView(const ViewChoice& choice) { options_.view = choice; }
   void setOverlays(OverlayOptions overlays) { options_.overlays = std::move(overlays); }
-  // By which the last picture is to be read.
+  // Returns the legend of the last picture.
   ViewLegend legend() const;
 
-  // Waits for the GPU. Row 0 is the top. Linear pictures have depths, of what wrote to the depth buffer: in
-  // views of transfer blended surfaces too, with overlays the signs of light probes.
+  // Return the last picture, with row 0 at the top. They wait for the GPU. Linear pictures have the depths of
+  // what wrote to the depth buffer; in views of transfer these include blended surfaces, and with overlays
+  // the markers of light probes.
   spec::RgbaImage readLinear() const { return targets_.readLinear(clip_from_view_); }
   spec::Rgba8Image readDisplay() const { return targets_.readDisplay(); }
-  // What the last render() left, where it does not go to the window; row 0 is the bottom.
+  // Returns the picture of the last render(), with row 0 at the bottom. It is empty if pictures go to the
+  // window.
   const gpu::Texture& picture() const { return targets_.picture(); }
-  // Of the last picture; these wait for the GPU.
+  // Return values of the last picture; they wait for the GPU.
   std::uint32_t negativePixels() const;
   float exposureEv() const;
 
   gpu::PassTimers& timers() { return timers_; }
   const StepCounts& counts() const { return counts_; }
-  // What passes keep, by type.
+  // Returns the object that some pass offered, by its type.
   template <class Type>
   const Type& kept() const {
     return board_.get<Type>();
@@ -92,9 +97,9 @@ class Frame {
   StepCounts counts_;
   gpu::PassTimers timers_;
   Picker picker_;
-  std::uint64_t environment_ = 0;   // version that the last step met
+  std::uint64_t environment_ = 0;   // version in the last step
   bool settled_ = false;            // whether a step has run since the settings changed
-  bool forgotten_ = false;          // whether none has since forget()
+  bool forgotten_ = false;          // whether forget() was called since the last step
   glm::mat4 clip_from_view_{1.0f};  // of the last picture
 };
 

@@ -1,5 +1,5 @@
-// What a pass sees of the frame that it runs in: the world, the light, the options, what other passes keep,
-// and where to count and say why it ran. For the time of one step, or of one step and a picture.
+// Describes the frame that a pass runs in: the world, the light, the options, what other passes keep, and
+// where the pass counts and says why it ran. It lives for one step, or one step and a picture.
 #pragma once
 
 #include <cassert>
@@ -25,21 +25,21 @@ struct FrameContext {
   World& world;
   const lighting::Environment& environment;
   const FrameOptions& options;
-  const spec::View* view;  // null where no picture follows
+  const spec::View* view;  // null if no picture follows
   PictureTargets& targets;
   InvalidationLog& log;
   StepCounts& counts;
   const Blackboard& board;
-  // Of the pass that is asked or runs.
+  // These belong to the pass that is asked or runs.
   const PassInfo* pass = nullptr;
   gpu::PassTimers::Scope* scope = nullptr;
 
   const FrameSettings& settings() const { return options.settings; }
-  // Key lights whose direct light comes by shadow maps, world axes.
+  // Returns the key lights whose direct light comes by shadow maps, in world axes.
   std::span<const spec::Disc> keys() const {
     return options.keysApart() ? environment.keys() : std::span<const spec::Disc>();
   }
-  // What the pass declares that it reads, or writes.
+  // Return what the pass declares that it reads, or writes.
   template <class Type>
   const Type& read() const {
     assert(declares(typeid(Type), /*to_write=*/false));
@@ -52,7 +52,8 @@ struct FrameContext {
   }
   gpu::Counters& counters() const { return scope->counters(); }
   void count(std::string_view name, std::uint64_t value) const { counts.add(name, value); }
-  // Says why the pass ran: those of its causes that the log has of this step, else these words.
+  // Says why the pass ran: states those of its causes that the log has for this step or, if there are none,
+  // `otherwise`.
   void because(std::string_view otherwise = {}) const;
 
  private:

@@ -1,5 +1,5 @@
-// What a frame is made with: the picture's size and kind, settings, upload budget, and what it shows besides
-// light.
+// Describes how a frame is made: the picture's size and kind, settings, upload budget, and what it shows
+// besides light.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 namespace lambent::frame {
 
 enum class Output {
-  Linear,  // float RGBA, one ray per pixel centre, textures at full resolution: pictures for comparison
+  Linear,  // for comparisons: float RGBA, one ray per pixel centre, textures at full resolution
   Display  // tone-mapped, sRGB-coded, four samples per pixel
 };
 
@@ -21,16 +21,17 @@ struct FrameOptions {
   Output output = Output::Display;
   bool to_window = false;  // draw into framebuffer 0
   FrameSettings settings{};
-  std::uint64_t upload_budget_bytes = std::uint64_t{16} << 20;  // per frame, at most
-  // Less than that where frames would take longer than usual.
+  std::uint64_t upload_budget_bytes = std::uint64_t{16} << 20;  // most bytes per frame
+  // If true, less is uploaded when frames take longer than usual.
   bool pace_uploads = true;
-  // Captures arrive in the very next frame, however long that takes: the same pictures on every run.
+  // If true, captures arrive in the next frame, however long that takes, so that every run gives the same
+  // pictures.
   bool wait_for_captures = false;
   ViewChoice view{};
   OverlayOptions overlays{};
 
   bool linear() const { return output == Output::Linear; }
-  // Whether direct light of key lights comes by shadow maps; unshadowed light has no use for them.
+  // Returns whether direct light of key lights comes by shadow maps. Unshadowed light does not need them.
   bool keysApart() const { return settings.transfer != evaluate::TransferMode::Unshadowed; }
 };
 

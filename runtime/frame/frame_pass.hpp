@@ -1,10 +1,11 @@
-// A pass of the frame: an effect, or a stage that effects need. It declares what it reads and writes, says
-// whether it is due, and brings what it keeps up to date; the frame walks a list of them (pass_list.hpp),
-// times each, and knows no more of any. Passes of a step come first, those of a picture have a view.
+// Defines a pass of the frame: an effect, or a stage that effects need. A pass declares what it reads and
+// writes, says whether it is due, and updates what it keeps. The frame runs a list of passes (pass_list.hpp),
+// times each, and knows nothing else of them. The passes of a step come first; those of a picture have a
+// view.
 //
-// A resource is a type on the blackboard, or World and PictureTargets, which the context hands out itself. A
-// pass reads what passes before it in the list wrote in this step, and of `reads_before` what the step before
-// left: light that bodies throw on each other travels one step a frame.
+// A resource is a type on the blackboard, or World and PictureTargets, which the context provides itself. Of
+// `reads`, a pass sees what earlier passes wrote in this step; of `reads_before`, what the step before left,
+// because light between bodies travels once per step.
 #pragma once
 
 #include <string_view>
@@ -19,11 +20,11 @@
 namespace lambent::frame {
 
 struct PassInfo {
-  std::string_view name;  // as it is timed
+  std::string_view name;  // name in timings
   Resources reads{};
   Resources reads_before{};
   Resources writes{};
-  std::uint32_t causes = 0;                // of the invalidation log, that make it run
+  std::uint32_t causes = 0;                // causes in the invalidation log that make it run
   std::vector<std::string_view> counts{};  // names of what it counts
 };
 
@@ -35,12 +36,12 @@ class FramePass {
   FramePass& operator=(const FramePass&) = delete;
 
   const PassInfo& info() const { return info_; }
-  // Whether it has anything to bring up to date. One that is not due may let go of what it holds.
+  // Returns whether the pass has anything to update. A pass that is not due may release what it holds.
   virtual bool due(const FrameContext&) { return true; }
   virtual Result<void> update(FrameContext& frame) = 0;
-  // The next update computes everything anew.
+  // Makes the next update compute everything anew.
   virtual void forget() {}
-  // Whether another step on the same scene would change nothing.
+  // Returns whether another step on the same scene would change nothing.
   virtual bool settled() const { return true; }
 
  private:

@@ -14,7 +14,7 @@ namespace {
 
 using Kind = SettingRow::Kind;
 
-// As the enums count.
+// The words are in the order of the enums' values.
 constexpr std::array<std::string_view, 3> kTransferWords = {"unshadowed", "shadowed", "full"};
 constexpr std::array<std::string_view, 3> kWindowWords = {"off", "hann", "auto"};
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
@@ -32,7 +32,7 @@ constexpr SettingRow switchRow(std::string_view name, std::string_view label, st
           .former = former};
 }
 
-// Member: of the settings, a number or an enum.
+// Get and set a number or an enum that is a member of the settings.
 template <auto Member>
 double getNumber(const FrameSettings& settings) {
   return static_cast<double>(settings.*Member);
@@ -45,7 +45,7 @@ void putNumber(FrameSettings& settings, double value) {
   else
     settings.*Member = static_cast<T>(value);
 }
-// Member: of the capture's options.
+// Get and set a member of the capture's options.
 template <auto Member>
 double getCapture(const FrameSettings& settings) {
   return static_cast<double>(settings.capture.*Member);

@@ -1,8 +1,8 @@
-// What may change between the frames of one Frame: modes, switches of effects, and the settings that trade
-// accuracy for time. One table has a row for each (name, kind, range, finest value, help): command lines,
-// panels and scripts go by it. Values go in and out of a row as numbers (switches 0 and 1, choices by their
-// place) or as words. Setting nothing but a row's value runs nothing: Frame::setSettings does. Errors:
-// names and words that are not known, values out of range.
+// Holds what may change between the frames of one Frame: modes, switches of effects, and settings that trade
+// accuracy for time. A table has a row for each setting (name, kind, range, finest value, help), from which
+// command lines, panels and scripts are made. Values are set and read through a row as numbers (0 and 1 for
+// switches, indices for choices) or as words. Setting a value through a row has no effect on a Frame until
+// Frame::setSettings(). Unknown names and words, and values out of range, are returned as an Error.
 #pragma once
 
 #include <cstdint>
@@ -22,41 +22,43 @@ namespace lambent::frame {
 struct FrameSettings {
   evaluate::TransferMode transfer = evaluate::TransferMode::Full;
   sh::Window window = sh::Window::Off;
-  // Key lights that each set of lights from infinity may have, at most; 0: none, all light goes by bands.
-  // Whoever owns the environment hands it on (lighting::Environment::setMostKeys).
-  std::optional<std::uint32_t> keys;  // none: as many as pay
+  // Limits the number of key lights of each set of lights at infinity; 0: none, so bands carry all light.
+  // The owner of the environment passes it on (lighting::Environment::setMostKeys).
+  std::optional<std::uint32_t> keys;  // nothing: kAutoKeys, of which only useful ones are made
   std::uint32_t mostKeys() const { return keys.value_or(kAutoKeys); }
-  // Of shadow maps of key lights: texels along an edge of the finest, rays to a light.
+  // Shadow maps of key lights have this many texels along an edge of the finest map, and trace this many
+  // rays.
   std::uint32_t key_size = 4096;
   std::uint32_t key_samples = 32;
-  // Bands of the light that count, at most: higher ones are 0, as if the light had none.
+  // Limits the number of bands of the light. Higher bands are 0.
   std::uint32_t order = sh::kMaxOrder;
-  // Of the light that glossy surfaces weigh by their BRDF; what is left out of the sky is the residual's.
+  // Limits the bands that glossy surfaces weigh by their BRDF. `residual` shows the rest of the
+  // sky.
   std::uint32_t glossy_order = sh::kMaxOrder;
 
-  // Effects. What is off is not computed, and shows nothing of its own: diffuse or glossy surfaces are black
-  // but for what they give off, volumes are not there.
+  // Effects that are off are not computed and not shown: diffuse or glossy surfaces are black except for
+  // their emission, and volumes are absent.
   bool diffuse = true, glossy = true, volumes = true;
-  // Glossy surfaces reflect what the bands of their light leave out of the sky, too.
+  // Glossy surfaces also reflect what the bands of their light leave out of the sky.
   bool residual = true;
-  // Bodies with grids around them change the light of others by these; else by captures.
+  // Bodies with grids change the light of others by these; if false, by captures.
   bool neighborhoods = true;
-  // Lights among the surfaces shine per pixel, with shadow cubes; else by harmonics.
+  // Lights among the surfaces shine per pixel, with shadow cubes; if false, by harmonics.
   bool local_shadows = true;
-  // So do those that stand beside a group: nearer to its middle than so many of its radii. 0: none.
+  // This also holds for lights beside a group, nearer to its centre than this many of its radii; 0: none.
   float local_radii = 6.0f;
-  // And what the surfaces around them send on of their light arrives too.
+  // The light of these is also bounced by the surfaces around them.
   bool patch_bounces = true;
-  // Bodies light and shadow each other as they stand now; else only as they were baked.
+  // Bodies light and shadow each other as they stand now; if false, only as they were baked.
   bool captures = true;
 
   lighting::CaptureOptions capture{.order = 0};  // order 0: that of the groups' transfer
-  std::uint32_t captures_per_step = 16;          // light probes that are drawn anew in a frame, at most
-  // Of a group, at most: the others take the light of the nearest of these.
+  std::uint32_t captures_per_step = 16;          // largest number of light probes captured per frame
+  // Limits the number of light probes per group; other samples take the light of the nearest of these.
   std::uint32_t light_probes = kAllLightProbes;
-  // Of rays through volumes, in voxels; linear pictures take half of it.
+  // Sets the step of rays through volumes, in voxels; linear pictures use half of it.
   float march_step_voxels = 1.0f;
-  std::optional<float> exposure_ev;  // none: automatic
+  std::optional<float> exposure_ev;  // stops; nothing: automatic
 
   static constexpr std::uint32_t kAllLightProbes = 4096;
   static constexpr std::uint32_t kAutoKeys = 16;
@@ -66,29 +68,29 @@ struct FrameSettings {
 struct SettingRow {
   enum class Kind : std::uint8_t { Switch, Choice, Whole, Real };
 
-  std::string_view name;  // as in --name, in scripts and files
+  std::string_view name;  // as in --name, scripts and files
   std::string_view label;
   Kind kind = Kind::Switch;
-  double least = 0.0, greatest = 1.0;         // both included; of a Choice the places of its words
-  std::span<const std::string_view> words{};  // of a Choice, by place
-  std::string_view zero{}, not_a_number{};    // words for 0 and NaN, where these mean something else
-  std::optional<double> finest{};             // most accurate; none: no setting of accuracy
+  double least = 0.0, greatest = 1.0;         // both included; indices of words for a Choice
+  std::span<const std::string_view> words{};  // words of a Choice, in order
+  std::string_view zero{}, not_a_number{};  // words for the values 0 and NaN, if these have a special meaning
+  std::optional<double> finest{};           // most accurate value; nothing: does not affect accuracy
   std::string_view help{};
   double (*get)(const FrameSettings&) = nullptr;
   void (*put)(FrameSettings&, double) = nullptr;  // takes a value in range
   std::string_view former{};  // the name before 0.11, which is still understood but not shown; may be empty
 };
 
-// In the order of panels and help.
+// Returns the rows in the order of panels and help.
 std::span<const SettingRow> settingRows();
-const SettingRow* findSetting(std::string_view name);  // null: there is none
+const SettingRow* findSetting(std::string_view name);  // null if there is none
 
 std::string settingWord(const SettingRow& row, const FrameSettings& settings);
 Result<double> parseSetting(const SettingRow& row, std::string_view word);
 Result<void> putSetting(const SettingRow& row, FrameSettings& settings, double value);
-// By name and word, as scripts do.
+// Sets a value by name and word, as scripts do.
 Result<void> putSetting(FrameSettings& settings, std::string_view name, std::string_view word);
-// Every row in its range.
+// Fails if any value is out of its row's range.
 Result<void> checkSettings(const FrameSettings& settings);
 
 }  // namespace lambent::frame

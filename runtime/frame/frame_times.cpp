@@ -7,11 +7,11 @@ namespace lambent::frame {
 
 namespace {
 
-constexpr double kLonger = 1.35;  // than the median: too much was brought
+constexpr double kLonger = 1.35;  // times the median; a longer frame uploaded too much
 constexpr double kGrow = 1.1, kShrink = 0.5;
 constexpr double kFirstBytes = 1 << 20, kLeastBytes = 128 << 10;
-// However slow frames are: else a scene whose frames take seconds once it is there would take minutes to
-// come.
+// This limit holds however slow frames are. Without it, a scene whose frames take seconds would take minutes
+// to load.
 constexpr double kLeastBytesPerSecond = 8 << 20;
 
 }  // namespace
@@ -57,7 +57,7 @@ std::uint64_t UploadPacer::budget(std::uint64_t most_bytes) const {
 
 void UploadPacer::frameTook(double milliseconds, bool uploaded, std::uint64_t most_bytes) {
   if (bytes_ == 0.0) bytes_ = kFirstBytes;
-  // A frame that brought nothing says nothing of what bringing costs.
+  // A frame without uploads says nothing of what uploads cost.
   if (uploaded && times_.count() > 0) {
     const bool longer = milliseconds > kLonger * times_.median();
     const double most = std::max(kLeastBytes, static_cast<double>(most_bytes));

@@ -14,7 +14,7 @@ std::string counted(std::size_t count, std::string_view one) {
   return count == 1 ? fmt::format("a {}", one) : fmt::format("{} {}s", count, one);
 }
 
-// Components of a type that were changed since its version was `seen`.
+// Returns how many components of a type changed since its version was `seen`.
 template <typename Component>
 std::size_t changedSince(const ecs::Registry& registry, std::uint64_t seen) {
   std::size_t count = 0;
@@ -23,7 +23,8 @@ std::size_t changedSince(const ecs::Registry& registry, std::uint64_t seen) {
   return count;
 }
 
-// Sets `seen` to what it is now; none where it was that already.
+// Sets `seen` to the current version, and returns the number of changes, or nothing if it was current
+// already.
 template <typename Component>
 std::optional<std::size_t> changes(const ecs::Registry& registry, std::uint64_t& seen) {
   const std::uint64_t now = registry.version<Component>();
@@ -85,7 +86,7 @@ void InvalidationLog::noticeEnvironment(const lighting::Environment& environment
   if (environment.version() == environment_) return;
   const bool first = std::exchange(environment_, environment.version()) == 0;
   if (first) {
-    // that of the first frame
+    // The first step has nothing to compare with.
   } else if (environment.lightsVersion() != lights_) {
     note(Cause::Environment, "other light from outside");
   } else {

@@ -1,7 +1,7 @@
-// Why passes run: what is other than in the step before, in words. Comes in: the world, the environment, the
-// settings and the view, whose versions and values are compared once a step. Goes out: for a pass that did
-// something, the causes that it listens to, as one line such as "light turned, 2 groups moved". Compares,
-// computes nothing, and no pass runs because of it.
+// Explains why passes run: it says in words what changed since the last step. It compares versions and values
+// of the world, the environment, the settings and the view once per step. For a pass that did something it
+// returns the causes that concern the pass in one line, such as "light turned, 2 groups moved". It only
+// reports; no pass runs because of it.
 #pragma once
 
 #include <cstdint>
@@ -19,16 +19,16 @@
 namespace lambent::frame {
 
 enum class Cause : std::uint32_t {
-  Arrived = 1u << 0,      // parts of bundles
+  Arrived = 1u << 0,      // parts of bundles arrived
   Moved = 1u << 1,        // nodes and groups
   Environment = 1u << 2,  // loaded, turned, faded or dimmed
-  Lights = 1u << 3,       // that stand in the scene, and emissive materials
-  Captured = 1u << 4,     // light between bodies came from captures
+  Lights = 1u << 3,       // lights in the scene, and emissive materials
+  Captured = 1u << 4,     // light between bodies arrived from captures
   Materials = 1u << 5,
   Settings = 1u << 6,  // each by its name
   View = 1u << 7,      // camera and size
-  Exposure = 1u << 8,  // a setting that only the tone mapper reads
-  Asked = 1u << 9      // Frame::forget
+  Exposure = 1u << 8,  // only affects the tone mapper
+  Asked = 1u << 9      // Frame::forget() was called
 };
 constexpr std::uint32_t operator|(Cause a, Cause b) {
   return static_cast<std::uint32_t>(a) | static_cast<std::uint32_t>(b);
@@ -37,19 +37,19 @@ constexpr std::uint32_t operator|(std::uint32_t a, Cause b) {
   return a | static_cast<std::uint32_t>(b);
 }
 
-// What changes light on surfaces, before any camera looks.
+// These causes change light on surfaces, whatever the camera.
 inline constexpr std::uint32_t kLightCauses = Cause::Arrived | Cause::Moved | Cause::Environment |
                                               Cause::Lights | Cause::Captured | Cause::Settings |
                                               Cause::Asked;
 
-// And what a camera sees of it.
+// These causes change what a camera sees of it.
 inline constexpr std::uint32_t kPictureCauses = kLightCauses | Cause::Materials | Cause::View;
 
 class InvalidationLog {
  public:
-  // At the start of a step: nothing has changed yet.
+  // Clears the log at the start of a step.
   void begin() { notes_.clear(); }
-  // Each notices what is other than when it last looked.
+  // Each of these notes what changed since its last call.
   void noticeArrivals(const World& world, std::uint64_t bytes);
   void noticeWorld(const World& world);
   void noticeEnvironment(const lighting::Environment& environment);
@@ -57,7 +57,7 @@ class InvalidationLog {
   void noticeView(const spec::View& view, const spec::Size& size);
   void note(Cause cause, std::string words);
 
-  // The causes of this step among those, joined; where there are none, `otherwise`.
+  // Returns those of the given causes that were noted in this step, joined; if there are none, `otherwise`.
   std::string of(std::uint32_t causes, std::string_view otherwise = {}) const;
 
  private:

@@ -20,7 +20,7 @@ double median(std::vector<double>& values) {
   return *middle;
 }
 
-// Passes of some frames that all did the same, each with its median times.
+// Returns the passes of frames that all did the same, each with its median times.
 std::vector<gpu::PassTime> medians(const std::vector<std::vector<gpu::PassTime>>& frames) {
   std::vector<gpu::PassTime> passes;
   if (frames.empty()) return passes;
@@ -39,7 +39,8 @@ std::vector<gpu::PassTime> medians(const std::vector<std::vector<gpu::PassTime>>
   return passes;
 }
 
-// Whatever comes of a measurement, the samples are no other frame's any more.
+// Causes all samples to be shaded again after a measurement, however it ends, because other frames rely on
+// them.
 class Unshaded {
  public:
   explicit Unshaded(World& world) : world_(world) {}
@@ -66,7 +67,7 @@ Result<MeasuredFrame> measureFrame(const MeasuredScene& scene, const FrameSettin
   Result<Frame> frame = Frame::create({.size = options.size,
                                        .output = Output::Linear,
                                        .settings = settings,
-                                       .upload_budget_bytes = 0,  // what is resident, no more
+                                       .upload_budget_bytes = 0,  // only what is already resident
                                        .wait_for_captures = true},
                                       environment);
   if (!frame) return failAgain(frame.error());

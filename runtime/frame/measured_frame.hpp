@@ -1,8 +1,8 @@
-// A picture at rest and what its passes take. Comes in: the world as it is resident, the environment, the
-// view, settings. Goes out: the linear picture, and how long each pass takes when all of it has to run, the
-// median of a few times. Draws with a frame of its own that starts anew: the same settings always give the
-// same picture. The world stays as it is; other frames shade it anew in their next step, to the same result.
-// Render thread; waits for the GPU. Errors: those of a frame.
+// Draws a picture at rest and measures its passes. It takes the world as it is resident, the environment, the
+// view and settings. It returns the linear picture, and for each pass the median time of several runs in
+// which everything is computed. It uses a frame of its own that starts anew, so the same settings always give
+// the same picture. The world does not change, but other frames shade it anew in their next step, with the
+// same result. Render thread; waits for the GPU. Fails as frames do.
 #pragma once
 
 #include <cstdint>
@@ -20,11 +20,11 @@
 namespace lambent::frame {
 
 struct MeasureOptions {
-  spec::Size size{320, 180};  // of the picture: the view's aspect
-  std::uint32_t repeats = 5;  // of which times are the median; 0: no times
+  spec::Size size{320, 180};  // size of the picture; gives the view's aspect
+  std::uint32_t repeats = 5;  // number of runs for the medians; 0: no times
 };
 
-// What is drawn: the world as it is resident, under this light, from this place.
+// Describes what is drawn: the resident part of the world, under this light, in this view.
 struct MeasuredScene {
   World& world;
   const lighting::Environment& environment;
@@ -35,7 +35,8 @@ struct FrameCost {
   double cpu_ms = 0.0, gpu_ms = 0.0;    // of all passes
   std::vector<gpu::PassTime> passes{};  // medians, in the order of the frame
 
-  // The GPU's time, or the CPU's where the device tells none; of one pass, 0 where it did not run.
+  // Return the GPU's time, or the CPU's if the device reports none: of all passes, or of one (0 if it did not
+  // run).
   double milliseconds() const { return gpu_ms > 0.0 ? gpu_ms : cpu_ms; }
   double milliseconds(std::string_view pass) const;
 };
@@ -48,7 +49,8 @@ struct MeasuredFrame {
 Result<MeasuredFrame> measureFrame(const MeasuredScene& scene, const FrameSettings& settings,
                                    const MeasureOptions& options = {});
 
-// sqrt( sum (X-A)² / sum A² ) over pixels that both cover. Errors: nothing is lit; the sizes differ.
+// Returns sqrt(sum (X-A)² / sum A²) over the pixels that both pictures cover. Fails if nothing is lit or the
+// sizes differ.
 Result<double> relativeRms(const spec::RgbaImage& picture, const spec::RgbaImage& reference);
 
 }  // namespace lambent::frame

@@ -12,26 +12,26 @@ namespace {
 using MakePass = MadePass (*)(const PassSetup&);
 
 constexpr MakePass kStepPasses[] = {
-    &makeUploadPass,        // what has arrived goes to the GPU, within the budget
-    &makeTransformsPass,    // where nodes and rigid groups stand
-    &makeLightPass,         // what arrives at each light probe, windowed, in its group's frame
-    &makePatchBouncesPass,  // what surfaces send on of lights that stand among them, and of key lights
-    &makeDiffusePass,       // E/pi at every vertex whose light or transfer is new
-    &makeGlossyPass,        // transferred light at the samples of glossy surfaces, likewise
-    &makeVolumePass,        // what of it rays through volumes look up
-    &makeNeighborhoodPass,  // what bodies with grids change around them
-    &makeCapturePass,       // what bodies send to each other: arrives with the next step
+    &makeUploadPass,        // uploads what has arrived, within the budget
+    &makeTransformsPass,    // places nodes and rigid groups
+    &makeLightPass,         // light at each light probe, windowed, in its group's frame
+    &makePatchBouncesPass,  // bounces of lights among the surfaces, and of key lights
+    &makeDiffusePass,       // E/pi at every vertex whose light or transfer changed
+    &makeGlossyPass,        // transferred light at samples of glossy surfaces, likewise
+    &makeVolumePass,        // light in volumes, as rays look it up
+    &makeNeighborhoodPass,  // changes of light around bodies with grids
+    &makeCapturePass,       // light between bodies, which arrives with the next step
 };
 
 constexpr MakePass kPicturePasses[] = {
-    &makeSkyPass,                     // what is seen where nothing stands
-    &makeLocalShadowsPass,            // cubes of the lights that stand among surfaces
-    &makeKeyShadowsPass,              // shadow maps of key lights over what is seen
+    &makeSkyPass,                     // the sky behind all surfaces
+    &makeLocalShadowsPass,            // shadow cubes of lights among the surfaces
+    &makeKeyShadowsPass,              // shadow maps of key lights over the visible area
     &makePrefilteredEnvironmentPass,  // the sky as rough mirrors show it
     &makeRasterPass,                  // surfaces, sky, blended surfaces: linear radiance
-    &makeMarchPass,                   // what volumes scatter and let through
+    &makeMarchPass,                   // what volumes scatter and absorb
     &makeToneMapPass,                 // exposure, tone curve, sRGB
-    &makeOverlayPass,                 // what is asked for to be seen besides, as it is
+    &makeOverlayPass,                 // overlays and wires, not tone-mapped
 };
 
 Result<std::vector<std::unique_ptr<FramePass>>> make(std::span<const MakePass> list, const PassSetup& setup) {

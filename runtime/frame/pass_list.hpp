@@ -1,5 +1,5 @@
-// The passes of the frame in their order: the one place that names them all. Those of a step bring light to
-// where it is needed; those of a picture draw it.
+// Lists the passes of the frame in their order; it is the only place that names them all. Passes of a step
+// bring light to where it is needed; passes of a picture draw it.
 #pragma once
 
 #include <memory>
@@ -12,11 +12,11 @@
 namespace lambent::frame {
 
 struct PassList {
-  std::unique_ptr<SurfaceModules> surface_modules;  // that passes add, in the order of the passes
+  std::unique_ptr<SurfaceModules> surface_modules;  // modules that passes add, in the order of the passes
   std::vector<std::unique_ptr<FramePass>> step, picture;
 };
 
-// Passes offer what they keep on the board. Errors: shaders that do not compile.
+// Makes all passes, which offer what they keep on the board. Fails if a shader does not compile.
 Result<PassList> makePassList(const FrameOptions& options, const lighting::Environment& environment,
                               Blackboard& board);
 

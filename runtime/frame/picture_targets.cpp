@@ -11,7 +11,7 @@ namespace {
 
 constexpr float kFar = 1.0f;
 
-// GL's pictures have their first row at the bottom.
+// Reverses the order of rows, because the first row of GL's pictures is at the bottom.
 template <typename Texel>
 std::vector<Texel> flipped(const std::vector<Texel>& texels, std::size_t row_length) {
   std::vector<Texel> result(texels.size());
@@ -21,8 +21,8 @@ std::vector<Texel> flipped(const std::vector<Texel>& texels, std::size_t row_len
   return result;
 }
 
-// Distances along the view axis of what a depth buffer holds; of perspectives and parallel projections, which
-// both map z to (a z + b) / (c z + d).
+// Converts a depth buffer to distances along the view axis. Perspective and parallel projections both map z
+// to (a z + b) / (c z + d).
 std::vector<float> linearDepths(std::vector<float> window_depths, const glm::mat4& clip_from_view) {
   const double a = clip_from_view[2][2], b = clip_from_view[3][2], c = clip_from_view[2][3],
                d = clip_from_view[3][3];
@@ -88,7 +88,7 @@ spec::RgbaImage PictureTargets::readLinear(const glm::mat4& clip_from_view) cons
   glGetTextureImage(picture_.id(), 0, GL_RGBA, GL_FLOAT,
                     static_cast<GLsizei>(texels.size() * sizeof(glm::vec4)), texels.data());
   spec::RgbaImage image{.width = size_.width, .height = size_.height, .texels = flipped(texels, size_.width)};
-  if (output_ != Output::Linear) return image;  // depths of several samples a pixel
+  if (output_ != Output::Linear) return image;  // the depth buffer has several samples per pixel
   std::vector<float> depths(texels.size());
   glGetTextureImage(depth_.id(), 0, GL_DEPTH_COMPONENT, GL_FLOAT,
                     static_cast<GLsizei>(depths.size() * sizeof(float)), depths.data());

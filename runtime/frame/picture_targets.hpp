@@ -1,6 +1,6 @@
-// The textures that a frame draws into: linear radiance and depth, and the picture that comes of them unless
-// that goes to the window. Comes in: the kind and size of the picture. Goes out: framebuffers for passes, and
-// the picture read back. Render thread only; reading waits for the GPU.
+// Owns the textures that a frame draws into: linear radiance and depth, and the picture that is made from
+// them unless it goes to the window. It takes the kind and size of the picture, and provides framebuffers for
+// passes and the picture for reading. Render thread only; reading waits for the GPU.
 #pragma once
 
 #include <cstdint>
@@ -14,32 +14,33 @@
 
 namespace lambent::frame {
 
-// Samples a pixel of the textures that are drawn into; 0: plain textures.
+// Returns the number of samples per pixel of the textures that are drawn into; 0 stands for plain textures.
 std::uint32_t samplesOf(Output output);
 
 class PictureTargets {
  public:
   PictureTargets(Output output, bool to_window) : output_(output), to_window_(to_window) {}
 
-  // Makes the textures anew, unless they have that size.
+  // Makes the textures anew if their size differs.
   void resize(const spec::Size& size);
   const spec::Size& size() const { return size_; }
   // Rises when the textures are made anew.
   std::uint64_t version() const { return version_; }
 
-  // Binds radiance and depth, cleared to `grey` without coverage and to the far end.
+  // Binds radiance and depth. Radiance is cleared to `grey` with alpha 0, depth to the far end.
   void bindCleared(float grey);
-  // Binds the picture, or the window.
+  // Binds the framebuffer of the picture, or the window's.
   void bindPicture() const;
 
   const gpu::Texture& hdr() const { return hdr_; }
   const gpu::Texture& depth() const { return depth_; }
-  // Radiance without depth, for passes that read the depth.
+  // Returns radiance without depth, for passes that read the depth.
   const gpu::Framebuffer& hdrColor();
-  // Not where it goes to the window; row 0 is the bottom.
+  // Returns the picture, with row 0 at the bottom; empty if it goes to the window.
   const gpu::Texture& picture() const { return picture_; }
 
-  // Row 0 is the top. Linear pictures have depths, of what wrote to the depth buffer, which was seen so.
+  // Return the picture, with row 0 at the top. Linear pictures have the depths of what wrote to the depth
+  // buffer; clip_from_view is the projection with which they were drawn.
   spec::RgbaImage readLinear(const glm::mat4& clip_from_view) const;
   spec::Rgba8Image readDisplay() const;
 

@@ -1,6 +1,6 @@
-// Named sets of settings that trade accuracy of pictures for raster time: low for weak devices, high for the
-// closest likeness. What a set does not name stays as it is. docs/accuracy.md says what each costs and shows.
-// Errors: a name that is not known.
+// Defines named sets of settings that trade accuracy of pictures for raster time: low for weak devices, high
+// for the most accurate pictures. Settings that a set does not name stay as they are. docs/accuracy.md says
+// what each costs and how it looks. Unknown names are returned as an Error.
 #pragma once
 
 #include <span>
@@ -10,14 +10,14 @@
 
 namespace lambent::frame {
 
-// Names, as --quality takes them: low, default, high.
+// Returns the names that --quality takes: low, default, high.
 std::span<const std::string_view> qualityNames();
-// The rows of settingRows() that a quality sets.
+// Returns the names of the rows of settingRows() that a quality sets.
 std::span<const std::string_view> qualitySettings();
 
 Result<void> putQuality(FrameSettings& settings, std::string_view name);
 Result<FrameSettings> settingsOfQuality(std::string_view name);
-// The quality that has these values of its settings; empty: none has.
+// Returns the quality with these values of its settings, or an empty name if there is none.
 std::string_view qualityOf(const FrameSettings& settings);
 
 }  // namespace lambent::frame

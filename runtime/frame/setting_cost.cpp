@@ -16,7 +16,7 @@ struct Drawn {
 Result<Drawn> draw(const MeasuredScene& scene, FrameSettings settings, const SettingRow& row, double value,
                    const SettingOptions& options) {
   if (Result<void> done = putSetting(row, settings, value); !done) return failAgain(done.error());
-  // This one is the environment's to follow.
+  // The number of key lights is a property of the environment, not of the frame.
   std::optional<lighting::Environment> parted;
   if (row.name == "keys") {
     parted = scene.environment;

@@ -1,10 +1,10 @@
-// What a setting of FrameSettings costs and loses in a view. Comes in: the world as it is resident, the
-// environment, the view, settings, a row of the table and values for it. Goes out: per value how far its
-// picture at rest lies from that at the row's finest value (relative RMS of linear radiance over the pixels
-// that both cover: the figure of baker/accuracy/compare.hpp) and how long each pass takes when all of it has
-// to run, the median of a few times (measured_frame.hpp). Where the setting is the number of key lights, the
-// light is parted anew for each value. Render thread; waits for the GPU. Errors: those of a frame; a value
-// out of its range; a view in which nothing is lit.
+// Measures what a setting of FrameSettings costs and loses in a view. It takes the world as it is resident,
+// the environment, the view, settings, a row of their table and values for it. For each value it returns how
+// much the picture at rest differs from that at the row's finest value (relative RMS of linear radiance over
+// the pixels that both cover, as in baker/accuracy/compare.hpp), and the median time of each pass when
+// everything is computed (measured_frame.hpp). If the setting is the number of key lights, the light is
+// divided anew for each value. Render thread; waits for the GPU. Fails as frames do, if a value is out of its
+// range, or if nothing is lit in the view.
 #pragma once
 
 #include <span>
@@ -24,7 +24,7 @@ using SettingOptions = MeasureOptions;
 
 struct SettingPoint {
   double value = 0.0;
-  double error = 0.0;                   // against the finest value: 0 there
+  double error = 0.0;                   // relative to the finest value, which has 0
   double cpu_ms = 0.0, gpu_ms = 0.0;    // of all passes
   std::vector<gpu::PassTime> passes{};  // medians, in the order of the frame
 };
@@ -33,10 +33,10 @@ struct SettingCost {
   SettingPoint now, finest;
 };
 
-// Of the value that `settings` has. A row without a finest value is an error.
+// Measures the value in `settings` and the finest one. Fails if the row has no finest value.
 Result<SettingCost> measureSetting(const MeasuredScene& scene, const FrameSettings& settings,
                                    const SettingRow& row, const SettingOptions& options = {});
-// In the order of the values.
+// Returns a point for each value, in the order of the values.
 Result<std::vector<SettingPoint>> sweepSetting(const MeasuredScene& scene, const FrameSettings& settings,
                                                const SettingRow& row, std::span<const double> values,
                                                const SettingOptions& options = {});

@@ -1,6 +1,6 @@
-// What one step and the picture after it did, as numbers with names: light probes that were captured, cells
-// that were shaded. Each pass declares its names once, and two passes may share one. A still scene does
-// nothing. Reports print the list as it stands.
+// Counts what one step and the picture after it did, as numbers with names, such as light probes captured or
+// cells shaded. Each pass declares its names once, and two passes may share one. For a still scene the work
+// counts are 0. Reports print the whole list.
 #pragma once
 
 #include <cstdint>
@@ -21,10 +21,10 @@ class StepCounts {
   // Sets every count to 0.
   void clear();
   void add(std::string_view name, std::uint64_t value);
-  // Returns 0 while no name is declared; else the name must be.
+  // Returns the count. The name must be declared, unless none is; then the result is 0.
   std::uint64_t operator[](std::string_view name) const;
 
-  // In the order in which they were declared.
+  // Iterate in the order in which the names were declared.
   auto begin() const { return counts_.begin(); }
   auto end() const { return counts_.end(); }
 

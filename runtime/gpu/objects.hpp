@@ -75,7 +75,7 @@ class Buffer : public Handle<BufferTraits> {
   std::size_t byte_count_ = 0;
 };
 
-// A storage buffer that grows with its contents, for tables that the CPU maintains and the GPU reads.
+// Owns a storage buffer that grows with its contents, for tables that the CPU maintains and the GPU reads.
 class Table {
  public:
   explicit Table(std::string_view label) : label_(label) {}

@@ -23,12 +23,12 @@ struct Define {
   std::string name, value;
 };
 
-// A file of GLSL that is not embedded but written by the program, for others to include.
+// Holds a file of GLSL that is not embedded but written by the program, for others to include.
 struct WrittenFile {
   std::string name, text;
 };
 
-// Where shaders come from: tables of embedded text, then files that the caller wrote.
+// Tells where shaders come from: tables of embedded text, then files that the caller wrote.
 struct ShaderSources {
   std::span<const FindText> tables;
   std::span<const Define> defines{};
@@ -40,7 +40,7 @@ struct Stage {
   std::string_view file;
 };
 
-// The text of a shader with its includes, and the origin of each line.
+// Holds the text of a shader with its includes, and the origin of each line.
 struct ShaderText {
   struct Origin {
     std::string file;

@@ -16,7 +16,7 @@ struct GLFWwindow;
 
 namespace lambent::gpu {
 
-// Input since the last poll.
+// Holds the input since the last poll.
 struct Input {
   float drag_x = 0.0f, drag_y = 0.0f;          // motion with the left button; right and down are positive
   float light_x = 0.0f, light_y = 0.0f;        // motion with the right button

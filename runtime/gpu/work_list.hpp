@@ -18,7 +18,7 @@ struct WorkItem {
   std::uint32_t first = 0;   // first element of the record for this work group
 };
 
-// The program variant of a batch, followed by its pages.
+// Holds the program variant of a batch, followed by its pages.
 using BatchKey = std::vector<std::uint32_t>;
 
 class WorkList {

@@ -28,7 +28,7 @@ struct Lookup {
   std::uint32_t depth_bits = 0;    // bits of a float: near / w, so larger values are nearer
 };
 
-// Returns unit directions that each stand for the same solid angle of the disc. Radius 0 gives one direction.
+// Returns unit directions that each represent the same solid angle of the disc. Radius 0 gives one direction.
 std::vector<glm::vec3> discDirections(const LightQuery& query);
 
 // Appends kLookupsPerWord entries for each of the point's queries.

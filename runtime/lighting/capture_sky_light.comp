@@ -1,5 +1,5 @@
-// Computes the light of the whole sky as its texels represent it. An invocation computes one of ORDER²
-// coefficients; there is one work group.
+// Computes the light of the whole sky as its texels represent it. Each invocation computes one of ORDER²
+// coefficients; one work group is dispatched.
 #include "capture_shared.h"
 
 layout(local_size_x = ORDER * ORDER) in;

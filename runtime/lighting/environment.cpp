@@ -61,8 +61,8 @@ Result<Environment> Environment::create(const std::vector<spec::Light>& lights,
 Result<void> Environment::setLights(const std::vector<spec::Light>& lights,
                                     const std::vector<spec::Light>& second_lights) {
   const std::array<const std::vector<spec::Light>*, kSets> given = {&lights, &second_lights};
-  // For each environment map, the set and the index in it that it comes from; kSets stands for an index in
-  // `loaded`.
+  // Holds, for each environment map, the set and the index in it that it comes from; kSets stands for an
+  // index in `loaded`.
   std::vector<std::array<std::size_t, 2>> origins;
   std::vector<LoadedProbe> loaded;
   std::array<std::vector<bool>, kSets> taken;

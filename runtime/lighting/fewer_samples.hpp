@@ -1,6 +1,7 @@
-// A group's light at fewer places than it was baked for: which of its light probes are kept, and for each
-// sample the kept one that it takes its light from. Kept are, one after the other, those farthest from all
-// that are kept already, so that few of them stand all over the group; each sample takes the nearest. Pure.
+// Thins out a group's light probes, so that its light is found at fewer places than it was baked for. It
+// decides which light probes are kept, and from which of them each sample takes its light. Probes are kept in
+// turn, each time the one farthest from all kept so far, so that even a few are spread over the whole group;
+// each sample takes the nearest. No state.
 #pragma once
 
 #include <cstdint>
@@ -12,11 +13,11 @@
 namespace lambent::lighting {
 
 struct FewerSamples {
-  std::vector<std::uint32_t> kept;   // of the group's samples, rising
-  std::vector<std::uint32_t> place;  // per sample: among the kept
+  std::vector<std::uint32_t> kept;   // indices of the group's samples, rising
+  std::vector<std::uint32_t> place;  // per sample, an index into `kept`
 };
 
-// At most `most` are kept, at least one where there are any.
+// Keeps at most `most` samples, and at least one if there are any.
 FewerSamples fewerSamples(std::span<const glm::vec3> samples, std::uint32_t most);
 
 }  // namespace lambent::lighting

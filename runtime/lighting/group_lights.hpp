@@ -34,8 +34,8 @@ struct Incident {
 struct GroupPlace {
   glm::quat world_from_group{1.0f, 0.0f, 0.0f, 0.0f};
   std::uint32_t order = 1;
-  // These are the coefficients of the lights that belong to the group, one per light column of its transfer:
-  // colour times strength.
+  // The strengths of the lights that belong to the group, one per light column of its transfer: colour times
+  // strength.
   std::vector<glm::vec3> lamps{};
   std::vector<Incident> incident = {{}};  // one per light probe
   std::uint64_t key = 0;                  // identifies the group when others come and go
@@ -111,8 +111,8 @@ class GroupLights {
     bool light = false;  // its light is new, not only the frame of its group
   };
   static bool sameLayout(const GroupPlace& place, const Group& group);
-  // Searches the windows of those probes that need one. Each is independent, so several threads share the
-  // work.
+  // Searches for the windows of those probes that need one. Each search is independent, so several threads
+  // share the work.
   void followWindows(const Environment& environment, sh::Window window, std::span<const GroupPlace> groups,
                      std::span<const Renewal> renewals);
   // Return what arrives at a light probe in world axes: the light without key lights (all light if the place
@@ -131,7 +131,8 @@ class GroupLights {
   bool updateLamps(Group& group, const GroupPlace& place);
 
   KeyedState<Group> groups_;
-  std::array<sh::CachedWindow, 2 * (sh::kMaxOrder + 1)> environment_windows_;  // by environmentWindow()
+  // Indexed by environmentWindow().
+  std::array<sh::CachedWindow, 2 * (sh::kMaxOrder + 1)> environment_windows_;
   std::vector<glm::vec4> coefficients_;
   std::uint64_t environment_version_ = 0;
   sh::Window window_ = sh::Window::Off;

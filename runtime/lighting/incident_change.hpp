@@ -20,7 +20,7 @@ struct BodyPose {
   std::uint64_t version = 0;  // unique per pose: equal versions are equal poses
   glm::mat4 world_from_proxy{1.0f};
   glm::vec3 center_ws{0.0f};
-  // It sums all relative changes of its radiance so far.
+  // Sums all relative changes of its radiance so far.
   double radiance_drift = 0.0;
 };
 

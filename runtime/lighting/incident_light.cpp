@@ -401,7 +401,7 @@ std::vector<IncidentLight::Wanted> IncidentLight::lookAround(const Environment& 
   return looks;
 }
 
-// How much of the light at the sample changed since it was drawn, as an estimate; infinite if it has to be
+// Estimates how much of the light at the sample changed since it was drawn. Returns infinity if it has to be
 // drawn anew.
 float IncidentLight::changeAround(const Wanted& look, const Environment& environment,
                                   const IncidentGroup& group, std::span<const std::uint32_t> seen,
@@ -422,7 +422,7 @@ float IncidentLight::changeAround(const Wanted& look, const Environment& environ
   }
   const glm::vec3& position_ws = group.samples_ws[look.sample];
   const bool stays = drawn.position_ws == position_ws;
-  std::optional<CapturePoint> point;  // what it would ask for; made only when something changed
+  std::optional<CapturePoint> point;  // what the sample would ask for; made only when something changed
   float change_squared = 0.0f;
   auto then = drawn.seen.begin();
   auto here = seen.begin();

@@ -40,7 +40,7 @@ struct IncidentBody {
   CaptureBody body;
   glm::vec3 center_ws{0.0f};  // of a bounding sphere
   float radius_m = 0.0f;
-  // It sums all relative changes of its radiance so far.
+  // Sums all relative changes of its radiance so far.
   double radiance_drift = 0.0;
   std::uint64_t key = 0;  // identifies it when others come and go
 };
@@ -50,22 +50,21 @@ struct IncidentGroup {
   std::uint32_t body = CapturePoint::kNoBody;  // index of its own body
   std::vector<glm::vec3> samples_ws;
   std::vector<std::uint8_t> lit_by;  // per local light, 1: carried by harmonics; 0: not
-  // This is, for each local light with lit_by 1, the share of its direct light that is shaded per pixel,
-  // 0..1. That share is added to the key lights, of which transfer carries only the bounces. Empty means 0
-  // for all.
+  // Gives, for each local light with lit_by 1, the share of its direct light that is shaded per pixel, 0..1.
+  // That share is added to the key lights, of which transfer carries only the bounces. Empty means 0 for all.
   std::vector<float> apart{};
-  // This is the share of such light that the bodies in left_out let through, indexed by sample, then light.
+  // Gives the share of such light that the bodies in left_out let through, indexed by sample, then light.
   // Empty means 1.
   std::vector<float> open{};
-  // These are indices, rising, of bodies whose light and shadow reach the group by another carrier. They are
-  // not drawn for its samples.
+  // Lists the bodies (rising indices) whose light and shadow reach the group by another carrier. They are not
+  // drawn for its samples.
   std::vector<std::uint32_t> left_out{};
   bool fades = false;         // a change of left_out fades over kCarrierSteps; else it is immediate
   std::uint64_t key = 0;      // identifies it when others come and go
   std::uint64_t samples = 0;  // changes when the samples are replaced, but not when they move
 };
 
-// What captures show beside the environment.
+// Describes what captures show besides the environment.
 struct IncidentScene {
   std::span<const IncidentGroup> groups;
   std::span<const IncidentBody> bodies;
@@ -102,8 +101,8 @@ class IncidentLight {
   // waits for the GPU to finish the captures.
   void update(const Environment& environment, std::span<const IncidentGroup> groups,
               std::span<const LocalLight> lights, bool wait);
-  // Draws what has changed around the samples, at most so many of them: those that changed most. Errors: a
-  // shader that does not compile.
+  // Draws what has changed around the samples, for at most max_samples of them: those that changed most.
+  // Fails if a shader does not compile.
   Result<void> capture(const Environment& environment, const IncidentScene& scene,
                        const gpu::Buffer& triangle_radiance, std::size_t max_samples,
                        gpu::Counters& counters);
@@ -137,19 +136,19 @@ class IncidentLight {
     CapturedLight result;
   };
   struct Sample {
-    std::optional<Drawn> drawn;  // nothing if it sees no body
+    std::optional<Drawn> drawn;  // nothing if the sample sees no body
     bool drawn_anew = false;     // `light` does not contain it yet
     bool renewed = false;        // captured with other options: handed on however little it changes
     // The light that was handed on last follows, with the inputs that it was made from.
     std::uint64_t version = 0;  // 0: nothing yet; unique among all samples
     bool plain = true;          // it is the environment's own light
-    // These are the light without key lights and without lamps that are shaded per pixel, and the part of
-    // these that no body hides.
+    // The light without key lights and without lamps that are shaded per pixel, and the part of those that no
+    // body hides.
     sh::LightVector light{1}, key{1};
     glm::vec3 position_ws{0.0f};
     std::uint64_t environment = 0, lights = 0;
     std::vector<float> open;
-    // These are the bodies that were left out of the light, and the fade from the light before.
+    // The bodies that were left out of the light, and the fade from the light before.
     std::vector<std::uint32_t> left_out;
     bool fade_begins = false;
     std::uint32_t fade_steps = 0;  // steps that remain

@@ -42,11 +42,10 @@ struct PartedLights {
   std::vector<KeyOrigin> origins;  // in the order of `keys`
   std::vector<KeyTexel> texels;
   std::vector<spec::Disc> discs;  // discs in the rest, which also keeps the whole constant
-  // For each of lights.environment_maps, this holds the picture without its keys, or nothing if it is
-  // unchanged.
+  // Holds, for each of lights.environment_maps, the picture without its keys, or nothing if it is unchanged.
   std::vector<std::optional<spec::EnvironmentMap>> environment_maps;
-  // These are the loss of all light at options.order, and the loss that remains: that of the rest together
-  // with the error of representing keys as round discs.
+  // The loss of all light at options.order, and the loss that remains: that of the rest together with the
+  // error of representing keys as round discs.
   double loss_before = 0.0, loss_after = 0.0;
   // The rest keeps this luminance where a key was taken out of a picture; 0 if none was.
   float threshold = 0.0f;

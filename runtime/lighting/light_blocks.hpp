@@ -36,7 +36,8 @@ class LightBlocks {
   std::span<const LightPoint> points() const { return points_; }
 
  private:
-  // The picture in the resolution in which it is searched: coarser or finer blocks in the same layout.
+  // Describes the picture in the resolution in which it is searched: coarser or finer blocks in the same
+  // layout.
   struct Search {
     const spec::EnvironmentMap* environment_map;
     int width, height;        // in blocks

@@ -19,8 +19,8 @@ double transferPower(int l) {
   return l == 0 ? 1.0 : std::pow(l + 0.5, -3.0);
 }
 
-// Normalised associated Legendre functions at the centres of the rows, times sqrt(4pi), so that band 0 is 1,
-// and with the sqrt(2) of m > 0; also cosine and sine of m times the azimuth.
+// Holds the normalised associated Legendre functions at the centres of the rows, times sqrt(4pi) so that band
+// 0 is 1, and with the sqrt(2) of m > 0; and the cosine and sine of m times the azimuth.
 struct Tables {
   std::array<std::array<std::array<double, kRows>, kBands>, kBands> legendre{};  // [m][l][row]
   std::array<std::array<double, kColumns>, kBands> cosines{}, sines{};           // [m][column]
@@ -40,7 +40,7 @@ struct Tables {
             before = value;
             value = next;
           }
-          // This factor, sqrt((l² - m²) / (4 l² - 1)), is used in the next step.
+          // The next step uses this factor, sqrt((l² - m²) / (4 l² - 1)).
           back = std::sqrt((1.0 * l * l - 1.0 * m * m) / (4.0 * l * l - 1.0));
           if (l == m) back = 0.0;
           legendre[static_cast<std::size_t>(m)][static_cast<std::size_t>(l)][row] = value;

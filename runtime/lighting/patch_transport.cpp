@@ -30,13 +30,13 @@ std::array<float, 2> evenPoint(std::size_t index) {
   return {static_cast<float>(x - std::floor(x)), static_cast<float>(y - std::floor(y))};
 }
 
-// Uses Malley's method: the height above the disc. pdf = cos/pi
+// Lifts a point of the disc to the hemisphere above it (Malley's method): pdf = cos/pi
 glm::vec3 cosineDirection(float u, float v) {
   const float radius = std::sqrt(u), angle = 2.0f * std::numbers::pi_v<float> * v;
   return {radius * std::cos(angle), radius * std::sin(angle), std::sqrt(std::max(1.0f - u, 0.0f))};
 }
 
-// Is uniform over the hemisphere: pdf = 1/(2 pi)
+// Samples the hemisphere uniformly: pdf = 1/(2 pi)
 glm::vec3 hemisphereDirection(float u, float v) {
   const float radius = std::sqrt(std::max(1.0f - u * u, 0.0f)), angle = 2.0f * std::numbers::pi_v<float> * v;
   return {radius * std::cos(angle), radius * std::sin(angle), u};
@@ -247,7 +247,7 @@ std::vector<std::uint16_t> PatchTransport::link(std::span<const SurfacePoint> po
   std::vector<std::uint16_t> links(kLinks * points.size());
   inParallel(blocksOf(points.size()), 2, [&](std::size_t block) {
     RaysFrom rays(patches_.triangles(), 1e-5f * patches_.extent());
-    // Returns how many of the rays hit the back of something.
+    // Returns how many of the rays hit the back of a surface.
     const auto linkFrom = [&](const glm::vec3& origin, std::size_t i) {
       const LinkFrame frame = linkFrame(points[i].normal);
       rays.moveTo(origin, points[i].normal);

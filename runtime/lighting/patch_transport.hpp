@@ -102,7 +102,7 @@ class PatchTransport {
   std::vector<float> transfer_;             // order² per patch
   std::vector<Share> shares_;               // all shares, ordered by patch
   std::vector<std::uint32_t> first_share_;  // for each patch, with the end as last entry
-  // This holds, for each triangle of the coarser levels, four nearby patches.
+  // Holds, for each triangle of the coarser levels, four nearby patches.
   std::vector<std::array<std::uint32_t, kPatchPoints>> nearest_;
 };
 

@@ -4,8 +4,8 @@
 // their true shape is kept in second cube maps of all light, for mirrors that are sharp enough to show it.
 // P(L) is a cube map per set of lights with roughness along its mip levels, in the lights' own frame; it is
 // made once, and turning, fading and dimming only change how it is mixed. P(L_n) has n bands, each scaled by
-// the lobe's, and is subtracted where a surface looks it up (glossy_surface.glsl), so that light of few bands
-// leaves nothing. Render thread only. make() fails if a kernel does not compile on this device.
+// the lobe's, and is subtracted where a surface looks it up (specular_environment.glsl), so that light of few
+// bands leaves nothing. Render thread only. make() fails if a kernel does not compile on this device.
 #pragma once
 
 #include <array>
@@ -39,7 +39,7 @@ class PrefilteredEnvironment {
   const gpu::Texture& cube(std::size_t set) const { return cubes_[set]; }
 
  private:
-  // Makes P of one set of lights, with roughness along the mip levels.
+  // Makes P(L) of one set of lights, with roughness along the mip levels.
   struct Source;
   static gpu::Texture prefilter(const Source& source, gpu::Counters& counters);
 

@@ -26,8 +26,8 @@ inline constexpr int kLobeShares = 256;
 // Makes the lobe for a perceptual roughness, 0..1; alpha = roughness².
 ReflectedLobe makeReflectedLobe(float roughness);
 
-// Returns the roughness of a mip level. Steps are finer where the lobe is narrow. glossy_surface.glsl has the
-// inverse.
+// Returns the roughness of a mip level. Steps are finer where the lobe is narrow. specular_environment.glsl
+// has the inverse.
 float roughnessOfLevel(std::uint32_t level, std::uint32_t levels);
 
 }  // namespace lambent::lighting

@@ -26,7 +26,7 @@ LAMBENT_CONSTANT kUnitFirstWhole = 14u;        // the same with key lights, if t
 LAMBENT_CONSTANT kUnitSecondWhole = 15u;
 LAMBENT_CONSTANT kReflectionCoefficients = 36u;
 
-// Bindings of prefiltered_environment.comp, which makes one level of one cube at a time.
+// These are bindings of prefiltered_environment.comp, which makes one level of one cube at a time.
 LAMBENT_CONSTANT kBindLobe = 0u;        // angles of equal shares of the lobe
 LAMBENT_CONSTANT kBindDiscs = 1u;       // array of ReflectedDisc
 LAMBENT_CONSTANT kReflectedGroup = 8u;  // edge of a work group

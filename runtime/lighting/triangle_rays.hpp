@@ -21,7 +21,7 @@ struct RayTriangle {
   bool operator==(const RayTriangle&) const = default;
 };
 
-// Triangles stored by coordinate, so that a loop handles several at a time.
+// Stores triangles by coordinate, so that a loop handles several at a time.
 class TriangleSet {
  public:
   void add(const RayTriangle& triangle);
@@ -60,8 +60,8 @@ class RaysFrom {
  private:
   const TriangleSet& set_;
   float least_distance_;
-  // For each triangle that may be hit: the normals of the three planes, signed so that they point inwards,
-  // and the volume that the origin spans with it.
+  // Holds, for each triangle that may be hit, the inward normals of the three planes, and the volume that the
+  // origin spans with the triangle.
   std::array<std::vector<float>, 9> planes_;
   std::vector<float> volume_;
   std::vector<std::uint32_t> index_;  // index in the set

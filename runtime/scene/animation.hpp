@@ -13,7 +13,7 @@
 
 namespace lambent::scene {
 
-// A bundle that AnimationComponent::bundle refers to.
+// Names a bundle that AnimationComponent::bundle refers to.
 struct AnimatedBundle {
   std::uint32_t bundle = 0;
   const bundle::Description* description = nullptr;

@@ -1,7 +1,7 @@
-// The components of a scene's entities. Units are metres and radians unless a name says otherwise; axes are
-// glTF's (+Y up, right-handed). Values that users may set are declared as fields; values that a system
-// derives (WorldTransform, the current transform of a group) are not. Entities refer to each other by handles
-// here, and by StableIds in files.
+// Declares the components of a scene's entities. Units are metres and radians unless a name says otherwise;
+// axes are glTF's (+Y up, right-handed). Values that users may set are declared as fields; values that a
+// system derives (WorldTransform, the current transform of a group) are not. Entities refer to each other by
+// handles here, and by StableIds in files.
 #pragma once
 
 #include <cstdint>
@@ -30,8 +30,8 @@ struct Name {
   static auto fields() { return std::tuple{ecs::Field{"name", &Name::value, ""}}; }
 };
 
-// The local transform of a node: parent_from_node = translation * rotation * scale * shear. Any affine matrix
-// can be written this way (affine.hpp). Mirrors have a negative scale.
+// Holds the local transform of a node: parent_from_node = translation * rotation * scale * shear. Any affine
+// matrix can be written this way (affine.hpp). Mirrors have a negative scale.
 struct Transform {
   glm::vec3 translation{0.0f};
   glm::quat rotation{1.0f, 0.0f, 0.0f, 0.0f};
@@ -48,16 +48,16 @@ struct Transform {
   }
 };
 
-// The world matrix of an entity with a Transform. updateTransforms adds and updates it, and its version rises
-// only if the matrix changes.
+// Holds the world matrix of an entity with a Transform. updateTransforms adds and updates it, and its version
+// rises only if the matrix changes.
 struct WorldTransform {
   glm::mat4 world_from_node{1.0f};
   std::uint64_t seen_local = 0, seen_parent = 0;  // versions from which the matrix was computed
   std::uint64_t visit = 0;                        // number of the last update that visited the entity
 };
 
-// A rigid group of a bundle. Transfer and its samples are in the group's frame, which has the rotation and
-// position of its root node, without scale. inverse(rotation) takes light into this frame.
+// Describes a rigid group of a bundle. Transfer and its samples are in the group's frame, which has the
+// rotation and position of its root node, without scale. inverse(rotation) takes light into this frame.
 struct RigidGroupComponent {
   std::uint32_t bundle = 0, group = 0;
   ecs::Entity node;  // the entity that it moves with: its root node, or the instance's root
@@ -79,7 +79,7 @@ struct RigidGroupComponent {
   std::uint64_t seen_node = 0;  // version of the node's WorldTransform from which this was computed
 };
 
-// One side of a primitive at a node, which is bundle::Draw as an entity.
+// Describes one side of a primitive at a node, which is bundle::Draw as an entity.
 struct DrawItem {
   std::uint32_t bundle = 0, draw = 0;
   std::uint32_t mesh = 0, primitive = 0;
@@ -90,13 +90,15 @@ struct DrawItem {
   Box bounds;         // in mesh space
 };
 
-// The box of a volume, in voxel coordinates from 0 to `size`. It stands beside the RigidGroupComponent.
+// Describes the box of a volume, in voxel coordinates from 0 to `size`. It stands beside the
+// RigidGroupComponent.
 struct VolumeItem {
   glm::mat4 group_from_grid{1.0f};
   glm::uvec3 size{1};
 };
 
-// A camera, with the values of gltf::Camera. It looks along the node's -Z and stands beside a Transform.
+// Describes a camera, with the values of gltf::Camera. It looks along the node's -Z and stands beside a
+// Transform.
 struct CameraComponent {
   std::uint32_t bundle = 0, camera = 0;
   bool perspective = true;
@@ -121,8 +123,8 @@ struct CameraComponent {
   }
 };
 
-// An emissive material of a rigid group (bundle::GroupLight), whose radiance is colour x strength. A change
-// shows at once, with the shadows and bounces that were baked for it. Nodes with a KHR light have a
+// Describes an emissive material of a rigid group (bundle::GroupLight), whose radiance is colour x strength.
+// A change shows at once, with the shadows and bounces that were baked for it. Nodes with a KHR light have a
 // LocalLightComponent instead.
 struct LampComponent {
   std::uint32_t bundle = 0, group = 0, column = 0;
@@ -141,8 +143,8 @@ struct LampComponent {
   }
 };
 
-// A material of a bundle, which is an entity of its own. Its factors shade surfaces; textures and vertex
-// colours multiply them. A change shows in the next frame, except for baked effects
+// Describes a material of a bundle, which is an entity of its own. Its factors shade surfaces; textures and
+// vertex colours multiply them. A change shows in the next frame, except for baked effects
 // (world/material_rebake.hpp tells which). The radiance of a LampComponent takes precedence over `emission`.
 struct MaterialComponent : gltf::MaterialFactors {
   std::uint32_t bundle = 0, material = 0;
@@ -167,8 +169,8 @@ struct MaterialComponent : gltf::MaterialFactors {
   }
 };
 
-// A local light, which may move with the Transform beside it. It stands at the node's position and shines
-// along the node's -Z if it has a direction. Point, spot and directional lights are those of
+// Describes a local light, which may move with the Transform beside it. It stands at the node's position and
+// shines along the node's -Z if it has a direction. Point, spot and directional lights are those of
 // KHR_lights_punctual; spheres and discs are surfaces of uniform radiance.
 struct LocalLightComponent {
   enum class Kind : std::uint8_t { Point, Spot, Directional, Sphere, Disc };
@@ -198,14 +200,14 @@ struct LocalLightComponent {
   }
 };
 
-// Names of the values of an enum in files and scripts, in their order.
+// These are the names of the values of an enum in files and scripts, in their order.
 inline constexpr std::string_view kLightKindWords[] = {"point", "spot", "directional", "sphere", "disc"};
 constexpr std::span<const std::string_view> enumWords(LocalLightComponent::Kind) {
   return kLightKindWords;
 }
 
-// An animation of a bundle, which is an entity of its own. scene::playAnimations moves the nodes of its
-// channels.
+// Describes an animation of a bundle, which is an entity of its own. scene::playAnimations moves the nodes of
+// its channels.
 struct AnimationComponent {
   std::uint32_t bundle = 0, animation = 0;
   float time_s = 0.0f;
@@ -223,7 +225,8 @@ struct AnimationComponent {
   }
 };
 
-// Intensity and rotation of the light at infinity. There may be two sets of lights, between which it fades.
+// Holds the intensity and rotation of the light at infinity. There may be two sets of lights, between which
+// it fades.
 struct EnvironmentComponent {
   float intensity = 1.0f;     // factor of the radiance
   float rotation_deg = 0.0f;  // about +Y; positive rotations take +Z to +X

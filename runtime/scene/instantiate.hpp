@@ -25,14 +25,14 @@ struct InstantiateOptions {
   std::uint32_t instance = 0;
 };
 
-// The entities of an instance, with the indices of the description.
+// Lists the entities of an instance, with the indices of the description.
 struct SceneInstance {
   ecs::Entity root;
   std::vector<ecs::Entity> nodes;
   std::vector<ecs::Entity> groups;
   std::vector<ecs::Entity> draws;
-  // For each group and light column: an entity with a LampComponent for an emissive material, or the node
-  // with a LocalLightComponent for a KHR light.
+  // Holds, for each group and light column, an entity with a LampComponent for an emissive material, or the
+  // node with a LocalLightComponent for a KHR light.
   std::vector<std::vector<ecs::Entity>> lamps;
   std::vector<ecs::Entity> animations;
   std::vector<ecs::Entity> materials;

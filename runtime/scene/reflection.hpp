@@ -1,9 +1,9 @@
-// A table of all described components of a scene, without their types. The inspector, undo, world files,
-// scripts and the clipboard use it. A row has the component's name and fields (name, unit, kind, range,
-// default), and reads and writes their values in a registry. Written values are checked for kind, range and
-// NaN; an error names the field, and nothing has changed. Writing raises versions as Registry::edit does.
-// Only one thread may use a registry at a time; the table itself is constant. To add a component, add a line
-// in reflection.cpp.
+// Lists all described components of a scene in a table, without their types. The inspector, undo, world
+// files, scripts and the clipboard use it. A row has the component's name and fields (name, unit, kind,
+// range, default), and reads and writes their values in a registry. Written values are checked for kind,
+// range and NaN; an error names the field, and nothing has changed. Writing raises versions as Registry::edit
+// does. Only one thread may use a registry at a time; the table itself is constant. To add a component, add a
+// line in reflection.cpp.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +22,7 @@
 
 namespace lambent::scene {
 
-// The name of an enum's value in files.
+// Holds the name of an enum's value in files.
 struct Word {
   std::string text;
   bool operator==(const Word&) const = default;

@@ -1,5 +1,5 @@
 // Keeps the window of a light that changes from frame to frame. The window depends on the light's shape
-// alone, so it is searched again only if the shape changes, not if a channel is scaled.
+// alone, so it is searched for again only if the shape changes, not if a channel is scaled.
 #pragma once
 
 #include "runtime/sh/window.hpp"

@@ -118,8 +118,8 @@ int parity(int l, int m) {
   return odd_x | odd_y << 1 | odd_z << 2;
 }
 
-// Orientation of a face: sc runs along axis_of_sc (0, 1, 2 for x, y, z), or against it if flipped; tc
-// likewise.
+// Describes the orientation of a face: sc runs along axis_of_sc (0, 1, 2 for x, y, z), or against it if
+// flipped; tc likewise.
 struct FaceAxes {
   int axis_of_sc, axis_of_tc;
   bool sc_flipped, tc_flipped;
@@ -152,7 +152,7 @@ void foldFour(const Value& plus_low, const Value& plus_high, const Value& minus_
   store(3, sign * (high_odd - low_odd));
 }
 
-// Rows of `size` texels that mirror each other.
+// Holds two rows of `size` texels that mirror each other.
 struct RowPair {
   const glm::vec3 *plus, *minus;
   std::size_t size;
@@ -169,7 +169,7 @@ void foldColumns(const RowPair& rows, std::size_t first, float sign, const FoldT
              });
 }
 
-// Eight texels as three SIMD vectors of one channel each.
+// Holds eight texels as three SIMD vectors of one channel each.
 struct Texels {
   Lanes red, green, blue;
 };

@@ -40,7 +40,7 @@ std::vector<Node> gaussLegendre(int count) {
   return nodes;
 }
 
-// Weights of the nodes and, for each node, `stride` values of y.
+// Holds the weights of the nodes and, for each node, `stride` values of y.
 struct Samples {
   std::vector<double> weights;
   std::vector<double> y;

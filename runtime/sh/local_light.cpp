@@ -29,7 +29,7 @@ LightVector scaled(int order, const glm::vec3& rgb, Coefficient&& coefficient) {
   return light;
 }
 
-// A value and its derivative along one direction, for forward differentiation.
+// Holds a value and its derivative along one direction, for forward differentiation.
 struct Dual {
   double value, slope;
   constexpr Dual(double v, double s = 0.0) : value(v), slope(s) {}
@@ -69,8 +69,8 @@ void addSlopes(int order, const glm::dvec3& s, const glm::dvec3& along, Sums& su
   }
 }
 
-// The disc in units of its radius, in a frame whose origin is the point. The disc lies in the plane at
-// distance `height` ahead, and its centre is `aside` along u.
+// Describes a disc in units of its radius, in a frame whose origin is the point. The disc lies in the plane
+// at distance `height` ahead, and its centre is `aside` along u.
 struct DiscSight {
   double height, aside;
   glm::dvec3 u, v, ahead;  // right-handed

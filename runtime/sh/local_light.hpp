@@ -11,15 +11,15 @@
 
 namespace lambent::sh {
 
-// A sphere of uniform radiance. From outside it is a disc of angular radius asin(radius / distance); from
-// inside the same radiance arrives from everywhere, so at its surface light jumps from half the sphere of
-// directions to all of it. A radius of 0 or less gives darkness.
+// Integrates a sphere of uniform radiance. From outside it is a disc of angular radius asin(radius /
+// distance); from inside the same radiance arrives from everywhere, so at its surface light jumps from half
+// the sphere of directions to all of it. A radius of 0 or less gives darkness.
 LightVector sphereLight(int order, const glm::dvec3& center_from_point, double radius_m,
                         const glm::vec3& radiance_rgb);
 
-// A flat disc of uniform radiance that shines towards its normal (any length). The result is exact except
-// within 1e-4 radii of the rim, where the point is treated as that far in front of the plane. Points in the
-// plane or behind it are dark. A radius of 0 or less or a normal of length 0 gives darkness.
+// Integrates a flat disc of uniform radiance that shines towards its normal (any length). The result is exact
+// except within 1e-4 radii of the rim, where the point is treated as that far in front of the plane. Points
+// in the plane or behind it are dark. A radius of 0 or less or a normal of length 0 gives darkness.
 LightVector discAreaLight(int order, const glm::dvec3& center_from_point, const glm::dvec3& normal,
                           double radius_m, const glm::vec3& radiance_rgb);
 
@@ -31,8 +31,9 @@ inline constexpr double kLeastPointDistance = 0.01;  // metres
 LightVector pointLight(int order, const glm::dvec3& light_from_point, const glm::vec3& intensity_rgb,
                        double range_m = 0.0);
 
-// A point light within a cone about its axis (any length, the way it shines): whole within the inner angle,
-// dark beyond the outer one. At the light's own place the point counts as within. An axis of length 0: dark.
+// Describes the cone of a spot light, about an axis of any length that points the way it shines. Light is
+// whole within the inner angle and dark beyond the outer one. A point at the light's own place counts as
+// within. An axis of length 0 gives darkness.
 struct SpotCone {
   glm::dvec3 axis;
   double inner_rad, outer_rad;
@@ -40,8 +41,8 @@ struct SpotCone {
 LightVector spotLight(int order, const glm::dvec3& light_from_point, const SpotCone& cone,
                       const glm::vec3& intensity_rgb, double range_m = 0.0);
 
-// Light from one direction, given by a vector of any length towards the light; length 0 gives darkness. The
-// irradiance (W/m²) is that on a surface that faces the light.
+// Returns light from one direction, given by a vector of any length towards the light; length 0 gives
+// darkness. The irradiance (W/m²) is that on a surface that faces the light.
 LightVector directionalLight(int order, const glm::dvec3& to_light, const glm::vec3& irradiance_rgb);
 
 // Return the factors of KHR_lights_punctual, sections "Range Property" and "Inner and Outer Cone Angles".

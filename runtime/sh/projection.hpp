@@ -25,7 +25,7 @@ struct ProjectionReport {
   double solid_angle_sr = 0;        // sum over covered texels, 4pi up to the error of quadrature
 };
 
-// `texels` has width * height entries, row by row. `report` may be null.
+// Projects `texels`, which has width * height entries, row by row. `report` may be null.
 LightVector projectImage(int order, ImageLayout layout, int width, int height,
                          std::span<const glm::vec3> texels, ProjectionReport* report = nullptr);
 
@@ -40,14 +40,15 @@ class CubeProjector {
  public:
   CubeProjector(int order, int size);  // `size` is the number of texels along an edge, at least 1
 
-  // `faces` has 6 * size * size finite texels in the order of cube_map.hpp.
+  // Projects `faces`, which has 6 * size * size finite texels in the order of cube_map.hpp.
   LightVector project(std::span<const glm::vec3> faces) const;
 
   int order() const { return order_; }
   int size() const { return size_; }
 
  private:
-  // Coefficients of one parity class (even or odd in x, y and z) are adjacent in the table.
+  // Describes the coefficients of one parity class (even or odd in x, y and z), which are adjacent in the
+  // table.
   struct ParityClass {
     std::vector<int> coefficients;
     std::size_t first_weight = 0;

@@ -23,8 +23,8 @@ constexpr int bandOffset(int l) {
   return offset;
 }
 
-// The factors of Ivanic and Ruedenberg for row m of band l, without the part that depends only on the column.
-// Row m is u P_0(m) + v_plus P_1(.) + v_minus P_-1(.) + w (P_1(.) +- P_-1(.)), as makeBand shows.
+// Holds the factors of Ivanic and Ruedenberg for row m of band l, without the part that depends only on the
+// column. Row m is u P_0(m) + v_plus P_1(.) + v_minus P_-1(.) + w (P_1(.) +- P_-1(.)), as makeBand shows.
 struct RowFactors {
   double u, v, w;
 };

@@ -53,7 +53,7 @@ class Rotation {
 
  private:
   int order_ = 0;
-  // The columns of each band, padded to whole SIMD vectors (bandOffset() in rotation.cpp).
+  // Holds the columns of each band, padded to whole SIMD vectors (bandOffset() in rotation.cpp).
   std::vector<double> columns_;
   std::vector<float> columns_float_;
 };

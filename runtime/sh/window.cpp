@@ -23,8 +23,8 @@ constexpr float kHopeless = 1e-6f;
 
 // --- the positive kernel ---
 
-// The polynomial p(t) of degree k. For odd orders it is the Legendre polynomial, for even orders the Jacobi
-// (0, 1) polynomial (P_k + P_k+1) / (1 + t).
+// Evaluates the polynomial p(t) of degree k. For odd orders it is the Legendre polynomial, for even orders
+// the Jacobi (0, 1) polynomial (P_k + P_k+1) / (1 + t).
 struct Extremal {
   int degree;
   bool even_order;
@@ -55,8 +55,8 @@ float blendOf(float as_is, float lifted) {
   return (kGuard - as_is) / (lifted - as_is);
 }
 
-// One channel of the light, divided by its mean: plain, and convolved with the positive kernel. Coefficients
-// beyond its order are 0.
+// Holds one channel of the light, divided by its mean: plain, and convolved with the positive kernel.
+// Coefficients beyond its order are 0.
 struct Channel {
   std::array<float, kMaxCoefficients> plain{}, smooth{};
 };
@@ -69,7 +69,7 @@ float sum(std::array<float, kLanes> lanes) {
   return lanes[0];
 }
 
-// The channels of a light that differ. The largest of their blends is wanted.
+// Holds the channels of a light that differ. The largest of their blends is wanted.
 struct Channels {
   int order;
   std::size_t count = 0;

@@ -15,9 +15,9 @@ namespace lambent::frame {
 namespace {
 
 constexpr std::size_t kLevel = 1;     // level of the proxies
-constexpr float kLeastShare = 1e-5f;  // of a body's radius: nearer triangles are ignored
+constexpr float kLeastShare = 1e-5f;  // in radii of a body; nearer triangles are ignored
 
-// Makes the proxies that are asked for, placed in the world.
+// Makes proxies on demand, placed in the world.
 class Blockers {
  public:
   explicit Blockers(std::span<const bundle::CaptureProxy* const> proxies) : proxies_(proxies) {}

@@ -1,4 +1,4 @@
-// A shadow map holds depth only; masked surfaces leave holes.
+// Writes depth only, as a shadow map needs; masked surfaces leave holes.
 #ifdef LAMBENT_MASKED
 #include "surface_shared.h"
 layout(std430, binding = kBindDraws) readonly buffer Draws { SurfaceDraw draws[]; };

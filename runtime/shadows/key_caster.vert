@@ -1,4 +1,4 @@
-// Projects casters as the key light sees them: orthographic, nearest first.
+// Projects casters orthographically, as the key light sees them, with depth 0 nearest to the light.
 #include "surface_shared.h"
 #include "key_shared.h"
 

@@ -8,10 +8,9 @@
 // A surface casts no shadow if it is nearer to the light than the receiver's plane by less than the width of
 // this many texels. This tolerates rounding, and faces that meet within a texel.
 const float kKeyBiasTexels = 1.0;
-const float kLeastFacing = 0.02;   // the receiver's plane leans no more than at this cosine
-const float kSharpTexels = 0.8;    // a penumbra narrower than this is unresolved: the texels' own edge is
-                                   // used
-const float kOneHeight = 0.1;      // heights that differ by less than this share count as one
+const float kLeastFacing = 0.02;   // least cosine at which the receiver's plane leans
+const float kSharpTexels = 0.8;    // texels; a narrower penumbra is unresolved, and the texels' edge is used
+const float kOneHeight = 0.1;      // heights count as one if they differ by less than this share
 const int kLeastSearch = 20;       // points in the search for blockers; fewer would miss small ones
 const int kKeySteps = 3;           // steps of the search along a ray
 const int kKeyNarrowing = 3;
@@ -96,7 +95,7 @@ struct KeyLayers {
   float low, high;
 };
 
-// `reach` is the greatest height at which blockers may stand.
+// Searches for blockers. `reach` is the greatest height at which they may stand.
 KeyLayers keyLayers(KeyRecord key, KeyReceiver receiver, float reach, int count) {
   float found = 0.0;
   vec3 powers = vec3(0.0);  // sums of powers of height
@@ -123,8 +122,8 @@ KeyLayers keyLayers(KeyRecord key, KeyReceiver receiver, float reach, int count)
   return KeyLayers(reach * low, reach * high);
 }
 
-// Returns whether something blocks the ray to a point of the disc. It looks where the ray passes this height,
-// then where it passes the height that was found there.
+// Returns whether something blocks the ray to a point of the disc. It looks where the ray passes this height, then
+// where it passes the height of what it found there.
 bool rayBlocked(KeyRecord key, KeyReceiver receiver, float height, vec2 at) {
   vec2 per_metre = key.scale.w * key.scale.xy * at;
   for (int i = 0; i < kKeySteps; ++i) {

@@ -235,7 +235,7 @@ void KeyShadows::drawMaps(World& world, const std::vector<std::size_t>& changed,
   views_.assign(std::span<const std::byte>(views));
   counters.uploaded_bytes += views.size();
   glBindFramebuffer(GL_FRAMEBUFFER, target_.id());
-  glEnable(GL_DEPTH_CLAMP);  // what stands behind all that is seen shadows nothing, but may be cut through
+  glEnable(GL_DEPTH_CLAMP);  // casters may reach below the map's bottom, where they shadow nothing visible
   casters_.draw(world, tiles, programs_, {views_.buffer(), sizeof(KeyMapView), kBindKeyMap}, counters);
   glDisable(GL_DEPTH_CLAMP);
 }

@@ -32,8 +32,9 @@ vec3 groupFromView(uint draw, vec3 v) {
   return localUnit(world + 2.0 * cross(turn.xyz, cross(turn.xyz, world) + turn.w * world));
 }
 
-// E/pi, with shadows, and of glossy surfaces the highlights; lightReflectance is pi times the specular f towards the eye of
-// light from a direction, group frame, that spreads over so many radians.
+// Adds the key lights at a point: E/pi with shadows and, on glossy surfaces, highlights. lightReflectance is pi times
+// the specular f towards the eye, for light that comes from a direction (group frame) and spreads over so many
+// radians.
 void addKeyLights(SurfacePoint at, inout SurfaceLight light) {
   light.keys_apart = true;
   vec3 position = keyPixelPosition();

@@ -1,4 +1,4 @@
-// Writes the distance from the light over its reach, which is the same along a ray in whichever face.
+// Writes the distance from the light, divided by its reach. Along a ray this is the same in every face.
 #include "surface_shared.h"
 #include "local_shared.h"
 

@@ -133,8 +133,8 @@ inline float blockerHeight(const ShadowReceiver& receiver, const LightDisc& disc
   return glm::dot(seen, seen) <= (radius + doubt) * (radius + doubt) ? height : -1.0f;
 }
 
-// How shadow cubes are looked up: texels along an edge of a face, points on a light with an extent, and by
-// how much these are turned about, in turns.
+// Tells how shadow cubes are looked up: the texels along an edge of a face, the points on a light with an
+// extent, and the rotation of these points, in turns.
 struct ShadowLookup {
   int size, count;
   float turns;
@@ -223,7 +223,7 @@ float discVisible(const Distance& distance, const ShadowedLightRecord& light, co
   return all > 0.0f ? visible / all : 1.0f;
 }
 
-// A point of a surface; its normals are those of the vertices, of the triangle, and for shading.
+// Describes a point of a surface; its normals are those of the vertices, of the triangle, and for shading.
 struct ShadedPoint {
   glm::vec3 position, normal, horizon, shading_normal;
 };

@@ -81,10 +81,10 @@ class LocalShadows {
   std::uint32_t rows_ = 0;  // rows of the texture, one per light
   gpu::Table block_, draws_table_, faces_;
   std::vector<LocalDraw> draws_;
-  // Masks of groups, lights that shine, residency, transforms: what draws_ follows from.
+  // What draws_ follows from: the groups' masks, the lights that shine, residency and transforms.
   ChangeGate<std::vector<std::uint32_t>, std::uint32_t, std::uint64_t, std::uint64_t> masks_changed_;
   std::vector<lighting::ShadowedLight> lights_;
-  std::uint32_t lights_used_ = 0;  // number that shine on any group
+  std::uint32_t lights_used_ = 0;  // how many shine on any group
   bool any_ = false;
   std::uint64_t version_ = 0;
   std::uint32_t cubes_drawn_ = 0;

@@ -1,4 +1,4 @@
-// Handles local lights in the surface pass: computes E/pi of all lights of this draw, with their shadows.
+// Handles local lights in the surface pass: computes E/pi of all lights of the draw, with their shadows.
 #include "local_shared.h"
 #include "local_shadow.glsl"
 
@@ -27,8 +27,8 @@ vec3 pixelPosition() {
 
 vec3 turned(vec4 turn, vec3 v) { return localUnit(v + 2.0 * cross(turn.xyz, cross(turn.xyz, v) + turn.w * v)); }
 
-// E/pi, and of glossy surfaces the highlights; lightReflectance is pi times the specular f towards the eye of light from a
-// direction, group frame, that spreads over so many radians.
+// Adds the local lights at a point: E/pi and, on glossy surfaces, highlights. lightReflectance is pi times the
+// specular f towards the eye, for light that comes from a direction (group frame) and spreads over so many radians.
 void addLocalLights(SurfacePoint at, inout SurfaceLight light) {
   vec3 position_vs = pixelPosition();
   vec3 position = (local_view.world_from_view * vec4(position_vs, 1.0)).xyz;
@@ -39,7 +39,8 @@ void addLocalLights(SurfacePoint at, inout SurfaceLight light) {
   vec3 shading_normal = turned(turn, at.normal);
   float turns = pixelTurns(gl_FragCoord.xy);
   vec3 sum = vec3(0.0);
-  // By the bits that are set: on some devices an if costs as much as what it leaves out, and a loop does not.
+  // The loop runs over the bits that are set. On some devices an if costs as much as what it skips, but a loop does
+  // not.
   for (uint rest = local_draws[at.draw].lights; rest != 0u; rest &= rest - 1u) {
     int k = findLSB(rest);
     vec3 received = localRadiance(k, shadowed_lights[k], position, normal, horizon, shading_normal, int(local_view.size),

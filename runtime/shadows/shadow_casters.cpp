@@ -19,7 +19,7 @@ bool ShadowCasters::follow(const World& world) {
   casters_.clear();
   for (std::uint32_t i = 0; i < residency.draws().size(); ++i) {
     const streaming::ResidentDraw& draw = residency.draws()[i];
-    if (draw.back) continue;  // the front's triangles stand for both sides (docs/decisions/vertices.md)
+    if (draw.back) continue;  // the front's triangles serve both sides (docs/decisions/vertices.md)
     const streaming::ResidentMesh& mesh = residency.meshes()[draw.mesh];
     const gltf::Material& material = materialOf(world, i);
     if (!mesh.block || material.alpha_mode == gltf::AlphaMode::Blend) continue;

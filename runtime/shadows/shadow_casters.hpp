@@ -22,10 +22,10 @@
 
 namespace lambent::frame {
 
-// Equal casters cast equal shadows.
+// Describes a caster. Casters that compare equal cast equal shadows.
 struct ShadowCaster {
   std::uint32_t draw = 0;
-  std::uint64_t id = 0;  // of the draw
+  std::uint64_t id = 0;  // id of the draw
   glm::mat4 world_from_mesh{1.0f};
   scene::Box bounds_ws;
   gpu::Allocation block;
@@ -49,13 +49,13 @@ class ShadowCasters {
     std::size_t view = 0;                  // offset in bytes of its uniform block in the buffer of views
     std::vector<const ShadowCaster*> casters;
   };
-  // Uniform blocks, one for each tile.
+  // Holds uniform blocks, one for each tile.
   struct TileViews {
     const gpu::Buffer& buffer;
-    std::size_t bytes = 0;  // of a block
+    std::size_t bytes = 0;  // size of a block
     GLuint binding = 0;
   };
-  // For opaque casters and for masked ones.
+  // Holds the programs for opaque casters and for masked ones, in this order.
   using Programs = std::array<gpu::Program, 2>;
   // Clears the tiles of the bound framebuffer's depth to 1 and draws them. Changes viewport, scissor, depth
   // and culling state.

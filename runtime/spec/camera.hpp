@@ -20,7 +20,7 @@
 
 namespace lambent::spec {
 
-// A camera that looks at the centre of the bounds, with +Y up.
+// Describes a camera that looks at the centre of the bounds, with +Y up.
 struct OrbitCamera {
   float azimuth_deg = 30.0f;    // 0 stands on +Z, 90 on +X
   float elevation_deg = 15.0f;  // above the horizon, -90..90
@@ -28,7 +28,7 @@ struct OrbitCamera {
   float fov_deg = 40.0f;        // 0 < fov < 180
 };
 
-// A camera of the glTF file.
+// Names a camera of the glTF file.
 struct NamedCamera {
   std::string name_or_index;
 };

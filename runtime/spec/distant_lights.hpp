@@ -17,7 +17,7 @@
 
 namespace lambent::spec {
 
-// A disc of uniform radiance at infinity.
+// Describes a disc of uniform radiance at infinity.
 struct Disc {
   glm::vec3 direction{0.0f, 1.0f, 0.0f};  // unit, towards the disc
   float radius_rad = 0.0f;

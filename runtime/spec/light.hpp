@@ -26,18 +26,18 @@
 
 namespace lambent::spec {
 
-// Light from all directions at infinity, as a picture of the sphere.
+// Describes light from all directions at infinity, as a picture of the sphere.
 struct EnvironmentMapLight {
   std::filesystem::path file;
   std::optional<sh::ImageLayout> layout;  // --light-layout; by default the picture's shape decides
 };
 
-// The same radiance from every direction.
+// Describes light with the same radiance from every direction.
 struct ConstantLight {
   glm::vec3 radiance{1.0f};
 };
 
-// A disc of uniform radiance at infinity.
+// Describes a disc of uniform radiance at infinity.
 struct SunLight {
   float azimuth_deg = 0.0f;
   float elevation_deg = 0.0f;  // -90..90
@@ -45,15 +45,15 @@ struct SunLight {
   glm::vec3 radiance{1.0f};
 };
 
-// A sphere of uniform radiance in the scene. It lights surfaces, but is invisible to the camera and casts no
-// shadow. Radius 0 gives no light.
+// Describes a sphere of uniform radiance in the scene. It lights surfaces, but is invisible to the camera and
+// casts no shadow. Radius 0 gives no light.
 struct SphereLight {
   glm::vec3 position_ws{0.0f};
   float radius_m = 0.0f;  // >= 0
   glm::vec3 radiance{1.0f};
 };
 
-// A flat disc of uniform radiance that shines to one side, and otherwise behaves like SphereLight.
+// Describes a flat disc of uniform radiance that shines to one side, and otherwise behaves like SphereLight.
 struct DiscLight {
   glm::vec3 position_ws{0.0f};
   glm::vec3 normal_ws{0.0f, -1.0f, 0.0f};  // unit, towards the side that shines

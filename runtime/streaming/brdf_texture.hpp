@@ -29,7 +29,7 @@ struct BrdfTexels {
 };
 BrdfTexels packBrdf(const bundle::BrdfTable& table);
 
-// A table on the GPU.
+// Holds a table on the GPU.
 struct BrdfTexture {
   gpu::Texture texture;  // empty until it is loaded
   std::uint32_t order = 0, lobes = 2;

@@ -1,4 +1,4 @@
-// Types of the items that the loader produces: parts of a bundle that are read, checked and decoded, which
+// Declares the items that the loader produces: parts of a bundle that are read, checked and decoded, which
 // residency.hpp puts on the GPU.
 #pragma once
 
@@ -21,7 +21,7 @@ struct MeshChunk {
   float mean_edge = 0.0f;  // mean length of the triangles' edges, in mesh space
 };
 
-// An image from the finest level that is needed.
+// Holds an image from the finest level that is needed.
 struct ImageChunk {
   std::uint32_t image = 0;
   std::uint32_t width = 0, height = 0;  // size of that level

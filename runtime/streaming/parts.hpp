@@ -14,7 +14,7 @@
 
 namespace lambent::streaming {
 
-// Items that are loaded and dropped together.
+// Lists items that are loaded and dropped together.
 struct Step {
   std::vector<Work> work;
   std::uint64_t bytes = 0;

@@ -105,7 +105,7 @@ class Residency {
   std::vector<const gpu::Arena*> arenas() const {
     return {&geometry_, &transfer_, &samples_, &rows_, &radiance_};
   }
-  // The tables that hold a bundle, and its entry there.
+  // Names the tables that hold a bundle, and its entry there.
   struct At {
     ResidentTables& tables;
     ResidentBundle& bundle;

@@ -1,7 +1,7 @@
-// Tables of what is resident on the GPU, for effects and the frame: meshes, rigid groups, cells of transfer,
-// volumes and draws. The version of an entry rises when something that it refers to is loaded. Residency
-// (residency.hpp) owns the memory and changes the entries. The functions here make tables from a bundle's
-// description, and insert and remove bundles, without GL.
+// Holds tables of what is resident on the GPU, for effects and the frame: meshes, rigid groups, cells of
+// transfer, volumes and draws. The version of an entry rises when something that it refers to is loaded.
+// Residency (residency.hpp) owns the memory and changes the entries. The functions here make tables from a
+// bundle's description, and insert and remove bundles, without GL.
 #pragma once
 
 #include <cstdint>
@@ -19,8 +19,8 @@
 
 namespace lambent::streaming {
 
-// A primitive of a mesh, which is one block of the geometry arena. Words count from the start of the page; an
-// absent attribute has kAbsent.
+// Describes a primitive of a mesh, which is one block of the geometry arena. Words count from the start of
+// the page; an absent attribute has kAbsent.
 struct ResidentMesh {
   static constexpr std::uint32_t kAbsent = 0xffffffffu;
   gpu::Allocation block;  // empty until the mesh is loaded
@@ -42,7 +42,7 @@ struct ResidentPlane {
   float variance = 0.0f;
 };
 
-// One transfer of a cell. Words are in the cell's page; diffuse_shared.h has the layout.
+// Describes one transfer of a cell. Words are in the cell's page; transfer_shared.h has the layout.
 struct ResidentTransfer {
   transfer::TransferShape shape;
   std::uint32_t clusters = 1, axes = 0;
@@ -81,7 +81,7 @@ struct ResidentCell {
 };
 inline constexpr float kUsableVariance = 0.9f;
 
-// The grids of a volume. Its samples are those of its group, which has volume cells only.
+// Describes the grids of a volume. Its samples are those of its group, which has volume cells only.
 struct ResidentVolume {
   std::uint64_t id = 0;
   std::uint32_t group = 0;  // index into groups()

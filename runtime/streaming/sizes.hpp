@@ -20,7 +20,7 @@ inline constexpr std::uint32_t kLightWeightWords = 2;
 
 // Returns the size of a plane's codes, which are a block of their own.
 std::uint64_t planeBytes(const bundle::WeightPlane& plane);
-// Returns the size of a codebook as the kernels read it (diffuse_shared.h), with the positions of the
+// Returns the size of a codebook as the kernels read it (transfer_shared.h), with the positions of the
 // samples.
 std::uint64_t codebookBytesOnGpu(const bundle::CellTransfer& transfer, std::uint32_t sample_count);
 std::uint64_t cellBytes(const bundle::Cell& cell);

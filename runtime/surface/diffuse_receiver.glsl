@@ -1,9 +1,9 @@
-// Surfaces that are shaded at their vertices: E/pi, interpolated.
+// Receives light on surfaces that are shaded at their vertices: interpolates their E/pi.
 #include "surface_normal.glsl"
 #include "surface_light.glsl"
 
 layout(location = 3) in vec3 radiance;
-layout(location = 4) in vec3 normal_group;  // of the side that is seen
+layout(location = 4) in vec3 normal_group;  // on the visible side
 layout(location = 5) in vec3 position_mesh;
 
 const bool kHighlights = false;

@@ -1,7 +1,7 @@
-// Surfaces that are shaded at their vertices: E/pi as the diffuse effect left it, and what modules add to it there.
+// Passes on E/pi at the vertices as the diffuse effect computed it, and what modules add to it there.
 layout(std430, binding = kBindRadiance) readonly buffer Radiance { float radiance_of[]; };
 layout(location = 3) out vec3 radiance;
-layout(location = 4) out vec3 normal_group;  // of the side that is seen
+layout(location = 4) out vec3 normal_group;  // on the visible side
 layout(location = 5) out vec3 position_mesh;
 
 #include "vertex_light.glsl"

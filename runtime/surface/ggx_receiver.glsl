@@ -1,10 +1,11 @@
-// Glossy surfaces of GGX and its anisotropic form: two lobes of the table, which F0 and F90 multiply, over a diffuse base.
+// Receives light on glossy surfaces with a GGX or anisotropic GGX lobe: two lobes of the table, which F0 and F90
+// multiply, over a diffuse base.
 #include "glossy_receiver.glsl"
 #include "shadowed_light.glsl"
 
 struct Lobes {
   float metallic, roughness, anisotropy;
-  vec3 tangent;  // of the longer lobe
+  vec3 tangent;  // direction of the longer lobe
   Fresnel fresnel;
 };
 
@@ -46,14 +47,14 @@ Lobes lobesAt(vec3 base_color, TangentFrame frame, vec3 normal) {
   return lobes;
 }
 
-// These are of the pixel that is being shaded, for modules.
+// These hold values of the pixel that is being shaded, for modules.
 Lobes pixel_lobes = Lobes(0.0, 1.0, 0.0, vec3(0.0), Fresnel(vec3(0.0), 0.0));
 vec3 pixel_normal = vec3(0.0), pixel_to_eye = vec3(0.0);
 LocalView pixel_view = LocalView(vec3(0.0), vec3(0.0), vec3(0.0), 0.0, vec2(0.0));
 vec4 pixel_weights[kTexels];
-Reflected pixel_change = Reflected(vec4(0.0), vec4(0.0), vec2(0.0), vec4(0.0));  // what bodies around change
+Reflected pixel_change = Reflected(vec4(0.0), vec4(0.0), vec2(0.0), vec4(0.0));  // what bodies nearby change
 
-// Takes the view of this pixel, and the weights of the table for it. It stands before all that reads them, because
+// Sets the view of this pixel and its weights of the table. It stands above everything that reads them, because
 // compilers warn of variables that are read in a function above the one that sets them.
 void lookFrom(vec3 normal, vec3 tangent, vec3 to_eye, float roughness, float anisotropy, uvec2 nodes) {
   pixel_view = localView(normal, tangent, to_eye);
@@ -64,11 +65,12 @@ Reflected sumOf(Reflected a, Reflected b) {
   return Reflected(a.f0_light + b.f0_light, a.f90_light + b.f90_light, a.albedo, a.diffuse + b.diffuse);
 }
 
-// f of docs/conventions.md, "Materials". A light's extent widens the lobe, in half vectors by half.
+// Returns pi f, with f as in docs/conventions.md, "Materials". The extent of a light widens the lobe; the half vector
+// takes half of it.
 vec3 lobeReflectance(vec3 to_light, float spread) {
   float narrow = max(pixel_lobes.roughness * pixel_lobes.roughness, 1e-3);
   float wide = mix(narrow, 1.0, pixel_lobes.anisotropy * pixel_lobes.anisotropy);
-  // Slopes along the tangent, across it, and 1 along the normal.
+  // These are the slopes along the tangent and across it, and 1 along the normal.
   vec3 alpha = vec3(sqrt(min(wide * wide + 0.25 * spread * spread, 1.0)), sqrt(min(narrow * narrow + 0.25 * spread * spread, 1.0)), 1.0);
   float nv = max(dot(pixel_normal, pixel_to_eye), kLeastViewCosine), nl = max(dot(pixel_normal, to_light), 1e-3);
   vec3 h = unit(pixel_to_eye + to_light), across = cross(pixel_normal, pixel_lobes.tangent);
@@ -87,7 +89,7 @@ vec3 lobeReflectance(vec3 to_light, float spread) {
     view_width = length(alpha * vec3(dot(t, pixel_to_eye), dot(across, pixel_to_eye), nv));
     light_width = length(alpha * vec3(dot(t, to_light), dot(across, to_light), nl));
   }
-  float distribution = 1.0 / (alpha.x * alpha.y * root * root);  // times pi
+  float distribution = 1.0 / (alpha.x * alpha.y * root * root);  // D times pi
   if (round_lobe) distribution = 1.0 / (alpha.y * alpha.y * root * root);
   float shadowing = 0.5 / (nl * view_width + nv * light_width);
   float edge = 1.0 - vh, edge2 = edge * edge;
@@ -95,19 +97,21 @@ vec3 lobeReflectance(vec3 to_light, float spread) {
          (pixel_lobes.fresnel.f0 + (pixel_lobes.fresnel.f90 - pixel_lobes.fresnel.f0) * edge2 * edge2 * edge);
 }
 
-// A lobe that is sharper than the light shows the light's shape: the mean over points on its disc, weighed by cosine.
+// Returns pi f for a light with an extent. If the lobe is sharper than the light, it shows the light's shape: the
+// result is the mean over points on the light's disc, weighted by cosine.
 vec3 lightReflectance(vec3 to_light, float spread) {
   const int kPoints = 24;
   float alpha = pixel_lobes.roughness * pixel_lobes.roughness;
   if (spread < 0.5 * alpha) return lobeReflectance(to_light, spread);
   if (pixel_lobes.anisotropy == 0.0 && spread > 6.0 * alpha) {
-    // Almost a mirror: the share of the lobe, as GGX spreads its slopes, that falls on the disc's side of its edge.
+    // The surface is almost a mirror. `inside` is the share of the lobe on the disc's side of its edge, with GGX's
+    // distribution of slopes.
     float angle = acos(clamp(dot(reflect(-pixel_to_eye, pixel_normal), to_light), -1.0, 1.0));
     float beyond = (spread - angle) / max(2.0 * alpha, 2e-3), inside = 0.5 + 0.5 * beyond * inversesqrt(1.0 + beyond * beyond);
     float edge = 1.0 - clamp(dot(pixel_normal, pixel_to_eye), 0.0, 1.0), edge2 = edge * edge;
     vec3 fresnel = pixel_lobes.fresnel.f0 + (pixel_lobes.fresnel.f90 - pixel_lobes.fresnel.f0) * edge2 * edge2 * edge;
     vec3 at_edge = inside * fresnel / max(sphereShare(dot(pixel_normal, to_light), 1.0 / sin(spread)), 1e-6);
-    // Its edge is taken to be straight; from afar the disc is a point.
+    // The edge is taken to be straight; far from it the disc counts as a point.
     return mix(at_edge, lobeReflectance(to_light, 0.0), smoothstep(1.2, 2.0, angle / spread));
   }
   vec3 s = perpendicular(to_light), t = cross(to_light, s), sum = vec3(0.0);
@@ -146,7 +150,7 @@ vec3 reflectedLight(vec3 base_color) {
   if (kShown == kShownIrradiance) return received;
   reflected.f0_light.w += pixel_change.f0_light.w;
   reflected.f90_light.w += pixel_change.f90_light.w;
-  // What mirrors show of key lights is part of the sky's picture, where there is one.
+  // If a module draws the mirrored sky, key lights in mirrors are part of it.
   vec3 sky = light.key_highlights;
   addMirroredSky(reflected, light, sky);
   return mirrored + diffuse * received + light.local_highlights + sky;

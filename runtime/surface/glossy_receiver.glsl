@@ -1,12 +1,13 @@
-// What glossy surfaces have in common: l' at the pixel from the samples of its triangle's corners, where the eye is, and the
-// kernel that makes reflected light of both (glossy_kernel.glsl). No varyings for l': OpenGL 4.5 promises too few.
+// Holds what glossy surfaces have in common: it gathers l' at the pixel from the samples of the triangle's corners,
+// finds the direction to the eye, and includes the kernel that turns both into reflected light (glossy_kernel.glsl).
+// l' is not passed as varyings, because OpenGL 4.5 promises too few.
 #include "mapped_normal.glsl"
 #include "surface_light.glsl"
 
 layout(std140, binding = kBindView) uniform ViewBlock {
   mat4 view_from_world;
   mat4 clip_from_view;
-  vec4 eye;  // world; w 0: a direction, towards the eye of an orthographic camera
+  vec4 eye;  // world; if w is 0, the direction towards the eye of an orthographic camera
 };
 layout(std430, binding = kBindGeometry) readonly buffer Geometry { uint geometry[]; };
 layout(std430, binding = kBindRows) readonly buffer Rows { uint row_words[]; };
@@ -22,7 +23,7 @@ layout(location = 8) in vec4 looks_at_lobes;
 
 #include "glossy_kernel.glsl"
 
-// Bands that count; the others are as if the light had none.
+// The number of bands that count. Higher ones are treated as 0.
 #ifndef LAMBENT_USED_BANDS
 #define LAMBENT_USED_BANDS LAMBENT_BANDS
 #endif
@@ -45,7 +46,7 @@ uint rowWordAt(uint word) { return row_words[word]; }
 
 #include "gathered_light.glsl"
 
-// A vertex without any sample leaves the pixel to the others.
+// Gathers l' from the triangle's corners. A corner without samples leaves the pixel to the other corners.
 void gatherLight(out vec4 light[kCoefficients]) {
   uint first = draws[draw_of].glossy.indices_word + 3u * uint(gl_PrimitiveID);
   uvec3 corners = uvec3(geometry[first], geometry[first + 1u], geometry[first + 2u]);
@@ -69,7 +70,7 @@ void gatherLight(out vec4 light[kCoefficients]) {
   addGatheredLight(corners, weights, light);
 }
 
-// Group frame, unit.
+// Returns the unit direction towards the eye, in the group's frame.
 vec3 towardsEye() {
   vec3 position_ws = (draws[draw_of].world_from_mesh * vec4(position_mesh, 1.0)).xyz;
   return unit(mat3(draws[draw_of].glossy.group_from_world) * (eye.xyz - eye.w * position_ws));

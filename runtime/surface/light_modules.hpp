@@ -1,4 +1,5 @@
-// The modules that add light to surfaces, as views of what brings it: all of it outlives the frame.
+// Defines the modules that add light to surfaces. Each refers to what brings the light, which must outlive
+// the frame.
 #pragma once
 
 #include <optional>
@@ -12,7 +13,7 @@
 
 namespace lambent::frame {
 
-// Lights that stand among the surfaces; LocalShadows::bind comes before the draws.
+// Adds lights that stand among the surfaces. LocalShadows::bind() must be called before the draws.
 class LocalLightModule : public SurfaceModule {
  public:
   explicit LocalLightModule(const LocalShadows& shadows) : shadows_(shadows) {}
@@ -26,7 +27,7 @@ class LocalLightModule : public SurfaceModule {
   const LocalShadows& shadows_;
 };
 
-// Key lights; KeyShadows::bind comes before the draws.
+// Adds key lights. KeyShadows::bind() must be called before the draws.
 class KeyLightModule : public SurfaceModule {
  public:
   explicit KeyLightModule(const KeyShadows& shadows) : shadows_(shadows) {}
@@ -42,7 +43,7 @@ class KeyLightModule : public SurfaceModule {
   const KeyShadows& shadows_;
 };
 
-// What patches send on.
+// Adds light that patches bounce.
 class BounceModule : public SurfaceModule {
  public:
   explicit BounceModule(const PatchBounces& bounces) : bounces_(bounces) {}
@@ -63,7 +64,7 @@ class BounceModule : public SurfaceModule {
   const PatchBounces& bounces_;
 };
 
-// What bodies with grids change around them, at pixels.
+// Adds what bodies with grids change around them, per pixel.
 class NeighborhoodModule : public SurfaceModule {
  public:
   NeighborhoodModule(const Neighborhoods& neighborhoods, const bool& shown)
@@ -81,7 +82,7 @@ class NeighborhoodModule : public SurfaceModule {
   const bool& on_;
 };
 
-// The same at vertices of draws that have transfer of their own.
+// Adds the same at vertices, for draws that have transfer of their own.
 class VertexChangeModule : public SurfaceModule {
  public:
   VertexChangeModule(const Neighborhoods& neighborhoods, const bool& shown)
@@ -102,7 +103,7 @@ class VertexChangeModule : public SurfaceModule {
   const bool& on_;
 };
 
-// What mirrors show of the environment that few bands of light leave out, once it is made and while it is
+// Adds what mirrors show of the environment beyond the few bands of light, if it has been prefiltered and is
 // shown.
 class SpecularEnvironmentModule : public SurfaceModule {
  public:

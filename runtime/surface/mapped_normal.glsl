@@ -1,12 +1,13 @@
-// The normal of a pixel from a normal map, in the group's frame.
+// Computes the normal of a pixel from a normal map, in the group's frame.
 #include "surface_normal.glsl"
 
 layout(binding = kUnitNormal) uniform sampler2D normal_texture;
-layout(location = 3) in vec4 position_group;  // w, and that of the normal: where in the normal picture
+layout(location = 3) in vec4 position_group;  // w, and normal_group.w: coordinates in the normal map
 layout(location = 4) in vec4 normal_group;
-layout(location = 5) in vec4 tangent_group;  // w: +1 or -1 as glTF has it, of the mesh as it stands in the group
+layout(location = 5) in vec4 tangent_group;  // w: +1 or -1 as in glTF, for the mesh as placed in the group
 
-// From the vertices' tangents, or else from how the picture lies on the surface; of the front.
+// Returns the frame on the front side, from the vertices' tangents if the mesh has them, else from the derivatives of
+// the texture coordinates.
 TangentFrame pixelFrame() {
   vec2 at = vec2(position_group.w, normal_group.w);
   vec3 normal = unit(normal_group.xyz);
@@ -16,7 +17,7 @@ TangentFrame pixelFrame() {
   return stored ? frameFromTangent(normal, tangent_group) : from_picture;
 }
 
-// Of the side that is seen.
+// Returns the normal on the visible side.
 vec3 pixelNormal(TangentFrame frame) {
   vec3 normal = frame.normal;
   if (draws[draw_of].normal_texture.set != kAbsent) {

@@ -1,12 +1,12 @@
-// Surfaces of measured BRDFs: three lobes of the table, red, green and blue.
+// Receives light on surfaces with a measured BRDF: three lobes of the table, red, green and blue.
 #include "glossy_receiver.glsl"
 
-// These are of the pixel that is being shaded, for modules.
+// These hold values of the pixel that is being shaded, for modules.
 LocalView pixel_view = LocalView(vec3(0.0), vec3(0.0), vec3(0.0), 0.0, vec2(0.0));
 vec4 pixel_weights[kTexels];
-Reflected pixel_change = Reflected(vec4(0.0), vec3(0.0), vec4(0.0));  // what bodies around change
+Reflected pixel_change = Reflected(vec4(0.0), vec3(0.0), vec4(0.0));  // what bodies nearby change
 
-// Takes the view of this pixel, and the weights of the table for it. It stands before all that reads them, because
+// Sets the view of this pixel and its weights of the table. It stands above everything that reads them, because
 // compilers warn of variables that are read in a function above the one that sets them.
 void lookFrom(vec3 normal, vec3 tangent, vec3 to_eye, float roughness, float anisotropy, uvec2 nodes) {
   pixel_view = localView(normal, tangent, to_eye);
@@ -15,7 +15,8 @@ void lookFrom(vec3 normal, vec3 tangent, vec3 to_eye, float roughness, float ani
 
 Reflected sumOf(Reflected a, Reflected b) { return Reflected(a.light + b.light, a.albedo, a.diffuse + b.diffuse); }
 
-// The harmonics in a direction: light of a point there. Cartesian recurrences, as in diffuse_eval.glsl.
+// Evaluates the harmonics in direction d, which are the coefficients of a point of light there. The recurrences are
+// Cartesian, as in diffuse_eval.glsl.
 void pointLight(vec3 d, out vec4 light[kCoefficients]) {
   float c = 1.0, s = 0.0, sectoral = 0.28209479;
   for (int m = 0; m < kBands; ++m) {
@@ -40,7 +41,7 @@ void pointLight(vec3 d, out vec4 light[kCoefficients]) {
   }
 }
 
-// As far as the table's bands carry it.
+// Returns pi f towards a light, in the bands that the table has. `spread` is ignored.
 vec3 lightReflectance(vec3 to_light, float spread) {
   vec4 light[kCoefficients];
   pointLight(to_light, light);
@@ -60,7 +61,7 @@ vec3 reflectedLight(vec3 base_color) {
 
   SurfaceLight light = kNoLight;
   receiveLight(SurfacePoint(draws[draw_of].glossy.draw, position_mesh, draws[draw_of].facing * frame.normal, normal), light);
-  // Lights among the surfaces shine as on a diffuse surface that sends as much towards the eye of light from all around.
+  // Lights among the surfaces shine as on a diffuse surface that reflects as much of uniform light towards the eye.
   if (kShown == kShownIrradiance)
     return withChange(reflected.diffuse.rgb, pixel_change.diffuse.rgb) + light.key_highlights + light.local;
   return withChange(reflected.light.rgb, pixel_change.light.rgb) + light.key_highlights + reflected.albedo * light.local;

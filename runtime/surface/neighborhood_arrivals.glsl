@@ -1,4 +1,4 @@
-// The grids of the bodies around as the surface pass reads them: each is looked up at the pixel's place.
+// Gives the surface pass the grids of bodies nearby, which are looked up at the pixel's place.
 #include "neighborhood_eval.glsl"
 
 layout(std430, binding = kBindReceivers) readonly buffer Receivers { Receiver receivers[]; };

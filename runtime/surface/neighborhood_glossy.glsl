@@ -1,5 +1,5 @@
-// Neighborhoods in the surface pass: what the bodies around change in the light of a glossy pixel, in as many bands as grid and
-// surface both have, reflected by the kernel of this view.
+// Adds what bodies nearby change in the light of a glossy pixel, in the bands that both the grid and the surface
+// have, reflected by the kernel for this view.
 #include "neighborhood_arrivals.glsl"
 
 void addReflectedNeighborhoods(SurfacePoint at, inout SurfaceLight light) {

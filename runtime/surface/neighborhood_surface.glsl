@@ -1,5 +1,5 @@
-// Neighborhoods in the surface pass: what the bodies around change in the light of a diffuse pixel, E/pi. Each grid is looked
-// up by the direction that the pixel's normal has in the body's frame, so that no coefficient is turned.
+// Adds what bodies nearby change in the light of a diffuse pixel, as E/pi. Each grid is looked up with the pixel's
+// normal turned into the body's frame, so that no coefficients need to be rotated.
 #include "neighborhood_arrivals.glsl"
 
 void addNeighborhoods(SurfacePoint at, inout SurfaceLight light) {

@@ -1,4 +1,4 @@
-// Neighborhoods of receivers with transfer of their own: what bodies around change at their vertices (neighborhood_vertices.comp).
+// Adds what bodies nearby change at the vertices of draws with transfer of their own (neighborhood_vertices.comp).
 #include "neighborhood_shared.h"
 #include "with_change.glsl"
 layout(std430, binding = kBindReceivers) readonly buffer Receivers { Receiver receivers[]; };

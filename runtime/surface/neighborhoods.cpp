@@ -26,7 +26,8 @@ const bundle::Group& describedGroup(const World& world, std::size_t group) {
   return world.description(resident.bundle).groups[resident.index];
 }
 
-// The grid's points, and a point's distance more all around.
+// Returns the box of the grid's points. If `grown` is set, it is larger by the distance of two points on each
+// side.
 scene::Box boxOf(const bundle::NeighborhoodGrid& grid, bool grown) {
   const glm::vec3 margin =
       grown ? (grid.bounds_max - grid.bounds_min) / glm::vec3(grid.size - 1u) : glm::vec3(0.0f);
@@ -39,7 +40,7 @@ bool hasSurfaces(const bundle::Group& group) {
   });
 }
 
-// Light of the group's own lamps, if it has any, goes by the grid too.
+// Returns whether the grid also carries the light of the group's own lamps, if it has any.
 bool carriesLamps(const bundle::Group& group) {
   return group.lights.empty() || std::ranges::all_of(group.cells, [](const bundle::Cell& cell) {
            return cell.domain != transfer::Domain::GridPoint ||
@@ -49,7 +50,8 @@ bool carriesLamps(const bundle::Group& group) {
          });
 }
 
-// How much of a light's straight light a group has by harmonics; none: by a column of its own.
+// Returns the share of a light's direct light that the group receives by harmonics, or nothing if a light
+// column of its own carries it.
 std::optional<float> byHarmonics(const LitScene& scene, std::size_t group, std::size_t shadowed_light) {
   const std::size_t source = scene.local_sources[shadowed_light];
   const lighting::IncidentGroup& lit = scene.groups[group];
@@ -58,8 +60,8 @@ std::optional<float> byHarmonics(const LitScene& scene, std::size_t group, std::
   return std::nullopt;
 }
 
-// Whether the body's shadow in light of lamps would reach the receiver twice, by grid and shadow cube, or not
-// at all. Volumes stand in no shadow cube.
+// Returns whether the body's shadow in the light of lamps would reach the receiver twice, by grid and by
+// shadow cube, or not at all. Volumes stand in no shadow cube.
 bool localShadowsDiffer(const LitScene& scene, std::size_t body, std::size_t receiver) {
   for (std::size_t n = 0; n < scene.local_sources.size(); ++n) {
     const std::optional<float> sent = byHarmonics(scene, body, n), had = byHarmonics(scene, receiver, n);
@@ -79,8 +81,8 @@ double scaleOf(const glm::mat4& matrix) {
   return std::cbrt(std::abs(glm::determinant(glm::dmat3(glm::mat3(matrix)))));
 }
 
-// Whether a draw receives from the grid at its vertices, through transfer of its own: the rule at the head of
-// neighborhoods.hpp. Under coarser meshes the grid's own detail would be lost between vertices.
+// Returns whether a draw receives from the grid at its vertices, by the rule at the head of
+// neighborhoods.hpp. Between the vertices of coarser meshes the grid's detail would be lost.
 bool byTransfer(const World& world, std::uint32_t draw, const Grid& grid) {
   const streaming::ResidentDraw& resident = world.residency().draws()[draw];
   const std::uint32_t order = world.residency().groups()[resident.group].order;
@@ -95,8 +97,9 @@ bool byTransfer(const World& world, std::uint32_t draw, const Grid& grid) {
   return edge <= apart;
 }
 
-// From the position that the surface pass has per pixel of this draw (surface.vert): the mesh's own, or with
-// normal maps the one turned by the matrix that surface_record.cpp makes.
+// Returns the matrix from the position that the surface pass has per pixel of this draw (surface.vert). This
+// is the mesh's own position or, with normal maps, the one turned by the matrix that surface_record.cpp
+// makes.
 glm::dmat4 worldFromPosition(const World& world, std::size_t draw, const SurfaceDraw& record) {
   const glm::dmat4 world_from_mesh(world.worldFromMesh(draw));
   if (!normalMapped(world, draw)) return world_from_mesh;
@@ -110,7 +113,7 @@ Neighborhoods::Neighborhoods() : receivers_table_("neighborhood receivers"), arr
 void Neighborhoods::noticeGrids(const World& world) {
   if (!structure_changed_.renew(world.residency().structureVersion())) return;
   const auto& groups = world.residency().groups();
-  std::map<std::uint64_t, std::uint32_t> now;  // by key
+  std::map<std::uint64_t, std::uint32_t> now;  // keyed by group key
   std::vector<Grid> grids;
   for (std::uint32_t g = 0; g < groups.size(); ++g) {
     now[world.keyOf(g)] = g;
@@ -136,8 +139,8 @@ std::size_t Neighborhoods::readyGrids() const {
 
 void Neighborhoods::chooseCarriers(const World& world, LitScene& scene, bool on) {
   noticeGrids(world);
-  // Carriers that change because something moves are faded; those that change with what arrives, or because
-  // somebody asked for it, are not.
+  // Changes of carriers that result from motion fade. Those that result from what arrives, or from a setting,
+  // are immediate.
   const bool fades = ready_when_chosen_ == readyGrids() && on == on_;
   on_ = on;
   ready_when_chosen_ = readyGrids();
@@ -195,7 +198,8 @@ Result<void> Neighborhoods::update(World& world, const lighting::GroupLights& li
   return {};
 }
 
-// Which draws receive how; those that do at their vertices have no room there yet.
+// Finds which draws receive from which grids, and how. Draws that receive at their vertices have no memory
+// for it yet.
 void Neighborhoods::findReceivers(const World& world, evaluate::TransferMode mode, bool keys) {
   const auto& draws = world.residency().draws();
   found_.assign(draws.size(),
@@ -232,11 +236,11 @@ void Neighborhoods::findReceivers(const World& world, evaluate::TransferMode mod
       if (!world_from_position) world_from_position = worldFromPosition(world, d, describe(world, d));
       const glm::dmat4 grid_from_position =
           grid_from_body * glm::inverse(glm::dmat4(world_from_body)) * *world_from_position;
-      if (!finite(grid_from_position)) continue;  // something is flat
+      if (!finite(grid_from_position)) continue;  // something is flattened
       const glm::quat body_from_group =
           glm::conjugate(world.rotationOf(grid.group)) * world.rotationOf(draw.group);
       const glm::mat3x4 to_grid(glm::mat4(glm::transpose(grid_from_position)));
-      // Volumes have no shadow maps: pixels, which know their key lights, take what volumes leave of these.
+      // Volumes have no shadow maps, so key lights behind them are scaled per pixel, where they are known.
       const bool whole = keys && world.residency().groups()[grid.group].volume >= 0;
       if (!whole && mode != evaluate::TransferMode::Unshadowed && byTransfer(world, d, grid)) {
         at_vertices.from.push_back(

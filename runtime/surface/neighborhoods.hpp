@@ -1,20 +1,23 @@
-// Neighborhoods in a frame: which bodies change whose light by their grids rather than by captures, and what
-// each draw then receives per pixel.
+// Owns neighborhoods in a frame: it chooses which bodies change the light of which groups by their grids
+// rather than by captures, and finds what each draw then receives. It reads where groups stand and what is
+// resident, and writes the texture of the neighborhood effect and the tables of the surface pass. Without
+// grids it holds and runs nothing. Render thread only.
 //
-// One carrier for each ordered pair (k -> B). By the grid of k, where all of this holds: the grid has
-// arrived; B has surfaces and is another group than k; B's bounds meet the grid's box (once carried, they
-// need only meet the box grown by a point's distance all around, so that nothing flips to and fro); k has no
-// lamps of its own, or the grid carries them; of no lamp do k and B have other shares per pixel, with shadow
-// cubes in which k stands (its shadow would count twice, or not at all). Otherwise by capture. A volume's
-// grid acts on every group with surfaces, the one that it stands within included.
+// Each ordered pair (body k, receiving group B) has one carrier. It is the grid of k if all of these
+// conditions hold, and captures otherwise:
+// - The grid has arrived.
+// - B has surfaces and is another group than k.
+// - B's bounds meet the grid's box. Once the grid carries the pair, B's bounds need only meet the box grown
+//   by the distance of two points on every side, so that the carrier does not alternate.
+// - k has no lamps of its own, or its grid carries them.
+// - k is a volume, or the share of every local light that shadow cubes carry is the same for k and B.
+//   Otherwise k's shadow, which the cubes contain, would count twice or not at all.
+// The grid of a volume acts on every group with surfaces, including the one that the volume stands within.
 //
 // A draw receives from a grid at its vertices, through transfer of its own (so that it shades itself under
-// the changed light), where the grid has all bands of that transfer, the draw is diffuse without a normal
-// map, its edges are at most as long, in the mean, as the grid's points are apart, and its transfer is there
-// (effects::neighborhood::hasTransfer). Otherwise per pixel, as an open surface.
-//
-// Reads where groups stand and what is resident; writes the texture of the neighborhood effect and the tables
-// of the surface pass. Without grids it holds and runs nothing. Render thread only.
+// the changed light), if the grid has all bands of that transfer, the draw is diffuse without a normal map,
+// its edges are on average no longer than the distance of the grid's points, and its transfer is resident
+// (effects::neighborhood::hasTransfer). Otherwise it receives per pixel, as an unoccluded surface.
 #pragma once
 
 #include <cstdint>
@@ -33,49 +36,50 @@
 
 namespace lambent::frame {
 
-// Grids that one draw receives from, the nearest; more are left out.
+// A draw receives from at most this many grids, the nearest ones.
 inline constexpr std::uint32_t kMaxArrivals = 32;
 
 struct NeighborhoodCounts {
-  std::uint32_t grids = 0;                                          // there are
-  std::uint32_t ready = 0;                                          // have arrived
-  std::uint32_t written = 0;                                        // were written anew in this step
-  std::uint32_t pairs = 0;                                          // (body -> group) carried by grids
+  std::uint32_t grids = 0;                                          // grids that groups have
+  std::uint32_t ready = 0;                                          // grids that have arrived
+  std::uint32_t written = 0;                                        // grids written in the last step
+  std::uint32_t pairs = 0;                                          // pairs (body, group) that grids carry
   std::uint32_t receivers = 0;                                      // draws that receive
-  std::uint32_t arrivals = 0;                                       // draw by grid
-  std::uint32_t left_out = 0;                                       // beyond kMaxArrivals
-  std::uint32_t vertex_receivers = 0, vertex_receivers_shaded = 0;  // draws; of these anew in this step
+  std::uint32_t arrivals = 0;                                       // pairs (draw, grid)
+  std::uint32_t left_out = 0;                                       // pairs beyond kMaxArrivals
+  std::uint32_t vertex_receivers = 0, vertex_receivers_shaded = 0;  // draws; shaded in the last step
 };
 
 class Neighborhoods {
  public:
   Neighborhoods();
 
-  // Whether any group has a grid.
+  // Returns whether any group has a grid.
   bool any() const { return !effect_.grids().empty(); }
-  // Before the light: notices new bundles, chooses carriers, and leaves bodies out of captures. Off: no pair
-  // is carried by grids, at once.
+  // Notices new bundles, chooses carriers, and leaves bodies out of captures. Call it before the light is
+  // updated. If `on` is false, captures carry all pairs at once.
   void chooseCarriers(const World& world, LitScene& scene, bool on = true);
-  // After the glossy effect: what was shaded goes into the texture.
+  // Copies what was shaded into the texture. Call it after the glossy effect.
   Result<void> update(World& world, const lighting::GroupLights& lights,
                       const effects::glossy::Glossy& glossy, evaluate::TransferMode mode,
                       gpu::Counters& counters);
 
-  // Whether no grid has become ready since carriers were chosen: else the next step shows it.
+  // Returns whether no grid has become ready since carriers were chosen. If one has, the next step shows it.
   bool settled() const { return readyGrids() == ready_when_chosen_; }
-  // Whether the draw receives per pixel; at its vertices.
+  // Return whether the draw receives per pixel, or at its vertices.
   bool receives(std::size_t draw) const { return draw < receivers_.size() && receivers_[draw].count > 0; }
   bool receivesAtVertices(std::size_t draw) const {
     return draw < receivers_.size() && receivers_[draw].change_word != effects::neighborhood::kNoChange;
   }
   // Rises when draws begin or cease to receive.
   std::uint64_t version() const { return version_; }
-  // For the surface pass; what draws receive at their vertices in a place that glossy draws use otherwise.
+  // Bind what the surface pass reads. bindVertices() uses a binding that glossy draws use otherwise.
   void bind() const;
   void bindVertices() const;
   const NeighborhoodCounts& counts() const { return counts_; }
   const effects::neighborhood::Neighborhood& effect() const { return effect_; }
-  // (group of the body, group that receives), of the residency.
+  // Returns the pairs that grids carry, as indices of groups in the residency: that of the body, that which
+  // receives.
   const std::set<std::pair<std::uint32_t, std::uint32_t>>& pairs() const { return pairs_; }
 
  private:
@@ -86,15 +90,16 @@ class Neighborhoods {
 
   effects::neighborhood::Neighborhood effect_;
   std::set<std::pair<std::uint32_t, std::uint32_t>> pairs_;
-  std::vector<effects::neighborhood::Receiver> receivers_, found_;  // by draw; found in this step
+  std::vector<effects::neighborhood::Receiver> receivers_, found_;  // indexed by draw; found in this step
   std::vector<effects::neighborhood::Arrival> arrivals_;
   std::vector<effects::neighborhood::VertexDraw> vertex_draws_;
   effects::neighborhood::VertexReceivers vertex_receivers_;
   gpu::Table receivers_table_, arrivals_table_;
-  std::vector<std::uint64_t> group_keys_;  // what indices of groups mean in pairs_
+  std::vector<std::uint64_t> group_keys_;  // keys of the groups that pairs_ refers to
   std::size_t ready_when_chosen_ = 0;
   ChangeGate<std::uint64_t> structure_changed_;
-  // Of the residency, transforms and the effect; the mode, whether key lights stand apart.
+  // Compares the versions of the residency, transforms and the effect, the mode, and whether key lights are
+  // apart.
   ChangeGate<std::uint64_t, std::uint64_t, std::uint64_t, evaluate::TransferMode, bool> receivers_changed_;
   bool on_ = true;
   std::uint32_t left_out_ = 0;

@@ -1,4 +1,5 @@
-// Surfaces with a normal map: light of bands 0..2 from the vertices, received at the pixel's normal.
+// Receives light on surfaces with a normal map: interpolates light of bands 0..2 and convolves it at the pixel's
+// normal.
 #include "mapped_normal.glsl"
 #include "surface_light.glsl"
 #include "diffuse_light.glsl"

@@ -1,4 +1,5 @@
-// Surfaces with a normal map: transferred light of bands 0..2 at the vertices, and what modules add to it there.
+// Passes on transferred light of bands 0..2 at the vertices of surfaces with a normal map, and what modules add to it
+// there.
 #include "tangent_vertex.glsl"
 
 layout(std430, binding = kBindRadiance) readonly buffer Radiance { float radiance_of[]; };

@@ -1,4 +1,4 @@
-// One radiance for all of a triangle.
+// Writes the radiance of the triangle.
 layout(location = 0) flat in vec3 radiance;
 layout(location = 0) out vec4 color;
 

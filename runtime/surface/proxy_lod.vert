@@ -1,4 +1,5 @@
-// A corner of a triangle that stands in for surfaces: light of the environment at the triangle's normal, unshadowed.
+// Places a corner of a triangle that stands in for surfaces, and shades the triangle by the light at its normal,
+// without shadows.
 #include "proxy_lod_shared.h"
 #include "diffuse_light.glsl"
 
@@ -23,7 +24,7 @@ void main() {
   vec3 a = (world_from_group * vec4(cornerOf(triangle, 0u), 1.0)).xyz;
   vec3 b = (world_from_group * vec4(cornerOf(triangle, 1u), 1.0)).xyz;
   vec3 c = (world_from_group * vec4(cornerOf(triangle, 2u), 1.0)).xyz;
-  // A mirrored group turns its winding.
+  // A mirrored group reverses its winding.
   if (determinant(mat3(world_from_group)) < 0.0) {
     vec3 swapped = b;
     b = c;

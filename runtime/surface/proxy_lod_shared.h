@@ -1,4 +1,5 @@
-// One text for C++ and GLSL: what the proxy levels of detail of bundles bind and read (std430, scalars only but for groups).
+// This file is shared by C++ and GLSL. It says what the proxy levels of detail of bundles bind, and lays out what
+// they read (std430; vectors only in ProxyLodGroup).
 #ifdef __cplusplus
 #pragma once
 
@@ -20,17 +21,17 @@ LAMBENT_CONSTANT kBindProxyLodView = 0u;  // uniform block
 LAMBENT_CONSTANT kBindProxyLodGroups = 0u;
 LAMBENT_CONSTANT kBindProxyLodTriangles = 1u;
 
-// A rigid group; its frame is that of the proxy.
+// Describes a rigid group, whose frame is that of its proxy.
 struct ProxyLodGroup {
   mat4 world_from_group;
-  vec4 light[9];  // world axes, bands 0..2 of what arrives
+  vec4 light[9];  // incident light of bands 0..2, world axes
 };
 
-// Group frame, counter-clockwise from the side that is seen.
+// Describes a triangle in the group's frame, counter-clockwise from the side that is seen.
 struct ProxyLodTriangle {
   float corners[9];
   float reflectance[3];
-  float emission[3];  // radiance that its lamp gives now
+  float emission[3];  // current radiance of its lamp
   uint group;
 };
 

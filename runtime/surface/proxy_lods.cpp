@@ -17,7 +17,7 @@ namespace {
 
 constexpr gpu::FindText kShaders[] = {&embedded::lambent_surface::find, &embedded::lambent_transfer::find};
 constexpr std::uint64_t kPageBytes = std::uint64_t{1} << 20;
-constexpr int kBands = 3;  // of the light: more hardly reach a diffuse surface
+constexpr int kBands = 3;  // of the light; higher bands hardly reach a diffuse surface
 
 static_assert(sizeof(ProxyLodTriangle) == streaming::kProxyLodTriangleBytes &&
               sizeof(ProxyLodGroup) == streaming::kProxyLodGroupBytes);
@@ -126,7 +126,7 @@ void ProxyLods::light(const World& world, const lighting::Environment& environme
                       std::span<const lighting::LocalLight> lights, const ProxyLodOptions& options,
                       gpu::Counters& counters) {
   std::vector<ProxyLodGroup> groups(bodies_.size());
-  // As groups have it that nothing else shines on, once for each order.
+  // Holds the light of groups on which only the environment shines, once for each order.
   std::array<std::optional<sh::LightVector>, sh::kMaxOrder + 1> windowed{};
   for (std::size_t slot = 0; slot < bodies_.size(); ++slot) {
     const Body& place = bodies_[slot];
@@ -151,7 +151,7 @@ void ProxyLods::light(const World& world, const lighting::Environment& environme
     if (options.diffuse)
       for (std::size_t i = 0; i < std::size(record.light); ++i) record.light[i] = glm::vec4(light.c[i], 0.0f);
   }
-  // What is other than before, from the first to the last of it.
+  // Uploads only the range from the first to the last record that changed.
   const auto same = [](const ProxyLodGroup& a, const ProxyLodGroup& b) {
     return std::memcmp(&a, &b, sizeof a) == 0;
   };
@@ -174,7 +174,7 @@ Result<void> ProxyLods::prepare(const World& world, const lighting::Environment&
                                 std::span<const lighting::LocalLight> lights, const ProxyLodOptions& options,
                                 gpu::Counters& counters) {
   const bool others = proxy_lods_changed_.renew(world.proxyLodsVersion());
-  // Emissive triangles follow their lamps, also where these are moved out of their place.
+  // Emissive triangles follow their lamps, even if these are moved away from their place.
   const bool follow_anew =
       scene_changed_.renew(world.lampsVersion(), world.registry().version<scene::LocalLightComponent>(),
                            world.transformsVersion()) ||

@@ -1,9 +1,10 @@
-// Draws bundles whose surfaces have no room or have not come: the finest capture proxy of each rigid group,
-// every triangle in one colour, its albedo times E/pi at its normal, plus what its lamp gives now. Lit by the
-// environment and by the lights that stand outside of the group, bands 0..2, without any shadow, as surfaces
-// are whose transfer has not come. Comes in: the world's proxy levels of detail, the light. Goes out: draws
-// into the bound framebuffer. Triangles come and go group by group; where all surfaces are here, nothing is
-// made or drawn. Errors: shaders that do not compile on this device.
+// Draws bundles whose surfaces do not fit into memory or have not arrived. It shows the finest capture proxy
+// of each rigid group, every triangle in one colour: its albedo times E/pi at its normal, plus the current
+// emission of its lamp. Its light is that of the environment and of the local lights outside the group, in
+// bands 0..2 and without shadows, like that of surfaces whose transfer has not arrived. It takes the world's
+// proxy levels of detail and the light, and draws into the bound framebuffer. Triangles come and go group by
+// group. If all surfaces are resident, nothing is made or drawn. Fails if a shader does not compile on this
+// device.
 #pragma once
 
 #include <array>
@@ -29,9 +30,9 @@
 namespace lambent::frame {
 
 struct ProxyLodOptions {
-  std::uint32_t order = 5;  // at most so many bands of light
+  std::uint32_t order = 5;  // largest number of bands of the light
   sh::Window window = sh::Window::Off;
-  bool diffuse = true;  // false: they only show what their lamps give
+  bool diffuse = true;  // false: only emission is shown
   bool operator==(const ProxyLodOptions&) const = default;
 };
 
@@ -39,26 +40,26 @@ class ProxyLods {
  public:
   ProxyLods();
 
-  // `lights`: those that stand in the scene.
+  // `lights` are those that stand in the scene.
   Result<void> prepare(const World& world, const lighting::Environment& environment,
                        std::span<const lighting::LocalLight> lights, const ProxyLodOptions& options,
                        gpu::Counters& counters);
   void draw(const spec::View& view, gpu::Counters& counters);
 
  private:
-  // A group, in a slot of the table of groups.
+  // Describes a group in a slot of the table of groups.
   struct Body {
-    std::uint64_t id = 0;  // of its proxies
+    std::uint64_t id = 0;  // id of its proxies
     std::uint32_t bundle = 0, group = 0;
     gpu::Allocation triangles;     // empty: the slot is free
-    std::vector<glm::vec3> lamps;  // by which its triangles shine
+    std::vector<glm::vec3> lamps;  // strengths of its lamps, as its triangles show them
   };
-  // A multi-draw for each page of triangles.
+  // Describes the multi-draw for a page of triangles.
   struct Batch {
     std::vector<GLint> first;
     std::vector<GLsizei> count;
   };
-  // Brings triangles that are new and lets go of others.
+  // Uploads new triangles and removes those that are gone.
   Result<void> follow(const World& world, gpu::Counters& counters);
   Result<void> bring(const World& world, const ProxyLod& proxy_lod, std::uint32_t group,
                      gpu::Counters& counters);
@@ -67,13 +68,13 @@ class ProxyLods {
              std::span<const lighting::LocalLight> lights, const ProxyLodOptions& options,
              gpu::Counters& counters);
 
-  std::optional<gpu::Program> program_;  // from when it is first needed
+  std::optional<gpu::Program> program_;  // compiled when it is first needed
   gpu::VertexArray no_vertices_;
   std::vector<Body> bodies_;
-  std::map<std::pair<std::uint64_t, std::uint32_t>, std::uint32_t> slots_;  // by id and group
-  std::map<std::uint32_t, Batch> batches_;                                  // by page
+  std::map<std::pair<std::uint64_t, std::uint32_t>, std::uint32_t> slots_;  // keyed by id and group
+  std::map<std::uint32_t, Batch> batches_;                                  // keyed by page
   std::vector<ProxyLodGroup> groups_;                                       // as uploaded
-  std::array<sh::CachedWindow, sh::kMaxOrder + 1> windows_;                 // of the environment, by order
+  std::array<sh::CachedWindow, sh::kMaxOrder + 1> windows_;  // of the environment, indexed by order
   ChangeGate<std::uint64_t> proxy_lods_changed_;
   ChangeGate<std::uint64_t, std::uint64_t, std::uint64_t> scene_changed_;  // lamps, local lights, transforms
   ChangeGate<std::uint64_t, ProxyLodOptions> light_changed_;

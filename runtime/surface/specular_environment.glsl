@@ -1,4 +1,5 @@
-// The prefiltered environment as mirrors show it: what few bands of light leave out of the sky (prefiltered_environment.hpp).
+// Adds the prefiltered environment as mirrors show it: what the few bands of light leave out of the sky
+// (prefiltered_environment.hpp).
 #include "prefiltered_shared.h"
 layout(std140, binding = kBindReflection) uniform ReflectionBlock { ReflectionValues reflection; };
 layout(binding = kUnitFirstReflection) uniform samplerCube first_reflection;
@@ -6,7 +7,7 @@ layout(binding = kUnitSecondReflection) uniform samplerCube second_reflection;
 layout(binding = kUnitFirstWhole) uniform samplerCube first_whole;
 layout(binding = kUnitSecondWhole) uniform samplerCube second_whole;
 
-// What a rough mirror shows of key lights in their true shape.
+// Returns what a rough mirror shows of key lights in their true shape.
 vec3 keyPicture(vec3 direction_ws, float roughness) {
   float level = reflection.shares.z * pow(roughness, 2.0 / 3.0);
   vec3 direction = mat3(reflection.light_from_world) * direction_ws;
@@ -15,7 +16,8 @@ vec3 keyPicture(vec3 direction_ws, float roughness) {
   return max(reflection.shares.x * first + reflection.shares.y * second, vec3(0.0));
 }
 
-// Highlights by discs, or of a mirror that is sharp enough to tell what the discs are pieces of, by that.
+// Returns the highlights of key lights. They are those of discs, but a mirror that is sharp enough to show the true
+// shape of the lights shows that.
 vec3 keyHighlights(Lobes lobes, SurfaceLight light, vec3 mirrored_ws, vec3 rho) {
   const float kSharp = 0.05, kRough = 0.12;  // alpha
   float alpha = lobes.roughness * lobes.roughness;
@@ -26,10 +28,11 @@ vec3 keyHighlights(Lobes lobes, SurfaceLight light, vec3 mirrored_ws, vec3 rho) 
   return mix(light.key_highlights, visible * rho * keyPicture(mirrored_ws, lobes.roughness), pictured);
 }
 
-// What a rough mirror shows of the sky besides the bands that the surface has of it: P(L) - P(L_n). The bands scale
-// between levels as the levels themselves mix, so that light of few bands leaves nothing. Signed.
+// Returns what a rough mirror shows of the sky beyond the bands that the surface has of it: P(L) - P(L_n), which may
+// be negative. The factors of the bands are interpolated like the mip levels, so that light of few bands leaves
+// nothing.
 vec3 residualLight(vec3 direction_ws, float roughness) {
-  float level = reflection.shares.z * pow(roughness, 2.0 / 3.0);  // roughnessOfLevel, turned about
+  float level = reflection.shares.z * pow(roughness, 2.0 / 3.0);  // inverse of roughnessOfLevel
   vec3 direction = mat3(reflection.light_from_world) * direction_ws;
   vec3 seen = reflection.shares.x * textureLod(first_reflection, direction, level).rgb +
               reflection.shares.y * textureLod(second_reflection, direction, level).rgb;
@@ -50,15 +53,17 @@ vec3 residualLight(vec3 direction_ws, float roughness) {
   return seen - known;
 }
 
-// Brushed metal reflects a fan: round lobes of its narrow roughness about the view mirrored in normals that lean along the
-// tangent, by equal shares of the slopes of GGX (their marginal is s = a u / sqrt(1 - u^2), u even in -1..1).
+// Averages residualLight() over the fan that brushed metal reflects. The fan consists of round lobes with the narrow
+// roughness, about the view mirrored in normals that lean along the tangent. They have equal shares of GGX's slopes,
+// whose marginal is s = a u / sqrt(1 - u^2) with u uniform in -1..1.
 vec3 residualOver(Lobes lobes, vec3 normal, vec3 to_eye) {
   const int kShares = 12;
   float narrow = lobes.roughness * lobes.roughness, wide = mix(narrow, 1.0, lobes.anisotropy * lobes.anisotropy);
   float fan = sqrt(max(wide * wide - narrow * narrow, 0.0));
+  // A vector times this matrix is the transpose times the vector, which takes it to the world.
   mat3 group_from_world = mat3(draws[draw_of].glossy.group_from_world);
-  if (fan < 0.05) return residualLight(reflect(-to_eye, normal) * group_from_world, lobes.roughness);  // by the transpose
-  float between = fan / float(kShares);  // of one share to the next, halved: wide enough to leave no gaps
+  if (fan < 0.05) return residualLight(reflect(-to_eye, normal) * group_from_world, lobes.roughness);
+  float between = fan / float(kShares);  // half the distance of two shares, wide enough to leave no gaps
   float roughness = sqrt(sqrt(narrow * narrow + between * between));
   vec3 sum = vec3(0.0);
   float weights = 0.0;
@@ -74,8 +79,8 @@ vec3 residualOver(Lobes lobes, vec3 normal, vec3 to_eye) {
   return weights > 0.0 ? sum / weights : vec3(0.0);
 }
 
-// By the share of the sky that the lobe sees, as far as few bands can tell: (c . V) / (c . 1). Key lights are shown in their
-// true shape.
+// Replaces what the mirror shows of the sky. It is scaled by the share of the sky that the lobe sees, as far as few
+// bands can tell: (c . V) / (c . 1). Key lights are shown in their true shape.
 void addSpecularEnvironment(Reflected reflected, SurfaceLight light, inout vec3 sky) {
   Fresnel fresnel = pixel_lobes.fresnel;
   vec3 rho = fresnel.f0 * reflected.albedo.x + fresnel.f90 * reflected.albedo.y;
@@ -85,6 +90,6 @@ void addSpecularEnvironment(Reflected reflected, SurfaceLight light, inout vec3 
   float visibility = clamp(seen / max(open, 1e-6), 0.0, 1.0);
   sky = visibility * rho * residualOver(pixel_lobes, pixel_normal, pixel_to_eye);
   if (!light.keys_apart) return;
-  vec3 mirrored_ws = reflect(-pixel_to_eye, pixel_normal) * mat3(draws[draw_of].glossy.group_from_world);  // by the transpose
+  vec3 mirrored_ws = reflect(-pixel_to_eye, pixel_normal) * mat3(draws[draw_of].glossy.group_from_world);
   sky += keyHighlights(pixel_lobes, light, mirrored_ws, rho);
 }

@@ -1,6 +1,6 @@
-// Surfaces: vertices are pulled from the arenas; shading was done in compute. The receiver's part of the vertex stage
-// (diffuse_vertex.glsl, normal_mapped_vertex.glsl, glossy_vertex.glsl) writes what its fragment stage reads; what is written
-// and not read costs nothing, for the two are linked together.
+// Draws surfaces that compute shaders have shaded; vertices are pulled from the arenas. The receiver's part of the
+// vertex stage (diffuse_vertex.glsl, normal_mapped_vertex.glsl, glossy_vertex.glsl) writes what its fragment stage
+// reads. Outputs that are never read cost nothing, because the two stages are linked together.
 #include "surface_shared.h"
 #include "surface_kind.glsl"
 #include "surface_normal.glsl"
@@ -8,7 +8,7 @@
 layout(std140, binding = kBindView) uniform ViewBlock {
   mat4 view_from_world;
   mat4 clip_from_view;
-  vec4 eye;  // of glossy_receiver.glsl
+  vec4 eye;  // see glossy_receiver.glsl
 };
 layout(std430, binding = kBindDraws) readonly buffer Draws { SurfaceDraw draws[]; };
 layout(std430, binding = kBindGeometry) readonly buffer Geometry { uint geometry[]; };
@@ -21,19 +21,19 @@ layout(location = 2) out vec4 vertex_color;
 vec2 geometry2(uint at) { return vec2(uintBitsToFloat(geometry[at]), uintBitsToFloat(geometry[at + 1u])); }
 vec3 geometry3(uint at) { return vec3(geometry2(at), uintBitsToFloat(geometry[at + 2u])); }
 
-// In the group's frame, as long as its weight: pixels bring what is between to unit length.
+// Returns the normal in the group's frame with the length of its weight. Pixels normalise the interpolated normal.
 vec3 weightedNormal(uint vertex) {
   vec3 normal = geometry3(draws[draw_index].normals_word + 3u * vertex);
   return length(normal) * unit(mat3(draws[draw_index].group_from_mesh_normal) * normal);
 }
 
-// Done here, not per pixel: pixels beside a triangle have their part in its derivatives and mip levels, but what they
-// read of a buffer need not be there (Mesa gives 0).
+// Transforms texture coordinates. This is done here and not per pixel: helper pixels beside a triangle take part in
+// derivatives and mip levels, but what they read from a buffer is undefined (Mesa gives 0).
 vec2 lookedAt(uint set, mat3x2 texture_from_coordinates, uint vertex) {
   uint word = set == 1u ? draws[draw_index].texcoords1_word : draws[draw_index].texcoords0_word;
   return texture_from_coordinates * vec3(geometry2(word + 2u * vertex), 1.0);
 }
-// A macro, so that nothing is read of a texture that is absent.
+// This is a macro, so that nothing is read for a texture that is absent.
 #define LOOKED_AT(slot) \
   (draws[draw_index].slot.set == kAbsent \
        ? vec2(0.0) \

@@ -1,31 +1,33 @@
-// Normal maps: the normal at a pixel, in the group's frame. surface_normal_ref.hpp is the same on the CPU, term by term.
+// Applies normal maps: computes the normal at a pixel, in the group's frame. The CPU twin is surface_normal_ref.hpp,
+// term by term.
 
-// Right-handed where `handedness` is +1. A tangent of 0: the surface has none, its normal stays as it is.
+// Describes the frame of a normal map, right-handed if `handedness` is +1. A tangent of 0 means that the surface has
+// none; its normal then stays as it is.
 struct TangentFrame {
   vec3 normal, tangent;
-  float handedness;  // of the bitangent, cross(normal, tangent) times this
+  float handedness;  // bitangent = handedness * cross(normal, tangent)
 };
 
-// Below this a squared length is no length: its inverse root may not be finite.
+// Squared lengths below this count as 0, because their inverse root may not be finite.
 const float kNoLength = 1e-36;
 
-// At unit length; 0 stays 0, as normals of flattened meshes are.
+// Returns the direction at unit length. 0 stays 0, as for normals of flattened meshes.
 vec3 unit(vec3 direction) { return direction * inversesqrt(max(dot(direction, direction), kNoLength)); }
 
-// The direction's part along the surface, at unit length.
+// Returns the direction's part along the surface, at unit length.
 vec3 alongSurface(vec3 normal, vec3 direction) {
   vec3 part = direction - dot(direction, normal) * normal;
   float squared = dot(part, part);
   return squared > kNoLength ? part * inversesqrt(squared) : vec3(0.0);
 }
 
-// From the mesh's own tangent.
+// Makes the frame from the mesh's own tangent.
 TangentFrame frameFromTangent(vec3 normal, vec4 tangent) {
   return TangentFrame(normal, alongSurface(normal, tangent.xyz), tangent.w < 0.0 ? -1.0 : 1.0);
 }
 
-// From how position p and texture coordinates t change over the picture. The tangent points to rising u; the
-// bitangent to falling v, for texture coordinates run downwards and a normal map's y upwards.
+// Makes the frame from the derivatives of position p and texture coordinates t in the picture. The tangent points to
+// rising u and the bitangent to falling v, because texture coordinates run downwards and a normal map's y upwards.
 TangentFrame frameFromDerivatives(vec3 normal, vec3 p_dx, vec3 p_dy, vec2 t_dx, vec2 t_dy) {
   float turn = sign(t_dx.x * t_dy.y - t_dy.x * t_dx.y);  // 0: the coordinates do not span the surface
   vec3 rising_u = turn * (t_dy.y * p_dx - t_dx.y * p_dy);

@@ -1,5 +1,5 @@
-// The CPU twin of surface_normal.glsl: same names, same order of terms, so that a test can hold one against
-// the other. Vectors are in the group's frame, texels linear in 0..1. No GL.
+// This is the CPU twin of surface_normal.glsl, with the same names and order of terms, so that a test can
+// compare the two. Vectors are in the group's frame, texels linear in 0..1. No GL.
 #pragma once
 
 #include <cmath>

@@ -58,7 +58,7 @@ std::string kindText(const SurfaceKind& kind, bool finest_texels) {
       finest_texels, kind.dark, shownBy(kind.view));
 }
 
-// A function of which the body is a call of each module's function, one after the other.
+// Describes a function whose body calls each module's function in turn.
 struct Caller {
   SurfaceHook hook;
   const char* file;

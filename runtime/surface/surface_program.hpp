@@ -1,5 +1,5 @@
-// The program of a kind of surface: a receiver (surface.frag), and the modules that add light to it. Errors:
-// shaders that do not compile on this device.
+// Puts together the program of a kind of surface: a receiver (surface.frag), and the modules that add light
+// to it.
 #pragma once
 
 #include <compare>
@@ -17,7 +17,7 @@ namespace lambent::frame {
 struct SurfaceKind {
   bool normal_mapped = false;
   bool dark = false;          // reflects nothing
-  std::uint32_t modules = 0;  // bitOf() each
+  std::uint32_t modules = 0;  // a bit for each module, see bitOf()
   GlossyKind glossy = {};
   SurfaceView view = SurfaceView::Final;  // Final, Irradiance or Normals
   auto operator<=>(const SurfaceKind&) const = default;
@@ -30,7 +30,8 @@ constexpr std::uint32_t bitOf(std::size_t module) {
   return 0x80000000u >> module;
 }
 
-// finest_texels: textures are read at their full resolution, for pictures of one ray per pixel.
+// Compiles and links the program. If finest_texels is set, textures are read at their full resolution, for
+// pictures with one ray per pixel. Fails if a shader does not compile on this device.
 Result<gpu::Program> makeSurfaceProgram(const SurfaceKind& kind,
                                         std::span<const SurfaceModule* const> modules, bool finest_texels);
 

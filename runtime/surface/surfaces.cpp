@@ -13,7 +13,7 @@ namespace {
 
 struct ViewBlock {
   glm::mat4 view_from_world, clip_from_view;
-  glm::vec4 eye;  // as glossy_surface.glsl has it
+  glm::vec4 eye;  // see glossy_receiver.glsl
 };
 
 glm::vec4 eyeOf(const spec::View& view) {
@@ -54,7 +54,7 @@ bool Surfaces::dark(const World& world, std::size_t draw) const {
 }
 
 bool Surfaces::ready(const World& world, const effects::diffuse::Diffuse& diffuse, std::size_t draw) const {
-  if (!world.showsSurfaces(world.residency().draws()[draw].bundle)) return false;  // something stands in
+  if (!world.showsSurfaces(world.residency().draws()[draw].bundle)) return false;  // a proxy stands in for it
   if (dark(world, draw)) return bool(world.residency().meshes()[world.residency().draws()[draw].mesh].block);
   return world.residency().draws()[draw].glossy() ? glossyReady(world, draw) : diffuse.shaded(draw);
 }

@@ -1,9 +1,9 @@
-// Draws every resident, shaded primitive: opaque and masked ones in as few multi-draws as textures, pages and
-// culling allow, blended ones afterwards from back to front. Reads the arenas; writes the bound framebuffer.
-// Back faces of single-sided materials are culled, as glTF asks; mirrored nodes turn their winding. Draws
-// that local lights shine on and glossy ones have programs of their own, compiled when the first of them
-// comes; glossy ones are shaded here altogether, per pixel. Of records and commands only those that are other
-// than before go to the GPU. Errors: shaders that do not compile on this device.
+// Draws every primitive that is resident and shaded: opaque and masked ones in as few multi-draws as
+// textures, pages and culling allow, then blended ones from back to front. It reads the arenas and writes the
+// bound framebuffer. Back faces of single-sided materials are culled, as glTF asks; mirrored nodes reverse
+// their winding. Each kind of surface (glossy ones, and those that modules reach) has a program of its own,
+// compiled when the first such draw arrives. Glossy surfaces are shaded here entirely, per pixel. Only the
+// records and commands that changed are uploaded. Fails if a shader does not compile on this device.
 #pragma once
 
 #include <compare>
@@ -31,8 +31,8 @@
 namespace lambent::frame {
 
 struct SurfaceOptions {
-  bool diffuse = true, glossy = true;  // off: such surfaces reflect nothing
-  std::uint32_t glossy_bands = 8;      // that glossy ones reflect, at most
+  bool diffuse = true, glossy = true;  // false: such surfaces reflect nothing
+  std::uint32_t glossy_bands = 8;      // largest number of bands that glossy surfaces reflect
   bool operator==(const SurfaceOptions&) const = default;
 };
 
@@ -43,31 +43,31 @@ struct SurfaceInputs {
 
 class Surfaces {
  public:
-  // finest_texels: textures at their full resolution, for pictures of one ray per pixel.
+  // If finest_texels is set, textures are read at their full resolution, for pictures with one ray per pixel.
   static Result<Surfaces> create(bool finest_texels);
 
-  // Brings draw records and commands up to date. The modules must live until surfaces are drawn, and be the
-  // same ones in the same order in each frame.
+  // Updates draw records and commands. The modules must live until surfaces are drawn, and be the same ones
+  // in the same order in each frame.
   Result<void> prepare(World& world, const effects::diffuse::Diffuse& diffuse, const spec::View& view,
                        const SurfaceInputs& inputs, gpu::Counters& counters);
-  // Whether the last prepare() took the draw into the picture.
+  // Returns whether the last prepare() took the draw into the picture.
   bool shows(std::size_t draw) const { return draw < shown_.size() && shown_[draw] != 0; }
-  // What surfaces show from the next prepare() on: Irradiance and Normals have programs of their own,
-  // compiled when they are asked for; all others are drawn as Final.
+  // Sets what surfaces show from the next prepare() on. Irradiance and Normals have programs of their own,
+  // compiled when they are first asked for; all other views are drawn as Final.
   void setView(SurfaceView view) { view_shown_ = view; }
   void drawOpaque(World& world, gpu::Counters& counters);
   void drawBlended(World& world, gpu::Counters& counters);
 
  private:
-  // Draws that may go into one multi-draw.
+  // Holds the state that draws must share to go into one multi-draw.
   struct State {
     std::uint32_t geometry_page = 0, radiance_page = 0;
     SurfaceTextures textures = {};
     SurfaceKind kind = {};
-    // Of glossy draws.
+    // These are used by glossy draws only.
     std::uint32_t bundle = 0, rows_page = 0, samples_page = 0;
     std::int32_t brdf_table = -1;
-    bool clockwise = false;  // which winding is seen
+    bool clockwise = false;  // winding of the visible side
     auto operator<=>(const State&) const = default;
   };
   struct Run {
@@ -88,7 +88,7 @@ class Surfaces {
                std::vector<Item>& opaque, std::vector<Item>& blended);
   void appendRuns(const World& world, const std::vector<Item>& items, std::vector<Run>& runs,
                   std::vector<DrawCommand>& commands) const;
-  // Of a table, what is other than before; all of it where its size is.
+  // Uploads the part of a table that changed, or all of it if its size did.
   template <typename Record>
   static void upload(gpu::Table& table, const std::vector<Record>& records, std::vector<Record>& uploaded,
                      gpu::Counters& counters);
@@ -96,18 +96,18 @@ class Surfaces {
   void drawRuns(World& world, const std::vector<Run>& runs, gpu::Counters& counters);
 
   bool finest_texels_ = false;
-  std::map<SurfaceKind, gpu::Program> programs_;  // as they were first needed
+  std::map<SurfaceKind, gpu::Program> programs_;  // compiled when they are first needed
   TextureUnits units_;
   DrawIndices indices_;
   gpu::Table draws_, glossy_draws_, commands_, view_;
   std::vector<SurfaceDraw> records_, records_uploaded_;
   std::vector<GlossyDraw> glossy_records_, glossy_uploaded_;
   std::vector<DrawCommand> commands_uploaded_;
-  std::vector<std::uint8_t> shown_;  // by draw
+  std::vector<std::uint8_t> shown_;  // indexed by draw
   SurfaceOptions options_;
-  std::vector<std::uint32_t> glossy_index_;  // of a draw among them
+  std::vector<std::uint32_t> glossy_index_;  // index of each draw in glossy_records_
   std::vector<Run> opaque_, blended_;
-  std::vector<const SurfaceModule*> modules_;  // of this frame
+  std::vector<const SurfaceModule*> modules_;  // modules of this frame
   std::vector<std::uint64_t> seen_;            // versions of all that records and commands depend on
   glm::vec3 eye_seen_ws_{0.0f};
   SurfaceView view_shown_ = SurfaceView::Final;

@@ -1,5 +1,5 @@
-// What mapped_normal.glsl reads of the vertices. With the light of normal-mapped surfaces all fifteen locations that OpenGL 4.5
-// promises are in use.
+// Writes what mapped_normal.glsl reads of the vertices. Together with the light of normal-mapped surfaces this uses
+// all fifteen locations that OpenGL 4.5 promises.
 layout(location = 3) out vec4 position_group;
 layout(location = 4) out vec4 normal_group;
 layout(location = 5) out vec4 tangent_group;
@@ -11,7 +11,7 @@ void writeTangentFrame(uint vertex, vec3 position, vec2 normal_at) {
   tangent_group = vec4(0.0);
   if (draws[draw_index].tangents_word != kAbsent) {
     uint at = draws[draw_index].tangents_word + 4u * vertex;
-    // A mirrored node mirrors the bitangent, which a cross product of turned vectors would not.
+    // A mirrored node mirrors the bitangent, but a cross product of transformed vectors would not.
     float mirrored = determinant(group_from_mesh) < 0.0 ? -1.0 : 1.0;
     tangent_group = vec4(group_from_mesh * geometry3(at), mirrored * uintBitsToFloat(geometry[at + 3u]));
   }

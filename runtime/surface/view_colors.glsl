@@ -1,8 +1,8 @@
-// Colours that stand for numbers. What they return is sRGB-coded, as it shall be seen; displayed() makes the picture's
-// linear values of that.
+// Makes colours that stand for numbers. The functions return sRGB-coded colours as they shall be seen; displayed()
+// converts them to the picture's linear values.
 
-// viridis (van der Walt and Smith 2015), even steps of lightness: polynomial of degree 6 fitted by M. Zucker
-// (https://www.shadertoy.com/view/WlfXRN, CC0).
+// Returns viridis (van der Walt and Smith 2015), which has even steps of lightness, by M. Zucker's fitted polynomial
+// of degree 6 (https://www.shadertoy.com/view/WlfXRN, CC0).
 vec3 viridis(float t) {
   const vec3 c0 = vec3(0.2777273272234177, 0.005407344544966578, 0.3340998053353061);
   const vec3 c1 = vec3(0.1050930431085774, 1.404613529898575, 1.384590162594685);
@@ -15,21 +15,22 @@ vec3 viridis(float t) {
   return clamp(c0 + t * (c1 + t * (c2 + t * (c3 + t * (c4 + t * (c5 + t * c6))))), 0.0, 1.0);
 }
 
-// The ends and the middle of Moreland's cool-warm map (2009): -1 blue, 0 light grey, 1 red.
+// Interpolates the ends and the middle of Moreland's cool-warm map (2009): -1 blue, 0 light grey, 1 red.
 vec3 coolWarm(float t) {
   t = clamp(t, -1.0, 1.0);
   const vec3 kMiddle = vec3(0.865, 0.865, 0.865);
   return t < 0.0 ? mix(kMiddle, vec3(0.230, 0.299, 0.754), -t) : mix(kMiddle, vec3(0.706, 0.016, 0.150), t);
 }
 
-// PCG (Jarzynski and Olano 2020).
+// Hashes by PCG (Jarzynski and Olano 2020).
 uint hashed(uint v) {
   v = v * 747796405u + 2891336453u;
   v = ((v >> ((v >> 28u) + 4u)) ^ v) * 277803737u;
   return (v >> 22u) ^ v;
 }
 
-// Hues all round; lightness and saturation in a range where neighbours still differ and nothing is lost in black.
+// Returns a colour for a number. Hues run all round; lightness and saturation stay in a range where neighbours differ
+// and nothing is lost in black.
 vec3 distinctColor(uint id) {
   uint h = hashed(id);
   float hue = float(h & 0xffffu) / 65536.0, saturation = 0.45 + 0.4 * float(h >> 16u & 0xffu) / 255.0,
@@ -38,7 +39,7 @@ vec3 distinctColor(uint id) {
   return value * mix(vec3(1.0), ramp, saturation);
 }
 
-// IEC 61966-2-1, backwards.
+// Inverts the sRGB transfer function (IEC 61966-2-1).
 vec3 displayed(vec3 coded) {
   return mix(pow((coded + 0.055) / 1.055, vec3(2.4)), coded / 12.92, lessThanEqual(coded, vec3(0.04045)));
 }

@@ -1,8 +1,7 @@
-// What a picture shows of surfaces: the final light, or one of the numbers behind it. The table has a row for
-// each view, which drives the command line, its help and menus alike. Comes in: words as they are typed. Goes
-// out: a ViewChoice for FrameOptions and Frame::setView, and the legend by which a false-coloured picture is
-// read. Types and words only, no GL; any thread. Errors: a word that is no view, a band that there is not,
-// with what is known. docs/views.md says what each view means.
+// Defines what a picture shows of surfaces: the final light, or one of the numbers behind it. A table has a
+// row for each view, from which the command line, its help and menus are made. It turns typed words into a
+// ViewChoice for FrameOptions and Frame::setView, and gives the legend by which a false-coloured picture is
+// read. No GL; any thread. docs/views.md says what each view means.
 #pragma once
 
 #include <array>
@@ -27,21 +26,21 @@ enum class SurfaceView : std::uint8_t {
 
 struct ViewChoice {
   SurfaceView view = SurfaceView::Final;
-  std::uint32_t band = 1;  // of TransferBand
+  std::uint32_t band = 1;  // for TransferBand, 0..7
   bool operator==(const ViewChoice&) const = default;
 };
 
 enum class ViewColors : std::uint8_t {
-  Light,      // exposed and tone-mapped as ever
-  Scale,      // a value from min to max on viridis; grey where there is none
-  Distinct,   // a colour for each number, equal numbers have equal colours
-  Directions  // 0.5 n + 0.5
+  Light,      // exposed and tone-mapped
+  Scale,      // viridis from min to max; grey where there is no value
+  Distinct,   // a colour per number; equal numbers have equal colours
+  Directions  // the colour is 0.5 n + 0.5
 };
 
 struct SurfaceViewRow {
   SurfaceView view;
-  std::string_view name;   // on the command line
-  std::string_view label;  // in a menu
+  std::string_view name;   // as typed on the command line
+  std::string_view label;  // as shown in a menu
   std::string_view help;
   ViewColors colors;
 };
@@ -67,19 +66,20 @@ constexpr const SurfaceViewRow& rowOf(SurfaceView view) {
   return kSurfaceViews[static_cast<std::size_t>(view)];
 }
 
-// NAME or, for the view that has bands, NAME:BAND with 0..7.
+// Parses "NAME" or, for the view that has bands, "NAME:BAND" with a band in 0..7. Fails, naming what is
+// known, if there is no such view or band.
 Result<ViewChoice> parseView(std::string_view word);
-// The same back.
+// Returns the word that parseView() accepts for the choice.
 std::string wordOf(const ViewChoice& choice);
-// "final, irradiance, ..."
+// Returns the names of all views, as in "final, irradiance, ...".
 std::string knownViews();
 
-// Whether it shows numbers of the coded transfer, which are then worked out for it.
+// Returns whether the view shows numbers of the coded transfer, which are then computed for it.
 constexpr bool showsTransfer(SurfaceView view) {
   return view == SurfaceView::TransferDc || view == SurfaceView::TransferBand ||
          view == SurfaceView::ErrorEstimate || view == SurfaceView::ClusterIds;
 }
-// Whether the picture is of light: with a sky and volumes, exposed and tone-mapped.
+// Returns whether the picture shows light, and so has a sky and volumes and is exposed and tone-mapped.
 constexpr bool showsLight(SurfaceView view) {
   return rowOf(view).colors == ViewColors::Light;
 }
@@ -87,11 +87,11 @@ constexpr bool showsLight(SurfaceView view) {
 struct ViewLegend {
   std::string name, unit;
   ViewColors colors = ViewColors::Light;
-  float min = 0.0f, max = 1.0f;  // of Scale; what lies beyond has the colour of the end
+  float min = 0.0f, max = 1.0f;  // range of Scale; values beyond it have the colour of its end
   bool operator==(const ViewLegend&) const = default;
 };
 
-// largest_error: where the range of that view ends.
+// `largest_error` is the end of the range of ErrorEstimate.
 ViewLegend legendOf(const ViewChoice& choice, float largest_error);
 
 }  // namespace lambent::frame

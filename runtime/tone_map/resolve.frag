@@ -1,6 +1,6 @@
-// Is the last pass: it counts negative pixels and makes the displayed picture: clamped, exposed, through a
-// tone curve, sRGB-coded (sample by sample, so that edges against bright sky stay smooth); or it leaves
-// linear values as they are, with their sign.
+// This is the last pass. It counts negative pixels and makes the displayed picture: clamped, exposed, through a tone
+// curve and sRGB-coded (sample by sample, so that edges against bright sky stay smooth). Linear pictures keep their
+// values and signs.
 #include "hdr_input.glsl"
 #include "tone_curve.glsl"
 

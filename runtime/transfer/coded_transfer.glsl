@@ -1,11 +1,11 @@
-// Quantized weights of samples, and how the light probes share in one: for the sample stages of all effects. The CPU twin
-// stands in transfer_ref.hpp (codedSampleAt, codeOf, lightShareOf).
+// Reads the quantized weights of samples and the shares of light probes in them, for the sample stages of all
+// effects. The CPU twin is in transfer_ref.hpp (codedSampleAt, codeOf, lightShareOf).
 #include "transfer_shared.h"
 
-uint codeWordAt(uint word);  // of the transfer page
+uint codeWordAt(uint word);  // word of the transfer page
 
-// Whose code stands at a position: the sample of the cell, the first vector of its cluster and how many of its axes are
-// resident.
+// Names the sample of the cell whose code stands at a position, the first vector of its cluster, and how many of the
+// cluster's axes are resident.
 struct CodedSample {
   uint sample_index, first, axes;
 };
@@ -15,7 +15,7 @@ CodedSample codedSampleAt(TransferRecord transfer, uint position) {
   return CodedSample(place & 0xffffu, codeWordAt(cluster), min(codeWordAt(cluster + 1u), transfer.plane_count));
 }
 
-// The code at a position, straight from the quantized plane.
+// Returns the code at a position of a plane. `codes` is the word of the plane, with kCodes16Bit.
 uint codeOf(uint codes, uint position) {
   uint word = codes & ~kCodes16Bit;
   if ((codes & kCodes16Bit) != 0u) {
@@ -26,7 +26,7 @@ uint codeOf(uint codes, uint position) {
   return (four >> (8u * (position & 3u))) & 0xffu;
 }
 
-// How much of light k falls on a sample of the cell. Weights fall: those after the first 0 are 0.
+// Holds the share of a light probe in the light of a sample. Weights fall with k, so all after the first 0 are 0.
 struct LightShare {
   uint light;
   float weight;

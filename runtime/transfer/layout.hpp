@@ -1,24 +1,24 @@
-// What a transfer payload is. A payload belongs to samples of one domain (where they lie) and has one form
-// (what their vectors hold); from the form, and the bands and channels, follow its sizes. No bytes here:
-// codebook.hpp codes vectors.
+// Defines what a transfer payload is. A payload belongs to samples of one domain (where they lie) and has one
+// form (what their vectors hold). Its sizes follow from the form, the bands and the channels. Payloads as
+// bytes are the business of codebook.hpp.
 #pragma once
 
 #include <cstdint>
 
 namespace lambent::transfer {
 
-// What the samples of a payload are points of.
+// Tells where the samples of a payload lie.
 enum class Domain : std::uint8_t {
-  Vertex,    // samples of surfaces, which vertices take by their rows
-  Voxel,     // voxels of a volume: mean radiance that arrives, of which the medium scatters its albedo
-  GridPoint  // points around a body: the change (M - I) l that it makes in the light there
+  Vertex,    // on surfaces; vertices take them by their rows
+  Voxel,     // in a volume: mean radiance that arrives, of which the medium scatters its albedo
+  GridPoint  // around a body: the change (M - I) l that the body makes to the light there
 };
 
-// What transfer gives at a sample.
+// Tells what transfer gives at a sample.
 enum class Form : std::uint8_t {
   Vector,        // one number per channel: E/pi at the sample's normal, or mean radiance
   NormalMapped,  // light of bands 0..2, to be convolved with A_l/pi at the pixel's normal
-  Visibility,    // visibility, of which the product with the light gives what a matrix would
+  Visibility,    // visibility V, whose product with the light replaces a matrix
   Matrix         // l' = M l, transferred light in bands
 };
 
@@ -31,20 +31,21 @@ constexpr std::uint32_t bandsOf(std::uint32_t outputs) {
   return bands;
 }
 
-// Returns the form in which samples of a domain hold so many outputs: visibility is a matrix by then.
+// Returns the form in which samples of a domain hold so many outputs. Visibility counts as the matrix that it
+// stands for.
 constexpr Form formOf(Domain domain, std::uint32_t outputs) {
   if (outputs == 1) return Form::Vector;
   return domain == Domain::Vertex && outputs == kMappedOutputs ? Form::NormalMapped : Form::Matrix;
 }
 
-// Returns whether samples are evaluated as matrices, output by output (runtime/effects/glossy): all that
-// bodies change around them, and more bands than a diffuse receiver takes. Other samples are evaluated as
+// Returns whether samples are evaluated as matrices, output by output (runtime/effects/glossy). This is so
+// for points around bodies, and for more bands than a diffuse receiver takes. Other samples are evaluated as
 // vectors.
 constexpr bool evaluatedAsMatrix(Domain domain, std::uint32_t outputs) {
   return domain == Domain::GridPoint || outputs > kMappedOutputs;
 }
 
-// Layout of a transfer vector. Values are indexed [channel][output][column]. The channels are those of direct
+// Describes a transfer vector. Values are indexed [channel][output][column]. The channels are those of direct
 // light ("shadowed") followed by those of direct and bounced light ("full", absent if the bake had no
 // bounces). For glossy surfaces the vector can instead be the visibility, which gives direct light by the
 // product of spherical harmonics (runtime/sh/gaunt.hpp); bounced light then has a second transfer with

@@ -1,6 +1,7 @@
-// Stage a of all effects, kUnitsPerGroup work units to a group, each one output of one cluster under one light: mean and
-// axes times it. Offsets of the weights go into the mean here, scales into the axes, so that a sample has one multiply-add
-// per axis and channel. An entry shader defines projected(). The CPU twin is projectClusters in transfer_ref.hpp.
+// Stage a of all effects multiplies the mean and axes of clusters with the light. A work group handles kUnitsPerGroup
+// units, each one output of one cluster under one light. The offsets of the weights go into the mean's product and
+// their scales into the axes', so that a sample needs one multiply-add per axis and channel. An entry shader defines
+// projected(). The CPU twin is projectClusters in transfer_ref.hpp.
 #include "transfer_shared.h"
 
 layout(local_size_x = kWorkGroupSize) in;
@@ -16,7 +17,7 @@ shared vec4 means[kWorkGroupSize];
 vec3 lightAt(uint index) { return lights[index].rgb; }
 float vectorAt(uint word) { return page[word]; }
 
-// One output of a mean or axis times the light whose coefficients start at `light`.
+// Returns one output of a mean or axis times the light whose coefficients start at `light`.
 vec4 projected(TransferRecord transfer, uint vector, uint output_index, uint light);
 
 void main() {

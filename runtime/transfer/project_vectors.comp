@@ -1,4 +1,5 @@
-// Stage a of vectors and of matrices, of any effect: each value of a vector times its coefficient of the light.
+// Stage a for vectors and matrices, of any effect: multiplies each value of a vector with its coefficient of the
+// light.
 #include "vector_light.glsl"
 #include "project_clusters.glsl"
 

@@ -1,4 +1,4 @@
-// Stage a of visibility. Vectors and matrices are the business of project_vectors.comp.
+// Stage a for visibility: multiplies visibility with the light. For vectors and matrices see project_vectors.comp.
 #include "visibility_light.glsl"
 #include "project_clusters.glsl"
 

@@ -1,6 +1,7 @@
-// Stage b, LAMBENT_BANDS invocations per position of the dirty cells, each as many outputs: mean plus code times product
-// over the resident planes, under each light probe that shares in it. Neighbours write what lies side by side, few
-// outputs keep within the registers, and a code is decoded once for several of them.
+// Stage b for matrices: adds the mean's product and code times product over the resident planes, for each light probe
+// that shares in the sample. There are LAMBENT_BANDS invocations per position of the dirty cells, each with
+// LAMBENT_BANDS outputs: so neighbours write adjacent values, the outputs fit the registers, and a code is decoded
+// once for several outputs.
 #include "transfer_shared.h"
 
 layout(local_size_x = kWorkGroupSize) in;

@@ -1,6 +1,6 @@
-// Stage b, one invocation per position of the dirty cells: mean plus code times product over the resident planes.
-// Neighbouring positions are of one cluster, so they read the same products. With LAMBENT_MANY_LIGHTS each sample blends
-// the products of the light probes around it.
+// Stage b for vectors: adds the mean's product and code times product over the resident planes, with one invocation
+// per position of the dirty cells. Neighbouring positions mostly belong to one cluster and so read the same products.
+// With LAMBENT_MANY_LIGHTS each sample blends the products of the light probes around it.
 #include "transfer_shared.h"
 
 layout(local_size_x = kWorkGroupSize) in;
@@ -23,7 +23,7 @@ void main() {
   if (position >= transfer.sample_count) return;
   CodedSample at = codedSampleAt(transfer, position);
   uint product = transfer.first_product + LAMBENT_OUTPUTS * at.first;
-  vec4 light[LAMBENT_OUTPUTS];  // w: straight from key lights
+  vec4 light[LAMBENT_OUTPUTS];  // w: luminance straight from key lights
 #ifdef LAMBENT_MANY_LIGHTS
   uint products_of[kLightsPerSample];
   float weight[kLightsPerSample];

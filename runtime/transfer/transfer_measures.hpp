@@ -1,8 +1,7 @@
-// Computes numbers that describe the transfer at one sample, for views of it and their tests: the CPU twin of
-// transfer_values.comp. It takes a decoded transfer vector (bundle::decodeTransfer). For matrices (outputs
-// for normal maps, glossy surfaces) a number is the mean over all directions of the normal, so that
-// unoccluded surfaces of every kind have the same numbers. Only light from the environment counts. No GL; any
-// thread; no errors.
+// Computes numbers that describe the transfer at one sample, for views of it and their tests. It is the CPU
+// twin of transfer_values.comp. It takes a decoded transfer vector (decodeTransfer). For matrices (normal
+// maps, glossy surfaces) a number is the mean over all directions of the normal, so that unoccluded surfaces
+// of every kind have the same numbers. Only light from the environment counts. No GL; any thread; no errors.
 #pragma once
 
 #include <array>
@@ -19,8 +18,7 @@ namespace lambent::transfer {
 
 inline constexpr float kY00 = 0.28209479177387814f;
 
-// A_l/pi for the bands by which outputs of a matrix are convolved: the nine coefficients of a diffuse
-// receiver.
+// A_l/pi, the cosine's weights. Outputs of a matrix are convolved with those of bands 0..2.
 inline constexpr std::array<float, 8> kCosineOverPi = {1.0f,          2.0f / 3.0f, 0.25f,        0.0f,
                                                        -1.0f / 24.0f, 0.0f,        1.0f / 64.0f, 0.0f};
 

@@ -1,6 +1,6 @@
-// The CPU twin of the shader modules of this room and of the kernels that evaluate coded transfer: same
-// names, same tables, same order of terms, so that a test can hold one against the other and a debugger can
-// step through what the GPU does. Memory is what the GPU sees: arena pages as 32-bit words. No GL.
+// This is the CPU twin of the shader modules of this room and of the kernels that evaluate coded transfer,
+// with the same names, tables and order of terms, so that a test can compare the two and a debugger can step
+// through what the GPU does. Memory is laid out as on the GPU: arena pages as 32-bit words. No GL.
 #pragma once
 
 #include <algorithm>
@@ -18,10 +18,10 @@ namespace lambent::transfer::ref {
 
 struct Memory {
   std::span<const glm::vec4> lights;
-  std::span<const uint> transfer;      // page
-  std::span<const glm::vec4> samples;  // page
-  std::span<const uint> rows;          // page
-  std::span<const uint> geometry;      // page
+  std::span<const uint> transfer;      // arena page
+  std::span<const glm::vec4> samples;  // arena page
+  std::span<const uint> rows;          // arena page
+  std::span<const uint> geometry;      // arena page
 
   glm::vec3 lightAt(uint index) const { return glm::vec3(lights[index]); }
   float floatAt(uint word) const { return std::bit_cast<float>(transfer[word]); }
@@ -32,12 +32,13 @@ struct Memory {
 
 inline constexpr glm::vec3 kLuminance{0.2126f, 0.7152f, 0.0722f};
 
-// A vector of transfer in memory: its first word, and how many words lie between its channels.
+// Describes a transfer vector in memory: its first word, and the number of words from one channel to the next
+// (`stride`).
 struct TransferVector {
   uint at, channels, stride, columns;
 };
 
-// The vector times `rest` of the light without key lights and `key` of theirs.
+// Returns the vector times `rest` of the light without key lights and `key` of the key lights.
 inline glm::vec3 timesLight(const Memory& memory, const TransferVector& vector, uint light, float rest,
                             float key) {
   const auto [at, channels, stride, columns] = vector;
@@ -78,7 +79,7 @@ inline uint codeOf(const Memory& memory, uint codes, uint position) {
   return (four >> (8 * (position & 3))) & 0xff;
 }
 
-// The vectors of a cluster: its mean, then its axes as far as they are resident.
+// Names the vectors of a cluster: its mean, then those of its axes that are resident.
 struct ResidentCluster {
   uint first, axes;
 };
@@ -88,13 +89,13 @@ inline ResidentCluster clusterAt(const Memory& memory, const TransferRecord& tra
   return {memory.codeWordAt(word), std::min(memory.codeWordAt(word + 1), transfer.plane_count)};
 }
 
-// What one unit of stage a computes, by its place among the transfer's.
+// Names what one unit of stage a computes, by indices within the transfer.
 struct ProjectUnit {
   uint light, cluster, output;
 };
 
-// Stage a, one output of one cluster under one light: its products, the mean's with all offsets in it.
-// projected(vector, output, light): the vector times the light.
+// Stage a for one output of one cluster under one light: writes its products, that of the mean with all
+// offsets included. projected(vector, output, light) returns the vector times the light.
 template <typename Projected>
 void projectCluster(const Memory& memory, const TransferRecord& transfer, std::span<const uint> places,
                     const ProjectUnit& unit, const Projected& projected, std::span<glm::vec4> products) {
@@ -125,7 +126,7 @@ void projectClusters(const Memory& memory, const TransferRecord& transfer, std::
         projectCluster(memory, transfer, places, {light, cluster, j}, projected, products);
 }
 
-// Stage a of vectors and matrices.
+// Stage a for vectors and matrices.
 inline void projectVectors(const Memory& memory, const TransferRecord& transfer, std::span<const uint> places,
                            std::span<glm::vec4> products) {
   const auto projected = [&](uint vector, uint output_index, uint light) {
@@ -134,7 +135,7 @@ inline void projectVectors(const Memory& memory, const TransferRecord& transfer,
   projectClusters(memory, transfer, places, projected, products);
 }
 
-// Whose code stands at a position: the sample of the cell, and its cluster.
+// Names the sample of the cell whose code stands at a position, and its cluster.
 struct CodedSample {
   uint sample_index;
   ResidentCluster cluster;
@@ -145,7 +146,7 @@ inline CodedSample codedSampleAt(const Memory& memory, const TransferRecord& tra
   return {place & 0xffff, clusterAt(memory, transfer, place >> 16)};
 }
 
-// How much of light k falls on a sample of the cell.
+// Holds the share of a light probe in the light of a sample.
 struct LightShare {
   uint light;
   float weight;
@@ -159,7 +160,7 @@ inline LightShare lightShareOf(const Memory& memory, const TransferRecord& trans
           static_cast<float>(memory.codeWordAt(word + 1) >> (8 * k) & 0xff) / 255.0f};
 }
 
-// Stage b of vectors: one position of the cell, into its sample.
+// Stage b for vectors: shades the sample at one position of the cell.
 inline void shadeVector(const Memory& memory, const TransferRecord& transfer, std::span<const uint> places,
                         std::span<const glm::vec4> products, uint position, std::span<glm::vec4> samples) {
   const CodedSample at = codedSampleAt(memory, transfer, position);
@@ -199,7 +200,7 @@ inline glm::vec4 projectVisibility(const Memory& memory, std::span<const uint> g
   return {sum, memory.floatAt(at + output_index)};
 }
 
-// Stage a of visibility.
+// Stage a for visibility.
 inline void projectVisibilities(const Memory& memory, std::span<const uint> gaunt,
                                 const TransferRecord& transfer, std::span<const uint> places,
                                 std::span<glm::vec4> products) {
@@ -209,7 +210,7 @@ inline void projectVisibilities(const Memory& memory, std::span<const uint> gaun
   projectClusters(memory, transfer, places, projected, products);
 }
 
-// Stage b of matrices: one position of the cell, into all outputs of its sample.
+// Stage b for matrices: shades all outputs of the sample at one position of the cell.
 inline void shadeMatrix(const Memory& memory, const TransferRecord& transfer, std::span<const uint> places,
                         std::span<const glm::vec4> products, uint position, std::span<glm::vec4> samples) {
   const CodedSample at = codedSampleAt(memory, transfer, position);
@@ -232,7 +233,7 @@ inline void shadeMatrix(const Memory& memory, const TransferRecord& transfer, st
   }
 }
 
-// As vertex_rows.glsl has it.
+// These match vertex_rows.glsl.
 struct VertexRows {
   uint word, vertex_count, entries;
 };

@@ -1,13 +1,14 @@
-// Transfer vectors times light: the math only, no bindings. The CPU twin stands in transfer_ref.hpp.
+// Multiplies transfer vectors with light. It holds the mathematics only and no bindings. The CPU twin is in
+// transfer_ref.hpp.
 #include "transfer_shared.h"
 
 const vec3 kLuminance = vec3(0.2126, 0.7152, 0.0722);  // Rec. 709
 
-vec3 lightAt(uint index);  // coefficient of the light in the group's frame, RGB
-float vectorAt(uint word);  // of the transfer page
+vec3 lightAt(uint index);  // coefficient of the light, RGB, group frame
+float vectorAt(uint word);  // word of the transfer page
 
-// A stretch of `columns` values from this word on times the light from this index on, plus as much of the light that
-// lies kKeyBlock behind it: one value per colour channel.
+// Multiplies `columns` values from word `at` on with `rest` of the light from index `light` on, plus `key` of the key
+// lights, which lie kKeyBlock further. Returns one value per colour channel.
 vec3 timesLight(uint at, uint channels, uint stride, uint columns, uint light, float rest, float key) {
   vec3 sum = vec3(0.0);
   for (uint i = 0u; i < columns; ++i) {
@@ -20,8 +21,8 @@ vec3 timesLight(uint at, uint channels, uint stride, uint columns, uint light, f
   return sum;
 }
 
-// One output of a mean or axis times the light whose coefficients start at `light`: one value per colour channel. Light
-// that comes straight from key lights is not in it; its luminance is w.
+// Returns one output of a mean or axis times the light whose coefficients start at `light`, per colour channel. Light
+// that comes straight from key lights is left out; w holds its luminance.
 vec4 projectOnLight(TransferRecord transfer, uint vector, uint output_index, uint columns, uint light) {
   uint first = transfer.vectors_word + vector * transfer.vector_size + output_index * columns;
   uint stride = transfer.outputs * columns;

@@ -1,14 +1,15 @@
-// Rows of vertices (vertex_rows.hpp): from which samples a vertex takes its light. A draw's rows lie in a page of words as
-// vertex_count + 1 offsets of entries, the samples of the entries, and their weights, two to a word as unorm16.
-uint rowWordAt(uint word);  // of the rows page
+// Reads the rows of vertices (vertex_rows.hpp), which say from which samples a vertex takes its light. A draw's rows
+// are words of a page: vertex_count + 1 offsets of entries, then the entries' samples, then their weights, two to a
+// word as unorm16.
+uint rowWordAt(uint word);  // word of the rows page
 
 struct VertexRows {
-  uint word;  // where they begin in the page
+  uint word;  // first word in the page
   uint vertex_count;
   uint entries;
 };
 
-// The entries of a vertex: from x on, before y.
+// Returns the range of a vertex's entries, [x, y).
 uvec2 rowOf(VertexRows rows, uint vertex) {
   return uvec2(rowWordAt(rows.word + vertex), rowWordAt(rows.word + vertex + 1u));
 }

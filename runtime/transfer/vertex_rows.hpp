@@ -1,5 +1,5 @@
-// Rows of vertices: from which samples each vertex takes its light, and how much from each. Encoder and
-// decoder stand side by side, so that they cannot drift. Byte tables: docs/format.md.
+// Encodes and decodes the rows of vertices, which say from which samples each vertex takes its light, and how
+// much from each. docs/format.md has the byte tables.
 #pragma once
 
 #include <cstddef>

@@ -1,13 +1,14 @@
-// Visibility times light in spherical harmonics: the math only, no bindings. The CPU twin stands in transfer_ref.hpp, with
-// the same names and the same order of terms.
+// Multiplies visibility with light in spherical harmonics. It holds the mathematics only and no bindings. The CPU
+// twin is in transfer_ref.hpp, with the same names and the same order of terms.
 #include "transfer_shared.h"
 
 vec3 lightAt(uint index);
-float vectorAt(uint word);    // of the transfer page
-uint gauntWordAt(uint word);  // of the table of products
+float vectorAt(uint word);    // word of the transfer page
+uint gauntWordAt(uint word);  // word of the table of products
 
-// Output i of a mean or axis V of visibility under the light whose coefficients start at `light`:
-//   l'_i = sum_jk Gamma_ijk V_k l_j,   and in w the same under constant light of radiance 1, which is V_i itself.
+// Returns output i of a mean or axis V of visibility under the light whose coefficients start at `light`:
+//   l'_i = sum_jk Gamma_ijk V_k l_j.
+// w is the same sum under constant light of radiance 1, which is V_i itself.
 vec4 projectVisibility(TransferRecord transfer, uint vector, uint output_index, uint light) {
   uint at = transfer.vectors_word + vector * transfer.vector_size;
   vec3 sum = vec3(0.0);

@@ -60,7 +60,7 @@ Result<void> Diffuse::shade(streaming::Residency& residency, const lighting::Gro
                             evaluate::TransferMode mode, gpu::Counters& counters,
                             const evaluate::ShadedKinds& kinds) {
   const bool other_way = way_changed_.renew(mode, lights.hasKeys());
-  if (other_way) {  // everything anew
+  if (other_way) {  // shades everything anew
     cells_changed_.clear();
     draws_changed_.clear();
   }
@@ -203,7 +203,7 @@ Result<void> Diffuse::runDraws(streaming::Residency& residency, const lighting::
     const Result<const gpu::Program*> kernel = program(Vertices, key[0], key[1]);
     if (!kernel) return failAgain(kernel.error());
     (*kernel)->use();
-    // A page that holds nothing for any draw of the batch may not exist; any buffer can take its place.
+    // A page may not exist if no draw of the batch has anything in it; any buffer can take its place.
     const auto bind = [&](gpu::Arena& arena, std::uint32_t page, std::uint32_t binding) {
       if (page < arena.pageCount() && arena.page(page))
         arena.page(page).bindStorage(binding);

@@ -24,7 +24,7 @@
 
 namespace lambent::effects::diffuse {
 
-// The tables that the kernels read, as last uploaded.
+// Holds the tables that the kernels read, as last uploaded.
 struct Tables : evaluate::TransferTable {
   std::vector<DrawRecord> draws;  // index: residency draw
 };
@@ -42,12 +42,12 @@ class Diffuse {
   std::uint64_t versionOf(std::size_t group) const {
     return group < group_shaded_.size() ? group_shaded_[group] : 0;
   }
-  // States what the last call shaded.
+  // Counts what the last call shaded.
   struct Shaded {
     std::uint32_t cells = 0, draws = 0;
   };
   const Shaded& shadedLast() const { return shaded_; }
-  // Whether the draw's radiance has been written.
+  // Returns whether the draw's radiance has been written.
   bool shaded(std::size_t draw) const { return draw < draws_changed_.size() && draws_changed_[draw].known(); }
   const Tables& tables() const { return tables_; }
 
@@ -67,14 +67,15 @@ class Diffuse {
   Result<void> runDraws(streaming::Residency& residency, const lighting::GroupLights& lights,
                         gpu::Counters& counters);
 
-  // The keys are the order (0: any), for samples 1 if there are several lights, and the outputs.
+  // The key holds the order (0: any order; for the Samples stage, 1 if there are several lights) and the
+  // number of outputs.
   std::array<std::map<std::array<std::uint32_t, 2>, gpu::Program>, kStageCount> programs_;
   Tables tables_;
   gpu::Table transfers_table_, places_table_, draws_table_, products_;
   // A cell's first transfer writes its samples, the second one adds to them.
   gpu::WorkList project_work_, samples_work_, adding_work_, vertices_work_;
-  KeyedState<ChangeGate<std::uint64_t, std::uint64_t>> cells_changed_;  // its version, its light
-  KeyedState<ChangeGate<std::uint64_t, std::uint64_t, std::uint64_t>> draws_changed_;  // and its cells
+  KeyedState<ChangeGate<std::uint64_t, std::uint64_t>> cells_changed_;  // versions: cell, light
+  KeyedState<ChangeGate<std::uint64_t, std::uint64_t, std::uint64_t>> draws_changed_;  // draw, light, cells
   KeyedState<std::uint64_t> group_shaded_;                 // rises when a cell of the group was shaded
   ChangeGate<evaluate::TransferMode, bool> way_changed_;   // the mode, whether key lights stand apart
   ChangeGate<std::uint64_t, std::size_t> layout_changed_;  // residency, groups

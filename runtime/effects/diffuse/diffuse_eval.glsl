@@ -1,25 +1,26 @@
-// Diffuse transfer times light: the math only, no bindings. The CPU twin is diffuse_ref.hpp, with the same names and
-// the same order of terms. An entry shader says which stage it is (LAMBENT_STAGE_VERTICES or _PROXIES) and
-// defines the fetches that the stage's functions declare.
+// Multiplies diffuse transfer with light. It holds the mathematics only and no bindings. The CPU twin is
+// diffuse_ref.hpp, with the same names and the same order of terms. An entry shader selects the stage
+// (LAMBENT_STAGE_VERTICES or _PROXIES) and defines the fetches that the stage's functions declare.
 #include "diffuse_shared.h"
 
 const vec3 kLuminance = vec3(0.2126, 0.7152, 0.0722);  // Rec. 709
 
-vec3 lightAt(uint index);  // coefficient of the light in the group's frame, RGB
+vec3 lightAt(uint index);  // coefficient of the light, RGB, group frame
 
 #if defined(LAMBENT_STAGE_VERTICES) || defined(LAMBENT_STAGE_PROXIES)
-vec4 sampleAt(uint index);  // shaded sample, w > 0: resident
+vec4 sampleAt(uint index);  // shaded sample; w > 0: resident
 
 float shadedShare(vec4 shaded) { return shaded.w > 0.0 ? 1.0 : 0.0; }
 
-// A_l / pi, A_l the clamped cosine's weights: pi, 2pi/3, pi/4, 0, -pi/24, 0, pi/64 (Ramamoorthi and Hanrahan 2001).
+// Returns A_l / pi, with the clamped cosine's weights A_l: pi, 2pi/3, pi/4, 0, -pi/24, 0, pi/64 (Ramamoorthi and
+// Hanrahan 2001).
 float clampedCosineOverPi(int l) {
   const float kWeights[8] = float[8](1.0, 2.0 / 3.0, 0.25, 0.0, -1.0 / 24.0, 0.0, 1.0 / 64.0, 0.0);
   return kWeights[l];
 }
 
-// E/pi of an open surface with this normal (group frame): sum over l, m of A_l/pi y_lm(n) light_lm. Cartesian
-// recurrences, so the poles are ordinary points (docs/conventions.md: no Condon-Shortley sign).
+// Returns E/pi of an open surface with this normal (group frame): the sum over l, m of A_l/pi y_lm(n) light_lm. The
+// recurrences are Cartesian, so the poles are ordinary points (docs/conventions.md: no Condon-Shortley sign).
 vec3 unshadowedRadiance(vec3 normal, uint light, int order) {
   vec3 sum = vec3(0.0);
   float c = 1.0, s = 0.0;              // Re and Im of (x + iy)^m
@@ -55,7 +56,7 @@ vec3 unshadowedRadiance(vec3 normal, uint light, int order) {
 #ifdef LAMBENT_STAGE_VERTICES
 #include "vertex_rows.glsl"
 
-// A vertex from its row of samples; what is not resident counts as unshadowed.
+// Returns a vertex's radiance from its row of samples. Samples that are not resident count as unshadowed.
 vec3 vertexRadiance(DrawRecord draw, uint vertex, vec3 normal, int order) {
   vec3 sum = vec3(0.0);
   float resident = 0.0, total = 0.0;
@@ -75,7 +76,8 @@ vec3 vertexRadiance(DrawRecord draw, uint vertex, vec3 normal, int order) {
   return sum / total;
 }
 
-// The same for normal maps: transferred light of bands 0..2, in the group's frame. Unshadowed it is the light itself.
+// Gathers the transferred light of bands 0..2 of a vertex with a normal map, in the group's frame. An unshadowed
+// vertex receives the light itself.
 void vertexLight(DrawRecord draw, uint vertex, out vec3 light[kMappedOutputs]) {
   float resident = 0.0, total = 0.0;
   for (uint j = 0u; j < kMappedOutputs; ++j) light[j] = vec3(0.0);
@@ -101,7 +103,8 @@ void vertexLight(DrawRecord draw, uint vertex, out vec3 light[kMappedOutputs]) {
 
 ProxyEntryRecord proxyEntryAt(uint index);
 
-// E/pi at a normal, of nine outputs of a sample; in w that straight from key lights, as luminance.
+// Returns E/pi at a normal from nine outputs of a sample. w holds the part that comes straight from key lights, as
+// luminance.
 vec4 mappedRadiance(uint first, vec3 normal) {
   vec3 light[kMappedOutputs], straight[kMappedOutputs];
   for (uint j = 0u; j < kMappedOutputs; ++j) {
@@ -112,17 +115,17 @@ vec4 mappedRadiance(uint first, vec3 normal) {
   return vec4(diffuseLight(light, normal), diffuseLight(straight, normal).r);
 }
 
-// Glossy samples know how much of the sky each direction sees; key lights are taken to stand at their mean direction.
+// Returns how visible the key lights are from a glossy sample, 0..1. They are taken to stand at their mean direction.
 float keyVisibility(uint first, vec3 direction) {
   vec3 visibility[kMappedOutputs];
   for (uint j = 0u; j < kMappedOutputs; ++j) visibility[j] = vec3(sampleAt(first + j).w);
-  const float kBack[9] = float[9](1.0, 1.5, 1.5, 1.5, 4.0, 4.0, 4.0, 4.0, 4.0);  // pi / A_l: the bands as they are
+  const float kBack[9] = float[9](1.0, 1.5, 1.5, 1.5, 4.0, 4.0, 4.0, 4.0, 4.0);  // pi / A_l, undoes the cosine's weights
   for (uint j = 0u; j < kMappedOutputs; ++j) visibility[j] *= kBack[j];
   return clamp(diffuseLight(visibility, direction).r, 0.0, 1.0);
 }
 
-// What a proxy's triangle sends out. Samples that are not shaded yet count as unshadowed; truncated light may be
-// negative somewhere, a surface never gives that on.
+// Returns the radiance that a proxy's triangle sends out. Samples that are not shaded yet count as unshadowed.
+// Truncated light may be negative somewhere, but a surface never sends out negative radiance.
 vec3 proxyRadiance(ProxyGroupRecord group, ProxyTriangleRecord triangle) {
   vec3 normal = vec3(triangle.normal[0], triangle.normal[1], triangle.normal[2]);
   uint key = group.light + kKeyBlock;
@@ -134,7 +137,7 @@ vec3 proxyRadiance(ProxyGroupRecord group, ProxyTriangleRecord triangle) {
     ProxyEntryRecord entry = proxyEntryAt(i);
     vec3 reflectance = vec3(entry.reflectance[0], entry.reflectance[1], entry.reflectance[2]);
     vec4 shaded = sampleAt(entry.sample_index);
-    if (entry.outputs > kMappedOutputs) {  // glossy samples are never without light
+    if (entry.outputs > kMappedOutputs) {  // glossy samples always have light
       sum += reflectance * mappedRadiance(entry.sample_index, normal).rgb;
       if (key_luminance > 0.0)
         sum += reflectance * keyVisibility(entry.sample_index, normalize(towards_key)) *

@@ -1,4 +1,5 @@
-// Stage d, one invocation per triangle of the proxies whose group was shaded anew: the radiance that it sends out.
+// Stage d computes the radiance that a proxy's triangle sends out, with one invocation per triangle of the proxies
+// whose group was shaded anew.
 #include "diffuse_shared.h"
 
 layout(local_size_x = kWorkGroupSize) in;

@@ -115,7 +115,7 @@ inline MappedLight vertexLight(const Memory& memory, const DrawRecord& draw, uin
   return light;
 }
 
-// Stage c shades a vertex of draws without normal maps; vertexLight is for those with.
+// Stage c shades a vertex of draws without normal maps; vertexLight() serves draws with normal maps.
 inline glm::vec3 shadeVertex(const Memory& memory, const DrawRecord& draw, uint vertex) {
   const uint at = draw.normals_word + 3 * vertex;
   const auto component = [&](uint i) { return std::bit_cast<float>(memory.geometry[at + i]); };
@@ -126,7 +126,7 @@ inline glm::vec3 shadeVertex(const Memory& memory, const DrawRecord& draw, uint 
   return vertexRadiance(memory, draw, vertex, normal, static_cast<int>(draw.order));
 }
 
-// Stage d shades a pixel of draws with normal maps.
+// From here on are the functions of stage d, which shades the triangles of capture proxies.
 inline glm::vec4 mappedRadiance(const Memory& memory, uint first, glm::vec3 normal) {
   std::array<glm::vec3, transfer::kMappedOutputs> light, straight;
   for (uint j = 0; j < transfer::kMappedOutputs; ++j) {

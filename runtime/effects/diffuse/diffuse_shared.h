@@ -1,5 +1,6 @@
-// One text for C++ and GLSL: what the diffuse kernels bind besides transfer_shared.h, and the layout (std430) of the tables that they read.
-// Addresses within an arena page are in 32-bit words; samples and lights are counted in vec4s.
+// This file is shared by C++ and GLSL. It says what the diffuse kernels bind besides transfer_shared.h, and lays out
+// the tables that they read (std430). Addresses within an arena page are in 32-bit words; samples and lights are
+// counted in vec4s.
 #ifdef __cplusplus
 #pragma once
 
@@ -18,38 +19,38 @@ using uint = std::uint32_t;
 
 LAMBENT_CONSTANT kBindDraws = 2u;      // DrawRecord
 LAMBENT_CONSTANT kBindRows = 3u;       // arena page: rows of vertices
-LAMBENT_CONSTANT kBindGeometry = 4u;   // arena page: normals among others
+LAMBENT_CONSTANT kBindGeometry = 4u;   // arena page, holds the normals
 LAMBENT_CONSTANT kBindRadiance = 5u;   // arena page: per vertex 3 floats, E/pi, or for normal maps 27, [output][rgb]
 LAMBENT_CONSTANT kBindProxyGroups = 2u;     // ProxyGroupRecord
 LAMBENT_CONSTANT kBindProxyTriangles = 3u;  // ProxyTriangleRecord
 LAMBENT_CONSTANT kBindProxyEntries = 4u;    // ProxyEntryRecord
 LAMBENT_CONSTANT kBindProxyRadiance = 5u;   // vec4 per triangle
-LAMBENT_CONSTANT kBindProxyAdded = 7u;      // likewise: what it sends out besides
+LAMBENT_CONSTANT kBindProxyAdded = 7u;      // vec4 per triangle, radiance to send out in addition
 
 LAMBENT_CONSTANT kNoRows = 0xffffffffu;
 LAMBENT_CONSTANT kNoLamp = 0xffffffffu;
 
 struct DrawRecord {
-  float group_from_mesh_normal[12];  // three columns of vec4, for directions of normals
+  float group_from_mesh_normal[12];  // three columns of vec4, which turn normals
   uint light;
   uint order;
   uint vertex_count;
   uint normals_word;
   uint rows_word;  // vertex_count + 1 offsets, then samples, then weights two to a word; kNoRows: unshadowed
   uint row_entries;
-  uint first_sample;   // of its samples; output o of sample s is vec4 first_output + outputs (s - first_sample) + o
-  uint radiance_word;  // where the result goes
+  uint first_sample;   // of the draw; output o of sample s is vec4 first_output + outputs (s - first_sample) + o
+  uint radiance_word;  // where the result is written
   uint outputs;
   uint first_output;
   uint pad[2];
 };
 
-// Capture proxies: triangles that send out one radiance in all directions (runtime/bundle/capture_proxy.hpp).
+// A capture proxy's triangles each send out one radiance in all directions (runtime/bundle/capture_proxy.hpp).
 struct ProxyGroupRecord {
   uint first_triangle;
   uint triangle_count;
   uint light;  // vec4 index of the coefficients of its first light probe
-  uint lamps;  // and of its own lights
+  uint lamps;  // vec4 index of its own lights
   uint order;
   uint pad[3];
 };
@@ -59,7 +60,7 @@ struct ProxyTriangleRecord {
   uint first_entry;
   float emission[3];  // at unit strength of its lamp
   uint entry_count;
-  uint lamp;  // of the group; kNoLamp: gives off none
+  uint lamp;  // index of the lamp in its group; kNoLamp: the triangle emits nothing
   uint pad[3];
 };
 

@@ -1,5 +1,5 @@
-// Stage c, one invocation per vertex of the dirty draws: gathers its row of samples. Linear E/pi, not clamped, or with
-// LAMBENT_OUTPUTS 9 the transferred light that a normal map is shaded from.
+// Stage c gathers a vertex's row of samples, with one invocation per vertex of the dirty draws. It writes linear
+// E/pi, not clamped, or with LAMBENT_OUTPUTS 9 the transferred light from which a normal map is shaded.
 #include "diffuse_shared.h"
 
 layout(local_size_x = kWorkGroupSize) in;

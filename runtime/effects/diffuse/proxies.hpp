@@ -24,7 +24,7 @@
 
 namespace lambent::effects::diffuse {
 
-// Holds additional radiance of a group's triangles: light that reached them per pixel and not by transfer.
+// Adds radiance to what a group's triangles send out: light that reaches them per pixel and not by transfer.
 struct AddedRadiance {
   std::span<const glm::vec3> triangles;  // one per triangle; empty: none
   std::uint64_t version = 0;             // changes when the radiance does
@@ -41,20 +41,20 @@ class Proxies {
                      std::span<const AddedRadiance> added = {});
 
   const gpu::Buffer& radiance() const { return radiance_.buffer(); }
-  // Another number when what the group sends out was computed anew; never that of another group.
+  // Changes when what the group sends out was computed anew; no two groups ever return the same number.
   std::uint64_t versionOf(std::size_t group) const { return kept_[group].version; }
 
-  // Return what was uploaded, for the CPU twin.
+  // Return what was uploaded, for comparison with the CPU twin.
   const std::vector<ProxyGroupRecord>& groups() const { return groups_; }
   const std::vector<ProxyTriangleRecord>& triangles() const { return triangles_; }
   const std::vector<ProxyEntryRecord>& entries() const { return entries_; }
 
  private:
   struct Proxy {
-    ChangeGate<std::uint64_t, std::uint64_t, std::uint64_t> changed;  // samples, light, what is added
+    ChangeGate<std::uint64_t, std::uint64_t, std::uint64_t> changed;  // samples, light, added radiance
     std::uint64_t version = 0;
-    bool written = false;  // where the table has it now
-    // The proxy's, by themselves: entries from 0 on. Made when it comes.
+    bool written = false;  // whether the table holds it where it stands now
+    // The proxy's records by themselves, with entries counted from 0. They are made when the proxy arrives.
     bool made = false;
     std::vector<ProxyTriangleRecord> triangles;
     std::vector<ProxyEntryRecord> entries;
@@ -70,7 +70,7 @@ class Proxies {
   KeyedState<Proxy> kept_;
   ChangeGate<std::uint64_t, std::size_t> layout_changed_;  // proxies, lights
   std::uint64_t version_ = 0;
-  bool added_ = false;  // whether the table of what is added may hold anything
+  bool added_ = false;  // whether the table of added radiance may hold anything but 0
   gpu::Table groups_table_, triangles_table_, entries_table_, added_table_, radiance_;
   gpu::WorkList work_;
 };

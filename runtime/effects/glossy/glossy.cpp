@@ -61,7 +61,7 @@ Result<void> Glossy::shade(streaming::Residency& residency, const lighting::Grou
                            evaluate::TransferMode mode, gpu::Counters& counters,
                            const evaluate::ShadedKinds& kinds) {
   const bool other_way = way_changed_.renew(mode, lights.hasKeys());
-  if (other_way) cells_changed_.clear();  // everything anew
+  if (other_way) cells_changed_.clear();  // shades everything anew
   if (layout_changed_.renew(residency.version(), lights.groupCount()) || other_way) {
     any_ = std::any_of(residency.cells().begin(), residency.cells().end(),
                        [](const streaming::ResidentCell& cell) { return cell.matrices(); });

@@ -69,7 +69,7 @@ class Glossy {
   Result<void> shadeSamples(streaming::Residency& residency, gpu::WorkList& work, gpu::Counters& counters);
 
   std::array<std::map<std::uint32_t, gpu::Program>, kKernelCount> programs_;
-  std::map<std::array<std::uint32_t, 2>, gpu::Table> gaunts_;  // by bands in and out
+  std::map<std::array<std::uint32_t, 2>, gpu::Table> gaunts_;  // keyed by bands in and out
   evaluate::TransferTable tables_;
   std::vector<FillRecord> fills_;
   gpu::Table transfers_table_, places_table_, products_, fills_table_;

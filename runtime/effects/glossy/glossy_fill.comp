@@ -1,4 +1,4 @@
-// Samples of cells without transfer: the light itself. One invocation per output of a sample.
+// Fills the samples of cells without transfer with the light itself, with one invocation per output of a sample.
 #include "glossy_shared.h"
 
 layout(local_size_x = kWorkGroupSize) in;

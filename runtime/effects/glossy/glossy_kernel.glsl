@@ -1,12 +1,12 @@
-// What a glossy surface sends towards a view: the transferred light of its place, weighed by b(v) turned to its frame.
-// The math only, no bindings; glossy_kernel_ref.hpp is the same on the CPU, term by term. Vectors are unit and in the
-// group's frame.
-//   LAMBENT_BANDS        of the transferred light, 4, 5 or 6
-//   LAMBENT_ANISOTROPIC  the table has azimuths
-//   LAMBENT_MEASURED     three lobes, red, green and blue; else two, the parts that F0 and F90 multiply
-//   LAMBENT_ZONAL_AXES   of sh::ZonalFactors, as vec3[](...)
+// Computes what a glossy surface sends towards a view: the transferred light at its place, weighed by b(v) turned to
+// its frame. It holds the mathematics only and no bindings; glossy_kernel_ref.hpp is its CPU twin, term by term.
+// Vectors are unit vectors in the group's frame. The entry shader defines:
+//   LAMBENT_BANDS        bands of the transferred light: 4, 5 or 6
+//   LAMBENT_ANISOTROPIC  set if the table has azimuths
+//   LAMBENT_MEASURED     set for three lobes, red, green and blue; otherwise two, which F0 and F90 multiply
+//   LAMBENT_ZONAL_AXES   axes of sh::ZonalFactors, as vec3[](...)
 // b turned to the frame is a sum of zonal functions, each about one axis a_i of the local frame turned to the group's
-// (runtime/sh/zonal_factors.hpp), and a zonal function times the light is the light's band in the direction of its axis:
+// (runtime/sh/zonal_factors.hpp). A zonal function times the light is the light's band in the direction of its axis:
 //   sum_k c_k l'_k = sum_l sum_i w_l,i L_l(a_i),   L_l(a) = sum_m y_lm(a) l'_lm.
 
 const int kBands = LAMBENT_BANDS, kCoefficients = kBands * kBands;
@@ -26,14 +26,15 @@ const int kTexels = (kWeights + 1) / 2;
 #endif
 const vec3 kZonalAxes[] = LAMBENT_ZONAL_AXES;
 
-const float kLeastViewCosine = 1e-3;  // of a view; lower ones count as this
+const float kLeastViewCosine = 1e-3;  // smaller cosines count as this
 const float kHalfPi = 1.5707963267948966;
 
-// A texel of the table: interpolated between nodes at a place across and down, both counted in nodes.
+// Returns a texel of the table, interpolated between nodes. `place` runs across and down, counted in nodes.
 vec4 brdfTexel(vec2 place, uint layer);
-uvec2 brdfNodes();  // across and down
+uvec2 brdfNodes();  // counts of nodes across and down
 
-// Bands of the light in a direction. Polynomials of docs/conventions.md's functions, bands 0 to 5.
+// Evaluates each band of the light in direction d, by the polynomials of docs/conventions.md's functions (bands 0 to
+// 5).
 void bandsAt(vec3 d, vec4 light[kCoefficients], out vec4 bands[kBands]) {
   float x = d.x, y = d.y, z = d.z, z2 = z * z;
   bands[0] = 0.282094792 * light[0];
@@ -62,25 +63,28 @@ void bandsAt(vec3 d, vec4 light[kCoefficients], out vec4 bands[kBands]) {
 #endif
 }
 
-// Any unit vector at right angles to unit n [Duff et al., Building an orthonormal basis, revisited, 2017].
+// Returns a unit vector at right angles to the unit vector n [Duff et al., Building an orthonormal basis, revisited,
+// 2017].
 vec3 perpendicular(vec3 n) {
   float facing = n.z >= 0.0 ? 1.0 : -1.0;
   float a = -1.0 / (facing + n.z);
   return vec3(1.0 + facing * n.x * n.x * a, facing * n.x * n.y * a, -facing * n.x);
 }
 
-// The frame of a table, in which the view leans along x, and where the view stands. Anisotropic BRDFs mirror in the
-// material's tangent and bitangent: views of all quadrants take the first one's place, with y turned over in every other.
+// Describes the frame of a table, in which the view leans along x, and where the view stands in the table.
+// Anisotropic BRDFs are symmetric about the material's tangent and bitangent, so views of all quadrants map to the
+// first one, with y reversed in every other quadrant.
 struct LocalView {
   vec3 tangent, bitangent, normal;
   float cos_theta;
-  vec2 azimuth;  // cosine and sine against the material's tangent, both positive
+  vec2 azimuth;  // cosine and sine from the material's tangent, both positive
 };
 
-// Of the table's axis across (bundle::angleAxis).
+// Returns the place of a cosine on the table's axis across (bundle::angleAxis), 0..1.
 float angleAxis(float cos_theta) { return sqrt(max(1.0 - sqrt(max(1.0 - cos_theta, 0.0)), 0.0)); }
 
-// Under this the squared tangential part of a view is rounding, and its direction none; the table is smooth there.
+// Below this, the squared tangential part of a view is rounding error and its direction undefined; the table is
+// smooth there.
 const float kLeastAcross = 1e-8;
 
 LocalView localView(vec3 normal, vec3 tangent, vec3 to_eye) {
@@ -104,7 +108,7 @@ LocalView localView(vec3 normal, vec3 tangent, vec3 to_eye) {
   return view;
 }
 
-// All weights of the view, packed as the table has them.
+// Looks up all weights for the view, packed as in the table.
 void lookUpWeights(LocalView view, float roughness, float strength, uvec2 roughnesses_and_strengths,
                    out vec4 weights[kTexels]) {
   vec2 last = vec2(brdfNodes() - 1u);
@@ -126,19 +130,20 @@ void lookUpWeights(LocalView view, float roughness, float strength, uvec2 roughn
 #endif
 }
 
-// w: of the visibility in the light's w, in place of light.
+// Holds the reflected light of a point. In each vec4, w treats the visibility in the light's w as RGB treats the light.
 struct Reflected {
 #ifdef LAMBENT_MEASURED
   vec4 light;
   vec3 albedo;  // directional, sqrt(4 pi) b_0
 #else
-  vec4 f0_light, f90_light;  // what F0 and F90 multiply
-  vec2 albedo;               // and their directional albedos A and B
+  vec4 f0_light, f90_light;  // the parts that F0 and F90 multiply
+  vec2 albedo;               // their directional albedos A and B
 #endif
   vec4 diffuse;  // E/pi
 };
 
-// The table's band 0 has one axis, and y_00 times sqrt(4 pi) is 1: its weight is the directional albedo.
+// Sums the lobes over the light. The table's band 0 has one axis, and y_00 sqrt(4 pi) is 1, so its weight is the
+// directional albedo.
 Reflected reflectLight(LocalView view, vec4 weights[kTexels], vec4 light[kCoefficients]) {
   Reflected sum;
   vec4 bands[kBands];
@@ -155,7 +160,7 @@ Reflected reflectLight(LocalView view, vec4 weights[kTexels], vec4 light[kCoeffi
   sum.f0_light += (((p) & 1) == 0 ? weights[(p) / 2].x : weights[(p) / 2].z) * (band); \
   sum.f90_light += (((p) & 1) == 0 ? weights[(p) / 2].y : weights[(p) / 2].w) * (band)
 #endif
-// Unrolled here: weights are named by number, not looked up.
+// The loop is unrolled here, so that weights are named by constant indices.
 #define LAMBENT_AXIS(i)                                                                                      \
   if (i < kAxes) {                                                                                           \
     vec3 axis = kZonalAxes[min(i, kAxes - 1)];                                                               \
@@ -165,7 +170,7 @@ Reflected reflectLight(LocalView view, vec4 weights[kTexels], vec4 light[kCoeffi
     }                                                                                                        \
   }
   LAMBENT_AXIS(0)
-  // The first axis is the normal: A_l/pi as docs/conventions.md has it; 0 for bands 3 and 5.
+  // The first axis is the normal, so the bands weighed by A_l/pi (docs/conventions.md) give E/pi; A_3 and A_5 are 0.
   sum.diffuse = bands[0] + 2.0 / 3.0 * bands[1] + 0.25 * bands[2];
 #if LAMBENT_BANDS > 4
   sum.diffuse -= 1.0 / 24.0 * bands[4];
@@ -185,7 +190,7 @@ Reflected reflectLight(LocalView view, vec4 weights[kTexels], vec4 light[kCoeffi
   return sum;
 }
 
-// F0 and F90 of a point: `dielectric` is ((ior-1)/(ior+1))² times the specular colour.
+// Holds F0 and F90 of a point. `dielectric` is ((ior-1)/(ior+1))² times the specular colour.
 struct Fresnel {
   vec3 f0;
   float f90;
@@ -194,13 +199,14 @@ Fresnel fresnelOf(vec3 base_color, float metallic, vec3 dielectric, float specul
   return Fresnel(mix(min(dielectric, vec3(1.0)) * specular, base_color, metallic), mix(specular, 1.0, metallic));
 }
 
-// By what diffuse light is reflected: what the reflection at the surface leaves, in the channel that it leaves least.
+// Returns the albedo of the diffuse part: what the reflection at the surface leaves, in the channel where it leaves
+// least.
 vec3 diffuseAlbedo(vec3 base_color, float metallic, Fresnel fresnel, vec2 albedo) {
   vec3 rho = fresnel.f0 * albedo.x + fresnel.f90 * albedo.y;
   return (1.0 - metallic) * max(1.0 - max(rho.r, max(rho.g, rho.b)), 0.0) * base_color;
 }
 
-// Barycentric weights of a place in the triangle; all of them in 0..1, whatever the triangle.
+// Returns barycentric weights of a place in a triangle. Each is in 0..1 for any place and any triangle.
 vec3 cornerWeights(vec3 place, vec3 a, vec3 b, vec3 c) {
   vec3 ab = b - a, ac = c - a, ap = place - a;
   vec3 size = max(abs(ab), abs(ac));
@@ -216,7 +222,7 @@ vec3 cornerWeights(vec3 place, vec3 a, vec3 b, vec3 c) {
     vec3 weights = max(vec3(1.0 - share.x - share.y, share), vec3(0.0));
     return weights / (weights.x + weights.y + weights.z);
   }
-  // A sliver: by where the place lies along its longest side.
+  // The triangle is a sliver, so the weights come from where the place lies along its longest side.
   float length_ab = dot(ab, ab), length_ac = dot(ac, ac), length_bc = dot(ac - ab, ac - ab);
   if (length_bc >= max(length_ab, length_ac)) {
     float t = clamp(dot(ap - ab, ac - ab) / length_bc, 0.0, 1.0);

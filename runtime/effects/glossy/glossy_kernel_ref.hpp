@@ -104,7 +104,7 @@ struct Table {
         factors(from.isotropic() ? sh::ZonalFactors::isotropic(static_cast<int>(from.order))
                                  : sh::ZonalFactors::anisotropic(static_cast<int>(from.order))) {}
 
-  // Interpolates between the four texels around a place, given in nodes.
+  // Interpolates between the four texels around `place`, which is counted in nodes.
   glm::vec4 brdfTexel(glm::vec2 place, std::uint32_t layer) const {
     const auto texel = [&](std::uint32_t x, std::uint32_t y) {
       return texels

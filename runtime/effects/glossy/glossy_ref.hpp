@@ -14,7 +14,7 @@ using transfer::ref::Memory;
 
 inline constexpr float kSqrtFourPi = 3.5449077018110318f;
 
-// Cells without transfer.
+// Returns one output of a sample in a cell without transfer, as glossy_eval.glsl does.
 inline glm::vec4 openLight(const Memory& memory, const FillRecord& fill, uint output_index) {
   const glm::vec3 light =
       output_index < fill.coefficients ? memory.lightAt(fill.light + output_index) : glm::vec3(0.0f);

@@ -1,4 +1,5 @@
-// One text for C++ and GLSL: what the kernels of the glossy effect bind and read besides transfer_shared.h.
+// This file is shared by C++ and GLSL. It says what the kernels of the glossy effect bind and read besides
+// transfer_shared.h.
 #ifdef __cplusplus
 #pragma once
 
@@ -15,15 +16,15 @@ using uint = std::uint32_t;
 
 LAMBENT_CONSTANT kBindFills = 2u;  // FillRecord
 
-// A cell that shows the light itself, for want of transfer or because it was asked for. One of a neighborhood changes
-// nothing then.
+// Describes a cell whose samples show the light itself, because it has no transfer or because the mode asks for it. A
+// cell of a neighborhood then holds no change.
 struct FillRecord {
   uint first_output;   // vec4 index into the samples page
   uint output_count;   // all samples of the cell
-  uint outputs;        // of a sample
+  uint outputs;        // per sample
   uint light;          // vec4 index of the light's first coefficient
-  uint coefficients;   // of the light; 0 of a neighborhood
-  uint open;           // 1: visible in all directions; 0 of a neighborhood, which holds the change V - 1
+  uint coefficients;   // of the light; 0 for a neighborhood
+  uint open;           // 1: visible in all directions; 0 for a neighborhood, which holds the change V - 1
 };
 
 #ifdef __cplusplus

@@ -24,8 +24,8 @@ namespace lambent::effects::neighborhood {
 
 struct Grid {
   std::uint32_t group = 0;  // index of its group in the residency
-  std::uint64_t id = 0;     // of that group
-  std::uint64_t key = 0;    // kept when a replacement takes its place
+  std::uint64_t id = 0;     // id of that group
+  std::uint64_t key = 0;    // kept by a grid that replaces this one
   bundle::NeighborhoodGrid points;
   GridPlace place{};   // outputs 0: no room on this device
   bool ready = false;  // it has arrived as a whole and is written
@@ -39,7 +39,7 @@ class Neighborhood {
   // if the grid with its key was ready before and all its points have arrived: update() writes it before it
   // is looked up.
   void setGrids(std::vector<Grid> grids, const streaming::Residency& residency);
-  // Writes the grids whose points were shaded since.
+  // Writes the grids whose points were shaded since the last call.
   Result<void> update(streaming::Residency& residency, const lighting::GroupLights& lights,
                       const glossy::Glossy& glossy, gpu::Counters& counters);
 
@@ -49,7 +49,7 @@ class Neighborhood {
   // Rises when the grid is written.
   std::uint64_t writtenVersion(std::size_t grid) const { return written_versions_[grid]; }
   std::uint32_t gridsWrittenLast() const { return written_; }
-  std::uint64_t bytes() const;  // of the texture
+  std::uint64_t bytes() const;  // size of the texture
   void bind() const { glBindTextureUnit(kUnitAtlas, atlas_.id()); }
   GLuint texture() const { return atlas_.id(); }
   glm::uvec3 atlasSize() const { return atlas_size_; }
@@ -58,7 +58,7 @@ class Neighborhood {
   Result<void> write(streaming::Residency& residency, gpu::Counters& counters);
 
   std::vector<Grid> grids_;
-  std::vector<std::uint64_t> written_versions_;  // per grid, of its shaded points; 0: none
+  std::vector<std::uint64_t> written_versions_;  // per grid, that of its points when written; 0: none
   std::optional<gpu::Program> program_;
   gpu::Handle<gpu::TextureTraits> atlas_;
   glm::uvec3 atlas_size_{0};

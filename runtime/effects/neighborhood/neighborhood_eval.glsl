@@ -1,13 +1,14 @@
-// Light that a body takes from its surroundings or adds to them, looked up at a place: the math only, no bindings.
-// neighborhood_ref.hpp is the same on the CPU, term by term. Places are in points of the grid: 0 the first, size - 1 the
-// last, each way.
+// Looks up the light that a body takes from its surroundings or adds to them. It holds the mathematics only and no
+// bindings; neighborhood_ref.hpp is its CPU twin, term by term. Places are counted in points of the grid: 0 is the
+// first and size - 1 the last along each axis.
 #include "neighborhood_shared.h"
 
-// Of the atlas, between its texels; `texel` counts from the corner, so that texel i has its middle at i + 0.5.
+// Returns the atlas interpolated between texels. `texel` counts from the corner, so that texel i has its centre at i
+// + 0.5.
 vec4 atlasAt(vec3 texel);
 
-// How much of the change counts: all but in the last cell towards each face, there smoothly less, at the faces and
-// beyond them nothing. In a grid of two points it rises to its middle.
+// Returns how much of the change counts: 1 inside, falling smoothly in the last cell towards each face to 0 at the
+// faces and beyond. In a grid of two points it rises up to the middle.
 float gridShare(vec3 place, GridPlace grid) {
   vec3 last = vec3(grid.size_x, grid.size_y, grid.size_z) - 1.0;
   vec3 t = clamp(min(place, last - place) / min(vec3(1.0), 0.5 * last), 0.0, 1.0);
@@ -15,7 +16,8 @@ float gridShare(vec3 place, GridPlace grid) {
   return rise.x * rise.y * rise.z;
 }
 
-// One output: RGB light, w visibility. Never mixed with those above and below it in the atlas.
+// Returns one output: RGB light and, in w, visibility. It is never mixed with the outputs above and below it in the
+// atlas.
 vec4 gridOutput(vec3 place, GridPlace grid, uint slab) {
   vec3 last = vec3(grid.size_x, grid.size_y, grid.size_z) - 1.0;
   vec3 first = vec3(0.0, float(grid.first_y + grid.size_y * (slab / grid.slabs_per_column)),
@@ -23,8 +25,8 @@ vec4 gridOutput(vec3 place, GridPlace grid, uint slab) {
   return vec4(vec3(grid.scale), 1.0) * atlasAt(first + clamp(place, vec3(0.0), last) + 0.5);
 }
 
-// E/pi of the change at a normal in the body's frame: sum over i < 9 of A_l/pi y_i(n) times output i, as in
-// diffuse_light.glsl, of which it is the form that looks up as it goes.
+// Returns E/pi of the change at a normal in the body's frame: the sum over i < 9 of A_l/pi y_i(n) times output i. It
+// is diffuse_light.glsl's sum, but looks the outputs up as it goes.
 vec3 gridIrradiance(vec3 place, GridPlace grid, vec3 n) {
   vec3 sum = 0.28209479 * gridOutput(place, grid, 0u).rgb;
   sum += 0.32573501 * (n.y * gridOutput(place, grid, 1u).rgb + n.z * gridOutput(place, grid, 2u).rgb +

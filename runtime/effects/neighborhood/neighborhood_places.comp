@@ -1,4 +1,5 @@
-// Turns a cell's list of positions about: where the code of each sample stands. One invocation per position.
+// Inverts a cell's list of positions, so that each sample of the group finds its code. One invocation serves one
+// position.
 #include "vertex_shared.h"
 
 layout(local_size_x = kVertexGroupSize) in;

@@ -31,7 +31,8 @@ struct Atlas {
     return texels[(z * height + y) * width + x];
   }
 
-  // Interpolates linearly between texel centres at i + 0.5; constant beyond the outermost.
+  // Interpolates linearly between texel centres at i + 0.5; beyond the outermost centre the value is
+  // constant.
   glm::vec4 at(const glm::vec3& place) const {
     const glm::vec3 last(static_cast<float>(width - 1), static_cast<float>(height - 1),
                          static_cast<float>(depth - 1));
@@ -53,7 +54,7 @@ struct Atlas {
   }
 };
 
-// Writes point by point and output by output, rounded to half floats.
+// Writes the samples point by point and output by output, rounded to half floats.
 inline void write(Atlas& atlas, const WriteRecord& cell, std::span<const glm::vec4> samples) {
   const auto half = [](float value) { return glm::unpackHalf1x16(glm::packHalf1x16(value)); };
   for (uint element = 0; element < cell.point_count * cell.grid.outputs; ++element) {

@@ -1,5 +1,5 @@
-// One text for C++ and GLSL: how the change of the light around bodies lies in the atlas, a 3D texture, and what is
-// bound to write it and to receive from it.
+// This file is shared by C++ and GLSL. It says how the change of the light around bodies is laid out in the atlas, a
+// 3D texture, and what is bound to write the atlas and to receive from it.
 #ifdef __cplusplus
 #pragma once
 
@@ -16,7 +16,7 @@ using glm::mat3x4;
 #define LAMBENT_CONSTANT const uint
 #endif
 
-// Writing: neighborhood_write.comp.
+// These are bindings of neighborhood_write.comp, which writes the atlas.
 LAMBENT_CONSTANT kWriteGroupSize = 64u;
 LAMBENT_CONSTANT kWriteGroupsX = 65535u;  // longer lists fold into y
 LAMBENT_CONSTANT kBindWriteWork = 0u;     // WorkItem per work group
@@ -24,44 +24,46 @@ LAMBENT_CONSTANT kBindWrites = 1u;        // WriteRecord
 LAMBENT_CONSTANT kBindWriteSamples = 2u;  // arena page: shaded points, a vec4 per output
 LAMBENT_CONSTANT kImageAtlas = 0u;
 
-// Receiving. Storage blocks of the surface pass, which has the lower ones in use (surface_shared.h, local_shared.h).
-LAMBENT_CONSTANT kBindReceivers = 6u;  // Receiver, by draw of the residency
+// These are bindings for receiving. They are storage blocks of the surface pass, which uses the lower bindings itself
+// (surface_shared.h, local_shared.h).
+LAMBENT_CONSTANT kBindReceivers = 6u;  // Receiver per draw of the residency
 LAMBENT_CONSTANT kBindArrivals = 7u;   // Arrival
 LAMBENT_CONSTANT kUnitAtlas = 11u;     // texture unit
 
-// Where a grid lies: each output is a slab of size.x * size.y * size.z texels, a point to a texel. Slab o has its first
-// texel at first + (0, size.y * (o / slabs_per_column), size.z * (o % slabs_per_column)).
+// Says where a grid lies. Each output is a slab of size_x * size_y * size_z texels, one texel per point. Slab o has
+// its first texel at (0, first_y, first_z) + (0, size_y * (o / slabs_per_column), size_z * (o % slabs_per_column)).
 struct GridPlace {
   uint size_x, size_y, size_z;
   uint outputs;
   uint first_y, first_z;  // first_x is 0
   uint slabs_per_column;
-  float scale;  // what is stored times this is the change of the light
+  float scale;  // a stored value times this is the change of the light
 };
 
-// Points of one cell of a grid.
+// Describes the points of one cell of a grid.
 struct WriteRecord {
   GridPlace grid;
   uint first_output;  // vec4 index into the samples page
-  uint first_point;   // of the grid
+  uint first_point;   // index in the grid
   uint point_count;
   uint pad;
 };
 
-// What one draw receives from one grid. Rows of affine maps: from the position that the surface pass has per pixel to
-// points of the grid, and from directions of the receiver's group to the frame of the body.
+// Describes what one draw receives from one grid. The matrices are rows of affine maps: from the position that the
+// surface pass has per pixel to points of the grid, and from directions of the receiver's group to the frame of the
+// body.
 struct Arrival {
   mat3x4 grid_from_position;
   mat3x4 body_from_group;
   GridPlace grid;
-  uint whole;  // 1: what changes is all light, key lights too, which have no shadow map of this body
+  uint whole;  // 1: the change counts for all light, key lights too, because this body has no shadow map for them
   uint pad0, pad1, pad2;
 };
 
 struct Receiver {
-  uint first;  // into the arrivals
+  uint first;  // index into the arrivals
   uint count;
-  uint change_word;  // of what it receives at its vertices; kNoChange: nothing
+  uint change_word;  // word of the radiance received at its vertices; kNoChange: none
   uint pad;
 };
 LAMBENT_CONSTANT kNoChange = 0xffffffffu;

@@ -1,5 +1,6 @@
-// Receivers with transfer of their own, one invocation per vertex: t_p . dl'(x_p), the change of the light at the vertex
-// in all its bands, turned into the receiver's frame, times the transfer of the vertex, decoded from its codes. E/pi.
+// Shades receivers with transfer of their own, with one invocation per vertex. It computes t_p . dl'(x_p): the change
+// of the light at the vertex, in all its bands and turned into the receiver's frame, times the vertex's transfer
+// vector, decoded from its codes. The result is E/pi.
 #include "vertex_shared.h"
 #include "neighborhood_eval.glsl"
 #include "coded_transfer.glsl"
@@ -35,7 +36,7 @@ void addArrival(uint a, vec3 position, inout vec3 change[kBandedLight]) {
       for (uint j = l * l; j < (l + 1u) * (l + 1u); ++j) change[i] += arrivals[a].turn[entry++] * around[j];
 }
 
-// A mean or an axis times the change.
+// Returns the change times one mean or one axis of a cluster.
 vec3 projected(TransferRecord transfer, uint vector, vec3 change[kBandedLight]) {
   uint at = transfer.vectors_word + vector * transfer.vector_size + transfer.first_value;
   uint stride = transfer.channels == 1u ? 0u : transfer.columns;

@@ -17,7 +17,7 @@ namespace {
 constexpr gpu::FindText kShaders[] = {&embedded::lambent_effects_neighborhood::find,
                                       &embedded::lambent_transfer::find};
 
-// Receivers of one dispatch share a kernel and pages.
+// The receivers of one dispatch, which share a kernel and pages.
 struct Batch {
   std::uint32_t order = 0, transfer_page = 0, rows_page = 0, geometry_page = 0;
   auto operator<=>(const Batch&) const = default;
@@ -90,7 +90,8 @@ Result<const gpu::Program*> VertexReceivers::program(std::uint32_t order) {
   return &programs_.emplace(order, std::move(*made)).first->second;
 }
 
-// One dispatch for as many records as a block holds; `largest` is the largest number of elements of one.
+// Issues one dispatch for as many records as a block holds. `largest` is the largest number of elements of
+// any record.
 template <typename Record>
 void VertexReceivers::dispatch(std::span<const Record> records, std::uint32_t largest,
                                gpu::Counters& counters) {
@@ -131,7 +132,7 @@ void VertexReceivers::layOut(const streaming::Residency& residency, std::span<co
 
 // Plain cells come first in their group, so its samples are numbered as in the rows.
 Result<void> VertexReceivers::findPlaces(streaming::Residency& residency, gpu::Counters& counters) {
-  std::map<std::uint32_t, std::vector<PlacesCell>> batches;  // by page
+  std::map<std::uint32_t, std::vector<PlacesCell>> batches;  // keyed by page
   for (auto& [group, places] : places_) {
     const std::uint64_t version = versionOf(residency, group);
     if (version == places.version) continue;
@@ -174,7 +175,7 @@ Result<void> VertexReceivers::update(streaming::Residency& residency, const ligh
                                      std::span<const VertexDraw> draws, gpu::Counters& counters) {
   shaded_ = 0;
   if (draws.empty() && words_.empty()) return {};
-  if (structure_changed_.renew(residency.structureVersion())) {  // all indices are others
+  if (structure_changed_.renew(residency.structureVersion())) {  // all indices have changed
     words_.clear();
     places_.clear();
     changed_.clear();
@@ -187,9 +188,9 @@ Result<void> VertexReceivers::update(streaming::Residency& residency, const ligh
   if (dirty.empty()) return {};
   if (Result<void> done = findPlaces(residency, counters); !done) return done;
 
-  evaluate::TransferTable table;  // for its places of planes
+  evaluate::TransferTable table;  // only its places of planes are used
   std::vector<transfer::TransferRecord> transfers;
-  std::map<std::uint32_t, std::uint32_t> first_transfer;  // by group
+  std::map<std::uint32_t, std::uint32_t> first_transfer;  // keyed by group
   std::vector<VertexArrival> arrivals;
   std::map<Batch, std::vector<VertexReceiver>> batches;
   for (const VertexDraw* draw : dirty) {

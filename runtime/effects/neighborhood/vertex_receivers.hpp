@@ -55,11 +55,11 @@ class VertexReceivers {
   std::uint32_t drawsShadedLast() const { return shaded_; }
 
  private:
-  // The draw, its cells, its grids, what is written of them.
+  // Compares a draw's version, that of its cells, its grids and what is written of them.
   using DrawChanged =
       ChangeGate<std::uint64_t, std::uint64_t, std::vector<VertexDraw::From>, std::vector<std::uint64_t>>;
   struct Places {
-    std::uint32_t first = 0;    // first sample of the group in the table of places
+    std::uint32_t first = 0;    // index of the group's first sample in the table of places
     std::uint64_t version = 0;  // version of the group's cells
   };
   void layOut(const streaming::Residency& residency, std::span<const VertexDraw> draws);
@@ -69,10 +69,10 @@ class VertexReceivers {
   template <typename Record>
   void dispatch(std::span<const Record> records, std::uint32_t largest, gpu::Counters& counters);
 
-  std::map<std::uint32_t, gpu::Program> programs_;  // by order; 0: places
-  std::map<std::uint32_t, std::uint32_t> words_;    // by draw
-  std::map<std::uint32_t, Places> places_;          // by group
-  std::map<std::uint32_t, DrawChanged> changed_;    // by draw
+  std::map<std::uint32_t, gpu::Program> programs_;  // keyed by order; 0: the kernel that finds places
+  std::map<std::uint32_t, std::uint32_t> words_;    // keyed by draw
+  std::map<std::uint32_t, Places> places_;          // keyed by group
+  std::map<std::uint32_t, DrawChanged> changed_;    // keyed by draw
   ChangeGate<evaluate::TransferMode> mode_changed_;
   ChangeGate<std::uint64_t> structure_changed_;
   gpu::Table change_, sample_places_, arrivals_, transfers_, planes_, block_;

@@ -1,9 +1,9 @@
-// Draws volumes: rays through the picture gather what the media scatter towards the eye, up to the surface
-// behind, and dim that surface. It reads density (residency), the light in the volumes (volume.hpp) and the
-// picture's depth, and changes the picture's colour to scattered + T colour, alpha to 1 - T (1 - alpha).
-// Overlapping volumes are marched together, up to kMaxMarched at a time; further ones are drawn in turn from
-// back to front. Only the rectangle that they fill is drawn, and without a visible volume nothing is drawn,
-// compiled or held. Render thread only. Fails if a shader does not compile on this device.
+// Draws volumes. Rays through the picture gather the light that the media scatter towards the eye, up to the
+// surface behind, and dim that surface. It reads density (residency), the light in the volumes (volume.hpp)
+// and the picture's depth. It changes the picture's colour to scattered + T colour and its alpha to 1 - T (1
+// - alpha). Overlapping volumes are marched together, up to kMaxMarched at a time; further ones are drawn in
+// turn from back to front. Only the rectangle that the volumes fill is drawn. Without a visible volume
+// nothing is drawn, compiled or held. Render thread only. Fails if a shader does not compile on this device.
 #pragma once
 
 #include <cstdint>
@@ -39,7 +39,7 @@ struct PlacedVolume {
 };
 
 struct Picture {
-  const gpu::Framebuffer& color;  // without depth, which is read
+  const gpu::Framebuffer& color;  // without depth, because the shader reads it
   const gpu::Texture& depth;      // 2D, with one or several samples per pixel
   spec::Size size;
 };
@@ -53,8 +53,8 @@ struct Rectangle {
   std::int32_t x = 0, y = 0, width = 0, height = 0;
   bool empty() const { return width <= 0 || height <= 0; }
 };
-// Returns what the box of `size` voxels may cover of the picture; all of it if the box reaches behind the
-// eye.
+// Returns what the box of `size` voxels may cover of the picture; returns all of the picture if the box
+// reaches behind the eye.
 Rectangle rectangleOf(const glm::mat4& clip_from_grid, const glm::uvec3& size, const spec::Size& picture);
 
 class March {
@@ -89,7 +89,7 @@ class March {
 
   MarchOptions options_;
   std::map<Kind, gpu::Program> programs_;
-  std::map<std::uint32_t, gpu::Program> composites_;  // keyed by samples
+  std::map<std::uint32_t, gpu::Program> composites_;  // keyed by samples per pixel
   gpu::Table records_, blocks_;
   std::vector<std::uint32_t> first_block_;                 // index: residency volume
   ChangeGate<std::vector<std::uint64_t>> blocks_changed_;  // versions of the volumes

@@ -44,10 +44,10 @@ class Volume {
                      const diffuse::Diffuse& diffuse, const glossy::Glossy& glossy,
                      evaluate::TransferMode mode, gpu::Counters& counters);
 
-  // Returns the texture of residency().volumes()[volume]; a null handle if there is nothing to show yet.
+  // Returns the texture of residency().volumes()[volume], or a null handle if there is nothing to show yet.
   const gpu::Texture& lightOf(std::size_t volume) const { return held_[volume].light; }
   std::size_t volumeCount() const { return held_.size(); }
-  // States what the last call wrote.
+  // Counts what the last call wrote.
   struct Shaded {
     std::uint32_t volumes = 0, slabs = 0;
   };
@@ -57,7 +57,8 @@ class Volume {
  private:
   struct Held {
     gpu::Texture light;
-    // Samples that were shaded, light of open cells, the volume, open cells, the mode.
+    // Compares the versions of shaded samples, of the light of open cells and of the volume, the number of
+    // open cells, and the mode.
     ChangeGate<std::uint64_t, std::uint64_t, std::uint64_t, std::uint32_t, TransferMode> changed;
   };
 

@@ -1,6 +1,6 @@
-// Each pixel's ray through the volumes, as far as the surface that stands there. Into a picture of one sample a pixel at
-// once; of several, what lies before the nearest and before the farthest of its samples, for volume_composite.frag: a ray
-// is gone along once, and an edge in the mist has no halo.
+// Marches each pixel's ray through the volumes, up to the surface behind them. With one sample per pixel it draws
+// into the picture itself. With several it stores what lies before the pixel's nearest and farthest sample, for
+// volume_composite.frag; so a ray is marched once, and edges in mist have no halo.
 #include "volume_shared.h"
 
 layout(std430, binding = kBindMarch) readonly buffer March { MarchRecord records[]; };
@@ -19,7 +19,7 @@ float densityAt(int v, vec3 place) { return textureLod(densities[v], place, 0.0)
 vec4 lightAt(int v, vec3 place) { return textureLod(lights[v], place, 0.0); }
 float blockMaximumAt(uint block) { return blocks[block]; }
 
-// z of what has this depth in clip space, -1..1; negative before the eye.
+// Returns view-space z of a depth in clip space, -1..1. It is negative in front of the eye.
 float viewZ(float depth) { return perspective ? -scale.w / (depth + scale.z) : (depth - scale.w) / scale.z; }
 
 #if LAMBENT_STOPS == 1
@@ -31,7 +31,8 @@ layout(location = 0) out vec4 near;
 layout(location = 1) out vec4 far;
 #endif
 
-// In (0, 1], of a pixel the same in every frame; the hash is pcg by O'Neill, as Jarzynski and Olano 2020 give it.
+// Returns a number in (0, 1] that depends on the pixel and not on the frame. The hash is O'Neill's PCG as in
+// Jarzynski and Olano 2020.
 float jitterOf(uvec2 pixel) {
   uint state = pixel.x + 65536u * pixel.y;
   state = state * 747796405u + 2891336453u;
@@ -48,7 +49,7 @@ void main() {
     direction = normalize(vec3((clip + offset.xy) / scale.xy, -1.0));
   else
     origin.xy = (clip - offset.zw) / scale.xy;
-  // 1 is the clear's: nothing stands there.
+  // Cleared depth is 1: there is no surface.
   float stops[LAMBENT_STOPS];
 #if LAMBENT_STOPS == 1
   float depth = texelFetch(depth_picture, pixel, 0).r;
@@ -76,10 +77,10 @@ void main() {
   marchVolumes(marched, rays, stops, step_voxels, 1.0, gathered);
 #endif
 #if LAMBENT_STOPS == 1
-  if (gathered[0].a == 0.0) discard;  // as it was, to the last bit
+  if (gathered[0].a == 0.0) discard;  // leaves the pixel as it was, to the last bit
   color = vec4(gathered[0].rgb, lostOf(gathered[0].a));
 #else
-  const vec3 kLargest = vec3(65504.0);  // of a half float
+  const vec3 kLargest = vec3(65504.0);  // largest half float
   near = vec4(clamp(gathered[0].rgb, -kLargest, kLargest), exp(-gathered[0].a));
   far = vec4(clamp(gathered[1].rgb, -kLargest, kLargest), exp(-gathered[1].a));
 #endif

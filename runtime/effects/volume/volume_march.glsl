@@ -1,45 +1,46 @@
-// Light along a ray through up to LAMBENT_VOLUMES volumes at once: the math only, no bindings. The CPU twin is
-// volume_ref.hpp, with the same names and the same order of terms.
+// Gathers light along a ray through up to LAMBENT_VOLUMES volumes at once. It holds the mathematics only and no
+// bindings. The CPU twin is volume_ref.hpp, with the same names and the same order of terms.
 //
 //   L = sum_k tau_k (1 - exp(-sigma_k d_k)) S_k + tau_end L_behind,   tau_k = exp(-sum_j<k sigma_j d_j)
 //
-// The products telescope: with S = 1 and L_behind = 1 the sum is 1 whatever the steps are. Within a step the density is
-// that of its middle, and S that of the place where, on average, the step scatters; so a step is exact where density is
-// constant and S linear, however dense it is. Where volumes overlap, their extinctions add up.
+// The products telescope: with S = 1 and L_behind = 1 the sum is 1 for any steps. Within a step the density is that
+// at its middle, and S that at the place where, on average, the step scatters; so a step is exact where density is
+// constant and S linear, at any density. Where volumes overlap, their extinctions add up.
 //
-// S is the radiance that arrives, convolved with the phase function. The ray goes along d, the light that reaches its
-// start along -d, and light that arrives from s along -s: Henyey-Greenstein's cosine is dot(s, d), and
+// S is the radiance that arrives, convolved with the phase function. The ray runs along d, so the light that reaches
+// its start travels along -d, and light that arrives from s travels along -s. Hence Henyey-Greenstein's cosine is
+// dot(s, d), and
 //   S(d) = int p(dot(s, d)) L(s) ds = sum_lm g^l L_lm y_lm(d).
-// With g > 0 a medium is bright where one looks towards the light.
+// With g > 0 a medium is bright when one looks towards the light.
 #include "volume_shared.h"
 
 const float kInfinity = 1e30;
-const float kDeep = 9.2103404;  // exp(-kDeep) = 1e-4: nothing behind is seen
+const float kDeep = 9.2103404;  // exp(-kDeep) = 1e-4, behind which nothing is seen
 const int kMaxIntervals = 8192;  // more than any ray meets
 
-// Of density and light: by place in the texture, 0..1.
+// Return density and light of volume v, looked up by place in its texture, 0..1.
 float densityAt(int v, vec3 place);
 vec4 lightAt(int v, vec3 place);
-float blockMaximumAt(uint block);  // of all volumes
+float blockMaximumAt(uint block);  // over the blocks of all volumes
 
-// 1 - exp(-x)
+// Returns 1 - exp(-x).
 float lostOf(float x) { return x < 0.02 ? x * (1.0 - x * (0.5 - x / 6.0)) : 1.0 - exp(-x); }
 
-// Where in a step of optical depth x scattering takes place on average: int t exp(-x t) dt / int exp(-x t) dt.
+// Returns where, on average, a step of optical depth x scatters: int t exp(-x t) dt / int exp(-x t) dt.
 float meanPlace(float x) {
   return x < 0.3 ? 0.5 - x / 12.0 + x * x * x / 720.0 : 1.0 / x - 1.0 / (exp(min(x, 80.0)) - 1.0);
 }
 
-// A ray and a volume.
+// Holds the state of a ray in one volume.
 struct VolumeRay {
   vec3 origin;     // in the box from 0 to 1
-  vec3 direction;  // per metre of the ray
-  vec3 towards;    // unit, in the group's frame
-  float metres;    // of the group, per metre of the ray
-  float enter;     // metres; not below leave: the ray misses it
+  vec3 direction;  // of the box, per metre of the ray
+  vec3 towards;    // unit vector, group frame
+  float metres;    // metres of the group per metre of the ray
+  float enter;     // metres; the ray misses the volume if it is not below `leave`
   float leave;
-  float voxel;  // metres that the ray takes for the length of a voxel
-  // The block that the ray is in, and where it leaves it in each direction.
+  float voxel;  // metres along the ray that count as a voxel's length
+  // These hold the block that the ray is in, and where the ray leaves it along each axis.
   ivec3 block;
   ivec3 last_block;
   vec3 exits;
@@ -59,12 +60,12 @@ VolumeRay enterVolume(MarchRecord record, vec3 origin_vs, vec3 dir_vs, float beg
   vec3 size = vec3(record.size);
   float speed = length(size * ray.direction);
   ray.voxel = 1.0 / speed;
-  // Rays that are as good as parallel to a face never pass it.
+  // Rays that are nearly parallel to a face are treated as parallel and never cross it.
   bvec3 parallel = lessThan(abs(size * ray.direction), vec3(1e-6 * speed));
   ray.direction = mix(ray.direction, vec3(0.0), parallel);
   vec3 divisor = mix(ray.direction, vec3(1.0), parallel);
   vec3 first = -ray.origin / divisor, second = (1.0 - ray.origin) / divisor;
-  // Between two faces that it is parallel to a ray is always, or never.
+  // A ray parallel to two faces is either always or never between them.
   bvec3 between = lessThanEqual(abs(ray.origin - 0.5), vec3(0.5));
   vec3 enter = mix(min(first, second), mix(vec3(kInfinity), vec3(-kInfinity), between), parallel);
   vec3 leave = mix(max(first, second), mix(vec3(-kInfinity), vec3(kInfinity), between), parallel);
@@ -79,7 +80,7 @@ VolumeRay enterVolume(MarchRecord record, vec3 origin_vs, vec3 dir_vs, float beg
   return ray;
 }
 
-// Follows the ray into the block in which it is at t; false: it has left the volume.
+// Follows the ray into the block that contains it at t. Returns false if it has left the volume.
 bool followBlocks(inout VolumeRay ray, float t) {
   while (min(ray.exits.x, min(ray.exits.y, ray.exits.z)) <= t) {
     bvec3 next = bvec3(false, false, true);
@@ -99,13 +100,13 @@ bool blockFilled(VolumeRay ray, uint first_block) {
   return blockMaximumAt(first_block + block.x + count.x * (block.y + count.y * block.z)) > 0.0;
 }
 
-// Extinction per metre of the ray.
+// Returns the extinction per metre of the ray at t.
 float extinctionAt(int v, float density_scale, VolumeRay ray, float t) {
   return density_scale * ray.metres * densityAt(v, ray.origin + t * ray.direction);
 }
 
 #if LAMBENT_BANDS > 1
-// y_i(d), without the Condon-Shortley sign.
+// Evaluates y_i(d), without the Condon-Shortley sign.
 void basisAt(vec3 d, uint bands, out float y[LAMBENT_BANDS * LAMBENT_BANDS]) {
   float z2 = d.z * d.z;
   y[0] = 0.282094792;
@@ -163,10 +164,11 @@ void basisAt(vec3 d, uint bands, out float y[LAMBENT_BANDS * LAMBENT_BANDS]) {
 }
 #endif
 
-// S where the ray is at t. Between voxels that have light: those that have none do not share in it.
+// Returns S where the ray is at t. It interpolates only between voxels that have light.
 vec3 scatteredAt(int v, MarchRecord record, VolumeRay ray, float t) {
   vec3 transfer_size = vec3(record.transfer_size), light_size = vec3(record.light_size);
-  // Within half a voxel of a slab's face it is the slab's last voxel, not the next slab.
+  // Within half a voxel of a slab's face, the place is clamped to the slab's last voxel, so that the next slab is not
+  // mixed in.
   vec3 place = clamp((ray.origin + t * ray.direction) * transfer_size, vec3(0.5), transfer_size - 0.5);
   vec4 light = lightAt(v, place / light_size);
 #if LAMBENT_BANDS > 1
@@ -184,8 +186,9 @@ vec3 scatteredAt(int v, MarchRecord record, VolumeRay ray, float t) {
   return light.a > 0.0 ? light.rgb / light.a : vec3(0.0);
 }
 
-// What was gathered before each of the stops, which rise: scattered radiance, and optical depth. Steps are `step_voxels`
-// of the finest volume there; they begin `jitter` (0..1] of a step after each block's border.
+// Returns what was gathered up to each of the stops, which must rise: scattered radiance, and optical depth. A step
+// is `step_voxels` voxels of the finest volume there; the first one ends `jitter` (0..1] of a step behind each
+// block's border.
 void marchVolumes(MarchRecord records[LAMBENT_VOLUMES], VolumeRay rays[LAMBENT_VOLUMES], float stops[LAMBENT_STOPS],
                   float step_voxels, float jitter, out vec4 gathered[LAMBENT_STOPS]) {
   vec4 sum = vec4(0.0);
@@ -197,7 +200,7 @@ void marchVolumes(MarchRecord records[LAMBENT_VOLUMES], VolumeRay rays[LAMBENT_V
   }
   int stop = 0;
   for (int interval = 0; interval < kMaxIntervals; ++interval) {
-    // At most two stops: to index them would cost a trip to memory.
+    // There are at most two stops; indexing them dynamically would cost a trip to memory.
     bool ended = sum.a > kDeep || t >= last;
     if (stop == 0 && (ended || t >= stops[0])) {
       gathered[0] = sum;
@@ -208,7 +211,7 @@ void marchVolumes(MarchRecord records[LAMBENT_VOLUMES], VolumeRay rays[LAMBENT_V
       stop = 2;
     }
     if (stop == LAMBENT_STOPS) return;
-    // As far as no volume begins or ends and none comes to another block.
+    // The interval ends where a volume begins or ends, or where the ray enters another block.
     float end = min(stop == 0 ? stops[0] : stops[LAMBENT_STOPS - 1], last), width = kInfinity;
     uint filled = 0u;
     for (int v = 0; v < LAMBENT_VOLUMES; ++v) {

@@ -57,8 +57,8 @@ struct Medium {
   std::vector<float> block_maxima;
 };
 
-// Writes what the scatter kernel writes for the samples of a cell; if record.open is set, that is this many
-// coefficients of the light.
+// Writes what the scatter kernel writes for the samples of a cell. If record.open is set, it writes that many
+// coefficients of the light itself.
 inline void scatter(const ScatterRecord& record, std::span<const uint> voxels,
                     std::span<const glm::vec4> samples, std::span<const glm::vec4> lights,
                     Texels<glm::vec4>& out) {
@@ -181,7 +181,7 @@ inline glm::vec3 scatteredAt(const Medium& medium, const VolumeRay& ray, float t
   return light.a > 0.0f ? glm::vec3(light) / light.a : glm::vec3(0.0f);
 }
 
-// Returns scattered light (RGB) and optical depth (alpha) up to each of the stops.
+// Returns scattered radiance (RGB) and optical depth (alpha) up to each of the stops.
 inline std::vector<glm::vec4> marchVolumes(std::span<const Medium> media, std::vector<VolumeRay> rays,
                                            std::span<const float> stops, float step_voxels, float jitter) {
   glm::vec4 sum(0.0f);
@@ -244,7 +244,7 @@ inline std::vector<glm::vec4> marchVolumes(std::span<const Medium> media, std::v
   }
 }
 
-// A ray from `begin` to `end` metres, view space.
+// Describes a ray from `begin` to `end` metres, in view space.
 struct RaySegment {
   glm::vec3 origin_vs, dir_vs;
   float begin = 0.0f, end = kInfinity;

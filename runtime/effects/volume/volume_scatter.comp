@@ -1,5 +1,5 @@
-// The shaded samples of a volume, brought to where rays find them: one invocation per sample. Band l is multiplied with
-// g^l, the convolution with the phase function (volume_march.glsl says why), so that rays only evaluate.
+// Copies the shaded samples of a volume into its texture, with one invocation per sample. Band l is multiplied with
+// g^l, the convolution with the phase function (see volume_march.glsl), so that rays only evaluate it.
 #include "volume_shared.h"
 
 layout(local_size_x = kScatterGroupSize) in;
@@ -13,12 +13,12 @@ layout(binding = kImageLight, rgba32f) writeonly uniform image3D light_image;
 const float kLargest = 3e38;
 #else
 layout(binding = kImageLight, rgba16f) writeonly uniform image3D light_image;
-const float kLargest = 65504.0;  // an infinite texel would make NaN of its neighbours
+const float kLargest = 65504.0;  // an infinite texel would make its neighbours NaN
 #endif
 
 const float kY00 = 0.282094792;
 
-// Light that arrives at an open place; of one output its mean over all directions.
+// Returns the light that arrives at an open place. With one output this is its mean over all directions.
 vec3 openLight(ScatterRecord record, uint output_index) {
   if (output_index >= record.open) return vec3(0.0);
   vec3 light = lights[record.light + output_index].rgb;
@@ -43,7 +43,7 @@ void main() {
     }
     vec3 light = record.open > 0u ? openLight(record, j) : samples[record.first_output + record.outputs * at + j].rgb;
     uvec3 texel = place + uvec3(record.size[0] * (j / record.slabs_z), 0u, record.size[2] * (j % record.slabs_z));
-    // Alpha: there is light here. Voxels without a sample have none to share in.
+    // Alpha 1 marks a voxel with light; lookups leave out voxels without a sample.
     imageStore(light_image, ivec3(texel), vec4(clamp(factor * light, -kLargest, kLargest), 1.0));
   }
 }

@@ -1,5 +1,5 @@
-// What bodies send to each other: their capture proxies are lit, and what stands around light probes is drawn
-// anew where it has changed. It arrives with the next step.
+// Updates the light between bodies: shades their capture proxies, and captures the surroundings of light
+// probes where these have changed. The result arrives with the next step.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -89,7 +89,7 @@ class CapturePass final : public FramePass {
         const bool by_bounces = bounced != radiance.bounced;
         if (by_light) radiance.drift += double{lights.changeOf(g)};
         if (by_bounces) radiance.drift += std::min(std::abs(bounced - radiance.bounced), 1.0);
-        // Shaded for another reason than light or a turn: all of it may be different.
+        // The group was shaded for another reason than light or a turn, so everything may differ.
         if (!by_light && !by_bounces) radiance.drift += 1.0;
         radiance.bounced = bounced;
       }
@@ -98,8 +98,9 @@ class CapturePass final : public FramePass {
     }
   }
 
-  // What came or went has its price in this step. Captures that it asks for begin with the next one, unless
-  // everything is asked for at once: nobody waits for the next picture.
+  // Returns how many captures may be drawn. In the step in which bundles arrived or were removed there are
+  // none, because that step is costly already; they begin with the next one. Without a view nobody waits for
+  // a picture, so all are drawn at once.
   std::size_t mostCaptures(const FrameContext& frame) {
     const bool changed = structure_changed_.renew(frame.world.residency().structureVersion());
     waited_ = changed && !waited_ && frame.view;
@@ -107,15 +108,15 @@ class CapturePass final : public FramePass {
     return frame.view ? frame.settings().captures_per_step : kAllCaptures;
   }
 
-  // How the light that a group sends out has changed, summed up.
+  // Sums up how the light that a group sends out has changed.
   struct Radiance {
     std::uint64_t version = 0, light = 0;
     double bounced = 0.0, drift = 0.0;
   };
   Proxies proxies_;
   KeyedState<Radiance> radiance_;
-  ChangeGate<std::uint64_t> structure_changed_;  // since captures were last asked for
-  bool waited_ = false;                          // for one step, as the structure had changed
+  ChangeGate<std::uint64_t> structure_changed_;  // residency, since the last captures
+  bool waited_ = false;  // whether the last step drew no captures because the structure changed
 };
 
 }  // namespace

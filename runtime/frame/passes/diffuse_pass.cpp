@@ -1,4 +1,4 @@
-// E/pi at every vertex whose light or transfer is new.
+// Shades E/pi at every vertex whose light or transfer changed.
 #include "runtime/effects/diffuse/diffuse.hpp"
 #include "runtime/frame/passes/passes.hpp"
 

@@ -1,4 +1,4 @@
-// Transferred light at the samples of glossy surfaces, of volumes and of grids, where any have matrices.
+// Shades transferred light at the samples of glossy surfaces, of volumes and of grids, if any have matrices.
 #include <algorithm>
 
 #include "runtime/effects/glossy/glossy.hpp"

@@ -1,5 +1,5 @@
-// What arrives at the groups' light probes: the environment, lights in the scene, what bodies throw on each
-// other. Says which effect carries which light.
+// Computes the light at the groups' light probes: the environment, lights in the scene, and light between
+// bodies. It decides which carrier brings each light.
 #include <algorithm>
 #include <optional>
 #include <utility>
@@ -45,7 +45,8 @@ class LightPass final : public FramePass {
 
   Result<void> update(FrameContext& frame) override {
     const FrameSettings& settings = frame.settings();
-    // What other ways of the light leave in the captures by small steps must not depend on which way was on.
+    // Captures depend on the previous light, so they are drawn anew when the carriers change. Otherwise the
+    // result would depend on which carriers were in use before.
     if (carriers_.renew(settings.captures, settings.neighborhoods, settings.local_shadows,
                         settings.local_radii, settings.light_probes) &&
         incident_)
@@ -84,7 +85,7 @@ class LightPass final : public FramePass {
     hideApart(scene_, proxiesOf(frame.world.residency()).proxies);
   }
 
-  // Others of a group's samples take the light of those.
+  // Keeps at most `most` light probes per group. Other samples take the light of the nearest kept one.
   void keepFewerSamples(const World& world, std::uint32_t most) {
     const auto& groups = world.residency().groups();
     fewer_samples_.assign(groups.size(), {});
@@ -102,7 +103,7 @@ class LightPass final : public FramePass {
     if (!incident_ && !scene_.needsSampling()) return {};
     lighting::CaptureOptions options = frame.settings().capture;
     if (options.order == 0) {
-      options.order = std::max(1, capture_order_);  // never fewer again: light that was captured stays
+      options.order = std::max(1, capture_order_);  // never falls, so that captured light stays valid
       for (const streaming::ResidentGroup& group : frame.world.residency().groups())
         options.order = std::max(options.order, static_cast<int>(group.order));
     }
@@ -155,10 +156,10 @@ class LightPass final : public FramePass {
   }
 
   LitScene scene_;
-  Incident incident_;  // once there is something to sample
+  Incident incident_;  // made once there is something to sample
   GroupLights group_lights_;
-  ChangeGate<bool, bool, bool, float, std::uint32_t> carriers_;  // the settings that choose them
-  ChangeGate<std::uint64_t> proxies_;                            // that the captures have
+  ChangeGate<bool, bool, bool, float, std::uint32_t> carriers_;  // settings that choose carriers
+  ChangeGate<std::uint64_t> proxies_;                            // version that the captures have
   int capture_order_ = 0;
   std::vector<lighting::FewerSamples> fewer_samples_;  // per group; empty: all are kept
 };

@@ -1,4 +1,5 @@
-// What bodies with grids change around them. The light pass has chosen which of them act on whom.
+// Updates what bodies with grids change around them. The light pass has chosen which of them act on which
+// groups.
 #include "runtime/effects/glossy/glossy.hpp"
 #include "runtime/frame/passes/passes.hpp"
 #include "runtime/surface/light_modules.hpp"

@@ -1,4 +1,4 @@
-// What is asked for to be seen besides the picture, laid over it as it is: overlays, and wires of triangles.
+// Draws overlays and wires of triangles over the finished picture.
 #include <optional>
 #include <utility>
 
@@ -70,8 +70,8 @@ class OverlayPass final : public FramePass {
     return {};
   }
 
-  std::optional<Overlays> overlays_;  // while any are shown
-  std::optional<DataView> wires_;     // while a view shows wires
+  std::optional<Overlays> overlays_;  // made while any are shown
+  std::optional<DataView> wires_;     // made while a view shows wires
   ChangeGate<std::uint64_t> targets_;
 };
 

@@ -1,5 +1,5 @@
-// What makes each pass of the frame (frame_pass.hpp), for the list of passes. One file has one pass, or two
-// that are halves of the same effect. Errors: shaders that do not compile.
+// Declares the functions that make the passes of the frame (frame_pass.hpp), for the list of passes. A file
+// has one pass, or two that are halves of the same effect. They fail if a shader does not compile.
 #pragma once
 
 #include <memory>
@@ -9,7 +9,7 @@
 
 namespace lambent::frame {
 
-// What passes are made from.
+// Holds what passes are made from.
 struct PassSetup {
   const FrameOptions& options;
   const lighting::Environment& environment;

@@ -1,4 +1,4 @@
-// What surfaces send on of the lights that stand among them, and of key lights.
+// Bounces lights among the surfaces, and key lights, by patches.
 #include "runtime/bounces/patch_bounces.hpp"
 #include "runtime/frame/passes/passes.hpp"
 #include "runtime/surface/light_modules.hpp"

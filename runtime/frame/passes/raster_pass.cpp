@@ -1,5 +1,5 @@
-// Surfaces, proxies of bundles that are not here, the sky and blended surfaces: linear radiance. In views of
-// transfer it draws numbers in place of light.
+// Draws surfaces, proxies of bundles that are not resident, the sky and blended surfaces, as linear radiance.
+// In views of transfer it draws numbers instead of light.
 #include <algorithm>
 #include <optional>
 #include <utility>
@@ -43,7 +43,7 @@ class RasterPass final : public FramePass {
 
   Result<void> update(FrameContext& frame) override {
     frame.because();
-    // Also where numbers are drawn: what is picked is found among these.
+    // Surfaces are prepared even if numbers are drawn, because picking reads them.
     if (Result<void> done = prepareSurfaces(frame); !done) return done;
     if (showsTransfer(frame.options.view.view)) return drawNumbers(frame);
     data_view_.reset();
@@ -109,7 +109,7 @@ class RasterPass final : public FramePass {
   }
 
   static void clearTargets(FrameContext& frame) {
-    // Behind numbers and directions there is a dark grey that neither has.
+    // Pictures of numbers and directions have a dark grey behind them that no value has.
     constexpr float kGrey = 0.012f;
     frame.targets.bindCleared(showsLight(frame.options.view.view) || frame.options.linear() ? 0.0f : kGrey);
   }
@@ -117,7 +117,7 @@ class RasterPass final : public FramePass {
   Surfaces surfaces_;
   const SurfaceModules& modules_;
   ProxyLods proxy_lods_;
-  std::optional<DataView> data_view_;  // while a view shows transfer
+  std::optional<DataView> data_view_;  // made while a view shows transfer
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Direct light per pixel: shadow cubes of local lights, shadow maps of key lights.
+// Draws the shadow cubes of local lights and the shadow maps of key lights, for direct light per pixel.
 #include "runtime/frame/passes/passes.hpp"
 #include "runtime/shadows/key_shadows.hpp"
 #include "runtime/shadows/lit_scene.hpp"

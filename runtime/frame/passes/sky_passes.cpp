@@ -1,4 +1,4 @@
-// The sky: as it is seen where nothing stands, and as rough mirrors show it.
+// Updates the sky, as it is seen behind all surfaces and as rough mirrors show it.
 #include <algorithm>
 #include <optional>
 #include <utility>
@@ -39,7 +39,7 @@ class SkyPass final : public FramePass {
   Sky sky_;
 };
 
-// Made once for each set of lights, when a glossy surface asks for it first.
+// Prefilters the environment once for each set of lights, when there is a glossy surface to show it.
 class PrefilteredEnvironmentPass final : public FramePass {
  public:
   explicit PrefilteredEnvironmentPass(Blackboard& board)
@@ -55,7 +55,7 @@ class PrefilteredEnvironmentPass final : public FramePass {
     shown_ = frame.settings().residual;
     if (!frame.settings().residual || !frame.settings().glossy || !frame.read<Glossy>().any()) return false;
     if (source_.holds(PrefilteredEnvironment::sourceVersion(frame.environment))) return false;
-    // There may be matrices of neighborhoods or volumes alone.
+    // Matrices may belong to neighborhoods or volumes alone, which do not show it.
     return std::ranges::any_of(frame.world.residency().groups(), [](const streaming::ResidentGroup& group) {
       return group.glossy_outputs > 0;
     });

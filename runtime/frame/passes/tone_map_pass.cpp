@@ -1,4 +1,4 @@
-// From linear radiance to the picture; negative pixels are counted and clamped here.
+// Turns linear radiance into the picture, and counts and clamps negative pixels.
 #include <utility>
 
 #include "runtime/frame/passes/passes.hpp"

@@ -1,4 +1,4 @@
-// Volumes: the light in them goes into textures, which rays through the picture look up.
+// Brings the light in volumes into textures, and marches rays through the picture that look it up.
 #include <optional>
 #include <vector>
 
@@ -62,7 +62,7 @@ class MarchPass final : public FramePass {
   }
   Result<void> update(FrameContext& frame) override {
     frame.because();
-    // Pictures that are compared take half the steps, all at their places.
+    // Linear pictures, which are compared, take steps of half the length, without jitter.
     const bool linear = frame.options.linear();
     if (!march_) march_.emplace(effects::volume::MarchOptions{.jitter = !linear});
     march_->setStep(frame.settings().march_step_voxels * (linear ? 0.5f : 1.0f));
@@ -79,7 +79,7 @@ class MarchPass final : public FramePass {
   }
 
  private:
-  std::optional<effects::volume::March> march_;  // once there is a volume
+  std::optional<effects::volume::March> march_;  // made once there is a volume
 };
 
 }  // namespace

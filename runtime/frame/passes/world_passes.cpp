@@ -1,5 +1,5 @@
-// The world: what has arrived goes to the GPU, within a budget of bytes for each frame; then nodes, rigid
-// groups and materials are where they stand now.
+// Uploads what has arrived, within a budget of bytes per frame, and then updates nodes, rigid groups and
+// materials.
 #include <chrono>
 #include <optional>
 
@@ -31,7 +31,7 @@ class UploadPass final : public FramePass {
   }
 
  private:
-  // The time from one picture to the next, with the steps between them.
+  // Records the time from one picture to the next, with the steps between them.
   void noticeFrame(std::uint64_t most_bytes) {
     const auto now = std::chrono::steady_clock::now();
     if (rendered_)
@@ -42,8 +42,8 @@ class UploadPass final : public FramePass {
   }
 
   UploadPacer pacer_;
-  std::optional<std::chrono::steady_clock::time_point> rendered_;  // the last time
-  std::uint64_t uploaded_bytes_ = 0;                               // since then
+  std::optional<std::chrono::steady_clock::time_point> rendered_;  // time of the last picture
+  std::uint64_t uploaded_bytes_ = 0;                               // since the last picture
 };
 
 class TransformsPass final : public FramePass {
