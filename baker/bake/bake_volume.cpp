@@ -197,9 +197,8 @@ class VolumeCoder {
 
 // Within holds the surfaces that a volume never moves against.
 struct Within {
-  const GroupGeometry* geometry =
-      nullptr;  // null if there are none; its points are relative to GroupGeometry::origin
-  glm::mat4 from_group{1.0f};
+  const GroupGeometry* geometry = nullptr;  // null if there are none
+  glm::mat4 from_group{1.0f};  // from the volume's group to points relative to GroupGeometry::origin
 };
 
 Within surfacesAround(const std::vector<RigidGroup>& groups, std::size_t index,
